@@ -26,7 +26,10 @@ enum {
 
 #define R(x) ((real)(x))
 #define UNLESS(condition) ((condition) ? R(0) : R(1))  /* flag of what must hold */
-#define LANES 8  /* states that a batch runs side by side */
+#ifndef FIVEBAR_OFFSET_LANES
+#define FIVEBAR_OFFSET_LANES 8  /* 1 where there are no vectors: less memory, shorter code */
+#endif
+#define LANES ((size_t)FIVEBAR_OFFSET_LANES)  /* states that a batch runs side by side */
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
@@ -36,6 +39,20 @@ enum {
 #define INLINE static inline
 #define APART static
 #endif
+
+/* Bytes of a vector. */
+#if defined(__AVX__)
+#define VECTOR 32
+#elif defined(__SSE2__) || defined(__ARM_NEON)
+#define VECTOR 16
+#else
+#define VECTOR 1
+#endif
+/* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
+#define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
+#define LEGS(n) \
+    ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
+        : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
@@ -104,63 +121,122 @@ INLINE int is_finite(real x)
     return x - x == 0;
 }
 
-/* Why states are impossible, by state: more than 0 where a cause holds. */
+/* Why states are impossible, by state: more than 0 where a cause holds.  total: the sum of all
+   results, and side by side of all inputs, which is finite only where they are. */
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
+    real total[LANES];
 } verdict;
 
 INLINE void start(size_t w, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
+        t->total[k] = 0;
     }
 }
 
-/* x - x is 0 for every number and NaN for the rest; sums side by side add up fast. */
+/* x - x is 0 for every number and NaN for the rest. */
 INLINE int all_finite(const real *x, size_t n)
 {
+    real sum = 0;
+    for (size_t i = 0; i < n; ++i) {
+        sum += x[i] - x[i];
+    }
+    return sum == 0;
+}
+
+/* Whether all are finite: then so is their sum, but for numbers so large that they need a closer
+   look.  Many add up fast as sums side by side. */
+INLINE int sum_is_finite(const real *x, size_t n)
+{
+    if (n < 2*LANES) {
+        return is_finite(total(x, n));
+    }
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
         for (size_t k = 0; k < LANES; ++k) {
-            sum[k] += x[i + k] - x[i + k];
+            sum[k] += x[i + k];
         }
     }
     for (size_t i = most; i < n; ++i) {
-        sum[0] += x[i] - x[i];
+        sum[i - most] += x[i];
     }
-    return total(sum, LANES) == 0;
+    return is_finite(total(sum, LANES));
 }
 
 /* Flag the states with entries that are not finite; the states stand side by side. */
 INLINE void check(size_t size, size_t w, const real *x, real *flags)
 {
-    if (!all_finite(x, size*w)) {
+    if (!sum_is_finite(x, size*w)) {
         for (size_t i = 0; i < size*w; ++i) {
             flags[i%w] += UNLESS(is_finite(x[i]));
         }
     }
 }
 
-/* Input, given state by state, with its states side by side: entry e of state k at e*w + k. */
-INLINE const real *side_by_side(size_t size, size_t w, const real *x, real *lanes, real *flags)
+/* Add up the entries of every state. */
+INLINE void add_up(size_t size, const real *x, real *total)
 {
-    for (size_t e = 0; e < size && w > 1; ++e) {
-        for (size_t k = 0; k < w; ++k) {
-            lanes[e*w + k] = x[size*k + e];
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            total[k] += x[e*LANES + k];
         }
     }
-    check(size, w, w > 1 ? lanes : x, flags);
-    return w > 1 ? lanes : x;
 }
 
-/* The same for input that may be NULL: then all its entries are `none`. */
-INLINE const real *optional(size_t size, size_t w, const real *x, real none, real *lanes, real *flags)
+/* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
+INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
 {
-    for (size_t e = 0; e < size*w && !x; ++e) {
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            lanes[e*LANES + k] = x[size*k + e];
+        }
+    }
+    add_up(size, lanes, total);
+    return lanes;
+}
+
+/* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
+INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+{
+    for (size_t e = 0; e < size && !x; ++e) {
+        own[e] = none;
+    }
+    if (x) {
+        check(size, 1, x, flags);
+    }
+    return x ? x : own;
+}
+
+INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
+    real *total)
+{
+    for (size_t e = 0; e < size*LANES && !x; ++e) {
         lanes[e] = none;
     }
-    return x ? side_by_side(size, w, x, lanes, flags) : lanes;
+    return x ? side_by_side(size, x, lanes, total) : lanes;
+}
+
+/* Motion of the base, or NULL: at rest, its axes those of the world. */
+INLINE const real *motion_of_base(const real *x, real *own, real *flags)
+{
+    for (size_t e = 0; e < 18 && !x; ++e) {
+        own[e] = R(e < 9 && e%4 == 0);
+    }
+    if (x) {
+        check(18, 1, x, flags);
+    }
+    return x ? x : own;
+}
+
+INLINE const real *motion_of_base_side_by_side(const real *x, real *lanes, real *total)
+{
+    for (size_t i = 0; i < 18*LANES && !x; ++i) {
+        lanes[i] = R(i/LANES < 9 && i/LANES%4 == 0);
+    }
+    return x ? side_by_side(18, x, lanes, total) : lanes;
 }
 
 /* Flag the states of an input, NULL or given state by state, with entries that are not positive. */
@@ -171,14 +247,25 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE void judge(const verdict *t, size_t w, int *code)
+INLINE void judge(const verdict *t, int *code)
 {
-    for (size_t k = 0; k < w; ++k) {
-        code[k] = t->invalid[k] > 0 ? INVALID
-            : t->diverged[k] > 0 ? NOT_CONVERGED
-            : t->unreachable[k] > 0 ? UNREACHABLE
-            : t->singular[k] > 0 ? SINGULAR
-            : t->overflow[k] > 0 ? INVALID : OK;
+    *code = t->invalid[0] > 0 ? INVALID
+        : t->diverged[0] > 0 ? NOT_CONVERGED
+        : t->unreachable[0] > 0 ? UNREACHABLE
+        : t->singular[0] > 0 ? SINGULAR
+        : t->overflow[0] > 0 ? INVALID : OK;
+}
+
+/* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
+INLINE void suspect(const verdict *t, int *code)
+{
+    real flags[LANES];
+    for (size_t k = 0; k < LANES; ++k) {
+        flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
+            + (t->total[k] - t->total[k]);
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        code[k] = flags[k] == 0 ? OK : INVALID;
     }
 }
 
@@ -199,17 +286,19 @@ INLINE void refuse(size_t size, real *out)
     }
 }
 
-/* Outputs state by state; NaN where a state is impossible. */
-INLINE void deliver(const real *x, size_t size, size_t w, const int *code, real *out)
+/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < w; ++k) {
-            out[size*k + e] = x[e*w + k];
-        }
+        out[e] = x[e];
     }
-    for (size_t k = 0; k < w; ++k) {
-        if (code[k] != OK) {
-            refuse(size, out + size*k);
+}
+
+INLINE void deliver(size_t size, const real *x, real *out)
+{
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            out[size*k + e] = x[e*LANES + k];
         }
     }
 }
@@ -300,25 +389,25 @@ const fivebar_offset_params fivebar_offset_default_params = {
     R(1.0),  /* platform_mass */
     {R(-0.025), R(0.0), R(0.0)},  /* platform_centre_of_mass */
     {{R(0.0), R(0.0), R(0.0)}, {R(0.0), R(0.0169), R(0.0)}, {R(0.0), R(0.0), R(0.0169)}},  /* platform_inertia */
-    {  /* rr_base_point */
+    {  /* crank_base_point */
         {R(0.13999795483447225), R(-0.019230288934706907), R(0.0)},
     },
-    {  /* rr_base_frame */
+    {  /* crank_base_frame */
         {{R(1.0), R(0.0), R(0.0)}, {R(0.0), R(1.0), R(0.0)}, {R(0.0), R(0.0), R(1.0)}},
     },
-    {  /* rr_platform_point */
+    {  /* crank_platform_point */
         {R(-0.25), R(0.0), R(0.0)},
     },
-    {  /* rr_platform_joint_offset */
+    {  /* crank_platform_joint_offset */
         {R(0.4), R(0.0), R(0.0)},
     },
-    {  /* rr_link1_mass */
+    {  /* crank_link1_mass */
         R(1.5),
     },
-    {  /* rr_link1_centre_of_mass */
+    {  /* crank_link1_centre_of_mass */
         {R(0.2), R(0.0), R(0.0)},
     },
-    {  /* rr_link1_inertia */
+    {  /* crank_link1_inertia */
         {{R(0.0003), R(0.0), R(0.0)}, {R(0.0), R(0.020150000000000005), R(0.0)}, {R(0.0), R(0.0), R(0.020150000000000005)}},
     },
     {  /* rrr_base_point */
@@ -375,22 +464,22 @@ static int acceptable(const fivebar_offset_params *p)
     ok &= all_zero(&p->platform_centre_of_mass[0] + 2, 1, 3);
     ok &= all_within(&p->platform_inertia[0][0], 9);
     ok &= all_planar_inertias(&p->platform_inertia[0][0], 1);
-    ok &= all_within(&p->rr_base_point[0][0], 3);
-    ok &= all_zero(&p->rr_base_point[0][0] + 2, 1, 3);
-    ok &= all_within(&p->rr_base_frame[0][0][0], 9);
-    ok &= all_rotations(&p->rr_base_frame[0][0][0], 1);
-    ok &= all_about_z(&p->rr_base_frame[0][0][0], 1);
-    ok &= all_within(&p->rr_platform_point[0][0], 3);
-    ok &= all_zero(&p->rr_platform_point[0][0] + 2, 1, 3);
-    ok &= all_within(&p->rr_platform_joint_offset[0][0], 3);
-    ok &= all_zero(&p->rr_platform_joint_offset[0][0] + 1, 1, 3);
-    ok &= all_zero(&p->rr_platform_joint_offset[0][0] + 2, 1, 3);
-    ok &= all_within(&p->rr_link1_mass[0], 1);
-    ok &= none_negative(&p->rr_link1_mass[0], 1);
-    ok &= all_within(&p->rr_link1_centre_of_mass[0][0], 3);
-    ok &= all_zero(&p->rr_link1_centre_of_mass[0][0] + 2, 1, 3);
-    ok &= all_within(&p->rr_link1_inertia[0][0][0], 9);
-    ok &= all_planar_inertias(&p->rr_link1_inertia[0][0][0], 1);
+    ok &= all_within(&p->crank_base_point[0][0], 3);
+    ok &= all_zero(&p->crank_base_point[0][0] + 2, 1, 3);
+    ok &= all_within(&p->crank_base_frame[0][0][0], 9);
+    ok &= all_rotations(&p->crank_base_frame[0][0][0], 1);
+    ok &= all_about_z(&p->crank_base_frame[0][0][0], 1);
+    ok &= all_within(&p->crank_platform_point[0][0], 3);
+    ok &= all_zero(&p->crank_platform_point[0][0] + 2, 1, 3);
+    ok &= all_within(&p->crank_platform_joint_offset[0][0], 3);
+    ok &= all_zero(&p->crank_platform_joint_offset[0][0] + 1, 1, 3);
+    ok &= all_zero(&p->crank_platform_joint_offset[0][0] + 2, 1, 3);
+    ok &= all_within(&p->crank_link1_mass[0], 1);
+    ok &= none_negative(&p->crank_link1_mass[0], 1);
+    ok &= all_within(&p->crank_link1_centre_of_mass[0][0], 3);
+    ok &= all_zero(&p->crank_link1_centre_of_mass[0][0] + 2, 1, 3);
+    ok &= all_within(&p->crank_link1_inertia[0][0][0], 9);
+    ok &= all_planar_inertias(&p->crank_link1_inertia[0][0][0], 1);
     ok &= all_within(&p->rrr_base_point[0][0], 3);
     ok &= all_zero(&p->rrr_base_point[0][0] + 2, 1, 3);
     ok &= all_within(&p->rrr_base_frame[0][0][0], 9);
@@ -425,9 +514,9 @@ int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_m
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real total_rr_x = 0;
-    real total_rr_y = 0;
-    real total_rr = 0;
+    real total_crank_x = 0;
+    real total_crank_y = 0;
+    real total_crank = 0;
     real total_rrr = 0;
     real total_rrr_x = 0;
     real total_rrr_y = 0;
@@ -442,10 +531,10 @@ int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_m
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
     const real platform_inertia_zz = params->platform_inertia[2][2];
-    /* (L2) first moment about the platform origin */
+    /* (h_star) first moment about the platform origin */
     const real h_star_t = platform_centre_of_mass_x*platform_mass;
     const real h_star_t_2 = platform_centre_of_mass_y*platform_mass;
-    /* (L3) inertia tensor about the platform origin */
+    /* (J_star) inertia tensor about the platform origin */
     const real J_star_t = platform_centre_of_mass_y*platform_centre_of_mass_y;
     const real J_star_t_2 = J_star_t + platform_centre_of_mass_x*platform_centre_of_mass_x;
     const real J_star_t_3 = J_star_t*platform_mass;
@@ -453,230 +542,230 @@ int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_m
     model->gravity_x = gravity_x;
     model->gravity_y = gravity_y;
     for (size_t leg = 0; leg < 1; ++leg) {
-        const real rr_base_point_x = params->rr_base_point[leg][0];
-        const real rr_base_point_y = params->rr_base_point[leg][1];
-        const real rr_base_frame_xx = params->rr_base_frame[leg][0][0];
-        const real rr_base_frame_xy = params->rr_base_frame[leg][0][1];
-        const real rr_base_frame_yx = params->rr_base_frame[leg][1][0];
-        const real rr_base_frame_yy = params->rr_base_frame[leg][1][1];
-        const real rr_platform_point_x = params->rr_platform_point[leg][0];
-        const real rr_platform_point_y = params->rr_platform_point[leg][1];
-        const real rr_platform_joint_offset_x = params->rr_platform_joint_offset[leg][0];
-        const real rr_link1_mass = params->rr_link1_mass[leg];
-        const real rr_link1_centre_of_mass_x = params->rr_link1_centre_of_mass[leg][0];
-        const real rr_link1_centre_of_mass_y = params->rr_link1_centre_of_mass[leg][1];
-        const real rr_link1_inertia_zz = params->rr_link1_inertia[leg][2][2];
-        /* (rr-V3) unit vector that the leg's freedoms leave out */
-        const real n_c_rr_t = rr_platform_joint_offset_x*rr_platform_joint_offset_x;
-        const real n_c_rr_x = rr_platform_joint_offset_x/(root(n_c_rr_t));
-        /* (rr-G2) length of the leg's lever arms, the measure of what is near singular */
-        const real size_rr_t = R(5.257946636889999e-07) + n_c_rr_t;
-        const real size_rr = root(size_rr_t);
-        /* (rr-K4) amplitude: off the manifold the nearest angle is taken */
-        const real root_1_rr_t = size_rr*size_rr*size_rr_t;
-        /* (rr-G4) inertia tensor of link 1 about the origin of link 1 */
-        const real J_1_rr_t = rr_link1_centre_of_mass_x*rr_link1_centre_of_mass_x +
-            rr_link1_centre_of_mass_y*rr_link1_centre_of_mass_y;
-        const real J_1_rr_zz = rr_link1_inertia_zz + J_1_rr_t*rr_link1_mass;
-        /* (rr-V4) reciprocal vector 1 */
-        const real inv_rr_platform_joint_offset_x = 1/rr_platform_joint_offset_x;
-        /* (rr-N12) coefficient of the acceleration in: force at the connection point that balances the
+        const size_t own = leg;
+        const real crank_base_point_x = params->crank_base_point[own][0];
+        const real crank_base_point_y = params->crank_base_point[own][1];
+        const real crank_base_frame_xx = params->crank_base_frame[own][0][0];
+        const real crank_base_frame_xy = params->crank_base_frame[own][0][1];
+        const real crank_base_frame_yx = params->crank_base_frame[own][1][0];
+        const real crank_base_frame_yy = params->crank_base_frame[own][1][1];
+        const real crank_platform_point_x = params->crank_platform_point[own][0];
+        const real crank_platform_point_y = params->crank_platform_point[own][1];
+        const real crank_platform_joint_offset_x = params->crank_platform_joint_offset[own][0];
+        const real crank_link1_mass = params->crank_link1_mass[own];
+        const real crank_link1_centre_of_mass_x = params->crank_link1_centre_of_mass[own][0];
+        const real crank_link1_centre_of_mass_y = params->crank_link1_centre_of_mass[own][1];
+        const real crank_link1_inertia_zz = params->crank_link1_inertia[own][2][2];
+        /* (crank-n_c) unit vector that the leg's freedoms leave out */
+        const real crank_n_c_t = crank_platform_joint_offset_x*crank_platform_joint_offset_x;
+        const real crank_n_c_x = crank_platform_joint_offset_x/(root(crank_n_c_t));
+        /* (crank-size) length of the leg's lever arms, the measure of what is near singular */
+        const real crank_size_t = R(5.257946636889999e-07) + crank_n_c_t;
+        const real crank_size = root(crank_size_t);
+        /* (crank-root_1) amplitude: off the manifold the nearest angle is taken */
+        const real crank_root_1_t = crank_size*crank_size*crank_size_t;
+        /* (crank-w_1) reciprocal vector 1 */
+        const real inv_crank_platform_joint_offset_x = 1/crank_platform_joint_offset_x;
+        /* (crank-J_1) inertia tensor of link 1 about the origin of link 1 */
+        const real crank_J_1_t = crank_link1_centre_of_mass_x*crank_link1_centre_of_mass_x +
+            crank_link1_centre_of_mass_y*crank_link1_centre_of_mass_y;
+        const real crank_J_1_zz = crank_link1_inertia_zz + crank_J_1_t*crank_link1_mass;
+        /* (crank-d_G) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
-        const real d_G_rr_yy =
-            J_1_rr_zz*inv_rr_platform_joint_offset_x*inv_rr_platform_joint_offset_x;
-        /* (rr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
-           less gravity */
-        const real g_r0_x = gravity_x*rr_base_frame_xx + gravity_y*rr_base_frame_yx;
-        const real g_r0_y = gravity_x*rr_base_frame_xy + gravity_y*rr_base_frame_yy;
-        /* (rr-G3) first moment of link 1 about the origin of link 1 */
-        const real h_1_rr_x = rr_link1_centre_of_mass_x*rr_link1_mass;
-        const real h_1_rr_y = rr_link1_centre_of_mass_y*rr_link1_mass;
-        /* (V1) potential energy */
-        const real potential_t = rr_base_point_x*rr_link1_mass;
-        const real potential_t_2 = rr_base_point_y*rr_link1_mass;
-        /* (rr-K4) amplitude: off the manifold the nearest angle is taken */
-        const real inv_root_1_rr_t_2 = 1/root_1_rr_t;
-        model->J_1_rr_zz[leg] = J_1_rr_zz;
-        model->d_G_rr_yy[leg] = d_G_rr_yy;
-        model->g_r0_x[leg] = g_r0_x;
-        model->g_r0_y[leg] = g_r0_y;
-        model->h_1_rr_x[leg] = h_1_rr_x;
-        model->h_1_rr_y[leg] = h_1_rr_y;
-        model->inv_root_1_rr_t_2[leg] = inv_root_1_rr_t_2;
-        model->inv_rr_platform_joint_offset_x[leg] = inv_rr_platform_joint_offset_x;
-        model->n_c_rr_t[leg] = n_c_rr_t;
-        model->n_c_rr_x[leg] = n_c_rr_x;
-        model->potential_t[leg] = potential_t;
-        model->potential_t_2[leg] = potential_t_2;
-        model->root_1_rr_t[leg] = root_1_rr_t;
-        model->rr_base_frame_xx[leg] = rr_base_frame_xx;
-        model->rr_base_frame_xy[leg] = rr_base_frame_xy;
-        model->rr_base_frame_yx[leg] = rr_base_frame_yx;
-        model->rr_base_frame_yy[leg] = rr_base_frame_yy;
-        model->rr_base_point_x[leg] = rr_base_point_x;
-        model->rr_base_point_y[leg] = rr_base_point_y;
-        model->rr_platform_joint_offset_x[leg] = rr_platform_joint_offset_x;
-        model->rr_platform_point_x[leg] = rr_platform_point_x;
-        model->rr_platform_point_y[leg] = rr_platform_point_y;
-        total_rr_x += rr_platform_point_x;
-        total_rr_y += rr_platform_point_y;
-        total_rr += size_rr_t;
+        const real crank_d_G_yy =
+            crank_J_1_zz*inv_crank_platform_joint_offset_x*inv_crank_platform_joint_offset_x;
+        /* (crank-h_1) first moment of link 1 about the origin of link 1 */
+        const real crank_h_1_x = crank_link1_centre_of_mass_x*crank_link1_mass;
+        const real crank_h_1_y = crank_link1_centre_of_mass_y*crank_link1_mass;
+        /* (crank-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
+           link 1, less gravity */
+        const real crank_g_r0_x = crank_base_frame_xx*gravity_x + crank_base_frame_yx*gravity_y;
+        const real crank_g_r0_y = crank_base_frame_xy*gravity_x + crank_base_frame_yy*gravity_y;
+        /* (potential) potential energy */
+        const real crank_potential_t = crank_base_point_x*crank_link1_mass;
+        const real crank_potential_t_2 = crank_base_point_y*crank_link1_mass;
+        /* (crank-root_1) amplitude: off the manifold the nearest angle is taken */
+        const real inv_crank_root_1_t_2 = 1/crank_root_1_t;
+        model->crank_J_1_zz[leg] = crank_J_1_zz;
+        model->crank_base_frame_xx[leg] = crank_base_frame_xx;
+        model->crank_base_frame_xy[leg] = crank_base_frame_xy;
+        model->crank_base_frame_yx[leg] = crank_base_frame_yx;
+        model->crank_base_frame_yy[leg] = crank_base_frame_yy;
+        model->crank_base_point_x[leg] = crank_base_point_x;
+        model->crank_base_point_y[leg] = crank_base_point_y;
+        model->crank_d_G_yy[leg] = crank_d_G_yy;
+        model->crank_g_r0_x[leg] = crank_g_r0_x;
+        model->crank_g_r0_y[leg] = crank_g_r0_y;
+        model->crank_h_1_x[leg] = crank_h_1_x;
+        model->crank_h_1_y[leg] = crank_h_1_y;
+        model->crank_n_c_t[leg] = crank_n_c_t;
+        model->crank_n_c_x[leg] = crank_n_c_x;
+        model->crank_platform_joint_offset_x[leg] = crank_platform_joint_offset_x;
+        model->crank_platform_point_x[leg] = crank_platform_point_x;
+        model->crank_platform_point_y[leg] = crank_platform_point_y;
+        model->crank_potential_t[leg] = crank_potential_t;
+        model->crank_potential_t_2[leg] = crank_potential_t_2;
+        model->crank_root_1_t[leg] = crank_root_1_t;
+        model->inv_crank_platform_joint_offset_x[leg] = inv_crank_platform_joint_offset_x;
+        model->inv_crank_root_1_t_2[leg] = inv_crank_root_1_t_2;
+        total_crank_x += crank_platform_point_x;
+        total_crank_y += crank_platform_point_y;
+        total_crank += crank_size_t;
     }
     for (size_t leg = 0; leg < 1; ++leg) {
-        const real rrr_base_point_x = params->rrr_base_point[leg][0];
-        const real rrr_base_point_y = params->rrr_base_point[leg][1];
-        const real rrr_base_frame_xx = params->rrr_base_frame[leg][0][0];
-        const real rrr_base_frame_xy = params->rrr_base_frame[leg][0][1];
-        const real rrr_base_frame_yx = params->rrr_base_frame[leg][1][0];
-        const real rrr_base_frame_yy = params->rrr_base_frame[leg][1][1];
-        const real rrr_platform_point_x = params->rrr_platform_point[leg][0];
-        const real rrr_platform_point_y = params->rrr_platform_point[leg][1];
-        const real rrr_joint2_offset_x = params->rrr_joint2_offset[leg][0];
-        const real rrr_platform_joint_offset_x = params->rrr_platform_joint_offset[leg][0];
-        const real rrr_link1_mass = params->rrr_link1_mass[leg];
-        const real rrr_link1_centre_of_mass_x = params->rrr_link1_centre_of_mass[leg][0];
-        const real rrr_link1_centre_of_mass_y = params->rrr_link1_centre_of_mass[leg][1];
-        const real rrr_link1_inertia_zz = params->rrr_link1_inertia[leg][2][2];
-        const real rrr_link2_mass = params->rrr_link2_mass[leg];
-        const real rrr_link2_centre_of_mass_x = params->rrr_link2_centre_of_mass[leg][0];
-        const real rrr_link2_centre_of_mass_y = params->rrr_link2_centre_of_mass[leg][1];
-        const real rrr_link2_inertia_zz = params->rrr_link2_inertia[leg][2][2];
-        static const signed char signs_branch_1_rrr[] = {-1};
-        const real branch_1_rrr = signs_branch_1_rrr[leg];
-        /* (rrr-K17) squared length, across the axis, of the direction fixed in link 2 */
-        const real uu_2_rrr_t = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const size_t own = leg;
+        const real rrr_base_point_x = params->rrr_base_point[own][0];
+        const real rrr_base_point_y = params->rrr_base_point[own][1];
+        const real rrr_base_frame_xx = params->rrr_base_frame[own][0][0];
+        const real rrr_base_frame_xy = params->rrr_base_frame[own][0][1];
+        const real rrr_base_frame_yx = params->rrr_base_frame[own][1][0];
+        const real rrr_base_frame_yy = params->rrr_base_frame[own][1][1];
+        const real rrr_platform_point_x = params->rrr_platform_point[own][0];
+        const real rrr_platform_point_y = params->rrr_platform_point[own][1];
+        const real rrr_joint2_offset_x = params->rrr_joint2_offset[own][0];
+        const real rrr_platform_joint_offset_x = params->rrr_platform_joint_offset[own][0];
+        const real rrr_link1_mass = params->rrr_link1_mass[own];
+        const real rrr_link1_centre_of_mass_x = params->rrr_link1_centre_of_mass[own][0];
+        const real rrr_link1_centre_of_mass_y = params->rrr_link1_centre_of_mass[own][1];
+        const real rrr_link1_inertia_zz = params->rrr_link1_inertia[own][2][2];
+        const real rrr_link2_mass = params->rrr_link2_mass[own];
+        const real rrr_link2_centre_of_mass_x = params->rrr_link2_centre_of_mass[own][0];
+        const real rrr_link2_centre_of_mass_y = params->rrr_link2_centre_of_mass[own][1];
+        const real rrr_link2_inertia_zz = params->rrr_link2_inertia[own][2][2];
+        static const signed char signs_rrr_branch_1[] = {-1};
+        const real rrr_branch_1 = signs_rrr_branch_1[own];
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = rrr_joint2_offset_x*rrr_joint2_offset_x;
-        const real Kd_1_rrr_t_2 = R(0.5)*Kd_1_rrr_t;
-        const real Kd_1_rrr_t_3 = R(0.5)*uu_2_rrr_t;
-        /* (rrr-G2) length of the leg's lever arms, the measure of what is near singular */
-        const real size_rrr_t = R(5.257946636889999e-07) + Kd_1_rrr_t + uu_2_rrr_t;
-        const real size_rrr = root(size_rrr_t);
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr_t = size_rrr*size_rrr*size_rrr_t;
-        /* (rrr-K15) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_Kd_1_rrr_t_5 = 1/Kd_1_rrr_t;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real inv_uu_2_rrr_t = 1/uu_2_rrr_t;
-        /* (rrr-G4) inertia tensor of link 1 about the origin of link 1 */
-        const real J_1_rrr_t = rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
-            rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y;
-        const real J_1_rrr_zz = rrr_link1_inertia_zz + J_1_rrr_t*rrr_link1_mass;
-        /* (rrr-G5) connection point to the centre of mass of link 2 */
-        const real rho_tip_2_rrr_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x;
-        /* (rrr-G7) inertia tensor of link 2 about the connection point */
-        const real J_2_rrr_t = rho_tip_2_rrr_x*rho_tip_2_rrr_x +
-            rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y;
-        const real J_2_rrr_zz = rrr_link2_inertia_zz + J_2_rrr_t*rrr_link2_mass;
-        /* (rrr-N11) inertia tensor of the links from 1 outwards about joint 1 */
-        const real Jc_1_rrr_zz = J_1_rrr_zz + J_2_rrr_zz;
-        /* (rrr-G6) first moment of link 2 about the connection point */
-        const real h_2_rrr_x = rho_tip_2_rrr_x*rrr_link2_mass;
-        const real h_2_rrr_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
-        /* (rrr-V6) reciprocal vector 2 */
+        const real rrr_Kd_1_t = rrr_joint2_offset_x*rrr_joint2_offset_x;
+        const real rrr_Kd_1_t_2 = R(0.5)*rrr_Kd_1_t;
+        const real rrr_Kd_1_t_3 = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x;
+        const real rrr_Kd_1_t_4 = R(0.5)*rrr_Kd_1_t_3;
+        /* (rrr-size) length of the leg's lever arms, the measure of what is near singular */
+        const real rrr_size_t = R(5.257946636889999e-07) + rrr_Kd_1_t + rrr_Kd_1_t_3;
+        const real rrr_size = root(rrr_size_t);
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1_t = rrr_size*rrr_size*rrr_size_t;
+        /* (rrr-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real inv_rrr_Kd_1_t_5 = 1/rrr_Kd_1_t;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = 1/rrr_Kd_1_t_3;
+        /* (rrr-rho_tip_2) connection point to the centre of mass of link 2 */
+        const real rrr_rho_tip_2_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x;
+        /* (rrr-h_2) first moment of link 2 about the connection point */
+        const real rrr_h_2_x = rrr_link2_mass*rrr_rho_tip_2_x;
+        const real rrr_h_2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
+        /* (rrr-w_2) reciprocal vector 2 */
         const real inv_rrr_platform_joint_offset_x = 1/rrr_platform_joint_offset_x;
-        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_rrr_t = J_2_rrr_zz*inv_rrr_platform_joint_offset_x;
-        const real d_Gamma_1_rrr_y = d_Gamma_1_rrr_t + h_2_rrr_x;
-        /* (rrr-N6) coefficient of the acceleration in: inertia force of link 2 from its turning about its
-           reference point */
-        const real d_phi_2_rrr_t = h_2_rrr_y*inv_rrr_platform_joint_offset_x;
-        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
+        /* (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
+           about its reference point */
+        const real rrr_d_phi_2_t = inv_rrr_platform_joint_offset_x*rrr_h_2_y;
+        /* (rrr-J_2) inertia tensor of link 2 about the connection point */
+        const real rrr_J_2_t = rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y +
+            rrr_rho_tip_2_x*rrr_rho_tip_2_x;
+        const real rrr_J_2_zz = rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass;
+        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real rrr_d_Gamma_2_t = inv_rrr_platform_joint_offset_x*rrr_J_2_zz;
+        const real rrr_d_Gamma_2_y = rrr_d_Gamma_2_t + rrr_h_2_x;
+        /* (rrr-J_1) inertia tensor of link 1 about the origin of link 1 */
+        const real rrr_J_1_t = rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
+            rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y;
+        const real rrr_J_1_zz = rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass;
+        /* (rrr-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link
+           about the connection point */
+        const real rrr_Jc_1_zz = rrr_J_1_zz + rrr_J_2_zz;
+        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_rrr_yy = -d_Gamma_1_rrr_y*inv_rrr_platform_joint_offset_x -
-            h_2_rrr_x*inv_rrr_platform_joint_offset_x;
-        /* (L2) first moment about the platform origin */
-        const real h_star_t_3 = rrr_link2_mass*rrr_platform_point_x;
-        const real h_star_t_4 = rrr_link2_mass*rrr_platform_point_y;
-        /* (L3) inertia tensor about the platform origin */
-        const real J_star_t_5 = rrr_platform_point_y*rrr_platform_point_y;
-        const real J_star_t_6 = J_star_t_5 + rrr_platform_point_x*rrr_platform_point_x;
-        const real J_star_t_7 = J_star_t_5*rrr_link2_mass;
-        const real J_star_t_8 = J_star_t_6*rrr_link2_mass;
-        /* (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
-           less gravity */
-        const real g_r0_x_2 = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx;
-        const real g_r0_y_2 = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy;
-        /* (rrr-G3) first moment of link 1 about the origin of link 1 */
-        const real h_1_rrr_x = rrr_link1_centre_of_mass_x*rrr_link1_mass;
-        const real h_1_rrr_y = rrr_link1_centre_of_mass_y*rrr_link1_mass;
-        /* (V1) potential energy */
-        const real b_rrr_r0_x = rrr_base_frame_xx*rrr_base_point_x +
+        const real rrr_d_c_yy = -inv_rrr_platform_joint_offset_x*rrr_d_Gamma_2_y -
+            inv_rrr_platform_joint_offset_x*rrr_h_2_x;
+        /* (h_star) first moment about the platform origin */
+        const real rrr_h_star_t = rrr_link2_mass*rrr_platform_point_x;
+        const real rrr_h_star_t_2 = rrr_link2_mass*rrr_platform_point_y;
+        /* (J_star) inertia tensor about the platform origin */
+        const real rrr_J_star_t = rrr_platform_point_y*rrr_platform_point_y;
+        const real rrr_J_star_t_2 = rrr_J_star_t + rrr_platform_point_x*rrr_platform_point_x;
+        const real rrr_J_star_t_3 = rrr_J_star_t*rrr_link2_mass;
+        const real rrr_J_star_t_4 = rrr_J_star_t_2*rrr_link2_mass;
+        /* (rrr-h_1) first moment of link 1 about the origin of link 1 */
+        const real rrr_h_1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass;
+        const real rrr_h_1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass;
+        /* (rrr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
+           link 1, less gravity */
+        const real rrr_g_r0_x = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx;
+        const real rrr_g_r0_y = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy;
+        /* (potential) potential energy */
+        const real rrr_b_r0_x = rrr_base_frame_xx*rrr_base_point_x +
             rrr_base_frame_yx*rrr_base_point_y;
-        const real b_rrr_r0_y = rrr_base_frame_xy*rrr_base_point_x +
+        const real rrr_b_r0_y = rrr_base_frame_xy*rrr_base_point_x +
             rrr_base_frame_yy*rrr_base_point_y;
-        /* (rrr-K8) squared amplitude */
-        const real inv_rho2_1_rrr_t_4 = 1/rho2_1_rrr_t;
-        /* (rrr-V5) reciprocal vector 1 */
-        const real inv_size_rrr = 1/size_rrr;
-        model->J_1_rrr_zz[leg] = J_1_rrr_zz;
-        model->J_2_rrr_zz[leg] = J_2_rrr_zz;
-        model->Jc_1_rrr_zz[leg] = Jc_1_rrr_zz;
-        model->Kd_1_rrr_t_2[leg] = Kd_1_rrr_t_2;
-        model->Kd_1_rrr_t_3[leg] = Kd_1_rrr_t_3;
-        model->b_rrr_r0_x[leg] = b_rrr_r0_x;
-        model->b_rrr_r0_y[leg] = b_rrr_r0_y;
-        model->branch_1_rrr[leg] = branch_1_rrr;
-        model->d_Gamma_1_rrr_t[leg] = d_Gamma_1_rrr_t;
-        model->d_Gamma_1_rrr_y[leg] = d_Gamma_1_rrr_y;
-        model->d_c_rrr_yy[leg] = d_c_rrr_yy;
-        model->d_phi_2_rrr_t[leg] = d_phi_2_rrr_t;
-        model->g_r0_x_2[leg] = g_r0_x_2;
-        model->g_r0_y_2[leg] = g_r0_y_2;
-        model->h_1_rrr_x[leg] = h_1_rrr_x;
-        model->h_1_rrr_y[leg] = h_1_rrr_y;
-        model->h_2_rrr_x[leg] = h_2_rrr_x;
-        model->h_2_rrr_y[leg] = h_2_rrr_y;
-        model->inv_Kd_1_rrr_t_5[leg] = inv_Kd_1_rrr_t_5;
-        model->inv_rho2_1_rrr_t_4[leg] = inv_rho2_1_rrr_t_4;
+        /* (rrr-rho2_1) squared amplitude */
+        const real inv_rrr_rho2_1_t_4 = 1/rrr_rho2_1_t;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real inv_rrr_size = 1/rrr_size;
+        model->inv_rrr_Kd_1_t_5[leg] = inv_rrr_Kd_1_t_5;
+        model->inv_rrr_Kd_1_t_7[leg] = inv_rrr_Kd_1_t_7;
         model->inv_rrr_platform_joint_offset_x[leg] = inv_rrr_platform_joint_offset_x;
-        model->inv_size_rrr[leg] = inv_size_rrr;
-        model->inv_uu_2_rrr_t[leg] = inv_uu_2_rrr_t;
-        model->rho2_1_rrr_t[leg] = rho2_1_rrr_t;
+        model->inv_rrr_rho2_1_t_4[leg] = inv_rrr_rho2_1_t_4;
+        model->inv_rrr_size[leg] = inv_rrr_size;
+        model->rrr_J_1_zz[leg] = rrr_J_1_zz;
+        model->rrr_J_2_zz[leg] = rrr_J_2_zz;
+        model->rrr_Jc_1_zz[leg] = rrr_Jc_1_zz;
+        model->rrr_Kd_1_t_2[leg] = rrr_Kd_1_t_2;
+        model->rrr_Kd_1_t_4[leg] = rrr_Kd_1_t_4;
+        model->rrr_b_r0_x[leg] = rrr_b_r0_x;
+        model->rrr_b_r0_y[leg] = rrr_b_r0_y;
         model->rrr_base_frame_xx[leg] = rrr_base_frame_xx;
         model->rrr_base_frame_xy[leg] = rrr_base_frame_xy;
         model->rrr_base_frame_yx[leg] = rrr_base_frame_yx;
         model->rrr_base_frame_yy[leg] = rrr_base_frame_yy;
         model->rrr_base_point_x[leg] = rrr_base_point_x;
         model->rrr_base_point_y[leg] = rrr_base_point_y;
+        model->rrr_branch_1[leg] = rrr_branch_1;
+        model->rrr_d_Gamma_2_t[leg] = rrr_d_Gamma_2_t;
+        model->rrr_d_Gamma_2_y[leg] = rrr_d_Gamma_2_y;
+        model->rrr_d_c_yy[leg] = rrr_d_c_yy;
+        model->rrr_d_phi_2_t[leg] = rrr_d_phi_2_t;
+        model->rrr_g_r0_x[leg] = rrr_g_r0_x;
+        model->rrr_g_r0_y[leg] = rrr_g_r0_y;
+        model->rrr_h_1_x[leg] = rrr_h_1_x;
+        model->rrr_h_1_y[leg] = rrr_h_1_y;
+        model->rrr_h_2_x[leg] = rrr_h_2_x;
+        model->rrr_h_2_y[leg] = rrr_h_2_y;
         model->rrr_joint2_offset_x[leg] = rrr_joint2_offset_x;
         model->rrr_link1_mass[leg] = rrr_link1_mass;
         model->rrr_link2_mass[leg] = rrr_link2_mass;
         model->rrr_platform_joint_offset_x[leg] = rrr_platform_joint_offset_x;
         model->rrr_platform_point_x[leg] = rrr_platform_point_x;
         model->rrr_platform_point_y[leg] = rrr_platform_point_y;
-        model->size_rrr[leg] = size_rrr;
+        model->rrr_rho2_1_t[leg] = rrr_rho2_1_t;
+        model->rrr_size[leg] = rrr_size;
         total_rrr += rrr_link2_mass;
-        total_rrr_x += h_star_t_3;
-        total_rrr_y += h_star_t_4;
-        total_rrr_xx += J_star_t_7;
-        total_rrr_zz += J_star_t_8;
+        total_rrr_x += rrr_h_star_t;
+        total_rrr_y += rrr_h_star_t_2;
+        total_rrr_xx += rrr_J_star_t_3;
+        total_rrr_zz += rrr_J_star_t_4;
         total_rrr_x_2 += rrr_platform_point_x;
         total_rrr_y_2 += rrr_platform_point_y;
-        total_rrr_2 += size_rrr_t;
+        total_rrr_2 += rrr_size_t;
     }
-    /* (L1) mass of the platform with the gathered masses */
+    /* (m_star) mass of the platform with the gathered masses */
     const real m_star = platform_mass + total_rrr;
-    /* (L2) first moment about the platform origin */
+    /* (h_star) first moment about the platform origin */
     const real h_star_x = h_star_t + total_rrr_x;
     const real h_star_y = h_star_t_2 + total_rrr_y;
-    /* (L3) inertia tensor about the platform origin */
+    /* (J_star) inertia tensor about the platform origin */
     const real J_star_xx = J_star_t_3 + total_rrr_xx;
-    const real J_star_zz = J_star_t_4 + platform_inertia_zz + total_rrr_zz;
-    const real J_star_t_9 = J_star_xx - J_star_zz;
-    const real J_star_t_10 = J_star_t_9 - J_star_xx;
-    /* (M4) centripetal force and weight of the platform */
+    const real J_star_t_5 = J_star_xx - J_star_t_4 - platform_inertia_zz - total_rrr_zz;
+    const real J_star_t_6 = J_star_t_5 - J_star_xx;
+    /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
-    /* (C1) centroid of the platform points */
-    const real b_c_x = R(0.5)*total_rr_x + R(0.5)*total_rrr_x_2;
-    const real b_c_y = R(0.5)*total_rr_y + R(0.5)*total_rrr_y_2;
-    /* (C3) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = root(R(0.5)*total_rr + R(0.5)*total_rrr_2);
-    model->J_star_t_10 = J_star_t_10;
-    model->J_star_zz = J_star_zz;
+    /* (b_c) centroid of the platform points */
+    const real b_c_x = R(0.5)*total_crank_x + R(0.5)*total_rrr_x_2;
+    const real b_c_y = R(0.5)*total_crank_y + R(0.5)*total_rrr_y_2;
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    const real legs_size = root(R(0.5)*total_crank + R(0.5)*total_rrr_2);
+    model->J_star_t_6 = J_star_t_6;
     model->Z_p_t = Z_p_t;
     model->Z_p_t_2 = Z_p_t_2;
     model->b_c_x = b_c_x;
@@ -755,98 +844,6 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
     }
 }
 
-/* Swap a row with the pivot's in those states in which it is the chosen one.  What is chosen are
-   whole entries: unlike products with 0 and 1, these keep what is not finite where it belongs. */
-APART void swap_lanes(size_t n, size_t p, real i, const real *restrict best, real *restrict pivot,
-        real *restrict other)
-{
-    for (size_t j = p; j <= n; ++j) {
-        for (size_t k = 0; k < LANES; ++k) {
-            const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = best[k] == i ? up : down;
-            other[j*LANES + k] = best[k] == i ? down : up;
-        }
-    }
-}
-
-/* The choice of choose_one in every state. */
-INLINE void choose_lanes(size_t n, size_t p, real *a)
-{
-    const size_t row = (n + 1)*LANES;
-    real most[LANES], best[LANES], any = 0;
-    for (size_t k = 0; k < LANES; ++k) {
-        most[k] = CLEARLY*magnitude(a[p*row + p*LANES + k]);
-        best[k] = 0;
-    }
-    for (size_t i = p + 1; i < n; ++i) {
-        for (size_t k = 0; k < LANES; ++k) {
-            const real size = magnitude(a[i*row + p*LANES + k]);
-            best[k] = size > most[k] ? (real)i : best[k];
-            most[k] = larger(size, most[k]);
-        }
-    }
-    for (size_t k = 0; k < LANES; ++k) {
-        any += best[k];
-    }
-    for (size_t i = p + 1; i < n && any > 0; ++i) {
-        swap_lanes(n, p, (real)i, best, a + p*row, a + i*row);
-    }
-}
-
-/* The same for LANES systems side by side, without padding.  What comes NEARLY to the threshold
-   counts as singular here: the batch then settles it as for a single state. */
-INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
-{
-    const size_t row = (n + 1)*LANES;
-    memset(x, 0, n*LANES*sizeof *x);
-    for (size_t i = 0; i < n; ++i) {
-        real size[LANES] = {0};
-        for (size_t j = 0; j < n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                size[k] = larger(size[k], magnitude(a[i*row + j*LANES + k]));
-            }
-        }
-        for (size_t k = 0; k < LANES; ++k) {
-            size[k] = 1/size[k];
-        }
-        for (size_t j = 0; j <= n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + j*LANES + k] *= size[k];
-            }
-        }
-    }
-    for (size_t p = 0; p < n; ++p) {
-        const real *const pivot = a + p*row;
-        choose_lanes(n, p, a);
-        for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > NEARLY*PIVOT);
-            x[p*LANES + k] = 1/pivot[p*LANES + k];
-        }
-        for (size_t i = p + 1; i < n; ++i) {
-            real *const other = a + i*row;
-            real factor[LANES];
-            for (size_t k = 0; k < LANES; ++k) {
-                factor[k] = other[p*LANES + k]*x[p*LANES + k];
-            }
-            for (size_t j = p + 1; j <= n; ++j) {
-                for (size_t k = 0; k < LANES; ++k) {
-                    other[j*LANES + k] -= factor[k]*pivot[j*LANES + k];
-                }
-            }
-        }
-    }
-    for (size_t p = n; p-- > 0;) {
-        for (size_t k = 0; k < LANES; ++k) {
-            x[p*LANES + k] *= a[p*row + n*LANES + k];
-        }
-        for (size_t i = 0; i < p; ++i) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + n*LANES + k] -= a[i*row + p*LANES + k]*x[p*LANES + k];
-            }
-        }
-    }
-}
-
 /* Length of the rows of a system of n equations, whose right side stands in column n. */
 INLINE size_t stride_of(size_t n, size_t w)
 {
@@ -879,14 +876,10 @@ INLINE void solve_state(size_t n, const real *b, real *rows, real *x, real *sing
     solve_one(n, stride_of(n, 1), rows, x, singular);
 }
 
-INLINE void solve(size_t n, size_t w, const real *b, real *rows, real *x, real *singular)
+/* The same where it is rare: apart, for the sake of what is done otherwise. */
+APART void solve_apart(size_t n, const real *b, real *rows, real *x, real *singular)
 {
-    if (w == 1) {
-        solve_state(n, b, rows, x, singular);
-    } else {
-        set_right_side(n, LANES, b, rows);
-        solve_lanes(n, rows, x, singular);
-    }
+    solve_state(n, b, rows, x, singular);
 }
 
 #define BIG 3  /* most rows or columns of a matrix that is not square, or not solved */
@@ -1098,6 +1091,29 @@ INLINE void half_form(size_t n, size_t w, const real *a, const real *b, real *x)
     }
 }
 
+/* Rows as `places` tells made infinite, where all entries are finite before. */
+INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, real *x, real *flags)
+{
+    check(size, w, x, flags);
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t k = 0; k < w; ++k) {
+            x[places[i]*w + k] = R(INFINITY);
+        }
+    }
+}
+
+/* 1 where no entry is negative, else 0. */
+INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
+{
+    check(size, w, a, flags);
+    for (size_t k = 0; k < w; ++k) {
+        x[k] = 1;
+        for (size_t e = 0; e < size; ++e) {
+            x[k] = a[e*w + k] < 0 ? 0 : x[k];
+        }
+    }
+}
+
 INLINE void divide_rows(size_t rows, size_t n, size_t w, const size_t *places, const real *b, real *x)
 {
     for (size_t i = 0; i < rows; ++i) {
@@ -1199,475 +1215,482 @@ static void moved(const real *X, const real *step, real part, real *to)
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 205 mul, 143 add, 3 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
-        omega_z[LANES], h_star_in_base_x[LANES], h_star_in_base_y[LANES], Z_p_x[LANES], Z_p_y[LANES],
-        Z_q_t[LANES], sum[18][LANES];
-} dynamics_values;
-typedef struct {
-    real sum[9][8], entry[7][8], singular[8];
-} dynamics_results_rr;
-typedef struct {
-    real sum[9][8], entry[3][8], unreachable[8], singular[8];
-} dynamics_results_rrr;
-
-INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V,
-    dynamics_values *s)
+/* ---- dynamics: 201 mul, 141 add, 3 div, 2 sqrt, 0 trig, every leg counted ---- */
+INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real omega_z = V_2;
-        /* (L2) first moment about the platform origin */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
         const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
         const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
-        /* (P1) centripetal tensor of the platform */
+        /* (W_p) centripetal tensor of the platform */
         const real W_p_t = omega_z*omega_z;
-        /* (M4) centripetal force and weight of the platform */
+        /* (Z_p) centripetal force and weight of the platform */
+        const real Z_p_t = m->Z_p_t;
         const real Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x;
+        const real Z_p_t_2 = m->Z_p_t_2;
         const real Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y;
-        /* (M6) gyroscopic moment and moment of the weight of the platform */
-        const real Z_q_t = h_star_x*(R_xx*gravity_y - R_yx*gravity_x) - h_star_y*(R_xx*gravity_x +
-            R_yx*gravity_y);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->omega_z[k] = omega_z;
-        s->h_star_in_base_x[k] = h_star_in_base_x;
-        s->h_star_in_base_y[k] = h_star_in_base_y;
-        s->Z_p_x[k] = Z_p_x;
-        s->Z_p_y[k] = Z_p_y;
-        s->Z_q_t[k] = Z_q_t;
+        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
+        s[4*w + k] = t_dot_x;
+        s[5*w + k] = t_dot_y;
+        s[6*w + k] = omega_z;
+        s[7*w + k] = h_star_in_base_x;
+        s[8*w + k] = h_star_in_base_y;
+        s[9*w + k] = Z_p_x;
+        s[10*w + k] = Z_p_y;
+        s[11*w + k] = Z_q_t;
     }
 }
 
-INLINE void dynamics_legs_rr(const prepared *m, size_t leg, size_t legs, const dynamics_values *s,
-    size_t states, size_t count, int add, dynamics_results_rr *o)
+INLINE void dynamics_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real J_1_rr_zz = m->J_1_rr_zz[i];
-        const real d_G_rr_yy = m->d_G_rr_yy[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_1_rr_x = m->h_1_rr_x[i];
-        const real h_1_rr_y = m->h_1_rr_y[i];
-        const real inv_rr_platform_joint_offset_x = m->inv_rr_platform_joint_offset_x[i];
-        const real n_c_rr_t = m->n_c_rr_t[i];
-        const real n_c_rr_x = m->n_c_rr_x[i];
-        const real root_1_rr_t = m->root_1_rr_t[i];
-        const real rr_base_frame_xx = m->rr_base_frame_xx[i];
-        const real rr_base_frame_xy = m->rr_base_frame_xy[i];
-        const real rr_base_frame_yx = m->rr_base_frame_yx[i];
-        const real rr_base_frame_yy = m->rr_base_frame_yy[i];
-        const real rr_base_point_x = m->rr_base_point_x[i];
-        const real rr_base_point_y = m->rr_base_point_y[i];
-        const real rr_platform_joint_offset_x = m->rr_platform_joint_offset_x[i];
-        const real rr_platform_point_x = m->rr_platform_point_x[i];
-        const real rr_platform_point_y = m->rr_platform_point_y[i];
-        /* (rr-K1) from the base point to the connection point */
-        const real q_rr_in_base_x = R_xx*rr_platform_point_x - R_yx*rr_platform_point_y;
-        const real q_rr_in_base_y = R_xx*rr_platform_point_y + R_yx*rr_platform_point_x;
-        const real S_rr_x = q_rr_in_base_x + t_x - rr_base_point_x;
-        const real S_rr_y = q_rr_in_base_y + t_y - rr_base_point_y;
-        /* (rr-K3) squared amplitude */
-        const real rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy;
-        const real rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx;
-        const real rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
-        /* (rr-K5) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1_rr = 1/(root(rho2_1_rr));
-        const real c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x;
-        /* (rr-K6) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rr = inv_root_1_rr*rho2_1_rr_t*rr_platform_joint_offset_x;
-        /* (rr-V4) reciprocal vector 1 */
-        const real axis_y_rr_axes1_in_base_x = c_1_rr*rr_base_frame_xy - rr_base_frame_xx*s_1_rr;
-        const real axis_y_rr_axes1_in_base_y = c_1_rr*rr_base_frame_yy - rr_base_frame_yx*s_1_rr;
-        /* (rr-N15) coefficient of the acceleration in: leg force on the platform without actuation and
+        /* (crank-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
+        const real crank_platform_point_x = m->crank_platform_point_x[i];
+        const real crank_platform_point_y = m->crank_platform_point_y[i];
+        const real crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y;
+        const real crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x;
+        const real crank_base_point_x = m->crank_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x;
+        const real crank_base_point_y = m->crank_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y;
+        /* (crank-rho2_1) squared amplitude */
+        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
+        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
+        const real crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy;
+        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
+        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
+        const real crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx +
+            crank_S_y*crank_base_frame_yx;
+        const real crank_n_c_t = m->crank_n_c_t[i];
+        const real crank_rho2_1 = crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t +
+            crank_rho2_1_t_2*crank_rho2_1_t_2);
+        /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_crank_root_1 = 1/(root(crank_rho2_1));
+        const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
+        const real crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1;
+        /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
+        const real crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1;
+        /* (crank-w_1) reciprocal vector 1 */
+        const real axis_y_crank_axes1_in_base_x = crank_base_frame_xy*crank_c_1 -
+            crank_base_frame_xx*crank_s_1;
+        const real axis_y_crank_axes1_in_base_y = crank_base_frame_yy*crank_c_1 -
+            crank_base_frame_yx*crank_s_1;
+        /* (crank-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_rr_t = axis_y_rr_axes1_in_base_x*d_G_rr_yy;
-        const real d_c_rr_t_2 = axis_y_rr_axes1_in_base_x*d_c_rr_t;
-        const real d_c_rr_t_3 = axis_y_rr_axes1_in_base_y*d_c_rr_t;
-        const real d_c_rr_t_4 = axis_y_rr_axes1_in_base_y*axis_y_rr_axes1_in_base_y*d_G_rr_yy;
-        /* (M2) coupling block of M */
-        const real M_ta_t = d_c_rr_t_2*q_rr_in_base_y - d_c_rr_t_3*q_rr_in_base_x;
-        const real M_ta_t_2 = d_c_rr_t_3*q_rr_in_base_y - d_c_rr_t_4*q_rr_in_base_x;
-        /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t*q_rr_in_base_y - M_ta_t_2*q_rr_in_base_x;
-        /* (rr-V1) velocity of the connection point */
-        const real S_dot_rr_t = omega_z*q_rr_in_base_y;
-        const real S_dot_rr_t_2 = omega_z*q_rr_in_base_x;
-        const real S_dot_rr_x = t_dot_x - S_dot_rr_t;
-        const real S_dot_rr_y = S_dot_rr_t_2 + t_dot_y;
-        const real S_dot_rr_tip_y = S_dot_rr_x*axis_y_rr_axes1_in_base_x +
-            S_dot_rr_y*axis_y_rr_axes1_in_base_y;
-        /* (rr-A1) centripetal acceleration of the connection point */
-        const real u_1_rr_t = S_dot_rr_t_2*omega_z;
-        const real u_1_rr_t_2 = S_dot_rr_t*omega_z;
-        /* (rr-A6) remainder without the acceleration in: acceleration of the connection point left to the
-           joint accelerations */
-        const real rel_rr_o_x = S_dot_rr_tip_y*S_dot_rr_tip_y*inv_rr_platform_joint_offset_x +
-            axis_y_rr_axes1_in_base_x*u_1_rr_t_2 - axis_y_rr_axes1_in_base_y*u_1_rr_t;
-        /* (rr-N7) remainder without the acceleration in: inertia moment of the links that turn with link
-           1, about their reference points */
-        const real mu_1_rr_o_z = h_1_rr_y*(c_1_rr*g_r0_x + g_r0_y*s_1_rr) +
-            J_1_rr_zz*inv_rr_platform_joint_offset_x*(-axis_y_rr_axes1_in_base_x*u_1_rr_t -
-            axis_y_rr_axes1_in_base_y*u_1_rr_t_2) - h_1_rr_x*(c_1_rr*g_r0_y - g_r0_x*s_1_rr);
-        /* (rr-N13) remainder without the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real G_rr_o_t = inv_rr_platform_joint_offset_x*mu_1_rr_o_z;
-        /* (rr-N18) velocity and gravity terms of the leg force */
-        const real U_rr_t = G_rr_o_t*axis_y_rr_axes1_in_base_x;
-        const real U_rr_t_2 = G_rr_o_t*axis_y_rr_axes1_in_base_y;
-        /* (M7) rotational part of Z */
-        const real Z_a_t = U_rr_t_2*q_rr_in_base_x - U_rr_t*q_rr_in_base_y;
-        /* (rr-V4) reciprocal vector 1 */
-        const real w_1_rr_t = axis_y_rr_axes1_in_base_x*inv_rr_platform_joint_offset_x;
-        const real w_1_rr_t_2 = axis_y_rr_axes1_in_base_y*inv_rr_platform_joint_offset_x;
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_1_rr_z = q_rr_in_base_x*w_1_rr_t_2 - q_rr_in_base_y*w_1_rr_t;
-        /* (rr-V3) unit vector that the leg's freedoms leave out */
-        const real n_c_rr_t_2 = axis_y_rr_axes1_in_base_y*n_c_rr_x;
-        const real n_c_rr_t_3 = axis_y_rr_axes1_in_base_x*n_c_rr_x;
-        /* (M10) moment of the column's unit force about the platform origin */
-        const real Hk_a_1_rr_z = n_c_rr_t_2*q_rr_in_base_y + n_c_rr_t_3*q_rr_in_base_x;
-        /* (M12) part of the constraint's second derivative that does not hold the acceleration */
-        const real gamma_c1_rr_t = n_c_rr_x*rel_rr_o_x;
-        o->sum[0][k] = add ? o->sum[0][k] + d_c_rr_t_2 : d_c_rr_t_2;  /* total_rr_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + d_c_rr_t_3 : d_c_rr_t_3;  /* total_rr_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + d_c_rr_t_4 : d_c_rr_t_4;  /* total_rr_yy */
-        o->sum[3][k] = add ? o->sum[3][k] + M_ta_t : M_ta_t;  /* total_rr_xz */
-        o->sum[4][k] = add ? o->sum[4][k] + M_ta_t_2 : M_ta_t_2;  /* total_rr_yz */
-        o->sum[5][k] = add ? o->sum[5][k] + M_aa_t : M_aa_t;  /* total_rr_zz */
-        o->sum[6][k] = add ? o->sum[6][k] + U_rr_t : U_rr_t;  /* total_rr_x */
-        o->sum[7][k] = add ? o->sum[7][k] + U_rr_t_2 : U_rr_t_2;  /* total_rr_y */
-        o->sum[8][k] = add ? o->sum[8][k] + Z_a_t : Z_a_t;  /* total_rr_z */
-        o->entry[0][k] = w_1_rr_t;
-        o->entry[1][k] = w_1_rr_t_2;
-        o->entry[2][k] = H_a_1_rr_z;
-        o->entry[3][k] = -n_c_rr_t_2;
-        o->entry[4][k] = n_c_rr_t_3;
-        o->entry[5][k] = Hk_a_1_rr_z;
-        o->entry[6][k] = -gamma_c1_rr_t;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rr) > TOLERANCE*TOLERANCE*root_1_rr_t);
+        const real crank_d_G_yy = m->crank_d_G_yy[i];
+        const real crank_d_c_t = axis_y_crank_axes1_in_base_x*crank_d_G_yy;
+        const real crank_d_c_t_2 = axis_y_crank_axes1_in_base_x*crank_d_c_t;
+        const real crank_d_c_t_3 = axis_y_crank_axes1_in_base_y*crank_d_c_t;
+        const real crank_d_c_t_4 =
+            axis_y_crank_axes1_in_base_y*axis_y_crank_axes1_in_base_y*crank_d_G_yy;
+        /* (M_ta) coupling block of M */
+        const real crank_M_ta_t = crank_d_c_t_2*crank_q_in_base_y -
+            crank_d_c_t_3*crank_q_in_base_x;
+        const real crank_M_ta_t_2 = crank_d_c_t_3*crank_q_in_base_y -
+            crank_d_c_t_4*crank_q_in_base_x;
+        /* (M_aa) rotational block of M */
+        const real crank_M_aa_t = crank_M_ta_t*crank_q_in_base_y -
+            crank_M_ta_t_2*crank_q_in_base_x;
+        /* (crank-S_dot) velocity of the connection point */
+        const real omega_z = s[6*w + j];
+        const real crank_S_dot_t = crank_q_in_base_y*omega_z;
+        const real crank_S_dot_t_2 = crank_q_in_base_x*omega_z;
+        const real t_dot_x = s[4*w + j];
+        const real crank_S_dot_x = t_dot_x - crank_S_dot_t;
+        const real t_dot_y = s[5*w + j];
+        const real crank_S_dot_y = crank_S_dot_t_2 + t_dot_y;
+        const real crank_S_dot_tip_y = axis_y_crank_axes1_in_base_x*crank_S_dot_x +
+            axis_y_crank_axes1_in_base_y*crank_S_dot_y;
+        /* (crank-u_1) centripetal acceleration of the connection point */
+        const real crank_u_1_t = crank_S_dot_t_2*omega_z;
+        const real crank_u_1_t_2 = crank_S_dot_t*omega_z;
+        /* (crank-rel_o) remainder without the acceleration in: acceleration of the connection point left
+           to the joint accelerations */
+        const real inv_crank_platform_joint_offset_x = m->inv_crank_platform_joint_offset_x[i];
+        const real crank_rel_o_x = axis_y_crank_axes1_in_base_x*crank_u_1_t_2 +
+            crank_S_dot_tip_y*crank_S_dot_tip_y*inv_crank_platform_joint_offset_x -
+            axis_y_crank_axes1_in_base_y*crank_u_1_t;
+        /* (crank-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn
+           with link 1, about their reference points */
+        const real crank_J_1_zz = m->crank_J_1_zz[i];
+        const real crank_g_r0_x = m->crank_g_r0_x[i];
+        const real crank_g_r0_y = m->crank_g_r0_y[i];
+        const real crank_h_1_x = m->crank_h_1_x[i];
+        const real crank_h_1_y = m->crank_h_1_y[i];
+        const real crank_mu_1_o_z = crank_h_1_y*(crank_c_1*crank_g_r0_x + crank_g_r0_y*crank_s_1)
+            +
+            crank_J_1_zz*inv_crank_platform_joint_offset_x*(-axis_y_crank_axes1_in_base_x*crank_u_1_t
+            - axis_y_crank_axes1_in_base_y*crank_u_1_t_2) - crank_h_1_x*(crank_c_1*crank_g_r0_y -
+            crank_g_r0_x*crank_s_1);
+        /* (crank-G_o) remainder without the acceleration in: force at the connection point that balances
+           the leg's inertia and weight along all freedoms */
+        const real crank_G_o_t = crank_mu_1_o_z*inv_crank_platform_joint_offset_x;
+        /* (crank-U) velocity and gravity terms of the leg force */
+        const real crank_U_t = axis_y_crank_axes1_in_base_x*crank_G_o_t;
+        const real crank_U_t_2 = axis_y_crank_axes1_in_base_y*crank_G_o_t;
+        /* (Z_a) rotational part of Z */
+        const real crank_Z_a_t = crank_U_t_2*crank_q_in_base_x - crank_U_t*crank_q_in_base_y;
+        /* (crank-w_1) reciprocal vector 1 */
+        const real crank_w_1_t = axis_y_crank_axes1_in_base_x*inv_crank_platform_joint_offset_x;
+        const real crank_w_1_t_2 = axis_y_crank_axes1_in_base_y*inv_crank_platform_joint_offset_x;
+        /* (crank-H_a_1) moment of the column's unit force about the platform origin */
+        const real crank_H_a_1_z = crank_q_in_base_x*crank_w_1_t_2 -
+            crank_q_in_base_y*crank_w_1_t;
+        /* (crank-n_c) unit vector that the leg's freedoms leave out */
+        const real crank_n_c_x = m->crank_n_c_x[i];
+        const real crank_n_c_t_2 = axis_y_crank_axes1_in_base_y*crank_n_c_x;
+        const real crank_n_c_t_3 = axis_y_crank_axes1_in_base_x*crank_n_c_x;
+        /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
+        const real crank_Hk_a_1_z = crank_n_c_t_2*crank_q_in_base_y +
+            crank_n_c_t_3*crank_q_in_base_x;
+        /* (crank-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+           */
+        const real crank_gamma_c1_t = crank_n_c_x*crank_rel_o_x;
+        terms[0*count + k] = add ? terms[0*count + k] + crank_d_c_t_2 : crank_d_c_t_2;  /* total_crank_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + crank_d_c_t_3 : crank_d_c_t_3;  /* total_crank_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + crank_d_c_t_4 : crank_d_c_t_4;  /* total_crank_yy */
+        terms[3*count + k] = add ? terms[3*count + k] + crank_M_ta_t : crank_M_ta_t;  /* total_crank_xz */
+        terms[4*count + k] = add ? terms[4*count + k] + crank_M_ta_t_2 : crank_M_ta_t_2;  /* total_crank_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + crank_M_aa_t : crank_M_aa_t;  /* total_crank_zz */
+        terms[6*count + k] = add ? terms[6*count + k] + crank_U_t : crank_U_t;  /* total_crank_x */
+        terms[7*count + k] = add ? terms[7*count + k] + crank_U_t_2 : crank_U_t_2;  /* total_crank_y */
+        terms[8*count + k] = add ? terms[8*count + k] + crank_Z_a_t : crank_Z_a_t;  /* total_crank_z */
+        o[0*count + k] = crank_w_1_t;
+        o[1*count + k] = crank_w_1_t_2;
+        o[2*count + k] = crank_H_a_1_z;
+        o[3*count + k] = -crank_n_c_t_2;
+        o[4*count + k] = crank_n_c_t_3;
+        o[5*count + k] = crank_Hk_a_1_z;
+        o[6*count + k] = -crank_gamma_c1_t;
+        o[8*count + k] = (crank_w_1_t + (crank_w_1_t_2 + crank_H_a_1_z)) + ((crank_n_c_t_2 +
+            crank_n_c_t_3) + (crank_Hk_a_1_z + crank_gamma_c1_t));
+        const real crank_root_1_t = m->crank_root_1_t[i];
+        o[7*count + k] = UNLESS(magnitude(crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
     }
 }
 
-INLINE void dynamics_place_rr(size_t w, const dynamics_results_rr *o, size_t first, real *H, real
-    *Hk, real *constraint_bias, verdict *t)
+INLINE void dynamics_place_crank(size_t w, size_t count, const real *o, size_t first, real *H,
+    real *Hk, real *constraint_bias, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0)*w + k] = o->entry[0][first + k];
-        H[(2)*w + k] = o->entry[1][first + k];
-        H[(4)*w + k] = o->entry[2][first + k];
-        Hk[(0)*w + k] = o->entry[3][first + k];
-        Hk[(1)*w + k] = o->entry[4][first + k];
-        Hk[(2)*w + k] = o->entry[5][first + k];
-        constraint_bias[(0)*w + k] = o->entry[6][first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(0)*w + k] = o[0*count + first + k];
+        H[(2)*w + k] = o[1*count + first + k];
+        H[(4)*w + k] = o[2*count + first + k];
+        Hk[(0)*w + k] = o[3*count + first + k];
+        Hk[(1)*w + k] = o[4*count + first + k];
+        Hk[(2)*w + k] = o[5*count + first + k];
+        constraint_bias[(0)*w + k] = o[6*count + first + k];
+        t->singular[k] += o[7*count + first + k];
+        t->total[k] += o[8*count + first + k];
     }
 }
 
-INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const dynamics_values
-    *s, size_t states, size_t count, int add, dynamics_results_rrr *o)
+INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real J_1_rrr_zz = m->J_1_rrr_zz[i];
-        const real J_2_rrr_zz = m->J_2_rrr_zz[i];
-        const real Jc_1_rrr_zz = m->Jc_1_rrr_zz[i];
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real d_Gamma_1_rrr_t = m->d_Gamma_1_rrr_t[i];
-        const real d_Gamma_1_rrr_y = m->d_Gamma_1_rrr_y[i];
-        const real d_c_rrr_yy = m->d_c_rrr_yy[i];
-        const real d_phi_2_rrr_t = m->d_phi_2_rrr_t[i];
-        const real g_r0_x_2 = m->g_r0_x_2[i];
-        const real g_r0_y_2 = m->g_r0_y_2[i];
-        const real h_1_rrr_x = m->h_1_rrr_x[i];
-        const real h_1_rrr_y = m->h_1_rrr_y[i];
-        const real h_2_rrr_x = m->h_2_rrr_x[i];
-        const real h_2_rrr_y = m->h_2_rrr_y[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_rrr = m->size_rrr[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x;
-        const real S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr =
-            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr;
-        const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
-        const real r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr;
-        const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr;
-        const real axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        /* (rrr-V6) reciprocal vector 2 */
-        const real w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x;
-        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x;
-        const real d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz -
-            d_Gamma_1_rrr_t_2);
-        /* (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
-           and weight */
-        const real d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz -
-            d_Gamma_1_rrr_t_2);
-        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-w_2) reciprocal vector 2 */
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x;
+        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
+        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x;
+        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
+        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz -
+            rrr_d_Gamma_2_t_2);
+        /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real rrr_Jc_1_zz = m->rrr_Jc_1_zz[i];
+        const real rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz -
+            rrr_d_Gamma_2_t_2);
+        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y -
-            d_Gamma_1_rrr_y*w_2_rrr_t;
-        /* (rrr-N36) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rrr_t = d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t -
-            inv_r_1_rrr_r0_y) - d_c_rrr_yy - d_Gamma_2_rrr_x*w_2_rrr_t;
-        const real Q_rrr_t_2 = R(0.5)*Q_rrr_t;
-        const real Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y +
-            axis_y_rrr_axes2_in_base_x*d_c_rrr_xy;
-        const real Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x -
-            axis_y_rrr_axes2_in_base_y*d_c_rrr_xy;
-        const real Q_rrr_t_5 = d_c_rrr_yy + 2*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y;
-        const real Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x +
-            Q_rrr_t_4*axis_y_rrr_axes2_in_base_y;
-        const real Q_rrr_t_7 = d_c_rrr_yy + 2*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x;
-        /* (M2) coupling block of M */
-        const real M_ta_t_3 = Q_rrr_t_5*q_rrr_in_base_y + Q_rrr_t_6*q_rrr_in_base_x;
-        const real M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y + Q_rrr_t_7*q_rrr_in_base_x;
-        /* (M3) rotational block of M */
-        const real M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y + M_ta_t_4*q_rrr_in_base_x;
-        /* (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
-           less gravity */
-        const real g_r1_x = c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr;
-        const real g_r1_y = c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr;
-        /* (rrr-V1) velocity of the connection point */
-        const real S_dot_rrr_t = omega_z*q_rrr_in_base_y;
-        const real S_dot_rrr_t_2 = omega_z*q_rrr_in_base_x;
-        const real S_dot_rrr_x = t_dot_x - S_dot_rrr_t;
-        const real S_dot_rrr_y = S_dot_rrr_t_2 + t_dot_y;
-        /* (rrr-V7) rate of joint 1 */
-        const real qd_1_rrr = inv_r_1_rrr_r0_y*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_x);
-        /* (rrr-V11) angular velocity of link 2 */
-        const real omega_2_rrr_z =
-            inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
-        /* (rrr-V10) centripetal tensor of link 1 */
-        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
-        /* (rrr-V12) centripetal tensor of link 2 */
-        const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
-        /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
-            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
-        /* (rrr-A1) centripetal acceleration of the connection point */
-        const real u_1_rrr_t = S_dot_rrr_t_2*omega_z;
-        const real u_1_rrr_t_2 = S_dot_rrr_t*omega_z;
-        const real u_1_rrr_tip_x = axis_y_rrr_axes2_in_base_x*u_1_rrr_t_2 -
-            axis_y_rrr_axes2_in_base_y*u_1_rrr_t;
-        const real u_1_rrr_tip_y = -axis_y_rrr_axes2_in_base_x*u_1_rrr_t -
-            axis_y_rrr_axes2_in_base_y*u_1_rrr_t_2;
-        /* (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to
+        const real rrr_d_Gamma_2_y = m->rrr_d_Gamma_2_y[i];
+        const real rrr_d_phi_2_t = m->rrr_d_phi_2_t[i];
+        const real rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y -
+            rrr_d_Gamma_2_y*rrr_w_2_t;
+        /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real rrr_d_c_yy = m->rrr_d_c_yy[i];
+        const real rrr_Q_t = inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t -
+            inv_rrr_r_1_r0_y) - rrr_d_c_yy - rrr_d_Gamma_2_x*rrr_w_2_t;
+        const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
+        const real rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy +
+            axis_y_rrr_axes2_in_base_y*rrr_Q_t_2;
+        const real rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 -
+            axis_y_rrr_axes2_in_base_y*rrr_d_c_xy;
+        const real rrr_Q_t_5 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3;
+        const real rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 +
+            axis_y_rrr_axes2_in_base_y*rrr_Q_t_4;
+        const real rrr_Q_t_7 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4;
+        /* (M_ta) coupling block of M */
+        const real rrr_M_ta_t = rrr_Q_t_5*rrr_q_in_base_y + rrr_Q_t_6*rrr_q_in_base_x;
+        const real rrr_M_ta_t_2 = rrr_Q_t_6*rrr_q_in_base_y + rrr_Q_t_7*rrr_q_in_base_x;
+        /* (M_aa) rotational block of M */
+        const real rrr_M_aa_t = rrr_M_ta_t*rrr_q_in_base_y + rrr_M_ta_t_2*rrr_q_in_base_x;
+        /* (rrr-S_dot) velocity of the connection point */
+        const real omega_z = s[6*w + j];
+        const real rrr_S_dot_t = omega_z*rrr_q_in_base_y;
+        const real rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x;
+        const real t_dot_x = s[4*w + j];
+        const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
+        const real t_dot_y = s[5*w + j];
+        const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
+        /* (rrr-qd_2) rate of joint 2 */
+        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y);
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real rrr_omega_2_z =
+            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-u_1) centripetal acceleration of the connection point */
+        const real rrr_u_1_t = omega_z*rrr_S_dot_t_2;
+        const real rrr_u_1_t_2 = omega_z*rrr_S_dot_t;
+        /* (rrr-W_1) centripetal tensor of link 1 */
+        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-W_2) centripetal tensor of link 2 */
+        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        /* (rrr-u_1) centripetal acceleration of the connection point */
+        const real rrr_u_1_tip_x = axis_y_rrr_axes2_in_base_x*rrr_u_1_t_2 -
+            axis_y_rrr_axes2_in_base_y*rrr_u_1_t;
+        const real rrr_u_1_tip_y = -axis_y_rrr_axes2_in_base_x*rrr_u_1_t -
+            axis_y_rrr_axes2_in_base_y*rrr_u_1_t_2;
+        /* (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rel_rrr_o_x = u_1_rrr_tip_x - bias_rrr_x;
-        const real rel_rrr_o_y = u_1_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
-        /* (rrr-A9) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_rrr_o = inv_r_1_rrr_r0_y*rel_rrr_o_x;
-        /* (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
-        const real mu_1_rrr_o_z = g_r1_x*h_1_rrr_y - J_1_rrr_zz*qdd_1_rrr_o - g_r1_y*h_1_rrr_x;
-        /* (rrr-N4) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real acc_2_rrr_o_x = u_1_rrr_tip_x + g_r1_y*s_2_rrr - c_2_rrr*g_r1_x;
-        const real acc_2_rrr_o_y = u_1_rrr_tip_y - c_2_rrr*g_r1_y - g_r1_x*s_2_rrr;
-        /* (rrr-A18) remainder without the acceleration in: angular acceleration of link 2 */
-        const real alpha_2_rrr_o_z = inv_rrr_platform_joint_offset_x*(rel_rrr_o_y +
-            qdd_1_rrr_o*r_1_rrr_r0_x) - qdd_1_rrr_o;
-        /* (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with
+        const real rrr_rel_o_x = rrr_u_1_tip_x - rrr_bias_x;
+        const real rrr_rel_o_y = rrr_u_1_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        const real rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_rel_o_x;
+        /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        const real rrr_alpha_2_o_z = inv_rrr_platform_joint_offset_x*(rrr_rel_o_y +
+            rrr_qdd_1_o*rrr_r_1_r0_x) - rrr_qdd_1_o;
+        /* (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real rrr_acc_2_o_x = rrr_u_1_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+            axis_y_rrr_axes2_in_base_y*gravity_x;
+        const real rrr_acc_2_o_y = rrr_u_1_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+            axis_y_rrr_axes2_in_base_y*gravity_y;
+        /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real mu_2_rrr_o_z = J_2_rrr_zz*alpha_2_rrr_o_z + acc_2_rrr_o_y*h_2_rrr_x -
-            acc_2_rrr_o_x*h_2_rrr_y;
-        /* (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
+        const real rrr_h_2_x = m->rrr_h_2_x[i];
+        const real rrr_mu_2_o_z = rrr_J_2_zz*rrr_alpha_2_o_z + rrr_acc_2_o_y*rrr_h_2_x -
+            rrr_acc_2_o_x*rrr_h_2_y;
+        /* (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 1, about their reference points */
+        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
+        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
+        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
+        const real rrr_h_1_x = m->rrr_h_1_x[i];
+        const real rrr_h_1_y = m->rrr_h_1_y[i];
+        const real rrr_mu_1_o_z = rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
+            rrr_J_1_zz*rrr_qdd_1_o - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
-        const real N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z;
-        /* (rrr-N32) remainder without the acceleration in: force at the connection point that balances
+        const real rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z;
+        /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z;
-        /* (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation
+        const real rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z;
+        /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real c_rrr_o_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y -
-            inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x - N_1_rrr_o_z);
-        const real c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x;
-        /* (rrr-N37) velocity and gravity terms of the leg force */
-        const real U_rrr_in_base_x = -axis_y_rrr_axes2_in_base_x*c_rrr_o_y -
-            axis_y_rrr_axes2_in_base_y*c_rrr_o_x;
-        const real U_rrr_in_base_y = axis_y_rrr_axes2_in_base_x*c_rrr_o_x -
-            axis_y_rrr_axes2_in_base_y*c_rrr_o_y;
-        /* (M7) rotational part of Z */
-        const real Z_a_t_2 = U_rrr_in_base_y*q_rrr_in_base_x - U_rrr_in_base_x*q_rrr_in_base_y;
-        /* (rrr-V5) reciprocal vector 1 */
-        const real w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y;
-        const real w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
-        /* (M9) moment of the column's unit force about the platform origin */
-        const real H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t;
-        o->sum[0][k] = add ? o->sum[0][k] + Q_rrr_t_5 : Q_rrr_t_5;  /* total_rrr_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + Q_rrr_t_6 : Q_rrr_t_6;  /* total_rrr_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + Q_rrr_t_7 : Q_rrr_t_7;  /* total_rrr_yy */
-        o->sum[3][k] = add ? o->sum[3][k] + M_ta_t_3 : M_ta_t_3;  /* total_rrr_xz */
-        o->sum[4][k] = add ? o->sum[4][k] + M_ta_t_4 : M_ta_t_4;  /* total_rrr_yz */
-        o->sum[5][k] = add ? o->sum[5][k] + M_aa_t_2 : M_aa_t_2;  /* total_rrr_zz */
-        o->sum[6][k] = add ? o->sum[6][k] + U_rrr_in_base_x : U_rrr_in_base_x;  /* total_rrr_x */
-        o->sum[7][k] = add ? o->sum[7][k] + U_rrr_in_base_y : U_rrr_in_base_y;  /* total_rrr_y */
-        o->sum[8][k] = add ? o->sum[8][k] + Z_a_t_2 : Z_a_t_2;  /* total_rrr_z */
-        o->entry[0][k] = -w_1_rrr_t;
-        o->entry[1][k] = w_1_rrr_t_2;
-        o->entry[2][k] = H_a_1_rrr_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
+        const real rrr_c_o_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y -
+            inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x - rrr_N_1_o_z);
+        const real rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x;
+        /* (rrr-U) velocity and gravity terms of the leg force */
+        const real rrr_U_in_base_x = -axis_y_rrr_axes2_in_base_x*rrr_c_o_y -
+            axis_y_rrr_axes2_in_base_y*rrr_c_o_x;
+        const real rrr_U_in_base_y = axis_y_rrr_axes2_in_base_x*rrr_c_o_x -
+            axis_y_rrr_axes2_in_base_y*rrr_c_o_y;
+        /* (Z_a) rotational part of Z */
+        const real rrr_Z_a_t = rrr_U_in_base_y*rrr_q_in_base_x - rrr_U_in_base_x*rrr_q_in_base_y;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y;
+        const real rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y;
+        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+        const real rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t;
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_Q_t_5 : rrr_Q_t_5;  /* total_rrr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_Q_t_6 : rrr_Q_t_6;  /* total_rrr_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_Q_t_7 : rrr_Q_t_7;  /* total_rrr_yy */
+        terms[3*count + k] = add ? terms[3*count + k] + rrr_M_ta_t : rrr_M_ta_t;  /* total_rrr_xz */
+        terms[4*count + k] = add ? terms[4*count + k] + rrr_M_ta_t_2 : rrr_M_ta_t_2;  /* total_rrr_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + rrr_M_aa_t : rrr_M_aa_t;  /* total_rrr_zz */
+        terms[6*count + k] = add ? terms[6*count + k] + rrr_U_in_base_x : rrr_U_in_base_x;  /* total_rrr_x */
+        terms[7*count + k] = add ? terms[7*count + k] + rrr_U_in_base_y : rrr_U_in_base_y;  /* total_rrr_y */
+        terms[8*count + k] = add ? terms[8*count + k] + rrr_Z_a_t : rrr_Z_a_t;  /* total_rrr_z */
+        o[0*count + k] = -rrr_w_1_t;
+        o[1*count + k] = rrr_w_1_t_2;
+        o[2*count + k] = rrr_H_a_1_z;
+        o[5*count + k] = rrr_w_1_t + (rrr_w_1_t_2 + rrr_H_a_1_z);
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[4*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[3*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void dynamics_place_rrr(size_t w, const dynamics_results_rrr *o, size_t first, real *H,
+INLINE void dynamics_place_rrr(size_t w, size_t count, const real *o, size_t first, real *H,
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(1)*w + k] = o->entry[0][first + k];
-        H[(3)*w + k] = o->entry[1][first + k];
-        H[(5)*w + k] = o->entry[2][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(1)*w + k] = o[0*count + first + k];
+        H[(3)*w + k] = o[1*count + first + k];
+        H[(5)*w + k] = o[2*count + first + k];
+        t->unreachable[k] += o[3*count + first + k];
+        t->singular[k] += o[4*count + first + k];
+        t->total[k] += o[5*count + first + k];
     }
 }
 
-INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s, real *M, real
-    *Z)
+INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const real *sums, real *M,
+    real *Z, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real h_star_in_base_x = s->h_star_in_base_x[k];
-        const real h_star_in_base_y = s->h_star_in_base_y[k];
-        const real Z_p_x = s->Z_p_x[k];
-        const real Z_p_y = s->Z_p_y[k];
-        const real Z_q_t = s->Z_q_t[k];
-        const real total_rr_xx = s->sum[0][k];
-        const real total_rr_xy = s->sum[1][k];
-        const real total_rr_yy = s->sum[2][k];
-        const real total_rr_xz = s->sum[3][k];
-        const real total_rr_yz = s->sum[4][k];
-        const real total_rr_zz = s->sum[5][k];
-        const real total_rr_x = s->sum[6][k];
-        const real total_rr_y = s->sum[7][k];
-        const real total_rr_z = s->sum[8][k];
-        const real total_rrr_xx = s->sum[9][k];
-        const real total_rrr_xy = s->sum[10][k];
-        const real total_rrr_yy = s->sum[11][k];
-        const real total_rrr_xz = s->sum[12][k];
-        const real total_rrr_yz = s->sum[13][k];
-        const real total_rrr_zz = s->sum[14][k];
-        const real total_rrr_x = s->sum[15][k];
-        const real total_rrr_y = s->sum[16][k];
-        const real total_rrr_z = s->sum[17][k];
-        const real J_star_t_10 = m->J_star_t_10;
+        /* (M_tt) translational block of M */
         const real m_star = m->m_star;
-        /* (M1) translational block of M */
-        const real M_tt_xx = m_star + total_rr_xx - total_rrr_xx;
-        const real M_tt_xy = total_rr_xy + total_rrr_xy;
-        const real M_tt_yy = m_star + total_rr_yy - total_rrr_yy;
-        /* (M2) coupling block of M */
-        const real M_ta_xz = total_rrr_xz - h_star_in_base_y - total_rr_xz;
-        const real M_ta_yz = h_star_in_base_x - total_rr_yz - total_rrr_yz;
-        /* (M3) rotational block of M */
-        const real M_aa_zz = total_rr_zz - J_star_t_10 - total_rrr_zz;
-        /* (M5) translational part of Z */
-        const real Z_t_x = Z_p_x + total_rr_x + total_rrr_x;
-        const real Z_t_y = Z_p_y + total_rr_y + total_rrr_y;
-        /* (M7) rotational part of Z */
-        const real Z_a_z = total_rr_z + total_rrr_z - Z_q_t;
+        const real total_crank_xx = sums[0*w + k];
+        const real total_rrr_xx = sums[9*w + k];
+        const real M_tt_xx = m_star + total_crank_xx - total_rrr_xx;
+        const real total_crank_xy = sums[1*w + k];
+        const real total_rrr_xy = sums[10*w + k];
+        const real M_tt_xy = total_crank_xy + total_rrr_xy;
+        const real total_crank_yy = sums[2*w + k];
+        const real total_rrr_yy = sums[11*w + k];
+        const real M_tt_yy = m_star + total_crank_yy - total_rrr_yy;
+        /* (M_ta) coupling block of M */
+        const real h_star_in_base_y = s[8*w + k];
+        const real total_crank_xz = sums[3*w + k];
+        const real total_rrr_xz = sums[12*w + k];
+        const real M_ta_xz = total_rrr_xz - h_star_in_base_y - total_crank_xz;
+        const real h_star_in_base_x = s[7*w + k];
+        const real total_crank_yz = sums[4*w + k];
+        const real total_rrr_yz = sums[13*w + k];
+        const real M_ta_yz = h_star_in_base_x - total_crank_yz - total_rrr_yz;
+        /* (M_aa) rotational block of M */
+        const real J_star_t_6 = m->J_star_t_6;
+        const real total_crank_zz = sums[5*w + k];
+        const real total_rrr_zz = sums[14*w + k];
+        const real M_aa_zz = total_crank_zz - J_star_t_6 - total_rrr_zz;
+        /* (Z_t) translational part of Z */
+        const real Z_p_x = s[9*w + k];
+        const real total_crank_x = sums[6*w + k];
+        const real total_rrr_x = sums[15*w + k];
+        const real Z_t_x = Z_p_x + total_crank_x + total_rrr_x;
+        const real Z_p_y = s[10*w + k];
+        const real total_crank_y = sums[7*w + k];
+        const real total_rrr_y = sums[16*w + k];
+        const real Z_t_y = Z_p_y + total_crank_y + total_rrr_y;
+        /* (Z_a) rotational part of Z */
+        const real Z_q_t = s[11*w + k];
+        const real total_crank_z = sums[8*w + k];
+        const real total_rrr_z = sums[17*w + k];
+        const real Z_a_z = total_crank_z + total_rrr_z - Z_q_t;
         M[0*w + k] = M_tt_xx;
         M[1*w + k] = M_tt_xy;
         M[3*w + k] = M_tt_xy;
@@ -1680,331 +1703,318 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_a_z;
+        t->total[k] += ((M_tt_xx + M_tt_xy) + (M_tt_yy + M_ta_xz)) + ((M_ta_yz + M_aa_zz) + (Z_t_x
+            + (Z_t_y + Z_a_z)));
     }
 }
 
-INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real *V, real *M, real
-    *Z, real *H, real *Hk, real *constraint_bias, verdict *t)
+INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
+    *H, real *Hk, real *constraint_bias, verdict *t)
 {
-    dynamics_values values, *const s = &values;
-    dynamics_results_rr results_rr;
-    dynamics_results_rrr results_rrr;
-    dynamics_before(m, w, X, V, s);
-    if (w == 1) {  /* the legs side by side */
-        dynamics_legs_rr(m, 0, 1, s, 0, 1, 0, &results_rr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            dynamics_place_rr(w, &results_rr, leg, H, Hk, constraint_bias, t);
-        }
-        for (size_t n = 0; n < 9; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_rr.sum[n], 1);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rr.sum, 0, sizeof results_rr.sum);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            dynamics_legs_rr(m, leg, 0, s, 1, w, 1, &results_rr);
-            dynamics_place_rr(w, &results_rr, 0, H, Hk, constraint_bias, t);
-        }
-        for (size_t n = 0; n < 9; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_rr.sum[n][k];
-            }
-        }
+    real s[12] = {0}, sums[18] = {0}, terms_crank[9*LEGS(1)] = {0}, o_crank[9*LEGS(1)] = {0},
+        terms_rrr[9*LEGS(1)] = {0}, o_rrr[6*LEGS(1)] = {0};
+    dynamics_before(m, 1, X, V, s);
+    dynamics_legs_crank(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_crank, o_crank);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        dynamics_place_crank(1, LEGS(1), o_crank, leg, H, Hk, constraint_bias, t);
     }
-    if (w == 1) {  /* the legs side by side */
-        dynamics_legs_rrr(m, 0, 1, s, 0, 1, 0, &results_rrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            dynamics_place_rrr(w, &results_rrr, leg, H, t);
-        }
-        for (size_t n = 0; n < 9; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[9 + n][k] = total(results_rrr.sum[n], 1);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            dynamics_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
-            dynamics_place_rrr(w, &results_rrr, 0, H, t);
-        }
-        for (size_t n = 0; n < 9; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[9 + n][k] = results_rrr.sum[n][k];
-            }
-        }
+    for (size_t n = 0; n < 9; ++n) {
+        sums[n] = total(terms_crank + n*LEGS(1), 1);
     }
-    dynamics_after(m, w, s, M, Z);
+    dynamics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        dynamics_place_rrr(1, LEGS(1), o_rrr, leg, H, t);
+    }
+    for (size_t n = 0; n < 9; ++n) {
+        sums[9 + n] = total(terms_rrr + n*LEGS(1), 1);
+    }
+    dynamics_after(m, 1, s, sums, M, Z, t);
+}
+
+INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, real *Hk, real *constraint_bias, verdict *t)
+{
+    real s[12*LANES], sums[18*LANES], o_crank[9*LANES], o_rrr[6*LANES];
+    dynamics_before(m, LANES, X, V, s);
+    clear(sums, 9*LANES);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        dynamics_legs_crank(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_crank);
+        dynamics_place_crank(LANES, LANES, o_crank, 0, H, Hk, constraint_bias, t);
+    }
+    clear(sums + 9*LANES, 9*LANES);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        dynamics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums + 9*LANES, o_rrr);
+        dynamics_place_rrr(LANES, LANES, o_rrr, 0, H, t);
+    }
+    dynamics_after(m, LANES, s, sums, M, Z, t);
 }
 
 /* ---- M: 106 mul, 80 add, 3 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], h_star_in_base_x[LANES],
-        h_star_in_base_y[LANES], sum[12][LANES];
-} M_values;
-typedef struct {
-    real sum[6][8], singular[8];
-} M_results_rr;
-typedef struct {
-    real sum[6][8], unreachable[8], singular[8];
-} M_results_rrr;
-
-INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s)
+INLINE void M_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
-        /* (L2) first moment about the platform origin */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
         const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
         const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->h_star_in_base_x[k] = h_star_in_base_x;
-        s->h_star_in_base_y[k] = h_star_in_base_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
+        s[4*w + k] = h_star_in_base_x;
+        s[5*w + k] = h_star_in_base_y;
     }
 }
 
-INLINE void M_legs_rr(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
-    states, size_t count, int add, M_results_rr *o)
+INLINE void M_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real d_G_rr_yy = m->d_G_rr_yy[i];
-        const real n_c_rr_t = m->n_c_rr_t[i];
-        const real root_1_rr_t = m->root_1_rr_t[i];
-        const real rr_base_frame_xx = m->rr_base_frame_xx[i];
-        const real rr_base_frame_xy = m->rr_base_frame_xy[i];
-        const real rr_base_frame_yx = m->rr_base_frame_yx[i];
-        const real rr_base_frame_yy = m->rr_base_frame_yy[i];
-        const real rr_base_point_x = m->rr_base_point_x[i];
-        const real rr_base_point_y = m->rr_base_point_y[i];
-        const real rr_platform_joint_offset_x = m->rr_platform_joint_offset_x[i];
-        const real rr_platform_point_x = m->rr_platform_point_x[i];
-        const real rr_platform_point_y = m->rr_platform_point_y[i];
-        /* (rr-K1) from the base point to the connection point */
-        const real q_rr_in_base_x = R_xx*rr_platform_point_x - R_yx*rr_platform_point_y;
-        const real q_rr_in_base_y = R_xx*rr_platform_point_y + R_yx*rr_platform_point_x;
-        const real S_rr_x = q_rr_in_base_x + t_x - rr_base_point_x;
-        const real S_rr_y = q_rr_in_base_y + t_y - rr_base_point_y;
-        /* (rr-K3) squared amplitude */
-        const real rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy;
-        const real rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx;
-        const real rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
-        /* (rr-K5) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1_rr = 1/(root(rho2_1_rr));
-        const real c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x;
-        /* (rr-K6) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rr = inv_root_1_rr*rho2_1_rr_t*rr_platform_joint_offset_x;
-        /* (rr-V4) reciprocal vector 1 */
-        const real axis_y_rr_axes1_in_base_x = c_1_rr*rr_base_frame_xy - rr_base_frame_xx*s_1_rr;
-        const real axis_y_rr_axes1_in_base_y = c_1_rr*rr_base_frame_yy - rr_base_frame_yx*s_1_rr;
-        /* (rr-N15) coefficient of the acceleration in: leg force on the platform without actuation and
+        /* (crank-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
+        const real crank_platform_point_x = m->crank_platform_point_x[i];
+        const real crank_platform_point_y = m->crank_platform_point_y[i];
+        const real crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y;
+        const real crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x;
+        const real crank_base_point_x = m->crank_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x;
+        const real crank_base_point_y = m->crank_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y;
+        /* (crank-rho2_1) squared amplitude */
+        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
+        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
+        const real crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy;
+        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
+        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
+        const real crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx +
+            crank_S_y*crank_base_frame_yx;
+        const real crank_n_c_t = m->crank_n_c_t[i];
+        const real crank_rho2_1 = crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t +
+            crank_rho2_1_t_2*crank_rho2_1_t_2);
+        /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_crank_root_1 = 1/(root(crank_rho2_1));
+        const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
+        const real crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1;
+        /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
+        const real crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1;
+        /* (crank-w_1) reciprocal vector 1 */
+        const real axis_y_crank_axes1_in_base_x = crank_base_frame_xy*crank_c_1 -
+            crank_base_frame_xx*crank_s_1;
+        const real axis_y_crank_axes1_in_base_y = crank_base_frame_yy*crank_c_1 -
+            crank_base_frame_yx*crank_s_1;
+        /* (crank-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_rr_t = axis_y_rr_axes1_in_base_x*d_G_rr_yy;
-        const real d_c_rr_t_2 = axis_y_rr_axes1_in_base_x*d_c_rr_t;
-        const real d_c_rr_t_3 = axis_y_rr_axes1_in_base_y*d_c_rr_t;
-        const real d_c_rr_t_4 = axis_y_rr_axes1_in_base_y*axis_y_rr_axes1_in_base_y*d_G_rr_yy;
-        /* (M2) coupling block of M */
-        const real M_ta_t = d_c_rr_t_2*q_rr_in_base_y - d_c_rr_t_3*q_rr_in_base_x;
-        const real M_ta_t_2 = d_c_rr_t_3*q_rr_in_base_y - d_c_rr_t_4*q_rr_in_base_x;
-        /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t*q_rr_in_base_y - M_ta_t_2*q_rr_in_base_x;
-        o->sum[0][k] = add ? o->sum[0][k] + d_c_rr_t_2 : d_c_rr_t_2;  /* total_rr_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + d_c_rr_t_3 : d_c_rr_t_3;  /* total_rr_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + d_c_rr_t_4 : d_c_rr_t_4;  /* total_rr_yy */
-        o->sum[3][k] = add ? o->sum[3][k] + M_ta_t : M_ta_t;  /* total_rr_xz */
-        o->sum[4][k] = add ? o->sum[4][k] + M_ta_t_2 : M_ta_t_2;  /* total_rr_yz */
-        o->sum[5][k] = add ? o->sum[5][k] + M_aa_t : M_aa_t;  /* total_rr_zz */
-        o->singular[k] = UNLESS(magnitude(rho2_1_rr) > TOLERANCE*TOLERANCE*root_1_rr_t);
+        const real crank_d_G_yy = m->crank_d_G_yy[i];
+        const real crank_d_c_t = axis_y_crank_axes1_in_base_x*crank_d_G_yy;
+        const real crank_d_c_t_2 = axis_y_crank_axes1_in_base_x*crank_d_c_t;
+        const real crank_d_c_t_3 = axis_y_crank_axes1_in_base_y*crank_d_c_t;
+        const real crank_d_c_t_4 =
+            axis_y_crank_axes1_in_base_y*axis_y_crank_axes1_in_base_y*crank_d_G_yy;
+        /* (M_ta) coupling block of M */
+        const real crank_M_ta_t = crank_d_c_t_2*crank_q_in_base_y -
+            crank_d_c_t_3*crank_q_in_base_x;
+        const real crank_M_ta_t_2 = crank_d_c_t_3*crank_q_in_base_y -
+            crank_d_c_t_4*crank_q_in_base_x;
+        /* (M_aa) rotational block of M */
+        const real crank_M_aa_t = crank_M_ta_t*crank_q_in_base_y -
+            crank_M_ta_t_2*crank_q_in_base_x;
+        terms[0*count + k] = add ? terms[0*count + k] + crank_d_c_t_2 : crank_d_c_t_2;  /* total_crank_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + crank_d_c_t_3 : crank_d_c_t_3;  /* total_crank_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + crank_d_c_t_4 : crank_d_c_t_4;  /* total_crank_yy */
+        terms[3*count + k] = add ? terms[3*count + k] + crank_M_ta_t : crank_M_ta_t;  /* total_crank_xz */
+        terms[4*count + k] = add ? terms[4*count + k] + crank_M_ta_t_2 : crank_M_ta_t_2;  /* total_crank_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + crank_M_aa_t : crank_M_aa_t;  /* total_crank_zz */
+        const real crank_root_1_t = m->crank_root_1_t[i];
+        o[0*count + k] = UNLESS(magnitude(crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
     }
 }
 
-INLINE void M_place_rr(size_t w, const M_results_rr *o, size_t first, verdict *t)
+INLINE void M_place_crank(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
+        t->singular[k] += o[0*count + first + k];
     }
 }
 
-INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
-    states, size_t count, int add, M_results_rrr *o)
+INLINE void M_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real J_2_rrr_zz = m->J_2_rrr_zz[i];
-        const real Jc_1_rrr_zz = m->Jc_1_rrr_zz[i];
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real d_Gamma_1_rrr_t = m->d_Gamma_1_rrr_t[i];
-        const real d_Gamma_1_rrr_y = m->d_Gamma_1_rrr_y[i];
-        const real d_c_rrr_yy = m->d_c_rrr_yy[i];
-        const real d_phi_2_rrr_t = m->d_phi_2_rrr_t[i];
-        const real h_2_rrr_y = m->h_2_rrr_y[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_rrr = m->size_rrr[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x;
-        const real S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr =
-            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr;
-        const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
-        const real r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr;
-        const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr;
-        const real axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        /* (rrr-V6) reciprocal vector 2 */
-        const real w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x;
-        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x;
-        const real d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz -
-            d_Gamma_1_rrr_t_2);
-        /* (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
-           and weight */
-        const real d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz -
-            d_Gamma_1_rrr_t_2);
-        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-w_2) reciprocal vector 2 */
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x;
+        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
+        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x;
+        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
+        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz -
+            rrr_d_Gamma_2_t_2);
+        /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real rrr_Jc_1_zz = m->rrr_Jc_1_zz[i];
+        const real rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz -
+            rrr_d_Gamma_2_t_2);
+        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y -
-            d_Gamma_1_rrr_y*w_2_rrr_t;
-        /* (rrr-N36) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rrr_t = d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t -
-            inv_r_1_rrr_r0_y) - d_c_rrr_yy - d_Gamma_2_rrr_x*w_2_rrr_t;
-        const real Q_rrr_t_2 = R(0.5)*Q_rrr_t;
-        const real Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y +
-            axis_y_rrr_axes2_in_base_x*d_c_rrr_xy;
-        const real Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x -
-            axis_y_rrr_axes2_in_base_y*d_c_rrr_xy;
-        const real Q_rrr_t_5 = d_c_rrr_yy + 2*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y;
-        const real Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x +
-            Q_rrr_t_4*axis_y_rrr_axes2_in_base_y;
-        const real Q_rrr_t_7 = d_c_rrr_yy + 2*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x;
-        /* (M2) coupling block of M */
-        const real M_ta_t_3 = Q_rrr_t_5*q_rrr_in_base_y + Q_rrr_t_6*q_rrr_in_base_x;
-        const real M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y + Q_rrr_t_7*q_rrr_in_base_x;
-        /* (M3) rotational block of M */
-        const real M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y + M_ta_t_4*q_rrr_in_base_x;
-        o->sum[0][k] = add ? o->sum[0][k] + Q_rrr_t_5 : Q_rrr_t_5;  /* total_rrr_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + Q_rrr_t_6 : Q_rrr_t_6;  /* total_rrr_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + Q_rrr_t_7 : Q_rrr_t_7;  /* total_rrr_yy */
-        o->sum[3][k] = add ? o->sum[3][k] + M_ta_t_3 : M_ta_t_3;  /* total_rrr_xz */
-        o->sum[4][k] = add ? o->sum[4][k] + M_ta_t_4 : M_ta_t_4;  /* total_rrr_yz */
-        o->sum[5][k] = add ? o->sum[5][k] + M_aa_t_2 : M_aa_t_2;  /* total_rrr_zz */
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
+        const real rrr_d_Gamma_2_y = m->rrr_d_Gamma_2_y[i];
+        const real rrr_d_phi_2_t = m->rrr_d_phi_2_t[i];
+        const real rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y -
+            rrr_d_Gamma_2_y*rrr_w_2_t;
+        /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real rrr_d_c_yy = m->rrr_d_c_yy[i];
+        const real rrr_Q_t = inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t -
+            inv_rrr_r_1_r0_y) - rrr_d_c_yy - rrr_d_Gamma_2_x*rrr_w_2_t;
+        const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
+        const real rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy +
+            axis_y_rrr_axes2_in_base_y*rrr_Q_t_2;
+        const real rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 -
+            axis_y_rrr_axes2_in_base_y*rrr_d_c_xy;
+        const real rrr_Q_t_5 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3;
+        const real rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 +
+            axis_y_rrr_axes2_in_base_y*rrr_Q_t_4;
+        const real rrr_Q_t_7 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4;
+        /* (M_ta) coupling block of M */
+        const real rrr_M_ta_t = rrr_Q_t_5*rrr_q_in_base_y + rrr_Q_t_6*rrr_q_in_base_x;
+        const real rrr_M_ta_t_2 = rrr_Q_t_6*rrr_q_in_base_y + rrr_Q_t_7*rrr_q_in_base_x;
+        /* (M_aa) rotational block of M */
+        const real rrr_M_aa_t = rrr_M_ta_t*rrr_q_in_base_y + rrr_M_ta_t_2*rrr_q_in_base_x;
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_Q_t_5 : rrr_Q_t_5;  /* total_rrr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_Q_t_6 : rrr_Q_t_6;  /* total_rrr_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_Q_t_7 : rrr_Q_t_7;  /* total_rrr_yy */
+        terms[3*count + k] = add ? terms[3*count + k] + rrr_M_ta_t : rrr_M_ta_t;  /* total_rrr_xz */
+        terms[4*count + k] = add ? terms[4*count + k] + rrr_M_ta_t_2 : rrr_M_ta_t_2;  /* total_rrr_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + rrr_M_aa_t : rrr_M_aa_t;  /* total_rrr_zz */
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void M_place_rrr(size_t w, const M_results_rrr *o, size_t first, verdict *t)
+INLINE void M_place_rrr(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        t->unreachable[k] += o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
     }
 }
 
-INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
+INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums, real *M, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real h_star_in_base_x = s->h_star_in_base_x[k];
-        const real h_star_in_base_y = s->h_star_in_base_y[k];
-        const real total_rr_xx = s->sum[0][k];
-        const real total_rr_xy = s->sum[1][k];
-        const real total_rr_yy = s->sum[2][k];
-        const real total_rr_xz = s->sum[3][k];
-        const real total_rr_yz = s->sum[4][k];
-        const real total_rr_zz = s->sum[5][k];
-        const real total_rrr_xx = s->sum[6][k];
-        const real total_rrr_xy = s->sum[7][k];
-        const real total_rrr_yy = s->sum[8][k];
-        const real total_rrr_xz = s->sum[9][k];
-        const real total_rrr_yz = s->sum[10][k];
-        const real total_rrr_zz = s->sum[11][k];
-        const real J_star_t_10 = m->J_star_t_10;
+        /* (M_tt) translational block of M */
         const real m_star = m->m_star;
-        /* (M1) translational block of M */
-        const real M_tt_xx = m_star + total_rr_xx - total_rrr_xx;
-        const real M_tt_xy = total_rr_xy + total_rrr_xy;
-        const real M_tt_yy = m_star + total_rr_yy - total_rrr_yy;
-        /* (M2) coupling block of M */
-        const real M_ta_xz = total_rrr_xz - h_star_in_base_y - total_rr_xz;
-        const real M_ta_yz = h_star_in_base_x - total_rr_yz - total_rrr_yz;
-        /* (M3) rotational block of M */
-        const real M_aa_zz = total_rr_zz - J_star_t_10 - total_rrr_zz;
+        const real total_crank_xx = sums[0*w + k];
+        const real total_rrr_xx = sums[6*w + k];
+        const real M_tt_xx = m_star + total_crank_xx - total_rrr_xx;
+        const real total_crank_xy = sums[1*w + k];
+        const real total_rrr_xy = sums[7*w + k];
+        const real M_tt_xy = total_crank_xy + total_rrr_xy;
+        const real total_crank_yy = sums[2*w + k];
+        const real total_rrr_yy = sums[8*w + k];
+        const real M_tt_yy = m_star + total_crank_yy - total_rrr_yy;
+        /* (M_ta) coupling block of M */
+        const real h_star_in_base_y = s[5*w + k];
+        const real total_crank_xz = sums[3*w + k];
+        const real total_rrr_xz = sums[9*w + k];
+        const real M_ta_xz = total_rrr_xz - h_star_in_base_y - total_crank_xz;
+        const real h_star_in_base_x = s[4*w + k];
+        const real total_crank_yz = sums[4*w + k];
+        const real total_rrr_yz = sums[10*w + k];
+        const real M_ta_yz = h_star_in_base_x - total_crank_yz - total_rrr_yz;
+        /* (M_aa) rotational block of M */
+        const real J_star_t_6 = m->J_star_t_6;
+        const real total_crank_zz = sums[5*w + k];
+        const real total_rrr_zz = sums[11*w + k];
+        const real M_aa_zz = total_crank_zz - J_star_t_6 - total_rrr_zz;
         M[0*w + k] = M_tt_xx;
         M[1*w + k] = M_tt_xy;
         M[3*w + k] = M_tt_xy;
@@ -2014,3301 +2024,3525 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         M[5*w + k] = M_ta_yz;
         M[7*w + k] = M_ta_yz;
         M[8*w + k] = M_aa_zz;
+        t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
     }
 }
 
-INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *t)
+INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    M_values values, *const s = &values;
-    M_results_rr results_rr;
-    M_results_rrr results_rrr;
-    M_before(m, w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        M_legs_rr(m, 0, 1, s, 0, 1, 0, &results_rr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            M_place_rr(w, &results_rr, leg, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_rr.sum[n], 1);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rr.sum, 0, sizeof results_rr.sum);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            M_legs_rr(m, leg, 0, s, 1, w, 1, &results_rr);
-            M_place_rr(w, &results_rr, 0, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_rr.sum[n][k];
-            }
-        }
+    real s[6] = {0}, sums[12] = {0}, terms_crank[6*LEGS(1)] = {0}, o_crank[1*LEGS(1)] = {0},
+        terms_rrr[6*LEGS(1)] = {0}, o_rrr[2*LEGS(1)] = {0};
+    M_before(m, 1, X, s);
+    M_legs_crank(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_crank, o_crank);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        M_place_crank(1, LEGS(1), o_crank, leg, t);
     }
-    if (w == 1) {  /* the legs side by side */
-        M_legs_rrr(m, 0, 1, s, 0, 1, 0, &results_rrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            M_place_rrr(w, &results_rrr, leg, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[6 + n][k] = total(results_rrr.sum[n], 1);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            M_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
-            M_place_rrr(w, &results_rrr, 0, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[6 + n][k] = results_rrr.sum[n][k];
-            }
-        }
+    for (size_t n = 0; n < 6; ++n) {
+        sums[n] = total(terms_crank + n*LEGS(1), 1);
     }
-    M_after(m, w, s, M);
+    M_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        M_place_rrr(1, LEGS(1), o_rrr, leg, t);
+    }
+    for (size_t n = 0; n < 6; ++n) {
+        sums[6 + n] = total(terms_rrr + n*LEGS(1), 1);
+    }
+    M_after(m, 1, s, sums, M, t);
 }
 
-/* ---- Z: 148 mul, 91 add, 3 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
-        omega_z[LANES], Z_p_x[LANES], Z_p_y[LANES], Z_q_t[LANES], sum[6][LANES];
-} Z_values;
-typedef struct {
-    real sum[3][8], singular[8];
-} Z_results_rr;
-typedef struct {
-    real sum[3][8], unreachable[8], singular[8];
-} Z_results_rrr;
+INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
+{
+    real s[6*LANES], sums[12*LANES], o_crank[1*LANES], o_rrr[2*LANES];
+    M_before(m, LANES, X, s);
+    clear(sums, 6*LANES);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        M_legs_crank(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_crank);
+        M_place_crank(LANES, LANES, o_crank, 0, t);
+    }
+    clear(sums + 6*LANES, 6*LANES);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        M_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums + 6*LANES, o_rrr);
+        M_place_rrr(LANES, LANES, o_rrr, 0, t);
+    }
+    M_after(m, LANES, s, sums, M, t);
+}
 
-INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, Z_values *s)
+/* ---- Z: 144 mul, 89 add, 3 div, 2 sqrt, 0 trig, every leg counted ---- */
+INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real omega_z = V_2;
-        /* (P1) centripetal tensor of the platform */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
+        const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
+        /* (W_p) centripetal tensor of the platform */
         const real W_p_t = omega_z*omega_z;
-        /* (M4) centripetal force and weight of the platform */
-        const real Z_p_x = -Z_p_t - W_p_t*(R_xx*h_star_x - R_yx*h_star_y);
-        const real Z_p_y = -Z_p_t_2 - W_p_t*(R_xx*h_star_y + R_yx*h_star_x);
-        /* (M6) gyroscopic moment and moment of the weight of the platform */
-        const real Z_q_t = h_star_x*(R_xx*gravity_y - R_yx*gravity_x) - h_star_y*(R_xx*gravity_x +
-            R_yx*gravity_y);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->omega_z[k] = omega_z;
-        s->Z_p_x[k] = Z_p_x;
-        s->Z_p_y[k] = Z_p_y;
-        s->Z_q_t[k] = Z_q_t;
+        /* (Z_p) centripetal force and weight of the platform */
+        const real Z_p_t = m->Z_p_t;
+        const real Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x;
+        const real Z_p_t_2 = m->Z_p_t_2;
+        const real Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y;
+        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
+        s[4*w + k] = t_dot_x;
+        s[5*w + k] = t_dot_y;
+        s[6*w + k] = omega_z;
+        s[7*w + k] = Z_p_x;
+        s[8*w + k] = Z_p_y;
+        s[9*w + k] = Z_q_t;
     }
 }
 
-INLINE void Z_legs_rr(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
-    states, size_t count, int add, Z_results_rr *o)
+INLINE void Z_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real omega_z = s->omega_z[j];
-        const real J_1_rr_zz = m->J_1_rr_zz[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_1_rr_x = m->h_1_rr_x[i];
-        const real h_1_rr_y = m->h_1_rr_y[i];
-        const real inv_rr_platform_joint_offset_x = m->inv_rr_platform_joint_offset_x[i];
-        const real n_c_rr_t = m->n_c_rr_t[i];
-        const real root_1_rr_t = m->root_1_rr_t[i];
-        const real rr_base_frame_xx = m->rr_base_frame_xx[i];
-        const real rr_base_frame_xy = m->rr_base_frame_xy[i];
-        const real rr_base_frame_yx = m->rr_base_frame_yx[i];
-        const real rr_base_frame_yy = m->rr_base_frame_yy[i];
-        const real rr_base_point_x = m->rr_base_point_x[i];
-        const real rr_base_point_y = m->rr_base_point_y[i];
-        const real rr_platform_joint_offset_x = m->rr_platform_joint_offset_x[i];
-        const real rr_platform_point_x = m->rr_platform_point_x[i];
-        const real rr_platform_point_y = m->rr_platform_point_y[i];
-        /* (rr-K1) from the base point to the connection point */
-        const real q_rr_in_base_x = R_xx*rr_platform_point_x - R_yx*rr_platform_point_y;
-        const real q_rr_in_base_y = R_xx*rr_platform_point_y + R_yx*rr_platform_point_x;
-        const real S_rr_x = q_rr_in_base_x + t_x - rr_base_point_x;
-        const real S_rr_y = q_rr_in_base_y + t_y - rr_base_point_y;
-        /* (rr-K3) squared amplitude */
-        const real rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy;
-        const real rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx;
-        const real rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
-        /* (rr-K5) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1_rr = 1/(root(rho2_1_rr));
-        const real c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x;
-        /* (rr-K6) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rr = inv_root_1_rr*rho2_1_rr_t*rr_platform_joint_offset_x;
-        /* (rr-V4) reciprocal vector 1 */
-        const real axis_y_rr_axes1_in_base_x = c_1_rr*rr_base_frame_xy - rr_base_frame_xx*s_1_rr;
-        const real axis_y_rr_axes1_in_base_y = c_1_rr*rr_base_frame_yy - rr_base_frame_yx*s_1_rr;
-        /* (rr-N7) remainder without the acceleration in: inertia moment of the links that turn with link
-           1, about their reference points */
-        const real mu_1_rr_o_z = h_1_rr_y*(c_1_rr*g_r0_x + g_r0_y*s_1_rr) +
-            J_1_rr_zz*inv_rr_platform_joint_offset_x*(-axis_y_rr_axes1_in_base_x*omega_z*omega_z*q_rr_in_base_x
-            - axis_y_rr_axes1_in_base_y*omega_z*omega_z*q_rr_in_base_y) - h_1_rr_x*(c_1_rr*g_r0_y
-            - g_r0_x*s_1_rr);
-        /* (rr-N13) remainder without the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real G_rr_o_t = inv_rr_platform_joint_offset_x*mu_1_rr_o_z;
-        /* (rr-N18) velocity and gravity terms of the leg force */
-        const real U_rr_t = G_rr_o_t*axis_y_rr_axes1_in_base_x;
-        const real U_rr_t_2 = G_rr_o_t*axis_y_rr_axes1_in_base_y;
-        /* (M7) rotational part of Z */
-        const real Z_a_t = U_rr_t_2*q_rr_in_base_x - U_rr_t*q_rr_in_base_y;
-        o->sum[0][k] = add ? o->sum[0][k] + U_rr_t : U_rr_t;  /* total_rr_x */
-        o->sum[1][k] = add ? o->sum[1][k] + U_rr_t_2 : U_rr_t_2;  /* total_rr_y */
-        o->sum[2][k] = add ? o->sum[2][k] + Z_a_t : Z_a_t;  /* total_rr_z */
-        o->singular[k] = UNLESS(magnitude(rho2_1_rr) > TOLERANCE*TOLERANCE*root_1_rr_t);
+        /* (crank-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
+        const real crank_platform_point_x = m->crank_platform_point_x[i];
+        const real crank_platform_point_y = m->crank_platform_point_y[i];
+        const real crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y;
+        const real crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x;
+        const real crank_base_point_x = m->crank_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x;
+        const real crank_base_point_y = m->crank_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y;
+        /* (crank-rho2_1) squared amplitude */
+        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
+        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
+        const real crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy;
+        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
+        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
+        const real crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx +
+            crank_S_y*crank_base_frame_yx;
+        const real crank_n_c_t = m->crank_n_c_t[i];
+        const real crank_rho2_1 = crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t +
+            crank_rho2_1_t_2*crank_rho2_1_t_2);
+        /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_crank_root_1 = 1/(root(crank_rho2_1));
+        const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
+        const real crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1;
+        /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
+        const real crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1;
+        /* (crank-w_1) reciprocal vector 1 */
+        const real axis_y_crank_axes1_in_base_x = crank_base_frame_xy*crank_c_1 -
+            crank_base_frame_xx*crank_s_1;
+        const real axis_y_crank_axes1_in_base_y = crank_base_frame_yy*crank_c_1 -
+            crank_base_frame_yx*crank_s_1;
+        /* (crank-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn
+           with link 1, about their reference points */
+        const real crank_J_1_zz = m->crank_J_1_zz[i];
+        const real crank_g_r0_x = m->crank_g_r0_x[i];
+        const real crank_g_r0_y = m->crank_g_r0_y[i];
+        const real crank_h_1_x = m->crank_h_1_x[i];
+        const real crank_h_1_y = m->crank_h_1_y[i];
+        const real inv_crank_platform_joint_offset_x = m->inv_crank_platform_joint_offset_x[i];
+        const real omega_z = s[6*w + j];
+        const real crank_mu_1_o_z = crank_h_1_y*(crank_c_1*crank_g_r0_x + crank_g_r0_y*crank_s_1)
+            +
+            crank_J_1_zz*inv_crank_platform_joint_offset_x*(-axis_y_crank_axes1_in_base_x*crank_q_in_base_x*omega_z*omega_z
+            - axis_y_crank_axes1_in_base_y*crank_q_in_base_y*omega_z*omega_z) -
+            crank_h_1_x*(crank_c_1*crank_g_r0_y - crank_g_r0_x*crank_s_1);
+        /* (crank-G_o) remainder without the acceleration in: force at the connection point that balances
+           the leg's inertia and weight along all freedoms */
+        const real crank_G_o_t = crank_mu_1_o_z*inv_crank_platform_joint_offset_x;
+        /* (crank-U) velocity and gravity terms of the leg force */
+        const real crank_U_t = axis_y_crank_axes1_in_base_x*crank_G_o_t;
+        const real crank_U_t_2 = axis_y_crank_axes1_in_base_y*crank_G_o_t;
+        /* (Z_a) rotational part of Z */
+        const real crank_Z_a_t = crank_U_t_2*crank_q_in_base_x - crank_U_t*crank_q_in_base_y;
+        terms[0*count + k] = add ? terms[0*count + k] + crank_U_t : crank_U_t;  /* total_crank_x */
+        terms[1*count + k] = add ? terms[1*count + k] + crank_U_t_2 : crank_U_t_2;  /* total_crank_y */
+        terms[2*count + k] = add ? terms[2*count + k] + crank_Z_a_t : crank_Z_a_t;  /* total_crank_z */
+        const real crank_root_1_t = m->crank_root_1_t[i];
+        o[0*count + k] = UNLESS(magnitude(crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
     }
 }
 
-INLINE void Z_place_rr(size_t w, const Z_results_rr *o, size_t first, verdict *t)
+INLINE void Z_place_crank(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
+        t->singular[k] += o[0*count + first + k];
     }
 }
 
-INLINE void Z_legs_rrr(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
-    states, size_t count, int add, Z_results_rrr *o)
+INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real J_1_rrr_zz = m->J_1_rrr_zz[i];
-        const real J_2_rrr_zz = m->J_2_rrr_zz[i];
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real g_r0_x_2 = m->g_r0_x_2[i];
-        const real g_r0_y_2 = m->g_r0_y_2[i];
-        const real h_1_rrr_x = m->h_1_rrr_x[i];
-        const real h_1_rrr_y = m->h_1_rrr_y[i];
-        const real h_2_rrr_x = m->h_2_rrr_x[i];
-        const real h_2_rrr_y = m->h_2_rrr_y[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_rrr = m->size_rrr[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x;
-        const real S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr =
-            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr;
-        const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
-        const real r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr;
-        const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr;
-        const real axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        /* (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
-           less gravity */
-        const real g_r1_x = c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr;
-        const real g_r1_y = c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr;
-        /* (rrr-V1) velocity of the connection point */
-        const real S_dot_rrr_t = omega_z*q_rrr_in_base_y;
-        const real S_dot_rrr_t_2 = omega_z*q_rrr_in_base_x;
-        const real S_dot_rrr_x = t_dot_x - S_dot_rrr_t;
-        const real S_dot_rrr_y = S_dot_rrr_t_2 + t_dot_y;
-        /* (rrr-V7) rate of joint 1 */
-        const real qd_1_rrr = inv_r_1_rrr_r0_y*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_x);
-        /* (rrr-V11) angular velocity of link 2 */
-        const real omega_2_rrr_z =
-            inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
-        /* (rrr-V10) centripetal tensor of link 1 */
-        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
-        /* (rrr-V12) centripetal tensor of link 2 */
-        const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
-        /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
-            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
-        /* (rrr-A1) centripetal acceleration of the connection point */
-        const real u_1_rrr_t = S_dot_rrr_t_2*omega_z;
-        const real u_1_rrr_t_2 = S_dot_rrr_t*omega_z;
-        const real u_1_rrr_tip_x = axis_y_rrr_axes2_in_base_x*u_1_rrr_t_2 -
-            axis_y_rrr_axes2_in_base_y*u_1_rrr_t;
-        const real u_1_rrr_tip_y = -axis_y_rrr_axes2_in_base_x*u_1_rrr_t -
-            axis_y_rrr_axes2_in_base_y*u_1_rrr_t_2;
-        /* (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-S_dot) velocity of the connection point */
+        const real omega_z = s[6*w + j];
+        const real rrr_S_dot_t = omega_z*rrr_q_in_base_y;
+        const real rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x;
+        const real t_dot_x = s[4*w + j];
+        const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
+        const real t_dot_y = s[5*w + j];
+        const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
+        /* (rrr-qd_2) rate of joint 2 */
+        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y);
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_omega_2_z =
+            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-u_1) centripetal acceleration of the connection point */
+        const real rrr_u_1_t = omega_z*rrr_S_dot_t_2;
+        const real rrr_u_1_t_2 = omega_z*rrr_S_dot_t;
+        /* (rrr-W_1) centripetal tensor of link 1 */
+        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-W_2) centripetal tensor of link 2 */
+        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        /* (rrr-u_1) centripetal acceleration of the connection point */
+        const real rrr_u_1_tip_x = axis_y_rrr_axes2_in_base_x*rrr_u_1_t_2 -
+            axis_y_rrr_axes2_in_base_y*rrr_u_1_t;
+        const real rrr_u_1_tip_y = -axis_y_rrr_axes2_in_base_x*rrr_u_1_t -
+            axis_y_rrr_axes2_in_base_y*rrr_u_1_t_2;
+        /* (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rel_rrr_o_x = u_1_rrr_tip_x - bias_rrr_x;
-        const real rel_rrr_o_y = u_1_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
-        /* (rrr-A9) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_rrr_o = inv_r_1_rrr_r0_y*rel_rrr_o_x;
-        /* (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
-        const real mu_1_rrr_o_z = g_r1_x*h_1_rrr_y - J_1_rrr_zz*qdd_1_rrr_o - g_r1_y*h_1_rrr_x;
-        /* (rrr-N4) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real acc_2_rrr_o_x = u_1_rrr_tip_x + g_r1_y*s_2_rrr - c_2_rrr*g_r1_x;
-        const real acc_2_rrr_o_y = u_1_rrr_tip_y - c_2_rrr*g_r1_y - g_r1_x*s_2_rrr;
-        /* (rrr-A18) remainder without the acceleration in: angular acceleration of link 2 */
-        const real alpha_2_rrr_o_z = inv_rrr_platform_joint_offset_x*(rel_rrr_o_y +
-            qdd_1_rrr_o*r_1_rrr_r0_x) - qdd_1_rrr_o;
-        /* (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with
+        const real rrr_rel_o_x = rrr_u_1_tip_x - rrr_bias_x;
+        const real rrr_rel_o_y = rrr_u_1_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        const real rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_rel_o_x;
+        /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        const real rrr_alpha_2_o_z = inv_rrr_platform_joint_offset_x*(rrr_rel_o_y +
+            rrr_qdd_1_o*rrr_r_1_r0_x) - rrr_qdd_1_o;
+        /* (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real rrr_acc_2_o_x = rrr_u_1_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+            axis_y_rrr_axes2_in_base_y*gravity_x;
+        const real rrr_acc_2_o_y = rrr_u_1_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+            axis_y_rrr_axes2_in_base_y*gravity_y;
+        /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real mu_2_rrr_o_z = J_2_rrr_zz*alpha_2_rrr_o_z + acc_2_rrr_o_y*h_2_rrr_x -
-            acc_2_rrr_o_x*h_2_rrr_y;
-        /* (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
+        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
+        const real rrr_h_2_x = m->rrr_h_2_x[i];
+        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_mu_2_o_z = rrr_J_2_zz*rrr_alpha_2_o_z + rrr_acc_2_o_y*rrr_h_2_x -
+            rrr_acc_2_o_x*rrr_h_2_y;
+        /* (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 1, about their reference points */
+        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
+        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
+        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
+        const real rrr_h_1_x = m->rrr_h_1_x[i];
+        const real rrr_h_1_y = m->rrr_h_1_y[i];
+        const real rrr_mu_1_o_z = rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
+            rrr_J_1_zz*rrr_qdd_1_o - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
-        const real N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z;
-        /* (rrr-N32) remainder without the acceleration in: force at the connection point that balances
+        const real rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z;
+        /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z;
-        /* (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation
+        const real rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z;
+        /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real c_rrr_o_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y -
-            inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x - N_1_rrr_o_z);
-        const real c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x;
-        /* (rrr-N37) velocity and gravity terms of the leg force */
-        const real U_rrr_in_base_x = -axis_y_rrr_axes2_in_base_x*c_rrr_o_y -
-            axis_y_rrr_axes2_in_base_y*c_rrr_o_x;
-        const real U_rrr_in_base_y = axis_y_rrr_axes2_in_base_x*c_rrr_o_x -
-            axis_y_rrr_axes2_in_base_y*c_rrr_o_y;
-        /* (M7) rotational part of Z */
-        const real Z_a_t_2 = U_rrr_in_base_y*q_rrr_in_base_x - U_rrr_in_base_x*q_rrr_in_base_y;
-        o->sum[0][k] = add ? o->sum[0][k] + U_rrr_in_base_x : U_rrr_in_base_x;  /* total_rrr_x */
-        o->sum[1][k] = add ? o->sum[1][k] + U_rrr_in_base_y : U_rrr_in_base_y;  /* total_rrr_y */
-        o->sum[2][k] = add ? o->sum[2][k] + Z_a_t_2 : Z_a_t_2;  /* total_rrr_z */
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
+        const real rrr_c_o_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y -
+            inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x - rrr_N_1_o_z);
+        const real rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x;
+        /* (rrr-U) velocity and gravity terms of the leg force */
+        const real rrr_U_in_base_x = -axis_y_rrr_axes2_in_base_x*rrr_c_o_y -
+            axis_y_rrr_axes2_in_base_y*rrr_c_o_x;
+        const real rrr_U_in_base_y = axis_y_rrr_axes2_in_base_x*rrr_c_o_x -
+            axis_y_rrr_axes2_in_base_y*rrr_c_o_y;
+        /* (Z_a) rotational part of Z */
+        const real rrr_Z_a_t = rrr_U_in_base_y*rrr_q_in_base_x - rrr_U_in_base_x*rrr_q_in_base_y;
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_U_in_base_x : rrr_U_in_base_x;  /* total_rrr_x */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_U_in_base_y : rrr_U_in_base_y;  /* total_rrr_y */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_Z_a_t : rrr_Z_a_t;  /* total_rrr_z */
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void Z_place_rrr(size_t w, const Z_results_rrr *o, size_t first, verdict *t)
+INLINE void Z_place_rrr(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        t->unreachable[k] += o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
     }
 }
 
-INLINE void Z_after(size_t w, const Z_values *s, real *Z)
+INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real Z_p_x = s->Z_p_x[k];
-        const real Z_p_y = s->Z_p_y[k];
-        const real Z_q_t = s->Z_q_t[k];
-        const real total_rr_x = s->sum[0][k];
-        const real total_rr_y = s->sum[1][k];
-        const real total_rr_z = s->sum[2][k];
-        const real total_rrr_x = s->sum[3][k];
-        const real total_rrr_y = s->sum[4][k];
-        const real total_rrr_z = s->sum[5][k];
-        /* (M5) translational part of Z */
-        const real Z_t_x = Z_p_x + total_rr_x + total_rrr_x;
-        const real Z_t_y = Z_p_y + total_rr_y + total_rrr_y;
-        /* (M7) rotational part of Z */
-        const real Z_a_z = total_rr_z + total_rrr_z - Z_q_t;
+        /* (Z_t) translational part of Z */
+        const real Z_p_x = s[7*w + k];
+        const real total_crank_x = sums[0*w + k];
+        const real total_rrr_x = sums[3*w + k];
+        const real Z_t_x = Z_p_x + total_crank_x + total_rrr_x;
+        const real Z_p_y = s[8*w + k];
+        const real total_crank_y = sums[1*w + k];
+        const real total_rrr_y = sums[4*w + k];
+        const real Z_t_y = Z_p_y + total_crank_y + total_rrr_y;
+        /* (Z_a) rotational part of Z */
+        const real Z_q_t = s[9*w + k];
+        const real total_crank_z = sums[2*w + k];
+        const real total_rrr_z = sums[5*w + k];
+        const real Z_a_z = total_crank_z + total_rrr_z - Z_q_t;
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_a_z;
+        t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
     }
 }
 
-INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    Z_values values, *const s = &values;
-    Z_results_rr results_rr;
-    Z_results_rrr results_rrr;
-    Z_before(m, w, X, V, s);
-    if (w == 1) {  /* the legs side by side */
-        Z_legs_rr(m, 0, 1, s, 0, 1, 0, &results_rr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            Z_place_rr(w, &results_rr, leg, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_rr.sum[n], 1);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rr.sum, 0, sizeof results_rr.sum);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            Z_legs_rr(m, leg, 0, s, 1, w, 1, &results_rr);
-            Z_place_rr(w, &results_rr, 0, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_rr.sum[n][k];
-            }
-        }
+    real s[10] = {0}, sums[6] = {0}, terms_crank[3*LEGS(1)] = {0}, o_crank[1*LEGS(1)] = {0},
+        terms_rrr[3*LEGS(1)] = {0}, o_rrr[2*LEGS(1)] = {0};
+    Z_before(m, 1, X, V, s);
+    Z_legs_crank(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_crank, o_crank);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        Z_place_crank(1, LEGS(1), o_crank, leg, t);
     }
-    if (w == 1) {  /* the legs side by side */
-        Z_legs_rrr(m, 0, 1, s, 0, 1, 0, &results_rrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            Z_place_rrr(w, &results_rrr, leg, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[3 + n][k] = total(results_rrr.sum[n], 1);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            Z_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
-            Z_place_rrr(w, &results_rrr, 0, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[3 + n][k] = results_rrr.sum[n][k];
-            }
-        }
+    for (size_t n = 0; n < 3; ++n) {
+        sums[n] = total(terms_crank + n*LEGS(1), 1);
     }
-    Z_after(w, s, Z);
+    Z_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        Z_place_rrr(1, LEGS(1), o_rrr, leg, t);
+    }
+    for (size_t n = 0; n < 3; ++n) {
+        sums[3 + n] = total(terms_rrr + n*LEGS(1), 1);
+    }
+    Z_after(1, s, sums, Z, t);
+}
+
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+{
+    real s[10*LANES], sums[6*LANES], o_crank[1*LANES], o_rrr[2*LANES];
+    Z_before(m, LANES, X, V, s);
+    clear(sums, 3*LANES);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        Z_legs_crank(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_crank);
+        Z_place_crank(LANES, LANES, o_crank, 0, t);
+    }
+    clear(sums + 3*LANES, 3*LANES);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        Z_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums + 3*LANES, o_rrr);
+        Z_place_rrr(LANES, LANES, o_rrr, 0, t);
+    }
+    Z_after(LANES, s, sums, Z, t);
 }
 
 /* ---- H: 70 mul, 35 add, 3 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES];
-} H_values;
-typedef struct {
-    real entry[3][8], singular[8];
-} H_results_rr;
-typedef struct {
-    real entry[3][8], unreachable[8], singular[8];
-} H_results_rrr;
-
-INLINE void H_before(size_t w, const real *X, H_values *s)
+INLINE void H_before(size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
     }
 }
 
-INLINE void H_legs_rr(const prepared *m, size_t leg, size_t legs, const H_values *s, size_t
-    states, size_t count, H_results_rr *o)
+INLINE void H_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real inv_rr_platform_joint_offset_x = m->inv_rr_platform_joint_offset_x[i];
-        const real n_c_rr_t = m->n_c_rr_t[i];
-        const real root_1_rr_t = m->root_1_rr_t[i];
-        const real rr_base_frame_xx = m->rr_base_frame_xx[i];
-        const real rr_base_frame_xy = m->rr_base_frame_xy[i];
-        const real rr_base_frame_yx = m->rr_base_frame_yx[i];
-        const real rr_base_frame_yy = m->rr_base_frame_yy[i];
-        const real rr_base_point_x = m->rr_base_point_x[i];
-        const real rr_base_point_y = m->rr_base_point_y[i];
-        const real rr_platform_joint_offset_x = m->rr_platform_joint_offset_x[i];
-        const real rr_platform_point_x = m->rr_platform_point_x[i];
-        const real rr_platform_point_y = m->rr_platform_point_y[i];
-        /* (rr-K1) from the base point to the connection point */
-        const real q_rr_in_base_x = R_xx*rr_platform_point_x - R_yx*rr_platform_point_y;
-        const real q_rr_in_base_y = R_xx*rr_platform_point_y + R_yx*rr_platform_point_x;
-        const real S_rr_x = q_rr_in_base_x + t_x - rr_base_point_x;
-        const real S_rr_y = q_rr_in_base_y + t_y - rr_base_point_y;
-        /* (rr-K3) squared amplitude */
-        const real rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy;
-        const real rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx;
-        const real rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
-        /* (rr-K5) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1_rr = 1/(root(rho2_1_rr));
-        const real c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x;
-        /* (rr-K6) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rr = inv_root_1_rr*rho2_1_rr_t*rr_platform_joint_offset_x;
-        /* (rr-V4) reciprocal vector 1 */
-        const real w_1_rr_t = inv_rr_platform_joint_offset_x*(c_1_rr*rr_base_frame_xy -
-            rr_base_frame_xx*s_1_rr);
-        const real w_1_rr_t_2 = inv_rr_platform_joint_offset_x*(c_1_rr*rr_base_frame_yy -
-            rr_base_frame_yx*s_1_rr);
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_1_rr_z = q_rr_in_base_x*w_1_rr_t_2 - q_rr_in_base_y*w_1_rr_t;
-        o->entry[0][k] = w_1_rr_t;
-        o->entry[1][k] = w_1_rr_t_2;
-        o->entry[2][k] = H_a_1_rr_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rr) > TOLERANCE*TOLERANCE*root_1_rr_t);
+        /* (crank-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
+        const real crank_platform_point_x = m->crank_platform_point_x[i];
+        const real crank_platform_point_y = m->crank_platform_point_y[i];
+        const real crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y;
+        const real crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x;
+        const real crank_base_point_x = m->crank_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x;
+        const real crank_base_point_y = m->crank_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y;
+        /* (crank-rho2_1) squared amplitude */
+        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
+        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
+        const real crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy;
+        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
+        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
+        const real crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx +
+            crank_S_y*crank_base_frame_yx;
+        const real crank_n_c_t = m->crank_n_c_t[i];
+        const real crank_rho2_1 = crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t +
+            crank_rho2_1_t_2*crank_rho2_1_t_2);
+        /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_crank_root_1 = 1/(root(crank_rho2_1));
+        const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
+        const real crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1;
+        /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
+        const real crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1;
+        /* (crank-w_1) reciprocal vector 1 */
+        const real inv_crank_platform_joint_offset_x = m->inv_crank_platform_joint_offset_x[i];
+        const real crank_w_1_t = inv_crank_platform_joint_offset_x*(crank_base_frame_xy*crank_c_1
+            - crank_base_frame_xx*crank_s_1);
+        const real crank_w_1_t_2 =
+            inv_crank_platform_joint_offset_x*(crank_base_frame_yy*crank_c_1 -
+            crank_base_frame_yx*crank_s_1);
+        /* (crank-H_a_1) moment of the column's unit force about the platform origin */
+        const real crank_H_a_1_z = crank_q_in_base_x*crank_w_1_t_2 -
+            crank_q_in_base_y*crank_w_1_t;
+        o[0*count + k] = crank_w_1_t;
+        o[1*count + k] = crank_w_1_t_2;
+        o[2*count + k] = crank_H_a_1_z;
+        o[4*count + k] = crank_w_1_t + (crank_w_1_t_2 + crank_H_a_1_z);
+        const real crank_root_1_t = m->crank_root_1_t[i];
+        o[3*count + k] = UNLESS(magnitude(crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
     }
 }
 
-INLINE void H_place_rr(size_t w, const H_results_rr *o, size_t first, real *H, verdict *t)
+INLINE void H_place_crank(size_t w, size_t count, const real *o, size_t first, real *H, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0)*w + k] = o->entry[0][first + k];
-        H[(2)*w + k] = o->entry[1][first + k];
-        H[(4)*w + k] = o->entry[2][first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(0)*w + k] = o[0*count + first + k];
+        H[(2)*w + k] = o[1*count + first + k];
+        H[(4)*w + k] = o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
 }
 
-INLINE void H_legs_rrr(const prepared *m, size_t leg, size_t legs, const H_values *s, size_t
-    states, size_t count, H_results_rrr *o)
+INLINE void H_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_rrr = m->size_rrr[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x;
-        const real S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr =
-            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
-        const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*rrr_platform_joint_offset_x*s_2_rrr;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr;
-        const real axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr;
-        const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        const real w_1_rrr_t = inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        const real rrr_w_1_t = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy);
-        const real w_1_rrr_t_2 = inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
+        const real rrr_w_1_t_2 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy);
-        /* (M9) moment of the column's unit force about the platform origin */
-        const real H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t;
-        o->entry[0][k] = -w_1_rrr_t;
-        o->entry[1][k] = w_1_rrr_t_2;
-        o->entry[2][k] = H_a_1_rrr_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
+        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+        const real rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t;
+        o[0*count + k] = -rrr_w_1_t;
+        o[1*count + k] = rrr_w_1_t_2;
+        o[2*count + k] = rrr_H_a_1_z;
+        o[5*count + k] = rrr_w_1_t + (rrr_w_1_t_2 + rrr_H_a_1_z);
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[4*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[3*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void H_place_rrr(size_t w, const H_results_rrr *o, size_t first, real *H, verdict *t)
+INLINE void H_place_rrr(size_t w, size_t count, const real *o, size_t first, real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(1)*w + k] = o->entry[0][first + k];
-        H[(3)*w + k] = o->entry[1][first + k];
-        H[(5)*w + k] = o->entry[2][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(1)*w + k] = o[0*count + first + k];
+        H[(3)*w + k] = o[1*count + first + k];
+        H[(5)*w + k] = o[2*count + first + k];
+        t->unreachable[k] += o[3*count + first + k];
+        t->singular[k] += o[4*count + first + k];
+        t->total[k] += o[5*count + first + k];
     }
 }
 
-INLINE void H_run(const prepared *m, size_t w, const real *X, real *H, verdict *t)
+INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    H_values values, *const s = &values;
-    H_results_rr results_rr;
-    H_results_rrr results_rrr;
-    H_before(w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        H_legs_rr(m, 0, 1, s, 0, 1, &results_rr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            H_place_rr(w, &results_rr, leg, H, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            H_legs_rr(m, leg, 0, s, 1, w, &results_rr);
-            H_place_rr(w, &results_rr, 0, H, t);
-        }
+    real s[4] = {0}, o_crank[5*LEGS(1)] = {0}, o_rrr[6*LEGS(1)] = {0};
+    H_before(1, X, s);
+    H_legs_crank(m, 1, 0, 1, s, 0, LEGS(1), o_crank);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        H_place_crank(1, LEGS(1), o_crank, leg, H, t);
     }
-    if (w == 1) {  /* the legs side by side */
-        H_legs_rrr(m, 0, 1, s, 0, 1, &results_rrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            H_place_rrr(w, &results_rrr, leg, H, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            H_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
-            H_place_rrr(w, &results_rrr, 0, H, t);
-        }
+    H_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), o_rrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        H_place_rrr(1, LEGS(1), o_rrr, leg, H, t);
+    }
+}
+
+INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
+{
+    real s[4*LANES], o_crank[5*LANES], o_rrr[6*LANES];
+    H_before(LANES, X, s);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        H_legs_crank(m, LANES, leg, 0, s, 1, LANES, o_crank);
+        H_place_crank(LANES, LANES, o_crank, 0, H, t);
+    }
+    for (size_t leg = 0; leg < 1; ++leg) {
+        H_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        H_place_rrr(LANES, LANES, o_rrr, 0, H, t);
     }
 }
 
 /* ---- Hk: 23 mul, 12 add, 1 div, 1 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES];
-} Hk_values;
-typedef struct {
-    real entry[3][8], singular[8];
-} Hk_results_rr;
-
-INLINE void Hk_before(size_t w, const real *X, Hk_values *s)
+INLINE void Hk_before(size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
     }
 }
 
-INLINE void Hk_legs_rr(const prepared *m, size_t leg, size_t legs, const Hk_values *s, size_t
-    states, size_t count, Hk_results_rr *o)
+INLINE void Hk_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real n_c_rr_t = m->n_c_rr_t[i];
-        const real n_c_rr_x = m->n_c_rr_x[i];
-        const real root_1_rr_t = m->root_1_rr_t[i];
-        const real rr_base_frame_xx = m->rr_base_frame_xx[i];
-        const real rr_base_frame_xy = m->rr_base_frame_xy[i];
-        const real rr_base_frame_yx = m->rr_base_frame_yx[i];
-        const real rr_base_frame_yy = m->rr_base_frame_yy[i];
-        const real rr_base_point_x = m->rr_base_point_x[i];
-        const real rr_base_point_y = m->rr_base_point_y[i];
-        const real rr_platform_joint_offset_x = m->rr_platform_joint_offset_x[i];
-        const real rr_platform_point_x = m->rr_platform_point_x[i];
-        const real rr_platform_point_y = m->rr_platform_point_y[i];
-        /* (rr-K1) from the base point to the connection point */
-        const real q_rr_in_base_x = R_xx*rr_platform_point_x - R_yx*rr_platform_point_y;
-        const real q_rr_in_base_y = R_xx*rr_platform_point_y + R_yx*rr_platform_point_x;
-        const real S_rr_x = q_rr_in_base_x + t_x - rr_base_point_x;
-        const real S_rr_y = q_rr_in_base_y + t_y - rr_base_point_y;
-        /* (rr-K3) squared amplitude */
-        const real rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy;
-        const real rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx;
-        const real rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
-        /* (rr-K5) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1_rr = 1/(root(rho2_1_rr));
-        const real c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x;
-        /* (rr-K6) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rr = inv_root_1_rr*rho2_1_rr_t*rr_platform_joint_offset_x;
-        /* (rr-V3) unit vector that the leg's freedoms leave out */
-        const real n_c_rr_t_2 = n_c_rr_x*(c_1_rr*rr_base_frame_yy - rr_base_frame_yx*s_1_rr);
-        const real n_c_rr_t_3 = n_c_rr_x*(c_1_rr*rr_base_frame_xy - rr_base_frame_xx*s_1_rr);
-        /* (M10) moment of the column's unit force about the platform origin */
-        const real Hk_a_1_rr_z = n_c_rr_t_2*q_rr_in_base_y + n_c_rr_t_3*q_rr_in_base_x;
-        o->entry[0][k] = -n_c_rr_t_2;
-        o->entry[1][k] = n_c_rr_t_3;
-        o->entry[2][k] = Hk_a_1_rr_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rr) > TOLERANCE*TOLERANCE*root_1_rr_t);
+        /* (crank-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
+        const real crank_platform_point_x = m->crank_platform_point_x[i];
+        const real crank_platform_point_y = m->crank_platform_point_y[i];
+        const real crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y;
+        const real crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x;
+        const real crank_base_point_x = m->crank_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x;
+        const real crank_base_point_y = m->crank_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y;
+        /* (crank-rho2_1) squared amplitude */
+        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
+        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
+        const real crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy;
+        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
+        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
+        const real crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx +
+            crank_S_y*crank_base_frame_yx;
+        const real crank_n_c_t = m->crank_n_c_t[i];
+        const real crank_rho2_1 = crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t +
+            crank_rho2_1_t_2*crank_rho2_1_t_2);
+        /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_crank_root_1 = 1/(root(crank_rho2_1));
+        const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
+        const real crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1;
+        /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
+        const real crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1;
+        /* (crank-n_c) unit vector that the leg's freedoms leave out */
+        const real crank_n_c_x = m->crank_n_c_x[i];
+        const real crank_n_c_t_2 = crank_n_c_x*(crank_base_frame_yy*crank_c_1 -
+            crank_base_frame_yx*crank_s_1);
+        const real crank_n_c_t_3 = crank_n_c_x*(crank_base_frame_xy*crank_c_1 -
+            crank_base_frame_xx*crank_s_1);
+        /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
+        const real crank_Hk_a_1_z = crank_n_c_t_2*crank_q_in_base_y +
+            crank_n_c_t_3*crank_q_in_base_x;
+        o[0*count + k] = -crank_n_c_t_2;
+        o[1*count + k] = crank_n_c_t_3;
+        o[2*count + k] = crank_Hk_a_1_z;
+        o[4*count + k] = crank_n_c_t_2 + (crank_n_c_t_3 + crank_Hk_a_1_z);
+        const real crank_root_1_t = m->crank_root_1_t[i];
+        o[3*count + k] = UNLESS(magnitude(crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
     }
 }
 
-INLINE void Hk_place_rr(size_t w, const Hk_results_rr *o, size_t first, real *Hk, verdict *t)
+INLINE void Hk_place_crank(size_t w, size_t count, const real *o, size_t first, real *Hk, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        Hk[(0)*w + k] = o->entry[0][first + k];
-        Hk[(1)*w + k] = o->entry[1][first + k];
-        Hk[(2)*w + k] = o->entry[2][first + k];
-        t->singular[k] += o->singular[first + k];
+        Hk[(0)*w + k] = o[0*count + first + k];
+        Hk[(1)*w + k] = o[1*count + first + k];
+        Hk[(2)*w + k] = o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
 }
 
-INLINE void Hk_run(const prepared *m, size_t w, const real *X, real *Hk, verdict *t)
+INLINE void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
 {
-    Hk_values values, *const s = &values;
-    Hk_results_rr results_rr;
-    Hk_before(w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        Hk_legs_rr(m, 0, 1, s, 0, 1, &results_rr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            Hk_place_rr(w, &results_rr, leg, Hk, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            Hk_legs_rr(m, leg, 0, s, 1, w, &results_rr);
-            Hk_place_rr(w, &results_rr, 0, Hk, t);
-        }
+    real s[4] = {0}, o_crank[5*LEGS(1)] = {0};
+    Hk_before(1, X, s);
+    Hk_legs_crank(m, 1, 0, 1, s, 0, LEGS(1), o_crank);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        Hk_place_crank(1, LEGS(1), o_crank, leg, Hk, t);
+    }
+}
+
+INLINE void Hk_run_lanes(const prepared *m, const real *X, real *Hk, verdict *t)
+{
+    real s[4*LANES], o_crank[5*LANES];
+    Hk_before(LANES, X, s);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        Hk_legs_crank(m, LANES, leg, 0, s, 1, LANES, o_crank);
+        Hk_place_crank(LANES, LANES, o_crank, 0, Hk, t);
     }
 }
 
 /* ---- constraint_bias: 30 mul, 16 add, 1 div, 1 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
-        omega_z[LANES];
-} constraint_bias_values;
-typedef struct {
-    real entry[1][8], singular[8];
-} constraint_bias_results_rr;
-
-INLINE void constraint_bias_before(size_t w, const real *X, const real *V, constraint_bias_values
-    *s)
+INLINE void constraint_bias_before(size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real omega_z = V_2;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->omega_z[k] = omega_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
+        s[4*w + k] = t_dot_x;
+        s[5*w + k] = t_dot_y;
+        s[6*w + k] = omega_z;
     }
 }
 
-INLINE void constraint_bias_legs_rr(const prepared *m, size_t leg, size_t legs, const
-    constraint_bias_values *s, size_t states, size_t count, constraint_bias_results_rr *o)
+INLINE void constraint_bias_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const
+    real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real inv_rr_platform_joint_offset_x = m->inv_rr_platform_joint_offset_x[i];
-        const real n_c_rr_t = m->n_c_rr_t[i];
-        const real n_c_rr_x = m->n_c_rr_x[i];
-        const real root_1_rr_t = m->root_1_rr_t[i];
-        const real rr_base_frame_xx = m->rr_base_frame_xx[i];
-        const real rr_base_frame_xy = m->rr_base_frame_xy[i];
-        const real rr_base_frame_yx = m->rr_base_frame_yx[i];
-        const real rr_base_frame_yy = m->rr_base_frame_yy[i];
-        const real rr_base_point_x = m->rr_base_point_x[i];
-        const real rr_base_point_y = m->rr_base_point_y[i];
-        const real rr_platform_joint_offset_x = m->rr_platform_joint_offset_x[i];
-        const real rr_platform_point_x = m->rr_platform_point_x[i];
-        const real rr_platform_point_y = m->rr_platform_point_y[i];
-        /* (rr-K1) from the base point to the connection point */
-        const real q_rr_in_base_x = R_xx*rr_platform_point_x - R_yx*rr_platform_point_y;
-        const real q_rr_in_base_y = R_xx*rr_platform_point_y + R_yx*rr_platform_point_x;
-        const real S_rr_x = q_rr_in_base_x + t_x - rr_base_point_x;
-        const real S_rr_y = q_rr_in_base_y + t_y - rr_base_point_y;
-        /* (rr-K3) squared amplitude */
-        const real rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy;
-        const real rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx;
-        const real rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
-        /* (rr-K5) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1_rr = 1/(root(rho2_1_rr));
-        const real c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x;
-        /* (rr-K6) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rr = inv_root_1_rr*rho2_1_rr_t*rr_platform_joint_offset_x;
-        /* (rr-V4) reciprocal vector 1 */
-        const real axis_y_rr_axes1_in_base_x = c_1_rr*rr_base_frame_xy - rr_base_frame_xx*s_1_rr;
-        const real axis_y_rr_axes1_in_base_y = c_1_rr*rr_base_frame_yy - rr_base_frame_yx*s_1_rr;
-        /* (rr-V1) velocity of the connection point */
-        const real S_dot_rr_t = omega_z*q_rr_in_base_y;
-        const real S_dot_rr_t_2 = omega_z*q_rr_in_base_x;
-        const real S_dot_rr_x = t_dot_x - S_dot_rr_t;
-        const real S_dot_rr_y = S_dot_rr_t_2 + t_dot_y;
-        const real S_dot_rr_tip_y = S_dot_rr_x*axis_y_rr_axes1_in_base_x +
-            S_dot_rr_y*axis_y_rr_axes1_in_base_y;
-        /* (rr-A6) remainder without the acceleration in: acceleration of the connection point left to the
-           joint accelerations */
-        const real rel_rr_o_x = S_dot_rr_tip_y*S_dot_rr_tip_y*inv_rr_platform_joint_offset_x +
-            S_dot_rr_t*axis_y_rr_axes1_in_base_x*omega_z -
-            S_dot_rr_t_2*axis_y_rr_axes1_in_base_y*omega_z;
-        /* (M12) part of the constraint's second derivative that does not hold the acceleration */
-        const real gamma_c1_rr_t = n_c_rr_x*rel_rr_o_x;
-        o->entry[0][k] = -gamma_c1_rr_t;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rr) > TOLERANCE*TOLERANCE*root_1_rr_t);
+        /* (crank-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
+        const real crank_platform_point_x = m->crank_platform_point_x[i];
+        const real crank_platform_point_y = m->crank_platform_point_y[i];
+        const real crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y;
+        const real crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x;
+        const real crank_base_point_x = m->crank_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x;
+        const real crank_base_point_y = m->crank_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y;
+        /* (crank-rho2_1) squared amplitude */
+        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
+        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
+        const real crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy;
+        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
+        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
+        const real crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx +
+            crank_S_y*crank_base_frame_yx;
+        const real crank_n_c_t = m->crank_n_c_t[i];
+        const real crank_rho2_1 = crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t +
+            crank_rho2_1_t_2*crank_rho2_1_t_2);
+        /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_crank_root_1 = 1/(root(crank_rho2_1));
+        const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
+        const real crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1;
+        /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
+        const real crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1;
+        /* (crank-w_1) reciprocal vector 1 */
+        const real axis_y_crank_axes1_in_base_x = crank_base_frame_xy*crank_c_1 -
+            crank_base_frame_xx*crank_s_1;
+        const real axis_y_crank_axes1_in_base_y = crank_base_frame_yy*crank_c_1 -
+            crank_base_frame_yx*crank_s_1;
+        /* (crank-S_dot) velocity of the connection point */
+        const real omega_z = s[6*w + j];
+        const real crank_S_dot_t = crank_q_in_base_y*omega_z;
+        const real crank_S_dot_t_2 = crank_q_in_base_x*omega_z;
+        const real t_dot_x = s[4*w + j];
+        const real crank_S_dot_x = t_dot_x - crank_S_dot_t;
+        const real t_dot_y = s[5*w + j];
+        const real crank_S_dot_y = crank_S_dot_t_2 + t_dot_y;
+        const real crank_S_dot_tip_y = axis_y_crank_axes1_in_base_x*crank_S_dot_x +
+            axis_y_crank_axes1_in_base_y*crank_S_dot_y;
+        /* (crank-rel_o) remainder without the acceleration in: acceleration of the connection point left
+           to the joint accelerations */
+        const real inv_crank_platform_joint_offset_x = m->inv_crank_platform_joint_offset_x[i];
+        const real crank_rel_o_x =
+            crank_S_dot_tip_y*crank_S_dot_tip_y*inv_crank_platform_joint_offset_x +
+            axis_y_crank_axes1_in_base_x*crank_S_dot_t*omega_z -
+            axis_y_crank_axes1_in_base_y*crank_S_dot_t_2*omega_z;
+        /* (crank-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+           */
+        const real crank_n_c_x = m->crank_n_c_x[i];
+        const real crank_gamma_c1_t = crank_n_c_x*crank_rel_o_x;
+        o[0*count + k] = -crank_gamma_c1_t;
+        o[2*count + k] = crank_gamma_c1_t;
+        const real crank_root_1_t = m->crank_root_1_t[i];
+        o[1*count + k] = UNLESS(magnitude(crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
     }
 }
 
-INLINE void constraint_bias_place_rr(size_t w, const constraint_bias_results_rr *o, size_t first,
-    real *constraint_bias, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        constraint_bias[(0)*w + k] = o->entry[0][first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void constraint_bias_run(const prepared *m, size_t w, const real *X, const real *V, real
+INLINE void constraint_bias_place_crank(size_t w, size_t count, const real *o, size_t first, real
     *constraint_bias, verdict *t)
 {
-    constraint_bias_values values, *const s = &values;
-    constraint_bias_results_rr results_rr;
-    constraint_bias_before(w, X, V, s);
-    if (w == 1) {  /* the legs side by side */
-        constraint_bias_legs_rr(m, 0, 1, s, 0, 1, &results_rr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            constraint_bias_place_rr(w, &results_rr, leg, constraint_bias, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            constraint_bias_legs_rr(m, leg, 0, s, 1, w, &results_rr);
-            constraint_bias_place_rr(w, &results_rr, 0, constraint_bias, t);
-        }
+    for (size_t k = 0; k < w; ++k) {
+        constraint_bias[(0)*w + k] = o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
+        t->total[k] += o[2*count + first + k];
     }
 }
 
-/* ---- required: 169 mul, 107 add, 3 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
-        omega_z[LANES], t_ddot_x[LANES], t_ddot_y[LANES], alpha_z[LANES], f_p_x[LANES], f_p_y[LANES],
-        mu_p_z[LANES], sum[6][LANES];
-} required_values;
-typedef struct {
-    real sum[3][8], entry[6][8], singular[8];
-} required_results_rr;
-typedef struct {
-    real sum[3][8], entry[3][8], unreachable[8], singular[8];
-} required_results_rrr;
+INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V, real
+    *constraint_bias, verdict *t)
+{
+    real s[7] = {0}, o_crank[3*LEGS(1)] = {0};
+    constraint_bias_before(1, X, V, s);
+    constraint_bias_legs_crank(m, 1, 0, 1, s, 0, LEGS(1), o_crank);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        constraint_bias_place_crank(1, LEGS(1), o_crank, leg, constraint_bias, t);
+    }
+}
 
+INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const real *V, real
+    *constraint_bias, verdict *t)
+{
+    real s[7*LANES], o_crank[3*LANES];
+    constraint_bias_before(LANES, X, V, s);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        constraint_bias_legs_crank(m, LANES, leg, 0, s, 1, LANES, o_crank);
+        constraint_bias_place_crank(LANES, LANES, o_crank, 0, constraint_bias, t);
+    }
+}
+
+/* ---- required: 165 mul, 105 add, 3 div, 2 sqrt, 0 trig, every leg counted ---- */
 INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, required_values *s)
+    *A, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real A_2 = A[2*w + k];
-        const real J_star_zz = m->J_star_zz;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real m_star = m->m_star;
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real omega_z = V_2;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
+        const real A_2 = A[2*w + k];
         const real alpha_z = A_2;
-        /* (L2) first moment about the platform origin */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
         const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
         const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
-        /* (P1) centripetal tensor of the platform */
+        /* (W_p) centripetal tensor of the platform */
         const real W_p_t = omega_z*omega_z;
-        /* (E1) acceleration of the platform origin, less gravity */
+        /* (a_t) acceleration of the platform origin, less gravity */
+        const real gravity_x = m->gravity_x;
         const real a_t_x = t_ddot_x - gravity_x;
+        const real gravity_y = m->gravity_y;
         const real a_t_y = t_ddot_y - gravity_y;
-        /* (E2) inertia force of the platform less its weight */
+        /* (f_p) inertia force of the platform less its weight */
+        const real m_star = m->m_star;
         const real f_p_x = a_t_x*m_star - W_p_t*h_star_in_base_x - alpha_z*h_star_in_base_y;
         const real f_p_y = a_t_y*m_star + alpha_z*h_star_in_base_x - W_p_t*h_star_in_base_y;
-        /* (E3) inertia moment of the platform less that of its weight */
-        const real mu_p_z = J_star_zz*alpha_z + h_star_x*(R_xx*a_t_y - R_yx*a_t_x) -
-            h_star_y*(R_xx*a_t_x + R_yx*a_t_y);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->alpha_z[k] = alpha_z;
-        s->f_p_x[k] = f_p_x;
-        s->f_p_y[k] = f_p_y;
-        s->mu_p_z[k] = mu_p_z;
+        /* (mu_p) inertia moment of the platform less that of its weight */
+        const real J_star_t_6 = m->J_star_t_6;
+        const real mu_p_z = a_t_y*h_star_in_base_x - J_star_t_6*alpha_z - a_t_x*h_star_in_base_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
+        s[4*w + k] = t_dot_x;
+        s[5*w + k] = t_dot_y;
+        s[6*w + k] = omega_z;
+        s[7*w + k] = t_ddot_x;
+        s[8*w + k] = t_ddot_y;
+        s[9*w + k] = alpha_z;
+        s[10*w + k] = f_p_x;
+        s[11*w + k] = f_p_y;
+        s[12*w + k] = mu_p_z;
     }
 }
 
-INLINE void required_legs_rr(const prepared *m, size_t leg, size_t legs, const required_values *s,
-    size_t states, size_t count, int add, required_results_rr *o)
+INLINE void required_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real J_1_rr_zz = m->J_1_rr_zz[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_1_rr_x = m->h_1_rr_x[i];
-        const real h_1_rr_y = m->h_1_rr_y[i];
-        const real inv_rr_platform_joint_offset_x = m->inv_rr_platform_joint_offset_x[i];
-        const real n_c_rr_t = m->n_c_rr_t[i];
-        const real n_c_rr_x = m->n_c_rr_x[i];
-        const real root_1_rr_t = m->root_1_rr_t[i];
-        const real rr_base_frame_xx = m->rr_base_frame_xx[i];
-        const real rr_base_frame_xy = m->rr_base_frame_xy[i];
-        const real rr_base_frame_yx = m->rr_base_frame_yx[i];
-        const real rr_base_frame_yy = m->rr_base_frame_yy[i];
-        const real rr_base_point_x = m->rr_base_point_x[i];
-        const real rr_base_point_y = m->rr_base_point_y[i];
-        const real rr_platform_joint_offset_x = m->rr_platform_joint_offset_x[i];
-        const real rr_platform_point_x = m->rr_platform_point_x[i];
-        const real rr_platform_point_y = m->rr_platform_point_y[i];
-        /* (rr-K1) from the base point to the connection point */
-        const real q_rr_in_base_x = R_xx*rr_platform_point_x - R_yx*rr_platform_point_y;
-        const real q_rr_in_base_y = R_xx*rr_platform_point_y + R_yx*rr_platform_point_x;
-        const real S_rr_x = q_rr_in_base_x + t_x - rr_base_point_x;
-        const real S_rr_y = q_rr_in_base_y + t_y - rr_base_point_y;
-        /* (rr-K3) squared amplitude */
-        const real rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy;
-        const real rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx;
-        const real rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
-        /* (rr-K5) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1_rr = 1/(root(rho2_1_rr));
-        const real c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x;
-        /* (rr-K6) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rr = inv_root_1_rr*rho2_1_rr_t*rr_platform_joint_offset_x;
-        /* (rr-V4) reciprocal vector 1 */
-        const real axis_y_rr_axes1_in_base_x = c_1_rr*rr_base_frame_xy - rr_base_frame_xx*s_1_rr;
-        const real axis_y_rr_axes1_in_base_y = c_1_rr*rr_base_frame_yy - rr_base_frame_yx*s_1_rr;
-        const real w_1_rr_t = axis_y_rr_axes1_in_base_x*inv_rr_platform_joint_offset_x;
-        const real w_1_rr_t_2 = axis_y_rr_axes1_in_base_y*inv_rr_platform_joint_offset_x;
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_1_rr_z = q_rr_in_base_x*w_1_rr_t_2 - q_rr_in_base_y*w_1_rr_t;
-        /* (rr-V3) unit vector that the leg's freedoms leave out */
-        const real n_c_rr_t_2 = axis_y_rr_axes1_in_base_y*n_c_rr_x;
-        const real n_c_rr_t_3 = axis_y_rr_axes1_in_base_x*n_c_rr_x;
-        /* (M10) moment of the column's unit force about the platform origin */
-        const real Hk_a_1_rr_z = n_c_rr_t_2*q_rr_in_base_y + n_c_rr_t_3*q_rr_in_base_x;
-        /* (rr-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_rr_x = t_ddot_x - alpha_z*q_rr_in_base_y;
-        const real a_p_rr_y = t_ddot_y + alpha_z*q_rr_in_base_x;
-        /* (rr-A3) acceleration of the connection point */
-        const real S_ddot_rr_x = a_p_rr_x - omega_z*omega_z*q_rr_in_base_x;
-        const real S_ddot_rr_y = a_p_rr_y - omega_z*omega_z*q_rr_in_base_y;
-        /* (rr-N5) inertia moment of the links that turn with link 1, about their reference points */
-        const real mu_1_rr_z = h_1_rr_y*(c_1_rr*g_r0_x + g_r0_y*s_1_rr) +
-            J_1_rr_zz*inv_rr_platform_joint_offset_x*(S_ddot_rr_x*axis_y_rr_axes1_in_base_x +
-            S_ddot_rr_y*axis_y_rr_axes1_in_base_y) - h_1_rr_x*(c_1_rr*g_r0_y - g_r0_x*s_1_rr);
-        /* (rr-N11) force at the connection point that balances the leg's inertia and weight along all
+        /* (crank-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
+        const real crank_platform_point_x = m->crank_platform_point_x[i];
+        const real crank_platform_point_y = m->crank_platform_point_y[i];
+        const real crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y;
+        const real crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x;
+        const real crank_base_point_x = m->crank_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x;
+        const real crank_base_point_y = m->crank_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y;
+        /* (crank-rho2_1) squared amplitude */
+        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
+        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
+        const real crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy;
+        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
+        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
+        const real crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx +
+            crank_S_y*crank_base_frame_yx;
+        const real crank_n_c_t = m->crank_n_c_t[i];
+        const real crank_rho2_1 = crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t +
+            crank_rho2_1_t_2*crank_rho2_1_t_2);
+        /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_crank_root_1 = 1/(root(crank_rho2_1));
+        const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
+        const real crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1;
+        /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
+        const real crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1;
+        /* (crank-w_1) reciprocal vector 1 */
+        const real axis_y_crank_axes1_in_base_x = crank_base_frame_xy*crank_c_1 -
+            crank_base_frame_xx*crank_s_1;
+        const real axis_y_crank_axes1_in_base_y = crank_base_frame_yy*crank_c_1 -
+            crank_base_frame_yx*crank_s_1;
+        const real inv_crank_platform_joint_offset_x = m->inv_crank_platform_joint_offset_x[i];
+        const real crank_w_1_t = axis_y_crank_axes1_in_base_x*inv_crank_platform_joint_offset_x;
+        const real crank_w_1_t_2 = axis_y_crank_axes1_in_base_y*inv_crank_platform_joint_offset_x;
+        /* (crank-H_a_1) moment of the column's unit force about the platform origin */
+        const real crank_H_a_1_z = crank_q_in_base_x*crank_w_1_t_2 -
+            crank_q_in_base_y*crank_w_1_t;
+        /* (crank-n_c) unit vector that the leg's freedoms leave out */
+        const real crank_n_c_x = m->crank_n_c_x[i];
+        const real crank_n_c_t_2 = axis_y_crank_axes1_in_base_y*crank_n_c_x;
+        const real crank_n_c_t_3 = axis_y_crank_axes1_in_base_x*crank_n_c_x;
+        /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
+        const real crank_Hk_a_1_z = crank_n_c_t_2*crank_q_in_base_y +
+            crank_n_c_t_3*crank_q_in_base_x;
+        /* (crank-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_z = s[9*w + j];
+        const real t_ddot_x = s[7*w + j];
+        const real crank_a_p_x = t_ddot_x - alpha_z*crank_q_in_base_y;
+        const real t_ddot_y = s[8*w + j];
+        const real crank_a_p_y = t_ddot_y + alpha_z*crank_q_in_base_x;
+        /* (crank-S_ddot) acceleration of the connection point */
+        const real omega_z = s[6*w + j];
+        const real crank_S_ddot_x = crank_a_p_x - crank_q_in_base_x*omega_z*omega_z;
+        const real crank_S_ddot_y = crank_a_p_y - crank_q_in_base_y*omega_z*omega_z;
+        /* (crank-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+        const real crank_J_1_zz = m->crank_J_1_zz[i];
+        const real crank_g_r0_x = m->crank_g_r0_x[i];
+        const real crank_g_r0_y = m->crank_g_r0_y[i];
+        const real crank_h_1_x = m->crank_h_1_x[i];
+        const real crank_h_1_y = m->crank_h_1_y[i];
+        const real crank_mu_1_z = crank_h_1_y*(crank_c_1*crank_g_r0_x + crank_g_r0_y*crank_s_1) +
+            crank_J_1_zz*inv_crank_platform_joint_offset_x*(axis_y_crank_axes1_in_base_x*crank_S_ddot_x
+            + axis_y_crank_axes1_in_base_y*crank_S_ddot_y) - crank_h_1_x*(crank_c_1*crank_g_r0_y -
+            crank_g_r0_x*crank_s_1);
+        /* (crank-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real G_rr_t = inv_rr_platform_joint_offset_x*mu_1_rr_z;
-        /* (rr-N14) leg force on the platform without actuation and without the mass at the connection
+        const real crank_G_t = crank_mu_1_z*inv_crank_platform_joint_offset_x;
+        /* (crank-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_rr_t = G_rr_t*axis_y_rr_axes1_in_base_x;
-        const real c_rr_t_2 = G_rr_t*axis_y_rr_axes1_in_base_y;
-        /* (E5) moment that actuators and external wrench must give */
-        const real R_a_t = c_rr_t_2*q_rr_in_base_x - c_rr_t*q_rr_in_base_y;
-        o->sum[0][k] = add ? o->sum[0][k] + c_rr_t : c_rr_t;  /* total_rr_x */
-        o->sum[1][k] = add ? o->sum[1][k] + c_rr_t_2 : c_rr_t_2;  /* total_rr_y */
-        o->sum[2][k] = add ? o->sum[2][k] + R_a_t : R_a_t;  /* total_rr_z */
-        o->entry[0][k] = w_1_rr_t;
-        o->entry[1][k] = w_1_rr_t_2;
-        o->entry[2][k] = H_a_1_rr_z;
-        o->entry[3][k] = -n_c_rr_t_2;
-        o->entry[4][k] = n_c_rr_t_3;
-        o->entry[5][k] = Hk_a_1_rr_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rr) > TOLERANCE*TOLERANCE*root_1_rr_t);
+        const real crank_c_t = axis_y_crank_axes1_in_base_x*crank_G_t;
+        const real crank_c_t_2 = axis_y_crank_axes1_in_base_y*crank_G_t;
+        /* (R_a) moment that actuators and external wrench must give */
+        const real crank_R_a_t = crank_c_t_2*crank_q_in_base_x - crank_c_t*crank_q_in_base_y;
+        terms[0*count + k] = add ? terms[0*count + k] + crank_c_t : crank_c_t;  /* total_crank_x */
+        terms[1*count + k] = add ? terms[1*count + k] + crank_c_t_2 : crank_c_t_2;  /* total_crank_y */
+        terms[2*count + k] = add ? terms[2*count + k] + crank_R_a_t : crank_R_a_t;  /* total_crank_z */
+        o[0*count + k] = crank_w_1_t;
+        o[1*count + k] = crank_w_1_t_2;
+        o[2*count + k] = crank_H_a_1_z;
+        o[3*count + k] = -crank_n_c_t_2;
+        o[4*count + k] = crank_n_c_t_3;
+        o[5*count + k] = crank_Hk_a_1_z;
+        const real crank_root_1_t = m->crank_root_1_t[i];
+        o[6*count + k] = UNLESS(magnitude(crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
     }
 }
 
-INLINE void required_place_rr(size_t w, const required_results_rr *o, size_t first, real *H, real
-    *Hk, verdict *t)
+INLINE void required_place_crank(size_t w, size_t count, const real *o, size_t first, real *H,
+    real *Hk, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0)*w + k] = o->entry[0][first + k];
-        H[(2)*w + k] = o->entry[1][first + k];
-        H[(4)*w + k] = o->entry[2][first + k];
-        Hk[(0)*w + k] = o->entry[3][first + k];
-        Hk[(1)*w + k] = o->entry[4][first + k];
-        Hk[(2)*w + k] = o->entry[5][first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(0)*w + k] = o[0*count + first + k];
+        H[(2)*w + k] = o[1*count + first + k];
+        H[(4)*w + k] = o[2*count + first + k];
+        Hk[(0)*w + k] = o[3*count + first + k];
+        Hk[(1)*w + k] = o[4*count + first + k];
+        Hk[(2)*w + k] = o[5*count + first + k];
+        t->singular[k] += o[6*count + first + k];
     }
 }
 
-INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const required_values
-    *s, size_t states, size_t count, int add, required_results_rrr *o)
+INLINE void required_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real J_1_rrr_zz = m->J_1_rrr_zz[i];
-        const real J_2_rrr_zz = m->J_2_rrr_zz[i];
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real g_r0_x_2 = m->g_r0_x_2[i];
-        const real g_r0_y_2 = m->g_r0_y_2[i];
-        const real h_1_rrr_x = m->h_1_rrr_x[i];
-        const real h_1_rrr_y = m->h_1_rrr_y[i];
-        const real h_2_rrr_x = m->h_2_rrr_x[i];
-        const real h_2_rrr_y = m->h_2_rrr_y[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_rrr = m->size_rrr[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x;
-        const real S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr =
-            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr;
-        const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
-        const real r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr;
-        const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr;
-        const real axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        /* (rrr-V1) velocity of the connection point */
-        const real S_dot_rrr_t = omega_z*q_rrr_in_base_y;
-        const real S_dot_rrr_t_2 = omega_z*q_rrr_in_base_x;
-        const real S_dot_rrr_x = t_dot_x - S_dot_rrr_t;
-        const real S_dot_rrr_y = S_dot_rrr_t_2 + t_dot_y;
-        /* (rrr-V7) rate of joint 1 */
-        const real qd_1_rrr = inv_r_1_rrr_r0_y*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_x);
-        /* (rrr-V11) angular velocity of link 2 */
-        const real omega_2_rrr_z =
-            inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
-        /* (rrr-V10) centripetal tensor of link 1 */
-        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
-        /* (rrr-V12) centripetal tensor of link 2 */
-        const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
-        /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
-            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
-        /* (rrr-V5) reciprocal vector 1 */
-        const real w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y;
-        const real w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
-        /* (M9) moment of the column's unit force about the platform origin */
-        const real H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t;
-        /* (rrr-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_rrr_x = t_ddot_x - alpha_z*q_rrr_in_base_y;
-        const real a_p_rrr_y = t_ddot_y + alpha_z*q_rrr_in_base_x;
-        /* (rrr-A3) acceleration of the connection point */
-        const real S_ddot_rrr_x = a_p_rrr_x - S_dot_rrr_t_2*omega_z;
-        const real S_ddot_rrr_y = a_p_rrr_y - S_dot_rrr_t*omega_z;
-        const real S_ddot_rrr_tip_x = S_ddot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_ddot_rrr_y*axis_y_rrr_axes2_in_base_x;
-        const real S_ddot_rrr_tip_y = S_ddot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y;
-        /* (rrr-A6) acceleration of the connection point left to the joint accelerations */
-        const real rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x;
-        const real rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
-        /* (rrr-A8) acceleration of joint 1 */
-        const real qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x;
-        /* (rrr-N3) acceleration of the reference point of link 2, less gravity */
-        const real acc_2_rrr_x = S_ddot_rrr_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-S_dot) velocity of the connection point */
+        const real omega_z = s[6*w + j];
+        const real rrr_S_dot_t = omega_z*rrr_q_in_base_y;
+        const real rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x;
+        const real t_dot_x = s[4*w + j];
+        const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
+        const real t_dot_y = s[5*w + j];
+        const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
+        /* (rrr-qd_2) rate of joint 2 */
+        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y);
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_omega_2_z =
+            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-W_1) centripetal tensor of link 1 */
+        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-W_2) centripetal tensor of link 2 */
+        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y;
+        const real rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y;
+        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+        const real rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t;
+        /* (rrr-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_z = s[9*w + j];
+        const real t_ddot_x = s[7*w + j];
+        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y;
+        const real t_ddot_y = s[8*w + j];
+        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x;
+        /* (rrr-S_ddot) acceleration of the connection point */
+        const real rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2;
+        const real rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t;
+        const real rrr_S_ddot_tip_x = axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y;
+        const real rrr_S_ddot_tip_y = axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y;
+        /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
+        const real rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x;
+        const real rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-qdd_1) acceleration of joint 1 */
+        const real rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x;
+        /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real rrr_acc_2_x = rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
             axis_y_rrr_axes2_in_base_y*gravity_x;
-        const real acc_2_rrr_y = S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+        const real rrr_acc_2_y = rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
             axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-N23) inertia moment of the links that turn with link 1, about their reference points */
-        const real mu_1_rrr_z = h_1_rrr_y*(c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr) -
-            J_1_rrr_zz*qdd_1_rrr - h_1_rrr_x*(c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr);
-        /* (rrr-A16) angular acceleration of link 2 */
-        const real alpha_2_rrr_z = inv_rrr_platform_joint_offset_x*(rel_rrr_y +
-            qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr;
-        /* (rrr-N16) inertia moment of the links that turn with link 2, about their reference points */
-        const real mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x -
-            acc_2_rrr_x*h_2_rrr_y;
-        /* (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rrr-alpha_2) angular acceleration of link 2 */
+        const real rrr_alpha_2_z = inv_rrr_platform_joint_offset_x*(rrr_rel_y +
+            rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1;
+        /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
+        const real rrr_h_2_x = m->rrr_h_2_x[i];
+        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x -
+            rrr_acc_2_x*rrr_h_2_y;
+        /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
+        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
+        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
+        const real rrr_h_1_x = m->rrr_h_1_x[i];
+        const real rrr_h_1_y = m->rrr_h_1_y[i];
+        const real rrr_mu_1_z = rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
+            rrr_J_1_zz*rrr_qdd_1 - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
-        const real N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z;
-        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
+        const real rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z;
+        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z;
-        /* (rrr-N33) leg force on the platform without actuation and without the mass at the connection
+        const real rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z;
+        /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_rrr_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y -
-            inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x - N_1_rrr_z);
-        const real c_rrr_y = W_2_rrr_t*h_2_rrr_y - G_rrr_t - alpha_2_rrr_z*h_2_rrr_x;
-        const real c_rrr_in_base_x = axis_y_rrr_axes2_in_base_x*c_rrr_y +
-            axis_y_rrr_axes2_in_base_y*c_rrr_x;
-        const real c_rrr_in_base_y = axis_y_rrr_axes2_in_base_y*c_rrr_y -
-            axis_y_rrr_axes2_in_base_x*c_rrr_x;
-        /* (E5) moment that actuators and external wrench must give */
-        const real R_a_t_2 = c_rrr_in_base_y*q_rrr_in_base_x - c_rrr_in_base_x*q_rrr_in_base_y;
-        o->sum[0][k] = add ? o->sum[0][k] + c_rrr_in_base_x : c_rrr_in_base_x;  /* total_rrr_x */
-        o->sum[1][k] = add ? o->sum[1][k] + c_rrr_in_base_y : c_rrr_in_base_y;  /* total_rrr_y */
-        o->sum[2][k] = add ? o->sum[2][k] + R_a_t_2 : R_a_t_2;  /* total_rrr_z */
-        o->entry[0][k] = -w_1_rrr_t;
-        o->entry[1][k] = w_1_rrr_t_2;
-        o->entry[2][k] = H_a_1_rrr_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
+        const real rrr_c_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y -
+            inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x - rrr_N_1_z);
+        const real rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x;
+        const real rrr_c_in_base_x = axis_y_rrr_axes2_in_base_x*rrr_c_y +
+            axis_y_rrr_axes2_in_base_y*rrr_c_x;
+        const real rrr_c_in_base_y = axis_y_rrr_axes2_in_base_y*rrr_c_y -
+            axis_y_rrr_axes2_in_base_x*rrr_c_x;
+        /* (R_a) moment that actuators and external wrench must give */
+        const real rrr_R_a_t = rrr_c_in_base_y*rrr_q_in_base_x - rrr_c_in_base_x*rrr_q_in_base_y;
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_c_in_base_x : rrr_c_in_base_x;  /* total_rrr_x */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_c_in_base_y : rrr_c_in_base_y;  /* total_rrr_y */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_R_a_t : rrr_R_a_t;  /* total_rrr_z */
+        o[0*count + k] = -rrr_w_1_t;
+        o[1*count + k] = rrr_w_1_t_2;
+        o[2*count + k] = rrr_H_a_1_z;
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[4*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[3*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void required_place_rrr(size_t w, const required_results_rrr *o, size_t first, real *H,
+INLINE void required_place_rrr(size_t w, size_t count, const real *o, size_t first, real *H,
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(1)*w + k] = o->entry[0][first + k];
-        H[(3)*w + k] = o->entry[1][first + k];
-        H[(5)*w + k] = o->entry[2][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(1)*w + k] = o[0*count + first + k];
+        H[(3)*w + k] = o[1*count + first + k];
+        H[(5)*w + k] = o[2*count + first + k];
+        t->unreachable[k] += o[3*count + first + k];
+        t->singular[k] += o[4*count + first + k];
     }
 }
 
-INLINE void required_after(size_t w, const required_values *s, real *required)
+INLINE void required_after(size_t w, const real *s, const real *sums, real *required)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real f_p_x = s->f_p_x[k];
-        const real f_p_y = s->f_p_y[k];
-        const real mu_p_z = s->mu_p_z[k];
-        const real total_rr_x = s->sum[0][k];
-        const real total_rr_y = s->sum[1][k];
-        const real total_rr_z = s->sum[2][k];
-        const real total_rrr_x = s->sum[3][k];
-        const real total_rrr_y = s->sum[4][k];
-        const real total_rrr_z = s->sum[5][k];
-        /* (E4) force that actuators and external wrench must give */
-        const real R_t_x = f_p_x + total_rr_x - total_rrr_x;
-        const real R_t_y = f_p_y + total_rr_y - total_rrr_y;
-        /* (E5) moment that actuators and external wrench must give */
-        const real R_a_z = mu_p_z + total_rr_z - total_rrr_z;
+        /* (R_t) force that actuators and external wrench must give */
+        const real f_p_x = s[10*w + k];
+        const real total_crank_x = sums[0*w + k];
+        const real total_rrr_x = sums[3*w + k];
+        const real R_t_x = f_p_x + total_crank_x - total_rrr_x;
+        const real f_p_y = s[11*w + k];
+        const real total_crank_y = sums[1*w + k];
+        const real total_rrr_y = sums[4*w + k];
+        const real R_t_y = f_p_y + total_crank_y - total_rrr_y;
+        /* (R_a) moment that actuators and external wrench must give */
+        const real mu_p_z = s[12*w + k];
+        const real total_crank_z = sums[2*w + k];
+        const real total_rrr_z = sums[5*w + k];
+        const real R_a_z = mu_p_z + total_crank_z - total_rrr_z;
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
         required[2*w + k] = R_a_z;
     }
 }
 
-INLINE void required_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+    *required, real *H, real *Hk, verdict *t)
+{
+    real s[13] = {0}, sums[6] = {0}, terms_crank[3*LEGS(1)] = {0}, o_crank[7*LEGS(1)] = {0},
+        terms_rrr[3*LEGS(1)] = {0}, o_rrr[5*LEGS(1)] = {0};
+    required_before(m, 1, X, V, A, s);
+    required_legs_crank(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_crank, o_crank);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        required_place_crank(1, LEGS(1), o_crank, leg, H, Hk, t);
+    }
+    for (size_t n = 0; n < 3; ++n) {
+        sums[n] = total(terms_crank + n*LEGS(1), 1);
+    }
+    required_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        required_place_rrr(1, LEGS(1), o_rrr, leg, H, t);
+    }
+    for (size_t n = 0; n < 3; ++n) {
+        sums[3 + n] = total(terms_rrr + n*LEGS(1), 1);
+    }
+    required_after(1, s, sums, required);
+}
+
+INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, real *Hk, verdict *t)
 {
-    required_values values, *const s = &values;
-    required_results_rr results_rr;
-    required_results_rrr results_rrr;
-    required_before(m, w, X, V, A, s);
-    if (w == 1) {  /* the legs side by side */
-        required_legs_rr(m, 0, 1, s, 0, 1, 0, &results_rr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            required_place_rr(w, &results_rr, leg, H, Hk, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_rr.sum[n], 1);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rr.sum, 0, sizeof results_rr.sum);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            required_legs_rr(m, leg, 0, s, 1, w, 1, &results_rr);
-            required_place_rr(w, &results_rr, 0, H, Hk, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_rr.sum[n][k];
-            }
-        }
+    real s[13*LANES], sums[6*LANES], o_crank[7*LANES], o_rrr[5*LANES];
+    required_before(m, LANES, X, V, A, s);
+    clear(sums, 3*LANES);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        required_legs_crank(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_crank);
+        required_place_crank(LANES, LANES, o_crank, 0, H, Hk, t);
     }
-    if (w == 1) {  /* the legs side by side */
-        required_legs_rrr(m, 0, 1, s, 0, 1, 0, &results_rrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            required_place_rrr(w, &results_rrr, leg, H, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[3 + n][k] = total(results_rrr.sum[n], 1);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            required_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
-            required_place_rrr(w, &results_rrr, 0, H, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[3 + n][k] = results_rrr.sum[n][k];
-            }
-        }
+    clear(sums + 3*LANES, 3*LANES);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        required_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums + 3*LANES, o_rrr);
+        required_place_rrr(LANES, LANES, o_rrr, 0, H, t);
     }
-    required_after(w, s, required);
+    required_after(LANES, s, sums, required);
 }
 
 /* ---- inverse_kinematics: 46 mul, 25 add, 2 div, 2 sqrt, 3 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES];
-} inverse_kinematics_values;
-typedef struct {
-    real entry[1][8], singular[8];
-} inverse_kinematics_results_rr;
-typedef struct {
-    real entry[2][8], unreachable[8], singular[8];
-} inverse_kinematics_results_rrr;
-
-INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematics_values *s)
+INLINE void inverse_kinematics_before(size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
     }
 }
 
-INLINE void inverse_kinematics_legs_rr(const prepared *m, size_t leg, size_t legs, const
-    inverse_kinematics_values *s, size_t states, size_t count, inverse_kinematics_results_rr *o)
+INLINE void inverse_kinematics_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs,
+    const real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real n_c_rr_t = m->n_c_rr_t[i];
-        const real root_1_rr_t = m->root_1_rr_t[i];
-        const real rr_base_frame_xx = m->rr_base_frame_xx[i];
-        const real rr_base_frame_xy = m->rr_base_frame_xy[i];
-        const real rr_base_frame_yx = m->rr_base_frame_yx[i];
-        const real rr_base_frame_yy = m->rr_base_frame_yy[i];
-        const real rr_base_point_x = m->rr_base_point_x[i];
-        const real rr_base_point_y = m->rr_base_point_y[i];
-        const real rr_platform_joint_offset_x = m->rr_platform_joint_offset_x[i];
-        const real rr_platform_point_x = m->rr_platform_point_x[i];
-        const real rr_platform_point_y = m->rr_platform_point_y[i];
-        /* (rr-K1) from the base point to the connection point */
-        const real S_rr_x = t_x + R_xx*rr_platform_point_x - rr_base_point_x -
-            R_yx*rr_platform_point_y;
-        const real S_rr_y = t_y + R_xx*rr_platform_point_y + R_yx*rr_platform_point_x -
-            rr_base_point_y;
-        /* (rr-K3) squared amplitude */
-        const real rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy;
-        const real rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx;
-        const real rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
-        /* (rr-K5) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1_rr = 1/(root(rho2_1_rr));
-        /* (rr-K7) displacement of joint 1 */
-        const real q_1_rr = angle(inv_root_1_rr*rho2_1_rr_t*rr_platform_joint_offset_x,
-            inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x);
-        o->entry[0][k] = q_1_rr;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rr) > TOLERANCE*TOLERANCE*root_1_rr_t);
+        /* (crank-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
+        const real crank_base_point_x = m->crank_base_point_x[i];
+        const real crank_platform_point_x = m->crank_platform_point_x[i];
+        const real crank_platform_point_y = m->crank_platform_point_y[i];
+        const real t_x = s[0*w + j];
+        const real crank_S_x = t_x + R_xx*crank_platform_point_x - crank_base_point_x -
+            R_yx*crank_platform_point_y;
+        const real crank_base_point_y = m->crank_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real crank_S_y = t_y + R_xx*crank_platform_point_y + R_yx*crank_platform_point_x -
+            crank_base_point_y;
+        /* (crank-rho2_1) squared amplitude */
+        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
+        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
+        const real crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy;
+        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
+        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
+        const real crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx +
+            crank_S_y*crank_base_frame_yx;
+        const real crank_n_c_t = m->crank_n_c_t[i];
+        const real crank_rho2_1 = crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t +
+            crank_rho2_1_t_2*crank_rho2_1_t_2);
+        /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_crank_root_1 = 1/(root(crank_rho2_1));
+        /* (crank-q_1) displacement of joint 1 */
+        const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
+        const real crank_q_1 =
+            angle(crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1,
+            crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1);
+        o[0*count + k] = crank_q_1;
+        o[2*count + k] = crank_q_1;
+        const real crank_root_1_t = m->crank_root_1_t[i];
+        o[1*count + k] = UNLESS(magnitude(crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
     }
 }
 
-INLINE void inverse_kinematics_place_rr(size_t w, const inverse_kinematics_results_rr *o, size_t
-    first, real *q, verdict *t)
+INLINE void inverse_kinematics_place_crank(size_t w, size_t count, const real *o, size_t first,
+    real *q, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        q[(0)*w + k] = o->entry[0][first + k];
-        t->singular[k] += o->singular[first + k];
+        q[(0)*w + k] = o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
+        t->total[k] += o[2*count + first + k];
     }
 }
 
-INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t leg, size_t legs, const
-    inverse_kinematics_values *s, size_t states, size_t count, inverse_kinematics_results_rrr *o)
+INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs,
+    const real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real S_rrr_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x -
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x -
             R_yx*rrr_platform_point_y;
-        const real S_rrr_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x -
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x -
             rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        /* (rrr-K13) displacement of joint 1 */
-        const real q_1_rrr = angle(inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr),
-            inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr));
-        /* (rrr-K20) displacement of joint 2 */
-        const real q_2_rrr =
-            angle(-inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x,
-            inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x);
-        o->entry[0][k] = q_1_rrr;
-        o->entry[1][k] = q_2_rrr;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        /* (rrr-q_1) displacement of joint 1 */
+        const real rrr_q_1 = angle(inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1),
+            inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1));
+        /* (rrr-q_2) displacement of joint 2 */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_q_2 =
+            angle(-inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
+            inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x);
+        o[0*count + k] = rrr_q_1;
+        o[1*count + k] = rrr_q_2;
+        o[4*count + k] = rrr_q_1 + rrr_q_2;
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
+        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void inverse_kinematics_place_rrr(size_t w, const inverse_kinematics_results_rrr *o, size_t
-    first, real *q, verdict *t)
+INLINE void inverse_kinematics_place_rrr(size_t w, size_t count, const real *o, size_t first, real
+    *q, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        q[(1)*w + k] = o->entry[0][first + k];
-        q[(2)*w + k] = o->entry[1][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        q[(1)*w + k] = o[0*count + first + k];
+        q[(2)*w + k] = o[1*count + first + k];
+        t->unreachable[k] += o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
 }
 
-INLINE void inverse_kinematics_run(const prepared *m, size_t w, const real *X, real *q, verdict
-    *t)
+INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    inverse_kinematics_values values, *const s = &values;
-    inverse_kinematics_results_rr results_rr;
-    inverse_kinematics_results_rrr results_rrr;
-    inverse_kinematics_before(w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        inverse_kinematics_legs_rr(m, 0, 1, s, 0, 1, &results_rr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            inverse_kinematics_place_rr(w, &results_rr, leg, q, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            inverse_kinematics_legs_rr(m, leg, 0, s, 1, w, &results_rr);
-            inverse_kinematics_place_rr(w, &results_rr, 0, q, t);
-        }
+    real s[4] = {0}, o_crank[3*LEGS(1)] = {0}, o_rrr[5*LEGS(1)] = {0};
+    inverse_kinematics_before(1, X, s);
+    inverse_kinematics_legs_crank(m, 1, 0, 1, s, 0, LEGS(1), o_crank);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        inverse_kinematics_place_crank(1, LEGS(1), o_crank, leg, q, t);
     }
-    if (w == 1) {  /* the legs side by side */
-        inverse_kinematics_legs_rrr(m, 0, 1, s, 0, 1, &results_rrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            inverse_kinematics_place_rrr(w, &results_rrr, leg, q, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            inverse_kinematics_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
-            inverse_kinematics_place_rrr(w, &results_rrr, 0, q, t);
-        }
+    inverse_kinematics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), o_rrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        inverse_kinematics_place_rrr(1, LEGS(1), o_rrr, leg, q, t);
+    }
+}
+
+INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
+{
+    real s[4*LANES], o_crank[3*LANES], o_rrr[5*LANES];
+    inverse_kinematics_before(LANES, X, s);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        inverse_kinematics_legs_crank(m, LANES, leg, 0, s, 1, LANES, o_crank);
+        inverse_kinematics_place_crank(LANES, LANES, o_crank, 0, q, t);
+    }
+    for (size_t leg = 0; leg < 1; ++leg) {
+        inverse_kinematics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        inverse_kinematics_place_rrr(LANES, LANES, o_rrr, 0, q, t);
     }
 }
 
 /* ---- joint_rates: 77 mul, 42 add, 3 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
-        omega_z[LANES];
-} joint_rates_values;
-typedef struct {
-    real entry[1][8], singular[8];
-} joint_rates_results_rr;
-typedef struct {
-    real entry[2][8], unreachable[8], singular[8];
-} joint_rates_results_rrr;
-
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rates_values *s)
+INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real omega_z = V_2;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->omega_z[k] = omega_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
+        s[4*w + k] = t_dot_x;
+        s[5*w + k] = t_dot_y;
+        s[6*w + k] = omega_z;
     }
 }
 
-INLINE void joint_rates_legs_rr(const prepared *m, size_t leg, size_t legs, const
-    joint_rates_values *s, size_t states, size_t count, joint_rates_results_rr *o)
+INLINE void joint_rates_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const
+    real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real inv_rr_platform_joint_offset_x = m->inv_rr_platform_joint_offset_x[i];
-        const real n_c_rr_t = m->n_c_rr_t[i];
-        const real root_1_rr_t = m->root_1_rr_t[i];
-        const real rr_base_frame_xx = m->rr_base_frame_xx[i];
-        const real rr_base_frame_xy = m->rr_base_frame_xy[i];
-        const real rr_base_frame_yx = m->rr_base_frame_yx[i];
-        const real rr_base_frame_yy = m->rr_base_frame_yy[i];
-        const real rr_base_point_x = m->rr_base_point_x[i];
-        const real rr_base_point_y = m->rr_base_point_y[i];
-        const real rr_platform_joint_offset_x = m->rr_platform_joint_offset_x[i];
-        const real rr_platform_point_x = m->rr_platform_point_x[i];
-        const real rr_platform_point_y = m->rr_platform_point_y[i];
-        /* (rr-K1) from the base point to the connection point */
-        const real q_rr_in_base_x = R_xx*rr_platform_point_x - R_yx*rr_platform_point_y;
-        const real q_rr_in_base_y = R_xx*rr_platform_point_y + R_yx*rr_platform_point_x;
-        const real S_rr_x = q_rr_in_base_x + t_x - rr_base_point_x;
-        const real S_rr_y = q_rr_in_base_y + t_y - rr_base_point_y;
-        /* (rr-K3) squared amplitude */
-        const real rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy;
-        const real rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx;
-        const real rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
-        /* (rr-K5) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1_rr = 1/(root(rho2_1_rr));
-        const real c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x;
-        /* (rr-K6) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rr = inv_root_1_rr*rho2_1_rr_t*rr_platform_joint_offset_x;
-        /* (rr-V1) velocity of the connection point */
-        const real S_dot_rr_x = t_dot_x - omega_z*q_rr_in_base_y;
-        const real S_dot_rr_y = t_dot_y + omega_z*q_rr_in_base_x;
-        /* (rr-V5) rate of joint 1 */
-        const real qd_1_rr = inv_rr_platform_joint_offset_x*(S_dot_rr_x*(c_1_rr*rr_base_frame_xy -
-            rr_base_frame_xx*s_1_rr) + S_dot_rr_y*(c_1_rr*rr_base_frame_yy -
-            rr_base_frame_yx*s_1_rr));
-        o->entry[0][k] = qd_1_rr;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rr) > TOLERANCE*TOLERANCE*root_1_rr_t);
+        /* (crank-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
+        const real crank_platform_point_x = m->crank_platform_point_x[i];
+        const real crank_platform_point_y = m->crank_platform_point_y[i];
+        const real crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y;
+        const real crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x;
+        const real crank_base_point_x = m->crank_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x;
+        const real crank_base_point_y = m->crank_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y;
+        /* (crank-rho2_1) squared amplitude */
+        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
+        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
+        const real crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy;
+        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
+        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
+        const real crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx +
+            crank_S_y*crank_base_frame_yx;
+        const real crank_n_c_t = m->crank_n_c_t[i];
+        const real crank_rho2_1 = crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t +
+            crank_rho2_1_t_2*crank_rho2_1_t_2);
+        /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_crank_root_1 = 1/(root(crank_rho2_1));
+        const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
+        const real crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1;
+        /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
+        const real crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1;
+        /* (crank-S_dot) velocity of the connection point */
+        const real omega_z = s[6*w + j];
+        const real t_dot_x = s[4*w + j];
+        const real crank_S_dot_x = t_dot_x - crank_q_in_base_y*omega_z;
+        const real t_dot_y = s[5*w + j];
+        const real crank_S_dot_y = t_dot_y + crank_q_in_base_x*omega_z;
+        /* (crank-qd_1) rate of joint 1 */
+        const real inv_crank_platform_joint_offset_x = m->inv_crank_platform_joint_offset_x[i];
+        const real crank_qd_1 =
+            inv_crank_platform_joint_offset_x*(crank_S_dot_x*(crank_base_frame_xy*crank_c_1 -
+            crank_base_frame_xx*crank_s_1) + crank_S_dot_y*(crank_base_frame_yy*crank_c_1 -
+            crank_base_frame_yx*crank_s_1));
+        o[0*count + k] = crank_qd_1;
+        o[2*count + k] = crank_qd_1;
+        const real crank_root_1_t = m->crank_root_1_t[i];
+        o[1*count + k] = UNLESS(magnitude(crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
     }
 }
 
-INLINE void joint_rates_place_rr(size_t w, const joint_rates_results_rr *o, size_t first, real
-    *qd, verdict *t)
+INLINE void joint_rates_place_crank(size_t w, size_t count, const real *o, size_t first, real *qd,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qd[(0)*w + k] = o->entry[0][first + k];
-        t->singular[k] += o->singular[first + k];
+        qd[(0)*w + k] = o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
+        t->total[k] += o[2*count + first + k];
     }
 }
 
-INLINE void joint_rates_legs_rrr(const prepared *m, size_t leg, size_t legs, const
-    joint_rates_values *s, size_t states, size_t count, joint_rates_results_rrr *o)
+INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_rrr = m->size_rrr[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x;
-        const real S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr =
-            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr;
-        const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
-        const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr;
-        const real axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        /* (rrr-V1) velocity of the connection point */
-        const real S_dot_rrr_x = t_dot_x - omega_z*q_rrr_in_base_y;
-        const real S_dot_rrr_y = t_dot_y + omega_z*q_rrr_in_base_x;
-        /* (rrr-V7) rate of joint 1 */
-        const real qd_1_rrr = (S_dot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_x)/r_1_rrr_r0_y;
-        const real qd_2_rrr =
-            inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*(c_2_rrr*r_1_rrr_x +
-            r_1_rrr_t*s_2_rrr));
-        o->entry[0][k] = -qd_1_rrr;
-        o->entry[1][k] = qd_2_rrr;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
+        /* (rrr-S_dot) velocity of the connection point */
+        const real omega_z = s[6*w + j];
+        const real t_dot_x = s[4*w + j];
+        const real rrr_S_dot_x = t_dot_x - omega_z*rrr_q_in_base_y;
+        const real t_dot_y = s[5*w + j];
+        const real rrr_S_dot_y = t_dot_y + omega_z*rrr_q_in_base_x;
+        /* (rrr-qd_2) rate of joint 2 */
+        const real rrr_qd_1 = (axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)/rrr_r_1_r0_y;
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_qd_2 =
+            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*(rrr_c_2*rrr_r_1_x +
+            rrr_r_1_t*rrr_s_2));
+        o[0*count + k] = -rrr_qd_1;
+        o[1*count + k] = rrr_qd_2;
+        o[4*count + k] = rrr_qd_1 + rrr_qd_2;
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void joint_rates_place_rrr(size_t w, const joint_rates_results_rrr *o, size_t first, real
-    *qd, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        qd[(1)*w + k] = o->entry[0][first + k];
-        qd[(2)*w + k] = o->entry[1][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void joint_rates_run(const prepared *m, size_t w, const real *X, const real *V, real *qd,
+INLINE void joint_rates_place_rrr(size_t w, size_t count, const real *o, size_t first, real *qd,
     verdict *t)
 {
-    joint_rates_values values, *const s = &values;
-    joint_rates_results_rr results_rr;
-    joint_rates_results_rrr results_rrr;
-    joint_rates_before(w, X, V, s);
-    if (w == 1) {  /* the legs side by side */
-        joint_rates_legs_rr(m, 0, 1, s, 0, 1, &results_rr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            joint_rates_place_rr(w, &results_rr, leg, qd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            joint_rates_legs_rr(m, leg, 0, s, 1, w, &results_rr);
-            joint_rates_place_rr(w, &results_rr, 0, qd, t);
-        }
+    for (size_t k = 0; k < w; ++k) {
+        qd[(1)*w + k] = o[0*count + first + k];
+        qd[(2)*w + k] = o[1*count + first + k];
+        t->unreachable[k] += o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
-    if (w == 1) {  /* the legs side by side */
-        joint_rates_legs_rrr(m, 0, 1, s, 0, 1, &results_rrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            joint_rates_place_rrr(w, &results_rrr, leg, qd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            joint_rates_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
-            joint_rates_place_rrr(w, &results_rrr, 0, qd, t);
-        }
+}
+
+INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+{
+    real s[7] = {0}, o_crank[3*LEGS(1)] = {0}, o_rrr[5*LEGS(1)] = {0};
+    joint_rates_before(1, X, V, s);
+    joint_rates_legs_crank(m, 1, 0, 1, s, 0, LEGS(1), o_crank);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        joint_rates_place_crank(1, LEGS(1), o_crank, leg, qd, t);
+    }
+    joint_rates_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), o_rrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        joint_rates_place_rrr(1, LEGS(1), o_rrr, leg, qd, t);
+    }
+}
+
+INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
+    verdict *t)
+{
+    real s[7*LANES], o_crank[3*LANES], o_rrr[5*LANES];
+    joint_rates_before(LANES, X, V, s);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        joint_rates_legs_crank(m, LANES, leg, 0, s, 1, LANES, o_crank);
+        joint_rates_place_crank(LANES, LANES, o_crank, 0, qd, t);
+    }
+    for (size_t leg = 0; leg < 1; ++leg) {
+        joint_rates_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        joint_rates_place_rrr(LANES, LANES, o_rrr, 0, qd, t);
     }
 }
 
 /* ---- joint_accelerations: 100 mul, 55 add, 3 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
-        omega_z[LANES], t_ddot_x[LANES], t_ddot_y[LANES], alpha_z[LANES];
-} joint_accelerations_values;
-typedef struct {
-    real entry[1][8], singular[8];
-} joint_accelerations_results_rr;
-typedef struct {
-    real entry[2][8], unreachable[8], singular[8];
-} joint_accelerations_results_rrr;
-
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A,
-    joint_accelerations_values *s)
+INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
+    *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real A_2 = A[2*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real omega_z = V_2;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
+        const real A_2 = A[2*w + k];
         const real alpha_z = A_2;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->alpha_z[k] = alpha_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
+        s[4*w + k] = t_dot_x;
+        s[5*w + k] = t_dot_y;
+        s[6*w + k] = omega_z;
+        s[7*w + k] = t_ddot_x;
+        s[8*w + k] = t_ddot_y;
+        s[9*w + k] = alpha_z;
     }
 }
 
-INLINE void joint_accelerations_legs_rr(const prepared *m, size_t leg, size_t legs, const
-    joint_accelerations_values *s, size_t states, size_t count, joint_accelerations_results_rr *o)
+INLINE void joint_accelerations_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs,
+    const real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real inv_rr_platform_joint_offset_x = m->inv_rr_platform_joint_offset_x[i];
-        const real n_c_rr_t = m->n_c_rr_t[i];
-        const real root_1_rr_t = m->root_1_rr_t[i];
-        const real rr_base_frame_xx = m->rr_base_frame_xx[i];
-        const real rr_base_frame_xy = m->rr_base_frame_xy[i];
-        const real rr_base_frame_yx = m->rr_base_frame_yx[i];
-        const real rr_base_frame_yy = m->rr_base_frame_yy[i];
-        const real rr_base_point_x = m->rr_base_point_x[i];
-        const real rr_base_point_y = m->rr_base_point_y[i];
-        const real rr_platform_joint_offset_x = m->rr_platform_joint_offset_x[i];
-        const real rr_platform_point_x = m->rr_platform_point_x[i];
-        const real rr_platform_point_y = m->rr_platform_point_y[i];
-        /* (rr-K1) from the base point to the connection point */
-        const real q_rr_in_base_x = R_xx*rr_platform_point_x - R_yx*rr_platform_point_y;
-        const real q_rr_in_base_y = R_xx*rr_platform_point_y + R_yx*rr_platform_point_x;
-        const real S_rr_x = q_rr_in_base_x + t_x - rr_base_point_x;
-        const real S_rr_y = q_rr_in_base_y + t_y - rr_base_point_y;
-        /* (rr-K3) squared amplitude */
-        const real rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy;
-        const real rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx;
-        const real rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
-        /* (rr-K5) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1_rr = 1/(root(rho2_1_rr));
-        const real c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x;
-        /* (rr-K6) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rr = inv_root_1_rr*rho2_1_rr_t*rr_platform_joint_offset_x;
-        /* (rr-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_rr_x = t_ddot_x - alpha_z*q_rr_in_base_y;
-        const real a_p_rr_y = t_ddot_y + alpha_z*q_rr_in_base_x;
-        /* (rr-A3) acceleration of the connection point */
-        const real S_ddot_rr_x = a_p_rr_x - omega_z*omega_z*q_rr_in_base_x;
-        const real S_ddot_rr_y = a_p_rr_y - omega_z*omega_z*q_rr_in_base_y;
-        /* (rr-A7) acceleration of joint 1 */
-        const real qdd_1_rr = inv_rr_platform_joint_offset_x*(S_ddot_rr_x*(c_1_rr*rr_base_frame_xy
-            - rr_base_frame_xx*s_1_rr) + S_ddot_rr_y*(c_1_rr*rr_base_frame_yy -
-            rr_base_frame_yx*s_1_rr));
-        o->entry[0][k] = qdd_1_rr;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rr) > TOLERANCE*TOLERANCE*root_1_rr_t);
+        /* (crank-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
+        const real crank_platform_point_x = m->crank_platform_point_x[i];
+        const real crank_platform_point_y = m->crank_platform_point_y[i];
+        const real crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y;
+        const real crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x;
+        const real crank_base_point_x = m->crank_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x;
+        const real crank_base_point_y = m->crank_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y;
+        /* (crank-rho2_1) squared amplitude */
+        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
+        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
+        const real crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy;
+        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
+        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
+        const real crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx +
+            crank_S_y*crank_base_frame_yx;
+        const real crank_n_c_t = m->crank_n_c_t[i];
+        const real crank_rho2_1 = crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t +
+            crank_rho2_1_t_2*crank_rho2_1_t_2);
+        /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_crank_root_1 = 1/(root(crank_rho2_1));
+        const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
+        const real crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1;
+        /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
+        const real crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1;
+        /* (crank-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_z = s[9*w + j];
+        const real t_ddot_x = s[7*w + j];
+        const real crank_a_p_x = t_ddot_x - alpha_z*crank_q_in_base_y;
+        const real t_ddot_y = s[8*w + j];
+        const real crank_a_p_y = t_ddot_y + alpha_z*crank_q_in_base_x;
+        /* (crank-S_ddot) acceleration of the connection point */
+        const real omega_z = s[6*w + j];
+        const real crank_S_ddot_x = crank_a_p_x - crank_q_in_base_x*omega_z*omega_z;
+        const real crank_S_ddot_y = crank_a_p_y - crank_q_in_base_y*omega_z*omega_z;
+        /* (crank-qdd_1) acceleration of joint 1 */
+        const real inv_crank_platform_joint_offset_x = m->inv_crank_platform_joint_offset_x[i];
+        const real crank_qdd_1 =
+            inv_crank_platform_joint_offset_x*(crank_S_ddot_x*(crank_base_frame_xy*crank_c_1 -
+            crank_base_frame_xx*crank_s_1) + crank_S_ddot_y*(crank_base_frame_yy*crank_c_1 -
+            crank_base_frame_yx*crank_s_1));
+        o[0*count + k] = crank_qdd_1;
+        o[2*count + k] = crank_qdd_1;
+        const real crank_root_1_t = m->crank_root_1_t[i];
+        o[1*count + k] = UNLESS(magnitude(crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
     }
 }
 
-INLINE void joint_accelerations_place_rr(size_t w, const joint_accelerations_results_rr *o, size_t
-    first, real *qdd, verdict *t)
+INLINE void joint_accelerations_place_crank(size_t w, size_t count, const real *o, size_t first,
+    real *qdd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qdd[(0)*w + k] = o->entry[0][first + k];
-        t->singular[k] += o->singular[first + k];
+        qdd[(0)*w + k] = o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
+        t->total[k] += o[2*count + first + k];
     }
 }
 
-INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t leg, size_t legs, const
-    joint_accelerations_values *s, size_t states, size_t count, joint_accelerations_results_rrr
-    *o)
+INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs,
+    const real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_rrr = m->size_rrr[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x;
-        const real S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr =
-            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr;
-        const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
-        const real r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr;
-        const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr;
-        const real axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        /* (rrr-V1) velocity of the connection point */
-        const real S_dot_rrr_t = omega_z*q_rrr_in_base_y;
-        const real S_dot_rrr_t_2 = omega_z*q_rrr_in_base_x;
-        const real S_dot_rrr_x = t_dot_x - S_dot_rrr_t;
-        const real S_dot_rrr_y = S_dot_rrr_t_2 + t_dot_y;
-        /* (rrr-V7) rate of joint 1 */
-        const real qd_1_rrr = inv_r_1_rrr_r0_y*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_x);
-        /* (rrr-V11) angular velocity of link 2 */
-        const real omega_2_rrr_z =
-            inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
-        /* (rrr-V10) centripetal tensor of link 1 */
-        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
-        /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
-        /* (rrr-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_rrr_x = t_ddot_x - alpha_z*q_rrr_in_base_y;
-        const real a_p_rrr_y = t_ddot_y + alpha_z*q_rrr_in_base_x;
-        /* (rrr-A3) acceleration of the connection point */
-        const real S_ddot_rrr_x = a_p_rrr_x - S_dot_rrr_t_2*omega_z;
-        const real S_ddot_rrr_y = a_p_rrr_y - S_dot_rrr_t*omega_z;
-        /* (rrr-A6) acceleration of the connection point left to the joint accelerations */
-        const real rel_rrr_x = S_ddot_rrr_x*axis_y_rrr_axes2_in_base_y - bias_rrr_x -
-            S_ddot_rrr_y*axis_y_rrr_axes2_in_base_x;
-        const real rel_rrr_y = S_ddot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
-        /* (rrr-A8) acceleration of joint 1 */
-        const real qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x;
-        const real qdd_2_rrr = inv_rrr_platform_joint_offset_x*(rel_rrr_y +
-            qdd_1_rrr*r_1_rrr_r0_x);
-        o->entry[0][k] = -qdd_1_rrr;
-        o->entry[1][k] = qdd_2_rrr;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-S_dot) velocity of the connection point */
+        const real omega_z = s[6*w + j];
+        const real rrr_S_dot_t = omega_z*rrr_q_in_base_y;
+        const real rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x;
+        const real t_dot_x = s[4*w + j];
+        const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
+        const real t_dot_y = s[5*w + j];
+        const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
+        /* (rrr-qd_2) rate of joint 2 */
+        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y);
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_omega_2_z =
+            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-W_1) centripetal tensor of link 1 */
+        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_x = -rrr_omega_2_z*rrr_omega_2_z*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        /* (rrr-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_z = s[9*w + j];
+        const real t_ddot_x = s[7*w + j];
+        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y;
+        const real t_ddot_y = s[8*w + j];
+        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x;
+        /* (rrr-S_ddot) acceleration of the connection point */
+        const real rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2;
+        const real rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t;
+        /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
+        const real rrr_rel_x = axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x - rrr_bias_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y;
+        const real rrr_rel_y = axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-qdd_1) acceleration of joint 1 */
+        const real rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x;
+        const real rrr_qdd_2 = inv_rrr_platform_joint_offset_x*(rrr_rel_y +
+            rrr_qdd_1*rrr_r_1_r0_x);
+        o[0*count + k] = -rrr_qdd_1;
+        o[1*count + k] = rrr_qdd_2;
+        o[4*count + k] = rrr_qdd_1 + rrr_qdd_2;
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void joint_accelerations_place_rrr(size_t w, const joint_accelerations_results_rrr *o,
-    size_t first, real *qdd, verdict *t)
+INLINE void joint_accelerations_place_rrr(size_t w, size_t count, const real *o, size_t first,
+    real *qdd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qdd[(1)*w + k] = o->entry[0][first + k];
-        qdd[(2)*w + k] = o->entry[1][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        qdd[(1)*w + k] = o[0*count + first + k];
+        qdd[(2)*w + k] = o[1*count + first + k];
+        t->unreachable[k] += o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
 }
 
-INLINE void joint_accelerations_run(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd, verdict *t)
+INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd, verdict *t)
 {
-    joint_accelerations_values values, *const s = &values;
-    joint_accelerations_results_rr results_rr;
-    joint_accelerations_results_rrr results_rrr;
-    joint_accelerations_before(w, X, V, A, s);
-    if (w == 1) {  /* the legs side by side */
-        joint_accelerations_legs_rr(m, 0, 1, s, 0, 1, &results_rr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            joint_accelerations_place_rr(w, &results_rr, leg, qdd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            joint_accelerations_legs_rr(m, leg, 0, s, 1, w, &results_rr);
-            joint_accelerations_place_rr(w, &results_rr, 0, qdd, t);
-        }
+    real s[10] = {0}, o_crank[3*LEGS(1)] = {0}, o_rrr[5*LEGS(1)] = {0};
+    joint_accelerations_before(1, X, V, A, s);
+    joint_accelerations_legs_crank(m, 1, 0, 1, s, 0, LEGS(1), o_crank);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        joint_accelerations_place_crank(1, LEGS(1), o_crank, leg, qdd, t);
     }
-    if (w == 1) {  /* the legs side by side */
-        joint_accelerations_legs_rrr(m, 0, 1, s, 0, 1, &results_rrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            joint_accelerations_place_rrr(w, &results_rrr, leg, qdd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            joint_accelerations_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
-            joint_accelerations_place_rrr(w, &results_rrr, 0, qdd, t);
-        }
+    joint_accelerations_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), o_rrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        joint_accelerations_place_rrr(1, LEGS(1), o_rrr, leg, qdd, t);
+    }
+}
+
+INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, verdict *t)
+{
+    real s[10*LANES], o_crank[3*LANES], o_rrr[5*LANES];
+    joint_accelerations_before(LANES, X, V, A, s);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        joint_accelerations_legs_crank(m, LANES, leg, 0, s, 1, LANES, o_crank);
+        joint_accelerations_place_crank(LANES, LANES, o_crank, 0, qdd, t);
+    }
+    for (size_t leg = 0; leg < 1; ++leg) {
+        joint_accelerations_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        joint_accelerations_place_rrr(LANES, LANES, o_rrr, 0, qdd, t);
     }
 }
 
 /* ---- constraints: 18 mul, 11 add, 1 div, 1 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES];
-} constraints_values;
-typedef struct {
-    real entry[1][8], singular[8];
-} constraints_results_rr;
-
-INLINE void constraints_before(size_t w, const real *X, constraints_values *s)
+INLINE void constraints_before(size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
     }
 }
 
-INLINE void constraints_legs_rr(const prepared *m, size_t leg, size_t legs, const
-    constraints_values *s, size_t states, size_t count, constraints_results_rr *o)
+INLINE void constraints_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const
+    real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real n_c_rr_t = m->n_c_rr_t[i];
-        const real n_c_rr_x = m->n_c_rr_x[i];
-        const real root_1_rr_t = m->root_1_rr_t[i];
-        const real rr_base_frame_xx = m->rr_base_frame_xx[i];
-        const real rr_base_frame_xy = m->rr_base_frame_xy[i];
-        const real rr_base_frame_yx = m->rr_base_frame_yx[i];
-        const real rr_base_frame_yy = m->rr_base_frame_yy[i];
-        const real rr_base_point_x = m->rr_base_point_x[i];
-        const real rr_base_point_y = m->rr_base_point_y[i];
-        const real rr_platform_joint_offset_x = m->rr_platform_joint_offset_x[i];
-        const real rr_platform_point_x = m->rr_platform_point_x[i];
-        const real rr_platform_point_y = m->rr_platform_point_y[i];
-        /* (rr-K1) from the base point to the connection point */
-        const real S_rr_x = t_x + R_xx*rr_platform_point_x - rr_base_point_x -
-            R_yx*rr_platform_point_y;
-        const real S_rr_y = t_y + R_xx*rr_platform_point_y + R_yx*rr_platform_point_x -
-            rr_base_point_y;
-        /* (rr-K3) squared amplitude */
-        const real rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy;
-        const real rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx;
-        const real rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
-        /* (rr-K5) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1_rr = 1/(root(rho2_1_rr));
-        /* (M11) distance by which the leg misses the platform, along a direction left out */
-        const real phi_c1_rr_t =
-            n_c_rr_x*(inv_root_1_rr*rho2_1_rr_t*rho2_1_rr_t*rr_platform_joint_offset_x +
-            inv_root_1_rr*rho2_1_rr_t_2*rho2_1_rr_t_2*rr_platform_joint_offset_x -
-            rr_platform_joint_offset_x);
-        o->entry[0][k] = -phi_c1_rr_t;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rr) > TOLERANCE*TOLERANCE*root_1_rr_t);
+        /* (crank-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
+        const real crank_base_point_x = m->crank_base_point_x[i];
+        const real crank_platform_point_x = m->crank_platform_point_x[i];
+        const real crank_platform_point_y = m->crank_platform_point_y[i];
+        const real t_x = s[0*w + j];
+        const real crank_S_x = t_x + R_xx*crank_platform_point_x - crank_base_point_x -
+            R_yx*crank_platform_point_y;
+        const real crank_base_point_y = m->crank_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real crank_S_y = t_y + R_xx*crank_platform_point_y + R_yx*crank_platform_point_x -
+            crank_base_point_y;
+        /* (crank-rho2_1) squared amplitude */
+        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
+        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
+        const real crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy;
+        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
+        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
+        const real crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx +
+            crank_S_y*crank_base_frame_yx;
+        const real crank_n_c_t = m->crank_n_c_t[i];
+        const real crank_rho2_1 = crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t +
+            crank_rho2_1_t_2*crank_rho2_1_t_2);
+        /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_crank_root_1 = 1/(root(crank_rho2_1));
+        /* (crank-phi_c1) distance by which the leg misses the platform, along a direction left out */
+        const real crank_n_c_x = m->crank_n_c_x[i];
+        const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
+        const real crank_phi_c1_t =
+            crank_n_c_x*(crank_platform_joint_offset_x*crank_rho2_1_t*crank_rho2_1_t*inv_crank_root_1
+            + crank_platform_joint_offset_x*crank_rho2_1_t_2*crank_rho2_1_t_2*inv_crank_root_1 -
+            crank_platform_joint_offset_x);
+        o[0*count + k] = -crank_phi_c1_t;
+        o[2*count + k] = crank_phi_c1_t;
+        const real crank_root_1_t = m->crank_root_1_t[i];
+        o[1*count + k] = UNLESS(magnitude(crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
     }
 }
 
-INLINE void constraints_place_rr(size_t w, const constraints_results_rr *o, size_t first, real
+INLINE void constraints_place_crank(size_t w, size_t count, const real *o, size_t first, real
     *constraints, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        constraints[(0)*w + k] = o->entry[0][first + k];
-        t->singular[k] += o->singular[first + k];
+        constraints[(0)*w + k] = o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
+        t->total[k] += o[2*count + first + k];
     }
 }
 
-INLINE void constraints_run(const prepared *m, size_t w, const real *X, real *constraints, verdict
-    *t)
+INLINE void constraints_run(const prepared *m, const real *X, real *constraints, verdict *t)
 {
-    constraints_values values, *const s = &values;
-    constraints_results_rr results_rr;
-    constraints_before(w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        constraints_legs_rr(m, 0, 1, s, 0, 1, &results_rr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            constraints_place_rr(w, &results_rr, leg, constraints, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            constraints_legs_rr(m, leg, 0, s, 1, w, &results_rr);
-            constraints_place_rr(w, &results_rr, 0, constraints, t);
-        }
+    real s[4] = {0}, o_crank[3*LEGS(1)] = {0};
+    constraints_before(1, X, s);
+    constraints_legs_crank(m, 1, 0, 1, s, 0, LEGS(1), o_crank);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        constraints_place_crank(1, LEGS(1), o_crank, leg, constraints, t);
+    }
+}
+
+INLINE void constraints_run_lanes(const prepared *m, const real *X, real *constraints, verdict *t)
+{
+    real s[4*LANES], o_crank[3*LANES];
+    constraints_before(LANES, X, s);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        constraints_legs_crank(m, LANES, leg, 0, s, 1, LANES, o_crank);
+        constraints_place_crank(LANES, LANES, o_crank, 0, constraints, t);
     }
 }
 
 /* ---- legs: 143 mul, 80 add, 3 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
-        omega_z[LANES], t_ddot_x[LANES], t_ddot_y[LANES], alpha_z[LANES];
-} legs_values;
-typedef struct {
-    real entry[6][8], singular[8];
-} legs_results_rr;
-typedef struct {
-    real entry[4][8], unreachable[8], singular[8];
-} legs_results_rrr;
-
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, legs_values *s)
+INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real A_2 = A[2*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real omega_z = V_2;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
+        const real A_2 = A[2*w + k];
         const real alpha_z = A_2;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->alpha_z[k] = alpha_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
+        s[4*w + k] = t_dot_x;
+        s[5*w + k] = t_dot_y;
+        s[6*w + k] = omega_z;
+        s[7*w + k] = t_ddot_x;
+        s[8*w + k] = t_ddot_y;
+        s[9*w + k] = alpha_z;
     }
 }
 
-INLINE void legs_legs_rr(const prepared *m, size_t leg, size_t legs, const legs_values *s, size_t
-    states, size_t count, legs_results_rr *o)
+INLINE void legs_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real J_1_rr_zz = m->J_1_rr_zz[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_1_rr_x = m->h_1_rr_x[i];
-        const real h_1_rr_y = m->h_1_rr_y[i];
-        const real inv_rr_platform_joint_offset_x = m->inv_rr_platform_joint_offset_x[i];
-        const real n_c_rr_t = m->n_c_rr_t[i];
-        const real n_c_rr_x = m->n_c_rr_x[i];
-        const real root_1_rr_t = m->root_1_rr_t[i];
-        const real rr_base_frame_xx = m->rr_base_frame_xx[i];
-        const real rr_base_frame_xy = m->rr_base_frame_xy[i];
-        const real rr_base_frame_yx = m->rr_base_frame_yx[i];
-        const real rr_base_frame_yy = m->rr_base_frame_yy[i];
-        const real rr_base_point_x = m->rr_base_point_x[i];
-        const real rr_base_point_y = m->rr_base_point_y[i];
-        const real rr_platform_joint_offset_x = m->rr_platform_joint_offset_x[i];
-        const real rr_platform_point_x = m->rr_platform_point_x[i];
-        const real rr_platform_point_y = m->rr_platform_point_y[i];
-        /* (rr-K1) from the base point to the connection point */
-        const real q_rr_in_base_x = R_xx*rr_platform_point_x - R_yx*rr_platform_point_y;
-        const real q_rr_in_base_y = R_xx*rr_platform_point_y + R_yx*rr_platform_point_x;
-        const real S_rr_x = q_rr_in_base_x + t_x - rr_base_point_x;
-        const real S_rr_y = q_rr_in_base_y + t_y - rr_base_point_y;
-        /* (rr-K3) squared amplitude */
-        const real rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy;
-        const real rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx;
-        const real rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
-        /* (rr-K5) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1_rr = 1/(root(rho2_1_rr));
-        const real c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x;
-        /* (rr-K6) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rr = inv_root_1_rr*rho2_1_rr_t*rr_platform_joint_offset_x;
-        /* (rr-V4) reciprocal vector 1 */
-        const real axis_y_rr_axes1_in_base_x = c_1_rr*rr_base_frame_xy - rr_base_frame_xx*s_1_rr;
-        const real axis_y_rr_axes1_in_base_y = c_1_rr*rr_base_frame_yy - rr_base_frame_yx*s_1_rr;
-        const real w_1_rr_t = axis_y_rr_axes1_in_base_x*inv_rr_platform_joint_offset_x;
-        const real w_1_rr_t_2 = axis_y_rr_axes1_in_base_y*inv_rr_platform_joint_offset_x;
-        /* (rr-V3) unit vector that the leg's freedoms leave out */
-        const real n_c_rr_t_2 = axis_y_rr_axes1_in_base_y*n_c_rr_x;
-        const real n_c_rr_t_3 = axis_y_rr_axes1_in_base_x*n_c_rr_x;
-        /* (rr-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_rr_x = t_ddot_x - alpha_z*q_rr_in_base_y;
-        const real a_p_rr_y = t_ddot_y + alpha_z*q_rr_in_base_x;
-        /* (rr-A3) acceleration of the connection point */
-        const real S_ddot_rr_x = a_p_rr_x - omega_z*omega_z*q_rr_in_base_x;
-        const real S_ddot_rr_y = a_p_rr_y - omega_z*omega_z*q_rr_in_base_y;
-        /* (rr-N5) inertia moment of the links that turn with link 1, about their reference points */
-        const real mu_1_rr_z = h_1_rr_y*(c_1_rr*g_r0_x + g_r0_y*s_1_rr) +
-            J_1_rr_zz*inv_rr_platform_joint_offset_x*(S_ddot_rr_x*axis_y_rr_axes1_in_base_x +
-            S_ddot_rr_y*axis_y_rr_axes1_in_base_y) - h_1_rr_x*(c_1_rr*g_r0_y - g_r0_x*s_1_rr);
-        /* (rr-N11) force at the connection point that balances the leg's inertia and weight along all
+        /* (crank-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
+        const real crank_platform_point_x = m->crank_platform_point_x[i];
+        const real crank_platform_point_y = m->crank_platform_point_y[i];
+        const real crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y;
+        const real crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x;
+        const real crank_base_point_x = m->crank_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x;
+        const real crank_base_point_y = m->crank_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y;
+        /* (crank-rho2_1) squared amplitude */
+        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
+        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
+        const real crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy;
+        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
+        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
+        const real crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx +
+            crank_S_y*crank_base_frame_yx;
+        const real crank_n_c_t = m->crank_n_c_t[i];
+        const real crank_rho2_1 = crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t +
+            crank_rho2_1_t_2*crank_rho2_1_t_2);
+        /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_crank_root_1 = 1/(root(crank_rho2_1));
+        const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
+        const real crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1;
+        /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
+        const real crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1;
+        /* (crank-w_1) reciprocal vector 1 */
+        const real axis_y_crank_axes1_in_base_x = crank_base_frame_xy*crank_c_1 -
+            crank_base_frame_xx*crank_s_1;
+        const real axis_y_crank_axes1_in_base_y = crank_base_frame_yy*crank_c_1 -
+            crank_base_frame_yx*crank_s_1;
+        const real inv_crank_platform_joint_offset_x = m->inv_crank_platform_joint_offset_x[i];
+        const real crank_w_1_t = axis_y_crank_axes1_in_base_x*inv_crank_platform_joint_offset_x;
+        const real crank_w_1_t_2 = axis_y_crank_axes1_in_base_y*inv_crank_platform_joint_offset_x;
+        /* (crank-n_c) unit vector that the leg's freedoms leave out */
+        const real crank_n_c_x = m->crank_n_c_x[i];
+        const real crank_n_c_t_2 = axis_y_crank_axes1_in_base_y*crank_n_c_x;
+        const real crank_n_c_t_3 = axis_y_crank_axes1_in_base_x*crank_n_c_x;
+        /* (crank-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_z = s[9*w + j];
+        const real t_ddot_x = s[7*w + j];
+        const real crank_a_p_x = t_ddot_x - alpha_z*crank_q_in_base_y;
+        const real t_ddot_y = s[8*w + j];
+        const real crank_a_p_y = t_ddot_y + alpha_z*crank_q_in_base_x;
+        /* (crank-S_ddot) acceleration of the connection point */
+        const real omega_z = s[6*w + j];
+        const real crank_S_ddot_x = crank_a_p_x - crank_q_in_base_x*omega_z*omega_z;
+        const real crank_S_ddot_y = crank_a_p_y - crank_q_in_base_y*omega_z*omega_z;
+        /* (crank-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+        const real crank_J_1_zz = m->crank_J_1_zz[i];
+        const real crank_g_r0_x = m->crank_g_r0_x[i];
+        const real crank_g_r0_y = m->crank_g_r0_y[i];
+        const real crank_h_1_x = m->crank_h_1_x[i];
+        const real crank_h_1_y = m->crank_h_1_y[i];
+        const real crank_mu_1_z = crank_h_1_y*(crank_c_1*crank_g_r0_x + crank_g_r0_y*crank_s_1) +
+            crank_J_1_zz*inv_crank_platform_joint_offset_x*(axis_y_crank_axes1_in_base_x*crank_S_ddot_x
+            + axis_y_crank_axes1_in_base_y*crank_S_ddot_y) - crank_h_1_x*(crank_c_1*crank_g_r0_y -
+            crank_g_r0_x*crank_s_1);
+        /* (crank-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real G_rr_t = inv_rr_platform_joint_offset_x*mu_1_rr_z;
-        /* (rr-N14) leg force on the platform without actuation and without the mass at the connection
+        const real crank_G_t = crank_mu_1_z*inv_crank_platform_joint_offset_x;
+        /* (crank-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_rr_t = G_rr_t*axis_y_rr_axes1_in_base_x;
-        const real c_rr_t_2 = G_rr_t*axis_y_rr_axes1_in_base_y;
-        o->entry[0][k] = -c_rr_t;
-        o->entry[1][k] = -c_rr_t_2;
-        o->entry[2][k] = w_1_rr_t;
-        o->entry[3][k] = w_1_rr_t_2;
-        o->entry[4][k] = -n_c_rr_t_2;
-        o->entry[5][k] = n_c_rr_t_3;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rr) > TOLERANCE*TOLERANCE*root_1_rr_t);
+        const real crank_c_t = axis_y_crank_axes1_in_base_x*crank_G_t;
+        const real crank_c_t_2 = axis_y_crank_axes1_in_base_y*crank_G_t;
+        o[0*count + k] = -crank_c_t;
+        o[1*count + k] = -crank_c_t_2;
+        o[2*count + k] = crank_w_1_t;
+        o[3*count + k] = crank_w_1_t_2;
+        o[4*count + k] = -crank_n_c_t_2;
+        o[5*count + k] = crank_n_c_t_3;
+        const real crank_root_1_t = m->crank_root_1_t[i];
+        o[6*count + k] = UNLESS(magnitude(crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
     }
 }
 
-INLINE void legs_place_rr(size_t w, const legs_results_rr *o, size_t first, real *leg_force, real
-    *drive, real *constraint_direction, verdict *t)
+INLINE void legs_place_crank(size_t w, size_t count, const real *o, size_t first, real *leg_force,
+    real *drive, real *constraint_direction, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        leg_force[(0)*w + k] = o->entry[0][first + k];
-        leg_force[(1)*w + k] = o->entry[1][first + k];
-        drive[(0)*w + k] = o->entry[2][first + k];
-        drive[(1)*w + k] = o->entry[3][first + k];
-        constraint_direction[(0)*w + k] = o->entry[4][first + k];
-        constraint_direction[(1)*w + k] = o->entry[5][first + k];
-        t->singular[k] += o->singular[first + k];
+        leg_force[(0)*w + k] = o[0*count + first + k];
+        leg_force[(1)*w + k] = o[1*count + first + k];
+        drive[(0)*w + k] = o[2*count + first + k];
+        drive[(1)*w + k] = o[3*count + first + k];
+        constraint_direction[(0)*w + k] = o[4*count + first + k];
+        constraint_direction[(1)*w + k] = o[5*count + first + k];
+        t->singular[k] += o[6*count + first + k];
     }
 }
 
-INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs_values *s, size_t
-    states, size_t count, legs_results_rrr *o)
+INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real J_1_rrr_zz = m->J_1_rrr_zz[i];
-        const real J_2_rrr_zz = m->J_2_rrr_zz[i];
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real g_r0_x_2 = m->g_r0_x_2[i];
-        const real g_r0_y_2 = m->g_r0_y_2[i];
-        const real h_1_rrr_x = m->h_1_rrr_x[i];
-        const real h_1_rrr_y = m->h_1_rrr_y[i];
-        const real h_2_rrr_x = m->h_2_rrr_x[i];
-        const real h_2_rrr_y = m->h_2_rrr_y[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_link2_mass = m->rrr_link2_mass[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_rrr = m->size_rrr[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x;
-        const real S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr =
-            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr;
-        const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
-        const real r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr;
-        const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr;
-        const real axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        /* (rrr-V1) velocity of the connection point */
-        const real S_dot_rrr_t = omega_z*q_rrr_in_base_y;
-        const real S_dot_rrr_t_2 = omega_z*q_rrr_in_base_x;
-        const real S_dot_rrr_x = t_dot_x - S_dot_rrr_t;
-        const real S_dot_rrr_y = S_dot_rrr_t_2 + t_dot_y;
-        /* (rrr-V7) rate of joint 1 */
-        const real qd_1_rrr = inv_r_1_rrr_r0_y*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_x);
-        /* (rrr-V11) angular velocity of link 2 */
-        const real omega_2_rrr_z =
-            inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
-        /* (rrr-V10) centripetal tensor of link 1 */
-        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
-        /* (rrr-V12) centripetal tensor of link 2 */
-        const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
-        /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
-            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
-        /* (rrr-V5) reciprocal vector 1 */
-        const real w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y;
-        const real w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
-        /* (rrr-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_rrr_x = t_ddot_x - alpha_z*q_rrr_in_base_y;
-        const real a_p_rrr_y = t_ddot_y + alpha_z*q_rrr_in_base_x;
-        /* (rrr-A3) acceleration of the connection point */
-        const real S_ddot_rrr_x = a_p_rrr_x - S_dot_rrr_t_2*omega_z;
-        const real S_ddot_rrr_y = a_p_rrr_y - S_dot_rrr_t*omega_z;
-        const real S_ddot_rrr_tip_x = S_ddot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_ddot_rrr_y*axis_y_rrr_axes2_in_base_x;
-        const real S_ddot_rrr_tip_y = S_ddot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y;
-        /* (rrr-A6) acceleration of the connection point left to the joint accelerations */
-        const real rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x;
-        const real rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
-        /* (rrr-A8) acceleration of joint 1 */
-        const real qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x;
-        /* (rrr-N3) acceleration of the reference point of link 2, less gravity */
-        const real acc_2_rrr_x = S_ddot_rrr_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-S_dot) velocity of the connection point */
+        const real omega_z = s[6*w + j];
+        const real rrr_S_dot_t = omega_z*rrr_q_in_base_y;
+        const real rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x;
+        const real t_dot_x = s[4*w + j];
+        const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
+        const real t_dot_y = s[5*w + j];
+        const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
+        /* (rrr-qd_2) rate of joint 2 */
+        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y);
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_omega_2_z =
+            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-W_1) centripetal tensor of link 1 */
+        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-W_2) centripetal tensor of link 2 */
+        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y;
+        const real rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y;
+        /* (rrr-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_z = s[9*w + j];
+        const real t_ddot_x = s[7*w + j];
+        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y;
+        const real t_ddot_y = s[8*w + j];
+        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x;
+        /* (rrr-S_ddot) acceleration of the connection point */
+        const real rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2;
+        const real rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t;
+        const real rrr_S_ddot_tip_x = axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y;
+        const real rrr_S_ddot_tip_y = axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y;
+        /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
+        const real rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x;
+        const real rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-qdd_1) acceleration of joint 1 */
+        const real rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x;
+        /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real rrr_acc_2_x = rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
             axis_y_rrr_axes2_in_base_y*gravity_x;
-        const real acc_2_rrr_y = S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+        const real rrr_acc_2_y = rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
             axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-N23) inertia moment of the links that turn with link 1, about their reference points */
-        const real mu_1_rrr_z = h_1_rrr_y*(c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr) -
-            J_1_rrr_zz*qdd_1_rrr - h_1_rrr_x*(c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr);
-        /* (rrr-A16) angular acceleration of link 2 */
-        const real alpha_2_rrr_z = inv_rrr_platform_joint_offset_x*(rel_rrr_y +
-            qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr;
-        /* (rrr-N16) inertia moment of the links that turn with link 2, about their reference points */
-        const real mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x -
-            acc_2_rrr_x*h_2_rrr_y;
-        /* (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rrr-alpha_2) angular acceleration of link 2 */
+        const real rrr_alpha_2_z = inv_rrr_platform_joint_offset_x*(rrr_rel_y +
+            rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1;
+        /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
+        const real rrr_h_2_x = m->rrr_h_2_x[i];
+        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x -
+            rrr_acc_2_x*rrr_h_2_y;
+        /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
+        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
+        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
+        const real rrr_h_1_x = m->rrr_h_1_x[i];
+        const real rrr_h_1_y = m->rrr_h_1_y[i];
+        const real rrr_mu_1_z = rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
+            rrr_J_1_zz*rrr_qdd_1 - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
-        const real N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z;
-        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
+        const real rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z;
+        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z;
-        /* (rrr-N33) leg force on the platform without actuation and without the mass at the connection
+        const real rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z;
+        /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_rrr_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y -
-            inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x - N_1_rrr_z);
-        const real c_rrr_y = W_2_rrr_t*h_2_rrr_y - G_rrr_t - alpha_2_rrr_z*h_2_rrr_x;
-        /* (rrr-N38) leg force on the platform without actuation, the last link's mass included */
-        const real c_true_rrr_x = c_rrr_x - acc_2_rrr_x*rrr_link2_mass;
-        const real c_true_rrr_y = c_rrr_y - acc_2_rrr_y*rrr_link2_mass;
-        const real c_true_rrr_in_base_x = axis_y_rrr_axes2_in_base_x*c_true_rrr_y +
-            axis_y_rrr_axes2_in_base_y*c_true_rrr_x;
-        const real c_true_rrr_in_base_y = axis_y_rrr_axes2_in_base_y*c_true_rrr_y -
-            axis_y_rrr_axes2_in_base_x*c_true_rrr_x;
-        o->entry[0][k] = c_true_rrr_in_base_x;
-        o->entry[1][k] = c_true_rrr_in_base_y;
-        o->entry[2][k] = -w_1_rrr_t;
-        o->entry[3][k] = w_1_rrr_t_2;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
+        const real rrr_c_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y -
+            inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x - rrr_N_1_z);
+        const real rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x;
+        /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
+        const real rrr_link2_mass = m->rrr_link2_mass[i];
+        const real rrr_c_true_x = rrr_c_x - rrr_acc_2_x*rrr_link2_mass;
+        const real rrr_c_true_y = rrr_c_y - rrr_acc_2_y*rrr_link2_mass;
+        const real rrr_c_true_in_base_x = axis_y_rrr_axes2_in_base_x*rrr_c_true_y +
+            axis_y_rrr_axes2_in_base_y*rrr_c_true_x;
+        const real rrr_c_true_in_base_y = axis_y_rrr_axes2_in_base_y*rrr_c_true_y -
+            axis_y_rrr_axes2_in_base_x*rrr_c_true_x;
+        o[0*count + k] = rrr_c_true_in_base_x;
+        o[1*count + k] = rrr_c_true_in_base_y;
+        o[2*count + k] = -rrr_w_1_t;
+        o[3*count + k] = rrr_w_1_t_2;
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[5*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[4*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void legs_place_rrr(size_t w, const legs_results_rrr *o, size_t first, real *leg_force,
+INLINE void legs_place_rrr(size_t w, size_t count, const real *o, size_t first, real *leg_force,
     real *drive, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        leg_force[(3)*w + k] = o->entry[0][first + k];
-        leg_force[(4)*w + k] = o->entry[1][first + k];
-        drive[(3)*w + k] = o->entry[2][first + k];
-        drive[(4)*w + k] = o->entry[3][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        leg_force[(3)*w + k] = o[0*count + first + k];
+        leg_force[(4)*w + k] = o[1*count + first + k];
+        drive[(3)*w + k] = o[2*count + first + k];
+        drive[(4)*w + k] = o[3*count + first + k];
+        t->unreachable[k] += o[4*count + first + k];
+        t->singular[k] += o[5*count + first + k];
     }
 }
 
-INLINE void legs_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
-    real *leg_force, real *drive, real *constraint_direction, verdict *t)
+INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
+    *leg_force, real *drive, real *constraint_direction, verdict *t)
 {
-    legs_values values, *const s = &values;
-    legs_results_rr results_rr;
-    legs_results_rrr results_rrr;
-    clear(leg_force, 6*w);
-    clear(drive, 6*w);
-    clear(constraint_direction, 3*w);
-    legs_before(w, X, V, A, s);
-    if (w == 1) {  /* the legs side by side */
-        legs_legs_rr(m, 0, 1, s, 0, 1, &results_rr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            legs_place_rr(w, &results_rr, leg, leg_force, drive, constraint_direction, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            legs_legs_rr(m, leg, 0, s, 1, w, &results_rr);
-            legs_place_rr(w, &results_rr, 0, leg_force, drive, constraint_direction, t);
-        }
+    real s[10] = {0}, o_crank[7*LEGS(1)] = {0}, o_rrr[6*LEGS(1)] = {0};
+    clear(leg_force, 6);
+    clear(drive, 6);
+    clear(constraint_direction, 3);
+    legs_before(1, X, V, A, s);
+    legs_legs_crank(m, 1, 0, 1, s, 0, LEGS(1), o_crank);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        legs_place_crank(1, LEGS(1), o_crank, leg, leg_force, drive, constraint_direction, t);
     }
-    if (w == 1) {  /* the legs side by side */
-        legs_legs_rrr(m, 0, 1, s, 0, 1, &results_rrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            legs_place_rrr(w, &results_rrr, leg, leg_force, drive, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            legs_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
-            legs_place_rrr(w, &results_rrr, 0, leg_force, drive, t);
-        }
+    legs_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), o_rrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        legs_place_rrr(1, LEGS(1), o_rrr, leg, leg_force, drive, t);
     }
 }
 
 /* ---- potential: 80 mul, 52 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], potential_t_3[LANES], sum[2][LANES];
-} potential_values;
-typedef struct {
-    real sum[1][8], singular[8];
-} potential_results_rr;
-typedef struct {
-    real sum[1][8], unreachable[8], singular[8];
-} potential_results_rrr;
-
-INLINE void potential_before(const prepared *m, size_t w, const real *X, potential_values *s)
+INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real R_xx = cosine(X_2);
+        const real R_yx = sine(X_2);
+        /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real h_star_x = m->h_star_x;
         const real h_star_y = m->h_star_y;
         const real m_star = m->m_star;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* (V1) potential energy */
-        const real potential_t_3 = gravity_x*(R_xx*h_star_x + m_star*t_x - R_yx*h_star_y) +
+        const real potential_t = gravity_x*(R_xx*h_star_x + m_star*t_x - R_yx*h_star_y) +
             gravity_y*(R_xx*h_star_y + R_yx*h_star_x + m_star*t_y);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->potential_t_3[k] = potential_t_3;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
+        s[4*w + k] = potential_t;
     }
 }
 
-INLINE void potential_legs_rr(const prepared *m, size_t leg, size_t legs, const potential_values
-    *s, size_t states, size_t count, int add, potential_results_rr *o)
+INLINE void potential_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
+        /* (crank-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
+        const real crank_base_point_x = m->crank_base_point_x[i];
+        const real crank_platform_point_x = m->crank_platform_point_x[i];
+        const real crank_platform_point_y = m->crank_platform_point_y[i];
+        const real t_x = s[0*w + j];
+        const real crank_S_x = t_x + R_xx*crank_platform_point_x - crank_base_point_x -
+            R_yx*crank_platform_point_y;
+        const real crank_base_point_y = m->crank_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real crank_S_y = t_y + R_xx*crank_platform_point_y + R_yx*crank_platform_point_x -
+            crank_base_point_y;
+        /* (crank-rho2_1) squared amplitude */
+        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
+        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
+        const real crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy;
+        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
+        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
+        const real crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx +
+            crank_S_y*crank_base_frame_yx;
+        const real crank_n_c_t = m->crank_n_c_t[i];
+        const real crank_rho2_1 = crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t +
+            crank_rho2_1_t_2*crank_rho2_1_t_2);
+        /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_crank_root_1 = 1/(root(crank_rho2_1));
+        const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
+        const real crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1;
+        /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
+        const real crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1;
+        /* (crank-h_1) first moment of link 1 about the origin of link 1 */
+        const real crank_h_1_x = m->crank_h_1_x[i];
+        const real crank_h_1_y = m->crank_h_1_y[i];
+        const real crank_h_1_r0_x = crank_c_1*crank_h_1_x - crank_h_1_y*crank_s_1;
+        const real crank_h_1_r0_y = crank_c_1*crank_h_1_y + crank_h_1_x*crank_s_1;
+        /* (potential) potential energy */
+        const real crank_potential_t = m->crank_potential_t[i];
+        const real crank_potential_t_2 = m->crank_potential_t_2[i];
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real h_1_rr_x = m->h_1_rr_x[i];
-        const real h_1_rr_y = m->h_1_rr_y[i];
-        const real n_c_rr_t = m->n_c_rr_t[i];
-        const real potential_t = m->potential_t[i];
-        const real potential_t_2 = m->potential_t_2[i];
-        const real root_1_rr_t = m->root_1_rr_t[i];
-        const real rr_base_frame_xx = m->rr_base_frame_xx[i];
-        const real rr_base_frame_xy = m->rr_base_frame_xy[i];
-        const real rr_base_frame_yx = m->rr_base_frame_yx[i];
-        const real rr_base_frame_yy = m->rr_base_frame_yy[i];
-        const real rr_base_point_x = m->rr_base_point_x[i];
-        const real rr_base_point_y = m->rr_base_point_y[i];
-        const real rr_platform_joint_offset_x = m->rr_platform_joint_offset_x[i];
-        const real rr_platform_point_x = m->rr_platform_point_x[i];
-        const real rr_platform_point_y = m->rr_platform_point_y[i];
-        /* (rr-K1) from the base point to the connection point */
-        const real S_rr_x = t_x + R_xx*rr_platform_point_x - rr_base_point_x -
-            R_yx*rr_platform_point_y;
-        const real S_rr_y = t_y + R_xx*rr_platform_point_y + R_yx*rr_platform_point_x -
-            rr_base_point_y;
-        /* (rr-K3) squared amplitude */
-        const real rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy;
-        const real rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx;
-        const real rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
-        /* (rr-K5) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1_rr = 1/(root(rho2_1_rr));
-        const real c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x;
-        /* (rr-K6) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rr = inv_root_1_rr*rho2_1_rr_t*rr_platform_joint_offset_x;
-        /* (rr-G3) first moment of link 1 about the origin of link 1 */
-        const real h_1_rr_r0_x = c_1_rr*h_1_rr_x - h_1_rr_y*s_1_rr;
-        const real h_1_rr_r0_y = c_1_rr*h_1_rr_y + h_1_rr_x*s_1_rr;
-        /* (V1) potential energy */
-        const real potential_t_4 = gravity_x*(potential_t + h_1_rr_r0_x*rr_base_frame_xx +
-            h_1_rr_r0_y*rr_base_frame_xy) + gravity_y*(potential_t_2 +
-            h_1_rr_r0_x*rr_base_frame_yx + h_1_rr_r0_y*rr_base_frame_yy);
-        o->sum[0][k] = add ? o->sum[0][k] + potential_t_4 : potential_t_4;  /* total_rr */
-        o->singular[k] = UNLESS(magnitude(rho2_1_rr) > TOLERANCE*TOLERANCE*root_1_rr_t);
+        const real crank_potential_t_3 = gravity_x*(crank_potential_t +
+            crank_base_frame_xx*crank_h_1_r0_x + crank_base_frame_xy*crank_h_1_r0_y) +
+            gravity_y*(crank_potential_t_2 + crank_base_frame_yx*crank_h_1_r0_x +
+            crank_base_frame_yy*crank_h_1_r0_y);
+        terms[0*count + k] = add ? terms[0*count + k] + crank_potential_t_3 : crank_potential_t_3;  /* total_crank */
+        const real crank_root_1_t = m->crank_root_1_t[i];
+        o[0*count + k] = UNLESS(magnitude(crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
     }
 }
 
-INLINE void potential_place_rr(size_t w, const potential_results_rr *o, size_t first, verdict *t)
+INLINE void potential_place_crank(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
+        t->singular[k] += o[0*count + first + k];
     }
 }
 
-INLINE void potential_legs_rrr(const prepared *m, size_t leg, size_t legs, const potential_values
-    *s, size_t states, size_t count, int add, potential_results_rrr *o)
+INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real b_rrr_r0_x = m->b_rrr_r0_x[i];
-        const real b_rrr_r0_y = m->b_rrr_r0_y[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real g_r0_x_2 = m->g_r0_x_2[i];
-        const real g_r0_y_2 = m->g_r0_y_2[i];
-        const real h_1_rrr_x = m->h_1_rrr_x[i];
-        const real h_1_rrr_y = m->h_1_rrr_y[i];
-        const real h_2_rrr_x = m->h_2_rrr_x[i];
-        const real h_2_rrr_y = m->h_2_rrr_y[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_link1_mass = m->rrr_link1_mass[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real S_rrr_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x -
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x -
             R_yx*rrr_platform_point_y;
-        const real S_rrr_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x -
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x -
             rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr =
-            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
-        /* (V1) potential energy */
-        const real potential_t_5 = (c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr)*(h_1_rrr_x +
-            c_2_rrr*h_2_rrr_x + h_2_rrr_y*s_2_rrr + rrr_link1_mass*(b_rrr_r0_x*c_1_rrr +
-            b_rrr_r0_y*s_1_rrr)) + (c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr)*(h_1_rrr_y +
-            c_2_rrr*h_2_rrr_y + rrr_link1_mass*(b_rrr_r0_y*c_1_rrr - b_rrr_r0_x*s_1_rrr) -
-            h_2_rrr_x*s_2_rrr);
-        o->sum[0][k] = add ? o->sum[0][k] + potential_t_5 : potential_t_5;  /* total_rrr */
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (potential) potential energy */
+        const real rrr_b_r0_x = m->rrr_b_r0_x[i];
+        const real rrr_b_r0_y = m->rrr_b_r0_y[i];
+        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
+        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
+        const real rrr_h_1_x = m->rrr_h_1_x[i];
+        const real rrr_h_1_y = m->rrr_h_1_y[i];
+        const real rrr_h_2_x = m->rrr_h_2_x[i];
+        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_link1_mass = m->rrr_link1_mass[i];
+        const real rrr_potential_t = (rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1)*(rrr_h_1_x +
+            rrr_c_2*rrr_h_2_x + rrr_h_2_y*rrr_s_2 + rrr_link1_mass*(rrr_b_r0_x*rrr_c_1 +
+            rrr_b_r0_y*rrr_s_1)) + (rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)*(rrr_h_1_y +
+            rrr_c_2*rrr_h_2_y + rrr_link1_mass*(rrr_b_r0_y*rrr_c_1 - rrr_b_r0_x*rrr_s_1) -
+            rrr_h_2_x*rrr_s_2);
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_potential_t : rrr_potential_t;  /* total_rrr */
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
+        o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void potential_place_rrr(size_t w, const potential_results_rrr *o, size_t first, verdict
-    *t)
+INLINE void potential_place_rrr(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        t->unreachable[k] += o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
     }
 }
 
-INLINE void potential_after(size_t w, const potential_values *s, real *potential)
+INLINE void potential_after(size_t w, const real *s, const real *sums, real *potential)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real potential_t_3 = s->potential_t_3[k];
-        const real total_rr = s->sum[0][k];
-        const real total_rrr = s->sum[1][k];
-        /* (V1) potential energy */
-        const real potential_ = -potential_t_3 - total_rr - total_rrr;
+        /* (potential) potential energy */
+        const real potential_t = s[4*w + k];
+        const real total_crank = sums[0*w + k];
+        const real total_rrr = sums[1*w + k];
+        const real potential_ = -potential_t - total_crank - total_rrr;
         potential[0*w + k] = potential_;
     }
 }
 
-INLINE void potential_run(const prepared *m, size_t w, const real *X, real *potential, verdict *t)
+INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    potential_values values, *const s = &values;
-    potential_results_rr results_rr;
-    potential_results_rrr results_rrr;
-    potential_before(m, w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        memset(results_rr.sum, 0, sizeof results_rr.sum);
-        potential_legs_rr(m, 0, 1, s, 0, 1, 0, &results_rr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            potential_place_rr(w, &results_rr, leg, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_rr.sum[n], 1);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rr.sum, 0, sizeof results_rr.sum);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            potential_legs_rr(m, leg, 0, s, 1, w, 1, &results_rr);
-            potential_place_rr(w, &results_rr, 0, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_rr.sum[n][k];
-            }
-        }
+    real s[5] = {0}, sums[2] = {0}, terms_crank[1*LEGS(1)] = {0}, o_crank[1*LEGS(1)] = {0},
+        terms_rrr[1*LEGS(1)] = {0}, o_rrr[2*LEGS(1)] = {0};
+    potential_before(m, 1, X, s);
+    potential_legs_crank(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_crank, o_crank);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        potential_place_crank(1, LEGS(1), o_crank, leg, t);
     }
-    if (w == 1) {  /* the legs side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        potential_legs_rrr(m, 0, 1, s, 0, 1, 0, &results_rrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            potential_place_rrr(w, &results_rrr, leg, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[1 + n][k] = total(results_rrr.sum[n], 1);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            potential_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
-            potential_place_rrr(w, &results_rrr, 0, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[1 + n][k] = results_rrr.sum[n][k];
-            }
-        }
+    for (size_t n = 0; n < 1; ++n) {
+        sums[n] = total(terms_crank + n*LEGS(1), 1);
     }
-    potential_after(w, s, potential);
+    potential_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        potential_place_rrr(1, LEGS(1), o_rrr, leg, t);
+    }
+    for (size_t n = 0; n < 1; ++n) {
+        sums[1 + n] = total(terms_rrr + n*LEGS(1), 1);
+    }
+    potential_after(1, s, sums, potential);
 }
 
 /* ---- condition: 83 mul, 46 add, 3 div, 5 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], sum[2][LANES];
-} condition_values;
-typedef struct {
-    real sum[1][8], entry[7][8], singular[8];
-} condition_results_rr;
-typedef struct {
-    real sum[1][8], entry[5][8], unreachable[8], singular[8];
-} condition_results_rrr;
-
-INLINE void condition_before(const prepared *m, size_t w, const real *X, condition_values *s, real
-    *lengths)
+INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real legs_size = m->legs_size;
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
+        const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
+        t->total[k] += legs_size;
     }
 }
 
-INLINE void condition_legs_rr(const prepared *m, size_t leg, size_t legs, const condition_values
-    *s, size_t states, size_t count, int add, condition_results_rr *o)
+INLINE void condition_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
+        /* (crank-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
+        const real crank_platform_point_x = m->crank_platform_point_x[i];
+        const real crank_platform_point_y = m->crank_platform_point_y[i];
+        const real crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y;
+        const real crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x;
+        const real crank_base_point_x = m->crank_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x;
+        const real crank_base_point_y = m->crank_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y;
+        /* (crank-rho2_1) squared amplitude */
+        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
+        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
+        const real crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy;
+        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
+        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
+        const real crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx +
+            crank_S_y*crank_base_frame_yx;
+        const real crank_n_c_t = m->crank_n_c_t[i];
+        const real crank_rho2_1 = crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t +
+            crank_rho2_1_t_2*crank_rho2_1_t_2);
+        /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_crank_root_1 = 1/(root(crank_rho2_1));
+        const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
+        const real crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1;
+        /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
+        const real crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1;
+        /* (crank-w_1) reciprocal vector 1 */
+        const real axis_y_crank_axes1_in_base_x = crank_base_frame_xy*crank_c_1 -
+            crank_base_frame_xx*crank_s_1;
+        const real axis_y_crank_axes1_in_base_y = crank_base_frame_yy*crank_c_1 -
+            crank_base_frame_yx*crank_s_1;
+        const real inv_crank_platform_joint_offset_x = m->inv_crank_platform_joint_offset_x[i];
+        const real crank_w_1_t = axis_y_crank_axes1_in_base_x*inv_crank_platform_joint_offset_x;
+        const real crank_w_1_t_2 = axis_y_crank_axes1_in_base_y*inv_crank_platform_joint_offset_x;
+        /* (crank-H_a_1) moment of the column's unit force about the platform origin */
+        const real crank_H_a_1_z = crank_q_in_base_x*crank_w_1_t_2 -
+            crank_q_in_base_y*crank_w_1_t;
+        /* (crank-n_c) unit vector that the leg's freedoms leave out */
+        const real crank_n_c_x = m->crank_n_c_x[i];
+        const real crank_n_c_t_2 = axis_y_crank_axes1_in_base_y*crank_n_c_x;
+        const real crank_n_c_t_3 = axis_y_crank_axes1_in_base_x*crank_n_c_x;
+        /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
+        const real crank_Hk_a_1_z = crank_n_c_t_2*crank_q_in_base_y +
+            crank_n_c_t_3*crank_q_in_base_x;
+        /* (spread) rms distance of the platform points from their centroid */
         const real b_c_x = m->b_c_x;
+        const real crank_spread_t = b_c_x - crank_platform_point_x;
         const real b_c_y = m->b_c_y;
-        const real inv_root_1_rr_t_2 = m->inv_root_1_rr_t_2[i];
-        const real inv_rr_platform_joint_offset_x = m->inv_rr_platform_joint_offset_x[i];
-        const real n_c_rr_t = m->n_c_rr_t[i];
-        const real n_c_rr_x = m->n_c_rr_x[i];
-        const real root_1_rr_t = m->root_1_rr_t[i];
-        const real rr_base_frame_xx = m->rr_base_frame_xx[i];
-        const real rr_base_frame_xy = m->rr_base_frame_xy[i];
-        const real rr_base_frame_yx = m->rr_base_frame_yx[i];
-        const real rr_base_frame_yy = m->rr_base_frame_yy[i];
-        const real rr_base_point_x = m->rr_base_point_x[i];
-        const real rr_base_point_y = m->rr_base_point_y[i];
-        const real rr_platform_joint_offset_x = m->rr_platform_joint_offset_x[i];
-        const real rr_platform_point_x = m->rr_platform_point_x[i];
-        const real rr_platform_point_y = m->rr_platform_point_y[i];
-        /* (rr-K1) from the base point to the connection point */
-        const real q_rr_in_base_x = R_xx*rr_platform_point_x - R_yx*rr_platform_point_y;
-        const real q_rr_in_base_y = R_xx*rr_platform_point_y + R_yx*rr_platform_point_x;
-        const real S_rr_x = q_rr_in_base_x + t_x - rr_base_point_x;
-        const real S_rr_y = q_rr_in_base_y + t_y - rr_base_point_y;
-        /* (rr-K3) squared amplitude */
-        const real rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy;
-        const real rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx;
-        const real rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
-        /* (rr-K5) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1_rr = 1/(root(rho2_1_rr));
-        const real c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x;
-        /* (rr-K6) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rr = inv_root_1_rr*rho2_1_rr_t*rr_platform_joint_offset_x;
-        /* (rr-V4) reciprocal vector 1 */
-        const real axis_y_rr_axes1_in_base_x = c_1_rr*rr_base_frame_xy - rr_base_frame_xx*s_1_rr;
-        const real axis_y_rr_axes1_in_base_y = c_1_rr*rr_base_frame_yy - rr_base_frame_yx*s_1_rr;
-        const real w_1_rr_t = axis_y_rr_axes1_in_base_x*inv_rr_platform_joint_offset_x;
-        const real w_1_rr_t_2 = axis_y_rr_axes1_in_base_y*inv_rr_platform_joint_offset_x;
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_1_rr_z = q_rr_in_base_x*w_1_rr_t_2 - q_rr_in_base_y*w_1_rr_t;
-        /* (rr-V3) unit vector that the leg's freedoms leave out */
-        const real n_c_rr_t_2 = axis_y_rr_axes1_in_base_y*n_c_rr_x;
-        const real n_c_rr_t_3 = axis_y_rr_axes1_in_base_x*n_c_rr_x;
-        /* (M10) moment of the column's unit force about the platform origin */
-        const real Hk_a_1_rr_z = n_c_rr_t_2*q_rr_in_base_y + n_c_rr_t_3*q_rr_in_base_x;
-        /* (C2) rms distance of the platform points from their centroid */
-        const real spread_t = b_c_x - rr_platform_point_x;
-        const real spread_t_2 = b_c_y - rr_platform_point_y;
-        const real spread_t_3 = spread_t*spread_t + spread_t_2*spread_t_2;
-        /* (rr-K4) amplitude: off the manifold the nearest angle is taken */
-        const real pivot_size = magnitude(rho2_1_rr);
-        const real pivot_root = root(inv_root_1_rr_t_2*pivot_size);
-        o->sum[0][k] = add ? o->sum[0][k] + spread_t_3 : spread_t_3;  /* total_rr */
-        o->entry[0][k] = w_1_rr_t;
-        o->entry[1][k] = w_1_rr_t_2;
-        o->entry[2][k] = H_a_1_rr_z;
-        o->entry[3][k] = -n_c_rr_t_2;
-        o->entry[4][k] = n_c_rr_t_3;
-        o->entry[5][k] = Hk_a_1_rr_z;
-        o->entry[6][k] = pivot_root;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rr) > TOLERANCE*TOLERANCE*root_1_rr_t);
+        const real crank_spread_t_2 = b_c_y - crank_platform_point_y;
+        const real crank_spread_t_3 = crank_spread_t*crank_spread_t +
+            crank_spread_t_2*crank_spread_t_2;
+        /* (crank-root_1) amplitude: off the manifold the nearest angle is taken */
+        const real crank_pivot_size = magnitude(crank_rho2_1);
+        const real inv_crank_root_1_t_2 = m->inv_crank_root_1_t_2[i];
+        const real crank_pivot_root = root(crank_pivot_size*inv_crank_root_1_t_2);
+        terms[0*count + k] = add ? terms[0*count + k] + crank_spread_t_3 : crank_spread_t_3;  /* total_crank */
+        o[0*count + k] = crank_w_1_t;
+        o[1*count + k] = crank_w_1_t_2;
+        o[2*count + k] = crank_H_a_1_z;
+        o[3*count + k] = -crank_n_c_t_2;
+        o[4*count + k] = crank_n_c_t_3;
+        o[5*count + k] = crank_Hk_a_1_z;
+        o[6*count + k] = crank_pivot_root;
+        o[8*count + k] = (crank_w_1_t + (crank_w_1_t_2 + crank_H_a_1_z)) + ((crank_n_c_t_2 +
+            crank_n_c_t_3) + (crank_Hk_a_1_z + crank_pivot_root));
+        const real crank_root_1_t = m->crank_root_1_t[i];
+        o[7*count + k] = UNLESS(magnitude(crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
     }
 }
 
-INLINE void condition_place_rr(size_t w, const condition_results_rr *o, size_t first, real *H,
+INLINE void condition_place_crank(size_t w, size_t count, const real *o, size_t first, real *H,
     real *Hk, real *pivots, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0)*w + k] = o->entry[0][first + k];
-        H[(2)*w + k] = o->entry[1][first + k];
-        H[(4)*w + k] = o->entry[2][first + k];
-        Hk[(0)*w + k] = o->entry[3][first + k];
-        Hk[(1)*w + k] = o->entry[4][first + k];
-        Hk[(2)*w + k] = o->entry[5][first + k];
-        pivots[(0)*w + k] = o->entry[6][first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(0)*w + k] = o[0*count + first + k];
+        H[(2)*w + k] = o[1*count + first + k];
+        H[(4)*w + k] = o[2*count + first + k];
+        Hk[(0)*w + k] = o[3*count + first + k];
+        Hk[(1)*w + k] = o[4*count + first + k];
+        Hk[(2)*w + k] = o[5*count + first + k];
+        pivots[(0)*w + k] = o[6*count + first + k];
+        t->singular[k] += o[7*count + first + k];
+        t->total[k] += o[8*count + first + k];
     }
 }
 
-INLINE void condition_legs_rrr(const prepared *m, size_t leg, size_t legs, const condition_values
-    *s, size_t states, size_t count, int add, condition_results_rrr *o)
+INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real b_c_x = m->b_c_x;
-        const real b_c_y = m->b_c_y;
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_rho2_1_rrr_t_4 = m->inv_rho2_1_rrr_t_4[i];
-        const real inv_size_rrr = m->inv_size_rrr[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_rrr = m->size_rrr[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x;
-        const real S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr =
-            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
-        const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*rrr_platform_joint_offset_x*s_2_rrr;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr;
-        const real axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr;
-        const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        const real w_1_rrr_t = inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        const real rrr_w_1_t = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy);
-        const real w_1_rrr_t_2 = inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
+        const real rrr_w_1_t_2 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy);
-        /* (M9) moment of the column's unit force about the platform origin */
-        const real H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t;
-        /* (C2) rms distance of the platform points from their centroid */
-        const real spread_t_4 = b_c_x - rrr_platform_point_x;
-        const real spread_t_5 = b_c_y - rrr_platform_point_y;
-        const real spread_t_6 = spread_t_4*spread_t_4 + spread_t_5*spread_t_5;
-        /* (rrr-K8) squared amplitude */
-        const real pivot_size_2 = magnitude(rho2_1_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real pivot_size_3 = magnitude(r_1_rrr_r0_y);
-        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
+        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+        const real rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_x = m->b_c_x;
+        const real rrr_spread_t = b_c_x - rrr_platform_point_x;
+        const real b_c_y = m->b_c_y;
+        const real rrr_spread_t_2 = b_c_y - rrr_platform_point_y;
+        const real rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_pivot_size = magnitude(rrr_rho2_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real rrr_pivot_size_2 = magnitude(rrr_r_1_r0_y);
+        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real least_pivots = lesser(root(inv_rho2_1_rrr_t_4*pivot_size_2),
-            inv_size_rrr*pivot_size_3);
-        o->sum[0][k] = add ? o->sum[0][k] + spread_t_6 : spread_t_6;  /* total_rrr */
-        o->entry[0][k] = -w_1_rrr_t;
-        o->entry[1][k] = w_1_rrr_t_2;
-        o->entry[2][k] = H_a_1_rrr_z;
-        o->entry[3][k] = least_pivots;
-        o->entry[4][k] = disc_1_rrr;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
+        const real inv_rrr_rho2_1_t_4 = m->inv_rrr_rho2_1_t_4[i];
+        const real inv_rrr_size = m->inv_rrr_size[i];
+        const real rrr_least_pivots = lesser(root(inv_rrr_rho2_1_t_4*rrr_pivot_size),
+            inv_rrr_size*rrr_pivot_size_2);
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_spread_t_3 : rrr_spread_t_3;  /* total_rrr */
+        o[0*count + k] = -rrr_w_1_t;
+        o[1*count + k] = rrr_w_1_t_2;
+        o[2*count + k] = rrr_H_a_1_z;
+        o[3*count + k] = rrr_least_pivots;
+        o[4*count + k] = rrr_disc_1;
+        o[7*count + k] = (rrr_w_1_t + rrr_w_1_t_2) + (rrr_H_a_1_z + (rrr_least_pivots +
+            rrr_disc_1));
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[6*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[5*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void condition_place_rrr(size_t w, const condition_results_rrr *o, size_t first, real *H,
-    real *pivots, real *reach, verdict *t)
+INLINE void condition_place_rrr(size_t w, size_t count, const real *o, size_t first, real *H, real
+    *pivots, real *reach, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(1)*w + k] = o->entry[0][first + k];
-        H[(3)*w + k] = o->entry[1][first + k];
-        H[(5)*w + k] = o->entry[2][first + k];
-        pivots[(1)*w + k] = o->entry[3][first + k];
-        reach[(1)*w + k] = o->entry[4][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(1)*w + k] = o[0*count + first + k];
+        H[(3)*w + k] = o[1*count + first + k];
+        H[(5)*w + k] = o[2*count + first + k];
+        pivots[(1)*w + k] = o[3*count + first + k];
+        reach[(1)*w + k] = o[4*count + first + k];
+        t->unreachable[k] += o[5*count + first + k];
+        t->singular[k] += o[6*count + first + k];
+        t->total[k] += o[7*count + first + k];
     }
 }
 
-INLINE void condition_after(size_t w, const condition_values *s, real *lengths)
+INLINE void condition_after(size_t w, const real *sums, real *lengths, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real total_rr = s->sum[0][k];
-        const real total_rrr = s->sum[1][k];
-        /* (C2) rms distance of the platform points from their centroid */
-        const real spread_ = root(R(0.5)*total_rr + R(0.5)*total_rrr);
+        /* (spread) rms distance of the platform points from their centroid */
+        const real total_crank = sums[0*w + k];
+        const real total_rrr = sums[1*w + k];
+        const real spread_ = root(R(0.5)*total_crank + R(0.5)*total_rrr);
         lengths[0*w + k] = spread_;
+        t->total[k] += spread_;
     }
 }
 
-INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, real *Hk, real
-    *lengths, real *pivots, real *reach, verdict *t)
+INLINE void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
+    *pivots, real *reach, verdict *t)
 {
-    condition_values values, *const s = &values;
-    condition_results_rr results_rr;
-    condition_results_rrr results_rrr;
-    clear(reach, 2*w);
-    condition_before(m, w, X, s, lengths);
-    if (w == 1) {  /* the legs side by side */
-        memset(results_rr.sum, 0, sizeof results_rr.sum);
-        condition_legs_rr(m, 0, 1, s, 0, 1, 0, &results_rr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            condition_place_rr(w, &results_rr, leg, H, Hk, pivots, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_rr.sum[n], 1);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rr.sum, 0, sizeof results_rr.sum);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            condition_legs_rr(m, leg, 0, s, 1, w, 1, &results_rr);
-            condition_place_rr(w, &results_rr, 0, H, Hk, pivots, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_rr.sum[n][k];
-            }
-        }
+    real s[4] = {0}, sums[2] = {0}, terms_crank[1*LEGS(1)] = {0}, o_crank[9*LEGS(1)] = {0},
+        terms_rrr[1*LEGS(1)] = {0}, o_rrr[8*LEGS(1)] = {0};
+    clear(reach, 2);
+    condition_before(m, 1, X, s, lengths, t);
+    condition_legs_crank(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_crank, o_crank);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        condition_place_crank(1, LEGS(1), o_crank, leg, H, Hk, pivots, t);
     }
-    if (w == 1) {  /* the legs side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        condition_legs_rrr(m, 0, 1, s, 0, 1, 0, &results_rrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            condition_place_rrr(w, &results_rrr, leg, H, pivots, reach, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[1 + n][k] = total(results_rrr.sum[n], 1);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            condition_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
-            condition_place_rrr(w, &results_rrr, 0, H, pivots, reach, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[1 + n][k] = results_rrr.sum[n][k];
-            }
-        }
+    for (size_t n = 0; n < 1; ++n) {
+        sums[n] = total(terms_crank + n*LEGS(1), 1);
     }
-    condition_after(w, s, lengths);
+    condition_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        condition_place_rrr(1, LEGS(1), o_rrr, leg, H, pivots, reach, t);
+    }
+    for (size_t n = 0; n < 1; ++n) {
+        sums[1 + n] = total(terms_rrr + n*LEGS(1), 1);
+    }
+    condition_after(1, sums, lengths, t);
 }
 
 /* ---- what users call, as steps over these ---- */
 
-INLINE void M_any(const prepared *m, size_t w, const real *X, real *M_out, int *code)
+INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(3, 1, X, why.invalid);
+    M_run(m, X, M_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(9, 1, M_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(9, M_out);
+    }
+}
+
+INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
     real X_in[3*LANES], M[9*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    M_run(m, w, X, M, &why);
-    check(9, w, M, why.overflow);
-    judge(&why, w, code);
-    deliver(M, 9, w, code, M_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    M_run_lanes(m, X, M, &why);
+    suspect(&why, code);
+    deliver(9, M, M_out);
 }
 
-INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, real *Z_out, int
-    *code)
+INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 3) + total(V, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+    }
+    Z_run(m, X, V, Z_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(3, 1, Z_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(3, Z_out);
+    }
+}
+
+INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     real X_in[3*LANES], V_in[3*LANES], Z[3*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    V = side_by_side(3, w, V, V_in, why.invalid);
-    Z_run(m, w, X, V, Z, &why);
-    check(3, w, Z, why.overflow);
-    judge(&why, w, code);
-    deliver(Z, 3, w, code, Z_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    V = side_by_side(3, V, V_in, why.total);
+    Z_run_lanes(m, X, V, Z, &why);
+    suspect(&why, code);
+    deliver(3, Z, Z_out);
 }
 
-INLINE void H_any(const prepared *m, size_t w, const real *X, real *H_out, int *code)
+INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(3, 1, X, why.invalid);
+    H_run(m, X, H_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(6, 1, H_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(6, H_out);
+    }
+}
+
+INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
     real X_in[3*LANES], H[6*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    H_run(m, w, X, H, &why);
-    check(6, w, H, why.overflow);
-    judge(&why, w, code);
-    deliver(H, 6, w, code, H_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    H_run_lanes(m, X, H, &why);
+    suspect(&why, code);
+    deliver(6, H, H_out);
 }
 
-INLINE void Hk_any(const prepared *m, size_t w, const real *X, real *Hk_out, int *code)
+INLINE void Hk_one(const prepared *m, const real *X, real *Hk_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(3, 1, X, why.invalid);
+    Hk_run(m, X, Hk_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(3, 1, Hk_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(3, Hk_out);
+    }
+}
+
+INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
 {
     real X_in[3*LANES], Hk[3*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    Hk_run(m, w, X, Hk, &why);
-    check(3, w, Hk, why.overflow);
-    judge(&why, w, code);
-    deliver(Hk, 3, w, code, Hk_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    Hk_run_lanes(m, X, Hk, &why);
+    suspect(&why, code);
+    deliver(3, Hk, Hk_out);
 }
 
-INLINE void constraints_any(const prepared *m, size_t w, const real *X, real *constraints_out, int
-    *code)
+INLINE void constraints_one(const prepared *m, const real *X, real *constraints_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(3, 1, X, why.invalid);
+    constraints_run(m, X, constraints_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(1, 1, constraints_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(1, constraints_out);
+    }
+}
+
+INLINE void constraints_lanes(const prepared *m, const real *X, real *constraints_out, int *code)
 {
     real X_in[3*LANES], constraints[1*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    constraints_run(m, w, X, constraints, &why);
-    check(1, w, constraints, why.overflow);
-    judge(&why, w, code);
-    deliver(constraints, 1, w, code, constraints_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    constraints_run_lanes(m, X, constraints, &why);
+    suspect(&why, code);
+    deliver(1, constraints, constraints_out);
 }
 
-INLINE void constraint_bias_any(const prepared *m, size_t w, const real *X, const real *V, real
+INLINE void constraint_bias_one(const prepared *m, const real *X, const real *V, real
+    *constraint_bias_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 3) + total(V, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+    }
+    constraint_bias_run(m, X, V, constraint_bias_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(1, 1, constraint_bias_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(1, constraint_bias_out);
+    }
+}
+
+INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *V, real
     *constraint_bias_out, int *code)
 {
     real X_in[3*LANES], V_in[3*LANES], constraint_bias[1*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    V = side_by_side(3, w, V, V_in, why.invalid);
-    constraint_bias_run(m, w, X, V, constraint_bias, &why);
-    check(1, w, constraint_bias, why.overflow);
-    judge(&why, w, code);
-    deliver(constraint_bias, 1, w, code, constraint_bias_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    V = side_by_side(3, V, V_in, why.total);
+    constraint_bias_run_lanes(m, X, V, constraint_bias, &why);
+    suspect(&why, code);
+    deliver(1, constraint_bias, constraint_bias_out);
 }
 
-INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, real *q_out, int
-    *code)
+INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(3, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(3, 1, q_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(3, q_out);
+    }
+}
+
+INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     real X_in[3*LANES], q[3*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    inverse_kinematics_run(m, w, X, q, &why);
-    check(3, w, q, why.overflow);
-    judge(&why, w, code);
-    deliver(q, 3, w, code, q_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    suspect(&why, code);
+    deliver(3, q, q_out);
 }
 
-INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *qd_out, int *code)
+INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 3) + total(V, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+    }
+    joint_rates_run(m, X, V, qd_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(3, 1, qd_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(3, qd_out);
+    }
+}
+
+INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
 {
     real X_in[3*LANES], V_in[3*LANES], qd[3*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    V = side_by_side(3, w, V, V_in, why.invalid);
-    joint_rates_run(m, w, X, V, qd, &why);
-    check(3, w, qd, why.overflow);
-    judge(&why, w, code);
-    deliver(qd, 3, w, code, qd_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    V = side_by_side(3, V, V_in, why.total);
+    joint_rates_run_lanes(m, X, V, qd, &why);
+    suspect(&why, code);
+    deliver(3, qd, qd_out);
 }
 
-INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd_out, int *code)
+INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 3) + total(V, 3) + total(A, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+        check(3, 1, A, why.invalid);
+    }
+    joint_accelerations_run(m, X, V, A, qdd_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(3, 1, qdd_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(3, qdd_out);
+    }
+}
+
+INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
 {
     real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], qdd[3*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    V = side_by_side(3, w, V, V_in, why.invalid);
-    A = side_by_side(3, w, A, A_in, why.invalid);
-    joint_accelerations_run(m, w, X, V, A, qdd, &why);
-    check(3, w, qdd, why.overflow);
-    judge(&why, w, code);
-    deliver(qdd, 3, w, code, qdd_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    V = side_by_side(3, V, V_in, why.total);
+    A = side_by_side(3, A, A_in, why.total);
+    joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
+    suspect(&why, code);
+    deliver(3, qdd, qdd_out);
 }
 
-INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *V, real *M_out,
-    real *Z_out, real *H_out, int *code)
+INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out, int *code)
+{
+    real Hk[3] = {0}, constraint_bias[1] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 3) + total(V, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+    }
+    dynamics_run(m, X, V, M_out, Z_out, H_out, Hk, constraint_bias, &why);
+    if (!is_finite(why.total[0])) {
+        check(9, 1, M_out, why.overflow);
+        check(3, 1, Z_out, why.overflow);
+        check(6, 1, H_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(9, M_out);
+        refuse(3, Z_out);
+        refuse(6, H_out);
+    }
+}
+
+INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out, int *code)
 {
     real X_in[3*LANES], V_in[3*LANES], M[9*LANES], Z[3*LANES], H[6*LANES], Hk[3*LANES],
         constraint_bias[1*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    V = side_by_side(3, w, V, V_in, why.invalid);
-    dynamics_run(m, w, X, V, M, Z, H, Hk, constraint_bias, &why);
-    check(9, w, M, why.overflow);
-    check(3, w, Z, why.overflow);
-    check(6, w, H, why.overflow);
-    judge(&why, w, code);
-    deliver(M, 9, w, code, M_out);
-    deliver(Z, 3, w, code, Z_out);
-    deliver(H, 6, w, code, H_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    V = side_by_side(3, V, V_in, why.total);
+    dynamics_run_lanes(m, X, V, M, Z, H, Hk, constraint_bias, &why);
+    suspect(&why, code);
+    deliver(9, M, M_out);
+    deliver(3, Z, Z_out);
+    deliver(6, H, H_out);
 }
 
-INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, const real *V, const
-    real *A, const real *wrench, real *tau_out, real *lambda_out, int *code)
+INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, real *x, real
+    *unsure, real *total)
 {
-    real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], wrench_in[3*LANES], required[3*LANES],
-        H[6*LANES], Hk[3*LANES], subtract_2[3*LANES], beside_3[9*LANES] = {0}, solve_4[3*LANES],
-        work[12*LANES];
+    for (size_t k = 0; k < w; ++k) {
+        real a00 = a[(0)*w + k];
+        real a01 = a[(1)*w + k];
+        real a02 = a[(2)*w + k];
+        real b0 = b[0*w + k];
+        real a10 = a[(1*stride + 0)*w + k];
+        real a11 = a[(1*stride + 1)*w + k];
+        real a12 = a[(1*stride + 2)*w + k];
+        real b1 = b[1*w + k];
+        real a20 = a[(2*stride + 0)*w + k];
+        real a21 = a[(2*stride + 1)*w + k];
+        real a22 = a[(2*stride + 2)*w + k];
+        real b2 = b[2*w + k];
+        const real f0 = 1/a00;
+        const real d1 = a00*a11 - a10*a01;
+        const real f1 = a00/d1;
+        const real g10 = a10*f0;
+        a12 -= g10*a02;
+        b1 -= g10*b0;
+        const real g20 = a20*f0;
+        a21 -= g20*a01;
+        a22 -= g20*a02;
+        b2 -= g20*b0;
+        const real g21 = a21*f1;
+        a22 -= g21*a12;
+        b2 -= g21*b1;
+        const real f2 = 1/a22;
+        const real x2 = (b2)*f2;
+        const real x1 = (b1)*f1 - a12*f1*x2;
+        const real x0 = (b0 - a02*x2)*f0 - a01*f0*x1;
+        x[0*w + k] = x0;
+        x[1*w + k] = x1;
+        x[2*w + k] = x2;
+        total[k] += x0 + (x1 + x2);
+        const real most0 = larger(magnitude(g20), magnitude(g21));
+        const real most1 = magnitude(g10);
+        const real most2 = larger(magnitude(f0), magnitude(f1));
+        const real most3 = magnitude(f2);
+        unsure[k] += UNLESS(most0 <= R(2.5)) + UNLESS(most1 <= R(10)) + UNLESS(most2 <= R(250)) +
+            UNLESS(most3 <= R(1000)) + UNLESS(is_finite(a00 + d1 + a22));
+    }
+}
+
+INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau_out, real *lambda_out, int *code)
+{
+    real wrench_in[3], required[3] = {0}, H[6] = {0}, Hk[3] = {0}, subtract_2[3] = {0}, beside_3[9] =
+        {0}, solve_4[3] = {0}, unsure_7[1] = {0}, work[12];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    V = side_by_side(3, w, V, V_in, why.invalid);
-    A = side_by_side(3, w, A, A_in, why.invalid);
-    wrench = optional(3, w, wrench, 0, wrench_in, why.invalid);
-    required_run(m, w, X, V, A, required, H, Hk, &why);
+    start(1, &why);
+    const real total_in = total(X, 3) + total(V, 3) + total(A, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+        check(3, 1, A, why.invalid);
+    }
+    wrench = optional(3, wrench, 0, wrench_in, why.invalid);
+    required_run(m, X, V, A, required, H, Hk, &why);
     const real *const extend_1 = wrench;
-    for (size_t i = 0; i < 3*w; ++i) {
+    for (size_t i = 0; i < 3; ++i) {
         subtract_2[i] = required[i] - extend_1[i];
     }
-    beside(3, 2*w, 1*w, H, Hk, beside_3);
-    set_matrix(3, w, beside_3, work);
-    solve(3, w, subtract_2, work, solve_4, why.singular);
+    beside(3, 2, 1, H, Hk, beside_3);
+    eliminate_0(1, 3, beside_3, subtract_2, solve_4, unsure_7, why.total);
+    if (unsure_7[0] > 0) {
+        set_matrix(3, 1, beside_3, work);
+        solve_apart(3, subtract_2, work, solve_4, why.singular);
+        check(3, 1, solve_4, why.overflow);
+    }
     const real *const tau = solve_4;
-    const real *const lambda_ = solve_4 + 2*w;
-    check(2, w, tau, why.overflow);
-    check(1, w, lambda_, why.overflow);
-    judge(&why, w, code);
-    deliver(tau, 2, w, code, tau_out);
-    deliver(lambda_, 1, w, code, lambda_out);
+    const real *const lambda_ = solve_4 + 2;
+    check(2, 1, tau, why.overflow);
+    check(1, 1, lambda_, why.overflow);
+    judge(&why, code);
+    copy(2, tau, tau_out);
+    copy(1, lambda_, lambda_out);
+    if (*code != OK) {
+        refuse(2, tau_out);
+        refuse(1, lambda_out);
+    }
 }
 
-INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, const real *V, const
-    real *tau, const real *wrench, real *A_out, real *lambda_out, int *code)
+INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau_out, real *lambda_out, int *code)
+{
+    real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], wrench_in[3*LANES], required[3*LANES],
+        H[6*LANES], Hk[3*LANES], subtract_2[3*LANES], beside_3[9*LANES] = {0}, solve_4[3*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    V = side_by_side(3, V, V_in, why.total);
+    A = side_by_side(3, A, A_in, why.total);
+    wrench = optional_side_by_side(3, wrench, 0, wrench_in, why.total);
+    required_run_lanes(m, X, V, A, required, H, Hk, &why);
+    const real *const extend_1 = wrench;
+    for (size_t i = 0; i < 3*LANES; ++i) {
+        subtract_2[i] = required[i] - extend_1[i];
+    }
+    beside(3, 2*LANES, 1*LANES, H, Hk, beside_3);
+    eliminate_0(LANES, 3, beside_3, subtract_2, solve_4, why.singular, why.total);
+    const real *const tau = solve_4;
+    const real *const lambda_ = solve_4 + 2*LANES;
+    add_up(2, tau, why.total);
+    add_up(1, lambda_, why.total);
+    suspect(&why, code);
+    deliver(2, tau, tau_out);
+    deliver(1, lambda_, lambda_out);
+}
+
+INLINE void eliminate_1(size_t w, size_t stride, const real *a, const real *b, real *x, real
+    *unsure, real *total)
+{
+    for (size_t k = 0; k < w; ++k) {
+        real a00 = a[(0)*w + k];
+        real a01 = a[(1)*w + k];
+        real a02 = a[(2)*w + k];
+        real a03 = a[(3)*w + k];
+        real b0 = b[0*w + k];
+        real a10 = a[(1*stride + 0)*w + k];
+        real a11 = a[(1*stride + 1)*w + k];
+        real a12 = a[(1*stride + 2)*w + k];
+        real a13 = a[(1*stride + 3)*w + k];
+        real b1 = b[1*w + k];
+        real a20 = a[(3*stride + 0)*w + k];
+        real a21 = a[(3*stride + 1)*w + k];
+        real a22 = a[(3*stride + 2)*w + k];
+        real a23 = a[(3*stride + 3)*w + k];
+        real b2 = b[3*w + k];
+        real a30 = a[(2*stride + 0)*w + k];
+        real a31 = a[(2*stride + 1)*w + k];
+        real a32 = a[(2*stride + 2)*w + k];
+        real a33 = a[(2*stride + 3)*w + k];
+        real b3 = b[2*w + k];
+        const real f0 = 1/a00;
+        const real d1 = a00*a11 - a10*a01;
+        const real f1 = a00/d1;
+        const real g10 = a10*f0;
+        a12 -= g10*a02;
+        a13 -= g10*a03;
+        b1 -= g10*b0;
+        const real g20 = a20*f0;
+        a21 -= g20*a01;
+        a22 -= g20*a02;
+        a23 -= g20*a03;
+        b2 -= g20*b0;
+        const real g30 = a30*f0;
+        a31 -= g30*a01;
+        a32 -= g30*a02;
+        a33 -= g30*a03;
+        b3 -= g30*b0;
+        const real g21 = a21*f1;
+        a22 -= g21*a12;
+        a23 -= g21*a13;
+        b2 -= g21*b1;
+        const real g31 = a31*f1;
+        a32 -= g31*a12;
+        a33 -= g31*a13;
+        b3 -= g31*b1;
+        const real f2 = 1/a22;
+        const real d3 = a22*a33 - a32*a23;
+        const real f3 = a22/d3;
+        const real g32 = a32*f2;
+        b3 -= g32*b2;
+        const real x3 = (b3)*f3;
+        const real x2 = (b2)*f2 - a23*f2*x3;
+        const real x1 = (b1 - a13*x3)*f1 - a12*f1*x2;
+        const real x0 = (b0 - a03*x3 - a02*x2)*f0 - a01*f0*x1;
+        x[0*w + k] = x0;
+        x[1*w + k] = x1;
+        x[2*w + k] = x2;
+        x[3*w + k] = x3;
+        total[k] += (x0 + x1) + (x2 + x3);
+        const real most0 = larger(magnitude(g30), magnitude(g31));
+        const real most1 = larger(magnitude(g20), larger(magnitude(g21), magnitude(g32)));
+        const real most2 = magnitude(g10);
+        const real most3 = larger(magnitude(f0), magnitude(f1));
+        const real most4 = magnitude(f2);
+        const real most5 = magnitude(f3);
+        unsure[k] += UNLESS(most0 <= R(0.625)) + UNLESS(most1 <= R(2.5)) + UNLESS(most2 <= R(10))
+            + UNLESS(most3 <= R(250)) + UNLESS(most4 <= R(1000)) + UNLESS(most5 <= R(4000)) +
+            UNLESS(is_finite(a00 + d1 + a22 + d3));
+    }
+}
+
+INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
+    const real *wrench, real *A_out, real *lambda_out, int *code)
+{
+    real wrench_in[3], M[9] = {0}, Z[3] = {0}, H[6] = {0}, Hk[3] = {0}, constraint_bias[1] = {0},
+        times_1[3] = {0}, add_3[3] = {0}, subtract_4[3] = {0}, negative_5[1] = {0}, join_6[4] = {0},
+        solve_8[4] = {0}, unsure_12[1] = {0}, work[32];
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 3) + total(V, 3) + total(tau, 2);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+        check(2, 1, tau, why.invalid);
+    }
+    wrench = optional(3, wrench, 0, wrench_in, why.invalid);
+    dynamics_run(m, X, V, M, Z, H, Hk, constraint_bias, &why);
+    product(3, 2, 1, 1, H, tau, times_1);
+    const real *const extend_2 = wrench;
+    for (size_t i = 0; i < 3; ++i) {
+        add_3[i] = times_1[i] + extend_2[i];
+    }
+    for (size_t i = 0; i < 3; ++i) {
+        subtract_4[i] = add_3[i] - Z[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        negative_5[i] = -constraint_bias[i];
+    }
+    beside(1, 3, 1, subtract_4, negative_5, join_6);
+    saddle(3, 1, stride_of(4, 1), 1, M, Hk, work);
+    eliminate_1(1, stride_of(4, 1), work, join_6, solve_8, unsure_12, why.total);
+    if (unsure_12[0] > 0) {
+        solve_apart(4, join_6, work, solve_8, why.singular);
+        check(4, 1, solve_8, why.overflow);
+    }
+    const real *const A = solve_8;
+    const real *const lambda_ = solve_8 + 3;
+    check(3, 1, A, why.overflow);
+    check(1, 1, lambda_, why.overflow);
+    judge(&why, code);
+    copy(3, A, A_out);
+    copy(1, lambda_, lambda_out);
+    if (*code != OK) {
+        refuse(3, A_out);
+        refuse(1, lambda_out);
+    }
+}
+
+INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
+    *tau, const real *wrench, real *A_out, real *lambda_out, int *code)
 {
     real X_in[3*LANES], V_in[3*LANES], tau_in[2*LANES], wrench_in[3*LANES], M[9*LANES], Z[3*LANES],
         H[6*LANES], Hk[3*LANES], constraint_bias[1*LANES], times_1[3*LANES] = {0}, add_3[3*LANES],
         subtract_4[3*LANES], negative_5[1*LANES], join_6[4*LANES] = {0}, solve_8[4*LANES],
         work[32*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    V = side_by_side(3, w, V, V_in, why.invalid);
-    tau = side_by_side(2, w, tau, tau_in, why.invalid);
-    wrench = optional(3, w, wrench, 0, wrench_in, why.invalid);
-    dynamics_run(m, w, X, V, M, Z, H, Hk, constraint_bias, &why);
-    product(3, 2, 1, w, H, tau, times_1);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    V = side_by_side(3, V, V_in, why.total);
+    tau = side_by_side(2, tau, tau_in, why.total);
+    wrench = optional_side_by_side(3, wrench, 0, wrench_in, why.total);
+    dynamics_run_lanes(m, X, V, M, Z, H, Hk, constraint_bias, &why);
+    product(3, 2, 1, LANES, H, tau, times_1);
     const real *const extend_2 = wrench;
-    for (size_t i = 0; i < 3*w; ++i) {
+    for (size_t i = 0; i < 3*LANES; ++i) {
         add_3[i] = times_1[i] + extend_2[i];
     }
-    for (size_t i = 0; i < 3*w; ++i) {
+    for (size_t i = 0; i < 3*LANES; ++i) {
         subtract_4[i] = add_3[i] - Z[i];
     }
-    for (size_t i = 0; i < 1*w; ++i) {
+    for (size_t i = 0; i < 1*LANES; ++i) {
         negative_5[i] = -constraint_bias[i];
     }
-    beside(1, 3*w, 1*w, subtract_4, negative_5, join_6);
-    saddle(3, 1, stride_of(4, w), w, M, Hk, work);
-    solve(4, w, join_6, work, solve_8, why.singular);
+    beside(1, 3*LANES, 1*LANES, subtract_4, negative_5, join_6);
+    saddle(3, 1, stride_of(4, LANES), LANES, M, Hk, work);
+    eliminate_1(LANES, stride_of(4, LANES), work, join_6, solve_8, why.singular, why.total);
     const real *const A = solve_8;
-    const real *const lambda_ = solve_8 + 3*w;
-    check(3, w, A, why.overflow);
-    check(1, w, lambda_, why.overflow);
-    judge(&why, w, code);
-    deliver(A, 3, w, code, A_out);
-    deliver(lambda_, 1, w, code, lambda_out);
+    const real *const lambda_ = solve_8 + 3*LANES;
+    add_up(3, A, why.total);
+    add_up(1, lambda_, why.total);
+    suspect(&why, code);
+    deliver(3, A, A_out);
+    deliver(1, lambda_, lambda_out);
 }
 
-INLINE void complete_acceleration_any(const real *A, real *completed_out, int *code)
+INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
 {
     verdict why;
     start(1, &why);
     check(3, 1, A, why.invalid);
     const real *const completed = A;
     check(3, 1, completed, why.overflow);
-    judge(&why, 1, code);
-    deliver(completed, 3, 1, code, completed_out);
+    judge(&why, code);
+    copy(3, completed, completed_out);
+    if (*code != OK) {
+        refuse(3, completed_out);
+    }
 }
 
-INLINE void leg_reactions_any(const prepared *m, const real *X, const real *V, const real *A,
+INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out, int *code)
 {
     static const size_t places_0[] = {0, 1};
     static const size_t places_1[] = {0};
     real wrench_in[3], required[3] = {0}, H[6] = {0}, Hk[3] = {0}, subtract_2[3] = {0}, beside_3[9] =
-        {0}, solve_4[3] = {0}, leg_force[6] = {0}, drive[6] = {0}, constraint_direction[3] = {0},
-        add_forces_7[6] = {0}, forces[6] = {0}, work[12];
+        {0}, solve_4[3] = {0}, unsure_7[1] = {0}, leg_force[6] = {0}, drive[6] = {0},
+        constraint_direction[3] = {0}, add_forces_7[6] = {0}, forces[6] = {0}, work[12];
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
-    check(3, 1, V, why.invalid);
-    check(3, 1, A, why.invalid);
-    wrench = optional(3, 1, wrench, 0, wrench_in, why.invalid);
-    required_run(m, 1, X, V, A, required, H, Hk, &why);
+    const real total_in = total(X, 3) + total(V, 3) + total(A, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+        check(3, 1, A, why.invalid);
+    }
+    wrench = optional(3, wrench, 0, wrench_in, why.invalid);
+    required_run(m, X, V, A, required, H, Hk, &why);
     const real *const extend_1 = wrench;
     for (size_t i = 0; i < 3; ++i) {
         subtract_2[i] = required[i] - extend_1[i];
     }
     beside(3, 2, 1, H, Hk, beside_3);
-    set_matrix(3, 1, beside_3, work);
-    solve_state(3, subtract_2, work, solve_4, why.singular);
+    eliminate_0(1, 3, beside_3, subtract_2, solve_4, unsure_7, why.total);
+    if (unsure_7[0] > 0) {
+        set_matrix(3, 1, beside_3, work);
+        solve_apart(3, subtract_2, work, solve_4, why.singular);
+        check(3, 1, solve_4, why.overflow);
+    }
     const real *const split_5 = solve_4;
     const real *const split_6 = solve_4 + 2;
-    legs_run(m, 1, X, V, A, leg_force, drive, constraint_direction, &why);
+    legs_run(m, X, V, A, leg_force, drive, constraint_direction, &why);
     for (size_t i = 0; i < 6; ++i) {
         add_forces_7[i] = leg_force[i];
     }
@@ -5318,30 +5552,40 @@ INLINE void leg_reactions_any(const prepared *m, const real *X, const real *V, c
     }
     add_forces(1, 3, 1, places_1, split_6, constraint_direction, forces);
     check(6, 1, forces, why.overflow);
-    judge(&why, 1, code);
-    deliver(forces, 6, 1, code, forces_out);
+    judge(&why, code);
+    copy(6, forces, forces_out);
+    if (*code != OK) {
+        refuse(6, forces_out);
+    }
 }
 
-INLINE void energy_any(const prepared *m, const real *X, const real *V, real *kinetic_out, real
+INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out, int *code)
 {
     real M[9] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
-    check(3, 1, V, why.invalid);
-    M_run(m, 1, X, M, &why);
-    potential_run(m, 1, X, potential_of_potential, &why);
+    const real total_in = total(X, 3) + total(V, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+    }
+    M_run(m, X, M, &why);
+    potential_run(m, X, potential_of_potential, &why);
     half_form(3, 1, V, M, kinetic);
     const real *const potential = potential_of_potential;
     check(1, 1, kinetic, why.overflow);
     check(1, 1, potential, why.overflow);
-    judge(&why, 1, code);
-    deliver(kinetic, 1, 1, code, kinetic_out);
-    deliver(potential, 1, 1, code, potential_out);
+    judge(&why, code);
+    copy(1, kinetic, kinetic_out);
+    copy(1, potential, potential_out);
+    if (*code != OK) {
+        refuse(1, kinetic_out);
+        refuse(1, potential_out);
+    }
 }
 
-INLINE void condition_any(const prepared *m, const real *X, const real *length, real *sigma_out,
+INLINE void condition_one(const prepared *m, const real *X, const real *length, real *sigma_out,
     real *legs_out, int *code)
 {
     static const size_t places_0[] = {2};
@@ -5351,8 +5595,8 @@ INLINE void condition_any(const prepared *m, const real *X, const real *length, 
     start(1, &why);
     check(3, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, 1, length, 0, length_in, why.invalid);
-    condition_run(m, 1, X, H, Hk, lengths, legs, reach, &why);
+    length = optional(1, length, 0, length_in, why.invalid);
+    condition_run(m, X, H, Hk, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
             lengths[i] : lengths[1 + i];
@@ -5362,14 +5606,20 @@ INLINE void condition_any(const prepared *m, const real *X, const real *length, 
     }
     divide_rows(1, 2, 1, places_0, choose_length_1, divide_rows_2);
     singular_values(3, 2, divide_rows_2, sigma);
+    if (!is_finite(why.total[0])) {
+        check(2, 1, legs, why.overflow);
+    }
     check(2, 1, sigma, why.overflow);
-    check(2, 1, legs, why.overflow);
-    judge(&why, 1, code);
-    deliver(sigma, 2, 1, code, sigma_out);
-    deliver(legs, 2, 1, code, legs_out);
+    judge(&why, code);
+    copy(2, sigma, sigma_out);
+    copy(2, legs, legs_out);
+    if (*code != OK) {
+        refuse(2, sigma_out);
+        refuse(2, legs_out);
+    }
 }
 
-INLINE void condition_constrained_any(const prepared *m, const real *X, const real *length, real
+INLINE void condition_constrained_one(const prepared *m, const real *X, const real *length, real
     *sigma_out, real *legs_out, int *code)
 {
     static const size_t places_0[] = {2};
@@ -5379,8 +5629,8 @@ INLINE void condition_constrained_any(const prepared *m, const real *X, const re
     start(1, &why);
     check(3, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, 1, length, 0, length_in, why.invalid);
-    condition_run(m, 1, X, H, Hk, lengths, legs, reach, &why);
+    length = optional(1, length, 0, length_in, why.invalid);
+    condition_run(m, X, H, Hk, lengths, legs, reach, &why);
     beside(3, 2, 1, H, Hk, beside_1);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_2[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
@@ -5391,14 +5641,20 @@ INLINE void condition_constrained_any(const prepared *m, const real *X, const re
     }
     divide_rows(1, 3, 1, places_0, choose_length_2, divide_rows_3);
     singular_values(3, 3, divide_rows_3, sigma);
+    if (!is_finite(why.total[0])) {
+        check(2, 1, legs, why.overflow);
+    }
     check(3, 1, sigma, why.overflow);
-    check(2, 1, legs, why.overflow);
-    judge(&why, 1, code);
-    deliver(sigma, 3, 1, code, sigma_out);
-    deliver(legs, 2, 1, code, legs_out);
+    judge(&why, code);
+    copy(3, sigma, sigma_out);
+    copy(2, legs, legs_out);
+    if (*code != OK) {
+        refuse(3, sigma_out);
+        refuse(2, legs_out);
+    }
 }
 
-static void mismatch_any(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
+static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
     static const size_t places_0[] = {0, 1};
@@ -5406,9 +5662,12 @@ static void mismatch_any(const prepared *m, const real *X, const real *q_actuate
         {0}, gap[3] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
-    check(2, 1, q_actuated, why.invalid);
-    inverse_kinematics_run(m, 1, X, q, &why);
+    const real total_in = total(X, 3) + total(q_actuated, 2);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(2, 1, q_actuated, why.invalid);
+    }
+    inverse_kinematics_run(m, X, q, &why);
     const real *const take_1 = q;
     for (size_t i = 0; i < 2; ++i) {
         subtract_2[i] = q_actuated[i] - take_1[i];
@@ -5417,28 +5676,34 @@ static void mismatch_any(const prepared *m, const real *X, const real *q_actuate
         wrap_turns_3[i] = subtract_2[i];
     }
     wrap_turns(2, 1, places_0, wrap_turns_3);
-    constraints_run(m, 1, X, constraints, &why);
+    constraints_run(m, X, constraints, &why);
     for (size_t i = 0; i < 1; ++i) {
         negative_4[i] = -constraints[i];
     }
     beside(1, 2, 1, wrap_turns_3, negative_4, gap);
     check(3, 1, gap, why.overflow);
-    judge(&why, 1, code);
-    deliver(gap, 3, 1, code, gap_out);
+    judge(&why, code);
+    copy(3, gap, gap_out);
+    if (*code != OK) {
+        refuse(3, gap_out);
+    }
 }
 
-static void slope_any(const prepared *m, const real *X, real *slope_out, int *code)
+static void slope_one(const prepared *m, const real *X, real *slope_out, int *code)
 {
     real H[6] = {0}, Hk[3] = {0}, slope[9] = {0};
     verdict why;
     start(1, &why);
     check(3, 1, X, why.invalid);
-    H_run(m, 1, X, H, &why);
-    Hk_run(m, 1, X, Hk, &why);
+    H_run(m, X, H, &why);
+    Hk_run(m, X, Hk, &why);
     beside(3, 2, 1, H, Hk, slope);
     check(9, 1, slope, why.overflow);
-    judge(&why, 1, code);
-    deliver(slope, 9, 1, code, slope_out);
+    judge(&why, code);
+    copy(9, slope, slope_out);
+    if (*code != OK) {
+        refuse(9, slope_out);
+    }
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -5449,12 +5714,12 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
     real trial[3] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    mismatch_any(m, found, q_actuated, gap, &code);
+    mismatch_one(m, found, q_actuated, gap, &code);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        slope_any(m, found, slope, &code);
+        slope_one(m, found, slope, &code);
         if (code != OK) {
             break;
         }
@@ -5468,7 +5733,7 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            mismatch_any(m, trial, q_actuated, next, &tried);
+            mismatch_one(m, trial, q_actuated, next, &tried);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -5486,45 +5751,57 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 }
 
 
-INLINE void forward_kinematics_any(const prepared *m, const real *q_actuated, const real *X0, real
+INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
     *X_out, int *code)
 {
     real X[3] = {0};
     verdict why;
     start(1, &why);
-    check(2, 1, q_actuated, why.invalid);
-    check(3, 1, X0, why.invalid);
+    const real total_in = total(q_actuated, 2) + total(X0, 3);
+    if (!is_finite(total_in)) {
+        check(2, 1, q_actuated, why.invalid);
+        check(3, 1, X0, why.invalid);
+    }
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(3, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 3, 1, code, X_out);
+    judge(&why, code);
+    copy(3, X, X_out);
+    if (*code != OK) {
+        refuse(3, X_out);
+    }
 }
 
-static void constraint_gap_any(const prepared *m, const real *X, real *gap_out, int *code)
+static void constraint_gap_one(const prepared *m, const real *X, real *gap_out, int *code)
 {
     real constraints[1] = {0}, gap[1] = {0};
     verdict why;
     start(1, &why);
     check(3, 1, X, why.invalid);
-    constraints_run(m, 1, X, constraints, &why);
+    constraints_run(m, X, constraints, &why);
     for (size_t i = 0; i < 1; ++i) {
         gap[i] = -constraints[i];
     }
     check(1, 1, gap, why.overflow);
-    judge(&why, 1, code);
-    deliver(gap, 1, 1, code, gap_out);
+    judge(&why, code);
+    copy(1, gap, gap_out);
+    if (*code != OK) {
+        refuse(1, gap_out);
+    }
 }
 
-static void constraint_slope_any(const prepared *m, const real *X, real *slope_out, int *code)
+static void constraint_slope_one(const prepared *m, const real *X, real *slope_out, int *code)
 {
-    real slope[3] = {0};
     verdict why;
     start(1, &why);
     check(3, 1, X, why.invalid);
-    Hk_run(m, 1, X, slope, &why);
-    check(3, 1, slope, why.overflow);
-    judge(&why, 1, code);
-    deliver(slope, 3, 1, code, slope_out);
+    Hk_run(m, X, slope_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(3, 1, slope_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(3, slope_out);
+    }
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -5535,12 +5812,12 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
     real trial[3] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    constraint_gap_any(m, found, gap, &code);
+    constraint_gap_one(m, found, gap, &code);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > MET; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        constraint_slope_any(m, found, slope, &code);
+        constraint_slope_one(m, found, slope, &code);
         if (code != OK) {
             break;
         }
@@ -5554,7 +5831,7 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            constraint_gap_any(m, trial, next, &tried);
+            constraint_gap_one(m, trial, next, &tried);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -5572,7 +5849,7 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
 }
 
 
-INLINE void project_any(const prepared *m, const real *X, real *projected_out, int *code)
+INLINE void project_one(const prepared *m, const real *X, real *projected_out, int *code)
 {
     real projected[3] = {0};
     verdict why;
@@ -5580,11 +5857,14 @@ INLINE void project_any(const prepared *m, const real *X, real *projected_out, i
     check(3, 1, X, why.invalid);
     blame(search_constraint_gap(m, X, projected), &why);
     check(3, 1, projected, why.overflow);
-    judge(&why, 1, code);
-    deliver(projected, 3, 1, code, projected_out);
+    judge(&why, code);
+    copy(3, projected, projected_out);
+    if (*code != OK) {
+        refuse(3, projected_out);
+    }
 }
 
-INLINE void dissipation_any(const real *V, real *dissipation_out, int *code)
+INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 {
     real subtract_1[3] = {0};
     verdict why;
@@ -5595,89 +5875,264 @@ INLINE void dissipation_any(const real *V, real *dissipation_out, int *code)
     }
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
-    judge(&why, 1, code);
-    deliver(dissipation, 1, 1, code, dissipation_out);
+    judge(&why, code);
+    copy(1, dissipation, dissipation_out);
+    if (*code != OK) {
+        refuse(1, dissipation_out);
+    }
 }
 
-INLINE void momentum_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *momentum_out, int *code)
+INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
+    *code)
+{
+    real M[9] = {0}, momentum[3] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 3) + total(V, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+    }
+    M_run(m, X, M, &why);
+    product(3, 3, 1, 1, M, V, momentum);
+    check(3, 1, momentum, why.overflow);
+    judge(&why, code);
+    copy(3, momentum, momentum_out);
+    if (*code != OK) {
+        refuse(3, momentum_out);
+    }
+}
+
+INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
+    int *code)
 {
     real X_in[3*LANES], V_in[3*LANES], M[9*LANES], momentum[3*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    V = side_by_side(3, w, V, V_in, why.invalid);
-    M_run(m, w, X, M, &why);
-    product(3, 3, 1, w, M, V, momentum);
-    check(3, w, momentum, why.overflow);
-    judge(&why, w, code);
-    deliver(momentum, 3, w, code, momentum_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    V = side_by_side(3, V, V_in, why.total);
+    M_run_lanes(m, X, M, &why);
+    product(3, 3, 1, LANES, M, V, momentum);
+    add_up(3, momentum, why.total);
+    suspect(&why, code);
+    deliver(3, momentum, momentum_out);
 }
 
-INLINE void actuator_positions_any(const prepared *m, size_t w, const real *X, real *q_out, int
-    *code)
+INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
+{
+    static const size_t places_0[] = {0, 1, 2};
+    real q[3] = {0}, margins[3] = {0};
+    verdict why;
+    start(1, &why);
+    check(3, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q, &why);
+    for (size_t i = 0; i < 3; ++i) {
+        margins[i] = q[i];
+    }
+    unlimited(3, 3, 1, places_0, margins, why.overflow);
+    judge(&why, code);
+    copy(3, margins, margins_out);
+    if (*code != OK) {
+        refuse(3, margins_out);
+    }
+}
+
+INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
+{
+    static const size_t places_0[] = {0, 1, 2};
+    real X_in[3*LANES], q[3*LANES], margins[3*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    for (size_t i = 0; i < 3*LANES; ++i) {
+        margins[i] = q[i];
+    }
+    unlimited(3, 3, LANES, places_0, margins, why.invalid);
+    suspect(&why, code);
+    deliver(3, margins, margins_out);
+}
+
+INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
+{
+    real q[3] = {0}, subtract_1[3] = {0}, within[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(3, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q, &why);
+    for (size_t i = 0; i < 3; ++i) {
+        subtract_1[i] = q[i] - q[i];
+    }
+    not_negative(3, 1, subtract_1, within, why.overflow);
+    check(1, 1, within, why.overflow);
+    judge(&why, code);
+    copy(1, within, within_out);
+    if (*code != OK) {
+        refuse(1, within_out);
+    }
+}
+
+INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
+{
+    real X_in[3*LANES], q[3*LANES], subtract_1[3*LANES], within[1*LANES] = {0};
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    for (size_t i = 0; i < 3*LANES; ++i) {
+        subtract_1[i] = q[i] - q[i];
+    }
+    not_negative(3, LANES, subtract_1, within, why.invalid);
+    add_up(1, within, why.total);
+    suspect(&why, code);
+    deliver(1, within, within_out);
+}
+
+INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
+{
+    real q_of_inverse_kinematics[3] = {0};
+    verdict why;
+    start(1, &why);
+    check(3, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
+    const real *const q = q_of_inverse_kinematics;
+    check(2, 1, q, why.overflow);
+    judge(&why, code);
+    copy(2, q, q_out);
+    if (*code != OK) {
+        refuse(2, q_out);
+    }
+}
+
+INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     real X_in[3*LANES], q_of_inverse_kinematics[3*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    inverse_kinematics_run(m, w, X, q_of_inverse_kinematics, &why);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
     const real *const q = q_of_inverse_kinematics;
-    check(2, w, q, why.overflow);
-    judge(&why, w, code);
-    deliver(q, 2, w, code, q_out);
+    add_up(2, q, why.total);
+    suspect(&why, code);
+    deliver(2, q, q_out);
 }
 
-INLINE void actuator_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *qd_out, int *code)
+INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
+{
+    real qd_of_joint_rates[3] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 3) + total(V, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+    }
+    joint_rates_run(m, X, V, qd_of_joint_rates, &why);
+    const real *const qd = qd_of_joint_rates;
+    check(2, 1, qd, why.overflow);
+    judge(&why, code);
+    copy(2, qd, qd_out);
+    if (*code != OK) {
+        refuse(2, qd_out);
+    }
+}
+
+INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
+    int *code)
 {
     real X_in[3*LANES], V_in[3*LANES], qd_of_joint_rates[3*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    V = side_by_side(3, w, V, V_in, why.invalid);
-    joint_rates_run(m, w, X, V, qd_of_joint_rates, &why);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    V = side_by_side(3, V, V_in, why.total);
+    joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
     const real *const qd = qd_of_joint_rates;
-    check(2, w, qd, why.overflow);
-    judge(&why, w, code);
-    deliver(qd, 2, w, code, qd_out);
+    add_up(2, qd, why.total);
+    suspect(&why, code);
+    deliver(2, qd, qd_out);
 }
 
-INLINE void actuator_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd_out, int *code)
+INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
+{
+    real qdd_of_joint_accelerations[3] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 3) + total(V, 3) + total(A, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+        check(3, 1, A, why.invalid);
+    }
+    joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
+    const real *const qdd = qdd_of_joint_accelerations;
+    check(2, 1, qdd, why.overflow);
+    judge(&why, code);
+    copy(2, qdd, qdd_out);
+    if (*code != OK) {
+        refuse(2, qdd_out);
+    }
+}
+
+INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out, int *code)
 {
     real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], qdd_of_joint_accelerations[3*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    V = side_by_side(3, w, V, V_in, why.invalid);
-    A = side_by_side(3, w, A, A_in, why.invalid);
-    joint_accelerations_run(m, w, X, V, A, qdd_of_joint_accelerations, &why);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    V = side_by_side(3, V, V_in, why.total);
+    A = side_by_side(3, A, A_in, why.total);
+    joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
     const real *const qdd = qdd_of_joint_accelerations;
-    check(2, w, qdd, why.overflow);
-    judge(&why, w, code);
-    deliver(qdd, 2, w, code, qdd_out);
+    add_up(2, qdd, why.total);
+    suspect(&why, code);
+    deliver(2, qdd, qdd_out);
 }
 
-INLINE void power_any(const prepared *m, size_t w, const real *X, const real *V, const real *tau,
-    real *power_out, int *code)
+INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out, int *code)
+{
+    real H[6] = {0}, times_1[3] = {0}, power[1] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 3) + total(V, 3) + total(tau, 2);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+        check(2, 1, tau, why.invalid);
+    }
+    H_run(m, X, H, &why);
+    product(3, 2, 1, 1, H, tau, times_1);
+    inner(3, 1, times_1, V, power);
+    check(1, 1, power, why.overflow);
+    judge(&why, code);
+    copy(1, power, power_out);
+    if (*code != OK) {
+        refuse(1, power_out);
+    }
+}
+
+INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out, int *code)
 {
     real X_in[3*LANES], V_in[3*LANES], tau_in[2*LANES], H[6*LANES], times_1[3*LANES] = {0},
         power[1*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    V = side_by_side(3, w, V, V_in, why.invalid);
-    tau = side_by_side(2, w, tau, tau_in, why.invalid);
-    H_run(m, w, X, H, &why);
-    product(3, 2, 1, w, H, tau, times_1);
-    inner(3, w, times_1, V, power);
-    check(1, w, power, why.overflow);
-    judge(&why, w, code);
-    deliver(power, 1, w, code, power_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    V = side_by_side(3, V, V_in, why.total);
+    tau = side_by_side(2, tau, tau_in, why.total);
+    H_run_lanes(m, X, H, &why);
+    product(3, 2, 1, LANES, H, tau, times_1);
+    inner(3, LANES, times_1, V, power);
+    add_up(1, power, why.total);
+    suspect(&why, code);
+    deliver(1, power, power_out);
 }
 
-INLINE void rotation_any(const real *X, real *R_out, int *code)
+INLINE void rotation_one(const real *X, real *R_out, int *code)
 {
     real R[4] = {0};
     verdict why;
@@ -5686,60 +6141,84 @@ INLINE void rotation_any(const real *X, real *R_out, int *code)
     const real *const take_1 = X + 2;
     rotation_of_angle(take_1, R);
     check(4, 1, R, why.overflow);
-    judge(&why, 1, code);
-    deliver(R, 4, 1, code, R_out);
+    judge(&why, code);
+    copy(4, R, R_out);
+    if (*code != OK) {
+        refuse(4, R_out);
+    }
 }
 
-INLINE void pose_any(const real *t, const real *R, real *X_out, int *code)
+INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
 {
     real angle_of_rotation_1[1] = {0}, join_2[3] = {0};
     verdict why;
     start(1, &why);
-    check(2, 1, t, why.invalid);
-    check(4, 1, R, why.invalid);
+    const real total_in = total(t, 2) + total(R, 4);
+    if (!is_finite(total_in)) {
+        check(2, 1, t, why.invalid);
+        check(4, 1, R, why.invalid);
+    }
     angle_of_rotation(R, angle_of_rotation_1);
     beside(1, 2, 1, t, angle_of_rotation_1, join_2);
     const real *const X = join_2;
     check(3, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 3, 1, code, X_out);
+    judge(&why, code);
+    copy(3, X, X_out);
+    if (*code != OK) {
+        refuse(3, X_out);
+    }
 }
 
-INLINE void X_dot_any(const real *X, const real *V, real *X_dot_out, int *code)
+INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
-    check(3, 1, V, why.invalid);
+    const real total_in = total(X, 3) + total(V, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+    }
     const real *const X_dot = V;
     check(3, 1, X_dot, why.overflow);
-    judge(&why, 1, code);
-    deliver(X_dot, 3, 1, code, X_dot_out);
+    judge(&why, code);
+    copy(3, X_dot, X_dot_out);
+    if (*code != OK) {
+        refuse(3, X_dot_out);
+    }
 }
 
-INLINE void retract_any(const real *X, const real *step, real *X_moved_out, int *code)
+INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
 {
     real X_moved[3] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
-    check(3, 1, step, why.invalid);
+    const real total_in = total(X, 3) + total(step, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, step, why.invalid);
+    }
     for (size_t i = 0; i < 3; ++i) {
         X_moved[i] = X[i] + step[i];
     }
     check(3, 1, X_moved, why.overflow);
-    judge(&why, 1, code);
-    deliver(X_moved, 3, 1, code, X_moved_out);
+    judge(&why, code);
+    copy(3, X_moved, X_moved_out);
+    if (*code != OK) {
+        refuse(3, X_moved_out);
+    }
 }
 
-INLINE void difference_any(const real *X0, const real *X1, real *step_out, int *code)
+INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
 {
     static const size_t places_0[] = {2};
     real subtract_1[3] = {0}, step[3] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X0, why.invalid);
-    check(3, 1, X1, why.invalid);
+    const real total_in = total(X0, 3) + total(X1, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X0, why.invalid);
+        check(3, 1, X1, why.invalid);
+    }
     for (size_t i = 0; i < 3; ++i) {
         subtract_1[i] = X1[i] - X0[i];
     }
@@ -5748,19 +6227,25 @@ INLINE void difference_any(const real *X0, const real *X1, real *step_out, int *
     }
     wrap_turns(1, 1, places_0, step);
     check(3, 1, step, why.overflow);
-    judge(&why, 1, code);
-    deliver(step, 3, 1, code, step_out);
+    judge(&why, code);
+    copy(3, step, step_out);
+    if (*code != OK) {
+        refuse(3, step_out);
+    }
 }
 
-INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real *X_out, int *code)
+INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
 {
     static const size_t places_0[] = {2};
     real subtract_1[3] = {0}, wrap_turns_2[3] = {0}, scale_3[3] = {0}, X[3] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X0, why.invalid);
-    check(3, 1, X1, why.invalid);
-    check(1, 1, s, why.invalid);
+    const real total_in = total(X0, 3) + total(X1, 3) + total(s, 1);
+    if (!is_finite(total_in)) {
+        check(3, 1, X0, why.invalid);
+        check(3, 1, X1, why.invalid);
+        check(1, 1, s, why.invalid);
+    }
     for (size_t i = 0; i < 3; ++i) {
         subtract_1[i] = X1[i] - X0[i];
     }
@@ -5775,8 +6260,11 @@ INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real 
         X[i] = X0[i] + scale_3[i];
     }
     check(3, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 3, 1, code, X_out);
+    judge(&why, code);
+    copy(3, X, X_out);
+    if (*code != OK) {
+        refuse(3, X_out);
+    }
 }
 
 /* ---- one state, and batches ---- */
@@ -5785,7 +6273,7 @@ int fivebar_offset_M(const fivebar_offset_model *model, const fivebar_offset_rea
     fivebar_offset_real *M)
 {
     int code;
-    M_any(model, 1, X, M, &code);
+    M_one(model, X, M, &code);
     return code;
 }
 
@@ -5793,9 +6281,9 @@ size_t fivebar_offset_M_batch(const fivebar_offset_model *model, size_t n, const
     fivebar_offset_real *X, fivebar_offset_real *M, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        M_any(model, LANES, X + 3*i, M + 9*i, codes);
+        M_lanes(model, X + 3*i, M + 9*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_M(model, X + 3*(i + k), M + 9*(i + k));
@@ -5814,7 +6302,7 @@ int fivebar_offset_Z(const fivebar_offset_model *model, const fivebar_offset_rea
     fivebar_offset_real *V, fivebar_offset_real *Z)
 {
     int code;
-    Z_any(model, 1, X, V, Z, &code);
+    Z_one(model, X, V, Z, &code);
     return code;
 }
 
@@ -5822,9 +6310,9 @@ size_t fivebar_offset_Z_batch(const fivebar_offset_model *model, size_t n, const
     fivebar_offset_real *X, const fivebar_offset_real *V, fivebar_offset_real *Z, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        Z_any(model, LANES, X + 3*i, V + 3*i, Z + 3*i, codes);
+        Z_lanes(model, X + 3*i, V + 3*i, Z + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_Z(model, X + 3*(i + k), V + 3*(i + k), Z + 3*(i + k));
@@ -5843,7 +6331,7 @@ int fivebar_offset_H(const fivebar_offset_model *model, const fivebar_offset_rea
     fivebar_offset_real *H)
 {
     int code;
-    H_any(model, 1, X, H, &code);
+    H_one(model, X, H, &code);
     return code;
 }
 
@@ -5851,9 +6339,9 @@ size_t fivebar_offset_H_batch(const fivebar_offset_model *model, size_t n, const
     fivebar_offset_real *X, fivebar_offset_real *H, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        H_any(model, LANES, X + 3*i, H + 6*i, codes);
+        H_lanes(model, X + 3*i, H + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_H(model, X + 3*(i + k), H + 6*(i + k));
@@ -5872,7 +6360,7 @@ int fivebar_offset_Hk(const fivebar_offset_model *model, const fivebar_offset_re
     fivebar_offset_real *Hk)
 {
     int code;
-    Hk_any(model, 1, X, Hk, &code);
+    Hk_one(model, X, Hk, &code);
     return code;
 }
 
@@ -5880,9 +6368,9 @@ size_t fivebar_offset_Hk_batch(const fivebar_offset_model *model, size_t n, cons
     fivebar_offset_real *X, fivebar_offset_real *Hk, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        Hk_any(model, LANES, X + 3*i, Hk + 3*i, codes);
+        Hk_lanes(model, X + 3*i, Hk + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_Hk(model, X + 3*(i + k), Hk + 3*(i + k));
@@ -5901,7 +6389,7 @@ int fivebar_offset_constraints(const fivebar_offset_model *model, const fivebar_
     fivebar_offset_real *residual)
 {
     int code;
-    constraints_any(model, 1, X, residual, &code);
+    constraints_one(model, X, residual, &code);
     return code;
 }
 
@@ -5909,9 +6397,9 @@ size_t fivebar_offset_constraints_batch(const fivebar_offset_model *model, size_
     fivebar_offset_real *X, fivebar_offset_real *residual, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        constraints_any(model, LANES, X + 3*i, residual + 1*i, codes);
+        constraints_lanes(model, X + 3*i, residual + 1*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_constraints(model, X + 3*(i + k), residual + 1*(i + k));
@@ -5930,7 +6418,7 @@ int fivebar_offset_constraint_bias(const fivebar_offset_model *model, const five
     *X, const fivebar_offset_real *V, fivebar_offset_real *bias)
 {
     int code;
-    constraint_bias_any(model, 1, X, V, bias, &code);
+    constraint_bias_one(model, X, V, bias, &code);
     return code;
 }
 
@@ -5938,9 +6426,9 @@ size_t fivebar_offset_constraint_bias_batch(const fivebar_offset_model *model, s
     fivebar_offset_real *X, const fivebar_offset_real *V, fivebar_offset_real *bias, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        constraint_bias_any(model, LANES, X + 3*i, V + 3*i, bias + 1*i, codes);
+        constraint_bias_lanes(model, X + 3*i, V + 3*i, bias + 1*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_constraint_bias(model, X + 3*(i + k), V + 3*(i + k), bias + 1*(i + k));
@@ -5959,7 +6447,7 @@ int fivebar_offset_inverse_kinematics(const fivebar_offset_model *model, const f
     *X, fivebar_offset_real *q)
 {
     int code;
-    inverse_kinematics_any(model, 1, X, q, &code);
+    inverse_kinematics_one(model, X, q, &code);
     return code;
 }
 
@@ -5967,9 +6455,9 @@ size_t fivebar_offset_inverse_kinematics_batch(const fivebar_offset_model *model
     fivebar_offset_real *X, fivebar_offset_real *q, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_kinematics_any(model, LANES, X + 3*i, q + 3*i, codes);
+        inverse_kinematics_lanes(model, X + 3*i, q + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_inverse_kinematics(model, X + 3*(i + k), q + 3*(i + k));
@@ -5988,7 +6476,7 @@ int fivebar_offset_joint_rates(const fivebar_offset_model *model, const fivebar_
     const fivebar_offset_real *V, fivebar_offset_real *rates)
 {
     int code;
-    joint_rates_any(model, 1, X, V, rates, &code);
+    joint_rates_one(model, X, V, rates, &code);
     return code;
 }
 
@@ -5996,9 +6484,9 @@ size_t fivebar_offset_joint_rates_batch(const fivebar_offset_model *model, size_
     fivebar_offset_real *X, const fivebar_offset_real *V, fivebar_offset_real *rates, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_rates_any(model, LANES, X + 3*i, V + 3*i, rates + 3*i, codes);
+        joint_rates_lanes(model, X + 3*i, V + 3*i, rates + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_joint_rates(model, X + 3*(i + k), V + 3*(i + k), rates + 3*(i + k));
@@ -6018,7 +6506,7 @@ int fivebar_offset_joint_accelerations(const fivebar_offset_model *model, const
     fivebar_offset_real *accelerations)
 {
     int code;
-    joint_accelerations_any(model, 1, X, V, A, accelerations, &code);
+    joint_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
@@ -6027,9 +6515,9 @@ size_t fivebar_offset_joint_accelerations_batch(const fivebar_offset_model *mode
     fivebar_offset_real *accelerations, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_accelerations_any(model, LANES, X + 3*i, V + 3*i, A + 3*i, accelerations + 3*i, codes);
+        joint_accelerations_lanes(model, X + 3*i, V + 3*i, A + 3*i, accelerations + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_joint_accelerations(model, X + 3*(i + k), V + 3*(i + k), A + 3*(i + k),
@@ -6051,7 +6539,7 @@ int fivebar_offset_dynamics(const fivebar_offset_model *model, const fivebar_off
     *H)
 {
     int code;
-    dynamics_any(model, 1, X, V, M, Z, H, &code);
+    dynamics_one(model, X, V, M, Z, H, &code);
     return code;
 }
 
@@ -6060,9 +6548,9 @@ size_t fivebar_offset_dynamics_batch(const fivebar_offset_model *model, size_t n
     fivebar_offset_real *Z, fivebar_offset_real *H, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        dynamics_any(model, LANES, X + 3*i, V + 3*i, M + 9*i, Z + 3*i, H + 6*i, codes);
+        dynamics_lanes(model, X + 3*i, V + 3*i, M + 9*i, Z + 3*i, H + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_dynamics(model, X + 3*(i + k), V + 3*(i + k), M + 9*(i + k), Z + 3*(i +
@@ -6083,7 +6571,7 @@ int fivebar_offset_inverse_dynamics(const fivebar_offset_model *model, const fiv
     *wrench, fivebar_offset_real *tau, fivebar_offset_real *lambda)
 {
     int code;
-    inverse_dynamics_any(model, 1, X, V, A, wrench, tau, lambda, &code);
+    inverse_dynamics_one(model, X, V, A, wrench, tau, lambda, &code);
     return code;
 }
 
@@ -6093,10 +6581,10 @@ size_t fivebar_offset_inverse_dynamics_batch(const fivebar_offset_model *model, 
     *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_dynamics_any(model, LANES, X + 3*i, V + 3*i, A + 3*i, wrench ? wrench + 3*i : NULL, tau +
-            2*i, lambda + 1*i, codes);
+        inverse_dynamics_lanes(model, X + 3*i, V + 3*i, A + 3*i, wrench ? wrench + 3*i : NULL, tau + 2*i,
+            lambda + 1*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_inverse_dynamics(model, X + 3*(i + k), V + 3*(i + k), A + 3*(i + k),
@@ -6118,7 +6606,7 @@ int fivebar_offset_forward_dynamics(const fivebar_offset_model *model, const fiv
     *wrench, fivebar_offset_real *A, fivebar_offset_real *lambda)
 {
     int code;
-    forward_dynamics_any(model, 1, X, V, tau, wrench, A, lambda, &code);
+    forward_dynamics_one(model, X, V, tau, wrench, A, lambda, &code);
     return code;
 }
 
@@ -6127,10 +6615,10 @@ size_t fivebar_offset_forward_dynamics_batch(const fivebar_offset_model *model, 
     fivebar_offset_real *wrench, fivebar_offset_real *A, fivebar_offset_real *lambda, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        forward_dynamics_any(model, LANES, X + 3*i, V + 3*i, tau + 2*i, wrench ? wrench + 3*i : NULL, A +
-            3*i, lambda + 1*i, codes);
+        forward_dynamics_lanes(model, X + 3*i, V + 3*i, tau + 2*i, wrench ? wrench + 3*i : NULL, A + 3*i,
+            lambda + 1*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_forward_dynamics(model, X + 3*(i + k), V + 3*(i + k), tau + 2*(i + k),
@@ -6156,7 +6644,7 @@ int fivebar_offset_complete_acceleration(const fivebar_offset_model *model, cons
     (void)X;
     (void)V;
     (void)wrench;
-    complete_acceleration_any(A, completed, &code);
+    complete_acceleration_one(A, completed, &code);
     return code;
 }
 
@@ -6178,7 +6666,7 @@ int fivebar_offset_leg_reactions(const fivebar_offset_model *model, const fiveba
     fivebar_offset_real *forces)
 {
     int code;
-    leg_reactions_any(model, X, V, A, wrench, forces, &code);
+    leg_reactions_one(model, X, V, A, wrench, forces, &code);
     return code;
 }
 
@@ -6199,7 +6687,7 @@ int fivebar_offset_energy(const fivebar_offset_model *model, const fivebar_offse
     fivebar_offset_real *V, fivebar_offset_real *kinetic, fivebar_offset_real *potential)
 {
     int code;
-    energy_any(model, X, V, kinetic, potential, &code);
+    energy_one(model, X, V, kinetic, potential, &code);
     return code;
 }
 
@@ -6219,7 +6707,7 @@ int fivebar_offset_condition(const fivebar_offset_model *model, const fivebar_of
     fivebar_offset_real *sigma, fivebar_offset_real *legs)
 {
     int code;
-    condition_any(model, X, NULL, sigma, legs, &code);
+    condition_one(model, X, NULL, sigma, legs, &code);
     return code;
 }
 
@@ -6238,7 +6726,7 @@ int fivebar_offset_condition_constrained(const fivebar_offset_model *model, cons
     fivebar_offset_real *X, fivebar_offset_real *sigma, fivebar_offset_real *legs)
 {
     int code;
-    condition_constrained_any(model, X, NULL, sigma, legs, &code);
+    condition_constrained_one(model, X, NULL, sigma, legs, &code);
     return code;
 }
 
@@ -6258,7 +6746,7 @@ int fivebar_offset_forward_kinematics(const fivebar_offset_model *model, const f
     *q_actuated, const fivebar_offset_real *X0, fivebar_offset_real *X)
 {
     int code;
-    forward_kinematics_any(model, q_actuated, X0, X, &code);
+    forward_kinematics_one(model, q_actuated, X0, X, &code);
     return code;
 }
 
@@ -6278,7 +6766,7 @@ int fivebar_offset_project(const fivebar_offset_model *model, const fivebar_offs
     fivebar_offset_real *projected)
 {
     int code;
-    project_any(model, X, projected, &code);
+    project_one(model, X, projected, &code);
     return code;
 }
 
@@ -6299,7 +6787,7 @@ int fivebar_offset_dissipation(const fivebar_offset_model *model, const fivebar_
     int code;
     (void)model;
     (void)X;
-    dissipation_any(V, dissipation, &code);
+    dissipation_one(V, dissipation, &code);
     return code;
 }
 
@@ -6319,7 +6807,7 @@ int fivebar_offset_momentum(const fivebar_offset_model *model, const fivebar_off
     fivebar_offset_real *V, fivebar_offset_real *momentum)
 {
     int code;
-    momentum_any(model, 1, X, V, momentum, &code);
+    momentum_one(model, X, V, momentum, &code);
     return code;
 }
 
@@ -6328,9 +6816,9 @@ size_t fivebar_offset_momentum_batch(const fivebar_offset_model *model, size_t n
     *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        momentum_any(model, LANES, X + 3*i, V + 3*i, momentum + 3*i, codes);
+        momentum_lanes(model, X + 3*i, V + 3*i, momentum + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_momentum(model, X + 3*(i + k), V + 3*(i + k), momentum + 3*(i + k));
@@ -6345,11 +6833,69 @@ size_t fivebar_offset_momentum_batch(const fivebar_offset_model *model, size_t n
     return failed;
 }
 
+int fivebar_offset_joint_margins(const fivebar_offset_model *model, const fivebar_offset_real *X,
+    fivebar_offset_real *margins)
+{
+    int code;
+    joint_margins_one(model, X, margins, &code);
+    return code;
+}
+
+size_t fivebar_offset_joint_margins_batch(const fivebar_offset_model *model, size_t n, const
+    fivebar_offset_real *X, fivebar_offset_real *margins, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        joint_margins_lanes(model, X + 3*i, margins + 3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = fivebar_offset_joint_margins(model, X + 3*(i + k), margins + 3*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = fivebar_offset_joint_margins(model, X + 3*i, margins + 3*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int fivebar_offset_within_limits(const fivebar_offset_model *model, const fivebar_offset_real *X,
+    fivebar_offset_real *within)
+{
+    int code;
+    within_limits_one(model, X, within, &code);
+    return code;
+}
+
+size_t fivebar_offset_within_limits_batch(const fivebar_offset_model *model, size_t n, const
+    fivebar_offset_real *X, fivebar_offset_real *within, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        within_limits_lanes(model, X + 3*i, within + 1*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = fivebar_offset_within_limits(model, X + 3*(i + k), within + 1*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = fivebar_offset_within_limits(model, X + 3*i, within + 1*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
 int fivebar_offset_actuator_positions(const fivebar_offset_model *model, const fivebar_offset_real
     *X, fivebar_offset_real *q)
 {
     int code;
-    actuator_positions_any(model, 1, X, q, &code);
+    actuator_positions_one(model, X, q, &code);
     return code;
 }
 
@@ -6357,9 +6903,9 @@ size_t fivebar_offset_actuator_positions_batch(const fivebar_offset_model *model
     fivebar_offset_real *X, fivebar_offset_real *q, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_positions_any(model, LANES, X + 3*i, q + 2*i, codes);
+        actuator_positions_lanes(model, X + 3*i, q + 2*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_actuator_positions(model, X + 3*(i + k), q + 2*(i + k));
@@ -6378,7 +6924,7 @@ int fivebar_offset_actuator_rates(const fivebar_offset_model *model, const fiveb
     const fivebar_offset_real *V, fivebar_offset_real *rates)
 {
     int code;
-    actuator_rates_any(model, 1, X, V, rates, &code);
+    actuator_rates_one(model, X, V, rates, &code);
     return code;
 }
 
@@ -6386,9 +6932,9 @@ size_t fivebar_offset_actuator_rates_batch(const fivebar_offset_model *model, si
     fivebar_offset_real *X, const fivebar_offset_real *V, fivebar_offset_real *rates, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_rates_any(model, LANES, X + 3*i, V + 3*i, rates + 2*i, codes);
+        actuator_rates_lanes(model, X + 3*i, V + 3*i, rates + 2*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_actuator_rates(model, X + 3*(i + k), V + 3*(i + k), rates + 2*(i + k));
@@ -6408,7 +6954,7 @@ int fivebar_offset_actuator_accelerations(const fivebar_offset_model *model, con
     fivebar_offset_real *accelerations)
 {
     int code;
-    actuator_accelerations_any(model, 1, X, V, A, accelerations, &code);
+    actuator_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
@@ -6417,9 +6963,9 @@ size_t fivebar_offset_actuator_accelerations_batch(const fivebar_offset_model *m
     fivebar_offset_real *accelerations, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_accelerations_any(model, LANES, X + 3*i, V + 3*i, A + 3*i, accelerations + 2*i, codes);
+        actuator_accelerations_lanes(model, X + 3*i, V + 3*i, A + 3*i, accelerations + 2*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_actuator_accelerations(model, X + 3*(i + k), V + 3*(i + k), A + 3*(i +
@@ -6440,7 +6986,7 @@ int fivebar_offset_power(const fivebar_offset_model *model, const fivebar_offset
     fivebar_offset_real *V, const fivebar_offset_real *tau, fivebar_offset_real *power)
 {
     int code;
-    power_any(model, 1, X, V, tau, power, &code);
+    power_one(model, X, V, tau, power, &code);
     return code;
 }
 
@@ -6449,9 +6995,9 @@ size_t fivebar_offset_power_batch(const fivebar_offset_model *model, size_t n, c
     fivebar_offset_real *power, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        power_any(model, LANES, X + 3*i, V + 3*i, tau + 2*i, power + 1*i, codes);
+        power_lanes(model, X + 3*i, V + 3*i, tau + 2*i, power + 1*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_power(model, X + 3*(i + k), V + 3*(i + k), tau + 2*(i + k), power + 1*(i
@@ -6470,7 +7016,7 @@ size_t fivebar_offset_power_batch(const fivebar_offset_model *model, size_t n, c
 int fivebar_offset_rotation(const fivebar_offset_real *X, fivebar_offset_real *R)
 {
     int code;
-    rotation_any(X, R, &code);
+    rotation_one(X, R, &code);
     return code;
 }
 
@@ -6489,7 +7035,7 @@ int fivebar_offset_pose(const fivebar_offset_real *t, const fivebar_offset_real 
     fivebar_offset_real *X)
 {
     int code;
-    pose_any(t, R, X, &code);
+    pose_one(t, R, X, &code);
     return code;
 }
 
@@ -6508,7 +7054,7 @@ int fivebar_offset_X_dot(const fivebar_offset_real *X, const fivebar_offset_real
     fivebar_offset_real *X_dot)
 {
     int code;
-    X_dot_any(X, V, X_dot, &code);
+    X_dot_one(X, V, X_dot, &code);
     return code;
 }
 
@@ -6527,7 +7073,7 @@ int fivebar_offset_retract(const fivebar_offset_real *X, const fivebar_offset_re
     fivebar_offset_real *X_moved)
 {
     int code;
-    retract_any(X, step, X_moved, &code);
+    retract_one(X, step, X_moved, &code);
     return code;
 }
 
@@ -6546,7 +7092,7 @@ int fivebar_offset_difference(const fivebar_offset_real *X0, const fivebar_offse
     fivebar_offset_real *step)
 {
     int code;
-    difference_any(X0, X1, step, &code);
+    difference_one(X0, X1, step, &code);
     return code;
 }
 
@@ -6565,7 +7111,7 @@ int fivebar_offset_interpolate(const fivebar_offset_real *X0, const fivebar_offs
     fivebar_offset_real *s, fivebar_offset_real *X)
 {
     int code;
-    interpolate_any(X0, X1, s, X, &code);
+    interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 

@@ -48,6 +48,7 @@ typedef FIVEBAR_OFFSET_REAL fivebar_offset_real;
 #define FIVEBAR_OFFSET_NC 1
 #define FIVEBAR_OFFSET_NW 3
 #define FIVEBAR_OFFSET_NJ 3
+#define FIVEBAR_OFFSET_OVERCONSTRAINED 0
 
 enum {
     FIVEBAR_OFFSET_OK = 0,
@@ -68,19 +69,19 @@ typedef struct {
     /* inertia tensor about the centre of mass, platform axes [kg m^2] */
     fivebar_offset_real platform_inertia[3][3];
     /* base point, base frame [m] */
-    fivebar_offset_real rr_base_point[1][3];
+    fivebar_offset_real crank_base_point[1][3];
     /* rotation from leg axes to base axes [-] */
-    fivebar_offset_real rr_base_frame[1][3][3];
+    fivebar_offset_real crank_base_frame[1][3][3];
     /* platform joint, platform frame [m] */
-    fivebar_offset_real rr_platform_point[1][3];
+    fivebar_offset_real crank_platform_point[1][3];
     /* offset of platform joint, preceding link's frame [m] */
-    fivebar_offset_real rr_platform_joint_offset[1][3];
+    fivebar_offset_real crank_platform_joint_offset[1][3];
     /* mass of link 1 [kg] */
-    fivebar_offset_real rr_link1_mass[1];
+    fivebar_offset_real crank_link1_mass[1];
     /* centre of mass of link 1, link frame [m] */
-    fivebar_offset_real rr_link1_centre_of_mass[1][3];
+    fivebar_offset_real crank_link1_centre_of_mass[1][3];
     /* inertia tensor of link 1 about its centre of mass, link axes [kg m^2] */
-    fivebar_offset_real rr_link1_inertia[1][3][3];
+    fivebar_offset_real crank_link1_inertia[1][3][3];
     /* base point, base frame [m] */
     fivebar_offset_real rrr_base_point[1][3];
     /* rotation from leg axes to base axes [-] */
@@ -108,26 +109,26 @@ typedef struct {
 /* What depends on the parameters alone; set by fivebar_offset_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
-    fivebar_offset_real J_star_t_10, J_star_zz, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y,
-            h_star_x, h_star_y, legs_size, m_star;
-    /* legs of type rr */
-    fivebar_offset_real J_1_rr_zz[1], d_G_rr_yy[1], g_r0_x[1], g_r0_y[1], h_1_rr_x[1], h_1_rr_y[1],
-            inv_root_1_rr_t_2[1], inv_rr_platform_joint_offset_x[1], n_c_rr_t[1], n_c_rr_x[1],
-            potential_t[1], potential_t_2[1], root_1_rr_t[1], rr_base_frame_xx[1],
-            rr_base_frame_xy[1], rr_base_frame_yx[1], rr_base_frame_yy[1], rr_base_point_x[1],
-            rr_base_point_y[1], rr_platform_joint_offset_x[1], rr_platform_point_x[1],
-            rr_platform_point_y[1];
-    /* legs of type rrr */
-    fivebar_offset_real J_1_rrr_zz[1], J_2_rrr_zz[1], Jc_1_rrr_zz[1], Kd_1_rrr_t_2[1],
-            Kd_1_rrr_t_3[1], b_rrr_r0_x[1], b_rrr_r0_y[1], branch_1_rrr[1], d_Gamma_1_rrr_t[1],
-            d_Gamma_1_rrr_y[1], d_c_rrr_yy[1], d_phi_2_rrr_t[1], g_r0_x_2[1], g_r0_y_2[1],
-            h_1_rrr_x[1], h_1_rrr_y[1], h_2_rrr_x[1], h_2_rrr_y[1], inv_Kd_1_rrr_t_5[1],
-            inv_rho2_1_rrr_t_4[1], inv_rrr_platform_joint_offset_x[1], inv_size_rrr[1],
-            inv_uu_2_rrr_t[1], rho2_1_rrr_t[1], rrr_base_frame_xx[1], rrr_base_frame_xy[1],
-            rrr_base_frame_yx[1], rrr_base_frame_yy[1], rrr_base_point_x[1], rrr_base_point_y[1],
-            rrr_joint2_offset_x[1], rrr_link1_mass[1], rrr_link2_mass[1],
+    /* 1 legs of type crank */
+    fivebar_offset_real crank_J_1_zz[1], crank_base_frame_xx[1], crank_base_frame_xy[1],
+            crank_base_frame_yx[1], crank_base_frame_yy[1], crank_base_point_x[1],
+            crank_base_point_y[1], crank_d_G_yy[1], crank_g_r0_x[1], crank_g_r0_y[1], crank_h_1_x[1],
+            crank_h_1_y[1], crank_n_c_t[1], crank_n_c_x[1], crank_platform_joint_offset_x[1],
+            crank_platform_point_x[1], crank_platform_point_y[1], crank_potential_t[1],
+            crank_potential_t_2[1], crank_root_1_t[1], inv_crank_platform_joint_offset_x[1],
+            inv_crank_root_1_t_2[1];
+    /* 1 legs of type rrr */
+    fivebar_offset_real inv_rrr_Kd_1_t_5[1], inv_rrr_Kd_1_t_7[1], inv_rrr_platform_joint_offset_x[1],
+            inv_rrr_rho2_1_t_4[1], inv_rrr_size[1], rrr_J_1_zz[1], rrr_J_2_zz[1], rrr_Jc_1_zz[1],
+            rrr_Kd_1_t_2[1], rrr_Kd_1_t_4[1], rrr_b_r0_x[1], rrr_b_r0_y[1], rrr_base_frame_xx[1],
+            rrr_base_frame_xy[1], rrr_base_frame_yx[1], rrr_base_frame_yy[1], rrr_base_point_x[1],
+            rrr_base_point_y[1], rrr_branch_1[1], rrr_d_Gamma_2_t[1], rrr_d_Gamma_2_y[1],
+            rrr_d_c_yy[1], rrr_d_phi_2_t[1], rrr_g_r0_x[1], rrr_g_r0_y[1], rrr_h_1_x[1], rrr_h_1_y[1],
+            rrr_h_2_x[1], rrr_h_2_y[1], rrr_joint2_offset_x[1], rrr_link1_mass[1], rrr_link2_mass[1],
             rrr_platform_joint_offset_x[1], rrr_platform_point_x[1], rrr_platform_point_y[1],
-            size_rrr[1];
+            rrr_rho2_1_t[1], rrr_size[1];
+    fivebar_offset_real J_star_t_6, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y, h_star_x,
+            h_star_y, legs_size, m_star;
 } fivebar_offset_model;
 
 extern const fivebar_offset_params fivebar_offset_default_params;
@@ -150,7 +151,7 @@ int fivebar_offset_M(const fivebar_offset_model *model, const fivebar_offset_rea
 size_t fivebar_offset_M_batch(const fivebar_offset_model *model, size_t n, const
     fivebar_offset_real *X, fivebar_offset_real *M, int *status);
 
-/* Velocity and gravity terms Z. 148 mul, 91 add, 3 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 144 mul, 89 add, 3 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int fivebar_offset_Z(const fivebar_offset_model *model, const fivebar_offset_real *X, const
     fivebar_offset_real *V, fivebar_offset_real *Z);
@@ -208,7 +209,7 @@ size_t fivebar_offset_joint_accelerations_batch(const fivebar_offset_model *mode
     fivebar_offset_real *X, const fivebar_offset_real *V, const fivebar_offset_real *A,
     fivebar_offset_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 205 mul, 143 add, 3 div, 2 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 201 mul, 141 add, 3 div, 2 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int fivebar_offset_dynamics(const fivebar_offset_model *model, const fivebar_offset_real *X, const
     fivebar_offset_real *V, fivebar_offset_real *M, fivebar_offset_real *Z, fivebar_offset_real
@@ -217,7 +218,7 @@ size_t fivebar_offset_dynamics_batch(const fivebar_offset_model *model, size_t n
     fivebar_offset_real *X, const fivebar_offset_real *V, fivebar_offset_real *M,
     fivebar_offset_real *Z, fivebar_offset_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 169 mul, 107 add, 3 div, 2 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 165 mul, 105 add, 3 div, 2 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU), lambda (NC). */
 int fivebar_offset_inverse_dynamics(const fivebar_offset_model *model, const fivebar_offset_real
@@ -228,7 +229,7 @@ size_t fivebar_offset_inverse_dynamics_batch(const fivebar_offset_model *model, 
     fivebar_offset_real *wrench, fivebar_offset_real *tau, fivebar_offset_real *lambda, int
     *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 205 mul, 143 add, 3 div, 2 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 201 mul, 141 add, 3 div, 2 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV), lambda (NC). */
 int fivebar_offset_forward_dynamics(const fivebar_offset_model *model, const fivebar_offset_real
@@ -317,6 +318,20 @@ int fivebar_offset_momentum(const fivebar_offset_model *model, const fivebar_off
 size_t fivebar_offset_momentum_batch(const fivebar_offset_model *model, size_t n, const
     fivebar_offset_real *X, const fivebar_offset_real *V, fivebar_offset_real *momentum, int
     *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 46 mul, 25 add, 2 div, 2 sqrt, 3 trig. In: X (NQ). Out: margins (NJ). */
+int fivebar_offset_joint_margins(const fivebar_offset_model *model, const fivebar_offset_real *X,
+    fivebar_offset_real *margins);
+size_t fivebar_offset_joint_margins_batch(const fivebar_offset_model *model, size_t n, const
+    fivebar_offset_real *X, fivebar_offset_real *margins, int *status);
+
+/* Whether all joints are within their limits of displacement. 46 mul, 25 add, 2 div, 2 sqrt, 3
+   trig. In: X (NQ). Out: within (1). */
+int fivebar_offset_within_limits(const fivebar_offset_model *model, const fivebar_offset_real *X,
+    fivebar_offset_real *within);
+size_t fivebar_offset_within_limits_batch(const fivebar_offset_model *model, size_t n, const
+    fivebar_offset_real *X, fivebar_offset_real *within, int *status);
 
 /* Displacements of the actuated joints, in the order of tau. 46 mul, 25 add, 2 div, 2 sqrt, 3
    trig. In: X (NQ). Out: q (NU). */

@@ -32,6 +32,7 @@ __all__ = [
     "NC",
     "NW",
     "NJ",
+    "OVERCONSTRAINED",
     "ACTUATED",
     "ACTUATOR_NAMES",
     "H",
@@ -60,6 +61,7 @@ __all__ = [
     "inverse_dynamics",
     "inverse_kinematics",
     "joint_accelerations",
+    "joint_margins",
     "joint_rates",
     "leg_reactions",
     "momentum",
@@ -69,6 +71,7 @@ __all__ = [
     "project",
     "retract",
     "rotation",
+    "within_limits",
 ]
 
 NQ = 3
@@ -77,6 +80,7 @@ NU = 2
 NC = 1
 NW = 3
 NJ = 3
+OVERCONSTRAINED = 0
 
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
@@ -101,17 +105,17 @@ _SHAPES = {  # of the arrays that functions give
     "reach": (2,),
 }
 # Where the entries of a leg type's legs stand in these arrays, row by row.
-_H_rr = (
+_H_crank = (
     [0],
     [2],
     [4],
 )
-_Hk_rr = (
+_Hk_crank = (
     [0],
     [1],
     [2],
 )
-_constraint_bias_rr = (
+_constraint_bias_crank = (
     [0],
 )
 _H_rrr = (
@@ -119,39 +123,39 @@ _H_rrr = (
     [3],
     [5],
 )
-_q_rr = (
+_q_crank = (
     [0],
 )
 _q_rrr = (
     [1],
     [2],
 )
-_qd_rr = (
+_qd_crank = (
     [0],
 )
 _qd_rrr = (
     [1],
     [2],
 )
-_qdd_rr = (
+_qdd_crank = (
     [0],
 )
 _qdd_rrr = (
     [1],
     [2],
 )
-_constraints_rr = (
+_constraints_crank = (
     [0],
 )
-_leg_force_rr = (
-    [0],
-    [1],
-)
-_drive_rr = (
+_leg_force_crank = (
     [0],
     [1],
 )
-_constraint_direction_rr = (
+_drive_crank = (
+    [0],
+    [1],
+)
+_constraint_direction_crank = (
     [0],
     [1],
 )
@@ -163,7 +167,7 @@ _drive_rrr = (
     [3],
     [4],
 )
-_pivots_rr = (
+_pivots_crank = (
     [0],
 )
 _pivots_rrr = (
@@ -180,25 +184,25 @@ _DEFAULTS = {
     "platform_mass": 1.0,
     "platform_centre_of_mass": [-0.025, 0.0, 0.0],
     "platform_inertia": [[0.0, 0.0, 0.0], [0.0, 0.0169, 0.0], [0.0, 0.0, 0.0169]],
-    "rr_base_point": [
+    "crank_base_point": [
         [0.13999795483447225, -0.019230288934706907, 0.0],
     ],
-    "rr_base_frame": [
+    "crank_base_frame": [
         [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
     ],
-    "rr_platform_point": [
+    "crank_platform_point": [
         [-0.25, 0.0, 0.0],
     ],
-    "rr_platform_joint_offset": [
+    "crank_platform_joint_offset": [
         [0.4, 0.0, 0.0],
     ],
-    "rr_link1_mass": [
+    "crank_link1_mass": [
         1.5,
     ],
-    "rr_link1_centre_of_mass": [
+    "crank_link1_centre_of_mass": [
         [0.2, 0.0, 0.0],
     ],
-    "rr_link1_inertia": [
+    "crank_link1_inertia": [
         [[0.0003, 0.0, 0.0], [0.0, 0.020150000000000005, 0.0], [0.0, 0.0, 0.020150000000000005]],
     ],
     "rrr_base_point": [
@@ -240,13 +244,13 @@ _RULES = {  # shape, in all and of one; entries that are zero by structure; what
     "platform_mass": ((), (), (), "mass"),
     "platform_centre_of_mass": ((3,), (3,), (2,), "free"),
     "platform_inertia": ((3, 3), (3, 3), (), "planar_inertia"),
-    "rr_base_point": ((1, 3), (3,), (2,), "free"),
-    "rr_base_frame": ((1, 3, 3), (3, 3), (), "planar_rotation"),
-    "rr_platform_point": ((1, 3), (3,), (2,), "free"),
-    "rr_platform_joint_offset": ((1, 3), (3,), (1, 2), "free"),
-    "rr_link1_mass": ((1,), (), (), "mass"),
-    "rr_link1_centre_of_mass": ((1, 3), (3,), (2,), "free"),
-    "rr_link1_inertia": ((1, 3, 3), (3, 3), (), "planar_inertia"),
+    "crank_base_point": ((1, 3), (3,), (2,), "free"),
+    "crank_base_frame": ((1, 3, 3), (3, 3), (), "planar_rotation"),
+    "crank_platform_point": ((1, 3), (3,), (2,), "free"),
+    "crank_platform_joint_offset": ((1, 3), (3,), (1, 2), "free"),
+    "crank_link1_mass": ((1,), (), (), "mass"),
+    "crank_link1_centre_of_mass": ((1, 3), (3,), (2,), "free"),
+    "crank_link1_inertia": ((1, 3, 3), (3, 3), (), "planar_inertia"),
     "rrr_base_point": ((1, 3), (3,), (2,), "free"),
     "rrr_base_frame": ((1, 3, 3), (3, 3), (), "planar_rotation"),
     "rrr_platform_point": ((1, 3), (3,), (2,), "free"),
@@ -273,13 +277,13 @@ class Parameters:
         platform_mass: mass of the platform [kg], a number.
         platform_centre_of_mass: centre of mass, platform frame [m], shape (3,).
         platform_inertia: inertia tensor about the centre of mass, platform axes [kg m^2], shape (3, 3).
-        rr_base_point: base point, base frame [m], shape (1, 3).
-        rr_base_frame: rotation from leg axes to base axes [-], shape (1, 3, 3).
-        rr_platform_point: platform joint, platform frame [m], shape (1, 3).
-        rr_platform_joint_offset: offset of platform joint, preceding link's frame [m], shape (1, 3).
-        rr_link1_mass: mass of link 1 [kg], shape (1,).
-        rr_link1_centre_of_mass: centre of mass of link 1, link frame [m], shape (1, 3).
-        rr_link1_inertia: inertia tensor of link 1 about its centre of mass, link axes [kg m^2], shape (1, 3, 3).
+        crank_base_point: base point, base frame [m], shape (1, 3).
+        crank_base_frame: rotation from leg axes to base axes [-], shape (1, 3, 3).
+        crank_platform_point: platform joint, platform frame [m], shape (1, 3).
+        crank_platform_joint_offset: offset of platform joint, preceding link's frame [m], shape (1, 3).
+        crank_link1_mass: mass of link 1 [kg], shape (1,).
+        crank_link1_centre_of_mass: centre of mass of link 1, link frame [m], shape (1, 3).
+        crank_link1_inertia: inertia tensor of link 1 about its centre of mass, link axes [kg m^2], shape (1, 3, 3).
         rrr_base_point: base point, base frame [m], shape (1, 3).
         rrr_base_frame: rotation from leg axes to base axes [-], shape (1, 3, 3).
         rrr_platform_point: platform joint, platform frame [m], shape (1, 3).
@@ -391,7 +395,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return np.full(shape, default)
+        return _filled(shape, default) if isinstance(default, float) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -404,6 +408,16 @@ def _argument(function, name, value, shape, default=None, rule=""):
     elif rule == "positive" and not np.all((array > 0.0) & (array < np.inf)):
         raise ValueError(f"{function}: {name} must be positive and finite")
     return array
+
+
+_FILLED = {}
+
+
+def _filled(shape, value):
+    """An array of one value, made once."""
+    if (shape, value) not in _FILLED:
+        _FILLED[shape, value] = _frozen(np.full(shape, value))
+    return _FILLED[shape, value]
 
 
 def _lead(leads):
@@ -497,14 +511,14 @@ HOME_X = _frozen(np.array([0.06, 0.5, 0.9]))
 HOME_Q = _frozen(np.array([2.2, 0.9, 1.1]))
 
 _BRANCHES = {  # assembly branch of home, a sign per leg
-    "branch_1_rrr": np.array([-1.0]),
+    "rrr_branch_1": np.array([-1.0]),
 }
 
 
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
-    _rr = 1
+    _crank = 1
     _rrr = 1
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
@@ -512,19 +526,19 @@ def _prepare(p):
     platform_centre_of_mass_x = p.platform_centre_of_mass[0]
     platform_centre_of_mass_y = p.platform_centre_of_mass[1]
     platform_inertia_zz = p.platform_inertia[2, 2]
-    rr_base_point_x = p.rr_base_point[:, 0]
-    rr_base_point_y = p.rr_base_point[:, 1]
-    rr_base_frame_xx = p.rr_base_frame[:, 0, 0]
-    rr_base_frame_xy = p.rr_base_frame[:, 0, 1]
-    rr_base_frame_yx = p.rr_base_frame[:, 1, 0]
-    rr_base_frame_yy = p.rr_base_frame[:, 1, 1]
-    rr_platform_point_x = p.rr_platform_point[:, 0]
-    rr_platform_point_y = p.rr_platform_point[:, 1]
-    rr_platform_joint_offset_x = p.rr_platform_joint_offset[:, 0]
-    rr_link1_mass = p.rr_link1_mass
-    rr_link1_centre_of_mass_x = p.rr_link1_centre_of_mass[:, 0]
-    rr_link1_centre_of_mass_y = p.rr_link1_centre_of_mass[:, 1]
-    rr_link1_inertia_zz = p.rr_link1_inertia[:, 2, 2]
+    crank_base_point_x = p.crank_base_point[:, 0]
+    crank_base_point_y = p.crank_base_point[:, 1]
+    crank_base_frame_xx = p.crank_base_frame[:, 0, 0]
+    crank_base_frame_xy = p.crank_base_frame[:, 0, 1]
+    crank_base_frame_yx = p.crank_base_frame[:, 1, 0]
+    crank_base_frame_yy = p.crank_base_frame[:, 1, 1]
+    crank_platform_point_x = p.crank_platform_point[:, 0]
+    crank_platform_point_y = p.crank_platform_point[:, 1]
+    crank_platform_joint_offset_x = p.crank_platform_joint_offset[:, 0]
+    crank_link1_mass = p.crank_link1_mass
+    crank_link1_centre_of_mass_x = p.crank_link1_centre_of_mass[:, 0]
+    crank_link1_centre_of_mass_y = p.crank_link1_centre_of_mass[:, 1]
+    crank_link1_inertia_zz = p.crank_link1_inertia[:, 2, 2]
     rrr_base_point_x = p.rrr_base_point[:, 0]
     rrr_base_point_y = p.rrr_base_point[:, 1]
     rrr_base_frame_xx = p.rrr_base_frame[:, 0, 0]
@@ -543,383 +557,386 @@ def _prepare(p):
     rrr_link2_centre_of_mass_x = p.rrr_link2_centre_of_mass[:, 0]
     rrr_link2_centre_of_mass_y = p.rrr_link2_centre_of_mass[:, 1]
     rrr_link2_inertia_zz = p.rrr_link2_inertia[:, 2, 2]
-    branch_1_rrr = _BRANCHES["branch_1_rrr"]
-    # (L2) first moment about the platform origin
+    rrr_branch_1 = _BRANCHES["rrr_branch_1"]
+    # (h_star) first moment about the platform origin
     h_star_t = platform_centre_of_mass_x*platform_mass
     h_star_t_2 = platform_centre_of_mass_y*platform_mass
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_t = platform_centre_of_mass_y*platform_centre_of_mass_y
     J_star_t_2 = J_star_t + platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_3 = J_star_t*platform_mass
     J_star_t_4 = J_star_t_2*platform_mass
-    # (rr-V3) unit vector that the leg's freedoms leave out
-    n_c_rr_t = rr_platform_joint_offset_x*rr_platform_joint_offset_x
-    n_c_rr_x = rr_platform_joint_offset_x/(sqrt(n_c_rr_t))
-    # (rr-G2) length of the leg's lever arms, the measure of what is near singular
-    size_rr_t = 5.257946636889999e-07 + n_c_rr_t
-    size_rr = sqrt(size_rr_t)
-    # (rr-K4) amplitude: off the manifold the nearest angle is taken
-    root_1_rr_t = size_rr*size_rr*size_rr_t
-    # (rr-G4) inertia tensor of link 1 about the origin of link 1
-    J_1_rr_t = (
-    rr_link1_centre_of_mass_x*rr_link1_centre_of_mass_x +
-        rr_link1_centre_of_mass_y*rr_link1_centre_of_mass_y
+    # (crank-n_c) unit vector that the leg's freedoms leave out
+    crank_n_c_t = crank_platform_joint_offset_x*crank_platform_joint_offset_x
+    crank_n_c_x = crank_platform_joint_offset_x/(sqrt(crank_n_c_t))
+    # (crank-size) length of the leg's lever arms, the measure of what is near singular
+    crank_size_t = 5.257946636889999e-07 + crank_n_c_t
+    crank_size = sqrt(crank_size_t)
+    # (crank-root_1) amplitude: off the manifold the nearest angle is taken
+    crank_root_1_t = crank_size*crank_size*crank_size_t
+    # (crank-w_1) reciprocal vector 1
+    inv_crank_platform_joint_offset_x = 1.0/crank_platform_joint_offset_x
+    # (crank-J_1) inertia tensor of link 1 about the origin of link 1
+    crank_J_1_t = (
+    crank_link1_centre_of_mass_x*crank_link1_centre_of_mass_x +
+        crank_link1_centre_of_mass_y*crank_link1_centre_of_mass_y
     )
-    J_1_rr_zz = rr_link1_inertia_zz + J_1_rr_t*rr_link1_mass
-    # (rr-V4) reciprocal vector 1
-    inv_rr_platform_joint_offset_x = 1.0/rr_platform_joint_offset_x
-    # (rr-N12) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    d_G_rr_yy = J_1_rr_zz*inv_rr_platform_joint_offset_x*inv_rr_platform_joint_offset_x
-    # (rr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-    g_r0_x = gravity_x*rr_base_frame_xx + gravity_y*rr_base_frame_yx
-    g_r0_y = gravity_x*rr_base_frame_xy + gravity_y*rr_base_frame_yy
-    # (rr-G3) first moment of link 1 about the origin of link 1
-    h_1_rr_x = rr_link1_centre_of_mass_x*rr_link1_mass
-    h_1_rr_y = rr_link1_centre_of_mass_y*rr_link1_mass
-    # (V1) potential energy
-    potential_t = rr_base_point_x*rr_link1_mass
-    potential_t_2 = rr_base_point_y*rr_link1_mass
-    # (rr-K4) amplitude: off the manifold the nearest angle is taken
-    inv_root_1_rr_t_2 = 1.0/root_1_rr_t
-    total_rr_x = np.sum(np.broadcast_to(rr_platform_point_x, _rr))
-    total_rr_y = np.sum(np.broadcast_to(rr_platform_point_y, _rr))
-    total_rr = np.sum(np.broadcast_to(size_rr_t, _rr))
-    # (rrr-K17) squared length, across the axis, of the direction fixed in link 2
-    uu_2_rrr_t = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x
-    # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    Kd_1_rrr_t = rrr_joint2_offset_x*rrr_joint2_offset_x
-    Kd_1_rrr_t_2 = 0.5*Kd_1_rrr_t
-    Kd_1_rrr_t_3 = 0.5*uu_2_rrr_t
-    # (rrr-G2) length of the leg's lever arms, the measure of what is near singular
-    size_rrr_t = 5.257946636889999e-07 + Kd_1_rrr_t + uu_2_rrr_t
-    size_rrr = sqrt(size_rrr_t)
-    # (rrr-K8) squared amplitude
-    rho2_1_rrr_t = size_rrr*size_rrr*size_rrr_t
-    # (rrr-K15) the vector from joint 1 to the connection point, resolved along link 1
-    inv_Kd_1_rrr_t_5 = 1.0/Kd_1_rrr_t
-    # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-    inv_uu_2_rrr_t = 1.0/uu_2_rrr_t
-    # (rrr-G4) inertia tensor of link 1 about the origin of link 1
-    J_1_rrr_t = (
+    crank_J_1_zz = crank_link1_inertia_zz + crank_J_1_t*crank_link1_mass
+    # (crank-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    crank_d_G_yy = (
+    crank_J_1_zz*inv_crank_platform_joint_offset_x*inv_crank_platform_joint_offset_x
+    )
+    # (crank-h_1) first moment of link 1 about the origin of link 1
+    crank_h_1_x = crank_link1_centre_of_mass_x*crank_link1_mass
+    crank_h_1_y = crank_link1_centre_of_mass_y*crank_link1_mass
+    # (crank-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+    crank_g_r0_x = crank_base_frame_xx*gravity_x + crank_base_frame_yx*gravity_y
+    crank_g_r0_y = crank_base_frame_xy*gravity_x + crank_base_frame_yy*gravity_y
+    # (potential) potential energy
+    crank_potential_t = crank_base_point_x*crank_link1_mass
+    crank_potential_t_2 = crank_base_point_y*crank_link1_mass
+    # (crank-root_1) amplitude: off the manifold the nearest angle is taken
+    inv_crank_root_1_t_2 = 1.0/crank_root_1_t
+    total_crank_x = np.sum(np.broadcast_to(crank_platform_point_x, _crank))
+    total_crank_y = np.sum(np.broadcast_to(crank_platform_point_y, _crank))
+    total_crank = np.sum(np.broadcast_to(crank_size_t, _crank))
+    # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+    rrr_Kd_1_t = rrr_joint2_offset_x*rrr_joint2_offset_x
+    rrr_Kd_1_t_2 = 0.5*rrr_Kd_1_t
+    rrr_Kd_1_t_3 = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x
+    rrr_Kd_1_t_4 = 0.5*rrr_Kd_1_t_3
+    # (rrr-size) length of the leg's lever arms, the measure of what is near singular
+    rrr_size_t = 5.257946636889999e-07 + rrr_Kd_1_t + rrr_Kd_1_t_3
+    rrr_size = sqrt(rrr_size_t)
+    # (rrr-rho2_1) squared amplitude
+    rrr_rho2_1_t = rrr_size*rrr_size*rrr_size_t
+    # (rrr-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+    inv_rrr_Kd_1_t_5 = 1.0/rrr_Kd_1_t
+    # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+    inv_rrr_Kd_1_t_7 = 1.0/rrr_Kd_1_t_3
+    # (rrr-rho_tip_2) connection point to the centre of mass of link 2
+    rrr_rho_tip_2_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x
+    # (rrr-h_2) first moment of link 2 about the connection point
+    rrr_h_2_x = rrr_link2_mass*rrr_rho_tip_2_x
+    rrr_h_2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass
+    # (rrr-w_2) reciprocal vector 2
+    inv_rrr_platform_joint_offset_x = 1.0/rrr_platform_joint_offset_x
+    # (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
+    rrr_d_phi_2_t = inv_rrr_platform_joint_offset_x*rrr_h_2_y
+    # (rrr-J_2) inertia tensor of link 2 about the connection point
+    rrr_J_2_t = (
+    rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y + rrr_rho_tip_2_x*rrr_rho_tip_2_x
+    )
+    rrr_J_2_zz = rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass
+    # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    rrr_d_Gamma_2_t = inv_rrr_platform_joint_offset_x*rrr_J_2_zz
+    rrr_d_Gamma_2_y = rrr_d_Gamma_2_t + rrr_h_2_x
+    # (rrr-J_1) inertia tensor of link 1 about the origin of link 1
+    rrr_J_1_t = (
     rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
         rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y
     )
-    J_1_rrr_zz = rrr_link1_inertia_zz + J_1_rrr_t*rrr_link1_mass
-    # (rrr-G5) connection point to the centre of mass of link 2
-    rho_tip_2_rrr_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x
-    # (rrr-G7) inertia tensor of link 2 about the connection point
-    J_2_rrr_t = (
-    rho_tip_2_rrr_x*rho_tip_2_rrr_x + rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y
+    rrr_J_1_zz = rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass
+    # (rrr-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link about the connection point
+    rrr_Jc_1_zz = rrr_J_1_zz + rrr_J_2_zz
+    # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    rrr_d_c_yy = (
+    -inv_rrr_platform_joint_offset_x*rrr_d_Gamma_2_y - inv_rrr_platform_joint_offset_x*rrr_h_2_x
     )
-    J_2_rrr_zz = rrr_link2_inertia_zz + J_2_rrr_t*rrr_link2_mass
-    # (rrr-N11) inertia tensor of the links from 1 outwards about joint 1
-    Jc_1_rrr_zz = J_1_rrr_zz + J_2_rrr_zz
-    # (rrr-G6) first moment of link 2 about the connection point
-    h_2_rrr_x = rho_tip_2_rrr_x*rrr_link2_mass
-    h_2_rrr_y = rrr_link2_centre_of_mass_y*rrr_link2_mass
-    # (rrr-V6) reciprocal vector 2
-    inv_rrr_platform_joint_offset_x = 1.0/rrr_platform_joint_offset_x
-    # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-    d_Gamma_1_rrr_t = J_2_rrr_zz*inv_rrr_platform_joint_offset_x
-    d_Gamma_1_rrr_y = d_Gamma_1_rrr_t + h_2_rrr_x
-    # (rrr-N6) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
-    d_phi_2_rrr_t = h_2_rrr_y*inv_rrr_platform_joint_offset_x
-    # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_rrr_yy = (
-    -d_Gamma_1_rrr_y*inv_rrr_platform_joint_offset_x - h_2_rrr_x*inv_rrr_platform_joint_offset_x
-    )
-    # (L2) first moment about the platform origin
-    h_star_t_3 = rrr_link2_mass*rrr_platform_point_x
-    h_star_t_4 = rrr_link2_mass*rrr_platform_point_y
-    # (L3) inertia tensor about the platform origin
-    J_star_t_5 = rrr_platform_point_y*rrr_platform_point_y
-    J_star_t_6 = J_star_t_5 + rrr_platform_point_x*rrr_platform_point_x
-    J_star_t_7 = J_star_t_5*rrr_link2_mass
-    J_star_t_8 = J_star_t_6*rrr_link2_mass
-    # (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-    g_r0_x_2 = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx
-    g_r0_y_2 = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy
-    # (rrr-G3) first moment of link 1 about the origin of link 1
-    h_1_rrr_x = rrr_link1_centre_of_mass_x*rrr_link1_mass
-    h_1_rrr_y = rrr_link1_centre_of_mass_y*rrr_link1_mass
-    # (V1) potential energy
-    b_rrr_r0_x = rrr_base_frame_xx*rrr_base_point_x + rrr_base_frame_yx*rrr_base_point_y
-    b_rrr_r0_y = rrr_base_frame_xy*rrr_base_point_x + rrr_base_frame_yy*rrr_base_point_y
-    # (rrr-K8) squared amplitude
-    inv_rho2_1_rrr_t_4 = 1.0/rho2_1_rrr_t
-    # (rrr-V5) reciprocal vector 1
-    inv_size_rrr = 1.0/size_rrr
+    # (h_star) first moment about the platform origin
+    rrr_h_star_t = rrr_link2_mass*rrr_platform_point_x
+    rrr_h_star_t_2 = rrr_link2_mass*rrr_platform_point_y
+    # (J_star) inertia tensor about the platform origin
+    rrr_J_star_t = rrr_platform_point_y*rrr_platform_point_y
+    rrr_J_star_t_2 = rrr_J_star_t + rrr_platform_point_x*rrr_platform_point_x
+    rrr_J_star_t_3 = rrr_J_star_t*rrr_link2_mass
+    rrr_J_star_t_4 = rrr_J_star_t_2*rrr_link2_mass
+    # (rrr-h_1) first moment of link 1 about the origin of link 1
+    rrr_h_1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass
+    rrr_h_1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass
+    # (rrr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+    rrr_g_r0_x = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx
+    rrr_g_r0_y = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy
+    # (potential) potential energy
+    rrr_b_r0_x = rrr_base_frame_xx*rrr_base_point_x + rrr_base_frame_yx*rrr_base_point_y
+    rrr_b_r0_y = rrr_base_frame_xy*rrr_base_point_x + rrr_base_frame_yy*rrr_base_point_y
+    # (rrr-rho2_1) squared amplitude
+    inv_rrr_rho2_1_t_4 = 1.0/rrr_rho2_1_t
+    # (rrr-w_1) reciprocal vector 1
+    inv_rrr_size = 1.0/rrr_size
     total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, _rrr))
-    total_rrr_x = np.sum(np.broadcast_to(h_star_t_3, _rrr))
-    total_rrr_y = np.sum(np.broadcast_to(h_star_t_4, _rrr))
-    total_rrr_xx = np.sum(np.broadcast_to(J_star_t_7, _rrr))
-    total_rrr_zz = np.sum(np.broadcast_to(J_star_t_8, _rrr))
+    total_rrr_x = np.sum(np.broadcast_to(rrr_h_star_t, _rrr))
+    total_rrr_y = np.sum(np.broadcast_to(rrr_h_star_t_2, _rrr))
+    total_rrr_xx = np.sum(np.broadcast_to(rrr_J_star_t_3, _rrr))
+    total_rrr_zz = np.sum(np.broadcast_to(rrr_J_star_t_4, _rrr))
     total_rrr_x_2 = np.sum(np.broadcast_to(rrr_platform_point_x, _rrr))
     total_rrr_y_2 = np.sum(np.broadcast_to(rrr_platform_point_y, _rrr))
-    total_rrr_2 = np.sum(np.broadcast_to(size_rrr_t, _rrr))
-    # (L1) mass of the platform with the gathered masses
+    total_rrr_2 = np.sum(np.broadcast_to(rrr_size_t, _rrr))
+    # (m_star) mass of the platform with the gathered masses
     m_star = platform_mass + total_rrr
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_x = h_star_t + total_rrr_x
     h_star_y = h_star_t_2 + total_rrr_y
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_xx = J_star_t_3 + total_rrr_xx
-    J_star_zz = J_star_t_4 + platform_inertia_zz + total_rrr_zz
-    J_star_t_9 = J_star_xx - J_star_zz
-    J_star_t_10 = J_star_t_9 - J_star_xx
-    # (M4) centripetal force and weight of the platform
+    J_star_t_5 = J_star_xx - J_star_t_4 - platform_inertia_zz - total_rrr_zz
+    J_star_t_6 = J_star_t_5 - J_star_xx
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
-    # (C1) centroid of the platform points
-    b_c_x = 0.5*total_rr_x + 0.5*total_rrr_x_2
-    b_c_y = 0.5*total_rr_y + 0.5*total_rrr_y_2
-    # (C3) rms size of the legs, taken where the platform points coincide
-    legs_size = sqrt(0.5*total_rr + 0.5*total_rrr_2)
+    # (b_c) centroid of the platform points
+    b_c_x = 0.5*total_crank_x + 0.5*total_rrr_x_2
+    b_c_y = 0.5*total_crank_y + 0.5*total_rrr_y_2
+    # (legs_size) rms size of the legs, taken where the platform points coincide
+    legs_size = sqrt(0.5*total_crank + 0.5*total_rrr_2)
     return {
         "dynamics": (
-        (J_star_t_10, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
+        (J_star_t_6, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
-                (_rr,
-        (J_1_rr_zz, d_G_rr_yy, g_r0_x, g_r0_y, h_1_rr_x, h_1_rr_y, inv_rr_platform_joint_offset_x,
-                    n_c_rr_t, n_c_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy,
-                    rr_base_frame_yx, rr_base_frame_yy, rr_base_point_x, rr_base_point_y,
-                    rr_platform_joint_offset_x, rr_platform_point_x, rr_platform_point_y,),
+                (_crank,
+        (crank_J_1_zz, crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx,
+                    crank_base_frame_yy, crank_base_point_x, crank_base_point_y, crank_d_G_yy,
+                    crank_g_r0_x, crank_g_r0_y, crank_h_1_x, crank_h_1_y, crank_n_c_t,
+                    crank_n_c_x, crank_platform_joint_offset_x, crank_platform_point_x,
+                    crank_platform_point_y, crank_root_1_t, inv_crank_platform_joint_offset_x,),
                 ),
                 (_rrr,
-        (J_1_rrr_zz, J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr,
-                    d_Gamma_1_rrr_t, d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, g_r0_x_2,
-                    g_r0_y_2, h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+                    rrr_J_2_zz, rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+                    rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+                    rrr_base_point_y, rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy,
+                    rrr_d_phi_2_t, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
+                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_10, h_star_x, h_star_y, m_star,),
+        (J_star_t_6, h_star_x, h_star_y, m_star,),
             (
-                (_rr,
-        (d_G_rr_yy, n_c_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
-                    rr_base_frame_yy, rr_base_point_x, rr_base_point_y,
-                    rr_platform_joint_offset_x, rr_platform_point_x, rr_platform_point_y,),
+                (_crank,
+        (crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
+                    crank_base_point_x, crank_base_point_y, crank_d_G_yy, crank_n_c_t,
+                    crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
+                    crank_root_1_t,),
                 ),
                 (_rrr,
-        (J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, d_Gamma_1_rrr_t,
-                    d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_2_zz,
+                    rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+                    rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy, rrr_d_phi_2_t,
+                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
         "Z": (
         (Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y,),
             (
-                (_rr,
-        (J_1_rr_zz, g_r0_x, g_r0_y, h_1_rr_x, h_1_rr_y, inv_rr_platform_joint_offset_x, n_c_rr_t,
-                    root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
-                    rr_base_frame_yy, rr_base_point_x, rr_base_point_y,
-                    rr_platform_joint_offset_x, rr_platform_point_x, rr_platform_point_y,),
+                (_crank,
+        (crank_J_1_zz, crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx,
+                    crank_base_frame_yy, crank_base_point_x, crank_base_point_y, crank_g_r0_x,
+                    crank_g_r0_y, crank_h_1_x, crank_h_1_y, crank_n_c_t,
+                    crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
+                    crank_root_1_t, inv_crank_platform_joint_offset_x,),
                 ),
                 (_rrr,
-        (J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
-                    h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+                    rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+                    rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
+                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
         "H": (
         (),
             (
-                (_rr,
-        (inv_rr_platform_joint_offset_x, n_c_rr_t, root_1_rr_t, rr_base_frame_xx,
-                    rr_base_frame_xy, rr_base_frame_yx, rr_base_frame_yy, rr_base_point_x,
-                    rr_base_point_y, rr_platform_joint_offset_x, rr_platform_point_x,
-                    rr_platform_point_y,),
+                (_crank,
+        (crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
+                    crank_base_point_x, crank_base_point_y, crank_n_c_t,
+                    crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
+                    crank_root_1_t, inv_crank_platform_joint_offset_x,),
                 ),
                 (_rrr,
-        (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+                    rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+                    rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x,
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+                    rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
         "Hk": (
         (),
             (
-                (_rr,
-        (n_c_rr_t, n_c_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
-                    rr_base_frame_yy, rr_base_point_x, rr_base_point_y,
-                    rr_platform_joint_offset_x, rr_platform_point_x, rr_platform_point_y,),
+                (_crank,
+        (crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
+                    crank_base_point_x, crank_base_point_y, crank_n_c_t, crank_n_c_x,
+                    crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
+                    crank_root_1_t,),
                 ),
             ),
         ),
         "constraint_bias": (
         (),
             (
-                (_rr,
-        (inv_rr_platform_joint_offset_x, n_c_rr_t, n_c_rr_x, root_1_rr_t, rr_base_frame_xx,
-                    rr_base_frame_xy, rr_base_frame_yx, rr_base_frame_yy, rr_base_point_x,
-                    rr_base_point_y, rr_platform_joint_offset_x, rr_platform_point_x,
-                    rr_platform_point_y,),
+                (_crank,
+        (crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
+                    crank_base_point_x, crank_base_point_y, crank_n_c_t, crank_n_c_x,
+                    crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
+                    crank_root_1_t, inv_crank_platform_joint_offset_x,),
                 ),
             ),
         ),
         "required": (
-        (J_star_zz, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
+        (J_star_t_6, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
-                (_rr,
-        (J_1_rr_zz, g_r0_x, g_r0_y, h_1_rr_x, h_1_rr_y, inv_rr_platform_joint_offset_x, n_c_rr_t,
-                    n_c_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
-                    rr_base_frame_yy, rr_base_point_x, rr_base_point_y,
-                    rr_platform_joint_offset_x, rr_platform_point_x, rr_platform_point_y,),
+                (_crank,
+        (crank_J_1_zz, crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx,
+                    crank_base_frame_yy, crank_base_point_x, crank_base_point_y, crank_g_r0_x,
+                    crank_g_r0_y, crank_h_1_x, crank_h_1_y, crank_n_c_t, crank_n_c_x,
+                    crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
+                    crank_root_1_t, inv_crank_platform_joint_offset_x,),
                 ),
                 (_rrr,
-        (J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
-                    h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+                    rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+                    rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
+                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
         "inverse_kinematics": (
         (),
             (
-                (_rr,
-        (n_c_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
-                    rr_base_frame_yy, rr_base_point_x, rr_base_point_y,
-                    rr_platform_joint_offset_x, rr_platform_point_x, rr_platform_point_y,),
+                (_crank,
+        (crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
+                    crank_base_point_x, crank_base_point_y, crank_n_c_t,
+                    crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
+                    crank_root_1_t,),
                 ),
                 (_rrr,
-        (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+                    rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+                    rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    rrr_rho2_1_t,),
                 ),
             ),
         ),
         "joint_rates": (
         (),
             (
-                (_rr,
-        (inv_rr_platform_joint_offset_x, n_c_rr_t, root_1_rr_t, rr_base_frame_xx,
-                    rr_base_frame_xy, rr_base_frame_yx, rr_base_frame_yy, rr_base_point_x,
-                    rr_base_point_y, rr_platform_joint_offset_x, rr_platform_point_x,
-                    rr_platform_point_y,),
+                (_crank,
+        (crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
+                    crank_base_point_x, crank_base_point_y, crank_n_c_t,
+                    crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
+                    crank_root_1_t, inv_crank_platform_joint_offset_x,),
                 ),
                 (_rrr,
-        (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
-                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
+                    rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+                    rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+                    rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
         "joint_accelerations": (
         (),
             (
-                (_rr,
-        (inv_rr_platform_joint_offset_x, n_c_rr_t, root_1_rr_t, rr_base_frame_xx,
-                    rr_base_frame_xy, rr_base_frame_yx, rr_base_frame_yy, rr_base_point_x,
-                    rr_base_point_y, rr_platform_joint_offset_x, rr_platform_point_x,
-                    rr_platform_point_y,),
+                (_crank,
+        (crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
+                    crank_base_point_x, crank_base_point_y, crank_n_c_t,
+                    crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
+                    crank_root_1_t, inv_crank_platform_joint_offset_x,),
                 ),
                 (_rrr,
-        (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
-                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
+                    rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+                    rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+                    rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
         "constraints": (
         (),
             (
-                (_rr,
-        (n_c_rr_t, n_c_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
-                    rr_base_frame_yy, rr_base_point_x, rr_base_point_y,
-                    rr_platform_joint_offset_x, rr_platform_point_x, rr_platform_point_y,),
+                (_crank,
+        (crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
+                    crank_base_point_x, crank_base_point_y, crank_n_c_t, crank_n_c_x,
+                    crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
+                    crank_root_1_t,),
                 ),
             ),
         ),
         "legs": (
         (gravity_x, gravity_y,),
             (
-                (_rr,
-        (J_1_rr_zz, g_r0_x, g_r0_y, h_1_rr_x, h_1_rr_y, inv_rr_platform_joint_offset_x, n_c_rr_t,
-                    n_c_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
-                    rr_base_frame_yy, rr_base_point_x, rr_base_point_y,
-                    rr_platform_joint_offset_x, rr_platform_point_x, rr_platform_point_y,),
+                (_crank,
+        (crank_J_1_zz, crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx,
+                    crank_base_frame_yy, crank_base_point_x, crank_base_point_y, crank_g_r0_x,
+                    crank_g_r0_y, crank_h_1_x, crank_h_1_y, crank_n_c_t, crank_n_c_x,
+                    crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
+                    crank_root_1_t, inv_crank_platform_joint_offset_x,),
                 ),
                 (_rrr,
-        (J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
-                    h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_link2_mass,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+                    rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+                    rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
+                    rrr_h_2_y, rrr_joint2_offset_x, rrr_link2_mass, rrr_platform_joint_offset_x,
+                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
         "potential": (
         (gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
-                (_rr,
-        (h_1_rr_x, h_1_rr_y, n_c_rr_t, potential_t, potential_t_2, root_1_rr_t, rr_base_frame_xx,
-                    rr_base_frame_xy, rr_base_frame_yx, rr_base_frame_yy, rr_base_point_x,
-                    rr_base_point_y, rr_platform_joint_offset_x, rr_platform_point_x,
-                    rr_platform_point_y,),
+                (_crank,
+        (crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
+                    crank_base_point_x, crank_base_point_y, crank_h_1_x, crank_h_1_y, crank_n_c_t,
+                    crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
+                    crank_potential_t, crank_potential_t_2, crank_root_1_t,),
                 ),
                 (_rrr,
-        (Kd_1_rrr_t_2, Kd_1_rrr_t_3, b_rrr_r0_x, b_rrr_r0_y, branch_1_rrr, g_r0_x_2, g_r0_y_2,
-                    h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t,
-                    rho2_1_rrr_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_b_r0_x, rrr_b_r0_y,
+                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
+                    rrr_base_point_x, rrr_base_point_y, rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y,
+                    rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y, rrr_joint2_offset_x,
                     rrr_link1_mass, rrr_platform_joint_offset_x, rrr_platform_point_x,
-                    rrr_platform_point_y,),
+                    rrr_platform_point_y, rrr_rho2_1_t,),
                 ),
             ),
         ),
         "condition": (
         (b_c_x, b_c_y, legs_size,),
             (
-                (_rr,
-        (inv_root_1_rr_t_2, inv_rr_platform_joint_offset_x, n_c_rr_t, n_c_rr_x, root_1_rr_t,
-                    rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx, rr_base_frame_yy,
-                    rr_base_point_x, rr_base_point_y, rr_platform_joint_offset_x,
-                    rr_platform_point_x, rr_platform_point_y,),
+                (_crank,
+        (crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
+                    crank_base_point_x, crank_base_point_y, crank_n_c_t, crank_n_c_x,
+                    crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
+                    crank_root_1_t, inv_crank_platform_joint_offset_x, inv_crank_root_1_t_2,),
                 ),
                 (_rrr,
-        (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_rho2_1_rrr_t_4,
-                    inv_size_rrr, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
-                    rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-                    rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-                    rrr_platform_point_x, rrr_platform_point_y, size_rrr,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_rho2_1_t_4, inv_rrr_size, rrr_Kd_1_t_2,
+                    rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+                    rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+                    rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
     }
 
 
-_FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
+_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
@@ -965,17 +982,19 @@ class _Floats:
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
-        for k in range(self.states):
-            try:
-                ok, arrays = function(self, *(row[k] for row in rows))
-            except (ZeroDivisionError, OverflowError):
-                continue
-            if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
-                for a, array in zip(found, arrays):
-                    a[k] = array
-        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
+        found = [self.state(function, names, [row[k] for row in rows]) for k in range(self.states)]
+        return [np.array(a).T.reshape(*_SHAPES[n], self.states) for a, n in zip(zip(*found), names)]
+
+    def state(self, function, names, given):
+        """Lists that a function gives at a state."""
+        try:
+            ok, arrays = function(self, *given)
+        except (ZeroDivisionError, OverflowError):
+            ok = False
+        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+            return arrays
+        return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
 
 
 class _Arrays:
@@ -1043,35 +1062,44 @@ def _mode(p, states):
     return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
 
 
-def _call(function, steps, p, *arguments, mode=_mode):
-    """What the steps give at arguments (name, value, shape of a state, default, rule)."""
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+    """What the steps give at arguments (name, value, shape of a state, default, rule).
+
+    Where that may be infinite only NaN makes a state impossible.
+    """
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
     lead, p = _lead(leads), _given(p)
     read = [a[4:] != ("unused",) for a in arguments]
     if lead or mode is _Judged:
-        results = _many(steps, p, lead, given, shapes, read, mode)
+        results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
-        results = _one(steps, p, given, shapes, read)
+        results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
 
 
-def _one(steps, p, given, shapes, read):
+def _one(steps, p, given, shapes, read, unbounded):
     """Results at a single state."""
     states = [v.reshape(*shape, 1) for v, shape in zip(given, shapes)]
     with np.errstate(all="ignore"):
-        results = [a[..., 0] for a in steps(_Floats(p, 1), *states)]
-    if all(all(map(math.isfinite, v.ravel().tolist())) for v in (*compress(given, read), *results)):
-        return [np.array(a)[()] for a in results]
+        results = [a[..., 0].copy() for a in steps(_Floats(p, 1), *states)]
+    looked_at = [np.minimum(a, 0.0) for a in results] if unbounded else results
+    entries = (v.ravel().tolist() for v in (*compress(given, read), *looked_at))
+    if all(all(map(math.isfinite, row)) for row in entries):
+        return [a[()] for a in results]
     return [np.full(a.shape, np.nan)[()] for a in results]
 
 
-def _many(steps, p, lead, given, shapes, read, mode):
+def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block."""
     count = math.prod(lead)
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
+    if count > _BLOCK:
+        # Never touched, freed at once: the C library, which learns from it, then keeps the memory
+        # of intermediate arrays from block to block instead of giving its pages back.
+        np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
         for first in range(0, max(count, 1), _BLOCK):
             block = slice(first, min(first + _BLOCK, count))
@@ -1083,7 +1111,7 @@ def _many(steps, p, lead, given, shapes, read, mode):
             _all_finite(compress(states, read), good)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite(found, good)
+            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -1119,6 +1147,18 @@ def _wrapped(a, places):
     result = np.array(a)
     result[places] = np.pi - np.remainder(np.pi - a[places], 2.0 * np.pi)
     return result
+
+
+def _unlimited(a, places):
+    """a, some entries infinite; what is not known stays so."""
+    result = np.array(a)
+    result[places] += np.inf
+    return result
+
+
+def _not_negative(a):
+    """1 where no entry is negative, else 0; NaN where one is not finite."""
+    return np.where(np.isfinite(a).all(axis=0), np.all(a >= 0.0, axis=0), np.nan)
 
 
 def _rows_divided(a, b, places):
@@ -1180,8 +1220,8 @@ def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
     n, states = b.shape
     if 0 < states <= _FEW:
-        matrices, rights = np.moveaxis(a, -1, 0).tolist(), b.T.tolist()
-        return np.array([_solve_one(*each) for each in zip(matrices, rights)]).T.reshape(n, states)
+        systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
+        return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
     good = np.all((size > 0.0) & np.isfinite(size), axis=0)
     rows = np.concatenate((a, b[:, None]), axis=1)
@@ -1208,28 +1248,32 @@ def _solve(a, b):
 
 
 def _solve_one(a, b):
-    """The same for one system of nested lists."""
-    n = len(b)
-    failure = [np.nan] * n
-    for i, row in enumerate(a):
-        size = max(map(abs, row), default=0.0)
-        if not 0.0 < size < np.inf:
-            return failure
-        a[i] = [v / size for v in row] + [b[i] / size]
-    for k in range(n):
-        best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
-            a[k], a[best] = a[best], a[k]
-        if not abs(a[k][k]) > _PIVOT:
-            return failure
-        head = a[k]
-        for i in range(k + 1, n):
-            factor = a[i][k] / head[k]
-            a[i] = [v - factor * h for v, h in zip(a[i], head)]
-    x = [0.0] * n
-    for k in reversed(range(n)):
-        x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
-    return x if all(map(math.isfinite, x)) else failure
+    """The same for one system of nested lists: the rows left lose an entry at every step."""
+    rows, heads = [], []
+    for row, right in zip(a, b):
+        size = max(map(abs, row))
+        if not 0.0 < size < math.inf:
+            return [math.nan] * len(b)
+        rows.append([v / size for v in (*row, right)])
+    while rows:
+        column = [abs(row[0]) for row in rows]
+        largest = max(column)
+        if largest > _CLEARLY * column[0]:
+            best = column.index(largest)
+            rows[0], rows[best] = rows[best], rows[0]
+        pivot, *head = rows[0]
+        if not abs(pivot) > _PIVOT:
+            return [math.nan] * len(b)
+        heads.append((pivot, head))
+        for i in range(1, len(rows)):
+            first, *row = rows[i]
+            factor = first / pivot
+            rows[i] = [v - factor * h for v, h in zip(row, head)]
+        del rows[0]
+    x = []
+    for pivot, (*head, right) in reversed(heads):
+        x.insert(0, (right - sum([h * v for h, v in zip(head, x)])) / pivot)
+    return x if all(map(math.isfinite, x)) else [math.nan] * len(b)
 
 
 def _saddle(a, b):
@@ -1348,13 +1392,13 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 205 mul, 143 add, 3 div, 2 sqrt, 0 trig
+# dynamics: 201 mul, 141 add, 3 div, 2 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("dynamics")
-    J_star_t_10, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
+    J_star_t_6, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1376,301 +1420,316 @@ def _run_dynamics(m, X, V):
     out_H = m.zeros("H")
     out_Hk = m.zeros("Hk")
     out_constraint_bias = m.zeros("constraint_bias")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
-    # (P1) centripetal tensor of the platform
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_z*omega_z
-    # (M4) centripetal force and weight of the platform
+    # (Z_p) centripetal force and weight of the platform
     Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x
     Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
-    Z_q_t = (
-    h_star_x*(R_xx*gravity_y - R_yx*gravity_x) - h_star_y*(R_xx*gravity_x + R_yx*gravity_y)
-    )
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y
     sums = [0.0] * 9
     for leg, k in legs[0]:
         (
-        J_1_rr_zz, d_G_rr_yy, g_r0_x, g_r0_y, h_1_rr_x, h_1_rr_y, inv_rr_platform_joint_offset_x,
-            n_c_rr_t, n_c_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
-            rr_base_frame_yy, rr_base_point_x, rr_base_point_y, rr_platform_joint_offset_x,
-            rr_platform_point_x, rr_platform_point_y,
+        crank_J_1_zz, crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx,
+            crank_base_frame_yy, crank_base_point_x, crank_base_point_y, crank_d_G_yy,
+            crank_g_r0_x, crank_g_r0_y, crank_h_1_x, crank_h_1_y, crank_n_c_t, crank_n_c_x,
+            crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
+            crank_root_1_t, inv_crank_platform_joint_offset_x,
         ) = k
-        # (rr-K1) from the base point to the connection point
-        q_rr_in_base_x = R_xx*rr_platform_point_x - R_yx*rr_platform_point_y
-        q_rr_in_base_y = R_xx*rr_platform_point_y + R_yx*rr_platform_point_x
-        S_rr_x = q_rr_in_base_x + t_x - rr_base_point_x
-        S_rr_y = q_rr_in_base_y + t_y - rr_base_point_y
-        # (rr-K3) squared amplitude
-        rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
-        rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-        rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
-        # (rr-K5) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
-        c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
-        # (rr-K6) sine of the angle of joint 1 from its reference direction
-        s_1_rr = inv_root_1_rr*rho2_1_rr_t*rr_platform_joint_offset_x
-        # (rr-V4) reciprocal vector 1
-        axis_y_rr_axes1_in_base_x = c_1_rr*rr_base_frame_xy - rr_base_frame_xx*s_1_rr
-        axis_y_rr_axes1_in_base_y = c_1_rr*rr_base_frame_yy - rr_base_frame_yx*s_1_rr
-        # (rr-N15) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_rr_t = axis_y_rr_axes1_in_base_x*d_G_rr_yy
-        d_c_rr_t_2 = axis_y_rr_axes1_in_base_x*d_c_rr_t
-        d_c_rr_t_3 = axis_y_rr_axes1_in_base_y*d_c_rr_t
-        d_c_rr_t_4 = axis_y_rr_axes1_in_base_y*axis_y_rr_axes1_in_base_y*d_G_rr_yy
-        # (M2) coupling block of M
-        M_ta_t = d_c_rr_t_2*q_rr_in_base_y - d_c_rr_t_3*q_rr_in_base_x
-        M_ta_t_2 = d_c_rr_t_3*q_rr_in_base_y - d_c_rr_t_4*q_rr_in_base_x
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t*q_rr_in_base_y - M_ta_t_2*q_rr_in_base_x
-        # (rr-V1) velocity of the connection point
-        S_dot_rr_t = omega_z*q_rr_in_base_y
-        S_dot_rr_t_2 = omega_z*q_rr_in_base_x
-        S_dot_rr_x = t_dot_x - S_dot_rr_t
-        S_dot_rr_y = S_dot_rr_t_2 + t_dot_y
-        S_dot_rr_tip_y = (
-        S_dot_rr_x*axis_y_rr_axes1_in_base_x + S_dot_rr_y*axis_y_rr_axes1_in_base_y
+        # (crank-S) from the base point to the connection point
+        crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
+        crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
+        crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x
+        crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y
+        # (crank-rho2_1) squared amplitude
+        crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy
+        crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx + crank_S_y*crank_base_frame_yx
+        crank_rho2_1 = (
+        crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
         )
-        # (rr-A1) centripetal acceleration of the connection point
-        u_1_rr_t = S_dot_rr_t_2*omega_z
-        u_1_rr_t_2 = S_dot_rr_t*omega_z
-        # (rr-A6) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_rr_o_x = (
-        S_dot_rr_tip_y*S_dot_rr_tip_y*inv_rr_platform_joint_offset_x +
-            axis_y_rr_axes1_in_base_x*u_1_rr_t_2 - axis_y_rr_axes1_in_base_y*u_1_rr_t
+        # (crank-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crank_root_1 = 1.0/(sqrt(crank_rho2_1))
+        crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1
+        # (crank-s_1) sine of the angle of joint 1 from its reference direction
+        crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1
+        # (crank-w_1) reciprocal vector 1
+        axis_y_crank_axes1_in_base_x = (
+        crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
         )
-        # (rr-N7) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rr_o_z = (
-        h_1_rr_y*(c_1_rr*g_r0_x + g_r0_y*s_1_rr) +
-            J_1_rr_zz*inv_rr_platform_joint_offset_x*(-axis_y_rr_axes1_in_base_x*u_1_rr_t -
-            axis_y_rr_axes1_in_base_y*u_1_rr_t_2) - h_1_rr_x*(c_1_rr*g_r0_y - g_r0_x*s_1_rr)
+        axis_y_crank_axes1_in_base_y = (
+        crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
         )
-        # (rr-N13) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rr_o_t = inv_rr_platform_joint_offset_x*mu_1_rr_o_z
-        # (rr-N18) velocity and gravity terms of the leg force
-        U_rr_t = G_rr_o_t*axis_y_rr_axes1_in_base_x
-        U_rr_t_2 = G_rr_o_t*axis_y_rr_axes1_in_base_y
-        # (M7) rotational part of Z
-        Z_a_t = U_rr_t_2*q_rr_in_base_x - U_rr_t*q_rr_in_base_y
-        # (rr-V4) reciprocal vector 1
-        w_1_rr_t = axis_y_rr_axes1_in_base_x*inv_rr_platform_joint_offset_x
-        w_1_rr_t_2 = axis_y_rr_axes1_in_base_y*inv_rr_platform_joint_offset_x
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_rr_z = q_rr_in_base_x*w_1_rr_t_2 - q_rr_in_base_y*w_1_rr_t
-        # (rr-V3) unit vector that the leg's freedoms leave out
-        n_c_rr_t_2 = axis_y_rr_axes1_in_base_y*n_c_rr_x
-        n_c_rr_t_3 = axis_y_rr_axes1_in_base_x*n_c_rr_x
-        # (M10) moment of the column's unit force about the platform origin
-        Hk_a_1_rr_z = n_c_rr_t_2*q_rr_in_base_y + n_c_rr_t_3*q_rr_in_base_x
-        # (M12) part of the constraint's second derivative that does not hold the acceleration
-        gamma_c1_rr_t = n_c_rr_x*rel_rr_o_x
-        ok = ok & m.every(leg, (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
+        # (crank-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        crank_d_c_t = axis_y_crank_axes1_in_base_x*crank_d_G_yy
+        crank_d_c_t_2 = axis_y_crank_axes1_in_base_x*crank_d_c_t
+        crank_d_c_t_3 = axis_y_crank_axes1_in_base_y*crank_d_c_t
+        crank_d_c_t_4 = axis_y_crank_axes1_in_base_y*axis_y_crank_axes1_in_base_y*crank_d_G_yy
+        # (M_ta) coupling block of M
+        crank_M_ta_t = crank_d_c_t_2*crank_q_in_base_y - crank_d_c_t_3*crank_q_in_base_x
+        crank_M_ta_t_2 = crank_d_c_t_3*crank_q_in_base_y - crank_d_c_t_4*crank_q_in_base_x
+        # (M_aa) rotational block of M
+        crank_M_aa_t = crank_M_ta_t*crank_q_in_base_y - crank_M_ta_t_2*crank_q_in_base_x
+        # (crank-S_dot) velocity of the connection point
+        crank_S_dot_t = crank_q_in_base_y*omega_z
+        crank_S_dot_t_2 = crank_q_in_base_x*omega_z
+        crank_S_dot_x = t_dot_x - crank_S_dot_t
+        crank_S_dot_y = crank_S_dot_t_2 + t_dot_y
+        crank_S_dot_tip_y = (
+        axis_y_crank_axes1_in_base_x*crank_S_dot_x + axis_y_crank_axes1_in_base_y*crank_S_dot_y
+        )
+        # (crank-u_1) centripetal acceleration of the connection point
+        crank_u_1_t = crank_S_dot_t_2*omega_z
+        crank_u_1_t_2 = crank_S_dot_t*omega_z
+        # (crank-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        crank_rel_o_x = (
+        axis_y_crank_axes1_in_base_x*crank_u_1_t_2 +
+            crank_S_dot_tip_y*crank_S_dot_tip_y*inv_crank_platform_joint_offset_x -
+            axis_y_crank_axes1_in_base_y*crank_u_1_t
+        )
+        # (crank-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        crank_mu_1_o_z = (
+        crank_h_1_y*(crank_c_1*crank_g_r0_x + crank_g_r0_y*crank_s_1) +
+            crank_J_1_zz*inv_crank_platform_joint_offset_x*(-axis_y_crank_axes1_in_base_x*crank_u_1_t
+            - axis_y_crank_axes1_in_base_y*crank_u_1_t_2) - crank_h_1_x*(crank_c_1*crank_g_r0_y -
+            crank_g_r0_x*crank_s_1)
+        )
+        # (crank-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        crank_G_o_t = crank_mu_1_o_z*inv_crank_platform_joint_offset_x
+        # (crank-U) velocity and gravity terms of the leg force
+        crank_U_t = axis_y_crank_axes1_in_base_x*crank_G_o_t
+        crank_U_t_2 = axis_y_crank_axes1_in_base_y*crank_G_o_t
+        # (Z_a) rotational part of Z
+        crank_Z_a_t = crank_U_t_2*crank_q_in_base_x - crank_U_t*crank_q_in_base_y
+        # (crank-w_1) reciprocal vector 1
+        crank_w_1_t = axis_y_crank_axes1_in_base_x*inv_crank_platform_joint_offset_x
+        crank_w_1_t_2 = axis_y_crank_axes1_in_base_y*inv_crank_platform_joint_offset_x
+        # (crank-H_a_1) moment of the column's unit force about the platform origin
+        crank_H_a_1_z = crank_q_in_base_x*crank_w_1_t_2 - crank_q_in_base_y*crank_w_1_t
+        # (crank-n_c) unit vector that the leg's freedoms leave out
+        crank_n_c_t_2 = axis_y_crank_axes1_in_base_y*crank_n_c_x
+        crank_n_c_t_3 = axis_y_crank_axes1_in_base_x*crank_n_c_x
+        # (crank-Hk_a_1) moment of the column's unit force about the platform origin
+        crank_Hk_a_1_z = crank_n_c_t_2*crank_q_in_base_y + crank_n_c_t_3*crank_q_in_base_x
+        # (crank-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+        crank_gamma_c1_t = crank_n_c_x*crank_rel_o_x
+        ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
         sums = m.added(sums, leg, (
-        d_c_rr_t_2, d_c_rr_t_3, d_c_rr_t_4, M_ta_t, M_ta_t_2, M_aa_t, U_rr_t, U_rr_t_2, Z_a_t,
+        crank_d_c_t_2, crank_d_c_t_3, crank_d_c_t_4, crank_M_ta_t, crank_M_ta_t_2,
+            crank_M_aa_t, crank_U_t, crank_U_t_2, crank_Z_a_t,
         ))
-        out_H[_H_rr[0][leg]] = w_1_rr_t
-        out_H[_H_rr[1][leg]] = w_1_rr_t_2
-        out_H[_H_rr[2][leg]] = H_a_1_rr_z
-        out_Hk[_Hk_rr[0][leg]] = -n_c_rr_t_2
-        out_Hk[_Hk_rr[1][leg]] = n_c_rr_t_3
-        out_Hk[_Hk_rr[2][leg]] = Hk_a_1_rr_z
-        out_constraint_bias[_constraint_bias_rr[0][leg]] = -gamma_c1_rr_t
+        out_H[_H_crank[0][leg]] = crank_w_1_t
+        out_H[_H_crank[1][leg]] = crank_w_1_t_2
+        out_H[_H_crank[2][leg]] = crank_H_a_1_z
+        out_Hk[_Hk_crank[0][leg]] = -crank_n_c_t_2
+        out_Hk[_Hk_crank[1][leg]] = crank_n_c_t_3
+        out_Hk[_Hk_crank[2][leg]] = crank_Hk_a_1_z
+        out_constraint_bias[_constraint_bias_crank[0][leg]] = -crank_gamma_c1_t
     (
-    total_rr_xx, total_rr_xy, total_rr_yy, total_rr_xz, total_rr_yz, total_rr_zz, total_rr_x,
-        total_rr_y, total_rr_z,
+    total_crank_xx, total_crank_xy, total_crank_yy, total_crank_xz, total_crank_yz,
+        total_crank_zz, total_crank_x, total_crank_y, total_crank_z,
     ) = sums
     sums = [0.0] * 9
     for leg, k in legs[1]:
         (
-        J_1_rrr_zz, J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr,
-            d_Gamma_1_rrr_t, d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, g_r0_x_2, g_r0_y_2,
-            h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+            rrr_J_2_zz, rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
             rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+            rrr_base_point_y, rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy,
+            rrr_d_phi_2_t, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x
-        S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        # (rrr-V6) reciprocal vector 2
-        w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x
-        # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x
-        d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz - d_Gamma_1_rrr_t_2)
-        # (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz - d_Gamma_1_rrr_t_2)
-        # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y - d_Gamma_1_rrr_y*w_2_rrr_t
-        # (rrr-N36) inertia of the leg at the connection point, without the mass gathered there
-        Q_rrr_t = (
-        d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t - inv_r_1_rrr_r0_y) - d_c_rrr_yy -
-            d_Gamma_2_rrr_x*w_2_rrr_t
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        # (rrr-w_2) reciprocal vector 2
+        rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x
+        # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x
+        rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz - rrr_d_Gamma_2_t_2)
+        # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz - rrr_d_Gamma_2_t_2)
+        # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y - rrr_d_Gamma_2_y*rrr_w_2_t
+        # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
+        rrr_Q_t = (
+        inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t - inv_rrr_r_1_r0_y) - rrr_d_c_yy -
+            rrr_d_Gamma_2_x*rrr_w_2_t
         )
-        Q_rrr_t_2 = 0.5*Q_rrr_t
-        Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
-        Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
-        Q_rrr_t_5 = d_c_rrr_yy + 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y
-        Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x + Q_rrr_t_4*axis_y_rrr_axes2_in_base_y
-        Q_rrr_t_7 = d_c_rrr_yy + 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
-        # (M2) coupling block of M
-        M_ta_t_3 = Q_rrr_t_5*q_rrr_in_base_y + Q_rrr_t_6*q_rrr_in_base_x
-        M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y + Q_rrr_t_7*q_rrr_in_base_x
-        # (M3) rotational block of M
-        M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y + M_ta_t_4*q_rrr_in_base_x
-        # (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        g_r1_x = c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr
-        g_r1_y = c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr
-        # (rrr-V1) velocity of the connection point
-        S_dot_rrr_t = omega_z*q_rrr_in_base_y
-        S_dot_rrr_t_2 = omega_z*q_rrr_in_base_x
-        S_dot_rrr_x = t_dot_x - S_dot_rrr_t
-        S_dot_rrr_y = S_dot_rrr_t_2 + t_dot_y
-        # (rrr-V7) rate of joint 1
-        qd_1_rrr = (
-        inv_r_1_rrr_r0_y*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_x)
+        rrr_Q_t_2 = 0.5*rrr_Q_t
+        rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy + axis_y_rrr_axes2_in_base_y*rrr_Q_t_2
+        rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 - axis_y_rrr_axes2_in_base_y*rrr_d_c_xy
+        rrr_Q_t_5 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3
+        rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 + axis_y_rrr_axes2_in_base_y*rrr_Q_t_4
+        rrr_Q_t_7 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4
+        # (M_ta) coupling block of M
+        rrr_M_ta_t = rrr_Q_t_5*rrr_q_in_base_y + rrr_Q_t_6*rrr_q_in_base_x
+        rrr_M_ta_t_2 = rrr_Q_t_6*rrr_q_in_base_y + rrr_Q_t_7*rrr_q_in_base_x
+        # (M_aa) rotational block of M
+        rrr_M_aa_t = rrr_M_ta_t*rrr_q_in_base_y + rrr_M_ta_t_2*rrr_q_in_base_x
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = omega_z*rrr_q_in_base_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
+        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_1 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
         )
-        # (rrr-V11) angular velocity of link 2
-        omega_2_rrr_z = (
-        inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_z = (
+        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
         )
-        # (rrr-V10) centripetal tensor of link 1
-        W_1_rrr_t = qd_1_rrr*qd_1_rrr
-        # (rrr-V12) centripetal tensor of link 2
-        W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
-        # (rrr-A5) acceleration of the connection point at zero joint accelerations
-        bias_rrr_x = (
-        -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_t = omega_z*rrr_S_dot_t_2
+        rrr_u_1_t_2 = omega_z*rrr_S_dot_t
+        # (rrr-W_1) centripetal tensor of link 1
+        rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_x = (
+        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        # (rrr-A1) centripetal acceleration of the connection point
-        u_1_rrr_t = S_dot_rrr_t_2*omega_z
-        u_1_rrr_t_2 = S_dot_rrr_t*omega_z
-        u_1_rrr_tip_x = (
-        axis_y_rrr_axes2_in_base_x*u_1_rrr_t_2 - axis_y_rrr_axes2_in_base_y*u_1_rrr_t
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_tip_x = (
+        axis_y_rrr_axes2_in_base_x*rrr_u_1_t_2 - axis_y_rrr_axes2_in_base_y*rrr_u_1_t
         )
-        u_1_rrr_tip_y = (
-        -axis_y_rrr_axes2_in_base_x*u_1_rrr_t - axis_y_rrr_axes2_in_base_y*u_1_rrr_t_2
+        rrr_u_1_tip_y = (
+        -axis_y_rrr_axes2_in_base_x*rrr_u_1_t - axis_y_rrr_axes2_in_base_y*rrr_u_1_t_2
         )
-        # (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_rrr_o_x = u_1_rrr_tip_x - bias_rrr_x
-        rel_rrr_o_y = u_1_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
-        # (rrr-A9) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_rrr_o = inv_r_1_rrr_r0_y*rel_rrr_o_x
-        # (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rrr_o_z = g_r1_x*h_1_rrr_y - J_1_rrr_zz*qdd_1_rrr_o - g_r1_y*h_1_rrr_x
-        # (rrr-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        acc_2_rrr_o_x = u_1_rrr_tip_x + g_r1_y*s_2_rrr - c_2_rrr*g_r1_x
-        acc_2_rrr_o_y = u_1_rrr_tip_y - c_2_rrr*g_r1_y - g_r1_x*s_2_rrr
-        # (rrr-A18) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_rrr_o_z = (
-        inv_rrr_platform_joint_offset_x*(rel_rrr_o_y + qdd_1_rrr_o*r_1_rrr_r0_x) - qdd_1_rrr_o
+        # (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        rrr_rel_o_x = rrr_u_1_tip_x - rrr_bias_x
+        rrr_rel_o_y = rrr_u_1_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        # (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_rel_o_x
+        # (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        rrr_alpha_2_o_z = (
+        inv_rrr_platform_joint_offset_x*(rrr_rel_o_y + rrr_qdd_1_o*rrr_r_1_r0_x) - rrr_qdd_1_o
         )
-        # (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_rrr_o_z = (
-        J_2_rrr_zz*alpha_2_rrr_o_z + acc_2_rrr_o_y*h_2_rrr_x - acc_2_rrr_o_x*h_2_rrr_y
+        # (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        rrr_acc_2_o_x = (
+        rrr_u_1_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+            axis_y_rrr_axes2_in_base_y*gravity_x
         )
-        # (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z
-        # (rrr-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z
-        # (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_rrr_o_x = (
-        W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x
-            - N_1_rrr_o_z)
+        rrr_acc_2_o_y = (
+        rrr_u_1_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+            axis_y_rrr_axes2_in_base_y*gravity_y
         )
-        c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x
-        # (rrr-N37) velocity and gravity terms of the leg force
-        U_rrr_in_base_x = (
-        -axis_y_rrr_axes2_in_base_x*c_rrr_o_y - axis_y_rrr_axes2_in_base_y*c_rrr_o_x
+        # (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        rrr_mu_2_o_z = (
+        rrr_J_2_zz*rrr_alpha_2_o_z + rrr_acc_2_o_y*rrr_h_2_x - rrr_acc_2_o_x*rrr_h_2_y
         )
-        U_rrr_in_base_y = (
-        axis_y_rrr_axes2_in_base_x*c_rrr_o_x - axis_y_rrr_axes2_in_base_y*c_rrr_o_y
+        # (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        rrr_mu_1_o_z = (
+        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1_o -
+            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
         )
-        # (M7) rotational part of Z
-        Z_a_t_2 = U_rrr_in_base_y*q_rrr_in_base_x - U_rrr_in_base_x*q_rrr_in_base_y
-        # (rrr-V5) reciprocal vector 1
-        w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
-        w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t
+        # (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z
+        # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z
+        # (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_o_x = (
+        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x
+            - rrr_N_1_o_z)
+        )
+        rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x
+        # (rrr-U) velocity and gravity terms of the leg force
+        rrr_U_in_base_x = (
+        -axis_y_rrr_axes2_in_base_x*rrr_c_o_y - axis_y_rrr_axes2_in_base_y*rrr_c_o_x
+        )
+        rrr_U_in_base_y = (
+        axis_y_rrr_axes2_in_base_x*rrr_c_o_x - axis_y_rrr_axes2_in_base_y*rrr_c_o_y
+        )
+        # (Z_a) rotational part of Z
+        rrr_Z_a_t = rrr_U_in_base_y*rrr_q_in_base_x - rrr_U_in_base_x*rrr_q_in_base_y
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y
+        rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y
+        # (rrr-H_a_1) moment of the column's unit force about the platform origin
+        rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7, M_ta_t_3, M_ta_t_4, M_aa_t_2, U_rrr_in_base_x,
-            U_rrr_in_base_y, Z_a_t_2,
+        rrr_Q_t_5, rrr_Q_t_6, rrr_Q_t_7, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t,
+            rrr_U_in_base_x, rrr_U_in_base_y, rrr_Z_a_t,
         ))
-        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
-        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
-        out_H[_H_rrr[2][leg]] = H_a_1_rrr_z
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
+        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
+        out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
     (
     total_rrr_xx, total_rrr_xy, total_rrr_yy, total_rrr_xz, total_rrr_yz, total_rrr_zz,
         total_rrr_x, total_rrr_y, total_rrr_z,
     ) = sums
-    # (M1) translational block of M
-    M_tt_xx = m_star + total_rr_xx - total_rrr_xx
-    M_tt_xy = total_rr_xy + total_rrr_xy
-    M_tt_yy = m_star + total_rr_yy - total_rrr_yy
-    # (M2) coupling block of M
-    M_ta_xz = total_rrr_xz - h_star_in_base_y - total_rr_xz
-    M_ta_yz = h_star_in_base_x - total_rr_yz - total_rrr_yz
-    # (M3) rotational block of M
-    M_aa_zz = total_rr_zz - J_star_t_10 - total_rrr_zz
-    # (M5) translational part of Z
-    Z_t_x = Z_p_x + total_rr_x + total_rrr_x
-    Z_t_y = Z_p_y + total_rr_y + total_rrr_y
-    # (M7) rotational part of Z
-    Z_a_z = total_rr_z + total_rrr_z - Z_q_t
+    # (M_tt) translational block of M
+    M_tt_xx = m_star + total_crank_xx - total_rrr_xx
+    M_tt_xy = total_crank_xy + total_rrr_xy
+    M_tt_yy = m_star + total_crank_yy - total_rrr_yy
+    # (M_ta) coupling block of M
+    M_ta_xz = total_rrr_xz - h_star_in_base_y - total_crank_xz
+    M_ta_yz = h_star_in_base_x - total_crank_yz - total_rrr_yz
+    # (M_aa) rotational block of M
+    M_aa_zz = total_crank_zz - J_star_t_6 - total_rrr_zz
+    # (Z_t) translational part of Z
+    Z_t_x = Z_p_x + total_crank_x + total_rrr_x
+    Z_t_y = Z_p_y + total_crank_y + total_rrr_y
+    # (Z_a) rotational part of Z
+    Z_a_z = total_crank_z + total_rrr_z - Z_q_t
     out_M[0] = M_tt_xx
     out_M[1] = M_tt_xy
     out_M[3] = M_tt_xy
@@ -1692,7 +1751,7 @@ def _run_M(m, X):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("M")
-    J_star_t_10, h_star_x, h_star_y, m_star = shared
+    J_star_t_6, h_star_x, h_star_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1703,150 +1762,161 @@ def _run_M(m, X):
     R_yx = sin(X_2)
     ok = True
     out_M = m.zeros("M")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        d_G_rr_yy, n_c_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
-            rr_base_frame_yy, rr_base_point_x, rr_base_point_y, rr_platform_joint_offset_x,
-            rr_platform_point_x, rr_platform_point_y,
+        crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
+            crank_base_point_x, crank_base_point_y, crank_d_G_yy, crank_n_c_t,
+            crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
+            crank_root_1_t,
         ) = k
-        # (rr-K1) from the base point to the connection point
-        q_rr_in_base_x = R_xx*rr_platform_point_x - R_yx*rr_platform_point_y
-        q_rr_in_base_y = R_xx*rr_platform_point_y + R_yx*rr_platform_point_x
-        S_rr_x = q_rr_in_base_x + t_x - rr_base_point_x
-        S_rr_y = q_rr_in_base_y + t_y - rr_base_point_y
-        # (rr-K3) squared amplitude
-        rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
-        rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-        rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
-        # (rr-K5) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
-        c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
-        # (rr-K6) sine of the angle of joint 1 from its reference direction
-        s_1_rr = inv_root_1_rr*rho2_1_rr_t*rr_platform_joint_offset_x
-        # (rr-V4) reciprocal vector 1
-        axis_y_rr_axes1_in_base_x = c_1_rr*rr_base_frame_xy - rr_base_frame_xx*s_1_rr
-        axis_y_rr_axes1_in_base_y = c_1_rr*rr_base_frame_yy - rr_base_frame_yx*s_1_rr
-        # (rr-N15) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_rr_t = axis_y_rr_axes1_in_base_x*d_G_rr_yy
-        d_c_rr_t_2 = axis_y_rr_axes1_in_base_x*d_c_rr_t
-        d_c_rr_t_3 = axis_y_rr_axes1_in_base_y*d_c_rr_t
-        d_c_rr_t_4 = axis_y_rr_axes1_in_base_y*axis_y_rr_axes1_in_base_y*d_G_rr_yy
-        # (M2) coupling block of M
-        M_ta_t = d_c_rr_t_2*q_rr_in_base_y - d_c_rr_t_3*q_rr_in_base_x
-        M_ta_t_2 = d_c_rr_t_3*q_rr_in_base_y - d_c_rr_t_4*q_rr_in_base_x
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t*q_rr_in_base_y - M_ta_t_2*q_rr_in_base_x
-        ok = ok & m.every(leg, (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
+        # (crank-S) from the base point to the connection point
+        crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
+        crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
+        crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x
+        crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y
+        # (crank-rho2_1) squared amplitude
+        crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy
+        crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx + crank_S_y*crank_base_frame_yx
+        crank_rho2_1 = (
+        crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
+        )
+        # (crank-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crank_root_1 = 1.0/(sqrt(crank_rho2_1))
+        crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1
+        # (crank-s_1) sine of the angle of joint 1 from its reference direction
+        crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1
+        # (crank-w_1) reciprocal vector 1
+        axis_y_crank_axes1_in_base_x = (
+        crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
+        )
+        axis_y_crank_axes1_in_base_y = (
+        crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
+        )
+        # (crank-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        crank_d_c_t = axis_y_crank_axes1_in_base_x*crank_d_G_yy
+        crank_d_c_t_2 = axis_y_crank_axes1_in_base_x*crank_d_c_t
+        crank_d_c_t_3 = axis_y_crank_axes1_in_base_y*crank_d_c_t
+        crank_d_c_t_4 = axis_y_crank_axes1_in_base_y*axis_y_crank_axes1_in_base_y*crank_d_G_yy
+        # (M_ta) coupling block of M
+        crank_M_ta_t = crank_d_c_t_2*crank_q_in_base_y - crank_d_c_t_3*crank_q_in_base_x
+        crank_M_ta_t_2 = crank_d_c_t_3*crank_q_in_base_y - crank_d_c_t_4*crank_q_in_base_x
+        # (M_aa) rotational block of M
+        crank_M_aa_t = crank_M_ta_t*crank_q_in_base_y - crank_M_ta_t_2*crank_q_in_base_x
+        ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
         sums = m.added(sums, leg, (
-        d_c_rr_t_2, d_c_rr_t_3, d_c_rr_t_4, M_ta_t, M_ta_t_2, M_aa_t,
+        crank_d_c_t_2, crank_d_c_t_3, crank_d_c_t_4, crank_M_ta_t, crank_M_ta_t_2,
+            crank_M_aa_t,
         ))
-    total_rr_xx, total_rr_xy, total_rr_yy, total_rr_xz, total_rr_yz, total_rr_zz = sums
+    (
+    total_crank_xx, total_crank_xy, total_crank_yy, total_crank_xz, total_crank_yz,
+        total_crank_zz,
+    ) = sums
     sums = [0.0] * 6
     for leg, k in legs[1]:
         (
-        J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, d_Gamma_1_rrr_t,
-            d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
-            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_2_zz,
+            rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+            rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy, rrr_d_phi_2_t, rrr_h_2_y,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x
-        S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        # (rrr-V6) reciprocal vector 2
-        w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x
-        # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x
-        d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz - d_Gamma_1_rrr_t_2)
-        # (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz - d_Gamma_1_rrr_t_2)
-        # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y - d_Gamma_1_rrr_y*w_2_rrr_t
-        # (rrr-N36) inertia of the leg at the connection point, without the mass gathered there
-        Q_rrr_t = (
-        d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t - inv_r_1_rrr_r0_y) - d_c_rrr_yy -
-            d_Gamma_2_rrr_x*w_2_rrr_t
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        # (rrr-w_2) reciprocal vector 2
+        rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x
+        # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x
+        rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz - rrr_d_Gamma_2_t_2)
+        # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz - rrr_d_Gamma_2_t_2)
+        # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y - rrr_d_Gamma_2_y*rrr_w_2_t
+        # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
+        rrr_Q_t = (
+        inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t - inv_rrr_r_1_r0_y) - rrr_d_c_yy -
+            rrr_d_Gamma_2_x*rrr_w_2_t
         )
-        Q_rrr_t_2 = 0.5*Q_rrr_t
-        Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
-        Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
-        Q_rrr_t_5 = d_c_rrr_yy + 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y
-        Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x + Q_rrr_t_4*axis_y_rrr_axes2_in_base_y
-        Q_rrr_t_7 = d_c_rrr_yy + 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
-        # (M2) coupling block of M
-        M_ta_t_3 = Q_rrr_t_5*q_rrr_in_base_y + Q_rrr_t_6*q_rrr_in_base_x
-        M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y + Q_rrr_t_7*q_rrr_in_base_x
-        # (M3) rotational block of M
-        M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y + M_ta_t_4*q_rrr_in_base_x
+        rrr_Q_t_2 = 0.5*rrr_Q_t
+        rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy + axis_y_rrr_axes2_in_base_y*rrr_Q_t_2
+        rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 - axis_y_rrr_axes2_in_base_y*rrr_d_c_xy
+        rrr_Q_t_5 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3
+        rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 + axis_y_rrr_axes2_in_base_y*rrr_Q_t_4
+        rrr_Q_t_7 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4
+        # (M_ta) coupling block of M
+        rrr_M_ta_t = rrr_Q_t_5*rrr_q_in_base_y + rrr_Q_t_6*rrr_q_in_base_x
+        rrr_M_ta_t_2 = rrr_Q_t_6*rrr_q_in_base_y + rrr_Q_t_7*rrr_q_in_base_x
+        # (M_aa) rotational block of M
+        rrr_M_aa_t = rrr_M_ta_t*rrr_q_in_base_y + rrr_M_ta_t_2*rrr_q_in_base_x
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7, M_ta_t_3, M_ta_t_4, M_aa_t_2,
+        rrr_Q_t_5, rrr_Q_t_6, rrr_Q_t_7, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t,
         ))
     total_rrr_xx, total_rrr_xy, total_rrr_yy, total_rrr_xz, total_rrr_yz, total_rrr_zz = sums
-    # (M1) translational block of M
-    M_tt_xx = m_star + total_rr_xx - total_rrr_xx
-    M_tt_xy = total_rr_xy + total_rrr_xy
-    M_tt_yy = m_star + total_rr_yy - total_rrr_yy
-    # (M2) coupling block of M
-    M_ta_xz = total_rrr_xz - h_star_in_base_y - total_rr_xz
-    M_ta_yz = h_star_in_base_x - total_rr_yz - total_rrr_yz
-    # (M3) rotational block of M
-    M_aa_zz = total_rr_zz - J_star_t_10 - total_rrr_zz
+    # (M_tt) translational block of M
+    M_tt_xx = m_star + total_crank_xx - total_rrr_xx
+    M_tt_xy = total_crank_xy + total_rrr_xy
+    M_tt_yy = m_star + total_crank_yy - total_rrr_yy
+    # (M_ta) coupling block of M
+    M_ta_xz = total_rrr_xz - h_star_in_base_y - total_crank_xz
+    M_ta_yz = h_star_in_base_x - total_crank_yz - total_rrr_yz
+    # (M_aa) rotational block of M
+    M_aa_zz = total_crank_zz - J_star_t_6 - total_rrr_zz
     out_M[0] = M_tt_xx
     out_M[1] = M_tt_xy
     out_M[3] = M_tt_xy
@@ -1859,7 +1929,7 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 148 mul, 91 add, 3 div, 2 sqrt, 0 trig
+# Z: 144 mul, 89 add, 3 div, 2 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -1883,204 +1953,219 @@ def _run_Z(m, X, V):
     omega_z = V_2
     ok = True
     out_Z = m.zeros("Z")
-    # (P1) centripetal tensor of the platform
+    # (h_star) first moment about the platform origin
+    h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
+    h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_z*omega_z
-    # (M4) centripetal force and weight of the platform
-    Z_p_x = -Z_p_t - W_p_t*(R_xx*h_star_x - R_yx*h_star_y)
-    Z_p_y = -Z_p_t_2 - W_p_t*(R_xx*h_star_y + R_yx*h_star_x)
-    # (M6) gyroscopic moment and moment of the weight of the platform
-    Z_q_t = (
-    h_star_x*(R_xx*gravity_y - R_yx*gravity_x) - h_star_y*(R_xx*gravity_x + R_yx*gravity_y)
-    )
+    # (Z_p) centripetal force and weight of the platform
+    Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x
+    Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
-        J_1_rr_zz, g_r0_x, g_r0_y, h_1_rr_x, h_1_rr_y, inv_rr_platform_joint_offset_x, n_c_rr_t,
-            root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx, rr_base_frame_yy,
-            rr_base_point_x, rr_base_point_y, rr_platform_joint_offset_x, rr_platform_point_x,
-            rr_platform_point_y,
+        crank_J_1_zz, crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx,
+            crank_base_frame_yy, crank_base_point_x, crank_base_point_y, crank_g_r0_x,
+            crank_g_r0_y, crank_h_1_x, crank_h_1_y, crank_n_c_t, crank_platform_joint_offset_x,
+            crank_platform_point_x, crank_platform_point_y, crank_root_1_t,
+            inv_crank_platform_joint_offset_x,
         ) = k
-        # (rr-K1) from the base point to the connection point
-        q_rr_in_base_x = R_xx*rr_platform_point_x - R_yx*rr_platform_point_y
-        q_rr_in_base_y = R_xx*rr_platform_point_y + R_yx*rr_platform_point_x
-        S_rr_x = q_rr_in_base_x + t_x - rr_base_point_x
-        S_rr_y = q_rr_in_base_y + t_y - rr_base_point_y
-        # (rr-K3) squared amplitude
-        rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
-        rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-        rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
-        # (rr-K5) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
-        c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
-        # (rr-K6) sine of the angle of joint 1 from its reference direction
-        s_1_rr = inv_root_1_rr*rho2_1_rr_t*rr_platform_joint_offset_x
-        # (rr-V4) reciprocal vector 1
-        axis_y_rr_axes1_in_base_x = c_1_rr*rr_base_frame_xy - rr_base_frame_xx*s_1_rr
-        axis_y_rr_axes1_in_base_y = c_1_rr*rr_base_frame_yy - rr_base_frame_yx*s_1_rr
-        # (rr-N7) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rr_o_z = (
-        h_1_rr_y*(c_1_rr*g_r0_x + g_r0_y*s_1_rr) +
-            J_1_rr_zz*inv_rr_platform_joint_offset_x*(-axis_y_rr_axes1_in_base_x*omega_z*omega_z*q_rr_in_base_x
-            - axis_y_rr_axes1_in_base_y*omega_z*omega_z*q_rr_in_base_y) - h_1_rr_x*(c_1_rr*g_r0_y
-            - g_r0_x*s_1_rr)
+        # (crank-S) from the base point to the connection point
+        crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
+        crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
+        crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x
+        crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y
+        # (crank-rho2_1) squared amplitude
+        crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy
+        crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx + crank_S_y*crank_base_frame_yx
+        crank_rho2_1 = (
+        crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
         )
-        # (rr-N13) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rr_o_t = inv_rr_platform_joint_offset_x*mu_1_rr_o_z
-        # (rr-N18) velocity and gravity terms of the leg force
-        U_rr_t = G_rr_o_t*axis_y_rr_axes1_in_base_x
-        U_rr_t_2 = G_rr_o_t*axis_y_rr_axes1_in_base_y
-        # (M7) rotational part of Z
-        Z_a_t = U_rr_t_2*q_rr_in_base_x - U_rr_t*q_rr_in_base_y
-        ok = ok & m.every(leg, (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
+        # (crank-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crank_root_1 = 1.0/(sqrt(crank_rho2_1))
+        crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1
+        # (crank-s_1) sine of the angle of joint 1 from its reference direction
+        crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1
+        # (crank-w_1) reciprocal vector 1
+        axis_y_crank_axes1_in_base_x = (
+        crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
+        )
+        axis_y_crank_axes1_in_base_y = (
+        crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
+        )
+        # (crank-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        crank_mu_1_o_z = (
+        crank_h_1_y*(crank_c_1*crank_g_r0_x + crank_g_r0_y*crank_s_1) +
+            crank_J_1_zz*inv_crank_platform_joint_offset_x*(-axis_y_crank_axes1_in_base_x*crank_q_in_base_x*omega_z*omega_z
+            - axis_y_crank_axes1_in_base_y*crank_q_in_base_y*omega_z*omega_z) -
+            crank_h_1_x*(crank_c_1*crank_g_r0_y - crank_g_r0_x*crank_s_1)
+        )
+        # (crank-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        crank_G_o_t = crank_mu_1_o_z*inv_crank_platform_joint_offset_x
+        # (crank-U) velocity and gravity terms of the leg force
+        crank_U_t = axis_y_crank_axes1_in_base_x*crank_G_o_t
+        crank_U_t_2 = axis_y_crank_axes1_in_base_y*crank_G_o_t
+        # (Z_a) rotational part of Z
+        crank_Z_a_t = crank_U_t_2*crank_q_in_base_x - crank_U_t*crank_q_in_base_y
+        ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
         sums = m.added(sums, leg, (
-        U_rr_t, U_rr_t_2, Z_a_t,
+        crank_U_t, crank_U_t_2, crank_Z_a_t,
         ))
-    total_rr_x, total_rr_y, total_rr_z = sums
+    total_crank_x, total_crank_y, total_crank_z = sums
     sums = [0.0] * 3
     for leg, k in legs[1]:
         (
-        J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
-            h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
-            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+            rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+            rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x
-        S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        # (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        g_r1_x = c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr
-        g_r1_y = c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr
-        # (rrr-V1) velocity of the connection point
-        S_dot_rrr_t = omega_z*q_rrr_in_base_y
-        S_dot_rrr_t_2 = omega_z*q_rrr_in_base_x
-        S_dot_rrr_x = t_dot_x - S_dot_rrr_t
-        S_dot_rrr_y = S_dot_rrr_t_2 + t_dot_y
-        # (rrr-V7) rate of joint 1
-        qd_1_rrr = (
-        inv_r_1_rrr_r0_y*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_x)
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = omega_z*rrr_q_in_base_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
+        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_1 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
         )
-        # (rrr-V11) angular velocity of link 2
-        omega_2_rrr_z = (
-        inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_z = (
+        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
         )
-        # (rrr-V10) centripetal tensor of link 1
-        W_1_rrr_t = qd_1_rrr*qd_1_rrr
-        # (rrr-V12) centripetal tensor of link 2
-        W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
-        # (rrr-A5) acceleration of the connection point at zero joint accelerations
-        bias_rrr_x = (
-        -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_t = omega_z*rrr_S_dot_t_2
+        rrr_u_1_t_2 = omega_z*rrr_S_dot_t
+        # (rrr-W_1) centripetal tensor of link 1
+        rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_x = (
+        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        # (rrr-A1) centripetal acceleration of the connection point
-        u_1_rrr_t = S_dot_rrr_t_2*omega_z
-        u_1_rrr_t_2 = S_dot_rrr_t*omega_z
-        u_1_rrr_tip_x = (
-        axis_y_rrr_axes2_in_base_x*u_1_rrr_t_2 - axis_y_rrr_axes2_in_base_y*u_1_rrr_t
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_tip_x = (
+        axis_y_rrr_axes2_in_base_x*rrr_u_1_t_2 - axis_y_rrr_axes2_in_base_y*rrr_u_1_t
         )
-        u_1_rrr_tip_y = (
-        -axis_y_rrr_axes2_in_base_x*u_1_rrr_t - axis_y_rrr_axes2_in_base_y*u_1_rrr_t_2
+        rrr_u_1_tip_y = (
+        -axis_y_rrr_axes2_in_base_x*rrr_u_1_t - axis_y_rrr_axes2_in_base_y*rrr_u_1_t_2
         )
-        # (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_rrr_o_x = u_1_rrr_tip_x - bias_rrr_x
-        rel_rrr_o_y = u_1_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
-        # (rrr-A9) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_rrr_o = inv_r_1_rrr_r0_y*rel_rrr_o_x
-        # (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rrr_o_z = g_r1_x*h_1_rrr_y - J_1_rrr_zz*qdd_1_rrr_o - g_r1_y*h_1_rrr_x
-        # (rrr-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        acc_2_rrr_o_x = u_1_rrr_tip_x + g_r1_y*s_2_rrr - c_2_rrr*g_r1_x
-        acc_2_rrr_o_y = u_1_rrr_tip_y - c_2_rrr*g_r1_y - g_r1_x*s_2_rrr
-        # (rrr-A18) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_rrr_o_z = (
-        inv_rrr_platform_joint_offset_x*(rel_rrr_o_y + qdd_1_rrr_o*r_1_rrr_r0_x) - qdd_1_rrr_o
+        # (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        rrr_rel_o_x = rrr_u_1_tip_x - rrr_bias_x
+        rrr_rel_o_y = rrr_u_1_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        # (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_rel_o_x
+        # (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        rrr_alpha_2_o_z = (
+        inv_rrr_platform_joint_offset_x*(rrr_rel_o_y + rrr_qdd_1_o*rrr_r_1_r0_x) - rrr_qdd_1_o
         )
-        # (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_rrr_o_z = (
-        J_2_rrr_zz*alpha_2_rrr_o_z + acc_2_rrr_o_y*h_2_rrr_x - acc_2_rrr_o_x*h_2_rrr_y
+        # (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        rrr_acc_2_o_x = (
+        rrr_u_1_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+            axis_y_rrr_axes2_in_base_y*gravity_x
         )
-        # (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z
-        # (rrr-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z
-        # (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_rrr_o_x = (
-        W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x
-            - N_1_rrr_o_z)
+        rrr_acc_2_o_y = (
+        rrr_u_1_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+            axis_y_rrr_axes2_in_base_y*gravity_y
         )
-        c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x
-        # (rrr-N37) velocity and gravity terms of the leg force
-        U_rrr_in_base_x = (
-        -axis_y_rrr_axes2_in_base_x*c_rrr_o_y - axis_y_rrr_axes2_in_base_y*c_rrr_o_x
+        # (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        rrr_mu_2_o_z = (
+        rrr_J_2_zz*rrr_alpha_2_o_z + rrr_acc_2_o_y*rrr_h_2_x - rrr_acc_2_o_x*rrr_h_2_y
         )
-        U_rrr_in_base_y = (
-        axis_y_rrr_axes2_in_base_x*c_rrr_o_x - axis_y_rrr_axes2_in_base_y*c_rrr_o_y
+        # (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        rrr_mu_1_o_z = (
+        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1_o -
+            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
         )
-        # (M7) rotational part of Z
-        Z_a_t_2 = U_rrr_in_base_y*q_rrr_in_base_x - U_rrr_in_base_x*q_rrr_in_base_y
+        # (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z
+        # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z
+        # (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_o_x = (
+        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x
+            - rrr_N_1_o_z)
+        )
+        rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x
+        # (rrr-U) velocity and gravity terms of the leg force
+        rrr_U_in_base_x = (
+        -axis_y_rrr_axes2_in_base_x*rrr_c_o_y - axis_y_rrr_axes2_in_base_y*rrr_c_o_x
+        )
+        rrr_U_in_base_y = (
+        axis_y_rrr_axes2_in_base_x*rrr_c_o_x - axis_y_rrr_axes2_in_base_y*rrr_c_o_y
+        )
+        # (Z_a) rotational part of Z
+        rrr_Z_a_t = rrr_U_in_base_y*rrr_q_in_base_x - rrr_U_in_base_x*rrr_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        U_rrr_in_base_x, U_rrr_in_base_y, Z_a_t_2,
+        rrr_U_in_base_x, rrr_U_in_base_y, rrr_Z_a_t,
         ))
     total_rrr_x, total_rrr_y, total_rrr_z = sums
-    # (M5) translational part of Z
-    Z_t_x = Z_p_x + total_rr_x + total_rrr_x
-    Z_t_y = Z_p_y + total_rr_y + total_rrr_y
-    # (M7) rotational part of Z
-    Z_a_z = total_rr_z + total_rrr_z - Z_q_t
+    # (Z_t) translational part of Z
+    Z_t_x = Z_p_x + total_crank_x + total_rrr_x
+    Z_t_y = Z_p_y + total_crank_y + total_rrr_y
+    # (Z_a) rotational part of Z
+    Z_a_z = total_crank_z + total_rrr_z - Z_q_t
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_a_z
@@ -2105,103 +2190,108 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        inv_rr_platform_joint_offset_x, n_c_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy,
-            rr_base_frame_yx, rr_base_frame_yy, rr_base_point_x, rr_base_point_y,
-            rr_platform_joint_offset_x, rr_platform_point_x, rr_platform_point_y,
+        crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
+            crank_base_point_x, crank_base_point_y, crank_n_c_t, crank_platform_joint_offset_x,
+            crank_platform_point_x, crank_platform_point_y, crank_root_1_t,
+            inv_crank_platform_joint_offset_x,
         ) = k
-        # (rr-K1) from the base point to the connection point
-        q_rr_in_base_x = R_xx*rr_platform_point_x - R_yx*rr_platform_point_y
-        q_rr_in_base_y = R_xx*rr_platform_point_y + R_yx*rr_platform_point_x
-        S_rr_x = q_rr_in_base_x + t_x - rr_base_point_x
-        S_rr_y = q_rr_in_base_y + t_y - rr_base_point_y
-        # (rr-K3) squared amplitude
-        rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
-        rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-        rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
-        # (rr-K5) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
-        c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
-        # (rr-K6) sine of the angle of joint 1 from its reference direction
-        s_1_rr = inv_root_1_rr*rho2_1_rr_t*rr_platform_joint_offset_x
-        # (rr-V4) reciprocal vector 1
-        w_1_rr_t = (
-        inv_rr_platform_joint_offset_x*(c_1_rr*rr_base_frame_xy - rr_base_frame_xx*s_1_rr)
+        # (crank-S) from the base point to the connection point
+        crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
+        crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
+        crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x
+        crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y
+        # (crank-rho2_1) squared amplitude
+        crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy
+        crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx + crank_S_y*crank_base_frame_yx
+        crank_rho2_1 = (
+        crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
         )
-        w_1_rr_t_2 = (
-        inv_rr_platform_joint_offset_x*(c_1_rr*rr_base_frame_yy - rr_base_frame_yx*s_1_rr)
+        # (crank-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crank_root_1 = 1.0/(sqrt(crank_rho2_1))
+        crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1
+        # (crank-s_1) sine of the angle of joint 1 from its reference direction
+        crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1
+        # (crank-w_1) reciprocal vector 1
+        crank_w_1_t = (
+        inv_crank_platform_joint_offset_x*(crank_base_frame_xy*crank_c_1 -
+            crank_base_frame_xx*crank_s_1)
         )
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_rr_z = q_rr_in_base_x*w_1_rr_t_2 - q_rr_in_base_y*w_1_rr_t
-        ok = ok & m.every(leg, (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
-        out_H[_H_rr[0][leg]] = w_1_rr_t
-        out_H[_H_rr[1][leg]] = w_1_rr_t_2
-        out_H[_H_rr[2][leg]] = H_a_1_rr_z
+        crank_w_1_t_2 = (
+        inv_crank_platform_joint_offset_x*(crank_base_frame_yy*crank_c_1 -
+            crank_base_frame_yx*crank_s_1)
+        )
+        # (crank-H_a_1) moment of the column's unit force about the platform origin
+        crank_H_a_1_z = crank_q_in_base_x*crank_w_1_t_2 - crank_q_in_base_y*crank_w_1_t
+        ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
+        out_H[_H_crank[0][leg]] = crank_w_1_t
+        out_H[_H_crank[1][leg]] = crank_w_1_t_2
+        out_H[_H_crank[2][leg]] = crank_H_a_1_z
     for leg, k in legs[1]:
         (
-        Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
-            rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-            rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+            rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x
-        S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*rrr_platform_joint_offset_x*s_2_rrr
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        w_1_rrr_t = (
-        inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        rrr_w_1_t = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy)
         )
-        w_1_rrr_t_2 = (
-        inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
+        rrr_w_1_t_2 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy)
         )
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t
+        # (rrr-H_a_1) moment of the column's unit force about the platform origin
+        rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
-        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
-        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
-        out_H[_H_rrr[2][leg]] = H_a_1_rrr_z
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
+        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
+        out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
     return ok, (out_H,)
 
 
@@ -2223,33 +2313,40 @@ def _run_Hk(m, X):
     out_Hk = m.zeros("Hk")
     for leg, k in legs[0]:
         (
-        n_c_rr_t, n_c_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
-            rr_base_frame_yy, rr_base_point_x, rr_base_point_y, rr_platform_joint_offset_x,
-            rr_platform_point_x, rr_platform_point_y,
+        crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
+            crank_base_point_x, crank_base_point_y, crank_n_c_t, crank_n_c_x,
+            crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
+            crank_root_1_t,
         ) = k
-        # (rr-K1) from the base point to the connection point
-        q_rr_in_base_x = R_xx*rr_platform_point_x - R_yx*rr_platform_point_y
-        q_rr_in_base_y = R_xx*rr_platform_point_y + R_yx*rr_platform_point_x
-        S_rr_x = q_rr_in_base_x + t_x - rr_base_point_x
-        S_rr_y = q_rr_in_base_y + t_y - rr_base_point_y
-        # (rr-K3) squared amplitude
-        rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
-        rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-        rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
-        # (rr-K5) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
-        c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
-        # (rr-K6) sine of the angle of joint 1 from its reference direction
-        s_1_rr = inv_root_1_rr*rho2_1_rr_t*rr_platform_joint_offset_x
-        # (rr-V3) unit vector that the leg's freedoms leave out
-        n_c_rr_t_2 = n_c_rr_x*(c_1_rr*rr_base_frame_yy - rr_base_frame_yx*s_1_rr)
-        n_c_rr_t_3 = n_c_rr_x*(c_1_rr*rr_base_frame_xy - rr_base_frame_xx*s_1_rr)
-        # (M10) moment of the column's unit force about the platform origin
-        Hk_a_1_rr_z = n_c_rr_t_2*q_rr_in_base_y + n_c_rr_t_3*q_rr_in_base_x
-        ok = ok & m.every(leg, (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
-        out_Hk[_Hk_rr[0][leg]] = -n_c_rr_t_2
-        out_Hk[_Hk_rr[1][leg]] = n_c_rr_t_3
-        out_Hk[_Hk_rr[2][leg]] = Hk_a_1_rr_z
+        # (crank-S) from the base point to the connection point
+        crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
+        crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
+        crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x
+        crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y
+        # (crank-rho2_1) squared amplitude
+        crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy
+        crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx + crank_S_y*crank_base_frame_yx
+        crank_rho2_1 = (
+        crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
+        )
+        # (crank-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crank_root_1 = 1.0/(sqrt(crank_rho2_1))
+        crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1
+        # (crank-s_1) sine of the angle of joint 1 from its reference direction
+        crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1
+        # (crank-n_c) unit vector that the leg's freedoms leave out
+        crank_n_c_t_2 = (
+        crank_n_c_x*(crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1)
+        )
+        crank_n_c_t_3 = (
+        crank_n_c_x*(crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1)
+        )
+        # (crank-Hk_a_1) moment of the column's unit force about the platform origin
+        crank_Hk_a_1_z = crank_n_c_t_2*crank_q_in_base_y + crank_n_c_t_3*crank_q_in_base_x
+        ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
+        out_Hk[_Hk_crank[0][leg]] = -crank_n_c_t_2
+        out_Hk[_Hk_crank[1][leg]] = crank_n_c_t_3
+        out_Hk[_Hk_crank[2][leg]] = crank_Hk_a_1_z
     return ok, (out_Hk,)
 
 
@@ -2278,55 +2375,62 @@ def _run_constraint_bias(m, X, V):
     out_constraint_bias = m.zeros("constraint_bias")
     for leg, k in legs[0]:
         (
-        inv_rr_platform_joint_offset_x, n_c_rr_t, n_c_rr_x, root_1_rr_t, rr_base_frame_xx,
-            rr_base_frame_xy, rr_base_frame_yx, rr_base_frame_yy, rr_base_point_x,
-            rr_base_point_y, rr_platform_joint_offset_x, rr_platform_point_x, rr_platform_point_y,
+        crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
+            crank_base_point_x, crank_base_point_y, crank_n_c_t, crank_n_c_x,
+            crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
+            crank_root_1_t, inv_crank_platform_joint_offset_x,
         ) = k
-        # (rr-K1) from the base point to the connection point
-        q_rr_in_base_x = R_xx*rr_platform_point_x - R_yx*rr_platform_point_y
-        q_rr_in_base_y = R_xx*rr_platform_point_y + R_yx*rr_platform_point_x
-        S_rr_x = q_rr_in_base_x + t_x - rr_base_point_x
-        S_rr_y = q_rr_in_base_y + t_y - rr_base_point_y
-        # (rr-K3) squared amplitude
-        rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
-        rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-        rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
-        # (rr-K5) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
-        c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
-        # (rr-K6) sine of the angle of joint 1 from its reference direction
-        s_1_rr = inv_root_1_rr*rho2_1_rr_t*rr_platform_joint_offset_x
-        # (rr-V4) reciprocal vector 1
-        axis_y_rr_axes1_in_base_x = c_1_rr*rr_base_frame_xy - rr_base_frame_xx*s_1_rr
-        axis_y_rr_axes1_in_base_y = c_1_rr*rr_base_frame_yy - rr_base_frame_yx*s_1_rr
-        # (rr-V1) velocity of the connection point
-        S_dot_rr_t = omega_z*q_rr_in_base_y
-        S_dot_rr_t_2 = omega_z*q_rr_in_base_x
-        S_dot_rr_x = t_dot_x - S_dot_rr_t
-        S_dot_rr_y = S_dot_rr_t_2 + t_dot_y
-        S_dot_rr_tip_y = (
-        S_dot_rr_x*axis_y_rr_axes1_in_base_x + S_dot_rr_y*axis_y_rr_axes1_in_base_y
+        # (crank-S) from the base point to the connection point
+        crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
+        crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
+        crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x
+        crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y
+        # (crank-rho2_1) squared amplitude
+        crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy
+        crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx + crank_S_y*crank_base_frame_yx
+        crank_rho2_1 = (
+        crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
         )
-        # (rr-A6) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_rr_o_x = (
-        S_dot_rr_tip_y*S_dot_rr_tip_y*inv_rr_platform_joint_offset_x +
-            S_dot_rr_t*axis_y_rr_axes1_in_base_x*omega_z -
-            S_dot_rr_t_2*axis_y_rr_axes1_in_base_y*omega_z
+        # (crank-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crank_root_1 = 1.0/(sqrt(crank_rho2_1))
+        crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1
+        # (crank-s_1) sine of the angle of joint 1 from its reference direction
+        crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1
+        # (crank-w_1) reciprocal vector 1
+        axis_y_crank_axes1_in_base_x = (
+        crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
         )
-        # (M12) part of the constraint's second derivative that does not hold the acceleration
-        gamma_c1_rr_t = n_c_rr_x*rel_rr_o_x
-        ok = ok & m.every(leg, (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
-        out_constraint_bias[_constraint_bias_rr[0][leg]] = -gamma_c1_rr_t
+        axis_y_crank_axes1_in_base_y = (
+        crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
+        )
+        # (crank-S_dot) velocity of the connection point
+        crank_S_dot_t = crank_q_in_base_y*omega_z
+        crank_S_dot_t_2 = crank_q_in_base_x*omega_z
+        crank_S_dot_x = t_dot_x - crank_S_dot_t
+        crank_S_dot_y = crank_S_dot_t_2 + t_dot_y
+        crank_S_dot_tip_y = (
+        axis_y_crank_axes1_in_base_x*crank_S_dot_x + axis_y_crank_axes1_in_base_y*crank_S_dot_y
+        )
+        # (crank-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        crank_rel_o_x = (
+        crank_S_dot_tip_y*crank_S_dot_tip_y*inv_crank_platform_joint_offset_x +
+            axis_y_crank_axes1_in_base_x*crank_S_dot_t*omega_z -
+            axis_y_crank_axes1_in_base_y*crank_S_dot_t_2*omega_z
+        )
+        # (crank-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+        crank_gamma_c1_t = crank_n_c_x*crank_rel_o_x
+        ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
+        out_constraint_bias[_constraint_bias_crank[0][leg]] = -crank_gamma_c1_t
     return ok, (out_constraint_bias,)
 
 
-# required: 169 mul, 107 add, 3 div, 2 sqrt, 0 trig
+# required: 165 mul, 105 add, 3 div, 2 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("required")
-    J_star_zz, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
+    J_star_t_6, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -2353,240 +2457,246 @@ def _run_required(m, X, V, A):
     out_required = m.zeros("required")
     out_H = m.zeros("H")
     out_Hk = m.zeros("Hk")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
-    # (P1) centripetal tensor of the platform
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_z*omega_z
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
-    # (E2) inertia force of the platform less its weight
+    # (f_p) inertia force of the platform less its weight
     f_p_x = a_t_x*m_star - W_p_t*h_star_in_base_x - alpha_z*h_star_in_base_y
     f_p_y = a_t_y*m_star + alpha_z*h_star_in_base_x - W_p_t*h_star_in_base_y
-    # (E3) inertia moment of the platform less that of its weight
-    mu_p_z = (
-    J_star_zz*alpha_z + h_star_x*(R_xx*a_t_y - R_yx*a_t_x) - h_star_y*(R_xx*a_t_x + R_yx*a_t_y)
-    )
+    # (mu_p) inertia moment of the platform less that of its weight
+    mu_p_z = a_t_y*h_star_in_base_x - J_star_t_6*alpha_z - a_t_x*h_star_in_base_y
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
-        J_1_rr_zz, g_r0_x, g_r0_y, h_1_rr_x, h_1_rr_y, inv_rr_platform_joint_offset_x, n_c_rr_t,
-            n_c_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
-            rr_base_frame_yy, rr_base_point_x, rr_base_point_y, rr_platform_joint_offset_x,
-            rr_platform_point_x, rr_platform_point_y,
+        crank_J_1_zz, crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx,
+            crank_base_frame_yy, crank_base_point_x, crank_base_point_y, crank_g_r0_x,
+            crank_g_r0_y, crank_h_1_x, crank_h_1_y, crank_n_c_t, crank_n_c_x,
+            crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
+            crank_root_1_t, inv_crank_platform_joint_offset_x,
         ) = k
-        # (rr-K1) from the base point to the connection point
-        q_rr_in_base_x = R_xx*rr_platform_point_x - R_yx*rr_platform_point_y
-        q_rr_in_base_y = R_xx*rr_platform_point_y + R_yx*rr_platform_point_x
-        S_rr_x = q_rr_in_base_x + t_x - rr_base_point_x
-        S_rr_y = q_rr_in_base_y + t_y - rr_base_point_y
-        # (rr-K3) squared amplitude
-        rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
-        rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-        rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
-        # (rr-K5) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
-        c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
-        # (rr-K6) sine of the angle of joint 1 from its reference direction
-        s_1_rr = inv_root_1_rr*rho2_1_rr_t*rr_platform_joint_offset_x
-        # (rr-V4) reciprocal vector 1
-        axis_y_rr_axes1_in_base_x = c_1_rr*rr_base_frame_xy - rr_base_frame_xx*s_1_rr
-        axis_y_rr_axes1_in_base_y = c_1_rr*rr_base_frame_yy - rr_base_frame_yx*s_1_rr
-        w_1_rr_t = axis_y_rr_axes1_in_base_x*inv_rr_platform_joint_offset_x
-        w_1_rr_t_2 = axis_y_rr_axes1_in_base_y*inv_rr_platform_joint_offset_x
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_rr_z = q_rr_in_base_x*w_1_rr_t_2 - q_rr_in_base_y*w_1_rr_t
-        # (rr-V3) unit vector that the leg's freedoms leave out
-        n_c_rr_t_2 = axis_y_rr_axes1_in_base_y*n_c_rr_x
-        n_c_rr_t_3 = axis_y_rr_axes1_in_base_x*n_c_rr_x
-        # (M10) moment of the column's unit force about the platform origin
-        Hk_a_1_rr_z = n_c_rr_t_2*q_rr_in_base_y + n_c_rr_t_3*q_rr_in_base_x
-        # (rr-A2) acceleration of the connection point without its centripetal part
-        a_p_rr_x = t_ddot_x - alpha_z*q_rr_in_base_y
-        a_p_rr_y = t_ddot_y + alpha_z*q_rr_in_base_x
-        # (rr-A3) acceleration of the connection point
-        S_ddot_rr_x = a_p_rr_x - omega_z*omega_z*q_rr_in_base_x
-        S_ddot_rr_y = a_p_rr_y - omega_z*omega_z*q_rr_in_base_y
-        # (rr-N5) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rr_z = (
-        h_1_rr_y*(c_1_rr*g_r0_x + g_r0_y*s_1_rr) +
-            J_1_rr_zz*inv_rr_platform_joint_offset_x*(S_ddot_rr_x*axis_y_rr_axes1_in_base_x +
-            S_ddot_rr_y*axis_y_rr_axes1_in_base_y) - h_1_rr_x*(c_1_rr*g_r0_y - g_r0_x*s_1_rr)
+        # (crank-S) from the base point to the connection point
+        crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
+        crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
+        crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x
+        crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y
+        # (crank-rho2_1) squared amplitude
+        crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy
+        crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx + crank_S_y*crank_base_frame_yx
+        crank_rho2_1 = (
+        crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
         )
-        # (rr-N11) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rr_t = inv_rr_platform_joint_offset_x*mu_1_rr_z
-        # (rr-N14) leg force on the platform without actuation and without the mass at the connection point
-        c_rr_t = G_rr_t*axis_y_rr_axes1_in_base_x
-        c_rr_t_2 = G_rr_t*axis_y_rr_axes1_in_base_y
-        # (E5) moment that actuators and external wrench must give
-        R_a_t = c_rr_t_2*q_rr_in_base_x - c_rr_t*q_rr_in_base_y
-        ok = ok & m.every(leg, (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
+        # (crank-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crank_root_1 = 1.0/(sqrt(crank_rho2_1))
+        crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1
+        # (crank-s_1) sine of the angle of joint 1 from its reference direction
+        crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1
+        # (crank-w_1) reciprocal vector 1
+        axis_y_crank_axes1_in_base_x = (
+        crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
+        )
+        axis_y_crank_axes1_in_base_y = (
+        crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
+        )
+        crank_w_1_t = axis_y_crank_axes1_in_base_x*inv_crank_platform_joint_offset_x
+        crank_w_1_t_2 = axis_y_crank_axes1_in_base_y*inv_crank_platform_joint_offset_x
+        # (crank-H_a_1) moment of the column's unit force about the platform origin
+        crank_H_a_1_z = crank_q_in_base_x*crank_w_1_t_2 - crank_q_in_base_y*crank_w_1_t
+        # (crank-n_c) unit vector that the leg's freedoms leave out
+        crank_n_c_t_2 = axis_y_crank_axes1_in_base_y*crank_n_c_x
+        crank_n_c_t_3 = axis_y_crank_axes1_in_base_x*crank_n_c_x
+        # (crank-Hk_a_1) moment of the column's unit force about the platform origin
+        crank_Hk_a_1_z = crank_n_c_t_2*crank_q_in_base_y + crank_n_c_t_3*crank_q_in_base_x
+        # (crank-a_p) acceleration of the connection point without its centripetal part
+        crank_a_p_x = t_ddot_x - alpha_z*crank_q_in_base_y
+        crank_a_p_y = t_ddot_y + alpha_z*crank_q_in_base_x
+        # (crank-S_ddot) acceleration of the connection point
+        crank_S_ddot_x = crank_a_p_x - crank_q_in_base_x*omega_z*omega_z
+        crank_S_ddot_y = crank_a_p_y - crank_q_in_base_y*omega_z*omega_z
+        # (crank-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        crank_mu_1_z = (
+        crank_h_1_y*(crank_c_1*crank_g_r0_x + crank_g_r0_y*crank_s_1) +
+            crank_J_1_zz*inv_crank_platform_joint_offset_x*(axis_y_crank_axes1_in_base_x*crank_S_ddot_x
+            + axis_y_crank_axes1_in_base_y*crank_S_ddot_y) - crank_h_1_x*(crank_c_1*crank_g_r0_y -
+            crank_g_r0_x*crank_s_1)
+        )
+        # (crank-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        crank_G_t = crank_mu_1_z*inv_crank_platform_joint_offset_x
+        # (crank-c) leg force on the platform without actuation and without the mass at the connection point
+        crank_c_t = axis_y_crank_axes1_in_base_x*crank_G_t
+        crank_c_t_2 = axis_y_crank_axes1_in_base_y*crank_G_t
+        # (R_a) moment that actuators and external wrench must give
+        crank_R_a_t = crank_c_t_2*crank_q_in_base_x - crank_c_t*crank_q_in_base_y
+        ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
         sums = m.added(sums, leg, (
-        c_rr_t, c_rr_t_2, R_a_t,
+        crank_c_t, crank_c_t_2, crank_R_a_t,
         ))
-        out_H[_H_rr[0][leg]] = w_1_rr_t
-        out_H[_H_rr[1][leg]] = w_1_rr_t_2
-        out_H[_H_rr[2][leg]] = H_a_1_rr_z
-        out_Hk[_Hk_rr[0][leg]] = -n_c_rr_t_2
-        out_Hk[_Hk_rr[1][leg]] = n_c_rr_t_3
-        out_Hk[_Hk_rr[2][leg]] = Hk_a_1_rr_z
-    total_rr_x, total_rr_y, total_rr_z = sums
+        out_H[_H_crank[0][leg]] = crank_w_1_t
+        out_H[_H_crank[1][leg]] = crank_w_1_t_2
+        out_H[_H_crank[2][leg]] = crank_H_a_1_z
+        out_Hk[_Hk_crank[0][leg]] = -crank_n_c_t_2
+        out_Hk[_Hk_crank[1][leg]] = crank_n_c_t_3
+        out_Hk[_Hk_crank[2][leg]] = crank_Hk_a_1_z
+    total_crank_x, total_crank_y, total_crank_z = sums
     sums = [0.0] * 3
     for leg, k in legs[1]:
         (
-        J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
-            h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
-            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+            rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+            rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x
-        S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        # (rrr-V1) velocity of the connection point
-        S_dot_rrr_t = omega_z*q_rrr_in_base_y
-        S_dot_rrr_t_2 = omega_z*q_rrr_in_base_x
-        S_dot_rrr_x = t_dot_x - S_dot_rrr_t
-        S_dot_rrr_y = S_dot_rrr_t_2 + t_dot_y
-        # (rrr-V7) rate of joint 1
-        qd_1_rrr = (
-        inv_r_1_rrr_r0_y*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_x)
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = omega_z*rrr_q_in_base_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
+        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_1 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
         )
-        # (rrr-V11) angular velocity of link 2
-        omega_2_rrr_z = (
-        inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_z = (
+        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
         )
-        # (rrr-V10) centripetal tensor of link 1
-        W_1_rrr_t = qd_1_rrr*qd_1_rrr
-        # (rrr-V12) centripetal tensor of link 2
-        W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
-        # (rrr-A5) acceleration of the connection point at zero joint accelerations
-        bias_rrr_x = (
-        -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
+        # (rrr-W_1) centripetal tensor of link 1
+        rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_x = (
+        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        # (rrr-V5) reciprocal vector 1
-        w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
-        w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t
-        # (rrr-A2) acceleration of the connection point without its centripetal part
-        a_p_rrr_x = t_ddot_x - alpha_z*q_rrr_in_base_y
-        a_p_rrr_y = t_ddot_y + alpha_z*q_rrr_in_base_x
-        # (rrr-A3) acceleration of the connection point
-        S_ddot_rrr_x = a_p_rrr_x - S_dot_rrr_t_2*omega_z
-        S_ddot_rrr_y = a_p_rrr_y - S_dot_rrr_t*omega_z
-        S_ddot_rrr_tip_x = (
-        S_ddot_rrr_x*axis_y_rrr_axes2_in_base_y - S_ddot_rrr_y*axis_y_rrr_axes2_in_base_x
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y
+        rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y
+        # (rrr-H_a_1) moment of the column's unit force about the platform origin
+        rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t
+        # (rrr-a_p) acceleration of the connection point without its centripetal part
+        rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y
+        rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x
+        # (rrr-S_ddot) acceleration of the connection point
+        rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
+        rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
+        rrr_S_ddot_tip_x = (
+        axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x - axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y
         )
-        S_ddot_rrr_tip_y = (
-        S_ddot_rrr_x*axis_y_rrr_axes2_in_base_x + S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y
+        rrr_S_ddot_tip_y = (
+        axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x + axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y
         )
-        # (rrr-A6) acceleration of the connection point left to the joint accelerations
-        rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x
-        rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
-        # (rrr-A8) acceleration of joint 1
-        qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
-        # (rrr-N3) acceleration of the reference point of link 2, less gravity
-        acc_2_rrr_x = (
-        S_ddot_rrr_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+        # (rrr-rel) acceleration of the connection point left to the joint accelerations
+        rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x
+        rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        # (rrr-qdd_1) acceleration of joint 1
+        rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_acc_2_x = (
+        rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
             axis_y_rrr_axes2_in_base_y*gravity_x
         )
-        acc_2_rrr_y = (
-        S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+        rrr_acc_2_y = (
+        rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
             axis_y_rrr_axes2_in_base_y*gravity_y
         )
-        # (rrr-N23) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rrr_z = (
-        h_1_rrr_y*(c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr) - J_1_rrr_zz*qdd_1_rrr -
-            h_1_rrr_x*(c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr)
+        # (rrr-alpha_2) angular acceleration of link 2
+        rrr_alpha_2_z = (
+        inv_rrr_platform_joint_offset_x*(rrr_rel_y + rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1
         )
-        # (rrr-A16) angular acceleration of link 2
-        alpha_2_rrr_z = (
-        inv_rrr_platform_joint_offset_x*(rel_rrr_y + qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr
+        # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x - rrr_acc_2_x*rrr_h_2_y
+        # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_mu_1_z = (
+        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1 -
+            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
         )
-        # (rrr-N16) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x - acc_2_rrr_x*h_2_rrr_y
-        # (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z
-        # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z
-        # (rrr-N33) leg force on the platform without actuation and without the mass at the connection point
-        c_rrr_x = (
-        W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x -
-            N_1_rrr_z)
+        # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z
+        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z
+        # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_x = (
+        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x -
+            rrr_N_1_z)
         )
-        c_rrr_y = W_2_rrr_t*h_2_rrr_y - G_rrr_t - alpha_2_rrr_z*h_2_rrr_x
-        c_rrr_in_base_x = axis_y_rrr_axes2_in_base_x*c_rrr_y + axis_y_rrr_axes2_in_base_y*c_rrr_x
-        c_rrr_in_base_y = axis_y_rrr_axes2_in_base_y*c_rrr_y - axis_y_rrr_axes2_in_base_x*c_rrr_x
-        # (E5) moment that actuators and external wrench must give
-        R_a_t_2 = c_rrr_in_base_y*q_rrr_in_base_x - c_rrr_in_base_x*q_rrr_in_base_y
+        rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x
+        rrr_c_in_base_x = axis_y_rrr_axes2_in_base_x*rrr_c_y + axis_y_rrr_axes2_in_base_y*rrr_c_x
+        rrr_c_in_base_y = axis_y_rrr_axes2_in_base_y*rrr_c_y - axis_y_rrr_axes2_in_base_x*rrr_c_x
+        # (R_a) moment that actuators and external wrench must give
+        rrr_R_a_t = rrr_c_in_base_y*rrr_q_in_base_x - rrr_c_in_base_x*rrr_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        c_rrr_in_base_x, c_rrr_in_base_y, R_a_t_2,
+        rrr_c_in_base_x, rrr_c_in_base_y, rrr_R_a_t,
         ))
-        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
-        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
-        out_H[_H_rrr[2][leg]] = H_a_1_rrr_z
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
+        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
+        out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
     total_rrr_x, total_rrr_y, total_rrr_z = sums
-    # (E4) force that actuators and external wrench must give
-    R_t_x = f_p_x + total_rr_x - total_rrr_x
-    R_t_y = f_p_y + total_rr_y - total_rrr_y
-    # (E5) moment that actuators and external wrench must give
-    R_a_z = mu_p_z + total_rr_z - total_rrr_z
+    # (R_t) force that actuators and external wrench must give
+    R_t_x = f_p_x + total_crank_x - total_rrr_x
+    R_t_y = f_p_y + total_crank_y - total_rrr_y
+    # (R_a) moment that actuators and external wrench must give
+    R_a_z = mu_p_z + total_crank_z - total_rrr_z
     out_required[0] = R_t_x
     out_required[1] = R_t_y
     out_required[2] = R_a_z
@@ -2612,73 +2722,79 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        n_c_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
-            rr_base_frame_yy, rr_base_point_x, rr_base_point_y, rr_platform_joint_offset_x,
-            rr_platform_point_x, rr_platform_point_y,
+        crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
+            crank_base_point_x, crank_base_point_y, crank_n_c_t, crank_platform_joint_offset_x,
+            crank_platform_point_x, crank_platform_point_y, crank_root_1_t,
         ) = k
-        # (rr-K1) from the base point to the connection point
-        S_rr_x = t_x + R_xx*rr_platform_point_x - rr_base_point_x - R_yx*rr_platform_point_y
-        S_rr_y = t_y + R_xx*rr_platform_point_y + R_yx*rr_platform_point_x - rr_base_point_y
-        # (rr-K3) squared amplitude
-        rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
-        rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-        rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
-        # (rr-K5) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
-        # (rr-K7) displacement of joint 1
-        q_1_rr = (
-        atan2(inv_root_1_rr*rho2_1_rr_t*rr_platform_joint_offset_x,
-            inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x)
+        # (crank-S) from the base point to the connection point
+        crank_S_x = (
+        t_x + R_xx*crank_platform_point_x - crank_base_point_x - R_yx*crank_platform_point_y
         )
-        ok = ok & m.every(leg, (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
-        out_q[_q_rr[0][leg]] = q_1_rr
+        crank_S_y = (
+        t_y + R_xx*crank_platform_point_y + R_yx*crank_platform_point_x - crank_base_point_y
+        )
+        # (crank-rho2_1) squared amplitude
+        crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy
+        crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx + crank_S_y*crank_base_frame_yx
+        crank_rho2_1 = (
+        crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
+        )
+        # (crank-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crank_root_1 = 1.0/(sqrt(crank_rho2_1))
+        # (crank-q_1) displacement of joint 1
+        crank_q_1 = (
+        atan2(crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1,
+            crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1)
+        )
+        ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
+        out_q[_q_crank[0][leg]] = crank_q_1
     for leg, k in legs[1]:
         (
-        Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
-            rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-            rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+            rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        S_rrr_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
-        S_rrr_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        # (rrr-K13) displacement of joint 1
-        q_1_rrr = (
-        atan2(inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr),
-            inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr))
+        # (rrr-S) from the base point to the connection point
+        rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
+        rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        # (rrr-q_1) displacement of joint 1
+        rrr_q_1 = (
+        atan2(inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1),
+            inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1))
         )
-        # (rrr-K20) displacement of joint 2
-        q_2_rrr = (
-        atan2(-inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x,
-            inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x)
+        # (rrr-q_2) displacement of joint 2
+        rrr_q_2 = (
+        atan2(-inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
+            inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x)
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
             >= 0.0))
         )
-        out_q[_q_rrr[0][leg]] = q_1_rrr
-        out_q[_q_rrr[1][leg]] = q_2_rrr
+        out_q[_q_rrr[0][leg]] = rrr_q_1
+        out_q[_q_rrr[1][leg]] = rrr_q_2
     return ok, (out_q,)
 
 
@@ -2707,110 +2823,113 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        inv_rr_platform_joint_offset_x, n_c_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy,
-            rr_base_frame_yx, rr_base_frame_yy, rr_base_point_x, rr_base_point_y,
-            rr_platform_joint_offset_x, rr_platform_point_x, rr_platform_point_y,
+        crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
+            crank_base_point_x, crank_base_point_y, crank_n_c_t, crank_platform_joint_offset_x,
+            crank_platform_point_x, crank_platform_point_y, crank_root_1_t,
+            inv_crank_platform_joint_offset_x,
         ) = k
-        # (rr-K1) from the base point to the connection point
-        q_rr_in_base_x = R_xx*rr_platform_point_x - R_yx*rr_platform_point_y
-        q_rr_in_base_y = R_xx*rr_platform_point_y + R_yx*rr_platform_point_x
-        S_rr_x = q_rr_in_base_x + t_x - rr_base_point_x
-        S_rr_y = q_rr_in_base_y + t_y - rr_base_point_y
-        # (rr-K3) squared amplitude
-        rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
-        rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-        rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
-        # (rr-K5) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
-        c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
-        # (rr-K6) sine of the angle of joint 1 from its reference direction
-        s_1_rr = inv_root_1_rr*rho2_1_rr_t*rr_platform_joint_offset_x
-        # (rr-V1) velocity of the connection point
-        S_dot_rr_x = t_dot_x - omega_z*q_rr_in_base_y
-        S_dot_rr_y = t_dot_y + omega_z*q_rr_in_base_x
-        # (rr-V5) rate of joint 1
-        qd_1_rr = (
-        inv_rr_platform_joint_offset_x*(S_dot_rr_x*(c_1_rr*rr_base_frame_xy -
-            rr_base_frame_xx*s_1_rr) + S_dot_rr_y*(c_1_rr*rr_base_frame_yy -
-            rr_base_frame_yx*s_1_rr))
+        # (crank-S) from the base point to the connection point
+        crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
+        crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
+        crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x
+        crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y
+        # (crank-rho2_1) squared amplitude
+        crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy
+        crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx + crank_S_y*crank_base_frame_yx
+        crank_rho2_1 = (
+        crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
         )
-        ok = ok & m.every(leg, (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
-        out_qd[_qd_rr[0][leg]] = qd_1_rr
+        # (crank-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crank_root_1 = 1.0/(sqrt(crank_rho2_1))
+        crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1
+        # (crank-s_1) sine of the angle of joint 1 from its reference direction
+        crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1
+        # (crank-S_dot) velocity of the connection point
+        crank_S_dot_x = t_dot_x - crank_q_in_base_y*omega_z
+        crank_S_dot_y = t_dot_y + crank_q_in_base_x*omega_z
+        # (crank-qd_1) rate of joint 1
+        crank_qd_1 = (
+        inv_crank_platform_joint_offset_x*(crank_S_dot_x*(crank_base_frame_xy*crank_c_1 -
+            crank_base_frame_xx*crank_s_1) + crank_S_dot_y*(crank_base_frame_yy*crank_c_1 -
+            crank_base_frame_yx*crank_s_1))
+        )
+        ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
+        out_qd[_qd_crank[0][leg]] = crank_qd_1
     for leg, k in legs[1]:
         (
-        Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
-            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
-            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
+            rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x
-        S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        # (rrr-V1) velocity of the connection point
-        S_dot_rrr_x = t_dot_x - omega_z*q_rrr_in_base_y
-        S_dot_rrr_y = t_dot_y + omega_z*q_rrr_in_base_x
-        # (rrr-V7) rate of joint 1
-        qd_1_rrr = (
-        (S_dot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_x)/r_1_rrr_r0_y
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_x = t_dot_x - omega_z*rrr_q_in_base_y
+        rrr_S_dot_y = t_dot_y + omega_z*rrr_q_in_base_x
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_1 = (
+        (axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)/rrr_r_1_r0_y
         )
-        qd_2_rrr = (
-        inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*(c_2_rrr*r_1_rrr_x +
-            r_1_rrr_t*s_2_rrr))
+        rrr_qd_2 = (
+        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*(rrr_c_2*rrr_r_1_x +
+            rrr_r_1_t*rrr_s_2))
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
-        out_qd[_qd_rrr[0][leg]] = -qd_1_rrr
-        out_qd[_qd_rrr[1][leg]] = qd_2_rrr
+        out_qd[_qd_rrr[0][leg]] = -rrr_qd_1
+        out_qd[_qd_rrr[1][leg]] = rrr_qd_2
     return ok, (out_qd,)
 
 
@@ -2846,142 +2965,145 @@ def _run_joint_accelerations(m, X, V, A):
     out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
-        inv_rr_platform_joint_offset_x, n_c_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy,
-            rr_base_frame_yx, rr_base_frame_yy, rr_base_point_x, rr_base_point_y,
-            rr_platform_joint_offset_x, rr_platform_point_x, rr_platform_point_y,
+        crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
+            crank_base_point_x, crank_base_point_y, crank_n_c_t, crank_platform_joint_offset_x,
+            crank_platform_point_x, crank_platform_point_y, crank_root_1_t,
+            inv_crank_platform_joint_offset_x,
         ) = k
-        # (rr-K1) from the base point to the connection point
-        q_rr_in_base_x = R_xx*rr_platform_point_x - R_yx*rr_platform_point_y
-        q_rr_in_base_y = R_xx*rr_platform_point_y + R_yx*rr_platform_point_x
-        S_rr_x = q_rr_in_base_x + t_x - rr_base_point_x
-        S_rr_y = q_rr_in_base_y + t_y - rr_base_point_y
-        # (rr-K3) squared amplitude
-        rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
-        rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-        rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
-        # (rr-K5) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
-        c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
-        # (rr-K6) sine of the angle of joint 1 from its reference direction
-        s_1_rr = inv_root_1_rr*rho2_1_rr_t*rr_platform_joint_offset_x
-        # (rr-A2) acceleration of the connection point without its centripetal part
-        a_p_rr_x = t_ddot_x - alpha_z*q_rr_in_base_y
-        a_p_rr_y = t_ddot_y + alpha_z*q_rr_in_base_x
-        # (rr-A3) acceleration of the connection point
-        S_ddot_rr_x = a_p_rr_x - omega_z*omega_z*q_rr_in_base_x
-        S_ddot_rr_y = a_p_rr_y - omega_z*omega_z*q_rr_in_base_y
-        # (rr-A7) acceleration of joint 1
-        qdd_1_rr = (
-        inv_rr_platform_joint_offset_x*(S_ddot_rr_x*(c_1_rr*rr_base_frame_xy -
-            rr_base_frame_xx*s_1_rr) + S_ddot_rr_y*(c_1_rr*rr_base_frame_yy -
-            rr_base_frame_yx*s_1_rr))
+        # (crank-S) from the base point to the connection point
+        crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
+        crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
+        crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x
+        crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y
+        # (crank-rho2_1) squared amplitude
+        crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy
+        crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx + crank_S_y*crank_base_frame_yx
+        crank_rho2_1 = (
+        crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
         )
-        ok = ok & m.every(leg, (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
-        out_qdd[_qdd_rr[0][leg]] = qdd_1_rr
+        # (crank-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crank_root_1 = 1.0/(sqrt(crank_rho2_1))
+        crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1
+        # (crank-s_1) sine of the angle of joint 1 from its reference direction
+        crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1
+        # (crank-a_p) acceleration of the connection point without its centripetal part
+        crank_a_p_x = t_ddot_x - alpha_z*crank_q_in_base_y
+        crank_a_p_y = t_ddot_y + alpha_z*crank_q_in_base_x
+        # (crank-S_ddot) acceleration of the connection point
+        crank_S_ddot_x = crank_a_p_x - crank_q_in_base_x*omega_z*omega_z
+        crank_S_ddot_y = crank_a_p_y - crank_q_in_base_y*omega_z*omega_z
+        # (crank-qdd_1) acceleration of joint 1
+        crank_qdd_1 = (
+        inv_crank_platform_joint_offset_x*(crank_S_ddot_x*(crank_base_frame_xy*crank_c_1 -
+            crank_base_frame_xx*crank_s_1) + crank_S_ddot_y*(crank_base_frame_yy*crank_c_1 -
+            crank_base_frame_yx*crank_s_1))
+        )
+        ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
+        out_qdd[_qdd_crank[0][leg]] = crank_qdd_1
     for leg, k in legs[1]:
         (
-        Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
-            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
-            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
+            rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x
-        S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        # (rrr-V1) velocity of the connection point
-        S_dot_rrr_t = omega_z*q_rrr_in_base_y
-        S_dot_rrr_t_2 = omega_z*q_rrr_in_base_x
-        S_dot_rrr_x = t_dot_x - S_dot_rrr_t
-        S_dot_rrr_y = S_dot_rrr_t_2 + t_dot_y
-        # (rrr-V7) rate of joint 1
-        qd_1_rrr = (
-        inv_r_1_rrr_r0_y*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_x)
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = omega_z*rrr_q_in_base_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
+        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_1 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
         )
-        # (rrr-V11) angular velocity of link 2
-        omega_2_rrr_z = (
-        inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_z = (
+        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
         )
-        # (rrr-V10) centripetal tensor of link 1
-        W_1_rrr_t = qd_1_rrr*qd_1_rrr
-        # (rrr-A5) acceleration of the connection point at zero joint accelerations
-        bias_rrr_x = (
-        -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
+        # (rrr-W_1) centripetal tensor of link 1
+        rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_x = (
+        -rrr_omega_2_z*rrr_omega_2_z*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        # (rrr-A2) acceleration of the connection point without its centripetal part
-        a_p_rrr_x = t_ddot_x - alpha_z*q_rrr_in_base_y
-        a_p_rrr_y = t_ddot_y + alpha_z*q_rrr_in_base_x
-        # (rrr-A3) acceleration of the connection point
-        S_ddot_rrr_x = a_p_rrr_x - S_dot_rrr_t_2*omega_z
-        S_ddot_rrr_y = a_p_rrr_y - S_dot_rrr_t*omega_z
-        # (rrr-A6) acceleration of the connection point left to the joint accelerations
-        rel_rrr_x = (
-        S_ddot_rrr_x*axis_y_rrr_axes2_in_base_y - bias_rrr_x -
-            S_ddot_rrr_y*axis_y_rrr_axes2_in_base_x
+        # (rrr-a_p) acceleration of the connection point without its centripetal part
+        rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y
+        rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x
+        # (rrr-S_ddot) acceleration of the connection point
+        rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
+        rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
+        # (rrr-rel) acceleration of the connection point left to the joint accelerations
+        rrr_rel_x = (
+        axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x - rrr_bias_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y
         )
-        rel_rrr_y = (
-        S_ddot_rrr_x*axis_y_rrr_axes2_in_base_x + S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y +
-            W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
+        rrr_rel_y = (
+        axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x + axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y +
+            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         )
-        # (rrr-A8) acceleration of joint 1
-        qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
-        qdd_2_rrr = inv_rrr_platform_joint_offset_x*(rel_rrr_y + qdd_1_rrr*r_1_rrr_r0_x)
+        # (rrr-qdd_1) acceleration of joint 1
+        rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x
+        rrr_qdd_2 = inv_rrr_platform_joint_offset_x*(rrr_rel_y + rrr_qdd_1*rrr_r_1_r0_x)
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
-        out_qdd[_qdd_rrr[0][leg]] = -qdd_1_rrr
-        out_qdd[_qdd_rrr[1][leg]] = qdd_2_rrr
+        out_qdd[_qdd_rrr[0][leg]] = -rrr_qdd_1
+        out_qdd[_qdd_rrr[1][leg]] = rrr_qdd_2
     return ok, (out_qdd,)
 
 
@@ -3003,27 +3125,34 @@ def _run_constraints(m, X):
     out_constraints = m.zeros("constraints")
     for leg, k in legs[0]:
         (
-        n_c_rr_t, n_c_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
-            rr_base_frame_yy, rr_base_point_x, rr_base_point_y, rr_platform_joint_offset_x,
-            rr_platform_point_x, rr_platform_point_y,
+        crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
+            crank_base_point_x, crank_base_point_y, crank_n_c_t, crank_n_c_x,
+            crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
+            crank_root_1_t,
         ) = k
-        # (rr-K1) from the base point to the connection point
-        S_rr_x = t_x + R_xx*rr_platform_point_x - rr_base_point_x - R_yx*rr_platform_point_y
-        S_rr_y = t_y + R_xx*rr_platform_point_y + R_yx*rr_platform_point_x - rr_base_point_y
-        # (rr-K3) squared amplitude
-        rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
-        rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-        rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
-        # (rr-K5) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
-        # (M11) distance by which the leg misses the platform, along a direction left out
-        phi_c1_rr_t = (
-        n_c_rr_x*(inv_root_1_rr*rho2_1_rr_t*rho2_1_rr_t*rr_platform_joint_offset_x +
-            inv_root_1_rr*rho2_1_rr_t_2*rho2_1_rr_t_2*rr_platform_joint_offset_x -
-            rr_platform_joint_offset_x)
+        # (crank-S) from the base point to the connection point
+        crank_S_x = (
+        t_x + R_xx*crank_platform_point_x - crank_base_point_x - R_yx*crank_platform_point_y
         )
-        ok = ok & m.every(leg, (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
-        out_constraints[_constraints_rr[0][leg]] = -phi_c1_rr_t
+        crank_S_y = (
+        t_y + R_xx*crank_platform_point_y + R_yx*crank_platform_point_x - crank_base_point_y
+        )
+        # (crank-rho2_1) squared amplitude
+        crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy
+        crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx + crank_S_y*crank_base_frame_yx
+        crank_rho2_1 = (
+        crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
+        )
+        # (crank-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crank_root_1 = 1.0/(sqrt(crank_rho2_1))
+        # (crank-phi_c1) distance by which the leg misses the platform, along a direction left out
+        crank_phi_c1_t = (
+        crank_n_c_x*(crank_platform_joint_offset_x*crank_rho2_1_t*crank_rho2_1_t*inv_crank_root_1
+            + crank_platform_joint_offset_x*crank_rho2_1_t_2*crank_rho2_1_t_2*inv_crank_root_1 -
+            crank_platform_joint_offset_x)
+        )
+        ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
+        out_constraints[_constraints_crank[0][leg]] = -crank_phi_c1_t
     return ok, (out_constraints,)
 
 
@@ -3062,206 +3191,214 @@ def _run_legs(m, X, V, A):
     out_constraint_direction = m.zeros("constraint_direction")
     for leg, k in legs[0]:
         (
-        J_1_rr_zz, g_r0_x, g_r0_y, h_1_rr_x, h_1_rr_y, inv_rr_platform_joint_offset_x, n_c_rr_t,
-            n_c_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
-            rr_base_frame_yy, rr_base_point_x, rr_base_point_y, rr_platform_joint_offset_x,
-            rr_platform_point_x, rr_platform_point_y,
+        crank_J_1_zz, crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx,
+            crank_base_frame_yy, crank_base_point_x, crank_base_point_y, crank_g_r0_x,
+            crank_g_r0_y, crank_h_1_x, crank_h_1_y, crank_n_c_t, crank_n_c_x,
+            crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
+            crank_root_1_t, inv_crank_platform_joint_offset_x,
         ) = k
-        # (rr-K1) from the base point to the connection point
-        q_rr_in_base_x = R_xx*rr_platform_point_x - R_yx*rr_platform_point_y
-        q_rr_in_base_y = R_xx*rr_platform_point_y + R_yx*rr_platform_point_x
-        S_rr_x = q_rr_in_base_x + t_x - rr_base_point_x
-        S_rr_y = q_rr_in_base_y + t_y - rr_base_point_y
-        # (rr-K3) squared amplitude
-        rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
-        rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-        rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
-        # (rr-K5) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
-        c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
-        # (rr-K6) sine of the angle of joint 1 from its reference direction
-        s_1_rr = inv_root_1_rr*rho2_1_rr_t*rr_platform_joint_offset_x
-        # (rr-V4) reciprocal vector 1
-        axis_y_rr_axes1_in_base_x = c_1_rr*rr_base_frame_xy - rr_base_frame_xx*s_1_rr
-        axis_y_rr_axes1_in_base_y = c_1_rr*rr_base_frame_yy - rr_base_frame_yx*s_1_rr
-        w_1_rr_t = axis_y_rr_axes1_in_base_x*inv_rr_platform_joint_offset_x
-        w_1_rr_t_2 = axis_y_rr_axes1_in_base_y*inv_rr_platform_joint_offset_x
-        # (rr-V3) unit vector that the leg's freedoms leave out
-        n_c_rr_t_2 = axis_y_rr_axes1_in_base_y*n_c_rr_x
-        n_c_rr_t_3 = axis_y_rr_axes1_in_base_x*n_c_rr_x
-        # (rr-A2) acceleration of the connection point without its centripetal part
-        a_p_rr_x = t_ddot_x - alpha_z*q_rr_in_base_y
-        a_p_rr_y = t_ddot_y + alpha_z*q_rr_in_base_x
-        # (rr-A3) acceleration of the connection point
-        S_ddot_rr_x = a_p_rr_x - omega_z*omega_z*q_rr_in_base_x
-        S_ddot_rr_y = a_p_rr_y - omega_z*omega_z*q_rr_in_base_y
-        # (rr-N5) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rr_z = (
-        h_1_rr_y*(c_1_rr*g_r0_x + g_r0_y*s_1_rr) +
-            J_1_rr_zz*inv_rr_platform_joint_offset_x*(S_ddot_rr_x*axis_y_rr_axes1_in_base_x +
-            S_ddot_rr_y*axis_y_rr_axes1_in_base_y) - h_1_rr_x*(c_1_rr*g_r0_y - g_r0_x*s_1_rr)
+        # (crank-S) from the base point to the connection point
+        crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
+        crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
+        crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x
+        crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y
+        # (crank-rho2_1) squared amplitude
+        crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy
+        crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx + crank_S_y*crank_base_frame_yx
+        crank_rho2_1 = (
+        crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
         )
-        # (rr-N11) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rr_t = inv_rr_platform_joint_offset_x*mu_1_rr_z
-        # (rr-N14) leg force on the platform without actuation and without the mass at the connection point
-        c_rr_t = G_rr_t*axis_y_rr_axes1_in_base_x
-        c_rr_t_2 = G_rr_t*axis_y_rr_axes1_in_base_y
-        ok = ok & m.every(leg, (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
-        out_leg_force[_leg_force_rr[0][leg]] = -c_rr_t
-        out_leg_force[_leg_force_rr[1][leg]] = -c_rr_t_2
-        out_drive[_drive_rr[0][leg]] = w_1_rr_t
-        out_drive[_drive_rr[1][leg]] = w_1_rr_t_2
-        out_constraint_direction[_constraint_direction_rr[0][leg]] = -n_c_rr_t_2
-        out_constraint_direction[_constraint_direction_rr[1][leg]] = n_c_rr_t_3
+        # (crank-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crank_root_1 = 1.0/(sqrt(crank_rho2_1))
+        crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1
+        # (crank-s_1) sine of the angle of joint 1 from its reference direction
+        crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1
+        # (crank-w_1) reciprocal vector 1
+        axis_y_crank_axes1_in_base_x = (
+        crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
+        )
+        axis_y_crank_axes1_in_base_y = (
+        crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
+        )
+        crank_w_1_t = axis_y_crank_axes1_in_base_x*inv_crank_platform_joint_offset_x
+        crank_w_1_t_2 = axis_y_crank_axes1_in_base_y*inv_crank_platform_joint_offset_x
+        # (crank-n_c) unit vector that the leg's freedoms leave out
+        crank_n_c_t_2 = axis_y_crank_axes1_in_base_y*crank_n_c_x
+        crank_n_c_t_3 = axis_y_crank_axes1_in_base_x*crank_n_c_x
+        # (crank-a_p) acceleration of the connection point without its centripetal part
+        crank_a_p_x = t_ddot_x - alpha_z*crank_q_in_base_y
+        crank_a_p_y = t_ddot_y + alpha_z*crank_q_in_base_x
+        # (crank-S_ddot) acceleration of the connection point
+        crank_S_ddot_x = crank_a_p_x - crank_q_in_base_x*omega_z*omega_z
+        crank_S_ddot_y = crank_a_p_y - crank_q_in_base_y*omega_z*omega_z
+        # (crank-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        crank_mu_1_z = (
+        crank_h_1_y*(crank_c_1*crank_g_r0_x + crank_g_r0_y*crank_s_1) +
+            crank_J_1_zz*inv_crank_platform_joint_offset_x*(axis_y_crank_axes1_in_base_x*crank_S_ddot_x
+            + axis_y_crank_axes1_in_base_y*crank_S_ddot_y) - crank_h_1_x*(crank_c_1*crank_g_r0_y -
+            crank_g_r0_x*crank_s_1)
+        )
+        # (crank-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        crank_G_t = crank_mu_1_z*inv_crank_platform_joint_offset_x
+        # (crank-c) leg force on the platform without actuation and without the mass at the connection point
+        crank_c_t = axis_y_crank_axes1_in_base_x*crank_G_t
+        crank_c_t_2 = axis_y_crank_axes1_in_base_y*crank_G_t
+        ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
+        out_leg_force[_leg_force_crank[0][leg]] = -crank_c_t
+        out_leg_force[_leg_force_crank[1][leg]] = -crank_c_t_2
+        out_drive[_drive_crank[0][leg]] = crank_w_1_t
+        out_drive[_drive_crank[1][leg]] = crank_w_1_t_2
+        out_constraint_direction[_constraint_direction_crank[0][leg]] = -crank_n_c_t_2
+        out_constraint_direction[_constraint_direction_crank[1][leg]] = crank_n_c_t_3
     for leg, k in legs[1]:
         (
-        J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
-            h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
-            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_link2_mass, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+            rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+            rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
+            rrr_joint2_offset_x, rrr_link2_mass, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x
-        S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        # (rrr-V1) velocity of the connection point
-        S_dot_rrr_t = omega_z*q_rrr_in_base_y
-        S_dot_rrr_t_2 = omega_z*q_rrr_in_base_x
-        S_dot_rrr_x = t_dot_x - S_dot_rrr_t
-        S_dot_rrr_y = S_dot_rrr_t_2 + t_dot_y
-        # (rrr-V7) rate of joint 1
-        qd_1_rrr = (
-        inv_r_1_rrr_r0_y*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_x)
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = omega_z*rrr_q_in_base_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
+        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_1 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
         )
-        # (rrr-V11) angular velocity of link 2
-        omega_2_rrr_z = (
-        inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_z = (
+        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
         )
-        # (rrr-V10) centripetal tensor of link 1
-        W_1_rrr_t = qd_1_rrr*qd_1_rrr
-        # (rrr-V12) centripetal tensor of link 2
-        W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
-        # (rrr-A5) acceleration of the connection point at zero joint accelerations
-        bias_rrr_x = (
-        -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
+        # (rrr-W_1) centripetal tensor of link 1
+        rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_x = (
+        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        # (rrr-V5) reciprocal vector 1
-        w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
-        w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
-        # (rrr-A2) acceleration of the connection point without its centripetal part
-        a_p_rrr_x = t_ddot_x - alpha_z*q_rrr_in_base_y
-        a_p_rrr_y = t_ddot_y + alpha_z*q_rrr_in_base_x
-        # (rrr-A3) acceleration of the connection point
-        S_ddot_rrr_x = a_p_rrr_x - S_dot_rrr_t_2*omega_z
-        S_ddot_rrr_y = a_p_rrr_y - S_dot_rrr_t*omega_z
-        S_ddot_rrr_tip_x = (
-        S_ddot_rrr_x*axis_y_rrr_axes2_in_base_y - S_ddot_rrr_y*axis_y_rrr_axes2_in_base_x
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y
+        rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y
+        # (rrr-a_p) acceleration of the connection point without its centripetal part
+        rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y
+        rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x
+        # (rrr-S_ddot) acceleration of the connection point
+        rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
+        rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
+        rrr_S_ddot_tip_x = (
+        axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x - axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y
         )
-        S_ddot_rrr_tip_y = (
-        S_ddot_rrr_x*axis_y_rrr_axes2_in_base_x + S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y
+        rrr_S_ddot_tip_y = (
+        axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x + axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y
         )
-        # (rrr-A6) acceleration of the connection point left to the joint accelerations
-        rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x
-        rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
-        # (rrr-A8) acceleration of joint 1
-        qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
-        # (rrr-N3) acceleration of the reference point of link 2, less gravity
-        acc_2_rrr_x = (
-        S_ddot_rrr_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+        # (rrr-rel) acceleration of the connection point left to the joint accelerations
+        rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x
+        rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        # (rrr-qdd_1) acceleration of joint 1
+        rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_acc_2_x = (
+        rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
             axis_y_rrr_axes2_in_base_y*gravity_x
         )
-        acc_2_rrr_y = (
-        S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+        rrr_acc_2_y = (
+        rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
             axis_y_rrr_axes2_in_base_y*gravity_y
         )
-        # (rrr-N23) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rrr_z = (
-        h_1_rrr_y*(c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr) - J_1_rrr_zz*qdd_1_rrr -
-            h_1_rrr_x*(c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr)
+        # (rrr-alpha_2) angular acceleration of link 2
+        rrr_alpha_2_z = (
+        inv_rrr_platform_joint_offset_x*(rrr_rel_y + rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1
         )
-        # (rrr-A16) angular acceleration of link 2
-        alpha_2_rrr_z = (
-        inv_rrr_platform_joint_offset_x*(rel_rrr_y + qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr
+        # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x - rrr_acc_2_x*rrr_h_2_y
+        # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_mu_1_z = (
+        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1 -
+            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
         )
-        # (rrr-N16) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x - acc_2_rrr_x*h_2_rrr_y
-        # (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z
-        # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z
-        # (rrr-N33) leg force on the platform without actuation and without the mass at the connection point
-        c_rrr_x = (
-        W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x -
-            N_1_rrr_z)
+        # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z
+        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z
+        # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_x = (
+        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x -
+            rrr_N_1_z)
         )
-        c_rrr_y = W_2_rrr_t*h_2_rrr_y - G_rrr_t - alpha_2_rrr_z*h_2_rrr_x
-        # (rrr-N38) leg force on the platform without actuation, the last link's mass included
-        c_true_rrr_x = c_rrr_x - acc_2_rrr_x*rrr_link2_mass
-        c_true_rrr_y = c_rrr_y - acc_2_rrr_y*rrr_link2_mass
-        c_true_rrr_in_base_x = (
-        axis_y_rrr_axes2_in_base_x*c_true_rrr_y + axis_y_rrr_axes2_in_base_y*c_true_rrr_x
+        rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x
+        # (rrr-c_true) leg force on the platform without actuation, the last link's mass included
+        rrr_c_true_x = rrr_c_x - rrr_acc_2_x*rrr_link2_mass
+        rrr_c_true_y = rrr_c_y - rrr_acc_2_y*rrr_link2_mass
+        rrr_c_true_in_base_x = (
+        axis_y_rrr_axes2_in_base_x*rrr_c_true_y + axis_y_rrr_axes2_in_base_y*rrr_c_true_x
         )
-        c_true_rrr_in_base_y = (
-        axis_y_rrr_axes2_in_base_y*c_true_rrr_y - axis_y_rrr_axes2_in_base_x*c_true_rrr_x
+        rrr_c_true_in_base_y = (
+        axis_y_rrr_axes2_in_base_y*rrr_c_true_y - axis_y_rrr_axes2_in_base_x*rrr_c_true_x
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
-        out_leg_force[_leg_force_rrr[0][leg]] = c_true_rrr_in_base_x
-        out_leg_force[_leg_force_rrr[1][leg]] = c_true_rrr_in_base_y
-        out_drive[_drive_rrr[0][leg]] = -w_1_rrr_t
-        out_drive[_drive_rrr[1][leg]] = w_1_rrr_t_2
+        out_leg_force[_leg_force_rrr[0][leg]] = rrr_c_true_in_base_x
+        out_leg_force[_leg_force_rrr[1][leg]] = rrr_c_true_in_base_y
+        out_drive[_drive_rrr[0][leg]] = -rrr_w_1_t
+        out_drive[_drive_rrr[1][leg]] = rrr_w_1_t_2
     return ok, (out_leg_force, out_drive, out_constraint_direction,)
 
 
@@ -3282,104 +3419,110 @@ def _run_potential(m, X):
     R_yx = sin(X_2)
     ok = True
     out_potential = m.zeros("potential")
-    # (V1) potential energy
-    potential_t_3 = (
+    # (potential) potential energy
+    potential_t = (
     gravity_x*(R_xx*h_star_x + m_star*t_x - R_yx*h_star_y) + gravity_y*(R_xx*h_star_y +
         R_yx*h_star_x + m_star*t_y)
     )
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        h_1_rr_x, h_1_rr_y, n_c_rr_t, potential_t, potential_t_2, root_1_rr_t, rr_base_frame_xx,
-            rr_base_frame_xy, rr_base_frame_yx, rr_base_frame_yy, rr_base_point_x,
-            rr_base_point_y, rr_platform_joint_offset_x, rr_platform_point_x, rr_platform_point_y,
+        crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
+            crank_base_point_x, crank_base_point_y, crank_h_1_x, crank_h_1_y, crank_n_c_t,
+            crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
+            crank_potential_t, crank_potential_t_2, crank_root_1_t,
         ) = k
-        # (rr-K1) from the base point to the connection point
-        S_rr_x = t_x + R_xx*rr_platform_point_x - rr_base_point_x - R_yx*rr_platform_point_y
-        S_rr_y = t_y + R_xx*rr_platform_point_y + R_yx*rr_platform_point_x - rr_base_point_y
-        # (rr-K3) squared amplitude
-        rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
-        rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-        rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
-        # (rr-K5) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
-        c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
-        # (rr-K6) sine of the angle of joint 1 from its reference direction
-        s_1_rr = inv_root_1_rr*rho2_1_rr_t*rr_platform_joint_offset_x
-        # (rr-G3) first moment of link 1 about the origin of link 1
-        h_1_rr_r0_x = c_1_rr*h_1_rr_x - h_1_rr_y*s_1_rr
-        h_1_rr_r0_y = c_1_rr*h_1_rr_y + h_1_rr_x*s_1_rr
-        # (V1) potential energy
-        potential_t_4 = (
-        gravity_x*(potential_t + h_1_rr_r0_x*rr_base_frame_xx + h_1_rr_r0_y*rr_base_frame_xy) +
-            gravity_y*(potential_t_2 + h_1_rr_r0_x*rr_base_frame_yx +
-            h_1_rr_r0_y*rr_base_frame_yy)
+        # (crank-S) from the base point to the connection point
+        crank_S_x = (
+        t_x + R_xx*crank_platform_point_x - crank_base_point_x - R_yx*crank_platform_point_y
         )
-        ok = ok & m.every(leg, (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
+        crank_S_y = (
+        t_y + R_xx*crank_platform_point_y + R_yx*crank_platform_point_x - crank_base_point_y
+        )
+        # (crank-rho2_1) squared amplitude
+        crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy
+        crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx + crank_S_y*crank_base_frame_yx
+        crank_rho2_1 = (
+        crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
+        )
+        # (crank-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crank_root_1 = 1.0/(sqrt(crank_rho2_1))
+        crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1
+        # (crank-s_1) sine of the angle of joint 1 from its reference direction
+        crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1
+        # (crank-h_1) first moment of link 1 about the origin of link 1
+        crank_h_1_r0_x = crank_c_1*crank_h_1_x - crank_h_1_y*crank_s_1
+        crank_h_1_r0_y = crank_c_1*crank_h_1_y + crank_h_1_x*crank_s_1
+        # (potential) potential energy
+        crank_potential_t_3 = (
+        gravity_x*(crank_potential_t + crank_base_frame_xx*crank_h_1_r0_x +
+            crank_base_frame_xy*crank_h_1_r0_y) + gravity_y*(crank_potential_t_2 +
+            crank_base_frame_yx*crank_h_1_r0_x + crank_base_frame_yy*crank_h_1_r0_y)
+        )
+        ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
         sums = m.added(sums, leg, (
-        potential_t_4,
+        crank_potential_t_3,
         ))
-    total_rr, = sums
+    total_crank, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
         (
-        Kd_1_rrr_t_2, Kd_1_rrr_t_3, b_rrr_r0_x, b_rrr_r0_y, branch_1_rrr, g_r0_x_2, g_r0_y_2,
-            h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t,
-            rho2_1_rrr_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-            rrr_link1_mass, rrr_platform_joint_offset_x, rrr_platform_point_x,
-            rrr_platform_point_y,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_b_r0_x, rrr_b_r0_y,
+            rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
+            rrr_base_point_x, rrr_base_point_y, rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x,
+            rrr_h_1_y, rrr_h_2_x, rrr_h_2_y, rrr_joint2_offset_x, rrr_link1_mass,
+            rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        S_rrr_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
-        S_rrr_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
+        rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (V1) potential energy
-        potential_t_5 = (
-        (c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr)*(h_1_rrr_x + c_2_rrr*h_2_rrr_x + h_2_rrr_y*s_2_rrr +
-            rrr_link1_mass*(b_rrr_r0_x*c_1_rrr + b_rrr_r0_y*s_1_rrr)) + (c_1_rrr*g_r0_y_2 -
-            g_r0_x_2*s_1_rrr)*(h_1_rrr_y + c_2_rrr*h_2_rrr_y + rrr_link1_mass*(b_rrr_r0_y*c_1_rrr
-            - b_rrr_r0_x*s_1_rrr) - h_2_rrr_x*s_2_rrr)
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (potential) potential energy
+        rrr_potential_t = (
+        (rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1)*(rrr_h_1_x + rrr_c_2*rrr_h_2_x +
+            rrr_h_2_y*rrr_s_2 + rrr_link1_mass*(rrr_b_r0_x*rrr_c_1 + rrr_b_r0_y*rrr_s_1)) +
+            (rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)*(rrr_h_1_y + rrr_c_2*rrr_h_2_y +
+            rrr_link1_mass*(rrr_b_r0_y*rrr_c_1 - rrr_b_r0_x*rrr_s_1) - rrr_h_2_x*rrr_s_2)
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
             >= 0.0))
         )
         sums = m.added(sums, leg, (
-        potential_t_5,
+        rrr_potential_t,
         ))
     total_rrr, = sums
-    # (V1) potential energy
-    potential = -potential_t_3 - total_rr - total_rrr
+    # (potential) potential energy
+    potential = -potential_t - total_crank - total_rrr
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -3412,143 +3555,153 @@ def _run_condition(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        inv_root_1_rr_t_2, inv_rr_platform_joint_offset_x, n_c_rr_t, n_c_rr_x, root_1_rr_t,
-            rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx, rr_base_frame_yy,
-            rr_base_point_x, rr_base_point_y, rr_platform_joint_offset_x, rr_platform_point_x,
-            rr_platform_point_y,
+        crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
+            crank_base_point_x, crank_base_point_y, crank_n_c_t, crank_n_c_x,
+            crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
+            crank_root_1_t, inv_crank_platform_joint_offset_x, inv_crank_root_1_t_2,
         ) = k
-        # (rr-K1) from the base point to the connection point
-        q_rr_in_base_x = R_xx*rr_platform_point_x - R_yx*rr_platform_point_y
-        q_rr_in_base_y = R_xx*rr_platform_point_y + R_yx*rr_platform_point_x
-        S_rr_x = q_rr_in_base_x + t_x - rr_base_point_x
-        S_rr_y = q_rr_in_base_y + t_y - rr_base_point_y
-        # (rr-K3) squared amplitude
-        rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
-        rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-        rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
-        # (rr-K5) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
-        c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
-        # (rr-K6) sine of the angle of joint 1 from its reference direction
-        s_1_rr = inv_root_1_rr*rho2_1_rr_t*rr_platform_joint_offset_x
-        # (rr-V4) reciprocal vector 1
-        axis_y_rr_axes1_in_base_x = c_1_rr*rr_base_frame_xy - rr_base_frame_xx*s_1_rr
-        axis_y_rr_axes1_in_base_y = c_1_rr*rr_base_frame_yy - rr_base_frame_yx*s_1_rr
-        w_1_rr_t = axis_y_rr_axes1_in_base_x*inv_rr_platform_joint_offset_x
-        w_1_rr_t_2 = axis_y_rr_axes1_in_base_y*inv_rr_platform_joint_offset_x
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_rr_z = q_rr_in_base_x*w_1_rr_t_2 - q_rr_in_base_y*w_1_rr_t
-        # (rr-V3) unit vector that the leg's freedoms leave out
-        n_c_rr_t_2 = axis_y_rr_axes1_in_base_y*n_c_rr_x
-        n_c_rr_t_3 = axis_y_rr_axes1_in_base_x*n_c_rr_x
-        # (M10) moment of the column's unit force about the platform origin
-        Hk_a_1_rr_z = n_c_rr_t_2*q_rr_in_base_y + n_c_rr_t_3*q_rr_in_base_x
-        # (C2) rms distance of the platform points from their centroid
-        spread_t = b_c_x - rr_platform_point_x
-        spread_t_2 = b_c_y - rr_platform_point_y
-        spread_t_3 = spread_t*spread_t + spread_t_2*spread_t_2
-        # (rr-K4) amplitude: off the manifold the nearest angle is taken
-        pivot_size = abs(rho2_1_rr)
-        pivot_root = sqrt(inv_root_1_rr_t_2*pivot_size)
-        clear = clear & m.every(leg, (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
+        # (crank-S) from the base point to the connection point
+        crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
+        crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
+        crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x
+        crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y
+        # (crank-rho2_1) squared amplitude
+        crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy
+        crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx + crank_S_y*crank_base_frame_yx
+        crank_rho2_1 = (
+        crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
+        )
+        # (crank-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crank_root_1 = 1.0/(sqrt(crank_rho2_1))
+        crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1
+        # (crank-s_1) sine of the angle of joint 1 from its reference direction
+        crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1
+        # (crank-w_1) reciprocal vector 1
+        axis_y_crank_axes1_in_base_x = (
+        crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
+        )
+        axis_y_crank_axes1_in_base_y = (
+        crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
+        )
+        crank_w_1_t = axis_y_crank_axes1_in_base_x*inv_crank_platform_joint_offset_x
+        crank_w_1_t_2 = axis_y_crank_axes1_in_base_y*inv_crank_platform_joint_offset_x
+        # (crank-H_a_1) moment of the column's unit force about the platform origin
+        crank_H_a_1_z = crank_q_in_base_x*crank_w_1_t_2 - crank_q_in_base_y*crank_w_1_t
+        # (crank-n_c) unit vector that the leg's freedoms leave out
+        crank_n_c_t_2 = axis_y_crank_axes1_in_base_y*crank_n_c_x
+        crank_n_c_t_3 = axis_y_crank_axes1_in_base_x*crank_n_c_x
+        # (crank-Hk_a_1) moment of the column's unit force about the platform origin
+        crank_Hk_a_1_z = crank_n_c_t_2*crank_q_in_base_y + crank_n_c_t_3*crank_q_in_base_x
+        # (spread) rms distance of the platform points from their centroid
+        crank_spread_t = b_c_x - crank_platform_point_x
+        crank_spread_t_2 = b_c_y - crank_platform_point_y
+        crank_spread_t_3 = crank_spread_t*crank_spread_t + crank_spread_t_2*crank_spread_t_2
+        # (crank-root_1) amplitude: off the manifold the nearest angle is taken
+        crank_pivot_size = abs(crank_rho2_1)
+        crank_pivot_root = sqrt(crank_pivot_size*inv_crank_root_1_t_2)
+        clear = (
+        clear & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
+        )
         sums = m.added(sums, leg, (
-        spread_t_3,
+        crank_spread_t_3,
         ))
-        out_H[_H_rr[0][leg]] = w_1_rr_t
-        out_H[_H_rr[1][leg]] = w_1_rr_t_2
-        out_H[_H_rr[2][leg]] = H_a_1_rr_z
-        out_Hk[_Hk_rr[0][leg]] = -n_c_rr_t_2
-        out_Hk[_Hk_rr[1][leg]] = n_c_rr_t_3
-        out_Hk[_Hk_rr[2][leg]] = Hk_a_1_rr_z
-        out_pivots[_pivots_rr[0][leg]] = pivot_root
-    total_rr, = sums
+        out_H[_H_crank[0][leg]] = crank_w_1_t
+        out_H[_H_crank[1][leg]] = crank_w_1_t_2
+        out_H[_H_crank[2][leg]] = crank_H_a_1_z
+        out_Hk[_Hk_crank[0][leg]] = -crank_n_c_t_2
+        out_Hk[_Hk_crank[1][leg]] = crank_n_c_t_3
+        out_Hk[_Hk_crank[2][leg]] = crank_Hk_a_1_z
+        out_pivots[_pivots_crank[0][leg]] = crank_pivot_root
+    total_crank, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
         (
-        Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_rho2_1_rrr_t_4,
-            inv_size_rrr, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx, rrr_base_frame_xy,
-            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_rho2_1_t_4, inv_rrr_size, rrr_Kd_1_t_2,
+            rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
             rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-            rrr_platform_point_y, size_rrr,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x
-        S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*rrr_platform_joint_offset_x*s_2_rrr
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        w_1_rrr_t = (
-        inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        rrr_w_1_t = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy)
         )
-        w_1_rrr_t_2 = (
-        inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
+        rrr_w_1_t_2 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy)
         )
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t
-        # (C2) rms distance of the platform points from their centroid
-        spread_t_4 = b_c_x - rrr_platform_point_x
-        spread_t_5 = b_c_y - rrr_platform_point_y
-        spread_t_6 = spread_t_4*spread_t_4 + spread_t_5*spread_t_5
-        # (rrr-K8) squared amplitude
-        pivot_size_2 = abs(rho2_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        pivot_size_3 = abs(r_1_rrr_r0_y)
-        # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
-        least_pivots = least(sqrt(inv_rho2_1_rrr_t_4*pivot_size_2), inv_size_rrr*pivot_size_3)
-        clear = (
-        clear & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) &
-            (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        # (rrr-H_a_1) moment of the column's unit force about the platform origin
+        rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t
+        # (spread) rms distance of the platform points from their centroid
+        rrr_spread_t = b_c_x - rrr_platform_point_x
+        rrr_spread_t_2 = b_c_y - rrr_platform_point_y
+        rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2
+        # (rrr-rho2_1) squared amplitude
+        rrr_pivot_size = abs(rrr_rho2_1)
+        # (rrr-w_1) reciprocal vector 1
+        rrr_pivot_size_2 = abs(rrr_r_1_r0_y)
+        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_least_pivots = (
+        least(sqrt(inv_rrr_rho2_1_t_4*rrr_pivot_size), inv_rrr_size*rrr_pivot_size_2)
         )
-        reached = reached & m.every(leg, (disc_1_rrr >= 0.0))
+        clear = (
+        clear & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) &
+            (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+        )
+        reached = reached & m.every(leg, (rrr_disc_1 >= 0.0))
         sums = m.added(sums, leg, (
-        spread_t_6,
+        rrr_spread_t_3,
         ))
-        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
-        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
-        out_H[_H_rrr[2][leg]] = H_a_1_rrr_z
-        out_pivots[_pivots_rrr[0][leg]] = least_pivots
-        out_reach[_reach_rrr[0][leg]] = disc_1_rrr
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
+        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
+        out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
+        out_pivots[_pivots_rrr[0][leg]] = rrr_least_pivots
+        out_reach[_reach_rrr[0][leg]] = rrr_disc_1
     total_rrr, = sums
-    # (C2) rms distance of the platform points from their centroid
-    spread = sqrt(0.5*total_rr + 0.5*total_rrr)
+    # (spread) rms distance of the platform points from their centroid
+    spread = sqrt(0.5*total_crank + 0.5*total_rrr)
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_Hk, out_lengths, out_pivots, out_reach,)
 
@@ -3739,6 +3892,19 @@ def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
     momentum = np.einsum("ijs,js->is", M, V)
     return (momentum,)
+
+
+def _steps_joint_margins(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    margins = _unlimited(q, [0, 1, 2])
+    return (margins,)
+
+
+def _steps_within_limits(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    subtract_1 = q - q
+    within = _not_negative(subtract_1)
+    return (within,)
 
 
 def _steps_actuator_positions(m, X):
@@ -4236,6 +4402,40 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+    )
+
+
+def joint_margins(X, p=None):
+    """How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+    where there is none.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        margins: distances, in the order of q [m or rad] (..., NJ).
+    """
+    return _call(
+        "joint_margins", _steps_joint_margins, p,
+        ("X", X, (NQ,)),
+        unbounded=True,
+    )
+
+
+def within_limits(X, p=None):
+    """Whether all joints are within their limits of displacement.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        within: 1 where no margin is negative, else 0; NaN is neither (...,).
+    """
+    return _call(
+        "within_limits", _steps_within_limits, p,
+        ("X", X, (NQ,)),
     )
 
 

@@ -26,7 +26,10 @@ enum {
 
 #define R(x) ((real)(x))
 #define UNLESS(condition) ((condition) ? R(0) : R(1))  /* flag of what must hold */
-#define LANES 8  /* states that a batch runs side by side */
+#ifndef FIVEBAR_PRISMATIC_LANES
+#define FIVEBAR_PRISMATIC_LANES 8  /* 1 where there are no vectors: less memory, shorter code */
+#endif
+#define LANES ((size_t)FIVEBAR_PRISMATIC_LANES)  /* states that a batch runs side by side */
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
@@ -36,6 +39,20 @@ enum {
 #define INLINE static inline
 #define APART static
 #endif
+
+/* Bytes of a vector. */
+#if defined(__AVX__)
+#define VECTOR 32
+#elif defined(__SSE2__) || defined(__ARM_NEON)
+#define VECTOR 16
+#else
+#define VECTOR 1
+#endif
+/* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
+#define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
+#define LEGS(n) \
+    ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
+        : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
@@ -104,63 +121,122 @@ INLINE int is_finite(real x)
     return x - x == 0;
 }
 
-/* Why states are impossible, by state: more than 0 where a cause holds. */
+/* Why states are impossible, by state: more than 0 where a cause holds.  total: the sum of all
+   results, and side by side of all inputs, which is finite only where they are. */
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
+    real total[LANES];
 } verdict;
 
 INLINE void start(size_t w, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
+        t->total[k] = 0;
     }
 }
 
-/* x - x is 0 for every number and NaN for the rest; sums side by side add up fast. */
+/* x - x is 0 for every number and NaN for the rest. */
 INLINE int all_finite(const real *x, size_t n)
 {
+    real sum = 0;
+    for (size_t i = 0; i < n; ++i) {
+        sum += x[i] - x[i];
+    }
+    return sum == 0;
+}
+
+/* Whether all are finite: then so is their sum, but for numbers so large that they need a closer
+   look.  Many add up fast as sums side by side. */
+INLINE int sum_is_finite(const real *x, size_t n)
+{
+    if (n < 2*LANES) {
+        return is_finite(total(x, n));
+    }
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
         for (size_t k = 0; k < LANES; ++k) {
-            sum[k] += x[i + k] - x[i + k];
+            sum[k] += x[i + k];
         }
     }
     for (size_t i = most; i < n; ++i) {
-        sum[0] += x[i] - x[i];
+        sum[i - most] += x[i];
     }
-    return total(sum, LANES) == 0;
+    return is_finite(total(sum, LANES));
 }
 
 /* Flag the states with entries that are not finite; the states stand side by side. */
 INLINE void check(size_t size, size_t w, const real *x, real *flags)
 {
-    if (!all_finite(x, size*w)) {
+    if (!sum_is_finite(x, size*w)) {
         for (size_t i = 0; i < size*w; ++i) {
             flags[i%w] += UNLESS(is_finite(x[i]));
         }
     }
 }
 
-/* Input, given state by state, with its states side by side: entry e of state k at e*w + k. */
-INLINE const real *side_by_side(size_t size, size_t w, const real *x, real *lanes, real *flags)
+/* Add up the entries of every state. */
+INLINE void add_up(size_t size, const real *x, real *total)
 {
-    for (size_t e = 0; e < size && w > 1; ++e) {
-        for (size_t k = 0; k < w; ++k) {
-            lanes[e*w + k] = x[size*k + e];
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            total[k] += x[e*LANES + k];
         }
     }
-    check(size, w, w > 1 ? lanes : x, flags);
-    return w > 1 ? lanes : x;
 }
 
-/* The same for input that may be NULL: then all its entries are `none`. */
-INLINE const real *optional(size_t size, size_t w, const real *x, real none, real *lanes, real *flags)
+/* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
+INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
 {
-    for (size_t e = 0; e < size*w && !x; ++e) {
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            lanes[e*LANES + k] = x[size*k + e];
+        }
+    }
+    add_up(size, lanes, total);
+    return lanes;
+}
+
+/* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
+INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+{
+    for (size_t e = 0; e < size && !x; ++e) {
+        own[e] = none;
+    }
+    if (x) {
+        check(size, 1, x, flags);
+    }
+    return x ? x : own;
+}
+
+INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
+    real *total)
+{
+    for (size_t e = 0; e < size*LANES && !x; ++e) {
         lanes[e] = none;
     }
-    return x ? side_by_side(size, w, x, lanes, flags) : lanes;
+    return x ? side_by_side(size, x, lanes, total) : lanes;
+}
+
+/* Motion of the base, or NULL: at rest, its axes those of the world. */
+INLINE const real *motion_of_base(const real *x, real *own, real *flags)
+{
+    for (size_t e = 0; e < 18 && !x; ++e) {
+        own[e] = R(e < 9 && e%4 == 0);
+    }
+    if (x) {
+        check(18, 1, x, flags);
+    }
+    return x ? x : own;
+}
+
+INLINE const real *motion_of_base_side_by_side(const real *x, real *lanes, real *total)
+{
+    for (size_t i = 0; i < 18*LANES && !x; ++i) {
+        lanes[i] = R(i/LANES < 9 && i/LANES%4 == 0);
+    }
+    return x ? side_by_side(18, x, lanes, total) : lanes;
 }
 
 /* Flag the states of an input, NULL or given state by state, with entries that are not positive. */
@@ -171,14 +247,25 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE void judge(const verdict *t, size_t w, int *code)
+INLINE void judge(const verdict *t, int *code)
 {
-    for (size_t k = 0; k < w; ++k) {
-        code[k] = t->invalid[k] > 0 ? INVALID
-            : t->diverged[k] > 0 ? NOT_CONVERGED
-            : t->unreachable[k] > 0 ? UNREACHABLE
-            : t->singular[k] > 0 ? SINGULAR
-            : t->overflow[k] > 0 ? INVALID : OK;
+    *code = t->invalid[0] > 0 ? INVALID
+        : t->diverged[0] > 0 ? NOT_CONVERGED
+        : t->unreachable[0] > 0 ? UNREACHABLE
+        : t->singular[0] > 0 ? SINGULAR
+        : t->overflow[0] > 0 ? INVALID : OK;
+}
+
+/* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
+INLINE void suspect(const verdict *t, int *code)
+{
+    real flags[LANES];
+    for (size_t k = 0; k < LANES; ++k) {
+        flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
+            + (t->total[k] - t->total[k]);
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        code[k] = flags[k] == 0 ? OK : INVALID;
     }
 }
 
@@ -199,17 +286,19 @@ INLINE void refuse(size_t size, real *out)
     }
 }
 
-/* Outputs state by state; NaN where a state is impossible. */
-INLINE void deliver(const real *x, size_t size, size_t w, const int *code, real *out)
+/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < w; ++k) {
-            out[size*k + e] = x[e*w + k];
-        }
+        out[e] = x[e];
     }
-    for (size_t k = 0; k < w; ++k) {
-        if (code[k] != OK) {
-            refuse(size, out + size*k);
+}
+
+INLINE void deliver(size_t size, const real *x, real *out)
+{
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            out[size*k + e] = x[e*LANES + k];
         }
     }
 }
@@ -395,114 +484,115 @@ int fivebar_prismatic_prepare(const fivebar_prismatic_params *params, fivebar_pr
     const real platform_mass = params->platform_mass;
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
-    /* (L2) first moment about the platform origin */
+    /* (h_star) first moment about the platform origin */
     const real h_star_t = platform_centre_of_mass_x*platform_mass;
     const real h_star_t_2 = platform_centre_of_mass_y*platform_mass;
-    /* (C2) rms distance of the platform points from their centroid */
+    /* (spread) rms distance of the platform points from their centroid */
     const real spread_t = R(0.5)*root(2);
-    /* (C3) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = R(1.0606601717798212)*spread_t;
     model->gravity_x = gravity_x;
     model->gravity_y = gravity_y;
     model->legs_size = legs_size;
     model->spread_t = spread_t;
     for (size_t leg = 0; leg < 2; ++leg) {
-        const real rpr_base_point_x = params->rpr_base_point[leg][0];
-        const real rpr_base_point_y = params->rpr_base_point[leg][1];
-        const real rpr_base_frame_xx = params->rpr_base_frame[leg][0][0];
-        const real rpr_base_frame_xy = params->rpr_base_frame[leg][0][1];
-        const real rpr_base_frame_yx = params->rpr_base_frame[leg][1][0];
-        const real rpr_base_frame_yy = params->rpr_base_frame[leg][1][1];
-        const real rpr_platform_point_x = params->rpr_platform_point[leg][0];
-        const real rpr_platform_point_y = params->rpr_platform_point[leg][1];
-        const real rpr_link1_mass = params->rpr_link1_mass[leg];
-        const real rpr_link1_centre_of_mass_x = params->rpr_link1_centre_of_mass[leg][0];
-        const real rpr_link1_centre_of_mass_y = params->rpr_link1_centre_of_mass[leg][1];
-        const real rpr_link1_inertia_zz = params->rpr_link1_inertia[leg][2][2];
-        const real rpr_link2_mass = params->rpr_link2_mass[leg];
-        const real rpr_link2_centre_of_mass_x = params->rpr_link2_centre_of_mass[leg][0];
-        const real rpr_link2_centre_of_mass_y = params->rpr_link2_centre_of_mass[leg][1];
-        const real rpr_link2_inertia_zz = params->rpr_link2_inertia[leg][2][2];
-        static const signed char signs_branch_1[] = {1, 1};
-        const real branch_1 = signs_branch_1[leg];
-        /* (rpr-G3) inertia tensor of link 1 about the origin of link 1 */
-        const real J_1_t = rpr_link1_centre_of_mass_x*rpr_link1_centre_of_mass_x;
-        const real J_1_t_2 = rpr_link1_centre_of_mass_y*rpr_link1_centre_of_mass_y;
-        const real J_1_t_3 = J_1_t + J_1_t_2;
-        /* (rpr-G5) inertia tensor of link 2 about the connection point */
-        const real J_2_t = rpr_link2_centre_of_mass_x*rpr_link2_centre_of_mass_x;
-        const real J_2_t_2 = rpr_link2_centre_of_mass_y*rpr_link2_centre_of_mass_y;
-        const real J_2_t_3 = J_2_t + J_2_t_2;
-        /* (rpr-N8) inertia of the links that turn with link 1, each about its reference point */
-        const real J_group_1_xx = J_1_t_2*rpr_link1_mass + J_2_t_2*rpr_link2_mass;
-        const real J_group_1_yy = J_1_t*rpr_link1_mass + J_2_t*rpr_link2_mass;
-        const real J_group_1_zz = rpr_link1_inertia_zz + rpr_link2_inertia_zz +
-            J_1_t_3*rpr_link1_mass + J_2_t_3*rpr_link2_mass;
-        /* (rpr-G4) first moment of link 2 about the connection point */
-        const real h_2_x = rpr_link2_centre_of_mass_x*rpr_link2_mass;
-        const real h_2_y = rpr_link2_centre_of_mass_y*rpr_link2_mass;
-        /* (rpr-G2) first moment of link 1 about the origin of link 1 */
-        const real h_1_x = rpr_link1_centre_of_mass_x*rpr_link1_mass;
-        const real h_1_y = rpr_link1_centre_of_mass_y*rpr_link1_mass;
-        /* (rpr-N9) half the trace of that inertia tensor */
-        const real trace_J_group_1 = R(0.5)*J_group_1_xx + R(0.5)*J_group_1_yy +
-            R(0.5)*J_group_1_zz;
-        /* (rpr-N10) second moment of mass of the links that turn with link 1 */
-        const real Sigma_1_xx = trace_J_group_1 - J_group_1_xx;
-        const real Sigma_1_yy = trace_J_group_1 - J_group_1_yy;
-        /* (rpr-N11) first moments of the links that turn with link 1 */
-        const real h_group_1_x = h_1_x + h_2_x;
-        const real h_group_1_y = h_1_y + h_2_y;
-        /* (rpr-N3) acceleration of the reference point of link 2, less gravity */
-        const real g_r0_x = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx;
-        const real g_r0_y = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy;
-        /* (L2) first moment about the platform origin */
-        const real h_star_t_3 = rpr_link2_mass*rpr_platform_point_x;
-        const real h_star_t_4 = rpr_link2_mass*rpr_platform_point_y;
-        /* (V1) potential energy */
-        const real b_r0_x = rpr_base_frame_xx*rpr_base_point_x +
+        const size_t own = leg;
+        const real rpr_base_point_x = params->rpr_base_point[own][0];
+        const real rpr_base_point_y = params->rpr_base_point[own][1];
+        const real rpr_base_frame_xx = params->rpr_base_frame[own][0][0];
+        const real rpr_base_frame_xy = params->rpr_base_frame[own][0][1];
+        const real rpr_base_frame_yx = params->rpr_base_frame[own][1][0];
+        const real rpr_base_frame_yy = params->rpr_base_frame[own][1][1];
+        const real rpr_platform_point_x = params->rpr_platform_point[own][0];
+        const real rpr_platform_point_y = params->rpr_platform_point[own][1];
+        const real rpr_link1_mass = params->rpr_link1_mass[own];
+        const real rpr_link1_centre_of_mass_x = params->rpr_link1_centre_of_mass[own][0];
+        const real rpr_link1_centre_of_mass_y = params->rpr_link1_centre_of_mass[own][1];
+        const real rpr_link1_inertia_zz = params->rpr_link1_inertia[own][2][2];
+        const real rpr_link2_mass = params->rpr_link2_mass[own];
+        const real rpr_link2_centre_of_mass_x = params->rpr_link2_centre_of_mass[own][0];
+        const real rpr_link2_centre_of_mass_y = params->rpr_link2_centre_of_mass[own][1];
+        const real rpr_link2_inertia_zz = params->rpr_link2_inertia[own][2][2];
+        static const signed char signs_rpr_branch_1[] = {1, 1};
+        const real rpr_branch_1 = signs_rpr_branch_1[own];
+        /* (rpr-h_2) first moment of link 2 about the connection point */
+        const real rpr_h_2_x = rpr_link2_centre_of_mass_x*rpr_link2_mass;
+        const real rpr_h_2_y = rpr_link2_centre_of_mass_y*rpr_link2_mass;
+        /* (rpr-J_1) inertia tensor of link 1 about the origin of link 1 */
+        const real rpr_J_1_t = rpr_link1_centre_of_mass_x*rpr_link1_centre_of_mass_x;
+        const real rpr_J_1_t_2 = rpr_link1_centre_of_mass_y*rpr_link1_centre_of_mass_y;
+        const real rpr_J_1_t_3 = rpr_J_1_t + rpr_J_1_t_2;
+        /* (rpr-J_2) inertia tensor of link 2 about the connection point */
+        const real rpr_J_2_t = rpr_link2_centre_of_mass_x*rpr_link2_centre_of_mass_x;
+        const real rpr_J_2_t_2 = rpr_link2_centre_of_mass_y*rpr_link2_centre_of_mass_y;
+        const real rpr_J_2_t_3 = rpr_J_2_t + rpr_J_2_t_2;
+        /* (rpr-J_group_1) inertia of the links that turn with link 1, each about its reference point */
+        const real rpr_J_group_1_xx = rpr_J_1_t_2*rpr_link1_mass + rpr_J_2_t_2*rpr_link2_mass;
+        const real rpr_J_group_1_yy = rpr_J_1_t*rpr_link1_mass + rpr_J_2_t*rpr_link2_mass;
+        const real rpr_J_group_1_zz = rpr_link1_inertia_zz + rpr_link2_inertia_zz +
+            rpr_J_1_t_3*rpr_link1_mass + rpr_J_2_t_3*rpr_link2_mass;
+        /* (rpr-h_1) first moment of link 1 about the origin of link 1 */
+        const real rpr_h_1_x = rpr_link1_centre_of_mass_x*rpr_link1_mass;
+        const real rpr_h_1_y = rpr_link1_centre_of_mass_y*rpr_link1_mass;
+        /* (rpr-trace_J_1) half the trace of that inertia tensor */
+        const real rpr_trace_J_1 = R(0.5)*rpr_J_group_1_xx + R(0.5)*rpr_J_group_1_yy +
+            R(0.5)*rpr_J_group_1_zz;
+        /* (rpr-Sigma_1) second moment of mass of the links that turn with link 1 */
+        const real rpr_Sigma_1_xx = rpr_trace_J_1 - rpr_J_group_1_xx;
+        const real rpr_Sigma_1_yy = rpr_trace_J_1 - rpr_J_group_1_yy;
+        /* (rpr-h_group_1) first moments of the links that turn with link 1 */
+        const real rpr_h_group_1_x = rpr_h_1_x + rpr_h_2_x;
+        const real rpr_h_group_1_y = rpr_h_1_y + rpr_h_2_y;
+        /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
+        const real rpr_g_r0_x = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx;
+        const real rpr_g_r0_y = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy;
+        /* (h_star) first moment about the platform origin */
+        const real rpr_h_star_t = rpr_link2_mass*rpr_platform_point_x;
+        const real rpr_h_star_t_2 = rpr_link2_mass*rpr_platform_point_y;
+        /* (potential) potential energy */
+        const real rpr_b_r0_x = rpr_base_frame_xx*rpr_base_point_x +
             rpr_base_frame_yx*rpr_base_point_y;
-        const real b_r0_y = rpr_base_frame_xy*rpr_base_point_x +
+        const real rpr_b_r0_y = rpr_base_frame_xy*rpr_base_point_x +
             rpr_base_frame_yy*rpr_base_point_y;
-        model->J_group_1_zz[leg] = J_group_1_zz;
-        model->Sigma_1_xx[leg] = Sigma_1_xx;
-        model->Sigma_1_yy[leg] = Sigma_1_yy;
-        model->b_r0_x[leg] = b_r0_x;
-        model->b_r0_y[leg] = b_r0_y;
-        model->branch_1[leg] = branch_1;
-        model->g_r0_x[leg] = g_r0_x;
-        model->g_r0_y[leg] = g_r0_y;
-        model->h_1_x[leg] = h_1_x;
-        model->h_1_y[leg] = h_1_y;
-        model->h_2_x[leg] = h_2_x;
-        model->h_2_y[leg] = h_2_y;
-        model->h_group_1_x[leg] = h_group_1_x;
-        model->h_group_1_y[leg] = h_group_1_y;
+        model->rpr_J_group_1_zz[leg] = rpr_J_group_1_zz;
+        model->rpr_Sigma_1_xx[leg] = rpr_Sigma_1_xx;
+        model->rpr_Sigma_1_yy[leg] = rpr_Sigma_1_yy;
+        model->rpr_b_r0_x[leg] = rpr_b_r0_x;
+        model->rpr_b_r0_y[leg] = rpr_b_r0_y;
         model->rpr_base_frame_xx[leg] = rpr_base_frame_xx;
         model->rpr_base_frame_xy[leg] = rpr_base_frame_xy;
         model->rpr_base_frame_yx[leg] = rpr_base_frame_yx;
         model->rpr_base_frame_yy[leg] = rpr_base_frame_yy;
         model->rpr_base_point_x[leg] = rpr_base_point_x;
         model->rpr_base_point_y[leg] = rpr_base_point_y;
+        model->rpr_branch_1[leg] = rpr_branch_1;
+        model->rpr_g_r0_x[leg] = rpr_g_r0_x;
+        model->rpr_g_r0_y[leg] = rpr_g_r0_y;
+        model->rpr_h_1_x[leg] = rpr_h_1_x;
+        model->rpr_h_1_y[leg] = rpr_h_1_y;
+        model->rpr_h_2_x[leg] = rpr_h_2_x;
+        model->rpr_h_2_y[leg] = rpr_h_2_y;
+        model->rpr_h_group_1_x[leg] = rpr_h_group_1_x;
+        model->rpr_h_group_1_y[leg] = rpr_h_group_1_y;
         model->rpr_link1_mass[leg] = rpr_link1_mass;
         model->rpr_link2_mass[leg] = rpr_link2_mass;
         model->rpr_platform_point_x[leg] = rpr_platform_point_x;
         model->rpr_platform_point_y[leg] = rpr_platform_point_y;
         total_rpr += rpr_link2_mass;
-        total_rpr_x += h_star_t_3;
-        total_rpr_y += h_star_t_4;
+        total_rpr_x += rpr_h_star_t;
+        total_rpr_y += rpr_h_star_t_2;
         total_rpr_x_2 += rpr_platform_point_x;
         total_rpr_y_2 += rpr_platform_point_y;
     }
-    /* (L1) mass of the platform with the gathered masses */
+    /* (m_star) mass of the platform with the gathered masses */
     const real m_star = platform_mass + total_rpr;
-    /* (M2) centripetal force and weight of the platform */
+    /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_x = gravity_x*m_star;
     const real Z_p_y = gravity_y*m_star;
-    /* (L2) first moment about the platform origin */
+    /* (h_star) first moment about the platform origin */
     const real h_star_x = h_star_t + total_rpr_x;
     const real h_star_y = h_star_t_2 + total_rpr_y;
-    /* (C1) centroid of the platform points */
+    /* (b_c) centroid of the platform points */
     const real b_c_x = R(0.5)*total_rpr_x_2;
     const real b_c_y = R(0.5)*total_rpr_y_2;
     model->Z_p_x = Z_p_x;
@@ -582,98 +672,6 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
     }
 }
 
-/* Swap a row with the pivot's in those states in which it is the chosen one.  What is chosen are
-   whole entries: unlike products with 0 and 1, these keep what is not finite where it belongs. */
-APART void swap_lanes(size_t n, size_t p, real i, const real *restrict best, real *restrict pivot,
-        real *restrict other)
-{
-    for (size_t j = p; j <= n; ++j) {
-        for (size_t k = 0; k < LANES; ++k) {
-            const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = best[k] == i ? up : down;
-            other[j*LANES + k] = best[k] == i ? down : up;
-        }
-    }
-}
-
-/* The choice of choose_one in every state. */
-INLINE void choose_lanes(size_t n, size_t p, real *a)
-{
-    const size_t row = (n + 1)*LANES;
-    real most[LANES], best[LANES], any = 0;
-    for (size_t k = 0; k < LANES; ++k) {
-        most[k] = CLEARLY*magnitude(a[p*row + p*LANES + k]);
-        best[k] = 0;
-    }
-    for (size_t i = p + 1; i < n; ++i) {
-        for (size_t k = 0; k < LANES; ++k) {
-            const real size = magnitude(a[i*row + p*LANES + k]);
-            best[k] = size > most[k] ? (real)i : best[k];
-            most[k] = larger(size, most[k]);
-        }
-    }
-    for (size_t k = 0; k < LANES; ++k) {
-        any += best[k];
-    }
-    for (size_t i = p + 1; i < n && any > 0; ++i) {
-        swap_lanes(n, p, (real)i, best, a + p*row, a + i*row);
-    }
-}
-
-/* The same for LANES systems side by side, without padding.  What comes NEARLY to the threshold
-   counts as singular here: the batch then settles it as for a single state. */
-INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
-{
-    const size_t row = (n + 1)*LANES;
-    memset(x, 0, n*LANES*sizeof *x);
-    for (size_t i = 0; i < n; ++i) {
-        real size[LANES] = {0};
-        for (size_t j = 0; j < n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                size[k] = larger(size[k], magnitude(a[i*row + j*LANES + k]));
-            }
-        }
-        for (size_t k = 0; k < LANES; ++k) {
-            size[k] = 1/size[k];
-        }
-        for (size_t j = 0; j <= n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + j*LANES + k] *= size[k];
-            }
-        }
-    }
-    for (size_t p = 0; p < n; ++p) {
-        const real *const pivot = a + p*row;
-        choose_lanes(n, p, a);
-        for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > NEARLY*PIVOT);
-            x[p*LANES + k] = 1/pivot[p*LANES + k];
-        }
-        for (size_t i = p + 1; i < n; ++i) {
-            real *const other = a + i*row;
-            real factor[LANES];
-            for (size_t k = 0; k < LANES; ++k) {
-                factor[k] = other[p*LANES + k]*x[p*LANES + k];
-            }
-            for (size_t j = p + 1; j <= n; ++j) {
-                for (size_t k = 0; k < LANES; ++k) {
-                    other[j*LANES + k] -= factor[k]*pivot[j*LANES + k];
-                }
-            }
-        }
-    }
-    for (size_t p = n; p-- > 0;) {
-        for (size_t k = 0; k < LANES; ++k) {
-            x[p*LANES + k] *= a[p*row + n*LANES + k];
-        }
-        for (size_t i = 0; i < p; ++i) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + n*LANES + k] -= a[i*row + p*LANES + k]*x[p*LANES + k];
-            }
-        }
-    }
-}
-
 /* Length of the rows of a system of n equations, whose right side stands in column n. */
 INLINE size_t stride_of(size_t n, size_t w)
 {
@@ -706,14 +704,10 @@ INLINE void solve_state(size_t n, const real *b, real *rows, real *x, real *sing
     solve_one(n, stride_of(n, 1), rows, x, singular);
 }
 
-INLINE void solve(size_t n, size_t w, const real *b, real *rows, real *x, real *singular)
+/* The same where it is rare: apart, for the sake of what is done otherwise. */
+APART void solve_apart(size_t n, const real *b, real *rows, real *x, real *singular)
 {
-    if (w == 1) {
-        solve_state(n, b, rows, x, singular);
-    } else {
-        set_right_side(n, LANES, b, rows);
-        solve_lanes(n, rows, x, singular);
-    }
+    solve_state(n, b, rows, x, singular);
 }
 
 #define BIG 2  /* most rows or columns of a matrix that is not square, or not solved */
@@ -935,6 +929,29 @@ INLINE void take(size_t rows, size_t n, const size_t *places, const real *a, rea
     }
 }
 
+/* Rows as `places` tells made infinite, where all entries are finite before. */
+INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, real *x, real *flags)
+{
+    check(size, w, x, flags);
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t k = 0; k < w; ++k) {
+            x[places[i]*w + k] = R(INFINITY);
+        }
+    }
+}
+
+/* 1 where no entry is negative, else 0. */
+INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
+{
+    check(size, w, a, flags);
+    for (size_t k = 0; k < w; ++k) {
+        x[k] = 1;
+        for (size_t e = 0; e < size; ++e) {
+            x[k] = a[e*w + k] < 0 ? 0 : x[k];
+        }
+    }
+}
+
 /* To row places[i] of x: the row c[i] of n entries times b[i]. */
 INLINE void add_forces(size_t rows, size_t n, size_t w, const size_t *places, const real *b,
         const real *c, real *x)
@@ -963,1732 +980,1904 @@ static void moved(const real *X, const real *step, real part, real *to)
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics: 100 mul, 62 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], sum[5][LANES];
-} dynamics_values;
-typedef struct {
-    real sum[5][8], entry[2][8], singular[8];
-} dynamics_results_rpr;
-
-INLINE void dynamics_before(size_t w, const real *X, const real *V, dynamics_values *s)
+INLINE void dynamics_before(size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_dot_x;
+        s[3*w + k] = t_dot_y;
     }
 }
 
-INLINE void dynamics_legs_rpr(const prepared *m, size_t leg, size_t legs, const dynamics_values
-    *s, size_t states, size_t count, int add, dynamics_results_rpr *o)
+INLINE void dynamics_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
+        /* (rpr-S) from the base point to the connection point */
+        const real rpr_base_point_x = m->rpr_base_point_x[i];
+        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
+        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+        /* (rpr-px_1) component along the reference direction */
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-rho2_1) squared amplitude */
+        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
+        /* (rpr-root_1) amplitude, with the sign of the branch */
+        const real rpr_branch_1 = m->rpr_branch_1[i];
+        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
+        /* (rpr-w_1) reciprocal vector 1 */
+        const real inv_rpr_root_1 = 1/rpr_root_1;
+        const real rpr_axis_x_x = inv_rpr_root_1*rpr_S_x;
+        const real rpr_axis_x_y = inv_rpr_root_1*rpr_S_y;
+        /* (rpr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
+           about its reference point */
+        const real rpr_h_2_y = m->rpr_h_2_y[i];
+        const real rpr_d_phi_2_t = inv_rpr_root_1*rpr_h_2_y;
+        /* (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real rpr_J_group_1_zz = m->rpr_J_group_1_zz[i];
+        const real rpr_h_2_x = m->rpr_h_2_x[i];
+        const real rpr_d_c_yy = -inv_rpr_root_1*rpr_h_2_x - inv_rpr_root_1*(rpr_h_2_x +
+            inv_rpr_root_1*rpr_J_group_1_zz);
+        /* (rpr-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real rpr_Q_t = R(0.5)*rpr_d_c_yy;
+        const real rpr_Q_t_2 = rpr_Q_t*rpr_axis_x_y - rpr_axis_x_x*rpr_d_phi_2_t;
+        const real rpr_Q_t_3 = rpr_Q_t*rpr_axis_x_x + rpr_axis_x_y*rpr_d_phi_2_t;
+        const real rpr_Q_t_4 = 2*rpr_Q_t_2*rpr_axis_x_y;
+        const real rpr_Q_t_5 = rpr_Q_t_2*rpr_axis_x_x + rpr_Q_t_3*rpr_axis_x_y;
+        const real rpr_Q_t_6 = 2*rpr_Q_t_3*rpr_axis_x_x;
+        /* (rpr-S_dot) velocity of the connection point */
+        const real t_dot_x = s[2*w + j];
+        const real t_dot_y = s[3*w + j];
+        const real rpr_S_dot_tip_x = rpr_axis_x_x*t_dot_x + rpr_axis_x_y*t_dot_y;
+        /* (rpr-qd_1) rate of joint 1 */
+        const real rpr_qd_1 = inv_rpr_root_1*(rpr_axis_x_x*t_dot_y - rpr_axis_x_y*t_dot_x);
+        /* (rpr-W_1) centripetal tensor of link 1 */
+        const real rpr_W_1_t = rpr_qd_1*rpr_qd_1;
+        /* (rpr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real rpr_qdd_1_o = 2*inv_rpr_root_1*rpr_S_dot_tip_x*rpr_qd_1;
+        /* (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning
+           about its reference point */
+        const real rpr_phi_2_o_x = rpr_h_2_y*rpr_qdd_1_o - rpr_W_1_t*rpr_h_2_x;
+        /* (rpr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 1, about their reference points */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real J_group_1_zz = m->J_group_1_zz[i];
-        const real Sigma_1_xx = m->Sigma_1_xx[i];
-        const real Sigma_1_yy = m->Sigma_1_yy[i];
-        const real branch_1 = m->branch_1[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real h_group_1_x = m->h_group_1_x[i];
-        const real h_group_1_y = m->h_group_1_y[i];
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        /* (rpr-K1) from the base point to the connection point */
-        const real S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-K2) component along the reference direction */
-        const real px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx;
-        /* (rpr-K3) component across the reference direction */
-        const real py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy;
-        /* (rpr-K5) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (rpr-K6) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real inv_root_1 = 1/root_1;
-        const real axis_x_x = S_x*inv_root_1;
-        const real axis_x_y = S_y*inv_root_1;
-        /* (rpr-N19) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_yx = h_2_y*inv_root_1;
-        /* (rpr-N22) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real d_c_yy = -h_2_x*inv_root_1 - inv_root_1*(h_2_x + J_group_1_zz*inv_root_1);
-        /* (rpr-N24) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = R(0.5)*d_c_yy;
-        const real Q_t_2 = Q_t*axis_x_y - axis_x_x*d_G_yx;
-        const real Q_t_3 = Q_t*axis_x_x + axis_x_y*d_G_yx;
-        const real Q_t_4 = 2*Q_t_2*axis_x_y;
-        const real Q_t_5 = Q_t_2*axis_x_x + Q_t_3*axis_x_y;
-        const real Q_t_6 = 2*Q_t_3*axis_x_x;
-        /* (rpr-V1) velocity of the connection point */
-        const real S_dot_tip_x = axis_x_x*t_dot_x + axis_x_y*t_dot_y;
-        /* (rpr-V6) rate of joint 1 */
-        const real qd_1 = inv_root_1*(axis_x_x*t_dot_y - axis_x_y*t_dot_x);
-        /* (rpr-V9) centripetal tensor of link 1 */
-        const real W_1_t = qd_1*qd_1;
-        /* (rpr-A7) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_o = 2*S_dot_tip_x*inv_root_1*qd_1;
-        /* (rpr-N14) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
-        const real mu_1_o_z = h_group_1_y*(axis_x_x*gravity_x + axis_x_y*gravity_y) -
-            Sigma_1_xx*qdd_1_o - Sigma_1_yy*qdd_1_o - h_group_1_x*(axis_x_x*gravity_y -
-            axis_x_y*gravity_x);
-        /* (rpr-N7) remainder without the acceleration in: inertia force of link 2 from its turning about
-           its reference point */
-        const real phi_2_o_x = h_2_y*qdd_1_o - W_1_t*h_2_x;
-        /* (rpr-N23) remainder without the acceleration in: leg force on the platform without actuation
+        const real rpr_Sigma_1_xx = m->rpr_Sigma_1_xx[i];
+        const real rpr_Sigma_1_yy = m->rpr_Sigma_1_yy[i];
+        const real rpr_h_group_1_x = m->rpr_h_group_1_x[i];
+        const real rpr_h_group_1_y = m->rpr_h_group_1_y[i];
+        const real rpr_mu_1_o_z = rpr_h_group_1_y*(gravity_x*rpr_axis_x_x +
+            gravity_y*rpr_axis_x_y) - rpr_Sigma_1_xx*rpr_qdd_1_o - rpr_Sigma_1_yy*rpr_qdd_1_o -
+            rpr_h_group_1_x*(gravity_y*rpr_axis_x_x - gravity_x*rpr_axis_x_y);
+        /* (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real c_o_y = W_1_t*h_2_y + h_2_x*qdd_1_o - inv_root_1*mu_1_o_z;
-        /* (rpr-N25) velocity and gravity terms of the leg force */
-        const real U_in_base_x = axis_x_x*phi_2_o_x + axis_x_y*c_o_y;
-        const real U_in_base_y = axis_x_y*phi_2_o_x - axis_x_x*c_o_y;
-        o->sum[0][k] = add ? o->sum[0][k] + Q_t_4 : Q_t_4;  /* total_rpr_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + Q_t_5 : Q_t_5;  /* total_rpr_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + Q_t_6 : Q_t_6;  /* total_rpr_yy */
-        o->sum[3][k] = add ? o->sum[3][k] + U_in_base_x : U_in_base_x;  /* total_rpr_x */
-        o->sum[4][k] = add ? o->sum[4][k] + U_in_base_y : U_in_base_y;  /* total_rpr_y */
-        o->entry[0][k] = axis_x_x;
-        o->entry[1][k] = axis_x_y;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
-            UNLESS(magnitude(root_1) > TOLERANCE*R(0.75));
+        const real rpr_c_o_y = rpr_W_1_t*rpr_h_2_y + rpr_h_2_x*rpr_qdd_1_o -
+            inv_rpr_root_1*rpr_mu_1_o_z;
+        /* (rpr-U) velocity and gravity terms of the leg force */
+        const real rpr_U_in_base_x = rpr_axis_x_x*rpr_phi_2_o_x + rpr_axis_x_y*rpr_c_o_y;
+        const real rpr_U_in_base_y = rpr_axis_x_y*rpr_phi_2_o_x - rpr_axis_x_x*rpr_c_o_y;
+        terms[0*count + k] = add ? terms[0*count + k] + rpr_Q_t_4 : rpr_Q_t_4;  /* total_rpr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rpr_Q_t_5 : rpr_Q_t_5;  /* total_rpr_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rpr_Q_t_6 : rpr_Q_t_6;  /* total_rpr_yy */
+        terms[3*count + k] = add ? terms[3*count + k] + rpr_U_in_base_x : rpr_U_in_base_x;  /* total_rpr_x */
+        terms[4*count + k] = add ? terms[4*count + k] + rpr_U_in_base_y : rpr_U_in_base_y;  /* total_rpr_y */
+        o[0*count + k] = rpr_axis_x_x;
+        o[1*count + k] = rpr_axis_x_y;
+        o[3*count + k] = rpr_axis_x_x + rpr_axis_x_y;
+        o[2*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
+            UNLESS(magnitude(rpr_root_1) > TOLERANCE*R(0.75));
     }
 }
 
-INLINE void dynamics_place_rpr(size_t w, const dynamics_results_rpr *o, size_t leg, size_t first,
+INLINE void dynamics_place_rpr(size_t w, size_t count, const real *o, size_t leg, size_t first,
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(2 + leg)*w + k] = o->entry[1][first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(2 + leg)*w + k] = o[1*count + first + k];
+        t->singular[k] += o[2*count + first + k];
+        t->total[k] += o[3*count + first + k];
     }
 }
 
-INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s, real *M, real
-    *Z)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real total_rpr_xx = s->sum[0][k];
-        const real total_rpr_xy = s->sum[1][k];
-        const real total_rpr_yy = s->sum[2][k];
-        const real total_rpr_x = s->sum[3][k];
-        const real total_rpr_y = s->sum[4][k];
-        const real Z_p_x = m->Z_p_x;
-        const real Z_p_y = m->Z_p_y;
-        const real m_star = m->m_star;
-        /* (M1) translational block of M */
-        const real M_tt_xx = m_star - total_rpr_xx;
-        const real M_tt_yy = m_star - total_rpr_yy;
-        /* (M3) translational part of Z */
-        const real Z_t_x = total_rpr_x - Z_p_x;
-        const real Z_t_y = total_rpr_y - Z_p_y;
-        M[0*w + k] = M_tt_xx;
-        M[1*w + k] = total_rpr_xy;
-        M[2*w + k] = total_rpr_xy;
-        M[3*w + k] = M_tt_yy;
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-    }
-}
-
-INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real *V, real *M, real
-    *Z, real *H, verdict *t)
-{
-    dynamics_values values, *const s = &values;
-    dynamics_results_rpr results_rpr;
-    dynamics_before(w, X, V, s);
-    if (w == 1) {  /* the legs side by side */
-        dynamics_legs_rpr(m, 0, 1, s, 0, 2, 0, &results_rpr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            dynamics_place_rpr(w, &results_rpr, leg, leg, H, t);
-        }
-        for (size_t n = 0; n < 5; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_rpr.sum[n], 2);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rpr.sum, 0, sizeof results_rpr.sum);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            dynamics_legs_rpr(m, leg, 0, s, 1, w, 1, &results_rpr);
-            dynamics_place_rpr(w, &results_rpr, leg, 0, H, t);
-        }
-        for (size_t n = 0; n < 5; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_rpr.sum[n][k];
-            }
-        }
-    }
-    dynamics_after(m, w, s, M, Z);
-}
-
-/* ---- M: 48 mul, 32 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], sum[3][LANES];
-} M_values;
-typedef struct {
-    real sum[3][8], singular[8];
-} M_results_rpr;
-
-INLINE void M_before(size_t w, const real *X, M_values *s)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-    }
-}
-
-INLINE void M_legs_rpr(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
-    states, size_t count, int add, M_results_rpr *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real J_group_1_zz = m->J_group_1_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        /* (rpr-K1) from the base point to the connection point */
-        const real S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-K2) component along the reference direction */
-        const real px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx;
-        /* (rpr-K3) component across the reference direction */
-        const real py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy;
-        /* (rpr-K5) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (rpr-K6) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real inv_root_1 = 1/root_1;
-        const real axis_x_x = S_x*inv_root_1;
-        const real axis_x_y = S_y*inv_root_1;
-        /* (rpr-N19) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_yx = h_2_y*inv_root_1;
-        /* (rpr-N22) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real d_c_yy = -h_2_x*inv_root_1 - inv_root_1*(h_2_x + J_group_1_zz*inv_root_1);
-        /* (rpr-N24) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = R(0.5)*d_c_yy;
-        const real Q_t_2 = Q_t*axis_x_y - axis_x_x*d_G_yx;
-        const real Q_t_3 = Q_t*axis_x_x + axis_x_y*d_G_yx;
-        const real Q_t_4 = 2*Q_t_2*axis_x_y;
-        const real Q_t_5 = Q_t_2*axis_x_x + Q_t_3*axis_x_y;
-        const real Q_t_6 = 2*Q_t_3*axis_x_x;
-        o->sum[0][k] = add ? o->sum[0][k] + Q_t_4 : Q_t_4;  /* total_rpr_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + Q_t_5 : Q_t_5;  /* total_rpr_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + Q_t_6 : Q_t_6;  /* total_rpr_yy */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
-            UNLESS(magnitude(root_1) > TOLERANCE*R(0.75));
-    }
-}
-
-INLINE void M_place_rpr(size_t w, const M_results_rpr *o, size_t first, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real total_rpr_xx = s->sum[0][k];
-        const real total_rpr_xy = s->sum[1][k];
-        const real total_rpr_yy = s->sum[2][k];
-        const real m_star = m->m_star;
-        /* (M1) translational block of M */
-        const real M_tt_xx = m_star - total_rpr_xx;
-        const real M_tt_yy = m_star - total_rpr_yy;
-        M[0*w + k] = M_tt_xx;
-        M[1*w + k] = total_rpr_xy;
-        M[2*w + k] = total_rpr_xy;
-        M[3*w + k] = M_tt_yy;
-    }
-}
-
-INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *t)
-{
-    M_values values, *const s = &values;
-    M_results_rpr results_rpr;
-    M_before(w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        M_legs_rpr(m, 0, 1, s, 0, 2, 0, &results_rpr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            M_place_rpr(w, &results_rpr, leg, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_rpr.sum[n], 2);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rpr.sum, 0, sizeof results_rpr.sum);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            M_legs_rpr(m, leg, 0, s, 1, w, 1, &results_rpr);
-            M_place_rpr(w, &results_rpr, 0, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_rpr.sum[n][k];
-            }
-        }
-    }
-    M_after(m, w, s, M);
-}
-
-/* ---- Z: 70 mul, 44 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], sum[2][LANES];
-} Z_values;
-typedef struct {
-    real sum[2][8], singular[8];
-} Z_results_rpr;
-
-INLINE void Z_before(size_t w, const real *X, const real *V, Z_values *s)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        /* V: named entries */
-        const real t_dot_x = V_0;
-        const real t_dot_y = V_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-    }
-}
-
-INLINE void Z_legs_rpr(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
-    states, size_t count, int add, Z_results_rpr *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real Sigma_1_xx = m->Sigma_1_xx[i];
-        const real Sigma_1_yy = m->Sigma_1_yy[i];
-        const real branch_1 = m->branch_1[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real h_group_1_x = m->h_group_1_x[i];
-        const real h_group_1_y = m->h_group_1_y[i];
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        /* (rpr-K1) from the base point to the connection point */
-        const real S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-K2) component along the reference direction */
-        const real px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx;
-        /* (rpr-K3) component across the reference direction */
-        const real py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy;
-        /* (rpr-K5) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (rpr-K6) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real inv_root_1 = 1/root_1;
-        const real axis_x_x = S_x*inv_root_1;
-        const real axis_x_y = S_y*inv_root_1;
-        /* (rpr-V1) velocity of the connection point */
-        const real S_dot_tip_x = axis_x_x*t_dot_x + axis_x_y*t_dot_y;
-        /* (rpr-V6) rate of joint 1 */
-        const real qd_1 = inv_root_1*(axis_x_x*t_dot_y - axis_x_y*t_dot_x);
-        /* (rpr-V9) centripetal tensor of link 1 */
-        const real W_1_t = qd_1*qd_1;
-        /* (rpr-A7) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_o = 2*S_dot_tip_x*inv_root_1*qd_1;
-        /* (rpr-N14) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
-        const real mu_1_o_z = h_group_1_y*(axis_x_x*gravity_x + axis_x_y*gravity_y) -
-            Sigma_1_xx*qdd_1_o - Sigma_1_yy*qdd_1_o - h_group_1_x*(axis_x_x*gravity_y -
-            axis_x_y*gravity_x);
-        /* (rpr-N7) remainder without the acceleration in: inertia force of link 2 from its turning about
-           its reference point */
-        const real phi_2_o_x = h_2_y*qdd_1_o - W_1_t*h_2_x;
-        /* (rpr-N23) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real c_o_y = W_1_t*h_2_y + h_2_x*qdd_1_o - inv_root_1*mu_1_o_z;
-        /* (rpr-N25) velocity and gravity terms of the leg force */
-        const real U_in_base_x = axis_x_x*phi_2_o_x + axis_x_y*c_o_y;
-        const real U_in_base_y = axis_x_y*phi_2_o_x - axis_x_x*c_o_y;
-        o->sum[0][k] = add ? o->sum[0][k] + U_in_base_x : U_in_base_x;  /* total_rpr_x */
-        o->sum[1][k] = add ? o->sum[1][k] + U_in_base_y : U_in_base_y;  /* total_rpr_y */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
-            UNLESS(magnitude(root_1) > TOLERANCE*R(0.75));
-    }
-}
-
-INLINE void Z_place_rpr(size_t w, const Z_results_rpr *o, size_t first, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void Z_after(const prepared *m, size_t w, const Z_values *s, real *Z)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real total_rpr_x = s->sum[0][k];
-        const real total_rpr_y = s->sum[1][k];
-        const real Z_p_x = m->Z_p_x;
-        const real Z_p_y = m->Z_p_y;
-        /* (M3) translational part of Z */
-        const real Z_t_x = total_rpr_x - Z_p_x;
-        const real Z_t_y = total_rpr_y - Z_p_y;
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-    }
-}
-
-INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, real *Z, verdict *t)
-{
-    Z_values values, *const s = &values;
-    Z_results_rpr results_rpr;
-    Z_before(w, X, V, s);
-    if (w == 1) {  /* the legs side by side */
-        Z_legs_rpr(m, 0, 1, s, 0, 2, 0, &results_rpr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            Z_place_rpr(w, &results_rpr, leg, t);
-        }
-        for (size_t n = 0; n < 2; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_rpr.sum[n], 2);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rpr.sum, 0, sizeof results_rpr.sum);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            Z_legs_rpr(m, leg, 0, s, 1, w, 1, &results_rpr);
-            Z_place_rpr(w, &results_rpr, 0, t);
-        }
-        for (size_t n = 0; n < 2; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_rpr.sum[n][k];
-            }
-        }
-    }
-    Z_after(m, w, s, Z);
-}
-
-/* ---- H: 18 mul, 14 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES];
-} H_values;
-typedef struct {
-    real entry[2][8], singular[8];
-} H_results_rpr;
-
-INLINE void H_before(size_t w, const real *X, H_values *s)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-    }
-}
-
-INLINE void H_legs_rpr(const prepared *m, size_t leg, size_t legs, const H_values *s, size_t
-    states, size_t count, H_results_rpr *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real branch_1 = m->branch_1[i];
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        /* (rpr-K1) from the base point to the connection point */
-        const real S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-K2) component along the reference direction */
-        const real px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx;
-        /* (rpr-K3) component across the reference direction */
-        const real py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy;
-        /* (rpr-K5) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (rpr-K6) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real inv_root_1 = 1/root_1;
-        const real axis_x_x = S_x*inv_root_1;
-        const real axis_x_y = S_y*inv_root_1;
-        o->entry[0][k] = axis_x_x;
-        o->entry[1][k] = axis_x_y;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
-            UNLESS(magnitude(root_1) > TOLERANCE*R(0.75));
-    }
-}
-
-INLINE void H_place_rpr(size_t w, const H_results_rpr *o, size_t leg, size_t first, real *H,
+INLINE void dynamics_after(const prepared *m, size_t w, const real *sums, real *M, real *Z,
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(2 + leg)*w + k] = o->entry[1][first + k];
-        t->singular[k] += o->singular[first + k];
+        /* (M_tt) translational block of M */
+        const real m_star = m->m_star;
+        const real total_rpr_xx = sums[0*w + k];
+        const real M_tt_xx = m_star - total_rpr_xx;
+        const real total_rpr_yy = sums[2*w + k];
+        const real M_tt_yy = m_star - total_rpr_yy;
+        /* (Z_t) translational part of Z */
+        const real Z_p_x = m->Z_p_x;
+        const real total_rpr_x = sums[3*w + k];
+        const real Z_t_x = total_rpr_x - Z_p_x;
+        const real Z_p_y = m->Z_p_y;
+        const real total_rpr_y = sums[4*w + k];
+        const real Z_t_y = total_rpr_y - Z_p_y;
+        M[0*w + k] = M_tt_xx;
+        const real total_rpr_xy = sums[1*w + k];
+        M[1*w + k] = total_rpr_xy;
+        M[2*w + k] = total_rpr_xy;
+        M[3*w + k] = M_tt_yy;
+        Z[0*w + k] = Z_t_x;
+        Z[1*w + k] = Z_t_y;
+        t->total[k] += (M_tt_xx + total_rpr_xy) + (M_tt_yy + (Z_t_x + Z_t_y));
     }
 }
 
-INLINE void H_run(const prepared *m, size_t w, const real *X, real *H, verdict *t)
+INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
+    *H, verdict *t)
 {
-    H_values values, *const s = &values;
-    H_results_rpr results_rpr;
-    H_before(w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        H_legs_rpr(m, 0, 1, s, 0, 2, &results_rpr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            H_place_rpr(w, &results_rpr, leg, leg, H, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 2; ++leg) {
-            H_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
-            H_place_rpr(w, &results_rpr, leg, 0, H, t);
-        }
+    real s[4] = {0}, sums[5] = {0}, terms_rpr[5*LEGS(2)] = {0}, o_rpr[4*LEGS(2)] = {0};
+    dynamics_before(1, X, V, s);
+    dynamics_legs_rpr(m, 1, 0, 1, s, 0, LEGS(2), 0, terms_rpr, o_rpr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        dynamics_place_rpr(1, LEGS(2), o_rpr, leg, leg, H, t);
+    }
+    for (size_t n = 0; n < 5; ++n) {
+        sums[n] = total(terms_rpr + n*LEGS(2), 2);
+    }
+    dynamics_after(m, 1, sums, M, Z, t);
+}
+
+INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, verdict *t)
+{
+    real s[4*LANES], sums[5*LANES], o_rpr[4*LANES];
+    dynamics_before(LANES, X, V, s);
+    clear(sums, 5*LANES);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        dynamics_legs_rpr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rpr);
+        dynamics_place_rpr(LANES, LANES, o_rpr, leg, 0, H, t);
+    }
+    dynamics_after(m, LANES, sums, M, Z, t);
+}
+
+/* ---- M: 48 mul, 32 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
+INLINE void M_before(size_t w, const real *X, real *s)
+{
+    for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
+        const real X_0 = X[0*w + k];
+        const real t_x = X_0;
+        const real X_1 = X[1*w + k];
+        const real t_y = X_1;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+    }
+}
+
+INLINE void M_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, int add, real *terms, real *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        /* (rpr-S) from the base point to the connection point */
+        const real rpr_base_point_x = m->rpr_base_point_x[i];
+        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
+        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+        /* (rpr-px_1) component along the reference direction */
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-rho2_1) squared amplitude */
+        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
+        /* (rpr-root_1) amplitude, with the sign of the branch */
+        const real rpr_branch_1 = m->rpr_branch_1[i];
+        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
+        /* (rpr-w_1) reciprocal vector 1 */
+        const real inv_rpr_root_1 = 1/rpr_root_1;
+        const real rpr_axis_x_x = inv_rpr_root_1*rpr_S_x;
+        const real rpr_axis_x_y = inv_rpr_root_1*rpr_S_y;
+        /* (rpr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
+           about its reference point */
+        const real rpr_h_2_y = m->rpr_h_2_y[i];
+        const real rpr_d_phi_2_t = inv_rpr_root_1*rpr_h_2_y;
+        /* (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real rpr_J_group_1_zz = m->rpr_J_group_1_zz[i];
+        const real rpr_h_2_x = m->rpr_h_2_x[i];
+        const real rpr_d_c_yy = -inv_rpr_root_1*rpr_h_2_x - inv_rpr_root_1*(rpr_h_2_x +
+            inv_rpr_root_1*rpr_J_group_1_zz);
+        /* (rpr-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real rpr_Q_t = R(0.5)*rpr_d_c_yy;
+        const real rpr_Q_t_2 = rpr_Q_t*rpr_axis_x_y - rpr_axis_x_x*rpr_d_phi_2_t;
+        const real rpr_Q_t_3 = rpr_Q_t*rpr_axis_x_x + rpr_axis_x_y*rpr_d_phi_2_t;
+        const real rpr_Q_t_4 = 2*rpr_Q_t_2*rpr_axis_x_y;
+        const real rpr_Q_t_5 = rpr_Q_t_2*rpr_axis_x_x + rpr_Q_t_3*rpr_axis_x_y;
+        const real rpr_Q_t_6 = 2*rpr_Q_t_3*rpr_axis_x_x;
+        terms[0*count + k] = add ? terms[0*count + k] + rpr_Q_t_4 : rpr_Q_t_4;  /* total_rpr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rpr_Q_t_5 : rpr_Q_t_5;  /* total_rpr_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rpr_Q_t_6 : rpr_Q_t_6;  /* total_rpr_yy */
+        o[0*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
+            UNLESS(magnitude(rpr_root_1) > TOLERANCE*R(0.75));
+    }
+}
+
+INLINE void M_place_rpr(size_t w, size_t count, const real *o, size_t first, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        t->singular[k] += o[0*count + first + k];
+    }
+}
+
+INLINE void M_after(const prepared *m, size_t w, const real *sums, real *M, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        /* (M_tt) translational block of M */
+        const real m_star = m->m_star;
+        const real total_rpr_xx = sums[0*w + k];
+        const real M_tt_xx = m_star - total_rpr_xx;
+        const real total_rpr_yy = sums[2*w + k];
+        const real M_tt_yy = m_star - total_rpr_yy;
+        M[0*w + k] = M_tt_xx;
+        const real total_rpr_xy = sums[1*w + k];
+        M[1*w + k] = total_rpr_xy;
+        M[2*w + k] = total_rpr_xy;
+        M[3*w + k] = M_tt_yy;
+        t->total[k] += M_tt_xx + (total_rpr_xy + M_tt_yy);
+    }
+}
+
+INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
+{
+    real s[2] = {0}, sums[3] = {0}, terms_rpr[3*LEGS(2)] = {0}, o_rpr[1*LEGS(2)] = {0};
+    M_before(1, X, s);
+    M_legs_rpr(m, 1, 0, 1, s, 0, LEGS(2), 0, terms_rpr, o_rpr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        M_place_rpr(1, LEGS(2), o_rpr, leg, t);
+    }
+    for (size_t n = 0; n < 3; ++n) {
+        sums[n] = total(terms_rpr + n*LEGS(2), 2);
+    }
+    M_after(m, 1, sums, M, t);
+}
+
+INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
+{
+    real s[2*LANES], sums[3*LANES], o_rpr[1*LANES];
+    M_before(LANES, X, s);
+    clear(sums, 3*LANES);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        M_legs_rpr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rpr);
+        M_place_rpr(LANES, LANES, o_rpr, 0, t);
+    }
+    M_after(m, LANES, sums, M, t);
+}
+
+/* ---- Z: 70 mul, 44 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
+INLINE void Z_before(size_t w, const real *X, const real *V, real *s)
+{
+    for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
+        const real X_0 = X[0*w + k];
+        const real t_x = X_0;
+        const real X_1 = X[1*w + k];
+        const real t_y = X_1;
+        /* V: named entries */
+        const real V_0 = V[0*w + k];
+        const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
+        const real t_dot_y = V_1;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_dot_x;
+        s[3*w + k] = t_dot_y;
+    }
+}
+
+INLINE void Z_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, int add, real *terms, real *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        /* (rpr-S) from the base point to the connection point */
+        const real rpr_base_point_x = m->rpr_base_point_x[i];
+        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
+        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+        /* (rpr-px_1) component along the reference direction */
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-rho2_1) squared amplitude */
+        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
+        /* (rpr-root_1) amplitude, with the sign of the branch */
+        const real rpr_branch_1 = m->rpr_branch_1[i];
+        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
+        /* (rpr-w_1) reciprocal vector 1 */
+        const real inv_rpr_root_1 = 1/rpr_root_1;
+        const real rpr_axis_x_x = inv_rpr_root_1*rpr_S_x;
+        const real rpr_axis_x_y = inv_rpr_root_1*rpr_S_y;
+        /* (rpr-S_dot) velocity of the connection point */
+        const real t_dot_x = s[2*w + j];
+        const real t_dot_y = s[3*w + j];
+        const real rpr_S_dot_tip_x = rpr_axis_x_x*t_dot_x + rpr_axis_x_y*t_dot_y;
+        /* (rpr-qd_1) rate of joint 1 */
+        const real rpr_qd_1 = inv_rpr_root_1*(rpr_axis_x_x*t_dot_y - rpr_axis_x_y*t_dot_x);
+        /* (rpr-W_1) centripetal tensor of link 1 */
+        const real rpr_W_1_t = rpr_qd_1*rpr_qd_1;
+        /* (rpr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real rpr_qdd_1_o = 2*inv_rpr_root_1*rpr_S_dot_tip_x*rpr_qd_1;
+        /* (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning
+           about its reference point */
+        const real rpr_h_2_x = m->rpr_h_2_x[i];
+        const real rpr_h_2_y = m->rpr_h_2_y[i];
+        const real rpr_phi_2_o_x = rpr_h_2_y*rpr_qdd_1_o - rpr_W_1_t*rpr_h_2_x;
+        /* (rpr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 1, about their reference points */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real rpr_Sigma_1_xx = m->rpr_Sigma_1_xx[i];
+        const real rpr_Sigma_1_yy = m->rpr_Sigma_1_yy[i];
+        const real rpr_h_group_1_x = m->rpr_h_group_1_x[i];
+        const real rpr_h_group_1_y = m->rpr_h_group_1_y[i];
+        const real rpr_mu_1_o_z = rpr_h_group_1_y*(gravity_x*rpr_axis_x_x +
+            gravity_y*rpr_axis_x_y) - rpr_Sigma_1_xx*rpr_qdd_1_o - rpr_Sigma_1_yy*rpr_qdd_1_o -
+            rpr_h_group_1_x*(gravity_y*rpr_axis_x_x - gravity_x*rpr_axis_x_y);
+        /* (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation
+           and without the mass at the connection point */
+        const real rpr_c_o_y = rpr_W_1_t*rpr_h_2_y + rpr_h_2_x*rpr_qdd_1_o -
+            inv_rpr_root_1*rpr_mu_1_o_z;
+        /* (rpr-U) velocity and gravity terms of the leg force */
+        const real rpr_U_in_base_x = rpr_axis_x_x*rpr_phi_2_o_x + rpr_axis_x_y*rpr_c_o_y;
+        const real rpr_U_in_base_y = rpr_axis_x_y*rpr_phi_2_o_x - rpr_axis_x_x*rpr_c_o_y;
+        terms[0*count + k] = add ? terms[0*count + k] + rpr_U_in_base_x : rpr_U_in_base_x;  /* total_rpr_x */
+        terms[1*count + k] = add ? terms[1*count + k] + rpr_U_in_base_y : rpr_U_in_base_y;  /* total_rpr_y */
+        o[0*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
+            UNLESS(magnitude(rpr_root_1) > TOLERANCE*R(0.75));
+    }
+}
+
+INLINE void Z_place_rpr(size_t w, size_t count, const real *o, size_t first, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        t->singular[k] += o[0*count + first + k];
+    }
+}
+
+INLINE void Z_after(const prepared *m, size_t w, const real *sums, real *Z, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        /* (Z_t) translational part of Z */
+        const real Z_p_x = m->Z_p_x;
+        const real total_rpr_x = sums[0*w + k];
+        const real Z_t_x = total_rpr_x - Z_p_x;
+        const real Z_p_y = m->Z_p_y;
+        const real total_rpr_y = sums[1*w + k];
+        const real Z_t_y = total_rpr_y - Z_p_y;
+        Z[0*w + k] = Z_t_x;
+        Z[1*w + k] = Z_t_y;
+        t->total[k] += Z_t_x + Z_t_y;
+    }
+}
+
+INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+{
+    real s[4] = {0}, sums[2] = {0}, terms_rpr[2*LEGS(2)] = {0}, o_rpr[1*LEGS(2)] = {0};
+    Z_before(1, X, V, s);
+    Z_legs_rpr(m, 1, 0, 1, s, 0, LEGS(2), 0, terms_rpr, o_rpr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        Z_place_rpr(1, LEGS(2), o_rpr, leg, t);
+    }
+    for (size_t n = 0; n < 2; ++n) {
+        sums[n] = total(terms_rpr + n*LEGS(2), 2);
+    }
+    Z_after(m, 1, sums, Z, t);
+}
+
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+{
+    real s[4*LANES], sums[2*LANES], o_rpr[1*LANES];
+    Z_before(LANES, X, V, s);
+    clear(sums, 2*LANES);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        Z_legs_rpr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rpr);
+        Z_place_rpr(LANES, LANES, o_rpr, 0, t);
+    }
+    Z_after(m, LANES, sums, Z, t);
+}
+
+/* ---- H: 18 mul, 14 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
+INLINE void H_before(size_t w, const real *X, real *s)
+{
+    for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
+        const real X_0 = X[0*w + k];
+        const real t_x = X_0;
+        const real X_1 = X[1*w + k];
+        const real t_y = X_1;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+    }
+}
+
+INLINE void H_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, real *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        /* (rpr-S) from the base point to the connection point */
+        const real rpr_base_point_x = m->rpr_base_point_x[i];
+        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
+        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+        /* (rpr-px_1) component along the reference direction */
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-rho2_1) squared amplitude */
+        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
+        /* (rpr-root_1) amplitude, with the sign of the branch */
+        const real rpr_branch_1 = m->rpr_branch_1[i];
+        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
+        /* (rpr-w_1) reciprocal vector 1 */
+        const real inv_rpr_root_1 = 1/rpr_root_1;
+        const real rpr_axis_x_x = inv_rpr_root_1*rpr_S_x;
+        const real rpr_axis_x_y = inv_rpr_root_1*rpr_S_y;
+        o[0*count + k] = rpr_axis_x_x;
+        o[1*count + k] = rpr_axis_x_y;
+        o[3*count + k] = rpr_axis_x_x + rpr_axis_x_y;
+        o[2*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
+            UNLESS(magnitude(rpr_root_1) > TOLERANCE*R(0.75));
+    }
+}
+
+INLINE void H_place_rpr(size_t w, size_t count, const real *o, size_t leg, size_t first, real *H,
+    verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(2 + leg)*w + k] = o[1*count + first + k];
+        t->singular[k] += o[2*count + first + k];
+        t->total[k] += o[3*count + first + k];
+    }
+}
+
+INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
+{
+    real s[2] = {0}, o_rpr[4*LEGS(2)] = {0};
+    H_before(1, X, s);
+    H_legs_rpr(m, 1, 0, 1, s, 0, LEGS(2), o_rpr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        H_place_rpr(1, LEGS(2), o_rpr, leg, leg, H, t);
+    }
+}
+
+INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
+{
+    real s[2*LANES], o_rpr[4*LANES];
+    H_before(LANES, X, s);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        H_legs_rpr(m, LANES, leg, 0, s, 1, LANES, o_rpr);
+        H_place_rpr(LANES, LANES, o_rpr, leg, 0, H, t);
     }
 }
 
 /* ---- required: 86 mul, 58 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], t_ddot_x[LANES], t_ddot_y[LANES],
-        f_p_x[LANES], f_p_y[LANES], sum[2][LANES];
-} required_values;
-typedef struct {
-    real sum[2][8], entry[2][8], singular[8];
-} required_results_rpr;
-
 INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, required_values *s)
+    *A, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real m_star = m->m_star;
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
-        /* (E1) acceleration of the platform origin, less gravity */
+        /* (a_t) acceleration of the platform origin, less gravity */
+        const real gravity_x = m->gravity_x;
         const real a_t_x = t_ddot_x - gravity_x;
+        const real gravity_y = m->gravity_y;
         const real a_t_y = t_ddot_y - gravity_y;
-        /* (E2) inertia force of the platform less its weight */
+        /* (f_p) inertia force of the platform less its weight */
+        const real m_star = m->m_star;
         const real f_p_x = a_t_x*m_star;
         const real f_p_y = a_t_y*m_star;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->f_p_x[k] = f_p_x;
-        s->f_p_y[k] = f_p_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_dot_x;
+        s[3*w + k] = t_dot_y;
+        s[4*w + k] = t_ddot_x;
+        s[5*w + k] = t_ddot_y;
+        s[6*w + k] = f_p_x;
+        s[7*w + k] = f_p_y;
     }
 }
 
-INLINE void required_legs_rpr(const prepared *m, size_t leg, size_t legs, const required_values
-    *s, size_t states, size_t count, int add, required_results_rpr *o)
+INLINE void required_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real J_group_1_zz = m->J_group_1_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_1_x = m->h_1_x[i];
-        const real h_1_y = m->h_1_y[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        /* (rpr-S) from the base point to the connection point */
         const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        /* (rpr-K1) from the base point to the connection point */
-        const real S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-K2) component along the reference direction */
-        const real px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx;
-        /* (rpr-K3) component across the reference direction */
-        const real py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy;
-        /* (rpr-K5) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (rpr-K6) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real inv_root_1 = 1/root_1;
-        const real axis_x_x = S_x*inv_root_1;
-        const real axis_x_y = S_y*inv_root_1;
-        /* (rpr-V1) velocity of the connection point */
-        const real S_dot_tip_x = axis_x_x*t_dot_x + axis_x_y*t_dot_y;
-        /* (rpr-V6) rate of joint 1 */
-        const real qd_1 = inv_root_1*(axis_x_x*t_dot_y - axis_x_y*t_dot_x);
-        /* (rpr-V9) centripetal tensor of link 1 */
-        const real W_1_t = qd_1*qd_1;
-        /* (rpr-K7) cosine of the angle of joint 1 from its reference direction */
-        const real c_1 = inv_root_1*px_1;
-        /* (rpr-K8) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*py_1;
-        /* (rpr-A2) acceleration of the connection point */
-        const real S_ddot_tip_y = axis_x_x*t_ddot_y - axis_x_y*t_ddot_x;
-        /* (rpr-A4) acceleration of the connection point left to the joint accelerations */
-        const real rel_y = S_ddot_tip_y - 2*S_dot_tip_x*qd_1;
-        /* (rpr-A6) acceleration of joint 1 */
-        const real qdd_1 = inv_root_1*rel_y;
-        /* (rpr-N3) acceleration of the reference point of link 2, less gravity */
-        const real g_r1_x = c_1*g_r0_x + g_r0_y*s_1;
-        const real g_r1_y = c_1*g_r0_y - g_r0_x*s_1;
-        const real acc_2_x = axis_x_x*t_ddot_x + axis_x_y*t_ddot_y - g_r1_x;
-        const real acc_2_y = S_ddot_tip_y - g_r1_y;
-        /* (rpr-N12) inertia moment of the links that turn with link 1, about their reference points */
-        const real mu_1_z = J_group_1_zz*qdd_1 + acc_2_y*h_2_x + g_r1_x*h_1_y - acc_2_x*h_2_y -
-            g_r1_y*h_1_x;
-        /* (rpr-N5) inertia force of link 2 from its turning about its reference point */
-        const real phi_2_x = -W_1_t*h_2_x - h_2_y*qdd_1;
-        /* (rpr-N21) leg force on the platform without actuation and without the mass at the connection
+        const real t_y = s[1*w + j];
+        const real rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+        /* (rpr-px_1) component along the reference direction */
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-rho2_1) squared amplitude */
+        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
+        /* (rpr-root_1) amplitude, with the sign of the branch */
+        const real rpr_branch_1 = m->rpr_branch_1[i];
+        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
+        /* (rpr-w_1) reciprocal vector 1 */
+        const real inv_rpr_root_1 = 1/rpr_root_1;
+        const real rpr_axis_x_x = inv_rpr_root_1*rpr_S_x;
+        const real rpr_axis_x_y = inv_rpr_root_1*rpr_S_y;
+        /* (rpr-S_dot) velocity of the connection point */
+        const real t_dot_x = s[2*w + j];
+        const real t_dot_y = s[3*w + j];
+        const real rpr_S_dot_tip_x = rpr_axis_x_x*t_dot_x + rpr_axis_x_y*t_dot_y;
+        /* (rpr-qd_1) rate of joint 1 */
+        const real rpr_qd_1 = inv_rpr_root_1*(rpr_axis_x_x*t_dot_y - rpr_axis_x_y*t_dot_x);
+        /* (rpr-W_1) centripetal tensor of link 1 */
+        const real rpr_W_1_t = rpr_qd_1*rpr_qd_1;
+        /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real rpr_c_1 = inv_rpr_root_1*rpr_px_1;
+        /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rpr_s_1 = inv_rpr_root_1*rpr_py_1;
+        /* (rpr-S_ddot) acceleration of the connection point */
+        const real t_ddot_x = s[4*w + j];
+        const real t_ddot_y = s[5*w + j];
+        const real rpr_S_ddot_tip_y = rpr_axis_x_x*t_ddot_y - rpr_axis_x_y*t_ddot_x;
+        /* (rpr-rel) acceleration of the connection point left to the joint accelerations */
+        const real rpr_rel_y = rpr_S_ddot_tip_y - 2*rpr_S_dot_tip_x*rpr_qd_1;
+        /* (rpr-qdd_1) acceleration of joint 1 */
+        const real rpr_qdd_1 = inv_rpr_root_1*rpr_rel_y;
+        /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
+        const real rpr_g_r0_x = m->rpr_g_r0_x[i];
+        const real rpr_g_r0_y = m->rpr_g_r0_y[i];
+        const real rpr_g_r1_x = rpr_c_1*rpr_g_r0_x + rpr_g_r0_y*rpr_s_1;
+        const real rpr_g_r1_y = rpr_c_1*rpr_g_r0_y - rpr_g_r0_x*rpr_s_1;
+        const real rpr_acc_2_x = rpr_axis_x_x*t_ddot_x + rpr_axis_x_y*t_ddot_y - rpr_g_r1_x;
+        const real rpr_acc_2_y = rpr_S_ddot_tip_y - rpr_g_r1_y;
+        /* (rpr-phi_2) inertia force of link 2 from its turning about its reference point */
+        const real rpr_h_2_x = m->rpr_h_2_x[i];
+        const real rpr_h_2_y = m->rpr_h_2_y[i];
+        const real rpr_phi_2_x = -rpr_W_1_t*rpr_h_2_x - rpr_h_2_y*rpr_qdd_1;
+        /* (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+        const real rpr_J_group_1_zz = m->rpr_J_group_1_zz[i];
+        const real rpr_h_1_x = m->rpr_h_1_x[i];
+        const real rpr_h_1_y = m->rpr_h_1_y[i];
+        const real rpr_mu_1_z = rpr_J_group_1_zz*rpr_qdd_1 + rpr_acc_2_y*rpr_h_2_x +
+            rpr_g_r1_x*rpr_h_1_y - rpr_acc_2_x*rpr_h_2_y - rpr_g_r1_y*rpr_h_1_x;
+        /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_y = W_1_t*h_2_y - h_2_x*qdd_1 - inv_root_1*mu_1_z;
-        const real c_in_base_x = -axis_x_x*phi_2_x - axis_x_y*c_y;
-        const real c_in_base_y = axis_x_x*c_y - axis_x_y*phi_2_x;
-        o->sum[0][k] = add ? o->sum[0][k] + c_in_base_x : c_in_base_x;  /* total_rpr_x */
-        o->sum[1][k] = add ? o->sum[1][k] + c_in_base_y : c_in_base_y;  /* total_rpr_y */
-        o->entry[0][k] = axis_x_x;
-        o->entry[1][k] = axis_x_y;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
-            UNLESS(magnitude(root_1) > TOLERANCE*R(0.75));
+        const real rpr_c_y = rpr_W_1_t*rpr_h_2_y - inv_rpr_root_1*rpr_mu_1_z -
+            rpr_h_2_x*rpr_qdd_1;
+        const real rpr_c_in_base_x = -rpr_axis_x_x*rpr_phi_2_x - rpr_axis_x_y*rpr_c_y;
+        const real rpr_c_in_base_y = rpr_axis_x_x*rpr_c_y - rpr_axis_x_y*rpr_phi_2_x;
+        terms[0*count + k] = add ? terms[0*count + k] + rpr_c_in_base_x : rpr_c_in_base_x;  /* total_rpr_x */
+        terms[1*count + k] = add ? terms[1*count + k] + rpr_c_in_base_y : rpr_c_in_base_y;  /* total_rpr_y */
+        o[0*count + k] = rpr_axis_x_x;
+        o[1*count + k] = rpr_axis_x_y;
+        o[2*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
+            UNLESS(magnitude(rpr_root_1) > TOLERANCE*R(0.75));
     }
 }
 
-INLINE void required_place_rpr(size_t w, const required_results_rpr *o, size_t leg, size_t first,
+INLINE void required_place_rpr(size_t w, size_t count, const real *o, size_t leg, size_t first,
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(2 + leg)*w + k] = o->entry[1][first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(2 + leg)*w + k] = o[1*count + first + k];
+        t->singular[k] += o[2*count + first + k];
     }
 }
 
-INLINE void required_after(size_t w, const required_values *s, real *required)
+INLINE void required_after(size_t w, const real *s, const real *sums, real *required)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real f_p_x = s->f_p_x[k];
-        const real f_p_y = s->f_p_y[k];
-        const real total_rpr_x = s->sum[0][k];
-        const real total_rpr_y = s->sum[1][k];
-        /* (E3) force that actuators and external wrench must give */
+        /* (R_t) force that actuators and external wrench must give */
+        const real f_p_x = s[6*w + k];
+        const real total_rpr_x = sums[0*w + k];
         const real R_t_x = f_p_x - total_rpr_x;
+        const real f_p_y = s[7*w + k];
+        const real total_rpr_y = sums[1*w + k];
         const real R_t_y = f_p_y - total_rpr_y;
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
     }
 }
 
-INLINE void required_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+    *required, real *H, verdict *t)
+{
+    real s[8] = {0}, sums[2] = {0}, terms_rpr[2*LEGS(2)] = {0}, o_rpr[3*LEGS(2)] = {0};
+    required_before(m, 1, X, V, A, s);
+    required_legs_rpr(m, 1, 0, 1, s, 0, LEGS(2), 0, terms_rpr, o_rpr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        required_place_rpr(1, LEGS(2), o_rpr, leg, leg, H, t);
+    }
+    for (size_t n = 0; n < 2; ++n) {
+        sums[n] = total(terms_rpr + n*LEGS(2), 2);
+    }
+    required_after(1, s, sums, required);
+}
+
+INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, verdict *t)
 {
-    required_values values, *const s = &values;
-    required_results_rpr results_rpr;
-    required_before(m, w, X, V, A, s);
-    if (w == 1) {  /* the legs side by side */
-        required_legs_rpr(m, 0, 1, s, 0, 2, 0, &results_rpr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            required_place_rpr(w, &results_rpr, leg, leg, H, t);
-        }
-        for (size_t n = 0; n < 2; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_rpr.sum[n], 2);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rpr.sum, 0, sizeof results_rpr.sum);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            required_legs_rpr(m, leg, 0, s, 1, w, 1, &results_rpr);
-            required_place_rpr(w, &results_rpr, leg, 0, H, t);
-        }
-        for (size_t n = 0; n < 2; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_rpr.sum[n][k];
-            }
-        }
+    real s[8*LANES], sums[2*LANES], o_rpr[3*LANES];
+    required_before(m, LANES, X, V, A, s);
+    clear(sums, 2*LANES);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        required_legs_rpr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rpr);
+        required_place_rpr(LANES, LANES, o_rpr, leg, 0, H, t);
     }
-    required_after(w, s, required);
+    required_after(LANES, s, sums, required);
 }
 
 /* ---- inverse_kinematics: 18 mul, 14 add, 2 div, 2 sqrt, 2 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES];
-} inverse_kinematics_values;
-typedef struct {
-    real entry[2][8], singular[8];
-} inverse_kinematics_results_rpr;
-
-INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematics_values *s)
+INLINE void inverse_kinematics_before(size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
     }
 }
 
-INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t leg, size_t legs, const
-    inverse_kinematics_values *s, size_t states, size_t count, inverse_kinematics_results_rpr *o)
+INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs,
+    const real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real branch_1 = m->branch_1[i];
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        /* (rpr-S) from the base point to the connection point */
         const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        /* (rpr-K1) from the base point to the connection point */
-        const real S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-K2) component along the reference direction */
-        const real px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx;
-        /* (rpr-K3) component across the reference direction */
-        const real py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy;
-        /* (rpr-K5) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (rpr-K6) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real inv_root_1 = 1/root_1;
-        /* (rpr-K9) displacement of joint 1 */
-        const real q_1 = angle(inv_root_1*py_1, inv_root_1*px_1);
-        o->entry[0][k] = q_1;
-        o->entry[1][k] = root_1;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
-            UNLESS(magnitude(root_1) > TOLERANCE*R(0.75));
+        const real t_y = s[1*w + j];
+        const real rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+        /* (rpr-px_1) component along the reference direction */
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-rho2_1) squared amplitude */
+        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
+        /* (rpr-root_1) amplitude, with the sign of the branch */
+        const real rpr_branch_1 = m->rpr_branch_1[i];
+        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
+        /* (rpr-w_1) reciprocal vector 1 */
+        const real inv_rpr_root_1 = 1/rpr_root_1;
+        /* (rpr-q_1) displacement of joint 1 */
+        const real rpr_q_1 = angle(inv_rpr_root_1*rpr_py_1, inv_rpr_root_1*rpr_px_1);
+        o[0*count + k] = rpr_q_1;
+        o[1*count + k] = rpr_root_1;
+        o[3*count + k] = rpr_q_1 + rpr_root_1;
+        o[2*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
+            UNLESS(magnitude(rpr_root_1) > TOLERANCE*R(0.75));
     }
 }
 
-INLINE void inverse_kinematics_place_rpr(size_t w, const inverse_kinematics_results_rpr *o, size_t
-    leg, size_t first, real *q, verdict *t)
+INLINE void inverse_kinematics_place_rpr(size_t w, size_t count, const real *o, size_t leg, size_t
+    first, real *q, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        q[(2*leg)*w + k] = o->entry[0][first + k];
-        q[(1 + 2*leg)*w + k] = o->entry[1][first + k];
-        t->singular[k] += o->singular[first + k];
+        q[(2*leg)*w + k] = o[0*count + first + k];
+        q[(1 + 2*leg)*w + k] = o[1*count + first + k];
+        t->singular[k] += o[2*count + first + k];
+        t->total[k] += o[3*count + first + k];
     }
 }
 
-INLINE void inverse_kinematics_run(const prepared *m, size_t w, const real *X, real *q, verdict
-    *t)
+INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    inverse_kinematics_values values, *const s = &values;
-    inverse_kinematics_results_rpr results_rpr;
-    inverse_kinematics_before(w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        inverse_kinematics_legs_rpr(m, 0, 1, s, 0, 2, &results_rpr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            inverse_kinematics_place_rpr(w, &results_rpr, leg, leg, q, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 2; ++leg) {
-            inverse_kinematics_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
-            inverse_kinematics_place_rpr(w, &results_rpr, leg, 0, q, t);
-        }
+    real s[2] = {0}, o_rpr[4*LEGS(2)] = {0};
+    inverse_kinematics_before(1, X, s);
+    inverse_kinematics_legs_rpr(m, 1, 0, 1, s, 0, LEGS(2), o_rpr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        inverse_kinematics_place_rpr(1, LEGS(2), o_rpr, leg, leg, q, t);
+    }
+}
+
+INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
+{
+    real s[2*LANES], o_rpr[4*LANES];
+    inverse_kinematics_before(LANES, X, s);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        inverse_kinematics_legs_rpr(m, LANES, leg, 0, s, 1, LANES, o_rpr);
+        inverse_kinematics_place_rpr(LANES, LANES, o_rpr, leg, 0, q, t);
     }
 }
 
 /* ---- joint_rates: 28 mul, 18 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES];
-} joint_rates_values;
-typedef struct {
-    real entry[2][8], singular[8];
-} joint_rates_results_rpr;
-
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rates_values *s)
+INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_dot_x;
+        s[3*w + k] = t_dot_y;
     }
 }
 
-INLINE void joint_rates_legs_rpr(const prepared *m, size_t leg, size_t legs, const
-    joint_rates_values *s, size_t states, size_t count, joint_rates_results_rpr *o)
+INLINE void joint_rates_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real branch_1 = m->branch_1[i];
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        /* (rpr-S) from the base point to the connection point */
         const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        /* (rpr-K1) from the base point to the connection point */
-        const real S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-K2) component along the reference direction */
-        const real px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx;
-        /* (rpr-K3) component across the reference direction */
-        const real py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy;
-        /* (rpr-K5) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (rpr-K6) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real inv_root_1 = 1/root_1;
-        const real axis_x_x = S_x*inv_root_1;
-        const real axis_x_y = S_y*inv_root_1;
-        /* (rpr-V1) velocity of the connection point */
-        const real S_dot_tip_x = axis_x_x*t_dot_x + axis_x_y*t_dot_y;
-        /* (rpr-V6) rate of joint 1 */
-        const real qd_1 = inv_root_1*(axis_x_x*t_dot_y - axis_x_y*t_dot_x);
-        o->entry[0][k] = qd_1;
-        o->entry[1][k] = S_dot_tip_x;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
-            UNLESS(magnitude(root_1) > TOLERANCE*R(0.75));
+        const real t_y = s[1*w + j];
+        const real rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+        /* (rpr-px_1) component along the reference direction */
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-rho2_1) squared amplitude */
+        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
+        /* (rpr-root_1) amplitude, with the sign of the branch */
+        const real rpr_branch_1 = m->rpr_branch_1[i];
+        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
+        /* (rpr-w_1) reciprocal vector 1 */
+        const real inv_rpr_root_1 = 1/rpr_root_1;
+        const real rpr_axis_x_x = inv_rpr_root_1*rpr_S_x;
+        const real rpr_axis_x_y = inv_rpr_root_1*rpr_S_y;
+        /* (rpr-S_dot) velocity of the connection point */
+        const real t_dot_x = s[2*w + j];
+        const real t_dot_y = s[3*w + j];
+        const real rpr_S_dot_tip_x = rpr_axis_x_x*t_dot_x + rpr_axis_x_y*t_dot_y;
+        /* (rpr-qd_1) rate of joint 1 */
+        const real rpr_qd_1 = inv_rpr_root_1*(rpr_axis_x_x*t_dot_y - rpr_axis_x_y*t_dot_x);
+        o[0*count + k] = rpr_qd_1;
+        o[1*count + k] = rpr_S_dot_tip_x;
+        o[3*count + k] = rpr_qd_1 + rpr_S_dot_tip_x;
+        o[2*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
+            UNLESS(magnitude(rpr_root_1) > TOLERANCE*R(0.75));
     }
 }
 
-INLINE void joint_rates_place_rpr(size_t w, const joint_rates_results_rpr *o, size_t leg, size_t
-    first, real *qd, verdict *t)
+INLINE void joint_rates_place_rpr(size_t w, size_t count, const real *o, size_t leg, size_t first,
+    real *qd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qd[(2*leg)*w + k] = o->entry[0][first + k];
-        qd[(1 + 2*leg)*w + k] = o->entry[1][first + k];
-        t->singular[k] += o->singular[first + k];
+        qd[(2*leg)*w + k] = o[0*count + first + k];
+        qd[(1 + 2*leg)*w + k] = o[1*count + first + k];
+        t->singular[k] += o[2*count + first + k];
+        t->total[k] += o[3*count + first + k];
     }
 }
 
-INLINE void joint_rates_run(const prepared *m, size_t w, const real *X, const real *V, real *qd,
+INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+{
+    real s[4] = {0}, o_rpr[4*LEGS(2)] = {0};
+    joint_rates_before(1, X, V, s);
+    joint_rates_legs_rpr(m, 1, 0, 1, s, 0, LEGS(2), o_rpr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        joint_rates_place_rpr(1, LEGS(2), o_rpr, leg, leg, qd, t);
+    }
+}
+
+INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    joint_rates_values values, *const s = &values;
-    joint_rates_results_rpr results_rpr;
-    joint_rates_before(w, X, V, s);
-    if (w == 1) {  /* the legs side by side */
-        joint_rates_legs_rpr(m, 0, 1, s, 0, 2, &results_rpr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            joint_rates_place_rpr(w, &results_rpr, leg, leg, qd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 2; ++leg) {
-            joint_rates_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
-            joint_rates_place_rpr(w, &results_rpr, leg, 0, qd, t);
-        }
+    real s[4*LANES], o_rpr[4*LANES];
+    joint_rates_before(LANES, X, V, s);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        joint_rates_legs_rpr(m, LANES, leg, 0, s, 1, LANES, o_rpr);
+        joint_rates_place_rpr(LANES, LANES, o_rpr, leg, 0, qd, t);
     }
 }
 
 /* ---- joint_accelerations: 46 mul, 26 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], t_ddot_x[LANES], t_ddot_y[LANES];
-} joint_accelerations_values;
-typedef struct {
-    real entry[2][8], singular[8];
-} joint_accelerations_results_rpr;
-
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A,
-    joint_accelerations_values *s)
+INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
+    *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_dot_x;
+        s[3*w + k] = t_dot_y;
+        s[4*w + k] = t_ddot_x;
+        s[5*w + k] = t_ddot_y;
     }
 }
 
-INLINE void joint_accelerations_legs_rpr(const prepared *m, size_t leg, size_t legs, const
-    joint_accelerations_values *s, size_t states, size_t count, joint_accelerations_results_rpr
-    *o)
+INLINE void joint_accelerations_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs,
+    const real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real branch_1 = m->branch_1[i];
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        /* (rpr-S) from the base point to the connection point */
         const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        /* (rpr-K1) from the base point to the connection point */
-        const real S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-K2) component along the reference direction */
-        const real px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx;
-        /* (rpr-K3) component across the reference direction */
-        const real py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy;
-        /* (rpr-K5) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (rpr-K6) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real inv_root_1 = 1/root_1;
-        const real axis_x_x = S_x*inv_root_1;
-        const real axis_x_y = S_y*inv_root_1;
-        /* (rpr-V1) velocity of the connection point */
-        const real S_dot_tip_x = axis_x_x*t_dot_x + axis_x_y*t_dot_y;
-        /* (rpr-V6) rate of joint 1 */
-        const real qd_1 = inv_root_1*(axis_x_x*t_dot_y - axis_x_y*t_dot_x);
-        /* (rpr-A4) acceleration of the connection point left to the joint accelerations */
-        const real rel_x = axis_x_x*t_ddot_x + axis_x_y*t_ddot_y + qd_1*qd_1*root_1;
-        const real rel_y = axis_x_x*t_ddot_y - 2*S_dot_tip_x*qd_1 - axis_x_y*t_ddot_x;
-        /* (rpr-A6) acceleration of joint 1 */
-        const real qdd_1 = inv_root_1*rel_y;
-        o->entry[0][k] = qdd_1;
-        o->entry[1][k] = rel_x;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
-            UNLESS(magnitude(root_1) > TOLERANCE*R(0.75));
+        const real t_y = s[1*w + j];
+        const real rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+        /* (rpr-px_1) component along the reference direction */
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-rho2_1) squared amplitude */
+        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
+        /* (rpr-root_1) amplitude, with the sign of the branch */
+        const real rpr_branch_1 = m->rpr_branch_1[i];
+        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
+        /* (rpr-w_1) reciprocal vector 1 */
+        const real inv_rpr_root_1 = 1/rpr_root_1;
+        const real rpr_axis_x_x = inv_rpr_root_1*rpr_S_x;
+        const real rpr_axis_x_y = inv_rpr_root_1*rpr_S_y;
+        /* (rpr-S_dot) velocity of the connection point */
+        const real t_dot_x = s[2*w + j];
+        const real t_dot_y = s[3*w + j];
+        const real rpr_S_dot_tip_x = rpr_axis_x_x*t_dot_x + rpr_axis_x_y*t_dot_y;
+        /* (rpr-qd_1) rate of joint 1 */
+        const real rpr_qd_1 = inv_rpr_root_1*(rpr_axis_x_x*t_dot_y - rpr_axis_x_y*t_dot_x);
+        /* (rpr-rel) acceleration of the connection point left to the joint accelerations */
+        const real t_ddot_x = s[4*w + j];
+        const real t_ddot_y = s[5*w + j];
+        const real rpr_rel_x = rpr_axis_x_x*t_ddot_x + rpr_axis_x_y*t_ddot_y +
+            rpr_qd_1*rpr_qd_1*rpr_root_1;
+        const real rpr_rel_y = rpr_axis_x_x*t_ddot_y - 2*rpr_S_dot_tip_x*rpr_qd_1 -
+            rpr_axis_x_y*t_ddot_x;
+        /* (rpr-qdd_1) acceleration of joint 1 */
+        const real rpr_qdd_1 = inv_rpr_root_1*rpr_rel_y;
+        o[0*count + k] = rpr_qdd_1;
+        o[1*count + k] = rpr_rel_x;
+        o[3*count + k] = rpr_qdd_1 + rpr_rel_x;
+        o[2*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
+            UNLESS(magnitude(rpr_root_1) > TOLERANCE*R(0.75));
     }
 }
 
-INLINE void joint_accelerations_place_rpr(size_t w, const joint_accelerations_results_rpr *o,
-    size_t leg, size_t first, real *qdd, verdict *t)
+INLINE void joint_accelerations_place_rpr(size_t w, size_t count, const real *o, size_t leg,
+    size_t first, real *qdd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qdd[(2*leg)*w + k] = o->entry[0][first + k];
-        qdd[(1 + 2*leg)*w + k] = o->entry[1][first + k];
-        t->singular[k] += o->singular[first + k];
+        qdd[(2*leg)*w + k] = o[0*count + first + k];
+        qdd[(1 + 2*leg)*w + k] = o[1*count + first + k];
+        t->singular[k] += o[2*count + first + k];
+        t->total[k] += o[3*count + first + k];
     }
 }
 
-INLINE void joint_accelerations_run(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd, verdict *t)
+INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd, verdict *t)
 {
-    joint_accelerations_values values, *const s = &values;
-    joint_accelerations_results_rpr results_rpr;
-    joint_accelerations_before(w, X, V, A, s);
-    if (w == 1) {  /* the legs side by side */
-        joint_accelerations_legs_rpr(m, 0, 1, s, 0, 2, &results_rpr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            joint_accelerations_place_rpr(w, &results_rpr, leg, leg, qdd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 2; ++leg) {
-            joint_accelerations_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
-            joint_accelerations_place_rpr(w, &results_rpr, leg, 0, qdd, t);
-        }
+    real s[6] = {0}, o_rpr[4*LEGS(2)] = {0};
+    joint_accelerations_before(1, X, V, A, s);
+    joint_accelerations_legs_rpr(m, 1, 0, 1, s, 0, LEGS(2), o_rpr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        joint_accelerations_place_rpr(1, LEGS(2), o_rpr, leg, leg, qdd, t);
+    }
+}
+
+INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, verdict *t)
+{
+    real s[6*LANES], o_rpr[4*LANES];
+    joint_accelerations_before(LANES, X, V, A, s);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        joint_accelerations_legs_rpr(m, LANES, leg, 0, s, 1, LANES, o_rpr);
+        joint_accelerations_place_rpr(LANES, LANES, o_rpr, leg, 0, qdd, t);
     }
 }
 
 /* ---- legs: 88 mul, 54 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], t_ddot_x[LANES], t_ddot_y[LANES];
-} legs_values;
-typedef struct {
-    real entry[4][8], singular[8];
-} legs_results_rpr;
-
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, legs_values *s)
+INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_dot_x;
+        s[3*w + k] = t_dot_y;
+        s[4*w + k] = t_ddot_x;
+        s[5*w + k] = t_ddot_y;
     }
 }
 
-INLINE void legs_legs_rpr(const prepared *m, size_t leg, size_t legs, const legs_values *s, size_t
-    states, size_t count, legs_results_rpr *o)
+INLINE void legs_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real J_group_1_zz = m->J_group_1_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_1_x = m->h_1_x[i];
-        const real h_1_y = m->h_1_y[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        /* (rpr-S) from the base point to the connection point */
         const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_link2_mass = m->rpr_link2_mass[i];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        /* (rpr-K1) from the base point to the connection point */
-        const real S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-K2) component along the reference direction */
-        const real px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx;
-        /* (rpr-K3) component across the reference direction */
-        const real py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy;
-        /* (rpr-K5) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (rpr-K6) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real inv_root_1 = 1/root_1;
-        const real axis_x_x = S_x*inv_root_1;
-        const real axis_x_y = S_y*inv_root_1;
-        /* (rpr-V1) velocity of the connection point */
-        const real S_dot_tip_x = axis_x_x*t_dot_x + axis_x_y*t_dot_y;
-        /* (rpr-V6) rate of joint 1 */
-        const real qd_1 = inv_root_1*(axis_x_x*t_dot_y - axis_x_y*t_dot_x);
-        /* (rpr-V9) centripetal tensor of link 1 */
-        const real W_1_t = qd_1*qd_1;
-        /* (rpr-K7) cosine of the angle of joint 1 from its reference direction */
-        const real c_1 = inv_root_1*px_1;
-        /* (rpr-K8) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*py_1;
-        /* (rpr-A2) acceleration of the connection point */
-        const real S_ddot_tip_y = axis_x_x*t_ddot_y - axis_x_y*t_ddot_x;
-        /* (rpr-A4) acceleration of the connection point left to the joint accelerations */
-        const real rel_y = S_ddot_tip_y - 2*S_dot_tip_x*qd_1;
-        /* (rpr-A6) acceleration of joint 1 */
-        const real qdd_1 = inv_root_1*rel_y;
-        /* (rpr-N3) acceleration of the reference point of link 2, less gravity */
-        const real g_r1_x = c_1*g_r0_x + g_r0_y*s_1;
-        const real g_r1_y = c_1*g_r0_y - g_r0_x*s_1;
-        const real acc_2_x = axis_x_x*t_ddot_x + axis_x_y*t_ddot_y - g_r1_x;
-        const real acc_2_y = S_ddot_tip_y - g_r1_y;
-        /* (rpr-N12) inertia moment of the links that turn with link 1, about their reference points */
-        const real mu_1_z = J_group_1_zz*qdd_1 + acc_2_y*h_2_x + g_r1_x*h_1_y - acc_2_x*h_2_y -
-            g_r1_y*h_1_x;
-        /* (rpr-N21) leg force on the platform without actuation and without the mass at the connection
+        const real t_y = s[1*w + j];
+        const real rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+        /* (rpr-px_1) component along the reference direction */
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-rho2_1) squared amplitude */
+        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
+        /* (rpr-root_1) amplitude, with the sign of the branch */
+        const real rpr_branch_1 = m->rpr_branch_1[i];
+        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
+        /* (rpr-w_1) reciprocal vector 1 */
+        const real inv_rpr_root_1 = 1/rpr_root_1;
+        const real rpr_axis_x_x = inv_rpr_root_1*rpr_S_x;
+        const real rpr_axis_x_y = inv_rpr_root_1*rpr_S_y;
+        /* (rpr-S_dot) velocity of the connection point */
+        const real t_dot_x = s[2*w + j];
+        const real t_dot_y = s[3*w + j];
+        const real rpr_S_dot_tip_x = rpr_axis_x_x*t_dot_x + rpr_axis_x_y*t_dot_y;
+        /* (rpr-qd_1) rate of joint 1 */
+        const real rpr_qd_1 = inv_rpr_root_1*(rpr_axis_x_x*t_dot_y - rpr_axis_x_y*t_dot_x);
+        /* (rpr-W_1) centripetal tensor of link 1 */
+        const real rpr_W_1_t = rpr_qd_1*rpr_qd_1;
+        /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real rpr_c_1 = inv_rpr_root_1*rpr_px_1;
+        /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rpr_s_1 = inv_rpr_root_1*rpr_py_1;
+        /* (rpr-S_ddot) acceleration of the connection point */
+        const real t_ddot_x = s[4*w + j];
+        const real t_ddot_y = s[5*w + j];
+        const real rpr_S_ddot_tip_y = rpr_axis_x_x*t_ddot_y - rpr_axis_x_y*t_ddot_x;
+        /* (rpr-rel) acceleration of the connection point left to the joint accelerations */
+        const real rpr_rel_y = rpr_S_ddot_tip_y - 2*rpr_S_dot_tip_x*rpr_qd_1;
+        /* (rpr-qdd_1) acceleration of joint 1 */
+        const real rpr_qdd_1 = inv_rpr_root_1*rpr_rel_y;
+        /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
+        const real rpr_g_r0_x = m->rpr_g_r0_x[i];
+        const real rpr_g_r0_y = m->rpr_g_r0_y[i];
+        const real rpr_g_r1_x = rpr_c_1*rpr_g_r0_x + rpr_g_r0_y*rpr_s_1;
+        const real rpr_g_r1_y = rpr_c_1*rpr_g_r0_y - rpr_g_r0_x*rpr_s_1;
+        const real rpr_acc_2_x = rpr_axis_x_x*t_ddot_x + rpr_axis_x_y*t_ddot_y - rpr_g_r1_x;
+        const real rpr_acc_2_y = rpr_S_ddot_tip_y - rpr_g_r1_y;
+        /* (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+        const real rpr_J_group_1_zz = m->rpr_J_group_1_zz[i];
+        const real rpr_h_1_x = m->rpr_h_1_x[i];
+        const real rpr_h_1_y = m->rpr_h_1_y[i];
+        const real rpr_h_2_x = m->rpr_h_2_x[i];
+        const real rpr_h_2_y = m->rpr_h_2_y[i];
+        const real rpr_mu_1_z = rpr_J_group_1_zz*rpr_qdd_1 + rpr_acc_2_y*rpr_h_2_x +
+            rpr_g_r1_x*rpr_h_1_y - rpr_acc_2_x*rpr_h_2_y - rpr_g_r1_y*rpr_h_1_x;
+        /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_y = W_1_t*h_2_y - h_2_x*qdd_1 - inv_root_1*mu_1_z;
-        /* (rpr-N26) leg force on the platform without actuation, the last link's mass included */
-        const real c_true_x = W_1_t*h_2_x + h_2_y*qdd_1 - acc_2_x*rpr_link2_mass;
-        const real c_true_y = c_y - acc_2_y*rpr_link2_mass;
-        const real c_true_in_base_x = axis_x_x*c_true_x - axis_x_y*c_true_y;
-        const real c_true_in_base_y = axis_x_x*c_true_y + axis_x_y*c_true_x;
-        o->entry[0][k] = c_true_in_base_x;
-        o->entry[1][k] = c_true_in_base_y;
-        o->entry[2][k] = axis_x_x;
-        o->entry[3][k] = axis_x_y;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
-            UNLESS(magnitude(root_1) > TOLERANCE*R(0.75));
+        const real rpr_c_y = rpr_W_1_t*rpr_h_2_y - inv_rpr_root_1*rpr_mu_1_z -
+            rpr_h_2_x*rpr_qdd_1;
+        /* (rpr-c_true) leg force on the platform without actuation, the last link's mass included */
+        const real rpr_link2_mass = m->rpr_link2_mass[i];
+        const real rpr_c_true_x = rpr_W_1_t*rpr_h_2_x + rpr_h_2_y*rpr_qdd_1 -
+            rpr_acc_2_x*rpr_link2_mass;
+        const real rpr_c_true_y = rpr_c_y - rpr_acc_2_y*rpr_link2_mass;
+        const real rpr_c_true_in_base_x = rpr_axis_x_x*rpr_c_true_x - rpr_axis_x_y*rpr_c_true_y;
+        const real rpr_c_true_in_base_y = rpr_axis_x_x*rpr_c_true_y + rpr_axis_x_y*rpr_c_true_x;
+        o[0*count + k] = rpr_c_true_in_base_x;
+        o[1*count + k] = rpr_c_true_in_base_y;
+        o[2*count + k] = rpr_axis_x_x;
+        o[3*count + k] = rpr_axis_x_y;
+        o[4*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
+            UNLESS(magnitude(rpr_root_1) > TOLERANCE*R(0.75));
     }
 }
 
-INLINE void legs_place_rpr(size_t w, const legs_results_rpr *o, size_t leg, size_t first, real
+INLINE void legs_place_rpr(size_t w, size_t count, const real *o, size_t leg, size_t first, real
     *leg_force, real *drive, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        leg_force[(3*leg)*w + k] = o->entry[0][first + k];
-        leg_force[(1 + 3*leg)*w + k] = o->entry[1][first + k];
-        drive[(3*leg)*w + k] = o->entry[2][first + k];
-        drive[(1 + 3*leg)*w + k] = o->entry[3][first + k];
-        t->singular[k] += o->singular[first + k];
+        leg_force[(3*leg)*w + k] = o[0*count + first + k];
+        leg_force[(1 + 3*leg)*w + k] = o[1*count + first + k];
+        drive[(3*leg)*w + k] = o[2*count + first + k];
+        drive[(1 + 3*leg)*w + k] = o[3*count + first + k];
+        t->singular[k] += o[4*count + first + k];
     }
 }
 
-INLINE void legs_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
-    real *leg_force, real *drive, verdict *t)
+INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
+    *leg_force, real *drive, verdict *t)
 {
-    legs_values values, *const s = &values;
-    legs_results_rpr results_rpr;
-    clear(leg_force, 6*w);
-    clear(drive, 6*w);
-    legs_before(w, X, V, A, s);
-    if (w == 1) {  /* the legs side by side */
-        legs_legs_rpr(m, 0, 1, s, 0, 2, &results_rpr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            legs_place_rpr(w, &results_rpr, leg, leg, leg_force, drive, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 2; ++leg) {
-            legs_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
-            legs_place_rpr(w, &results_rpr, leg, 0, leg_force, drive, t);
-        }
+    real s[6] = {0}, o_rpr[5*LEGS(2)] = {0};
+    clear(leg_force, 6);
+    clear(drive, 6);
+    legs_before(1, X, V, A, s);
+    legs_legs_rpr(m, 1, 0, 1, s, 0, LEGS(2), o_rpr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        legs_place_rpr(1, LEGS(2), o_rpr, leg, leg, leg_force, drive, t);
     }
 }
 
 /* ---- potential: 46 mul, 38 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], potential_t[LANES], sum[1][LANES];
-} potential_values;
-typedef struct {
-    real sum[1][8], singular[8];
-} potential_results_rpr;
-
-INLINE void potential_before(const prepared *m, size_t w, const real *X, potential_values *s)
+INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
+        /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real h_star_x = m->h_star_x;
         const real h_star_y = m->h_star_y;
         const real m_star = m->m_star;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        /* (V1) potential energy */
         const real potential_t = gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y +
             m_star*t_y);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->potential_t[k] = potential_t;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = potential_t;
     }
 }
 
-INLINE void potential_legs_rpr(const prepared *m, size_t leg, size_t legs, const potential_values
-    *s, size_t states, size_t count, int add, potential_results_rpr *o)
+INLINE void potential_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real b_r0_x = m->b_r0_x[i];
-        const real b_r0_y = m->b_r0_y[i];
-        const real branch_1 = m->branch_1[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_1_x = m->h_1_x[i];
-        const real h_1_y = m->h_1_y[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        /* (rpr-S) from the base point to the connection point */
         const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_link1_mass = m->rpr_link1_mass[i];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        /* (rpr-K1) from the base point to the connection point */
-        const real S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-K2) component along the reference direction */
-        const real px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx;
-        /* (rpr-K3) component across the reference direction */
-        const real py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy;
-        /* (rpr-K5) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (rpr-K6) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real inv_root_1 = 1/root_1;
-        /* (rpr-K7) cosine of the angle of joint 1 from its reference direction */
-        const real c_1 = inv_root_1*px_1;
-        /* (rpr-K8) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*py_1;
-        /* (V1) potential energy */
-        const real potential_t_2 = (c_1*g_r0_x + g_r0_y*s_1)*(h_1_x + h_2_x +
-            rpr_link1_mass*(b_r0_x*c_1 + b_r0_y*s_1)) + (c_1*g_r0_y - g_r0_x*s_1)*(h_1_y + h_2_y +
-            rpr_link1_mass*(b_r0_y*c_1 - b_r0_x*s_1));
-        o->sum[0][k] = add ? o->sum[0][k] + potential_t_2 : potential_t_2;  /* total_rpr */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
-            UNLESS(magnitude(root_1) > TOLERANCE*R(0.75));
+        const real t_y = s[1*w + j];
+        const real rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+        /* (rpr-px_1) component along the reference direction */
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-rho2_1) squared amplitude */
+        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
+        /* (rpr-root_1) amplitude, with the sign of the branch */
+        const real rpr_branch_1 = m->rpr_branch_1[i];
+        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
+        /* (rpr-w_1) reciprocal vector 1 */
+        const real inv_rpr_root_1 = 1/rpr_root_1;
+        /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real rpr_c_1 = inv_rpr_root_1*rpr_px_1;
+        /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rpr_s_1 = inv_rpr_root_1*rpr_py_1;
+        /* (potential) potential energy */
+        const real rpr_b_r0_x = m->rpr_b_r0_x[i];
+        const real rpr_b_r0_y = m->rpr_b_r0_y[i];
+        const real rpr_g_r0_x = m->rpr_g_r0_x[i];
+        const real rpr_g_r0_y = m->rpr_g_r0_y[i];
+        const real rpr_h_1_x = m->rpr_h_1_x[i];
+        const real rpr_h_1_y = m->rpr_h_1_y[i];
+        const real rpr_h_2_x = m->rpr_h_2_x[i];
+        const real rpr_h_2_y = m->rpr_h_2_y[i];
+        const real rpr_link1_mass = m->rpr_link1_mass[i];
+        const real rpr_potential_t = (rpr_c_1*rpr_g_r0_x + rpr_g_r0_y*rpr_s_1)*(rpr_h_1_x +
+            rpr_h_2_x + rpr_link1_mass*(rpr_b_r0_x*rpr_c_1 + rpr_b_r0_y*rpr_s_1)) +
+            (rpr_c_1*rpr_g_r0_y - rpr_g_r0_x*rpr_s_1)*(rpr_h_1_y + rpr_h_2_y +
+            rpr_link1_mass*(rpr_b_r0_y*rpr_c_1 - rpr_b_r0_x*rpr_s_1));
+        terms[0*count + k] = add ? terms[0*count + k] + rpr_potential_t : rpr_potential_t;  /* total_rpr */
+        o[0*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
+            UNLESS(magnitude(rpr_root_1) > TOLERANCE*R(0.75));
     }
 }
 
-INLINE void potential_place_rpr(size_t w, const potential_results_rpr *o, size_t first, verdict
-    *t)
+INLINE void potential_place_rpr(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
+        t->singular[k] += o[0*count + first + k];
     }
 }
 
-INLINE void potential_after(size_t w, const potential_values *s, real *potential)
+INLINE void potential_after(size_t w, const real *s, const real *sums, real *potential)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real potential_t = s->potential_t[k];
-        const real total_rpr = s->sum[0][k];
-        /* (V1) potential energy */
+        /* (potential) potential energy */
+        const real potential_t = s[2*w + k];
+        const real total_rpr = sums[0*w + k];
         const real potential_ = -potential_t - total_rpr;
         potential[0*w + k] = potential_;
     }
 }
 
-INLINE void potential_run(const prepared *m, size_t w, const real *X, real *potential, verdict *t)
+INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    potential_values values, *const s = &values;
-    potential_results_rpr results_rpr;
-    potential_before(m, w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        memset(results_rpr.sum, 0, sizeof results_rpr.sum);
-        potential_legs_rpr(m, 0, 1, s, 0, 2, 0, &results_rpr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            potential_place_rpr(w, &results_rpr, leg, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_rpr.sum[n], 2);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rpr.sum, 0, sizeof results_rpr.sum);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            potential_legs_rpr(m, leg, 0, s, 1, w, 1, &results_rpr);
-            potential_place_rpr(w, &results_rpr, 0, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_rpr.sum[n][k];
-            }
-        }
+    real s[3] = {0}, sums[1] = {0}, terms_rpr[1*LEGS(2)] = {0}, o_rpr[1*LEGS(2)] = {0};
+    potential_before(m, 1, X, s);
+    potential_legs_rpr(m, 1, 0, 1, s, 0, LEGS(2), 0, terms_rpr, o_rpr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        potential_place_rpr(1, LEGS(2), o_rpr, leg, t);
     }
-    potential_after(w, s, potential);
+    for (size_t n = 0; n < 1; ++n) {
+        sums[n] = total(terms_rpr + n*LEGS(2), 2);
+    }
+    potential_after(1, s, sums, potential);
 }
 
 /* ---- condition: 27 mul, 24 add, 2 div, 5 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], sum[1][LANES];
-} condition_values;
-typedef struct {
-    real sum[1][8], entry[3][8], singular[8];
-} condition_results_rpr;
-
-INLINE void condition_before(const prepared *m, size_t w, const real *X, condition_values *s, real
-    *lengths)
+INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real legs_size = m->legs_size;
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
+        t->total[k] += legs_size;
     }
 }
 
-INLINE void condition_legs_rpr(const prepared *m, size_t leg, size_t legs, const condition_values
-    *s, size_t states, size_t count, int add, condition_results_rpr *o)
+INLINE void condition_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real b_c_x = m->b_c_x;
-        const real b_c_y = m->b_c_y;
-        const real branch_1 = m->branch_1[i];
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        /* (rpr-S) from the base point to the connection point */
         const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        /* (rpr-K1) from the base point to the connection point */
-        const real S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-K2) component along the reference direction */
-        const real px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx;
-        /* (rpr-K3) component across the reference direction */
-        const real py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy;
-        /* (rpr-K5) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (rpr-K6) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real inv_root_1 = 1/root_1;
-        const real axis_x_x = S_x*inv_root_1;
-        const real axis_x_y = S_y*inv_root_1;
-        /* (C2) rms distance of the platform points from their centroid */
-        const real spread_t_2 = b_c_x - rpr_platform_point_x;
-        const real spread_t_3 = b_c_y - rpr_platform_point_y;
-        const real spread_t_4 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3;
-        /* (rpr-K5) squared amplitude */
-        const real pivot_size = magnitude(rho2_1);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real pivot_size_2 = magnitude(root_1);
-        /* (rpr-N18) force at the connection point that balances the leg's inertia and weight along all
+        const real t_y = s[1*w + j];
+        const real rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+        /* (rpr-px_1) component along the reference direction */
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-rho2_1) squared amplitude */
+        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
+        /* (rpr-root_1) amplitude, with the sign of the branch */
+        const real rpr_branch_1 = m->rpr_branch_1[i];
+        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
+        /* (rpr-w_1) reciprocal vector 1 */
+        const real inv_rpr_root_1 = 1/rpr_root_1;
+        const real rpr_axis_x_x = inv_rpr_root_1*rpr_S_x;
+        const real rpr_axis_x_y = inv_rpr_root_1*rpr_S_y;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_x = m->b_c_x;
+        const real rpr_spread_t = b_c_x - rpr_platform_point_x;
+        const real b_c_y = m->b_c_y;
+        const real rpr_spread_t_2 = b_c_y - rpr_platform_point_y;
+        const real rpr_spread_t_3 = rpr_spread_t*rpr_spread_t + rpr_spread_t_2*rpr_spread_t_2;
+        /* (rpr-rho2_1) squared amplitude */
+        const real rpr_pivot_size = magnitude(rpr_rho2_1);
+        /* (rpr-w_1) reciprocal vector 1 */
+        const real rpr_pivot_size_2 = magnitude(rpr_root_1);
+        /* (rpr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real least_pivots = lesser(R(1.3333333333333333)*root(pivot_size),
-            R(1.3333333333333333)*pivot_size_2);
-        o->sum[0][k] = add ? o->sum[0][k] + spread_t_4 : spread_t_4;  /* total_rpr */
-        o->entry[0][k] = axis_x_x;
-        o->entry[1][k] = axis_x_y;
-        o->entry[2][k] = least_pivots;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
-            UNLESS(magnitude(root_1) > TOLERANCE*R(0.75));
+        const real rpr_least_pivots = lesser(R(1.3333333333333333)*root(rpr_pivot_size),
+            R(1.3333333333333333)*rpr_pivot_size_2);
+        terms[0*count + k] = add ? terms[0*count + k] + rpr_spread_t_3 : rpr_spread_t_3;  /* total_rpr */
+        o[0*count + k] = rpr_axis_x_x;
+        o[1*count + k] = rpr_axis_x_y;
+        o[2*count + k] = rpr_least_pivots;
+        o[4*count + k] = rpr_axis_x_x + (rpr_axis_x_y + rpr_least_pivots);
+        o[3*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
+            UNLESS(magnitude(rpr_root_1) > TOLERANCE*R(0.75));
     }
 }
 
-INLINE void condition_place_rpr(size_t w, const condition_results_rpr *o, size_t leg, size_t
-    first, real *H, real *pivots, verdict *t)
+INLINE void condition_place_rpr(size_t w, size_t count, const real *o, size_t leg, size_t first,
+    real *H, real *pivots, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(2 + leg)*w + k] = o->entry[1][first + k];
-        pivots[(leg)*w + k] = o->entry[2][first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(2 + leg)*w + k] = o[1*count + first + k];
+        pivots[(leg)*w + k] = o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
 }
 
-INLINE void condition_after(const prepared *m, size_t w, const condition_values *s, real *lengths)
+INLINE void condition_after(const prepared *m, size_t w, const real *sums, real *lengths, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real total_rpr = s->sum[0][k];
+        /* (spread) rms distance of the platform points from their centroid */
         const real spread_t = m->spread_t;
-        /* (C2) rms distance of the platform points from their centroid */
+        const real total_rpr = sums[0*w + k];
         const real spread_ = spread_t*root(total_rpr);
         lengths[0*w + k] = spread_;
+        t->total[k] += spread_;
     }
 }
 
-INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, real *lengths, real
-    *pivots, real *reach, verdict *t)
+INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
+    real *reach, verdict *t)
 {
-    condition_values values, *const s = &values;
-    condition_results_rpr results_rpr;
-    clear(reach, 2*w);
-    condition_before(m, w, X, s, lengths);
-    if (w == 1) {  /* the legs side by side */
-        memset(results_rpr.sum, 0, sizeof results_rpr.sum);
-        condition_legs_rpr(m, 0, 1, s, 0, 2, 0, &results_rpr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            condition_place_rpr(w, &results_rpr, leg, leg, H, pivots, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_rpr.sum[n], 2);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rpr.sum, 0, sizeof results_rpr.sum);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            condition_legs_rpr(m, leg, 0, s, 1, w, 1, &results_rpr);
-            condition_place_rpr(w, &results_rpr, leg, 0, H, pivots, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_rpr.sum[n][k];
-            }
-        }
+    real s[2] = {0}, sums[1] = {0}, terms_rpr[1*LEGS(2)] = {0}, o_rpr[5*LEGS(2)] = {0};
+    clear(reach, 2);
+    condition_before(m, 1, X, s, lengths, t);
+    condition_legs_rpr(m, 1, 0, 1, s, 0, LEGS(2), 0, terms_rpr, o_rpr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        condition_place_rpr(1, LEGS(2), o_rpr, leg, leg, H, pivots, t);
     }
-    condition_after(m, w, s, lengths);
+    for (size_t n = 0; n < 1; ++n) {
+        sums[n] = total(terms_rpr + n*LEGS(2), 2);
+    }
+    condition_after(m, 1, sums, lengths, t);
 }
 
 /* ---- what users call, as steps over these ---- */
 
-INLINE void M_any(const prepared *m, size_t w, const real *X, real *M_out, int *code)
+INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(2, 1, X, why.invalid);
+    M_run(m, X, M_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(4, 1, M_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(4, M_out);
+    }
+}
+
+INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
     real X_in[2*LANES], M[4*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    M_run(m, w, X, M, &why);
-    check(4, w, M, why.overflow);
-    judge(&why, w, code);
-    deliver(M, 4, w, code, M_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    M_run_lanes(m, X, M, &why);
+    suspect(&why, code);
+    deliver(4, M, M_out);
 }
 
-INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, real *Z_out, int
-    *code)
+INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 2) + total(V, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+    }
+    Z_run(m, X, V, Z_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(2, 1, Z_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(2, Z_out);
+    }
+}
+
+INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     real X_in[2*LANES], V_in[2*LANES], Z[2*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    V = side_by_side(2, w, V, V_in, why.invalid);
-    Z_run(m, w, X, V, Z, &why);
-    check(2, w, Z, why.overflow);
-    judge(&why, w, code);
-    deliver(Z, 2, w, code, Z_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    V = side_by_side(2, V, V_in, why.total);
+    Z_run_lanes(m, X, V, Z, &why);
+    suspect(&why, code);
+    deliver(2, Z, Z_out);
 }
 
-INLINE void H_any(const prepared *m, size_t w, const real *X, real *H_out, int *code)
+INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(2, 1, X, why.invalid);
+    H_run(m, X, H_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(4, 1, H_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(4, H_out);
+    }
+}
+
+INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
     real X_in[2*LANES], H[4*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    H_run(m, w, X, H, &why);
-    check(4, w, H, why.overflow);
-    judge(&why, w, code);
-    deliver(H, 4, w, code, H_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    H_run_lanes(m, X, H, &why);
+    suspect(&why, code);
+    deliver(4, H, H_out);
 }
 
-INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, real *q_out, int
-    *code)
+INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(2, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(4, 1, q_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(4, q_out);
+    }
+}
+
+INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     real X_in[2*LANES], q[4*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    inverse_kinematics_run(m, w, X, q, &why);
-    check(4, w, q, why.overflow);
-    judge(&why, w, code);
-    deliver(q, 4, w, code, q_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    suspect(&why, code);
+    deliver(4, q, q_out);
 }
 
-INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *qd_out, int *code)
+INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 2) + total(V, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+    }
+    joint_rates_run(m, X, V, qd_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(4, 1, qd_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(4, qd_out);
+    }
+}
+
+INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
 {
     real X_in[2*LANES], V_in[2*LANES], qd[4*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    V = side_by_side(2, w, V, V_in, why.invalid);
-    joint_rates_run(m, w, X, V, qd, &why);
-    check(4, w, qd, why.overflow);
-    judge(&why, w, code);
-    deliver(qd, 4, w, code, qd_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    V = side_by_side(2, V, V_in, why.total);
+    joint_rates_run_lanes(m, X, V, qd, &why);
+    suspect(&why, code);
+    deliver(4, qd, qd_out);
 }
 
-INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd_out, int *code)
+INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 2) + total(V, 2) + total(A, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+        check(2, 1, A, why.invalid);
+    }
+    joint_accelerations_run(m, X, V, A, qdd_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(4, 1, qdd_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(4, qdd_out);
+    }
+}
+
+INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
 {
     real X_in[2*LANES], V_in[2*LANES], A_in[2*LANES], qdd[4*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    V = side_by_side(2, w, V, V_in, why.invalid);
-    A = side_by_side(2, w, A, A_in, why.invalid);
-    joint_accelerations_run(m, w, X, V, A, qdd, &why);
-    check(4, w, qdd, why.overflow);
-    judge(&why, w, code);
-    deliver(qdd, 4, w, code, qdd_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    V = side_by_side(2, V, V_in, why.total);
+    A = side_by_side(2, A, A_in, why.total);
+    joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
+    suspect(&why, code);
+    deliver(4, qdd, qdd_out);
 }
 
-INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *V, real *M_out,
-    real *Z_out, real *H_out, int *code)
+INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 2) + total(V, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+    }
+    dynamics_run(m, X, V, M_out, Z_out, H_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(4, 1, M_out, why.overflow);
+        check(2, 1, Z_out, why.overflow);
+        check(4, 1, H_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(4, M_out);
+        refuse(2, Z_out);
+        refuse(4, H_out);
+    }
+}
+
+INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out, int *code)
 {
     real X_in[2*LANES], V_in[2*LANES], M[4*LANES], Z[2*LANES], H[4*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    V = side_by_side(2, w, V, V_in, why.invalid);
-    dynamics_run(m, w, X, V, M, Z, H, &why);
-    check(4, w, M, why.overflow);
-    check(2, w, Z, why.overflow);
-    check(4, w, H, why.overflow);
-    judge(&why, w, code);
-    deliver(M, 4, w, code, M_out);
-    deliver(Z, 2, w, code, Z_out);
-    deliver(H, 4, w, code, H_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    V = side_by_side(2, V, V_in, why.total);
+    dynamics_run_lanes(m, X, V, M, Z, H, &why);
+    suspect(&why, code);
+    deliver(4, M, M_out);
+    deliver(2, Z, Z_out);
+    deliver(4, H, H_out);
 }
 
-INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, const real *V, const
-    real *A, const real *wrench, real *tau_out, int *code)
+INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, real *x, real
+    *unsure, real *total)
 {
-    real X_in[2*LANES], V_in[2*LANES], A_in[2*LANES], wrench_in[2*LANES], required[2*LANES],
-        H[4*LANES], subtract_2[2*LANES], tau[2*LANES], work[8*LANES];
+    for (size_t k = 0; k < w; ++k) {
+        real a00 = a[(0)*w + k];
+        real a01 = a[(1)*w + k];
+        real b0 = b[0*w + k];
+        real a10 = a[(1*stride + 0)*w + k];
+        real a11 = a[(1*stride + 1)*w + k];
+        real b1 = b[1*w + k];
+        const real f0 = 1/a00;
+        const real d1 = a00*a11 - a10*a01;
+        const real f1 = a00/d1;
+        const real g10 = a10*f0;
+        b1 -= g10*b0;
+        const real x1 = (b1)*f1;
+        const real x0 = (b0)*f0 - a01*f0*x1;
+        x[0*w + k] = x0;
+        x[1*w + k] = x1;
+        total[k] += x0 + x1;
+        const real most0 = magnitude(g10);
+        const real most1 = larger(magnitude(f0), magnitude(f1));
+        unsure[k] += UNLESS(most0 <= R(10)) + UNLESS(most1 <= R(1000)) + UNLESS(is_finite(a00 +
+            d1));
+    }
+}
+
+INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau_out, int *code)
+{
+    real wrench_in[2], required[2] = {0}, H[4] = {0}, subtract_2[2] = {0}, unsure_4[1] = {0}, work[8];
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    V = side_by_side(2, w, V, V_in, why.invalid);
-    A = side_by_side(2, w, A, A_in, why.invalid);
-    wrench = optional(2, w, wrench, 0, wrench_in, why.invalid);
-    required_run(m, w, X, V, A, required, H, &why);
+    start(1, &why);
+    const real total_in = total(X, 2) + total(V, 2) + total(A, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+        check(2, 1, A, why.invalid);
+    }
+    wrench = optional(2, wrench, 0, wrench_in, why.invalid);
+    required_run(m, X, V, A, required, H, &why);
     const real *const extend_1 = wrench;
-    for (size_t i = 0; i < 2*w; ++i) {
+    for (size_t i = 0; i < 2; ++i) {
         subtract_2[i] = required[i] - extend_1[i];
     }
-    set_matrix(2, w, H, work);
-    solve(2, w, subtract_2, work, tau, why.singular);
-    check(2, w, tau, why.overflow);
-    judge(&why, w, code);
-    deliver(tau, 2, w, code, tau_out);
+    eliminate_0(1, 2, H, subtract_2, tau_out, unsure_4, why.total);
+    if (unsure_4[0] > 0) {
+        set_matrix(2, 1, H, work);
+        solve_apart(2, subtract_2, work, tau_out, why.singular);
+        check(2, 1, tau_out, why.overflow);
+    }
+    if (!is_finite(why.total[0])) {
+        check(2, 1, tau_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(2, tau_out);
+    }
 }
 
-INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, const real *V, const
-    real *tau, const real *wrench, real *A_out, int *code)
+INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau_out, int *code)
 {
-    real X_in[2*LANES], V_in[2*LANES], tau_in[2*LANES], wrench_in[2*LANES], M[4*LANES], Z[2*LANES],
-        H[4*LANES], times_1[2*LANES] = {0}, add_3[2*LANES], subtract_4[2*LANES], A[2*LANES],
-        work[8*LANES];
+    real X_in[2*LANES], V_in[2*LANES], A_in[2*LANES], wrench_in[2*LANES], required[2*LANES],
+        H[4*LANES], subtract_2[2*LANES], tau[2*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    V = side_by_side(2, w, V, V_in, why.invalid);
-    tau = side_by_side(2, w, tau, tau_in, why.invalid);
-    wrench = optional(2, w, wrench, 0, wrench_in, why.invalid);
-    dynamics_run(m, w, X, V, M, Z, H, &why);
-    product(2, 2, 1, w, H, tau, times_1);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    V = side_by_side(2, V, V_in, why.total);
+    A = side_by_side(2, A, A_in, why.total);
+    wrench = optional_side_by_side(2, wrench, 0, wrench_in, why.total);
+    required_run_lanes(m, X, V, A, required, H, &why);
+    const real *const extend_1 = wrench;
+    for (size_t i = 0; i < 2*LANES; ++i) {
+        subtract_2[i] = required[i] - extend_1[i];
+    }
+    eliminate_0(LANES, 2, H, subtract_2, tau, why.singular, why.total);
+    suspect(&why, code);
+    deliver(2, tau, tau_out);
+}
+
+INLINE void eliminate_1(size_t w, size_t stride, const real *a, const real *b, real *x, real
+    *unsure, real *total)
+{
+    for (size_t k = 0; k < w; ++k) {
+        real a00 = a[(0)*w + k];
+        real a01 = a[(1)*w + k];
+        real b0 = b[0*w + k];
+        real a10 = a[(1*stride + 0)*w + k];
+        real a11 = a[(1*stride + 1)*w + k];
+        real b1 = b[1*w + k];
+        const real f0 = 1/a00;
+        const real d1 = a00*a11 - a10*a01;
+        const real f1 = a00/d1;
+        const real g10 = a10*f0;
+        b1 -= g10*b0;
+        const real x1 = (b1)*f1;
+        const real x0 = (b0)*f0 - a01*f0*x1;
+        x[0*w + k] = x0;
+        x[1*w + k] = x1;
+        total[k] += x0 + x1;
+        const real most0 = magnitude(g10);
+        const real most1 = larger(magnitude(f0), magnitude(f1));
+        unsure[k] += UNLESS(most0 <= R(10)) + UNLESS(most1 <= R(250)) + UNLESS(is_finite(a00 +
+            d1));
+    }
+}
+
+INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
+    const real *wrench, real *A_out, int *code)
+{
+    real wrench_in[2], M[4] = {0}, Z[2] = {0}, H[4] = {0}, times_1[2] = {0}, add_3[2] = {0},
+        subtract_4[2] = {0}, unsure_7[1] = {0}, work[8];
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 2) + total(V, 2) + total(tau, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+        check(2, 1, tau, why.invalid);
+    }
+    wrench = optional(2, wrench, 0, wrench_in, why.invalid);
+    dynamics_run(m, X, V, M, Z, H, &why);
+    product(2, 2, 1, 1, H, tau, times_1);
     const real *const extend_2 = wrench;
-    for (size_t i = 0; i < 2*w; ++i) {
+    for (size_t i = 0; i < 2; ++i) {
         add_3[i] = times_1[i] + extend_2[i];
     }
-    for (size_t i = 0; i < 2*w; ++i) {
+    for (size_t i = 0; i < 2; ++i) {
         subtract_4[i] = add_3[i] - Z[i];
     }
-    set_matrix(2, w, M, work);
-    solve(2, w, subtract_4, work, A, why.singular);
-    check(2, w, A, why.overflow);
-    judge(&why, w, code);
-    deliver(A, 2, w, code, A_out);
+    eliminate_1(1, 2, M, subtract_4, A_out, unsure_7, why.total);
+    if (unsure_7[0] > 0) {
+        set_matrix(2, 1, M, work);
+        solve_apart(2, subtract_4, work, A_out, why.singular);
+        check(2, 1, A_out, why.overflow);
+    }
+    if (!is_finite(why.total[0])) {
+        check(2, 1, A_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(2, A_out);
+    }
 }
 
-INLINE void complete_acceleration_any(const real *A, real *completed_out, int *code)
+INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
+    *tau, const real *wrench, real *A_out, int *code)
+{
+    real X_in[2*LANES], V_in[2*LANES], tau_in[2*LANES], wrench_in[2*LANES], M[4*LANES], Z[2*LANES],
+        H[4*LANES], times_1[2*LANES] = {0}, add_3[2*LANES], subtract_4[2*LANES], A[2*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    V = side_by_side(2, V, V_in, why.total);
+    tau = side_by_side(2, tau, tau_in, why.total);
+    wrench = optional_side_by_side(2, wrench, 0, wrench_in, why.total);
+    dynamics_run_lanes(m, X, V, M, Z, H, &why);
+    product(2, 2, 1, LANES, H, tau, times_1);
+    const real *const extend_2 = wrench;
+    for (size_t i = 0; i < 2*LANES; ++i) {
+        add_3[i] = times_1[i] + extend_2[i];
+    }
+    for (size_t i = 0; i < 2*LANES; ++i) {
+        subtract_4[i] = add_3[i] - Z[i];
+    }
+    eliminate_1(LANES, 2, M, subtract_4, A, why.singular, why.total);
+    suspect(&why, code);
+    deliver(2, A, A_out);
+}
+
+INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
 {
     verdict why;
     start(1, &why);
     check(2, 1, A, why.invalid);
     const real *const completed = A;
     check(2, 1, completed, why.overflow);
-    judge(&why, 1, code);
-    deliver(completed, 2, 1, code, completed_out);
+    judge(&why, code);
+    copy(2, completed, completed_out);
+    if (*code != OK) {
+        refuse(2, completed_out);
+    }
 }
 
-INLINE void leg_reactions_any(const prepared *m, const real *X, const real *V, const real *A,
+INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out, int *code)
 {
     static const size_t places_0[] = {0, 1};
     real wrench_in[2], required[2] = {0}, H[4] = {0}, subtract_2[2] = {0}, solve_3[2] = {0},
-        leg_force[6] = {0}, drive[6] = {0}, forces[6] = {0}, work[8];
+        unsure_5[1] = {0}, leg_force[6] = {0}, drive[6] = {0}, forces[6] = {0}, work[8];
     verdict why;
     start(1, &why);
-    check(2, 1, X, why.invalid);
-    check(2, 1, V, why.invalid);
-    check(2, 1, A, why.invalid);
-    wrench = optional(2, 1, wrench, 0, wrench_in, why.invalid);
-    required_run(m, 1, X, V, A, required, H, &why);
+    const real total_in = total(X, 2) + total(V, 2) + total(A, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+        check(2, 1, A, why.invalid);
+    }
+    wrench = optional(2, wrench, 0, wrench_in, why.invalid);
+    required_run(m, X, V, A, required, H, &why);
     const real *const extend_1 = wrench;
     for (size_t i = 0; i < 2; ++i) {
         subtract_2[i] = required[i] - extend_1[i];
     }
-    set_matrix(2, 1, H, work);
-    solve_state(2, subtract_2, work, solve_3, why.singular);
-    legs_run(m, 1, X, V, A, leg_force, drive, &why);
+    eliminate_0(1, 2, H, subtract_2, solve_3, unsure_5, why.total);
+    if (unsure_5[0] > 0) {
+        set_matrix(2, 1, H, work);
+        solve_apart(2, subtract_2, work, solve_3, why.singular);
+        check(2, 1, solve_3, why.overflow);
+    }
+    legs_run(m, X, V, A, leg_force, drive, &why);
     for (size_t i = 0; i < 6; ++i) {
         forces[i] = leg_force[i];
     }
     add_forces(2, 3, 1, places_0, solve_3, drive, forces);
     check(6, 1, forces, why.overflow);
-    judge(&why, 1, code);
-    deliver(forces, 6, 1, code, forces_out);
+    judge(&why, code);
+    copy(6, forces, forces_out);
+    if (*code != OK) {
+        refuse(6, forces_out);
+    }
 }
 
-INLINE void energy_any(const prepared *m, const real *X, const real *V, real *kinetic_out, real
+INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out, int *code)
 {
     real M[4] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
     start(1, &why);
-    check(2, 1, X, why.invalid);
-    check(2, 1, V, why.invalid);
-    M_run(m, 1, X, M, &why);
-    potential_run(m, 1, X, potential_of_potential, &why);
+    const real total_in = total(X, 2) + total(V, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+    }
+    M_run(m, X, M, &why);
+    potential_run(m, X, potential_of_potential, &why);
     half_form(2, 1, V, M, kinetic);
     const real *const potential = potential_of_potential;
     check(1, 1, kinetic, why.overflow);
     check(1, 1, potential, why.overflow);
-    judge(&why, 1, code);
-    deliver(kinetic, 1, 1, code, kinetic_out);
-    deliver(potential, 1, 1, code, potential_out);
+    judge(&why, code);
+    copy(1, kinetic, kinetic_out);
+    copy(1, potential, potential_out);
+    if (*code != OK) {
+        refuse(1, kinetic_out);
+        refuse(1, potential_out);
+    }
 }
 
-INLINE void condition_any(const prepared *m, const real *X, real *sigma_out, real *legs_out, int
+INLINE void condition_one(const prepared *m, const real *X, real *sigma_out, real *legs_out, int
     *code)
 {
-    real H[4] = {0}, lengths[2] = {0}, legs[2] = {0}, reach[2] = {0}, sigma[2] = {0};
+    real H[4] = {0}, lengths[2] = {0}, reach[2] = {0}, sigma[2] = {0};
     verdict why;
     start(1, &why);
     check(2, 1, X, why.invalid);
-    condition_run(m, 1, X, H, lengths, legs, reach, &why);
+    condition_run(m, X, H, lengths, legs_out, reach, &why);
     singular_values(2, 2, H, sigma);
+    if (!is_finite(why.total[0])) {
+        check(2, 1, legs_out, why.overflow);
+    }
     check(2, 1, sigma, why.overflow);
-    check(2, 1, legs, why.overflow);
-    judge(&why, 1, code);
-    deliver(sigma, 2, 1, code, sigma_out);
-    deliver(legs, 2, 1, code, legs_out);
+    judge(&why, code);
+    copy(2, sigma, sigma_out);
+    if (*code != OK) {
+        refuse(2, sigma_out);
+        refuse(2, legs_out);
+    }
 }
 
-static void mismatch_any(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
+static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
     static const size_t places_0[] = {1, 3};
     real q[4] = {0}, take_1[2] = {0}, gap[2] = {0};
     verdict why;
     start(1, &why);
-    check(2, 1, X, why.invalid);
-    check(2, 1, q_actuated, why.invalid);
-    inverse_kinematics_run(m, 1, X, q, &why);
+    const real total_in = total(X, 2) + total(q_actuated, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, q_actuated, why.invalid);
+    }
+    inverse_kinematics_run(m, X, q, &why);
     take(2, 1, places_0, q, take_1);
     for (size_t i = 0; i < 2; ++i) {
         gap[i] = q_actuated[i] - take_1[i];
     }
     check(2, 1, gap, why.overflow);
-    judge(&why, 1, code);
-    deliver(gap, 2, 1, code, gap_out);
+    judge(&why, code);
+    copy(2, gap, gap_out);
+    if (*code != OK) {
+        refuse(2, gap_out);
+    }
 }
 
-static void slope_any(const prepared *m, const real *X, real *slope_out, int *code)
+static void slope_one(const prepared *m, const real *X, real *slope_out, int *code)
 {
-    real slope[4] = {0};
     verdict why;
     start(1, &why);
     check(2, 1, X, why.invalid);
-    H_run(m, 1, X, slope, &why);
-    check(4, 1, slope, why.overflow);
-    judge(&why, 1, code);
-    deliver(slope, 4, 1, code, slope_out);
+    H_run(m, X, slope_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(4, 1, slope_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(4, slope_out);
+    }
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -2699,12 +2888,12 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
     real trial[2] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    mismatch_any(m, found, q_actuated, gap, &code);
+    mismatch_one(m, found, q_actuated, gap, &code);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        slope_any(m, found, slope, &code);
+        slope_one(m, found, slope, &code);
         if (code != OK) {
             break;
         }
@@ -2718,7 +2907,7 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            mismatch_any(m, trial, q_actuated, next, &tried);
+            mismatch_one(m, trial, q_actuated, next, &tried);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -2736,21 +2925,27 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 }
 
 
-INLINE void forward_kinematics_any(const prepared *m, const real *q_actuated, const real *X0, real
+INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
     *X_out, int *code)
 {
     real X[2] = {0};
     verdict why;
     start(1, &why);
-    check(2, 1, q_actuated, why.invalid);
-    check(2, 1, X0, why.invalid);
+    const real total_in = total(q_actuated, 2) + total(X0, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, q_actuated, why.invalid);
+        check(2, 1, X0, why.invalid);
+    }
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(2, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 2, 1, code, X_out);
+    judge(&why, code);
+    copy(2, X, X_out);
+    if (*code != OK) {
+        refuse(2, X_out);
+    }
 }
 
-INLINE void dissipation_any(const real *V, real *dissipation_out, int *code)
+INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 {
     real subtract_1[2] = {0};
     verdict why;
@@ -2761,130 +2956,323 @@ INLINE void dissipation_any(const real *V, real *dissipation_out, int *code)
     }
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
-    judge(&why, 1, code);
-    deliver(dissipation, 1, 1, code, dissipation_out);
+    judge(&why, code);
+    copy(1, dissipation, dissipation_out);
+    if (*code != OK) {
+        refuse(1, dissipation_out);
+    }
 }
 
-INLINE void momentum_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *momentum_out, int *code)
+INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
+    *code)
+{
+    real M[4] = {0}, momentum[2] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 2) + total(V, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+    }
+    M_run(m, X, M, &why);
+    product(2, 2, 1, 1, M, V, momentum);
+    check(2, 1, momentum, why.overflow);
+    judge(&why, code);
+    copy(2, momentum, momentum_out);
+    if (*code != OK) {
+        refuse(2, momentum_out);
+    }
+}
+
+INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
+    int *code)
 {
     real X_in[2*LANES], V_in[2*LANES], M[4*LANES], momentum[2*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    V = side_by_side(2, w, V, V_in, why.invalid);
-    M_run(m, w, X, M, &why);
-    product(2, 2, 1, w, M, V, momentum);
-    check(2, w, momentum, why.overflow);
-    judge(&why, w, code);
-    deliver(momentum, 2, w, code, momentum_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    V = side_by_side(2, V, V_in, why.total);
+    M_run_lanes(m, X, M, &why);
+    product(2, 2, 1, LANES, M, V, momentum);
+    add_up(2, momentum, why.total);
+    suspect(&why, code);
+    deliver(2, momentum, momentum_out);
 }
 
-INLINE void actuator_positions_any(const prepared *m, size_t w, const real *X, real *q_out, int
-    *code)
+INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
+{
+    static const size_t places_0[] = {0, 1, 2, 3};
+    real q[4] = {0}, margins[4] = {0};
+    verdict why;
+    start(1, &why);
+    check(2, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q, &why);
+    for (size_t i = 0; i < 4; ++i) {
+        margins[i] = q[i];
+    }
+    unlimited(4, 4, 1, places_0, margins, why.overflow);
+    judge(&why, code);
+    copy(4, margins, margins_out);
+    if (*code != OK) {
+        refuse(4, margins_out);
+    }
+}
+
+INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
+{
+    static const size_t places_0[] = {0, 1, 2, 3};
+    real X_in[2*LANES], q[4*LANES], margins[4*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    for (size_t i = 0; i < 4*LANES; ++i) {
+        margins[i] = q[i];
+    }
+    unlimited(4, 4, LANES, places_0, margins, why.invalid);
+    suspect(&why, code);
+    deliver(4, margins, margins_out);
+}
+
+INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
+{
+    real q[4] = {0}, subtract_1[4] = {0}, within[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(2, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q, &why);
+    for (size_t i = 0; i < 4; ++i) {
+        subtract_1[i] = q[i] - q[i];
+    }
+    not_negative(4, 1, subtract_1, within, why.overflow);
+    check(1, 1, within, why.overflow);
+    judge(&why, code);
+    copy(1, within, within_out);
+    if (*code != OK) {
+        refuse(1, within_out);
+    }
+}
+
+INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
+{
+    real X_in[2*LANES], q[4*LANES], subtract_1[4*LANES], within[1*LANES] = {0};
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    for (size_t i = 0; i < 4*LANES; ++i) {
+        subtract_1[i] = q[i] - q[i];
+    }
+    not_negative(4, LANES, subtract_1, within, why.invalid);
+    add_up(1, within, why.total);
+    suspect(&why, code);
+    deliver(1, within, within_out);
+}
+
+INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
+{
+    static const size_t places_0[] = {1, 3};
+    real q_of_inverse_kinematics[4] = {0}, q[2] = {0};
+    verdict why;
+    start(1, &why);
+    check(2, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
+    take(2, 1, places_0, q_of_inverse_kinematics, q);
+    check(2, 1, q, why.overflow);
+    judge(&why, code);
+    copy(2, q, q_out);
+    if (*code != OK) {
+        refuse(2, q_out);
+    }
+}
+
+INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     static const size_t places_0[] = {1, 3};
     real X_in[2*LANES], q_of_inverse_kinematics[4*LANES], q[2*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    inverse_kinematics_run(m, w, X, q_of_inverse_kinematics, &why);
-    take(2, 1*w, places_0, q_of_inverse_kinematics, q);
-    check(2, w, q, why.overflow);
-    judge(&why, w, code);
-    deliver(q, 2, w, code, q_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
+    take(2, 1*LANES, places_0, q_of_inverse_kinematics, q);
+    add_up(2, q, why.total);
+    suspect(&why, code);
+    deliver(2, q, q_out);
 }
 
-INLINE void actuator_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *qd_out, int *code)
+INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
+{
+    static const size_t places_0[] = {1, 3};
+    real qd_of_joint_rates[4] = {0}, qd[2] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 2) + total(V, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+    }
+    joint_rates_run(m, X, V, qd_of_joint_rates, &why);
+    take(2, 1, places_0, qd_of_joint_rates, qd);
+    check(2, 1, qd, why.overflow);
+    judge(&why, code);
+    copy(2, qd, qd_out);
+    if (*code != OK) {
+        refuse(2, qd_out);
+    }
+}
+
+INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
+    int *code)
 {
     static const size_t places_0[] = {1, 3};
     real X_in[2*LANES], V_in[2*LANES], qd_of_joint_rates[4*LANES], qd[2*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    V = side_by_side(2, w, V, V_in, why.invalid);
-    joint_rates_run(m, w, X, V, qd_of_joint_rates, &why);
-    take(2, 1*w, places_0, qd_of_joint_rates, qd);
-    check(2, w, qd, why.overflow);
-    judge(&why, w, code);
-    deliver(qd, 2, w, code, qd_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    V = side_by_side(2, V, V_in, why.total);
+    joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
+    take(2, 1*LANES, places_0, qd_of_joint_rates, qd);
+    add_up(2, qd, why.total);
+    suspect(&why, code);
+    deliver(2, qd, qd_out);
 }
 
-INLINE void actuator_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd_out, int *code)
+INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
+{
+    static const size_t places_0[] = {1, 3};
+    real qdd_of_joint_accelerations[4] = {0}, qdd[2] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 2) + total(V, 2) + total(A, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+        check(2, 1, A, why.invalid);
+    }
+    joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
+    take(2, 1, places_0, qdd_of_joint_accelerations, qdd);
+    check(2, 1, qdd, why.overflow);
+    judge(&why, code);
+    copy(2, qdd, qdd_out);
+    if (*code != OK) {
+        refuse(2, qdd_out);
+    }
+}
+
+INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out, int *code)
 {
     static const size_t places_0[] = {1, 3};
     real X_in[2*LANES], V_in[2*LANES], A_in[2*LANES], qdd_of_joint_accelerations[4*LANES],
         qdd[2*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    V = side_by_side(2, w, V, V_in, why.invalid);
-    A = side_by_side(2, w, A, A_in, why.invalid);
-    joint_accelerations_run(m, w, X, V, A, qdd_of_joint_accelerations, &why);
-    take(2, 1*w, places_0, qdd_of_joint_accelerations, qdd);
-    check(2, w, qdd, why.overflow);
-    judge(&why, w, code);
-    deliver(qdd, 2, w, code, qdd_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    V = side_by_side(2, V, V_in, why.total);
+    A = side_by_side(2, A, A_in, why.total);
+    joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
+    take(2, 1*LANES, places_0, qdd_of_joint_accelerations, qdd);
+    add_up(2, qdd, why.total);
+    suspect(&why, code);
+    deliver(2, qdd, qdd_out);
 }
 
-INLINE void power_any(const prepared *m, size_t w, const real *X, const real *V, const real *tau,
-    real *power_out, int *code)
+INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out, int *code)
+{
+    real H[4] = {0}, times_1[2] = {0}, power[1] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 2) + total(V, 2) + total(tau, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+        check(2, 1, tau, why.invalid);
+    }
+    H_run(m, X, H, &why);
+    product(2, 2, 1, 1, H, tau, times_1);
+    inner(2, 1, times_1, V, power);
+    check(1, 1, power, why.overflow);
+    judge(&why, code);
+    copy(1, power, power_out);
+    if (*code != OK) {
+        refuse(1, power_out);
+    }
+}
+
+INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out, int *code)
 {
     real X_in[2*LANES], V_in[2*LANES], tau_in[2*LANES], H[4*LANES], times_1[2*LANES] = {0},
         power[1*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    V = side_by_side(2, w, V, V_in, why.invalid);
-    tau = side_by_side(2, w, tau, tau_in, why.invalid);
-    H_run(m, w, X, H, &why);
-    product(2, 2, 1, w, H, tau, times_1);
-    inner(2, w, times_1, V, power);
-    check(1, w, power, why.overflow);
-    judge(&why, w, code);
-    deliver(power, 1, w, code, power_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    V = side_by_side(2, V, V_in, why.total);
+    tau = side_by_side(2, tau, tau_in, why.total);
+    H_run_lanes(m, X, H, &why);
+    product(2, 2, 1, LANES, H, tau, times_1);
+    inner(2, LANES, times_1, V, power);
+    add_up(1, power, why.total);
+    suspect(&why, code);
+    deliver(1, power, power_out);
 }
 
-INLINE void retract_any(const real *X, const real *step, real *X_moved_out, int *code)
+INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
 {
     real X_moved[2] = {0};
     verdict why;
     start(1, &why);
-    check(2, 1, X, why.invalid);
-    check(2, 1, step, why.invalid);
+    const real total_in = total(X, 2) + total(step, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, step, why.invalid);
+    }
     for (size_t i = 0; i < 2; ++i) {
         X_moved[i] = X[i] + step[i];
     }
     check(2, 1, X_moved, why.overflow);
-    judge(&why, 1, code);
-    deliver(X_moved, 2, 1, code, X_moved_out);
+    judge(&why, code);
+    copy(2, X_moved, X_moved_out);
+    if (*code != OK) {
+        refuse(2, X_moved_out);
+    }
 }
 
-INLINE void difference_any(const real *X0, const real *X1, real *step_out, int *code)
+INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
 {
     real step[2] = {0};
     verdict why;
     start(1, &why);
-    check(2, 1, X0, why.invalid);
-    check(2, 1, X1, why.invalid);
+    const real total_in = total(X0, 2) + total(X1, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X0, why.invalid);
+        check(2, 1, X1, why.invalid);
+    }
     for (size_t i = 0; i < 2; ++i) {
         step[i] = X1[i] - X0[i];
     }
     check(2, 1, step, why.overflow);
-    judge(&why, 1, code);
-    deliver(step, 2, 1, code, step_out);
+    judge(&why, code);
+    copy(2, step, step_out);
+    if (*code != OK) {
+        refuse(2, step_out);
+    }
 }
 
-INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real *X_out, int *code)
+INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
 {
     real subtract_1[2] = {0}, scale_2[2] = {0}, X[2] = {0};
     verdict why;
     start(1, &why);
-    check(2, 1, X0, why.invalid);
-    check(2, 1, X1, why.invalid);
-    check(1, 1, s, why.invalid);
+    const real total_in = total(X0, 2) + total(X1, 2) + total(s, 1);
+    if (!is_finite(total_in)) {
+        check(2, 1, X0, why.invalid);
+        check(2, 1, X1, why.invalid);
+        check(1, 1, s, why.invalid);
+    }
     for (size_t i = 0; i < 2; ++i) {
         subtract_1[i] = X1[i] - X0[i];
     }
@@ -2895,8 +3283,11 @@ INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real 
         X[i] = X0[i] + scale_2[i];
     }
     check(2, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 2, 1, code, X_out);
+    judge(&why, code);
+    copy(2, X, X_out);
+    if (*code != OK) {
+        refuse(2, X_out);
+    }
 }
 
 /* ---- one state, and batches ---- */
@@ -2905,7 +3296,7 @@ int fivebar_prismatic_M(const fivebar_prismatic_model *model, const fivebar_pris
     fivebar_prismatic_real *M)
 {
     int code;
-    M_any(model, 1, X, M, &code);
+    M_one(model, X, M, &code);
     return code;
 }
 
@@ -2913,9 +3304,9 @@ size_t fivebar_prismatic_M_batch(const fivebar_prismatic_model *model, size_t n,
     fivebar_prismatic_real *X, fivebar_prismatic_real *M, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        M_any(model, LANES, X + 2*i, M + 4*i, codes);
+        M_lanes(model, X + 2*i, M + 4*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_prismatic_M(model, X + 2*(i + k), M + 4*(i + k));
@@ -2934,7 +3325,7 @@ int fivebar_prismatic_Z(const fivebar_prismatic_model *model, const fivebar_pris
     const fivebar_prismatic_real *V, fivebar_prismatic_real *Z)
 {
     int code;
-    Z_any(model, 1, X, V, Z, &code);
+    Z_one(model, X, V, Z, &code);
     return code;
 }
 
@@ -2943,9 +3334,9 @@ size_t fivebar_prismatic_Z_batch(const fivebar_prismatic_model *model, size_t n,
     *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        Z_any(model, LANES, X + 2*i, V + 2*i, Z + 2*i, codes);
+        Z_lanes(model, X + 2*i, V + 2*i, Z + 2*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_prismatic_Z(model, X + 2*(i + k), V + 2*(i + k), Z + 2*(i + k));
@@ -2964,7 +3355,7 @@ int fivebar_prismatic_H(const fivebar_prismatic_model *model, const fivebar_pris
     fivebar_prismatic_real *H)
 {
     int code;
-    H_any(model, 1, X, H, &code);
+    H_one(model, X, H, &code);
     return code;
 }
 
@@ -2972,9 +3363,9 @@ size_t fivebar_prismatic_H_batch(const fivebar_prismatic_model *model, size_t n,
     fivebar_prismatic_real *X, fivebar_prismatic_real *H, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        H_any(model, LANES, X + 2*i, H + 4*i, codes);
+        H_lanes(model, X + 2*i, H + 4*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_prismatic_H(model, X + 2*(i + k), H + 4*(i + k));
@@ -2993,7 +3384,7 @@ int fivebar_prismatic_inverse_kinematics(const fivebar_prismatic_model *model, c
     fivebar_prismatic_real *X, fivebar_prismatic_real *q)
 {
     int code;
-    inverse_kinematics_any(model, 1, X, q, &code);
+    inverse_kinematics_one(model, X, q, &code);
     return code;
 }
 
@@ -3001,9 +3392,9 @@ size_t fivebar_prismatic_inverse_kinematics_batch(const fivebar_prismatic_model 
     const fivebar_prismatic_real *X, fivebar_prismatic_real *q, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_kinematics_any(model, LANES, X + 2*i, q + 4*i, codes);
+        inverse_kinematics_lanes(model, X + 2*i, q + 4*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_prismatic_inverse_kinematics(model, X + 2*(i + k), q + 4*(i + k));
@@ -3022,7 +3413,7 @@ int fivebar_prismatic_joint_rates(const fivebar_prismatic_model *model, const
     fivebar_prismatic_real *X, const fivebar_prismatic_real *V, fivebar_prismatic_real *rates)
 {
     int code;
-    joint_rates_any(model, 1, X, V, rates, &code);
+    joint_rates_one(model, X, V, rates, &code);
     return code;
 }
 
@@ -3031,9 +3422,9 @@ size_t fivebar_prismatic_joint_rates_batch(const fivebar_prismatic_model *model,
     *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_rates_any(model, LANES, X + 2*i, V + 2*i, rates + 4*i, codes);
+        joint_rates_lanes(model, X + 2*i, V + 2*i, rates + 4*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_prismatic_joint_rates(model, X + 2*(i + k), V + 2*(i + k), rates + 4*(i + k));
@@ -3053,7 +3444,7 @@ int fivebar_prismatic_joint_accelerations(const fivebar_prismatic_model *model, 
     fivebar_prismatic_real *accelerations)
 {
     int code;
-    joint_accelerations_any(model, 1, X, V, A, accelerations, &code);
+    joint_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
@@ -3062,9 +3453,9 @@ size_t fivebar_prismatic_joint_accelerations_batch(const fivebar_prismatic_model
     *A, fivebar_prismatic_real *accelerations, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_accelerations_any(model, LANES, X + 2*i, V + 2*i, A + 2*i, accelerations + 4*i, codes);
+        joint_accelerations_lanes(model, X + 2*i, V + 2*i, A + 2*i, accelerations + 4*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_prismatic_joint_accelerations(model, X + 2*(i + k), V + 2*(i + k), A + 2*(i +
@@ -3086,7 +3477,7 @@ int fivebar_prismatic_dynamics(const fivebar_prismatic_model *model, const fiveb
     fivebar_prismatic_real *H)
 {
     int code;
-    dynamics_any(model, 1, X, V, M, Z, H, &code);
+    dynamics_one(model, X, V, M, Z, H, &code);
     return code;
 }
 
@@ -3095,9 +3486,9 @@ size_t fivebar_prismatic_dynamics_batch(const fivebar_prismatic_model *model, si
     fivebar_prismatic_real *Z, fivebar_prismatic_real *H, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        dynamics_any(model, LANES, X + 2*i, V + 2*i, M + 4*i, Z + 2*i, H + 4*i, codes);
+        dynamics_lanes(model, X + 2*i, V + 2*i, M + 4*i, Z + 2*i, H + 4*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_prismatic_dynamics(model, X + 2*(i + k), V + 2*(i + k), M + 4*(i + k), Z + 2*(i
@@ -3118,7 +3509,7 @@ int fivebar_prismatic_inverse_dynamics(const fivebar_prismatic_model *model, con
     const fivebar_prismatic_real *wrench, fivebar_prismatic_real *tau)
 {
     int code;
-    inverse_dynamics_any(model, 1, X, V, A, wrench, tau, &code);
+    inverse_dynamics_one(model, X, V, A, wrench, tau, &code);
     return code;
 }
 
@@ -3127,10 +3518,10 @@ size_t fivebar_prismatic_inverse_dynamics_batch(const fivebar_prismatic_model *m
     *A, const fivebar_prismatic_real *wrench, fivebar_prismatic_real *tau, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_dynamics_any(model, LANES, X + 2*i, V + 2*i, A + 2*i, wrench ? wrench + 2*i : NULL, tau +
-            2*i, codes);
+        inverse_dynamics_lanes(model, X + 2*i, V + 2*i, A + 2*i, wrench ? wrench + 2*i : NULL, tau + 2*i,
+            codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_prismatic_inverse_dynamics(model, X + 2*(i + k), V + 2*(i + k), A + 2*(i + k),
@@ -3152,7 +3543,7 @@ int fivebar_prismatic_forward_dynamics(const fivebar_prismatic_model *model, con
     const fivebar_prismatic_real *wrench, fivebar_prismatic_real *A)
 {
     int code;
-    forward_dynamics_any(model, 1, X, V, tau, wrench, A, &code);
+    forward_dynamics_one(model, X, V, tau, wrench, A, &code);
     return code;
 }
 
@@ -3161,10 +3552,10 @@ size_t fivebar_prismatic_forward_dynamics_batch(const fivebar_prismatic_model *m
     *tau, const fivebar_prismatic_real *wrench, fivebar_prismatic_real *A, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        forward_dynamics_any(model, LANES, X + 2*i, V + 2*i, tau + 2*i, wrench ? wrench + 2*i : NULL, A +
-            2*i, codes);
+        forward_dynamics_lanes(model, X + 2*i, V + 2*i, tau + 2*i, wrench ? wrench + 2*i : NULL, A + 2*i,
+            codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_prismatic_forward_dynamics(model, X + 2*(i + k), V + 2*(i + k), tau + 2*(i +
@@ -3190,7 +3581,7 @@ int fivebar_prismatic_complete_acceleration(const fivebar_prismatic_model *model
     (void)X;
     (void)V;
     (void)wrench;
-    complete_acceleration_any(A, completed, &code);
+    complete_acceleration_one(A, completed, &code);
     return code;
 }
 
@@ -3213,7 +3604,7 @@ int fivebar_prismatic_leg_reactions(const fivebar_prismatic_model *model, const
     const fivebar_prismatic_real *wrench, fivebar_prismatic_real *forces)
 {
     int code;
-    leg_reactions_any(model, X, V, A, wrench, forces, &code);
+    leg_reactions_one(model, X, V, A, wrench, forces, &code);
     return code;
 }
 
@@ -3235,7 +3626,7 @@ int fivebar_prismatic_energy(const fivebar_prismatic_model *model, const fivebar
     *potential)
 {
     int code;
-    energy_any(model, X, V, kinetic, potential, &code);
+    energy_one(model, X, V, kinetic, potential, &code);
     return code;
 }
 
@@ -3256,7 +3647,7 @@ int fivebar_prismatic_condition(const fivebar_prismatic_model *model, const five
     *X, fivebar_prismatic_real *sigma, fivebar_prismatic_real *legs)
 {
     int code;
-    condition_any(model, X, sigma, legs, &code);
+    condition_one(model, X, sigma, legs, &code);
     return code;
 }
 
@@ -3277,7 +3668,7 @@ int fivebar_prismatic_forward_kinematics(const fivebar_prismatic_model *model, c
     *X)
 {
     int code;
-    forward_kinematics_any(model, q_actuated, X0, X, &code);
+    forward_kinematics_one(model, q_actuated, X0, X, &code);
     return code;
 }
 
@@ -3300,7 +3691,7 @@ int fivebar_prismatic_dissipation(const fivebar_prismatic_model *model, const
     int code;
     (void)model;
     (void)X;
-    dissipation_any(V, dissipation, &code);
+    dissipation_one(V, dissipation, &code);
     return code;
 }
 
@@ -3320,7 +3711,7 @@ int fivebar_prismatic_momentum(const fivebar_prismatic_model *model, const fiveb
     *X, const fivebar_prismatic_real *V, fivebar_prismatic_real *momentum)
 {
     int code;
-    momentum_any(model, 1, X, V, momentum, &code);
+    momentum_one(model, X, V, momentum, &code);
     return code;
 }
 
@@ -3329,9 +3720,9 @@ size_t fivebar_prismatic_momentum_batch(const fivebar_prismatic_model *model, si
     int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        momentum_any(model, LANES, X + 2*i, V + 2*i, momentum + 2*i, codes);
+        momentum_lanes(model, X + 2*i, V + 2*i, momentum + 2*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_prismatic_momentum(model, X + 2*(i + k), V + 2*(i + k), momentum + 2*(i + k));
@@ -3346,11 +3737,69 @@ size_t fivebar_prismatic_momentum_batch(const fivebar_prismatic_model *model, si
     return failed;
 }
 
+int fivebar_prismatic_joint_margins(const fivebar_prismatic_model *model, const
+    fivebar_prismatic_real *X, fivebar_prismatic_real *margins)
+{
+    int code;
+    joint_margins_one(model, X, margins, &code);
+    return code;
+}
+
+size_t fivebar_prismatic_joint_margins_batch(const fivebar_prismatic_model *model, size_t n, const
+    fivebar_prismatic_real *X, fivebar_prismatic_real *margins, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        joint_margins_lanes(model, X + 2*i, margins + 4*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = fivebar_prismatic_joint_margins(model, X + 2*(i + k), margins + 4*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = fivebar_prismatic_joint_margins(model, X + 2*i, margins + 4*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int fivebar_prismatic_within_limits(const fivebar_prismatic_model *model, const
+    fivebar_prismatic_real *X, fivebar_prismatic_real *within)
+{
+    int code;
+    within_limits_one(model, X, within, &code);
+    return code;
+}
+
+size_t fivebar_prismatic_within_limits_batch(const fivebar_prismatic_model *model, size_t n, const
+    fivebar_prismatic_real *X, fivebar_prismatic_real *within, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        within_limits_lanes(model, X + 2*i, within + 1*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = fivebar_prismatic_within_limits(model, X + 2*(i + k), within + 1*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = fivebar_prismatic_within_limits(model, X + 2*i, within + 1*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
 int fivebar_prismatic_actuator_positions(const fivebar_prismatic_model *model, const
     fivebar_prismatic_real *X, fivebar_prismatic_real *q)
 {
     int code;
-    actuator_positions_any(model, 1, X, q, &code);
+    actuator_positions_one(model, X, q, &code);
     return code;
 }
 
@@ -3358,9 +3807,9 @@ size_t fivebar_prismatic_actuator_positions_batch(const fivebar_prismatic_model 
     const fivebar_prismatic_real *X, fivebar_prismatic_real *q, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_positions_any(model, LANES, X + 2*i, q + 2*i, codes);
+        actuator_positions_lanes(model, X + 2*i, q + 2*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_prismatic_actuator_positions(model, X + 2*(i + k), q + 2*(i + k));
@@ -3379,7 +3828,7 @@ int fivebar_prismatic_actuator_rates(const fivebar_prismatic_model *model, const
     fivebar_prismatic_real *X, const fivebar_prismatic_real *V, fivebar_prismatic_real *rates)
 {
     int code;
-    actuator_rates_any(model, 1, X, V, rates, &code);
+    actuator_rates_one(model, X, V, rates, &code);
     return code;
 }
 
@@ -3388,9 +3837,9 @@ size_t fivebar_prismatic_actuator_rates_batch(const fivebar_prismatic_model *mod
     *rates, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_rates_any(model, LANES, X + 2*i, V + 2*i, rates + 2*i, codes);
+        actuator_rates_lanes(model, X + 2*i, V + 2*i, rates + 2*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_prismatic_actuator_rates(model, X + 2*(i + k), V + 2*(i + k), rates + 2*(i +
@@ -3411,7 +3860,7 @@ int fivebar_prismatic_actuator_accelerations(const fivebar_prismatic_model *mode
     fivebar_prismatic_real *accelerations)
 {
     int code;
-    actuator_accelerations_any(model, 1, X, V, A, accelerations, &code);
+    actuator_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
@@ -3420,9 +3869,9 @@ size_t fivebar_prismatic_actuator_accelerations_batch(const fivebar_prismatic_mo
     fivebar_prismatic_real *A, fivebar_prismatic_real *accelerations, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_accelerations_any(model, LANES, X + 2*i, V + 2*i, A + 2*i, accelerations + 2*i, codes);
+        actuator_accelerations_lanes(model, X + 2*i, V + 2*i, A + 2*i, accelerations + 2*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_prismatic_actuator_accelerations(model, X + 2*(i + k), V + 2*(i + k), A + 2*(i
@@ -3444,7 +3893,7 @@ int fivebar_prismatic_power(const fivebar_prismatic_model *model, const fivebar_
     *power)
 {
     int code;
-    power_any(model, 1, X, V, tau, power, &code);
+    power_one(model, X, V, tau, power, &code);
     return code;
 }
 
@@ -3453,9 +3902,9 @@ size_t fivebar_prismatic_power_batch(const fivebar_prismatic_model *model, size_
     fivebar_prismatic_real *power, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        power_any(model, LANES, X + 2*i, V + 2*i, tau + 2*i, power + 1*i, codes);
+        power_lanes(model, X + 2*i, V + 2*i, tau + 2*i, power + 1*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_prismatic_power(model, X + 2*(i + k), V + 2*(i + k), tau + 2*(i + k), power +
@@ -3475,7 +3924,7 @@ int fivebar_prismatic_retract(const fivebar_prismatic_real *X, const fivebar_pri
     fivebar_prismatic_real *X_moved)
 {
     int code;
-    retract_any(X, step, X_moved, &code);
+    retract_one(X, step, X_moved, &code);
     return code;
 }
 
@@ -3494,7 +3943,7 @@ int fivebar_prismatic_difference(const fivebar_prismatic_real *X0, const fivebar
     *X1, fivebar_prismatic_real *step)
 {
     int code;
-    difference_any(X0, X1, step, &code);
+    difference_one(X0, X1, step, &code);
     return code;
 }
 
@@ -3513,7 +3962,7 @@ int fivebar_prismatic_interpolate(const fivebar_prismatic_real *X0, const fiveba
     *X1, const fivebar_prismatic_real *s, fivebar_prismatic_real *X)
 {
     int code;
-    interpolate_any(X0, X1, s, X, &code);
+    interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 

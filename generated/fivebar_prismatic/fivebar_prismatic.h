@@ -48,6 +48,7 @@ typedef FIVEBAR_PRISMATIC_REAL fivebar_prismatic_real;
 #define FIVEBAR_PRISMATIC_NC 0
 #define FIVEBAR_PRISMATIC_NW 2
 #define FIVEBAR_PRISMATIC_NJ 4
+#define FIVEBAR_PRISMATIC_OVERCONSTRAINED 0
 
 enum {
     FIVEBAR_PRISMATIC_OK = 0,
@@ -90,14 +91,15 @@ typedef struct {
 /* What depends on the parameters alone; set by fivebar_prismatic_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
+    /* 2 legs of type rpr */
+    fivebar_prismatic_real rpr_J_group_1_zz[2], rpr_Sigma_1_xx[2], rpr_Sigma_1_yy[2], rpr_b_r0_x[2],
+            rpr_b_r0_y[2], rpr_base_frame_xx[2], rpr_base_frame_xy[2], rpr_base_frame_yx[2],
+            rpr_base_frame_yy[2], rpr_base_point_x[2], rpr_base_point_y[2], rpr_branch_1[2],
+            rpr_g_r0_x[2], rpr_g_r0_y[2], rpr_h_1_x[2], rpr_h_1_y[2], rpr_h_2_x[2], rpr_h_2_y[2],
+            rpr_h_group_1_x[2], rpr_h_group_1_y[2], rpr_link1_mass[2], rpr_link2_mass[2],
+            rpr_platform_point_x[2], rpr_platform_point_y[2];
     fivebar_prismatic_real Z_p_x, Z_p_y, b_c_x, b_c_y, gravity_x, gravity_y, h_star_x, h_star_y,
             legs_size, m_star, spread_t;
-    /* legs of type rpr */
-    fivebar_prismatic_real J_group_1_zz[2], Sigma_1_xx[2], Sigma_1_yy[2], b_r0_x[2], b_r0_y[2],
-            branch_1[2], g_r0_x[2], g_r0_y[2], h_1_x[2], h_1_y[2], h_2_x[2], h_2_y[2], h_group_1_x[2],
-            h_group_1_y[2], rpr_base_frame_xx[2], rpr_base_frame_xy[2], rpr_base_frame_yx[2],
-            rpr_base_frame_yy[2], rpr_base_point_x[2], rpr_base_point_y[2], rpr_link1_mass[2],
-            rpr_link2_mass[2], rpr_platform_point_x[2], rpr_platform_point_y[2];
 } fivebar_prismatic_model;
 
 extern const fivebar_prismatic_params fivebar_prismatic_default_params;
@@ -255,6 +257,20 @@ int fivebar_prismatic_momentum(const fivebar_prismatic_model *model, const fiveb
 size_t fivebar_prismatic_momentum_batch(const fivebar_prismatic_model *model, size_t n, const
     fivebar_prismatic_real *X, const fivebar_prismatic_real *V, fivebar_prismatic_real *momentum,
     int *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 18 mul, 14 add, 2 div, 2 sqrt, 2 trig. In: X (NQ). Out: margins (NJ). */
+int fivebar_prismatic_joint_margins(const fivebar_prismatic_model *model, const
+    fivebar_prismatic_real *X, fivebar_prismatic_real *margins);
+size_t fivebar_prismatic_joint_margins_batch(const fivebar_prismatic_model *model, size_t n, const
+    fivebar_prismatic_real *X, fivebar_prismatic_real *margins, int *status);
+
+/* Whether all joints are within their limits of displacement. 18 mul, 14 add, 2 div, 2 sqrt, 2
+   trig. In: X (NQ). Out: within (1). */
+int fivebar_prismatic_within_limits(const fivebar_prismatic_model *model, const
+    fivebar_prismatic_real *X, fivebar_prismatic_real *within);
+size_t fivebar_prismatic_within_limits_batch(const fivebar_prismatic_model *model, size_t n, const
+    fivebar_prismatic_real *X, fivebar_prismatic_real *within, int *status);
 
 /* Displacements of the actuated joints, in the order of tau. 18 mul, 14 add, 2 div, 2 sqrt, 2
    trig. In: X (NQ). Out: q (NU). */

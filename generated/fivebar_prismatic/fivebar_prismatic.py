@@ -32,6 +32,7 @@ __all__ = [
     "NC",
     "NW",
     "NJ",
+    "OVERCONSTRAINED",
     "ACTUATED",
     "ACTUATOR_NAMES",
     "H",
@@ -55,12 +56,14 @@ __all__ = [
     "inverse_dynamics",
     "inverse_kinematics",
     "joint_accelerations",
+    "joint_margins",
     "joint_rates",
     "leg_reactions",
     "momentum",
     "null_space",
     "power",
     "retract",
+    "within_limits",
 ]
 
 NQ = 2
@@ -69,6 +72,7 @@ NU = 2
 NC = 0
 NW = 2
 NJ = 4
+OVERCONSTRAINED = 0
 
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
@@ -299,7 +303,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return np.full(shape, default)
+        return _filled(shape, default) if isinstance(default, float) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -312,6 +316,16 @@ def _argument(function, name, value, shape, default=None, rule=""):
     elif rule == "positive" and not np.all((array > 0.0) & (array < np.inf)):
         raise ValueError(f"{function}: {name} must be positive and finite")
     return array
+
+
+_FILLED = {}
+
+
+def _filled(shape, value):
+    """An array of one value, made once."""
+    if (shape, value) not in _FILLED:
+        _FILLED[shape, value] = _frozen(np.full(shape, value))
+    return _FILLED[shape, value]
 
 
 def _lead(leads):
@@ -405,7 +419,7 @@ HOME_X = _frozen(np.array([0.35, 0.6]))
 HOME_Q = _frozen(np.array([1.042721878368537, 0.6946221994724902, 2.2142974355881813, 0.75]))
 
 _BRANCHES = {  # assembly branch of home, a sign per leg
-    "branch_1": np.array([1.0, 1.0]),
+    "rpr_branch_1": np.array([1.0, 1.0]),
 }
 
 
@@ -434,65 +448,66 @@ def _prepare(p):
     rpr_link2_centre_of_mass_x = p.rpr_link2_centre_of_mass[:, 0]
     rpr_link2_centre_of_mass_y = p.rpr_link2_centre_of_mass[:, 1]
     rpr_link2_inertia_zz = p.rpr_link2_inertia[:, 2, 2]
-    branch_1 = _BRANCHES["branch_1"]
-    # (L2) first moment about the platform origin
+    rpr_branch_1 = _BRANCHES["rpr_branch_1"]
+    # (h_star) first moment about the platform origin
     h_star_t = platform_centre_of_mass_x*platform_mass
     h_star_t_2 = platform_centre_of_mass_y*platform_mass
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread_t = 0.5*sqrt(2.0)
-    # (C3) rms size of the legs, taken where the platform points coincide
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     legs_size = 1.0606601717798212*spread_t
-    # (rpr-G3) inertia tensor of link 1 about the origin of link 1
-    J_1_t = rpr_link1_centre_of_mass_x*rpr_link1_centre_of_mass_x
-    J_1_t_2 = rpr_link1_centre_of_mass_y*rpr_link1_centre_of_mass_y
-    J_1_t_3 = J_1_t + J_1_t_2
-    # (rpr-G5) inertia tensor of link 2 about the connection point
-    J_2_t = rpr_link2_centre_of_mass_x*rpr_link2_centre_of_mass_x
-    J_2_t_2 = rpr_link2_centre_of_mass_y*rpr_link2_centre_of_mass_y
-    J_2_t_3 = J_2_t + J_2_t_2
-    # (rpr-N8) inertia of the links that turn with link 1, each about its reference point
-    J_group_1_xx = J_1_t_2*rpr_link1_mass + J_2_t_2*rpr_link2_mass
-    J_group_1_yy = J_1_t*rpr_link1_mass + J_2_t*rpr_link2_mass
-    J_group_1_zz = (
-    rpr_link1_inertia_zz + rpr_link2_inertia_zz + J_1_t_3*rpr_link1_mass + J_2_t_3*rpr_link2_mass
+    # (rpr-h_2) first moment of link 2 about the connection point
+    rpr_h_2_x = rpr_link2_centre_of_mass_x*rpr_link2_mass
+    rpr_h_2_y = rpr_link2_centre_of_mass_y*rpr_link2_mass
+    # (rpr-J_1) inertia tensor of link 1 about the origin of link 1
+    rpr_J_1_t = rpr_link1_centre_of_mass_x*rpr_link1_centre_of_mass_x
+    rpr_J_1_t_2 = rpr_link1_centre_of_mass_y*rpr_link1_centre_of_mass_y
+    rpr_J_1_t_3 = rpr_J_1_t + rpr_J_1_t_2
+    # (rpr-J_2) inertia tensor of link 2 about the connection point
+    rpr_J_2_t = rpr_link2_centre_of_mass_x*rpr_link2_centre_of_mass_x
+    rpr_J_2_t_2 = rpr_link2_centre_of_mass_y*rpr_link2_centre_of_mass_y
+    rpr_J_2_t_3 = rpr_J_2_t + rpr_J_2_t_2
+    # (rpr-J_group_1) inertia of the links that turn with link 1, each about its reference point
+    rpr_J_group_1_xx = rpr_J_1_t_2*rpr_link1_mass + rpr_J_2_t_2*rpr_link2_mass
+    rpr_J_group_1_yy = rpr_J_1_t*rpr_link1_mass + rpr_J_2_t*rpr_link2_mass
+    rpr_J_group_1_zz = (
+    rpr_link1_inertia_zz + rpr_link2_inertia_zz + rpr_J_1_t_3*rpr_link1_mass +
+        rpr_J_2_t_3*rpr_link2_mass
     )
-    # (rpr-G4) first moment of link 2 about the connection point
-    h_2_x = rpr_link2_centre_of_mass_x*rpr_link2_mass
-    h_2_y = rpr_link2_centre_of_mass_y*rpr_link2_mass
-    # (rpr-G2) first moment of link 1 about the origin of link 1
-    h_1_x = rpr_link1_centre_of_mass_x*rpr_link1_mass
-    h_1_y = rpr_link1_centre_of_mass_y*rpr_link1_mass
-    # (rpr-N9) half the trace of that inertia tensor
-    trace_J_group_1 = 0.5*J_group_1_xx + 0.5*J_group_1_yy + 0.5*J_group_1_zz
-    # (rpr-N10) second moment of mass of the links that turn with link 1
-    Sigma_1_xx = trace_J_group_1 - J_group_1_xx
-    Sigma_1_yy = trace_J_group_1 - J_group_1_yy
-    # (rpr-N11) first moments of the links that turn with link 1
-    h_group_1_x = h_1_x + h_2_x
-    h_group_1_y = h_1_y + h_2_y
-    # (rpr-N3) acceleration of the reference point of link 2, less gravity
-    g_r0_x = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx
-    g_r0_y = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy
-    # (L2) first moment about the platform origin
-    h_star_t_3 = rpr_link2_mass*rpr_platform_point_x
-    h_star_t_4 = rpr_link2_mass*rpr_platform_point_y
-    # (V1) potential energy
-    b_r0_x = rpr_base_frame_xx*rpr_base_point_x + rpr_base_frame_yx*rpr_base_point_y
-    b_r0_y = rpr_base_frame_xy*rpr_base_point_x + rpr_base_frame_yy*rpr_base_point_y
+    # (rpr-h_1) first moment of link 1 about the origin of link 1
+    rpr_h_1_x = rpr_link1_centre_of_mass_x*rpr_link1_mass
+    rpr_h_1_y = rpr_link1_centre_of_mass_y*rpr_link1_mass
+    # (rpr-trace_J_1) half the trace of that inertia tensor
+    rpr_trace_J_1 = 0.5*rpr_J_group_1_xx + 0.5*rpr_J_group_1_yy + 0.5*rpr_J_group_1_zz
+    # (rpr-Sigma_1) second moment of mass of the links that turn with link 1
+    rpr_Sigma_1_xx = rpr_trace_J_1 - rpr_J_group_1_xx
+    rpr_Sigma_1_yy = rpr_trace_J_1 - rpr_J_group_1_yy
+    # (rpr-h_group_1) first moments of the links that turn with link 1
+    rpr_h_group_1_x = rpr_h_1_x + rpr_h_2_x
+    rpr_h_group_1_y = rpr_h_1_y + rpr_h_2_y
+    # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
+    rpr_g_r0_x = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx
+    rpr_g_r0_y = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy
+    # (h_star) first moment about the platform origin
+    rpr_h_star_t = rpr_link2_mass*rpr_platform_point_x
+    rpr_h_star_t_2 = rpr_link2_mass*rpr_platform_point_y
+    # (potential) potential energy
+    rpr_b_r0_x = rpr_base_frame_xx*rpr_base_point_x + rpr_base_frame_yx*rpr_base_point_y
+    rpr_b_r0_y = rpr_base_frame_xy*rpr_base_point_x + rpr_base_frame_yy*rpr_base_point_y
     total_rpr = np.sum(np.broadcast_to(rpr_link2_mass, _rpr))
-    total_rpr_x = np.sum(np.broadcast_to(h_star_t_3, _rpr))
-    total_rpr_y = np.sum(np.broadcast_to(h_star_t_4, _rpr))
+    total_rpr_x = np.sum(np.broadcast_to(rpr_h_star_t, _rpr))
+    total_rpr_y = np.sum(np.broadcast_to(rpr_h_star_t_2, _rpr))
     total_rpr_x_2 = np.sum(np.broadcast_to(rpr_platform_point_x, _rpr))
     total_rpr_y_2 = np.sum(np.broadcast_to(rpr_platform_point_y, _rpr))
-    # (L1) mass of the platform with the gathered masses
+    # (m_star) mass of the platform with the gathered masses
     m_star = platform_mass + total_rpr
-    # (M2) centripetal force and weight of the platform
+    # (Z_p) centripetal force and weight of the platform
     Z_p_x = gravity_x*m_star
     Z_p_y = gravity_y*m_star
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_x = h_star_t + total_rpr_x
     h_star_y = h_star_t_2 + total_rpr_y
-    # (C1) centroid of the platform points
+    # (b_c) centroid of the platform points
     b_c_x = 0.5*total_rpr_x_2
     b_c_y = 0.5*total_rpr_y_2
     return {
@@ -500,10 +515,10 @@ def _prepare(p):
         (Z_p_x, Z_p_y, gravity_x, gravity_y, m_star,),
             (
                 (_rpr,
-        (J_group_1_zz, Sigma_1_xx, Sigma_1_yy, branch_1, h_2_x, h_2_y, h_group_1_x, h_group_1_y,
-                    rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-                    rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
-                    rpr_platform_point_y,),
+        (rpr_J_group_1_zz, rpr_Sigma_1_xx, rpr_Sigma_1_yy, rpr_base_frame_xx, rpr_base_frame_xy,
+                    rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y,
+                    rpr_branch_1, rpr_h_2_x, rpr_h_2_y, rpr_h_group_1_x, rpr_h_group_1_y,
+                    rpr_platform_point_x, rpr_platform_point_y,),
                 ),
             ),
         ),
@@ -511,9 +526,9 @@ def _prepare(p):
         (m_star,),
             (
                 (_rpr,
-        (J_group_1_zz, branch_1, h_2_x, h_2_y, rpr_base_frame_xx, rpr_base_frame_xy,
-                    rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y,
-                    rpr_platform_point_x, rpr_platform_point_y,),
+        (rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+                    rpr_h_2_x, rpr_h_2_y, rpr_platform_point_x, rpr_platform_point_y,),
                 ),
             ),
         ),
@@ -521,9 +536,9 @@ def _prepare(p):
         (Z_p_x, Z_p_y, gravity_x, gravity_y,),
             (
                 (_rpr,
-        (Sigma_1_xx, Sigma_1_yy, branch_1, h_2_x, h_2_y, h_group_1_x, h_group_1_y,
-                    rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-                    rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
+        (rpr_Sigma_1_xx, rpr_Sigma_1_yy, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+                    rpr_h_2_x, rpr_h_2_y, rpr_h_group_1_x, rpr_h_group_1_y, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
             ),
@@ -532,8 +547,8 @@ def _prepare(p):
         (),
             (
                 (_rpr,
-        (branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-                    rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
+        (rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+                    rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
             ),
@@ -542,9 +557,10 @@ def _prepare(p):
         (gravity_x, gravity_y, m_star,),
             (
                 (_rpr,
-        (J_group_1_zz, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rpr_base_frame_xx,
-                    rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-                    rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,),
+        (rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+                    rpr_g_r0_x, rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y,
+                    rpr_platform_point_x, rpr_platform_point_y,),
                 ),
             ),
         ),
@@ -552,8 +568,8 @@ def _prepare(p):
         (),
             (
                 (_rpr,
-        (branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-                    rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
+        (rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+                    rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
             ),
@@ -562,8 +578,8 @@ def _prepare(p):
         (),
             (
                 (_rpr,
-        (branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-                    rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
+        (rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+                    rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
             ),
@@ -572,8 +588,8 @@ def _prepare(p):
         (),
             (
                 (_rpr,
-        (branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-                    rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
+        (rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+                    rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
             ),
@@ -582,10 +598,10 @@ def _prepare(p):
         (),
             (
                 (_rpr,
-        (J_group_1_zz, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rpr_base_frame_xx,
-                    rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-                    rpr_base_point_y, rpr_link2_mass, rpr_platform_point_x,
-                    rpr_platform_point_y,),
+        (rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+                    rpr_g_r0_x, rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y,
+                    rpr_link2_mass, rpr_platform_point_x, rpr_platform_point_y,),
                 ),
             ),
         ),
@@ -593,10 +609,10 @@ def _prepare(p):
         (gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
                 (_rpr,
-        (b_r0_x, b_r0_y, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rpr_base_frame_xx,
-                    rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-                    rpr_base_point_y, rpr_link1_mass, rpr_platform_point_x,
-                    rpr_platform_point_y,),
+        (rpr_b_r0_x, rpr_b_r0_y, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+                    rpr_g_r0_x, rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y,
+                    rpr_link1_mass, rpr_platform_point_x, rpr_platform_point_y,),
                 ),
             ),
         ),
@@ -604,8 +620,8 @@ def _prepare(p):
         (b_c_x, b_c_y, legs_size, spread_t,),
             (
                 (_rpr,
-        (branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-                    rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
+        (rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+                    rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
             ),
@@ -613,7 +629,8 @@ def _prepare(p):
     }
 
 
-_FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
+_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
@@ -659,17 +676,19 @@ class _Floats:
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
-        for k in range(self.states):
-            try:
-                ok, arrays = function(self, *(row[k] for row in rows))
-            except (ZeroDivisionError, OverflowError):
-                continue
-            if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
-                for a, array in zip(found, arrays):
-                    a[k] = array
-        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
+        found = [self.state(function, names, [row[k] for row in rows]) for k in range(self.states)]
+        return [np.array(a).T.reshape(*_SHAPES[n], self.states) for a, n in zip(zip(*found), names)]
+
+    def state(self, function, names, given):
+        """Lists that a function gives at a state."""
+        try:
+            ok, arrays = function(self, *given)
+        except (ZeroDivisionError, OverflowError):
+            ok = False
+        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+            return arrays
+        return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
 
 
 class _Arrays:
@@ -737,35 +756,44 @@ def _mode(p, states):
     return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
 
 
-def _call(function, steps, p, *arguments, mode=_mode):
-    """What the steps give at arguments (name, value, shape of a state, default, rule)."""
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+    """What the steps give at arguments (name, value, shape of a state, default, rule).
+
+    Where that may be infinite only NaN makes a state impossible.
+    """
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
     lead, p = _lead(leads), _given(p)
     read = [a[4:] != ("unused",) for a in arguments]
     if lead or mode is _Judged:
-        results = _many(steps, p, lead, given, shapes, read, mode)
+        results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
-        results = _one(steps, p, given, shapes, read)
+        results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
 
 
-def _one(steps, p, given, shapes, read):
+def _one(steps, p, given, shapes, read, unbounded):
     """Results at a single state."""
     states = [v.reshape(*shape, 1) for v, shape in zip(given, shapes)]
     with np.errstate(all="ignore"):
-        results = [a[..., 0] for a in steps(_Floats(p, 1), *states)]
-    if all(all(map(math.isfinite, v.ravel().tolist())) for v in (*compress(given, read), *results)):
-        return [np.array(a)[()] for a in results]
+        results = [a[..., 0].copy() for a in steps(_Floats(p, 1), *states)]
+    looked_at = [np.minimum(a, 0.0) for a in results] if unbounded else results
+    entries = (v.ravel().tolist() for v in (*compress(given, read), *looked_at))
+    if all(all(map(math.isfinite, row)) for row in entries):
+        return [a[()] for a in results]
     return [np.full(a.shape, np.nan)[()] for a in results]
 
 
-def _many(steps, p, lead, given, shapes, read, mode):
+def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block."""
     count = math.prod(lead)
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
+    if count > _BLOCK:
+        # Never touched, freed at once: the C library, which learns from it, then keeps the memory
+        # of intermediate arrays from block to block instead of giving its pages back.
+        np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
         for first in range(0, max(count, 1), _BLOCK):
             block = slice(first, min(first + _BLOCK, count))
@@ -777,7 +805,7 @@ def _many(steps, p, lead, given, shapes, read, mode):
             _all_finite(compress(states, read), good)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite(found, good)
+            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -806,6 +834,18 @@ def _with_forces(a, amounts, directions, legs):
     for k, leg in enumerate(legs):
         result[leg] += amounts[k] * directions[k]
     return result
+
+
+def _unlimited(a, places):
+    """a, some entries infinite; what is not known stays so."""
+    result = np.array(a)
+    result[places] += np.inf
+    return result
+
+
+def _not_negative(a):
+    """1 where no entry is negative, else 0; NaN where one is not finite."""
+    return np.where(np.isfinite(a).all(axis=0), np.all(a >= 0.0, axis=0), np.nan)
 
 
 def _scaled(q):
@@ -844,8 +884,8 @@ def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
     n, states = b.shape
     if 0 < states <= _FEW:
-        matrices, rights = np.moveaxis(a, -1, 0).tolist(), b.T.tolist()
-        return np.array([_solve_one(*each) for each in zip(matrices, rights)]).T.reshape(n, states)
+        systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
+        return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
     good = np.all((size > 0.0) & np.isfinite(size), axis=0)
     rows = np.concatenate((a, b[:, None]), axis=1)
@@ -872,28 +912,32 @@ def _solve(a, b):
 
 
 def _solve_one(a, b):
-    """The same for one system of nested lists."""
-    n = len(b)
-    failure = [np.nan] * n
-    for i, row in enumerate(a):
-        size = max(map(abs, row), default=0.0)
-        if not 0.0 < size < np.inf:
-            return failure
-        a[i] = [v / size for v in row] + [b[i] / size]
-    for k in range(n):
-        best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
-            a[k], a[best] = a[best], a[k]
-        if not abs(a[k][k]) > _PIVOT:
-            return failure
-        head = a[k]
-        for i in range(k + 1, n):
-            factor = a[i][k] / head[k]
-            a[i] = [v - factor * h for v, h in zip(a[i], head)]
-    x = [0.0] * n
-    for k in reversed(range(n)):
-        x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
-    return x if all(map(math.isfinite, x)) else failure
+    """The same for one system of nested lists: the rows left lose an entry at every step."""
+    rows, heads = [], []
+    for row, right in zip(a, b):
+        size = max(map(abs, row))
+        if not 0.0 < size < math.inf:
+            return [math.nan] * len(b)
+        rows.append([v / size for v in (*row, right)])
+    while rows:
+        column = [abs(row[0]) for row in rows]
+        largest = max(column)
+        if largest > _CLEARLY * column[0]:
+            best = column.index(largest)
+            rows[0], rows[best] = rows[best], rows[0]
+        pivot, *head = rows[0]
+        if not abs(pivot) > _PIVOT:
+            return [math.nan] * len(b)
+        heads.append((pivot, head))
+        for i in range(1, len(rows)):
+            first, *row = rows[i]
+            factor = first / pivot
+            rows[i] = [v - factor * h for v, h in zip(row, head)]
+        del rows[0]
+    x = []
+    for pivot, (*head, right) in reversed(heads):
+        x.insert(0, (right - sum([h * v for h, v in zip(head, x)])) / pivot)
+    return x if all(map(math.isfinite, x)) else [math.nan] * len(b)
 
 
 def _matrices(a, *others):
@@ -1000,70 +1044,74 @@ def _run_dynamics(m, X, V):
     sums = [0.0] * 5
     for leg, k in legs[0]:
         (
-        J_group_1_zz, Sigma_1_xx, Sigma_1_yy, branch_1, h_2_x, h_2_y, h_group_1_x, h_group_1_y,
-            rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-            rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_J_group_1_zz, rpr_Sigma_1_xx, rpr_Sigma_1_yy, rpr_base_frame_xx, rpr_base_frame_xy,
+            rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y,
+            rpr_branch_1, rpr_h_2_x, rpr_h_2_y, rpr_h_group_1_x, rpr_h_group_1_y,
+            rpr_platform_point_x, rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        S_x = rpr_platform_point_x + t_x - rpr_base_point_x
-        S_y = rpr_platform_point_y + t_y - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1 = 1.0/root_1
-        axis_x_x = S_x*inv_root_1
-        axis_x_y = S_y*inv_root_1
-        # (rpr-N19) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_yx = h_2_y*inv_root_1
-        # (rpr-N22) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_yy = -h_2_x*inv_root_1 - inv_root_1*(h_2_x + J_group_1_zz*inv_root_1)
-        # (rpr-N24) inertia of the leg at the connection point, without the mass gathered there
-        Q_t = 0.5*d_c_yy
-        Q_t_2 = Q_t*axis_x_y - axis_x_x*d_G_yx
-        Q_t_3 = Q_t*axis_x_x + axis_x_y*d_G_yx
-        Q_t_4 = 2.0*Q_t_2*axis_x_y
-        Q_t_5 = Q_t_2*axis_x_x + Q_t_3*axis_x_y
-        Q_t_6 = 2.0*Q_t_3*axis_x_x
-        # (rpr-V1) velocity of the connection point
-        S_dot_tip_x = axis_x_x*t_dot_x + axis_x_y*t_dot_y
-        # (rpr-V6) rate of joint 1
-        qd_1 = inv_root_1*(axis_x_x*t_dot_y - axis_x_y*t_dot_x)
-        # (rpr-V9) centripetal tensor of link 1
-        W_1_t = qd_1*qd_1
-        # (rpr-A7) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_o = 2.0*S_dot_tip_x*inv_root_1*qd_1
-        # (rpr-N14) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_o_z = (
-        h_group_1_y*(axis_x_x*gravity_x + axis_x_y*gravity_y) - Sigma_1_xx*qdd_1_o -
-            Sigma_1_yy*qdd_1_o - h_group_1_x*(axis_x_x*gravity_y - axis_x_y*gravity_x)
+        # (rpr-S) from the base point to the connection point
+        rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
+        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
+        # (rpr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
+        rpr_d_phi_2_t = inv_rpr_root_1*rpr_h_2_y
+        # (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rpr_d_c_yy = (
+        -inv_rpr_root_1*rpr_h_2_x - inv_rpr_root_1*(rpr_h_2_x + inv_rpr_root_1*rpr_J_group_1_zz)
         )
-        # (rpr-N7) remainder without the acceleration in: inertia force of link 2 from its turning about its reference point
-        phi_2_o_x = h_2_y*qdd_1_o - W_1_t*h_2_x
-        # (rpr-N23) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_o_y = W_1_t*h_2_y + h_2_x*qdd_1_o - inv_root_1*mu_1_o_z
-        # (rpr-N25) velocity and gravity terms of the leg force
-        U_in_base_x = axis_x_x*phi_2_o_x + axis_x_y*c_o_y
-        U_in_base_y = axis_x_y*phi_2_o_x - axis_x_x*c_o_y
+        # (rpr-Q) inertia of the leg at the connection point, without the mass gathered there
+        rpr_Q_t = 0.5*rpr_d_c_yy
+        rpr_Q_t_2 = rpr_Q_t*rpr_axis_x_y - rpr_axis_x_x*rpr_d_phi_2_t
+        rpr_Q_t_3 = rpr_Q_t*rpr_axis_x_x + rpr_axis_x_y*rpr_d_phi_2_t
+        rpr_Q_t_4 = 2.0*rpr_Q_t_2*rpr_axis_x_y
+        rpr_Q_t_5 = rpr_Q_t_2*rpr_axis_x_x + rpr_Q_t_3*rpr_axis_x_y
+        rpr_Q_t_6 = 2.0*rpr_Q_t_3*rpr_axis_x_x
+        # (rpr-S_dot) velocity of the connection point
+        rpr_S_dot_tip_x = rpr_axis_x_x*t_dot_x + rpr_axis_x_y*t_dot_y
+        # (rpr-qd_1) rate of joint 1
+        rpr_qd_1 = inv_rpr_root_1*(rpr_axis_x_x*t_dot_y - rpr_axis_x_y*t_dot_x)
+        # (rpr-W_1) centripetal tensor of link 1
+        rpr_W_1_t = rpr_qd_1*rpr_qd_1
+        # (rpr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        rpr_qdd_1_o = 2.0*inv_rpr_root_1*rpr_S_dot_tip_x*rpr_qd_1
+        # (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning about its reference point
+        rpr_phi_2_o_x = rpr_h_2_y*rpr_qdd_1_o - rpr_W_1_t*rpr_h_2_x
+        # (rpr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        rpr_mu_1_o_z = (
+        rpr_h_group_1_y*(gravity_x*rpr_axis_x_x + gravity_y*rpr_axis_x_y) -
+            rpr_Sigma_1_xx*rpr_qdd_1_o - rpr_Sigma_1_yy*rpr_qdd_1_o -
+            rpr_h_group_1_x*(gravity_y*rpr_axis_x_x - gravity_x*rpr_axis_x_y)
+        )
+        # (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rpr_c_o_y = rpr_W_1_t*rpr_h_2_y + rpr_h_2_x*rpr_qdd_1_o - inv_rpr_root_1*rpr_mu_1_o_z
+        # (rpr-U) velocity and gravity terms of the leg force
+        rpr_U_in_base_x = rpr_axis_x_x*rpr_phi_2_o_x + rpr_axis_x_y*rpr_c_o_y
+        rpr_U_in_base_y = rpr_axis_x_y*rpr_phi_2_o_x - rpr_axis_x_x*rpr_c_o_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_1) >
-            _TOLERANCE * 0.75))
+        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rpr_root_1)
+            > _TOLERANCE * 0.75))
         )
         sums = m.added(sums, leg, (
-        Q_t_4, Q_t_5, Q_t_6, U_in_base_x, U_in_base_y,
+        rpr_Q_t_4, rpr_Q_t_5, rpr_Q_t_6, rpr_U_in_base_x, rpr_U_in_base_y,
         ))
-        out_H[_H_rpr[0][leg]] = axis_x_x
-        out_H[_H_rpr[1][leg]] = axis_x_y
+        out_H[_H_rpr[0][leg]] = rpr_axis_x_x
+        out_H[_H_rpr[1][leg]] = rpr_axis_x_y
     total_rpr_xx, total_rpr_xy, total_rpr_yy, total_rpr_x, total_rpr_y = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = m_star - total_rpr_xx
     M_tt_yy = m_star - total_rpr_yy
-    # (M3) translational part of Z
+    # (Z_t) translational part of Z
     Z_t_x = total_rpr_x - Z_p_x
     Z_t_y = total_rpr_y - Z_p_y
     out_M[0] = M_tt_xx
@@ -1090,45 +1138,47 @@ def _run_M(m, X):
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
-        J_group_1_zz, branch_1, h_2_x, h_2_y, rpr_base_frame_xx, rpr_base_frame_xy,
-            rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y,
-            rpr_platform_point_x, rpr_platform_point_y,
+        rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_h_2_x,
+            rpr_h_2_y, rpr_platform_point_x, rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        S_x = rpr_platform_point_x + t_x - rpr_base_point_x
-        S_y = rpr_platform_point_y + t_y - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1 = 1.0/root_1
-        axis_x_x = S_x*inv_root_1
-        axis_x_y = S_y*inv_root_1
-        # (rpr-N19) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_yx = h_2_y*inv_root_1
-        # (rpr-N22) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_yy = -h_2_x*inv_root_1 - inv_root_1*(h_2_x + J_group_1_zz*inv_root_1)
-        # (rpr-N24) inertia of the leg at the connection point, without the mass gathered there
-        Q_t = 0.5*d_c_yy
-        Q_t_2 = Q_t*axis_x_y - axis_x_x*d_G_yx
-        Q_t_3 = Q_t*axis_x_x + axis_x_y*d_G_yx
-        Q_t_4 = 2.0*Q_t_2*axis_x_y
-        Q_t_5 = Q_t_2*axis_x_x + Q_t_3*axis_x_y
-        Q_t_6 = 2.0*Q_t_3*axis_x_x
+        # (rpr-S) from the base point to the connection point
+        rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
+        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
+        # (rpr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
+        rpr_d_phi_2_t = inv_rpr_root_1*rpr_h_2_y
+        # (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rpr_d_c_yy = (
+        -inv_rpr_root_1*rpr_h_2_x - inv_rpr_root_1*(rpr_h_2_x + inv_rpr_root_1*rpr_J_group_1_zz)
+        )
+        # (rpr-Q) inertia of the leg at the connection point, without the mass gathered there
+        rpr_Q_t = 0.5*rpr_d_c_yy
+        rpr_Q_t_2 = rpr_Q_t*rpr_axis_x_y - rpr_axis_x_x*rpr_d_phi_2_t
+        rpr_Q_t_3 = rpr_Q_t*rpr_axis_x_x + rpr_axis_x_y*rpr_d_phi_2_t
+        rpr_Q_t_4 = 2.0*rpr_Q_t_2*rpr_axis_x_y
+        rpr_Q_t_5 = rpr_Q_t_2*rpr_axis_x_x + rpr_Q_t_3*rpr_axis_x_y
+        rpr_Q_t_6 = 2.0*rpr_Q_t_3*rpr_axis_x_x
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_1) >
-            _TOLERANCE * 0.75))
+        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rpr_root_1)
+            > _TOLERANCE * 0.75))
         )
         sums = m.added(sums, leg, (
-        Q_t_4, Q_t_5, Q_t_6,
+        rpr_Q_t_4, rpr_Q_t_5, rpr_Q_t_6,
         ))
     total_rpr_xx, total_rpr_xy, total_rpr_yy = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = m_star - total_rpr_xx
     M_tt_yy = m_star - total_rpr_yy
     out_M[0] = M_tt_xx
@@ -1158,54 +1208,56 @@ def _run_Z(m, X, V):
     sums = [0.0] * 2
     for leg, k in legs[0]:
         (
-        Sigma_1_xx, Sigma_1_yy, branch_1, h_2_x, h_2_y, h_group_1_x, h_group_1_y,
-            rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-            rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_Sigma_1_xx, rpr_Sigma_1_yy, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_h_2_x,
+            rpr_h_2_y, rpr_h_group_1_x, rpr_h_group_1_y, rpr_platform_point_x,
+            rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        S_x = rpr_platform_point_x + t_x - rpr_base_point_x
-        S_y = rpr_platform_point_y + t_y - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1 = 1.0/root_1
-        axis_x_x = S_x*inv_root_1
-        axis_x_y = S_y*inv_root_1
-        # (rpr-V1) velocity of the connection point
-        S_dot_tip_x = axis_x_x*t_dot_x + axis_x_y*t_dot_y
-        # (rpr-V6) rate of joint 1
-        qd_1 = inv_root_1*(axis_x_x*t_dot_y - axis_x_y*t_dot_x)
-        # (rpr-V9) centripetal tensor of link 1
-        W_1_t = qd_1*qd_1
-        # (rpr-A7) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_o = 2.0*S_dot_tip_x*inv_root_1*qd_1
-        # (rpr-N14) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_o_z = (
-        h_group_1_y*(axis_x_x*gravity_x + axis_x_y*gravity_y) - Sigma_1_xx*qdd_1_o -
-            Sigma_1_yy*qdd_1_o - h_group_1_x*(axis_x_x*gravity_y - axis_x_y*gravity_x)
+        # (rpr-S) from the base point to the connection point
+        rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
+        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
+        # (rpr-S_dot) velocity of the connection point
+        rpr_S_dot_tip_x = rpr_axis_x_x*t_dot_x + rpr_axis_x_y*t_dot_y
+        # (rpr-qd_1) rate of joint 1
+        rpr_qd_1 = inv_rpr_root_1*(rpr_axis_x_x*t_dot_y - rpr_axis_x_y*t_dot_x)
+        # (rpr-W_1) centripetal tensor of link 1
+        rpr_W_1_t = rpr_qd_1*rpr_qd_1
+        # (rpr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        rpr_qdd_1_o = 2.0*inv_rpr_root_1*rpr_S_dot_tip_x*rpr_qd_1
+        # (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning about its reference point
+        rpr_phi_2_o_x = rpr_h_2_y*rpr_qdd_1_o - rpr_W_1_t*rpr_h_2_x
+        # (rpr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        rpr_mu_1_o_z = (
+        rpr_h_group_1_y*(gravity_x*rpr_axis_x_x + gravity_y*rpr_axis_x_y) -
+            rpr_Sigma_1_xx*rpr_qdd_1_o - rpr_Sigma_1_yy*rpr_qdd_1_o -
+            rpr_h_group_1_x*(gravity_y*rpr_axis_x_x - gravity_x*rpr_axis_x_y)
         )
-        # (rpr-N7) remainder without the acceleration in: inertia force of link 2 from its turning about its reference point
-        phi_2_o_x = h_2_y*qdd_1_o - W_1_t*h_2_x
-        # (rpr-N23) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_o_y = W_1_t*h_2_y + h_2_x*qdd_1_o - inv_root_1*mu_1_o_z
-        # (rpr-N25) velocity and gravity terms of the leg force
-        U_in_base_x = axis_x_x*phi_2_o_x + axis_x_y*c_o_y
-        U_in_base_y = axis_x_y*phi_2_o_x - axis_x_x*c_o_y
+        # (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rpr_c_o_y = rpr_W_1_t*rpr_h_2_y + rpr_h_2_x*rpr_qdd_1_o - inv_rpr_root_1*rpr_mu_1_o_z
+        # (rpr-U) velocity and gravity terms of the leg force
+        rpr_U_in_base_x = rpr_axis_x_x*rpr_phi_2_o_x + rpr_axis_x_y*rpr_c_o_y
+        rpr_U_in_base_y = rpr_axis_x_y*rpr_phi_2_o_x - rpr_axis_x_x*rpr_c_o_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_1) >
-            _TOLERANCE * 0.75))
+        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rpr_root_1)
+            > _TOLERANCE * 0.75))
         )
         sums = m.added(sums, leg, (
-        U_in_base_x, U_in_base_y,
+        rpr_U_in_base_x, rpr_U_in_base_y,
         ))
     total_rpr_x, total_rpr_y = sums
-    # (M3) translational part of Z
+    # (Z_t) translational part of Z
     Z_t_x = total_rpr_x - Z_p_x
     Z_t_y = total_rpr_y - Z_p_y
     out_Z[0] = Z_t_x
@@ -1226,30 +1278,31 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-            rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+            rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_platform_point_x,
+            rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        S_x = rpr_platform_point_x + t_x - rpr_base_point_x
-        S_y = rpr_platform_point_y + t_y - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1 = 1.0/root_1
-        axis_x_x = S_x*inv_root_1
-        axis_x_y = S_y*inv_root_1
+        # (rpr-S) from the base point to the connection point
+        rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
+        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_1) >
-            _TOLERANCE * 0.75))
+        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rpr_root_1)
+            > _TOLERANCE * 0.75))
         )
-        out_H[_H_rpr[0][leg]] = axis_x_x
-        out_H[_H_rpr[1][leg]] = axis_x_y
+        out_H[_H_rpr[0][leg]] = rpr_axis_x_x
+        out_H[_H_rpr[1][leg]] = rpr_axis_x_y
     return ok, (out_H,)
 
 
@@ -1276,74 +1329,78 @@ def _run_required(m, X, V, A):
     ok = True
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
-    # (E2) inertia force of the platform less its weight
+    # (f_p) inertia force of the platform less its weight
     f_p_x = a_t_x*m_star
     f_p_y = a_t_y*m_star
     sums = [0.0] * 2
     for leg, k in legs[0]:
         (
-        J_group_1_zz, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rpr_base_frame_xx,
-            rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-            rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_g_r0_x,
+            rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_platform_point_x,
+            rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        S_x = rpr_platform_point_x + t_x - rpr_base_point_x
-        S_y = rpr_platform_point_y + t_y - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1 = 1.0/root_1
-        axis_x_x = S_x*inv_root_1
-        axis_x_y = S_y*inv_root_1
-        # (rpr-V1) velocity of the connection point
-        S_dot_tip_x = axis_x_x*t_dot_x + axis_x_y*t_dot_y
-        # (rpr-V6) rate of joint 1
-        qd_1 = inv_root_1*(axis_x_x*t_dot_y - axis_x_y*t_dot_x)
-        # (rpr-V9) centripetal tensor of link 1
-        W_1_t = qd_1*qd_1
-        # (rpr-K7) cosine of the angle of joint 1 from its reference direction
-        c_1 = inv_root_1*px_1
-        # (rpr-K8) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*py_1
-        # (rpr-A2) acceleration of the connection point
-        S_ddot_tip_y = axis_x_x*t_ddot_y - axis_x_y*t_ddot_x
-        # (rpr-A4) acceleration of the connection point left to the joint accelerations
-        rel_y = S_ddot_tip_y - 2.0*S_dot_tip_x*qd_1
-        # (rpr-A6) acceleration of joint 1
-        qdd_1 = inv_root_1*rel_y
-        # (rpr-N3) acceleration of the reference point of link 2, less gravity
-        g_r1_x = c_1*g_r0_x + g_r0_y*s_1
-        g_r1_y = c_1*g_r0_y - g_r0_x*s_1
-        acc_2_x = axis_x_x*t_ddot_x + axis_x_y*t_ddot_y - g_r1_x
-        acc_2_y = S_ddot_tip_y - g_r1_y
-        # (rpr-N12) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_z = J_group_1_zz*qdd_1 + acc_2_y*h_2_x + g_r1_x*h_1_y - acc_2_x*h_2_y - g_r1_y*h_1_x
-        # (rpr-N5) inertia force of link 2 from its turning about its reference point
-        phi_2_x = -W_1_t*h_2_x - h_2_y*qdd_1
-        # (rpr-N21) leg force on the platform without actuation and without the mass at the connection point
-        c_y = W_1_t*h_2_y - h_2_x*qdd_1 - inv_root_1*mu_1_z
-        c_in_base_x = -axis_x_x*phi_2_x - axis_x_y*c_y
-        c_in_base_y = axis_x_x*c_y - axis_x_y*phi_2_x
+        # (rpr-S) from the base point to the connection point
+        rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
+        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
+        # (rpr-S_dot) velocity of the connection point
+        rpr_S_dot_tip_x = rpr_axis_x_x*t_dot_x + rpr_axis_x_y*t_dot_y
+        # (rpr-qd_1) rate of joint 1
+        rpr_qd_1 = inv_rpr_root_1*(rpr_axis_x_x*t_dot_y - rpr_axis_x_y*t_dot_x)
+        # (rpr-W_1) centripetal tensor of link 1
+        rpr_W_1_t = rpr_qd_1*rpr_qd_1
+        # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
+        rpr_c_1 = inv_rpr_root_1*rpr_px_1
+        # (rpr-s_1) sine of the angle of joint 1 from its reference direction
+        rpr_s_1 = inv_rpr_root_1*rpr_py_1
+        # (rpr-S_ddot) acceleration of the connection point
+        rpr_S_ddot_tip_y = rpr_axis_x_x*t_ddot_y - rpr_axis_x_y*t_ddot_x
+        # (rpr-rel) acceleration of the connection point left to the joint accelerations
+        rpr_rel_y = rpr_S_ddot_tip_y - 2.0*rpr_S_dot_tip_x*rpr_qd_1
+        # (rpr-qdd_1) acceleration of joint 1
+        rpr_qdd_1 = inv_rpr_root_1*rpr_rel_y
+        # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
+        rpr_g_r1_x = rpr_c_1*rpr_g_r0_x + rpr_g_r0_y*rpr_s_1
+        rpr_g_r1_y = rpr_c_1*rpr_g_r0_y - rpr_g_r0_x*rpr_s_1
+        rpr_acc_2_x = rpr_axis_x_x*t_ddot_x + rpr_axis_x_y*t_ddot_y - rpr_g_r1_x
+        rpr_acc_2_y = rpr_S_ddot_tip_y - rpr_g_r1_y
+        # (rpr-phi_2) inertia force of link 2 from its turning about its reference point
+        rpr_phi_2_x = -rpr_W_1_t*rpr_h_2_x - rpr_h_2_y*rpr_qdd_1
+        # (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rpr_mu_1_z = (
+        rpr_J_group_1_zz*rpr_qdd_1 + rpr_acc_2_y*rpr_h_2_x + rpr_g_r1_x*rpr_h_1_y -
+            rpr_acc_2_x*rpr_h_2_y - rpr_g_r1_y*rpr_h_1_x
+        )
+        # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
+        rpr_c_y = rpr_W_1_t*rpr_h_2_y - inv_rpr_root_1*rpr_mu_1_z - rpr_h_2_x*rpr_qdd_1
+        rpr_c_in_base_x = -rpr_axis_x_x*rpr_phi_2_x - rpr_axis_x_y*rpr_c_y
+        rpr_c_in_base_y = rpr_axis_x_x*rpr_c_y - rpr_axis_x_y*rpr_phi_2_x
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_1) >
-            _TOLERANCE * 0.75))
+        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rpr_root_1)
+            > _TOLERANCE * 0.75))
         )
         sums = m.added(sums, leg, (
-        c_in_base_x, c_in_base_y,
+        rpr_c_in_base_x, rpr_c_in_base_y,
         ))
-        out_H[_H_rpr[0][leg]] = axis_x_x
-        out_H[_H_rpr[1][leg]] = axis_x_y
+        out_H[_H_rpr[0][leg]] = rpr_axis_x_x
+        out_H[_H_rpr[1][leg]] = rpr_axis_x_y
     total_rpr_x, total_rpr_y = sums
-    # (E3) force that actuators and external wrench must give
+    # (R_t) force that actuators and external wrench must give
     R_t_x = f_p_x - total_rpr_x
     R_t_y = f_p_y - total_rpr_y
     out_required[0] = R_t_x
@@ -1365,30 +1422,31 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-            rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+            rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_platform_point_x,
+            rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        S_x = rpr_platform_point_x + t_x - rpr_base_point_x
-        S_y = rpr_platform_point_y + t_y - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1 = 1.0/root_1
-        # (rpr-K9) displacement of joint 1
-        q_1 = atan2(inv_root_1*py_1, inv_root_1*px_1)
+        # (rpr-S) from the base point to the connection point
+        rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        # (rpr-q_1) displacement of joint 1
+        rpr_q_1 = atan2(inv_rpr_root_1*rpr_py_1, inv_rpr_root_1*rpr_px_1)
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_1) >
-            _TOLERANCE * 0.75))
+        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rpr_root_1)
+            > _TOLERANCE * 0.75))
         )
-        out_q[_q_rpr[0][leg]] = q_1
-        out_q[_q_rpr[1][leg]] = root_1
+        out_q[_q_rpr[0][leg]] = rpr_q_1
+        out_q[_q_rpr[1][leg]] = rpr_root_1
     return ok, (out_q,)
 
 
@@ -1410,34 +1468,35 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-            rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+            rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_platform_point_x,
+            rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        S_x = rpr_platform_point_x + t_x - rpr_base_point_x
-        S_y = rpr_platform_point_y + t_y - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1 = 1.0/root_1
-        axis_x_x = S_x*inv_root_1
-        axis_x_y = S_y*inv_root_1
-        # (rpr-V1) velocity of the connection point
-        S_dot_tip_x = axis_x_x*t_dot_x + axis_x_y*t_dot_y
-        # (rpr-V6) rate of joint 1
-        qd_1 = inv_root_1*(axis_x_x*t_dot_y - axis_x_y*t_dot_x)
+        # (rpr-S) from the base point to the connection point
+        rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
+        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
+        # (rpr-S_dot) velocity of the connection point
+        rpr_S_dot_tip_x = rpr_axis_x_x*t_dot_x + rpr_axis_x_y*t_dot_y
+        # (rpr-qd_1) rate of joint 1
+        rpr_qd_1 = inv_rpr_root_1*(rpr_axis_x_x*t_dot_y - rpr_axis_x_y*t_dot_x)
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_1) >
-            _TOLERANCE * 0.75))
+        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rpr_root_1)
+            > _TOLERANCE * 0.75))
         )
-        out_qd[_qd_rpr[0][leg]] = qd_1
-        out_qd[_qd_rpr[1][leg]] = S_dot_tip_x
+        out_qd[_qd_rpr[0][leg]] = rpr_qd_1
+        out_qd[_qd_rpr[1][leg]] = rpr_S_dot_tip_x
     return ok, (out_qd,)
 
 
@@ -1464,39 +1523,40 @@ def _run_joint_accelerations(m, X, V, A):
     out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
-        branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-            rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+            rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_platform_point_x,
+            rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        S_x = rpr_platform_point_x + t_x - rpr_base_point_x
-        S_y = rpr_platform_point_y + t_y - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1 = 1.0/root_1
-        axis_x_x = S_x*inv_root_1
-        axis_x_y = S_y*inv_root_1
-        # (rpr-V1) velocity of the connection point
-        S_dot_tip_x = axis_x_x*t_dot_x + axis_x_y*t_dot_y
-        # (rpr-V6) rate of joint 1
-        qd_1 = inv_root_1*(axis_x_x*t_dot_y - axis_x_y*t_dot_x)
-        # (rpr-A4) acceleration of the connection point left to the joint accelerations
-        rel_x = axis_x_x*t_ddot_x + axis_x_y*t_ddot_y + qd_1*qd_1*root_1
-        rel_y = axis_x_x*t_ddot_y - 2.0*S_dot_tip_x*qd_1 - axis_x_y*t_ddot_x
-        # (rpr-A6) acceleration of joint 1
-        qdd_1 = inv_root_1*rel_y
+        # (rpr-S) from the base point to the connection point
+        rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
+        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
+        # (rpr-S_dot) velocity of the connection point
+        rpr_S_dot_tip_x = rpr_axis_x_x*t_dot_x + rpr_axis_x_y*t_dot_y
+        # (rpr-qd_1) rate of joint 1
+        rpr_qd_1 = inv_rpr_root_1*(rpr_axis_x_x*t_dot_y - rpr_axis_x_y*t_dot_x)
+        # (rpr-rel) acceleration of the connection point left to the joint accelerations
+        rpr_rel_x = rpr_axis_x_x*t_ddot_x + rpr_axis_x_y*t_ddot_y + rpr_qd_1*rpr_qd_1*rpr_root_1
+        rpr_rel_y = rpr_axis_x_x*t_ddot_y - 2.0*rpr_S_dot_tip_x*rpr_qd_1 - rpr_axis_x_y*t_ddot_x
+        # (rpr-qdd_1) acceleration of joint 1
+        rpr_qdd_1 = inv_rpr_root_1*rpr_rel_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_1) >
-            _TOLERANCE * 0.75))
+        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rpr_root_1)
+            > _TOLERANCE * 0.75))
         )
-        out_qdd[_qdd_rpr[0][leg]] = qdd_1
-        out_qdd[_qdd_rpr[1][leg]] = rel_x
+        out_qdd[_qdd_rpr[0][leg]] = rpr_qdd_1
+        out_qdd[_qdd_rpr[1][leg]] = rpr_rel_x
     return ok, (out_qdd,)
 
 
@@ -1524,63 +1584,67 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        J_group_1_zz, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rpr_base_frame_xx,
-            rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-            rpr_base_point_y, rpr_link2_mass, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_g_r0_x,
+            rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_link2_mass,
+            rpr_platform_point_x, rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        S_x = rpr_platform_point_x + t_x - rpr_base_point_x
-        S_y = rpr_platform_point_y + t_y - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1 = 1.0/root_1
-        axis_x_x = S_x*inv_root_1
-        axis_x_y = S_y*inv_root_1
-        # (rpr-V1) velocity of the connection point
-        S_dot_tip_x = axis_x_x*t_dot_x + axis_x_y*t_dot_y
-        # (rpr-V6) rate of joint 1
-        qd_1 = inv_root_1*(axis_x_x*t_dot_y - axis_x_y*t_dot_x)
-        # (rpr-V9) centripetal tensor of link 1
-        W_1_t = qd_1*qd_1
-        # (rpr-K7) cosine of the angle of joint 1 from its reference direction
-        c_1 = inv_root_1*px_1
-        # (rpr-K8) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*py_1
-        # (rpr-A2) acceleration of the connection point
-        S_ddot_tip_y = axis_x_x*t_ddot_y - axis_x_y*t_ddot_x
-        # (rpr-A4) acceleration of the connection point left to the joint accelerations
-        rel_y = S_ddot_tip_y - 2.0*S_dot_tip_x*qd_1
-        # (rpr-A6) acceleration of joint 1
-        qdd_1 = inv_root_1*rel_y
-        # (rpr-N3) acceleration of the reference point of link 2, less gravity
-        g_r1_x = c_1*g_r0_x + g_r0_y*s_1
-        g_r1_y = c_1*g_r0_y - g_r0_x*s_1
-        acc_2_x = axis_x_x*t_ddot_x + axis_x_y*t_ddot_y - g_r1_x
-        acc_2_y = S_ddot_tip_y - g_r1_y
-        # (rpr-N12) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_z = J_group_1_zz*qdd_1 + acc_2_y*h_2_x + g_r1_x*h_1_y - acc_2_x*h_2_y - g_r1_y*h_1_x
-        # (rpr-N21) leg force on the platform without actuation and without the mass at the connection point
-        c_y = W_1_t*h_2_y - h_2_x*qdd_1 - inv_root_1*mu_1_z
-        # (rpr-N26) leg force on the platform without actuation, the last link's mass included
-        c_true_x = W_1_t*h_2_x + h_2_y*qdd_1 - acc_2_x*rpr_link2_mass
-        c_true_y = c_y - acc_2_y*rpr_link2_mass
-        c_true_in_base_x = axis_x_x*c_true_x - axis_x_y*c_true_y
-        c_true_in_base_y = axis_x_x*c_true_y + axis_x_y*c_true_x
-        ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_1) >
-            _TOLERANCE * 0.75))
+        # (rpr-S) from the base point to the connection point
+        rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
+        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
+        # (rpr-S_dot) velocity of the connection point
+        rpr_S_dot_tip_x = rpr_axis_x_x*t_dot_x + rpr_axis_x_y*t_dot_y
+        # (rpr-qd_1) rate of joint 1
+        rpr_qd_1 = inv_rpr_root_1*(rpr_axis_x_x*t_dot_y - rpr_axis_x_y*t_dot_x)
+        # (rpr-W_1) centripetal tensor of link 1
+        rpr_W_1_t = rpr_qd_1*rpr_qd_1
+        # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
+        rpr_c_1 = inv_rpr_root_1*rpr_px_1
+        # (rpr-s_1) sine of the angle of joint 1 from its reference direction
+        rpr_s_1 = inv_rpr_root_1*rpr_py_1
+        # (rpr-S_ddot) acceleration of the connection point
+        rpr_S_ddot_tip_y = rpr_axis_x_x*t_ddot_y - rpr_axis_x_y*t_ddot_x
+        # (rpr-rel) acceleration of the connection point left to the joint accelerations
+        rpr_rel_y = rpr_S_ddot_tip_y - 2.0*rpr_S_dot_tip_x*rpr_qd_1
+        # (rpr-qdd_1) acceleration of joint 1
+        rpr_qdd_1 = inv_rpr_root_1*rpr_rel_y
+        # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
+        rpr_g_r1_x = rpr_c_1*rpr_g_r0_x + rpr_g_r0_y*rpr_s_1
+        rpr_g_r1_y = rpr_c_1*rpr_g_r0_y - rpr_g_r0_x*rpr_s_1
+        rpr_acc_2_x = rpr_axis_x_x*t_ddot_x + rpr_axis_x_y*t_ddot_y - rpr_g_r1_x
+        rpr_acc_2_y = rpr_S_ddot_tip_y - rpr_g_r1_y
+        # (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rpr_mu_1_z = (
+        rpr_J_group_1_zz*rpr_qdd_1 + rpr_acc_2_y*rpr_h_2_x + rpr_g_r1_x*rpr_h_1_y -
+            rpr_acc_2_x*rpr_h_2_y - rpr_g_r1_y*rpr_h_1_x
         )
-        out_leg_force[_leg_force_rpr[0][leg]] = c_true_in_base_x
-        out_leg_force[_leg_force_rpr[1][leg]] = c_true_in_base_y
-        out_drive[_drive_rpr[0][leg]] = axis_x_x
-        out_drive[_drive_rpr[1][leg]] = axis_x_y
+        # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
+        rpr_c_y = rpr_W_1_t*rpr_h_2_y - inv_rpr_root_1*rpr_mu_1_z - rpr_h_2_x*rpr_qdd_1
+        # (rpr-c_true) leg force on the platform without actuation, the last link's mass included
+        rpr_c_true_x = rpr_W_1_t*rpr_h_2_x + rpr_h_2_y*rpr_qdd_1 - rpr_acc_2_x*rpr_link2_mass
+        rpr_c_true_y = rpr_c_y - rpr_acc_2_y*rpr_link2_mass
+        rpr_c_true_in_base_x = rpr_axis_x_x*rpr_c_true_x - rpr_axis_x_y*rpr_c_true_y
+        rpr_c_true_in_base_y = rpr_axis_x_x*rpr_c_true_y + rpr_axis_x_y*rpr_c_true_x
+        ok = (
+        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rpr_root_1)
+            > _TOLERANCE * 0.75))
+        )
+        out_leg_force[_leg_force_rpr[0][leg]] = rpr_c_true_in_base_x
+        out_leg_force[_leg_force_rpr[1][leg]] = rpr_c_true_in_base_y
+        out_drive[_drive_rpr[0][leg]] = rpr_axis_x_x
+        out_drive[_drive_rpr[1][leg]] = rpr_axis_x_y
     return ok, (out_leg_force, out_drive,)
 
 
@@ -1596,46 +1660,49 @@ def _run_potential(m, X):
     t_y = X_1
     ok = True
     out_potential = m.zeros("potential")
-    # (V1) potential energy
+    # (potential) potential energy
     potential_t = gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y + m_star*t_y)
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        b_r0_x, b_r0_y, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rpr_base_frame_xx,
-            rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-            rpr_base_point_y, rpr_link1_mass, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_b_r0_x, rpr_b_r0_y, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_g_r0_x,
+            rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_link1_mass,
+            rpr_platform_point_x, rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        S_x = rpr_platform_point_x + t_x - rpr_base_point_x
-        S_y = rpr_platform_point_y + t_y - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1 = 1.0/root_1
-        # (rpr-K7) cosine of the angle of joint 1 from its reference direction
-        c_1 = inv_root_1*px_1
-        # (rpr-K8) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*py_1
-        # (V1) potential energy
-        potential_t_2 = (
-        (c_1*g_r0_x + g_r0_y*s_1)*(h_1_x + h_2_x + rpr_link1_mass*(b_r0_x*c_1 + b_r0_y*s_1)) +
-            (c_1*g_r0_y - g_r0_x*s_1)*(h_1_y + h_2_y + rpr_link1_mass*(b_r0_y*c_1 - b_r0_x*s_1))
+        # (rpr-S) from the base point to the connection point
+        rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
+        rpr_c_1 = inv_rpr_root_1*rpr_px_1
+        # (rpr-s_1) sine of the angle of joint 1 from its reference direction
+        rpr_s_1 = inv_rpr_root_1*rpr_py_1
+        # (potential) potential energy
+        rpr_potential_t = (
+        (rpr_c_1*rpr_g_r0_x + rpr_g_r0_y*rpr_s_1)*(rpr_h_1_x + rpr_h_2_x +
+            rpr_link1_mass*(rpr_b_r0_x*rpr_c_1 + rpr_b_r0_y*rpr_s_1)) + (rpr_c_1*rpr_g_r0_y -
+            rpr_g_r0_x*rpr_s_1)*(rpr_h_1_y + rpr_h_2_y + rpr_link1_mass*(rpr_b_r0_y*rpr_c_1 -
+            rpr_b_r0_x*rpr_s_1))
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_1) >
-            _TOLERANCE * 0.75))
+        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rpr_root_1)
+            > _TOLERANCE * 0.75))
         )
         sums = m.added(sums, leg, (
-        potential_t_2,
+        rpr_potential_t,
         ))
     total_rpr, = sums
-    # (V1) potential energy
+    # (potential) potential energy
     potential = -potential_t - total_rpr
     out_potential[0] = potential
     return ok, (out_potential,)
@@ -1663,46 +1730,49 @@ def _run_condition(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-            rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+            rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_platform_point_x,
+            rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        S_x = rpr_platform_point_x + t_x - rpr_base_point_x
-        S_y = rpr_platform_point_y + t_y - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1 = 1.0/root_1
-        axis_x_x = S_x*inv_root_1
-        axis_x_y = S_y*inv_root_1
-        # (C2) rms distance of the platform points from their centroid
-        spread_t_2 = b_c_x - rpr_platform_point_x
-        spread_t_3 = b_c_y - rpr_platform_point_y
-        spread_t_4 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3
-        # (rpr-K5) squared amplitude
-        pivot_size = abs(rho2_1)
-        # (rpr-V4) reciprocal vector 1
-        pivot_size_2 = abs(root_1)
-        # (rpr-N18) force at the connection point that balances the leg's inertia and weight along all freedoms
-        least_pivots = least(1.3333333333333333*sqrt(pivot_size), 1.3333333333333333*pivot_size_2)
+        # (rpr-S) from the base point to the connection point
+        rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
+        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
+        # (spread) rms distance of the platform points from their centroid
+        rpr_spread_t = b_c_x - rpr_platform_point_x
+        rpr_spread_t_2 = b_c_y - rpr_platform_point_y
+        rpr_spread_t_3 = rpr_spread_t*rpr_spread_t + rpr_spread_t_2*rpr_spread_t_2
+        # (rpr-rho2_1) squared amplitude
+        rpr_pivot_size = abs(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        rpr_pivot_size_2 = abs(rpr_root_1)
+        # (rpr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rpr_least_pivots = (
+        least(1.3333333333333333*sqrt(rpr_pivot_size), 1.3333333333333333*rpr_pivot_size_2)
+        )
         clear = (
-        clear & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_1) >
-            _TOLERANCE * 0.75))
+        clear & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) &
+            (abs(rpr_root_1) > _TOLERANCE * 0.75))
         )
         sums = m.added(sums, leg, (
-        spread_t_4,
+        rpr_spread_t_3,
         ))
-        out_H[_H_rpr[0][leg]] = axis_x_x
-        out_H[_H_rpr[1][leg]] = axis_x_y
-        out_pivots[_pivots_rpr[0][leg]] = least_pivots
+        out_H[_H_rpr[0][leg]] = rpr_axis_x_x
+        out_H[_H_rpr[1][leg]] = rpr_axis_x_y
+        out_pivots[_pivots_rpr[0][leg]] = rpr_least_pivots
     total_rpr, = sums
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(total_rpr)
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
@@ -1827,6 +1897,19 @@ def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
     momentum = np.einsum("ijs,js->is", M, V)
     return (momentum,)
+
+
+def _steps_joint_margins(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    margins = _unlimited(q, [0, 1, 2, 3])
+    return (margins,)
+
+
+def _steps_within_limits(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    subtract_1 = q - q
+    within = _not_negative(subtract_1)
+    return (within,)
 
 
 def _steps_actuator_positions(m, X):
@@ -2210,6 +2293,40 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+    )
+
+
+def joint_margins(X, p=None):
+    """How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+    where there is none.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        margins: distances, in the order of q [m or rad] (..., NJ).
+    """
+    return _call(
+        "joint_margins", _steps_joint_margins, p,
+        ("X", X, (NQ,)),
+        unbounded=True,
+    )
+
+
+def within_limits(X, p=None):
+    """Whether all joints are within their limits of displacement.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        within: 1 where no margin is negative, else 0; NaN is neither (...,).
+    """
+    return _call(
+        "within_limits", _steps_within_limits, p,
+        ("X", X, (NQ,)),
     )
 
 

@@ -26,7 +26,10 @@ enum {
 
 #define R(x) ((real)(x))
 #define UNLESS(condition) ((condition) ? R(0) : R(1))  /* flag of what must hold */
-#define LANES 8  /* states that a batch runs side by side */
+#ifndef FIVEBAR_REDUNDANT_LANES
+#define FIVEBAR_REDUNDANT_LANES 8  /* 1 where there are no vectors: less memory, shorter code */
+#endif
+#define LANES ((size_t)FIVEBAR_REDUNDANT_LANES)  /* states that a batch runs side by side */
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
@@ -36,6 +39,20 @@ enum {
 #define INLINE static inline
 #define APART static
 #endif
+
+/* Bytes of a vector. */
+#if defined(__AVX__)
+#define VECTOR 32
+#elif defined(__SSE2__) || defined(__ARM_NEON)
+#define VECTOR 16
+#else
+#define VECTOR 1
+#endif
+/* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
+#define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
+#define LEGS(n) \
+    ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
+        : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
@@ -104,63 +121,122 @@ INLINE int is_finite(real x)
     return x - x == 0;
 }
 
-/* Why states are impossible, by state: more than 0 where a cause holds. */
+/* Why states are impossible, by state: more than 0 where a cause holds.  total: the sum of all
+   results, and side by side of all inputs, which is finite only where they are. */
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
+    real total[LANES];
 } verdict;
 
 INLINE void start(size_t w, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
+        t->total[k] = 0;
     }
 }
 
-/* x - x is 0 for every number and NaN for the rest; sums side by side add up fast. */
+/* x - x is 0 for every number and NaN for the rest. */
 INLINE int all_finite(const real *x, size_t n)
 {
+    real sum = 0;
+    for (size_t i = 0; i < n; ++i) {
+        sum += x[i] - x[i];
+    }
+    return sum == 0;
+}
+
+/* Whether all are finite: then so is their sum, but for numbers so large that they need a closer
+   look.  Many add up fast as sums side by side. */
+INLINE int sum_is_finite(const real *x, size_t n)
+{
+    if (n < 2*LANES) {
+        return is_finite(total(x, n));
+    }
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
         for (size_t k = 0; k < LANES; ++k) {
-            sum[k] += x[i + k] - x[i + k];
+            sum[k] += x[i + k];
         }
     }
     for (size_t i = most; i < n; ++i) {
-        sum[0] += x[i] - x[i];
+        sum[i - most] += x[i];
     }
-    return total(sum, LANES) == 0;
+    return is_finite(total(sum, LANES));
 }
 
 /* Flag the states with entries that are not finite; the states stand side by side. */
 INLINE void check(size_t size, size_t w, const real *x, real *flags)
 {
-    if (!all_finite(x, size*w)) {
+    if (!sum_is_finite(x, size*w)) {
         for (size_t i = 0; i < size*w; ++i) {
             flags[i%w] += UNLESS(is_finite(x[i]));
         }
     }
 }
 
-/* Input, given state by state, with its states side by side: entry e of state k at e*w + k. */
-INLINE const real *side_by_side(size_t size, size_t w, const real *x, real *lanes, real *flags)
+/* Add up the entries of every state. */
+INLINE void add_up(size_t size, const real *x, real *total)
 {
-    for (size_t e = 0; e < size && w > 1; ++e) {
-        for (size_t k = 0; k < w; ++k) {
-            lanes[e*w + k] = x[size*k + e];
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            total[k] += x[e*LANES + k];
         }
     }
-    check(size, w, w > 1 ? lanes : x, flags);
-    return w > 1 ? lanes : x;
 }
 
-/* The same for input that may be NULL: then all its entries are `none`. */
-INLINE const real *optional(size_t size, size_t w, const real *x, real none, real *lanes, real *flags)
+/* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
+INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
 {
-    for (size_t e = 0; e < size*w && !x; ++e) {
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            lanes[e*LANES + k] = x[size*k + e];
+        }
+    }
+    add_up(size, lanes, total);
+    return lanes;
+}
+
+/* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
+INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+{
+    for (size_t e = 0; e < size && !x; ++e) {
+        own[e] = none;
+    }
+    if (x) {
+        check(size, 1, x, flags);
+    }
+    return x ? x : own;
+}
+
+INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
+    real *total)
+{
+    for (size_t e = 0; e < size*LANES && !x; ++e) {
         lanes[e] = none;
     }
-    return x ? side_by_side(size, w, x, lanes, flags) : lanes;
+    return x ? side_by_side(size, x, lanes, total) : lanes;
+}
+
+/* Motion of the base, or NULL: at rest, its axes those of the world. */
+INLINE const real *motion_of_base(const real *x, real *own, real *flags)
+{
+    for (size_t e = 0; e < 18 && !x; ++e) {
+        own[e] = R(e < 9 && e%4 == 0);
+    }
+    if (x) {
+        check(18, 1, x, flags);
+    }
+    return x ? x : own;
+}
+
+INLINE const real *motion_of_base_side_by_side(const real *x, real *lanes, real *total)
+{
+    for (size_t i = 0; i < 18*LANES && !x; ++i) {
+        lanes[i] = R(i/LANES < 9 && i/LANES%4 == 0);
+    }
+    return x ? side_by_side(18, x, lanes, total) : lanes;
 }
 
 /* Flag the states of an input, NULL or given state by state, with entries that are not positive. */
@@ -171,14 +247,25 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE void judge(const verdict *t, size_t w, int *code)
+INLINE void judge(const verdict *t, int *code)
 {
-    for (size_t k = 0; k < w; ++k) {
-        code[k] = t->invalid[k] > 0 ? INVALID
-            : t->diverged[k] > 0 ? NOT_CONVERGED
-            : t->unreachable[k] > 0 ? UNREACHABLE
-            : t->singular[k] > 0 ? SINGULAR
-            : t->overflow[k] > 0 ? INVALID : OK;
+    *code = t->invalid[0] > 0 ? INVALID
+        : t->diverged[0] > 0 ? NOT_CONVERGED
+        : t->unreachable[0] > 0 ? UNREACHABLE
+        : t->singular[0] > 0 ? SINGULAR
+        : t->overflow[0] > 0 ? INVALID : OK;
+}
+
+/* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
+INLINE void suspect(const verdict *t, int *code)
+{
+    real flags[LANES];
+    for (size_t k = 0; k < LANES; ++k) {
+        flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
+            + (t->total[k] - t->total[k]);
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        code[k] = flags[k] == 0 ? OK : INVALID;
     }
 }
 
@@ -199,17 +286,19 @@ INLINE void refuse(size_t size, real *out)
     }
 }
 
-/* Outputs state by state; NaN where a state is impossible. */
-INLINE void deliver(const real *x, size_t size, size_t w, const int *code, real *out)
+/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < w; ++k) {
-            out[size*k + e] = x[e*w + k];
-        }
+        out[e] = x[e];
     }
-    for (size_t k = 0; k < w; ++k) {
-        if (code[k] != OK) {
-            refuse(size, out + size*k);
+}
+
+INLINE void deliver(size_t size, const real *x, real *out)
+{
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            out[size*k + e] = x[e*LANES + k];
         }
     }
 }
@@ -300,8 +389,41 @@ const fivebar_redundant_params fivebar_redundant_default_params = {
     R(0.5),  /* platform_mass */
     {R(0.0), R(0.0), R(0.0)},  /* platform_centre_of_mass */
     {{R(0.0), R(0.0), R(0.0)}, {R(0.0), R(0.0), R(0.0)}, {R(0.0), R(0.0), R(0.0)}},  /* platform_inertia */
-    {  /* rrr_base_point */
+    {  /* rrr_leg1_base_point */
         {R(0.030115496986122658), R(-0.17504639881453898), R(0.0)},
+    },
+    {  /* rrr_leg1_base_frame */
+        {{R(1.0), R(0.0), R(0.0)}, {R(0.0), R(1.0), R(0.0)}, {R(0.0), R(0.0), R(1.0)}},
+    },
+    {  /* rrr_leg1_platform_point */
+        {R(0.0), R(0.0), R(0.0)},
+    },
+    {  /* rrr_leg1_joint2_offset */
+        {R(0.4), R(0.0), R(0.0)},
+    },
+    {  /* rrr_leg1_platform_joint_offset */
+        {R(0.45), R(0.0), R(0.0)},
+    },
+    {  /* rrr_leg1_link1_mass */
+        R(1.5),
+    },
+    {  /* rrr_leg1_link1_centre_of_mass */
+        {R(0.2), R(0.0), R(0.0)},
+    },
+    {  /* rrr_leg1_link1_inertia */
+        {{R(0.0003), R(0.0), R(0.0)}, {R(0.0), R(0.020150000000000005), R(0.0)}, {R(0.0), R(0.0), R(0.020150000000000005)}},
+    },
+    {  /* rrr_leg1_link2_mass */
+        R(1.0),
+    },
+    {  /* rrr_leg1_link2_centre_of_mass */
+        {R(0.225), R(0.0), R(0.0)},
+    },
+    {  /* rrr_leg1_link2_inertia */
+        {{R(0.0002), R(0.0), R(0.0)}, {R(0.0), R(0.016975), R(0.0)}, {R(0.0), R(0.0), R(0.016975)}},
+    },
+    {  /* rrr_base_point */
+        {R(0.009884503013877288), R(-0.17504639881453898), R(0.0)},
     },
     {  /* rrr_base_frame */
         {{R(1.0), R(0.0), R(0.0)}, {R(0.0), R(1.0), R(0.0)}, {R(0.0), R(0.0), R(1.0)}},
@@ -333,39 +455,6 @@ const fivebar_redundant_params fivebar_redundant_default_params = {
     {  /* rrr_link2_inertia */
         {{R(0.0002), R(0.0), R(0.0)}, {R(0.0), R(0.016975), R(0.0)}, {R(0.0), R(0.0), R(0.016975)}},
     },
-    {  /* rrr2_base_point */
-        {R(0.009884503013877288), R(-0.17504639881453898), R(0.0)},
-    },
-    {  /* rrr2_base_frame */
-        {{R(1.0), R(0.0), R(0.0)}, {R(0.0), R(1.0), R(0.0)}, {R(0.0), R(0.0), R(1.0)}},
-    },
-    {  /* rrr2_platform_point */
-        {R(0.0), R(0.0), R(0.0)},
-    },
-    {  /* rrr2_joint2_offset */
-        {R(0.4), R(0.0), R(0.0)},
-    },
-    {  /* rrr2_platform_joint_offset */
-        {R(0.45), R(0.0), R(0.0)},
-    },
-    {  /* rrr2_link1_mass */
-        R(1.5),
-    },
-    {  /* rrr2_link1_centre_of_mass */
-        {R(0.2), R(0.0), R(0.0)},
-    },
-    {  /* rrr2_link1_inertia */
-        {{R(0.0003), R(0.0), R(0.0)}, {R(0.0), R(0.020150000000000005), R(0.0)}, {R(0.0), R(0.0), R(0.020150000000000005)}},
-    },
-    {  /* rrr2_link2_mass */
-        R(1.0),
-    },
-    {  /* rrr2_link2_centre_of_mass */
-        {R(0.225), R(0.0), R(0.0)},
-    },
-    {  /* rrr2_link2_inertia */
-        {{R(0.0002), R(0.0), R(0.0)}, {R(0.0), R(0.016975), R(0.0)}, {R(0.0), R(0.0), R(0.016975)}},
-    },
 };
 
 const fivebar_redundant_real fivebar_redundant_HOME_X[FIVEBAR_REDUNDANT_NQ] = {R(0.02), R(0.55)};
@@ -388,6 +477,31 @@ static int acceptable(const fivebar_redundant_params *p)
     ok &= all_zero(&p->platform_centre_of_mass[0] + 2, 1, 3);
     ok &= all_within(&p->platform_inertia[0][0], 9);
     ok &= all_planar_inertias(&p->platform_inertia[0][0], 1);
+    ok &= all_within(&p->rrr_leg1_base_point[0][0], 3);
+    ok &= all_zero(&p->rrr_leg1_base_point[0][0] + 2, 1, 3);
+    ok &= all_within(&p->rrr_leg1_base_frame[0][0][0], 9);
+    ok &= all_rotations(&p->rrr_leg1_base_frame[0][0][0], 1);
+    ok &= all_about_z(&p->rrr_leg1_base_frame[0][0][0], 1);
+    ok &= all_within(&p->rrr_leg1_platform_point[0][0], 3);
+    ok &= all_zero(&p->rrr_leg1_platform_point[0][0] + 2, 1, 3);
+    ok &= all_within(&p->rrr_leg1_joint2_offset[0][0], 3);
+    ok &= all_zero(&p->rrr_leg1_joint2_offset[0][0] + 1, 1, 3);
+    ok &= all_zero(&p->rrr_leg1_joint2_offset[0][0] + 2, 1, 3);
+    ok &= all_within(&p->rrr_leg1_platform_joint_offset[0][0], 3);
+    ok &= all_zero(&p->rrr_leg1_platform_joint_offset[0][0] + 1, 1, 3);
+    ok &= all_zero(&p->rrr_leg1_platform_joint_offset[0][0] + 2, 1, 3);
+    ok &= all_within(&p->rrr_leg1_link1_mass[0], 1);
+    ok &= none_negative(&p->rrr_leg1_link1_mass[0], 1);
+    ok &= all_within(&p->rrr_leg1_link1_centre_of_mass[0][0], 3);
+    ok &= all_zero(&p->rrr_leg1_link1_centre_of_mass[0][0] + 2, 1, 3);
+    ok &= all_within(&p->rrr_leg1_link1_inertia[0][0][0], 9);
+    ok &= all_planar_inertias(&p->rrr_leg1_link1_inertia[0][0][0], 1);
+    ok &= all_within(&p->rrr_leg1_link2_mass[0], 1);
+    ok &= none_negative(&p->rrr_leg1_link2_mass[0], 1);
+    ok &= all_within(&p->rrr_leg1_link2_centre_of_mass[0][0], 3);
+    ok &= all_zero(&p->rrr_leg1_link2_centre_of_mass[0][0] + 2, 1, 3);
+    ok &= all_within(&p->rrr_leg1_link2_inertia[0][0][0], 9);
+    ok &= all_planar_inertias(&p->rrr_leg1_link2_inertia[0][0][0], 1);
     ok &= all_within(&p->rrr_base_point[0][0], 3);
     ok &= all_zero(&p->rrr_base_point[0][0] + 2, 1, 3);
     ok &= all_within(&p->rrr_base_frame[0][0][0], 9);
@@ -413,31 +527,6 @@ static int acceptable(const fivebar_redundant_params *p)
     ok &= all_zero(&p->rrr_link2_centre_of_mass[0][0] + 2, 1, 3);
     ok &= all_within(&p->rrr_link2_inertia[0][0][0], 9);
     ok &= all_planar_inertias(&p->rrr_link2_inertia[0][0][0], 1);
-    ok &= all_within(&p->rrr2_base_point[0][0], 3);
-    ok &= all_zero(&p->rrr2_base_point[0][0] + 2, 1, 3);
-    ok &= all_within(&p->rrr2_base_frame[0][0][0], 9);
-    ok &= all_rotations(&p->rrr2_base_frame[0][0][0], 1);
-    ok &= all_about_z(&p->rrr2_base_frame[0][0][0], 1);
-    ok &= all_within(&p->rrr2_platform_point[0][0], 3);
-    ok &= all_zero(&p->rrr2_platform_point[0][0] + 2, 1, 3);
-    ok &= all_within(&p->rrr2_joint2_offset[0][0], 3);
-    ok &= all_zero(&p->rrr2_joint2_offset[0][0] + 1, 1, 3);
-    ok &= all_zero(&p->rrr2_joint2_offset[0][0] + 2, 1, 3);
-    ok &= all_within(&p->rrr2_platform_joint_offset[0][0], 3);
-    ok &= all_zero(&p->rrr2_platform_joint_offset[0][0] + 1, 1, 3);
-    ok &= all_zero(&p->rrr2_platform_joint_offset[0][0] + 2, 1, 3);
-    ok &= all_within(&p->rrr2_link1_mass[0], 1);
-    ok &= none_negative(&p->rrr2_link1_mass[0], 1);
-    ok &= all_within(&p->rrr2_link1_centre_of_mass[0][0], 3);
-    ok &= all_zero(&p->rrr2_link1_centre_of_mass[0][0] + 2, 1, 3);
-    ok &= all_within(&p->rrr2_link1_inertia[0][0][0], 9);
-    ok &= all_planar_inertias(&p->rrr2_link1_inertia[0][0][0], 1);
-    ok &= all_within(&p->rrr2_link2_mass[0], 1);
-    ok &= none_negative(&p->rrr2_link2_mass[0], 1);
-    ok &= all_within(&p->rrr2_link2_centre_of_mass[0][0], 3);
-    ok &= all_zero(&p->rrr2_link2_centre_of_mass[0][0] + 2, 1, 3);
-    ok &= all_within(&p->rrr2_link2_inertia[0][0][0], 9);
-    ok &= all_planar_inertias(&p->rrr2_link2_inertia[0][0][0], 1);
     return ok;
 }
 
@@ -447,297 +536,308 @@ int fivebar_redundant_prepare(const fivebar_redundant_params *params, fivebar_re
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
+    real total_rrr_leg1 = 0;
+    real total_rrr_leg1_x = 0;
+    real total_rrr_leg1_y = 0;
+    real total_rrr_leg1_x_2 = 0;
+    real total_rrr_leg1_y_2 = 0;
+    real total_rrr_leg1_2 = 0;
     real total_rrr = 0;
     real total_rrr_x = 0;
     real total_rrr_y = 0;
     real total_rrr_x_2 = 0;
     real total_rrr_y_2 = 0;
     real total_rrr_2 = 0;
-    real total_rrr2 = 0;
-    real total_rrr2_x = 0;
-    real total_rrr2_y = 0;
-    real total_rrr2_x_2 = 0;
-    real total_rrr2_y_2 = 0;
-    real total_rrr2_2 = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real platform_mass = params->platform_mass;
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
-    /* (L2) first moment about the platform origin */
+    /* (h_star) first moment about the platform origin */
     const real h_star_t = platform_centre_of_mass_x*platform_mass;
     const real h_star_t_2 = platform_centre_of_mass_y*platform_mass;
     model->gravity_x = gravity_x;
     model->gravity_y = gravity_y;
     for (size_t leg = 0; leg < 1; ++leg) {
-        const real rrr_base_point_x = params->rrr_base_point[leg][0];
-        const real rrr_base_point_y = params->rrr_base_point[leg][1];
-        const real rrr_base_frame_xx = params->rrr_base_frame[leg][0][0];
-        const real rrr_base_frame_xy = params->rrr_base_frame[leg][0][1];
-        const real rrr_base_frame_yx = params->rrr_base_frame[leg][1][0];
-        const real rrr_base_frame_yy = params->rrr_base_frame[leg][1][1];
-        const real rrr_platform_point_x = params->rrr_platform_point[leg][0];
-        const real rrr_platform_point_y = params->rrr_platform_point[leg][1];
-        const real rrr_joint2_offset_x = params->rrr_joint2_offset[leg][0];
-        const real rrr_platform_joint_offset_x = params->rrr_platform_joint_offset[leg][0];
-        const real rrr_link1_mass = params->rrr_link1_mass[leg];
-        const real rrr_link1_centre_of_mass_x = params->rrr_link1_centre_of_mass[leg][0];
-        const real rrr_link1_centre_of_mass_y = params->rrr_link1_centre_of_mass[leg][1];
-        const real rrr_link1_inertia_zz = params->rrr_link1_inertia[leg][2][2];
-        const real rrr_link2_mass = params->rrr_link2_mass[leg];
-        const real rrr_link2_centre_of_mass_x = params->rrr_link2_centre_of_mass[leg][0];
-        const real rrr_link2_centre_of_mass_y = params->rrr_link2_centre_of_mass[leg][1];
-        const real rrr_link2_inertia_zz = params->rrr_link2_inertia[leg][2][2];
-        static const signed char signs_branch_1_rrr[] = {1};
-        const real branch_1_rrr = signs_branch_1_rrr[leg];
-        /* (rrr-K17) squared length, across the axis, of the direction fixed in link 2 */
-        const real uu_2_rrr_t = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const size_t own = leg;
+        const real rrr_leg1_base_point_x = params->rrr_leg1_base_point[own][0];
+        const real rrr_leg1_base_point_y = params->rrr_leg1_base_point[own][1];
+        const real rrr_leg1_base_frame_xx = params->rrr_leg1_base_frame[own][0][0];
+        const real rrr_leg1_base_frame_xy = params->rrr_leg1_base_frame[own][0][1];
+        const real rrr_leg1_base_frame_yx = params->rrr_leg1_base_frame[own][1][0];
+        const real rrr_leg1_base_frame_yy = params->rrr_leg1_base_frame[own][1][1];
+        const real rrr_leg1_platform_point_x = params->rrr_leg1_platform_point[own][0];
+        const real rrr_leg1_platform_point_y = params->rrr_leg1_platform_point[own][1];
+        const real rrr_leg1_joint2_offset_x = params->rrr_leg1_joint2_offset[own][0];
+        const real rrr_leg1_platform_joint_offset_x = params->rrr_leg1_platform_joint_offset[own][0];
+        const real rrr_leg1_link1_mass = params->rrr_leg1_link1_mass[own];
+        const real rrr_leg1_link1_centre_of_mass_x = params->rrr_leg1_link1_centre_of_mass[own][0];
+        const real rrr_leg1_link1_centre_of_mass_y = params->rrr_leg1_link1_centre_of_mass[own][1];
+        const real rrr_leg1_link1_inertia_zz = params->rrr_leg1_link1_inertia[own][2][2];
+        const real rrr_leg1_link2_mass = params->rrr_leg1_link2_mass[own];
+        const real rrr_leg1_link2_centre_of_mass_x = params->rrr_leg1_link2_centre_of_mass[own][0];
+        const real rrr_leg1_link2_centre_of_mass_y = params->rrr_leg1_link2_centre_of_mass[own][1];
+        const real rrr_leg1_link2_inertia_zz = params->rrr_leg1_link2_inertia[own][2][2];
+        static const signed char signs_rrr_leg1_branch_1[] = {1};
+        const real rrr_leg1_branch_1 = signs_rrr_leg1_branch_1[own];
+        /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
+           beyond joint 1 */
+        const real rrr_leg1_Kd_1_t = rrr_leg1_joint2_offset_x*rrr_leg1_joint2_offset_x;
+        const real rrr_leg1_Kd_1_t_2 = R(0.5)*rrr_leg1_Kd_1_t;
+        const real rrr_leg1_Kd_1_t_3 =
+            rrr_leg1_platform_joint_offset_x*rrr_leg1_platform_joint_offset_x;
+        const real rrr_leg1_Kd_1_t_4 = R(0.5)*rrr_leg1_Kd_1_t_3;
+        /* (rrr_leg1-size) length of the leg's lever arms, the measure of what is near singular */
+        const real rrr_leg1_size_t = R(5.257946636889999e-07) + rrr_leg1_Kd_1_t +
+            rrr_leg1_Kd_1_t_3;
+        const real rrr_leg1_size = root(rrr_leg1_size_t);
+        /* (rrr_leg1-rho2_1) squared amplitude */
+        const real rrr_leg1_rho2_1_t = rrr_leg1_size*rrr_leg1_size*rrr_leg1_size_t;
+        /* (rrr_leg1-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real inv_rrr_leg1_Kd_1_t_5 = 1/rrr_leg1_Kd_1_t;
+        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_leg1_Kd_1_t_7 = 1/rrr_leg1_Kd_1_t_3;
+        /* (rrr_leg1-rho_tip_2) connection point to the centre of mass of link 2 */
+        const real rrr_leg1_rho_tip_2_x = rrr_leg1_link2_centre_of_mass_x -
+            rrr_leg1_platform_joint_offset_x;
+        /* (rrr_leg1-h_2) first moment of link 2 about the connection point */
+        const real rrr_leg1_h_2_x = rrr_leg1_link2_mass*rrr_leg1_rho_tip_2_x;
+        const real rrr_leg1_h_2_y = rrr_leg1_link2_centre_of_mass_y*rrr_leg1_link2_mass;
+        /* (rrr_leg1-w_2) reciprocal vector 2 */
+        const real inv_rrr_leg1_platform_joint_offset_x = 1/rrr_leg1_platform_joint_offset_x;
+        /* (rrr_leg1-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
+           about its reference point */
+        const real rrr_leg1_d_phi_2_t = inv_rrr_leg1_platform_joint_offset_x*rrr_leg1_h_2_y;
+        /* (rrr_leg1-J_2) inertia tensor of link 2 about the connection point */
+        const real rrr_leg1_J_2_t =
+            rrr_leg1_link2_centre_of_mass_y*rrr_leg1_link2_centre_of_mass_y +
+            rrr_leg1_rho_tip_2_x*rrr_leg1_rho_tip_2_x;
+        const real rrr_leg1_J_2_zz = rrr_leg1_link2_inertia_zz +
+            rrr_leg1_J_2_t*rrr_leg1_link2_mass;
+        /* (rrr_leg1-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
+           links' inertia and weight */
+        const real rrr_leg1_d_Gamma_2_t = inv_rrr_leg1_platform_joint_offset_x*rrr_leg1_J_2_zz;
+        const real rrr_leg1_d_Gamma_2_y = rrr_leg1_d_Gamma_2_t + rrr_leg1_h_2_x;
+        /* (rrr_leg1-J_1) inertia tensor of link 1 about the origin of link 1 */
+        const real rrr_leg1_J_1_t =
+            rrr_leg1_link1_centre_of_mass_x*rrr_leg1_link1_centre_of_mass_x +
+            rrr_leg1_link1_centre_of_mass_y*rrr_leg1_link1_centre_of_mass_y;
+        const real rrr_leg1_J_1_zz = rrr_leg1_link1_inertia_zz +
+            rrr_leg1_J_1_t*rrr_leg1_link1_mass;
+        /* (rrr_leg1-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last
+           link about the connection point */
+        const real rrr_leg1_Jc_1_zz = rrr_leg1_J_1_zz + rrr_leg1_J_2_zz;
+        /* (rrr_leg1-d_c) coefficient of the acceleration in: leg force on the platform without actuation
+           and without the mass at the connection point */
+        const real rrr_leg1_d_c_yy = -inv_rrr_leg1_platform_joint_offset_x*rrr_leg1_d_Gamma_2_y -
+            inv_rrr_leg1_platform_joint_offset_x*rrr_leg1_h_2_x;
+        /* (rrr_leg1-h_1) first moment of link 1 about the origin of link 1 */
+        const real rrr_leg1_h_1_x = rrr_leg1_link1_centre_of_mass_x*rrr_leg1_link1_mass;
+        const real rrr_leg1_h_1_y = rrr_leg1_link1_centre_of_mass_y*rrr_leg1_link1_mass;
+        /* (rrr_leg1-acc_1_o) remainder without the acceleration in: acceleration of the reference point
+           of link 1, less gravity */
+        const real rrr_leg1_g_r0_x = gravity_x*rrr_leg1_base_frame_xx +
+            gravity_y*rrr_leg1_base_frame_yx;
+        const real rrr_leg1_g_r0_y = gravity_x*rrr_leg1_base_frame_xy +
+            gravity_y*rrr_leg1_base_frame_yy;
+        /* (h_star) first moment about the platform origin */
+        const real rrr_leg1_h_star_t = rrr_leg1_link2_mass*rrr_leg1_platform_point_x;
+        const real rrr_leg1_h_star_t_2 = rrr_leg1_link2_mass*rrr_leg1_platform_point_y;
+        /* (potential) potential energy */
+        const real rrr_leg1_b_r0_x = rrr_leg1_base_frame_xx*rrr_leg1_base_point_x +
+            rrr_leg1_base_frame_yx*rrr_leg1_base_point_y;
+        const real rrr_leg1_b_r0_y = rrr_leg1_base_frame_xy*rrr_leg1_base_point_x +
+            rrr_leg1_base_frame_yy*rrr_leg1_base_point_y;
+        /* (rrr_leg1-rho2_1) squared amplitude */
+        const real inv_rrr_leg1_rho2_1_t_4 = 1/rrr_leg1_rho2_1_t;
+        /* (rrr_leg1-w_1) reciprocal vector 1 */
+        const real inv_rrr_leg1_size = 1/rrr_leg1_size;
+        model->inv_rrr_leg1_Kd_1_t_5[leg] = inv_rrr_leg1_Kd_1_t_5;
+        model->inv_rrr_leg1_Kd_1_t_7[leg] = inv_rrr_leg1_Kd_1_t_7;
+        model->inv_rrr_leg1_platform_joint_offset_x[leg] = inv_rrr_leg1_platform_joint_offset_x;
+        model->inv_rrr_leg1_rho2_1_t_4[leg] = inv_rrr_leg1_rho2_1_t_4;
+        model->inv_rrr_leg1_size[leg] = inv_rrr_leg1_size;
+        model->rrr_leg1_J_1_zz[leg] = rrr_leg1_J_1_zz;
+        model->rrr_leg1_J_2_zz[leg] = rrr_leg1_J_2_zz;
+        model->rrr_leg1_Jc_1_zz[leg] = rrr_leg1_Jc_1_zz;
+        model->rrr_leg1_Kd_1_t_2[leg] = rrr_leg1_Kd_1_t_2;
+        model->rrr_leg1_Kd_1_t_4[leg] = rrr_leg1_Kd_1_t_4;
+        model->rrr_leg1_b_r0_x[leg] = rrr_leg1_b_r0_x;
+        model->rrr_leg1_b_r0_y[leg] = rrr_leg1_b_r0_y;
+        model->rrr_leg1_base_frame_xx[leg] = rrr_leg1_base_frame_xx;
+        model->rrr_leg1_base_frame_xy[leg] = rrr_leg1_base_frame_xy;
+        model->rrr_leg1_base_frame_yx[leg] = rrr_leg1_base_frame_yx;
+        model->rrr_leg1_base_frame_yy[leg] = rrr_leg1_base_frame_yy;
+        model->rrr_leg1_base_point_x[leg] = rrr_leg1_base_point_x;
+        model->rrr_leg1_base_point_y[leg] = rrr_leg1_base_point_y;
+        model->rrr_leg1_branch_1[leg] = rrr_leg1_branch_1;
+        model->rrr_leg1_d_Gamma_2_t[leg] = rrr_leg1_d_Gamma_2_t;
+        model->rrr_leg1_d_Gamma_2_y[leg] = rrr_leg1_d_Gamma_2_y;
+        model->rrr_leg1_d_c_yy[leg] = rrr_leg1_d_c_yy;
+        model->rrr_leg1_d_phi_2_t[leg] = rrr_leg1_d_phi_2_t;
+        model->rrr_leg1_g_r0_x[leg] = rrr_leg1_g_r0_x;
+        model->rrr_leg1_g_r0_y[leg] = rrr_leg1_g_r0_y;
+        model->rrr_leg1_h_1_x[leg] = rrr_leg1_h_1_x;
+        model->rrr_leg1_h_1_y[leg] = rrr_leg1_h_1_y;
+        model->rrr_leg1_h_2_x[leg] = rrr_leg1_h_2_x;
+        model->rrr_leg1_h_2_y[leg] = rrr_leg1_h_2_y;
+        model->rrr_leg1_joint2_offset_x[leg] = rrr_leg1_joint2_offset_x;
+        model->rrr_leg1_link1_mass[leg] = rrr_leg1_link1_mass;
+        model->rrr_leg1_link2_mass[leg] = rrr_leg1_link2_mass;
+        model->rrr_leg1_platform_joint_offset_x[leg] = rrr_leg1_platform_joint_offset_x;
+        model->rrr_leg1_platform_point_x[leg] = rrr_leg1_platform_point_x;
+        model->rrr_leg1_platform_point_y[leg] = rrr_leg1_platform_point_y;
+        model->rrr_leg1_rho2_1_t[leg] = rrr_leg1_rho2_1_t;
+        model->rrr_leg1_size[leg] = rrr_leg1_size;
+        total_rrr_leg1 += rrr_leg1_link2_mass;
+        total_rrr_leg1_x += rrr_leg1_h_star_t;
+        total_rrr_leg1_y += rrr_leg1_h_star_t_2;
+        total_rrr_leg1_x_2 += rrr_leg1_platform_point_x;
+        total_rrr_leg1_y_2 += rrr_leg1_platform_point_y;
+        total_rrr_leg1_2 += rrr_leg1_size_t;
+    }
+    for (size_t leg = 0; leg < 1; ++leg) {
+        const size_t own = leg;
+        const real rrr_base_point_x = params->rrr_base_point[own][0];
+        const real rrr_base_point_y = params->rrr_base_point[own][1];
+        const real rrr_base_frame_xx = params->rrr_base_frame[own][0][0];
+        const real rrr_base_frame_xy = params->rrr_base_frame[own][0][1];
+        const real rrr_base_frame_yx = params->rrr_base_frame[own][1][0];
+        const real rrr_base_frame_yy = params->rrr_base_frame[own][1][1];
+        const real rrr_platform_point_x = params->rrr_platform_point[own][0];
+        const real rrr_platform_point_y = params->rrr_platform_point[own][1];
+        const real rrr_joint2_offset_x = params->rrr_joint2_offset[own][0];
+        const real rrr_platform_joint_offset_x = params->rrr_platform_joint_offset[own][0];
+        const real rrr_link1_mass = params->rrr_link1_mass[own];
+        const real rrr_link1_centre_of_mass_x = params->rrr_link1_centre_of_mass[own][0];
+        const real rrr_link1_centre_of_mass_y = params->rrr_link1_centre_of_mass[own][1];
+        const real rrr_link1_inertia_zz = params->rrr_link1_inertia[own][2][2];
+        const real rrr_link2_mass = params->rrr_link2_mass[own];
+        const real rrr_link2_centre_of_mass_x = params->rrr_link2_centre_of_mass[own][0];
+        const real rrr_link2_centre_of_mass_y = params->rrr_link2_centre_of_mass[own][1];
+        const real rrr_link2_inertia_zz = params->rrr_link2_inertia[own][2][2];
+        static const signed char signs_rrr_branch_1[] = {-1};
+        const real rrr_branch_1 = signs_rrr_branch_1[own];
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = rrr_joint2_offset_x*rrr_joint2_offset_x;
-        const real Kd_1_rrr_t_2 = R(0.5)*Kd_1_rrr_t;
-        const real Kd_1_rrr_t_3 = R(0.5)*uu_2_rrr_t;
-        /* (rrr-G2) length of the leg's lever arms, the measure of what is near singular */
-        const real size_rrr_t = R(5.257946636889999e-07) + Kd_1_rrr_t + uu_2_rrr_t;
-        const real size_rrr = root(size_rrr_t);
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr_t = size_rrr*size_rrr*size_rrr_t;
-        /* (rrr-K15) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_Kd_1_rrr_t_5 = 1/Kd_1_rrr_t;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real inv_uu_2_rrr_t = 1/uu_2_rrr_t;
-        /* (rrr-G4) inertia tensor of link 1 about the origin of link 1 */
-        const real J_1_rrr_t = rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
-            rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y;
-        const real J_1_rrr_zz = rrr_link1_inertia_zz + J_1_rrr_t*rrr_link1_mass;
-        /* (rrr-G5) connection point to the centre of mass of link 2 */
-        const real rho_tip_2_rrr_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x;
-        /* (rrr-G7) inertia tensor of link 2 about the connection point */
-        const real J_2_rrr_t = rho_tip_2_rrr_x*rho_tip_2_rrr_x +
-            rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y;
-        const real J_2_rrr_zz = rrr_link2_inertia_zz + J_2_rrr_t*rrr_link2_mass;
-        /* (rrr-N11) inertia tensor of the links from 1 outwards about joint 1 */
-        const real Jc_1_rrr_zz = J_1_rrr_zz + J_2_rrr_zz;
-        /* (rrr-G6) first moment of link 2 about the connection point */
-        const real h_2_rrr_x = rho_tip_2_rrr_x*rrr_link2_mass;
-        const real h_2_rrr_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
-        /* (rrr-V6) reciprocal vector 2 */
+        const real rrr_Kd_1_t = rrr_joint2_offset_x*rrr_joint2_offset_x;
+        const real rrr_Kd_1_t_2 = R(0.5)*rrr_Kd_1_t;
+        const real rrr_Kd_1_t_3 = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x;
+        const real rrr_Kd_1_t_4 = R(0.5)*rrr_Kd_1_t_3;
+        /* (rrr-size) length of the leg's lever arms, the measure of what is near singular */
+        const real rrr_size_t = R(5.257946636889999e-07) + rrr_Kd_1_t + rrr_Kd_1_t_3;
+        const real rrr_size = root(rrr_size_t);
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1_t = rrr_size*rrr_size*rrr_size_t;
+        /* (rrr-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real inv_rrr_Kd_1_t_5 = 1/rrr_Kd_1_t;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = 1/rrr_Kd_1_t_3;
+        /* (rrr-rho_tip_2) connection point to the centre of mass of link 2 */
+        const real rrr_rho_tip_2_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x;
+        /* (rrr-h_2) first moment of link 2 about the connection point */
+        const real rrr_h_2_x = rrr_link2_mass*rrr_rho_tip_2_x;
+        const real rrr_h_2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
+        /* (rrr-w_2) reciprocal vector 2 */
         const real inv_rrr_platform_joint_offset_x = 1/rrr_platform_joint_offset_x;
-        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_rrr_t = J_2_rrr_zz*inv_rrr_platform_joint_offset_x;
-        const real d_Gamma_1_rrr_y = d_Gamma_1_rrr_t + h_2_rrr_x;
-        /* (rrr-N6) coefficient of the acceleration in: inertia force of link 2 from its turning about its
-           reference point */
-        const real d_phi_2_rrr_t = h_2_rrr_y*inv_rrr_platform_joint_offset_x;
-        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
+        /* (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
+           about its reference point */
+        const real rrr_d_phi_2_t = inv_rrr_platform_joint_offset_x*rrr_h_2_y;
+        /* (rrr-J_2) inertia tensor of link 2 about the connection point */
+        const real rrr_J_2_t = rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y +
+            rrr_rho_tip_2_x*rrr_rho_tip_2_x;
+        const real rrr_J_2_zz = rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass;
+        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real rrr_d_Gamma_2_t = inv_rrr_platform_joint_offset_x*rrr_J_2_zz;
+        const real rrr_d_Gamma_2_y = rrr_d_Gamma_2_t + rrr_h_2_x;
+        /* (rrr-J_1) inertia tensor of link 1 about the origin of link 1 */
+        const real rrr_J_1_t = rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
+            rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y;
+        const real rrr_J_1_zz = rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass;
+        /* (rrr-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link
+           about the connection point */
+        const real rrr_Jc_1_zz = rrr_J_1_zz + rrr_J_2_zz;
+        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_rrr_yy = -d_Gamma_1_rrr_y*inv_rrr_platform_joint_offset_x -
-            h_2_rrr_x*inv_rrr_platform_joint_offset_x;
-        /* (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
-           less gravity */
-        const real g_r0_x = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx;
-        const real g_r0_y = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy;
-        /* (rrr-G3) first moment of link 1 about the origin of link 1 */
-        const real h_1_rrr_x = rrr_link1_centre_of_mass_x*rrr_link1_mass;
-        const real h_1_rrr_y = rrr_link1_centre_of_mass_y*rrr_link1_mass;
-        /* (L2) first moment about the platform origin */
-        const real h_star_t_3 = rrr_link2_mass*rrr_platform_point_x;
-        const real h_star_t_4 = rrr_link2_mass*rrr_platform_point_y;
-        /* (V1) potential energy */
-        const real b_rrr_r0_x = rrr_base_frame_xx*rrr_base_point_x +
+        const real rrr_d_c_yy = -inv_rrr_platform_joint_offset_x*rrr_d_Gamma_2_y -
+            inv_rrr_platform_joint_offset_x*rrr_h_2_x;
+        /* (rrr-h_1) first moment of link 1 about the origin of link 1 */
+        const real rrr_h_1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass;
+        const real rrr_h_1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass;
+        /* (rrr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
+           link 1, less gravity */
+        const real rrr_g_r0_x = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx;
+        const real rrr_g_r0_y = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy;
+        /* (h_star) first moment about the platform origin */
+        const real rrr_h_star_t = rrr_link2_mass*rrr_platform_point_x;
+        const real rrr_h_star_t_2 = rrr_link2_mass*rrr_platform_point_y;
+        /* (potential) potential energy */
+        const real rrr_b_r0_x = rrr_base_frame_xx*rrr_base_point_x +
             rrr_base_frame_yx*rrr_base_point_y;
-        const real b_rrr_r0_y = rrr_base_frame_xy*rrr_base_point_x +
+        const real rrr_b_r0_y = rrr_base_frame_xy*rrr_base_point_x +
             rrr_base_frame_yy*rrr_base_point_y;
-        /* (rrr-K8) squared amplitude */
-        const real inv_rho2_1_rrr_t_4 = 1/rho2_1_rrr_t;
-        /* (rrr-V5) reciprocal vector 1 */
-        const real inv_size_rrr = 1/size_rrr;
-        model->J_1_rrr_zz[leg] = J_1_rrr_zz;
-        model->J_2_rrr_zz[leg] = J_2_rrr_zz;
-        model->Jc_1_rrr_zz[leg] = Jc_1_rrr_zz;
-        model->Kd_1_rrr_t_2[leg] = Kd_1_rrr_t_2;
-        model->Kd_1_rrr_t_3[leg] = Kd_1_rrr_t_3;
-        model->b_rrr_r0_x[leg] = b_rrr_r0_x;
-        model->b_rrr_r0_y[leg] = b_rrr_r0_y;
-        model->branch_1_rrr[leg] = branch_1_rrr;
-        model->d_Gamma_1_rrr_t[leg] = d_Gamma_1_rrr_t;
-        model->d_Gamma_1_rrr_y[leg] = d_Gamma_1_rrr_y;
-        model->d_c_rrr_yy[leg] = d_c_rrr_yy;
-        model->d_phi_2_rrr_t[leg] = d_phi_2_rrr_t;
-        model->g_r0_x[leg] = g_r0_x;
-        model->g_r0_y[leg] = g_r0_y;
-        model->h_1_rrr_x[leg] = h_1_rrr_x;
-        model->h_1_rrr_y[leg] = h_1_rrr_y;
-        model->h_2_rrr_x[leg] = h_2_rrr_x;
-        model->h_2_rrr_y[leg] = h_2_rrr_y;
-        model->inv_Kd_1_rrr_t_5[leg] = inv_Kd_1_rrr_t_5;
-        model->inv_rho2_1_rrr_t_4[leg] = inv_rho2_1_rrr_t_4;
+        /* (rrr-rho2_1) squared amplitude */
+        const real inv_rrr_rho2_1_t_4 = 1/rrr_rho2_1_t;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real inv_rrr_size = 1/rrr_size;
+        model->inv_rrr_Kd_1_t_5[leg] = inv_rrr_Kd_1_t_5;
+        model->inv_rrr_Kd_1_t_7[leg] = inv_rrr_Kd_1_t_7;
         model->inv_rrr_platform_joint_offset_x[leg] = inv_rrr_platform_joint_offset_x;
-        model->inv_size_rrr[leg] = inv_size_rrr;
-        model->inv_uu_2_rrr_t[leg] = inv_uu_2_rrr_t;
-        model->rho2_1_rrr_t[leg] = rho2_1_rrr_t;
+        model->inv_rrr_rho2_1_t_4[leg] = inv_rrr_rho2_1_t_4;
+        model->inv_rrr_size[leg] = inv_rrr_size;
+        model->rrr_J_1_zz[leg] = rrr_J_1_zz;
+        model->rrr_J_2_zz[leg] = rrr_J_2_zz;
+        model->rrr_Jc_1_zz[leg] = rrr_Jc_1_zz;
+        model->rrr_Kd_1_t_2[leg] = rrr_Kd_1_t_2;
+        model->rrr_Kd_1_t_4[leg] = rrr_Kd_1_t_4;
+        model->rrr_b_r0_x[leg] = rrr_b_r0_x;
+        model->rrr_b_r0_y[leg] = rrr_b_r0_y;
         model->rrr_base_frame_xx[leg] = rrr_base_frame_xx;
         model->rrr_base_frame_xy[leg] = rrr_base_frame_xy;
         model->rrr_base_frame_yx[leg] = rrr_base_frame_yx;
         model->rrr_base_frame_yy[leg] = rrr_base_frame_yy;
         model->rrr_base_point_x[leg] = rrr_base_point_x;
         model->rrr_base_point_y[leg] = rrr_base_point_y;
+        model->rrr_branch_1[leg] = rrr_branch_1;
+        model->rrr_d_Gamma_2_t[leg] = rrr_d_Gamma_2_t;
+        model->rrr_d_Gamma_2_y[leg] = rrr_d_Gamma_2_y;
+        model->rrr_d_c_yy[leg] = rrr_d_c_yy;
+        model->rrr_d_phi_2_t[leg] = rrr_d_phi_2_t;
+        model->rrr_g_r0_x[leg] = rrr_g_r0_x;
+        model->rrr_g_r0_y[leg] = rrr_g_r0_y;
+        model->rrr_h_1_x[leg] = rrr_h_1_x;
+        model->rrr_h_1_y[leg] = rrr_h_1_y;
+        model->rrr_h_2_x[leg] = rrr_h_2_x;
+        model->rrr_h_2_y[leg] = rrr_h_2_y;
         model->rrr_joint2_offset_x[leg] = rrr_joint2_offset_x;
         model->rrr_link1_mass[leg] = rrr_link1_mass;
         model->rrr_link2_mass[leg] = rrr_link2_mass;
         model->rrr_platform_joint_offset_x[leg] = rrr_platform_joint_offset_x;
         model->rrr_platform_point_x[leg] = rrr_platform_point_x;
         model->rrr_platform_point_y[leg] = rrr_platform_point_y;
-        model->size_rrr[leg] = size_rrr;
+        model->rrr_rho2_1_t[leg] = rrr_rho2_1_t;
+        model->rrr_size[leg] = rrr_size;
         total_rrr += rrr_link2_mass;
-        total_rrr_x += h_star_t_3;
-        total_rrr_y += h_star_t_4;
+        total_rrr_x += rrr_h_star_t;
+        total_rrr_y += rrr_h_star_t_2;
         total_rrr_x_2 += rrr_platform_point_x;
         total_rrr_y_2 += rrr_platform_point_y;
-        total_rrr_2 += size_rrr_t;
+        total_rrr_2 += rrr_size_t;
     }
-    for (size_t leg = 0; leg < 1; ++leg) {
-        const real rrr2_base_point_x = params->rrr2_base_point[leg][0];
-        const real rrr2_base_point_y = params->rrr2_base_point[leg][1];
-        const real rrr2_base_frame_xx = params->rrr2_base_frame[leg][0][0];
-        const real rrr2_base_frame_xy = params->rrr2_base_frame[leg][0][1];
-        const real rrr2_base_frame_yx = params->rrr2_base_frame[leg][1][0];
-        const real rrr2_base_frame_yy = params->rrr2_base_frame[leg][1][1];
-        const real rrr2_platform_point_x = params->rrr2_platform_point[leg][0];
-        const real rrr2_platform_point_y = params->rrr2_platform_point[leg][1];
-        const real rrr2_joint2_offset_x = params->rrr2_joint2_offset[leg][0];
-        const real rrr2_platform_joint_offset_x = params->rrr2_platform_joint_offset[leg][0];
-        const real rrr2_link1_mass = params->rrr2_link1_mass[leg];
-        const real rrr2_link1_centre_of_mass_x = params->rrr2_link1_centre_of_mass[leg][0];
-        const real rrr2_link1_centre_of_mass_y = params->rrr2_link1_centre_of_mass[leg][1];
-        const real rrr2_link1_inertia_zz = params->rrr2_link1_inertia[leg][2][2];
-        const real rrr2_link2_mass = params->rrr2_link2_mass[leg];
-        const real rrr2_link2_centre_of_mass_x = params->rrr2_link2_centre_of_mass[leg][0];
-        const real rrr2_link2_centre_of_mass_y = params->rrr2_link2_centre_of_mass[leg][1];
-        const real rrr2_link2_inertia_zz = params->rrr2_link2_inertia[leg][2][2];
-        static const signed char signs_branch_1_rrr2[] = {-1};
-        const real branch_1_rrr2 = signs_branch_1_rrr2[leg];
-        /* (rrr2-K17) squared length, across the axis, of the direction fixed in link 2 */
-        const real uu_2_rrr2_t = rrr2_platform_joint_offset_x*rrr2_platform_joint_offset_x;
-        /* (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real Kd_1_rrr2_t = rrr2_joint2_offset_x*rrr2_joint2_offset_x;
-        const real Kd_1_rrr2_t_2 = R(0.5)*Kd_1_rrr2_t;
-        const real Kd_1_rrr2_t_3 = R(0.5)*uu_2_rrr2_t;
-        /* (rrr2-G2) length of the leg's lever arms, the measure of what is near singular */
-        const real size_rrr2_t = R(5.257946636889999e-07) + Kd_1_rrr2_t + uu_2_rrr2_t;
-        const real size_rrr2 = root(size_rrr2_t);
-        /* (rrr2-K8) squared amplitude */
-        const real rho2_1_rrr2_t = size_rrr2*size_rrr2*size_rrr2_t;
-        /* (rrr2-K15) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_Kd_1_rrr2_t_5 = 1/Kd_1_rrr2_t;
-        /* (rrr2-K18) cosine of the angle of joint 2 from its reference direction */
-        const real inv_uu_2_rrr2_t = 1/uu_2_rrr2_t;
-        /* (rrr2-G4) inertia tensor of link 1 about the origin of link 1 */
-        const real J_1_rrr2_t = rrr2_link1_centre_of_mass_x*rrr2_link1_centre_of_mass_x +
-            rrr2_link1_centre_of_mass_y*rrr2_link1_centre_of_mass_y;
-        const real J_1_rrr2_zz = rrr2_link1_inertia_zz + J_1_rrr2_t*rrr2_link1_mass;
-        /* (rrr2-G5) connection point to the centre of mass of link 2 */
-        const real rho_tip_2_rrr2_x = rrr2_link2_centre_of_mass_x - rrr2_platform_joint_offset_x;
-        /* (rrr2-G7) inertia tensor of link 2 about the connection point */
-        const real J_2_rrr2_t = rho_tip_2_rrr2_x*rho_tip_2_rrr2_x +
-            rrr2_link2_centre_of_mass_y*rrr2_link2_centre_of_mass_y;
-        const real J_2_rrr2_zz = rrr2_link2_inertia_zz + J_2_rrr2_t*rrr2_link2_mass;
-        /* (rrr2-N11) inertia tensor of the links from 1 outwards about joint 1 */
-        const real Jc_1_rrr2_zz = J_1_rrr2_zz + J_2_rrr2_zz;
-        /* (rrr2-G6) first moment of link 2 about the connection point */
-        const real h_2_rrr2_x = rho_tip_2_rrr2_x*rrr2_link2_mass;
-        const real h_2_rrr2_y = rrr2_link2_centre_of_mass_y*rrr2_link2_mass;
-        /* (rrr2-V6) reciprocal vector 2 */
-        const real inv_rrr2_platform_joint_offset_x = 1/rrr2_platform_joint_offset_x;
-        /* (rrr2-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_rrr2_t = J_2_rrr2_zz*inv_rrr2_platform_joint_offset_x;
-        const real d_Gamma_1_rrr2_y = d_Gamma_1_rrr2_t + h_2_rrr2_x;
-        /* (rrr2-N6) coefficient of the acceleration in: inertia force of link 2 from its turning about
-           its reference point */
-        const real d_phi_2_rrr2_t = h_2_rrr2_y*inv_rrr2_platform_joint_offset_x;
-        /* (rrr2-N34) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real d_c_rrr2_yy = -d_Gamma_1_rrr2_y*inv_rrr2_platform_joint_offset_x -
-            h_2_rrr2_x*inv_rrr2_platform_joint_offset_x;
-        /* (rrr2-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
-           less gravity */
-        const real g_r0_x_2 = gravity_x*rrr2_base_frame_xx + gravity_y*rrr2_base_frame_yx;
-        const real g_r0_y_2 = gravity_x*rrr2_base_frame_xy + gravity_y*rrr2_base_frame_yy;
-        /* (rrr2-G3) first moment of link 1 about the origin of link 1 */
-        const real h_1_rrr2_x = rrr2_link1_centre_of_mass_x*rrr2_link1_mass;
-        const real h_1_rrr2_y = rrr2_link1_centre_of_mass_y*rrr2_link1_mass;
-        /* (L2) first moment about the platform origin */
-        const real h_star_t_5 = rrr2_link2_mass*rrr2_platform_point_x;
-        const real h_star_t_6 = rrr2_link2_mass*rrr2_platform_point_y;
-        /* (V1) potential energy */
-        const real b_rrr2_r0_x = rrr2_base_frame_xx*rrr2_base_point_x +
-            rrr2_base_frame_yx*rrr2_base_point_y;
-        const real b_rrr2_r0_y = rrr2_base_frame_xy*rrr2_base_point_x +
-            rrr2_base_frame_yy*rrr2_base_point_y;
-        /* (rrr2-K8) squared amplitude */
-        const real inv_rho2_1_rrr2_t_4 = 1/rho2_1_rrr2_t;
-        /* (rrr2-V5) reciprocal vector 1 */
-        const real inv_size_rrr2 = 1/size_rrr2;
-        model->J_1_rrr2_zz[leg] = J_1_rrr2_zz;
-        model->J_2_rrr2_zz[leg] = J_2_rrr2_zz;
-        model->Jc_1_rrr2_zz[leg] = Jc_1_rrr2_zz;
-        model->Kd_1_rrr2_t_2[leg] = Kd_1_rrr2_t_2;
-        model->Kd_1_rrr2_t_3[leg] = Kd_1_rrr2_t_3;
-        model->b_rrr2_r0_x[leg] = b_rrr2_r0_x;
-        model->b_rrr2_r0_y[leg] = b_rrr2_r0_y;
-        model->branch_1_rrr2[leg] = branch_1_rrr2;
-        model->d_Gamma_1_rrr2_t[leg] = d_Gamma_1_rrr2_t;
-        model->d_Gamma_1_rrr2_y[leg] = d_Gamma_1_rrr2_y;
-        model->d_c_rrr2_yy[leg] = d_c_rrr2_yy;
-        model->d_phi_2_rrr2_t[leg] = d_phi_2_rrr2_t;
-        model->g_r0_x_2[leg] = g_r0_x_2;
-        model->g_r0_y_2[leg] = g_r0_y_2;
-        model->h_1_rrr2_x[leg] = h_1_rrr2_x;
-        model->h_1_rrr2_y[leg] = h_1_rrr2_y;
-        model->h_2_rrr2_x[leg] = h_2_rrr2_x;
-        model->h_2_rrr2_y[leg] = h_2_rrr2_y;
-        model->inv_Kd_1_rrr2_t_5[leg] = inv_Kd_1_rrr2_t_5;
-        model->inv_rho2_1_rrr2_t_4[leg] = inv_rho2_1_rrr2_t_4;
-        model->inv_rrr2_platform_joint_offset_x[leg] = inv_rrr2_platform_joint_offset_x;
-        model->inv_size_rrr2[leg] = inv_size_rrr2;
-        model->inv_uu_2_rrr2_t[leg] = inv_uu_2_rrr2_t;
-        model->rho2_1_rrr2_t[leg] = rho2_1_rrr2_t;
-        model->rrr2_base_frame_xx[leg] = rrr2_base_frame_xx;
-        model->rrr2_base_frame_xy[leg] = rrr2_base_frame_xy;
-        model->rrr2_base_frame_yx[leg] = rrr2_base_frame_yx;
-        model->rrr2_base_frame_yy[leg] = rrr2_base_frame_yy;
-        model->rrr2_base_point_x[leg] = rrr2_base_point_x;
-        model->rrr2_base_point_y[leg] = rrr2_base_point_y;
-        model->rrr2_joint2_offset_x[leg] = rrr2_joint2_offset_x;
-        model->rrr2_link1_mass[leg] = rrr2_link1_mass;
-        model->rrr2_link2_mass[leg] = rrr2_link2_mass;
-        model->rrr2_platform_joint_offset_x[leg] = rrr2_platform_joint_offset_x;
-        model->rrr2_platform_point_x[leg] = rrr2_platform_point_x;
-        model->rrr2_platform_point_y[leg] = rrr2_platform_point_y;
-        model->size_rrr2[leg] = size_rrr2;
-        total_rrr2 += rrr2_link2_mass;
-        total_rrr2_x += h_star_t_5;
-        total_rrr2_y += h_star_t_6;
-        total_rrr2_x_2 += rrr2_platform_point_x;
-        total_rrr2_y_2 += rrr2_platform_point_y;
-        total_rrr2_2 += size_rrr2_t;
-    }
-    /* (L1) mass of the platform with the gathered masses */
-    const real m_star = platform_mass + total_rrr + total_rrr2;
-    /* (M2) centripetal force and weight of the platform */
+    /* (m_star) mass of the platform with the gathered masses */
+    const real m_star = platform_mass + total_rrr + total_rrr_leg1;
+    /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_x = gravity_x*m_star;
     const real Z_p_y = gravity_y*m_star;
-    /* (L2) first moment about the platform origin */
-    const real h_star_x = h_star_t + total_rrr2_x + total_rrr_x;
-    const real h_star_y = h_star_t_2 + total_rrr2_y + total_rrr_y;
-    /* (C1) centroid of the platform points */
-    const real b_c_x = R(0.5)*total_rrr2_x_2 + R(0.5)*total_rrr_x_2;
-    const real b_c_y = R(0.5)*total_rrr2_y_2 + R(0.5)*total_rrr_y_2;
-    /* (C3) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = root(R(0.5)*total_rrr2_2 + R(0.5)*total_rrr_2);
+    /* (h_star) first moment about the platform origin */
+    const real h_star_x = h_star_t + total_rrr_leg1_x + total_rrr_x;
+    const real h_star_y = h_star_t_2 + total_rrr_leg1_y + total_rrr_y;
+    /* (b_c) centroid of the platform points */
+    const real b_c_x = R(0.5)*total_rrr_leg1_x_2 + R(0.5)*total_rrr_x_2;
+    const real b_c_y = R(0.5)*total_rrr_leg1_y_2 + R(0.5)*total_rrr_y_2;
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    const real legs_size = root(R(0.5)*total_rrr_2 + R(0.5)*total_rrr_leg1_2);
     model->Z_p_x = Z_p_x;
     model->Z_p_y = Z_p_y;
     model->b_c_x = b_c_x;
@@ -816,98 +916,6 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
     }
 }
 
-/* Swap a row with the pivot's in those states in which it is the chosen one.  What is chosen are
-   whole entries: unlike products with 0 and 1, these keep what is not finite where it belongs. */
-APART void swap_lanes(size_t n, size_t p, real i, const real *restrict best, real *restrict pivot,
-        real *restrict other)
-{
-    for (size_t j = p; j <= n; ++j) {
-        for (size_t k = 0; k < LANES; ++k) {
-            const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = best[k] == i ? up : down;
-            other[j*LANES + k] = best[k] == i ? down : up;
-        }
-    }
-}
-
-/* The choice of choose_one in every state. */
-INLINE void choose_lanes(size_t n, size_t p, real *a)
-{
-    const size_t row = (n + 1)*LANES;
-    real most[LANES], best[LANES], any = 0;
-    for (size_t k = 0; k < LANES; ++k) {
-        most[k] = CLEARLY*magnitude(a[p*row + p*LANES + k]);
-        best[k] = 0;
-    }
-    for (size_t i = p + 1; i < n; ++i) {
-        for (size_t k = 0; k < LANES; ++k) {
-            const real size = magnitude(a[i*row + p*LANES + k]);
-            best[k] = size > most[k] ? (real)i : best[k];
-            most[k] = larger(size, most[k]);
-        }
-    }
-    for (size_t k = 0; k < LANES; ++k) {
-        any += best[k];
-    }
-    for (size_t i = p + 1; i < n && any > 0; ++i) {
-        swap_lanes(n, p, (real)i, best, a + p*row, a + i*row);
-    }
-}
-
-/* The same for LANES systems side by side, without padding.  What comes NEARLY to the threshold
-   counts as singular here: the batch then settles it as for a single state. */
-INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
-{
-    const size_t row = (n + 1)*LANES;
-    memset(x, 0, n*LANES*sizeof *x);
-    for (size_t i = 0; i < n; ++i) {
-        real size[LANES] = {0};
-        for (size_t j = 0; j < n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                size[k] = larger(size[k], magnitude(a[i*row + j*LANES + k]));
-            }
-        }
-        for (size_t k = 0; k < LANES; ++k) {
-            size[k] = 1/size[k];
-        }
-        for (size_t j = 0; j <= n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + j*LANES + k] *= size[k];
-            }
-        }
-    }
-    for (size_t p = 0; p < n; ++p) {
-        const real *const pivot = a + p*row;
-        choose_lanes(n, p, a);
-        for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > NEARLY*PIVOT);
-            x[p*LANES + k] = 1/pivot[p*LANES + k];
-        }
-        for (size_t i = p + 1; i < n; ++i) {
-            real *const other = a + i*row;
-            real factor[LANES];
-            for (size_t k = 0; k < LANES; ++k) {
-                factor[k] = other[p*LANES + k]*x[p*LANES + k];
-            }
-            for (size_t j = p + 1; j <= n; ++j) {
-                for (size_t k = 0; k < LANES; ++k) {
-                    other[j*LANES + k] -= factor[k]*pivot[j*LANES + k];
-                }
-            }
-        }
-    }
-    for (size_t p = n; p-- > 0;) {
-        for (size_t k = 0; k < LANES; ++k) {
-            x[p*LANES + k] *= a[p*row + n*LANES + k];
-        }
-        for (size_t i = 0; i < p; ++i) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + n*LANES + k] -= a[i*row + p*LANES + k]*x[p*LANES + k];
-            }
-        }
-    }
-}
-
 /* Length of the rows of a system of n equations, whose right side stands in column n. */
 INLINE size_t stride_of(size_t n, size_t w)
 {
@@ -940,14 +948,10 @@ INLINE void solve_state(size_t n, const real *b, real *rows, real *x, real *sing
     solve_one(n, stride_of(n, 1), rows, x, singular);
 }
 
-INLINE void solve(size_t n, size_t w, const real *b, real *rows, real *x, real *singular)
+/* The same where it is rare: apart, for the sake of what is done otherwise. */
+APART void solve_apart(size_t n, const real *b, real *rows, real *x, real *singular)
 {
-    if (w == 1) {
-        solve_state(n, b, rows, x, singular);
-    } else {
-        set_right_side(n, LANES, b, rows);
-        solve_lanes(n, rows, x, singular);
-    }
+    solve_state(n, b, rows, x, singular);
 }
 
 #define BIG 3  /* most rows or columns of a matrix that is not square, or not solved */
@@ -1228,6 +1232,29 @@ INLINE void half_form(size_t n, size_t w, const real *a, const real *b, real *x)
     }
 }
 
+/* Rows as `places` tells made infinite, where all entries are finite before. */
+INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, real *x, real *flags)
+{
+    check(size, w, x, flags);
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t k = 0; k < w; ++k) {
+            x[places[i]*w + k] = R(INFINITY);
+        }
+    }
+}
+
+/* 1 where no entry is negative, else 0. */
+INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
+{
+    check(size, w, a, flags);
+    for (size_t k = 0; k < w; ++k) {
+        x[k] = 1;
+        for (size_t e = 0; e < size; ++e) {
+            x[k] = a[e*w + k] < 0 ? 0 : x[k];
+        }
+    }
+}
+
 /* To row places[i] of x: the row c[i] of n entries times b[i]. */
 INLINE void add_forces(size_t rows, size_t n, size_t w, const size_t *places, const real *b,
         const real *c, real *x)
@@ -1269,3874 +1296,3916 @@ static void moved(const real *X, const real *step, real part, real *to)
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics: 216 mul, 139 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], sum[10][LANES];
-} dynamics_values;
-typedef struct {
-    real sum[5][8], entry[4][8], unreachable[8], singular[8];
-} dynamics_results_rrr;
-typedef struct {
-    real sum[5][8], entry[2][8], unreachable[8], singular[8];
-} dynamics_results_rrr2;
-
-INLINE void dynamics_before(size_t w, const real *X, const real *V, dynamics_values *s)
+INLINE void dynamics_before(size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_dot_x;
+        s[3*w + k] = t_dot_y;
     }
 }
 
-INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const dynamics_values
-    *s, size_t states, size_t count, int add, dynamics_results_rrr *o)
+INLINE void dynamics_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, const
+    real *s, size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real J_1_rrr_zz = m->J_1_rrr_zz[i];
-        const real J_2_rrr_zz = m->J_2_rrr_zz[i];
-        const real Jc_1_rrr_zz = m->Jc_1_rrr_zz[i];
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real d_Gamma_1_rrr_t = m->d_Gamma_1_rrr_t[i];
-        const real d_Gamma_1_rrr_y = m->d_Gamma_1_rrr_y[i];
-        const real d_c_rrr_yy = m->d_c_rrr_yy[i];
-        const real d_phi_2_rrr_t = m->d_phi_2_rrr_t[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_1_rrr_x = m->h_1_rrr_x[i];
-        const real h_1_rrr_y = m->h_1_rrr_y[i];
-        const real h_2_rrr_x = m->h_2_rrr_x[i];
-        const real h_2_rrr_y = m->h_2_rrr_y[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        /* (rrr_leg1-S) from the base point to the connection point */
+        const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
+        const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x;
+        const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
+        const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y;
+        /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
+           beyond joint 1 */
+        const real rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
+        const real rrr_leg1_Kd_1_t_4 = m->rrr_leg1_Kd_1_t_4[i];
+        const real rrr_leg1_Kd_1 = R(0.5)*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4;
+        /* (rrr_leg1-px_1) component along the reference direction */
+        const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
+        const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
+        const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yx;
+        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
+        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
+        /* (rrr_leg1-py_1) component across the reference direction */
+        const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
+        const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
+        const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yy;
+        /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
+        /* (rrr_leg1-rho2_1) squared amplitude */
+        const real rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1;
+        /* (rrr_leg1-disc_1) discriminant */
+        const real rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1;
+        /* (rrr_leg1-root_1) root, with the sign of the branch */
+        const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
+        const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
+        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_leg1_Kd_1_t_5 = m->inv_rrr_leg1_Kd_1_t_5[i];
+        const real rrr_leg1_x_2_x = inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x -
+            rrr_leg1_joint2_offset_x;
+        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_leg1_Kd_1_t_7 = m->inv_rrr_leg1_Kd_1_t_7[i];
+        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
+        const real rrr_leg1_c_2 =
+            inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x;
+        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_leg1_s_2 =
+            inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
+        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_leg1_r_1_t = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
+        const real rrr_leg1_r_1_x = rrr_leg1_joint2_offset_x +
+            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
+        const real rrr_leg1_r_1_r0_x = rrr_leg1_c_2*rrr_leg1_r_1_x + rrr_leg1_r_1_t*rrr_leg1_s_2;
+        const real rrr_leg1_r_1_r0_y = rrr_leg1_r_1_x*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_r_1_t;
+        /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
+        const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
+            rrr_leg1_Ks_1*rrr_leg1_root_1);
+        /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
+            rrr_leg1_Kd_1*rrr_leg1_Ks_1);
+        /* (rrr_leg1-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_leg1_axes2_r1_x = rrr_leg1_c_1*rrr_leg1_s_2 -
+            rrr_leg1_c_2*rrr_leg1_s_1;
+        const real axis_y_rrr_leg1_axes2_r1_y = rrr_leg1_c_1*rrr_leg1_c_2 +
+            rrr_leg1_s_1*rrr_leg1_s_2;
+        const real axis_y_rrr_leg1_axes2_in_base_x =
+            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_xx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_xy;
+        const real axis_y_rrr_leg1_axes2_in_base_y =
+            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_yx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_yy;
+        const real inv_rrr_leg1_r_1_r0_y = 1/rrr_leg1_r_1_r0_y;
+        /* (rrr_leg1-w_2) reciprocal vector 2 */
+        const real inv_rrr_leg1_platform_joint_offset_x = m->inv_rrr_leg1_platform_joint_offset_x[i];
+        const real rrr_leg1_w_2_t =
+            inv_rrr_leg1_platform_joint_offset_x*inv_rrr_leg1_r_1_r0_y*rrr_leg1_r_1_r0_x;
+        /* (rrr_leg1-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
+           links' inertia and weight */
+        const real rrr_leg1_d_Gamma_2_t = m->rrr_leg1_d_Gamma_2_t[i];
+        const real rrr_leg1_d_Gamma_2_t_2 = rrr_leg1_d_Gamma_2_t*rrr_leg1_r_1_r0_x;
+        const real rrr_leg1_J_2_zz = m->rrr_leg1_J_2_zz[i];
+        const real rrr_leg1_h_2_y = m->rrr_leg1_h_2_y[i];
+        const real rrr_leg1_d_Gamma_2_x = -rrr_leg1_h_2_y - inv_rrr_leg1_r_1_r0_y*(rrr_leg1_J_2_zz
+            - rrr_leg1_d_Gamma_2_t_2);
+        /* (rrr_leg1-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
+           links' inertia and weight */
+        const real rrr_leg1_Jc_1_zz = m->rrr_leg1_Jc_1_zz[i];
+        const real rrr_leg1_d_Gamma_1_x = -rrr_leg1_h_2_y -
+            inv_rrr_leg1_r_1_r0_y*(rrr_leg1_Jc_1_zz - rrr_leg1_d_Gamma_2_t_2);
+        /* (rrr_leg1-d_c) coefficient of the acceleration in: leg force on the platform without actuation
+           and without the mass at the connection point */
+        const real rrr_leg1_d_Gamma_2_y = m->rrr_leg1_d_Gamma_2_y[i];
+        const real rrr_leg1_d_phi_2_t = m->rrr_leg1_d_phi_2_t[i];
+        const real rrr_leg1_d_c_xy = rrr_leg1_d_phi_2_t +
+            inv_rrr_leg1_r_1_r0_y*rrr_leg1_d_Gamma_2_y - rrr_leg1_d_Gamma_2_y*rrr_leg1_w_2_t;
+        /* (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real rrr_leg1_d_c_yy = m->rrr_leg1_d_c_yy[i];
+        const real rrr_leg1_Q_t = inv_rrr_leg1_r_1_r0_y*rrr_leg1_d_Gamma_1_x +
+            rrr_leg1_h_2_y*(rrr_leg1_w_2_t - inv_rrr_leg1_r_1_r0_y) - rrr_leg1_d_c_yy -
+            rrr_leg1_d_Gamma_2_x*rrr_leg1_w_2_t;
+        const real rrr_leg1_Q_t_2 = R(0.5)*rrr_leg1_Q_t;
+        const real rrr_leg1_Q_t_3 = axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_d_c_xy +
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_Q_t_2;
+        const real rrr_leg1_Q_t_4 = axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_Q_t_2 -
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_d_c_xy;
+        const real rrr_leg1_Q_t_5 = rrr_leg1_d_c_yy +
+            2*axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_Q_t_3;
+        const real rrr_leg1_Q_t_6 = axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_Q_t_3 +
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_Q_t_4;
+        const real rrr_leg1_Q_t_7 = rrr_leg1_d_c_yy +
+            2*axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_Q_t_4;
+        /* (rrr_leg1-qd_2) rate of joint 2 */
+        const real t_dot_x = s[2*w + j];
+        const real t_dot_y = s[3*w + j];
+        const real rrr_leg1_qd_1 = inv_rrr_leg1_r_1_r0_y*(axis_y_rrr_leg1_axes2_in_base_y*t_dot_x
+            - axis_y_rrr_leg1_axes2_in_base_x*t_dot_y);
+        /* (rrr_leg1-omega_2) angular velocity of link 2 */
+        const real rrr_leg1_omega_2_z =
+            inv_rrr_leg1_platform_joint_offset_x*(axis_y_rrr_leg1_axes2_in_base_x*t_dot_x +
+            axis_y_rrr_leg1_axes2_in_base_y*t_dot_y + rrr_leg1_qd_1*rrr_leg1_r_1_r0_x) -
+            rrr_leg1_qd_1;
+        /* (rrr_leg1-W_1) centripetal tensor of link 1 */
+        const real rrr_leg1_W_1_t = rrr_leg1_qd_1*rrr_leg1_qd_1;
+        /* (rrr_leg1-W_2) centripetal tensor of link 2 */
+        const real rrr_leg1_W_2_t = rrr_leg1_omega_2_z*rrr_leg1_omega_2_z;
+        /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_leg1_bias_x = -rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x -
+            rrr_leg1_W_1_t*rrr_leg1_c_2*rrr_leg1_joint2_offset_x;
+        /* (rrr_leg1-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        const real rrr_leg1_qdd_1_o = inv_rrr_leg1_r_1_r0_y*rrr_leg1_bias_x;
+        /* (rrr_leg1-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        const real rrr_leg1_alpha_2_o_z = rrr_leg1_qdd_1_o +
+            inv_rrr_leg1_platform_joint_offset_x*(rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
+            - rrr_leg1_qdd_1_o*rrr_leg1_r_1_r0_x);
+        /* (rrr_leg1-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn
+           with link 2, about their reference points */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real rrr_leg1_h_2_x = m->rrr_leg1_h_2_x[i];
+        const real rrr_leg1_mu_2_o_z = rrr_leg1_J_2_zz*rrr_leg1_alpha_2_o_z +
+            rrr_leg1_h_2_y*(axis_y_rrr_leg1_axes2_in_base_y*gravity_x -
+            axis_y_rrr_leg1_axes2_in_base_x*gravity_y) -
+            rrr_leg1_h_2_x*(axis_y_rrr_leg1_axes2_in_base_x*gravity_x +
+            axis_y_rrr_leg1_axes2_in_base_y*gravity_y);
+        /* (rrr_leg1-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn
+           with link 1, about their reference points */
+        const real rrr_leg1_J_1_zz = m->rrr_leg1_J_1_zz[i];
+        const real rrr_leg1_g_r0_x = m->rrr_leg1_g_r0_x[i];
+        const real rrr_leg1_g_r0_y = m->rrr_leg1_g_r0_y[i];
+        const real rrr_leg1_h_1_x = m->rrr_leg1_h_1_x[i];
+        const real rrr_leg1_h_1_y = m->rrr_leg1_h_1_y[i];
+        const real rrr_leg1_mu_1_o_z = rrr_leg1_J_1_zz*rrr_leg1_qdd_1_o +
+            rrr_leg1_h_1_y*(rrr_leg1_c_1*rrr_leg1_g_r0_x + rrr_leg1_g_r0_y*rrr_leg1_s_1) -
+            rrr_leg1_h_1_x*(rrr_leg1_c_1*rrr_leg1_g_r0_y - rrr_leg1_g_r0_x*rrr_leg1_s_1);
+        /* (rrr_leg1-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from
+           1 outwards, the force at the connection point left out */
+        const real rrr_leg1_N_1_o_z = rrr_leg1_mu_1_o_z + rrr_leg1_mu_2_o_z;
+        /* (rrr_leg1-G_o) remainder without the acceleration in: force at the connection point that
+           balances the leg's inertia and weight along all freedoms */
+        const real rrr_leg1_G_o_t = inv_rrr_leg1_platform_joint_offset_x*rrr_leg1_mu_2_o_z;
+        /* (rrr_leg1-c_o) remainder without the acceleration in: leg force on the platform without
+           actuation and without the mass at the connection point */
+        const real rrr_leg1_c_o_x = rrr_leg1_W_2_t*rrr_leg1_h_2_x +
+            rrr_leg1_alpha_2_o_z*rrr_leg1_h_2_y -
+            inv_rrr_leg1_r_1_r0_y*(rrr_leg1_G_o_t*rrr_leg1_r_1_r0_x - rrr_leg1_N_1_o_z);
+        const real rrr_leg1_c_o_y = rrr_leg1_W_2_t*rrr_leg1_h_2_y - rrr_leg1_G_o_t -
+            rrr_leg1_alpha_2_o_z*rrr_leg1_h_2_x;
+        /* (rrr_leg1-U) velocity and gravity terms of the leg force */
+        const real rrr_leg1_U_in_base_x = -axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_c_o_y -
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_c_o_x;
+        const real rrr_leg1_U_in_base_y = axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_c_o_x -
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_c_o_y;
+        /* (rrr_leg1-w_1) reciprocal vector 1 */
+        const real rrr_leg1_w_1_t = axis_y_rrr_leg1_axes2_in_base_y*inv_rrr_leg1_r_1_r0_y;
+        const real rrr_leg1_w_1_t_2 = axis_y_rrr_leg1_axes2_in_base_x*inv_rrr_leg1_r_1_r0_y;
+        /* (rrr_leg1-w_2) reciprocal vector 2 */
+        const real rrr_leg1_w_2_in_base_x =
+            axis_y_rrr_leg1_axes2_in_base_x*inv_rrr_leg1_platform_joint_offset_x +
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_w_2_t;
+        const real rrr_leg1_w_2_in_base_y =
+            axis_y_rrr_leg1_axes2_in_base_y*inv_rrr_leg1_platform_joint_offset_x -
+            axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_w_2_t;
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_leg1_Q_t_5 : rrr_leg1_Q_t_5;  /* total_rrr_leg1_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_leg1_Q_t_6 : rrr_leg1_Q_t_6;  /* total_rrr_leg1_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_leg1_Q_t_7 : rrr_leg1_Q_t_7;  /* total_rrr_leg1_yy */
+        terms[3*count + k] = add ? terms[3*count + k] + rrr_leg1_U_in_base_x : rrr_leg1_U_in_base_x;  /* total_rrr_leg1_x */
+        terms[4*count + k] = add ? terms[4*count + k] + rrr_leg1_U_in_base_y : rrr_leg1_U_in_base_y;  /* total_rrr_leg1_y */
+        o[0*count + k] = -rrr_leg1_w_1_t;
+        o[1*count + k] = rrr_leg1_w_1_t_2;
+        o[2*count + k] = rrr_leg1_w_2_in_base_x;
+        o[3*count + k] = rrr_leg1_w_2_in_base_y;
+        o[6*count + k] = (rrr_leg1_w_1_t + rrr_leg1_w_1_t_2) + (rrr_leg1_w_2_in_base_x +
+            rrr_leg1_w_2_in_base_y);
+        const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
+        const real rrr_leg1_size = m->rrr_leg1_size[i];
+        o[5*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
+            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(-rrr_leg1_r_1_r0_y) >
+            TOLERANCE*rrr_leg1_size);
+        o[4*count + k] = UNLESS(rrr_leg1_disc_1 >= 0);
+    }
+}
+
+INLINE void dynamics_place_rrr_leg1(size_t w, size_t count, const real *o, size_t first, real *H,
+    verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(0)*w + k] = o[0*count + first + k];
+        H[(3)*w + k] = o[1*count + first + k];
+        H[(1)*w + k] = o[2*count + first + k];
+        H[(4)*w + k] = o[3*count + first + k];
+        t->unreachable[k] += o[4*count + first + k];
+        t->singular[k] += o[5*count + first + k];
+        t->total[k] += o[6*count + first + k];
+    }
+}
+
+INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, real *terms, real *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        /* (rrr-S) from the base point to the connection point */
         const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_rrr = m->size_rrr[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr =
-            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr;
-        const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
-        const real r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr;
-        const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr;
-        const real axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        /* (rrr-V6) reciprocal vector 2 */
-        const real w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x;
-        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x;
-        const real d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz -
-            d_Gamma_1_rrr_t_2);
-        /* (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
-           and weight */
-        const real d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz -
-            d_Gamma_1_rrr_t_2);
-        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-w_2) reciprocal vector 2 */
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x;
+        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
+        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x;
+        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
+        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz -
+            rrr_d_Gamma_2_t_2);
+        /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real rrr_Jc_1_zz = m->rrr_Jc_1_zz[i];
+        const real rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz -
+            rrr_d_Gamma_2_t_2);
+        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y -
-            d_Gamma_1_rrr_y*w_2_rrr_t;
-        /* (rrr-N36) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rrr_t = d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t -
-            inv_r_1_rrr_r0_y) - d_c_rrr_yy - d_Gamma_2_rrr_x*w_2_rrr_t;
-        const real Q_rrr_t_2 = R(0.5)*Q_rrr_t;
-        const real Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y +
-            axis_y_rrr_axes2_in_base_x*d_c_rrr_xy;
-        const real Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x -
-            axis_y_rrr_axes2_in_base_y*d_c_rrr_xy;
-        const real Q_rrr_t_5 = d_c_rrr_yy + 2*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y;
-        const real Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x +
-            Q_rrr_t_4*axis_y_rrr_axes2_in_base_y;
-        const real Q_rrr_t_7 = d_c_rrr_yy + 2*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x;
-        /* (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
-           less gravity */
-        const real g_r1_x = c_1_rrr*g_r0_x + g_r0_y*s_1_rrr;
-        const real g_r1_y = c_1_rrr*g_r0_y - g_r0_x*s_1_rrr;
-        /* (rrr-V7) rate of joint 1 */
-        const real qd_1_rrr = inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x -
+        const real rrr_d_Gamma_2_y = m->rrr_d_Gamma_2_y[i];
+        const real rrr_d_phi_2_t = m->rrr_d_phi_2_t[i];
+        const real rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y -
+            rrr_d_Gamma_2_y*rrr_w_2_t;
+        /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real rrr_d_c_yy = m->rrr_d_c_yy[i];
+        const real rrr_Q_t = inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t -
+            inv_rrr_r_1_r0_y) - rrr_d_c_yy - rrr_d_Gamma_2_x*rrr_w_2_t;
+        const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
+        const real rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy +
+            axis_y_rrr_axes2_in_base_y*rrr_Q_t_2;
+        const real rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 -
+            axis_y_rrr_axes2_in_base_y*rrr_d_c_xy;
+        const real rrr_Q_t_5 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3;
+        const real rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 +
+            axis_y_rrr_axes2_in_base_y*rrr_Q_t_4;
+        const real rrr_Q_t_7 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4;
+        /* (rrr-qd_2) rate of joint 2 */
+        const real t_dot_x = s[2*w + j];
+        const real t_dot_y = s[3*w + j];
+        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x -
             axis_y_rrr_axes2_in_base_x*t_dot_y);
-        /* (rrr-V11) angular velocity of link 2 */
-        const real omega_2_rrr_z =
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real rrr_omega_2_z =
             inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
-            axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
-        /* (rrr-V10) centripetal tensor of link 1 */
-        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
-        /* (rrr-V12) centripetal tensor of link 2 */
-        const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
-        /* (rrr-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
-            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
-        /* (rrr-A8) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_rrr_o = bias_rrr_x*inv_r_1_rrr_r0_y;
-        /* (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
-        const real mu_1_rrr_o_z = J_1_rrr_zz*qdd_1_rrr_o + g_r1_x*h_1_rrr_y - g_r1_y*h_1_rrr_x;
-        /* (rrr-A17) remainder without the acceleration in: angular acceleration of link 2 */
-        const real alpha_2_rrr_o_z = qdd_1_rrr_o +
-            inv_rrr_platform_joint_offset_x*(W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr -
-            qdd_1_rrr_o*r_1_rrr_r0_x);
-        /* (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with
+            axis_y_rrr_axes2_in_base_y*t_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-W_1) centripetal tensor of link 1 */
+        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-W_2) centripetal tensor of link 2 */
+        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        /* (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        const real rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_bias_x;
+        /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        const real rrr_alpha_2_o_z = rrr_qdd_1_o +
+            inv_rrr_platform_joint_offset_x*(rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2 -
+            rrr_qdd_1_o*rrr_r_1_r0_x);
+        /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real mu_2_rrr_o_z = J_2_rrr_zz*alpha_2_rrr_o_z + h_2_rrr_y*(c_2_rrr*g_r1_x -
-            g_r1_y*s_2_rrr) - h_2_rrr_x*(c_2_rrr*g_r1_y + g_r1_x*s_2_rrr);
-        /* (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real rrr_h_2_x = m->rrr_h_2_x[i];
+        const real rrr_mu_2_o_z = rrr_J_2_zz*rrr_alpha_2_o_z +
+            rrr_h_2_y*(axis_y_rrr_axes2_in_base_y*gravity_x -
+            axis_y_rrr_axes2_in_base_x*gravity_y) -
+            rrr_h_2_x*(axis_y_rrr_axes2_in_base_x*gravity_x +
+            axis_y_rrr_axes2_in_base_y*gravity_y);
+        /* (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 1, about their reference points */
+        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
+        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
+        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
+        const real rrr_h_1_x = m->rrr_h_1_x[i];
+        const real rrr_h_1_y = m->rrr_h_1_y[i];
+        const real rrr_mu_1_o_z = rrr_J_1_zz*rrr_qdd_1_o + rrr_h_1_y*(rrr_c_1*rrr_g_r0_x +
+            rrr_g_r0_y*rrr_s_1) - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
-        const real N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z;
-        /* (rrr-N32) remainder without the acceleration in: force at the connection point that balances
+        const real rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z;
+        /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z;
-        /* (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation
+        const real rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z;
+        /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real c_rrr_o_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y -
-            inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x - N_1_rrr_o_z);
-        const real c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x;
-        /* (rrr-N37) velocity and gravity terms of the leg force */
-        const real U_rrr_in_base_x = -axis_y_rrr_axes2_in_base_x*c_rrr_o_y -
-            axis_y_rrr_axes2_in_base_y*c_rrr_o_x;
-        const real U_rrr_in_base_y = axis_y_rrr_axes2_in_base_x*c_rrr_o_x -
-            axis_y_rrr_axes2_in_base_y*c_rrr_o_y;
-        /* (rrr-V5) reciprocal vector 1 */
-        const real w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y;
-        const real w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
-        /* (rrr-V6) reciprocal vector 2 */
-        const real w_2_rrr_in_base_x = axis_y_rrr_axes2_in_base_x*inv_rrr_platform_joint_offset_x
-            + axis_y_rrr_axes2_in_base_y*w_2_rrr_t;
-        const real w_2_rrr_in_base_y = axis_y_rrr_axes2_in_base_y*inv_rrr_platform_joint_offset_x
-            - axis_y_rrr_axes2_in_base_x*w_2_rrr_t;
-        o->sum[0][k] = add ? o->sum[0][k] + Q_rrr_t_5 : Q_rrr_t_5;  /* total_rrr_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + Q_rrr_t_6 : Q_rrr_t_6;  /* total_rrr_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + Q_rrr_t_7 : Q_rrr_t_7;  /* total_rrr_yy */
-        o->sum[3][k] = add ? o->sum[3][k] + U_rrr_in_base_x : U_rrr_in_base_x;  /* total_rrr_x */
-        o->sum[4][k] = add ? o->sum[4][k] + U_rrr_in_base_y : U_rrr_in_base_y;  /* total_rrr_y */
-        o->entry[0][k] = -w_1_rrr_t;
-        o->entry[1][k] = w_1_rrr_t_2;
-        o->entry[2][k] = w_2_rrr_in_base_x;
-        o->entry[3][k] = w_2_rrr_in_base_y;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
+        const real rrr_c_o_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y -
+            inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x - rrr_N_1_o_z);
+        const real rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x;
+        /* (rrr-U) velocity and gravity terms of the leg force */
+        const real rrr_U_in_base_x = -axis_y_rrr_axes2_in_base_x*rrr_c_o_y -
+            axis_y_rrr_axes2_in_base_y*rrr_c_o_x;
+        const real rrr_U_in_base_y = axis_y_rrr_axes2_in_base_x*rrr_c_o_x -
+            axis_y_rrr_axes2_in_base_y*rrr_c_o_y;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y;
+        const real rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y;
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_Q_t_5 : rrr_Q_t_5;  /* total_rrr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_Q_t_6 : rrr_Q_t_6;  /* total_rrr_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_Q_t_7 : rrr_Q_t_7;  /* total_rrr_yy */
+        terms[3*count + k] = add ? terms[3*count + k] + rrr_U_in_base_x : rrr_U_in_base_x;  /* total_rrr_x */
+        terms[4*count + k] = add ? terms[4*count + k] + rrr_U_in_base_y : rrr_U_in_base_y;  /* total_rrr_y */
+        o[0*count + k] = -rrr_w_1_t;
+        o[1*count + k] = rrr_w_1_t_2;
+        o[4*count + k] = rrr_w_1_t + rrr_w_1_t_2;
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void dynamics_place_rrr(size_t w, const dynamics_results_rrr *o, size_t first, real *H,
+INLINE void dynamics_place_rrr(size_t w, size_t count, const real *o, size_t first, real *H,
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0)*w + k] = o->entry[0][first + k];
-        H[(3)*w + k] = o->entry[1][first + k];
-        H[(1)*w + k] = o->entry[2][first + k];
-        H[(4)*w + k] = o->entry[3][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(2)*w + k] = o[0*count + first + k];
+        H[(5)*w + k] = o[1*count + first + k];
+        t->unreachable[k] += o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
 }
 
-INLINE void dynamics_legs_rrr2(const prepared *m, size_t leg, size_t legs, const dynamics_values
-    *s, size_t states, size_t count, int add, dynamics_results_rrr2 *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real J_1_rrr2_zz = m->J_1_rrr2_zz[i];
-        const real J_2_rrr2_zz = m->J_2_rrr2_zz[i];
-        const real Jc_1_rrr2_zz = m->Jc_1_rrr2_zz[i];
-        const real Kd_1_rrr2_t_2 = m->Kd_1_rrr2_t_2[i];
-        const real Kd_1_rrr2_t_3 = m->Kd_1_rrr2_t_3[i];
-        const real branch_1_rrr2 = m->branch_1_rrr2[i];
-        const real d_Gamma_1_rrr2_t = m->d_Gamma_1_rrr2_t[i];
-        const real d_Gamma_1_rrr2_y = m->d_Gamma_1_rrr2_y[i];
-        const real d_c_rrr2_yy = m->d_c_rrr2_yy[i];
-        const real d_phi_2_rrr2_t = m->d_phi_2_rrr2_t[i];
-        const real g_r0_x_2 = m->g_r0_x_2[i];
-        const real g_r0_y_2 = m->g_r0_y_2[i];
-        const real h_1_rrr2_x = m->h_1_rrr2_x[i];
-        const real h_1_rrr2_y = m->h_1_rrr2_y[i];
-        const real h_2_rrr2_x = m->h_2_rrr2_x[i];
-        const real h_2_rrr2_y = m->h_2_rrr2_y[i];
-        const real inv_Kd_1_rrr2_t_5 = m->inv_Kd_1_rrr2_t_5[i];
-        const real inv_rrr2_platform_joint_offset_x = m->inv_rrr2_platform_joint_offset_x[i];
-        const real inv_uu_2_rrr2_t = m->inv_uu_2_rrr2_t[i];
-        const real rho2_1_rrr2_t = m->rho2_1_rrr2_t[i];
-        const real rrr2_base_frame_xx = m->rrr2_base_frame_xx[i];
-        const real rrr2_base_frame_xy = m->rrr2_base_frame_xy[i];
-        const real rrr2_base_frame_yx = m->rrr2_base_frame_yx[i];
-        const real rrr2_base_frame_yy = m->rrr2_base_frame_yy[i];
-        const real rrr2_base_point_x = m->rrr2_base_point_x[i];
-        const real rrr2_base_point_y = m->rrr2_base_point_y[i];
-        const real rrr2_joint2_offset_x = m->rrr2_joint2_offset_x[i];
-        const real rrr2_platform_joint_offset_x = m->rrr2_platform_joint_offset_x[i];
-        const real rrr2_platform_point_x = m->rrr2_platform_point_x[i];
-        const real rrr2_platform_point_y = m->rrr2_platform_point_y[i];
-        const real size_rrr2 = m->size_rrr2[i];
-        /* (rrr2-K1) from the base point to the connection point */
-        const real S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x;
-        const real S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y;
-        /* (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y;
-        const real Kd_1_rrr2 = R(0.5)*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3;
-        /* (rrr2-K3) component along the reference direction */
-        const real px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx;
-        /* (rrr2-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x;
-        /* (rrr2-K4) component across the reference direction */
-        const real py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy;
-        /* (rrr2-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x;
-        /* (rrr2-K8) squared amplitude */
-        const real rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2;
-        /* (rrr2-K9) discriminant */
-        const real disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2;
-        /* (rrr2-K10) root, with the sign of the branch */
-        const real root_1_rrr2 = branch_1_rrr2*root(disc_1_rrr2);
-        /* (rrr2-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x -
-            rrr2_joint2_offset_x;
-        /* (rrr2-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x;
-        /* (rrr2-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr2 =
-            inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x;
-        /* (rrr2-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2;
-        const real r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x;
-        const real r_1_rrr2_r0_x = c_2_rrr2*r_1_rrr2_x + r_1_rrr2_t*s_2_rrr2;
-        const real r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t;
-        /* (rrr2-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr2 = 1/rho2_1_rrr2;
-        const real c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2);
-        /* (rrr2-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2);
-        /* (rrr2-V5) reciprocal vector 1 */
-        const real axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2;
-        const real axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2;
-        const real axis_y_rrr2_axes2_in_base_x = axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx +
-            axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy;
-        const real axis_y_rrr2_axes2_in_base_y = axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx +
-            axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy;
-        const real inv_r_1_rrr2_r0_y = 1/r_1_rrr2_r0_y;
-        /* (rrr2-V6) reciprocal vector 2 */
-        const real w_2_rrr2_t = inv_r_1_rrr2_r0_y*inv_rrr2_platform_joint_offset_x*r_1_rrr2_r0_x;
-        /* (rrr2-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_rrr2_t_2 = d_Gamma_1_rrr2_t*r_1_rrr2_r0_x;
-        const real d_Gamma_1_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(Jc_1_rrr2_zz -
-            d_Gamma_1_rrr2_t_2);
-        /* (rrr2-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
-           and weight */
-        const real d_Gamma_2_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(J_2_rrr2_zz -
-            d_Gamma_1_rrr2_t_2);
-        /* (rrr2-N34) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real d_c_rrr2_xy = d_phi_2_rrr2_t + d_Gamma_1_rrr2_y*inv_r_1_rrr2_r0_y -
-            d_Gamma_1_rrr2_y*w_2_rrr2_t;
-        /* (rrr2-N36) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rrr2_t = d_Gamma_1_rrr2_x*inv_r_1_rrr2_r0_y + h_2_rrr2_y*(w_2_rrr2_t -
-            inv_r_1_rrr2_r0_y) - d_c_rrr2_yy - d_Gamma_2_rrr2_x*w_2_rrr2_t;
-        const real Q_rrr2_t_2 = R(0.5)*Q_rrr2_t;
-        const real Q_rrr2_t_3 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_y +
-            axis_y_rrr2_axes2_in_base_x*d_c_rrr2_xy;
-        const real Q_rrr2_t_4 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_x -
-            axis_y_rrr2_axes2_in_base_y*d_c_rrr2_xy;
-        const real Q_rrr2_t_5 = d_c_rrr2_yy + 2*Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_y;
-        const real Q_rrr2_t_6 = Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_x +
-            Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_y;
-        const real Q_rrr2_t_7 = d_c_rrr2_yy + 2*Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_x;
-        /* (rrr2-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
-           less gravity */
-        const real g_r1_x_2 = c_1_rrr2*g_r0_x_2 + g_r0_y_2*s_1_rrr2;
-        const real g_r1_y_2 = c_1_rrr2*g_r0_y_2 - g_r0_x_2*s_1_rrr2;
-        /* (rrr2-V7) rate of joint 1 */
-        const real qd_1_rrr2 = inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_in_base_y*t_dot_x -
-            axis_y_rrr2_axes2_in_base_x*t_dot_y);
-        /* (rrr2-V11) angular velocity of link 2 */
-        const real omega_2_rrr2_z =
-            inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
-            axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2;
-        /* (rrr2-V10) centripetal tensor of link 1 */
-        const real W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2;
-        /* (rrr2-V12) centripetal tensor of link 2 */
-        const real W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z;
-        /* (rrr2-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr2_x = -W_2_rrr2_t*rrr2_platform_joint_offset_x -
-            W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x;
-        /* (rrr2-A8) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_rrr2_o = bias_rrr2_x*inv_r_1_rrr2_r0_y;
-        /* (rrr2-N24) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
-        const real mu_1_rrr2_o_z = J_1_rrr2_zz*qdd_1_rrr2_o + g_r1_x_2*h_1_rrr2_y -
-            g_r1_y_2*h_1_rrr2_x;
-        /* (rrr2-A17) remainder without the acceleration in: angular acceleration of link 2 */
-        const real alpha_2_rrr2_o_z = qdd_1_rrr2_o +
-            inv_rrr2_platform_joint_offset_x*(W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2 -
-            qdd_1_rrr2_o*r_1_rrr2_r0_x);
-        /* (rrr2-N17) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
-        const real mu_2_rrr2_o_z = J_2_rrr2_zz*alpha_2_rrr2_o_z + h_2_rrr2_y*(c_2_rrr2*g_r1_x_2 -
-            g_r1_y_2*s_2_rrr2) - h_2_rrr2_x*(c_2_rrr2*g_r1_y_2 + g_r1_x_2*s_2_rrr2);
-        /* (rrr2-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
-        const real N_1_rrr2_o_z = mu_1_rrr2_o_z + mu_2_rrr2_o_z;
-        /* (rrr2-N32) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
-        const real G_rrr2_o_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_o_z;
-        /* (rrr2-N35) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real c_rrr2_o_x = W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_o_z*h_2_rrr2_y -
-            inv_r_1_rrr2_r0_y*(G_rrr2_o_t*r_1_rrr2_r0_x - N_1_rrr2_o_z);
-        const real c_rrr2_o_y = W_2_rrr2_t*h_2_rrr2_y - G_rrr2_o_t - alpha_2_rrr2_o_z*h_2_rrr2_x;
-        /* (rrr2-N37) velocity and gravity terms of the leg force */
-        const real U_rrr2_in_base_x = -axis_y_rrr2_axes2_in_base_x*c_rrr2_o_y -
-            axis_y_rrr2_axes2_in_base_y*c_rrr2_o_x;
-        const real U_rrr2_in_base_y = axis_y_rrr2_axes2_in_base_x*c_rrr2_o_x -
-            axis_y_rrr2_axes2_in_base_y*c_rrr2_o_y;
-        /* (rrr2-V5) reciprocal vector 1 */
-        const real w_1_rrr2_t = axis_y_rrr2_axes2_in_base_y*inv_r_1_rrr2_r0_y;
-        const real w_1_rrr2_t_2 = axis_y_rrr2_axes2_in_base_x*inv_r_1_rrr2_r0_y;
-        o->sum[0][k] = add ? o->sum[0][k] + Q_rrr2_t_5 : Q_rrr2_t_5;  /* total_rrr2_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + Q_rrr2_t_6 : Q_rrr2_t_6;  /* total_rrr2_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + Q_rrr2_t_7 : Q_rrr2_t_7;  /* total_rrr2_yy */
-        o->sum[3][k] = add ? o->sum[3][k] + U_rrr2_in_base_x : U_rrr2_in_base_x;  /* total_rrr2_x */
-        o->sum[4][k] = add ? o->sum[4][k] + U_rrr2_in_base_y : U_rrr2_in_base_y;  /* total_rrr2_y */
-        o->entry[0][k] = -w_1_rrr2_t;
-        o->entry[1][k] = w_1_rrr2_t_2;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
-            UNLESS(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
-        o->unreachable[k] = UNLESS(disc_1_rrr2 >= 0);
-    }
-}
-
-INLINE void dynamics_place_rrr2(size_t w, const dynamics_results_rrr2 *o, size_t first, real *H,
+INLINE void dynamics_after(const prepared *m, size_t w, const real *sums, real *M, real *Z,
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(2)*w + k] = o->entry[0][first + k];
-        H[(5)*w + k] = o->entry[1][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s, real *M, real
-    *Z)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real total_rrr_xx = s->sum[0][k];
-        const real total_rrr_xy = s->sum[1][k];
-        const real total_rrr_yy = s->sum[2][k];
-        const real total_rrr_x = s->sum[3][k];
-        const real total_rrr_y = s->sum[4][k];
-        const real total_rrr2_xx = s->sum[5][k];
-        const real total_rrr2_xy = s->sum[6][k];
-        const real total_rrr2_yy = s->sum[7][k];
-        const real total_rrr2_x = s->sum[8][k];
-        const real total_rrr2_y = s->sum[9][k];
-        const real Z_p_x = m->Z_p_x;
-        const real Z_p_y = m->Z_p_y;
+        /* (M_tt) translational block of M */
         const real m_star = m->m_star;
-        /* (M1) translational block of M */
-        const real M_tt_xx = m_star - total_rrr2_xx - total_rrr_xx;
-        const real M_tt_xy = total_rrr2_xy + total_rrr_xy;
-        const real M_tt_yy = m_star - total_rrr2_yy - total_rrr_yy;
-        /* (M3) translational part of Z */
-        const real Z_t_x = total_rrr2_x + total_rrr_x - Z_p_x;
-        const real Z_t_y = total_rrr2_y + total_rrr_y - Z_p_y;
+        const real total_rrr_leg1_xx = sums[0*w + k];
+        const real total_rrr_xx = sums[5*w + k];
+        const real M_tt_xx = m_star - total_rrr_leg1_xx - total_rrr_xx;
+        const real total_rrr_leg1_xy = sums[1*w + k];
+        const real total_rrr_xy = sums[6*w + k];
+        const real M_tt_xy = total_rrr_leg1_xy + total_rrr_xy;
+        const real total_rrr_leg1_yy = sums[2*w + k];
+        const real total_rrr_yy = sums[7*w + k];
+        const real M_tt_yy = m_star - total_rrr_leg1_yy - total_rrr_yy;
+        /* (Z_t) translational part of Z */
+        const real Z_p_x = m->Z_p_x;
+        const real total_rrr_leg1_x = sums[3*w + k];
+        const real total_rrr_x = sums[8*w + k];
+        const real Z_t_x = total_rrr_leg1_x + total_rrr_x - Z_p_x;
+        const real Z_p_y = m->Z_p_y;
+        const real total_rrr_leg1_y = sums[4*w + k];
+        const real total_rrr_y = sums[9*w + k];
+        const real Z_t_y = total_rrr_leg1_y + total_rrr_y - Z_p_y;
         M[0*w + k] = M_tt_xx;
         M[1*w + k] = M_tt_xy;
         M[2*w + k] = M_tt_xy;
         M[3*w + k] = M_tt_yy;
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
+        t->total[k] += (M_tt_xx + M_tt_xy) + (M_tt_yy + (Z_t_x + Z_t_y));
     }
 }
 
-INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real *V, real *M, real
-    *Z, real *H, verdict *t)
+INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
+    *H, verdict *t)
 {
-    dynamics_values values, *const s = &values;
-    dynamics_results_rrr results_rrr;
-    dynamics_results_rrr2 results_rrr2;
-    dynamics_before(w, X, V, s);
-    if (w == 1) {  /* the legs side by side */
-        dynamics_legs_rrr(m, 0, 1, s, 0, 1, 0, &results_rrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            dynamics_place_rrr(w, &results_rrr, leg, H, t);
-        }
-        for (size_t n = 0; n < 5; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_rrr.sum[n], 1);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            dynamics_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
-            dynamics_place_rrr(w, &results_rrr, 0, H, t);
-        }
-        for (size_t n = 0; n < 5; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_rrr.sum[n][k];
-            }
-        }
+    real s[4] = {0}, sums[10] = {0}, terms_rrr_leg1[5*LEGS(1)] = {0}, o_rrr_leg1[7*LEGS(1)] = {0},
+        terms_rrr[5*LEGS(1)] = {0}, o_rrr[5*LEGS(1)] = {0};
+    dynamics_before(1, X, V, s);
+    dynamics_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_rrr_leg1, o_rrr_leg1);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        dynamics_place_rrr_leg1(1, LEGS(1), o_rrr_leg1, leg, H, t);
     }
-    if (w == 1) {  /* the legs side by side */
-        dynamics_legs_rrr2(m, 0, 1, s, 0, 1, 0, &results_rrr2);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            dynamics_place_rrr2(w, &results_rrr2, leg, H, t);
-        }
-        for (size_t n = 0; n < 5; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[5 + n][k] = total(results_rrr2.sum[n], 1);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr2.sum, 0, sizeof results_rrr2.sum);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            dynamics_legs_rrr2(m, leg, 0, s, 1, w, 1, &results_rrr2);
-            dynamics_place_rrr2(w, &results_rrr2, 0, H, t);
-        }
-        for (size_t n = 0; n < 5; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[5 + n][k] = results_rrr2.sum[n][k];
-            }
-        }
+    for (size_t n = 0; n < 5; ++n) {
+        sums[n] = total(terms_rrr_leg1 + n*LEGS(1), 1);
     }
-    dynamics_after(m, w, s, M, Z);
+    dynamics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        dynamics_place_rrr(1, LEGS(1), o_rrr, leg, H, t);
+    }
+    for (size_t n = 0; n < 5; ++n) {
+        sums[5 + n] = total(terms_rrr + n*LEGS(1), 1);
+    }
+    dynamics_after(m, 1, sums, M, Z, t);
+}
+
+INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, verdict *t)
+{
+    real s[4*LANES], sums[10*LANES], o_rrr_leg1[7*LANES], o_rrr[5*LANES];
+    dynamics_before(LANES, X, V, s);
+    clear(sums, 5*LANES);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        dynamics_legs_rrr_leg1(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr_leg1);
+        dynamics_place_rrr_leg1(LANES, LANES, o_rrr_leg1, 0, H, t);
+    }
+    clear(sums + 5*LANES, 5*LANES);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        dynamics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums + 5*LANES, o_rrr);
+        dynamics_place_rrr(LANES, LANES, o_rrr, 0, H, t);
+    }
+    dynamics_after(m, LANES, sums, M, Z, t);
 }
 
 /* ---- M: 124 mul, 83 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], sum[6][LANES];
-} M_values;
-typedef struct {
-    real sum[3][8], unreachable[8], singular[8];
-} M_results_rrr;
-typedef struct {
-    real sum[3][8], unreachable[8], singular[8];
-} M_results_rrr2;
-
-INLINE void M_before(size_t w, const real *X, M_values *s)
+INLINE void M_before(size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
     }
 }
 
-INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
-    states, size_t count, int add, M_results_rrr *o)
+INLINE void M_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real J_2_rrr_zz = m->J_2_rrr_zz[i];
-        const real Jc_1_rrr_zz = m->Jc_1_rrr_zz[i];
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real d_Gamma_1_rrr_t = m->d_Gamma_1_rrr_t[i];
-        const real d_Gamma_1_rrr_y = m->d_Gamma_1_rrr_y[i];
-        const real d_c_rrr_yy = m->d_c_rrr_yy[i];
-        const real d_phi_2_rrr_t = m->d_phi_2_rrr_t[i];
-        const real h_2_rrr_y = m->h_2_rrr_y[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        /* (rrr_leg1-S) from the base point to the connection point */
+        const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
+        const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x;
+        const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
+        const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y;
+        /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
+           beyond joint 1 */
+        const real rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
+        const real rrr_leg1_Kd_1_t_4 = m->rrr_leg1_Kd_1_t_4[i];
+        const real rrr_leg1_Kd_1 = R(0.5)*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4;
+        /* (rrr_leg1-px_1) component along the reference direction */
+        const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
+        const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
+        const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yx;
+        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
+        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
+        /* (rrr_leg1-py_1) component across the reference direction */
+        const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
+        const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
+        const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yy;
+        /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
+        /* (rrr_leg1-rho2_1) squared amplitude */
+        const real rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1;
+        /* (rrr_leg1-disc_1) discriminant */
+        const real rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1;
+        /* (rrr_leg1-root_1) root, with the sign of the branch */
+        const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
+        const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
+        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_leg1_Kd_1_t_5 = m->inv_rrr_leg1_Kd_1_t_5[i];
+        const real rrr_leg1_x_2_x = inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x -
+            rrr_leg1_joint2_offset_x;
+        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_leg1_Kd_1_t_7 = m->inv_rrr_leg1_Kd_1_t_7[i];
+        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
+        const real rrr_leg1_c_2 =
+            inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x;
+        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_leg1_s_2 =
+            inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
+        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_leg1_r_1_t = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
+        const real rrr_leg1_r_1_x = rrr_leg1_joint2_offset_x +
+            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
+        const real rrr_leg1_r_1_r0_x = rrr_leg1_c_2*rrr_leg1_r_1_x + rrr_leg1_r_1_t*rrr_leg1_s_2;
+        const real rrr_leg1_r_1_r0_y = rrr_leg1_r_1_x*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_r_1_t;
+        /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
+        const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
+            rrr_leg1_Ks_1*rrr_leg1_root_1);
+        /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
+            rrr_leg1_Kd_1*rrr_leg1_Ks_1);
+        /* (rrr_leg1-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_leg1_axes2_r1_x = rrr_leg1_c_1*rrr_leg1_s_2 -
+            rrr_leg1_c_2*rrr_leg1_s_1;
+        const real axis_y_rrr_leg1_axes2_r1_y = rrr_leg1_c_1*rrr_leg1_c_2 +
+            rrr_leg1_s_1*rrr_leg1_s_2;
+        const real axis_y_rrr_leg1_axes2_in_base_x =
+            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_xx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_xy;
+        const real axis_y_rrr_leg1_axes2_in_base_y =
+            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_yx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_yy;
+        const real inv_rrr_leg1_r_1_r0_y = 1/rrr_leg1_r_1_r0_y;
+        /* (rrr_leg1-w_2) reciprocal vector 2 */
+        const real inv_rrr_leg1_platform_joint_offset_x = m->inv_rrr_leg1_platform_joint_offset_x[i];
+        const real rrr_leg1_w_2_t =
+            inv_rrr_leg1_platform_joint_offset_x*inv_rrr_leg1_r_1_r0_y*rrr_leg1_r_1_r0_x;
+        /* (rrr_leg1-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
+           links' inertia and weight */
+        const real rrr_leg1_d_Gamma_2_t = m->rrr_leg1_d_Gamma_2_t[i];
+        const real rrr_leg1_d_Gamma_2_t_2 = rrr_leg1_d_Gamma_2_t*rrr_leg1_r_1_r0_x;
+        const real rrr_leg1_J_2_zz = m->rrr_leg1_J_2_zz[i];
+        const real rrr_leg1_h_2_y = m->rrr_leg1_h_2_y[i];
+        const real rrr_leg1_d_Gamma_2_x = -rrr_leg1_h_2_y - inv_rrr_leg1_r_1_r0_y*(rrr_leg1_J_2_zz
+            - rrr_leg1_d_Gamma_2_t_2);
+        /* (rrr_leg1-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
+           links' inertia and weight */
+        const real rrr_leg1_Jc_1_zz = m->rrr_leg1_Jc_1_zz[i];
+        const real rrr_leg1_d_Gamma_1_x = -rrr_leg1_h_2_y -
+            inv_rrr_leg1_r_1_r0_y*(rrr_leg1_Jc_1_zz - rrr_leg1_d_Gamma_2_t_2);
+        /* (rrr_leg1-d_c) coefficient of the acceleration in: leg force on the platform without actuation
+           and without the mass at the connection point */
+        const real rrr_leg1_d_Gamma_2_y = m->rrr_leg1_d_Gamma_2_y[i];
+        const real rrr_leg1_d_phi_2_t = m->rrr_leg1_d_phi_2_t[i];
+        const real rrr_leg1_d_c_xy = rrr_leg1_d_phi_2_t +
+            inv_rrr_leg1_r_1_r0_y*rrr_leg1_d_Gamma_2_y - rrr_leg1_d_Gamma_2_y*rrr_leg1_w_2_t;
+        /* (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real rrr_leg1_d_c_yy = m->rrr_leg1_d_c_yy[i];
+        const real rrr_leg1_Q_t = inv_rrr_leg1_r_1_r0_y*rrr_leg1_d_Gamma_1_x +
+            rrr_leg1_h_2_y*(rrr_leg1_w_2_t - inv_rrr_leg1_r_1_r0_y) - rrr_leg1_d_c_yy -
+            rrr_leg1_d_Gamma_2_x*rrr_leg1_w_2_t;
+        const real rrr_leg1_Q_t_2 = R(0.5)*rrr_leg1_Q_t;
+        const real rrr_leg1_Q_t_3 = axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_d_c_xy +
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_Q_t_2;
+        const real rrr_leg1_Q_t_4 = axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_Q_t_2 -
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_d_c_xy;
+        const real rrr_leg1_Q_t_5 = rrr_leg1_d_c_yy +
+            2*axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_Q_t_3;
+        const real rrr_leg1_Q_t_6 = axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_Q_t_3 +
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_Q_t_4;
+        const real rrr_leg1_Q_t_7 = rrr_leg1_d_c_yy +
+            2*axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_Q_t_4;
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_leg1_Q_t_5 : rrr_leg1_Q_t_5;  /* total_rrr_leg1_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_leg1_Q_t_6 : rrr_leg1_Q_t_6;  /* total_rrr_leg1_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_leg1_Q_t_7 : rrr_leg1_Q_t_7;  /* total_rrr_leg1_yy */
+        const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
+        const real rrr_leg1_size = m->rrr_leg1_size[i];
+        o[1*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
+            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(-rrr_leg1_r_1_r0_y) >
+            TOLERANCE*rrr_leg1_size);
+        o[0*count + k] = UNLESS(rrr_leg1_disc_1 >= 0);
+    }
+}
+
+INLINE void M_place_rrr_leg1(size_t w, size_t count, const real *o, size_t first, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        t->unreachable[k] += o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
+    }
+}
+
+INLINE void M_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, int add, real *terms, real *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        /* (rrr-S) from the base point to the connection point */
         const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_rrr = m->size_rrr[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr =
-            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr;
-        const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
-        const real r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr;
-        const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr;
-        const real axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        /* (rrr-V6) reciprocal vector 2 */
-        const real w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x;
-        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x;
-        const real d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz -
-            d_Gamma_1_rrr_t_2);
-        /* (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
-           and weight */
-        const real d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz -
-            d_Gamma_1_rrr_t_2);
-        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-w_2) reciprocal vector 2 */
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x;
+        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
+        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x;
+        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
+        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz -
+            rrr_d_Gamma_2_t_2);
+        /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real rrr_Jc_1_zz = m->rrr_Jc_1_zz[i];
+        const real rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz -
+            rrr_d_Gamma_2_t_2);
+        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y -
-            d_Gamma_1_rrr_y*w_2_rrr_t;
-        /* (rrr-N36) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rrr_t = d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t -
-            inv_r_1_rrr_r0_y) - d_c_rrr_yy - d_Gamma_2_rrr_x*w_2_rrr_t;
-        const real Q_rrr_t_2 = R(0.5)*Q_rrr_t;
-        const real Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y +
-            axis_y_rrr_axes2_in_base_x*d_c_rrr_xy;
-        const real Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x -
-            axis_y_rrr_axes2_in_base_y*d_c_rrr_xy;
-        const real Q_rrr_t_5 = d_c_rrr_yy + 2*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y;
-        const real Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x +
-            Q_rrr_t_4*axis_y_rrr_axes2_in_base_y;
-        const real Q_rrr_t_7 = d_c_rrr_yy + 2*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x;
-        o->sum[0][k] = add ? o->sum[0][k] + Q_rrr_t_5 : Q_rrr_t_5;  /* total_rrr_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + Q_rrr_t_6 : Q_rrr_t_6;  /* total_rrr_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + Q_rrr_t_7 : Q_rrr_t_7;  /* total_rrr_yy */
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
+        const real rrr_d_Gamma_2_y = m->rrr_d_Gamma_2_y[i];
+        const real rrr_d_phi_2_t = m->rrr_d_phi_2_t[i];
+        const real rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y -
+            rrr_d_Gamma_2_y*rrr_w_2_t;
+        /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real rrr_d_c_yy = m->rrr_d_c_yy[i];
+        const real rrr_Q_t = inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t -
+            inv_rrr_r_1_r0_y) - rrr_d_c_yy - rrr_d_Gamma_2_x*rrr_w_2_t;
+        const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
+        const real rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy +
+            axis_y_rrr_axes2_in_base_y*rrr_Q_t_2;
+        const real rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 -
+            axis_y_rrr_axes2_in_base_y*rrr_d_c_xy;
+        const real rrr_Q_t_5 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3;
+        const real rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 +
+            axis_y_rrr_axes2_in_base_y*rrr_Q_t_4;
+        const real rrr_Q_t_7 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4;
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_Q_t_5 : rrr_Q_t_5;  /* total_rrr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_Q_t_6 : rrr_Q_t_6;  /* total_rrr_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_Q_t_7 : rrr_Q_t_7;  /* total_rrr_yy */
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void M_place_rrr(size_t w, const M_results_rrr *o, size_t first, verdict *t)
+INLINE void M_place_rrr(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        t->unreachable[k] += o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
     }
 }
 
-INLINE void M_legs_rrr2(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
-    states, size_t count, int add, M_results_rrr2 *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real J_2_rrr2_zz = m->J_2_rrr2_zz[i];
-        const real Jc_1_rrr2_zz = m->Jc_1_rrr2_zz[i];
-        const real Kd_1_rrr2_t_2 = m->Kd_1_rrr2_t_2[i];
-        const real Kd_1_rrr2_t_3 = m->Kd_1_rrr2_t_3[i];
-        const real branch_1_rrr2 = m->branch_1_rrr2[i];
-        const real d_Gamma_1_rrr2_t = m->d_Gamma_1_rrr2_t[i];
-        const real d_Gamma_1_rrr2_y = m->d_Gamma_1_rrr2_y[i];
-        const real d_c_rrr2_yy = m->d_c_rrr2_yy[i];
-        const real d_phi_2_rrr2_t = m->d_phi_2_rrr2_t[i];
-        const real h_2_rrr2_y = m->h_2_rrr2_y[i];
-        const real inv_Kd_1_rrr2_t_5 = m->inv_Kd_1_rrr2_t_5[i];
-        const real inv_rrr2_platform_joint_offset_x = m->inv_rrr2_platform_joint_offset_x[i];
-        const real inv_uu_2_rrr2_t = m->inv_uu_2_rrr2_t[i];
-        const real rho2_1_rrr2_t = m->rho2_1_rrr2_t[i];
-        const real rrr2_base_frame_xx = m->rrr2_base_frame_xx[i];
-        const real rrr2_base_frame_xy = m->rrr2_base_frame_xy[i];
-        const real rrr2_base_frame_yx = m->rrr2_base_frame_yx[i];
-        const real rrr2_base_frame_yy = m->rrr2_base_frame_yy[i];
-        const real rrr2_base_point_x = m->rrr2_base_point_x[i];
-        const real rrr2_base_point_y = m->rrr2_base_point_y[i];
-        const real rrr2_joint2_offset_x = m->rrr2_joint2_offset_x[i];
-        const real rrr2_platform_joint_offset_x = m->rrr2_platform_joint_offset_x[i];
-        const real rrr2_platform_point_x = m->rrr2_platform_point_x[i];
-        const real rrr2_platform_point_y = m->rrr2_platform_point_y[i];
-        const real size_rrr2 = m->size_rrr2[i];
-        /* (rrr2-K1) from the base point to the connection point */
-        const real S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x;
-        const real S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y;
-        /* (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y;
-        const real Kd_1_rrr2 = R(0.5)*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3;
-        /* (rrr2-K3) component along the reference direction */
-        const real px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx;
-        /* (rrr2-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x;
-        /* (rrr2-K4) component across the reference direction */
-        const real py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy;
-        /* (rrr2-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x;
-        /* (rrr2-K8) squared amplitude */
-        const real rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2;
-        /* (rrr2-K9) discriminant */
-        const real disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2;
-        /* (rrr2-K10) root, with the sign of the branch */
-        const real root_1_rrr2 = branch_1_rrr2*root(disc_1_rrr2);
-        /* (rrr2-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x -
-            rrr2_joint2_offset_x;
-        /* (rrr2-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x;
-        /* (rrr2-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr2 =
-            inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x;
-        /* (rrr2-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2;
-        const real r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x;
-        const real r_1_rrr2_r0_x = c_2_rrr2*r_1_rrr2_x + r_1_rrr2_t*s_2_rrr2;
-        const real r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t;
-        /* (rrr2-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr2 = 1/rho2_1_rrr2;
-        const real c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2);
-        /* (rrr2-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2);
-        /* (rrr2-V5) reciprocal vector 1 */
-        const real axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2;
-        const real axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2;
-        const real axis_y_rrr2_axes2_in_base_x = axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx +
-            axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy;
-        const real axis_y_rrr2_axes2_in_base_y = axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx +
-            axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy;
-        const real inv_r_1_rrr2_r0_y = 1/r_1_rrr2_r0_y;
-        /* (rrr2-V6) reciprocal vector 2 */
-        const real w_2_rrr2_t = inv_r_1_rrr2_r0_y*inv_rrr2_platform_joint_offset_x*r_1_rrr2_r0_x;
-        /* (rrr2-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_rrr2_t_2 = d_Gamma_1_rrr2_t*r_1_rrr2_r0_x;
-        const real d_Gamma_1_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(Jc_1_rrr2_zz -
-            d_Gamma_1_rrr2_t_2);
-        /* (rrr2-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
-           and weight */
-        const real d_Gamma_2_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(J_2_rrr2_zz -
-            d_Gamma_1_rrr2_t_2);
-        /* (rrr2-N34) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real d_c_rrr2_xy = d_phi_2_rrr2_t + d_Gamma_1_rrr2_y*inv_r_1_rrr2_r0_y -
-            d_Gamma_1_rrr2_y*w_2_rrr2_t;
-        /* (rrr2-N36) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rrr2_t = d_Gamma_1_rrr2_x*inv_r_1_rrr2_r0_y + h_2_rrr2_y*(w_2_rrr2_t -
-            inv_r_1_rrr2_r0_y) - d_c_rrr2_yy - d_Gamma_2_rrr2_x*w_2_rrr2_t;
-        const real Q_rrr2_t_2 = R(0.5)*Q_rrr2_t;
-        const real Q_rrr2_t_3 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_y +
-            axis_y_rrr2_axes2_in_base_x*d_c_rrr2_xy;
-        const real Q_rrr2_t_4 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_x -
-            axis_y_rrr2_axes2_in_base_y*d_c_rrr2_xy;
-        const real Q_rrr2_t_5 = d_c_rrr2_yy + 2*Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_y;
-        const real Q_rrr2_t_6 = Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_x +
-            Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_y;
-        const real Q_rrr2_t_7 = d_c_rrr2_yy + 2*Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_x;
-        o->sum[0][k] = add ? o->sum[0][k] + Q_rrr2_t_5 : Q_rrr2_t_5;  /* total_rrr2_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + Q_rrr2_t_6 : Q_rrr2_t_6;  /* total_rrr2_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + Q_rrr2_t_7 : Q_rrr2_t_7;  /* total_rrr2_yy */
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
-            UNLESS(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
-        o->unreachable[k] = UNLESS(disc_1_rrr2 >= 0);
-    }
-}
-
-INLINE void M_place_rrr2(size_t w, const M_results_rrr2 *o, size_t first, verdict *t)
+INLINE void M_after(const prepared *m, size_t w, const real *sums, real *M, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real total_rrr_xx = s->sum[0][k];
-        const real total_rrr_xy = s->sum[1][k];
-        const real total_rrr_yy = s->sum[2][k];
-        const real total_rrr2_xx = s->sum[3][k];
-        const real total_rrr2_xy = s->sum[4][k];
-        const real total_rrr2_yy = s->sum[5][k];
+        /* (M_tt) translational block of M */
         const real m_star = m->m_star;
-        /* (M1) translational block of M */
-        const real M_tt_xx = m_star - total_rrr2_xx - total_rrr_xx;
-        const real M_tt_xy = total_rrr2_xy + total_rrr_xy;
-        const real M_tt_yy = m_star - total_rrr2_yy - total_rrr_yy;
+        const real total_rrr_leg1_xx = sums[0*w + k];
+        const real total_rrr_xx = sums[3*w + k];
+        const real M_tt_xx = m_star - total_rrr_leg1_xx - total_rrr_xx;
+        const real total_rrr_leg1_xy = sums[1*w + k];
+        const real total_rrr_xy = sums[4*w + k];
+        const real M_tt_xy = total_rrr_leg1_xy + total_rrr_xy;
+        const real total_rrr_leg1_yy = sums[2*w + k];
+        const real total_rrr_yy = sums[5*w + k];
+        const real M_tt_yy = m_star - total_rrr_leg1_yy - total_rrr_yy;
         M[0*w + k] = M_tt_xx;
         M[1*w + k] = M_tt_xy;
         M[2*w + k] = M_tt_xy;
         M[3*w + k] = M_tt_yy;
+        t->total[k] += M_tt_xx + (M_tt_xy + M_tt_yy);
     }
 }
 
-INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *t)
+INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    M_values values, *const s = &values;
-    M_results_rrr results_rrr;
-    M_results_rrr2 results_rrr2;
-    M_before(w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        M_legs_rrr(m, 0, 1, s, 0, 1, 0, &results_rrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            M_place_rrr(w, &results_rrr, leg, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_rrr.sum[n], 1);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            M_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
-            M_place_rrr(w, &results_rrr, 0, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_rrr.sum[n][k];
-            }
-        }
+    real s[2] = {0}, sums[6] = {0}, terms_rrr_leg1[3*LEGS(1)] = {0}, o_rrr_leg1[2*LEGS(1)] = {0},
+        terms_rrr[3*LEGS(1)] = {0}, o_rrr[2*LEGS(1)] = {0};
+    M_before(1, X, s);
+    M_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_rrr_leg1, o_rrr_leg1);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        M_place_rrr_leg1(1, LEGS(1), o_rrr_leg1, leg, t);
     }
-    if (w == 1) {  /* the legs side by side */
-        M_legs_rrr2(m, 0, 1, s, 0, 1, 0, &results_rrr2);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            M_place_rrr2(w, &results_rrr2, leg, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[3 + n][k] = total(results_rrr2.sum[n], 1);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr2.sum, 0, sizeof results_rrr2.sum);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            M_legs_rrr2(m, leg, 0, s, 1, w, 1, &results_rrr2);
-            M_place_rrr2(w, &results_rrr2, 0, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[3 + n][k] = results_rrr2.sum[n][k];
-            }
-        }
+    for (size_t n = 0; n < 3; ++n) {
+        sums[n] = total(terms_rrr_leg1 + n*LEGS(1), 1);
     }
-    M_after(m, w, s, M);
+    M_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        M_place_rrr(1, LEGS(1), o_rrr, leg, t);
+    }
+    for (size_t n = 0; n < 3; ++n) {
+        sums[3 + n] = total(terms_rrr + n*LEGS(1), 1);
+    }
+    M_after(m, 1, sums, M, t);
+}
+
+INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
+{
+    real s[2*LANES], sums[6*LANES], o_rrr_leg1[2*LANES], o_rrr[2*LANES];
+    M_before(LANES, X, s);
+    clear(sums, 3*LANES);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        M_legs_rrr_leg1(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr_leg1);
+        M_place_rrr_leg1(LANES, LANES, o_rrr_leg1, 0, t);
+    }
+    clear(sums + 3*LANES, 3*LANES);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        M_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums + 3*LANES, o_rrr);
+        M_place_rrr(LANES, LANES, o_rrr, 0, t);
+    }
+    M_after(m, LANES, sums, M, t);
 }
 
 /* ---- Z: 166 mul, 96 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], sum[4][LANES];
-} Z_values;
-typedef struct {
-    real sum[2][8], unreachable[8], singular[8];
-} Z_results_rrr;
-typedef struct {
-    real sum[2][8], unreachable[8], singular[8];
-} Z_results_rrr2;
-
-INLINE void Z_before(size_t w, const real *X, const real *V, Z_values *s)
+INLINE void Z_before(size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_dot_x;
+        s[3*w + k] = t_dot_y;
     }
 }
 
-INLINE void Z_legs_rrr(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
-    states, size_t count, int add, Z_results_rrr *o)
+INLINE void Z_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real J_1_rrr_zz = m->J_1_rrr_zz[i];
-        const real J_2_rrr_zz = m->J_2_rrr_zz[i];
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_1_rrr_x = m->h_1_rrr_x[i];
-        const real h_1_rrr_y = m->h_1_rrr_y[i];
-        const real h_2_rrr_x = m->h_2_rrr_x[i];
-        const real h_2_rrr_y = m->h_2_rrr_y[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        /* (rrr_leg1-S) from the base point to the connection point */
+        const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
+        const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x;
+        const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
+        const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y;
+        /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
+           beyond joint 1 */
+        const real rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
+        const real rrr_leg1_Kd_1_t_4 = m->rrr_leg1_Kd_1_t_4[i];
+        const real rrr_leg1_Kd_1 = R(0.5)*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4;
+        /* (rrr_leg1-px_1) component along the reference direction */
+        const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
+        const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
+        const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yx;
+        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
+        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
+        /* (rrr_leg1-py_1) component across the reference direction */
+        const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
+        const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
+        const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yy;
+        /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
+        /* (rrr_leg1-rho2_1) squared amplitude */
+        const real rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1;
+        /* (rrr_leg1-disc_1) discriminant */
+        const real rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1;
+        /* (rrr_leg1-root_1) root, with the sign of the branch */
+        const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
+        const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
+        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_leg1_Kd_1_t_5 = m->inv_rrr_leg1_Kd_1_t_5[i];
+        const real rrr_leg1_x_2_x = inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x -
+            rrr_leg1_joint2_offset_x;
+        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_leg1_Kd_1_t_7 = m->inv_rrr_leg1_Kd_1_t_7[i];
+        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
+        const real rrr_leg1_c_2 =
+            inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x;
+        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_leg1_s_2 =
+            inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
+        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_leg1_r_1_t = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
+        const real rrr_leg1_r_1_x = rrr_leg1_joint2_offset_x +
+            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
+        const real rrr_leg1_r_1_r0_x = rrr_leg1_c_2*rrr_leg1_r_1_x + rrr_leg1_r_1_t*rrr_leg1_s_2;
+        const real rrr_leg1_r_1_r0_y = rrr_leg1_r_1_x*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_r_1_t;
+        /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
+        const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
+            rrr_leg1_Ks_1*rrr_leg1_root_1);
+        /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
+            rrr_leg1_Kd_1*rrr_leg1_Ks_1);
+        /* (rrr_leg1-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_leg1_axes2_r1_x = rrr_leg1_c_1*rrr_leg1_s_2 -
+            rrr_leg1_c_2*rrr_leg1_s_1;
+        const real axis_y_rrr_leg1_axes2_r1_y = rrr_leg1_c_1*rrr_leg1_c_2 +
+            rrr_leg1_s_1*rrr_leg1_s_2;
+        const real axis_y_rrr_leg1_axes2_in_base_x =
+            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_xx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_xy;
+        const real axis_y_rrr_leg1_axes2_in_base_y =
+            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_yx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_yy;
+        const real inv_rrr_leg1_r_1_r0_y = 1/rrr_leg1_r_1_r0_y;
+        /* (rrr_leg1-qd_2) rate of joint 2 */
+        const real t_dot_x = s[2*w + j];
+        const real t_dot_y = s[3*w + j];
+        const real rrr_leg1_qd_1 = inv_rrr_leg1_r_1_r0_y*(axis_y_rrr_leg1_axes2_in_base_y*t_dot_x
+            - axis_y_rrr_leg1_axes2_in_base_x*t_dot_y);
+        /* (rrr_leg1-omega_2) angular velocity of link 2 */
+        const real inv_rrr_leg1_platform_joint_offset_x = m->inv_rrr_leg1_platform_joint_offset_x[i];
+        const real rrr_leg1_omega_2_z =
+            inv_rrr_leg1_platform_joint_offset_x*(axis_y_rrr_leg1_axes2_in_base_x*t_dot_x +
+            axis_y_rrr_leg1_axes2_in_base_y*t_dot_y + rrr_leg1_qd_1*rrr_leg1_r_1_r0_x) -
+            rrr_leg1_qd_1;
+        /* (rrr_leg1-W_1) centripetal tensor of link 1 */
+        const real rrr_leg1_W_1_t = rrr_leg1_qd_1*rrr_leg1_qd_1;
+        /* (rrr_leg1-W_2) centripetal tensor of link 2 */
+        const real rrr_leg1_W_2_t = rrr_leg1_omega_2_z*rrr_leg1_omega_2_z;
+        /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_leg1_bias_x = -rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x -
+            rrr_leg1_W_1_t*rrr_leg1_c_2*rrr_leg1_joint2_offset_x;
+        /* (rrr_leg1-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        const real rrr_leg1_qdd_1_o = inv_rrr_leg1_r_1_r0_y*rrr_leg1_bias_x;
+        /* (rrr_leg1-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        const real rrr_leg1_alpha_2_o_z = rrr_leg1_qdd_1_o +
+            inv_rrr_leg1_platform_joint_offset_x*(rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
+            - rrr_leg1_qdd_1_o*rrr_leg1_r_1_r0_x);
+        /* (rrr_leg1-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn
+           with link 2, about their reference points */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real rrr_leg1_J_2_zz = m->rrr_leg1_J_2_zz[i];
+        const real rrr_leg1_h_2_x = m->rrr_leg1_h_2_x[i];
+        const real rrr_leg1_h_2_y = m->rrr_leg1_h_2_y[i];
+        const real rrr_leg1_mu_2_o_z = rrr_leg1_J_2_zz*rrr_leg1_alpha_2_o_z +
+            rrr_leg1_h_2_y*(axis_y_rrr_leg1_axes2_in_base_y*gravity_x -
+            axis_y_rrr_leg1_axes2_in_base_x*gravity_y) -
+            rrr_leg1_h_2_x*(axis_y_rrr_leg1_axes2_in_base_x*gravity_x +
+            axis_y_rrr_leg1_axes2_in_base_y*gravity_y);
+        /* (rrr_leg1-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn
+           with link 1, about their reference points */
+        const real rrr_leg1_J_1_zz = m->rrr_leg1_J_1_zz[i];
+        const real rrr_leg1_g_r0_x = m->rrr_leg1_g_r0_x[i];
+        const real rrr_leg1_g_r0_y = m->rrr_leg1_g_r0_y[i];
+        const real rrr_leg1_h_1_x = m->rrr_leg1_h_1_x[i];
+        const real rrr_leg1_h_1_y = m->rrr_leg1_h_1_y[i];
+        const real rrr_leg1_mu_1_o_z = rrr_leg1_J_1_zz*rrr_leg1_qdd_1_o +
+            rrr_leg1_h_1_y*(rrr_leg1_c_1*rrr_leg1_g_r0_x + rrr_leg1_g_r0_y*rrr_leg1_s_1) -
+            rrr_leg1_h_1_x*(rrr_leg1_c_1*rrr_leg1_g_r0_y - rrr_leg1_g_r0_x*rrr_leg1_s_1);
+        /* (rrr_leg1-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from
+           1 outwards, the force at the connection point left out */
+        const real rrr_leg1_N_1_o_z = rrr_leg1_mu_1_o_z + rrr_leg1_mu_2_o_z;
+        /* (rrr_leg1-G_o) remainder without the acceleration in: force at the connection point that
+           balances the leg's inertia and weight along all freedoms */
+        const real rrr_leg1_G_o_t = inv_rrr_leg1_platform_joint_offset_x*rrr_leg1_mu_2_o_z;
+        /* (rrr_leg1-c_o) remainder without the acceleration in: leg force on the platform without
+           actuation and without the mass at the connection point */
+        const real rrr_leg1_c_o_x = rrr_leg1_W_2_t*rrr_leg1_h_2_x +
+            rrr_leg1_alpha_2_o_z*rrr_leg1_h_2_y -
+            inv_rrr_leg1_r_1_r0_y*(rrr_leg1_G_o_t*rrr_leg1_r_1_r0_x - rrr_leg1_N_1_o_z);
+        const real rrr_leg1_c_o_y = rrr_leg1_W_2_t*rrr_leg1_h_2_y - rrr_leg1_G_o_t -
+            rrr_leg1_alpha_2_o_z*rrr_leg1_h_2_x;
+        /* (rrr_leg1-U) velocity and gravity terms of the leg force */
+        const real rrr_leg1_U_in_base_x = -axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_c_o_y -
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_c_o_x;
+        const real rrr_leg1_U_in_base_y = axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_c_o_x -
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_c_o_y;
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_leg1_U_in_base_x : rrr_leg1_U_in_base_x;  /* total_rrr_leg1_x */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_leg1_U_in_base_y : rrr_leg1_U_in_base_y;  /* total_rrr_leg1_y */
+        const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
+        const real rrr_leg1_size = m->rrr_leg1_size[i];
+        o[1*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
+            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(-rrr_leg1_r_1_r0_y) >
+            TOLERANCE*rrr_leg1_size);
+        o[0*count + k] = UNLESS(rrr_leg1_disc_1 >= 0);
+    }
+}
+
+INLINE void Z_place_rrr_leg1(size_t w, size_t count, const real *o, size_t first, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        t->unreachable[k] += o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
+    }
+}
+
+INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, int add, real *terms, real *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        /* (rrr-S) from the base point to the connection point */
         const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_rrr = m->size_rrr[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr =
-            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr;
-        const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
-        const real r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr;
-        const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr;
-        const real axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        /* (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
-           less gravity */
-        const real g_r1_x = c_1_rrr*g_r0_x + g_r0_y*s_1_rrr;
-        const real g_r1_y = c_1_rrr*g_r0_y - g_r0_x*s_1_rrr;
-        /* (rrr-V7) rate of joint 1 */
-        const real qd_1_rrr = inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x -
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-qd_2) rate of joint 2 */
+        const real t_dot_x = s[2*w + j];
+        const real t_dot_y = s[3*w + j];
+        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x -
             axis_y_rrr_axes2_in_base_x*t_dot_y);
-        /* (rrr-V11) angular velocity of link 2 */
-        const real omega_2_rrr_z =
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_omega_2_z =
             inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
-            axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
-        /* (rrr-V10) centripetal tensor of link 1 */
-        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
-        /* (rrr-V12) centripetal tensor of link 2 */
-        const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
-        /* (rrr-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
-            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
-        /* (rrr-A8) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_rrr_o = bias_rrr_x*inv_r_1_rrr_r0_y;
-        /* (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
-        const real mu_1_rrr_o_z = J_1_rrr_zz*qdd_1_rrr_o + g_r1_x*h_1_rrr_y - g_r1_y*h_1_rrr_x;
-        /* (rrr-A17) remainder without the acceleration in: angular acceleration of link 2 */
-        const real alpha_2_rrr_o_z = qdd_1_rrr_o +
-            inv_rrr_platform_joint_offset_x*(W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr -
-            qdd_1_rrr_o*r_1_rrr_r0_x);
-        /* (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with
+            axis_y_rrr_axes2_in_base_y*t_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-W_1) centripetal tensor of link 1 */
+        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-W_2) centripetal tensor of link 2 */
+        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        /* (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        const real rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_bias_x;
+        /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        const real rrr_alpha_2_o_z = rrr_qdd_1_o +
+            inv_rrr_platform_joint_offset_x*(rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2 -
+            rrr_qdd_1_o*rrr_r_1_r0_x);
+        /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real mu_2_rrr_o_z = J_2_rrr_zz*alpha_2_rrr_o_z + h_2_rrr_y*(c_2_rrr*g_r1_x -
-            g_r1_y*s_2_rrr) - h_2_rrr_x*(c_2_rrr*g_r1_y + g_r1_x*s_2_rrr);
-        /* (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
-        const real N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z;
-        /* (rrr-N32) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
-        const real G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z;
-        /* (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real c_rrr_o_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y -
-            inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x - N_1_rrr_o_z);
-        const real c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x;
-        /* (rrr-N37) velocity and gravity terms of the leg force */
-        const real U_rrr_in_base_x = -axis_y_rrr_axes2_in_base_x*c_rrr_o_y -
-            axis_y_rrr_axes2_in_base_y*c_rrr_o_x;
-        const real U_rrr_in_base_y = axis_y_rrr_axes2_in_base_x*c_rrr_o_x -
-            axis_y_rrr_axes2_in_base_y*c_rrr_o_y;
-        o->sum[0][k] = add ? o->sum[0][k] + U_rrr_in_base_x : U_rrr_in_base_x;  /* total_rrr_x */
-        o->sum[1][k] = add ? o->sum[1][k] + U_rrr_in_base_y : U_rrr_in_base_y;  /* total_rrr_y */
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
-    }
-}
-
-INLINE void Z_place_rrr(size_t w, const Z_results_rrr *o, size_t first, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void Z_legs_rrr2(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
-    states, size_t count, int add, Z_results_rrr2 *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real J_1_rrr2_zz = m->J_1_rrr2_zz[i];
-        const real J_2_rrr2_zz = m->J_2_rrr2_zz[i];
-        const real Kd_1_rrr2_t_2 = m->Kd_1_rrr2_t_2[i];
-        const real Kd_1_rrr2_t_3 = m->Kd_1_rrr2_t_3[i];
-        const real branch_1_rrr2 = m->branch_1_rrr2[i];
-        const real g_r0_x_2 = m->g_r0_x_2[i];
-        const real g_r0_y_2 = m->g_r0_y_2[i];
-        const real h_1_rrr2_x = m->h_1_rrr2_x[i];
-        const real h_1_rrr2_y = m->h_1_rrr2_y[i];
-        const real h_2_rrr2_x = m->h_2_rrr2_x[i];
-        const real h_2_rrr2_y = m->h_2_rrr2_y[i];
-        const real inv_Kd_1_rrr2_t_5 = m->inv_Kd_1_rrr2_t_5[i];
-        const real inv_rrr2_platform_joint_offset_x = m->inv_rrr2_platform_joint_offset_x[i];
-        const real inv_uu_2_rrr2_t = m->inv_uu_2_rrr2_t[i];
-        const real rho2_1_rrr2_t = m->rho2_1_rrr2_t[i];
-        const real rrr2_base_frame_xx = m->rrr2_base_frame_xx[i];
-        const real rrr2_base_frame_xy = m->rrr2_base_frame_xy[i];
-        const real rrr2_base_frame_yx = m->rrr2_base_frame_yx[i];
-        const real rrr2_base_frame_yy = m->rrr2_base_frame_yy[i];
-        const real rrr2_base_point_x = m->rrr2_base_point_x[i];
-        const real rrr2_base_point_y = m->rrr2_base_point_y[i];
-        const real rrr2_joint2_offset_x = m->rrr2_joint2_offset_x[i];
-        const real rrr2_platform_joint_offset_x = m->rrr2_platform_joint_offset_x[i];
-        const real rrr2_platform_point_x = m->rrr2_platform_point_x[i];
-        const real rrr2_platform_point_y = m->rrr2_platform_point_y[i];
-        const real size_rrr2 = m->size_rrr2[i];
-        /* (rrr2-K1) from the base point to the connection point */
-        const real S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x;
-        const real S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y;
-        /* (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y;
-        const real Kd_1_rrr2 = R(0.5)*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3;
-        /* (rrr2-K3) component along the reference direction */
-        const real px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx;
-        /* (rrr2-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x;
-        /* (rrr2-K4) component across the reference direction */
-        const real py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy;
-        /* (rrr2-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x;
-        /* (rrr2-K8) squared amplitude */
-        const real rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2;
-        /* (rrr2-K9) discriminant */
-        const real disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2;
-        /* (rrr2-K10) root, with the sign of the branch */
-        const real root_1_rrr2 = branch_1_rrr2*root(disc_1_rrr2);
-        /* (rrr2-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x -
-            rrr2_joint2_offset_x;
-        /* (rrr2-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x;
-        /* (rrr2-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr2 =
-            inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x;
-        /* (rrr2-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2;
-        const real r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x;
-        const real r_1_rrr2_r0_x = c_2_rrr2*r_1_rrr2_x + r_1_rrr2_t*s_2_rrr2;
-        const real r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t;
-        /* (rrr2-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr2 = 1/rho2_1_rrr2;
-        const real c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2);
-        /* (rrr2-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2);
-        /* (rrr2-V5) reciprocal vector 1 */
-        const real axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2;
-        const real axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2;
-        const real axis_y_rrr2_axes2_in_base_x = axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx +
-            axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy;
-        const real axis_y_rrr2_axes2_in_base_y = axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx +
-            axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy;
-        const real inv_r_1_rrr2_r0_y = 1/r_1_rrr2_r0_y;
-        /* (rrr2-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
-           less gravity */
-        const real g_r1_x_2 = c_1_rrr2*g_r0_x_2 + g_r0_y_2*s_1_rrr2;
-        const real g_r1_y_2 = c_1_rrr2*g_r0_y_2 - g_r0_x_2*s_1_rrr2;
-        /* (rrr2-V7) rate of joint 1 */
-        const real qd_1_rrr2 = inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_in_base_y*t_dot_x -
-            axis_y_rrr2_axes2_in_base_x*t_dot_y);
-        /* (rrr2-V11) angular velocity of link 2 */
-        const real omega_2_rrr2_z =
-            inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
-            axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2;
-        /* (rrr2-V10) centripetal tensor of link 1 */
-        const real W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2;
-        /* (rrr2-V12) centripetal tensor of link 2 */
-        const real W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z;
-        /* (rrr2-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr2_x = -W_2_rrr2_t*rrr2_platform_joint_offset_x -
-            W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x;
-        /* (rrr2-A8) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_rrr2_o = bias_rrr2_x*inv_r_1_rrr2_r0_y;
-        /* (rrr2-N24) remainder without the acceleration in: inertia moment of the links that turn with
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
+        const real rrr_h_2_x = m->rrr_h_2_x[i];
+        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_mu_2_o_z = rrr_J_2_zz*rrr_alpha_2_o_z +
+            rrr_h_2_y*(axis_y_rrr_axes2_in_base_y*gravity_x -
+            axis_y_rrr_axes2_in_base_x*gravity_y) -
+            rrr_h_2_x*(axis_y_rrr_axes2_in_base_x*gravity_x +
+            axis_y_rrr_axes2_in_base_y*gravity_y);
+        /* (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
-        const real mu_1_rrr2_o_z = J_1_rrr2_zz*qdd_1_rrr2_o + g_r1_x_2*h_1_rrr2_y -
-            g_r1_y_2*h_1_rrr2_x;
-        /* (rrr2-A17) remainder without the acceleration in: angular acceleration of link 2 */
-        const real alpha_2_rrr2_o_z = qdd_1_rrr2_o +
-            inv_rrr2_platform_joint_offset_x*(W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2 -
-            qdd_1_rrr2_o*r_1_rrr2_r0_x);
-        /* (rrr2-N17) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
-        const real mu_2_rrr2_o_z = J_2_rrr2_zz*alpha_2_rrr2_o_z + h_2_rrr2_y*(c_2_rrr2*g_r1_x_2 -
-            g_r1_y_2*s_2_rrr2) - h_2_rrr2_x*(c_2_rrr2*g_r1_y_2 + g_r1_x_2*s_2_rrr2);
-        /* (rrr2-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
+        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
+        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
+        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
+        const real rrr_h_1_x = m->rrr_h_1_x[i];
+        const real rrr_h_1_y = m->rrr_h_1_y[i];
+        const real rrr_mu_1_o_z = rrr_J_1_zz*rrr_qdd_1_o + rrr_h_1_y*(rrr_c_1*rrr_g_r0_x +
+            rrr_g_r0_y*rrr_s_1) - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
-        const real N_1_rrr2_o_z = mu_1_rrr2_o_z + mu_2_rrr2_o_z;
-        /* (rrr2-N32) remainder without the acceleration in: force at the connection point that balances
+        const real rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z;
+        /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real G_rrr2_o_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_o_z;
-        /* (rrr2-N35) remainder without the acceleration in: leg force on the platform without actuation
+        const real rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z;
+        /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real c_rrr2_o_x = W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_o_z*h_2_rrr2_y -
-            inv_r_1_rrr2_r0_y*(G_rrr2_o_t*r_1_rrr2_r0_x - N_1_rrr2_o_z);
-        const real c_rrr2_o_y = W_2_rrr2_t*h_2_rrr2_y - G_rrr2_o_t - alpha_2_rrr2_o_z*h_2_rrr2_x;
-        /* (rrr2-N37) velocity and gravity terms of the leg force */
-        const real U_rrr2_in_base_x = -axis_y_rrr2_axes2_in_base_x*c_rrr2_o_y -
-            axis_y_rrr2_axes2_in_base_y*c_rrr2_o_x;
-        const real U_rrr2_in_base_y = axis_y_rrr2_axes2_in_base_x*c_rrr2_o_x -
-            axis_y_rrr2_axes2_in_base_y*c_rrr2_o_y;
-        o->sum[0][k] = add ? o->sum[0][k] + U_rrr2_in_base_x : U_rrr2_in_base_x;  /* total_rrr2_x */
-        o->sum[1][k] = add ? o->sum[1][k] + U_rrr2_in_base_y : U_rrr2_in_base_y;  /* total_rrr2_y */
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
-            UNLESS(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
-        o->unreachable[k] = UNLESS(disc_1_rrr2 >= 0);
+        const real rrr_c_o_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y -
+            inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x - rrr_N_1_o_z);
+        const real rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x;
+        /* (rrr-U) velocity and gravity terms of the leg force */
+        const real rrr_U_in_base_x = -axis_y_rrr_axes2_in_base_x*rrr_c_o_y -
+            axis_y_rrr_axes2_in_base_y*rrr_c_o_x;
+        const real rrr_U_in_base_y = axis_y_rrr_axes2_in_base_x*rrr_c_o_x -
+            axis_y_rrr_axes2_in_base_y*rrr_c_o_y;
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_U_in_base_x : rrr_U_in_base_x;  /* total_rrr_x */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_U_in_base_y : rrr_U_in_base_y;  /* total_rrr_y */
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void Z_place_rrr2(size_t w, const Z_results_rrr2 *o, size_t first, verdict *t)
+INLINE void Z_place_rrr(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        t->unreachable[k] += o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
     }
 }
 
-INLINE void Z_after(const prepared *m, size_t w, const Z_values *s, real *Z)
+INLINE void Z_after(const prepared *m, size_t w, const real *sums, real *Z, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real total_rrr_x = s->sum[0][k];
-        const real total_rrr_y = s->sum[1][k];
-        const real total_rrr2_x = s->sum[2][k];
-        const real total_rrr2_y = s->sum[3][k];
+        /* (Z_t) translational part of Z */
         const real Z_p_x = m->Z_p_x;
+        const real total_rrr_leg1_x = sums[0*w + k];
+        const real total_rrr_x = sums[2*w + k];
+        const real Z_t_x = total_rrr_leg1_x + total_rrr_x - Z_p_x;
         const real Z_p_y = m->Z_p_y;
-        /* (M3) translational part of Z */
-        const real Z_t_x = total_rrr2_x + total_rrr_x - Z_p_x;
-        const real Z_t_y = total_rrr2_y + total_rrr_y - Z_p_y;
+        const real total_rrr_leg1_y = sums[1*w + k];
+        const real total_rrr_y = sums[3*w + k];
+        const real Z_t_y = total_rrr_leg1_y + total_rrr_y - Z_p_y;
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
+        t->total[k] += Z_t_x + Z_t_y;
     }
 }
 
-INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    Z_values values, *const s = &values;
-    Z_results_rrr results_rrr;
-    Z_results_rrr2 results_rrr2;
-    Z_before(w, X, V, s);
-    if (w == 1) {  /* the legs side by side */
-        Z_legs_rrr(m, 0, 1, s, 0, 1, 0, &results_rrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            Z_place_rrr(w, &results_rrr, leg, t);
-        }
-        for (size_t n = 0; n < 2; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_rrr.sum[n], 1);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            Z_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
-            Z_place_rrr(w, &results_rrr, 0, t);
-        }
-        for (size_t n = 0; n < 2; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_rrr.sum[n][k];
-            }
-        }
+    real s[4] = {0}, sums[4] = {0}, terms_rrr_leg1[2*LEGS(1)] = {0}, o_rrr_leg1[2*LEGS(1)] = {0},
+        terms_rrr[2*LEGS(1)] = {0}, o_rrr[2*LEGS(1)] = {0};
+    Z_before(1, X, V, s);
+    Z_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_rrr_leg1, o_rrr_leg1);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        Z_place_rrr_leg1(1, LEGS(1), o_rrr_leg1, leg, t);
     }
-    if (w == 1) {  /* the legs side by side */
-        Z_legs_rrr2(m, 0, 1, s, 0, 1, 0, &results_rrr2);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            Z_place_rrr2(w, &results_rrr2, leg, t);
-        }
-        for (size_t n = 0; n < 2; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[2 + n][k] = total(results_rrr2.sum[n], 1);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr2.sum, 0, sizeof results_rrr2.sum);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            Z_legs_rrr2(m, leg, 0, s, 1, w, 1, &results_rrr2);
-            Z_place_rrr2(w, &results_rrr2, 0, t);
-        }
-        for (size_t n = 0; n < 2; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[2 + n][k] = results_rrr2.sum[n][k];
-            }
-        }
+    for (size_t n = 0; n < 2; ++n) {
+        sums[n] = total(terms_rrr_leg1 + n*LEGS(1), 1);
     }
-    Z_after(m, w, s, Z);
+    Z_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        Z_place_rrr(1, LEGS(1), o_rrr, leg, t);
+    }
+    for (size_t n = 0; n < 2; ++n) {
+        sums[2 + n] = total(terms_rrr + n*LEGS(1), 1);
+    }
+    Z_after(m, 1, sums, Z, t);
+}
+
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+{
+    real s[4*LANES], sums[4*LANES], o_rrr_leg1[2*LANES], o_rrr[2*LANES];
+    Z_before(LANES, X, V, s);
+    clear(sums, 2*LANES);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        Z_legs_rrr_leg1(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr_leg1);
+        Z_place_rrr_leg1(LANES, LANES, o_rrr_leg1, 0, t);
+    }
+    clear(sums + 2*LANES, 2*LANES);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        Z_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums + 2*LANES, o_rrr);
+        Z_place_rrr(LANES, LANES, o_rrr, 0, t);
+    }
+    Z_after(m, LANES, sums, Z, t);
 }
 
 /* ---- H: 90 mul, 43 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES];
-} H_values;
-typedef struct {
-    real entry[4][8], unreachable[8], singular[8];
-} H_results_rrr;
-typedef struct {
-    real entry[2][8], unreachable[8], singular[8];
-} H_results_rrr2;
-
-INLINE void H_before(size_t w, const real *X, H_values *s)
+INLINE void H_before(size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
     }
 }
 
-INLINE void H_legs_rrr(const prepared *m, size_t leg, size_t legs, const H_values *s, size_t
-    states, size_t count, H_results_rrr *o)
+INLINE void H_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        /* (rrr_leg1-S) from the base point to the connection point */
+        const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
+        const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x;
+        const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
+        const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y;
+        /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
+           beyond joint 1 */
+        const real rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
+        const real rrr_leg1_Kd_1_t_4 = m->rrr_leg1_Kd_1_t_4[i];
+        const real rrr_leg1_Kd_1 = R(0.5)*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4;
+        /* (rrr_leg1-px_1) component along the reference direction */
+        const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
+        const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
+        const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yx;
+        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
+        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
+        /* (rrr_leg1-py_1) component across the reference direction */
+        const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
+        const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
+        const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yy;
+        /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
+        /* (rrr_leg1-rho2_1) squared amplitude */
+        const real rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1;
+        /* (rrr_leg1-disc_1) discriminant */
+        const real rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1;
+        /* (rrr_leg1-root_1) root, with the sign of the branch */
+        const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
+        const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
+        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_leg1_Kd_1_t_5 = m->inv_rrr_leg1_Kd_1_t_5[i];
+        const real rrr_leg1_x_2_x = inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x -
+            rrr_leg1_joint2_offset_x;
+        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_leg1_Kd_1_t_7 = m->inv_rrr_leg1_Kd_1_t_7[i];
+        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
+        const real rrr_leg1_c_2 =
+            inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x;
+        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_leg1_s_2 =
+            inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
+        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_leg1_r_1_t = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
+        const real rrr_leg1_r_1_x = rrr_leg1_joint2_offset_x +
+            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
+        const real rrr_leg1_r_1_r0_y = rrr_leg1_r_1_x*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_r_1_t;
+        /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
+        const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
+            rrr_leg1_Ks_1*rrr_leg1_root_1);
+        /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
+            rrr_leg1_Kd_1*rrr_leg1_Ks_1);
+        /* (rrr_leg1-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_leg1_axes2_r1_x = rrr_leg1_c_1*rrr_leg1_s_2 -
+            rrr_leg1_c_2*rrr_leg1_s_1;
+        const real axis_y_rrr_leg1_axes2_r1_y = rrr_leg1_c_1*rrr_leg1_c_2 +
+            rrr_leg1_s_1*rrr_leg1_s_2;
+        const real axis_y_rrr_leg1_axes2_in_base_x =
+            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_xx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_xy;
+        const real axis_y_rrr_leg1_axes2_in_base_y =
+            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_yx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_yy;
+        const real inv_rrr_leg1_r_1_r0_y = 1/rrr_leg1_r_1_r0_y;
+        /* (rrr_leg1-w_2) reciprocal vector 2 */
+        const real inv_rrr_leg1_platform_joint_offset_x = m->inv_rrr_leg1_platform_joint_offset_x[i];
+        const real rrr_leg1_w_2_t =
+            inv_rrr_leg1_platform_joint_offset_x*inv_rrr_leg1_r_1_r0_y*(rrr_leg1_c_2*rrr_leg1_r_1_x
+            + rrr_leg1_r_1_t*rrr_leg1_s_2);
+        /* (rrr_leg1-w_1) reciprocal vector 1 */
+        const real rrr_leg1_w_1_t = axis_y_rrr_leg1_axes2_in_base_y*inv_rrr_leg1_r_1_r0_y;
+        const real rrr_leg1_w_1_t_2 = axis_y_rrr_leg1_axes2_in_base_x*inv_rrr_leg1_r_1_r0_y;
+        /* (rrr_leg1-w_2) reciprocal vector 2 */
+        const real rrr_leg1_w_2_in_base_x =
+            axis_y_rrr_leg1_axes2_in_base_x*inv_rrr_leg1_platform_joint_offset_x +
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_w_2_t;
+        const real rrr_leg1_w_2_in_base_y =
+            axis_y_rrr_leg1_axes2_in_base_y*inv_rrr_leg1_platform_joint_offset_x -
+            axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_w_2_t;
+        o[0*count + k] = -rrr_leg1_w_1_t;
+        o[1*count + k] = rrr_leg1_w_1_t_2;
+        o[2*count + k] = rrr_leg1_w_2_in_base_x;
+        o[3*count + k] = rrr_leg1_w_2_in_base_y;
+        o[6*count + k] = (rrr_leg1_w_1_t + rrr_leg1_w_1_t_2) + (rrr_leg1_w_2_in_base_x +
+            rrr_leg1_w_2_in_base_y);
+        const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
+        const real rrr_leg1_size = m->rrr_leg1_size[i];
+        o[5*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
+            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(-rrr_leg1_r_1_r0_y) >
+            TOLERANCE*rrr_leg1_size);
+        o[4*count + k] = UNLESS(rrr_leg1_disc_1 >= 0);
+    }
+}
+
+INLINE void H_place_rrr_leg1(size_t w, size_t count, const real *o, size_t first, real *H, verdict
+    *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(0)*w + k] = o[0*count + first + k];
+        H[(3)*w + k] = o[1*count + first + k];
+        H[(1)*w + k] = o[2*count + first + k];
+        H[(4)*w + k] = o[3*count + first + k];
+        t->unreachable[k] += o[4*count + first + k];
+        t->singular[k] += o[5*count + first + k];
+        t->total[k] += o[6*count + first + k];
+    }
+}
+
+INLINE void H_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, real *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        /* (rrr-S) from the base point to the connection point */
         const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_rrr = m->size_rrr[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr =
-            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr;
-        const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
-        const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr;
-        const real axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        /* (rrr-V6) reciprocal vector 2 */
-        const real w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*(c_2_rrr*r_1_rrr_x
-            + r_1_rrr_t*s_2_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y;
-        const real w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
-        /* (rrr-V6) reciprocal vector 2 */
-        const real w_2_rrr_in_base_x = axis_y_rrr_axes2_in_base_x*inv_rrr_platform_joint_offset_x
-            + axis_y_rrr_axes2_in_base_y*w_2_rrr_t;
-        const real w_2_rrr_in_base_y = axis_y_rrr_axes2_in_base_y*inv_rrr_platform_joint_offset_x
-            - axis_y_rrr_axes2_in_base_x*w_2_rrr_t;
-        o->entry[0][k] = -w_1_rrr_t;
-        o->entry[1][k] = w_1_rrr_t_2;
-        o->entry[2][k] = w_2_rrr_in_base_x;
-        o->entry[3][k] = w_2_rrr_in_base_y;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        const real rrr_w_1_t = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
+            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy);
+        const real rrr_w_1_t_2 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
+            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy);
+        o[0*count + k] = -rrr_w_1_t;
+        o[1*count + k] = rrr_w_1_t_2;
+        o[4*count + k] = rrr_w_1_t + rrr_w_1_t_2;
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void H_place_rrr(size_t w, const H_results_rrr *o, size_t first, real *H, verdict *t)
+INLINE void H_place_rrr(size_t w, size_t count, const real *o, size_t first, real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0)*w + k] = o->entry[0][first + k];
-        H[(3)*w + k] = o->entry[1][first + k];
-        H[(1)*w + k] = o->entry[2][first + k];
-        H[(4)*w + k] = o->entry[3][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(2)*w + k] = o[0*count + first + k];
+        H[(5)*w + k] = o[1*count + first + k];
+        t->unreachable[k] += o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
 }
 
-INLINE void H_legs_rrr2(const prepared *m, size_t leg, size_t legs, const H_values *s, size_t
-    states, size_t count, H_results_rrr2 *o)
+INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real Kd_1_rrr2_t_2 = m->Kd_1_rrr2_t_2[i];
-        const real Kd_1_rrr2_t_3 = m->Kd_1_rrr2_t_3[i];
-        const real branch_1_rrr2 = m->branch_1_rrr2[i];
-        const real inv_Kd_1_rrr2_t_5 = m->inv_Kd_1_rrr2_t_5[i];
-        const real inv_uu_2_rrr2_t = m->inv_uu_2_rrr2_t[i];
-        const real rho2_1_rrr2_t = m->rho2_1_rrr2_t[i];
-        const real rrr2_base_frame_xx = m->rrr2_base_frame_xx[i];
-        const real rrr2_base_frame_xy = m->rrr2_base_frame_xy[i];
-        const real rrr2_base_frame_yx = m->rrr2_base_frame_yx[i];
-        const real rrr2_base_frame_yy = m->rrr2_base_frame_yy[i];
-        const real rrr2_base_point_x = m->rrr2_base_point_x[i];
-        const real rrr2_base_point_y = m->rrr2_base_point_y[i];
-        const real rrr2_joint2_offset_x = m->rrr2_joint2_offset_x[i];
-        const real rrr2_platform_joint_offset_x = m->rrr2_platform_joint_offset_x[i];
-        const real rrr2_platform_point_x = m->rrr2_platform_point_x[i];
-        const real rrr2_platform_point_y = m->rrr2_platform_point_y[i];
-        const real size_rrr2 = m->size_rrr2[i];
-        /* (rrr2-K1) from the base point to the connection point */
-        const real S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x;
-        const real S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y;
-        /* (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y;
-        const real Kd_1_rrr2 = R(0.5)*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3;
-        /* (rrr2-K3) component along the reference direction */
-        const real px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx;
-        /* (rrr2-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x;
-        /* (rrr2-K4) component across the reference direction */
-        const real py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy;
-        /* (rrr2-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x;
-        /* (rrr2-K8) squared amplitude */
-        const real rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2;
-        /* (rrr2-K9) discriminant */
-        const real disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2;
-        /* (rrr2-K10) root, with the sign of the branch */
-        const real root_1_rrr2 = branch_1_rrr2*root(disc_1_rrr2);
-        /* (rrr2-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x -
-            rrr2_joint2_offset_x;
-        /* (rrr2-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x;
-        /* (rrr2-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr2 =
-            inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x;
-        /* (rrr2-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x;
-        const real r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 -
-            c_2_rrr2*rrr2_platform_joint_offset_x*s_2_rrr2;
-        /* (rrr2-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr2 = 1/rho2_1_rrr2;
-        const real c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2);
-        /* (rrr2-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2);
-        /* (rrr2-V5) reciprocal vector 1 */
-        const real axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2;
-        const real axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2;
-        const real inv_r_1_rrr2_r0_y = 1/r_1_rrr2_r0_y;
-        const real w_1_rrr2_t = inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx +
-            axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy);
-        const real w_1_rrr2_t_2 = inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx +
-            axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy);
-        o->entry[0][k] = -w_1_rrr2_t;
-        o->entry[1][k] = w_1_rrr2_t_2;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
-            UNLESS(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
-        o->unreachable[k] = UNLESS(disc_1_rrr2 >= 0);
+    real s[2] = {0}, o_rrr_leg1[7*LEGS(1)] = {0}, o_rrr[5*LEGS(1)] = {0};
+    H_before(1, X, s);
+    H_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(1), o_rrr_leg1);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        H_place_rrr_leg1(1, LEGS(1), o_rrr_leg1, leg, H, t);
+    }
+    H_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), o_rrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        H_place_rrr(1, LEGS(1), o_rrr, leg, H, t);
     }
 }
 
-INLINE void H_place_rrr2(size_t w, const H_results_rrr2 *o, size_t first, real *H, verdict *t)
+INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[(2)*w + k] = o->entry[0][first + k];
-        H[(5)*w + k] = o->entry[1][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+    real s[2*LANES], o_rrr_leg1[7*LANES], o_rrr[5*LANES];
+    H_before(LANES, X, s);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        H_legs_rrr_leg1(m, LANES, leg, 0, s, 1, LANES, o_rrr_leg1);
+        H_place_rrr_leg1(LANES, LANES, o_rrr_leg1, 0, H, t);
     }
-}
-
-INLINE void H_run(const prepared *m, size_t w, const real *X, real *H, verdict *t)
-{
-    H_values values, *const s = &values;
-    H_results_rrr results_rrr;
-    H_results_rrr2 results_rrr2;
-    H_before(w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        H_legs_rrr(m, 0, 1, s, 0, 1, &results_rrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            H_place_rrr(w, &results_rrr, leg, H, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            H_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
-            H_place_rrr(w, &results_rrr, 0, H, t);
-        }
-    }
-    if (w == 1) {  /* the legs side by side */
-        H_legs_rrr2(m, 0, 1, s, 0, 1, &results_rrr2);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            H_place_rrr2(w, &results_rrr2, leg, H, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            H_legs_rrr2(m, leg, 0, s, 1, w, &results_rrr2);
-            H_place_rrr2(w, &results_rrr2, 0, H, t);
-        }
+    for (size_t leg = 0; leg < 1; ++leg) {
+        H_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        H_place_rrr(LANES, LANES, o_rrr, 0, H, t);
     }
 }
 
 /* ---- required: 186 mul, 112 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], t_ddot_x[LANES], t_ddot_y[LANES],
-        f_p_x[LANES], f_p_y[LANES], sum[4][LANES];
-} required_values;
-typedef struct {
-    real sum[2][8], entry[4][8], unreachable[8], singular[8];
-} required_results_rrr;
-typedef struct {
-    real sum[2][8], entry[2][8], unreachable[8], singular[8];
-} required_results_rrr2;
-
 INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, required_values *s)
+    *A, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real m_star = m->m_star;
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
-        /* (E1) acceleration of the platform origin, less gravity */
+        /* (a_t) acceleration of the platform origin, less gravity */
+        const real gravity_x = m->gravity_x;
         const real a_t_x = t_ddot_x - gravity_x;
+        const real gravity_y = m->gravity_y;
         const real a_t_y = t_ddot_y - gravity_y;
-        /* (E2) inertia force of the platform less its weight */
+        /* (f_p) inertia force of the platform less its weight */
+        const real m_star = m->m_star;
         const real f_p_x = a_t_x*m_star;
         const real f_p_y = a_t_y*m_star;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->f_p_x[k] = f_p_x;
-        s->f_p_y[k] = f_p_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_dot_x;
+        s[3*w + k] = t_dot_y;
+        s[4*w + k] = t_ddot_x;
+        s[5*w + k] = t_ddot_y;
+        s[6*w + k] = f_p_x;
+        s[7*w + k] = f_p_y;
     }
 }
 
-INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const required_values
-    *s, size_t states, size_t count, int add, required_results_rrr *o)
+INLINE void required_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, const
+    real *s, size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
+        /* (rrr_leg1-S) from the base point to the connection point */
+        const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
+        const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x;
+        const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
+        const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y;
+        /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
+           beyond joint 1 */
+        const real rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
+        const real rrr_leg1_Kd_1_t_4 = m->rrr_leg1_Kd_1_t_4[i];
+        const real rrr_leg1_Kd_1 = R(0.5)*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4;
+        /* (rrr_leg1-px_1) component along the reference direction */
+        const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
+        const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
+        const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yx;
+        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
+        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
+        /* (rrr_leg1-py_1) component across the reference direction */
+        const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
+        const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
+        const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yy;
+        /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
+        /* (rrr_leg1-rho2_1) squared amplitude */
+        const real rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1;
+        /* (rrr_leg1-disc_1) discriminant */
+        const real rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1;
+        /* (rrr_leg1-root_1) root, with the sign of the branch */
+        const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
+        const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
+        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_leg1_Kd_1_t_5 = m->inv_rrr_leg1_Kd_1_t_5[i];
+        const real rrr_leg1_x_2_x = inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x -
+            rrr_leg1_joint2_offset_x;
+        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_leg1_Kd_1_t_7 = m->inv_rrr_leg1_Kd_1_t_7[i];
+        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
+        const real rrr_leg1_c_2 =
+            inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x;
+        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_leg1_s_2 =
+            inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
+        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_leg1_r_1_t = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
+        const real rrr_leg1_r_1_x = rrr_leg1_joint2_offset_x +
+            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
+        const real rrr_leg1_r_1_r0_x = rrr_leg1_c_2*rrr_leg1_r_1_x + rrr_leg1_r_1_t*rrr_leg1_s_2;
+        const real rrr_leg1_r_1_r0_y = rrr_leg1_r_1_x*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_r_1_t;
+        /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
+        const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
+            rrr_leg1_Ks_1*rrr_leg1_root_1);
+        /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
+            rrr_leg1_Kd_1*rrr_leg1_Ks_1);
+        /* (rrr_leg1-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_leg1_axes2_r1_x = rrr_leg1_c_1*rrr_leg1_s_2 -
+            rrr_leg1_c_2*rrr_leg1_s_1;
+        const real axis_y_rrr_leg1_axes2_r1_y = rrr_leg1_c_1*rrr_leg1_c_2 +
+            rrr_leg1_s_1*rrr_leg1_s_2;
+        const real axis_y_rrr_leg1_axes2_in_base_x =
+            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_xx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_xy;
+        const real axis_y_rrr_leg1_axes2_in_base_y =
+            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_yx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_yy;
+        const real inv_rrr_leg1_r_1_r0_y = 1/rrr_leg1_r_1_r0_y;
+        /* (rrr_leg1-w_2) reciprocal vector 2 */
+        const real inv_rrr_leg1_platform_joint_offset_x = m->inv_rrr_leg1_platform_joint_offset_x[i];
+        const real rrr_leg1_w_2_t =
+            inv_rrr_leg1_platform_joint_offset_x*inv_rrr_leg1_r_1_r0_y*rrr_leg1_r_1_r0_x;
+        /* (rrr_leg1-qd_2) rate of joint 2 */
+        const real t_dot_x = s[2*w + j];
+        const real t_dot_y = s[3*w + j];
+        const real rrr_leg1_qd_1 = inv_rrr_leg1_r_1_r0_y*(axis_y_rrr_leg1_axes2_in_base_y*t_dot_x
+            - axis_y_rrr_leg1_axes2_in_base_x*t_dot_y);
+        /* (rrr_leg1-omega_2) angular velocity of link 2 */
+        const real rrr_leg1_omega_2_z =
+            inv_rrr_leg1_platform_joint_offset_x*(axis_y_rrr_leg1_axes2_in_base_x*t_dot_x +
+            axis_y_rrr_leg1_axes2_in_base_y*t_dot_y + rrr_leg1_qd_1*rrr_leg1_r_1_r0_x) -
+            rrr_leg1_qd_1;
+        /* (rrr_leg1-W_1) centripetal tensor of link 1 */
+        const real rrr_leg1_W_1_t = rrr_leg1_qd_1*rrr_leg1_qd_1;
+        /* (rrr_leg1-W_2) centripetal tensor of link 2 */
+        const real rrr_leg1_W_2_t = rrr_leg1_omega_2_z*rrr_leg1_omega_2_z;
+        /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_leg1_bias_x = -rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x -
+            rrr_leg1_W_1_t*rrr_leg1_c_2*rrr_leg1_joint2_offset_x;
+        /* (rrr_leg1-w_1) reciprocal vector 1 */
+        const real rrr_leg1_w_1_t = axis_y_rrr_leg1_axes2_in_base_y*inv_rrr_leg1_r_1_r0_y;
+        const real rrr_leg1_w_1_t_2 = axis_y_rrr_leg1_axes2_in_base_x*inv_rrr_leg1_r_1_r0_y;
+        /* (rrr_leg1-w_2) reciprocal vector 2 */
+        const real rrr_leg1_w_2_in_base_x =
+            axis_y_rrr_leg1_axes2_in_base_x*inv_rrr_leg1_platform_joint_offset_x +
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_w_2_t;
+        const real rrr_leg1_w_2_in_base_y =
+            axis_y_rrr_leg1_axes2_in_base_y*inv_rrr_leg1_platform_joint_offset_x -
+            axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_w_2_t;
+        /* (rrr_leg1-S_ddot) acceleration of the connection point */
+        const real t_ddot_x = s[4*w + j];
+        const real t_ddot_y = s[5*w + j];
+        const real rrr_leg1_S_ddot_tip_x = axis_y_rrr_leg1_axes2_in_base_y*t_ddot_x -
+            axis_y_rrr_leg1_axes2_in_base_x*t_ddot_y;
+        const real rrr_leg1_S_ddot_tip_y = axis_y_rrr_leg1_axes2_in_base_x*t_ddot_x +
+            axis_y_rrr_leg1_axes2_in_base_y*t_ddot_y;
+        /* (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations */
+        const real rrr_leg1_rel_x = rrr_leg1_S_ddot_tip_x - rrr_leg1_bias_x;
+        const real rrr_leg1_rel_y = rrr_leg1_S_ddot_tip_y +
+            rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*rrr_leg1_s_2;
+        /* (rrr_leg1-qdd_1) acceleration of joint 1 */
+        const real rrr_leg1_qdd_1 = inv_rrr_leg1_r_1_r0_y*rrr_leg1_rel_x;
+        /* (rrr_leg1-acc_2) acceleration of the reference point of link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real J_1_rrr_zz = m->J_1_rrr_zz[i];
-        const real J_2_rrr_zz = m->J_2_rrr_zz[i];
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_1_rrr_x = m->h_1_rrr_x[i];
-        const real h_1_rrr_y = m->h_1_rrr_y[i];
-        const real h_2_rrr_x = m->h_2_rrr_x[i];
-        const real h_2_rrr_y = m->h_2_rrr_y[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_leg1_acc_2_x = rrr_leg1_S_ddot_tip_x +
+            axis_y_rrr_leg1_axes2_in_base_x*gravity_y - axis_y_rrr_leg1_axes2_in_base_y*gravity_x;
+        const real rrr_leg1_acc_2_y = rrr_leg1_S_ddot_tip_y -
+            axis_y_rrr_leg1_axes2_in_base_x*gravity_x - axis_y_rrr_leg1_axes2_in_base_y*gravity_y;
+        /* (rrr_leg1-alpha_2) angular acceleration of link 2 */
+        const real rrr_leg1_alpha_2_z = inv_rrr_leg1_platform_joint_offset_x*(rrr_leg1_rel_y +
+            rrr_leg1_qdd_1*rrr_leg1_r_1_r0_x) - rrr_leg1_qdd_1;
+        /* (rrr_leg1-mu_2) inertia moment of the links that turn with link 2, about their reference points
+           */
+        const real rrr_leg1_J_2_zz = m->rrr_leg1_J_2_zz[i];
+        const real rrr_leg1_h_2_x = m->rrr_leg1_h_2_x[i];
+        const real rrr_leg1_h_2_y = m->rrr_leg1_h_2_y[i];
+        const real rrr_leg1_mu_2_z = rrr_leg1_J_2_zz*rrr_leg1_alpha_2_z +
+            rrr_leg1_acc_2_y*rrr_leg1_h_2_x - rrr_leg1_acc_2_x*rrr_leg1_h_2_y;
+        /* (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
+           */
+        const real rrr_leg1_J_1_zz = m->rrr_leg1_J_1_zz[i];
+        const real rrr_leg1_g_r0_x = m->rrr_leg1_g_r0_x[i];
+        const real rrr_leg1_g_r0_y = m->rrr_leg1_g_r0_y[i];
+        const real rrr_leg1_h_1_x = m->rrr_leg1_h_1_x[i];
+        const real rrr_leg1_h_1_y = m->rrr_leg1_h_1_y[i];
+        const real rrr_leg1_mu_1_z = rrr_leg1_h_1_y*(rrr_leg1_c_1*rrr_leg1_g_r0_x +
+            rrr_leg1_g_r0_y*rrr_leg1_s_1) - rrr_leg1_J_1_zz*rrr_leg1_qdd_1 -
+            rrr_leg1_h_1_x*(rrr_leg1_c_1*rrr_leg1_g_r0_y - rrr_leg1_g_r0_x*rrr_leg1_s_1);
+        /* (rrr_leg1-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection
+           point left out */
+        const real rrr_leg1_N_1_z = rrr_leg1_mu_1_z + rrr_leg1_mu_2_z;
+        /* (rrr_leg1-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real rrr_leg1_G_t = inv_rrr_leg1_platform_joint_offset_x*rrr_leg1_mu_2_z;
+        /* (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection
+           point */
+        const real rrr_leg1_c_x = rrr_leg1_W_2_t*rrr_leg1_h_2_x +
+            rrr_leg1_alpha_2_z*rrr_leg1_h_2_y -
+            inv_rrr_leg1_r_1_r0_y*(rrr_leg1_G_t*rrr_leg1_r_1_r0_x - rrr_leg1_N_1_z);
+        const real rrr_leg1_c_y = rrr_leg1_W_2_t*rrr_leg1_h_2_y - rrr_leg1_G_t -
+            rrr_leg1_alpha_2_z*rrr_leg1_h_2_x;
+        const real rrr_leg1_c_in_base_x = axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_c_y +
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_c_x;
+        const real rrr_leg1_c_in_base_y = axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_c_y -
+            axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_c_x;
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_leg1_c_in_base_x : rrr_leg1_c_in_base_x;  /* total_rrr_leg1_x */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_leg1_c_in_base_y : rrr_leg1_c_in_base_y;  /* total_rrr_leg1_y */
+        o[0*count + k] = -rrr_leg1_w_1_t;
+        o[1*count + k] = rrr_leg1_w_1_t_2;
+        o[2*count + k] = rrr_leg1_w_2_in_base_x;
+        o[3*count + k] = rrr_leg1_w_2_in_base_y;
+        const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
+        const real rrr_leg1_size = m->rrr_leg1_size[i];
+        o[5*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
+            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(-rrr_leg1_r_1_r0_y) >
+            TOLERANCE*rrr_leg1_size);
+        o[4*count + k] = UNLESS(rrr_leg1_disc_1 >= 0);
+    }
+}
+
+INLINE void required_place_rrr_leg1(size_t w, size_t count, const real *o, size_t first, real *H,
+    verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(0)*w + k] = o[0*count + first + k];
+        H[(3)*w + k] = o[1*count + first + k];
+        H[(1)*w + k] = o[2*count + first + k];
+        H[(4)*w + k] = o[3*count + first + k];
+        t->unreachable[k] += o[4*count + first + k];
+        t->singular[k] += o[5*count + first + k];
+    }
+}
+
+INLINE void required_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, real *terms, real *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        /* (rrr-S) from the base point to the connection point */
         const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_rrr = m->size_rrr[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr =
-            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr;
-        const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
-        const real r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr;
-        const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr;
-        const real axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        /* (rrr-V6) reciprocal vector 2 */
-        const real w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x;
-        /* (rrr-V7) rate of joint 1 */
-        const real qd_1_rrr = inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x -
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-qd_2) rate of joint 2 */
+        const real t_dot_x = s[2*w + j];
+        const real t_dot_y = s[3*w + j];
+        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x -
             axis_y_rrr_axes2_in_base_x*t_dot_y);
-        /* (rrr-V11) angular velocity of link 2 */
-        const real omega_2_rrr_z =
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_omega_2_z =
             inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
-            axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
-        /* (rrr-V10) centripetal tensor of link 1 */
-        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
-        /* (rrr-V12) centripetal tensor of link 2 */
-        const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
-        /* (rrr-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
-            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
-        /* (rrr-V5) reciprocal vector 1 */
-        const real w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y;
-        const real w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
-        /* (rrr-V6) reciprocal vector 2 */
-        const real w_2_rrr_in_base_x = axis_y_rrr_axes2_in_base_x*inv_rrr_platform_joint_offset_x
-            + axis_y_rrr_axes2_in_base_y*w_2_rrr_t;
-        const real w_2_rrr_in_base_y = axis_y_rrr_axes2_in_base_y*inv_rrr_platform_joint_offset_x
-            - axis_y_rrr_axes2_in_base_x*w_2_rrr_t;
-        /* (rrr-A2) acceleration of the connection point */
-        const real S_ddot_rrr_tip_x = axis_y_rrr_axes2_in_base_y*t_ddot_x -
+            axis_y_rrr_axes2_in_base_y*t_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-W_1) centripetal tensor of link 1 */
+        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-W_2) centripetal tensor of link 2 */
+        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y;
+        const real rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y;
+        /* (rrr-S_ddot) acceleration of the connection point */
+        const real t_ddot_x = s[4*w + j];
+        const real t_ddot_y = s[5*w + j];
+        const real rrr_S_ddot_tip_x = axis_y_rrr_axes2_in_base_y*t_ddot_x -
             axis_y_rrr_axes2_in_base_x*t_ddot_y;
-        const real S_ddot_rrr_tip_y = axis_y_rrr_axes2_in_base_x*t_ddot_x +
+        const real rrr_S_ddot_tip_y = axis_y_rrr_axes2_in_base_x*t_ddot_x +
             axis_y_rrr_axes2_in_base_y*t_ddot_y;
-        /* (rrr-A5) acceleration of the connection point left to the joint accelerations */
-        const real rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x;
-        const real rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
-        /* (rrr-A7) acceleration of joint 1 */
-        const real qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x;
-        /* (rrr-N3) acceleration of the reference point of link 2, less gravity */
-        const real acc_2_rrr_x = S_ddot_rrr_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
-            axis_y_rrr_axes2_in_base_y*gravity_x;
-        const real acc_2_rrr_y = S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
-            axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-N23) inertia moment of the links that turn with link 1, about their reference points */
-        const real mu_1_rrr_z = h_1_rrr_y*(c_1_rrr*g_r0_x + g_r0_y*s_1_rrr) - J_1_rrr_zz*qdd_1_rrr
-            - h_1_rrr_x*(c_1_rrr*g_r0_y - g_r0_x*s_1_rrr);
-        /* (rrr-A15) angular acceleration of link 2 */
-        const real alpha_2_rrr_z = inv_rrr_platform_joint_offset_x*(rel_rrr_y +
-            qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr;
-        /* (rrr-N16) inertia moment of the links that turn with link 2, about their reference points */
-        const real mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x -
-            acc_2_rrr_x*h_2_rrr_y;
-        /* (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point
-           left out */
-        const real N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z;
-        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
-        const real G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z;
-        /* (rrr-N33) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real c_rrr_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y -
-            inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x - N_1_rrr_z);
-        const real c_rrr_y = W_2_rrr_t*h_2_rrr_y - G_rrr_t - alpha_2_rrr_z*h_2_rrr_x;
-        const real c_rrr_in_base_x = axis_y_rrr_axes2_in_base_x*c_rrr_y +
-            axis_y_rrr_axes2_in_base_y*c_rrr_x;
-        const real c_rrr_in_base_y = axis_y_rrr_axes2_in_base_y*c_rrr_y -
-            axis_y_rrr_axes2_in_base_x*c_rrr_x;
-        o->sum[0][k] = add ? o->sum[0][k] + c_rrr_in_base_x : c_rrr_in_base_x;  /* total_rrr_x */
-        o->sum[1][k] = add ? o->sum[1][k] + c_rrr_in_base_y : c_rrr_in_base_y;  /* total_rrr_y */
-        o->entry[0][k] = -w_1_rrr_t;
-        o->entry[1][k] = w_1_rrr_t_2;
-        o->entry[2][k] = w_2_rrr_in_base_x;
-        o->entry[3][k] = w_2_rrr_in_base_y;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
-    }
-}
-
-INLINE void required_place_rrr(size_t w, const required_results_rrr *o, size_t first, real *H,
-    verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        H[(0)*w + k] = o->entry[0][first + k];
-        H[(3)*w + k] = o->entry[1][first + k];
-        H[(1)*w + k] = o->entry[2][first + k];
-        H[(4)*w + k] = o->entry[3][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void required_legs_rrr2(const prepared *m, size_t leg, size_t legs, const required_values
-    *s, size_t states, size_t count, int add, required_results_rrr2 *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
+        /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
+        const real rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x;
+        const real rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-qdd_1) acceleration of joint 1 */
+        const real rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x;
+        /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real J_1_rrr2_zz = m->J_1_rrr2_zz[i];
-        const real J_2_rrr2_zz = m->J_2_rrr2_zz[i];
-        const real Kd_1_rrr2_t_2 = m->Kd_1_rrr2_t_2[i];
-        const real Kd_1_rrr2_t_3 = m->Kd_1_rrr2_t_3[i];
-        const real branch_1_rrr2 = m->branch_1_rrr2[i];
-        const real g_r0_x_2 = m->g_r0_x_2[i];
-        const real g_r0_y_2 = m->g_r0_y_2[i];
-        const real h_1_rrr2_x = m->h_1_rrr2_x[i];
-        const real h_1_rrr2_y = m->h_1_rrr2_y[i];
-        const real h_2_rrr2_x = m->h_2_rrr2_x[i];
-        const real h_2_rrr2_y = m->h_2_rrr2_y[i];
-        const real inv_Kd_1_rrr2_t_5 = m->inv_Kd_1_rrr2_t_5[i];
-        const real inv_rrr2_platform_joint_offset_x = m->inv_rrr2_platform_joint_offset_x[i];
-        const real inv_uu_2_rrr2_t = m->inv_uu_2_rrr2_t[i];
-        const real rho2_1_rrr2_t = m->rho2_1_rrr2_t[i];
-        const real rrr2_base_frame_xx = m->rrr2_base_frame_xx[i];
-        const real rrr2_base_frame_xy = m->rrr2_base_frame_xy[i];
-        const real rrr2_base_frame_yx = m->rrr2_base_frame_yx[i];
-        const real rrr2_base_frame_yy = m->rrr2_base_frame_yy[i];
-        const real rrr2_base_point_x = m->rrr2_base_point_x[i];
-        const real rrr2_base_point_y = m->rrr2_base_point_y[i];
-        const real rrr2_joint2_offset_x = m->rrr2_joint2_offset_x[i];
-        const real rrr2_platform_joint_offset_x = m->rrr2_platform_joint_offset_x[i];
-        const real rrr2_platform_point_x = m->rrr2_platform_point_x[i];
-        const real rrr2_platform_point_y = m->rrr2_platform_point_y[i];
-        const real size_rrr2 = m->size_rrr2[i];
-        /* (rrr2-K1) from the base point to the connection point */
-        const real S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x;
-        const real S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y;
-        /* (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y;
-        const real Kd_1_rrr2 = R(0.5)*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3;
-        /* (rrr2-K3) component along the reference direction */
-        const real px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx;
-        /* (rrr2-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x;
-        /* (rrr2-K4) component across the reference direction */
-        const real py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy;
-        /* (rrr2-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x;
-        /* (rrr2-K8) squared amplitude */
-        const real rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2;
-        /* (rrr2-K9) discriminant */
-        const real disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2;
-        /* (rrr2-K10) root, with the sign of the branch */
-        const real root_1_rrr2 = branch_1_rrr2*root(disc_1_rrr2);
-        /* (rrr2-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x -
-            rrr2_joint2_offset_x;
-        /* (rrr2-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x;
-        /* (rrr2-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr2 =
-            inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x;
-        /* (rrr2-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2;
-        const real r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x;
-        const real r_1_rrr2_r0_x = c_2_rrr2*r_1_rrr2_x + r_1_rrr2_t*s_2_rrr2;
-        const real r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t;
-        /* (rrr2-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr2 = 1/rho2_1_rrr2;
-        const real c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2);
-        /* (rrr2-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2);
-        /* (rrr2-V5) reciprocal vector 1 */
-        const real axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2;
-        const real axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2;
-        const real axis_y_rrr2_axes2_in_base_x = axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx +
-            axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy;
-        const real axis_y_rrr2_axes2_in_base_y = axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx +
-            axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy;
-        const real inv_r_1_rrr2_r0_y = 1/r_1_rrr2_r0_y;
-        /* (rrr2-V7) rate of joint 1 */
-        const real qd_1_rrr2 = inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_in_base_y*t_dot_x -
-            axis_y_rrr2_axes2_in_base_x*t_dot_y);
-        /* (rrr2-V11) angular velocity of link 2 */
-        const real omega_2_rrr2_z =
-            inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
-            axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2;
-        /* (rrr2-V10) centripetal tensor of link 1 */
-        const real W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2;
-        /* (rrr2-V12) centripetal tensor of link 2 */
-        const real W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z;
-        /* (rrr2-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr2_x = -W_2_rrr2_t*rrr2_platform_joint_offset_x -
-            W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x;
-        /* (rrr2-V5) reciprocal vector 1 */
-        const real w_1_rrr2_t = axis_y_rrr2_axes2_in_base_y*inv_r_1_rrr2_r0_y;
-        const real w_1_rrr2_t_2 = axis_y_rrr2_axes2_in_base_x*inv_r_1_rrr2_r0_y;
-        /* (rrr2-A2) acceleration of the connection point */
-        const real S_ddot_rrr2_tip_x = axis_y_rrr2_axes2_in_base_y*t_ddot_x -
-            axis_y_rrr2_axes2_in_base_x*t_ddot_y;
-        const real S_ddot_rrr2_tip_y = axis_y_rrr2_axes2_in_base_x*t_ddot_x +
-            axis_y_rrr2_axes2_in_base_y*t_ddot_y;
-        /* (rrr2-A5) acceleration of the connection point left to the joint accelerations */
-        const real rel_rrr2_x = S_ddot_rrr2_tip_x - bias_rrr2_x;
-        const real rel_rrr2_y = S_ddot_rrr2_tip_y + W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2;
-        /* (rrr2-A7) acceleration of joint 1 */
-        const real qdd_1_rrr2 = inv_r_1_rrr2_r0_y*rel_rrr2_x;
-        /* (rrr2-N3) acceleration of the reference point of link 2, less gravity */
-        const real acc_2_rrr2_x = S_ddot_rrr2_tip_x + axis_y_rrr2_axes2_in_base_x*gravity_y -
-            axis_y_rrr2_axes2_in_base_y*gravity_x;
-        const real acc_2_rrr2_y = S_ddot_rrr2_tip_y - axis_y_rrr2_axes2_in_base_x*gravity_x -
-            axis_y_rrr2_axes2_in_base_y*gravity_y;
-        /* (rrr2-N23) inertia moment of the links that turn with link 1, about their reference points */
-        const real mu_1_rrr2_z = h_1_rrr2_y*(c_1_rrr2*g_r0_x_2 + g_r0_y_2*s_1_rrr2) -
-            J_1_rrr2_zz*qdd_1_rrr2 - h_1_rrr2_x*(c_1_rrr2*g_r0_y_2 - g_r0_x_2*s_1_rrr2);
-        /* (rrr2-A15) angular acceleration of link 2 */
-        const real alpha_2_rrr2_z = inv_rrr2_platform_joint_offset_x*(rel_rrr2_y +
-            qdd_1_rrr2*r_1_rrr2_r0_x) - qdd_1_rrr2;
-        /* (rrr2-N16) inertia moment of the links that turn with link 2, about their reference points */
-        const real mu_2_rrr2_z = J_2_rrr2_zz*alpha_2_rrr2_z + acc_2_rrr2_y*h_2_rrr2_x -
-            acc_2_rrr2_x*h_2_rrr2_y;
-        /* (rrr2-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        const real rrr_acc_2_x = rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+            axis_y_rrr_axes2_in_base_y*gravity_x;
+        const real rrr_acc_2_y = rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+            axis_y_rrr_axes2_in_base_y*gravity_y;
+        /* (rrr-alpha_2) angular acceleration of link 2 */
+        const real rrr_alpha_2_z = inv_rrr_platform_joint_offset_x*(rrr_rel_y +
+            rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1;
+        /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
+        const real rrr_h_2_x = m->rrr_h_2_x[i];
+        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x -
+            rrr_acc_2_x*rrr_h_2_y;
+        /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
+        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
+        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
+        const real rrr_h_1_x = m->rrr_h_1_x[i];
+        const real rrr_h_1_y = m->rrr_h_1_y[i];
+        const real rrr_mu_1_z = rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
+            rrr_J_1_zz*rrr_qdd_1 - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
-        const real N_1_rrr2_z = mu_1_rrr2_z + mu_2_rrr2_z;
-        /* (rrr2-N30) force at the connection point that balances the leg's inertia and weight along all
+        const real rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z;
+        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real G_rrr2_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_z;
-        /* (rrr2-N33) leg force on the platform without actuation and without the mass at the connection
+        const real rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z;
+        /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_rrr2_x = W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_z*h_2_rrr2_y -
-            inv_r_1_rrr2_r0_y*(G_rrr2_t*r_1_rrr2_r0_x - N_1_rrr2_z);
-        const real c_rrr2_y = W_2_rrr2_t*h_2_rrr2_y - G_rrr2_t - alpha_2_rrr2_z*h_2_rrr2_x;
-        const real c_rrr2_in_base_x = axis_y_rrr2_axes2_in_base_x*c_rrr2_y +
-            axis_y_rrr2_axes2_in_base_y*c_rrr2_x;
-        const real c_rrr2_in_base_y = axis_y_rrr2_axes2_in_base_y*c_rrr2_y -
-            axis_y_rrr2_axes2_in_base_x*c_rrr2_x;
-        o->sum[0][k] = add ? o->sum[0][k] + c_rrr2_in_base_x : c_rrr2_in_base_x;  /* total_rrr2_x */
-        o->sum[1][k] = add ? o->sum[1][k] + c_rrr2_in_base_y : c_rrr2_in_base_y;  /* total_rrr2_y */
-        o->entry[0][k] = -w_1_rrr2_t;
-        o->entry[1][k] = w_1_rrr2_t_2;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
-            UNLESS(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
-        o->unreachable[k] = UNLESS(disc_1_rrr2 >= 0);
+        const real rrr_c_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y -
+            inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x - rrr_N_1_z);
+        const real rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x;
+        const real rrr_c_in_base_x = axis_y_rrr_axes2_in_base_x*rrr_c_y +
+            axis_y_rrr_axes2_in_base_y*rrr_c_x;
+        const real rrr_c_in_base_y = axis_y_rrr_axes2_in_base_y*rrr_c_y -
+            axis_y_rrr_axes2_in_base_x*rrr_c_x;
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_c_in_base_x : rrr_c_in_base_x;  /* total_rrr_x */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_c_in_base_y : rrr_c_in_base_y;  /* total_rrr_y */
+        o[0*count + k] = -rrr_w_1_t;
+        o[1*count + k] = rrr_w_1_t_2;
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void required_place_rrr2(size_t w, const required_results_rrr2 *o, size_t first, real *H,
+INLINE void required_place_rrr(size_t w, size_t count, const real *o, size_t first, real *H,
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(2)*w + k] = o->entry[0][first + k];
-        H[(5)*w + k] = o->entry[1][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(2)*w + k] = o[0*count + first + k];
+        H[(5)*w + k] = o[1*count + first + k];
+        t->unreachable[k] += o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
     }
 }
 
-INLINE void required_after(size_t w, const required_values *s, real *required)
+INLINE void required_after(size_t w, const real *s, const real *sums, real *required)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real f_p_x = s->f_p_x[k];
-        const real f_p_y = s->f_p_y[k];
-        const real total_rrr_x = s->sum[0][k];
-        const real total_rrr_y = s->sum[1][k];
-        const real total_rrr2_x = s->sum[2][k];
-        const real total_rrr2_y = s->sum[3][k];
-        /* (E3) force that actuators and external wrench must give */
-        const real R_t_x = f_p_x - total_rrr2_x - total_rrr_x;
-        const real R_t_y = f_p_y - total_rrr2_y - total_rrr_y;
+        /* (R_t) force that actuators and external wrench must give */
+        const real f_p_x = s[6*w + k];
+        const real total_rrr_leg1_x = sums[0*w + k];
+        const real total_rrr_x = sums[2*w + k];
+        const real R_t_x = f_p_x - total_rrr_leg1_x - total_rrr_x;
+        const real f_p_y = s[7*w + k];
+        const real total_rrr_leg1_y = sums[1*w + k];
+        const real total_rrr_y = sums[3*w + k];
+        const real R_t_y = f_p_y - total_rrr_leg1_y - total_rrr_y;
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
     }
 }
 
-INLINE void required_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
-    real *required, real *H, verdict *t)
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+    *required, real *H, verdict *t)
 {
-    required_values values, *const s = &values;
-    required_results_rrr results_rrr;
-    required_results_rrr2 results_rrr2;
-    required_before(m, w, X, V, A, s);
-    if (w == 1) {  /* the legs side by side */
-        required_legs_rrr(m, 0, 1, s, 0, 1, 0, &results_rrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            required_place_rrr(w, &results_rrr, leg, H, t);
-        }
-        for (size_t n = 0; n < 2; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_rrr.sum[n], 1);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            required_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
-            required_place_rrr(w, &results_rrr, 0, H, t);
-        }
-        for (size_t n = 0; n < 2; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_rrr.sum[n][k];
-            }
-        }
+    real s[8] = {0}, sums[4] = {0}, terms_rrr_leg1[2*LEGS(1)] = {0}, o_rrr_leg1[6*LEGS(1)] = {0},
+        terms_rrr[2*LEGS(1)] = {0}, o_rrr[4*LEGS(1)] = {0};
+    required_before(m, 1, X, V, A, s);
+    required_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_rrr_leg1, o_rrr_leg1);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        required_place_rrr_leg1(1, LEGS(1), o_rrr_leg1, leg, H, t);
     }
-    if (w == 1) {  /* the legs side by side */
-        required_legs_rrr2(m, 0, 1, s, 0, 1, 0, &results_rrr2);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            required_place_rrr2(w, &results_rrr2, leg, H, t);
-        }
-        for (size_t n = 0; n < 2; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[2 + n][k] = total(results_rrr2.sum[n], 1);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr2.sum, 0, sizeof results_rrr2.sum);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            required_legs_rrr2(m, leg, 0, s, 1, w, 1, &results_rrr2);
-            required_place_rrr2(w, &results_rrr2, 0, H, t);
-        }
-        for (size_t n = 0; n < 2; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[2 + n][k] = results_rrr2.sum[n][k];
-            }
-        }
+    for (size_t n = 0; n < 2; ++n) {
+        sums[n] = total(terms_rrr_leg1 + n*LEGS(1), 1);
     }
-    required_after(w, s, required);
+    required_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        required_place_rrr(1, LEGS(1), o_rrr, leg, H, t);
+    }
+    for (size_t n = 0; n < 2; ++n) {
+        sums[2 + n] = total(terms_rrr + n*LEGS(1), 1);
+    }
+    required_after(1, s, sums, required);
 }
 
 /* ---- inverse_kinematics: 54 mul, 28 add, 2 div, 2 sqrt, 4 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES];
-} inverse_kinematics_values;
-typedef struct {
-    real entry[2][8], unreachable[8], singular[8];
-} inverse_kinematics_results_rrr;
-typedef struct {
-    real entry[2][8], unreachable[8], singular[8];
-} inverse_kinematics_results_rrr2;
-
-INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematics_values *s)
+INLINE void inverse_kinematics_before(size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
     }
 }
 
-INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t leg, size_t legs, const
-    inverse_kinematics_values *s, size_t states, size_t count, inverse_kinematics_results_rrr *o)
+INLINE void inverse_kinematics_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs,
+    const real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        /* (rrr_leg1-S) from the base point to the connection point */
+        const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
+        const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x;
+        const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
+        const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y;
+        /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
+           beyond joint 1 */
+        const real rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
+        const real rrr_leg1_Kd_1_t_4 = m->rrr_leg1_Kd_1_t_4[i];
+        const real rrr_leg1_Kd_1 = R(0.5)*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4;
+        /* (rrr_leg1-px_1) component along the reference direction */
+        const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
+        const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
+        const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yx;
+        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
+        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
+        /* (rrr_leg1-py_1) component across the reference direction */
+        const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
+        const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
+        const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yy;
+        /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
+        /* (rrr_leg1-rho2_1) squared amplitude */
+        const real rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1;
+        /* (rrr_leg1-disc_1) discriminant */
+        const real rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1;
+        /* (rrr_leg1-root_1) root, with the sign of the branch */
+        const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
+        const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
+        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_leg1_Kd_1_t_5 = m->inv_rrr_leg1_Kd_1_t_5[i];
+        const real rrr_leg1_x_2_x = inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x -
+            rrr_leg1_joint2_offset_x;
+        /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
+        /* (rrr_leg1-q_1) displacement of joint 1 */
+        const real rrr_leg1_q_1 = angle(inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
+            rrr_leg1_Kd_1*rrr_leg1_Ks_1), inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
+            rrr_leg1_Ks_1*rrr_leg1_root_1));
+        /* (rrr_leg1-q_2) displacement of joint 2 */
+        const real inv_rrr_leg1_Kd_1_t_7 = m->inv_rrr_leg1_Kd_1_t_7[i];
+        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
+        const real rrr_leg1_q_2 =
+            angle(-inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1,
+            inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x);
+        o[0*count + k] = rrr_leg1_q_1;
+        o[1*count + k] = rrr_leg1_q_2;
+        o[4*count + k] = rrr_leg1_q_1 + rrr_leg1_q_2;
+        const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
+        o[3*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
+            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t);
+        o[2*count + k] = UNLESS(rrr_leg1_disc_1 >= 0);
+    }
+}
+
+INLINE void inverse_kinematics_place_rrr_leg1(size_t w, size_t count, const real *o, size_t first,
+    real *q, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        q[(0)*w + k] = o[0*count + first + k];
+        q[(1)*w + k] = o[1*count + first + k];
+        t->unreachable[k] += o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
+    }
+}
+
+INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs,
+    const real *s, size_t states, size_t count, real *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        /* (rrr-S) from the base point to the connection point */
         const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        /* (rrr-K13) displacement of joint 1 */
-        const real q_1_rrr = angle(inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr),
-            inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr));
-        /* (rrr-K20) displacement of joint 2 */
-        const real q_2_rrr =
-            angle(-inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x,
-            inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x);
-        o->entry[0][k] = q_1_rrr;
-        o->entry[1][k] = q_2_rrr;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        /* (rrr-q_1) displacement of joint 1 */
+        const real rrr_q_1 = angle(inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1),
+            inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1));
+        /* (rrr-q_2) displacement of joint 2 */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_q_2 =
+            angle(-inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
+            inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x);
+        o[0*count + k] = rrr_q_1;
+        o[1*count + k] = rrr_q_2;
+        o[4*count + k] = rrr_q_1 + rrr_q_2;
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
+        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void inverse_kinematics_place_rrr(size_t w, const inverse_kinematics_results_rrr *o, size_t
-    first, real *q, verdict *t)
+INLINE void inverse_kinematics_place_rrr(size_t w, size_t count, const real *o, size_t first, real
+    *q, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        q[(0)*w + k] = o->entry[0][first + k];
-        q[(1)*w + k] = o->entry[1][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        q[(2)*w + k] = o[0*count + first + k];
+        q[(3)*w + k] = o[1*count + first + k];
+        t->unreachable[k] += o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
 }
 
-INLINE void inverse_kinematics_legs_rrr2(const prepared *m, size_t leg, size_t legs, const
-    inverse_kinematics_values *s, size_t states, size_t count, inverse_kinematics_results_rrr2 *o)
+INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real Kd_1_rrr2_t_2 = m->Kd_1_rrr2_t_2[i];
-        const real Kd_1_rrr2_t_3 = m->Kd_1_rrr2_t_3[i];
-        const real branch_1_rrr2 = m->branch_1_rrr2[i];
-        const real inv_Kd_1_rrr2_t_5 = m->inv_Kd_1_rrr2_t_5[i];
-        const real inv_uu_2_rrr2_t = m->inv_uu_2_rrr2_t[i];
-        const real rho2_1_rrr2_t = m->rho2_1_rrr2_t[i];
-        const real rrr2_base_frame_xx = m->rrr2_base_frame_xx[i];
-        const real rrr2_base_frame_xy = m->rrr2_base_frame_xy[i];
-        const real rrr2_base_frame_yx = m->rrr2_base_frame_yx[i];
-        const real rrr2_base_frame_yy = m->rrr2_base_frame_yy[i];
-        const real rrr2_base_point_x = m->rrr2_base_point_x[i];
-        const real rrr2_base_point_y = m->rrr2_base_point_y[i];
-        const real rrr2_joint2_offset_x = m->rrr2_joint2_offset_x[i];
-        const real rrr2_platform_joint_offset_x = m->rrr2_platform_joint_offset_x[i];
-        const real rrr2_platform_point_x = m->rrr2_platform_point_x[i];
-        const real rrr2_platform_point_y = m->rrr2_platform_point_y[i];
-        /* (rrr2-K1) from the base point to the connection point */
-        const real S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x;
-        const real S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y;
-        /* (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y;
-        const real Kd_1_rrr2 = R(0.5)*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3;
-        /* (rrr2-K3) component along the reference direction */
-        const real px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx;
-        /* (rrr2-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x;
-        /* (rrr2-K4) component across the reference direction */
-        const real py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy;
-        /* (rrr2-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x;
-        /* (rrr2-K8) squared amplitude */
-        const real rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2;
-        /* (rrr2-K9) discriminant */
-        const real disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2;
-        /* (rrr2-K10) root, with the sign of the branch */
-        const real root_1_rrr2 = branch_1_rrr2*root(disc_1_rrr2);
-        /* (rrr2-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x -
-            rrr2_joint2_offset_x;
-        /* (rrr2-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr2 = 1/rho2_1_rrr2;
-        /* (rrr2-K13) displacement of joint 1 */
-        const real q_1_rrr2 = angle(inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2),
-            inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2));
-        /* (rrr2-K20) displacement of joint 2 */
-        const real q_2_rrr2 =
-            angle(-inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x,
-            inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x);
-        o->entry[0][k] = q_1_rrr2;
-        o->entry[1][k] = q_2_rrr2;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t);
-        o->unreachable[k] = UNLESS(disc_1_rrr2 >= 0);
+    real s[2] = {0}, o_rrr_leg1[5*LEGS(1)] = {0}, o_rrr[5*LEGS(1)] = {0};
+    inverse_kinematics_before(1, X, s);
+    inverse_kinematics_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(1), o_rrr_leg1);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        inverse_kinematics_place_rrr_leg1(1, LEGS(1), o_rrr_leg1, leg, q, t);
+    }
+    inverse_kinematics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), o_rrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        inverse_kinematics_place_rrr(1, LEGS(1), o_rrr, leg, q, t);
     }
 }
 
-INLINE void inverse_kinematics_place_rrr2(size_t w, const inverse_kinematics_results_rrr2 *o,
-    size_t first, real *q, verdict *t)
+INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        q[(2)*w + k] = o->entry[0][first + k];
-        q[(3)*w + k] = o->entry[1][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+    real s[2*LANES], o_rrr_leg1[5*LANES], o_rrr[5*LANES];
+    inverse_kinematics_before(LANES, X, s);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        inverse_kinematics_legs_rrr_leg1(m, LANES, leg, 0, s, 1, LANES, o_rrr_leg1);
+        inverse_kinematics_place_rrr_leg1(LANES, LANES, o_rrr_leg1, 0, q, t);
     }
-}
-
-INLINE void inverse_kinematics_run(const prepared *m, size_t w, const real *X, real *q, verdict
-    *t)
-{
-    inverse_kinematics_values values, *const s = &values;
-    inverse_kinematics_results_rrr results_rrr;
-    inverse_kinematics_results_rrr2 results_rrr2;
-    inverse_kinematics_before(w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        inverse_kinematics_legs_rrr(m, 0, 1, s, 0, 1, &results_rrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            inverse_kinematics_place_rrr(w, &results_rrr, leg, q, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            inverse_kinematics_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
-            inverse_kinematics_place_rrr(w, &results_rrr, 0, q, t);
-        }
-    }
-    if (w == 1) {  /* the legs side by side */
-        inverse_kinematics_legs_rrr2(m, 0, 1, s, 0, 1, &results_rrr2);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            inverse_kinematics_place_rrr2(w, &results_rrr2, leg, q, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            inverse_kinematics_legs_rrr2(m, leg, 0, s, 1, w, &results_rrr2);
-            inverse_kinematics_place_rrr2(w, &results_rrr2, 0, q, t);
-        }
+    for (size_t leg = 0; leg < 1; ++leg) {
+        inverse_kinematics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        inverse_kinematics_place_rrr(LANES, LANES, o_rrr, 0, q, t);
     }
 }
 
 /* ---- joint_rates: 94 mul, 48 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES];
-} joint_rates_values;
-typedef struct {
-    real entry[2][8], unreachable[8], singular[8];
-} joint_rates_results_rrr;
-typedef struct {
-    real entry[2][8], unreachable[8], singular[8];
-} joint_rates_results_rrr2;
-
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rates_values *s)
+INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_dot_x;
+        s[3*w + k] = t_dot_y;
     }
 }
 
-INLINE void joint_rates_legs_rrr(const prepared *m, size_t leg, size_t legs, const
-    joint_rates_values *s, size_t states, size_t count, joint_rates_results_rrr *o)
+INLINE void joint_rates_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, const
+    real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        /* (rrr_leg1-S) from the base point to the connection point */
+        const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
+        const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x;
+        const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
+        const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y;
+        /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
+           beyond joint 1 */
+        const real rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
+        const real rrr_leg1_Kd_1_t_4 = m->rrr_leg1_Kd_1_t_4[i];
+        const real rrr_leg1_Kd_1 = R(0.5)*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4;
+        /* (rrr_leg1-px_1) component along the reference direction */
+        const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
+        const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
+        const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yx;
+        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
+        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
+        /* (rrr_leg1-py_1) component across the reference direction */
+        const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
+        const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
+        const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yy;
+        /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
+        /* (rrr_leg1-rho2_1) squared amplitude */
+        const real rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1;
+        /* (rrr_leg1-disc_1) discriminant */
+        const real rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1;
+        /* (rrr_leg1-root_1) root, with the sign of the branch */
+        const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
+        const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
+        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_leg1_Kd_1_t_5 = m->inv_rrr_leg1_Kd_1_t_5[i];
+        const real rrr_leg1_x_2_x = inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x -
+            rrr_leg1_joint2_offset_x;
+        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_leg1_Kd_1_t_7 = m->inv_rrr_leg1_Kd_1_t_7[i];
+        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
+        const real rrr_leg1_c_2 =
+            inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x;
+        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_leg1_s_2 =
+            inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
+        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_leg1_r_1_t = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
+        const real rrr_leg1_r_1_x = rrr_leg1_joint2_offset_x +
+            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
+        const real rrr_leg1_r_1_r0_y = rrr_leg1_r_1_x*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_r_1_t;
+        /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
+        const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
+            rrr_leg1_Ks_1*rrr_leg1_root_1);
+        /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
+            rrr_leg1_Kd_1*rrr_leg1_Ks_1);
+        /* (rrr_leg1-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_leg1_axes2_r1_x = rrr_leg1_c_1*rrr_leg1_s_2 -
+            rrr_leg1_c_2*rrr_leg1_s_1;
+        const real axis_y_rrr_leg1_axes2_r1_y = rrr_leg1_c_1*rrr_leg1_c_2 +
+            rrr_leg1_s_1*rrr_leg1_s_2;
+        const real axis_y_rrr_leg1_axes2_in_base_x =
+            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_xx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_xy;
+        const real axis_y_rrr_leg1_axes2_in_base_y =
+            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_yx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_yy;
+        /* (rrr_leg1-qd_2) rate of joint 2 */
+        const real t_dot_x = s[2*w + j];
+        const real t_dot_y = s[3*w + j];
+        const real rrr_leg1_qd_1 = (axis_y_rrr_leg1_axes2_in_base_y*t_dot_x -
+            axis_y_rrr_leg1_axes2_in_base_x*t_dot_y)/rrr_leg1_r_1_r0_y;
+        const real inv_rrr_leg1_platform_joint_offset_x = m->inv_rrr_leg1_platform_joint_offset_x[i];
+        const real rrr_leg1_qd_2 =
+            inv_rrr_leg1_platform_joint_offset_x*(axis_y_rrr_leg1_axes2_in_base_x*t_dot_x +
+            axis_y_rrr_leg1_axes2_in_base_y*t_dot_y + rrr_leg1_qd_1*(rrr_leg1_c_2*rrr_leg1_r_1_x +
+            rrr_leg1_r_1_t*rrr_leg1_s_2));
+        o[0*count + k] = -rrr_leg1_qd_1;
+        o[1*count + k] = rrr_leg1_qd_2;
+        o[4*count + k] = rrr_leg1_qd_1 + rrr_leg1_qd_2;
+        const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
+        const real rrr_leg1_size = m->rrr_leg1_size[i];
+        o[3*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
+            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(-rrr_leg1_r_1_r0_y) >
+            TOLERANCE*rrr_leg1_size);
+        o[2*count + k] = UNLESS(rrr_leg1_disc_1 >= 0);
+    }
+}
+
+INLINE void joint_rates_place_rrr_leg1(size_t w, size_t count, const real *o, size_t first, real
+    *qd, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        qd[(0)*w + k] = o[0*count + first + k];
+        qd[(1)*w + k] = o[1*count + first + k];
+        t->unreachable[k] += o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
+    }
+}
+
+INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, real *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        /* (rrr-S) from the base point to the connection point */
         const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_rrr = m->size_rrr[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr =
-            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr;
-        const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
-        const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr;
-        const real axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        /* (rrr-V7) rate of joint 1 */
-        const real qd_1_rrr = (axis_y_rrr_axes2_in_base_y*t_dot_x -
-            axis_y_rrr_axes2_in_base_x*t_dot_y)/r_1_rrr_r0_y;
-        const real qd_2_rrr = inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x
-            + axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*(c_2_rrr*r_1_rrr_x +
-            r_1_rrr_t*s_2_rrr));
-        o->entry[0][k] = -qd_1_rrr;
-        o->entry[1][k] = qd_2_rrr;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
+        /* (rrr-qd_2) rate of joint 2 */
+        const real t_dot_x = s[2*w + j];
+        const real t_dot_y = s[3*w + j];
+        const real rrr_qd_1 = (axis_y_rrr_axes2_in_base_y*t_dot_x -
+            axis_y_rrr_axes2_in_base_x*t_dot_y)/rrr_r_1_r0_y;
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_qd_2 = inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x
+            + axis_y_rrr_axes2_in_base_y*t_dot_y + rrr_qd_1*(rrr_c_2*rrr_r_1_x +
+            rrr_r_1_t*rrr_s_2));
+        o[0*count + k] = -rrr_qd_1;
+        o[1*count + k] = rrr_qd_2;
+        o[4*count + k] = rrr_qd_1 + rrr_qd_2;
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void joint_rates_place_rrr(size_t w, const joint_rates_results_rrr *o, size_t first, real
-    *qd, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        qd[(0)*w + k] = o->entry[0][first + k];
-        qd[(1)*w + k] = o->entry[1][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void joint_rates_legs_rrr2(const prepared *m, size_t leg, size_t legs, const
-    joint_rates_values *s, size_t states, size_t count, joint_rates_results_rrr2 *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real Kd_1_rrr2_t_2 = m->Kd_1_rrr2_t_2[i];
-        const real Kd_1_rrr2_t_3 = m->Kd_1_rrr2_t_3[i];
-        const real branch_1_rrr2 = m->branch_1_rrr2[i];
-        const real inv_Kd_1_rrr2_t_5 = m->inv_Kd_1_rrr2_t_5[i];
-        const real inv_rrr2_platform_joint_offset_x = m->inv_rrr2_platform_joint_offset_x[i];
-        const real inv_uu_2_rrr2_t = m->inv_uu_2_rrr2_t[i];
-        const real rho2_1_rrr2_t = m->rho2_1_rrr2_t[i];
-        const real rrr2_base_frame_xx = m->rrr2_base_frame_xx[i];
-        const real rrr2_base_frame_xy = m->rrr2_base_frame_xy[i];
-        const real rrr2_base_frame_yx = m->rrr2_base_frame_yx[i];
-        const real rrr2_base_frame_yy = m->rrr2_base_frame_yy[i];
-        const real rrr2_base_point_x = m->rrr2_base_point_x[i];
-        const real rrr2_base_point_y = m->rrr2_base_point_y[i];
-        const real rrr2_joint2_offset_x = m->rrr2_joint2_offset_x[i];
-        const real rrr2_platform_joint_offset_x = m->rrr2_platform_joint_offset_x[i];
-        const real rrr2_platform_point_x = m->rrr2_platform_point_x[i];
-        const real rrr2_platform_point_y = m->rrr2_platform_point_y[i];
-        const real size_rrr2 = m->size_rrr2[i];
-        /* (rrr2-K1) from the base point to the connection point */
-        const real S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x;
-        const real S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y;
-        /* (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y;
-        const real Kd_1_rrr2 = R(0.5)*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3;
-        /* (rrr2-K3) component along the reference direction */
-        const real px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx;
-        /* (rrr2-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x;
-        /* (rrr2-K4) component across the reference direction */
-        const real py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy;
-        /* (rrr2-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x;
-        /* (rrr2-K8) squared amplitude */
-        const real rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2;
-        /* (rrr2-K9) discriminant */
-        const real disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2;
-        /* (rrr2-K10) root, with the sign of the branch */
-        const real root_1_rrr2 = branch_1_rrr2*root(disc_1_rrr2);
-        /* (rrr2-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x -
-            rrr2_joint2_offset_x;
-        /* (rrr2-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x;
-        /* (rrr2-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr2 =
-            inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x;
-        /* (rrr2-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2;
-        const real r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x;
-        const real r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t;
-        /* (rrr2-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr2 = 1/rho2_1_rrr2;
-        const real c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2);
-        /* (rrr2-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2);
-        /* (rrr2-V5) reciprocal vector 1 */
-        const real axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2;
-        const real axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2;
-        const real axis_y_rrr2_axes2_in_base_x = axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx +
-            axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy;
-        const real axis_y_rrr2_axes2_in_base_y = axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx +
-            axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy;
-        /* (rrr2-V7) rate of joint 1 */
-        const real qd_1_rrr2 = (axis_y_rrr2_axes2_in_base_y*t_dot_x -
-            axis_y_rrr2_axes2_in_base_x*t_dot_y)/r_1_rrr2_r0_y;
-        const real qd_2_rrr2 =
-            inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
-            axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*(c_2_rrr2*r_1_rrr2_x +
-            r_1_rrr2_t*s_2_rrr2));
-        o->entry[0][k] = -qd_1_rrr2;
-        o->entry[1][k] = qd_2_rrr2;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
-            UNLESS(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
-        o->unreachable[k] = UNLESS(disc_1_rrr2 >= 0);
-    }
-}
-
-INLINE void joint_rates_place_rrr2(size_t w, const joint_rates_results_rrr2 *o, size_t first, real
-    *qd, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        qd[(2)*w + k] = o->entry[0][first + k];
-        qd[(3)*w + k] = o->entry[1][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void joint_rates_run(const prepared *m, size_t w, const real *X, const real *V, real *qd,
+INLINE void joint_rates_place_rrr(size_t w, size_t count, const real *o, size_t first, real *qd,
     verdict *t)
 {
-    joint_rates_values values, *const s = &values;
-    joint_rates_results_rrr results_rrr;
-    joint_rates_results_rrr2 results_rrr2;
-    joint_rates_before(w, X, V, s);
-    if (w == 1) {  /* the legs side by side */
-        joint_rates_legs_rrr(m, 0, 1, s, 0, 1, &results_rrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            joint_rates_place_rrr(w, &results_rrr, leg, qd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            joint_rates_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
-            joint_rates_place_rrr(w, &results_rrr, 0, qd, t);
-        }
+    for (size_t k = 0; k < w; ++k) {
+        qd[(2)*w + k] = o[0*count + first + k];
+        qd[(3)*w + k] = o[1*count + first + k];
+        t->unreachable[k] += o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
-    if (w == 1) {  /* the legs side by side */
-        joint_rates_legs_rrr2(m, 0, 1, s, 0, 1, &results_rrr2);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            joint_rates_place_rrr2(w, &results_rrr2, leg, qd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            joint_rates_legs_rrr2(m, leg, 0, s, 1, w, &results_rrr2);
-            joint_rates_place_rrr2(w, &results_rrr2, 0, qd, t);
-        }
+}
+
+INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+{
+    real s[4] = {0}, o_rrr_leg1[5*LEGS(1)] = {0}, o_rrr[5*LEGS(1)] = {0};
+    joint_rates_before(1, X, V, s);
+    joint_rates_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(1), o_rrr_leg1);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        joint_rates_place_rrr_leg1(1, LEGS(1), o_rrr_leg1, leg, qd, t);
+    }
+    joint_rates_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), o_rrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        joint_rates_place_rrr(1, LEGS(1), o_rrr, leg, qd, t);
+    }
+}
+
+INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
+    verdict *t)
+{
+    real s[4*LANES], o_rrr_leg1[5*LANES], o_rrr[5*LANES];
+    joint_rates_before(LANES, X, V, s);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        joint_rates_legs_rrr_leg1(m, LANES, leg, 0, s, 1, LANES, o_rrr_leg1);
+        joint_rates_place_rrr_leg1(LANES, LANES, o_rrr_leg1, 0, qd, t);
+    }
+    for (size_t leg = 0; leg < 1; ++leg) {
+        joint_rates_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        joint_rates_place_rrr(LANES, LANES, o_rrr, 0, qd, t);
     }
 }
 
 /* ---- joint_accelerations: 124 mul, 62 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], t_ddot_x[LANES], t_ddot_y[LANES];
-} joint_accelerations_values;
-typedef struct {
-    real entry[2][8], unreachable[8], singular[8];
-} joint_accelerations_results_rrr;
-typedef struct {
-    real entry[2][8], unreachable[8], singular[8];
-} joint_accelerations_results_rrr2;
-
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A,
-    joint_accelerations_values *s)
+INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
+    *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_dot_x;
+        s[3*w + k] = t_dot_y;
+        s[4*w + k] = t_ddot_x;
+        s[5*w + k] = t_ddot_y;
     }
 }
 
-INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t leg, size_t legs, const
-    joint_accelerations_values *s, size_t states, size_t count, joint_accelerations_results_rrr
-    *o)
+INLINE void joint_accelerations_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t
+    legs, const real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        /* (rrr_leg1-S) from the base point to the connection point */
+        const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
+        const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x;
+        const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
+        const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y;
+        /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
+           beyond joint 1 */
+        const real rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
+        const real rrr_leg1_Kd_1_t_4 = m->rrr_leg1_Kd_1_t_4[i];
+        const real rrr_leg1_Kd_1 = R(0.5)*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4;
+        /* (rrr_leg1-px_1) component along the reference direction */
+        const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
+        const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
+        const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yx;
+        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
+        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
+        /* (rrr_leg1-py_1) component across the reference direction */
+        const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
+        const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
+        const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yy;
+        /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
+        /* (rrr_leg1-rho2_1) squared amplitude */
+        const real rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1;
+        /* (rrr_leg1-disc_1) discriminant */
+        const real rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1;
+        /* (rrr_leg1-root_1) root, with the sign of the branch */
+        const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
+        const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
+        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_leg1_Kd_1_t_5 = m->inv_rrr_leg1_Kd_1_t_5[i];
+        const real rrr_leg1_x_2_x = inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x -
+            rrr_leg1_joint2_offset_x;
+        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_leg1_Kd_1_t_7 = m->inv_rrr_leg1_Kd_1_t_7[i];
+        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
+        const real rrr_leg1_c_2 =
+            inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x;
+        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_leg1_s_2 =
+            inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
+        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_leg1_r_1_t = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
+        const real rrr_leg1_r_1_x = rrr_leg1_joint2_offset_x +
+            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
+        const real rrr_leg1_r_1_r0_x = rrr_leg1_c_2*rrr_leg1_r_1_x + rrr_leg1_r_1_t*rrr_leg1_s_2;
+        const real rrr_leg1_r_1_r0_y = rrr_leg1_r_1_x*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_r_1_t;
+        /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
+        const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
+            rrr_leg1_Ks_1*rrr_leg1_root_1);
+        /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
+            rrr_leg1_Kd_1*rrr_leg1_Ks_1);
+        /* (rrr_leg1-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_leg1_axes2_r1_x = rrr_leg1_c_1*rrr_leg1_s_2 -
+            rrr_leg1_c_2*rrr_leg1_s_1;
+        const real axis_y_rrr_leg1_axes2_r1_y = rrr_leg1_c_1*rrr_leg1_c_2 +
+            rrr_leg1_s_1*rrr_leg1_s_2;
+        const real axis_y_rrr_leg1_axes2_in_base_x =
+            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_xx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_xy;
+        const real axis_y_rrr_leg1_axes2_in_base_y =
+            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_yx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_yy;
+        const real inv_rrr_leg1_r_1_r0_y = 1/rrr_leg1_r_1_r0_y;
+        /* (rrr_leg1-qd_2) rate of joint 2 */
+        const real t_dot_x = s[2*w + j];
+        const real t_dot_y = s[3*w + j];
+        const real rrr_leg1_qd_1 = inv_rrr_leg1_r_1_r0_y*(axis_y_rrr_leg1_axes2_in_base_y*t_dot_x
+            - axis_y_rrr_leg1_axes2_in_base_x*t_dot_y);
+        /* (rrr_leg1-omega_2) angular velocity of link 2 */
+        const real inv_rrr_leg1_platform_joint_offset_x = m->inv_rrr_leg1_platform_joint_offset_x[i];
+        const real rrr_leg1_omega_2_z =
+            inv_rrr_leg1_platform_joint_offset_x*(axis_y_rrr_leg1_axes2_in_base_x*t_dot_x +
+            axis_y_rrr_leg1_axes2_in_base_y*t_dot_y + rrr_leg1_qd_1*rrr_leg1_r_1_r0_x) -
+            rrr_leg1_qd_1;
+        /* (rrr_leg1-W_1) centripetal tensor of link 1 */
+        const real rrr_leg1_W_1_t = rrr_leg1_qd_1*rrr_leg1_qd_1;
+        /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_leg1_bias_x =
+            -rrr_leg1_omega_2_z*rrr_leg1_omega_2_z*rrr_leg1_platform_joint_offset_x -
+            rrr_leg1_W_1_t*rrr_leg1_c_2*rrr_leg1_joint2_offset_x;
+        /* (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations */
+        const real t_ddot_x = s[4*w + j];
+        const real t_ddot_y = s[5*w + j];
+        const real rrr_leg1_rel_x = axis_y_rrr_leg1_axes2_in_base_y*t_ddot_x - rrr_leg1_bias_x -
+            axis_y_rrr_leg1_axes2_in_base_x*t_ddot_y;
+        const real rrr_leg1_rel_y = axis_y_rrr_leg1_axes2_in_base_x*t_ddot_x +
+            axis_y_rrr_leg1_axes2_in_base_y*t_ddot_y +
+            rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*rrr_leg1_s_2;
+        /* (rrr_leg1-qdd_1) acceleration of joint 1 */
+        const real rrr_leg1_qdd_1 = inv_rrr_leg1_r_1_r0_y*rrr_leg1_rel_x;
+        const real rrr_leg1_qdd_2 = inv_rrr_leg1_platform_joint_offset_x*(rrr_leg1_rel_y +
+            rrr_leg1_qdd_1*rrr_leg1_r_1_r0_x);
+        o[0*count + k] = -rrr_leg1_qdd_1;
+        o[1*count + k] = rrr_leg1_qdd_2;
+        o[4*count + k] = rrr_leg1_qdd_1 + rrr_leg1_qdd_2;
+        const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
+        const real rrr_leg1_size = m->rrr_leg1_size[i];
+        o[3*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
+            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(-rrr_leg1_r_1_r0_y) >
+            TOLERANCE*rrr_leg1_size);
+        o[2*count + k] = UNLESS(rrr_leg1_disc_1 >= 0);
+    }
+}
+
+INLINE void joint_accelerations_place_rrr_leg1(size_t w, size_t count, const real *o, size_t
+    first, real *qdd, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        qdd[(0)*w + k] = o[0*count + first + k];
+        qdd[(1)*w + k] = o[1*count + first + k];
+        t->unreachable[k] += o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
+    }
+}
+
+INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs,
+    const real *s, size_t states, size_t count, real *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        /* (rrr-S) from the base point to the connection point */
         const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_rrr = m->size_rrr[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr =
-            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr;
-        const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
-        const real r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr;
-        const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr;
-        const real axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        /* (rrr-V7) rate of joint 1 */
-        const real qd_1_rrr = inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x -
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-qd_2) rate of joint 2 */
+        const real t_dot_x = s[2*w + j];
+        const real t_dot_y = s[3*w + j];
+        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x -
             axis_y_rrr_axes2_in_base_x*t_dot_y);
-        /* (rrr-V11) angular velocity of link 2 */
-        const real omega_2_rrr_z =
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_omega_2_z =
             inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
-            axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
-        /* (rrr-V10) centripetal tensor of link 1 */
-        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
-        /* (rrr-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
-        /* (rrr-A5) acceleration of the connection point left to the joint accelerations */
-        const real rel_rrr_x = axis_y_rrr_axes2_in_base_y*t_ddot_x - bias_rrr_x -
+            axis_y_rrr_axes2_in_base_y*t_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-W_1) centripetal tensor of link 1 */
+        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_x = -rrr_omega_2_z*rrr_omega_2_z*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
+        const real t_ddot_x = s[4*w + j];
+        const real t_ddot_y = s[5*w + j];
+        const real rrr_rel_x = axis_y_rrr_axes2_in_base_y*t_ddot_x - rrr_bias_x -
             axis_y_rrr_axes2_in_base_x*t_ddot_y;
-        const real rel_rrr_y = axis_y_rrr_axes2_in_base_x*t_ddot_x +
-            axis_y_rrr_axes2_in_base_y*t_ddot_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
-        /* (rrr-A7) acceleration of joint 1 */
-        const real qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x;
-        const real qdd_2_rrr = inv_rrr_platform_joint_offset_x*(rel_rrr_y +
-            qdd_1_rrr*r_1_rrr_r0_x);
-        o->entry[0][k] = -qdd_1_rrr;
-        o->entry[1][k] = qdd_2_rrr;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
+        const real rrr_rel_y = axis_y_rrr_axes2_in_base_x*t_ddot_x +
+            axis_y_rrr_axes2_in_base_y*t_ddot_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-qdd_1) acceleration of joint 1 */
+        const real rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x;
+        const real rrr_qdd_2 = inv_rrr_platform_joint_offset_x*(rrr_rel_y +
+            rrr_qdd_1*rrr_r_1_r0_x);
+        o[0*count + k] = -rrr_qdd_1;
+        o[1*count + k] = rrr_qdd_2;
+        o[4*count + k] = rrr_qdd_1 + rrr_qdd_2;
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void joint_accelerations_place_rrr(size_t w, const joint_accelerations_results_rrr *o,
-    size_t first, real *qdd, verdict *t)
+INLINE void joint_accelerations_place_rrr(size_t w, size_t count, const real *o, size_t first,
+    real *qdd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qdd[(0)*w + k] = o->entry[0][first + k];
-        qdd[(1)*w + k] = o->entry[1][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        qdd[(2)*w + k] = o[0*count + first + k];
+        qdd[(3)*w + k] = o[1*count + first + k];
+        t->unreachable[k] += o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
 }
 
-INLINE void joint_accelerations_legs_rrr2(const prepared *m, size_t leg, size_t legs, const
-    joint_accelerations_values *s, size_t states, size_t count, joint_accelerations_results_rrr2
-    *o)
+INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd, verdict *t)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real Kd_1_rrr2_t_2 = m->Kd_1_rrr2_t_2[i];
-        const real Kd_1_rrr2_t_3 = m->Kd_1_rrr2_t_3[i];
-        const real branch_1_rrr2 = m->branch_1_rrr2[i];
-        const real inv_Kd_1_rrr2_t_5 = m->inv_Kd_1_rrr2_t_5[i];
-        const real inv_rrr2_platform_joint_offset_x = m->inv_rrr2_platform_joint_offset_x[i];
-        const real inv_uu_2_rrr2_t = m->inv_uu_2_rrr2_t[i];
-        const real rho2_1_rrr2_t = m->rho2_1_rrr2_t[i];
-        const real rrr2_base_frame_xx = m->rrr2_base_frame_xx[i];
-        const real rrr2_base_frame_xy = m->rrr2_base_frame_xy[i];
-        const real rrr2_base_frame_yx = m->rrr2_base_frame_yx[i];
-        const real rrr2_base_frame_yy = m->rrr2_base_frame_yy[i];
-        const real rrr2_base_point_x = m->rrr2_base_point_x[i];
-        const real rrr2_base_point_y = m->rrr2_base_point_y[i];
-        const real rrr2_joint2_offset_x = m->rrr2_joint2_offset_x[i];
-        const real rrr2_platform_joint_offset_x = m->rrr2_platform_joint_offset_x[i];
-        const real rrr2_platform_point_x = m->rrr2_platform_point_x[i];
-        const real rrr2_platform_point_y = m->rrr2_platform_point_y[i];
-        const real size_rrr2 = m->size_rrr2[i];
-        /* (rrr2-K1) from the base point to the connection point */
-        const real S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x;
-        const real S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y;
-        /* (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y;
-        const real Kd_1_rrr2 = R(0.5)*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3;
-        /* (rrr2-K3) component along the reference direction */
-        const real px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx;
-        /* (rrr2-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x;
-        /* (rrr2-K4) component across the reference direction */
-        const real py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy;
-        /* (rrr2-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x;
-        /* (rrr2-K8) squared amplitude */
-        const real rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2;
-        /* (rrr2-K9) discriminant */
-        const real disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2;
-        /* (rrr2-K10) root, with the sign of the branch */
-        const real root_1_rrr2 = branch_1_rrr2*root(disc_1_rrr2);
-        /* (rrr2-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x -
-            rrr2_joint2_offset_x;
-        /* (rrr2-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x;
-        /* (rrr2-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr2 =
-            inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x;
-        /* (rrr2-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2;
-        const real r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x;
-        const real r_1_rrr2_r0_x = c_2_rrr2*r_1_rrr2_x + r_1_rrr2_t*s_2_rrr2;
-        const real r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t;
-        /* (rrr2-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr2 = 1/rho2_1_rrr2;
-        const real c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2);
-        /* (rrr2-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2);
-        /* (rrr2-V5) reciprocal vector 1 */
-        const real axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2;
-        const real axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2;
-        const real axis_y_rrr2_axes2_in_base_x = axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx +
-            axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy;
-        const real axis_y_rrr2_axes2_in_base_y = axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx +
-            axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy;
-        const real inv_r_1_rrr2_r0_y = 1/r_1_rrr2_r0_y;
-        /* (rrr2-V7) rate of joint 1 */
-        const real qd_1_rrr2 = inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_in_base_y*t_dot_x -
-            axis_y_rrr2_axes2_in_base_x*t_dot_y);
-        /* (rrr2-V11) angular velocity of link 2 */
-        const real omega_2_rrr2_z =
-            inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
-            axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2;
-        /* (rrr2-V10) centripetal tensor of link 1 */
-        const real W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2;
-        /* (rrr2-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr2_x = -omega_2_rrr2_z*omega_2_rrr2_z*rrr2_platform_joint_offset_x -
-            W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x;
-        /* (rrr2-A5) acceleration of the connection point left to the joint accelerations */
-        const real rel_rrr2_x = axis_y_rrr2_axes2_in_base_y*t_ddot_x - bias_rrr2_x -
-            axis_y_rrr2_axes2_in_base_x*t_ddot_y;
-        const real rel_rrr2_y = axis_y_rrr2_axes2_in_base_x*t_ddot_x +
-            axis_y_rrr2_axes2_in_base_y*t_ddot_y + W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2;
-        /* (rrr2-A7) acceleration of joint 1 */
-        const real qdd_1_rrr2 = inv_r_1_rrr2_r0_y*rel_rrr2_x;
-        const real qdd_2_rrr2 = inv_rrr2_platform_joint_offset_x*(rel_rrr2_y +
-            qdd_1_rrr2*r_1_rrr2_r0_x);
-        o->entry[0][k] = -qdd_1_rrr2;
-        o->entry[1][k] = qdd_2_rrr2;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
-            UNLESS(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
-        o->unreachable[k] = UNLESS(disc_1_rrr2 >= 0);
+    real s[6] = {0}, o_rrr_leg1[5*LEGS(1)] = {0}, o_rrr[5*LEGS(1)] = {0};
+    joint_accelerations_before(1, X, V, A, s);
+    joint_accelerations_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(1), o_rrr_leg1);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        joint_accelerations_place_rrr_leg1(1, LEGS(1), o_rrr_leg1, leg, qdd, t);
+    }
+    joint_accelerations_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), o_rrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        joint_accelerations_place_rrr(1, LEGS(1), o_rrr, leg, qdd, t);
     }
 }
 
-INLINE void joint_accelerations_place_rrr2(size_t w, const joint_accelerations_results_rrr2 *o,
-    size_t first, real *qdd, verdict *t)
+INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        qdd[(2)*w + k] = o->entry[0][first + k];
-        qdd[(3)*w + k] = o->entry[1][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+    real s[6*LANES], o_rrr_leg1[5*LANES], o_rrr[5*LANES];
+    joint_accelerations_before(LANES, X, V, A, s);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        joint_accelerations_legs_rrr_leg1(m, LANES, leg, 0, s, 1, LANES, o_rrr_leg1);
+        joint_accelerations_place_rrr_leg1(LANES, LANES, o_rrr_leg1, 0, qdd, t);
     }
-}
-
-INLINE void joint_accelerations_run(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd, verdict *t)
-{
-    joint_accelerations_values values, *const s = &values;
-    joint_accelerations_results_rrr results_rrr;
-    joint_accelerations_results_rrr2 results_rrr2;
-    joint_accelerations_before(w, X, V, A, s);
-    if (w == 1) {  /* the legs side by side */
-        joint_accelerations_legs_rrr(m, 0, 1, s, 0, 1, &results_rrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            joint_accelerations_place_rrr(w, &results_rrr, leg, qdd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            joint_accelerations_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
-            joint_accelerations_place_rrr(w, &results_rrr, 0, qdd, t);
-        }
-    }
-    if (w == 1) {  /* the legs side by side */
-        joint_accelerations_legs_rrr2(m, 0, 1, s, 0, 1, &results_rrr2);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            joint_accelerations_place_rrr2(w, &results_rrr2, leg, qdd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            joint_accelerations_legs_rrr2(m, leg, 0, s, 1, w, &results_rrr2);
-            joint_accelerations_place_rrr2(w, &results_rrr2, 0, qdd, t);
-        }
+    for (size_t leg = 0; leg < 1; ++leg) {
+        joint_accelerations_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        joint_accelerations_place_rrr(LANES, LANES, o_rrr, 0, qdd, t);
     }
 }
 
 /* ---- legs: 188 mul, 106 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], t_ddot_x[LANES], t_ddot_y[LANES];
-} legs_values;
-typedef struct {
-    real entry[6][8], unreachable[8], singular[8];
-} legs_results_rrr;
-typedef struct {
-    real entry[4][8], unreachable[8], singular[8];
-} legs_results_rrr2;
-
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, legs_values *s)
+INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_dot_x;
+        s[3*w + k] = t_dot_y;
+        s[4*w + k] = t_ddot_x;
+        s[5*w + k] = t_ddot_y;
     }
 }
 
-INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs_values *s, size_t
-    states, size_t count, legs_results_rrr *o)
+INLINE void legs_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
+        /* (rrr_leg1-S) from the base point to the connection point */
+        const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
+        const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x;
+        const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
+        const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y;
+        /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
+           beyond joint 1 */
+        const real rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
+        const real rrr_leg1_Kd_1_t_4 = m->rrr_leg1_Kd_1_t_4[i];
+        const real rrr_leg1_Kd_1 = R(0.5)*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4;
+        /* (rrr_leg1-px_1) component along the reference direction */
+        const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
+        const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
+        const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yx;
+        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
+        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
+        /* (rrr_leg1-py_1) component across the reference direction */
+        const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
+        const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
+        const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yy;
+        /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
+        /* (rrr_leg1-rho2_1) squared amplitude */
+        const real rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1;
+        /* (rrr_leg1-disc_1) discriminant */
+        const real rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1;
+        /* (rrr_leg1-root_1) root, with the sign of the branch */
+        const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
+        const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
+        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_leg1_Kd_1_t_5 = m->inv_rrr_leg1_Kd_1_t_5[i];
+        const real rrr_leg1_x_2_x = inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x -
+            rrr_leg1_joint2_offset_x;
+        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_leg1_Kd_1_t_7 = m->inv_rrr_leg1_Kd_1_t_7[i];
+        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
+        const real rrr_leg1_c_2 =
+            inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x;
+        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_leg1_s_2 =
+            inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
+        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_leg1_r_1_t = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
+        const real rrr_leg1_r_1_x = rrr_leg1_joint2_offset_x +
+            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
+        const real rrr_leg1_r_1_r0_x = rrr_leg1_c_2*rrr_leg1_r_1_x + rrr_leg1_r_1_t*rrr_leg1_s_2;
+        const real rrr_leg1_r_1_r0_y = rrr_leg1_r_1_x*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_r_1_t;
+        /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
+        const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
+            rrr_leg1_Ks_1*rrr_leg1_root_1);
+        /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
+            rrr_leg1_Kd_1*rrr_leg1_Ks_1);
+        /* (rrr_leg1-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_leg1_axes2_r1_x = rrr_leg1_c_1*rrr_leg1_s_2 -
+            rrr_leg1_c_2*rrr_leg1_s_1;
+        const real axis_y_rrr_leg1_axes2_r1_y = rrr_leg1_c_1*rrr_leg1_c_2 +
+            rrr_leg1_s_1*rrr_leg1_s_2;
+        const real axis_y_rrr_leg1_axes2_in_base_x =
+            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_xx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_xy;
+        const real axis_y_rrr_leg1_axes2_in_base_y =
+            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_yx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_yy;
+        const real inv_rrr_leg1_r_1_r0_y = 1/rrr_leg1_r_1_r0_y;
+        /* (rrr_leg1-w_2) reciprocal vector 2 */
+        const real inv_rrr_leg1_platform_joint_offset_x = m->inv_rrr_leg1_platform_joint_offset_x[i];
+        const real rrr_leg1_w_2_t =
+            inv_rrr_leg1_platform_joint_offset_x*inv_rrr_leg1_r_1_r0_y*rrr_leg1_r_1_r0_x;
+        /* (rrr_leg1-qd_2) rate of joint 2 */
+        const real t_dot_x = s[2*w + j];
+        const real t_dot_y = s[3*w + j];
+        const real rrr_leg1_qd_1 = inv_rrr_leg1_r_1_r0_y*(axis_y_rrr_leg1_axes2_in_base_y*t_dot_x
+            - axis_y_rrr_leg1_axes2_in_base_x*t_dot_y);
+        /* (rrr_leg1-omega_2) angular velocity of link 2 */
+        const real rrr_leg1_omega_2_z =
+            inv_rrr_leg1_platform_joint_offset_x*(axis_y_rrr_leg1_axes2_in_base_x*t_dot_x +
+            axis_y_rrr_leg1_axes2_in_base_y*t_dot_y + rrr_leg1_qd_1*rrr_leg1_r_1_r0_x) -
+            rrr_leg1_qd_1;
+        /* (rrr_leg1-W_1) centripetal tensor of link 1 */
+        const real rrr_leg1_W_1_t = rrr_leg1_qd_1*rrr_leg1_qd_1;
+        /* (rrr_leg1-W_2) centripetal tensor of link 2 */
+        const real rrr_leg1_W_2_t = rrr_leg1_omega_2_z*rrr_leg1_omega_2_z;
+        /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_leg1_bias_x = -rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x -
+            rrr_leg1_W_1_t*rrr_leg1_c_2*rrr_leg1_joint2_offset_x;
+        /* (rrr_leg1-w_1) reciprocal vector 1 */
+        const real rrr_leg1_w_1_t = axis_y_rrr_leg1_axes2_in_base_y*inv_rrr_leg1_r_1_r0_y;
+        const real rrr_leg1_w_1_t_2 = axis_y_rrr_leg1_axes2_in_base_x*inv_rrr_leg1_r_1_r0_y;
+        /* (rrr_leg1-w_2) reciprocal vector 2 */
+        const real rrr_leg1_w_2_in_base_x =
+            axis_y_rrr_leg1_axes2_in_base_x*inv_rrr_leg1_platform_joint_offset_x +
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_w_2_t;
+        const real rrr_leg1_w_2_in_base_y =
+            axis_y_rrr_leg1_axes2_in_base_y*inv_rrr_leg1_platform_joint_offset_x -
+            axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_w_2_t;
+        /* (rrr_leg1-S_ddot) acceleration of the connection point */
+        const real t_ddot_x = s[4*w + j];
+        const real t_ddot_y = s[5*w + j];
+        const real rrr_leg1_S_ddot_tip_x = axis_y_rrr_leg1_axes2_in_base_y*t_ddot_x -
+            axis_y_rrr_leg1_axes2_in_base_x*t_ddot_y;
+        const real rrr_leg1_S_ddot_tip_y = axis_y_rrr_leg1_axes2_in_base_x*t_ddot_x +
+            axis_y_rrr_leg1_axes2_in_base_y*t_ddot_y;
+        /* (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations */
+        const real rrr_leg1_rel_x = rrr_leg1_S_ddot_tip_x - rrr_leg1_bias_x;
+        const real rrr_leg1_rel_y = rrr_leg1_S_ddot_tip_y +
+            rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*rrr_leg1_s_2;
+        /* (rrr_leg1-qdd_1) acceleration of joint 1 */
+        const real rrr_leg1_qdd_1 = inv_rrr_leg1_r_1_r0_y*rrr_leg1_rel_x;
+        /* (rrr_leg1-acc_2) acceleration of the reference point of link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real J_1_rrr_zz = m->J_1_rrr_zz[i];
-        const real J_2_rrr_zz = m->J_2_rrr_zz[i];
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_1_rrr_x = m->h_1_rrr_x[i];
-        const real h_1_rrr_y = m->h_1_rrr_y[i];
-        const real h_2_rrr_x = m->h_2_rrr_x[i];
-        const real h_2_rrr_y = m->h_2_rrr_y[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_leg1_acc_2_x = rrr_leg1_S_ddot_tip_x +
+            axis_y_rrr_leg1_axes2_in_base_x*gravity_y - axis_y_rrr_leg1_axes2_in_base_y*gravity_x;
+        const real rrr_leg1_acc_2_y = rrr_leg1_S_ddot_tip_y -
+            axis_y_rrr_leg1_axes2_in_base_x*gravity_x - axis_y_rrr_leg1_axes2_in_base_y*gravity_y;
+        /* (rrr_leg1-alpha_2) angular acceleration of link 2 */
+        const real rrr_leg1_alpha_2_z = inv_rrr_leg1_platform_joint_offset_x*(rrr_leg1_rel_y +
+            rrr_leg1_qdd_1*rrr_leg1_r_1_r0_x) - rrr_leg1_qdd_1;
+        /* (rrr_leg1-mu_2) inertia moment of the links that turn with link 2, about their reference points
+           */
+        const real rrr_leg1_J_2_zz = m->rrr_leg1_J_2_zz[i];
+        const real rrr_leg1_h_2_x = m->rrr_leg1_h_2_x[i];
+        const real rrr_leg1_h_2_y = m->rrr_leg1_h_2_y[i];
+        const real rrr_leg1_mu_2_z = rrr_leg1_J_2_zz*rrr_leg1_alpha_2_z +
+            rrr_leg1_acc_2_y*rrr_leg1_h_2_x - rrr_leg1_acc_2_x*rrr_leg1_h_2_y;
+        /* (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
+           */
+        const real rrr_leg1_J_1_zz = m->rrr_leg1_J_1_zz[i];
+        const real rrr_leg1_g_r0_x = m->rrr_leg1_g_r0_x[i];
+        const real rrr_leg1_g_r0_y = m->rrr_leg1_g_r0_y[i];
+        const real rrr_leg1_h_1_x = m->rrr_leg1_h_1_x[i];
+        const real rrr_leg1_h_1_y = m->rrr_leg1_h_1_y[i];
+        const real rrr_leg1_mu_1_z = rrr_leg1_h_1_y*(rrr_leg1_c_1*rrr_leg1_g_r0_x +
+            rrr_leg1_g_r0_y*rrr_leg1_s_1) - rrr_leg1_J_1_zz*rrr_leg1_qdd_1 -
+            rrr_leg1_h_1_x*(rrr_leg1_c_1*rrr_leg1_g_r0_y - rrr_leg1_g_r0_x*rrr_leg1_s_1);
+        /* (rrr_leg1-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection
+           point left out */
+        const real rrr_leg1_N_1_z = rrr_leg1_mu_1_z + rrr_leg1_mu_2_z;
+        /* (rrr_leg1-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real rrr_leg1_G_t = inv_rrr_leg1_platform_joint_offset_x*rrr_leg1_mu_2_z;
+        /* (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection
+           point */
+        const real rrr_leg1_c_x = rrr_leg1_W_2_t*rrr_leg1_h_2_x +
+            rrr_leg1_alpha_2_z*rrr_leg1_h_2_y -
+            inv_rrr_leg1_r_1_r0_y*(rrr_leg1_G_t*rrr_leg1_r_1_r0_x - rrr_leg1_N_1_z);
+        const real rrr_leg1_c_y = rrr_leg1_W_2_t*rrr_leg1_h_2_y - rrr_leg1_G_t -
+            rrr_leg1_alpha_2_z*rrr_leg1_h_2_x;
+        /* (rrr_leg1-c_true) leg force on the platform without actuation, the last link's mass included */
+        const real rrr_leg1_link2_mass = m->rrr_leg1_link2_mass[i];
+        const real rrr_leg1_c_true_x = rrr_leg1_c_x - rrr_leg1_acc_2_x*rrr_leg1_link2_mass;
+        const real rrr_leg1_c_true_y = rrr_leg1_c_y - rrr_leg1_acc_2_y*rrr_leg1_link2_mass;
+        const real rrr_leg1_c_true_in_base_x = axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_c_true_y +
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_c_true_x;
+        const real rrr_leg1_c_true_in_base_y = axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_c_true_y -
+            axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_c_true_x;
+        o[0*count + k] = rrr_leg1_c_true_in_base_x;
+        o[1*count + k] = rrr_leg1_c_true_in_base_y;
+        o[2*count + k] = -rrr_leg1_w_1_t;
+        o[3*count + k] = rrr_leg1_w_1_t_2;
+        o[4*count + k] = rrr_leg1_w_2_in_base_x;
+        o[5*count + k] = rrr_leg1_w_2_in_base_y;
+        const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
+        const real rrr_leg1_size = m->rrr_leg1_size[i];
+        o[7*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
+            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(-rrr_leg1_r_1_r0_y) >
+            TOLERANCE*rrr_leg1_size);
+        o[6*count + k] = UNLESS(rrr_leg1_disc_1 >= 0);
+    }
+}
+
+INLINE void legs_place_rrr_leg1(size_t w, size_t count, const real *o, size_t first, real
+    *leg_force, real *drive, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        leg_force[(0)*w + k] = o[0*count + first + k];
+        leg_force[(1)*w + k] = o[1*count + first + k];
+        drive[(0)*w + k] = o[2*count + first + k];
+        drive[(1)*w + k] = o[3*count + first + k];
+        drive[(3)*w + k] = o[4*count + first + k];
+        drive[(4)*w + k] = o[5*count + first + k];
+        t->unreachable[k] += o[6*count + first + k];
+        t->singular[k] += o[7*count + first + k];
+    }
+}
+
+INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, real *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        /* (rrr-S) from the base point to the connection point */
         const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_link2_mass = m->rrr_link2_mass[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_rrr = m->size_rrr[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr =
-            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr;
-        const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
-        const real r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr;
-        const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr;
-        const real axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        /* (rrr-V6) reciprocal vector 2 */
-        const real w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x;
-        /* (rrr-V7) rate of joint 1 */
-        const real qd_1_rrr = inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x -
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-qd_2) rate of joint 2 */
+        const real t_dot_x = s[2*w + j];
+        const real t_dot_y = s[3*w + j];
+        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x -
             axis_y_rrr_axes2_in_base_x*t_dot_y);
-        /* (rrr-V11) angular velocity of link 2 */
-        const real omega_2_rrr_z =
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_omega_2_z =
             inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
-            axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
-        /* (rrr-V10) centripetal tensor of link 1 */
-        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
-        /* (rrr-V12) centripetal tensor of link 2 */
-        const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
-        /* (rrr-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
-            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
-        /* (rrr-V5) reciprocal vector 1 */
-        const real w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y;
-        const real w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
-        /* (rrr-V6) reciprocal vector 2 */
-        const real w_2_rrr_in_base_x = axis_y_rrr_axes2_in_base_x*inv_rrr_platform_joint_offset_x
-            + axis_y_rrr_axes2_in_base_y*w_2_rrr_t;
-        const real w_2_rrr_in_base_y = axis_y_rrr_axes2_in_base_y*inv_rrr_platform_joint_offset_x
-            - axis_y_rrr_axes2_in_base_x*w_2_rrr_t;
-        /* (rrr-A2) acceleration of the connection point */
-        const real S_ddot_rrr_tip_x = axis_y_rrr_axes2_in_base_y*t_ddot_x -
+            axis_y_rrr_axes2_in_base_y*t_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-W_1) centripetal tensor of link 1 */
+        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-W_2) centripetal tensor of link 2 */
+        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y;
+        const real rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y;
+        /* (rrr-S_ddot) acceleration of the connection point */
+        const real t_ddot_x = s[4*w + j];
+        const real t_ddot_y = s[5*w + j];
+        const real rrr_S_ddot_tip_x = axis_y_rrr_axes2_in_base_y*t_ddot_x -
             axis_y_rrr_axes2_in_base_x*t_ddot_y;
-        const real S_ddot_rrr_tip_y = axis_y_rrr_axes2_in_base_x*t_ddot_x +
+        const real rrr_S_ddot_tip_y = axis_y_rrr_axes2_in_base_x*t_ddot_x +
             axis_y_rrr_axes2_in_base_y*t_ddot_y;
-        /* (rrr-A5) acceleration of the connection point left to the joint accelerations */
-        const real rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x;
-        const real rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
-        /* (rrr-A7) acceleration of joint 1 */
-        const real qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x;
-        /* (rrr-N3) acceleration of the reference point of link 2, less gravity */
-        const real acc_2_rrr_x = S_ddot_rrr_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
-            axis_y_rrr_axes2_in_base_y*gravity_x;
-        const real acc_2_rrr_y = S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
-            axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-N23) inertia moment of the links that turn with link 1, about their reference points */
-        const real mu_1_rrr_z = h_1_rrr_y*(c_1_rrr*g_r0_x + g_r0_y*s_1_rrr) - J_1_rrr_zz*qdd_1_rrr
-            - h_1_rrr_x*(c_1_rrr*g_r0_y - g_r0_x*s_1_rrr);
-        /* (rrr-A15) angular acceleration of link 2 */
-        const real alpha_2_rrr_z = inv_rrr_platform_joint_offset_x*(rel_rrr_y +
-            qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr;
-        /* (rrr-N16) inertia moment of the links that turn with link 2, about their reference points */
-        const real mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x -
-            acc_2_rrr_x*h_2_rrr_y;
-        /* (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point
-           left out */
-        const real N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z;
-        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
-        const real G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z;
-        /* (rrr-N33) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real c_rrr_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y -
-            inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x - N_1_rrr_z);
-        const real c_rrr_y = W_2_rrr_t*h_2_rrr_y - G_rrr_t - alpha_2_rrr_z*h_2_rrr_x;
-        /* (rrr-N38) leg force on the platform without actuation, the last link's mass included */
-        const real c_true_rrr_x = c_rrr_x - acc_2_rrr_x*rrr_link2_mass;
-        const real c_true_rrr_y = c_rrr_y - acc_2_rrr_y*rrr_link2_mass;
-        const real c_true_rrr_in_base_x = axis_y_rrr_axes2_in_base_x*c_true_rrr_y +
-            axis_y_rrr_axes2_in_base_y*c_true_rrr_x;
-        const real c_true_rrr_in_base_y = axis_y_rrr_axes2_in_base_y*c_true_rrr_y -
-            axis_y_rrr_axes2_in_base_x*c_true_rrr_x;
-        o->entry[0][k] = c_true_rrr_in_base_x;
-        o->entry[1][k] = c_true_rrr_in_base_y;
-        o->entry[2][k] = -w_1_rrr_t;
-        o->entry[3][k] = w_1_rrr_t_2;
-        o->entry[4][k] = w_2_rrr_in_base_x;
-        o->entry[5][k] = w_2_rrr_in_base_y;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
-    }
-}
-
-INLINE void legs_place_rrr(size_t w, const legs_results_rrr *o, size_t first, real *leg_force,
-    real *drive, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        leg_force[(0)*w + k] = o->entry[0][first + k];
-        leg_force[(1)*w + k] = o->entry[1][first + k];
-        drive[(0)*w + k] = o->entry[2][first + k];
-        drive[(1)*w + k] = o->entry[3][first + k];
-        drive[(3)*w + k] = o->entry[4][first + k];
-        drive[(4)*w + k] = o->entry[5][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void legs_legs_rrr2(const prepared *m, size_t leg, size_t legs, const legs_values *s,
-    size_t states, size_t count, legs_results_rrr2 *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
+        /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
+        const real rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x;
+        const real rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-qdd_1) acceleration of joint 1 */
+        const real rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x;
+        /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real J_1_rrr2_zz = m->J_1_rrr2_zz[i];
-        const real J_2_rrr2_zz = m->J_2_rrr2_zz[i];
-        const real Kd_1_rrr2_t_2 = m->Kd_1_rrr2_t_2[i];
-        const real Kd_1_rrr2_t_3 = m->Kd_1_rrr2_t_3[i];
-        const real branch_1_rrr2 = m->branch_1_rrr2[i];
-        const real g_r0_x_2 = m->g_r0_x_2[i];
-        const real g_r0_y_2 = m->g_r0_y_2[i];
-        const real h_1_rrr2_x = m->h_1_rrr2_x[i];
-        const real h_1_rrr2_y = m->h_1_rrr2_y[i];
-        const real h_2_rrr2_x = m->h_2_rrr2_x[i];
-        const real h_2_rrr2_y = m->h_2_rrr2_y[i];
-        const real inv_Kd_1_rrr2_t_5 = m->inv_Kd_1_rrr2_t_5[i];
-        const real inv_rrr2_platform_joint_offset_x = m->inv_rrr2_platform_joint_offset_x[i];
-        const real inv_uu_2_rrr2_t = m->inv_uu_2_rrr2_t[i];
-        const real rho2_1_rrr2_t = m->rho2_1_rrr2_t[i];
-        const real rrr2_base_frame_xx = m->rrr2_base_frame_xx[i];
-        const real rrr2_base_frame_xy = m->rrr2_base_frame_xy[i];
-        const real rrr2_base_frame_yx = m->rrr2_base_frame_yx[i];
-        const real rrr2_base_frame_yy = m->rrr2_base_frame_yy[i];
-        const real rrr2_base_point_x = m->rrr2_base_point_x[i];
-        const real rrr2_base_point_y = m->rrr2_base_point_y[i];
-        const real rrr2_joint2_offset_x = m->rrr2_joint2_offset_x[i];
-        const real rrr2_link2_mass = m->rrr2_link2_mass[i];
-        const real rrr2_platform_joint_offset_x = m->rrr2_platform_joint_offset_x[i];
-        const real rrr2_platform_point_x = m->rrr2_platform_point_x[i];
-        const real rrr2_platform_point_y = m->rrr2_platform_point_y[i];
-        const real size_rrr2 = m->size_rrr2[i];
-        /* (rrr2-K1) from the base point to the connection point */
-        const real S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x;
-        const real S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y;
-        /* (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y;
-        const real Kd_1_rrr2 = R(0.5)*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3;
-        /* (rrr2-K3) component along the reference direction */
-        const real px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx;
-        /* (rrr2-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x;
-        /* (rrr2-K4) component across the reference direction */
-        const real py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy;
-        /* (rrr2-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x;
-        /* (rrr2-K8) squared amplitude */
-        const real rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2;
-        /* (rrr2-K9) discriminant */
-        const real disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2;
-        /* (rrr2-K10) root, with the sign of the branch */
-        const real root_1_rrr2 = branch_1_rrr2*root(disc_1_rrr2);
-        /* (rrr2-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x -
-            rrr2_joint2_offset_x;
-        /* (rrr2-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x;
-        /* (rrr2-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr2 =
-            inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x;
-        /* (rrr2-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2;
-        const real r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x;
-        const real r_1_rrr2_r0_x = c_2_rrr2*r_1_rrr2_x + r_1_rrr2_t*s_2_rrr2;
-        const real r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t;
-        /* (rrr2-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr2 = 1/rho2_1_rrr2;
-        const real c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2);
-        /* (rrr2-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2);
-        /* (rrr2-V5) reciprocal vector 1 */
-        const real axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2;
-        const real axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2;
-        const real axis_y_rrr2_axes2_in_base_x = axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx +
-            axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy;
-        const real axis_y_rrr2_axes2_in_base_y = axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx +
-            axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy;
-        const real inv_r_1_rrr2_r0_y = 1/r_1_rrr2_r0_y;
-        /* (rrr2-V7) rate of joint 1 */
-        const real qd_1_rrr2 = inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_in_base_y*t_dot_x -
-            axis_y_rrr2_axes2_in_base_x*t_dot_y);
-        /* (rrr2-V11) angular velocity of link 2 */
-        const real omega_2_rrr2_z =
-            inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
-            axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2;
-        /* (rrr2-V10) centripetal tensor of link 1 */
-        const real W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2;
-        /* (rrr2-V12) centripetal tensor of link 2 */
-        const real W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z;
-        /* (rrr2-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr2_x = -W_2_rrr2_t*rrr2_platform_joint_offset_x -
-            W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x;
-        /* (rrr2-V5) reciprocal vector 1 */
-        const real w_1_rrr2_t = axis_y_rrr2_axes2_in_base_y*inv_r_1_rrr2_r0_y;
-        const real w_1_rrr2_t_2 = axis_y_rrr2_axes2_in_base_x*inv_r_1_rrr2_r0_y;
-        /* (rrr2-A2) acceleration of the connection point */
-        const real S_ddot_rrr2_tip_x = axis_y_rrr2_axes2_in_base_y*t_ddot_x -
-            axis_y_rrr2_axes2_in_base_x*t_ddot_y;
-        const real S_ddot_rrr2_tip_y = axis_y_rrr2_axes2_in_base_x*t_ddot_x +
-            axis_y_rrr2_axes2_in_base_y*t_ddot_y;
-        /* (rrr2-A5) acceleration of the connection point left to the joint accelerations */
-        const real rel_rrr2_x = S_ddot_rrr2_tip_x - bias_rrr2_x;
-        const real rel_rrr2_y = S_ddot_rrr2_tip_y + W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2;
-        /* (rrr2-A7) acceleration of joint 1 */
-        const real qdd_1_rrr2 = inv_r_1_rrr2_r0_y*rel_rrr2_x;
-        /* (rrr2-N3) acceleration of the reference point of link 2, less gravity */
-        const real acc_2_rrr2_x = S_ddot_rrr2_tip_x + axis_y_rrr2_axes2_in_base_x*gravity_y -
-            axis_y_rrr2_axes2_in_base_y*gravity_x;
-        const real acc_2_rrr2_y = S_ddot_rrr2_tip_y - axis_y_rrr2_axes2_in_base_x*gravity_x -
-            axis_y_rrr2_axes2_in_base_y*gravity_y;
-        /* (rrr2-N23) inertia moment of the links that turn with link 1, about their reference points */
-        const real mu_1_rrr2_z = h_1_rrr2_y*(c_1_rrr2*g_r0_x_2 + g_r0_y_2*s_1_rrr2) -
-            J_1_rrr2_zz*qdd_1_rrr2 - h_1_rrr2_x*(c_1_rrr2*g_r0_y_2 - g_r0_x_2*s_1_rrr2);
-        /* (rrr2-A15) angular acceleration of link 2 */
-        const real alpha_2_rrr2_z = inv_rrr2_platform_joint_offset_x*(rel_rrr2_y +
-            qdd_1_rrr2*r_1_rrr2_r0_x) - qdd_1_rrr2;
-        /* (rrr2-N16) inertia moment of the links that turn with link 2, about their reference points */
-        const real mu_2_rrr2_z = J_2_rrr2_zz*alpha_2_rrr2_z + acc_2_rrr2_y*h_2_rrr2_x -
-            acc_2_rrr2_x*h_2_rrr2_y;
-        /* (rrr2-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        const real rrr_acc_2_x = rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+            axis_y_rrr_axes2_in_base_y*gravity_x;
+        const real rrr_acc_2_y = rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+            axis_y_rrr_axes2_in_base_y*gravity_y;
+        /* (rrr-alpha_2) angular acceleration of link 2 */
+        const real rrr_alpha_2_z = inv_rrr_platform_joint_offset_x*(rrr_rel_y +
+            rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1;
+        /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
+        const real rrr_h_2_x = m->rrr_h_2_x[i];
+        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x -
+            rrr_acc_2_x*rrr_h_2_y;
+        /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
+        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
+        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
+        const real rrr_h_1_x = m->rrr_h_1_x[i];
+        const real rrr_h_1_y = m->rrr_h_1_y[i];
+        const real rrr_mu_1_z = rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
+            rrr_J_1_zz*rrr_qdd_1 - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
-        const real N_1_rrr2_z = mu_1_rrr2_z + mu_2_rrr2_z;
-        /* (rrr2-N30) force at the connection point that balances the leg's inertia and weight along all
+        const real rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z;
+        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real G_rrr2_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_z;
-        /* (rrr2-N33) leg force on the platform without actuation and without the mass at the connection
+        const real rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z;
+        /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_rrr2_x = W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_z*h_2_rrr2_y -
-            inv_r_1_rrr2_r0_y*(G_rrr2_t*r_1_rrr2_r0_x - N_1_rrr2_z);
-        const real c_rrr2_y = W_2_rrr2_t*h_2_rrr2_y - G_rrr2_t - alpha_2_rrr2_z*h_2_rrr2_x;
-        /* (rrr2-N38) leg force on the platform without actuation, the last link's mass included */
-        const real c_true_rrr2_x = c_rrr2_x - acc_2_rrr2_x*rrr2_link2_mass;
-        const real c_true_rrr2_y = c_rrr2_y - acc_2_rrr2_y*rrr2_link2_mass;
-        const real c_true_rrr2_in_base_x = axis_y_rrr2_axes2_in_base_x*c_true_rrr2_y +
-            axis_y_rrr2_axes2_in_base_y*c_true_rrr2_x;
-        const real c_true_rrr2_in_base_y = axis_y_rrr2_axes2_in_base_y*c_true_rrr2_y -
-            axis_y_rrr2_axes2_in_base_x*c_true_rrr2_x;
-        o->entry[0][k] = c_true_rrr2_in_base_x;
-        o->entry[1][k] = c_true_rrr2_in_base_y;
-        o->entry[2][k] = -w_1_rrr2_t;
-        o->entry[3][k] = w_1_rrr2_t_2;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
-            UNLESS(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
-        o->unreachable[k] = UNLESS(disc_1_rrr2 >= 0);
+        const real rrr_c_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y -
+            inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x - rrr_N_1_z);
+        const real rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x;
+        /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
+        const real rrr_link2_mass = m->rrr_link2_mass[i];
+        const real rrr_c_true_x = rrr_c_x - rrr_acc_2_x*rrr_link2_mass;
+        const real rrr_c_true_y = rrr_c_y - rrr_acc_2_y*rrr_link2_mass;
+        const real rrr_c_true_in_base_x = axis_y_rrr_axes2_in_base_x*rrr_c_true_y +
+            axis_y_rrr_axes2_in_base_y*rrr_c_true_x;
+        const real rrr_c_true_in_base_y = axis_y_rrr_axes2_in_base_y*rrr_c_true_y -
+            axis_y_rrr_axes2_in_base_x*rrr_c_true_x;
+        o[0*count + k] = rrr_c_true_in_base_x;
+        o[1*count + k] = rrr_c_true_in_base_y;
+        o[2*count + k] = -rrr_w_1_t;
+        o[3*count + k] = rrr_w_1_t_2;
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[5*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[4*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void legs_place_rrr2(size_t w, const legs_results_rrr2 *o, size_t first, real *leg_force,
+INLINE void legs_place_rrr(size_t w, size_t count, const real *o, size_t first, real *leg_force,
     real *drive, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        leg_force[(3)*w + k] = o->entry[0][first + k];
-        leg_force[(4)*w + k] = o->entry[1][first + k];
-        drive[(6)*w + k] = o->entry[2][first + k];
-        drive[(7)*w + k] = o->entry[3][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        leg_force[(3)*w + k] = o[0*count + first + k];
+        leg_force[(4)*w + k] = o[1*count + first + k];
+        drive[(6)*w + k] = o[2*count + first + k];
+        drive[(7)*w + k] = o[3*count + first + k];
+        t->unreachable[k] += o[4*count + first + k];
+        t->singular[k] += o[5*count + first + k];
     }
 }
 
-INLINE void legs_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
-    real *leg_force, real *drive, verdict *t)
+INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
+    *leg_force, real *drive, verdict *t)
 {
-    legs_values values, *const s = &values;
-    legs_results_rrr results_rrr;
-    legs_results_rrr2 results_rrr2;
-    clear(leg_force, 6*w);
-    clear(drive, 9*w);
-    legs_before(w, X, V, A, s);
-    if (w == 1) {  /* the legs side by side */
-        legs_legs_rrr(m, 0, 1, s, 0, 1, &results_rrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            legs_place_rrr(w, &results_rrr, leg, leg_force, drive, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            legs_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
-            legs_place_rrr(w, &results_rrr, 0, leg_force, drive, t);
-        }
+    real s[6] = {0}, o_rrr_leg1[8*LEGS(1)] = {0}, o_rrr[6*LEGS(1)] = {0};
+    clear(leg_force, 6);
+    clear(drive, 9);
+    legs_before(1, X, V, A, s);
+    legs_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(1), o_rrr_leg1);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        legs_place_rrr_leg1(1, LEGS(1), o_rrr_leg1, leg, leg_force, drive, t);
     }
-    if (w == 1) {  /* the legs side by side */
-        legs_legs_rrr2(m, 0, 1, s, 0, 1, &results_rrr2);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            legs_place_rrr2(w, &results_rrr2, leg, leg_force, drive, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            legs_legs_rrr2(m, leg, 0, s, 1, w, &results_rrr2);
-            legs_place_rrr2(w, &results_rrr2, 0, leg_force, drive, t);
-        }
+    legs_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), o_rrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        legs_place_rrr(1, LEGS(1), o_rrr, leg, leg_force, drive, t);
     }
 }
 
 /* ---- potential: 90 mul, 57 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], potential_t[LANES], sum[2][LANES];
-} potential_values;
-typedef struct {
-    real sum[1][8], unreachable[8], singular[8];
-} potential_results_rrr;
-typedef struct {
-    real sum[1][8], unreachable[8], singular[8];
-} potential_results_rrr2;
-
-INLINE void potential_before(const prepared *m, size_t w, const real *X, potential_values *s)
+INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
+        /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real h_star_x = m->h_star_x;
         const real h_star_y = m->h_star_y;
         const real m_star = m->m_star;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        /* (V1) potential energy */
         const real potential_t = gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y +
             m_star*t_y);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->potential_t[k] = potential_t;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = potential_t;
     }
 }
 
-INLINE void potential_legs_rrr(const prepared *m, size_t leg, size_t legs, const potential_values
-    *s, size_t states, size_t count, int add, potential_results_rrr *o)
+INLINE void potential_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, const
+    real *s, size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real b_rrr_r0_x = m->b_rrr_r0_x[i];
-        const real b_rrr_r0_y = m->b_rrr_r0_y[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_1_rrr_x = m->h_1_rrr_x[i];
-        const real h_1_rrr_y = m->h_1_rrr_y[i];
-        const real h_2_rrr_x = m->h_2_rrr_x[i];
-        const real h_2_rrr_y = m->h_2_rrr_y[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        /* (rrr_leg1-S) from the base point to the connection point */
+        const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
+        const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x;
+        const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
+        const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y;
+        /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
+           beyond joint 1 */
+        const real rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
+        const real rrr_leg1_Kd_1_t_4 = m->rrr_leg1_Kd_1_t_4[i];
+        const real rrr_leg1_Kd_1 = R(0.5)*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4;
+        /* (rrr_leg1-px_1) component along the reference direction */
+        const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
+        const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
+        const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yx;
+        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
+        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
+        /* (rrr_leg1-py_1) component across the reference direction */
+        const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
+        const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
+        const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yy;
+        /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
+        /* (rrr_leg1-rho2_1) squared amplitude */
+        const real rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1;
+        /* (rrr_leg1-disc_1) discriminant */
+        const real rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1;
+        /* (rrr_leg1-root_1) root, with the sign of the branch */
+        const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
+        const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
+        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_leg1_Kd_1_t_5 = m->inv_rrr_leg1_Kd_1_t_5[i];
+        const real rrr_leg1_x_2_x = inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x -
+            rrr_leg1_joint2_offset_x;
+        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_leg1_Kd_1_t_7 = m->inv_rrr_leg1_Kd_1_t_7[i];
+        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
+        const real rrr_leg1_c_2 =
+            inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x;
+        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_leg1_s_2 =
+            inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
+        /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
+        const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
+            rrr_leg1_Ks_1*rrr_leg1_root_1);
+        /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
+            rrr_leg1_Kd_1*rrr_leg1_Ks_1);
+        /* (potential) potential energy */
+        const real rrr_leg1_b_r0_x = m->rrr_leg1_b_r0_x[i];
+        const real rrr_leg1_b_r0_y = m->rrr_leg1_b_r0_y[i];
+        const real rrr_leg1_g_r0_x = m->rrr_leg1_g_r0_x[i];
+        const real rrr_leg1_g_r0_y = m->rrr_leg1_g_r0_y[i];
+        const real rrr_leg1_h_1_x = m->rrr_leg1_h_1_x[i];
+        const real rrr_leg1_h_1_y = m->rrr_leg1_h_1_y[i];
+        const real rrr_leg1_h_2_x = m->rrr_leg1_h_2_x[i];
+        const real rrr_leg1_h_2_y = m->rrr_leg1_h_2_y[i];
+        const real rrr_leg1_link1_mass = m->rrr_leg1_link1_mass[i];
+        const real rrr_leg1_potential_t = (rrr_leg1_c_1*rrr_leg1_g_r0_x +
+            rrr_leg1_g_r0_y*rrr_leg1_s_1)*(rrr_leg1_h_1_x + rrr_leg1_c_2*rrr_leg1_h_2_x +
+            rrr_leg1_h_2_y*rrr_leg1_s_2 + rrr_leg1_link1_mass*(rrr_leg1_b_r0_x*rrr_leg1_c_1 +
+            rrr_leg1_b_r0_y*rrr_leg1_s_1)) + (rrr_leg1_c_1*rrr_leg1_g_r0_y -
+            rrr_leg1_g_r0_x*rrr_leg1_s_1)*(rrr_leg1_h_1_y + rrr_leg1_c_2*rrr_leg1_h_2_y +
+            rrr_leg1_link1_mass*(rrr_leg1_b_r0_y*rrr_leg1_c_1 - rrr_leg1_b_r0_x*rrr_leg1_s_1) -
+            rrr_leg1_h_2_x*rrr_leg1_s_2);
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_leg1_potential_t : rrr_leg1_potential_t;  /* total_rrr_leg1 */
+        const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
+        o[1*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
+            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t);
+        o[0*count + k] = UNLESS(rrr_leg1_disc_1 >= 0);
+    }
+}
+
+INLINE void potential_place_rrr_leg1(size_t w, size_t count, const real *o, size_t first, verdict
+    *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        t->unreachable[k] += o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
+    }
+}
+
+INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, real *terms, real *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        /* (rrr-S) from the base point to the connection point */
         const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_link1_mass = m->rrr_link1_mass[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr =
-            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
-        /* (V1) potential energy */
-        const real potential_t_3 = (c_1_rrr*g_r0_x + g_r0_y*s_1_rrr)*(h_1_rrr_x +
-            c_2_rrr*h_2_rrr_x + h_2_rrr_y*s_2_rrr + rrr_link1_mass*(b_rrr_r0_x*c_1_rrr +
-            b_rrr_r0_y*s_1_rrr)) + (c_1_rrr*g_r0_y - g_r0_x*s_1_rrr)*(h_1_rrr_y +
-            c_2_rrr*h_2_rrr_y + rrr_link1_mass*(b_rrr_r0_y*c_1_rrr - b_rrr_r0_x*s_1_rrr) -
-            h_2_rrr_x*s_2_rrr);
-        o->sum[0][k] = add ? o->sum[0][k] + potential_t_3 : potential_t_3;  /* total_rrr */
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (potential) potential energy */
+        const real rrr_b_r0_x = m->rrr_b_r0_x[i];
+        const real rrr_b_r0_y = m->rrr_b_r0_y[i];
+        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
+        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
+        const real rrr_h_1_x = m->rrr_h_1_x[i];
+        const real rrr_h_1_y = m->rrr_h_1_y[i];
+        const real rrr_h_2_x = m->rrr_h_2_x[i];
+        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_link1_mass = m->rrr_link1_mass[i];
+        const real rrr_potential_t = (rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1)*(rrr_h_1_x +
+            rrr_c_2*rrr_h_2_x + rrr_h_2_y*rrr_s_2 + rrr_link1_mass*(rrr_b_r0_x*rrr_c_1 +
+            rrr_b_r0_y*rrr_s_1)) + (rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)*(rrr_h_1_y +
+            rrr_c_2*rrr_h_2_y + rrr_link1_mass*(rrr_b_r0_y*rrr_c_1 - rrr_b_r0_x*rrr_s_1) -
+            rrr_h_2_x*rrr_s_2);
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_potential_t : rrr_potential_t;  /* total_rrr */
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
+        o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void potential_place_rrr(size_t w, const potential_results_rrr *o, size_t first, verdict
-    *t)
+INLINE void potential_place_rrr(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        t->unreachable[k] += o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
     }
 }
 
-INLINE void potential_legs_rrr2(const prepared *m, size_t leg, size_t legs, const potential_values
-    *s, size_t states, size_t count, int add, potential_results_rrr2 *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real Kd_1_rrr2_t_2 = m->Kd_1_rrr2_t_2[i];
-        const real Kd_1_rrr2_t_3 = m->Kd_1_rrr2_t_3[i];
-        const real b_rrr2_r0_x = m->b_rrr2_r0_x[i];
-        const real b_rrr2_r0_y = m->b_rrr2_r0_y[i];
-        const real branch_1_rrr2 = m->branch_1_rrr2[i];
-        const real g_r0_x_2 = m->g_r0_x_2[i];
-        const real g_r0_y_2 = m->g_r0_y_2[i];
-        const real h_1_rrr2_x = m->h_1_rrr2_x[i];
-        const real h_1_rrr2_y = m->h_1_rrr2_y[i];
-        const real h_2_rrr2_x = m->h_2_rrr2_x[i];
-        const real h_2_rrr2_y = m->h_2_rrr2_y[i];
-        const real inv_Kd_1_rrr2_t_5 = m->inv_Kd_1_rrr2_t_5[i];
-        const real inv_uu_2_rrr2_t = m->inv_uu_2_rrr2_t[i];
-        const real rho2_1_rrr2_t = m->rho2_1_rrr2_t[i];
-        const real rrr2_base_frame_xx = m->rrr2_base_frame_xx[i];
-        const real rrr2_base_frame_xy = m->rrr2_base_frame_xy[i];
-        const real rrr2_base_frame_yx = m->rrr2_base_frame_yx[i];
-        const real rrr2_base_frame_yy = m->rrr2_base_frame_yy[i];
-        const real rrr2_base_point_x = m->rrr2_base_point_x[i];
-        const real rrr2_base_point_y = m->rrr2_base_point_y[i];
-        const real rrr2_joint2_offset_x = m->rrr2_joint2_offset_x[i];
-        const real rrr2_link1_mass = m->rrr2_link1_mass[i];
-        const real rrr2_platform_joint_offset_x = m->rrr2_platform_joint_offset_x[i];
-        const real rrr2_platform_point_x = m->rrr2_platform_point_x[i];
-        const real rrr2_platform_point_y = m->rrr2_platform_point_y[i];
-        /* (rrr2-K1) from the base point to the connection point */
-        const real S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x;
-        const real S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y;
-        /* (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y;
-        const real Kd_1_rrr2 = R(0.5)*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3;
-        /* (rrr2-K3) component along the reference direction */
-        const real px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx;
-        /* (rrr2-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x;
-        /* (rrr2-K4) component across the reference direction */
-        const real py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy;
-        /* (rrr2-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x;
-        /* (rrr2-K8) squared amplitude */
-        const real rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2;
-        /* (rrr2-K9) discriminant */
-        const real disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2;
-        /* (rrr2-K10) root, with the sign of the branch */
-        const real root_1_rrr2 = branch_1_rrr2*root(disc_1_rrr2);
-        /* (rrr2-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x -
-            rrr2_joint2_offset_x;
-        /* (rrr2-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x;
-        /* (rrr2-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr2 =
-            inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x;
-        /* (rrr2-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr2 = 1/rho2_1_rrr2;
-        const real c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2);
-        /* (rrr2-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2);
-        /* (V1) potential energy */
-        const real potential_t_2 = (c_1_rrr2*g_r0_x_2 + g_r0_y_2*s_1_rrr2)*(h_1_rrr2_x +
-            c_2_rrr2*h_2_rrr2_x + h_2_rrr2_y*s_2_rrr2 + rrr2_link1_mass*(b_rrr2_r0_x*c_1_rrr2 +
-            b_rrr2_r0_y*s_1_rrr2)) + (c_1_rrr2*g_r0_y_2 - g_r0_x_2*s_1_rrr2)*(h_1_rrr2_y +
-            c_2_rrr2*h_2_rrr2_y + rrr2_link1_mass*(b_rrr2_r0_y*c_1_rrr2 - b_rrr2_r0_x*s_1_rrr2) -
-            h_2_rrr2_x*s_2_rrr2);
-        o->sum[0][k] = add ? o->sum[0][k] + potential_t_2 : potential_t_2;  /* total_rrr2 */
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t);
-        o->unreachable[k] = UNLESS(disc_1_rrr2 >= 0);
-    }
-}
-
-INLINE void potential_place_rrr2(size_t w, const potential_results_rrr2 *o, size_t first, verdict
-    *t)
+INLINE void potential_after(size_t w, const real *s, const real *sums, real *potential)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void potential_after(size_t w, const potential_values *s, real *potential)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real potential_t = s->potential_t[k];
-        const real total_rrr = s->sum[0][k];
-        const real total_rrr2 = s->sum[1][k];
-        /* (V1) potential energy */
-        const real potential_ = -potential_t - total_rrr - total_rrr2;
+        /* (potential) potential energy */
+        const real potential_t = s[2*w + k];
+        const real total_rrr = sums[1*w + k];
+        const real total_rrr_leg1 = sums[0*w + k];
+        const real potential_ = -potential_t - total_rrr - total_rrr_leg1;
         potential[0*w + k] = potential_;
     }
 }
 
-INLINE void potential_run(const prepared *m, size_t w, const real *X, real *potential, verdict *t)
+INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    potential_values values, *const s = &values;
-    potential_results_rrr results_rrr;
-    potential_results_rrr2 results_rrr2;
-    potential_before(m, w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        potential_legs_rrr(m, 0, 1, s, 0, 1, 0, &results_rrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            potential_place_rrr(w, &results_rrr, leg, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_rrr.sum[n], 1);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            potential_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
-            potential_place_rrr(w, &results_rrr, 0, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_rrr.sum[n][k];
-            }
-        }
+    real s[3] = {0}, sums[2] = {0}, terms_rrr_leg1[1*LEGS(1)] = {0}, o_rrr_leg1[2*LEGS(1)] = {0},
+        terms_rrr[1*LEGS(1)] = {0}, o_rrr[2*LEGS(1)] = {0};
+    potential_before(m, 1, X, s);
+    potential_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_rrr_leg1, o_rrr_leg1);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        potential_place_rrr_leg1(1, LEGS(1), o_rrr_leg1, leg, t);
     }
-    if (w == 1) {  /* the legs side by side */
-        memset(results_rrr2.sum, 0, sizeof results_rrr2.sum);
-        potential_legs_rrr2(m, 0, 1, s, 0, 1, 0, &results_rrr2);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            potential_place_rrr2(w, &results_rrr2, leg, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[1 + n][k] = total(results_rrr2.sum[n], 1);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr2.sum, 0, sizeof results_rrr2.sum);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            potential_legs_rrr2(m, leg, 0, s, 1, w, 1, &results_rrr2);
-            potential_place_rrr2(w, &results_rrr2, 0, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[1 + n][k] = results_rrr2.sum[n][k];
-            }
-        }
+    for (size_t n = 0; n < 1; ++n) {
+        sums[n] = total(terms_rrr_leg1 + n*LEGS(1), 1);
     }
-    potential_after(w, s, potential);
+    potential_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        potential_place_rrr(1, LEGS(1), o_rrr, leg, t);
+    }
+    for (size_t n = 0; n < 1; ++n) {
+        sums[1 + n] = total(terms_rrr + n*LEGS(1), 1);
+    }
+    potential_after(1, s, sums, potential);
 }
 
 /* ---- condition: 100 mul, 54 add, 4 div, 5 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], sum[2][LANES];
-} condition_values;
-typedef struct {
-    real sum[1][8], entry[6][8], unreachable[8], singular[8];
-} condition_results_rrr;
-typedef struct {
-    real sum[1][8], entry[4][8], unreachable[8], singular[8];
-} condition_results_rrr2;
-
-INLINE void condition_before(const prepared *m, size_t w, const real *X, condition_values *s, real
-    *lengths)
+INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real legs_size = m->legs_size;
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
+        t->total[k] += legs_size;
     }
 }
 
-INLINE void condition_legs_rrr(const prepared *m, size_t leg, size_t legs, const condition_values
-    *s, size_t states, size_t count, int add, condition_results_rrr *o)
+INLINE void condition_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, const
+    real *s, size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
+        /* (rrr_leg1-S) from the base point to the connection point */
+        const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
+        const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x;
+        const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
+        const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y;
+        /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
+           beyond joint 1 */
+        const real rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
+        const real rrr_leg1_Kd_1_t_4 = m->rrr_leg1_Kd_1_t_4[i];
+        const real rrr_leg1_Kd_1 = R(0.5)*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4;
+        /* (rrr_leg1-px_1) component along the reference direction */
+        const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
+        const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
+        const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yx;
+        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
+        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
+        /* (rrr_leg1-py_1) component across the reference direction */
+        const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
+        const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
+        const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yy;
+        /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
+        /* (rrr_leg1-rho2_1) squared amplitude */
+        const real rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1;
+        /* (rrr_leg1-disc_1) discriminant */
+        const real rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1;
+        /* (rrr_leg1-root_1) root, with the sign of the branch */
+        const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
+        const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
+        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_leg1_Kd_1_t_5 = m->inv_rrr_leg1_Kd_1_t_5[i];
+        const real rrr_leg1_x_2_x = inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x -
+            rrr_leg1_joint2_offset_x;
+        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_leg1_Kd_1_t_7 = m->inv_rrr_leg1_Kd_1_t_7[i];
+        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
+        const real rrr_leg1_c_2 =
+            inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x;
+        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_leg1_s_2 =
+            inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
+        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_leg1_r_1_t = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
+        const real rrr_leg1_r_1_x = rrr_leg1_joint2_offset_x +
+            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
+        const real rrr_leg1_r_1_r0_y = rrr_leg1_r_1_x*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_r_1_t;
+        /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
+        const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
+            rrr_leg1_Ks_1*rrr_leg1_root_1);
+        /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
+            rrr_leg1_Kd_1*rrr_leg1_Ks_1);
+        /* (rrr_leg1-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_leg1_axes2_r1_x = rrr_leg1_c_1*rrr_leg1_s_2 -
+            rrr_leg1_c_2*rrr_leg1_s_1;
+        const real axis_y_rrr_leg1_axes2_r1_y = rrr_leg1_c_1*rrr_leg1_c_2 +
+            rrr_leg1_s_1*rrr_leg1_s_2;
+        const real axis_y_rrr_leg1_axes2_in_base_x =
+            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_xx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_xy;
+        const real axis_y_rrr_leg1_axes2_in_base_y =
+            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_yx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_yy;
+        const real inv_rrr_leg1_r_1_r0_y = 1/rrr_leg1_r_1_r0_y;
+        /* (rrr_leg1-w_2) reciprocal vector 2 */
+        const real inv_rrr_leg1_platform_joint_offset_x = m->inv_rrr_leg1_platform_joint_offset_x[i];
+        const real rrr_leg1_w_2_t =
+            inv_rrr_leg1_platform_joint_offset_x*inv_rrr_leg1_r_1_r0_y*(rrr_leg1_c_2*rrr_leg1_r_1_x
+            + rrr_leg1_r_1_t*rrr_leg1_s_2);
+        /* (rrr_leg1-w_1) reciprocal vector 1 */
+        const real rrr_leg1_w_1_t = axis_y_rrr_leg1_axes2_in_base_y*inv_rrr_leg1_r_1_r0_y;
+        const real rrr_leg1_w_1_t_2 = axis_y_rrr_leg1_axes2_in_base_x*inv_rrr_leg1_r_1_r0_y;
+        /* (rrr_leg1-w_2) reciprocal vector 2 */
+        const real rrr_leg1_w_2_in_base_x =
+            axis_y_rrr_leg1_axes2_in_base_x*inv_rrr_leg1_platform_joint_offset_x +
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_w_2_t;
+        const real rrr_leg1_w_2_in_base_y =
+            axis_y_rrr_leg1_axes2_in_base_y*inv_rrr_leg1_platform_joint_offset_x -
+            axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_w_2_t;
+        /* (spread) rms distance of the platform points from their centroid */
         const real b_c_x = m->b_c_x;
+        const real rrr_leg1_spread_t = b_c_x - rrr_leg1_platform_point_x;
         const real b_c_y = m->b_c_y;
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_rho2_1_rrr_t_4 = m->inv_rho2_1_rrr_t_4[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_size_rrr = m->inv_size_rrr[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_leg1_spread_t_2 = b_c_y - rrr_leg1_platform_point_y;
+        const real rrr_leg1_spread_t_3 = rrr_leg1_spread_t*rrr_leg1_spread_t +
+            rrr_leg1_spread_t_2*rrr_leg1_spread_t_2;
+        /* (rrr_leg1-rho2_1) squared amplitude */
+        const real rrr_leg1_pivot_size = magnitude(rrr_leg1_rho2_1);
+        /* (rrr_leg1-w_1) reciprocal vector 1 */
+        const real rrr_leg1_pivot_size_2 = magnitude(rrr_leg1_r_1_r0_y);
+        /* (rrr_leg1-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real inv_rrr_leg1_rho2_1_t_4 = m->inv_rrr_leg1_rho2_1_t_4[i];
+        const real inv_rrr_leg1_size = m->inv_rrr_leg1_size[i];
+        const real rrr_leg1_least_pivots =
+            lesser(root(inv_rrr_leg1_rho2_1_t_4*rrr_leg1_pivot_size),
+            inv_rrr_leg1_size*rrr_leg1_pivot_size_2);
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_leg1_spread_t_3 : rrr_leg1_spread_t_3;  /* total_rrr_leg1 */
+        o[0*count + k] = -rrr_leg1_w_1_t;
+        o[1*count + k] = rrr_leg1_w_1_t_2;
+        o[2*count + k] = rrr_leg1_w_2_in_base_x;
+        o[3*count + k] = rrr_leg1_w_2_in_base_y;
+        o[4*count + k] = rrr_leg1_least_pivots;
+        o[5*count + k] = rrr_leg1_disc_1;
+        o[8*count + k] = (rrr_leg1_w_1_t + (rrr_leg1_w_1_t_2 + rrr_leg1_w_2_in_base_x)) +
+            (rrr_leg1_w_2_in_base_y + (rrr_leg1_least_pivots + rrr_leg1_disc_1));
+        const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
+        const real rrr_leg1_size = m->rrr_leg1_size[i];
+        o[7*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
+            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(-rrr_leg1_r_1_r0_y) >
+            TOLERANCE*rrr_leg1_size);
+        o[6*count + k] = UNLESS(rrr_leg1_disc_1 >= 0);
+    }
+}
+
+INLINE void condition_place_rrr_leg1(size_t w, size_t count, const real *o, size_t first, real *H,
+    real *pivots, real *reach, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(0)*w + k] = o[0*count + first + k];
+        H[(3)*w + k] = o[1*count + first + k];
+        H[(1)*w + k] = o[2*count + first + k];
+        H[(4)*w + k] = o[3*count + first + k];
+        pivots[(0)*w + k] = o[4*count + first + k];
+        reach[(0)*w + k] = o[5*count + first + k];
+        t->unreachable[k] += o[6*count + first + k];
+        t->singular[k] += o[7*count + first + k];
+        t->total[k] += o[8*count + first + k];
+    }
+}
+
+INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, real *terms, real *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        /* (rrr-S) from the base point to the connection point */
         const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_rrr = m->size_rrr[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr =
-            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr;
-        const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
-        const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr;
-        const real axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        /* (rrr-V6) reciprocal vector 2 */
-        const real w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*(c_2_rrr*r_1_rrr_x
-            + r_1_rrr_t*s_2_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y;
-        const real w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
-        /* (rrr-V6) reciprocal vector 2 */
-        const real w_2_rrr_in_base_x = axis_y_rrr_axes2_in_base_x*inv_rrr_platform_joint_offset_x
-            + axis_y_rrr_axes2_in_base_y*w_2_rrr_t;
-        const real w_2_rrr_in_base_y = axis_y_rrr_axes2_in_base_y*inv_rrr_platform_joint_offset_x
-            - axis_y_rrr_axes2_in_base_x*w_2_rrr_t;
-        /* (C2) rms distance of the platform points from their centroid */
-        const real spread_t = b_c_x - rrr_platform_point_x;
-        const real spread_t_2 = b_c_y - rrr_platform_point_y;
-        const real spread_t_3 = spread_t*spread_t + spread_t_2*spread_t_2;
-        /* (rrr-K8) squared amplitude */
-        const real pivot_size = magnitude(rho2_1_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real pivot_size_2 = magnitude(r_1_rrr_r0_y);
-        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
-        const real least_pivots = lesser(root(inv_rho2_1_rrr_t_4*pivot_size),
-            inv_size_rrr*pivot_size_2);
-        o->sum[0][k] = add ? o->sum[0][k] + spread_t_3 : spread_t_3;  /* total_rrr */
-        o->entry[0][k] = -w_1_rrr_t;
-        o->entry[1][k] = w_1_rrr_t_2;
-        o->entry[2][k] = w_2_rrr_in_base_x;
-        o->entry[3][k] = w_2_rrr_in_base_y;
-        o->entry[4][k] = least_pivots;
-        o->entry[5][k] = disc_1_rrr;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
-    }
-}
-
-INLINE void condition_place_rrr(size_t w, const condition_results_rrr *o, size_t first, real *H,
-    real *pivots, real *reach, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        H[(0)*w + k] = o->entry[0][first + k];
-        H[(3)*w + k] = o->entry[1][first + k];
-        H[(1)*w + k] = o->entry[2][first + k];
-        H[(4)*w + k] = o->entry[3][first + k];
-        pivots[(0)*w + k] = o->entry[4][first + k];
-        reach[(0)*w + k] = o->entry[5][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void condition_legs_rrr2(const prepared *m, size_t leg, size_t legs, const condition_values
-    *s, size_t states, size_t count, int add, condition_results_rrr2 *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        const real rrr_w_1_t = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
+            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy);
+        const real rrr_w_1_t_2 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
+            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy);
+        /* (spread) rms distance of the platform points from their centroid */
         const real b_c_x = m->b_c_x;
+        const real rrr_spread_t = b_c_x - rrr_platform_point_x;
         const real b_c_y = m->b_c_y;
-        const real Kd_1_rrr2_t_2 = m->Kd_1_rrr2_t_2[i];
-        const real Kd_1_rrr2_t_3 = m->Kd_1_rrr2_t_3[i];
-        const real branch_1_rrr2 = m->branch_1_rrr2[i];
-        const real inv_Kd_1_rrr2_t_5 = m->inv_Kd_1_rrr2_t_5[i];
-        const real inv_rho2_1_rrr2_t_4 = m->inv_rho2_1_rrr2_t_4[i];
-        const real inv_size_rrr2 = m->inv_size_rrr2[i];
-        const real inv_uu_2_rrr2_t = m->inv_uu_2_rrr2_t[i];
-        const real rho2_1_rrr2_t = m->rho2_1_rrr2_t[i];
-        const real rrr2_base_frame_xx = m->rrr2_base_frame_xx[i];
-        const real rrr2_base_frame_xy = m->rrr2_base_frame_xy[i];
-        const real rrr2_base_frame_yx = m->rrr2_base_frame_yx[i];
-        const real rrr2_base_frame_yy = m->rrr2_base_frame_yy[i];
-        const real rrr2_base_point_x = m->rrr2_base_point_x[i];
-        const real rrr2_base_point_y = m->rrr2_base_point_y[i];
-        const real rrr2_joint2_offset_x = m->rrr2_joint2_offset_x[i];
-        const real rrr2_platform_joint_offset_x = m->rrr2_platform_joint_offset_x[i];
-        const real rrr2_platform_point_x = m->rrr2_platform_point_x[i];
-        const real rrr2_platform_point_y = m->rrr2_platform_point_y[i];
-        const real size_rrr2 = m->size_rrr2[i];
-        /* (rrr2-K1) from the base point to the connection point */
-        const real S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x;
-        const real S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y;
-        /* (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y;
-        const real Kd_1_rrr2 = R(0.5)*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3;
-        /* (rrr2-K3) component along the reference direction */
-        const real px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx;
-        /* (rrr2-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x;
-        /* (rrr2-K4) component across the reference direction */
-        const real py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy;
-        /* (rrr2-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x;
-        /* (rrr2-K8) squared amplitude */
-        const real rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2;
-        /* (rrr2-K9) discriminant */
-        const real disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2;
-        /* (rrr2-K10) root, with the sign of the branch */
-        const real root_1_rrr2 = branch_1_rrr2*root(disc_1_rrr2);
-        /* (rrr2-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x -
-            rrr2_joint2_offset_x;
-        /* (rrr2-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x;
-        /* (rrr2-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr2 =
-            inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x;
-        /* (rrr2-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x;
-        const real r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 -
-            c_2_rrr2*rrr2_platform_joint_offset_x*s_2_rrr2;
-        /* (rrr2-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr2 = 1/rho2_1_rrr2;
-        const real c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2);
-        /* (rrr2-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2);
-        /* (rrr2-V5) reciprocal vector 1 */
-        const real axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2;
-        const real axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2;
-        const real inv_r_1_rrr2_r0_y = 1/r_1_rrr2_r0_y;
-        const real w_1_rrr2_t = inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx +
-            axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy);
-        const real w_1_rrr2_t_2 = inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx +
-            axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy);
-        /* (C2) rms distance of the platform points from their centroid */
-        const real spread_t_4 = b_c_x - rrr2_platform_point_x;
-        const real spread_t_5 = b_c_y - rrr2_platform_point_y;
-        const real spread_t_6 = spread_t_4*spread_t_4 + spread_t_5*spread_t_5;
-        /* (rrr2-K8) squared amplitude */
-        const real pivot_size_3 = magnitude(rho2_1_rrr2);
-        /* (rrr2-V5) reciprocal vector 1 */
-        const real pivot_size_4 = magnitude(r_1_rrr2_r0_y);
-        /* (rrr2-N30) force at the connection point that balances the leg's inertia and weight along all
+        const real rrr_spread_t_2 = b_c_y - rrr_platform_point_y;
+        const real rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_pivot_size = magnitude(rrr_rho2_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real rrr_pivot_size_2 = magnitude(rrr_r_1_r0_y);
+        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real least_pivots_2 = lesser(root(inv_rho2_1_rrr2_t_4*pivot_size_3),
-            inv_size_rrr2*pivot_size_4);
-        o->sum[0][k] = add ? o->sum[0][k] + spread_t_6 : spread_t_6;  /* total_rrr2 */
-        o->entry[0][k] = -w_1_rrr2_t;
-        o->entry[1][k] = w_1_rrr2_t_2;
-        o->entry[2][k] = least_pivots_2;
-        o->entry[3][k] = disc_1_rrr2;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
-            UNLESS(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
-        o->unreachable[k] = UNLESS(disc_1_rrr2 >= 0);
+        const real inv_rrr_rho2_1_t_4 = m->inv_rrr_rho2_1_t_4[i];
+        const real inv_rrr_size = m->inv_rrr_size[i];
+        const real rrr_least_pivots = lesser(root(inv_rrr_rho2_1_t_4*rrr_pivot_size),
+            inv_rrr_size*rrr_pivot_size_2);
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_spread_t_3 : rrr_spread_t_3;  /* total_rrr */
+        o[0*count + k] = -rrr_w_1_t;
+        o[1*count + k] = rrr_w_1_t_2;
+        o[2*count + k] = rrr_least_pivots;
+        o[3*count + k] = rrr_disc_1;
+        o[6*count + k] = (rrr_w_1_t + rrr_w_1_t_2) + (rrr_least_pivots + rrr_disc_1);
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[5*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[4*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void condition_place_rrr2(size_t w, const condition_results_rrr2 *o, size_t first, real *H,
-    real *pivots, real *reach, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        H[(2)*w + k] = o->entry[0][first + k];
-        H[(5)*w + k] = o->entry[1][first + k];
-        pivots[(1)*w + k] = o->entry[2][first + k];
-        reach[(1)*w + k] = o->entry[3][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void condition_after(size_t w, const condition_values *s, real *lengths)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real total_rrr = s->sum[0][k];
-        const real total_rrr2 = s->sum[1][k];
-        /* (C2) rms distance of the platform points from their centroid */
-        const real spread_ = root(R(0.5)*total_rrr + R(0.5)*total_rrr2);
-        lengths[0*w + k] = spread_;
-    }
-}
-
-INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, real *lengths, real
+INLINE void condition_place_rrr(size_t w, size_t count, const real *o, size_t first, real *H, real
     *pivots, real *reach, verdict *t)
 {
-    condition_values values, *const s = &values;
-    condition_results_rrr results_rrr;
-    condition_results_rrr2 results_rrr2;
-    condition_before(m, w, X, s, lengths);
-    if (w == 1) {  /* the legs side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        condition_legs_rrr(m, 0, 1, s, 0, 1, 0, &results_rrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            condition_place_rrr(w, &results_rrr, leg, H, pivots, reach, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_rrr.sum[n], 1);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            condition_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
-            condition_place_rrr(w, &results_rrr, 0, H, pivots, reach, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_rrr.sum[n][k];
-            }
-        }
+    for (size_t k = 0; k < w; ++k) {
+        H[(2)*w + k] = o[0*count + first + k];
+        H[(5)*w + k] = o[1*count + first + k];
+        pivots[(1)*w + k] = o[2*count + first + k];
+        reach[(1)*w + k] = o[3*count + first + k];
+        t->unreachable[k] += o[4*count + first + k];
+        t->singular[k] += o[5*count + first + k];
+        t->total[k] += o[6*count + first + k];
     }
-    if (w == 1) {  /* the legs side by side */
-        memset(results_rrr2.sum, 0, sizeof results_rrr2.sum);
-        condition_legs_rrr2(m, 0, 1, s, 0, 1, 0, &results_rrr2);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            condition_place_rrr2(w, &results_rrr2, leg, H, pivots, reach, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[1 + n][k] = total(results_rrr2.sum[n], 1);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr2.sum, 0, sizeof results_rrr2.sum);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            condition_legs_rrr2(m, leg, 0, s, 1, w, 1, &results_rrr2);
-            condition_place_rrr2(w, &results_rrr2, 0, H, pivots, reach, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[1 + n][k] = results_rrr2.sum[n][k];
-            }
-        }
+}
+
+INLINE void condition_after(size_t w, const real *sums, real *lengths, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        /* (spread) rms distance of the platform points from their centroid */
+        const real total_rrr = sums[1*w + k];
+        const real total_rrr_leg1 = sums[0*w + k];
+        const real spread_ = root(R(0.5)*total_rrr + R(0.5)*total_rrr_leg1);
+        lengths[0*w + k] = spread_;
+        t->total[k] += spread_;
     }
-    condition_after(w, s, lengths);
+}
+
+INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
+    real *reach, verdict *t)
+{
+    real s[2] = {0}, sums[2] = {0}, terms_rrr_leg1[1*LEGS(1)] = {0}, o_rrr_leg1[9*LEGS(1)] = {0},
+        terms_rrr[1*LEGS(1)] = {0}, o_rrr[7*LEGS(1)] = {0};
+    condition_before(m, 1, X, s, lengths, t);
+    condition_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_rrr_leg1, o_rrr_leg1);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        condition_place_rrr_leg1(1, LEGS(1), o_rrr_leg1, leg, H, pivots, reach, t);
+    }
+    for (size_t n = 0; n < 1; ++n) {
+        sums[n] = total(terms_rrr_leg1 + n*LEGS(1), 1);
+    }
+    condition_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        condition_place_rrr(1, LEGS(1), o_rrr, leg, H, pivots, reach, t);
+    }
+    for (size_t n = 0; n < 1; ++n) {
+        sums[1 + n] = total(terms_rrr + n*LEGS(1), 1);
+    }
+    condition_after(1, sums, lengths, t);
 }
 
 /* ---- what users call, as steps over these ---- */
 
-INLINE void M_any(const prepared *m, size_t w, const real *X, real *M_out, int *code)
+INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(2, 1, X, why.invalid);
+    M_run(m, X, M_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(4, 1, M_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(4, M_out);
+    }
+}
+
+INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
     real X_in[2*LANES], M[4*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    M_run(m, w, X, M, &why);
-    check(4, w, M, why.overflow);
-    judge(&why, w, code);
-    deliver(M, 4, w, code, M_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    M_run_lanes(m, X, M, &why);
+    suspect(&why, code);
+    deliver(4, M, M_out);
 }
 
-INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, real *Z_out, int
-    *code)
+INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 2) + total(V, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+    }
+    Z_run(m, X, V, Z_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(2, 1, Z_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(2, Z_out);
+    }
+}
+
+INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     real X_in[2*LANES], V_in[2*LANES], Z[2*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    V = side_by_side(2, w, V, V_in, why.invalid);
-    Z_run(m, w, X, V, Z, &why);
-    check(2, w, Z, why.overflow);
-    judge(&why, w, code);
-    deliver(Z, 2, w, code, Z_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    V = side_by_side(2, V, V_in, why.total);
+    Z_run_lanes(m, X, V, Z, &why);
+    suspect(&why, code);
+    deliver(2, Z, Z_out);
 }
 
-INLINE void H_any(const prepared *m, size_t w, const real *X, real *H_out, int *code)
+INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(2, 1, X, why.invalid);
+    H_run(m, X, H_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(6, 1, H_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(6, H_out);
+    }
+}
+
+INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
     real X_in[2*LANES], H[6*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    H_run(m, w, X, H, &why);
-    check(6, w, H, why.overflow);
-    judge(&why, w, code);
-    deliver(H, 6, w, code, H_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    H_run_lanes(m, X, H, &why);
+    suspect(&why, code);
+    deliver(6, H, H_out);
 }
 
-INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, real *q_out, int
-    *code)
+INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(2, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(4, 1, q_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(4, q_out);
+    }
+}
+
+INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     real X_in[2*LANES], q[4*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    inverse_kinematics_run(m, w, X, q, &why);
-    check(4, w, q, why.overflow);
-    judge(&why, w, code);
-    deliver(q, 4, w, code, q_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    suspect(&why, code);
+    deliver(4, q, q_out);
 }
 
-INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *qd_out, int *code)
+INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 2) + total(V, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+    }
+    joint_rates_run(m, X, V, qd_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(4, 1, qd_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(4, qd_out);
+    }
+}
+
+INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
 {
     real X_in[2*LANES], V_in[2*LANES], qd[4*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    V = side_by_side(2, w, V, V_in, why.invalid);
-    joint_rates_run(m, w, X, V, qd, &why);
-    check(4, w, qd, why.overflow);
-    judge(&why, w, code);
-    deliver(qd, 4, w, code, qd_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    V = side_by_side(2, V, V_in, why.total);
+    joint_rates_run_lanes(m, X, V, qd, &why);
+    suspect(&why, code);
+    deliver(4, qd, qd_out);
 }
 
-INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd_out, int *code)
+INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 2) + total(V, 2) + total(A, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+        check(2, 1, A, why.invalid);
+    }
+    joint_accelerations_run(m, X, V, A, qdd_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(4, 1, qdd_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(4, qdd_out);
+    }
+}
+
+INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
 {
     real X_in[2*LANES], V_in[2*LANES], A_in[2*LANES], qdd[4*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    V = side_by_side(2, w, V, V_in, why.invalid);
-    A = side_by_side(2, w, A, A_in, why.invalid);
-    joint_accelerations_run(m, w, X, V, A, qdd, &why);
-    check(4, w, qdd, why.overflow);
-    judge(&why, w, code);
-    deliver(qdd, 4, w, code, qdd_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    V = side_by_side(2, V, V_in, why.total);
+    A = side_by_side(2, A, A_in, why.total);
+    joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
+    suspect(&why, code);
+    deliver(4, qdd, qdd_out);
 }
 
-INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *V, real *M_out,
-    real *Z_out, real *H_out, int *code)
+INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 2) + total(V, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+    }
+    dynamics_run(m, X, V, M_out, Z_out, H_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(4, 1, M_out, why.overflow);
+        check(2, 1, Z_out, why.overflow);
+        check(6, 1, H_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(4, M_out);
+        refuse(2, Z_out);
+        refuse(6, H_out);
+    }
+}
+
+INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out, int *code)
 {
     real X_in[2*LANES], V_in[2*LANES], M[4*LANES], Z[2*LANES], H[6*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    V = side_by_side(2, w, V, V_in, why.invalid);
-    dynamics_run(m, w, X, V, M, Z, H, &why);
-    check(4, w, M, why.overflow);
-    check(2, w, Z, why.overflow);
-    check(6, w, H, why.overflow);
-    judge(&why, w, code);
-    deliver(M, 4, w, code, M_out);
-    deliver(Z, 2, w, code, Z_out);
-    deliver(H, 6, w, code, H_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    V = side_by_side(2, V, V_in, why.total);
+    dynamics_run_lanes(m, X, V, M, Z, H, &why);
+    suspect(&why, code);
+    deliver(4, M, M_out);
+    deliver(2, Z, Z_out);
+    deliver(6, H, H_out);
 }
 
-static void inverse_dynamics_any(const prepared *m, const real *X, const real *V, const real *A,
+static void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, const real *weights, real *tau_out, int *code)
 {
     real wrench_in[2], weights_in[3], required[2] = {0}, H[6] = {0}, subtract_2[2] = {0},
         inverse_root_3[3] = {0}, scale_columns_4[6] = {0}, least_norm_5[3] = {0}, tau[3] = {0};
     verdict why;
     start(1, &why);
-    check(2, 1, X, why.invalid);
-    check(2, 1, V, why.invalid);
-    check(2, 1, A, why.invalid);
-    wrench = optional(2, 1, wrench, 0, wrench_in, why.invalid);
+    const real total_in = total(X, 2) + total(V, 2) + total(A, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+        check(2, 1, A, why.invalid);
+    }
+    wrench = optional(2, wrench, 0, wrench_in, why.invalid);
     require_positive(3, 1, weights, why.invalid);
-    weights = optional(3, 1, weights, 1, weights_in, why.invalid);
-    required_run(m, 1, X, V, A, required, H, &why);
+    weights = optional(3, weights, 1, weights_in, why.invalid);
+    required_run(m, X, V, A, required, H, &why);
     const real *const extend_1 = wrench;
     for (size_t i = 0; i < 2; ++i) {
         subtract_2[i] = required[i] - extend_1[i];
@@ -5152,50 +5221,119 @@ static void inverse_dynamics_any(const prepared *m, const real *X, const real *V
         tau[i] = inverse_root_3[i]*least_norm_5[i];
     }
     check(3, 1, tau, why.overflow);
-    judge(&why, 1, code);
-    deliver(tau, 3, 1, code, tau_out);
+    judge(&why, code);
+    copy(3, tau, tau_out);
+    if (*code != OK) {
+        refuse(3, tau_out);
+    }
 }
 
-INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, const real *V, const
-    real *tau, const real *wrench, real *A_out, int *code)
+INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, real *x, real
+    *unsure, real *total)
 {
-    real X_in[2*LANES], V_in[2*LANES], tau_in[3*LANES], wrench_in[2*LANES], M[4*LANES], Z[2*LANES],
-        H[6*LANES], times_1[2*LANES] = {0}, add_3[2*LANES], subtract_4[2*LANES], A[2*LANES],
-        work[8*LANES];
+    for (size_t k = 0; k < w; ++k) {
+        real a00 = a[(0)*w + k];
+        real a01 = a[(1)*w + k];
+        real b0 = b[0*w + k];
+        real a10 = a[(1*stride + 0)*w + k];
+        real a11 = a[(1*stride + 1)*w + k];
+        real b1 = b[1*w + k];
+        const real f0 = 1/a00;
+        const real d1 = a00*a11 - a10*a01;
+        const real f1 = a00/d1;
+        const real g10 = a10*f0;
+        b1 -= g10*b0;
+        const real x1 = (b1)*f1;
+        const real x0 = (b0)*f0 - a01*f0*x1;
+        x[0*w + k] = x0;
+        x[1*w + k] = x1;
+        total[k] += x0 + x1;
+        const real most0 = magnitude(g10);
+        const real most1 = magnitude(f1);
+        const real most2 = magnitude(f0);
+        unsure[k] += UNLESS(most0 <= R(40)) + UNLESS(most1 <= R(250)) + UNLESS(most2 <= R(1000)) +
+            UNLESS(is_finite(a00 + d1));
+    }
+}
+
+INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
+    const real *wrench, real *A_out, int *code)
+{
+    real wrench_in[2], M[4] = {0}, Z[2] = {0}, H[6] = {0}, times_1[2] = {0}, add_3[2] = {0},
+        subtract_4[2] = {0}, unsure_7[1] = {0}, work[8];
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    V = side_by_side(2, w, V, V_in, why.invalid);
-    tau = side_by_side(3, w, tau, tau_in, why.invalid);
-    wrench = optional(2, w, wrench, 0, wrench_in, why.invalid);
-    dynamics_run(m, w, X, V, M, Z, H, &why);
-    product(2, 3, 1, w, H, tau, times_1);
+    start(1, &why);
+    const real total_in = total(X, 2) + total(V, 2) + total(tau, 3);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+        check(3, 1, tau, why.invalid);
+    }
+    wrench = optional(2, wrench, 0, wrench_in, why.invalid);
+    dynamics_run(m, X, V, M, Z, H, &why);
+    product(2, 3, 1, 1, H, tau, times_1);
     const real *const extend_2 = wrench;
-    for (size_t i = 0; i < 2*w; ++i) {
+    for (size_t i = 0; i < 2; ++i) {
         add_3[i] = times_1[i] + extend_2[i];
     }
-    for (size_t i = 0; i < 2*w; ++i) {
+    for (size_t i = 0; i < 2; ++i) {
         subtract_4[i] = add_3[i] - Z[i];
     }
-    set_matrix(2, w, M, work);
-    solve(2, w, subtract_4, work, A, why.singular);
-    check(2, w, A, why.overflow);
-    judge(&why, w, code);
-    deliver(A, 2, w, code, A_out);
+    eliminate_0(1, 2, M, subtract_4, A_out, unsure_7, why.total);
+    if (unsure_7[0] > 0) {
+        set_matrix(2, 1, M, work);
+        solve_apart(2, subtract_4, work, A_out, why.singular);
+        check(2, 1, A_out, why.overflow);
+    }
+    if (!is_finite(why.total[0])) {
+        check(2, 1, A_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(2, A_out);
+    }
 }
 
-INLINE void complete_acceleration_any(const real *A, real *completed_out, int *code)
+INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
+    *tau, const real *wrench, real *A_out, int *code)
+{
+    real X_in[2*LANES], V_in[2*LANES], tau_in[3*LANES], wrench_in[2*LANES], M[4*LANES], Z[2*LANES],
+        H[6*LANES], times_1[2*LANES] = {0}, add_3[2*LANES], subtract_4[2*LANES], A[2*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    V = side_by_side(2, V, V_in, why.total);
+    tau = side_by_side(3, tau, tau_in, why.total);
+    wrench = optional_side_by_side(2, wrench, 0, wrench_in, why.total);
+    dynamics_run_lanes(m, X, V, M, Z, H, &why);
+    product(2, 3, 1, LANES, H, tau, times_1);
+    const real *const extend_2 = wrench;
+    for (size_t i = 0; i < 2*LANES; ++i) {
+        add_3[i] = times_1[i] + extend_2[i];
+    }
+    for (size_t i = 0; i < 2*LANES; ++i) {
+        subtract_4[i] = add_3[i] - Z[i];
+    }
+    eliminate_0(LANES, 2, M, subtract_4, A, why.singular, why.total);
+    suspect(&why, code);
+    deliver(2, A, A_out);
+}
+
+INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
 {
     verdict why;
     start(1, &why);
     check(2, 1, A, why.invalid);
     const real *const completed = A;
     check(2, 1, completed, why.overflow);
-    judge(&why, 1, code);
-    deliver(completed, 2, 1, code, completed_out);
+    judge(&why, code);
+    copy(2, completed, completed_out);
+    if (*code != OK) {
+        refuse(2, completed_out);
+    }
 }
 
-INLINE void leg_reactions_any(const prepared *m, const real *X, const real *V, const real *A,
+INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out, int *code)
 {
     static const size_t places_0[] = {0, 0, 1};
@@ -5203,84 +5341,108 @@ INLINE void leg_reactions_any(const prepared *m, const real *X, const real *V, c
         leg_force[6] = {0}, drive[9] = {0}, forces[6] = {0};
     verdict why;
     start(1, &why);
-    check(2, 1, X, why.invalid);
-    check(2, 1, V, why.invalid);
-    check(2, 1, A, why.invalid);
-    wrench = optional(2, 1, wrench, 0, wrench_in, why.invalid);
-    required_run(m, 1, X, V, A, required, H, &why);
+    const real total_in = total(X, 2) + total(V, 2) + total(A, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+        check(2, 1, A, why.invalid);
+    }
+    wrench = optional(2, wrench, 0, wrench_in, why.invalid);
+    required_run(m, X, V, A, required, H, &why);
     const real *const extend_1 = wrench;
     for (size_t i = 0; i < 2; ++i) {
         subtract_2[i] = required[i] - extend_1[i];
     }
     least_norm(2, 3, H, subtract_2, least_norm_3, why.singular);
-    legs_run(m, 1, X, V, A, leg_force, drive, &why);
+    legs_run(m, X, V, A, leg_force, drive, &why);
     for (size_t i = 0; i < 6; ++i) {
         forces[i] = leg_force[i];
     }
     add_forces(3, 3, 1, places_0, least_norm_3, drive, forces);
     check(6, 1, forces, why.overflow);
-    judge(&why, 1, code);
-    deliver(forces, 6, 1, code, forces_out);
+    judge(&why, code);
+    copy(6, forces, forces_out);
+    if (*code != OK) {
+        refuse(6, forces_out);
+    }
 }
 
-INLINE void energy_any(const prepared *m, const real *X, const real *V, real *kinetic_out, real
+INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out, int *code)
 {
     real M[4] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
     start(1, &why);
-    check(2, 1, X, why.invalid);
-    check(2, 1, V, why.invalid);
-    M_run(m, 1, X, M, &why);
-    potential_run(m, 1, X, potential_of_potential, &why);
+    const real total_in = total(X, 2) + total(V, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+    }
+    M_run(m, X, M, &why);
+    potential_run(m, X, potential_of_potential, &why);
     half_form(2, 1, V, M, kinetic);
     const real *const potential = potential_of_potential;
     check(1, 1, kinetic, why.overflow);
     check(1, 1, potential, why.overflow);
-    judge(&why, 1, code);
-    deliver(kinetic, 1, 1, code, kinetic_out);
-    deliver(potential, 1, 1, code, potential_out);
+    judge(&why, code);
+    copy(1, kinetic, kinetic_out);
+    copy(1, potential, potential_out);
+    if (*code != OK) {
+        refuse(1, kinetic_out);
+        refuse(1, potential_out);
+    }
 }
 
-INLINE void null_space_any(const prepared *m, const real *X, real *basis_out, int *code)
+INLINE void null_space_one(const prepared *m, const real *X, real *basis_out, int *code)
 {
     real H[6] = {0}, basis[3] = {0};
     verdict why;
     start(1, &why);
     check(2, 1, X, why.invalid);
-    H_run(m, 1, X, H, &why);
+    H_run(m, X, H, &why);
     null_basis(2, 3, 2, H, basis);
     check(3, 1, basis, why.overflow);
-    judge(&why, 1, code);
-    deliver(basis, 3, 1, code, basis_out);
+    judge(&why, code);
+    copy(3, basis, basis_out);
+    if (*code != OK) {
+        refuse(3, basis_out);
+    }
 }
 
-INLINE void condition_any(const prepared *m, const real *X, real *sigma_out, real *legs_out, int
+INLINE void condition_one(const prepared *m, const real *X, real *sigma_out, real *legs_out, int
     *code)
 {
-    real H[6] = {0}, lengths[2] = {0}, legs[2] = {0}, reach[2] = {0}, sigma[2] = {0};
+    real H[6] = {0}, lengths[2] = {0}, reach[2] = {0}, sigma[2] = {0};
     verdict why;
     start(1, &why);
     check(2, 1, X, why.invalid);
-    condition_run(m, 1, X, H, lengths, legs, reach, &why);
+    condition_run(m, X, H, lengths, legs_out, reach, &why);
     singular_values(2, 3, H, sigma);
+    if (!is_finite(why.total[0])) {
+        check(2, 1, legs_out, why.overflow);
+    }
     check(2, 1, sigma, why.overflow);
-    check(2, 1, legs, why.overflow);
-    judge(&why, 1, code);
-    deliver(sigma, 2, 1, code, sigma_out);
-    deliver(legs, 2, 1, code, legs_out);
+    judge(&why, code);
+    copy(2, sigma, sigma_out);
+    if (*code != OK) {
+        refuse(2, sigma_out);
+        refuse(2, legs_out);
+    }
 }
 
-static void mismatch_any(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
+static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
     static const size_t places_0[] = {0, 1, 2};
     real q[4] = {0}, subtract_2[3] = {0}, gap[3] = {0};
     verdict why;
     start(1, &why);
-    check(2, 1, X, why.invalid);
-    check(3, 1, q_actuated, why.invalid);
-    inverse_kinematics_run(m, 1, X, q, &why);
+    const real total_in = total(X, 2) + total(q_actuated, 3);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(3, 1, q_actuated, why.invalid);
+    }
+    inverse_kinematics_run(m, X, q, &why);
     const real *const take_1 = q;
     for (size_t i = 0; i < 3; ++i) {
         subtract_2[i] = q_actuated[i] - take_1[i];
@@ -5290,20 +5452,26 @@ static void mismatch_any(const prepared *m, const real *X, const real *q_actuate
     }
     wrap_turns(3, 1, places_0, gap);
     check(3, 1, gap, why.overflow);
-    judge(&why, 1, code);
-    deliver(gap, 3, 1, code, gap_out);
+    judge(&why, code);
+    copy(3, gap, gap_out);
+    if (*code != OK) {
+        refuse(3, gap_out);
+    }
 }
 
-static void slope_any(const prepared *m, const real *X, real *slope_out, int *code)
+static void slope_one(const prepared *m, const real *X, real *slope_out, int *code)
 {
-    real slope[6] = {0};
     verdict why;
     start(1, &why);
     check(2, 1, X, why.invalid);
-    H_run(m, 1, X, slope, &why);
-    check(6, 1, slope, why.overflow);
-    judge(&why, 1, code);
-    deliver(slope, 6, 1, code, slope_out);
+    H_run(m, X, slope_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(6, 1, slope_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(6, slope_out);
+    }
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -5314,12 +5482,12 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
     real trial[2] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    mismatch_any(m, found, q_actuated, gap, &code);
+    mismatch_one(m, found, q_actuated, gap, &code);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        slope_any(m, found, slope, &code);
+        slope_one(m, found, slope, &code);
         if (code != OK) {
             break;
         }
@@ -5333,7 +5501,7 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            mismatch_any(m, trial, q_actuated, next, &tried);
+            mismatch_one(m, trial, q_actuated, next, &tried);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -5351,21 +5519,27 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 }
 
 
-INLINE void forward_kinematics_any(const prepared *m, const real *q_actuated, const real *X0, real
+INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
     *X_out, int *code)
 {
     real X[2] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, q_actuated, why.invalid);
-    check(2, 1, X0, why.invalid);
+    const real total_in = total(q_actuated, 3) + total(X0, 2);
+    if (!is_finite(total_in)) {
+        check(3, 1, q_actuated, why.invalid);
+        check(2, 1, X0, why.invalid);
+    }
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(2, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 2, 1, code, X_out);
+    judge(&why, code);
+    copy(2, X, X_out);
+    if (*code != OK) {
+        refuse(2, X_out);
+    }
 }
 
-INLINE void dissipation_any(const real *V, real *dissipation_out, int *code)
+INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 {
     real subtract_1[2] = {0};
     verdict why;
@@ -5376,126 +5550,316 @@ INLINE void dissipation_any(const real *V, real *dissipation_out, int *code)
     }
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
-    judge(&why, 1, code);
-    deliver(dissipation, 1, 1, code, dissipation_out);
+    judge(&why, code);
+    copy(1, dissipation, dissipation_out);
+    if (*code != OK) {
+        refuse(1, dissipation_out);
+    }
 }
 
-INLINE void momentum_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *momentum_out, int *code)
+INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
+    *code)
+{
+    real M[4] = {0}, momentum[2] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 2) + total(V, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+    }
+    M_run(m, X, M, &why);
+    product(2, 2, 1, 1, M, V, momentum);
+    check(2, 1, momentum, why.overflow);
+    judge(&why, code);
+    copy(2, momentum, momentum_out);
+    if (*code != OK) {
+        refuse(2, momentum_out);
+    }
+}
+
+INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
+    int *code)
 {
     real X_in[2*LANES], V_in[2*LANES], M[4*LANES], momentum[2*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    V = side_by_side(2, w, V, V_in, why.invalid);
-    M_run(m, w, X, M, &why);
-    product(2, 2, 1, w, M, V, momentum);
-    check(2, w, momentum, why.overflow);
-    judge(&why, w, code);
-    deliver(momentum, 2, w, code, momentum_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    V = side_by_side(2, V, V_in, why.total);
+    M_run_lanes(m, X, M, &why);
+    product(2, 2, 1, LANES, M, V, momentum);
+    add_up(2, momentum, why.total);
+    suspect(&why, code);
+    deliver(2, momentum, momentum_out);
 }
 
-INLINE void actuator_positions_any(const prepared *m, size_t w, const real *X, real *q_out, int
-    *code)
+INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
+{
+    static const size_t places_0[] = {0, 1, 2, 3};
+    real q[4] = {0}, margins[4] = {0};
+    verdict why;
+    start(1, &why);
+    check(2, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q, &why);
+    for (size_t i = 0; i < 4; ++i) {
+        margins[i] = q[i];
+    }
+    unlimited(4, 4, 1, places_0, margins, why.overflow);
+    judge(&why, code);
+    copy(4, margins, margins_out);
+    if (*code != OK) {
+        refuse(4, margins_out);
+    }
+}
+
+INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
+{
+    static const size_t places_0[] = {0, 1, 2, 3};
+    real X_in[2*LANES], q[4*LANES], margins[4*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    for (size_t i = 0; i < 4*LANES; ++i) {
+        margins[i] = q[i];
+    }
+    unlimited(4, 4, LANES, places_0, margins, why.invalid);
+    suspect(&why, code);
+    deliver(4, margins, margins_out);
+}
+
+INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
+{
+    real q[4] = {0}, subtract_1[4] = {0}, within[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(2, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q, &why);
+    for (size_t i = 0; i < 4; ++i) {
+        subtract_1[i] = q[i] - q[i];
+    }
+    not_negative(4, 1, subtract_1, within, why.overflow);
+    check(1, 1, within, why.overflow);
+    judge(&why, code);
+    copy(1, within, within_out);
+    if (*code != OK) {
+        refuse(1, within_out);
+    }
+}
+
+INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
+{
+    real X_in[2*LANES], q[4*LANES], subtract_1[4*LANES], within[1*LANES] = {0};
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    for (size_t i = 0; i < 4*LANES; ++i) {
+        subtract_1[i] = q[i] - q[i];
+    }
+    not_negative(4, LANES, subtract_1, within, why.invalid);
+    add_up(1, within, why.total);
+    suspect(&why, code);
+    deliver(1, within, within_out);
+}
+
+INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
+{
+    real q_of_inverse_kinematics[4] = {0};
+    verdict why;
+    start(1, &why);
+    check(2, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
+    const real *const q = q_of_inverse_kinematics;
+    check(3, 1, q, why.overflow);
+    judge(&why, code);
+    copy(3, q, q_out);
+    if (*code != OK) {
+        refuse(3, q_out);
+    }
+}
+
+INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     real X_in[2*LANES], q_of_inverse_kinematics[4*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    inverse_kinematics_run(m, w, X, q_of_inverse_kinematics, &why);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
     const real *const q = q_of_inverse_kinematics;
-    check(3, w, q, why.overflow);
-    judge(&why, w, code);
-    deliver(q, 3, w, code, q_out);
+    add_up(3, q, why.total);
+    suspect(&why, code);
+    deliver(3, q, q_out);
 }
 
-INLINE void actuator_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *qd_out, int *code)
+INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
+{
+    real qd_of_joint_rates[4] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 2) + total(V, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+    }
+    joint_rates_run(m, X, V, qd_of_joint_rates, &why);
+    const real *const qd = qd_of_joint_rates;
+    check(3, 1, qd, why.overflow);
+    judge(&why, code);
+    copy(3, qd, qd_out);
+    if (*code != OK) {
+        refuse(3, qd_out);
+    }
+}
+
+INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
+    int *code)
 {
     real X_in[2*LANES], V_in[2*LANES], qd_of_joint_rates[4*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    V = side_by_side(2, w, V, V_in, why.invalid);
-    joint_rates_run(m, w, X, V, qd_of_joint_rates, &why);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    V = side_by_side(2, V, V_in, why.total);
+    joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
     const real *const qd = qd_of_joint_rates;
-    check(3, w, qd, why.overflow);
-    judge(&why, w, code);
-    deliver(qd, 3, w, code, qd_out);
+    add_up(3, qd, why.total);
+    suspect(&why, code);
+    deliver(3, qd, qd_out);
 }
 
-INLINE void actuator_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd_out, int *code)
+INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
+{
+    real qdd_of_joint_accelerations[4] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 2) + total(V, 2) + total(A, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+        check(2, 1, A, why.invalid);
+    }
+    joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
+    const real *const qdd = qdd_of_joint_accelerations;
+    check(3, 1, qdd, why.overflow);
+    judge(&why, code);
+    copy(3, qdd, qdd_out);
+    if (*code != OK) {
+        refuse(3, qdd_out);
+    }
+}
+
+INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out, int *code)
 {
     real X_in[2*LANES], V_in[2*LANES], A_in[2*LANES], qdd_of_joint_accelerations[4*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    V = side_by_side(2, w, V, V_in, why.invalid);
-    A = side_by_side(2, w, A, A_in, why.invalid);
-    joint_accelerations_run(m, w, X, V, A, qdd_of_joint_accelerations, &why);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    V = side_by_side(2, V, V_in, why.total);
+    A = side_by_side(2, A, A_in, why.total);
+    joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
     const real *const qdd = qdd_of_joint_accelerations;
-    check(3, w, qdd, why.overflow);
-    judge(&why, w, code);
-    deliver(qdd, 3, w, code, qdd_out);
+    add_up(3, qdd, why.total);
+    suspect(&why, code);
+    deliver(3, qdd, qdd_out);
 }
 
-INLINE void power_any(const prepared *m, size_t w, const real *X, const real *V, const real *tau,
-    real *power_out, int *code)
+INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out, int *code)
+{
+    real H[6] = {0}, times_1[2] = {0}, power[1] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 2) + total(V, 2) + total(tau, 3);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+        check(3, 1, tau, why.invalid);
+    }
+    H_run(m, X, H, &why);
+    product(2, 3, 1, 1, H, tau, times_1);
+    inner(2, 1, times_1, V, power);
+    check(1, 1, power, why.overflow);
+    judge(&why, code);
+    copy(1, power, power_out);
+    if (*code != OK) {
+        refuse(1, power_out);
+    }
+}
+
+INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out, int *code)
 {
     real X_in[2*LANES], V_in[2*LANES], tau_in[3*LANES], H[6*LANES], times_1[2*LANES] = {0},
         power[1*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    V = side_by_side(2, w, V, V_in, why.invalid);
-    tau = side_by_side(3, w, tau, tau_in, why.invalid);
-    H_run(m, w, X, H, &why);
-    product(2, 3, 1, w, H, tau, times_1);
-    inner(2, w, times_1, V, power);
-    check(1, w, power, why.overflow);
-    judge(&why, w, code);
-    deliver(power, 1, w, code, power_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    V = side_by_side(2, V, V_in, why.total);
+    tau = side_by_side(3, tau, tau_in, why.total);
+    H_run_lanes(m, X, H, &why);
+    product(2, 3, 1, LANES, H, tau, times_1);
+    inner(2, LANES, times_1, V, power);
+    add_up(1, power, why.total);
+    suspect(&why, code);
+    deliver(1, power, power_out);
 }
 
-INLINE void retract_any(const real *X, const real *step, real *X_moved_out, int *code)
+INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
 {
     real X_moved[2] = {0};
     verdict why;
     start(1, &why);
-    check(2, 1, X, why.invalid);
-    check(2, 1, step, why.invalid);
+    const real total_in = total(X, 2) + total(step, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, step, why.invalid);
+    }
     for (size_t i = 0; i < 2; ++i) {
         X_moved[i] = X[i] + step[i];
     }
     check(2, 1, X_moved, why.overflow);
-    judge(&why, 1, code);
-    deliver(X_moved, 2, 1, code, X_moved_out);
+    judge(&why, code);
+    copy(2, X_moved, X_moved_out);
+    if (*code != OK) {
+        refuse(2, X_moved_out);
+    }
 }
 
-INLINE void difference_any(const real *X0, const real *X1, real *step_out, int *code)
+INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
 {
     real step[2] = {0};
     verdict why;
     start(1, &why);
-    check(2, 1, X0, why.invalid);
-    check(2, 1, X1, why.invalid);
+    const real total_in = total(X0, 2) + total(X1, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X0, why.invalid);
+        check(2, 1, X1, why.invalid);
+    }
     for (size_t i = 0; i < 2; ++i) {
         step[i] = X1[i] - X0[i];
     }
     check(2, 1, step, why.overflow);
-    judge(&why, 1, code);
-    deliver(step, 2, 1, code, step_out);
+    judge(&why, code);
+    copy(2, step, step_out);
+    if (*code != OK) {
+        refuse(2, step_out);
+    }
 }
 
-INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real *X_out, int *code)
+INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
 {
     real subtract_1[2] = {0}, scale_2[2] = {0}, X[2] = {0};
     verdict why;
     start(1, &why);
-    check(2, 1, X0, why.invalid);
-    check(2, 1, X1, why.invalid);
-    check(1, 1, s, why.invalid);
+    const real total_in = total(X0, 2) + total(X1, 2) + total(s, 1);
+    if (!is_finite(total_in)) {
+        check(2, 1, X0, why.invalid);
+        check(2, 1, X1, why.invalid);
+        check(1, 1, s, why.invalid);
+    }
     for (size_t i = 0; i < 2; ++i) {
         subtract_1[i] = X1[i] - X0[i];
     }
@@ -5506,8 +5870,11 @@ INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real 
         X[i] = X0[i] + scale_2[i];
     }
     check(2, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 2, 1, code, X_out);
+    judge(&why, code);
+    copy(2, X, X_out);
+    if (*code != OK) {
+        refuse(2, X_out);
+    }
 }
 
 /* ---- one state, and batches ---- */
@@ -5516,7 +5883,7 @@ int fivebar_redundant_M(const fivebar_redundant_model *model, const fivebar_redu
     fivebar_redundant_real *M)
 {
     int code;
-    M_any(model, 1, X, M, &code);
+    M_one(model, X, M, &code);
     return code;
 }
 
@@ -5524,9 +5891,9 @@ size_t fivebar_redundant_M_batch(const fivebar_redundant_model *model, size_t n,
     fivebar_redundant_real *X, fivebar_redundant_real *M, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        M_any(model, LANES, X + 2*i, M + 4*i, codes);
+        M_lanes(model, X + 2*i, M + 4*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_redundant_M(model, X + 2*(i + k), M + 4*(i + k));
@@ -5545,7 +5912,7 @@ int fivebar_redundant_Z(const fivebar_redundant_model *model, const fivebar_redu
     const fivebar_redundant_real *V, fivebar_redundant_real *Z)
 {
     int code;
-    Z_any(model, 1, X, V, Z, &code);
+    Z_one(model, X, V, Z, &code);
     return code;
 }
 
@@ -5554,9 +5921,9 @@ size_t fivebar_redundant_Z_batch(const fivebar_redundant_model *model, size_t n,
     *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        Z_any(model, LANES, X + 2*i, V + 2*i, Z + 2*i, codes);
+        Z_lanes(model, X + 2*i, V + 2*i, Z + 2*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_redundant_Z(model, X + 2*(i + k), V + 2*(i + k), Z + 2*(i + k));
@@ -5575,7 +5942,7 @@ int fivebar_redundant_H(const fivebar_redundant_model *model, const fivebar_redu
     fivebar_redundant_real *H)
 {
     int code;
-    H_any(model, 1, X, H, &code);
+    H_one(model, X, H, &code);
     return code;
 }
 
@@ -5583,9 +5950,9 @@ size_t fivebar_redundant_H_batch(const fivebar_redundant_model *model, size_t n,
     fivebar_redundant_real *X, fivebar_redundant_real *H, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        H_any(model, LANES, X + 2*i, H + 6*i, codes);
+        H_lanes(model, X + 2*i, H + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_redundant_H(model, X + 2*(i + k), H + 6*(i + k));
@@ -5604,7 +5971,7 @@ int fivebar_redundant_inverse_kinematics(const fivebar_redundant_model *model, c
     fivebar_redundant_real *X, fivebar_redundant_real *q)
 {
     int code;
-    inverse_kinematics_any(model, 1, X, q, &code);
+    inverse_kinematics_one(model, X, q, &code);
     return code;
 }
 
@@ -5612,9 +5979,9 @@ size_t fivebar_redundant_inverse_kinematics_batch(const fivebar_redundant_model 
     const fivebar_redundant_real *X, fivebar_redundant_real *q, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_kinematics_any(model, LANES, X + 2*i, q + 4*i, codes);
+        inverse_kinematics_lanes(model, X + 2*i, q + 4*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_redundant_inverse_kinematics(model, X + 2*(i + k), q + 4*(i + k));
@@ -5633,7 +6000,7 @@ int fivebar_redundant_joint_rates(const fivebar_redundant_model *model, const
     fivebar_redundant_real *X, const fivebar_redundant_real *V, fivebar_redundant_real *rates)
 {
     int code;
-    joint_rates_any(model, 1, X, V, rates, &code);
+    joint_rates_one(model, X, V, rates, &code);
     return code;
 }
 
@@ -5642,9 +6009,9 @@ size_t fivebar_redundant_joint_rates_batch(const fivebar_redundant_model *model,
     *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_rates_any(model, LANES, X + 2*i, V + 2*i, rates + 4*i, codes);
+        joint_rates_lanes(model, X + 2*i, V + 2*i, rates + 4*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_redundant_joint_rates(model, X + 2*(i + k), V + 2*(i + k), rates + 4*(i + k));
@@ -5664,7 +6031,7 @@ int fivebar_redundant_joint_accelerations(const fivebar_redundant_model *model, 
     fivebar_redundant_real *accelerations)
 {
     int code;
-    joint_accelerations_any(model, 1, X, V, A, accelerations, &code);
+    joint_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
@@ -5673,9 +6040,9 @@ size_t fivebar_redundant_joint_accelerations_batch(const fivebar_redundant_model
     *A, fivebar_redundant_real *accelerations, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_accelerations_any(model, LANES, X + 2*i, V + 2*i, A + 2*i, accelerations + 4*i, codes);
+        joint_accelerations_lanes(model, X + 2*i, V + 2*i, A + 2*i, accelerations + 4*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_redundant_joint_accelerations(model, X + 2*(i + k), V + 2*(i + k), A + 2*(i +
@@ -5697,7 +6064,7 @@ int fivebar_redundant_dynamics(const fivebar_redundant_model *model, const fiveb
     fivebar_redundant_real *H)
 {
     int code;
-    dynamics_any(model, 1, X, V, M, Z, H, &code);
+    dynamics_one(model, X, V, M, Z, H, &code);
     return code;
 }
 
@@ -5706,9 +6073,9 @@ size_t fivebar_redundant_dynamics_batch(const fivebar_redundant_model *model, si
     fivebar_redundant_real *Z, fivebar_redundant_real *H, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        dynamics_any(model, LANES, X + 2*i, V + 2*i, M + 4*i, Z + 2*i, H + 6*i, codes);
+        dynamics_lanes(model, X + 2*i, V + 2*i, M + 4*i, Z + 2*i, H + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_redundant_dynamics(model, X + 2*(i + k), V + 2*(i + k), M + 4*(i + k), Z + 2*(i
@@ -5729,7 +6096,7 @@ int fivebar_redundant_inverse_dynamics(const fivebar_redundant_model *model, con
     const fivebar_redundant_real *wrench, fivebar_redundant_real *tau)
 {
     int code;
-    inverse_dynamics_any(model, X, V, A, wrench, NULL, tau, &code);
+    inverse_dynamics_one(model, X, V, A, wrench, NULL, tau, &code);
     return code;
 }
 
@@ -5752,7 +6119,7 @@ int fivebar_redundant_inverse_dynamics_weighted(const fivebar_redundant_model *m
     fivebar_redundant_real *tau)
 {
     int code;
-    inverse_dynamics_any(model, X, V, A, wrench, weights, tau, &code);
+    inverse_dynamics_one(model, X, V, A, wrench, weights, tau, &code);
     return code;
 }
 
@@ -5775,7 +6142,7 @@ int fivebar_redundant_forward_dynamics(const fivebar_redundant_model *model, con
     const fivebar_redundant_real *wrench, fivebar_redundant_real *A)
 {
     int code;
-    forward_dynamics_any(model, 1, X, V, tau, wrench, A, &code);
+    forward_dynamics_one(model, X, V, tau, wrench, A, &code);
     return code;
 }
 
@@ -5784,10 +6151,10 @@ size_t fivebar_redundant_forward_dynamics_batch(const fivebar_redundant_model *m
     *tau, const fivebar_redundant_real *wrench, fivebar_redundant_real *A, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        forward_dynamics_any(model, LANES, X + 2*i, V + 2*i, tau + 3*i, wrench ? wrench + 2*i : NULL, A +
-            2*i, codes);
+        forward_dynamics_lanes(model, X + 2*i, V + 2*i, tau + 3*i, wrench ? wrench + 2*i : NULL, A + 2*i,
+            codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_redundant_forward_dynamics(model, X + 2*(i + k), V + 2*(i + k), tau + 3*(i +
@@ -5813,7 +6180,7 @@ int fivebar_redundant_complete_acceleration(const fivebar_redundant_model *model
     (void)X;
     (void)V;
     (void)wrench;
-    complete_acceleration_any(A, completed, &code);
+    complete_acceleration_one(A, completed, &code);
     return code;
 }
 
@@ -5836,7 +6203,7 @@ int fivebar_redundant_leg_reactions(const fivebar_redundant_model *model, const
     const fivebar_redundant_real *wrench, fivebar_redundant_real *forces)
 {
     int code;
-    leg_reactions_any(model, X, V, A, wrench, forces, &code);
+    leg_reactions_one(model, X, V, A, wrench, forces, &code);
     return code;
 }
 
@@ -5858,7 +6225,7 @@ int fivebar_redundant_energy(const fivebar_redundant_model *model, const fivebar
     *potential)
 {
     int code;
-    energy_any(model, X, V, kinetic, potential, &code);
+    energy_one(model, X, V, kinetic, potential, &code);
     return code;
 }
 
@@ -5879,7 +6246,7 @@ int fivebar_redundant_null_space(const fivebar_redundant_model *model, const
     fivebar_redundant_real *X, fivebar_redundant_real *basis)
 {
     int code;
-    null_space_any(model, X, basis, &code);
+    null_space_one(model, X, basis, &code);
     return code;
 }
 
@@ -5898,7 +6265,7 @@ int fivebar_redundant_condition(const fivebar_redundant_model *model, const five
     *X, fivebar_redundant_real *sigma, fivebar_redundant_real *legs)
 {
     int code;
-    condition_any(model, X, sigma, legs, &code);
+    condition_one(model, X, sigma, legs, &code);
     return code;
 }
 
@@ -5919,7 +6286,7 @@ int fivebar_redundant_forward_kinematics(const fivebar_redundant_model *model, c
     *X)
 {
     int code;
-    forward_kinematics_any(model, q_actuated, X0, X, &code);
+    forward_kinematics_one(model, q_actuated, X0, X, &code);
     return code;
 }
 
@@ -5942,7 +6309,7 @@ int fivebar_redundant_dissipation(const fivebar_redundant_model *model, const
     int code;
     (void)model;
     (void)X;
-    dissipation_any(V, dissipation, &code);
+    dissipation_one(V, dissipation, &code);
     return code;
 }
 
@@ -5962,7 +6329,7 @@ int fivebar_redundant_momentum(const fivebar_redundant_model *model, const fiveb
     *X, const fivebar_redundant_real *V, fivebar_redundant_real *momentum)
 {
     int code;
-    momentum_any(model, 1, X, V, momentum, &code);
+    momentum_one(model, X, V, momentum, &code);
     return code;
 }
 
@@ -5971,9 +6338,9 @@ size_t fivebar_redundant_momentum_batch(const fivebar_redundant_model *model, si
     int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        momentum_any(model, LANES, X + 2*i, V + 2*i, momentum + 2*i, codes);
+        momentum_lanes(model, X + 2*i, V + 2*i, momentum + 2*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_redundant_momentum(model, X + 2*(i + k), V + 2*(i + k), momentum + 2*(i + k));
@@ -5988,11 +6355,69 @@ size_t fivebar_redundant_momentum_batch(const fivebar_redundant_model *model, si
     return failed;
 }
 
+int fivebar_redundant_joint_margins(const fivebar_redundant_model *model, const
+    fivebar_redundant_real *X, fivebar_redundant_real *margins)
+{
+    int code;
+    joint_margins_one(model, X, margins, &code);
+    return code;
+}
+
+size_t fivebar_redundant_joint_margins_batch(const fivebar_redundant_model *model, size_t n, const
+    fivebar_redundant_real *X, fivebar_redundant_real *margins, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        joint_margins_lanes(model, X + 2*i, margins + 4*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = fivebar_redundant_joint_margins(model, X + 2*(i + k), margins + 4*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = fivebar_redundant_joint_margins(model, X + 2*i, margins + 4*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int fivebar_redundant_within_limits(const fivebar_redundant_model *model, const
+    fivebar_redundant_real *X, fivebar_redundant_real *within)
+{
+    int code;
+    within_limits_one(model, X, within, &code);
+    return code;
+}
+
+size_t fivebar_redundant_within_limits_batch(const fivebar_redundant_model *model, size_t n, const
+    fivebar_redundant_real *X, fivebar_redundant_real *within, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        within_limits_lanes(model, X + 2*i, within + 1*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = fivebar_redundant_within_limits(model, X + 2*(i + k), within + 1*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = fivebar_redundant_within_limits(model, X + 2*i, within + 1*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
 int fivebar_redundant_actuator_positions(const fivebar_redundant_model *model, const
     fivebar_redundant_real *X, fivebar_redundant_real *q)
 {
     int code;
-    actuator_positions_any(model, 1, X, q, &code);
+    actuator_positions_one(model, X, q, &code);
     return code;
 }
 
@@ -6000,9 +6425,9 @@ size_t fivebar_redundant_actuator_positions_batch(const fivebar_redundant_model 
     const fivebar_redundant_real *X, fivebar_redundant_real *q, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_positions_any(model, LANES, X + 2*i, q + 3*i, codes);
+        actuator_positions_lanes(model, X + 2*i, q + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_redundant_actuator_positions(model, X + 2*(i + k), q + 3*(i + k));
@@ -6021,7 +6446,7 @@ int fivebar_redundant_actuator_rates(const fivebar_redundant_model *model, const
     fivebar_redundant_real *X, const fivebar_redundant_real *V, fivebar_redundant_real *rates)
 {
     int code;
-    actuator_rates_any(model, 1, X, V, rates, &code);
+    actuator_rates_one(model, X, V, rates, &code);
     return code;
 }
 
@@ -6030,9 +6455,9 @@ size_t fivebar_redundant_actuator_rates_batch(const fivebar_redundant_model *mod
     *rates, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_rates_any(model, LANES, X + 2*i, V + 2*i, rates + 3*i, codes);
+        actuator_rates_lanes(model, X + 2*i, V + 2*i, rates + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_redundant_actuator_rates(model, X + 2*(i + k), V + 2*(i + k), rates + 3*(i +
@@ -6053,7 +6478,7 @@ int fivebar_redundant_actuator_accelerations(const fivebar_redundant_model *mode
     fivebar_redundant_real *accelerations)
 {
     int code;
-    actuator_accelerations_any(model, 1, X, V, A, accelerations, &code);
+    actuator_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
@@ -6062,9 +6487,9 @@ size_t fivebar_redundant_actuator_accelerations_batch(const fivebar_redundant_mo
     fivebar_redundant_real *A, fivebar_redundant_real *accelerations, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_accelerations_any(model, LANES, X + 2*i, V + 2*i, A + 2*i, accelerations + 3*i, codes);
+        actuator_accelerations_lanes(model, X + 2*i, V + 2*i, A + 2*i, accelerations + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_redundant_actuator_accelerations(model, X + 2*(i + k), V + 2*(i + k), A + 2*(i
@@ -6086,7 +6511,7 @@ int fivebar_redundant_power(const fivebar_redundant_model *model, const fivebar_
     *power)
 {
     int code;
-    power_any(model, 1, X, V, tau, power, &code);
+    power_one(model, X, V, tau, power, &code);
     return code;
 }
 
@@ -6095,9 +6520,9 @@ size_t fivebar_redundant_power_batch(const fivebar_redundant_model *model, size_
     fivebar_redundant_real *power, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        power_any(model, LANES, X + 2*i, V + 2*i, tau + 3*i, power + 1*i, codes);
+        power_lanes(model, X + 2*i, V + 2*i, tau + 3*i, power + 1*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_redundant_power(model, X + 2*(i + k), V + 2*(i + k), tau + 3*(i + k), power +
@@ -6117,7 +6542,7 @@ int fivebar_redundant_retract(const fivebar_redundant_real *X, const fivebar_red
     fivebar_redundant_real *X_moved)
 {
     int code;
-    retract_any(X, step, X_moved, &code);
+    retract_one(X, step, X_moved, &code);
     return code;
 }
 
@@ -6136,7 +6561,7 @@ int fivebar_redundant_difference(const fivebar_redundant_real *X0, const fivebar
     *X1, fivebar_redundant_real *step)
 {
     int code;
-    difference_any(X0, X1, step, &code);
+    difference_one(X0, X1, step, &code);
     return code;
 }
 
@@ -6155,7 +6580,7 @@ int fivebar_redundant_interpolate(const fivebar_redundant_real *X0, const fiveba
     *X1, const fivebar_redundant_real *s, fivebar_redundant_real *X)
 {
     int code;
-    interpolate_any(X0, X1, s, X, &code);
+    interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 

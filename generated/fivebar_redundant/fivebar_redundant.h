@@ -48,6 +48,7 @@ typedef FIVEBAR_REDUNDANT_REAL fivebar_redundant_real;
 #define FIVEBAR_REDUNDANT_NC 0
 #define FIVEBAR_REDUNDANT_NW 2
 #define FIVEBAR_REDUNDANT_NJ 4
+#define FIVEBAR_REDUNDANT_OVERCONSTRAINED 0
 
 enum {
     FIVEBAR_REDUNDANT_OK = 0,
@@ -67,6 +68,28 @@ typedef struct {
     fivebar_redundant_real platform_centre_of_mass[3];
     /* inertia tensor about the centre of mass, platform axes [kg m^2] */
     fivebar_redundant_real platform_inertia[3][3];
+    /* base point, base frame [m] */
+    fivebar_redundant_real rrr_leg1_base_point[1][3];
+    /* rotation from leg axes to base axes [-] */
+    fivebar_redundant_real rrr_leg1_base_frame[1][3][3];
+    /* platform joint, platform frame [m] */
+    fivebar_redundant_real rrr_leg1_platform_point[1][3];
+    /* offset of joint 2, preceding link's frame [m] */
+    fivebar_redundant_real rrr_leg1_joint2_offset[1][3];
+    /* offset of platform joint, preceding link's frame [m] */
+    fivebar_redundant_real rrr_leg1_platform_joint_offset[1][3];
+    /* mass of link 1 [kg] */
+    fivebar_redundant_real rrr_leg1_link1_mass[1];
+    /* centre of mass of link 1, link frame [m] */
+    fivebar_redundant_real rrr_leg1_link1_centre_of_mass[1][3];
+    /* inertia tensor of link 1 about its centre of mass, link axes [kg m^2] */
+    fivebar_redundant_real rrr_leg1_link1_inertia[1][3][3];
+    /* mass of link 2 [kg] */
+    fivebar_redundant_real rrr_leg1_link2_mass[1];
+    /* centre of mass of link 2, link frame [m] */
+    fivebar_redundant_real rrr_leg1_link2_centre_of_mass[1][3];
+    /* inertia tensor of link 2 about its centre of mass, link axes [kg m^2] */
+    fivebar_redundant_real rrr_leg1_link2_inertia[1][3][3];
     /* base point, base frame [m] */
     fivebar_redundant_real rrr_base_point[1][3];
     /* rotation from leg axes to base axes [-] */
@@ -89,56 +112,37 @@ typedef struct {
     fivebar_redundant_real rrr_link2_centre_of_mass[1][3];
     /* inertia tensor of link 2 about its centre of mass, link axes [kg m^2] */
     fivebar_redundant_real rrr_link2_inertia[1][3][3];
-    /* base point, base frame [m] */
-    fivebar_redundant_real rrr2_base_point[1][3];
-    /* rotation from leg axes to base axes [-] */
-    fivebar_redundant_real rrr2_base_frame[1][3][3];
-    /* platform joint, platform frame [m] */
-    fivebar_redundant_real rrr2_platform_point[1][3];
-    /* offset of joint 2, preceding link's frame [m] */
-    fivebar_redundant_real rrr2_joint2_offset[1][3];
-    /* offset of platform joint, preceding link's frame [m] */
-    fivebar_redundant_real rrr2_platform_joint_offset[1][3];
-    /* mass of link 1 [kg] */
-    fivebar_redundant_real rrr2_link1_mass[1];
-    /* centre of mass of link 1, link frame [m] */
-    fivebar_redundant_real rrr2_link1_centre_of_mass[1][3];
-    /* inertia tensor of link 1 about its centre of mass, link axes [kg m^2] */
-    fivebar_redundant_real rrr2_link1_inertia[1][3][3];
-    /* mass of link 2 [kg] */
-    fivebar_redundant_real rrr2_link2_mass[1];
-    /* centre of mass of link 2, link frame [m] */
-    fivebar_redundant_real rrr2_link2_centre_of_mass[1][3];
-    /* inertia tensor of link 2 about its centre of mass, link axes [kg m^2] */
-    fivebar_redundant_real rrr2_link2_inertia[1][3][3];
 } fivebar_redundant_params;
 
 /* What depends on the parameters alone; set by fivebar_redundant_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
+    /* 1 legs of type rrr_leg1 */
+    fivebar_redundant_real inv_rrr_leg1_Kd_1_t_5[1], inv_rrr_leg1_Kd_1_t_7[1],
+            inv_rrr_leg1_platform_joint_offset_x[1], inv_rrr_leg1_rho2_1_t_4[1], inv_rrr_leg1_size[1],
+            rrr_leg1_J_1_zz[1], rrr_leg1_J_2_zz[1], rrr_leg1_Jc_1_zz[1], rrr_leg1_Kd_1_t_2[1],
+            rrr_leg1_Kd_1_t_4[1], rrr_leg1_b_r0_x[1], rrr_leg1_b_r0_y[1], rrr_leg1_base_frame_xx[1],
+            rrr_leg1_base_frame_xy[1], rrr_leg1_base_frame_yx[1], rrr_leg1_base_frame_yy[1],
+            rrr_leg1_base_point_x[1], rrr_leg1_base_point_y[1], rrr_leg1_branch_1[1],
+            rrr_leg1_d_Gamma_2_t[1], rrr_leg1_d_Gamma_2_y[1], rrr_leg1_d_c_yy[1],
+            rrr_leg1_d_phi_2_t[1], rrr_leg1_g_r0_x[1], rrr_leg1_g_r0_y[1], rrr_leg1_h_1_x[1],
+            rrr_leg1_h_1_y[1], rrr_leg1_h_2_x[1], rrr_leg1_h_2_y[1], rrr_leg1_joint2_offset_x[1],
+            rrr_leg1_link1_mass[1], rrr_leg1_link2_mass[1], rrr_leg1_platform_joint_offset_x[1],
+            rrr_leg1_platform_point_x[1], rrr_leg1_platform_point_y[1], rrr_leg1_rho2_1_t[1],
+            rrr_leg1_size[1];
+    /* 1 legs of type rrr */
+    fivebar_redundant_real inv_rrr_Kd_1_t_5[1], inv_rrr_Kd_1_t_7[1],
+            inv_rrr_platform_joint_offset_x[1], inv_rrr_rho2_1_t_4[1], inv_rrr_size[1], rrr_J_1_zz[1],
+            rrr_J_2_zz[1], rrr_Jc_1_zz[1], rrr_Kd_1_t_2[1], rrr_Kd_1_t_4[1], rrr_b_r0_x[1],
+            rrr_b_r0_y[1], rrr_base_frame_xx[1], rrr_base_frame_xy[1], rrr_base_frame_yx[1],
+            rrr_base_frame_yy[1], rrr_base_point_x[1], rrr_base_point_y[1], rrr_branch_1[1],
+            rrr_d_Gamma_2_t[1], rrr_d_Gamma_2_y[1], rrr_d_c_yy[1], rrr_d_phi_2_t[1], rrr_g_r0_x[1],
+            rrr_g_r0_y[1], rrr_h_1_x[1], rrr_h_1_y[1], rrr_h_2_x[1], rrr_h_2_y[1],
+            rrr_joint2_offset_x[1], rrr_link1_mass[1], rrr_link2_mass[1],
+            rrr_platform_joint_offset_x[1], rrr_platform_point_x[1], rrr_platform_point_y[1],
+            rrr_rho2_1_t[1], rrr_size[1];
     fivebar_redundant_real Z_p_x, Z_p_y, b_c_x, b_c_y, gravity_x, gravity_y, h_star_x, h_star_y,
             legs_size, m_star;
-    /* legs of type rrr */
-    fivebar_redundant_real J_1_rrr_zz[1], J_2_rrr_zz[1], Jc_1_rrr_zz[1], Kd_1_rrr_t_2[1],
-            Kd_1_rrr_t_3[1], b_rrr_r0_x[1], b_rrr_r0_y[1], branch_1_rrr[1], d_Gamma_1_rrr_t[1],
-            d_Gamma_1_rrr_y[1], d_c_rrr_yy[1], d_phi_2_rrr_t[1], g_r0_x[1], g_r0_y[1], h_1_rrr_x[1],
-            h_1_rrr_y[1], h_2_rrr_x[1], h_2_rrr_y[1], inv_Kd_1_rrr_t_5[1], inv_rho2_1_rrr_t_4[1],
-            inv_rrr_platform_joint_offset_x[1], inv_size_rrr[1], inv_uu_2_rrr_t[1], rho2_1_rrr_t[1],
-            rrr_base_frame_xx[1], rrr_base_frame_xy[1], rrr_base_frame_yx[1], rrr_base_frame_yy[1],
-            rrr_base_point_x[1], rrr_base_point_y[1], rrr_joint2_offset_x[1], rrr_link1_mass[1],
-            rrr_link2_mass[1], rrr_platform_joint_offset_x[1], rrr_platform_point_x[1],
-            rrr_platform_point_y[1], size_rrr[1];
-    /* legs of type rrr2 */
-    fivebar_redundant_real J_1_rrr2_zz[1], J_2_rrr2_zz[1], Jc_1_rrr2_zz[1], Kd_1_rrr2_t_2[1],
-            Kd_1_rrr2_t_3[1], b_rrr2_r0_x[1], b_rrr2_r0_y[1], branch_1_rrr2[1], d_Gamma_1_rrr2_t[1],
-            d_Gamma_1_rrr2_y[1], d_c_rrr2_yy[1], d_phi_2_rrr2_t[1], g_r0_x_2[1], g_r0_y_2[1],
-            h_1_rrr2_x[1], h_1_rrr2_y[1], h_2_rrr2_x[1], h_2_rrr2_y[1], inv_Kd_1_rrr2_t_5[1],
-            inv_rho2_1_rrr2_t_4[1], inv_rrr2_platform_joint_offset_x[1], inv_size_rrr2[1],
-            inv_uu_2_rrr2_t[1], rho2_1_rrr2_t[1], rrr2_base_frame_xx[1], rrr2_base_frame_xy[1],
-            rrr2_base_frame_yx[1], rrr2_base_frame_yy[1], rrr2_base_point_x[1], rrr2_base_point_y[1],
-            rrr2_joint2_offset_x[1], rrr2_link1_mass[1], rrr2_link2_mass[1],
-            rrr2_platform_joint_offset_x[1], rrr2_platform_point_x[1], rrr2_platform_point_y[1],
-            size_rrr2[1];
 } fivebar_redundant_model;
 
 extern const fivebar_redundant_params fivebar_redundant_default_params;
@@ -314,6 +318,20 @@ int fivebar_redundant_momentum(const fivebar_redundant_model *model, const fiveb
 size_t fivebar_redundant_momentum_batch(const fivebar_redundant_model *model, size_t n, const
     fivebar_redundant_real *X, const fivebar_redundant_real *V, fivebar_redundant_real *momentum,
     int *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 54 mul, 28 add, 2 div, 2 sqrt, 4 trig. In: X (NQ). Out: margins (NJ). */
+int fivebar_redundant_joint_margins(const fivebar_redundant_model *model, const
+    fivebar_redundant_real *X, fivebar_redundant_real *margins);
+size_t fivebar_redundant_joint_margins_batch(const fivebar_redundant_model *model, size_t n, const
+    fivebar_redundant_real *X, fivebar_redundant_real *margins, int *status);
+
+/* Whether all joints are within their limits of displacement. 54 mul, 28 add, 2 div, 2 sqrt, 4
+   trig. In: X (NQ). Out: within (1). */
+int fivebar_redundant_within_limits(const fivebar_redundant_model *model, const
+    fivebar_redundant_real *X, fivebar_redundant_real *within);
+size_t fivebar_redundant_within_limits_batch(const fivebar_redundant_model *model, size_t n, const
+    fivebar_redundant_real *X, fivebar_redundant_real *within, int *status);
 
 /* Displacements of the actuated joints, in the order of tau. 54 mul, 28 add, 2 div, 2 sqrt, 4
    trig. In: X (NQ). Out: q (NU). */

@@ -32,6 +32,7 @@ __all__ = [
     "NC",
     "NW",
     "NJ",
+    "OVERCONSTRAINED",
     "ACTUATED",
     "ACTUATOR_NAMES",
     "H",
@@ -55,12 +56,14 @@ __all__ = [
     "inverse_dynamics",
     "inverse_kinematics",
     "joint_accelerations",
+    "joint_margins",
     "joint_rates",
     "leg_reactions",
     "momentum",
     "null_space",
     "power",
     "retract",
+    "within_limits",
 ]
 
 NQ = 2
@@ -69,6 +72,7 @@ NU = 3
 NC = 0
 NW = 2
 NJ = 4
+OVERCONSTRAINED = 0
 
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
@@ -89,68 +93,68 @@ _SHAPES = {  # of the arrays that functions give
     "reach": (2,),
 }
 # Where the entries of a leg type's legs stand in these arrays, row by row.
-_H_rrr = (
+_H_rrr_leg1 = (
     [0],
     [3],
     [1],
     [4],
 )
-_H_rrr2 = (
+_H_rrr = (
     [2],
     [5],
 )
-_q_rrr = (
+_q_rrr_leg1 = (
     [0],
     [1],
 )
-_q_rrr2 = (
+_q_rrr = (
     [2],
     [3],
+)
+_qd_rrr_leg1 = (
+    [0],
+    [1],
 )
 _qd_rrr = (
-    [0],
-    [1],
-)
-_qd_rrr2 = (
     [2],
     [3],
+)
+_qdd_rrr_leg1 = (
+    [0],
+    [1],
 )
 _qdd_rrr = (
-    [0],
-    [1],
-)
-_qdd_rrr2 = (
     [2],
     [3],
 )
-_leg_force_rrr = (
+_leg_force_rrr_leg1 = (
     [0],
     [1],
+)
+_drive_rrr_leg1 = (
+    [0],
+    [1],
+    [3],
+    [4],
+)
+_leg_force_rrr = (
+    [3],
+    [4],
 )
 _drive_rrr = (
-    [0],
-    [1],
-    [3],
-    [4],
-)
-_leg_force_rrr2 = (
-    [3],
-    [4],
-)
-_drive_rrr2 = (
     [6],
     [7],
 )
+_pivots_rrr_leg1 = (
+    [0],
+)
+_reach_rrr_leg1 = (
+    [0],
+)
 _pivots_rrr = (
-    [0],
-)
-_reach_rrr = (
-    [0],
-)
-_pivots_rrr2 = (
     [1],
 )
-_reach_rrr2 = (
+_reach_rrr = (
     [1],
 )
 ACTUATED = (0, 1, 2)  # places of the actuated joints in q, in the order of tau
@@ -161,8 +165,41 @@ _DEFAULTS = {
     "platform_mass": 0.5,
     "platform_centre_of_mass": [0.0, 0.0, 0.0],
     "platform_inertia": [[0.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
-    "rrr_base_point": [
+    "rrr_leg1_base_point": [
         [0.030115496986122658, -0.17504639881453898, 0.0],
+    ],
+    "rrr_leg1_base_frame": [
+        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+    ],
+    "rrr_leg1_platform_point": [
+        [0.0, 0.0, 0.0],
+    ],
+    "rrr_leg1_joint2_offset": [
+        [0.4, 0.0, 0.0],
+    ],
+    "rrr_leg1_platform_joint_offset": [
+        [0.45, 0.0, 0.0],
+    ],
+    "rrr_leg1_link1_mass": [
+        1.5,
+    ],
+    "rrr_leg1_link1_centre_of_mass": [
+        [0.2, 0.0, 0.0],
+    ],
+    "rrr_leg1_link1_inertia": [
+        [[0.0003, 0.0, 0.0], [0.0, 0.020150000000000005, 0.0], [0.0, 0.0, 0.020150000000000005]],
+    ],
+    "rrr_leg1_link2_mass": [
+        1.0,
+    ],
+    "rrr_leg1_link2_centre_of_mass": [
+        [0.225, 0.0, 0.0],
+    ],
+    "rrr_leg1_link2_inertia": [
+        [[0.0002, 0.0, 0.0], [0.0, 0.016975, 0.0], [0.0, 0.0, 0.016975]],
+    ],
+    "rrr_base_point": [
+        [0.009884503013877288, -0.17504639881453898, 0.0],
     ],
     "rrr_base_frame": [
         [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
@@ -194,45 +231,23 @@ _DEFAULTS = {
     "rrr_link2_inertia": [
         [[0.0002, 0.0, 0.0], [0.0, 0.016975, 0.0], [0.0, 0.0, 0.016975]],
     ],
-    "rrr2_base_point": [
-        [0.009884503013877288, -0.17504639881453898, 0.0],
-    ],
-    "rrr2_base_frame": [
-        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-    ],
-    "rrr2_platform_point": [
-        [0.0, 0.0, 0.0],
-    ],
-    "rrr2_joint2_offset": [
-        [0.4, 0.0, 0.0],
-    ],
-    "rrr2_platform_joint_offset": [
-        [0.45, 0.0, 0.0],
-    ],
-    "rrr2_link1_mass": [
-        1.5,
-    ],
-    "rrr2_link1_centre_of_mass": [
-        [0.2, 0.0, 0.0],
-    ],
-    "rrr2_link1_inertia": [
-        [[0.0003, 0.0, 0.0], [0.0, 0.020150000000000005, 0.0], [0.0, 0.0, 0.020150000000000005]],
-    ],
-    "rrr2_link2_mass": [
-        1.0,
-    ],
-    "rrr2_link2_centre_of_mass": [
-        [0.225, 0.0, 0.0],
-    ],
-    "rrr2_link2_inertia": [
-        [[0.0002, 0.0, 0.0], [0.0, 0.016975, 0.0], [0.0, 0.0, 0.016975]],
-    ],
 }
 _RULES = {  # shape, in all and of one; entries that are zero by structure; what the values must be
     "gravity": ((3,), (3,), (2,), "free"),
     "platform_mass": ((), (), (), "mass"),
     "platform_centre_of_mass": ((3,), (3,), (2,), "free"),
     "platform_inertia": ((3, 3), (3, 3), (), "planar_inertia"),
+    "rrr_leg1_base_point": ((1, 3), (3,), (2,), "free"),
+    "rrr_leg1_base_frame": ((1, 3, 3), (3, 3), (), "planar_rotation"),
+    "rrr_leg1_platform_point": ((1, 3), (3,), (2,), "free"),
+    "rrr_leg1_joint2_offset": ((1, 3), (3,), (1, 2), "free"),
+    "rrr_leg1_platform_joint_offset": ((1, 3), (3,), (1, 2), "free"),
+    "rrr_leg1_link1_mass": ((1,), (), (), "mass"),
+    "rrr_leg1_link1_centre_of_mass": ((1, 3), (3,), (2,), "free"),
+    "rrr_leg1_link1_inertia": ((1, 3, 3), (3, 3), (), "planar_inertia"),
+    "rrr_leg1_link2_mass": ((1,), (), (), "mass"),
+    "rrr_leg1_link2_centre_of_mass": ((1, 3), (3,), (2,), "free"),
+    "rrr_leg1_link2_inertia": ((1, 3, 3), (3, 3), (), "planar_inertia"),
     "rrr_base_point": ((1, 3), (3,), (2,), "free"),
     "rrr_base_frame": ((1, 3, 3), (3, 3), (), "planar_rotation"),
     "rrr_platform_point": ((1, 3), (3,), (2,), "free"),
@@ -244,17 +259,6 @@ _RULES = {  # shape, in all and of one; entries that are zero by structure; what
     "rrr_link2_mass": ((1,), (), (), "mass"),
     "rrr_link2_centre_of_mass": ((1, 3), (3,), (2,), "free"),
     "rrr_link2_inertia": ((1, 3, 3), (3, 3), (), "planar_inertia"),
-    "rrr2_base_point": ((1, 3), (3,), (2,), "free"),
-    "rrr2_base_frame": ((1, 3, 3), (3, 3), (), "planar_rotation"),
-    "rrr2_platform_point": ((1, 3), (3,), (2,), "free"),
-    "rrr2_joint2_offset": ((1, 3), (3,), (1, 2), "free"),
-    "rrr2_platform_joint_offset": ((1, 3), (3,), (1, 2), "free"),
-    "rrr2_link1_mass": ((1,), (), (), "mass"),
-    "rrr2_link1_centre_of_mass": ((1, 3), (3,), (2,), "free"),
-    "rrr2_link1_inertia": ((1, 3, 3), (3, 3), (), "planar_inertia"),
-    "rrr2_link2_mass": ((1,), (), (), "mass"),
-    "rrr2_link2_centre_of_mass": ((1, 3), (3,), (2,), "free"),
-    "rrr2_link2_inertia": ((1, 3, 3), (3, 3), (), "planar_inertia"),
 }
 
 
@@ -270,6 +274,17 @@ class Parameters:
         platform_mass: mass of the platform [kg], a number.
         platform_centre_of_mass: centre of mass, platform frame [m], shape (3,).
         platform_inertia: inertia tensor about the centre of mass, platform axes [kg m^2], shape (3, 3).
+        rrr_leg1_base_point: base point, base frame [m], shape (1, 3).
+        rrr_leg1_base_frame: rotation from leg axes to base axes [-], shape (1, 3, 3).
+        rrr_leg1_platform_point: platform joint, platform frame [m], shape (1, 3).
+        rrr_leg1_joint2_offset: offset of joint 2, preceding link's frame [m], shape (1, 3).
+        rrr_leg1_platform_joint_offset: offset of platform joint, preceding link's frame [m], shape (1, 3).
+        rrr_leg1_link1_mass: mass of link 1 [kg], shape (1,).
+        rrr_leg1_link1_centre_of_mass: centre of mass of link 1, link frame [m], shape (1, 3).
+        rrr_leg1_link1_inertia: inertia tensor of link 1 about its centre of mass, link axes [kg m^2], shape (1, 3, 3).
+        rrr_leg1_link2_mass: mass of link 2 [kg], shape (1,).
+        rrr_leg1_link2_centre_of_mass: centre of mass of link 2, link frame [m], shape (1, 3).
+        rrr_leg1_link2_inertia: inertia tensor of link 2 about its centre of mass, link axes [kg m^2], shape (1, 3, 3).
         rrr_base_point: base point, base frame [m], shape (1, 3).
         rrr_base_frame: rotation from leg axes to base axes [-], shape (1, 3, 3).
         rrr_platform_point: platform joint, platform frame [m], shape (1, 3).
@@ -281,17 +296,6 @@ class Parameters:
         rrr_link2_mass: mass of link 2 [kg], shape (1,).
         rrr_link2_centre_of_mass: centre of mass of link 2, link frame [m], shape (1, 3).
         rrr_link2_inertia: inertia tensor of link 2 about its centre of mass, link axes [kg m^2], shape (1, 3, 3).
-        rrr2_base_point: base point, base frame [m], shape (1, 3).
-        rrr2_base_frame: rotation from leg axes to base axes [-], shape (1, 3, 3).
-        rrr2_platform_point: platform joint, platform frame [m], shape (1, 3).
-        rrr2_joint2_offset: offset of joint 2, preceding link's frame [m], shape (1, 3).
-        rrr2_platform_joint_offset: offset of platform joint, preceding link's frame [m], shape (1, 3).
-        rrr2_link1_mass: mass of link 1 [kg], shape (1,).
-        rrr2_link1_centre_of_mass: centre of mass of link 1, link frame [m], shape (1, 3).
-        rrr2_link1_inertia: inertia tensor of link 1 about its centre of mass, link axes [kg m^2], shape (1, 3, 3).
-        rrr2_link2_mass: mass of link 2 [kg], shape (1,).
-        rrr2_link2_centre_of_mass: centre of mass of link 2, link frame [m], shape (1, 3).
-        rrr2_link2_inertia: inertia tensor of link 2 about its centre of mass, link axes [kg m^2], shape (1, 3, 3).
     """
 
     def __init__(self, **values):
@@ -392,7 +396,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return np.full(shape, default)
+        return _filled(shape, default) if isinstance(default, float) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -405,6 +409,16 @@ def _argument(function, name, value, shape, default=None, rule=""):
     elif rule == "positive" and not np.all((array > 0.0) & (array < np.inf)):
         raise ValueError(f"{function}: {name} must be positive and finite")
     return array
+
+
+_FILLED = {}
+
+
+def _filled(shape, value):
+    """An array of one value, made once."""
+    if (shape, value) not in _FILLED:
+        _FILLED[shape, value] = _frozen(np.full(shape, value))
+    return _FILLED[shape, value]
 
 
 def _lead(leads):
@@ -498,21 +512,39 @@ HOME_X = _frozen(np.array([0.02, 0.55]))
 HOME_Q = _frozen(np.array([2.1707963267948966, -1.1, 0.9707963267948966, 1.1]))
 
 _BRANCHES = {  # assembly branch of home, a sign per leg
-    "branch_1_rrr": np.array([1.0]),
-    "branch_1_rrr2": np.array([-1.0]),
+    "rrr_leg1_branch_1": np.array([1.0]),
+    "rrr_branch_1": np.array([-1.0]),
 }
 
 
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _rrr_leg1 = 1
     _rrr = 1
-    _rrr2 = 1
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     platform_mass = p.platform_mass
     platform_centre_of_mass_x = p.platform_centre_of_mass[0]
     platform_centre_of_mass_y = p.platform_centre_of_mass[1]
+    rrr_leg1_base_point_x = p.rrr_leg1_base_point[:, 0]
+    rrr_leg1_base_point_y = p.rrr_leg1_base_point[:, 1]
+    rrr_leg1_base_frame_xx = p.rrr_leg1_base_frame[:, 0, 0]
+    rrr_leg1_base_frame_xy = p.rrr_leg1_base_frame[:, 0, 1]
+    rrr_leg1_base_frame_yx = p.rrr_leg1_base_frame[:, 1, 0]
+    rrr_leg1_base_frame_yy = p.rrr_leg1_base_frame[:, 1, 1]
+    rrr_leg1_platform_point_x = p.rrr_leg1_platform_point[:, 0]
+    rrr_leg1_platform_point_y = p.rrr_leg1_platform_point[:, 1]
+    rrr_leg1_joint2_offset_x = p.rrr_leg1_joint2_offset[:, 0]
+    rrr_leg1_platform_joint_offset_x = p.rrr_leg1_platform_joint_offset[:, 0]
+    rrr_leg1_link1_mass = p.rrr_leg1_link1_mass
+    rrr_leg1_link1_centre_of_mass_x = p.rrr_leg1_link1_centre_of_mass[:, 0]
+    rrr_leg1_link1_centre_of_mass_y = p.rrr_leg1_link1_centre_of_mass[:, 1]
+    rrr_leg1_link1_inertia_zz = p.rrr_leg1_link1_inertia[:, 2, 2]
+    rrr_leg1_link2_mass = p.rrr_leg1_link2_mass
+    rrr_leg1_link2_centre_of_mass_x = p.rrr_leg1_link2_centre_of_mass[:, 0]
+    rrr_leg1_link2_centre_of_mass_y = p.rrr_leg1_link2_centre_of_mass[:, 1]
+    rrr_leg1_link2_inertia_zz = p.rrr_leg1_link2_inertia[:, 2, 2]
     rrr_base_point_x = p.rrr_base_point[:, 0]
     rrr_base_point_y = p.rrr_base_point[:, 1]
     rrr_base_frame_xx = p.rrr_base_frame[:, 0, 0]
@@ -531,418 +563,411 @@ def _prepare(p):
     rrr_link2_centre_of_mass_x = p.rrr_link2_centre_of_mass[:, 0]
     rrr_link2_centre_of_mass_y = p.rrr_link2_centre_of_mass[:, 1]
     rrr_link2_inertia_zz = p.rrr_link2_inertia[:, 2, 2]
-    rrr2_base_point_x = p.rrr2_base_point[:, 0]
-    rrr2_base_point_y = p.rrr2_base_point[:, 1]
-    rrr2_base_frame_xx = p.rrr2_base_frame[:, 0, 0]
-    rrr2_base_frame_xy = p.rrr2_base_frame[:, 0, 1]
-    rrr2_base_frame_yx = p.rrr2_base_frame[:, 1, 0]
-    rrr2_base_frame_yy = p.rrr2_base_frame[:, 1, 1]
-    rrr2_platform_point_x = p.rrr2_platform_point[:, 0]
-    rrr2_platform_point_y = p.rrr2_platform_point[:, 1]
-    rrr2_joint2_offset_x = p.rrr2_joint2_offset[:, 0]
-    rrr2_platform_joint_offset_x = p.rrr2_platform_joint_offset[:, 0]
-    rrr2_link1_mass = p.rrr2_link1_mass
-    rrr2_link1_centre_of_mass_x = p.rrr2_link1_centre_of_mass[:, 0]
-    rrr2_link1_centre_of_mass_y = p.rrr2_link1_centre_of_mass[:, 1]
-    rrr2_link1_inertia_zz = p.rrr2_link1_inertia[:, 2, 2]
-    rrr2_link2_mass = p.rrr2_link2_mass
-    rrr2_link2_centre_of_mass_x = p.rrr2_link2_centre_of_mass[:, 0]
-    rrr2_link2_centre_of_mass_y = p.rrr2_link2_centre_of_mass[:, 1]
-    rrr2_link2_inertia_zz = p.rrr2_link2_inertia[:, 2, 2]
-    branch_1_rrr = _BRANCHES["branch_1_rrr"]
-    branch_1_rrr2 = _BRANCHES["branch_1_rrr2"]
-    # (L2) first moment about the platform origin
+    rrr_leg1_branch_1 = _BRANCHES["rrr_leg1_branch_1"]
+    rrr_branch_1 = _BRANCHES["rrr_branch_1"]
+    # (h_star) first moment about the platform origin
     h_star_t = platform_centre_of_mass_x*platform_mass
     h_star_t_2 = platform_centre_of_mass_y*platform_mass
-    # (rrr-K17) squared length, across the axis, of the direction fixed in link 2
-    uu_2_rrr_t = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x
-    # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    Kd_1_rrr_t = rrr_joint2_offset_x*rrr_joint2_offset_x
-    Kd_1_rrr_t_2 = 0.5*Kd_1_rrr_t
-    Kd_1_rrr_t_3 = 0.5*uu_2_rrr_t
-    # (rrr-G2) length of the leg's lever arms, the measure of what is near singular
-    size_rrr_t = 5.257946636889999e-07 + Kd_1_rrr_t + uu_2_rrr_t
-    size_rrr = sqrt(size_rrr_t)
-    # (rrr-K8) squared amplitude
-    rho2_1_rrr_t = size_rrr*size_rrr*size_rrr_t
-    # (rrr-K15) the vector from joint 1 to the connection point, resolved along link 1
-    inv_Kd_1_rrr_t_5 = 1.0/Kd_1_rrr_t
-    # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-    inv_uu_2_rrr_t = 1.0/uu_2_rrr_t
-    # (rrr-G4) inertia tensor of link 1 about the origin of link 1
-    J_1_rrr_t = (
+    # (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+    rrr_leg1_Kd_1_t = rrr_leg1_joint2_offset_x*rrr_leg1_joint2_offset_x
+    rrr_leg1_Kd_1_t_2 = 0.5*rrr_leg1_Kd_1_t
+    rrr_leg1_Kd_1_t_3 = rrr_leg1_platform_joint_offset_x*rrr_leg1_platform_joint_offset_x
+    rrr_leg1_Kd_1_t_4 = 0.5*rrr_leg1_Kd_1_t_3
+    # (rrr_leg1-size) length of the leg's lever arms, the measure of what is near singular
+    rrr_leg1_size_t = 5.257946636889999e-07 + rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_3
+    rrr_leg1_size = sqrt(rrr_leg1_size_t)
+    # (rrr_leg1-rho2_1) squared amplitude
+    rrr_leg1_rho2_1_t = rrr_leg1_size*rrr_leg1_size*rrr_leg1_size_t
+    # (rrr_leg1-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+    inv_rrr_leg1_Kd_1_t_5 = 1.0/rrr_leg1_Kd_1_t
+    # (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction
+    inv_rrr_leg1_Kd_1_t_7 = 1.0/rrr_leg1_Kd_1_t_3
+    # (rrr_leg1-rho_tip_2) connection point to the centre of mass of link 2
+    rrr_leg1_rho_tip_2_x = rrr_leg1_link2_centre_of_mass_x - rrr_leg1_platform_joint_offset_x
+    # (rrr_leg1-h_2) first moment of link 2 about the connection point
+    rrr_leg1_h_2_x = rrr_leg1_link2_mass*rrr_leg1_rho_tip_2_x
+    rrr_leg1_h_2_y = rrr_leg1_link2_centre_of_mass_y*rrr_leg1_link2_mass
+    # (rrr_leg1-w_2) reciprocal vector 2
+    inv_rrr_leg1_platform_joint_offset_x = 1.0/rrr_leg1_platform_joint_offset_x
+    # (rrr_leg1-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
+    rrr_leg1_d_phi_2_t = inv_rrr_leg1_platform_joint_offset_x*rrr_leg1_h_2_y
+    # (rrr_leg1-J_2) inertia tensor of link 2 about the connection point
+    rrr_leg1_J_2_t = (
+    rrr_leg1_link2_centre_of_mass_y*rrr_leg1_link2_centre_of_mass_y +
+        rrr_leg1_rho_tip_2_x*rrr_leg1_rho_tip_2_x
+    )
+    rrr_leg1_J_2_zz = rrr_leg1_link2_inertia_zz + rrr_leg1_J_2_t*rrr_leg1_link2_mass
+    # (rrr_leg1-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    rrr_leg1_d_Gamma_2_t = inv_rrr_leg1_platform_joint_offset_x*rrr_leg1_J_2_zz
+    rrr_leg1_d_Gamma_2_y = rrr_leg1_d_Gamma_2_t + rrr_leg1_h_2_x
+    # (rrr_leg1-J_1) inertia tensor of link 1 about the origin of link 1
+    rrr_leg1_J_1_t = (
+    rrr_leg1_link1_centre_of_mass_x*rrr_leg1_link1_centre_of_mass_x +
+        rrr_leg1_link1_centre_of_mass_y*rrr_leg1_link1_centre_of_mass_y
+    )
+    rrr_leg1_J_1_zz = rrr_leg1_link1_inertia_zz + rrr_leg1_J_1_t*rrr_leg1_link1_mass
+    # (rrr_leg1-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link about the connection point
+    rrr_leg1_Jc_1_zz = rrr_leg1_J_1_zz + rrr_leg1_J_2_zz
+    # (rrr_leg1-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    rrr_leg1_d_c_yy = (
+    -inv_rrr_leg1_platform_joint_offset_x*rrr_leg1_d_Gamma_2_y -
+        inv_rrr_leg1_platform_joint_offset_x*rrr_leg1_h_2_x
+    )
+    # (rrr_leg1-h_1) first moment of link 1 about the origin of link 1
+    rrr_leg1_h_1_x = rrr_leg1_link1_centre_of_mass_x*rrr_leg1_link1_mass
+    rrr_leg1_h_1_y = rrr_leg1_link1_centre_of_mass_y*rrr_leg1_link1_mass
+    # (rrr_leg1-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+    rrr_leg1_g_r0_x = gravity_x*rrr_leg1_base_frame_xx + gravity_y*rrr_leg1_base_frame_yx
+    rrr_leg1_g_r0_y = gravity_x*rrr_leg1_base_frame_xy + gravity_y*rrr_leg1_base_frame_yy
+    # (h_star) first moment about the platform origin
+    rrr_leg1_h_star_t = rrr_leg1_link2_mass*rrr_leg1_platform_point_x
+    rrr_leg1_h_star_t_2 = rrr_leg1_link2_mass*rrr_leg1_platform_point_y
+    # (potential) potential energy
+    rrr_leg1_b_r0_x = (
+    rrr_leg1_base_frame_xx*rrr_leg1_base_point_x + rrr_leg1_base_frame_yx*rrr_leg1_base_point_y
+    )
+    rrr_leg1_b_r0_y = (
+    rrr_leg1_base_frame_xy*rrr_leg1_base_point_x + rrr_leg1_base_frame_yy*rrr_leg1_base_point_y
+    )
+    # (rrr_leg1-rho2_1) squared amplitude
+    inv_rrr_leg1_rho2_1_t_4 = 1.0/rrr_leg1_rho2_1_t
+    # (rrr_leg1-w_1) reciprocal vector 1
+    inv_rrr_leg1_size = 1.0/rrr_leg1_size
+    total_rrr_leg1 = np.sum(np.broadcast_to(rrr_leg1_link2_mass, _rrr_leg1))
+    total_rrr_leg1_x = np.sum(np.broadcast_to(rrr_leg1_h_star_t, _rrr_leg1))
+    total_rrr_leg1_y = np.sum(np.broadcast_to(rrr_leg1_h_star_t_2, _rrr_leg1))
+    total_rrr_leg1_x_2 = np.sum(np.broadcast_to(rrr_leg1_platform_point_x, _rrr_leg1))
+    total_rrr_leg1_y_2 = np.sum(np.broadcast_to(rrr_leg1_platform_point_y, _rrr_leg1))
+    total_rrr_leg1_2 = np.sum(np.broadcast_to(rrr_leg1_size_t, _rrr_leg1))
+    # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+    rrr_Kd_1_t = rrr_joint2_offset_x*rrr_joint2_offset_x
+    rrr_Kd_1_t_2 = 0.5*rrr_Kd_1_t
+    rrr_Kd_1_t_3 = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x
+    rrr_Kd_1_t_4 = 0.5*rrr_Kd_1_t_3
+    # (rrr-size) length of the leg's lever arms, the measure of what is near singular
+    rrr_size_t = 5.257946636889999e-07 + rrr_Kd_1_t + rrr_Kd_1_t_3
+    rrr_size = sqrt(rrr_size_t)
+    # (rrr-rho2_1) squared amplitude
+    rrr_rho2_1_t = rrr_size*rrr_size*rrr_size_t
+    # (rrr-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+    inv_rrr_Kd_1_t_5 = 1.0/rrr_Kd_1_t
+    # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+    inv_rrr_Kd_1_t_7 = 1.0/rrr_Kd_1_t_3
+    # (rrr-rho_tip_2) connection point to the centre of mass of link 2
+    rrr_rho_tip_2_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x
+    # (rrr-h_2) first moment of link 2 about the connection point
+    rrr_h_2_x = rrr_link2_mass*rrr_rho_tip_2_x
+    rrr_h_2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass
+    # (rrr-w_2) reciprocal vector 2
+    inv_rrr_platform_joint_offset_x = 1.0/rrr_platform_joint_offset_x
+    # (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
+    rrr_d_phi_2_t = inv_rrr_platform_joint_offset_x*rrr_h_2_y
+    # (rrr-J_2) inertia tensor of link 2 about the connection point
+    rrr_J_2_t = (
+    rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y + rrr_rho_tip_2_x*rrr_rho_tip_2_x
+    )
+    rrr_J_2_zz = rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass
+    # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    rrr_d_Gamma_2_t = inv_rrr_platform_joint_offset_x*rrr_J_2_zz
+    rrr_d_Gamma_2_y = rrr_d_Gamma_2_t + rrr_h_2_x
+    # (rrr-J_1) inertia tensor of link 1 about the origin of link 1
+    rrr_J_1_t = (
     rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
         rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y
     )
-    J_1_rrr_zz = rrr_link1_inertia_zz + J_1_rrr_t*rrr_link1_mass
-    # (rrr-G5) connection point to the centre of mass of link 2
-    rho_tip_2_rrr_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x
-    # (rrr-G7) inertia tensor of link 2 about the connection point
-    J_2_rrr_t = (
-    rho_tip_2_rrr_x*rho_tip_2_rrr_x + rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y
+    rrr_J_1_zz = rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass
+    # (rrr-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link about the connection point
+    rrr_Jc_1_zz = rrr_J_1_zz + rrr_J_2_zz
+    # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    rrr_d_c_yy = (
+    -inv_rrr_platform_joint_offset_x*rrr_d_Gamma_2_y - inv_rrr_platform_joint_offset_x*rrr_h_2_x
     )
-    J_2_rrr_zz = rrr_link2_inertia_zz + J_2_rrr_t*rrr_link2_mass
-    # (rrr-N11) inertia tensor of the links from 1 outwards about joint 1
-    Jc_1_rrr_zz = J_1_rrr_zz + J_2_rrr_zz
-    # (rrr-G6) first moment of link 2 about the connection point
-    h_2_rrr_x = rho_tip_2_rrr_x*rrr_link2_mass
-    h_2_rrr_y = rrr_link2_centre_of_mass_y*rrr_link2_mass
-    # (rrr-V6) reciprocal vector 2
-    inv_rrr_platform_joint_offset_x = 1.0/rrr_platform_joint_offset_x
-    # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-    d_Gamma_1_rrr_t = J_2_rrr_zz*inv_rrr_platform_joint_offset_x
-    d_Gamma_1_rrr_y = d_Gamma_1_rrr_t + h_2_rrr_x
-    # (rrr-N6) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
-    d_phi_2_rrr_t = h_2_rrr_y*inv_rrr_platform_joint_offset_x
-    # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_rrr_yy = (
-    -d_Gamma_1_rrr_y*inv_rrr_platform_joint_offset_x - h_2_rrr_x*inv_rrr_platform_joint_offset_x
-    )
-    # (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-    g_r0_x = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx
-    g_r0_y = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy
-    # (rrr-G3) first moment of link 1 about the origin of link 1
-    h_1_rrr_x = rrr_link1_centre_of_mass_x*rrr_link1_mass
-    h_1_rrr_y = rrr_link1_centre_of_mass_y*rrr_link1_mass
-    # (L2) first moment about the platform origin
-    h_star_t_3 = rrr_link2_mass*rrr_platform_point_x
-    h_star_t_4 = rrr_link2_mass*rrr_platform_point_y
-    # (V1) potential energy
-    b_rrr_r0_x = rrr_base_frame_xx*rrr_base_point_x + rrr_base_frame_yx*rrr_base_point_y
-    b_rrr_r0_y = rrr_base_frame_xy*rrr_base_point_x + rrr_base_frame_yy*rrr_base_point_y
-    # (rrr-K8) squared amplitude
-    inv_rho2_1_rrr_t_4 = 1.0/rho2_1_rrr_t
-    # (rrr-V5) reciprocal vector 1
-    inv_size_rrr = 1.0/size_rrr
+    # (rrr-h_1) first moment of link 1 about the origin of link 1
+    rrr_h_1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass
+    rrr_h_1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass
+    # (rrr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+    rrr_g_r0_x = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx
+    rrr_g_r0_y = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy
+    # (h_star) first moment about the platform origin
+    rrr_h_star_t = rrr_link2_mass*rrr_platform_point_x
+    rrr_h_star_t_2 = rrr_link2_mass*rrr_platform_point_y
+    # (potential) potential energy
+    rrr_b_r0_x = rrr_base_frame_xx*rrr_base_point_x + rrr_base_frame_yx*rrr_base_point_y
+    rrr_b_r0_y = rrr_base_frame_xy*rrr_base_point_x + rrr_base_frame_yy*rrr_base_point_y
+    # (rrr-rho2_1) squared amplitude
+    inv_rrr_rho2_1_t_4 = 1.0/rrr_rho2_1_t
+    # (rrr-w_1) reciprocal vector 1
+    inv_rrr_size = 1.0/rrr_size
     total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, _rrr))
-    total_rrr_x = np.sum(np.broadcast_to(h_star_t_3, _rrr))
-    total_rrr_y = np.sum(np.broadcast_to(h_star_t_4, _rrr))
+    total_rrr_x = np.sum(np.broadcast_to(rrr_h_star_t, _rrr))
+    total_rrr_y = np.sum(np.broadcast_to(rrr_h_star_t_2, _rrr))
     total_rrr_x_2 = np.sum(np.broadcast_to(rrr_platform_point_x, _rrr))
     total_rrr_y_2 = np.sum(np.broadcast_to(rrr_platform_point_y, _rrr))
-    total_rrr_2 = np.sum(np.broadcast_to(size_rrr_t, _rrr))
-    # (rrr2-K17) squared length, across the axis, of the direction fixed in link 2
-    uu_2_rrr2_t = rrr2_platform_joint_offset_x*rrr2_platform_joint_offset_x
-    # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    Kd_1_rrr2_t = rrr2_joint2_offset_x*rrr2_joint2_offset_x
-    Kd_1_rrr2_t_2 = 0.5*Kd_1_rrr2_t
-    Kd_1_rrr2_t_3 = 0.5*uu_2_rrr2_t
-    # (rrr2-G2) length of the leg's lever arms, the measure of what is near singular
-    size_rrr2_t = 5.257946636889999e-07 + Kd_1_rrr2_t + uu_2_rrr2_t
-    size_rrr2 = sqrt(size_rrr2_t)
-    # (rrr2-K8) squared amplitude
-    rho2_1_rrr2_t = size_rrr2*size_rrr2*size_rrr2_t
-    # (rrr2-K15) the vector from joint 1 to the connection point, resolved along link 1
-    inv_Kd_1_rrr2_t_5 = 1.0/Kd_1_rrr2_t
-    # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
-    inv_uu_2_rrr2_t = 1.0/uu_2_rrr2_t
-    # (rrr2-G4) inertia tensor of link 1 about the origin of link 1
-    J_1_rrr2_t = (
-    rrr2_link1_centre_of_mass_x*rrr2_link1_centre_of_mass_x +
-        rrr2_link1_centre_of_mass_y*rrr2_link1_centre_of_mass_y
-    )
-    J_1_rrr2_zz = rrr2_link1_inertia_zz + J_1_rrr2_t*rrr2_link1_mass
-    # (rrr2-G5) connection point to the centre of mass of link 2
-    rho_tip_2_rrr2_x = rrr2_link2_centre_of_mass_x - rrr2_platform_joint_offset_x
-    # (rrr2-G7) inertia tensor of link 2 about the connection point
-    J_2_rrr2_t = (
-    rho_tip_2_rrr2_x*rho_tip_2_rrr2_x + rrr2_link2_centre_of_mass_y*rrr2_link2_centre_of_mass_y
-    )
-    J_2_rrr2_zz = rrr2_link2_inertia_zz + J_2_rrr2_t*rrr2_link2_mass
-    # (rrr2-N11) inertia tensor of the links from 1 outwards about joint 1
-    Jc_1_rrr2_zz = J_1_rrr2_zz + J_2_rrr2_zz
-    # (rrr2-G6) first moment of link 2 about the connection point
-    h_2_rrr2_x = rho_tip_2_rrr2_x*rrr2_link2_mass
-    h_2_rrr2_y = rrr2_link2_centre_of_mass_y*rrr2_link2_mass
-    # (rrr2-V6) reciprocal vector 2
-    inv_rrr2_platform_joint_offset_x = 1.0/rrr2_platform_joint_offset_x
-    # (rrr2-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-    d_Gamma_1_rrr2_t = J_2_rrr2_zz*inv_rrr2_platform_joint_offset_x
-    d_Gamma_1_rrr2_y = d_Gamma_1_rrr2_t + h_2_rrr2_x
-    # (rrr2-N6) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
-    d_phi_2_rrr2_t = h_2_rrr2_y*inv_rrr2_platform_joint_offset_x
-    # (rrr2-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_rrr2_yy = (
-    -d_Gamma_1_rrr2_y*inv_rrr2_platform_joint_offset_x -
-        h_2_rrr2_x*inv_rrr2_platform_joint_offset_x
-    )
-    # (rrr2-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-    g_r0_x_2 = gravity_x*rrr2_base_frame_xx + gravity_y*rrr2_base_frame_yx
-    g_r0_y_2 = gravity_x*rrr2_base_frame_xy + gravity_y*rrr2_base_frame_yy
-    # (rrr2-G3) first moment of link 1 about the origin of link 1
-    h_1_rrr2_x = rrr2_link1_centre_of_mass_x*rrr2_link1_mass
-    h_1_rrr2_y = rrr2_link1_centre_of_mass_y*rrr2_link1_mass
-    # (L2) first moment about the platform origin
-    h_star_t_5 = rrr2_link2_mass*rrr2_platform_point_x
-    h_star_t_6 = rrr2_link2_mass*rrr2_platform_point_y
-    # (V1) potential energy
-    b_rrr2_r0_x = rrr2_base_frame_xx*rrr2_base_point_x + rrr2_base_frame_yx*rrr2_base_point_y
-    b_rrr2_r0_y = rrr2_base_frame_xy*rrr2_base_point_x + rrr2_base_frame_yy*rrr2_base_point_y
-    # (rrr2-K8) squared amplitude
-    inv_rho2_1_rrr2_t_4 = 1.0/rho2_1_rrr2_t
-    # (rrr2-V5) reciprocal vector 1
-    inv_size_rrr2 = 1.0/size_rrr2
-    total_rrr2 = np.sum(np.broadcast_to(rrr2_link2_mass, _rrr2))
-    total_rrr2_x = np.sum(np.broadcast_to(h_star_t_5, _rrr2))
-    total_rrr2_y = np.sum(np.broadcast_to(h_star_t_6, _rrr2))
-    total_rrr2_x_2 = np.sum(np.broadcast_to(rrr2_platform_point_x, _rrr2))
-    total_rrr2_y_2 = np.sum(np.broadcast_to(rrr2_platform_point_y, _rrr2))
-    total_rrr2_2 = np.sum(np.broadcast_to(size_rrr2_t, _rrr2))
-    # (L1) mass of the platform with the gathered masses
-    m_star = platform_mass + total_rrr + total_rrr2
-    # (M2) centripetal force and weight of the platform
+    total_rrr_2 = np.sum(np.broadcast_to(rrr_size_t, _rrr))
+    # (m_star) mass of the platform with the gathered masses
+    m_star = platform_mass + total_rrr + total_rrr_leg1
+    # (Z_p) centripetal force and weight of the platform
     Z_p_x = gravity_x*m_star
     Z_p_y = gravity_y*m_star
-    # (L2) first moment about the platform origin
-    h_star_x = h_star_t + total_rrr2_x + total_rrr_x
-    h_star_y = h_star_t_2 + total_rrr2_y + total_rrr_y
-    # (C1) centroid of the platform points
-    b_c_x = 0.5*total_rrr2_x_2 + 0.5*total_rrr_x_2
-    b_c_y = 0.5*total_rrr2_y_2 + 0.5*total_rrr_y_2
-    # (C3) rms size of the legs, taken where the platform points coincide
-    legs_size = sqrt(0.5*total_rrr2_2 + 0.5*total_rrr_2)
+    # (h_star) first moment about the platform origin
+    h_star_x = h_star_t + total_rrr_leg1_x + total_rrr_x
+    h_star_y = h_star_t_2 + total_rrr_leg1_y + total_rrr_y
+    # (b_c) centroid of the platform points
+    b_c_x = 0.5*total_rrr_leg1_x_2 + 0.5*total_rrr_x_2
+    b_c_y = 0.5*total_rrr_leg1_y_2 + 0.5*total_rrr_y_2
+    # (legs_size) rms size of the legs, taken where the platform points coincide
+    legs_size = sqrt(0.5*total_rrr_2 + 0.5*total_rrr_leg1_2)
     return {
         "dynamics": (
-        (Z_p_x, Z_p_y, m_star,),
+        (Z_p_x, Z_p_y, gravity_x, gravity_y, m_star,),
             (
-                (_rrr,
-        (J_1_rrr_zz, J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr,
-                    d_Gamma_1_rrr_t, d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, g_r0_x, g_r0_y,
-                    h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+                (_rrr_leg1,
+        (inv_rrr_leg1_Kd_1_t_5, inv_rrr_leg1_Kd_1_t_7, inv_rrr_leg1_platform_joint_offset_x,
+                    rrr_leg1_J_1_zz, rrr_leg1_J_2_zz, rrr_leg1_Jc_1_zz, rrr_leg1_Kd_1_t_2,
+                    rrr_leg1_Kd_1_t_4, rrr_leg1_base_frame_xx, rrr_leg1_base_frame_xy,
+                    rrr_leg1_base_frame_yx, rrr_leg1_base_frame_yy, rrr_leg1_base_point_x,
+                    rrr_leg1_base_point_y, rrr_leg1_branch_1, rrr_leg1_d_Gamma_2_t,
+                    rrr_leg1_d_Gamma_2_y, rrr_leg1_d_c_yy, rrr_leg1_d_phi_2_t, rrr_leg1_g_r0_x,
+                    rrr_leg1_g_r0_y, rrr_leg1_h_1_x, rrr_leg1_h_1_y, rrr_leg1_h_2_x,
+                    rrr_leg1_h_2_y, rrr_leg1_joint2_offset_x, rrr_leg1_platform_joint_offset_x,
+                    rrr_leg1_platform_point_x, rrr_leg1_platform_point_y, rrr_leg1_rho2_1_t,
+                    rrr_leg1_size,),
                 ),
-                (_rrr2,
-        (J_1_rrr2_zz, J_2_rrr2_zz, Jc_1_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2,
-                    d_Gamma_1_rrr2_t, d_Gamma_1_rrr2_y, d_c_rrr2_yy, d_phi_2_rrr2_t, g_r0_x_2,
-                    g_r0_y_2, h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
-                    inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t,
-                    rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
-                    rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y,
-                    rrr2_joint2_offset_x, rrr2_platform_joint_offset_x, rrr2_platform_point_x,
-                    rrr2_platform_point_y, size_rrr2,),
+                (_rrr,
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+                    rrr_J_2_zz, rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+                    rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+                    rrr_base_point_y, rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy,
+                    rrr_d_phi_2_t, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
+                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
         "M": (
         (m_star,),
             (
-                (_rrr,
-        (J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, d_Gamma_1_rrr_t,
-                    d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+                (_rrr_leg1,
+        (inv_rrr_leg1_Kd_1_t_5, inv_rrr_leg1_Kd_1_t_7, inv_rrr_leg1_platform_joint_offset_x,
+                    rrr_leg1_J_2_zz, rrr_leg1_Jc_1_zz, rrr_leg1_Kd_1_t_2, rrr_leg1_Kd_1_t_4,
+                    rrr_leg1_base_frame_xx, rrr_leg1_base_frame_xy, rrr_leg1_base_frame_yx,
+                    rrr_leg1_base_frame_yy, rrr_leg1_base_point_x, rrr_leg1_base_point_y,
+                    rrr_leg1_branch_1, rrr_leg1_d_Gamma_2_t, rrr_leg1_d_Gamma_2_y,
+                    rrr_leg1_d_c_yy, rrr_leg1_d_phi_2_t, rrr_leg1_h_2_y, rrr_leg1_joint2_offset_x,
+                    rrr_leg1_platform_joint_offset_x, rrr_leg1_platform_point_x,
+                    rrr_leg1_platform_point_y, rrr_leg1_rho2_1_t, rrr_leg1_size,),
                 ),
-                (_rrr2,
-        (J_2_rrr2_zz, Jc_1_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, d_Gamma_1_rrr2_t,
-                    d_Gamma_1_rrr2_y, d_c_rrr2_yy, d_phi_2_rrr2_t, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
-                    inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t,
-                    rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
-                    rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y,
-                    rrr2_joint2_offset_x, rrr2_platform_joint_offset_x, rrr2_platform_point_x,
-                    rrr2_platform_point_y, size_rrr2,),
+                (_rrr,
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_2_zz,
+                    rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+                    rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy, rrr_d_phi_2_t,
+                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
         "Z": (
-        (Z_p_x, Z_p_y,),
+        (Z_p_x, Z_p_y, gravity_x, gravity_y,),
             (
-                (_rrr,
-        (J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x, g_r0_y,
-                    h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+                (_rrr_leg1,
+        (inv_rrr_leg1_Kd_1_t_5, inv_rrr_leg1_Kd_1_t_7, inv_rrr_leg1_platform_joint_offset_x,
+                    rrr_leg1_J_1_zz, rrr_leg1_J_2_zz, rrr_leg1_Kd_1_t_2, rrr_leg1_Kd_1_t_4,
+                    rrr_leg1_base_frame_xx, rrr_leg1_base_frame_xy, rrr_leg1_base_frame_yx,
+                    rrr_leg1_base_frame_yy, rrr_leg1_base_point_x, rrr_leg1_base_point_y,
+                    rrr_leg1_branch_1, rrr_leg1_g_r0_x, rrr_leg1_g_r0_y, rrr_leg1_h_1_x,
+                    rrr_leg1_h_1_y, rrr_leg1_h_2_x, rrr_leg1_h_2_y, rrr_leg1_joint2_offset_x,
+                    rrr_leg1_platform_joint_offset_x, rrr_leg1_platform_point_x,
+                    rrr_leg1_platform_point_y, rrr_leg1_rho2_1_t, rrr_leg1_size,),
                 ),
-                (_rrr2,
-        (J_1_rrr2_zz, J_2_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, g_r0_x_2,
-                    g_r0_y_2, h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
-                    inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t,
-                    rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
-                    rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y,
-                    rrr2_joint2_offset_x, rrr2_platform_joint_offset_x, rrr2_platform_point_x,
-                    rrr2_platform_point_y, size_rrr2,),
+                (_rrr,
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+                    rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+                    rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
+                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
         "H": (
         (),
             (
-                (_rrr,
-        (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
-                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+                (_rrr_leg1,
+        (inv_rrr_leg1_Kd_1_t_5, inv_rrr_leg1_Kd_1_t_7, inv_rrr_leg1_platform_joint_offset_x,
+                    rrr_leg1_Kd_1_t_2, rrr_leg1_Kd_1_t_4, rrr_leg1_base_frame_xx,
+                    rrr_leg1_base_frame_xy, rrr_leg1_base_frame_yx, rrr_leg1_base_frame_yy,
+                    rrr_leg1_base_point_x, rrr_leg1_base_point_y, rrr_leg1_branch_1,
+                    rrr_leg1_joint2_offset_x, rrr_leg1_platform_joint_offset_x,
+                    rrr_leg1_platform_point_x, rrr_leg1_platform_point_y, rrr_leg1_rho2_1_t,
+                    rrr_leg1_size,),
                 ),
-                (_rrr2,
-        (Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5, inv_uu_2_rrr2_t,
-                    rho2_1_rrr2_t, rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
-                    rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y,
-                    rrr2_joint2_offset_x, rrr2_platform_joint_offset_x, rrr2_platform_point_x,
-                    rrr2_platform_point_y, size_rrr2,),
+                (_rrr,
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+                    rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+                    rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
         "required": (
         (gravity_x, gravity_y, m_star,),
             (
-                (_rrr,
-        (J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x, g_r0_y,
-                    h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+                (_rrr_leg1,
+        (inv_rrr_leg1_Kd_1_t_5, inv_rrr_leg1_Kd_1_t_7, inv_rrr_leg1_platform_joint_offset_x,
+                    rrr_leg1_J_1_zz, rrr_leg1_J_2_zz, rrr_leg1_Kd_1_t_2, rrr_leg1_Kd_1_t_4,
+                    rrr_leg1_base_frame_xx, rrr_leg1_base_frame_xy, rrr_leg1_base_frame_yx,
+                    rrr_leg1_base_frame_yy, rrr_leg1_base_point_x, rrr_leg1_base_point_y,
+                    rrr_leg1_branch_1, rrr_leg1_g_r0_x, rrr_leg1_g_r0_y, rrr_leg1_h_1_x,
+                    rrr_leg1_h_1_y, rrr_leg1_h_2_x, rrr_leg1_h_2_y, rrr_leg1_joint2_offset_x,
+                    rrr_leg1_platform_joint_offset_x, rrr_leg1_platform_point_x,
+                    rrr_leg1_platform_point_y, rrr_leg1_rho2_1_t, rrr_leg1_size,),
                 ),
-                (_rrr2,
-        (J_1_rrr2_zz, J_2_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, g_r0_x_2,
-                    g_r0_y_2, h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
-                    inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t,
-                    rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
-                    rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y,
-                    rrr2_joint2_offset_x, rrr2_platform_joint_offset_x, rrr2_platform_point_x,
-                    rrr2_platform_point_y, size_rrr2,),
+                (_rrr,
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+                    rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+                    rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
+                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
         "inverse_kinematics": (
         (),
             (
-                (_rrr,
-        (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,),
+                (_rrr_leg1,
+        (inv_rrr_leg1_Kd_1_t_5, inv_rrr_leg1_Kd_1_t_7, rrr_leg1_Kd_1_t_2, rrr_leg1_Kd_1_t_4,
+                    rrr_leg1_base_frame_xx, rrr_leg1_base_frame_xy, rrr_leg1_base_frame_yx,
+                    rrr_leg1_base_frame_yy, rrr_leg1_base_point_x, rrr_leg1_base_point_y,
+                    rrr_leg1_branch_1, rrr_leg1_joint2_offset_x, rrr_leg1_platform_joint_offset_x,
+                    rrr_leg1_platform_point_x, rrr_leg1_platform_point_y, rrr_leg1_rho2_1_t,),
                 ),
-                (_rrr2,
-        (Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5, inv_uu_2_rrr2_t,
-                    rho2_1_rrr2_t, rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
-                    rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y,
-                    rrr2_joint2_offset_x, rrr2_platform_joint_offset_x, rrr2_platform_point_x,
-                    rrr2_platform_point_y,),
+                (_rrr,
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+                    rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+                    rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    rrr_rho2_1_t,),
                 ),
             ),
         ),
         "joint_rates": (
         (),
             (
-                (_rrr,
-        (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
-                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+                (_rrr_leg1,
+        (inv_rrr_leg1_Kd_1_t_5, inv_rrr_leg1_Kd_1_t_7, inv_rrr_leg1_platform_joint_offset_x,
+                    rrr_leg1_Kd_1_t_2, rrr_leg1_Kd_1_t_4, rrr_leg1_base_frame_xx,
+                    rrr_leg1_base_frame_xy, rrr_leg1_base_frame_yx, rrr_leg1_base_frame_yy,
+                    rrr_leg1_base_point_x, rrr_leg1_base_point_y, rrr_leg1_branch_1,
+                    rrr_leg1_joint2_offset_x, rrr_leg1_platform_joint_offset_x,
+                    rrr_leg1_platform_point_x, rrr_leg1_platform_point_y, rrr_leg1_rho2_1_t,
+                    rrr_leg1_size,),
                 ),
-                (_rrr2,
-        (Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5,
-                    inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t,
-                    rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
-                    rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y,
-                    rrr2_joint2_offset_x, rrr2_platform_joint_offset_x, rrr2_platform_point_x,
-                    rrr2_platform_point_y, size_rrr2,),
+                (_rrr,
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
+                    rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+                    rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+                    rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
         "joint_accelerations": (
         (),
             (
-                (_rrr,
-        (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
-                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+                (_rrr_leg1,
+        (inv_rrr_leg1_Kd_1_t_5, inv_rrr_leg1_Kd_1_t_7, inv_rrr_leg1_platform_joint_offset_x,
+                    rrr_leg1_Kd_1_t_2, rrr_leg1_Kd_1_t_4, rrr_leg1_base_frame_xx,
+                    rrr_leg1_base_frame_xy, rrr_leg1_base_frame_yx, rrr_leg1_base_frame_yy,
+                    rrr_leg1_base_point_x, rrr_leg1_base_point_y, rrr_leg1_branch_1,
+                    rrr_leg1_joint2_offset_x, rrr_leg1_platform_joint_offset_x,
+                    rrr_leg1_platform_point_x, rrr_leg1_platform_point_y, rrr_leg1_rho2_1_t,
+                    rrr_leg1_size,),
                 ),
-                (_rrr2,
-        (Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5,
-                    inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t,
-                    rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
-                    rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y,
-                    rrr2_joint2_offset_x, rrr2_platform_joint_offset_x, rrr2_platform_point_x,
-                    rrr2_platform_point_y, size_rrr2,),
+                (_rrr,
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
+                    rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+                    rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+                    rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
         "legs": (
         (gravity_x, gravity_y,),
             (
-                (_rrr,
-        (J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x, g_r0_y,
-                    h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_link2_mass,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+                (_rrr_leg1,
+        (inv_rrr_leg1_Kd_1_t_5, inv_rrr_leg1_Kd_1_t_7, inv_rrr_leg1_platform_joint_offset_x,
+                    rrr_leg1_J_1_zz, rrr_leg1_J_2_zz, rrr_leg1_Kd_1_t_2, rrr_leg1_Kd_1_t_4,
+                    rrr_leg1_base_frame_xx, rrr_leg1_base_frame_xy, rrr_leg1_base_frame_yx,
+                    rrr_leg1_base_frame_yy, rrr_leg1_base_point_x, rrr_leg1_base_point_y,
+                    rrr_leg1_branch_1, rrr_leg1_g_r0_x, rrr_leg1_g_r0_y, rrr_leg1_h_1_x,
+                    rrr_leg1_h_1_y, rrr_leg1_h_2_x, rrr_leg1_h_2_y, rrr_leg1_joint2_offset_x,
+                    rrr_leg1_link2_mass, rrr_leg1_platform_joint_offset_x,
+                    rrr_leg1_platform_point_x, rrr_leg1_platform_point_y, rrr_leg1_rho2_1_t,
+                    rrr_leg1_size,),
                 ),
-                (_rrr2,
-        (J_1_rrr2_zz, J_2_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, g_r0_x_2,
-                    g_r0_y_2, h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
-                    inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t,
-                    rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
-                    rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y,
-                    rrr2_joint2_offset_x, rrr2_link2_mass, rrr2_platform_joint_offset_x,
-                    rrr2_platform_point_x, rrr2_platform_point_y, size_rrr2,),
+                (_rrr,
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+                    rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+                    rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
+                    rrr_h_2_y, rrr_joint2_offset_x, rrr_link2_mass, rrr_platform_joint_offset_x,
+                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
         "potential": (
         (gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
-                (_rrr,
-        (Kd_1_rrr_t_2, Kd_1_rrr_t_3, b_rrr_r0_x, b_rrr_r0_y, branch_1_rrr, g_r0_x, g_r0_y,
-                    h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t,
-                    rho2_1_rrr_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_link1_mass, rrr_platform_joint_offset_x, rrr_platform_point_x,
-                    rrr_platform_point_y,),
+                (_rrr_leg1,
+        (inv_rrr_leg1_Kd_1_t_5, inv_rrr_leg1_Kd_1_t_7, rrr_leg1_Kd_1_t_2, rrr_leg1_Kd_1_t_4,
+                    rrr_leg1_b_r0_x, rrr_leg1_b_r0_y, rrr_leg1_base_frame_xx,
+                    rrr_leg1_base_frame_xy, rrr_leg1_base_frame_yx, rrr_leg1_base_frame_yy,
+                    rrr_leg1_base_point_x, rrr_leg1_base_point_y, rrr_leg1_branch_1,
+                    rrr_leg1_g_r0_x, rrr_leg1_g_r0_y, rrr_leg1_h_1_x, rrr_leg1_h_1_y,
+                    rrr_leg1_h_2_x, rrr_leg1_h_2_y, rrr_leg1_joint2_offset_x, rrr_leg1_link1_mass,
+                    rrr_leg1_platform_joint_offset_x, rrr_leg1_platform_point_x,
+                    rrr_leg1_platform_point_y, rrr_leg1_rho2_1_t,),
                 ),
-                (_rrr2,
-        (Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, b_rrr2_r0_x, b_rrr2_r0_y, branch_1_rrr2, g_r0_x_2,
-                    g_r0_y_2, h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
-                    inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx, rrr2_base_frame_xy,
-                    rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y,
-                    rrr2_joint2_offset_x, rrr2_link1_mass, rrr2_platform_joint_offset_x,
-                    rrr2_platform_point_x, rrr2_platform_point_y,),
+                (_rrr,
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_b_r0_x, rrr_b_r0_y,
+                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
+                    rrr_base_point_x, rrr_base_point_y, rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y,
+                    rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y, rrr_joint2_offset_x,
+                    rrr_link1_mass, rrr_platform_joint_offset_x, rrr_platform_point_x,
+                    rrr_platform_point_y, rrr_rho2_1_t,),
                 ),
             ),
         ),
         "condition": (
         (b_c_x, b_c_y, legs_size,),
             (
-                (_rrr,
-        (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_rho2_1_rrr_t_4,
-                    inv_rrr_platform_joint_offset_x, inv_size_rrr, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+                (_rrr_leg1,
+        (inv_rrr_leg1_Kd_1_t_5, inv_rrr_leg1_Kd_1_t_7, inv_rrr_leg1_platform_joint_offset_x,
+                    inv_rrr_leg1_rho2_1_t_4, inv_rrr_leg1_size, rrr_leg1_Kd_1_t_2,
+                    rrr_leg1_Kd_1_t_4, rrr_leg1_base_frame_xx, rrr_leg1_base_frame_xy,
+                    rrr_leg1_base_frame_yx, rrr_leg1_base_frame_yy, rrr_leg1_base_point_x,
+                    rrr_leg1_base_point_y, rrr_leg1_branch_1, rrr_leg1_joint2_offset_x,
+                    rrr_leg1_platform_joint_offset_x, rrr_leg1_platform_point_x,
+                    rrr_leg1_platform_point_y, rrr_leg1_rho2_1_t, rrr_leg1_size,),
                 ),
-                (_rrr2,
-        (Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5, inv_rho2_1_rrr2_t_4,
-                    inv_size_rrr2, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx,
-                    rrr2_base_frame_xy, rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x,
-                    rrr2_base_point_y, rrr2_joint2_offset_x, rrr2_platform_joint_offset_x,
-                    rrr2_platform_point_x, rrr2_platform_point_y, size_rrr2,),
+                (_rrr,
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_rho2_1_t_4, inv_rrr_size, rrr_Kd_1_t_2,
+                    rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+                    rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+                    rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
     }
 
 
-_FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
+_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
@@ -988,17 +1013,19 @@ class _Floats:
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
-        for k in range(self.states):
-            try:
-                ok, arrays = function(self, *(row[k] for row in rows))
-            except (ZeroDivisionError, OverflowError):
-                continue
-            if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
-                for a, array in zip(found, arrays):
-                    a[k] = array
-        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
+        found = [self.state(function, names, [row[k] for row in rows]) for k in range(self.states)]
+        return [np.array(a).T.reshape(*_SHAPES[n], self.states) for a, n in zip(zip(*found), names)]
+
+    def state(self, function, names, given):
+        """Lists that a function gives at a state."""
+        try:
+            ok, arrays = function(self, *given)
+        except (ZeroDivisionError, OverflowError):
+            ok = False
+        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+            return arrays
+        return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
 
 
 class _Arrays:
@@ -1066,35 +1093,44 @@ def _mode(p, states):
     return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
 
 
-def _call(function, steps, p, *arguments, mode=_mode):
-    """What the steps give at arguments (name, value, shape of a state, default, rule)."""
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+    """What the steps give at arguments (name, value, shape of a state, default, rule).
+
+    Where that may be infinite only NaN makes a state impossible.
+    """
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
     lead, p = _lead(leads), _given(p)
     read = [a[4:] != ("unused",) for a in arguments]
     if lead or mode is _Judged:
-        results = _many(steps, p, lead, given, shapes, read, mode)
+        results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
-        results = _one(steps, p, given, shapes, read)
+        results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
 
 
-def _one(steps, p, given, shapes, read):
+def _one(steps, p, given, shapes, read, unbounded):
     """Results at a single state."""
     states = [v.reshape(*shape, 1) for v, shape in zip(given, shapes)]
     with np.errstate(all="ignore"):
-        results = [a[..., 0] for a in steps(_Floats(p, 1), *states)]
-    if all(all(map(math.isfinite, v.ravel().tolist())) for v in (*compress(given, read), *results)):
-        return [np.array(a)[()] for a in results]
+        results = [a[..., 0].copy() for a in steps(_Floats(p, 1), *states)]
+    looked_at = [np.minimum(a, 0.0) for a in results] if unbounded else results
+    entries = (v.ravel().tolist() for v in (*compress(given, read), *looked_at))
+    if all(all(map(math.isfinite, row)) for row in entries):
+        return [a[()] for a in results]
     return [np.full(a.shape, np.nan)[()] for a in results]
 
 
-def _many(steps, p, lead, given, shapes, read, mode):
+def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block."""
     count = math.prod(lead)
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
+    if count > _BLOCK:
+        # Never touched, freed at once: the C library, which learns from it, then keeps the memory
+        # of intermediate arrays from block to block instead of giving its pages back.
+        np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
         for first in range(0, max(count, 1), _BLOCK):
             block = slice(first, min(first + _BLOCK, count))
@@ -1106,7 +1142,7 @@ def _many(steps, p, lead, given, shapes, read, mode):
             _all_finite(compress(states, read), good)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite(found, good)
+            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -1142,6 +1178,18 @@ def _wrapped(a, places):
     result = np.array(a)
     result[places] = np.pi - np.remainder(np.pi - a[places], 2.0 * np.pi)
     return result
+
+
+def _unlimited(a, places):
+    """a, some entries infinite; what is not known stays so."""
+    result = np.array(a)
+    result[places] += np.inf
+    return result
+
+
+def _not_negative(a):
+    """1 where no entry is negative, else 0; NaN where one is not finite."""
+    return np.where(np.isfinite(a).all(axis=0), np.all(a >= 0.0, axis=0), np.nan)
 
 
 def _scaled(q):
@@ -1180,8 +1228,8 @@ def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
     n, states = b.shape
     if 0 < states <= _FEW:
-        matrices, rights = np.moveaxis(a, -1, 0).tolist(), b.T.tolist()
-        return np.array([_solve_one(*each) for each in zip(matrices, rights)]).T.reshape(n, states)
+        systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
+        return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
     good = np.all((size > 0.0) & np.isfinite(size), axis=0)
     rows = np.concatenate((a, b[:, None]), axis=1)
@@ -1208,28 +1256,32 @@ def _solve(a, b):
 
 
 def _solve_one(a, b):
-    """The same for one system of nested lists."""
-    n = len(b)
-    failure = [np.nan] * n
-    for i, row in enumerate(a):
-        size = max(map(abs, row), default=0.0)
-        if not 0.0 < size < np.inf:
-            return failure
-        a[i] = [v / size for v in row] + [b[i] / size]
-    for k in range(n):
-        best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
-            a[k], a[best] = a[best], a[k]
-        if not abs(a[k][k]) > _PIVOT:
-            return failure
-        head = a[k]
-        for i in range(k + 1, n):
-            factor = a[i][k] / head[k]
-            a[i] = [v - factor * h for v, h in zip(a[i], head)]
-    x = [0.0] * n
-    for k in reversed(range(n)):
-        x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
-    return x if all(map(math.isfinite, x)) else failure
+    """The same for one system of nested lists: the rows left lose an entry at every step."""
+    rows, heads = [], []
+    for row, right in zip(a, b):
+        size = max(map(abs, row))
+        if not 0.0 < size < math.inf:
+            return [math.nan] * len(b)
+        rows.append([v / size for v in (*row, right)])
+    while rows:
+        column = [abs(row[0]) for row in rows]
+        largest = max(column)
+        if largest > _CLEARLY * column[0]:
+            best = column.index(largest)
+            rows[0], rows[best] = rows[best], rows[0]
+        pivot, *head = rows[0]
+        if not abs(pivot) > _PIVOT:
+            return [math.nan] * len(b)
+        heads.append((pivot, head))
+        for i in range(1, len(rows)):
+            first, *row = rows[i]
+            factor = first / pivot
+            rows[i] = [v - factor * h for v, h in zip(row, head)]
+        del rows[0]
+    x = []
+    for pivot, (*head, right) in reversed(heads):
+        x.insert(0, (right - sum([h * v for h, v in zip(head, x)])) / pivot)
+    return x if all(map(math.isfinite, x)) else [math.nan] * len(b)
 
 
 def _matrices(a, *others):
@@ -1335,7 +1387,7 @@ def _at(m, function, X, given, at):
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
-    Z_p_x, Z_p_y, m_star = shared
+    Z_p_x, Z_p_y, gravity_x, gravity_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     V_0 = V[0]
@@ -1353,316 +1405,352 @@ def _run_dynamics(m, X, V):
     sums = [0.0] * 5
     for leg, k in legs[0]:
         (
-        J_1_rrr_zz, J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr,
-            d_Gamma_1_rrr_t, d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, g_r0_x, g_r0_y,
-            h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
-            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        inv_rrr_leg1_Kd_1_t_5, inv_rrr_leg1_Kd_1_t_7, inv_rrr_leg1_platform_joint_offset_x,
+            rrr_leg1_J_1_zz, rrr_leg1_J_2_zz, rrr_leg1_Jc_1_zz, rrr_leg1_Kd_1_t_2,
+            rrr_leg1_Kd_1_t_4, rrr_leg1_base_frame_xx, rrr_leg1_base_frame_xy,
+            rrr_leg1_base_frame_yx, rrr_leg1_base_frame_yy, rrr_leg1_base_point_x,
+            rrr_leg1_base_point_y, rrr_leg1_branch_1, rrr_leg1_d_Gamma_2_t, rrr_leg1_d_Gamma_2_y,
+            rrr_leg1_d_c_yy, rrr_leg1_d_phi_2_t, rrr_leg1_g_r0_x, rrr_leg1_g_r0_y, rrr_leg1_h_1_x,
+            rrr_leg1_h_1_y, rrr_leg1_h_2_x, rrr_leg1_h_2_y, rrr_leg1_joint2_offset_x,
+            rrr_leg1_platform_joint_offset_x, rrr_leg1_platform_point_x,
+            rrr_leg1_platform_point_y, rrr_leg1_rho2_1_t, rrr_leg1_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
-        S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr_leg1-S) from the base point to the connection point
+        rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x
+        rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y
+        # (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y
+        rrr_leg1_Kd_1 = 0.5*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4
+        # (rrr_leg1-px_1) component along the reference direction
+        rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx + rrr_leg1_S_y*rrr_leg1_base_frame_yx
+        # (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1
+        # (rrr_leg1-py_1) component across the reference direction
+        rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy + rrr_leg1_S_y*rrr_leg1_base_frame_yy
+        # (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1
+        rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1
+        # (rrr_leg1-rho2_1) squared amplitude
+        rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1
+        # (rrr_leg1-disc_1) discriminant
+        rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1
+        # (rrr_leg1-root_1) root, with the sign of the branch
+        rrr_leg1_root_1 = rrr_leg1_branch_1*sqrt(rrr_leg1_disc_1)
+        # (rrr_leg1-x_2) from the origin of joint 2 to the connection point
+        rrr_leg1_x_2_x = (
+        inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        # (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_leg1_c_2 = inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x
+        # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_leg1_s_2 = (
+        inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        )
+        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
+        rrr_leg1_r_1_t = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2
+        rrr_leg1_r_1_x = rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
+        rrr_leg1_r_1_r0_x = rrr_leg1_c_2*rrr_leg1_r_1_x + rrr_leg1_r_1_t*rrr_leg1_s_2
+        rrr_leg1_r_1_r0_y = rrr_leg1_r_1_x*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_r_1_t
+        # (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_leg1_rho2_1 = 1.0/rrr_leg1_rho2_1
+        rrr_leg1_c_1 = (
+        inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 - rrr_leg1_Ks_1*rrr_leg1_root_1)
+        )
+        # (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_leg1_s_1 = (
+        inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 + rrr_leg1_Kd_1*rrr_leg1_Ks_1)
+        )
+        # (rrr_leg1-w_1) reciprocal vector 1
+        axis_y_rrr_leg1_axes2_r1_x = rrr_leg1_c_1*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_s_1
+        axis_y_rrr_leg1_axes2_r1_y = rrr_leg1_c_1*rrr_leg1_c_2 + rrr_leg1_s_1*rrr_leg1_s_2
+        axis_y_rrr_leg1_axes2_in_base_x = (
+        axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_xx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_xy
+        )
+        axis_y_rrr_leg1_axes2_in_base_y = (
+        axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_yx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_yy
+        )
+        inv_rrr_leg1_r_1_r0_y = 1.0/rrr_leg1_r_1_r0_y
+        # (rrr_leg1-w_2) reciprocal vector 2
+        rrr_leg1_w_2_t = (
+        inv_rrr_leg1_platform_joint_offset_x*inv_rrr_leg1_r_1_r0_y*rrr_leg1_r_1_r0_x
+        )
+        # (rrr_leg1-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rrr_leg1_d_Gamma_2_t_2 = rrr_leg1_d_Gamma_2_t*rrr_leg1_r_1_r0_x
+        rrr_leg1_d_Gamma_2_x = (
+        -rrr_leg1_h_2_y - inv_rrr_leg1_r_1_r0_y*(rrr_leg1_J_2_zz - rrr_leg1_d_Gamma_2_t_2)
+        )
+        # (rrr_leg1-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrr_leg1_d_Gamma_1_x = (
+        -rrr_leg1_h_2_y - inv_rrr_leg1_r_1_r0_y*(rrr_leg1_Jc_1_zz - rrr_leg1_d_Gamma_2_t_2)
+        )
+        # (rrr_leg1-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_leg1_d_c_xy = (
+        rrr_leg1_d_phi_2_t + inv_rrr_leg1_r_1_r0_y*rrr_leg1_d_Gamma_2_y -
+            rrr_leg1_d_Gamma_2_y*rrr_leg1_w_2_t
+        )
+        # (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there
+        rrr_leg1_Q_t = (
+        inv_rrr_leg1_r_1_r0_y*rrr_leg1_d_Gamma_1_x + rrr_leg1_h_2_y*(rrr_leg1_w_2_t -
+            inv_rrr_leg1_r_1_r0_y) - rrr_leg1_d_c_yy - rrr_leg1_d_Gamma_2_x*rrr_leg1_w_2_t
+        )
+        rrr_leg1_Q_t_2 = 0.5*rrr_leg1_Q_t
+        rrr_leg1_Q_t_3 = (
+        axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_d_c_xy +
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_Q_t_2
+        )
+        rrr_leg1_Q_t_4 = (
+        axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_Q_t_2 -
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_d_c_xy
+        )
+        rrr_leg1_Q_t_5 = rrr_leg1_d_c_yy + 2.0*axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_Q_t_3
+        rrr_leg1_Q_t_6 = (
+        axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_Q_t_3 +
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_Q_t_4
+        )
+        rrr_leg1_Q_t_7 = rrr_leg1_d_c_yy + 2.0*axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_Q_t_4
+        # (rrr_leg1-qd_2) rate of joint 2
+        rrr_leg1_qd_1 = (
+        inv_rrr_leg1_r_1_r0_y*(axis_y_rrr_leg1_axes2_in_base_y*t_dot_x -
+            axis_y_rrr_leg1_axes2_in_base_x*t_dot_y)
+        )
+        # (rrr_leg1-omega_2) angular velocity of link 2
+        rrr_leg1_omega_2_z = (
+        inv_rrr_leg1_platform_joint_offset_x*(axis_y_rrr_leg1_axes2_in_base_x*t_dot_x +
+            axis_y_rrr_leg1_axes2_in_base_y*t_dot_y + rrr_leg1_qd_1*rrr_leg1_r_1_r0_x) -
+            rrr_leg1_qd_1
+        )
+        # (rrr_leg1-W_1) centripetal tensor of link 1
+        rrr_leg1_W_1_t = rrr_leg1_qd_1*rrr_leg1_qd_1
+        # (rrr_leg1-W_2) centripetal tensor of link 2
+        rrr_leg1_W_2_t = rrr_leg1_omega_2_z*rrr_leg1_omega_2_z
+        # (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations
+        rrr_leg1_bias_x = (
+        -rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x -
+            rrr_leg1_W_1_t*rrr_leg1_c_2*rrr_leg1_joint2_offset_x
+        )
+        # (rrr_leg1-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        rrr_leg1_qdd_1_o = inv_rrr_leg1_r_1_r0_y*rrr_leg1_bias_x
+        # (rrr_leg1-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        rrr_leg1_alpha_2_o_z = (
+        rrr_leg1_qdd_1_o +
+            inv_rrr_leg1_platform_joint_offset_x*(rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
+            - rrr_leg1_qdd_1_o*rrr_leg1_r_1_r0_x)
+        )
+        # (rrr_leg1-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        rrr_leg1_mu_2_o_z = (
+        rrr_leg1_J_2_zz*rrr_leg1_alpha_2_o_z +
+            rrr_leg1_h_2_y*(axis_y_rrr_leg1_axes2_in_base_y*gravity_x -
+            axis_y_rrr_leg1_axes2_in_base_x*gravity_y) -
+            rrr_leg1_h_2_x*(axis_y_rrr_leg1_axes2_in_base_x*gravity_x +
+            axis_y_rrr_leg1_axes2_in_base_y*gravity_y)
+        )
+        # (rrr_leg1-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        rrr_leg1_mu_1_o_z = (
+        rrr_leg1_J_1_zz*rrr_leg1_qdd_1_o + rrr_leg1_h_1_y*(rrr_leg1_c_1*rrr_leg1_g_r0_x +
+            rrr_leg1_g_r0_y*rrr_leg1_s_1) - rrr_leg1_h_1_x*(rrr_leg1_c_1*rrr_leg1_g_r0_y -
+            rrr_leg1_g_r0_x*rrr_leg1_s_1)
+        )
+        # (rrr_leg1-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrr_leg1_N_1_o_z = rrr_leg1_mu_1_o_z + rrr_leg1_mu_2_o_z
+        # (rrr_leg1-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_leg1_G_o_t = inv_rrr_leg1_platform_joint_offset_x*rrr_leg1_mu_2_o_z
+        # (rrr_leg1-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_leg1_c_o_x = (
+        rrr_leg1_W_2_t*rrr_leg1_h_2_x + rrr_leg1_alpha_2_o_z*rrr_leg1_h_2_y -
+            inv_rrr_leg1_r_1_r0_y*(rrr_leg1_G_o_t*rrr_leg1_r_1_r0_x - rrr_leg1_N_1_o_z)
+        )
+        rrr_leg1_c_o_y = (
+        rrr_leg1_W_2_t*rrr_leg1_h_2_y - rrr_leg1_G_o_t - rrr_leg1_alpha_2_o_z*rrr_leg1_h_2_x
+        )
+        # (rrr_leg1-U) velocity and gravity terms of the leg force
+        rrr_leg1_U_in_base_x = (
+        -axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_c_o_y -
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_c_o_x
+        )
+        rrr_leg1_U_in_base_y = (
+        axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_c_o_x -
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_c_o_y
+        )
+        # (rrr_leg1-w_1) reciprocal vector 1
+        rrr_leg1_w_1_t = axis_y_rrr_leg1_axes2_in_base_y*inv_rrr_leg1_r_1_r0_y
+        rrr_leg1_w_1_t_2 = axis_y_rrr_leg1_axes2_in_base_x*inv_rrr_leg1_r_1_r0_y
+        # (rrr_leg1-w_2) reciprocal vector 2
+        rrr_leg1_w_2_in_base_x = (
+        axis_y_rrr_leg1_axes2_in_base_x*inv_rrr_leg1_platform_joint_offset_x +
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_w_2_t
+        )
+        rrr_leg1_w_2_in_base_y = (
+        axis_y_rrr_leg1_axes2_in_base_y*inv_rrr_leg1_platform_joint_offset_x -
+            axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_w_2_t
+        )
+        ok = (
+        ok & m.every(leg, (abs(rrr_leg1_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_leg1_rho2_1_t) &
+            (rrr_leg1_disc_1 >= 0.0) & (abs(-rrr_leg1_r_1_r0_y) > _TOLERANCE * rrr_leg1_size))
+        )
+        sums = m.added(sums, leg, (
+        rrr_leg1_Q_t_5, rrr_leg1_Q_t_6, rrr_leg1_Q_t_7, rrr_leg1_U_in_base_x,
+            rrr_leg1_U_in_base_y,
+        ))
+        out_H[_H_rrr_leg1[0][leg]] = -rrr_leg1_w_1_t
+        out_H[_H_rrr_leg1[1][leg]] = rrr_leg1_w_1_t_2
+        out_H[_H_rrr_leg1[2][leg]] = rrr_leg1_w_2_in_base_x
+        out_H[_H_rrr_leg1[3][leg]] = rrr_leg1_w_2_in_base_y
+    (
+    total_rrr_leg1_xx, total_rrr_leg1_xy, total_rrr_leg1_yy, total_rrr_leg1_x, total_rrr_leg1_y,
+    ) = sums
+    sums = [0.0] * 5
+    for leg, k in legs[1]:
+        (
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+            rrr_J_2_zz, rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+            rrr_base_point_y, rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy,
+            rrr_d_phi_2_t, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        ) = k
+        # (rrr-S) from the base point to the connection point
+        rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        )
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        # (rrr-V6) reciprocal vector 2
-        w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x
-        # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x
-        d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz - d_Gamma_1_rrr_t_2)
-        # (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz - d_Gamma_1_rrr_t_2)
-        # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y - d_Gamma_1_rrr_y*w_2_rrr_t
-        # (rrr-N36) inertia of the leg at the connection point, without the mass gathered there
-        Q_rrr_t = (
-        d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t - inv_r_1_rrr_r0_y) - d_c_rrr_yy -
-            d_Gamma_2_rrr_x*w_2_rrr_t
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        # (rrr-w_2) reciprocal vector 2
+        rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x
+        # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x
+        rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz - rrr_d_Gamma_2_t_2)
+        # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz - rrr_d_Gamma_2_t_2)
+        # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y - rrr_d_Gamma_2_y*rrr_w_2_t
+        # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
+        rrr_Q_t = (
+        inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t - inv_rrr_r_1_r0_y) - rrr_d_c_yy -
+            rrr_d_Gamma_2_x*rrr_w_2_t
         )
-        Q_rrr_t_2 = 0.5*Q_rrr_t
-        Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
-        Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
-        Q_rrr_t_5 = d_c_rrr_yy + 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y
-        Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x + Q_rrr_t_4*axis_y_rrr_axes2_in_base_y
-        Q_rrr_t_7 = d_c_rrr_yy + 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
-        # (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        g_r1_x = c_1_rrr*g_r0_x + g_r0_y*s_1_rrr
-        g_r1_y = c_1_rrr*g_r0_y - g_r0_x*s_1_rrr
-        # (rrr-V7) rate of joint 1
-        qd_1_rrr = (
-        inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x - axis_y_rrr_axes2_in_base_x*t_dot_y)
+        rrr_Q_t_2 = 0.5*rrr_Q_t
+        rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy + axis_y_rrr_axes2_in_base_y*rrr_Q_t_2
+        rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 - axis_y_rrr_axes2_in_base_y*rrr_d_c_xy
+        rrr_Q_t_5 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3
+        rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 + axis_y_rrr_axes2_in_base_y*rrr_Q_t_4
+        rrr_Q_t_7 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_1 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x - axis_y_rrr_axes2_in_base_x*t_dot_y)
         )
-        # (rrr-V11) angular velocity of link 2
-        omega_2_rrr_z = (
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_z = (
         inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
-            axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
+            axis_y_rrr_axes2_in_base_y*t_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
         )
-        # (rrr-V10) centripetal tensor of link 1
-        W_1_rrr_t = qd_1_rrr*qd_1_rrr
-        # (rrr-V12) centripetal tensor of link 2
-        W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
-        # (rrr-A4) acceleration of the connection point at zero joint accelerations
-        bias_rrr_x = (
-        -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
+        # (rrr-W_1) centripetal tensor of link 1
+        rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_x = (
+        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        # (rrr-A8) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_rrr_o = bias_rrr_x*inv_r_1_rrr_r0_y
-        # (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rrr_o_z = J_1_rrr_zz*qdd_1_rrr_o + g_r1_x*h_1_rrr_y - g_r1_y*h_1_rrr_x
-        # (rrr-A17) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_rrr_o_z = (
-        qdd_1_rrr_o + inv_rrr_platform_joint_offset_x*(W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr -
-            qdd_1_rrr_o*r_1_rrr_r0_x)
+        # (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_bias_x
+        # (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        rrr_alpha_2_o_z = (
+        rrr_qdd_1_o + inv_rrr_platform_joint_offset_x*(rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2 -
+            rrr_qdd_1_o*rrr_r_1_r0_x)
         )
-        # (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_rrr_o_z = (
-        J_2_rrr_zz*alpha_2_rrr_o_z + h_2_rrr_y*(c_2_rrr*g_r1_x - g_r1_y*s_2_rrr) -
-            h_2_rrr_x*(c_2_rrr*g_r1_y + g_r1_x*s_2_rrr)
+        # (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        rrr_mu_2_o_z = (
+        rrr_J_2_zz*rrr_alpha_2_o_z + rrr_h_2_y*(axis_y_rrr_axes2_in_base_y*gravity_x -
+            axis_y_rrr_axes2_in_base_x*gravity_y) -
+            rrr_h_2_x*(axis_y_rrr_axes2_in_base_x*gravity_x +
+            axis_y_rrr_axes2_in_base_y*gravity_y)
         )
-        # (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z
-        # (rrr-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z
-        # (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_rrr_o_x = (
-        W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x
-            - N_1_rrr_o_z)
+        # (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        rrr_mu_1_o_z = (
+        rrr_J_1_zz*rrr_qdd_1_o + rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
+            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
         )
-        c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x
-        # (rrr-N37) velocity and gravity terms of the leg force
-        U_rrr_in_base_x = (
-        -axis_y_rrr_axes2_in_base_x*c_rrr_o_y - axis_y_rrr_axes2_in_base_y*c_rrr_o_x
+        # (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z
+        # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z
+        # (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_o_x = (
+        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x
+            - rrr_N_1_o_z)
         )
-        U_rrr_in_base_y = (
-        axis_y_rrr_axes2_in_base_x*c_rrr_o_x - axis_y_rrr_axes2_in_base_y*c_rrr_o_y
+        rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x
+        # (rrr-U) velocity and gravity terms of the leg force
+        rrr_U_in_base_x = (
+        -axis_y_rrr_axes2_in_base_x*rrr_c_o_y - axis_y_rrr_axes2_in_base_y*rrr_c_o_x
         )
-        # (rrr-V5) reciprocal vector 1
-        w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
-        w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
-        # (rrr-V6) reciprocal vector 2
-        w_2_rrr_in_base_x = (
-        axis_y_rrr_axes2_in_base_x*inv_rrr_platform_joint_offset_x +
-            axis_y_rrr_axes2_in_base_y*w_2_rrr_t
+        rrr_U_in_base_y = (
+        axis_y_rrr_axes2_in_base_x*rrr_c_o_x - axis_y_rrr_axes2_in_base_y*rrr_c_o_y
         )
-        w_2_rrr_in_base_y = (
-        axis_y_rrr_axes2_in_base_y*inv_rrr_platform_joint_offset_x -
-            axis_y_rrr_axes2_in_base_x*w_2_rrr_t
-        )
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y
+        rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7, U_rrr_in_base_x, U_rrr_in_base_y,
+        rrr_Q_t_5, rrr_Q_t_6, rrr_Q_t_7, rrr_U_in_base_x, rrr_U_in_base_y,
         ))
-        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
-        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
-        out_H[_H_rrr[2][leg]] = w_2_rrr_in_base_x
-        out_H[_H_rrr[3][leg]] = w_2_rrr_in_base_y
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
+        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
     total_rrr_xx, total_rrr_xy, total_rrr_yy, total_rrr_x, total_rrr_y = sums
-    sums = [0.0] * 5
-    for leg, k in legs[1]:
-        (
-        J_1_rrr2_zz, J_2_rrr2_zz, Jc_1_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2,
-            d_Gamma_1_rrr2_t, d_Gamma_1_rrr2_y, d_c_rrr2_yy, d_phi_2_rrr2_t, g_r0_x_2, g_r0_y_2,
-            h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
-            inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx,
-            rrr2_base_frame_xy, rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x,
-            rrr2_base_point_y, rrr2_joint2_offset_x, rrr2_platform_joint_offset_x,
-            rrr2_platform_point_x, rrr2_platform_point_y, size_rrr2,
-        ) = k
-        # (rrr2-K1) from the base point to the connection point
-        S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
-        S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
-        # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
-        Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
-        # (rrr2-K3) component along the reference direction
-        px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-        # (rrr2-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
-        # (rrr2-K4) component across the reference direction
-        py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-        # (rrr2-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
-        # (rrr2-K8) squared amplitude
-        rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
-        # (rrr2-K9) discriminant
-        disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
-        # (rrr2-K10) root, with the sign of the branch
-        root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
-        # (rrr2-K16) from the origin of joint 2 to the connection point
-        x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
-        # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x
-        # (rrr2-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr2 = (
-        inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x
-        )
-        # (rrr2-V2) from joint 1 to the connection point, along the links
-        r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2
-        r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x
-        r_1_rrr2_r0_x = c_2_rrr2*r_1_rrr2_x + r_1_rrr2_t*s_2_rrr2
-        r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t
-        # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
-        c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2)
-        # (rrr2-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2)
-        # (rrr2-V5) reciprocal vector 1
-        axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2
-        axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2
-        axis_y_rrr2_axes2_in_base_x = (
-        axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy
-        )
-        axis_y_rrr2_axes2_in_base_y = (
-        axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy
-        )
-        inv_r_1_rrr2_r0_y = 1.0/r_1_rrr2_r0_y
-        # (rrr2-V6) reciprocal vector 2
-        w_2_rrr2_t = inv_r_1_rrr2_r0_y*inv_rrr2_platform_joint_offset_x*r_1_rrr2_r0_x
-        # (rrr2-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_rrr2_t_2 = d_Gamma_1_rrr2_t*r_1_rrr2_r0_x
-        d_Gamma_1_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(Jc_1_rrr2_zz - d_Gamma_1_rrr2_t_2)
-        # (rrr2-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(J_2_rrr2_zz - d_Gamma_1_rrr2_t_2)
-        # (rrr2-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_rrr2_xy = (
-        d_phi_2_rrr2_t + d_Gamma_1_rrr2_y*inv_r_1_rrr2_r0_y - d_Gamma_1_rrr2_y*w_2_rrr2_t
-        )
-        # (rrr2-N36) inertia of the leg at the connection point, without the mass gathered there
-        Q_rrr2_t = (
-        d_Gamma_1_rrr2_x*inv_r_1_rrr2_r0_y + h_2_rrr2_y*(w_2_rrr2_t - inv_r_1_rrr2_r0_y) -
-            d_c_rrr2_yy - d_Gamma_2_rrr2_x*w_2_rrr2_t
-        )
-        Q_rrr2_t_2 = 0.5*Q_rrr2_t
-        Q_rrr2_t_3 = (
-        Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_y + axis_y_rrr2_axes2_in_base_x*d_c_rrr2_xy
-        )
-        Q_rrr2_t_4 = (
-        Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_x - axis_y_rrr2_axes2_in_base_y*d_c_rrr2_xy
-        )
-        Q_rrr2_t_5 = d_c_rrr2_yy + 2.0*Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_y
-        Q_rrr2_t_6 = (
-        Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_x + Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_y
-        )
-        Q_rrr2_t_7 = d_c_rrr2_yy + 2.0*Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_x
-        # (rrr2-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        g_r1_x_2 = c_1_rrr2*g_r0_x_2 + g_r0_y_2*s_1_rrr2
-        g_r1_y_2 = c_1_rrr2*g_r0_y_2 - g_r0_x_2*s_1_rrr2
-        # (rrr2-V7) rate of joint 1
-        qd_1_rrr2 = (
-        inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_in_base_y*t_dot_x -
-            axis_y_rrr2_axes2_in_base_x*t_dot_y)
-        )
-        # (rrr2-V11) angular velocity of link 2
-        omega_2_rrr2_z = (
-        inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
-            axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2
-        )
-        # (rrr2-V10) centripetal tensor of link 1
-        W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2
-        # (rrr2-V12) centripetal tensor of link 2
-        W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z
-        # (rrr2-A4) acceleration of the connection point at zero joint accelerations
-        bias_rrr2_x = (
-        -W_2_rrr2_t*rrr2_platform_joint_offset_x - W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x
-        )
-        # (rrr2-A8) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_rrr2_o = bias_rrr2_x*inv_r_1_rrr2_r0_y
-        # (rrr2-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rrr2_o_z = J_1_rrr2_zz*qdd_1_rrr2_o + g_r1_x_2*h_1_rrr2_y - g_r1_y_2*h_1_rrr2_x
-        # (rrr2-A17) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_rrr2_o_z = (
-        qdd_1_rrr2_o + inv_rrr2_platform_joint_offset_x*(W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2
-            - qdd_1_rrr2_o*r_1_rrr2_r0_x)
-        )
-        # (rrr2-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_rrr2_o_z = (
-        J_2_rrr2_zz*alpha_2_rrr2_o_z + h_2_rrr2_y*(c_2_rrr2*g_r1_x_2 - g_r1_y_2*s_2_rrr2) -
-            h_2_rrr2_x*(c_2_rrr2*g_r1_y_2 + g_r1_x_2*s_2_rrr2)
-        )
-        # (rrr2-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_rrr2_o_z = mu_1_rrr2_o_z + mu_2_rrr2_o_z
-        # (rrr2-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rrr2_o_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_o_z
-        # (rrr2-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_rrr2_o_x = (
-        W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_o_z*h_2_rrr2_y -
-            inv_r_1_rrr2_r0_y*(G_rrr2_o_t*r_1_rrr2_r0_x - N_1_rrr2_o_z)
-        )
-        c_rrr2_o_y = W_2_rrr2_t*h_2_rrr2_y - G_rrr2_o_t - alpha_2_rrr2_o_z*h_2_rrr2_x
-        # (rrr2-N37) velocity and gravity terms of the leg force
-        U_rrr2_in_base_x = (
-        -axis_y_rrr2_axes2_in_base_x*c_rrr2_o_y - axis_y_rrr2_axes2_in_base_y*c_rrr2_o_x
-        )
-        U_rrr2_in_base_y = (
-        axis_y_rrr2_axes2_in_base_x*c_rrr2_o_x - axis_y_rrr2_axes2_in_base_y*c_rrr2_o_y
-        )
-        # (rrr2-V5) reciprocal vector 1
-        w_1_rrr2_t = axis_y_rrr2_axes2_in_base_y*inv_r_1_rrr2_r0_y
-        w_1_rrr2_t_2 = axis_y_rrr2_axes2_in_base_x*inv_r_1_rrr2_r0_y
-        ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) &
-            (disc_1_rrr2 >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
-        )
-        sums = m.added(sums, leg, (
-        Q_rrr2_t_5, Q_rrr2_t_6, Q_rrr2_t_7, U_rrr2_in_base_x, U_rrr2_in_base_y,
-        ))
-        out_H[_H_rrr2[0][leg]] = -w_1_rrr2_t
-        out_H[_H_rrr2[1][leg]] = w_1_rrr2_t_2
-    total_rrr2_xx, total_rrr2_xy, total_rrr2_yy, total_rrr2_x, total_rrr2_y = sums
-    # (M1) translational block of M
-    M_tt_xx = m_star - total_rrr2_xx - total_rrr_xx
-    M_tt_xy = total_rrr2_xy + total_rrr_xy
-    M_tt_yy = m_star - total_rrr2_yy - total_rrr_yy
-    # (M3) translational part of Z
-    Z_t_x = total_rrr2_x + total_rrr_x - Z_p_x
-    Z_t_y = total_rrr2_y + total_rrr_y - Z_p_y
+    # (M_tt) translational block of M
+    M_tt_xx = m_star - total_rrr_leg1_xx - total_rrr_xx
+    M_tt_xy = total_rrr_leg1_xy + total_rrr_xy
+    M_tt_yy = m_star - total_rrr_leg1_yy - total_rrr_yy
+    # (Z_t) translational part of Z
+    Z_t_x = total_rrr_leg1_x + total_rrr_x - Z_p_x
+    Z_t_y = total_rrr_leg1_y + total_rrr_y - Z_p_y
     out_M[0] = M_tt_xx
     out_M[1] = M_tt_xy
     out_M[2] = M_tt_xy
@@ -1687,187 +1775,207 @@ def _run_M(m, X):
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
-        J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, d_Gamma_1_rrr_t,
-            d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
-            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        inv_rrr_leg1_Kd_1_t_5, inv_rrr_leg1_Kd_1_t_7, inv_rrr_leg1_platform_joint_offset_x,
+            rrr_leg1_J_2_zz, rrr_leg1_Jc_1_zz, rrr_leg1_Kd_1_t_2, rrr_leg1_Kd_1_t_4,
+            rrr_leg1_base_frame_xx, rrr_leg1_base_frame_xy, rrr_leg1_base_frame_yx,
+            rrr_leg1_base_frame_yy, rrr_leg1_base_point_x, rrr_leg1_base_point_y,
+            rrr_leg1_branch_1, rrr_leg1_d_Gamma_2_t, rrr_leg1_d_Gamma_2_y, rrr_leg1_d_c_yy,
+            rrr_leg1_d_phi_2_t, rrr_leg1_h_2_y, rrr_leg1_joint2_offset_x,
+            rrr_leg1_platform_joint_offset_x, rrr_leg1_platform_point_x,
+            rrr_leg1_platform_point_y, rrr_leg1_rho2_1_t, rrr_leg1_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
-        S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr_leg1-S) from the base point to the connection point
+        rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x
+        rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y
+        # (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y
+        rrr_leg1_Kd_1 = 0.5*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4
+        # (rrr_leg1-px_1) component along the reference direction
+        rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx + rrr_leg1_S_y*rrr_leg1_base_frame_yx
+        # (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1
+        # (rrr_leg1-py_1) component across the reference direction
+        rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy + rrr_leg1_S_y*rrr_leg1_base_frame_yy
+        # (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1
+        rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1
+        # (rrr_leg1-rho2_1) squared amplitude
+        rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1
+        # (rrr_leg1-disc_1) discriminant
+        rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1
+        # (rrr_leg1-root_1) root, with the sign of the branch
+        rrr_leg1_root_1 = rrr_leg1_branch_1*sqrt(rrr_leg1_disc_1)
+        # (rrr_leg1-x_2) from the origin of joint 2 to the connection point
+        rrr_leg1_x_2_x = (
+        inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        # (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_leg1_c_2 = inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x
+        # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_leg1_s_2 = (
+        inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        )
+        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
+        rrr_leg1_r_1_t = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2
+        rrr_leg1_r_1_x = rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
+        rrr_leg1_r_1_r0_x = rrr_leg1_c_2*rrr_leg1_r_1_x + rrr_leg1_r_1_t*rrr_leg1_s_2
+        rrr_leg1_r_1_r0_y = rrr_leg1_r_1_x*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_r_1_t
+        # (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_leg1_rho2_1 = 1.0/rrr_leg1_rho2_1
+        rrr_leg1_c_1 = (
+        inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 - rrr_leg1_Ks_1*rrr_leg1_root_1)
+        )
+        # (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_leg1_s_1 = (
+        inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 + rrr_leg1_Kd_1*rrr_leg1_Ks_1)
+        )
+        # (rrr_leg1-w_1) reciprocal vector 1
+        axis_y_rrr_leg1_axes2_r1_x = rrr_leg1_c_1*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_s_1
+        axis_y_rrr_leg1_axes2_r1_y = rrr_leg1_c_1*rrr_leg1_c_2 + rrr_leg1_s_1*rrr_leg1_s_2
+        axis_y_rrr_leg1_axes2_in_base_x = (
+        axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_xx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_xy
+        )
+        axis_y_rrr_leg1_axes2_in_base_y = (
+        axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_yx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_yy
+        )
+        inv_rrr_leg1_r_1_r0_y = 1.0/rrr_leg1_r_1_r0_y
+        # (rrr_leg1-w_2) reciprocal vector 2
+        rrr_leg1_w_2_t = (
+        inv_rrr_leg1_platform_joint_offset_x*inv_rrr_leg1_r_1_r0_y*rrr_leg1_r_1_r0_x
+        )
+        # (rrr_leg1-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rrr_leg1_d_Gamma_2_t_2 = rrr_leg1_d_Gamma_2_t*rrr_leg1_r_1_r0_x
+        rrr_leg1_d_Gamma_2_x = (
+        -rrr_leg1_h_2_y - inv_rrr_leg1_r_1_r0_y*(rrr_leg1_J_2_zz - rrr_leg1_d_Gamma_2_t_2)
+        )
+        # (rrr_leg1-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrr_leg1_d_Gamma_1_x = (
+        -rrr_leg1_h_2_y - inv_rrr_leg1_r_1_r0_y*(rrr_leg1_Jc_1_zz - rrr_leg1_d_Gamma_2_t_2)
+        )
+        # (rrr_leg1-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_leg1_d_c_xy = (
+        rrr_leg1_d_phi_2_t + inv_rrr_leg1_r_1_r0_y*rrr_leg1_d_Gamma_2_y -
+            rrr_leg1_d_Gamma_2_y*rrr_leg1_w_2_t
+        )
+        # (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there
+        rrr_leg1_Q_t = (
+        inv_rrr_leg1_r_1_r0_y*rrr_leg1_d_Gamma_1_x + rrr_leg1_h_2_y*(rrr_leg1_w_2_t -
+            inv_rrr_leg1_r_1_r0_y) - rrr_leg1_d_c_yy - rrr_leg1_d_Gamma_2_x*rrr_leg1_w_2_t
+        )
+        rrr_leg1_Q_t_2 = 0.5*rrr_leg1_Q_t
+        rrr_leg1_Q_t_3 = (
+        axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_d_c_xy +
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_Q_t_2
+        )
+        rrr_leg1_Q_t_4 = (
+        axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_Q_t_2 -
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_d_c_xy
+        )
+        rrr_leg1_Q_t_5 = rrr_leg1_d_c_yy + 2.0*axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_Q_t_3
+        rrr_leg1_Q_t_6 = (
+        axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_Q_t_3 +
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_Q_t_4
+        )
+        rrr_leg1_Q_t_7 = rrr_leg1_d_c_yy + 2.0*axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_Q_t_4
+        ok = (
+        ok & m.every(leg, (abs(rrr_leg1_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_leg1_rho2_1_t) &
+            (rrr_leg1_disc_1 >= 0.0) & (abs(-rrr_leg1_r_1_r0_y) > _TOLERANCE * rrr_leg1_size))
+        )
+        sums = m.added(sums, leg, (
+        rrr_leg1_Q_t_5, rrr_leg1_Q_t_6, rrr_leg1_Q_t_7,
+        ))
+    total_rrr_leg1_xx, total_rrr_leg1_xy, total_rrr_leg1_yy = sums
+    sums = [0.0] * 3
+    for leg, k in legs[1]:
+        (
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_2_zz,
+            rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+            rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy, rrr_d_phi_2_t, rrr_h_2_y,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        ) = k
+        # (rrr-S) from the base point to the connection point
+        rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        )
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        # (rrr-V6) reciprocal vector 2
-        w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x
-        # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x
-        d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz - d_Gamma_1_rrr_t_2)
-        # (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz - d_Gamma_1_rrr_t_2)
-        # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y - d_Gamma_1_rrr_y*w_2_rrr_t
-        # (rrr-N36) inertia of the leg at the connection point, without the mass gathered there
-        Q_rrr_t = (
-        d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t - inv_r_1_rrr_r0_y) - d_c_rrr_yy -
-            d_Gamma_2_rrr_x*w_2_rrr_t
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        # (rrr-w_2) reciprocal vector 2
+        rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x
+        # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x
+        rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz - rrr_d_Gamma_2_t_2)
+        # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz - rrr_d_Gamma_2_t_2)
+        # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y - rrr_d_Gamma_2_y*rrr_w_2_t
+        # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
+        rrr_Q_t = (
+        inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t - inv_rrr_r_1_r0_y) - rrr_d_c_yy -
+            rrr_d_Gamma_2_x*rrr_w_2_t
         )
-        Q_rrr_t_2 = 0.5*Q_rrr_t
-        Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
-        Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
-        Q_rrr_t_5 = d_c_rrr_yy + 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y
-        Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x + Q_rrr_t_4*axis_y_rrr_axes2_in_base_y
-        Q_rrr_t_7 = d_c_rrr_yy + 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
+        rrr_Q_t_2 = 0.5*rrr_Q_t
+        rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy + axis_y_rrr_axes2_in_base_y*rrr_Q_t_2
+        rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 - axis_y_rrr_axes2_in_base_y*rrr_d_c_xy
+        rrr_Q_t_5 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3
+        rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 + axis_y_rrr_axes2_in_base_y*rrr_Q_t_4
+        rrr_Q_t_7 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7,
+        rrr_Q_t_5, rrr_Q_t_6, rrr_Q_t_7,
         ))
     total_rrr_xx, total_rrr_xy, total_rrr_yy = sums
-    sums = [0.0] * 3
-    for leg, k in legs[1]:
-        (
-        J_2_rrr2_zz, Jc_1_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, d_Gamma_1_rrr2_t,
-            d_Gamma_1_rrr2_y, d_c_rrr2_yy, d_phi_2_rrr2_t, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
-            inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx,
-            rrr2_base_frame_xy, rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x,
-            rrr2_base_point_y, rrr2_joint2_offset_x, rrr2_platform_joint_offset_x,
-            rrr2_platform_point_x, rrr2_platform_point_y, size_rrr2,
-        ) = k
-        # (rrr2-K1) from the base point to the connection point
-        S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
-        S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
-        # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
-        Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
-        # (rrr2-K3) component along the reference direction
-        px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-        # (rrr2-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
-        # (rrr2-K4) component across the reference direction
-        py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-        # (rrr2-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
-        # (rrr2-K8) squared amplitude
-        rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
-        # (rrr2-K9) discriminant
-        disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
-        # (rrr2-K10) root, with the sign of the branch
-        root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
-        # (rrr2-K16) from the origin of joint 2 to the connection point
-        x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
-        # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x
-        # (rrr2-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr2 = (
-        inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x
-        )
-        # (rrr2-V2) from joint 1 to the connection point, along the links
-        r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2
-        r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x
-        r_1_rrr2_r0_x = c_2_rrr2*r_1_rrr2_x + r_1_rrr2_t*s_2_rrr2
-        r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t
-        # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
-        c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2)
-        # (rrr2-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2)
-        # (rrr2-V5) reciprocal vector 1
-        axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2
-        axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2
-        axis_y_rrr2_axes2_in_base_x = (
-        axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy
-        )
-        axis_y_rrr2_axes2_in_base_y = (
-        axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy
-        )
-        inv_r_1_rrr2_r0_y = 1.0/r_1_rrr2_r0_y
-        # (rrr2-V6) reciprocal vector 2
-        w_2_rrr2_t = inv_r_1_rrr2_r0_y*inv_rrr2_platform_joint_offset_x*r_1_rrr2_r0_x
-        # (rrr2-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_rrr2_t_2 = d_Gamma_1_rrr2_t*r_1_rrr2_r0_x
-        d_Gamma_1_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(Jc_1_rrr2_zz - d_Gamma_1_rrr2_t_2)
-        # (rrr2-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(J_2_rrr2_zz - d_Gamma_1_rrr2_t_2)
-        # (rrr2-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_rrr2_xy = (
-        d_phi_2_rrr2_t + d_Gamma_1_rrr2_y*inv_r_1_rrr2_r0_y - d_Gamma_1_rrr2_y*w_2_rrr2_t
-        )
-        # (rrr2-N36) inertia of the leg at the connection point, without the mass gathered there
-        Q_rrr2_t = (
-        d_Gamma_1_rrr2_x*inv_r_1_rrr2_r0_y + h_2_rrr2_y*(w_2_rrr2_t - inv_r_1_rrr2_r0_y) -
-            d_c_rrr2_yy - d_Gamma_2_rrr2_x*w_2_rrr2_t
-        )
-        Q_rrr2_t_2 = 0.5*Q_rrr2_t
-        Q_rrr2_t_3 = (
-        Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_y + axis_y_rrr2_axes2_in_base_x*d_c_rrr2_xy
-        )
-        Q_rrr2_t_4 = (
-        Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_x - axis_y_rrr2_axes2_in_base_y*d_c_rrr2_xy
-        )
-        Q_rrr2_t_5 = d_c_rrr2_yy + 2.0*Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_y
-        Q_rrr2_t_6 = (
-        Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_x + Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_y
-        )
-        Q_rrr2_t_7 = d_c_rrr2_yy + 2.0*Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_x
-        ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) &
-            (disc_1_rrr2 >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
-        )
-        sums = m.added(sums, leg, (
-        Q_rrr2_t_5, Q_rrr2_t_6, Q_rrr2_t_7,
-        ))
-    total_rrr2_xx, total_rrr2_xy, total_rrr2_yy = sums
-    # (M1) translational block of M
-    M_tt_xx = m_star - total_rrr2_xx - total_rrr_xx
-    M_tt_xy = total_rrr2_xy + total_rrr_xy
-    M_tt_yy = m_star - total_rrr2_yy - total_rrr_yy
+    # (M_tt) translational block of M
+    M_tt_xx = m_star - total_rrr_leg1_xx - total_rrr_xx
+    M_tt_xy = total_rrr_leg1_xy + total_rrr_xy
+    M_tt_yy = m_star - total_rrr_leg1_yy - total_rrr_yy
     out_M[0] = M_tt_xx
     out_M[1] = M_tt_xy
     out_M[2] = M_tt_xy
@@ -1879,7 +1987,7 @@ def _run_M(m, X):
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
-    Z_p_x, Z_p_y = shared
+    Z_p_x, Z_p_y, gravity_x, gravity_y = shared
     X_0 = X[0]
     X_1 = X[1]
     V_0 = V[0]
@@ -1895,241 +2003,264 @@ def _run_Z(m, X, V):
     sums = [0.0] * 2
     for leg, k in legs[0]:
         (
-        J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x, g_r0_y,
-            h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
-            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        inv_rrr_leg1_Kd_1_t_5, inv_rrr_leg1_Kd_1_t_7, inv_rrr_leg1_platform_joint_offset_x,
+            rrr_leg1_J_1_zz, rrr_leg1_J_2_zz, rrr_leg1_Kd_1_t_2, rrr_leg1_Kd_1_t_4,
+            rrr_leg1_base_frame_xx, rrr_leg1_base_frame_xy, rrr_leg1_base_frame_yx,
+            rrr_leg1_base_frame_yy, rrr_leg1_base_point_x, rrr_leg1_base_point_y,
+            rrr_leg1_branch_1, rrr_leg1_g_r0_x, rrr_leg1_g_r0_y, rrr_leg1_h_1_x, rrr_leg1_h_1_y,
+            rrr_leg1_h_2_x, rrr_leg1_h_2_y, rrr_leg1_joint2_offset_x,
+            rrr_leg1_platform_joint_offset_x, rrr_leg1_platform_point_x,
+            rrr_leg1_platform_point_y, rrr_leg1_rho2_1_t, rrr_leg1_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
-        S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr_leg1-S) from the base point to the connection point
+        rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x
+        rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y
+        # (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y
+        rrr_leg1_Kd_1 = 0.5*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4
+        # (rrr_leg1-px_1) component along the reference direction
+        rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx + rrr_leg1_S_y*rrr_leg1_base_frame_yx
+        # (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1
+        # (rrr_leg1-py_1) component across the reference direction
+        rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy + rrr_leg1_S_y*rrr_leg1_base_frame_yy
+        # (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1
+        rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1
+        # (rrr_leg1-rho2_1) squared amplitude
+        rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1
+        # (rrr_leg1-disc_1) discriminant
+        rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1
+        # (rrr_leg1-root_1) root, with the sign of the branch
+        rrr_leg1_root_1 = rrr_leg1_branch_1*sqrt(rrr_leg1_disc_1)
+        # (rrr_leg1-x_2) from the origin of joint 2 to the connection point
+        rrr_leg1_x_2_x = (
+        inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        # (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_leg1_c_2 = inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x
+        # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_leg1_s_2 = (
+        inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        )
+        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
+        rrr_leg1_r_1_t = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2
+        rrr_leg1_r_1_x = rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
+        rrr_leg1_r_1_r0_x = rrr_leg1_c_2*rrr_leg1_r_1_x + rrr_leg1_r_1_t*rrr_leg1_s_2
+        rrr_leg1_r_1_r0_y = rrr_leg1_r_1_x*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_r_1_t
+        # (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_leg1_rho2_1 = 1.0/rrr_leg1_rho2_1
+        rrr_leg1_c_1 = (
+        inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 - rrr_leg1_Ks_1*rrr_leg1_root_1)
+        )
+        # (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_leg1_s_1 = (
+        inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 + rrr_leg1_Kd_1*rrr_leg1_Ks_1)
+        )
+        # (rrr_leg1-w_1) reciprocal vector 1
+        axis_y_rrr_leg1_axes2_r1_x = rrr_leg1_c_1*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_s_1
+        axis_y_rrr_leg1_axes2_r1_y = rrr_leg1_c_1*rrr_leg1_c_2 + rrr_leg1_s_1*rrr_leg1_s_2
+        axis_y_rrr_leg1_axes2_in_base_x = (
+        axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_xx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_xy
+        )
+        axis_y_rrr_leg1_axes2_in_base_y = (
+        axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_yx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_yy
+        )
+        inv_rrr_leg1_r_1_r0_y = 1.0/rrr_leg1_r_1_r0_y
+        # (rrr_leg1-qd_2) rate of joint 2
+        rrr_leg1_qd_1 = (
+        inv_rrr_leg1_r_1_r0_y*(axis_y_rrr_leg1_axes2_in_base_y*t_dot_x -
+            axis_y_rrr_leg1_axes2_in_base_x*t_dot_y)
+        )
+        # (rrr_leg1-omega_2) angular velocity of link 2
+        rrr_leg1_omega_2_z = (
+        inv_rrr_leg1_platform_joint_offset_x*(axis_y_rrr_leg1_axes2_in_base_x*t_dot_x +
+            axis_y_rrr_leg1_axes2_in_base_y*t_dot_y + rrr_leg1_qd_1*rrr_leg1_r_1_r0_x) -
+            rrr_leg1_qd_1
+        )
+        # (rrr_leg1-W_1) centripetal tensor of link 1
+        rrr_leg1_W_1_t = rrr_leg1_qd_1*rrr_leg1_qd_1
+        # (rrr_leg1-W_2) centripetal tensor of link 2
+        rrr_leg1_W_2_t = rrr_leg1_omega_2_z*rrr_leg1_omega_2_z
+        # (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations
+        rrr_leg1_bias_x = (
+        -rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x -
+            rrr_leg1_W_1_t*rrr_leg1_c_2*rrr_leg1_joint2_offset_x
+        )
+        # (rrr_leg1-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        rrr_leg1_qdd_1_o = inv_rrr_leg1_r_1_r0_y*rrr_leg1_bias_x
+        # (rrr_leg1-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        rrr_leg1_alpha_2_o_z = (
+        rrr_leg1_qdd_1_o +
+            inv_rrr_leg1_platform_joint_offset_x*(rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
+            - rrr_leg1_qdd_1_o*rrr_leg1_r_1_r0_x)
+        )
+        # (rrr_leg1-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        rrr_leg1_mu_2_o_z = (
+        rrr_leg1_J_2_zz*rrr_leg1_alpha_2_o_z +
+            rrr_leg1_h_2_y*(axis_y_rrr_leg1_axes2_in_base_y*gravity_x -
+            axis_y_rrr_leg1_axes2_in_base_x*gravity_y) -
+            rrr_leg1_h_2_x*(axis_y_rrr_leg1_axes2_in_base_x*gravity_x +
+            axis_y_rrr_leg1_axes2_in_base_y*gravity_y)
+        )
+        # (rrr_leg1-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        rrr_leg1_mu_1_o_z = (
+        rrr_leg1_J_1_zz*rrr_leg1_qdd_1_o + rrr_leg1_h_1_y*(rrr_leg1_c_1*rrr_leg1_g_r0_x +
+            rrr_leg1_g_r0_y*rrr_leg1_s_1) - rrr_leg1_h_1_x*(rrr_leg1_c_1*rrr_leg1_g_r0_y -
+            rrr_leg1_g_r0_x*rrr_leg1_s_1)
+        )
+        # (rrr_leg1-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrr_leg1_N_1_o_z = rrr_leg1_mu_1_o_z + rrr_leg1_mu_2_o_z
+        # (rrr_leg1-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_leg1_G_o_t = inv_rrr_leg1_platform_joint_offset_x*rrr_leg1_mu_2_o_z
+        # (rrr_leg1-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_leg1_c_o_x = (
+        rrr_leg1_W_2_t*rrr_leg1_h_2_x + rrr_leg1_alpha_2_o_z*rrr_leg1_h_2_y -
+            inv_rrr_leg1_r_1_r0_y*(rrr_leg1_G_o_t*rrr_leg1_r_1_r0_x - rrr_leg1_N_1_o_z)
+        )
+        rrr_leg1_c_o_y = (
+        rrr_leg1_W_2_t*rrr_leg1_h_2_y - rrr_leg1_G_o_t - rrr_leg1_alpha_2_o_z*rrr_leg1_h_2_x
+        )
+        # (rrr_leg1-U) velocity and gravity terms of the leg force
+        rrr_leg1_U_in_base_x = (
+        -axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_c_o_y -
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_c_o_x
+        )
+        rrr_leg1_U_in_base_y = (
+        axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_c_o_x -
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_c_o_y
+        )
+        ok = (
+        ok & m.every(leg, (abs(rrr_leg1_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_leg1_rho2_1_t) &
+            (rrr_leg1_disc_1 >= 0.0) & (abs(-rrr_leg1_r_1_r0_y) > _TOLERANCE * rrr_leg1_size))
+        )
+        sums = m.added(sums, leg, (
+        rrr_leg1_U_in_base_x, rrr_leg1_U_in_base_y,
+        ))
+    total_rrr_leg1_x, total_rrr_leg1_y = sums
+    sums = [0.0] * 2
+    for leg, k in legs[1]:
+        (
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+            rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+            rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        ) = k
+        # (rrr-S) from the base point to the connection point
+        rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        )
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        # (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        g_r1_x = c_1_rrr*g_r0_x + g_r0_y*s_1_rrr
-        g_r1_y = c_1_rrr*g_r0_y - g_r0_x*s_1_rrr
-        # (rrr-V7) rate of joint 1
-        qd_1_rrr = (
-        inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x - axis_y_rrr_axes2_in_base_x*t_dot_y)
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_1 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x - axis_y_rrr_axes2_in_base_x*t_dot_y)
         )
-        # (rrr-V11) angular velocity of link 2
-        omega_2_rrr_z = (
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_z = (
         inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
-            axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
+            axis_y_rrr_axes2_in_base_y*t_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
         )
-        # (rrr-V10) centripetal tensor of link 1
-        W_1_rrr_t = qd_1_rrr*qd_1_rrr
-        # (rrr-V12) centripetal tensor of link 2
-        W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
-        # (rrr-A4) acceleration of the connection point at zero joint accelerations
-        bias_rrr_x = (
-        -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
+        # (rrr-W_1) centripetal tensor of link 1
+        rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_x = (
+        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        # (rrr-A8) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_rrr_o = bias_rrr_x*inv_r_1_rrr_r0_y
-        # (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rrr_o_z = J_1_rrr_zz*qdd_1_rrr_o + g_r1_x*h_1_rrr_y - g_r1_y*h_1_rrr_x
-        # (rrr-A17) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_rrr_o_z = (
-        qdd_1_rrr_o + inv_rrr_platform_joint_offset_x*(W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr -
-            qdd_1_rrr_o*r_1_rrr_r0_x)
+        # (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_bias_x
+        # (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        rrr_alpha_2_o_z = (
+        rrr_qdd_1_o + inv_rrr_platform_joint_offset_x*(rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2 -
+            rrr_qdd_1_o*rrr_r_1_r0_x)
         )
-        # (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_rrr_o_z = (
-        J_2_rrr_zz*alpha_2_rrr_o_z + h_2_rrr_y*(c_2_rrr*g_r1_x - g_r1_y*s_2_rrr) -
-            h_2_rrr_x*(c_2_rrr*g_r1_y + g_r1_x*s_2_rrr)
+        # (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        rrr_mu_2_o_z = (
+        rrr_J_2_zz*rrr_alpha_2_o_z + rrr_h_2_y*(axis_y_rrr_axes2_in_base_y*gravity_x -
+            axis_y_rrr_axes2_in_base_x*gravity_y) -
+            rrr_h_2_x*(axis_y_rrr_axes2_in_base_x*gravity_x +
+            axis_y_rrr_axes2_in_base_y*gravity_y)
         )
-        # (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z
-        # (rrr-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z
-        # (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_rrr_o_x = (
-        W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x
-            - N_1_rrr_o_z)
+        # (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        rrr_mu_1_o_z = (
+        rrr_J_1_zz*rrr_qdd_1_o + rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
+            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
         )
-        c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x
-        # (rrr-N37) velocity and gravity terms of the leg force
-        U_rrr_in_base_x = (
-        -axis_y_rrr_axes2_in_base_x*c_rrr_o_y - axis_y_rrr_axes2_in_base_y*c_rrr_o_x
+        # (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z
+        # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z
+        # (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_o_x = (
+        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x
+            - rrr_N_1_o_z)
         )
-        U_rrr_in_base_y = (
-        axis_y_rrr_axes2_in_base_x*c_rrr_o_x - axis_y_rrr_axes2_in_base_y*c_rrr_o_y
+        rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x
+        # (rrr-U) velocity and gravity terms of the leg force
+        rrr_U_in_base_x = (
+        -axis_y_rrr_axes2_in_base_x*rrr_c_o_y - axis_y_rrr_axes2_in_base_y*rrr_c_o_x
+        )
+        rrr_U_in_base_y = (
+        axis_y_rrr_axes2_in_base_x*rrr_c_o_x - axis_y_rrr_axes2_in_base_y*rrr_c_o_y
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        U_rrr_in_base_x, U_rrr_in_base_y,
+        rrr_U_in_base_x, rrr_U_in_base_y,
         ))
     total_rrr_x, total_rrr_y = sums
-    sums = [0.0] * 2
-    for leg, k in legs[1]:
-        (
-        J_1_rrr2_zz, J_2_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, g_r0_x_2, g_r0_y_2,
-            h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
-            inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx,
-            rrr2_base_frame_xy, rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x,
-            rrr2_base_point_y, rrr2_joint2_offset_x, rrr2_platform_joint_offset_x,
-            rrr2_platform_point_x, rrr2_platform_point_y, size_rrr2,
-        ) = k
-        # (rrr2-K1) from the base point to the connection point
-        S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
-        S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
-        # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
-        Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
-        # (rrr2-K3) component along the reference direction
-        px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-        # (rrr2-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
-        # (rrr2-K4) component across the reference direction
-        py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-        # (rrr2-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
-        # (rrr2-K8) squared amplitude
-        rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
-        # (rrr2-K9) discriminant
-        disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
-        # (rrr2-K10) root, with the sign of the branch
-        root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
-        # (rrr2-K16) from the origin of joint 2 to the connection point
-        x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
-        # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x
-        # (rrr2-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr2 = (
-        inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x
-        )
-        # (rrr2-V2) from joint 1 to the connection point, along the links
-        r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2
-        r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x
-        r_1_rrr2_r0_x = c_2_rrr2*r_1_rrr2_x + r_1_rrr2_t*s_2_rrr2
-        r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t
-        # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
-        c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2)
-        # (rrr2-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2)
-        # (rrr2-V5) reciprocal vector 1
-        axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2
-        axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2
-        axis_y_rrr2_axes2_in_base_x = (
-        axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy
-        )
-        axis_y_rrr2_axes2_in_base_y = (
-        axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy
-        )
-        inv_r_1_rrr2_r0_y = 1.0/r_1_rrr2_r0_y
-        # (rrr2-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        g_r1_x_2 = c_1_rrr2*g_r0_x_2 + g_r0_y_2*s_1_rrr2
-        g_r1_y_2 = c_1_rrr2*g_r0_y_2 - g_r0_x_2*s_1_rrr2
-        # (rrr2-V7) rate of joint 1
-        qd_1_rrr2 = (
-        inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_in_base_y*t_dot_x -
-            axis_y_rrr2_axes2_in_base_x*t_dot_y)
-        )
-        # (rrr2-V11) angular velocity of link 2
-        omega_2_rrr2_z = (
-        inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
-            axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2
-        )
-        # (rrr2-V10) centripetal tensor of link 1
-        W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2
-        # (rrr2-V12) centripetal tensor of link 2
-        W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z
-        # (rrr2-A4) acceleration of the connection point at zero joint accelerations
-        bias_rrr2_x = (
-        -W_2_rrr2_t*rrr2_platform_joint_offset_x - W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x
-        )
-        # (rrr2-A8) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_rrr2_o = bias_rrr2_x*inv_r_1_rrr2_r0_y
-        # (rrr2-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rrr2_o_z = J_1_rrr2_zz*qdd_1_rrr2_o + g_r1_x_2*h_1_rrr2_y - g_r1_y_2*h_1_rrr2_x
-        # (rrr2-A17) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_rrr2_o_z = (
-        qdd_1_rrr2_o + inv_rrr2_platform_joint_offset_x*(W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2
-            - qdd_1_rrr2_o*r_1_rrr2_r0_x)
-        )
-        # (rrr2-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_rrr2_o_z = (
-        J_2_rrr2_zz*alpha_2_rrr2_o_z + h_2_rrr2_y*(c_2_rrr2*g_r1_x_2 - g_r1_y_2*s_2_rrr2) -
-            h_2_rrr2_x*(c_2_rrr2*g_r1_y_2 + g_r1_x_2*s_2_rrr2)
-        )
-        # (rrr2-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_rrr2_o_z = mu_1_rrr2_o_z + mu_2_rrr2_o_z
-        # (rrr2-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rrr2_o_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_o_z
-        # (rrr2-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_rrr2_o_x = (
-        W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_o_z*h_2_rrr2_y -
-            inv_r_1_rrr2_r0_y*(G_rrr2_o_t*r_1_rrr2_r0_x - N_1_rrr2_o_z)
-        )
-        c_rrr2_o_y = W_2_rrr2_t*h_2_rrr2_y - G_rrr2_o_t - alpha_2_rrr2_o_z*h_2_rrr2_x
-        # (rrr2-N37) velocity and gravity terms of the leg force
-        U_rrr2_in_base_x = (
-        -axis_y_rrr2_axes2_in_base_x*c_rrr2_o_y - axis_y_rrr2_axes2_in_base_y*c_rrr2_o_x
-        )
-        U_rrr2_in_base_y = (
-        axis_y_rrr2_axes2_in_base_x*c_rrr2_o_x - axis_y_rrr2_axes2_in_base_y*c_rrr2_o_y
-        )
-        ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) &
-            (disc_1_rrr2 >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
-        )
-        sums = m.added(sums, leg, (
-        U_rrr2_in_base_x, U_rrr2_in_base_y,
-        ))
-    total_rrr2_x, total_rrr2_y = sums
-    # (M3) translational part of Z
-    Z_t_x = total_rrr2_x + total_rrr_x - Z_p_x
-    Z_t_y = total_rrr2_y + total_rrr_y - Z_p_y
+    # (Z_t) translational part of Z
+    Z_t_x = total_rrr_leg1_x + total_rrr_x - Z_p_x
+    Z_t_y = total_rrr_leg1_y + total_rrr_y - Z_p_y
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     return ok, (out_Z,)
@@ -2148,144 +2279,154 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
-            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
-            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        inv_rrr_leg1_Kd_1_t_5, inv_rrr_leg1_Kd_1_t_7, inv_rrr_leg1_platform_joint_offset_x,
+            rrr_leg1_Kd_1_t_2, rrr_leg1_Kd_1_t_4, rrr_leg1_base_frame_xx, rrr_leg1_base_frame_xy,
+            rrr_leg1_base_frame_yx, rrr_leg1_base_frame_yy, rrr_leg1_base_point_x,
+            rrr_leg1_base_point_y, rrr_leg1_branch_1, rrr_leg1_joint2_offset_x,
+            rrr_leg1_platform_joint_offset_x, rrr_leg1_platform_point_x,
+            rrr_leg1_platform_point_y, rrr_leg1_rho2_1_t, rrr_leg1_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
-        S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr_leg1-S) from the base point to the connection point
+        rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x
+        rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y
+        # (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y
+        rrr_leg1_Kd_1 = 0.5*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4
+        # (rrr_leg1-px_1) component along the reference direction
+        rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx + rrr_leg1_S_y*rrr_leg1_base_frame_yx
+        # (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1
+        # (rrr_leg1-py_1) component across the reference direction
+        rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy + rrr_leg1_S_y*rrr_leg1_base_frame_yy
+        # (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1
+        rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1
+        # (rrr_leg1-rho2_1) squared amplitude
+        rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1
+        # (rrr_leg1-disc_1) discriminant
+        rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1
+        # (rrr_leg1-root_1) root, with the sign of the branch
+        rrr_leg1_root_1 = rrr_leg1_branch_1*sqrt(rrr_leg1_disc_1)
+        # (rrr_leg1-x_2) from the origin of joint 2 to the connection point
+        rrr_leg1_x_2_x = (
+        inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
-        axis_y_rrr_axes2_in_base_x = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
+        # (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_leg1_c_2 = inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x
+        # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_leg1_s_2 = (
+        inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
         )
-        axis_y_rrr_axes2_in_base_y = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
+        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
+        rrr_leg1_r_1_t = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2
+        rrr_leg1_r_1_x = rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
+        rrr_leg1_r_1_r0_y = rrr_leg1_r_1_x*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_r_1_t
+        # (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_leg1_rho2_1 = 1.0/rrr_leg1_rho2_1
+        rrr_leg1_c_1 = (
+        inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 - rrr_leg1_Ks_1*rrr_leg1_root_1)
         )
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        # (rrr-V6) reciprocal vector 2
-        w_2_rrr_t = (
-        inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*(c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr)
+        # (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_leg1_s_1 = (
+        inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 + rrr_leg1_Kd_1*rrr_leg1_Ks_1)
         )
-        # (rrr-V5) reciprocal vector 1
-        w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
-        w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
-        # (rrr-V6) reciprocal vector 2
-        w_2_rrr_in_base_x = (
-        axis_y_rrr_axes2_in_base_x*inv_rrr_platform_joint_offset_x +
-            axis_y_rrr_axes2_in_base_y*w_2_rrr_t
+        # (rrr_leg1-w_1) reciprocal vector 1
+        axis_y_rrr_leg1_axes2_r1_x = rrr_leg1_c_1*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_s_1
+        axis_y_rrr_leg1_axes2_r1_y = rrr_leg1_c_1*rrr_leg1_c_2 + rrr_leg1_s_1*rrr_leg1_s_2
+        axis_y_rrr_leg1_axes2_in_base_x = (
+        axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_xx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_xy
         )
-        w_2_rrr_in_base_y = (
-        axis_y_rrr_axes2_in_base_y*inv_rrr_platform_joint_offset_x -
-            axis_y_rrr_axes2_in_base_x*w_2_rrr_t
+        axis_y_rrr_leg1_axes2_in_base_y = (
+        axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_yx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_yy
+        )
+        inv_rrr_leg1_r_1_r0_y = 1.0/rrr_leg1_r_1_r0_y
+        # (rrr_leg1-w_2) reciprocal vector 2
+        rrr_leg1_w_2_t = (
+        inv_rrr_leg1_platform_joint_offset_x*inv_rrr_leg1_r_1_r0_y*(rrr_leg1_c_2*rrr_leg1_r_1_x +
+            rrr_leg1_r_1_t*rrr_leg1_s_2)
+        )
+        # (rrr_leg1-w_1) reciprocal vector 1
+        rrr_leg1_w_1_t = axis_y_rrr_leg1_axes2_in_base_y*inv_rrr_leg1_r_1_r0_y
+        rrr_leg1_w_1_t_2 = axis_y_rrr_leg1_axes2_in_base_x*inv_rrr_leg1_r_1_r0_y
+        # (rrr_leg1-w_2) reciprocal vector 2
+        rrr_leg1_w_2_in_base_x = (
+        axis_y_rrr_leg1_axes2_in_base_x*inv_rrr_leg1_platform_joint_offset_x +
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_w_2_t
+        )
+        rrr_leg1_w_2_in_base_y = (
+        axis_y_rrr_leg1_axes2_in_base_y*inv_rrr_leg1_platform_joint_offset_x -
+            axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_w_2_t
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rrr_leg1_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_leg1_rho2_1_t) &
+            (rrr_leg1_disc_1 >= 0.0) & (abs(-rrr_leg1_r_1_r0_y) > _TOLERANCE * rrr_leg1_size))
         )
-        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
-        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
-        out_H[_H_rrr[2][leg]] = w_2_rrr_in_base_x
-        out_H[_H_rrr[3][leg]] = w_2_rrr_in_base_y
+        out_H[_H_rrr_leg1[0][leg]] = -rrr_leg1_w_1_t
+        out_H[_H_rrr_leg1[1][leg]] = rrr_leg1_w_1_t_2
+        out_H[_H_rrr_leg1[2][leg]] = rrr_leg1_w_2_in_base_x
+        out_H[_H_rrr_leg1[3][leg]] = rrr_leg1_w_2_in_base_y
     for leg, k in legs[1]:
         (
-        Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5, inv_uu_2_rrr2_t,
-            rho2_1_rrr2_t, rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
-            rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y, rrr2_joint2_offset_x,
-            rrr2_platform_joint_offset_x, rrr2_platform_point_x, rrr2_platform_point_y, size_rrr2,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+            rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr2-K1) from the base point to the connection point
-        S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
-        S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
-        # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
-        Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
-        # (rrr2-K3) component along the reference direction
-        px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-        # (rrr2-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
-        # (rrr2-K4) component across the reference direction
-        py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-        # (rrr2-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
-        # (rrr2-K8) squared amplitude
-        rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
-        # (rrr2-K9) discriminant
-        disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
-        # (rrr2-K10) root, with the sign of the branch
-        root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
-        # (rrr2-K16) from the origin of joint 2 to the connection point
-        x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
-        # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x
-        # (rrr2-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr2 = (
-        inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr2-V2) from joint 1 to the connection point, along the links
-        r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x
-        r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*rrr2_platform_joint_offset_x*s_2_rrr2
-        # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
-        c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2)
-        # (rrr2-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2)
-        # (rrr2-V5) reciprocal vector 1
-        axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2
-        axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2
-        inv_r_1_rrr2_r0_y = 1.0/r_1_rrr2_r0_y
-        w_1_rrr2_t = (
-        inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx +
-            axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy)
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        rrr_w_1_t = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
+            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy)
         )
-        w_1_rrr2_t_2 = (
-        inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx +
-            axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy)
+        rrr_w_1_t_2 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
+            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy)
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) &
-            (disc_1_rrr2 >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
-        out_H[_H_rrr2[0][leg]] = -w_1_rrr2_t
-        out_H[_H_rrr2[1][leg]] = w_1_rrr2_t_2
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
+        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
     return ok, (out_H,)
 
 
@@ -2312,299 +2453,322 @@ def _run_required(m, X, V, A):
     ok = True
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
-    # (E2) inertia force of the platform less its weight
+    # (f_p) inertia force of the platform less its weight
     f_p_x = a_t_x*m_star
     f_p_y = a_t_y*m_star
     sums = [0.0] * 2
     for leg, k in legs[0]:
         (
-        J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x, g_r0_y,
-            h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
-            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        inv_rrr_leg1_Kd_1_t_5, inv_rrr_leg1_Kd_1_t_7, inv_rrr_leg1_platform_joint_offset_x,
+            rrr_leg1_J_1_zz, rrr_leg1_J_2_zz, rrr_leg1_Kd_1_t_2, rrr_leg1_Kd_1_t_4,
+            rrr_leg1_base_frame_xx, rrr_leg1_base_frame_xy, rrr_leg1_base_frame_yx,
+            rrr_leg1_base_frame_yy, rrr_leg1_base_point_x, rrr_leg1_base_point_y,
+            rrr_leg1_branch_1, rrr_leg1_g_r0_x, rrr_leg1_g_r0_y, rrr_leg1_h_1_x, rrr_leg1_h_1_y,
+            rrr_leg1_h_2_x, rrr_leg1_h_2_y, rrr_leg1_joint2_offset_x,
+            rrr_leg1_platform_joint_offset_x, rrr_leg1_platform_point_x,
+            rrr_leg1_platform_point_y, rrr_leg1_rho2_1_t, rrr_leg1_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
-        S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr_leg1-S) from the base point to the connection point
+        rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x
+        rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y
+        # (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y
+        rrr_leg1_Kd_1 = 0.5*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4
+        # (rrr_leg1-px_1) component along the reference direction
+        rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx + rrr_leg1_S_y*rrr_leg1_base_frame_yx
+        # (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1
+        # (rrr_leg1-py_1) component across the reference direction
+        rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy + rrr_leg1_S_y*rrr_leg1_base_frame_yy
+        # (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1
+        rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1
+        # (rrr_leg1-rho2_1) squared amplitude
+        rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1
+        # (rrr_leg1-disc_1) discriminant
+        rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1
+        # (rrr_leg1-root_1) root, with the sign of the branch
+        rrr_leg1_root_1 = rrr_leg1_branch_1*sqrt(rrr_leg1_disc_1)
+        # (rrr_leg1-x_2) from the origin of joint 2 to the connection point
+        rrr_leg1_x_2_x = (
+        inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        # (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_leg1_c_2 = inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x
+        # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_leg1_s_2 = (
+        inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        )
+        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
+        rrr_leg1_r_1_t = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2
+        rrr_leg1_r_1_x = rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
+        rrr_leg1_r_1_r0_x = rrr_leg1_c_2*rrr_leg1_r_1_x + rrr_leg1_r_1_t*rrr_leg1_s_2
+        rrr_leg1_r_1_r0_y = rrr_leg1_r_1_x*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_r_1_t
+        # (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_leg1_rho2_1 = 1.0/rrr_leg1_rho2_1
+        rrr_leg1_c_1 = (
+        inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 - rrr_leg1_Ks_1*rrr_leg1_root_1)
+        )
+        # (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_leg1_s_1 = (
+        inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 + rrr_leg1_Kd_1*rrr_leg1_Ks_1)
+        )
+        # (rrr_leg1-w_1) reciprocal vector 1
+        axis_y_rrr_leg1_axes2_r1_x = rrr_leg1_c_1*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_s_1
+        axis_y_rrr_leg1_axes2_r1_y = rrr_leg1_c_1*rrr_leg1_c_2 + rrr_leg1_s_1*rrr_leg1_s_2
+        axis_y_rrr_leg1_axes2_in_base_x = (
+        axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_xx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_xy
+        )
+        axis_y_rrr_leg1_axes2_in_base_y = (
+        axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_yx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_yy
+        )
+        inv_rrr_leg1_r_1_r0_y = 1.0/rrr_leg1_r_1_r0_y
+        # (rrr_leg1-w_2) reciprocal vector 2
+        rrr_leg1_w_2_t = (
+        inv_rrr_leg1_platform_joint_offset_x*inv_rrr_leg1_r_1_r0_y*rrr_leg1_r_1_r0_x
+        )
+        # (rrr_leg1-qd_2) rate of joint 2
+        rrr_leg1_qd_1 = (
+        inv_rrr_leg1_r_1_r0_y*(axis_y_rrr_leg1_axes2_in_base_y*t_dot_x -
+            axis_y_rrr_leg1_axes2_in_base_x*t_dot_y)
+        )
+        # (rrr_leg1-omega_2) angular velocity of link 2
+        rrr_leg1_omega_2_z = (
+        inv_rrr_leg1_platform_joint_offset_x*(axis_y_rrr_leg1_axes2_in_base_x*t_dot_x +
+            axis_y_rrr_leg1_axes2_in_base_y*t_dot_y + rrr_leg1_qd_1*rrr_leg1_r_1_r0_x) -
+            rrr_leg1_qd_1
+        )
+        # (rrr_leg1-W_1) centripetal tensor of link 1
+        rrr_leg1_W_1_t = rrr_leg1_qd_1*rrr_leg1_qd_1
+        # (rrr_leg1-W_2) centripetal tensor of link 2
+        rrr_leg1_W_2_t = rrr_leg1_omega_2_z*rrr_leg1_omega_2_z
+        # (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations
+        rrr_leg1_bias_x = (
+        -rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x -
+            rrr_leg1_W_1_t*rrr_leg1_c_2*rrr_leg1_joint2_offset_x
+        )
+        # (rrr_leg1-w_1) reciprocal vector 1
+        rrr_leg1_w_1_t = axis_y_rrr_leg1_axes2_in_base_y*inv_rrr_leg1_r_1_r0_y
+        rrr_leg1_w_1_t_2 = axis_y_rrr_leg1_axes2_in_base_x*inv_rrr_leg1_r_1_r0_y
+        # (rrr_leg1-w_2) reciprocal vector 2
+        rrr_leg1_w_2_in_base_x = (
+        axis_y_rrr_leg1_axes2_in_base_x*inv_rrr_leg1_platform_joint_offset_x +
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_w_2_t
+        )
+        rrr_leg1_w_2_in_base_y = (
+        axis_y_rrr_leg1_axes2_in_base_y*inv_rrr_leg1_platform_joint_offset_x -
+            axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_w_2_t
+        )
+        # (rrr_leg1-S_ddot) acceleration of the connection point
+        rrr_leg1_S_ddot_tip_x = (
+        axis_y_rrr_leg1_axes2_in_base_y*t_ddot_x - axis_y_rrr_leg1_axes2_in_base_x*t_ddot_y
+        )
+        rrr_leg1_S_ddot_tip_y = (
+        axis_y_rrr_leg1_axes2_in_base_x*t_ddot_x + axis_y_rrr_leg1_axes2_in_base_y*t_ddot_y
+        )
+        # (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations
+        rrr_leg1_rel_x = rrr_leg1_S_ddot_tip_x - rrr_leg1_bias_x
+        rrr_leg1_rel_y = (
+        rrr_leg1_S_ddot_tip_y + rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
+        )
+        # (rrr_leg1-qdd_1) acceleration of joint 1
+        rrr_leg1_qdd_1 = inv_rrr_leg1_r_1_r0_y*rrr_leg1_rel_x
+        # (rrr_leg1-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_leg1_acc_2_x = (
+        rrr_leg1_S_ddot_tip_x + axis_y_rrr_leg1_axes2_in_base_x*gravity_y -
+            axis_y_rrr_leg1_axes2_in_base_y*gravity_x
+        )
+        rrr_leg1_acc_2_y = (
+        rrr_leg1_S_ddot_tip_y - axis_y_rrr_leg1_axes2_in_base_x*gravity_x -
+            axis_y_rrr_leg1_axes2_in_base_y*gravity_y
+        )
+        # (rrr_leg1-alpha_2) angular acceleration of link 2
+        rrr_leg1_alpha_2_z = (
+        inv_rrr_leg1_platform_joint_offset_x*(rrr_leg1_rel_y + rrr_leg1_qdd_1*rrr_leg1_r_1_r0_x) -
+            rrr_leg1_qdd_1
+        )
+        # (rrr_leg1-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        rrr_leg1_mu_2_z = (
+        rrr_leg1_J_2_zz*rrr_leg1_alpha_2_z + rrr_leg1_acc_2_y*rrr_leg1_h_2_x -
+            rrr_leg1_acc_2_x*rrr_leg1_h_2_y
+        )
+        # (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_leg1_mu_1_z = (
+        rrr_leg1_h_1_y*(rrr_leg1_c_1*rrr_leg1_g_r0_x + rrr_leg1_g_r0_y*rrr_leg1_s_1) -
+            rrr_leg1_J_1_zz*rrr_leg1_qdd_1 - rrr_leg1_h_1_x*(rrr_leg1_c_1*rrr_leg1_g_r0_y -
+            rrr_leg1_g_r0_x*rrr_leg1_s_1)
+        )
+        # (rrr_leg1-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrr_leg1_N_1_z = rrr_leg1_mu_1_z + rrr_leg1_mu_2_z
+        # (rrr_leg1-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_leg1_G_t = inv_rrr_leg1_platform_joint_offset_x*rrr_leg1_mu_2_z
+        # (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_leg1_c_x = (
+        rrr_leg1_W_2_t*rrr_leg1_h_2_x + rrr_leg1_alpha_2_z*rrr_leg1_h_2_y -
+            inv_rrr_leg1_r_1_r0_y*(rrr_leg1_G_t*rrr_leg1_r_1_r0_x - rrr_leg1_N_1_z)
+        )
+        rrr_leg1_c_y = (
+        rrr_leg1_W_2_t*rrr_leg1_h_2_y - rrr_leg1_G_t - rrr_leg1_alpha_2_z*rrr_leg1_h_2_x
+        )
+        rrr_leg1_c_in_base_x = (
+        axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_c_y +
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_c_x
+        )
+        rrr_leg1_c_in_base_y = (
+        axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_c_y -
+            axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_c_x
+        )
+        ok = (
+        ok & m.every(leg, (abs(rrr_leg1_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_leg1_rho2_1_t) &
+            (rrr_leg1_disc_1 >= 0.0) & (abs(-rrr_leg1_r_1_r0_y) > _TOLERANCE * rrr_leg1_size))
+        )
+        sums = m.added(sums, leg, (
+        rrr_leg1_c_in_base_x, rrr_leg1_c_in_base_y,
+        ))
+        out_H[_H_rrr_leg1[0][leg]] = -rrr_leg1_w_1_t
+        out_H[_H_rrr_leg1[1][leg]] = rrr_leg1_w_1_t_2
+        out_H[_H_rrr_leg1[2][leg]] = rrr_leg1_w_2_in_base_x
+        out_H[_H_rrr_leg1[3][leg]] = rrr_leg1_w_2_in_base_y
+    total_rrr_leg1_x, total_rrr_leg1_y = sums
+    sums = [0.0] * 2
+    for leg, k in legs[1]:
+        (
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+            rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+            rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        ) = k
+        # (rrr-S) from the base point to the connection point
+        rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        )
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        # (rrr-V6) reciprocal vector 2
-        w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x
-        # (rrr-V7) rate of joint 1
-        qd_1_rrr = (
-        inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x - axis_y_rrr_axes2_in_base_x*t_dot_y)
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_1 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x - axis_y_rrr_axes2_in_base_x*t_dot_y)
         )
-        # (rrr-V11) angular velocity of link 2
-        omega_2_rrr_z = (
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_z = (
         inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
-            axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
+            axis_y_rrr_axes2_in_base_y*t_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
         )
-        # (rrr-V10) centripetal tensor of link 1
-        W_1_rrr_t = qd_1_rrr*qd_1_rrr
-        # (rrr-V12) centripetal tensor of link 2
-        W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
-        # (rrr-A4) acceleration of the connection point at zero joint accelerations
-        bias_rrr_x = (
-        -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
+        # (rrr-W_1) centripetal tensor of link 1
+        rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_x = (
+        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        # (rrr-V5) reciprocal vector 1
-        w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
-        w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
-        # (rrr-V6) reciprocal vector 2
-        w_2_rrr_in_base_x = (
-        axis_y_rrr_axes2_in_base_x*inv_rrr_platform_joint_offset_x +
-            axis_y_rrr_axes2_in_base_y*w_2_rrr_t
-        )
-        w_2_rrr_in_base_y = (
-        axis_y_rrr_axes2_in_base_y*inv_rrr_platform_joint_offset_x -
-            axis_y_rrr_axes2_in_base_x*w_2_rrr_t
-        )
-        # (rrr-A2) acceleration of the connection point
-        S_ddot_rrr_tip_x = (
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y
+        rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y
+        # (rrr-S_ddot) acceleration of the connection point
+        rrr_S_ddot_tip_x = (
         axis_y_rrr_axes2_in_base_y*t_ddot_x - axis_y_rrr_axes2_in_base_x*t_ddot_y
         )
-        S_ddot_rrr_tip_y = (
+        rrr_S_ddot_tip_y = (
         axis_y_rrr_axes2_in_base_x*t_ddot_x + axis_y_rrr_axes2_in_base_y*t_ddot_y
         )
-        # (rrr-A5) acceleration of the connection point left to the joint accelerations
-        rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x
-        rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
-        # (rrr-A7) acceleration of joint 1
-        qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
-        # (rrr-N3) acceleration of the reference point of link 2, less gravity
-        acc_2_rrr_x = (
-        S_ddot_rrr_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+        # (rrr-rel) acceleration of the connection point left to the joint accelerations
+        rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x
+        rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        # (rrr-qdd_1) acceleration of joint 1
+        rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_acc_2_x = (
+        rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
             axis_y_rrr_axes2_in_base_y*gravity_x
         )
-        acc_2_rrr_y = (
-        S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+        rrr_acc_2_y = (
+        rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
             axis_y_rrr_axes2_in_base_y*gravity_y
         )
-        # (rrr-N23) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rrr_z = (
-        h_1_rrr_y*(c_1_rrr*g_r0_x + g_r0_y*s_1_rrr) - J_1_rrr_zz*qdd_1_rrr -
-            h_1_rrr_x*(c_1_rrr*g_r0_y - g_r0_x*s_1_rrr)
+        # (rrr-alpha_2) angular acceleration of link 2
+        rrr_alpha_2_z = (
+        inv_rrr_platform_joint_offset_x*(rrr_rel_y + rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1
         )
-        # (rrr-A15) angular acceleration of link 2
-        alpha_2_rrr_z = (
-        inv_rrr_platform_joint_offset_x*(rel_rrr_y + qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr
+        # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x - rrr_acc_2_x*rrr_h_2_y
+        # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_mu_1_z = (
+        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1 -
+            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
         )
-        # (rrr-N16) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x - acc_2_rrr_x*h_2_rrr_y
-        # (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z
-        # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z
-        # (rrr-N33) leg force on the platform without actuation and without the mass at the connection point
-        c_rrr_x = (
-        W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x -
-            N_1_rrr_z)
+        # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z
+        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z
+        # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_x = (
+        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x -
+            rrr_N_1_z)
         )
-        c_rrr_y = W_2_rrr_t*h_2_rrr_y - G_rrr_t - alpha_2_rrr_z*h_2_rrr_x
-        c_rrr_in_base_x = axis_y_rrr_axes2_in_base_x*c_rrr_y + axis_y_rrr_axes2_in_base_y*c_rrr_x
-        c_rrr_in_base_y = axis_y_rrr_axes2_in_base_y*c_rrr_y - axis_y_rrr_axes2_in_base_x*c_rrr_x
+        rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x
+        rrr_c_in_base_x = axis_y_rrr_axes2_in_base_x*rrr_c_y + axis_y_rrr_axes2_in_base_y*rrr_c_x
+        rrr_c_in_base_y = axis_y_rrr_axes2_in_base_y*rrr_c_y - axis_y_rrr_axes2_in_base_x*rrr_c_x
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        c_rrr_in_base_x, c_rrr_in_base_y,
+        rrr_c_in_base_x, rrr_c_in_base_y,
         ))
-        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
-        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
-        out_H[_H_rrr[2][leg]] = w_2_rrr_in_base_x
-        out_H[_H_rrr[3][leg]] = w_2_rrr_in_base_y
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
+        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
     total_rrr_x, total_rrr_y = sums
-    sums = [0.0] * 2
-    for leg, k in legs[1]:
-        (
-        J_1_rrr2_zz, J_2_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, g_r0_x_2, g_r0_y_2,
-            h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
-            inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx,
-            rrr2_base_frame_xy, rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x,
-            rrr2_base_point_y, rrr2_joint2_offset_x, rrr2_platform_joint_offset_x,
-            rrr2_platform_point_x, rrr2_platform_point_y, size_rrr2,
-        ) = k
-        # (rrr2-K1) from the base point to the connection point
-        S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
-        S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
-        # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
-        Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
-        # (rrr2-K3) component along the reference direction
-        px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-        # (rrr2-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
-        # (rrr2-K4) component across the reference direction
-        py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-        # (rrr2-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
-        # (rrr2-K8) squared amplitude
-        rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
-        # (rrr2-K9) discriminant
-        disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
-        # (rrr2-K10) root, with the sign of the branch
-        root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
-        # (rrr2-K16) from the origin of joint 2 to the connection point
-        x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
-        # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x
-        # (rrr2-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr2 = (
-        inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x
-        )
-        # (rrr2-V2) from joint 1 to the connection point, along the links
-        r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2
-        r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x
-        r_1_rrr2_r0_x = c_2_rrr2*r_1_rrr2_x + r_1_rrr2_t*s_2_rrr2
-        r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t
-        # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
-        c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2)
-        # (rrr2-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2)
-        # (rrr2-V5) reciprocal vector 1
-        axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2
-        axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2
-        axis_y_rrr2_axes2_in_base_x = (
-        axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy
-        )
-        axis_y_rrr2_axes2_in_base_y = (
-        axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy
-        )
-        inv_r_1_rrr2_r0_y = 1.0/r_1_rrr2_r0_y
-        # (rrr2-V7) rate of joint 1
-        qd_1_rrr2 = (
-        inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_in_base_y*t_dot_x -
-            axis_y_rrr2_axes2_in_base_x*t_dot_y)
-        )
-        # (rrr2-V11) angular velocity of link 2
-        omega_2_rrr2_z = (
-        inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
-            axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2
-        )
-        # (rrr2-V10) centripetal tensor of link 1
-        W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2
-        # (rrr2-V12) centripetal tensor of link 2
-        W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z
-        # (rrr2-A4) acceleration of the connection point at zero joint accelerations
-        bias_rrr2_x = (
-        -W_2_rrr2_t*rrr2_platform_joint_offset_x - W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x
-        )
-        # (rrr2-V5) reciprocal vector 1
-        w_1_rrr2_t = axis_y_rrr2_axes2_in_base_y*inv_r_1_rrr2_r0_y
-        w_1_rrr2_t_2 = axis_y_rrr2_axes2_in_base_x*inv_r_1_rrr2_r0_y
-        # (rrr2-A2) acceleration of the connection point
-        S_ddot_rrr2_tip_x = (
-        axis_y_rrr2_axes2_in_base_y*t_ddot_x - axis_y_rrr2_axes2_in_base_x*t_ddot_y
-        )
-        S_ddot_rrr2_tip_y = (
-        axis_y_rrr2_axes2_in_base_x*t_ddot_x + axis_y_rrr2_axes2_in_base_y*t_ddot_y
-        )
-        # (rrr2-A5) acceleration of the connection point left to the joint accelerations
-        rel_rrr2_x = S_ddot_rrr2_tip_x - bias_rrr2_x
-        rel_rrr2_y = S_ddot_rrr2_tip_y + W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2
-        # (rrr2-A7) acceleration of joint 1
-        qdd_1_rrr2 = inv_r_1_rrr2_r0_y*rel_rrr2_x
-        # (rrr2-N3) acceleration of the reference point of link 2, less gravity
-        acc_2_rrr2_x = (
-        S_ddot_rrr2_tip_x + axis_y_rrr2_axes2_in_base_x*gravity_y -
-            axis_y_rrr2_axes2_in_base_y*gravity_x
-        )
-        acc_2_rrr2_y = (
-        S_ddot_rrr2_tip_y - axis_y_rrr2_axes2_in_base_x*gravity_x -
-            axis_y_rrr2_axes2_in_base_y*gravity_y
-        )
-        # (rrr2-N23) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rrr2_z = (
-        h_1_rrr2_y*(c_1_rrr2*g_r0_x_2 + g_r0_y_2*s_1_rrr2) - J_1_rrr2_zz*qdd_1_rrr2 -
-            h_1_rrr2_x*(c_1_rrr2*g_r0_y_2 - g_r0_x_2*s_1_rrr2)
-        )
-        # (rrr2-A15) angular acceleration of link 2
-        alpha_2_rrr2_z = (
-        inv_rrr2_platform_joint_offset_x*(rel_rrr2_y + qdd_1_rrr2*r_1_rrr2_r0_x) - qdd_1_rrr2
-        )
-        # (rrr2-N16) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_rrr2_z = (
-        J_2_rrr2_zz*alpha_2_rrr2_z + acc_2_rrr2_y*h_2_rrr2_x - acc_2_rrr2_x*h_2_rrr2_y
-        )
-        # (rrr2-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_rrr2_z = mu_1_rrr2_z + mu_2_rrr2_z
-        # (rrr2-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rrr2_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_z
-        # (rrr2-N33) leg force on the platform without actuation and without the mass at the connection point
-        c_rrr2_x = (
-        W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_z*h_2_rrr2_y -
-            inv_r_1_rrr2_r0_y*(G_rrr2_t*r_1_rrr2_r0_x - N_1_rrr2_z)
-        )
-        c_rrr2_y = W_2_rrr2_t*h_2_rrr2_y - G_rrr2_t - alpha_2_rrr2_z*h_2_rrr2_x
-        c_rrr2_in_base_x = (
-        axis_y_rrr2_axes2_in_base_x*c_rrr2_y + axis_y_rrr2_axes2_in_base_y*c_rrr2_x
-        )
-        c_rrr2_in_base_y = (
-        axis_y_rrr2_axes2_in_base_y*c_rrr2_y - axis_y_rrr2_axes2_in_base_x*c_rrr2_x
-        )
-        ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) &
-            (disc_1_rrr2 >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
-        )
-        sums = m.added(sums, leg, (
-        c_rrr2_in_base_x, c_rrr2_in_base_y,
-        ))
-        out_H[_H_rrr2[0][leg]] = -w_1_rrr2_t
-        out_H[_H_rrr2[1][leg]] = w_1_rrr2_t_2
-    total_rrr2_x, total_rrr2_y = sums
-    # (E3) force that actuators and external wrench must give
-    R_t_x = f_p_x - total_rrr2_x - total_rrr_x
-    R_t_y = f_p_y - total_rrr2_y - total_rrr_y
+    # (R_t) force that actuators and external wrench must give
+    R_t_x = f_p_x - total_rrr_leg1_x - total_rrr_x
+    R_t_y = f_p_y - total_rrr_leg1_y - total_rrr_y
     out_required[0] = R_t_x
     out_required[1] = R_t_y
     return ok, (out_required, out_H,)
@@ -2624,98 +2788,101 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
-            rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-            rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y,
+        inv_rrr_leg1_Kd_1_t_5, inv_rrr_leg1_Kd_1_t_7, rrr_leg1_Kd_1_t_2, rrr_leg1_Kd_1_t_4,
+            rrr_leg1_base_frame_xx, rrr_leg1_base_frame_xy, rrr_leg1_base_frame_yx,
+            rrr_leg1_base_frame_yy, rrr_leg1_base_point_x, rrr_leg1_base_point_y,
+            rrr_leg1_branch_1, rrr_leg1_joint2_offset_x, rrr_leg1_platform_joint_offset_x,
+            rrr_leg1_platform_point_x, rrr_leg1_platform_point_y, rrr_leg1_rho2_1_t,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
-        S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        # (rrr-K13) displacement of joint 1
-        q_1_rrr = (
-        atan2(inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr),
-            inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr))
+        # (rrr_leg1-S) from the base point to the connection point
+        rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x
+        rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y
+        # (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y
+        rrr_leg1_Kd_1 = 0.5*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4
+        # (rrr_leg1-px_1) component along the reference direction
+        rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx + rrr_leg1_S_y*rrr_leg1_base_frame_yx
+        # (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1
+        # (rrr_leg1-py_1) component across the reference direction
+        rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy + rrr_leg1_S_y*rrr_leg1_base_frame_yy
+        # (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1
+        rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1
+        # (rrr_leg1-rho2_1) squared amplitude
+        rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1
+        # (rrr_leg1-disc_1) discriminant
+        rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1
+        # (rrr_leg1-root_1) root, with the sign of the branch
+        rrr_leg1_root_1 = rrr_leg1_branch_1*sqrt(rrr_leg1_disc_1)
+        # (rrr_leg1-x_2) from the origin of joint 2 to the connection point
+        rrr_leg1_x_2_x = (
+        inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x
         )
-        # (rrr-K20) displacement of joint 2
-        q_2_rrr = (
-        atan2(-inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x,
-            inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x)
+        # (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_leg1_rho2_1 = 1.0/rrr_leg1_rho2_1
+        # (rrr_leg1-q_1) displacement of joint 1
+        rrr_leg1_q_1 = (
+        atan2(inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 + rrr_leg1_Kd_1*rrr_leg1_Ks_1),
+            inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 - rrr_leg1_Ks_1*rrr_leg1_root_1))
+        )
+        # (rrr_leg1-q_2) displacement of joint 2
+        rrr_leg1_q_2 = (
+        atan2(-inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1,
+            inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x)
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0))
+        ok & m.every(leg, (abs(rrr_leg1_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_leg1_rho2_1_t) &
+            (rrr_leg1_disc_1 >= 0.0))
         )
-        out_q[_q_rrr[0][leg]] = q_1_rrr
-        out_q[_q_rrr[1][leg]] = q_2_rrr
+        out_q[_q_rrr_leg1[0][leg]] = rrr_leg1_q_1
+        out_q[_q_rrr_leg1[1][leg]] = rrr_leg1_q_2
     for leg, k in legs[1]:
         (
-        Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5, inv_uu_2_rrr2_t,
-            rho2_1_rrr2_t, rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
-            rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y, rrr2_joint2_offset_x,
-            rrr2_platform_joint_offset_x, rrr2_platform_point_x, rrr2_platform_point_y,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+            rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
         ) = k
-        # (rrr2-K1) from the base point to the connection point
-        S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
-        S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
-        # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
-        Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
-        # (rrr2-K3) component along the reference direction
-        px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-        # (rrr2-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
-        # (rrr2-K4) component across the reference direction
-        py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-        # (rrr2-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
-        # (rrr2-K8) squared amplitude
-        rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
-        # (rrr2-K9) discriminant
-        disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
-        # (rrr2-K10) root, with the sign of the branch
-        root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
-        # (rrr2-K16) from the origin of joint 2 to the connection point
-        x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
-        # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
-        # (rrr2-K13) displacement of joint 1
-        q_1_rrr2 = (
-        atan2(inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2),
-            inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2))
+        # (rrr-S) from the base point to the connection point
+        rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        # (rrr-q_1) displacement of joint 1
+        rrr_q_1 = (
+        atan2(inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1),
+            inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1))
         )
-        # (rrr2-K20) displacement of joint 2
-        q_2_rrr2 = (
-        atan2(-inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x,
-            inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x)
+        # (rrr-q_2) displacement of joint 2
+        rrr_q_2 = (
+        atan2(-inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
+            inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x)
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) &
-            (disc_1_rrr2 >= 0.0))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0))
         )
-        out_q[_q_rrr2[0][leg]] = q_1_rrr2
-        out_q[_q_rrr2[1][leg]] = q_2_rrr2
+        out_q[_q_rrr[0][leg]] = rrr_q_1
+        out_q[_q_rrr[1][leg]] = rrr_q_2
     return ok, (out_q,)
 
 
@@ -2737,141 +2904,151 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
-            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
-            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        inv_rrr_leg1_Kd_1_t_5, inv_rrr_leg1_Kd_1_t_7, inv_rrr_leg1_platform_joint_offset_x,
+            rrr_leg1_Kd_1_t_2, rrr_leg1_Kd_1_t_4, rrr_leg1_base_frame_xx, rrr_leg1_base_frame_xy,
+            rrr_leg1_base_frame_yx, rrr_leg1_base_frame_yy, rrr_leg1_base_point_x,
+            rrr_leg1_base_point_y, rrr_leg1_branch_1, rrr_leg1_joint2_offset_x,
+            rrr_leg1_platform_joint_offset_x, rrr_leg1_platform_point_x,
+            rrr_leg1_platform_point_y, rrr_leg1_rho2_1_t, rrr_leg1_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
-        S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr_leg1-S) from the base point to the connection point
+        rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x
+        rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y
+        # (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y
+        rrr_leg1_Kd_1 = 0.5*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4
+        # (rrr_leg1-px_1) component along the reference direction
+        rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx + rrr_leg1_S_y*rrr_leg1_base_frame_yx
+        # (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1
+        # (rrr_leg1-py_1) component across the reference direction
+        rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy + rrr_leg1_S_y*rrr_leg1_base_frame_yy
+        # (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1
+        rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1
+        # (rrr_leg1-rho2_1) squared amplitude
+        rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1
+        # (rrr_leg1-disc_1) discriminant
+        rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1
+        # (rrr_leg1-root_1) root, with the sign of the branch
+        rrr_leg1_root_1 = rrr_leg1_branch_1*sqrt(rrr_leg1_disc_1)
+        # (rrr_leg1-x_2) from the origin of joint 2 to the connection point
+        rrr_leg1_x_2_x = (
+        inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        # (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_leg1_c_2 = inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x
+        # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_leg1_s_2 = (
+        inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        )
+        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
+        rrr_leg1_r_1_t = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2
+        rrr_leg1_r_1_x = rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
+        rrr_leg1_r_1_r0_y = rrr_leg1_r_1_x*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_r_1_t
+        # (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_leg1_rho2_1 = 1.0/rrr_leg1_rho2_1
+        rrr_leg1_c_1 = (
+        inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 - rrr_leg1_Ks_1*rrr_leg1_root_1)
+        )
+        # (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_leg1_s_1 = (
+        inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 + rrr_leg1_Kd_1*rrr_leg1_Ks_1)
+        )
+        # (rrr_leg1-w_1) reciprocal vector 1
+        axis_y_rrr_leg1_axes2_r1_x = rrr_leg1_c_1*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_s_1
+        axis_y_rrr_leg1_axes2_r1_y = rrr_leg1_c_1*rrr_leg1_c_2 + rrr_leg1_s_1*rrr_leg1_s_2
+        axis_y_rrr_leg1_axes2_in_base_x = (
+        axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_xx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_xy
+        )
+        axis_y_rrr_leg1_axes2_in_base_y = (
+        axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_yx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_yy
+        )
+        # (rrr_leg1-qd_2) rate of joint 2
+        rrr_leg1_qd_1 = (
+        (axis_y_rrr_leg1_axes2_in_base_y*t_dot_x -
+            axis_y_rrr_leg1_axes2_in_base_x*t_dot_y)/rrr_leg1_r_1_r0_y
+        )
+        rrr_leg1_qd_2 = (
+        inv_rrr_leg1_platform_joint_offset_x*(axis_y_rrr_leg1_axes2_in_base_x*t_dot_x +
+            axis_y_rrr_leg1_axes2_in_base_y*t_dot_y + rrr_leg1_qd_1*(rrr_leg1_c_2*rrr_leg1_r_1_x +
+            rrr_leg1_r_1_t*rrr_leg1_s_2))
+        )
+        ok = (
+        ok & m.every(leg, (abs(rrr_leg1_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_leg1_rho2_1_t) &
+            (rrr_leg1_disc_1 >= 0.0) & (abs(-rrr_leg1_r_1_r0_y) > _TOLERANCE * rrr_leg1_size))
+        )
+        out_qd[_qd_rrr_leg1[0][leg]] = -rrr_leg1_qd_1
+        out_qd[_qd_rrr_leg1[1][leg]] = rrr_leg1_qd_2
+    for leg, k in legs[1]:
+        (
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
+            rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        ) = k
+        # (rrr-S) from the base point to the connection point
+        rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        )
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        # (rrr-V7) rate of joint 1
-        qd_1_rrr = (
-        (axis_y_rrr_axes2_in_base_y*t_dot_x - axis_y_rrr_axes2_in_base_x*t_dot_y)/r_1_rrr_r0_y
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_1 = (
+        (axis_y_rrr_axes2_in_base_y*t_dot_x - axis_y_rrr_axes2_in_base_x*t_dot_y)/rrr_r_1_r0_y
         )
-        qd_2_rrr = (
+        rrr_qd_2 = (
         inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
-            axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*(c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr))
+            axis_y_rrr_axes2_in_base_y*t_dot_y + rrr_qd_1*(rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2))
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
-        out_qd[_qd_rrr[0][leg]] = -qd_1_rrr
-        out_qd[_qd_rrr[1][leg]] = qd_2_rrr
-    for leg, k in legs[1]:
-        (
-        Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5,
-            inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx,
-            rrr2_base_frame_xy, rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x,
-            rrr2_base_point_y, rrr2_joint2_offset_x, rrr2_platform_joint_offset_x,
-            rrr2_platform_point_x, rrr2_platform_point_y, size_rrr2,
-        ) = k
-        # (rrr2-K1) from the base point to the connection point
-        S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
-        S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
-        # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
-        Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
-        # (rrr2-K3) component along the reference direction
-        px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-        # (rrr2-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
-        # (rrr2-K4) component across the reference direction
-        py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-        # (rrr2-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
-        # (rrr2-K8) squared amplitude
-        rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
-        # (rrr2-K9) discriminant
-        disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
-        # (rrr2-K10) root, with the sign of the branch
-        root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
-        # (rrr2-K16) from the origin of joint 2 to the connection point
-        x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
-        # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x
-        # (rrr2-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr2 = (
-        inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x
-        )
-        # (rrr2-V2) from joint 1 to the connection point, along the links
-        r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2
-        r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x
-        r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t
-        # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
-        c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2)
-        # (rrr2-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2)
-        # (rrr2-V5) reciprocal vector 1
-        axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2
-        axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2
-        axis_y_rrr2_axes2_in_base_x = (
-        axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy
-        )
-        axis_y_rrr2_axes2_in_base_y = (
-        axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy
-        )
-        # (rrr2-V7) rate of joint 1
-        qd_1_rrr2 = (
-        (axis_y_rrr2_axes2_in_base_y*t_dot_x - axis_y_rrr2_axes2_in_base_x*t_dot_y)/r_1_rrr2_r0_y
-        )
-        qd_2_rrr2 = (
-        inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
-            axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*(c_2_rrr2*r_1_rrr2_x +
-            r_1_rrr2_t*s_2_rrr2))
-        )
-        ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) &
-            (disc_1_rrr2 >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
-        )
-        out_qd[_qd_rrr2[0][leg]] = -qd_1_rrr2
-        out_qd[_qd_rrr2[1][leg]] = qd_2_rrr2
+        out_qd[_qd_rrr[0][leg]] = -rrr_qd_1
+        out_qd[_qd_rrr[1][leg]] = rrr_qd_2
     return ok, (out_qd,)
 
 
@@ -2898,183 +3075,196 @@ def _run_joint_accelerations(m, X, V, A):
     out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
-        Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
-            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
-            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        inv_rrr_leg1_Kd_1_t_5, inv_rrr_leg1_Kd_1_t_7, inv_rrr_leg1_platform_joint_offset_x,
+            rrr_leg1_Kd_1_t_2, rrr_leg1_Kd_1_t_4, rrr_leg1_base_frame_xx, rrr_leg1_base_frame_xy,
+            rrr_leg1_base_frame_yx, rrr_leg1_base_frame_yy, rrr_leg1_base_point_x,
+            rrr_leg1_base_point_y, rrr_leg1_branch_1, rrr_leg1_joint2_offset_x,
+            rrr_leg1_platform_joint_offset_x, rrr_leg1_platform_point_x,
+            rrr_leg1_platform_point_y, rrr_leg1_rho2_1_t, rrr_leg1_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
-        S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr_leg1-S) from the base point to the connection point
+        rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x
+        rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y
+        # (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y
+        rrr_leg1_Kd_1 = 0.5*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4
+        # (rrr_leg1-px_1) component along the reference direction
+        rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx + rrr_leg1_S_y*rrr_leg1_base_frame_yx
+        # (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1
+        # (rrr_leg1-py_1) component across the reference direction
+        rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy + rrr_leg1_S_y*rrr_leg1_base_frame_yy
+        # (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1
+        rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1
+        # (rrr_leg1-rho2_1) squared amplitude
+        rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1
+        # (rrr_leg1-disc_1) discriminant
+        rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1
+        # (rrr_leg1-root_1) root, with the sign of the branch
+        rrr_leg1_root_1 = rrr_leg1_branch_1*sqrt(rrr_leg1_disc_1)
+        # (rrr_leg1-x_2) from the origin of joint 2 to the connection point
+        rrr_leg1_x_2_x = (
+        inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        # (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_leg1_c_2 = inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x
+        # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_leg1_s_2 = (
+        inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        )
+        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
+        rrr_leg1_r_1_t = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2
+        rrr_leg1_r_1_x = rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
+        rrr_leg1_r_1_r0_x = rrr_leg1_c_2*rrr_leg1_r_1_x + rrr_leg1_r_1_t*rrr_leg1_s_2
+        rrr_leg1_r_1_r0_y = rrr_leg1_r_1_x*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_r_1_t
+        # (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_leg1_rho2_1 = 1.0/rrr_leg1_rho2_1
+        rrr_leg1_c_1 = (
+        inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 - rrr_leg1_Ks_1*rrr_leg1_root_1)
+        )
+        # (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_leg1_s_1 = (
+        inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 + rrr_leg1_Kd_1*rrr_leg1_Ks_1)
+        )
+        # (rrr_leg1-w_1) reciprocal vector 1
+        axis_y_rrr_leg1_axes2_r1_x = rrr_leg1_c_1*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_s_1
+        axis_y_rrr_leg1_axes2_r1_y = rrr_leg1_c_1*rrr_leg1_c_2 + rrr_leg1_s_1*rrr_leg1_s_2
+        axis_y_rrr_leg1_axes2_in_base_x = (
+        axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_xx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_xy
+        )
+        axis_y_rrr_leg1_axes2_in_base_y = (
+        axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_yx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_yy
+        )
+        inv_rrr_leg1_r_1_r0_y = 1.0/rrr_leg1_r_1_r0_y
+        # (rrr_leg1-qd_2) rate of joint 2
+        rrr_leg1_qd_1 = (
+        inv_rrr_leg1_r_1_r0_y*(axis_y_rrr_leg1_axes2_in_base_y*t_dot_x -
+            axis_y_rrr_leg1_axes2_in_base_x*t_dot_y)
+        )
+        # (rrr_leg1-omega_2) angular velocity of link 2
+        rrr_leg1_omega_2_z = (
+        inv_rrr_leg1_platform_joint_offset_x*(axis_y_rrr_leg1_axes2_in_base_x*t_dot_x +
+            axis_y_rrr_leg1_axes2_in_base_y*t_dot_y + rrr_leg1_qd_1*rrr_leg1_r_1_r0_x) -
+            rrr_leg1_qd_1
+        )
+        # (rrr_leg1-W_1) centripetal tensor of link 1
+        rrr_leg1_W_1_t = rrr_leg1_qd_1*rrr_leg1_qd_1
+        # (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations
+        rrr_leg1_bias_x = (
+        -rrr_leg1_omega_2_z*rrr_leg1_omega_2_z*rrr_leg1_platform_joint_offset_x -
+            rrr_leg1_W_1_t*rrr_leg1_c_2*rrr_leg1_joint2_offset_x
+        )
+        # (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations
+        rrr_leg1_rel_x = (
+        axis_y_rrr_leg1_axes2_in_base_y*t_ddot_x - rrr_leg1_bias_x -
+            axis_y_rrr_leg1_axes2_in_base_x*t_ddot_y
+        )
+        rrr_leg1_rel_y = (
+        axis_y_rrr_leg1_axes2_in_base_x*t_ddot_x + axis_y_rrr_leg1_axes2_in_base_y*t_ddot_y +
+            rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
+        )
+        # (rrr_leg1-qdd_1) acceleration of joint 1
+        rrr_leg1_qdd_1 = inv_rrr_leg1_r_1_r0_y*rrr_leg1_rel_x
+        rrr_leg1_qdd_2 = (
+        inv_rrr_leg1_platform_joint_offset_x*(rrr_leg1_rel_y + rrr_leg1_qdd_1*rrr_leg1_r_1_r0_x)
+        )
+        ok = (
+        ok & m.every(leg, (abs(rrr_leg1_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_leg1_rho2_1_t) &
+            (rrr_leg1_disc_1 >= 0.0) & (abs(-rrr_leg1_r_1_r0_y) > _TOLERANCE * rrr_leg1_size))
+        )
+        out_qdd[_qdd_rrr_leg1[0][leg]] = -rrr_leg1_qdd_1
+        out_qdd[_qdd_rrr_leg1[1][leg]] = rrr_leg1_qdd_2
+    for leg, k in legs[1]:
+        (
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
+            rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        ) = k
+        # (rrr-S) from the base point to the connection point
+        rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        )
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        # (rrr-V7) rate of joint 1
-        qd_1_rrr = (
-        inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x - axis_y_rrr_axes2_in_base_x*t_dot_y)
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_1 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x - axis_y_rrr_axes2_in_base_x*t_dot_y)
         )
-        # (rrr-V11) angular velocity of link 2
-        omega_2_rrr_z = (
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_z = (
         inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
-            axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
+            axis_y_rrr_axes2_in_base_y*t_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
         )
-        # (rrr-V10) centripetal tensor of link 1
-        W_1_rrr_t = qd_1_rrr*qd_1_rrr
-        # (rrr-A4) acceleration of the connection point at zero joint accelerations
-        bias_rrr_x = (
-        -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
+        # (rrr-W_1) centripetal tensor of link 1
+        rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_x = (
+        -rrr_omega_2_z*rrr_omega_2_z*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        # (rrr-A5) acceleration of the connection point left to the joint accelerations
-        rel_rrr_x = (
-        axis_y_rrr_axes2_in_base_y*t_ddot_x - bias_rrr_x - axis_y_rrr_axes2_in_base_x*t_ddot_y
+        # (rrr-rel) acceleration of the connection point left to the joint accelerations
+        rrr_rel_x = (
+        axis_y_rrr_axes2_in_base_y*t_ddot_x - rrr_bias_x - axis_y_rrr_axes2_in_base_x*t_ddot_y
         )
-        rel_rrr_y = (
+        rrr_rel_y = (
         axis_y_rrr_axes2_in_base_x*t_ddot_x + axis_y_rrr_axes2_in_base_y*t_ddot_y +
-            W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
+            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         )
-        # (rrr-A7) acceleration of joint 1
-        qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
-        qdd_2_rrr = inv_rrr_platform_joint_offset_x*(rel_rrr_y + qdd_1_rrr*r_1_rrr_r0_x)
+        # (rrr-qdd_1) acceleration of joint 1
+        rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x
+        rrr_qdd_2 = inv_rrr_platform_joint_offset_x*(rrr_rel_y + rrr_qdd_1*rrr_r_1_r0_x)
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
-        out_qdd[_qdd_rrr[0][leg]] = -qdd_1_rrr
-        out_qdd[_qdd_rrr[1][leg]] = qdd_2_rrr
-    for leg, k in legs[1]:
-        (
-        Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5,
-            inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx,
-            rrr2_base_frame_xy, rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x,
-            rrr2_base_point_y, rrr2_joint2_offset_x, rrr2_platform_joint_offset_x,
-            rrr2_platform_point_x, rrr2_platform_point_y, size_rrr2,
-        ) = k
-        # (rrr2-K1) from the base point to the connection point
-        S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
-        S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
-        # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
-        Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
-        # (rrr2-K3) component along the reference direction
-        px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-        # (rrr2-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
-        # (rrr2-K4) component across the reference direction
-        py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-        # (rrr2-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
-        # (rrr2-K8) squared amplitude
-        rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
-        # (rrr2-K9) discriminant
-        disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
-        # (rrr2-K10) root, with the sign of the branch
-        root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
-        # (rrr2-K16) from the origin of joint 2 to the connection point
-        x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
-        # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x
-        # (rrr2-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr2 = (
-        inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x
-        )
-        # (rrr2-V2) from joint 1 to the connection point, along the links
-        r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2
-        r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x
-        r_1_rrr2_r0_x = c_2_rrr2*r_1_rrr2_x + r_1_rrr2_t*s_2_rrr2
-        r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t
-        # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
-        c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2)
-        # (rrr2-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2)
-        # (rrr2-V5) reciprocal vector 1
-        axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2
-        axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2
-        axis_y_rrr2_axes2_in_base_x = (
-        axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy
-        )
-        axis_y_rrr2_axes2_in_base_y = (
-        axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy
-        )
-        inv_r_1_rrr2_r0_y = 1.0/r_1_rrr2_r0_y
-        # (rrr2-V7) rate of joint 1
-        qd_1_rrr2 = (
-        inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_in_base_y*t_dot_x -
-            axis_y_rrr2_axes2_in_base_x*t_dot_y)
-        )
-        # (rrr2-V11) angular velocity of link 2
-        omega_2_rrr2_z = (
-        inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
-            axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2
-        )
-        # (rrr2-V10) centripetal tensor of link 1
-        W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2
-        # (rrr2-A4) acceleration of the connection point at zero joint accelerations
-        bias_rrr2_x = (
-        -omega_2_rrr2_z*omega_2_rrr2_z*rrr2_platform_joint_offset_x -
-            W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x
-        )
-        # (rrr2-A5) acceleration of the connection point left to the joint accelerations
-        rel_rrr2_x = (
-        axis_y_rrr2_axes2_in_base_y*t_ddot_x - bias_rrr2_x - axis_y_rrr2_axes2_in_base_x*t_ddot_y
-        )
-        rel_rrr2_y = (
-        axis_y_rrr2_axes2_in_base_x*t_ddot_x + axis_y_rrr2_axes2_in_base_y*t_ddot_y +
-            W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2
-        )
-        # (rrr2-A7) acceleration of joint 1
-        qdd_1_rrr2 = inv_r_1_rrr2_r0_y*rel_rrr2_x
-        qdd_2_rrr2 = inv_rrr2_platform_joint_offset_x*(rel_rrr2_y + qdd_1_rrr2*r_1_rrr2_r0_x)
-        ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) &
-            (disc_1_rrr2 >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
-        )
-        out_qdd[_qdd_rrr2[0][leg]] = -qdd_1_rrr2
-        out_qdd[_qdd_rrr2[1][leg]] = qdd_2_rrr2
+        out_qdd[_qdd_rrr[0][leg]] = -rrr_qdd_1
+        out_qdd[_qdd_rrr[1][leg]] = rrr_qdd_2
     return ok, (out_qdd,)
 
 
@@ -3103,292 +3293,315 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x, g_r0_y,
-            h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
-            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_link2_mass, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        inv_rrr_leg1_Kd_1_t_5, inv_rrr_leg1_Kd_1_t_7, inv_rrr_leg1_platform_joint_offset_x,
+            rrr_leg1_J_1_zz, rrr_leg1_J_2_zz, rrr_leg1_Kd_1_t_2, rrr_leg1_Kd_1_t_4,
+            rrr_leg1_base_frame_xx, rrr_leg1_base_frame_xy, rrr_leg1_base_frame_yx,
+            rrr_leg1_base_frame_yy, rrr_leg1_base_point_x, rrr_leg1_base_point_y,
+            rrr_leg1_branch_1, rrr_leg1_g_r0_x, rrr_leg1_g_r0_y, rrr_leg1_h_1_x, rrr_leg1_h_1_y,
+            rrr_leg1_h_2_x, rrr_leg1_h_2_y, rrr_leg1_joint2_offset_x, rrr_leg1_link2_mass,
+            rrr_leg1_platform_joint_offset_x, rrr_leg1_platform_point_x,
+            rrr_leg1_platform_point_y, rrr_leg1_rho2_1_t, rrr_leg1_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
-        S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr_leg1-S) from the base point to the connection point
+        rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x
+        rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y
+        # (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y
+        rrr_leg1_Kd_1 = 0.5*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4
+        # (rrr_leg1-px_1) component along the reference direction
+        rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx + rrr_leg1_S_y*rrr_leg1_base_frame_yx
+        # (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1
+        # (rrr_leg1-py_1) component across the reference direction
+        rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy + rrr_leg1_S_y*rrr_leg1_base_frame_yy
+        # (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1
+        rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1
+        # (rrr_leg1-rho2_1) squared amplitude
+        rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1
+        # (rrr_leg1-disc_1) discriminant
+        rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1
+        # (rrr_leg1-root_1) root, with the sign of the branch
+        rrr_leg1_root_1 = rrr_leg1_branch_1*sqrt(rrr_leg1_disc_1)
+        # (rrr_leg1-x_2) from the origin of joint 2 to the connection point
+        rrr_leg1_x_2_x = (
+        inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        # (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_leg1_c_2 = inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x
+        # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_leg1_s_2 = (
+        inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        )
+        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
+        rrr_leg1_r_1_t = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2
+        rrr_leg1_r_1_x = rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
+        rrr_leg1_r_1_r0_x = rrr_leg1_c_2*rrr_leg1_r_1_x + rrr_leg1_r_1_t*rrr_leg1_s_2
+        rrr_leg1_r_1_r0_y = rrr_leg1_r_1_x*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_r_1_t
+        # (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_leg1_rho2_1 = 1.0/rrr_leg1_rho2_1
+        rrr_leg1_c_1 = (
+        inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 - rrr_leg1_Ks_1*rrr_leg1_root_1)
+        )
+        # (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_leg1_s_1 = (
+        inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 + rrr_leg1_Kd_1*rrr_leg1_Ks_1)
+        )
+        # (rrr_leg1-w_1) reciprocal vector 1
+        axis_y_rrr_leg1_axes2_r1_x = rrr_leg1_c_1*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_s_1
+        axis_y_rrr_leg1_axes2_r1_y = rrr_leg1_c_1*rrr_leg1_c_2 + rrr_leg1_s_1*rrr_leg1_s_2
+        axis_y_rrr_leg1_axes2_in_base_x = (
+        axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_xx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_xy
+        )
+        axis_y_rrr_leg1_axes2_in_base_y = (
+        axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_yx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_yy
+        )
+        inv_rrr_leg1_r_1_r0_y = 1.0/rrr_leg1_r_1_r0_y
+        # (rrr_leg1-w_2) reciprocal vector 2
+        rrr_leg1_w_2_t = (
+        inv_rrr_leg1_platform_joint_offset_x*inv_rrr_leg1_r_1_r0_y*rrr_leg1_r_1_r0_x
+        )
+        # (rrr_leg1-qd_2) rate of joint 2
+        rrr_leg1_qd_1 = (
+        inv_rrr_leg1_r_1_r0_y*(axis_y_rrr_leg1_axes2_in_base_y*t_dot_x -
+            axis_y_rrr_leg1_axes2_in_base_x*t_dot_y)
+        )
+        # (rrr_leg1-omega_2) angular velocity of link 2
+        rrr_leg1_omega_2_z = (
+        inv_rrr_leg1_platform_joint_offset_x*(axis_y_rrr_leg1_axes2_in_base_x*t_dot_x +
+            axis_y_rrr_leg1_axes2_in_base_y*t_dot_y + rrr_leg1_qd_1*rrr_leg1_r_1_r0_x) -
+            rrr_leg1_qd_1
+        )
+        # (rrr_leg1-W_1) centripetal tensor of link 1
+        rrr_leg1_W_1_t = rrr_leg1_qd_1*rrr_leg1_qd_1
+        # (rrr_leg1-W_2) centripetal tensor of link 2
+        rrr_leg1_W_2_t = rrr_leg1_omega_2_z*rrr_leg1_omega_2_z
+        # (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations
+        rrr_leg1_bias_x = (
+        -rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x -
+            rrr_leg1_W_1_t*rrr_leg1_c_2*rrr_leg1_joint2_offset_x
+        )
+        # (rrr_leg1-w_1) reciprocal vector 1
+        rrr_leg1_w_1_t = axis_y_rrr_leg1_axes2_in_base_y*inv_rrr_leg1_r_1_r0_y
+        rrr_leg1_w_1_t_2 = axis_y_rrr_leg1_axes2_in_base_x*inv_rrr_leg1_r_1_r0_y
+        # (rrr_leg1-w_2) reciprocal vector 2
+        rrr_leg1_w_2_in_base_x = (
+        axis_y_rrr_leg1_axes2_in_base_x*inv_rrr_leg1_platform_joint_offset_x +
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_w_2_t
+        )
+        rrr_leg1_w_2_in_base_y = (
+        axis_y_rrr_leg1_axes2_in_base_y*inv_rrr_leg1_platform_joint_offset_x -
+            axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_w_2_t
+        )
+        # (rrr_leg1-S_ddot) acceleration of the connection point
+        rrr_leg1_S_ddot_tip_x = (
+        axis_y_rrr_leg1_axes2_in_base_y*t_ddot_x - axis_y_rrr_leg1_axes2_in_base_x*t_ddot_y
+        )
+        rrr_leg1_S_ddot_tip_y = (
+        axis_y_rrr_leg1_axes2_in_base_x*t_ddot_x + axis_y_rrr_leg1_axes2_in_base_y*t_ddot_y
+        )
+        # (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations
+        rrr_leg1_rel_x = rrr_leg1_S_ddot_tip_x - rrr_leg1_bias_x
+        rrr_leg1_rel_y = (
+        rrr_leg1_S_ddot_tip_y + rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
+        )
+        # (rrr_leg1-qdd_1) acceleration of joint 1
+        rrr_leg1_qdd_1 = inv_rrr_leg1_r_1_r0_y*rrr_leg1_rel_x
+        # (rrr_leg1-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_leg1_acc_2_x = (
+        rrr_leg1_S_ddot_tip_x + axis_y_rrr_leg1_axes2_in_base_x*gravity_y -
+            axis_y_rrr_leg1_axes2_in_base_y*gravity_x
+        )
+        rrr_leg1_acc_2_y = (
+        rrr_leg1_S_ddot_tip_y - axis_y_rrr_leg1_axes2_in_base_x*gravity_x -
+            axis_y_rrr_leg1_axes2_in_base_y*gravity_y
+        )
+        # (rrr_leg1-alpha_2) angular acceleration of link 2
+        rrr_leg1_alpha_2_z = (
+        inv_rrr_leg1_platform_joint_offset_x*(rrr_leg1_rel_y + rrr_leg1_qdd_1*rrr_leg1_r_1_r0_x) -
+            rrr_leg1_qdd_1
+        )
+        # (rrr_leg1-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        rrr_leg1_mu_2_z = (
+        rrr_leg1_J_2_zz*rrr_leg1_alpha_2_z + rrr_leg1_acc_2_y*rrr_leg1_h_2_x -
+            rrr_leg1_acc_2_x*rrr_leg1_h_2_y
+        )
+        # (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_leg1_mu_1_z = (
+        rrr_leg1_h_1_y*(rrr_leg1_c_1*rrr_leg1_g_r0_x + rrr_leg1_g_r0_y*rrr_leg1_s_1) -
+            rrr_leg1_J_1_zz*rrr_leg1_qdd_1 - rrr_leg1_h_1_x*(rrr_leg1_c_1*rrr_leg1_g_r0_y -
+            rrr_leg1_g_r0_x*rrr_leg1_s_1)
+        )
+        # (rrr_leg1-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrr_leg1_N_1_z = rrr_leg1_mu_1_z + rrr_leg1_mu_2_z
+        # (rrr_leg1-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_leg1_G_t = inv_rrr_leg1_platform_joint_offset_x*rrr_leg1_mu_2_z
+        # (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_leg1_c_x = (
+        rrr_leg1_W_2_t*rrr_leg1_h_2_x + rrr_leg1_alpha_2_z*rrr_leg1_h_2_y -
+            inv_rrr_leg1_r_1_r0_y*(rrr_leg1_G_t*rrr_leg1_r_1_r0_x - rrr_leg1_N_1_z)
+        )
+        rrr_leg1_c_y = (
+        rrr_leg1_W_2_t*rrr_leg1_h_2_y - rrr_leg1_G_t - rrr_leg1_alpha_2_z*rrr_leg1_h_2_x
+        )
+        # (rrr_leg1-c_true) leg force on the platform without actuation, the last link's mass included
+        rrr_leg1_c_true_x = rrr_leg1_c_x - rrr_leg1_acc_2_x*rrr_leg1_link2_mass
+        rrr_leg1_c_true_y = rrr_leg1_c_y - rrr_leg1_acc_2_y*rrr_leg1_link2_mass
+        rrr_leg1_c_true_in_base_x = (
+        axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_c_true_y +
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_c_true_x
+        )
+        rrr_leg1_c_true_in_base_y = (
+        axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_c_true_y -
+            axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_c_true_x
+        )
+        ok = (
+        ok & m.every(leg, (abs(rrr_leg1_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_leg1_rho2_1_t) &
+            (rrr_leg1_disc_1 >= 0.0) & (abs(-rrr_leg1_r_1_r0_y) > _TOLERANCE * rrr_leg1_size))
+        )
+        out_leg_force[_leg_force_rrr_leg1[0][leg]] = rrr_leg1_c_true_in_base_x
+        out_leg_force[_leg_force_rrr_leg1[1][leg]] = rrr_leg1_c_true_in_base_y
+        out_drive[_drive_rrr_leg1[0][leg]] = -rrr_leg1_w_1_t
+        out_drive[_drive_rrr_leg1[1][leg]] = rrr_leg1_w_1_t_2
+        out_drive[_drive_rrr_leg1[2][leg]] = rrr_leg1_w_2_in_base_x
+        out_drive[_drive_rrr_leg1[3][leg]] = rrr_leg1_w_2_in_base_y
+    for leg, k in legs[1]:
+        (
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+            rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+            rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
+            rrr_joint2_offset_x, rrr_link2_mass, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        ) = k
+        # (rrr-S) from the base point to the connection point
+        rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        )
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        # (rrr-V6) reciprocal vector 2
-        w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x
-        # (rrr-V7) rate of joint 1
-        qd_1_rrr = (
-        inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x - axis_y_rrr_axes2_in_base_x*t_dot_y)
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_1 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x - axis_y_rrr_axes2_in_base_x*t_dot_y)
         )
-        # (rrr-V11) angular velocity of link 2
-        omega_2_rrr_z = (
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_z = (
         inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
-            axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
+            axis_y_rrr_axes2_in_base_y*t_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
         )
-        # (rrr-V10) centripetal tensor of link 1
-        W_1_rrr_t = qd_1_rrr*qd_1_rrr
-        # (rrr-V12) centripetal tensor of link 2
-        W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
-        # (rrr-A4) acceleration of the connection point at zero joint accelerations
-        bias_rrr_x = (
-        -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
+        # (rrr-W_1) centripetal tensor of link 1
+        rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_x = (
+        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        # (rrr-V5) reciprocal vector 1
-        w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
-        w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
-        # (rrr-V6) reciprocal vector 2
-        w_2_rrr_in_base_x = (
-        axis_y_rrr_axes2_in_base_x*inv_rrr_platform_joint_offset_x +
-            axis_y_rrr_axes2_in_base_y*w_2_rrr_t
-        )
-        w_2_rrr_in_base_y = (
-        axis_y_rrr_axes2_in_base_y*inv_rrr_platform_joint_offset_x -
-            axis_y_rrr_axes2_in_base_x*w_2_rrr_t
-        )
-        # (rrr-A2) acceleration of the connection point
-        S_ddot_rrr_tip_x = (
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y
+        rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y
+        # (rrr-S_ddot) acceleration of the connection point
+        rrr_S_ddot_tip_x = (
         axis_y_rrr_axes2_in_base_y*t_ddot_x - axis_y_rrr_axes2_in_base_x*t_ddot_y
         )
-        S_ddot_rrr_tip_y = (
+        rrr_S_ddot_tip_y = (
         axis_y_rrr_axes2_in_base_x*t_ddot_x + axis_y_rrr_axes2_in_base_y*t_ddot_y
         )
-        # (rrr-A5) acceleration of the connection point left to the joint accelerations
-        rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x
-        rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
-        # (rrr-A7) acceleration of joint 1
-        qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
-        # (rrr-N3) acceleration of the reference point of link 2, less gravity
-        acc_2_rrr_x = (
-        S_ddot_rrr_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+        # (rrr-rel) acceleration of the connection point left to the joint accelerations
+        rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x
+        rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        # (rrr-qdd_1) acceleration of joint 1
+        rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_acc_2_x = (
+        rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
             axis_y_rrr_axes2_in_base_y*gravity_x
         )
-        acc_2_rrr_y = (
-        S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+        rrr_acc_2_y = (
+        rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
             axis_y_rrr_axes2_in_base_y*gravity_y
         )
-        # (rrr-N23) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rrr_z = (
-        h_1_rrr_y*(c_1_rrr*g_r0_x + g_r0_y*s_1_rrr) - J_1_rrr_zz*qdd_1_rrr -
-            h_1_rrr_x*(c_1_rrr*g_r0_y - g_r0_x*s_1_rrr)
+        # (rrr-alpha_2) angular acceleration of link 2
+        rrr_alpha_2_z = (
+        inv_rrr_platform_joint_offset_x*(rrr_rel_y + rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1
         )
-        # (rrr-A15) angular acceleration of link 2
-        alpha_2_rrr_z = (
-        inv_rrr_platform_joint_offset_x*(rel_rrr_y + qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr
+        # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x - rrr_acc_2_x*rrr_h_2_y
+        # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_mu_1_z = (
+        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1 -
+            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
         )
-        # (rrr-N16) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x - acc_2_rrr_x*h_2_rrr_y
-        # (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z
-        # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z
-        # (rrr-N33) leg force on the platform without actuation and without the mass at the connection point
-        c_rrr_x = (
-        W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x -
-            N_1_rrr_z)
+        # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z
+        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z
+        # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_x = (
+        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x -
+            rrr_N_1_z)
         )
-        c_rrr_y = W_2_rrr_t*h_2_rrr_y - G_rrr_t - alpha_2_rrr_z*h_2_rrr_x
-        # (rrr-N38) leg force on the platform without actuation, the last link's mass included
-        c_true_rrr_x = c_rrr_x - acc_2_rrr_x*rrr_link2_mass
-        c_true_rrr_y = c_rrr_y - acc_2_rrr_y*rrr_link2_mass
-        c_true_rrr_in_base_x = (
-        axis_y_rrr_axes2_in_base_x*c_true_rrr_y + axis_y_rrr_axes2_in_base_y*c_true_rrr_x
+        rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x
+        # (rrr-c_true) leg force on the platform without actuation, the last link's mass included
+        rrr_c_true_x = rrr_c_x - rrr_acc_2_x*rrr_link2_mass
+        rrr_c_true_y = rrr_c_y - rrr_acc_2_y*rrr_link2_mass
+        rrr_c_true_in_base_x = (
+        axis_y_rrr_axes2_in_base_x*rrr_c_true_y + axis_y_rrr_axes2_in_base_y*rrr_c_true_x
         )
-        c_true_rrr_in_base_y = (
-        axis_y_rrr_axes2_in_base_y*c_true_rrr_y - axis_y_rrr_axes2_in_base_x*c_true_rrr_x
-        )
-        ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
-        )
-        out_leg_force[_leg_force_rrr[0][leg]] = c_true_rrr_in_base_x
-        out_leg_force[_leg_force_rrr[1][leg]] = c_true_rrr_in_base_y
-        out_drive[_drive_rrr[0][leg]] = -w_1_rrr_t
-        out_drive[_drive_rrr[1][leg]] = w_1_rrr_t_2
-        out_drive[_drive_rrr[2][leg]] = w_2_rrr_in_base_x
-        out_drive[_drive_rrr[3][leg]] = w_2_rrr_in_base_y
-    for leg, k in legs[1]:
-        (
-        J_1_rrr2_zz, J_2_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, g_r0_x_2, g_r0_y_2,
-            h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
-            inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx,
-            rrr2_base_frame_xy, rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x,
-            rrr2_base_point_y, rrr2_joint2_offset_x, rrr2_link2_mass,
-            rrr2_platform_joint_offset_x, rrr2_platform_point_x, rrr2_platform_point_y, size_rrr2,
-        ) = k
-        # (rrr2-K1) from the base point to the connection point
-        S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
-        S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
-        # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
-        Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
-        # (rrr2-K3) component along the reference direction
-        px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-        # (rrr2-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
-        # (rrr2-K4) component across the reference direction
-        py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-        # (rrr2-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
-        # (rrr2-K8) squared amplitude
-        rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
-        # (rrr2-K9) discriminant
-        disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
-        # (rrr2-K10) root, with the sign of the branch
-        root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
-        # (rrr2-K16) from the origin of joint 2 to the connection point
-        x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
-        # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x
-        # (rrr2-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr2 = (
-        inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x
-        )
-        # (rrr2-V2) from joint 1 to the connection point, along the links
-        r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2
-        r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x
-        r_1_rrr2_r0_x = c_2_rrr2*r_1_rrr2_x + r_1_rrr2_t*s_2_rrr2
-        r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t
-        # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
-        c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2)
-        # (rrr2-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2)
-        # (rrr2-V5) reciprocal vector 1
-        axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2
-        axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2
-        axis_y_rrr2_axes2_in_base_x = (
-        axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy
-        )
-        axis_y_rrr2_axes2_in_base_y = (
-        axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy
-        )
-        inv_r_1_rrr2_r0_y = 1.0/r_1_rrr2_r0_y
-        # (rrr2-V7) rate of joint 1
-        qd_1_rrr2 = (
-        inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_in_base_y*t_dot_x -
-            axis_y_rrr2_axes2_in_base_x*t_dot_y)
-        )
-        # (rrr2-V11) angular velocity of link 2
-        omega_2_rrr2_z = (
-        inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
-            axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2
-        )
-        # (rrr2-V10) centripetal tensor of link 1
-        W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2
-        # (rrr2-V12) centripetal tensor of link 2
-        W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z
-        # (rrr2-A4) acceleration of the connection point at zero joint accelerations
-        bias_rrr2_x = (
-        -W_2_rrr2_t*rrr2_platform_joint_offset_x - W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x
-        )
-        # (rrr2-V5) reciprocal vector 1
-        w_1_rrr2_t = axis_y_rrr2_axes2_in_base_y*inv_r_1_rrr2_r0_y
-        w_1_rrr2_t_2 = axis_y_rrr2_axes2_in_base_x*inv_r_1_rrr2_r0_y
-        # (rrr2-A2) acceleration of the connection point
-        S_ddot_rrr2_tip_x = (
-        axis_y_rrr2_axes2_in_base_y*t_ddot_x - axis_y_rrr2_axes2_in_base_x*t_ddot_y
-        )
-        S_ddot_rrr2_tip_y = (
-        axis_y_rrr2_axes2_in_base_x*t_ddot_x + axis_y_rrr2_axes2_in_base_y*t_ddot_y
-        )
-        # (rrr2-A5) acceleration of the connection point left to the joint accelerations
-        rel_rrr2_x = S_ddot_rrr2_tip_x - bias_rrr2_x
-        rel_rrr2_y = S_ddot_rrr2_tip_y + W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2
-        # (rrr2-A7) acceleration of joint 1
-        qdd_1_rrr2 = inv_r_1_rrr2_r0_y*rel_rrr2_x
-        # (rrr2-N3) acceleration of the reference point of link 2, less gravity
-        acc_2_rrr2_x = (
-        S_ddot_rrr2_tip_x + axis_y_rrr2_axes2_in_base_x*gravity_y -
-            axis_y_rrr2_axes2_in_base_y*gravity_x
-        )
-        acc_2_rrr2_y = (
-        S_ddot_rrr2_tip_y - axis_y_rrr2_axes2_in_base_x*gravity_x -
-            axis_y_rrr2_axes2_in_base_y*gravity_y
-        )
-        # (rrr2-N23) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rrr2_z = (
-        h_1_rrr2_y*(c_1_rrr2*g_r0_x_2 + g_r0_y_2*s_1_rrr2) - J_1_rrr2_zz*qdd_1_rrr2 -
-            h_1_rrr2_x*(c_1_rrr2*g_r0_y_2 - g_r0_x_2*s_1_rrr2)
-        )
-        # (rrr2-A15) angular acceleration of link 2
-        alpha_2_rrr2_z = (
-        inv_rrr2_platform_joint_offset_x*(rel_rrr2_y + qdd_1_rrr2*r_1_rrr2_r0_x) - qdd_1_rrr2
-        )
-        # (rrr2-N16) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_rrr2_z = (
-        J_2_rrr2_zz*alpha_2_rrr2_z + acc_2_rrr2_y*h_2_rrr2_x - acc_2_rrr2_x*h_2_rrr2_y
-        )
-        # (rrr2-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_rrr2_z = mu_1_rrr2_z + mu_2_rrr2_z
-        # (rrr2-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rrr2_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_z
-        # (rrr2-N33) leg force on the platform without actuation and without the mass at the connection point
-        c_rrr2_x = (
-        W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_z*h_2_rrr2_y -
-            inv_r_1_rrr2_r0_y*(G_rrr2_t*r_1_rrr2_r0_x - N_1_rrr2_z)
-        )
-        c_rrr2_y = W_2_rrr2_t*h_2_rrr2_y - G_rrr2_t - alpha_2_rrr2_z*h_2_rrr2_x
-        # (rrr2-N38) leg force on the platform without actuation, the last link's mass included
-        c_true_rrr2_x = c_rrr2_x - acc_2_rrr2_x*rrr2_link2_mass
-        c_true_rrr2_y = c_rrr2_y - acc_2_rrr2_y*rrr2_link2_mass
-        c_true_rrr2_in_base_x = (
-        axis_y_rrr2_axes2_in_base_x*c_true_rrr2_y + axis_y_rrr2_axes2_in_base_y*c_true_rrr2_x
-        )
-        c_true_rrr2_in_base_y = (
-        axis_y_rrr2_axes2_in_base_y*c_true_rrr2_y - axis_y_rrr2_axes2_in_base_x*c_true_rrr2_x
+        rrr_c_true_in_base_y = (
+        axis_y_rrr_axes2_in_base_y*rrr_c_true_y - axis_y_rrr_axes2_in_base_x*rrr_c_true_x
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) &
-            (disc_1_rrr2 >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
-        out_leg_force[_leg_force_rrr2[0][leg]] = c_true_rrr2_in_base_x
-        out_leg_force[_leg_force_rrr2[1][leg]] = c_true_rrr2_in_base_y
-        out_drive[_drive_rrr2[0][leg]] = -w_1_rrr2_t
-        out_drive[_drive_rrr2[1][leg]] = w_1_rrr2_t_2
+        out_leg_force[_leg_force_rrr[0][leg]] = rrr_c_true_in_base_x
+        out_leg_force[_leg_force_rrr[1][leg]] = rrr_c_true_in_base_y
+        out_drive[_drive_rrr[0][leg]] = -rrr_w_1_t
+        out_drive[_drive_rrr[1][leg]] = rrr_w_1_t_2
     return ok, (out_leg_force, out_drive,)
 
 
@@ -3404,126 +3617,134 @@ def _run_potential(m, X):
     t_y = X_1
     ok = True
     out_potential = m.zeros("potential")
-    # (V1) potential energy
+    # (potential) potential energy
     potential_t = gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y + m_star*t_y)
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        Kd_1_rrr_t_2, Kd_1_rrr_t_3, b_rrr_r0_x, b_rrr_r0_y, branch_1_rrr, g_r0_x, g_r0_y,
-            h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t,
-            rho2_1_rrr_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-            rrr_link1_mass, rrr_platform_joint_offset_x, rrr_platform_point_x,
-            rrr_platform_point_y,
+        inv_rrr_leg1_Kd_1_t_5, inv_rrr_leg1_Kd_1_t_7, rrr_leg1_Kd_1_t_2, rrr_leg1_Kd_1_t_4,
+            rrr_leg1_b_r0_x, rrr_leg1_b_r0_y, rrr_leg1_base_frame_xx, rrr_leg1_base_frame_xy,
+            rrr_leg1_base_frame_yx, rrr_leg1_base_frame_yy, rrr_leg1_base_point_x,
+            rrr_leg1_base_point_y, rrr_leg1_branch_1, rrr_leg1_g_r0_x, rrr_leg1_g_r0_y,
+            rrr_leg1_h_1_x, rrr_leg1_h_1_y, rrr_leg1_h_2_x, rrr_leg1_h_2_y,
+            rrr_leg1_joint2_offset_x, rrr_leg1_link1_mass, rrr_leg1_platform_joint_offset_x,
+            rrr_leg1_platform_point_x, rrr_leg1_platform_point_y, rrr_leg1_rho2_1_t,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
-        S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr_leg1-S) from the base point to the connection point
+        rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x
+        rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y
+        # (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y
+        rrr_leg1_Kd_1 = 0.5*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4
+        # (rrr_leg1-px_1) component along the reference direction
+        rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx + rrr_leg1_S_y*rrr_leg1_base_frame_yx
+        # (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1
+        # (rrr_leg1-py_1) component across the reference direction
+        rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy + rrr_leg1_S_y*rrr_leg1_base_frame_yy
+        # (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1
+        rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1
+        # (rrr_leg1-rho2_1) squared amplitude
+        rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1
+        # (rrr_leg1-disc_1) discriminant
+        rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1
+        # (rrr_leg1-root_1) root, with the sign of the branch
+        rrr_leg1_root_1 = rrr_leg1_branch_1*sqrt(rrr_leg1_disc_1)
+        # (rrr_leg1-x_2) from the origin of joint 2 to the connection point
+        rrr_leg1_x_2_x = (
+        inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x
         )
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (V1) potential energy
-        potential_t_3 = (
-        (c_1_rrr*g_r0_x + g_r0_y*s_1_rrr)*(h_1_rrr_x + c_2_rrr*h_2_rrr_x + h_2_rrr_y*s_2_rrr +
-            rrr_link1_mass*(b_rrr_r0_x*c_1_rrr + b_rrr_r0_y*s_1_rrr)) + (c_1_rrr*g_r0_y -
-            g_r0_x*s_1_rrr)*(h_1_rrr_y + c_2_rrr*h_2_rrr_y + rrr_link1_mass*(b_rrr_r0_y*c_1_rrr -
-            b_rrr_r0_x*s_1_rrr) - h_2_rrr_x*s_2_rrr)
+        # (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_leg1_c_2 = inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x
+        # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_leg1_s_2 = (
+        inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        )
+        # (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_leg1_rho2_1 = 1.0/rrr_leg1_rho2_1
+        rrr_leg1_c_1 = (
+        inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 - rrr_leg1_Ks_1*rrr_leg1_root_1)
+        )
+        # (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_leg1_s_1 = (
+        inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 + rrr_leg1_Kd_1*rrr_leg1_Ks_1)
+        )
+        # (potential) potential energy
+        rrr_leg1_potential_t = (
+        (rrr_leg1_c_1*rrr_leg1_g_r0_x + rrr_leg1_g_r0_y*rrr_leg1_s_1)*(rrr_leg1_h_1_x +
+            rrr_leg1_c_2*rrr_leg1_h_2_x + rrr_leg1_h_2_y*rrr_leg1_s_2 +
+            rrr_leg1_link1_mass*(rrr_leg1_b_r0_x*rrr_leg1_c_1 + rrr_leg1_b_r0_y*rrr_leg1_s_1)) +
+            (rrr_leg1_c_1*rrr_leg1_g_r0_y - rrr_leg1_g_r0_x*rrr_leg1_s_1)*(rrr_leg1_h_1_y +
+            rrr_leg1_c_2*rrr_leg1_h_2_y + rrr_leg1_link1_mass*(rrr_leg1_b_r0_y*rrr_leg1_c_1 -
+            rrr_leg1_b_r0_x*rrr_leg1_s_1) - rrr_leg1_h_2_x*rrr_leg1_s_2)
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0))
+        ok & m.every(leg, (abs(rrr_leg1_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_leg1_rho2_1_t) &
+            (rrr_leg1_disc_1 >= 0.0))
         )
         sums = m.added(sums, leg, (
-        potential_t_3,
+        rrr_leg1_potential_t,
         ))
-    total_rrr, = sums
+    total_rrr_leg1, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
         (
-        Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, b_rrr2_r0_x, b_rrr2_r0_y, branch_1_rrr2, g_r0_x_2, g_r0_y_2,
-            h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5, inv_uu_2_rrr2_t,
-            rho2_1_rrr2_t, rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
-            rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y, rrr2_joint2_offset_x,
-            rrr2_link1_mass, rrr2_platform_joint_offset_x, rrr2_platform_point_x,
-            rrr2_platform_point_y,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_b_r0_x, rrr_b_r0_y,
+            rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
+            rrr_base_point_x, rrr_base_point_y, rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x,
+            rrr_h_1_y, rrr_h_2_x, rrr_h_2_y, rrr_joint2_offset_x, rrr_link1_mass,
+            rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
         ) = k
-        # (rrr2-K1) from the base point to the connection point
-        S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
-        S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
-        # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
-        Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
-        # (rrr2-K3) component along the reference direction
-        px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-        # (rrr2-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
-        # (rrr2-K4) component across the reference direction
-        py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-        # (rrr2-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
-        # (rrr2-K8) squared amplitude
-        rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
-        # (rrr2-K9) discriminant
-        disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
-        # (rrr2-K10) root, with the sign of the branch
-        root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
-        # (rrr2-K16) from the origin of joint 2 to the connection point
-        x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
-        # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x
-        # (rrr2-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr2 = (
-        inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
-        c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2)
-        # (rrr2-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2)
-        # (V1) potential energy
-        potential_t_2 = (
-        (c_1_rrr2*g_r0_x_2 + g_r0_y_2*s_1_rrr2)*(h_1_rrr2_x + c_2_rrr2*h_2_rrr2_x +
-            h_2_rrr2_y*s_2_rrr2 + rrr2_link1_mass*(b_rrr2_r0_x*c_1_rrr2 + b_rrr2_r0_y*s_1_rrr2)) +
-            (c_1_rrr2*g_r0_y_2 - g_r0_x_2*s_1_rrr2)*(h_1_rrr2_y + c_2_rrr2*h_2_rrr2_y +
-            rrr2_link1_mass*(b_rrr2_r0_y*c_1_rrr2 - b_rrr2_r0_x*s_1_rrr2) - h_2_rrr2_x*s_2_rrr2)
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (potential) potential energy
+        rrr_potential_t = (
+        (rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1)*(rrr_h_1_x + rrr_c_2*rrr_h_2_x +
+            rrr_h_2_y*rrr_s_2 + rrr_link1_mass*(rrr_b_r0_x*rrr_c_1 + rrr_b_r0_y*rrr_s_1)) +
+            (rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)*(rrr_h_1_y + rrr_c_2*rrr_h_2_y +
+            rrr_link1_mass*(rrr_b_r0_y*rrr_c_1 - rrr_b_r0_x*rrr_s_1) - rrr_h_2_x*rrr_s_2)
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) &
-            (disc_1_rrr2 >= 0.0))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0))
         )
         sums = m.added(sums, leg, (
-        potential_t_2,
+        rrr_potential_t,
         ))
-    total_rrr2, = sums
-    # (V1) potential energy
-    potential = -potential_t - total_rrr - total_rrr2
+    total_rrr, = sums
+    # (potential) potential energy
+    potential = -potential_t - total_rrr - total_rrr_leg1
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -3550,182 +3771,200 @@ def _run_condition(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_rho2_1_rrr_t_4,
-            inv_rrr_platform_joint_offset_x, inv_size_rrr, inv_uu_2_rrr_t, rho2_1_rrr_t,
-            rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-            rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        inv_rrr_leg1_Kd_1_t_5, inv_rrr_leg1_Kd_1_t_7, inv_rrr_leg1_platform_joint_offset_x,
+            inv_rrr_leg1_rho2_1_t_4, inv_rrr_leg1_size, rrr_leg1_Kd_1_t_2, rrr_leg1_Kd_1_t_4,
+            rrr_leg1_base_frame_xx, rrr_leg1_base_frame_xy, rrr_leg1_base_frame_yx,
+            rrr_leg1_base_frame_yy, rrr_leg1_base_point_x, rrr_leg1_base_point_y,
+            rrr_leg1_branch_1, rrr_leg1_joint2_offset_x, rrr_leg1_platform_joint_offset_x,
+            rrr_leg1_platform_point_x, rrr_leg1_platform_point_y, rrr_leg1_rho2_1_t,
+            rrr_leg1_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
-        S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr_leg1-S) from the base point to the connection point
+        rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x
+        rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y
+        # (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y
+        rrr_leg1_Kd_1 = 0.5*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4
+        # (rrr_leg1-px_1) component along the reference direction
+        rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx + rrr_leg1_S_y*rrr_leg1_base_frame_yx
+        # (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1
+        # (rrr_leg1-py_1) component across the reference direction
+        rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy + rrr_leg1_S_y*rrr_leg1_base_frame_yy
+        # (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1
+        rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1
+        # (rrr_leg1-rho2_1) squared amplitude
+        rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1
+        # (rrr_leg1-disc_1) discriminant
+        rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1
+        # (rrr_leg1-root_1) root, with the sign of the branch
+        rrr_leg1_root_1 = rrr_leg1_branch_1*sqrt(rrr_leg1_disc_1)
+        # (rrr_leg1-x_2) from the origin of joint 2 to the connection point
+        rrr_leg1_x_2_x = (
+        inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
-        axis_y_rrr_axes2_in_base_x = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
+        # (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_leg1_c_2 = inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x
+        # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_leg1_s_2 = (
+        inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
         )
-        axis_y_rrr_axes2_in_base_y = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
+        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
+        rrr_leg1_r_1_t = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2
+        rrr_leg1_r_1_x = rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
+        rrr_leg1_r_1_r0_y = rrr_leg1_r_1_x*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_r_1_t
+        # (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_leg1_rho2_1 = 1.0/rrr_leg1_rho2_1
+        rrr_leg1_c_1 = (
+        inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 - rrr_leg1_Ks_1*rrr_leg1_root_1)
         )
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        # (rrr-V6) reciprocal vector 2
-        w_2_rrr_t = (
-        inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*(c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr)
+        # (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_leg1_s_1 = (
+        inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 + rrr_leg1_Kd_1*rrr_leg1_Ks_1)
         )
-        # (rrr-V5) reciprocal vector 1
-        w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
-        w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
-        # (rrr-V6) reciprocal vector 2
-        w_2_rrr_in_base_x = (
-        axis_y_rrr_axes2_in_base_x*inv_rrr_platform_joint_offset_x +
-            axis_y_rrr_axes2_in_base_y*w_2_rrr_t
+        # (rrr_leg1-w_1) reciprocal vector 1
+        axis_y_rrr_leg1_axes2_r1_x = rrr_leg1_c_1*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_s_1
+        axis_y_rrr_leg1_axes2_r1_y = rrr_leg1_c_1*rrr_leg1_c_2 + rrr_leg1_s_1*rrr_leg1_s_2
+        axis_y_rrr_leg1_axes2_in_base_x = (
+        axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_xx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_xy
         )
-        w_2_rrr_in_base_y = (
-        axis_y_rrr_axes2_in_base_y*inv_rrr_platform_joint_offset_x -
-            axis_y_rrr_axes2_in_base_x*w_2_rrr_t
+        axis_y_rrr_leg1_axes2_in_base_y = (
+        axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_yx +
+            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_yy
         )
-        # (C2) rms distance of the platform points from their centroid
-        spread_t = b_c_x - rrr_platform_point_x
-        spread_t_2 = b_c_y - rrr_platform_point_y
-        spread_t_3 = spread_t*spread_t + spread_t_2*spread_t_2
-        # (rrr-K8) squared amplitude
-        pivot_size = abs(rho2_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        pivot_size_2 = abs(r_1_rrr_r0_y)
-        # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
-        least_pivots = least(sqrt(inv_rho2_1_rrr_t_4*pivot_size), inv_size_rrr*pivot_size_2)
+        inv_rrr_leg1_r_1_r0_y = 1.0/rrr_leg1_r_1_r0_y
+        # (rrr_leg1-w_2) reciprocal vector 2
+        rrr_leg1_w_2_t = (
+        inv_rrr_leg1_platform_joint_offset_x*inv_rrr_leg1_r_1_r0_y*(rrr_leg1_c_2*rrr_leg1_r_1_x +
+            rrr_leg1_r_1_t*rrr_leg1_s_2)
+        )
+        # (rrr_leg1-w_1) reciprocal vector 1
+        rrr_leg1_w_1_t = axis_y_rrr_leg1_axes2_in_base_y*inv_rrr_leg1_r_1_r0_y
+        rrr_leg1_w_1_t_2 = axis_y_rrr_leg1_axes2_in_base_x*inv_rrr_leg1_r_1_r0_y
+        # (rrr_leg1-w_2) reciprocal vector 2
+        rrr_leg1_w_2_in_base_x = (
+        axis_y_rrr_leg1_axes2_in_base_x*inv_rrr_leg1_platform_joint_offset_x +
+            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_w_2_t
+        )
+        rrr_leg1_w_2_in_base_y = (
+        axis_y_rrr_leg1_axes2_in_base_y*inv_rrr_leg1_platform_joint_offset_x -
+            axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_w_2_t
+        )
+        # (spread) rms distance of the platform points from their centroid
+        rrr_leg1_spread_t = b_c_x - rrr_leg1_platform_point_x
+        rrr_leg1_spread_t_2 = b_c_y - rrr_leg1_platform_point_y
+        rrr_leg1_spread_t_3 = (
+        rrr_leg1_spread_t*rrr_leg1_spread_t + rrr_leg1_spread_t_2*rrr_leg1_spread_t_2
+        )
+        # (rrr_leg1-rho2_1) squared amplitude
+        rrr_leg1_pivot_size = abs(rrr_leg1_rho2_1)
+        # (rrr_leg1-w_1) reciprocal vector 1
+        rrr_leg1_pivot_size_2 = abs(rrr_leg1_r_1_r0_y)
+        # (rrr_leg1-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_leg1_least_pivots = (
+        least(sqrt(inv_rrr_leg1_rho2_1_t_4*rrr_leg1_pivot_size),
+            inv_rrr_leg1_size*rrr_leg1_pivot_size_2)
+        )
         clear = (
-        clear & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) &
-            (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        clear & m.every(leg, (abs(rrr_leg1_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_leg1_rho2_1_t)
+            & (abs(-rrr_leg1_r_1_r0_y) > _TOLERANCE * rrr_leg1_size))
         )
-        reached = reached & m.every(leg, (disc_1_rrr >= 0.0))
+        reached = reached & m.every(leg, (rrr_leg1_disc_1 >= 0.0))
         sums = m.added(sums, leg, (
-        spread_t_3,
+        rrr_leg1_spread_t_3,
         ))
-        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
-        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
-        out_H[_H_rrr[2][leg]] = w_2_rrr_in_base_x
-        out_H[_H_rrr[3][leg]] = w_2_rrr_in_base_y
-        out_pivots[_pivots_rrr[0][leg]] = least_pivots
-        out_reach[_reach_rrr[0][leg]] = disc_1_rrr
-    total_rrr, = sums
+        out_H[_H_rrr_leg1[0][leg]] = -rrr_leg1_w_1_t
+        out_H[_H_rrr_leg1[1][leg]] = rrr_leg1_w_1_t_2
+        out_H[_H_rrr_leg1[2][leg]] = rrr_leg1_w_2_in_base_x
+        out_H[_H_rrr_leg1[3][leg]] = rrr_leg1_w_2_in_base_y
+        out_pivots[_pivots_rrr_leg1[0][leg]] = rrr_leg1_least_pivots
+        out_reach[_reach_rrr_leg1[0][leg]] = rrr_leg1_disc_1
+    total_rrr_leg1, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
         (
-        Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5, inv_rho2_1_rrr2_t_4,
-            inv_size_rrr2, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx, rrr2_base_frame_xy,
-            rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y,
-            rrr2_joint2_offset_x, rrr2_platform_joint_offset_x, rrr2_platform_point_x,
-            rrr2_platform_point_y, size_rrr2,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_rho2_1_t_4, inv_rrr_size, rrr_Kd_1_t_2,
+            rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr2-K1) from the base point to the connection point
-        S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
-        S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
-        # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
-        Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
-        # (rrr2-K3) component along the reference direction
-        px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-        # (rrr2-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
-        # (rrr2-K4) component across the reference direction
-        py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-        # (rrr2-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
-        # (rrr2-K8) squared amplitude
-        rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
-        # (rrr2-K9) discriminant
-        disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
-        # (rrr2-K10) root, with the sign of the branch
-        root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
-        # (rrr2-K16) from the origin of joint 2 to the connection point
-        x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
-        # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x
-        # (rrr2-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr2 = (
-        inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr2-V2) from joint 1 to the connection point, along the links
-        r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x
-        r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*rrr2_platform_joint_offset_x*s_2_rrr2
-        # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
-        c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2)
-        # (rrr2-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2)
-        # (rrr2-V5) reciprocal vector 1
-        axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2
-        axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2
-        inv_r_1_rrr2_r0_y = 1.0/r_1_rrr2_r0_y
-        w_1_rrr2_t = (
-        inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx +
-            axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy)
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        rrr_w_1_t = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
+            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy)
         )
-        w_1_rrr2_t_2 = (
-        inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx +
-            axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy)
+        rrr_w_1_t_2 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
+            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy)
         )
-        # (C2) rms distance of the platform points from their centroid
-        spread_t_4 = b_c_x - rrr2_platform_point_x
-        spread_t_5 = b_c_y - rrr2_platform_point_y
-        spread_t_6 = spread_t_4*spread_t_4 + spread_t_5*spread_t_5
-        # (rrr2-K8) squared amplitude
-        pivot_size_3 = abs(rho2_1_rrr2)
-        # (rrr2-V5) reciprocal vector 1
-        pivot_size_4 = abs(r_1_rrr2_r0_y)
-        # (rrr2-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
-        least_pivots_2 = least(sqrt(inv_rho2_1_rrr2_t_4*pivot_size_3), inv_size_rrr2*pivot_size_4)
+        # (spread) rms distance of the platform points from their centroid
+        rrr_spread_t = b_c_x - rrr_platform_point_x
+        rrr_spread_t_2 = b_c_y - rrr_platform_point_y
+        rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2
+        # (rrr-rho2_1) squared amplitude
+        rrr_pivot_size = abs(rrr_rho2_1)
+        # (rrr-w_1) reciprocal vector 1
+        rrr_pivot_size_2 = abs(rrr_r_1_r0_y)
+        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_least_pivots = (
+        least(sqrt(inv_rrr_rho2_1_t_4*rrr_pivot_size), inv_rrr_size*rrr_pivot_size_2)
+        )
         clear = (
-        clear & m.every(leg, (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) &
-            (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
+        clear & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) &
+            (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
-        reached = reached & m.every(leg, (disc_1_rrr2 >= 0.0))
+        reached = reached & m.every(leg, (rrr_disc_1 >= 0.0))
         sums = m.added(sums, leg, (
-        spread_t_6,
+        rrr_spread_t_3,
         ))
-        out_H[_H_rrr2[0][leg]] = -w_1_rrr2_t
-        out_H[_H_rrr2[1][leg]] = w_1_rrr2_t_2
-        out_pivots[_pivots_rrr2[0][leg]] = least_pivots_2
-        out_reach[_reach_rrr2[0][leg]] = disc_1_rrr2
-    total_rrr2, = sums
-    # (C2) rms distance of the platform points from their centroid
-    spread = sqrt(0.5*total_rrr + 0.5*total_rrr2)
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
+        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
+        out_pivots[_pivots_rrr[0][leg]] = rrr_least_pivots
+        out_reach[_reach_rrr[0][leg]] = rrr_disc_1
+    total_rrr, = sums
+    # (spread) rms distance of the platform points from their centroid
+    spread = sqrt(0.5*total_rrr + 0.5*total_rrr_leg1)
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 
@@ -3853,6 +4092,19 @@ def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
     momentum = np.einsum("ijs,js->is", M, V)
     return (momentum,)
+
+
+def _steps_joint_margins(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    margins = _unlimited(q, [0, 1, 2, 3])
+    return (margins,)
+
+
+def _steps_within_limits(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    subtract_1 = q - q
+    within = _not_negative(subtract_1)
+    return (within,)
 
 
 def _steps_actuator_positions(m, X):
@@ -4232,6 +4484,40 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+    )
+
+
+def joint_margins(X, p=None):
+    """How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+    where there is none.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        margins: distances, in the order of q [m or rad] (..., NJ).
+    """
+    return _call(
+        "joint_margins", _steps_joint_margins, p,
+        ("X", X, (NQ,)),
+        unbounded=True,
+    )
+
+
+def within_limits(X, p=None):
+    """Whether all joints are within their limits of displacement.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        within: 1 where no margin is negative, else 0; NaN is neither (...,).
+    """
+    return _call(
+        "within_limits", _steps_within_limits, p,
+        ("X", X, (NQ,)),
     )
 
 

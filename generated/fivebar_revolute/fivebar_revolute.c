@@ -26,7 +26,10 @@ enum {
 
 #define R(x) ((real)(x))
 #define UNLESS(condition) ((condition) ? R(0) : R(1))  /* flag of what must hold */
-#define LANES 8  /* states that a batch runs side by side */
+#ifndef FIVEBAR_REVOLUTE_LANES
+#define FIVEBAR_REVOLUTE_LANES 8  /* 1 where there are no vectors: less memory, shorter code */
+#endif
+#define LANES ((size_t)FIVEBAR_REVOLUTE_LANES)  /* states that a batch runs side by side */
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
@@ -36,6 +39,20 @@ enum {
 #define INLINE static inline
 #define APART static
 #endif
+
+/* Bytes of a vector. */
+#if defined(__AVX__)
+#define VECTOR 32
+#elif defined(__SSE2__) || defined(__ARM_NEON)
+#define VECTOR 16
+#else
+#define VECTOR 1
+#endif
+/* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
+#define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
+#define LEGS(n) \
+    ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
+        : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
@@ -104,63 +121,122 @@ INLINE int is_finite(real x)
     return x - x == 0;
 }
 
-/* Why states are impossible, by state: more than 0 where a cause holds. */
+/* Why states are impossible, by state: more than 0 where a cause holds.  total: the sum of all
+   results, and side by side of all inputs, which is finite only where they are. */
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
+    real total[LANES];
 } verdict;
 
 INLINE void start(size_t w, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
+        t->total[k] = 0;
     }
 }
 
-/* x - x is 0 for every number and NaN for the rest; sums side by side add up fast. */
+/* x - x is 0 for every number and NaN for the rest. */
 INLINE int all_finite(const real *x, size_t n)
 {
+    real sum = 0;
+    for (size_t i = 0; i < n; ++i) {
+        sum += x[i] - x[i];
+    }
+    return sum == 0;
+}
+
+/* Whether all are finite: then so is their sum, but for numbers so large that they need a closer
+   look.  Many add up fast as sums side by side. */
+INLINE int sum_is_finite(const real *x, size_t n)
+{
+    if (n < 2*LANES) {
+        return is_finite(total(x, n));
+    }
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
         for (size_t k = 0; k < LANES; ++k) {
-            sum[k] += x[i + k] - x[i + k];
+            sum[k] += x[i + k];
         }
     }
     for (size_t i = most; i < n; ++i) {
-        sum[0] += x[i] - x[i];
+        sum[i - most] += x[i];
     }
-    return total(sum, LANES) == 0;
+    return is_finite(total(sum, LANES));
 }
 
 /* Flag the states with entries that are not finite; the states stand side by side. */
 INLINE void check(size_t size, size_t w, const real *x, real *flags)
 {
-    if (!all_finite(x, size*w)) {
+    if (!sum_is_finite(x, size*w)) {
         for (size_t i = 0; i < size*w; ++i) {
             flags[i%w] += UNLESS(is_finite(x[i]));
         }
     }
 }
 
-/* Input, given state by state, with its states side by side: entry e of state k at e*w + k. */
-INLINE const real *side_by_side(size_t size, size_t w, const real *x, real *lanes, real *flags)
+/* Add up the entries of every state. */
+INLINE void add_up(size_t size, const real *x, real *total)
 {
-    for (size_t e = 0; e < size && w > 1; ++e) {
-        for (size_t k = 0; k < w; ++k) {
-            lanes[e*w + k] = x[size*k + e];
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            total[k] += x[e*LANES + k];
         }
     }
-    check(size, w, w > 1 ? lanes : x, flags);
-    return w > 1 ? lanes : x;
 }
 
-/* The same for input that may be NULL: then all its entries are `none`. */
-INLINE const real *optional(size_t size, size_t w, const real *x, real none, real *lanes, real *flags)
+/* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
+INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
 {
-    for (size_t e = 0; e < size*w && !x; ++e) {
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            lanes[e*LANES + k] = x[size*k + e];
+        }
+    }
+    add_up(size, lanes, total);
+    return lanes;
+}
+
+/* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
+INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+{
+    for (size_t e = 0; e < size && !x; ++e) {
+        own[e] = none;
+    }
+    if (x) {
+        check(size, 1, x, flags);
+    }
+    return x ? x : own;
+}
+
+INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
+    real *total)
+{
+    for (size_t e = 0; e < size*LANES && !x; ++e) {
         lanes[e] = none;
     }
-    return x ? side_by_side(size, w, x, lanes, flags) : lanes;
+    return x ? side_by_side(size, x, lanes, total) : lanes;
+}
+
+/* Motion of the base, or NULL: at rest, its axes those of the world. */
+INLINE const real *motion_of_base(const real *x, real *own, real *flags)
+{
+    for (size_t e = 0; e < 18 && !x; ++e) {
+        own[e] = R(e < 9 && e%4 == 0);
+    }
+    if (x) {
+        check(18, 1, x, flags);
+    }
+    return x ? x : own;
+}
+
+INLINE const real *motion_of_base_side_by_side(const real *x, real *lanes, real *total)
+{
+    for (size_t i = 0; i < 18*LANES && !x; ++i) {
+        lanes[i] = R(i/LANES < 9 && i/LANES%4 == 0);
+    }
+    return x ? side_by_side(18, x, lanes, total) : lanes;
 }
 
 /* Flag the states of an input, NULL or given state by state, with entries that are not positive. */
@@ -171,14 +247,25 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE void judge(const verdict *t, size_t w, int *code)
+INLINE void judge(const verdict *t, int *code)
 {
-    for (size_t k = 0; k < w; ++k) {
-        code[k] = t->invalid[k] > 0 ? INVALID
-            : t->diverged[k] > 0 ? NOT_CONVERGED
-            : t->unreachable[k] > 0 ? UNREACHABLE
-            : t->singular[k] > 0 ? SINGULAR
-            : t->overflow[k] > 0 ? INVALID : OK;
+    *code = t->invalid[0] > 0 ? INVALID
+        : t->diverged[0] > 0 ? NOT_CONVERGED
+        : t->unreachable[0] > 0 ? UNREACHABLE
+        : t->singular[0] > 0 ? SINGULAR
+        : t->overflow[0] > 0 ? INVALID : OK;
+}
+
+/* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
+INLINE void suspect(const verdict *t, int *code)
+{
+    real flags[LANES];
+    for (size_t k = 0; k < LANES; ++k) {
+        flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
+            + (t->total[k] - t->total[k]);
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        code[k] = flags[k] == 0 ? OK : INVALID;
     }
 }
 
@@ -199,17 +286,19 @@ INLINE void refuse(size_t size, real *out)
     }
 }
 
-/* Outputs state by state; NaN where a state is impossible. */
-INLINE void deliver(const real *x, size_t size, size_t w, const int *code, real *out)
+/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < w; ++k) {
-            out[size*k + e] = x[e*w + k];
-        }
+        out[e] = x[e];
     }
-    for (size_t k = 0; k < w; ++k) {
-        if (code[k] != OK) {
-            refuse(size, out + size*k);
+}
+
+INLINE void deliver(size_t size, const real *x, real *out)
+{
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            out[size*k + e] = x[e*LANES + k];
         }
     }
 }
@@ -410,154 +499,155 @@ int fivebar_revolute_prepare(const fivebar_revolute_params *params, fivebar_revo
     const real platform_mass = params->platform_mass;
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
-    /* (L2) first moment about the platform origin */
+    /* (h_star) first moment about the platform origin */
     const real h_star_t = platform_centre_of_mass_x*platform_mass;
     const real h_star_t_2 = platform_centre_of_mass_y*platform_mass;
-    /* (C2) rms distance of the platform points from their centroid */
+    /* (spread) rms distance of the platform points from their centroid */
     const real spread_t = R(0.5)*root(2);
     model->gravity_x = gravity_x;
     model->gravity_y = gravity_y;
     model->spread_t = spread_t;
     for (size_t leg = 0; leg < 2; ++leg) {
-        const real rrr_base_point_x = params->rrr_base_point[leg][0];
-        const real rrr_base_point_y = params->rrr_base_point[leg][1];
-        const real rrr_base_frame_xx = params->rrr_base_frame[leg][0][0];
-        const real rrr_base_frame_xy = params->rrr_base_frame[leg][0][1];
-        const real rrr_base_frame_yx = params->rrr_base_frame[leg][1][0];
-        const real rrr_base_frame_yy = params->rrr_base_frame[leg][1][1];
-        const real rrr_platform_point_x = params->rrr_platform_point[leg][0];
-        const real rrr_platform_point_y = params->rrr_platform_point[leg][1];
-        const real rrr_joint2_offset_x = params->rrr_joint2_offset[leg][0];
-        const real rrr_platform_joint_offset_x = params->rrr_platform_joint_offset[leg][0];
-        const real rrr_link1_mass = params->rrr_link1_mass[leg];
-        const real rrr_link1_centre_of_mass_x = params->rrr_link1_centre_of_mass[leg][0];
-        const real rrr_link1_centre_of_mass_y = params->rrr_link1_centre_of_mass[leg][1];
-        const real rrr_link1_inertia_zz = params->rrr_link1_inertia[leg][2][2];
-        const real rrr_link2_mass = params->rrr_link2_mass[leg];
-        const real rrr_link2_centre_of_mass_x = params->rrr_link2_centre_of_mass[leg][0];
-        const real rrr_link2_centre_of_mass_y = params->rrr_link2_centre_of_mass[leg][1];
-        const real rrr_link2_inertia_zz = params->rrr_link2_inertia[leg][2][2];
-        static const signed char signs_branch_1[] = {1, -1};
-        const real branch_1 = signs_branch_1[leg];
-        /* (rrr-K17) squared length, across the axis, of the direction fixed in link 2 */
-        const real uu_2_t = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const size_t own = leg;
+        const real rrr_base_point_x = params->rrr_base_point[own][0];
+        const real rrr_base_point_y = params->rrr_base_point[own][1];
+        const real rrr_base_frame_xx = params->rrr_base_frame[own][0][0];
+        const real rrr_base_frame_xy = params->rrr_base_frame[own][0][1];
+        const real rrr_base_frame_yx = params->rrr_base_frame[own][1][0];
+        const real rrr_base_frame_yy = params->rrr_base_frame[own][1][1];
+        const real rrr_platform_point_x = params->rrr_platform_point[own][0];
+        const real rrr_platform_point_y = params->rrr_platform_point[own][1];
+        const real rrr_joint2_offset_x = params->rrr_joint2_offset[own][0];
+        const real rrr_platform_joint_offset_x = params->rrr_platform_joint_offset[own][0];
+        const real rrr_link1_mass = params->rrr_link1_mass[own];
+        const real rrr_link1_centre_of_mass_x = params->rrr_link1_centre_of_mass[own][0];
+        const real rrr_link1_centre_of_mass_y = params->rrr_link1_centre_of_mass[own][1];
+        const real rrr_link1_inertia_zz = params->rrr_link1_inertia[own][2][2];
+        const real rrr_link2_mass = params->rrr_link2_mass[own];
+        const real rrr_link2_centre_of_mass_x = params->rrr_link2_centre_of_mass[own][0];
+        const real rrr_link2_centre_of_mass_y = params->rrr_link2_centre_of_mass[own][1];
+        const real rrr_link2_inertia_zz = params->rrr_link2_inertia[own][2][2];
+        static const signed char signs_rrr_branch_1[] = {1, -1};
+        const real rrr_branch_1 = signs_rrr_branch_1[own];
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_t = rrr_joint2_offset_x*rrr_joint2_offset_x;
-        const real Kd_1_t_2 = R(0.5)*Kd_1_t;
-        const real Kd_1_t_3 = R(0.5)*uu_2_t;
-        /* (rrr-G2) length of the leg's lever arms, the measure of what is near singular */
-        const real size_t_ = R(5.257946636889999e-07) + Kd_1_t + uu_2_t;
-        const real size_ = root(size_t_);
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_t = size_*size_*size_t_;
-        /* (rrr-K15) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_Kd_1_t_5 = 1/Kd_1_t;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real inv_uu_2_t = 1/uu_2_t;
-        /* (rrr-G4) inertia tensor of link 1 about the origin of link 1 */
-        const real J_1_t = rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
-            rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y;
-        const real J_1_zz = rrr_link1_inertia_zz + J_1_t*rrr_link1_mass;
-        /* (rrr-G5) connection point to the centre of mass of link 2 */
-        const real rho_tip_2_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x;
-        /* (rrr-G7) inertia tensor of link 2 about the connection point */
-        const real J_2_t = rho_tip_2_x*rho_tip_2_x +
-            rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y;
-        const real J_2_zz = rrr_link2_inertia_zz + J_2_t*rrr_link2_mass;
-        /* (rrr-N11) inertia tensor of the links from 1 outwards about joint 1 */
-        const real Jc_1_zz = J_1_zz + J_2_zz;
-        /* (rrr-G6) first moment of link 2 about the connection point */
-        const real h_2_x = rho_tip_2_x*rrr_link2_mass;
-        const real h_2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
-        /* (rrr-V6) reciprocal vector 2 */
+        const real rrr_Kd_1_t = rrr_joint2_offset_x*rrr_joint2_offset_x;
+        const real rrr_Kd_1_t_2 = R(0.5)*rrr_Kd_1_t;
+        const real rrr_Kd_1_t_3 = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x;
+        const real rrr_Kd_1_t_4 = R(0.5)*rrr_Kd_1_t_3;
+        /* (rrr-size) length of the leg's lever arms, the measure of what is near singular */
+        const real rrr_size_t = R(5.257946636889999e-07) + rrr_Kd_1_t + rrr_Kd_1_t_3;
+        const real rrr_size = root(rrr_size_t);
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1_t = rrr_size*rrr_size*rrr_size_t;
+        /* (rrr-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real inv_rrr_Kd_1_t_5 = 1/rrr_Kd_1_t;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = 1/rrr_Kd_1_t_3;
+        /* (rrr-rho_tip_2) connection point to the centre of mass of link 2 */
+        const real rrr_rho_tip_2_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x;
+        /* (rrr-h_2) first moment of link 2 about the connection point */
+        const real rrr_h_2_x = rrr_link2_mass*rrr_rho_tip_2_x;
+        const real rrr_h_2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
+        /* (rrr-w_2) reciprocal vector 2 */
         const real inv_rrr_platform_joint_offset_x = 1/rrr_platform_joint_offset_x;
-        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_t = J_2_zz*inv_rrr_platform_joint_offset_x;
-        const real d_Gamma_1_y = d_Gamma_1_t + h_2_x;
-        /* (rrr-N6) coefficient of the acceleration in: inertia force of link 2 from its turning about its
-           reference point */
-        const real d_phi_2_t = h_2_y*inv_rrr_platform_joint_offset_x;
-        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
+        /* (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
+           about its reference point */
+        const real rrr_d_phi_2_t = inv_rrr_platform_joint_offset_x*rrr_h_2_y;
+        /* (rrr-J_2) inertia tensor of link 2 about the connection point */
+        const real rrr_J_2_t = rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y +
+            rrr_rho_tip_2_x*rrr_rho_tip_2_x;
+        const real rrr_J_2_zz = rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass;
+        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real rrr_d_Gamma_2_t = inv_rrr_platform_joint_offset_x*rrr_J_2_zz;
+        const real rrr_d_Gamma_2_y = rrr_d_Gamma_2_t + rrr_h_2_x;
+        /* (rrr-J_1) inertia tensor of link 1 about the origin of link 1 */
+        const real rrr_J_1_t = rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
+            rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y;
+        const real rrr_J_1_zz = rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass;
+        /* (rrr-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link
+           about the connection point */
+        const real rrr_Jc_1_zz = rrr_J_1_zz + rrr_J_2_zz;
+        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_yy = -d_Gamma_1_y*inv_rrr_platform_joint_offset_x -
-            h_2_x*inv_rrr_platform_joint_offset_x;
-        /* (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
-           less gravity */
-        const real g_r0_x = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx;
-        const real g_r0_y = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy;
-        /* (rrr-G3) first moment of link 1 about the origin of link 1 */
-        const real h_1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass;
-        const real h_1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass;
-        /* (L2) first moment about the platform origin */
-        const real h_star_t_3 = rrr_link2_mass*rrr_platform_point_x;
-        const real h_star_t_4 = rrr_link2_mass*rrr_platform_point_y;
-        /* (V1) potential energy */
-        const real b_r0_x = rrr_base_frame_xx*rrr_base_point_x +
+        const real rrr_d_c_yy = -inv_rrr_platform_joint_offset_x*rrr_d_Gamma_2_y -
+            inv_rrr_platform_joint_offset_x*rrr_h_2_x;
+        /* (rrr-h_1) first moment of link 1 about the origin of link 1 */
+        const real rrr_h_1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass;
+        const real rrr_h_1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass;
+        /* (rrr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
+           link 1, less gravity */
+        const real rrr_g_r0_x = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx;
+        const real rrr_g_r0_y = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy;
+        /* (h_star) first moment about the platform origin */
+        const real rrr_h_star_t = rrr_link2_mass*rrr_platform_point_x;
+        const real rrr_h_star_t_2 = rrr_link2_mass*rrr_platform_point_y;
+        /* (potential) potential energy */
+        const real rrr_b_r0_x = rrr_base_frame_xx*rrr_base_point_x +
             rrr_base_frame_yx*rrr_base_point_y;
-        const real b_r0_y = rrr_base_frame_xy*rrr_base_point_x +
+        const real rrr_b_r0_y = rrr_base_frame_xy*rrr_base_point_x +
             rrr_base_frame_yy*rrr_base_point_y;
-        /* (rrr-K8) squared amplitude */
-        const real inv_rho2_1_t_4 = 1/rho2_1_t;
-        /* (rrr-V5) reciprocal vector 1 */
-        const real inv_size = 1/size_;
-        model->J_1_zz[leg] = J_1_zz;
-        model->J_2_zz[leg] = J_2_zz;
-        model->Jc_1_zz[leg] = Jc_1_zz;
-        model->Kd_1_t_2[leg] = Kd_1_t_2;
-        model->Kd_1_t_3[leg] = Kd_1_t_3;
-        model->b_r0_x[leg] = b_r0_x;
-        model->b_r0_y[leg] = b_r0_y;
-        model->branch_1[leg] = branch_1;
-        model->d_Gamma_1_t[leg] = d_Gamma_1_t;
-        model->d_Gamma_1_y[leg] = d_Gamma_1_y;
-        model->d_c_yy[leg] = d_c_yy;
-        model->d_phi_2_t[leg] = d_phi_2_t;
-        model->g_r0_x[leg] = g_r0_x;
-        model->g_r0_y[leg] = g_r0_y;
-        model->h_1_x[leg] = h_1_x;
-        model->h_1_y[leg] = h_1_y;
-        model->h_2_x[leg] = h_2_x;
-        model->h_2_y[leg] = h_2_y;
-        model->inv_Kd_1_t_5[leg] = inv_Kd_1_t_5;
-        model->inv_rho2_1_t_4[leg] = inv_rho2_1_t_4;
+        /* (rrr-rho2_1) squared amplitude */
+        const real inv_rrr_rho2_1_t_4 = 1/rrr_rho2_1_t;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real inv_rrr_size = 1/rrr_size;
+        model->inv_rrr_Kd_1_t_5[leg] = inv_rrr_Kd_1_t_5;
+        model->inv_rrr_Kd_1_t_7[leg] = inv_rrr_Kd_1_t_7;
         model->inv_rrr_platform_joint_offset_x[leg] = inv_rrr_platform_joint_offset_x;
-        model->inv_size[leg] = inv_size;
-        model->inv_uu_2_t[leg] = inv_uu_2_t;
-        model->rho2_1_t[leg] = rho2_1_t;
+        model->inv_rrr_rho2_1_t_4[leg] = inv_rrr_rho2_1_t_4;
+        model->inv_rrr_size[leg] = inv_rrr_size;
+        model->rrr_J_1_zz[leg] = rrr_J_1_zz;
+        model->rrr_J_2_zz[leg] = rrr_J_2_zz;
+        model->rrr_Jc_1_zz[leg] = rrr_Jc_1_zz;
+        model->rrr_Kd_1_t_2[leg] = rrr_Kd_1_t_2;
+        model->rrr_Kd_1_t_4[leg] = rrr_Kd_1_t_4;
+        model->rrr_b_r0_x[leg] = rrr_b_r0_x;
+        model->rrr_b_r0_y[leg] = rrr_b_r0_y;
         model->rrr_base_frame_xx[leg] = rrr_base_frame_xx;
         model->rrr_base_frame_xy[leg] = rrr_base_frame_xy;
         model->rrr_base_frame_yx[leg] = rrr_base_frame_yx;
         model->rrr_base_frame_yy[leg] = rrr_base_frame_yy;
         model->rrr_base_point_x[leg] = rrr_base_point_x;
         model->rrr_base_point_y[leg] = rrr_base_point_y;
+        model->rrr_branch_1[leg] = rrr_branch_1;
+        model->rrr_d_Gamma_2_t[leg] = rrr_d_Gamma_2_t;
+        model->rrr_d_Gamma_2_y[leg] = rrr_d_Gamma_2_y;
+        model->rrr_d_c_yy[leg] = rrr_d_c_yy;
+        model->rrr_d_phi_2_t[leg] = rrr_d_phi_2_t;
+        model->rrr_g_r0_x[leg] = rrr_g_r0_x;
+        model->rrr_g_r0_y[leg] = rrr_g_r0_y;
+        model->rrr_h_1_x[leg] = rrr_h_1_x;
+        model->rrr_h_1_y[leg] = rrr_h_1_y;
+        model->rrr_h_2_x[leg] = rrr_h_2_x;
+        model->rrr_h_2_y[leg] = rrr_h_2_y;
         model->rrr_joint2_offset_x[leg] = rrr_joint2_offset_x;
         model->rrr_link1_mass[leg] = rrr_link1_mass;
         model->rrr_link2_mass[leg] = rrr_link2_mass;
         model->rrr_platform_joint_offset_x[leg] = rrr_platform_joint_offset_x;
         model->rrr_platform_point_x[leg] = rrr_platform_point_x;
         model->rrr_platform_point_y[leg] = rrr_platform_point_y;
-        model->size_[leg] = size_;
+        model->rrr_rho2_1_t[leg] = rrr_rho2_1_t;
+        model->rrr_size[leg] = rrr_size;
         total_rrr += rrr_link2_mass;
-        total_rrr_x += h_star_t_3;
-        total_rrr_y += h_star_t_4;
+        total_rrr_x += rrr_h_star_t;
+        total_rrr_y += rrr_h_star_t_2;
         total_rrr_x_2 += rrr_platform_point_x;
         total_rrr_y_2 += rrr_platform_point_y;
-        total_rrr_2 += size_t_;
+        total_rrr_2 += rrr_size_t;
     }
-    /* (L1) mass of the platform with the gathered masses */
+    /* (m_star) mass of the platform with the gathered masses */
     const real m_star = platform_mass + total_rrr;
-    /* (M2) centripetal force and weight of the platform */
+    /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_x = gravity_x*m_star;
     const real Z_p_y = gravity_y*m_star;
-    /* (L2) first moment about the platform origin */
+    /* (h_star) first moment about the platform origin */
     const real h_star_x = h_star_t + total_rrr_x;
     const real h_star_y = h_star_t_2 + total_rrr_y;
-    /* (C1) centroid of the platform points */
+    /* (b_c) centroid of the platform points */
     const real b_c_x = R(0.5)*total_rrr_x_2;
     const real b_c_y = R(0.5)*total_rrr_y_2;
-    /* (C3) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = spread_t*root(total_rrr_2);
     model->Z_p_x = Z_p_x;
     model->Z_p_y = Z_p_y;
@@ -637,98 +727,6 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
     }
 }
 
-/* Swap a row with the pivot's in those states in which it is the chosen one.  What is chosen are
-   whole entries: unlike products with 0 and 1, these keep what is not finite where it belongs. */
-APART void swap_lanes(size_t n, size_t p, real i, const real *restrict best, real *restrict pivot,
-        real *restrict other)
-{
-    for (size_t j = p; j <= n; ++j) {
-        for (size_t k = 0; k < LANES; ++k) {
-            const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = best[k] == i ? up : down;
-            other[j*LANES + k] = best[k] == i ? down : up;
-        }
-    }
-}
-
-/* The choice of choose_one in every state. */
-INLINE void choose_lanes(size_t n, size_t p, real *a)
-{
-    const size_t row = (n + 1)*LANES;
-    real most[LANES], best[LANES], any = 0;
-    for (size_t k = 0; k < LANES; ++k) {
-        most[k] = CLEARLY*magnitude(a[p*row + p*LANES + k]);
-        best[k] = 0;
-    }
-    for (size_t i = p + 1; i < n; ++i) {
-        for (size_t k = 0; k < LANES; ++k) {
-            const real size = magnitude(a[i*row + p*LANES + k]);
-            best[k] = size > most[k] ? (real)i : best[k];
-            most[k] = larger(size, most[k]);
-        }
-    }
-    for (size_t k = 0; k < LANES; ++k) {
-        any += best[k];
-    }
-    for (size_t i = p + 1; i < n && any > 0; ++i) {
-        swap_lanes(n, p, (real)i, best, a + p*row, a + i*row);
-    }
-}
-
-/* The same for LANES systems side by side, without padding.  What comes NEARLY to the threshold
-   counts as singular here: the batch then settles it as for a single state. */
-INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
-{
-    const size_t row = (n + 1)*LANES;
-    memset(x, 0, n*LANES*sizeof *x);
-    for (size_t i = 0; i < n; ++i) {
-        real size[LANES] = {0};
-        for (size_t j = 0; j < n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                size[k] = larger(size[k], magnitude(a[i*row + j*LANES + k]));
-            }
-        }
-        for (size_t k = 0; k < LANES; ++k) {
-            size[k] = 1/size[k];
-        }
-        for (size_t j = 0; j <= n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + j*LANES + k] *= size[k];
-            }
-        }
-    }
-    for (size_t p = 0; p < n; ++p) {
-        const real *const pivot = a + p*row;
-        choose_lanes(n, p, a);
-        for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > NEARLY*PIVOT);
-            x[p*LANES + k] = 1/pivot[p*LANES + k];
-        }
-        for (size_t i = p + 1; i < n; ++i) {
-            real *const other = a + i*row;
-            real factor[LANES];
-            for (size_t k = 0; k < LANES; ++k) {
-                factor[k] = other[p*LANES + k]*x[p*LANES + k];
-            }
-            for (size_t j = p + 1; j <= n; ++j) {
-                for (size_t k = 0; k < LANES; ++k) {
-                    other[j*LANES + k] -= factor[k]*pivot[j*LANES + k];
-                }
-            }
-        }
-    }
-    for (size_t p = n; p-- > 0;) {
-        for (size_t k = 0; k < LANES; ++k) {
-            x[p*LANES + k] *= a[p*row + n*LANES + k];
-        }
-        for (size_t i = 0; i < p; ++i) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + n*LANES + k] -= a[i*row + p*LANES + k]*x[p*LANES + k];
-            }
-        }
-    }
-}
-
 /* Length of the rows of a system of n equations, whose right side stands in column n. */
 INLINE size_t stride_of(size_t n, size_t w)
 {
@@ -761,14 +759,10 @@ INLINE void solve_state(size_t n, const real *b, real *rows, real *x, real *sing
     solve_one(n, stride_of(n, 1), rows, x, singular);
 }
 
-INLINE void solve(size_t n, size_t w, const real *b, real *rows, real *x, real *singular)
+/* The same where it is rare: apart, for the sake of what is done otherwise. */
+APART void solve_apart(size_t n, const real *b, real *rows, real *x, real *singular)
 {
-    if (w == 1) {
-        solve_state(n, b, rows, x, singular);
-    } else {
-        set_right_side(n, LANES, b, rows);
-        solve_lanes(n, rows, x, singular);
-    }
+    solve_state(n, b, rows, x, singular);
 }
 
 #define BIG 2  /* most rows or columns of a matrix that is not square, or not solved */
@@ -990,6 +984,29 @@ INLINE void take(size_t rows, size_t n, const size_t *places, const real *a, rea
     }
 }
 
+/* Rows as `places` tells made infinite, where all entries are finite before. */
+INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, real *x, real *flags)
+{
+    check(size, w, x, flags);
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t k = 0; k < w; ++k) {
+            x[places[i]*w + k] = R(INFINITY);
+        }
+    }
+}
+
+/* 1 where no entry is negative, else 0. */
+INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
+{
+    check(size, w, a, flags);
+    for (size_t k = 0; k < w; ++k) {
+        x[k] = 1;
+        for (size_t e = 0; e < size; ++e) {
+            x[k] = a[e*w + k] < 0 ? 0 : x[k];
+        }
+    }
+}
+
 /* To row places[i] of x: the row c[i] of n entries times b[i]. */
 INLINE void add_forces(size_t rows, size_t n, size_t w, const size_t *places, const real *b,
         const real *c, real *x)
@@ -1031,2253 +1048,2431 @@ static void moved(const real *X, const real *step, real part, real *to)
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics: 212 mul, 132 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], sum[5][LANES];
-} dynamics_values;
-typedef struct {
-    real sum[5][8], entry[2][8], unreachable[8], singular[8];
-} dynamics_results_rrr;
-
-INLINE void dynamics_before(size_t w, const real *X, const real *V, dynamics_values *s)
+INLINE void dynamics_before(size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_dot_x;
+        s[3*w + k] = t_dot_y;
     }
 }
 
-INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const dynamics_values
-    *s, size_t states, size_t count, int add, dynamics_results_rrr *o)
+INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real J_1_zz = m->J_1_zz[i];
-        const real J_2_zz = m->J_2_zz[i];
-        const real Jc_1_zz = m->Jc_1_zz[i];
-        const real Kd_1_t_2 = m->Kd_1_t_2[i];
-        const real Kd_1_t_3 = m->Kd_1_t_3[i];
-        const real branch_1 = m->branch_1[i];
-        const real d_Gamma_1_t = m->d_Gamma_1_t[i];
-        const real d_Gamma_1_y = m->d_Gamma_1_y[i];
-        const real d_c_yy = m->d_c_yy[i];
-        const real d_phi_2_t = m->d_phi_2_t[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_1_x = m->h_1_x[i];
-        const real h_1_y = m->h_1_y[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real inv_Kd_1_t_5 = m->inv_Kd_1_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_t = m->inv_uu_2_t[i];
-        const real rho2_1_t = m->rho2_1_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        /* (rrr-S) from the base point to the connection point */
         const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_ = m->size_[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_t = S_x*S_x + S_y*S_y;
-        const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1 = px_1*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1 = py_1*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
-        /* (rrr-K9) discriminant */
-        const real disc_1 = rho2_1 - Kd_1*Kd_1;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1 = branch_1*root(disc_1);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2 = inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2 =
-            inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_t = rrr_platform_joint_offset_x*s_2;
-        const real r_1_x = rrr_joint2_offset_x + c_2*rrr_platform_joint_offset_x;
-        const real r_1_r0_x = c_2*r_1_x + r_1_t*s_2;
-        const real r_1_r0_y = r_1_x*s_2 - c_2*r_1_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1 = 1/rho2_1;
-        const real c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1*s_2 - c_2*s_1;
-        const real axis_y_rrr_axes2_r1_y = c_1*c_2 + s_1*s_2;
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_r0_y = 1/r_1_r0_y;
-        /* (rrr-V6) reciprocal vector 2 */
-        const real w_2_t = inv_r_1_r0_y*inv_rrr_platform_joint_offset_x*r_1_r0_x;
-        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_t_2 = d_Gamma_1_t*r_1_r0_x;
-        const real d_Gamma_1_x = -h_2_y - inv_r_1_r0_y*(Jc_1_zz - d_Gamma_1_t_2);
-        /* (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
-           and weight */
-        const real d_Gamma_2_x = -h_2_y - inv_r_1_r0_y*(J_2_zz - d_Gamma_1_t_2);
-        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-w_2) reciprocal vector 2 */
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x;
+        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
+        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x;
+        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
+        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz -
+            rrr_d_Gamma_2_t_2);
+        /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real rrr_Jc_1_zz = m->rrr_Jc_1_zz[i];
+        const real rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz -
+            rrr_d_Gamma_2_t_2);
+        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_xy = d_phi_2_t + d_Gamma_1_y*inv_r_1_r0_y - d_Gamma_1_y*w_2_t;
-        /* (rrr-N36) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = d_Gamma_1_x*inv_r_1_r0_y + h_2_y*(w_2_t - inv_r_1_r0_y) - d_c_yy -
-            d_Gamma_2_x*w_2_t;
-        const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = Q_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_xy;
-        const real Q_t_4 = Q_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_xy;
-        const real Q_t_5 = d_c_yy + 2*Q_t_3*axis_y_rrr_axes2_in_base_y;
-        const real Q_t_6 = Q_t_3*axis_y_rrr_axes2_in_base_x + Q_t_4*axis_y_rrr_axes2_in_base_y;
-        const real Q_t_7 = d_c_yy + 2*Q_t_4*axis_y_rrr_axes2_in_base_x;
-        /* (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
-           less gravity */
-        const real g_r1_x = c_1*g_r0_x + g_r0_y*s_1;
-        const real g_r1_y = c_1*g_r0_y - g_r0_x*s_1;
-        /* (rrr-V7) rate of joint 1 */
-        const real qd_1 = inv_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x -
+        const real rrr_d_Gamma_2_y = m->rrr_d_Gamma_2_y[i];
+        const real rrr_d_phi_2_t = m->rrr_d_phi_2_t[i];
+        const real rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y -
+            rrr_d_Gamma_2_y*rrr_w_2_t;
+        /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real rrr_d_c_yy = m->rrr_d_c_yy[i];
+        const real rrr_Q_t = inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t -
+            inv_rrr_r_1_r0_y) - rrr_d_c_yy - rrr_d_Gamma_2_x*rrr_w_2_t;
+        const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
+        const real rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy +
+            axis_y_rrr_axes2_in_base_y*rrr_Q_t_2;
+        const real rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 -
+            axis_y_rrr_axes2_in_base_y*rrr_d_c_xy;
+        const real rrr_Q_t_5 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3;
+        const real rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 +
+            axis_y_rrr_axes2_in_base_y*rrr_Q_t_4;
+        const real rrr_Q_t_7 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4;
+        /* (rrr-qd_2) rate of joint 2 */
+        const real t_dot_x = s[2*w + j];
+        const real t_dot_y = s[3*w + j];
+        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x -
             axis_y_rrr_axes2_in_base_x*t_dot_y);
-        /* (rrr-V11) angular velocity of link 2 */
-        const real omega_2_z = inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x
-            + axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1*r_1_r0_x) - qd_1;
-        /* (rrr-V10) centripetal tensor of link 1 */
-        const real W_1_t = qd_1*qd_1;
-        /* (rrr-V12) centripetal tensor of link 2 */
-        const real W_2_t = omega_2_z*omega_2_z;
-        /* (rrr-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_x = -W_2_t*rrr_platform_joint_offset_x - W_1_t*c_2*rrr_joint2_offset_x;
-        /* (rrr-A8) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_o = bias_x*inv_r_1_r0_y;
-        /* (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
-        const real mu_1_o_z = J_1_zz*qdd_1_o + g_r1_x*h_1_y - g_r1_y*h_1_x;
-        /* (rrr-A17) remainder without the acceleration in: angular acceleration of link 2 */
-        const real alpha_2_o_z = qdd_1_o +
-            inv_rrr_platform_joint_offset_x*(W_1_t*rrr_joint2_offset_x*s_2 - qdd_1_o*r_1_r0_x);
-        /* (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real rrr_omega_2_z =
+            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
+            axis_y_rrr_axes2_in_base_y*t_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-W_1) centripetal tensor of link 1 */
+        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-W_2) centripetal tensor of link 2 */
+        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        /* (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        const real rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_bias_x;
+        /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        const real rrr_alpha_2_o_z = rrr_qdd_1_o +
+            inv_rrr_platform_joint_offset_x*(rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2 -
+            rrr_qdd_1_o*rrr_r_1_r0_x);
+        /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real mu_2_o_z = J_2_zz*alpha_2_o_z + h_2_y*(c_2*g_r1_x - g_r1_y*s_2) -
-            h_2_x*(c_2*g_r1_y + g_r1_x*s_2);
-        /* (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real rrr_h_2_x = m->rrr_h_2_x[i];
+        const real rrr_mu_2_o_z = rrr_J_2_zz*rrr_alpha_2_o_z +
+            rrr_h_2_y*(axis_y_rrr_axes2_in_base_y*gravity_x -
+            axis_y_rrr_axes2_in_base_x*gravity_y) -
+            rrr_h_2_x*(axis_y_rrr_axes2_in_base_x*gravity_x +
+            axis_y_rrr_axes2_in_base_y*gravity_y);
+        /* (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 1, about their reference points */
+        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
+        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
+        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
+        const real rrr_h_1_x = m->rrr_h_1_x[i];
+        const real rrr_h_1_y = m->rrr_h_1_y[i];
+        const real rrr_mu_1_o_z = rrr_J_1_zz*rrr_qdd_1_o + rrr_h_1_y*(rrr_c_1*rrr_g_r0_x +
+            rrr_g_r0_y*rrr_s_1) - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
-        const real N_1_o_z = mu_1_o_z + mu_2_o_z;
-        /* (rrr-N32) remainder without the acceleration in: force at the connection point that balances
+        const real rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z;
+        /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real G_o_t = inv_rrr_platform_joint_offset_x*mu_2_o_z;
-        /* (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation
+        const real rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z;
+        /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real c_o_x = W_2_t*h_2_x + alpha_2_o_z*h_2_y - inv_r_1_r0_y*(G_o_t*r_1_r0_x -
-            N_1_o_z);
-        const real c_o_y = W_2_t*h_2_y - G_o_t - alpha_2_o_z*h_2_x;
-        /* (rrr-N37) velocity and gravity terms of the leg force */
-        const real U_in_base_x = -axis_y_rrr_axes2_in_base_x*c_o_y -
-            axis_y_rrr_axes2_in_base_y*c_o_x;
-        const real U_in_base_y = axis_y_rrr_axes2_in_base_x*c_o_x -
-            axis_y_rrr_axes2_in_base_y*c_o_y;
-        /* (rrr-V5) reciprocal vector 1 */
-        const real w_1_t = axis_y_rrr_axes2_in_base_y*inv_r_1_r0_y;
-        const real w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_r0_y;
-        o->sum[0][k] = add ? o->sum[0][k] + Q_t_5 : Q_t_5;  /* total_rrr_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + Q_t_6 : Q_t_6;  /* total_rrr_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + Q_t_7 : Q_t_7;  /* total_rrr_yy */
-        o->sum[3][k] = add ? o->sum[3][k] + U_in_base_x : U_in_base_x;  /* total_rrr_x */
-        o->sum[4][k] = add ? o->sum[4][k] + U_in_base_y : U_in_base_y;  /* total_rrr_y */
-        o->entry[0][k] = -w_1_t;
-        o->entry[1][k] = w_1_t_2;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
-            UNLESS(magnitude(-r_1_r0_y) > TOLERANCE*size_);
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
+        const real rrr_c_o_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y -
+            inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x - rrr_N_1_o_z);
+        const real rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x;
+        /* (rrr-U) velocity and gravity terms of the leg force */
+        const real rrr_U_in_base_x = -axis_y_rrr_axes2_in_base_x*rrr_c_o_y -
+            axis_y_rrr_axes2_in_base_y*rrr_c_o_x;
+        const real rrr_U_in_base_y = axis_y_rrr_axes2_in_base_x*rrr_c_o_x -
+            axis_y_rrr_axes2_in_base_y*rrr_c_o_y;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y;
+        const real rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y;
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_Q_t_5 : rrr_Q_t_5;  /* total_rrr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_Q_t_6 : rrr_Q_t_6;  /* total_rrr_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_Q_t_7 : rrr_Q_t_7;  /* total_rrr_yy */
+        terms[3*count + k] = add ? terms[3*count + k] + rrr_U_in_base_x : rrr_U_in_base_x;  /* total_rrr_x */
+        terms[4*count + k] = add ? terms[4*count + k] + rrr_U_in_base_y : rrr_U_in_base_y;  /* total_rrr_y */
+        o[0*count + k] = -rrr_w_1_t;
+        o[1*count + k] = rrr_w_1_t_2;
+        o[4*count + k] = rrr_w_1_t + rrr_w_1_t_2;
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void dynamics_place_rrr(size_t w, const dynamics_results_rrr *o, size_t leg, size_t first,
+INLINE void dynamics_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_t first,
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(2 + leg)*w + k] = o->entry[1][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(2 + leg)*w + k] = o[1*count + first + k];
+        t->unreachable[k] += o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
 }
 
-INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s, real *M, real
-    *Z)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real total_rrr_xx = s->sum[0][k];
-        const real total_rrr_xy = s->sum[1][k];
-        const real total_rrr_yy = s->sum[2][k];
-        const real total_rrr_x = s->sum[3][k];
-        const real total_rrr_y = s->sum[4][k];
-        const real Z_p_x = m->Z_p_x;
-        const real Z_p_y = m->Z_p_y;
-        const real m_star = m->m_star;
-        /* (M1) translational block of M */
-        const real M_tt_xx = m_star - total_rrr_xx;
-        const real M_tt_yy = m_star - total_rrr_yy;
-        /* (M3) translational part of Z */
-        const real Z_t_x = total_rrr_x - Z_p_x;
-        const real Z_t_y = total_rrr_y - Z_p_y;
-        M[0*w + k] = M_tt_xx;
-        M[1*w + k] = total_rrr_xy;
-        M[2*w + k] = total_rrr_xy;
-        M[3*w + k] = M_tt_yy;
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-    }
-}
-
-INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real *V, real *M, real
-    *Z, real *H, verdict *t)
-{
-    dynamics_values values, *const s = &values;
-    dynamics_results_rrr results_rrr;
-    dynamics_before(w, X, V, s);
-    if (w == 1) {  /* the legs side by side */
-        dynamics_legs_rrr(m, 0, 1, s, 0, 2, 0, &results_rrr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            dynamics_place_rrr(w, &results_rrr, leg, leg, H, t);
-        }
-        for (size_t n = 0; n < 5; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_rrr.sum[n], 2);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            dynamics_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
-            dynamics_place_rrr(w, &results_rrr, leg, 0, H, t);
-        }
-        for (size_t n = 0; n < 5; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_rrr.sum[n][k];
-            }
-        }
-    }
-    dynamics_after(m, w, s, M, Z);
-}
-
-/* ---- M: 124 mul, 80 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], sum[3][LANES];
-} M_values;
-typedef struct {
-    real sum[3][8], unreachable[8], singular[8];
-} M_results_rrr;
-
-INLINE void M_before(size_t w, const real *X, M_values *s)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-    }
-}
-
-INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
-    states, size_t count, int add, M_results_rrr *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real J_2_zz = m->J_2_zz[i];
-        const real Jc_1_zz = m->Jc_1_zz[i];
-        const real Kd_1_t_2 = m->Kd_1_t_2[i];
-        const real Kd_1_t_3 = m->Kd_1_t_3[i];
-        const real branch_1 = m->branch_1[i];
-        const real d_Gamma_1_t = m->d_Gamma_1_t[i];
-        const real d_Gamma_1_y = m->d_Gamma_1_y[i];
-        const real d_c_yy = m->d_c_yy[i];
-        const real d_phi_2_t = m->d_phi_2_t[i];
-        const real h_2_y = m->h_2_y[i];
-        const real inv_Kd_1_t_5 = m->inv_Kd_1_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_t = m->inv_uu_2_t[i];
-        const real rho2_1_t = m->rho2_1_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_ = m->size_[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real Kd_1_t = S_x*S_x + S_y*S_y;
-        const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1 = px_1*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1 = py_1*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
-        /* (rrr-K9) discriminant */
-        const real disc_1 = rho2_1 - Kd_1*Kd_1;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1 = branch_1*root(disc_1);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2 = inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2 =
-            inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_t = rrr_platform_joint_offset_x*s_2;
-        const real r_1_x = rrr_joint2_offset_x + c_2*rrr_platform_joint_offset_x;
-        const real r_1_r0_x = c_2*r_1_x + r_1_t*s_2;
-        const real r_1_r0_y = r_1_x*s_2 - c_2*r_1_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1 = 1/rho2_1;
-        const real c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1*s_2 - c_2*s_1;
-        const real axis_y_rrr_axes2_r1_y = c_1*c_2 + s_1*s_2;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_r0_y = 1/r_1_r0_y;
-        /* (rrr-V6) reciprocal vector 2 */
-        const real w_2_t = inv_r_1_r0_y*inv_rrr_platform_joint_offset_x*r_1_r0_x;
-        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_t_2 = d_Gamma_1_t*r_1_r0_x;
-        const real d_Gamma_1_x = -h_2_y - inv_r_1_r0_y*(Jc_1_zz - d_Gamma_1_t_2);
-        /* (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
-           and weight */
-        const real d_Gamma_2_x = -h_2_y - inv_r_1_r0_y*(J_2_zz - d_Gamma_1_t_2);
-        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real d_c_xy = d_phi_2_t + d_Gamma_1_y*inv_r_1_r0_y - d_Gamma_1_y*w_2_t;
-        /* (rrr-N36) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = d_Gamma_1_x*inv_r_1_r0_y + h_2_y*(w_2_t - inv_r_1_r0_y) - d_c_yy -
-            d_Gamma_2_x*w_2_t;
-        const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = Q_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_xy;
-        const real Q_t_4 = Q_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_xy;
-        const real Q_t_5 = d_c_yy + 2*Q_t_3*axis_y_rrr_axes2_in_base_y;
-        const real Q_t_6 = Q_t_3*axis_y_rrr_axes2_in_base_x + Q_t_4*axis_y_rrr_axes2_in_base_y;
-        const real Q_t_7 = d_c_yy + 2*Q_t_4*axis_y_rrr_axes2_in_base_x;
-        o->sum[0][k] = add ? o->sum[0][k] + Q_t_5 : Q_t_5;  /* total_rrr_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + Q_t_6 : Q_t_6;  /* total_rrr_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + Q_t_7 : Q_t_7;  /* total_rrr_yy */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
-            UNLESS(magnitude(-r_1_r0_y) > TOLERANCE*size_);
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
-    }
-}
-
-INLINE void M_place_rrr(size_t w, const M_results_rrr *o, size_t first, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real total_rrr_xx = s->sum[0][k];
-        const real total_rrr_xy = s->sum[1][k];
-        const real total_rrr_yy = s->sum[2][k];
-        const real m_star = m->m_star;
-        /* (M1) translational block of M */
-        const real M_tt_xx = m_star - total_rrr_xx;
-        const real M_tt_yy = m_star - total_rrr_yy;
-        M[0*w + k] = M_tt_xx;
-        M[1*w + k] = total_rrr_xy;
-        M[2*w + k] = total_rrr_xy;
-        M[3*w + k] = M_tt_yy;
-    }
-}
-
-INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *t)
-{
-    M_values values, *const s = &values;
-    M_results_rrr results_rrr;
-    M_before(w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        M_legs_rrr(m, 0, 1, s, 0, 2, 0, &results_rrr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            M_place_rrr(w, &results_rrr, leg, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_rrr.sum[n], 2);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            M_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
-            M_place_rrr(w, &results_rrr, 0, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_rrr.sum[n][k];
-            }
-        }
-    }
-    M_after(m, w, s, M);
-}
-
-/* ---- Z: 166 mul, 94 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], sum[2][LANES];
-} Z_values;
-typedef struct {
-    real sum[2][8], unreachable[8], singular[8];
-} Z_results_rrr;
-
-INLINE void Z_before(size_t w, const real *X, const real *V, Z_values *s)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        /* V: named entries */
-        const real t_dot_x = V_0;
-        const real t_dot_y = V_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-    }
-}
-
-INLINE void Z_legs_rrr(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
-    states, size_t count, int add, Z_results_rrr *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real J_1_zz = m->J_1_zz[i];
-        const real J_2_zz = m->J_2_zz[i];
-        const real Kd_1_t_2 = m->Kd_1_t_2[i];
-        const real Kd_1_t_3 = m->Kd_1_t_3[i];
-        const real branch_1 = m->branch_1[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_1_x = m->h_1_x[i];
-        const real h_1_y = m->h_1_y[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real inv_Kd_1_t_5 = m->inv_Kd_1_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_t = m->inv_uu_2_t[i];
-        const real rho2_1_t = m->rho2_1_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_ = m->size_[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real Kd_1_t = S_x*S_x + S_y*S_y;
-        const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1 = px_1*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1 = py_1*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
-        /* (rrr-K9) discriminant */
-        const real disc_1 = rho2_1 - Kd_1*Kd_1;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1 = branch_1*root(disc_1);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2 = inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2 =
-            inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_t = rrr_platform_joint_offset_x*s_2;
-        const real r_1_x = rrr_joint2_offset_x + c_2*rrr_platform_joint_offset_x;
-        const real r_1_r0_x = c_2*r_1_x + r_1_t*s_2;
-        const real r_1_r0_y = r_1_x*s_2 - c_2*r_1_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1 = 1/rho2_1;
-        const real c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1*s_2 - c_2*s_1;
-        const real axis_y_rrr_axes2_r1_y = c_1*c_2 + s_1*s_2;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_r0_y = 1/r_1_r0_y;
-        /* (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
-           less gravity */
-        const real g_r1_x = c_1*g_r0_x + g_r0_y*s_1;
-        const real g_r1_y = c_1*g_r0_y - g_r0_x*s_1;
-        /* (rrr-V7) rate of joint 1 */
-        const real qd_1 = inv_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x -
-            axis_y_rrr_axes2_in_base_x*t_dot_y);
-        /* (rrr-V11) angular velocity of link 2 */
-        const real omega_2_z = inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x
-            + axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1*r_1_r0_x) - qd_1;
-        /* (rrr-V10) centripetal tensor of link 1 */
-        const real W_1_t = qd_1*qd_1;
-        /* (rrr-V12) centripetal tensor of link 2 */
-        const real W_2_t = omega_2_z*omega_2_z;
-        /* (rrr-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_x = -W_2_t*rrr_platform_joint_offset_x - W_1_t*c_2*rrr_joint2_offset_x;
-        /* (rrr-A8) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_o = bias_x*inv_r_1_r0_y;
-        /* (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
-        const real mu_1_o_z = J_1_zz*qdd_1_o + g_r1_x*h_1_y - g_r1_y*h_1_x;
-        /* (rrr-A17) remainder without the acceleration in: angular acceleration of link 2 */
-        const real alpha_2_o_z = qdd_1_o +
-            inv_rrr_platform_joint_offset_x*(W_1_t*rrr_joint2_offset_x*s_2 - qdd_1_o*r_1_r0_x);
-        /* (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
-        const real mu_2_o_z = J_2_zz*alpha_2_o_z + h_2_y*(c_2*g_r1_x - g_r1_y*s_2) -
-            h_2_x*(c_2*g_r1_y + g_r1_x*s_2);
-        /* (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
-        const real N_1_o_z = mu_1_o_z + mu_2_o_z;
-        /* (rrr-N32) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
-        const real G_o_t = inv_rrr_platform_joint_offset_x*mu_2_o_z;
-        /* (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real c_o_x = W_2_t*h_2_x + alpha_2_o_z*h_2_y - inv_r_1_r0_y*(G_o_t*r_1_r0_x -
-            N_1_o_z);
-        const real c_o_y = W_2_t*h_2_y - G_o_t - alpha_2_o_z*h_2_x;
-        /* (rrr-N37) velocity and gravity terms of the leg force */
-        const real U_in_base_x = -axis_y_rrr_axes2_in_base_x*c_o_y -
-            axis_y_rrr_axes2_in_base_y*c_o_x;
-        const real U_in_base_y = axis_y_rrr_axes2_in_base_x*c_o_x -
-            axis_y_rrr_axes2_in_base_y*c_o_y;
-        o->sum[0][k] = add ? o->sum[0][k] + U_in_base_x : U_in_base_x;  /* total_rrr_x */
-        o->sum[1][k] = add ? o->sum[1][k] + U_in_base_y : U_in_base_y;  /* total_rrr_y */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
-            UNLESS(magnitude(-r_1_r0_y) > TOLERANCE*size_);
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
-    }
-}
-
-INLINE void Z_place_rrr(size_t w, const Z_results_rrr *o, size_t first, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void Z_after(const prepared *m, size_t w, const Z_values *s, real *Z)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real total_rrr_x = s->sum[0][k];
-        const real total_rrr_y = s->sum[1][k];
-        const real Z_p_x = m->Z_p_x;
-        const real Z_p_y = m->Z_p_y;
-        /* (M3) translational part of Z */
-        const real Z_t_x = total_rrr_x - Z_p_x;
-        const real Z_t_y = total_rrr_y - Z_p_y;
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-    }
-}
-
-INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, real *Z, verdict *t)
-{
-    Z_values values, *const s = &values;
-    Z_results_rrr results_rrr;
-    Z_before(w, X, V, s);
-    if (w == 1) {  /* the legs side by side */
-        Z_legs_rrr(m, 0, 1, s, 0, 2, 0, &results_rrr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            Z_place_rrr(w, &results_rrr, leg, t);
-        }
-        for (size_t n = 0; n < 2; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_rrr.sum[n], 2);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            Z_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
-            Z_place_rrr(w, &results_rrr, 0, t);
-        }
-        for (size_t n = 0; n < 2; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_rrr.sum[n][k];
-            }
-        }
-    }
-    Z_after(m, w, s, Z);
-}
-
-/* ---- H: 82 mul, 40 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES];
-} H_values;
-typedef struct {
-    real entry[2][8], unreachable[8], singular[8];
-} H_results_rrr;
-
-INLINE void H_before(size_t w, const real *X, H_values *s)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-    }
-}
-
-INLINE void H_legs_rrr(const prepared *m, size_t leg, size_t legs, const H_values *s, size_t
-    states, size_t count, H_results_rrr *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real Kd_1_t_2 = m->Kd_1_t_2[i];
-        const real Kd_1_t_3 = m->Kd_1_t_3[i];
-        const real branch_1 = m->branch_1[i];
-        const real inv_Kd_1_t_5 = m->inv_Kd_1_t_5[i];
-        const real inv_uu_2_t = m->inv_uu_2_t[i];
-        const real rho2_1_t = m->rho2_1_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_ = m->size_[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real Kd_1_t = S_x*S_x + S_y*S_y;
-        const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1 = px_1*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1 = py_1*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
-        /* (rrr-K9) discriminant */
-        const real disc_1 = rho2_1 - Kd_1*Kd_1;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1 = branch_1*root(disc_1);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2 = inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2 =
-            inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_x = rrr_joint2_offset_x + c_2*rrr_platform_joint_offset_x;
-        const real r_1_r0_y = r_1_x*s_2 - c_2*rrr_platform_joint_offset_x*s_2;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1 = 1/rho2_1;
-        const real c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1*s_2 - c_2*s_1;
-        const real axis_y_rrr_axes2_r1_y = c_1*c_2 + s_1*s_2;
-        const real inv_r_1_r0_y = 1/r_1_r0_y;
-        const real w_1_t = inv_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy);
-        const real w_1_t_2 = inv_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy);
-        o->entry[0][k] = -w_1_t;
-        o->entry[1][k] = w_1_t_2;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
-            UNLESS(magnitude(-r_1_r0_y) > TOLERANCE*size_);
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
-    }
-}
-
-INLINE void H_place_rrr(size_t w, const H_results_rrr *o, size_t leg, size_t first, real *H,
+INLINE void dynamics_after(const prepared *m, size_t w, const real *sums, real *M, real *Z,
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(2 + leg)*w + k] = o->entry[1][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        /* (M_tt) translational block of M */
+        const real m_star = m->m_star;
+        const real total_rrr_xx = sums[0*w + k];
+        const real M_tt_xx = m_star - total_rrr_xx;
+        const real total_rrr_yy = sums[2*w + k];
+        const real M_tt_yy = m_star - total_rrr_yy;
+        /* (Z_t) translational part of Z */
+        const real Z_p_x = m->Z_p_x;
+        const real total_rrr_x = sums[3*w + k];
+        const real Z_t_x = total_rrr_x - Z_p_x;
+        const real Z_p_y = m->Z_p_y;
+        const real total_rrr_y = sums[4*w + k];
+        const real Z_t_y = total_rrr_y - Z_p_y;
+        M[0*w + k] = M_tt_xx;
+        const real total_rrr_xy = sums[1*w + k];
+        M[1*w + k] = total_rrr_xy;
+        M[2*w + k] = total_rrr_xy;
+        M[3*w + k] = M_tt_yy;
+        Z[0*w + k] = Z_t_x;
+        Z[1*w + k] = Z_t_y;
+        t->total[k] += (M_tt_xx + total_rrr_xy) + (M_tt_yy + (Z_t_x + Z_t_y));
     }
 }
 
-INLINE void H_run(const prepared *m, size_t w, const real *X, real *H, verdict *t)
+INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
+    *H, verdict *t)
 {
-    H_values values, *const s = &values;
-    H_results_rrr results_rrr;
-    H_before(w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        H_legs_rrr(m, 0, 1, s, 0, 2, &results_rrr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            H_place_rrr(w, &results_rrr, leg, leg, H, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 2; ++leg) {
-            H_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
-            H_place_rrr(w, &results_rrr, leg, 0, H, t);
-        }
+    real s[4] = {0}, sums[5] = {0}, terms_rrr[5*LEGS(2)] = {0}, o_rrr[5*LEGS(2)] = {0};
+    dynamics_before(1, X, V, s);
+    dynamics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        dynamics_place_rrr(1, LEGS(2), o_rrr, leg, leg, H, t);
+    }
+    for (size_t n = 0; n < 5; ++n) {
+        sums[n] = total(terms_rrr + n*LEGS(2), 2);
+    }
+    dynamics_after(m, 1, sums, M, Z, t);
+}
+
+INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, verdict *t)
+{
+    real s[4*LANES], sums[5*LANES], o_rrr[5*LANES];
+    dynamics_before(LANES, X, V, s);
+    clear(sums, 5*LANES);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        dynamics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
+        dynamics_place_rrr(LANES, LANES, o_rrr, leg, 0, H, t);
+    }
+    dynamics_after(m, LANES, sums, M, Z, t);
+}
+
+/* ---- M: 124 mul, 80 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
+INLINE void M_before(size_t w, const real *X, real *s)
+{
+    for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
+        const real X_0 = X[0*w + k];
+        const real t_x = X_0;
+        const real X_1 = X[1*w + k];
+        const real t_y = X_1;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+    }
+}
+
+INLINE void M_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, int add, real *terms, real *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        /* (rrr-S) from the base point to the connection point */
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
+           joint 1 */
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
+        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
+            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
+        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
+            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-w_2) reciprocal vector 2 */
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x;
+        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
+        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x;
+        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
+        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz -
+            rrr_d_Gamma_2_t_2);
+        /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real rrr_Jc_1_zz = m->rrr_Jc_1_zz[i];
+        const real rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz -
+            rrr_d_Gamma_2_t_2);
+        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real rrr_d_Gamma_2_y = m->rrr_d_Gamma_2_y[i];
+        const real rrr_d_phi_2_t = m->rrr_d_phi_2_t[i];
+        const real rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y -
+            rrr_d_Gamma_2_y*rrr_w_2_t;
+        /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real rrr_d_c_yy = m->rrr_d_c_yy[i];
+        const real rrr_Q_t = inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t -
+            inv_rrr_r_1_r0_y) - rrr_d_c_yy - rrr_d_Gamma_2_x*rrr_w_2_t;
+        const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
+        const real rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy +
+            axis_y_rrr_axes2_in_base_y*rrr_Q_t_2;
+        const real rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 -
+            axis_y_rrr_axes2_in_base_y*rrr_d_c_xy;
+        const real rrr_Q_t_5 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3;
+        const real rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 +
+            axis_y_rrr_axes2_in_base_y*rrr_Q_t_4;
+        const real rrr_Q_t_7 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4;
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_Q_t_5 : rrr_Q_t_5;  /* total_rrr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_Q_t_6 : rrr_Q_t_6;  /* total_rrr_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_Q_t_7 : rrr_Q_t_7;  /* total_rrr_yy */
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
+    }
+}
+
+INLINE void M_place_rrr(size_t w, size_t count, const real *o, size_t first, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        t->unreachable[k] += o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
+    }
+}
+
+INLINE void M_after(const prepared *m, size_t w, const real *sums, real *M, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        /* (M_tt) translational block of M */
+        const real m_star = m->m_star;
+        const real total_rrr_xx = sums[0*w + k];
+        const real M_tt_xx = m_star - total_rrr_xx;
+        const real total_rrr_yy = sums[2*w + k];
+        const real M_tt_yy = m_star - total_rrr_yy;
+        M[0*w + k] = M_tt_xx;
+        const real total_rrr_xy = sums[1*w + k];
+        M[1*w + k] = total_rrr_xy;
+        M[2*w + k] = total_rrr_xy;
+        M[3*w + k] = M_tt_yy;
+        t->total[k] += M_tt_xx + (total_rrr_xy + M_tt_yy);
+    }
+}
+
+INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
+{
+    real s[2] = {0}, sums[3] = {0}, terms_rrr[3*LEGS(2)] = {0}, o_rrr[2*LEGS(2)] = {0};
+    M_before(1, X, s);
+    M_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        M_place_rrr(1, LEGS(2), o_rrr, leg, t);
+    }
+    for (size_t n = 0; n < 3; ++n) {
+        sums[n] = total(terms_rrr + n*LEGS(2), 2);
+    }
+    M_after(m, 1, sums, M, t);
+}
+
+INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
+{
+    real s[2*LANES], sums[3*LANES], o_rrr[2*LANES];
+    M_before(LANES, X, s);
+    clear(sums, 3*LANES);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        M_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
+        M_place_rrr(LANES, LANES, o_rrr, 0, t);
+    }
+    M_after(m, LANES, sums, M, t);
+}
+
+/* ---- Z: 166 mul, 94 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
+INLINE void Z_before(size_t w, const real *X, const real *V, real *s)
+{
+    for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
+        const real X_0 = X[0*w + k];
+        const real t_x = X_0;
+        const real X_1 = X[1*w + k];
+        const real t_y = X_1;
+        /* V: named entries */
+        const real V_0 = V[0*w + k];
+        const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
+        const real t_dot_y = V_1;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_dot_x;
+        s[3*w + k] = t_dot_y;
+    }
+}
+
+INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, int add, real *terms, real *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        /* (rrr-S) from the base point to the connection point */
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
+           joint 1 */
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
+        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
+            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
+        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
+            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-qd_2) rate of joint 2 */
+        const real t_dot_x = s[2*w + j];
+        const real t_dot_y = s[3*w + j];
+        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x -
+            axis_y_rrr_axes2_in_base_x*t_dot_y);
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_omega_2_z =
+            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
+            axis_y_rrr_axes2_in_base_y*t_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-W_1) centripetal tensor of link 1 */
+        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-W_2) centripetal tensor of link 2 */
+        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        /* (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        const real rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_bias_x;
+        /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        const real rrr_alpha_2_o_z = rrr_qdd_1_o +
+            inv_rrr_platform_joint_offset_x*(rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2 -
+            rrr_qdd_1_o*rrr_r_1_r0_x);
+        /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 2, about their reference points */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
+        const real rrr_h_2_x = m->rrr_h_2_x[i];
+        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_mu_2_o_z = rrr_J_2_zz*rrr_alpha_2_o_z +
+            rrr_h_2_y*(axis_y_rrr_axes2_in_base_y*gravity_x -
+            axis_y_rrr_axes2_in_base_x*gravity_y) -
+            rrr_h_2_x*(axis_y_rrr_axes2_in_base_x*gravity_x +
+            axis_y_rrr_axes2_in_base_y*gravity_y);
+        /* (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 1, about their reference points */
+        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
+        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
+        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
+        const real rrr_h_1_x = m->rrr_h_1_x[i];
+        const real rrr_h_1_y = m->rrr_h_1_y[i];
+        const real rrr_mu_1_o_z = rrr_J_1_zz*rrr_qdd_1_o + rrr_h_1_y*(rrr_c_1*rrr_g_r0_x +
+            rrr_g_r0_y*rrr_s_1) - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
+           outwards, the force at the connection point left out */
+        const real rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z;
+        /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
+           the leg's inertia and weight along all freedoms */
+        const real rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z;
+        /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
+           and without the mass at the connection point */
+        const real rrr_c_o_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y -
+            inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x - rrr_N_1_o_z);
+        const real rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x;
+        /* (rrr-U) velocity and gravity terms of the leg force */
+        const real rrr_U_in_base_x = -axis_y_rrr_axes2_in_base_x*rrr_c_o_y -
+            axis_y_rrr_axes2_in_base_y*rrr_c_o_x;
+        const real rrr_U_in_base_y = axis_y_rrr_axes2_in_base_x*rrr_c_o_x -
+            axis_y_rrr_axes2_in_base_y*rrr_c_o_y;
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_U_in_base_x : rrr_U_in_base_x;  /* total_rrr_x */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_U_in_base_y : rrr_U_in_base_y;  /* total_rrr_y */
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
+    }
+}
+
+INLINE void Z_place_rrr(size_t w, size_t count, const real *o, size_t first, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        t->unreachable[k] += o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
+    }
+}
+
+INLINE void Z_after(const prepared *m, size_t w, const real *sums, real *Z, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        /* (Z_t) translational part of Z */
+        const real Z_p_x = m->Z_p_x;
+        const real total_rrr_x = sums[0*w + k];
+        const real Z_t_x = total_rrr_x - Z_p_x;
+        const real Z_p_y = m->Z_p_y;
+        const real total_rrr_y = sums[1*w + k];
+        const real Z_t_y = total_rrr_y - Z_p_y;
+        Z[0*w + k] = Z_t_x;
+        Z[1*w + k] = Z_t_y;
+        t->total[k] += Z_t_x + Z_t_y;
+    }
+}
+
+INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+{
+    real s[4] = {0}, sums[2] = {0}, terms_rrr[2*LEGS(2)] = {0}, o_rrr[2*LEGS(2)] = {0};
+    Z_before(1, X, V, s);
+    Z_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        Z_place_rrr(1, LEGS(2), o_rrr, leg, t);
+    }
+    for (size_t n = 0; n < 2; ++n) {
+        sums[n] = total(terms_rrr + n*LEGS(2), 2);
+    }
+    Z_after(m, 1, sums, Z, t);
+}
+
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+{
+    real s[4*LANES], sums[2*LANES], o_rrr[2*LANES];
+    Z_before(LANES, X, V, s);
+    clear(sums, 2*LANES);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        Z_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
+        Z_place_rrr(LANES, LANES, o_rrr, 0, t);
+    }
+    Z_after(m, LANES, sums, Z, t);
+}
+
+/* ---- H: 82 mul, 40 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
+INLINE void H_before(size_t w, const real *X, real *s)
+{
+    for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
+        const real X_0 = X[0*w + k];
+        const real t_x = X_0;
+        const real X_1 = X[1*w + k];
+        const real t_y = X_1;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+    }
+}
+
+INLINE void H_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, real *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        /* (rrr-S) from the base point to the connection point */
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
+           joint 1 */
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        const real rrr_w_1_t = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
+            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy);
+        const real rrr_w_1_t_2 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
+            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy);
+        o[0*count + k] = -rrr_w_1_t;
+        o[1*count + k] = rrr_w_1_t_2;
+        o[4*count + k] = rrr_w_1_t + rrr_w_1_t_2;
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
+    }
+}
+
+INLINE void H_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_t first, real *H,
+    verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(2 + leg)*w + k] = o[1*count + first + k];
+        t->unreachable[k] += o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
+    }
+}
+
+INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
+{
+    real s[2] = {0}, o_rrr[5*LEGS(2)] = {0};
+    H_before(1, X, s);
+    H_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), o_rrr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        H_place_rrr(1, LEGS(2), o_rrr, leg, leg, H, t);
+    }
+}
+
+INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
+{
+    real s[2*LANES], o_rrr[5*LANES];
+    H_before(LANES, X, s);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        H_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        H_place_rrr(LANES, LANES, o_rrr, leg, 0, H, t);
     }
 }
 
 /* ---- required: 180 mul, 108 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], t_ddot_x[LANES], t_ddot_y[LANES],
-        f_p_x[LANES], f_p_y[LANES], sum[2][LANES];
-} required_values;
-typedef struct {
-    real sum[2][8], entry[2][8], unreachable[8], singular[8];
-} required_results_rrr;
-
 INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, required_values *s)
+    *A, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real m_star = m->m_star;
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
-        /* (E1) acceleration of the platform origin, less gravity */
+        /* (a_t) acceleration of the platform origin, less gravity */
+        const real gravity_x = m->gravity_x;
         const real a_t_x = t_ddot_x - gravity_x;
+        const real gravity_y = m->gravity_y;
         const real a_t_y = t_ddot_y - gravity_y;
-        /* (E2) inertia force of the platform less its weight */
+        /* (f_p) inertia force of the platform less its weight */
+        const real m_star = m->m_star;
         const real f_p_x = a_t_x*m_star;
         const real f_p_y = a_t_y*m_star;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->f_p_x[k] = f_p_x;
-        s->f_p_y[k] = f_p_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_dot_x;
+        s[3*w + k] = t_dot_y;
+        s[4*w + k] = t_ddot_x;
+        s[5*w + k] = t_ddot_y;
+        s[6*w + k] = f_p_x;
+        s[7*w + k] = f_p_y;
     }
 }
 
-INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const required_values
-    *s, size_t states, size_t count, int add, required_results_rrr *o)
+INLINE void required_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real J_1_zz = m->J_1_zz[i];
-        const real J_2_zz = m->J_2_zz[i];
-        const real Kd_1_t_2 = m->Kd_1_t_2[i];
-        const real Kd_1_t_3 = m->Kd_1_t_3[i];
-        const real branch_1 = m->branch_1[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_1_x = m->h_1_x[i];
-        const real h_1_y = m->h_1_y[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real inv_Kd_1_t_5 = m->inv_Kd_1_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_t = m->inv_uu_2_t[i];
-        const real rho2_1_t = m->rho2_1_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        /* (rrr-S) from the base point to the connection point */
         const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_ = m->size_[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_t = S_x*S_x + S_y*S_y;
-        const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1 = px_1*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1 = py_1*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
-        /* (rrr-K9) discriminant */
-        const real disc_1 = rho2_1 - Kd_1*Kd_1;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1 = branch_1*root(disc_1);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2 = inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2 =
-            inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_t = rrr_platform_joint_offset_x*s_2;
-        const real r_1_x = rrr_joint2_offset_x + c_2*rrr_platform_joint_offset_x;
-        const real r_1_r0_x = c_2*r_1_x + r_1_t*s_2;
-        const real r_1_r0_y = r_1_x*s_2 - c_2*r_1_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1 = 1/rho2_1;
-        const real c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1*s_2 - c_2*s_1;
-        const real axis_y_rrr_axes2_r1_y = c_1*c_2 + s_1*s_2;
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_r0_y = 1/r_1_r0_y;
-        /* (rrr-V7) rate of joint 1 */
-        const real qd_1 = inv_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x -
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-qd_2) rate of joint 2 */
+        const real t_dot_x = s[2*w + j];
+        const real t_dot_y = s[3*w + j];
+        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x -
             axis_y_rrr_axes2_in_base_x*t_dot_y);
-        /* (rrr-V11) angular velocity of link 2 */
-        const real omega_2_z = inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x
-            + axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1*r_1_r0_x) - qd_1;
-        /* (rrr-V10) centripetal tensor of link 1 */
-        const real W_1_t = qd_1*qd_1;
-        /* (rrr-V12) centripetal tensor of link 2 */
-        const real W_2_t = omega_2_z*omega_2_z;
-        /* (rrr-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_x = -W_2_t*rrr_platform_joint_offset_x - W_1_t*c_2*rrr_joint2_offset_x;
-        /* (rrr-V5) reciprocal vector 1 */
-        const real w_1_t = axis_y_rrr_axes2_in_base_y*inv_r_1_r0_y;
-        const real w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_r0_y;
-        /* (rrr-A2) acceleration of the connection point */
-        const real S_ddot_tip_x = axis_y_rrr_axes2_in_base_y*t_ddot_x -
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_omega_2_z =
+            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
+            axis_y_rrr_axes2_in_base_y*t_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-W_1) centripetal tensor of link 1 */
+        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-W_2) centripetal tensor of link 2 */
+        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y;
+        const real rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y;
+        /* (rrr-S_ddot) acceleration of the connection point */
+        const real t_ddot_x = s[4*w + j];
+        const real t_ddot_y = s[5*w + j];
+        const real rrr_S_ddot_tip_x = axis_y_rrr_axes2_in_base_y*t_ddot_x -
             axis_y_rrr_axes2_in_base_x*t_ddot_y;
-        const real S_ddot_tip_y = axis_y_rrr_axes2_in_base_x*t_ddot_x +
+        const real rrr_S_ddot_tip_y = axis_y_rrr_axes2_in_base_x*t_ddot_x +
             axis_y_rrr_axes2_in_base_y*t_ddot_y;
-        /* (rrr-A5) acceleration of the connection point left to the joint accelerations */
-        const real rel_x = S_ddot_tip_x - bias_x;
-        const real rel_y = S_ddot_tip_y + W_1_t*rrr_joint2_offset_x*s_2;
-        /* (rrr-A7) acceleration of joint 1 */
-        const real qdd_1 = inv_r_1_r0_y*rel_x;
-        /* (rrr-N3) acceleration of the reference point of link 2, less gravity */
-        const real acc_2_x = S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+        /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
+        const real rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x;
+        const real rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-qdd_1) acceleration of joint 1 */
+        const real rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x;
+        /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real rrr_acc_2_x = rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
             axis_y_rrr_axes2_in_base_y*gravity_x;
-        const real acc_2_y = S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+        const real rrr_acc_2_y = rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
             axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-N23) inertia moment of the links that turn with link 1, about their reference points */
-        const real mu_1_z = h_1_y*(c_1*g_r0_x + g_r0_y*s_1) - J_1_zz*qdd_1 - h_1_x*(c_1*g_r0_y -
-            g_r0_x*s_1);
-        /* (rrr-A15) angular acceleration of link 2 */
-        const real alpha_2_z = inv_rrr_platform_joint_offset_x*(rel_y + qdd_1*r_1_r0_x) - qdd_1;
-        /* (rrr-N16) inertia moment of the links that turn with link 2, about their reference points */
-        const real mu_2_z = J_2_zz*alpha_2_z + acc_2_y*h_2_x - acc_2_x*h_2_y;
-        /* (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rrr-alpha_2) angular acceleration of link 2 */
+        const real rrr_alpha_2_z = inv_rrr_platform_joint_offset_x*(rrr_rel_y +
+            rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1;
+        /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
+        const real rrr_h_2_x = m->rrr_h_2_x[i];
+        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x -
+            rrr_acc_2_x*rrr_h_2_y;
+        /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
+        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
+        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
+        const real rrr_h_1_x = m->rrr_h_1_x[i];
+        const real rrr_h_1_y = m->rrr_h_1_y[i];
+        const real rrr_mu_1_z = rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
+            rrr_J_1_zz*rrr_qdd_1 - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
-        const real N_1_z = mu_1_z + mu_2_z;
-        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
+        const real rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z;
+        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real G_t = inv_rrr_platform_joint_offset_x*mu_2_z;
-        /* (rrr-N33) leg force on the platform without actuation and without the mass at the connection
+        const real rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z;
+        /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_x = W_2_t*h_2_x + alpha_2_z*h_2_y - inv_r_1_r0_y*(G_t*r_1_r0_x - N_1_z);
-        const real c_y = W_2_t*h_2_y - G_t - alpha_2_z*h_2_x;
-        const real c_in_base_x = axis_y_rrr_axes2_in_base_x*c_y + axis_y_rrr_axes2_in_base_y*c_x;
-        const real c_in_base_y = axis_y_rrr_axes2_in_base_y*c_y - axis_y_rrr_axes2_in_base_x*c_x;
-        o->sum[0][k] = add ? o->sum[0][k] + c_in_base_x : c_in_base_x;  /* total_rrr_x */
-        o->sum[1][k] = add ? o->sum[1][k] + c_in_base_y : c_in_base_y;  /* total_rrr_y */
-        o->entry[0][k] = -w_1_t;
-        o->entry[1][k] = w_1_t_2;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
-            UNLESS(magnitude(-r_1_r0_y) > TOLERANCE*size_);
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
+        const real rrr_c_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y -
+            inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x - rrr_N_1_z);
+        const real rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x;
+        const real rrr_c_in_base_x = axis_y_rrr_axes2_in_base_x*rrr_c_y +
+            axis_y_rrr_axes2_in_base_y*rrr_c_x;
+        const real rrr_c_in_base_y = axis_y_rrr_axes2_in_base_y*rrr_c_y -
+            axis_y_rrr_axes2_in_base_x*rrr_c_x;
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_c_in_base_x : rrr_c_in_base_x;  /* total_rrr_x */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_c_in_base_y : rrr_c_in_base_y;  /* total_rrr_y */
+        o[0*count + k] = -rrr_w_1_t;
+        o[1*count + k] = rrr_w_1_t_2;
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void required_place_rrr(size_t w, const required_results_rrr *o, size_t leg, size_t first,
+INLINE void required_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_t first,
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(2 + leg)*w + k] = o->entry[1][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(2 + leg)*w + k] = o[1*count + first + k];
+        t->unreachable[k] += o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
     }
 }
 
-INLINE void required_after(size_t w, const required_values *s, real *required)
+INLINE void required_after(size_t w, const real *s, const real *sums, real *required)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real f_p_x = s->f_p_x[k];
-        const real f_p_y = s->f_p_y[k];
-        const real total_rrr_x = s->sum[0][k];
-        const real total_rrr_y = s->sum[1][k];
-        /* (E3) force that actuators and external wrench must give */
+        /* (R_t) force that actuators and external wrench must give */
+        const real f_p_x = s[6*w + k];
+        const real total_rrr_x = sums[0*w + k];
         const real R_t_x = f_p_x - total_rrr_x;
+        const real f_p_y = s[7*w + k];
+        const real total_rrr_y = sums[1*w + k];
         const real R_t_y = f_p_y - total_rrr_y;
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
     }
 }
 
-INLINE void required_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+    *required, real *H, verdict *t)
+{
+    real s[8] = {0}, sums[2] = {0}, terms_rrr[2*LEGS(2)] = {0}, o_rrr[4*LEGS(2)] = {0};
+    required_before(m, 1, X, V, A, s);
+    required_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        required_place_rrr(1, LEGS(2), o_rrr, leg, leg, H, t);
+    }
+    for (size_t n = 0; n < 2; ++n) {
+        sums[n] = total(terms_rrr + n*LEGS(2), 2);
+    }
+    required_after(1, s, sums, required);
+}
+
+INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, verdict *t)
 {
-    required_values values, *const s = &values;
-    required_results_rrr results_rrr;
-    required_before(m, w, X, V, A, s);
-    if (w == 1) {  /* the legs side by side */
-        required_legs_rrr(m, 0, 1, s, 0, 2, 0, &results_rrr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            required_place_rrr(w, &results_rrr, leg, leg, H, t);
-        }
-        for (size_t n = 0; n < 2; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_rrr.sum[n], 2);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            required_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
-            required_place_rrr(w, &results_rrr, leg, 0, H, t);
-        }
-        for (size_t n = 0; n < 2; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_rrr.sum[n][k];
-            }
-        }
+    real s[8*LANES], sums[2*LANES], o_rrr[4*LANES];
+    required_before(m, LANES, X, V, A, s);
+    clear(sums, 2*LANES);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        required_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
+        required_place_rrr(LANES, LANES, o_rrr, leg, 0, H, t);
     }
-    required_after(w, s, required);
+    required_after(LANES, s, sums, required);
 }
 
 /* ---- inverse_kinematics: 54 mul, 28 add, 2 div, 2 sqrt, 4 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES];
-} inverse_kinematics_values;
-typedef struct {
-    real entry[2][8], unreachable[8], singular[8];
-} inverse_kinematics_results_rrr;
-
-INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematics_values *s)
+INLINE void inverse_kinematics_before(size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
     }
 }
 
-INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t leg, size_t legs, const
-    inverse_kinematics_values *s, size_t states, size_t count, inverse_kinematics_results_rrr *o)
+INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs,
+    const real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real Kd_1_t_2 = m->Kd_1_t_2[i];
-        const real Kd_1_t_3 = m->Kd_1_t_3[i];
-        const real branch_1 = m->branch_1[i];
-        const real inv_Kd_1_t_5 = m->inv_Kd_1_t_5[i];
-        const real inv_uu_2_t = m->inv_uu_2_t[i];
-        const real rho2_1_t = m->rho2_1_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        /* (rrr-S) from the base point to the connection point */
         const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_t = S_x*S_x + S_y*S_y;
-        const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1 = px_1*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1 = py_1*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
-        /* (rrr-K9) discriminant */
-        const real disc_1 = rho2_1 - Kd_1*Kd_1;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1 = branch_1*root(disc_1);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1 = 1/rho2_1;
-        /* (rrr-K13) displacement of joint 1 */
-        const real q_1 = angle(inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1), inv_rho2_1*(Kc_1*Kd_1 -
-            Ks_1*root_1));
-        /* (rrr-K20) displacement of joint 2 */
-        const real q_2 =
-            angle(-inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x,
-            inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x);
-        o->entry[0][k] = q_1;
-        o->entry[1][k] = q_2;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t);
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        /* (rrr-q_1) displacement of joint 1 */
+        const real rrr_q_1 = angle(inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1),
+            inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1));
+        /* (rrr-q_2) displacement of joint 2 */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_q_2 =
+            angle(-inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
+            inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x);
+        o[0*count + k] = rrr_q_1;
+        o[1*count + k] = rrr_q_2;
+        o[4*count + k] = rrr_q_1 + rrr_q_2;
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
+        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void inverse_kinematics_place_rrr(size_t w, const inverse_kinematics_results_rrr *o, size_t
-    leg, size_t first, real *q, verdict *t)
+INLINE void inverse_kinematics_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_t
+    first, real *q, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        q[(2*leg)*w + k] = o->entry[0][first + k];
-        q[(1 + 2*leg)*w + k] = o->entry[1][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        q[(2*leg)*w + k] = o[0*count + first + k];
+        q[(1 + 2*leg)*w + k] = o[1*count + first + k];
+        t->unreachable[k] += o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
 }
 
-INLINE void inverse_kinematics_run(const prepared *m, size_t w, const real *X, real *q, verdict
-    *t)
+INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    inverse_kinematics_values values, *const s = &values;
-    inverse_kinematics_results_rrr results_rrr;
-    inverse_kinematics_before(w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        inverse_kinematics_legs_rrr(m, 0, 1, s, 0, 2, &results_rrr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            inverse_kinematics_place_rrr(w, &results_rrr, leg, leg, q, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 2; ++leg) {
-            inverse_kinematics_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
-            inverse_kinematics_place_rrr(w, &results_rrr, leg, 0, q, t);
-        }
+    real s[2] = {0}, o_rrr[5*LEGS(2)] = {0};
+    inverse_kinematics_before(1, X, s);
+    inverse_kinematics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), o_rrr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        inverse_kinematics_place_rrr(1, LEGS(2), o_rrr, leg, leg, q, t);
+    }
+}
+
+INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
+{
+    real s[2*LANES], o_rrr[5*LANES];
+    inverse_kinematics_before(LANES, X, s);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        inverse_kinematics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        inverse_kinematics_place_rrr(LANES, LANES, o_rrr, leg, 0, q, t);
     }
 }
 
 /* ---- joint_rates: 94 mul, 48 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES];
-} joint_rates_values;
-typedef struct {
-    real entry[2][8], unreachable[8], singular[8];
-} joint_rates_results_rrr;
-
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rates_values *s)
+INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_dot_x;
+        s[3*w + k] = t_dot_y;
     }
 }
 
-INLINE void joint_rates_legs_rrr(const prepared *m, size_t leg, size_t legs, const
-    joint_rates_values *s, size_t states, size_t count, joint_rates_results_rrr *o)
+INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real Kd_1_t_2 = m->Kd_1_t_2[i];
-        const real Kd_1_t_3 = m->Kd_1_t_3[i];
-        const real branch_1 = m->branch_1[i];
-        const real inv_Kd_1_t_5 = m->inv_Kd_1_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_t = m->inv_uu_2_t[i];
-        const real rho2_1_t = m->rho2_1_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        /* (rrr-S) from the base point to the connection point */
         const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_ = m->size_[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_t = S_x*S_x + S_y*S_y;
-        const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1 = px_1*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1 = py_1*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
-        /* (rrr-K9) discriminant */
-        const real disc_1 = rho2_1 - Kd_1*Kd_1;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1 = branch_1*root(disc_1);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2 = inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2 =
-            inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_t = rrr_platform_joint_offset_x*s_2;
-        const real r_1_x = rrr_joint2_offset_x + c_2*rrr_platform_joint_offset_x;
-        const real r_1_r0_y = r_1_x*s_2 - c_2*r_1_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1 = 1/rho2_1;
-        const real c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1*s_2 - c_2*s_1;
-        const real axis_y_rrr_axes2_r1_y = c_1*c_2 + s_1*s_2;
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        /* (rrr-V7) rate of joint 1 */
-        const real qd_1 = (axis_y_rrr_axes2_in_base_y*t_dot_x -
-            axis_y_rrr_axes2_in_base_x*t_dot_y)/r_1_r0_y;
-        const real qd_2 = inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
-            axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1*(c_2*r_1_x + r_1_t*s_2));
-        o->entry[0][k] = -qd_1;
-        o->entry[1][k] = qd_2;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
-            UNLESS(magnitude(-r_1_r0_y) > TOLERANCE*size_);
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
+        /* (rrr-qd_2) rate of joint 2 */
+        const real t_dot_x = s[2*w + j];
+        const real t_dot_y = s[3*w + j];
+        const real rrr_qd_1 = (axis_y_rrr_axes2_in_base_y*t_dot_x -
+            axis_y_rrr_axes2_in_base_x*t_dot_y)/rrr_r_1_r0_y;
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_qd_2 = inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x
+            + axis_y_rrr_axes2_in_base_y*t_dot_y + rrr_qd_1*(rrr_c_2*rrr_r_1_x +
+            rrr_r_1_t*rrr_s_2));
+        o[0*count + k] = -rrr_qd_1;
+        o[1*count + k] = rrr_qd_2;
+        o[4*count + k] = rrr_qd_1 + rrr_qd_2;
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void joint_rates_place_rrr(size_t w, const joint_rates_results_rrr *o, size_t leg, size_t
-    first, real *qd, verdict *t)
+INLINE void joint_rates_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_t first,
+    real *qd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qd[(2*leg)*w + k] = o->entry[0][first + k];
-        qd[(1 + 2*leg)*w + k] = o->entry[1][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        qd[(2*leg)*w + k] = o[0*count + first + k];
+        qd[(1 + 2*leg)*w + k] = o[1*count + first + k];
+        t->unreachable[k] += o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
 }
 
-INLINE void joint_rates_run(const prepared *m, size_t w, const real *X, const real *V, real *qd,
+INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+{
+    real s[4] = {0}, o_rrr[5*LEGS(2)] = {0};
+    joint_rates_before(1, X, V, s);
+    joint_rates_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), o_rrr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        joint_rates_place_rrr(1, LEGS(2), o_rrr, leg, leg, qd, t);
+    }
+}
+
+INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    joint_rates_values values, *const s = &values;
-    joint_rates_results_rrr results_rrr;
-    joint_rates_before(w, X, V, s);
-    if (w == 1) {  /* the legs side by side */
-        joint_rates_legs_rrr(m, 0, 1, s, 0, 2, &results_rrr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            joint_rates_place_rrr(w, &results_rrr, leg, leg, qd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 2; ++leg) {
-            joint_rates_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
-            joint_rates_place_rrr(w, &results_rrr, leg, 0, qd, t);
-        }
+    real s[4*LANES], o_rrr[5*LANES];
+    joint_rates_before(LANES, X, V, s);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        joint_rates_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        joint_rates_place_rrr(LANES, LANES, o_rrr, leg, 0, qd, t);
     }
 }
 
 /* ---- joint_accelerations: 124 mul, 62 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], t_ddot_x[LANES], t_ddot_y[LANES];
-} joint_accelerations_values;
-typedef struct {
-    real entry[2][8], unreachable[8], singular[8];
-} joint_accelerations_results_rrr;
-
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A,
-    joint_accelerations_values *s)
+INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
+    *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_dot_x;
+        s[3*w + k] = t_dot_y;
+        s[4*w + k] = t_ddot_x;
+        s[5*w + k] = t_ddot_y;
     }
 }
 
-INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t leg, size_t legs, const
-    joint_accelerations_values *s, size_t states, size_t count, joint_accelerations_results_rrr
-    *o)
+INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs,
+    const real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real Kd_1_t_2 = m->Kd_1_t_2[i];
-        const real Kd_1_t_3 = m->Kd_1_t_3[i];
-        const real branch_1 = m->branch_1[i];
-        const real inv_Kd_1_t_5 = m->inv_Kd_1_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_t = m->inv_uu_2_t[i];
-        const real rho2_1_t = m->rho2_1_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        /* (rrr-S) from the base point to the connection point */
         const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_ = m->size_[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_t = S_x*S_x + S_y*S_y;
-        const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1 = px_1*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1 = py_1*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
-        /* (rrr-K9) discriminant */
-        const real disc_1 = rho2_1 - Kd_1*Kd_1;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1 = branch_1*root(disc_1);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2 = inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2 =
-            inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_t = rrr_platform_joint_offset_x*s_2;
-        const real r_1_x = rrr_joint2_offset_x + c_2*rrr_platform_joint_offset_x;
-        const real r_1_r0_x = c_2*r_1_x + r_1_t*s_2;
-        const real r_1_r0_y = r_1_x*s_2 - c_2*r_1_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1 = 1/rho2_1;
-        const real c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1*s_2 - c_2*s_1;
-        const real axis_y_rrr_axes2_r1_y = c_1*c_2 + s_1*s_2;
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_r0_y = 1/r_1_r0_y;
-        /* (rrr-V7) rate of joint 1 */
-        const real qd_1 = inv_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x -
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-qd_2) rate of joint 2 */
+        const real t_dot_x = s[2*w + j];
+        const real t_dot_y = s[3*w + j];
+        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x -
             axis_y_rrr_axes2_in_base_x*t_dot_y);
-        /* (rrr-V11) angular velocity of link 2 */
-        const real omega_2_z = inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x
-            + axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1*r_1_r0_x) - qd_1;
-        /* (rrr-V10) centripetal tensor of link 1 */
-        const real W_1_t = qd_1*qd_1;
-        /* (rrr-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_x = -omega_2_z*omega_2_z*rrr_platform_joint_offset_x -
-            W_1_t*c_2*rrr_joint2_offset_x;
-        /* (rrr-A5) acceleration of the connection point left to the joint accelerations */
-        const real rel_x = axis_y_rrr_axes2_in_base_y*t_ddot_x - bias_x -
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_omega_2_z =
+            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
+            axis_y_rrr_axes2_in_base_y*t_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-W_1) centripetal tensor of link 1 */
+        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_x = -rrr_omega_2_z*rrr_omega_2_z*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
+        const real t_ddot_x = s[4*w + j];
+        const real t_ddot_y = s[5*w + j];
+        const real rrr_rel_x = axis_y_rrr_axes2_in_base_y*t_ddot_x - rrr_bias_x -
             axis_y_rrr_axes2_in_base_x*t_ddot_y;
-        const real rel_y = axis_y_rrr_axes2_in_base_x*t_ddot_x +
-            axis_y_rrr_axes2_in_base_y*t_ddot_y + W_1_t*rrr_joint2_offset_x*s_2;
-        /* (rrr-A7) acceleration of joint 1 */
-        const real qdd_1 = inv_r_1_r0_y*rel_x;
-        const real qdd_2 = inv_rrr_platform_joint_offset_x*(rel_y + qdd_1*r_1_r0_x);
-        o->entry[0][k] = -qdd_1;
-        o->entry[1][k] = qdd_2;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
-            UNLESS(magnitude(-r_1_r0_y) > TOLERANCE*size_);
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
+        const real rrr_rel_y = axis_y_rrr_axes2_in_base_x*t_ddot_x +
+            axis_y_rrr_axes2_in_base_y*t_ddot_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-qdd_1) acceleration of joint 1 */
+        const real rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x;
+        const real rrr_qdd_2 = inv_rrr_platform_joint_offset_x*(rrr_rel_y +
+            rrr_qdd_1*rrr_r_1_r0_x);
+        o[0*count + k] = -rrr_qdd_1;
+        o[1*count + k] = rrr_qdd_2;
+        o[4*count + k] = rrr_qdd_1 + rrr_qdd_2;
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void joint_accelerations_place_rrr(size_t w, const joint_accelerations_results_rrr *o,
-    size_t leg, size_t first, real *qdd, verdict *t)
+INLINE void joint_accelerations_place_rrr(size_t w, size_t count, const real *o, size_t leg,
+    size_t first, real *qdd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qdd[(2*leg)*w + k] = o->entry[0][first + k];
-        qdd[(1 + 2*leg)*w + k] = o->entry[1][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        qdd[(2*leg)*w + k] = o[0*count + first + k];
+        qdd[(1 + 2*leg)*w + k] = o[1*count + first + k];
+        t->unreachable[k] += o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
 }
 
-INLINE void joint_accelerations_run(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd, verdict *t)
+INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd, verdict *t)
 {
-    joint_accelerations_values values, *const s = &values;
-    joint_accelerations_results_rrr results_rrr;
-    joint_accelerations_before(w, X, V, A, s);
-    if (w == 1) {  /* the legs side by side */
-        joint_accelerations_legs_rrr(m, 0, 1, s, 0, 2, &results_rrr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            joint_accelerations_place_rrr(w, &results_rrr, leg, leg, qdd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 2; ++leg) {
-            joint_accelerations_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
-            joint_accelerations_place_rrr(w, &results_rrr, leg, 0, qdd, t);
-        }
+    real s[6] = {0}, o_rrr[5*LEGS(2)] = {0};
+    joint_accelerations_before(1, X, V, A, s);
+    joint_accelerations_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), o_rrr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        joint_accelerations_place_rrr(1, LEGS(2), o_rrr, leg, leg, qdd, t);
+    }
+}
+
+INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, verdict *t)
+{
+    real s[6*LANES], o_rrr[5*LANES];
+    joint_accelerations_before(LANES, X, V, A, s);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        joint_accelerations_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        joint_accelerations_place_rrr(LANES, LANES, o_rrr, leg, 0, qdd, t);
     }
 }
 
 /* ---- legs: 182 mul, 104 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], t_ddot_x[LANES], t_ddot_y[LANES];
-} legs_values;
-typedef struct {
-    real entry[4][8], unreachable[8], singular[8];
-} legs_results_rrr;
-
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, legs_values *s)
+INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_dot_x;
+        s[3*w + k] = t_dot_y;
+        s[4*w + k] = t_ddot_x;
+        s[5*w + k] = t_ddot_y;
     }
 }
 
-INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs_values *s, size_t
-    states, size_t count, legs_results_rrr *o)
+INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real J_1_zz = m->J_1_zz[i];
-        const real J_2_zz = m->J_2_zz[i];
-        const real Kd_1_t_2 = m->Kd_1_t_2[i];
-        const real Kd_1_t_3 = m->Kd_1_t_3[i];
-        const real branch_1 = m->branch_1[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_1_x = m->h_1_x[i];
-        const real h_1_y = m->h_1_y[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real inv_Kd_1_t_5 = m->inv_Kd_1_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_t = m->inv_uu_2_t[i];
-        const real rho2_1_t = m->rho2_1_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        /* (rrr-S) from the base point to the connection point */
         const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_link2_mass = m->rrr_link2_mass[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_ = m->size_[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_t = S_x*S_x + S_y*S_y;
-        const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1 = px_1*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1 = py_1*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
-        /* (rrr-K9) discriminant */
-        const real disc_1 = rho2_1 - Kd_1*Kd_1;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1 = branch_1*root(disc_1);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2 = inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2 =
-            inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_t = rrr_platform_joint_offset_x*s_2;
-        const real r_1_x = rrr_joint2_offset_x + c_2*rrr_platform_joint_offset_x;
-        const real r_1_r0_x = c_2*r_1_x + r_1_t*s_2;
-        const real r_1_r0_y = r_1_x*s_2 - c_2*r_1_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1 = 1/rho2_1;
-        const real c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1*s_2 - c_2*s_1;
-        const real axis_y_rrr_axes2_r1_y = c_1*c_2 + s_1*s_2;
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_r0_y = 1/r_1_r0_y;
-        /* (rrr-V7) rate of joint 1 */
-        const real qd_1 = inv_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x -
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-qd_2) rate of joint 2 */
+        const real t_dot_x = s[2*w + j];
+        const real t_dot_y = s[3*w + j];
+        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x -
             axis_y_rrr_axes2_in_base_x*t_dot_y);
-        /* (rrr-V11) angular velocity of link 2 */
-        const real omega_2_z = inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x
-            + axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1*r_1_r0_x) - qd_1;
-        /* (rrr-V10) centripetal tensor of link 1 */
-        const real W_1_t = qd_1*qd_1;
-        /* (rrr-V12) centripetal tensor of link 2 */
-        const real W_2_t = omega_2_z*omega_2_z;
-        /* (rrr-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_x = -W_2_t*rrr_platform_joint_offset_x - W_1_t*c_2*rrr_joint2_offset_x;
-        /* (rrr-V5) reciprocal vector 1 */
-        const real w_1_t = axis_y_rrr_axes2_in_base_y*inv_r_1_r0_y;
-        const real w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_r0_y;
-        /* (rrr-A2) acceleration of the connection point */
-        const real S_ddot_tip_x = axis_y_rrr_axes2_in_base_y*t_ddot_x -
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_omega_2_z =
+            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
+            axis_y_rrr_axes2_in_base_y*t_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-W_1) centripetal tensor of link 1 */
+        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-W_2) centripetal tensor of link 2 */
+        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y;
+        const real rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y;
+        /* (rrr-S_ddot) acceleration of the connection point */
+        const real t_ddot_x = s[4*w + j];
+        const real t_ddot_y = s[5*w + j];
+        const real rrr_S_ddot_tip_x = axis_y_rrr_axes2_in_base_y*t_ddot_x -
             axis_y_rrr_axes2_in_base_x*t_ddot_y;
-        const real S_ddot_tip_y = axis_y_rrr_axes2_in_base_x*t_ddot_x +
+        const real rrr_S_ddot_tip_y = axis_y_rrr_axes2_in_base_x*t_ddot_x +
             axis_y_rrr_axes2_in_base_y*t_ddot_y;
-        /* (rrr-A5) acceleration of the connection point left to the joint accelerations */
-        const real rel_x = S_ddot_tip_x - bias_x;
-        const real rel_y = S_ddot_tip_y + W_1_t*rrr_joint2_offset_x*s_2;
-        /* (rrr-A7) acceleration of joint 1 */
-        const real qdd_1 = inv_r_1_r0_y*rel_x;
-        /* (rrr-N3) acceleration of the reference point of link 2, less gravity */
-        const real acc_2_x = S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+        /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
+        const real rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x;
+        const real rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-qdd_1) acceleration of joint 1 */
+        const real rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x;
+        /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real rrr_acc_2_x = rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
             axis_y_rrr_axes2_in_base_y*gravity_x;
-        const real acc_2_y = S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+        const real rrr_acc_2_y = rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
             axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-N23) inertia moment of the links that turn with link 1, about their reference points */
-        const real mu_1_z = h_1_y*(c_1*g_r0_x + g_r0_y*s_1) - J_1_zz*qdd_1 - h_1_x*(c_1*g_r0_y -
-            g_r0_x*s_1);
-        /* (rrr-A15) angular acceleration of link 2 */
-        const real alpha_2_z = inv_rrr_platform_joint_offset_x*(rel_y + qdd_1*r_1_r0_x) - qdd_1;
-        /* (rrr-N16) inertia moment of the links that turn with link 2, about their reference points */
-        const real mu_2_z = J_2_zz*alpha_2_z + acc_2_y*h_2_x - acc_2_x*h_2_y;
-        /* (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rrr-alpha_2) angular acceleration of link 2 */
+        const real rrr_alpha_2_z = inv_rrr_platform_joint_offset_x*(rrr_rel_y +
+            rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1;
+        /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
+        const real rrr_h_2_x = m->rrr_h_2_x[i];
+        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x -
+            rrr_acc_2_x*rrr_h_2_y;
+        /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
+        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
+        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
+        const real rrr_h_1_x = m->rrr_h_1_x[i];
+        const real rrr_h_1_y = m->rrr_h_1_y[i];
+        const real rrr_mu_1_z = rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
+            rrr_J_1_zz*rrr_qdd_1 - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
-        const real N_1_z = mu_1_z + mu_2_z;
-        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
+        const real rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z;
+        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real G_t = inv_rrr_platform_joint_offset_x*mu_2_z;
-        /* (rrr-N33) leg force on the platform without actuation and without the mass at the connection
+        const real rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z;
+        /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_x = W_2_t*h_2_x + alpha_2_z*h_2_y - inv_r_1_r0_y*(G_t*r_1_r0_x - N_1_z);
-        const real c_y = W_2_t*h_2_y - G_t - alpha_2_z*h_2_x;
-        /* (rrr-N38) leg force on the platform without actuation, the last link's mass included */
-        const real c_true_x = c_x - acc_2_x*rrr_link2_mass;
-        const real c_true_y = c_y - acc_2_y*rrr_link2_mass;
-        const real c_true_in_base_x = axis_y_rrr_axes2_in_base_x*c_true_y +
-            axis_y_rrr_axes2_in_base_y*c_true_x;
-        const real c_true_in_base_y = axis_y_rrr_axes2_in_base_y*c_true_y -
-            axis_y_rrr_axes2_in_base_x*c_true_x;
-        o->entry[0][k] = c_true_in_base_x;
-        o->entry[1][k] = c_true_in_base_y;
-        o->entry[2][k] = -w_1_t;
-        o->entry[3][k] = w_1_t_2;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
-            UNLESS(magnitude(-r_1_r0_y) > TOLERANCE*size_);
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
+        const real rrr_c_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y -
+            inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x - rrr_N_1_z);
+        const real rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x;
+        /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
+        const real rrr_link2_mass = m->rrr_link2_mass[i];
+        const real rrr_c_true_x = rrr_c_x - rrr_acc_2_x*rrr_link2_mass;
+        const real rrr_c_true_y = rrr_c_y - rrr_acc_2_y*rrr_link2_mass;
+        const real rrr_c_true_in_base_x = axis_y_rrr_axes2_in_base_x*rrr_c_true_y +
+            axis_y_rrr_axes2_in_base_y*rrr_c_true_x;
+        const real rrr_c_true_in_base_y = axis_y_rrr_axes2_in_base_y*rrr_c_true_y -
+            axis_y_rrr_axes2_in_base_x*rrr_c_true_x;
+        o[0*count + k] = rrr_c_true_in_base_x;
+        o[1*count + k] = rrr_c_true_in_base_y;
+        o[2*count + k] = -rrr_w_1_t;
+        o[3*count + k] = rrr_w_1_t_2;
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[5*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[4*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void legs_place_rrr(size_t w, const legs_results_rrr *o, size_t leg, size_t first, real
+INLINE void legs_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_t first, real
     *leg_force, real *drive, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        leg_force[(3*leg)*w + k] = o->entry[0][first + k];
-        leg_force[(1 + 3*leg)*w + k] = o->entry[1][first + k];
-        drive[(3*leg)*w + k] = o->entry[2][first + k];
-        drive[(1 + 3*leg)*w + k] = o->entry[3][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        leg_force[(3*leg)*w + k] = o[0*count + first + k];
+        leg_force[(1 + 3*leg)*w + k] = o[1*count + first + k];
+        drive[(3*leg)*w + k] = o[2*count + first + k];
+        drive[(1 + 3*leg)*w + k] = o[3*count + first + k];
+        t->unreachable[k] += o[4*count + first + k];
+        t->singular[k] += o[5*count + first + k];
     }
 }
 
-INLINE void legs_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
-    real *leg_force, real *drive, verdict *t)
+INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
+    *leg_force, real *drive, verdict *t)
 {
-    legs_values values, *const s = &values;
-    legs_results_rrr results_rrr;
-    clear(leg_force, 6*w);
-    clear(drive, 6*w);
-    legs_before(w, X, V, A, s);
-    if (w == 1) {  /* the legs side by side */
-        legs_legs_rrr(m, 0, 1, s, 0, 2, &results_rrr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            legs_place_rrr(w, &results_rrr, leg, leg, leg_force, drive, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 2; ++leg) {
-            legs_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
-            legs_place_rrr(w, &results_rrr, leg, 0, leg_force, drive, t);
-        }
+    real s[6] = {0}, o_rrr[6*LEGS(2)] = {0};
+    clear(leg_force, 6);
+    clear(drive, 6);
+    legs_before(1, X, V, A, s);
+    legs_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), o_rrr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        legs_place_rrr(1, LEGS(2), o_rrr, leg, leg, leg_force, drive, t);
     }
 }
 
 /* ---- potential: 90 mul, 56 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], potential_t[LANES], sum[1][LANES];
-} potential_values;
-typedef struct {
-    real sum[1][8], unreachable[8], singular[8];
-} potential_results_rrr;
-
-INLINE void potential_before(const prepared *m, size_t w, const real *X, potential_values *s)
+INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
+        /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real h_star_x = m->h_star_x;
         const real h_star_y = m->h_star_y;
         const real m_star = m->m_star;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        /* (V1) potential energy */
         const real potential_t = gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y +
             m_star*t_y);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->potential_t[k] = potential_t;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = potential_t;
     }
 }
 
-INLINE void potential_legs_rrr(const prepared *m, size_t leg, size_t legs, const potential_values
-    *s, size_t states, size_t count, int add, potential_results_rrr *o)
+INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real Kd_1_t_2 = m->Kd_1_t_2[i];
-        const real Kd_1_t_3 = m->Kd_1_t_3[i];
-        const real b_r0_x = m->b_r0_x[i];
-        const real b_r0_y = m->b_r0_y[i];
-        const real branch_1 = m->branch_1[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_1_x = m->h_1_x[i];
-        const real h_1_y = m->h_1_y[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real inv_Kd_1_t_5 = m->inv_Kd_1_t_5[i];
-        const real inv_uu_2_t = m->inv_uu_2_t[i];
-        const real rho2_1_t = m->rho2_1_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        /* (rrr-S) from the base point to the connection point */
         const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_link1_mass = m->rrr_link1_mass[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_t = S_x*S_x + S_y*S_y;
-        const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1 = px_1*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1 = py_1*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
-        /* (rrr-K9) discriminant */
-        const real disc_1 = rho2_1 - Kd_1*Kd_1;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1 = branch_1*root(disc_1);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2 = inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2 =
-            inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1 = 1/rho2_1;
-        const real c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1);
-        /* (V1) potential energy */
-        const real potential_t_2 = (c_1*g_r0_x + g_r0_y*s_1)*(h_1_x + c_2*h_2_x + h_2_y*s_2 +
-            rrr_link1_mass*(b_r0_x*c_1 + b_r0_y*s_1)) + (c_1*g_r0_y - g_r0_x*s_1)*(h_1_y +
-            c_2*h_2_y + rrr_link1_mass*(b_r0_y*c_1 - b_r0_x*s_1) - h_2_x*s_2);
-        o->sum[0][k] = add ? o->sum[0][k] + potential_t_2 : potential_t_2;  /* total_rrr */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t);
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (potential) potential energy */
+        const real rrr_b_r0_x = m->rrr_b_r0_x[i];
+        const real rrr_b_r0_y = m->rrr_b_r0_y[i];
+        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
+        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
+        const real rrr_h_1_x = m->rrr_h_1_x[i];
+        const real rrr_h_1_y = m->rrr_h_1_y[i];
+        const real rrr_h_2_x = m->rrr_h_2_x[i];
+        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_link1_mass = m->rrr_link1_mass[i];
+        const real rrr_potential_t = (rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1)*(rrr_h_1_x +
+            rrr_c_2*rrr_h_2_x + rrr_h_2_y*rrr_s_2 + rrr_link1_mass*(rrr_b_r0_x*rrr_c_1 +
+            rrr_b_r0_y*rrr_s_1)) + (rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)*(rrr_h_1_y +
+            rrr_c_2*rrr_h_2_y + rrr_link1_mass*(rrr_b_r0_y*rrr_c_1 - rrr_b_r0_x*rrr_s_1) -
+            rrr_h_2_x*rrr_s_2);
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_potential_t : rrr_potential_t;  /* total_rrr */
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
+        o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void potential_place_rrr(size_t w, const potential_results_rrr *o, size_t first, verdict
-    *t)
+INLINE void potential_place_rrr(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        t->unreachable[k] += o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
     }
 }
 
-INLINE void potential_after(size_t w, const potential_values *s, real *potential)
+INLINE void potential_after(size_t w, const real *s, const real *sums, real *potential)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real potential_t = s->potential_t[k];
-        const real total_rrr = s->sum[0][k];
-        /* (V1) potential energy */
+        /* (potential) potential energy */
+        const real potential_t = s[2*w + k];
+        const real total_rrr = sums[0*w + k];
         const real potential_ = -potential_t - total_rrr;
         potential[0*w + k] = potential_;
     }
 }
 
-INLINE void potential_run(const prepared *m, size_t w, const real *X, real *potential, verdict *t)
+INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    potential_values values, *const s = &values;
-    potential_results_rrr results_rrr;
-    potential_before(m, w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        potential_legs_rrr(m, 0, 1, s, 0, 2, 0, &results_rrr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            potential_place_rrr(w, &results_rrr, leg, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_rrr.sum[n], 2);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            potential_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
-            potential_place_rrr(w, &results_rrr, 0, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_rrr.sum[n][k];
-            }
-        }
+    real s[3] = {0}, sums[1] = {0}, terms_rrr[1*LEGS(2)] = {0}, o_rrr[2*LEGS(2)] = {0};
+    potential_before(m, 1, X, s);
+    potential_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        potential_place_rrr(1, LEGS(2), o_rrr, leg, t);
     }
-    potential_after(w, s, potential);
+    for (size_t n = 0; n < 1; ++n) {
+        sums[n] = total(terms_rrr + n*LEGS(2), 2);
+    }
+    potential_after(1, s, sums, potential);
 }
 
 /* ---- condition: 91 mul, 50 add, 4 div, 5 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], sum[1][LANES];
-} condition_values;
-typedef struct {
-    real sum[1][8], entry[4][8], unreachable[8], singular[8];
-} condition_results_rrr;
-
-INLINE void condition_before(const prepared *m, size_t w, const real *X, condition_values *s, real
-    *lengths)
+INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real legs_size = m->legs_size;
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
+        t->total[k] += legs_size;
     }
 }
 
-INLINE void condition_legs_rrr(const prepared *m, size_t leg, size_t legs, const condition_values
-    *s, size_t states, size_t count, int add, condition_results_rrr *o)
+INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real b_c_x = m->b_c_x;
-        const real b_c_y = m->b_c_y;
-        const real Kd_1_t_2 = m->Kd_1_t_2[i];
-        const real Kd_1_t_3 = m->Kd_1_t_3[i];
-        const real branch_1 = m->branch_1[i];
-        const real inv_Kd_1_t_5 = m->inv_Kd_1_t_5[i];
-        const real inv_rho2_1_t_4 = m->inv_rho2_1_t_4[i];
-        const real inv_size = m->inv_size[i];
-        const real inv_uu_2_t = m->inv_uu_2_t[i];
-        const real rho2_1_t = m->rho2_1_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        /* (rrr-S) from the base point to the connection point */
         const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_ = m->size_[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_t = S_x*S_x + S_y*S_y;
-        const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1 = px_1*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1 = py_1*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
-        /* (rrr-K9) discriminant */
-        const real disc_1 = rho2_1 - Kd_1*Kd_1;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1 = branch_1*root(disc_1);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2 = inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2 =
-            inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_x = rrr_joint2_offset_x + c_2*rrr_platform_joint_offset_x;
-        const real r_1_r0_y = r_1_x*s_2 - c_2*rrr_platform_joint_offset_x*s_2;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1 = 1/rho2_1;
-        const real c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1*s_2 - c_2*s_1;
-        const real axis_y_rrr_axes2_r1_y = c_1*c_2 + s_1*s_2;
-        const real inv_r_1_r0_y = 1/r_1_r0_y;
-        const real w_1_t = inv_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        const real rrr_w_1_t = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy);
-        const real w_1_t_2 = inv_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
+        const real rrr_w_1_t_2 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy);
-        /* (C2) rms distance of the platform points from their centroid */
-        const real spread_t_2 = b_c_x - rrr_platform_point_x;
-        const real spread_t_3 = b_c_y - rrr_platform_point_y;
-        const real spread_t_4 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3;
-        /* (rrr-K8) squared amplitude */
-        const real pivot_size = magnitude(rho2_1);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real pivot_size_2 = magnitude(r_1_r0_y);
-        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_x = m->b_c_x;
+        const real rrr_spread_t = b_c_x - rrr_platform_point_x;
+        const real b_c_y = m->b_c_y;
+        const real rrr_spread_t_2 = b_c_y - rrr_platform_point_y;
+        const real rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_pivot_size = magnitude(rrr_rho2_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real rrr_pivot_size_2 = magnitude(rrr_r_1_r0_y);
+        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real least_pivots = lesser(root(inv_rho2_1_t_4*pivot_size), inv_size*pivot_size_2);
-        o->sum[0][k] = add ? o->sum[0][k] + spread_t_4 : spread_t_4;  /* total_rrr */
-        o->entry[0][k] = -w_1_t;
-        o->entry[1][k] = w_1_t_2;
-        o->entry[2][k] = least_pivots;
-        o->entry[3][k] = disc_1;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
-            UNLESS(magnitude(-r_1_r0_y) > TOLERANCE*size_);
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
+        const real inv_rrr_rho2_1_t_4 = m->inv_rrr_rho2_1_t_4[i];
+        const real inv_rrr_size = m->inv_rrr_size[i];
+        const real rrr_least_pivots = lesser(root(inv_rrr_rho2_1_t_4*rrr_pivot_size),
+            inv_rrr_size*rrr_pivot_size_2);
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_spread_t_3 : rrr_spread_t_3;  /* total_rrr */
+        o[0*count + k] = -rrr_w_1_t;
+        o[1*count + k] = rrr_w_1_t_2;
+        o[2*count + k] = rrr_least_pivots;
+        o[3*count + k] = rrr_disc_1;
+        o[6*count + k] = (rrr_w_1_t + rrr_w_1_t_2) + (rrr_least_pivots + rrr_disc_1);
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[5*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[4*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void condition_place_rrr(size_t w, const condition_results_rrr *o, size_t leg, size_t
-    first, real *H, real *pivots, real *reach, verdict *t)
+INLINE void condition_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_t first,
+    real *H, real *pivots, real *reach, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(2 + leg)*w + k] = o->entry[1][first + k];
-        pivots[(leg)*w + k] = o->entry[2][first + k];
-        reach[(leg)*w + k] = o->entry[3][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(2 + leg)*w + k] = o[1*count + first + k];
+        pivots[(leg)*w + k] = o[2*count + first + k];
+        reach[(leg)*w + k] = o[3*count + first + k];
+        t->unreachable[k] += o[4*count + first + k];
+        t->singular[k] += o[5*count + first + k];
+        t->total[k] += o[6*count + first + k];
     }
 }
 
-INLINE void condition_after(const prepared *m, size_t w, const condition_values *s, real *lengths)
+INLINE void condition_after(const prepared *m, size_t w, const real *sums, real *lengths, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real total_rrr = s->sum[0][k];
+        /* (spread) rms distance of the platform points from their centroid */
         const real spread_t = m->spread_t;
-        /* (C2) rms distance of the platform points from their centroid */
+        const real total_rrr = sums[0*w + k];
         const real spread_ = spread_t*root(total_rrr);
         lengths[0*w + k] = spread_;
+        t->total[k] += spread_;
     }
 }
 
-INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, real *lengths, real
-    *pivots, real *reach, verdict *t)
+INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
+    real *reach, verdict *t)
 {
-    condition_values values, *const s = &values;
-    condition_results_rrr results_rrr;
-    condition_before(m, w, X, s, lengths);
-    if (w == 1) {  /* the legs side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        condition_legs_rrr(m, 0, 1, s, 0, 2, 0, &results_rrr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            condition_place_rrr(w, &results_rrr, leg, leg, H, pivots, reach, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_rrr.sum[n], 2);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            condition_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
-            condition_place_rrr(w, &results_rrr, leg, 0, H, pivots, reach, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_rrr.sum[n][k];
-            }
-        }
+    real s[2] = {0}, sums[1] = {0}, terms_rrr[1*LEGS(2)] = {0}, o_rrr[7*LEGS(2)] = {0};
+    condition_before(m, 1, X, s, lengths, t);
+    condition_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        condition_place_rrr(1, LEGS(2), o_rrr, leg, leg, H, pivots, reach, t);
     }
-    condition_after(m, w, s, lengths);
+    for (size_t n = 0; n < 1; ++n) {
+        sums[n] = total(terms_rrr + n*LEGS(2), 2);
+    }
+    condition_after(m, 1, sums, lengths, t);
 }
 
 /* ---- what users call, as steps over these ---- */
 
-INLINE void M_any(const prepared *m, size_t w, const real *X, real *M_out, int *code)
+INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(2, 1, X, why.invalid);
+    M_run(m, X, M_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(4, 1, M_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(4, M_out);
+    }
+}
+
+INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
     real X_in[2*LANES], M[4*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    M_run(m, w, X, M, &why);
-    check(4, w, M, why.overflow);
-    judge(&why, w, code);
-    deliver(M, 4, w, code, M_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    M_run_lanes(m, X, M, &why);
+    suspect(&why, code);
+    deliver(4, M, M_out);
 }
 
-INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, real *Z_out, int
-    *code)
+INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 2) + total(V, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+    }
+    Z_run(m, X, V, Z_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(2, 1, Z_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(2, Z_out);
+    }
+}
+
+INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     real X_in[2*LANES], V_in[2*LANES], Z[2*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    V = side_by_side(2, w, V, V_in, why.invalid);
-    Z_run(m, w, X, V, Z, &why);
-    check(2, w, Z, why.overflow);
-    judge(&why, w, code);
-    deliver(Z, 2, w, code, Z_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    V = side_by_side(2, V, V_in, why.total);
+    Z_run_lanes(m, X, V, Z, &why);
+    suspect(&why, code);
+    deliver(2, Z, Z_out);
 }
 
-INLINE void H_any(const prepared *m, size_t w, const real *X, real *H_out, int *code)
+INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(2, 1, X, why.invalid);
+    H_run(m, X, H_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(4, 1, H_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(4, H_out);
+    }
+}
+
+INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
     real X_in[2*LANES], H[4*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    H_run(m, w, X, H, &why);
-    check(4, w, H, why.overflow);
-    judge(&why, w, code);
-    deliver(H, 4, w, code, H_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    H_run_lanes(m, X, H, &why);
+    suspect(&why, code);
+    deliver(4, H, H_out);
 }
 
-INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, real *q_out, int
-    *code)
+INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(2, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(4, 1, q_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(4, q_out);
+    }
+}
+
+INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     real X_in[2*LANES], q[4*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    inverse_kinematics_run(m, w, X, q, &why);
-    check(4, w, q, why.overflow);
-    judge(&why, w, code);
-    deliver(q, 4, w, code, q_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    suspect(&why, code);
+    deliver(4, q, q_out);
 }
 
-INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *qd_out, int *code)
+INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 2) + total(V, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+    }
+    joint_rates_run(m, X, V, qd_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(4, 1, qd_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(4, qd_out);
+    }
+}
+
+INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
 {
     real X_in[2*LANES], V_in[2*LANES], qd[4*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    V = side_by_side(2, w, V, V_in, why.invalid);
-    joint_rates_run(m, w, X, V, qd, &why);
-    check(4, w, qd, why.overflow);
-    judge(&why, w, code);
-    deliver(qd, 4, w, code, qd_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    V = side_by_side(2, V, V_in, why.total);
+    joint_rates_run_lanes(m, X, V, qd, &why);
+    suspect(&why, code);
+    deliver(4, qd, qd_out);
 }
 
-INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd_out, int *code)
+INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 2) + total(V, 2) + total(A, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+        check(2, 1, A, why.invalid);
+    }
+    joint_accelerations_run(m, X, V, A, qdd_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(4, 1, qdd_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(4, qdd_out);
+    }
+}
+
+INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
 {
     real X_in[2*LANES], V_in[2*LANES], A_in[2*LANES], qdd[4*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    V = side_by_side(2, w, V, V_in, why.invalid);
-    A = side_by_side(2, w, A, A_in, why.invalid);
-    joint_accelerations_run(m, w, X, V, A, qdd, &why);
-    check(4, w, qdd, why.overflow);
-    judge(&why, w, code);
-    deliver(qdd, 4, w, code, qdd_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    V = side_by_side(2, V, V_in, why.total);
+    A = side_by_side(2, A, A_in, why.total);
+    joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
+    suspect(&why, code);
+    deliver(4, qdd, qdd_out);
 }
 
-INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *V, real *M_out,
-    real *Z_out, real *H_out, int *code)
+INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 2) + total(V, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+    }
+    dynamics_run(m, X, V, M_out, Z_out, H_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(4, 1, M_out, why.overflow);
+        check(2, 1, Z_out, why.overflow);
+        check(4, 1, H_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(4, M_out);
+        refuse(2, Z_out);
+        refuse(4, H_out);
+    }
+}
+
+INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out, int *code)
 {
     real X_in[2*LANES], V_in[2*LANES], M[4*LANES], Z[2*LANES], H[4*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    V = side_by_side(2, w, V, V_in, why.invalid);
-    dynamics_run(m, w, X, V, M, Z, H, &why);
-    check(4, w, M, why.overflow);
-    check(2, w, Z, why.overflow);
-    check(4, w, H, why.overflow);
-    judge(&why, w, code);
-    deliver(M, 4, w, code, M_out);
-    deliver(Z, 2, w, code, Z_out);
-    deliver(H, 4, w, code, H_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    V = side_by_side(2, V, V_in, why.total);
+    dynamics_run_lanes(m, X, V, M, Z, H, &why);
+    suspect(&why, code);
+    deliver(4, M, M_out);
+    deliver(2, Z, Z_out);
+    deliver(4, H, H_out);
 }
 
-INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, const real *V, const
-    real *A, const real *wrench, real *tau_out, int *code)
+INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, real *x, real
+    *unsure, real *total)
 {
-    real X_in[2*LANES], V_in[2*LANES], A_in[2*LANES], wrench_in[2*LANES], required[2*LANES],
-        H[4*LANES], subtract_2[2*LANES], tau[2*LANES], work[8*LANES];
+    for (size_t k = 0; k < w; ++k) {
+        real a00 = a[(0)*w + k];
+        real a01 = a[(1)*w + k];
+        real b0 = b[0*w + k];
+        real a10 = a[(1*stride + 0)*w + k];
+        real a11 = a[(1*stride + 1)*w + k];
+        real b1 = b[1*w + k];
+        const real f0 = 1/a00;
+        const real d1 = a00*a11 - a10*a01;
+        const real f1 = a00/d1;
+        const real g10 = a10*f0;
+        b1 -= g10*b0;
+        const real x1 = (b1)*f1;
+        const real x0 = (b0)*f0 - a01*f0*x1;
+        x[0*w + k] = x0;
+        x[1*w + k] = x1;
+        total[k] += x0 + x1;
+        const real most0 = magnitude(g10);
+        const real most1 = magnitude(f1);
+        const real most2 = magnitude(f0);
+        unsure[k] += UNLESS(most0 <= R(40)) + UNLESS(most1 <= R(250)) + UNLESS(most2 <= R(1000)) +
+            UNLESS(is_finite(a00 + d1));
+    }
+}
+
+INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau_out, int *code)
+{
+    real wrench_in[2], required[2] = {0}, H[4] = {0}, subtract_2[2] = {0}, unsure_4[1] = {0}, work[8];
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    V = side_by_side(2, w, V, V_in, why.invalid);
-    A = side_by_side(2, w, A, A_in, why.invalid);
-    wrench = optional(2, w, wrench, 0, wrench_in, why.invalid);
-    required_run(m, w, X, V, A, required, H, &why);
+    start(1, &why);
+    const real total_in = total(X, 2) + total(V, 2) + total(A, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+        check(2, 1, A, why.invalid);
+    }
+    wrench = optional(2, wrench, 0, wrench_in, why.invalid);
+    required_run(m, X, V, A, required, H, &why);
     const real *const extend_1 = wrench;
-    for (size_t i = 0; i < 2*w; ++i) {
+    for (size_t i = 0; i < 2; ++i) {
         subtract_2[i] = required[i] - extend_1[i];
     }
-    set_matrix(2, w, H, work);
-    solve(2, w, subtract_2, work, tau, why.singular);
-    check(2, w, tau, why.overflow);
-    judge(&why, w, code);
-    deliver(tau, 2, w, code, tau_out);
+    eliminate_0(1, 2, H, subtract_2, tau_out, unsure_4, why.total);
+    if (unsure_4[0] > 0) {
+        set_matrix(2, 1, H, work);
+        solve_apart(2, subtract_2, work, tau_out, why.singular);
+        check(2, 1, tau_out, why.overflow);
+    }
+    if (!is_finite(why.total[0])) {
+        check(2, 1, tau_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(2, tau_out);
+    }
 }
 
-INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, const real *V, const
-    real *tau, const real *wrench, real *A_out, int *code)
+INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau_out, int *code)
 {
-    real X_in[2*LANES], V_in[2*LANES], tau_in[2*LANES], wrench_in[2*LANES], M[4*LANES], Z[2*LANES],
-        H[4*LANES], times_1[2*LANES] = {0}, add_3[2*LANES], subtract_4[2*LANES], A[2*LANES],
-        work[8*LANES];
+    real X_in[2*LANES], V_in[2*LANES], A_in[2*LANES], wrench_in[2*LANES], required[2*LANES],
+        H[4*LANES], subtract_2[2*LANES], tau[2*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    V = side_by_side(2, w, V, V_in, why.invalid);
-    tau = side_by_side(2, w, tau, tau_in, why.invalid);
-    wrench = optional(2, w, wrench, 0, wrench_in, why.invalid);
-    dynamics_run(m, w, X, V, M, Z, H, &why);
-    product(2, 2, 1, w, H, tau, times_1);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    V = side_by_side(2, V, V_in, why.total);
+    A = side_by_side(2, A, A_in, why.total);
+    wrench = optional_side_by_side(2, wrench, 0, wrench_in, why.total);
+    required_run_lanes(m, X, V, A, required, H, &why);
+    const real *const extend_1 = wrench;
+    for (size_t i = 0; i < 2*LANES; ++i) {
+        subtract_2[i] = required[i] - extend_1[i];
+    }
+    eliminate_0(LANES, 2, H, subtract_2, tau, why.singular, why.total);
+    suspect(&why, code);
+    deliver(2, tau, tau_out);
+}
+
+INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
+    const real *wrench, real *A_out, int *code)
+{
+    real wrench_in[2], M[4] = {0}, Z[2] = {0}, H[4] = {0}, times_1[2] = {0}, add_3[2] = {0},
+        subtract_4[2] = {0}, unsure_7[1] = {0}, work[8];
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 2) + total(V, 2) + total(tau, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+        check(2, 1, tau, why.invalid);
+    }
+    wrench = optional(2, wrench, 0, wrench_in, why.invalid);
+    dynamics_run(m, X, V, M, Z, H, &why);
+    product(2, 2, 1, 1, H, tau, times_1);
     const real *const extend_2 = wrench;
-    for (size_t i = 0; i < 2*w; ++i) {
+    for (size_t i = 0; i < 2; ++i) {
         add_3[i] = times_1[i] + extend_2[i];
     }
-    for (size_t i = 0; i < 2*w; ++i) {
+    for (size_t i = 0; i < 2; ++i) {
         subtract_4[i] = add_3[i] - Z[i];
     }
-    set_matrix(2, w, M, work);
-    solve(2, w, subtract_4, work, A, why.singular);
-    check(2, w, A, why.overflow);
-    judge(&why, w, code);
-    deliver(A, 2, w, code, A_out);
+    eliminate_0(1, 2, M, subtract_4, A_out, unsure_7, why.total);
+    if (unsure_7[0] > 0) {
+        set_matrix(2, 1, M, work);
+        solve_apart(2, subtract_4, work, A_out, why.singular);
+        check(2, 1, A_out, why.overflow);
+    }
+    if (!is_finite(why.total[0])) {
+        check(2, 1, A_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(2, A_out);
+    }
 }
 
-INLINE void complete_acceleration_any(const real *A, real *completed_out, int *code)
+INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
+    *tau, const real *wrench, real *A_out, int *code)
+{
+    real X_in[2*LANES], V_in[2*LANES], tau_in[2*LANES], wrench_in[2*LANES], M[4*LANES], Z[2*LANES],
+        H[4*LANES], times_1[2*LANES] = {0}, add_3[2*LANES], subtract_4[2*LANES], A[2*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    V = side_by_side(2, V, V_in, why.total);
+    tau = side_by_side(2, tau, tau_in, why.total);
+    wrench = optional_side_by_side(2, wrench, 0, wrench_in, why.total);
+    dynamics_run_lanes(m, X, V, M, Z, H, &why);
+    product(2, 2, 1, LANES, H, tau, times_1);
+    const real *const extend_2 = wrench;
+    for (size_t i = 0; i < 2*LANES; ++i) {
+        add_3[i] = times_1[i] + extend_2[i];
+    }
+    for (size_t i = 0; i < 2*LANES; ++i) {
+        subtract_4[i] = add_3[i] - Z[i];
+    }
+    eliminate_0(LANES, 2, M, subtract_4, A, why.singular, why.total);
+    suspect(&why, code);
+    deliver(2, A, A_out);
+}
+
+INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
 {
     verdict why;
     start(1, &why);
     check(2, 1, A, why.invalid);
     const real *const completed = A;
     check(2, 1, completed, why.overflow);
-    judge(&why, 1, code);
-    deliver(completed, 2, 1, code, completed_out);
+    judge(&why, code);
+    copy(2, completed, completed_out);
+    if (*code != OK) {
+        refuse(2, completed_out);
+    }
 }
 
-INLINE void leg_reactions_any(const prepared *m, const real *X, const real *V, const real *A,
+INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out, int *code)
 {
     static const size_t places_0[] = {0, 1};
     real wrench_in[2], required[2] = {0}, H[4] = {0}, subtract_2[2] = {0}, solve_3[2] = {0},
-        leg_force[6] = {0}, drive[6] = {0}, forces[6] = {0}, work[8];
+        unsure_5[1] = {0}, leg_force[6] = {0}, drive[6] = {0}, forces[6] = {0}, work[8];
     verdict why;
     start(1, &why);
-    check(2, 1, X, why.invalid);
-    check(2, 1, V, why.invalid);
-    check(2, 1, A, why.invalid);
-    wrench = optional(2, 1, wrench, 0, wrench_in, why.invalid);
-    required_run(m, 1, X, V, A, required, H, &why);
+    const real total_in = total(X, 2) + total(V, 2) + total(A, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+        check(2, 1, A, why.invalid);
+    }
+    wrench = optional(2, wrench, 0, wrench_in, why.invalid);
+    required_run(m, X, V, A, required, H, &why);
     const real *const extend_1 = wrench;
     for (size_t i = 0; i < 2; ++i) {
         subtract_2[i] = required[i] - extend_1[i];
     }
-    set_matrix(2, 1, H, work);
-    solve_state(2, subtract_2, work, solve_3, why.singular);
-    legs_run(m, 1, X, V, A, leg_force, drive, &why);
+    eliminate_0(1, 2, H, subtract_2, solve_3, unsure_5, why.total);
+    if (unsure_5[0] > 0) {
+        set_matrix(2, 1, H, work);
+        solve_apart(2, subtract_2, work, solve_3, why.singular);
+        check(2, 1, solve_3, why.overflow);
+    }
+    legs_run(m, X, V, A, leg_force, drive, &why);
     for (size_t i = 0; i < 6; ++i) {
         forces[i] = leg_force[i];
     }
     add_forces(2, 3, 1, places_0, solve_3, drive, forces);
     check(6, 1, forces, why.overflow);
-    judge(&why, 1, code);
-    deliver(forces, 6, 1, code, forces_out);
+    judge(&why, code);
+    copy(6, forces, forces_out);
+    if (*code != OK) {
+        refuse(6, forces_out);
+    }
 }
 
-INLINE void energy_any(const prepared *m, const real *X, const real *V, real *kinetic_out, real
+INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out, int *code)
 {
     real M[4] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
     start(1, &why);
-    check(2, 1, X, why.invalid);
-    check(2, 1, V, why.invalid);
-    M_run(m, 1, X, M, &why);
-    potential_run(m, 1, X, potential_of_potential, &why);
+    const real total_in = total(X, 2) + total(V, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+    }
+    M_run(m, X, M, &why);
+    potential_run(m, X, potential_of_potential, &why);
     half_form(2, 1, V, M, kinetic);
     const real *const potential = potential_of_potential;
     check(1, 1, kinetic, why.overflow);
     check(1, 1, potential, why.overflow);
-    judge(&why, 1, code);
-    deliver(kinetic, 1, 1, code, kinetic_out);
-    deliver(potential, 1, 1, code, potential_out);
+    judge(&why, code);
+    copy(1, kinetic, kinetic_out);
+    copy(1, potential, potential_out);
+    if (*code != OK) {
+        refuse(1, kinetic_out);
+        refuse(1, potential_out);
+    }
 }
 
-INLINE void condition_any(const prepared *m, const real *X, real *sigma_out, real *legs_out, int
+INLINE void condition_one(const prepared *m, const real *X, real *sigma_out, real *legs_out, int
     *code)
 {
-    real H[4] = {0}, lengths[2] = {0}, legs[2] = {0}, reach[2] = {0}, sigma[2] = {0};
+    real H[4] = {0}, lengths[2] = {0}, reach[2] = {0}, sigma[2] = {0};
     verdict why;
     start(1, &why);
     check(2, 1, X, why.invalid);
-    condition_run(m, 1, X, H, lengths, legs, reach, &why);
+    condition_run(m, X, H, lengths, legs_out, reach, &why);
     singular_values(2, 2, H, sigma);
+    if (!is_finite(why.total[0])) {
+        check(2, 1, legs_out, why.overflow);
+    }
     check(2, 1, sigma, why.overflow);
-    check(2, 1, legs, why.overflow);
-    judge(&why, 1, code);
-    deliver(sigma, 2, 1, code, sigma_out);
-    deliver(legs, 2, 1, code, legs_out);
+    judge(&why, code);
+    copy(2, sigma, sigma_out);
+    if (*code != OK) {
+        refuse(2, sigma_out);
+        refuse(2, legs_out);
+    }
 }
 
-static void mismatch_any(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
+static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
     static const size_t places_0[] = {0, 2};
@@ -3285,9 +3480,12 @@ static void mismatch_any(const prepared *m, const real *X, const real *q_actuate
     real q[4] = {0}, take_1[2] = {0}, subtract_2[2] = {0}, gap[2] = {0};
     verdict why;
     start(1, &why);
-    check(2, 1, X, why.invalid);
-    check(2, 1, q_actuated, why.invalid);
-    inverse_kinematics_run(m, 1, X, q, &why);
+    const real total_in = total(X, 2) + total(q_actuated, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, q_actuated, why.invalid);
+    }
+    inverse_kinematics_run(m, X, q, &why);
     take(2, 1, places_0, q, take_1);
     for (size_t i = 0; i < 2; ++i) {
         subtract_2[i] = q_actuated[i] - take_1[i];
@@ -3297,20 +3495,26 @@ static void mismatch_any(const prepared *m, const real *X, const real *q_actuate
     }
     wrap_turns(2, 1, places_1, gap);
     check(2, 1, gap, why.overflow);
-    judge(&why, 1, code);
-    deliver(gap, 2, 1, code, gap_out);
+    judge(&why, code);
+    copy(2, gap, gap_out);
+    if (*code != OK) {
+        refuse(2, gap_out);
+    }
 }
 
-static void slope_any(const prepared *m, const real *X, real *slope_out, int *code)
+static void slope_one(const prepared *m, const real *X, real *slope_out, int *code)
 {
-    real slope[4] = {0};
     verdict why;
     start(1, &why);
     check(2, 1, X, why.invalid);
-    H_run(m, 1, X, slope, &why);
-    check(4, 1, slope, why.overflow);
-    judge(&why, 1, code);
-    deliver(slope, 4, 1, code, slope_out);
+    H_run(m, X, slope_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(4, 1, slope_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(4, slope_out);
+    }
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -3321,12 +3525,12 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
     real trial[2] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    mismatch_any(m, found, q_actuated, gap, &code);
+    mismatch_one(m, found, q_actuated, gap, &code);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        slope_any(m, found, slope, &code);
+        slope_one(m, found, slope, &code);
         if (code != OK) {
             break;
         }
@@ -3340,7 +3544,7 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            mismatch_any(m, trial, q_actuated, next, &tried);
+            mismatch_one(m, trial, q_actuated, next, &tried);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -3358,21 +3562,27 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 }
 
 
-INLINE void forward_kinematics_any(const prepared *m, const real *q_actuated, const real *X0, real
+INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
     *X_out, int *code)
 {
     real X[2] = {0};
     verdict why;
     start(1, &why);
-    check(2, 1, q_actuated, why.invalid);
-    check(2, 1, X0, why.invalid);
+    const real total_in = total(q_actuated, 2) + total(X0, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, q_actuated, why.invalid);
+        check(2, 1, X0, why.invalid);
+    }
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(2, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 2, 1, code, X_out);
+    judge(&why, code);
+    copy(2, X, X_out);
+    if (*code != OK) {
+        refuse(2, X_out);
+    }
 }
 
-INLINE void dissipation_any(const real *V, real *dissipation_out, int *code)
+INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 {
     real subtract_1[2] = {0};
     verdict why;
@@ -3383,130 +3593,323 @@ INLINE void dissipation_any(const real *V, real *dissipation_out, int *code)
     }
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
-    judge(&why, 1, code);
-    deliver(dissipation, 1, 1, code, dissipation_out);
+    judge(&why, code);
+    copy(1, dissipation, dissipation_out);
+    if (*code != OK) {
+        refuse(1, dissipation_out);
+    }
 }
 
-INLINE void momentum_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *momentum_out, int *code)
+INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
+    *code)
+{
+    real M[4] = {0}, momentum[2] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 2) + total(V, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+    }
+    M_run(m, X, M, &why);
+    product(2, 2, 1, 1, M, V, momentum);
+    check(2, 1, momentum, why.overflow);
+    judge(&why, code);
+    copy(2, momentum, momentum_out);
+    if (*code != OK) {
+        refuse(2, momentum_out);
+    }
+}
+
+INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
+    int *code)
 {
     real X_in[2*LANES], V_in[2*LANES], M[4*LANES], momentum[2*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    V = side_by_side(2, w, V, V_in, why.invalid);
-    M_run(m, w, X, M, &why);
-    product(2, 2, 1, w, M, V, momentum);
-    check(2, w, momentum, why.overflow);
-    judge(&why, w, code);
-    deliver(momentum, 2, w, code, momentum_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    V = side_by_side(2, V, V_in, why.total);
+    M_run_lanes(m, X, M, &why);
+    product(2, 2, 1, LANES, M, V, momentum);
+    add_up(2, momentum, why.total);
+    suspect(&why, code);
+    deliver(2, momentum, momentum_out);
 }
 
-INLINE void actuator_positions_any(const prepared *m, size_t w, const real *X, real *q_out, int
-    *code)
+INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
+{
+    static const size_t places_0[] = {0, 1, 2, 3};
+    real q[4] = {0}, margins[4] = {0};
+    verdict why;
+    start(1, &why);
+    check(2, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q, &why);
+    for (size_t i = 0; i < 4; ++i) {
+        margins[i] = q[i];
+    }
+    unlimited(4, 4, 1, places_0, margins, why.overflow);
+    judge(&why, code);
+    copy(4, margins, margins_out);
+    if (*code != OK) {
+        refuse(4, margins_out);
+    }
+}
+
+INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
+{
+    static const size_t places_0[] = {0, 1, 2, 3};
+    real X_in[2*LANES], q[4*LANES], margins[4*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    for (size_t i = 0; i < 4*LANES; ++i) {
+        margins[i] = q[i];
+    }
+    unlimited(4, 4, LANES, places_0, margins, why.invalid);
+    suspect(&why, code);
+    deliver(4, margins, margins_out);
+}
+
+INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
+{
+    real q[4] = {0}, subtract_1[4] = {0}, within[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(2, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q, &why);
+    for (size_t i = 0; i < 4; ++i) {
+        subtract_1[i] = q[i] - q[i];
+    }
+    not_negative(4, 1, subtract_1, within, why.overflow);
+    check(1, 1, within, why.overflow);
+    judge(&why, code);
+    copy(1, within, within_out);
+    if (*code != OK) {
+        refuse(1, within_out);
+    }
+}
+
+INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
+{
+    real X_in[2*LANES], q[4*LANES], subtract_1[4*LANES], within[1*LANES] = {0};
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    for (size_t i = 0; i < 4*LANES; ++i) {
+        subtract_1[i] = q[i] - q[i];
+    }
+    not_negative(4, LANES, subtract_1, within, why.invalid);
+    add_up(1, within, why.total);
+    suspect(&why, code);
+    deliver(1, within, within_out);
+}
+
+INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
+{
+    static const size_t places_0[] = {0, 2};
+    real q_of_inverse_kinematics[4] = {0}, q[2] = {0};
+    verdict why;
+    start(1, &why);
+    check(2, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
+    take(2, 1, places_0, q_of_inverse_kinematics, q);
+    check(2, 1, q, why.overflow);
+    judge(&why, code);
+    copy(2, q, q_out);
+    if (*code != OK) {
+        refuse(2, q_out);
+    }
+}
+
+INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     static const size_t places_0[] = {0, 2};
     real X_in[2*LANES], q_of_inverse_kinematics[4*LANES], q[2*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    inverse_kinematics_run(m, w, X, q_of_inverse_kinematics, &why);
-    take(2, 1*w, places_0, q_of_inverse_kinematics, q);
-    check(2, w, q, why.overflow);
-    judge(&why, w, code);
-    deliver(q, 2, w, code, q_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
+    take(2, 1*LANES, places_0, q_of_inverse_kinematics, q);
+    add_up(2, q, why.total);
+    suspect(&why, code);
+    deliver(2, q, q_out);
 }
 
-INLINE void actuator_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *qd_out, int *code)
+INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
+{
+    static const size_t places_0[] = {0, 2};
+    real qd_of_joint_rates[4] = {0}, qd[2] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 2) + total(V, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+    }
+    joint_rates_run(m, X, V, qd_of_joint_rates, &why);
+    take(2, 1, places_0, qd_of_joint_rates, qd);
+    check(2, 1, qd, why.overflow);
+    judge(&why, code);
+    copy(2, qd, qd_out);
+    if (*code != OK) {
+        refuse(2, qd_out);
+    }
+}
+
+INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
+    int *code)
 {
     static const size_t places_0[] = {0, 2};
     real X_in[2*LANES], V_in[2*LANES], qd_of_joint_rates[4*LANES], qd[2*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    V = side_by_side(2, w, V, V_in, why.invalid);
-    joint_rates_run(m, w, X, V, qd_of_joint_rates, &why);
-    take(2, 1*w, places_0, qd_of_joint_rates, qd);
-    check(2, w, qd, why.overflow);
-    judge(&why, w, code);
-    deliver(qd, 2, w, code, qd_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    V = side_by_side(2, V, V_in, why.total);
+    joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
+    take(2, 1*LANES, places_0, qd_of_joint_rates, qd);
+    add_up(2, qd, why.total);
+    suspect(&why, code);
+    deliver(2, qd, qd_out);
 }
 
-INLINE void actuator_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd_out, int *code)
+INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
+{
+    static const size_t places_0[] = {0, 2};
+    real qdd_of_joint_accelerations[4] = {0}, qdd[2] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 2) + total(V, 2) + total(A, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+        check(2, 1, A, why.invalid);
+    }
+    joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
+    take(2, 1, places_0, qdd_of_joint_accelerations, qdd);
+    check(2, 1, qdd, why.overflow);
+    judge(&why, code);
+    copy(2, qdd, qdd_out);
+    if (*code != OK) {
+        refuse(2, qdd_out);
+    }
+}
+
+INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out, int *code)
 {
     static const size_t places_0[] = {0, 2};
     real X_in[2*LANES], V_in[2*LANES], A_in[2*LANES], qdd_of_joint_accelerations[4*LANES],
         qdd[2*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    V = side_by_side(2, w, V, V_in, why.invalid);
-    A = side_by_side(2, w, A, A_in, why.invalid);
-    joint_accelerations_run(m, w, X, V, A, qdd_of_joint_accelerations, &why);
-    take(2, 1*w, places_0, qdd_of_joint_accelerations, qdd);
-    check(2, w, qdd, why.overflow);
-    judge(&why, w, code);
-    deliver(qdd, 2, w, code, qdd_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    V = side_by_side(2, V, V_in, why.total);
+    A = side_by_side(2, A, A_in, why.total);
+    joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
+    take(2, 1*LANES, places_0, qdd_of_joint_accelerations, qdd);
+    add_up(2, qdd, why.total);
+    suspect(&why, code);
+    deliver(2, qdd, qdd_out);
 }
 
-INLINE void power_any(const prepared *m, size_t w, const real *X, const real *V, const real *tau,
-    real *power_out, int *code)
+INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out, int *code)
+{
+    real H[4] = {0}, times_1[2] = {0}, power[1] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 2) + total(V, 2) + total(tau, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, V, why.invalid);
+        check(2, 1, tau, why.invalid);
+    }
+    H_run(m, X, H, &why);
+    product(2, 2, 1, 1, H, tau, times_1);
+    inner(2, 1, times_1, V, power);
+    check(1, 1, power, why.overflow);
+    judge(&why, code);
+    copy(1, power, power_out);
+    if (*code != OK) {
+        refuse(1, power_out);
+    }
+}
+
+INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out, int *code)
 {
     real X_in[2*LANES], V_in[2*LANES], tau_in[2*LANES], H[4*LANES], times_1[2*LANES] = {0},
         power[1*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(2, w, X, X_in, why.invalid);
-    V = side_by_side(2, w, V, V_in, why.invalid);
-    tau = side_by_side(2, w, tau, tau_in, why.invalid);
-    H_run(m, w, X, H, &why);
-    product(2, 2, 1, w, H, tau, times_1);
-    inner(2, w, times_1, V, power);
-    check(1, w, power, why.overflow);
-    judge(&why, w, code);
-    deliver(power, 1, w, code, power_out);
+    start(LANES, &why);
+    X = side_by_side(2, X, X_in, why.total);
+    V = side_by_side(2, V, V_in, why.total);
+    tau = side_by_side(2, tau, tau_in, why.total);
+    H_run_lanes(m, X, H, &why);
+    product(2, 2, 1, LANES, H, tau, times_1);
+    inner(2, LANES, times_1, V, power);
+    add_up(1, power, why.total);
+    suspect(&why, code);
+    deliver(1, power, power_out);
 }
 
-INLINE void retract_any(const real *X, const real *step, real *X_moved_out, int *code)
+INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
 {
     real X_moved[2] = {0};
     verdict why;
     start(1, &why);
-    check(2, 1, X, why.invalid);
-    check(2, 1, step, why.invalid);
+    const real total_in = total(X, 2) + total(step, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X, why.invalid);
+        check(2, 1, step, why.invalid);
+    }
     for (size_t i = 0; i < 2; ++i) {
         X_moved[i] = X[i] + step[i];
     }
     check(2, 1, X_moved, why.overflow);
-    judge(&why, 1, code);
-    deliver(X_moved, 2, 1, code, X_moved_out);
+    judge(&why, code);
+    copy(2, X_moved, X_moved_out);
+    if (*code != OK) {
+        refuse(2, X_moved_out);
+    }
 }
 
-INLINE void difference_any(const real *X0, const real *X1, real *step_out, int *code)
+INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
 {
     real step[2] = {0};
     verdict why;
     start(1, &why);
-    check(2, 1, X0, why.invalid);
-    check(2, 1, X1, why.invalid);
+    const real total_in = total(X0, 2) + total(X1, 2);
+    if (!is_finite(total_in)) {
+        check(2, 1, X0, why.invalid);
+        check(2, 1, X1, why.invalid);
+    }
     for (size_t i = 0; i < 2; ++i) {
         step[i] = X1[i] - X0[i];
     }
     check(2, 1, step, why.overflow);
-    judge(&why, 1, code);
-    deliver(step, 2, 1, code, step_out);
+    judge(&why, code);
+    copy(2, step, step_out);
+    if (*code != OK) {
+        refuse(2, step_out);
+    }
 }
 
-INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real *X_out, int *code)
+INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
 {
     real subtract_1[2] = {0}, scale_2[2] = {0}, X[2] = {0};
     verdict why;
     start(1, &why);
-    check(2, 1, X0, why.invalid);
-    check(2, 1, X1, why.invalid);
-    check(1, 1, s, why.invalid);
+    const real total_in = total(X0, 2) + total(X1, 2) + total(s, 1);
+    if (!is_finite(total_in)) {
+        check(2, 1, X0, why.invalid);
+        check(2, 1, X1, why.invalid);
+        check(1, 1, s, why.invalid);
+    }
     for (size_t i = 0; i < 2; ++i) {
         subtract_1[i] = X1[i] - X0[i];
     }
@@ -3517,8 +3920,11 @@ INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real 
         X[i] = X0[i] + scale_2[i];
     }
     check(2, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 2, 1, code, X_out);
+    judge(&why, code);
+    copy(2, X, X_out);
+    if (*code != OK) {
+        refuse(2, X_out);
+    }
 }
 
 /* ---- one state, and batches ---- */
@@ -3527,7 +3933,7 @@ int fivebar_revolute_M(const fivebar_revolute_model *model, const fivebar_revolu
     fivebar_revolute_real *M)
 {
     int code;
-    M_any(model, 1, X, M, &code);
+    M_one(model, X, M, &code);
     return code;
 }
 
@@ -3535,9 +3941,9 @@ size_t fivebar_revolute_M_batch(const fivebar_revolute_model *model, size_t n, c
     fivebar_revolute_real *X, fivebar_revolute_real *M, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        M_any(model, LANES, X + 2*i, M + 4*i, codes);
+        M_lanes(model, X + 2*i, M + 4*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_revolute_M(model, X + 2*(i + k), M + 4*(i + k));
@@ -3556,7 +3962,7 @@ int fivebar_revolute_Z(const fivebar_revolute_model *model, const fivebar_revolu
     fivebar_revolute_real *V, fivebar_revolute_real *Z)
 {
     int code;
-    Z_any(model, 1, X, V, Z, &code);
+    Z_one(model, X, V, Z, &code);
     return code;
 }
 
@@ -3565,9 +3971,9 @@ size_t fivebar_revolute_Z_batch(const fivebar_revolute_model *model, size_t n, c
     *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        Z_any(model, LANES, X + 2*i, V + 2*i, Z + 2*i, codes);
+        Z_lanes(model, X + 2*i, V + 2*i, Z + 2*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_revolute_Z(model, X + 2*(i + k), V + 2*(i + k), Z + 2*(i + k));
@@ -3586,7 +3992,7 @@ int fivebar_revolute_H(const fivebar_revolute_model *model, const fivebar_revolu
     fivebar_revolute_real *H)
 {
     int code;
-    H_any(model, 1, X, H, &code);
+    H_one(model, X, H, &code);
     return code;
 }
 
@@ -3594,9 +4000,9 @@ size_t fivebar_revolute_H_batch(const fivebar_revolute_model *model, size_t n, c
     fivebar_revolute_real *X, fivebar_revolute_real *H, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        H_any(model, LANES, X + 2*i, H + 4*i, codes);
+        H_lanes(model, X + 2*i, H + 4*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_revolute_H(model, X + 2*(i + k), H + 4*(i + k));
@@ -3615,7 +4021,7 @@ int fivebar_revolute_inverse_kinematics(const fivebar_revolute_model *model, con
     fivebar_revolute_real *X, fivebar_revolute_real *q)
 {
     int code;
-    inverse_kinematics_any(model, 1, X, q, &code);
+    inverse_kinematics_one(model, X, q, &code);
     return code;
 }
 
@@ -3623,9 +4029,9 @@ size_t fivebar_revolute_inverse_kinematics_batch(const fivebar_revolute_model *m
     const fivebar_revolute_real *X, fivebar_revolute_real *q, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_kinematics_any(model, LANES, X + 2*i, q + 4*i, codes);
+        inverse_kinematics_lanes(model, X + 2*i, q + 4*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_revolute_inverse_kinematics(model, X + 2*(i + k), q + 4*(i + k));
@@ -3644,7 +4050,7 @@ int fivebar_revolute_joint_rates(const fivebar_revolute_model *model, const five
     *X, const fivebar_revolute_real *V, fivebar_revolute_real *rates)
 {
     int code;
-    joint_rates_any(model, 1, X, V, rates, &code);
+    joint_rates_one(model, X, V, rates, &code);
     return code;
 }
 
@@ -3653,9 +4059,9 @@ size_t fivebar_revolute_joint_rates_batch(const fivebar_revolute_model *model, s
     *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_rates_any(model, LANES, X + 2*i, V + 2*i, rates + 4*i, codes);
+        joint_rates_lanes(model, X + 2*i, V + 2*i, rates + 4*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_revolute_joint_rates(model, X + 2*(i + k), V + 2*(i + k), rates + 4*(i + k));
@@ -3675,7 +4081,7 @@ int fivebar_revolute_joint_accelerations(const fivebar_revolute_model *model, co
     fivebar_revolute_real *accelerations)
 {
     int code;
-    joint_accelerations_any(model, 1, X, V, A, accelerations, &code);
+    joint_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
@@ -3684,9 +4090,9 @@ size_t fivebar_revolute_joint_accelerations_batch(const fivebar_revolute_model *
     *A, fivebar_revolute_real *accelerations, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_accelerations_any(model, LANES, X + 2*i, V + 2*i, A + 2*i, accelerations + 4*i, codes);
+        joint_accelerations_lanes(model, X + 2*i, V + 2*i, A + 2*i, accelerations + 4*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_revolute_joint_accelerations(model, X + 2*(i + k), V + 2*(i + k), A + 2*(i +
@@ -3708,7 +4114,7 @@ int fivebar_revolute_dynamics(const fivebar_revolute_model *model, const fivebar
     fivebar_revolute_real *H)
 {
     int code;
-    dynamics_any(model, 1, X, V, M, Z, H, &code);
+    dynamics_one(model, X, V, M, Z, H, &code);
     return code;
 }
 
@@ -3717,9 +4123,9 @@ size_t fivebar_revolute_dynamics_batch(const fivebar_revolute_model *model, size
     fivebar_revolute_real *Z, fivebar_revolute_real *H, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        dynamics_any(model, LANES, X + 2*i, V + 2*i, M + 4*i, Z + 2*i, H + 4*i, codes);
+        dynamics_lanes(model, X + 2*i, V + 2*i, M + 4*i, Z + 2*i, H + 4*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_revolute_dynamics(model, X + 2*(i + k), V + 2*(i + k), M + 4*(i + k), Z + 2*(i
@@ -3740,7 +4146,7 @@ int fivebar_revolute_inverse_dynamics(const fivebar_revolute_model *model, const
     const fivebar_revolute_real *wrench, fivebar_revolute_real *tau)
 {
     int code;
-    inverse_dynamics_any(model, 1, X, V, A, wrench, tau, &code);
+    inverse_dynamics_one(model, X, V, A, wrench, tau, &code);
     return code;
 }
 
@@ -3749,10 +4155,10 @@ size_t fivebar_revolute_inverse_dynamics_batch(const fivebar_revolute_model *mod
     *A, const fivebar_revolute_real *wrench, fivebar_revolute_real *tau, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_dynamics_any(model, LANES, X + 2*i, V + 2*i, A + 2*i, wrench ? wrench + 2*i : NULL, tau +
-            2*i, codes);
+        inverse_dynamics_lanes(model, X + 2*i, V + 2*i, A + 2*i, wrench ? wrench + 2*i : NULL, tau + 2*i,
+            codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_revolute_inverse_dynamics(model, X + 2*(i + k), V + 2*(i + k), A + 2*(i + k),
@@ -3774,7 +4180,7 @@ int fivebar_revolute_forward_dynamics(const fivebar_revolute_model *model, const
     const fivebar_revolute_real *wrench, fivebar_revolute_real *A)
 {
     int code;
-    forward_dynamics_any(model, 1, X, V, tau, wrench, A, &code);
+    forward_dynamics_one(model, X, V, tau, wrench, A, &code);
     return code;
 }
 
@@ -3783,10 +4189,10 @@ size_t fivebar_revolute_forward_dynamics_batch(const fivebar_revolute_model *mod
     *tau, const fivebar_revolute_real *wrench, fivebar_revolute_real *A, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        forward_dynamics_any(model, LANES, X + 2*i, V + 2*i, tau + 2*i, wrench ? wrench + 2*i : NULL, A +
-            2*i, codes);
+        forward_dynamics_lanes(model, X + 2*i, V + 2*i, tau + 2*i, wrench ? wrench + 2*i : NULL, A + 2*i,
+            codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_revolute_forward_dynamics(model, X + 2*(i + k), V + 2*(i + k), tau + 2*(i + k),
@@ -3812,7 +4218,7 @@ int fivebar_revolute_complete_acceleration(const fivebar_revolute_model *model, 
     (void)X;
     (void)V;
     (void)wrench;
-    complete_acceleration_any(A, completed, &code);
+    complete_acceleration_one(A, completed, &code);
     return code;
 }
 
@@ -3834,7 +4240,7 @@ int fivebar_revolute_leg_reactions(const fivebar_revolute_model *model, const
     const fivebar_revolute_real *wrench, fivebar_revolute_real *forces)
 {
     int code;
-    leg_reactions_any(model, X, V, A, wrench, forces, &code);
+    leg_reactions_one(model, X, V, A, wrench, forces, &code);
     return code;
 }
 
@@ -3856,7 +4262,7 @@ int fivebar_revolute_energy(const fivebar_revolute_model *model, const fivebar_r
     *potential)
 {
     int code;
-    energy_any(model, X, V, kinetic, potential, &code);
+    energy_one(model, X, V, kinetic, potential, &code);
     return code;
 }
 
@@ -3876,7 +4282,7 @@ int fivebar_revolute_condition(const fivebar_revolute_model *model, const fiveba
     *X, fivebar_revolute_real *sigma, fivebar_revolute_real *legs)
 {
     int code;
-    condition_any(model, X, sigma, legs, &code);
+    condition_one(model, X, sigma, legs, &code);
     return code;
 }
 
@@ -3896,7 +4302,7 @@ int fivebar_revolute_forward_kinematics(const fivebar_revolute_model *model, con
     fivebar_revolute_real *q_actuated, const fivebar_revolute_real *X0, fivebar_revolute_real *X)
 {
     int code;
-    forward_kinematics_any(model, q_actuated, X0, X, &code);
+    forward_kinematics_one(model, q_actuated, X0, X, &code);
     return code;
 }
 
@@ -3918,7 +4324,7 @@ int fivebar_revolute_dissipation(const fivebar_revolute_model *model, const five
     int code;
     (void)model;
     (void)X;
-    dissipation_any(V, dissipation, &code);
+    dissipation_one(V, dissipation, &code);
     return code;
 }
 
@@ -3938,7 +4344,7 @@ int fivebar_revolute_momentum(const fivebar_revolute_model *model, const fivebar
     const fivebar_revolute_real *V, fivebar_revolute_real *momentum)
 {
     int code;
-    momentum_any(model, 1, X, V, momentum, &code);
+    momentum_one(model, X, V, momentum, &code);
     return code;
 }
 
@@ -3947,9 +4353,9 @@ size_t fivebar_revolute_momentum_batch(const fivebar_revolute_model *model, size
     *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        momentum_any(model, LANES, X + 2*i, V + 2*i, momentum + 2*i, codes);
+        momentum_lanes(model, X + 2*i, V + 2*i, momentum + 2*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_revolute_momentum(model, X + 2*(i + k), V + 2*(i + k), momentum + 2*(i + k));
@@ -3964,11 +4370,69 @@ size_t fivebar_revolute_momentum_batch(const fivebar_revolute_model *model, size
     return failed;
 }
 
+int fivebar_revolute_joint_margins(const fivebar_revolute_model *model, const
+    fivebar_revolute_real *X, fivebar_revolute_real *margins)
+{
+    int code;
+    joint_margins_one(model, X, margins, &code);
+    return code;
+}
+
+size_t fivebar_revolute_joint_margins_batch(const fivebar_revolute_model *model, size_t n, const
+    fivebar_revolute_real *X, fivebar_revolute_real *margins, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        joint_margins_lanes(model, X + 2*i, margins + 4*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = fivebar_revolute_joint_margins(model, X + 2*(i + k), margins + 4*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = fivebar_revolute_joint_margins(model, X + 2*i, margins + 4*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int fivebar_revolute_within_limits(const fivebar_revolute_model *model, const
+    fivebar_revolute_real *X, fivebar_revolute_real *within)
+{
+    int code;
+    within_limits_one(model, X, within, &code);
+    return code;
+}
+
+size_t fivebar_revolute_within_limits_batch(const fivebar_revolute_model *model, size_t n, const
+    fivebar_revolute_real *X, fivebar_revolute_real *within, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        within_limits_lanes(model, X + 2*i, within + 1*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = fivebar_revolute_within_limits(model, X + 2*(i + k), within + 1*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = fivebar_revolute_within_limits(model, X + 2*i, within + 1*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
 int fivebar_revolute_actuator_positions(const fivebar_revolute_model *model, const
     fivebar_revolute_real *X, fivebar_revolute_real *q)
 {
     int code;
-    actuator_positions_any(model, 1, X, q, &code);
+    actuator_positions_one(model, X, q, &code);
     return code;
 }
 
@@ -3976,9 +4440,9 @@ size_t fivebar_revolute_actuator_positions_batch(const fivebar_revolute_model *m
     const fivebar_revolute_real *X, fivebar_revolute_real *q, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_positions_any(model, LANES, X + 2*i, q + 2*i, codes);
+        actuator_positions_lanes(model, X + 2*i, q + 2*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_revolute_actuator_positions(model, X + 2*(i + k), q + 2*(i + k));
@@ -3997,7 +4461,7 @@ int fivebar_revolute_actuator_rates(const fivebar_revolute_model *model, const
     fivebar_revolute_real *X, const fivebar_revolute_real *V, fivebar_revolute_real *rates)
 {
     int code;
-    actuator_rates_any(model, 1, X, V, rates, &code);
+    actuator_rates_one(model, X, V, rates, &code);
     return code;
 }
 
@@ -4006,9 +4470,9 @@ size_t fivebar_revolute_actuator_rates_batch(const fivebar_revolute_model *model
     *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_rates_any(model, LANES, X + 2*i, V + 2*i, rates + 2*i, codes);
+        actuator_rates_lanes(model, X + 2*i, V + 2*i, rates + 2*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_revolute_actuator_rates(model, X + 2*(i + k), V + 2*(i + k), rates + 2*(i +
@@ -4029,7 +4493,7 @@ int fivebar_revolute_actuator_accelerations(const fivebar_revolute_model *model,
     fivebar_revolute_real *accelerations)
 {
     int code;
-    actuator_accelerations_any(model, 1, X, V, A, accelerations, &code);
+    actuator_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
@@ -4038,9 +4502,9 @@ size_t fivebar_revolute_actuator_accelerations_batch(const fivebar_revolute_mode
     *A, fivebar_revolute_real *accelerations, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_accelerations_any(model, LANES, X + 2*i, V + 2*i, A + 2*i, accelerations + 2*i, codes);
+        actuator_accelerations_lanes(model, X + 2*i, V + 2*i, A + 2*i, accelerations + 2*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_revolute_actuator_accelerations(model, X + 2*(i + k), V + 2*(i + k), A + 2*(i +
@@ -4062,7 +4526,7 @@ int fivebar_revolute_power(const fivebar_revolute_model *model, const fivebar_re
     *power)
 {
     int code;
-    power_any(model, 1, X, V, tau, power, &code);
+    power_one(model, X, V, tau, power, &code);
     return code;
 }
 
@@ -4071,9 +4535,9 @@ size_t fivebar_revolute_power_batch(const fivebar_revolute_model *model, size_t 
     fivebar_revolute_real *power, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        power_any(model, LANES, X + 2*i, V + 2*i, tau + 2*i, power + 1*i, codes);
+        power_lanes(model, X + 2*i, V + 2*i, tau + 2*i, power + 1*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_revolute_power(model, X + 2*(i + k), V + 2*(i + k), tau + 2*(i + k), power +
@@ -4093,7 +4557,7 @@ int fivebar_revolute_retract(const fivebar_revolute_real *X, const fivebar_revol
     fivebar_revolute_real *X_moved)
 {
     int code;
-    retract_any(X, step, X_moved, &code);
+    retract_one(X, step, X_moved, &code);
     return code;
 }
 
@@ -4112,7 +4576,7 @@ int fivebar_revolute_difference(const fivebar_revolute_real *X0, const fivebar_r
     fivebar_revolute_real *step)
 {
     int code;
-    difference_any(X0, X1, step, &code);
+    difference_one(X0, X1, step, &code);
     return code;
 }
 
@@ -4131,7 +4595,7 @@ int fivebar_revolute_interpolate(const fivebar_revolute_real *X0, const fivebar_
     const fivebar_revolute_real *s, fivebar_revolute_real *X)
 {
     int code;
-    interpolate_any(X0, X1, s, X, &code);
+    interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 

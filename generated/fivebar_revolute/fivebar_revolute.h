@@ -48,6 +48,7 @@ typedef FIVEBAR_REVOLUTE_REAL fivebar_revolute_real;
 #define FIVEBAR_REVOLUTE_NC 0
 #define FIVEBAR_REVOLUTE_NW 2
 #define FIVEBAR_REVOLUTE_NJ 4
+#define FIVEBAR_REVOLUTE_OVERCONSTRAINED 0
 
 enum {
     FIVEBAR_REVOLUTE_OK = 0,
@@ -94,17 +95,19 @@ typedef struct {
 /* What depends on the parameters alone; set by fivebar_revolute_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
+    /* 2 legs of type rrr */
+    fivebar_revolute_real inv_rrr_Kd_1_t_5[2], inv_rrr_Kd_1_t_7[2],
+            inv_rrr_platform_joint_offset_x[2], inv_rrr_rho2_1_t_4[2], inv_rrr_size[2], rrr_J_1_zz[2],
+            rrr_J_2_zz[2], rrr_Jc_1_zz[2], rrr_Kd_1_t_2[2], rrr_Kd_1_t_4[2], rrr_b_r0_x[2],
+            rrr_b_r0_y[2], rrr_base_frame_xx[2], rrr_base_frame_xy[2], rrr_base_frame_yx[2],
+            rrr_base_frame_yy[2], rrr_base_point_x[2], rrr_base_point_y[2], rrr_branch_1[2],
+            rrr_d_Gamma_2_t[2], rrr_d_Gamma_2_y[2], rrr_d_c_yy[2], rrr_d_phi_2_t[2], rrr_g_r0_x[2],
+            rrr_g_r0_y[2], rrr_h_1_x[2], rrr_h_1_y[2], rrr_h_2_x[2], rrr_h_2_y[2],
+            rrr_joint2_offset_x[2], rrr_link1_mass[2], rrr_link2_mass[2],
+            rrr_platform_joint_offset_x[2], rrr_platform_point_x[2], rrr_platform_point_y[2],
+            rrr_rho2_1_t[2], rrr_size[2];
     fivebar_revolute_real Z_p_x, Z_p_y, b_c_x, b_c_y, gravity_x, gravity_y, h_star_x, h_star_y,
             legs_size, m_star, spread_t;
-    /* legs of type rrr */
-    fivebar_revolute_real J_1_zz[2], J_2_zz[2], Jc_1_zz[2], Kd_1_t_2[2], Kd_1_t_3[2], b_r0_x[2],
-            b_r0_y[2], branch_1[2], d_Gamma_1_t[2], d_Gamma_1_y[2], d_c_yy[2], d_phi_2_t[2],
-            g_r0_x[2], g_r0_y[2], h_1_x[2], h_1_y[2], h_2_x[2], h_2_y[2], inv_Kd_1_t_5[2],
-            inv_rho2_1_t_4[2], inv_rrr_platform_joint_offset_x[2], inv_size[2], inv_uu_2_t[2],
-            rho2_1_t[2], rrr_base_frame_xx[2], rrr_base_frame_xy[2], rrr_base_frame_yx[2],
-            rrr_base_frame_yy[2], rrr_base_point_x[2], rrr_base_point_y[2], rrr_joint2_offset_x[2],
-            rrr_link1_mass[2], rrr_link2_mass[2], rrr_platform_joint_offset_x[2],
-            rrr_platform_point_x[2], rrr_platform_point_y[2], size_[2];
 } fivebar_revolute_model;
 
 extern const fivebar_revolute_params fivebar_revolute_default_params;
@@ -259,6 +262,20 @@ int fivebar_revolute_momentum(const fivebar_revolute_model *model, const fivebar
 size_t fivebar_revolute_momentum_batch(const fivebar_revolute_model *model, size_t n, const
     fivebar_revolute_real *X, const fivebar_revolute_real *V, fivebar_revolute_real *momentum, int
     *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 54 mul, 28 add, 2 div, 2 sqrt, 4 trig. In: X (NQ). Out: margins (NJ). */
+int fivebar_revolute_joint_margins(const fivebar_revolute_model *model, const
+    fivebar_revolute_real *X, fivebar_revolute_real *margins);
+size_t fivebar_revolute_joint_margins_batch(const fivebar_revolute_model *model, size_t n, const
+    fivebar_revolute_real *X, fivebar_revolute_real *margins, int *status);
+
+/* Whether all joints are within their limits of displacement. 54 mul, 28 add, 2 div, 2 sqrt, 4
+   trig. In: X (NQ). Out: within (1). */
+int fivebar_revolute_within_limits(const fivebar_revolute_model *model, const
+    fivebar_revolute_real *X, fivebar_revolute_real *within);
+size_t fivebar_revolute_within_limits_batch(const fivebar_revolute_model *model, size_t n, const
+    fivebar_revolute_real *X, fivebar_revolute_real *within, int *status);
 
 /* Displacements of the actuated joints, in the order of tau. 54 mul, 28 add, 2 div, 2 sqrt, 4
    trig. In: X (NQ). Out: q (NU). */

@@ -26,7 +26,10 @@ enum {
 
 #define R(x) ((real)(x))
 #define UNLESS(condition) ((condition) ? R(0) : R(1))  /* flag of what must hold */
-#define LANES 8  /* states that a batch runs side by side */
+#ifndef HEXAGLIDE_LANES
+#define HEXAGLIDE_LANES 8  /* 1 where there are no vectors: less memory, shorter code */
+#endif
+#define LANES ((size_t)HEXAGLIDE_LANES)  /* states that a batch runs side by side */
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
@@ -36,6 +39,20 @@ enum {
 #define INLINE static inline
 #define APART static
 #endif
+
+/* Bytes of a vector. */
+#if defined(__AVX__)
+#define VECTOR 32
+#elif defined(__SSE2__) || defined(__ARM_NEON)
+#define VECTOR 16
+#else
+#define VECTOR 1
+#endif
+/* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
+#define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
+#define LEGS(n) \
+    ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
+        : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
@@ -104,63 +121,122 @@ INLINE int is_finite(real x)
     return x - x == 0;
 }
 
-/* Why states are impossible, by state: more than 0 where a cause holds. */
+/* Why states are impossible, by state: more than 0 where a cause holds.  total: the sum of all
+   results, and side by side of all inputs, which is finite only where they are. */
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
+    real total[LANES];
 } verdict;
 
 INLINE void start(size_t w, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
+        t->total[k] = 0;
     }
 }
 
-/* x - x is 0 for every number and NaN for the rest; sums side by side add up fast. */
+/* x - x is 0 for every number and NaN for the rest. */
 INLINE int all_finite(const real *x, size_t n)
 {
+    real sum = 0;
+    for (size_t i = 0; i < n; ++i) {
+        sum += x[i] - x[i];
+    }
+    return sum == 0;
+}
+
+/* Whether all are finite: then so is their sum, but for numbers so large that they need a closer
+   look.  Many add up fast as sums side by side. */
+INLINE int sum_is_finite(const real *x, size_t n)
+{
+    if (n < 2*LANES) {
+        return is_finite(total(x, n));
+    }
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
         for (size_t k = 0; k < LANES; ++k) {
-            sum[k] += x[i + k] - x[i + k];
+            sum[k] += x[i + k];
         }
     }
     for (size_t i = most; i < n; ++i) {
-        sum[0] += x[i] - x[i];
+        sum[i - most] += x[i];
     }
-    return total(sum, LANES) == 0;
+    return is_finite(total(sum, LANES));
 }
 
 /* Flag the states with entries that are not finite; the states stand side by side. */
 INLINE void check(size_t size, size_t w, const real *x, real *flags)
 {
-    if (!all_finite(x, size*w)) {
+    if (!sum_is_finite(x, size*w)) {
         for (size_t i = 0; i < size*w; ++i) {
             flags[i%w] += UNLESS(is_finite(x[i]));
         }
     }
 }
 
-/* Input, given state by state, with its states side by side: entry e of state k at e*w + k. */
-INLINE const real *side_by_side(size_t size, size_t w, const real *x, real *lanes, real *flags)
+/* Add up the entries of every state. */
+INLINE void add_up(size_t size, const real *x, real *total)
 {
-    for (size_t e = 0; e < size && w > 1; ++e) {
-        for (size_t k = 0; k < w; ++k) {
-            lanes[e*w + k] = x[size*k + e];
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            total[k] += x[e*LANES + k];
         }
     }
-    check(size, w, w > 1 ? lanes : x, flags);
-    return w > 1 ? lanes : x;
 }
 
-/* The same for input that may be NULL: then all its entries are `none`. */
-INLINE const real *optional(size_t size, size_t w, const real *x, real none, real *lanes, real *flags)
+/* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
+INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
 {
-    for (size_t e = 0; e < size*w && !x; ++e) {
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            lanes[e*LANES + k] = x[size*k + e];
+        }
+    }
+    add_up(size, lanes, total);
+    return lanes;
+}
+
+/* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
+INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+{
+    for (size_t e = 0; e < size && !x; ++e) {
+        own[e] = none;
+    }
+    if (x) {
+        check(size, 1, x, flags);
+    }
+    return x ? x : own;
+}
+
+INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
+    real *total)
+{
+    for (size_t e = 0; e < size*LANES && !x; ++e) {
         lanes[e] = none;
     }
-    return x ? side_by_side(size, w, x, lanes, flags) : lanes;
+    return x ? side_by_side(size, x, lanes, total) : lanes;
+}
+
+/* Motion of the base, or NULL: at rest, its axes those of the world. */
+INLINE const real *motion_of_base(const real *x, real *own, real *flags)
+{
+    for (size_t e = 0; e < 18 && !x; ++e) {
+        own[e] = R(e < 9 && e%4 == 0);
+    }
+    if (x) {
+        check(18, 1, x, flags);
+    }
+    return x ? x : own;
+}
+
+INLINE const real *motion_of_base_side_by_side(const real *x, real *lanes, real *total)
+{
+    for (size_t i = 0; i < 18*LANES && !x; ++i) {
+        lanes[i] = R(i/LANES < 9 && i/LANES%4 == 0);
+    }
+    return x ? side_by_side(18, x, lanes, total) : lanes;
 }
 
 /* Flag the states of an input, NULL or given state by state, with entries that are not positive. */
@@ -171,14 +247,25 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE void judge(const verdict *t, size_t w, int *code)
+INLINE void judge(const verdict *t, int *code)
 {
-    for (size_t k = 0; k < w; ++k) {
-        code[k] = t->invalid[k] > 0 ? INVALID
-            : t->diverged[k] > 0 ? NOT_CONVERGED
-            : t->unreachable[k] > 0 ? UNREACHABLE
-            : t->singular[k] > 0 ? SINGULAR
-            : t->overflow[k] > 0 ? INVALID : OK;
+    *code = t->invalid[0] > 0 ? INVALID
+        : t->diverged[0] > 0 ? NOT_CONVERGED
+        : t->unreachable[0] > 0 ? UNREACHABLE
+        : t->singular[0] > 0 ? SINGULAR
+        : t->overflow[0] > 0 ? INVALID : OK;
+}
+
+/* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
+INLINE void suspect(const verdict *t, int *code)
+{
+    real flags[LANES];
+    for (size_t k = 0; k < LANES; ++k) {
+        flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
+            + (t->total[k] - t->total[k]);
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        code[k] = flags[k] == 0 ? OK : INVALID;
     }
 }
 
@@ -199,17 +286,19 @@ INLINE void refuse(size_t size, real *out)
     }
 }
 
-/* Outputs state by state; NaN where a state is impossible. */
-INLINE void deliver(const real *x, size_t size, size_t w, const int *code, real *out)
+/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < w; ++k) {
-            out[size*k + e] = x[e*w + k];
-        }
+        out[e] = x[e];
     }
-    for (size_t k = 0; k < w; ++k) {
-        if (code[k] != OK) {
-            refuse(size, out + size*k);
+}
+
+INLINE void deliver(size_t size, const real *x, real *out)
+{
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            out[size*k + e] = x[e*LANES + k];
         }
     }
 }
@@ -458,11 +547,11 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
     const real platform_inertia_yy = params->platform_inertia[1][1];
     const real platform_inertia_yz = params->platform_inertia[1][2];
     const real platform_inertia_zz = params->platform_inertia[2][2];
-    /* (L2) first moment about the platform origin */
+    /* (h_star) first moment about the platform origin */
     const real h_star_t = platform_centre_of_mass_x*platform_mass;
     const real h_star_t_2 = platform_centre_of_mass_y*platform_mass;
     const real h_star_t_3 = platform_centre_of_mass_z*platform_mass;
-    /* (L3) inertia tensor about the platform origin */
+    /* (J_star) inertia tensor about the platform origin */
     const real J_star_t = platform_centre_of_mass_x*platform_centre_of_mass_x;
     const real J_star_t_2 = platform_centre_of_mass_y*platform_centre_of_mass_y;
     const real J_star_t_3 = platform_centre_of_mass_z*platform_centre_of_mass_z;
@@ -473,161 +562,145 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
     const real J_star_t_8 = platform_mass*(J_star_t_2 - J_star_t_4);
     const real J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass;
     const real J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4);
-    /* (C2) rms distance of the platform points from their centroid */
+    /* (spread) rms distance of the platform points from their centroid */
     const real spread_t = R(0.16666666666666666)*root(6);
     model->gravity_x = gravity_x;
     model->gravity_y = gravity_y;
     model->gravity_z = gravity_z;
     model->spread_t = spread_t;
-    for (size_t leg = 0; leg < 6; ++leg) {
-        const real pus_base_point_x = params->pus_base_point[leg][0];
-        const real pus_base_point_y = params->pus_base_point[leg][1];
-        const real pus_base_point_z = params->pus_base_point[leg][2];
-        const real pus_base_frame_xx = params->pus_base_frame[leg][0][0];
-        const real pus_base_frame_xy = params->pus_base_frame[leg][0][1];
-        const real pus_base_frame_xz = params->pus_base_frame[leg][0][2];
-        const real pus_base_frame_yx = params->pus_base_frame[leg][1][0];
-        const real pus_base_frame_yy = params->pus_base_frame[leg][1][1];
-        const real pus_base_frame_yz = params->pus_base_frame[leg][1][2];
-        const real pus_base_frame_zx = params->pus_base_frame[leg][2][0];
-        const real pus_base_frame_zy = params->pus_base_frame[leg][2][1];
-        const real pus_base_frame_zz = params->pus_base_frame[leg][2][2];
-        const real pus_platform_point_x = params->pus_platform_point[leg][0];
-        const real pus_platform_point_y = params->pus_platform_point[leg][1];
-        const real pus_platform_point_z = params->pus_platform_point[leg][2];
-        const real pus_platform_joint_offset_x = params->pus_platform_joint_offset[leg][0];
-        const real pus_link1_mass = params->pus_link1_mass[leg];
-        const real pus_link1_centre_of_mass_x = params->pus_link1_centre_of_mass[leg][0];
-        const real pus_link1_centre_of_mass_y = params->pus_link1_centre_of_mass[leg][1];
-        const real pus_link1_centre_of_mass_z = params->pus_link1_centre_of_mass[leg][2];
-        const real pus_link3_mass = params->pus_link3_mass[leg];
-        const real pus_link3_centre_of_mass_x = params->pus_link3_centre_of_mass[leg][0];
-        const real pus_link3_centre_of_mass_y = params->pus_link3_centre_of_mass[leg][1];
-        const real pus_link3_centre_of_mass_z = params->pus_link3_centre_of_mass[leg][2];
-        const real pus_link3_inertia_xx = params->pus_link3_inertia[leg][0][0];
-        const real pus_link3_inertia_xy = params->pus_link3_inertia[leg][0][1];
-        const real pus_link3_inertia_xz = params->pus_link3_inertia[leg][0][2];
-        const real pus_link3_inertia_yy = params->pus_link3_inertia[leg][1][1];
-        const real pus_link3_inertia_yz = params->pus_link3_inertia[leg][1][2];
-        const real pus_link3_inertia_zz = params->pus_link3_inertia[leg][2][2];
-        static const signed char signs_branch_1[] = {-1, -1, -1, -1, -1, -1};
-        const real branch_1 = signs_branch_1[leg];
-        static const signed char signs_branch_2[] = {1, 1, 1, 1, 1, 1};
-        const real branch_2 = signs_branch_2[leg];
-        /* (pus-K16) squared length, across the axis, of the direction fixed in link 3 */
-        const real uu_3_t = pus_platform_joint_offset_x*pus_platform_joint_offset_x;
-        /* (pus-G2) length of the leg's lever arms, the measure of what is near singular */
-        const real size_t_ = R(4.9e-07) + uu_3_t;
-        const real size_ = root(size_t_);
-        /* (pus-K17) cosine of the angle of joint 3 from its reference direction */
-        const real inv_uu_3_t = 1/uu_3_t;
-        /* (pus-G4) connection point to the centre of mass of link 3 */
-        const real rho_tip_3_x = pus_link3_centre_of_mass_x - pus_platform_joint_offset_x;
-        /* (pus-G6) inertia tensor of link 3 about the connection point */
-        const real J_3_t = rho_tip_3_x*rho_tip_3_x;
-        const real J_3_t_2 = pus_link3_centre_of_mass_y*pus_link3_centre_of_mass_y;
-        const real J_3_t_3 = pus_link3_centre_of_mass_z*pus_link3_centre_of_mass_z;
-        const real J_3_t_4 = J_3_t + J_3_t_2 + J_3_t_3;
-        const real J_3_xx = pus_link3_inertia_xx - pus_link3_mass*(J_3_t - J_3_t_4);
-        const real J_3_xy = pus_link3_inertia_xy -
-            pus_link3_centre_of_mass_y*pus_link3_mass*rho_tip_3_x;
-        const real J_3_xz = pus_link3_inertia_xz -
-            pus_link3_centre_of_mass_z*pus_link3_mass*rho_tip_3_x;
-        const real J_3_yy = pus_link3_inertia_yy - pus_link3_mass*(J_3_t_2 - J_3_t_4);
-        const real J_3_yz = pus_link3_inertia_yz -
-            pus_link3_centre_of_mass_y*pus_link3_centre_of_mass_z*pus_link3_mass;
-        const real J_3_zz = pus_link3_inertia_zz - pus_link3_mass*(J_3_t_3 - J_3_t_4);
-        /* (pus-G5) first moment of link 3 about the connection point */
-        const real h_3_x = pus_link3_mass*rho_tip_3_x;
-        const real h_3_y = pus_link3_centre_of_mass_y*pus_link3_mass;
-        const real h_3_z = pus_link3_centre_of_mass_z*pus_link3_mass;
-        /* (pus-V6) reciprocal vector 3 */
+    for (size_t leg = 0; leg < 8; ++leg) {
+        const size_t own = leg < 6 ? leg : 0;
+        const real pus_base_point_x = params->pus_base_point[own][0];
+        const real pus_base_point_y = params->pus_base_point[own][1];
+        const real pus_base_point_z = params->pus_base_point[own][2];
+        const real pus_base_frame_xx = params->pus_base_frame[own][0][0];
+        const real pus_base_frame_xy = params->pus_base_frame[own][0][1];
+        const real pus_base_frame_xz = params->pus_base_frame[own][0][2];
+        const real pus_base_frame_yx = params->pus_base_frame[own][1][0];
+        const real pus_base_frame_yy = params->pus_base_frame[own][1][1];
+        const real pus_base_frame_yz = params->pus_base_frame[own][1][2];
+        const real pus_base_frame_zx = params->pus_base_frame[own][2][0];
+        const real pus_base_frame_zy = params->pus_base_frame[own][2][1];
+        const real pus_base_frame_zz = params->pus_base_frame[own][2][2];
+        const real pus_platform_point_x = params->pus_platform_point[own][0];
+        const real pus_platform_point_y = params->pus_platform_point[own][1];
+        const real pus_platform_point_z = params->pus_platform_point[own][2];
+        const real pus_platform_joint_offset_x = params->pus_platform_joint_offset[own][0];
+        const real pus_link1_mass = params->pus_link1_mass[own];
+        const real pus_link1_centre_of_mass_x = params->pus_link1_centre_of_mass[own][0];
+        const real pus_link1_centre_of_mass_y = params->pus_link1_centre_of_mass[own][1];
+        const real pus_link1_centre_of_mass_z = params->pus_link1_centre_of_mass[own][2];
+        const real pus_link3_mass = params->pus_link3_mass[own];
+        const real pus_link3_centre_of_mass_x = params->pus_link3_centre_of_mass[own][0];
+        const real pus_link3_centre_of_mass_y = params->pus_link3_centre_of_mass[own][1];
+        const real pus_link3_centre_of_mass_z = params->pus_link3_centre_of_mass[own][2];
+        const real pus_link3_inertia_xx = params->pus_link3_inertia[own][0][0];
+        const real pus_link3_inertia_xy = params->pus_link3_inertia[own][0][1];
+        const real pus_link3_inertia_xz = params->pus_link3_inertia[own][0][2];
+        const real pus_link3_inertia_yy = params->pus_link3_inertia[own][1][1];
+        const real pus_link3_inertia_yz = params->pus_link3_inertia[own][1][2];
+        const real pus_link3_inertia_zz = params->pus_link3_inertia[own][2][2];
+        static const signed char signs_pus_branch_1[] = {-1, -1, -1, -1, -1, -1};
+        const real pus_branch_1 = signs_pus_branch_1[own];
+        static const signed char signs_pus_branch_2[] = {1, 1, 1, 1, 1, 1};
+        const real pus_branch_2 = signs_pus_branch_2[own];
+        /* (pus-disc_1) discriminant of the distance equation */
+        const real pus_disc_1_t = pus_platform_joint_offset_x*pus_platform_joint_offset_x;
+        /* (pus-size) length of the leg's lever arms, the measure of what is near singular */
+        const real pus_size_t = R(4.9e-07) + pus_disc_1_t;
+        const real pus_size = root(pus_size_t);
+        /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_pus_disc_1_t_6 = 1/pus_disc_1_t;
+        /* (pus-rho_tip_3) connection point to the centre of mass of link 3 */
+        const real pus_rho_tip_3_x = pus_link3_centre_of_mass_x - pus_platform_joint_offset_x;
+        /* (pus-h_3) first moment of link 3 about the connection point */
+        const real pus_h_3_x = pus_link3_mass*pus_rho_tip_3_x;
+        const real pus_h_3_y = pus_link3_centre_of_mass_y*pus_link3_mass;
+        const real pus_h_3_z = pus_link3_centre_of_mass_z*pus_link3_mass;
+        /* (pus-w_3) reciprocal vector 3 */
         const real inv_pus_platform_joint_offset_x = 1/pus_platform_joint_offset_x;
-        /* (pus-N22) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia
-           and weight */
-        const real d_Gamma_3_t = J_3_yy*inv_pus_platform_joint_offset_x;
-        const real d_Gamma_3_y = d_Gamma_3_t + h_3_x;
-        /* (pus-N8) coefficient of the acceleration in: inertia force of link 3 from its turning about its
-           reference point */
-        const real d_phi_3_t = h_3_z*inv_pus_platform_joint_offset_x;
-        /* (pus-N34) coefficient of the acceleration in: leg force on the platform without actuation and
+        /* (pus-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
+           about its reference point */
+        const real pus_d_phi_3_t = inv_pus_platform_joint_offset_x*pus_h_3_z;
+        /* (pus-J_3) inertia tensor of link 3 about the connection point */
+        const real pus_J_3_t = pus_rho_tip_3_x*pus_rho_tip_3_x;
+        const real pus_J_3_t_2 = pus_link3_centre_of_mass_y*pus_link3_centre_of_mass_y;
+        const real pus_J_3_t_3 = pus_link3_centre_of_mass_z*pus_link3_centre_of_mass_z;
+        const real pus_J_3_t_4 = pus_J_3_t + pus_J_3_t_2 + pus_J_3_t_3;
+        const real pus_J_3_xx = pus_link3_inertia_xx - pus_link3_mass*(pus_J_3_t - pus_J_3_t_4);
+        const real pus_J_3_xy = pus_link3_inertia_xy -
+            pus_link3_centre_of_mass_y*pus_link3_mass*pus_rho_tip_3_x;
+        const real pus_J_3_xz = pus_link3_inertia_xz -
+            pus_link3_centre_of_mass_z*pus_link3_mass*pus_rho_tip_3_x;
+        const real pus_J_3_yy = pus_link3_inertia_yy - pus_link3_mass*(pus_J_3_t_2 - pus_J_3_t_4);
+        const real pus_J_3_yz = pus_link3_inertia_yz -
+            pus_link3_centre_of_mass_y*pus_link3_centre_of_mass_z*pus_link3_mass;
+        const real pus_J_3_zz = pus_link3_inertia_zz - pus_link3_mass*(pus_J_3_t_3 - pus_J_3_t_4);
+        /* (pus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
+           inertia and weight */
+        const real pus_d_Gamma_3_t = inv_pus_platform_joint_offset_x*pus_J_3_yy;
+        const real pus_d_Gamma_3_y = pus_d_Gamma_3_t + pus_h_3_x;
+        /* (pus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_yy = -d_Gamma_3_y*inv_pus_platform_joint_offset_x -
-            h_3_x*inv_pus_platform_joint_offset_x;
-        /* (L2) first moment about the platform origin */
-        const real h_star_t_4 = pus_link3_mass*pus_platform_point_x;
-        const real h_star_t_5 = pus_link3_mass*pus_platform_point_y;
-        const real h_star_t_6 = pus_link3_mass*pus_platform_point_z;
-        /* (L3) inertia tensor about the platform origin */
-        const real J_star_t_11 = pus_platform_point_x*pus_platform_point_x;
-        const real J_star_t_12 = pus_platform_point_y*pus_platform_point_y;
-        const real J_star_t_13 = pus_platform_point_z*pus_platform_point_z;
-        const real J_star_t_14 = J_star_t_11 + J_star_t_12 + J_star_t_13;
-        const real J_star_t_15 = pus_link3_mass*(J_star_t_11 - J_star_t_14);
-        const real J_star_t_16 = pus_link3_mass*pus_platform_point_x*pus_platform_point_y;
-        const real J_star_t_17 = pus_link3_mass*pus_platform_point_x*pus_platform_point_z;
-        const real J_star_t_18 = pus_link3_mass*(J_star_t_12 - J_star_t_14);
-        const real J_star_t_19 = pus_link3_mass*pus_platform_point_y*pus_platform_point_z;
-        const real J_star_t_20 = pus_link3_mass*(J_star_t_13 - J_star_t_14);
-        /* (pus-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
-           less gravity */
-        const real g_r0_x = gravity_x*pus_base_frame_xx + gravity_y*pus_base_frame_yx +
+        const real pus_d_c_yy = -inv_pus_platform_joint_offset_x*pus_d_Gamma_3_y -
+            inv_pus_platform_joint_offset_x*pus_h_3_x;
+        /* (h_star) first moment about the platform origin */
+        const real pus_h_star_t = pus_link3_mass*pus_platform_point_x;
+        const real pus_h_star_t_2 = pus_link3_mass*pus_platform_point_y;
+        const real pus_h_star_t_3 = pus_link3_mass*pus_platform_point_z;
+        /* (J_star) inertia tensor about the platform origin */
+        const real pus_J_star_t = pus_platform_point_x*pus_platform_point_x;
+        const real pus_J_star_t_2 = pus_platform_point_y*pus_platform_point_y;
+        const real pus_J_star_t_3 = pus_platform_point_z*pus_platform_point_z;
+        const real pus_J_star_t_4 = pus_J_star_t + pus_J_star_t_2 + pus_J_star_t_3;
+        const real pus_J_star_t_5 = pus_link3_mass*(pus_J_star_t - pus_J_star_t_4);
+        const real pus_J_star_t_6 = pus_link3_mass*pus_platform_point_x*pus_platform_point_y;
+        const real pus_J_star_t_7 = pus_link3_mass*pus_platform_point_x*pus_platform_point_z;
+        const real pus_J_star_t_8 = pus_link3_mass*(pus_J_star_t_2 - pus_J_star_t_4);
+        const real pus_J_star_t_9 = pus_link3_mass*pus_platform_point_y*pus_platform_point_z;
+        const real pus_J_star_t_10 = pus_link3_mass*(pus_J_star_t_3 - pus_J_star_t_4);
+        /* (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+           link 3, less gravity */
+        const real pus_g_r0_x = gravity_x*pus_base_frame_xx + gravity_y*pus_base_frame_yx +
             gravity_z*pus_base_frame_zx;
-        const real g_r0_y = gravity_x*pus_base_frame_xy + gravity_y*pus_base_frame_yy +
+        const real pus_g_r0_y = gravity_x*pus_base_frame_xy + gravity_y*pus_base_frame_yy +
             gravity_z*pus_base_frame_zy;
-        const real g_r0_z = gravity_x*pus_base_frame_xz + gravity_y*pus_base_frame_yz +
+        const real pus_g_r0_z = gravity_x*pus_base_frame_xz + gravity_y*pus_base_frame_yz +
             gravity_z*pus_base_frame_zz;
-        /* (pus-N17) half the trace of that inertia tensor */
-        const real trace_J_3 = R(0.5)*J_3_xx + R(0.5)*J_3_yy + R(0.5)*J_3_zz;
-        /* (pus-N18) second moment of mass of the links that turn with link 3 */
-        const real Sigma_3_xx = trace_J_3 - J_3_xx;
-        const real Sigma_3_yy = trace_J_3 - J_3_zz;
-        const real Sigma_3_zz = trace_J_3 - J_3_yy;
-        /* (pus-G3) first moment of link 1 about the origin of link 1 */
-        const real h_1_x = pus_link1_centre_of_mass_x*pus_link1_mass;
-        const real h_1_y = pus_link1_centre_of_mass_y*pus_link1_mass;
-        const real h_1_z = pus_link1_centre_of_mass_z*pus_link1_mass;
-        /* (V1) potential energy */
-        const real b_r0_x = pus_base_frame_xx*pus_base_point_x +
+        /* (pus-trace_J_3) half the trace of that inertia tensor */
+        const real pus_trace_J_3 = R(0.5)*pus_J_3_xx + R(0.5)*pus_J_3_yy + R(0.5)*pus_J_3_zz;
+        /* (pus-Sigma_3) second moment of mass of the links that turn with link 3 */
+        const real pus_Sigma_3_xx = pus_trace_J_3 - pus_J_3_xx;
+        const real pus_Sigma_3_yy = pus_trace_J_3 - pus_J_3_zz;
+        const real pus_Sigma_3_zz = pus_trace_J_3 - pus_J_3_yy;
+        /* (pus-h_1) first moment of link 1 about the origin of link 1 */
+        const real pus_h_1_x = pus_link1_centre_of_mass_x*pus_link1_mass;
+        const real pus_h_1_y = pus_link1_centre_of_mass_y*pus_link1_mass;
+        const real pus_h_1_z = pus_link1_centre_of_mass_z*pus_link1_mass;
+        /* (potential) potential energy */
+        const real pus_b_r0_x = pus_base_frame_xx*pus_base_point_x +
             pus_base_frame_yx*pus_base_point_y + pus_base_frame_zx*pus_base_point_z;
-        const real potential_t = pus_link1_mass*(pus_base_frame_xy*pus_base_point_x +
+        const real pus_potential_t = pus_link1_mass*(pus_base_frame_xy*pus_base_point_x +
             pus_base_frame_yy*pus_base_point_y + pus_base_frame_zy*pus_base_point_z);
-        const real potential_t_2 = pus_link1_mass*(pus_base_frame_xz*pus_base_point_x +
+        const real pus_potential_t_2 = pus_link1_mass*(pus_base_frame_xz*pus_base_point_x +
             pus_base_frame_yz*pus_base_point_y + pus_base_frame_zz*pus_base_point_z);
-        /* (pus-K9) squared amplitude */
-        const real inv_size_t = 1/size_t_;
-        /* (pus-V4) reciprocal vector 1 */
-        const real inv_size = 1/size_;
-        model->J_3_xx[leg] = J_3_xx;
-        model->J_3_xy[leg] = J_3_xy;
-        model->J_3_xz[leg] = J_3_xz;
-        model->J_3_yz[leg] = J_3_yz;
-        model->J_3_zz[leg] = J_3_zz;
-        model->Sigma_3_xx[leg] = Sigma_3_xx;
-        model->Sigma_3_yy[leg] = Sigma_3_yy;
-        model->Sigma_3_zz[leg] = Sigma_3_zz;
-        model->b_r0_x[leg] = b_r0_x;
-        model->branch_1[leg] = branch_1;
-        model->branch_2[leg] = branch_2;
-        model->d_Gamma_3_t[leg] = d_Gamma_3_t;
-        model->d_Gamma_3_y[leg] = d_Gamma_3_y;
-        model->d_c_yy[leg] = d_c_yy;
-        model->d_phi_3_t[leg] = d_phi_3_t;
-        model->g_r0_x[leg] = g_r0_x;
-        model->g_r0_y[leg] = g_r0_y;
-        model->g_r0_z[leg] = g_r0_z;
-        model->h_1_x[leg] = h_1_x;
-        model->h_1_y[leg] = h_1_y;
-        model->h_1_z[leg] = h_1_z;
-        model->h_3_x[leg] = h_3_x;
-        model->h_3_y[leg] = h_3_y;
-        model->h_3_z[leg] = h_3_z;
+        /* (pus-rho2_2) squared amplitude */
+        const real inv_pus_size_t = 1/pus_size_t;
+        /* (pus-w_2) reciprocal vector 2 */
+        const real inv_pus_size = 1/pus_size;
+        model->inv_pus_disc_1_t_6[leg] = inv_pus_disc_1_t_6;
         model->inv_pus_platform_joint_offset_x[leg] = inv_pus_platform_joint_offset_x;
-        model->inv_size[leg] = inv_size;
-        model->inv_size_t[leg] = inv_size_t;
-        model->inv_uu_3_t[leg] = inv_uu_3_t;
-        model->potential_t[leg] = potential_t;
-        model->potential_t_2[leg] = potential_t_2;
+        model->inv_pus_size[leg] = inv_pus_size;
+        model->inv_pus_size_t[leg] = inv_pus_size_t;
+        model->pus_J_3_xx[leg] = pus_J_3_xx;
+        model->pus_J_3_xy[leg] = pus_J_3_xy;
+        model->pus_J_3_xz[leg] = pus_J_3_xz;
+        model->pus_J_3_yz[leg] = pus_J_3_yz;
+        model->pus_J_3_zz[leg] = pus_J_3_zz;
+        model->pus_Sigma_3_xx[leg] = pus_Sigma_3_xx;
+        model->pus_Sigma_3_yy[leg] = pus_Sigma_3_yy;
+        model->pus_Sigma_3_zz[leg] = pus_Sigma_3_zz;
+        model->pus_b_r0_x[leg] = pus_b_r0_x;
         model->pus_base_frame_xx[leg] = pus_base_frame_xx;
         model->pus_base_frame_xy[leg] = pus_base_frame_xy;
         model->pus_base_frame_xz[leg] = pus_base_frame_xz;
@@ -640,59 +713,76 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
         model->pus_base_point_x[leg] = pus_base_point_x;
         model->pus_base_point_y[leg] = pus_base_point_y;
         model->pus_base_point_z[leg] = pus_base_point_z;
+        model->pus_branch_1[leg] = pus_branch_1;
+        model->pus_branch_2[leg] = pus_branch_2;
+        model->pus_d_Gamma_3_t[leg] = pus_d_Gamma_3_t;
+        model->pus_d_Gamma_3_y[leg] = pus_d_Gamma_3_y;
+        model->pus_d_c_yy[leg] = pus_d_c_yy;
+        model->pus_d_phi_3_t[leg] = pus_d_phi_3_t;
+        model->pus_disc_1_t[leg] = pus_disc_1_t;
+        model->pus_g_r0_x[leg] = pus_g_r0_x;
+        model->pus_g_r0_y[leg] = pus_g_r0_y;
+        model->pus_g_r0_z[leg] = pus_g_r0_z;
+        model->pus_h_1_x[leg] = pus_h_1_x;
+        model->pus_h_1_y[leg] = pus_h_1_y;
+        model->pus_h_1_z[leg] = pus_h_1_z;
+        model->pus_h_3_x[leg] = pus_h_3_x;
+        model->pus_h_3_y[leg] = pus_h_3_y;
+        model->pus_h_3_z[leg] = pus_h_3_z;
         model->pus_link1_mass[leg] = pus_link1_mass;
         model->pus_link3_mass[leg] = pus_link3_mass;
         model->pus_platform_joint_offset_x[leg] = pus_platform_joint_offset_x;
         model->pus_platform_point_x[leg] = pus_platform_point_x;
         model->pus_platform_point_y[leg] = pus_platform_point_y;
         model->pus_platform_point_z[leg] = pus_platform_point_z;
-        model->size_[leg] = size_;
-        model->size_t_[leg] = size_t_;
-        model->uu_3_t[leg] = uu_3_t;
-        total_pus += pus_link3_mass;
-        total_pus_x += h_star_t_4;
-        total_pus_y += h_star_t_5;
-        total_pus_z += h_star_t_6;
-        total_pus_xx += J_star_t_15;
-        total_pus_xy += J_star_t_16;
-        total_pus_xz += J_star_t_17;
-        total_pus_yy += J_star_t_18;
-        total_pus_yz += J_star_t_19;
-        total_pus_zz += J_star_t_20;
-        total_pus_x_2 += pus_platform_point_x;
-        total_pus_y_2 += pus_platform_point_y;
-        total_pus_z_2 += pus_platform_point_z;
-        total_pus_2 += size_t_;
+        model->pus_potential_t[leg] = pus_potential_t;
+        model->pus_potential_t_2[leg] = pus_potential_t_2;
+        model->pus_size[leg] = pus_size;
+        model->pus_size_t[leg] = pus_size_t;
+        total_pus += leg < 6 ? pus_link3_mass : 0;
+        total_pus_x += leg < 6 ? pus_h_star_t : 0;
+        total_pus_y += leg < 6 ? pus_h_star_t_2 : 0;
+        total_pus_z += leg < 6 ? pus_h_star_t_3 : 0;
+        total_pus_xx += leg < 6 ? pus_J_star_t_5 : 0;
+        total_pus_xy += leg < 6 ? pus_J_star_t_6 : 0;
+        total_pus_xz += leg < 6 ? pus_J_star_t_7 : 0;
+        total_pus_yy += leg < 6 ? pus_J_star_t_8 : 0;
+        total_pus_yz += leg < 6 ? pus_J_star_t_9 : 0;
+        total_pus_zz += leg < 6 ? pus_J_star_t_10 : 0;
+        total_pus_x_2 += leg < 6 ? pus_platform_point_x : 0;
+        total_pus_y_2 += leg < 6 ? pus_platform_point_y : 0;
+        total_pus_z_2 += leg < 6 ? pus_platform_point_z : 0;
+        total_pus_2 += leg < 6 ? pus_size_t : 0;
     }
-    /* (L1) mass of the platform with the gathered masses */
+    /* (m_star) mass of the platform with the gathered masses */
     const real m_star = platform_mass + total_pus;
-    /* (L2) first moment about the platform origin */
+    /* (h_star) first moment about the platform origin */
     const real h_star_x = h_star_t + total_pus_x;
     const real h_star_y = h_star_t_2 + total_pus_y;
     const real h_star_z = h_star_t_3 + total_pus_z;
-    /* (L3) inertia tensor about the platform origin */
+    /* (J_star) inertia tensor about the platform origin */
     const real J_star_xx = platform_inertia_xx - J_star_t_5 - total_pus_xx;
     const real J_star_xy = platform_inertia_xy - J_star_t_6 - total_pus_xy;
     const real J_star_xz = platform_inertia_xz - J_star_t_7 - total_pus_xz;
     const real J_star_yy = platform_inertia_yy - J_star_t_8 - total_pus_yy;
     const real J_star_yz = platform_inertia_yz - J_star_t_9 - total_pus_yz;
     const real J_star_zz = platform_inertia_zz - J_star_t_10 - total_pus_zz;
-    const real J_star_t_21 = J_star_xx - J_star_yy;
-    const real J_star_t_22 = R(0.5)*J_star_t_21;
-    const real J_star_t_23 = J_star_xx - J_star_zz;
-    const real J_star_t_24 = R(0.5)*J_star_t_23;
-    /* (M4) centripetal force and weight of the platform */
+    const real J_star_t_11 = J_star_xx - J_star_yy;
+    const real J_star_t_12 = R(0.5)*J_star_t_11;
+    const real J_star_t_13 = J_star_xx - J_star_zz;
+    const real J_star_t_14 = R(0.5)*J_star_t_13;
+    /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
     const real Z_p_t_3 = gravity_z*m_star;
-    /* (C1) centroid of the platform points */
+    /* (b_c) centroid of the platform points */
     const real b_c_x = R(0.16666666666666666)*total_pus_x_2;
     const real b_c_y = R(0.16666666666666666)*total_pus_y_2;
     const real b_c_z = R(0.16666666666666666)*total_pus_z_2;
-    /* (C3) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = spread_t*root(total_pus_2);
-    model->J_star_t_22 = J_star_t_22;
-    model->J_star_t_24 = J_star_t_24;
+    model->J_star_t_12 = J_star_t_12;
+    model->J_star_t_14 = J_star_t_14;
     model->J_star_xx = J_star_xx;
     model->J_star_xy = J_star_xy;
     model->J_star_xz = J_star_xz;
@@ -780,98 +870,6 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
     }
 }
 
-/* Swap a row with the pivot's in those states in which it is the chosen one.  What is chosen are
-   whole entries: unlike products with 0 and 1, these keep what is not finite where it belongs. */
-APART void swap_lanes(size_t n, size_t p, real i, const real *restrict best, real *restrict pivot,
-        real *restrict other)
-{
-    for (size_t j = p; j <= n; ++j) {
-        for (size_t k = 0; k < LANES; ++k) {
-            const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = best[k] == i ? up : down;
-            other[j*LANES + k] = best[k] == i ? down : up;
-        }
-    }
-}
-
-/* The choice of choose_one in every state. */
-INLINE void choose_lanes(size_t n, size_t p, real *a)
-{
-    const size_t row = (n + 1)*LANES;
-    real most[LANES], best[LANES], any = 0;
-    for (size_t k = 0; k < LANES; ++k) {
-        most[k] = CLEARLY*magnitude(a[p*row + p*LANES + k]);
-        best[k] = 0;
-    }
-    for (size_t i = p + 1; i < n; ++i) {
-        for (size_t k = 0; k < LANES; ++k) {
-            const real size = magnitude(a[i*row + p*LANES + k]);
-            best[k] = size > most[k] ? (real)i : best[k];
-            most[k] = larger(size, most[k]);
-        }
-    }
-    for (size_t k = 0; k < LANES; ++k) {
-        any += best[k];
-    }
-    for (size_t i = p + 1; i < n && any > 0; ++i) {
-        swap_lanes(n, p, (real)i, best, a + p*row, a + i*row);
-    }
-}
-
-/* The same for LANES systems side by side, without padding.  What comes NEARLY to the threshold
-   counts as singular here: the batch then settles it as for a single state. */
-INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
-{
-    const size_t row = (n + 1)*LANES;
-    memset(x, 0, n*LANES*sizeof *x);
-    for (size_t i = 0; i < n; ++i) {
-        real size[LANES] = {0};
-        for (size_t j = 0; j < n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                size[k] = larger(size[k], magnitude(a[i*row + j*LANES + k]));
-            }
-        }
-        for (size_t k = 0; k < LANES; ++k) {
-            size[k] = 1/size[k];
-        }
-        for (size_t j = 0; j <= n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + j*LANES + k] *= size[k];
-            }
-        }
-    }
-    for (size_t p = 0; p < n; ++p) {
-        const real *const pivot = a + p*row;
-        choose_lanes(n, p, a);
-        for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > NEARLY*PIVOT);
-            x[p*LANES + k] = 1/pivot[p*LANES + k];
-        }
-        for (size_t i = p + 1; i < n; ++i) {
-            real *const other = a + i*row;
-            real factor[LANES];
-            for (size_t k = 0; k < LANES; ++k) {
-                factor[k] = other[p*LANES + k]*x[p*LANES + k];
-            }
-            for (size_t j = p + 1; j <= n; ++j) {
-                for (size_t k = 0; k < LANES; ++k) {
-                    other[j*LANES + k] -= factor[k]*pivot[j*LANES + k];
-                }
-            }
-        }
-    }
-    for (size_t p = n; p-- > 0;) {
-        for (size_t k = 0; k < LANES; ++k) {
-            x[p*LANES + k] *= a[p*row + n*LANES + k];
-        }
-        for (size_t i = 0; i < p; ++i) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + n*LANES + k] -= a[i*row + p*LANES + k]*x[p*LANES + k];
-            }
-        }
-    }
-}
-
 /* Length of the rows of a system of n equations, whose right side stands in column n. */
 INLINE size_t stride_of(size_t n, size_t w)
 {
@@ -904,14 +902,10 @@ INLINE void solve_state(size_t n, const real *b, real *rows, real *x, real *sing
     solve_one(n, stride_of(n, 1), rows, x, singular);
 }
 
-INLINE void solve(size_t n, size_t w, const real *b, real *rows, real *x, real *singular)
+/* The same where it is rare: apart, for the sake of what is done otherwise. */
+APART void solve_apart(size_t n, const real *b, real *rows, real *x, real *singular)
 {
-    if (w == 1) {
-        solve_state(n, b, rows, x, singular);
-    } else {
-        set_right_side(n, LANES, b, rows);
-        solve_lanes(n, rows, x, singular);
-    }
+    solve_state(n, b, rows, x, singular);
 }
 
 #define BIG 6  /* most rows or columns of a matrix that is not square, or not solved */
@@ -1133,6 +1127,29 @@ INLINE void take(size_t rows, size_t n, const size_t *places, const real *a, rea
     }
 }
 
+/* Rows as `places` tells made infinite, where all entries are finite before. */
+INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, real *x, real *flags)
+{
+    check(size, w, x, flags);
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t k = 0; k < w; ++k) {
+            x[places[i]*w + k] = R(INFINITY);
+        }
+    }
+}
+
+/* 1 where no entry is negative, else 0. */
+INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
+{
+    check(size, w, a, flags);
+    for (size_t k = 0; k < w; ++k) {
+        x[k] = 1;
+        for (size_t e = 0; e < size; ++e) {
+            x[k] = a[e*w + k] < 0 ? 0 : x[k];
+        }
+    }
+}
+
 INLINE void divide_rows(size_t rows, size_t n, size_t w, const size_t *places, const real *b, real *x)
 {
     for (size_t i = 0; i < rows; ++i) {
@@ -1298,57 +1315,21 @@ static void moved(const real *X, const real *step, real part, real *to)
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics: 1869 mul, 1395 add, 18 div, 12 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
-        h_star_in_base_x[LANES], h_star_in_base_y[LANES], h_star_in_base_z[LANES], J_star_t_8[LANES],
-        J_star_t_9[LANES], J_star_t_10[LANES], J_star_t_12[LANES], J_star_t_13[LANES],
-        J_star_t_15[LANES], Z_p_x[LANES], Z_p_y[LANES], Z_p_z[LANES], Z_q_in_base_x[LANES],
-        Z_q_in_base_y[LANES], Z_q_in_base_z[LANES], sum[27][LANES];
-} dynamics_values;
-typedef struct {
-    real sum[27][8], entry[6][8], unreachable[8], singular[8];
-} dynamics_results_pus;
-
-INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V,
-    dynamics_values *s, verdict *t)
+INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        const real J_star_t_22 = m->J_star_t_22;
-        const real J_star_t_24 = m->J_star_t_24;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -1373,541 +1354,595 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
-        /* (L2) first moment about the platform origin */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_z = m->h_star_z;
         const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
         const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
         const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
-        /* (L3) inertia tensor about the platform origin */
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy;
-        const real J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx;
+        /* (J_star) inertia tensor about the platform origin */
+        const real J_star_t_12 = m->J_star_t_12;
+        const real J_star_xy = m->J_star_xy;
+        const real J_star_yz = m->J_star_yz;
+        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy;
+        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy;
+        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy;
+        const real J_star_t_14 = m->J_star_t_14;
+        const real J_star_xz = m->J_star_xz;
+        const real J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx;
+        const real J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx;
+        const real J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
+        const real J_star_xx = m->J_star_xx;
         const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
         const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
         const real J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_6*R_xz;
         const real J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_12 = 2*J_star_t_11 + J_star_xx;
-        const real J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_13 = 2*J_star_t_11 + J_star_xx;
+        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_6*R_yz;
-        const real J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_t_15 = 2*J_star_t_14 + J_star_xx;
-        /* (M4) centripetal force and weight of the platform */
+        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz;
+        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        /* (Z_p) centripetal force and weight of the platform */
         const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
         const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
         const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
+        const real Z_p_t_2 = m->Z_p_t_2;
         const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
+        const real Z_p_t_3 = m->Z_p_t_3;
         const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (M6) gyroscopic moment and moment of the weight of the platform */
+        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real gravity_z = m->gravity_z;
+        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
         const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
         const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
         const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
         const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
+        const real J_star_yy = m->J_star_yy;
         const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
+        const real J_star_zz = m->J_star_zz;
         const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z_2*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x_2*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y_2*h_star_x;
+        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
+            g_r0_z*h_star_y;
+        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
+            g_r0_x*h_star_z;
+        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
+            g_r0_y*h_star_x;
         const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
         const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
         const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->h_star_in_base_x[k] = h_star_in_base_x;
-        s->h_star_in_base_y[k] = h_star_in_base_y;
-        s->h_star_in_base_z[k] = h_star_in_base_z;
-        s->J_star_t_8[k] = J_star_t_8;
-        s->J_star_t_9[k] = J_star_t_9;
-        s->J_star_t_10[k] = J_star_t_10;
-        s->J_star_t_12[k] = J_star_t_12;
-        s->J_star_t_13[k] = J_star_t_13;
-        s->J_star_t_15[k] = J_star_t_15;
-        s->Z_p_x[k] = Z_p_x;
-        s->Z_p_y[k] = Z_p_y;
-        s->Z_p_z[k] = Z_p_z;
-        s->Z_q_in_base_x[k] = Z_q_in_base_x;
-        s->Z_q_in_base_y[k] = Z_q_in_base_y;
-        s->Z_q_in_base_z[k] = Z_q_in_base_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
+        s[18*w + k] = h_star_in_base_x;
+        s[19*w + k] = h_star_in_base_y;
+        s[20*w + k] = h_star_in_base_z;
+        s[21*w + k] = J_star_t_8;
+        s[22*w + k] = J_star_t_9;
+        s[23*w + k] = J_star_t_10;
+        s[24*w + k] = J_star_t_13;
+        s[25*w + k] = J_star_t_15;
+        s[26*w + k] = J_star_t_17;
+        s[27*w + k] = Z_p_x;
+        s[28*w + k] = Z_p_y;
+        s[29*w + k] = Z_p_z;
+        s[30*w + k] = Z_q_in_base_x;
+        s[31*w + k] = Z_q_in_base_y;
+        s[32*w + k] = Z_q_in_base_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void dynamics_legs_pus(const prepared *m, size_t leg, size_t legs, const dynamics_values
-    *s, size_t states, size_t count, int add, dynamics_results_pus *o)
+INLINE void dynamics_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real J_3_xx = m->J_3_xx[i];
-        const real J_3_xy = m->J_3_xy[i];
-        const real J_3_xz = m->J_3_xz[i];
-        const real J_3_yz = m->J_3_yz[i];
-        const real J_3_zz = m->J_3_zz[i];
-        const real Sigma_3_xx = m->Sigma_3_xx[i];
-        const real Sigma_3_yy = m->Sigma_3_yy[i];
-        const real Sigma_3_zz = m->Sigma_3_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real d_Gamma_3_t = m->d_Gamma_3_t[i];
-        const real d_Gamma_3_y = m->d_Gamma_3_y[i];
-        const real d_c_yy = m->d_c_yy[i];
-        const real d_phi_3_t = m->d_phi_3_t[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real g_r0_z = m->g_r0_z[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real inv_pus_platform_joint_offset_x = m->inv_pus_platform_joint_offset_x[i];
-        const real inv_uu_3_t = m->inv_uu_3_t[i];
-        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
-        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
-        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
-        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
-        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
-        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
-        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
-        const real pus_base_point_x = m->pus_base_point_x[i];
-        const real pus_base_point_y = m->pus_base_point_y[i];
-        const real pus_base_point_z = m->pus_base_point_z[i];
-        const real pus_link1_mass = m->pus_link1_mass[i];
-        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
+        /* (pus-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real pus_platform_point_x = m->pus_platform_point_x[i];
         const real pus_platform_point_y = m->pus_platform_point_y[i];
         const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real size_ = m->size_[i];
-        const real size_t_ = m->size_t_[i];
-        const real uu_3_t = m->uu_3_t[i];
-        /* (pus-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
+        const real pus_q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
             R_xz*pus_platform_point_z;
-        const real q_in_base_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real pus_q_in_base_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
             R_yz*pus_platform_point_z;
-        const real q_in_base_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real pus_q_in_base_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
             R_zz*pus_platform_point_z;
-        const real S_x = q_in_base_x + t_x - pus_base_point_x;
-        const real S_y = q_in_base_y + t_y - pus_base_point_y;
-        const real S_z = q_in_base_z + t_z - pus_base_point_z;
-        /* (pus-K2) component along axis 1 */
-        const real px_1 = S_x*pus_base_frame_xx + S_y*pus_base_frame_yx + S_z*pus_base_frame_zx;
-        /* (pus-K3) discriminant of the distance equation */
-        const real disc_1_t = S_x*S_x + S_y*S_y + S_z*S_z;
-        const real disc_1 = px_1*px_1 + uu_3_t - disc_1_t;
-        /* (pus-K4) displacement of joint 1 */
-        const real q_1_t = branch_1*root(disc_1);
-        /* (pus-K1) from the base point to the connection point */
-        const real S_r0_y = S_x*pus_base_frame_xy + S_y*pus_base_frame_yy + S_z*pus_base_frame_zy;
-        /* (pus-K9) squared amplitude */
-        const real rho2_2 = S_r0_y*S_r0_y + q_1_t*q_1_t;
-        /* (pus-K11) root, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (pus-K17) cosine of the angle of joint 3 from its reference direction */
-        const real c_3 = inv_uu_3_t*pus_platform_joint_offset_x*root_2;
-        /* (pus-K18) sine of the angle of joint 3 from its reference direction */
-        const real s_3 = inv_uu_3_t*pus_platform_joint_offset_x*(S_x*pus_base_frame_xz +
-            S_y*pus_base_frame_yz + S_z*pus_base_frame_zz);
-        /* (pus-V2) velocity of the connection point per rate of joint 2 */
-        const real v_2_t = c_3*pus_platform_joint_offset_x;
-        /* (pus-K12) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rho2_2 = 1/rho2_2;
-        const real c_2 = S_r0_y*inv_rho2_2*root_2;
-        /* (pus-K13) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_rho2_2*q_1_t*root_2;
-        /* (pus-V4) reciprocal vector 1 */
-        const real axis_z_pus_axes3_in_base_x = -c_2*pus_base_frame_xx - pus_base_frame_xy*s_2;
-        const real axis_z_pus_axes3_in_base_y = -c_2*pus_base_frame_yx - pus_base_frame_yy*s_2;
-        const real axis_z_pus_axes3_in_base_z = -c_2*pus_base_frame_zx - pus_base_frame_zy*s_2;
-        const real w_1_t = s_2*s_3;
-        const real w_1_t_2 = c_2*s_3;
-        const real axis_y_pus_axes3_in_base_x = pus_base_frame_xy*w_1_t_2 - c_3*pus_base_frame_xz
-            - pus_base_frame_xx*w_1_t;
-        const real axis_y_pus_axes3_in_base_y = pus_base_frame_yy*w_1_t_2 - c_3*pus_base_frame_yz
-            - pus_base_frame_yx*w_1_t;
-        const real axis_y_pus_axes3_in_base_z = pus_base_frame_zy*w_1_t_2 - c_3*pus_base_frame_zz
-            - pus_base_frame_zx*w_1_t;
+        const real pus_base_point_x = m->pus_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x;
+        const real pus_base_point_y = m->pus_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y;
+        const real pus_base_point_z = m->pus_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z;
+        /* (pus-px_1) component along axis 1 */
+        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
+        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
+        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
+        const real pus_px_1 = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
+            pus_S_z*pus_base_frame_zx;
+        /* (pus-disc_1) discriminant of the distance equation */
+        const real pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
+        const real pus_disc_1_t = m->pus_disc_1_t[i];
+        const real pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2;
+        /* (pus-q_1) displacement of joint 1 */
+        const real pus_branch_1 = m->pus_branch_1[i];
+        const real pus_q_1_t = pus_branch_1*root(pus_disc_1);
+        /* (pus-S) from the base point to the connection point */
+        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
+        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
+        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
+        const real pus_S_r0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
+            pus_S_z*pus_base_frame_zy;
+        /* (pus-rho2_2) squared amplitude */
+        const real pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t;
+        /* (pus-root_2) root, with the sign of the branch */
+        const real pus_branch_2 = m->pus_branch_2[i];
+        const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
+        /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_pus_disc_1_t_6 = m->inv_pus_disc_1_t_6[i];
+        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
+        const real pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2;
+        /* (pus-s_3) sine of the angle of joint 3 from its reference direction */
+        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
+        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
+        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
+        const real pus_s_3 =
+            inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
+        /* (pus-v_2) velocity of the connection point per rate of joint 2 */
+        const real pus_v_2_t = pus_c_3*pus_platform_joint_offset_x;
+        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_pus_rho2_2 = 1/pus_rho2_2;
+        const real pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2;
+        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2;
+        /* (pus-w_1) reciprocal vector 1 */
+        const real axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 -
+            pus_base_frame_xy*pus_s_2;
+        const real axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 -
+            pus_base_frame_yy*pus_s_2;
+        const real axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 -
+            pus_base_frame_zy*pus_s_2;
+        const real pus_w_1_t = pus_s_2*pus_s_3;
+        const real pus_w_1_t_2 = pus_c_2*pus_s_3;
+        const real axis_y_pus_axes3_in_base_x = pus_base_frame_xy*pus_w_1_t_2 -
+            pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3;
+        const real axis_y_pus_axes3_in_base_y = pus_base_frame_yy*pus_w_1_t_2 -
+            pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3;
+        const real axis_y_pus_axes3_in_base_z = pus_base_frame_zy*pus_w_1_t_2 -
+            pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3;
         const real axis_x_pus_axes3_x = axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
             axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y;
         const real axis_x_pus_axes3_y = axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
             axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_z;
         const real axis_x_pus_axes3_z = axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
             axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x;
-        const real w_1_t_3 = c_3*s_2;
-        const real inv_w_1_t_24 = 1/w_1_t_3;
-        /* (pus-G6) inertia tensor of link 3 about the connection point */
-        const real _y = J_3_xy*s_3 + J_3_yz*c_3;
-        /* (pus-V5) reciprocal vector 2 */
-        const real inv_v_2_t = 1/v_2_t;
-        const real w_2_t = c_2*inv_v_2_t*inv_w_1_t_24;
-        /* (pus-V6) reciprocal vector 3 */
-        const real w_3_t = inv_pus_platform_joint_offset_x*inv_w_1_t_24*w_1_t;
-        /* (pus-N25) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
-           and weight */
-        const real d_Gamma_2_t = inv_v_2_t*(s_3*(J_3_xx*s_3 + J_3_xz*c_3) - c_3*(-J_3_xz*s_3 -
-            J_3_zz*c_3));
-        const real d_Gamma_2_t_2 = _y*inv_pus_platform_joint_offset_x;
-        const real d_Gamma_2_x = -c_3*h_3_y - inv_w_1_t_24*(c_2*d_Gamma_2_t +
-            d_Gamma_2_t_2*w_1_t);
-        const real d_Gamma_2_y = d_Gamma_2_t_2 - h_3_y*s_3;
-        const real d_Gamma_2_z = d_Gamma_2_t + c_3*h_3_x - h_3_z*s_3;
-        /* (pus-N22) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia
-           and weight */
-        const real d_Gamma_3_t_2 = _y*inv_v_2_t;
-        const real d_Gamma_3_x = h_3_z - inv_w_1_t_24*(c_2*d_Gamma_3_t_2 + d_Gamma_3_t*w_1_t);
-        /* (pus-A17) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real d_alpha_3_t = inv_v_2_t*s_3;
-        const real d_alpha_3_t_2 = c_3*inv_v_2_t;
-        /* (pus-N34) coefficient of the acceleration in: leg force on the platform without actuation and
+        /* (pus-w_2) reciprocal vector 2 */
+        const real pus_w_2_t = pus_c_3*pus_s_2;
+        const real inv_pus_v_2_t = 1/pus_v_2_t;
+        const real inv_pus_w_2_t = 1/pus_w_2_t;
+        const real pus_w_2_t_2 = inv_pus_v_2_t*inv_pus_w_2_t*pus_c_2;
+        /* (pus-w_3) reciprocal vector 3 */
+        const real inv_pus_platform_joint_offset_x = m->inv_pus_platform_joint_offset_x[i];
+        const real pus_w_3_t = inv_pus_platform_joint_offset_x*inv_pus_w_2_t*pus_w_1_t;
+        /* (pus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
+        const real pus_d_alpha_3_t = inv_pus_v_2_t*pus_s_3;
+        const real pus_d_alpha_3_t_2 = inv_pus_v_2_t*pus_c_3;
+        /* (pus-L_c_3) moment about joint 3 that accelerates joint 3, per unit */
+        const real pus_J_3_xy = m->pus_J_3_xy[i];
+        const real pus_J_3_yz = m->pus_J_3_yz[i];
+        const real pus_L_c_3_r0_y = pus_J_3_xy*pus_s_3 + pus_J_3_yz*pus_c_3;
+        /* (pus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
+           inertia and weight */
+        const real pus_d_Gamma_3_t_2 = inv_pus_v_2_t*pus_L_c_3_r0_y;
+        const real pus_d_Gamma_3_t = m->pus_d_Gamma_3_t[i];
+        const real pus_h_3_z = m->pus_h_3_z[i];
+        const real pus_d_Gamma_3_x = pus_h_3_z - inv_pus_w_2_t*(pus_c_2*pus_d_Gamma_3_t_2 +
+            pus_d_Gamma_3_t*pus_w_1_t);
+        /* (pus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real pus_J_3_xx = m->pus_J_3_xx[i];
+        const real pus_J_3_xz = m->pus_J_3_xz[i];
+        const real pus_J_3_zz = m->pus_J_3_zz[i];
+        const real pus_d_Gamma_2_t = inv_pus_v_2_t*(pus_s_3*(pus_J_3_xx*pus_s_3 +
+            pus_J_3_xz*pus_c_3) - pus_c_3*(-pus_J_3_xz*pus_s_3 - pus_J_3_zz*pus_c_3));
+        const real pus_d_Gamma_2_t_2 = inv_pus_platform_joint_offset_x*pus_L_c_3_r0_y;
+        const real pus_h_3_y = m->pus_h_3_y[i];
+        const real pus_d_Gamma_2_x = -inv_pus_w_2_t*(pus_c_2*pus_d_Gamma_2_t +
+            pus_d_Gamma_2_t_2*pus_w_1_t) - pus_c_3*pus_h_3_y;
+        const real pus_d_Gamma_2_y = pus_d_Gamma_2_t_2 - pus_h_3_y*pus_s_3;
+        const real pus_h_3_x = m->pus_h_3_x[i];
+        const real pus_d_Gamma_2_z = pus_d_Gamma_2_t + pus_c_3*pus_h_3_x - pus_h_3_z*pus_s_3;
+        /* (pus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_xx = d_Gamma_2_x*w_2_t + d_Gamma_3_x*w_3_t + h_3_z*w_3_t -
-            inv_w_1_t_24*inv_w_1_t_24*pus_link1_mass - c_3*h_3_y*w_2_t;
-        const real d_c_xy = d_Gamma_2_y*w_2_t + d_Gamma_3_y*w_3_t - d_phi_3_t;
-        const real d_c_xz = d_Gamma_2_z*w_2_t + d_Gamma_3_t_2*w_3_t + d_alpha_3_t_2*h_3_y;
-        const real d_c_yz = d_alpha_3_t*h_3_y - d_Gamma_3_t_2*inv_pus_platform_joint_offset_x;
-        /* (pus-N36) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = d_c_xx - d_c_yy;
-        const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = d_c_xx + d_Gamma_2_z*inv_v_2_t + d_alpha_3_t_2*h_3_x -
-            d_alpha_3_t*h_3_z;
-        const real Q_t_4 = R(0.5)*Q_t_3;
-        const real Q_t_5 = axis_x_pus_axes3_x*d_c_xy + axis_z_pus_axes3_in_base_x*d_c_yz -
-            Q_t_2*axis_y_pus_axes3_in_base_x;
-        const real Q_t_6 = axis_x_pus_axes3_y*d_c_xy + axis_z_pus_axes3_in_base_y*d_c_yz -
-            Q_t_2*axis_y_pus_axes3_in_base_y;
-        const real Q_t_7 = axis_x_pus_axes3_z*d_c_xy + axis_z_pus_axes3_in_base_z*d_c_yz -
-            Q_t_2*axis_y_pus_axes3_in_base_z;
-        const real Q_t_8 = Q_t_4*axis_z_pus_axes3_in_base_x - axis_x_pus_axes3_x*d_c_xz;
-        const real Q_t_9 = Q_t_4*axis_z_pus_axes3_in_base_y - axis_x_pus_axes3_y*d_c_xz;
-        const real Q_t_10 = Q_t_4*axis_z_pus_axes3_in_base_z - axis_x_pus_axes3_z*d_c_xz;
-        const real Q_t_11 = Q_t_5*axis_y_pus_axes3_in_base_x - Q_t_8*axis_z_pus_axes3_in_base_x;
-        const real Q_t_12 = 2*Q_t_11 + d_c_xx;
-        const real Q_t_13 = Q_t_5*axis_y_pus_axes3_in_base_y + Q_t_6*axis_y_pus_axes3_in_base_x -
-            Q_t_8*axis_z_pus_axes3_in_base_y - Q_t_9*axis_z_pus_axes3_in_base_x;
-        const real Q_t_14 = Q_t_5*axis_y_pus_axes3_in_base_z + Q_t_7*axis_y_pus_axes3_in_base_x -
-            Q_t_10*axis_z_pus_axes3_in_base_x - Q_t_8*axis_z_pus_axes3_in_base_z;
-        const real Q_t_15 = Q_t_6*axis_y_pus_axes3_in_base_y - Q_t_9*axis_z_pus_axes3_in_base_y;
-        const real Q_t_16 = 2*Q_t_15 + d_c_xx;
-        const real Q_t_17 = Q_t_6*axis_y_pus_axes3_in_base_z + Q_t_7*axis_y_pus_axes3_in_base_y -
-            Q_t_10*axis_z_pus_axes3_in_base_y - Q_t_9*axis_z_pus_axes3_in_base_z;
-        const real Q_t_18 = Q_t_7*axis_y_pus_axes3_in_base_z - Q_t_10*axis_z_pus_axes3_in_base_z;
-        const real Q_t_19 = 2*Q_t_18 + d_c_xx;
-        /* (M2) coupling block of M */
-        const real M_ta_t = Q_t_13*q_in_base_z;
-        const real M_ta_t_2 = Q_t_14*q_in_base_y;
-        const real M_ta_t_3 = M_ta_t - M_ta_t_2;
-        const real M_ta_t_4 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x;
-        const real M_ta_t_5 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x;
-        const real M_ta_t_6 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y;
-        const real M_ta_t_7 = Q_t_17*q_in_base_x;
-        const real M_ta_t_8 = M_ta_t - M_ta_t_7;
-        const real M_ta_t_9 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x;
-        const real M_ta_t_10 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y;
-        const real M_ta_t_11 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x;
-        const real M_ta_t_12 = M_ta_t_7 - M_ta_t_2;
-        /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y;
-        const real M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y;
-        const real M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z;
-        const real M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x;
-        const real M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z;
-        const real M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x;
-        /* (pus-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        /* (pus-V8) rate of joint 2 */
-        const real qd_1 = inv_w_1_t_24*(S_dot_x*axis_x_pus_axes3_x + S_dot_y*axis_x_pus_axes3_y +
-            S_dot_z*axis_x_pus_axes3_z);
-        const real qd_2_t = S_dot_x*axis_y_pus_axes3_in_base_x +
-            S_dot_y*axis_y_pus_axes3_in_base_y + S_dot_z*axis_y_pus_axes3_in_base_z - qd_1*w_1_t;
-        const real qd_3 = inv_pus_platform_joint_offset_x*qd_2_t;
-        const real qd_2 = inv_v_2_t*(S_dot_x*axis_z_pus_axes3_in_base_x +
-            S_dot_y*axis_z_pus_axes3_in_base_y + S_dot_z*axis_z_pus_axes3_in_base_z - c_2*qd_1);
-        /* (pus-V10) angular velocity of link 2 */
-        const real omega_2_t = qd_2*s_3;
-        const real omega_2_t_2 = c_3*qd_2;
-        /* (pus-A4) angular acceleration of link 3 from the turning of axis 3 */
-        const real zeta_3_x = omega_2_t_2*qd_3;
-        const real zeta_3_y = omega_2_t*qd_3;
-        /* (pus-V12) centripetal tensor of link 3 */
-        const real W_3_t = omega_2_t*omega_2_t;
-        const real W_3_t_2 = omega_2_t_2*omega_2_t_2;
-        const real W_3_t_3 = qd_3*qd_3;
-        const real W_3_xy = omega_2_t*omega_2_t_2;
-        /* (pus-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = omega_2_t_2*pus_platform_joint_offset_x;
-        const real bias_z = omega_2_t*qd_2_t + pus_platform_joint_offset_x*zeta_3_y;
-        /* (pus-A1) centripetal acceleration of the connection point */
-        const real u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z;
-        const real u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x;
-        const real u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y;
-        const real u_1_tip_x = axis_x_pus_axes3_x*u_1_x + axis_x_pus_axes3_y*u_1_y +
-            axis_x_pus_axes3_z*u_1_z;
-        const real u_1_tip_y = axis_y_pus_axes3_in_base_x*u_1_x + axis_y_pus_axes3_in_base_y*u_1_y
-            + axis_y_pus_axes3_in_base_z*u_1_z;
-        const real u_1_tip_z = axis_z_pus_axes3_in_base_x*u_1_x + axis_z_pus_axes3_in_base_y*u_1_y
-            + axis_z_pus_axes3_in_base_z*u_1_z;
-        /* (pus-A7) remainder without the acceleration in: acceleration of the connection point left to
+        const real pus_link1_mass = m->pus_link1_mass[i];
+        const real pus_d_c_xx = pus_d_Gamma_2_x*pus_w_2_t_2 + pus_d_Gamma_3_x*pus_w_3_t +
+            pus_h_3_z*pus_w_3_t - inv_pus_w_2_t*inv_pus_w_2_t*pus_link1_mass -
+            pus_c_3*pus_h_3_y*pus_w_2_t_2;
+        const real pus_d_Gamma_3_y = m->pus_d_Gamma_3_y[i];
+        const real pus_d_phi_3_t = m->pus_d_phi_3_t[i];
+        const real pus_d_c_xy = pus_d_Gamma_2_y*pus_w_2_t_2 + pus_d_Gamma_3_y*pus_w_3_t -
+            pus_d_phi_3_t;
+        const real pus_d_c_xz = pus_d_Gamma_2_z*pus_w_2_t_2 + pus_d_Gamma_3_t_2*pus_w_3_t +
+            pus_d_alpha_3_t_2*pus_h_3_y;
+        const real pus_d_c_yz = pus_d_alpha_3_t*pus_h_3_y -
+            inv_pus_platform_joint_offset_x*pus_d_Gamma_3_t_2;
+        /* (pus-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real pus_d_c_yy = m->pus_d_c_yy[i];
+        const real pus_Q_t = pus_d_c_xx - pus_d_c_yy;
+        const real pus_Q_t_2 = R(0.5)*pus_Q_t;
+        const real pus_Q_t_3 = pus_d_c_xx + inv_pus_v_2_t*pus_d_Gamma_2_z +
+            pus_d_alpha_3_t_2*pus_h_3_x - pus_d_alpha_3_t*pus_h_3_z;
+        const real pus_Q_t_4 = R(0.5)*pus_Q_t_3;
+        const real pus_Q_t_5 = axis_x_pus_axes3_x*pus_d_c_xy +
+            axis_z_pus_axes3_in_base_x*pus_d_c_yz - axis_y_pus_axes3_in_base_x*pus_Q_t_2;
+        const real pus_Q_t_6 = axis_x_pus_axes3_y*pus_d_c_xy +
+            axis_z_pus_axes3_in_base_y*pus_d_c_yz - axis_y_pus_axes3_in_base_y*pus_Q_t_2;
+        const real pus_Q_t_7 = axis_x_pus_axes3_z*pus_d_c_xy +
+            axis_z_pus_axes3_in_base_z*pus_d_c_yz - axis_y_pus_axes3_in_base_z*pus_Q_t_2;
+        const real pus_Q_t_8 = axis_z_pus_axes3_in_base_x*pus_Q_t_4 -
+            axis_x_pus_axes3_x*pus_d_c_xz;
+        const real pus_Q_t_9 = axis_z_pus_axes3_in_base_y*pus_Q_t_4 -
+            axis_x_pus_axes3_y*pus_d_c_xz;
+        const real pus_Q_t_10 = axis_z_pus_axes3_in_base_z*pus_Q_t_4 -
+            axis_x_pus_axes3_z*pus_d_c_xz;
+        const real pus_Q_t_11 = axis_y_pus_axes3_in_base_x*pus_Q_t_5 -
+            axis_z_pus_axes3_in_base_x*pus_Q_t_8;
+        const real pus_Q_t_12 = 2*pus_Q_t_11 + pus_d_c_xx;
+        const real pus_Q_t_13 = axis_y_pus_axes3_in_base_x*pus_Q_t_6 +
+            axis_y_pus_axes3_in_base_y*pus_Q_t_5 - axis_z_pus_axes3_in_base_x*pus_Q_t_9 -
+            axis_z_pus_axes3_in_base_y*pus_Q_t_8;
+        const real pus_Q_t_14 = axis_y_pus_axes3_in_base_x*pus_Q_t_7 +
+            axis_y_pus_axes3_in_base_z*pus_Q_t_5 - axis_z_pus_axes3_in_base_x*pus_Q_t_10 -
+            axis_z_pus_axes3_in_base_z*pus_Q_t_8;
+        const real pus_Q_t_15 = axis_y_pus_axes3_in_base_y*pus_Q_t_6 -
+            axis_z_pus_axes3_in_base_y*pus_Q_t_9;
+        const real pus_Q_t_16 = 2*pus_Q_t_15 + pus_d_c_xx;
+        const real pus_Q_t_17 = axis_y_pus_axes3_in_base_y*pus_Q_t_7 +
+            axis_y_pus_axes3_in_base_z*pus_Q_t_6 - axis_z_pus_axes3_in_base_y*pus_Q_t_10 -
+            axis_z_pus_axes3_in_base_z*pus_Q_t_9;
+        const real pus_Q_t_18 = axis_y_pus_axes3_in_base_z*pus_Q_t_7 -
+            axis_z_pus_axes3_in_base_z*pus_Q_t_10;
+        const real pus_Q_t_19 = 2*pus_Q_t_18 + pus_d_c_xx;
+        /* (M_ta) coupling block of M */
+        const real pus_M_ta_t = pus_Q_t_13*pus_q_in_base_z;
+        const real pus_M_ta_t_2 = pus_Q_t_14*pus_q_in_base_y;
+        const real pus_M_ta_t_3 = pus_M_ta_t - pus_M_ta_t_2;
+        const real pus_M_ta_t_4 = pus_Q_t_12*pus_q_in_base_z - pus_Q_t_14*pus_q_in_base_x;
+        const real pus_M_ta_t_5 = pus_Q_t_12*pus_q_in_base_y - pus_Q_t_13*pus_q_in_base_x;
+        const real pus_M_ta_t_6 = pus_Q_t_16*pus_q_in_base_z - pus_Q_t_17*pus_q_in_base_y;
+        const real pus_M_ta_t_7 = pus_Q_t_17*pus_q_in_base_x;
+        const real pus_M_ta_t_8 = pus_M_ta_t - pus_M_ta_t_7;
+        const real pus_M_ta_t_9 = pus_Q_t_13*pus_q_in_base_y - pus_Q_t_16*pus_q_in_base_x;
+        const real pus_M_ta_t_10 = pus_Q_t_17*pus_q_in_base_z - pus_Q_t_19*pus_q_in_base_y;
+        const real pus_M_ta_t_11 = pus_Q_t_14*pus_q_in_base_z - pus_Q_t_19*pus_q_in_base_x;
+        const real pus_M_ta_t_12 = pus_M_ta_t_7 - pus_M_ta_t_2;
+        /* (M_aa) rotational block of M */
+        const real pus_M_aa_t = pus_M_ta_t_6*pus_q_in_base_z - pus_M_ta_t_10*pus_q_in_base_y;
+        const real pus_M_aa_t_2 = pus_M_ta_t_8*pus_q_in_base_z - pus_M_ta_t_11*pus_q_in_base_y;
+        const real pus_M_aa_t_3 = pus_M_ta_t_12*pus_q_in_base_y + pus_M_ta_t_9*pus_q_in_base_z;
+        const real pus_M_aa_t_4 = pus_M_ta_t_4*pus_q_in_base_z - pus_M_ta_t_11*pus_q_in_base_x;
+        const real pus_M_aa_t_5 = pus_M_ta_t_12*pus_q_in_base_x + pus_M_ta_t_5*pus_q_in_base_z;
+        const real pus_M_aa_t_6 = pus_M_ta_t_5*pus_q_in_base_y - pus_M_ta_t_9*pus_q_in_base_x;
+        /* (pus-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real pus_S_dot_t = omega_y*pus_q_in_base_z - omega_z*pus_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real pus_S_dot_t_2 = omega_z*pus_q_in_base_x - omega_x*pus_q_in_base_z;
+        const real pus_S_dot_t_3 = omega_x*pus_q_in_base_y - omega_y*pus_q_in_base_x;
+        const real t_dot_x = s[12*w + j];
+        const real pus_S_dot_x = pus_S_dot_t + t_dot_x;
+        const real t_dot_y = s[13*w + j];
+        const real pus_S_dot_y = pus_S_dot_t_2 + t_dot_y;
+        const real t_dot_z = s[14*w + j];
+        const real pus_S_dot_z = pus_S_dot_t_3 + t_dot_z;
+        /* (pus-qd_3) rate of joint 3 */
+        const real pus_qd_1 = inv_pus_w_2_t*(axis_x_pus_axes3_x*pus_S_dot_x +
+            axis_x_pus_axes3_y*pus_S_dot_y + axis_x_pus_axes3_z*pus_S_dot_z);
+        const real pus_qd_3_t = axis_y_pus_axes3_in_base_x*pus_S_dot_x +
+            axis_y_pus_axes3_in_base_y*pus_S_dot_y + axis_y_pus_axes3_in_base_z*pus_S_dot_z -
+            pus_qd_1*pus_w_1_t;
+        const real pus_qd_3 = inv_pus_platform_joint_offset_x*pus_qd_3_t;
+        const real pus_qd_2 = inv_pus_v_2_t*(axis_z_pus_axes3_in_base_x*pus_S_dot_x +
+            axis_z_pus_axes3_in_base_y*pus_S_dot_y + axis_z_pus_axes3_in_base_z*pus_S_dot_z -
+            pus_c_2*pus_qd_1);
+        /* (pus-omega_2) angular velocity of link 2 */
+        const real pus_omega_2_t = pus_qd_2*pus_s_3;
+        const real pus_omega_2_t_2 = pus_c_3*pus_qd_2;
+        /* (pus-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+        const real pus_zeta_3_x = pus_omega_2_t_2*pus_qd_3;
+        const real pus_zeta_3_y = pus_omega_2_t*pus_qd_3;
+        /* (pus-u_1) centripetal acceleration of the connection point */
+        const real pus_u_1_x = omega_y*pus_S_dot_t_3 - omega_z*pus_S_dot_t_2;
+        const real pus_u_1_y = omega_z*pus_S_dot_t - omega_x*pus_S_dot_t_3;
+        const real pus_u_1_z = omega_x*pus_S_dot_t_2 - omega_y*pus_S_dot_t;
+        /* (pus-W_3) centripetal tensor of link 3 */
+        const real pus_W_3_t = pus_omega_2_t*pus_omega_2_t;
+        const real pus_W_3_t_2 = pus_omega_2_t_2*pus_omega_2_t_2;
+        const real pus_W_3_t_3 = pus_qd_3*pus_qd_3;
+        const real pus_W_3_xy = pus_omega_2_t*pus_omega_2_t_2;
+        /* (pus-bias) acceleration of the connection point at zero joint accelerations */
+        const real pus_bias_t = pus_omega_2_t_2*pus_platform_joint_offset_x;
+        const real pus_bias_z = pus_omega_2_t*pus_qd_3_t +
+            pus_platform_joint_offset_x*pus_zeta_3_y;
+        /* (pus-u_1) centripetal acceleration of the connection point */
+        const real pus_u_1_tip_x = axis_x_pus_axes3_x*pus_u_1_x + axis_x_pus_axes3_y*pus_u_1_y +
+            axis_x_pus_axes3_z*pus_u_1_z;
+        const real pus_u_1_tip_y = axis_y_pus_axes3_in_base_x*pus_u_1_x +
+            axis_y_pus_axes3_in_base_y*pus_u_1_y + axis_y_pus_axes3_in_base_z*pus_u_1_z;
+        const real pus_u_1_tip_z = axis_z_pus_axes3_in_base_x*pus_u_1_x +
+            axis_z_pus_axes3_in_base_y*pus_u_1_y + axis_z_pus_axes3_in_base_z*pus_u_1_z;
+        /* (pus-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rel_o_x = u_1_tip_x + bias_t*omega_2_t_2 + qd_2_t*qd_3;
-        const real rel_o_y = u_1_tip_y + bias_t*omega_2_t;
-        const real rel_o_z = u_1_tip_z - bias_z;
-        /* (pus-A9) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_o = inv_w_1_t_24*rel_o_x;
-        const real qdd_3_o = inv_pus_platform_joint_offset_x*(qdd_1_o*w_1_t - rel_o_y);
-        const real qdd_2_o = inv_v_2_t*(c_2*qdd_1_o - rel_o_z);
-        /* (pus-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
-           less gravity */
-        const real acc_1_o_x = -g_r0_x - qdd_1_o;
-        /* (pus-N6) remainder without the acceleration in: acceleration of the reference point of link 3,
-           less gravity */
-        const real g_r1_y = g_r0_x*s_2 - c_2*g_r0_y;
-        const real acc_3_o_x = u_1_tip_x + c_3*g_r1_y - g_r0_z*s_3;
-        const real acc_3_o_y = u_1_tip_y + c_3*g_r0_z + g_r1_y*s_3;
-        const real acc_3_o_z = u_1_tip_z + c_2*g_r0_x + g_r0_y*s_2;
-        /* (pus-A15) remainder without the acceleration in: angular acceleration of link 2 */
-        const real alpha_2_o_t = qdd_2_o*s_3;
-        const real alpha_2_o_t_2 = c_3*qdd_2_o;
-        /* (pus-A18) remainder without the acceleration in: angular acceleration of link 3 */
-        const real alpha_3_o_x = -alpha_2_o_t - zeta_3_x;
-        const real alpha_3_o_y = alpha_2_o_t_2 - zeta_3_y;
-        /* (pus-A20) remainder of the acceleration tensor of link 3 */
-        const real B_3_o_xy = qdd_3_o - W_3_xy;
-        const real B_3_o_yx = -W_3_xy - qdd_3_o;
-        const real B_3_o_zx = zeta_3_y - alpha_3_o_y;
-        const real B_3_o_zy = alpha_3_o_x - zeta_3_x;
-        /* (pus-N20) remainder without the acceleration in: inertia moment of the links that turn with
+        const real pus_rel_o_x = pus_u_1_tip_x + pus_bias_t*pus_omega_2_t_2 + pus_qd_3*pus_qd_3_t;
+        const real pus_rel_o_y = pus_u_1_tip_y + pus_bias_t*pus_omega_2_t;
+        const real pus_rel_o_z = pus_u_1_tip_z - pus_bias_z;
+        /* (pus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
+        const real pus_qdd_1_o = inv_pus_w_2_t*pus_rel_o_x;
+        const real pus_qdd_3_o = inv_pus_platform_joint_offset_x*(pus_qdd_1_o*pus_w_1_t -
+            pus_rel_o_y);
+        const real pus_qdd_2_o = inv_pus_v_2_t*(pus_c_2*pus_qdd_1_o - pus_rel_o_z);
+        /* (pus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        const real pus_alpha_2_o_t = pus_qdd_2_o*pus_s_3;
+        const real pus_alpha_2_o_t_2 = pus_c_3*pus_qdd_2_o;
+        /* (pus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
+        const real pus_alpha_3_o_x = -pus_alpha_2_o_t - pus_zeta_3_x;
+        const real pus_alpha_3_o_y = pus_alpha_2_o_t_2 - pus_zeta_3_y;
+        /* (pus-B_3_o) remainder of the acceleration tensor of link 3 */
+        const real pus_B_3_o_xy = pus_qdd_3_o - pus_W_3_xy;
+        const real pus_B_3_o_yx = -pus_W_3_xy - pus_qdd_3_o;
+        const real pus_B_3_o_zx = pus_zeta_3_y - pus_alpha_3_o_y;
+        const real pus_B_3_o_zy = pus_alpha_3_o_x - pus_zeta_3_x;
+        /* (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+           link 3, less gravity */
+        const real pus_g_r0_x = m->pus_g_r0_x[i];
+        const real pus_g_r0_y = m->pus_g_r0_y[i];
+        const real pus_g_r1_y = pus_g_r0_x*pus_s_2 - pus_c_2*pus_g_r0_y;
+        const real pus_g_r0_z = m->pus_g_r0_z[i];
+        const real pus_acc_3_o_x = pus_u_1_tip_x + pus_c_3*pus_g_r1_y - pus_g_r0_z*pus_s_3;
+        const real pus_acc_3_o_y = pus_u_1_tip_y + pus_c_3*pus_g_r0_z + pus_g_r1_y*pus_s_3;
+        const real pus_acc_3_o_z = pus_u_1_tip_z + pus_c_2*pus_g_r0_x + pus_g_r0_y*pus_s_2;
+        /* (pus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
-        const real mu_3_o_x = B_3_o_yx*J_3_xy + B_3_o_zx*J_3_xz + B_3_o_zy*Sigma_3_yy -
-            J_3_yz*(W_3_t_2 - W_3_t_3) - Sigma_3_zz*alpha_2_o_t - acc_3_o_y*h_3_y -
-            acc_3_o_z*h_3_z;
-        const real mu_3_o_y = B_3_o_xy*J_3_yz + Sigma_3_zz*alpha_2_o_t_2 + acc_3_o_x*h_3_y -
-            B_3_o_zx*Sigma_3_xx - B_3_o_zy*J_3_xz - J_3_xy*(W_3_t - W_3_t_3) - acc_3_o_z*h_3_x;
-        const real mu_3_o_z = B_3_o_yx*Sigma_3_xx + acc_3_o_x*h_3_z + acc_3_o_y*h_3_x -
-            B_3_o_xy*Sigma_3_yy - J_3_xy*alpha_2_o_t - J_3_xz*(W_3_t - W_3_t_2) -
-            J_3_yz*alpha_2_o_t_2;
-        /* (pus-N32) remainder without the acceleration in: force at the connection point that balances
+        const real pus_Sigma_3_yy = m->pus_Sigma_3_yy[i];
+        const real pus_Sigma_3_zz = m->pus_Sigma_3_zz[i];
+        const real pus_mu_3_o_x = pus_B_3_o_yx*pus_J_3_xy + pus_B_3_o_zx*pus_J_3_xz +
+            pus_B_3_o_zy*pus_Sigma_3_yy - pus_J_3_yz*(pus_W_3_t_2 - pus_W_3_t_3) -
+            pus_Sigma_3_zz*pus_alpha_2_o_t - pus_acc_3_o_y*pus_h_3_y - pus_acc_3_o_z*pus_h_3_z;
+        const real pus_Sigma_3_xx = m->pus_Sigma_3_xx[i];
+        const real pus_mu_3_o_y = pus_B_3_o_xy*pus_J_3_yz + pus_Sigma_3_zz*pus_alpha_2_o_t_2 +
+            pus_acc_3_o_x*pus_h_3_y - pus_B_3_o_zx*pus_Sigma_3_xx - pus_B_3_o_zy*pus_J_3_xz -
+            pus_J_3_xy*(pus_W_3_t - pus_W_3_t_3) - pus_acc_3_o_z*pus_h_3_x;
+        const real pus_mu_3_o_z = pus_B_3_o_yx*pus_Sigma_3_xx + pus_acc_3_o_x*pus_h_3_z +
+            pus_acc_3_o_y*pus_h_3_x - pus_B_3_o_xy*pus_Sigma_3_yy - pus_J_3_xy*pus_alpha_2_o_t -
+            pus_J_3_xz*(pus_W_3_t - pus_W_3_t_2) - pus_J_3_yz*pus_alpha_2_o_t_2;
+        /* (pus-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
+           link 1, less gravity */
+        const real pus_acc_1_o_x = -pus_g_r0_x - pus_qdd_1_o;
+        /* (pus-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real G_o_t = inv_v_2_t*(mu_3_o_x*s_3 - c_3*mu_3_o_y);
-        const real G_o_t_2 = inv_pus_platform_joint_offset_x*mu_3_o_z;
-        /* (pus-N35) remainder without the acceleration in: leg force on the platform without actuation
+        const real pus_G_o_t = inv_pus_v_2_t*(pus_mu_3_o_x*pus_s_3 - pus_c_3*pus_mu_3_o_y);
+        const real pus_G_o_t_2 = inv_pus_platform_joint_offset_x*pus_mu_3_o_z;
+        /* (pus-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real c_o_x = B_3_o_xy*h_3_z + h_3_x*(W_3_t_2 + W_3_t_3) + inv_w_1_t_24*(G_o_t*c_2 +
-            G_o_t_2*w_1_t + acc_1_o_x*pus_link1_mass) - alpha_2_o_t_2*h_3_y;
-        const real c_o_y = -G_o_t_2 - B_3_o_yx*h_3_x - alpha_2_o_t*h_3_y - h_3_z*(W_3_t +
-            W_3_t_3);
-        const real c_o_z = B_3_o_zy*h_3_z + h_3_y*(W_3_t + W_3_t_2) - G_o_t - B_3_o_zx*h_3_x;
-        /* (pus-N37) velocity and gravity terms of the leg force */
-        const real U_in_base_x = -axis_x_pus_axes3_x*c_o_x - axis_y_pus_axes3_in_base_x*c_o_y -
-            axis_z_pus_axes3_in_base_x*c_o_z;
-        const real U_in_base_y = -axis_x_pus_axes3_y*c_o_x - axis_y_pus_axes3_in_base_y*c_o_y -
-            axis_z_pus_axes3_in_base_y*c_o_z;
-        const real U_in_base_z = -axis_x_pus_axes3_z*c_o_x - axis_y_pus_axes3_in_base_z*c_o_y -
-            axis_z_pus_axes3_in_base_z*c_o_z;
-        /* (M7) rotational part of Z */
-        const real Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z;
-        const real Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x;
-        const real Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y;
-        /* (pus-V4) reciprocal vector 1 */
-        const real w_1_t_4 = axis_x_pus_axes3_x*inv_w_1_t_24;
-        const real w_1_t_5 = axis_x_pus_axes3_y*inv_w_1_t_24;
-        const real w_1_t_6 = axis_x_pus_axes3_z*inv_w_1_t_24;
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_1_x = q_in_base_z*w_1_t_5 - q_in_base_y*w_1_t_6;
-        const real H_a_1_y = q_in_base_x*w_1_t_6 - q_in_base_z*w_1_t_4;
-        const real H_a_1_z = q_in_base_y*w_1_t_4 - q_in_base_x*w_1_t_5;
-        o->sum[0][k] = add ? o->sum[0][k] + Q_t_12 : Q_t_12;  /* total_pus_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + Q_t_13 : Q_t_13;  /* total_pus_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + Q_t_14 : Q_t_14;  /* total_pus_xz */
-        o->sum[3][k] = add ? o->sum[3][k] + Q_t_16 : Q_t_16;  /* total_pus_yy */
-        o->sum[4][k] = add ? o->sum[4][k] + Q_t_17 : Q_t_17;  /* total_pus_yz */
-        o->sum[5][k] = add ? o->sum[5][k] + Q_t_19 : Q_t_19;  /* total_pus_zz */
-        o->sum[6][k] = add ? o->sum[6][k] + M_ta_t_3 : M_ta_t_3;  /* total_pus_xx_2 */
-        o->sum[7][k] = add ? o->sum[7][k] + M_ta_t_4 : M_ta_t_4;  /* total_pus_xy_2 */
-        o->sum[8][k] = add ? o->sum[8][k] + M_ta_t_5 : M_ta_t_5;  /* total_pus_xz_2 */
-        o->sum[9][k] = add ? o->sum[9][k] + M_ta_t_6 : M_ta_t_6;  /* total_pus_yx */
-        o->sum[10][k] = add ? o->sum[10][k] + M_ta_t_8 : M_ta_t_8;  /* total_pus_yy_2 */
-        o->sum[11][k] = add ? o->sum[11][k] + M_ta_t_9 : M_ta_t_9;  /* total_pus_yz_2 */
-        o->sum[12][k] = add ? o->sum[12][k] + M_ta_t_10 : M_ta_t_10;  /* total_pus_zx */
-        o->sum[13][k] = add ? o->sum[13][k] + M_ta_t_11 : M_ta_t_11;  /* total_pus_zy */
-        o->sum[14][k] = add ? o->sum[14][k] + M_ta_t_12 : M_ta_t_12;  /* total_pus_zz_2 */
-        o->sum[15][k] = add ? o->sum[15][k] + M_aa_t : M_aa_t;  /* total_pus_xx_3 */
-        o->sum[16][k] = add ? o->sum[16][k] + M_aa_t_2 : M_aa_t_2;  /* total_pus_xy_3 */
-        o->sum[17][k] = add ? o->sum[17][k] + M_aa_t_3 : M_aa_t_3;  /* total_pus_xz_3 */
-        o->sum[18][k] = add ? o->sum[18][k] + M_aa_t_4 : M_aa_t_4;  /* total_pus_yy_3 */
-        o->sum[19][k] = add ? o->sum[19][k] + M_aa_t_5 : M_aa_t_5;  /* total_pus_yz_3 */
-        o->sum[20][k] = add ? o->sum[20][k] + M_aa_t_6 : M_aa_t_6;  /* total_pus_zz_3 */
-        o->sum[21][k] = add ? o->sum[21][k] + U_in_base_x : U_in_base_x;  /* total_pus_x */
-        o->sum[22][k] = add ? o->sum[22][k] + U_in_base_y : U_in_base_y;  /* total_pus_y */
-        o->sum[23][k] = add ? o->sum[23][k] + U_in_base_z : U_in_base_z;  /* total_pus_z */
-        o->sum[24][k] = add ? o->sum[24][k] + Z_a_t : Z_a_t;  /* total_pus_x_2 */
-        o->sum[25][k] = add ? o->sum[25][k] + Z_a_t_2 : Z_a_t_2;  /* total_pus_y_2 */
-        o->sum[26][k] = add ? o->sum[26][k] + Z_a_t_3 : Z_a_t_3;  /* total_pus_z_2 */
-        o->entry[0][k] = -w_1_t_4;
-        o->entry[1][k] = -w_1_t_5;
-        o->entry[2][k] = -w_1_t_6;
-        o->entry[3][k] = H_a_1_x;
-        o->entry[4][k] = H_a_1_y;
-        o->entry[5][k] = H_a_1_z;
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_) +
-            UNLESS(magnitude(v_2_t) > TOLERANCE*size_) + UNLESS(magnitude(-w_1_t_3) >
+        const real pus_c_o_x = inv_pus_w_2_t*(pus_G_o_t*pus_c_2 + pus_G_o_t_2*pus_w_1_t +
+            pus_acc_1_o_x*pus_link1_mass) + pus_B_3_o_xy*pus_h_3_z + pus_h_3_x*(pus_W_3_t_2 +
+            pus_W_3_t_3) - pus_alpha_2_o_t_2*pus_h_3_y;
+        const real pus_c_o_y = -pus_G_o_t_2 - pus_B_3_o_yx*pus_h_3_x - pus_alpha_2_o_t*pus_h_3_y -
+            pus_h_3_z*(pus_W_3_t + pus_W_3_t_3);
+        const real pus_c_o_z = pus_B_3_o_zy*pus_h_3_z + pus_h_3_y*(pus_W_3_t + pus_W_3_t_2) -
+            pus_G_o_t - pus_B_3_o_zx*pus_h_3_x;
+        /* (pus-U) velocity and gravity terms of the leg force */
+        const real pus_U_in_base_x = -axis_x_pus_axes3_x*pus_c_o_x -
+            axis_y_pus_axes3_in_base_x*pus_c_o_y - axis_z_pus_axes3_in_base_x*pus_c_o_z;
+        const real pus_U_in_base_y = -axis_x_pus_axes3_y*pus_c_o_x -
+            axis_y_pus_axes3_in_base_y*pus_c_o_y - axis_z_pus_axes3_in_base_y*pus_c_o_z;
+        const real pus_U_in_base_z = -axis_x_pus_axes3_z*pus_c_o_x -
+            axis_y_pus_axes3_in_base_z*pus_c_o_y - axis_z_pus_axes3_in_base_z*pus_c_o_z;
+        /* (Z_a) rotational part of Z */
+        const real pus_Z_a_t = pus_U_in_base_z*pus_q_in_base_y - pus_U_in_base_y*pus_q_in_base_z;
+        const real pus_Z_a_t_2 = pus_U_in_base_x*pus_q_in_base_z -
+            pus_U_in_base_z*pus_q_in_base_x;
+        const real pus_Z_a_t_3 = pus_U_in_base_y*pus_q_in_base_x -
+            pus_U_in_base_x*pus_q_in_base_y;
+        /* (pus-w_1) reciprocal vector 1 */
+        const real pus_w_1_t_3 = axis_x_pus_axes3_x*inv_pus_w_2_t;
+        const real pus_w_1_t_4 = axis_x_pus_axes3_y*inv_pus_w_2_t;
+        const real pus_w_1_t_5 = axis_x_pus_axes3_z*inv_pus_w_2_t;
+        /* (pus-H_a_1) moment of the column's unit force about the platform origin */
+        const real pus_H_a_1_x = pus_q_in_base_z*pus_w_1_t_4 - pus_q_in_base_y*pus_w_1_t_5;
+        const real pus_H_a_1_y = pus_q_in_base_x*pus_w_1_t_5 - pus_q_in_base_z*pus_w_1_t_3;
+        const real pus_H_a_1_z = pus_q_in_base_y*pus_w_1_t_3 - pus_q_in_base_x*pus_w_1_t_4;
+        terms[0*count + k] = add ? terms[0*count + k] + pus_Q_t_12 : pus_Q_t_12;  /* total_pus_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + pus_Q_t_13 : pus_Q_t_13;  /* total_pus_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + pus_Q_t_14 : pus_Q_t_14;  /* total_pus_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + pus_Q_t_16 : pus_Q_t_16;  /* total_pus_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + pus_Q_t_17 : pus_Q_t_17;  /* total_pus_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + pus_Q_t_19 : pus_Q_t_19;  /* total_pus_zz */
+        terms[6*count + k] = add ? terms[6*count + k] + pus_M_ta_t_3 : pus_M_ta_t_3;  /* total_pus_xx_2 */
+        terms[7*count + k] = add ? terms[7*count + k] + pus_M_ta_t_4 : pus_M_ta_t_4;  /* total_pus_xy_2 */
+        terms[8*count + k] = add ? terms[8*count + k] + pus_M_ta_t_5 : pus_M_ta_t_5;  /* total_pus_xz_2 */
+        terms[9*count + k] = add ? terms[9*count + k] + pus_M_ta_t_6 : pus_M_ta_t_6;  /* total_pus_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + pus_M_ta_t_8 : pus_M_ta_t_8;  /* total_pus_yy_2 */
+        terms[11*count + k] = add ? terms[11*count + k] + pus_M_ta_t_9 : pus_M_ta_t_9;  /* total_pus_yz_2 */
+        terms[12*count + k] = add ? terms[12*count + k] + pus_M_ta_t_10 : pus_M_ta_t_10;  /* total_pus_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + pus_M_ta_t_11 : pus_M_ta_t_11;  /* total_pus_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + pus_M_ta_t_12 : pus_M_ta_t_12;  /* total_pus_zz_2 */
+        terms[15*count + k] = add ? terms[15*count + k] + pus_M_aa_t : pus_M_aa_t;  /* total_pus_xx_3 */
+        terms[16*count + k] = add ? terms[16*count + k] + pus_M_aa_t_2 : pus_M_aa_t_2;  /* total_pus_xy_3 */
+        terms[17*count + k] = add ? terms[17*count + k] + pus_M_aa_t_3 : pus_M_aa_t_3;  /* total_pus_xz_3 */
+        terms[18*count + k] = add ? terms[18*count + k] + pus_M_aa_t_4 : pus_M_aa_t_4;  /* total_pus_yy_3 */
+        terms[19*count + k] = add ? terms[19*count + k] + pus_M_aa_t_5 : pus_M_aa_t_5;  /* total_pus_yz_3 */
+        terms[20*count + k] = add ? terms[20*count + k] + pus_M_aa_t_6 : pus_M_aa_t_6;  /* total_pus_zz_3 */
+        terms[21*count + k] = add ? terms[21*count + k] + pus_U_in_base_x : pus_U_in_base_x;  /* total_pus_x */
+        terms[22*count + k] = add ? terms[22*count + k] + pus_U_in_base_y : pus_U_in_base_y;  /* total_pus_y */
+        terms[23*count + k] = add ? terms[23*count + k] + pus_U_in_base_z : pus_U_in_base_z;  /* total_pus_z */
+        terms[24*count + k] = add ? terms[24*count + k] + pus_Z_a_t : pus_Z_a_t;  /* total_pus_x_2 */
+        terms[25*count + k] = add ? terms[25*count + k] + pus_Z_a_t_2 : pus_Z_a_t_2;  /* total_pus_y_2 */
+        terms[26*count + k] = add ? terms[26*count + k] + pus_Z_a_t_3 : pus_Z_a_t_3;  /* total_pus_z_2 */
+        o[0*count + k] = -pus_w_1_t_3;
+        o[1*count + k] = -pus_w_1_t_4;
+        o[2*count + k] = -pus_w_1_t_5;
+        o[3*count + k] = pus_H_a_1_x;
+        o[4*count + k] = pus_H_a_1_y;
+        o[5*count + k] = pus_H_a_1_z;
+        o[8*count + k] = (pus_w_1_t_3 + (pus_w_1_t_4 + pus_w_1_t_5)) + (pus_H_a_1_x + (pus_H_a_1_y
+            + pus_H_a_1_z));
+        const real pus_size_t = m->pus_size_t[i];
+        const real pus_size = m->pus_size[i];
+        o[6*count + k] = UNLESS(pus_disc_1 >= 0);
+        o[7*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t) +
+            UNLESS(magnitude(pus_v_2_t) > TOLERANCE*pus_size) + UNLESS(magnitude(-pus_w_2_t) >
             TOLERANCE*1);
     }
 }
 
-INLINE void dynamics_place_pus(size_t w, const dynamics_results_pus *o, size_t leg, size_t first,
+INLINE void dynamics_place_pus(size_t w, size_t count, const real *o, size_t leg, size_t first,
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(6 + leg)*w + k] = o->entry[1][first + k];
-        H[(12 + leg)*w + k] = o->entry[2][first + k];
-        H[(18 + leg)*w + k] = o->entry[3][first + k];
-        H[(24 + leg)*w + k] = o->entry[4][first + k];
-        H[(30 + leg)*w + k] = o->entry[5][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(6 + leg)*w + k] = o[1*count + first + k];
+        H[(12 + leg)*w + k] = o[2*count + first + k];
+        H[(18 + leg)*w + k] = o[3*count + first + k];
+        H[(24 + leg)*w + k] = o[4*count + first + k];
+        H[(30 + leg)*w + k] = o[5*count + first + k];
+        t->unreachable[k] += o[6*count + first + k];
+        t->singular[k] += o[7*count + first + k];
+        t->total[k] += o[8*count + first + k];
     }
 }
 
-INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s, real *M, real
-    *Z)
+INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const real *sums, real *M,
+    real *Z, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real h_star_in_base_x = s->h_star_in_base_x[k];
-        const real h_star_in_base_y = s->h_star_in_base_y[k];
-        const real h_star_in_base_z = s->h_star_in_base_z[k];
-        const real J_star_t_8 = s->J_star_t_8[k];
-        const real J_star_t_9 = s->J_star_t_9[k];
-        const real J_star_t_10 = s->J_star_t_10[k];
-        const real J_star_t_12 = s->J_star_t_12[k];
-        const real J_star_t_13 = s->J_star_t_13[k];
-        const real J_star_t_15 = s->J_star_t_15[k];
-        const real Z_p_x = s->Z_p_x[k];
-        const real Z_p_y = s->Z_p_y[k];
-        const real Z_p_z = s->Z_p_z[k];
-        const real Z_q_in_base_x = s->Z_q_in_base_x[k];
-        const real Z_q_in_base_y = s->Z_q_in_base_y[k];
-        const real Z_q_in_base_z = s->Z_q_in_base_z[k];
-        const real total_pus_xx = s->sum[0][k];
-        const real total_pus_xy = s->sum[1][k];
-        const real total_pus_xz = s->sum[2][k];
-        const real total_pus_yy = s->sum[3][k];
-        const real total_pus_yz = s->sum[4][k];
-        const real total_pus_zz = s->sum[5][k];
-        const real total_pus_xx_2 = s->sum[6][k];
-        const real total_pus_xy_2 = s->sum[7][k];
-        const real total_pus_xz_2 = s->sum[8][k];
-        const real total_pus_yx = s->sum[9][k];
-        const real total_pus_yy_2 = s->sum[10][k];
-        const real total_pus_yz_2 = s->sum[11][k];
-        const real total_pus_zx = s->sum[12][k];
-        const real total_pus_zy = s->sum[13][k];
-        const real total_pus_zz_2 = s->sum[14][k];
-        const real total_pus_xx_3 = s->sum[15][k];
-        const real total_pus_xy_3 = s->sum[16][k];
-        const real total_pus_xz_3 = s->sum[17][k];
-        const real total_pus_yy_3 = s->sum[18][k];
-        const real total_pus_yz_3 = s->sum[19][k];
-        const real total_pus_zz_3 = s->sum[20][k];
-        const real total_pus_x = s->sum[21][k];
-        const real total_pus_y = s->sum[22][k];
-        const real total_pus_z = s->sum[23][k];
-        const real total_pus_x_2 = s->sum[24][k];
-        const real total_pus_y_2 = s->sum[25][k];
-        const real total_pus_z_2 = s->sum[26][k];
+        /* (M_tt) translational block of M */
         const real m_star = m->m_star;
-        /* (M1) translational block of M */
+        const real total_pus_xx = sums[0*w + k];
         const real M_tt_xx = m_star - total_pus_xx;
+        const real total_pus_yy = sums[3*w + k];
         const real M_tt_yy = m_star - total_pus_yy;
+        const real total_pus_zz = sums[5*w + k];
         const real M_tt_zz = m_star - total_pus_zz;
-        /* (M2) coupling block of M */
+        /* (M_ta) coupling block of M */
+        const real h_star_in_base_z = s[20*w + k];
+        const real total_pus_xy_2 = sums[7*w + k];
         const real M_ta_xy = h_star_in_base_z - total_pus_xy_2;
+        const real h_star_in_base_y = s[19*w + k];
+        const real total_pus_xz_2 = sums[8*w + k];
         const real M_ta_xz = total_pus_xz_2 - h_star_in_base_y;
+        const real total_pus_yx = sums[9*w + k];
         const real M_ta_yx = total_pus_yx - h_star_in_base_z;
+        const real h_star_in_base_x = s[18*w + k];
+        const real total_pus_yz_2 = sums[11*w + k];
         const real M_ta_yz = h_star_in_base_x + total_pus_yz_2;
+        const real total_pus_zx = sums[12*w + k];
         const real M_ta_zx = h_star_in_base_y + total_pus_zx;
+        const real total_pus_zy = sums[13*w + k];
         const real M_ta_zy = -h_star_in_base_x - total_pus_zy;
-        /* (M3) rotational block of M */
+        /* (M_aa) rotational block of M */
+        const real J_star_t_8 = s[21*w + k];
+        const real total_pus_xx_3 = sums[15*w + k];
         const real M_aa_xx = J_star_t_8 - total_pus_xx_3;
+        const real J_star_t_9 = s[22*w + k];
+        const real total_pus_xy_3 = sums[16*w + k];
         const real M_aa_xy = J_star_t_9 + total_pus_xy_3;
+        const real J_star_t_10 = s[23*w + k];
+        const real total_pus_xz_3 = sums[17*w + k];
         const real M_aa_xz = J_star_t_10 - total_pus_xz_3;
-        const real M_aa_yy = J_star_t_12 - total_pus_yy_3;
-        const real M_aa_yz = J_star_t_13 + total_pus_yz_3;
-        const real M_aa_zz = J_star_t_15 - total_pus_zz_3;
-        /* (M5) translational part of Z */
+        const real J_star_t_13 = s[24*w + k];
+        const real total_pus_yy_3 = sums[18*w + k];
+        const real M_aa_yy = J_star_t_13 - total_pus_yy_3;
+        const real J_star_t_15 = s[25*w + k];
+        const real total_pus_yz_3 = sums[19*w + k];
+        const real M_aa_yz = J_star_t_15 + total_pus_yz_3;
+        const real J_star_t_17 = s[26*w + k];
+        const real total_pus_zz_3 = sums[20*w + k];
+        const real M_aa_zz = J_star_t_17 - total_pus_zz_3;
+        /* (Z_t) translational part of Z */
+        const real Z_p_x = s[27*w + k];
+        const real total_pus_x = sums[21*w + k];
         const real Z_t_x = Z_p_x + total_pus_x;
+        const real Z_p_y = s[28*w + k];
+        const real total_pus_y = sums[22*w + k];
         const real Z_t_y = Z_p_y + total_pus_y;
+        const real Z_p_z = s[29*w + k];
+        const real total_pus_z = sums[23*w + k];
         const real Z_t_z = Z_p_z + total_pus_z;
-        /* (M7) rotational part of Z */
+        /* (Z_a) rotational part of Z */
+        const real Z_q_in_base_x = s[30*w + k];
+        const real total_pus_x_2 = sums[24*w + k];
         const real Z_a_x = Z_q_in_base_x + total_pus_x_2;
+        const real Z_q_in_base_y = s[31*w + k];
+        const real total_pus_y_2 = sums[25*w + k];
         const real Z_a_y = Z_q_in_base_y + total_pus_y_2;
+        const real Z_q_in_base_z = s[32*w + k];
+        const real total_pus_z_2 = sums[26*w + k];
         const real Z_a_z = Z_q_in_base_z + total_pus_z_2;
         M[0*w + k] = M_tt_xx;
+        const real total_pus_xy = sums[1*w + k];
         M[1*w + k] = -total_pus_xy;
         M[6*w + k] = -total_pus_xy;
+        const real total_pus_xz = sums[2*w + k];
         M[2*w + k] = -total_pus_xz;
         M[12*w + k] = -total_pus_xz;
         M[7*w + k] = M_tt_yy;
+        const real total_pus_yz = sums[4*w + k];
         M[8*w + k] = -total_pus_yz;
         M[13*w + k] = -total_pus_yz;
         M[14*w + k] = M_tt_zz;
+        const real total_pus_xx_2 = sums[6*w + k];
         M[3*w + k] = total_pus_xx_2;
         M[18*w + k] = total_pus_xx_2;
         M[4*w + k] = M_ta_xy;
@@ -1916,6 +1951,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
+        const real total_pus_yy_2 = sums[10*w + k];
         M[10*w + k] = -total_pus_yy_2;
         M[25*w + k] = -total_pus_yy_2;
         M[11*w + k] = M_ta_yz;
@@ -1924,6 +1960,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
+        const real total_pus_zz_2 = sums[14*w + k];
         M[17*w + k] = -total_pus_zz_2;
         M[32*w + k] = -total_pus_zz_2;
         M[21*w + k] = M_aa_xx;
@@ -1941,75 +1978,57 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
+        t->total[k] += (((M_tt_xx + (total_pus_xy + total_pus_xz)) + (M_tt_yy + (total_pus_yz +
+            M_tt_zz))) + ((total_pus_xx_2 + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + total_pus_yy_2) +
+            (M_ta_yz + M_ta_zx)))) + (((M_ta_zy + (total_pus_zz_2 + M_aa_xx)) + ((M_aa_xy +
+            M_aa_xz) + (M_aa_yy + M_aa_yz))) + ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) +
+            (Z_a_y + Z_a_z))));
     }
 }
 
-INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real *V, real *M, real
-    *Z, real *H, verdict *t)
+INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
+    *H, verdict *t)
 {
-    dynamics_values values, *const s = &values;
-    dynamics_results_pus results_pus;
-    dynamics_before(m, w, X, V, s, t);
-    if (w == 1) {  /* the legs side by side */
-        dynamics_legs_pus(m, 0, 1, s, 0, 6, 0, &results_pus);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            dynamics_place_pus(w, &results_pus, leg, leg, H, t);
-        }
-        for (size_t n = 0; n < 27; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_pus.sum[n], 6);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_pus.sum, 0, sizeof results_pus.sum);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            dynamics_legs_pus(m, leg, 0, s, 1, w, 1, &results_pus);
-            dynamics_place_pus(w, &results_pus, leg, 0, H, t);
-        }
-        for (size_t n = 0; n < 27; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_pus.sum[n][k];
-            }
-        }
+    real s[33] = {0}, sums[27] = {0}, terms_pus[27*LEGS(6)] = {0}, o_pus[9*LEGS(6)] = {0};
+    dynamics_before(m, 1, X, V, s, t);
+    dynamics_legs_pus(m, 1, 0, 1, s, 0, LEGS(6), 0, terms_pus, o_pus);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        dynamics_place_pus(1, LEGS(6), o_pus, leg, leg, H, t);
     }
-    dynamics_after(m, w, s, M, Z);
+    for (size_t n = 0; n < 27; ++n) {
+        sums[n] = total(terms_pus + n*LEGS(6), 6);
+    }
+    dynamics_after(m, 1, s, sums, M, Z, t);
+}
+
+INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, verdict *t)
+{
+    real s[33*LANES], sums[27*LANES], o_pus[9*LANES];
+    dynamics_before(m, LANES, X, V, s, t);
+    clear(sums, 27*LANES);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        dynamics_legs_pus(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_pus);
+        dynamics_place_pus(LANES, LANES, o_pus, leg, 0, H, t);
+    }
+    dynamics_after(m, LANES, s, sums, M, Z, t);
 }
 
 /* ---- M: 1053 mul, 759 add, 18 div, 12 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], h_star_in_base_x[LANES],
-        h_star_in_base_y[LANES], h_star_in_base_z[LANES], J_star_t_8[LANES], J_star_t_9[LANES],
-        J_star_t_10[LANES], J_star_t_12[LANES], J_star_t_13[LANES], J_star_t_15[LANES],
-        sum[21][LANES];
-} M_values;
-typedef struct {
-    real sum[21][8], unreachable[8], singular[8];
-} M_results_pus;
-
-INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, verdict *t)
+INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real J_star_t_22 = m->J_star_t_22;
-        const real J_star_t_24 = m->J_star_t_24;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_yz = m->J_star_yz;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -2033,337 +2052,365 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, ve
         const real R_zx = quaternion_xz - quaternion_wy;
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* (L2) first moment about the platform origin */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_z = m->h_star_z;
         const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
         const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
         const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
-        /* (L3) inertia tensor about the platform origin */
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy;
-        const real J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx;
+        /* (J_star) inertia tensor about the platform origin */
+        const real J_star_t_12 = m->J_star_t_12;
+        const real J_star_xy = m->J_star_xy;
+        const real J_star_yz = m->J_star_yz;
+        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy;
+        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy;
+        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy;
+        const real J_star_t_14 = m->J_star_t_14;
+        const real J_star_xz = m->J_star_xz;
+        const real J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx;
+        const real J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx;
+        const real J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
+        const real J_star_xx = m->J_star_xx;
         const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
         const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
         const real J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_6*R_xz;
         const real J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_12 = 2*J_star_t_11 + J_star_xx;
-        const real J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_13 = 2*J_star_t_11 + J_star_xx;
+        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_6*R_yz;
-        const real J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_t_15 = 2*J_star_t_14 + J_star_xx;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->h_star_in_base_x[k] = h_star_in_base_x;
-        s->h_star_in_base_y[k] = h_star_in_base_y;
-        s->h_star_in_base_z[k] = h_star_in_base_z;
-        s->J_star_t_8[k] = J_star_t_8;
-        s->J_star_t_9[k] = J_star_t_9;
-        s->J_star_t_10[k] = J_star_t_10;
-        s->J_star_t_12[k] = J_star_t_12;
-        s->J_star_t_13[k] = J_star_t_13;
-        s->J_star_t_15[k] = J_star_t_15;
+        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz;
+        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = h_star_in_base_x;
+        s[13*w + k] = h_star_in_base_y;
+        s[14*w + k] = h_star_in_base_z;
+        s[15*w + k] = J_star_t_8;
+        s[16*w + k] = J_star_t_9;
+        s[17*w + k] = J_star_t_10;
+        s[18*w + k] = J_star_t_13;
+        s[19*w + k] = J_star_t_15;
+        s[20*w + k] = J_star_t_17;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void M_legs_pus(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
-    states, size_t count, int add, M_results_pus *o)
+INLINE void M_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real J_3_xx = m->J_3_xx[i];
-        const real J_3_xy = m->J_3_xy[i];
-        const real J_3_xz = m->J_3_xz[i];
-        const real J_3_yz = m->J_3_yz[i];
-        const real J_3_zz = m->J_3_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real d_Gamma_3_t = m->d_Gamma_3_t[i];
-        const real d_Gamma_3_y = m->d_Gamma_3_y[i];
-        const real d_c_yy = m->d_c_yy[i];
-        const real d_phi_3_t = m->d_phi_3_t[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real inv_pus_platform_joint_offset_x = m->inv_pus_platform_joint_offset_x[i];
-        const real inv_uu_3_t = m->inv_uu_3_t[i];
-        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
-        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
-        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
-        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
-        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
-        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
-        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
-        const real pus_base_point_x = m->pus_base_point_x[i];
-        const real pus_base_point_y = m->pus_base_point_y[i];
-        const real pus_base_point_z = m->pus_base_point_z[i];
-        const real pus_link1_mass = m->pus_link1_mass[i];
-        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
+        /* (pus-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real pus_platform_point_x = m->pus_platform_point_x[i];
         const real pus_platform_point_y = m->pus_platform_point_y[i];
         const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real size_ = m->size_[i];
-        const real size_t_ = m->size_t_[i];
-        const real uu_3_t = m->uu_3_t[i];
-        /* (pus-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
+        const real pus_q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
             R_xz*pus_platform_point_z;
-        const real q_in_base_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real pus_q_in_base_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
             R_yz*pus_platform_point_z;
-        const real q_in_base_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real pus_q_in_base_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
             R_zz*pus_platform_point_z;
-        const real S_x = q_in_base_x + t_x - pus_base_point_x;
-        const real S_y = q_in_base_y + t_y - pus_base_point_y;
-        const real S_z = q_in_base_z + t_z - pus_base_point_z;
-        /* (pus-K2) component along axis 1 */
-        const real px_1 = S_x*pus_base_frame_xx + S_y*pus_base_frame_yx + S_z*pus_base_frame_zx;
-        /* (pus-K3) discriminant of the distance equation */
-        const real disc_1_t = S_x*S_x + S_y*S_y + S_z*S_z;
-        const real disc_1 = px_1*px_1 + uu_3_t - disc_1_t;
-        /* (pus-K4) displacement of joint 1 */
-        const real q_1_t = branch_1*root(disc_1);
-        /* (pus-K1) from the base point to the connection point */
-        const real S_r0_y = S_x*pus_base_frame_xy + S_y*pus_base_frame_yy + S_z*pus_base_frame_zy;
-        /* (pus-K9) squared amplitude */
-        const real rho2_2 = S_r0_y*S_r0_y + q_1_t*q_1_t;
-        /* (pus-K11) root, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (pus-K17) cosine of the angle of joint 3 from its reference direction */
-        const real c_3 = inv_uu_3_t*pus_platform_joint_offset_x*root_2;
-        /* (pus-K18) sine of the angle of joint 3 from its reference direction */
-        const real s_3 = inv_uu_3_t*pus_platform_joint_offset_x*(S_x*pus_base_frame_xz +
-            S_y*pus_base_frame_yz + S_z*pus_base_frame_zz);
-        /* (pus-V2) velocity of the connection point per rate of joint 2 */
-        const real v_2_t = c_3*pus_platform_joint_offset_x;
-        /* (pus-K12) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rho2_2 = 1/rho2_2;
-        const real c_2 = S_r0_y*inv_rho2_2*root_2;
-        /* (pus-K13) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_rho2_2*q_1_t*root_2;
-        /* (pus-V4) reciprocal vector 1 */
-        const real axis_z_pus_axes3_in_base_x = -c_2*pus_base_frame_xx - pus_base_frame_xy*s_2;
-        const real axis_z_pus_axes3_in_base_y = -c_2*pus_base_frame_yx - pus_base_frame_yy*s_2;
-        const real axis_z_pus_axes3_in_base_z = -c_2*pus_base_frame_zx - pus_base_frame_zy*s_2;
-        const real w_1_t = s_2*s_3;
-        const real w_1_t_2 = c_2*s_3;
-        const real axis_y_pus_axes3_in_base_x = pus_base_frame_xy*w_1_t_2 - c_3*pus_base_frame_xz
-            - pus_base_frame_xx*w_1_t;
-        const real axis_y_pus_axes3_in_base_y = pus_base_frame_yy*w_1_t_2 - c_3*pus_base_frame_yz
-            - pus_base_frame_yx*w_1_t;
-        const real axis_y_pus_axes3_in_base_z = pus_base_frame_zy*w_1_t_2 - c_3*pus_base_frame_zz
-            - pus_base_frame_zx*w_1_t;
+        const real pus_base_point_x = m->pus_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x;
+        const real pus_base_point_y = m->pus_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y;
+        const real pus_base_point_z = m->pus_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z;
+        /* (pus-px_1) component along axis 1 */
+        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
+        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
+        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
+        const real pus_px_1 = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
+            pus_S_z*pus_base_frame_zx;
+        /* (pus-disc_1) discriminant of the distance equation */
+        const real pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
+        const real pus_disc_1_t = m->pus_disc_1_t[i];
+        const real pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2;
+        /* (pus-q_1) displacement of joint 1 */
+        const real pus_branch_1 = m->pus_branch_1[i];
+        const real pus_q_1_t = pus_branch_1*root(pus_disc_1);
+        /* (pus-S) from the base point to the connection point */
+        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
+        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
+        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
+        const real pus_S_r0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
+            pus_S_z*pus_base_frame_zy;
+        /* (pus-rho2_2) squared amplitude */
+        const real pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t;
+        /* (pus-root_2) root, with the sign of the branch */
+        const real pus_branch_2 = m->pus_branch_2[i];
+        const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
+        /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_pus_disc_1_t_6 = m->inv_pus_disc_1_t_6[i];
+        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
+        const real pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2;
+        /* (pus-s_3) sine of the angle of joint 3 from its reference direction */
+        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
+        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
+        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
+        const real pus_s_3 =
+            inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
+        /* (pus-v_2) velocity of the connection point per rate of joint 2 */
+        const real pus_v_2_t = pus_c_3*pus_platform_joint_offset_x;
+        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_pus_rho2_2 = 1/pus_rho2_2;
+        const real pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2;
+        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2;
+        /* (pus-w_1) reciprocal vector 1 */
+        const real axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 -
+            pus_base_frame_xy*pus_s_2;
+        const real axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 -
+            pus_base_frame_yy*pus_s_2;
+        const real axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 -
+            pus_base_frame_zy*pus_s_2;
+        const real pus_w_1_t = pus_s_2*pus_s_3;
+        const real pus_w_1_t_2 = pus_c_2*pus_s_3;
+        const real axis_y_pus_axes3_in_base_x = pus_base_frame_xy*pus_w_1_t_2 -
+            pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3;
+        const real axis_y_pus_axes3_in_base_y = pus_base_frame_yy*pus_w_1_t_2 -
+            pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3;
+        const real axis_y_pus_axes3_in_base_z = pus_base_frame_zy*pus_w_1_t_2 -
+            pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3;
         const real axis_x_pus_axes3_x = axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
             axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y;
         const real axis_x_pus_axes3_y = axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
             axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_z;
         const real axis_x_pus_axes3_z = axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
             axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x;
-        const real w_1_t_3 = c_3*s_2;
-        const real inv_w_1_t_24 = 1/w_1_t_3;
-        /* (pus-G6) inertia tensor of link 3 about the connection point */
-        const real _y = J_3_xy*s_3 + J_3_yz*c_3;
-        /* (pus-V5) reciprocal vector 2 */
-        const real inv_v_2_t = 1/v_2_t;
-        const real w_2_t = c_2*inv_v_2_t*inv_w_1_t_24;
-        /* (pus-V6) reciprocal vector 3 */
-        const real w_3_t = inv_pus_platform_joint_offset_x*inv_w_1_t_24*w_1_t;
-        /* (pus-N25) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
-           and weight */
-        const real d_Gamma_2_t = inv_v_2_t*(s_3*(J_3_xx*s_3 + J_3_xz*c_3) - c_3*(-J_3_xz*s_3 -
-            J_3_zz*c_3));
-        const real d_Gamma_2_t_2 = _y*inv_pus_platform_joint_offset_x;
-        const real d_Gamma_2_x = -c_3*h_3_y - inv_w_1_t_24*(c_2*d_Gamma_2_t +
-            d_Gamma_2_t_2*w_1_t);
-        const real d_Gamma_2_y = d_Gamma_2_t_2 - h_3_y*s_3;
-        const real d_Gamma_2_z = d_Gamma_2_t + c_3*h_3_x - h_3_z*s_3;
-        /* (pus-N22) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia
-           and weight */
-        const real d_Gamma_3_t_2 = _y*inv_v_2_t;
-        const real d_Gamma_3_x = h_3_z - inv_w_1_t_24*(c_2*d_Gamma_3_t_2 + d_Gamma_3_t*w_1_t);
-        /* (pus-A17) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real d_alpha_3_t = inv_v_2_t*s_3;
-        const real d_alpha_3_t_2 = c_3*inv_v_2_t;
-        /* (pus-N34) coefficient of the acceleration in: leg force on the platform without actuation and
+        /* (pus-w_2) reciprocal vector 2 */
+        const real pus_w_2_t = pus_c_3*pus_s_2;
+        const real inv_pus_v_2_t = 1/pus_v_2_t;
+        const real inv_pus_w_2_t = 1/pus_w_2_t;
+        const real pus_w_2_t_2 = inv_pus_v_2_t*inv_pus_w_2_t*pus_c_2;
+        /* (pus-w_3) reciprocal vector 3 */
+        const real inv_pus_platform_joint_offset_x = m->inv_pus_platform_joint_offset_x[i];
+        const real pus_w_3_t = inv_pus_platform_joint_offset_x*inv_pus_w_2_t*pus_w_1_t;
+        /* (pus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
+        const real pus_d_alpha_3_t = inv_pus_v_2_t*pus_s_3;
+        const real pus_d_alpha_3_t_2 = inv_pus_v_2_t*pus_c_3;
+        /* (pus-L_c_3) moment about joint 3 that accelerates joint 3, per unit */
+        const real pus_J_3_xy = m->pus_J_3_xy[i];
+        const real pus_J_3_yz = m->pus_J_3_yz[i];
+        const real pus_L_c_3_r0_y = pus_J_3_xy*pus_s_3 + pus_J_3_yz*pus_c_3;
+        /* (pus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
+           inertia and weight */
+        const real pus_d_Gamma_3_t_2 = inv_pus_v_2_t*pus_L_c_3_r0_y;
+        const real pus_d_Gamma_3_t = m->pus_d_Gamma_3_t[i];
+        const real pus_h_3_z = m->pus_h_3_z[i];
+        const real pus_d_Gamma_3_x = pus_h_3_z - inv_pus_w_2_t*(pus_c_2*pus_d_Gamma_3_t_2 +
+            pus_d_Gamma_3_t*pus_w_1_t);
+        /* (pus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real pus_J_3_xx = m->pus_J_3_xx[i];
+        const real pus_J_3_xz = m->pus_J_3_xz[i];
+        const real pus_J_3_zz = m->pus_J_3_zz[i];
+        const real pus_d_Gamma_2_t = inv_pus_v_2_t*(pus_s_3*(pus_J_3_xx*pus_s_3 +
+            pus_J_3_xz*pus_c_3) - pus_c_3*(-pus_J_3_xz*pus_s_3 - pus_J_3_zz*pus_c_3));
+        const real pus_d_Gamma_2_t_2 = inv_pus_platform_joint_offset_x*pus_L_c_3_r0_y;
+        const real pus_h_3_y = m->pus_h_3_y[i];
+        const real pus_d_Gamma_2_x = -inv_pus_w_2_t*(pus_c_2*pus_d_Gamma_2_t +
+            pus_d_Gamma_2_t_2*pus_w_1_t) - pus_c_3*pus_h_3_y;
+        const real pus_d_Gamma_2_y = pus_d_Gamma_2_t_2 - pus_h_3_y*pus_s_3;
+        const real pus_h_3_x = m->pus_h_3_x[i];
+        const real pus_d_Gamma_2_z = pus_d_Gamma_2_t + pus_c_3*pus_h_3_x - pus_h_3_z*pus_s_3;
+        /* (pus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_xx = d_Gamma_2_x*w_2_t + d_Gamma_3_x*w_3_t + h_3_z*w_3_t -
-            inv_w_1_t_24*inv_w_1_t_24*pus_link1_mass - c_3*h_3_y*w_2_t;
-        const real d_c_xy = d_Gamma_2_y*w_2_t + d_Gamma_3_y*w_3_t - d_phi_3_t;
-        const real d_c_xz = d_Gamma_2_z*w_2_t + d_Gamma_3_t_2*w_3_t + d_alpha_3_t_2*h_3_y;
-        const real d_c_yz = d_alpha_3_t*h_3_y - d_Gamma_3_t_2*inv_pus_platform_joint_offset_x;
-        /* (pus-N36) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = d_c_xx - d_c_yy;
-        const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = d_c_xx + d_Gamma_2_z*inv_v_2_t + d_alpha_3_t_2*h_3_x -
-            d_alpha_3_t*h_3_z;
-        const real Q_t_4 = R(0.5)*Q_t_3;
-        const real Q_t_5 = axis_x_pus_axes3_x*d_c_xy + axis_z_pus_axes3_in_base_x*d_c_yz -
-            Q_t_2*axis_y_pus_axes3_in_base_x;
-        const real Q_t_6 = axis_x_pus_axes3_y*d_c_xy + axis_z_pus_axes3_in_base_y*d_c_yz -
-            Q_t_2*axis_y_pus_axes3_in_base_y;
-        const real Q_t_7 = axis_x_pus_axes3_z*d_c_xy + axis_z_pus_axes3_in_base_z*d_c_yz -
-            Q_t_2*axis_y_pus_axes3_in_base_z;
-        const real Q_t_8 = Q_t_4*axis_z_pus_axes3_in_base_x - axis_x_pus_axes3_x*d_c_xz;
-        const real Q_t_9 = Q_t_4*axis_z_pus_axes3_in_base_y - axis_x_pus_axes3_y*d_c_xz;
-        const real Q_t_10 = Q_t_4*axis_z_pus_axes3_in_base_z - axis_x_pus_axes3_z*d_c_xz;
-        const real Q_t_11 = Q_t_5*axis_y_pus_axes3_in_base_x - Q_t_8*axis_z_pus_axes3_in_base_x;
-        const real Q_t_12 = 2*Q_t_11 + d_c_xx;
-        const real Q_t_13 = Q_t_5*axis_y_pus_axes3_in_base_y + Q_t_6*axis_y_pus_axes3_in_base_x -
-            Q_t_8*axis_z_pus_axes3_in_base_y - Q_t_9*axis_z_pus_axes3_in_base_x;
-        const real Q_t_14 = Q_t_5*axis_y_pus_axes3_in_base_z + Q_t_7*axis_y_pus_axes3_in_base_x -
-            Q_t_10*axis_z_pus_axes3_in_base_x - Q_t_8*axis_z_pus_axes3_in_base_z;
-        const real Q_t_15 = Q_t_6*axis_y_pus_axes3_in_base_y - Q_t_9*axis_z_pus_axes3_in_base_y;
-        const real Q_t_16 = 2*Q_t_15 + d_c_xx;
-        const real Q_t_17 = Q_t_6*axis_y_pus_axes3_in_base_z + Q_t_7*axis_y_pus_axes3_in_base_y -
-            Q_t_10*axis_z_pus_axes3_in_base_y - Q_t_9*axis_z_pus_axes3_in_base_z;
-        const real Q_t_18 = Q_t_7*axis_y_pus_axes3_in_base_z - Q_t_10*axis_z_pus_axes3_in_base_z;
-        const real Q_t_19 = 2*Q_t_18 + d_c_xx;
-        /* (M2) coupling block of M */
-        const real M_ta_t = Q_t_13*q_in_base_z;
-        const real M_ta_t_2 = Q_t_14*q_in_base_y;
-        const real M_ta_t_3 = M_ta_t - M_ta_t_2;
-        const real M_ta_t_4 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x;
-        const real M_ta_t_5 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x;
-        const real M_ta_t_6 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y;
-        const real M_ta_t_7 = Q_t_17*q_in_base_x;
-        const real M_ta_t_8 = M_ta_t - M_ta_t_7;
-        const real M_ta_t_9 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x;
-        const real M_ta_t_10 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y;
-        const real M_ta_t_11 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x;
-        const real M_ta_t_12 = M_ta_t_7 - M_ta_t_2;
-        /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y;
-        const real M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y;
-        const real M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z;
-        const real M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x;
-        const real M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z;
-        const real M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x;
-        o->sum[0][k] = add ? o->sum[0][k] + Q_t_12 : Q_t_12;  /* total_pus_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + Q_t_13 : Q_t_13;  /* total_pus_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + Q_t_14 : Q_t_14;  /* total_pus_xz */
-        o->sum[3][k] = add ? o->sum[3][k] + Q_t_16 : Q_t_16;  /* total_pus_yy */
-        o->sum[4][k] = add ? o->sum[4][k] + Q_t_17 : Q_t_17;  /* total_pus_yz */
-        o->sum[5][k] = add ? o->sum[5][k] + Q_t_19 : Q_t_19;  /* total_pus_zz */
-        o->sum[6][k] = add ? o->sum[6][k] + M_ta_t_3 : M_ta_t_3;  /* total_pus_xx_2 */
-        o->sum[7][k] = add ? o->sum[7][k] + M_ta_t_4 : M_ta_t_4;  /* total_pus_xy_2 */
-        o->sum[8][k] = add ? o->sum[8][k] + M_ta_t_5 : M_ta_t_5;  /* total_pus_xz_2 */
-        o->sum[9][k] = add ? o->sum[9][k] + M_ta_t_6 : M_ta_t_6;  /* total_pus_yx */
-        o->sum[10][k] = add ? o->sum[10][k] + M_ta_t_8 : M_ta_t_8;  /* total_pus_yy_2 */
-        o->sum[11][k] = add ? o->sum[11][k] + M_ta_t_9 : M_ta_t_9;  /* total_pus_yz_2 */
-        o->sum[12][k] = add ? o->sum[12][k] + M_ta_t_10 : M_ta_t_10;  /* total_pus_zx */
-        o->sum[13][k] = add ? o->sum[13][k] + M_ta_t_11 : M_ta_t_11;  /* total_pus_zy */
-        o->sum[14][k] = add ? o->sum[14][k] + M_ta_t_12 : M_ta_t_12;  /* total_pus_zz_2 */
-        o->sum[15][k] = add ? o->sum[15][k] + M_aa_t : M_aa_t;  /* total_pus_xx_3 */
-        o->sum[16][k] = add ? o->sum[16][k] + M_aa_t_2 : M_aa_t_2;  /* total_pus_xy_3 */
-        o->sum[17][k] = add ? o->sum[17][k] + M_aa_t_3 : M_aa_t_3;  /* total_pus_xz_3 */
-        o->sum[18][k] = add ? o->sum[18][k] + M_aa_t_4 : M_aa_t_4;  /* total_pus_yy_3 */
-        o->sum[19][k] = add ? o->sum[19][k] + M_aa_t_5 : M_aa_t_5;  /* total_pus_yz_3 */
-        o->sum[20][k] = add ? o->sum[20][k] + M_aa_t_6 : M_aa_t_6;  /* total_pus_zz_3 */
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_) +
-            UNLESS(magnitude(v_2_t) > TOLERANCE*size_) + UNLESS(magnitude(-w_1_t_3) >
+        const real pus_link1_mass = m->pus_link1_mass[i];
+        const real pus_d_c_xx = pus_d_Gamma_2_x*pus_w_2_t_2 + pus_d_Gamma_3_x*pus_w_3_t +
+            pus_h_3_z*pus_w_3_t - inv_pus_w_2_t*inv_pus_w_2_t*pus_link1_mass -
+            pus_c_3*pus_h_3_y*pus_w_2_t_2;
+        const real pus_d_Gamma_3_y = m->pus_d_Gamma_3_y[i];
+        const real pus_d_phi_3_t = m->pus_d_phi_3_t[i];
+        const real pus_d_c_xy = pus_d_Gamma_2_y*pus_w_2_t_2 + pus_d_Gamma_3_y*pus_w_3_t -
+            pus_d_phi_3_t;
+        const real pus_d_c_xz = pus_d_Gamma_2_z*pus_w_2_t_2 + pus_d_Gamma_3_t_2*pus_w_3_t +
+            pus_d_alpha_3_t_2*pus_h_3_y;
+        const real pus_d_c_yz = pus_d_alpha_3_t*pus_h_3_y -
+            inv_pus_platform_joint_offset_x*pus_d_Gamma_3_t_2;
+        /* (pus-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real pus_d_c_yy = m->pus_d_c_yy[i];
+        const real pus_Q_t = pus_d_c_xx - pus_d_c_yy;
+        const real pus_Q_t_2 = R(0.5)*pus_Q_t;
+        const real pus_Q_t_3 = pus_d_c_xx + inv_pus_v_2_t*pus_d_Gamma_2_z +
+            pus_d_alpha_3_t_2*pus_h_3_x - pus_d_alpha_3_t*pus_h_3_z;
+        const real pus_Q_t_4 = R(0.5)*pus_Q_t_3;
+        const real pus_Q_t_5 = axis_x_pus_axes3_x*pus_d_c_xy +
+            axis_z_pus_axes3_in_base_x*pus_d_c_yz - axis_y_pus_axes3_in_base_x*pus_Q_t_2;
+        const real pus_Q_t_6 = axis_x_pus_axes3_y*pus_d_c_xy +
+            axis_z_pus_axes3_in_base_y*pus_d_c_yz - axis_y_pus_axes3_in_base_y*pus_Q_t_2;
+        const real pus_Q_t_7 = axis_x_pus_axes3_z*pus_d_c_xy +
+            axis_z_pus_axes3_in_base_z*pus_d_c_yz - axis_y_pus_axes3_in_base_z*pus_Q_t_2;
+        const real pus_Q_t_8 = axis_z_pus_axes3_in_base_x*pus_Q_t_4 -
+            axis_x_pus_axes3_x*pus_d_c_xz;
+        const real pus_Q_t_9 = axis_z_pus_axes3_in_base_y*pus_Q_t_4 -
+            axis_x_pus_axes3_y*pus_d_c_xz;
+        const real pus_Q_t_10 = axis_z_pus_axes3_in_base_z*pus_Q_t_4 -
+            axis_x_pus_axes3_z*pus_d_c_xz;
+        const real pus_Q_t_11 = axis_y_pus_axes3_in_base_x*pus_Q_t_5 -
+            axis_z_pus_axes3_in_base_x*pus_Q_t_8;
+        const real pus_Q_t_12 = 2*pus_Q_t_11 + pus_d_c_xx;
+        const real pus_Q_t_13 = axis_y_pus_axes3_in_base_x*pus_Q_t_6 +
+            axis_y_pus_axes3_in_base_y*pus_Q_t_5 - axis_z_pus_axes3_in_base_x*pus_Q_t_9 -
+            axis_z_pus_axes3_in_base_y*pus_Q_t_8;
+        const real pus_Q_t_14 = axis_y_pus_axes3_in_base_x*pus_Q_t_7 +
+            axis_y_pus_axes3_in_base_z*pus_Q_t_5 - axis_z_pus_axes3_in_base_x*pus_Q_t_10 -
+            axis_z_pus_axes3_in_base_z*pus_Q_t_8;
+        const real pus_Q_t_15 = axis_y_pus_axes3_in_base_y*pus_Q_t_6 -
+            axis_z_pus_axes3_in_base_y*pus_Q_t_9;
+        const real pus_Q_t_16 = 2*pus_Q_t_15 + pus_d_c_xx;
+        const real pus_Q_t_17 = axis_y_pus_axes3_in_base_y*pus_Q_t_7 +
+            axis_y_pus_axes3_in_base_z*pus_Q_t_6 - axis_z_pus_axes3_in_base_y*pus_Q_t_10 -
+            axis_z_pus_axes3_in_base_z*pus_Q_t_9;
+        const real pus_Q_t_18 = axis_y_pus_axes3_in_base_z*pus_Q_t_7 -
+            axis_z_pus_axes3_in_base_z*pus_Q_t_10;
+        const real pus_Q_t_19 = 2*pus_Q_t_18 + pus_d_c_xx;
+        /* (M_ta) coupling block of M */
+        const real pus_M_ta_t = pus_Q_t_13*pus_q_in_base_z;
+        const real pus_M_ta_t_2 = pus_Q_t_14*pus_q_in_base_y;
+        const real pus_M_ta_t_3 = pus_M_ta_t - pus_M_ta_t_2;
+        const real pus_M_ta_t_4 = pus_Q_t_12*pus_q_in_base_z - pus_Q_t_14*pus_q_in_base_x;
+        const real pus_M_ta_t_5 = pus_Q_t_12*pus_q_in_base_y - pus_Q_t_13*pus_q_in_base_x;
+        const real pus_M_ta_t_6 = pus_Q_t_16*pus_q_in_base_z - pus_Q_t_17*pus_q_in_base_y;
+        const real pus_M_ta_t_7 = pus_Q_t_17*pus_q_in_base_x;
+        const real pus_M_ta_t_8 = pus_M_ta_t - pus_M_ta_t_7;
+        const real pus_M_ta_t_9 = pus_Q_t_13*pus_q_in_base_y - pus_Q_t_16*pus_q_in_base_x;
+        const real pus_M_ta_t_10 = pus_Q_t_17*pus_q_in_base_z - pus_Q_t_19*pus_q_in_base_y;
+        const real pus_M_ta_t_11 = pus_Q_t_14*pus_q_in_base_z - pus_Q_t_19*pus_q_in_base_x;
+        const real pus_M_ta_t_12 = pus_M_ta_t_7 - pus_M_ta_t_2;
+        /* (M_aa) rotational block of M */
+        const real pus_M_aa_t = pus_M_ta_t_6*pus_q_in_base_z - pus_M_ta_t_10*pus_q_in_base_y;
+        const real pus_M_aa_t_2 = pus_M_ta_t_8*pus_q_in_base_z - pus_M_ta_t_11*pus_q_in_base_y;
+        const real pus_M_aa_t_3 = pus_M_ta_t_12*pus_q_in_base_y + pus_M_ta_t_9*pus_q_in_base_z;
+        const real pus_M_aa_t_4 = pus_M_ta_t_4*pus_q_in_base_z - pus_M_ta_t_11*pus_q_in_base_x;
+        const real pus_M_aa_t_5 = pus_M_ta_t_12*pus_q_in_base_x + pus_M_ta_t_5*pus_q_in_base_z;
+        const real pus_M_aa_t_6 = pus_M_ta_t_5*pus_q_in_base_y - pus_M_ta_t_9*pus_q_in_base_x;
+        terms[0*count + k] = add ? terms[0*count + k] + pus_Q_t_12 : pus_Q_t_12;  /* total_pus_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + pus_Q_t_13 : pus_Q_t_13;  /* total_pus_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + pus_Q_t_14 : pus_Q_t_14;  /* total_pus_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + pus_Q_t_16 : pus_Q_t_16;  /* total_pus_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + pus_Q_t_17 : pus_Q_t_17;  /* total_pus_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + pus_Q_t_19 : pus_Q_t_19;  /* total_pus_zz */
+        terms[6*count + k] = add ? terms[6*count + k] + pus_M_ta_t_3 : pus_M_ta_t_3;  /* total_pus_xx_2 */
+        terms[7*count + k] = add ? terms[7*count + k] + pus_M_ta_t_4 : pus_M_ta_t_4;  /* total_pus_xy_2 */
+        terms[8*count + k] = add ? terms[8*count + k] + pus_M_ta_t_5 : pus_M_ta_t_5;  /* total_pus_xz_2 */
+        terms[9*count + k] = add ? terms[9*count + k] + pus_M_ta_t_6 : pus_M_ta_t_6;  /* total_pus_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + pus_M_ta_t_8 : pus_M_ta_t_8;  /* total_pus_yy_2 */
+        terms[11*count + k] = add ? terms[11*count + k] + pus_M_ta_t_9 : pus_M_ta_t_9;  /* total_pus_yz_2 */
+        terms[12*count + k] = add ? terms[12*count + k] + pus_M_ta_t_10 : pus_M_ta_t_10;  /* total_pus_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + pus_M_ta_t_11 : pus_M_ta_t_11;  /* total_pus_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + pus_M_ta_t_12 : pus_M_ta_t_12;  /* total_pus_zz_2 */
+        terms[15*count + k] = add ? terms[15*count + k] + pus_M_aa_t : pus_M_aa_t;  /* total_pus_xx_3 */
+        terms[16*count + k] = add ? terms[16*count + k] + pus_M_aa_t_2 : pus_M_aa_t_2;  /* total_pus_xy_3 */
+        terms[17*count + k] = add ? terms[17*count + k] + pus_M_aa_t_3 : pus_M_aa_t_3;  /* total_pus_xz_3 */
+        terms[18*count + k] = add ? terms[18*count + k] + pus_M_aa_t_4 : pus_M_aa_t_4;  /* total_pus_yy_3 */
+        terms[19*count + k] = add ? terms[19*count + k] + pus_M_aa_t_5 : pus_M_aa_t_5;  /* total_pus_yz_3 */
+        terms[20*count + k] = add ? terms[20*count + k] + pus_M_aa_t_6 : pus_M_aa_t_6;  /* total_pus_zz_3 */
+        const real pus_size_t = m->pus_size_t[i];
+        const real pus_size = m->pus_size[i];
+        o[0*count + k] = UNLESS(pus_disc_1 >= 0);
+        o[1*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t) +
+            UNLESS(magnitude(pus_v_2_t) > TOLERANCE*pus_size) + UNLESS(magnitude(-pus_w_2_t) >
             TOLERANCE*1);
     }
 }
 
-INLINE void M_place_pus(size_t w, const M_results_pus *o, size_t first, verdict *t)
+INLINE void M_place_pus(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        t->unreachable[k] += o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
     }
 }
 
-INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
+INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums, real *M, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real h_star_in_base_x = s->h_star_in_base_x[k];
-        const real h_star_in_base_y = s->h_star_in_base_y[k];
-        const real h_star_in_base_z = s->h_star_in_base_z[k];
-        const real J_star_t_8 = s->J_star_t_8[k];
-        const real J_star_t_9 = s->J_star_t_9[k];
-        const real J_star_t_10 = s->J_star_t_10[k];
-        const real J_star_t_12 = s->J_star_t_12[k];
-        const real J_star_t_13 = s->J_star_t_13[k];
-        const real J_star_t_15 = s->J_star_t_15[k];
-        const real total_pus_xx = s->sum[0][k];
-        const real total_pus_xy = s->sum[1][k];
-        const real total_pus_xz = s->sum[2][k];
-        const real total_pus_yy = s->sum[3][k];
-        const real total_pus_yz = s->sum[4][k];
-        const real total_pus_zz = s->sum[5][k];
-        const real total_pus_xx_2 = s->sum[6][k];
-        const real total_pus_xy_2 = s->sum[7][k];
-        const real total_pus_xz_2 = s->sum[8][k];
-        const real total_pus_yx = s->sum[9][k];
-        const real total_pus_yy_2 = s->sum[10][k];
-        const real total_pus_yz_2 = s->sum[11][k];
-        const real total_pus_zx = s->sum[12][k];
-        const real total_pus_zy = s->sum[13][k];
-        const real total_pus_zz_2 = s->sum[14][k];
-        const real total_pus_xx_3 = s->sum[15][k];
-        const real total_pus_xy_3 = s->sum[16][k];
-        const real total_pus_xz_3 = s->sum[17][k];
-        const real total_pus_yy_3 = s->sum[18][k];
-        const real total_pus_yz_3 = s->sum[19][k];
-        const real total_pus_zz_3 = s->sum[20][k];
+        /* (M_tt) translational block of M */
         const real m_star = m->m_star;
-        /* (M1) translational block of M */
+        const real total_pus_xx = sums[0*w + k];
         const real M_tt_xx = m_star - total_pus_xx;
+        const real total_pus_yy = sums[3*w + k];
         const real M_tt_yy = m_star - total_pus_yy;
+        const real total_pus_zz = sums[5*w + k];
         const real M_tt_zz = m_star - total_pus_zz;
-        /* (M2) coupling block of M */
+        /* (M_ta) coupling block of M */
+        const real h_star_in_base_z = s[14*w + k];
+        const real total_pus_xy_2 = sums[7*w + k];
         const real M_ta_xy = h_star_in_base_z - total_pus_xy_2;
+        const real h_star_in_base_y = s[13*w + k];
+        const real total_pus_xz_2 = sums[8*w + k];
         const real M_ta_xz = total_pus_xz_2 - h_star_in_base_y;
+        const real total_pus_yx = sums[9*w + k];
         const real M_ta_yx = total_pus_yx - h_star_in_base_z;
+        const real h_star_in_base_x = s[12*w + k];
+        const real total_pus_yz_2 = sums[11*w + k];
         const real M_ta_yz = h_star_in_base_x + total_pus_yz_2;
+        const real total_pus_zx = sums[12*w + k];
         const real M_ta_zx = h_star_in_base_y + total_pus_zx;
+        const real total_pus_zy = sums[13*w + k];
         const real M_ta_zy = -h_star_in_base_x - total_pus_zy;
-        /* (M3) rotational block of M */
+        /* (M_aa) rotational block of M */
+        const real J_star_t_8 = s[15*w + k];
+        const real total_pus_xx_3 = sums[15*w + k];
         const real M_aa_xx = J_star_t_8 - total_pus_xx_3;
+        const real J_star_t_9 = s[16*w + k];
+        const real total_pus_xy_3 = sums[16*w + k];
         const real M_aa_xy = J_star_t_9 + total_pus_xy_3;
+        const real J_star_t_10 = s[17*w + k];
+        const real total_pus_xz_3 = sums[17*w + k];
         const real M_aa_xz = J_star_t_10 - total_pus_xz_3;
-        const real M_aa_yy = J_star_t_12 - total_pus_yy_3;
-        const real M_aa_yz = J_star_t_13 + total_pus_yz_3;
-        const real M_aa_zz = J_star_t_15 - total_pus_zz_3;
+        const real J_star_t_13 = s[18*w + k];
+        const real total_pus_yy_3 = sums[18*w + k];
+        const real M_aa_yy = J_star_t_13 - total_pus_yy_3;
+        const real J_star_t_15 = s[19*w + k];
+        const real total_pus_yz_3 = sums[19*w + k];
+        const real M_aa_yz = J_star_t_15 + total_pus_yz_3;
+        const real J_star_t_17 = s[20*w + k];
+        const real total_pus_zz_3 = sums[20*w + k];
+        const real M_aa_zz = J_star_t_17 - total_pus_zz_3;
         M[0*w + k] = M_tt_xx;
+        const real total_pus_xy = sums[1*w + k];
         M[1*w + k] = -total_pus_xy;
         M[6*w + k] = -total_pus_xy;
+        const real total_pus_xz = sums[2*w + k];
         M[2*w + k] = -total_pus_xz;
         M[12*w + k] = -total_pus_xz;
         M[7*w + k] = M_tt_yy;
+        const real total_pus_yz = sums[4*w + k];
         M[8*w + k] = -total_pus_yz;
         M[13*w + k] = -total_pus_yz;
         M[14*w + k] = M_tt_zz;
+        const real total_pus_xx_2 = sums[6*w + k];
         M[3*w + k] = total_pus_xx_2;
         M[18*w + k] = total_pus_xx_2;
         M[4*w + k] = M_ta_xy;
@@ -2372,6 +2419,7 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
+        const real total_pus_yy_2 = sums[10*w + k];
         M[10*w + k] = -total_pus_yy_2;
         M[25*w + k] = -total_pus_yy_2;
         M[11*w + k] = M_ta_yz;
@@ -2380,6 +2428,7 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
+        const real total_pus_zz_2 = sums[14*w + k];
         M[17*w + k] = -total_pus_zz_2;
         M[32*w + k] = -total_pus_zz_2;
         M[21*w + k] = M_aa_xx;
@@ -2391,87 +2440,55 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         M[29*w + k] = M_aa_yz;
         M[34*w + k] = M_aa_yz;
         M[35*w + k] = M_aa_zz;
+        t->total[k] += (((M_tt_xx + total_pus_xy) + (total_pus_xz + (M_tt_yy + total_pus_yz))) +
+            ((M_tt_zz + total_pus_xx_2) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((total_pus_yy_2 +
+            M_ta_yz) + (M_ta_zx + (M_ta_zy + total_pus_zz_2))) + ((M_aa_xx + (M_aa_xy + M_aa_xz))
+            + (M_aa_yy + (M_aa_yz + M_aa_zz))));
     }
 }
 
-INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *t)
+INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    M_values values, *const s = &values;
-    M_results_pus results_pus;
-    M_before(m, w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        M_legs_pus(m, 0, 1, s, 0, 6, 0, &results_pus);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            M_place_pus(w, &results_pus, leg, t);
-        }
-        for (size_t n = 0; n < 21; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_pus.sum[n], 6);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_pus.sum, 0, sizeof results_pus.sum);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            M_legs_pus(m, leg, 0, s, 1, w, 1, &results_pus);
-            M_place_pus(w, &results_pus, 0, t);
-        }
-        for (size_t n = 0; n < 21; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_pus.sum[n][k];
-            }
-        }
+    real s[21] = {0}, sums[21] = {0}, terms_pus[21*LEGS(6)] = {0}, o_pus[2*LEGS(6)] = {0};
+    M_before(m, 1, X, s, t);
+    M_legs_pus(m, 1, 0, 1, s, 0, LEGS(6), 0, terms_pus, o_pus);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        M_place_pus(1, LEGS(6), o_pus, leg, t);
     }
-    M_after(m, w, s, M);
+    for (size_t n = 0; n < 21; ++n) {
+        sums[n] = total(terms_pus + n*LEGS(6), 6);
+    }
+    M_after(m, 1, s, sums, M, t);
+}
+
+INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
+{
+    real s[21*LANES], sums[21*LANES], o_pus[2*LANES];
+    M_before(m, LANES, X, s, t);
+    clear(sums, 21*LANES);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        M_legs_pus(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_pus);
+        M_place_pus(LANES, LANES, o_pus, 0, t);
+    }
+    M_after(m, LANES, s, sums, M, t);
 }
 
 /* ---- Z: 1125 mul, 834 add, 18 div, 12 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES], Z_p_x[LANES],
-        Z_p_y[LANES], Z_p_z[LANES], Z_q_in_base_x[LANES], Z_q_in_base_y[LANES], Z_q_in_base_z[LANES],
-        sum[6][LANES];
-} Z_values;
-typedef struct {
-    real sum[6][8], unreachable[8], singular[8];
-} Z_results_pus;
-
-INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, Z_values *s,
-    verdict *t)
+INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -2496,330 +2513,367 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
-        /* (L2) first moment about the platform origin */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_z = m->h_star_z;
         const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
         const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
         const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
-        /* (M4) centripetal force and weight of the platform */
+        /* (Z_p) centripetal force and weight of the platform */
         const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
         const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
         const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
+        const real Z_p_t_2 = m->Z_p_t_2;
         const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
+        const real Z_p_t_3 = m->Z_p_t_3;
         const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (M6) gyroscopic moment and moment of the weight of the platform */
+        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real gravity_z = m->gravity_z;
+        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
         const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
         const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
         const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_xx = m->J_star_xx;
+        const real J_star_xy = m->J_star_xy;
+        const real J_star_xz = m->J_star_xz;
         const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
+        const real J_star_yy = m->J_star_yy;
+        const real J_star_yz = m->J_star_yz;
         const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
+        const real J_star_zz = m->J_star_zz;
         const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z_2*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x_2*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y_2*h_star_x;
+        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
+            g_r0_z*h_star_y;
+        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
+            g_r0_x*h_star_z;
+        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
+            g_r0_y*h_star_x;
         const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
         const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
         const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->Z_p_x[k] = Z_p_x;
-        s->Z_p_y[k] = Z_p_y;
-        s->Z_p_z[k] = Z_p_z;
-        s->Z_q_in_base_x[k] = Z_q_in_base_x;
-        s->Z_q_in_base_y[k] = Z_q_in_base_y;
-        s->Z_q_in_base_z[k] = Z_q_in_base_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
+        s[18*w + k] = Z_p_x;
+        s[19*w + k] = Z_p_y;
+        s[20*w + k] = Z_p_z;
+        s[21*w + k] = Z_q_in_base_x;
+        s[22*w + k] = Z_q_in_base_y;
+        s[23*w + k] = Z_q_in_base_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void Z_legs_pus(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
-    states, size_t count, int add, Z_results_pus *o)
+INLINE void Z_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real J_3_xy = m->J_3_xy[i];
-        const real J_3_xz = m->J_3_xz[i];
-        const real J_3_yz = m->J_3_yz[i];
-        const real Sigma_3_xx = m->Sigma_3_xx[i];
-        const real Sigma_3_yy = m->Sigma_3_yy[i];
-        const real Sigma_3_zz = m->Sigma_3_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real g_r0_z = m->g_r0_z[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real inv_pus_platform_joint_offset_x = m->inv_pus_platform_joint_offset_x[i];
-        const real inv_uu_3_t = m->inv_uu_3_t[i];
-        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
-        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
-        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
-        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
-        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
-        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
-        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
-        const real pus_base_point_x = m->pus_base_point_x[i];
-        const real pus_base_point_y = m->pus_base_point_y[i];
-        const real pus_base_point_z = m->pus_base_point_z[i];
-        const real pus_link1_mass = m->pus_link1_mass[i];
-        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
+        /* (pus-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real pus_platform_point_x = m->pus_platform_point_x[i];
         const real pus_platform_point_y = m->pus_platform_point_y[i];
         const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real size_ = m->size_[i];
-        const real size_t_ = m->size_t_[i];
-        const real uu_3_t = m->uu_3_t[i];
-        /* (pus-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
+        const real pus_q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
             R_xz*pus_platform_point_z;
-        const real q_in_base_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real pus_q_in_base_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
             R_yz*pus_platform_point_z;
-        const real q_in_base_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real pus_q_in_base_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
             R_zz*pus_platform_point_z;
-        const real S_x = q_in_base_x + t_x - pus_base_point_x;
-        const real S_y = q_in_base_y + t_y - pus_base_point_y;
-        const real S_z = q_in_base_z + t_z - pus_base_point_z;
-        /* (pus-K2) component along axis 1 */
-        const real px_1 = S_x*pus_base_frame_xx + S_y*pus_base_frame_yx + S_z*pus_base_frame_zx;
-        /* (pus-K3) discriminant of the distance equation */
-        const real disc_1_t = S_x*S_x + S_y*S_y + S_z*S_z;
-        const real disc_1 = px_1*px_1 + uu_3_t - disc_1_t;
-        /* (pus-K4) displacement of joint 1 */
-        const real q_1_t = branch_1*root(disc_1);
-        /* (pus-K1) from the base point to the connection point */
-        const real S_r0_y = S_x*pus_base_frame_xy + S_y*pus_base_frame_yy + S_z*pus_base_frame_zy;
-        /* (pus-K9) squared amplitude */
-        const real rho2_2 = S_r0_y*S_r0_y + q_1_t*q_1_t;
-        /* (pus-K11) root, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (pus-K17) cosine of the angle of joint 3 from its reference direction */
-        const real c_3 = inv_uu_3_t*pus_platform_joint_offset_x*root_2;
-        /* (pus-K18) sine of the angle of joint 3 from its reference direction */
-        const real s_3 = inv_uu_3_t*pus_platform_joint_offset_x*(S_x*pus_base_frame_xz +
-            S_y*pus_base_frame_yz + S_z*pus_base_frame_zz);
-        /* (pus-V2) velocity of the connection point per rate of joint 2 */
-        const real v_2_t = c_3*pus_platform_joint_offset_x;
-        /* (pus-K12) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rho2_2 = 1/rho2_2;
-        const real c_2 = S_r0_y*inv_rho2_2*root_2;
-        /* (pus-K13) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_rho2_2*q_1_t*root_2;
-        /* (pus-V4) reciprocal vector 1 */
-        const real axis_z_pus_axes3_in_base_x = -c_2*pus_base_frame_xx - pus_base_frame_xy*s_2;
-        const real axis_z_pus_axes3_in_base_y = -c_2*pus_base_frame_yx - pus_base_frame_yy*s_2;
-        const real axis_z_pus_axes3_in_base_z = -c_2*pus_base_frame_zx - pus_base_frame_zy*s_2;
-        const real w_1_t = s_2*s_3;
-        const real w_1_t_2 = c_2*s_3;
-        const real axis_y_pus_axes3_in_base_x = pus_base_frame_xy*w_1_t_2 - c_3*pus_base_frame_xz
-            - pus_base_frame_xx*w_1_t;
-        const real axis_y_pus_axes3_in_base_y = pus_base_frame_yy*w_1_t_2 - c_3*pus_base_frame_yz
-            - pus_base_frame_yx*w_1_t;
-        const real axis_y_pus_axes3_in_base_z = pus_base_frame_zy*w_1_t_2 - c_3*pus_base_frame_zz
-            - pus_base_frame_zx*w_1_t;
+        const real pus_base_point_x = m->pus_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x;
+        const real pus_base_point_y = m->pus_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y;
+        const real pus_base_point_z = m->pus_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z;
+        /* (pus-px_1) component along axis 1 */
+        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
+        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
+        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
+        const real pus_px_1 = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
+            pus_S_z*pus_base_frame_zx;
+        /* (pus-disc_1) discriminant of the distance equation */
+        const real pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
+        const real pus_disc_1_t = m->pus_disc_1_t[i];
+        const real pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2;
+        /* (pus-q_1) displacement of joint 1 */
+        const real pus_branch_1 = m->pus_branch_1[i];
+        const real pus_q_1_t = pus_branch_1*root(pus_disc_1);
+        /* (pus-S) from the base point to the connection point */
+        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
+        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
+        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
+        const real pus_S_r0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
+            pus_S_z*pus_base_frame_zy;
+        /* (pus-rho2_2) squared amplitude */
+        const real pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t;
+        /* (pus-root_2) root, with the sign of the branch */
+        const real pus_branch_2 = m->pus_branch_2[i];
+        const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
+        /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_pus_disc_1_t_6 = m->inv_pus_disc_1_t_6[i];
+        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
+        const real pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2;
+        /* (pus-s_3) sine of the angle of joint 3 from its reference direction */
+        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
+        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
+        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
+        const real pus_s_3 =
+            inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
+        /* (pus-v_2) velocity of the connection point per rate of joint 2 */
+        const real pus_v_2_t = pus_c_3*pus_platform_joint_offset_x;
+        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_pus_rho2_2 = 1/pus_rho2_2;
+        const real pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2;
+        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2;
+        /* (pus-w_1) reciprocal vector 1 */
+        const real axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 -
+            pus_base_frame_xy*pus_s_2;
+        const real axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 -
+            pus_base_frame_yy*pus_s_2;
+        const real axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 -
+            pus_base_frame_zy*pus_s_2;
+        const real pus_w_1_t = pus_s_2*pus_s_3;
+        const real pus_w_1_t_2 = pus_c_2*pus_s_3;
+        const real axis_y_pus_axes3_in_base_x = pus_base_frame_xy*pus_w_1_t_2 -
+            pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3;
+        const real axis_y_pus_axes3_in_base_y = pus_base_frame_yy*pus_w_1_t_2 -
+            pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3;
+        const real axis_y_pus_axes3_in_base_z = pus_base_frame_zy*pus_w_1_t_2 -
+            pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3;
         const real axis_x_pus_axes3_x = axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
             axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y;
         const real axis_x_pus_axes3_y = axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
             axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_z;
         const real axis_x_pus_axes3_z = axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
             axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x;
-        const real w_1_t_3 = c_3*s_2;
-        const real inv_w_1_t_24 = 1/w_1_t_3;
-        /* (pus-V5) reciprocal vector 2 */
-        const real inv_v_2_t = 1/v_2_t;
-        /* (pus-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        /* (pus-V8) rate of joint 2 */
-        const real qd_1 = inv_w_1_t_24*(S_dot_x*axis_x_pus_axes3_x + S_dot_y*axis_x_pus_axes3_y +
-            S_dot_z*axis_x_pus_axes3_z);
-        const real qd_2_t = S_dot_x*axis_y_pus_axes3_in_base_x +
-            S_dot_y*axis_y_pus_axes3_in_base_y + S_dot_z*axis_y_pus_axes3_in_base_z - qd_1*w_1_t;
-        const real qd_3 = inv_pus_platform_joint_offset_x*qd_2_t;
-        const real qd_2 = inv_v_2_t*(S_dot_x*axis_z_pus_axes3_in_base_x +
-            S_dot_y*axis_z_pus_axes3_in_base_y + S_dot_z*axis_z_pus_axes3_in_base_z - c_2*qd_1);
-        /* (pus-V10) angular velocity of link 2 */
-        const real omega_2_t = qd_2*s_3;
-        const real omega_2_t_2 = c_3*qd_2;
-        /* (pus-A4) angular acceleration of link 3 from the turning of axis 3 */
-        const real zeta_3_x = omega_2_t_2*qd_3;
-        const real zeta_3_y = omega_2_t*qd_3;
-        /* (pus-V12) centripetal tensor of link 3 */
-        const real W_3_t = omega_2_t*omega_2_t;
-        const real W_3_t_2 = omega_2_t_2*omega_2_t_2;
-        const real W_3_t_3 = qd_3*qd_3;
-        const real W_3_xy = omega_2_t*omega_2_t_2;
-        /* (pus-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = omega_2_t_2*pus_platform_joint_offset_x;
-        const real bias_z = omega_2_t*qd_2_t + pus_platform_joint_offset_x*zeta_3_y;
-        /* (pus-A1) centripetal acceleration of the connection point */
-        const real u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z;
-        const real u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x;
-        const real u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y;
-        const real u_1_tip_x = axis_x_pus_axes3_x*u_1_x + axis_x_pus_axes3_y*u_1_y +
-            axis_x_pus_axes3_z*u_1_z;
-        const real u_1_tip_y = axis_y_pus_axes3_in_base_x*u_1_x + axis_y_pus_axes3_in_base_y*u_1_y
-            + axis_y_pus_axes3_in_base_z*u_1_z;
-        const real u_1_tip_z = axis_z_pus_axes3_in_base_x*u_1_x + axis_z_pus_axes3_in_base_y*u_1_y
-            + axis_z_pus_axes3_in_base_z*u_1_z;
-        /* (pus-A7) remainder without the acceleration in: acceleration of the connection point left to
+        /* (pus-w_2) reciprocal vector 2 */
+        const real pus_w_2_t = pus_c_3*pus_s_2;
+        const real inv_pus_v_2_t = 1/pus_v_2_t;
+        const real inv_pus_w_2_t = 1/pus_w_2_t;
+        /* (pus-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real pus_S_dot_t = omega_y*pus_q_in_base_z - omega_z*pus_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real pus_S_dot_t_2 = omega_z*pus_q_in_base_x - omega_x*pus_q_in_base_z;
+        const real pus_S_dot_t_3 = omega_x*pus_q_in_base_y - omega_y*pus_q_in_base_x;
+        const real t_dot_x = s[12*w + j];
+        const real pus_S_dot_x = pus_S_dot_t + t_dot_x;
+        const real t_dot_y = s[13*w + j];
+        const real pus_S_dot_y = pus_S_dot_t_2 + t_dot_y;
+        const real t_dot_z = s[14*w + j];
+        const real pus_S_dot_z = pus_S_dot_t_3 + t_dot_z;
+        /* (pus-qd_3) rate of joint 3 */
+        const real pus_qd_1 = inv_pus_w_2_t*(axis_x_pus_axes3_x*pus_S_dot_x +
+            axis_x_pus_axes3_y*pus_S_dot_y + axis_x_pus_axes3_z*pus_S_dot_z);
+        const real pus_qd_3_t = axis_y_pus_axes3_in_base_x*pus_S_dot_x +
+            axis_y_pus_axes3_in_base_y*pus_S_dot_y + axis_y_pus_axes3_in_base_z*pus_S_dot_z -
+            pus_qd_1*pus_w_1_t;
+        const real inv_pus_platform_joint_offset_x = m->inv_pus_platform_joint_offset_x[i];
+        const real pus_qd_3 = inv_pus_platform_joint_offset_x*pus_qd_3_t;
+        const real pus_qd_2 = inv_pus_v_2_t*(axis_z_pus_axes3_in_base_x*pus_S_dot_x +
+            axis_z_pus_axes3_in_base_y*pus_S_dot_y + axis_z_pus_axes3_in_base_z*pus_S_dot_z -
+            pus_c_2*pus_qd_1);
+        /* (pus-omega_2) angular velocity of link 2 */
+        const real pus_omega_2_t = pus_qd_2*pus_s_3;
+        const real pus_omega_2_t_2 = pus_c_3*pus_qd_2;
+        /* (pus-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+        const real pus_zeta_3_x = pus_omega_2_t_2*pus_qd_3;
+        const real pus_zeta_3_y = pus_omega_2_t*pus_qd_3;
+        /* (pus-u_1) centripetal acceleration of the connection point */
+        const real pus_u_1_x = omega_y*pus_S_dot_t_3 - omega_z*pus_S_dot_t_2;
+        const real pus_u_1_y = omega_z*pus_S_dot_t - omega_x*pus_S_dot_t_3;
+        const real pus_u_1_z = omega_x*pus_S_dot_t_2 - omega_y*pus_S_dot_t;
+        /* (pus-W_3) centripetal tensor of link 3 */
+        const real pus_W_3_t = pus_omega_2_t*pus_omega_2_t;
+        const real pus_W_3_t_2 = pus_omega_2_t_2*pus_omega_2_t_2;
+        const real pus_W_3_t_3 = pus_qd_3*pus_qd_3;
+        const real pus_W_3_xy = pus_omega_2_t*pus_omega_2_t_2;
+        /* (pus-bias) acceleration of the connection point at zero joint accelerations */
+        const real pus_bias_t = pus_omega_2_t_2*pus_platform_joint_offset_x;
+        const real pus_bias_z = pus_omega_2_t*pus_qd_3_t +
+            pus_platform_joint_offset_x*pus_zeta_3_y;
+        /* (pus-u_1) centripetal acceleration of the connection point */
+        const real pus_u_1_tip_x = axis_x_pus_axes3_x*pus_u_1_x + axis_x_pus_axes3_y*pus_u_1_y +
+            axis_x_pus_axes3_z*pus_u_1_z;
+        const real pus_u_1_tip_y = axis_y_pus_axes3_in_base_x*pus_u_1_x +
+            axis_y_pus_axes3_in_base_y*pus_u_1_y + axis_y_pus_axes3_in_base_z*pus_u_1_z;
+        const real pus_u_1_tip_z = axis_z_pus_axes3_in_base_x*pus_u_1_x +
+            axis_z_pus_axes3_in_base_y*pus_u_1_y + axis_z_pus_axes3_in_base_z*pus_u_1_z;
+        /* (pus-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rel_o_x = u_1_tip_x + bias_t*omega_2_t_2 + qd_2_t*qd_3;
-        const real rel_o_y = u_1_tip_y + bias_t*omega_2_t;
-        const real rel_o_z = u_1_tip_z - bias_z;
-        /* (pus-A9) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_o = inv_w_1_t_24*rel_o_x;
-        const real qdd_3_o = inv_pus_platform_joint_offset_x*(qdd_1_o*w_1_t - rel_o_y);
-        const real qdd_2_o = inv_v_2_t*(c_2*qdd_1_o - rel_o_z);
-        /* (pus-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
-           less gravity */
-        const real acc_1_o_x = -g_r0_x - qdd_1_o;
-        /* (pus-N6) remainder without the acceleration in: acceleration of the reference point of link 3,
-           less gravity */
-        const real g_r1_y = g_r0_x*s_2 - c_2*g_r0_y;
-        const real acc_3_o_x = u_1_tip_x + c_3*g_r1_y - g_r0_z*s_3;
-        const real acc_3_o_y = u_1_tip_y + c_3*g_r0_z + g_r1_y*s_3;
-        const real acc_3_o_z = u_1_tip_z + c_2*g_r0_x + g_r0_y*s_2;
-        /* (pus-A15) remainder without the acceleration in: angular acceleration of link 2 */
-        const real alpha_2_o_t = qdd_2_o*s_3;
-        const real alpha_2_o_t_2 = c_3*qdd_2_o;
-        /* (pus-A18) remainder without the acceleration in: angular acceleration of link 3 */
-        const real alpha_3_o_x = -alpha_2_o_t - zeta_3_x;
-        const real alpha_3_o_y = alpha_2_o_t_2 - zeta_3_y;
-        /* (pus-A20) remainder of the acceleration tensor of link 3 */
-        const real B_3_o_xy = qdd_3_o - W_3_xy;
-        const real B_3_o_yx = -W_3_xy - qdd_3_o;
-        const real B_3_o_zx = zeta_3_y - alpha_3_o_y;
-        const real B_3_o_zy = alpha_3_o_x - zeta_3_x;
-        /* (pus-N20) remainder without the acceleration in: inertia moment of the links that turn with
+        const real pus_rel_o_x = pus_u_1_tip_x + pus_bias_t*pus_omega_2_t_2 + pus_qd_3*pus_qd_3_t;
+        const real pus_rel_o_y = pus_u_1_tip_y + pus_bias_t*pus_omega_2_t;
+        const real pus_rel_o_z = pus_u_1_tip_z - pus_bias_z;
+        /* (pus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
+        const real pus_qdd_1_o = inv_pus_w_2_t*pus_rel_o_x;
+        const real pus_qdd_3_o = inv_pus_platform_joint_offset_x*(pus_qdd_1_o*pus_w_1_t -
+            pus_rel_o_y);
+        const real pus_qdd_2_o = inv_pus_v_2_t*(pus_c_2*pus_qdd_1_o - pus_rel_o_z);
+        /* (pus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        const real pus_alpha_2_o_t = pus_qdd_2_o*pus_s_3;
+        const real pus_alpha_2_o_t_2 = pus_c_3*pus_qdd_2_o;
+        /* (pus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
+        const real pus_alpha_3_o_x = -pus_alpha_2_o_t - pus_zeta_3_x;
+        const real pus_alpha_3_o_y = pus_alpha_2_o_t_2 - pus_zeta_3_y;
+        /* (pus-B_3_o) remainder of the acceleration tensor of link 3 */
+        const real pus_B_3_o_xy = pus_qdd_3_o - pus_W_3_xy;
+        const real pus_B_3_o_yx = -pus_W_3_xy - pus_qdd_3_o;
+        const real pus_B_3_o_zx = pus_zeta_3_y - pus_alpha_3_o_y;
+        const real pus_B_3_o_zy = pus_alpha_3_o_x - pus_zeta_3_x;
+        /* (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+           link 3, less gravity */
+        const real pus_g_r0_x = m->pus_g_r0_x[i];
+        const real pus_g_r0_y = m->pus_g_r0_y[i];
+        const real pus_g_r1_y = pus_g_r0_x*pus_s_2 - pus_c_2*pus_g_r0_y;
+        const real pus_g_r0_z = m->pus_g_r0_z[i];
+        const real pus_acc_3_o_x = pus_u_1_tip_x + pus_c_3*pus_g_r1_y - pus_g_r0_z*pus_s_3;
+        const real pus_acc_3_o_y = pus_u_1_tip_y + pus_c_3*pus_g_r0_z + pus_g_r1_y*pus_s_3;
+        const real pus_acc_3_o_z = pus_u_1_tip_z + pus_c_2*pus_g_r0_x + pus_g_r0_y*pus_s_2;
+        /* (pus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
-        const real mu_3_o_x = B_3_o_yx*J_3_xy + B_3_o_zx*J_3_xz + B_3_o_zy*Sigma_3_yy -
-            J_3_yz*(W_3_t_2 - W_3_t_3) - Sigma_3_zz*alpha_2_o_t - acc_3_o_y*h_3_y -
-            acc_3_o_z*h_3_z;
-        const real mu_3_o_y = B_3_o_xy*J_3_yz + Sigma_3_zz*alpha_2_o_t_2 + acc_3_o_x*h_3_y -
-            B_3_o_zx*Sigma_3_xx - B_3_o_zy*J_3_xz - J_3_xy*(W_3_t - W_3_t_3) - acc_3_o_z*h_3_x;
-        const real mu_3_o_z = B_3_o_yx*Sigma_3_xx + acc_3_o_x*h_3_z + acc_3_o_y*h_3_x -
-            B_3_o_xy*Sigma_3_yy - J_3_xy*alpha_2_o_t - J_3_xz*(W_3_t - W_3_t_2) -
-            J_3_yz*alpha_2_o_t_2;
-        /* (pus-N32) remainder without the acceleration in: force at the connection point that balances
+        const real pus_J_3_xy = m->pus_J_3_xy[i];
+        const real pus_J_3_xz = m->pus_J_3_xz[i];
+        const real pus_J_3_yz = m->pus_J_3_yz[i];
+        const real pus_Sigma_3_yy = m->pus_Sigma_3_yy[i];
+        const real pus_Sigma_3_zz = m->pus_Sigma_3_zz[i];
+        const real pus_h_3_y = m->pus_h_3_y[i];
+        const real pus_h_3_z = m->pus_h_3_z[i];
+        const real pus_mu_3_o_x = pus_B_3_o_yx*pus_J_3_xy + pus_B_3_o_zx*pus_J_3_xz +
+            pus_B_3_o_zy*pus_Sigma_3_yy - pus_J_3_yz*(pus_W_3_t_2 - pus_W_3_t_3) -
+            pus_Sigma_3_zz*pus_alpha_2_o_t - pus_acc_3_o_y*pus_h_3_y - pus_acc_3_o_z*pus_h_3_z;
+        const real pus_Sigma_3_xx = m->pus_Sigma_3_xx[i];
+        const real pus_h_3_x = m->pus_h_3_x[i];
+        const real pus_mu_3_o_y = pus_B_3_o_xy*pus_J_3_yz + pus_Sigma_3_zz*pus_alpha_2_o_t_2 +
+            pus_acc_3_o_x*pus_h_3_y - pus_B_3_o_zx*pus_Sigma_3_xx - pus_B_3_o_zy*pus_J_3_xz -
+            pus_J_3_xy*(pus_W_3_t - pus_W_3_t_3) - pus_acc_3_o_z*pus_h_3_x;
+        const real pus_mu_3_o_z = pus_B_3_o_yx*pus_Sigma_3_xx + pus_acc_3_o_x*pus_h_3_z +
+            pus_acc_3_o_y*pus_h_3_x - pus_B_3_o_xy*pus_Sigma_3_yy - pus_J_3_xy*pus_alpha_2_o_t -
+            pus_J_3_xz*(pus_W_3_t - pus_W_3_t_2) - pus_J_3_yz*pus_alpha_2_o_t_2;
+        /* (pus-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
+           link 1, less gravity */
+        const real pus_acc_1_o_x = -pus_g_r0_x - pus_qdd_1_o;
+        /* (pus-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real G_o_t = inv_v_2_t*(mu_3_o_x*s_3 - c_3*mu_3_o_y);
-        const real G_o_t_2 = inv_pus_platform_joint_offset_x*mu_3_o_z;
-        /* (pus-N35) remainder without the acceleration in: leg force on the platform without actuation
+        const real pus_G_o_t = inv_pus_v_2_t*(pus_mu_3_o_x*pus_s_3 - pus_c_3*pus_mu_3_o_y);
+        const real pus_G_o_t_2 = inv_pus_platform_joint_offset_x*pus_mu_3_o_z;
+        /* (pus-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real c_o_x = B_3_o_xy*h_3_z + h_3_x*(W_3_t_2 + W_3_t_3) + inv_w_1_t_24*(G_o_t*c_2 +
-            G_o_t_2*w_1_t + acc_1_o_x*pus_link1_mass) - alpha_2_o_t_2*h_3_y;
-        const real c_o_y = -G_o_t_2 - B_3_o_yx*h_3_x - alpha_2_o_t*h_3_y - h_3_z*(W_3_t +
-            W_3_t_3);
-        const real c_o_z = B_3_o_zy*h_3_z + h_3_y*(W_3_t + W_3_t_2) - G_o_t - B_3_o_zx*h_3_x;
-        /* (pus-N37) velocity and gravity terms of the leg force */
-        const real U_in_base_x = -axis_x_pus_axes3_x*c_o_x - axis_y_pus_axes3_in_base_x*c_o_y -
-            axis_z_pus_axes3_in_base_x*c_o_z;
-        const real U_in_base_y = -axis_x_pus_axes3_y*c_o_x - axis_y_pus_axes3_in_base_y*c_o_y -
-            axis_z_pus_axes3_in_base_y*c_o_z;
-        const real U_in_base_z = -axis_x_pus_axes3_z*c_o_x - axis_y_pus_axes3_in_base_z*c_o_y -
-            axis_z_pus_axes3_in_base_z*c_o_z;
-        /* (M7) rotational part of Z */
-        const real Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z;
-        const real Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x;
-        const real Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y;
-        o->sum[0][k] = add ? o->sum[0][k] + U_in_base_x : U_in_base_x;  /* total_pus_x */
-        o->sum[1][k] = add ? o->sum[1][k] + U_in_base_y : U_in_base_y;  /* total_pus_y */
-        o->sum[2][k] = add ? o->sum[2][k] + U_in_base_z : U_in_base_z;  /* total_pus_z */
-        o->sum[3][k] = add ? o->sum[3][k] + Z_a_t : Z_a_t;  /* total_pus_x_2 */
-        o->sum[4][k] = add ? o->sum[4][k] + Z_a_t_2 : Z_a_t_2;  /* total_pus_y_2 */
-        o->sum[5][k] = add ? o->sum[5][k] + Z_a_t_3 : Z_a_t_3;  /* total_pus_z_2 */
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_) +
-            UNLESS(magnitude(v_2_t) > TOLERANCE*size_) + UNLESS(magnitude(-w_1_t_3) >
+        const real pus_link1_mass = m->pus_link1_mass[i];
+        const real pus_c_o_x = inv_pus_w_2_t*(pus_G_o_t*pus_c_2 + pus_G_o_t_2*pus_w_1_t +
+            pus_acc_1_o_x*pus_link1_mass) + pus_B_3_o_xy*pus_h_3_z + pus_h_3_x*(pus_W_3_t_2 +
+            pus_W_3_t_3) - pus_alpha_2_o_t_2*pus_h_3_y;
+        const real pus_c_o_y = -pus_G_o_t_2 - pus_B_3_o_yx*pus_h_3_x - pus_alpha_2_o_t*pus_h_3_y -
+            pus_h_3_z*(pus_W_3_t + pus_W_3_t_3);
+        const real pus_c_o_z = pus_B_3_o_zy*pus_h_3_z + pus_h_3_y*(pus_W_3_t + pus_W_3_t_2) -
+            pus_G_o_t - pus_B_3_o_zx*pus_h_3_x;
+        /* (pus-U) velocity and gravity terms of the leg force */
+        const real pus_U_in_base_x = -axis_x_pus_axes3_x*pus_c_o_x -
+            axis_y_pus_axes3_in_base_x*pus_c_o_y - axis_z_pus_axes3_in_base_x*pus_c_o_z;
+        const real pus_U_in_base_y = -axis_x_pus_axes3_y*pus_c_o_x -
+            axis_y_pus_axes3_in_base_y*pus_c_o_y - axis_z_pus_axes3_in_base_y*pus_c_o_z;
+        const real pus_U_in_base_z = -axis_x_pus_axes3_z*pus_c_o_x -
+            axis_y_pus_axes3_in_base_z*pus_c_o_y - axis_z_pus_axes3_in_base_z*pus_c_o_z;
+        /* (Z_a) rotational part of Z */
+        const real pus_Z_a_t = pus_U_in_base_z*pus_q_in_base_y - pus_U_in_base_y*pus_q_in_base_z;
+        const real pus_Z_a_t_2 = pus_U_in_base_x*pus_q_in_base_z -
+            pus_U_in_base_z*pus_q_in_base_x;
+        const real pus_Z_a_t_3 = pus_U_in_base_y*pus_q_in_base_x -
+            pus_U_in_base_x*pus_q_in_base_y;
+        terms[0*count + k] = add ? terms[0*count + k] + pus_U_in_base_x : pus_U_in_base_x;  /* total_pus_x */
+        terms[1*count + k] = add ? terms[1*count + k] + pus_U_in_base_y : pus_U_in_base_y;  /* total_pus_y */
+        terms[2*count + k] = add ? terms[2*count + k] + pus_U_in_base_z : pus_U_in_base_z;  /* total_pus_z */
+        terms[3*count + k] = add ? terms[3*count + k] + pus_Z_a_t : pus_Z_a_t;  /* total_pus_x_2 */
+        terms[4*count + k] = add ? terms[4*count + k] + pus_Z_a_t_2 : pus_Z_a_t_2;  /* total_pus_y_2 */
+        terms[5*count + k] = add ? terms[5*count + k] + pus_Z_a_t_3 : pus_Z_a_t_3;  /* total_pus_z_2 */
+        const real pus_size_t = m->pus_size_t[i];
+        const real pus_size = m->pus_size[i];
+        o[0*count + k] = UNLESS(pus_disc_1 >= 0);
+        o[1*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t) +
+            UNLESS(magnitude(pus_v_2_t) > TOLERANCE*pus_size) + UNLESS(magnitude(-pus_w_2_t) >
             TOLERANCE*1);
     }
 }
 
-INLINE void Z_place_pus(size_t w, const Z_results_pus *o, size_t first, verdict *t)
+INLINE void Z_place_pus(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        t->unreachable[k] += o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
     }
 }
 
-INLINE void Z_after(size_t w, const Z_values *s, real *Z)
+INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real Z_p_x = s->Z_p_x[k];
-        const real Z_p_y = s->Z_p_y[k];
-        const real Z_p_z = s->Z_p_z[k];
-        const real Z_q_in_base_x = s->Z_q_in_base_x[k];
-        const real Z_q_in_base_y = s->Z_q_in_base_y[k];
-        const real Z_q_in_base_z = s->Z_q_in_base_z[k];
-        const real total_pus_x = s->sum[0][k];
-        const real total_pus_y = s->sum[1][k];
-        const real total_pus_z = s->sum[2][k];
-        const real total_pus_x_2 = s->sum[3][k];
-        const real total_pus_y_2 = s->sum[4][k];
-        const real total_pus_z_2 = s->sum[5][k];
-        /* (M5) translational part of Z */
+        /* (Z_t) translational part of Z */
+        const real Z_p_x = s[18*w + k];
+        const real total_pus_x = sums[0*w + k];
         const real Z_t_x = Z_p_x + total_pus_x;
+        const real Z_p_y = s[19*w + k];
+        const real total_pus_y = sums[1*w + k];
         const real Z_t_y = Z_p_y + total_pus_y;
+        const real Z_p_z = s[20*w + k];
+        const real total_pus_z = sums[2*w + k];
         const real Z_t_z = Z_p_z + total_pus_z;
-        /* (M7) rotational part of Z */
+        /* (Z_a) rotational part of Z */
+        const real Z_q_in_base_x = s[21*w + k];
+        const real total_pus_x_2 = sums[3*w + k];
         const real Z_a_x = Z_q_in_base_x + total_pus_x_2;
+        const real Z_q_in_base_y = s[22*w + k];
+        const real total_pus_y_2 = sums[4*w + k];
         const real Z_a_y = Z_q_in_base_y + total_pus_y_2;
+        const real Z_q_in_base_z = s[23*w + k];
+        const real total_pus_z_2 = sums[5*w + k];
         const real Z_a_z = Z_q_in_base_z + total_pus_z_2;
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
@@ -2827,62 +2881,51 @@ INLINE void Z_after(size_t w, const Z_values *s, real *Z)
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
+        t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
     }
 }
 
-INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    Z_values values, *const s = &values;
-    Z_results_pus results_pus;
-    Z_before(m, w, X, V, s, t);
-    if (w == 1) {  /* the legs side by side */
-        Z_legs_pus(m, 0, 1, s, 0, 6, 0, &results_pus);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            Z_place_pus(w, &results_pus, leg, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_pus.sum[n], 6);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_pus.sum, 0, sizeof results_pus.sum);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            Z_legs_pus(m, leg, 0, s, 1, w, 1, &results_pus);
-            Z_place_pus(w, &results_pus, 0, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_pus.sum[n][k];
-            }
-        }
+    real s[24] = {0}, sums[6] = {0}, terms_pus[6*LEGS(6)] = {0}, o_pus[2*LEGS(6)] = {0};
+    Z_before(m, 1, X, V, s, t);
+    Z_legs_pus(m, 1, 0, 1, s, 0, LEGS(6), 0, terms_pus, o_pus);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        Z_place_pus(1, LEGS(6), o_pus, leg, t);
     }
-    Z_after(w, s, Z);
+    for (size_t n = 0; n < 6; ++n) {
+        sums[n] = total(terms_pus + n*LEGS(6), 6);
+    }
+    Z_after(1, s, sums, Z, t);
+}
+
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+{
+    real s[24*LANES], sums[6*LANES], o_pus[2*LANES];
+    Z_before(m, LANES, X, V, s, t);
+    clear(sums, 6*LANES);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        Z_legs_pus(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_pus);
+        Z_place_pus(LANES, LANES, o_pus, 0, t);
+    }
+    Z_after(LANES, s, sums, Z, t);
 }
 
 /* ---- H: 402 mul, 228 add, 12 div, 12 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES];
-} H_values;
-typedef struct {
-    real entry[6][8], unreachable[8], singular[8];
-} H_results_pus;
-
-INLINE void H_before(size_t w, const real *X, H_values *s, verdict *t)
+INLINE void H_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -2906,216 +2949,195 @@ INLINE void H_before(size_t w, const real *X, H_values *s, verdict *t)
         const real R_zx = quaternion_xz - quaternion_wy;
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void H_legs_pus(const prepared *m, size_t leg, size_t legs, const H_values *s, size_t
-    states, size_t count, H_results_pus *o)
+INLINE void H_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real inv_uu_3_t = m->inv_uu_3_t[i];
-        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
-        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
-        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
-        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
-        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
-        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
-        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
-        const real pus_base_point_x = m->pus_base_point_x[i];
-        const real pus_base_point_y = m->pus_base_point_y[i];
-        const real pus_base_point_z = m->pus_base_point_z[i];
-        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
+        /* (pus-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real pus_platform_point_x = m->pus_platform_point_x[i];
         const real pus_platform_point_y = m->pus_platform_point_y[i];
         const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real size_t_ = m->size_t_[i];
-        const real uu_3_t = m->uu_3_t[i];
-        /* (pus-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
+        const real pus_q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
             R_xz*pus_platform_point_z;
-        const real q_in_base_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real pus_q_in_base_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
             R_yz*pus_platform_point_z;
-        const real q_in_base_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real pus_q_in_base_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
             R_zz*pus_platform_point_z;
-        const real S_x = q_in_base_x + t_x - pus_base_point_x;
-        const real S_y = q_in_base_y + t_y - pus_base_point_y;
-        const real S_z = q_in_base_z + t_z - pus_base_point_z;
-        /* (pus-K2) component along axis 1 */
-        const real px_1 = S_x*pus_base_frame_xx + S_y*pus_base_frame_yx + S_z*pus_base_frame_zx;
-        /* (pus-K3) discriminant of the distance equation */
-        const real disc_1_t = S_x*S_x + S_y*S_y + S_z*S_z;
-        const real disc_1 = px_1*px_1 + uu_3_t - disc_1_t;
-        /* (pus-K4) displacement of joint 1 */
-        const real q_1_t = branch_1*root(disc_1);
-        /* (pus-K1) from the base point to the connection point */
-        const real S_r0_y = S_x*pus_base_frame_xy + S_y*pus_base_frame_yy + S_z*pus_base_frame_zy;
-        /* (pus-K9) squared amplitude */
-        const real rho2_2 = S_r0_y*S_r0_y + q_1_t*q_1_t;
-        /* (pus-K11) root, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (pus-K17) cosine of the angle of joint 3 from its reference direction */
-        const real c_3 = inv_uu_3_t*pus_platform_joint_offset_x*root_2;
-        /* (pus-K18) sine of the angle of joint 3 from its reference direction */
-        const real s_3 = inv_uu_3_t*pus_platform_joint_offset_x*(S_x*pus_base_frame_xz +
-            S_y*pus_base_frame_yz + S_z*pus_base_frame_zz);
-        /* (pus-K12) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rho2_2 = 1/rho2_2;
-        const real c_2 = S_r0_y*inv_rho2_2*root_2;
-        /* (pus-K13) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_rho2_2*q_1_t*root_2;
-        /* (pus-V4) reciprocal vector 1 */
-        const real axis_z_pus_axes3_in_base_x = -c_2*pus_base_frame_xx - pus_base_frame_xy*s_2;
-        const real axis_z_pus_axes3_in_base_y = -c_2*pus_base_frame_yx - pus_base_frame_yy*s_2;
-        const real axis_z_pus_axes3_in_base_z = -c_2*pus_base_frame_zx - pus_base_frame_zy*s_2;
-        const real w_1_t = s_2*s_3;
-        const real w_1_t_2 = c_2*s_3;
-        const real axis_y_pus_axes3_in_base_x = pus_base_frame_xy*w_1_t_2 - c_3*pus_base_frame_xz
-            - pus_base_frame_xx*w_1_t;
-        const real axis_y_pus_axes3_in_base_y = pus_base_frame_yy*w_1_t_2 - c_3*pus_base_frame_yz
-            - pus_base_frame_yx*w_1_t;
-        const real axis_y_pus_axes3_in_base_z = pus_base_frame_zy*w_1_t_2 - c_3*pus_base_frame_zz
-            - pus_base_frame_zx*w_1_t;
-        const real w_1_t_3 = c_3*s_2;
-        const real inv_w_1_t_24 = 1/w_1_t_3;
-        const real w_1_t_4 = inv_w_1_t_24*(axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
+        const real pus_base_point_x = m->pus_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x;
+        const real pus_base_point_y = m->pus_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y;
+        const real pus_base_point_z = m->pus_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z;
+        /* (pus-px_1) component along axis 1 */
+        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
+        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
+        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
+        const real pus_px_1 = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
+            pus_S_z*pus_base_frame_zx;
+        /* (pus-disc_1) discriminant of the distance equation */
+        const real pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
+        const real pus_disc_1_t = m->pus_disc_1_t[i];
+        const real pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2;
+        /* (pus-q_1) displacement of joint 1 */
+        const real pus_branch_1 = m->pus_branch_1[i];
+        const real pus_q_1_t = pus_branch_1*root(pus_disc_1);
+        /* (pus-S) from the base point to the connection point */
+        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
+        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
+        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
+        const real pus_S_r0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
+            pus_S_z*pus_base_frame_zy;
+        /* (pus-rho2_2) squared amplitude */
+        const real pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t;
+        /* (pus-root_2) root, with the sign of the branch */
+        const real pus_branch_2 = m->pus_branch_2[i];
+        const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
+        /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_pus_disc_1_t_6 = m->inv_pus_disc_1_t_6[i];
+        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
+        const real pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2;
+        /* (pus-s_3) sine of the angle of joint 3 from its reference direction */
+        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
+        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
+        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
+        const real pus_s_3 =
+            inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
+        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_pus_rho2_2 = 1/pus_rho2_2;
+        const real pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2;
+        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2;
+        /* (pus-w_1) reciprocal vector 1 */
+        const real axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 -
+            pus_base_frame_xy*pus_s_2;
+        const real axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 -
+            pus_base_frame_yy*pus_s_2;
+        const real axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 -
+            pus_base_frame_zy*pus_s_2;
+        const real pus_w_1_t = pus_s_2*pus_s_3;
+        const real pus_w_1_t_2 = pus_c_2*pus_s_3;
+        const real axis_y_pus_axes3_in_base_x = pus_base_frame_xy*pus_w_1_t_2 -
+            pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3;
+        const real axis_y_pus_axes3_in_base_y = pus_base_frame_yy*pus_w_1_t_2 -
+            pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3;
+        const real axis_y_pus_axes3_in_base_z = pus_base_frame_zy*pus_w_1_t_2 -
+            pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3;
+        /* (pus-w_2) reciprocal vector 2 */
+        const real pus_w_2_t = pus_c_3*pus_s_2;
+        const real inv_pus_w_2_t = 1/pus_w_2_t;
+        /* (pus-w_1) reciprocal vector 1 */
+        const real pus_w_1_t_3 =
+            inv_pus_w_2_t*(axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
             axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y);
-        const real w_1_t_5 = inv_w_1_t_24*(axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
+        const real pus_w_1_t_4 =
+            inv_pus_w_2_t*(axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
             axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_z);
-        const real w_1_t_6 = inv_w_1_t_24*(axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
+        const real pus_w_1_t_5 =
+            inv_pus_w_2_t*(axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
             axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x);
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_1_x = q_in_base_z*w_1_t_5 - q_in_base_y*w_1_t_6;
-        const real H_a_1_y = q_in_base_x*w_1_t_6 - q_in_base_z*w_1_t_4;
-        const real H_a_1_z = q_in_base_y*w_1_t_4 - q_in_base_x*w_1_t_5;
-        o->entry[0][k] = -w_1_t_4;
-        o->entry[1][k] = -w_1_t_5;
-        o->entry[2][k] = -w_1_t_6;
-        o->entry[3][k] = H_a_1_x;
-        o->entry[4][k] = H_a_1_y;
-        o->entry[5][k] = H_a_1_z;
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_) +
-            UNLESS(magnitude(-w_1_t_3) > TOLERANCE*1);
+        /* (pus-H_a_1) moment of the column's unit force about the platform origin */
+        const real pus_H_a_1_x = pus_q_in_base_z*pus_w_1_t_4 - pus_q_in_base_y*pus_w_1_t_5;
+        const real pus_H_a_1_y = pus_q_in_base_x*pus_w_1_t_5 - pus_q_in_base_z*pus_w_1_t_3;
+        const real pus_H_a_1_z = pus_q_in_base_y*pus_w_1_t_3 - pus_q_in_base_x*pus_w_1_t_4;
+        o[0*count + k] = -pus_w_1_t_3;
+        o[1*count + k] = -pus_w_1_t_4;
+        o[2*count + k] = -pus_w_1_t_5;
+        o[3*count + k] = pus_H_a_1_x;
+        o[4*count + k] = pus_H_a_1_y;
+        o[5*count + k] = pus_H_a_1_z;
+        o[8*count + k] = (pus_w_1_t_3 + (pus_w_1_t_4 + pus_w_1_t_5)) + (pus_H_a_1_x + (pus_H_a_1_y
+            + pus_H_a_1_z));
+        const real pus_size_t = m->pus_size_t[i];
+        o[6*count + k] = UNLESS(pus_disc_1 >= 0);
+        o[7*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t) +
+            UNLESS(magnitude(-pus_w_2_t) > TOLERANCE*1);
     }
 }
 
-INLINE void H_place_pus(size_t w, const H_results_pus *o, size_t leg, size_t first, real *H,
+INLINE void H_place_pus(size_t w, size_t count, const real *o, size_t leg, size_t first, real *H,
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(6 + leg)*w + k] = o->entry[1][first + k];
-        H[(12 + leg)*w + k] = o->entry[2][first + k];
-        H[(18 + leg)*w + k] = o->entry[3][first + k];
-        H[(24 + leg)*w + k] = o->entry[4][first + k];
-        H[(30 + leg)*w + k] = o->entry[5][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(6 + leg)*w + k] = o[1*count + first + k];
+        H[(12 + leg)*w + k] = o[2*count + first + k];
+        H[(18 + leg)*w + k] = o[3*count + first + k];
+        H[(24 + leg)*w + k] = o[4*count + first + k];
+        H[(30 + leg)*w + k] = o[5*count + first + k];
+        t->unreachable[k] += o[6*count + first + k];
+        t->singular[k] += o[7*count + first + k];
+        t->total[k] += o[8*count + first + k];
     }
 }
 
-INLINE void H_run(const prepared *m, size_t w, const real *X, real *H, verdict *t)
+INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    H_values values, *const s = &values;
-    H_results_pus results_pus;
-    H_before(w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        H_legs_pus(m, 0, 1, s, 0, 6, &results_pus);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            H_place_pus(w, &results_pus, leg, leg, H, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 6; ++leg) {
-            H_legs_pus(m, leg, 0, s, 1, w, &results_pus);
-            H_place_pus(w, &results_pus, leg, 0, H, t);
-        }
+    real s[12] = {0}, o_pus[9*LEGS(6)] = {0};
+    H_before(1, X, s, t);
+    H_legs_pus(m, 1, 0, 1, s, 0, LEGS(6), o_pus);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        H_place_pus(1, LEGS(6), o_pus, leg, leg, H, t);
+    }
+}
+
+INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
+{
+    real s[12*LANES], o_pus[9*LANES];
+    H_before(LANES, X, s, t);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        H_legs_pus(m, LANES, leg, 0, s, 1, LANES, o_pus);
+        H_place_pus(LANES, LANES, o_pus, leg, 0, H, t);
     }
 }
 
 /* ---- required: 1239 mul, 933 add, 18 div, 12 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
-        t_ddot_x[LANES], t_ddot_y[LANES], t_ddot_z[LANES], alpha_x[LANES], alpha_y[LANES],
-        alpha_z[LANES], f_p_x[LANES], f_p_y[LANES], f_p_z[LANES], mu_p_in_base_x[LANES],
-        mu_p_in_base_y[LANES], mu_p_in_base_z[LANES], sum[6][LANES];
-} required_values;
-typedef struct {
-    real sum[6][8], entry[6][8], unreachable[8], singular[8];
-} required_results_pus;
-
 INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, required_values *s, verdict *t)
+    *A, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real A_2 = A[2*w + k];
-        const real A_3 = A[3*w + k];
-        const real A_4 = A[4*w + k];
-        const real A_5 = A[5*w + k];
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_zz = m->J_star_zz;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real m_star = m->m_star;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -3140,53 +3162,78 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
+        const real A_2 = A[2*w + k];
         const real t_ddot_z = A_2;
+        const real A_3 = A[3*w + k];
         const real alpha_x = A_3;
+        const real A_4 = A[4*w + k];
         const real alpha_y = A_4;
+        const real A_5 = A[5*w + k];
         const real alpha_z = A_5;
-        /* (L2) first moment about the platform origin */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_z = m->h_star_z;
         const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
         const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
         const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
-        /* (P1) centripetal tensor of the platform */
+        /* (W_p) centripetal tensor of the platform */
         const real W_p_t = omega_x*omega_x;
         const real W_p_t_2 = omega_y*omega_y;
         const real W_p_t_3 = omega_z*omega_z;
         const real W_p_xy = omega_x*omega_y;
         const real W_p_xz = omega_x*omega_z;
         const real W_p_yz = omega_y*omega_z;
-        /* (M6) gyroscopic moment and moment of the weight of the platform */
+        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
         const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
         const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
         const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_xx = m->J_star_xx;
+        const real J_star_xy = m->J_star_xy;
+        const real J_star_xz = m->J_star_xz;
         const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
+        const real J_star_yy = m->J_star_yy;
+        const real J_star_yz = m->J_star_yz;
         const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
+        const real J_star_zz = m->J_star_zz;
         const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        /* (E1) acceleration of the platform origin, less gravity */
+        /* (a_t) acceleration of the platform origin, less gravity */
+        const real gravity_x = m->gravity_x;
         const real a_t_x = t_ddot_x - gravity_x;
+        const real gravity_y = m->gravity_y;
         const real a_t_y = t_ddot_y - gravity_y;
+        const real gravity_z = m->gravity_z;
         const real a_t_z = t_ddot_z - gravity_z;
-        /* (E2) inertia force of the platform less its weight */
+        /* (f_p) inertia force of the platform less its weight */
+        const real m_star = m->m_star;
         const real f_p_x = a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) +
             h_star_in_base_z*(W_p_xz + alpha_y) - h_star_in_base_x*(W_p_t_2 + W_p_t_3);
         const real f_p_y = a_t_y*m_star + h_star_in_base_x*(W_p_xy + alpha_z) +
             h_star_in_base_z*(W_p_yz - alpha_x) - h_star_in_base_y*(W_p_t + W_p_t_3);
         const real f_p_z = a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) +
             h_star_in_base_y*(W_p_yz + alpha_x) - h_star_in_base_z*(W_p_t + W_p_t_2);
-        /* (E1) acceleration of the platform origin, less gravity */
+        /* (a_t) acceleration of the platform origin, less gravity */
         const real a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
         const real a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
         const real a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
-        /* (E3) inertia moment of the platform less that of its weight */
+        /* (mu_p) inertia moment of the platform less that of its weight */
         const real alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
         const real alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
         const real alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
@@ -3199,325 +3246,343 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z;
         const real mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z;
         const real mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->t_ddot_z[k] = t_ddot_z;
-        s->alpha_x[k] = alpha_x;
-        s->alpha_y[k] = alpha_y;
-        s->alpha_z[k] = alpha_z;
-        s->f_p_x[k] = f_p_x;
-        s->f_p_y[k] = f_p_y;
-        s->f_p_z[k] = f_p_z;
-        s->mu_p_in_base_x[k] = mu_p_in_base_x;
-        s->mu_p_in_base_y[k] = mu_p_in_base_y;
-        s->mu_p_in_base_z[k] = mu_p_in_base_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
+        s[18*w + k] = t_ddot_x;
+        s[19*w + k] = t_ddot_y;
+        s[20*w + k] = t_ddot_z;
+        s[21*w + k] = alpha_x;
+        s[22*w + k] = alpha_y;
+        s[23*w + k] = alpha_z;
+        s[24*w + k] = f_p_x;
+        s[25*w + k] = f_p_y;
+        s[26*w + k] = f_p_z;
+        s[27*w + k] = mu_p_in_base_x;
+        s[28*w + k] = mu_p_in_base_y;
+        s[29*w + k] = mu_p_in_base_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void required_legs_pus(const prepared *m, size_t leg, size_t legs, const required_values
-    *s, size_t states, size_t count, int add, required_results_pus *o)
+INLINE void required_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real t_ddot_z = s->t_ddot_z[j];
-        const real alpha_x = s->alpha_x[j];
-        const real alpha_y = s->alpha_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real J_3_xy = m->J_3_xy[i];
-        const real J_3_xz = m->J_3_xz[i];
-        const real J_3_yz = m->J_3_yz[i];
-        const real Sigma_3_xx = m->Sigma_3_xx[i];
-        const real Sigma_3_yy = m->Sigma_3_yy[i];
-        const real Sigma_3_zz = m->Sigma_3_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real g_r0_z = m->g_r0_z[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real inv_pus_platform_joint_offset_x = m->inv_pus_platform_joint_offset_x[i];
-        const real inv_uu_3_t = m->inv_uu_3_t[i];
-        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
-        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
-        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
-        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
-        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
-        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
-        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
-        const real pus_base_point_x = m->pus_base_point_x[i];
-        const real pus_base_point_y = m->pus_base_point_y[i];
-        const real pus_base_point_z = m->pus_base_point_z[i];
-        const real pus_link1_mass = m->pus_link1_mass[i];
-        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
+        /* (pus-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real pus_platform_point_x = m->pus_platform_point_x[i];
         const real pus_platform_point_y = m->pus_platform_point_y[i];
         const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real size_ = m->size_[i];
-        const real size_t_ = m->size_t_[i];
-        const real uu_3_t = m->uu_3_t[i];
-        /* (pus-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
+        const real pus_q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
             R_xz*pus_platform_point_z;
-        const real q_in_base_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real pus_q_in_base_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
             R_yz*pus_platform_point_z;
-        const real q_in_base_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real pus_q_in_base_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
             R_zz*pus_platform_point_z;
-        const real S_x = q_in_base_x + t_x - pus_base_point_x;
-        const real S_y = q_in_base_y + t_y - pus_base_point_y;
-        const real S_z = q_in_base_z + t_z - pus_base_point_z;
-        /* (pus-K2) component along axis 1 */
-        const real px_1 = S_x*pus_base_frame_xx + S_y*pus_base_frame_yx + S_z*pus_base_frame_zx;
-        /* (pus-K3) discriminant of the distance equation */
-        const real disc_1_t = S_x*S_x + S_y*S_y + S_z*S_z;
-        const real disc_1 = px_1*px_1 + uu_3_t - disc_1_t;
-        /* (pus-K4) displacement of joint 1 */
-        const real q_1_t = branch_1*root(disc_1);
-        /* (pus-K1) from the base point to the connection point */
-        const real S_r0_y = S_x*pus_base_frame_xy + S_y*pus_base_frame_yy + S_z*pus_base_frame_zy;
-        /* (pus-K9) squared amplitude */
-        const real rho2_2 = S_r0_y*S_r0_y + q_1_t*q_1_t;
-        /* (pus-K11) root, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (pus-K17) cosine of the angle of joint 3 from its reference direction */
-        const real c_3 = inv_uu_3_t*pus_platform_joint_offset_x*root_2;
-        /* (pus-K18) sine of the angle of joint 3 from its reference direction */
-        const real s_3 = inv_uu_3_t*pus_platform_joint_offset_x*(S_x*pus_base_frame_xz +
-            S_y*pus_base_frame_yz + S_z*pus_base_frame_zz);
-        /* (pus-V2) velocity of the connection point per rate of joint 2 */
-        const real v_2_t = c_3*pus_platform_joint_offset_x;
-        /* (pus-K12) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rho2_2 = 1/rho2_2;
-        const real c_2 = S_r0_y*inv_rho2_2*root_2;
-        /* (pus-K13) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_rho2_2*q_1_t*root_2;
-        /* (pus-V4) reciprocal vector 1 */
-        const real axis_z_pus_axes3_in_base_x = -c_2*pus_base_frame_xx - pus_base_frame_xy*s_2;
-        const real axis_z_pus_axes3_in_base_y = -c_2*pus_base_frame_yx - pus_base_frame_yy*s_2;
-        const real axis_z_pus_axes3_in_base_z = -c_2*pus_base_frame_zx - pus_base_frame_zy*s_2;
-        const real w_1_t = s_2*s_3;
-        const real w_1_t_2 = c_2*s_3;
-        const real axis_y_pus_axes3_in_base_x = pus_base_frame_xy*w_1_t_2 - c_3*pus_base_frame_xz
-            - pus_base_frame_xx*w_1_t;
-        const real axis_y_pus_axes3_in_base_y = pus_base_frame_yy*w_1_t_2 - c_3*pus_base_frame_yz
-            - pus_base_frame_yx*w_1_t;
-        const real axis_y_pus_axes3_in_base_z = pus_base_frame_zy*w_1_t_2 - c_3*pus_base_frame_zz
-            - pus_base_frame_zx*w_1_t;
+        const real pus_base_point_x = m->pus_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x;
+        const real pus_base_point_y = m->pus_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y;
+        const real pus_base_point_z = m->pus_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z;
+        /* (pus-px_1) component along axis 1 */
+        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
+        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
+        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
+        const real pus_px_1 = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
+            pus_S_z*pus_base_frame_zx;
+        /* (pus-disc_1) discriminant of the distance equation */
+        const real pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
+        const real pus_disc_1_t = m->pus_disc_1_t[i];
+        const real pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2;
+        /* (pus-q_1) displacement of joint 1 */
+        const real pus_branch_1 = m->pus_branch_1[i];
+        const real pus_q_1_t = pus_branch_1*root(pus_disc_1);
+        /* (pus-S) from the base point to the connection point */
+        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
+        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
+        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
+        const real pus_S_r0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
+            pus_S_z*pus_base_frame_zy;
+        /* (pus-rho2_2) squared amplitude */
+        const real pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t;
+        /* (pus-root_2) root, with the sign of the branch */
+        const real pus_branch_2 = m->pus_branch_2[i];
+        const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
+        /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_pus_disc_1_t_6 = m->inv_pus_disc_1_t_6[i];
+        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
+        const real pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2;
+        /* (pus-s_3) sine of the angle of joint 3 from its reference direction */
+        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
+        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
+        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
+        const real pus_s_3 =
+            inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
+        /* (pus-v_2) velocity of the connection point per rate of joint 2 */
+        const real pus_v_2_t = pus_c_3*pus_platform_joint_offset_x;
+        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_pus_rho2_2 = 1/pus_rho2_2;
+        const real pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2;
+        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2;
+        /* (pus-w_1) reciprocal vector 1 */
+        const real axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 -
+            pus_base_frame_xy*pus_s_2;
+        const real axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 -
+            pus_base_frame_yy*pus_s_2;
+        const real axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 -
+            pus_base_frame_zy*pus_s_2;
+        const real pus_w_1_t = pus_s_2*pus_s_3;
+        const real pus_w_1_t_2 = pus_c_2*pus_s_3;
+        const real axis_y_pus_axes3_in_base_x = pus_base_frame_xy*pus_w_1_t_2 -
+            pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3;
+        const real axis_y_pus_axes3_in_base_y = pus_base_frame_yy*pus_w_1_t_2 -
+            pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3;
+        const real axis_y_pus_axes3_in_base_z = pus_base_frame_zy*pus_w_1_t_2 -
+            pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3;
         const real axis_x_pus_axes3_x = axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
             axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y;
         const real axis_x_pus_axes3_y = axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
             axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_z;
         const real axis_x_pus_axes3_z = axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
             axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x;
-        const real w_1_t_3 = c_3*s_2;
-        const real inv_w_1_t_24 = 1/w_1_t_3;
-        /* (pus-V5) reciprocal vector 2 */
-        const real inv_v_2_t = 1/v_2_t;
-        /* (pus-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        /* (pus-V8) rate of joint 2 */
-        const real qd_1 = inv_w_1_t_24*(S_dot_x*axis_x_pus_axes3_x + S_dot_y*axis_x_pus_axes3_y +
-            S_dot_z*axis_x_pus_axes3_z);
-        const real qd_2_t = S_dot_x*axis_y_pus_axes3_in_base_x +
-            S_dot_y*axis_y_pus_axes3_in_base_y + S_dot_z*axis_y_pus_axes3_in_base_z - qd_1*w_1_t;
-        const real qd_3 = inv_pus_platform_joint_offset_x*qd_2_t;
-        const real qd_2 = inv_v_2_t*(S_dot_x*axis_z_pus_axes3_in_base_x +
-            S_dot_y*axis_z_pus_axes3_in_base_y + S_dot_z*axis_z_pus_axes3_in_base_z - c_2*qd_1);
-        /* (pus-V10) angular velocity of link 2 */
-        const real omega_2_t = qd_2*s_3;
-        const real omega_2_t_2 = c_3*qd_2;
-        /* (pus-A4) angular acceleration of link 3 from the turning of axis 3 */
-        const real zeta_3_x = omega_2_t_2*qd_3;
-        const real zeta_3_y = omega_2_t*qd_3;
-        /* (pus-V12) centripetal tensor of link 3 */
-        const real W_3_t = omega_2_t*omega_2_t;
-        const real W_3_t_2 = omega_2_t_2*omega_2_t_2;
-        const real W_3_t_3 = qd_3*qd_3;
-        const real W_3_xy = omega_2_t*omega_2_t_2;
-        /* (pus-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = omega_2_t_2*pus_platform_joint_offset_x;
-        const real bias_z = omega_2_t*qd_2_t + pus_platform_joint_offset_x*zeta_3_y;
-        /* (pus-N6) remainder without the acceleration in: acceleration of the reference point of link 3,
-           less gravity */
-        const real g_r1_y = g_r0_x*s_2 - c_2*g_r0_y;
-        /* (pus-V4) reciprocal vector 1 */
-        const real w_1_t_4 = axis_x_pus_axes3_x*inv_w_1_t_24;
-        const real w_1_t_5 = axis_x_pus_axes3_y*inv_w_1_t_24;
-        const real w_1_t_6 = axis_x_pus_axes3_z*inv_w_1_t_24;
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_1_x = q_in_base_z*w_1_t_5 - q_in_base_y*w_1_t_6;
-        const real H_a_1_y = q_in_base_x*w_1_t_6 - q_in_base_z*w_1_t_4;
-        const real H_a_1_z = q_in_base_y*w_1_t_4 - q_in_base_x*w_1_t_5;
-        /* (pus-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
-        const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
-        const real a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x;
-        /* (pus-A3) acceleration of the connection point */
-        const real S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z;
-        const real S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x;
-        const real S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y;
-        const real S_ddot_tip_x = S_ddot_x*axis_x_pus_axes3_x + S_ddot_y*axis_x_pus_axes3_y +
-            S_ddot_z*axis_x_pus_axes3_z;
-        const real S_ddot_tip_y = S_ddot_x*axis_y_pus_axes3_in_base_x +
-            S_ddot_y*axis_y_pus_axes3_in_base_y + S_ddot_z*axis_y_pus_axes3_in_base_z;
-        const real S_ddot_tip_z = S_ddot_x*axis_z_pus_axes3_in_base_x +
-            S_ddot_y*axis_z_pus_axes3_in_base_y + S_ddot_z*axis_z_pus_axes3_in_base_z;
-        /* (pus-A6) acceleration of the connection point left to the joint accelerations */
-        const real rel_x = S_ddot_tip_x + bias_t*omega_2_t_2 + qd_2_t*qd_3;
-        const real rel_y = S_ddot_tip_y + bias_t*omega_2_t;
-        const real rel_z = S_ddot_tip_z - bias_z;
-        /* (pus-A8) acceleration of joint 1 */
-        const real qdd_1 = inv_w_1_t_24*rel_x;
-        const real qdd_3 = inv_pus_platform_joint_offset_x*(qdd_1*w_1_t - rel_y);
-        const real qdd_2 = inv_v_2_t*(c_2*qdd_1 - rel_z);
-        /* (pus-N5) acceleration of the reference point of link 3, less gravity */
-        const real acc_3_x = S_ddot_tip_x + c_3*g_r1_y - g_r0_z*s_3;
-        const real acc_3_y = S_ddot_tip_y + c_3*g_r0_z + g_r1_y*s_3;
-        const real acc_3_z = S_ddot_tip_z + c_2*g_r0_x + g_r0_y*s_2;
-        /* (pus-N1) acceleration of the reference point of link 1, less gravity */
-        const real acc_1_x = -g_r0_x - qdd_1;
-        /* (pus-A14) angular acceleration of link 2 */
-        const real alpha_2_t = qdd_2*s_3;
-        const real alpha_2_t_2 = c_3*qdd_2;
-        /* (pus-A16) angular acceleration of link 3 */
-        const real alpha_3_x = -alpha_2_t - zeta_3_x;
-        const real alpha_3_y = alpha_2_t_2 - zeta_3_y;
-        /* (pus-A19) acceleration tensor of link 3 */
-        const real B_3_xy = qdd_3 - W_3_xy;
-        const real B_3_yx = -W_3_xy - qdd_3;
-        const real B_3_zx = zeta_3_y - alpha_3_y;
-        const real B_3_zy = alpha_3_x - zeta_3_x;
-        /* (pus-N19) inertia moment of the links that turn with link 3, about their reference points */
-        const real mu_3_x = B_3_yx*J_3_xy + B_3_zx*J_3_xz + B_3_zy*Sigma_3_yy - J_3_yz*(W_3_t_2 -
-            W_3_t_3) - Sigma_3_zz*alpha_2_t - acc_3_y*h_3_y - acc_3_z*h_3_z;
-        const real mu_3_y = B_3_xy*J_3_yz + Sigma_3_zz*alpha_2_t_2 + acc_3_x*h_3_y -
-            B_3_zx*Sigma_3_xx - B_3_zy*J_3_xz - J_3_xy*(W_3_t - W_3_t_3) - acc_3_z*h_3_x;
-        const real mu_3_z = B_3_yx*Sigma_3_xx + acc_3_x*h_3_z + acc_3_y*h_3_x - B_3_xy*Sigma_3_yy
-            - J_3_xy*alpha_2_t - J_3_xz*(W_3_t - W_3_t_2) - J_3_yz*alpha_2_t_2;
-        /* (pus-N30) force at the connection point that balances the leg's inertia and weight along all
+        /* (pus-w_2) reciprocal vector 2 */
+        const real pus_w_2_t = pus_c_3*pus_s_2;
+        const real inv_pus_v_2_t = 1/pus_v_2_t;
+        const real inv_pus_w_2_t = 1/pus_w_2_t;
+        /* (pus-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real pus_S_dot_t = omega_y*pus_q_in_base_z - omega_z*pus_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real pus_S_dot_t_2 = omega_z*pus_q_in_base_x - omega_x*pus_q_in_base_z;
+        const real pus_S_dot_t_3 = omega_x*pus_q_in_base_y - omega_y*pus_q_in_base_x;
+        const real t_dot_x = s[12*w + j];
+        const real pus_S_dot_x = pus_S_dot_t + t_dot_x;
+        const real t_dot_y = s[13*w + j];
+        const real pus_S_dot_y = pus_S_dot_t_2 + t_dot_y;
+        const real t_dot_z = s[14*w + j];
+        const real pus_S_dot_z = pus_S_dot_t_3 + t_dot_z;
+        /* (pus-qd_3) rate of joint 3 */
+        const real pus_qd_1 = inv_pus_w_2_t*(axis_x_pus_axes3_x*pus_S_dot_x +
+            axis_x_pus_axes3_y*pus_S_dot_y + axis_x_pus_axes3_z*pus_S_dot_z);
+        const real pus_qd_3_t = axis_y_pus_axes3_in_base_x*pus_S_dot_x +
+            axis_y_pus_axes3_in_base_y*pus_S_dot_y + axis_y_pus_axes3_in_base_z*pus_S_dot_z -
+            pus_qd_1*pus_w_1_t;
+        const real inv_pus_platform_joint_offset_x = m->inv_pus_platform_joint_offset_x[i];
+        const real pus_qd_3 = inv_pus_platform_joint_offset_x*pus_qd_3_t;
+        const real pus_qd_2 = inv_pus_v_2_t*(axis_z_pus_axes3_in_base_x*pus_S_dot_x +
+            axis_z_pus_axes3_in_base_y*pus_S_dot_y + axis_z_pus_axes3_in_base_z*pus_S_dot_z -
+            pus_c_2*pus_qd_1);
+        /* (pus-omega_2) angular velocity of link 2 */
+        const real pus_omega_2_t = pus_qd_2*pus_s_3;
+        const real pus_omega_2_t_2 = pus_c_3*pus_qd_2;
+        /* (pus-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+        const real pus_zeta_3_x = pus_omega_2_t_2*pus_qd_3;
+        const real pus_zeta_3_y = pus_omega_2_t*pus_qd_3;
+        /* (pus-W_3) centripetal tensor of link 3 */
+        const real pus_W_3_t = pus_omega_2_t*pus_omega_2_t;
+        const real pus_W_3_t_2 = pus_omega_2_t_2*pus_omega_2_t_2;
+        const real pus_W_3_t_3 = pus_qd_3*pus_qd_3;
+        const real pus_W_3_xy = pus_omega_2_t*pus_omega_2_t_2;
+        /* (pus-bias) acceleration of the connection point at zero joint accelerations */
+        const real pus_bias_t = pus_omega_2_t_2*pus_platform_joint_offset_x;
+        const real pus_bias_z = pus_omega_2_t*pus_qd_3_t +
+            pus_platform_joint_offset_x*pus_zeta_3_y;
+        /* (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+           link 3, less gravity */
+        const real pus_g_r0_x = m->pus_g_r0_x[i];
+        const real pus_g_r0_y = m->pus_g_r0_y[i];
+        const real pus_g_r1_y = pus_g_r0_x*pus_s_2 - pus_c_2*pus_g_r0_y;
+        /* (pus-w_1) reciprocal vector 1 */
+        const real pus_w_1_t_3 = axis_x_pus_axes3_x*inv_pus_w_2_t;
+        const real pus_w_1_t_4 = axis_x_pus_axes3_y*inv_pus_w_2_t;
+        const real pus_w_1_t_5 = axis_x_pus_axes3_z*inv_pus_w_2_t;
+        /* (pus-H_a_1) moment of the column's unit force about the platform origin */
+        const real pus_H_a_1_x = pus_q_in_base_z*pus_w_1_t_4 - pus_q_in_base_y*pus_w_1_t_5;
+        const real pus_H_a_1_y = pus_q_in_base_x*pus_w_1_t_5 - pus_q_in_base_z*pus_w_1_t_3;
+        const real pus_H_a_1_z = pus_q_in_base_y*pus_w_1_t_3 - pus_q_in_base_x*pus_w_1_t_4;
+        /* (pus-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_y = s[22*w + j];
+        const real alpha_z = s[23*w + j];
+        const real t_ddot_x = s[18*w + j];
+        const real pus_a_p_x = t_ddot_x + alpha_y*pus_q_in_base_z - alpha_z*pus_q_in_base_y;
+        const real alpha_x = s[21*w + j];
+        const real t_ddot_y = s[19*w + j];
+        const real pus_a_p_y = t_ddot_y + alpha_z*pus_q_in_base_x - alpha_x*pus_q_in_base_z;
+        const real t_ddot_z = s[20*w + j];
+        const real pus_a_p_z = t_ddot_z + alpha_x*pus_q_in_base_y - alpha_y*pus_q_in_base_x;
+        /* (pus-S_ddot) acceleration of the connection point */
+        const real pus_S_ddot_x = pus_a_p_x + omega_y*pus_S_dot_t_3 - omega_z*pus_S_dot_t_2;
+        const real pus_S_ddot_y = pus_a_p_y + omega_z*pus_S_dot_t - omega_x*pus_S_dot_t_3;
+        const real pus_S_ddot_z = pus_a_p_z + omega_x*pus_S_dot_t_2 - omega_y*pus_S_dot_t;
+        const real pus_S_ddot_tip_x = axis_x_pus_axes3_x*pus_S_ddot_x +
+            axis_x_pus_axes3_y*pus_S_ddot_y + axis_x_pus_axes3_z*pus_S_ddot_z;
+        const real pus_S_ddot_tip_y = axis_y_pus_axes3_in_base_x*pus_S_ddot_x +
+            axis_y_pus_axes3_in_base_y*pus_S_ddot_y + axis_y_pus_axes3_in_base_z*pus_S_ddot_z;
+        const real pus_S_ddot_tip_z = axis_z_pus_axes3_in_base_x*pus_S_ddot_x +
+            axis_z_pus_axes3_in_base_y*pus_S_ddot_y + axis_z_pus_axes3_in_base_z*pus_S_ddot_z;
+        /* (pus-rel) acceleration of the connection point left to the joint accelerations */
+        const real pus_rel_x = pus_S_ddot_tip_x + pus_bias_t*pus_omega_2_t_2 +
+            pus_qd_3*pus_qd_3_t;
+        const real pus_rel_y = pus_S_ddot_tip_y + pus_bias_t*pus_omega_2_t;
+        const real pus_rel_z = pus_S_ddot_tip_z - pus_bias_z;
+        /* (pus-qdd_1) acceleration of joint 1 */
+        const real pus_qdd_1 = inv_pus_w_2_t*pus_rel_x;
+        const real pus_qdd_3 = inv_pus_platform_joint_offset_x*(pus_qdd_1*pus_w_1_t - pus_rel_y);
+        const real pus_qdd_2 = inv_pus_v_2_t*(pus_c_2*pus_qdd_1 - pus_rel_z);
+        /* (pus-acc_3) acceleration of the reference point of link 3, less gravity */
+        const real pus_g_r0_z = m->pus_g_r0_z[i];
+        const real pus_acc_3_x = pus_S_ddot_tip_x + pus_c_3*pus_g_r1_y - pus_g_r0_z*pus_s_3;
+        const real pus_acc_3_y = pus_S_ddot_tip_y + pus_c_3*pus_g_r0_z + pus_g_r1_y*pus_s_3;
+        const real pus_acc_3_z = pus_S_ddot_tip_z + pus_c_2*pus_g_r0_x + pus_g_r0_y*pus_s_2;
+        /* (pus-alpha_2) angular acceleration of link 2 */
+        const real pus_alpha_2_t = pus_qdd_2*pus_s_3;
+        const real pus_alpha_2_t_2 = pus_c_3*pus_qdd_2;
+        /* (pus-alpha_3) angular acceleration of link 3 */
+        const real pus_alpha_3_x = -pus_alpha_2_t - pus_zeta_3_x;
+        const real pus_alpha_3_y = pus_alpha_2_t_2 - pus_zeta_3_y;
+        /* (pus-B_3) acceleration tensor of link 3 */
+        const real pus_B_3_xy = pus_qdd_3 - pus_W_3_xy;
+        const real pus_B_3_yx = -pus_W_3_xy - pus_qdd_3;
+        const real pus_B_3_zx = pus_zeta_3_y - pus_alpha_3_y;
+        const real pus_B_3_zy = pus_alpha_3_x - pus_zeta_3_x;
+        /* (pus-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+        const real pus_J_3_xy = m->pus_J_3_xy[i];
+        const real pus_J_3_xz = m->pus_J_3_xz[i];
+        const real pus_J_3_yz = m->pus_J_3_yz[i];
+        const real pus_Sigma_3_yy = m->pus_Sigma_3_yy[i];
+        const real pus_Sigma_3_zz = m->pus_Sigma_3_zz[i];
+        const real pus_h_3_y = m->pus_h_3_y[i];
+        const real pus_h_3_z = m->pus_h_3_z[i];
+        const real pus_mu_3_x = pus_B_3_yx*pus_J_3_xy + pus_B_3_zx*pus_J_3_xz +
+            pus_B_3_zy*pus_Sigma_3_yy - pus_J_3_yz*(pus_W_3_t_2 - pus_W_3_t_3) -
+            pus_Sigma_3_zz*pus_alpha_2_t - pus_acc_3_y*pus_h_3_y - pus_acc_3_z*pus_h_3_z;
+        const real pus_Sigma_3_xx = m->pus_Sigma_3_xx[i];
+        const real pus_h_3_x = m->pus_h_3_x[i];
+        const real pus_mu_3_y = pus_B_3_xy*pus_J_3_yz + pus_Sigma_3_zz*pus_alpha_2_t_2 +
+            pus_acc_3_x*pus_h_3_y - pus_B_3_zx*pus_Sigma_3_xx - pus_B_3_zy*pus_J_3_xz -
+            pus_J_3_xy*(pus_W_3_t - pus_W_3_t_3) - pus_acc_3_z*pus_h_3_x;
+        const real pus_mu_3_z = pus_B_3_yx*pus_Sigma_3_xx + pus_acc_3_x*pus_h_3_z +
+            pus_acc_3_y*pus_h_3_x - pus_B_3_xy*pus_Sigma_3_yy - pus_J_3_xy*pus_alpha_2_t -
+            pus_J_3_xz*(pus_W_3_t - pus_W_3_t_2) - pus_J_3_yz*pus_alpha_2_t_2;
+        /* (pus-acc_1) acceleration of the reference point of link 1, less gravity */
+        const real pus_acc_1_x = -pus_g_r0_x - pus_qdd_1;
+        /* (pus-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real G_t = inv_v_2_t*(mu_3_x*s_3 - c_3*mu_3_y);
-        const real G_t_2 = inv_pus_platform_joint_offset_x*mu_3_z;
-        /* (pus-N33) leg force on the platform without actuation and without the mass at the connection
+        const real pus_G_t = inv_pus_v_2_t*(pus_mu_3_x*pus_s_3 - pus_c_3*pus_mu_3_y);
+        const real pus_G_t_2 = inv_pus_platform_joint_offset_x*pus_mu_3_z;
+        /* (pus-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_x = B_3_xy*h_3_z + h_3_x*(W_3_t_2 + W_3_t_3) + inv_w_1_t_24*(G_t*c_2 +
-            G_t_2*w_1_t + acc_1_x*pus_link1_mass) - alpha_2_t_2*h_3_y;
-        const real c_y = -G_t_2 - B_3_yx*h_3_x - alpha_2_t*h_3_y - h_3_z*(W_3_t + W_3_t_3);
-        const real c_z = B_3_zy*h_3_z + h_3_y*(W_3_t + W_3_t_2) - G_t - B_3_zx*h_3_x;
-        const real c_in_base_x = axis_x_pus_axes3_x*c_x + axis_y_pus_axes3_in_base_x*c_y +
-            axis_z_pus_axes3_in_base_x*c_z;
-        const real c_in_base_y = axis_x_pus_axes3_y*c_x + axis_y_pus_axes3_in_base_y*c_y +
-            axis_z_pus_axes3_in_base_y*c_z;
-        const real c_in_base_z = axis_x_pus_axes3_z*c_x + axis_y_pus_axes3_in_base_z*c_y +
-            axis_z_pus_axes3_in_base_z*c_z;
-        /* (E5) moment that actuators and external wrench must give */
-        const real R_a_t = c_in_base_z*q_in_base_y - c_in_base_y*q_in_base_z;
-        const real R_a_t_2 = c_in_base_x*q_in_base_z - c_in_base_z*q_in_base_x;
-        const real R_a_t_3 = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y;
-        o->sum[0][k] = add ? o->sum[0][k] + c_in_base_x : c_in_base_x;  /* total_pus_x */
-        o->sum[1][k] = add ? o->sum[1][k] + c_in_base_y : c_in_base_y;  /* total_pus_y */
-        o->sum[2][k] = add ? o->sum[2][k] + c_in_base_z : c_in_base_z;  /* total_pus_z */
-        o->sum[3][k] = add ? o->sum[3][k] + R_a_t : R_a_t;  /* total_pus_x_2 */
-        o->sum[4][k] = add ? o->sum[4][k] + R_a_t_2 : R_a_t_2;  /* total_pus_y_2 */
-        o->sum[5][k] = add ? o->sum[5][k] + R_a_t_3 : R_a_t_3;  /* total_pus_z_2 */
-        o->entry[0][k] = -w_1_t_4;
-        o->entry[1][k] = -w_1_t_5;
-        o->entry[2][k] = -w_1_t_6;
-        o->entry[3][k] = H_a_1_x;
-        o->entry[4][k] = H_a_1_y;
-        o->entry[5][k] = H_a_1_z;
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_) +
-            UNLESS(magnitude(v_2_t) > TOLERANCE*size_) + UNLESS(magnitude(-w_1_t_3) >
+        const real pus_link1_mass = m->pus_link1_mass[i];
+        const real pus_c_x = inv_pus_w_2_t*(pus_G_t*pus_c_2 + pus_G_t_2*pus_w_1_t +
+            pus_acc_1_x*pus_link1_mass) + pus_B_3_xy*pus_h_3_z + pus_h_3_x*(pus_W_3_t_2 +
+            pus_W_3_t_3) - pus_alpha_2_t_2*pus_h_3_y;
+        const real pus_c_y = -pus_G_t_2 - pus_B_3_yx*pus_h_3_x - pus_alpha_2_t*pus_h_3_y -
+            pus_h_3_z*(pus_W_3_t + pus_W_3_t_3);
+        const real pus_c_z = pus_B_3_zy*pus_h_3_z + pus_h_3_y*(pus_W_3_t + pus_W_3_t_2) - pus_G_t
+            - pus_B_3_zx*pus_h_3_x;
+        const real pus_c_in_base_x = axis_x_pus_axes3_x*pus_c_x +
+            axis_y_pus_axes3_in_base_x*pus_c_y + axis_z_pus_axes3_in_base_x*pus_c_z;
+        const real pus_c_in_base_y = axis_x_pus_axes3_y*pus_c_x +
+            axis_y_pus_axes3_in_base_y*pus_c_y + axis_z_pus_axes3_in_base_y*pus_c_z;
+        const real pus_c_in_base_z = axis_x_pus_axes3_z*pus_c_x +
+            axis_y_pus_axes3_in_base_z*pus_c_y + axis_z_pus_axes3_in_base_z*pus_c_z;
+        /* (R_a) moment that actuators and external wrench must give */
+        const real pus_R_a_t = pus_c_in_base_z*pus_q_in_base_y - pus_c_in_base_y*pus_q_in_base_z;
+        const real pus_R_a_t_2 = pus_c_in_base_x*pus_q_in_base_z -
+            pus_c_in_base_z*pus_q_in_base_x;
+        const real pus_R_a_t_3 = pus_c_in_base_y*pus_q_in_base_x -
+            pus_c_in_base_x*pus_q_in_base_y;
+        terms[0*count + k] = add ? terms[0*count + k] + pus_c_in_base_x : pus_c_in_base_x;  /* total_pus_x */
+        terms[1*count + k] = add ? terms[1*count + k] + pus_c_in_base_y : pus_c_in_base_y;  /* total_pus_y */
+        terms[2*count + k] = add ? terms[2*count + k] + pus_c_in_base_z : pus_c_in_base_z;  /* total_pus_z */
+        terms[3*count + k] = add ? terms[3*count + k] + pus_R_a_t : pus_R_a_t;  /* total_pus_x_2 */
+        terms[4*count + k] = add ? terms[4*count + k] + pus_R_a_t_2 : pus_R_a_t_2;  /* total_pus_y_2 */
+        terms[5*count + k] = add ? terms[5*count + k] + pus_R_a_t_3 : pus_R_a_t_3;  /* total_pus_z_2 */
+        o[0*count + k] = -pus_w_1_t_3;
+        o[1*count + k] = -pus_w_1_t_4;
+        o[2*count + k] = -pus_w_1_t_5;
+        o[3*count + k] = pus_H_a_1_x;
+        o[4*count + k] = pus_H_a_1_y;
+        o[5*count + k] = pus_H_a_1_z;
+        const real pus_size_t = m->pus_size_t[i];
+        const real pus_size = m->pus_size[i];
+        o[6*count + k] = UNLESS(pus_disc_1 >= 0);
+        o[7*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t) +
+            UNLESS(magnitude(pus_v_2_t) > TOLERANCE*pus_size) + UNLESS(magnitude(-pus_w_2_t) >
             TOLERANCE*1);
     }
 }
 
-INLINE void required_place_pus(size_t w, const required_results_pus *o, size_t leg, size_t first,
+INLINE void required_place_pus(size_t w, size_t count, const real *o, size_t leg, size_t first,
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(6 + leg)*w + k] = o->entry[1][first + k];
-        H[(12 + leg)*w + k] = o->entry[2][first + k];
-        H[(18 + leg)*w + k] = o->entry[3][first + k];
-        H[(24 + leg)*w + k] = o->entry[4][first + k];
-        H[(30 + leg)*w + k] = o->entry[5][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(6 + leg)*w + k] = o[1*count + first + k];
+        H[(12 + leg)*w + k] = o[2*count + first + k];
+        H[(18 + leg)*w + k] = o[3*count + first + k];
+        H[(24 + leg)*w + k] = o[4*count + first + k];
+        H[(30 + leg)*w + k] = o[5*count + first + k];
+        t->unreachable[k] += o[6*count + first + k];
+        t->singular[k] += o[7*count + first + k];
     }
 }
 
-INLINE void required_after(size_t w, const required_values *s, real *required)
+INLINE void required_after(size_t w, const real *s, const real *sums, real *required)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real f_p_x = s->f_p_x[k];
-        const real f_p_y = s->f_p_y[k];
-        const real f_p_z = s->f_p_z[k];
-        const real mu_p_in_base_x = s->mu_p_in_base_x[k];
-        const real mu_p_in_base_y = s->mu_p_in_base_y[k];
-        const real mu_p_in_base_z = s->mu_p_in_base_z[k];
-        const real total_pus_x = s->sum[0][k];
-        const real total_pus_y = s->sum[1][k];
-        const real total_pus_z = s->sum[2][k];
-        const real total_pus_x_2 = s->sum[3][k];
-        const real total_pus_y_2 = s->sum[4][k];
-        const real total_pus_z_2 = s->sum[5][k];
-        /* (E4) force that actuators and external wrench must give */
+        /* (R_t) force that actuators and external wrench must give */
+        const real f_p_x = s[24*w + k];
+        const real total_pus_x = sums[0*w + k];
         const real R_t_x = f_p_x - total_pus_x;
+        const real f_p_y = s[25*w + k];
+        const real total_pus_y = sums[1*w + k];
         const real R_t_y = f_p_y - total_pus_y;
+        const real f_p_z = s[26*w + k];
+        const real total_pus_z = sums[2*w + k];
         const real R_t_z = f_p_z - total_pus_z;
-        /* (E5) moment that actuators and external wrench must give */
+        /* (R_a) moment that actuators and external wrench must give */
+        const real mu_p_in_base_x = s[27*w + k];
+        const real total_pus_x_2 = sums[3*w + k];
         const real R_a_x = mu_p_in_base_x - total_pus_x_2;
+        const real mu_p_in_base_y = s[28*w + k];
+        const real total_pus_y_2 = sums[4*w + k];
         const real R_a_y = mu_p_in_base_y - total_pus_y_2;
+        const real mu_p_in_base_z = s[29*w + k];
+        const real total_pus_z_2 = sums[5*w + k];
         const real R_a_z = mu_p_in_base_z - total_pus_z_2;
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
@@ -3528,61 +3593,49 @@ INLINE void required_after(size_t w, const required_values *s, real *required)
     }
 }
 
-INLINE void required_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+    *required, real *H, verdict *t)
+{
+    real s[30] = {0}, sums[6] = {0}, terms_pus[6*LEGS(6)] = {0}, o_pus[8*LEGS(6)] = {0};
+    required_before(m, 1, X, V, A, s, t);
+    required_legs_pus(m, 1, 0, 1, s, 0, LEGS(6), 0, terms_pus, o_pus);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        required_place_pus(1, LEGS(6), o_pus, leg, leg, H, t);
+    }
+    for (size_t n = 0; n < 6; ++n) {
+        sums[n] = total(terms_pus + n*LEGS(6), 6);
+    }
+    required_after(1, s, sums, required);
+}
+
+INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, verdict *t)
 {
-    required_values values, *const s = &values;
-    required_results_pus results_pus;
-    required_before(m, w, X, V, A, s, t);
-    if (w == 1) {  /* the legs side by side */
-        required_legs_pus(m, 0, 1, s, 0, 6, 0, &results_pus);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            required_place_pus(w, &results_pus, leg, leg, H, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_pus.sum[n], 6);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_pus.sum, 0, sizeof results_pus.sum);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            required_legs_pus(m, leg, 0, s, 1, w, 1, &results_pus);
-            required_place_pus(w, &results_pus, leg, 0, H, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_pus.sum[n][k];
-            }
-        }
+    real s[30*LANES], sums[6*LANES], o_pus[8*LANES];
+    required_before(m, LANES, X, V, A, s, t);
+    clear(sums, 6*LANES);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        required_legs_pus(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_pus);
+        required_place_pus(LANES, LANES, o_pus, leg, 0, H, t);
     }
-    required_after(w, s, required);
+    required_after(LANES, s, sums, required);
 }
 
 /* ---- inverse_kinematics: 204 mul, 144 add, 6 div, 12 sqrt, 12 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES];
-} inverse_kinematics_values;
-typedef struct {
-    real entry[3][8], unreachable[8], singular[8];
-} inverse_kinematics_results_pus;
-
-INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematics_values *s,
-    verdict *t)
+INLINE void inverse_kinematics_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -3606,160 +3659,151 @@ INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematic
         const real R_zx = quaternion_xz - quaternion_wy;
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void inverse_kinematics_legs_pus(const prepared *m, size_t leg, size_t legs, const
-    inverse_kinematics_values *s, size_t states, size_t count, inverse_kinematics_results_pus *o)
+INLINE void inverse_kinematics_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs,
+    const real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real inv_uu_3_t = m->inv_uu_3_t[i];
-        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
-        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
-        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
-        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
-        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
-        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
-        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
+        /* (pus-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real pus_base_point_x = m->pus_base_point_x[i];
-        const real pus_base_point_y = m->pus_base_point_y[i];
-        const real pus_base_point_z = m->pus_base_point_z[i];
-        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
         const real pus_platform_point_x = m->pus_platform_point_x[i];
         const real pus_platform_point_y = m->pus_platform_point_y[i];
         const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real size_t_ = m->size_t_[i];
-        const real uu_3_t = m->uu_3_t[i];
-        /* (pus-K1) from the base point to the connection point */
-        const real S_x = t_x + R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
+        const real t_x = s[0*w + j];
+        const real pus_S_x = t_x + R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
             R_xz*pus_platform_point_z - pus_base_point_x;
-        const real S_y = t_y + R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real pus_base_point_y = m->pus_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real pus_S_y = t_y + R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
             R_yz*pus_platform_point_z - pus_base_point_y;
-        const real S_z = t_z + R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real pus_base_point_z = m->pus_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real pus_S_z = t_z + R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
             R_zz*pus_platform_point_z - pus_base_point_z;
-        /* (pus-K2) component along axis 1 */
-        const real px_1 = S_x*pus_base_frame_xx + S_y*pus_base_frame_yx + S_z*pus_base_frame_zx;
-        /* (pus-K3) discriminant of the distance equation */
-        const real disc_1_t = S_x*S_x + S_y*S_y + S_z*S_z;
-        const real disc_1 = px_1*px_1 + uu_3_t - disc_1_t;
-        /* (pus-K4) displacement of joint 1 */
-        const real q_1_t = branch_1*root(disc_1);
-        const real q_1 = px_1 + q_1_t;
-        /* (pus-K1) from the base point to the connection point */
-        const real S_r0_y = S_x*pus_base_frame_xy + S_y*pus_base_frame_yy + S_z*pus_base_frame_zy;
-        /* (pus-K9) squared amplitude */
-        const real rho2_2 = S_r0_y*S_r0_y + q_1_t*q_1_t;
-        /* (pus-K11) root, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (pus-K12) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rho2_2 = 1/rho2_2;
-        /* (pus-K14) displacement of joint 2 */
-        const real q_2 = angle(S_r0_y*inv_rho2_2*root_2, -inv_rho2_2*q_1_t*root_2);
-        /* (pus-K19) displacement of joint 3 */
-        const real q_3 = angle(-inv_uu_3_t*pus_platform_joint_offset_x*(S_x*pus_base_frame_xz +
-            S_y*pus_base_frame_yz + S_z*pus_base_frame_zz),
-            inv_uu_3_t*pus_platform_joint_offset_x*root_2);
-        o->entry[0][k] = q_1;
-        o->entry[1][k] = q_2;
-        o->entry[2][k] = q_3;
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_);
+        /* (pus-px_1) component along axis 1 */
+        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
+        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
+        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
+        const real pus_px_1 = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
+            pus_S_z*pus_base_frame_zx;
+        /* (pus-disc_1) discriminant of the distance equation */
+        const real pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
+        const real pus_disc_1_t = m->pus_disc_1_t[i];
+        const real pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2;
+        /* (pus-q_1) displacement of joint 1 */
+        const real pus_branch_1 = m->pus_branch_1[i];
+        const real pus_q_1_t = pus_branch_1*root(pus_disc_1);
+        const real pus_q_1 = pus_px_1 + pus_q_1_t;
+        /* (pus-S) from the base point to the connection point */
+        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
+        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
+        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
+        const real pus_S_r0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
+            pus_S_z*pus_base_frame_zy;
+        /* (pus-rho2_2) squared amplitude */
+        const real pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t;
+        /* (pus-root_2) root, with the sign of the branch */
+        const real pus_branch_2 = m->pus_branch_2[i];
+        const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
+        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_pus_rho2_2 = 1/pus_rho2_2;
+        /* (pus-q_2) displacement of joint 2 */
+        const real pus_q_2 = angle(inv_pus_rho2_2*pus_S_r0_y*pus_root_2,
+            -inv_pus_rho2_2*pus_q_1_t*pus_root_2);
+        /* (pus-q_3) displacement of joint 3 */
+        const real inv_pus_disc_1_t_6 = m->inv_pus_disc_1_t_6[i];
+        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
+        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
+        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
+        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
+        const real pus_q_3 =
+            angle(-inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz),
+            inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2);
+        o[0*count + k] = pus_q_1;
+        o[1*count + k] = pus_q_2;
+        o[2*count + k] = pus_q_3;
+        o[5*count + k] = pus_q_1 + (pus_q_2 + pus_q_3);
+        const real pus_size_t = m->pus_size_t[i];
+        o[3*count + k] = UNLESS(pus_disc_1 >= 0);
+        o[4*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t);
     }
 }
 
-INLINE void inverse_kinematics_place_pus(size_t w, const inverse_kinematics_results_pus *o, size_t
-    leg, size_t first, real *q, verdict *t)
+INLINE void inverse_kinematics_place_pus(size_t w, size_t count, const real *o, size_t leg, size_t
+    first, real *q, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        q[(3*leg)*w + k] = o->entry[0][first + k];
-        q[(1 + 3*leg)*w + k] = o->entry[1][first + k];
-        q[(2 + 3*leg)*w + k] = o->entry[2][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        q[(3*leg)*w + k] = o[0*count + first + k];
+        q[(1 + 3*leg)*w + k] = o[1*count + first + k];
+        q[(2 + 3*leg)*w + k] = o[2*count + first + k];
+        t->unreachable[k] += o[3*count + first + k];
+        t->singular[k] += o[4*count + first + k];
+        t->total[k] += o[5*count + first + k];
     }
 }
 
-INLINE void inverse_kinematics_run(const prepared *m, size_t w, const real *X, real *q, verdict
-    *t)
+INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    inverse_kinematics_values values, *const s = &values;
-    inverse_kinematics_results_pus results_pus;
-    inverse_kinematics_before(w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        inverse_kinematics_legs_pus(m, 0, 1, s, 0, 6, &results_pus);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            inverse_kinematics_place_pus(w, &results_pus, leg, leg, q, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 6; ++leg) {
-            inverse_kinematics_legs_pus(m, leg, 0, s, 1, w, &results_pus);
-            inverse_kinematics_place_pus(w, &results_pus, leg, 0, q, t);
-        }
+    real s[12] = {0}, o_pus[6*LEGS(6)] = {0};
+    inverse_kinematics_before(1, X, s, t);
+    inverse_kinematics_legs_pus(m, 1, 0, 1, s, 0, LEGS(6), o_pus);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        inverse_kinematics_place_pus(1, LEGS(6), o_pus, leg, leg, q, t);
+    }
+}
+
+INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
+{
+    real s[12*LANES], o_pus[6*LANES];
+    inverse_kinematics_before(LANES, X, s, t);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        inverse_kinematics_legs_pus(m, LANES, leg, 0, s, 1, LANES, o_pus);
+        inverse_kinematics_place_pus(LANES, LANES, o_pus, leg, 0, q, t);
     }
 }
 
 /* ---- joint_rates: 462 mul, 294 add, 18 div, 12 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES];
-} joint_rates_values;
-typedef struct {
-    real entry[3][8], unreachable[8], singular[8];
-} joint_rates_results_pus;
-
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rates_values *s,
-    verdict *t)
+INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -3784,224 +3828,221 @@ INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rat
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void joint_rates_legs_pus(const prepared *m, size_t leg, size_t legs, const
-    joint_rates_values *s, size_t states, size_t count, joint_rates_results_pus *o)
+INLINE void joint_rates_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real inv_pus_platform_joint_offset_x = m->inv_pus_platform_joint_offset_x[i];
-        const real inv_uu_3_t = m->inv_uu_3_t[i];
-        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
-        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
-        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
-        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
-        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
-        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
-        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
-        const real pus_base_point_x = m->pus_base_point_x[i];
-        const real pus_base_point_y = m->pus_base_point_y[i];
-        const real pus_base_point_z = m->pus_base_point_z[i];
-        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
+        /* (pus-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real pus_platform_point_x = m->pus_platform_point_x[i];
         const real pus_platform_point_y = m->pus_platform_point_y[i];
         const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real size_ = m->size_[i];
-        const real size_t_ = m->size_t_[i];
-        const real uu_3_t = m->uu_3_t[i];
-        /* (pus-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
+        const real pus_q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
             R_xz*pus_platform_point_z;
-        const real q_in_base_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real pus_q_in_base_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
             R_yz*pus_platform_point_z;
-        const real q_in_base_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real pus_q_in_base_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
             R_zz*pus_platform_point_z;
-        const real S_x = q_in_base_x + t_x - pus_base_point_x;
-        const real S_y = q_in_base_y + t_y - pus_base_point_y;
-        const real S_z = q_in_base_z + t_z - pus_base_point_z;
-        /* (pus-K2) component along axis 1 */
-        const real px_1 = S_x*pus_base_frame_xx + S_y*pus_base_frame_yx + S_z*pus_base_frame_zx;
-        /* (pus-K3) discriminant of the distance equation */
-        const real disc_1_t = S_x*S_x + S_y*S_y + S_z*S_z;
-        const real disc_1 = px_1*px_1 + uu_3_t - disc_1_t;
-        /* (pus-K4) displacement of joint 1 */
-        const real q_1_t = branch_1*root(disc_1);
-        /* (pus-K1) from the base point to the connection point */
-        const real S_r0_y = S_x*pus_base_frame_xy + S_y*pus_base_frame_yy + S_z*pus_base_frame_zy;
-        /* (pus-K9) squared amplitude */
-        const real rho2_2 = S_r0_y*S_r0_y + q_1_t*q_1_t;
-        /* (pus-K11) root, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (pus-K17) cosine of the angle of joint 3 from its reference direction */
-        const real c_3 = inv_uu_3_t*pus_platform_joint_offset_x*root_2;
-        /* (pus-K18) sine of the angle of joint 3 from its reference direction */
-        const real s_3 = inv_uu_3_t*pus_platform_joint_offset_x*(S_x*pus_base_frame_xz +
-            S_y*pus_base_frame_yz + S_z*pus_base_frame_zz);
-        /* (pus-V2) velocity of the connection point per rate of joint 2 */
-        const real v_2_t = c_3*pus_platform_joint_offset_x;
-        /* (pus-K12) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rho2_2 = 1/rho2_2;
-        const real c_2 = S_r0_y*inv_rho2_2*root_2;
-        /* (pus-K13) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_rho2_2*q_1_t*root_2;
-        /* (pus-V4) reciprocal vector 1 */
-        const real axis_z_pus_axes3_in_base_x = -c_2*pus_base_frame_xx - pus_base_frame_xy*s_2;
-        const real axis_z_pus_axes3_in_base_y = -c_2*pus_base_frame_yx - pus_base_frame_yy*s_2;
-        const real axis_z_pus_axes3_in_base_z = -c_2*pus_base_frame_zx - pus_base_frame_zy*s_2;
-        const real w_1_t = s_2*s_3;
-        const real w_1_t_2 = c_2*s_3;
-        const real axis_y_pus_axes3_in_base_x = pus_base_frame_xy*w_1_t_2 - c_3*pus_base_frame_xz
-            - pus_base_frame_xx*w_1_t;
-        const real axis_y_pus_axes3_in_base_y = pus_base_frame_yy*w_1_t_2 - c_3*pus_base_frame_yz
-            - pus_base_frame_yx*w_1_t;
-        const real axis_y_pus_axes3_in_base_z = pus_base_frame_zy*w_1_t_2 - c_3*pus_base_frame_zz
-            - pus_base_frame_zx*w_1_t;
-        const real w_1_t_3 = c_3*s_2;
-        /* (pus-V1) velocity of the connection point */
-        const real S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x;
-        /* (pus-V8) rate of joint 2 */
-        const real qd_1 = (S_dot_x*(axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
-            axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y) +
-            S_dot_y*(axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
+        const real pus_base_point_x = m->pus_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x;
+        const real pus_base_point_y = m->pus_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y;
+        const real pus_base_point_z = m->pus_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z;
+        /* (pus-px_1) component along axis 1 */
+        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
+        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
+        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
+        const real pus_px_1 = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
+            pus_S_z*pus_base_frame_zx;
+        /* (pus-disc_1) discriminant of the distance equation */
+        const real pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
+        const real pus_disc_1_t = m->pus_disc_1_t[i];
+        const real pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2;
+        /* (pus-q_1) displacement of joint 1 */
+        const real pus_branch_1 = m->pus_branch_1[i];
+        const real pus_q_1_t = pus_branch_1*root(pus_disc_1);
+        /* (pus-S) from the base point to the connection point */
+        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
+        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
+        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
+        const real pus_S_r0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
+            pus_S_z*pus_base_frame_zy;
+        /* (pus-rho2_2) squared amplitude */
+        const real pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t;
+        /* (pus-root_2) root, with the sign of the branch */
+        const real pus_branch_2 = m->pus_branch_2[i];
+        const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
+        /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_pus_disc_1_t_6 = m->inv_pus_disc_1_t_6[i];
+        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
+        const real pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2;
+        /* (pus-s_3) sine of the angle of joint 3 from its reference direction */
+        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
+        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
+        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
+        const real pus_s_3 =
+            inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
+        /* (pus-v_2) velocity of the connection point per rate of joint 2 */
+        const real pus_v_2_t = pus_c_3*pus_platform_joint_offset_x;
+        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_pus_rho2_2 = 1/pus_rho2_2;
+        const real pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2;
+        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2;
+        /* (pus-w_1) reciprocal vector 1 */
+        const real axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 -
+            pus_base_frame_xy*pus_s_2;
+        const real axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 -
+            pus_base_frame_yy*pus_s_2;
+        const real axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 -
+            pus_base_frame_zy*pus_s_2;
+        const real pus_w_1_t = pus_s_2*pus_s_3;
+        const real pus_w_1_t_2 = pus_c_2*pus_s_3;
+        const real axis_y_pus_axes3_in_base_x = pus_base_frame_xy*pus_w_1_t_2 -
+            pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3;
+        const real axis_y_pus_axes3_in_base_y = pus_base_frame_yy*pus_w_1_t_2 -
+            pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3;
+        const real axis_y_pus_axes3_in_base_z = pus_base_frame_zy*pus_w_1_t_2 -
+            pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3;
+        /* (pus-w_2) reciprocal vector 2 */
+        const real pus_w_2_t = pus_c_3*pus_s_2;
+        /* (pus-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real t_dot_x = s[12*w + j];
+        const real pus_S_dot_x = t_dot_x + omega_y*pus_q_in_base_z - omega_z*pus_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real t_dot_y = s[13*w + j];
+        const real pus_S_dot_y = t_dot_y + omega_z*pus_q_in_base_x - omega_x*pus_q_in_base_z;
+        const real t_dot_z = s[14*w + j];
+        const real pus_S_dot_z = t_dot_z + omega_x*pus_q_in_base_y - omega_y*pus_q_in_base_x;
+        /* (pus-qd_3) rate of joint 3 */
+        const real pus_qd_1 = (pus_S_dot_x*(axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z
+            - axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y) +
+            pus_S_dot_y*(axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
             axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_z) +
-            S_dot_z*(axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
-            axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x))/w_1_t_3;
-        const real qd_3 = inv_pus_platform_joint_offset_x*(S_dot_x*axis_y_pus_axes3_in_base_x +
-            S_dot_y*axis_y_pus_axes3_in_base_y + S_dot_z*axis_y_pus_axes3_in_base_z - qd_1*w_1_t);
-        const real qd_2 = (S_dot_x*axis_z_pus_axes3_in_base_x + S_dot_y*axis_z_pus_axes3_in_base_y
-            + S_dot_z*axis_z_pus_axes3_in_base_z - c_2*qd_1)/v_2_t;
-        o->entry[0][k] = -qd_1;
-        o->entry[1][k] = qd_2;
-        o->entry[2][k] = qd_3;
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_) +
-            UNLESS(magnitude(v_2_t) > TOLERANCE*size_) + UNLESS(magnitude(-w_1_t_3) >
+            pus_S_dot_z*(axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
+            axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x))/pus_w_2_t;
+        const real inv_pus_platform_joint_offset_x = m->inv_pus_platform_joint_offset_x[i];
+        const real pus_qd_3 =
+            inv_pus_platform_joint_offset_x*(axis_y_pus_axes3_in_base_x*pus_S_dot_x +
+            axis_y_pus_axes3_in_base_y*pus_S_dot_y + axis_y_pus_axes3_in_base_z*pus_S_dot_z -
+            pus_qd_1*pus_w_1_t);
+        const real pus_qd_2 = (axis_z_pus_axes3_in_base_x*pus_S_dot_x +
+            axis_z_pus_axes3_in_base_y*pus_S_dot_y + axis_z_pus_axes3_in_base_z*pus_S_dot_z -
+            pus_c_2*pus_qd_1)/pus_v_2_t;
+        o[0*count + k] = -pus_qd_1;
+        o[1*count + k] = pus_qd_2;
+        o[2*count + k] = pus_qd_3;
+        o[5*count + k] = pus_qd_1 + (pus_qd_2 + pus_qd_3);
+        const real pus_size_t = m->pus_size_t[i];
+        const real pus_size = m->pus_size[i];
+        o[3*count + k] = UNLESS(pus_disc_1 >= 0);
+        o[4*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t) +
+            UNLESS(magnitude(pus_v_2_t) > TOLERANCE*pus_size) + UNLESS(magnitude(-pus_w_2_t) >
             TOLERANCE*1);
     }
 }
 
-INLINE void joint_rates_place_pus(size_t w, const joint_rates_results_pus *o, size_t leg, size_t
-    first, real *qd, verdict *t)
+INLINE void joint_rates_place_pus(size_t w, size_t count, const real *o, size_t leg, size_t first,
+    real *qd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qd[(3*leg)*w + k] = o->entry[0][first + k];
-        qd[(1 + 3*leg)*w + k] = o->entry[1][first + k];
-        qd[(2 + 3*leg)*w + k] = o->entry[2][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        qd[(3*leg)*w + k] = o[0*count + first + k];
+        qd[(1 + 3*leg)*w + k] = o[1*count + first + k];
+        qd[(2 + 3*leg)*w + k] = o[2*count + first + k];
+        t->unreachable[k] += o[3*count + first + k];
+        t->singular[k] += o[4*count + first + k];
+        t->total[k] += o[5*count + first + k];
     }
 }
 
-INLINE void joint_rates_run(const prepared *m, size_t w, const real *X, const real *V, real *qd,
+INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+{
+    real s[18] = {0}, o_pus[6*LEGS(6)] = {0};
+    joint_rates_before(1, X, V, s, t);
+    joint_rates_legs_pus(m, 1, 0, 1, s, 0, LEGS(6), o_pus);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        joint_rates_place_pus(1, LEGS(6), o_pus, leg, leg, qd, t);
+    }
+}
+
+INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    joint_rates_values values, *const s = &values;
-    joint_rates_results_pus results_pus;
-    joint_rates_before(w, X, V, s, t);
-    if (w == 1) {  /* the legs side by side */
-        joint_rates_legs_pus(m, 0, 1, s, 0, 6, &results_pus);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            joint_rates_place_pus(w, &results_pus, leg, leg, qd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 6; ++leg) {
-            joint_rates_legs_pus(m, leg, 0, s, 1, w, &results_pus);
-            joint_rates_place_pus(w, &results_pus, leg, 0, qd, t);
-        }
+    real s[18*LANES], o_pus[6*LANES];
+    joint_rates_before(LANES, X, V, s, t);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        joint_rates_legs_pus(m, LANES, leg, 0, s, 1, LANES, o_pus);
+        joint_rates_place_pus(LANES, LANES, o_pus, leg, 0, qd, t);
     }
 }
 
 /* ---- joint_accelerations: 684 mul, 444 add, 18 div, 12 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
-        t_ddot_x[LANES], t_ddot_y[LANES], t_ddot_z[LANES], alpha_x[LANES], alpha_y[LANES],
-        alpha_z[LANES];
-} joint_accelerations_values;
-typedef struct {
-    real entry[3][8], unreachable[8], singular[8];
-} joint_accelerations_results_pus;
-
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A,
-    joint_accelerations_values *s, verdict *t)
+INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
+    *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real A_2 = A[2*w + k];
-        const real A_3 = A[3*w + k];
-        const real A_4 = A[4*w + k];
-        const real A_5 = A[5*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -4026,279 +4067,282 @@ INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, c
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
+        const real A_2 = A[2*w + k];
         const real t_ddot_z = A_2;
+        const real A_3 = A[3*w + k];
         const real alpha_x = A_3;
+        const real A_4 = A[4*w + k];
         const real alpha_y = A_4;
+        const real A_5 = A[5*w + k];
         const real alpha_z = A_5;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->t_ddot_z[k] = t_ddot_z;
-        s->alpha_x[k] = alpha_x;
-        s->alpha_y[k] = alpha_y;
-        s->alpha_z[k] = alpha_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
+        s[18*w + k] = t_ddot_x;
+        s[19*w + k] = t_ddot_y;
+        s[20*w + k] = t_ddot_z;
+        s[21*w + k] = alpha_x;
+        s[22*w + k] = alpha_y;
+        s[23*w + k] = alpha_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void joint_accelerations_legs_pus(const prepared *m, size_t leg, size_t legs, const
-    joint_accelerations_values *s, size_t states, size_t count, joint_accelerations_results_pus
-    *o)
+INLINE void joint_accelerations_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs,
+    const real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real t_ddot_z = s->t_ddot_z[j];
-        const real alpha_x = s->alpha_x[j];
-        const real alpha_y = s->alpha_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real inv_pus_platform_joint_offset_x = m->inv_pus_platform_joint_offset_x[i];
-        const real inv_uu_3_t = m->inv_uu_3_t[i];
-        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
-        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
-        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
-        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
-        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
-        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
-        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
-        const real pus_base_point_x = m->pus_base_point_x[i];
-        const real pus_base_point_y = m->pus_base_point_y[i];
-        const real pus_base_point_z = m->pus_base_point_z[i];
-        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
+        /* (pus-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real pus_platform_point_x = m->pus_platform_point_x[i];
         const real pus_platform_point_y = m->pus_platform_point_y[i];
         const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real size_ = m->size_[i];
-        const real size_t_ = m->size_t_[i];
-        const real uu_3_t = m->uu_3_t[i];
-        /* (pus-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
+        const real pus_q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
             R_xz*pus_platform_point_z;
-        const real q_in_base_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real pus_q_in_base_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
             R_yz*pus_platform_point_z;
-        const real q_in_base_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real pus_q_in_base_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
             R_zz*pus_platform_point_z;
-        const real S_x = q_in_base_x + t_x - pus_base_point_x;
-        const real S_y = q_in_base_y + t_y - pus_base_point_y;
-        const real S_z = q_in_base_z + t_z - pus_base_point_z;
-        /* (pus-K2) component along axis 1 */
-        const real px_1 = S_x*pus_base_frame_xx + S_y*pus_base_frame_yx + S_z*pus_base_frame_zx;
-        /* (pus-K3) discriminant of the distance equation */
-        const real disc_1_t = S_x*S_x + S_y*S_y + S_z*S_z;
-        const real disc_1 = px_1*px_1 + uu_3_t - disc_1_t;
-        /* (pus-K4) displacement of joint 1 */
-        const real q_1_t = branch_1*root(disc_1);
-        /* (pus-K1) from the base point to the connection point */
-        const real S_r0_y = S_x*pus_base_frame_xy + S_y*pus_base_frame_yy + S_z*pus_base_frame_zy;
-        /* (pus-K9) squared amplitude */
-        const real rho2_2 = S_r0_y*S_r0_y + q_1_t*q_1_t;
-        /* (pus-K11) root, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (pus-K17) cosine of the angle of joint 3 from its reference direction */
-        const real c_3 = inv_uu_3_t*pus_platform_joint_offset_x*root_2;
-        /* (pus-K18) sine of the angle of joint 3 from its reference direction */
-        const real s_3 = inv_uu_3_t*pus_platform_joint_offset_x*(S_x*pus_base_frame_xz +
-            S_y*pus_base_frame_yz + S_z*pus_base_frame_zz);
-        /* (pus-V2) velocity of the connection point per rate of joint 2 */
-        const real v_2_t = c_3*pus_platform_joint_offset_x;
-        /* (pus-K12) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rho2_2 = 1/rho2_2;
-        const real c_2 = S_r0_y*inv_rho2_2*root_2;
-        /* (pus-K13) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_rho2_2*q_1_t*root_2;
-        /* (pus-V4) reciprocal vector 1 */
-        const real axis_z_pus_axes3_in_base_x = -c_2*pus_base_frame_xx - pus_base_frame_xy*s_2;
-        const real axis_z_pus_axes3_in_base_y = -c_2*pus_base_frame_yx - pus_base_frame_yy*s_2;
-        const real axis_z_pus_axes3_in_base_z = -c_2*pus_base_frame_zx - pus_base_frame_zy*s_2;
-        const real w_1_t = s_2*s_3;
-        const real w_1_t_2 = c_2*s_3;
-        const real axis_y_pus_axes3_in_base_x = pus_base_frame_xy*w_1_t_2 - c_3*pus_base_frame_xz
-            - pus_base_frame_xx*w_1_t;
-        const real axis_y_pus_axes3_in_base_y = pus_base_frame_yy*w_1_t_2 - c_3*pus_base_frame_yz
-            - pus_base_frame_yx*w_1_t;
-        const real axis_y_pus_axes3_in_base_z = pus_base_frame_zy*w_1_t_2 - c_3*pus_base_frame_zz
-            - pus_base_frame_zx*w_1_t;
+        const real pus_base_point_x = m->pus_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x;
+        const real pus_base_point_y = m->pus_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y;
+        const real pus_base_point_z = m->pus_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z;
+        /* (pus-px_1) component along axis 1 */
+        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
+        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
+        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
+        const real pus_px_1 = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
+            pus_S_z*pus_base_frame_zx;
+        /* (pus-disc_1) discriminant of the distance equation */
+        const real pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
+        const real pus_disc_1_t = m->pus_disc_1_t[i];
+        const real pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2;
+        /* (pus-q_1) displacement of joint 1 */
+        const real pus_branch_1 = m->pus_branch_1[i];
+        const real pus_q_1_t = pus_branch_1*root(pus_disc_1);
+        /* (pus-S) from the base point to the connection point */
+        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
+        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
+        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
+        const real pus_S_r0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
+            pus_S_z*pus_base_frame_zy;
+        /* (pus-rho2_2) squared amplitude */
+        const real pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t;
+        /* (pus-root_2) root, with the sign of the branch */
+        const real pus_branch_2 = m->pus_branch_2[i];
+        const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
+        /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_pus_disc_1_t_6 = m->inv_pus_disc_1_t_6[i];
+        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
+        const real pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2;
+        /* (pus-s_3) sine of the angle of joint 3 from its reference direction */
+        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
+        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
+        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
+        const real pus_s_3 =
+            inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
+        /* (pus-v_2) velocity of the connection point per rate of joint 2 */
+        const real pus_v_2_t = pus_c_3*pus_platform_joint_offset_x;
+        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_pus_rho2_2 = 1/pus_rho2_2;
+        const real pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2;
+        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2;
+        /* (pus-w_1) reciprocal vector 1 */
+        const real axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 -
+            pus_base_frame_xy*pus_s_2;
+        const real axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 -
+            pus_base_frame_yy*pus_s_2;
+        const real axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 -
+            pus_base_frame_zy*pus_s_2;
+        const real pus_w_1_t = pus_s_2*pus_s_3;
+        const real pus_w_1_t_2 = pus_c_2*pus_s_3;
+        const real axis_y_pus_axes3_in_base_x = pus_base_frame_xy*pus_w_1_t_2 -
+            pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3;
+        const real axis_y_pus_axes3_in_base_y = pus_base_frame_yy*pus_w_1_t_2 -
+            pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3;
+        const real axis_y_pus_axes3_in_base_z = pus_base_frame_zy*pus_w_1_t_2 -
+            pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3;
         const real axis_x_pus_axes3_x = axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
             axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y;
         const real axis_x_pus_axes3_y = axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
             axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_z;
         const real axis_x_pus_axes3_z = axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
             axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x;
-        const real w_1_t_3 = c_3*s_2;
-        const real inv_w_1_t_24 = 1/w_1_t_3;
-        /* (pus-V5) reciprocal vector 2 */
-        const real inv_v_2_t = 1/v_2_t;
-        /* (pus-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        /* (pus-V8) rate of joint 2 */
-        const real qd_1 = inv_w_1_t_24*(S_dot_x*axis_x_pus_axes3_x + S_dot_y*axis_x_pus_axes3_y +
-            S_dot_z*axis_x_pus_axes3_z);
-        const real qd_2_t = S_dot_x*axis_y_pus_axes3_in_base_x +
-            S_dot_y*axis_y_pus_axes3_in_base_y + S_dot_z*axis_y_pus_axes3_in_base_z - qd_1*w_1_t;
-        const real qd_3 = inv_pus_platform_joint_offset_x*qd_2_t;
-        const real qd_2 = inv_v_2_t*(S_dot_x*axis_z_pus_axes3_in_base_x +
-            S_dot_y*axis_z_pus_axes3_in_base_y + S_dot_z*axis_z_pus_axes3_in_base_z - c_2*qd_1);
-        /* (pus-V10) angular velocity of link 2 */
-        const real omega_2_t = qd_2*s_3;
-        const real omega_2_t_2 = c_3*qd_2;
-        /* (pus-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = omega_2_t_2*pus_platform_joint_offset_x;
-        const real bias_z = omega_2_t*qd_2_t + omega_2_t*pus_platform_joint_offset_x*qd_3;
-        /* (pus-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
-        const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
-        const real a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x;
-        /* (pus-A3) acceleration of the connection point */
-        const real S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z;
-        const real S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x;
-        const real S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y;
-        /* (pus-A6) acceleration of the connection point left to the joint accelerations */
-        const real rel_x = S_ddot_x*axis_x_pus_axes3_x + S_ddot_y*axis_x_pus_axes3_y +
-            S_ddot_z*axis_x_pus_axes3_z + bias_t*omega_2_t_2 + qd_2_t*qd_3;
-        const real rel_y = S_ddot_x*axis_y_pus_axes3_in_base_x +
-            S_ddot_y*axis_y_pus_axes3_in_base_y + S_ddot_z*axis_y_pus_axes3_in_base_z +
-            bias_t*omega_2_t;
-        const real rel_z = S_ddot_x*axis_z_pus_axes3_in_base_x +
-            S_ddot_y*axis_z_pus_axes3_in_base_y + S_ddot_z*axis_z_pus_axes3_in_base_z - bias_z;
-        /* (pus-A8) acceleration of joint 1 */
-        const real qdd_1 = inv_w_1_t_24*rel_x;
-        const real qdd_3 = inv_pus_platform_joint_offset_x*(qdd_1*w_1_t - rel_y);
-        const real qdd_2 = inv_v_2_t*(c_2*qdd_1 - rel_z);
-        o->entry[0][k] = -qdd_1;
-        o->entry[1][k] = -qdd_2;
-        o->entry[2][k] = -qdd_3;
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_) +
-            UNLESS(magnitude(v_2_t) > TOLERANCE*size_) + UNLESS(magnitude(-w_1_t_3) >
+        /* (pus-w_2) reciprocal vector 2 */
+        const real pus_w_2_t = pus_c_3*pus_s_2;
+        const real inv_pus_v_2_t = 1/pus_v_2_t;
+        const real inv_pus_w_2_t = 1/pus_w_2_t;
+        /* (pus-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real pus_S_dot_t = omega_y*pus_q_in_base_z - omega_z*pus_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real pus_S_dot_t_2 = omega_z*pus_q_in_base_x - omega_x*pus_q_in_base_z;
+        const real pus_S_dot_t_3 = omega_x*pus_q_in_base_y - omega_y*pus_q_in_base_x;
+        const real t_dot_x = s[12*w + j];
+        const real pus_S_dot_x = pus_S_dot_t + t_dot_x;
+        const real t_dot_y = s[13*w + j];
+        const real pus_S_dot_y = pus_S_dot_t_2 + t_dot_y;
+        const real t_dot_z = s[14*w + j];
+        const real pus_S_dot_z = pus_S_dot_t_3 + t_dot_z;
+        /* (pus-qd_3) rate of joint 3 */
+        const real pus_qd_1 = inv_pus_w_2_t*(axis_x_pus_axes3_x*pus_S_dot_x +
+            axis_x_pus_axes3_y*pus_S_dot_y + axis_x_pus_axes3_z*pus_S_dot_z);
+        const real pus_qd_3_t = axis_y_pus_axes3_in_base_x*pus_S_dot_x +
+            axis_y_pus_axes3_in_base_y*pus_S_dot_y + axis_y_pus_axes3_in_base_z*pus_S_dot_z -
+            pus_qd_1*pus_w_1_t;
+        const real inv_pus_platform_joint_offset_x = m->inv_pus_platform_joint_offset_x[i];
+        const real pus_qd_3 = inv_pus_platform_joint_offset_x*pus_qd_3_t;
+        const real pus_qd_2 = inv_pus_v_2_t*(axis_z_pus_axes3_in_base_x*pus_S_dot_x +
+            axis_z_pus_axes3_in_base_y*pus_S_dot_y + axis_z_pus_axes3_in_base_z*pus_S_dot_z -
+            pus_c_2*pus_qd_1);
+        /* (pus-omega_2) angular velocity of link 2 */
+        const real pus_omega_2_t = pus_qd_2*pus_s_3;
+        const real pus_omega_2_t_2 = pus_c_3*pus_qd_2;
+        /* (pus-bias) acceleration of the connection point at zero joint accelerations */
+        const real pus_bias_t = pus_omega_2_t_2*pus_platform_joint_offset_x;
+        const real pus_bias_z = pus_omega_2_t*pus_qd_3_t +
+            pus_omega_2_t*pus_platform_joint_offset_x*pus_qd_3;
+        /* (pus-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_y = s[22*w + j];
+        const real alpha_z = s[23*w + j];
+        const real t_ddot_x = s[18*w + j];
+        const real pus_a_p_x = t_ddot_x + alpha_y*pus_q_in_base_z - alpha_z*pus_q_in_base_y;
+        const real alpha_x = s[21*w + j];
+        const real t_ddot_y = s[19*w + j];
+        const real pus_a_p_y = t_ddot_y + alpha_z*pus_q_in_base_x - alpha_x*pus_q_in_base_z;
+        const real t_ddot_z = s[20*w + j];
+        const real pus_a_p_z = t_ddot_z + alpha_x*pus_q_in_base_y - alpha_y*pus_q_in_base_x;
+        /* (pus-S_ddot) acceleration of the connection point */
+        const real pus_S_ddot_x = pus_a_p_x + omega_y*pus_S_dot_t_3 - omega_z*pus_S_dot_t_2;
+        const real pus_S_ddot_y = pus_a_p_y + omega_z*pus_S_dot_t - omega_x*pus_S_dot_t_3;
+        const real pus_S_ddot_z = pus_a_p_z + omega_x*pus_S_dot_t_2 - omega_y*pus_S_dot_t;
+        /* (pus-rel) acceleration of the connection point left to the joint accelerations */
+        const real pus_rel_x = axis_x_pus_axes3_x*pus_S_ddot_x + axis_x_pus_axes3_y*pus_S_ddot_y +
+            axis_x_pus_axes3_z*pus_S_ddot_z + pus_bias_t*pus_omega_2_t_2 + pus_qd_3*pus_qd_3_t;
+        const real pus_rel_y = axis_y_pus_axes3_in_base_x*pus_S_ddot_x +
+            axis_y_pus_axes3_in_base_y*pus_S_ddot_y + axis_y_pus_axes3_in_base_z*pus_S_ddot_z +
+            pus_bias_t*pus_omega_2_t;
+        const real pus_rel_z = axis_z_pus_axes3_in_base_x*pus_S_ddot_x +
+            axis_z_pus_axes3_in_base_y*pus_S_ddot_y + axis_z_pus_axes3_in_base_z*pus_S_ddot_z -
+            pus_bias_z;
+        /* (pus-qdd_1) acceleration of joint 1 */
+        const real pus_qdd_1 = inv_pus_w_2_t*pus_rel_x;
+        const real pus_qdd_3 = inv_pus_platform_joint_offset_x*(pus_qdd_1*pus_w_1_t - pus_rel_y);
+        const real pus_qdd_2 = inv_pus_v_2_t*(pus_c_2*pus_qdd_1 - pus_rel_z);
+        o[0*count + k] = -pus_qdd_1;
+        o[1*count + k] = -pus_qdd_2;
+        o[2*count + k] = -pus_qdd_3;
+        o[5*count + k] = pus_qdd_1 + (pus_qdd_2 + pus_qdd_3);
+        const real pus_size_t = m->pus_size_t[i];
+        const real pus_size = m->pus_size[i];
+        o[3*count + k] = UNLESS(pus_disc_1 >= 0);
+        o[4*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t) +
+            UNLESS(magnitude(pus_v_2_t) > TOLERANCE*pus_size) + UNLESS(magnitude(-pus_w_2_t) >
             TOLERANCE*1);
     }
 }
 
-INLINE void joint_accelerations_place_pus(size_t w, const joint_accelerations_results_pus *o,
-    size_t leg, size_t first, real *qdd, verdict *t)
+INLINE void joint_accelerations_place_pus(size_t w, size_t count, const real *o, size_t leg,
+    size_t first, real *qdd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qdd[(3*leg)*w + k] = o->entry[0][first + k];
-        qdd[(1 + 3*leg)*w + k] = o->entry[1][first + k];
-        qdd[(2 + 3*leg)*w + k] = o->entry[2][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        qdd[(3*leg)*w + k] = o[0*count + first + k];
+        qdd[(1 + 3*leg)*w + k] = o[1*count + first + k];
+        qdd[(2 + 3*leg)*w + k] = o[2*count + first + k];
+        t->unreachable[k] += o[3*count + first + k];
+        t->singular[k] += o[4*count + first + k];
+        t->total[k] += o[5*count + first + k];
     }
 }
 
-INLINE void joint_accelerations_run(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd, verdict *t)
+INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd, verdict *t)
 {
-    joint_accelerations_values values, *const s = &values;
-    joint_accelerations_results_pus results_pus;
-    joint_accelerations_before(w, X, V, A, s, t);
-    if (w == 1) {  /* the legs side by side */
-        joint_accelerations_legs_pus(m, 0, 1, s, 0, 6, &results_pus);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            joint_accelerations_place_pus(w, &results_pus, leg, leg, qdd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 6; ++leg) {
-            joint_accelerations_legs_pus(m, leg, 0, s, 1, w, &results_pus);
-            joint_accelerations_place_pus(w, &results_pus, leg, 0, qdd, t);
-        }
+    real s[24] = {0}, o_pus[6*LEGS(6)] = {0};
+    joint_accelerations_before(1, X, V, A, s, t);
+    joint_accelerations_legs_pus(m, 1, 0, 1, s, 0, LEGS(6), o_pus);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        joint_accelerations_place_pus(1, LEGS(6), o_pus, leg, leg, qdd, t);
+    }
+}
+
+INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, verdict *t)
+{
+    real s[24*LANES], o_pus[6*LANES];
+    joint_accelerations_before(LANES, X, V, A, s, t);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        joint_accelerations_legs_pus(m, LANES, leg, 0, s, 1, LANES, o_pus);
+        joint_accelerations_place_pus(LANES, LANES, o_pus, leg, 0, qdd, t);
     }
 }
 
 /* ---- legs: 1092 mul, 798 add, 18 div, 12 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
-        t_ddot_x[LANES], t_ddot_y[LANES], t_ddot_z[LANES], alpha_x[LANES], alpha_y[LANES],
-        alpha_z[LANES];
-} legs_values;
-typedef struct {
-    real entry[6][8], unreachable[8], singular[8];
-} legs_results_pus;
-
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, legs_values *s,
-    verdict *t)
+INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real A_2 = A[2*w + k];
-        const real A_3 = A[3*w + k];
-        const real A_4 = A[4*w + k];
-        const real A_5 = A[5*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -4323,341 +4367,379 @@ INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, l
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
+        const real A_2 = A[2*w + k];
         const real t_ddot_z = A_2;
+        const real A_3 = A[3*w + k];
         const real alpha_x = A_3;
+        const real A_4 = A[4*w + k];
         const real alpha_y = A_4;
+        const real A_5 = A[5*w + k];
         const real alpha_z = A_5;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->t_ddot_z[k] = t_ddot_z;
-        s->alpha_x[k] = alpha_x;
-        s->alpha_y[k] = alpha_y;
-        s->alpha_z[k] = alpha_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
+        s[18*w + k] = t_ddot_x;
+        s[19*w + k] = t_ddot_y;
+        s[20*w + k] = t_ddot_z;
+        s[21*w + k] = alpha_x;
+        s[22*w + k] = alpha_y;
+        s[23*w + k] = alpha_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void legs_legs_pus(const prepared *m, size_t leg, size_t legs, const legs_values *s, size_t
-    states, size_t count, legs_results_pus *o)
+INLINE void legs_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real t_ddot_z = s->t_ddot_z[j];
-        const real alpha_x = s->alpha_x[j];
-        const real alpha_y = s->alpha_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real J_3_xy = m->J_3_xy[i];
-        const real J_3_xz = m->J_3_xz[i];
-        const real J_3_yz = m->J_3_yz[i];
-        const real Sigma_3_xx = m->Sigma_3_xx[i];
-        const real Sigma_3_yy = m->Sigma_3_yy[i];
-        const real Sigma_3_zz = m->Sigma_3_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real g_r0_z = m->g_r0_z[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real inv_pus_platform_joint_offset_x = m->inv_pus_platform_joint_offset_x[i];
-        const real inv_uu_3_t = m->inv_uu_3_t[i];
-        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
-        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
-        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
-        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
-        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
-        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
-        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
-        const real pus_base_point_x = m->pus_base_point_x[i];
-        const real pus_base_point_y = m->pus_base_point_y[i];
-        const real pus_base_point_z = m->pus_base_point_z[i];
-        const real pus_link1_mass = m->pus_link1_mass[i];
-        const real pus_link3_mass = m->pus_link3_mass[i];
-        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
+        /* (pus-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real pus_platform_point_x = m->pus_platform_point_x[i];
         const real pus_platform_point_y = m->pus_platform_point_y[i];
         const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real size_ = m->size_[i];
-        const real size_t_ = m->size_t_[i];
-        const real uu_3_t = m->uu_3_t[i];
-        /* (pus-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
+        const real pus_q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
             R_xz*pus_platform_point_z;
-        const real q_in_base_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real pus_q_in_base_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
             R_yz*pus_platform_point_z;
-        const real q_in_base_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real pus_q_in_base_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
             R_zz*pus_platform_point_z;
-        const real S_x = q_in_base_x + t_x - pus_base_point_x;
-        const real S_y = q_in_base_y + t_y - pus_base_point_y;
-        const real S_z = q_in_base_z + t_z - pus_base_point_z;
-        /* (pus-K2) component along axis 1 */
-        const real px_1 = S_x*pus_base_frame_xx + S_y*pus_base_frame_yx + S_z*pus_base_frame_zx;
-        /* (pus-K3) discriminant of the distance equation */
-        const real disc_1_t = S_x*S_x + S_y*S_y + S_z*S_z;
-        const real disc_1 = px_1*px_1 + uu_3_t - disc_1_t;
-        /* (pus-K4) displacement of joint 1 */
-        const real q_1_t = branch_1*root(disc_1);
-        /* (pus-K1) from the base point to the connection point */
-        const real S_r0_y = S_x*pus_base_frame_xy + S_y*pus_base_frame_yy + S_z*pus_base_frame_zy;
-        /* (pus-K9) squared amplitude */
-        const real rho2_2 = S_r0_y*S_r0_y + q_1_t*q_1_t;
-        /* (pus-K11) root, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (pus-K17) cosine of the angle of joint 3 from its reference direction */
-        const real c_3 = inv_uu_3_t*pus_platform_joint_offset_x*root_2;
-        /* (pus-K18) sine of the angle of joint 3 from its reference direction */
-        const real s_3 = inv_uu_3_t*pus_platform_joint_offset_x*(S_x*pus_base_frame_xz +
-            S_y*pus_base_frame_yz + S_z*pus_base_frame_zz);
-        /* (pus-V2) velocity of the connection point per rate of joint 2 */
-        const real v_2_t = c_3*pus_platform_joint_offset_x;
-        /* (pus-K12) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rho2_2 = 1/rho2_2;
-        const real c_2 = S_r0_y*inv_rho2_2*root_2;
-        /* (pus-K13) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_rho2_2*q_1_t*root_2;
-        /* (pus-V4) reciprocal vector 1 */
-        const real axis_z_pus_axes3_in_base_x = -c_2*pus_base_frame_xx - pus_base_frame_xy*s_2;
-        const real axis_z_pus_axes3_in_base_y = -c_2*pus_base_frame_yx - pus_base_frame_yy*s_2;
-        const real axis_z_pus_axes3_in_base_z = -c_2*pus_base_frame_zx - pus_base_frame_zy*s_2;
-        const real w_1_t = s_2*s_3;
-        const real w_1_t_2 = c_2*s_3;
-        const real axis_y_pus_axes3_in_base_x = pus_base_frame_xy*w_1_t_2 - c_3*pus_base_frame_xz
-            - pus_base_frame_xx*w_1_t;
-        const real axis_y_pus_axes3_in_base_y = pus_base_frame_yy*w_1_t_2 - c_3*pus_base_frame_yz
-            - pus_base_frame_yx*w_1_t;
-        const real axis_y_pus_axes3_in_base_z = pus_base_frame_zy*w_1_t_2 - c_3*pus_base_frame_zz
-            - pus_base_frame_zx*w_1_t;
+        const real pus_base_point_x = m->pus_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x;
+        const real pus_base_point_y = m->pus_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y;
+        const real pus_base_point_z = m->pus_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z;
+        /* (pus-px_1) component along axis 1 */
+        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
+        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
+        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
+        const real pus_px_1 = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
+            pus_S_z*pus_base_frame_zx;
+        /* (pus-disc_1) discriminant of the distance equation */
+        const real pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
+        const real pus_disc_1_t = m->pus_disc_1_t[i];
+        const real pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2;
+        /* (pus-q_1) displacement of joint 1 */
+        const real pus_branch_1 = m->pus_branch_1[i];
+        const real pus_q_1_t = pus_branch_1*root(pus_disc_1);
+        /* (pus-S) from the base point to the connection point */
+        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
+        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
+        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
+        const real pus_S_r0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
+            pus_S_z*pus_base_frame_zy;
+        /* (pus-rho2_2) squared amplitude */
+        const real pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t;
+        /* (pus-root_2) root, with the sign of the branch */
+        const real pus_branch_2 = m->pus_branch_2[i];
+        const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
+        /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_pus_disc_1_t_6 = m->inv_pus_disc_1_t_6[i];
+        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
+        const real pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2;
+        /* (pus-s_3) sine of the angle of joint 3 from its reference direction */
+        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
+        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
+        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
+        const real pus_s_3 =
+            inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
+        /* (pus-v_2) velocity of the connection point per rate of joint 2 */
+        const real pus_v_2_t = pus_c_3*pus_platform_joint_offset_x;
+        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_pus_rho2_2 = 1/pus_rho2_2;
+        const real pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2;
+        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2;
+        /* (pus-w_1) reciprocal vector 1 */
+        const real axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 -
+            pus_base_frame_xy*pus_s_2;
+        const real axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 -
+            pus_base_frame_yy*pus_s_2;
+        const real axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 -
+            pus_base_frame_zy*pus_s_2;
+        const real pus_w_1_t = pus_s_2*pus_s_3;
+        const real pus_w_1_t_2 = pus_c_2*pus_s_3;
+        const real axis_y_pus_axes3_in_base_x = pus_base_frame_xy*pus_w_1_t_2 -
+            pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3;
+        const real axis_y_pus_axes3_in_base_y = pus_base_frame_yy*pus_w_1_t_2 -
+            pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3;
+        const real axis_y_pus_axes3_in_base_z = pus_base_frame_zy*pus_w_1_t_2 -
+            pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3;
         const real axis_x_pus_axes3_x = axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
             axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y;
         const real axis_x_pus_axes3_y = axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
             axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_z;
         const real axis_x_pus_axes3_z = axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
             axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x;
-        const real w_1_t_3 = c_3*s_2;
-        const real inv_w_1_t_24 = 1/w_1_t_3;
-        /* (pus-V5) reciprocal vector 2 */
-        const real inv_v_2_t = 1/v_2_t;
-        /* (pus-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        /* (pus-V8) rate of joint 2 */
-        const real qd_1 = inv_w_1_t_24*(S_dot_x*axis_x_pus_axes3_x + S_dot_y*axis_x_pus_axes3_y +
-            S_dot_z*axis_x_pus_axes3_z);
-        const real qd_2_t = S_dot_x*axis_y_pus_axes3_in_base_x +
-            S_dot_y*axis_y_pus_axes3_in_base_y + S_dot_z*axis_y_pus_axes3_in_base_z - qd_1*w_1_t;
-        const real qd_3 = inv_pus_platform_joint_offset_x*qd_2_t;
-        const real qd_2 = inv_v_2_t*(S_dot_x*axis_z_pus_axes3_in_base_x +
-            S_dot_y*axis_z_pus_axes3_in_base_y + S_dot_z*axis_z_pus_axes3_in_base_z - c_2*qd_1);
-        /* (pus-V10) angular velocity of link 2 */
-        const real omega_2_t = qd_2*s_3;
-        const real omega_2_t_2 = c_3*qd_2;
-        /* (pus-A4) angular acceleration of link 3 from the turning of axis 3 */
-        const real zeta_3_x = omega_2_t_2*qd_3;
-        const real zeta_3_y = omega_2_t*qd_3;
-        /* (pus-V12) centripetal tensor of link 3 */
-        const real W_3_t = omega_2_t*omega_2_t;
-        const real W_3_t_2 = omega_2_t_2*omega_2_t_2;
-        const real W_3_t_3 = qd_3*qd_3;
-        const real W_3_xy = omega_2_t*omega_2_t_2;
-        /* (pus-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = omega_2_t_2*pus_platform_joint_offset_x;
-        const real bias_z = omega_2_t*qd_2_t + pus_platform_joint_offset_x*zeta_3_y;
-        /* (pus-N6) remainder without the acceleration in: acceleration of the reference point of link 3,
-           less gravity */
-        const real g_r1_y = g_r0_x*s_2 - c_2*g_r0_y;
-        /* (pus-V4) reciprocal vector 1 */
-        const real w_1_t_4 = axis_x_pus_axes3_x*inv_w_1_t_24;
-        const real w_1_t_5 = axis_x_pus_axes3_y*inv_w_1_t_24;
-        const real w_1_t_6 = axis_x_pus_axes3_z*inv_w_1_t_24;
-        /* (pus-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
-        const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
-        const real a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x;
-        /* (pus-A3) acceleration of the connection point */
-        const real S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z;
-        const real S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x;
-        const real S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y;
-        const real S_ddot_tip_x = S_ddot_x*axis_x_pus_axes3_x + S_ddot_y*axis_x_pus_axes3_y +
-            S_ddot_z*axis_x_pus_axes3_z;
-        const real S_ddot_tip_y = S_ddot_x*axis_y_pus_axes3_in_base_x +
-            S_ddot_y*axis_y_pus_axes3_in_base_y + S_ddot_z*axis_y_pus_axes3_in_base_z;
-        const real S_ddot_tip_z = S_ddot_x*axis_z_pus_axes3_in_base_x +
-            S_ddot_y*axis_z_pus_axes3_in_base_y + S_ddot_z*axis_z_pus_axes3_in_base_z;
-        /* (pus-A6) acceleration of the connection point left to the joint accelerations */
-        const real rel_x = S_ddot_tip_x + bias_t*omega_2_t_2 + qd_2_t*qd_3;
-        const real rel_y = S_ddot_tip_y + bias_t*omega_2_t;
-        const real rel_z = S_ddot_tip_z - bias_z;
-        /* (pus-A8) acceleration of joint 1 */
-        const real qdd_1 = inv_w_1_t_24*rel_x;
-        const real qdd_3 = inv_pus_platform_joint_offset_x*(qdd_1*w_1_t - rel_y);
-        const real qdd_2 = inv_v_2_t*(c_2*qdd_1 - rel_z);
-        /* (pus-N5) acceleration of the reference point of link 3, less gravity */
-        const real acc_3_x = S_ddot_tip_x + c_3*g_r1_y - g_r0_z*s_3;
-        const real acc_3_y = S_ddot_tip_y + c_3*g_r0_z + g_r1_y*s_3;
-        const real acc_3_z = S_ddot_tip_z + c_2*g_r0_x + g_r0_y*s_2;
-        /* (pus-N1) acceleration of the reference point of link 1, less gravity */
-        const real acc_1_x = -g_r0_x - qdd_1;
-        /* (pus-A14) angular acceleration of link 2 */
-        const real alpha_2_t = qdd_2*s_3;
-        const real alpha_2_t_2 = c_3*qdd_2;
-        /* (pus-A16) angular acceleration of link 3 */
-        const real alpha_3_x = -alpha_2_t - zeta_3_x;
-        const real alpha_3_y = alpha_2_t_2 - zeta_3_y;
-        /* (pus-A19) acceleration tensor of link 3 */
-        const real B_3_xy = qdd_3 - W_3_xy;
-        const real B_3_yx = -W_3_xy - qdd_3;
-        const real B_3_zx = zeta_3_y - alpha_3_y;
-        const real B_3_zy = alpha_3_x - zeta_3_x;
-        /* (pus-N19) inertia moment of the links that turn with link 3, about their reference points */
-        const real mu_3_x = B_3_yx*J_3_xy + B_3_zx*J_3_xz + B_3_zy*Sigma_3_yy - J_3_yz*(W_3_t_2 -
-            W_3_t_3) - Sigma_3_zz*alpha_2_t - acc_3_y*h_3_y - acc_3_z*h_3_z;
-        const real mu_3_y = B_3_xy*J_3_yz + Sigma_3_zz*alpha_2_t_2 + acc_3_x*h_3_y -
-            B_3_zx*Sigma_3_xx - B_3_zy*J_3_xz - J_3_xy*(W_3_t - W_3_t_3) - acc_3_z*h_3_x;
-        const real mu_3_z = B_3_yx*Sigma_3_xx + acc_3_x*h_3_z + acc_3_y*h_3_x - B_3_xy*Sigma_3_yy
-            - J_3_xy*alpha_2_t - J_3_xz*(W_3_t - W_3_t_2) - J_3_yz*alpha_2_t_2;
-        /* (pus-N30) force at the connection point that balances the leg's inertia and weight along all
+        /* (pus-w_2) reciprocal vector 2 */
+        const real pus_w_2_t = pus_c_3*pus_s_2;
+        const real inv_pus_v_2_t = 1/pus_v_2_t;
+        const real inv_pus_w_2_t = 1/pus_w_2_t;
+        /* (pus-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real pus_S_dot_t = omega_y*pus_q_in_base_z - omega_z*pus_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real pus_S_dot_t_2 = omega_z*pus_q_in_base_x - omega_x*pus_q_in_base_z;
+        const real pus_S_dot_t_3 = omega_x*pus_q_in_base_y - omega_y*pus_q_in_base_x;
+        const real t_dot_x = s[12*w + j];
+        const real pus_S_dot_x = pus_S_dot_t + t_dot_x;
+        const real t_dot_y = s[13*w + j];
+        const real pus_S_dot_y = pus_S_dot_t_2 + t_dot_y;
+        const real t_dot_z = s[14*w + j];
+        const real pus_S_dot_z = pus_S_dot_t_3 + t_dot_z;
+        /* (pus-qd_3) rate of joint 3 */
+        const real pus_qd_1 = inv_pus_w_2_t*(axis_x_pus_axes3_x*pus_S_dot_x +
+            axis_x_pus_axes3_y*pus_S_dot_y + axis_x_pus_axes3_z*pus_S_dot_z);
+        const real pus_qd_3_t = axis_y_pus_axes3_in_base_x*pus_S_dot_x +
+            axis_y_pus_axes3_in_base_y*pus_S_dot_y + axis_y_pus_axes3_in_base_z*pus_S_dot_z -
+            pus_qd_1*pus_w_1_t;
+        const real inv_pus_platform_joint_offset_x = m->inv_pus_platform_joint_offset_x[i];
+        const real pus_qd_3 = inv_pus_platform_joint_offset_x*pus_qd_3_t;
+        const real pus_qd_2 = inv_pus_v_2_t*(axis_z_pus_axes3_in_base_x*pus_S_dot_x +
+            axis_z_pus_axes3_in_base_y*pus_S_dot_y + axis_z_pus_axes3_in_base_z*pus_S_dot_z -
+            pus_c_2*pus_qd_1);
+        /* (pus-omega_2) angular velocity of link 2 */
+        const real pus_omega_2_t = pus_qd_2*pus_s_3;
+        const real pus_omega_2_t_2 = pus_c_3*pus_qd_2;
+        /* (pus-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+        const real pus_zeta_3_x = pus_omega_2_t_2*pus_qd_3;
+        const real pus_zeta_3_y = pus_omega_2_t*pus_qd_3;
+        /* (pus-W_3) centripetal tensor of link 3 */
+        const real pus_W_3_t = pus_omega_2_t*pus_omega_2_t;
+        const real pus_W_3_t_2 = pus_omega_2_t_2*pus_omega_2_t_2;
+        const real pus_W_3_t_3 = pus_qd_3*pus_qd_3;
+        const real pus_W_3_xy = pus_omega_2_t*pus_omega_2_t_2;
+        /* (pus-bias) acceleration of the connection point at zero joint accelerations */
+        const real pus_bias_t = pus_omega_2_t_2*pus_platform_joint_offset_x;
+        const real pus_bias_z = pus_omega_2_t*pus_qd_3_t +
+            pus_platform_joint_offset_x*pus_zeta_3_y;
+        /* (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+           link 3, less gravity */
+        const real pus_g_r0_x = m->pus_g_r0_x[i];
+        const real pus_g_r0_y = m->pus_g_r0_y[i];
+        const real pus_g_r1_y = pus_g_r0_x*pus_s_2 - pus_c_2*pus_g_r0_y;
+        /* (pus-w_1) reciprocal vector 1 */
+        const real pus_w_1_t_3 = axis_x_pus_axes3_x*inv_pus_w_2_t;
+        const real pus_w_1_t_4 = axis_x_pus_axes3_y*inv_pus_w_2_t;
+        const real pus_w_1_t_5 = axis_x_pus_axes3_z*inv_pus_w_2_t;
+        /* (pus-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_y = s[22*w + j];
+        const real alpha_z = s[23*w + j];
+        const real t_ddot_x = s[18*w + j];
+        const real pus_a_p_x = t_ddot_x + alpha_y*pus_q_in_base_z - alpha_z*pus_q_in_base_y;
+        const real alpha_x = s[21*w + j];
+        const real t_ddot_y = s[19*w + j];
+        const real pus_a_p_y = t_ddot_y + alpha_z*pus_q_in_base_x - alpha_x*pus_q_in_base_z;
+        const real t_ddot_z = s[20*w + j];
+        const real pus_a_p_z = t_ddot_z + alpha_x*pus_q_in_base_y - alpha_y*pus_q_in_base_x;
+        /* (pus-S_ddot) acceleration of the connection point */
+        const real pus_S_ddot_x = pus_a_p_x + omega_y*pus_S_dot_t_3 - omega_z*pus_S_dot_t_2;
+        const real pus_S_ddot_y = pus_a_p_y + omega_z*pus_S_dot_t - omega_x*pus_S_dot_t_3;
+        const real pus_S_ddot_z = pus_a_p_z + omega_x*pus_S_dot_t_2 - omega_y*pus_S_dot_t;
+        const real pus_S_ddot_tip_x = axis_x_pus_axes3_x*pus_S_ddot_x +
+            axis_x_pus_axes3_y*pus_S_ddot_y + axis_x_pus_axes3_z*pus_S_ddot_z;
+        const real pus_S_ddot_tip_y = axis_y_pus_axes3_in_base_x*pus_S_ddot_x +
+            axis_y_pus_axes3_in_base_y*pus_S_ddot_y + axis_y_pus_axes3_in_base_z*pus_S_ddot_z;
+        const real pus_S_ddot_tip_z = axis_z_pus_axes3_in_base_x*pus_S_ddot_x +
+            axis_z_pus_axes3_in_base_y*pus_S_ddot_y + axis_z_pus_axes3_in_base_z*pus_S_ddot_z;
+        /* (pus-rel) acceleration of the connection point left to the joint accelerations */
+        const real pus_rel_x = pus_S_ddot_tip_x + pus_bias_t*pus_omega_2_t_2 +
+            pus_qd_3*pus_qd_3_t;
+        const real pus_rel_y = pus_S_ddot_tip_y + pus_bias_t*pus_omega_2_t;
+        const real pus_rel_z = pus_S_ddot_tip_z - pus_bias_z;
+        /* (pus-qdd_1) acceleration of joint 1 */
+        const real pus_qdd_1 = inv_pus_w_2_t*pus_rel_x;
+        const real pus_qdd_3 = inv_pus_platform_joint_offset_x*(pus_qdd_1*pus_w_1_t - pus_rel_y);
+        const real pus_qdd_2 = inv_pus_v_2_t*(pus_c_2*pus_qdd_1 - pus_rel_z);
+        /* (pus-acc_3) acceleration of the reference point of link 3, less gravity */
+        const real pus_g_r0_z = m->pus_g_r0_z[i];
+        const real pus_acc_3_x = pus_S_ddot_tip_x + pus_c_3*pus_g_r1_y - pus_g_r0_z*pus_s_3;
+        const real pus_acc_3_y = pus_S_ddot_tip_y + pus_c_3*pus_g_r0_z + pus_g_r1_y*pus_s_3;
+        const real pus_acc_3_z = pus_S_ddot_tip_z + pus_c_2*pus_g_r0_x + pus_g_r0_y*pus_s_2;
+        /* (pus-alpha_2) angular acceleration of link 2 */
+        const real pus_alpha_2_t = pus_qdd_2*pus_s_3;
+        const real pus_alpha_2_t_2 = pus_c_3*pus_qdd_2;
+        /* (pus-alpha_3) angular acceleration of link 3 */
+        const real pus_alpha_3_x = -pus_alpha_2_t - pus_zeta_3_x;
+        const real pus_alpha_3_y = pus_alpha_2_t_2 - pus_zeta_3_y;
+        /* (pus-B_3) acceleration tensor of link 3 */
+        const real pus_B_3_xy = pus_qdd_3 - pus_W_3_xy;
+        const real pus_B_3_yx = -pus_W_3_xy - pus_qdd_3;
+        const real pus_B_3_zx = pus_zeta_3_y - pus_alpha_3_y;
+        const real pus_B_3_zy = pus_alpha_3_x - pus_zeta_3_x;
+        /* (pus-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+        const real pus_J_3_xy = m->pus_J_3_xy[i];
+        const real pus_J_3_xz = m->pus_J_3_xz[i];
+        const real pus_J_3_yz = m->pus_J_3_yz[i];
+        const real pus_Sigma_3_yy = m->pus_Sigma_3_yy[i];
+        const real pus_Sigma_3_zz = m->pus_Sigma_3_zz[i];
+        const real pus_h_3_y = m->pus_h_3_y[i];
+        const real pus_h_3_z = m->pus_h_3_z[i];
+        const real pus_mu_3_x = pus_B_3_yx*pus_J_3_xy + pus_B_3_zx*pus_J_3_xz +
+            pus_B_3_zy*pus_Sigma_3_yy - pus_J_3_yz*(pus_W_3_t_2 - pus_W_3_t_3) -
+            pus_Sigma_3_zz*pus_alpha_2_t - pus_acc_3_y*pus_h_3_y - pus_acc_3_z*pus_h_3_z;
+        const real pus_Sigma_3_xx = m->pus_Sigma_3_xx[i];
+        const real pus_h_3_x = m->pus_h_3_x[i];
+        const real pus_mu_3_y = pus_B_3_xy*pus_J_3_yz + pus_Sigma_3_zz*pus_alpha_2_t_2 +
+            pus_acc_3_x*pus_h_3_y - pus_B_3_zx*pus_Sigma_3_xx - pus_B_3_zy*pus_J_3_xz -
+            pus_J_3_xy*(pus_W_3_t - pus_W_3_t_3) - pus_acc_3_z*pus_h_3_x;
+        const real pus_mu_3_z = pus_B_3_yx*pus_Sigma_3_xx + pus_acc_3_x*pus_h_3_z +
+            pus_acc_3_y*pus_h_3_x - pus_B_3_xy*pus_Sigma_3_yy - pus_J_3_xy*pus_alpha_2_t -
+            pus_J_3_xz*(pus_W_3_t - pus_W_3_t_2) - pus_J_3_yz*pus_alpha_2_t_2;
+        /* (pus-acc_1) acceleration of the reference point of link 1, less gravity */
+        const real pus_acc_1_x = -pus_g_r0_x - pus_qdd_1;
+        /* (pus-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real G_t = inv_v_2_t*(mu_3_x*s_3 - c_3*mu_3_y);
-        const real G_t_2 = inv_pus_platform_joint_offset_x*mu_3_z;
-        /* (pus-N33) leg force on the platform without actuation and without the mass at the connection
+        const real pus_G_t = inv_pus_v_2_t*(pus_mu_3_x*pus_s_3 - pus_c_3*pus_mu_3_y);
+        const real pus_G_t_2 = inv_pus_platform_joint_offset_x*pus_mu_3_z;
+        /* (pus-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_x = B_3_xy*h_3_z + h_3_x*(W_3_t_2 + W_3_t_3) + inv_w_1_t_24*(G_t*c_2 +
-            G_t_2*w_1_t + acc_1_x*pus_link1_mass) - alpha_2_t_2*h_3_y;
-        const real c_y = -G_t_2 - B_3_yx*h_3_x - alpha_2_t*h_3_y - h_3_z*(W_3_t + W_3_t_3);
-        const real c_z = B_3_zy*h_3_z + h_3_y*(W_3_t + W_3_t_2) - G_t - B_3_zx*h_3_x;
-        /* (pus-N38) leg force on the platform without actuation, the last link's mass included */
-        const real c_true_x = c_x - acc_3_x*pus_link3_mass;
-        const real c_true_y = c_y - acc_3_y*pus_link3_mass;
-        const real c_true_z = c_z - acc_3_z*pus_link3_mass;
-        const real c_true_in_base_x = axis_x_pus_axes3_x*c_true_x +
-            axis_y_pus_axes3_in_base_x*c_true_y + axis_z_pus_axes3_in_base_x*c_true_z;
-        const real c_true_in_base_y = axis_x_pus_axes3_y*c_true_x +
-            axis_y_pus_axes3_in_base_y*c_true_y + axis_z_pus_axes3_in_base_y*c_true_z;
-        const real c_true_in_base_z = axis_x_pus_axes3_z*c_true_x +
-            axis_y_pus_axes3_in_base_z*c_true_y + axis_z_pus_axes3_in_base_z*c_true_z;
-        o->entry[0][k] = c_true_in_base_x;
-        o->entry[1][k] = c_true_in_base_y;
-        o->entry[2][k] = c_true_in_base_z;
-        o->entry[3][k] = -w_1_t_4;
-        o->entry[4][k] = -w_1_t_5;
-        o->entry[5][k] = -w_1_t_6;
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_) +
-            UNLESS(magnitude(v_2_t) > TOLERANCE*size_) + UNLESS(magnitude(-w_1_t_3) >
+        const real pus_link1_mass = m->pus_link1_mass[i];
+        const real pus_c_x = inv_pus_w_2_t*(pus_G_t*pus_c_2 + pus_G_t_2*pus_w_1_t +
+            pus_acc_1_x*pus_link1_mass) + pus_B_3_xy*pus_h_3_z + pus_h_3_x*(pus_W_3_t_2 +
+            pus_W_3_t_3) - pus_alpha_2_t_2*pus_h_3_y;
+        const real pus_c_y = -pus_G_t_2 - pus_B_3_yx*pus_h_3_x - pus_alpha_2_t*pus_h_3_y -
+            pus_h_3_z*(pus_W_3_t + pus_W_3_t_3);
+        const real pus_c_z = pus_B_3_zy*pus_h_3_z + pus_h_3_y*(pus_W_3_t + pus_W_3_t_2) - pus_G_t
+            - pus_B_3_zx*pus_h_3_x;
+        /* (pus-c_true) leg force on the platform without actuation, the last link's mass included */
+        const real pus_link3_mass = m->pus_link3_mass[i];
+        const real pus_c_true_x = pus_c_x - pus_acc_3_x*pus_link3_mass;
+        const real pus_c_true_y = pus_c_y - pus_acc_3_y*pus_link3_mass;
+        const real pus_c_true_z = pus_c_z - pus_acc_3_z*pus_link3_mass;
+        const real pus_c_true_in_base_x = axis_x_pus_axes3_x*pus_c_true_x +
+            axis_y_pus_axes3_in_base_x*pus_c_true_y + axis_z_pus_axes3_in_base_x*pus_c_true_z;
+        const real pus_c_true_in_base_y = axis_x_pus_axes3_y*pus_c_true_x +
+            axis_y_pus_axes3_in_base_y*pus_c_true_y + axis_z_pus_axes3_in_base_y*pus_c_true_z;
+        const real pus_c_true_in_base_z = axis_x_pus_axes3_z*pus_c_true_x +
+            axis_y_pus_axes3_in_base_z*pus_c_true_y + axis_z_pus_axes3_in_base_z*pus_c_true_z;
+        o[0*count + k] = pus_c_true_in_base_x;
+        o[1*count + k] = pus_c_true_in_base_y;
+        o[2*count + k] = pus_c_true_in_base_z;
+        o[3*count + k] = -pus_w_1_t_3;
+        o[4*count + k] = -pus_w_1_t_4;
+        o[5*count + k] = -pus_w_1_t_5;
+        const real pus_size_t = m->pus_size_t[i];
+        const real pus_size = m->pus_size[i];
+        o[6*count + k] = UNLESS(pus_disc_1 >= 0);
+        o[7*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t) +
+            UNLESS(magnitude(pus_v_2_t) > TOLERANCE*pus_size) + UNLESS(magnitude(-pus_w_2_t) >
             TOLERANCE*1);
     }
 }
 
-INLINE void legs_place_pus(size_t w, const legs_results_pus *o, size_t leg, size_t first, real
+INLINE void legs_place_pus(size_t w, size_t count, const real *o, size_t leg, size_t first, real
     *leg_force, real *drive, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        leg_force[(3*leg)*w + k] = o->entry[0][first + k];
-        leg_force[(1 + 3*leg)*w + k] = o->entry[1][first + k];
-        leg_force[(2 + 3*leg)*w + k] = o->entry[2][first + k];
-        drive[(3*leg)*w + k] = o->entry[3][first + k];
-        drive[(1 + 3*leg)*w + k] = o->entry[4][first + k];
-        drive[(2 + 3*leg)*w + k] = o->entry[5][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        leg_force[(3*leg)*w + k] = o[0*count + first + k];
+        leg_force[(1 + 3*leg)*w + k] = o[1*count + first + k];
+        leg_force[(2 + 3*leg)*w + k] = o[2*count + first + k];
+        drive[(3*leg)*w + k] = o[3*count + first + k];
+        drive[(1 + 3*leg)*w + k] = o[4*count + first + k];
+        drive[(2 + 3*leg)*w + k] = o[5*count + first + k];
+        t->unreachable[k] += o[6*count + first + k];
+        t->singular[k] += o[7*count + first + k];
     }
 }
 
-INLINE void legs_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
-    real *leg_force, real *drive, verdict *t)
+INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
+    *leg_force, real *drive, verdict *t)
 {
-    legs_values values, *const s = &values;
-    legs_results_pus results_pus;
-    legs_before(w, X, V, A, s, t);
-    if (w == 1) {  /* the legs side by side */
-        legs_legs_pus(m, 0, 1, s, 0, 6, &results_pus);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            legs_place_pus(w, &results_pus, leg, leg, leg_force, drive, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 6; ++leg) {
-            legs_legs_pus(m, leg, 0, s, 1, w, &results_pus);
-            legs_place_pus(w, &results_pus, leg, 0, leg_force, drive, t);
-        }
+    real s[24] = {0}, o_pus[8*LEGS(6)] = {0};
+    legs_before(1, X, V, A, s, t);
+    legs_legs_pus(m, 1, 0, 1, s, 0, LEGS(6), o_pus);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        legs_place_pus(1, LEGS(6), o_pus, leg, leg, leg_force, drive, t);
     }
 }
 
 /* ---- potential: 291 mul, 240 add, 6 div, 12 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], potential_t_3[LANES],
-        sum[1][LANES];
-} potential_values;
-typedef struct {
-    real sum[1][8], unreachable[8], singular[8];
-} potential_results_pus;
-
-INLINE void potential_before(const prepared *m, size_t w, const real *X, potential_values *s,
-    verdict *t)
+INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
+        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+        const real quaternion_scale = 2/quaternion_norm2;
+        const real quaternion_sx = X_3*quaternion_scale;
+        const real quaternion_sy = X_4*quaternion_scale;
+        const real quaternion_sz = X_5*quaternion_scale;
+        const real quaternion_wx = X_6*quaternion_sx;
+        const real quaternion_wy = X_6*quaternion_sy;
+        const real quaternion_wz = X_6*quaternion_sz;
+        const real quaternion_xx = X_3*quaternion_sx;
+        const real quaternion_xy = X_3*quaternion_sy;
+        const real quaternion_xz = X_3*quaternion_sz;
+        const real quaternion_yy = X_4*quaternion_sy;
+        const real quaternion_yz = X_4*quaternion_sz;
+        const real quaternion_zz = X_5*quaternion_sz;
+        const real R_xx = 1 - quaternion_yy - quaternion_zz;
+        const real R_xy = quaternion_xy - quaternion_wz;
+        const real R_xz = quaternion_wy + quaternion_xz;
+        const real R_yx = quaternion_wz + quaternion_xy;
+        const real R_yy = 1 - quaternion_xx - quaternion_zz;
+        const real R_yz = quaternion_yz - quaternion_wx;
+        const real R_zx = quaternion_xz - quaternion_wy;
+        const real R_zy = quaternion_wx + quaternion_yz;
+        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
@@ -4665,226 +4747,175 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, potenti
         const real h_star_y = m->h_star_y;
         const real h_star_z = m->h_star_z;
         const real m_star = m->m_star;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* (V1) potential energy */
-        const real potential_t_3 = gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z +
+        const real potential_t = gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z +
             m_star*t_x) + gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
             gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->potential_t_3[k] = potential_t_3;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = potential_t;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void potential_legs_pus(const prepared *m, size_t leg, size_t legs, const potential_values
-    *s, size_t states, size_t count, int add, potential_results_pus *o)
+INLINE void potential_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real b_r0_x = m->b_r0_x[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real g_r0_z = m->g_r0_z[i];
-        const real h_1_x = m->h_1_x[i];
-        const real h_1_y = m->h_1_y[i];
-        const real h_1_z = m->h_1_z[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real inv_uu_3_t = m->inv_uu_3_t[i];
-        const real potential_t = m->potential_t[i];
-        const real potential_t_2 = m->potential_t_2[i];
-        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
-        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
-        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
-        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
-        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
-        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
-        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
+        /* (pus-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real pus_base_point_x = m->pus_base_point_x[i];
-        const real pus_base_point_y = m->pus_base_point_y[i];
-        const real pus_base_point_z = m->pus_base_point_z[i];
-        const real pus_link1_mass = m->pus_link1_mass[i];
-        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
         const real pus_platform_point_x = m->pus_platform_point_x[i];
         const real pus_platform_point_y = m->pus_platform_point_y[i];
         const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real size_t_ = m->size_t_[i];
-        const real uu_3_t = m->uu_3_t[i];
-        /* (pus-K1) from the base point to the connection point */
-        const real S_x = t_x + R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
+        const real t_x = s[0*w + j];
+        const real pus_S_x = t_x + R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
             R_xz*pus_platform_point_z - pus_base_point_x;
-        const real S_y = t_y + R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real pus_base_point_y = m->pus_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real pus_S_y = t_y + R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
             R_yz*pus_platform_point_z - pus_base_point_y;
-        const real S_z = t_z + R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real pus_base_point_z = m->pus_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real pus_S_z = t_z + R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
             R_zz*pus_platform_point_z - pus_base_point_z;
-        /* (pus-K2) component along axis 1 */
-        const real px_1 = S_x*pus_base_frame_xx + S_y*pus_base_frame_yx + S_z*pus_base_frame_zx;
-        /* (pus-K3) discriminant of the distance equation */
-        const real disc_1_t = S_x*S_x + S_y*S_y + S_z*S_z;
-        const real disc_1 = px_1*px_1 + uu_3_t - disc_1_t;
-        /* (pus-K4) displacement of joint 1 */
-        const real q_1_t = branch_1*root(disc_1);
-        const real q_1 = px_1 + q_1_t;
-        /* (pus-K1) from the base point to the connection point */
-        const real S_r0_y = S_x*pus_base_frame_xy + S_y*pus_base_frame_yy + S_z*pus_base_frame_zy;
-        /* (pus-K9) squared amplitude */
-        const real rho2_2 = S_r0_y*S_r0_y + q_1_t*q_1_t;
-        /* (pus-K11) root, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (pus-K17) cosine of the angle of joint 3 from its reference direction */
-        const real c_3 = inv_uu_3_t*pus_platform_joint_offset_x*root_2;
-        /* (pus-K18) sine of the angle of joint 3 from its reference direction */
-        const real s_3 = inv_uu_3_t*pus_platform_joint_offset_x*(S_x*pus_base_frame_xz +
-            S_y*pus_base_frame_yz + S_z*pus_base_frame_zz);
-        /* (pus-K12) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rho2_2 = 1/rho2_2;
-        const real c_2 = S_r0_y*inv_rho2_2*root_2;
-        /* (pus-K13) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_rho2_2*q_1_t*root_2;
-        /* (pus-N25) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
-           and weight */
-        const real d_Gamma_2_t = h_3_z*s_3 - c_3*h_3_x;
-        /* (V1) potential energy */
-        const real potential_t_4 = g_r0_x*(h_1_x + d_Gamma_2_t*s_2 + pus_link1_mass*(b_r0_x + q_1)
-            - c_2*h_3_y) + g_r0_y*(h_1_y + potential_t - c_2*d_Gamma_2_t - h_3_y*s_2) +
-            g_r0_z*(h_1_z + potential_t_2 + c_3*h_3_z + h_3_x*s_3);
-        o->sum[0][k] = add ? o->sum[0][k] + potential_t_4 : potential_t_4;  /* total_pus */
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_);
+        /* (pus-px_1) component along axis 1 */
+        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
+        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
+        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
+        const real pus_px_1 = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
+            pus_S_z*pus_base_frame_zx;
+        /* (pus-disc_1) discriminant of the distance equation */
+        const real pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
+        const real pus_disc_1_t = m->pus_disc_1_t[i];
+        const real pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2;
+        /* (pus-q_1) displacement of joint 1 */
+        const real pus_branch_1 = m->pus_branch_1[i];
+        const real pus_q_1_t = pus_branch_1*root(pus_disc_1);
+        const real pus_q_1 = pus_px_1 + pus_q_1_t;
+        /* (pus-S) from the base point to the connection point */
+        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
+        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
+        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
+        const real pus_S_r0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
+            pus_S_z*pus_base_frame_zy;
+        /* (pus-rho2_2) squared amplitude */
+        const real pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t;
+        /* (pus-root_2) root, with the sign of the branch */
+        const real pus_branch_2 = m->pus_branch_2[i];
+        const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
+        /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_pus_disc_1_t_6 = m->inv_pus_disc_1_t_6[i];
+        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
+        const real pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2;
+        /* (pus-s_3) sine of the angle of joint 3 from its reference direction */
+        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
+        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
+        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
+        const real pus_s_3 =
+            inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
+        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_pus_rho2_2 = 1/pus_rho2_2;
+        const real pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2;
+        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2;
+        /* (pus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real pus_h_3_x = m->pus_h_3_x[i];
+        const real pus_h_3_z = m->pus_h_3_z[i];
+        const real pus_d_Gamma_2_t = pus_h_3_z*pus_s_3 - pus_c_3*pus_h_3_x;
+        /* (potential) potential energy */
+        const real pus_b_r0_x = m->pus_b_r0_x[i];
+        const real pus_g_r0_x = m->pus_g_r0_x[i];
+        const real pus_g_r0_y = m->pus_g_r0_y[i];
+        const real pus_g_r0_z = m->pus_g_r0_z[i];
+        const real pus_h_1_x = m->pus_h_1_x[i];
+        const real pus_h_1_y = m->pus_h_1_y[i];
+        const real pus_h_1_z = m->pus_h_1_z[i];
+        const real pus_h_3_y = m->pus_h_3_y[i];
+        const real pus_link1_mass = m->pus_link1_mass[i];
+        const real pus_potential_t = m->pus_potential_t[i];
+        const real pus_potential_t_2 = m->pus_potential_t_2[i];
+        const real pus_potential_t_3 = pus_g_r0_x*(pus_h_1_x + pus_d_Gamma_2_t*pus_s_2 +
+            pus_link1_mass*(pus_b_r0_x + pus_q_1) - pus_c_2*pus_h_3_y) + pus_g_r0_y*(pus_h_1_y +
+            pus_potential_t - pus_c_2*pus_d_Gamma_2_t - pus_h_3_y*pus_s_2) + pus_g_r0_z*(pus_h_1_z
+            + pus_potential_t_2 + pus_c_3*pus_h_3_z + pus_h_3_x*pus_s_3);
+        terms[0*count + k] = add ? terms[0*count + k] + pus_potential_t_3 : pus_potential_t_3;  /* total_pus */
+        const real pus_size_t = m->pus_size_t[i];
+        o[0*count + k] = UNLESS(pus_disc_1 >= 0);
+        o[1*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t);
     }
 }
 
-INLINE void potential_place_pus(size_t w, const potential_results_pus *o, size_t first, verdict
-    *t)
+INLINE void potential_place_pus(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        t->unreachable[k] += o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
     }
 }
 
-INLINE void potential_after(size_t w, const potential_values *s, real *potential)
+INLINE void potential_after(size_t w, const real *s, const real *sums, real *potential)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real potential_t_3 = s->potential_t_3[k];
-        const real total_pus = s->sum[0][k];
-        /* (V1) potential energy */
-        const real potential_ = -potential_t_3 - total_pus;
+        /* (potential) potential energy */
+        const real potential_t = s[12*w + k];
+        const real total_pus = sums[0*w + k];
+        const real potential_ = -potential_t - total_pus;
         potential[0*w + k] = potential_;
     }
 }
 
-INLINE void potential_run(const prepared *m, size_t w, const real *X, real *potential, verdict *t)
+INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    potential_values values, *const s = &values;
-    potential_results_pus results_pus;
-    potential_before(m, w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        memset(results_pus.sum, 0, sizeof results_pus.sum);
-        potential_legs_pus(m, 0, 1, s, 0, 6, 0, &results_pus);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            potential_place_pus(w, &results_pus, leg, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_pus.sum[n], 6);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_pus.sum, 0, sizeof results_pus.sum);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            potential_legs_pus(m, leg, 0, s, 1, w, 1, &results_pus);
-            potential_place_pus(w, &results_pus, 0, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_pus.sum[n][k];
-            }
-        }
+    real s[13] = {0}, sums[1] = {0}, terms_pus[1*LEGS(6)] = {0}, o_pus[2*LEGS(6)] = {0};
+    potential_before(m, 1, X, s, t);
+    potential_legs_pus(m, 1, 0, 1, s, 0, LEGS(6), 0, terms_pus, o_pus);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        potential_place_pus(1, LEGS(6), o_pus, leg, t);
     }
-    potential_after(w, s, potential);
+    for (size_t n = 0; n < 1; ++n) {
+        sums[n] = total(terms_pus + n*LEGS(6), 6);
+    }
+    potential_after(1, s, sums, potential);
 }
 
 /* ---- condition: 439 mul, 276 add, 12 div, 19 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], sum[1][LANES];
-} condition_values;
-typedef struct {
-    real sum[1][8], entry[8][8], unreachable[8], singular[8];
-} condition_results_pus;
-
-INLINE void condition_before(const prepared *m, size_t w, const real *X, condition_values *s, real
-    *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real legs_size = m->legs_size;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -4908,429 +4939,961 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, conditi
         const real R_zx = quaternion_xz - quaternion_wy;
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
+        t->total[k] += legs_size;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void condition_legs_pus(const prepared *m, size_t leg, size_t legs, const condition_values
-    *s, size_t states, size_t count, int add, condition_results_pus *o)
+INLINE void condition_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real b_c_x = m->b_c_x;
-        const real b_c_y = m->b_c_y;
-        const real b_c_z = m->b_c_z;
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real inv_size = m->inv_size[i];
-        const real inv_size_t = m->inv_size_t[i];
-        const real inv_uu_3_t = m->inv_uu_3_t[i];
-        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
-        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
-        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
-        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
-        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
-        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
-        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
-        const real pus_base_point_x = m->pus_base_point_x[i];
-        const real pus_base_point_y = m->pus_base_point_y[i];
-        const real pus_base_point_z = m->pus_base_point_z[i];
-        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
+        /* (pus-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real pus_platform_point_x = m->pus_platform_point_x[i];
         const real pus_platform_point_y = m->pus_platform_point_y[i];
         const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real size_ = m->size_[i];
-        const real size_t_ = m->size_t_[i];
-        const real uu_3_t = m->uu_3_t[i];
-        /* (pus-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
+        const real pus_q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
             R_xz*pus_platform_point_z;
-        const real q_in_base_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real pus_q_in_base_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
             R_yz*pus_platform_point_z;
-        const real q_in_base_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real pus_q_in_base_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
             R_zz*pus_platform_point_z;
-        const real S_x = q_in_base_x + t_x - pus_base_point_x;
-        const real S_y = q_in_base_y + t_y - pus_base_point_y;
-        const real S_z = q_in_base_z + t_z - pus_base_point_z;
-        /* (pus-K2) component along axis 1 */
-        const real px_1 = S_x*pus_base_frame_xx + S_y*pus_base_frame_yx + S_z*pus_base_frame_zx;
-        /* (pus-K3) discriminant of the distance equation */
-        const real disc_1_t = S_x*S_x + S_y*S_y + S_z*S_z;
-        const real disc_1 = px_1*px_1 + uu_3_t - disc_1_t;
-        /* (pus-K4) displacement of joint 1 */
-        const real q_1_t = branch_1*root(disc_1);
-        /* (pus-K1) from the base point to the connection point */
-        const real S_r0_y = S_x*pus_base_frame_xy + S_y*pus_base_frame_yy + S_z*pus_base_frame_zy;
-        /* (pus-K9) squared amplitude */
-        const real rho2_2 = S_r0_y*S_r0_y + q_1_t*q_1_t;
-        /* (pus-K11) root, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (pus-K17) cosine of the angle of joint 3 from its reference direction */
-        const real c_3 = inv_uu_3_t*pus_platform_joint_offset_x*root_2;
-        /* (pus-K18) sine of the angle of joint 3 from its reference direction */
-        const real s_3 = inv_uu_3_t*pus_platform_joint_offset_x*(S_x*pus_base_frame_xz +
-            S_y*pus_base_frame_yz + S_z*pus_base_frame_zz);
-        /* (pus-V2) velocity of the connection point per rate of joint 2 */
-        const real v_2_t = c_3*pus_platform_joint_offset_x;
-        /* (pus-K12) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rho2_2 = 1/rho2_2;
-        const real c_2 = S_r0_y*inv_rho2_2*root_2;
-        /* (pus-K13) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_rho2_2*q_1_t*root_2;
-        /* (pus-V4) reciprocal vector 1 */
-        const real axis_z_pus_axes3_in_base_x = -c_2*pus_base_frame_xx - pus_base_frame_xy*s_2;
-        const real axis_z_pus_axes3_in_base_y = -c_2*pus_base_frame_yx - pus_base_frame_yy*s_2;
-        const real axis_z_pus_axes3_in_base_z = -c_2*pus_base_frame_zx - pus_base_frame_zy*s_2;
-        const real w_1_t = s_2*s_3;
-        const real w_1_t_2 = c_2*s_3;
-        const real axis_y_pus_axes3_in_base_x = pus_base_frame_xy*w_1_t_2 - c_3*pus_base_frame_xz
-            - pus_base_frame_xx*w_1_t;
-        const real axis_y_pus_axes3_in_base_y = pus_base_frame_yy*w_1_t_2 - c_3*pus_base_frame_yz
-            - pus_base_frame_yx*w_1_t;
-        const real axis_y_pus_axes3_in_base_z = pus_base_frame_zy*w_1_t_2 - c_3*pus_base_frame_zz
-            - pus_base_frame_zx*w_1_t;
-        const real w_1_t_3 = c_3*s_2;
-        const real inv_w_1_t_24 = 1/w_1_t_3;
-        const real w_1_t_4 = inv_w_1_t_24*(axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
+        const real pus_base_point_x = m->pus_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x;
+        const real pus_base_point_y = m->pus_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y;
+        const real pus_base_point_z = m->pus_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z;
+        /* (pus-px_1) component along axis 1 */
+        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
+        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
+        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
+        const real pus_px_1 = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
+            pus_S_z*pus_base_frame_zx;
+        /* (pus-disc_1) discriminant of the distance equation */
+        const real pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
+        const real pus_disc_1_t = m->pus_disc_1_t[i];
+        const real pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2;
+        /* (pus-q_1) displacement of joint 1 */
+        const real pus_branch_1 = m->pus_branch_1[i];
+        const real pus_q_1_t = pus_branch_1*root(pus_disc_1);
+        /* (pus-S) from the base point to the connection point */
+        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
+        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
+        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
+        const real pus_S_r0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
+            pus_S_z*pus_base_frame_zy;
+        /* (pus-rho2_2) squared amplitude */
+        const real pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t;
+        /* (pus-root_2) root, with the sign of the branch */
+        const real pus_branch_2 = m->pus_branch_2[i];
+        const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
+        /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_pus_disc_1_t_6 = m->inv_pus_disc_1_t_6[i];
+        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
+        const real pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2;
+        /* (pus-s_3) sine of the angle of joint 3 from its reference direction */
+        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
+        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
+        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
+        const real pus_s_3 =
+            inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
+        /* (pus-v_2) velocity of the connection point per rate of joint 2 */
+        const real pus_v_2_t = pus_c_3*pus_platform_joint_offset_x;
+        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_pus_rho2_2 = 1/pus_rho2_2;
+        const real pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2;
+        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2;
+        /* (pus-w_1) reciprocal vector 1 */
+        const real axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 -
+            pus_base_frame_xy*pus_s_2;
+        const real axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 -
+            pus_base_frame_yy*pus_s_2;
+        const real axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 -
+            pus_base_frame_zy*pus_s_2;
+        const real pus_w_1_t = pus_s_2*pus_s_3;
+        const real pus_w_1_t_2 = pus_c_2*pus_s_3;
+        const real axis_y_pus_axes3_in_base_x = pus_base_frame_xy*pus_w_1_t_2 -
+            pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3;
+        const real axis_y_pus_axes3_in_base_y = pus_base_frame_yy*pus_w_1_t_2 -
+            pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3;
+        const real axis_y_pus_axes3_in_base_z = pus_base_frame_zy*pus_w_1_t_2 -
+            pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3;
+        /* (pus-w_2) reciprocal vector 2 */
+        const real pus_w_2_t = pus_c_3*pus_s_2;
+        const real inv_pus_w_2_t = 1/pus_w_2_t;
+        /* (pus-w_1) reciprocal vector 1 */
+        const real pus_w_1_t_3 =
+            inv_pus_w_2_t*(axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
             axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y);
-        const real w_1_t_5 = inv_w_1_t_24*(axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
+        const real pus_w_1_t_4 =
+            inv_pus_w_2_t*(axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
             axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_z);
-        const real w_1_t_6 = inv_w_1_t_24*(axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
+        const real pus_w_1_t_5 =
+            inv_pus_w_2_t*(axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
             axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x);
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_1_x = q_in_base_z*w_1_t_5 - q_in_base_y*w_1_t_6;
-        const real H_a_1_y = q_in_base_x*w_1_t_6 - q_in_base_z*w_1_t_4;
-        const real H_a_1_z = q_in_base_y*w_1_t_4 - q_in_base_x*w_1_t_5;
-        /* (C2) rms distance of the platform points from their centroid */
-        const real spread_t_2 = b_c_x - pus_platform_point_x;
-        const real spread_t_3 = b_c_y - pus_platform_point_y;
-        const real spread_t_4 = b_c_z - pus_platform_point_z;
-        const real spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 +
-            spread_t_4*spread_t_4;
-        /* (pus-K9) squared amplitude */
-        const real pivot_size = magnitude(rho2_2);
-        /* (pus-V4) reciprocal vector 1 */
-        const real pivot_size_2 = magnitude(v_2_t);
-        const real pivot_size_3 = magnitude(w_1_t_3);
-        /* (pus-N30) force at the connection point that balances the leg's inertia and weight along all
+        /* (pus-H_a_1) moment of the column's unit force about the platform origin */
+        const real pus_H_a_1_x = pus_q_in_base_z*pus_w_1_t_4 - pus_q_in_base_y*pus_w_1_t_5;
+        const real pus_H_a_1_y = pus_q_in_base_x*pus_w_1_t_5 - pus_q_in_base_z*pus_w_1_t_3;
+        const real pus_H_a_1_z = pus_q_in_base_y*pus_w_1_t_3 - pus_q_in_base_x*pus_w_1_t_4;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_x = m->b_c_x;
+        const real pus_spread_t = b_c_x - pus_platform_point_x;
+        const real b_c_y = m->b_c_y;
+        const real pus_spread_t_2 = b_c_y - pus_platform_point_y;
+        const real b_c_z = m->b_c_z;
+        const real pus_spread_t_3 = b_c_z - pus_platform_point_z;
+        const real pus_spread_t_4 = pus_spread_t*pus_spread_t + pus_spread_t_2*pus_spread_t_2 +
+            pus_spread_t_3*pus_spread_t_3;
+        /* (pus-rho2_2) squared amplitude */
+        const real pus_pivot_size = magnitude(pus_rho2_2);
+        /* (pus-w_2) reciprocal vector 2 */
+        const real pus_pivot_size_2 = magnitude(pus_v_2_t);
+        const real pus_pivot_size_3 = magnitude(pus_w_2_t);
+        /* (pus-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real least_pivots = lesser(lesser(pivot_size_3, inv_size*pivot_size_2),
-            root(inv_size_t*pivot_size));
-        o->sum[0][k] = add ? o->sum[0][k] + spread_t_5 : spread_t_5;  /* total_pus */
-        o->entry[0][k] = -w_1_t_4;
-        o->entry[1][k] = -w_1_t_5;
-        o->entry[2][k] = -w_1_t_6;
-        o->entry[3][k] = H_a_1_x;
-        o->entry[4][k] = H_a_1_y;
-        o->entry[5][k] = H_a_1_z;
-        o->entry[6][k] = least_pivots;
-        o->entry[7][k] = disc_1;
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_) +
-            UNLESS(magnitude(v_2_t) > TOLERANCE*size_) + UNLESS(magnitude(-w_1_t_3) >
+        const real inv_pus_size = m->inv_pus_size[i];
+        const real inv_pus_size_t = m->inv_pus_size_t[i];
+        const real pus_least_pivots = lesser(lesser(pus_pivot_size_3,
+            inv_pus_size*pus_pivot_size_2), root(inv_pus_size_t*pus_pivot_size));
+        terms[0*count + k] = add ? terms[0*count + k] + pus_spread_t_4 : pus_spread_t_4;  /* total_pus */
+        o[0*count + k] = -pus_w_1_t_3;
+        o[1*count + k] = -pus_w_1_t_4;
+        o[2*count + k] = -pus_w_1_t_5;
+        o[3*count + k] = pus_H_a_1_x;
+        o[4*count + k] = pus_H_a_1_y;
+        o[5*count + k] = pus_H_a_1_z;
+        o[6*count + k] = pus_least_pivots;
+        o[7*count + k] = pus_disc_1;
+        o[10*count + k] = ((pus_w_1_t_3 + pus_w_1_t_4) + (pus_w_1_t_5 + pus_H_a_1_x)) +
+            ((pus_H_a_1_y + pus_H_a_1_z) + (pus_least_pivots + pus_disc_1));
+        const real pus_size_t = m->pus_size_t[i];
+        const real pus_size = m->pus_size[i];
+        o[8*count + k] = UNLESS(pus_disc_1 >= 0);
+        o[9*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t) +
+            UNLESS(magnitude(pus_v_2_t) > TOLERANCE*pus_size) + UNLESS(magnitude(-pus_w_2_t) >
             TOLERANCE*1);
     }
 }
 
-INLINE void condition_place_pus(size_t w, const condition_results_pus *o, size_t leg, size_t
-    first, real *H, real *pivots, real *reach, verdict *t)
+INLINE void condition_place_pus(size_t w, size_t count, const real *o, size_t leg, size_t first,
+    real *H, real *pivots, real *reach, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(6 + leg)*w + k] = o->entry[1][first + k];
-        H[(12 + leg)*w + k] = o->entry[2][first + k];
-        H[(18 + leg)*w + k] = o->entry[3][first + k];
-        H[(24 + leg)*w + k] = o->entry[4][first + k];
-        H[(30 + leg)*w + k] = o->entry[5][first + k];
-        pivots[(leg)*w + k] = o->entry[6][first + k];
-        reach[(leg)*w + k] = o->entry[7][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(6 + leg)*w + k] = o[1*count + first + k];
+        H[(12 + leg)*w + k] = o[2*count + first + k];
+        H[(18 + leg)*w + k] = o[3*count + first + k];
+        H[(24 + leg)*w + k] = o[4*count + first + k];
+        H[(30 + leg)*w + k] = o[5*count + first + k];
+        pivots[(leg)*w + k] = o[6*count + first + k];
+        reach[(leg)*w + k] = o[7*count + first + k];
+        t->unreachable[k] += o[8*count + first + k];
+        t->singular[k] += o[9*count + first + k];
+        t->total[k] += o[10*count + first + k];
     }
 }
 
-INLINE void condition_after(const prepared *m, size_t w, const condition_values *s, real *lengths)
+INLINE void condition_after(const prepared *m, size_t w, const real *sums, real *lengths, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real total_pus = s->sum[0][k];
+        /* (spread) rms distance of the platform points from their centroid */
         const real spread_t = m->spread_t;
-        /* (C2) rms distance of the platform points from their centroid */
+        const real total_pus = sums[0*w + k];
         const real spread_ = spread_t*root(total_pus);
         lengths[0*w + k] = spread_;
+        t->total[k] += spread_;
     }
 }
 
-INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, real *lengths, real
-    *pivots, real *reach, verdict *t)
+INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
+    real *reach, verdict *t)
 {
-    condition_values values, *const s = &values;
-    condition_results_pus results_pus;
-    condition_before(m, w, X, s, lengths, t);
-    if (w == 1) {  /* the legs side by side */
-        memset(results_pus.sum, 0, sizeof results_pus.sum);
-        condition_legs_pus(m, 0, 1, s, 0, 6, 0, &results_pus);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            condition_place_pus(w, &results_pus, leg, leg, H, pivots, reach, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_pus.sum[n], 6);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_pus.sum, 0, sizeof results_pus.sum);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            condition_legs_pus(m, leg, 0, s, 1, w, 1, &results_pus);
-            condition_place_pus(w, &results_pus, leg, 0, H, pivots, reach, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_pus.sum[n][k];
-            }
-        }
+    real s[12] = {0}, sums[1] = {0}, terms_pus[1*LEGS(6)] = {0}, o_pus[11*LEGS(6)] = {0};
+    condition_before(m, 1, X, s, lengths, t);
+    condition_legs_pus(m, 1, 0, 1, s, 0, LEGS(6), 0, terms_pus, o_pus);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        condition_place_pus(1, LEGS(6), o_pus, leg, leg, H, pivots, reach, t);
     }
-    condition_after(m, w, s, lengths);
+    for (size_t n = 0; n < 1; ++n) {
+        sums[n] = total(terms_pus + n*LEGS(6), 6);
+    }
+    condition_after(m, 1, sums, lengths, t);
 }
 
 /* ---- what users call, as steps over these ---- */
 
-INLINE void M_any(const prepared *m, size_t w, const real *X, real *M_out, int *code)
+INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    M_run(m, X, M_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(36, 1, M_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(36, M_out);
+    }
+}
+
+INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
     real X_in[7*LANES], M[36*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    M_run(m, w, X, M, &why);
-    check(36, w, M, why.overflow);
-    judge(&why, w, code);
-    deliver(M, 36, w, code, M_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    M_run_lanes(m, X, M, &why);
+    suspect(&why, code);
+    deliver(36, M, M_out);
 }
 
-INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, real *Z_out, int
-    *code)
+INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    Z_run(m, X, V, Z_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(6, 1, Z_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(6, Z_out);
+    }
+}
+
+INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     real X_in[7*LANES], V_in[6*LANES], Z[6*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    Z_run(m, w, X, V, Z, &why);
-    check(6, w, Z, why.overflow);
-    judge(&why, w, code);
-    deliver(Z, 6, w, code, Z_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    Z_run_lanes(m, X, V, Z, &why);
+    suspect(&why, code);
+    deliver(6, Z, Z_out);
 }
 
-INLINE void H_any(const prepared *m, size_t w, const real *X, real *H_out, int *code)
+INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    H_run(m, X, H_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(36, 1, H_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(36, H_out);
+    }
+}
+
+INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
     real X_in[7*LANES], H[36*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    H_run(m, w, X, H, &why);
-    check(36, w, H, why.overflow);
-    judge(&why, w, code);
-    deliver(H, 36, w, code, H_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    H_run_lanes(m, X, H, &why);
+    suspect(&why, code);
+    deliver(36, H, H_out);
 }
 
-INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, real *q_out, int
-    *code)
+INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(18, 1, q_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(18, q_out);
+    }
+}
+
+INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     real X_in[7*LANES], q[18*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    inverse_kinematics_run(m, w, X, q, &why);
-    check(18, w, q, why.overflow);
-    judge(&why, w, code);
-    deliver(q, 18, w, code, q_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    suspect(&why, code);
+    deliver(18, q, q_out);
 }
 
-INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *qd_out, int *code)
+INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    joint_rates_run(m, X, V, qd_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(18, 1, qd_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(18, qd_out);
+    }
+}
+
+INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
 {
     real X_in[7*LANES], V_in[6*LANES], qd[18*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    joint_rates_run(m, w, X, V, qd, &why);
-    check(18, w, qd, why.overflow);
-    judge(&why, w, code);
-    deliver(qd, 18, w, code, qd_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    joint_rates_run_lanes(m, X, V, qd, &why);
+    suspect(&why, code);
+    deliver(18, qd, qd_out);
 }
 
-INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd_out, int *code)
+INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+        check(6, 1, A, why.invalid);
+    }
+    joint_accelerations_run(m, X, V, A, qdd_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(18, 1, qdd_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(18, qdd_out);
+    }
+}
+
+INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
 {
     real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], qdd[18*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    A = side_by_side(6, w, A, A_in, why.invalid);
-    joint_accelerations_run(m, w, X, V, A, qdd, &why);
-    check(18, w, qdd, why.overflow);
-    judge(&why, w, code);
-    deliver(qdd, 18, w, code, qdd_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    A = side_by_side(6, A, A_in, why.total);
+    joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
+    suspect(&why, code);
+    deliver(18, qdd, qdd_out);
 }
 
-INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *V, real *M_out,
-    real *Z_out, real *H_out, int *code)
+INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    dynamics_run(m, X, V, M_out, Z_out, H_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(36, 1, M_out, why.overflow);
+        check(6, 1, Z_out, why.overflow);
+        check(36, 1, H_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(36, M_out);
+        refuse(6, Z_out);
+        refuse(36, H_out);
+    }
+}
+
+INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out, int *code)
 {
     real X_in[7*LANES], V_in[6*LANES], M[36*LANES], Z[6*LANES], H[36*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    dynamics_run(m, w, X, V, M, Z, H, &why);
-    check(36, w, M, why.overflow);
-    check(6, w, Z, why.overflow);
-    check(36, w, H, why.overflow);
-    judge(&why, w, code);
-    deliver(M, 36, w, code, M_out);
-    deliver(Z, 6, w, code, Z_out);
-    deliver(H, 36, w, code, H_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    dynamics_run_lanes(m, X, V, M, Z, H, &why);
+    suspect(&why, code);
+    deliver(36, M, M_out);
+    deliver(6, Z, Z_out);
+    deliver(36, H, H_out);
 }
 
-INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, const real *V, const
-    real *A, const real *wrench, real *tau_out, int *code)
+INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, real *x, real
+    *unsure, real *total)
 {
-    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], wrench_in[6*LANES], required[6*LANES],
-        H[36*LANES], subtract_2[6*LANES], tau[6*LANES], work[48*LANES];
+    for (size_t k = 0; k < w; ++k) {
+        real a00 = a[(0)*w + k];
+        real a01 = a[(1)*w + k];
+        real a02 = a[(2)*w + k];
+        real a03 = a[(3)*w + k];
+        real a04 = a[(4)*w + k];
+        real a05 = a[(5)*w + k];
+        real b0 = b[0*w + k];
+        real a10 = a[(1*stride + 0)*w + k];
+        real a11 = a[(1*stride + 1)*w + k];
+        real a12 = a[(1*stride + 2)*w + k];
+        real a13 = a[(1*stride + 3)*w + k];
+        real a14 = a[(1*stride + 4)*w + k];
+        real a15 = a[(1*stride + 5)*w + k];
+        real b1 = b[1*w + k];
+        real a20 = a[(5*stride + 0)*w + k];
+        real a21 = a[(5*stride + 1)*w + k];
+        real a22 = a[(5*stride + 2)*w + k];
+        real a23 = a[(5*stride + 3)*w + k];
+        real a24 = a[(5*stride + 4)*w + k];
+        real a25 = a[(5*stride + 5)*w + k];
+        real b2 = b[5*w + k];
+        real a30 = a[(2*stride + 0)*w + k];
+        real a31 = a[(2*stride + 1)*w + k];
+        real a32 = a[(2*stride + 2)*w + k];
+        real a33 = a[(2*stride + 3)*w + k];
+        real a34 = a[(2*stride + 4)*w + k];
+        real a35 = a[(2*stride + 5)*w + k];
+        real b3 = b[2*w + k];
+        real a40 = a[(4*stride + 0)*w + k];
+        real a41 = a[(4*stride + 1)*w + k];
+        real a42 = a[(4*stride + 2)*w + k];
+        real a43 = a[(4*stride + 3)*w + k];
+        real a44 = a[(4*stride + 4)*w + k];
+        real a45 = a[(4*stride + 5)*w + k];
+        real b4 = b[4*w + k];
+        real a50 = a[(3*stride + 0)*w + k];
+        real a51 = a[(3*stride + 1)*w + k];
+        real a52 = a[(3*stride + 2)*w + k];
+        real a53 = a[(3*stride + 3)*w + k];
+        real a54 = a[(3*stride + 4)*w + k];
+        real a55 = a[(3*stride + 5)*w + k];
+        real b5 = b[3*w + k];
+        const real f0 = 1/a00;
+        const real d1 = a00*a11 - a10*a01;
+        const real f1 = a00/d1;
+        const real g10 = a10*f0;
+        a12 -= g10*a02;
+        a13 -= g10*a03;
+        a14 -= g10*a04;
+        a15 -= g10*a05;
+        b1 -= g10*b0;
+        const real g20 = a20*f0;
+        a21 -= g20*a01;
+        a22 -= g20*a02;
+        a23 -= g20*a03;
+        a24 -= g20*a04;
+        a25 -= g20*a05;
+        b2 -= g20*b0;
+        const real g30 = a30*f0;
+        a31 -= g30*a01;
+        a32 -= g30*a02;
+        a33 -= g30*a03;
+        a34 -= g30*a04;
+        a35 -= g30*a05;
+        b3 -= g30*b0;
+        const real g40 = a40*f0;
+        a41 -= g40*a01;
+        a42 -= g40*a02;
+        a43 -= g40*a03;
+        a44 -= g40*a04;
+        a45 -= g40*a05;
+        b4 -= g40*b0;
+        const real g50 = a50*f0;
+        a51 -= g50*a01;
+        a52 -= g50*a02;
+        a53 -= g50*a03;
+        a54 -= g50*a04;
+        a55 -= g50*a05;
+        b5 -= g50*b0;
+        const real g21 = a21*f1;
+        a22 -= g21*a12;
+        a23 -= g21*a13;
+        a24 -= g21*a14;
+        a25 -= g21*a15;
+        b2 -= g21*b1;
+        const real g31 = a31*f1;
+        a32 -= g31*a12;
+        a33 -= g31*a13;
+        a34 -= g31*a14;
+        a35 -= g31*a15;
+        b3 -= g31*b1;
+        const real g41 = a41*f1;
+        a42 -= g41*a12;
+        a43 -= g41*a13;
+        a44 -= g41*a14;
+        a45 -= g41*a15;
+        b4 -= g41*b1;
+        const real g51 = a51*f1;
+        a52 -= g51*a12;
+        a53 -= g51*a13;
+        a54 -= g51*a14;
+        a55 -= g51*a15;
+        b5 -= g51*b1;
+        const real f2 = 1/a22;
+        const real d3 = a22*a33 - a32*a23;
+        const real f3 = a22/d3;
+        const real g32 = a32*f2;
+        a34 -= g32*a24;
+        a35 -= g32*a25;
+        b3 -= g32*b2;
+        const real g42 = a42*f2;
+        a43 -= g42*a23;
+        a44 -= g42*a24;
+        a45 -= g42*a25;
+        b4 -= g42*b2;
+        const real g52 = a52*f2;
+        a53 -= g52*a23;
+        a54 -= g52*a24;
+        a55 -= g52*a25;
+        b5 -= g52*b2;
+        const real g43 = a43*f3;
+        a44 -= g43*a34;
+        a45 -= g43*a35;
+        b4 -= g43*b3;
+        const real g53 = a53*f3;
+        a54 -= g53*a34;
+        a55 -= g53*a35;
+        b5 -= g53*b3;
+        const real f4 = 1/a44;
+        const real d5 = a44*a55 - a54*a45;
+        const real f5 = a44/d5;
+        const real g54 = a54*f4;
+        b5 -= g54*b4;
+        const real x5 = (b5)*f5;
+        const real x4 = (b4)*f4 - a45*f4*x5;
+        const real x3 = (b3 - a35*x5)*f3 - a34*f3*x4;
+        const real x2 = (b2 - a25*x5 - a24*x4)*f2 - a23*f2*x3;
+        const real x1 = (b1 - a15*x5 - a14*x4 - a13*x3)*f1 - a12*f1*x2;
+        const real x0 = (b0 - a05*x5 - a04*x4 - a03*x3 - a02*x2)*f0 - a01*f0*x1;
+        x[0*w + k] = x0;
+        x[1*w + k] = x1;
+        x[2*w + k] = x2;
+        x[3*w + k] = x3;
+        x[4*w + k] = x4;
+        x[5*w + k] = x5;
+        total[k] += (x0 + (x1 + x2)) + (x3 + (x4 + x5));
+        const real most0 = larger(larger(larger(magnitude(g20), magnitude(g40)),
+            larger(magnitude(g50), magnitude(g21))), larger(larger(magnitude(g41),
+            magnitude(g51)), larger(magnitude(g43), magnitude(g53))));
+        const real most1 = larger(larger(magnitude(g10), larger(magnitude(g30), magnitude(g31))),
+            larger(magnitude(g42), larger(magnitude(g52), magnitude(g54))));
+        const real most2 = magnitude(g32);
+        const real most3 = larger(magnitude(f0), larger(magnitude(f1), magnitude(f3)));
+        const real most4 = larger(magnitude(f2), larger(magnitude(f4), magnitude(f5)));
+        unsure[k] += UNLESS(most0 <= R(2.5)) + UNLESS(most1 <= R(10)) + UNLESS(most2 <= R(40)) +
+            UNLESS(most3 <= R(1000)) + UNLESS(most4 <= R(4000)) + UNLESS(is_finite(a00 + d1 + a22
+            + d3 + a44 + d5));
+    }
+}
+
+INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau_out, int *code)
+{
+    real wrench_in[6], required[6] = {0}, H[36] = {0}, subtract_2[6] = {0}, unsure_4[1] = {0},
+        work[48];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    A = side_by_side(6, w, A, A_in, why.invalid);
-    wrench = optional(6, w, wrench, 0, wrench_in, why.invalid);
-    required_run(m, w, X, V, A, required, H, &why);
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+        check(6, 1, A, why.invalid);
+    }
+    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    required_run(m, X, V, A, required, H, &why);
     const real *const extend_1 = wrench;
-    for (size_t i = 0; i < 6*w; ++i) {
+    for (size_t i = 0; i < 6; ++i) {
         subtract_2[i] = required[i] - extend_1[i];
     }
-    set_matrix(6, w, H, work);
-    solve(6, w, subtract_2, work, tau, why.singular);
-    check(6, w, tau, why.overflow);
-    judge(&why, w, code);
-    deliver(tau, 6, w, code, tau_out);
+    eliminate_0(1, 6, H, subtract_2, tau_out, unsure_4, why.total);
+    if (unsure_4[0] > 0) {
+        set_matrix(6, 1, H, work);
+        solve_apart(6, subtract_2, work, tau_out, why.singular);
+        check(6, 1, tau_out, why.overflow);
+    }
+    if (!is_finite(why.total[0])) {
+        check(6, 1, tau_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(6, tau_out);
+    }
 }
 
-INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, const real *V, const
-    real *tau, const real *wrench, real *A_out, int *code)
+INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau_out, int *code)
 {
-    real X_in[7*LANES], V_in[6*LANES], tau_in[6*LANES], wrench_in[6*LANES], M[36*LANES], Z[6*LANES],
-        H[36*LANES], times_1[6*LANES] = {0}, add_3[6*LANES], subtract_4[6*LANES], A[6*LANES],
-        work[48*LANES];
+    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], wrench_in[6*LANES], required[6*LANES],
+        H[36*LANES], subtract_2[6*LANES], tau[6*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    tau = side_by_side(6, w, tau, tau_in, why.invalid);
-    wrench = optional(6, w, wrench, 0, wrench_in, why.invalid);
-    dynamics_run(m, w, X, V, M, Z, H, &why);
-    product(6, 6, 1, w, H, tau, times_1);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    A = side_by_side(6, A, A_in, why.total);
+    wrench = optional_side_by_side(6, wrench, 0, wrench_in, why.total);
+    required_run_lanes(m, X, V, A, required, H, &why);
+    const real *const extend_1 = wrench;
+    for (size_t i = 0; i < 6*LANES; ++i) {
+        subtract_2[i] = required[i] - extend_1[i];
+    }
+    eliminate_0(LANES, 6, H, subtract_2, tau, why.singular, why.total);
+    suspect(&why, code);
+    deliver(6, tau, tau_out);
+}
+
+INLINE void eliminate_1(size_t w, size_t stride, const real *a, const real *b, real *x, real
+    *unsure, real *total)
+{
+    for (size_t k = 0; k < w; ++k) {
+        real a00 = a[(0)*w + k];
+        real a01 = a[(1)*w + k];
+        real a02 = a[(2)*w + k];
+        real a03 = a[(3)*w + k];
+        real a04 = a[(4)*w + k];
+        real a05 = a[(5)*w + k];
+        real b0 = b[0*w + k];
+        real a10 = a[(1*stride + 0)*w + k];
+        real a11 = a[(1*stride + 1)*w + k];
+        real a12 = a[(1*stride + 2)*w + k];
+        real a13 = a[(1*stride + 3)*w + k];
+        real a14 = a[(1*stride + 4)*w + k];
+        real a15 = a[(1*stride + 5)*w + k];
+        real b1 = b[1*w + k];
+        real a20 = a[(2*stride + 0)*w + k];
+        real a21 = a[(2*stride + 1)*w + k];
+        real a22 = a[(2*stride + 2)*w + k];
+        real a23 = a[(2*stride + 3)*w + k];
+        real a24 = a[(2*stride + 4)*w + k];
+        real a25 = a[(2*stride + 5)*w + k];
+        real b2 = b[2*w + k];
+        real a30 = a[(3*stride + 0)*w + k];
+        real a31 = a[(3*stride + 1)*w + k];
+        real a32 = a[(3*stride + 2)*w + k];
+        real a33 = a[(3*stride + 3)*w + k];
+        real a34 = a[(3*stride + 4)*w + k];
+        real a35 = a[(3*stride + 5)*w + k];
+        real b3 = b[3*w + k];
+        real a40 = a[(4*stride + 0)*w + k];
+        real a41 = a[(4*stride + 1)*w + k];
+        real a42 = a[(4*stride + 2)*w + k];
+        real a43 = a[(4*stride + 3)*w + k];
+        real a44 = a[(4*stride + 4)*w + k];
+        real a45 = a[(4*stride + 5)*w + k];
+        real b4 = b[4*w + k];
+        real a50 = a[(5*stride + 0)*w + k];
+        real a51 = a[(5*stride + 1)*w + k];
+        real a52 = a[(5*stride + 2)*w + k];
+        real a53 = a[(5*stride + 3)*w + k];
+        real a54 = a[(5*stride + 4)*w + k];
+        real a55 = a[(5*stride + 5)*w + k];
+        real b5 = b[5*w + k];
+        const real f0 = 1/a00;
+        const real d1 = a00*a11 - a10*a01;
+        const real f1 = a00/d1;
+        const real g10 = a10*f0;
+        a12 -= g10*a02;
+        a13 -= g10*a03;
+        a14 -= g10*a04;
+        a15 -= g10*a05;
+        b1 -= g10*b0;
+        const real g20 = a20*f0;
+        a21 -= g20*a01;
+        a22 -= g20*a02;
+        a23 -= g20*a03;
+        a24 -= g20*a04;
+        a25 -= g20*a05;
+        b2 -= g20*b0;
+        const real g30 = a30*f0;
+        a31 -= g30*a01;
+        a32 -= g30*a02;
+        a33 -= g30*a03;
+        a34 -= g30*a04;
+        a35 -= g30*a05;
+        b3 -= g30*b0;
+        const real g40 = a40*f0;
+        a41 -= g40*a01;
+        a42 -= g40*a02;
+        a43 -= g40*a03;
+        a44 -= g40*a04;
+        a45 -= g40*a05;
+        b4 -= g40*b0;
+        const real g50 = a50*f0;
+        a51 -= g50*a01;
+        a52 -= g50*a02;
+        a53 -= g50*a03;
+        a54 -= g50*a04;
+        a55 -= g50*a05;
+        b5 -= g50*b0;
+        const real g21 = a21*f1;
+        a22 -= g21*a12;
+        a23 -= g21*a13;
+        a24 -= g21*a14;
+        a25 -= g21*a15;
+        b2 -= g21*b1;
+        const real g31 = a31*f1;
+        a32 -= g31*a12;
+        a33 -= g31*a13;
+        a34 -= g31*a14;
+        a35 -= g31*a15;
+        b3 -= g31*b1;
+        const real g41 = a41*f1;
+        a42 -= g41*a12;
+        a43 -= g41*a13;
+        a44 -= g41*a14;
+        a45 -= g41*a15;
+        b4 -= g41*b1;
+        const real g51 = a51*f1;
+        a52 -= g51*a12;
+        a53 -= g51*a13;
+        a54 -= g51*a14;
+        a55 -= g51*a15;
+        b5 -= g51*b1;
+        const real f2 = 1/a22;
+        const real d3 = a22*a33 - a32*a23;
+        const real f3 = a22/d3;
+        const real g32 = a32*f2;
+        a34 -= g32*a24;
+        a35 -= g32*a25;
+        b3 -= g32*b2;
+        const real g42 = a42*f2;
+        a43 -= g42*a23;
+        a44 -= g42*a24;
+        a45 -= g42*a25;
+        b4 -= g42*b2;
+        const real g52 = a52*f2;
+        a53 -= g52*a23;
+        a54 -= g52*a24;
+        a55 -= g52*a25;
+        b5 -= g52*b2;
+        const real g43 = a43*f3;
+        a44 -= g43*a34;
+        a45 -= g43*a35;
+        b4 -= g43*b3;
+        const real g53 = a53*f3;
+        a54 -= g53*a34;
+        a55 -= g53*a35;
+        b5 -= g53*b3;
+        const real f4 = 1/a44;
+        const real d5 = a44*a55 - a54*a45;
+        const real f5 = a44/d5;
+        const real g54 = a54*f4;
+        b5 -= g54*b4;
+        const real x5 = (b5)*f5;
+        const real x4 = (b4)*f4 - a45*f4*x5;
+        const real x3 = (b3 - a35*x5)*f3 - a34*f3*x4;
+        const real x2 = (b2 - a25*x5 - a24*x4)*f2 - a23*f2*x3;
+        const real x1 = (b1 - a15*x5 - a14*x4 - a13*x3)*f1 - a12*f1*x2;
+        const real x0 = (b0 - a05*x5 - a04*x4 - a03*x3 - a02*x2)*f0 - a01*f0*x1;
+        x[0*w + k] = x0;
+        x[1*w + k] = x1;
+        x[2*w + k] = x2;
+        x[3*w + k] = x3;
+        x[4*w + k] = x4;
+        x[5*w + k] = x5;
+        total[k] += (x0 + (x1 + x2)) + (x3 + (x4 + x5));
+        const real most0 = larger(larger(larger(magnitude(g30), magnitude(g40)),
+            larger(magnitude(g50), magnitude(g31))), larger(larger(magnitude(g41),
+            magnitude(g51)), larger(magnitude(g32), larger(magnitude(g42), magnitude(g52)))));
+        const real most1 = larger(larger(magnitude(g10), larger(magnitude(g20), magnitude(g21))),
+            larger(magnitude(g43), larger(magnitude(g53), magnitude(g54))));
+        const real most2 = larger(magnitude(f0), larger(magnitude(f1), magnitude(f2)));
+        const real most3 = larger(magnitude(f3), larger(magnitude(f4), magnitude(f5)));
+        unsure[k] += UNLESS(most0 <= R(0.625)) + UNLESS(most1 <= R(10)) + UNLESS(most2 <= R(62.5))
+            + UNLESS(most3 <= R(1000)) + UNLESS(is_finite(a00 + d1 + a22 + d3 + a44 + d5));
+    }
+}
+
+INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
+    const real *wrench, real *A_out, int *code)
+{
+    real wrench_in[6], M[36] = {0}, Z[6] = {0}, H[36] = {0}, times_1[6] = {0}, add_3[6] = {0},
+        subtract_4[6] = {0}, unsure_7[1] = {0}, work[48];
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6) + total(tau, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+        check(6, 1, tau, why.invalid);
+    }
+    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    dynamics_run(m, X, V, M, Z, H, &why);
+    product(6, 6, 1, 1, H, tau, times_1);
     const real *const extend_2 = wrench;
-    for (size_t i = 0; i < 6*w; ++i) {
+    for (size_t i = 0; i < 6; ++i) {
         add_3[i] = times_1[i] + extend_2[i];
     }
-    for (size_t i = 0; i < 6*w; ++i) {
+    for (size_t i = 0; i < 6; ++i) {
         subtract_4[i] = add_3[i] - Z[i];
     }
-    set_matrix(6, w, M, work);
-    solve(6, w, subtract_4, work, A, why.singular);
-    check(6, w, A, why.overflow);
-    judge(&why, w, code);
-    deliver(A, 6, w, code, A_out);
+    eliminate_1(1, 6, M, subtract_4, A_out, unsure_7, why.total);
+    if (unsure_7[0] > 0) {
+        set_matrix(6, 1, M, work);
+        solve_apart(6, subtract_4, work, A_out, why.singular);
+        check(6, 1, A_out, why.overflow);
+    }
+    if (!is_finite(why.total[0])) {
+        check(6, 1, A_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(6, A_out);
+    }
 }
 
-INLINE void complete_acceleration_any(const real *A, real *completed_out, int *code)
+INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
+    *tau, const real *wrench, real *A_out, int *code)
+{
+    real X_in[7*LANES], V_in[6*LANES], tau_in[6*LANES], wrench_in[6*LANES], M[36*LANES], Z[6*LANES],
+        H[36*LANES], times_1[6*LANES] = {0}, add_3[6*LANES], subtract_4[6*LANES], A[6*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    tau = side_by_side(6, tau, tau_in, why.total);
+    wrench = optional_side_by_side(6, wrench, 0, wrench_in, why.total);
+    dynamics_run_lanes(m, X, V, M, Z, H, &why);
+    product(6, 6, 1, LANES, H, tau, times_1);
+    const real *const extend_2 = wrench;
+    for (size_t i = 0; i < 6*LANES; ++i) {
+        add_3[i] = times_1[i] + extend_2[i];
+    }
+    for (size_t i = 0; i < 6*LANES; ++i) {
+        subtract_4[i] = add_3[i] - Z[i];
+    }
+    eliminate_1(LANES, 6, M, subtract_4, A, why.singular, why.total);
+    suspect(&why, code);
+    deliver(6, A, A_out);
+}
+
+INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
 {
     verdict why;
     start(1, &why);
     check(6, 1, A, why.invalid);
     const real *const completed = A;
     check(6, 1, completed, why.overflow);
-    judge(&why, 1, code);
-    deliver(completed, 6, 1, code, completed_out);
+    judge(&why, code);
+    copy(6, completed, completed_out);
+    if (*code != OK) {
+        refuse(6, completed_out);
+    }
 }
 
-INLINE void leg_reactions_any(const prepared *m, const real *X, const real *V, const real *A,
+INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out, int *code)
 {
     static const size_t places_0[] = {0, 1, 2, 3, 4, 5};
     real wrench_in[6], required[6] = {0}, H[36] = {0}, subtract_2[6] = {0}, solve_3[6] = {0},
-        leg_force[18] = {0}, drive[18] = {0}, forces[18] = {0}, work[48];
+        unsure_5[1] = {0}, leg_force[18] = {0}, drive[18] = {0}, forces[18] = {0}, work[48];
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
-    check(6, 1, V, why.invalid);
-    check(6, 1, A, why.invalid);
-    wrench = optional(6, 1, wrench, 0, wrench_in, why.invalid);
-    required_run(m, 1, X, V, A, required, H, &why);
+    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+        check(6, 1, A, why.invalid);
+    }
+    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    required_run(m, X, V, A, required, H, &why);
     const real *const extend_1 = wrench;
     for (size_t i = 0; i < 6; ++i) {
         subtract_2[i] = required[i] - extend_1[i];
     }
-    set_matrix(6, 1, H, work);
-    solve_state(6, subtract_2, work, solve_3, why.singular);
-    legs_run(m, 1, X, V, A, leg_force, drive, &why);
+    eliminate_0(1, 6, H, subtract_2, solve_3, unsure_5, why.total);
+    if (unsure_5[0] > 0) {
+        set_matrix(6, 1, H, work);
+        solve_apart(6, subtract_2, work, solve_3, why.singular);
+        check(6, 1, solve_3, why.overflow);
+    }
+    legs_run(m, X, V, A, leg_force, drive, &why);
     for (size_t i = 0; i < 18; ++i) {
         forces[i] = leg_force[i];
     }
     add_forces(6, 3, 1, places_0, solve_3, drive, forces);
     check(18, 1, forces, why.overflow);
-    judge(&why, 1, code);
-    deliver(forces, 18, 1, code, forces_out);
+    judge(&why, code);
+    copy(18, forces, forces_out);
+    if (*code != OK) {
+        refuse(18, forces_out);
+    }
 }
 
-INLINE void energy_any(const prepared *m, const real *X, const real *V, real *kinetic_out, real
+INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out, int *code)
 {
     real M[36] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
-    check(6, 1, V, why.invalid);
-    M_run(m, 1, X, M, &why);
-    potential_run(m, 1, X, potential_of_potential, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    M_run(m, X, M, &why);
+    potential_run(m, X, potential_of_potential, &why);
     half_form(6, 1, V, M, kinetic);
     const real *const potential = potential_of_potential;
     check(1, 1, kinetic, why.overflow);
     check(1, 1, potential, why.overflow);
-    judge(&why, 1, code);
-    deliver(kinetic, 1, 1, code, kinetic_out);
-    deliver(potential, 1, 1, code, potential_out);
+    judge(&why, code);
+    copy(1, kinetic, kinetic_out);
+    copy(1, potential, potential_out);
+    if (*code != OK) {
+        refuse(1, kinetic_out);
+        refuse(1, potential_out);
+    }
 }
 
-INLINE void condition_any(const prepared *m, const real *X, const real *length, real *sigma_out,
+INLINE void condition_one(const prepared *m, const real *X, const real *length, real *sigma_out,
     real *legs_out, int *code)
 {
     static const size_t places_0[] = {3, 4, 5};
@@ -5340,8 +5903,8 @@ INLINE void condition_any(const prepared *m, const real *X, const real *length, 
     start(1, &why);
     check(7, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, 1, length, 0, length_in, why.invalid);
-    condition_run(m, 1, X, H, lengths, legs, reach, &why);
+    length = optional(1, length, 0, length_in, why.invalid);
+    condition_run(m, X, H, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
             lengths[i] : lengths[1 + i];
@@ -5351,42 +5914,57 @@ INLINE void condition_any(const prepared *m, const real *X, const real *length, 
     }
     divide_rows(3, 6, 1, places_0, choose_length_1, divide_rows_2);
     singular_values(6, 6, divide_rows_2, sigma);
+    if (!is_finite(why.total[0])) {
+        check(6, 1, legs, why.overflow);
+    }
     check(6, 1, sigma, why.overflow);
-    check(6, 1, legs, why.overflow);
-    judge(&why, 1, code);
-    deliver(sigma, 6, 1, code, sigma_out);
-    deliver(legs, 6, 1, code, legs_out);
+    judge(&why, code);
+    copy(6, sigma, sigma_out);
+    copy(6, legs, legs_out);
+    if (*code != OK) {
+        refuse(6, sigma_out);
+        refuse(6, legs_out);
+    }
 }
 
-static void mismatch_any(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
+static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
     static const size_t places_0[] = {0, 3, 6, 9, 12, 15};
     real q[18] = {0}, take_1[6] = {0}, gap[6] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
-    check(6, 1, q_actuated, why.invalid);
-    inverse_kinematics_run(m, 1, X, q, &why);
+    const real total_in = total(X, 7) + total(q_actuated, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, q_actuated, why.invalid);
+    }
+    inverse_kinematics_run(m, X, q, &why);
     take(6, 1, places_0, q, take_1);
     for (size_t i = 0; i < 6; ++i) {
         gap[i] = q_actuated[i] - take_1[i];
     }
     check(6, 1, gap, why.overflow);
-    judge(&why, 1, code);
-    deliver(gap, 6, 1, code, gap_out);
+    judge(&why, code);
+    copy(6, gap, gap_out);
+    if (*code != OK) {
+        refuse(6, gap_out);
+    }
 }
 
-static void slope_any(const prepared *m, const real *X, real *slope_out, int *code)
+static void slope_one(const prepared *m, const real *X, real *slope_out, int *code)
 {
-    real slope[36] = {0};
     verdict why;
     start(1, &why);
     check(7, 1, X, why.invalid);
-    H_run(m, 1, X, slope, &why);
-    check(36, 1, slope, why.overflow);
-    judge(&why, 1, code);
-    deliver(slope, 36, 1, code, slope_out);
+    H_run(m, X, slope_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(36, 1, slope_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(36, slope_out);
+    }
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -5397,12 +5975,12 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
     real trial[7] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    mismatch_any(m, found, q_actuated, gap, &code);
+    mismatch_one(m, found, q_actuated, gap, &code);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        slope_any(m, found, slope, &code);
+        slope_one(m, found, slope, &code);
         if (code != OK) {
             break;
         }
@@ -5416,7 +5994,7 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            mismatch_any(m, trial, q_actuated, next, &tried);
+            mismatch_one(m, trial, q_actuated, next, &tried);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -5434,21 +6012,27 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 }
 
 
-INLINE void forward_kinematics_any(const prepared *m, const real *q_actuated, const real *X0, real
+INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
     *X_out, int *code)
 {
     real X[7] = {0};
     verdict why;
     start(1, &why);
-    check(6, 1, q_actuated, why.invalid);
-    check(7, 1, X0, why.invalid);
+    const real total_in = total(q_actuated, 6) + total(X0, 7);
+    if (!is_finite(total_in)) {
+        check(6, 1, q_actuated, why.invalid);
+        check(7, 1, X0, why.invalid);
+    }
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(7, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 7, 1, code, X_out);
+    judge(&why, code);
+    copy(7, X, X_out);
+    if (*code != OK) {
+        refuse(7, X_out);
+    }
 }
 
-INLINE void dissipation_any(const real *V, real *dissipation_out, int *code)
+INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 {
     real subtract_1[6] = {0};
     verdict why;
@@ -5459,93 +6043,271 @@ INLINE void dissipation_any(const real *V, real *dissipation_out, int *code)
     }
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
-    judge(&why, 1, code);
-    deliver(dissipation, 1, 1, code, dissipation_out);
+    judge(&why, code);
+    copy(1, dissipation, dissipation_out);
+    if (*code != OK) {
+        refuse(1, dissipation_out);
+    }
 }
 
-INLINE void momentum_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *momentum_out, int *code)
+INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
+    *code)
+{
+    real M[36] = {0}, momentum[6] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    M_run(m, X, M, &why);
+    product(6, 6, 1, 1, M, V, momentum);
+    check(6, 1, momentum, why.overflow);
+    judge(&why, code);
+    copy(6, momentum, momentum_out);
+    if (*code != OK) {
+        refuse(6, momentum_out);
+    }
+}
+
+INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
+    int *code)
 {
     real X_in[7*LANES], V_in[6*LANES], M[36*LANES], momentum[6*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    M_run(m, w, X, M, &why);
-    product(6, 6, 1, w, M, V, momentum);
-    check(6, w, momentum, why.overflow);
-    judge(&why, w, code);
-    deliver(momentum, 6, w, code, momentum_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    M_run_lanes(m, X, M, &why);
+    product(6, 6, 1, LANES, M, V, momentum);
+    add_up(6, momentum, why.total);
+    suspect(&why, code);
+    deliver(6, momentum, momentum_out);
 }
 
-INLINE void actuator_positions_any(const prepared *m, size_t w, const real *X, real *q_out, int
-    *code)
+INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
+{
+    static const size_t places_0[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17};
+    real q[18] = {0}, margins[18] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q, &why);
+    for (size_t i = 0; i < 18; ++i) {
+        margins[i] = q[i];
+    }
+    unlimited(18, 18, 1, places_0, margins, why.overflow);
+    judge(&why, code);
+    copy(18, margins, margins_out);
+    if (*code != OK) {
+        refuse(18, margins_out);
+    }
+}
+
+INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
+{
+    static const size_t places_0[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17};
+    real X_in[7*LANES], q[18*LANES], margins[18*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    for (size_t i = 0; i < 18*LANES; ++i) {
+        margins[i] = q[i];
+    }
+    unlimited(18, 18, LANES, places_0, margins, why.invalid);
+    suspect(&why, code);
+    deliver(18, margins, margins_out);
+}
+
+INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
+{
+    real q[18] = {0}, subtract_1[18] = {0}, within[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q, &why);
+    for (size_t i = 0; i < 18; ++i) {
+        subtract_1[i] = q[i] - q[i];
+    }
+    not_negative(18, 1, subtract_1, within, why.overflow);
+    check(1, 1, within, why.overflow);
+    judge(&why, code);
+    copy(1, within, within_out);
+    if (*code != OK) {
+        refuse(1, within_out);
+    }
+}
+
+INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
+{
+    real X_in[7*LANES], q[18*LANES], subtract_1[18*LANES], within[1*LANES] = {0};
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    for (size_t i = 0; i < 18*LANES; ++i) {
+        subtract_1[i] = q[i] - q[i];
+    }
+    not_negative(18, LANES, subtract_1, within, why.invalid);
+    add_up(1, within, why.total);
+    suspect(&why, code);
+    deliver(1, within, within_out);
+}
+
+INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
+{
+    static const size_t places_0[] = {0, 3, 6, 9, 12, 15};
+    real q_of_inverse_kinematics[18] = {0}, q[6] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
+    take(6, 1, places_0, q_of_inverse_kinematics, q);
+    check(6, 1, q, why.overflow);
+    judge(&why, code);
+    copy(6, q, q_out);
+    if (*code != OK) {
+        refuse(6, q_out);
+    }
+}
+
+INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     static const size_t places_0[] = {0, 3, 6, 9, 12, 15};
     real X_in[7*LANES], q_of_inverse_kinematics[18*LANES], q[6*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    inverse_kinematics_run(m, w, X, q_of_inverse_kinematics, &why);
-    take(6, 1*w, places_0, q_of_inverse_kinematics, q);
-    check(6, w, q, why.overflow);
-    judge(&why, w, code);
-    deliver(q, 6, w, code, q_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
+    take(6, 1*LANES, places_0, q_of_inverse_kinematics, q);
+    add_up(6, q, why.total);
+    suspect(&why, code);
+    deliver(6, q, q_out);
 }
 
-INLINE void actuator_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *qd_out, int *code)
+INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
+{
+    static const size_t places_0[] = {0, 3, 6, 9, 12, 15};
+    real qd_of_joint_rates[18] = {0}, qd[6] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    joint_rates_run(m, X, V, qd_of_joint_rates, &why);
+    take(6, 1, places_0, qd_of_joint_rates, qd);
+    check(6, 1, qd, why.overflow);
+    judge(&why, code);
+    copy(6, qd, qd_out);
+    if (*code != OK) {
+        refuse(6, qd_out);
+    }
+}
+
+INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
+    int *code)
 {
     static const size_t places_0[] = {0, 3, 6, 9, 12, 15};
     real X_in[7*LANES], V_in[6*LANES], qd_of_joint_rates[18*LANES], qd[6*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    joint_rates_run(m, w, X, V, qd_of_joint_rates, &why);
-    take(6, 1*w, places_0, qd_of_joint_rates, qd);
-    check(6, w, qd, why.overflow);
-    judge(&why, w, code);
-    deliver(qd, 6, w, code, qd_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
+    take(6, 1*LANES, places_0, qd_of_joint_rates, qd);
+    add_up(6, qd, why.total);
+    suspect(&why, code);
+    deliver(6, qd, qd_out);
 }
 
-INLINE void actuator_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd_out, int *code)
+INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
+{
+    static const size_t places_0[] = {0, 3, 6, 9, 12, 15};
+    real qdd_of_joint_accelerations[18] = {0}, qdd[6] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+        check(6, 1, A, why.invalid);
+    }
+    joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
+    take(6, 1, places_0, qdd_of_joint_accelerations, qdd);
+    check(6, 1, qdd, why.overflow);
+    judge(&why, code);
+    copy(6, qdd, qdd_out);
+    if (*code != OK) {
+        refuse(6, qdd_out);
+    }
+}
+
+INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out, int *code)
 {
     static const size_t places_0[] = {0, 3, 6, 9, 12, 15};
     real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], qdd_of_joint_accelerations[18*LANES],
         qdd[6*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    A = side_by_side(6, w, A, A_in, why.invalid);
-    joint_accelerations_run(m, w, X, V, A, qdd_of_joint_accelerations, &why);
-    take(6, 1*w, places_0, qdd_of_joint_accelerations, qdd);
-    check(6, w, qdd, why.overflow);
-    judge(&why, w, code);
-    deliver(qdd, 6, w, code, qdd_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    A = side_by_side(6, A, A_in, why.total);
+    joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
+    take(6, 1*LANES, places_0, qdd_of_joint_accelerations, qdd);
+    add_up(6, qdd, why.total);
+    suspect(&why, code);
+    deliver(6, qdd, qdd_out);
 }
 
-INLINE void power_any(const prepared *m, size_t w, const real *X, const real *V, const real *tau,
-    real *power_out, int *code)
+INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out, int *code)
+{
+    real H[36] = {0}, times_1[6] = {0}, power[1] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6) + total(tau, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+        check(6, 1, tau, why.invalid);
+    }
+    H_run(m, X, H, &why);
+    product(6, 6, 1, 1, H, tau, times_1);
+    inner(6, 1, times_1, V, power);
+    check(1, 1, power, why.overflow);
+    judge(&why, code);
+    copy(1, power, power_out);
+    if (*code != OK) {
+        refuse(1, power_out);
+    }
+}
+
+INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out, int *code)
 {
     real X_in[7*LANES], V_in[6*LANES], tau_in[6*LANES], H[36*LANES], times_1[6*LANES] = {0},
         power[1*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    tau = side_by_side(6, w, tau, tau_in, why.invalid);
-    H_run(m, w, X, H, &why);
-    product(6, 6, 1, w, H, tau, times_1);
-    inner(6, w, times_1, V, power);
-    check(1, w, power, why.overflow);
-    judge(&why, w, code);
-    deliver(power, 1, w, code, power_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    tau = side_by_side(6, tau, tau_in, why.total);
+    H_run_lanes(m, X, H, &why);
+    product(6, 6, 1, LANES, H, tau, times_1);
+    inner(6, LANES, times_1, V, power);
+    add_up(1, power, why.total);
+    suspect(&why, code);
+    deliver(1, power, power_out);
 }
 
-INLINE void rotation_any(const real *X, real *R_out, int *code)
+INLINE void rotation_one(const real *X, real *R_out, int *code)
 {
     real R[9] = {0};
     verdict why;
@@ -5554,64 +6316,88 @@ INLINE void rotation_any(const real *X, real *R_out, int *code)
     const real *const take_1 = X + 3;
     rotation_of_quaternion(take_1, R);
     check(9, 1, R, why.overflow);
-    judge(&why, 1, code);
-    deliver(R, 9, 1, code, R_out);
+    judge(&why, code);
+    copy(9, R, R_out);
+    if (*code != OK) {
+        refuse(9, R_out);
+    }
 }
 
-INLINE void pose_any(const real *t, const real *R, real *X_out, int *code)
+INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
 {
     real quaternion_of_rotation_1[4] = {0}, join_2[7] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, t, why.invalid);
-    check(9, 1, R, why.invalid);
+    const real total_in = total(t, 3) + total(R, 9);
+    if (!is_finite(total_in)) {
+        check(3, 1, t, why.invalid);
+        check(9, 1, R, why.invalid);
+    }
     quaternion_of_rotation(R, quaternion_of_rotation_1);
     beside(1, 3, 4, t, quaternion_of_rotation_1, join_2);
     const real *const X = join_2;
     check(7, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 7, 1, code, X_out);
+    judge(&why, code);
+    copy(7, X, X_out);
+    if (*code != OK) {
+        refuse(7, X_out);
+    }
 }
 
-INLINE void X_dot_any(const real *X, const real *V, real *X_dot_out, int *code)
+INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
 {
     real quaternion_rate_3[4] = {0}, X_dot[7] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
-    check(6, 1, V, why.invalid);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
     const real *const take_1 = V + 3;
     const real *const take_2 = X + 3;
     quaternion_rate(take_2, take_1, quaternion_rate_3);
     const real *const take_4 = V;
     beside(1, 3, 4, take_4, quaternion_rate_3, X_dot);
     check(7, 1, X_dot, why.overflow);
-    judge(&why, 1, code);
-    deliver(X_dot, 7, 1, code, X_dot_out);
+    judge(&why, code);
+    copy(7, X_dot, X_dot_out);
+    if (*code != OK) {
+        refuse(7, X_dot_out);
+    }
 }
 
-INLINE void pose_from_rpy_any(const real *t, const real *rpy, real *X_out, int *code)
+INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *code)
 {
     real quaternion_of_rpy_1[4] = {0}, join_2[7] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, t, why.invalid);
-    check(3, 1, rpy, why.invalid);
+    const real total_in = total(t, 3) + total(rpy, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, t, why.invalid);
+        check(3, 1, rpy, why.invalid);
+    }
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
     beside(1, 3, 4, t, quaternion_of_rpy_1, join_2);
     const real *const X = join_2;
     check(7, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 7, 1, code, X_out);
+    judge(&why, code);
+    copy(7, X, X_out);
+    if (*code != OK) {
+        refuse(7, X_out);
+    }
 }
 
-INLINE void retract_any(const real *X, const real *step, real *X_moved_out, int *code)
+INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
 {
     real turn_quaternion_5[4] = {0}, add_6[3] = {0}, X_moved[7] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
-    check(6, 1, step, why.invalid);
+    const real total_in = total(X, 7) + total(step, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, step, why.invalid);
+    }
     const real *const take_1 = X;
     const real *const take_2 = X + 3;
     const real *const take_3 = step;
@@ -5622,17 +6408,23 @@ INLINE void retract_any(const real *X, const real *step, real *X_moved_out, int 
     }
     beside(1, 3, 4, add_6, turn_quaternion_5, X_moved);
     check(7, 1, X_moved, why.overflow);
-    judge(&why, 1, code);
-    deliver(X_moved, 7, 1, code, X_moved_out);
+    judge(&why, code);
+    copy(7, X_moved, X_moved_out);
+    if (*code != OK) {
+        refuse(7, X_moved_out);
+    }
 }
 
-INLINE void difference_any(const real *X0, const real *X1, real *step_out, int *code)
+INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
 {
     real turn_between_5[3] = {0}, subtract_6[3] = {0}, step[6] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X0, why.invalid);
-    check(7, 1, X1, why.invalid);
+    const real total_in = total(X0, 7) + total(X1, 7);
+    if (!is_finite(total_in)) {
+        check(7, 1, X0, why.invalid);
+        check(7, 1, X1, why.invalid);
+    }
     const real *const take_1 = X0;
     const real *const take_2 = X0 + 3;
     const real *const take_3 = X1;
@@ -5643,19 +6435,25 @@ INLINE void difference_any(const real *X0, const real *X1, real *step_out, int *
     }
     beside(1, 3, 3, subtract_6, turn_between_5, step);
     check(6, 1, step, why.overflow);
-    judge(&why, 1, code);
-    deliver(step, 6, 1, code, step_out);
+    judge(&why, code);
+    copy(6, step, step_out);
+    if (*code != OK) {
+        refuse(6, step_out);
+    }
 }
 
-INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real *X_out, int *code)
+INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
 {
     real turn_between_5[3] = {0}, subtract_6[3] = {0}, join_7[6] = {0}, scale_8[6] = {0},
         turn_quaternion_13[4] = {0}, add_14[3] = {0}, X[7] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X0, why.invalid);
-    check(7, 1, X1, why.invalid);
-    check(1, 1, s, why.invalid);
+    const real total_in = total(X0, 7) + total(X1, 7) + total(s, 1);
+    if (!is_finite(total_in)) {
+        check(7, 1, X0, why.invalid);
+        check(7, 1, X1, why.invalid);
+        check(1, 1, s, why.invalid);
+    }
     const real *const take_1 = X0;
     const real *const take_2 = X0 + 3;
     const real *const take_3 = X1;
@@ -5678,8 +6476,11 @@ INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real 
     }
     beside(1, 3, 4, add_14, turn_quaternion_13, X);
     check(7, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 7, 1, code, X_out);
+    judge(&why, code);
+    copy(7, X, X_out);
+    if (*code != OK) {
+        refuse(7, X_out);
+    }
 }
 
 /* ---- one state, and batches ---- */
@@ -5687,7 +6488,7 @@ INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real 
 int hexaglide_M(const hexaglide_model *model, const hexaglide_real *X, hexaglide_real *M)
 {
     int code;
-    M_any(model, 1, X, M, &code);
+    M_one(model, X, M, &code);
     return code;
 }
 
@@ -5695,9 +6496,9 @@ size_t hexaglide_M_batch(const hexaglide_model *model, size_t n, const hexaglide
     hexaglide_real *M, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        M_any(model, LANES, X + 7*i, M + 36*i, codes);
+        M_lanes(model, X + 7*i, M + 36*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexaglide_M(model, X + 7*(i + k), M + 36*(i + k));
@@ -5716,7 +6517,7 @@ int hexaglide_Z(const hexaglide_model *model, const hexaglide_real *X, const hex
     hexaglide_real *Z)
 {
     int code;
-    Z_any(model, 1, X, V, Z, &code);
+    Z_one(model, X, V, Z, &code);
     return code;
 }
 
@@ -5724,9 +6525,9 @@ size_t hexaglide_Z_batch(const hexaglide_model *model, size_t n, const hexaglide
     hexaglide_real *V, hexaglide_real *Z, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        Z_any(model, LANES, X + 7*i, V + 6*i, Z + 6*i, codes);
+        Z_lanes(model, X + 7*i, V + 6*i, Z + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexaglide_Z(model, X + 7*(i + k), V + 6*(i + k), Z + 6*(i + k));
@@ -5744,7 +6545,7 @@ size_t hexaglide_Z_batch(const hexaglide_model *model, size_t n, const hexaglide
 int hexaglide_H(const hexaglide_model *model, const hexaglide_real *X, hexaglide_real *H)
 {
     int code;
-    H_any(model, 1, X, H, &code);
+    H_one(model, X, H, &code);
     return code;
 }
 
@@ -5752,9 +6553,9 @@ size_t hexaglide_H_batch(const hexaglide_model *model, size_t n, const hexaglide
     hexaglide_real *H, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        H_any(model, LANES, X + 7*i, H + 36*i, codes);
+        H_lanes(model, X + 7*i, H + 36*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexaglide_H(model, X + 7*(i + k), H + 36*(i + k));
@@ -5773,7 +6574,7 @@ int hexaglide_inverse_kinematics(const hexaglide_model *model, const hexaglide_r
     hexaglide_real *q)
 {
     int code;
-    inverse_kinematics_any(model, 1, X, q, &code);
+    inverse_kinematics_one(model, X, q, &code);
     return code;
 }
 
@@ -5781,9 +6582,9 @@ size_t hexaglide_inverse_kinematics_batch(const hexaglide_model *model, size_t n
     hexaglide_real *X, hexaglide_real *q, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_kinematics_any(model, LANES, X + 7*i, q + 18*i, codes);
+        inverse_kinematics_lanes(model, X + 7*i, q + 18*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexaglide_inverse_kinematics(model, X + 7*(i + k), q + 18*(i + k));
@@ -5802,7 +6603,7 @@ int hexaglide_joint_rates(const hexaglide_model *model, const hexaglide_real *X,
     hexaglide_real *V, hexaglide_real *rates)
 {
     int code;
-    joint_rates_any(model, 1, X, V, rates, &code);
+    joint_rates_one(model, X, V, rates, &code);
     return code;
 }
 
@@ -5810,9 +6611,9 @@ size_t hexaglide_joint_rates_batch(const hexaglide_model *model, size_t n, const
     *X, const hexaglide_real *V, hexaglide_real *rates, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_rates_any(model, LANES, X + 7*i, V + 6*i, rates + 18*i, codes);
+        joint_rates_lanes(model, X + 7*i, V + 6*i, rates + 18*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexaglide_joint_rates(model, X + 7*(i + k), V + 6*(i + k), rates + 18*(i + k));
@@ -5831,7 +6632,7 @@ int hexaglide_joint_accelerations(const hexaglide_model *model, const hexaglide_
     hexaglide_real *V, const hexaglide_real *A, hexaglide_real *accelerations)
 {
     int code;
-    joint_accelerations_any(model, 1, X, V, A, accelerations, &code);
+    joint_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
@@ -5840,9 +6641,9 @@ size_t hexaglide_joint_accelerations_batch(const hexaglide_model *model, size_t 
     *accelerations, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_accelerations_any(model, LANES, X + 7*i, V + 6*i, A + 6*i, accelerations + 18*i, codes);
+        joint_accelerations_lanes(model, X + 7*i, V + 6*i, A + 6*i, accelerations + 18*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexaglide_joint_accelerations(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k),
@@ -5863,7 +6664,7 @@ int hexaglide_dynamics(const hexaglide_model *model, const hexaglide_real *X, co
     *V, hexaglide_real *M, hexaglide_real *Z, hexaglide_real *H)
 {
     int code;
-    dynamics_any(model, 1, X, V, M, Z, H, &code);
+    dynamics_one(model, X, V, M, Z, H, &code);
     return code;
 }
 
@@ -5871,9 +6672,9 @@ size_t hexaglide_dynamics_batch(const hexaglide_model *model, size_t n, const he
     const hexaglide_real *V, hexaglide_real *M, hexaglide_real *Z, hexaglide_real *H, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        dynamics_any(model, LANES, X + 7*i, V + 6*i, M + 36*i, Z + 6*i, H + 36*i, codes);
+        dynamics_lanes(model, X + 7*i, V + 6*i, M + 36*i, Z + 6*i, H + 36*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexaglide_dynamics(model, X + 7*(i + k), V + 6*(i + k), M + 36*(i + k), Z + 6*(i + k),
@@ -5893,7 +6694,7 @@ int hexaglide_inverse_dynamics(const hexaglide_model *model, const hexaglide_rea
     hexaglide_real *V, const hexaglide_real *A, const hexaglide_real *wrench, hexaglide_real *tau)
 {
     int code;
-    inverse_dynamics_any(model, 1, X, V, A, wrench, tau, &code);
+    inverse_dynamics_one(model, X, V, A, wrench, tau, &code);
     return code;
 }
 
@@ -5902,10 +6703,10 @@ size_t hexaglide_inverse_dynamics_batch(const hexaglide_model *model, size_t n, 
     *wrench, hexaglide_real *tau, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_dynamics_any(model, LANES, X + 7*i, V + 6*i, A + 6*i, wrench ? wrench + 6*i : NULL, tau +
-            6*i, codes);
+        inverse_dynamics_lanes(model, X + 7*i, V + 6*i, A + 6*i, wrench ? wrench + 6*i : NULL, tau + 6*i,
+            codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexaglide_inverse_dynamics(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k), wrench ?
@@ -5926,7 +6727,7 @@ int hexaglide_forward_dynamics(const hexaglide_model *model, const hexaglide_rea
     hexaglide_real *V, const hexaglide_real *tau, const hexaglide_real *wrench, hexaglide_real *A)
 {
     int code;
-    forward_dynamics_any(model, 1, X, V, tau, wrench, A, &code);
+    forward_dynamics_one(model, X, V, tau, wrench, A, &code);
     return code;
 }
 
@@ -5935,10 +6736,10 @@ size_t hexaglide_forward_dynamics_batch(const hexaglide_model *model, size_t n, 
     *wrench, hexaglide_real *A, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        forward_dynamics_any(model, LANES, X + 7*i, V + 6*i, tau + 6*i, wrench ? wrench + 6*i : NULL, A +
-            6*i, codes);
+        forward_dynamics_lanes(model, X + 7*i, V + 6*i, tau + 6*i, wrench ? wrench + 6*i : NULL, A + 6*i,
+            codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexaglide_forward_dynamics(model, X + 7*(i + k), V + 6*(i + k), tau + 6*(i + k), wrench
@@ -5964,7 +6765,7 @@ int hexaglide_complete_acceleration(const hexaglide_model *model, const hexaglid
     (void)X;
     (void)V;
     (void)wrench;
-    complete_acceleration_any(A, completed, &code);
+    complete_acceleration_one(A, completed, &code);
     return code;
 }
 
@@ -5986,7 +6787,7 @@ int hexaglide_leg_reactions(const hexaglide_model *model, const hexaglide_real *
     *forces)
 {
     int code;
-    leg_reactions_any(model, X, V, A, wrench, forces, &code);
+    leg_reactions_one(model, X, V, A, wrench, forces, &code);
     return code;
 }
 
@@ -6007,7 +6808,7 @@ int hexaglide_energy(const hexaglide_model *model, const hexaglide_real *X, cons
     *V, hexaglide_real *kinetic, hexaglide_real *potential)
 {
     int code;
-    energy_any(model, X, V, kinetic, potential, &code);
+    energy_one(model, X, V, kinetic, potential, &code);
     return code;
 }
 
@@ -6026,7 +6827,7 @@ int hexaglide_condition(const hexaglide_model *model, const hexaglide_real *X, h
     *sigma, hexaglide_real *legs)
 {
     int code;
-    condition_any(model, X, NULL, sigma, legs, &code);
+    condition_one(model, X, NULL, sigma, legs, &code);
     return code;
 }
 
@@ -6045,7 +6846,7 @@ int hexaglide_forward_kinematics(const hexaglide_model *model, const hexaglide_r
     const hexaglide_real *X0, hexaglide_real *X)
 {
     int code;
-    forward_kinematics_any(model, q_actuated, X0, X, &code);
+    forward_kinematics_one(model, q_actuated, X0, X, &code);
     return code;
 }
 
@@ -6066,7 +6867,7 @@ int hexaglide_dissipation(const hexaglide_model *model, const hexaglide_real *X,
     int code;
     (void)model;
     (void)X;
-    dissipation_any(V, dissipation, &code);
+    dissipation_one(V, dissipation, &code);
     return code;
 }
 
@@ -6085,7 +6886,7 @@ int hexaglide_momentum(const hexaglide_model *model, const hexaglide_real *X, co
     *V, hexaglide_real *momentum)
 {
     int code;
-    momentum_any(model, 1, X, V, momentum, &code);
+    momentum_one(model, X, V, momentum, &code);
     return code;
 }
 
@@ -6093,9 +6894,9 @@ size_t hexaglide_momentum_batch(const hexaglide_model *model, size_t n, const he
     const hexaglide_real *V, hexaglide_real *momentum, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        momentum_any(model, LANES, X + 7*i, V + 6*i, momentum + 6*i, codes);
+        momentum_lanes(model, X + 7*i, V + 6*i, momentum + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexaglide_momentum(model, X + 7*(i + k), V + 6*(i + k), momentum + 6*(i + k));
@@ -6110,11 +6911,69 @@ size_t hexaglide_momentum_batch(const hexaglide_model *model, size_t n, const he
     return failed;
 }
 
+int hexaglide_joint_margins(const hexaglide_model *model, const hexaglide_real *X, hexaglide_real
+    *margins)
+{
+    int code;
+    joint_margins_one(model, X, margins, &code);
+    return code;
+}
+
+size_t hexaglide_joint_margins_batch(const hexaglide_model *model, size_t n, const hexaglide_real
+    *X, hexaglide_real *margins, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        joint_margins_lanes(model, X + 7*i, margins + 18*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = hexaglide_joint_margins(model, X + 7*(i + k), margins + 18*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = hexaglide_joint_margins(model, X + 7*i, margins + 18*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hexaglide_within_limits(const hexaglide_model *model, const hexaglide_real *X, hexaglide_real
+    *within)
+{
+    int code;
+    within_limits_one(model, X, within, &code);
+    return code;
+}
+
+size_t hexaglide_within_limits_batch(const hexaglide_model *model, size_t n, const hexaglide_real
+    *X, hexaglide_real *within, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        within_limits_lanes(model, X + 7*i, within + 1*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = hexaglide_within_limits(model, X + 7*(i + k), within + 1*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = hexaglide_within_limits(model, X + 7*i, within + 1*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
 int hexaglide_actuator_positions(const hexaglide_model *model, const hexaglide_real *X,
     hexaglide_real *q)
 {
     int code;
-    actuator_positions_any(model, 1, X, q, &code);
+    actuator_positions_one(model, X, q, &code);
     return code;
 }
 
@@ -6122,9 +6981,9 @@ size_t hexaglide_actuator_positions_batch(const hexaglide_model *model, size_t n
     hexaglide_real *X, hexaglide_real *q, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_positions_any(model, LANES, X + 7*i, q + 6*i, codes);
+        actuator_positions_lanes(model, X + 7*i, q + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexaglide_actuator_positions(model, X + 7*(i + k), q + 6*(i + k));
@@ -6143,7 +7002,7 @@ int hexaglide_actuator_rates(const hexaglide_model *model, const hexaglide_real 
     hexaglide_real *V, hexaglide_real *rates)
 {
     int code;
-    actuator_rates_any(model, 1, X, V, rates, &code);
+    actuator_rates_one(model, X, V, rates, &code);
     return code;
 }
 
@@ -6151,9 +7010,9 @@ size_t hexaglide_actuator_rates_batch(const hexaglide_model *model, size_t n, co
     *X, const hexaglide_real *V, hexaglide_real *rates, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_rates_any(model, LANES, X + 7*i, V + 6*i, rates + 6*i, codes);
+        actuator_rates_lanes(model, X + 7*i, V + 6*i, rates + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexaglide_actuator_rates(model, X + 7*(i + k), V + 6*(i + k), rates + 6*(i + k));
@@ -6172,7 +7031,7 @@ int hexaglide_actuator_accelerations(const hexaglide_model *model, const hexagli
     hexaglide_real *V, const hexaglide_real *A, hexaglide_real *accelerations)
 {
     int code;
-    actuator_accelerations_any(model, 1, X, V, A, accelerations, &code);
+    actuator_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
@@ -6181,9 +7040,9 @@ size_t hexaglide_actuator_accelerations_batch(const hexaglide_model *model, size
     *accelerations, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_accelerations_any(model, LANES, X + 7*i, V + 6*i, A + 6*i, accelerations + 6*i, codes);
+        actuator_accelerations_lanes(model, X + 7*i, V + 6*i, A + 6*i, accelerations + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexaglide_actuator_accelerations(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k),
@@ -6204,7 +7063,7 @@ int hexaglide_power(const hexaglide_model *model, const hexaglide_real *X, const
     *V, const hexaglide_real *tau, hexaglide_real *power)
 {
     int code;
-    power_any(model, 1, X, V, tau, power, &code);
+    power_one(model, X, V, tau, power, &code);
     return code;
 }
 
@@ -6212,9 +7071,9 @@ size_t hexaglide_power_batch(const hexaglide_model *model, size_t n, const hexag
     const hexaglide_real *V, const hexaglide_real *tau, hexaglide_real *power, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        power_any(model, LANES, X + 7*i, V + 6*i, tau + 6*i, power + 1*i, codes);
+        power_lanes(model, X + 7*i, V + 6*i, tau + 6*i, power + 1*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexaglide_power(model, X + 7*(i + k), V + 6*(i + k), tau + 6*(i + k), power + 1*(i +
@@ -6233,7 +7092,7 @@ size_t hexaglide_power_batch(const hexaglide_model *model, size_t n, const hexag
 int hexaglide_rotation(const hexaglide_real *X, hexaglide_real *R)
 {
     int code;
-    rotation_any(X, R, &code);
+    rotation_one(X, R, &code);
     return code;
 }
 
@@ -6250,7 +7109,7 @@ size_t hexaglide_rotation_batch(size_t n, const hexaglide_real *X, hexaglide_rea
 int hexaglide_pose(const hexaglide_real *t, const hexaglide_real *R, hexaglide_real *X)
 {
     int code;
-    pose_any(t, R, X, &code);
+    pose_one(t, R, X, &code);
     return code;
 }
 
@@ -6268,7 +7127,7 @@ size_t hexaglide_pose_batch(size_t n, const hexaglide_real *t, const hexaglide_r
 int hexaglide_X_dot(const hexaglide_real *X, const hexaglide_real *V, hexaglide_real *X_dot)
 {
     int code;
-    X_dot_any(X, V, X_dot, &code);
+    X_dot_one(X, V, X_dot, &code);
     return code;
 }
 
@@ -6286,7 +7145,7 @@ size_t hexaglide_X_dot_batch(size_t n, const hexaglide_real *X, const hexaglide_
 int hexaglide_pose_from_rpy(const hexaglide_real *t, const hexaglide_real *rpy, hexaglide_real *X)
 {
     int code;
-    pose_from_rpy_any(t, rpy, X, &code);
+    pose_from_rpy_one(t, rpy, X, &code);
     return code;
 }
 
@@ -6305,7 +7164,7 @@ int hexaglide_retract(const hexaglide_real *X, const hexaglide_real *step, hexag
     *X_moved)
 {
     int code;
-    retract_any(X, step, X_moved, &code);
+    retract_one(X, step, X_moved, &code);
     return code;
 }
 
@@ -6323,7 +7182,7 @@ size_t hexaglide_retract_batch(size_t n, const hexaglide_real *X, const hexaglid
 int hexaglide_difference(const hexaglide_real *X0, const hexaglide_real *X1, hexaglide_real *step)
 {
     int code;
-    difference_any(X0, X1, step, &code);
+    difference_one(X0, X1, step, &code);
     return code;
 }
 
@@ -6342,7 +7201,7 @@ int hexaglide_interpolate(const hexaglide_real *X0, const hexaglide_real *X1, co
     *s, hexaglide_real *X)
 {
     int code;
-    interpolate_any(X0, X1, s, X, &code);
+    interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 

@@ -51,6 +51,7 @@ typedef HEXAGLIDE_REAL hexaglide_real;
 #define HEXAGLIDE_NC 0
 #define HEXAGLIDE_NW 6
 #define HEXAGLIDE_NJ 18
+#define HEXAGLIDE_OVERCONSTRAINED 0
 
 enum {
     HEXAGLIDE_OK = 0,
@@ -95,21 +96,22 @@ typedef struct {
 /* What depends on the parameters alone; set by hexaglide_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
-    hexaglide_real J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+    /* 6 legs of type pus; copies of the first fill up */
+    hexaglide_real inv_pus_disc_1_t_6[8], inv_pus_platform_joint_offset_x[8], inv_pus_size[8],
+            inv_pus_size_t[8], pus_J_3_xx[8], pus_J_3_xy[8], pus_J_3_xz[8], pus_J_3_yz[8],
+            pus_J_3_zz[8], pus_Sigma_3_xx[8], pus_Sigma_3_yy[8], pus_Sigma_3_zz[8], pus_b_r0_x[8],
+            pus_base_frame_xx[8], pus_base_frame_xy[8], pus_base_frame_xz[8], pus_base_frame_yx[8],
+            pus_base_frame_yy[8], pus_base_frame_yz[8], pus_base_frame_zx[8], pus_base_frame_zy[8],
+            pus_base_frame_zz[8], pus_base_point_x[8], pus_base_point_y[8], pus_base_point_z[8],
+            pus_branch_1[8], pus_branch_2[8], pus_d_Gamma_3_t[8], pus_d_Gamma_3_y[8], pus_d_c_yy[8],
+            pus_d_phi_3_t[8], pus_disc_1_t[8], pus_g_r0_x[8], pus_g_r0_y[8], pus_g_r0_z[8],
+            pus_h_1_x[8], pus_h_1_y[8], pus_h_1_z[8], pus_h_3_x[8], pus_h_3_y[8], pus_h_3_z[8],
+            pus_link1_mass[8], pus_link3_mass[8], pus_platform_joint_offset_x[8],
+            pus_platform_point_x[8], pus_platform_point_y[8], pus_platform_point_z[8],
+            pus_potential_t[8], pus_potential_t_2[8], pus_size[8], pus_size_t[8];
+    hexaglide_real J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
             J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
             h_star_x, h_star_y, h_star_z, legs_size, m_star, spread_t;
-    /* legs of type pus */
-    hexaglide_real J_3_xx[6], J_3_xy[6], J_3_xz[6], J_3_yz[6], J_3_zz[6], Sigma_3_xx[6],
-            Sigma_3_yy[6], Sigma_3_zz[6], b_r0_x[6], branch_1[6], branch_2[6], d_Gamma_3_t[6],
-            d_Gamma_3_y[6], d_c_yy[6], d_phi_3_t[6], g_r0_x[6], g_r0_y[6], g_r0_z[6], h_1_x[6],
-            h_1_y[6], h_1_z[6], h_3_x[6], h_3_y[6], h_3_z[6], inv_pus_platform_joint_offset_x[6],
-            inv_size[6], inv_size_t[6], inv_uu_3_t[6], potential_t[6], potential_t_2[6],
-            pus_base_frame_xx[6], pus_base_frame_xy[6], pus_base_frame_xz[6], pus_base_frame_yx[6],
-            pus_base_frame_yy[6], pus_base_frame_yz[6], pus_base_frame_zx[6], pus_base_frame_zy[6],
-            pus_base_frame_zz[6], pus_base_point_x[6], pus_base_point_y[6], pus_base_point_z[6],
-            pus_link1_mass[6], pus_link3_mass[6], pus_platform_joint_offset_x[6],
-            pus_platform_point_x[6], pus_platform_point_y[6], pus_platform_point_z[6], size_[6],
-            size_t_[6], uu_3_t[6];
 } hexaglide_model;
 
 extern const hexaglide_params hexaglide_default_params;
@@ -249,6 +251,21 @@ int hexaglide_momentum(const hexaglide_model *model, const hexaglide_real *X, co
     *V, hexaglide_real *momentum);
 size_t hexaglide_momentum_batch(const hexaglide_model *model, size_t n, const hexaglide_real *X,
     const hexaglide_real *V, hexaglide_real *momentum, int *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 204 mul, 144 add, 6 div, 12 sqrt, 12 trig. In: X (NQ). Out: margins (NJ).
+   */
+int hexaglide_joint_margins(const hexaglide_model *model, const hexaglide_real *X, hexaglide_real
+    *margins);
+size_t hexaglide_joint_margins_batch(const hexaglide_model *model, size_t n, const hexaglide_real
+    *X, hexaglide_real *margins, int *status);
+
+/* Whether all joints are within their limits of displacement. 204 mul, 144 add, 6 div, 12 sqrt,
+   12 trig. In: X (NQ). Out: within (1). */
+int hexaglide_within_limits(const hexaglide_model *model, const hexaglide_real *X, hexaglide_real
+    *within);
+size_t hexaglide_within_limits_batch(const hexaglide_model *model, size_t n, const hexaglide_real
+    *X, hexaglide_real *within, int *status);
 
 /* Displacements of the actuated joints, in the order of tau. 204 mul, 144 add, 6 div, 12 sqrt, 12
    trig. In: X (NQ). Out: q (NU). */

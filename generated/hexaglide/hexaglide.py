@@ -33,6 +33,7 @@ __all__ = [
     "NC",
     "NW",
     "NJ",
+    "OVERCONSTRAINED",
     "ACTUATED",
     "ACTUATOR_NAMES",
     "H",
@@ -57,6 +58,7 @@ __all__ = [
     "inverse_dynamics",
     "inverse_kinematics",
     "joint_accelerations",
+    "joint_margins",
     "joint_rates",
     "leg_reactions",
     "momentum",
@@ -66,6 +68,7 @@ __all__ = [
     "power",
     "retract",
     "rotation",
+    "within_limits",
 ]
 
 NQ = 7
@@ -74,6 +77,7 @@ NU = 6
 NC = 0
 NW = 6
 NJ = 18
+OVERCONSTRAINED = 0
 
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
@@ -362,7 +366,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return np.full(shape, default)
+        return _filled(shape, default) if isinstance(default, float) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -375,6 +379,16 @@ def _argument(function, name, value, shape, default=None, rule=""):
     elif rule == "positive" and not np.all((array > 0.0) & (array < np.inf)):
         raise ValueError(f"{function}: {name} must be positive and finite")
     return array
+
+
+_FILLED = {}
+
+
+def _filled(shape, value):
+    """An array of one value, made once."""
+    if (shape, value) not in _FILLED:
+        _FILLED[shape, value] = _frozen(np.full(shape, value))
+    return _FILLED[shape, value]
 
 
 def _lead(leads):
@@ -468,8 +482,8 @@ HOME_X = _frozen(np.array([0.0, 0.0, 0.75, 0.0, 0.0, 0.0, 1.0]))
 HOME_Q = _frozen(np.array([0.1, 0.55, 0.35, 0.1, 0.55, -0.35, 0.1, 0.55, 0.35, 0.1, 0.55, -0.35, 0.1, 0.55, 0.35, 0.1, 0.55, -0.35]))
 
 _BRANCHES = {  # assembly branch of home, a sign per leg
-    "branch_1": np.array([-1.0, -1.0, -1.0, -1.0, -1.0, -1.0]),
-    "branch_2": np.array([1.0, 1.0, 1.0, 1.0, 1.0, 1.0]),
+    "pus_branch_1": np.array([-1.0, -1.0, -1.0, -1.0, -1.0, -1.0]),
+    "pus_branch_2": np.array([1.0, 1.0, 1.0, 1.0, 1.0, 1.0]),
 }
 
 
@@ -520,13 +534,13 @@ def _prepare(p):
     pus_link3_inertia_yy = p.pus_link3_inertia[:, 1, 1]
     pus_link3_inertia_yz = p.pus_link3_inertia[:, 1, 2]
     pus_link3_inertia_zz = p.pus_link3_inertia[:, 2, 2]
-    branch_1 = _BRANCHES["branch_1"]
-    branch_2 = _BRANCHES["branch_2"]
-    # (L2) first moment about the platform origin
+    pus_branch_1 = _BRANCHES["pus_branch_1"]
+    pus_branch_2 = _BRANCHES["pus_branch_2"]
+    # (h_star) first moment about the platform origin
     h_star_t = platform_centre_of_mass_x*platform_mass
     h_star_t_2 = platform_centre_of_mass_y*platform_mass
     h_star_t_3 = platform_centre_of_mass_z*platform_mass
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_t = platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_2 = platform_centre_of_mass_y*platform_centre_of_mass_y
     J_star_t_3 = platform_centre_of_mass_z*platform_centre_of_mass_z
@@ -537,167 +551,172 @@ def _prepare(p):
     J_star_t_8 = platform_mass*(J_star_t_2 - J_star_t_4)
     J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass
     J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4)
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread_t = 0.16666666666666666*sqrt(6.0)
-    # (pus-K16) squared length, across the axis, of the direction fixed in link 3
-    uu_3_t = pus_platform_joint_offset_x*pus_platform_joint_offset_x
-    # (pus-G2) length of the leg's lever arms, the measure of what is near singular
-    size_t = 4.9e-07 + uu_3_t
-    size = sqrt(size_t)
-    # (pus-K17) cosine of the angle of joint 3 from its reference direction
-    inv_uu_3_t = 1.0/uu_3_t
-    # (pus-G4) connection point to the centre of mass of link 3
-    rho_tip_3_x = pus_link3_centre_of_mass_x - pus_platform_joint_offset_x
-    # (pus-G6) inertia tensor of link 3 about the connection point
-    J_3_t = rho_tip_3_x*rho_tip_3_x
-    J_3_t_2 = pus_link3_centre_of_mass_y*pus_link3_centre_of_mass_y
-    J_3_t_3 = pus_link3_centre_of_mass_z*pus_link3_centre_of_mass_z
-    J_3_t_4 = J_3_t + J_3_t_2 + J_3_t_3
-    J_3_xx = pus_link3_inertia_xx - pus_link3_mass*(J_3_t - J_3_t_4)
-    J_3_xy = pus_link3_inertia_xy - pus_link3_centre_of_mass_y*pus_link3_mass*rho_tip_3_x
-    J_3_xz = pus_link3_inertia_xz - pus_link3_centre_of_mass_z*pus_link3_mass*rho_tip_3_x
-    J_3_yy = pus_link3_inertia_yy - pus_link3_mass*(J_3_t_2 - J_3_t_4)
-    J_3_yz = (
+    # (pus-disc_1) discriminant of the distance equation
+    pus_disc_1_t = pus_platform_joint_offset_x*pus_platform_joint_offset_x
+    # (pus-size) length of the leg's lever arms, the measure of what is near singular
+    pus_size_t = 4.9e-07 + pus_disc_1_t
+    pus_size = sqrt(pus_size_t)
+    # (pus-c_3) cosine of the angle of joint 3 from its reference direction
+    inv_pus_disc_1_t_6 = 1.0/pus_disc_1_t
+    # (pus-rho_tip_3) connection point to the centre of mass of link 3
+    pus_rho_tip_3_x = pus_link3_centre_of_mass_x - pus_platform_joint_offset_x
+    # (pus-h_3) first moment of link 3 about the connection point
+    pus_h_3_x = pus_link3_mass*pus_rho_tip_3_x
+    pus_h_3_y = pus_link3_centre_of_mass_y*pus_link3_mass
+    pus_h_3_z = pus_link3_centre_of_mass_z*pus_link3_mass
+    # (pus-w_3) reciprocal vector 3
+    inv_pus_platform_joint_offset_x = 1.0/pus_platform_joint_offset_x
+    # (pus-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+    pus_d_phi_3_t = inv_pus_platform_joint_offset_x*pus_h_3_z
+    # (pus-J_3) inertia tensor of link 3 about the connection point
+    pus_J_3_t = pus_rho_tip_3_x*pus_rho_tip_3_x
+    pus_J_3_t_2 = pus_link3_centre_of_mass_y*pus_link3_centre_of_mass_y
+    pus_J_3_t_3 = pus_link3_centre_of_mass_z*pus_link3_centre_of_mass_z
+    pus_J_3_t_4 = pus_J_3_t + pus_J_3_t_2 + pus_J_3_t_3
+    pus_J_3_xx = pus_link3_inertia_xx - pus_link3_mass*(pus_J_3_t - pus_J_3_t_4)
+    pus_J_3_xy = pus_link3_inertia_xy - pus_link3_centre_of_mass_y*pus_link3_mass*pus_rho_tip_3_x
+    pus_J_3_xz = pus_link3_inertia_xz - pus_link3_centre_of_mass_z*pus_link3_mass*pus_rho_tip_3_x
+    pus_J_3_yy = pus_link3_inertia_yy - pus_link3_mass*(pus_J_3_t_2 - pus_J_3_t_4)
+    pus_J_3_yz = (
     pus_link3_inertia_yz - pus_link3_centre_of_mass_y*pus_link3_centre_of_mass_z*pus_link3_mass
     )
-    J_3_zz = pus_link3_inertia_zz - pus_link3_mass*(J_3_t_3 - J_3_t_4)
-    # (pus-G5) first moment of link 3 about the connection point
-    h_3_x = pus_link3_mass*rho_tip_3_x
-    h_3_y = pus_link3_centre_of_mass_y*pus_link3_mass
-    h_3_z = pus_link3_centre_of_mass_z*pus_link3_mass
-    # (pus-V6) reciprocal vector 3
-    inv_pus_platform_joint_offset_x = 1.0/pus_platform_joint_offset_x
-    # (pus-N22) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-    d_Gamma_3_t = J_3_yy*inv_pus_platform_joint_offset_x
-    d_Gamma_3_y = d_Gamma_3_t + h_3_x
-    # (pus-N8) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-    d_phi_3_t = h_3_z*inv_pus_platform_joint_offset_x
-    # (pus-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_yy = -d_Gamma_3_y*inv_pus_platform_joint_offset_x - h_3_x*inv_pus_platform_joint_offset_x
-    # (L2) first moment about the platform origin
-    h_star_t_4 = pus_link3_mass*pus_platform_point_x
-    h_star_t_5 = pus_link3_mass*pus_platform_point_y
-    h_star_t_6 = pus_link3_mass*pus_platform_point_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t_11 = pus_platform_point_x*pus_platform_point_x
-    J_star_t_12 = pus_platform_point_y*pus_platform_point_y
-    J_star_t_13 = pus_platform_point_z*pus_platform_point_z
-    J_star_t_14 = J_star_t_11 + J_star_t_12 + J_star_t_13
-    J_star_t_15 = pus_link3_mass*(J_star_t_11 - J_star_t_14)
-    J_star_t_16 = pus_link3_mass*pus_platform_point_x*pus_platform_point_y
-    J_star_t_17 = pus_link3_mass*pus_platform_point_x*pus_platform_point_z
-    J_star_t_18 = pus_link3_mass*(J_star_t_12 - J_star_t_14)
-    J_star_t_19 = pus_link3_mass*pus_platform_point_y*pus_platform_point_z
-    J_star_t_20 = pus_link3_mass*(J_star_t_13 - J_star_t_14)
-    # (pus-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-    g_r0_x = (
+    pus_J_3_zz = pus_link3_inertia_zz - pus_link3_mass*(pus_J_3_t_3 - pus_J_3_t_4)
+    # (pus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    pus_d_Gamma_3_t = inv_pus_platform_joint_offset_x*pus_J_3_yy
+    pus_d_Gamma_3_y = pus_d_Gamma_3_t + pus_h_3_x
+    # (pus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    pus_d_c_yy = (
+    -inv_pus_platform_joint_offset_x*pus_d_Gamma_3_y - inv_pus_platform_joint_offset_x*pus_h_3_x
+    )
+    # (h_star) first moment about the platform origin
+    pus_h_star_t = pus_link3_mass*pus_platform_point_x
+    pus_h_star_t_2 = pus_link3_mass*pus_platform_point_y
+    pus_h_star_t_3 = pus_link3_mass*pus_platform_point_z
+    # (J_star) inertia tensor about the platform origin
+    pus_J_star_t = pus_platform_point_x*pus_platform_point_x
+    pus_J_star_t_2 = pus_platform_point_y*pus_platform_point_y
+    pus_J_star_t_3 = pus_platform_point_z*pus_platform_point_z
+    pus_J_star_t_4 = pus_J_star_t + pus_J_star_t_2 + pus_J_star_t_3
+    pus_J_star_t_5 = pus_link3_mass*(pus_J_star_t - pus_J_star_t_4)
+    pus_J_star_t_6 = pus_link3_mass*pus_platform_point_x*pus_platform_point_y
+    pus_J_star_t_7 = pus_link3_mass*pus_platform_point_x*pus_platform_point_z
+    pus_J_star_t_8 = pus_link3_mass*(pus_J_star_t_2 - pus_J_star_t_4)
+    pus_J_star_t_9 = pus_link3_mass*pus_platform_point_y*pus_platform_point_z
+    pus_J_star_t_10 = pus_link3_mass*(pus_J_star_t_3 - pus_J_star_t_4)
+    # (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+    pus_g_r0_x = (
     gravity_x*pus_base_frame_xx + gravity_y*pus_base_frame_yx + gravity_z*pus_base_frame_zx
     )
-    g_r0_y = (
+    pus_g_r0_y = (
     gravity_x*pus_base_frame_xy + gravity_y*pus_base_frame_yy + gravity_z*pus_base_frame_zy
     )
-    g_r0_z = (
+    pus_g_r0_z = (
     gravity_x*pus_base_frame_xz + gravity_y*pus_base_frame_yz + gravity_z*pus_base_frame_zz
     )
-    # (pus-N17) half the trace of that inertia tensor
-    trace_J_3 = 0.5*J_3_xx + 0.5*J_3_yy + 0.5*J_3_zz
-    # (pus-N18) second moment of mass of the links that turn with link 3
-    Sigma_3_xx = trace_J_3 - J_3_xx
-    Sigma_3_yy = trace_J_3 - J_3_zz
-    Sigma_3_zz = trace_J_3 - J_3_yy
-    # (pus-G3) first moment of link 1 about the origin of link 1
-    h_1_x = pus_link1_centre_of_mass_x*pus_link1_mass
-    h_1_y = pus_link1_centre_of_mass_y*pus_link1_mass
-    h_1_z = pus_link1_centre_of_mass_z*pus_link1_mass
-    # (V1) potential energy
-    b_r0_x = (
+    # (pus-trace_J_3) half the trace of that inertia tensor
+    pus_trace_J_3 = 0.5*pus_J_3_xx + 0.5*pus_J_3_yy + 0.5*pus_J_3_zz
+    # (pus-Sigma_3) second moment of mass of the links that turn with link 3
+    pus_Sigma_3_xx = pus_trace_J_3 - pus_J_3_xx
+    pus_Sigma_3_yy = pus_trace_J_3 - pus_J_3_zz
+    pus_Sigma_3_zz = pus_trace_J_3 - pus_J_3_yy
+    # (pus-h_1) first moment of link 1 about the origin of link 1
+    pus_h_1_x = pus_link1_centre_of_mass_x*pus_link1_mass
+    pus_h_1_y = pus_link1_centre_of_mass_y*pus_link1_mass
+    pus_h_1_z = pus_link1_centre_of_mass_z*pus_link1_mass
+    # (potential) potential energy
+    pus_b_r0_x = (
     pus_base_frame_xx*pus_base_point_x + pus_base_frame_yx*pus_base_point_y +
         pus_base_frame_zx*pus_base_point_z
     )
-    potential_t = (
+    pus_potential_t = (
     pus_link1_mass*(pus_base_frame_xy*pus_base_point_x + pus_base_frame_yy*pus_base_point_y +
         pus_base_frame_zy*pus_base_point_z)
     )
-    potential_t_2 = (
+    pus_potential_t_2 = (
     pus_link1_mass*(pus_base_frame_xz*pus_base_point_x + pus_base_frame_yz*pus_base_point_y +
         pus_base_frame_zz*pus_base_point_z)
     )
-    # (pus-K9) squared amplitude
-    inv_size_t = 1.0/size_t
-    # (pus-V4) reciprocal vector 1
-    inv_size = 1.0/size
+    # (pus-rho2_2) squared amplitude
+    inv_pus_size_t = 1.0/pus_size_t
+    # (pus-w_2) reciprocal vector 2
+    inv_pus_size = 1.0/pus_size
     total_pus = np.sum(np.broadcast_to(pus_link3_mass, _pus))
-    total_pus_x = np.sum(np.broadcast_to(h_star_t_4, _pus))
-    total_pus_y = np.sum(np.broadcast_to(h_star_t_5, _pus))
-    total_pus_z = np.sum(np.broadcast_to(h_star_t_6, _pus))
-    total_pus_xx = np.sum(np.broadcast_to(J_star_t_15, _pus))
-    total_pus_xy = np.sum(np.broadcast_to(J_star_t_16, _pus))
-    total_pus_xz = np.sum(np.broadcast_to(J_star_t_17, _pus))
-    total_pus_yy = np.sum(np.broadcast_to(J_star_t_18, _pus))
-    total_pus_yz = np.sum(np.broadcast_to(J_star_t_19, _pus))
-    total_pus_zz = np.sum(np.broadcast_to(J_star_t_20, _pus))
+    total_pus_x = np.sum(np.broadcast_to(pus_h_star_t, _pus))
+    total_pus_y = np.sum(np.broadcast_to(pus_h_star_t_2, _pus))
+    total_pus_z = np.sum(np.broadcast_to(pus_h_star_t_3, _pus))
+    total_pus_xx = np.sum(np.broadcast_to(pus_J_star_t_5, _pus))
+    total_pus_xy = np.sum(np.broadcast_to(pus_J_star_t_6, _pus))
+    total_pus_xz = np.sum(np.broadcast_to(pus_J_star_t_7, _pus))
+    total_pus_yy = np.sum(np.broadcast_to(pus_J_star_t_8, _pus))
+    total_pus_yz = np.sum(np.broadcast_to(pus_J_star_t_9, _pus))
+    total_pus_zz = np.sum(np.broadcast_to(pus_J_star_t_10, _pus))
     total_pus_x_2 = np.sum(np.broadcast_to(pus_platform_point_x, _pus))
     total_pus_y_2 = np.sum(np.broadcast_to(pus_platform_point_y, _pus))
     total_pus_z_2 = np.sum(np.broadcast_to(pus_platform_point_z, _pus))
-    total_pus_2 = np.sum(np.broadcast_to(size_t, _pus))
-    # (L1) mass of the platform with the gathered masses
+    total_pus_2 = np.sum(np.broadcast_to(pus_size_t, _pus))
+    # (m_star) mass of the platform with the gathered masses
     m_star = platform_mass + total_pus
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_x = h_star_t + total_pus_x
     h_star_y = h_star_t_2 + total_pus_y
     h_star_z = h_star_t_3 + total_pus_z
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_xx = platform_inertia_xx - J_star_t_5 - total_pus_xx
     J_star_xy = platform_inertia_xy - J_star_t_6 - total_pus_xy
     J_star_xz = platform_inertia_xz - J_star_t_7 - total_pus_xz
     J_star_yy = platform_inertia_yy - J_star_t_8 - total_pus_yy
     J_star_yz = platform_inertia_yz - J_star_t_9 - total_pus_yz
     J_star_zz = platform_inertia_zz - J_star_t_10 - total_pus_zz
-    J_star_t_21 = J_star_xx - J_star_yy
-    J_star_t_22 = 0.5*J_star_t_21
-    J_star_t_23 = J_star_xx - J_star_zz
-    J_star_t_24 = 0.5*J_star_t_23
-    # (M4) centripetal force and weight of the platform
+    J_star_t_11 = J_star_xx - J_star_yy
+    J_star_t_12 = 0.5*J_star_t_11
+    J_star_t_13 = J_star_xx - J_star_zz
+    J_star_t_14 = 0.5*J_star_t_13
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
     Z_p_t_3 = gravity_z*m_star
-    # (C1) centroid of the platform points
+    # (b_c) centroid of the platform points
     b_c_x = 0.16666666666666666*total_pus_x_2
     b_c_y = 0.16666666666666666*total_pus_y_2
     b_c_z = 0.16666666666666666*total_pus_z_2
-    # (C3) rms size of the legs, taken where the platform points coincide
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     legs_size = spread_t*sqrt(total_pus_2)
     return {
         "dynamics": (
-        (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
                 J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
                 h_star_y, h_star_z, m_star,),
             (
                 (_pus,
-        (J_3_xx, J_3_xy, J_3_xz, J_3_yz, J_3_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1,
-                    branch_2, d_Gamma_3_t, d_Gamma_3_y, d_c_yy, d_phi_3_t, g_r0_x, g_r0_y, g_r0_z,
-                    h_3_x, h_3_y, h_3_z, inv_pus_platform_joint_offset_x, inv_uu_3_t,
+        (inv_pus_disc_1_t_6, inv_pus_platform_joint_offset_x, pus_J_3_xx, pus_J_3_xy, pus_J_3_xz,
+                    pus_J_3_yz, pus_J_3_zz, pus_Sigma_3_xx, pus_Sigma_3_yy, pus_Sigma_3_zz,
                     pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx,
                     pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy,
                     pus_base_frame_zz, pus_base_point_x, pus_base_point_y, pus_base_point_z,
-                    pus_link1_mass, pus_platform_joint_offset_x, pus_platform_point_x,
-                    pus_platform_point_y, pus_platform_point_z, size, size_t, uu_3_t,),
+                    pus_branch_1, pus_branch_2, pus_d_Gamma_3_t, pus_d_Gamma_3_y, pus_d_c_yy,
+                    pus_d_phi_3_t, pus_disc_1_t, pus_g_r0_x, pus_g_r0_y, pus_g_r0_z, pus_h_3_x,
+                    pus_h_3_y, pus_h_3_z, pus_link1_mass, pus_platform_joint_offset_x,
+                    pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, pus_size,
+                    pus_size_t,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
+        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
                 h_star_z, m_star,),
             (
                 (_pus,
-        (J_3_xx, J_3_xy, J_3_xz, J_3_yz, J_3_zz, branch_1, branch_2, d_Gamma_3_t, d_Gamma_3_y,
-                    d_c_yy, d_phi_3_t, h_3_x, h_3_y, h_3_z, inv_pus_platform_joint_offset_x,
-                    inv_uu_3_t, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
-                    pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx,
-                    pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x, pus_base_point_y,
-                    pus_base_point_z, pus_link1_mass, pus_platform_joint_offset_x,
-                    pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, size,
-                    size_t, uu_3_t,),
+        (inv_pus_disc_1_t_6, inv_pus_platform_joint_offset_x, pus_J_3_xx, pus_J_3_xy, pus_J_3_xz,
+                    pus_J_3_yz, pus_J_3_zz, pus_base_frame_xx, pus_base_frame_xy,
+                    pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz,
+                    pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x,
+                    pus_base_point_y, pus_base_point_z, pus_branch_1, pus_branch_2,
+                    pus_d_Gamma_3_t, pus_d_Gamma_3_y, pus_d_c_yy, pus_d_phi_3_t, pus_disc_1_t,
+                    pus_h_3_x, pus_h_3_y, pus_h_3_z, pus_link1_mass, pus_platform_joint_offset_x,
+                    pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, pus_size,
+                    pus_size_t,),
                 ),
             ),
         ),
@@ -706,14 +725,15 @@ def _prepare(p):
                 Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
             (
                 (_pus,
-        (J_3_xy, J_3_xz, J_3_yz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, g_r0_x,
-                    g_r0_y, g_r0_z, h_3_x, h_3_y, h_3_z, inv_pus_platform_joint_offset_x,
-                    inv_uu_3_t, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
-                    pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx,
-                    pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x, pus_base_point_y,
-                    pus_base_point_z, pus_link1_mass, pus_platform_joint_offset_x,
-                    pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, size,
-                    size_t, uu_3_t,),
+        (inv_pus_disc_1_t_6, inv_pus_platform_joint_offset_x, pus_J_3_xy, pus_J_3_xz, pus_J_3_yz,
+                    pus_Sigma_3_xx, pus_Sigma_3_yy, pus_Sigma_3_zz, pus_base_frame_xx,
+                    pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy,
+                    pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz,
+                    pus_base_point_x, pus_base_point_y, pus_base_point_z, pus_branch_1,
+                    pus_branch_2, pus_disc_1_t, pus_g_r0_x, pus_g_r0_y, pus_g_r0_z, pus_h_3_x,
+                    pus_h_3_y, pus_h_3_z, pus_link1_mass, pus_platform_joint_offset_x,
+                    pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, pus_size,
+                    pus_size_t,),
                 ),
             ),
         ),
@@ -721,11 +741,12 @@ def _prepare(p):
         (),
             (
                 (_pus,
-        (branch_1, branch_2, inv_uu_3_t, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
+        (inv_pus_disc_1_t_6, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
                     pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx,
                     pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x, pus_base_point_y,
-                    pus_base_point_z, pus_platform_joint_offset_x, pus_platform_point_x,
-                    pus_platform_point_y, pus_platform_point_z, size_t, uu_3_t,),
+                    pus_base_point_z, pus_branch_1, pus_branch_2, pus_disc_1_t,
+                    pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
+                    pus_platform_point_z, pus_size_t,),
                 ),
             ),
         ),
@@ -734,14 +755,15 @@ def _prepare(p):
                 gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
                 (_pus,
-        (J_3_xy, J_3_xz, J_3_yz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, g_r0_x,
-                    g_r0_y, g_r0_z, h_3_x, h_3_y, h_3_z, inv_pus_platform_joint_offset_x,
-                    inv_uu_3_t, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
-                    pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx,
-                    pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x, pus_base_point_y,
-                    pus_base_point_z, pus_link1_mass, pus_platform_joint_offset_x,
-                    pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, size,
-                    size_t, uu_3_t,),
+        (inv_pus_disc_1_t_6, inv_pus_platform_joint_offset_x, pus_J_3_xy, pus_J_3_xz, pus_J_3_yz,
+                    pus_Sigma_3_xx, pus_Sigma_3_yy, pus_Sigma_3_zz, pus_base_frame_xx,
+                    pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy,
+                    pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz,
+                    pus_base_point_x, pus_base_point_y, pus_base_point_z, pus_branch_1,
+                    pus_branch_2, pus_disc_1_t, pus_g_r0_x, pus_g_r0_y, pus_g_r0_z, pus_h_3_x,
+                    pus_h_3_y, pus_h_3_z, pus_link1_mass, pus_platform_joint_offset_x,
+                    pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, pus_size,
+                    pus_size_t,),
                 ),
             ),
         ),
@@ -749,11 +771,12 @@ def _prepare(p):
         (),
             (
                 (_pus,
-        (branch_1, branch_2, inv_uu_3_t, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
+        (inv_pus_disc_1_t_6, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
                     pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx,
                     pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x, pus_base_point_y,
-                    pus_base_point_z, pus_platform_joint_offset_x, pus_platform_point_x,
-                    pus_platform_point_y, pus_platform_point_z, size_t, uu_3_t,),
+                    pus_base_point_z, pus_branch_1, pus_branch_2, pus_disc_1_t,
+                    pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
+                    pus_platform_point_z, pus_size_t,),
                 ),
             ),
         ),
@@ -761,12 +784,12 @@ def _prepare(p):
         (),
             (
                 (_pus,
-        (branch_1, branch_2, inv_pus_platform_joint_offset_x, inv_uu_3_t, pus_base_frame_xx,
+        (inv_pus_disc_1_t_6, inv_pus_platform_joint_offset_x, pus_base_frame_xx,
                     pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy,
                     pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz,
-                    pus_base_point_x, pus_base_point_y, pus_base_point_z,
-                    pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
-                    pus_platform_point_z, size, size_t, uu_3_t,),
+                    pus_base_point_x, pus_base_point_y, pus_base_point_z, pus_branch_1,
+                    pus_branch_2, pus_disc_1_t, pus_platform_joint_offset_x, pus_platform_point_x,
+                    pus_platform_point_y, pus_platform_point_z, pus_size, pus_size_t,),
                 ),
             ),
         ),
@@ -774,12 +797,12 @@ def _prepare(p):
         (),
             (
                 (_pus,
-        (branch_1, branch_2, inv_pus_platform_joint_offset_x, inv_uu_3_t, pus_base_frame_xx,
+        (inv_pus_disc_1_t_6, inv_pus_platform_joint_offset_x, pus_base_frame_xx,
                     pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy,
                     pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz,
-                    pus_base_point_x, pus_base_point_y, pus_base_point_z,
-                    pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
-                    pus_platform_point_z, size, size_t, uu_3_t,),
+                    pus_base_point_x, pus_base_point_y, pus_base_point_z, pus_branch_1,
+                    pus_branch_2, pus_disc_1_t, pus_platform_joint_offset_x, pus_platform_point_x,
+                    pus_platform_point_y, pus_platform_point_z, pus_size, pus_size_t,),
                 ),
             ),
         ),
@@ -787,14 +810,15 @@ def _prepare(p):
         (),
             (
                 (_pus,
-        (J_3_xy, J_3_xz, J_3_yz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, g_r0_x,
-                    g_r0_y, g_r0_z, h_3_x, h_3_y, h_3_z, inv_pus_platform_joint_offset_x,
-                    inv_uu_3_t, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
-                    pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx,
-                    pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x, pus_base_point_y,
-                    pus_base_point_z, pus_link1_mass, pus_link3_mass, pus_platform_joint_offset_x,
-                    pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, size,
-                    size_t, uu_3_t,),
+        (inv_pus_disc_1_t_6, inv_pus_platform_joint_offset_x, pus_J_3_xy, pus_J_3_xz, pus_J_3_yz,
+                    pus_Sigma_3_xx, pus_Sigma_3_yy, pus_Sigma_3_zz, pus_base_frame_xx,
+                    pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy,
+                    pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz,
+                    pus_base_point_x, pus_base_point_y, pus_base_point_z, pus_branch_1,
+                    pus_branch_2, pus_disc_1_t, pus_g_r0_x, pus_g_r0_y, pus_g_r0_z, pus_h_3_x,
+                    pus_h_3_y, pus_h_3_z, pus_link1_mass, pus_link3_mass,
+                    pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
+                    pus_platform_point_z, pus_size, pus_size_t,),
                 ),
             ),
         ),
@@ -802,13 +826,14 @@ def _prepare(p):
         (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
                 (_pus,
-        (b_r0_x, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_1_x, h_1_y, h_1_z, h_3_x, h_3_y,
-                    h_3_z, inv_uu_3_t, potential_t, potential_t_2, pus_base_frame_xx,
-                    pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy,
-                    pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz,
-                    pus_base_point_x, pus_base_point_y, pus_base_point_z, pus_link1_mass,
-                    pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
-                    pus_platform_point_z, size_t, uu_3_t,),
+        (inv_pus_disc_1_t_6, pus_b_r0_x, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
+                    pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx,
+                    pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x, pus_base_point_y,
+                    pus_base_point_z, pus_branch_1, pus_branch_2, pus_disc_1_t, pus_g_r0_x,
+                    pus_g_r0_y, pus_g_r0_z, pus_h_1_x, pus_h_1_y, pus_h_1_z, pus_h_3_x, pus_h_3_y,
+                    pus_h_3_z, pus_link1_mass, pus_platform_joint_offset_x, pus_platform_point_x,
+                    pus_platform_point_y, pus_platform_point_z, pus_potential_t,
+                    pus_potential_t_2, pus_size_t,),
                 ),
             ),
         ),
@@ -816,19 +841,20 @@ def _prepare(p):
         (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
             (
                 (_pus,
-        (branch_1, branch_2, inv_size, inv_size_t, inv_uu_3_t, pus_base_frame_xx,
-                    pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy,
-                    pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz,
-                    pus_base_point_x, pus_base_point_y, pus_base_point_z,
+        (inv_pus_disc_1_t_6, inv_pus_size, inv_pus_size_t, pus_base_frame_xx, pus_base_frame_xy,
+                    pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz,
+                    pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x,
+                    pus_base_point_y, pus_base_point_z, pus_branch_1, pus_branch_2, pus_disc_1_t,
                     pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
-                    pus_platform_point_z, size, size_t, uu_3_t,),
+                    pus_platform_point_z, pus_size, pus_size_t,),
                 ),
             ),
         ),
     }
 
 
-_FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
+_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
@@ -874,17 +900,19 @@ class _Floats:
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
-        for k in range(self.states):
-            try:
-                ok, arrays = function(self, *(row[k] for row in rows))
-            except (ZeroDivisionError, OverflowError):
-                continue
-            if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
-                for a, array in zip(found, arrays):
-                    a[k] = array
-        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
+        found = [self.state(function, names, [row[k] for row in rows]) for k in range(self.states)]
+        return [np.array(a).T.reshape(*_SHAPES[n], self.states) for a, n in zip(zip(*found), names)]
+
+    def state(self, function, names, given):
+        """Lists that a function gives at a state."""
+        try:
+            ok, arrays = function(self, *given)
+        except (ZeroDivisionError, OverflowError):
+            ok = False
+        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+            return arrays
+        return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
 
 
 class _Arrays:
@@ -952,35 +980,44 @@ def _mode(p, states):
     return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
 
 
-def _call(function, steps, p, *arguments, mode=_mode):
-    """What the steps give at arguments (name, value, shape of a state, default, rule)."""
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+    """What the steps give at arguments (name, value, shape of a state, default, rule).
+
+    Where that may be infinite only NaN makes a state impossible.
+    """
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
     lead, p = _lead(leads), _given(p)
     read = [a[4:] != ("unused",) for a in arguments]
     if lead or mode is _Judged:
-        results = _many(steps, p, lead, given, shapes, read, mode)
+        results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
-        results = _one(steps, p, given, shapes, read)
+        results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
 
 
-def _one(steps, p, given, shapes, read):
+def _one(steps, p, given, shapes, read, unbounded):
     """Results at a single state."""
     states = [v.reshape(*shape, 1) for v, shape in zip(given, shapes)]
     with np.errstate(all="ignore"):
-        results = [a[..., 0] for a in steps(_Floats(p, 1), *states)]
-    if all(all(map(math.isfinite, v.ravel().tolist())) for v in (*compress(given, read), *results)):
-        return [np.array(a)[()] for a in results]
+        results = [a[..., 0].copy() for a in steps(_Floats(p, 1), *states)]
+    looked_at = [np.minimum(a, 0.0) for a in results] if unbounded else results
+    entries = (v.ravel().tolist() for v in (*compress(given, read), *looked_at))
+    if all(all(map(math.isfinite, row)) for row in entries):
+        return [a[()] for a in results]
     return [np.full(a.shape, np.nan)[()] for a in results]
 
 
-def _many(steps, p, lead, given, shapes, read, mode):
+def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block."""
     count = math.prod(lead)
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
+    if count > _BLOCK:
+        # Never touched, freed at once: the C library, which learns from it, then keeps the memory
+        # of intermediate arrays from block to block instead of giving its pages back.
+        np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
         for first in range(0, max(count, 1), _BLOCK):
             block = slice(first, min(first + _BLOCK, count))
@@ -992,7 +1029,7 @@ def _many(steps, p, lead, given, shapes, read, mode):
             _all_finite(compress(states, read), good)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite(found, good)
+            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -1021,6 +1058,18 @@ def _with_forces(a, amounts, directions, legs):
     for k, leg in enumerate(legs):
         result[leg] += amounts[k] * directions[k]
     return result
+
+
+def _unlimited(a, places):
+    """a, some entries infinite; what is not known stays so."""
+    result = np.array(a)
+    result[places] += np.inf
+    return result
+
+
+def _not_negative(a):
+    """1 where no entry is negative, else 0; NaN where one is not finite."""
+    return np.where(np.isfinite(a).all(axis=0), np.all(a >= 0.0, axis=0), np.nan)
 
 
 def _rows_divided(a, b, places):
@@ -1123,8 +1172,8 @@ def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
     n, states = b.shape
     if 0 < states <= _FEW:
-        matrices, rights = np.moveaxis(a, -1, 0).tolist(), b.T.tolist()
-        return np.array([_solve_one(*each) for each in zip(matrices, rights)]).T.reshape(n, states)
+        systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
+        return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
     good = np.all((size > 0.0) & np.isfinite(size), axis=0)
     rows = np.concatenate((a, b[:, None]), axis=1)
@@ -1151,28 +1200,32 @@ def _solve(a, b):
 
 
 def _solve_one(a, b):
-    """The same for one system of nested lists."""
-    n = len(b)
-    failure = [np.nan] * n
-    for i, row in enumerate(a):
-        size = max(map(abs, row), default=0.0)
-        if not 0.0 < size < np.inf:
-            return failure
-        a[i] = [v / size for v in row] + [b[i] / size]
-    for k in range(n):
-        best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
-            a[k], a[best] = a[best], a[k]
-        if not abs(a[k][k]) > _PIVOT:
-            return failure
-        head = a[k]
-        for i in range(k + 1, n):
-            factor = a[i][k] / head[k]
-            a[i] = [v - factor * h for v, h in zip(a[i], head)]
-    x = [0.0] * n
-    for k in reversed(range(n)):
-        x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
-    return x if all(map(math.isfinite, x)) else failure
+    """The same for one system of nested lists: the rows left lose an entry at every step."""
+    rows, heads = [], []
+    for row, right in zip(a, b):
+        size = max(map(abs, row))
+        if not 0.0 < size < math.inf:
+            return [math.nan] * len(b)
+        rows.append([v / size for v in (*row, right)])
+    while rows:
+        column = [abs(row[0]) for row in rows]
+        largest = max(column)
+        if largest > _CLEARLY * column[0]:
+            best = column.index(largest)
+            rows[0], rows[best] = rows[best], rows[0]
+        pivot, *head = rows[0]
+        if not abs(pivot) > _PIVOT:
+            return [math.nan] * len(b)
+        heads.append((pivot, head))
+        for i in range(1, len(rows)):
+            first, *row = rows[i]
+            factor = first / pivot
+            rows[i] = [v - factor * h for v, h in zip(row, head)]
+        del rows[0]
+    x = []
+    for pivot, (*head, right) in reversed(heads):
+        x.insert(0, (right - sum([h * v for h, v in zip(head, x)])) / pivot)
+    return x if all(map(math.isfinite, x)) else [math.nan] * len(b)
 
 
 def _matrices(a, *others):
@@ -1288,7 +1341,7 @@ def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
-    J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
+    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
         Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
         m_star,
     ) = shared
@@ -1344,115 +1397,120 @@ def _run_dynamics(m, X, V):
     out_M = m.zeros("M")
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy
-    J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
     J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_12 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_15 = 2.0*J_star_t_14 + J_star_xx
-    # (M4) centripetal force and weight of the platform
+    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
+    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
     Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
     Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z_2*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x_2*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y - g_r0_y_2*h_star_x
+    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
+    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
     sums = [0.0] * 27
     for leg, k in legs[0]:
         (
-        J_3_xx, J_3_xy, J_3_xz, J_3_yz, J_3_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1,
-            branch_2, d_Gamma_3_t, d_Gamma_3_y, d_c_yy, d_phi_3_t, g_r0_x, g_r0_y, g_r0_z, h_3_x,
-            h_3_y, h_3_z, inv_pus_platform_joint_offset_x, inv_uu_3_t, pus_base_frame_xx,
-            pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy,
-            pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz,
-            pus_base_point_x, pus_base_point_y, pus_base_point_z, pus_link1_mass,
-            pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
-            pus_platform_point_z, size, size_t, uu_3_t,
+        inv_pus_disc_1_t_6, inv_pus_platform_joint_offset_x, pus_J_3_xx, pus_J_3_xy, pus_J_3_xz,
+            pus_J_3_yz, pus_J_3_zz, pus_Sigma_3_xx, pus_Sigma_3_yy, pus_Sigma_3_zz,
+            pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx,
+            pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy,
+            pus_base_frame_zz, pus_base_point_x, pus_base_point_y, pus_base_point_z, pus_branch_1,
+            pus_branch_2, pus_d_Gamma_3_t, pus_d_Gamma_3_y, pus_d_c_yy, pus_d_phi_3_t,
+            pus_disc_1_t, pus_g_r0_x, pus_g_r0_y, pus_g_r0_z, pus_h_3_x, pus_h_3_y, pus_h_3_z,
+            pus_link1_mass, pus_platform_joint_offset_x, pus_platform_point_x,
+            pus_platform_point_y, pus_platform_point_z, pus_size, pus_size_t,
         ) = k
-        # (pus-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (pus-S) from the base point to the connection point
+        pus_q_in_base_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
-        q_in_base_y = (
+        pus_q_in_base_y = (
         R_yx*pus_platform_point_x + R_yy*pus_platform_point_y + R_yz*pus_platform_point_z
         )
-        q_in_base_z = (
+        pus_q_in_base_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        S_x = q_in_base_x + t_x - pus_base_point_x
-        S_y = q_in_base_y + t_y - pus_base_point_y
-        S_z = q_in_base_z + t_z - pus_base_point_z
-        # (pus-K2) component along axis 1
-        px_1 = S_x*pus_base_frame_xx + S_y*pus_base_frame_yx + S_z*pus_base_frame_zx
-        # (pus-K3) discriminant of the distance equation
-        disc_1_t = S_x*S_x + S_y*S_y + S_z*S_z
-        disc_1 = px_1*px_1 + uu_3_t - disc_1_t
-        # (pus-K4) displacement of joint 1
-        q_1_t = branch_1*sqrt(disc_1)
-        # (pus-K1) from the base point to the connection point
-        S_r0_y = S_x*pus_base_frame_xy + S_y*pus_base_frame_yy + S_z*pus_base_frame_zy
-        # (pus-K9) squared amplitude
-        rho2_2 = S_r0_y*S_r0_y + q_1_t*q_1_t
-        # (pus-K11) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (pus-K17) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_uu_3_t*pus_platform_joint_offset_x*root_2
-        # (pus-K18) sine of the angle of joint 3 from its reference direction
-        s_3 = (
-        inv_uu_3_t*pus_platform_joint_offset_x*(S_x*pus_base_frame_xz + S_y*pus_base_frame_yz +
-            S_z*pus_base_frame_zz)
+        pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x
+        pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y
+        pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z
+        # (pus-px_1) component along axis 1
+        pus_px_1 = (
+        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
         )
-        # (pus-V2) velocity of the connection point per rate of joint 2
-        v_2_t = c_3*pus_platform_joint_offset_x
-        # (pus-K12) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = S_r0_y*inv_rho2_2*root_2
-        # (pus-K13) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*q_1_t*root_2
-        # (pus-V4) reciprocal vector 1
-        axis_z_pus_axes3_in_base_x = -c_2*pus_base_frame_xx - pus_base_frame_xy*s_2
-        axis_z_pus_axes3_in_base_y = -c_2*pus_base_frame_yx - pus_base_frame_yy*s_2
-        axis_z_pus_axes3_in_base_z = -c_2*pus_base_frame_zx - pus_base_frame_zy*s_2
-        w_1_t = s_2*s_3
-        w_1_t_2 = c_2*s_3
+        # (pus-disc_1) discriminant of the distance equation
+        pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
+        pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2
+        # (pus-q_1) displacement of joint 1
+        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
+        # (pus-S) from the base point to the connection point
+        pus_S_r0_y = (
+        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
+        )
+        # (pus-rho2_2) squared amplitude
+        pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t
+        # (pus-root_2) root, with the sign of the branch
+        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
+        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
+        pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2
+        # (pus-s_3) sine of the angle of joint 3 from its reference direction
+        pus_s_3 = (
+        inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        )
+        # (pus-v_2) velocity of the connection point per rate of joint 2
+        pus_v_2_t = pus_c_3*pus_platform_joint_offset_x
+        # (pus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_pus_rho2_2 = 1.0/pus_rho2_2
+        pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2
+        # (pus-s_2) sine of the angle of joint 2 from its reference direction
+        pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2
+        # (pus-w_1) reciprocal vector 1
+        axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 - pus_base_frame_xy*pus_s_2
+        axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 - pus_base_frame_yy*pus_s_2
+        axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 - pus_base_frame_zy*pus_s_2
+        pus_w_1_t = pus_s_2*pus_s_3
+        pus_w_1_t_2 = pus_c_2*pus_s_3
         axis_y_pus_axes3_in_base_x = (
-        pus_base_frame_xy*w_1_t_2 - c_3*pus_base_frame_xz - pus_base_frame_xx*w_1_t
+        pus_base_frame_xy*pus_w_1_t_2 - pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3
         )
         axis_y_pus_axes3_in_base_y = (
-        pus_base_frame_yy*w_1_t_2 - c_3*pus_base_frame_yz - pus_base_frame_yx*w_1_t
+        pus_base_frame_yy*pus_w_1_t_2 - pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3
         )
         axis_y_pus_axes3_in_base_z = (
-        pus_base_frame_zy*w_1_t_2 - c_3*pus_base_frame_zz - pus_base_frame_zx*w_1_t
+        pus_base_frame_zy*pus_w_1_t_2 - pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3
         )
         axis_x_pus_axes3_x = (
         axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
@@ -1466,231 +1524,259 @@ def _run_dynamics(m, X, V):
         axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
             axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x
         )
-        w_1_t_3 = c_3*s_2
-        inv_w_1_t_24 = 1.0/w_1_t_3
-        # (pus-G6) inertia tensor of link 3 about the connection point
-        _y = J_3_xy*s_3 + J_3_yz*c_3
-        # (pus-V5) reciprocal vector 2
-        inv_v_2_t = 1.0/v_2_t
-        w_2_t = c_2*inv_v_2_t*inv_w_1_t_24
-        # (pus-V6) reciprocal vector 3
-        w_3_t = inv_pus_platform_joint_offset_x*inv_w_1_t_24*w_1_t
-        # (pus-N25) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_t = inv_v_2_t*(s_3*(J_3_xx*s_3 + J_3_xz*c_3) - c_3*(-J_3_xz*s_3 - J_3_zz*c_3))
-        d_Gamma_2_t_2 = _y*inv_pus_platform_joint_offset_x
-        d_Gamma_2_x = -c_3*h_3_y - inv_w_1_t_24*(c_2*d_Gamma_2_t + d_Gamma_2_t_2*w_1_t)
-        d_Gamma_2_y = d_Gamma_2_t_2 - h_3_y*s_3
-        d_Gamma_2_z = d_Gamma_2_t + c_3*h_3_x - h_3_z*s_3
-        # (pus-N22) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        d_Gamma_3_t_2 = _y*inv_v_2_t
-        d_Gamma_3_x = h_3_z - inv_w_1_t_24*(c_2*d_Gamma_3_t_2 + d_Gamma_3_t*w_1_t)
-        # (pus-A17) coefficient of the acceleration in: angular acceleration of link 3
-        d_alpha_3_t = inv_v_2_t*s_3
-        d_alpha_3_t_2 = c_3*inv_v_2_t
-        # (pus-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_xx = (
-        d_Gamma_2_x*w_2_t + d_Gamma_3_x*w_3_t + h_3_z*w_3_t -
-            inv_w_1_t_24*inv_w_1_t_24*pus_link1_mass - c_3*h_3_y*w_2_t
+        # (pus-w_2) reciprocal vector 2
+        pus_w_2_t = pus_c_3*pus_s_2
+        inv_pus_v_2_t = 1.0/pus_v_2_t
+        inv_pus_w_2_t = 1.0/pus_w_2_t
+        pus_w_2_t_2 = inv_pus_v_2_t*inv_pus_w_2_t*pus_c_2
+        # (pus-w_3) reciprocal vector 3
+        pus_w_3_t = inv_pus_platform_joint_offset_x*inv_pus_w_2_t*pus_w_1_t
+        # (pus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
+        pus_d_alpha_3_t = inv_pus_v_2_t*pus_s_3
+        pus_d_alpha_3_t_2 = inv_pus_v_2_t*pus_c_3
+        # (pus-L_c_3) moment about joint 3 that accelerates joint 3, per unit
+        pus_L_c_3_r0_y = pus_J_3_xy*pus_s_3 + pus_J_3_yz*pus_c_3
+        # (pus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        pus_d_Gamma_3_t_2 = inv_pus_v_2_t*pus_L_c_3_r0_y
+        pus_d_Gamma_3_x = (
+        pus_h_3_z - inv_pus_w_2_t*(pus_c_2*pus_d_Gamma_3_t_2 + pus_d_Gamma_3_t*pus_w_1_t)
         )
-        d_c_xy = d_Gamma_2_y*w_2_t + d_Gamma_3_y*w_3_t - d_phi_3_t
-        d_c_xz = d_Gamma_2_z*w_2_t + d_Gamma_3_t_2*w_3_t + d_alpha_3_t_2*h_3_y
-        d_c_yz = d_alpha_3_t*h_3_y - d_Gamma_3_t_2*inv_pus_platform_joint_offset_x
-        # (pus-N36) inertia of the leg at the connection point, without the mass gathered there
-        Q_t = d_c_xx - d_c_yy
-        Q_t_2 = 0.5*Q_t
-        Q_t_3 = d_c_xx + d_Gamma_2_z*inv_v_2_t + d_alpha_3_t_2*h_3_x - d_alpha_3_t*h_3_z
-        Q_t_4 = 0.5*Q_t_3
-        Q_t_5 = (
-        axis_x_pus_axes3_x*d_c_xy + axis_z_pus_axes3_in_base_x*d_c_yz -
-            Q_t_2*axis_y_pus_axes3_in_base_x
+        # (pus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        pus_d_Gamma_2_t = (
+        inv_pus_v_2_t*(pus_s_3*(pus_J_3_xx*pus_s_3 + pus_J_3_xz*pus_c_3) -
+            pus_c_3*(-pus_J_3_xz*pus_s_3 - pus_J_3_zz*pus_c_3))
         )
-        Q_t_6 = (
-        axis_x_pus_axes3_y*d_c_xy + axis_z_pus_axes3_in_base_y*d_c_yz -
-            Q_t_2*axis_y_pus_axes3_in_base_y
+        pus_d_Gamma_2_t_2 = inv_pus_platform_joint_offset_x*pus_L_c_3_r0_y
+        pus_d_Gamma_2_x = (
+        -inv_pus_w_2_t*(pus_c_2*pus_d_Gamma_2_t + pus_d_Gamma_2_t_2*pus_w_1_t) - pus_c_3*pus_h_3_y
         )
-        Q_t_7 = (
-        axis_x_pus_axes3_z*d_c_xy + axis_z_pus_axes3_in_base_z*d_c_yz -
-            Q_t_2*axis_y_pus_axes3_in_base_z
+        pus_d_Gamma_2_y = pus_d_Gamma_2_t_2 - pus_h_3_y*pus_s_3
+        pus_d_Gamma_2_z = pus_d_Gamma_2_t + pus_c_3*pus_h_3_x - pus_h_3_z*pus_s_3
+        # (pus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        pus_d_c_xx = (
+        pus_d_Gamma_2_x*pus_w_2_t_2 + pus_d_Gamma_3_x*pus_w_3_t + pus_h_3_z*pus_w_3_t -
+            inv_pus_w_2_t*inv_pus_w_2_t*pus_link1_mass - pus_c_3*pus_h_3_y*pus_w_2_t_2
         )
-        Q_t_8 = Q_t_4*axis_z_pus_axes3_in_base_x - axis_x_pus_axes3_x*d_c_xz
-        Q_t_9 = Q_t_4*axis_z_pus_axes3_in_base_y - axis_x_pus_axes3_y*d_c_xz
-        Q_t_10 = Q_t_4*axis_z_pus_axes3_in_base_z - axis_x_pus_axes3_z*d_c_xz
-        Q_t_11 = Q_t_5*axis_y_pus_axes3_in_base_x - Q_t_8*axis_z_pus_axes3_in_base_x
-        Q_t_12 = 2.0*Q_t_11 + d_c_xx
-        Q_t_13 = (
-        Q_t_5*axis_y_pus_axes3_in_base_y + Q_t_6*axis_y_pus_axes3_in_base_x -
-            Q_t_8*axis_z_pus_axes3_in_base_y - Q_t_9*axis_z_pus_axes3_in_base_x
+        pus_d_c_xy = pus_d_Gamma_2_y*pus_w_2_t_2 + pus_d_Gamma_3_y*pus_w_3_t - pus_d_phi_3_t
+        pus_d_c_xz = (
+        pus_d_Gamma_2_z*pus_w_2_t_2 + pus_d_Gamma_3_t_2*pus_w_3_t + pus_d_alpha_3_t_2*pus_h_3_y
         )
-        Q_t_14 = (
-        Q_t_5*axis_y_pus_axes3_in_base_z + Q_t_7*axis_y_pus_axes3_in_base_x -
-            Q_t_10*axis_z_pus_axes3_in_base_x - Q_t_8*axis_z_pus_axes3_in_base_z
+        pus_d_c_yz = pus_d_alpha_3_t*pus_h_3_y - inv_pus_platform_joint_offset_x*pus_d_Gamma_3_t_2
+        # (pus-Q) inertia of the leg at the connection point, without the mass gathered there
+        pus_Q_t = pus_d_c_xx - pus_d_c_yy
+        pus_Q_t_2 = 0.5*pus_Q_t
+        pus_Q_t_3 = (
+        pus_d_c_xx + inv_pus_v_2_t*pus_d_Gamma_2_z + pus_d_alpha_3_t_2*pus_h_3_x -
+            pus_d_alpha_3_t*pus_h_3_z
         )
-        Q_t_15 = Q_t_6*axis_y_pus_axes3_in_base_y - Q_t_9*axis_z_pus_axes3_in_base_y
-        Q_t_16 = 2.0*Q_t_15 + d_c_xx
-        Q_t_17 = (
-        Q_t_6*axis_y_pus_axes3_in_base_z + Q_t_7*axis_y_pus_axes3_in_base_y -
-            Q_t_10*axis_z_pus_axes3_in_base_y - Q_t_9*axis_z_pus_axes3_in_base_z
+        pus_Q_t_4 = 0.5*pus_Q_t_3
+        pus_Q_t_5 = (
+        axis_x_pus_axes3_x*pus_d_c_xy + axis_z_pus_axes3_in_base_x*pus_d_c_yz -
+            axis_y_pus_axes3_in_base_x*pus_Q_t_2
         )
-        Q_t_18 = Q_t_7*axis_y_pus_axes3_in_base_z - Q_t_10*axis_z_pus_axes3_in_base_z
-        Q_t_19 = 2.0*Q_t_18 + d_c_xx
-        # (M2) coupling block of M
-        M_ta_t = Q_t_13*q_in_base_z
-        M_ta_t_2 = Q_t_14*q_in_base_y
-        M_ta_t_3 = M_ta_t - M_ta_t_2
-        M_ta_t_4 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x
-        M_ta_t_5 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x
-        M_ta_t_6 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y
-        M_ta_t_7 = Q_t_17*q_in_base_x
-        M_ta_t_8 = M_ta_t - M_ta_t_7
-        M_ta_t_9 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x
-        M_ta_t_10 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y
-        M_ta_t_11 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x
-        M_ta_t_12 = M_ta_t_7 - M_ta_t_2
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
-        M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y
-        M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z
-        M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x
-        M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z
-        M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
-        # (pus-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        # (pus-V8) rate of joint 2
-        qd_1 = (
-        inv_w_1_t_24*(S_dot_x*axis_x_pus_axes3_x + S_dot_y*axis_x_pus_axes3_y +
-            S_dot_z*axis_x_pus_axes3_z)
+        pus_Q_t_6 = (
+        axis_x_pus_axes3_y*pus_d_c_xy + axis_z_pus_axes3_in_base_y*pus_d_c_yz -
+            axis_y_pus_axes3_in_base_y*pus_Q_t_2
         )
-        qd_2_t = (
-        S_dot_x*axis_y_pus_axes3_in_base_x + S_dot_y*axis_y_pus_axes3_in_base_y +
-            S_dot_z*axis_y_pus_axes3_in_base_z - qd_1*w_1_t
+        pus_Q_t_7 = (
+        axis_x_pus_axes3_z*pus_d_c_xy + axis_z_pus_axes3_in_base_z*pus_d_c_yz -
+            axis_y_pus_axes3_in_base_z*pus_Q_t_2
         )
-        qd_3 = inv_pus_platform_joint_offset_x*qd_2_t
-        qd_2 = (
-        inv_v_2_t*(S_dot_x*axis_z_pus_axes3_in_base_x + S_dot_y*axis_z_pus_axes3_in_base_y +
-            S_dot_z*axis_z_pus_axes3_in_base_z - c_2*qd_1)
+        pus_Q_t_8 = axis_z_pus_axes3_in_base_x*pus_Q_t_4 - axis_x_pus_axes3_x*pus_d_c_xz
+        pus_Q_t_9 = axis_z_pus_axes3_in_base_y*pus_Q_t_4 - axis_x_pus_axes3_y*pus_d_c_xz
+        pus_Q_t_10 = axis_z_pus_axes3_in_base_z*pus_Q_t_4 - axis_x_pus_axes3_z*pus_d_c_xz
+        pus_Q_t_11 = axis_y_pus_axes3_in_base_x*pus_Q_t_5 - axis_z_pus_axes3_in_base_x*pus_Q_t_8
+        pus_Q_t_12 = 2.0*pus_Q_t_11 + pus_d_c_xx
+        pus_Q_t_13 = (
+        axis_y_pus_axes3_in_base_x*pus_Q_t_6 + axis_y_pus_axes3_in_base_y*pus_Q_t_5 -
+            axis_z_pus_axes3_in_base_x*pus_Q_t_9 - axis_z_pus_axes3_in_base_y*pus_Q_t_8
         )
-        # (pus-V10) angular velocity of link 2
-        omega_2_t = qd_2*s_3
-        omega_2_t_2 = c_3*qd_2
-        # (pus-A4) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_x = omega_2_t_2*qd_3
-        zeta_3_y = omega_2_t*qd_3
-        # (pus-V12) centripetal tensor of link 3
-        W_3_t = omega_2_t*omega_2_t
-        W_3_t_2 = omega_2_t_2*omega_2_t_2
-        W_3_t_3 = qd_3*qd_3
-        W_3_xy = omega_2_t*omega_2_t_2
-        # (pus-A5) acceleration of the connection point at zero joint accelerations
-        bias_t = omega_2_t_2*pus_platform_joint_offset_x
-        bias_z = omega_2_t*qd_2_t + pus_platform_joint_offset_x*zeta_3_y
-        # (pus-A1) centripetal acceleration of the connection point
-        u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
-        u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y
-        u_1_tip_x = axis_x_pus_axes3_x*u_1_x + axis_x_pus_axes3_y*u_1_y + axis_x_pus_axes3_z*u_1_z
-        u_1_tip_y = (
-        axis_y_pus_axes3_in_base_x*u_1_x + axis_y_pus_axes3_in_base_y*u_1_y +
-            axis_y_pus_axes3_in_base_z*u_1_z
+        pus_Q_t_14 = (
+        axis_y_pus_axes3_in_base_x*pus_Q_t_7 + axis_y_pus_axes3_in_base_z*pus_Q_t_5 -
+            axis_z_pus_axes3_in_base_x*pus_Q_t_10 - axis_z_pus_axes3_in_base_z*pus_Q_t_8
         )
-        u_1_tip_z = (
-        axis_z_pus_axes3_in_base_x*u_1_x + axis_z_pus_axes3_in_base_y*u_1_y +
-            axis_z_pus_axes3_in_base_z*u_1_z
+        pus_Q_t_15 = axis_y_pus_axes3_in_base_y*pus_Q_t_6 - axis_z_pus_axes3_in_base_y*pus_Q_t_9
+        pus_Q_t_16 = 2.0*pus_Q_t_15 + pus_d_c_xx
+        pus_Q_t_17 = (
+        axis_y_pus_axes3_in_base_y*pus_Q_t_7 + axis_y_pus_axes3_in_base_z*pus_Q_t_6 -
+            axis_z_pus_axes3_in_base_y*pus_Q_t_10 - axis_z_pus_axes3_in_base_z*pus_Q_t_9
         )
-        # (pus-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_x = u_1_tip_x + bias_t*omega_2_t_2 + qd_2_t*qd_3
-        rel_o_y = u_1_tip_y + bias_t*omega_2_t
-        rel_o_z = u_1_tip_z - bias_z
-        # (pus-A9) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_o = inv_w_1_t_24*rel_o_x
-        qdd_3_o = inv_pus_platform_joint_offset_x*(qdd_1_o*w_1_t - rel_o_y)
-        qdd_2_o = inv_v_2_t*(c_2*qdd_1_o - rel_o_z)
-        # (pus-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        acc_1_o_x = -g_r0_x - qdd_1_o
-        # (pus-N6) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        g_r1_y = g_r0_x*s_2 - c_2*g_r0_y
-        acc_3_o_x = u_1_tip_x + c_3*g_r1_y - g_r0_z*s_3
-        acc_3_o_y = u_1_tip_y + c_3*g_r0_z + g_r1_y*s_3
-        acc_3_o_z = u_1_tip_z + c_2*g_r0_x + g_r0_y*s_2
-        # (pus-A15) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_o_t = qdd_2_o*s_3
-        alpha_2_o_t_2 = c_3*qdd_2_o
-        # (pus-A18) remainder without the acceleration in: angular acceleration of link 3
-        alpha_3_o_x = -alpha_2_o_t - zeta_3_x
-        alpha_3_o_y = alpha_2_o_t_2 - zeta_3_y
-        # (pus-A20) remainder of the acceleration tensor of link 3
-        B_3_o_xy = qdd_3_o - W_3_xy
-        B_3_o_yx = -W_3_xy - qdd_3_o
-        B_3_o_zx = zeta_3_y - alpha_3_o_y
-        B_3_o_zy = alpha_3_o_x - zeta_3_x
-        # (pus-N20) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        mu_3_o_x = (
-        B_3_o_yx*J_3_xy + B_3_o_zx*J_3_xz + B_3_o_zy*Sigma_3_yy - J_3_yz*(W_3_t_2 - W_3_t_3) -
-            Sigma_3_zz*alpha_2_o_t - acc_3_o_y*h_3_y - acc_3_o_z*h_3_z
+        pus_Q_t_18 = axis_y_pus_axes3_in_base_z*pus_Q_t_7 - axis_z_pus_axes3_in_base_z*pus_Q_t_10
+        pus_Q_t_19 = 2.0*pus_Q_t_18 + pus_d_c_xx
+        # (M_ta) coupling block of M
+        pus_M_ta_t = pus_Q_t_13*pus_q_in_base_z
+        pus_M_ta_t_2 = pus_Q_t_14*pus_q_in_base_y
+        pus_M_ta_t_3 = pus_M_ta_t - pus_M_ta_t_2
+        pus_M_ta_t_4 = pus_Q_t_12*pus_q_in_base_z - pus_Q_t_14*pus_q_in_base_x
+        pus_M_ta_t_5 = pus_Q_t_12*pus_q_in_base_y - pus_Q_t_13*pus_q_in_base_x
+        pus_M_ta_t_6 = pus_Q_t_16*pus_q_in_base_z - pus_Q_t_17*pus_q_in_base_y
+        pus_M_ta_t_7 = pus_Q_t_17*pus_q_in_base_x
+        pus_M_ta_t_8 = pus_M_ta_t - pus_M_ta_t_7
+        pus_M_ta_t_9 = pus_Q_t_13*pus_q_in_base_y - pus_Q_t_16*pus_q_in_base_x
+        pus_M_ta_t_10 = pus_Q_t_17*pus_q_in_base_z - pus_Q_t_19*pus_q_in_base_y
+        pus_M_ta_t_11 = pus_Q_t_14*pus_q_in_base_z - pus_Q_t_19*pus_q_in_base_x
+        pus_M_ta_t_12 = pus_M_ta_t_7 - pus_M_ta_t_2
+        # (M_aa) rotational block of M
+        pus_M_aa_t = pus_M_ta_t_6*pus_q_in_base_z - pus_M_ta_t_10*pus_q_in_base_y
+        pus_M_aa_t_2 = pus_M_ta_t_8*pus_q_in_base_z - pus_M_ta_t_11*pus_q_in_base_y
+        pus_M_aa_t_3 = pus_M_ta_t_12*pus_q_in_base_y + pus_M_ta_t_9*pus_q_in_base_z
+        pus_M_aa_t_4 = pus_M_ta_t_4*pus_q_in_base_z - pus_M_ta_t_11*pus_q_in_base_x
+        pus_M_aa_t_5 = pus_M_ta_t_12*pus_q_in_base_x + pus_M_ta_t_5*pus_q_in_base_z
+        pus_M_aa_t_6 = pus_M_ta_t_5*pus_q_in_base_y - pus_M_ta_t_9*pus_q_in_base_x
+        # (pus-S_dot) velocity of the connection point
+        pus_S_dot_t = omega_y*pus_q_in_base_z - omega_z*pus_q_in_base_y
+        pus_S_dot_t_2 = omega_z*pus_q_in_base_x - omega_x*pus_q_in_base_z
+        pus_S_dot_t_3 = omega_x*pus_q_in_base_y - omega_y*pus_q_in_base_x
+        pus_S_dot_x = pus_S_dot_t + t_dot_x
+        pus_S_dot_y = pus_S_dot_t_2 + t_dot_y
+        pus_S_dot_z = pus_S_dot_t_3 + t_dot_z
+        # (pus-qd_3) rate of joint 3
+        pus_qd_1 = (
+        inv_pus_w_2_t*(axis_x_pus_axes3_x*pus_S_dot_x + axis_x_pus_axes3_y*pus_S_dot_y +
+            axis_x_pus_axes3_z*pus_S_dot_z)
         )
-        mu_3_o_y = (
-        B_3_o_xy*J_3_yz + Sigma_3_zz*alpha_2_o_t_2 + acc_3_o_x*h_3_y - B_3_o_zx*Sigma_3_xx -
-            B_3_o_zy*J_3_xz - J_3_xy*(W_3_t - W_3_t_3) - acc_3_o_z*h_3_x
+        pus_qd_3_t = (
+        axis_y_pus_axes3_in_base_x*pus_S_dot_x + axis_y_pus_axes3_in_base_y*pus_S_dot_y +
+            axis_y_pus_axes3_in_base_z*pus_S_dot_z - pus_qd_1*pus_w_1_t
         )
-        mu_3_o_z = (
-        B_3_o_yx*Sigma_3_xx + acc_3_o_x*h_3_z + acc_3_o_y*h_3_x - B_3_o_xy*Sigma_3_yy -
-            J_3_xy*alpha_2_o_t - J_3_xz*(W_3_t - W_3_t_2) - J_3_yz*alpha_2_o_t_2
+        pus_qd_3 = inv_pus_platform_joint_offset_x*pus_qd_3_t
+        pus_qd_2 = (
+        inv_pus_v_2_t*(axis_z_pus_axes3_in_base_x*pus_S_dot_x +
+            axis_z_pus_axes3_in_base_y*pus_S_dot_y + axis_z_pus_axes3_in_base_z*pus_S_dot_z -
+            pus_c_2*pus_qd_1)
         )
-        # (pus-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_o_t = inv_v_2_t*(mu_3_o_x*s_3 - c_3*mu_3_o_y)
-        G_o_t_2 = inv_pus_platform_joint_offset_x*mu_3_o_z
-        # (pus-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_o_x = (
-        B_3_o_xy*h_3_z + h_3_x*(W_3_t_2 + W_3_t_3) + inv_w_1_t_24*(G_o_t*c_2 + G_o_t_2*w_1_t +
-            acc_1_o_x*pus_link1_mass) - alpha_2_o_t_2*h_3_y
+        # (pus-omega_2) angular velocity of link 2
+        pus_omega_2_t = pus_qd_2*pus_s_3
+        pus_omega_2_t_2 = pus_c_3*pus_qd_2
+        # (pus-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        pus_zeta_3_x = pus_omega_2_t_2*pus_qd_3
+        pus_zeta_3_y = pus_omega_2_t*pus_qd_3
+        # (pus-u_1) centripetal acceleration of the connection point
+        pus_u_1_x = omega_y*pus_S_dot_t_3 - omega_z*pus_S_dot_t_2
+        pus_u_1_y = omega_z*pus_S_dot_t - omega_x*pus_S_dot_t_3
+        pus_u_1_z = omega_x*pus_S_dot_t_2 - omega_y*pus_S_dot_t
+        # (pus-W_3) centripetal tensor of link 3
+        pus_W_3_t = pus_omega_2_t*pus_omega_2_t
+        pus_W_3_t_2 = pus_omega_2_t_2*pus_omega_2_t_2
+        pus_W_3_t_3 = pus_qd_3*pus_qd_3
+        pus_W_3_xy = pus_omega_2_t*pus_omega_2_t_2
+        # (pus-bias) acceleration of the connection point at zero joint accelerations
+        pus_bias_t = pus_omega_2_t_2*pus_platform_joint_offset_x
+        pus_bias_z = pus_omega_2_t*pus_qd_3_t + pus_platform_joint_offset_x*pus_zeta_3_y
+        # (pus-u_1) centripetal acceleration of the connection point
+        pus_u_1_tip_x = (
+        axis_x_pus_axes3_x*pus_u_1_x + axis_x_pus_axes3_y*pus_u_1_y + axis_x_pus_axes3_z*pus_u_1_z
         )
-        c_o_y = -G_o_t_2 - B_3_o_yx*h_3_x - alpha_2_o_t*h_3_y - h_3_z*(W_3_t + W_3_t_3)
-        c_o_z = B_3_o_zy*h_3_z + h_3_y*(W_3_t + W_3_t_2) - G_o_t - B_3_o_zx*h_3_x
-        # (pus-N37) velocity and gravity terms of the leg force
-        U_in_base_x = (
-        -axis_x_pus_axes3_x*c_o_x - axis_y_pus_axes3_in_base_x*c_o_y -
-            axis_z_pus_axes3_in_base_x*c_o_z
+        pus_u_1_tip_y = (
+        axis_y_pus_axes3_in_base_x*pus_u_1_x + axis_y_pus_axes3_in_base_y*pus_u_1_y +
+            axis_y_pus_axes3_in_base_z*pus_u_1_z
         )
-        U_in_base_y = (
-        -axis_x_pus_axes3_y*c_o_x - axis_y_pus_axes3_in_base_y*c_o_y -
-            axis_z_pus_axes3_in_base_y*c_o_z
+        pus_u_1_tip_z = (
+        axis_z_pus_axes3_in_base_x*pus_u_1_x + axis_z_pus_axes3_in_base_y*pus_u_1_y +
+            axis_z_pus_axes3_in_base_z*pus_u_1_z
         )
-        U_in_base_z = (
-        -axis_x_pus_axes3_z*c_o_x - axis_y_pus_axes3_in_base_z*c_o_y -
-            axis_z_pus_axes3_in_base_z*c_o_z
+        # (pus-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        pus_rel_o_x = pus_u_1_tip_x + pus_bias_t*pus_omega_2_t_2 + pus_qd_3*pus_qd_3_t
+        pus_rel_o_y = pus_u_1_tip_y + pus_bias_t*pus_omega_2_t
+        pus_rel_o_z = pus_u_1_tip_z - pus_bias_z
+        # (pus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
+        pus_qdd_1_o = inv_pus_w_2_t*pus_rel_o_x
+        pus_qdd_3_o = inv_pus_platform_joint_offset_x*(pus_qdd_1_o*pus_w_1_t - pus_rel_o_y)
+        pus_qdd_2_o = inv_pus_v_2_t*(pus_c_2*pus_qdd_1_o - pus_rel_o_z)
+        # (pus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        pus_alpha_2_o_t = pus_qdd_2_o*pus_s_3
+        pus_alpha_2_o_t_2 = pus_c_3*pus_qdd_2_o
+        # (pus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        pus_alpha_3_o_x = -pus_alpha_2_o_t - pus_zeta_3_x
+        pus_alpha_3_o_y = pus_alpha_2_o_t_2 - pus_zeta_3_y
+        # (pus-B_3_o) remainder of the acceleration tensor of link 3
+        pus_B_3_o_xy = pus_qdd_3_o - pus_W_3_xy
+        pus_B_3_o_yx = -pus_W_3_xy - pus_qdd_3_o
+        pus_B_3_o_zx = pus_zeta_3_y - pus_alpha_3_o_y
+        pus_B_3_o_zy = pus_alpha_3_o_x - pus_zeta_3_x
+        # (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        pus_g_r1_y = pus_g_r0_x*pus_s_2 - pus_c_2*pus_g_r0_y
+        pus_acc_3_o_x = pus_u_1_tip_x + pus_c_3*pus_g_r1_y - pus_g_r0_z*pus_s_3
+        pus_acc_3_o_y = pus_u_1_tip_y + pus_c_3*pus_g_r0_z + pus_g_r1_y*pus_s_3
+        pus_acc_3_o_z = pus_u_1_tip_z + pus_c_2*pus_g_r0_x + pus_g_r0_y*pus_s_2
+        # (pus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        pus_mu_3_o_x = (
+        pus_B_3_o_yx*pus_J_3_xy + pus_B_3_o_zx*pus_J_3_xz + pus_B_3_o_zy*pus_Sigma_3_yy -
+            pus_J_3_yz*(pus_W_3_t_2 - pus_W_3_t_3) - pus_Sigma_3_zz*pus_alpha_2_o_t -
+            pus_acc_3_o_y*pus_h_3_y - pus_acc_3_o_z*pus_h_3_z
         )
-        # (M7) rotational part of Z
-        Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
-        Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
-        Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
-        # (pus-V4) reciprocal vector 1
-        w_1_t_4 = axis_x_pus_axes3_x*inv_w_1_t_24
-        w_1_t_5 = axis_x_pus_axes3_y*inv_w_1_t_24
-        w_1_t_6 = axis_x_pus_axes3_z*inv_w_1_t_24
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_x = q_in_base_z*w_1_t_5 - q_in_base_y*w_1_t_6
-        H_a_1_y = q_in_base_x*w_1_t_6 - q_in_base_z*w_1_t_4
-        H_a_1_z = q_in_base_y*w_1_t_4 - q_in_base_x*w_1_t_5
+        pus_mu_3_o_y = (
+        pus_B_3_o_xy*pus_J_3_yz + pus_Sigma_3_zz*pus_alpha_2_o_t_2 + pus_acc_3_o_x*pus_h_3_y -
+            pus_B_3_o_zx*pus_Sigma_3_xx - pus_B_3_o_zy*pus_J_3_xz - pus_J_3_xy*(pus_W_3_t -
+            pus_W_3_t_3) - pus_acc_3_o_z*pus_h_3_x
+        )
+        pus_mu_3_o_z = (
+        pus_B_3_o_yx*pus_Sigma_3_xx + pus_acc_3_o_x*pus_h_3_z + pus_acc_3_o_y*pus_h_3_x -
+            pus_B_3_o_xy*pus_Sigma_3_yy - pus_J_3_xy*pus_alpha_2_o_t - pus_J_3_xz*(pus_W_3_t -
+            pus_W_3_t_2) - pus_J_3_yz*pus_alpha_2_o_t_2
+        )
+        # (pus-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+        pus_acc_1_o_x = -pus_g_r0_x - pus_qdd_1_o
+        # (pus-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        pus_G_o_t = inv_pus_v_2_t*(pus_mu_3_o_x*pus_s_3 - pus_c_3*pus_mu_3_o_y)
+        pus_G_o_t_2 = inv_pus_platform_joint_offset_x*pus_mu_3_o_z
+        # (pus-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        pus_c_o_x = (
+        inv_pus_w_2_t*(pus_G_o_t*pus_c_2 + pus_G_o_t_2*pus_w_1_t + pus_acc_1_o_x*pus_link1_mass) +
+            pus_B_3_o_xy*pus_h_3_z + pus_h_3_x*(pus_W_3_t_2 + pus_W_3_t_3) -
+            pus_alpha_2_o_t_2*pus_h_3_y
+        )
+        pus_c_o_y = (
+        -pus_G_o_t_2 - pus_B_3_o_yx*pus_h_3_x - pus_alpha_2_o_t*pus_h_3_y - pus_h_3_z*(pus_W_3_t +
+            pus_W_3_t_3)
+        )
+        pus_c_o_z = (
+        pus_B_3_o_zy*pus_h_3_z + pus_h_3_y*(pus_W_3_t + pus_W_3_t_2) - pus_G_o_t -
+            pus_B_3_o_zx*pus_h_3_x
+        )
+        # (pus-U) velocity and gravity terms of the leg force
+        pus_U_in_base_x = (
+        -axis_x_pus_axes3_x*pus_c_o_x - axis_y_pus_axes3_in_base_x*pus_c_o_y -
+            axis_z_pus_axes3_in_base_x*pus_c_o_z
+        )
+        pus_U_in_base_y = (
+        -axis_x_pus_axes3_y*pus_c_o_x - axis_y_pus_axes3_in_base_y*pus_c_o_y -
+            axis_z_pus_axes3_in_base_y*pus_c_o_z
+        )
+        pus_U_in_base_z = (
+        -axis_x_pus_axes3_z*pus_c_o_x - axis_y_pus_axes3_in_base_z*pus_c_o_y -
+            axis_z_pus_axes3_in_base_z*pus_c_o_z
+        )
+        # (Z_a) rotational part of Z
+        pus_Z_a_t = pus_U_in_base_z*pus_q_in_base_y - pus_U_in_base_y*pus_q_in_base_z
+        pus_Z_a_t_2 = pus_U_in_base_x*pus_q_in_base_z - pus_U_in_base_z*pus_q_in_base_x
+        pus_Z_a_t_3 = pus_U_in_base_y*pus_q_in_base_x - pus_U_in_base_x*pus_q_in_base_y
+        # (pus-w_1) reciprocal vector 1
+        pus_w_1_t_3 = axis_x_pus_axes3_x*inv_pus_w_2_t
+        pus_w_1_t_4 = axis_x_pus_axes3_y*inv_pus_w_2_t
+        pus_w_1_t_5 = axis_x_pus_axes3_z*inv_pus_w_2_t
+        # (pus-H_a_1) moment of the column's unit force about the platform origin
+        pus_H_a_1_x = pus_q_in_base_z*pus_w_1_t_4 - pus_q_in_base_y*pus_w_1_t_5
+        pus_H_a_1_y = pus_q_in_base_x*pus_w_1_t_5 - pus_q_in_base_z*pus_w_1_t_3
+        pus_H_a_1_z = pus_q_in_base_y*pus_w_1_t_3 - pus_q_in_base_x*pus_w_1_t_4
         ok = (
-        ok & m.every(leg, (disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t) &
-            (abs(v_2_t) > _TOLERANCE * size) & (abs(-w_1_t_3) > _TOLERANCE * 1.0))
+        ok & m.every(leg, (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE *
+            pus_size_t) & (abs(pus_v_2_t) > _TOLERANCE * pus_size) & (abs(-pus_w_2_t) > _TOLERANCE
+            * 1.0))
         )
         sums = m.added(sums, leg, (
-        Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_3, M_ta_t_4, M_ta_t_5,
-            M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2,
-            M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y, U_in_base_z,
-            Z_a_t, Z_a_t_2, Z_a_t_3,
+        pus_Q_t_12, pus_Q_t_13, pus_Q_t_14, pus_Q_t_16, pus_Q_t_17, pus_Q_t_19, pus_M_ta_t_3,
+            pus_M_ta_t_4, pus_M_ta_t_5, pus_M_ta_t_6, pus_M_ta_t_8, pus_M_ta_t_9,
+            pus_M_ta_t_10, pus_M_ta_t_11, pus_M_ta_t_12, pus_M_aa_t, pus_M_aa_t_2,
+            pus_M_aa_t_3, pus_M_aa_t_4, pus_M_aa_t_5, pus_M_aa_t_6, pus_U_in_base_x,
+            pus_U_in_base_y, pus_U_in_base_z, pus_Z_a_t, pus_Z_a_t_2, pus_Z_a_t_3,
         ))
-        out_H[_H_pus[0][leg]] = -w_1_t_4
-        out_H[_H_pus[1][leg]] = -w_1_t_5
-        out_H[_H_pus[2][leg]] = -w_1_t_6
-        out_H[_H_pus[3][leg]] = H_a_1_x
-        out_H[_H_pus[4][leg]] = H_a_1_y
-        out_H[_H_pus[5][leg]] = H_a_1_z
+        out_H[_H_pus[0][leg]] = -pus_w_1_t_3
+        out_H[_H_pus[1][leg]] = -pus_w_1_t_4
+        out_H[_H_pus[2][leg]] = -pus_w_1_t_5
+        out_H[_H_pus[3][leg]] = pus_H_a_1_x
+        out_H[_H_pus[4][leg]] = pus_H_a_1_y
+        out_H[_H_pus[5][leg]] = pus_H_a_1_z
     (
     total_pus_xx, total_pus_xy, total_pus_xz, total_pus_yy, total_pus_yz, total_pus_zz,
         total_pus_xx_2, total_pus_xy_2, total_pus_xz_2, total_pus_yx, total_pus_yy_2,
@@ -1698,29 +1784,29 @@ def _run_dynamics(m, X, V):
         total_pus_xy_3, total_pus_xz_3, total_pus_yy_3, total_pus_yz_3, total_pus_zz_3,
         total_pus_x, total_pus_y, total_pus_z, total_pus_x_2, total_pus_y_2, total_pus_z_2,
     ) = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = m_star - total_pus_xx
     M_tt_yy = m_star - total_pus_yy
     M_tt_zz = m_star - total_pus_zz
-    # (M2) coupling block of M
+    # (M_ta) coupling block of M
     M_ta_xy = h_star_in_base_z - total_pus_xy_2
     M_ta_xz = total_pus_xz_2 - h_star_in_base_y
     M_ta_yx = total_pus_yx - h_star_in_base_z
     M_ta_yz = h_star_in_base_x + total_pus_yz_2
     M_ta_zx = h_star_in_base_y + total_pus_zx
     M_ta_zy = -h_star_in_base_x - total_pus_zy
-    # (M3) rotational block of M
+    # (M_aa) rotational block of M
     M_aa_xx = J_star_t_8 - total_pus_xx_3
     M_aa_xy = J_star_t_9 + total_pus_xy_3
     M_aa_xz = J_star_t_10 - total_pus_xz_3
-    M_aa_yy = J_star_t_12 - total_pus_yy_3
-    M_aa_yz = J_star_t_13 + total_pus_yz_3
-    M_aa_zz = J_star_t_15 - total_pus_zz_3
-    # (M5) translational part of Z
+    M_aa_yy = J_star_t_13 - total_pus_yy_3
+    M_aa_yz = J_star_t_15 + total_pus_yz_3
+    M_aa_zz = J_star_t_17 - total_pus_zz_3
+    # (Z_t) translational part of Z
     Z_t_x = Z_p_x + total_pus_x
     Z_t_y = Z_p_y + total_pus_y
     Z_t_z = Z_p_z + total_pus_z
-    # (M7) rotational part of Z
+    # (Z_a) rotational part of Z
     Z_a_x = Z_q_in_base_x + total_pus_x_2
     Z_a_y = Z_q_in_base_y + total_pus_y_2
     Z_a_z = Z_q_in_base_z + total_pus_z_2
@@ -1774,7 +1860,7 @@ def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
     (
-    J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
+    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
         h_star_z, m_star,
     ) = shared
     X_0 = X[0]
@@ -1814,91 +1900,96 @@ def _run_M(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_M = m.zeros("M")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy
-    J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
     J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_12 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_15 = 2.0*J_star_t_14 + J_star_xx
+    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
+    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
     sums = [0.0] * 21
     for leg, k in legs[0]:
         (
-        J_3_xx, J_3_xy, J_3_xz, J_3_yz, J_3_zz, branch_1, branch_2, d_Gamma_3_t, d_Gamma_3_y,
-            d_c_yy, d_phi_3_t, h_3_x, h_3_y, h_3_z, inv_pus_platform_joint_offset_x, inv_uu_3_t,
-            pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx,
-            pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy,
-            pus_base_frame_zz, pus_base_point_x, pus_base_point_y, pus_base_point_z,
+        inv_pus_disc_1_t_6, inv_pus_platform_joint_offset_x, pus_J_3_xx, pus_J_3_xy, pus_J_3_xz,
+            pus_J_3_yz, pus_J_3_zz, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
+            pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx,
+            pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x, pus_base_point_y,
+            pus_base_point_z, pus_branch_1, pus_branch_2, pus_d_Gamma_3_t, pus_d_Gamma_3_y,
+            pus_d_c_yy, pus_d_phi_3_t, pus_disc_1_t, pus_h_3_x, pus_h_3_y, pus_h_3_z,
             pus_link1_mass, pus_platform_joint_offset_x, pus_platform_point_x,
-            pus_platform_point_y, pus_platform_point_z, size, size_t, uu_3_t,
+            pus_platform_point_y, pus_platform_point_z, pus_size, pus_size_t,
         ) = k
-        # (pus-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (pus-S) from the base point to the connection point
+        pus_q_in_base_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
-        q_in_base_y = (
+        pus_q_in_base_y = (
         R_yx*pus_platform_point_x + R_yy*pus_platform_point_y + R_yz*pus_platform_point_z
         )
-        q_in_base_z = (
+        pus_q_in_base_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        S_x = q_in_base_x + t_x - pus_base_point_x
-        S_y = q_in_base_y + t_y - pus_base_point_y
-        S_z = q_in_base_z + t_z - pus_base_point_z
-        # (pus-K2) component along axis 1
-        px_1 = S_x*pus_base_frame_xx + S_y*pus_base_frame_yx + S_z*pus_base_frame_zx
-        # (pus-K3) discriminant of the distance equation
-        disc_1_t = S_x*S_x + S_y*S_y + S_z*S_z
-        disc_1 = px_1*px_1 + uu_3_t - disc_1_t
-        # (pus-K4) displacement of joint 1
-        q_1_t = branch_1*sqrt(disc_1)
-        # (pus-K1) from the base point to the connection point
-        S_r0_y = S_x*pus_base_frame_xy + S_y*pus_base_frame_yy + S_z*pus_base_frame_zy
-        # (pus-K9) squared amplitude
-        rho2_2 = S_r0_y*S_r0_y + q_1_t*q_1_t
-        # (pus-K11) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (pus-K17) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_uu_3_t*pus_platform_joint_offset_x*root_2
-        # (pus-K18) sine of the angle of joint 3 from its reference direction
-        s_3 = (
-        inv_uu_3_t*pus_platform_joint_offset_x*(S_x*pus_base_frame_xz + S_y*pus_base_frame_yz +
-            S_z*pus_base_frame_zz)
+        pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x
+        pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y
+        pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z
+        # (pus-px_1) component along axis 1
+        pus_px_1 = (
+        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
         )
-        # (pus-V2) velocity of the connection point per rate of joint 2
-        v_2_t = c_3*pus_platform_joint_offset_x
-        # (pus-K12) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = S_r0_y*inv_rho2_2*root_2
-        # (pus-K13) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*q_1_t*root_2
-        # (pus-V4) reciprocal vector 1
-        axis_z_pus_axes3_in_base_x = -c_2*pus_base_frame_xx - pus_base_frame_xy*s_2
-        axis_z_pus_axes3_in_base_y = -c_2*pus_base_frame_yx - pus_base_frame_yy*s_2
-        axis_z_pus_axes3_in_base_z = -c_2*pus_base_frame_zx - pus_base_frame_zy*s_2
-        w_1_t = s_2*s_3
-        w_1_t_2 = c_2*s_3
+        # (pus-disc_1) discriminant of the distance equation
+        pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
+        pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2
+        # (pus-q_1) displacement of joint 1
+        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
+        # (pus-S) from the base point to the connection point
+        pus_S_r0_y = (
+        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
+        )
+        # (pus-rho2_2) squared amplitude
+        pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t
+        # (pus-root_2) root, with the sign of the branch
+        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
+        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
+        pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2
+        # (pus-s_3) sine of the angle of joint 3 from its reference direction
+        pus_s_3 = (
+        inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        )
+        # (pus-v_2) velocity of the connection point per rate of joint 2
+        pus_v_2_t = pus_c_3*pus_platform_joint_offset_x
+        # (pus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_pus_rho2_2 = 1.0/pus_rho2_2
+        pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2
+        # (pus-s_2) sine of the angle of joint 2 from its reference direction
+        pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2
+        # (pus-w_1) reciprocal vector 1
+        axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 - pus_base_frame_xy*pus_s_2
+        axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 - pus_base_frame_yy*pus_s_2
+        axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 - pus_base_frame_zy*pus_s_2
+        pus_w_1_t = pus_s_2*pus_s_3
+        pus_w_1_t_2 = pus_c_2*pus_s_3
         axis_y_pus_axes3_in_base_x = (
-        pus_base_frame_xy*w_1_t_2 - c_3*pus_base_frame_xz - pus_base_frame_xx*w_1_t
+        pus_base_frame_xy*pus_w_1_t_2 - pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3
         )
         axis_y_pus_axes3_in_base_y = (
-        pus_base_frame_yy*w_1_t_2 - c_3*pus_base_frame_yz - pus_base_frame_yx*w_1_t
+        pus_base_frame_yy*pus_w_1_t_2 - pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3
         )
         axis_y_pus_axes3_in_base_z = (
-        pus_base_frame_zy*w_1_t_2 - c_3*pus_base_frame_zz - pus_base_frame_zx*w_1_t
+        pus_base_frame_zy*pus_w_1_t_2 - pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3
         )
         axis_x_pus_axes3_x = (
         axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
@@ -1912,101 +2003,115 @@ def _run_M(m, X):
         axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
             axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x
         )
-        w_1_t_3 = c_3*s_2
-        inv_w_1_t_24 = 1.0/w_1_t_3
-        # (pus-G6) inertia tensor of link 3 about the connection point
-        _y = J_3_xy*s_3 + J_3_yz*c_3
-        # (pus-V5) reciprocal vector 2
-        inv_v_2_t = 1.0/v_2_t
-        w_2_t = c_2*inv_v_2_t*inv_w_1_t_24
-        # (pus-V6) reciprocal vector 3
-        w_3_t = inv_pus_platform_joint_offset_x*inv_w_1_t_24*w_1_t
-        # (pus-N25) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_t = inv_v_2_t*(s_3*(J_3_xx*s_3 + J_3_xz*c_3) - c_3*(-J_3_xz*s_3 - J_3_zz*c_3))
-        d_Gamma_2_t_2 = _y*inv_pus_platform_joint_offset_x
-        d_Gamma_2_x = -c_3*h_3_y - inv_w_1_t_24*(c_2*d_Gamma_2_t + d_Gamma_2_t_2*w_1_t)
-        d_Gamma_2_y = d_Gamma_2_t_2 - h_3_y*s_3
-        d_Gamma_2_z = d_Gamma_2_t + c_3*h_3_x - h_3_z*s_3
-        # (pus-N22) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        d_Gamma_3_t_2 = _y*inv_v_2_t
-        d_Gamma_3_x = h_3_z - inv_w_1_t_24*(c_2*d_Gamma_3_t_2 + d_Gamma_3_t*w_1_t)
-        # (pus-A17) coefficient of the acceleration in: angular acceleration of link 3
-        d_alpha_3_t = inv_v_2_t*s_3
-        d_alpha_3_t_2 = c_3*inv_v_2_t
-        # (pus-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_xx = (
-        d_Gamma_2_x*w_2_t + d_Gamma_3_x*w_3_t + h_3_z*w_3_t -
-            inv_w_1_t_24*inv_w_1_t_24*pus_link1_mass - c_3*h_3_y*w_2_t
+        # (pus-w_2) reciprocal vector 2
+        pus_w_2_t = pus_c_3*pus_s_2
+        inv_pus_v_2_t = 1.0/pus_v_2_t
+        inv_pus_w_2_t = 1.0/pus_w_2_t
+        pus_w_2_t_2 = inv_pus_v_2_t*inv_pus_w_2_t*pus_c_2
+        # (pus-w_3) reciprocal vector 3
+        pus_w_3_t = inv_pus_platform_joint_offset_x*inv_pus_w_2_t*pus_w_1_t
+        # (pus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
+        pus_d_alpha_3_t = inv_pus_v_2_t*pus_s_3
+        pus_d_alpha_3_t_2 = inv_pus_v_2_t*pus_c_3
+        # (pus-L_c_3) moment about joint 3 that accelerates joint 3, per unit
+        pus_L_c_3_r0_y = pus_J_3_xy*pus_s_3 + pus_J_3_yz*pus_c_3
+        # (pus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        pus_d_Gamma_3_t_2 = inv_pus_v_2_t*pus_L_c_3_r0_y
+        pus_d_Gamma_3_x = (
+        pus_h_3_z - inv_pus_w_2_t*(pus_c_2*pus_d_Gamma_3_t_2 + pus_d_Gamma_3_t*pus_w_1_t)
         )
-        d_c_xy = d_Gamma_2_y*w_2_t + d_Gamma_3_y*w_3_t - d_phi_3_t
-        d_c_xz = d_Gamma_2_z*w_2_t + d_Gamma_3_t_2*w_3_t + d_alpha_3_t_2*h_3_y
-        d_c_yz = d_alpha_3_t*h_3_y - d_Gamma_3_t_2*inv_pus_platform_joint_offset_x
-        # (pus-N36) inertia of the leg at the connection point, without the mass gathered there
-        Q_t = d_c_xx - d_c_yy
-        Q_t_2 = 0.5*Q_t
-        Q_t_3 = d_c_xx + d_Gamma_2_z*inv_v_2_t + d_alpha_3_t_2*h_3_x - d_alpha_3_t*h_3_z
-        Q_t_4 = 0.5*Q_t_3
-        Q_t_5 = (
-        axis_x_pus_axes3_x*d_c_xy + axis_z_pus_axes3_in_base_x*d_c_yz -
-            Q_t_2*axis_y_pus_axes3_in_base_x
+        # (pus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        pus_d_Gamma_2_t = (
+        inv_pus_v_2_t*(pus_s_3*(pus_J_3_xx*pus_s_3 + pus_J_3_xz*pus_c_3) -
+            pus_c_3*(-pus_J_3_xz*pus_s_3 - pus_J_3_zz*pus_c_3))
         )
-        Q_t_6 = (
-        axis_x_pus_axes3_y*d_c_xy + axis_z_pus_axes3_in_base_y*d_c_yz -
-            Q_t_2*axis_y_pus_axes3_in_base_y
+        pus_d_Gamma_2_t_2 = inv_pus_platform_joint_offset_x*pus_L_c_3_r0_y
+        pus_d_Gamma_2_x = (
+        -inv_pus_w_2_t*(pus_c_2*pus_d_Gamma_2_t + pus_d_Gamma_2_t_2*pus_w_1_t) - pus_c_3*pus_h_3_y
         )
-        Q_t_7 = (
-        axis_x_pus_axes3_z*d_c_xy + axis_z_pus_axes3_in_base_z*d_c_yz -
-            Q_t_2*axis_y_pus_axes3_in_base_z
+        pus_d_Gamma_2_y = pus_d_Gamma_2_t_2 - pus_h_3_y*pus_s_3
+        pus_d_Gamma_2_z = pus_d_Gamma_2_t + pus_c_3*pus_h_3_x - pus_h_3_z*pus_s_3
+        # (pus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        pus_d_c_xx = (
+        pus_d_Gamma_2_x*pus_w_2_t_2 + pus_d_Gamma_3_x*pus_w_3_t + pus_h_3_z*pus_w_3_t -
+            inv_pus_w_2_t*inv_pus_w_2_t*pus_link1_mass - pus_c_3*pus_h_3_y*pus_w_2_t_2
         )
-        Q_t_8 = Q_t_4*axis_z_pus_axes3_in_base_x - axis_x_pus_axes3_x*d_c_xz
-        Q_t_9 = Q_t_4*axis_z_pus_axes3_in_base_y - axis_x_pus_axes3_y*d_c_xz
-        Q_t_10 = Q_t_4*axis_z_pus_axes3_in_base_z - axis_x_pus_axes3_z*d_c_xz
-        Q_t_11 = Q_t_5*axis_y_pus_axes3_in_base_x - Q_t_8*axis_z_pus_axes3_in_base_x
-        Q_t_12 = 2.0*Q_t_11 + d_c_xx
-        Q_t_13 = (
-        Q_t_5*axis_y_pus_axes3_in_base_y + Q_t_6*axis_y_pus_axes3_in_base_x -
-            Q_t_8*axis_z_pus_axes3_in_base_y - Q_t_9*axis_z_pus_axes3_in_base_x
+        pus_d_c_xy = pus_d_Gamma_2_y*pus_w_2_t_2 + pus_d_Gamma_3_y*pus_w_3_t - pus_d_phi_3_t
+        pus_d_c_xz = (
+        pus_d_Gamma_2_z*pus_w_2_t_2 + pus_d_Gamma_3_t_2*pus_w_3_t + pus_d_alpha_3_t_2*pus_h_3_y
         )
-        Q_t_14 = (
-        Q_t_5*axis_y_pus_axes3_in_base_z + Q_t_7*axis_y_pus_axes3_in_base_x -
-            Q_t_10*axis_z_pus_axes3_in_base_x - Q_t_8*axis_z_pus_axes3_in_base_z
+        pus_d_c_yz = pus_d_alpha_3_t*pus_h_3_y - inv_pus_platform_joint_offset_x*pus_d_Gamma_3_t_2
+        # (pus-Q) inertia of the leg at the connection point, without the mass gathered there
+        pus_Q_t = pus_d_c_xx - pus_d_c_yy
+        pus_Q_t_2 = 0.5*pus_Q_t
+        pus_Q_t_3 = (
+        pus_d_c_xx + inv_pus_v_2_t*pus_d_Gamma_2_z + pus_d_alpha_3_t_2*pus_h_3_x -
+            pus_d_alpha_3_t*pus_h_3_z
         )
-        Q_t_15 = Q_t_6*axis_y_pus_axes3_in_base_y - Q_t_9*axis_z_pus_axes3_in_base_y
-        Q_t_16 = 2.0*Q_t_15 + d_c_xx
-        Q_t_17 = (
-        Q_t_6*axis_y_pus_axes3_in_base_z + Q_t_7*axis_y_pus_axes3_in_base_y -
-            Q_t_10*axis_z_pus_axes3_in_base_y - Q_t_9*axis_z_pus_axes3_in_base_z
+        pus_Q_t_4 = 0.5*pus_Q_t_3
+        pus_Q_t_5 = (
+        axis_x_pus_axes3_x*pus_d_c_xy + axis_z_pus_axes3_in_base_x*pus_d_c_yz -
+            axis_y_pus_axes3_in_base_x*pus_Q_t_2
         )
-        Q_t_18 = Q_t_7*axis_y_pus_axes3_in_base_z - Q_t_10*axis_z_pus_axes3_in_base_z
-        Q_t_19 = 2.0*Q_t_18 + d_c_xx
-        # (M2) coupling block of M
-        M_ta_t = Q_t_13*q_in_base_z
-        M_ta_t_2 = Q_t_14*q_in_base_y
-        M_ta_t_3 = M_ta_t - M_ta_t_2
-        M_ta_t_4 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x
-        M_ta_t_5 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x
-        M_ta_t_6 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y
-        M_ta_t_7 = Q_t_17*q_in_base_x
-        M_ta_t_8 = M_ta_t - M_ta_t_7
-        M_ta_t_9 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x
-        M_ta_t_10 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y
-        M_ta_t_11 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x
-        M_ta_t_12 = M_ta_t_7 - M_ta_t_2
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
-        M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y
-        M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z
-        M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x
-        M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z
-        M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
+        pus_Q_t_6 = (
+        axis_x_pus_axes3_y*pus_d_c_xy + axis_z_pus_axes3_in_base_y*pus_d_c_yz -
+            axis_y_pus_axes3_in_base_y*pus_Q_t_2
+        )
+        pus_Q_t_7 = (
+        axis_x_pus_axes3_z*pus_d_c_xy + axis_z_pus_axes3_in_base_z*pus_d_c_yz -
+            axis_y_pus_axes3_in_base_z*pus_Q_t_2
+        )
+        pus_Q_t_8 = axis_z_pus_axes3_in_base_x*pus_Q_t_4 - axis_x_pus_axes3_x*pus_d_c_xz
+        pus_Q_t_9 = axis_z_pus_axes3_in_base_y*pus_Q_t_4 - axis_x_pus_axes3_y*pus_d_c_xz
+        pus_Q_t_10 = axis_z_pus_axes3_in_base_z*pus_Q_t_4 - axis_x_pus_axes3_z*pus_d_c_xz
+        pus_Q_t_11 = axis_y_pus_axes3_in_base_x*pus_Q_t_5 - axis_z_pus_axes3_in_base_x*pus_Q_t_8
+        pus_Q_t_12 = 2.0*pus_Q_t_11 + pus_d_c_xx
+        pus_Q_t_13 = (
+        axis_y_pus_axes3_in_base_x*pus_Q_t_6 + axis_y_pus_axes3_in_base_y*pus_Q_t_5 -
+            axis_z_pus_axes3_in_base_x*pus_Q_t_9 - axis_z_pus_axes3_in_base_y*pus_Q_t_8
+        )
+        pus_Q_t_14 = (
+        axis_y_pus_axes3_in_base_x*pus_Q_t_7 + axis_y_pus_axes3_in_base_z*pus_Q_t_5 -
+            axis_z_pus_axes3_in_base_x*pus_Q_t_10 - axis_z_pus_axes3_in_base_z*pus_Q_t_8
+        )
+        pus_Q_t_15 = axis_y_pus_axes3_in_base_y*pus_Q_t_6 - axis_z_pus_axes3_in_base_y*pus_Q_t_9
+        pus_Q_t_16 = 2.0*pus_Q_t_15 + pus_d_c_xx
+        pus_Q_t_17 = (
+        axis_y_pus_axes3_in_base_y*pus_Q_t_7 + axis_y_pus_axes3_in_base_z*pus_Q_t_6 -
+            axis_z_pus_axes3_in_base_y*pus_Q_t_10 - axis_z_pus_axes3_in_base_z*pus_Q_t_9
+        )
+        pus_Q_t_18 = axis_y_pus_axes3_in_base_z*pus_Q_t_7 - axis_z_pus_axes3_in_base_z*pus_Q_t_10
+        pus_Q_t_19 = 2.0*pus_Q_t_18 + pus_d_c_xx
+        # (M_ta) coupling block of M
+        pus_M_ta_t = pus_Q_t_13*pus_q_in_base_z
+        pus_M_ta_t_2 = pus_Q_t_14*pus_q_in_base_y
+        pus_M_ta_t_3 = pus_M_ta_t - pus_M_ta_t_2
+        pus_M_ta_t_4 = pus_Q_t_12*pus_q_in_base_z - pus_Q_t_14*pus_q_in_base_x
+        pus_M_ta_t_5 = pus_Q_t_12*pus_q_in_base_y - pus_Q_t_13*pus_q_in_base_x
+        pus_M_ta_t_6 = pus_Q_t_16*pus_q_in_base_z - pus_Q_t_17*pus_q_in_base_y
+        pus_M_ta_t_7 = pus_Q_t_17*pus_q_in_base_x
+        pus_M_ta_t_8 = pus_M_ta_t - pus_M_ta_t_7
+        pus_M_ta_t_9 = pus_Q_t_13*pus_q_in_base_y - pus_Q_t_16*pus_q_in_base_x
+        pus_M_ta_t_10 = pus_Q_t_17*pus_q_in_base_z - pus_Q_t_19*pus_q_in_base_y
+        pus_M_ta_t_11 = pus_Q_t_14*pus_q_in_base_z - pus_Q_t_19*pus_q_in_base_x
+        pus_M_ta_t_12 = pus_M_ta_t_7 - pus_M_ta_t_2
+        # (M_aa) rotational block of M
+        pus_M_aa_t = pus_M_ta_t_6*pus_q_in_base_z - pus_M_ta_t_10*pus_q_in_base_y
+        pus_M_aa_t_2 = pus_M_ta_t_8*pus_q_in_base_z - pus_M_ta_t_11*pus_q_in_base_y
+        pus_M_aa_t_3 = pus_M_ta_t_12*pus_q_in_base_y + pus_M_ta_t_9*pus_q_in_base_z
+        pus_M_aa_t_4 = pus_M_ta_t_4*pus_q_in_base_z - pus_M_ta_t_11*pus_q_in_base_x
+        pus_M_aa_t_5 = pus_M_ta_t_12*pus_q_in_base_x + pus_M_ta_t_5*pus_q_in_base_z
+        pus_M_aa_t_6 = pus_M_ta_t_5*pus_q_in_base_y - pus_M_ta_t_9*pus_q_in_base_x
         ok = (
-        ok & m.every(leg, (disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t) &
-            (abs(v_2_t) > _TOLERANCE * size) & (abs(-w_1_t_3) > _TOLERANCE * 1.0))
+        ok & m.every(leg, (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE *
+            pus_size_t) & (abs(pus_v_2_t) > _TOLERANCE * pus_size) & (abs(-pus_w_2_t) > _TOLERANCE
+            * 1.0))
         )
         sums = m.added(sums, leg, (
-        Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_3, M_ta_t_4, M_ta_t_5,
-            M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2,
-            M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6,
+        pus_Q_t_12, pus_Q_t_13, pus_Q_t_14, pus_Q_t_16, pus_Q_t_17, pus_Q_t_19, pus_M_ta_t_3,
+            pus_M_ta_t_4, pus_M_ta_t_5, pus_M_ta_t_6, pus_M_ta_t_8, pus_M_ta_t_9,
+            pus_M_ta_t_10, pus_M_ta_t_11, pus_M_ta_t_12, pus_M_aa_t, pus_M_aa_t_2,
+            pus_M_aa_t_3, pus_M_aa_t_4, pus_M_aa_t_5, pus_M_aa_t_6,
         ))
     (
     total_pus_xx, total_pus_xy, total_pus_xz, total_pus_yy, total_pus_yz, total_pus_zz,
@@ -2014,24 +2119,24 @@ def _run_M(m, X):
         total_pus_yz_2, total_pus_zx, total_pus_zy, total_pus_zz_2, total_pus_xx_3,
         total_pus_xy_3, total_pus_xz_3, total_pus_yy_3, total_pus_yz_3, total_pus_zz_3,
     ) = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = m_star - total_pus_xx
     M_tt_yy = m_star - total_pus_yy
     M_tt_zz = m_star - total_pus_zz
-    # (M2) coupling block of M
+    # (M_ta) coupling block of M
     M_ta_xy = h_star_in_base_z - total_pus_xy_2
     M_ta_xz = total_pus_xz_2 - h_star_in_base_y
     M_ta_yx = total_pus_yx - h_star_in_base_z
     M_ta_yz = h_star_in_base_x + total_pus_yz_2
     M_ta_zx = h_star_in_base_y + total_pus_zx
     M_ta_zy = -h_star_in_base_x - total_pus_zy
-    # (M3) rotational block of M
+    # (M_aa) rotational block of M
     M_aa_xx = J_star_t_8 - total_pus_xx_3
     M_aa_xy = J_star_t_9 + total_pus_xy_3
     M_aa_xz = J_star_t_10 - total_pus_xz_3
-    M_aa_yy = J_star_t_12 - total_pus_yy_3
-    M_aa_yz = J_star_t_13 + total_pus_yz_3
-    M_aa_zz = J_star_t_15 - total_pus_zz_3
+    M_aa_yy = J_star_t_13 - total_pus_yy_3
+    M_aa_yz = J_star_t_15 + total_pus_yz_3
+    M_aa_zz = J_star_t_17 - total_pus_zz_3
     out_M[0] = M_tt_xx
     out_M[1] = -total_pus_xy
     out_M[6] = -total_pus_xy
@@ -2129,98 +2234,103 @@ def _run_Z(m, X, V):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_Z = m.zeros("Z")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (M4) centripetal force and weight of the platform
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
     Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
     Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z_2*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x_2*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y - g_r0_y_2*h_star_x
+    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
+    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_3_xy, J_3_xz, J_3_yz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, g_r0_x,
-            g_r0_y, g_r0_z, h_3_x, h_3_y, h_3_z, inv_pus_platform_joint_offset_x, inv_uu_3_t,
-            pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx,
-            pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy,
-            pus_base_frame_zz, pus_base_point_x, pus_base_point_y, pus_base_point_z,
-            pus_link1_mass, pus_platform_joint_offset_x, pus_platform_point_x,
-            pus_platform_point_y, pus_platform_point_z, size, size_t, uu_3_t,
+        inv_pus_disc_1_t_6, inv_pus_platform_joint_offset_x, pus_J_3_xy, pus_J_3_xz, pus_J_3_yz,
+            pus_Sigma_3_xx, pus_Sigma_3_yy, pus_Sigma_3_zz, pus_base_frame_xx, pus_base_frame_xy,
+            pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz,
+            pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x,
+            pus_base_point_y, pus_base_point_z, pus_branch_1, pus_branch_2, pus_disc_1_t,
+            pus_g_r0_x, pus_g_r0_y, pus_g_r0_z, pus_h_3_x, pus_h_3_y, pus_h_3_z, pus_link1_mass,
+            pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
+            pus_platform_point_z, pus_size, pus_size_t,
         ) = k
-        # (pus-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (pus-S) from the base point to the connection point
+        pus_q_in_base_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
-        q_in_base_y = (
+        pus_q_in_base_y = (
         R_yx*pus_platform_point_x + R_yy*pus_platform_point_y + R_yz*pus_platform_point_z
         )
-        q_in_base_z = (
+        pus_q_in_base_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        S_x = q_in_base_x + t_x - pus_base_point_x
-        S_y = q_in_base_y + t_y - pus_base_point_y
-        S_z = q_in_base_z + t_z - pus_base_point_z
-        # (pus-K2) component along axis 1
-        px_1 = S_x*pus_base_frame_xx + S_y*pus_base_frame_yx + S_z*pus_base_frame_zx
-        # (pus-K3) discriminant of the distance equation
-        disc_1_t = S_x*S_x + S_y*S_y + S_z*S_z
-        disc_1 = px_1*px_1 + uu_3_t - disc_1_t
-        # (pus-K4) displacement of joint 1
-        q_1_t = branch_1*sqrt(disc_1)
-        # (pus-K1) from the base point to the connection point
-        S_r0_y = S_x*pus_base_frame_xy + S_y*pus_base_frame_yy + S_z*pus_base_frame_zy
-        # (pus-K9) squared amplitude
-        rho2_2 = S_r0_y*S_r0_y + q_1_t*q_1_t
-        # (pus-K11) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (pus-K17) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_uu_3_t*pus_platform_joint_offset_x*root_2
-        # (pus-K18) sine of the angle of joint 3 from its reference direction
-        s_3 = (
-        inv_uu_3_t*pus_platform_joint_offset_x*(S_x*pus_base_frame_xz + S_y*pus_base_frame_yz +
-            S_z*pus_base_frame_zz)
+        pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x
+        pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y
+        pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z
+        # (pus-px_1) component along axis 1
+        pus_px_1 = (
+        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
         )
-        # (pus-V2) velocity of the connection point per rate of joint 2
-        v_2_t = c_3*pus_platform_joint_offset_x
-        # (pus-K12) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = S_r0_y*inv_rho2_2*root_2
-        # (pus-K13) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*q_1_t*root_2
-        # (pus-V4) reciprocal vector 1
-        axis_z_pus_axes3_in_base_x = -c_2*pus_base_frame_xx - pus_base_frame_xy*s_2
-        axis_z_pus_axes3_in_base_y = -c_2*pus_base_frame_yx - pus_base_frame_yy*s_2
-        axis_z_pus_axes3_in_base_z = -c_2*pus_base_frame_zx - pus_base_frame_zy*s_2
-        w_1_t = s_2*s_3
-        w_1_t_2 = c_2*s_3
+        # (pus-disc_1) discriminant of the distance equation
+        pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
+        pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2
+        # (pus-q_1) displacement of joint 1
+        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
+        # (pus-S) from the base point to the connection point
+        pus_S_r0_y = (
+        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
+        )
+        # (pus-rho2_2) squared amplitude
+        pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t
+        # (pus-root_2) root, with the sign of the branch
+        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
+        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
+        pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2
+        # (pus-s_3) sine of the angle of joint 3 from its reference direction
+        pus_s_3 = (
+        inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        )
+        # (pus-v_2) velocity of the connection point per rate of joint 2
+        pus_v_2_t = pus_c_3*pus_platform_joint_offset_x
+        # (pus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_pus_rho2_2 = 1.0/pus_rho2_2
+        pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2
+        # (pus-s_2) sine of the angle of joint 2 from its reference direction
+        pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2
+        # (pus-w_1) reciprocal vector 1
+        axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 - pus_base_frame_xy*pus_s_2
+        axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 - pus_base_frame_yy*pus_s_2
+        axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 - pus_base_frame_zy*pus_s_2
+        pus_w_1_t = pus_s_2*pus_s_3
+        pus_w_1_t_2 = pus_c_2*pus_s_3
         axis_y_pus_axes3_in_base_x = (
-        pus_base_frame_xy*w_1_t_2 - c_3*pus_base_frame_xz - pus_base_frame_xx*w_1_t
+        pus_base_frame_xy*pus_w_1_t_2 - pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3
         )
         axis_y_pus_axes3_in_base_y = (
-        pus_base_frame_yy*w_1_t_2 - c_3*pus_base_frame_yz - pus_base_frame_yx*w_1_t
+        pus_base_frame_yy*pus_w_1_t_2 - pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3
         )
         axis_y_pus_axes3_in_base_z = (
-        pus_base_frame_zy*w_1_t_2 - c_3*pus_base_frame_zz - pus_base_frame_zx*w_1_t
+        pus_base_frame_zy*pus_w_1_t_2 - pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3
         )
         axis_x_pus_axes3_x = (
         axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
@@ -2234,137 +2344,153 @@ def _run_Z(m, X, V):
         axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
             axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x
         )
-        w_1_t_3 = c_3*s_2
-        inv_w_1_t_24 = 1.0/w_1_t_3
-        # (pus-V5) reciprocal vector 2
-        inv_v_2_t = 1.0/v_2_t
-        # (pus-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        # (pus-V8) rate of joint 2
-        qd_1 = (
-        inv_w_1_t_24*(S_dot_x*axis_x_pus_axes3_x + S_dot_y*axis_x_pus_axes3_y +
-            S_dot_z*axis_x_pus_axes3_z)
+        # (pus-w_2) reciprocal vector 2
+        pus_w_2_t = pus_c_3*pus_s_2
+        inv_pus_v_2_t = 1.0/pus_v_2_t
+        inv_pus_w_2_t = 1.0/pus_w_2_t
+        # (pus-S_dot) velocity of the connection point
+        pus_S_dot_t = omega_y*pus_q_in_base_z - omega_z*pus_q_in_base_y
+        pus_S_dot_t_2 = omega_z*pus_q_in_base_x - omega_x*pus_q_in_base_z
+        pus_S_dot_t_3 = omega_x*pus_q_in_base_y - omega_y*pus_q_in_base_x
+        pus_S_dot_x = pus_S_dot_t + t_dot_x
+        pus_S_dot_y = pus_S_dot_t_2 + t_dot_y
+        pus_S_dot_z = pus_S_dot_t_3 + t_dot_z
+        # (pus-qd_3) rate of joint 3
+        pus_qd_1 = (
+        inv_pus_w_2_t*(axis_x_pus_axes3_x*pus_S_dot_x + axis_x_pus_axes3_y*pus_S_dot_y +
+            axis_x_pus_axes3_z*pus_S_dot_z)
         )
-        qd_2_t = (
-        S_dot_x*axis_y_pus_axes3_in_base_x + S_dot_y*axis_y_pus_axes3_in_base_y +
-            S_dot_z*axis_y_pus_axes3_in_base_z - qd_1*w_1_t
+        pus_qd_3_t = (
+        axis_y_pus_axes3_in_base_x*pus_S_dot_x + axis_y_pus_axes3_in_base_y*pus_S_dot_y +
+            axis_y_pus_axes3_in_base_z*pus_S_dot_z - pus_qd_1*pus_w_1_t
         )
-        qd_3 = inv_pus_platform_joint_offset_x*qd_2_t
-        qd_2 = (
-        inv_v_2_t*(S_dot_x*axis_z_pus_axes3_in_base_x + S_dot_y*axis_z_pus_axes3_in_base_y +
-            S_dot_z*axis_z_pus_axes3_in_base_z - c_2*qd_1)
+        pus_qd_3 = inv_pus_platform_joint_offset_x*pus_qd_3_t
+        pus_qd_2 = (
+        inv_pus_v_2_t*(axis_z_pus_axes3_in_base_x*pus_S_dot_x +
+            axis_z_pus_axes3_in_base_y*pus_S_dot_y + axis_z_pus_axes3_in_base_z*pus_S_dot_z -
+            pus_c_2*pus_qd_1)
         )
-        # (pus-V10) angular velocity of link 2
-        omega_2_t = qd_2*s_3
-        omega_2_t_2 = c_3*qd_2
-        # (pus-A4) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_x = omega_2_t_2*qd_3
-        zeta_3_y = omega_2_t*qd_3
-        # (pus-V12) centripetal tensor of link 3
-        W_3_t = omega_2_t*omega_2_t
-        W_3_t_2 = omega_2_t_2*omega_2_t_2
-        W_3_t_3 = qd_3*qd_3
-        W_3_xy = omega_2_t*omega_2_t_2
-        # (pus-A5) acceleration of the connection point at zero joint accelerations
-        bias_t = omega_2_t_2*pus_platform_joint_offset_x
-        bias_z = omega_2_t*qd_2_t + pus_platform_joint_offset_x*zeta_3_y
-        # (pus-A1) centripetal acceleration of the connection point
-        u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
-        u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y
-        u_1_tip_x = axis_x_pus_axes3_x*u_1_x + axis_x_pus_axes3_y*u_1_y + axis_x_pus_axes3_z*u_1_z
-        u_1_tip_y = (
-        axis_y_pus_axes3_in_base_x*u_1_x + axis_y_pus_axes3_in_base_y*u_1_y +
-            axis_y_pus_axes3_in_base_z*u_1_z
+        # (pus-omega_2) angular velocity of link 2
+        pus_omega_2_t = pus_qd_2*pus_s_3
+        pus_omega_2_t_2 = pus_c_3*pus_qd_2
+        # (pus-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        pus_zeta_3_x = pus_omega_2_t_2*pus_qd_3
+        pus_zeta_3_y = pus_omega_2_t*pus_qd_3
+        # (pus-u_1) centripetal acceleration of the connection point
+        pus_u_1_x = omega_y*pus_S_dot_t_3 - omega_z*pus_S_dot_t_2
+        pus_u_1_y = omega_z*pus_S_dot_t - omega_x*pus_S_dot_t_3
+        pus_u_1_z = omega_x*pus_S_dot_t_2 - omega_y*pus_S_dot_t
+        # (pus-W_3) centripetal tensor of link 3
+        pus_W_3_t = pus_omega_2_t*pus_omega_2_t
+        pus_W_3_t_2 = pus_omega_2_t_2*pus_omega_2_t_2
+        pus_W_3_t_3 = pus_qd_3*pus_qd_3
+        pus_W_3_xy = pus_omega_2_t*pus_omega_2_t_2
+        # (pus-bias) acceleration of the connection point at zero joint accelerations
+        pus_bias_t = pus_omega_2_t_2*pus_platform_joint_offset_x
+        pus_bias_z = pus_omega_2_t*pus_qd_3_t + pus_platform_joint_offset_x*pus_zeta_3_y
+        # (pus-u_1) centripetal acceleration of the connection point
+        pus_u_1_tip_x = (
+        axis_x_pus_axes3_x*pus_u_1_x + axis_x_pus_axes3_y*pus_u_1_y + axis_x_pus_axes3_z*pus_u_1_z
         )
-        u_1_tip_z = (
-        axis_z_pus_axes3_in_base_x*u_1_x + axis_z_pus_axes3_in_base_y*u_1_y +
-            axis_z_pus_axes3_in_base_z*u_1_z
+        pus_u_1_tip_y = (
+        axis_y_pus_axes3_in_base_x*pus_u_1_x + axis_y_pus_axes3_in_base_y*pus_u_1_y +
+            axis_y_pus_axes3_in_base_z*pus_u_1_z
         )
-        # (pus-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_x = u_1_tip_x + bias_t*omega_2_t_2 + qd_2_t*qd_3
-        rel_o_y = u_1_tip_y + bias_t*omega_2_t
-        rel_o_z = u_1_tip_z - bias_z
-        # (pus-A9) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_o = inv_w_1_t_24*rel_o_x
-        qdd_3_o = inv_pus_platform_joint_offset_x*(qdd_1_o*w_1_t - rel_o_y)
-        qdd_2_o = inv_v_2_t*(c_2*qdd_1_o - rel_o_z)
-        # (pus-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        acc_1_o_x = -g_r0_x - qdd_1_o
-        # (pus-N6) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        g_r1_y = g_r0_x*s_2 - c_2*g_r0_y
-        acc_3_o_x = u_1_tip_x + c_3*g_r1_y - g_r0_z*s_3
-        acc_3_o_y = u_1_tip_y + c_3*g_r0_z + g_r1_y*s_3
-        acc_3_o_z = u_1_tip_z + c_2*g_r0_x + g_r0_y*s_2
-        # (pus-A15) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_o_t = qdd_2_o*s_3
-        alpha_2_o_t_2 = c_3*qdd_2_o
-        # (pus-A18) remainder without the acceleration in: angular acceleration of link 3
-        alpha_3_o_x = -alpha_2_o_t - zeta_3_x
-        alpha_3_o_y = alpha_2_o_t_2 - zeta_3_y
-        # (pus-A20) remainder of the acceleration tensor of link 3
-        B_3_o_xy = qdd_3_o - W_3_xy
-        B_3_o_yx = -W_3_xy - qdd_3_o
-        B_3_o_zx = zeta_3_y - alpha_3_o_y
-        B_3_o_zy = alpha_3_o_x - zeta_3_x
-        # (pus-N20) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        mu_3_o_x = (
-        B_3_o_yx*J_3_xy + B_3_o_zx*J_3_xz + B_3_o_zy*Sigma_3_yy - J_3_yz*(W_3_t_2 - W_3_t_3) -
-            Sigma_3_zz*alpha_2_o_t - acc_3_o_y*h_3_y - acc_3_o_z*h_3_z
+        pus_u_1_tip_z = (
+        axis_z_pus_axes3_in_base_x*pus_u_1_x + axis_z_pus_axes3_in_base_y*pus_u_1_y +
+            axis_z_pus_axes3_in_base_z*pus_u_1_z
         )
-        mu_3_o_y = (
-        B_3_o_xy*J_3_yz + Sigma_3_zz*alpha_2_o_t_2 + acc_3_o_x*h_3_y - B_3_o_zx*Sigma_3_xx -
-            B_3_o_zy*J_3_xz - J_3_xy*(W_3_t - W_3_t_3) - acc_3_o_z*h_3_x
+        # (pus-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        pus_rel_o_x = pus_u_1_tip_x + pus_bias_t*pus_omega_2_t_2 + pus_qd_3*pus_qd_3_t
+        pus_rel_o_y = pus_u_1_tip_y + pus_bias_t*pus_omega_2_t
+        pus_rel_o_z = pus_u_1_tip_z - pus_bias_z
+        # (pus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
+        pus_qdd_1_o = inv_pus_w_2_t*pus_rel_o_x
+        pus_qdd_3_o = inv_pus_platform_joint_offset_x*(pus_qdd_1_o*pus_w_1_t - pus_rel_o_y)
+        pus_qdd_2_o = inv_pus_v_2_t*(pus_c_2*pus_qdd_1_o - pus_rel_o_z)
+        # (pus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        pus_alpha_2_o_t = pus_qdd_2_o*pus_s_3
+        pus_alpha_2_o_t_2 = pus_c_3*pus_qdd_2_o
+        # (pus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        pus_alpha_3_o_x = -pus_alpha_2_o_t - pus_zeta_3_x
+        pus_alpha_3_o_y = pus_alpha_2_o_t_2 - pus_zeta_3_y
+        # (pus-B_3_o) remainder of the acceleration tensor of link 3
+        pus_B_3_o_xy = pus_qdd_3_o - pus_W_3_xy
+        pus_B_3_o_yx = -pus_W_3_xy - pus_qdd_3_o
+        pus_B_3_o_zx = pus_zeta_3_y - pus_alpha_3_o_y
+        pus_B_3_o_zy = pus_alpha_3_o_x - pus_zeta_3_x
+        # (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        pus_g_r1_y = pus_g_r0_x*pus_s_2 - pus_c_2*pus_g_r0_y
+        pus_acc_3_o_x = pus_u_1_tip_x + pus_c_3*pus_g_r1_y - pus_g_r0_z*pus_s_3
+        pus_acc_3_o_y = pus_u_1_tip_y + pus_c_3*pus_g_r0_z + pus_g_r1_y*pus_s_3
+        pus_acc_3_o_z = pus_u_1_tip_z + pus_c_2*pus_g_r0_x + pus_g_r0_y*pus_s_2
+        # (pus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        pus_mu_3_o_x = (
+        pus_B_3_o_yx*pus_J_3_xy + pus_B_3_o_zx*pus_J_3_xz + pus_B_3_o_zy*pus_Sigma_3_yy -
+            pus_J_3_yz*(pus_W_3_t_2 - pus_W_3_t_3) - pus_Sigma_3_zz*pus_alpha_2_o_t -
+            pus_acc_3_o_y*pus_h_3_y - pus_acc_3_o_z*pus_h_3_z
         )
-        mu_3_o_z = (
-        B_3_o_yx*Sigma_3_xx + acc_3_o_x*h_3_z + acc_3_o_y*h_3_x - B_3_o_xy*Sigma_3_yy -
-            J_3_xy*alpha_2_o_t - J_3_xz*(W_3_t - W_3_t_2) - J_3_yz*alpha_2_o_t_2
+        pus_mu_3_o_y = (
+        pus_B_3_o_xy*pus_J_3_yz + pus_Sigma_3_zz*pus_alpha_2_o_t_2 + pus_acc_3_o_x*pus_h_3_y -
+            pus_B_3_o_zx*pus_Sigma_3_xx - pus_B_3_o_zy*pus_J_3_xz - pus_J_3_xy*(pus_W_3_t -
+            pus_W_3_t_3) - pus_acc_3_o_z*pus_h_3_x
         )
-        # (pus-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_o_t = inv_v_2_t*(mu_3_o_x*s_3 - c_3*mu_3_o_y)
-        G_o_t_2 = inv_pus_platform_joint_offset_x*mu_3_o_z
-        # (pus-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_o_x = (
-        B_3_o_xy*h_3_z + h_3_x*(W_3_t_2 + W_3_t_3) + inv_w_1_t_24*(G_o_t*c_2 + G_o_t_2*w_1_t +
-            acc_1_o_x*pus_link1_mass) - alpha_2_o_t_2*h_3_y
+        pus_mu_3_o_z = (
+        pus_B_3_o_yx*pus_Sigma_3_xx + pus_acc_3_o_x*pus_h_3_z + pus_acc_3_o_y*pus_h_3_x -
+            pus_B_3_o_xy*pus_Sigma_3_yy - pus_J_3_xy*pus_alpha_2_o_t - pus_J_3_xz*(pus_W_3_t -
+            pus_W_3_t_2) - pus_J_3_yz*pus_alpha_2_o_t_2
         )
-        c_o_y = -G_o_t_2 - B_3_o_yx*h_3_x - alpha_2_o_t*h_3_y - h_3_z*(W_3_t + W_3_t_3)
-        c_o_z = B_3_o_zy*h_3_z + h_3_y*(W_3_t + W_3_t_2) - G_o_t - B_3_o_zx*h_3_x
-        # (pus-N37) velocity and gravity terms of the leg force
-        U_in_base_x = (
-        -axis_x_pus_axes3_x*c_o_x - axis_y_pus_axes3_in_base_x*c_o_y -
-            axis_z_pus_axes3_in_base_x*c_o_z
+        # (pus-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+        pus_acc_1_o_x = -pus_g_r0_x - pus_qdd_1_o
+        # (pus-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        pus_G_o_t = inv_pus_v_2_t*(pus_mu_3_o_x*pus_s_3 - pus_c_3*pus_mu_3_o_y)
+        pus_G_o_t_2 = inv_pus_platform_joint_offset_x*pus_mu_3_o_z
+        # (pus-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        pus_c_o_x = (
+        inv_pus_w_2_t*(pus_G_o_t*pus_c_2 + pus_G_o_t_2*pus_w_1_t + pus_acc_1_o_x*pus_link1_mass) +
+            pus_B_3_o_xy*pus_h_3_z + pus_h_3_x*(pus_W_3_t_2 + pus_W_3_t_3) -
+            pus_alpha_2_o_t_2*pus_h_3_y
         )
-        U_in_base_y = (
-        -axis_x_pus_axes3_y*c_o_x - axis_y_pus_axes3_in_base_y*c_o_y -
-            axis_z_pus_axes3_in_base_y*c_o_z
+        pus_c_o_y = (
+        -pus_G_o_t_2 - pus_B_3_o_yx*pus_h_3_x - pus_alpha_2_o_t*pus_h_3_y - pus_h_3_z*(pus_W_3_t +
+            pus_W_3_t_3)
         )
-        U_in_base_z = (
-        -axis_x_pus_axes3_z*c_o_x - axis_y_pus_axes3_in_base_z*c_o_y -
-            axis_z_pus_axes3_in_base_z*c_o_z
+        pus_c_o_z = (
+        pus_B_3_o_zy*pus_h_3_z + pus_h_3_y*(pus_W_3_t + pus_W_3_t_2) - pus_G_o_t -
+            pus_B_3_o_zx*pus_h_3_x
         )
-        # (M7) rotational part of Z
-        Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
-        Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
-        Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
+        # (pus-U) velocity and gravity terms of the leg force
+        pus_U_in_base_x = (
+        -axis_x_pus_axes3_x*pus_c_o_x - axis_y_pus_axes3_in_base_x*pus_c_o_y -
+            axis_z_pus_axes3_in_base_x*pus_c_o_z
+        )
+        pus_U_in_base_y = (
+        -axis_x_pus_axes3_y*pus_c_o_x - axis_y_pus_axes3_in_base_y*pus_c_o_y -
+            axis_z_pus_axes3_in_base_y*pus_c_o_z
+        )
+        pus_U_in_base_z = (
+        -axis_x_pus_axes3_z*pus_c_o_x - axis_y_pus_axes3_in_base_z*pus_c_o_y -
+            axis_z_pus_axes3_in_base_z*pus_c_o_z
+        )
+        # (Z_a) rotational part of Z
+        pus_Z_a_t = pus_U_in_base_z*pus_q_in_base_y - pus_U_in_base_y*pus_q_in_base_z
+        pus_Z_a_t_2 = pus_U_in_base_x*pus_q_in_base_z - pus_U_in_base_z*pus_q_in_base_x
+        pus_Z_a_t_3 = pus_U_in_base_y*pus_q_in_base_x - pus_U_in_base_x*pus_q_in_base_y
         ok = (
-        ok & m.every(leg, (disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t) &
-            (abs(v_2_t) > _TOLERANCE * size) & (abs(-w_1_t_3) > _TOLERANCE * 1.0))
+        ok & m.every(leg, (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE *
+            pus_size_t) & (abs(pus_v_2_t) > _TOLERANCE * pus_size) & (abs(-pus_w_2_t) > _TOLERANCE
+            * 1.0))
         )
         sums = m.added(sums, leg, (
-        U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
+        pus_U_in_base_x, pus_U_in_base_y, pus_U_in_base_z, pus_Z_a_t, pus_Z_a_t_2,
+            pus_Z_a_t_3,
         ))
     total_pus_x, total_pus_y, total_pus_z, total_pus_x_2, total_pus_y_2, total_pus_z_2 = sums
-    # (M5) translational part of Z
+    # (Z_t) translational part of Z
     Z_t_x = Z_p_x + total_pus_x
     Z_t_y = Z_p_y + total_pus_y
     Z_t_z = Z_p_z + total_pus_z
-    # (M7) rotational part of Z
+    # (Z_a) rotational part of Z
     Z_a_x = Z_q_in_base_x + total_pus_x_2
     Z_a_y = Z_q_in_base_y + total_pus_y_2
     Z_a_z = Z_q_in_base_z + total_pus_z_2
@@ -2420,93 +2546,100 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, inv_uu_3_t, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
+        inv_pus_disc_1_t_6, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
             pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx,
             pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x, pus_base_point_y,
-            pus_base_point_z, pus_platform_joint_offset_x, pus_platform_point_x,
-            pus_platform_point_y, pus_platform_point_z, size_t, uu_3_t,
+            pus_base_point_z, pus_branch_1, pus_branch_2, pus_disc_1_t,
+            pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
+            pus_platform_point_z, pus_size_t,
         ) = k
-        # (pus-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (pus-S) from the base point to the connection point
+        pus_q_in_base_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
-        q_in_base_y = (
+        pus_q_in_base_y = (
         R_yx*pus_platform_point_x + R_yy*pus_platform_point_y + R_yz*pus_platform_point_z
         )
-        q_in_base_z = (
+        pus_q_in_base_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        S_x = q_in_base_x + t_x - pus_base_point_x
-        S_y = q_in_base_y + t_y - pus_base_point_y
-        S_z = q_in_base_z + t_z - pus_base_point_z
-        # (pus-K2) component along axis 1
-        px_1 = S_x*pus_base_frame_xx + S_y*pus_base_frame_yx + S_z*pus_base_frame_zx
-        # (pus-K3) discriminant of the distance equation
-        disc_1_t = S_x*S_x + S_y*S_y + S_z*S_z
-        disc_1 = px_1*px_1 + uu_3_t - disc_1_t
-        # (pus-K4) displacement of joint 1
-        q_1_t = branch_1*sqrt(disc_1)
-        # (pus-K1) from the base point to the connection point
-        S_r0_y = S_x*pus_base_frame_xy + S_y*pus_base_frame_yy + S_z*pus_base_frame_zy
-        # (pus-K9) squared amplitude
-        rho2_2 = S_r0_y*S_r0_y + q_1_t*q_1_t
-        # (pus-K11) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (pus-K17) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_uu_3_t*pus_platform_joint_offset_x*root_2
-        # (pus-K18) sine of the angle of joint 3 from its reference direction
-        s_3 = (
-        inv_uu_3_t*pus_platform_joint_offset_x*(S_x*pus_base_frame_xz + S_y*pus_base_frame_yz +
-            S_z*pus_base_frame_zz)
+        pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x
+        pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y
+        pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z
+        # (pus-px_1) component along axis 1
+        pus_px_1 = (
+        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
         )
-        # (pus-K12) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = S_r0_y*inv_rho2_2*root_2
-        # (pus-K13) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*q_1_t*root_2
-        # (pus-V4) reciprocal vector 1
-        axis_z_pus_axes3_in_base_x = -c_2*pus_base_frame_xx - pus_base_frame_xy*s_2
-        axis_z_pus_axes3_in_base_y = -c_2*pus_base_frame_yx - pus_base_frame_yy*s_2
-        axis_z_pus_axes3_in_base_z = -c_2*pus_base_frame_zx - pus_base_frame_zy*s_2
-        w_1_t = s_2*s_3
-        w_1_t_2 = c_2*s_3
+        # (pus-disc_1) discriminant of the distance equation
+        pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
+        pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2
+        # (pus-q_1) displacement of joint 1
+        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
+        # (pus-S) from the base point to the connection point
+        pus_S_r0_y = (
+        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
+        )
+        # (pus-rho2_2) squared amplitude
+        pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t
+        # (pus-root_2) root, with the sign of the branch
+        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
+        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
+        pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2
+        # (pus-s_3) sine of the angle of joint 3 from its reference direction
+        pus_s_3 = (
+        inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        )
+        # (pus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_pus_rho2_2 = 1.0/pus_rho2_2
+        pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2
+        # (pus-s_2) sine of the angle of joint 2 from its reference direction
+        pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2
+        # (pus-w_1) reciprocal vector 1
+        axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 - pus_base_frame_xy*pus_s_2
+        axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 - pus_base_frame_yy*pus_s_2
+        axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 - pus_base_frame_zy*pus_s_2
+        pus_w_1_t = pus_s_2*pus_s_3
+        pus_w_1_t_2 = pus_c_2*pus_s_3
         axis_y_pus_axes3_in_base_x = (
-        pus_base_frame_xy*w_1_t_2 - c_3*pus_base_frame_xz - pus_base_frame_xx*w_1_t
+        pus_base_frame_xy*pus_w_1_t_2 - pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3
         )
         axis_y_pus_axes3_in_base_y = (
-        pus_base_frame_yy*w_1_t_2 - c_3*pus_base_frame_yz - pus_base_frame_yx*w_1_t
+        pus_base_frame_yy*pus_w_1_t_2 - pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3
         )
         axis_y_pus_axes3_in_base_z = (
-        pus_base_frame_zy*w_1_t_2 - c_3*pus_base_frame_zz - pus_base_frame_zx*w_1_t
+        pus_base_frame_zy*pus_w_1_t_2 - pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3
         )
-        w_1_t_3 = c_3*s_2
-        inv_w_1_t_24 = 1.0/w_1_t_3
-        w_1_t_4 = (
-        inv_w_1_t_24*(axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
+        # (pus-w_2) reciprocal vector 2
+        pus_w_2_t = pus_c_3*pus_s_2
+        inv_pus_w_2_t = 1.0/pus_w_2_t
+        # (pus-w_1) reciprocal vector 1
+        pus_w_1_t_3 = (
+        inv_pus_w_2_t*(axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
             axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y)
         )
-        w_1_t_5 = (
-        inv_w_1_t_24*(axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
+        pus_w_1_t_4 = (
+        inv_pus_w_2_t*(axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
             axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_z)
         )
-        w_1_t_6 = (
-        inv_w_1_t_24*(axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
+        pus_w_1_t_5 = (
+        inv_pus_w_2_t*(axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
             axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x)
         )
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_x = q_in_base_z*w_1_t_5 - q_in_base_y*w_1_t_6
-        H_a_1_y = q_in_base_x*w_1_t_6 - q_in_base_z*w_1_t_4
-        H_a_1_z = q_in_base_y*w_1_t_4 - q_in_base_x*w_1_t_5
+        # (pus-H_a_1) moment of the column's unit force about the platform origin
+        pus_H_a_1_x = pus_q_in_base_z*pus_w_1_t_4 - pus_q_in_base_y*pus_w_1_t_5
+        pus_H_a_1_y = pus_q_in_base_x*pus_w_1_t_5 - pus_q_in_base_z*pus_w_1_t_3
+        pus_H_a_1_z = pus_q_in_base_y*pus_w_1_t_3 - pus_q_in_base_x*pus_w_1_t_4
         ok = (
-        ok & m.every(leg, (disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t) &
-            (abs(-w_1_t_3) > _TOLERANCE * 1.0))
+        ok & m.every(leg, (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE *
+            pus_size_t) & (abs(-pus_w_2_t) > _TOLERANCE * 1.0))
         )
-        out_H[_H_pus[0][leg]] = -w_1_t_4
-        out_H[_H_pus[1][leg]] = -w_1_t_5
-        out_H[_H_pus[2][leg]] = -w_1_t_6
-        out_H[_H_pus[3][leg]] = H_a_1_x
-        out_H[_H_pus[4][leg]] = H_a_1_y
-        out_H[_H_pus[5][leg]] = H_a_1_z
+        out_H[_H_pus[0][leg]] = -pus_w_1_t_3
+        out_H[_H_pus[1][leg]] = -pus_w_1_t_4
+        out_H[_H_pus[2][leg]] = -pus_w_1_t_5
+        out_H[_H_pus[3][leg]] = pus_H_a_1_x
+        out_H[_H_pus[4][leg]] = pus_H_a_1_y
+        out_H[_H_pus[5][leg]] = pus_H_a_1_z
     return ok, (out_H,)
 
 
@@ -2582,29 +2715,29 @@ def _run_required(m, X, V, A):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (P1) centripetal tensor of the platform
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_x*omega_x
     W_p_t_2 = omega_y*omega_y
     W_p_t_3 = omega_z*omega_z
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
     W_p_yz = omega_y*omega_z
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
-    # (E2) inertia force of the platform less its weight
+    # (f_p) inertia force of the platform less its weight
     f_p_x = (
     a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) + h_star_in_base_z*(W_p_xz + alpha_y) -
         h_star_in_base_x*(W_p_t_2 + W_p_t_3)
@@ -2617,11 +2750,11 @@ def _run_required(m, X, V, A):
     a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) + h_star_in_base_y*(W_p_yz + alpha_x) -
         h_star_in_base_z*(W_p_t + W_p_t_2)
     )
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
     a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
     a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
-    # (E3) inertia moment of the platform less that of its weight
+    # (mu_p) inertia moment of the platform less that of its weight
     alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
     alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
     alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
@@ -2643,68 +2776,73 @@ def _run_required(m, X, V, A):
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_3_xy, J_3_xz, J_3_yz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, g_r0_x,
-            g_r0_y, g_r0_z, h_3_x, h_3_y, h_3_z, inv_pus_platform_joint_offset_x, inv_uu_3_t,
-            pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx,
-            pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy,
-            pus_base_frame_zz, pus_base_point_x, pus_base_point_y, pus_base_point_z,
-            pus_link1_mass, pus_platform_joint_offset_x, pus_platform_point_x,
-            pus_platform_point_y, pus_platform_point_z, size, size_t, uu_3_t,
+        inv_pus_disc_1_t_6, inv_pus_platform_joint_offset_x, pus_J_3_xy, pus_J_3_xz, pus_J_3_yz,
+            pus_Sigma_3_xx, pus_Sigma_3_yy, pus_Sigma_3_zz, pus_base_frame_xx, pus_base_frame_xy,
+            pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz,
+            pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x,
+            pus_base_point_y, pus_base_point_z, pus_branch_1, pus_branch_2, pus_disc_1_t,
+            pus_g_r0_x, pus_g_r0_y, pus_g_r0_z, pus_h_3_x, pus_h_3_y, pus_h_3_z, pus_link1_mass,
+            pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
+            pus_platform_point_z, pus_size, pus_size_t,
         ) = k
-        # (pus-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (pus-S) from the base point to the connection point
+        pus_q_in_base_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
-        q_in_base_y = (
+        pus_q_in_base_y = (
         R_yx*pus_platform_point_x + R_yy*pus_platform_point_y + R_yz*pus_platform_point_z
         )
-        q_in_base_z = (
+        pus_q_in_base_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        S_x = q_in_base_x + t_x - pus_base_point_x
-        S_y = q_in_base_y + t_y - pus_base_point_y
-        S_z = q_in_base_z + t_z - pus_base_point_z
-        # (pus-K2) component along axis 1
-        px_1 = S_x*pus_base_frame_xx + S_y*pus_base_frame_yx + S_z*pus_base_frame_zx
-        # (pus-K3) discriminant of the distance equation
-        disc_1_t = S_x*S_x + S_y*S_y + S_z*S_z
-        disc_1 = px_1*px_1 + uu_3_t - disc_1_t
-        # (pus-K4) displacement of joint 1
-        q_1_t = branch_1*sqrt(disc_1)
-        # (pus-K1) from the base point to the connection point
-        S_r0_y = S_x*pus_base_frame_xy + S_y*pus_base_frame_yy + S_z*pus_base_frame_zy
-        # (pus-K9) squared amplitude
-        rho2_2 = S_r0_y*S_r0_y + q_1_t*q_1_t
-        # (pus-K11) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (pus-K17) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_uu_3_t*pus_platform_joint_offset_x*root_2
-        # (pus-K18) sine of the angle of joint 3 from its reference direction
-        s_3 = (
-        inv_uu_3_t*pus_platform_joint_offset_x*(S_x*pus_base_frame_xz + S_y*pus_base_frame_yz +
-            S_z*pus_base_frame_zz)
+        pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x
+        pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y
+        pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z
+        # (pus-px_1) component along axis 1
+        pus_px_1 = (
+        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
         )
-        # (pus-V2) velocity of the connection point per rate of joint 2
-        v_2_t = c_3*pus_platform_joint_offset_x
-        # (pus-K12) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = S_r0_y*inv_rho2_2*root_2
-        # (pus-K13) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*q_1_t*root_2
-        # (pus-V4) reciprocal vector 1
-        axis_z_pus_axes3_in_base_x = -c_2*pus_base_frame_xx - pus_base_frame_xy*s_2
-        axis_z_pus_axes3_in_base_y = -c_2*pus_base_frame_yx - pus_base_frame_yy*s_2
-        axis_z_pus_axes3_in_base_z = -c_2*pus_base_frame_zx - pus_base_frame_zy*s_2
-        w_1_t = s_2*s_3
-        w_1_t_2 = c_2*s_3
+        # (pus-disc_1) discriminant of the distance equation
+        pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
+        pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2
+        # (pus-q_1) displacement of joint 1
+        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
+        # (pus-S) from the base point to the connection point
+        pus_S_r0_y = (
+        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
+        )
+        # (pus-rho2_2) squared amplitude
+        pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t
+        # (pus-root_2) root, with the sign of the branch
+        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
+        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
+        pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2
+        # (pus-s_3) sine of the angle of joint 3 from its reference direction
+        pus_s_3 = (
+        inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        )
+        # (pus-v_2) velocity of the connection point per rate of joint 2
+        pus_v_2_t = pus_c_3*pus_platform_joint_offset_x
+        # (pus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_pus_rho2_2 = 1.0/pus_rho2_2
+        pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2
+        # (pus-s_2) sine of the angle of joint 2 from its reference direction
+        pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2
+        # (pus-w_1) reciprocal vector 1
+        axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 - pus_base_frame_xy*pus_s_2
+        axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 - pus_base_frame_yy*pus_s_2
+        axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 - pus_base_frame_zy*pus_s_2
+        pus_w_1_t = pus_s_2*pus_s_3
+        pus_w_1_t_2 = pus_c_2*pus_s_3
         axis_y_pus_axes3_in_base_x = (
-        pus_base_frame_xy*w_1_t_2 - c_3*pus_base_frame_xz - pus_base_frame_xx*w_1_t
+        pus_base_frame_xy*pus_w_1_t_2 - pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3
         )
         axis_y_pus_axes3_in_base_y = (
-        pus_base_frame_yy*w_1_t_2 - c_3*pus_base_frame_yz - pus_base_frame_yx*w_1_t
+        pus_base_frame_yy*pus_w_1_t_2 - pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3
         )
         axis_y_pus_axes3_in_base_z = (
-        pus_base_frame_zy*w_1_t_2 - c_3*pus_base_frame_zz - pus_base_frame_zx*w_1_t
+        pus_base_frame_zy*pus_w_1_t_2 - pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3
         )
         axis_x_pus_axes3_x = (
         axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
@@ -2718,154 +2856,171 @@ def _run_required(m, X, V, A):
         axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
             axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x
         )
-        w_1_t_3 = c_3*s_2
-        inv_w_1_t_24 = 1.0/w_1_t_3
-        # (pus-V5) reciprocal vector 2
-        inv_v_2_t = 1.0/v_2_t
-        # (pus-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        # (pus-V8) rate of joint 2
-        qd_1 = (
-        inv_w_1_t_24*(S_dot_x*axis_x_pus_axes3_x + S_dot_y*axis_x_pus_axes3_y +
-            S_dot_z*axis_x_pus_axes3_z)
+        # (pus-w_2) reciprocal vector 2
+        pus_w_2_t = pus_c_3*pus_s_2
+        inv_pus_v_2_t = 1.0/pus_v_2_t
+        inv_pus_w_2_t = 1.0/pus_w_2_t
+        # (pus-S_dot) velocity of the connection point
+        pus_S_dot_t = omega_y*pus_q_in_base_z - omega_z*pus_q_in_base_y
+        pus_S_dot_t_2 = omega_z*pus_q_in_base_x - omega_x*pus_q_in_base_z
+        pus_S_dot_t_3 = omega_x*pus_q_in_base_y - omega_y*pus_q_in_base_x
+        pus_S_dot_x = pus_S_dot_t + t_dot_x
+        pus_S_dot_y = pus_S_dot_t_2 + t_dot_y
+        pus_S_dot_z = pus_S_dot_t_3 + t_dot_z
+        # (pus-qd_3) rate of joint 3
+        pus_qd_1 = (
+        inv_pus_w_2_t*(axis_x_pus_axes3_x*pus_S_dot_x + axis_x_pus_axes3_y*pus_S_dot_y +
+            axis_x_pus_axes3_z*pus_S_dot_z)
         )
-        qd_2_t = (
-        S_dot_x*axis_y_pus_axes3_in_base_x + S_dot_y*axis_y_pus_axes3_in_base_y +
-            S_dot_z*axis_y_pus_axes3_in_base_z - qd_1*w_1_t
+        pus_qd_3_t = (
+        axis_y_pus_axes3_in_base_x*pus_S_dot_x + axis_y_pus_axes3_in_base_y*pus_S_dot_y +
+            axis_y_pus_axes3_in_base_z*pus_S_dot_z - pus_qd_1*pus_w_1_t
         )
-        qd_3 = inv_pus_platform_joint_offset_x*qd_2_t
-        qd_2 = (
-        inv_v_2_t*(S_dot_x*axis_z_pus_axes3_in_base_x + S_dot_y*axis_z_pus_axes3_in_base_y +
-            S_dot_z*axis_z_pus_axes3_in_base_z - c_2*qd_1)
+        pus_qd_3 = inv_pus_platform_joint_offset_x*pus_qd_3_t
+        pus_qd_2 = (
+        inv_pus_v_2_t*(axis_z_pus_axes3_in_base_x*pus_S_dot_x +
+            axis_z_pus_axes3_in_base_y*pus_S_dot_y + axis_z_pus_axes3_in_base_z*pus_S_dot_z -
+            pus_c_2*pus_qd_1)
         )
-        # (pus-V10) angular velocity of link 2
-        omega_2_t = qd_2*s_3
-        omega_2_t_2 = c_3*qd_2
-        # (pus-A4) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_x = omega_2_t_2*qd_3
-        zeta_3_y = omega_2_t*qd_3
-        # (pus-V12) centripetal tensor of link 3
-        W_3_t = omega_2_t*omega_2_t
-        W_3_t_2 = omega_2_t_2*omega_2_t_2
-        W_3_t_3 = qd_3*qd_3
-        W_3_xy = omega_2_t*omega_2_t_2
-        # (pus-A5) acceleration of the connection point at zero joint accelerations
-        bias_t = omega_2_t_2*pus_platform_joint_offset_x
-        bias_z = omega_2_t*qd_2_t + pus_platform_joint_offset_x*zeta_3_y
-        # (pus-N6) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        g_r1_y = g_r0_x*s_2 - c_2*g_r0_y
-        # (pus-V4) reciprocal vector 1
-        w_1_t_4 = axis_x_pus_axes3_x*inv_w_1_t_24
-        w_1_t_5 = axis_x_pus_axes3_y*inv_w_1_t_24
-        w_1_t_6 = axis_x_pus_axes3_z*inv_w_1_t_24
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_x = q_in_base_z*w_1_t_5 - q_in_base_y*w_1_t_6
-        H_a_1_y = q_in_base_x*w_1_t_6 - q_in_base_z*w_1_t_4
-        H_a_1_z = q_in_base_y*w_1_t_4 - q_in_base_x*w_1_t_5
-        # (pus-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (pus-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        S_ddot_tip_x = (
-        S_ddot_x*axis_x_pus_axes3_x + S_ddot_y*axis_x_pus_axes3_y + S_ddot_z*axis_x_pus_axes3_z
+        # (pus-omega_2) angular velocity of link 2
+        pus_omega_2_t = pus_qd_2*pus_s_3
+        pus_omega_2_t_2 = pus_c_3*pus_qd_2
+        # (pus-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        pus_zeta_3_x = pus_omega_2_t_2*pus_qd_3
+        pus_zeta_3_y = pus_omega_2_t*pus_qd_3
+        # (pus-W_3) centripetal tensor of link 3
+        pus_W_3_t = pus_omega_2_t*pus_omega_2_t
+        pus_W_3_t_2 = pus_omega_2_t_2*pus_omega_2_t_2
+        pus_W_3_t_3 = pus_qd_3*pus_qd_3
+        pus_W_3_xy = pus_omega_2_t*pus_omega_2_t_2
+        # (pus-bias) acceleration of the connection point at zero joint accelerations
+        pus_bias_t = pus_omega_2_t_2*pus_platform_joint_offset_x
+        pus_bias_z = pus_omega_2_t*pus_qd_3_t + pus_platform_joint_offset_x*pus_zeta_3_y
+        # (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        pus_g_r1_y = pus_g_r0_x*pus_s_2 - pus_c_2*pus_g_r0_y
+        # (pus-w_1) reciprocal vector 1
+        pus_w_1_t_3 = axis_x_pus_axes3_x*inv_pus_w_2_t
+        pus_w_1_t_4 = axis_x_pus_axes3_y*inv_pus_w_2_t
+        pus_w_1_t_5 = axis_x_pus_axes3_z*inv_pus_w_2_t
+        # (pus-H_a_1) moment of the column's unit force about the platform origin
+        pus_H_a_1_x = pus_q_in_base_z*pus_w_1_t_4 - pus_q_in_base_y*pus_w_1_t_5
+        pus_H_a_1_y = pus_q_in_base_x*pus_w_1_t_5 - pus_q_in_base_z*pus_w_1_t_3
+        pus_H_a_1_z = pus_q_in_base_y*pus_w_1_t_3 - pus_q_in_base_x*pus_w_1_t_4
+        # (pus-a_p) acceleration of the connection point without its centripetal part
+        pus_a_p_x = t_ddot_x + alpha_y*pus_q_in_base_z - alpha_z*pus_q_in_base_y
+        pus_a_p_y = t_ddot_y + alpha_z*pus_q_in_base_x - alpha_x*pus_q_in_base_z
+        pus_a_p_z = t_ddot_z + alpha_x*pus_q_in_base_y - alpha_y*pus_q_in_base_x
+        # (pus-S_ddot) acceleration of the connection point
+        pus_S_ddot_x = pus_a_p_x + omega_y*pus_S_dot_t_3 - omega_z*pus_S_dot_t_2
+        pus_S_ddot_y = pus_a_p_y + omega_z*pus_S_dot_t - omega_x*pus_S_dot_t_3
+        pus_S_ddot_z = pus_a_p_z + omega_x*pus_S_dot_t_2 - omega_y*pus_S_dot_t
+        pus_S_ddot_tip_x = (
+        axis_x_pus_axes3_x*pus_S_ddot_x + axis_x_pus_axes3_y*pus_S_ddot_y +
+            axis_x_pus_axes3_z*pus_S_ddot_z
         )
-        S_ddot_tip_y = (
-        S_ddot_x*axis_y_pus_axes3_in_base_x + S_ddot_y*axis_y_pus_axes3_in_base_y +
-            S_ddot_z*axis_y_pus_axes3_in_base_z
+        pus_S_ddot_tip_y = (
+        axis_y_pus_axes3_in_base_x*pus_S_ddot_x + axis_y_pus_axes3_in_base_y*pus_S_ddot_y +
+            axis_y_pus_axes3_in_base_z*pus_S_ddot_z
         )
-        S_ddot_tip_z = (
-        S_ddot_x*axis_z_pus_axes3_in_base_x + S_ddot_y*axis_z_pus_axes3_in_base_y +
-            S_ddot_z*axis_z_pus_axes3_in_base_z
+        pus_S_ddot_tip_z = (
+        axis_z_pus_axes3_in_base_x*pus_S_ddot_x + axis_z_pus_axes3_in_base_y*pus_S_ddot_y +
+            axis_z_pus_axes3_in_base_z*pus_S_ddot_z
         )
-        # (pus-A6) acceleration of the connection point left to the joint accelerations
-        rel_x = S_ddot_tip_x + bias_t*omega_2_t_2 + qd_2_t*qd_3
-        rel_y = S_ddot_tip_y + bias_t*omega_2_t
-        rel_z = S_ddot_tip_z - bias_z
-        # (pus-A8) acceleration of joint 1
-        qdd_1 = inv_w_1_t_24*rel_x
-        qdd_3 = inv_pus_platform_joint_offset_x*(qdd_1*w_1_t - rel_y)
-        qdd_2 = inv_v_2_t*(c_2*qdd_1 - rel_z)
-        # (pus-N5) acceleration of the reference point of link 3, less gravity
-        acc_3_x = S_ddot_tip_x + c_3*g_r1_y - g_r0_z*s_3
-        acc_3_y = S_ddot_tip_y + c_3*g_r0_z + g_r1_y*s_3
-        acc_3_z = S_ddot_tip_z + c_2*g_r0_x + g_r0_y*s_2
-        # (pus-N1) acceleration of the reference point of link 1, less gravity
-        acc_1_x = -g_r0_x - qdd_1
-        # (pus-A14) angular acceleration of link 2
-        alpha_2_t = qdd_2*s_3
-        alpha_2_t_2 = c_3*qdd_2
-        # (pus-A16) angular acceleration of link 3
-        alpha_3_x = -alpha_2_t - zeta_3_x
-        alpha_3_y = alpha_2_t_2 - zeta_3_y
-        # (pus-A19) acceleration tensor of link 3
-        B_3_xy = qdd_3 - W_3_xy
-        B_3_yx = -W_3_xy - qdd_3
-        B_3_zx = zeta_3_y - alpha_3_y
-        B_3_zy = alpha_3_x - zeta_3_x
-        # (pus-N19) inertia moment of the links that turn with link 3, about their reference points
-        mu_3_x = (
-        B_3_yx*J_3_xy + B_3_zx*J_3_xz + B_3_zy*Sigma_3_yy - J_3_yz*(W_3_t_2 - W_3_t_3) -
-            Sigma_3_zz*alpha_2_t - acc_3_y*h_3_y - acc_3_z*h_3_z
+        # (pus-rel) acceleration of the connection point left to the joint accelerations
+        pus_rel_x = pus_S_ddot_tip_x + pus_bias_t*pus_omega_2_t_2 + pus_qd_3*pus_qd_3_t
+        pus_rel_y = pus_S_ddot_tip_y + pus_bias_t*pus_omega_2_t
+        pus_rel_z = pus_S_ddot_tip_z - pus_bias_z
+        # (pus-qdd_1) acceleration of joint 1
+        pus_qdd_1 = inv_pus_w_2_t*pus_rel_x
+        pus_qdd_3 = inv_pus_platform_joint_offset_x*(pus_qdd_1*pus_w_1_t - pus_rel_y)
+        pus_qdd_2 = inv_pus_v_2_t*(pus_c_2*pus_qdd_1 - pus_rel_z)
+        # (pus-acc_3) acceleration of the reference point of link 3, less gravity
+        pus_acc_3_x = pus_S_ddot_tip_x + pus_c_3*pus_g_r1_y - pus_g_r0_z*pus_s_3
+        pus_acc_3_y = pus_S_ddot_tip_y + pus_c_3*pus_g_r0_z + pus_g_r1_y*pus_s_3
+        pus_acc_3_z = pus_S_ddot_tip_z + pus_c_2*pus_g_r0_x + pus_g_r0_y*pus_s_2
+        # (pus-alpha_2) angular acceleration of link 2
+        pus_alpha_2_t = pus_qdd_2*pus_s_3
+        pus_alpha_2_t_2 = pus_c_3*pus_qdd_2
+        # (pus-alpha_3) angular acceleration of link 3
+        pus_alpha_3_x = -pus_alpha_2_t - pus_zeta_3_x
+        pus_alpha_3_y = pus_alpha_2_t_2 - pus_zeta_3_y
+        # (pus-B_3) acceleration tensor of link 3
+        pus_B_3_xy = pus_qdd_3 - pus_W_3_xy
+        pus_B_3_yx = -pus_W_3_xy - pus_qdd_3
+        pus_B_3_zx = pus_zeta_3_y - pus_alpha_3_y
+        pus_B_3_zy = pus_alpha_3_x - pus_zeta_3_x
+        # (pus-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        pus_mu_3_x = (
+        pus_B_3_yx*pus_J_3_xy + pus_B_3_zx*pus_J_3_xz + pus_B_3_zy*pus_Sigma_3_yy -
+            pus_J_3_yz*(pus_W_3_t_2 - pus_W_3_t_3) - pus_Sigma_3_zz*pus_alpha_2_t -
+            pus_acc_3_y*pus_h_3_y - pus_acc_3_z*pus_h_3_z
         )
-        mu_3_y = (
-        B_3_xy*J_3_yz + Sigma_3_zz*alpha_2_t_2 + acc_3_x*h_3_y - B_3_zx*Sigma_3_xx - B_3_zy*J_3_xz
-            - J_3_xy*(W_3_t - W_3_t_3) - acc_3_z*h_3_x
+        pus_mu_3_y = (
+        pus_B_3_xy*pus_J_3_yz + pus_Sigma_3_zz*pus_alpha_2_t_2 + pus_acc_3_x*pus_h_3_y -
+            pus_B_3_zx*pus_Sigma_3_xx - pus_B_3_zy*pus_J_3_xz - pus_J_3_xy*(pus_W_3_t -
+            pus_W_3_t_3) - pus_acc_3_z*pus_h_3_x
         )
-        mu_3_z = (
-        B_3_yx*Sigma_3_xx + acc_3_x*h_3_z + acc_3_y*h_3_x - B_3_xy*Sigma_3_yy - J_3_xy*alpha_2_t -
-            J_3_xz*(W_3_t - W_3_t_2) - J_3_yz*alpha_2_t_2
+        pus_mu_3_z = (
+        pus_B_3_yx*pus_Sigma_3_xx + pus_acc_3_x*pus_h_3_z + pus_acc_3_y*pus_h_3_x -
+            pus_B_3_xy*pus_Sigma_3_yy - pus_J_3_xy*pus_alpha_2_t - pus_J_3_xz*(pus_W_3_t -
+            pus_W_3_t_2) - pus_J_3_yz*pus_alpha_2_t_2
         )
-        # (pus-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_t = inv_v_2_t*(mu_3_x*s_3 - c_3*mu_3_y)
-        G_t_2 = inv_pus_platform_joint_offset_x*mu_3_z
-        # (pus-N33) leg force on the platform without actuation and without the mass at the connection point
-        c_x = (
-        B_3_xy*h_3_z + h_3_x*(W_3_t_2 + W_3_t_3) + inv_w_1_t_24*(G_t*c_2 + G_t_2*w_1_t +
-            acc_1_x*pus_link1_mass) - alpha_2_t_2*h_3_y
+        # (pus-acc_1) acceleration of the reference point of link 1, less gravity
+        pus_acc_1_x = -pus_g_r0_x - pus_qdd_1
+        # (pus-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        pus_G_t = inv_pus_v_2_t*(pus_mu_3_x*pus_s_3 - pus_c_3*pus_mu_3_y)
+        pus_G_t_2 = inv_pus_platform_joint_offset_x*pus_mu_3_z
+        # (pus-c) leg force on the platform without actuation and without the mass at the connection point
+        pus_c_x = (
+        inv_pus_w_2_t*(pus_G_t*pus_c_2 + pus_G_t_2*pus_w_1_t + pus_acc_1_x*pus_link1_mass) +
+            pus_B_3_xy*pus_h_3_z + pus_h_3_x*(pus_W_3_t_2 + pus_W_3_t_3) -
+            pus_alpha_2_t_2*pus_h_3_y
         )
-        c_y = -G_t_2 - B_3_yx*h_3_x - alpha_2_t*h_3_y - h_3_z*(W_3_t + W_3_t_3)
-        c_z = B_3_zy*h_3_z + h_3_y*(W_3_t + W_3_t_2) - G_t - B_3_zx*h_3_x
-        c_in_base_x = (
-        axis_x_pus_axes3_x*c_x + axis_y_pus_axes3_in_base_x*c_y + axis_z_pus_axes3_in_base_x*c_z
+        pus_c_y = (
+        -pus_G_t_2 - pus_B_3_yx*pus_h_3_x - pus_alpha_2_t*pus_h_3_y - pus_h_3_z*(pus_W_3_t +
+            pus_W_3_t_3)
         )
-        c_in_base_y = (
-        axis_x_pus_axes3_y*c_x + axis_y_pus_axes3_in_base_y*c_y + axis_z_pus_axes3_in_base_y*c_z
+        pus_c_z = (
+        pus_B_3_zy*pus_h_3_z + pus_h_3_y*(pus_W_3_t + pus_W_3_t_2) - pus_G_t -
+            pus_B_3_zx*pus_h_3_x
         )
-        c_in_base_z = (
-        axis_x_pus_axes3_z*c_x + axis_y_pus_axes3_in_base_z*c_y + axis_z_pus_axes3_in_base_z*c_z
+        pus_c_in_base_x = (
+        axis_x_pus_axes3_x*pus_c_x + axis_y_pus_axes3_in_base_x*pus_c_y +
+            axis_z_pus_axes3_in_base_x*pus_c_z
         )
-        # (E5) moment that actuators and external wrench must give
-        R_a_t = c_in_base_z*q_in_base_y - c_in_base_y*q_in_base_z
-        R_a_t_2 = c_in_base_x*q_in_base_z - c_in_base_z*q_in_base_x
-        R_a_t_3 = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y
+        pus_c_in_base_y = (
+        axis_x_pus_axes3_y*pus_c_x + axis_y_pus_axes3_in_base_y*pus_c_y +
+            axis_z_pus_axes3_in_base_y*pus_c_z
+        )
+        pus_c_in_base_z = (
+        axis_x_pus_axes3_z*pus_c_x + axis_y_pus_axes3_in_base_z*pus_c_y +
+            axis_z_pus_axes3_in_base_z*pus_c_z
+        )
+        # (R_a) moment that actuators and external wrench must give
+        pus_R_a_t = pus_c_in_base_z*pus_q_in_base_y - pus_c_in_base_y*pus_q_in_base_z
+        pus_R_a_t_2 = pus_c_in_base_x*pus_q_in_base_z - pus_c_in_base_z*pus_q_in_base_x
+        pus_R_a_t_3 = pus_c_in_base_y*pus_q_in_base_x - pus_c_in_base_x*pus_q_in_base_y
         ok = (
-        ok & m.every(leg, (disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t) &
-            (abs(v_2_t) > _TOLERANCE * size) & (abs(-w_1_t_3) > _TOLERANCE * 1.0))
+        ok & m.every(leg, (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE *
+            pus_size_t) & (abs(pus_v_2_t) > _TOLERANCE * pus_size) & (abs(-pus_w_2_t) > _TOLERANCE
+            * 1.0))
         )
         sums = m.added(sums, leg, (
-        c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
+        pus_c_in_base_x, pus_c_in_base_y, pus_c_in_base_z, pus_R_a_t, pus_R_a_t_2,
+            pus_R_a_t_3,
         ))
-        out_H[_H_pus[0][leg]] = -w_1_t_4
-        out_H[_H_pus[1][leg]] = -w_1_t_5
-        out_H[_H_pus[2][leg]] = -w_1_t_6
-        out_H[_H_pus[3][leg]] = H_a_1_x
-        out_H[_H_pus[4][leg]] = H_a_1_y
-        out_H[_H_pus[5][leg]] = H_a_1_z
+        out_H[_H_pus[0][leg]] = -pus_w_1_t_3
+        out_H[_H_pus[1][leg]] = -pus_w_1_t_4
+        out_H[_H_pus[2][leg]] = -pus_w_1_t_5
+        out_H[_H_pus[3][leg]] = pus_H_a_1_x
+        out_H[_H_pus[4][leg]] = pus_H_a_1_y
+        out_H[_H_pus[5][leg]] = pus_H_a_1_z
     total_pus_x, total_pus_y, total_pus_z, total_pus_x_2, total_pus_y_2, total_pus_z_2 = sums
-    # (E4) force that actuators and external wrench must give
+    # (R_t) force that actuators and external wrench must give
     R_t_x = f_p_x - total_pus_x
     R_t_y = f_p_y - total_pus_y
     R_t_z = f_p_z - total_pus_z
-    # (E5) moment that actuators and external wrench must give
+    # (R_a) moment that actuators and external wrench must give
     R_a_x = mu_p_in_base_x - total_pus_x_2
     R_a_y = mu_p_in_base_y - total_pus_y_2
     R_a_z = mu_p_in_base_z - total_pus_z_2
@@ -2922,53 +3077,63 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, inv_uu_3_t, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
+        inv_pus_disc_1_t_6, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
             pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx,
             pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x, pus_base_point_y,
-            pus_base_point_z, pus_platform_joint_offset_x, pus_platform_point_x,
-            pus_platform_point_y, pus_platform_point_z, size_t, uu_3_t,
+            pus_base_point_z, pus_branch_1, pus_branch_2, pus_disc_1_t,
+            pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
+            pus_platform_point_z, pus_size_t,
         ) = k
-        # (pus-K1) from the base point to the connection point
-        S_x = (
+        # (pus-S) from the base point to the connection point
+        pus_S_x = (
         t_x + R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z -
             pus_base_point_x
         )
-        S_y = (
+        pus_S_y = (
         t_y + R_yx*pus_platform_point_x + R_yy*pus_platform_point_y + R_yz*pus_platform_point_z -
             pus_base_point_y
         )
-        S_z = (
+        pus_S_z = (
         t_z + R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z -
             pus_base_point_z
         )
-        # (pus-K2) component along axis 1
-        px_1 = S_x*pus_base_frame_xx + S_y*pus_base_frame_yx + S_z*pus_base_frame_zx
-        # (pus-K3) discriminant of the distance equation
-        disc_1_t = S_x*S_x + S_y*S_y + S_z*S_z
-        disc_1 = px_1*px_1 + uu_3_t - disc_1_t
-        # (pus-K4) displacement of joint 1
-        q_1_t = branch_1*sqrt(disc_1)
-        q_1 = px_1 + q_1_t
-        # (pus-K1) from the base point to the connection point
-        S_r0_y = S_x*pus_base_frame_xy + S_y*pus_base_frame_yy + S_z*pus_base_frame_zy
-        # (pus-K9) squared amplitude
-        rho2_2 = S_r0_y*S_r0_y + q_1_t*q_1_t
-        # (pus-K11) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (pus-K12) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        # (pus-K14) displacement of joint 2
-        q_2 = atan2(S_r0_y*inv_rho2_2*root_2, -inv_rho2_2*q_1_t*root_2)
-        # (pus-K19) displacement of joint 3
-        q_3 = (
-        atan2(-inv_uu_3_t*pus_platform_joint_offset_x*(S_x*pus_base_frame_xz +
-            S_y*pus_base_frame_yz + S_z*pus_base_frame_zz),
-            inv_uu_3_t*pus_platform_joint_offset_x*root_2)
+        # (pus-px_1) component along axis 1
+        pus_px_1 = (
+        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
         )
-        ok = ok & m.every(leg, (disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t))
-        out_q[_q_pus[0][leg]] = q_1
-        out_q[_q_pus[1][leg]] = q_2
-        out_q[_q_pus[2][leg]] = q_3
+        # (pus-disc_1) discriminant of the distance equation
+        pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
+        pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2
+        # (pus-q_1) displacement of joint 1
+        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
+        pus_q_1 = pus_px_1 + pus_q_1_t
+        # (pus-S) from the base point to the connection point
+        pus_S_r0_y = (
+        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
+        )
+        # (pus-rho2_2) squared amplitude
+        pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t
+        # (pus-root_2) root, with the sign of the branch
+        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
+        # (pus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_pus_rho2_2 = 1.0/pus_rho2_2
+        # (pus-q_2) displacement of joint 2
+        pus_q_2 = (
+        atan2(inv_pus_rho2_2*pus_S_r0_y*pus_root_2, -inv_pus_rho2_2*pus_q_1_t*pus_root_2)
+        )
+        # (pus-q_3) displacement of joint 3
+        pus_q_3 = (
+        atan2(-inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz),
+            inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2)
+        )
+        ok = (
+        ok & m.every(leg, (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE *
+            pus_size_t))
+        )
+        out_q[_q_pus[0][leg]] = pus_q_1
+        out_q[_q_pus[1][leg]] = pus_q_2
+        out_q[_q_pus[2][leg]] = pus_q_3
     return ok, (out_q,)
 
 
@@ -3028,97 +3193,104 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, inv_pus_platform_joint_offset_x, inv_uu_3_t, pus_base_frame_xx,
-            pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy,
-            pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz,
-            pus_base_point_x, pus_base_point_y, pus_base_point_z, pus_platform_joint_offset_x,
-            pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, size, size_t,
-            uu_3_t,
+        inv_pus_disc_1_t_6, inv_pus_platform_joint_offset_x, pus_base_frame_xx, pus_base_frame_xy,
+            pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz,
+            pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x,
+            pus_base_point_y, pus_base_point_z, pus_branch_1, pus_branch_2, pus_disc_1_t,
+            pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
+            pus_platform_point_z, pus_size, pus_size_t,
         ) = k
-        # (pus-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (pus-S) from the base point to the connection point
+        pus_q_in_base_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
-        q_in_base_y = (
+        pus_q_in_base_y = (
         R_yx*pus_platform_point_x + R_yy*pus_platform_point_y + R_yz*pus_platform_point_z
         )
-        q_in_base_z = (
+        pus_q_in_base_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        S_x = q_in_base_x + t_x - pus_base_point_x
-        S_y = q_in_base_y + t_y - pus_base_point_y
-        S_z = q_in_base_z + t_z - pus_base_point_z
-        # (pus-K2) component along axis 1
-        px_1 = S_x*pus_base_frame_xx + S_y*pus_base_frame_yx + S_z*pus_base_frame_zx
-        # (pus-K3) discriminant of the distance equation
-        disc_1_t = S_x*S_x + S_y*S_y + S_z*S_z
-        disc_1 = px_1*px_1 + uu_3_t - disc_1_t
-        # (pus-K4) displacement of joint 1
-        q_1_t = branch_1*sqrt(disc_1)
-        # (pus-K1) from the base point to the connection point
-        S_r0_y = S_x*pus_base_frame_xy + S_y*pus_base_frame_yy + S_z*pus_base_frame_zy
-        # (pus-K9) squared amplitude
-        rho2_2 = S_r0_y*S_r0_y + q_1_t*q_1_t
-        # (pus-K11) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (pus-K17) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_uu_3_t*pus_platform_joint_offset_x*root_2
-        # (pus-K18) sine of the angle of joint 3 from its reference direction
-        s_3 = (
-        inv_uu_3_t*pus_platform_joint_offset_x*(S_x*pus_base_frame_xz + S_y*pus_base_frame_yz +
-            S_z*pus_base_frame_zz)
+        pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x
+        pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y
+        pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z
+        # (pus-px_1) component along axis 1
+        pus_px_1 = (
+        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
         )
-        # (pus-V2) velocity of the connection point per rate of joint 2
-        v_2_t = c_3*pus_platform_joint_offset_x
-        # (pus-K12) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = S_r0_y*inv_rho2_2*root_2
-        # (pus-K13) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*q_1_t*root_2
-        # (pus-V4) reciprocal vector 1
-        axis_z_pus_axes3_in_base_x = -c_2*pus_base_frame_xx - pus_base_frame_xy*s_2
-        axis_z_pus_axes3_in_base_y = -c_2*pus_base_frame_yx - pus_base_frame_yy*s_2
-        axis_z_pus_axes3_in_base_z = -c_2*pus_base_frame_zx - pus_base_frame_zy*s_2
-        w_1_t = s_2*s_3
-        w_1_t_2 = c_2*s_3
+        # (pus-disc_1) discriminant of the distance equation
+        pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
+        pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2
+        # (pus-q_1) displacement of joint 1
+        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
+        # (pus-S) from the base point to the connection point
+        pus_S_r0_y = (
+        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
+        )
+        # (pus-rho2_2) squared amplitude
+        pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t
+        # (pus-root_2) root, with the sign of the branch
+        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
+        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
+        pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2
+        # (pus-s_3) sine of the angle of joint 3 from its reference direction
+        pus_s_3 = (
+        inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        )
+        # (pus-v_2) velocity of the connection point per rate of joint 2
+        pus_v_2_t = pus_c_3*pus_platform_joint_offset_x
+        # (pus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_pus_rho2_2 = 1.0/pus_rho2_2
+        pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2
+        # (pus-s_2) sine of the angle of joint 2 from its reference direction
+        pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2
+        # (pus-w_1) reciprocal vector 1
+        axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 - pus_base_frame_xy*pus_s_2
+        axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 - pus_base_frame_yy*pus_s_2
+        axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 - pus_base_frame_zy*pus_s_2
+        pus_w_1_t = pus_s_2*pus_s_3
+        pus_w_1_t_2 = pus_c_2*pus_s_3
         axis_y_pus_axes3_in_base_x = (
-        pus_base_frame_xy*w_1_t_2 - c_3*pus_base_frame_xz - pus_base_frame_xx*w_1_t
+        pus_base_frame_xy*pus_w_1_t_2 - pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3
         )
         axis_y_pus_axes3_in_base_y = (
-        pus_base_frame_yy*w_1_t_2 - c_3*pus_base_frame_yz - pus_base_frame_yx*w_1_t
+        pus_base_frame_yy*pus_w_1_t_2 - pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3
         )
         axis_y_pus_axes3_in_base_z = (
-        pus_base_frame_zy*w_1_t_2 - c_3*pus_base_frame_zz - pus_base_frame_zx*w_1_t
+        pus_base_frame_zy*pus_w_1_t_2 - pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3
         )
-        w_1_t_3 = c_3*s_2
-        # (pus-V1) velocity of the connection point
-        S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x
-        # (pus-V8) rate of joint 2
-        qd_1 = (
-        (S_dot_x*(axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
+        # (pus-w_2) reciprocal vector 2
+        pus_w_2_t = pus_c_3*pus_s_2
+        # (pus-S_dot) velocity of the connection point
+        pus_S_dot_x = t_dot_x + omega_y*pus_q_in_base_z - omega_z*pus_q_in_base_y
+        pus_S_dot_y = t_dot_y + omega_z*pus_q_in_base_x - omega_x*pus_q_in_base_z
+        pus_S_dot_z = t_dot_z + omega_x*pus_q_in_base_y - omega_y*pus_q_in_base_x
+        # (pus-qd_3) rate of joint 3
+        pus_qd_1 = (
+        (pus_S_dot_x*(axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
             axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y) +
-            S_dot_y*(axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
+            pus_S_dot_y*(axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
             axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_z) +
-            S_dot_z*(axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
-            axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x))/w_1_t_3
+            pus_S_dot_z*(axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
+            axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x))/pus_w_2_t
         )
-        qd_3 = (
-        inv_pus_platform_joint_offset_x*(S_dot_x*axis_y_pus_axes3_in_base_x +
-            S_dot_y*axis_y_pus_axes3_in_base_y + S_dot_z*axis_y_pus_axes3_in_base_z - qd_1*w_1_t)
+        pus_qd_3 = (
+        inv_pus_platform_joint_offset_x*(axis_y_pus_axes3_in_base_x*pus_S_dot_x +
+            axis_y_pus_axes3_in_base_y*pus_S_dot_y + axis_y_pus_axes3_in_base_z*pus_S_dot_z -
+            pus_qd_1*pus_w_1_t)
         )
-        qd_2 = (
-        (S_dot_x*axis_z_pus_axes3_in_base_x + S_dot_y*axis_z_pus_axes3_in_base_y +
-            S_dot_z*axis_z_pus_axes3_in_base_z - c_2*qd_1)/v_2_t
+        pus_qd_2 = (
+        (axis_z_pus_axes3_in_base_x*pus_S_dot_x + axis_z_pus_axes3_in_base_y*pus_S_dot_y +
+            axis_z_pus_axes3_in_base_z*pus_S_dot_z - pus_c_2*pus_qd_1)/pus_v_2_t
         )
         ok = (
-        ok & m.every(leg, (disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t) &
-            (abs(v_2_t) > _TOLERANCE * size) & (abs(-w_1_t_3) > _TOLERANCE * 1.0))
+        ok & m.every(leg, (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE *
+            pus_size_t) & (abs(pus_v_2_t) > _TOLERANCE * pus_size) & (abs(-pus_w_2_t) > _TOLERANCE
+            * 1.0))
         )
-        out_qd[_qd_pus[0][leg]] = -qd_1
-        out_qd[_qd_pus[1][leg]] = qd_2
-        out_qd[_qd_pus[2][leg]] = qd_3
+        out_qd[_qd_pus[0][leg]] = -pus_qd_1
+        out_qd[_qd_pus[1][leg]] = pus_qd_2
+        out_qd[_qd_pus[2][leg]] = pus_qd_3
     return ok, (out_qd,)
 
 
@@ -3191,67 +3363,71 @@ def _run_joint_accelerations(m, X, V, A):
     out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, inv_pus_platform_joint_offset_x, inv_uu_3_t, pus_base_frame_xx,
-            pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy,
-            pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz,
-            pus_base_point_x, pus_base_point_y, pus_base_point_z, pus_platform_joint_offset_x,
-            pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, size, size_t,
-            uu_3_t,
+        inv_pus_disc_1_t_6, inv_pus_platform_joint_offset_x, pus_base_frame_xx, pus_base_frame_xy,
+            pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz,
+            pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x,
+            pus_base_point_y, pus_base_point_z, pus_branch_1, pus_branch_2, pus_disc_1_t,
+            pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
+            pus_platform_point_z, pus_size, pus_size_t,
         ) = k
-        # (pus-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (pus-S) from the base point to the connection point
+        pus_q_in_base_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
-        q_in_base_y = (
+        pus_q_in_base_y = (
         R_yx*pus_platform_point_x + R_yy*pus_platform_point_y + R_yz*pus_platform_point_z
         )
-        q_in_base_z = (
+        pus_q_in_base_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        S_x = q_in_base_x + t_x - pus_base_point_x
-        S_y = q_in_base_y + t_y - pus_base_point_y
-        S_z = q_in_base_z + t_z - pus_base_point_z
-        # (pus-K2) component along axis 1
-        px_1 = S_x*pus_base_frame_xx + S_y*pus_base_frame_yx + S_z*pus_base_frame_zx
-        # (pus-K3) discriminant of the distance equation
-        disc_1_t = S_x*S_x + S_y*S_y + S_z*S_z
-        disc_1 = px_1*px_1 + uu_3_t - disc_1_t
-        # (pus-K4) displacement of joint 1
-        q_1_t = branch_1*sqrt(disc_1)
-        # (pus-K1) from the base point to the connection point
-        S_r0_y = S_x*pus_base_frame_xy + S_y*pus_base_frame_yy + S_z*pus_base_frame_zy
-        # (pus-K9) squared amplitude
-        rho2_2 = S_r0_y*S_r0_y + q_1_t*q_1_t
-        # (pus-K11) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (pus-K17) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_uu_3_t*pus_platform_joint_offset_x*root_2
-        # (pus-K18) sine of the angle of joint 3 from its reference direction
-        s_3 = (
-        inv_uu_3_t*pus_platform_joint_offset_x*(S_x*pus_base_frame_xz + S_y*pus_base_frame_yz +
-            S_z*pus_base_frame_zz)
+        pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x
+        pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y
+        pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z
+        # (pus-px_1) component along axis 1
+        pus_px_1 = (
+        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
         )
-        # (pus-V2) velocity of the connection point per rate of joint 2
-        v_2_t = c_3*pus_platform_joint_offset_x
-        # (pus-K12) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = S_r0_y*inv_rho2_2*root_2
-        # (pus-K13) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*q_1_t*root_2
-        # (pus-V4) reciprocal vector 1
-        axis_z_pus_axes3_in_base_x = -c_2*pus_base_frame_xx - pus_base_frame_xy*s_2
-        axis_z_pus_axes3_in_base_y = -c_2*pus_base_frame_yx - pus_base_frame_yy*s_2
-        axis_z_pus_axes3_in_base_z = -c_2*pus_base_frame_zx - pus_base_frame_zy*s_2
-        w_1_t = s_2*s_3
-        w_1_t_2 = c_2*s_3
+        # (pus-disc_1) discriminant of the distance equation
+        pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
+        pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2
+        # (pus-q_1) displacement of joint 1
+        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
+        # (pus-S) from the base point to the connection point
+        pus_S_r0_y = (
+        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
+        )
+        # (pus-rho2_2) squared amplitude
+        pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t
+        # (pus-root_2) root, with the sign of the branch
+        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
+        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
+        pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2
+        # (pus-s_3) sine of the angle of joint 3 from its reference direction
+        pus_s_3 = (
+        inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        )
+        # (pus-v_2) velocity of the connection point per rate of joint 2
+        pus_v_2_t = pus_c_3*pus_platform_joint_offset_x
+        # (pus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_pus_rho2_2 = 1.0/pus_rho2_2
+        pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2
+        # (pus-s_2) sine of the angle of joint 2 from its reference direction
+        pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2
+        # (pus-w_1) reciprocal vector 1
+        axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 - pus_base_frame_xy*pus_s_2
+        axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 - pus_base_frame_yy*pus_s_2
+        axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 - pus_base_frame_zy*pus_s_2
+        pus_w_1_t = pus_s_2*pus_s_3
+        pus_w_1_t_2 = pus_c_2*pus_s_3
         axis_y_pus_axes3_in_base_x = (
-        pus_base_frame_xy*w_1_t_2 - c_3*pus_base_frame_xz - pus_base_frame_xx*w_1_t
+        pus_base_frame_xy*pus_w_1_t_2 - pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3
         )
         axis_y_pus_axes3_in_base_y = (
-        pus_base_frame_yy*w_1_t_2 - c_3*pus_base_frame_yz - pus_base_frame_yx*w_1_t
+        pus_base_frame_yy*pus_w_1_t_2 - pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3
         )
         axis_y_pus_axes3_in_base_z = (
-        pus_base_frame_zy*w_1_t_2 - c_3*pus_base_frame_zz - pus_base_frame_zx*w_1_t
+        pus_base_frame_zy*pus_w_1_t_2 - pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3
         )
         axis_x_pus_axes3_x = (
         axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
@@ -3265,69 +3441,71 @@ def _run_joint_accelerations(m, X, V, A):
         axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
             axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x
         )
-        w_1_t_3 = c_3*s_2
-        inv_w_1_t_24 = 1.0/w_1_t_3
-        # (pus-V5) reciprocal vector 2
-        inv_v_2_t = 1.0/v_2_t
-        # (pus-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        # (pus-V8) rate of joint 2
-        qd_1 = (
-        inv_w_1_t_24*(S_dot_x*axis_x_pus_axes3_x + S_dot_y*axis_x_pus_axes3_y +
-            S_dot_z*axis_x_pus_axes3_z)
+        # (pus-w_2) reciprocal vector 2
+        pus_w_2_t = pus_c_3*pus_s_2
+        inv_pus_v_2_t = 1.0/pus_v_2_t
+        inv_pus_w_2_t = 1.0/pus_w_2_t
+        # (pus-S_dot) velocity of the connection point
+        pus_S_dot_t = omega_y*pus_q_in_base_z - omega_z*pus_q_in_base_y
+        pus_S_dot_t_2 = omega_z*pus_q_in_base_x - omega_x*pus_q_in_base_z
+        pus_S_dot_t_3 = omega_x*pus_q_in_base_y - omega_y*pus_q_in_base_x
+        pus_S_dot_x = pus_S_dot_t + t_dot_x
+        pus_S_dot_y = pus_S_dot_t_2 + t_dot_y
+        pus_S_dot_z = pus_S_dot_t_3 + t_dot_z
+        # (pus-qd_3) rate of joint 3
+        pus_qd_1 = (
+        inv_pus_w_2_t*(axis_x_pus_axes3_x*pus_S_dot_x + axis_x_pus_axes3_y*pus_S_dot_y +
+            axis_x_pus_axes3_z*pus_S_dot_z)
         )
-        qd_2_t = (
-        S_dot_x*axis_y_pus_axes3_in_base_x + S_dot_y*axis_y_pus_axes3_in_base_y +
-            S_dot_z*axis_y_pus_axes3_in_base_z - qd_1*w_1_t
+        pus_qd_3_t = (
+        axis_y_pus_axes3_in_base_x*pus_S_dot_x + axis_y_pus_axes3_in_base_y*pus_S_dot_y +
+            axis_y_pus_axes3_in_base_z*pus_S_dot_z - pus_qd_1*pus_w_1_t
         )
-        qd_3 = inv_pus_platform_joint_offset_x*qd_2_t
-        qd_2 = (
-        inv_v_2_t*(S_dot_x*axis_z_pus_axes3_in_base_x + S_dot_y*axis_z_pus_axes3_in_base_y +
-            S_dot_z*axis_z_pus_axes3_in_base_z - c_2*qd_1)
+        pus_qd_3 = inv_pus_platform_joint_offset_x*pus_qd_3_t
+        pus_qd_2 = (
+        inv_pus_v_2_t*(axis_z_pus_axes3_in_base_x*pus_S_dot_x +
+            axis_z_pus_axes3_in_base_y*pus_S_dot_y + axis_z_pus_axes3_in_base_z*pus_S_dot_z -
+            pus_c_2*pus_qd_1)
         )
-        # (pus-V10) angular velocity of link 2
-        omega_2_t = qd_2*s_3
-        omega_2_t_2 = c_3*qd_2
-        # (pus-A5) acceleration of the connection point at zero joint accelerations
-        bias_t = omega_2_t_2*pus_platform_joint_offset_x
-        bias_z = omega_2_t*qd_2_t + omega_2_t*pus_platform_joint_offset_x*qd_3
-        # (pus-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (pus-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        # (pus-A6) acceleration of the connection point left to the joint accelerations
-        rel_x = (
-        S_ddot_x*axis_x_pus_axes3_x + S_ddot_y*axis_x_pus_axes3_y + S_ddot_z*axis_x_pus_axes3_z +
-            bias_t*omega_2_t_2 + qd_2_t*qd_3
+        # (pus-omega_2) angular velocity of link 2
+        pus_omega_2_t = pus_qd_2*pus_s_3
+        pus_omega_2_t_2 = pus_c_3*pus_qd_2
+        # (pus-bias) acceleration of the connection point at zero joint accelerations
+        pus_bias_t = pus_omega_2_t_2*pus_platform_joint_offset_x
+        pus_bias_z = pus_omega_2_t*pus_qd_3_t + pus_omega_2_t*pus_platform_joint_offset_x*pus_qd_3
+        # (pus-a_p) acceleration of the connection point without its centripetal part
+        pus_a_p_x = t_ddot_x + alpha_y*pus_q_in_base_z - alpha_z*pus_q_in_base_y
+        pus_a_p_y = t_ddot_y + alpha_z*pus_q_in_base_x - alpha_x*pus_q_in_base_z
+        pus_a_p_z = t_ddot_z + alpha_x*pus_q_in_base_y - alpha_y*pus_q_in_base_x
+        # (pus-S_ddot) acceleration of the connection point
+        pus_S_ddot_x = pus_a_p_x + omega_y*pus_S_dot_t_3 - omega_z*pus_S_dot_t_2
+        pus_S_ddot_y = pus_a_p_y + omega_z*pus_S_dot_t - omega_x*pus_S_dot_t_3
+        pus_S_ddot_z = pus_a_p_z + omega_x*pus_S_dot_t_2 - omega_y*pus_S_dot_t
+        # (pus-rel) acceleration of the connection point left to the joint accelerations
+        pus_rel_x = (
+        axis_x_pus_axes3_x*pus_S_ddot_x + axis_x_pus_axes3_y*pus_S_ddot_y +
+            axis_x_pus_axes3_z*pus_S_ddot_z + pus_bias_t*pus_omega_2_t_2 + pus_qd_3*pus_qd_3_t
         )
-        rel_y = (
-        S_ddot_x*axis_y_pus_axes3_in_base_x + S_ddot_y*axis_y_pus_axes3_in_base_y +
-            S_ddot_z*axis_y_pus_axes3_in_base_z + bias_t*omega_2_t
+        pus_rel_y = (
+        axis_y_pus_axes3_in_base_x*pus_S_ddot_x + axis_y_pus_axes3_in_base_y*pus_S_ddot_y +
+            axis_y_pus_axes3_in_base_z*pus_S_ddot_z + pus_bias_t*pus_omega_2_t
         )
-        rel_z = (
-        S_ddot_x*axis_z_pus_axes3_in_base_x + S_ddot_y*axis_z_pus_axes3_in_base_y +
-            S_ddot_z*axis_z_pus_axes3_in_base_z - bias_z
+        pus_rel_z = (
+        axis_z_pus_axes3_in_base_x*pus_S_ddot_x + axis_z_pus_axes3_in_base_y*pus_S_ddot_y +
+            axis_z_pus_axes3_in_base_z*pus_S_ddot_z - pus_bias_z
         )
-        # (pus-A8) acceleration of joint 1
-        qdd_1 = inv_w_1_t_24*rel_x
-        qdd_3 = inv_pus_platform_joint_offset_x*(qdd_1*w_1_t - rel_y)
-        qdd_2 = inv_v_2_t*(c_2*qdd_1 - rel_z)
+        # (pus-qdd_1) acceleration of joint 1
+        pus_qdd_1 = inv_pus_w_2_t*pus_rel_x
+        pus_qdd_3 = inv_pus_platform_joint_offset_x*(pus_qdd_1*pus_w_1_t - pus_rel_y)
+        pus_qdd_2 = inv_pus_v_2_t*(pus_c_2*pus_qdd_1 - pus_rel_z)
         ok = (
-        ok & m.every(leg, (disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t) &
-            (abs(v_2_t) > _TOLERANCE * size) & (abs(-w_1_t_3) > _TOLERANCE * 1.0))
+        ok & m.every(leg, (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE *
+            pus_size_t) & (abs(pus_v_2_t) > _TOLERANCE * pus_size) & (abs(-pus_w_2_t) > _TOLERANCE
+            * 1.0))
         )
-        out_qdd[_qdd_pus[0][leg]] = -qdd_1
-        out_qdd[_qdd_pus[1][leg]] = -qdd_2
-        out_qdd[_qdd_pus[2][leg]] = -qdd_3
+        out_qdd[_qdd_pus[0][leg]] = -pus_qdd_1
+        out_qdd[_qdd_pus[1][leg]] = -pus_qdd_2
+        out_qdd[_qdd_pus[2][leg]] = -pus_qdd_3
     return ok, (out_qdd,)
 
 
@@ -3401,68 +3579,73 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        J_3_xy, J_3_xz, J_3_yz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, g_r0_x,
-            g_r0_y, g_r0_z, h_3_x, h_3_y, h_3_z, inv_pus_platform_joint_offset_x, inv_uu_3_t,
-            pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx,
-            pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy,
-            pus_base_frame_zz, pus_base_point_x, pus_base_point_y, pus_base_point_z,
-            pus_link1_mass, pus_link3_mass, pus_platform_joint_offset_x, pus_platform_point_x,
-            pus_platform_point_y, pus_platform_point_z, size, size_t, uu_3_t,
+        inv_pus_disc_1_t_6, inv_pus_platform_joint_offset_x, pus_J_3_xy, pus_J_3_xz, pus_J_3_yz,
+            pus_Sigma_3_xx, pus_Sigma_3_yy, pus_Sigma_3_zz, pus_base_frame_xx, pus_base_frame_xy,
+            pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz,
+            pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x,
+            pus_base_point_y, pus_base_point_z, pus_branch_1, pus_branch_2, pus_disc_1_t,
+            pus_g_r0_x, pus_g_r0_y, pus_g_r0_z, pus_h_3_x, pus_h_3_y, pus_h_3_z, pus_link1_mass,
+            pus_link3_mass, pus_platform_joint_offset_x, pus_platform_point_x,
+            pus_platform_point_y, pus_platform_point_z, pus_size, pus_size_t,
         ) = k
-        # (pus-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (pus-S) from the base point to the connection point
+        pus_q_in_base_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
-        q_in_base_y = (
+        pus_q_in_base_y = (
         R_yx*pus_platform_point_x + R_yy*pus_platform_point_y + R_yz*pus_platform_point_z
         )
-        q_in_base_z = (
+        pus_q_in_base_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        S_x = q_in_base_x + t_x - pus_base_point_x
-        S_y = q_in_base_y + t_y - pus_base_point_y
-        S_z = q_in_base_z + t_z - pus_base_point_z
-        # (pus-K2) component along axis 1
-        px_1 = S_x*pus_base_frame_xx + S_y*pus_base_frame_yx + S_z*pus_base_frame_zx
-        # (pus-K3) discriminant of the distance equation
-        disc_1_t = S_x*S_x + S_y*S_y + S_z*S_z
-        disc_1 = px_1*px_1 + uu_3_t - disc_1_t
-        # (pus-K4) displacement of joint 1
-        q_1_t = branch_1*sqrt(disc_1)
-        # (pus-K1) from the base point to the connection point
-        S_r0_y = S_x*pus_base_frame_xy + S_y*pus_base_frame_yy + S_z*pus_base_frame_zy
-        # (pus-K9) squared amplitude
-        rho2_2 = S_r0_y*S_r0_y + q_1_t*q_1_t
-        # (pus-K11) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (pus-K17) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_uu_3_t*pus_platform_joint_offset_x*root_2
-        # (pus-K18) sine of the angle of joint 3 from its reference direction
-        s_3 = (
-        inv_uu_3_t*pus_platform_joint_offset_x*(S_x*pus_base_frame_xz + S_y*pus_base_frame_yz +
-            S_z*pus_base_frame_zz)
+        pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x
+        pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y
+        pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z
+        # (pus-px_1) component along axis 1
+        pus_px_1 = (
+        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
         )
-        # (pus-V2) velocity of the connection point per rate of joint 2
-        v_2_t = c_3*pus_platform_joint_offset_x
-        # (pus-K12) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = S_r0_y*inv_rho2_2*root_2
-        # (pus-K13) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*q_1_t*root_2
-        # (pus-V4) reciprocal vector 1
-        axis_z_pus_axes3_in_base_x = -c_2*pus_base_frame_xx - pus_base_frame_xy*s_2
-        axis_z_pus_axes3_in_base_y = -c_2*pus_base_frame_yx - pus_base_frame_yy*s_2
-        axis_z_pus_axes3_in_base_z = -c_2*pus_base_frame_zx - pus_base_frame_zy*s_2
-        w_1_t = s_2*s_3
-        w_1_t_2 = c_2*s_3
+        # (pus-disc_1) discriminant of the distance equation
+        pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
+        pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2
+        # (pus-q_1) displacement of joint 1
+        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
+        # (pus-S) from the base point to the connection point
+        pus_S_r0_y = (
+        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
+        )
+        # (pus-rho2_2) squared amplitude
+        pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t
+        # (pus-root_2) root, with the sign of the branch
+        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
+        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
+        pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2
+        # (pus-s_3) sine of the angle of joint 3 from its reference direction
+        pus_s_3 = (
+        inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        )
+        # (pus-v_2) velocity of the connection point per rate of joint 2
+        pus_v_2_t = pus_c_3*pus_platform_joint_offset_x
+        # (pus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_pus_rho2_2 = 1.0/pus_rho2_2
+        pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2
+        # (pus-s_2) sine of the angle of joint 2 from its reference direction
+        pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2
+        # (pus-w_1) reciprocal vector 1
+        axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 - pus_base_frame_xy*pus_s_2
+        axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 - pus_base_frame_yy*pus_s_2
+        axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 - pus_base_frame_zy*pus_s_2
+        pus_w_1_t = pus_s_2*pus_s_3
+        pus_w_1_t_2 = pus_c_2*pus_s_3
         axis_y_pus_axes3_in_base_x = (
-        pus_base_frame_xy*w_1_t_2 - c_3*pus_base_frame_xz - pus_base_frame_xx*w_1_t
+        pus_base_frame_xy*pus_w_1_t_2 - pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3
         )
         axis_y_pus_axes3_in_base_y = (
-        pus_base_frame_yy*w_1_t_2 - c_3*pus_base_frame_yz - pus_base_frame_yx*w_1_t
+        pus_base_frame_yy*pus_w_1_t_2 - pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3
         )
         axis_y_pus_axes3_in_base_z = (
-        pus_base_frame_zy*w_1_t_2 - c_3*pus_base_frame_zz - pus_base_frame_zx*w_1_t
+        pus_base_frame_zy*pus_w_1_t_2 - pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3
         )
         axis_x_pus_axes3_x = (
         axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
@@ -3476,144 +3659,157 @@ def _run_legs(m, X, V, A):
         axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
             axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x
         )
-        w_1_t_3 = c_3*s_2
-        inv_w_1_t_24 = 1.0/w_1_t_3
-        # (pus-V5) reciprocal vector 2
-        inv_v_2_t = 1.0/v_2_t
-        # (pus-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        # (pus-V8) rate of joint 2
-        qd_1 = (
-        inv_w_1_t_24*(S_dot_x*axis_x_pus_axes3_x + S_dot_y*axis_x_pus_axes3_y +
-            S_dot_z*axis_x_pus_axes3_z)
+        # (pus-w_2) reciprocal vector 2
+        pus_w_2_t = pus_c_3*pus_s_2
+        inv_pus_v_2_t = 1.0/pus_v_2_t
+        inv_pus_w_2_t = 1.0/pus_w_2_t
+        # (pus-S_dot) velocity of the connection point
+        pus_S_dot_t = omega_y*pus_q_in_base_z - omega_z*pus_q_in_base_y
+        pus_S_dot_t_2 = omega_z*pus_q_in_base_x - omega_x*pus_q_in_base_z
+        pus_S_dot_t_3 = omega_x*pus_q_in_base_y - omega_y*pus_q_in_base_x
+        pus_S_dot_x = pus_S_dot_t + t_dot_x
+        pus_S_dot_y = pus_S_dot_t_2 + t_dot_y
+        pus_S_dot_z = pus_S_dot_t_3 + t_dot_z
+        # (pus-qd_3) rate of joint 3
+        pus_qd_1 = (
+        inv_pus_w_2_t*(axis_x_pus_axes3_x*pus_S_dot_x + axis_x_pus_axes3_y*pus_S_dot_y +
+            axis_x_pus_axes3_z*pus_S_dot_z)
         )
-        qd_2_t = (
-        S_dot_x*axis_y_pus_axes3_in_base_x + S_dot_y*axis_y_pus_axes3_in_base_y +
-            S_dot_z*axis_y_pus_axes3_in_base_z - qd_1*w_1_t
+        pus_qd_3_t = (
+        axis_y_pus_axes3_in_base_x*pus_S_dot_x + axis_y_pus_axes3_in_base_y*pus_S_dot_y +
+            axis_y_pus_axes3_in_base_z*pus_S_dot_z - pus_qd_1*pus_w_1_t
         )
-        qd_3 = inv_pus_platform_joint_offset_x*qd_2_t
-        qd_2 = (
-        inv_v_2_t*(S_dot_x*axis_z_pus_axes3_in_base_x + S_dot_y*axis_z_pus_axes3_in_base_y +
-            S_dot_z*axis_z_pus_axes3_in_base_z - c_2*qd_1)
+        pus_qd_3 = inv_pus_platform_joint_offset_x*pus_qd_3_t
+        pus_qd_2 = (
+        inv_pus_v_2_t*(axis_z_pus_axes3_in_base_x*pus_S_dot_x +
+            axis_z_pus_axes3_in_base_y*pus_S_dot_y + axis_z_pus_axes3_in_base_z*pus_S_dot_z -
+            pus_c_2*pus_qd_1)
         )
-        # (pus-V10) angular velocity of link 2
-        omega_2_t = qd_2*s_3
-        omega_2_t_2 = c_3*qd_2
-        # (pus-A4) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_x = omega_2_t_2*qd_3
-        zeta_3_y = omega_2_t*qd_3
-        # (pus-V12) centripetal tensor of link 3
-        W_3_t = omega_2_t*omega_2_t
-        W_3_t_2 = omega_2_t_2*omega_2_t_2
-        W_3_t_3 = qd_3*qd_3
-        W_3_xy = omega_2_t*omega_2_t_2
-        # (pus-A5) acceleration of the connection point at zero joint accelerations
-        bias_t = omega_2_t_2*pus_platform_joint_offset_x
-        bias_z = omega_2_t*qd_2_t + pus_platform_joint_offset_x*zeta_3_y
-        # (pus-N6) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        g_r1_y = g_r0_x*s_2 - c_2*g_r0_y
-        # (pus-V4) reciprocal vector 1
-        w_1_t_4 = axis_x_pus_axes3_x*inv_w_1_t_24
-        w_1_t_5 = axis_x_pus_axes3_y*inv_w_1_t_24
-        w_1_t_6 = axis_x_pus_axes3_z*inv_w_1_t_24
-        # (pus-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (pus-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        S_ddot_tip_x = (
-        S_ddot_x*axis_x_pus_axes3_x + S_ddot_y*axis_x_pus_axes3_y + S_ddot_z*axis_x_pus_axes3_z
+        # (pus-omega_2) angular velocity of link 2
+        pus_omega_2_t = pus_qd_2*pus_s_3
+        pus_omega_2_t_2 = pus_c_3*pus_qd_2
+        # (pus-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        pus_zeta_3_x = pus_omega_2_t_2*pus_qd_3
+        pus_zeta_3_y = pus_omega_2_t*pus_qd_3
+        # (pus-W_3) centripetal tensor of link 3
+        pus_W_3_t = pus_omega_2_t*pus_omega_2_t
+        pus_W_3_t_2 = pus_omega_2_t_2*pus_omega_2_t_2
+        pus_W_3_t_3 = pus_qd_3*pus_qd_3
+        pus_W_3_xy = pus_omega_2_t*pus_omega_2_t_2
+        # (pus-bias) acceleration of the connection point at zero joint accelerations
+        pus_bias_t = pus_omega_2_t_2*pus_platform_joint_offset_x
+        pus_bias_z = pus_omega_2_t*pus_qd_3_t + pus_platform_joint_offset_x*pus_zeta_3_y
+        # (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        pus_g_r1_y = pus_g_r0_x*pus_s_2 - pus_c_2*pus_g_r0_y
+        # (pus-w_1) reciprocal vector 1
+        pus_w_1_t_3 = axis_x_pus_axes3_x*inv_pus_w_2_t
+        pus_w_1_t_4 = axis_x_pus_axes3_y*inv_pus_w_2_t
+        pus_w_1_t_5 = axis_x_pus_axes3_z*inv_pus_w_2_t
+        # (pus-a_p) acceleration of the connection point without its centripetal part
+        pus_a_p_x = t_ddot_x + alpha_y*pus_q_in_base_z - alpha_z*pus_q_in_base_y
+        pus_a_p_y = t_ddot_y + alpha_z*pus_q_in_base_x - alpha_x*pus_q_in_base_z
+        pus_a_p_z = t_ddot_z + alpha_x*pus_q_in_base_y - alpha_y*pus_q_in_base_x
+        # (pus-S_ddot) acceleration of the connection point
+        pus_S_ddot_x = pus_a_p_x + omega_y*pus_S_dot_t_3 - omega_z*pus_S_dot_t_2
+        pus_S_ddot_y = pus_a_p_y + omega_z*pus_S_dot_t - omega_x*pus_S_dot_t_3
+        pus_S_ddot_z = pus_a_p_z + omega_x*pus_S_dot_t_2 - omega_y*pus_S_dot_t
+        pus_S_ddot_tip_x = (
+        axis_x_pus_axes3_x*pus_S_ddot_x + axis_x_pus_axes3_y*pus_S_ddot_y +
+            axis_x_pus_axes3_z*pus_S_ddot_z
         )
-        S_ddot_tip_y = (
-        S_ddot_x*axis_y_pus_axes3_in_base_x + S_ddot_y*axis_y_pus_axes3_in_base_y +
-            S_ddot_z*axis_y_pus_axes3_in_base_z
+        pus_S_ddot_tip_y = (
+        axis_y_pus_axes3_in_base_x*pus_S_ddot_x + axis_y_pus_axes3_in_base_y*pus_S_ddot_y +
+            axis_y_pus_axes3_in_base_z*pus_S_ddot_z
         )
-        S_ddot_tip_z = (
-        S_ddot_x*axis_z_pus_axes3_in_base_x + S_ddot_y*axis_z_pus_axes3_in_base_y +
-            S_ddot_z*axis_z_pus_axes3_in_base_z
+        pus_S_ddot_tip_z = (
+        axis_z_pus_axes3_in_base_x*pus_S_ddot_x + axis_z_pus_axes3_in_base_y*pus_S_ddot_y +
+            axis_z_pus_axes3_in_base_z*pus_S_ddot_z
         )
-        # (pus-A6) acceleration of the connection point left to the joint accelerations
-        rel_x = S_ddot_tip_x + bias_t*omega_2_t_2 + qd_2_t*qd_3
-        rel_y = S_ddot_tip_y + bias_t*omega_2_t
-        rel_z = S_ddot_tip_z - bias_z
-        # (pus-A8) acceleration of joint 1
-        qdd_1 = inv_w_1_t_24*rel_x
-        qdd_3 = inv_pus_platform_joint_offset_x*(qdd_1*w_1_t - rel_y)
-        qdd_2 = inv_v_2_t*(c_2*qdd_1 - rel_z)
-        # (pus-N5) acceleration of the reference point of link 3, less gravity
-        acc_3_x = S_ddot_tip_x + c_3*g_r1_y - g_r0_z*s_3
-        acc_3_y = S_ddot_tip_y + c_3*g_r0_z + g_r1_y*s_3
-        acc_3_z = S_ddot_tip_z + c_2*g_r0_x + g_r0_y*s_2
-        # (pus-N1) acceleration of the reference point of link 1, less gravity
-        acc_1_x = -g_r0_x - qdd_1
-        # (pus-A14) angular acceleration of link 2
-        alpha_2_t = qdd_2*s_3
-        alpha_2_t_2 = c_3*qdd_2
-        # (pus-A16) angular acceleration of link 3
-        alpha_3_x = -alpha_2_t - zeta_3_x
-        alpha_3_y = alpha_2_t_2 - zeta_3_y
-        # (pus-A19) acceleration tensor of link 3
-        B_3_xy = qdd_3 - W_3_xy
-        B_3_yx = -W_3_xy - qdd_3
-        B_3_zx = zeta_3_y - alpha_3_y
-        B_3_zy = alpha_3_x - zeta_3_x
-        # (pus-N19) inertia moment of the links that turn with link 3, about their reference points
-        mu_3_x = (
-        B_3_yx*J_3_xy + B_3_zx*J_3_xz + B_3_zy*Sigma_3_yy - J_3_yz*(W_3_t_2 - W_3_t_3) -
-            Sigma_3_zz*alpha_2_t - acc_3_y*h_3_y - acc_3_z*h_3_z
+        # (pus-rel) acceleration of the connection point left to the joint accelerations
+        pus_rel_x = pus_S_ddot_tip_x + pus_bias_t*pus_omega_2_t_2 + pus_qd_3*pus_qd_3_t
+        pus_rel_y = pus_S_ddot_tip_y + pus_bias_t*pus_omega_2_t
+        pus_rel_z = pus_S_ddot_tip_z - pus_bias_z
+        # (pus-qdd_1) acceleration of joint 1
+        pus_qdd_1 = inv_pus_w_2_t*pus_rel_x
+        pus_qdd_3 = inv_pus_platform_joint_offset_x*(pus_qdd_1*pus_w_1_t - pus_rel_y)
+        pus_qdd_2 = inv_pus_v_2_t*(pus_c_2*pus_qdd_1 - pus_rel_z)
+        # (pus-acc_3) acceleration of the reference point of link 3, less gravity
+        pus_acc_3_x = pus_S_ddot_tip_x + pus_c_3*pus_g_r1_y - pus_g_r0_z*pus_s_3
+        pus_acc_3_y = pus_S_ddot_tip_y + pus_c_3*pus_g_r0_z + pus_g_r1_y*pus_s_3
+        pus_acc_3_z = pus_S_ddot_tip_z + pus_c_2*pus_g_r0_x + pus_g_r0_y*pus_s_2
+        # (pus-alpha_2) angular acceleration of link 2
+        pus_alpha_2_t = pus_qdd_2*pus_s_3
+        pus_alpha_2_t_2 = pus_c_3*pus_qdd_2
+        # (pus-alpha_3) angular acceleration of link 3
+        pus_alpha_3_x = -pus_alpha_2_t - pus_zeta_3_x
+        pus_alpha_3_y = pus_alpha_2_t_2 - pus_zeta_3_y
+        # (pus-B_3) acceleration tensor of link 3
+        pus_B_3_xy = pus_qdd_3 - pus_W_3_xy
+        pus_B_3_yx = -pus_W_3_xy - pus_qdd_3
+        pus_B_3_zx = pus_zeta_3_y - pus_alpha_3_y
+        pus_B_3_zy = pus_alpha_3_x - pus_zeta_3_x
+        # (pus-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        pus_mu_3_x = (
+        pus_B_3_yx*pus_J_3_xy + pus_B_3_zx*pus_J_3_xz + pus_B_3_zy*pus_Sigma_3_yy -
+            pus_J_3_yz*(pus_W_3_t_2 - pus_W_3_t_3) - pus_Sigma_3_zz*pus_alpha_2_t -
+            pus_acc_3_y*pus_h_3_y - pus_acc_3_z*pus_h_3_z
         )
-        mu_3_y = (
-        B_3_xy*J_3_yz + Sigma_3_zz*alpha_2_t_2 + acc_3_x*h_3_y - B_3_zx*Sigma_3_xx - B_3_zy*J_3_xz
-            - J_3_xy*(W_3_t - W_3_t_3) - acc_3_z*h_3_x
+        pus_mu_3_y = (
+        pus_B_3_xy*pus_J_3_yz + pus_Sigma_3_zz*pus_alpha_2_t_2 + pus_acc_3_x*pus_h_3_y -
+            pus_B_3_zx*pus_Sigma_3_xx - pus_B_3_zy*pus_J_3_xz - pus_J_3_xy*(pus_W_3_t -
+            pus_W_3_t_3) - pus_acc_3_z*pus_h_3_x
         )
-        mu_3_z = (
-        B_3_yx*Sigma_3_xx + acc_3_x*h_3_z + acc_3_y*h_3_x - B_3_xy*Sigma_3_yy - J_3_xy*alpha_2_t -
-            J_3_xz*(W_3_t - W_3_t_2) - J_3_yz*alpha_2_t_2
+        pus_mu_3_z = (
+        pus_B_3_yx*pus_Sigma_3_xx + pus_acc_3_x*pus_h_3_z + pus_acc_3_y*pus_h_3_x -
+            pus_B_3_xy*pus_Sigma_3_yy - pus_J_3_xy*pus_alpha_2_t - pus_J_3_xz*(pus_W_3_t -
+            pus_W_3_t_2) - pus_J_3_yz*pus_alpha_2_t_2
         )
-        # (pus-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_t = inv_v_2_t*(mu_3_x*s_3 - c_3*mu_3_y)
-        G_t_2 = inv_pus_platform_joint_offset_x*mu_3_z
-        # (pus-N33) leg force on the platform without actuation and without the mass at the connection point
-        c_x = (
-        B_3_xy*h_3_z + h_3_x*(W_3_t_2 + W_3_t_3) + inv_w_1_t_24*(G_t*c_2 + G_t_2*w_1_t +
-            acc_1_x*pus_link1_mass) - alpha_2_t_2*h_3_y
+        # (pus-acc_1) acceleration of the reference point of link 1, less gravity
+        pus_acc_1_x = -pus_g_r0_x - pus_qdd_1
+        # (pus-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        pus_G_t = inv_pus_v_2_t*(pus_mu_3_x*pus_s_3 - pus_c_3*pus_mu_3_y)
+        pus_G_t_2 = inv_pus_platform_joint_offset_x*pus_mu_3_z
+        # (pus-c) leg force on the platform without actuation and without the mass at the connection point
+        pus_c_x = (
+        inv_pus_w_2_t*(pus_G_t*pus_c_2 + pus_G_t_2*pus_w_1_t + pus_acc_1_x*pus_link1_mass) +
+            pus_B_3_xy*pus_h_3_z + pus_h_3_x*(pus_W_3_t_2 + pus_W_3_t_3) -
+            pus_alpha_2_t_2*pus_h_3_y
         )
-        c_y = -G_t_2 - B_3_yx*h_3_x - alpha_2_t*h_3_y - h_3_z*(W_3_t + W_3_t_3)
-        c_z = B_3_zy*h_3_z + h_3_y*(W_3_t + W_3_t_2) - G_t - B_3_zx*h_3_x
-        # (pus-N38) leg force on the platform without actuation, the last link's mass included
-        c_true_x = c_x - acc_3_x*pus_link3_mass
-        c_true_y = c_y - acc_3_y*pus_link3_mass
-        c_true_z = c_z - acc_3_z*pus_link3_mass
-        c_true_in_base_x = (
-        axis_x_pus_axes3_x*c_true_x + axis_y_pus_axes3_in_base_x*c_true_y +
-            axis_z_pus_axes3_in_base_x*c_true_z
+        pus_c_y = (
+        -pus_G_t_2 - pus_B_3_yx*pus_h_3_x - pus_alpha_2_t*pus_h_3_y - pus_h_3_z*(pus_W_3_t +
+            pus_W_3_t_3)
         )
-        c_true_in_base_y = (
-        axis_x_pus_axes3_y*c_true_x + axis_y_pus_axes3_in_base_y*c_true_y +
-            axis_z_pus_axes3_in_base_y*c_true_z
+        pus_c_z = (
+        pus_B_3_zy*pus_h_3_z + pus_h_3_y*(pus_W_3_t + pus_W_3_t_2) - pus_G_t -
+            pus_B_3_zx*pus_h_3_x
         )
-        c_true_in_base_z = (
-        axis_x_pus_axes3_z*c_true_x + axis_y_pus_axes3_in_base_z*c_true_y +
-            axis_z_pus_axes3_in_base_z*c_true_z
+        # (pus-c_true) leg force on the platform without actuation, the last link's mass included
+        pus_c_true_x = pus_c_x - pus_acc_3_x*pus_link3_mass
+        pus_c_true_y = pus_c_y - pus_acc_3_y*pus_link3_mass
+        pus_c_true_z = pus_c_z - pus_acc_3_z*pus_link3_mass
+        pus_c_true_in_base_x = (
+        axis_x_pus_axes3_x*pus_c_true_x + axis_y_pus_axes3_in_base_x*pus_c_true_y +
+            axis_z_pus_axes3_in_base_x*pus_c_true_z
+        )
+        pus_c_true_in_base_y = (
+        axis_x_pus_axes3_y*pus_c_true_x + axis_y_pus_axes3_in_base_y*pus_c_true_y +
+            axis_z_pus_axes3_in_base_y*pus_c_true_z
+        )
+        pus_c_true_in_base_z = (
+        axis_x_pus_axes3_z*pus_c_true_x + axis_y_pus_axes3_in_base_z*pus_c_true_y +
+            axis_z_pus_axes3_in_base_z*pus_c_true_z
         )
         ok = (
-        ok & m.every(leg, (disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t) &
-            (abs(v_2_t) > _TOLERANCE * size) & (abs(-w_1_t_3) > _TOLERANCE * 1.0))
+        ok & m.every(leg, (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE *
+            pus_size_t) & (abs(pus_v_2_t) > _TOLERANCE * pus_size) & (abs(-pus_w_2_t) > _TOLERANCE
+            * 1.0))
         )
-        out_leg_force[_leg_force_pus[0][leg]] = c_true_in_base_x
-        out_leg_force[_leg_force_pus[1][leg]] = c_true_in_base_y
-        out_leg_force[_leg_force_pus[2][leg]] = c_true_in_base_z
-        out_drive[_drive_pus[0][leg]] = -w_1_t_4
-        out_drive[_drive_pus[1][leg]] = -w_1_t_5
-        out_drive[_drive_pus[2][leg]] = -w_1_t_6
+        out_leg_force[_leg_force_pus[0][leg]] = pus_c_true_in_base_x
+        out_leg_force[_leg_force_pus[1][leg]] = pus_c_true_in_base_y
+        out_leg_force[_leg_force_pus[2][leg]] = pus_c_true_in_base_z
+        out_drive[_drive_pus[0][leg]] = -pus_w_1_t_3
+        out_drive[_drive_pus[1][leg]] = -pus_w_1_t_4
+        out_drive[_drive_pus[2][leg]] = -pus_w_1_t_5
     return ok, (out_leg_force, out_drive,)
 
 
@@ -3659,8 +3855,8 @@ def _run_potential(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_potential = m.zeros("potential")
-    # (V1) potential energy
-    potential_t_3 = (
+    # (potential) potential energy
+    potential_t = (
     gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
         gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
         gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z)
@@ -3668,67 +3864,77 @@ def _run_potential(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        b_r0_x, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_1_x, h_1_y, h_1_z, h_3_x, h_3_y,
-            h_3_z, inv_uu_3_t, potential_t, potential_t_2, pus_base_frame_xx, pus_base_frame_xy,
-            pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz,
-            pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x,
-            pus_base_point_y, pus_base_point_z, pus_link1_mass, pus_platform_joint_offset_x,
-            pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, size_t, uu_3_t,
+        inv_pus_disc_1_t_6, pus_b_r0_x, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
+            pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx,
+            pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x, pus_base_point_y,
+            pus_base_point_z, pus_branch_1, pus_branch_2, pus_disc_1_t, pus_g_r0_x, pus_g_r0_y,
+            pus_g_r0_z, pus_h_1_x, pus_h_1_y, pus_h_1_z, pus_h_3_x, pus_h_3_y, pus_h_3_z,
+            pus_link1_mass, pus_platform_joint_offset_x, pus_platform_point_x,
+            pus_platform_point_y, pus_platform_point_z, pus_potential_t, pus_potential_t_2,
+            pus_size_t,
         ) = k
-        # (pus-K1) from the base point to the connection point
-        S_x = (
+        # (pus-S) from the base point to the connection point
+        pus_S_x = (
         t_x + R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z -
             pus_base_point_x
         )
-        S_y = (
+        pus_S_y = (
         t_y + R_yx*pus_platform_point_x + R_yy*pus_platform_point_y + R_yz*pus_platform_point_z -
             pus_base_point_y
         )
-        S_z = (
+        pus_S_z = (
         t_z + R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z -
             pus_base_point_z
         )
-        # (pus-K2) component along axis 1
-        px_1 = S_x*pus_base_frame_xx + S_y*pus_base_frame_yx + S_z*pus_base_frame_zx
-        # (pus-K3) discriminant of the distance equation
-        disc_1_t = S_x*S_x + S_y*S_y + S_z*S_z
-        disc_1 = px_1*px_1 + uu_3_t - disc_1_t
-        # (pus-K4) displacement of joint 1
-        q_1_t = branch_1*sqrt(disc_1)
-        q_1 = px_1 + q_1_t
-        # (pus-K1) from the base point to the connection point
-        S_r0_y = S_x*pus_base_frame_xy + S_y*pus_base_frame_yy + S_z*pus_base_frame_zy
-        # (pus-K9) squared amplitude
-        rho2_2 = S_r0_y*S_r0_y + q_1_t*q_1_t
-        # (pus-K11) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (pus-K17) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_uu_3_t*pus_platform_joint_offset_x*root_2
-        # (pus-K18) sine of the angle of joint 3 from its reference direction
-        s_3 = (
-        inv_uu_3_t*pus_platform_joint_offset_x*(S_x*pus_base_frame_xz + S_y*pus_base_frame_yz +
-            S_z*pus_base_frame_zz)
+        # (pus-px_1) component along axis 1
+        pus_px_1 = (
+        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
         )
-        # (pus-K12) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = S_r0_y*inv_rho2_2*root_2
-        # (pus-K13) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*q_1_t*root_2
-        # (pus-N25) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_t = h_3_z*s_3 - c_3*h_3_x
-        # (V1) potential energy
-        potential_t_4 = (
-        g_r0_x*(h_1_x + d_Gamma_2_t*s_2 + pus_link1_mass*(b_r0_x + q_1) - c_2*h_3_y) +
-            g_r0_y*(h_1_y + potential_t - c_2*d_Gamma_2_t - h_3_y*s_2) + g_r0_z*(h_1_z +
-            potential_t_2 + c_3*h_3_z + h_3_x*s_3)
+        # (pus-disc_1) discriminant of the distance equation
+        pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
+        pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2
+        # (pus-q_1) displacement of joint 1
+        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
+        pus_q_1 = pus_px_1 + pus_q_1_t
+        # (pus-S) from the base point to the connection point
+        pus_S_r0_y = (
+        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
         )
-        ok = ok & m.every(leg, (disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t))
+        # (pus-rho2_2) squared amplitude
+        pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t
+        # (pus-root_2) root, with the sign of the branch
+        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
+        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
+        pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2
+        # (pus-s_3) sine of the angle of joint 3 from its reference direction
+        pus_s_3 = (
+        inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        )
+        # (pus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_pus_rho2_2 = 1.0/pus_rho2_2
+        pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2
+        # (pus-s_2) sine of the angle of joint 2 from its reference direction
+        pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2
+        # (pus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        pus_d_Gamma_2_t = pus_h_3_z*pus_s_3 - pus_c_3*pus_h_3_x
+        # (potential) potential energy
+        pus_potential_t_3 = (
+        pus_g_r0_x*(pus_h_1_x + pus_d_Gamma_2_t*pus_s_2 + pus_link1_mass*(pus_b_r0_x + pus_q_1) -
+            pus_c_2*pus_h_3_y) + pus_g_r0_y*(pus_h_1_y + pus_potential_t - pus_c_2*pus_d_Gamma_2_t
+            - pus_h_3_y*pus_s_2) + pus_g_r0_z*(pus_h_1_z + pus_potential_t_2 + pus_c_3*pus_h_3_z +
+            pus_h_3_x*pus_s_3)
+        )
+        ok = (
+        ok & m.every(leg, (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE *
+            pus_size_t))
+        )
         sums = m.added(sums, leg, (
-        potential_t_4,
+        pus_potential_t_3,
         ))
     total_pus, = sums
-    # (V1) potential energy
-    potential = -potential_t_3 - total_pus
+    # (potential) potential energy
+    potential = -potential_t - total_pus
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -3785,118 +3991,127 @@ def _run_condition(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, inv_size, inv_size_t, inv_uu_3_t, pus_base_frame_xx,
-            pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy,
-            pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz,
-            pus_base_point_x, pus_base_point_y, pus_base_point_z, pus_platform_joint_offset_x,
-            pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, size, size_t,
-            uu_3_t,
+        inv_pus_disc_1_t_6, inv_pus_size, inv_pus_size_t, pus_base_frame_xx, pus_base_frame_xy,
+            pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz,
+            pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x,
+            pus_base_point_y, pus_base_point_z, pus_branch_1, pus_branch_2, pus_disc_1_t,
+            pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
+            pus_platform_point_z, pus_size, pus_size_t,
         ) = k
-        # (pus-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (pus-S) from the base point to the connection point
+        pus_q_in_base_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
-        q_in_base_y = (
+        pus_q_in_base_y = (
         R_yx*pus_platform_point_x + R_yy*pus_platform_point_y + R_yz*pus_platform_point_z
         )
-        q_in_base_z = (
+        pus_q_in_base_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        S_x = q_in_base_x + t_x - pus_base_point_x
-        S_y = q_in_base_y + t_y - pus_base_point_y
-        S_z = q_in_base_z + t_z - pus_base_point_z
-        # (pus-K2) component along axis 1
-        px_1 = S_x*pus_base_frame_xx + S_y*pus_base_frame_yx + S_z*pus_base_frame_zx
-        # (pus-K3) discriminant of the distance equation
-        disc_1_t = S_x*S_x + S_y*S_y + S_z*S_z
-        disc_1 = px_1*px_1 + uu_3_t - disc_1_t
-        # (pus-K4) displacement of joint 1
-        q_1_t = branch_1*sqrt(disc_1)
-        # (pus-K1) from the base point to the connection point
-        S_r0_y = S_x*pus_base_frame_xy + S_y*pus_base_frame_yy + S_z*pus_base_frame_zy
-        # (pus-K9) squared amplitude
-        rho2_2 = S_r0_y*S_r0_y + q_1_t*q_1_t
-        # (pus-K11) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (pus-K17) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_uu_3_t*pus_platform_joint_offset_x*root_2
-        # (pus-K18) sine of the angle of joint 3 from its reference direction
-        s_3 = (
-        inv_uu_3_t*pus_platform_joint_offset_x*(S_x*pus_base_frame_xz + S_y*pus_base_frame_yz +
-            S_z*pus_base_frame_zz)
+        pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x
+        pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y
+        pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z
+        # (pus-px_1) component along axis 1
+        pus_px_1 = (
+        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
         )
-        # (pus-V2) velocity of the connection point per rate of joint 2
-        v_2_t = c_3*pus_platform_joint_offset_x
-        # (pus-K12) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = S_r0_y*inv_rho2_2*root_2
-        # (pus-K13) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*q_1_t*root_2
-        # (pus-V4) reciprocal vector 1
-        axis_z_pus_axes3_in_base_x = -c_2*pus_base_frame_xx - pus_base_frame_xy*s_2
-        axis_z_pus_axes3_in_base_y = -c_2*pus_base_frame_yx - pus_base_frame_yy*s_2
-        axis_z_pus_axes3_in_base_z = -c_2*pus_base_frame_zx - pus_base_frame_zy*s_2
-        w_1_t = s_2*s_3
-        w_1_t_2 = c_2*s_3
+        # (pus-disc_1) discriminant of the distance equation
+        pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
+        pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2
+        # (pus-q_1) displacement of joint 1
+        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
+        # (pus-S) from the base point to the connection point
+        pus_S_r0_y = (
+        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
+        )
+        # (pus-rho2_2) squared amplitude
+        pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t
+        # (pus-root_2) root, with the sign of the branch
+        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
+        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
+        pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2
+        # (pus-s_3) sine of the angle of joint 3 from its reference direction
+        pus_s_3 = (
+        inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        )
+        # (pus-v_2) velocity of the connection point per rate of joint 2
+        pus_v_2_t = pus_c_3*pus_platform_joint_offset_x
+        # (pus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_pus_rho2_2 = 1.0/pus_rho2_2
+        pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2
+        # (pus-s_2) sine of the angle of joint 2 from its reference direction
+        pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2
+        # (pus-w_1) reciprocal vector 1
+        axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 - pus_base_frame_xy*pus_s_2
+        axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 - pus_base_frame_yy*pus_s_2
+        axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 - pus_base_frame_zy*pus_s_2
+        pus_w_1_t = pus_s_2*pus_s_3
+        pus_w_1_t_2 = pus_c_2*pus_s_3
         axis_y_pus_axes3_in_base_x = (
-        pus_base_frame_xy*w_1_t_2 - c_3*pus_base_frame_xz - pus_base_frame_xx*w_1_t
+        pus_base_frame_xy*pus_w_1_t_2 - pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3
         )
         axis_y_pus_axes3_in_base_y = (
-        pus_base_frame_yy*w_1_t_2 - c_3*pus_base_frame_yz - pus_base_frame_yx*w_1_t
+        pus_base_frame_yy*pus_w_1_t_2 - pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3
         )
         axis_y_pus_axes3_in_base_z = (
-        pus_base_frame_zy*w_1_t_2 - c_3*pus_base_frame_zz - pus_base_frame_zx*w_1_t
+        pus_base_frame_zy*pus_w_1_t_2 - pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3
         )
-        w_1_t_3 = c_3*s_2
-        inv_w_1_t_24 = 1.0/w_1_t_3
-        w_1_t_4 = (
-        inv_w_1_t_24*(axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
+        # (pus-w_2) reciprocal vector 2
+        pus_w_2_t = pus_c_3*pus_s_2
+        inv_pus_w_2_t = 1.0/pus_w_2_t
+        # (pus-w_1) reciprocal vector 1
+        pus_w_1_t_3 = (
+        inv_pus_w_2_t*(axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
             axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y)
         )
-        w_1_t_5 = (
-        inv_w_1_t_24*(axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
+        pus_w_1_t_4 = (
+        inv_pus_w_2_t*(axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
             axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_z)
         )
-        w_1_t_6 = (
-        inv_w_1_t_24*(axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
+        pus_w_1_t_5 = (
+        inv_pus_w_2_t*(axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
             axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x)
         )
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_x = q_in_base_z*w_1_t_5 - q_in_base_y*w_1_t_6
-        H_a_1_y = q_in_base_x*w_1_t_6 - q_in_base_z*w_1_t_4
-        H_a_1_z = q_in_base_y*w_1_t_4 - q_in_base_x*w_1_t_5
-        # (C2) rms distance of the platform points from their centroid
-        spread_t_2 = b_c_x - pus_platform_point_x
-        spread_t_3 = b_c_y - pus_platform_point_y
-        spread_t_4 = b_c_z - pus_platform_point_z
-        spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 + spread_t_4*spread_t_4
-        # (pus-K9) squared amplitude
-        pivot_size = abs(rho2_2)
-        # (pus-V4) reciprocal vector 1
-        pivot_size_2 = abs(v_2_t)
-        pivot_size_3 = abs(w_1_t_3)
-        # (pus-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
-        least_pivots = (
-        least(least(pivot_size_3, inv_size*pivot_size_2), sqrt(inv_size_t*pivot_size))
+        # (pus-H_a_1) moment of the column's unit force about the platform origin
+        pus_H_a_1_x = pus_q_in_base_z*pus_w_1_t_4 - pus_q_in_base_y*pus_w_1_t_5
+        pus_H_a_1_y = pus_q_in_base_x*pus_w_1_t_5 - pus_q_in_base_z*pus_w_1_t_3
+        pus_H_a_1_z = pus_q_in_base_y*pus_w_1_t_3 - pus_q_in_base_x*pus_w_1_t_4
+        # (spread) rms distance of the platform points from their centroid
+        pus_spread_t = b_c_x - pus_platform_point_x
+        pus_spread_t_2 = b_c_y - pus_platform_point_y
+        pus_spread_t_3 = b_c_z - pus_platform_point_z
+        pus_spread_t_4 = (
+        pus_spread_t*pus_spread_t + pus_spread_t_2*pus_spread_t_2 + pus_spread_t_3*pus_spread_t_3
         )
-        reached = reached & m.every(leg, (disc_1 >= 0.0))
+        # (pus-rho2_2) squared amplitude
+        pus_pivot_size = abs(pus_rho2_2)
+        # (pus-w_2) reciprocal vector 2
+        pus_pivot_size_2 = abs(pus_v_2_t)
+        pus_pivot_size_3 = abs(pus_w_2_t)
+        # (pus-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        pus_least_pivots = (
+        least(least(pus_pivot_size_3, inv_pus_size*pus_pivot_size_2),
+            sqrt(inv_pus_size_t*pus_pivot_size))
+        )
+        reached = reached & m.every(leg, (pus_disc_1 >= 0.0))
         clear = (
-        clear & m.every(leg, (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t) & (abs(v_2_t) >
-            _TOLERANCE * size) & (abs(-w_1_t_3) > _TOLERANCE * 1.0))
+        clear & m.every(leg, (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE * pus_size_t) &
+            (abs(pus_v_2_t) > _TOLERANCE * pus_size) & (abs(-pus_w_2_t) > _TOLERANCE * 1.0))
         )
         sums = m.added(sums, leg, (
-        spread_t_5,
+        pus_spread_t_4,
         ))
-        out_H[_H_pus[0][leg]] = -w_1_t_4
-        out_H[_H_pus[1][leg]] = -w_1_t_5
-        out_H[_H_pus[2][leg]] = -w_1_t_6
-        out_H[_H_pus[3][leg]] = H_a_1_x
-        out_H[_H_pus[4][leg]] = H_a_1_y
-        out_H[_H_pus[5][leg]] = H_a_1_z
-        out_pivots[_pivots_pus[0][leg]] = least_pivots
-        out_reach[_reach_pus[0][leg]] = disc_1
+        out_H[_H_pus[0][leg]] = -pus_w_1_t_3
+        out_H[_H_pus[1][leg]] = -pus_w_1_t_4
+        out_H[_H_pus[2][leg]] = -pus_w_1_t_5
+        out_H[_H_pus[3][leg]] = pus_H_a_1_x
+        out_H[_H_pus[4][leg]] = pus_H_a_1_y
+        out_H[_H_pus[5][leg]] = pus_H_a_1_z
+        out_pivots[_pivots_pus[0][leg]] = pus_least_pivots
+        out_reach[_reach_pus[0][leg]] = pus_disc_1
     total_pus, = sums
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(total_pus)
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
@@ -4023,6 +4238,19 @@ def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
     momentum = np.einsum("ijs,js->is", M, V)
     return (momentum,)
+
+
+def _steps_joint_margins(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    margins = _unlimited(q, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17])
+    return (margins,)
+
+
+def _steps_within_limits(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    subtract_1 = q - q
+    within = _not_negative(subtract_1)
+    return (within,)
 
 
 def _steps_actuator_positions(m, X):
@@ -4459,6 +4687,40 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+    )
+
+
+def joint_margins(X, p=None):
+    """How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+    where there is none.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        margins: distances, in the order of q [m or rad] (..., NJ).
+    """
+    return _call(
+        "joint_margins", _steps_joint_margins, p,
+        ("X", X, (NQ,)),
+        unbounded=True,
+    )
+
+
+def within_limits(X, p=None):
+    """Whether all joints are within their limits of displacement.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        within: 1 where no margin is negative, else 0; NaN is neither (...,).
+    """
+    return _call(
+        "within_limits", _steps_within_limits, p,
+        ("X", X, (NQ,)),
     )
 
 

@@ -51,6 +51,7 @@ typedef HEXAPOD_6RUS_REAL hexapod_6rus_real;
 #define HEXAPOD_6RUS_NC 0
 #define HEXAPOD_6RUS_NW 6
 #define HEXAPOD_6RUS_NJ 18
+#define HEXAPOD_6RUS_OVERCONSTRAINED 0
 
 enum {
     HEXAPOD_6RUS_OK = 0,
@@ -97,22 +98,23 @@ typedef struct {
 /* What depends on the parameters alone; set by hexapod_6rus_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
-    hexapod_6rus_real J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+    /* 6 legs of type rus; copies of the first fill up */
+    hexapod_6rus_real inv_rus_Kd_1_t_6[8], inv_rus_Kd_1_t_8[8], inv_rus_platform_joint_offset_x[8],
+            inv_rus_rho2_1_t_4[8], inv_rus_size[8], inv_rus_size_t[8], rus_J_1_zz[8], rus_J_3_xx[8],
+            rus_J_3_xy[8], rus_J_3_xz[8], rus_J_3_yz[8], rus_J_3_zz[8], rus_Kd_1_t_2[8],
+            rus_Kd_1_t_4[8], rus_Sigma_3_xx[8], rus_Sigma_3_yy[8], rus_Sigma_3_zz[8], rus_b_r0_x[8],
+            rus_b_r0_y[8], rus_base_frame_xx[8], rus_base_frame_xy[8], rus_base_frame_xz[8],
+            rus_base_frame_yx[8], rus_base_frame_yy[8], rus_base_frame_yz[8], rus_base_frame_zx[8],
+            rus_base_frame_zy[8], rus_base_frame_zz[8], rus_base_point_x[8], rus_base_point_y[8],
+            rus_base_point_z[8], rus_branch_1[8], rus_branch_2[8], rus_d_Gamma_3_t[8],
+            rus_d_Gamma_3_y[8], rus_d_c_yy[8], rus_d_phi_3_t[8], rus_g_r0_x[8], rus_g_r0_y[8],
+            rus_g_r0_z[8], rus_h_1_x[8], rus_h_1_y[8], rus_h_1_z[8], rus_h_3_x[8], rus_h_3_y[8],
+            rus_h_3_z[8], rus_joint2_offset_x[8], rus_link1_mass[8], rus_link3_mass[8],
+            rus_platform_joint_offset_x[8], rus_platform_point_x[8], rus_platform_point_y[8],
+            rus_platform_point_z[8], rus_potential_t[8], rus_rho2_1_t[8], rus_size[8], rus_size_t[8];
+    hexapod_6rus_real J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
             J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
             h_star_x, h_star_y, h_star_z, legs_size, m_star, spread_t;
-    /* legs of type rus */
-    hexapod_6rus_real J_1_zz[6], J_3_xx[6], J_3_xy[6], J_3_xz[6], J_3_yz[6], J_3_zz[6], Kd_1_t_2[6],
-            Kd_1_t_3[6], Sigma_3_xx[6], Sigma_3_yy[6], Sigma_3_zz[6], b_r0_x[6], b_r0_y[6],
-            branch_1[6], branch_2[6], d_Gamma_3_t[6], d_Gamma_3_y[6], d_c_yy[6], d_phi_3_t[6],
-            g_r0_x[6], g_r0_y[6], g_r0_z[6], h_1_x[6], h_1_y[6], h_1_z[6], h_3_x[6], h_3_y[6],
-            h_3_z[6], inv_Kd_1_t_6[6], inv_rho2_1_t_4[6], inv_rus_platform_joint_offset_x[6],
-            inv_size[6], inv_size_t[6], inv_uu_3_t[6], potential_t[6], rho2_1_t[6],
-            rus_base_frame_xx[6], rus_base_frame_xy[6], rus_base_frame_xz[6], rus_base_frame_yx[6],
-            rus_base_frame_yy[6], rus_base_frame_yz[6], rus_base_frame_zx[6], rus_base_frame_zy[6],
-            rus_base_frame_zz[6], rus_base_point_x[6], rus_base_point_y[6], rus_base_point_z[6],
-            rus_joint2_offset_x[6], rus_link1_mass[6], rus_link3_mass[6],
-            rus_platform_joint_offset_x[6], rus_platform_point_x[6], rus_platform_point_y[6],
-            rus_platform_point_z[6], size_[6], size_t_[6];
 } hexapod_6rus_model;
 
 extern const hexapod_6rus_params hexapod_6rus_default_params;
@@ -135,7 +137,7 @@ int hexapod_6rus_M(const hexapod_6rus_model *model, const hexapod_6rus_real *X, 
 size_t hexapod_6rus_M_batch(const hexapod_6rus_model *model, size_t n, const hexapod_6rus_real *X,
     hexapod_6rus_real *M, int *status);
 
-/* Velocity and gravity terms Z. 1467 mul, 990 add, 24 div, 12 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 1473 mul, 1002 add, 24 div, 12 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int hexapod_6rus_Z(const hexapod_6rus_model *model, const hexapod_6rus_real *X, const
     hexapod_6rus_real *V, hexapod_6rus_real *Z);
@@ -171,7 +173,7 @@ size_t hexapod_6rus_joint_accelerations_batch(const hexapod_6rus_model *model, s
     hexapod_6rus_real *X, const hexapod_6rus_real *V, const hexapod_6rus_real *A,
     hexapod_6rus_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 2229 mul, 1605 add, 24 div, 12 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 2235 mul, 1617 add, 24 div, 12 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int hexapod_6rus_dynamics(const hexapod_6rus_model *model, const hexapod_6rus_real *X, const
     hexapod_6rus_real *V, hexapod_6rus_real *M, hexapod_6rus_real *Z, hexapod_6rus_real *H);
@@ -189,7 +191,7 @@ size_t hexapod_6rus_inverse_dynamics_batch(const hexapod_6rus_model *model, size
     hexapod_6rus_real *X, const hexapod_6rus_real *V, const hexapod_6rus_real *A, const
     hexapod_6rus_real *wrench, hexapod_6rus_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 2229 mul, 1605 add, 24 div, 12
+/* Acceleration A under the actuator forces tau and the wrench. 2235 mul, 1617 add, 24 div, 12
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int hexapod_6rus_forward_dynamics(const hexapod_6rus_model *model, const hexapod_6rus_real *X,
@@ -258,6 +260,21 @@ int hexapod_6rus_momentum(const hexapod_6rus_model *model, const hexapod_6rus_re
     hexapod_6rus_real *V, hexapod_6rus_real *momentum);
 size_t hexapod_6rus_momentum_batch(const hexapod_6rus_model *model, size_t n, const
     hexapod_6rus_real *X, const hexapod_6rus_real *V, hexapod_6rus_real *momentum, int *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 294 mul, 168 add, 12 div, 12 sqrt, 18 trig. In: X (NQ). Out: margins (NJ).
+   */
+int hexapod_6rus_joint_margins(const hexapod_6rus_model *model, const hexapod_6rus_real *X,
+    hexapod_6rus_real *margins);
+size_t hexapod_6rus_joint_margins_batch(const hexapod_6rus_model *model, size_t n, const
+    hexapod_6rus_real *X, hexapod_6rus_real *margins, int *status);
+
+/* Whether all joints are within their limits of displacement. 294 mul, 168 add, 12 div, 12 sqrt,
+   18 trig. In: X (NQ). Out: within (1). */
+int hexapod_6rus_within_limits(const hexapod_6rus_model *model, const hexapod_6rus_real *X,
+    hexapod_6rus_real *within);
+size_t hexapod_6rus_within_limits_batch(const hexapod_6rus_model *model, size_t n, const
+    hexapod_6rus_real *X, hexapod_6rus_real *within, int *status);
 
 /* Displacements of the actuated joints, in the order of tau. 294 mul, 168 add, 12 div, 12 sqrt,
    18 trig. In: X (NQ). Out: q (NU). */

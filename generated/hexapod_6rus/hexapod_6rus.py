@@ -33,6 +33,7 @@ __all__ = [
     "NC",
     "NW",
     "NJ",
+    "OVERCONSTRAINED",
     "ACTUATED",
     "ACTUATOR_NAMES",
     "H",
@@ -57,6 +58,7 @@ __all__ = [
     "inverse_dynamics",
     "inverse_kinematics",
     "joint_accelerations",
+    "joint_margins",
     "joint_rates",
     "leg_reactions",
     "momentum",
@@ -66,6 +68,7 @@ __all__ = [
     "power",
     "retract",
     "rotation",
+    "within_limits",
 ]
 
 NQ = 7
@@ -74,6 +77,7 @@ NU = 6
 NC = 0
 NW = 6
 NJ = 18
+OVERCONSTRAINED = 0
 
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
@@ -372,7 +376,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return np.full(shape, default)
+        return _filled(shape, default) if isinstance(default, float) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -385,6 +389,16 @@ def _argument(function, name, value, shape, default=None, rule=""):
     elif rule == "positive" and not np.all((array > 0.0) & (array < np.inf)):
         raise ValueError(f"{function}: {name} must be positive and finite")
     return array
+
+
+_FILLED = {}
+
+
+def _filled(shape, value):
+    """An array of one value, made once."""
+    if (shape, value) not in _FILLED:
+        _FILLED[shape, value] = _frozen(np.full(shape, value))
+    return _FILLED[shape, value]
 
 
 def _lead(leads):
@@ -478,8 +492,8 @@ HOME_X = _frozen(np.array([0.0, 0.0, 0.75, 0.0, 0.0, 0.0, 1.0]))
 HOME_Q = _frozen(np.array([-1.2, 1.4, 0.35, -1.2, 1.4, -0.35, -1.2, 1.4, 0.35, -1.2, 1.4, -0.35, -1.2, 1.4, 0.35, -1.2, 1.4, -0.35]))
 
 _BRANCHES = {  # assembly branch of home, a sign per leg
-    "branch_1": np.array([-1.0, -1.0, -1.0, -1.0, -1.0, -1.0]),
-    "branch_2": np.array([1.0, 1.0, 1.0, 1.0, 1.0, 1.0]),
+    "rus_branch_1": np.array([-1.0, -1.0, -1.0, -1.0, -1.0, -1.0]),
+    "rus_branch_2": np.array([1.0, 1.0, 1.0, 1.0, 1.0, 1.0]),
 }
 
 
@@ -532,13 +546,13 @@ def _prepare(p):
     rus_link3_inertia_yy = p.rus_link3_inertia[:, 1, 1]
     rus_link3_inertia_yz = p.rus_link3_inertia[:, 1, 2]
     rus_link3_inertia_zz = p.rus_link3_inertia[:, 2, 2]
-    branch_1 = _BRANCHES["branch_1"]
-    branch_2 = _BRANCHES["branch_2"]
-    # (L2) first moment about the platform origin
+    rus_branch_1 = _BRANCHES["rus_branch_1"]
+    rus_branch_2 = _BRANCHES["rus_branch_2"]
+    # (h_star) first moment about the platform origin
     h_star_t = platform_centre_of_mass_x*platform_mass
     h_star_t_2 = platform_centre_of_mass_y*platform_mass
     h_star_t_3 = platform_centre_of_mass_z*platform_mass
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_t = platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_2 = platform_centre_of_mass_y*platform_centre_of_mass_y
     J_star_t_3 = platform_centre_of_mass_z*platform_centre_of_mass_z
@@ -549,185 +563,190 @@ def _prepare(p):
     J_star_t_8 = platform_mass*(J_star_t_2 - J_star_t_4)
     J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass
     J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4)
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread_t = 0.16666666666666666*sqrt(6.0)
-    # (rus-K27) squared length, across the axis, of the direction fixed in link 3
-    uu_3_t = rus_platform_joint_offset_x*rus_platform_joint_offset_x
-    # (rus-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    Kd_1_t = rus_joint2_offset_x*rus_joint2_offset_x
-    Kd_1_t_2 = 0.5*Kd_1_t
-    Kd_1_t_3 = 0.5*uu_3_t
-    # (rus-G2) length of the leg's lever arms, the measure of what is near singular
-    size_t = 5.17091866281e-07 + Kd_1_t + uu_3_t
-    size = sqrt(size_t)
-    # (rus-K8) squared amplitude
-    rho2_1_t = size*size*size_t
-    # (rus-K15) the vector from joint 1 to the connection point, resolved along link 1
-    inv_Kd_1_t_6 = 1.0/Kd_1_t
-    # (rus-K28) cosine of the angle of joint 3 from its reference direction
-    inv_uu_3_t = 1.0/uu_3_t
-    # (rus-G4) inertia tensor of link 1 about the origin of link 1
-    J_1_t = rus_link1_centre_of_mass_z*rus_link1_centre_of_mass_z
-    J_1_t_2 = (
-    J_1_t + rus_link1_centre_of_mass_x*rus_link1_centre_of_mass_x +
-        rus_link1_centre_of_mass_y*rus_link1_centre_of_mass_y
-    )
-    J_1_zz = rus_link1_inertia_zz - rus_link1_mass*(J_1_t - J_1_t_2)
-    # (rus-G5) connection point to the centre of mass of link 3
-    rho_tip_3_x = rus_link3_centre_of_mass_x - rus_platform_joint_offset_x
-    # (rus-G7) inertia tensor of link 3 about the connection point
-    J_3_t = rho_tip_3_x*rho_tip_3_x
-    J_3_t_2 = rus_link3_centre_of_mass_y*rus_link3_centre_of_mass_y
-    J_3_t_3 = rus_link3_centre_of_mass_z*rus_link3_centre_of_mass_z
-    J_3_t_4 = J_3_t + J_3_t_2 + J_3_t_3
-    J_3_xx = rus_link3_inertia_xx - rus_link3_mass*(J_3_t - J_3_t_4)
-    J_3_xy = rus_link3_inertia_xy - rho_tip_3_x*rus_link3_centre_of_mass_y*rus_link3_mass
-    J_3_xz = rus_link3_inertia_xz - rho_tip_3_x*rus_link3_centre_of_mass_z*rus_link3_mass
-    J_3_yy = rus_link3_inertia_yy - rus_link3_mass*(J_3_t_2 - J_3_t_4)
-    J_3_yz = (
+    # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+    rus_Kd_1_t = rus_joint2_offset_x*rus_joint2_offset_x
+    rus_Kd_1_t_2 = 0.5*rus_Kd_1_t
+    rus_Kd_1_t_3 = rus_platform_joint_offset_x*rus_platform_joint_offset_x
+    rus_Kd_1_t_4 = 0.5*rus_Kd_1_t_3
+    # (rus-size) length of the leg's lever arms, the measure of what is near singular
+    rus_size_t = 5.17091866281e-07 + rus_Kd_1_t + rus_Kd_1_t_3
+    rus_size = sqrt(rus_size_t)
+    # (rus-rho2_1) squared amplitude
+    rus_rho2_1_t = rus_size*rus_size*rus_size_t
+    # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+    inv_rus_Kd_1_t_6 = 1.0/rus_Kd_1_t
+    # (rus-c_3) cosine of the angle of joint 3 from its reference direction
+    inv_rus_Kd_1_t_8 = 1.0/rus_Kd_1_t_3
+    # (rus-rho_tip_3) connection point to the centre of mass of link 3
+    rus_rho_tip_3_x = rus_link3_centre_of_mass_x - rus_platform_joint_offset_x
+    # (rus-h_3) first moment of link 3 about the connection point
+    rus_h_3_x = rus_link3_mass*rus_rho_tip_3_x
+    rus_h_3_y = rus_link3_centre_of_mass_y*rus_link3_mass
+    rus_h_3_z = rus_link3_centre_of_mass_z*rus_link3_mass
+    # (rus-w_3) reciprocal vector 3
+    inv_rus_platform_joint_offset_x = 1.0/rus_platform_joint_offset_x
+    # (rus-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+    rus_d_phi_3_t = inv_rus_platform_joint_offset_x*rus_h_3_z
+    # (rus-J_3) inertia tensor of link 3 about the connection point
+    rus_J_3_t = rus_rho_tip_3_x*rus_rho_tip_3_x
+    rus_J_3_t_2 = rus_link3_centre_of_mass_y*rus_link3_centre_of_mass_y
+    rus_J_3_t_3 = rus_link3_centre_of_mass_z*rus_link3_centre_of_mass_z
+    rus_J_3_t_4 = rus_J_3_t + rus_J_3_t_2 + rus_J_3_t_3
+    rus_J_3_xx = rus_link3_inertia_xx - rus_link3_mass*(rus_J_3_t - rus_J_3_t_4)
+    rus_J_3_xy = rus_link3_inertia_xy - rus_link3_centre_of_mass_y*rus_link3_mass*rus_rho_tip_3_x
+    rus_J_3_xz = rus_link3_inertia_xz - rus_link3_centre_of_mass_z*rus_link3_mass*rus_rho_tip_3_x
+    rus_J_3_yy = rus_link3_inertia_yy - rus_link3_mass*(rus_J_3_t_2 - rus_J_3_t_4)
+    rus_J_3_yz = (
     rus_link3_inertia_yz - rus_link3_centre_of_mass_y*rus_link3_centre_of_mass_z*rus_link3_mass
     )
-    J_3_zz = rus_link3_inertia_zz - rus_link3_mass*(J_3_t_3 - J_3_t_4)
-    # (rus-G6) first moment of link 3 about the connection point
-    h_3_x = rho_tip_3_x*rus_link3_mass
-    h_3_y = rus_link3_centre_of_mass_y*rus_link3_mass
-    h_3_z = rus_link3_centre_of_mass_z*rus_link3_mass
-    # (rus-V8) reciprocal vector 3
-    inv_rus_platform_joint_offset_x = 1.0/rus_platform_joint_offset_x
-    # (rus-N23) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-    d_Gamma_3_t = J_3_yy*inv_rus_platform_joint_offset_x
-    d_Gamma_3_y = d_Gamma_3_t + h_3_x
-    # (rus-N6) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-    d_phi_3_t = h_3_z*inv_rus_platform_joint_offset_x
-    # (rus-N41) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_yy = -d_Gamma_3_y*inv_rus_platform_joint_offset_x - h_3_x*inv_rus_platform_joint_offset_x
-    # (L2) first moment about the platform origin
-    h_star_t_4 = rus_link3_mass*rus_platform_point_x
-    h_star_t_5 = rus_link3_mass*rus_platform_point_y
-    h_star_t_6 = rus_link3_mass*rus_platform_point_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t_11 = rus_platform_point_x*rus_platform_point_x
-    J_star_t_12 = rus_platform_point_y*rus_platform_point_y
-    J_star_t_13 = rus_platform_point_z*rus_platform_point_z
-    J_star_t_14 = J_star_t_11 + J_star_t_12 + J_star_t_13
-    J_star_t_15 = rus_link3_mass*(J_star_t_11 - J_star_t_14)
-    J_star_t_16 = rus_link3_mass*rus_platform_point_x*rus_platform_point_y
-    J_star_t_17 = rus_link3_mass*rus_platform_point_x*rus_platform_point_z
-    J_star_t_18 = rus_link3_mass*(J_star_t_12 - J_star_t_14)
-    J_star_t_19 = rus_link3_mass*rus_platform_point_y*rus_platform_point_z
-    J_star_t_20 = rus_link3_mass*(J_star_t_13 - J_star_t_14)
-    # (rus-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-    g_r0_x = (
+    rus_J_3_zz = rus_link3_inertia_zz - rus_link3_mass*(rus_J_3_t_3 - rus_J_3_t_4)
+    # (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    rus_d_Gamma_3_t = inv_rus_platform_joint_offset_x*rus_J_3_yy
+    rus_d_Gamma_3_y = rus_d_Gamma_3_t + rus_h_3_x
+    # (rus-J_1) inertia tensor of link 1 about the origin of link 1
+    rus_J_1_t = rus_link1_centre_of_mass_z*rus_link1_centre_of_mass_z
+    rus_J_1_t_2 = (
+    rus_J_1_t + rus_link1_centre_of_mass_x*rus_link1_centre_of_mass_x +
+        rus_link1_centre_of_mass_y*rus_link1_centre_of_mass_y
+    )
+    rus_J_1_zz = rus_link1_inertia_zz - rus_link1_mass*(rus_J_1_t - rus_J_1_t_2)
+    # (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    rus_d_c_yy = (
+    -inv_rus_platform_joint_offset_x*rus_d_Gamma_3_y - inv_rus_platform_joint_offset_x*rus_h_3_x
+    )
+    # (h_star) first moment about the platform origin
+    rus_h_star_t = rus_link3_mass*rus_platform_point_x
+    rus_h_star_t_2 = rus_link3_mass*rus_platform_point_y
+    rus_h_star_t_3 = rus_link3_mass*rus_platform_point_z
+    # (J_star) inertia tensor about the platform origin
+    rus_J_star_t = rus_platform_point_x*rus_platform_point_x
+    rus_J_star_t_2 = rus_platform_point_y*rus_platform_point_y
+    rus_J_star_t_3 = rus_platform_point_z*rus_platform_point_z
+    rus_J_star_t_4 = rus_J_star_t + rus_J_star_t_2 + rus_J_star_t_3
+    rus_J_star_t_5 = rus_link3_mass*(rus_J_star_t - rus_J_star_t_4)
+    rus_J_star_t_6 = rus_link3_mass*rus_platform_point_x*rus_platform_point_y
+    rus_J_star_t_7 = rus_link3_mass*rus_platform_point_x*rus_platform_point_z
+    rus_J_star_t_8 = rus_link3_mass*(rus_J_star_t_2 - rus_J_star_t_4)
+    rus_J_star_t_9 = rus_link3_mass*rus_platform_point_y*rus_platform_point_z
+    rus_J_star_t_10 = rus_link3_mass*(rus_J_star_t_3 - rus_J_star_t_4)
+    # (rus-trace_J_3) half the trace of that inertia tensor
+    rus_trace_J_3 = 0.5*rus_J_3_xx + 0.5*rus_J_3_yy + 0.5*rus_J_3_zz
+    # (rus-Sigma_3) second moment of mass of the links that turn with link 3
+    rus_Sigma_3_xx = rus_trace_J_3 - rus_J_3_xx
+    rus_Sigma_3_yy = rus_trace_J_3 - rus_J_3_zz
+    rus_Sigma_3_zz = rus_trace_J_3 - rus_J_3_yy
+    # (rus-h_1) first moment of link 1 about the origin of link 1
+    rus_h_1_x = rus_link1_centre_of_mass_x*rus_link1_mass
+    rus_h_1_y = rus_link1_centre_of_mass_y*rus_link1_mass
+    rus_h_1_z = rus_link1_centre_of_mass_z*rus_link1_mass
+    # (rus-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+    rus_g_r0_x = (
     gravity_x*rus_base_frame_xx + gravity_y*rus_base_frame_yx + gravity_z*rus_base_frame_zx
     )
-    g_r0_y = (
+    rus_g_r0_y = (
     gravity_x*rus_base_frame_xy + gravity_y*rus_base_frame_yy + gravity_z*rus_base_frame_zy
     )
-    g_r0_z = (
+    rus_g_r0_z = (
     gravity_x*rus_base_frame_xz + gravity_y*rus_base_frame_yz + gravity_z*rus_base_frame_zz
     )
-    # (rus-G3) first moment of link 1 about the origin of link 1
-    h_1_x = rus_link1_centre_of_mass_x*rus_link1_mass
-    h_1_y = rus_link1_centre_of_mass_y*rus_link1_mass
-    h_1_z = rus_link1_centre_of_mass_z*rus_link1_mass
-    # (rus-N18) half the trace of that inertia tensor
-    trace_J_3 = 0.5*J_3_xx + 0.5*J_3_yy + 0.5*J_3_zz
-    # (rus-N19) second moment of mass of the links that turn with link 3
-    Sigma_3_xx = trace_J_3 - J_3_xx
-    Sigma_3_yy = trace_J_3 - J_3_zz
-    Sigma_3_zz = trace_J_3 - J_3_yy
-    # (V1) potential energy
-    b_r0_x = (
+    # (potential) potential energy
+    rus_b_r0_x = (
     rus_base_frame_xx*rus_base_point_x + rus_base_frame_yx*rus_base_point_y +
         rus_base_frame_zx*rus_base_point_z
     )
-    b_r0_y = (
+    rus_b_r0_y = (
     rus_base_frame_xy*rus_base_point_x + rus_base_frame_yy*rus_base_point_y +
         rus_base_frame_zy*rus_base_point_z
     )
-    potential_t = (
+    rus_potential_t = (
     rus_link1_mass*(rus_base_frame_xz*rus_base_point_x + rus_base_frame_yz*rus_base_point_y +
         rus_base_frame_zz*rus_base_point_z)
     )
-    # (rus-K8) squared amplitude
-    inv_rho2_1_t_4 = 1.0/rho2_1_t
-    # (rus-K20) squared amplitude
-    inv_size_t = 1.0/size_t
-    # (rus-V6) reciprocal vector 1
-    inv_size = 1.0/size
+    # (rus-rho2_1) squared amplitude
+    inv_rus_rho2_1_t_4 = 1.0/rus_rho2_1_t
+    # (rus-rho2_2) squared amplitude
+    inv_rus_size_t = 1.0/rus_size_t
+    # (rus-w_1) reciprocal vector 1
+    inv_rus_size = 1.0/rus_size
     total_rus = np.sum(np.broadcast_to(rus_link3_mass, _rus))
-    total_rus_x = np.sum(np.broadcast_to(h_star_t_4, _rus))
-    total_rus_y = np.sum(np.broadcast_to(h_star_t_5, _rus))
-    total_rus_z = np.sum(np.broadcast_to(h_star_t_6, _rus))
-    total_rus_xx = np.sum(np.broadcast_to(J_star_t_15, _rus))
-    total_rus_xy = np.sum(np.broadcast_to(J_star_t_16, _rus))
-    total_rus_xz = np.sum(np.broadcast_to(J_star_t_17, _rus))
-    total_rus_yy = np.sum(np.broadcast_to(J_star_t_18, _rus))
-    total_rus_yz = np.sum(np.broadcast_to(J_star_t_19, _rus))
-    total_rus_zz = np.sum(np.broadcast_to(J_star_t_20, _rus))
+    total_rus_x = np.sum(np.broadcast_to(rus_h_star_t, _rus))
+    total_rus_y = np.sum(np.broadcast_to(rus_h_star_t_2, _rus))
+    total_rus_z = np.sum(np.broadcast_to(rus_h_star_t_3, _rus))
+    total_rus_xx = np.sum(np.broadcast_to(rus_J_star_t_5, _rus))
+    total_rus_xy = np.sum(np.broadcast_to(rus_J_star_t_6, _rus))
+    total_rus_xz = np.sum(np.broadcast_to(rus_J_star_t_7, _rus))
+    total_rus_yy = np.sum(np.broadcast_to(rus_J_star_t_8, _rus))
+    total_rus_yz = np.sum(np.broadcast_to(rus_J_star_t_9, _rus))
+    total_rus_zz = np.sum(np.broadcast_to(rus_J_star_t_10, _rus))
     total_rus_x_2 = np.sum(np.broadcast_to(rus_platform_point_x, _rus))
     total_rus_y_2 = np.sum(np.broadcast_to(rus_platform_point_y, _rus))
     total_rus_z_2 = np.sum(np.broadcast_to(rus_platform_point_z, _rus))
-    total_rus_2 = np.sum(np.broadcast_to(size_t, _rus))
-    # (L1) mass of the platform with the gathered masses
+    total_rus_2 = np.sum(np.broadcast_to(rus_size_t, _rus))
+    # (m_star) mass of the platform with the gathered masses
     m_star = platform_mass + total_rus
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_x = h_star_t + total_rus_x
     h_star_y = h_star_t_2 + total_rus_y
     h_star_z = h_star_t_3 + total_rus_z
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_xx = platform_inertia_xx - J_star_t_5 - total_rus_xx
     J_star_xy = platform_inertia_xy - J_star_t_6 - total_rus_xy
     J_star_xz = platform_inertia_xz - J_star_t_7 - total_rus_xz
     J_star_yy = platform_inertia_yy - J_star_t_8 - total_rus_yy
     J_star_yz = platform_inertia_yz - J_star_t_9 - total_rus_yz
     J_star_zz = platform_inertia_zz - J_star_t_10 - total_rus_zz
-    J_star_t_21 = J_star_xx - J_star_yy
-    J_star_t_22 = 0.5*J_star_t_21
-    J_star_t_23 = J_star_xx - J_star_zz
-    J_star_t_24 = 0.5*J_star_t_23
-    # (M4) centripetal force and weight of the platform
+    J_star_t_11 = J_star_xx - J_star_yy
+    J_star_t_12 = 0.5*J_star_t_11
+    J_star_t_13 = J_star_xx - J_star_zz
+    J_star_t_14 = 0.5*J_star_t_13
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
     Z_p_t_3 = gravity_z*m_star
-    # (C1) centroid of the platform points
+    # (b_c) centroid of the platform points
     b_c_x = 0.16666666666666666*total_rus_x_2
     b_c_y = 0.16666666666666666*total_rus_y_2
     b_c_z = 0.16666666666666666*total_rus_z_2
-    # (C3) rms size of the legs, taken where the platform points coincide
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     legs_size = spread_t*sqrt(total_rus_2)
     return {
         "dynamics": (
-        (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
                 J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
                 h_star_y, h_star_z, m_star,),
             (
                 (_rus,
-        (J_1_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yz, J_3_zz, Kd_1_t_2, Kd_1_t_3, Sigma_3_xx,
-                    Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, d_Gamma_3_t, d_Gamma_3_y, d_c_yy,
-                    d_phi_3_t, g_r0_x, g_r0_y, g_r0_z, h_1_x, h_1_y, h_3_x, h_3_y, h_3_z,
-                    inv_Kd_1_t_6, inv_rus_platform_joint_offset_x, inv_uu_3_t, rho2_1_t,
+        (inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_platform_joint_offset_x, rus_J_1_zz,
+                    rus_J_3_xx, rus_J_3_xy, rus_J_3_xz, rus_J_3_yz, rus_J_3_zz, rus_Kd_1_t_2,
+                    rus_Kd_1_t_4, rus_Sigma_3_xx, rus_Sigma_3_yy, rus_Sigma_3_zz,
                     rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx,
                     rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy,
                     rus_base_frame_zz, rus_base_point_x, rus_base_point_y, rus_base_point_z,
-                    rus_joint2_offset_x, rus_platform_joint_offset_x, rus_platform_point_x,
-                    rus_platform_point_y, rus_platform_point_z, size, size_t,),
+                    rus_branch_1, rus_branch_2, rus_d_Gamma_3_t, rus_d_Gamma_3_y, rus_d_c_yy,
+                    rus_d_phi_3_t, rus_g_r0_x, rus_g_r0_y, rus_h_1_x, rus_h_1_y, rus_h_3_x,
+                    rus_h_3_y, rus_h_3_z, rus_joint2_offset_x, rus_platform_joint_offset_x,
+                    rus_platform_point_x, rus_platform_point_y, rus_platform_point_z,
+                    rus_rho2_1_t, rus_size, rus_size_t,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
+        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
                 h_star_z, m_star,),
             (
                 (_rus,
-        (J_1_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yz, J_3_zz, Kd_1_t_2, Kd_1_t_3, branch_1, branch_2,
-                    d_Gamma_3_t, d_Gamma_3_y, d_c_yy, d_phi_3_t, h_3_x, h_3_y, h_3_z,
-                    inv_Kd_1_t_6, inv_rus_platform_joint_offset_x, inv_uu_3_t, rho2_1_t,
-                    rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx,
-                    rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy,
-                    rus_base_frame_zz, rus_base_point_x, rus_base_point_y, rus_base_point_z,
+        (inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_platform_joint_offset_x, rus_J_1_zz,
+                    rus_J_3_xx, rus_J_3_xy, rus_J_3_xz, rus_J_3_yz, rus_J_3_zz, rus_Kd_1_t_2,
+                    rus_Kd_1_t_4, rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz,
+                    rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx,
+                    rus_base_frame_zy, rus_base_frame_zz, rus_base_point_x, rus_base_point_y,
+                    rus_base_point_z, rus_branch_1, rus_branch_2, rus_d_Gamma_3_t,
+                    rus_d_Gamma_3_y, rus_d_c_yy, rus_d_phi_3_t, rus_h_3_x, rus_h_3_y, rus_h_3_z,
                     rus_joint2_offset_x, rus_platform_joint_offset_x, rus_platform_point_x,
-                    rus_platform_point_y, rus_platform_point_z, size, size_t,),
+                    rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size,
+                    rus_size_t,),
                 ),
             ),
         ),
@@ -736,14 +755,16 @@ def _prepare(p):
                 Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
             (
                 (_rus,
-        (J_1_zz, J_3_xy, J_3_xz, J_3_yz, Kd_1_t_2, Kd_1_t_3, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz,
-                    branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_1_x, h_1_y, h_3_x, h_3_y, h_3_z,
-                    inv_Kd_1_t_6, inv_rus_platform_joint_offset_x, inv_uu_3_t, rho2_1_t,
-                    rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx,
-                    rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy,
-                    rus_base_frame_zz, rus_base_point_x, rus_base_point_y, rus_base_point_z,
-                    rus_joint2_offset_x, rus_platform_joint_offset_x, rus_platform_point_x,
-                    rus_platform_point_y, rus_platform_point_z, size, size_t,),
+        (inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_platform_joint_offset_x, rus_J_1_zz,
+                    rus_J_3_xy, rus_J_3_xz, rus_J_3_yz, rus_Kd_1_t_2, rus_Kd_1_t_4,
+                    rus_Sigma_3_xx, rus_Sigma_3_yy, rus_Sigma_3_zz, rus_base_frame_xx,
+                    rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
+                    rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
+                    rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1,
+                    rus_branch_2, rus_g_r0_x, rus_g_r0_y, rus_h_1_x, rus_h_1_y, rus_h_3_x,
+                    rus_h_3_y, rus_h_3_z, rus_joint2_offset_x, rus_platform_joint_offset_x,
+                    rus_platform_point_x, rus_platform_point_y, rus_platform_point_z,
+                    rus_rho2_1_t, rus_size, rus_size_t,),
                 ),
             ),
         ),
@@ -751,12 +772,13 @@ def _prepare(p):
         (),
             (
                 (_rus,
-        (Kd_1_t_2, Kd_1_t_3, branch_1, branch_2, inv_Kd_1_t_6, inv_uu_3_t, rho2_1_t,
-                    rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx,
-                    rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy,
-                    rus_base_frame_zz, rus_base_point_x, rus_base_point_y, rus_base_point_z,
-                    rus_joint2_offset_x, rus_platform_joint_offset_x, rus_platform_point_x,
-                    rus_platform_point_y, rus_platform_point_z, size, size_t,),
+        (inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, rus_Kd_1_t_2, rus_Kd_1_t_4, rus_base_frame_xx,
+                    rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
+                    rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
+                    rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1,
+                    rus_branch_2, rus_joint2_offset_x, rus_platform_joint_offset_x,
+                    rus_platform_point_x, rus_platform_point_y, rus_platform_point_z,
+                    rus_rho2_1_t, rus_size, rus_size_t,),
                 ),
             ),
         ),
@@ -765,14 +787,16 @@ def _prepare(p):
                 gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
                 (_rus,
-        (J_1_zz, J_3_xy, J_3_xz, J_3_yz, Kd_1_t_2, Kd_1_t_3, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz,
-                    branch_1, branch_2, g_r0_x, g_r0_y, h_1_x, h_1_y, h_3_x, h_3_y, h_3_z,
-                    inv_Kd_1_t_6, inv_rus_platform_joint_offset_x, inv_uu_3_t, rho2_1_t,
-                    rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx,
-                    rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy,
-                    rus_base_frame_zz, rus_base_point_x, rus_base_point_y, rus_base_point_z,
-                    rus_joint2_offset_x, rus_platform_joint_offset_x, rus_platform_point_x,
-                    rus_platform_point_y, rus_platform_point_z, size, size_t,),
+        (inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_platform_joint_offset_x, rus_J_1_zz,
+                    rus_J_3_xy, rus_J_3_xz, rus_J_3_yz, rus_Kd_1_t_2, rus_Kd_1_t_4,
+                    rus_Sigma_3_xx, rus_Sigma_3_yy, rus_Sigma_3_zz, rus_base_frame_xx,
+                    rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
+                    rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
+                    rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1,
+                    rus_branch_2, rus_g_r0_x, rus_g_r0_y, rus_h_1_x, rus_h_1_y, rus_h_3_x,
+                    rus_h_3_y, rus_h_3_z, rus_joint2_offset_x, rus_platform_joint_offset_x,
+                    rus_platform_point_x, rus_platform_point_y, rus_platform_point_z,
+                    rus_rho2_1_t, rus_size, rus_size_t,),
                 ),
             ),
         ),
@@ -780,12 +804,13 @@ def _prepare(p):
         (),
             (
                 (_rus,
-        (Kd_1_t_2, Kd_1_t_3, branch_1, branch_2, inv_Kd_1_t_6, inv_uu_3_t, rho2_1_t,
-                    rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx,
-                    rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy,
-                    rus_base_frame_zz, rus_base_point_x, rus_base_point_y, rus_base_point_z,
-                    rus_joint2_offset_x, rus_platform_joint_offset_x, rus_platform_point_x,
-                    rus_platform_point_y, rus_platform_point_z, size_t,),
+        (inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, rus_Kd_1_t_2, rus_Kd_1_t_4, rus_base_frame_xx,
+                    rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
+                    rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
+                    rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1,
+                    rus_branch_2, rus_joint2_offset_x, rus_platform_joint_offset_x,
+                    rus_platform_point_x, rus_platform_point_y, rus_platform_point_z,
+                    rus_rho2_1_t, rus_size_t,),
                 ),
             ),
         ),
@@ -793,13 +818,13 @@ def _prepare(p):
         (),
             (
                 (_rus,
-        (Kd_1_t_2, Kd_1_t_3, branch_1, branch_2, inv_Kd_1_t_6, inv_rus_platform_joint_offset_x,
-                    inv_uu_3_t, rho2_1_t, rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz,
+        (inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_platform_joint_offset_x, rus_Kd_1_t_2,
+                    rus_Kd_1_t_4, rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz,
                     rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx,
                     rus_base_frame_zy, rus_base_frame_zz, rus_base_point_x, rus_base_point_y,
-                    rus_base_point_z, rus_joint2_offset_x, rus_platform_joint_offset_x,
-                    rus_platform_point_x, rus_platform_point_y, rus_platform_point_z, size,
-                    size_t,),
+                    rus_base_point_z, rus_branch_1, rus_branch_2, rus_joint2_offset_x,
+                    rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
+                    rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t,),
                 ),
             ),
         ),
@@ -807,13 +832,13 @@ def _prepare(p):
         (),
             (
                 (_rus,
-        (Kd_1_t_2, Kd_1_t_3, branch_1, branch_2, inv_Kd_1_t_6, inv_rus_platform_joint_offset_x,
-                    inv_uu_3_t, rho2_1_t, rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz,
+        (inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_platform_joint_offset_x, rus_Kd_1_t_2,
+                    rus_Kd_1_t_4, rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz,
                     rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx,
                     rus_base_frame_zy, rus_base_frame_zz, rus_base_point_x, rus_base_point_y,
-                    rus_base_point_z, rus_joint2_offset_x, rus_platform_joint_offset_x,
-                    rus_platform_point_x, rus_platform_point_y, rus_platform_point_z, size,
-                    size_t,),
+                    rus_base_point_z, rus_branch_1, rus_branch_2, rus_joint2_offset_x,
+                    rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
+                    rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t,),
                 ),
             ),
         ),
@@ -821,15 +846,16 @@ def _prepare(p):
         (gravity_x, gravity_y, gravity_z,),
             (
                 (_rus,
-        (J_1_zz, J_3_xy, J_3_xz, J_3_yz, Kd_1_t_2, Kd_1_t_3, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz,
-                    branch_1, branch_2, g_r0_x, g_r0_y, h_1_x, h_1_y, h_3_x, h_3_y, h_3_z,
-                    inv_Kd_1_t_6, inv_rus_platform_joint_offset_x, inv_uu_3_t, rho2_1_t,
-                    rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx,
-                    rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy,
-                    rus_base_frame_zz, rus_base_point_x, rus_base_point_y, rus_base_point_z,
-                    rus_joint2_offset_x, rus_link3_mass, rus_platform_joint_offset_x,
-                    rus_platform_point_x, rus_platform_point_y, rus_platform_point_z, size,
-                    size_t,),
+        (inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_platform_joint_offset_x, rus_J_1_zz,
+                    rus_J_3_xy, rus_J_3_xz, rus_J_3_yz, rus_Kd_1_t_2, rus_Kd_1_t_4,
+                    rus_Sigma_3_xx, rus_Sigma_3_yy, rus_Sigma_3_zz, rus_base_frame_xx,
+                    rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
+                    rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
+                    rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1,
+                    rus_branch_2, rus_g_r0_x, rus_g_r0_y, rus_h_1_x, rus_h_1_y, rus_h_3_x,
+                    rus_h_3_y, rus_h_3_z, rus_joint2_offset_x, rus_link3_mass,
+                    rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
+                    rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t,),
                 ),
             ),
         ),
@@ -837,14 +863,15 @@ def _prepare(p):
         (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
                 (_rus,
-        (Kd_1_t_2, Kd_1_t_3, b_r0_x, b_r0_y, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_1_x,
-                    h_1_y, h_1_z, h_3_x, h_3_y, h_3_z, inv_Kd_1_t_6, inv_uu_3_t, potential_t,
-                    rho2_1_t, rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz,
-                    rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx,
-                    rus_base_frame_zy, rus_base_frame_zz, rus_base_point_x, rus_base_point_y,
-                    rus_base_point_z, rus_joint2_offset_x, rus_link1_mass,
-                    rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
-                    rus_platform_point_z, size_t,),
+        (inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, rus_Kd_1_t_2, rus_Kd_1_t_4, rus_b_r0_x, rus_b_r0_y,
+                    rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx,
+                    rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy,
+                    rus_base_frame_zz, rus_base_point_x, rus_base_point_y, rus_base_point_z,
+                    rus_branch_1, rus_branch_2, rus_g_r0_x, rus_g_r0_y, rus_g_r0_z, rus_h_1_x,
+                    rus_h_1_y, rus_h_1_z, rus_h_3_x, rus_h_3_y, rus_h_3_z, rus_joint2_offset_x,
+                    rus_link1_mass, rus_platform_joint_offset_x, rus_platform_point_x,
+                    rus_platform_point_y, rus_platform_point_z, rus_potential_t, rus_rho2_1_t,
+                    rus_size_t,),
                 ),
             ),
         ),
@@ -852,20 +879,22 @@ def _prepare(p):
         (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
             (
                 (_rus,
-        (Kd_1_t_2, Kd_1_t_3, branch_1, branch_2, inv_Kd_1_t_6, inv_rho2_1_t_4, inv_size,
-                    inv_size_t, inv_uu_3_t, rho2_1_t, rus_base_frame_xx, rus_base_frame_xy,
+        (inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_rho2_1_t_4, inv_rus_size, inv_rus_size_t,
+                    rus_Kd_1_t_2, rus_Kd_1_t_4, rus_base_frame_xx, rus_base_frame_xy,
                     rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz,
                     rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz, rus_base_point_x,
-                    rus_base_point_y, rus_base_point_z, rus_joint2_offset_x,
-                    rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
-                    rus_platform_point_z, size, size_t,),
+                    rus_base_point_y, rus_base_point_z, rus_branch_1, rus_branch_2,
+                    rus_joint2_offset_x, rus_platform_joint_offset_x, rus_platform_point_x,
+                    rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size,
+                    rus_size_t,),
                 ),
             ),
         ),
     }
 
 
-_FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
+_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
@@ -911,17 +940,19 @@ class _Floats:
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
-        for k in range(self.states):
-            try:
-                ok, arrays = function(self, *(row[k] for row in rows))
-            except (ZeroDivisionError, OverflowError):
-                continue
-            if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
-                for a, array in zip(found, arrays):
-                    a[k] = array
-        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
+        found = [self.state(function, names, [row[k] for row in rows]) for k in range(self.states)]
+        return [np.array(a).T.reshape(*_SHAPES[n], self.states) for a, n in zip(zip(*found), names)]
+
+    def state(self, function, names, given):
+        """Lists that a function gives at a state."""
+        try:
+            ok, arrays = function(self, *given)
+        except (ZeroDivisionError, OverflowError):
+            ok = False
+        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+            return arrays
+        return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
 
 
 class _Arrays:
@@ -989,35 +1020,44 @@ def _mode(p, states):
     return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
 
 
-def _call(function, steps, p, *arguments, mode=_mode):
-    """What the steps give at arguments (name, value, shape of a state, default, rule)."""
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+    """What the steps give at arguments (name, value, shape of a state, default, rule).
+
+    Where that may be infinite only NaN makes a state impossible.
+    """
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
     lead, p = _lead(leads), _given(p)
     read = [a[4:] != ("unused",) for a in arguments]
     if lead or mode is _Judged:
-        results = _many(steps, p, lead, given, shapes, read, mode)
+        results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
-        results = _one(steps, p, given, shapes, read)
+        results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
 
 
-def _one(steps, p, given, shapes, read):
+def _one(steps, p, given, shapes, read, unbounded):
     """Results at a single state."""
     states = [v.reshape(*shape, 1) for v, shape in zip(given, shapes)]
     with np.errstate(all="ignore"):
-        results = [a[..., 0] for a in steps(_Floats(p, 1), *states)]
-    if all(all(map(math.isfinite, v.ravel().tolist())) for v in (*compress(given, read), *results)):
-        return [np.array(a)[()] for a in results]
+        results = [a[..., 0].copy() for a in steps(_Floats(p, 1), *states)]
+    looked_at = [np.minimum(a, 0.0) for a in results] if unbounded else results
+    entries = (v.ravel().tolist() for v in (*compress(given, read), *looked_at))
+    if all(all(map(math.isfinite, row)) for row in entries):
+        return [a[()] for a in results]
     return [np.full(a.shape, np.nan)[()] for a in results]
 
 
-def _many(steps, p, lead, given, shapes, read, mode):
+def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block."""
     count = math.prod(lead)
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
+    if count > _BLOCK:
+        # Never touched, freed at once: the C library, which learns from it, then keeps the memory
+        # of intermediate arrays from block to block instead of giving its pages back.
+        np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
         for first in range(0, max(count, 1), _BLOCK):
             block = slice(first, min(first + _BLOCK, count))
@@ -1029,7 +1069,7 @@ def _many(steps, p, lead, given, shapes, read, mode):
             _all_finite(compress(states, read), good)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite(found, good)
+            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -1065,6 +1105,18 @@ def _wrapped(a, places):
     result = np.array(a)
     result[places] = np.pi - np.remainder(np.pi - a[places], 2.0 * np.pi)
     return result
+
+
+def _unlimited(a, places):
+    """a, some entries infinite; what is not known stays so."""
+    result = np.array(a)
+    result[places] += np.inf
+    return result
+
+
+def _not_negative(a):
+    """1 where no entry is negative, else 0; NaN where one is not finite."""
+    return np.where(np.isfinite(a).all(axis=0), np.all(a >= 0.0, axis=0), np.nan)
 
 
 def _rows_divided(a, b, places):
@@ -1167,8 +1219,8 @@ def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
     n, states = b.shape
     if 0 < states <= _FEW:
-        matrices, rights = np.moveaxis(a, -1, 0).tolist(), b.T.tolist()
-        return np.array([_solve_one(*each) for each in zip(matrices, rights)]).T.reshape(n, states)
+        systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
+        return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
     good = np.all((size > 0.0) & np.isfinite(size), axis=0)
     rows = np.concatenate((a, b[:, None]), axis=1)
@@ -1195,28 +1247,32 @@ def _solve(a, b):
 
 
 def _solve_one(a, b):
-    """The same for one system of nested lists."""
-    n = len(b)
-    failure = [np.nan] * n
-    for i, row in enumerate(a):
-        size = max(map(abs, row), default=0.0)
-        if not 0.0 < size < np.inf:
-            return failure
-        a[i] = [v / size for v in row] + [b[i] / size]
-    for k in range(n):
-        best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
-            a[k], a[best] = a[best], a[k]
-        if not abs(a[k][k]) > _PIVOT:
-            return failure
-        head = a[k]
-        for i in range(k + 1, n):
-            factor = a[i][k] / head[k]
-            a[i] = [v - factor * h for v, h in zip(a[i], head)]
-    x = [0.0] * n
-    for k in reversed(range(n)):
-        x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
-    return x if all(map(math.isfinite, x)) else failure
+    """The same for one system of nested lists: the rows left lose an entry at every step."""
+    rows, heads = [], []
+    for row, right in zip(a, b):
+        size = max(map(abs, row))
+        if not 0.0 < size < math.inf:
+            return [math.nan] * len(b)
+        rows.append([v / size for v in (*row, right)])
+    while rows:
+        column = [abs(row[0]) for row in rows]
+        largest = max(column)
+        if largest > _CLEARLY * column[0]:
+            best = column.index(largest)
+            rows[0], rows[best] = rows[best], rows[0]
+        pivot, *head = rows[0]
+        if not abs(pivot) > _PIVOT:
+            return [math.nan] * len(b)
+        heads.append((pivot, head))
+        for i in range(1, len(rows)):
+            first, *row = rows[i]
+            factor = first / pivot
+            rows[i] = [v - factor * h for v, h in zip(row, head)]
+        del rows[0]
+    x = []
+    for pivot, (*head, right) in reversed(heads):
+        x.insert(0, (right - sum([h * v for h, v in zip(head, x)])) / pivot)
+    return x if all(map(math.isfinite, x)) else [math.nan] * len(b)
 
 
 def _matrices(a, *others):
@@ -1327,12 +1383,12 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 2229 mul, 1605 add, 24 div, 12 sqrt, 0 trig
+# dynamics: 2235 mul, 1617 add, 24 div, 12 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
-    J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
+    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
         Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
         m_star,
     ) = shared
@@ -1388,130 +1444,140 @@ def _run_dynamics(m, X, V):
     out_M = m.zeros("M")
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy
-    J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
     J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_12 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_15 = 2.0*J_star_t_14 + J_star_xx
-    # (M4) centripetal force and weight of the platform
+    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
+    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
     Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
     Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z_2*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x_2*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y - g_r0_y_2*h_star_x
+    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
+    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
     sums = [0.0] * 27
     for leg, k in legs[0]:
         (
-        J_1_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yz, J_3_zz, Kd_1_t_2, Kd_1_t_3, Sigma_3_xx,
-            Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, d_Gamma_3_t, d_Gamma_3_y, d_c_yy,
-            d_phi_3_t, g_r0_x, g_r0_y, g_r0_z, h_1_x, h_1_y, h_3_x, h_3_y, h_3_z, inv_Kd_1_t_6,
-            inv_rus_platform_joint_offset_x, inv_uu_3_t, rho2_1_t, rus_base_frame_xx,
+        inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_platform_joint_offset_x, rus_J_1_zz,
+            rus_J_3_xx, rus_J_3_xy, rus_J_3_xz, rus_J_3_yz, rus_J_3_zz, rus_Kd_1_t_2,
+            rus_Kd_1_t_4, rus_Sigma_3_xx, rus_Sigma_3_yy, rus_Sigma_3_zz, rus_base_frame_xx,
             rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
             rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
-            rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_joint2_offset_x,
+            rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1, rus_branch_2,
+            rus_d_Gamma_3_t, rus_d_Gamma_3_y, rus_d_c_yy, rus_d_phi_3_t, rus_g_r0_x, rus_g_r0_y,
+            rus_h_1_x, rus_h_1_y, rus_h_3_x, rus_h_3_y, rus_h_3_z, rus_joint2_offset_x,
             rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
-            rus_platform_point_z, size, size_t,
+            rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t,
         ) = k
-        # (rus-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (rus-S) from the base point to the connection point
+        rus_q_in_base_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
-        q_in_base_y = (
+        rus_q_in_base_y = (
         R_yx*rus_platform_point_x + R_yy*rus_platform_point_y + R_yz*rus_platform_point_z
         )
-        q_in_base_z = (
+        rus_q_in_base_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rus_base_point_x
-        S_y = q_in_base_y + t_y - rus_base_point_y
-        S_z = q_in_base_z + t_z - rus_base_point_z
-        # (rus-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_t = S_x*S_x + S_y*S_y + S_z*S_z
-        Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
-        # (rus-K3) component along the reference direction
-        px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx
-        # (rus-K6) factor of the cosine in the equation of joint 1
-        Kc_1 = px_1*rus_joint2_offset_x
-        # (rus-K4) component across the reference direction
-        py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy
-        # (rus-K7) factor of the sine in the equation of joint 1
-        Ks_1 = py_1*rus_joint2_offset_x
-        # (rus-K8) squared amplitude
-        rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
-        # (rus-K9) discriminant
-        disc_1 = rho2_1 - Kd_1*Kd_1
-        # (rus-K10) root, with the sign of the branch
-        root_1 = branch_1*sqrt(disc_1)
-        # (rus-K15) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = inv_Kd_1_t_6*root_1*rus_joint2_offset_x
-        xi_1_t_2 = S_x*rus_base_frame_xz + S_y*rus_base_frame_yz + S_z*rus_base_frame_zz
-        # (rus-K16) from the origin of joint 2 to the connection point
-        x_2_x = Kd_1*inv_Kd_1_t_6*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-K20) squared amplitude
-        rho2_2 = x_2_x*x_2_x + xi_1_t*xi_1_t
-        # (rus-K22) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (rus-K28) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_uu_3_t*root_2*rus_platform_joint_offset_x
-        # (rus-K29) sine of the angle of joint 3 from its reference direction
-        s_3 = inv_uu_3_t*rus_platform_joint_offset_x*xi_1_t_2
-        # (rus-V2) from joint 1 to the connection point, along the links
-        r_1_t = c_3*rus_platform_joint_offset_x
-        r_1_t_2 = rus_platform_joint_offset_x*s_3
-        # (rus-K23) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = inv_rho2_2*root_2*xi_1_t
-        # (rus-K24) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*root_2*x_2_x
-        # (rus-V2) from joint 1 to the connection point, along the links
-        r_1_t_3 = c_2*r_1_t
-        r_1_x = rus_joint2_offset_x + r_1_t*s_2
-        r_1_r0_x = c_2*r_1_x - r_1_t_3*s_2
-        r_1_r0_y = -c_2*r_1_t_3 - r_1_x*s_2
-        # (rus-V3) velocity of the connection point per rate of joint 1
-        v_1_t = c_3*r_1_r0_x
-        v_1_t_2 = r_1_r0_x*s_3
-        v_1_z = c_3*(r_1_t_2*s_3 - c_3*r_1_r0_y) + s_3*(-c_3*r_1_t_2 - r_1_r0_y*s_3)
-        # (rus-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1)
-        # (rus-K12) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1)
-        # (rus-V6) reciprocal vector 1
-        axis_z_rus_axes3_r3_x = c_1*c_2 - s_1*s_2
-        axis_z_rus_axes3_r3_y = c_1*s_2 + c_2*s_1
+        rus_S_x = rus_q_in_base_x + t_x - rus_base_point_x
+        rus_S_y = rus_q_in_base_y + t_y - rus_base_point_y
+        rus_S_z = rus_q_in_base_z + t_z - rus_base_point_z
+        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
+        rus_Kd_1 = 0.5*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4
+        # (rus-px_1) component along the reference direction
+        rus_px_1 = (
+        rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx
+        )
+        # (rus-Kc_1) factor of the cosine in the equation of joint 1
+        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
+        # (rus-py_1) component across the reference direction
+        rus_py_1 = (
+        rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy
+        )
+        # (rus-Ks_1) factor of the sine in the equation of joint 1
+        rus_Ks_1 = rus_joint2_offset_x*rus_py_1
+        # (rus-rho2_1) squared amplitude
+        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
+        # (rus-disc_1) discriminant
+        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
+        # (rus-root_1) root, with the sign of the branch
+        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
+        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1
+        rus_xi_1_t_2 = (
+        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
+        )
+        # (rus-x_2) from the origin of joint 2 to the connection point
+        rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
+        # (rus-rho2_2) squared amplitude
+        rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t
+        # (rus-root_2) root, with the sign of the branch
+        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
+        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
+        rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2
+        # (rus-s_3) sine of the angle of joint 3 from its reference direction
+        rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
+        rus_r_1_t_2 = rus_platform_joint_offset_x*rus_s_3
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_rho2_2 = 1.0/rus_rho2_2
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t_3 = rus_c_2*rus_r_1_t
+        rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
+        rus_r_1_r0_x = rus_c_2*rus_r_1_x - rus_r_1_t_3*rus_s_2
+        rus_r_1_r0_y = -rus_c_2*rus_r_1_t_3 - rus_r_1_x*rus_s_2
+        # (rus-v_1) velocity of the connection point per rate of joint 1
+        rus_v_1_t = rus_c_3*rus_r_1_r0_x
+        rus_v_1_t_2 = rus_r_1_r0_x*rus_s_3
+        rus_v_1_z = (
+        rus_c_3*(rus_r_1_t_2*rus_s_3 - rus_c_3*rus_r_1_r0_y) + rus_s_3*(-rus_c_3*rus_r_1_t_2 -
+            rus_r_1_r0_y*rus_s_3)
+        )
+        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rus_rho2_1 = 1.0/rus_rho2_1
+        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
+        # (rus-s_1) sine of the angle of joint 1 from its reference direction
+        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
+        # (rus-w_1) reciprocal vector 1
+        axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
+        axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
         axis_z_rus_axes3_in_base_x = (
         axis_z_rus_axes3_r3_x*rus_base_frame_xx + axis_z_rus_axes3_r3_y*rus_base_frame_xy
         )
@@ -1521,21 +1587,21 @@ def _run_dynamics(m, X, V):
         axis_z_rus_axes3_in_base_z = (
         axis_z_rus_axes3_r3_x*rus_base_frame_zx + axis_z_rus_axes3_r3_y*rus_base_frame_zy
         )
-        w_1_t = s_2*s_3
-        w_1_t_2 = c_2*s_3
-        axis_y_rus_axes3_r3_x = c_1*w_1_t + s_1*w_1_t_2
-        axis_y_rus_axes3_r3_y = s_1*w_1_t - c_1*w_1_t_2
+        rus_w_1_t = rus_s_2*rus_s_3
+        rus_w_1_t_2 = rus_c_2*rus_s_3
+        axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2
+        axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2
         axis_y_rus_axes3_in_base_x = (
         axis_y_rus_axes3_r3_x*rus_base_frame_xx + axis_y_rus_axes3_r3_y*rus_base_frame_xy -
-            c_3*rus_base_frame_xz
+            rus_base_frame_xz*rus_c_3
         )
         axis_y_rus_axes3_in_base_y = (
         axis_y_rus_axes3_r3_x*rus_base_frame_yx + axis_y_rus_axes3_r3_y*rus_base_frame_yy -
-            c_3*rus_base_frame_yz
+            rus_base_frame_yz*rus_c_3
         )
         axis_y_rus_axes3_in_base_z = (
         axis_y_rus_axes3_r3_x*rus_base_frame_zx + axis_y_rus_axes3_r3_y*rus_base_frame_zy -
-            c_3*rus_base_frame_zz
+            rus_base_frame_zz*rus_c_3
         )
         axis_x_rus_axes3_x = (
         axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
@@ -1549,257 +1615,300 @@ def _run_dynamics(m, X, V):
         axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
             axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x
         )
-        # (rus-G7) inertia tensor of link 3 about the connection point
-        _y = J_3_xy*s_3 + J_3_yz*c_3
-        _y_2 = s_3*(J_3_xx*s_3 + J_3_xz*c_3) - c_3*(-J_3_xz*s_3 - J_3_zz*c_3)
-        # (rus-V6) reciprocal vector 1
-        inv_v_1_t = 1.0/v_1_t
-        # (rus-V7) reciprocal vector 2
-        inv_r_1_t = 1.0/r_1_t
-        w_2_t = inv_r_1_t*inv_v_1_t*v_1_z
-        # (rus-V8) reciprocal vector 3
-        w_3_t = inv_rus_platform_joint_offset_x*inv_v_1_t*v_1_t_2
-        # (rus-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_t = c_3*h_3_y
-        d_Gamma_1_t_2 = _y_2*inv_r_1_t
-        d_Gamma_1_t_3 = _y*inv_rus_platform_joint_offset_x
-        d_Gamma_1_t_4 = d_Gamma_1_t_2*v_1_z
-        d_Gamma_1_t_5 = d_Gamma_1_t_3*v_1_t_2
-        d_Gamma_1_x = -d_Gamma_1_t - inv_v_1_t*(J_1_zz + _y_2 + d_Gamma_1_t_5 - d_Gamma_1_t_4)
-        d_Gamma_1_y = d_Gamma_1_t_3 - h_3_y*s_3
-        d_Gamma_1_z = d_Gamma_1_t_2 + c_3*h_3_x - h_3_z*s_3
-        # (rus-N26) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_x = -d_Gamma_1_t - inv_v_1_t*(_y_2 + d_Gamma_1_t_5 - d_Gamma_1_t_4)
-        # (rus-N23) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        d_Gamma_3_t_2 = _y*inv_r_1_t
-        d_Gamma_3_x = h_3_z - inv_v_1_t*(_y + d_Gamma_3_t*v_1_t_2 - d_Gamma_3_t_2*v_1_z)
-        # (rus-A23) coefficient of the acceleration in: angular acceleration of link 3
-        d_alpha_3_t = inv_r_1_t*s_3
-        d_alpha_3_t_2 = c_3*inv_r_1_t
-        # (rus-N41) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_xx = (
-        d_Gamma_1_x*inv_v_1_t + d_Gamma_3_x*w_3_t + h_3_z*w_3_t - d_Gamma_2_x*w_2_t -
-            h_3_y*(c_3*inv_v_1_t - c_3*w_2_t)
+        inv_rus_v_1_t = 1.0/rus_v_1_t
+        # (rus-w_2) reciprocal vector 2
+        inv_rus_r_1_t = 1.0/rus_r_1_t
+        rus_w_2_t = inv_rus_r_1_t*inv_rus_v_1_t*rus_v_1_z
+        # (rus-w_3) reciprocal vector 3
+        rus_w_3_t = inv_rus_platform_joint_offset_x*inv_rus_v_1_t*rus_v_1_t_2
+        # (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
+        rus_d_alpha_3_t = inv_rus_r_1_t*rus_s_3
+        rus_d_alpha_3_t_2 = inv_rus_r_1_t*rus_c_3
+        # (rus-L_c_3) moment about joint 3 that accelerates joint 3, per unit
+        rus_L_c_3_r0_y = rus_J_3_xy*rus_s_3 + rus_J_3_yz*rus_c_3
+        # (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        rus_d_Gamma_3_t_2 = inv_rus_r_1_t*rus_L_c_3_r0_y
+        rus_d_Gamma_3_x = (
+        rus_h_3_z - inv_rus_v_1_t*(rus_L_c_3_r0_y + rus_d_Gamma_3_t*rus_v_1_t_2 -
+            rus_d_Gamma_3_t_2*rus_v_1_z)
         )
-        d_c_xy = d_Gamma_1_y*inv_v_1_t + d_Gamma_3_y*w_3_t - d_phi_3_t - d_Gamma_1_y*w_2_t
-        d_c_xz = (
-        d_Gamma_1_z*inv_v_1_t + d_Gamma_3_t_2*w_3_t + d_alpha_3_t_2*h_3_y - d_Gamma_1_z*w_2_t
+        # (rus-J_3) inertia tensor of link 3 about the connection point
+        rus__y = (
+        rus_s_3*(rus_J_3_xx*rus_s_3 + rus_J_3_xz*rus_c_3) - rus_c_3*(-rus_J_3_xz*rus_s_3 -
+            rus_J_3_zz*rus_c_3)
         )
-        d_c_yz = d_alpha_3_t*h_3_y - d_Gamma_3_t_2*inv_rus_platform_joint_offset_x
-        # (rus-N43) inertia of the leg at the connection point, without the mass gathered there
-        Q_t = d_c_xx - d_c_yy
-        Q_t_2 = 0.5*Q_t
-        Q_t_3 = d_c_xx + d_Gamma_1_z*inv_r_1_t + d_alpha_3_t_2*h_3_x - d_alpha_3_t*h_3_z
-        Q_t_4 = 0.5*Q_t_3
-        Q_t_5 = (
-        axis_x_rus_axes3_x*d_c_xy + axis_z_rus_axes3_in_base_x*d_c_yz -
-            Q_t_2*axis_y_rus_axes3_in_base_x
+        # (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rus_d_Gamma_2_t = rus_c_3*rus_h_3_y
+        rus_d_Gamma_2_t_2 = inv_rus_r_1_t*rus__y
+        rus_d_Gamma_2_t_3 = inv_rus_platform_joint_offset_x*rus_L_c_3_r0_y
+        rus_d_Gamma_2_t_4 = rus_d_Gamma_2_t_2*rus_v_1_z
+        rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_t_2
+        rus_d_Gamma_2_x = (
+        -rus_d_Gamma_2_t - inv_rus_v_1_t*(rus__y + rus_d_Gamma_2_t_5 - rus_d_Gamma_2_t_4)
         )
-        Q_t_6 = (
-        axis_x_rus_axes3_y*d_c_xy + axis_z_rus_axes3_in_base_y*d_c_yz -
-            Q_t_2*axis_y_rus_axes3_in_base_y
+        rus_d_Gamma_2_y = rus_d_Gamma_2_t_3 - rus_h_3_y*rus_s_3
+        rus_d_Gamma_2_z = rus_d_Gamma_2_t_2 + rus_c_3*rus_h_3_x - rus_h_3_z*rus_s_3
+        # (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rus_d_Gamma_1_x = (
+        -rus_d_Gamma_2_t - inv_rus_v_1_t*(rus_J_1_zz + rus__y + rus_d_Gamma_2_t_5 -
+            rus_d_Gamma_2_t_4)
         )
-        Q_t_7 = (
-        axis_x_rus_axes3_z*d_c_xy + axis_z_rus_axes3_in_base_z*d_c_yz -
-            Q_t_2*axis_y_rus_axes3_in_base_z
+        # (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rus_d_c_xx = (
+        inv_rus_v_1_t*rus_d_Gamma_1_x + rus_d_Gamma_3_x*rus_w_3_t + rus_h_3_z*rus_w_3_t -
+            rus_d_Gamma_2_x*rus_w_2_t - rus_h_3_y*(inv_rus_v_1_t*rus_c_3 - rus_c_3*rus_w_2_t)
         )
-        Q_t_8 = Q_t_4*axis_z_rus_axes3_in_base_x - axis_x_rus_axes3_x*d_c_xz
-        Q_t_9 = Q_t_4*axis_z_rus_axes3_in_base_y - axis_x_rus_axes3_y*d_c_xz
-        Q_t_10 = Q_t_4*axis_z_rus_axes3_in_base_z - axis_x_rus_axes3_z*d_c_xz
-        Q_t_11 = Q_t_5*axis_y_rus_axes3_in_base_x - Q_t_8*axis_z_rus_axes3_in_base_x
-        Q_t_12 = 2.0*Q_t_11 + d_c_xx
-        Q_t_13 = (
-        Q_t_5*axis_y_rus_axes3_in_base_y + Q_t_6*axis_y_rus_axes3_in_base_x -
-            Q_t_8*axis_z_rus_axes3_in_base_y - Q_t_9*axis_z_rus_axes3_in_base_x
+        rus_d_c_xy = (
+        inv_rus_v_1_t*rus_d_Gamma_2_y + rus_d_Gamma_3_y*rus_w_3_t - rus_d_phi_3_t -
+            rus_d_Gamma_2_y*rus_w_2_t
         )
-        Q_t_14 = (
-        Q_t_5*axis_y_rus_axes3_in_base_z + Q_t_7*axis_y_rus_axes3_in_base_x -
-            Q_t_10*axis_z_rus_axes3_in_base_x - Q_t_8*axis_z_rus_axes3_in_base_z
+        rus_d_c_xz = (
+        inv_rus_v_1_t*rus_d_Gamma_2_z + rus_d_Gamma_3_t_2*rus_w_3_t + rus_d_alpha_3_t_2*rus_h_3_y
+            - rus_d_Gamma_2_z*rus_w_2_t
         )
-        Q_t_15 = Q_t_6*axis_y_rus_axes3_in_base_y - Q_t_9*axis_z_rus_axes3_in_base_y
-        Q_t_16 = 2.0*Q_t_15 + d_c_xx
-        Q_t_17 = (
-        Q_t_6*axis_y_rus_axes3_in_base_z + Q_t_7*axis_y_rus_axes3_in_base_y -
-            Q_t_10*axis_z_rus_axes3_in_base_y - Q_t_9*axis_z_rus_axes3_in_base_z
+        rus_d_c_yz = rus_d_alpha_3_t*rus_h_3_y - inv_rus_platform_joint_offset_x*rus_d_Gamma_3_t_2
+        # (rus-Q) inertia of the leg at the connection point, without the mass gathered there
+        rus_Q_t = rus_d_c_xx - rus_d_c_yy
+        rus_Q_t_2 = 0.5*rus_Q_t
+        rus_Q_t_3 = (
+        rus_d_c_xx + inv_rus_r_1_t*rus_d_Gamma_2_z + rus_d_alpha_3_t_2*rus_h_3_x -
+            rus_d_alpha_3_t*rus_h_3_z
         )
-        Q_t_18 = Q_t_7*axis_y_rus_axes3_in_base_z - Q_t_10*axis_z_rus_axes3_in_base_z
-        Q_t_19 = 2.0*Q_t_18 + d_c_xx
-        # (M2) coupling block of M
-        M_ta_t = Q_t_13*q_in_base_z
-        M_ta_t_2 = Q_t_14*q_in_base_y
-        M_ta_t_3 = M_ta_t - M_ta_t_2
-        M_ta_t_4 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x
-        M_ta_t_5 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x
-        M_ta_t_6 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y
-        M_ta_t_7 = Q_t_17*q_in_base_x
-        M_ta_t_8 = M_ta_t - M_ta_t_7
-        M_ta_t_9 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x
-        M_ta_t_10 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y
-        M_ta_t_11 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x
-        M_ta_t_12 = M_ta_t_7 - M_ta_t_2
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
-        M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y
-        M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z
-        M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x
-        M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z
-        M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
-        # (rus-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        g_r1_x = c_1*g_r0_x + g_r0_y*s_1
-        g_r1_y = c_1*g_r0_y - g_r0_x*s_1
-        # (rus-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        # (rus-V9) rate of joint 1
-        qd_1 = (
-        inv_v_1_t*(S_dot_x*axis_x_rus_axes3_x + S_dot_y*axis_x_rus_axes3_y +
-            S_dot_z*axis_x_rus_axes3_z)
+        rus_Q_t_4 = 0.5*rus_Q_t_3
+        rus_Q_t_5 = (
+        axis_x_rus_axes3_x*rus_d_c_xy + axis_z_rus_axes3_in_base_x*rus_d_c_yz -
+            axis_y_rus_axes3_in_base_x*rus_Q_t_2
         )
-        qd_1_t = (
-        S_dot_x*axis_y_rus_axes3_in_base_x + S_dot_y*axis_y_rus_axes3_in_base_y +
-            S_dot_z*axis_y_rus_axes3_in_base_z - qd_1*v_1_t_2
+        rus_Q_t_6 = (
+        axis_x_rus_axes3_y*rus_d_c_xy + axis_z_rus_axes3_in_base_y*rus_d_c_yz -
+            axis_y_rus_axes3_in_base_y*rus_Q_t_2
         )
-        qd_3 = inv_rus_platform_joint_offset_x*qd_1_t
-        # (rus-V14) angular velocity of link 2
-        omega_2_z = (
-        inv_r_1_t*(S_dot_x*axis_z_rus_axes3_in_base_x + S_dot_y*axis_z_rus_axes3_in_base_y +
-            S_dot_z*axis_z_rus_axes3_in_base_z + qd_1*v_1_z) - qd_1
+        rus_Q_t_7 = (
+        axis_x_rus_axes3_z*rus_d_c_xy + axis_z_rus_axes3_in_base_z*rus_d_c_yz -
+            axis_y_rus_axes3_in_base_z*rus_Q_t_2
         )
-        omega_2_t = omega_2_z*s_3
-        omega_2_t_2 = c_3*omega_2_z
-        # (rus-A5) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_x = omega_2_t_2*qd_3
-        zeta_3_y = omega_2_t*qd_3
-        # (rus-V16) centripetal tensor of link 3
-        W_3_t = omega_2_t*omega_2_t
-        W_3_t_2 = omega_2_t_2*omega_2_t_2
-        W_3_t_3 = qd_3*qd_3
-        W_3_xy = omega_2_t*omega_2_t_2
-        # (rus-V12) angular velocity of link 1
-        omega_1_t = qd_1*s_3
-        omega_1_t_2 = c_3*qd_1
-        # (rus-A7) acceleration of the connection point at zero joint accelerations
-        bias_t = c_2*rus_joint2_offset_x
-        bias_t_2 = rus_joint2_offset_x*s_2
-        bias_t_3 = bias_t_2*c_3*omega_1_t_2 + bias_t_2*omega_1_t*s_3
-        bias_t_4 = omega_2_t_2*rus_platform_joint_offset_x
-        bias_x = -bias_t_3*omega_1_t_2 - bias_t_4*omega_2_t_2 - qd_1_t*qd_3
-        bias_y = -bias_t_3*omega_1_t - bias_t_4*omega_2_t
-        bias_z = (
-        omega_2_t*qd_1_t + rus_platform_joint_offset_x*zeta_3_y - bias_t*omega_1_t*omega_1_t -
-            bias_t*omega_1_t_2*omega_1_t_2
+        rus_Q_t_8 = axis_z_rus_axes3_in_base_x*rus_Q_t_4 - axis_x_rus_axes3_x*rus_d_c_xz
+        rus_Q_t_9 = axis_z_rus_axes3_in_base_y*rus_Q_t_4 - axis_x_rus_axes3_y*rus_d_c_xz
+        rus_Q_t_10 = axis_z_rus_axes3_in_base_z*rus_Q_t_4 - axis_x_rus_axes3_z*rus_d_c_xz
+        rus_Q_t_11 = axis_y_rus_axes3_in_base_x*rus_Q_t_5 - axis_z_rus_axes3_in_base_x*rus_Q_t_8
+        rus_Q_t_12 = 2.0*rus_Q_t_11 + rus_d_c_xx
+        rus_Q_t_13 = (
+        axis_y_rus_axes3_in_base_x*rus_Q_t_6 + axis_y_rus_axes3_in_base_y*rus_Q_t_5 -
+            axis_z_rus_axes3_in_base_x*rus_Q_t_9 - axis_z_rus_axes3_in_base_y*rus_Q_t_8
         )
-        # (rus-A1) centripetal acceleration of the connection point
-        u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
-        u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y
-        u_1_tip_x = axis_x_rus_axes3_x*u_1_x + axis_x_rus_axes3_y*u_1_y + axis_x_rus_axes3_z*u_1_z
-        u_1_tip_y = (
-        axis_y_rus_axes3_in_base_x*u_1_x + axis_y_rus_axes3_in_base_y*u_1_y +
-            axis_y_rus_axes3_in_base_z*u_1_z
+        rus_Q_t_14 = (
+        axis_y_rus_axes3_in_base_x*rus_Q_t_7 + axis_y_rus_axes3_in_base_z*rus_Q_t_5 -
+            axis_z_rus_axes3_in_base_x*rus_Q_t_10 - axis_z_rus_axes3_in_base_z*rus_Q_t_8
         )
-        u_1_tip_z = (
-        axis_z_rus_axes3_in_base_x*u_1_x + axis_z_rus_axes3_in_base_y*u_1_y +
-            axis_z_rus_axes3_in_base_z*u_1_z
+        rus_Q_t_15 = axis_y_rus_axes3_in_base_y*rus_Q_t_6 - axis_z_rus_axes3_in_base_y*rus_Q_t_9
+        rus_Q_t_16 = 2.0*rus_Q_t_15 + rus_d_c_xx
+        rus_Q_t_17 = (
+        axis_y_rus_axes3_in_base_y*rus_Q_t_7 + axis_y_rus_axes3_in_base_z*rus_Q_t_6 -
+            axis_z_rus_axes3_in_base_y*rus_Q_t_10 - axis_z_rus_axes3_in_base_z*rus_Q_t_9
         )
-        # (rus-A9) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_x = u_1_tip_x - bias_x
-        rel_o_y = u_1_tip_y - bias_y
-        rel_o_z = u_1_tip_z - bias_z
-        # (rus-A11) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_o = inv_v_1_t*rel_o_x
-        qdd_3_o = inv_rus_platform_joint_offset_x*(qdd_1_o*v_1_t_2 - rel_o_y)
-        # (rus-N31) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_o_z = g_r1_x*h_1_y - J_1_zz*qdd_1_o - g_r1_y*h_1_x
-        # (rus-N4) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        g_r2_y = c_2*g_r1_y - g_r1_x*s_2
-        acc_3_o_x = u_1_tip_x + c_3*g_r2_y - g_r0_z*s_3
-        acc_3_o_y = u_1_tip_y + c_3*g_r0_z + g_r2_y*s_3
-        acc_3_o_z = u_1_tip_z - c_2*g_r1_x - g_r1_y*s_2
-        # (rus-A21) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_o_z = inv_r_1_t*(rel_o_z + qdd_1_o*v_1_z) - qdd_1_o
-        alpha_2_o_t = alpha_2_o_z*s_3
-        alpha_2_o_t_2 = alpha_2_o_z*c_3
-        # (rus-A24) remainder without the acceleration in: angular acceleration of link 3
-        alpha_3_o_x = alpha_2_o_t - zeta_3_x
-        alpha_3_o_y = -alpha_2_o_t_2 - zeta_3_y
-        # (rus-A26) remainder of the acceleration tensor of link 3
-        B_3_o_xy = qdd_3_o - W_3_xy
-        B_3_o_yx = -W_3_xy - qdd_3_o
-        B_3_o_zx = zeta_3_y - alpha_3_o_y
-        B_3_o_zy = alpha_3_o_x - zeta_3_x
-        # (rus-N21) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        mu_3_o_x = (
-        B_3_o_yx*J_3_xy + B_3_o_zx*J_3_xz + B_3_o_zy*Sigma_3_yy + Sigma_3_zz*alpha_2_o_t -
-            J_3_yz*(W_3_t_2 - W_3_t_3) - acc_3_o_y*h_3_y - acc_3_o_z*h_3_z
+        rus_Q_t_18 = axis_y_rus_axes3_in_base_z*rus_Q_t_7 - axis_z_rus_axes3_in_base_z*rus_Q_t_10
+        rus_Q_t_19 = 2.0*rus_Q_t_18 + rus_d_c_xx
+        # (M_ta) coupling block of M
+        rus_M_ta_t = rus_Q_t_13*rus_q_in_base_z
+        rus_M_ta_t_2 = rus_Q_t_14*rus_q_in_base_y
+        rus_M_ta_t_3 = rus_M_ta_t - rus_M_ta_t_2
+        rus_M_ta_t_4 = rus_Q_t_12*rus_q_in_base_z - rus_Q_t_14*rus_q_in_base_x
+        rus_M_ta_t_5 = rus_Q_t_12*rus_q_in_base_y - rus_Q_t_13*rus_q_in_base_x
+        rus_M_ta_t_6 = rus_Q_t_16*rus_q_in_base_z - rus_Q_t_17*rus_q_in_base_y
+        rus_M_ta_t_7 = rus_Q_t_17*rus_q_in_base_x
+        rus_M_ta_t_8 = rus_M_ta_t - rus_M_ta_t_7
+        rus_M_ta_t_9 = rus_Q_t_13*rus_q_in_base_y - rus_Q_t_16*rus_q_in_base_x
+        rus_M_ta_t_10 = rus_Q_t_17*rus_q_in_base_z - rus_Q_t_19*rus_q_in_base_y
+        rus_M_ta_t_11 = rus_Q_t_14*rus_q_in_base_z - rus_Q_t_19*rus_q_in_base_x
+        rus_M_ta_t_12 = rus_M_ta_t_7 - rus_M_ta_t_2
+        # (M_aa) rotational block of M
+        rus_M_aa_t = rus_M_ta_t_6*rus_q_in_base_z - rus_M_ta_t_10*rus_q_in_base_y
+        rus_M_aa_t_2 = rus_M_ta_t_8*rus_q_in_base_z - rus_M_ta_t_11*rus_q_in_base_y
+        rus_M_aa_t_3 = rus_M_ta_t_12*rus_q_in_base_y + rus_M_ta_t_9*rus_q_in_base_z
+        rus_M_aa_t_4 = rus_M_ta_t_4*rus_q_in_base_z - rus_M_ta_t_11*rus_q_in_base_x
+        rus_M_aa_t_5 = rus_M_ta_t_12*rus_q_in_base_x + rus_M_ta_t_5*rus_q_in_base_z
+        rus_M_aa_t_6 = rus_M_ta_t_5*rus_q_in_base_y - rus_M_ta_t_9*rus_q_in_base_x
+        # (rus-S_dot) velocity of the connection point
+        rus_S_dot_t = omega_y*rus_q_in_base_z - omega_z*rus_q_in_base_y
+        rus_S_dot_t_2 = omega_z*rus_q_in_base_x - omega_x*rus_q_in_base_z
+        rus_S_dot_t_3 = omega_x*rus_q_in_base_y - omega_y*rus_q_in_base_x
+        rus_S_dot_x = rus_S_dot_t + t_dot_x
+        rus_S_dot_y = rus_S_dot_t_2 + t_dot_y
+        rus_S_dot_z = rus_S_dot_t_3 + t_dot_z
+        # (rus-qd_3) rate of joint 3
+        rus_qd_1 = (
+        inv_rus_v_1_t*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
+            axis_x_rus_axes3_z*rus_S_dot_z)
         )
-        mu_3_o_y = (
-        B_3_o_xy*J_3_yz + acc_3_o_x*h_3_y - B_3_o_zx*Sigma_3_xx - B_3_o_zy*J_3_xz - J_3_xy*(W_3_t
-            - W_3_t_3) - Sigma_3_zz*alpha_2_o_t_2 - acc_3_o_z*h_3_x
+        rus_qd_3_t = (
+        axis_y_rus_axes3_in_base_x*rus_S_dot_x + axis_y_rus_axes3_in_base_y*rus_S_dot_y +
+            axis_y_rus_axes3_in_base_z*rus_S_dot_z - rus_qd_1*rus_v_1_t_2
         )
-        mu_3_o_z = (
-        B_3_o_yx*Sigma_3_xx + J_3_xy*alpha_2_o_t + J_3_yz*alpha_2_o_t_2 + acc_3_o_x*h_3_z +
-            acc_3_o_y*h_3_x - B_3_o_xy*Sigma_3_yy - J_3_xz*(W_3_t - W_3_t_2)
+        rus_qd_3 = inv_rus_platform_joint_offset_x*rus_qd_3_t
+        # (rus-omega_2) angular velocity of link 2
+        rus_omega_2_z = (
+        inv_rus_r_1_t*(axis_z_rus_axes3_in_base_x*rus_S_dot_x +
+            axis_z_rus_axes3_in_base_y*rus_S_dot_y + axis_z_rus_axes3_in_base_z*rus_S_dot_z +
+            rus_qd_1*rus_v_1_z) - rus_qd_1
         )
-        mu_3_o_r0_y = mu_3_o_x*s_3 - c_3*mu_3_o_y
-        # (rus-N33) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_o_z = mu_1_o_z + mu_3_o_r0_y
-        # (rus-N39) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_o_t = inv_r_1_t*mu_3_o_r0_y
-        G_o_t_2 = inv_rus_platform_joint_offset_x*mu_3_o_z
-        # (rus-N42) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_o_x = (
-        B_3_o_xy*h_3_z + alpha_2_o_t_2*h_3_y + h_3_x*(W_3_t_2 + W_3_t_3) + inv_v_1_t*(N_1_o_z +
-            G_o_t_2*v_1_t_2 - G_o_t*v_1_z)
+        rus_omega_2_t = rus_omega_2_z*rus_s_3
+        rus_omega_2_t_2 = rus_c_3*rus_omega_2_z
+        # (rus-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rus_zeta_3_x = rus_omega_2_t_2*rus_qd_3
+        rus_zeta_3_y = rus_omega_2_t*rus_qd_3
+        # (rus-u_1) centripetal acceleration of the connection point
+        rus_u_1_x = omega_y*rus_S_dot_t_3 - omega_z*rus_S_dot_t_2
+        rus_u_1_y = omega_z*rus_S_dot_t - omega_x*rus_S_dot_t_3
+        rus_u_1_z = omega_x*rus_S_dot_t_2 - omega_y*rus_S_dot_t
+        # (rus-W_3) centripetal tensor of link 3
+        rus_W_3_t = rus_omega_2_t*rus_omega_2_t
+        rus_W_3_t_2 = rus_omega_2_t_2*rus_omega_2_t_2
+        rus_W_3_t_3 = rus_qd_3*rus_qd_3
+        rus_W_3_xy = rus_omega_2_t*rus_omega_2_t_2
+        # (rus-omega_1) angular velocity of link 1
+        rus_omega_1_t = rus_qd_1*rus_s_3
+        rus_omega_1_t_2 = rus_c_3*rus_qd_1
+        # (rus-bias) acceleration of the connection point at zero joint accelerations
+        rus_bias_t = rus_c_2*rus_joint2_offset_x
+        rus_bias_t_2 = rus_joint2_offset_x*rus_s_2
+        rus_bias_t_3 = rus_bias_t_2*rus_c_3*rus_omega_1_t_2 + rus_bias_t_2*rus_omega_1_t*rus_s_3
+        rus_bias_t_4 = rus_omega_2_t_2*rus_platform_joint_offset_x
+        rus_bias_x = (
+        -rus_bias_t_3*rus_omega_1_t_2 - rus_bias_t_4*rus_omega_2_t_2 - rus_qd_3*rus_qd_3_t
         )
-        c_o_y = alpha_2_o_t*h_3_y - G_o_t_2 - B_3_o_yx*h_3_x - h_3_z*(W_3_t + W_3_t_3)
-        c_o_z = B_3_o_zy*h_3_z + h_3_y*(W_3_t + W_3_t_2) - G_o_t - B_3_o_zx*h_3_x
-        # (rus-N44) velocity and gravity terms of the leg force
-        U_in_base_x = (
-        -axis_x_rus_axes3_x*c_o_x - axis_y_rus_axes3_in_base_x*c_o_y -
-            axis_z_rus_axes3_in_base_x*c_o_z
+        rus_bias_y = -rus_bias_t_3*rus_omega_1_t - rus_bias_t_4*rus_omega_2_t
+        rus_bias_z = (
+        rus_omega_2_t*rus_qd_3_t + rus_platform_joint_offset_x*rus_zeta_3_y -
+            rus_bias_t*rus_omega_1_t*rus_omega_1_t - rus_bias_t*rus_omega_1_t_2*rus_omega_1_t_2
         )
-        U_in_base_y = (
-        -axis_x_rus_axes3_y*c_o_x - axis_y_rus_axes3_in_base_y*c_o_y -
-            axis_z_rus_axes3_in_base_y*c_o_z
+        # (rus-u_1) centripetal acceleration of the connection point
+        rus_u_1_tip_x = (
+        axis_x_rus_axes3_x*rus_u_1_x + axis_x_rus_axes3_y*rus_u_1_y + axis_x_rus_axes3_z*rus_u_1_z
         )
-        U_in_base_z = (
-        -axis_x_rus_axes3_z*c_o_x - axis_y_rus_axes3_in_base_z*c_o_y -
-            axis_z_rus_axes3_in_base_z*c_o_z
+        rus_u_1_tip_y = (
+        axis_y_rus_axes3_in_base_x*rus_u_1_x + axis_y_rus_axes3_in_base_y*rus_u_1_y +
+            axis_y_rus_axes3_in_base_z*rus_u_1_z
         )
-        # (M7) rotational part of Z
-        Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
-        Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
-        Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
-        # (rus-V6) reciprocal vector 1
-        w_1_t_3 = axis_x_rus_axes3_x*inv_v_1_t
-        w_1_t_4 = axis_x_rus_axes3_y*inv_v_1_t
-        w_1_t_5 = axis_x_rus_axes3_z*inv_v_1_t
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_x = q_in_base_z*w_1_t_4 - q_in_base_y*w_1_t_5
-        H_a_1_y = q_in_base_x*w_1_t_5 - q_in_base_z*w_1_t_3
-        H_a_1_z = q_in_base_y*w_1_t_3 - q_in_base_x*w_1_t_4
+        rus_u_1_tip_z = (
+        axis_z_rus_axes3_in_base_x*rus_u_1_x + axis_z_rus_axes3_in_base_y*rus_u_1_y +
+            axis_z_rus_axes3_in_base_z*rus_u_1_z
+        )
+        # (rus-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        rus_rel_o_x = rus_u_1_tip_x - rus_bias_x
+        rus_rel_o_y = rus_u_1_tip_y - rus_bias_y
+        rus_rel_o_z = rus_u_1_tip_z - rus_bias_z
+        # (rus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
+        rus_qdd_1_o = inv_rus_v_1_t*rus_rel_o_x
+        rus_qdd_3_o = inv_rus_platform_joint_offset_x*(rus_qdd_1_o*rus_v_1_t_2 - rus_rel_o_y)
+        # (rus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        rus_alpha_2_o_z = inv_rus_r_1_t*(rus_rel_o_z + rus_qdd_1_o*rus_v_1_z) - rus_qdd_1_o
+        rus_alpha_2_o_t = rus_alpha_2_o_z*rus_s_3
+        rus_alpha_2_o_t_2 = rus_alpha_2_o_z*rus_c_3
+        # (rus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        rus_alpha_3_o_x = rus_alpha_2_o_t - rus_zeta_3_x
+        rus_alpha_3_o_y = -rus_alpha_2_o_t_2 - rus_zeta_3_y
+        # (rus-B_3_o) remainder of the acceleration tensor of link 3
+        rus_B_3_o_xy = rus_qdd_3_o - rus_W_3_xy
+        rus_B_3_o_yx = -rus_W_3_xy - rus_qdd_3_o
+        rus_B_3_o_zx = rus_zeta_3_y - rus_alpha_3_o_y
+        rus_B_3_o_zy = rus_alpha_3_o_x - rus_zeta_3_x
+        # (rus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        rus_acc_3_o_x = (
+        rus_u_1_tip_x - axis_x_rus_axes3_x*gravity_x - axis_x_rus_axes3_y*gravity_y -
+            axis_x_rus_axes3_z*gravity_z
+        )
+        rus_acc_3_o_y = (
+        rus_u_1_tip_y - axis_y_rus_axes3_in_base_x*gravity_x -
+            axis_y_rus_axes3_in_base_y*gravity_y - axis_y_rus_axes3_in_base_z*gravity_z
+        )
+        rus_acc_3_o_z = (
+        rus_u_1_tip_z - axis_z_rus_axes3_in_base_x*gravity_x -
+            axis_z_rus_axes3_in_base_y*gravity_y - axis_z_rus_axes3_in_base_z*gravity_z
+        )
+        # (rus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        rus_mu_3_o_x = (
+        rus_B_3_o_yx*rus_J_3_xy + rus_B_3_o_zx*rus_J_3_xz + rus_B_3_o_zy*rus_Sigma_3_yy +
+            rus_Sigma_3_zz*rus_alpha_2_o_t - rus_J_3_yz*(rus_W_3_t_2 - rus_W_3_t_3) -
+            rus_acc_3_o_y*rus_h_3_y - rus_acc_3_o_z*rus_h_3_z
+        )
+        rus_mu_3_o_y = (
+        rus_B_3_o_xy*rus_J_3_yz + rus_acc_3_o_x*rus_h_3_y - rus_B_3_o_zx*rus_Sigma_3_xx -
+            rus_B_3_o_zy*rus_J_3_xz - rus_J_3_xy*(rus_W_3_t - rus_W_3_t_3) -
+            rus_Sigma_3_zz*rus_alpha_2_o_t_2 - rus_acc_3_o_z*rus_h_3_x
+        )
+        rus_mu_3_o_z = (
+        rus_B_3_o_yx*rus_Sigma_3_xx + rus_J_3_xy*rus_alpha_2_o_t + rus_J_3_yz*rus_alpha_2_o_t_2 +
+            rus_acc_3_o_x*rus_h_3_z + rus_acc_3_o_y*rus_h_3_x - rus_B_3_o_xy*rus_Sigma_3_yy -
+            rus_J_3_xz*(rus_W_3_t - rus_W_3_t_2)
+        )
+        rus_mu_3_o_r0_y = rus_mu_3_o_x*rus_s_3 - rus_c_3*rus_mu_3_o_y
+        # (rus-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        rus_mu_1_o_z = (
+        rus_h_1_y*(rus_c_1*rus_g_r0_x + rus_g_r0_y*rus_s_1) - rus_J_1_zz*rus_qdd_1_o -
+            rus_h_1_x*(rus_c_1*rus_g_r0_y - rus_g_r0_x*rus_s_1)
+        )
+        # (rus-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rus_N_1_o_z = rus_mu_1_o_z + rus_mu_3_o_r0_y
+        # (rus-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rus_G_o_t = inv_rus_r_1_t*rus_mu_3_o_r0_y
+        rus_G_o_t_2 = inv_rus_platform_joint_offset_x*rus_mu_3_o_z
+        # (rus-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rus_c_o_x = (
+        inv_rus_v_1_t*(rus_N_1_o_z + rus_G_o_t_2*rus_v_1_t_2 - rus_G_o_t*rus_v_1_z) +
+            rus_B_3_o_xy*rus_h_3_z + rus_alpha_2_o_t_2*rus_h_3_y + rus_h_3_x*(rus_W_3_t_2 +
+            rus_W_3_t_3)
+        )
+        rus_c_o_y = (
+        rus_alpha_2_o_t*rus_h_3_y - rus_G_o_t_2 - rus_B_3_o_yx*rus_h_3_x - rus_h_3_z*(rus_W_3_t +
+            rus_W_3_t_3)
+        )
+        rus_c_o_z = (
+        rus_B_3_o_zy*rus_h_3_z + rus_h_3_y*(rus_W_3_t + rus_W_3_t_2) - rus_G_o_t -
+            rus_B_3_o_zx*rus_h_3_x
+        )
+        # (rus-U) velocity and gravity terms of the leg force
+        rus_U_in_base_x = (
+        -axis_x_rus_axes3_x*rus_c_o_x - axis_y_rus_axes3_in_base_x*rus_c_o_y -
+            axis_z_rus_axes3_in_base_x*rus_c_o_z
+        )
+        rus_U_in_base_y = (
+        -axis_x_rus_axes3_y*rus_c_o_x - axis_y_rus_axes3_in_base_y*rus_c_o_y -
+            axis_z_rus_axes3_in_base_y*rus_c_o_z
+        )
+        rus_U_in_base_z = (
+        -axis_x_rus_axes3_z*rus_c_o_x - axis_y_rus_axes3_in_base_z*rus_c_o_y -
+            axis_z_rus_axes3_in_base_z*rus_c_o_z
+        )
+        # (Z_a) rotational part of Z
+        rus_Z_a_t = rus_U_in_base_z*rus_q_in_base_y - rus_U_in_base_y*rus_q_in_base_z
+        rus_Z_a_t_2 = rus_U_in_base_x*rus_q_in_base_z - rus_U_in_base_z*rus_q_in_base_x
+        rus_Z_a_t_3 = rus_U_in_base_y*rus_q_in_base_x - rus_U_in_base_x*rus_q_in_base_y
+        # (rus-w_1) reciprocal vector 1
+        rus_w_1_t_3 = axis_x_rus_axes3_x*inv_rus_v_1_t
+        rus_w_1_t_4 = axis_x_rus_axes3_y*inv_rus_v_1_t
+        rus_w_1_t_5 = axis_x_rus_axes3_z*inv_rus_v_1_t
+        # (rus-H_a_1) moment of the column's unit force about the platform origin
+        rus_H_a_1_x = rus_q_in_base_z*rus_w_1_t_4 - rus_q_in_base_y*rus_w_1_t_5
+        rus_H_a_1_y = rus_q_in_base_x*rus_w_1_t_5 - rus_q_in_base_z*rus_w_1_t_3
+        rus_H_a_1_z = rus_q_in_base_y*rus_w_1_t_3 - rus_q_in_base_x*rus_w_1_t_4
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t) & (abs(r_1_t) > _TOLERANCE * size) &
-            (abs(-v_1_t) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1
+            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t) & (abs(rus_r_1_t) >
+            _TOLERANCE * rus_size) & (abs(-rus_v_1_t) > _TOLERANCE * rus_size))
         )
         sums = m.added(sums, leg, (
-        Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_3, M_ta_t_4, M_ta_t_5,
-            M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2,
-            M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y, U_in_base_z,
-            Z_a_t, Z_a_t_2, Z_a_t_3,
+        rus_Q_t_12, rus_Q_t_13, rus_Q_t_14, rus_Q_t_16, rus_Q_t_17, rus_Q_t_19, rus_M_ta_t_3,
+            rus_M_ta_t_4, rus_M_ta_t_5, rus_M_ta_t_6, rus_M_ta_t_8, rus_M_ta_t_9,
+            rus_M_ta_t_10, rus_M_ta_t_11, rus_M_ta_t_12, rus_M_aa_t, rus_M_aa_t_2,
+            rus_M_aa_t_3, rus_M_aa_t_4, rus_M_aa_t_5, rus_M_aa_t_6, rus_U_in_base_x,
+            rus_U_in_base_y, rus_U_in_base_z, rus_Z_a_t, rus_Z_a_t_2, rus_Z_a_t_3,
         ))
-        out_H[_H_rus[0][leg]] = -w_1_t_3
-        out_H[_H_rus[1][leg]] = -w_1_t_4
-        out_H[_H_rus[2][leg]] = -w_1_t_5
-        out_H[_H_rus[3][leg]] = H_a_1_x
-        out_H[_H_rus[4][leg]] = H_a_1_y
-        out_H[_H_rus[5][leg]] = H_a_1_z
+        out_H[_H_rus[0][leg]] = -rus_w_1_t_3
+        out_H[_H_rus[1][leg]] = -rus_w_1_t_4
+        out_H[_H_rus[2][leg]] = -rus_w_1_t_5
+        out_H[_H_rus[3][leg]] = rus_H_a_1_x
+        out_H[_H_rus[4][leg]] = rus_H_a_1_y
+        out_H[_H_rus[5][leg]] = rus_H_a_1_z
     (
     total_rus_xx, total_rus_xy, total_rus_xz, total_rus_yy, total_rus_yz, total_rus_zz,
         total_rus_xx_2, total_rus_xy_2, total_rus_xz_2, total_rus_yx, total_rus_yy_2,
@@ -1807,29 +1916,29 @@ def _run_dynamics(m, X, V):
         total_rus_xy_3, total_rus_xz_3, total_rus_yy_3, total_rus_yz_3, total_rus_zz_3,
         total_rus_x, total_rus_y, total_rus_z, total_rus_x_2, total_rus_y_2, total_rus_z_2,
     ) = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = m_star - total_rus_xx
     M_tt_yy = m_star - total_rus_yy
     M_tt_zz = m_star - total_rus_zz
-    # (M2) coupling block of M
+    # (M_ta) coupling block of M
     M_ta_xy = h_star_in_base_z - total_rus_xy_2
     M_ta_xz = total_rus_xz_2 - h_star_in_base_y
     M_ta_yx = total_rus_yx - h_star_in_base_z
     M_ta_yz = h_star_in_base_x + total_rus_yz_2
     M_ta_zx = h_star_in_base_y + total_rus_zx
     M_ta_zy = -h_star_in_base_x - total_rus_zy
-    # (M3) rotational block of M
+    # (M_aa) rotational block of M
     M_aa_xx = J_star_t_8 - total_rus_xx_3
     M_aa_xy = J_star_t_9 + total_rus_xy_3
     M_aa_xz = J_star_t_10 - total_rus_xz_3
-    M_aa_yy = J_star_t_12 - total_rus_yy_3
-    M_aa_yz = J_star_t_13 + total_rus_yz_3
-    M_aa_zz = J_star_t_15 - total_rus_zz_3
-    # (M5) translational part of Z
+    M_aa_yy = J_star_t_13 - total_rus_yy_3
+    M_aa_yz = J_star_t_15 + total_rus_yz_3
+    M_aa_zz = J_star_t_17 - total_rus_zz_3
+    # (Z_t) translational part of Z
     Z_t_x = Z_p_x + total_rus_x
     Z_t_y = Z_p_y + total_rus_y
     Z_t_z = Z_p_z + total_rus_z
-    # (M7) rotational part of Z
+    # (Z_a) rotational part of Z
     Z_a_x = Z_q_in_base_x + total_rus_x_2
     Z_a_y = Z_q_in_base_y + total_rus_y_2
     Z_a_z = Z_q_in_base_z + total_rus_z_2
@@ -1883,7 +1992,7 @@ def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
     (
-    J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
+    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
         h_star_z, m_star,
     ) = shared
     X_0 = X[0]
@@ -1923,106 +2032,116 @@ def _run_M(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_M = m.zeros("M")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy
-    J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
     J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_12 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_15 = 2.0*J_star_t_14 + J_star_xx
+    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
+    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
     sums = [0.0] * 21
     for leg, k in legs[0]:
         (
-        J_1_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yz, J_3_zz, Kd_1_t_2, Kd_1_t_3, branch_1, branch_2,
-            d_Gamma_3_t, d_Gamma_3_y, d_c_yy, d_phi_3_t, h_3_x, h_3_y, h_3_z, inv_Kd_1_t_6,
-            inv_rus_platform_joint_offset_x, inv_uu_3_t, rho2_1_t, rus_base_frame_xx,
-            rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
-            rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
-            rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_joint2_offset_x,
+        inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_platform_joint_offset_x, rus_J_1_zz,
+            rus_J_3_xx, rus_J_3_xy, rus_J_3_xz, rus_J_3_yz, rus_J_3_zz, rus_Kd_1_t_2,
+            rus_Kd_1_t_4, rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz,
+            rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx,
+            rus_base_frame_zy, rus_base_frame_zz, rus_base_point_x, rus_base_point_y,
+            rus_base_point_z, rus_branch_1, rus_branch_2, rus_d_Gamma_3_t, rus_d_Gamma_3_y,
+            rus_d_c_yy, rus_d_phi_3_t, rus_h_3_x, rus_h_3_y, rus_h_3_z, rus_joint2_offset_x,
             rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
-            rus_platform_point_z, size, size_t,
+            rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t,
         ) = k
-        # (rus-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (rus-S) from the base point to the connection point
+        rus_q_in_base_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
-        q_in_base_y = (
+        rus_q_in_base_y = (
         R_yx*rus_platform_point_x + R_yy*rus_platform_point_y + R_yz*rus_platform_point_z
         )
-        q_in_base_z = (
+        rus_q_in_base_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rus_base_point_x
-        S_y = q_in_base_y + t_y - rus_base_point_y
-        S_z = q_in_base_z + t_z - rus_base_point_z
-        # (rus-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_t = S_x*S_x + S_y*S_y + S_z*S_z
-        Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
-        # (rus-K3) component along the reference direction
-        px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx
-        # (rus-K6) factor of the cosine in the equation of joint 1
-        Kc_1 = px_1*rus_joint2_offset_x
-        # (rus-K4) component across the reference direction
-        py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy
-        # (rus-K7) factor of the sine in the equation of joint 1
-        Ks_1 = py_1*rus_joint2_offset_x
-        # (rus-K8) squared amplitude
-        rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
-        # (rus-K9) discriminant
-        disc_1 = rho2_1 - Kd_1*Kd_1
-        # (rus-K10) root, with the sign of the branch
-        root_1 = branch_1*sqrt(disc_1)
-        # (rus-K15) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = inv_Kd_1_t_6*root_1*rus_joint2_offset_x
-        xi_1_t_2 = S_x*rus_base_frame_xz + S_y*rus_base_frame_yz + S_z*rus_base_frame_zz
-        # (rus-K16) from the origin of joint 2 to the connection point
-        x_2_x = Kd_1*inv_Kd_1_t_6*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-K20) squared amplitude
-        rho2_2 = x_2_x*x_2_x + xi_1_t*xi_1_t
-        # (rus-K22) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (rus-K28) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_uu_3_t*root_2*rus_platform_joint_offset_x
-        # (rus-K29) sine of the angle of joint 3 from its reference direction
-        s_3 = inv_uu_3_t*rus_platform_joint_offset_x*xi_1_t_2
-        # (rus-V2) from joint 1 to the connection point, along the links
-        r_1_t = c_3*rus_platform_joint_offset_x
-        r_1_t_2 = rus_platform_joint_offset_x*s_3
-        # (rus-K23) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = inv_rho2_2*root_2*xi_1_t
-        # (rus-K24) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*root_2*x_2_x
-        # (rus-V2) from joint 1 to the connection point, along the links
-        r_1_t_3 = c_2*r_1_t
-        r_1_x = rus_joint2_offset_x + r_1_t*s_2
-        r_1_r0_x = c_2*r_1_x - r_1_t_3*s_2
-        r_1_r0_y = -c_2*r_1_t_3 - r_1_x*s_2
-        # (rus-V3) velocity of the connection point per rate of joint 1
-        v_1_t = c_3*r_1_r0_x
-        v_1_t_2 = r_1_r0_x*s_3
-        v_1_z = c_3*(r_1_t_2*s_3 - c_3*r_1_r0_y) + s_3*(-c_3*r_1_t_2 - r_1_r0_y*s_3)
-        # (rus-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1)
-        # (rus-K12) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1)
-        # (rus-V6) reciprocal vector 1
-        axis_z_rus_axes3_r3_x = c_1*c_2 - s_1*s_2
-        axis_z_rus_axes3_r3_y = c_1*s_2 + c_2*s_1
+        rus_S_x = rus_q_in_base_x + t_x - rus_base_point_x
+        rus_S_y = rus_q_in_base_y + t_y - rus_base_point_y
+        rus_S_z = rus_q_in_base_z + t_z - rus_base_point_z
+        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
+        rus_Kd_1 = 0.5*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4
+        # (rus-px_1) component along the reference direction
+        rus_px_1 = (
+        rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx
+        )
+        # (rus-Kc_1) factor of the cosine in the equation of joint 1
+        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
+        # (rus-py_1) component across the reference direction
+        rus_py_1 = (
+        rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy
+        )
+        # (rus-Ks_1) factor of the sine in the equation of joint 1
+        rus_Ks_1 = rus_joint2_offset_x*rus_py_1
+        # (rus-rho2_1) squared amplitude
+        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
+        # (rus-disc_1) discriminant
+        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
+        # (rus-root_1) root, with the sign of the branch
+        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
+        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1
+        rus_xi_1_t_2 = (
+        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
+        )
+        # (rus-x_2) from the origin of joint 2 to the connection point
+        rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
+        # (rus-rho2_2) squared amplitude
+        rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t
+        # (rus-root_2) root, with the sign of the branch
+        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
+        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
+        rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2
+        # (rus-s_3) sine of the angle of joint 3 from its reference direction
+        rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
+        rus_r_1_t_2 = rus_platform_joint_offset_x*rus_s_3
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_rho2_2 = 1.0/rus_rho2_2
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t_3 = rus_c_2*rus_r_1_t
+        rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
+        rus_r_1_r0_x = rus_c_2*rus_r_1_x - rus_r_1_t_3*rus_s_2
+        rus_r_1_r0_y = -rus_c_2*rus_r_1_t_3 - rus_r_1_x*rus_s_2
+        # (rus-v_1) velocity of the connection point per rate of joint 1
+        rus_v_1_t = rus_c_3*rus_r_1_r0_x
+        rus_v_1_t_2 = rus_r_1_r0_x*rus_s_3
+        rus_v_1_z = (
+        rus_c_3*(rus_r_1_t_2*rus_s_3 - rus_c_3*rus_r_1_r0_y) + rus_s_3*(-rus_c_3*rus_r_1_t_2 -
+            rus_r_1_r0_y*rus_s_3)
+        )
+        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rus_rho2_1 = 1.0/rus_rho2_1
+        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
+        # (rus-s_1) sine of the angle of joint 1 from its reference direction
+        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
+        # (rus-w_1) reciprocal vector 1
+        axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
+        axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
         axis_z_rus_axes3_in_base_x = (
         axis_z_rus_axes3_r3_x*rus_base_frame_xx + axis_z_rus_axes3_r3_y*rus_base_frame_xy
         )
@@ -2032,21 +2151,21 @@ def _run_M(m, X):
         axis_z_rus_axes3_in_base_z = (
         axis_z_rus_axes3_r3_x*rus_base_frame_zx + axis_z_rus_axes3_r3_y*rus_base_frame_zy
         )
-        w_1_t = s_2*s_3
-        w_1_t_2 = c_2*s_3
-        axis_y_rus_axes3_r3_x = c_1*w_1_t + s_1*w_1_t_2
-        axis_y_rus_axes3_r3_y = s_1*w_1_t - c_1*w_1_t_2
+        rus_w_1_t = rus_s_2*rus_s_3
+        rus_w_1_t_2 = rus_c_2*rus_s_3
+        axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2
+        axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2
         axis_y_rus_axes3_in_base_x = (
         axis_y_rus_axes3_r3_x*rus_base_frame_xx + axis_y_rus_axes3_r3_y*rus_base_frame_xy -
-            c_3*rus_base_frame_xz
+            rus_base_frame_xz*rus_c_3
         )
         axis_y_rus_axes3_in_base_y = (
         axis_y_rus_axes3_r3_x*rus_base_frame_yx + axis_y_rus_axes3_r3_y*rus_base_frame_yy -
-            c_3*rus_base_frame_yz
+            rus_base_frame_yz*rus_c_3
         )
         axis_y_rus_axes3_in_base_z = (
         axis_y_rus_axes3_r3_x*rus_base_frame_zx + axis_y_rus_axes3_r3_y*rus_base_frame_zy -
-            c_3*rus_base_frame_zz
+            rus_base_frame_zz*rus_c_3
         )
         axis_x_rus_axes3_x = (
         axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
@@ -2060,110 +2179,129 @@ def _run_M(m, X):
         axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
             axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x
         )
-        # (rus-G7) inertia tensor of link 3 about the connection point
-        _y = J_3_xy*s_3 + J_3_yz*c_3
-        _y_2 = s_3*(J_3_xx*s_3 + J_3_xz*c_3) - c_3*(-J_3_xz*s_3 - J_3_zz*c_3)
-        # (rus-V6) reciprocal vector 1
-        inv_v_1_t = 1.0/v_1_t
-        # (rus-V7) reciprocal vector 2
-        inv_r_1_t = 1.0/r_1_t
-        w_2_t = inv_r_1_t*inv_v_1_t*v_1_z
-        # (rus-V8) reciprocal vector 3
-        w_3_t = inv_rus_platform_joint_offset_x*inv_v_1_t*v_1_t_2
-        # (rus-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_t = c_3*h_3_y
-        d_Gamma_1_t_2 = _y_2*inv_r_1_t
-        d_Gamma_1_t_3 = _y*inv_rus_platform_joint_offset_x
-        d_Gamma_1_t_4 = d_Gamma_1_t_2*v_1_z
-        d_Gamma_1_t_5 = d_Gamma_1_t_3*v_1_t_2
-        d_Gamma_1_x = -d_Gamma_1_t - inv_v_1_t*(J_1_zz + _y_2 + d_Gamma_1_t_5 - d_Gamma_1_t_4)
-        d_Gamma_1_y = d_Gamma_1_t_3 - h_3_y*s_3
-        d_Gamma_1_z = d_Gamma_1_t_2 + c_3*h_3_x - h_3_z*s_3
-        # (rus-N26) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_x = -d_Gamma_1_t - inv_v_1_t*(_y_2 + d_Gamma_1_t_5 - d_Gamma_1_t_4)
-        # (rus-N23) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        d_Gamma_3_t_2 = _y*inv_r_1_t
-        d_Gamma_3_x = h_3_z - inv_v_1_t*(_y + d_Gamma_3_t*v_1_t_2 - d_Gamma_3_t_2*v_1_z)
-        # (rus-A23) coefficient of the acceleration in: angular acceleration of link 3
-        d_alpha_3_t = inv_r_1_t*s_3
-        d_alpha_3_t_2 = c_3*inv_r_1_t
-        # (rus-N41) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_xx = (
-        d_Gamma_1_x*inv_v_1_t + d_Gamma_3_x*w_3_t + h_3_z*w_3_t - d_Gamma_2_x*w_2_t -
-            h_3_y*(c_3*inv_v_1_t - c_3*w_2_t)
+        inv_rus_v_1_t = 1.0/rus_v_1_t
+        # (rus-w_2) reciprocal vector 2
+        inv_rus_r_1_t = 1.0/rus_r_1_t
+        rus_w_2_t = inv_rus_r_1_t*inv_rus_v_1_t*rus_v_1_z
+        # (rus-w_3) reciprocal vector 3
+        rus_w_3_t = inv_rus_platform_joint_offset_x*inv_rus_v_1_t*rus_v_1_t_2
+        # (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
+        rus_d_alpha_3_t = inv_rus_r_1_t*rus_s_3
+        rus_d_alpha_3_t_2 = inv_rus_r_1_t*rus_c_3
+        # (rus-L_c_3) moment about joint 3 that accelerates joint 3, per unit
+        rus_L_c_3_r0_y = rus_J_3_xy*rus_s_3 + rus_J_3_yz*rus_c_3
+        # (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        rus_d_Gamma_3_t_2 = inv_rus_r_1_t*rus_L_c_3_r0_y
+        rus_d_Gamma_3_x = (
+        rus_h_3_z - inv_rus_v_1_t*(rus_L_c_3_r0_y + rus_d_Gamma_3_t*rus_v_1_t_2 -
+            rus_d_Gamma_3_t_2*rus_v_1_z)
         )
-        d_c_xy = d_Gamma_1_y*inv_v_1_t + d_Gamma_3_y*w_3_t - d_phi_3_t - d_Gamma_1_y*w_2_t
-        d_c_xz = (
-        d_Gamma_1_z*inv_v_1_t + d_Gamma_3_t_2*w_3_t + d_alpha_3_t_2*h_3_y - d_Gamma_1_z*w_2_t
+        # (rus-J_3) inertia tensor of link 3 about the connection point
+        rus__y = (
+        rus_s_3*(rus_J_3_xx*rus_s_3 + rus_J_3_xz*rus_c_3) - rus_c_3*(-rus_J_3_xz*rus_s_3 -
+            rus_J_3_zz*rus_c_3)
         )
-        d_c_yz = d_alpha_3_t*h_3_y - d_Gamma_3_t_2*inv_rus_platform_joint_offset_x
-        # (rus-N43) inertia of the leg at the connection point, without the mass gathered there
-        Q_t = d_c_xx - d_c_yy
-        Q_t_2 = 0.5*Q_t
-        Q_t_3 = d_c_xx + d_Gamma_1_z*inv_r_1_t + d_alpha_3_t_2*h_3_x - d_alpha_3_t*h_3_z
-        Q_t_4 = 0.5*Q_t_3
-        Q_t_5 = (
-        axis_x_rus_axes3_x*d_c_xy + axis_z_rus_axes3_in_base_x*d_c_yz -
-            Q_t_2*axis_y_rus_axes3_in_base_x
+        # (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rus_d_Gamma_2_t = rus_c_3*rus_h_3_y
+        rus_d_Gamma_2_t_2 = inv_rus_r_1_t*rus__y
+        rus_d_Gamma_2_t_3 = inv_rus_platform_joint_offset_x*rus_L_c_3_r0_y
+        rus_d_Gamma_2_t_4 = rus_d_Gamma_2_t_2*rus_v_1_z
+        rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_t_2
+        rus_d_Gamma_2_x = (
+        -rus_d_Gamma_2_t - inv_rus_v_1_t*(rus__y + rus_d_Gamma_2_t_5 - rus_d_Gamma_2_t_4)
         )
-        Q_t_6 = (
-        axis_x_rus_axes3_y*d_c_xy + axis_z_rus_axes3_in_base_y*d_c_yz -
-            Q_t_2*axis_y_rus_axes3_in_base_y
+        rus_d_Gamma_2_y = rus_d_Gamma_2_t_3 - rus_h_3_y*rus_s_3
+        rus_d_Gamma_2_z = rus_d_Gamma_2_t_2 + rus_c_3*rus_h_3_x - rus_h_3_z*rus_s_3
+        # (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rus_d_Gamma_1_x = (
+        -rus_d_Gamma_2_t - inv_rus_v_1_t*(rus_J_1_zz + rus__y + rus_d_Gamma_2_t_5 -
+            rus_d_Gamma_2_t_4)
         )
-        Q_t_7 = (
-        axis_x_rus_axes3_z*d_c_xy + axis_z_rus_axes3_in_base_z*d_c_yz -
-            Q_t_2*axis_y_rus_axes3_in_base_z
+        # (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rus_d_c_xx = (
+        inv_rus_v_1_t*rus_d_Gamma_1_x + rus_d_Gamma_3_x*rus_w_3_t + rus_h_3_z*rus_w_3_t -
+            rus_d_Gamma_2_x*rus_w_2_t - rus_h_3_y*(inv_rus_v_1_t*rus_c_3 - rus_c_3*rus_w_2_t)
         )
-        Q_t_8 = Q_t_4*axis_z_rus_axes3_in_base_x - axis_x_rus_axes3_x*d_c_xz
-        Q_t_9 = Q_t_4*axis_z_rus_axes3_in_base_y - axis_x_rus_axes3_y*d_c_xz
-        Q_t_10 = Q_t_4*axis_z_rus_axes3_in_base_z - axis_x_rus_axes3_z*d_c_xz
-        Q_t_11 = Q_t_5*axis_y_rus_axes3_in_base_x - Q_t_8*axis_z_rus_axes3_in_base_x
-        Q_t_12 = 2.0*Q_t_11 + d_c_xx
-        Q_t_13 = (
-        Q_t_5*axis_y_rus_axes3_in_base_y + Q_t_6*axis_y_rus_axes3_in_base_x -
-            Q_t_8*axis_z_rus_axes3_in_base_y - Q_t_9*axis_z_rus_axes3_in_base_x
+        rus_d_c_xy = (
+        inv_rus_v_1_t*rus_d_Gamma_2_y + rus_d_Gamma_3_y*rus_w_3_t - rus_d_phi_3_t -
+            rus_d_Gamma_2_y*rus_w_2_t
         )
-        Q_t_14 = (
-        Q_t_5*axis_y_rus_axes3_in_base_z + Q_t_7*axis_y_rus_axes3_in_base_x -
-            Q_t_10*axis_z_rus_axes3_in_base_x - Q_t_8*axis_z_rus_axes3_in_base_z
+        rus_d_c_xz = (
+        inv_rus_v_1_t*rus_d_Gamma_2_z + rus_d_Gamma_3_t_2*rus_w_3_t + rus_d_alpha_3_t_2*rus_h_3_y
+            - rus_d_Gamma_2_z*rus_w_2_t
         )
-        Q_t_15 = Q_t_6*axis_y_rus_axes3_in_base_y - Q_t_9*axis_z_rus_axes3_in_base_y
-        Q_t_16 = 2.0*Q_t_15 + d_c_xx
-        Q_t_17 = (
-        Q_t_6*axis_y_rus_axes3_in_base_z + Q_t_7*axis_y_rus_axes3_in_base_y -
-            Q_t_10*axis_z_rus_axes3_in_base_y - Q_t_9*axis_z_rus_axes3_in_base_z
+        rus_d_c_yz = rus_d_alpha_3_t*rus_h_3_y - inv_rus_platform_joint_offset_x*rus_d_Gamma_3_t_2
+        # (rus-Q) inertia of the leg at the connection point, without the mass gathered there
+        rus_Q_t = rus_d_c_xx - rus_d_c_yy
+        rus_Q_t_2 = 0.5*rus_Q_t
+        rus_Q_t_3 = (
+        rus_d_c_xx + inv_rus_r_1_t*rus_d_Gamma_2_z + rus_d_alpha_3_t_2*rus_h_3_x -
+            rus_d_alpha_3_t*rus_h_3_z
         )
-        Q_t_18 = Q_t_7*axis_y_rus_axes3_in_base_z - Q_t_10*axis_z_rus_axes3_in_base_z
-        Q_t_19 = 2.0*Q_t_18 + d_c_xx
-        # (M2) coupling block of M
-        M_ta_t = Q_t_13*q_in_base_z
-        M_ta_t_2 = Q_t_14*q_in_base_y
-        M_ta_t_3 = M_ta_t - M_ta_t_2
-        M_ta_t_4 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x
-        M_ta_t_5 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x
-        M_ta_t_6 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y
-        M_ta_t_7 = Q_t_17*q_in_base_x
-        M_ta_t_8 = M_ta_t - M_ta_t_7
-        M_ta_t_9 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x
-        M_ta_t_10 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y
-        M_ta_t_11 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x
-        M_ta_t_12 = M_ta_t_7 - M_ta_t_2
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
-        M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y
-        M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z
-        M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x
-        M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z
-        M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
+        rus_Q_t_4 = 0.5*rus_Q_t_3
+        rus_Q_t_5 = (
+        axis_x_rus_axes3_x*rus_d_c_xy + axis_z_rus_axes3_in_base_x*rus_d_c_yz -
+            axis_y_rus_axes3_in_base_x*rus_Q_t_2
+        )
+        rus_Q_t_6 = (
+        axis_x_rus_axes3_y*rus_d_c_xy + axis_z_rus_axes3_in_base_y*rus_d_c_yz -
+            axis_y_rus_axes3_in_base_y*rus_Q_t_2
+        )
+        rus_Q_t_7 = (
+        axis_x_rus_axes3_z*rus_d_c_xy + axis_z_rus_axes3_in_base_z*rus_d_c_yz -
+            axis_y_rus_axes3_in_base_z*rus_Q_t_2
+        )
+        rus_Q_t_8 = axis_z_rus_axes3_in_base_x*rus_Q_t_4 - axis_x_rus_axes3_x*rus_d_c_xz
+        rus_Q_t_9 = axis_z_rus_axes3_in_base_y*rus_Q_t_4 - axis_x_rus_axes3_y*rus_d_c_xz
+        rus_Q_t_10 = axis_z_rus_axes3_in_base_z*rus_Q_t_4 - axis_x_rus_axes3_z*rus_d_c_xz
+        rus_Q_t_11 = axis_y_rus_axes3_in_base_x*rus_Q_t_5 - axis_z_rus_axes3_in_base_x*rus_Q_t_8
+        rus_Q_t_12 = 2.0*rus_Q_t_11 + rus_d_c_xx
+        rus_Q_t_13 = (
+        axis_y_rus_axes3_in_base_x*rus_Q_t_6 + axis_y_rus_axes3_in_base_y*rus_Q_t_5 -
+            axis_z_rus_axes3_in_base_x*rus_Q_t_9 - axis_z_rus_axes3_in_base_y*rus_Q_t_8
+        )
+        rus_Q_t_14 = (
+        axis_y_rus_axes3_in_base_x*rus_Q_t_7 + axis_y_rus_axes3_in_base_z*rus_Q_t_5 -
+            axis_z_rus_axes3_in_base_x*rus_Q_t_10 - axis_z_rus_axes3_in_base_z*rus_Q_t_8
+        )
+        rus_Q_t_15 = axis_y_rus_axes3_in_base_y*rus_Q_t_6 - axis_z_rus_axes3_in_base_y*rus_Q_t_9
+        rus_Q_t_16 = 2.0*rus_Q_t_15 + rus_d_c_xx
+        rus_Q_t_17 = (
+        axis_y_rus_axes3_in_base_y*rus_Q_t_7 + axis_y_rus_axes3_in_base_z*rus_Q_t_6 -
+            axis_z_rus_axes3_in_base_y*rus_Q_t_10 - axis_z_rus_axes3_in_base_z*rus_Q_t_9
+        )
+        rus_Q_t_18 = axis_y_rus_axes3_in_base_z*rus_Q_t_7 - axis_z_rus_axes3_in_base_z*rus_Q_t_10
+        rus_Q_t_19 = 2.0*rus_Q_t_18 + rus_d_c_xx
+        # (M_ta) coupling block of M
+        rus_M_ta_t = rus_Q_t_13*rus_q_in_base_z
+        rus_M_ta_t_2 = rus_Q_t_14*rus_q_in_base_y
+        rus_M_ta_t_3 = rus_M_ta_t - rus_M_ta_t_2
+        rus_M_ta_t_4 = rus_Q_t_12*rus_q_in_base_z - rus_Q_t_14*rus_q_in_base_x
+        rus_M_ta_t_5 = rus_Q_t_12*rus_q_in_base_y - rus_Q_t_13*rus_q_in_base_x
+        rus_M_ta_t_6 = rus_Q_t_16*rus_q_in_base_z - rus_Q_t_17*rus_q_in_base_y
+        rus_M_ta_t_7 = rus_Q_t_17*rus_q_in_base_x
+        rus_M_ta_t_8 = rus_M_ta_t - rus_M_ta_t_7
+        rus_M_ta_t_9 = rus_Q_t_13*rus_q_in_base_y - rus_Q_t_16*rus_q_in_base_x
+        rus_M_ta_t_10 = rus_Q_t_17*rus_q_in_base_z - rus_Q_t_19*rus_q_in_base_y
+        rus_M_ta_t_11 = rus_Q_t_14*rus_q_in_base_z - rus_Q_t_19*rus_q_in_base_x
+        rus_M_ta_t_12 = rus_M_ta_t_7 - rus_M_ta_t_2
+        # (M_aa) rotational block of M
+        rus_M_aa_t = rus_M_ta_t_6*rus_q_in_base_z - rus_M_ta_t_10*rus_q_in_base_y
+        rus_M_aa_t_2 = rus_M_ta_t_8*rus_q_in_base_z - rus_M_ta_t_11*rus_q_in_base_y
+        rus_M_aa_t_3 = rus_M_ta_t_12*rus_q_in_base_y + rus_M_ta_t_9*rus_q_in_base_z
+        rus_M_aa_t_4 = rus_M_ta_t_4*rus_q_in_base_z - rus_M_ta_t_11*rus_q_in_base_x
+        rus_M_aa_t_5 = rus_M_ta_t_12*rus_q_in_base_x + rus_M_ta_t_5*rus_q_in_base_z
+        rus_M_aa_t_6 = rus_M_ta_t_5*rus_q_in_base_y - rus_M_ta_t_9*rus_q_in_base_x
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t) & (abs(r_1_t) > _TOLERANCE * size) &
-            (abs(-v_1_t) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1
+            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t) & (abs(rus_r_1_t) >
+            _TOLERANCE * rus_size) & (abs(-rus_v_1_t) > _TOLERANCE * rus_size))
         )
         sums = m.added(sums, leg, (
-        Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_3, M_ta_t_4, M_ta_t_5,
-            M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2,
-            M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6,
+        rus_Q_t_12, rus_Q_t_13, rus_Q_t_14, rus_Q_t_16, rus_Q_t_17, rus_Q_t_19, rus_M_ta_t_3,
+            rus_M_ta_t_4, rus_M_ta_t_5, rus_M_ta_t_6, rus_M_ta_t_8, rus_M_ta_t_9,
+            rus_M_ta_t_10, rus_M_ta_t_11, rus_M_ta_t_12, rus_M_aa_t, rus_M_aa_t_2,
+            rus_M_aa_t_3, rus_M_aa_t_4, rus_M_aa_t_5, rus_M_aa_t_6,
         ))
     (
     total_rus_xx, total_rus_xy, total_rus_xz, total_rus_yy, total_rus_yz, total_rus_zz,
@@ -2171,24 +2309,24 @@ def _run_M(m, X):
         total_rus_yz_2, total_rus_zx, total_rus_zy, total_rus_zz_2, total_rus_xx_3,
         total_rus_xy_3, total_rus_xz_3, total_rus_yy_3, total_rus_yz_3, total_rus_zz_3,
     ) = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = m_star - total_rus_xx
     M_tt_yy = m_star - total_rus_yy
     M_tt_zz = m_star - total_rus_zz
-    # (M2) coupling block of M
+    # (M_ta) coupling block of M
     M_ta_xy = h_star_in_base_z - total_rus_xy_2
     M_ta_xz = total_rus_xz_2 - h_star_in_base_y
     M_ta_yx = total_rus_yx - h_star_in_base_z
     M_ta_yz = h_star_in_base_x + total_rus_yz_2
     M_ta_zx = h_star_in_base_y + total_rus_zx
     M_ta_zy = -h_star_in_base_x - total_rus_zy
-    # (M3) rotational block of M
+    # (M_aa) rotational block of M
     M_aa_xx = J_star_t_8 - total_rus_xx_3
     M_aa_xy = J_star_t_9 + total_rus_xy_3
     M_aa_xz = J_star_t_10 - total_rus_xz_3
-    M_aa_yy = J_star_t_12 - total_rus_yy_3
-    M_aa_yz = J_star_t_13 + total_rus_yz_3
-    M_aa_zz = J_star_t_15 - total_rus_zz_3
+    M_aa_yy = J_star_t_13 - total_rus_yy_3
+    M_aa_yz = J_star_t_15 + total_rus_yz_3
+    M_aa_zz = J_star_t_17 - total_rus_zz_3
     out_M[0] = M_tt_xx
     out_M[1] = -total_rus_xy
     out_M[6] = -total_rus_xy
@@ -2228,7 +2366,7 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 1467 mul, 990 add, 24 div, 12 sqrt, 0 trig
+# Z: 1473 mul, 1002 add, 24 div, 12 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
@@ -2286,113 +2424,123 @@ def _run_Z(m, X, V):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_Z = m.zeros("Z")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (M4) centripetal force and weight of the platform
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
     Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
     Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z_2*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x_2*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y - g_r0_y_2*h_star_x
+    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
+    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_1_zz, J_3_xy, J_3_xz, J_3_yz, Kd_1_t_2, Kd_1_t_3, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz,
-            branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_1_x, h_1_y, h_3_x, h_3_y, h_3_z,
-            inv_Kd_1_t_6, inv_rus_platform_joint_offset_x, inv_uu_3_t, rho2_1_t,
-            rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx,
-            rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy,
-            rus_base_frame_zz, rus_base_point_x, rus_base_point_y, rus_base_point_z,
+        inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_platform_joint_offset_x, rus_J_1_zz,
+            rus_J_3_xy, rus_J_3_xz, rus_J_3_yz, rus_Kd_1_t_2, rus_Kd_1_t_4, rus_Sigma_3_xx,
+            rus_Sigma_3_yy, rus_Sigma_3_zz, rus_base_frame_xx, rus_base_frame_xy,
+            rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz,
+            rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz, rus_base_point_x,
+            rus_base_point_y, rus_base_point_z, rus_branch_1, rus_branch_2, rus_g_r0_x,
+            rus_g_r0_y, rus_h_1_x, rus_h_1_y, rus_h_3_x, rus_h_3_y, rus_h_3_z,
             rus_joint2_offset_x, rus_platform_joint_offset_x, rus_platform_point_x,
-            rus_platform_point_y, rus_platform_point_z, size, size_t,
+            rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t,
         ) = k
-        # (rus-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (rus-S) from the base point to the connection point
+        rus_q_in_base_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
-        q_in_base_y = (
+        rus_q_in_base_y = (
         R_yx*rus_platform_point_x + R_yy*rus_platform_point_y + R_yz*rus_platform_point_z
         )
-        q_in_base_z = (
+        rus_q_in_base_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rus_base_point_x
-        S_y = q_in_base_y + t_y - rus_base_point_y
-        S_z = q_in_base_z + t_z - rus_base_point_z
-        # (rus-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_t = S_x*S_x + S_y*S_y + S_z*S_z
-        Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
-        # (rus-K3) component along the reference direction
-        px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx
-        # (rus-K6) factor of the cosine in the equation of joint 1
-        Kc_1 = px_1*rus_joint2_offset_x
-        # (rus-K4) component across the reference direction
-        py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy
-        # (rus-K7) factor of the sine in the equation of joint 1
-        Ks_1 = py_1*rus_joint2_offset_x
-        # (rus-K8) squared amplitude
-        rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
-        # (rus-K9) discriminant
-        disc_1 = rho2_1 - Kd_1*Kd_1
-        # (rus-K10) root, with the sign of the branch
-        root_1 = branch_1*sqrt(disc_1)
-        # (rus-K15) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = inv_Kd_1_t_6*root_1*rus_joint2_offset_x
-        xi_1_t_2 = S_x*rus_base_frame_xz + S_y*rus_base_frame_yz + S_z*rus_base_frame_zz
-        # (rus-K16) from the origin of joint 2 to the connection point
-        x_2_x = Kd_1*inv_Kd_1_t_6*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-K20) squared amplitude
-        rho2_2 = x_2_x*x_2_x + xi_1_t*xi_1_t
-        # (rus-K22) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (rus-K28) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_uu_3_t*root_2*rus_platform_joint_offset_x
-        # (rus-K29) sine of the angle of joint 3 from its reference direction
-        s_3 = inv_uu_3_t*rus_platform_joint_offset_x*xi_1_t_2
-        # (rus-V2) from joint 1 to the connection point, along the links
-        r_1_t = c_3*rus_platform_joint_offset_x
-        r_1_t_2 = rus_platform_joint_offset_x*s_3
-        # (rus-K23) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = inv_rho2_2*root_2*xi_1_t
-        # (rus-K24) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*root_2*x_2_x
-        # (rus-V2) from joint 1 to the connection point, along the links
-        r_1_t_3 = c_2*r_1_t
-        r_1_x = rus_joint2_offset_x + r_1_t*s_2
-        r_1_r0_x = c_2*r_1_x - r_1_t_3*s_2
-        r_1_r0_y = -c_2*r_1_t_3 - r_1_x*s_2
-        # (rus-V3) velocity of the connection point per rate of joint 1
-        v_1_t = c_3*r_1_r0_x
-        v_1_t_2 = r_1_r0_x*s_3
-        v_1_z = c_3*(r_1_t_2*s_3 - c_3*r_1_r0_y) + s_3*(-c_3*r_1_t_2 - r_1_r0_y*s_3)
-        # (rus-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1)
-        # (rus-K12) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1)
-        # (rus-V6) reciprocal vector 1
-        axis_z_rus_axes3_r3_x = c_1*c_2 - s_1*s_2
-        axis_z_rus_axes3_r3_y = c_1*s_2 + c_2*s_1
+        rus_S_x = rus_q_in_base_x + t_x - rus_base_point_x
+        rus_S_y = rus_q_in_base_y + t_y - rus_base_point_y
+        rus_S_z = rus_q_in_base_z + t_z - rus_base_point_z
+        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
+        rus_Kd_1 = 0.5*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4
+        # (rus-px_1) component along the reference direction
+        rus_px_1 = (
+        rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx
+        )
+        # (rus-Kc_1) factor of the cosine in the equation of joint 1
+        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
+        # (rus-py_1) component across the reference direction
+        rus_py_1 = (
+        rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy
+        )
+        # (rus-Ks_1) factor of the sine in the equation of joint 1
+        rus_Ks_1 = rus_joint2_offset_x*rus_py_1
+        # (rus-rho2_1) squared amplitude
+        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
+        # (rus-disc_1) discriminant
+        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
+        # (rus-root_1) root, with the sign of the branch
+        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
+        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1
+        rus_xi_1_t_2 = (
+        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
+        )
+        # (rus-x_2) from the origin of joint 2 to the connection point
+        rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
+        # (rus-rho2_2) squared amplitude
+        rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t
+        # (rus-root_2) root, with the sign of the branch
+        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
+        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
+        rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2
+        # (rus-s_3) sine of the angle of joint 3 from its reference direction
+        rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
+        rus_r_1_t_2 = rus_platform_joint_offset_x*rus_s_3
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_rho2_2 = 1.0/rus_rho2_2
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t_3 = rus_c_2*rus_r_1_t
+        rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
+        rus_r_1_r0_x = rus_c_2*rus_r_1_x - rus_r_1_t_3*rus_s_2
+        rus_r_1_r0_y = -rus_c_2*rus_r_1_t_3 - rus_r_1_x*rus_s_2
+        # (rus-v_1) velocity of the connection point per rate of joint 1
+        rus_v_1_t = rus_c_3*rus_r_1_r0_x
+        rus_v_1_t_2 = rus_r_1_r0_x*rus_s_3
+        rus_v_1_z = (
+        rus_c_3*(rus_r_1_t_2*rus_s_3 - rus_c_3*rus_r_1_r0_y) + rus_s_3*(-rus_c_3*rus_r_1_t_2 -
+            rus_r_1_r0_y*rus_s_3)
+        )
+        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rus_rho2_1 = 1.0/rus_rho2_1
+        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
+        # (rus-s_1) sine of the angle of joint 1 from its reference direction
+        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
+        # (rus-w_1) reciprocal vector 1
+        axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
+        axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
         axis_z_rus_axes3_in_base_x = (
         axis_z_rus_axes3_r3_x*rus_base_frame_xx + axis_z_rus_axes3_r3_y*rus_base_frame_xy
         )
@@ -2402,21 +2550,21 @@ def _run_Z(m, X, V):
         axis_z_rus_axes3_in_base_z = (
         axis_z_rus_axes3_r3_x*rus_base_frame_zx + axis_z_rus_axes3_r3_y*rus_base_frame_zy
         )
-        w_1_t = s_2*s_3
-        w_1_t_2 = c_2*s_3
-        axis_y_rus_axes3_r3_x = c_1*w_1_t + s_1*w_1_t_2
-        axis_y_rus_axes3_r3_y = s_1*w_1_t - c_1*w_1_t_2
+        rus_w_1_t = rus_s_2*rus_s_3
+        rus_w_1_t_2 = rus_c_2*rus_s_3
+        axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2
+        axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2
         axis_y_rus_axes3_in_base_x = (
         axis_y_rus_axes3_r3_x*rus_base_frame_xx + axis_y_rus_axes3_r3_y*rus_base_frame_xy -
-            c_3*rus_base_frame_xz
+            rus_base_frame_xz*rus_c_3
         )
         axis_y_rus_axes3_in_base_y = (
         axis_y_rus_axes3_r3_x*rus_base_frame_yx + axis_y_rus_axes3_r3_y*rus_base_frame_yy -
-            c_3*rus_base_frame_yz
+            rus_base_frame_yz*rus_c_3
         )
         axis_y_rus_axes3_in_base_z = (
         axis_y_rus_axes3_r3_x*rus_base_frame_zx + axis_y_rus_axes3_r3_y*rus_base_frame_zy -
-            c_3*rus_base_frame_zz
+            rus_base_frame_zz*rus_c_3
         )
         axis_x_rus_axes3_x = (
         axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
@@ -2430,154 +2578,179 @@ def _run_Z(m, X, V):
         axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
             axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x
         )
-        inv_v_1_t = 1.0/v_1_t
-        # (rus-V7) reciprocal vector 2
-        inv_r_1_t = 1.0/r_1_t
-        # (rus-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        g_r1_x = c_1*g_r0_x + g_r0_y*s_1
-        g_r1_y = c_1*g_r0_y - g_r0_x*s_1
-        # (rus-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        # (rus-V9) rate of joint 1
-        qd_1 = (
-        inv_v_1_t*(S_dot_x*axis_x_rus_axes3_x + S_dot_y*axis_x_rus_axes3_y +
-            S_dot_z*axis_x_rus_axes3_z)
+        inv_rus_v_1_t = 1.0/rus_v_1_t
+        # (rus-w_2) reciprocal vector 2
+        inv_rus_r_1_t = 1.0/rus_r_1_t
+        # (rus-S_dot) velocity of the connection point
+        rus_S_dot_t = omega_y*rus_q_in_base_z - omega_z*rus_q_in_base_y
+        rus_S_dot_t_2 = omega_z*rus_q_in_base_x - omega_x*rus_q_in_base_z
+        rus_S_dot_t_3 = omega_x*rus_q_in_base_y - omega_y*rus_q_in_base_x
+        rus_S_dot_x = rus_S_dot_t + t_dot_x
+        rus_S_dot_y = rus_S_dot_t_2 + t_dot_y
+        rus_S_dot_z = rus_S_dot_t_3 + t_dot_z
+        # (rus-qd_3) rate of joint 3
+        rus_qd_1 = (
+        inv_rus_v_1_t*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
+            axis_x_rus_axes3_z*rus_S_dot_z)
         )
-        qd_1_t = (
-        S_dot_x*axis_y_rus_axes3_in_base_x + S_dot_y*axis_y_rus_axes3_in_base_y +
-            S_dot_z*axis_y_rus_axes3_in_base_z - qd_1*v_1_t_2
+        rus_qd_3_t = (
+        axis_y_rus_axes3_in_base_x*rus_S_dot_x + axis_y_rus_axes3_in_base_y*rus_S_dot_y +
+            axis_y_rus_axes3_in_base_z*rus_S_dot_z - rus_qd_1*rus_v_1_t_2
         )
-        qd_3 = inv_rus_platform_joint_offset_x*qd_1_t
-        # (rus-V14) angular velocity of link 2
-        omega_2_z = (
-        inv_r_1_t*(S_dot_x*axis_z_rus_axes3_in_base_x + S_dot_y*axis_z_rus_axes3_in_base_y +
-            S_dot_z*axis_z_rus_axes3_in_base_z + qd_1*v_1_z) - qd_1
+        rus_qd_3 = inv_rus_platform_joint_offset_x*rus_qd_3_t
+        # (rus-omega_2) angular velocity of link 2
+        rus_omega_2_z = (
+        inv_rus_r_1_t*(axis_z_rus_axes3_in_base_x*rus_S_dot_x +
+            axis_z_rus_axes3_in_base_y*rus_S_dot_y + axis_z_rus_axes3_in_base_z*rus_S_dot_z +
+            rus_qd_1*rus_v_1_z) - rus_qd_1
         )
-        omega_2_t = omega_2_z*s_3
-        omega_2_t_2 = c_3*omega_2_z
-        # (rus-A5) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_x = omega_2_t_2*qd_3
-        zeta_3_y = omega_2_t*qd_3
-        # (rus-V16) centripetal tensor of link 3
-        W_3_t = omega_2_t*omega_2_t
-        W_3_t_2 = omega_2_t_2*omega_2_t_2
-        W_3_t_3 = qd_3*qd_3
-        W_3_xy = omega_2_t*omega_2_t_2
-        # (rus-V12) angular velocity of link 1
-        omega_1_t = qd_1*s_3
-        omega_1_t_2 = c_3*qd_1
-        # (rus-A7) acceleration of the connection point at zero joint accelerations
-        bias_t = c_2*rus_joint2_offset_x
-        bias_t_2 = rus_joint2_offset_x*s_2
-        bias_t_3 = bias_t_2*c_3*omega_1_t_2 + bias_t_2*omega_1_t*s_3
-        bias_t_4 = omega_2_t_2*rus_platform_joint_offset_x
-        bias_x = -bias_t_3*omega_1_t_2 - bias_t_4*omega_2_t_2 - qd_1_t*qd_3
-        bias_y = -bias_t_3*omega_1_t - bias_t_4*omega_2_t
-        bias_z = (
-        omega_2_t*qd_1_t + rus_platform_joint_offset_x*zeta_3_y - bias_t*omega_1_t*omega_1_t -
-            bias_t*omega_1_t_2*omega_1_t_2
+        rus_omega_2_t = rus_omega_2_z*rus_s_3
+        rus_omega_2_t_2 = rus_c_3*rus_omega_2_z
+        # (rus-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rus_zeta_3_x = rus_omega_2_t_2*rus_qd_3
+        rus_zeta_3_y = rus_omega_2_t*rus_qd_3
+        # (rus-u_1) centripetal acceleration of the connection point
+        rus_u_1_x = omega_y*rus_S_dot_t_3 - omega_z*rus_S_dot_t_2
+        rus_u_1_y = omega_z*rus_S_dot_t - omega_x*rus_S_dot_t_3
+        rus_u_1_z = omega_x*rus_S_dot_t_2 - omega_y*rus_S_dot_t
+        # (rus-W_3) centripetal tensor of link 3
+        rus_W_3_t = rus_omega_2_t*rus_omega_2_t
+        rus_W_3_t_2 = rus_omega_2_t_2*rus_omega_2_t_2
+        rus_W_3_t_3 = rus_qd_3*rus_qd_3
+        rus_W_3_xy = rus_omega_2_t*rus_omega_2_t_2
+        # (rus-omega_1) angular velocity of link 1
+        rus_omega_1_t = rus_qd_1*rus_s_3
+        rus_omega_1_t_2 = rus_c_3*rus_qd_1
+        # (rus-bias) acceleration of the connection point at zero joint accelerations
+        rus_bias_t = rus_c_2*rus_joint2_offset_x
+        rus_bias_t_2 = rus_joint2_offset_x*rus_s_2
+        rus_bias_t_3 = rus_bias_t_2*rus_c_3*rus_omega_1_t_2 + rus_bias_t_2*rus_omega_1_t*rus_s_3
+        rus_bias_t_4 = rus_omega_2_t_2*rus_platform_joint_offset_x
+        rus_bias_x = (
+        -rus_bias_t_3*rus_omega_1_t_2 - rus_bias_t_4*rus_omega_2_t_2 - rus_qd_3*rus_qd_3_t
         )
-        # (rus-A1) centripetal acceleration of the connection point
-        u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
-        u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y
-        u_1_tip_x = axis_x_rus_axes3_x*u_1_x + axis_x_rus_axes3_y*u_1_y + axis_x_rus_axes3_z*u_1_z
-        u_1_tip_y = (
-        axis_y_rus_axes3_in_base_x*u_1_x + axis_y_rus_axes3_in_base_y*u_1_y +
-            axis_y_rus_axes3_in_base_z*u_1_z
+        rus_bias_y = -rus_bias_t_3*rus_omega_1_t - rus_bias_t_4*rus_omega_2_t
+        rus_bias_z = (
+        rus_omega_2_t*rus_qd_3_t + rus_platform_joint_offset_x*rus_zeta_3_y -
+            rus_bias_t*rus_omega_1_t*rus_omega_1_t - rus_bias_t*rus_omega_1_t_2*rus_omega_1_t_2
         )
-        u_1_tip_z = (
-        axis_z_rus_axes3_in_base_x*u_1_x + axis_z_rus_axes3_in_base_y*u_1_y +
-            axis_z_rus_axes3_in_base_z*u_1_z
+        # (rus-u_1) centripetal acceleration of the connection point
+        rus_u_1_tip_x = (
+        axis_x_rus_axes3_x*rus_u_1_x + axis_x_rus_axes3_y*rus_u_1_y + axis_x_rus_axes3_z*rus_u_1_z
         )
-        # (rus-A9) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_x = u_1_tip_x - bias_x
-        rel_o_y = u_1_tip_y - bias_y
-        rel_o_z = u_1_tip_z - bias_z
-        # (rus-A11) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_o = inv_v_1_t*rel_o_x
-        qdd_3_o = inv_rus_platform_joint_offset_x*(qdd_1_o*v_1_t_2 - rel_o_y)
-        # (rus-N31) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_o_z = g_r1_x*h_1_y - J_1_zz*qdd_1_o - g_r1_y*h_1_x
-        # (rus-N4) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        g_r2_y = c_2*g_r1_y - g_r1_x*s_2
-        acc_3_o_x = u_1_tip_x + c_3*g_r2_y - g_r0_z*s_3
-        acc_3_o_y = u_1_tip_y + c_3*g_r0_z + g_r2_y*s_3
-        acc_3_o_z = u_1_tip_z - c_2*g_r1_x - g_r1_y*s_2
-        # (rus-A21) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_o_z = inv_r_1_t*(rel_o_z + qdd_1_o*v_1_z) - qdd_1_o
-        alpha_2_o_t = alpha_2_o_z*s_3
-        alpha_2_o_t_2 = alpha_2_o_z*c_3
-        # (rus-A24) remainder without the acceleration in: angular acceleration of link 3
-        alpha_3_o_x = alpha_2_o_t - zeta_3_x
-        alpha_3_o_y = -alpha_2_o_t_2 - zeta_3_y
-        # (rus-A26) remainder of the acceleration tensor of link 3
-        B_3_o_xy = qdd_3_o - W_3_xy
-        B_3_o_yx = -W_3_xy - qdd_3_o
-        B_3_o_zx = zeta_3_y - alpha_3_o_y
-        B_3_o_zy = alpha_3_o_x - zeta_3_x
-        # (rus-N21) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        mu_3_o_x = (
-        B_3_o_yx*J_3_xy + B_3_o_zx*J_3_xz + B_3_o_zy*Sigma_3_yy + Sigma_3_zz*alpha_2_o_t -
-            J_3_yz*(W_3_t_2 - W_3_t_3) - acc_3_o_y*h_3_y - acc_3_o_z*h_3_z
+        rus_u_1_tip_y = (
+        axis_y_rus_axes3_in_base_x*rus_u_1_x + axis_y_rus_axes3_in_base_y*rus_u_1_y +
+            axis_y_rus_axes3_in_base_z*rus_u_1_z
         )
-        mu_3_o_y = (
-        B_3_o_xy*J_3_yz + acc_3_o_x*h_3_y - B_3_o_zx*Sigma_3_xx - B_3_o_zy*J_3_xz - J_3_xy*(W_3_t
-            - W_3_t_3) - Sigma_3_zz*alpha_2_o_t_2 - acc_3_o_z*h_3_x
+        rus_u_1_tip_z = (
+        axis_z_rus_axes3_in_base_x*rus_u_1_x + axis_z_rus_axes3_in_base_y*rus_u_1_y +
+            axis_z_rus_axes3_in_base_z*rus_u_1_z
         )
-        mu_3_o_z = (
-        B_3_o_yx*Sigma_3_xx + J_3_xy*alpha_2_o_t + J_3_yz*alpha_2_o_t_2 + acc_3_o_x*h_3_z +
-            acc_3_o_y*h_3_x - B_3_o_xy*Sigma_3_yy - J_3_xz*(W_3_t - W_3_t_2)
+        # (rus-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        rus_rel_o_x = rus_u_1_tip_x - rus_bias_x
+        rus_rel_o_y = rus_u_1_tip_y - rus_bias_y
+        rus_rel_o_z = rus_u_1_tip_z - rus_bias_z
+        # (rus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
+        rus_qdd_1_o = inv_rus_v_1_t*rus_rel_o_x
+        rus_qdd_3_o = inv_rus_platform_joint_offset_x*(rus_qdd_1_o*rus_v_1_t_2 - rus_rel_o_y)
+        # (rus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        rus_alpha_2_o_z = inv_rus_r_1_t*(rus_rel_o_z + rus_qdd_1_o*rus_v_1_z) - rus_qdd_1_o
+        rus_alpha_2_o_t = rus_alpha_2_o_z*rus_s_3
+        rus_alpha_2_o_t_2 = rus_alpha_2_o_z*rus_c_3
+        # (rus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        rus_alpha_3_o_x = rus_alpha_2_o_t - rus_zeta_3_x
+        rus_alpha_3_o_y = -rus_alpha_2_o_t_2 - rus_zeta_3_y
+        # (rus-B_3_o) remainder of the acceleration tensor of link 3
+        rus_B_3_o_xy = rus_qdd_3_o - rus_W_3_xy
+        rus_B_3_o_yx = -rus_W_3_xy - rus_qdd_3_o
+        rus_B_3_o_zx = rus_zeta_3_y - rus_alpha_3_o_y
+        rus_B_3_o_zy = rus_alpha_3_o_x - rus_zeta_3_x
+        # (rus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        rus_acc_3_o_x = (
+        rus_u_1_tip_x - axis_x_rus_axes3_x*gravity_x - axis_x_rus_axes3_y*gravity_y -
+            axis_x_rus_axes3_z*gravity_z
         )
-        mu_3_o_r0_y = mu_3_o_x*s_3 - c_3*mu_3_o_y
-        # (rus-N33) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_o_z = mu_1_o_z + mu_3_o_r0_y
-        # (rus-N39) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_o_t = inv_r_1_t*mu_3_o_r0_y
-        G_o_t_2 = inv_rus_platform_joint_offset_x*mu_3_o_z
-        # (rus-N42) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_o_x = (
-        B_3_o_xy*h_3_z + alpha_2_o_t_2*h_3_y + h_3_x*(W_3_t_2 + W_3_t_3) + inv_v_1_t*(N_1_o_z +
-            G_o_t_2*v_1_t_2 - G_o_t*v_1_z)
+        rus_acc_3_o_y = (
+        rus_u_1_tip_y - axis_y_rus_axes3_in_base_x*gravity_x -
+            axis_y_rus_axes3_in_base_y*gravity_y - axis_y_rus_axes3_in_base_z*gravity_z
         )
-        c_o_y = alpha_2_o_t*h_3_y - G_o_t_2 - B_3_o_yx*h_3_x - h_3_z*(W_3_t + W_3_t_3)
-        c_o_z = B_3_o_zy*h_3_z + h_3_y*(W_3_t + W_3_t_2) - G_o_t - B_3_o_zx*h_3_x
-        # (rus-N44) velocity and gravity terms of the leg force
-        U_in_base_x = (
-        -axis_x_rus_axes3_x*c_o_x - axis_y_rus_axes3_in_base_x*c_o_y -
-            axis_z_rus_axes3_in_base_x*c_o_z
+        rus_acc_3_o_z = (
+        rus_u_1_tip_z - axis_z_rus_axes3_in_base_x*gravity_x -
+            axis_z_rus_axes3_in_base_y*gravity_y - axis_z_rus_axes3_in_base_z*gravity_z
         )
-        U_in_base_y = (
-        -axis_x_rus_axes3_y*c_o_x - axis_y_rus_axes3_in_base_y*c_o_y -
-            axis_z_rus_axes3_in_base_y*c_o_z
+        # (rus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        rus_mu_3_o_x = (
+        rus_B_3_o_yx*rus_J_3_xy + rus_B_3_o_zx*rus_J_3_xz + rus_B_3_o_zy*rus_Sigma_3_yy +
+            rus_Sigma_3_zz*rus_alpha_2_o_t - rus_J_3_yz*(rus_W_3_t_2 - rus_W_3_t_3) -
+            rus_acc_3_o_y*rus_h_3_y - rus_acc_3_o_z*rus_h_3_z
         )
-        U_in_base_z = (
-        -axis_x_rus_axes3_z*c_o_x - axis_y_rus_axes3_in_base_z*c_o_y -
-            axis_z_rus_axes3_in_base_z*c_o_z
+        rus_mu_3_o_y = (
+        rus_B_3_o_xy*rus_J_3_yz + rus_acc_3_o_x*rus_h_3_y - rus_B_3_o_zx*rus_Sigma_3_xx -
+            rus_B_3_o_zy*rus_J_3_xz - rus_J_3_xy*(rus_W_3_t - rus_W_3_t_3) -
+            rus_Sigma_3_zz*rus_alpha_2_o_t_2 - rus_acc_3_o_z*rus_h_3_x
         )
-        # (M7) rotational part of Z
-        Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
-        Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
-        Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
+        rus_mu_3_o_z = (
+        rus_B_3_o_yx*rus_Sigma_3_xx + rus_J_3_xy*rus_alpha_2_o_t + rus_J_3_yz*rus_alpha_2_o_t_2 +
+            rus_acc_3_o_x*rus_h_3_z + rus_acc_3_o_y*rus_h_3_x - rus_B_3_o_xy*rus_Sigma_3_yy -
+            rus_J_3_xz*(rus_W_3_t - rus_W_3_t_2)
+        )
+        rus_mu_3_o_r0_y = rus_mu_3_o_x*rus_s_3 - rus_c_3*rus_mu_3_o_y
+        # (rus-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        rus_mu_1_o_z = (
+        rus_h_1_y*(rus_c_1*rus_g_r0_x + rus_g_r0_y*rus_s_1) - rus_J_1_zz*rus_qdd_1_o -
+            rus_h_1_x*(rus_c_1*rus_g_r0_y - rus_g_r0_x*rus_s_1)
+        )
+        # (rus-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rus_N_1_o_z = rus_mu_1_o_z + rus_mu_3_o_r0_y
+        # (rus-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rus_G_o_t = inv_rus_r_1_t*rus_mu_3_o_r0_y
+        rus_G_o_t_2 = inv_rus_platform_joint_offset_x*rus_mu_3_o_z
+        # (rus-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rus_c_o_x = (
+        inv_rus_v_1_t*(rus_N_1_o_z + rus_G_o_t_2*rus_v_1_t_2 - rus_G_o_t*rus_v_1_z) +
+            rus_B_3_o_xy*rus_h_3_z + rus_alpha_2_o_t_2*rus_h_3_y + rus_h_3_x*(rus_W_3_t_2 +
+            rus_W_3_t_3)
+        )
+        rus_c_o_y = (
+        rus_alpha_2_o_t*rus_h_3_y - rus_G_o_t_2 - rus_B_3_o_yx*rus_h_3_x - rus_h_3_z*(rus_W_3_t +
+            rus_W_3_t_3)
+        )
+        rus_c_o_z = (
+        rus_B_3_o_zy*rus_h_3_z + rus_h_3_y*(rus_W_3_t + rus_W_3_t_2) - rus_G_o_t -
+            rus_B_3_o_zx*rus_h_3_x
+        )
+        # (rus-U) velocity and gravity terms of the leg force
+        rus_U_in_base_x = (
+        -axis_x_rus_axes3_x*rus_c_o_x - axis_y_rus_axes3_in_base_x*rus_c_o_y -
+            axis_z_rus_axes3_in_base_x*rus_c_o_z
+        )
+        rus_U_in_base_y = (
+        -axis_x_rus_axes3_y*rus_c_o_x - axis_y_rus_axes3_in_base_y*rus_c_o_y -
+            axis_z_rus_axes3_in_base_y*rus_c_o_z
+        )
+        rus_U_in_base_z = (
+        -axis_x_rus_axes3_z*rus_c_o_x - axis_y_rus_axes3_in_base_z*rus_c_o_y -
+            axis_z_rus_axes3_in_base_z*rus_c_o_z
+        )
+        # (Z_a) rotational part of Z
+        rus_Z_a_t = rus_U_in_base_z*rus_q_in_base_y - rus_U_in_base_y*rus_q_in_base_z
+        rus_Z_a_t_2 = rus_U_in_base_x*rus_q_in_base_z - rus_U_in_base_z*rus_q_in_base_x
+        rus_Z_a_t_3 = rus_U_in_base_y*rus_q_in_base_x - rus_U_in_base_x*rus_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t) & (abs(r_1_t) > _TOLERANCE * size) &
-            (abs(-v_1_t) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1
+            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t) & (abs(rus_r_1_t) >
+            _TOLERANCE * rus_size) & (abs(-rus_v_1_t) > _TOLERANCE * rus_size))
         )
         sums = m.added(sums, leg, (
-        U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
+        rus_U_in_base_x, rus_U_in_base_y, rus_U_in_base_z, rus_Z_a_t, rus_Z_a_t_2,
+            rus_Z_a_t_3,
         ))
     total_rus_x, total_rus_y, total_rus_z, total_rus_x_2, total_rus_y_2, total_rus_z_2 = sums
-    # (M5) translational part of Z
+    # (Z_t) translational part of Z
     Z_t_x = Z_p_x + total_rus_x
     Z_t_y = Z_p_y + total_rus_y
     Z_t_z = Z_p_z + total_rus_z
-    # (M7) rotational part of Z
+    # (Z_a) rotational part of Z
     Z_a_x = Z_q_in_base_x + total_rus_x_2
     Z_a_y = Z_q_in_base_y + total_rus_y_2
     Z_a_z = Z_q_in_base_z + total_rus_z_2
@@ -2633,75 +2806,81 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        Kd_1_t_2, Kd_1_t_3, branch_1, branch_2, inv_Kd_1_t_6, inv_uu_3_t, rho2_1_t,
-            rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx,
-            rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy,
-            rus_base_frame_zz, rus_base_point_x, rus_base_point_y, rus_base_point_z,
+        inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, rus_Kd_1_t_2, rus_Kd_1_t_4, rus_base_frame_xx,
+            rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
+            rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
+            rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1, rus_branch_2,
             rus_joint2_offset_x, rus_platform_joint_offset_x, rus_platform_point_x,
-            rus_platform_point_y, rus_platform_point_z, size, size_t,
+            rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t,
         ) = k
-        # (rus-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (rus-S) from the base point to the connection point
+        rus_q_in_base_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
-        q_in_base_y = (
+        rus_q_in_base_y = (
         R_yx*rus_platform_point_x + R_yy*rus_platform_point_y + R_yz*rus_platform_point_z
         )
-        q_in_base_z = (
+        rus_q_in_base_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rus_base_point_x
-        S_y = q_in_base_y + t_y - rus_base_point_y
-        S_z = q_in_base_z + t_z - rus_base_point_z
-        # (rus-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_t = S_x*S_x + S_y*S_y + S_z*S_z
-        Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
-        # (rus-K3) component along the reference direction
-        px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx
-        # (rus-K6) factor of the cosine in the equation of joint 1
-        Kc_1 = px_1*rus_joint2_offset_x
-        # (rus-K4) component across the reference direction
-        py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy
-        # (rus-K7) factor of the sine in the equation of joint 1
-        Ks_1 = py_1*rus_joint2_offset_x
-        # (rus-K8) squared amplitude
-        rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
-        # (rus-K9) discriminant
-        disc_1 = rho2_1 - Kd_1*Kd_1
-        # (rus-K10) root, with the sign of the branch
-        root_1 = branch_1*sqrt(disc_1)
-        # (rus-K15) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = inv_Kd_1_t_6*root_1*rus_joint2_offset_x
-        xi_1_t_2 = S_x*rus_base_frame_xz + S_y*rus_base_frame_yz + S_z*rus_base_frame_zz
-        # (rus-K16) from the origin of joint 2 to the connection point
-        x_2_x = Kd_1*inv_Kd_1_t_6*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-K20) squared amplitude
-        rho2_2 = x_2_x*x_2_x + xi_1_t*xi_1_t
-        # (rus-K22) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (rus-K28) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_uu_3_t*root_2*rus_platform_joint_offset_x
-        # (rus-K29) sine of the angle of joint 3 from its reference direction
-        s_3 = inv_uu_3_t*rus_platform_joint_offset_x*xi_1_t_2
-        # (rus-V2) from joint 1 to the connection point, along the links
-        r_1_t = c_3*rus_platform_joint_offset_x
-        # (rus-K23) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = inv_rho2_2*root_2*xi_1_t
-        # (rus-K24) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*root_2*x_2_x
-        # (rus-V2) from joint 1 to the connection point, along the links
-        r_1_x = rus_joint2_offset_x + r_1_t*s_2
-        # (rus-V3) velocity of the connection point per rate of joint 1
-        v_1_t = c_3*(c_2*r_1_x - c_2*r_1_t*s_2)
-        # (rus-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1)
-        # (rus-K12) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1)
-        # (rus-V6) reciprocal vector 1
-        axis_z_rus_axes3_r3_x = c_1*c_2 - s_1*s_2
-        axis_z_rus_axes3_r3_y = c_1*s_2 + c_2*s_1
+        rus_S_x = rus_q_in_base_x + t_x - rus_base_point_x
+        rus_S_y = rus_q_in_base_y + t_y - rus_base_point_y
+        rus_S_z = rus_q_in_base_z + t_z - rus_base_point_z
+        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
+        rus_Kd_1 = 0.5*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4
+        # (rus-px_1) component along the reference direction
+        rus_px_1 = (
+        rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx
+        )
+        # (rus-Kc_1) factor of the cosine in the equation of joint 1
+        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
+        # (rus-py_1) component across the reference direction
+        rus_py_1 = (
+        rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy
+        )
+        # (rus-Ks_1) factor of the sine in the equation of joint 1
+        rus_Ks_1 = rus_joint2_offset_x*rus_py_1
+        # (rus-rho2_1) squared amplitude
+        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
+        # (rus-disc_1) discriminant
+        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
+        # (rus-root_1) root, with the sign of the branch
+        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
+        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1
+        rus_xi_1_t_2 = (
+        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
+        )
+        # (rus-x_2) from the origin of joint 2 to the connection point
+        rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
+        # (rus-rho2_2) squared amplitude
+        rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t
+        # (rus-root_2) root, with the sign of the branch
+        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
+        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
+        rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2
+        # (rus-s_3) sine of the angle of joint 3 from its reference direction
+        rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_rho2_2 = 1.0/rus_rho2_2
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
+        # (rus-v_1) velocity of the connection point per rate of joint 1
+        rus_v_1_t = rus_c_3*(rus_c_2*rus_r_1_x - rus_c_2*rus_r_1_t*rus_s_2)
+        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rus_rho2_1 = 1.0/rus_rho2_1
+        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
+        # (rus-s_1) sine of the angle of joint 1 from its reference direction
+        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
+        # (rus-w_1) reciprocal vector 1
+        axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
+        axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
         axis_z_rus_axes3_in_base_x = (
         axis_z_rus_axes3_r3_x*rus_base_frame_xx + axis_z_rus_axes3_r3_y*rus_base_frame_xy
         )
@@ -2711,50 +2890,50 @@ def _run_H(m, X):
         axis_z_rus_axes3_in_base_z = (
         axis_z_rus_axes3_r3_x*rus_base_frame_zx + axis_z_rus_axes3_r3_y*rus_base_frame_zy
         )
-        w_1_t = s_2*s_3
-        w_1_t_2 = c_2*s_3
-        axis_y_rus_axes3_r3_x = c_1*w_1_t + s_1*w_1_t_2
-        axis_y_rus_axes3_r3_y = s_1*w_1_t - c_1*w_1_t_2
+        rus_w_1_t = rus_s_2*rus_s_3
+        rus_w_1_t_2 = rus_c_2*rus_s_3
+        axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2
+        axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2
         axis_y_rus_axes3_in_base_x = (
         axis_y_rus_axes3_r3_x*rus_base_frame_xx + axis_y_rus_axes3_r3_y*rus_base_frame_xy -
-            c_3*rus_base_frame_xz
+            rus_base_frame_xz*rus_c_3
         )
         axis_y_rus_axes3_in_base_y = (
         axis_y_rus_axes3_r3_x*rus_base_frame_yx + axis_y_rus_axes3_r3_y*rus_base_frame_yy -
-            c_3*rus_base_frame_yz
+            rus_base_frame_yz*rus_c_3
         )
         axis_y_rus_axes3_in_base_z = (
         axis_y_rus_axes3_r3_x*rus_base_frame_zx + axis_y_rus_axes3_r3_y*rus_base_frame_zy -
-            c_3*rus_base_frame_zz
+            rus_base_frame_zz*rus_c_3
         )
-        inv_v_1_t = 1.0/v_1_t
-        w_1_t_3 = (
-        inv_v_1_t*(axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
+        inv_rus_v_1_t = 1.0/rus_v_1_t
+        rus_w_1_t_3 = (
+        inv_rus_v_1_t*(axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
             axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_y)
         )
-        w_1_t_4 = (
-        inv_v_1_t*(axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
+        rus_w_1_t_4 = (
+        inv_rus_v_1_t*(axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
             axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z)
         )
-        w_1_t_5 = (
-        inv_v_1_t*(axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
+        rus_w_1_t_5 = (
+        inv_rus_v_1_t*(axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
             axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x)
         )
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_x = q_in_base_z*w_1_t_4 - q_in_base_y*w_1_t_5
-        H_a_1_y = q_in_base_x*w_1_t_5 - q_in_base_z*w_1_t_3
-        H_a_1_z = q_in_base_y*w_1_t_3 - q_in_base_x*w_1_t_4
+        # (rus-H_a_1) moment of the column's unit force about the platform origin
+        rus_H_a_1_x = rus_q_in_base_z*rus_w_1_t_4 - rus_q_in_base_y*rus_w_1_t_5
+        rus_H_a_1_y = rus_q_in_base_x*rus_w_1_t_5 - rus_q_in_base_z*rus_w_1_t_3
+        rus_H_a_1_z = rus_q_in_base_y*rus_w_1_t_3 - rus_q_in_base_x*rus_w_1_t_4
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t) & (abs(r_1_t) > _TOLERANCE * size) &
-            (abs(-v_1_t) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1
+            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t) & (abs(rus_r_1_t) >
+            _TOLERANCE * rus_size) & (abs(-rus_v_1_t) > _TOLERANCE * rus_size))
         )
-        out_H[_H_rus[0][leg]] = -w_1_t_3
-        out_H[_H_rus[1][leg]] = -w_1_t_4
-        out_H[_H_rus[2][leg]] = -w_1_t_5
-        out_H[_H_rus[3][leg]] = H_a_1_x
-        out_H[_H_rus[4][leg]] = H_a_1_y
-        out_H[_H_rus[5][leg]] = H_a_1_z
+        out_H[_H_rus[0][leg]] = -rus_w_1_t_3
+        out_H[_H_rus[1][leg]] = -rus_w_1_t_4
+        out_H[_H_rus[2][leg]] = -rus_w_1_t_5
+        out_H[_H_rus[3][leg]] = rus_H_a_1_x
+        out_H[_H_rus[4][leg]] = rus_H_a_1_y
+        out_H[_H_rus[5][leg]] = rus_H_a_1_z
     return ok, (out_H,)
 
 
@@ -2830,29 +3009,29 @@ def _run_required(m, X, V, A):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (P1) centripetal tensor of the platform
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_x*omega_x
     W_p_t_2 = omega_y*omega_y
     W_p_t_3 = omega_z*omega_z
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
     W_p_yz = omega_y*omega_z
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
-    # (E2) inertia force of the platform less its weight
+    # (f_p) inertia force of the platform less its weight
     f_p_x = (
     a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) + h_star_in_base_z*(W_p_xz + alpha_y) -
         h_star_in_base_x*(W_p_t_2 + W_p_t_3)
@@ -2865,11 +3044,11 @@ def _run_required(m, X, V, A):
     a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) + h_star_in_base_y*(W_p_yz + alpha_x) -
         h_star_in_base_z*(W_p_t + W_p_t_2)
     )
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
     a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
     a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
-    # (E3) inertia moment of the platform less that of its weight
+    # (mu_p) inertia moment of the platform less that of its weight
     alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
     alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
     alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
@@ -2891,83 +3070,93 @@ def _run_required(m, X, V, A):
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_1_zz, J_3_xy, J_3_xz, J_3_yz, Kd_1_t_2, Kd_1_t_3, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz,
-            branch_1, branch_2, g_r0_x, g_r0_y, h_1_x, h_1_y, h_3_x, h_3_y, h_3_z, inv_Kd_1_t_6,
-            inv_rus_platform_joint_offset_x, inv_uu_3_t, rho2_1_t, rus_base_frame_xx,
-            rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
-            rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
-            rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_joint2_offset_x,
-            rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
-            rus_platform_point_z, size, size_t,
+        inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_platform_joint_offset_x, rus_J_1_zz,
+            rus_J_3_xy, rus_J_3_xz, rus_J_3_yz, rus_Kd_1_t_2, rus_Kd_1_t_4, rus_Sigma_3_xx,
+            rus_Sigma_3_yy, rus_Sigma_3_zz, rus_base_frame_xx, rus_base_frame_xy,
+            rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz,
+            rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz, rus_base_point_x,
+            rus_base_point_y, rus_base_point_z, rus_branch_1, rus_branch_2, rus_g_r0_x,
+            rus_g_r0_y, rus_h_1_x, rus_h_1_y, rus_h_3_x, rus_h_3_y, rus_h_3_z,
+            rus_joint2_offset_x, rus_platform_joint_offset_x, rus_platform_point_x,
+            rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t,
         ) = k
-        # (rus-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (rus-S) from the base point to the connection point
+        rus_q_in_base_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
-        q_in_base_y = (
+        rus_q_in_base_y = (
         R_yx*rus_platform_point_x + R_yy*rus_platform_point_y + R_yz*rus_platform_point_z
         )
-        q_in_base_z = (
+        rus_q_in_base_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rus_base_point_x
-        S_y = q_in_base_y + t_y - rus_base_point_y
-        S_z = q_in_base_z + t_z - rus_base_point_z
-        # (rus-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_t = S_x*S_x + S_y*S_y + S_z*S_z
-        Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
-        # (rus-K3) component along the reference direction
-        px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx
-        # (rus-K6) factor of the cosine in the equation of joint 1
-        Kc_1 = px_1*rus_joint2_offset_x
-        # (rus-K4) component across the reference direction
-        py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy
-        # (rus-K7) factor of the sine in the equation of joint 1
-        Ks_1 = py_1*rus_joint2_offset_x
-        # (rus-K8) squared amplitude
-        rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
-        # (rus-K9) discriminant
-        disc_1 = rho2_1 - Kd_1*Kd_1
-        # (rus-K10) root, with the sign of the branch
-        root_1 = branch_1*sqrt(disc_1)
-        # (rus-K15) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = inv_Kd_1_t_6*root_1*rus_joint2_offset_x
-        xi_1_t_2 = S_x*rus_base_frame_xz + S_y*rus_base_frame_yz + S_z*rus_base_frame_zz
-        # (rus-K16) from the origin of joint 2 to the connection point
-        x_2_x = Kd_1*inv_Kd_1_t_6*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-K20) squared amplitude
-        rho2_2 = x_2_x*x_2_x + xi_1_t*xi_1_t
-        # (rus-K22) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (rus-K28) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_uu_3_t*root_2*rus_platform_joint_offset_x
-        # (rus-K29) sine of the angle of joint 3 from its reference direction
-        s_3 = inv_uu_3_t*rus_platform_joint_offset_x*xi_1_t_2
-        # (rus-V2) from joint 1 to the connection point, along the links
-        r_1_t = c_3*rus_platform_joint_offset_x
-        r_1_t_2 = rus_platform_joint_offset_x*s_3
-        # (rus-K23) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = inv_rho2_2*root_2*xi_1_t
-        # (rus-K24) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*root_2*x_2_x
-        # (rus-V2) from joint 1 to the connection point, along the links
-        r_1_t_3 = c_2*r_1_t
-        r_1_x = rus_joint2_offset_x + r_1_t*s_2
-        r_1_r0_x = c_2*r_1_x - r_1_t_3*s_2
-        r_1_r0_y = -c_2*r_1_t_3 - r_1_x*s_2
-        # (rus-V3) velocity of the connection point per rate of joint 1
-        v_1_t = c_3*r_1_r0_x
-        v_1_t_2 = r_1_r0_x*s_3
-        v_1_z = c_3*(r_1_t_2*s_3 - c_3*r_1_r0_y) + s_3*(-c_3*r_1_t_2 - r_1_r0_y*s_3)
-        # (rus-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1)
-        # (rus-K12) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1)
-        # (rus-V6) reciprocal vector 1
-        axis_z_rus_axes3_r3_x = c_1*c_2 - s_1*s_2
-        axis_z_rus_axes3_r3_y = c_1*s_2 + c_2*s_1
+        rus_S_x = rus_q_in_base_x + t_x - rus_base_point_x
+        rus_S_y = rus_q_in_base_y + t_y - rus_base_point_y
+        rus_S_z = rus_q_in_base_z + t_z - rus_base_point_z
+        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
+        rus_Kd_1 = 0.5*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4
+        # (rus-px_1) component along the reference direction
+        rus_px_1 = (
+        rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx
+        )
+        # (rus-Kc_1) factor of the cosine in the equation of joint 1
+        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
+        # (rus-py_1) component across the reference direction
+        rus_py_1 = (
+        rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy
+        )
+        # (rus-Ks_1) factor of the sine in the equation of joint 1
+        rus_Ks_1 = rus_joint2_offset_x*rus_py_1
+        # (rus-rho2_1) squared amplitude
+        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
+        # (rus-disc_1) discriminant
+        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
+        # (rus-root_1) root, with the sign of the branch
+        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
+        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1
+        rus_xi_1_t_2 = (
+        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
+        )
+        # (rus-x_2) from the origin of joint 2 to the connection point
+        rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
+        # (rus-rho2_2) squared amplitude
+        rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t
+        # (rus-root_2) root, with the sign of the branch
+        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
+        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
+        rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2
+        # (rus-s_3) sine of the angle of joint 3 from its reference direction
+        rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
+        rus_r_1_t_2 = rus_platform_joint_offset_x*rus_s_3
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_rho2_2 = 1.0/rus_rho2_2
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t_3 = rus_c_2*rus_r_1_t
+        rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
+        rus_r_1_r0_x = rus_c_2*rus_r_1_x - rus_r_1_t_3*rus_s_2
+        rus_r_1_r0_y = -rus_c_2*rus_r_1_t_3 - rus_r_1_x*rus_s_2
+        # (rus-v_1) velocity of the connection point per rate of joint 1
+        rus_v_1_t = rus_c_3*rus_r_1_r0_x
+        rus_v_1_t_2 = rus_r_1_r0_x*rus_s_3
+        rus_v_1_z = (
+        rus_c_3*(rus_r_1_t_2*rus_s_3 - rus_c_3*rus_r_1_r0_y) + rus_s_3*(-rus_c_3*rus_r_1_t_2 -
+            rus_r_1_r0_y*rus_s_3)
+        )
+        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rus_rho2_1 = 1.0/rus_rho2_1
+        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
+        # (rus-s_1) sine of the angle of joint 1 from its reference direction
+        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
+        # (rus-w_1) reciprocal vector 1
+        axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
+        axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
         axis_z_rus_axes3_in_base_x = (
         axis_z_rus_axes3_r3_x*rus_base_frame_xx + axis_z_rus_axes3_r3_y*rus_base_frame_xy
         )
@@ -2977,21 +3166,21 @@ def _run_required(m, X, V, A):
         axis_z_rus_axes3_in_base_z = (
         axis_z_rus_axes3_r3_x*rus_base_frame_zx + axis_z_rus_axes3_r3_y*rus_base_frame_zy
         )
-        w_1_t = s_2*s_3
-        w_1_t_2 = c_2*s_3
-        axis_y_rus_axes3_r3_x = c_1*w_1_t + s_1*w_1_t_2
-        axis_y_rus_axes3_r3_y = s_1*w_1_t - c_1*w_1_t_2
+        rus_w_1_t = rus_s_2*rus_s_3
+        rus_w_1_t_2 = rus_c_2*rus_s_3
+        axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2
+        axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2
         axis_y_rus_axes3_in_base_x = (
         axis_y_rus_axes3_r3_x*rus_base_frame_xx + axis_y_rus_axes3_r3_y*rus_base_frame_xy -
-            c_3*rus_base_frame_xz
+            rus_base_frame_xz*rus_c_3
         )
         axis_y_rus_axes3_in_base_y = (
         axis_y_rus_axes3_r3_x*rus_base_frame_yx + axis_y_rus_axes3_r3_y*rus_base_frame_yy -
-            c_3*rus_base_frame_yz
+            rus_base_frame_yz*rus_c_3
         )
         axis_y_rus_axes3_in_base_z = (
         axis_y_rus_axes3_r3_x*rus_base_frame_zx + axis_y_rus_axes3_r3_y*rus_base_frame_zy -
-            c_3*rus_base_frame_zz
+            rus_base_frame_zz*rus_c_3
         )
         axis_x_rus_axes3_x = (
         axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
@@ -3005,175 +3194,196 @@ def _run_required(m, X, V, A):
         axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
             axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x
         )
-        inv_v_1_t = 1.0/v_1_t
-        # (rus-V7) reciprocal vector 2
-        inv_r_1_t = 1.0/r_1_t
-        # (rus-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        # (rus-V9) rate of joint 1
-        qd_1 = (
-        inv_v_1_t*(S_dot_x*axis_x_rus_axes3_x + S_dot_y*axis_x_rus_axes3_y +
-            S_dot_z*axis_x_rus_axes3_z)
+        inv_rus_v_1_t = 1.0/rus_v_1_t
+        # (rus-w_2) reciprocal vector 2
+        inv_rus_r_1_t = 1.0/rus_r_1_t
+        # (rus-S_dot) velocity of the connection point
+        rus_S_dot_t = omega_y*rus_q_in_base_z - omega_z*rus_q_in_base_y
+        rus_S_dot_t_2 = omega_z*rus_q_in_base_x - omega_x*rus_q_in_base_z
+        rus_S_dot_t_3 = omega_x*rus_q_in_base_y - omega_y*rus_q_in_base_x
+        rus_S_dot_x = rus_S_dot_t + t_dot_x
+        rus_S_dot_y = rus_S_dot_t_2 + t_dot_y
+        rus_S_dot_z = rus_S_dot_t_3 + t_dot_z
+        # (rus-qd_3) rate of joint 3
+        rus_qd_1 = (
+        inv_rus_v_1_t*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
+            axis_x_rus_axes3_z*rus_S_dot_z)
         )
-        qd_1_t = (
-        S_dot_x*axis_y_rus_axes3_in_base_x + S_dot_y*axis_y_rus_axes3_in_base_y +
-            S_dot_z*axis_y_rus_axes3_in_base_z - qd_1*v_1_t_2
+        rus_qd_3_t = (
+        axis_y_rus_axes3_in_base_x*rus_S_dot_x + axis_y_rus_axes3_in_base_y*rus_S_dot_y +
+            axis_y_rus_axes3_in_base_z*rus_S_dot_z - rus_qd_1*rus_v_1_t_2
         )
-        qd_3 = inv_rus_platform_joint_offset_x*qd_1_t
-        # (rus-V14) angular velocity of link 2
-        omega_2_z = (
-        inv_r_1_t*(S_dot_x*axis_z_rus_axes3_in_base_x + S_dot_y*axis_z_rus_axes3_in_base_y +
-            S_dot_z*axis_z_rus_axes3_in_base_z + qd_1*v_1_z) - qd_1
+        rus_qd_3 = inv_rus_platform_joint_offset_x*rus_qd_3_t
+        # (rus-omega_2) angular velocity of link 2
+        rus_omega_2_z = (
+        inv_rus_r_1_t*(axis_z_rus_axes3_in_base_x*rus_S_dot_x +
+            axis_z_rus_axes3_in_base_y*rus_S_dot_y + axis_z_rus_axes3_in_base_z*rus_S_dot_z +
+            rus_qd_1*rus_v_1_z) - rus_qd_1
         )
-        omega_2_t = omega_2_z*s_3
-        omega_2_t_2 = c_3*omega_2_z
-        # (rus-A5) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_x = omega_2_t_2*qd_3
-        zeta_3_y = omega_2_t*qd_3
-        # (rus-V16) centripetal tensor of link 3
-        W_3_t = omega_2_t*omega_2_t
-        W_3_t_2 = omega_2_t_2*omega_2_t_2
-        W_3_t_3 = qd_3*qd_3
-        W_3_xy = omega_2_t*omega_2_t_2
-        # (rus-V12) angular velocity of link 1
-        omega_1_t = qd_1*s_3
-        omega_1_t_2 = c_3*qd_1
-        # (rus-A7) acceleration of the connection point at zero joint accelerations
-        bias_t = c_2*rus_joint2_offset_x
-        bias_t_2 = rus_joint2_offset_x*s_2
-        bias_t_3 = bias_t_2*c_3*omega_1_t_2 + bias_t_2*omega_1_t*s_3
-        bias_t_4 = omega_2_t_2*rus_platform_joint_offset_x
-        bias_x = -bias_t_3*omega_1_t_2 - bias_t_4*omega_2_t_2 - qd_1_t*qd_3
-        bias_y = -bias_t_3*omega_1_t - bias_t_4*omega_2_t
-        bias_z = (
-        omega_2_t*qd_1_t + rus_platform_joint_offset_x*zeta_3_y - bias_t*omega_1_t*omega_1_t -
-            bias_t*omega_1_t_2*omega_1_t_2
+        rus_omega_2_t = rus_omega_2_z*rus_s_3
+        rus_omega_2_t_2 = rus_c_3*rus_omega_2_z
+        # (rus-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rus_zeta_3_x = rus_omega_2_t_2*rus_qd_3
+        rus_zeta_3_y = rus_omega_2_t*rus_qd_3
+        # (rus-W_3) centripetal tensor of link 3
+        rus_W_3_t = rus_omega_2_t*rus_omega_2_t
+        rus_W_3_t_2 = rus_omega_2_t_2*rus_omega_2_t_2
+        rus_W_3_t_3 = rus_qd_3*rus_qd_3
+        rus_W_3_xy = rus_omega_2_t*rus_omega_2_t_2
+        # (rus-omega_1) angular velocity of link 1
+        rus_omega_1_t = rus_qd_1*rus_s_3
+        rus_omega_1_t_2 = rus_c_3*rus_qd_1
+        # (rus-bias) acceleration of the connection point at zero joint accelerations
+        rus_bias_t = rus_c_2*rus_joint2_offset_x
+        rus_bias_t_2 = rus_joint2_offset_x*rus_s_2
+        rus_bias_t_3 = rus_bias_t_2*rus_c_3*rus_omega_1_t_2 + rus_bias_t_2*rus_omega_1_t*rus_s_3
+        rus_bias_t_4 = rus_omega_2_t_2*rus_platform_joint_offset_x
+        rus_bias_x = (
+        -rus_bias_t_3*rus_omega_1_t_2 - rus_bias_t_4*rus_omega_2_t_2 - rus_qd_3*rus_qd_3_t
         )
-        # (rus-V6) reciprocal vector 1
-        w_1_t_3 = axis_x_rus_axes3_x*inv_v_1_t
-        w_1_t_4 = axis_x_rus_axes3_y*inv_v_1_t
-        w_1_t_5 = axis_x_rus_axes3_z*inv_v_1_t
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_x = q_in_base_z*w_1_t_4 - q_in_base_y*w_1_t_5
-        H_a_1_y = q_in_base_x*w_1_t_5 - q_in_base_z*w_1_t_3
-        H_a_1_z = q_in_base_y*w_1_t_3 - q_in_base_x*w_1_t_4
-        # (rus-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (rus-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        S_ddot_tip_x = (
-        S_ddot_x*axis_x_rus_axes3_x + S_ddot_y*axis_x_rus_axes3_y + S_ddot_z*axis_x_rus_axes3_z
+        rus_bias_y = -rus_bias_t_3*rus_omega_1_t - rus_bias_t_4*rus_omega_2_t
+        rus_bias_z = (
+        rus_omega_2_t*rus_qd_3_t + rus_platform_joint_offset_x*rus_zeta_3_y -
+            rus_bias_t*rus_omega_1_t*rus_omega_1_t - rus_bias_t*rus_omega_1_t_2*rus_omega_1_t_2
         )
-        S_ddot_tip_y = (
-        S_ddot_x*axis_y_rus_axes3_in_base_x + S_ddot_y*axis_y_rus_axes3_in_base_y +
-            S_ddot_z*axis_y_rus_axes3_in_base_z
+        # (rus-w_1) reciprocal vector 1
+        rus_w_1_t_3 = axis_x_rus_axes3_x*inv_rus_v_1_t
+        rus_w_1_t_4 = axis_x_rus_axes3_y*inv_rus_v_1_t
+        rus_w_1_t_5 = axis_x_rus_axes3_z*inv_rus_v_1_t
+        # (rus-H_a_1) moment of the column's unit force about the platform origin
+        rus_H_a_1_x = rus_q_in_base_z*rus_w_1_t_4 - rus_q_in_base_y*rus_w_1_t_5
+        rus_H_a_1_y = rus_q_in_base_x*rus_w_1_t_5 - rus_q_in_base_z*rus_w_1_t_3
+        rus_H_a_1_z = rus_q_in_base_y*rus_w_1_t_3 - rus_q_in_base_x*rus_w_1_t_4
+        # (rus-a_p) acceleration of the connection point without its centripetal part
+        rus_a_p_x = t_ddot_x + alpha_y*rus_q_in_base_z - alpha_z*rus_q_in_base_y
+        rus_a_p_y = t_ddot_y + alpha_z*rus_q_in_base_x - alpha_x*rus_q_in_base_z
+        rus_a_p_z = t_ddot_z + alpha_x*rus_q_in_base_y - alpha_y*rus_q_in_base_x
+        # (rus-S_ddot) acceleration of the connection point
+        rus_S_ddot_x = rus_a_p_x + omega_y*rus_S_dot_t_3 - omega_z*rus_S_dot_t_2
+        rus_S_ddot_y = rus_a_p_y + omega_z*rus_S_dot_t - omega_x*rus_S_dot_t_3
+        rus_S_ddot_z = rus_a_p_z + omega_x*rus_S_dot_t_2 - omega_y*rus_S_dot_t
+        rus_S_ddot_tip_x = (
+        axis_x_rus_axes3_x*rus_S_ddot_x + axis_x_rus_axes3_y*rus_S_ddot_y +
+            axis_x_rus_axes3_z*rus_S_ddot_z
         )
-        S_ddot_tip_z = (
-        S_ddot_x*axis_z_rus_axes3_in_base_x + S_ddot_y*axis_z_rus_axes3_in_base_y +
-            S_ddot_z*axis_z_rus_axes3_in_base_z
+        rus_S_ddot_tip_y = (
+        axis_y_rus_axes3_in_base_x*rus_S_ddot_x + axis_y_rus_axes3_in_base_y*rus_S_ddot_y +
+            axis_y_rus_axes3_in_base_z*rus_S_ddot_z
         )
-        # (rus-A8) acceleration of the connection point left to the joint accelerations
-        rel_x = S_ddot_tip_x - bias_x
-        rel_y = S_ddot_tip_y - bias_y
-        rel_z = S_ddot_tip_z - bias_z
-        # (rus-A10) acceleration of joint 1
-        qdd_1 = inv_v_1_t*rel_x
-        qdd_3 = inv_rus_platform_joint_offset_x*(qdd_1*v_1_t_2 - rel_y)
-        # (rus-N3) acceleration of the reference point of link 3, less gravity
-        acc_3_x = (
-        S_ddot_tip_x - axis_x_rus_axes3_x*gravity_x - axis_x_rus_axes3_y*gravity_y -
+        rus_S_ddot_tip_z = (
+        axis_z_rus_axes3_in_base_x*rus_S_ddot_x + axis_z_rus_axes3_in_base_y*rus_S_ddot_y +
+            axis_z_rus_axes3_in_base_z*rus_S_ddot_z
+        )
+        # (rus-rel) acceleration of the connection point left to the joint accelerations
+        rus_rel_x = rus_S_ddot_tip_x - rus_bias_x
+        rus_rel_y = rus_S_ddot_tip_y - rus_bias_y
+        rus_rel_z = rus_S_ddot_tip_z - rus_bias_z
+        # (rus-qdd_1) acceleration of joint 1
+        rus_qdd_1 = inv_rus_v_1_t*rus_rel_x
+        rus_qdd_3 = inv_rus_platform_joint_offset_x*(rus_qdd_1*rus_v_1_t_2 - rus_rel_y)
+        # (rus-acc_3) acceleration of the reference point of link 3, less gravity
+        rus_acc_3_x = (
+        rus_S_ddot_tip_x - axis_x_rus_axes3_x*gravity_x - axis_x_rus_axes3_y*gravity_y -
             axis_x_rus_axes3_z*gravity_z
         )
-        acc_3_y = (
-        S_ddot_tip_y - axis_y_rus_axes3_in_base_x*gravity_x - axis_y_rus_axes3_in_base_y*gravity_y
-            - axis_y_rus_axes3_in_base_z*gravity_z
+        rus_acc_3_y = (
+        rus_S_ddot_tip_y - axis_y_rus_axes3_in_base_x*gravity_x -
+            axis_y_rus_axes3_in_base_y*gravity_y - axis_y_rus_axes3_in_base_z*gravity_z
         )
-        acc_3_z = (
-        S_ddot_tip_z - axis_z_rus_axes3_in_base_x*gravity_x - axis_z_rus_axes3_in_base_y*gravity_y
-            - axis_z_rus_axes3_in_base_z*gravity_z
+        rus_acc_3_z = (
+        rus_S_ddot_tip_z - axis_z_rus_axes3_in_base_x*gravity_x -
+            axis_z_rus_axes3_in_base_y*gravity_y - axis_z_rus_axes3_in_base_z*gravity_z
         )
-        # (rus-N30) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_z = h_1_y*(c_1*g_r0_x + g_r0_y*s_1) - J_1_zz*qdd_1 - h_1_x*(c_1*g_r0_y - g_r0_x*s_1)
-        # (rus-A20) angular acceleration of link 2
-        alpha_2_z = inv_r_1_t*(rel_z + qdd_1*v_1_z) - qdd_1
-        alpha_2_t = alpha_2_z*s_3
-        alpha_2_t_2 = alpha_2_z*c_3
-        # (rus-A22) angular acceleration of link 3
-        alpha_3_x = alpha_2_t - zeta_3_x
-        alpha_3_y = -alpha_2_t_2 - zeta_3_y
-        # (rus-A25) acceleration tensor of link 3
-        B_3_xy = qdd_3 - W_3_xy
-        B_3_yx = -W_3_xy - qdd_3
-        B_3_zx = zeta_3_y - alpha_3_y
-        B_3_zy = alpha_3_x - zeta_3_x
-        # (rus-N20) inertia moment of the links that turn with link 3, about their reference points
-        mu_3_x = (
-        B_3_yx*J_3_xy + B_3_zx*J_3_xz + B_3_zy*Sigma_3_yy + Sigma_3_zz*alpha_2_t - J_3_yz*(W_3_t_2
-            - W_3_t_3) - acc_3_y*h_3_y - acc_3_z*h_3_z
+        # (rus-alpha_2) angular acceleration of link 2
+        rus_alpha_2_z = inv_rus_r_1_t*(rus_rel_z + rus_qdd_1*rus_v_1_z) - rus_qdd_1
+        rus_alpha_2_t = rus_alpha_2_z*rus_s_3
+        rus_alpha_2_t_2 = rus_alpha_2_z*rus_c_3
+        # (rus-alpha_3) angular acceleration of link 3
+        rus_alpha_3_x = rus_alpha_2_t - rus_zeta_3_x
+        rus_alpha_3_y = -rus_alpha_2_t_2 - rus_zeta_3_y
+        # (rus-B_3) acceleration tensor of link 3
+        rus_B_3_xy = rus_qdd_3 - rus_W_3_xy
+        rus_B_3_yx = -rus_W_3_xy - rus_qdd_3
+        rus_B_3_zx = rus_zeta_3_y - rus_alpha_3_y
+        rus_B_3_zy = rus_alpha_3_x - rus_zeta_3_x
+        # (rus-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        rus_mu_3_x = (
+        rus_B_3_yx*rus_J_3_xy + rus_B_3_zx*rus_J_3_xz + rus_B_3_zy*rus_Sigma_3_yy +
+            rus_Sigma_3_zz*rus_alpha_2_t - rus_J_3_yz*(rus_W_3_t_2 - rus_W_3_t_3) -
+            rus_acc_3_y*rus_h_3_y - rus_acc_3_z*rus_h_3_z
         )
-        mu_3_y = (
-        B_3_xy*J_3_yz + acc_3_x*h_3_y - B_3_zx*Sigma_3_xx - B_3_zy*J_3_xz - J_3_xy*(W_3_t -
-            W_3_t_3) - Sigma_3_zz*alpha_2_t_2 - acc_3_z*h_3_x
+        rus_mu_3_y = (
+        rus_B_3_xy*rus_J_3_yz + rus_acc_3_x*rus_h_3_y - rus_B_3_zx*rus_Sigma_3_xx -
+            rus_B_3_zy*rus_J_3_xz - rus_J_3_xy*(rus_W_3_t - rus_W_3_t_3) -
+            rus_Sigma_3_zz*rus_alpha_2_t_2 - rus_acc_3_z*rus_h_3_x
         )
-        mu_3_z = (
-        B_3_yx*Sigma_3_xx + J_3_xy*alpha_2_t + J_3_yz*alpha_2_t_2 + acc_3_x*h_3_z + acc_3_y*h_3_x
-            - B_3_xy*Sigma_3_yy - J_3_xz*(W_3_t - W_3_t_2)
+        rus_mu_3_z = (
+        rus_B_3_yx*rus_Sigma_3_xx + rus_J_3_xy*rus_alpha_2_t + rus_J_3_yz*rus_alpha_2_t_2 +
+            rus_acc_3_x*rus_h_3_z + rus_acc_3_y*rus_h_3_x - rus_B_3_xy*rus_Sigma_3_yy -
+            rus_J_3_xz*(rus_W_3_t - rus_W_3_t_2)
         )
-        mu_3_r0_y = mu_3_x*s_3 - c_3*mu_3_y
-        # (rus-N32) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_z = mu_1_z + mu_3_r0_y
-        # (rus-N37) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_t = inv_r_1_t*mu_3_r0_y
-        G_t_2 = inv_rus_platform_joint_offset_x*mu_3_z
-        # (rus-N40) leg force on the platform without actuation and without the mass at the connection point
-        c_x = (
-        B_3_xy*h_3_z + alpha_2_t_2*h_3_y + h_3_x*(W_3_t_2 + W_3_t_3) + inv_v_1_t*(N_1_z +
-            G_t_2*v_1_t_2 - G_t*v_1_z)
+        rus_mu_3_r0_y = rus_mu_3_x*rus_s_3 - rus_c_3*rus_mu_3_y
+        # (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rus_mu_1_z = (
+        rus_h_1_y*(rus_c_1*rus_g_r0_x + rus_g_r0_y*rus_s_1) - rus_J_1_zz*rus_qdd_1 -
+            rus_h_1_x*(rus_c_1*rus_g_r0_y - rus_g_r0_x*rus_s_1)
         )
-        c_y = alpha_2_t*h_3_y - G_t_2 - B_3_yx*h_3_x - h_3_z*(W_3_t + W_3_t_3)
-        c_z = B_3_zy*h_3_z + h_3_y*(W_3_t + W_3_t_2) - G_t - B_3_zx*h_3_x
-        c_in_base_x = (
-        axis_x_rus_axes3_x*c_x + axis_y_rus_axes3_in_base_x*c_y + axis_z_rus_axes3_in_base_x*c_z
+        # (rus-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rus_N_1_z = rus_mu_1_z + rus_mu_3_r0_y
+        # (rus-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rus_G_t = inv_rus_r_1_t*rus_mu_3_r0_y
+        rus_G_t_2 = inv_rus_platform_joint_offset_x*rus_mu_3_z
+        # (rus-c) leg force on the platform without actuation and without the mass at the connection point
+        rus_c_x = (
+        inv_rus_v_1_t*(rus_N_1_z + rus_G_t_2*rus_v_1_t_2 - rus_G_t*rus_v_1_z) +
+            rus_B_3_xy*rus_h_3_z + rus_alpha_2_t_2*rus_h_3_y + rus_h_3_x*(rus_W_3_t_2 +
+            rus_W_3_t_3)
         )
-        c_in_base_y = (
-        axis_x_rus_axes3_y*c_x + axis_y_rus_axes3_in_base_y*c_y + axis_z_rus_axes3_in_base_y*c_z
+        rus_c_y = (
+        rus_alpha_2_t*rus_h_3_y - rus_G_t_2 - rus_B_3_yx*rus_h_3_x - rus_h_3_z*(rus_W_3_t +
+            rus_W_3_t_3)
         )
-        c_in_base_z = (
-        axis_x_rus_axes3_z*c_x + axis_y_rus_axes3_in_base_z*c_y + axis_z_rus_axes3_in_base_z*c_z
+        rus_c_z = (
+        rus_B_3_zy*rus_h_3_z + rus_h_3_y*(rus_W_3_t + rus_W_3_t_2) - rus_G_t -
+            rus_B_3_zx*rus_h_3_x
         )
-        # (E5) moment that actuators and external wrench must give
-        R_a_t = c_in_base_z*q_in_base_y - c_in_base_y*q_in_base_z
-        R_a_t_2 = c_in_base_x*q_in_base_z - c_in_base_z*q_in_base_x
-        R_a_t_3 = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y
+        rus_c_in_base_x = (
+        axis_x_rus_axes3_x*rus_c_x + axis_y_rus_axes3_in_base_x*rus_c_y +
+            axis_z_rus_axes3_in_base_x*rus_c_z
+        )
+        rus_c_in_base_y = (
+        axis_x_rus_axes3_y*rus_c_x + axis_y_rus_axes3_in_base_y*rus_c_y +
+            axis_z_rus_axes3_in_base_y*rus_c_z
+        )
+        rus_c_in_base_z = (
+        axis_x_rus_axes3_z*rus_c_x + axis_y_rus_axes3_in_base_z*rus_c_y +
+            axis_z_rus_axes3_in_base_z*rus_c_z
+        )
+        # (R_a) moment that actuators and external wrench must give
+        rus_R_a_t = rus_c_in_base_z*rus_q_in_base_y - rus_c_in_base_y*rus_q_in_base_z
+        rus_R_a_t_2 = rus_c_in_base_x*rus_q_in_base_z - rus_c_in_base_z*rus_q_in_base_x
+        rus_R_a_t_3 = rus_c_in_base_y*rus_q_in_base_x - rus_c_in_base_x*rus_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t) & (abs(r_1_t) > _TOLERANCE * size) &
-            (abs(-v_1_t) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1
+            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t) & (abs(rus_r_1_t) >
+            _TOLERANCE * rus_size) & (abs(-rus_v_1_t) > _TOLERANCE * rus_size))
         )
         sums = m.added(sums, leg, (
-        c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
+        rus_c_in_base_x, rus_c_in_base_y, rus_c_in_base_z, rus_R_a_t, rus_R_a_t_2,
+            rus_R_a_t_3,
         ))
-        out_H[_H_rus[0][leg]] = -w_1_t_3
-        out_H[_H_rus[1][leg]] = -w_1_t_4
-        out_H[_H_rus[2][leg]] = -w_1_t_5
-        out_H[_H_rus[3][leg]] = H_a_1_x
-        out_H[_H_rus[4][leg]] = H_a_1_y
-        out_H[_H_rus[5][leg]] = H_a_1_z
+        out_H[_H_rus[0][leg]] = -rus_w_1_t_3
+        out_H[_H_rus[1][leg]] = -rus_w_1_t_4
+        out_H[_H_rus[2][leg]] = -rus_w_1_t_5
+        out_H[_H_rus[3][leg]] = rus_H_a_1_x
+        out_H[_H_rus[4][leg]] = rus_H_a_1_y
+        out_H[_H_rus[5][leg]] = rus_H_a_1_z
     total_rus_x, total_rus_y, total_rus_z, total_rus_x_2, total_rus_y_2, total_rus_z_2 = sums
-    # (E4) force that actuators and external wrench must give
+    # (R_t) force that actuators and external wrench must give
     R_t_x = f_p_x - total_rus_x
     R_t_y = f_p_y - total_rus_y
     R_t_z = f_p_z - total_rus_z
-    # (E5) moment that actuators and external wrench must give
+    # (R_a) moment that actuators and external wrench must give
     R_a_x = mu_p_in_base_x - total_rus_x_2
     R_a_y = mu_p_in_base_y - total_rus_y_2
     R_a_z = mu_p_in_base_z - total_rus_z_2
@@ -3230,72 +3440,83 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        Kd_1_t_2, Kd_1_t_3, branch_1, branch_2, inv_Kd_1_t_6, inv_uu_3_t, rho2_1_t,
-            rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx,
-            rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy,
-            rus_base_frame_zz, rus_base_point_x, rus_base_point_y, rus_base_point_z,
+        inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, rus_Kd_1_t_2, rus_Kd_1_t_4, rus_base_frame_xx,
+            rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
+            rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
+            rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1, rus_branch_2,
             rus_joint2_offset_x, rus_platform_joint_offset_x, rus_platform_point_x,
-            rus_platform_point_y, rus_platform_point_z, size_t,
+            rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size_t,
         ) = k
-        # (rus-K1) from the base point to the connection point
-        S_x = (
+        # (rus-S) from the base point to the connection point
+        rus_S_x = (
         t_x + R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z -
             rus_base_point_x
         )
-        S_y = (
+        rus_S_y = (
         t_y + R_yx*rus_platform_point_x + R_yy*rus_platform_point_y + R_yz*rus_platform_point_z -
             rus_base_point_y
         )
-        S_z = (
+        rus_S_z = (
         t_z + R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z -
             rus_base_point_z
         )
-        # (rus-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_t = S_x*S_x + S_y*S_y + S_z*S_z
-        Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
-        # (rus-K3) component along the reference direction
-        px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx
-        # (rus-K6) factor of the cosine in the equation of joint 1
-        Kc_1 = px_1*rus_joint2_offset_x
-        # (rus-K4) component across the reference direction
-        py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy
-        # (rus-K7) factor of the sine in the equation of joint 1
-        Ks_1 = py_1*rus_joint2_offset_x
-        # (rus-K8) squared amplitude
-        rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
-        # (rus-K9) discriminant
-        disc_1 = rho2_1 - Kd_1*Kd_1
-        # (rus-K10) root, with the sign of the branch
-        root_1 = branch_1*sqrt(disc_1)
-        # (rus-K15) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = inv_Kd_1_t_6*root_1*rus_joint2_offset_x
-        xi_1_t_2 = S_x*rus_base_frame_xz + S_y*rus_base_frame_yz + S_z*rus_base_frame_zz
-        # (rus-K16) from the origin of joint 2 to the connection point
-        x_2_x = Kd_1*inv_Kd_1_t_6*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-K20) squared amplitude
-        rho2_2 = x_2_x*x_2_x + xi_1_t*xi_1_t
-        # (rus-K22) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (rus-K23) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        # (rus-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        # (rus-K13) displacement of joint 1
-        q_1 = atan2(inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1), inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1))
-        # (rus-K25) displacement of joint 2
-        q_2 = atan2(-inv_rho2_2*root_2*xi_1_t, inv_rho2_2*root_2*x_2_x)
-        # (rus-K30) displacement of joint 3
-        q_3 = (
-        atan2(-inv_uu_3_t*rus_platform_joint_offset_x*xi_1_t_2,
-            inv_uu_3_t*root_2*rus_platform_joint_offset_x)
+        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
+        rus_Kd_1 = 0.5*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4
+        # (rus-px_1) component along the reference direction
+        rus_px_1 = (
+        rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx
+        )
+        # (rus-Kc_1) factor of the cosine in the equation of joint 1
+        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
+        # (rus-py_1) component across the reference direction
+        rus_py_1 = (
+        rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy
+        )
+        # (rus-Ks_1) factor of the sine in the equation of joint 1
+        rus_Ks_1 = rus_joint2_offset_x*rus_py_1
+        # (rus-rho2_1) squared amplitude
+        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
+        # (rus-disc_1) discriminant
+        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
+        # (rus-root_1) root, with the sign of the branch
+        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
+        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1
+        rus_xi_1_t_2 = (
+        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
+        )
+        # (rus-x_2) from the origin of joint 2 to the connection point
+        rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
+        # (rus-rho2_2) squared amplitude
+        rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t
+        # (rus-root_2) root, with the sign of the branch
+        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_rho2_2 = 1.0/rus_rho2_2
+        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rus_rho2_1 = 1.0/rus_rho2_1
+        # (rus-q_1) displacement of joint 1
+        rus_q_1 = (
+        atan2(inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1),
+            inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1))
+        )
+        # (rus-q_2) displacement of joint 2
+        rus_q_2 = (
+        atan2(-inv_rus_rho2_2*rus_root_2*rus_xi_1_t, inv_rus_rho2_2*rus_root_2*rus_x_2_x)
+        )
+        # (rus-q_3) displacement of joint 3
+        rus_q_3 = (
+        atan2(-inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2,
+            inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2)
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t))
+        ok & m.every(leg, (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1
+            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t))
         )
-        out_q[_q_rus[0][leg]] = q_1
-        out_q[_q_rus[1][leg]] = q_2
-        out_q[_q_rus[2][leg]] = q_3
+        out_q[_q_rus[0][leg]] = rus_q_1
+        out_q[_q_rus[1][leg]] = rus_q_2
+        out_q[_q_rus[2][leg]] = rus_q_3
     return ok, (out_q,)
 
 
@@ -3355,79 +3576,86 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        Kd_1_t_2, Kd_1_t_3, branch_1, branch_2, inv_Kd_1_t_6, inv_rus_platform_joint_offset_x,
-            inv_uu_3_t, rho2_1_t, rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz,
+        inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_platform_joint_offset_x, rus_Kd_1_t_2,
+            rus_Kd_1_t_4, rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz,
             rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx,
             rus_base_frame_zy, rus_base_frame_zz, rus_base_point_x, rus_base_point_y,
-            rus_base_point_z, rus_joint2_offset_x, rus_platform_joint_offset_x,
-            rus_platform_point_x, rus_platform_point_y, rus_platform_point_z, size, size_t,
+            rus_base_point_z, rus_branch_1, rus_branch_2, rus_joint2_offset_x,
+            rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
+            rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t,
         ) = k
-        # (rus-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (rus-S) from the base point to the connection point
+        rus_q_in_base_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
-        q_in_base_y = (
+        rus_q_in_base_y = (
         R_yx*rus_platform_point_x + R_yy*rus_platform_point_y + R_yz*rus_platform_point_z
         )
-        q_in_base_z = (
+        rus_q_in_base_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rus_base_point_x
-        S_y = q_in_base_y + t_y - rus_base_point_y
-        S_z = q_in_base_z + t_z - rus_base_point_z
-        # (rus-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_t = S_x*S_x + S_y*S_y + S_z*S_z
-        Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
-        # (rus-K3) component along the reference direction
-        px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx
-        # (rus-K6) factor of the cosine in the equation of joint 1
-        Kc_1 = px_1*rus_joint2_offset_x
-        # (rus-K4) component across the reference direction
-        py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy
-        # (rus-K7) factor of the sine in the equation of joint 1
-        Ks_1 = py_1*rus_joint2_offset_x
-        # (rus-K8) squared amplitude
-        rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
-        # (rus-K9) discriminant
-        disc_1 = rho2_1 - Kd_1*Kd_1
-        # (rus-K10) root, with the sign of the branch
-        root_1 = branch_1*sqrt(disc_1)
-        # (rus-K15) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = inv_Kd_1_t_6*root_1*rus_joint2_offset_x
-        xi_1_t_2 = S_x*rus_base_frame_xz + S_y*rus_base_frame_yz + S_z*rus_base_frame_zz
-        # (rus-K16) from the origin of joint 2 to the connection point
-        x_2_x = Kd_1*inv_Kd_1_t_6*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-K20) squared amplitude
-        rho2_2 = x_2_x*x_2_x + xi_1_t*xi_1_t
-        # (rus-K22) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (rus-K28) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_uu_3_t*root_2*rus_platform_joint_offset_x
-        # (rus-K29) sine of the angle of joint 3 from its reference direction
-        s_3 = inv_uu_3_t*rus_platform_joint_offset_x*xi_1_t_2
-        # (rus-V2) from joint 1 to the connection point, along the links
-        r_1_t = c_3*rus_platform_joint_offset_x
-        r_1_t_2 = rus_platform_joint_offset_x*s_3
-        # (rus-K23) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = inv_rho2_2*root_2*xi_1_t
-        # (rus-K24) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*root_2*x_2_x
-        # (rus-V2) from joint 1 to the connection point, along the links
-        r_1_t_3 = c_2*r_1_t
-        r_1_x = rus_joint2_offset_x + r_1_t*s_2
-        r_1_r0_x = c_2*r_1_x - r_1_t_3*s_2
-        r_1_r0_y = -c_2*r_1_t_3 - r_1_x*s_2
-        # (rus-V3) velocity of the connection point per rate of joint 1
-        v_1_t = c_3*r_1_r0_x
-        # (rus-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1)
-        # (rus-K12) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1)
-        # (rus-V6) reciprocal vector 1
-        axis_z_rus_axes3_r3_x = c_1*c_2 - s_1*s_2
-        axis_z_rus_axes3_r3_y = c_1*s_2 + c_2*s_1
+        rus_S_x = rus_q_in_base_x + t_x - rus_base_point_x
+        rus_S_y = rus_q_in_base_y + t_y - rus_base_point_y
+        rus_S_z = rus_q_in_base_z + t_z - rus_base_point_z
+        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
+        rus_Kd_1 = 0.5*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4
+        # (rus-px_1) component along the reference direction
+        rus_px_1 = (
+        rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx
+        )
+        # (rus-Kc_1) factor of the cosine in the equation of joint 1
+        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
+        # (rus-py_1) component across the reference direction
+        rus_py_1 = (
+        rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy
+        )
+        # (rus-Ks_1) factor of the sine in the equation of joint 1
+        rus_Ks_1 = rus_joint2_offset_x*rus_py_1
+        # (rus-rho2_1) squared amplitude
+        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
+        # (rus-disc_1) discriminant
+        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
+        # (rus-root_1) root, with the sign of the branch
+        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
+        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1
+        rus_xi_1_t_2 = (
+        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
+        )
+        # (rus-x_2) from the origin of joint 2 to the connection point
+        rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
+        # (rus-rho2_2) squared amplitude
+        rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t
+        # (rus-root_2) root, with the sign of the branch
+        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
+        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
+        rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2
+        # (rus-s_3) sine of the angle of joint 3 from its reference direction
+        rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
+        rus_r_1_t_2 = rus_platform_joint_offset_x*rus_s_3
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_rho2_2 = 1.0/rus_rho2_2
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t_3 = rus_c_2*rus_r_1_t
+        rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
+        rus_r_1_r0_x = rus_c_2*rus_r_1_x - rus_r_1_t_3*rus_s_2
+        rus_r_1_r0_y = -rus_c_2*rus_r_1_t_3 - rus_r_1_x*rus_s_2
+        # (rus-v_1) velocity of the connection point per rate of joint 1
+        rus_v_1_t = rus_c_3*rus_r_1_r0_x
+        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rus_rho2_1 = 1.0/rus_rho2_1
+        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
+        # (rus-s_1) sine of the angle of joint 1 from its reference direction
+        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
+        # (rus-w_1) reciprocal vector 1
+        axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
+        axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
         axis_z_rus_axes3_in_base_x = (
         axis_z_rus_axes3_r3_x*rus_base_frame_xx + axis_z_rus_axes3_r3_y*rus_base_frame_xy
         )
@@ -3437,54 +3665,54 @@ def _run_joint_rates(m, X, V):
         axis_z_rus_axes3_in_base_z = (
         axis_z_rus_axes3_r3_x*rus_base_frame_zx + axis_z_rus_axes3_r3_y*rus_base_frame_zy
         )
-        w_1_t = s_2*s_3
-        w_1_t_2 = c_2*s_3
-        axis_y_rus_axes3_r3_x = c_1*w_1_t + s_1*w_1_t_2
-        axis_y_rus_axes3_r3_y = s_1*w_1_t - c_1*w_1_t_2
+        rus_w_1_t = rus_s_2*rus_s_3
+        rus_w_1_t_2 = rus_c_2*rus_s_3
+        axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2
+        axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2
         axis_y_rus_axes3_in_base_x = (
         axis_y_rus_axes3_r3_x*rus_base_frame_xx + axis_y_rus_axes3_r3_y*rus_base_frame_xy -
-            c_3*rus_base_frame_xz
+            rus_base_frame_xz*rus_c_3
         )
         axis_y_rus_axes3_in_base_y = (
         axis_y_rus_axes3_r3_x*rus_base_frame_yx + axis_y_rus_axes3_r3_y*rus_base_frame_yy -
-            c_3*rus_base_frame_yz
+            rus_base_frame_yz*rus_c_3
         )
         axis_y_rus_axes3_in_base_z = (
         axis_y_rus_axes3_r3_x*rus_base_frame_zx + axis_y_rus_axes3_r3_y*rus_base_frame_zy -
-            c_3*rus_base_frame_zz
+            rus_base_frame_zz*rus_c_3
         )
-        # (rus-V1) velocity of the connection point
-        S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x
-        # (rus-V9) rate of joint 1
-        qd_1 = (
-        (S_dot_x*(axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
+        # (rus-S_dot) velocity of the connection point
+        rus_S_dot_x = t_dot_x + omega_y*rus_q_in_base_z - omega_z*rus_q_in_base_y
+        rus_S_dot_y = t_dot_y + omega_z*rus_q_in_base_x - omega_x*rus_q_in_base_z
+        rus_S_dot_z = t_dot_z + omega_x*rus_q_in_base_y - omega_y*rus_q_in_base_x
+        # (rus-qd_3) rate of joint 3
+        rus_qd_1 = (
+        (rus_S_dot_x*(axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
             axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_y) +
-            S_dot_y*(axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
+            rus_S_dot_y*(axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
             axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z) +
-            S_dot_z*(axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
-            axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x))/v_1_t
+            rus_S_dot_z*(axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
+            axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x))/rus_v_1_t
         )
-        qd_3 = (
-        inv_rus_platform_joint_offset_x*(S_dot_x*axis_y_rus_axes3_in_base_x +
-            S_dot_y*axis_y_rus_axes3_in_base_y + S_dot_z*axis_y_rus_axes3_in_base_z -
-            qd_1*r_1_r0_x*s_3)
+        rus_qd_3 = (
+        inv_rus_platform_joint_offset_x*(axis_y_rus_axes3_in_base_x*rus_S_dot_x +
+            axis_y_rus_axes3_in_base_y*rus_S_dot_y + axis_y_rus_axes3_in_base_z*rus_S_dot_z -
+            rus_qd_1*rus_r_1_r0_x*rus_s_3)
         )
-        qd_1_t = (
-        S_dot_x*axis_z_rus_axes3_in_base_x + S_dot_y*axis_z_rus_axes3_in_base_y +
-            S_dot_z*axis_z_rus_axes3_in_base_z + qd_1*(c_3*(r_1_t_2*s_3 - c_3*r_1_r0_y) +
-            s_3*(-c_3*r_1_t_2 - r_1_r0_y*s_3))
+        rus_qd_3_t = (
+        axis_z_rus_axes3_in_base_x*rus_S_dot_x + axis_z_rus_axes3_in_base_y*rus_S_dot_y +
+            axis_z_rus_axes3_in_base_z*rus_S_dot_z + rus_qd_1*(rus_c_3*(rus_r_1_t_2*rus_s_3 -
+            rus_c_3*rus_r_1_r0_y) + rus_s_3*(-rus_c_3*rus_r_1_t_2 - rus_r_1_r0_y*rus_s_3))
         )
-        qd_2 = qd_1_t/r_1_t
+        rus_qd_2 = rus_qd_3_t/rus_r_1_t
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t) & (abs(r_1_t) > _TOLERANCE * size) &
-            (abs(-v_1_t) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1
+            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t) & (abs(rus_r_1_t) >
+            _TOLERANCE * rus_size) & (abs(-rus_v_1_t) > _TOLERANCE * rus_size))
         )
-        out_qd[_qd_rus[0][leg]] = -qd_1
-        out_qd[_qd_rus[1][leg]] = qd_2
-        out_qd[_qd_rus[2][leg]] = qd_3
+        out_qd[_qd_rus[0][leg]] = -rus_qd_1
+        out_qd[_qd_rus[1][leg]] = rus_qd_2
+        out_qd[_qd_rus[2][leg]] = rus_qd_3
     return ok, (out_qd,)
 
 
@@ -3557,81 +3785,91 @@ def _run_joint_accelerations(m, X, V, A):
     out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
-        Kd_1_t_2, Kd_1_t_3, branch_1, branch_2, inv_Kd_1_t_6, inv_rus_platform_joint_offset_x,
-            inv_uu_3_t, rho2_1_t, rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz,
+        inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_platform_joint_offset_x, rus_Kd_1_t_2,
+            rus_Kd_1_t_4, rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz,
             rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx,
             rus_base_frame_zy, rus_base_frame_zz, rus_base_point_x, rus_base_point_y,
-            rus_base_point_z, rus_joint2_offset_x, rus_platform_joint_offset_x,
-            rus_platform_point_x, rus_platform_point_y, rus_platform_point_z, size, size_t,
+            rus_base_point_z, rus_branch_1, rus_branch_2, rus_joint2_offset_x,
+            rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
+            rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t,
         ) = k
-        # (rus-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (rus-S) from the base point to the connection point
+        rus_q_in_base_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
-        q_in_base_y = (
+        rus_q_in_base_y = (
         R_yx*rus_platform_point_x + R_yy*rus_platform_point_y + R_yz*rus_platform_point_z
         )
-        q_in_base_z = (
+        rus_q_in_base_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rus_base_point_x
-        S_y = q_in_base_y + t_y - rus_base_point_y
-        S_z = q_in_base_z + t_z - rus_base_point_z
-        # (rus-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_t = S_x*S_x + S_y*S_y + S_z*S_z
-        Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
-        # (rus-K3) component along the reference direction
-        px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx
-        # (rus-K6) factor of the cosine in the equation of joint 1
-        Kc_1 = px_1*rus_joint2_offset_x
-        # (rus-K4) component across the reference direction
-        py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy
-        # (rus-K7) factor of the sine in the equation of joint 1
-        Ks_1 = py_1*rus_joint2_offset_x
-        # (rus-K8) squared amplitude
-        rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
-        # (rus-K9) discriminant
-        disc_1 = rho2_1 - Kd_1*Kd_1
-        # (rus-K10) root, with the sign of the branch
-        root_1 = branch_1*sqrt(disc_1)
-        # (rus-K15) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = inv_Kd_1_t_6*root_1*rus_joint2_offset_x
-        xi_1_t_2 = S_x*rus_base_frame_xz + S_y*rus_base_frame_yz + S_z*rus_base_frame_zz
-        # (rus-K16) from the origin of joint 2 to the connection point
-        x_2_x = Kd_1*inv_Kd_1_t_6*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-K20) squared amplitude
-        rho2_2 = x_2_x*x_2_x + xi_1_t*xi_1_t
-        # (rus-K22) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (rus-K28) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_uu_3_t*root_2*rus_platform_joint_offset_x
-        # (rus-K29) sine of the angle of joint 3 from its reference direction
-        s_3 = inv_uu_3_t*rus_platform_joint_offset_x*xi_1_t_2
-        # (rus-V2) from joint 1 to the connection point, along the links
-        r_1_t = c_3*rus_platform_joint_offset_x
-        r_1_t_2 = rus_platform_joint_offset_x*s_3
-        # (rus-K23) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = inv_rho2_2*root_2*xi_1_t
-        # (rus-K24) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*root_2*x_2_x
-        # (rus-V2) from joint 1 to the connection point, along the links
-        r_1_t_3 = c_2*r_1_t
-        r_1_x = rus_joint2_offset_x + r_1_t*s_2
-        r_1_r0_x = c_2*r_1_x - r_1_t_3*s_2
-        r_1_r0_y = -c_2*r_1_t_3 - r_1_x*s_2
-        # (rus-V3) velocity of the connection point per rate of joint 1
-        v_1_t = c_3*r_1_r0_x
-        v_1_t_2 = r_1_r0_x*s_3
-        v_1_z = c_3*(r_1_t_2*s_3 - c_3*r_1_r0_y) + s_3*(-c_3*r_1_t_2 - r_1_r0_y*s_3)
-        # (rus-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1)
-        # (rus-K12) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1)
-        # (rus-V6) reciprocal vector 1
-        axis_z_rus_axes3_r3_x = c_1*c_2 - s_1*s_2
-        axis_z_rus_axes3_r3_y = c_1*s_2 + c_2*s_1
+        rus_S_x = rus_q_in_base_x + t_x - rus_base_point_x
+        rus_S_y = rus_q_in_base_y + t_y - rus_base_point_y
+        rus_S_z = rus_q_in_base_z + t_z - rus_base_point_z
+        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
+        rus_Kd_1 = 0.5*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4
+        # (rus-px_1) component along the reference direction
+        rus_px_1 = (
+        rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx
+        )
+        # (rus-Kc_1) factor of the cosine in the equation of joint 1
+        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
+        # (rus-py_1) component across the reference direction
+        rus_py_1 = (
+        rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy
+        )
+        # (rus-Ks_1) factor of the sine in the equation of joint 1
+        rus_Ks_1 = rus_joint2_offset_x*rus_py_1
+        # (rus-rho2_1) squared amplitude
+        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
+        # (rus-disc_1) discriminant
+        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
+        # (rus-root_1) root, with the sign of the branch
+        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
+        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1
+        rus_xi_1_t_2 = (
+        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
+        )
+        # (rus-x_2) from the origin of joint 2 to the connection point
+        rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
+        # (rus-rho2_2) squared amplitude
+        rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t
+        # (rus-root_2) root, with the sign of the branch
+        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
+        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
+        rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2
+        # (rus-s_3) sine of the angle of joint 3 from its reference direction
+        rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
+        rus_r_1_t_2 = rus_platform_joint_offset_x*rus_s_3
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_rho2_2 = 1.0/rus_rho2_2
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t_3 = rus_c_2*rus_r_1_t
+        rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
+        rus_r_1_r0_x = rus_c_2*rus_r_1_x - rus_r_1_t_3*rus_s_2
+        rus_r_1_r0_y = -rus_c_2*rus_r_1_t_3 - rus_r_1_x*rus_s_2
+        # (rus-v_1) velocity of the connection point per rate of joint 1
+        rus_v_1_t = rus_c_3*rus_r_1_r0_x
+        rus_v_1_t_2 = rus_r_1_r0_x*rus_s_3
+        rus_v_1_z = (
+        rus_c_3*(rus_r_1_t_2*rus_s_3 - rus_c_3*rus_r_1_r0_y) + rus_s_3*(-rus_c_3*rus_r_1_t_2 -
+            rus_r_1_r0_y*rus_s_3)
+        )
+        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rus_rho2_1 = 1.0/rus_rho2_1
+        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
+        # (rus-s_1) sine of the angle of joint 1 from its reference direction
+        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
+        # (rus-w_1) reciprocal vector 1
+        axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
+        axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
         axis_z_rus_axes3_in_base_x = (
         axis_z_rus_axes3_r3_x*rus_base_frame_xx + axis_z_rus_axes3_r3_y*rus_base_frame_xy
         )
@@ -3641,21 +3879,21 @@ def _run_joint_accelerations(m, X, V, A):
         axis_z_rus_axes3_in_base_z = (
         axis_z_rus_axes3_r3_x*rus_base_frame_zx + axis_z_rus_axes3_r3_y*rus_base_frame_zy
         )
-        w_1_t = s_2*s_3
-        w_1_t_2 = c_2*s_3
-        axis_y_rus_axes3_r3_x = c_1*w_1_t + s_1*w_1_t_2
-        axis_y_rus_axes3_r3_y = s_1*w_1_t - c_1*w_1_t_2
+        rus_w_1_t = rus_s_2*rus_s_3
+        rus_w_1_t_2 = rus_c_2*rus_s_3
+        axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2
+        axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2
         axis_y_rus_axes3_in_base_x = (
         axis_y_rus_axes3_r3_x*rus_base_frame_xx + axis_y_rus_axes3_r3_y*rus_base_frame_xy -
-            c_3*rus_base_frame_xz
+            rus_base_frame_xz*rus_c_3
         )
         axis_y_rus_axes3_in_base_y = (
         axis_y_rus_axes3_r3_x*rus_base_frame_yx + axis_y_rus_axes3_r3_y*rus_base_frame_yy -
-            c_3*rus_base_frame_yz
+            rus_base_frame_yz*rus_c_3
         )
         axis_y_rus_axes3_in_base_z = (
         axis_y_rus_axes3_r3_x*rus_base_frame_zx + axis_y_rus_axes3_r3_y*rus_base_frame_zy -
-            c_3*rus_base_frame_zz
+            rus_base_frame_zz*rus_c_3
         )
         axis_x_rus_axes3_x = (
         axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
@@ -3669,80 +3907,83 @@ def _run_joint_accelerations(m, X, V, A):
         axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
             axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x
         )
-        inv_v_1_t = 1.0/v_1_t
-        # (rus-V7) reciprocal vector 2
-        inv_r_1_t = 1.0/r_1_t
-        # (rus-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        # (rus-V9) rate of joint 1
-        qd_1 = (
-        inv_v_1_t*(S_dot_x*axis_x_rus_axes3_x + S_dot_y*axis_x_rus_axes3_y +
-            S_dot_z*axis_x_rus_axes3_z)
+        inv_rus_v_1_t = 1.0/rus_v_1_t
+        # (rus-w_2) reciprocal vector 2
+        inv_rus_r_1_t = 1.0/rus_r_1_t
+        # (rus-S_dot) velocity of the connection point
+        rus_S_dot_t = omega_y*rus_q_in_base_z - omega_z*rus_q_in_base_y
+        rus_S_dot_t_2 = omega_z*rus_q_in_base_x - omega_x*rus_q_in_base_z
+        rus_S_dot_t_3 = omega_x*rus_q_in_base_y - omega_y*rus_q_in_base_x
+        rus_S_dot_x = rus_S_dot_t + t_dot_x
+        rus_S_dot_y = rus_S_dot_t_2 + t_dot_y
+        rus_S_dot_z = rus_S_dot_t_3 + t_dot_z
+        # (rus-qd_3) rate of joint 3
+        rus_qd_1 = (
+        inv_rus_v_1_t*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
+            axis_x_rus_axes3_z*rus_S_dot_z)
         )
-        qd_1_t = (
-        S_dot_x*axis_y_rus_axes3_in_base_x + S_dot_y*axis_y_rus_axes3_in_base_y +
-            S_dot_z*axis_y_rus_axes3_in_base_z - qd_1*v_1_t_2
+        rus_qd_3_t = (
+        axis_y_rus_axes3_in_base_x*rus_S_dot_x + axis_y_rus_axes3_in_base_y*rus_S_dot_y +
+            axis_y_rus_axes3_in_base_z*rus_S_dot_z - rus_qd_1*rus_v_1_t_2
         )
-        qd_3 = inv_rus_platform_joint_offset_x*qd_1_t
-        # (rus-V14) angular velocity of link 2
-        omega_2_z = (
-        inv_r_1_t*(S_dot_x*axis_z_rus_axes3_in_base_x + S_dot_y*axis_z_rus_axes3_in_base_y +
-            S_dot_z*axis_z_rus_axes3_in_base_z + qd_1*v_1_z) - qd_1
+        rus_qd_3 = inv_rus_platform_joint_offset_x*rus_qd_3_t
+        # (rus-omega_2) angular velocity of link 2
+        rus_omega_2_z = (
+        inv_rus_r_1_t*(axis_z_rus_axes3_in_base_x*rus_S_dot_x +
+            axis_z_rus_axes3_in_base_y*rus_S_dot_y + axis_z_rus_axes3_in_base_z*rus_S_dot_z +
+            rus_qd_1*rus_v_1_z) - rus_qd_1
         )
-        omega_2_t = omega_2_z*s_3
-        omega_2_t_2 = c_3*omega_2_z
-        # (rus-V12) angular velocity of link 1
-        omega_1_t = qd_1*s_3
-        omega_1_t_2 = c_3*qd_1
-        # (rus-A7) acceleration of the connection point at zero joint accelerations
-        bias_t = c_2*rus_joint2_offset_x
-        bias_t_2 = rus_joint2_offset_x*s_2
-        bias_t_3 = bias_t_2*c_3*omega_1_t_2 + bias_t_2*omega_1_t*s_3
-        bias_t_4 = omega_2_t_2*rus_platform_joint_offset_x
-        bias_x = -bias_t_3*omega_1_t_2 - bias_t_4*omega_2_t_2 - qd_1_t*qd_3
-        bias_y = -bias_t_3*omega_1_t - bias_t_4*omega_2_t
-        bias_z = (
-        omega_2_t*qd_1_t + omega_2_t*qd_3*rus_platform_joint_offset_x - bias_t*omega_1_t*omega_1_t
-            - bias_t*omega_1_t_2*omega_1_t_2
+        rus_omega_2_t = rus_omega_2_z*rus_s_3
+        rus_omega_2_t_2 = rus_c_3*rus_omega_2_z
+        # (rus-omega_1) angular velocity of link 1
+        rus_omega_1_t = rus_qd_1*rus_s_3
+        rus_omega_1_t_2 = rus_c_3*rus_qd_1
+        # (rus-bias) acceleration of the connection point at zero joint accelerations
+        rus_bias_t = rus_c_2*rus_joint2_offset_x
+        rus_bias_t_2 = rus_joint2_offset_x*rus_s_2
+        rus_bias_t_3 = rus_bias_t_2*rus_c_3*rus_omega_1_t_2 + rus_bias_t_2*rus_omega_1_t*rus_s_3
+        rus_bias_t_4 = rus_omega_2_t_2*rus_platform_joint_offset_x
+        rus_bias_x = (
+        -rus_bias_t_3*rus_omega_1_t_2 - rus_bias_t_4*rus_omega_2_t_2 - rus_qd_3*rus_qd_3_t
         )
-        # (rus-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (rus-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        # (rus-A8) acceleration of the connection point left to the joint accelerations
-        rel_x = (
-        S_ddot_x*axis_x_rus_axes3_x + S_ddot_y*axis_x_rus_axes3_y + S_ddot_z*axis_x_rus_axes3_z -
-            bias_x
+        rus_bias_y = -rus_bias_t_3*rus_omega_1_t - rus_bias_t_4*rus_omega_2_t
+        rus_bias_z = (
+        rus_omega_2_t*rus_qd_3_t + rus_omega_2_t*rus_platform_joint_offset_x*rus_qd_3 -
+            rus_bias_t*rus_omega_1_t*rus_omega_1_t - rus_bias_t*rus_omega_1_t_2*rus_omega_1_t_2
         )
-        rel_y = (
-        S_ddot_x*axis_y_rus_axes3_in_base_x + S_ddot_y*axis_y_rus_axes3_in_base_y +
-            S_ddot_z*axis_y_rus_axes3_in_base_z - bias_y
+        # (rus-a_p) acceleration of the connection point without its centripetal part
+        rus_a_p_x = t_ddot_x + alpha_y*rus_q_in_base_z - alpha_z*rus_q_in_base_y
+        rus_a_p_y = t_ddot_y + alpha_z*rus_q_in_base_x - alpha_x*rus_q_in_base_z
+        rus_a_p_z = t_ddot_z + alpha_x*rus_q_in_base_y - alpha_y*rus_q_in_base_x
+        # (rus-S_ddot) acceleration of the connection point
+        rus_S_ddot_x = rus_a_p_x + omega_y*rus_S_dot_t_3 - omega_z*rus_S_dot_t_2
+        rus_S_ddot_y = rus_a_p_y + omega_z*rus_S_dot_t - omega_x*rus_S_dot_t_3
+        rus_S_ddot_z = rus_a_p_z + omega_x*rus_S_dot_t_2 - omega_y*rus_S_dot_t
+        # (rus-rel) acceleration of the connection point left to the joint accelerations
+        rus_rel_x = (
+        axis_x_rus_axes3_x*rus_S_ddot_x + axis_x_rus_axes3_y*rus_S_ddot_y +
+            axis_x_rus_axes3_z*rus_S_ddot_z - rus_bias_x
         )
-        rel_z = (
-        S_ddot_x*axis_z_rus_axes3_in_base_x + S_ddot_y*axis_z_rus_axes3_in_base_y +
-            S_ddot_z*axis_z_rus_axes3_in_base_z - bias_z
+        rus_rel_y = (
+        axis_y_rus_axes3_in_base_x*rus_S_ddot_x + axis_y_rus_axes3_in_base_y*rus_S_ddot_y +
+            axis_y_rus_axes3_in_base_z*rus_S_ddot_z - rus_bias_y
         )
-        # (rus-A10) acceleration of joint 1
-        qdd_1 = inv_v_1_t*rel_x
-        qdd_3 = inv_rus_platform_joint_offset_x*(qdd_1*v_1_t_2 - rel_y)
-        qdd_2 = inv_r_1_t*(rel_z + qdd_1*v_1_z)
+        rus_rel_z = (
+        axis_z_rus_axes3_in_base_x*rus_S_ddot_x + axis_z_rus_axes3_in_base_y*rus_S_ddot_y +
+            axis_z_rus_axes3_in_base_z*rus_S_ddot_z - rus_bias_z
+        )
+        # (rus-qdd_1) acceleration of joint 1
+        rus_qdd_1 = inv_rus_v_1_t*rus_rel_x
+        rus_qdd_3 = inv_rus_platform_joint_offset_x*(rus_qdd_1*rus_v_1_t_2 - rus_rel_y)
+        rus_qdd_2 = inv_rus_r_1_t*(rus_rel_z + rus_qdd_1*rus_v_1_z)
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t) & (abs(r_1_t) > _TOLERANCE * size) &
-            (abs(-v_1_t) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1
+            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t) & (abs(rus_r_1_t) >
+            _TOLERANCE * rus_size) & (abs(-rus_v_1_t) > _TOLERANCE * rus_size))
         )
-        out_qdd[_qdd_rus[0][leg]] = -qdd_1
-        out_qdd[_qdd_rus[1][leg]] = qdd_2
-        out_qdd[_qdd_rus[2][leg]] = -qdd_3
+        out_qdd[_qdd_rus[0][leg]] = -rus_qdd_1
+        out_qdd[_qdd_rus[1][leg]] = rus_qdd_2
+        out_qdd[_qdd_rus[2][leg]] = -rus_qdd_3
     return ok, (out_qdd,)
 
 
@@ -3817,83 +4058,94 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        J_1_zz, J_3_xy, J_3_xz, J_3_yz, Kd_1_t_2, Kd_1_t_3, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz,
-            branch_1, branch_2, g_r0_x, g_r0_y, h_1_x, h_1_y, h_3_x, h_3_y, h_3_z, inv_Kd_1_t_6,
-            inv_rus_platform_joint_offset_x, inv_uu_3_t, rho2_1_t, rus_base_frame_xx,
-            rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
-            rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
-            rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_joint2_offset_x,
-            rus_link3_mass, rus_platform_joint_offset_x, rus_platform_point_x,
-            rus_platform_point_y, rus_platform_point_z, size, size_t,
+        inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_platform_joint_offset_x, rus_J_1_zz,
+            rus_J_3_xy, rus_J_3_xz, rus_J_3_yz, rus_Kd_1_t_2, rus_Kd_1_t_4, rus_Sigma_3_xx,
+            rus_Sigma_3_yy, rus_Sigma_3_zz, rus_base_frame_xx, rus_base_frame_xy,
+            rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz,
+            rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz, rus_base_point_x,
+            rus_base_point_y, rus_base_point_z, rus_branch_1, rus_branch_2, rus_g_r0_x,
+            rus_g_r0_y, rus_h_1_x, rus_h_1_y, rus_h_3_x, rus_h_3_y, rus_h_3_z,
+            rus_joint2_offset_x, rus_link3_mass, rus_platform_joint_offset_x,
+            rus_platform_point_x, rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t,
+            rus_size, rus_size_t,
         ) = k
-        # (rus-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (rus-S) from the base point to the connection point
+        rus_q_in_base_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
-        q_in_base_y = (
+        rus_q_in_base_y = (
         R_yx*rus_platform_point_x + R_yy*rus_platform_point_y + R_yz*rus_platform_point_z
         )
-        q_in_base_z = (
+        rus_q_in_base_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rus_base_point_x
-        S_y = q_in_base_y + t_y - rus_base_point_y
-        S_z = q_in_base_z + t_z - rus_base_point_z
-        # (rus-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_t = S_x*S_x + S_y*S_y + S_z*S_z
-        Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
-        # (rus-K3) component along the reference direction
-        px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx
-        # (rus-K6) factor of the cosine in the equation of joint 1
-        Kc_1 = px_1*rus_joint2_offset_x
-        # (rus-K4) component across the reference direction
-        py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy
-        # (rus-K7) factor of the sine in the equation of joint 1
-        Ks_1 = py_1*rus_joint2_offset_x
-        # (rus-K8) squared amplitude
-        rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
-        # (rus-K9) discriminant
-        disc_1 = rho2_1 - Kd_1*Kd_1
-        # (rus-K10) root, with the sign of the branch
-        root_1 = branch_1*sqrt(disc_1)
-        # (rus-K15) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = inv_Kd_1_t_6*root_1*rus_joint2_offset_x
-        xi_1_t_2 = S_x*rus_base_frame_xz + S_y*rus_base_frame_yz + S_z*rus_base_frame_zz
-        # (rus-K16) from the origin of joint 2 to the connection point
-        x_2_x = Kd_1*inv_Kd_1_t_6*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-K20) squared amplitude
-        rho2_2 = x_2_x*x_2_x + xi_1_t*xi_1_t
-        # (rus-K22) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (rus-K28) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_uu_3_t*root_2*rus_platform_joint_offset_x
-        # (rus-K29) sine of the angle of joint 3 from its reference direction
-        s_3 = inv_uu_3_t*rus_platform_joint_offset_x*xi_1_t_2
-        # (rus-V2) from joint 1 to the connection point, along the links
-        r_1_t = c_3*rus_platform_joint_offset_x
-        r_1_t_2 = rus_platform_joint_offset_x*s_3
-        # (rus-K23) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = inv_rho2_2*root_2*xi_1_t
-        # (rus-K24) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*root_2*x_2_x
-        # (rus-V2) from joint 1 to the connection point, along the links
-        r_1_t_3 = c_2*r_1_t
-        r_1_x = rus_joint2_offset_x + r_1_t*s_2
-        r_1_r0_x = c_2*r_1_x - r_1_t_3*s_2
-        r_1_r0_y = -c_2*r_1_t_3 - r_1_x*s_2
-        # (rus-V3) velocity of the connection point per rate of joint 1
-        v_1_t = c_3*r_1_r0_x
-        v_1_t_2 = r_1_r0_x*s_3
-        v_1_z = c_3*(r_1_t_2*s_3 - c_3*r_1_r0_y) + s_3*(-c_3*r_1_t_2 - r_1_r0_y*s_3)
-        # (rus-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1)
-        # (rus-K12) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1)
-        # (rus-V6) reciprocal vector 1
-        axis_z_rus_axes3_r3_x = c_1*c_2 - s_1*s_2
-        axis_z_rus_axes3_r3_y = c_1*s_2 + c_2*s_1
+        rus_S_x = rus_q_in_base_x + t_x - rus_base_point_x
+        rus_S_y = rus_q_in_base_y + t_y - rus_base_point_y
+        rus_S_z = rus_q_in_base_z + t_z - rus_base_point_z
+        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
+        rus_Kd_1 = 0.5*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4
+        # (rus-px_1) component along the reference direction
+        rus_px_1 = (
+        rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx
+        )
+        # (rus-Kc_1) factor of the cosine in the equation of joint 1
+        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
+        # (rus-py_1) component across the reference direction
+        rus_py_1 = (
+        rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy
+        )
+        # (rus-Ks_1) factor of the sine in the equation of joint 1
+        rus_Ks_1 = rus_joint2_offset_x*rus_py_1
+        # (rus-rho2_1) squared amplitude
+        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
+        # (rus-disc_1) discriminant
+        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
+        # (rus-root_1) root, with the sign of the branch
+        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
+        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1
+        rus_xi_1_t_2 = (
+        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
+        )
+        # (rus-x_2) from the origin of joint 2 to the connection point
+        rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
+        # (rus-rho2_2) squared amplitude
+        rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t
+        # (rus-root_2) root, with the sign of the branch
+        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
+        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
+        rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2
+        # (rus-s_3) sine of the angle of joint 3 from its reference direction
+        rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
+        rus_r_1_t_2 = rus_platform_joint_offset_x*rus_s_3
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_rho2_2 = 1.0/rus_rho2_2
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t_3 = rus_c_2*rus_r_1_t
+        rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
+        rus_r_1_r0_x = rus_c_2*rus_r_1_x - rus_r_1_t_3*rus_s_2
+        rus_r_1_r0_y = -rus_c_2*rus_r_1_t_3 - rus_r_1_x*rus_s_2
+        # (rus-v_1) velocity of the connection point per rate of joint 1
+        rus_v_1_t = rus_c_3*rus_r_1_r0_x
+        rus_v_1_t_2 = rus_r_1_r0_x*rus_s_3
+        rus_v_1_z = (
+        rus_c_3*(rus_r_1_t_2*rus_s_3 - rus_c_3*rus_r_1_r0_y) + rus_s_3*(-rus_c_3*rus_r_1_t_2 -
+            rus_r_1_r0_y*rus_s_3)
+        )
+        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rus_rho2_1 = 1.0/rus_rho2_1
+        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
+        # (rus-s_1) sine of the angle of joint 1 from its reference direction
+        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
+        # (rus-w_1) reciprocal vector 1
+        axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
+        axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
         axis_z_rus_axes3_in_base_x = (
         axis_z_rus_axes3_r3_x*rus_base_frame_xx + axis_z_rus_axes3_r3_y*rus_base_frame_xy
         )
@@ -3903,21 +4155,21 @@ def _run_legs(m, X, V, A):
         axis_z_rus_axes3_in_base_z = (
         axis_z_rus_axes3_r3_x*rus_base_frame_zx + axis_z_rus_axes3_r3_y*rus_base_frame_zy
         )
-        w_1_t = s_2*s_3
-        w_1_t_2 = c_2*s_3
-        axis_y_rus_axes3_r3_x = c_1*w_1_t + s_1*w_1_t_2
-        axis_y_rus_axes3_r3_y = s_1*w_1_t - c_1*w_1_t_2
+        rus_w_1_t = rus_s_2*rus_s_3
+        rus_w_1_t_2 = rus_c_2*rus_s_3
+        axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2
+        axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2
         axis_y_rus_axes3_in_base_x = (
         axis_y_rus_axes3_r3_x*rus_base_frame_xx + axis_y_rus_axes3_r3_y*rus_base_frame_xy -
-            c_3*rus_base_frame_xz
+            rus_base_frame_xz*rus_c_3
         )
         axis_y_rus_axes3_in_base_y = (
         axis_y_rus_axes3_r3_x*rus_base_frame_yx + axis_y_rus_axes3_r3_y*rus_base_frame_yy -
-            c_3*rus_base_frame_yz
+            rus_base_frame_yz*rus_c_3
         )
         axis_y_rus_axes3_in_base_z = (
         axis_y_rus_axes3_r3_x*rus_base_frame_zx + axis_y_rus_axes3_r3_y*rus_base_frame_zy -
-            c_3*rus_base_frame_zz
+            rus_base_frame_zz*rus_c_3
         )
         axis_x_rus_axes3_x = (
         axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
@@ -3931,165 +4183,182 @@ def _run_legs(m, X, V, A):
         axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
             axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x
         )
-        inv_v_1_t = 1.0/v_1_t
-        # (rus-V7) reciprocal vector 2
-        inv_r_1_t = 1.0/r_1_t
-        # (rus-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        # (rus-V9) rate of joint 1
-        qd_1 = (
-        inv_v_1_t*(S_dot_x*axis_x_rus_axes3_x + S_dot_y*axis_x_rus_axes3_y +
-            S_dot_z*axis_x_rus_axes3_z)
+        inv_rus_v_1_t = 1.0/rus_v_1_t
+        # (rus-w_2) reciprocal vector 2
+        inv_rus_r_1_t = 1.0/rus_r_1_t
+        # (rus-S_dot) velocity of the connection point
+        rus_S_dot_t = omega_y*rus_q_in_base_z - omega_z*rus_q_in_base_y
+        rus_S_dot_t_2 = omega_z*rus_q_in_base_x - omega_x*rus_q_in_base_z
+        rus_S_dot_t_3 = omega_x*rus_q_in_base_y - omega_y*rus_q_in_base_x
+        rus_S_dot_x = rus_S_dot_t + t_dot_x
+        rus_S_dot_y = rus_S_dot_t_2 + t_dot_y
+        rus_S_dot_z = rus_S_dot_t_3 + t_dot_z
+        # (rus-qd_3) rate of joint 3
+        rus_qd_1 = (
+        inv_rus_v_1_t*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
+            axis_x_rus_axes3_z*rus_S_dot_z)
         )
-        qd_1_t = (
-        S_dot_x*axis_y_rus_axes3_in_base_x + S_dot_y*axis_y_rus_axes3_in_base_y +
-            S_dot_z*axis_y_rus_axes3_in_base_z - qd_1*v_1_t_2
+        rus_qd_3_t = (
+        axis_y_rus_axes3_in_base_x*rus_S_dot_x + axis_y_rus_axes3_in_base_y*rus_S_dot_y +
+            axis_y_rus_axes3_in_base_z*rus_S_dot_z - rus_qd_1*rus_v_1_t_2
         )
-        qd_3 = inv_rus_platform_joint_offset_x*qd_1_t
-        # (rus-V14) angular velocity of link 2
-        omega_2_z = (
-        inv_r_1_t*(S_dot_x*axis_z_rus_axes3_in_base_x + S_dot_y*axis_z_rus_axes3_in_base_y +
-            S_dot_z*axis_z_rus_axes3_in_base_z + qd_1*v_1_z) - qd_1
+        rus_qd_3 = inv_rus_platform_joint_offset_x*rus_qd_3_t
+        # (rus-omega_2) angular velocity of link 2
+        rus_omega_2_z = (
+        inv_rus_r_1_t*(axis_z_rus_axes3_in_base_x*rus_S_dot_x +
+            axis_z_rus_axes3_in_base_y*rus_S_dot_y + axis_z_rus_axes3_in_base_z*rus_S_dot_z +
+            rus_qd_1*rus_v_1_z) - rus_qd_1
         )
-        omega_2_t = omega_2_z*s_3
-        omega_2_t_2 = c_3*omega_2_z
-        # (rus-A5) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_x = omega_2_t_2*qd_3
-        zeta_3_y = omega_2_t*qd_3
-        # (rus-V16) centripetal tensor of link 3
-        W_3_t = omega_2_t*omega_2_t
-        W_3_t_2 = omega_2_t_2*omega_2_t_2
-        W_3_t_3 = qd_3*qd_3
-        W_3_xy = omega_2_t*omega_2_t_2
-        # (rus-V12) angular velocity of link 1
-        omega_1_t = qd_1*s_3
-        omega_1_t_2 = c_3*qd_1
-        # (rus-A7) acceleration of the connection point at zero joint accelerations
-        bias_t = c_2*rus_joint2_offset_x
-        bias_t_2 = rus_joint2_offset_x*s_2
-        bias_t_3 = bias_t_2*c_3*omega_1_t_2 + bias_t_2*omega_1_t*s_3
-        bias_t_4 = omega_2_t_2*rus_platform_joint_offset_x
-        bias_x = -bias_t_3*omega_1_t_2 - bias_t_4*omega_2_t_2 - qd_1_t*qd_3
-        bias_y = -bias_t_3*omega_1_t - bias_t_4*omega_2_t
-        bias_z = (
-        omega_2_t*qd_1_t + rus_platform_joint_offset_x*zeta_3_y - bias_t*omega_1_t*omega_1_t -
-            bias_t*omega_1_t_2*omega_1_t_2
+        rus_omega_2_t = rus_omega_2_z*rus_s_3
+        rus_omega_2_t_2 = rus_c_3*rus_omega_2_z
+        # (rus-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rus_zeta_3_x = rus_omega_2_t_2*rus_qd_3
+        rus_zeta_3_y = rus_omega_2_t*rus_qd_3
+        # (rus-W_3) centripetal tensor of link 3
+        rus_W_3_t = rus_omega_2_t*rus_omega_2_t
+        rus_W_3_t_2 = rus_omega_2_t_2*rus_omega_2_t_2
+        rus_W_3_t_3 = rus_qd_3*rus_qd_3
+        rus_W_3_xy = rus_omega_2_t*rus_omega_2_t_2
+        # (rus-omega_1) angular velocity of link 1
+        rus_omega_1_t = rus_qd_1*rus_s_3
+        rus_omega_1_t_2 = rus_c_3*rus_qd_1
+        # (rus-bias) acceleration of the connection point at zero joint accelerations
+        rus_bias_t = rus_c_2*rus_joint2_offset_x
+        rus_bias_t_2 = rus_joint2_offset_x*rus_s_2
+        rus_bias_t_3 = rus_bias_t_2*rus_c_3*rus_omega_1_t_2 + rus_bias_t_2*rus_omega_1_t*rus_s_3
+        rus_bias_t_4 = rus_omega_2_t_2*rus_platform_joint_offset_x
+        rus_bias_x = (
+        -rus_bias_t_3*rus_omega_1_t_2 - rus_bias_t_4*rus_omega_2_t_2 - rus_qd_3*rus_qd_3_t
         )
-        # (rus-V6) reciprocal vector 1
-        w_1_t_3 = axis_x_rus_axes3_x*inv_v_1_t
-        w_1_t_4 = axis_x_rus_axes3_y*inv_v_1_t
-        w_1_t_5 = axis_x_rus_axes3_z*inv_v_1_t
-        # (rus-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (rus-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        S_ddot_tip_x = (
-        S_ddot_x*axis_x_rus_axes3_x + S_ddot_y*axis_x_rus_axes3_y + S_ddot_z*axis_x_rus_axes3_z
+        rus_bias_y = -rus_bias_t_3*rus_omega_1_t - rus_bias_t_4*rus_omega_2_t
+        rus_bias_z = (
+        rus_omega_2_t*rus_qd_3_t + rus_platform_joint_offset_x*rus_zeta_3_y -
+            rus_bias_t*rus_omega_1_t*rus_omega_1_t - rus_bias_t*rus_omega_1_t_2*rus_omega_1_t_2
         )
-        S_ddot_tip_y = (
-        S_ddot_x*axis_y_rus_axes3_in_base_x + S_ddot_y*axis_y_rus_axes3_in_base_y +
-            S_ddot_z*axis_y_rus_axes3_in_base_z
+        # (rus-w_1) reciprocal vector 1
+        rus_w_1_t_3 = axis_x_rus_axes3_x*inv_rus_v_1_t
+        rus_w_1_t_4 = axis_x_rus_axes3_y*inv_rus_v_1_t
+        rus_w_1_t_5 = axis_x_rus_axes3_z*inv_rus_v_1_t
+        # (rus-a_p) acceleration of the connection point without its centripetal part
+        rus_a_p_x = t_ddot_x + alpha_y*rus_q_in_base_z - alpha_z*rus_q_in_base_y
+        rus_a_p_y = t_ddot_y + alpha_z*rus_q_in_base_x - alpha_x*rus_q_in_base_z
+        rus_a_p_z = t_ddot_z + alpha_x*rus_q_in_base_y - alpha_y*rus_q_in_base_x
+        # (rus-S_ddot) acceleration of the connection point
+        rus_S_ddot_x = rus_a_p_x + omega_y*rus_S_dot_t_3 - omega_z*rus_S_dot_t_2
+        rus_S_ddot_y = rus_a_p_y + omega_z*rus_S_dot_t - omega_x*rus_S_dot_t_3
+        rus_S_ddot_z = rus_a_p_z + omega_x*rus_S_dot_t_2 - omega_y*rus_S_dot_t
+        rus_S_ddot_tip_x = (
+        axis_x_rus_axes3_x*rus_S_ddot_x + axis_x_rus_axes3_y*rus_S_ddot_y +
+            axis_x_rus_axes3_z*rus_S_ddot_z
         )
-        S_ddot_tip_z = (
-        S_ddot_x*axis_z_rus_axes3_in_base_x + S_ddot_y*axis_z_rus_axes3_in_base_y +
-            S_ddot_z*axis_z_rus_axes3_in_base_z
+        rus_S_ddot_tip_y = (
+        axis_y_rus_axes3_in_base_x*rus_S_ddot_x + axis_y_rus_axes3_in_base_y*rus_S_ddot_y +
+            axis_y_rus_axes3_in_base_z*rus_S_ddot_z
         )
-        # (rus-A8) acceleration of the connection point left to the joint accelerations
-        rel_x = S_ddot_tip_x - bias_x
-        rel_y = S_ddot_tip_y - bias_y
-        rel_z = S_ddot_tip_z - bias_z
-        # (rus-A10) acceleration of joint 1
-        qdd_1 = inv_v_1_t*rel_x
-        qdd_3 = inv_rus_platform_joint_offset_x*(qdd_1*v_1_t_2 - rel_y)
-        # (rus-N3) acceleration of the reference point of link 3, less gravity
-        acc_3_x = (
-        S_ddot_tip_x - axis_x_rus_axes3_x*gravity_x - axis_x_rus_axes3_y*gravity_y -
+        rus_S_ddot_tip_z = (
+        axis_z_rus_axes3_in_base_x*rus_S_ddot_x + axis_z_rus_axes3_in_base_y*rus_S_ddot_y +
+            axis_z_rus_axes3_in_base_z*rus_S_ddot_z
+        )
+        # (rus-rel) acceleration of the connection point left to the joint accelerations
+        rus_rel_x = rus_S_ddot_tip_x - rus_bias_x
+        rus_rel_y = rus_S_ddot_tip_y - rus_bias_y
+        rus_rel_z = rus_S_ddot_tip_z - rus_bias_z
+        # (rus-qdd_1) acceleration of joint 1
+        rus_qdd_1 = inv_rus_v_1_t*rus_rel_x
+        rus_qdd_3 = inv_rus_platform_joint_offset_x*(rus_qdd_1*rus_v_1_t_2 - rus_rel_y)
+        # (rus-acc_3) acceleration of the reference point of link 3, less gravity
+        rus_acc_3_x = (
+        rus_S_ddot_tip_x - axis_x_rus_axes3_x*gravity_x - axis_x_rus_axes3_y*gravity_y -
             axis_x_rus_axes3_z*gravity_z
         )
-        acc_3_y = (
-        S_ddot_tip_y - axis_y_rus_axes3_in_base_x*gravity_x - axis_y_rus_axes3_in_base_y*gravity_y
-            - axis_y_rus_axes3_in_base_z*gravity_z
+        rus_acc_3_y = (
+        rus_S_ddot_tip_y - axis_y_rus_axes3_in_base_x*gravity_x -
+            axis_y_rus_axes3_in_base_y*gravity_y - axis_y_rus_axes3_in_base_z*gravity_z
         )
-        acc_3_z = (
-        S_ddot_tip_z - axis_z_rus_axes3_in_base_x*gravity_x - axis_z_rus_axes3_in_base_y*gravity_y
-            - axis_z_rus_axes3_in_base_z*gravity_z
+        rus_acc_3_z = (
+        rus_S_ddot_tip_z - axis_z_rus_axes3_in_base_x*gravity_x -
+            axis_z_rus_axes3_in_base_y*gravity_y - axis_z_rus_axes3_in_base_z*gravity_z
         )
-        # (rus-N30) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_z = h_1_y*(c_1*g_r0_x + g_r0_y*s_1) - J_1_zz*qdd_1 - h_1_x*(c_1*g_r0_y - g_r0_x*s_1)
-        # (rus-A20) angular acceleration of link 2
-        alpha_2_z = inv_r_1_t*(rel_z + qdd_1*v_1_z) - qdd_1
-        alpha_2_t = alpha_2_z*s_3
-        alpha_2_t_2 = alpha_2_z*c_3
-        # (rus-A22) angular acceleration of link 3
-        alpha_3_x = alpha_2_t - zeta_3_x
-        alpha_3_y = -alpha_2_t_2 - zeta_3_y
-        # (rus-A25) acceleration tensor of link 3
-        B_3_xy = qdd_3 - W_3_xy
-        B_3_yx = -W_3_xy - qdd_3
-        B_3_zx = zeta_3_y - alpha_3_y
-        B_3_zy = alpha_3_x - zeta_3_x
-        # (rus-N20) inertia moment of the links that turn with link 3, about their reference points
-        mu_3_x = (
-        B_3_yx*J_3_xy + B_3_zx*J_3_xz + B_3_zy*Sigma_3_yy + Sigma_3_zz*alpha_2_t - J_3_yz*(W_3_t_2
-            - W_3_t_3) - acc_3_y*h_3_y - acc_3_z*h_3_z
+        # (rus-alpha_2) angular acceleration of link 2
+        rus_alpha_2_z = inv_rus_r_1_t*(rus_rel_z + rus_qdd_1*rus_v_1_z) - rus_qdd_1
+        rus_alpha_2_t = rus_alpha_2_z*rus_s_3
+        rus_alpha_2_t_2 = rus_alpha_2_z*rus_c_3
+        # (rus-alpha_3) angular acceleration of link 3
+        rus_alpha_3_x = rus_alpha_2_t - rus_zeta_3_x
+        rus_alpha_3_y = -rus_alpha_2_t_2 - rus_zeta_3_y
+        # (rus-B_3) acceleration tensor of link 3
+        rus_B_3_xy = rus_qdd_3 - rus_W_3_xy
+        rus_B_3_yx = -rus_W_3_xy - rus_qdd_3
+        rus_B_3_zx = rus_zeta_3_y - rus_alpha_3_y
+        rus_B_3_zy = rus_alpha_3_x - rus_zeta_3_x
+        # (rus-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        rus_mu_3_x = (
+        rus_B_3_yx*rus_J_3_xy + rus_B_3_zx*rus_J_3_xz + rus_B_3_zy*rus_Sigma_3_yy +
+            rus_Sigma_3_zz*rus_alpha_2_t - rus_J_3_yz*(rus_W_3_t_2 - rus_W_3_t_3) -
+            rus_acc_3_y*rus_h_3_y - rus_acc_3_z*rus_h_3_z
         )
-        mu_3_y = (
-        B_3_xy*J_3_yz + acc_3_x*h_3_y - B_3_zx*Sigma_3_xx - B_3_zy*J_3_xz - J_3_xy*(W_3_t -
-            W_3_t_3) - Sigma_3_zz*alpha_2_t_2 - acc_3_z*h_3_x
+        rus_mu_3_y = (
+        rus_B_3_xy*rus_J_3_yz + rus_acc_3_x*rus_h_3_y - rus_B_3_zx*rus_Sigma_3_xx -
+            rus_B_3_zy*rus_J_3_xz - rus_J_3_xy*(rus_W_3_t - rus_W_3_t_3) -
+            rus_Sigma_3_zz*rus_alpha_2_t_2 - rus_acc_3_z*rus_h_3_x
         )
-        mu_3_z = (
-        B_3_yx*Sigma_3_xx + J_3_xy*alpha_2_t + J_3_yz*alpha_2_t_2 + acc_3_x*h_3_z + acc_3_y*h_3_x
-            - B_3_xy*Sigma_3_yy - J_3_xz*(W_3_t - W_3_t_2)
+        rus_mu_3_z = (
+        rus_B_3_yx*rus_Sigma_3_xx + rus_J_3_xy*rus_alpha_2_t + rus_J_3_yz*rus_alpha_2_t_2 +
+            rus_acc_3_x*rus_h_3_z + rus_acc_3_y*rus_h_3_x - rus_B_3_xy*rus_Sigma_3_yy -
+            rus_J_3_xz*(rus_W_3_t - rus_W_3_t_2)
         )
-        mu_3_r0_y = mu_3_x*s_3 - c_3*mu_3_y
-        # (rus-N32) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_z = mu_1_z + mu_3_r0_y
-        # (rus-N37) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_t = inv_r_1_t*mu_3_r0_y
-        G_t_2 = inv_rus_platform_joint_offset_x*mu_3_z
-        # (rus-N40) leg force on the platform without actuation and without the mass at the connection point
-        c_x = (
-        B_3_xy*h_3_z + alpha_2_t_2*h_3_y + h_3_x*(W_3_t_2 + W_3_t_3) + inv_v_1_t*(N_1_z +
-            G_t_2*v_1_t_2 - G_t*v_1_z)
+        rus_mu_3_r0_y = rus_mu_3_x*rus_s_3 - rus_c_3*rus_mu_3_y
+        # (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rus_mu_1_z = (
+        rus_h_1_y*(rus_c_1*rus_g_r0_x + rus_g_r0_y*rus_s_1) - rus_J_1_zz*rus_qdd_1 -
+            rus_h_1_x*(rus_c_1*rus_g_r0_y - rus_g_r0_x*rus_s_1)
         )
-        c_y = alpha_2_t*h_3_y - G_t_2 - B_3_yx*h_3_x - h_3_z*(W_3_t + W_3_t_3)
-        c_z = B_3_zy*h_3_z + h_3_y*(W_3_t + W_3_t_2) - G_t - B_3_zx*h_3_x
-        # (rus-N45) leg force on the platform without actuation, the last link's mass included
-        c_true_x = c_x - acc_3_x*rus_link3_mass
-        c_true_y = c_y - acc_3_y*rus_link3_mass
-        c_true_z = c_z - acc_3_z*rus_link3_mass
-        c_true_in_base_x = (
-        axis_x_rus_axes3_x*c_true_x + axis_y_rus_axes3_in_base_x*c_true_y +
-            axis_z_rus_axes3_in_base_x*c_true_z
+        # (rus-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rus_N_1_z = rus_mu_1_z + rus_mu_3_r0_y
+        # (rus-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rus_G_t = inv_rus_r_1_t*rus_mu_3_r0_y
+        rus_G_t_2 = inv_rus_platform_joint_offset_x*rus_mu_3_z
+        # (rus-c) leg force on the platform without actuation and without the mass at the connection point
+        rus_c_x = (
+        inv_rus_v_1_t*(rus_N_1_z + rus_G_t_2*rus_v_1_t_2 - rus_G_t*rus_v_1_z) +
+            rus_B_3_xy*rus_h_3_z + rus_alpha_2_t_2*rus_h_3_y + rus_h_3_x*(rus_W_3_t_2 +
+            rus_W_3_t_3)
         )
-        c_true_in_base_y = (
-        axis_x_rus_axes3_y*c_true_x + axis_y_rus_axes3_in_base_y*c_true_y +
-            axis_z_rus_axes3_in_base_y*c_true_z
+        rus_c_y = (
+        rus_alpha_2_t*rus_h_3_y - rus_G_t_2 - rus_B_3_yx*rus_h_3_x - rus_h_3_z*(rus_W_3_t +
+            rus_W_3_t_3)
         )
-        c_true_in_base_z = (
-        axis_x_rus_axes3_z*c_true_x + axis_y_rus_axes3_in_base_z*c_true_y +
-            axis_z_rus_axes3_in_base_z*c_true_z
+        rus_c_z = (
+        rus_B_3_zy*rus_h_3_z + rus_h_3_y*(rus_W_3_t + rus_W_3_t_2) - rus_G_t -
+            rus_B_3_zx*rus_h_3_x
+        )
+        # (rus-c_true) leg force on the platform without actuation, the last link's mass included
+        rus_c_true_x = rus_c_x - rus_acc_3_x*rus_link3_mass
+        rus_c_true_y = rus_c_y - rus_acc_3_y*rus_link3_mass
+        rus_c_true_z = rus_c_z - rus_acc_3_z*rus_link3_mass
+        rus_c_true_in_base_x = (
+        axis_x_rus_axes3_x*rus_c_true_x + axis_y_rus_axes3_in_base_x*rus_c_true_y +
+            axis_z_rus_axes3_in_base_x*rus_c_true_z
+        )
+        rus_c_true_in_base_y = (
+        axis_x_rus_axes3_y*rus_c_true_x + axis_y_rus_axes3_in_base_y*rus_c_true_y +
+            axis_z_rus_axes3_in_base_y*rus_c_true_z
+        )
+        rus_c_true_in_base_z = (
+        axis_x_rus_axes3_z*rus_c_true_x + axis_y_rus_axes3_in_base_z*rus_c_true_y +
+            axis_z_rus_axes3_in_base_z*rus_c_true_z
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t) & (abs(r_1_t) > _TOLERANCE * size) &
-            (abs(-v_1_t) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1
+            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t) & (abs(rus_r_1_t) >
+            _TOLERANCE * rus_size) & (abs(-rus_v_1_t) > _TOLERANCE * rus_size))
         )
-        out_leg_force[_leg_force_rus[0][leg]] = c_true_in_base_x
-        out_leg_force[_leg_force_rus[1][leg]] = c_true_in_base_y
-        out_leg_force[_leg_force_rus[2][leg]] = c_true_in_base_z
-        out_drive[_drive_rus[0][leg]] = -w_1_t_3
-        out_drive[_drive_rus[1][leg]] = -w_1_t_4
-        out_drive[_drive_rus[2][leg]] = -w_1_t_5
+        out_leg_force[_leg_force_rus[0][leg]] = rus_c_true_in_base_x
+        out_leg_force[_leg_force_rus[1][leg]] = rus_c_true_in_base_y
+        out_leg_force[_leg_force_rus[2][leg]] = rus_c_true_in_base_z
+        out_drive[_drive_rus[0][leg]] = -rus_w_1_t_3
+        out_drive[_drive_rus[1][leg]] = -rus_w_1_t_4
+        out_drive[_drive_rus[2][leg]] = -rus_w_1_t_5
     return ok, (out_leg_force, out_drive,)
 
 
@@ -4135,8 +4404,8 @@ def _run_potential(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_potential = m.zeros("potential")
-    # (V1) potential energy
-    potential_t_2 = (
+    # (potential) potential energy
+    potential_t = (
     gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
         gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
         gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z)
@@ -4144,86 +4413,94 @@ def _run_potential(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        Kd_1_t_2, Kd_1_t_3, b_r0_x, b_r0_y, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_1_x,
-            h_1_y, h_1_z, h_3_x, h_3_y, h_3_z, inv_Kd_1_t_6, inv_uu_3_t, potential_t, rho2_1_t,
+        inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, rus_Kd_1_t_2, rus_Kd_1_t_4, rus_b_r0_x, rus_b_r0_y,
             rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx,
             rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy,
-            rus_base_frame_zz, rus_base_point_x, rus_base_point_y, rus_base_point_z,
-            rus_joint2_offset_x, rus_link1_mass, rus_platform_joint_offset_x,
-            rus_platform_point_x, rus_platform_point_y, rus_platform_point_z, size_t,
+            rus_base_frame_zz, rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1,
+            rus_branch_2, rus_g_r0_x, rus_g_r0_y, rus_g_r0_z, rus_h_1_x, rus_h_1_y, rus_h_1_z,
+            rus_h_3_x, rus_h_3_y, rus_h_3_z, rus_joint2_offset_x, rus_link1_mass,
+            rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
+            rus_platform_point_z, rus_potential_t, rus_rho2_1_t, rus_size_t,
         ) = k
-        # (rus-K1) from the base point to the connection point
-        S_x = (
+        # (rus-S) from the base point to the connection point
+        rus_S_x = (
         t_x + R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z -
             rus_base_point_x
         )
-        S_y = (
+        rus_S_y = (
         t_y + R_yx*rus_platform_point_x + R_yy*rus_platform_point_y + R_yz*rus_platform_point_z -
             rus_base_point_y
         )
-        S_z = (
+        rus_S_z = (
         t_z + R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z -
             rus_base_point_z
         )
-        # (rus-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_t = S_x*S_x + S_y*S_y + S_z*S_z
-        Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
-        # (rus-K3) component along the reference direction
-        px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx
-        # (rus-K6) factor of the cosine in the equation of joint 1
-        Kc_1 = px_1*rus_joint2_offset_x
-        # (rus-K4) component across the reference direction
-        py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy
-        # (rus-K7) factor of the sine in the equation of joint 1
-        Ks_1 = py_1*rus_joint2_offset_x
-        # (rus-K8) squared amplitude
-        rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
-        # (rus-K9) discriminant
-        disc_1 = rho2_1 - Kd_1*Kd_1
-        # (rus-K10) root, with the sign of the branch
-        root_1 = branch_1*sqrt(disc_1)
-        # (rus-K15) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = inv_Kd_1_t_6*root_1*rus_joint2_offset_x
-        xi_1_t_2 = S_x*rus_base_frame_xz + S_y*rus_base_frame_yz + S_z*rus_base_frame_zz
-        # (rus-K16) from the origin of joint 2 to the connection point
-        x_2_x = Kd_1*inv_Kd_1_t_6*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-K20) squared amplitude
-        rho2_2 = x_2_x*x_2_x + xi_1_t*xi_1_t
-        # (rus-K22) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (rus-K28) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_uu_3_t*root_2*rus_platform_joint_offset_x
-        # (rus-K29) sine of the angle of joint 3 from its reference direction
-        s_3 = inv_uu_3_t*rus_platform_joint_offset_x*xi_1_t_2
-        # (rus-K23) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = inv_rho2_2*root_2*xi_1_t
-        # (rus-K24) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*root_2*x_2_x
-        # (rus-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1)
-        # (rus-K12) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1)
-        # (rus-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_t = h_3_z*s_3 - c_3*h_3_x
-        # (V1) potential energy
-        potential_t_3 = (
-        g_r0_z*(h_1_z + potential_t + c_3*h_3_z + h_3_x*s_3) + (c_1*g_r0_x + g_r0_y*s_1)*(h_1_x +
-            c_2*h_3_y + rus_link1_mass*(b_r0_x*c_1 + b_r0_y*s_1) - d_Gamma_1_t*s_2) + (c_1*g_r0_y
-            - g_r0_x*s_1)*(h_1_y + c_2*d_Gamma_1_t + h_3_y*s_2 + rus_link1_mass*(b_r0_y*c_1 -
-            b_r0_x*s_1))
+        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
+        rus_Kd_1 = 0.5*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4
+        # (rus-px_1) component along the reference direction
+        rus_px_1 = (
+        rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx
+        )
+        # (rus-Kc_1) factor of the cosine in the equation of joint 1
+        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
+        # (rus-py_1) component across the reference direction
+        rus_py_1 = (
+        rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy
+        )
+        # (rus-Ks_1) factor of the sine in the equation of joint 1
+        rus_Ks_1 = rus_joint2_offset_x*rus_py_1
+        # (rus-rho2_1) squared amplitude
+        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
+        # (rus-disc_1) discriminant
+        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
+        # (rus-root_1) root, with the sign of the branch
+        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
+        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1
+        rus_xi_1_t_2 = (
+        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
+        )
+        # (rus-x_2) from the origin of joint 2 to the connection point
+        rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
+        # (rus-rho2_2) squared amplitude
+        rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t
+        # (rus-root_2) root, with the sign of the branch
+        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
+        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
+        rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2
+        # (rus-s_3) sine of the angle of joint 3 from its reference direction
+        rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_rho2_2 = 1.0/rus_rho2_2
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x
+        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rus_rho2_1 = 1.0/rus_rho2_1
+        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
+        # (rus-s_1) sine of the angle of joint 1 from its reference direction
+        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
+        # (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rus_d_Gamma_2_t = rus_h_3_z*rus_s_3 - rus_c_3*rus_h_3_x
+        # (potential) potential energy
+        rus_potential_t_2 = (
+        rus_g_r0_z*(rus_h_1_z + rus_potential_t + rus_c_3*rus_h_3_z + rus_h_3_x*rus_s_3) +
+            (rus_c_1*rus_g_r0_x + rus_g_r0_y*rus_s_1)*(rus_h_1_x + rus_c_2*rus_h_3_y +
+            rus_link1_mass*(rus_b_r0_x*rus_c_1 + rus_b_r0_y*rus_s_1) - rus_d_Gamma_2_t*rus_s_2) +
+            (rus_c_1*rus_g_r0_y - rus_g_r0_x*rus_s_1)*(rus_h_1_y + rus_c_2*rus_d_Gamma_2_t +
+            rus_h_3_y*rus_s_2 + rus_link1_mass*(rus_b_r0_y*rus_c_1 - rus_b_r0_x*rus_s_1))
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t))
+        ok & m.every(leg, (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1
+            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t))
         )
         sums = m.added(sums, leg, (
-        potential_t_3,
+        rus_potential_t_2,
         ))
     total_rus, = sums
-    # (V1) potential energy
-    potential = -potential_t_2 - total_rus
+    # (potential) potential energy
+    potential = -potential_t - total_rus
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -4280,75 +4557,82 @@ def _run_condition(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        Kd_1_t_2, Kd_1_t_3, branch_1, branch_2, inv_Kd_1_t_6, inv_rho2_1_t_4, inv_size,
-            inv_size_t, inv_uu_3_t, rho2_1_t, rus_base_frame_xx, rus_base_frame_xy,
-            rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz,
-            rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz, rus_base_point_x,
-            rus_base_point_y, rus_base_point_z, rus_joint2_offset_x, rus_platform_joint_offset_x,
-            rus_platform_point_x, rus_platform_point_y, rus_platform_point_z, size, size_t,
+        inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_rho2_1_t_4, inv_rus_size, inv_rus_size_t,
+            rus_Kd_1_t_2, rus_Kd_1_t_4, rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz,
+            rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx,
+            rus_base_frame_zy, rus_base_frame_zz, rus_base_point_x, rus_base_point_y,
+            rus_base_point_z, rus_branch_1, rus_branch_2, rus_joint2_offset_x,
+            rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
+            rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t,
         ) = k
-        # (rus-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (rus-S) from the base point to the connection point
+        rus_q_in_base_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
-        q_in_base_y = (
+        rus_q_in_base_y = (
         R_yx*rus_platform_point_x + R_yy*rus_platform_point_y + R_yz*rus_platform_point_z
         )
-        q_in_base_z = (
+        rus_q_in_base_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rus_base_point_x
-        S_y = q_in_base_y + t_y - rus_base_point_y
-        S_z = q_in_base_z + t_z - rus_base_point_z
-        # (rus-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_t = S_x*S_x + S_y*S_y + S_z*S_z
-        Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
-        # (rus-K3) component along the reference direction
-        px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx
-        # (rus-K6) factor of the cosine in the equation of joint 1
-        Kc_1 = px_1*rus_joint2_offset_x
-        # (rus-K4) component across the reference direction
-        py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy
-        # (rus-K7) factor of the sine in the equation of joint 1
-        Ks_1 = py_1*rus_joint2_offset_x
-        # (rus-K8) squared amplitude
-        rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
-        # (rus-K9) discriminant
-        disc_1 = rho2_1 - Kd_1*Kd_1
-        # (rus-K10) root, with the sign of the branch
-        root_1 = branch_1*sqrt(disc_1)
-        # (rus-K15) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = inv_Kd_1_t_6*root_1*rus_joint2_offset_x
-        xi_1_t_2 = S_x*rus_base_frame_xz + S_y*rus_base_frame_yz + S_z*rus_base_frame_zz
-        # (rus-K16) from the origin of joint 2 to the connection point
-        x_2_x = Kd_1*inv_Kd_1_t_6*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-K20) squared amplitude
-        rho2_2 = x_2_x*x_2_x + xi_1_t*xi_1_t
-        # (rus-K22) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (rus-K28) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_uu_3_t*root_2*rus_platform_joint_offset_x
-        # (rus-K29) sine of the angle of joint 3 from its reference direction
-        s_3 = inv_uu_3_t*rus_platform_joint_offset_x*xi_1_t_2
-        # (rus-V2) from joint 1 to the connection point, along the links
-        r_1_t = c_3*rus_platform_joint_offset_x
-        # (rus-K23) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = inv_rho2_2*root_2*xi_1_t
-        # (rus-K24) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*root_2*x_2_x
-        # (rus-V2) from joint 1 to the connection point, along the links
-        r_1_x = rus_joint2_offset_x + r_1_t*s_2
-        # (rus-V3) velocity of the connection point per rate of joint 1
-        v_1_t = c_3*(c_2*r_1_x - c_2*r_1_t*s_2)
-        # (rus-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1)
-        # (rus-K12) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1)
-        # (rus-V6) reciprocal vector 1
-        axis_z_rus_axes3_r3_x = c_1*c_2 - s_1*s_2
-        axis_z_rus_axes3_r3_y = c_1*s_2 + c_2*s_1
+        rus_S_x = rus_q_in_base_x + t_x - rus_base_point_x
+        rus_S_y = rus_q_in_base_y + t_y - rus_base_point_y
+        rus_S_z = rus_q_in_base_z + t_z - rus_base_point_z
+        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
+        rus_Kd_1 = 0.5*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4
+        # (rus-px_1) component along the reference direction
+        rus_px_1 = (
+        rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx
+        )
+        # (rus-Kc_1) factor of the cosine in the equation of joint 1
+        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
+        # (rus-py_1) component across the reference direction
+        rus_py_1 = (
+        rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy
+        )
+        # (rus-Ks_1) factor of the sine in the equation of joint 1
+        rus_Ks_1 = rus_joint2_offset_x*rus_py_1
+        # (rus-rho2_1) squared amplitude
+        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
+        # (rus-disc_1) discriminant
+        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
+        # (rus-root_1) root, with the sign of the branch
+        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
+        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1
+        rus_xi_1_t_2 = (
+        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
+        )
+        # (rus-x_2) from the origin of joint 2 to the connection point
+        rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
+        # (rus-rho2_2) squared amplitude
+        rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t
+        # (rus-root_2) root, with the sign of the branch
+        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
+        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
+        rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2
+        # (rus-s_3) sine of the angle of joint 3 from its reference direction
+        rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_rho2_2 = 1.0/rus_rho2_2
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
+        # (rus-v_1) velocity of the connection point per rate of joint 1
+        rus_v_1_t = rus_c_3*(rus_c_2*rus_r_1_x - rus_c_2*rus_r_1_t*rus_s_2)
+        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rus_rho2_1 = 1.0/rus_rho2_1
+        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
+        # (rus-s_1) sine of the angle of joint 1 from its reference direction
+        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
+        # (rus-w_1) reciprocal vector 1
+        axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
+        axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
         axis_z_rus_axes3_in_base_x = (
         axis_z_rus_axes3_r3_x*rus_base_frame_xx + axis_z_rus_axes3_r3_y*rus_base_frame_xy
         )
@@ -4358,75 +4642,77 @@ def _run_condition(m, X):
         axis_z_rus_axes3_in_base_z = (
         axis_z_rus_axes3_r3_x*rus_base_frame_zx + axis_z_rus_axes3_r3_y*rus_base_frame_zy
         )
-        w_1_t = s_2*s_3
-        w_1_t_2 = c_2*s_3
-        axis_y_rus_axes3_r3_x = c_1*w_1_t + s_1*w_1_t_2
-        axis_y_rus_axes3_r3_y = s_1*w_1_t - c_1*w_1_t_2
+        rus_w_1_t = rus_s_2*rus_s_3
+        rus_w_1_t_2 = rus_c_2*rus_s_3
+        axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2
+        axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2
         axis_y_rus_axes3_in_base_x = (
         axis_y_rus_axes3_r3_x*rus_base_frame_xx + axis_y_rus_axes3_r3_y*rus_base_frame_xy -
-            c_3*rus_base_frame_xz
+            rus_base_frame_xz*rus_c_3
         )
         axis_y_rus_axes3_in_base_y = (
         axis_y_rus_axes3_r3_x*rus_base_frame_yx + axis_y_rus_axes3_r3_y*rus_base_frame_yy -
-            c_3*rus_base_frame_yz
+            rus_base_frame_yz*rus_c_3
         )
         axis_y_rus_axes3_in_base_z = (
         axis_y_rus_axes3_r3_x*rus_base_frame_zx + axis_y_rus_axes3_r3_y*rus_base_frame_zy -
-            c_3*rus_base_frame_zz
+            rus_base_frame_zz*rus_c_3
         )
-        inv_v_1_t = 1.0/v_1_t
-        w_1_t_3 = (
-        inv_v_1_t*(axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
+        inv_rus_v_1_t = 1.0/rus_v_1_t
+        rus_w_1_t_3 = (
+        inv_rus_v_1_t*(axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
             axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_y)
         )
-        w_1_t_4 = (
-        inv_v_1_t*(axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
+        rus_w_1_t_4 = (
+        inv_rus_v_1_t*(axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
             axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z)
         )
-        w_1_t_5 = (
-        inv_v_1_t*(axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
+        rus_w_1_t_5 = (
+        inv_rus_v_1_t*(axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
             axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x)
         )
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_x = q_in_base_z*w_1_t_4 - q_in_base_y*w_1_t_5
-        H_a_1_y = q_in_base_x*w_1_t_5 - q_in_base_z*w_1_t_3
-        H_a_1_z = q_in_base_y*w_1_t_3 - q_in_base_x*w_1_t_4
-        # (C2) rms distance of the platform points from their centroid
-        spread_t_2 = b_c_x - rus_platform_point_x
-        spread_t_3 = b_c_y - rus_platform_point_y
-        spread_t_4 = b_c_z - rus_platform_point_z
-        spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 + spread_t_4*spread_t_4
-        # (rus-K8) squared amplitude
-        pivot_size = abs(rho2_1)
-        # (rus-K20) squared amplitude
-        pivot_size_2 = abs(rho2_2)
-        # (rus-V6) reciprocal vector 1
-        pivot_size_3 = abs(r_1_t)
-        pivot_size_4 = abs(v_1_t)
-        # (rus-N37) force at the connection point that balances the leg's inertia and weight along all freedoms
-        least_pivots = (
-        least(least(least(sqrt(inv_rho2_1_t_4*pivot_size), inv_size*pivot_size_3),
-            inv_size*pivot_size_4), sqrt(inv_size_t*pivot_size_2))
+        # (rus-H_a_1) moment of the column's unit force about the platform origin
+        rus_H_a_1_x = rus_q_in_base_z*rus_w_1_t_4 - rus_q_in_base_y*rus_w_1_t_5
+        rus_H_a_1_y = rus_q_in_base_x*rus_w_1_t_5 - rus_q_in_base_z*rus_w_1_t_3
+        rus_H_a_1_z = rus_q_in_base_y*rus_w_1_t_3 - rus_q_in_base_x*rus_w_1_t_4
+        # (spread) rms distance of the platform points from their centroid
+        rus_spread_t = b_c_x - rus_platform_point_x
+        rus_spread_t_2 = b_c_y - rus_platform_point_y
+        rus_spread_t_3 = b_c_z - rus_platform_point_z
+        rus_spread_t_4 = (
+        rus_spread_t*rus_spread_t + rus_spread_t_2*rus_spread_t_2 + rus_spread_t_3*rus_spread_t_3
+        )
+        # (rus-rho2_1) squared amplitude
+        rus_pivot_size = abs(rus_rho2_1)
+        # (rus-rho2_2) squared amplitude
+        rus_pivot_size_2 = abs(rus_rho2_2)
+        # (rus-w_1) reciprocal vector 1
+        rus_pivot_size_3 = abs(rus_r_1_t)
+        rus_pivot_size_4 = abs(rus_v_1_t)
+        # (rus-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rus_least_pivots = (
+        least(least(least(sqrt(inv_rus_rho2_1_t_4*rus_pivot_size), inv_rus_size*rus_pivot_size_3),
+            inv_rus_size*rus_pivot_size_4), sqrt(inv_rus_size_t*rus_pivot_size_2))
         )
         clear = (
-        clear & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * size_t) & (abs(r_1_t) > _TOLERANCE * size) & (abs(-v_1_t) >
-            _TOLERANCE * size))
+        clear & m.every(leg, (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) &
+            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t) & (abs(rus_r_1_t) >
+            _TOLERANCE * rus_size) & (abs(-rus_v_1_t) > _TOLERANCE * rus_size))
         )
-        reached = reached & m.every(leg, (disc_1 >= 0.0))
+        reached = reached & m.every(leg, (rus_disc_1 >= 0.0))
         sums = m.added(sums, leg, (
-        spread_t_5,
+        rus_spread_t_4,
         ))
-        out_H[_H_rus[0][leg]] = -w_1_t_3
-        out_H[_H_rus[1][leg]] = -w_1_t_4
-        out_H[_H_rus[2][leg]] = -w_1_t_5
-        out_H[_H_rus[3][leg]] = H_a_1_x
-        out_H[_H_rus[4][leg]] = H_a_1_y
-        out_H[_H_rus[5][leg]] = H_a_1_z
-        out_pivots[_pivots_rus[0][leg]] = least_pivots
-        out_reach[_reach_rus[0][leg]] = disc_1
+        out_H[_H_rus[0][leg]] = -rus_w_1_t_3
+        out_H[_H_rus[1][leg]] = -rus_w_1_t_4
+        out_H[_H_rus[2][leg]] = -rus_w_1_t_5
+        out_H[_H_rus[3][leg]] = rus_H_a_1_x
+        out_H[_H_rus[4][leg]] = rus_H_a_1_y
+        out_H[_H_rus[5][leg]] = rus_H_a_1_z
+        out_pivots[_pivots_rus[0][leg]] = rus_least_pivots
+        out_reach[_reach_rus[0][leg]] = rus_disc_1
     total_rus, = sums
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(total_rus)
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
@@ -4554,6 +4840,19 @@ def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
     momentum = np.einsum("ijs,js->is", M, V)
     return (momentum,)
+
+
+def _steps_joint_margins(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    margins = _unlimited(q, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17])
+    return (margins,)
+
+
+def _steps_within_limits(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    subtract_1 = q - q
+    within = _not_negative(subtract_1)
+    return (within,)
 
 
 def _steps_actuator_positions(m, X):
@@ -4990,6 +5289,40 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+    )
+
+
+def joint_margins(X, p=None):
+    """How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+    where there is none.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        margins: distances, in the order of q [m or rad] (..., NJ).
+    """
+    return _call(
+        "joint_margins", _steps_joint_margins, p,
+        ("X", X, (NQ,)),
+        unbounded=True,
+    )
+
+
+def within_limits(X, p=None):
+    """Whether all joints are within their limits of displacement.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        within: 1 where no margin is negative, else 0; NaN is neither (...,).
+    """
+    return _call(
+        "within_limits", _steps_within_limits, p,
+        ("X", X, (NQ,)),
     )
 
 

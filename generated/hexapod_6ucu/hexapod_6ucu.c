@@ -26,7 +26,10 @@ enum {
 
 #define R(x) ((real)(x))
 #define UNLESS(condition) ((condition) ? R(0) : R(1))  /* flag of what must hold */
-#define LANES 8  /* states that a batch runs side by side */
+#ifndef HEXAPOD_6UCU_LANES
+#define HEXAPOD_6UCU_LANES 8  /* 1 where there are no vectors: less memory, shorter code */
+#endif
+#define LANES ((size_t)HEXAPOD_6UCU_LANES)  /* states that a batch runs side by side */
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
@@ -36,6 +39,20 @@ enum {
 #define INLINE static inline
 #define APART static
 #endif
+
+/* Bytes of a vector. */
+#if defined(__AVX__)
+#define VECTOR 32
+#elif defined(__SSE2__) || defined(__ARM_NEON)
+#define VECTOR 16
+#else
+#define VECTOR 1
+#endif
+/* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
+#define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
+#define LEGS(n) \
+    ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
+        : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
@@ -104,63 +121,122 @@ INLINE int is_finite(real x)
     return x - x == 0;
 }
 
-/* Why states are impossible, by state: more than 0 where a cause holds. */
+/* Why states are impossible, by state: more than 0 where a cause holds.  total: the sum of all
+   results, and side by side of all inputs, which is finite only where they are. */
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
+    real total[LANES];
 } verdict;
 
 INLINE void start(size_t w, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
+        t->total[k] = 0;
     }
 }
 
-/* x - x is 0 for every number and NaN for the rest; sums side by side add up fast. */
+/* x - x is 0 for every number and NaN for the rest. */
 INLINE int all_finite(const real *x, size_t n)
 {
+    real sum = 0;
+    for (size_t i = 0; i < n; ++i) {
+        sum += x[i] - x[i];
+    }
+    return sum == 0;
+}
+
+/* Whether all are finite: then so is their sum, but for numbers so large that they need a closer
+   look.  Many add up fast as sums side by side. */
+INLINE int sum_is_finite(const real *x, size_t n)
+{
+    if (n < 2*LANES) {
+        return is_finite(total(x, n));
+    }
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
         for (size_t k = 0; k < LANES; ++k) {
-            sum[k] += x[i + k] - x[i + k];
+            sum[k] += x[i + k];
         }
     }
     for (size_t i = most; i < n; ++i) {
-        sum[0] += x[i] - x[i];
+        sum[i - most] += x[i];
     }
-    return total(sum, LANES) == 0;
+    return is_finite(total(sum, LANES));
 }
 
 /* Flag the states with entries that are not finite; the states stand side by side. */
 INLINE void check(size_t size, size_t w, const real *x, real *flags)
 {
-    if (!all_finite(x, size*w)) {
+    if (!sum_is_finite(x, size*w)) {
         for (size_t i = 0; i < size*w; ++i) {
             flags[i%w] += UNLESS(is_finite(x[i]));
         }
     }
 }
 
-/* Input, given state by state, with its states side by side: entry e of state k at e*w + k. */
-INLINE const real *side_by_side(size_t size, size_t w, const real *x, real *lanes, real *flags)
+/* Add up the entries of every state. */
+INLINE void add_up(size_t size, const real *x, real *total)
 {
-    for (size_t e = 0; e < size && w > 1; ++e) {
-        for (size_t k = 0; k < w; ++k) {
-            lanes[e*w + k] = x[size*k + e];
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            total[k] += x[e*LANES + k];
         }
     }
-    check(size, w, w > 1 ? lanes : x, flags);
-    return w > 1 ? lanes : x;
 }
 
-/* The same for input that may be NULL: then all its entries are `none`. */
-INLINE const real *optional(size_t size, size_t w, const real *x, real none, real *lanes, real *flags)
+/* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
+INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
 {
-    for (size_t e = 0; e < size*w && !x; ++e) {
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            lanes[e*LANES + k] = x[size*k + e];
+        }
+    }
+    add_up(size, lanes, total);
+    return lanes;
+}
+
+/* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
+INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+{
+    for (size_t e = 0; e < size && !x; ++e) {
+        own[e] = none;
+    }
+    if (x) {
+        check(size, 1, x, flags);
+    }
+    return x ? x : own;
+}
+
+INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
+    real *total)
+{
+    for (size_t e = 0; e < size*LANES && !x; ++e) {
         lanes[e] = none;
     }
-    return x ? side_by_side(size, w, x, lanes, flags) : lanes;
+    return x ? side_by_side(size, x, lanes, total) : lanes;
+}
+
+/* Motion of the base, or NULL: at rest, its axes those of the world. */
+INLINE const real *motion_of_base(const real *x, real *own, real *flags)
+{
+    for (size_t e = 0; e < 18 && !x; ++e) {
+        own[e] = R(e < 9 && e%4 == 0);
+    }
+    if (x) {
+        check(18, 1, x, flags);
+    }
+    return x ? x : own;
+}
+
+INLINE const real *motion_of_base_side_by_side(const real *x, real *lanes, real *total)
+{
+    for (size_t i = 0; i < 18*LANES && !x; ++i) {
+        lanes[i] = R(i/LANES < 9 && i/LANES%4 == 0);
+    }
+    return x ? side_by_side(18, x, lanes, total) : lanes;
 }
 
 /* Flag the states of an input, NULL or given state by state, with entries that are not positive. */
@@ -171,14 +247,25 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE void judge(const verdict *t, size_t w, int *code)
+INLINE void judge(const verdict *t, int *code)
 {
-    for (size_t k = 0; k < w; ++k) {
-        code[k] = t->invalid[k] > 0 ? INVALID
-            : t->diverged[k] > 0 ? NOT_CONVERGED
-            : t->unreachable[k] > 0 ? UNREACHABLE
-            : t->singular[k] > 0 ? SINGULAR
-            : t->overflow[k] > 0 ? INVALID : OK;
+    *code = t->invalid[0] > 0 ? INVALID
+        : t->diverged[0] > 0 ? NOT_CONVERGED
+        : t->unreachable[0] > 0 ? UNREACHABLE
+        : t->singular[0] > 0 ? SINGULAR
+        : t->overflow[0] > 0 ? INVALID : OK;
+}
+
+/* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
+INLINE void suspect(const verdict *t, int *code)
+{
+    real flags[LANES];
+    for (size_t k = 0; k < LANES; ++k) {
+        flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
+            + (t->total[k] - t->total[k]);
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        code[k] = flags[k] == 0 ? OK : INVALID;
     }
 }
 
@@ -199,17 +286,19 @@ INLINE void refuse(size_t size, real *out)
     }
 }
 
-/* Outputs state by state; NaN where a state is impossible. */
-INLINE void deliver(const real *x, size_t size, size_t w, const int *code, real *out)
+/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < w; ++k) {
-            out[size*k + e] = x[e*w + k];
-        }
+        out[e] = x[e];
     }
-    for (size_t k = 0; k < w; ++k) {
-        if (code[k] != OK) {
-            refuse(size, out + size*k);
+}
+
+INLINE void deliver(size_t size, const real *x, real *out)
+{
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            out[size*k + e] = x[e*LANES + k];
         }
     }
 }
@@ -302,7 +391,7 @@ const hexapod_6ucu_params hexapod_6ucu_default_params = {
     R(12.0),  /* platform_mass */
     {R(0.0), R(0.0), R(0.04)},  /* platform_centre_of_mass */
     {{R(0.35), R(0.0), R(0.0)}, {R(0.0), R(0.35), R(0.0)}, {R(0.0), R(0.0), R(0.6)}},  /* platform_inertia */
-    {  /* upru_base_point */
+    {  /* ucu_base_point */
         {R(-0.07595833716604927), R(0.3902743704941056), R(0.017731158385886236)},
         {R(0.3759666878769001), R(0.12935533563203033), R(0.017731158385886236)},
         {R(-0.3000083507108508), R(-0.2609190348620751), R(0.017731158385886236)},
@@ -310,7 +399,7 @@ const hexapod_6ucu_params hexapod_6ucu_default_params = {
         {R(0.37596668787689996), R(-0.12935533563203055), R(0.017731158385886236)},
         {R(-0.07595833716604977), R(-0.39027437049410546), R(0.017731158385886236)},
     },
-    {  /* upru_base_frame */
+    {  /* ucu_base_frame */
         {{R(0.0), R(0.7666445685820955), R(-0.6420717292200091)}, {R(0.0), R(0.6420717292200091), R(0.7666445685820955)}, {R(1.0), R(0.0), R(0.0)}},
         {{R(0.0), R(0.17272814426528374), R(-0.9849695366754605)}, {R(0.0), R(0.9849695366754605), R(0.17272814426528374)}, {R(1.0), R(0.0), R(0.0)}},
         {{R(0.0), R(-0.9393727128473789), R(-0.34289780745545156)}, {R(0.0), R(0.34289780745545156), R(-0.9393727128473789)}, {R(1.0), R(0.0), R(0.0)}},
@@ -318,7 +407,7 @@ const hexapod_6ucu_params hexapod_6ucu_default_params = {
         {{R(0.0), R(0.17272814426528307), R(0.9849695366754606)}, {R(0.0), R(-0.9849695366754606), R(0.17272814426528307)}, {R(1.0), R(0.0), R(0.0)}},
         {{R(0.0), R(0.7666445685820946), R(0.6420717292200101)}, {R(0.0), R(-0.6420717292200101), R(0.7666445685820946)}, {R(1.0), R(0.0), R(0.0)}},
     },
-    {  /* upru_platform_point */
+    {  /* ucu_platform_point */
         {R(0.22999337057462865), R(0.19262151876600273), R(-0.02)},
         {R(0.05181844327958512), R(0.29549086100263816), R(-0.02)},
         {R(-0.28181181385421367), R(0.10286934223663546), R(-0.02)},
@@ -326,7 +415,7 @@ const hexapod_6ucu_params hexapod_6ucu_default_params = {
         {R(0.05181844327958492), R(-0.29549086100263816), R(-0.02)},
         {R(0.22999337057462838), R(-0.19262151876600303), R(-0.02)},
     },
-    {  /* upru_platform_joint_axis_platform */
+    {  /* ucu_platform_joint_axis_platform */
         {R(0.6880543868285199), R(0.7219737789685693), R(0.07304124347156919)},
         {R(-0.1805949487370712), R(0.9697110861370941), R(0.16445629788327362)},
         {R(0.11364948075415938), R(0.4371834362403796), R(0.8921627870525446)},
@@ -334,7 +423,7 @@ const hexapod_6ucu_params hexapod_6ucu_default_params = {
         {R(-0.3453877674323409), R(0.9365354312017414), R(0.060072258255133563)},
         {R(-0.09560027856573304), R(0.4532422409753462), R(0.8862460480779593)},
     },
-    {  /* upru_link2_mass */
+    {  /* ucu_link2_mass */
         R(2.4),
         R(2.4),
         R(2.4),
@@ -342,7 +431,7 @@ const hexapod_6ucu_params hexapod_6ucu_default_params = {
         R(2.4),
         R(2.4),
     },
-    {  /* upru_link2_centre_of_mass */
+    {  /* ucu_link2_centre_of_mass */
         {R(0.18), R(0.0), R(0.0)},
         {R(0.18), R(0.0), R(0.0)},
         {R(0.18), R(0.0), R(0.0)},
@@ -350,7 +439,7 @@ const hexapod_6ucu_params hexapod_6ucu_default_params = {
         {R(0.18), R(0.0), R(0.0)},
         {R(0.18), R(0.0), R(0.0)},
     },
-    {  /* upru_link2_inertia */
+    {  /* ucu_link2_inertia */
         {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
         {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
         {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
@@ -358,7 +447,7 @@ const hexapod_6ucu_params hexapod_6ucu_default_params = {
         {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
         {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
     },
-    {  /* upru_link4_mass */
+    {  /* ucu_link4_mass */
         R(1.1),
         R(1.1),
         R(1.1),
@@ -366,7 +455,7 @@ const hexapod_6ucu_params hexapod_6ucu_default_params = {
         R(1.1),
         R(1.1),
     },
-    {  /* upru_link4_centre_of_mass */
+    {  /* ucu_link4_centre_of_mass */
         {R(-0.22), R(0.0), R(0.0)},
         {R(-0.22), R(0.0), R(0.0)},
         {R(-0.22), R(0.0), R(0.0)},
@@ -374,7 +463,7 @@ const hexapod_6ucu_params hexapod_6ucu_default_params = {
         {R(-0.22), R(0.0), R(0.0)},
         {R(-0.22), R(0.0), R(0.0)},
     },
-    {  /* upru_link4_inertia */
+    {  /* ucu_link4_inertia */
         {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
         {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
         {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
@@ -405,22 +494,22 @@ static int acceptable(const hexapod_6ucu_params *p)
     ok &= all_within(&p->platform_centre_of_mass[0], 3);
     ok &= all_within(&p->platform_inertia[0][0], 9);
     ok &= all_inertias(&p->platform_inertia[0][0], 1);
-    ok &= all_within(&p->upru_base_point[0][0], 18);
-    ok &= all_within(&p->upru_base_frame[0][0][0], 54);
-    ok &= all_rotations(&p->upru_base_frame[0][0][0], 6);
-    ok &= all_within(&p->upru_platform_point[0][0], 18);
-    ok &= all_within(&p->upru_platform_joint_axis_platform[0][0], 18);
-    ok &= all_unit(&p->upru_platform_joint_axis_platform[0][0], 6);
-    ok &= all_within(&p->upru_link2_mass[0], 6);
-    ok &= none_negative(&p->upru_link2_mass[0], 6);
-    ok &= all_within(&p->upru_link2_centre_of_mass[0][0], 18);
-    ok &= all_within(&p->upru_link2_inertia[0][0][0], 54);
-    ok &= all_inertias(&p->upru_link2_inertia[0][0][0], 6);
-    ok &= all_within(&p->upru_link4_mass[0], 6);
-    ok &= none_negative(&p->upru_link4_mass[0], 6);
-    ok &= all_within(&p->upru_link4_centre_of_mass[0][0], 18);
-    ok &= all_within(&p->upru_link4_inertia[0][0][0], 54);
-    ok &= all_inertias(&p->upru_link4_inertia[0][0][0], 6);
+    ok &= all_within(&p->ucu_base_point[0][0], 18);
+    ok &= all_within(&p->ucu_base_frame[0][0][0], 54);
+    ok &= all_rotations(&p->ucu_base_frame[0][0][0], 6);
+    ok &= all_within(&p->ucu_platform_point[0][0], 18);
+    ok &= all_within(&p->ucu_platform_joint_axis_platform[0][0], 18);
+    ok &= all_unit(&p->ucu_platform_joint_axis_platform[0][0], 6);
+    ok &= all_within(&p->ucu_link2_mass[0], 6);
+    ok &= none_negative(&p->ucu_link2_mass[0], 6);
+    ok &= all_within(&p->ucu_link2_centre_of_mass[0][0], 18);
+    ok &= all_within(&p->ucu_link2_inertia[0][0][0], 54);
+    ok &= all_inertias(&p->ucu_link2_inertia[0][0][0], 6);
+    ok &= all_within(&p->ucu_link4_mass[0], 6);
+    ok &= none_negative(&p->ucu_link4_mass[0], 6);
+    ok &= all_within(&p->ucu_link4_centre_of_mass[0][0], 18);
+    ok &= all_within(&p->ucu_link4_inertia[0][0][0], 54);
+    ok &= all_inertias(&p->ucu_link4_inertia[0][0][0], 6);
     return ok;
 }
 
@@ -430,19 +519,19 @@ int hexapod_6ucu_prepare(const hexapod_6ucu_params *params, hexapod_6ucu_model *
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real total_upru = 0;
-    real total_upru_x = 0;
-    real total_upru_y = 0;
-    real total_upru_z = 0;
-    real total_upru_xx = 0;
-    real total_upru_xy = 0;
-    real total_upru_xz = 0;
-    real total_upru_yy = 0;
-    real total_upru_yz = 0;
-    real total_upru_zz = 0;
-    real total_upru_x_2 = 0;
-    real total_upru_y_2 = 0;
-    real total_upru_z_2 = 0;
+    real total_ucu = 0;
+    real total_ucu_x = 0;
+    real total_ucu_y = 0;
+    real total_ucu_z = 0;
+    real total_ucu_xx = 0;
+    real total_ucu_xy = 0;
+    real total_ucu_xz = 0;
+    real total_ucu_yy = 0;
+    real total_ucu_yz = 0;
+    real total_ucu_zz = 0;
+    real total_ucu_x_2 = 0;
+    real total_ucu_y_2 = 0;
+    real total_ucu_z_2 = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real gravity_z = params->gravity[2];
@@ -456,11 +545,11 @@ int hexapod_6ucu_prepare(const hexapod_6ucu_params *params, hexapod_6ucu_model *
     const real platform_inertia_yy = params->platform_inertia[1][1];
     const real platform_inertia_yz = params->platform_inertia[1][2];
     const real platform_inertia_zz = params->platform_inertia[2][2];
-    /* (L2) first moment about the platform origin */
+    /* (h_star) first moment about the platform origin */
     const real h_star_t = platform_centre_of_mass_x*platform_mass;
     const real h_star_t_2 = platform_centre_of_mass_y*platform_mass;
     const real h_star_t_3 = platform_centre_of_mass_z*platform_mass;
-    /* (L3) inertia tensor about the platform origin */
+    /* (J_star) inertia tensor about the platform origin */
     const real J_star_t = platform_centre_of_mass_x*platform_centre_of_mass_x;
     const real J_star_t_2 = platform_centre_of_mass_y*platform_centre_of_mass_y;
     const real J_star_t_3 = platform_centre_of_mass_z*platform_centre_of_mass_z;
@@ -471,234 +560,236 @@ int hexapod_6ucu_prepare(const hexapod_6ucu_params *params, hexapod_6ucu_model *
     const real J_star_t_8 = platform_mass*(J_star_t_2 - J_star_t_4);
     const real J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass;
     const real J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4);
-    /* (C2) rms distance of the platform points from their centroid */
+    /* (spread) rms distance of the platform points from their centroid */
     const real spread_t = R(0.16666666666666666)*root(6);
-    /* (C3) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = R(1.9595917942265426)*spread_t;
     model->gravity_x = gravity_x;
     model->gravity_y = gravity_y;
     model->gravity_z = gravity_z;
     model->legs_size = legs_size;
     model->spread_t = spread_t;
-    for (size_t leg = 0; leg < 6; ++leg) {
-        const real upru_base_point_x = params->upru_base_point[leg][0];
-        const real upru_base_point_y = params->upru_base_point[leg][1];
-        const real upru_base_point_z = params->upru_base_point[leg][2];
-        const real upru_base_frame_xx = params->upru_base_frame[leg][0][0];
-        const real upru_base_frame_xy = params->upru_base_frame[leg][0][1];
-        const real upru_base_frame_xz = params->upru_base_frame[leg][0][2];
-        const real upru_base_frame_yx = params->upru_base_frame[leg][1][0];
-        const real upru_base_frame_yy = params->upru_base_frame[leg][1][1];
-        const real upru_base_frame_yz = params->upru_base_frame[leg][1][2];
-        const real upru_base_frame_zx = params->upru_base_frame[leg][2][0];
-        const real upru_base_frame_zy = params->upru_base_frame[leg][2][1];
-        const real upru_base_frame_zz = params->upru_base_frame[leg][2][2];
-        const real upru_platform_point_x = params->upru_platform_point[leg][0];
-        const real upru_platform_point_y = params->upru_platform_point[leg][1];
-        const real upru_platform_point_z = params->upru_platform_point[leg][2];
-        const real upru_platform_joint_axis_platform_x = params->upru_platform_joint_axis_platform[leg][0];
-        const real upru_platform_joint_axis_platform_y = params->upru_platform_joint_axis_platform[leg][1];
-        const real upru_platform_joint_axis_platform_z = params->upru_platform_joint_axis_platform[leg][2];
-        const real upru_link2_mass = params->upru_link2_mass[leg];
-        const real upru_link2_centre_of_mass_x = params->upru_link2_centre_of_mass[leg][0];
-        const real upru_link2_centre_of_mass_y = params->upru_link2_centre_of_mass[leg][1];
-        const real upru_link2_centre_of_mass_z = params->upru_link2_centre_of_mass[leg][2];
-        const real upru_link2_inertia_xx = params->upru_link2_inertia[leg][0][0];
-        const real upru_link2_inertia_xy = params->upru_link2_inertia[leg][0][1];
-        const real upru_link2_inertia_xz = params->upru_link2_inertia[leg][0][2];
-        const real upru_link2_inertia_yy = params->upru_link2_inertia[leg][1][1];
-        const real upru_link2_inertia_yz = params->upru_link2_inertia[leg][1][2];
-        const real upru_link2_inertia_zz = params->upru_link2_inertia[leg][2][2];
-        const real upru_link4_mass = params->upru_link4_mass[leg];
-        const real upru_link4_centre_of_mass_x = params->upru_link4_centre_of_mass[leg][0];
-        const real upru_link4_centre_of_mass_y = params->upru_link4_centre_of_mass[leg][1];
-        const real upru_link4_centre_of_mass_z = params->upru_link4_centre_of_mass[leg][2];
-        const real upru_link4_inertia_xx = params->upru_link4_inertia[leg][0][0];
-        const real upru_link4_inertia_xy = params->upru_link4_inertia[leg][0][1];
-        const real upru_link4_inertia_xz = params->upru_link4_inertia[leg][0][2];
-        const real upru_link4_inertia_yy = params->upru_link4_inertia[leg][1][1];
-        const real upru_link4_inertia_yz = params->upru_link4_inertia[leg][1][2];
-        const real upru_link4_inertia_zz = params->upru_link4_inertia[leg][2][2];
-        static const signed char signs_branch_1[] = {1, 1, 1, 1, 1, 1};
-        const real branch_1 = signs_branch_1[leg];
-        static const signed char signs_branch_2[] = {1, 1, 1, 1, 1, 1};
-        const real branch_2 = signs_branch_2[leg];
-        static const signed char signs_branch_4[] = {1, 1, -1, -1, -1, -1};
-        const real branch_4 = signs_branch_4[leg];
-        /* (upru-G3) inertia tensor of link 2 about the origin of link 2 */
-        const real J_2_t = upru_link2_centre_of_mass_x*upru_link2_centre_of_mass_x;
-        const real J_2_t_2 = upru_link2_centre_of_mass_y*upru_link2_centre_of_mass_y;
-        const real J_2_t_3 = upru_link2_centre_of_mass_z*upru_link2_centre_of_mass_z;
-        const real J_2_t_4 = J_2_t + J_2_t_2 + J_2_t_3;
-        const real J_2_xx = upru_link2_inertia_xx - upru_link2_mass*(J_2_t - J_2_t_4);
-        const real J_2_xy = upru_link2_inertia_xy -
-            upru_link2_centre_of_mass_x*upru_link2_centre_of_mass_y*upru_link2_mass;
-        const real J_2_xz = upru_link2_inertia_xz -
-            upru_link2_centre_of_mass_x*upru_link2_centre_of_mass_z*upru_link2_mass;
-        const real J_2_yy = upru_link2_inertia_yy - upru_link2_mass*(J_2_t_2 - J_2_t_4);
-        const real J_2_yz = upru_link2_inertia_yz -
-            upru_link2_centre_of_mass_y*upru_link2_centre_of_mass_z*upru_link2_mass;
-        const real J_2_zz = upru_link2_inertia_zz - upru_link2_mass*(J_2_t_3 - J_2_t_4);
-        /* (upru-G5) inertia tensor of link 4 about the connection point */
-        const real J_4_t = upru_link4_centre_of_mass_x*upru_link4_centre_of_mass_x;
-        const real J_4_t_2 = upru_link4_centre_of_mass_y*upru_link4_centre_of_mass_y;
-        const real J_4_t_3 = upru_link4_centre_of_mass_z*upru_link4_centre_of_mass_z;
-        const real J_4_t_4 = J_4_t + J_4_t_2 + J_4_t_3;
-        const real J_4_xx = upru_link4_inertia_xx - upru_link4_mass*(J_4_t - J_4_t_4);
-        const real J_4_xy = upru_link4_inertia_xy -
-            upru_link4_centre_of_mass_x*upru_link4_centre_of_mass_y*upru_link4_mass;
-        const real J_4_xz = upru_link4_inertia_xz -
-            upru_link4_centre_of_mass_x*upru_link4_centre_of_mass_z*upru_link4_mass;
-        const real J_4_yy = upru_link4_inertia_yy - upru_link4_mass*(J_4_t_2 - J_4_t_4);
-        const real J_4_yz = upru_link4_inertia_yz -
-            upru_link4_centre_of_mass_y*upru_link4_centre_of_mass_z*upru_link4_mass;
-        const real J_4_zz = upru_link4_inertia_zz - upru_link4_mass*(J_4_t_3 - J_4_t_4);
-        /* (upru-N13) inertia tensor of the links from 2 outwards about joint 2 */
-        const real Jc_2_xx = J_2_xx + J_4_xx;
-        /* (upru-G4) first moment of link 4 about the connection point */
-        const real h_4_x = upru_link4_centre_of_mass_x*upru_link4_mass;
-        const real h_4_y = upru_link4_centre_of_mass_y*upru_link4_mass;
-        const real h_4_z = upru_link4_centre_of_mass_z*upru_link4_mass;
-        /* (L2) first moment about the platform origin */
-        const real h_star_t_4 = upru_link4_mass*upru_platform_point_x;
-        const real h_star_t_5 = upru_link4_mass*upru_platform_point_y;
-        const real h_star_t_6 = upru_link4_mass*upru_platform_point_z;
-        /* (L3) inertia tensor about the platform origin */
-        const real J_star_t_11 = upru_platform_point_x*upru_platform_point_x;
-        const real J_star_t_12 = upru_platform_point_y*upru_platform_point_y;
-        const real J_star_t_13 = upru_platform_point_z*upru_platform_point_z;
-        const real J_star_t_14 = J_star_t_11 + J_star_t_12 + J_star_t_13;
-        const real J_star_t_15 = upru_link4_mass*(J_star_t_11 - J_star_t_14);
-        const real J_star_t_16 = upru_link4_mass*upru_platform_point_x*upru_platform_point_y;
-        const real J_star_t_17 = upru_link4_mass*upru_platform_point_x*upru_platform_point_z;
-        const real J_star_t_18 = upru_link4_mass*(J_star_t_12 - J_star_t_14);
-        const real J_star_t_19 = upru_link4_mass*upru_platform_point_y*upru_platform_point_z;
-        const real J_star_t_20 = upru_link4_mass*(J_star_t_13 - J_star_t_14);
-        /* (upru-N2) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real g_r0_x = gravity_x*upru_base_frame_xx + gravity_y*upru_base_frame_yx +
-            gravity_z*upru_base_frame_zx;
-        const real g_r0_y = gravity_x*upru_base_frame_xy + gravity_y*upru_base_frame_yy +
-            gravity_z*upru_base_frame_zy;
-        const real g_r0_z = gravity_x*upru_base_frame_xz + gravity_y*upru_base_frame_yz +
-            gravity_z*upru_base_frame_zz;
-        /* (upru-G2) first moment of link 2 about the origin of link 2 */
-        const real h_2_x = upru_link2_centre_of_mass_x*upru_link2_mass;
-        const real h_2_y = upru_link2_centre_of_mass_y*upru_link2_mass;
-        const real h_2_z = upru_link2_centre_of_mass_z*upru_link2_mass;
-        /* (upru-N27) half the trace of that inertia tensor */
-        const real trace_J_2 = R(0.5)*J_2_xx + R(0.5)*J_2_yy + R(0.5)*J_2_zz;
-        /* (upru-N28) second moment of mass of the links that turn with link 2 */
-        const real Sigma_2_xx = trace_J_2 - J_2_xx;
-        const real Sigma_2_yy = trace_J_2 - J_2_zz;
-        const real Sigma_2_zz = trace_J_2 - J_2_yy;
-        /* (upru-N19) half the trace of that inertia tensor */
-        const real trace_J_4 = R(0.5)*J_4_xx + R(0.5)*J_4_yy + R(0.5)*J_4_zz;
-        /* (upru-N20) second moment of mass of the links that turn with link 4 */
-        const real Sigma_4_xx = trace_J_4 - J_4_yy;
-        const real Sigma_4_yy = trace_J_4 - J_4_zz;
-        const real Sigma_4_zz = trace_J_4 - J_4_xx;
-        /* (V1) potential energy */
-        const real b_r0_x = upru_base_frame_xx*upru_base_point_x +
-            upru_base_frame_yx*upru_base_point_y + upru_base_frame_zx*upru_base_point_z;
-        const real b_r0_y = upru_base_frame_xy*upru_base_point_x +
-            upru_base_frame_yy*upru_base_point_y + upru_base_frame_zy*upru_base_point_z;
-        const real b_r0_z = upru_base_frame_xz*upru_base_point_x +
-            upru_base_frame_yz*upru_base_point_y + upru_base_frame_zz*upru_base_point_z;
-        model->J_2_xy[leg] = J_2_xy;
-        model->J_2_xz[leg] = J_2_xz;
-        model->J_2_yy[leg] = J_2_yy;
-        model->J_2_yz[leg] = J_2_yz;
-        model->J_2_zz[leg] = J_2_zz;
-        model->J_4_xx[leg] = J_4_xx;
-        model->J_4_xy[leg] = J_4_xy;
-        model->J_4_xz[leg] = J_4_xz;
-        model->J_4_yy[leg] = J_4_yy;
-        model->J_4_yz[leg] = J_4_yz;
-        model->J_4_zz[leg] = J_4_zz;
-        model->Jc_2_xx[leg] = Jc_2_xx;
-        model->Sigma_2_xx[leg] = Sigma_2_xx;
-        model->Sigma_2_yy[leg] = Sigma_2_yy;
-        model->Sigma_2_zz[leg] = Sigma_2_zz;
-        model->Sigma_4_xx[leg] = Sigma_4_xx;
-        model->Sigma_4_yy[leg] = Sigma_4_yy;
-        model->Sigma_4_zz[leg] = Sigma_4_zz;
-        model->b_r0_x[leg] = b_r0_x;
-        model->b_r0_y[leg] = b_r0_y;
-        model->b_r0_z[leg] = b_r0_z;
-        model->branch_1[leg] = branch_1;
-        model->branch_2[leg] = branch_2;
-        model->branch_4[leg] = branch_4;
-        model->g_r0_x[leg] = g_r0_x;
-        model->g_r0_y[leg] = g_r0_y;
-        model->g_r0_z[leg] = g_r0_z;
-        model->h_2_x[leg] = h_2_x;
-        model->h_2_y[leg] = h_2_y;
-        model->h_2_z[leg] = h_2_z;
-        model->h_4_x[leg] = h_4_x;
-        model->h_4_y[leg] = h_4_y;
-        model->h_4_z[leg] = h_4_z;
-        model->upru_base_frame_xx[leg] = upru_base_frame_xx;
-        model->upru_base_frame_xy[leg] = upru_base_frame_xy;
-        model->upru_base_frame_xz[leg] = upru_base_frame_xz;
-        model->upru_base_frame_yx[leg] = upru_base_frame_yx;
-        model->upru_base_frame_yy[leg] = upru_base_frame_yy;
-        model->upru_base_frame_yz[leg] = upru_base_frame_yz;
-        model->upru_base_frame_zx[leg] = upru_base_frame_zx;
-        model->upru_base_frame_zy[leg] = upru_base_frame_zy;
-        model->upru_base_frame_zz[leg] = upru_base_frame_zz;
-        model->upru_base_point_x[leg] = upru_base_point_x;
-        model->upru_base_point_y[leg] = upru_base_point_y;
-        model->upru_base_point_z[leg] = upru_base_point_z;
-        model->upru_link2_mass[leg] = upru_link2_mass;
-        model->upru_link4_mass[leg] = upru_link4_mass;
-        model->upru_platform_joint_axis_platform_x[leg] = upru_platform_joint_axis_platform_x;
-        model->upru_platform_joint_axis_platform_y[leg] = upru_platform_joint_axis_platform_y;
-        model->upru_platform_joint_axis_platform_z[leg] = upru_platform_joint_axis_platform_z;
-        model->upru_platform_point_x[leg] = upru_platform_point_x;
-        model->upru_platform_point_y[leg] = upru_platform_point_y;
-        model->upru_platform_point_z[leg] = upru_platform_point_z;
-        total_upru += upru_link4_mass;
-        total_upru_x += h_star_t_4;
-        total_upru_y += h_star_t_5;
-        total_upru_z += h_star_t_6;
-        total_upru_xx += J_star_t_15;
-        total_upru_xy += J_star_t_16;
-        total_upru_xz += J_star_t_17;
-        total_upru_yy += J_star_t_18;
-        total_upru_yz += J_star_t_19;
-        total_upru_zz += J_star_t_20;
-        total_upru_x_2 += upru_platform_point_x;
-        total_upru_y_2 += upru_platform_point_y;
-        total_upru_z_2 += upru_platform_point_z;
+    for (size_t leg = 0; leg < 8; ++leg) {
+        const size_t own = leg < 6 ? leg : 0;
+        const real ucu_base_point_x = params->ucu_base_point[own][0];
+        const real ucu_base_point_y = params->ucu_base_point[own][1];
+        const real ucu_base_point_z = params->ucu_base_point[own][2];
+        const real ucu_base_frame_xx = params->ucu_base_frame[own][0][0];
+        const real ucu_base_frame_xy = params->ucu_base_frame[own][0][1];
+        const real ucu_base_frame_xz = params->ucu_base_frame[own][0][2];
+        const real ucu_base_frame_yx = params->ucu_base_frame[own][1][0];
+        const real ucu_base_frame_yy = params->ucu_base_frame[own][1][1];
+        const real ucu_base_frame_yz = params->ucu_base_frame[own][1][2];
+        const real ucu_base_frame_zx = params->ucu_base_frame[own][2][0];
+        const real ucu_base_frame_zy = params->ucu_base_frame[own][2][1];
+        const real ucu_base_frame_zz = params->ucu_base_frame[own][2][2];
+        const real ucu_platform_point_x = params->ucu_platform_point[own][0];
+        const real ucu_platform_point_y = params->ucu_platform_point[own][1];
+        const real ucu_platform_point_z = params->ucu_platform_point[own][2];
+        const real ucu_platform_joint_axis_platform_x = params->ucu_platform_joint_axis_platform[own][0];
+        const real ucu_platform_joint_axis_platform_y = params->ucu_platform_joint_axis_platform[own][1];
+        const real ucu_platform_joint_axis_platform_z = params->ucu_platform_joint_axis_platform[own][2];
+        const real ucu_link2_mass = params->ucu_link2_mass[own];
+        const real ucu_link2_centre_of_mass_x = params->ucu_link2_centre_of_mass[own][0];
+        const real ucu_link2_centre_of_mass_y = params->ucu_link2_centre_of_mass[own][1];
+        const real ucu_link2_centre_of_mass_z = params->ucu_link2_centre_of_mass[own][2];
+        const real ucu_link2_inertia_xx = params->ucu_link2_inertia[own][0][0];
+        const real ucu_link2_inertia_xy = params->ucu_link2_inertia[own][0][1];
+        const real ucu_link2_inertia_xz = params->ucu_link2_inertia[own][0][2];
+        const real ucu_link2_inertia_yy = params->ucu_link2_inertia[own][1][1];
+        const real ucu_link2_inertia_yz = params->ucu_link2_inertia[own][1][2];
+        const real ucu_link2_inertia_zz = params->ucu_link2_inertia[own][2][2];
+        const real ucu_link4_mass = params->ucu_link4_mass[own];
+        const real ucu_link4_centre_of_mass_x = params->ucu_link4_centre_of_mass[own][0];
+        const real ucu_link4_centre_of_mass_y = params->ucu_link4_centre_of_mass[own][1];
+        const real ucu_link4_centre_of_mass_z = params->ucu_link4_centre_of_mass[own][2];
+        const real ucu_link4_inertia_xx = params->ucu_link4_inertia[own][0][0];
+        const real ucu_link4_inertia_xy = params->ucu_link4_inertia[own][0][1];
+        const real ucu_link4_inertia_xz = params->ucu_link4_inertia[own][0][2];
+        const real ucu_link4_inertia_yy = params->ucu_link4_inertia[own][1][1];
+        const real ucu_link4_inertia_yz = params->ucu_link4_inertia[own][1][2];
+        const real ucu_link4_inertia_zz = params->ucu_link4_inertia[own][2][2];
+        static const signed char signs_ucu_branch_1[] = {1, 1, 1, 1, 1, 1};
+        const real ucu_branch_1 = signs_ucu_branch_1[own];
+        static const signed char signs_ucu_branch_2[] = {1, 1, 1, 1, 1, 1};
+        const real ucu_branch_2 = signs_ucu_branch_2[own];
+        static const signed char signs_ucu_branch_4[] = {1, 1, -1, -1, -1, -1};
+        const real ucu_branch_4 = signs_ucu_branch_4[own];
+        /* (ucu-h_4) first moment of link 4 about the connection point */
+        const real ucu_h_4_x = ucu_link4_centre_of_mass_x*ucu_link4_mass;
+        const real ucu_h_4_y = ucu_link4_centre_of_mass_y*ucu_link4_mass;
+        const real ucu_h_4_z = ucu_link4_centre_of_mass_z*ucu_link4_mass;
+        /* (ucu-J_4) inertia tensor of link 4 about the connection point */
+        const real ucu_J_4_t = ucu_link4_centre_of_mass_x*ucu_link4_centre_of_mass_x;
+        const real ucu_J_4_t_2 = ucu_link4_centre_of_mass_y*ucu_link4_centre_of_mass_y;
+        const real ucu_J_4_t_3 = ucu_link4_centre_of_mass_z*ucu_link4_centre_of_mass_z;
+        const real ucu_J_4_t_4 = ucu_J_4_t + ucu_J_4_t_2 + ucu_J_4_t_3;
+        const real ucu_J_4_xx = ucu_link4_inertia_xx - ucu_link4_mass*(ucu_J_4_t - ucu_J_4_t_4);
+        const real ucu_J_4_xy = ucu_link4_inertia_xy -
+            ucu_link4_centre_of_mass_x*ucu_link4_centre_of_mass_y*ucu_link4_mass;
+        const real ucu_J_4_xz = ucu_link4_inertia_xz -
+            ucu_link4_centre_of_mass_x*ucu_link4_centre_of_mass_z*ucu_link4_mass;
+        const real ucu_J_4_yy = ucu_link4_inertia_yy - ucu_link4_mass*(ucu_J_4_t_2 - ucu_J_4_t_4);
+        const real ucu_J_4_yz = ucu_link4_inertia_yz -
+            ucu_link4_centre_of_mass_y*ucu_link4_centre_of_mass_z*ucu_link4_mass;
+        const real ucu_J_4_zz = ucu_link4_inertia_zz - ucu_link4_mass*(ucu_J_4_t_3 - ucu_J_4_t_4);
+        /* (ucu-J_2) inertia tensor of link 2 about the origin of link 2 */
+        const real ucu_J_2_t = ucu_link2_centre_of_mass_x*ucu_link2_centre_of_mass_x;
+        const real ucu_J_2_t_2 = ucu_link2_centre_of_mass_y*ucu_link2_centre_of_mass_y;
+        const real ucu_J_2_t_3 = ucu_link2_centre_of_mass_z*ucu_link2_centre_of_mass_z;
+        const real ucu_J_2_t_4 = ucu_J_2_t + ucu_J_2_t_2 + ucu_J_2_t_3;
+        const real ucu_J_2_xx = ucu_link2_inertia_xx - ucu_link2_mass*(ucu_J_2_t - ucu_J_2_t_4);
+        const real ucu_J_2_xy = ucu_link2_inertia_xy -
+            ucu_link2_centre_of_mass_x*ucu_link2_centre_of_mass_y*ucu_link2_mass;
+        const real ucu_J_2_xz = ucu_link2_inertia_xz -
+            ucu_link2_centre_of_mass_x*ucu_link2_centre_of_mass_z*ucu_link2_mass;
+        const real ucu_J_2_yy = ucu_link2_inertia_yy - ucu_link2_mass*(ucu_J_2_t_2 - ucu_J_2_t_4);
+        const real ucu_J_2_yz = ucu_link2_inertia_yz -
+            ucu_link2_centre_of_mass_y*ucu_link2_centre_of_mass_z*ucu_link2_mass;
+        const real ucu_J_2_zz = ucu_link2_inertia_zz - ucu_link2_mass*(ucu_J_2_t_3 - ucu_J_2_t_4);
+        /* (ucu-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
+           about the connection point */
+        const real ucu_Jc_2_xx = ucu_J_2_xx + ucu_J_4_xx;
+        /* (h_star) first moment about the platform origin */
+        const real ucu_h_star_t = ucu_link4_mass*ucu_platform_point_x;
+        const real ucu_h_star_t_2 = ucu_link4_mass*ucu_platform_point_y;
+        const real ucu_h_star_t_3 = ucu_link4_mass*ucu_platform_point_z;
+        /* (J_star) inertia tensor about the platform origin */
+        const real ucu_J_star_t = ucu_platform_point_x*ucu_platform_point_x;
+        const real ucu_J_star_t_2 = ucu_platform_point_y*ucu_platform_point_y;
+        const real ucu_J_star_t_3 = ucu_platform_point_z*ucu_platform_point_z;
+        const real ucu_J_star_t_4 = ucu_J_star_t + ucu_J_star_t_2 + ucu_J_star_t_3;
+        const real ucu_J_star_t_5 = ucu_link4_mass*(ucu_J_star_t - ucu_J_star_t_4);
+        const real ucu_J_star_t_6 = ucu_link4_mass*ucu_platform_point_x*ucu_platform_point_y;
+        const real ucu_J_star_t_7 = ucu_link4_mass*ucu_platform_point_x*ucu_platform_point_z;
+        const real ucu_J_star_t_8 = ucu_link4_mass*(ucu_J_star_t_2 - ucu_J_star_t_4);
+        const real ucu_J_star_t_9 = ucu_link4_mass*ucu_platform_point_y*ucu_platform_point_z;
+        const real ucu_J_star_t_10 = ucu_link4_mass*(ucu_J_star_t_3 - ucu_J_star_t_4);
+        /* (ucu-trace_J_4) half the trace of that inertia tensor */
+        const real ucu_trace_J_4 = R(0.5)*ucu_J_4_xx + R(0.5)*ucu_J_4_yy + R(0.5)*ucu_J_4_zz;
+        /* (ucu-Sigma_4) second moment of mass of the links that turn with link 4 */
+        const real ucu_Sigma_4_xx = ucu_trace_J_4 - ucu_J_4_yy;
+        const real ucu_Sigma_4_yy = ucu_trace_J_4 - ucu_J_4_zz;
+        const real ucu_Sigma_4_zz = ucu_trace_J_4 - ucu_J_4_xx;
+        /* (ucu-h_2) first moment of link 2 about the origin of link 2 */
+        const real ucu_h_2_x = ucu_link2_centre_of_mass_x*ucu_link2_mass;
+        const real ucu_h_2_y = ucu_link2_centre_of_mass_y*ucu_link2_mass;
+        const real ucu_h_2_z = ucu_link2_centre_of_mass_z*ucu_link2_mass;
+        /* (ucu-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real ucu_g_r0_x = gravity_x*ucu_base_frame_xx + gravity_y*ucu_base_frame_yx +
+            gravity_z*ucu_base_frame_zx;
+        const real ucu_g_r0_y = gravity_x*ucu_base_frame_xy + gravity_y*ucu_base_frame_yy +
+            gravity_z*ucu_base_frame_zy;
+        const real ucu_g_r0_z = gravity_x*ucu_base_frame_xz + gravity_y*ucu_base_frame_yz +
+            gravity_z*ucu_base_frame_zz;
+        /* (ucu-trace_J_2) half the trace of that inertia tensor */
+        const real ucu_trace_J_2 = R(0.5)*ucu_J_2_xx + R(0.5)*ucu_J_2_yy + R(0.5)*ucu_J_2_zz;
+        /* (ucu-Sigma_2) second moment of mass of the links that turn with link 2 */
+        const real ucu_Sigma_2_xx = ucu_trace_J_2 - ucu_J_2_xx;
+        const real ucu_Sigma_2_yy = ucu_trace_J_2 - ucu_J_2_zz;
+        const real ucu_Sigma_2_zz = ucu_trace_J_2 - ucu_J_2_yy;
+        /* (potential) potential energy */
+        const real ucu_b_r0_x = ucu_base_frame_xx*ucu_base_point_x +
+            ucu_base_frame_yx*ucu_base_point_y + ucu_base_frame_zx*ucu_base_point_z;
+        const real ucu_b_r0_y = ucu_base_frame_xy*ucu_base_point_x +
+            ucu_base_frame_yy*ucu_base_point_y + ucu_base_frame_zy*ucu_base_point_z;
+        const real ucu_b_r0_z = ucu_base_frame_xz*ucu_base_point_x +
+            ucu_base_frame_yz*ucu_base_point_y + ucu_base_frame_zz*ucu_base_point_z;
+        model->ucu_J_2_xy[leg] = ucu_J_2_xy;
+        model->ucu_J_2_xz[leg] = ucu_J_2_xz;
+        model->ucu_J_2_yy[leg] = ucu_J_2_yy;
+        model->ucu_J_2_yz[leg] = ucu_J_2_yz;
+        model->ucu_J_2_zz[leg] = ucu_J_2_zz;
+        model->ucu_J_4_xx[leg] = ucu_J_4_xx;
+        model->ucu_J_4_xy[leg] = ucu_J_4_xy;
+        model->ucu_J_4_xz[leg] = ucu_J_4_xz;
+        model->ucu_J_4_yy[leg] = ucu_J_4_yy;
+        model->ucu_J_4_yz[leg] = ucu_J_4_yz;
+        model->ucu_J_4_zz[leg] = ucu_J_4_zz;
+        model->ucu_Jc_2_xx[leg] = ucu_Jc_2_xx;
+        model->ucu_Sigma_2_xx[leg] = ucu_Sigma_2_xx;
+        model->ucu_Sigma_2_yy[leg] = ucu_Sigma_2_yy;
+        model->ucu_Sigma_2_zz[leg] = ucu_Sigma_2_zz;
+        model->ucu_Sigma_4_xx[leg] = ucu_Sigma_4_xx;
+        model->ucu_Sigma_4_yy[leg] = ucu_Sigma_4_yy;
+        model->ucu_Sigma_4_zz[leg] = ucu_Sigma_4_zz;
+        model->ucu_b_r0_x[leg] = ucu_b_r0_x;
+        model->ucu_b_r0_y[leg] = ucu_b_r0_y;
+        model->ucu_b_r0_z[leg] = ucu_b_r0_z;
+        model->ucu_base_frame_xx[leg] = ucu_base_frame_xx;
+        model->ucu_base_frame_xy[leg] = ucu_base_frame_xy;
+        model->ucu_base_frame_xz[leg] = ucu_base_frame_xz;
+        model->ucu_base_frame_yx[leg] = ucu_base_frame_yx;
+        model->ucu_base_frame_yy[leg] = ucu_base_frame_yy;
+        model->ucu_base_frame_yz[leg] = ucu_base_frame_yz;
+        model->ucu_base_frame_zx[leg] = ucu_base_frame_zx;
+        model->ucu_base_frame_zy[leg] = ucu_base_frame_zy;
+        model->ucu_base_frame_zz[leg] = ucu_base_frame_zz;
+        model->ucu_base_point_x[leg] = ucu_base_point_x;
+        model->ucu_base_point_y[leg] = ucu_base_point_y;
+        model->ucu_base_point_z[leg] = ucu_base_point_z;
+        model->ucu_branch_1[leg] = ucu_branch_1;
+        model->ucu_branch_2[leg] = ucu_branch_2;
+        model->ucu_branch_4[leg] = ucu_branch_4;
+        model->ucu_g_r0_x[leg] = ucu_g_r0_x;
+        model->ucu_g_r0_y[leg] = ucu_g_r0_y;
+        model->ucu_g_r0_z[leg] = ucu_g_r0_z;
+        model->ucu_h_2_x[leg] = ucu_h_2_x;
+        model->ucu_h_2_y[leg] = ucu_h_2_y;
+        model->ucu_h_2_z[leg] = ucu_h_2_z;
+        model->ucu_h_4_x[leg] = ucu_h_4_x;
+        model->ucu_h_4_y[leg] = ucu_h_4_y;
+        model->ucu_h_4_z[leg] = ucu_h_4_z;
+        model->ucu_link2_mass[leg] = ucu_link2_mass;
+        model->ucu_link4_mass[leg] = ucu_link4_mass;
+        model->ucu_platform_joint_axis_platform_x[leg] = ucu_platform_joint_axis_platform_x;
+        model->ucu_platform_joint_axis_platform_y[leg] = ucu_platform_joint_axis_platform_y;
+        model->ucu_platform_joint_axis_platform_z[leg] = ucu_platform_joint_axis_platform_z;
+        model->ucu_platform_point_x[leg] = ucu_platform_point_x;
+        model->ucu_platform_point_y[leg] = ucu_platform_point_y;
+        model->ucu_platform_point_z[leg] = ucu_platform_point_z;
+        total_ucu += leg < 6 ? ucu_link4_mass : 0;
+        total_ucu_x += leg < 6 ? ucu_h_star_t : 0;
+        total_ucu_y += leg < 6 ? ucu_h_star_t_2 : 0;
+        total_ucu_z += leg < 6 ? ucu_h_star_t_3 : 0;
+        total_ucu_xx += leg < 6 ? ucu_J_star_t_5 : 0;
+        total_ucu_xy += leg < 6 ? ucu_J_star_t_6 : 0;
+        total_ucu_xz += leg < 6 ? ucu_J_star_t_7 : 0;
+        total_ucu_yy += leg < 6 ? ucu_J_star_t_8 : 0;
+        total_ucu_yz += leg < 6 ? ucu_J_star_t_9 : 0;
+        total_ucu_zz += leg < 6 ? ucu_J_star_t_10 : 0;
+        total_ucu_x_2 += leg < 6 ? ucu_platform_point_x : 0;
+        total_ucu_y_2 += leg < 6 ? ucu_platform_point_y : 0;
+        total_ucu_z_2 += leg < 6 ? ucu_platform_point_z : 0;
     }
-    /* (L1) mass of the platform with the gathered masses */
-    const real m_star = platform_mass + total_upru;
-    /* (L2) first moment about the platform origin */
-    const real h_star_x = h_star_t + total_upru_x;
-    const real h_star_y = h_star_t_2 + total_upru_y;
-    const real h_star_z = h_star_t_3 + total_upru_z;
-    /* (L3) inertia tensor about the platform origin */
-    const real J_star_xx = platform_inertia_xx - J_star_t_5 - total_upru_xx;
-    const real J_star_xy = platform_inertia_xy - J_star_t_6 - total_upru_xy;
-    const real J_star_xz = platform_inertia_xz - J_star_t_7 - total_upru_xz;
-    const real J_star_yy = platform_inertia_yy - J_star_t_8 - total_upru_yy;
-    const real J_star_yz = platform_inertia_yz - J_star_t_9 - total_upru_yz;
-    const real J_star_zz = platform_inertia_zz - J_star_t_10 - total_upru_zz;
-    const real J_star_t_21 = J_star_xx - J_star_yy;
-    const real J_star_t_22 = R(0.5)*J_star_t_21;
-    const real J_star_t_23 = J_star_xx - J_star_zz;
-    const real J_star_t_24 = R(0.5)*J_star_t_23;
-    /* (M4) centripetal force and weight of the platform */
+    /* (m_star) mass of the platform with the gathered masses */
+    const real m_star = platform_mass + total_ucu;
+    /* (h_star) first moment about the platform origin */
+    const real h_star_x = h_star_t + total_ucu_x;
+    const real h_star_y = h_star_t_2 + total_ucu_y;
+    const real h_star_z = h_star_t_3 + total_ucu_z;
+    /* (J_star) inertia tensor about the platform origin */
+    const real J_star_xx = platform_inertia_xx - J_star_t_5 - total_ucu_xx;
+    const real J_star_xy = platform_inertia_xy - J_star_t_6 - total_ucu_xy;
+    const real J_star_xz = platform_inertia_xz - J_star_t_7 - total_ucu_xz;
+    const real J_star_yy = platform_inertia_yy - J_star_t_8 - total_ucu_yy;
+    const real J_star_yz = platform_inertia_yz - J_star_t_9 - total_ucu_yz;
+    const real J_star_zz = platform_inertia_zz - J_star_t_10 - total_ucu_zz;
+    const real J_star_t_11 = J_star_xx - J_star_yy;
+    const real J_star_t_12 = R(0.5)*J_star_t_11;
+    const real J_star_t_13 = J_star_xx - J_star_zz;
+    const real J_star_t_14 = R(0.5)*J_star_t_13;
+    /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
     const real Z_p_t_3 = gravity_z*m_star;
-    /* (C1) centroid of the platform points */
-    const real b_c_x = R(0.16666666666666666)*total_upru_x_2;
-    const real b_c_y = R(0.16666666666666666)*total_upru_y_2;
-    const real b_c_z = R(0.16666666666666666)*total_upru_z_2;
-    model->J_star_t_22 = J_star_t_22;
-    model->J_star_t_24 = J_star_t_24;
+    /* (b_c) centroid of the platform points */
+    const real b_c_x = R(0.16666666666666666)*total_ucu_x_2;
+    const real b_c_y = R(0.16666666666666666)*total_ucu_y_2;
+    const real b_c_z = R(0.16666666666666666)*total_ucu_z_2;
+    model->J_star_t_12 = J_star_t_12;
+    model->J_star_t_14 = J_star_t_14;
     model->J_star_xx = J_star_xx;
     model->J_star_xy = J_star_xy;
     model->J_star_xz = J_star_xz;
@@ -785,98 +876,6 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
     }
 }
 
-/* Swap a row with the pivot's in those states in which it is the chosen one.  What is chosen are
-   whole entries: unlike products with 0 and 1, these keep what is not finite where it belongs. */
-APART void swap_lanes(size_t n, size_t p, real i, const real *restrict best, real *restrict pivot,
-        real *restrict other)
-{
-    for (size_t j = p; j <= n; ++j) {
-        for (size_t k = 0; k < LANES; ++k) {
-            const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = best[k] == i ? up : down;
-            other[j*LANES + k] = best[k] == i ? down : up;
-        }
-    }
-}
-
-/* The choice of choose_one in every state. */
-INLINE void choose_lanes(size_t n, size_t p, real *a)
-{
-    const size_t row = (n + 1)*LANES;
-    real most[LANES], best[LANES], any = 0;
-    for (size_t k = 0; k < LANES; ++k) {
-        most[k] = CLEARLY*magnitude(a[p*row + p*LANES + k]);
-        best[k] = 0;
-    }
-    for (size_t i = p + 1; i < n; ++i) {
-        for (size_t k = 0; k < LANES; ++k) {
-            const real size = magnitude(a[i*row + p*LANES + k]);
-            best[k] = size > most[k] ? (real)i : best[k];
-            most[k] = larger(size, most[k]);
-        }
-    }
-    for (size_t k = 0; k < LANES; ++k) {
-        any += best[k];
-    }
-    for (size_t i = p + 1; i < n && any > 0; ++i) {
-        swap_lanes(n, p, (real)i, best, a + p*row, a + i*row);
-    }
-}
-
-/* The same for LANES systems side by side, without padding.  What comes NEARLY to the threshold
-   counts as singular here: the batch then settles it as for a single state. */
-INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
-{
-    const size_t row = (n + 1)*LANES;
-    memset(x, 0, n*LANES*sizeof *x);
-    for (size_t i = 0; i < n; ++i) {
-        real size[LANES] = {0};
-        for (size_t j = 0; j < n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                size[k] = larger(size[k], magnitude(a[i*row + j*LANES + k]));
-            }
-        }
-        for (size_t k = 0; k < LANES; ++k) {
-            size[k] = 1/size[k];
-        }
-        for (size_t j = 0; j <= n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + j*LANES + k] *= size[k];
-            }
-        }
-    }
-    for (size_t p = 0; p < n; ++p) {
-        const real *const pivot = a + p*row;
-        choose_lanes(n, p, a);
-        for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > NEARLY*PIVOT);
-            x[p*LANES + k] = 1/pivot[p*LANES + k];
-        }
-        for (size_t i = p + 1; i < n; ++i) {
-            real *const other = a + i*row;
-            real factor[LANES];
-            for (size_t k = 0; k < LANES; ++k) {
-                factor[k] = other[p*LANES + k]*x[p*LANES + k];
-            }
-            for (size_t j = p + 1; j <= n; ++j) {
-                for (size_t k = 0; k < LANES; ++k) {
-                    other[j*LANES + k] -= factor[k]*pivot[j*LANES + k];
-                }
-            }
-        }
-    }
-    for (size_t p = n; p-- > 0;) {
-        for (size_t k = 0; k < LANES; ++k) {
-            x[p*LANES + k] *= a[p*row + n*LANES + k];
-        }
-        for (size_t i = 0; i < p; ++i) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + n*LANES + k] -= a[i*row + p*LANES + k]*x[p*LANES + k];
-            }
-        }
-    }
-}
-
 /* Length of the rows of a system of n equations, whose right side stands in column n. */
 INLINE size_t stride_of(size_t n, size_t w)
 {
@@ -909,14 +908,10 @@ INLINE void solve_state(size_t n, const real *b, real *rows, real *x, real *sing
     solve_one(n, stride_of(n, 1), rows, x, singular);
 }
 
-INLINE void solve(size_t n, size_t w, const real *b, real *rows, real *x, real *singular)
+/* The same where it is rare: apart, for the sake of what is done otherwise. */
+APART void solve_apart(size_t n, const real *b, real *rows, real *x, real *singular)
 {
-    if (w == 1) {
-        solve_state(n, b, rows, x, singular);
-    } else {
-        set_right_side(n, LANES, b, rows);
-        solve_lanes(n, rows, x, singular);
-    }
+    solve_state(n, b, rows, x, singular);
 }
 
 #define BIG 6  /* most rows or columns of a matrix that is not square, or not solved */
@@ -1138,6 +1133,29 @@ INLINE void take(size_t rows, size_t n, const size_t *places, const real *a, rea
     }
 }
 
+/* Rows as `places` tells made infinite, where all entries are finite before. */
+INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, real *x, real *flags)
+{
+    check(size, w, x, flags);
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t k = 0; k < w; ++k) {
+            x[places[i]*w + k] = R(INFINITY);
+        }
+    }
+}
+
+/* 1 where no entry is negative, else 0. */
+INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
+{
+    check(size, w, a, flags);
+    for (size_t k = 0; k < w; ++k) {
+        x[k] = 1;
+        for (size_t e = 0; e < size; ++e) {
+            x[k] = a[e*w + k] < 0 ? 0 : x[k];
+        }
+    }
+}
+
 INLINE void divide_rows(size_t rows, size_t n, size_t w, const size_t *places, const real *b, real *x)
 {
     for (size_t i = 0; i < rows; ++i) {
@@ -1302,1648 +1320,22 @@ static void moved(const real *X, const real *step, real part, real *to)
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 3819 mul, 2745 add, 30 div, 18 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
-        h_star_in_base_x[LANES], h_star_in_base_y[LANES], h_star_in_base_z[LANES], J_star_t_8[LANES],
-        J_star_t_9[LANES], J_star_t_10[LANES], J_star_t_12[LANES], J_star_t_13[LANES],
-        J_star_t_15[LANES], Z_p_x[LANES], Z_p_y[LANES], Z_p_z[LANES], Z_q_in_base_x[LANES],
-        Z_q_in_base_y[LANES], Z_q_in_base_z[LANES], sum[27][LANES];
-} dynamics_values;
-typedef struct {
-    real sum[27][8], entry[6][8], singular[8];
-} dynamics_results_upru;
-
-INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V,
-    dynamics_values *s, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        const real J_star_t_22 = m->J_star_t_22;
-        const real J_star_t_24 = m->J_star_t_24;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real t_dot_x = V_0;
-        const real t_dot_y = V_1;
-        const real t_dot_z = V_2;
-        const real omega_x = V_3;
-        const real omega_y = V_4;
-        const real omega_z = V_5;
-        /* (L2) first moment about the platform origin */
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
-        /* (L3) inertia tensor about the platform origin */
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy;
-        const real J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx;
-        const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
-        const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
-            J_star_t_5*R_xz;
-        const real J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
-            J_star_t_6*R_xz;
-        const real J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_12 = 2*J_star_t_11 + J_star_xx;
-        const real J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
-            J_star_t_6*R_yz;
-        const real J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_t_15 = 2*J_star_t_14 + J_star_xx;
-        /* (M4) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
-        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
-        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
-        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (M6) gyroscopic moment and moment of the weight of the platform */
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z_2*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x_2*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y_2*h_star_x;
-        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
-        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
-        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->h_star_in_base_x[k] = h_star_in_base_x;
-        s->h_star_in_base_y[k] = h_star_in_base_y;
-        s->h_star_in_base_z[k] = h_star_in_base_z;
-        s->J_star_t_8[k] = J_star_t_8;
-        s->J_star_t_9[k] = J_star_t_9;
-        s->J_star_t_10[k] = J_star_t_10;
-        s->J_star_t_12[k] = J_star_t_12;
-        s->J_star_t_13[k] = J_star_t_13;
-        s->J_star_t_15[k] = J_star_t_15;
-        s->Z_p_x[k] = Z_p_x;
-        s->Z_p_y[k] = Z_p_y;
-        s->Z_p_z[k] = Z_p_z;
-        s->Z_q_in_base_x[k] = Z_q_in_base_x;
-        s->Z_q_in_base_y[k] = Z_q_in_base_y;
-        s->Z_q_in_base_z[k] = Z_q_in_base_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
-    }
-}
-
-INLINE void dynamics_legs_upru(const prepared *m, size_t leg, size_t legs, const dynamics_values
-    *s, size_t states, size_t count, int add, dynamics_results_upru *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real J_2_xy = m->J_2_xy[i];
-        const real J_2_xz = m->J_2_xz[i];
-        const real J_2_yy = m->J_2_yy[i];
-        const real J_2_yz = m->J_2_yz[i];
-        const real J_2_zz = m->J_2_zz[i];
-        const real J_4_xx = m->J_4_xx[i];
-        const real J_4_xy = m->J_4_xy[i];
-        const real J_4_xz = m->J_4_xz[i];
-        const real J_4_yy = m->J_4_yy[i];
-        const real J_4_yz = m->J_4_yz[i];
-        const real J_4_zz = m->J_4_zz[i];
-        const real Jc_2_xx = m->Jc_2_xx[i];
-        const real Sigma_2_xx = m->Sigma_2_xx[i];
-        const real Sigma_2_yy = m->Sigma_2_yy[i];
-        const real Sigma_2_zz = m->Sigma_2_zz[i];
-        const real Sigma_4_xx = m->Sigma_4_xx[i];
-        const real Sigma_4_yy = m->Sigma_4_yy[i];
-        const real Sigma_4_zz = m->Sigma_4_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real branch_4 = m->branch_4[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real g_r0_z = m->g_r0_z[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real h_2_z = m->h_2_z[i];
-        const real h_4_x = m->h_4_x[i];
-        const real h_4_y = m->h_4_y[i];
-        const real h_4_z = m->h_4_z[i];
-        const real upru_base_frame_xx = m->upru_base_frame_xx[i];
-        const real upru_base_frame_xy = m->upru_base_frame_xy[i];
-        const real upru_base_frame_xz = m->upru_base_frame_xz[i];
-        const real upru_base_frame_yx = m->upru_base_frame_yx[i];
-        const real upru_base_frame_yy = m->upru_base_frame_yy[i];
-        const real upru_base_frame_yz = m->upru_base_frame_yz[i];
-        const real upru_base_frame_zx = m->upru_base_frame_zx[i];
-        const real upru_base_frame_zy = m->upru_base_frame_zy[i];
-        const real upru_base_frame_zz = m->upru_base_frame_zz[i];
-        const real upru_base_point_x = m->upru_base_point_x[i];
-        const real upru_base_point_y = m->upru_base_point_y[i];
-        const real upru_base_point_z = m->upru_base_point_z[i];
-        const real upru_platform_joint_axis_platform_x = m->upru_platform_joint_axis_platform_x[i];
-        const real upru_platform_joint_axis_platform_y = m->upru_platform_joint_axis_platform_y[i];
-        const real upru_platform_joint_axis_platform_z = m->upru_platform_joint_axis_platform_z[i];
-        const real upru_platform_point_x = m->upru_platform_point_x[i];
-        const real upru_platform_point_y = m->upru_platform_point_y[i];
-        const real upru_platform_point_z = m->upru_platform_point_z[i];
-        /* (upru-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*upru_platform_point_x + R_xy*upru_platform_point_y +
-            R_xz*upru_platform_point_z;
-        const real q_in_base_y = R_yx*upru_platform_point_x + R_yy*upru_platform_point_y +
-            R_yz*upru_platform_point_z;
-        const real q_in_base_z = R_zx*upru_platform_point_x + R_zy*upru_platform_point_y +
-            R_zz*upru_platform_point_z;
-        const real S_x = q_in_base_x + t_x - upru_base_point_x;
-        const real S_y = q_in_base_y + t_y - upru_base_point_y;
-        const real S_z = q_in_base_z + t_z - upru_base_point_z;
-        /* (upru-K2) component along the reference direction */
-        const real px_1 = S_x*upru_base_frame_xx + S_y*upru_base_frame_yx +
-            S_z*upru_base_frame_zx;
-        /* (upru-K3) component across the reference direction */
-        const real py_1 = S_x*upru_base_frame_xy + S_y*upru_base_frame_yy +
-            S_z*upru_base_frame_zy;
-        /* (upru-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upru-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upru-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upru_base_frame_xz + S_y*upru_base_frame_yz +
-            S_z*upru_base_frame_zz;
-        /* (upru-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upru-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upru-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upru-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upru-K20) component along the reference direction */
-        const real end_p1_r0_x = upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xx +
-            R_yx*upru_base_frame_yx + R_zx*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xx + R_yy*upru_base_frame_yx
-            + R_zy*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xx + R_yz*upru_base_frame_yx
-            + R_zz*upru_base_frame_zx);
-        const real end_p1_r0_y = upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xy +
-            R_yx*upru_base_frame_yy + R_zx*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xy + R_yy*upru_base_frame_yy
-            + R_zy*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xy + R_yz*upru_base_frame_yy
-            + R_zz*upru_base_frame_zy);
-        const real end_p1_r0_z = upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xz +
-            R_yx*upru_base_frame_yz + R_zx*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xz + R_yy*upru_base_frame_yz
-            + R_zy*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xz + R_yz*upru_base_frame_yz
-            + R_zz*upru_base_frame_zz);
-        /* (upru-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upru-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upru-K20) component along the reference direction */
-        const real end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x;
-        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
-        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
-        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
-        /* (upru-K23) squared amplitude */
-        const real rho2_4 = end_p1_r1_x*end_p1_r1_x + end_p1_r3_y*end_p1_r3_y;
-        /* (upru-K24) amplitude, with the sign of the branch */
-        const real root_4 = branch_4*root(rho2_4);
-        /* (upru-K25) cosine of the angle of joint 4 from its reference direction */
-        const real inv_root_4 = 1/root_4;
-        const real c_4 = end_p1_r3_y*inv_root_4;
-        /* (upru-K26) sine of the angle of joint 4 from its reference direction */
-        const real s_4 = end_p1_r1_x*inv_root_4;
-        /* (upru-V3) velocity of the connection point per rate of joint 1 */
-        const real v_1_t = c_2*c_4;
-        const real v_1_t_2 = c_2*s_4;
-        const real v_1_t_3 = root_2*v_1_t_2;
-        const real v_1_t_4 = root_2*v_1_t;
-        /* (upru-V7) force part of reciprocal wrench 1 */
-        const real axis_z_x = S_x*inv_root_2;
-        const real axis_z_y = S_y*inv_root_2;
-        const real axis_z_z = S_z*inv_root_2;
-        const real w_1_t = s_2*s_4;
-        const real axis_y_upru_axes4_r4_x = -c_1*c_4 - s_1*w_1_t;
-        const real axis_y_upru_axes4_r4_y = c_4*s_1 - c_1*w_1_t;
-        const real axis_y_upru_axes4_in_base_x = axis_y_upru_axes4_r4_x*upru_base_frame_xx +
-            axis_y_upru_axes4_r4_y*upru_base_frame_xy + upru_base_frame_xz*v_1_t_2;
-        const real axis_y_upru_axes4_in_base_y = axis_y_upru_axes4_r4_x*upru_base_frame_yx +
-            axis_y_upru_axes4_r4_y*upru_base_frame_yy + upru_base_frame_yz*v_1_t_2;
-        const real axis_y_upru_axes4_in_base_z = axis_y_upru_axes4_r4_x*upru_base_frame_zx +
-            axis_y_upru_axes4_r4_y*upru_base_frame_zy + upru_base_frame_zz*v_1_t_2;
-        const real axis_x_upru_axes4_x = axis_y_upru_axes4_in_base_y*axis_z_z -
-            axis_y_upru_axes4_in_base_z*axis_z_y;
-        const real axis_x_upru_axes4_y = axis_y_upru_axes4_in_base_z*axis_z_x -
-            axis_y_upru_axes4_in_base_x*axis_z_z;
-        const real axis_x_upru_axes4_z = axis_y_upru_axes4_in_base_x*axis_z_y -
-            axis_y_upru_axes4_in_base_y*axis_z_x;
-        /* (upru-G5) inertia tensor of link 4 about the connection point */
-        const real J_4_t = J_4_yz*s_4;
-        const real _x = J_4_yy*c_4 - J_4_t;
-        const real J_4_t_2 = J_4_yz*c_4;
-        const real _x_2 = J_4_t_2 - J_4_zz*s_4;
-        const real _x_3 = J_4_xy*c_4 - J_4_xz*s_4;
-        const real _y = J_4_xy*s_4 + J_4_xz*c_4;
-        /* (upru-N13) inertia tensor of the links from 2 outwards about joint 2 */
-        const real Jc_2_xy = _x_3 - J_2_xz;
-        const real _y_2 = s_2*(J_2_xy + _y) - c_2*(_x*s_4 + _x_2*c_4 - J_2_yz);
-        /* (upru-N9) moment about joint 4 that accelerates joint 4, per unit */
-        const real L_c4_r2_y = J_4_xx*s_2 - _x_3*c_2;
-        /* (upru-V6) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4;
-        const real end_p1_r5_y = c_4*end_p1_r1_x - end_p1_r3_y*s_4;
-        /* (upru-V3) velocity of the connection point per rate of joint 1 */
-        const real v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4;
-        const real v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3;
-        /* (upru-V7) force part of reciprocal wrench 1 */
-        const real w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2;
-        /* (upru-V6) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_t = end_p1_r3_x*s_4;
-        /* (upru-V7) force part of reciprocal wrench 1 */
-        const real inv_v_1_r0_y = 1/v_1_r0_y;
-        const real w_1_t_3 = inv_v_1_r0_y*s_4;
-        const real w_1_t_4 = c_4*inv_v_1_r0_y;
-        /* (upru-V9) force part of reciprocal wrench 2 */
-        const real w_2_t = inv_root_2*inv_v_1_r0_y*v_1_r0_x;
-        const real _r1_x = c_4*inv_root_2 - s_4*w_2_t;
-        const real _r1_y = -c_4*w_2_t - inv_root_2*s_4;
-        /* (upru-V13) force part of reciprocal wrench 4 */
-        const real inv_end_p1_r5_x = 1/end_p1_r5_x;
-        const real w_4_t = inv_end_p1_r5_x*inv_root_2*n_m1_t;
-        const real w_4_t_2 = inv_v_1_r0_y*(inv_end_p1_r5_x*w_1_t_2 + v_1_r0_x*w_4_t);
-        const real _r1_x_2 = c_4*w_4_t - s_4*w_4_t_2;
-        const real _r1_y_2 = -c_4*w_4_t_2 - s_4*w_4_t;
-        /* (upru-G4) first moment of link 4 about the connection point */
-        const real h_4_r1_x = c_4*h_4_y - h_4_z*s_4;
-        /* (upru-N39) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_t = L_c4_r2_y*inv_end_p1_r5_x;
-        const real d_Gamma_1_t_2 = inv_root_2*(_y_2 + d_Gamma_1_t*n_m1_t);
-        const real d_Gamma_1_t_3 = c_2*(Jc_2_xy*s_2 - c_2*(J_2_zz + _x*c_4 - _x_2*s_4)) +
-            d_Gamma_1_t*w_1_t_2 + d_Gamma_1_t_2*v_1_r0_x - s_2*(Jc_2_xx*s_2 - Jc_2_xy*c_2);
-        const real d_Gamma_1_t_4 = c_2*d_Gamma_1_t_2;
-        const real d_Gamma_1_x = c_2*h_4_x + h_4_r1_x*s_2 - d_Gamma_1_t_3*inv_v_1_r0_y;
-        const real d_Gamma_1_y = c_4*h_4_z + h_4_y*s_4 - d_Gamma_1_t_2*s_2;
-        /* (upru-N35) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
-           and weight */
-        const real d_Gamma_2_t = _y*inv_end_p1_r5_x;
-        const real d_Gamma_2_t_2 = inv_root_2*(J_2_yy + c_4*(J_4_t + J_4_zz*c_4) +
-            d_Gamma_2_t*n_m1_t + s_4*(J_4_t_2 + J_4_yy*s_4));
-        const real d_Gamma_2_t_3 = inv_v_1_r0_y*(d_Gamma_2_t*w_1_t_2 + d_Gamma_2_t_2*v_1_r0_x -
-            _y_2);
-        const real d_Gamma_2_y = d_Gamma_2_t_2 + h_4_x;
-        /* (upru-N25) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia
-           and weight */
-        const real d_Gamma_4_t = J_4_xx*inv_end_p1_r5_x;
-        const real d_Gamma_4_t_2 = inv_root_2*(_y + d_Gamma_4_t*n_m1_t);
-        const real d_Gamma_4_t_3 = inv_v_1_r0_y*(d_Gamma_4_t*w_1_t_2 + d_Gamma_4_t_2*v_1_r0_x -
-            L_c4_r2_y);
-        const real d_Gamma_4_x = c_4*d_Gamma_4_t_2 - h_4_z - d_Gamma_4_t_3*s_4;
-        const real d_Gamma_4_y = h_4_y - c_4*d_Gamma_4_t_3 - d_Gamma_4_t_2*s_4;
-        /* (upru-N39) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_r1_x = -c_2*d_Gamma_1_y - d_Gamma_1_t_4*s_2;
-        const real d_Gamma_1_r1_y = c_2*d_Gamma_1_t_4 - d_Gamma_1_y*s_2;
-        const real d_Gamma_1_r3_y = c_4*d_Gamma_1_x - d_Gamma_1_r1_y*s_4;
-        /* (upru-N35) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
-           and weight */
-        const real d_Gamma_2_r1_y = -c_4*d_Gamma_2_t_3 - d_Gamma_2_y*s_4;
-        /* (upru-N43) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_xz = d_Gamma_1_r1_x*w_1_t_3 - _r1_x*h_4_r1_x;
-        const real d_G_yz = d_Gamma_1_r1_x*w_1_t_4 - _r1_y*h_4_r1_x;
-        /* (upru-A28) coefficient of the acceleration in: angular acceleration of link 4 */
-        const real d_alpha_4_zy = _r1_y_2 + s_2*w_1_t_4;
-        /* (upru-N55) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real d_c_xx = h_4_z*(_r1_x_2 + s_2*w_1_t_3) - _r1_x*(c_4*d_Gamma_2_y -
-            d_Gamma_2_t_3*s_4) - _r1_x_2*d_Gamma_4_x - h_4_x*(_r1_x*c_4 + v_1_t_2*w_1_t_3) -
-            w_1_t_3*(c_4*d_Gamma_1_r1_y + d_Gamma_1_x*s_4);
-        const real d_c_xy = d_alpha_4_zy*h_4_z - _r1_x*d_Gamma_2_r1_y - _r1_x_2*d_Gamma_4_y -
-            d_Gamma_1_r3_y*w_1_t_3 - h_4_x*(_r1_y*c_4 + v_1_t_2*w_1_t_4);
-        const real d_c_yy = h_4_x*(_r1_y*s_4 - v_1_t*w_1_t_4) - _r1_y*d_Gamma_2_r1_y -
-            _r1_y_2*d_Gamma_4_y - d_Gamma_1_r3_y*w_1_t_4 - d_alpha_4_zy*h_4_y;
-        /* (upru-N57) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = R(0.5)*d_c_xx;
-        const real Q_t_2 = R(0.5)*d_c_yy;
-        const real Q_t_3 = Q_t*axis_x_upru_axes4_x + axis_y_upru_axes4_in_base_x*d_c_xy -
-            axis_z_x*d_G_xz;
-        const real Q_t_4 = Q_t*axis_x_upru_axes4_y + axis_y_upru_axes4_in_base_y*d_c_xy -
-            axis_z_y*d_G_xz;
-        const real Q_t_5 = Q_t*axis_x_upru_axes4_z + axis_y_upru_axes4_in_base_z*d_c_xy -
-            axis_z_z*d_G_xz;
-        const real Q_t_6 = Q_t_2*axis_y_upru_axes4_in_base_x - axis_z_x*d_G_yz;
-        const real Q_t_7 = Q_t_2*axis_y_upru_axes4_in_base_y - axis_z_y*d_G_yz;
-        const real Q_t_8 = Q_t_2*axis_y_upru_axes4_in_base_z - axis_z_z*d_G_yz;
-        const real Q_t_9 = Q_t_3*axis_x_upru_axes4_x + Q_t_6*axis_y_upru_axes4_in_base_x;
-        const real Q_t_10 = 2*Q_t_9;
-        const real Q_t_11 = Q_t_3*axis_x_upru_axes4_y + Q_t_4*axis_x_upru_axes4_x +
-            Q_t_6*axis_y_upru_axes4_in_base_y + Q_t_7*axis_y_upru_axes4_in_base_x;
-        const real Q_t_12 = Q_t_3*axis_x_upru_axes4_z + Q_t_5*axis_x_upru_axes4_x +
-            Q_t_6*axis_y_upru_axes4_in_base_z + Q_t_8*axis_y_upru_axes4_in_base_x;
-        const real Q_t_13 = Q_t_4*axis_x_upru_axes4_y + Q_t_7*axis_y_upru_axes4_in_base_y;
-        const real Q_t_14 = 2*Q_t_13;
-        const real Q_t_15 = Q_t_4*axis_x_upru_axes4_z + Q_t_5*axis_x_upru_axes4_y +
-            Q_t_7*axis_y_upru_axes4_in_base_z + Q_t_8*axis_y_upru_axes4_in_base_y;
-        const real Q_t_16 = Q_t_5*axis_x_upru_axes4_z + Q_t_8*axis_y_upru_axes4_in_base_z;
-        const real Q_t_17 = 2*Q_t_16;
-        /* (upru-V18) moment part of reciprocal wrench 4 */
-        const real o_4_x = end_p1_r3_x*inv_end_p1_r5_x;
-        /* (upru-N38) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d0_Gamma_1_t = L_c4_r2_y*o_4_x;
-        /* (upru-N34) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
-           and weight */
-        const real d0_Gamma_2_t = _y*o_4_x;
-        /* (upru-N24) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia
-           and weight */
-        const real d0_Gamma_4_t = J_4_xx*o_4_x;
-        /* (upru-N54) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real d0_c_xx = _r1_x*d0_Gamma_2_t + _r1_x_2*d0_Gamma_4_t + d0_Gamma_1_t*w_1_t_3 -
-            h_4_z*o_4_x;
-        const real d0_c_xz = h_4_z - J_4_xx*_r1_x_2 - L_c4_r2_y*w_1_t_3 - _r1_x*_y;
-        const real d0_c_yx = _r1_y*d0_Gamma_2_t + _r1_y_2*d0_Gamma_4_t + d0_Gamma_1_t*w_1_t_4 +
-            h_4_y*o_4_x;
-        const real d0_c_yz = -h_4_y - J_4_xx*_r1_y_2 - L_c4_r2_y*w_1_t_4 - _r1_y*_y;
-        /* (M2) coupling block of M */
-        const real M_ta_t = Q_t_11*q_in_base_z;
-        const real M_ta_t_2 = Q_t_12*q_in_base_y;
-        const real M_ta_t_3 = Q_t_10*q_in_base_z - Q_t_12*q_in_base_x;
-        const real M_ta_t_4 = Q_t_10*q_in_base_y - Q_t_11*q_in_base_x;
-        const real M_ta_t_5 = Q_t_14*q_in_base_z - Q_t_15*q_in_base_y;
-        const real M_ta_t_6 = Q_t_15*q_in_base_x;
-        const real M_ta_t_7 = M_ta_t - M_ta_t_6;
-        const real M_ta_t_8 = Q_t_11*q_in_base_y - Q_t_14*q_in_base_x;
-        const real M_ta_t_9 = Q_t_15*q_in_base_z - Q_t_17*q_in_base_y;
-        const real M_ta_t_10 = Q_t_12*q_in_base_z - Q_t_17*q_in_base_x;
-        const real M_ta_t_11 = M_ta_t_6 - M_ta_t_2;
-        /* (upru-N54) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real d0_c_in_base_x = axis_x_upru_axes4_x*d0_c_xx +
-            axis_y_upru_axes4_in_base_x*d0_c_yx;
-        const real d0_c_in_base_y = axis_x_upru_axes4_y*d0_c_xx +
-            axis_y_upru_axes4_in_base_y*d0_c_yx;
-        const real d0_c_in_base_z = axis_x_upru_axes4_z*d0_c_xx +
-            axis_y_upru_axes4_in_base_z*d0_c_yx;
-        const real d0_c_in_base_x_2 = axis_x_upru_axes4_x*d0_c_xz +
-            axis_y_upru_axes4_in_base_x*d0_c_yz;
-        const real d0_c_in_base_y_2 = axis_x_upru_axes4_y*d0_c_xz +
-            axis_y_upru_axes4_in_base_y*d0_c_yz;
-        const real d0_c_in_base_z_2 = axis_x_upru_axes4_z*d0_c_xz +
-            axis_y_upru_axes4_in_base_z*d0_c_yz;
-        const real d0_c_in_base_y_3 = axis_x_upru_axes4_y*d0_c_in_base_x +
-            axis_z_y*d0_c_in_base_x_2;
-        const real d0_c_in_base_z_3 = axis_x_upru_axes4_z*d0_c_in_base_x +
-            axis_z_z*d0_c_in_base_x_2;
-        const real d0_c_in_base_x_3 = axis_x_upru_axes4_x*d0_c_in_base_y +
-            axis_z_x*d0_c_in_base_y_2;
-        const real d0_c_in_base_y_4 = axis_x_upru_axes4_y*d0_c_in_base_y +
-            axis_z_y*d0_c_in_base_y_2;
-        const real d0_c_in_base_z_4 = axis_x_upru_axes4_z*d0_c_in_base_y +
-            axis_z_z*d0_c_in_base_y_2;
-        const real d0_c_in_base_x_4 = axis_x_upru_axes4_x*d0_c_in_base_z +
-            axis_z_x*d0_c_in_base_z_2;
-        const real d0_c_in_base_y_5 = axis_x_upru_axes4_y*d0_c_in_base_z +
-            axis_z_y*d0_c_in_base_z_2;
-        const real d0_c_in_base_z_5 = axis_x_upru_axes4_z*d0_c_in_base_z +
-            axis_z_z*d0_c_in_base_z_2;
-        /* (M2) coupling block of M */
-        const real M_ta_t_12 = M_ta_t - M_ta_t_2 - axis_x_upru_axes4_x*d0_c_in_base_x -
-            axis_z_x*d0_c_in_base_x_2;
-        const real M_ta_t_13 = M_ta_t_3 + d0_c_in_base_y_3;
-        const real M_ta_t_14 = M_ta_t_4 - d0_c_in_base_z_3;
-        const real M_ta_t_15 = M_ta_t_5 - d0_c_in_base_x_3;
-        const real M_ta_t_16 = M_ta_t_7 + d0_c_in_base_y_4;
-        const real M_ta_t_17 = M_ta_t_8 - d0_c_in_base_z_4;
-        const real M_ta_t_18 = M_ta_t_9 - d0_c_in_base_x_4;
-        const real M_ta_t_19 = M_ta_t_10 + d0_c_in_base_y_5;
-        const real M_ta_t_20 = M_ta_t_11 + d0_c_in_base_z_5;
-        /* (upru-N46) coefficient of the acceleration in: moment along moment direction 1 that balances
-           the leg's inertia and weight along all freedoms */
-        const real d0_G_m1_t = d0_Gamma_4_t*inv_end_p1_r5_x;
-        /* (upru-N47) coefficient of the acceleration in: moment along moment direction 1 that balances
-           the leg's inertia and weight along all freedoms */
-        const real d_G_m1_t = d_Gamma_4_x*inv_end_p1_r5_x;
-        const real d_G_m1_t_2 = d_Gamma_4_y*inv_end_p1_r5_x;
-        /* (upru-V6) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_in_base_x = axis_x_upru_axes4_x*end_p1_r3_x - axis_z_x*end_p1_r5_x;
-        const real n_m1_in_base_y = axis_x_upru_axes4_y*end_p1_r3_x - axis_z_y*end_p1_r5_x;
-        const real n_m1_in_base_z = axis_x_upru_axes4_z*end_p1_r3_x - axis_z_z*end_p1_r5_x;
-        /* (upru-N47) coefficient of the acceleration in: moment along moment direction 1 that balances
-           the leg's inertia and weight along all freedoms */
-        const real d_G_m1_in_base_x = -axis_x_upru_axes4_x*d_G_m1_t -
-            axis_y_upru_axes4_in_base_x*d_G_m1_t_2;
-        const real d_G_m1_in_base_y = -axis_x_upru_axes4_y*d_G_m1_t -
-            axis_y_upru_axes4_in_base_y*d_G_m1_t_2;
-        const real d_G_m1_in_base_z = -axis_x_upru_axes4_z*d_G_m1_t -
-            axis_y_upru_axes4_in_base_z*d_G_m1_t_2;
-        /* (upru-N51) coefficient of the acceleration in: moment at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_m_xx = d_G_m1_in_base_x*n_m1_in_base_x;
-        const real d_G_m_xy = d_G_m1_in_base_y*n_m1_in_base_x;
-        const real d_G_m_xz = d_G_m1_in_base_z*n_m1_in_base_x;
-        const real d_G_m_yx = d_G_m1_in_base_x*n_m1_in_base_y;
-        /* (upru-N46) coefficient of the acceleration in: moment along moment direction 1 that balances
-           the leg's inertia and weight along all freedoms */
-        const real d0_G_m1_in_base_y = axis_x_upru_axes4_y*d0_G_m1_t - axis_z_y*d_Gamma_4_t;
-        const real d0_G_m1_in_base_z = axis_x_upru_axes4_z*d0_G_m1_t - axis_z_z*d_Gamma_4_t;
-        /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t_5*q_in_base_z + d0_c_in_base_x_4*q_in_base_y +
-            d_G_m_xy*q_in_base_z - M_ta_t_9*q_in_base_y - d0_c_in_base_x_3*q_in_base_z -
-            d_G_m_xz*q_in_base_y - n_m1_in_base_x*(axis_x_upru_axes4_x*d0_G_m1_t -
-            axis_z_x*d_Gamma_4_t);
-        const real M_aa_t_2 = M_ta_t_7*q_in_base_z + d0_G_m1_in_base_y*n_m1_in_base_x +
-            d0_c_in_base_y_4*q_in_base_z + d_G_m_xx*q_in_base_z - M_ta_t_10*q_in_base_y -
-            d0_c_in_base_y_5*q_in_base_y - d_G_m_xz*q_in_base_x;
-        const real M_aa_t_3 = d0_G_m1_in_base_z*n_m1_in_base_x + d0_c_in_base_z_4*q_in_base_z +
-            d_G_m_xy*q_in_base_x - M_ta_t_11*q_in_base_y - M_ta_t_8*q_in_base_z -
-            d0_c_in_base_z_5*q_in_base_y - d_G_m_xx*q_in_base_y;
-        const real M_aa_t_4 = M_ta_t_3*q_in_base_z + d0_c_in_base_y_3*q_in_base_z +
-            d_G_m1_in_base_z*n_m1_in_base_y*q_in_base_x - M_ta_t_10*q_in_base_x -
-            d0_G_m1_in_base_y*n_m1_in_base_y - d0_c_in_base_y_5*q_in_base_x -
-            d_G_m_yx*q_in_base_z;
-        const real M_aa_t_5 = M_ta_t_11*q_in_base_x + M_ta_t_4*q_in_base_z +
-            d0_G_m1_in_base_z*n_m1_in_base_y + d0_c_in_base_z_5*q_in_base_x +
-            d_G_m1_in_base_y*n_m1_in_base_y*q_in_base_x - d0_c_in_base_z_3*q_in_base_z -
-            d_G_m_yx*q_in_base_y;
-        const real M_aa_t_6 = M_ta_t_4*q_in_base_y + d0_c_in_base_z_4*q_in_base_x +
-            d_G_m1_in_base_x*n_m1_in_base_z*q_in_base_y - M_ta_t_8*q_in_base_x -
-            d0_G_m1_in_base_z*n_m1_in_base_z - d0_c_in_base_z_3*q_in_base_y -
-            d_G_m1_in_base_y*n_m1_in_base_z*q_in_base_x;
-        /* (upru-N2) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
-        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
-        const real g_r3_x = g_r0_z*s_2 - c_2*g_r1_y;
-        const real g_r3_y = -c_2*g_r0_z - g_r1_y*s_2;
-        /* (upru-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        /* (upru-V19) rate at which the joints turn along moment direction 1 */
-        const real eta_1 = n_m1_in_base_x*omega_x + n_m1_in_base_y*omega_y +
-            n_m1_in_base_z*omega_z;
-        /* (upru-V1) velocity of the connection point */
-        const real S_dot_r0_x = S_dot_x*upru_base_frame_xx + S_dot_y*upru_base_frame_yx +
-            S_dot_z*upru_base_frame_zx;
-        const real S_dot_r0_y = S_dot_x*upru_base_frame_xy + S_dot_y*upru_base_frame_yy +
-            S_dot_z*upru_base_frame_zy;
-        const real S_dot_r0_z = S_dot_x*upru_base_frame_xz + S_dot_y*upru_base_frame_yz +
-            S_dot_z*upru_base_frame_zz;
-        const real S_dot_r1_y = -S_dot_r0_x*s_1 - S_dot_r0_y*c_1;
-        const real S_dot_r3_x = S_dot_r0_z*s_2 - S_dot_r1_y*c_2;
-        /* (upru-V20) rate of joint 1 */
-        const real qd_1_t = inv_v_1_r0_y*(S_dot_r0_y*s_1 - S_dot_r0_x*c_1);
-        const real qd_1_t_2 = inv_root_2*(-S_dot_r0_z*c_2 - S_dot_r1_y*s_2 - qd_1_t*v_1_r0_x);
-        const real qd_1_t_3 = inv_end_p1_r5_x*(eta_1 + qd_1_t*w_1_t_2 - n_m1_t*qd_1_t_2);
-        /* (upru-V24) angular velocity of link 1 */
-        const real omega_1_t = qd_1_t*s_2;
-        const real omega_1_t_2 = c_2*qd_1_t;
-        /* (upru-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_x = omega_1_t_2*qd_1_t_2;
-        const real zeta_2_y = omega_1_t*qd_1_t_2;
-        /* (upru-V25) angular velocity of link 2 */
-        const real omega_2_r1_x = qd_1_t_2*s_4 - c_4*omega_1_t_2;
-        const real omega_2_r1_y = c_4*qd_1_t_2 + omega_1_t_2*s_4;
-        /* (upru-A5) angular acceleration of link 4 from the turning of axis 4 */
-        const real zeta_4_x = omega_2_r1_y*qd_1_t_3;
-        /* (upru-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_t = c_4*zeta_2_y;
-        /* (upru-A6) angular acceleration of link 4 at zero joint accelerations */
-        const real beta_4_x = -zeta_2_t - zeta_4_x;
-        /* (upru-V27) angular velocity of link 4 */
-        const real omega_4_z = omega_1_t - qd_1_t_3;
-        /* (upru-A10) rate of moment direction 1 */
-        const real omega_tip_x = axis_x_upru_axes4_x*omega_x + axis_x_upru_axes4_y*omega_y +
-            axis_x_upru_axes4_z*omega_z;
-        const real omega_tip_y = axis_y_upru_axes4_in_base_x*omega_x +
-            axis_y_upru_axes4_in_base_y*omega_y + axis_y_upru_axes4_in_base_z*omega_z;
-        const real omega_tip_z = axis_z_x*omega_x + axis_z_y*omega_y + axis_z_z*omega_z;
-        const real nd_m1_x = end_p1_r5_y*omega_tip_x - end_p1_r5_x*omega_tip_y -
-            end_p1_r5_y*omega_2_r1_x;
-        const real nd_m1_z = end_p1_r5_y*omega_tip_z - end_p1_r3_x*omega_tip_y -
-            end_p1_r5_y*omega_4_z;
-        /* (upru-A11) bias of the angular acceleration along moment direction 1 */
-        const real nu_1_t = beta_4_x*end_p1_r3_x + end_p1_r5_x*zeta_2_x;
-        const real nu_1_t_2 = nd_m1_x*(omega_2_r1_x - omega_tip_x) + nd_m1_z*(omega_4_z -
-            omega_tip_z) + (omega_2_r1_y - omega_tip_y)*(end_p1_r3_x*omega_4_z +
-            end_p1_r5_x*omega_2_r1_x);
-        const real nu_1 = -nu_1_t - nu_1_t_2;
-        /* (upru-V26) centripetal tensor of link 2 */
-        const real W_2_t = omega_1_t*omega_1_t;
-        const real W_2_t_2 = omega_1_t_2*omega_1_t_2;
-        const real W_2_t_3 = qd_1_t_2*qd_1_t_2;
-        const real W_2_xy = omega_1_t*omega_1_t_2;
-        const real W_2_t_4 = omega_2_r1_x*omega_2_r1_x;
-        const real W_2_t_5 = omega_2_r1_y*omega_2_r1_y;
-        const real W_2_xy_2 = omega_2_r1_x*omega_2_r1_y;
-        /* (upru-A7) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_r3_x;
-        const real bias_x = bias_t*omega_2_r1_y + root_2*(omega_1_t*omega_2_r1_x + s_4*zeta_2_y);
-        const real bias_y = root_2*(zeta_2_t + omega_1_t*omega_2_r1_y) - bias_t*omega_2_r1_x;
-        /* (upru-A1) centripetal acceleration of the connection point */
-        const real u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z;
-        const real u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x;
-        const real u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y;
-        const real u_1_tip_x = axis_x_upru_axes4_x*u_1_x + axis_x_upru_axes4_y*u_1_y +
-            axis_x_upru_axes4_z*u_1_z;
-        const real u_1_tip_y = axis_y_upru_axes4_in_base_x*u_1_x +
-            axis_y_upru_axes4_in_base_y*u_1_y + axis_y_upru_axes4_in_base_z*u_1_z;
-        /* (upru-A9) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
-        const real rel_o_x = u_1_tip_x - bias_x;
-        const real rel_o_y = u_1_tip_y - bias_y;
-        /* (upru-A14) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_o_t = inv_v_1_r0_y*(c_4*rel_o_y + rel_o_x*s_4);
-        const real qdd_1_o_t_2 = inv_root_2*(qdd_1_o_t*v_1_r0_x + rel_o_y*s_4 - c_4*rel_o_x);
-        /* (upru-A21) remainder without the acceleration in: angular acceleration of link 1 */
-        const real alpha_1_o_t = qdd_1_o_t*s_2;
-        const real alpha_1_o_t_2 = c_2*qdd_1_o_t;
-        /* (upru-A23) remainder without the acceleration in: angular acceleration of link 2 */
-        const real alpha_2_o_x = alpha_1_o_t - zeta_2_x;
-        const real alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y;
-        /* (upru-A25) remainder of the acceleration tensor of link 2 */
-        const real B_2_o_xy = qdd_1_o_t_2 - W_2_xy;
-        const real B_2_o_yx = -W_2_xy - qdd_1_o_t_2;
-        const real B_2_o_zx = zeta_2_y - alpha_2_o_y;
-        const real B_2_o_zy = alpha_2_o_x - zeta_2_x;
-        /* (upru-N30) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
-        const real mu_2_o_x = B_2_o_yx*J_2_xy + B_2_o_zx*J_2_xz + B_2_o_zy*Sigma_2_yy +
-            Sigma_2_zz*alpha_1_o_t + g_r1_x*h_2_z + g_r3_y*h_2_y - J_2_yz*(W_2_t_2 - W_2_t_3);
-        const real mu_2_o_y = B_2_o_xy*J_2_yz + g_r1_x*h_2_x - B_2_o_zx*Sigma_2_xx -
-            B_2_o_zy*J_2_xz - J_2_xy*(W_2_t - W_2_t_3) - Sigma_2_zz*alpha_1_o_t_2 - g_r3_x*h_2_y;
-        const real mu_2_o_z = B_2_o_yx*Sigma_2_xx + J_2_xy*alpha_1_o_t + J_2_yz*alpha_1_o_t_2 -
-            B_2_o_xy*Sigma_2_yy - J_2_xz*(W_2_t - W_2_t_2) - g_r3_x*h_2_z - g_r3_y*h_2_x;
-        /* (upru-N4) remainder without the acceleration in: acceleration of the reference point of link 4,
-           less gravity */
-        const real acc_4_o_x = u_1_tip_x - c_4*g_r3_y - g_r1_x*s_4;
-        const real acc_4_o_y = u_1_tip_y + g_r3_y*s_4 - c_4*g_r1_x;
-        const real acc_4_o_z = axis_z_x*u_1_x + axis_z_y*u_1_y + axis_z_z*u_1_z - g_r3_x;
-        /* (upru-A29) remainder without the acceleration in: angular acceleration of link 4 */
-        const real alpha_4_o_x = alpha_2_o_y*c_4 - zeta_4_x - qdd_1_o_t_2*s_4;
-        const real alpha_4_o_y = omega_2_r1_x*qd_1_t_3 - alpha_2_o_y*s_4 - c_4*qdd_1_o_t_2;
-        const real alpha_4_o_z = alpha_2_o_x - inv_end_p1_r5_x*(nu_1 + n_m1_t*qdd_1_o_t_2 +
-            qdd_1_o_t*w_1_t_2);
-        /* (upru-V28) centripetal tensor of link 4 */
-        const real W_4_t = omega_4_z*omega_4_z;
-        const real W_4_xz = omega_2_r1_x*omega_4_z;
-        const real W_4_yz = omega_2_r1_y*omega_4_z;
-        /* (upru-A31) remainder of the acceleration tensor of link 4 */
-        const real B_4_o_xy = W_2_xy_2 - alpha_4_o_z;
-        const real B_4_o_xz = W_4_xz + alpha_4_o_y;
-        const real B_4_o_yx = W_2_xy_2 + alpha_4_o_z;
-        const real B_4_o_yz = W_4_yz - alpha_4_o_x;
-        const real B_4_o_zx = W_4_xz - alpha_4_o_y;
-        const real B_4_o_zy = W_4_yz + alpha_4_o_x;
-        /* (upru-N22) remainder without the acceleration in: inertia moment of the links that turn with
-           link 4, about their reference points */
-        const real mu_4_o_x = B_4_o_yx*J_4_xy + B_4_o_zy*Sigma_4_yy + J_4_xz*(W_2_t_5 - W_4_t) +
-            acc_4_o_z*h_4_z - B_4_o_yz*Sigma_4_zz - B_4_o_zx*J_4_yz - acc_4_o_y*h_4_x;
-        const real mu_4_o_y = B_4_o_xz*Sigma_4_zz + B_4_o_zy*J_4_yz + acc_4_o_x*h_4_x -
-            B_4_o_xy*J_4_xz - B_4_o_zx*Sigma_4_xx - J_4_xy*(W_2_t_4 - W_4_t) - acc_4_o_z*h_4_y;
-        const real mu_4_o_z = B_4_o_xz*J_4_xz + B_4_o_yx*Sigma_4_xx + J_4_yz*(W_2_t_4 - W_2_t_5) +
-            acc_4_o_y*h_4_y - B_4_o_xy*Sigma_4_yy - B_4_o_yz*J_4_xy - acc_4_o_x*h_4_z;
-        /* (upru-N32) remainder without the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
-        const real N_2_o_x = mu_2_o_x + mu_4_o_z;
-        const real N_2_o_y = mu_2_o_y + c_4*mu_4_o_x - mu_4_o_y*s_4;
-        const real N_2_o_z = mu_2_o_z + c_4*mu_4_o_y + mu_4_o_x*s_4;
-        /* (upru-N44) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
-        const real G_o_t = inv_end_p1_r5_x*mu_4_o_z;
-        const real G_o_t_2 = inv_root_2*(N_2_o_z + G_o_t*n_m1_t);
-        const real G_o_t_3 = inv_v_1_r0_y*(G_o_t*w_1_t_2 + G_o_t_2*v_1_r0_x + N_2_o_y*c_2 -
-            N_2_o_x*s_2);
-        /* (upru-N8) remainder without the acceleration in: inertia force of link 4 from its turning about
-           its reference point */
-        const real phi_4_o_z = B_4_o_zx*h_4_y + B_4_o_zy*h_4_z - h_4_x*(W_2_t_4 + W_2_t_5);
-        /* (upru-N56) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real c_o_x = G_o_t_3*s_4 + h_4_y*(W_2_t_5 + W_4_t) - B_4_o_xy*h_4_z - B_4_o_xz*h_4_x
-            - G_o_t_2*c_4;
-        const real c_o_y = G_o_t_2*s_4 + G_o_t_3*c_4 + h_4_z*(W_2_t_4 + W_4_t) - B_4_o_yx*h_4_y -
-            B_4_o_yz*h_4_x;
-        /* (upru-N62) velocity and gravity terms of the leg force */
-        const real U_in_base_x = axis_z_x*phi_4_o_z - axis_x_upru_axes4_x*c_o_x -
-            axis_y_upru_axes4_in_base_x*c_o_y;
-        const real U_in_base_y = axis_z_y*phi_4_o_z - axis_x_upru_axes4_y*c_o_x -
-            axis_y_upru_axes4_in_base_y*c_o_y;
-        const real U_in_base_z = axis_z_z*phi_4_o_z - axis_x_upru_axes4_z*c_o_x -
-            axis_y_upru_axes4_in_base_z*c_o_y;
-        /* (upru-N52) remainder without the acceleration in: moment at the connection point that balances
-           the leg's inertia and weight along all freedoms */
-        const real G_m_o_x = G_o_t*end_p1_r3_x;
-        /* (M7) rotational part of Z */
-        const real Z_a_t = U_in_base_z*q_in_base_y + axis_z_x*mu_4_o_z -
-            G_m_o_x*axis_x_upru_axes4_x - U_in_base_y*q_in_base_z;
-        const real Z_a_t_2 = U_in_base_x*q_in_base_z + axis_z_y*mu_4_o_z -
-            G_m_o_x*axis_x_upru_axes4_y - U_in_base_z*q_in_base_x;
-        const real Z_a_t_3 = U_in_base_y*q_in_base_x + axis_z_z*mu_4_o_z -
-            G_m_o_x*axis_x_upru_axes4_z - U_in_base_x*q_in_base_y;
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_3_t = axis_z_z*q_in_base_y - axis_z_y*q_in_base_z;
-        const real H_a_3_t_2 = axis_z_x*q_in_base_z - axis_z_z*q_in_base_x;
-        const real H_a_3_t_3 = axis_z_y*q_in_base_x - axis_z_x*q_in_base_y;
-        o->sum[0][k] = add ? o->sum[0][k] + Q_t_10 : Q_t_10;  /* total_upru_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + Q_t_11 : Q_t_11;  /* total_upru_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + Q_t_12 : Q_t_12;  /* total_upru_xz */
-        o->sum[3][k] = add ? o->sum[3][k] + Q_t_14 : Q_t_14;  /* total_upru_yy */
-        o->sum[4][k] = add ? o->sum[4][k] + Q_t_15 : Q_t_15;  /* total_upru_yz */
-        o->sum[5][k] = add ? o->sum[5][k] + Q_t_17 : Q_t_17;  /* total_upru_zz */
-        o->sum[6][k] = add ? o->sum[6][k] + M_ta_t_12 : M_ta_t_12;  /* total_upru_xx_2 */
-        o->sum[7][k] = add ? o->sum[7][k] + M_ta_t_13 : M_ta_t_13;  /* total_upru_xy_2 */
-        o->sum[8][k] = add ? o->sum[8][k] + M_ta_t_14 : M_ta_t_14;  /* total_upru_xz_2 */
-        o->sum[9][k] = add ? o->sum[9][k] + M_ta_t_15 : M_ta_t_15;  /* total_upru_yx */
-        o->sum[10][k] = add ? o->sum[10][k] + M_ta_t_16 : M_ta_t_16;  /* total_upru_yy_2 */
-        o->sum[11][k] = add ? o->sum[11][k] + M_ta_t_17 : M_ta_t_17;  /* total_upru_yz_2 */
-        o->sum[12][k] = add ? o->sum[12][k] + M_ta_t_18 : M_ta_t_18;  /* total_upru_zx */
-        o->sum[13][k] = add ? o->sum[13][k] + M_ta_t_19 : M_ta_t_19;  /* total_upru_zy */
-        o->sum[14][k] = add ? o->sum[14][k] + M_ta_t_20 : M_ta_t_20;  /* total_upru_zz_2 */
-        o->sum[15][k] = add ? o->sum[15][k] + M_aa_t : M_aa_t;  /* total_upru_xx_3 */
-        o->sum[16][k] = add ? o->sum[16][k] + M_aa_t_2 : M_aa_t_2;  /* total_upru_xy_3 */
-        o->sum[17][k] = add ? o->sum[17][k] + M_aa_t_3 : M_aa_t_3;  /* total_upru_xz_3 */
-        o->sum[18][k] = add ? o->sum[18][k] + M_aa_t_4 : M_aa_t_4;  /* total_upru_yy_3 */
-        o->sum[19][k] = add ? o->sum[19][k] + M_aa_t_5 : M_aa_t_5;  /* total_upru_yz_3 */
-        o->sum[20][k] = add ? o->sum[20][k] + M_aa_t_6 : M_aa_t_6;  /* total_upru_zz_3 */
-        o->sum[21][k] = add ? o->sum[21][k] + U_in_base_x : U_in_base_x;  /* total_upru_x */
-        o->sum[22][k] = add ? o->sum[22][k] + U_in_base_y : U_in_base_y;  /* total_upru_y */
-        o->sum[23][k] = add ? o->sum[23][k] + U_in_base_z : U_in_base_z;  /* total_upru_z */
-        o->sum[24][k] = add ? o->sum[24][k] + Z_a_t : Z_a_t;  /* total_upru_x_2 */
-        o->sum[25][k] = add ? o->sum[25][k] + Z_a_t_2 : Z_a_t_2;  /* total_upru_y_2 */
-        o->sum[26][k] = add ? o->sum[26][k] + Z_a_t_3 : Z_a_t_3;  /* total_upru_z_2 */
-        o->entry[0][k] = axis_z_x;
-        o->entry[1][k] = axis_z_y;
-        o->entry[2][k] = axis_z_z;
-        o->entry[3][k] = H_a_3_t;
-        o->entry[4][k] = H_a_3_t_2;
-        o->entry[5][k] = H_a_3_t_3;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_4) > TOLERANCE*TOLERANCE*1) + UNLESS(magnitude(-end_p1_r5_x) >
-            TOLERANCE*1) + UNLESS(magnitude(root_2) > TOLERANCE*R(0.8)) +
-            UNLESS(magnitude(v_1_r0_y) > TOLERANCE*R(0.8));
-    }
-}
-
-INLINE void dynamics_place_upru(size_t w, const dynamics_results_upru *o, size_t leg, size_t
-    first, real *H, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(6 + leg)*w + k] = o->entry[1][first + k];
-        H[(12 + leg)*w + k] = o->entry[2][first + k];
-        H[(18 + leg)*w + k] = o->entry[3][first + k];
-        H[(24 + leg)*w + k] = o->entry[4][first + k];
-        H[(30 + leg)*w + k] = o->entry[5][first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s, real *M, real
-    *Z)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real h_star_in_base_x = s->h_star_in_base_x[k];
-        const real h_star_in_base_y = s->h_star_in_base_y[k];
-        const real h_star_in_base_z = s->h_star_in_base_z[k];
-        const real J_star_t_8 = s->J_star_t_8[k];
-        const real J_star_t_9 = s->J_star_t_9[k];
-        const real J_star_t_10 = s->J_star_t_10[k];
-        const real J_star_t_12 = s->J_star_t_12[k];
-        const real J_star_t_13 = s->J_star_t_13[k];
-        const real J_star_t_15 = s->J_star_t_15[k];
-        const real Z_p_x = s->Z_p_x[k];
-        const real Z_p_y = s->Z_p_y[k];
-        const real Z_p_z = s->Z_p_z[k];
-        const real Z_q_in_base_x = s->Z_q_in_base_x[k];
-        const real Z_q_in_base_y = s->Z_q_in_base_y[k];
-        const real Z_q_in_base_z = s->Z_q_in_base_z[k];
-        const real total_upru_xx = s->sum[0][k];
-        const real total_upru_xy = s->sum[1][k];
-        const real total_upru_xz = s->sum[2][k];
-        const real total_upru_yy = s->sum[3][k];
-        const real total_upru_yz = s->sum[4][k];
-        const real total_upru_zz = s->sum[5][k];
-        const real total_upru_xx_2 = s->sum[6][k];
-        const real total_upru_xy_2 = s->sum[7][k];
-        const real total_upru_xz_2 = s->sum[8][k];
-        const real total_upru_yx = s->sum[9][k];
-        const real total_upru_yy_2 = s->sum[10][k];
-        const real total_upru_yz_2 = s->sum[11][k];
-        const real total_upru_zx = s->sum[12][k];
-        const real total_upru_zy = s->sum[13][k];
-        const real total_upru_zz_2 = s->sum[14][k];
-        const real total_upru_xx_3 = s->sum[15][k];
-        const real total_upru_xy_3 = s->sum[16][k];
-        const real total_upru_xz_3 = s->sum[17][k];
-        const real total_upru_yy_3 = s->sum[18][k];
-        const real total_upru_yz_3 = s->sum[19][k];
-        const real total_upru_zz_3 = s->sum[20][k];
-        const real total_upru_x = s->sum[21][k];
-        const real total_upru_y = s->sum[22][k];
-        const real total_upru_z = s->sum[23][k];
-        const real total_upru_x_2 = s->sum[24][k];
-        const real total_upru_y_2 = s->sum[25][k];
-        const real total_upru_z_2 = s->sum[26][k];
-        const real m_star = m->m_star;
-        /* (M1) translational block of M */
-        const real M_tt_xx = m_star - total_upru_xx;
-        const real M_tt_yy = m_star - total_upru_yy;
-        const real M_tt_zz = m_star - total_upru_zz;
-        /* (M2) coupling block of M */
-        const real M_ta_xy = h_star_in_base_z - total_upru_xy_2;
-        const real M_ta_xz = total_upru_xz_2 - h_star_in_base_y;
-        const real M_ta_yx = total_upru_yx - h_star_in_base_z;
-        const real M_ta_yz = h_star_in_base_x + total_upru_yz_2;
-        const real M_ta_zx = h_star_in_base_y + total_upru_zx;
-        const real M_ta_zy = -h_star_in_base_x - total_upru_zy;
-        /* (M3) rotational block of M */
-        const real M_aa_xx = J_star_t_8 - total_upru_xx_3;
-        const real M_aa_xy = J_star_t_9 + total_upru_xy_3;
-        const real M_aa_xz = J_star_t_10 + total_upru_xz_3;
-        const real M_aa_yy = J_star_t_12 - total_upru_yy_3;
-        const real M_aa_yz = J_star_t_13 + total_upru_yz_3;
-        const real M_aa_zz = J_star_t_15 - total_upru_zz_3;
-        /* (M5) translational part of Z */
-        const real Z_t_x = Z_p_x + total_upru_x;
-        const real Z_t_y = Z_p_y + total_upru_y;
-        const real Z_t_z = Z_p_z + total_upru_z;
-        /* (M7) rotational part of Z */
-        const real Z_a_x = Z_q_in_base_x + total_upru_x_2;
-        const real Z_a_y = Z_q_in_base_y + total_upru_y_2;
-        const real Z_a_z = Z_q_in_base_z + total_upru_z_2;
-        M[0*w + k] = M_tt_xx;
-        M[1*w + k] = -total_upru_xy;
-        M[6*w + k] = -total_upru_xy;
-        M[2*w + k] = -total_upru_xz;
-        M[12*w + k] = -total_upru_xz;
-        M[7*w + k] = M_tt_yy;
-        M[8*w + k] = -total_upru_yz;
-        M[13*w + k] = -total_upru_yz;
-        M[14*w + k] = M_tt_zz;
-        M[3*w + k] = total_upru_xx_2;
-        M[18*w + k] = total_upru_xx_2;
-        M[4*w + k] = M_ta_xy;
-        M[24*w + k] = M_ta_xy;
-        M[5*w + k] = M_ta_xz;
-        M[30*w + k] = M_ta_xz;
-        M[9*w + k] = M_ta_yx;
-        M[19*w + k] = M_ta_yx;
-        M[10*w + k] = -total_upru_yy_2;
-        M[25*w + k] = -total_upru_yy_2;
-        M[11*w + k] = M_ta_yz;
-        M[31*w + k] = M_ta_yz;
-        M[15*w + k] = M_ta_zx;
-        M[20*w + k] = M_ta_zx;
-        M[16*w + k] = M_ta_zy;
-        M[26*w + k] = M_ta_zy;
-        M[17*w + k] = -total_upru_zz_2;
-        M[32*w + k] = -total_upru_zz_2;
-        M[21*w + k] = M_aa_xx;
-        M[22*w + k] = M_aa_xy;
-        M[27*w + k] = M_aa_xy;
-        M[23*w + k] = M_aa_xz;
-        M[33*w + k] = M_aa_xz;
-        M[28*w + k] = M_aa_yy;
-        M[29*w + k] = M_aa_yz;
-        M[34*w + k] = M_aa_yz;
-        M[35*w + k] = M_aa_zz;
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-        Z[2*w + k] = Z_t_z;
-        Z[3*w + k] = Z_a_x;
-        Z[4*w + k] = Z_a_y;
-        Z[5*w + k] = Z_a_z;
-    }
-}
-
-INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real *V, real *M, real
-    *Z, real *H, verdict *t)
-{
-    dynamics_values values, *const s = &values;
-    dynamics_results_upru results_upru;
-    dynamics_before(m, w, X, V, s, t);
-    if (w == 1) {  /* the legs side by side */
-        dynamics_legs_upru(m, 0, 1, s, 0, 6, 0, &results_upru);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            dynamics_place_upru(w, &results_upru, leg, leg, H, t);
-        }
-        for (size_t n = 0; n < 27; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_upru.sum[n], 6);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_upru.sum, 0, sizeof results_upru.sum);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            dynamics_legs_upru(m, leg, 0, s, 1, w, 1, &results_upru);
-            dynamics_place_upru(w, &results_upru, leg, 0, H, t);
-        }
-        for (size_t n = 0; n < 27; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_upru.sum[n][k];
-            }
-        }
-    }
-    dynamics_after(m, w, s, M, Z);
-}
-
-/* ---- M: 2421 mul, 1629 add, 30 div, 18 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], h_star_in_base_x[LANES],
-        h_star_in_base_y[LANES], h_star_in_base_z[LANES], J_star_t_8[LANES], J_star_t_9[LANES],
-        J_star_t_10[LANES], J_star_t_12[LANES], J_star_t_13[LANES], J_star_t_15[LANES],
-        sum[21][LANES];
-} M_values;
-typedef struct {
-    real sum[21][8], singular[8];
-} M_results_upru;
-
-INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real J_star_t_22 = m->J_star_t_22;
-        const real J_star_t_24 = m->J_star_t_24;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_yz = m->J_star_yz;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* (L2) first moment about the platform origin */
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
-        /* (L3) inertia tensor about the platform origin */
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy;
-        const real J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx;
-        const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
-        const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
-            J_star_t_5*R_xz;
-        const real J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
-            J_star_t_6*R_xz;
-        const real J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_12 = 2*J_star_t_11 + J_star_xx;
-        const real J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
-            J_star_t_6*R_yz;
-        const real J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_t_15 = 2*J_star_t_14 + J_star_xx;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->h_star_in_base_x[k] = h_star_in_base_x;
-        s->h_star_in_base_y[k] = h_star_in_base_y;
-        s->h_star_in_base_z[k] = h_star_in_base_z;
-        s->J_star_t_8[k] = J_star_t_8;
-        s->J_star_t_9[k] = J_star_t_9;
-        s->J_star_t_10[k] = J_star_t_10;
-        s->J_star_t_12[k] = J_star_t_12;
-        s->J_star_t_13[k] = J_star_t_13;
-        s->J_star_t_15[k] = J_star_t_15;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
-    }
-}
-
-INLINE void M_legs_upru(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
-    states, size_t count, int add, M_results_upru *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real J_2_xy = m->J_2_xy[i];
-        const real J_2_xz = m->J_2_xz[i];
-        const real J_2_yy = m->J_2_yy[i];
-        const real J_2_yz = m->J_2_yz[i];
-        const real J_2_zz = m->J_2_zz[i];
-        const real J_4_xx = m->J_4_xx[i];
-        const real J_4_xy = m->J_4_xy[i];
-        const real J_4_xz = m->J_4_xz[i];
-        const real J_4_yy = m->J_4_yy[i];
-        const real J_4_yz = m->J_4_yz[i];
-        const real J_4_zz = m->J_4_zz[i];
-        const real Jc_2_xx = m->Jc_2_xx[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real branch_4 = m->branch_4[i];
-        const real h_4_x = m->h_4_x[i];
-        const real h_4_y = m->h_4_y[i];
-        const real h_4_z = m->h_4_z[i];
-        const real upru_base_frame_xx = m->upru_base_frame_xx[i];
-        const real upru_base_frame_xy = m->upru_base_frame_xy[i];
-        const real upru_base_frame_xz = m->upru_base_frame_xz[i];
-        const real upru_base_frame_yx = m->upru_base_frame_yx[i];
-        const real upru_base_frame_yy = m->upru_base_frame_yy[i];
-        const real upru_base_frame_yz = m->upru_base_frame_yz[i];
-        const real upru_base_frame_zx = m->upru_base_frame_zx[i];
-        const real upru_base_frame_zy = m->upru_base_frame_zy[i];
-        const real upru_base_frame_zz = m->upru_base_frame_zz[i];
-        const real upru_base_point_x = m->upru_base_point_x[i];
-        const real upru_base_point_y = m->upru_base_point_y[i];
-        const real upru_base_point_z = m->upru_base_point_z[i];
-        const real upru_platform_joint_axis_platform_x = m->upru_platform_joint_axis_platform_x[i];
-        const real upru_platform_joint_axis_platform_y = m->upru_platform_joint_axis_platform_y[i];
-        const real upru_platform_joint_axis_platform_z = m->upru_platform_joint_axis_platform_z[i];
-        const real upru_platform_point_x = m->upru_platform_point_x[i];
-        const real upru_platform_point_y = m->upru_platform_point_y[i];
-        const real upru_platform_point_z = m->upru_platform_point_z[i];
-        /* (upru-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*upru_platform_point_x + R_xy*upru_platform_point_y +
-            R_xz*upru_platform_point_z;
-        const real q_in_base_y = R_yx*upru_platform_point_x + R_yy*upru_platform_point_y +
-            R_yz*upru_platform_point_z;
-        const real q_in_base_z = R_zx*upru_platform_point_x + R_zy*upru_platform_point_y +
-            R_zz*upru_platform_point_z;
-        const real S_x = q_in_base_x + t_x - upru_base_point_x;
-        const real S_y = q_in_base_y + t_y - upru_base_point_y;
-        const real S_z = q_in_base_z + t_z - upru_base_point_z;
-        /* (upru-K2) component along the reference direction */
-        const real px_1 = S_x*upru_base_frame_xx + S_y*upru_base_frame_yx +
-            S_z*upru_base_frame_zx;
-        /* (upru-K3) component across the reference direction */
-        const real py_1 = S_x*upru_base_frame_xy + S_y*upru_base_frame_yy +
-            S_z*upru_base_frame_zy;
-        /* (upru-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upru-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upru-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upru_base_frame_xz + S_y*upru_base_frame_yz +
-            S_z*upru_base_frame_zz;
-        /* (upru-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upru-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upru-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upru-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upru-K20) component along the reference direction */
-        const real end_p1_r0_x = upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xx +
-            R_yx*upru_base_frame_yx + R_zx*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xx + R_yy*upru_base_frame_yx
-            + R_zy*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xx + R_yz*upru_base_frame_yx
-            + R_zz*upru_base_frame_zx);
-        const real end_p1_r0_y = upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xy +
-            R_yx*upru_base_frame_yy + R_zx*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xy + R_yy*upru_base_frame_yy
-            + R_zy*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xy + R_yz*upru_base_frame_yy
-            + R_zz*upru_base_frame_zy);
-        const real end_p1_r0_z = upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xz +
-            R_yx*upru_base_frame_yz + R_zx*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xz + R_yy*upru_base_frame_yz
-            + R_zy*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xz + R_yz*upru_base_frame_yz
-            + R_zz*upru_base_frame_zz);
-        /* (upru-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upru-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upru-K20) component along the reference direction */
-        const real end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x;
-        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
-        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
-        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
-        /* (upru-K23) squared amplitude */
-        const real rho2_4 = end_p1_r1_x*end_p1_r1_x + end_p1_r3_y*end_p1_r3_y;
-        /* (upru-K24) amplitude, with the sign of the branch */
-        const real root_4 = branch_4*root(rho2_4);
-        /* (upru-K25) cosine of the angle of joint 4 from its reference direction */
-        const real inv_root_4 = 1/root_4;
-        const real c_4 = end_p1_r3_y*inv_root_4;
-        /* (upru-K26) sine of the angle of joint 4 from its reference direction */
-        const real s_4 = end_p1_r1_x*inv_root_4;
-        /* (upru-V3) velocity of the connection point per rate of joint 1 */
-        const real v_1_t = c_2*c_4;
-        const real v_1_t_2 = c_2*s_4;
-        const real v_1_t_3 = root_2*v_1_t_2;
-        const real v_1_t_4 = root_2*v_1_t;
-        /* (upru-V7) force part of reciprocal wrench 1 */
-        const real axis_z_x = S_x*inv_root_2;
-        const real axis_z_y = S_y*inv_root_2;
-        const real axis_z_z = S_z*inv_root_2;
-        const real w_1_t = s_2*s_4;
-        const real axis_y_upru_axes4_r4_x = -c_1*c_4 - s_1*w_1_t;
-        const real axis_y_upru_axes4_r4_y = c_4*s_1 - c_1*w_1_t;
-        const real axis_y_upru_axes4_in_base_x = axis_y_upru_axes4_r4_x*upru_base_frame_xx +
-            axis_y_upru_axes4_r4_y*upru_base_frame_xy + upru_base_frame_xz*v_1_t_2;
-        const real axis_y_upru_axes4_in_base_y = axis_y_upru_axes4_r4_x*upru_base_frame_yx +
-            axis_y_upru_axes4_r4_y*upru_base_frame_yy + upru_base_frame_yz*v_1_t_2;
-        const real axis_y_upru_axes4_in_base_z = axis_y_upru_axes4_r4_x*upru_base_frame_zx +
-            axis_y_upru_axes4_r4_y*upru_base_frame_zy + upru_base_frame_zz*v_1_t_2;
-        const real axis_x_upru_axes4_x = axis_y_upru_axes4_in_base_y*axis_z_z -
-            axis_y_upru_axes4_in_base_z*axis_z_y;
-        const real axis_x_upru_axes4_y = axis_y_upru_axes4_in_base_z*axis_z_x -
-            axis_y_upru_axes4_in_base_x*axis_z_z;
-        const real axis_x_upru_axes4_z = axis_y_upru_axes4_in_base_x*axis_z_y -
-            axis_y_upru_axes4_in_base_y*axis_z_x;
-        /* (upru-G5) inertia tensor of link 4 about the connection point */
-        const real J_4_t = J_4_yz*s_4;
-        const real _x = J_4_yy*c_4 - J_4_t;
-        const real J_4_t_2 = J_4_yz*c_4;
-        const real _x_2 = J_4_t_2 - J_4_zz*s_4;
-        const real _x_3 = J_4_xy*c_4 - J_4_xz*s_4;
-        const real _y = J_4_xy*s_4 + J_4_xz*c_4;
-        /* (upru-N13) inertia tensor of the links from 2 outwards about joint 2 */
-        const real Jc_2_xy = _x_3 - J_2_xz;
-        const real _y_2 = s_2*(J_2_xy + _y) - c_2*(_x*s_4 + _x_2*c_4 - J_2_yz);
-        /* (upru-N9) moment about joint 4 that accelerates joint 4, per unit */
-        const real L_c4_r2_y = J_4_xx*s_2 - _x_3*c_2;
-        /* (upru-V6) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4;
-        /* (upru-V3) velocity of the connection point per rate of joint 1 */
-        const real v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4;
-        const real v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3;
-        /* (upru-V7) force part of reciprocal wrench 1 */
-        const real w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2;
-        /* (upru-V6) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_t = end_p1_r3_x*s_4;
-        /* (upru-V7) force part of reciprocal wrench 1 */
-        const real inv_v_1_r0_y = 1/v_1_r0_y;
-        const real w_1_t_3 = inv_v_1_r0_y*s_4;
-        const real w_1_t_4 = c_4*inv_v_1_r0_y;
-        /* (upru-V9) force part of reciprocal wrench 2 */
-        const real w_2_t = inv_root_2*inv_v_1_r0_y*v_1_r0_x;
-        const real _r1_x = c_4*inv_root_2 - s_4*w_2_t;
-        const real _r1_y = -c_4*w_2_t - inv_root_2*s_4;
-        /* (upru-V13) force part of reciprocal wrench 4 */
-        const real inv_end_p1_r5_x = 1/end_p1_r5_x;
-        const real w_4_t = inv_end_p1_r5_x*inv_root_2*n_m1_t;
-        const real w_4_t_2 = inv_v_1_r0_y*(inv_end_p1_r5_x*w_1_t_2 + v_1_r0_x*w_4_t);
-        const real _r1_x_2 = c_4*w_4_t - s_4*w_4_t_2;
-        const real _r1_y_2 = -c_4*w_4_t_2 - s_4*w_4_t;
-        /* (upru-G4) first moment of link 4 about the connection point */
-        const real h_4_r1_x = c_4*h_4_y - h_4_z*s_4;
-        /* (upru-N39) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_t = L_c4_r2_y*inv_end_p1_r5_x;
-        const real d_Gamma_1_t_2 = inv_root_2*(_y_2 + d_Gamma_1_t*n_m1_t);
-        const real d_Gamma_1_t_3 = c_2*(Jc_2_xy*s_2 - c_2*(J_2_zz + _x*c_4 - _x_2*s_4)) +
-            d_Gamma_1_t*w_1_t_2 + d_Gamma_1_t_2*v_1_r0_x - s_2*(Jc_2_xx*s_2 - Jc_2_xy*c_2);
-        const real d_Gamma_1_t_4 = c_2*d_Gamma_1_t_2;
-        const real d_Gamma_1_x = c_2*h_4_x + h_4_r1_x*s_2 - d_Gamma_1_t_3*inv_v_1_r0_y;
-        const real d_Gamma_1_y = c_4*h_4_z + h_4_y*s_4 - d_Gamma_1_t_2*s_2;
-        /* (upru-N35) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
-           and weight */
-        const real d_Gamma_2_t = _y*inv_end_p1_r5_x;
-        const real d_Gamma_2_t_2 = inv_root_2*(J_2_yy + c_4*(J_4_t + J_4_zz*c_4) +
-            d_Gamma_2_t*n_m1_t + s_4*(J_4_t_2 + J_4_yy*s_4));
-        const real d_Gamma_2_t_3 = inv_v_1_r0_y*(d_Gamma_2_t*w_1_t_2 + d_Gamma_2_t_2*v_1_r0_x -
-            _y_2);
-        const real d_Gamma_2_y = d_Gamma_2_t_2 + h_4_x;
-        /* (upru-N25) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia
-           and weight */
-        const real d_Gamma_4_t = J_4_xx*inv_end_p1_r5_x;
-        const real d_Gamma_4_t_2 = inv_root_2*(_y + d_Gamma_4_t*n_m1_t);
-        const real d_Gamma_4_t_3 = inv_v_1_r0_y*(d_Gamma_4_t*w_1_t_2 + d_Gamma_4_t_2*v_1_r0_x -
-            L_c4_r2_y);
-        const real d_Gamma_4_x = c_4*d_Gamma_4_t_2 - h_4_z - d_Gamma_4_t_3*s_4;
-        const real d_Gamma_4_y = h_4_y - c_4*d_Gamma_4_t_3 - d_Gamma_4_t_2*s_4;
-        /* (upru-N39) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_r1_x = -c_2*d_Gamma_1_y - d_Gamma_1_t_4*s_2;
-        const real d_Gamma_1_r1_y = c_2*d_Gamma_1_t_4 - d_Gamma_1_y*s_2;
-        const real d_Gamma_1_r3_y = c_4*d_Gamma_1_x - d_Gamma_1_r1_y*s_4;
-        /* (upru-N35) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
-           and weight */
-        const real d_Gamma_2_r1_y = -c_4*d_Gamma_2_t_3 - d_Gamma_2_y*s_4;
-        /* (upru-N43) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_xz = d_Gamma_1_r1_x*w_1_t_3 - _r1_x*h_4_r1_x;
-        const real d_G_yz = d_Gamma_1_r1_x*w_1_t_4 - _r1_y*h_4_r1_x;
-        /* (upru-A28) coefficient of the acceleration in: angular acceleration of link 4 */
-        const real d_alpha_4_zy = _r1_y_2 + s_2*w_1_t_4;
-        /* (upru-N55) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real d_c_xx = h_4_z*(_r1_x_2 + s_2*w_1_t_3) - _r1_x*(c_4*d_Gamma_2_y -
-            d_Gamma_2_t_3*s_4) - _r1_x_2*d_Gamma_4_x - h_4_x*(_r1_x*c_4 + v_1_t_2*w_1_t_3) -
-            w_1_t_3*(c_4*d_Gamma_1_r1_y + d_Gamma_1_x*s_4);
-        const real d_c_xy = d_alpha_4_zy*h_4_z - _r1_x*d_Gamma_2_r1_y - _r1_x_2*d_Gamma_4_y -
-            d_Gamma_1_r3_y*w_1_t_3 - h_4_x*(_r1_y*c_4 + v_1_t_2*w_1_t_4);
-        const real d_c_yy = h_4_x*(_r1_y*s_4 - v_1_t*w_1_t_4) - _r1_y*d_Gamma_2_r1_y -
-            _r1_y_2*d_Gamma_4_y - d_Gamma_1_r3_y*w_1_t_4 - d_alpha_4_zy*h_4_y;
-        /* (upru-N57) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = R(0.5)*d_c_xx;
-        const real Q_t_2 = R(0.5)*d_c_yy;
-        const real Q_t_3 = Q_t*axis_x_upru_axes4_x + axis_y_upru_axes4_in_base_x*d_c_xy -
-            axis_z_x*d_G_xz;
-        const real Q_t_4 = Q_t*axis_x_upru_axes4_y + axis_y_upru_axes4_in_base_y*d_c_xy -
-            axis_z_y*d_G_xz;
-        const real Q_t_5 = Q_t*axis_x_upru_axes4_z + axis_y_upru_axes4_in_base_z*d_c_xy -
-            axis_z_z*d_G_xz;
-        const real Q_t_6 = Q_t_2*axis_y_upru_axes4_in_base_x - axis_z_x*d_G_yz;
-        const real Q_t_7 = Q_t_2*axis_y_upru_axes4_in_base_y - axis_z_y*d_G_yz;
-        const real Q_t_8 = Q_t_2*axis_y_upru_axes4_in_base_z - axis_z_z*d_G_yz;
-        const real Q_t_9 = Q_t_3*axis_x_upru_axes4_x + Q_t_6*axis_y_upru_axes4_in_base_x;
-        const real Q_t_10 = 2*Q_t_9;
-        const real Q_t_11 = Q_t_3*axis_x_upru_axes4_y + Q_t_4*axis_x_upru_axes4_x +
-            Q_t_6*axis_y_upru_axes4_in_base_y + Q_t_7*axis_y_upru_axes4_in_base_x;
-        const real Q_t_12 = Q_t_3*axis_x_upru_axes4_z + Q_t_5*axis_x_upru_axes4_x +
-            Q_t_6*axis_y_upru_axes4_in_base_z + Q_t_8*axis_y_upru_axes4_in_base_x;
-        const real Q_t_13 = Q_t_4*axis_x_upru_axes4_y + Q_t_7*axis_y_upru_axes4_in_base_y;
-        const real Q_t_14 = 2*Q_t_13;
-        const real Q_t_15 = Q_t_4*axis_x_upru_axes4_z + Q_t_5*axis_x_upru_axes4_y +
-            Q_t_7*axis_y_upru_axes4_in_base_z + Q_t_8*axis_y_upru_axes4_in_base_y;
-        const real Q_t_16 = Q_t_5*axis_x_upru_axes4_z + Q_t_8*axis_y_upru_axes4_in_base_z;
-        const real Q_t_17 = 2*Q_t_16;
-        /* (upru-V18) moment part of reciprocal wrench 4 */
-        const real o_4_x = end_p1_r3_x*inv_end_p1_r5_x;
-        /* (upru-N38) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d0_Gamma_1_t = L_c4_r2_y*o_4_x;
-        /* (upru-N34) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
-           and weight */
-        const real d0_Gamma_2_t = _y*o_4_x;
-        /* (upru-N24) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia
-           and weight */
-        const real d0_Gamma_4_t = J_4_xx*o_4_x;
-        /* (upru-N54) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real d0_c_xx = _r1_x*d0_Gamma_2_t + _r1_x_2*d0_Gamma_4_t + d0_Gamma_1_t*w_1_t_3 -
-            h_4_z*o_4_x;
-        const real d0_c_xz = h_4_z - J_4_xx*_r1_x_2 - L_c4_r2_y*w_1_t_3 - _r1_x*_y;
-        const real d0_c_yx = _r1_y*d0_Gamma_2_t + _r1_y_2*d0_Gamma_4_t + d0_Gamma_1_t*w_1_t_4 +
-            h_4_y*o_4_x;
-        const real d0_c_yz = -h_4_y - J_4_xx*_r1_y_2 - L_c4_r2_y*w_1_t_4 - _r1_y*_y;
-        /* (M2) coupling block of M */
-        const real M_ta_t = Q_t_11*q_in_base_z;
-        const real M_ta_t_2 = Q_t_12*q_in_base_y;
-        const real M_ta_t_3 = Q_t_10*q_in_base_z - Q_t_12*q_in_base_x;
-        const real M_ta_t_4 = Q_t_10*q_in_base_y - Q_t_11*q_in_base_x;
-        const real M_ta_t_5 = Q_t_14*q_in_base_z - Q_t_15*q_in_base_y;
-        const real M_ta_t_6 = Q_t_15*q_in_base_x;
-        const real M_ta_t_7 = M_ta_t - M_ta_t_6;
-        const real M_ta_t_8 = Q_t_11*q_in_base_y - Q_t_14*q_in_base_x;
-        const real M_ta_t_9 = Q_t_15*q_in_base_z - Q_t_17*q_in_base_y;
-        const real M_ta_t_10 = Q_t_12*q_in_base_z - Q_t_17*q_in_base_x;
-        const real M_ta_t_11 = M_ta_t_6 - M_ta_t_2;
-        /* (upru-N54) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real d0_c_in_base_x = axis_x_upru_axes4_x*d0_c_xx +
-            axis_y_upru_axes4_in_base_x*d0_c_yx;
-        const real d0_c_in_base_y = axis_x_upru_axes4_y*d0_c_xx +
-            axis_y_upru_axes4_in_base_y*d0_c_yx;
-        const real d0_c_in_base_z = axis_x_upru_axes4_z*d0_c_xx +
-            axis_y_upru_axes4_in_base_z*d0_c_yx;
-        const real d0_c_in_base_x_2 = axis_x_upru_axes4_x*d0_c_xz +
-            axis_y_upru_axes4_in_base_x*d0_c_yz;
-        const real d0_c_in_base_y_2 = axis_x_upru_axes4_y*d0_c_xz +
-            axis_y_upru_axes4_in_base_y*d0_c_yz;
-        const real d0_c_in_base_z_2 = axis_x_upru_axes4_z*d0_c_xz +
-            axis_y_upru_axes4_in_base_z*d0_c_yz;
-        const real d0_c_in_base_y_3 = axis_x_upru_axes4_y*d0_c_in_base_x +
-            axis_z_y*d0_c_in_base_x_2;
-        const real d0_c_in_base_z_3 = axis_x_upru_axes4_z*d0_c_in_base_x +
-            axis_z_z*d0_c_in_base_x_2;
-        const real d0_c_in_base_x_3 = axis_x_upru_axes4_x*d0_c_in_base_y +
-            axis_z_x*d0_c_in_base_y_2;
-        const real d0_c_in_base_y_4 = axis_x_upru_axes4_y*d0_c_in_base_y +
-            axis_z_y*d0_c_in_base_y_2;
-        const real d0_c_in_base_z_4 = axis_x_upru_axes4_z*d0_c_in_base_y +
-            axis_z_z*d0_c_in_base_y_2;
-        const real d0_c_in_base_x_4 = axis_x_upru_axes4_x*d0_c_in_base_z +
-            axis_z_x*d0_c_in_base_z_2;
-        const real d0_c_in_base_y_5 = axis_x_upru_axes4_y*d0_c_in_base_z +
-            axis_z_y*d0_c_in_base_z_2;
-        const real d0_c_in_base_z_5 = axis_x_upru_axes4_z*d0_c_in_base_z +
-            axis_z_z*d0_c_in_base_z_2;
-        /* (M2) coupling block of M */
-        const real M_ta_t_12 = M_ta_t - M_ta_t_2 - axis_x_upru_axes4_x*d0_c_in_base_x -
-            axis_z_x*d0_c_in_base_x_2;
-        const real M_ta_t_13 = M_ta_t_3 + d0_c_in_base_y_3;
-        const real M_ta_t_14 = M_ta_t_4 - d0_c_in_base_z_3;
-        const real M_ta_t_15 = M_ta_t_5 - d0_c_in_base_x_3;
-        const real M_ta_t_16 = M_ta_t_7 + d0_c_in_base_y_4;
-        const real M_ta_t_17 = M_ta_t_8 - d0_c_in_base_z_4;
-        const real M_ta_t_18 = M_ta_t_9 - d0_c_in_base_x_4;
-        const real M_ta_t_19 = M_ta_t_10 + d0_c_in_base_y_5;
-        const real M_ta_t_20 = M_ta_t_11 + d0_c_in_base_z_5;
-        /* (upru-N46) coefficient of the acceleration in: moment along moment direction 1 that balances
-           the leg's inertia and weight along all freedoms */
-        const real d0_G_m1_t = d0_Gamma_4_t*inv_end_p1_r5_x;
-        /* (upru-N47) coefficient of the acceleration in: moment along moment direction 1 that balances
-           the leg's inertia and weight along all freedoms */
-        const real d_G_m1_t = d_Gamma_4_x*inv_end_p1_r5_x;
-        const real d_G_m1_t_2 = d_Gamma_4_y*inv_end_p1_r5_x;
-        /* (upru-V6) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_in_base_x = axis_x_upru_axes4_x*end_p1_r3_x - axis_z_x*end_p1_r5_x;
-        const real n_m1_in_base_y = axis_x_upru_axes4_y*end_p1_r3_x - axis_z_y*end_p1_r5_x;
-        const real n_m1_in_base_z = axis_x_upru_axes4_z*end_p1_r3_x - axis_z_z*end_p1_r5_x;
-        /* (upru-N47) coefficient of the acceleration in: moment along moment direction 1 that balances
-           the leg's inertia and weight along all freedoms */
-        const real d_G_m1_in_base_x = -axis_x_upru_axes4_x*d_G_m1_t -
-            axis_y_upru_axes4_in_base_x*d_G_m1_t_2;
-        const real d_G_m1_in_base_y = -axis_x_upru_axes4_y*d_G_m1_t -
-            axis_y_upru_axes4_in_base_y*d_G_m1_t_2;
-        const real d_G_m1_in_base_z = -axis_x_upru_axes4_z*d_G_m1_t -
-            axis_y_upru_axes4_in_base_z*d_G_m1_t_2;
-        /* (upru-N51) coefficient of the acceleration in: moment at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_m_xx = d_G_m1_in_base_x*n_m1_in_base_x;
-        const real d_G_m_xy = d_G_m1_in_base_y*n_m1_in_base_x;
-        const real d_G_m_xz = d_G_m1_in_base_z*n_m1_in_base_x;
-        const real d_G_m_yx = d_G_m1_in_base_x*n_m1_in_base_y;
-        /* (upru-N46) coefficient of the acceleration in: moment along moment direction 1 that balances
-           the leg's inertia and weight along all freedoms */
-        const real d0_G_m1_in_base_y = axis_x_upru_axes4_y*d0_G_m1_t - axis_z_y*d_Gamma_4_t;
-        const real d0_G_m1_in_base_z = axis_x_upru_axes4_z*d0_G_m1_t - axis_z_z*d_Gamma_4_t;
-        /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t_5*q_in_base_z + d0_c_in_base_x_4*q_in_base_y +
-            d_G_m_xy*q_in_base_z - M_ta_t_9*q_in_base_y - d0_c_in_base_x_3*q_in_base_z -
-            d_G_m_xz*q_in_base_y - n_m1_in_base_x*(axis_x_upru_axes4_x*d0_G_m1_t -
-            axis_z_x*d_Gamma_4_t);
-        const real M_aa_t_2 = M_ta_t_7*q_in_base_z + d0_G_m1_in_base_y*n_m1_in_base_x +
-            d0_c_in_base_y_4*q_in_base_z + d_G_m_xx*q_in_base_z - M_ta_t_10*q_in_base_y -
-            d0_c_in_base_y_5*q_in_base_y - d_G_m_xz*q_in_base_x;
-        const real M_aa_t_3 = d0_G_m1_in_base_z*n_m1_in_base_x + d0_c_in_base_z_4*q_in_base_z +
-            d_G_m_xy*q_in_base_x - M_ta_t_11*q_in_base_y - M_ta_t_8*q_in_base_z -
-            d0_c_in_base_z_5*q_in_base_y - d_G_m_xx*q_in_base_y;
-        const real M_aa_t_4 = M_ta_t_3*q_in_base_z + d0_c_in_base_y_3*q_in_base_z +
-            d_G_m1_in_base_z*n_m1_in_base_y*q_in_base_x - M_ta_t_10*q_in_base_x -
-            d0_G_m1_in_base_y*n_m1_in_base_y - d0_c_in_base_y_5*q_in_base_x -
-            d_G_m_yx*q_in_base_z;
-        const real M_aa_t_5 = M_ta_t_11*q_in_base_x + M_ta_t_4*q_in_base_z +
-            d0_G_m1_in_base_z*n_m1_in_base_y + d0_c_in_base_z_5*q_in_base_x +
-            d_G_m1_in_base_y*n_m1_in_base_y*q_in_base_x - d0_c_in_base_z_3*q_in_base_z -
-            d_G_m_yx*q_in_base_y;
-        const real M_aa_t_6 = M_ta_t_4*q_in_base_y + d0_c_in_base_z_4*q_in_base_x +
-            d_G_m1_in_base_x*n_m1_in_base_z*q_in_base_y - M_ta_t_8*q_in_base_x -
-            d0_G_m1_in_base_z*n_m1_in_base_z - d0_c_in_base_z_3*q_in_base_y -
-            d_G_m1_in_base_y*n_m1_in_base_z*q_in_base_x;
-        o->sum[0][k] = add ? o->sum[0][k] + Q_t_10 : Q_t_10;  /* total_upru_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + Q_t_11 : Q_t_11;  /* total_upru_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + Q_t_12 : Q_t_12;  /* total_upru_xz */
-        o->sum[3][k] = add ? o->sum[3][k] + Q_t_14 : Q_t_14;  /* total_upru_yy */
-        o->sum[4][k] = add ? o->sum[4][k] + Q_t_15 : Q_t_15;  /* total_upru_yz */
-        o->sum[5][k] = add ? o->sum[5][k] + Q_t_17 : Q_t_17;  /* total_upru_zz */
-        o->sum[6][k] = add ? o->sum[6][k] + M_ta_t_12 : M_ta_t_12;  /* total_upru_xx_2 */
-        o->sum[7][k] = add ? o->sum[7][k] + M_ta_t_13 : M_ta_t_13;  /* total_upru_xy_2 */
-        o->sum[8][k] = add ? o->sum[8][k] + M_ta_t_14 : M_ta_t_14;  /* total_upru_xz_2 */
-        o->sum[9][k] = add ? o->sum[9][k] + M_ta_t_15 : M_ta_t_15;  /* total_upru_yx */
-        o->sum[10][k] = add ? o->sum[10][k] + M_ta_t_16 : M_ta_t_16;  /* total_upru_yy_2 */
-        o->sum[11][k] = add ? o->sum[11][k] + M_ta_t_17 : M_ta_t_17;  /* total_upru_yz_2 */
-        o->sum[12][k] = add ? o->sum[12][k] + M_ta_t_18 : M_ta_t_18;  /* total_upru_zx */
-        o->sum[13][k] = add ? o->sum[13][k] + M_ta_t_19 : M_ta_t_19;  /* total_upru_zy */
-        o->sum[14][k] = add ? o->sum[14][k] + M_ta_t_20 : M_ta_t_20;  /* total_upru_zz_2 */
-        o->sum[15][k] = add ? o->sum[15][k] + M_aa_t : M_aa_t;  /* total_upru_xx_3 */
-        o->sum[16][k] = add ? o->sum[16][k] + M_aa_t_2 : M_aa_t_2;  /* total_upru_xy_3 */
-        o->sum[17][k] = add ? o->sum[17][k] + M_aa_t_3 : M_aa_t_3;  /* total_upru_xz_3 */
-        o->sum[18][k] = add ? o->sum[18][k] + M_aa_t_4 : M_aa_t_4;  /* total_upru_yy_3 */
-        o->sum[19][k] = add ? o->sum[19][k] + M_aa_t_5 : M_aa_t_5;  /* total_upru_yz_3 */
-        o->sum[20][k] = add ? o->sum[20][k] + M_aa_t_6 : M_aa_t_6;  /* total_upru_zz_3 */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_4) > TOLERANCE*TOLERANCE*1) + UNLESS(magnitude(-end_p1_r5_x) >
-            TOLERANCE*1) + UNLESS(magnitude(root_2) > TOLERANCE*R(0.8)) +
-            UNLESS(magnitude(v_1_r0_y) > TOLERANCE*R(0.8));
-    }
-}
-
-INLINE void M_place_upru(size_t w, const M_results_upru *o, size_t first, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real h_star_in_base_x = s->h_star_in_base_x[k];
-        const real h_star_in_base_y = s->h_star_in_base_y[k];
-        const real h_star_in_base_z = s->h_star_in_base_z[k];
-        const real J_star_t_8 = s->J_star_t_8[k];
-        const real J_star_t_9 = s->J_star_t_9[k];
-        const real J_star_t_10 = s->J_star_t_10[k];
-        const real J_star_t_12 = s->J_star_t_12[k];
-        const real J_star_t_13 = s->J_star_t_13[k];
-        const real J_star_t_15 = s->J_star_t_15[k];
-        const real total_upru_xx = s->sum[0][k];
-        const real total_upru_xy = s->sum[1][k];
-        const real total_upru_xz = s->sum[2][k];
-        const real total_upru_yy = s->sum[3][k];
-        const real total_upru_yz = s->sum[4][k];
-        const real total_upru_zz = s->sum[5][k];
-        const real total_upru_xx_2 = s->sum[6][k];
-        const real total_upru_xy_2 = s->sum[7][k];
-        const real total_upru_xz_2 = s->sum[8][k];
-        const real total_upru_yx = s->sum[9][k];
-        const real total_upru_yy_2 = s->sum[10][k];
-        const real total_upru_yz_2 = s->sum[11][k];
-        const real total_upru_zx = s->sum[12][k];
-        const real total_upru_zy = s->sum[13][k];
-        const real total_upru_zz_2 = s->sum[14][k];
-        const real total_upru_xx_3 = s->sum[15][k];
-        const real total_upru_xy_3 = s->sum[16][k];
-        const real total_upru_xz_3 = s->sum[17][k];
-        const real total_upru_yy_3 = s->sum[18][k];
-        const real total_upru_yz_3 = s->sum[19][k];
-        const real total_upru_zz_3 = s->sum[20][k];
-        const real m_star = m->m_star;
-        /* (M1) translational block of M */
-        const real M_tt_xx = m_star - total_upru_xx;
-        const real M_tt_yy = m_star - total_upru_yy;
-        const real M_tt_zz = m_star - total_upru_zz;
-        /* (M2) coupling block of M */
-        const real M_ta_xy = h_star_in_base_z - total_upru_xy_2;
-        const real M_ta_xz = total_upru_xz_2 - h_star_in_base_y;
-        const real M_ta_yx = total_upru_yx - h_star_in_base_z;
-        const real M_ta_yz = h_star_in_base_x + total_upru_yz_2;
-        const real M_ta_zx = h_star_in_base_y + total_upru_zx;
-        const real M_ta_zy = -h_star_in_base_x - total_upru_zy;
-        /* (M3) rotational block of M */
-        const real M_aa_xx = J_star_t_8 - total_upru_xx_3;
-        const real M_aa_xy = J_star_t_9 + total_upru_xy_3;
-        const real M_aa_xz = J_star_t_10 + total_upru_xz_3;
-        const real M_aa_yy = J_star_t_12 - total_upru_yy_3;
-        const real M_aa_yz = J_star_t_13 + total_upru_yz_3;
-        const real M_aa_zz = J_star_t_15 - total_upru_zz_3;
-        M[0*w + k] = M_tt_xx;
-        M[1*w + k] = -total_upru_xy;
-        M[6*w + k] = -total_upru_xy;
-        M[2*w + k] = -total_upru_xz;
-        M[12*w + k] = -total_upru_xz;
-        M[7*w + k] = M_tt_yy;
-        M[8*w + k] = -total_upru_yz;
-        M[13*w + k] = -total_upru_yz;
-        M[14*w + k] = M_tt_zz;
-        M[3*w + k] = total_upru_xx_2;
-        M[18*w + k] = total_upru_xx_2;
-        M[4*w + k] = M_ta_xy;
-        M[24*w + k] = M_ta_xy;
-        M[5*w + k] = M_ta_xz;
-        M[30*w + k] = M_ta_xz;
-        M[9*w + k] = M_ta_yx;
-        M[19*w + k] = M_ta_yx;
-        M[10*w + k] = -total_upru_yy_2;
-        M[25*w + k] = -total_upru_yy_2;
-        M[11*w + k] = M_ta_yz;
-        M[31*w + k] = M_ta_yz;
-        M[15*w + k] = M_ta_zx;
-        M[20*w + k] = M_ta_zx;
-        M[16*w + k] = M_ta_zy;
-        M[26*w + k] = M_ta_zy;
-        M[17*w + k] = -total_upru_zz_2;
-        M[32*w + k] = -total_upru_zz_2;
-        M[21*w + k] = M_aa_xx;
-        M[22*w + k] = M_aa_xy;
-        M[27*w + k] = M_aa_xy;
-        M[23*w + k] = M_aa_xz;
-        M[33*w + k] = M_aa_xz;
-        M[28*w + k] = M_aa_yy;
-        M[29*w + k] = M_aa_yz;
-        M[34*w + k] = M_aa_yz;
-        M[35*w + k] = M_aa_zz;
-    }
-}
-
-INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *t)
-{
-    M_values values, *const s = &values;
-    M_results_upru results_upru;
-    M_before(m, w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        M_legs_upru(m, 0, 1, s, 0, 6, 0, &results_upru);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            M_place_upru(w, &results_upru, leg, t);
-        }
-        for (size_t n = 0; n < 21; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_upru.sum[n], 6);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_upru.sum, 0, sizeof results_upru.sum);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            M_legs_upru(m, leg, 0, s, 1, w, 1, &results_upru);
-            M_place_upru(w, &results_upru, 0, t);
-        }
-        for (size_t n = 0; n < 21; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_upru.sum[n][k];
-            }
-        }
-    }
-    M_after(m, w, s, M);
-}
-
-/* ---- Z: 2079 mul, 1506 add, 30 div, 18 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES], Z_p_x[LANES],
-        Z_p_y[LANES], Z_p_z[LANES], Z_q_in_base_x[LANES], Z_q_in_base_y[LANES], Z_q_in_base_z[LANES],
-        sum[6][LANES];
-} Z_values;
-typedef struct {
-    real sum[6][8], singular[8];
-} Z_results_upru;
-
-INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, Z_values *s,
+/* ---- dynamics: 3783 mul, 2703 add, 30 div, 18 sqrt, 0 trig, every leg counted ---- */
+INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s,
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -2968,525 +1360,2175 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
-        /* (L2) first moment about the platform origin */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_z = m->h_star_z;
         const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
         const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
         const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
-        /* (M4) centripetal force and weight of the platform */
+        /* (J_star) inertia tensor about the platform origin */
+        const real J_star_t_12 = m->J_star_t_12;
+        const real J_star_xy = m->J_star_xy;
+        const real J_star_yz = m->J_star_yz;
+        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy;
+        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy;
+        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy;
+        const real J_star_t_14 = m->J_star_t_14;
+        const real J_star_xz = m->J_star_xz;
+        const real J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx;
+        const real J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx;
+        const real J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx;
+        const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
+        const real J_star_xx = m->J_star_xx;
+        const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
+        const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
+            J_star_t_5*R_xz;
+        const real J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
+            J_star_t_6*R_xz;
+        const real J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz;
+        const real J_star_t_13 = 2*J_star_t_11 + J_star_xx;
+        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+            J_star_t_6*R_yz;
+        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz;
+        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        /* (Z_p) centripetal force and weight of the platform */
         const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
         const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
         const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
+        const real Z_p_t_2 = m->Z_p_t_2;
         const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
+        const real Z_p_t_3 = m->Z_p_t_3;
         const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (M6) gyroscopic moment and moment of the weight of the platform */
+        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real gravity_z = m->gravity_z;
+        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
         const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
         const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
         const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
         const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
+        const real J_star_yy = m->J_star_yy;
         const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
+        const real J_star_zz = m->J_star_zz;
         const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z_2*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x_2*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y_2*h_star_x;
+        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
+            g_r0_z*h_star_y;
+        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
+            g_r0_x*h_star_z;
+        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
+            g_r0_y*h_star_x;
         const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
         const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
         const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->Z_p_x[k] = Z_p_x;
-        s->Z_p_y[k] = Z_p_y;
-        s->Z_p_z[k] = Z_p_z;
-        s->Z_q_in_base_x[k] = Z_q_in_base_x;
-        s->Z_q_in_base_y[k] = Z_q_in_base_y;
-        s->Z_q_in_base_z[k] = Z_q_in_base_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
+        s[18*w + k] = h_star_in_base_x;
+        s[19*w + k] = h_star_in_base_y;
+        s[20*w + k] = h_star_in_base_z;
+        s[21*w + k] = J_star_t_8;
+        s[22*w + k] = J_star_t_9;
+        s[23*w + k] = J_star_t_10;
+        s[24*w + k] = J_star_t_13;
+        s[25*w + k] = J_star_t_15;
+        s[26*w + k] = J_star_t_17;
+        s[27*w + k] = Z_p_x;
+        s[28*w + k] = Z_p_y;
+        s[29*w + k] = Z_p_z;
+        s[30*w + k] = Z_q_in_base_x;
+        s[31*w + k] = Z_q_in_base_y;
+        s[32*w + k] = Z_q_in_base_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void Z_legs_upru(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
-    states, size_t count, int add, Z_results_upru *o)
+INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real J_2_xy = m->J_2_xy[i];
-        const real J_2_xz = m->J_2_xz[i];
-        const real J_2_yz = m->J_2_yz[i];
-        const real J_4_xy = m->J_4_xy[i];
-        const real J_4_xz = m->J_4_xz[i];
-        const real J_4_yz = m->J_4_yz[i];
-        const real Sigma_2_xx = m->Sigma_2_xx[i];
-        const real Sigma_2_yy = m->Sigma_2_yy[i];
-        const real Sigma_2_zz = m->Sigma_2_zz[i];
-        const real Sigma_4_xx = m->Sigma_4_xx[i];
-        const real Sigma_4_yy = m->Sigma_4_yy[i];
-        const real Sigma_4_zz = m->Sigma_4_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real branch_4 = m->branch_4[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real g_r0_z = m->g_r0_z[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real h_2_z = m->h_2_z[i];
-        const real h_4_x = m->h_4_x[i];
-        const real h_4_y = m->h_4_y[i];
-        const real h_4_z = m->h_4_z[i];
-        const real upru_base_frame_xx = m->upru_base_frame_xx[i];
-        const real upru_base_frame_xy = m->upru_base_frame_xy[i];
-        const real upru_base_frame_xz = m->upru_base_frame_xz[i];
-        const real upru_base_frame_yx = m->upru_base_frame_yx[i];
-        const real upru_base_frame_yy = m->upru_base_frame_yy[i];
-        const real upru_base_frame_yz = m->upru_base_frame_yz[i];
-        const real upru_base_frame_zx = m->upru_base_frame_zx[i];
-        const real upru_base_frame_zy = m->upru_base_frame_zy[i];
-        const real upru_base_frame_zz = m->upru_base_frame_zz[i];
-        const real upru_base_point_x = m->upru_base_point_x[i];
-        const real upru_base_point_y = m->upru_base_point_y[i];
-        const real upru_base_point_z = m->upru_base_point_z[i];
-        const real upru_platform_joint_axis_platform_x = m->upru_platform_joint_axis_platform_x[i];
-        const real upru_platform_joint_axis_platform_y = m->upru_platform_joint_axis_platform_y[i];
-        const real upru_platform_joint_axis_platform_z = m->upru_platform_joint_axis_platform_z[i];
-        const real upru_platform_point_x = m->upru_platform_point_x[i];
-        const real upru_platform_point_y = m->upru_platform_point_y[i];
-        const real upru_platform_point_z = m->upru_platform_point_z[i];
-        /* (upru-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*upru_platform_point_x + R_xy*upru_platform_point_y +
-            R_xz*upru_platform_point_z;
-        const real q_in_base_y = R_yx*upru_platform_point_x + R_yy*upru_platform_point_y +
-            R_yz*upru_platform_point_z;
-        const real q_in_base_z = R_zx*upru_platform_point_x + R_zy*upru_platform_point_y +
-            R_zz*upru_platform_point_z;
-        const real S_x = q_in_base_x + t_x - upru_base_point_x;
-        const real S_y = q_in_base_y + t_y - upru_base_point_y;
-        const real S_z = q_in_base_z + t_z - upru_base_point_z;
-        /* (upru-K2) component along the reference direction */
-        const real px_1 = S_x*upru_base_frame_xx + S_y*upru_base_frame_yx +
-            S_z*upru_base_frame_zx;
-        /* (upru-K3) component across the reference direction */
-        const real py_1 = S_x*upru_base_frame_xy + S_y*upru_base_frame_yy +
-            S_z*upru_base_frame_zy;
-        /* (upru-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upru-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upru-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upru_base_frame_xz + S_y*upru_base_frame_yz +
-            S_z*upru_base_frame_zz;
-        /* (upru-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upru-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upru-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upru-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upru-K20) component along the reference direction */
-        const real end_p1_r0_x = upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xx +
-            R_yx*upru_base_frame_yx + R_zx*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xx + R_yy*upru_base_frame_yx
-            + R_zy*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xx + R_yz*upru_base_frame_yx
-            + R_zz*upru_base_frame_zx);
-        const real end_p1_r0_y = upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xy +
-            R_yx*upru_base_frame_yy + R_zx*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xy + R_yy*upru_base_frame_yy
-            + R_zy*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xy + R_yz*upru_base_frame_yy
-            + R_zz*upru_base_frame_zy);
-        const real end_p1_r0_z = upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xz +
-            R_yx*upru_base_frame_yz + R_zx*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xz + R_yy*upru_base_frame_yz
-            + R_zy*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xz + R_yz*upru_base_frame_yz
-            + R_zz*upru_base_frame_zz);
-        /* (upru-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upru-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upru-K20) component along the reference direction */
-        const real end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x;
-        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
-        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
-        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
-        /* (upru-K23) squared amplitude */
-        const real rho2_4 = end_p1_r1_x*end_p1_r1_x + end_p1_r3_y*end_p1_r3_y;
-        /* (upru-K24) amplitude, with the sign of the branch */
-        const real root_4 = branch_4*root(rho2_4);
-        /* (upru-K25) cosine of the angle of joint 4 from its reference direction */
-        const real inv_root_4 = 1/root_4;
-        const real c_4 = end_p1_r3_y*inv_root_4;
-        /* (upru-K26) sine of the angle of joint 4 from its reference direction */
-        const real s_4 = end_p1_r1_x*inv_root_4;
-        /* (upru-V3) velocity of the connection point per rate of joint 1 */
-        const real v_1_t = c_2*c_4;
-        const real v_1_t_2 = c_2*s_4;
-        const real v_1_t_3 = root_2*v_1_t_2;
-        const real v_1_t_4 = root_2*v_1_t;
-        /* (upru-V7) force part of reciprocal wrench 1 */
-        const real axis_z_x = S_x*inv_root_2;
-        const real axis_z_y = S_y*inv_root_2;
-        const real axis_z_z = S_z*inv_root_2;
-        const real w_1_t = s_2*s_4;
-        const real axis_y_upru_axes4_r4_x = -c_1*c_4 - s_1*w_1_t;
-        const real axis_y_upru_axes4_r4_y = c_4*s_1 - c_1*w_1_t;
-        const real axis_y_upru_axes4_in_base_x = axis_y_upru_axes4_r4_x*upru_base_frame_xx +
-            axis_y_upru_axes4_r4_y*upru_base_frame_xy + upru_base_frame_xz*v_1_t_2;
-        const real axis_y_upru_axes4_in_base_y = axis_y_upru_axes4_r4_x*upru_base_frame_yx +
-            axis_y_upru_axes4_r4_y*upru_base_frame_yy + upru_base_frame_yz*v_1_t_2;
-        const real axis_y_upru_axes4_in_base_z = axis_y_upru_axes4_r4_x*upru_base_frame_zx +
-            axis_y_upru_axes4_r4_y*upru_base_frame_zy + upru_base_frame_zz*v_1_t_2;
-        const real axis_x_upru_axes4_x = axis_y_upru_axes4_in_base_y*axis_z_z -
-            axis_y_upru_axes4_in_base_z*axis_z_y;
-        const real axis_x_upru_axes4_y = axis_y_upru_axes4_in_base_z*axis_z_x -
-            axis_y_upru_axes4_in_base_x*axis_z_z;
-        const real axis_x_upru_axes4_z = axis_y_upru_axes4_in_base_x*axis_z_y -
-            axis_y_upru_axes4_in_base_y*axis_z_x;
-        /* (upru-V6) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4;
-        const real end_p1_r5_y = c_4*end_p1_r1_x - end_p1_r3_y*s_4;
-        /* (upru-V3) velocity of the connection point per rate of joint 1 */
-        const real v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4;
-        const real v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3;
-        /* (upru-V7) force part of reciprocal wrench 1 */
-        const real w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2;
-        /* (upru-V6) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_t = end_p1_r3_x*s_4;
-        /* (upru-V7) force part of reciprocal wrench 1 */
-        const real inv_v_1_r0_y = 1/v_1_r0_y;
-        /* (upru-V13) force part of reciprocal wrench 4 */
-        const real inv_end_p1_r5_x = 1/end_p1_r5_x;
-        /* (upru-N2) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
-        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
-        const real g_r3_x = g_r0_z*s_2 - c_2*g_r1_y;
-        const real g_r3_y = -c_2*g_r0_z - g_r1_y*s_2;
-        /* (upru-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        /* (upru-V19) rate at which the joints turn along moment direction 1 */
-        const real eta_1 = omega_x*(axis_x_upru_axes4_x*end_p1_r3_x - axis_z_x*end_p1_r5_x) +
-            omega_y*(axis_x_upru_axes4_y*end_p1_r3_x - axis_z_y*end_p1_r5_x) +
-            omega_z*(axis_x_upru_axes4_z*end_p1_r3_x - axis_z_z*end_p1_r5_x);
-        /* (upru-V1) velocity of the connection point */
-        const real S_dot_r0_x = S_dot_x*upru_base_frame_xx + S_dot_y*upru_base_frame_yx +
-            S_dot_z*upru_base_frame_zx;
-        const real S_dot_r0_y = S_dot_x*upru_base_frame_xy + S_dot_y*upru_base_frame_yy +
-            S_dot_z*upru_base_frame_zy;
-        const real S_dot_r0_z = S_dot_x*upru_base_frame_xz + S_dot_y*upru_base_frame_yz +
-            S_dot_z*upru_base_frame_zz;
-        const real S_dot_r1_y = -S_dot_r0_x*s_1 - S_dot_r0_y*c_1;
-        const real S_dot_r3_x = S_dot_r0_z*s_2 - S_dot_r1_y*c_2;
-        /* (upru-V20) rate of joint 1 */
-        const real qd_1_t = inv_v_1_r0_y*(S_dot_r0_y*s_1 - S_dot_r0_x*c_1);
-        const real qd_1_t_2 = inv_root_2*(-S_dot_r0_z*c_2 - S_dot_r1_y*s_2 - qd_1_t*v_1_r0_x);
-        const real qd_1_t_3 = inv_end_p1_r5_x*(eta_1 + qd_1_t*w_1_t_2 - n_m1_t*qd_1_t_2);
-        /* (upru-V24) angular velocity of link 1 */
-        const real omega_1_t = qd_1_t*s_2;
-        const real omega_1_t_2 = c_2*qd_1_t;
-        /* (upru-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_x = omega_1_t_2*qd_1_t_2;
-        const real zeta_2_y = omega_1_t*qd_1_t_2;
-        /* (upru-V25) angular velocity of link 2 */
-        const real omega_2_r1_x = qd_1_t_2*s_4 - c_4*omega_1_t_2;
-        const real omega_2_r1_y = c_4*qd_1_t_2 + omega_1_t_2*s_4;
-        /* (upru-A5) angular acceleration of link 4 from the turning of axis 4 */
-        const real zeta_4_x = omega_2_r1_y*qd_1_t_3;
-        /* (upru-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_t = c_4*zeta_2_y;
-        /* (upru-A6) angular acceleration of link 4 at zero joint accelerations */
-        const real beta_4_x = -zeta_2_t - zeta_4_x;
-        /* (upru-V27) angular velocity of link 4 */
-        const real omega_4_z = omega_1_t - qd_1_t_3;
-        /* (upru-A10) rate of moment direction 1 */
-        const real omega_tip_x = axis_x_upru_axes4_x*omega_x + axis_x_upru_axes4_y*omega_y +
-            axis_x_upru_axes4_z*omega_z;
-        const real omega_tip_y = axis_y_upru_axes4_in_base_x*omega_x +
-            axis_y_upru_axes4_in_base_y*omega_y + axis_y_upru_axes4_in_base_z*omega_z;
-        const real omega_tip_z = axis_z_x*omega_x + axis_z_y*omega_y + axis_z_z*omega_z;
-        const real nd_m1_x = end_p1_r5_y*omega_tip_x - end_p1_r5_x*omega_tip_y -
-            end_p1_r5_y*omega_2_r1_x;
-        const real nd_m1_z = end_p1_r5_y*omega_tip_z - end_p1_r3_x*omega_tip_y -
-            end_p1_r5_y*omega_4_z;
-        /* (upru-A11) bias of the angular acceleration along moment direction 1 */
-        const real nu_1_t = beta_4_x*end_p1_r3_x + end_p1_r5_x*zeta_2_x;
-        const real nu_1_t_2 = nd_m1_x*(omega_2_r1_x - omega_tip_x) + nd_m1_z*(omega_4_z -
-            omega_tip_z) + (omega_2_r1_y - omega_tip_y)*(end_p1_r3_x*omega_4_z +
-            end_p1_r5_x*omega_2_r1_x);
-        const real nu_1 = -nu_1_t - nu_1_t_2;
-        /* (upru-V26) centripetal tensor of link 2 */
-        const real W_2_t = omega_1_t*omega_1_t;
-        const real W_2_t_2 = omega_1_t_2*omega_1_t_2;
-        const real W_2_t_3 = qd_1_t_2*qd_1_t_2;
-        const real W_2_xy = omega_1_t*omega_1_t_2;
-        const real W_2_t_4 = omega_2_r1_x*omega_2_r1_x;
-        const real W_2_t_5 = omega_2_r1_y*omega_2_r1_y;
-        const real W_2_xy_2 = omega_2_r1_x*omega_2_r1_y;
-        /* (upru-A7) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_r3_x;
-        const real bias_x = bias_t*omega_2_r1_y + root_2*(omega_1_t*omega_2_r1_x + s_4*zeta_2_y);
-        const real bias_y = root_2*(zeta_2_t + omega_1_t*omega_2_r1_y) - bias_t*omega_2_r1_x;
-        /* (upru-A1) centripetal acceleration of the connection point */
-        const real u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z;
-        const real u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x;
-        const real u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y;
-        const real u_1_tip_x = axis_x_upru_axes4_x*u_1_x + axis_x_upru_axes4_y*u_1_y +
-            axis_x_upru_axes4_z*u_1_z;
-        const real u_1_tip_y = axis_y_upru_axes4_in_base_x*u_1_x +
-            axis_y_upru_axes4_in_base_y*u_1_y + axis_y_upru_axes4_in_base_z*u_1_z;
-        /* (upru-A9) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
-        const real rel_o_x = u_1_tip_x - bias_x;
-        const real rel_o_y = u_1_tip_y - bias_y;
-        /* (upru-A14) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_o_t = inv_v_1_r0_y*(c_4*rel_o_y + rel_o_x*s_4);
-        const real qdd_1_o_t_2 = inv_root_2*(qdd_1_o_t*v_1_r0_x + rel_o_y*s_4 - c_4*rel_o_x);
-        /* (upru-A21) remainder without the acceleration in: angular acceleration of link 1 */
-        const real alpha_1_o_t = qdd_1_o_t*s_2;
-        const real alpha_1_o_t_2 = c_2*qdd_1_o_t;
-        /* (upru-A23) remainder without the acceleration in: angular acceleration of link 2 */
-        const real alpha_2_o_x = alpha_1_o_t - zeta_2_x;
-        const real alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y;
-        /* (upru-A25) remainder of the acceleration tensor of link 2 */
-        const real B_2_o_xy = qdd_1_o_t_2 - W_2_xy;
-        const real B_2_o_yx = -W_2_xy - qdd_1_o_t_2;
-        const real B_2_o_zx = zeta_2_y - alpha_2_o_y;
-        const real B_2_o_zy = alpha_2_o_x - zeta_2_x;
-        /* (upru-N30) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
-        const real mu_2_o_x = B_2_o_yx*J_2_xy + B_2_o_zx*J_2_xz + B_2_o_zy*Sigma_2_yy +
-            Sigma_2_zz*alpha_1_o_t + g_r1_x*h_2_z + g_r3_y*h_2_y - J_2_yz*(W_2_t_2 - W_2_t_3);
-        const real mu_2_o_y = B_2_o_xy*J_2_yz + g_r1_x*h_2_x - B_2_o_zx*Sigma_2_xx -
-            B_2_o_zy*J_2_xz - J_2_xy*(W_2_t - W_2_t_3) - Sigma_2_zz*alpha_1_o_t_2 - g_r3_x*h_2_y;
-        const real mu_2_o_z = B_2_o_yx*Sigma_2_xx + J_2_xy*alpha_1_o_t + J_2_yz*alpha_1_o_t_2 -
-            B_2_o_xy*Sigma_2_yy - J_2_xz*(W_2_t - W_2_t_2) - g_r3_x*h_2_z - g_r3_y*h_2_x;
-        /* (upru-N4) remainder without the acceleration in: acceleration of the reference point of link 4,
-           less gravity */
-        const real acc_4_o_x = u_1_tip_x - c_4*g_r3_y - g_r1_x*s_4;
-        const real acc_4_o_y = u_1_tip_y + g_r3_y*s_4 - c_4*g_r1_x;
-        const real acc_4_o_z = axis_z_x*u_1_x + axis_z_y*u_1_y + axis_z_z*u_1_z - g_r3_x;
-        /* (upru-A29) remainder without the acceleration in: angular acceleration of link 4 */
-        const real alpha_4_o_x = alpha_2_o_y*c_4 - zeta_4_x - qdd_1_o_t_2*s_4;
-        const real alpha_4_o_y = omega_2_r1_x*qd_1_t_3 - alpha_2_o_y*s_4 - c_4*qdd_1_o_t_2;
-        const real alpha_4_o_z = alpha_2_o_x - inv_end_p1_r5_x*(nu_1 + n_m1_t*qdd_1_o_t_2 +
-            qdd_1_o_t*w_1_t_2);
-        /* (upru-V28) centripetal tensor of link 4 */
-        const real W_4_t = omega_4_z*omega_4_z;
-        const real W_4_xz = omega_2_r1_x*omega_4_z;
-        const real W_4_yz = omega_2_r1_y*omega_4_z;
-        /* (upru-A31) remainder of the acceleration tensor of link 4 */
-        const real B_4_o_xy = W_2_xy_2 - alpha_4_o_z;
-        const real B_4_o_xz = W_4_xz + alpha_4_o_y;
-        const real B_4_o_yx = W_2_xy_2 + alpha_4_o_z;
-        const real B_4_o_yz = W_4_yz - alpha_4_o_x;
-        const real B_4_o_zx = W_4_xz - alpha_4_o_y;
-        const real B_4_o_zy = W_4_yz + alpha_4_o_x;
-        /* (upru-N22) remainder without the acceleration in: inertia moment of the links that turn with
-           link 4, about their reference points */
-        const real mu_4_o_x = B_4_o_yx*J_4_xy + B_4_o_zy*Sigma_4_yy + J_4_xz*(W_2_t_5 - W_4_t) +
-            acc_4_o_z*h_4_z - B_4_o_yz*Sigma_4_zz - B_4_o_zx*J_4_yz - acc_4_o_y*h_4_x;
-        const real mu_4_o_y = B_4_o_xz*Sigma_4_zz + B_4_o_zy*J_4_yz + acc_4_o_x*h_4_x -
-            B_4_o_xy*J_4_xz - B_4_o_zx*Sigma_4_xx - J_4_xy*(W_2_t_4 - W_4_t) - acc_4_o_z*h_4_y;
-        const real mu_4_o_z = B_4_o_xz*J_4_xz + B_4_o_yx*Sigma_4_xx + J_4_yz*(W_2_t_4 - W_2_t_5) +
-            acc_4_o_y*h_4_y - B_4_o_xy*Sigma_4_yy - B_4_o_yz*J_4_xy - acc_4_o_x*h_4_z;
-        /* (upru-N32) remainder without the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
-        const real N_2_o_x = mu_2_o_x + mu_4_o_z;
-        const real N_2_o_y = mu_2_o_y + c_4*mu_4_o_x - mu_4_o_y*s_4;
-        const real N_2_o_z = mu_2_o_z + c_4*mu_4_o_y + mu_4_o_x*s_4;
-        /* (upru-N44) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
-        const real G_o_t = inv_end_p1_r5_x*mu_4_o_z;
-        const real G_o_t_2 = inv_root_2*(N_2_o_z + G_o_t*n_m1_t);
-        const real G_o_t_3 = inv_v_1_r0_y*(G_o_t*w_1_t_2 + G_o_t_2*v_1_r0_x + N_2_o_y*c_2 -
-            N_2_o_x*s_2);
-        /* (upru-N8) remainder without the acceleration in: inertia force of link 4 from its turning about
-           its reference point */
-        const real phi_4_o_z = B_4_o_zx*h_4_y + B_4_o_zy*h_4_z - h_4_x*(W_2_t_4 + W_2_t_5);
-        /* (upru-N56) remainder without the acceleration in: leg force on the platform without actuation
+        /* (ucu-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
+        const real ucu_platform_point_x = m->ucu_platform_point_x[i];
+        const real ucu_platform_point_y = m->ucu_platform_point_y[i];
+        const real ucu_platform_point_z = m->ucu_platform_point_z[i];
+        const real ucu_q_in_base_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
+            R_xz*ucu_platform_point_z;
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real ucu_q_in_base_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
+            R_yz*ucu_platform_point_z;
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real ucu_q_in_base_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
+            R_zz*ucu_platform_point_z;
+        const real t_x = s[0*w + j];
+        const real ucu_base_point_x = m->ucu_base_point_x[i];
+        const real ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x;
+        const real t_y = s[1*w + j];
+        const real ucu_base_point_y = m->ucu_base_point_y[i];
+        const real ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y;
+        const real t_z = s[2*w + j];
+        const real ucu_base_point_z = m->ucu_base_point_z[i];
+        const real ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z;
+        /* (ucu-px_1) component along the reference direction */
+        const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
+        const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
+        const real ucu_base_frame_zx = m->ucu_base_frame_zx[i];
+        const real ucu_px_1 = ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx +
+            ucu_S_z*ucu_base_frame_zx;
+        /* (ucu-py_1) component across the reference direction */
+        const real ucu_base_frame_xy = m->ucu_base_frame_xy[i];
+        const real ucu_base_frame_yy = m->ucu_base_frame_yy[i];
+        const real ucu_base_frame_zy = m->ucu_base_frame_zy[i];
+        const real ucu_py_1 = ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy +
+            ucu_S_z*ucu_base_frame_zy;
+        /* (ucu-rho2_1) squared amplitude */
+        const real ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1;
+        /* (ucu-root_1) amplitude, with the sign of the branch */
+        const real ucu_branch_1 = m->ucu_branch_1[i];
+        const real ucu_root_1 = ucu_branch_1*root(ucu_rho2_1);
+        /* (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
+        const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
+        const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
+        const real ucu_xi_1_t = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
+            ucu_S_z*ucu_base_frame_zz;
+        /* (ucu-rho2_2) squared amplitude */
+        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t;
+        /* (ucu-root_2) amplitude, with the sign of the branch */
+        const real ucu_branch_2 = m->ucu_branch_2[i];
+        const real ucu_root_2 = ucu_branch_2*root(ucu_rho2_2);
+        /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ucu_root_2 = 1/ucu_root_2;
+        const real ucu_c_2 = inv_ucu_root_2*ucu_root_1;
+        /* (ucu-s_2) sine of the angle of joint 2 from its reference direction */
+        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t;
+        /* (ucu-px_4) component along the reference direction */
+        const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
+        const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
+        const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
+        const real ucu_end_p1_r0_x = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
+            R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
+            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
+            R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
+            R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
+        const real ucu_end_p1_r0_y = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
+            R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
+            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
+            R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
+            R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
+        const real ucu_end_p1_r0_z = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
+            R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
+            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
+            R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
+            R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
+        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ucu_root_1 = 1/ucu_root_1;
+        const real ucu_c_1 = inv_ucu_root_1*ucu_py_1;
+        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
+        /* (ucu-px_4) component along the reference direction */
+        const real ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x;
+        const real ucu_end_p1_r1_y = -ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1;
+        const real ucu_end_p1_r3_x = ucu_end_p1_r0_z*ucu_s_2 - ucu_c_2*ucu_end_p1_r1_y;
+        const real ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_end_p1_r1_y*ucu_s_2;
+        /* (ucu-rho2_4) squared amplitude */
+        const real ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y;
+        /* (ucu-root_4) amplitude, with the sign of the branch */
+        const real ucu_branch_4 = m->ucu_branch_4[i];
+        const real ucu_root_4 = ucu_branch_4*root(ucu_rho2_4);
+        /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
+        const real inv_ucu_root_4 = 1/ucu_root_4;
+        const real ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y;
+        /* (ucu-s_4) sine of the angle of joint 4 from its reference direction */
+        const real ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x;
+        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
+        const real ucu_v_1_t = ucu_c_2*ucu_c_4;
+        const real ucu_v_1_t_2 = ucu_c_2*ucu_s_4;
+        const real ucu_v_1_t_3 = ucu_root_2*ucu_v_1_t_2;
+        const real ucu_v_1_t_4 = ucu_root_2*ucu_v_1_t;
+        /* (ucu-w_1) force part of reciprocal wrench 1 */
+        const real ucu_axis_z_x = inv_ucu_root_2*ucu_S_x;
+        const real ucu_axis_z_y = inv_ucu_root_2*ucu_S_y;
+        const real ucu_axis_z_z = inv_ucu_root_2*ucu_S_z;
+        const real ucu_w_1_t = ucu_s_2*ucu_s_4;
+        const real axis_y_ucu_axes4_r4_x = -ucu_c_1*ucu_c_4 - ucu_s_1*ucu_w_1_t;
+        const real axis_y_ucu_axes4_r4_y = ucu_c_4*ucu_s_1 - ucu_c_1*ucu_w_1_t;
+        const real axis_y_ucu_axes4_in_base_x = axis_y_ucu_axes4_r4_x*ucu_base_frame_xx +
+            axis_y_ucu_axes4_r4_y*ucu_base_frame_xy + ucu_base_frame_xz*ucu_v_1_t_2;
+        const real axis_y_ucu_axes4_in_base_y = axis_y_ucu_axes4_r4_x*ucu_base_frame_yx +
+            axis_y_ucu_axes4_r4_y*ucu_base_frame_yy + ucu_base_frame_yz*ucu_v_1_t_2;
+        const real axis_y_ucu_axes4_in_base_z = axis_y_ucu_axes4_r4_x*ucu_base_frame_zx +
+            axis_y_ucu_axes4_r4_y*ucu_base_frame_zy + ucu_base_frame_zz*ucu_v_1_t_2;
+        const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_in_base_y*ucu_axis_z_z -
+            axis_y_ucu_axes4_in_base_z*ucu_axis_z_y;
+        const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_in_base_z*ucu_axis_z_x -
+            axis_y_ucu_axes4_in_base_x*ucu_axis_z_z;
+        const real axis_x_ucu_axes4_z = axis_y_ucu_axes4_in_base_x*ucu_axis_z_y -
+            axis_y_ucu_axes4_in_base_y*ucu_axis_z_x;
+        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4;
+        const real ucu_end_p1_r5_y = ucu_c_4*ucu_end_p1_r1_x - ucu_end_p1_r3_y*ucu_s_4;
+        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
+        const real ucu_v_1_r0_x = ucu_c_4*ucu_v_1_t_3 - ucu_s_4*ucu_v_1_t_4;
+        const real ucu_v_1_r0_y = ucu_c_4*ucu_v_1_t_4 + ucu_s_4*ucu_v_1_t_3;
+        /* (ucu-w_1) force part of reciprocal wrench 1 */
+        const real ucu_w_1_t_2 = ucu_end_p1_r3_x*ucu_v_1_t + ucu_end_p1_r5_x*ucu_s_2;
+        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real ucu_n_m1_t = ucu_end_p1_r3_x*ucu_s_4;
+        /* (ucu-w_1) force part of reciprocal wrench 1 */
+        const real inv_ucu_v_1_r0_y = 1/ucu_v_1_r0_y;
+        const real ucu_w_1_t_3 = inv_ucu_v_1_r0_y*ucu_s_4;
+        const real ucu_w_1_t_4 = inv_ucu_v_1_r0_y*ucu_c_4;
+        /* (ucu-w_2) force part of reciprocal wrench 2 */
+        const real ucu_w_2_t = inv_ucu_root_2*inv_ucu_v_1_r0_y*ucu_v_1_r0_x;
+        const real ucu__r1_x = inv_ucu_root_2*ucu_c_4 - ucu_s_4*ucu_w_2_t;
+        const real ucu__r1_y = -inv_ucu_root_2*ucu_s_4 - ucu_c_4*ucu_w_2_t;
+        /* (ucu-w_4) force part of reciprocal wrench 4 */
+        const real inv_ucu_end_p1_r5_x = 1/ucu_end_p1_r5_x;
+        const real ucu_w_4_t = inv_ucu_end_p1_r5_x*inv_ucu_root_2*ucu_n_m1_t;
+        const real ucu_w_4_t_2 = inv_ucu_v_1_r0_y*(inv_ucu_end_p1_r5_x*ucu_w_1_t_2 +
+            ucu_v_1_r0_x*ucu_w_4_t);
+        const real ucu__r1_x_2 = ucu_c_4*ucu_w_4_t - ucu_s_4*ucu_w_4_t_2;
+        const real ucu__r1_y_2 = -ucu_c_4*ucu_w_4_t_2 - ucu_s_4*ucu_w_4_t;
+        /* (ucu-d_alpha_4) coefficient of the acceleration in: angular acceleration of link 4 */
+        const real ucu_d_alpha_4_zy = ucu__r1_y_2 + ucu_s_2*ucu_w_1_t_4;
+        /* (ucu-L_c_4) moment about joint 4 that accelerates joint 4, per unit */
+        const real ucu_J_4_xy = m->ucu_J_4_xy[i];
+        const real ucu_J_4_xz = m->ucu_J_4_xz[i];
+        const real ucu_L_c_4_r0_y = ucu_J_4_xy*ucu_s_4 + ucu_J_4_xz*ucu_c_4;
+        /* (ucu-D_1_4) inertia of joint 4 along joint 1 */
+        const real ucu_J_4_xx = m->ucu_J_4_xx[i];
+        const real ucu_D_1_4 = ucu_J_4_xx*ucu_s_2 + ucu_J_4_xz*ucu_v_1_t_2 - ucu_J_4_xy*ucu_v_1_t;
+        /* (ucu-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
+           inertia and weight */
+        const real ucu_d_Gamma_4_t = inv_ucu_end_p1_r5_x*ucu_J_4_xx;
+        const real ucu_d_Gamma_4_t_2 = inv_ucu_root_2*(ucu_L_c_4_r0_y +
+            ucu_d_Gamma_4_t*ucu_n_m1_t);
+        const real ucu_d_Gamma_4_t_3 = inv_ucu_v_1_r0_y*(ucu_d_Gamma_4_t*ucu_w_1_t_2 +
+            ucu_d_Gamma_4_t_2*ucu_v_1_r0_x - ucu_D_1_4);
+        const real ucu_h_4_z = m->ucu_h_4_z[i];
+        const real ucu_d_Gamma_4_x = ucu_c_4*ucu_d_Gamma_4_t_2 - ucu_h_4_z -
+            ucu_d_Gamma_4_t_3*ucu_s_4;
+        const real ucu_h_4_y = m->ucu_h_4_y[i];
+        const real ucu_d_Gamma_4_y = ucu_h_4_y - ucu_c_4*ucu_d_Gamma_4_t_3 -
+            ucu_d_Gamma_4_t_2*ucu_s_4;
+        /* (ucu-J_4) inertia tensor of link 4 about the connection point */
+        const real ucu_J_4_yz = m->ucu_J_4_yz[i];
+        const real ucu_J_4_t = ucu_J_4_yz*ucu_s_4;
+        const real ucu_J_4_yy = m->ucu_J_4_yy[i];
+        const real ucu__x = ucu_J_4_yy*ucu_c_4 - ucu_J_4_t;
+        const real ucu_J_4_t_2 = ucu_J_4_yz*ucu_c_4;
+        const real ucu_J_4_zz = m->ucu_J_4_zz[i];
+        const real ucu__x_2 = ucu_J_4_t_2 - ucu_J_4_zz*ucu_s_4;
+        /* (ucu-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
+           about the connection point */
+        const real ucu_J_2_xz = m->ucu_J_2_xz[i];
+        const real ucu_Jc_2_xy = ucu_J_4_xy*ucu_c_4 - ucu_J_2_xz - ucu_J_4_xz*ucu_s_4;
+        /* (ucu-L_c_2) moment about joint 2 that accelerates joint 2, per unit */
+        const real ucu_J_2_xy = m->ucu_J_2_xy[i];
+        const real ucu_J_2_yz = m->ucu_J_2_yz[i];
+        const real ucu_L_c_2_r0_y = ucu_s_2*(ucu_J_2_xy + ucu_L_c_4_r0_y) -
+            ucu_c_2*(ucu__x*ucu_s_4 + ucu__x_2*ucu_c_4 - ucu_J_2_yz);
+        /* (ucu-h_4) first moment of link 4 about the connection point */
+        const real ucu_h_4_r1_x = ucu_c_4*ucu_h_4_y - ucu_h_4_z*ucu_s_4;
+        /* (ucu-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real ucu_d_Gamma_2_t = inv_ucu_end_p1_r5_x*ucu_L_c_4_r0_y;
+        const real ucu_J_2_yy = m->ucu_J_2_yy[i];
+        const real ucu_d_Gamma_2_t_2 = inv_ucu_root_2*(ucu_J_2_yy + ucu_c_4*(ucu_J_4_t +
+            ucu_J_4_zz*ucu_c_4) + ucu_d_Gamma_2_t*ucu_n_m1_t + ucu_s_4*(ucu_J_4_t_2 +
+            ucu_J_4_yy*ucu_s_4));
+        const real ucu_d_Gamma_2_t_3 = inv_ucu_v_1_r0_y*(ucu_d_Gamma_2_t*ucu_w_1_t_2 +
+            ucu_d_Gamma_2_t_2*ucu_v_1_r0_x - ucu_L_c_2_r0_y);
+        const real ucu_h_4_x = m->ucu_h_4_x[i];
+        const real ucu_d_Gamma_2_y = ucu_d_Gamma_2_t_2 + ucu_h_4_x;
+        /* (ucu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real ucu_d_Gamma_1_t = inv_ucu_end_p1_r5_x*ucu_D_1_4;
+        const real ucu_d_Gamma_1_t_2 = inv_ucu_root_2*(ucu_L_c_2_r0_y +
+            ucu_d_Gamma_1_t*ucu_n_m1_t);
+        const real ucu_J_2_zz = m->ucu_J_2_zz[i];
+        const real ucu_Jc_2_xx = m->ucu_Jc_2_xx[i];
+        const real ucu_d_Gamma_1_t_3 = ucu_c_2*(ucu_Jc_2_xy*ucu_s_2 - ucu_c_2*(ucu_J_2_zz +
+            ucu__x*ucu_c_4 - ucu__x_2*ucu_s_4)) + ucu_d_Gamma_1_t*ucu_w_1_t_2 +
+            ucu_d_Gamma_1_t_2*ucu_v_1_r0_x - ucu_s_2*(ucu_Jc_2_xx*ucu_s_2 - ucu_Jc_2_xy*ucu_c_2);
+        const real ucu_d_Gamma_1_t_4 = ucu_c_2*ucu_d_Gamma_1_t_2;
+        const real ucu_d_Gamma_1_x = ucu_c_2*ucu_h_4_x + ucu_h_4_r1_x*ucu_s_2 -
+            inv_ucu_v_1_r0_y*ucu_d_Gamma_1_t_3;
+        const real ucu_d_Gamma_1_y = ucu_c_4*ucu_h_4_z + ucu_h_4_y*ucu_s_4 -
+            ucu_d_Gamma_1_t_2*ucu_s_2;
+        const real ucu_d_Gamma_1_r1_x = -ucu_c_2*ucu_d_Gamma_1_y - ucu_d_Gamma_1_t_4*ucu_s_2;
+        const real ucu_d_Gamma_1_r1_y = ucu_c_2*ucu_d_Gamma_1_t_4 - ucu_d_Gamma_1_y*ucu_s_2;
+        const real ucu_d_Gamma_1_r3_y = ucu_c_4*ucu_d_Gamma_1_x - ucu_d_Gamma_1_r1_y*ucu_s_4;
+        /* (ucu-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real ucu_d_Gamma_2_r1_y = -ucu_c_4*ucu_d_Gamma_2_t_3 - ucu_d_Gamma_2_y*ucu_s_4;
+        /* (ucu-d_G) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real ucu_d_G_xz = ucu_d_Gamma_1_r1_x*ucu_w_1_t_3 - ucu__r1_x*ucu_h_4_r1_x;
+        const real ucu_d_G_yz = ucu_d_Gamma_1_r1_x*ucu_w_1_t_4 - ucu__r1_y*ucu_h_4_r1_x;
+        /* (ucu-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real ucu_d_c_xx = ucu_h_4_z*(ucu__r1_x_2 + ucu_s_2*ucu_w_1_t_3) -
+            ucu__r1_x*(ucu_c_4*ucu_d_Gamma_2_y - ucu_d_Gamma_2_t_3*ucu_s_4) -
+            ucu__r1_x_2*ucu_d_Gamma_4_x - ucu_h_4_x*(ucu__r1_x*ucu_c_4 + ucu_v_1_t_2*ucu_w_1_t_3)
+            - ucu_w_1_t_3*(ucu_c_4*ucu_d_Gamma_1_r1_y + ucu_d_Gamma_1_x*ucu_s_4);
+        const real ucu_d_c_xy = ucu_d_alpha_4_zy*ucu_h_4_z - ucu__r1_x*ucu_d_Gamma_2_r1_y -
+            ucu__r1_x_2*ucu_d_Gamma_4_y - ucu_d_Gamma_1_r3_y*ucu_w_1_t_3 -
+            ucu_h_4_x*(ucu__r1_y*ucu_c_4 + ucu_v_1_t_2*ucu_w_1_t_4);
+        const real ucu_d_c_yy = ucu_h_4_x*(ucu__r1_y*ucu_s_4 - ucu_v_1_t*ucu_w_1_t_4) -
+            ucu__r1_y*ucu_d_Gamma_2_r1_y - ucu__r1_y_2*ucu_d_Gamma_4_y -
+            ucu_d_Gamma_1_r3_y*ucu_w_1_t_4 - ucu_d_alpha_4_zy*ucu_h_4_y;
+        /* (ucu-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real ucu_Q_t = R(0.5)*ucu_d_c_xx;
+        const real ucu_Q_t_2 = R(0.5)*ucu_d_c_yy;
+        const real ucu_Q_t_3 = axis_x_ucu_axes4_x*ucu_Q_t + axis_y_ucu_axes4_in_base_x*ucu_d_c_xy
+            - ucu_axis_z_x*ucu_d_G_xz;
+        const real ucu_Q_t_4 = axis_x_ucu_axes4_y*ucu_Q_t + axis_y_ucu_axes4_in_base_y*ucu_d_c_xy
+            - ucu_axis_z_y*ucu_d_G_xz;
+        const real ucu_Q_t_5 = axis_x_ucu_axes4_z*ucu_Q_t + axis_y_ucu_axes4_in_base_z*ucu_d_c_xy
+            - ucu_axis_z_z*ucu_d_G_xz;
+        const real ucu_Q_t_6 = axis_y_ucu_axes4_in_base_x*ucu_Q_t_2 - ucu_axis_z_x*ucu_d_G_yz;
+        const real ucu_Q_t_7 = axis_y_ucu_axes4_in_base_y*ucu_Q_t_2 - ucu_axis_z_y*ucu_d_G_yz;
+        const real ucu_Q_t_8 = axis_y_ucu_axes4_in_base_z*ucu_Q_t_2 - ucu_axis_z_z*ucu_d_G_yz;
+        const real ucu_Q_t_9 = axis_x_ucu_axes4_x*ucu_Q_t_3 +
+            axis_y_ucu_axes4_in_base_x*ucu_Q_t_6;
+        const real ucu_Q_t_10 = 2*ucu_Q_t_9;
+        const real ucu_Q_t_11 = axis_x_ucu_axes4_x*ucu_Q_t_4 + axis_x_ucu_axes4_y*ucu_Q_t_3 +
+            axis_y_ucu_axes4_in_base_x*ucu_Q_t_7 + axis_y_ucu_axes4_in_base_y*ucu_Q_t_6;
+        const real ucu_Q_t_12 = axis_x_ucu_axes4_x*ucu_Q_t_5 + axis_x_ucu_axes4_z*ucu_Q_t_3 +
+            axis_y_ucu_axes4_in_base_x*ucu_Q_t_8 + axis_y_ucu_axes4_in_base_z*ucu_Q_t_6;
+        const real ucu_Q_t_13 = axis_x_ucu_axes4_y*ucu_Q_t_4 +
+            axis_y_ucu_axes4_in_base_y*ucu_Q_t_7;
+        const real ucu_Q_t_14 = 2*ucu_Q_t_13;
+        const real ucu_Q_t_15 = axis_x_ucu_axes4_y*ucu_Q_t_5 + axis_x_ucu_axes4_z*ucu_Q_t_4 +
+            axis_y_ucu_axes4_in_base_y*ucu_Q_t_8 + axis_y_ucu_axes4_in_base_z*ucu_Q_t_7;
+        const real ucu_Q_t_16 = axis_x_ucu_axes4_z*ucu_Q_t_5 +
+            axis_y_ucu_axes4_in_base_z*ucu_Q_t_8;
+        const real ucu_Q_t_17 = 2*ucu_Q_t_16;
+        /* (ucu-o_4) moment part of reciprocal wrench 4 */
+        const real ucu_o_4_x = inv_ucu_end_p1_r5_x*ucu_end_p1_r3_x;
+        /* (ucu-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal
+           links' inertia and weight */
+        const real ucu_dalpha_Gamma_4_t = ucu_J_4_xx*ucu_o_4_x;
+        /* (ucu-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
+           links' inertia and weight */
+        const real ucu_dalpha_Gamma_2_t = ucu_L_c_4_r0_y*ucu_o_4_x;
+        /* (ucu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
+           links' inertia and weight */
+        const real ucu_dalpha_Gamma_1_t = ucu_D_1_4*ucu_o_4_x;
+        /* (ucu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real c_o_x = G_o_t_3*s_4 + h_4_y*(W_2_t_5 + W_4_t) - B_4_o_xy*h_4_z - B_4_o_xz*h_4_x
-            - G_o_t_2*c_4;
-        const real c_o_y = G_o_t_2*s_4 + G_o_t_3*c_4 + h_4_z*(W_2_t_4 + W_4_t) - B_4_o_yx*h_4_y -
-            B_4_o_yz*h_4_x;
-        /* (upru-N62) velocity and gravity terms of the leg force */
-        const real U_in_base_x = axis_z_x*phi_4_o_z - axis_x_upru_axes4_x*c_o_x -
-            axis_y_upru_axes4_in_base_x*c_o_y;
-        const real U_in_base_y = axis_z_y*phi_4_o_z - axis_x_upru_axes4_y*c_o_x -
-            axis_y_upru_axes4_in_base_y*c_o_y;
-        const real U_in_base_z = axis_z_z*phi_4_o_z - axis_x_upru_axes4_z*c_o_x -
-            axis_y_upru_axes4_in_base_z*c_o_y;
-        /* (upru-N52) remainder without the acceleration in: moment at the connection point that balances
+        const real ucu_dalpha_c_xx = ucu__r1_x*ucu_dalpha_Gamma_2_t +
+            ucu__r1_x_2*ucu_dalpha_Gamma_4_t + ucu_dalpha_Gamma_1_t*ucu_w_1_t_3 -
+            ucu_h_4_z*ucu_o_4_x;
+        const real ucu_dalpha_c_xz = ucu_h_4_z - ucu_D_1_4*ucu_w_1_t_3 - ucu_J_4_xx*ucu__r1_x_2 -
+            ucu_L_c_4_r0_y*ucu__r1_x;
+        const real ucu_dalpha_c_yx = ucu__r1_y*ucu_dalpha_Gamma_2_t +
+            ucu__r1_y_2*ucu_dalpha_Gamma_4_t + ucu_dalpha_Gamma_1_t*ucu_w_1_t_4 +
+            ucu_h_4_y*ucu_o_4_x;
+        const real ucu_dalpha_c_yz = -ucu_h_4_y - ucu_D_1_4*ucu_w_1_t_4 - ucu_J_4_xx*ucu__r1_y_2 -
+            ucu_L_c_4_r0_y*ucu__r1_y;
+        const real ucu_dalpha_c_in_base_x = axis_x_ucu_axes4_x*ucu_dalpha_c_xx +
+            axis_y_ucu_axes4_in_base_x*ucu_dalpha_c_yx;
+        const real ucu_dalpha_c_in_base_y = axis_x_ucu_axes4_y*ucu_dalpha_c_xx +
+            axis_y_ucu_axes4_in_base_y*ucu_dalpha_c_yx;
+        const real ucu_dalpha_c_in_base_z = axis_x_ucu_axes4_z*ucu_dalpha_c_xx +
+            axis_y_ucu_axes4_in_base_z*ucu_dalpha_c_yx;
+        const real ucu_dalpha_c_in_base_x_2 = axis_x_ucu_axes4_x*ucu_dalpha_c_xz +
+            axis_y_ucu_axes4_in_base_x*ucu_dalpha_c_yz;
+        const real ucu_dalpha_c_in_base_y_2 = axis_x_ucu_axes4_y*ucu_dalpha_c_xz +
+            axis_y_ucu_axes4_in_base_y*ucu_dalpha_c_yz;
+        const real ucu_dalpha_c_in_base_z_2 = axis_x_ucu_axes4_z*ucu_dalpha_c_xz +
+            axis_y_ucu_axes4_in_base_z*ucu_dalpha_c_yz;
+        /* (M_ta) coupling block of M */
+        const real ucu_M_ta_t = ucu_Q_t_11*ucu_q_in_base_z;
+        const real ucu_M_ta_t_2 = ucu_Q_t_12*ucu_q_in_base_y;
+        const real ucu_M_ta_t_3 = ucu_Q_t_15*ucu_q_in_base_x;
+        const real ucu_M_ta_t_4 = ucu_M_ta_t - ucu_M_ta_t_2 -
+            axis_x_ucu_axes4_x*ucu_dalpha_c_in_base_x - ucu_axis_z_x*ucu_dalpha_c_in_base_x_2;
+        const real ucu_M_ta_t_5 = axis_x_ucu_axes4_y*ucu_dalpha_c_in_base_x +
+            ucu_Q_t_10*ucu_q_in_base_z + ucu_axis_z_y*ucu_dalpha_c_in_base_x_2 -
+            ucu_Q_t_12*ucu_q_in_base_x;
+        const real ucu_M_ta_t_6 = ucu_Q_t_10*ucu_q_in_base_y -
+            axis_x_ucu_axes4_z*ucu_dalpha_c_in_base_x - ucu_Q_t_11*ucu_q_in_base_x -
+            ucu_axis_z_z*ucu_dalpha_c_in_base_x_2;
+        const real ucu_M_ta_t_7 = ucu_Q_t_14*ucu_q_in_base_z -
+            axis_x_ucu_axes4_x*ucu_dalpha_c_in_base_y - ucu_Q_t_15*ucu_q_in_base_y -
+            ucu_axis_z_x*ucu_dalpha_c_in_base_y_2;
+        const real ucu_M_ta_t_8 = ucu_M_ta_t + axis_x_ucu_axes4_y*ucu_dalpha_c_in_base_y +
+            ucu_axis_z_y*ucu_dalpha_c_in_base_y_2 - ucu_M_ta_t_3;
+        const real ucu_M_ta_t_9 = ucu_Q_t_11*ucu_q_in_base_y -
+            axis_x_ucu_axes4_z*ucu_dalpha_c_in_base_y - ucu_Q_t_14*ucu_q_in_base_x -
+            ucu_axis_z_z*ucu_dalpha_c_in_base_y_2;
+        const real ucu_M_ta_t_10 = ucu_Q_t_15*ucu_q_in_base_z -
+            axis_x_ucu_axes4_x*ucu_dalpha_c_in_base_z - ucu_Q_t_17*ucu_q_in_base_y -
+            ucu_axis_z_x*ucu_dalpha_c_in_base_z_2;
+        const real ucu_M_ta_t_11 = axis_x_ucu_axes4_y*ucu_dalpha_c_in_base_z +
+            ucu_Q_t_12*ucu_q_in_base_z + ucu_axis_z_y*ucu_dalpha_c_in_base_z_2 -
+            ucu_Q_t_17*ucu_q_in_base_x;
+        const real ucu_M_ta_t_12 = ucu_M_ta_t_3 + axis_x_ucu_axes4_z*ucu_dalpha_c_in_base_z +
+            ucu_axis_z_z*ucu_dalpha_c_in_base_z_2 - ucu_M_ta_t_2;
+        /* (ucu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
+           balances the leg's inertia and weight along all freedoms */
+        const real ucu_dalpha_G_m1_t = inv_ucu_end_p1_r5_x*ucu_dalpha_Gamma_4_t;
+        /* (ucu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
            the leg's inertia and weight along all freedoms */
-        const real G_m_o_x = G_o_t*end_p1_r3_x;
-        /* (M7) rotational part of Z */
-        const real Z_a_t = U_in_base_z*q_in_base_y + axis_z_x*mu_4_o_z -
-            G_m_o_x*axis_x_upru_axes4_x - U_in_base_y*q_in_base_z;
-        const real Z_a_t_2 = U_in_base_x*q_in_base_z + axis_z_y*mu_4_o_z -
-            G_m_o_x*axis_x_upru_axes4_y - U_in_base_z*q_in_base_x;
-        const real Z_a_t_3 = U_in_base_y*q_in_base_x + axis_z_z*mu_4_o_z -
-            G_m_o_x*axis_x_upru_axes4_z - U_in_base_x*q_in_base_y;
-        o->sum[0][k] = add ? o->sum[0][k] + U_in_base_x : U_in_base_x;  /* total_upru_x */
-        o->sum[1][k] = add ? o->sum[1][k] + U_in_base_y : U_in_base_y;  /* total_upru_y */
-        o->sum[2][k] = add ? o->sum[2][k] + U_in_base_z : U_in_base_z;  /* total_upru_z */
-        o->sum[3][k] = add ? o->sum[3][k] + Z_a_t : Z_a_t;  /* total_upru_x_2 */
-        o->sum[4][k] = add ? o->sum[4][k] + Z_a_t_2 : Z_a_t_2;  /* total_upru_y_2 */
-        o->sum[5][k] = add ? o->sum[5][k] + Z_a_t_3 : Z_a_t_3;  /* total_upru_z_2 */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_4) > TOLERANCE*TOLERANCE*1) + UNLESS(magnitude(-end_p1_r5_x) >
-            TOLERANCE*1) + UNLESS(magnitude(root_2) > TOLERANCE*R(0.8)) +
-            UNLESS(magnitude(v_1_r0_y) > TOLERANCE*R(0.8));
+        const real ucu_d_G_m1_t = inv_ucu_end_p1_r5_x*ucu_d_Gamma_4_x;
+        const real ucu_d_G_m1_t_2 = inv_ucu_end_p1_r5_x*ucu_d_Gamma_4_y;
+        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real ucu_n_m1_in_base_x = axis_x_ucu_axes4_x*ucu_end_p1_r3_x -
+            ucu_axis_z_x*ucu_end_p1_r5_x;
+        const real ucu_n_m1_in_base_y = axis_x_ucu_axes4_y*ucu_end_p1_r3_x -
+            ucu_axis_z_y*ucu_end_p1_r5_x;
+        const real ucu_n_m1_in_base_z = axis_x_ucu_axes4_z*ucu_end_p1_r3_x -
+            ucu_axis_z_z*ucu_end_p1_r5_x;
+        /* (ucu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
+           balances the leg's inertia and weight along all freedoms */
+        const real ucu_dalpha_G_m1_in_base_y = axis_x_ucu_axes4_y*ucu_dalpha_G_m1_t -
+            ucu_axis_z_y*ucu_d_Gamma_4_t;
+        const real ucu_dalpha_G_m1_in_base_z = axis_x_ucu_axes4_z*ucu_dalpha_G_m1_t -
+            ucu_axis_z_z*ucu_d_Gamma_4_t;
+        /* (ucu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
+           the leg's inertia and weight along all freedoms */
+        const real ucu_d_G_m1_in_base_x = -axis_x_ucu_axes4_x*ucu_d_G_m1_t -
+            axis_y_ucu_axes4_in_base_x*ucu_d_G_m1_t_2;
+        const real ucu_d_G_m1_in_base_y = -axis_x_ucu_axes4_y*ucu_d_G_m1_t -
+            axis_y_ucu_axes4_in_base_y*ucu_d_G_m1_t_2;
+        const real ucu_d_G_m1_in_base_z = -axis_x_ucu_axes4_z*ucu_d_G_m1_t -
+            axis_y_ucu_axes4_in_base_z*ucu_d_G_m1_t_2;
+        /* (ucu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
+           the leg's inertia and weight along all freedoms */
+        const real ucu_d_G_m_xx = ucu_d_G_m1_in_base_x*ucu_n_m1_in_base_x;
+        const real ucu_d_G_m_xy = ucu_d_G_m1_in_base_y*ucu_n_m1_in_base_x;
+        const real ucu_d_G_m_xz = ucu_d_G_m1_in_base_z*ucu_n_m1_in_base_x;
+        const real ucu_d_G_m_yx = ucu_d_G_m1_in_base_x*ucu_n_m1_in_base_y;
+        /* (M_aa) rotational block of M */
+        const real ucu_M_aa_t = ucu_M_ta_t_7*ucu_q_in_base_z + ucu_d_G_m_xy*ucu_q_in_base_z -
+            ucu_M_ta_t_10*ucu_q_in_base_y - ucu_d_G_m_xz*ucu_q_in_base_y -
+            ucu_n_m1_in_base_x*(axis_x_ucu_axes4_x*ucu_dalpha_G_m1_t -
+            ucu_axis_z_x*ucu_d_Gamma_4_t);
+        const real ucu_M_aa_t_2 = ucu_M_ta_t_8*ucu_q_in_base_z + ucu_d_G_m_xx*ucu_q_in_base_z +
+            ucu_dalpha_G_m1_in_base_y*ucu_n_m1_in_base_x - ucu_M_ta_t_11*ucu_q_in_base_y -
+            ucu_d_G_m_xz*ucu_q_in_base_x;
+        const real ucu_M_aa_t_3 = ucu_M_ta_t_12*ucu_q_in_base_y + ucu_M_ta_t_9*ucu_q_in_base_z +
+            ucu_d_G_m_xx*ucu_q_in_base_y - ucu_d_G_m_xy*ucu_q_in_base_x -
+            ucu_dalpha_G_m1_in_base_z*ucu_n_m1_in_base_x;
+        const real ucu_M_aa_t_4 = ucu_M_ta_t_11*ucu_q_in_base_x + ucu_d_G_m_yx*ucu_q_in_base_z +
+            ucu_dalpha_G_m1_in_base_y*ucu_n_m1_in_base_y - ucu_M_ta_t_5*ucu_q_in_base_z -
+            ucu_d_G_m1_in_base_z*ucu_n_m1_in_base_y*ucu_q_in_base_x;
+        const real ucu_M_aa_t_5 = ucu_M_ta_t_12*ucu_q_in_base_x + ucu_M_ta_t_6*ucu_q_in_base_z +
+            ucu_dalpha_G_m1_in_base_z*ucu_n_m1_in_base_y +
+            ucu_d_G_m1_in_base_y*ucu_n_m1_in_base_y*ucu_q_in_base_x -
+            ucu_d_G_m_yx*ucu_q_in_base_y;
+        const real ucu_M_aa_t_6 = ucu_M_ta_t_6*ucu_q_in_base_y +
+            ucu_d_G_m1_in_base_x*ucu_n_m1_in_base_z*ucu_q_in_base_y - ucu_M_ta_t_9*ucu_q_in_base_x
+            - ucu_dalpha_G_m1_in_base_z*ucu_n_m1_in_base_z -
+            ucu_d_G_m1_in_base_y*ucu_n_m1_in_base_z*ucu_q_in_base_x;
+        /* (ucu-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real ucu_S_dot_t = omega_y*ucu_q_in_base_z - omega_z*ucu_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real ucu_S_dot_t_2 = omega_z*ucu_q_in_base_x - omega_x*ucu_q_in_base_z;
+        const real ucu_S_dot_t_3 = omega_x*ucu_q_in_base_y - omega_y*ucu_q_in_base_x;
+        const real t_dot_x = s[12*w + j];
+        const real ucu_S_dot_x = t_dot_x + ucu_S_dot_t;
+        const real t_dot_y = s[13*w + j];
+        const real ucu_S_dot_y = t_dot_y + ucu_S_dot_t_2;
+        const real t_dot_z = s[14*w + j];
+        const real ucu_S_dot_z = t_dot_z + ucu_S_dot_t_3;
+        /* (ucu-eta_1) rate at which the joints turn along moment direction 1 */
+        const real ucu_eta_1 = omega_x*ucu_n_m1_in_base_x + omega_y*ucu_n_m1_in_base_y +
+            omega_z*ucu_n_m1_in_base_z;
+        /* (ucu-S_dot) velocity of the connection point */
+        const real ucu_S_dot_r0_x = ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx
+            + ucu_S_dot_z*ucu_base_frame_zx;
+        const real ucu_S_dot_r0_y = ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy
+            + ucu_S_dot_z*ucu_base_frame_zy;
+        const real ucu_S_dot_r0_z = ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz
+            + ucu_S_dot_z*ucu_base_frame_zz;
+        const real ucu_S_dot_r1_y = -ucu_S_dot_r0_x*ucu_s_1 - ucu_S_dot_r0_y*ucu_c_1;
+        const real ucu_S_dot_r3_x = ucu_S_dot_r0_z*ucu_s_2 - ucu_S_dot_r1_y*ucu_c_2;
+        /* (ucu-qd_4) rate of joint 4 */
+        const real ucu_qd_4_t = inv_ucu_v_1_r0_y*(ucu_S_dot_r0_y*ucu_s_1 -
+            ucu_S_dot_r0_x*ucu_c_1);
+        const real ucu_qd_4_t_2 = inv_ucu_root_2*(-ucu_S_dot_r0_z*ucu_c_2 - ucu_S_dot_r1_y*ucu_s_2
+            - ucu_qd_4_t*ucu_v_1_r0_x);
+        const real ucu_qd_4_t_3 = inv_ucu_end_p1_r5_x*(ucu_eta_1 + ucu_qd_4_t*ucu_w_1_t_2 -
+            ucu_n_m1_t*ucu_qd_4_t_2);
+        /* (ucu-omega_1) angular velocity of link 1 */
+        const real ucu_omega_1_t = ucu_qd_4_t*ucu_s_2;
+        const real ucu_omega_1_t_2 = ucu_c_2*ucu_qd_4_t;
+        /* (ucu-omega_2) angular velocity of link 2 */
+        const real ucu_omega_2_r1_x = ucu_qd_4_t_2*ucu_s_4 - ucu_c_4*ucu_omega_1_t_2;
+        const real ucu_omega_2_r1_y = ucu_c_4*ucu_qd_4_t_2 + ucu_omega_1_t_2*ucu_s_4;
+        /* (ucu-omega_4) angular velocity of link 4 */
+        const real ucu_omega_4_z = ucu_omega_1_t - ucu_qd_4_t_3;
+        /* (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
+        const real ucu_zeta_4_x = ucu_omega_2_r1_y*ucu_qd_4_t_3;
+        /* (ucu-u_1) centripetal acceleration of the connection point */
+        const real ucu_u_1_x = omega_y*ucu_S_dot_t_3 - omega_z*ucu_S_dot_t_2;
+        const real ucu_u_1_y = omega_z*ucu_S_dot_t - omega_x*ucu_S_dot_t_3;
+        const real ucu_u_1_z = omega_x*ucu_S_dot_t_2 - omega_y*ucu_S_dot_t;
+        /* (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real ucu_zeta_2_x = ucu_omega_1_t_2*ucu_qd_4_t_2;
+        const real ucu_zeta_2_y = ucu_omega_1_t*ucu_qd_4_t_2;
+        /* (ucu-W_2) centripetal tensor of link 2 */
+        const real ucu_W_2_t = ucu_omega_1_t*ucu_omega_1_t;
+        const real ucu_W_2_t_2 = ucu_omega_1_t_2*ucu_omega_1_t_2;
+        const real ucu_W_2_t_3 = ucu_qd_4_t_2*ucu_qd_4_t_2;
+        const real ucu_W_2_xy = ucu_omega_1_t*ucu_omega_1_t_2;
+        /* (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real ucu_zeta_2_t = ucu_c_4*ucu_zeta_2_y;
+        /* (ucu-W_2) centripetal tensor of link 2 */
+        const real ucu_W_2_t_4 = ucu_omega_2_r1_x*ucu_omega_2_r1_x;
+        const real ucu_W_2_t_5 = ucu_omega_2_r1_y*ucu_omega_2_r1_y;
+        const real ucu_W_2_xy_2 = ucu_omega_2_r1_x*ucu_omega_2_r1_y;
+        /* (ucu-bias) acceleration of the connection point at zero joint accelerations */
+        const real ucu_bias_t = 2*ucu_S_dot_r3_x;
+        const real ucu_bias_x = ucu_bias_t*ucu_omega_2_r1_y +
+            ucu_root_2*(ucu_omega_1_t*ucu_omega_2_r1_x + ucu_s_4*ucu_zeta_2_y);
+        const real ucu_bias_y = ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_t*ucu_omega_2_r1_y) -
+            ucu_bias_t*ucu_omega_2_r1_x;
+        /* (ucu-u_1) centripetal acceleration of the connection point */
+        const real ucu_u_1_tip_x = axis_x_ucu_axes4_x*ucu_u_1_x + axis_x_ucu_axes4_y*ucu_u_1_y +
+            axis_x_ucu_axes4_z*ucu_u_1_z;
+        const real ucu_u_1_tip_y = axis_y_ucu_axes4_in_base_x*ucu_u_1_x +
+            axis_y_ucu_axes4_in_base_y*ucu_u_1_y + axis_y_ucu_axes4_in_base_z*ucu_u_1_z;
+        /* (ucu-rel_o) remainder without the acceleration in: acceleration of the connection point left to
+           the joint accelerations */
+        const real ucu_rel_o_x = ucu_u_1_tip_x - ucu_bias_x;
+        const real ucu_rel_o_y = ucu_u_1_tip_y - ucu_bias_y;
+        /* (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations */
+        const real ucu_beta_4_x = -ucu_zeta_2_t - ucu_zeta_4_x;
+        /* (ucu-nd_m1) rate of moment direction 1 */
+        const real ucu_omega_tip_x = axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y +
+            axis_x_ucu_axes4_z*omega_z;
+        const real ucu_omega_tip_y = axis_y_ucu_axes4_in_base_x*omega_x +
+            axis_y_ucu_axes4_in_base_y*omega_y + axis_y_ucu_axes4_in_base_z*omega_z;
+        const real ucu_omega_tip_z = omega_x*ucu_axis_z_x + omega_y*ucu_axis_z_y +
+            omega_z*ucu_axis_z_z;
+        const real ucu_nd_m1_x = ucu_end_p1_r5_y*ucu_omega_tip_x - ucu_end_p1_r5_x*ucu_omega_tip_y
+            - ucu_end_p1_r5_y*ucu_omega_2_r1_x;
+        const real ucu_nd_m1_z = ucu_end_p1_r5_y*ucu_omega_tip_z - ucu_end_p1_r3_x*ucu_omega_tip_y
+            - ucu_end_p1_r5_y*ucu_omega_4_z;
+        /* (ucu-nu_1) bias of the angular acceleration along moment direction 1 */
+        const real ucu_nu_1_t = ucu_beta_4_x*ucu_end_p1_r3_x + ucu_end_p1_r5_x*ucu_zeta_2_x;
+        const real ucu_nu_1_t_2 = ucu_nd_m1_x*(ucu_omega_2_r1_x - ucu_omega_tip_x) +
+            ucu_nd_m1_z*(ucu_omega_4_z - ucu_omega_tip_z) + (ucu_omega_2_r1_y -
+            ucu_omega_tip_y)*(ucu_end_p1_r3_x*ucu_omega_4_z + ucu_end_p1_r5_x*ucu_omega_2_r1_x);
+        const real ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2;
+        /* (ucu-qdd_4_o) remainder without the acceleration in: acceleration of joint 4 */
+        const real ucu_qdd_4_o_t = inv_ucu_v_1_r0_y*(ucu_c_4*ucu_rel_o_y + ucu_rel_o_x*ucu_s_4);
+        const real ucu_qdd_4_o_t_2 = inv_ucu_root_2*(ucu_qdd_4_o_t*ucu_v_1_r0_x +
+            ucu_rel_o_y*ucu_s_4 - ucu_c_4*ucu_rel_o_x);
+        /* (ucu-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+        const real ucu_alpha_1_o_t = ucu_qdd_4_o_t*ucu_s_2;
+        const real ucu_alpha_1_o_t_2 = ucu_c_2*ucu_qdd_4_o_t;
+        /* (ucu-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        const real ucu_alpha_2_o_x = ucu_alpha_1_o_t - ucu_zeta_2_x;
+        const real ucu_alpha_2_o_y = -ucu_alpha_1_o_t_2 - ucu_zeta_2_y;
+        /* (ucu-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4 */
+        const real ucu_alpha_4_o_x = ucu_alpha_2_o_y*ucu_c_4 - ucu_zeta_4_x -
+            ucu_qdd_4_o_t_2*ucu_s_4;
+        const real ucu_alpha_4_o_y = ucu_omega_2_r1_x*ucu_qd_4_t_3 - ucu_alpha_2_o_y*ucu_s_4 -
+            ucu_c_4*ucu_qdd_4_o_t_2;
+        const real ucu_alpha_4_o_z = ucu_alpha_2_o_x - inv_ucu_end_p1_r5_x*(ucu_nu_1 +
+            ucu_n_m1_t*ucu_qdd_4_o_t_2 + ucu_qdd_4_o_t*ucu_w_1_t_2);
+        /* (ucu-W_4) centripetal tensor of link 4 */
+        const real ucu_W_4_t = ucu_omega_4_z*ucu_omega_4_z;
+        const real ucu_W_4_xz = ucu_omega_2_r1_x*ucu_omega_4_z;
+        const real ucu_W_4_yz = ucu_omega_2_r1_y*ucu_omega_4_z;
+        /* (ucu-B_4_o) remainder of the acceleration tensor of link 4 */
+        const real ucu_B_4_o_xy = ucu_W_2_xy_2 - ucu_alpha_4_o_z;
+        const real ucu_B_4_o_xz = ucu_W_4_xz + ucu_alpha_4_o_y;
+        const real ucu_B_4_o_yx = ucu_W_2_xy_2 + ucu_alpha_4_o_z;
+        const real ucu_B_4_o_yz = ucu_W_4_yz - ucu_alpha_4_o_x;
+        const real ucu_B_4_o_zx = ucu_W_4_xz - ucu_alpha_4_o_y;
+        const real ucu_B_4_o_zy = ucu_W_4_yz + ucu_alpha_4_o_x;
+        /* (ucu-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning
+           about its reference point */
+        const real ucu_phi_4_o_z = ucu_B_4_o_zx*ucu_h_4_y + ucu_B_4_o_zy*ucu_h_4_z -
+            ucu_h_4_x*(ucu_W_2_t_4 + ucu_W_2_t_5);
+        /* (ucu-acc_4_o) remainder without the acceleration in: acceleration of the reference point of
+           link 4, less gravity */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real gravity_z = m->gravity_z;
+        const real ucu_acc_4_o_x = ucu_u_1_tip_x - axis_x_ucu_axes4_x*gravity_x -
+            axis_x_ucu_axes4_y*gravity_y - axis_x_ucu_axes4_z*gravity_z;
+        const real ucu_acc_4_o_y = ucu_u_1_tip_y - axis_y_ucu_axes4_in_base_x*gravity_x -
+            axis_y_ucu_axes4_in_base_y*gravity_y - axis_y_ucu_axes4_in_base_z*gravity_z;
+        const real ucu_acc_4_o_z = ucu_axis_z_x*ucu_u_1_x + ucu_axis_z_y*ucu_u_1_y +
+            ucu_axis_z_z*ucu_u_1_z - gravity_x*ucu_axis_z_x - gravity_y*ucu_axis_z_y -
+            gravity_z*ucu_axis_z_z;
+        /* (ucu-mu_4_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 4, about their reference points */
+        const real ucu_Sigma_4_yy = m->ucu_Sigma_4_yy[i];
+        const real ucu_Sigma_4_zz = m->ucu_Sigma_4_zz[i];
+        const real ucu_mu_4_o_x = ucu_B_4_o_yx*ucu_J_4_xy + ucu_B_4_o_zy*ucu_Sigma_4_yy +
+            ucu_J_4_xz*(ucu_W_2_t_5 - ucu_W_4_t) + ucu_acc_4_o_z*ucu_h_4_z -
+            ucu_B_4_o_yz*ucu_Sigma_4_zz - ucu_B_4_o_zx*ucu_J_4_yz - ucu_acc_4_o_y*ucu_h_4_x;
+        const real ucu_Sigma_4_xx = m->ucu_Sigma_4_xx[i];
+        const real ucu_mu_4_o_y = ucu_B_4_o_xz*ucu_Sigma_4_zz + ucu_B_4_o_zy*ucu_J_4_yz +
+            ucu_acc_4_o_x*ucu_h_4_x - ucu_B_4_o_xy*ucu_J_4_xz - ucu_B_4_o_zx*ucu_Sigma_4_xx -
+            ucu_J_4_xy*(ucu_W_2_t_4 - ucu_W_4_t) - ucu_acc_4_o_z*ucu_h_4_y;
+        const real ucu_mu_4_o_z = ucu_B_4_o_xz*ucu_J_4_xz + ucu_B_4_o_yx*ucu_Sigma_4_xx +
+            ucu_J_4_yz*(ucu_W_2_t_4 - ucu_W_2_t_5) + ucu_acc_4_o_y*ucu_h_4_y -
+            ucu_B_4_o_xy*ucu_Sigma_4_yy - ucu_B_4_o_yz*ucu_J_4_xy - ucu_acc_4_o_x*ucu_h_4_z;
+        /* (ucu-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real ucu_g_r0_x = m->ucu_g_r0_x[i];
+        const real ucu_g_r0_y = m->ucu_g_r0_y[i];
+        const real ucu_g_r1_x = ucu_g_r0_y*ucu_s_1 - ucu_c_1*ucu_g_r0_x;
+        const real ucu_g_r1_y = -ucu_c_1*ucu_g_r0_y - ucu_g_r0_x*ucu_s_1;
+        const real ucu_g_r0_z = m->ucu_g_r0_z[i];
+        const real ucu_g_r3_x = ucu_g_r0_z*ucu_s_2 - ucu_c_2*ucu_g_r1_y;
+        const real ucu_g_r3_y = -ucu_c_2*ucu_g_r0_z - ucu_g_r1_y*ucu_s_2;
+        /* (ucu-B_2_o) remainder of the acceleration tensor of link 2 */
+        const real ucu_B_2_o_xy = ucu_qdd_4_o_t_2 - ucu_W_2_xy;
+        const real ucu_B_2_o_yx = -ucu_W_2_xy - ucu_qdd_4_o_t_2;
+        const real ucu_B_2_o_zx = ucu_zeta_2_y - ucu_alpha_2_o_y;
+        const real ucu_B_2_o_zy = ucu_alpha_2_o_x - ucu_zeta_2_x;
+        /* (ucu-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 2, about their reference points */
+        const real ucu_Sigma_2_yy = m->ucu_Sigma_2_yy[i];
+        const real ucu_Sigma_2_zz = m->ucu_Sigma_2_zz[i];
+        const real ucu_h_2_y = m->ucu_h_2_y[i];
+        const real ucu_h_2_z = m->ucu_h_2_z[i];
+        const real ucu_mu_2_o_x = ucu_B_2_o_yx*ucu_J_2_xy + ucu_B_2_o_zx*ucu_J_2_xz +
+            ucu_B_2_o_zy*ucu_Sigma_2_yy + ucu_Sigma_2_zz*ucu_alpha_1_o_t + ucu_g_r1_x*ucu_h_2_z +
+            ucu_g_r3_y*ucu_h_2_y - ucu_J_2_yz*(ucu_W_2_t_2 - ucu_W_2_t_3);
+        const real ucu_Sigma_2_xx = m->ucu_Sigma_2_xx[i];
+        const real ucu_h_2_x = m->ucu_h_2_x[i];
+        const real ucu_mu_2_o_y = ucu_B_2_o_xy*ucu_J_2_yz + ucu_g_r1_x*ucu_h_2_x -
+            ucu_B_2_o_zx*ucu_Sigma_2_xx - ucu_B_2_o_zy*ucu_J_2_xz - ucu_J_2_xy*(ucu_W_2_t -
+            ucu_W_2_t_3) - ucu_Sigma_2_zz*ucu_alpha_1_o_t_2 - ucu_g_r3_x*ucu_h_2_y;
+        const real ucu_mu_2_o_z = ucu_B_2_o_yx*ucu_Sigma_2_xx + ucu_J_2_xy*ucu_alpha_1_o_t +
+            ucu_J_2_yz*ucu_alpha_1_o_t_2 - ucu_B_2_o_xy*ucu_Sigma_2_yy - ucu_J_2_xz*(ucu_W_2_t -
+            ucu_W_2_t_2) - ucu_g_r3_x*ucu_h_2_z - ucu_g_r3_y*ucu_h_2_x;
+        /* (ucu-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
+           outwards, the force at the connection point left out */
+        const real ucu_N_2_o_x = ucu_mu_2_o_x + ucu_mu_4_o_z;
+        const real ucu_N_2_o_y = ucu_mu_2_o_y + ucu_c_4*ucu_mu_4_o_x - ucu_mu_4_o_y*ucu_s_4;
+        const real ucu_N_2_o_z = ucu_mu_2_o_z + ucu_c_4*ucu_mu_4_o_y + ucu_mu_4_o_x*ucu_s_4;
+        /* (ucu-G_o) remainder without the acceleration in: force at the connection point that balances
+           the leg's inertia and weight along all freedoms */
+        const real ucu_G_o_t = inv_ucu_end_p1_r5_x*ucu_mu_4_o_z;
+        const real ucu_G_o_t_2 = inv_ucu_root_2*(ucu_N_2_o_z + ucu_G_o_t*ucu_n_m1_t);
+        const real ucu_G_o_t_3 = inv_ucu_v_1_r0_y*(ucu_G_o_t*ucu_w_1_t_2 +
+            ucu_G_o_t_2*ucu_v_1_r0_x + ucu_N_2_o_y*ucu_c_2 - ucu_N_2_o_x*ucu_s_2);
+        /* (ucu-c_o) remainder without the acceleration in: leg force on the platform without actuation
+           and without the mass at the connection point */
+        const real ucu_c_o_x = ucu_G_o_t_3*ucu_s_4 + ucu_h_4_y*(ucu_W_2_t_5 + ucu_W_4_t) -
+            ucu_B_4_o_xy*ucu_h_4_z - ucu_B_4_o_xz*ucu_h_4_x - ucu_G_o_t_2*ucu_c_4;
+        const real ucu_c_o_y = ucu_G_o_t_2*ucu_s_4 + ucu_G_o_t_3*ucu_c_4 + ucu_h_4_z*(ucu_W_2_t_4
+            + ucu_W_4_t) - ucu_B_4_o_yx*ucu_h_4_y - ucu_B_4_o_yz*ucu_h_4_x;
+        /* (ucu-U) velocity and gravity terms of the leg force */
+        const real ucu_U_in_base_x = ucu_axis_z_x*ucu_phi_4_o_z - axis_x_ucu_axes4_x*ucu_c_o_x -
+            axis_y_ucu_axes4_in_base_x*ucu_c_o_y;
+        const real ucu_U_in_base_y = ucu_axis_z_y*ucu_phi_4_o_z - axis_x_ucu_axes4_y*ucu_c_o_x -
+            axis_y_ucu_axes4_in_base_y*ucu_c_o_y;
+        const real ucu_U_in_base_z = ucu_axis_z_z*ucu_phi_4_o_z - axis_x_ucu_axes4_z*ucu_c_o_x -
+            axis_y_ucu_axes4_in_base_z*ucu_c_o_y;
+        /* (ucu-G_m_o) remainder without the acceleration in: moment at the connection point that balances
+           the leg's inertia and weight along all freedoms */
+        const real ucu_G_m_o_x = ucu_G_o_t*ucu_end_p1_r3_x;
+        /* (Z_a) rotational part of Z */
+        const real ucu_Z_a_t = ucu_U_in_base_z*ucu_q_in_base_y + ucu_axis_z_x*ucu_mu_4_o_z -
+            axis_x_ucu_axes4_x*ucu_G_m_o_x - ucu_U_in_base_y*ucu_q_in_base_z;
+        const real ucu_Z_a_t_2 = ucu_U_in_base_x*ucu_q_in_base_z + ucu_axis_z_y*ucu_mu_4_o_z -
+            axis_x_ucu_axes4_y*ucu_G_m_o_x - ucu_U_in_base_z*ucu_q_in_base_x;
+        const real ucu_Z_a_t_3 = ucu_U_in_base_y*ucu_q_in_base_x + ucu_axis_z_z*ucu_mu_4_o_z -
+            axis_x_ucu_axes4_z*ucu_G_m_o_x - ucu_U_in_base_x*ucu_q_in_base_y;
+        /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
+        const real ucu_H_a_3_t = ucu_axis_z_z*ucu_q_in_base_y - ucu_axis_z_y*ucu_q_in_base_z;
+        const real ucu_H_a_3_t_2 = ucu_axis_z_x*ucu_q_in_base_z - ucu_axis_z_z*ucu_q_in_base_x;
+        const real ucu_H_a_3_t_3 = ucu_axis_z_y*ucu_q_in_base_x - ucu_axis_z_x*ucu_q_in_base_y;
+        terms[0*count + k] = add ? terms[0*count + k] + ucu_Q_t_10 : ucu_Q_t_10;  /* total_ucu_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + ucu_Q_t_11 : ucu_Q_t_11;  /* total_ucu_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + ucu_Q_t_12 : ucu_Q_t_12;  /* total_ucu_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + ucu_Q_t_14 : ucu_Q_t_14;  /* total_ucu_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + ucu_Q_t_15 : ucu_Q_t_15;  /* total_ucu_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + ucu_Q_t_17 : ucu_Q_t_17;  /* total_ucu_zz */
+        terms[6*count + k] = add ? terms[6*count + k] + ucu_M_ta_t_4 : ucu_M_ta_t_4;  /* total_ucu_xx_2 */
+        terms[7*count + k] = add ? terms[7*count + k] + ucu_M_ta_t_5 : ucu_M_ta_t_5;  /* total_ucu_xy_2 */
+        terms[8*count + k] = add ? terms[8*count + k] + ucu_M_ta_t_6 : ucu_M_ta_t_6;  /* total_ucu_xz_2 */
+        terms[9*count + k] = add ? terms[9*count + k] + ucu_M_ta_t_7 : ucu_M_ta_t_7;  /* total_ucu_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + ucu_M_ta_t_8 : ucu_M_ta_t_8;  /* total_ucu_yy_2 */
+        terms[11*count + k] = add ? terms[11*count + k] + ucu_M_ta_t_9 : ucu_M_ta_t_9;  /* total_ucu_yz_2 */
+        terms[12*count + k] = add ? terms[12*count + k] + ucu_M_ta_t_10 : ucu_M_ta_t_10;  /* total_ucu_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + ucu_M_ta_t_11 : ucu_M_ta_t_11;  /* total_ucu_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + ucu_M_ta_t_12 : ucu_M_ta_t_12;  /* total_ucu_zz_2 */
+        terms[15*count + k] = add ? terms[15*count + k] + ucu_M_aa_t : ucu_M_aa_t;  /* total_ucu_xx_3 */
+        terms[16*count + k] = add ? terms[16*count + k] + ucu_M_aa_t_2 : ucu_M_aa_t_2;  /* total_ucu_xy_3 */
+        terms[17*count + k] = add ? terms[17*count + k] + ucu_M_aa_t_3 : ucu_M_aa_t_3;  /* total_ucu_xz_3 */
+        terms[18*count + k] = add ? terms[18*count + k] + ucu_M_aa_t_4 : ucu_M_aa_t_4;  /* total_ucu_yy_3 */
+        terms[19*count + k] = add ? terms[19*count + k] + ucu_M_aa_t_5 : ucu_M_aa_t_5;  /* total_ucu_yz_3 */
+        terms[20*count + k] = add ? terms[20*count + k] + ucu_M_aa_t_6 : ucu_M_aa_t_6;  /* total_ucu_zz_3 */
+        terms[21*count + k] = add ? terms[21*count + k] + ucu_U_in_base_x : ucu_U_in_base_x;  /* total_ucu_x */
+        terms[22*count + k] = add ? terms[22*count + k] + ucu_U_in_base_y : ucu_U_in_base_y;  /* total_ucu_y */
+        terms[23*count + k] = add ? terms[23*count + k] + ucu_U_in_base_z : ucu_U_in_base_z;  /* total_ucu_z */
+        terms[24*count + k] = add ? terms[24*count + k] + ucu_Z_a_t : ucu_Z_a_t;  /* total_ucu_x_2 */
+        terms[25*count + k] = add ? terms[25*count + k] + ucu_Z_a_t_2 : ucu_Z_a_t_2;  /* total_ucu_y_2 */
+        terms[26*count + k] = add ? terms[26*count + k] + ucu_Z_a_t_3 : ucu_Z_a_t_3;  /* total_ucu_z_2 */
+        o[0*count + k] = ucu_axis_z_x;
+        o[1*count + k] = ucu_axis_z_y;
+        o[2*count + k] = ucu_axis_z_z;
+        o[3*count + k] = ucu_H_a_3_t;
+        o[4*count + k] = ucu_H_a_3_t_2;
+        o[5*count + k] = ucu_H_a_3_t_3;
+        o[7*count + k] = (ucu_axis_z_x + (ucu_axis_z_y + ucu_axis_z_z)) + (ucu_H_a_3_t +
+            (ucu_H_a_3_t_2 + ucu_H_a_3_t_3));
+        o[6*count + k] = UNLESS(magnitude(ucu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ucu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(ucu_rho2_4) > TOLERANCE*TOLERANCE*1) +
+            UNLESS(magnitude(-ucu_end_p1_r5_x) > TOLERANCE*1) + UNLESS(magnitude(ucu_root_2) >
+            TOLERANCE*R(0.8)) + UNLESS(magnitude(ucu_v_1_r0_y) > TOLERANCE*R(0.8));
     }
 }
 
-INLINE void Z_place_upru(size_t w, const Z_results_upru *o, size_t first, verdict *t)
+INLINE void dynamics_place_ucu(size_t w, size_t count, const real *o, size_t leg, size_t first,
+    real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(6 + leg)*w + k] = o[1*count + first + k];
+        H[(12 + leg)*w + k] = o[2*count + first + k];
+        H[(18 + leg)*w + k] = o[3*count + first + k];
+        H[(24 + leg)*w + k] = o[4*count + first + k];
+        H[(30 + leg)*w + k] = o[5*count + first + k];
+        t->singular[k] += o[6*count + first + k];
+        t->total[k] += o[7*count + first + k];
     }
 }
 
-INLINE void Z_after(size_t w, const Z_values *s, real *Z)
+INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const real *sums, real *M,
+    real *Z, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real Z_p_x = s->Z_p_x[k];
-        const real Z_p_y = s->Z_p_y[k];
-        const real Z_p_z = s->Z_p_z[k];
-        const real Z_q_in_base_x = s->Z_q_in_base_x[k];
-        const real Z_q_in_base_y = s->Z_q_in_base_y[k];
-        const real Z_q_in_base_z = s->Z_q_in_base_z[k];
-        const real total_upru_x = s->sum[0][k];
-        const real total_upru_y = s->sum[1][k];
-        const real total_upru_z = s->sum[2][k];
-        const real total_upru_x_2 = s->sum[3][k];
-        const real total_upru_y_2 = s->sum[4][k];
-        const real total_upru_z_2 = s->sum[5][k];
-        /* (M5) translational part of Z */
-        const real Z_t_x = Z_p_x + total_upru_x;
-        const real Z_t_y = Z_p_y + total_upru_y;
-        const real Z_t_z = Z_p_z + total_upru_z;
-        /* (M7) rotational part of Z */
-        const real Z_a_x = Z_q_in_base_x + total_upru_x_2;
-        const real Z_a_y = Z_q_in_base_y + total_upru_y_2;
-        const real Z_a_z = Z_q_in_base_z + total_upru_z_2;
+        /* (M_tt) translational block of M */
+        const real m_star = m->m_star;
+        const real total_ucu_xx = sums[0*w + k];
+        const real M_tt_xx = m_star - total_ucu_xx;
+        const real total_ucu_yy = sums[3*w + k];
+        const real M_tt_yy = m_star - total_ucu_yy;
+        const real total_ucu_zz = sums[5*w + k];
+        const real M_tt_zz = m_star - total_ucu_zz;
+        /* (M_ta) coupling block of M */
+        const real h_star_in_base_z = s[20*w + k];
+        const real total_ucu_xy_2 = sums[7*w + k];
+        const real M_ta_xy = h_star_in_base_z - total_ucu_xy_2;
+        const real h_star_in_base_y = s[19*w + k];
+        const real total_ucu_xz_2 = sums[8*w + k];
+        const real M_ta_xz = total_ucu_xz_2 - h_star_in_base_y;
+        const real total_ucu_yx = sums[9*w + k];
+        const real M_ta_yx = total_ucu_yx - h_star_in_base_z;
+        const real h_star_in_base_x = s[18*w + k];
+        const real total_ucu_yz_2 = sums[11*w + k];
+        const real M_ta_yz = h_star_in_base_x + total_ucu_yz_2;
+        const real total_ucu_zx = sums[12*w + k];
+        const real M_ta_zx = h_star_in_base_y + total_ucu_zx;
+        const real total_ucu_zy = sums[13*w + k];
+        const real M_ta_zy = -h_star_in_base_x - total_ucu_zy;
+        /* (M_aa) rotational block of M */
+        const real J_star_t_8 = s[21*w + k];
+        const real total_ucu_xx_3 = sums[15*w + k];
+        const real M_aa_xx = J_star_t_8 - total_ucu_xx_3;
+        const real J_star_t_9 = s[22*w + k];
+        const real total_ucu_xy_3 = sums[16*w + k];
+        const real M_aa_xy = J_star_t_9 + total_ucu_xy_3;
+        const real J_star_t_10 = s[23*w + k];
+        const real total_ucu_xz_3 = sums[17*w + k];
+        const real M_aa_xz = J_star_t_10 - total_ucu_xz_3;
+        const real J_star_t_13 = s[24*w + k];
+        const real total_ucu_yy_3 = sums[18*w + k];
+        const real M_aa_yy = J_star_t_13 + total_ucu_yy_3;
+        const real J_star_t_15 = s[25*w + k];
+        const real total_ucu_yz_3 = sums[19*w + k];
+        const real M_aa_yz = J_star_t_15 + total_ucu_yz_3;
+        const real J_star_t_17 = s[26*w + k];
+        const real total_ucu_zz_3 = sums[20*w + k];
+        const real M_aa_zz = J_star_t_17 - total_ucu_zz_3;
+        /* (Z_t) translational part of Z */
+        const real Z_p_x = s[27*w + k];
+        const real total_ucu_x = sums[21*w + k];
+        const real Z_t_x = Z_p_x + total_ucu_x;
+        const real Z_p_y = s[28*w + k];
+        const real total_ucu_y = sums[22*w + k];
+        const real Z_t_y = Z_p_y + total_ucu_y;
+        const real Z_p_z = s[29*w + k];
+        const real total_ucu_z = sums[23*w + k];
+        const real Z_t_z = Z_p_z + total_ucu_z;
+        /* (Z_a) rotational part of Z */
+        const real Z_q_in_base_x = s[30*w + k];
+        const real total_ucu_x_2 = sums[24*w + k];
+        const real Z_a_x = Z_q_in_base_x + total_ucu_x_2;
+        const real Z_q_in_base_y = s[31*w + k];
+        const real total_ucu_y_2 = sums[25*w + k];
+        const real Z_a_y = Z_q_in_base_y + total_ucu_y_2;
+        const real Z_q_in_base_z = s[32*w + k];
+        const real total_ucu_z_2 = sums[26*w + k];
+        const real Z_a_z = Z_q_in_base_z + total_ucu_z_2;
+        M[0*w + k] = M_tt_xx;
+        const real total_ucu_xy = sums[1*w + k];
+        M[1*w + k] = -total_ucu_xy;
+        M[6*w + k] = -total_ucu_xy;
+        const real total_ucu_xz = sums[2*w + k];
+        M[2*w + k] = -total_ucu_xz;
+        M[12*w + k] = -total_ucu_xz;
+        M[7*w + k] = M_tt_yy;
+        const real total_ucu_yz = sums[4*w + k];
+        M[8*w + k] = -total_ucu_yz;
+        M[13*w + k] = -total_ucu_yz;
+        M[14*w + k] = M_tt_zz;
+        const real total_ucu_xx_2 = sums[6*w + k];
+        M[3*w + k] = total_ucu_xx_2;
+        M[18*w + k] = total_ucu_xx_2;
+        M[4*w + k] = M_ta_xy;
+        M[24*w + k] = M_ta_xy;
+        M[5*w + k] = M_ta_xz;
+        M[30*w + k] = M_ta_xz;
+        M[9*w + k] = M_ta_yx;
+        M[19*w + k] = M_ta_yx;
+        const real total_ucu_yy_2 = sums[10*w + k];
+        M[10*w + k] = -total_ucu_yy_2;
+        M[25*w + k] = -total_ucu_yy_2;
+        M[11*w + k] = M_ta_yz;
+        M[31*w + k] = M_ta_yz;
+        M[15*w + k] = M_ta_zx;
+        M[20*w + k] = M_ta_zx;
+        M[16*w + k] = M_ta_zy;
+        M[26*w + k] = M_ta_zy;
+        const real total_ucu_zz_2 = sums[14*w + k];
+        M[17*w + k] = -total_ucu_zz_2;
+        M[32*w + k] = -total_ucu_zz_2;
+        M[21*w + k] = M_aa_xx;
+        M[22*w + k] = M_aa_xy;
+        M[27*w + k] = M_aa_xy;
+        M[23*w + k] = M_aa_xz;
+        M[33*w + k] = M_aa_xz;
+        M[28*w + k] = M_aa_yy;
+        M[29*w + k] = M_aa_yz;
+        M[34*w + k] = M_aa_yz;
+        M[35*w + k] = M_aa_zz;
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
+        t->total[k] += (((M_tt_xx + (total_ucu_xy + total_ucu_xz)) + (M_tt_yy + (total_ucu_yz +
+            M_tt_zz))) + ((total_ucu_xx_2 + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + total_ucu_yy_2) +
+            (M_ta_yz + M_ta_zx)))) + (((M_ta_zy + (total_ucu_zz_2 + M_aa_xx)) + ((M_aa_xy +
+            M_aa_xz) + (M_aa_yy + M_aa_yz))) + ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) +
+            (Z_a_y + Z_a_z))));
     }
 }
 
-INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, real *Z, verdict *t)
+INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
+    *H, verdict *t)
 {
-    Z_values values, *const s = &values;
-    Z_results_upru results_upru;
-    Z_before(m, w, X, V, s, t);
-    if (w == 1) {  /* the legs side by side */
-        Z_legs_upru(m, 0, 1, s, 0, 6, 0, &results_upru);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            Z_place_upru(w, &results_upru, leg, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_upru.sum[n], 6);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_upru.sum, 0, sizeof results_upru.sum);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            Z_legs_upru(m, leg, 0, s, 1, w, 1, &results_upru);
-            Z_place_upru(w, &results_upru, 0, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_upru.sum[n][k];
-            }
-        }
+    real s[33] = {0}, sums[27] = {0}, terms_ucu[27*LEGS(6)] = {0}, o_ucu[8*LEGS(6)] = {0};
+    dynamics_before(m, 1, X, V, s, t);
+    dynamics_legs_ucu(m, 1, 0, 1, s, 0, LEGS(6), 0, terms_ucu, o_ucu);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        dynamics_place_ucu(1, LEGS(6), o_ucu, leg, leg, H, t);
     }
-    Z_after(w, s, Z);
+    for (size_t n = 0; n < 27; ++n) {
+        sums[n] = total(terms_ucu + n*LEGS(6), 6);
+    }
+    dynamics_after(m, 1, s, sums, M, Z, t);
+}
+
+INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, verdict *t)
+{
+    real s[33*LANES], sums[27*LANES], o_ucu[8*LANES];
+    dynamics_before(m, LANES, X, V, s, t);
+    clear(sums, 27*LANES);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        dynamics_legs_ucu(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ucu);
+        dynamics_place_ucu(LANES, LANES, o_ucu, leg, 0, H, t);
+    }
+    dynamics_after(m, LANES, s, sums, M, Z, t);
+}
+
+/* ---- M: 2355 mul, 1563 add, 30 div, 18 sqrt, 0 trig, every leg counted ---- */
+INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
+        const real X_0 = X[0*w + k];
+        const real t_x = X_0;
+        const real X_1 = X[1*w + k];
+        const real t_y = X_1;
+        const real X_2 = X[2*w + k];
+        const real t_z = X_2;
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+        const real quaternion_scale = 2/quaternion_norm2;
+        const real quaternion_sx = X_3*quaternion_scale;
+        const real quaternion_sy = X_4*quaternion_scale;
+        const real quaternion_sz = X_5*quaternion_scale;
+        const real quaternion_wx = X_6*quaternion_sx;
+        const real quaternion_wy = X_6*quaternion_sy;
+        const real quaternion_wz = X_6*quaternion_sz;
+        const real quaternion_xx = X_3*quaternion_sx;
+        const real quaternion_xy = X_3*quaternion_sy;
+        const real quaternion_xz = X_3*quaternion_sz;
+        const real quaternion_yy = X_4*quaternion_sy;
+        const real quaternion_yz = X_4*quaternion_sz;
+        const real quaternion_zz = X_5*quaternion_sz;
+        const real R_xx = 1 - quaternion_yy - quaternion_zz;
+        const real R_xy = quaternion_xy - quaternion_wz;
+        const real R_xz = quaternion_wy + quaternion_xz;
+        const real R_yx = quaternion_wz + quaternion_xy;
+        const real R_yy = 1 - quaternion_xx - quaternion_zz;
+        const real R_yz = quaternion_yz - quaternion_wx;
+        const real R_zx = quaternion_xz - quaternion_wy;
+        const real R_zy = quaternion_wx + quaternion_yz;
+        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_z = m->h_star_z;
+        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
+        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
+        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        /* (J_star) inertia tensor about the platform origin */
+        const real J_star_t_12 = m->J_star_t_12;
+        const real J_star_xy = m->J_star_xy;
+        const real J_star_yz = m->J_star_yz;
+        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy;
+        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy;
+        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy;
+        const real J_star_t_14 = m->J_star_t_14;
+        const real J_star_xz = m->J_star_xz;
+        const real J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx;
+        const real J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx;
+        const real J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx;
+        const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
+        const real J_star_xx = m->J_star_xx;
+        const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
+        const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
+            J_star_t_5*R_xz;
+        const real J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
+            J_star_t_6*R_xz;
+        const real J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz;
+        const real J_star_t_13 = 2*J_star_t_11 + J_star_xx;
+        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+            J_star_t_6*R_yz;
+        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz;
+        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = h_star_in_base_x;
+        s[13*w + k] = h_star_in_base_y;
+        s[14*w + k] = h_star_in_base_z;
+        s[15*w + k] = J_star_t_8;
+        s[16*w + k] = J_star_t_9;
+        s[17*w + k] = J_star_t_10;
+        s[18*w + k] = J_star_t_13;
+        s[19*w + k] = J_star_t_15;
+        s[20*w + k] = J_star_t_17;
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+    }
+}
+
+INLINE void M_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, int add, real *terms, real *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        /* (ucu-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
+        const real ucu_platform_point_x = m->ucu_platform_point_x[i];
+        const real ucu_platform_point_y = m->ucu_platform_point_y[i];
+        const real ucu_platform_point_z = m->ucu_platform_point_z[i];
+        const real ucu_q_in_base_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
+            R_xz*ucu_platform_point_z;
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real ucu_q_in_base_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
+            R_yz*ucu_platform_point_z;
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real ucu_q_in_base_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
+            R_zz*ucu_platform_point_z;
+        const real t_x = s[0*w + j];
+        const real ucu_base_point_x = m->ucu_base_point_x[i];
+        const real ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x;
+        const real t_y = s[1*w + j];
+        const real ucu_base_point_y = m->ucu_base_point_y[i];
+        const real ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y;
+        const real t_z = s[2*w + j];
+        const real ucu_base_point_z = m->ucu_base_point_z[i];
+        const real ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z;
+        /* (ucu-px_1) component along the reference direction */
+        const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
+        const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
+        const real ucu_base_frame_zx = m->ucu_base_frame_zx[i];
+        const real ucu_px_1 = ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx +
+            ucu_S_z*ucu_base_frame_zx;
+        /* (ucu-py_1) component across the reference direction */
+        const real ucu_base_frame_xy = m->ucu_base_frame_xy[i];
+        const real ucu_base_frame_yy = m->ucu_base_frame_yy[i];
+        const real ucu_base_frame_zy = m->ucu_base_frame_zy[i];
+        const real ucu_py_1 = ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy +
+            ucu_S_z*ucu_base_frame_zy;
+        /* (ucu-rho2_1) squared amplitude */
+        const real ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1;
+        /* (ucu-root_1) amplitude, with the sign of the branch */
+        const real ucu_branch_1 = m->ucu_branch_1[i];
+        const real ucu_root_1 = ucu_branch_1*root(ucu_rho2_1);
+        /* (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
+        const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
+        const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
+        const real ucu_xi_1_t = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
+            ucu_S_z*ucu_base_frame_zz;
+        /* (ucu-rho2_2) squared amplitude */
+        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t;
+        /* (ucu-root_2) amplitude, with the sign of the branch */
+        const real ucu_branch_2 = m->ucu_branch_2[i];
+        const real ucu_root_2 = ucu_branch_2*root(ucu_rho2_2);
+        /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ucu_root_2 = 1/ucu_root_2;
+        const real ucu_c_2 = inv_ucu_root_2*ucu_root_1;
+        /* (ucu-s_2) sine of the angle of joint 2 from its reference direction */
+        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t;
+        /* (ucu-px_4) component along the reference direction */
+        const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
+        const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
+        const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
+        const real ucu_end_p1_r0_x = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
+            R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
+            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
+            R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
+            R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
+        const real ucu_end_p1_r0_y = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
+            R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
+            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
+            R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
+            R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
+        const real ucu_end_p1_r0_z = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
+            R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
+            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
+            R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
+            R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
+        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ucu_root_1 = 1/ucu_root_1;
+        const real ucu_c_1 = inv_ucu_root_1*ucu_py_1;
+        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
+        /* (ucu-px_4) component along the reference direction */
+        const real ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x;
+        const real ucu_end_p1_r1_y = -ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1;
+        const real ucu_end_p1_r3_x = ucu_end_p1_r0_z*ucu_s_2 - ucu_c_2*ucu_end_p1_r1_y;
+        const real ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_end_p1_r1_y*ucu_s_2;
+        /* (ucu-rho2_4) squared amplitude */
+        const real ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y;
+        /* (ucu-root_4) amplitude, with the sign of the branch */
+        const real ucu_branch_4 = m->ucu_branch_4[i];
+        const real ucu_root_4 = ucu_branch_4*root(ucu_rho2_4);
+        /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
+        const real inv_ucu_root_4 = 1/ucu_root_4;
+        const real ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y;
+        /* (ucu-s_4) sine of the angle of joint 4 from its reference direction */
+        const real ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x;
+        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
+        const real ucu_v_1_t = ucu_c_2*ucu_c_4;
+        const real ucu_v_1_t_2 = ucu_c_2*ucu_s_4;
+        const real ucu_v_1_t_3 = ucu_root_2*ucu_v_1_t_2;
+        const real ucu_v_1_t_4 = ucu_root_2*ucu_v_1_t;
+        /* (ucu-w_1) force part of reciprocal wrench 1 */
+        const real ucu_axis_z_x = inv_ucu_root_2*ucu_S_x;
+        const real ucu_axis_z_y = inv_ucu_root_2*ucu_S_y;
+        const real ucu_axis_z_z = inv_ucu_root_2*ucu_S_z;
+        const real ucu_w_1_t = ucu_s_2*ucu_s_4;
+        const real axis_y_ucu_axes4_r4_x = -ucu_c_1*ucu_c_4 - ucu_s_1*ucu_w_1_t;
+        const real axis_y_ucu_axes4_r4_y = ucu_c_4*ucu_s_1 - ucu_c_1*ucu_w_1_t;
+        const real axis_y_ucu_axes4_in_base_x = axis_y_ucu_axes4_r4_x*ucu_base_frame_xx +
+            axis_y_ucu_axes4_r4_y*ucu_base_frame_xy + ucu_base_frame_xz*ucu_v_1_t_2;
+        const real axis_y_ucu_axes4_in_base_y = axis_y_ucu_axes4_r4_x*ucu_base_frame_yx +
+            axis_y_ucu_axes4_r4_y*ucu_base_frame_yy + ucu_base_frame_yz*ucu_v_1_t_2;
+        const real axis_y_ucu_axes4_in_base_z = axis_y_ucu_axes4_r4_x*ucu_base_frame_zx +
+            axis_y_ucu_axes4_r4_y*ucu_base_frame_zy + ucu_base_frame_zz*ucu_v_1_t_2;
+        const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_in_base_y*ucu_axis_z_z -
+            axis_y_ucu_axes4_in_base_z*ucu_axis_z_y;
+        const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_in_base_z*ucu_axis_z_x -
+            axis_y_ucu_axes4_in_base_x*ucu_axis_z_z;
+        const real axis_x_ucu_axes4_z = axis_y_ucu_axes4_in_base_x*ucu_axis_z_y -
+            axis_y_ucu_axes4_in_base_y*ucu_axis_z_x;
+        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4;
+        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
+        const real ucu_v_1_r0_x = ucu_c_4*ucu_v_1_t_3 - ucu_s_4*ucu_v_1_t_4;
+        const real ucu_v_1_r0_y = ucu_c_4*ucu_v_1_t_4 + ucu_s_4*ucu_v_1_t_3;
+        /* (ucu-w_1) force part of reciprocal wrench 1 */
+        const real ucu_w_1_t_2 = ucu_end_p1_r3_x*ucu_v_1_t + ucu_end_p1_r5_x*ucu_s_2;
+        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real ucu_n_m1_t = ucu_end_p1_r3_x*ucu_s_4;
+        /* (ucu-w_1) force part of reciprocal wrench 1 */
+        const real inv_ucu_v_1_r0_y = 1/ucu_v_1_r0_y;
+        const real ucu_w_1_t_3 = inv_ucu_v_1_r0_y*ucu_s_4;
+        const real ucu_w_1_t_4 = inv_ucu_v_1_r0_y*ucu_c_4;
+        /* (ucu-w_2) force part of reciprocal wrench 2 */
+        const real ucu_w_2_t = inv_ucu_root_2*inv_ucu_v_1_r0_y*ucu_v_1_r0_x;
+        const real ucu__r1_x = inv_ucu_root_2*ucu_c_4 - ucu_s_4*ucu_w_2_t;
+        const real ucu__r1_y = -inv_ucu_root_2*ucu_s_4 - ucu_c_4*ucu_w_2_t;
+        /* (ucu-w_4) force part of reciprocal wrench 4 */
+        const real inv_ucu_end_p1_r5_x = 1/ucu_end_p1_r5_x;
+        const real ucu_w_4_t = inv_ucu_end_p1_r5_x*inv_ucu_root_2*ucu_n_m1_t;
+        const real ucu_w_4_t_2 = inv_ucu_v_1_r0_y*(inv_ucu_end_p1_r5_x*ucu_w_1_t_2 +
+            ucu_v_1_r0_x*ucu_w_4_t);
+        const real ucu__r1_x_2 = ucu_c_4*ucu_w_4_t - ucu_s_4*ucu_w_4_t_2;
+        const real ucu__r1_y_2 = -ucu_c_4*ucu_w_4_t_2 - ucu_s_4*ucu_w_4_t;
+        /* (ucu-d_alpha_4) coefficient of the acceleration in: angular acceleration of link 4 */
+        const real ucu_d_alpha_4_zy = ucu__r1_y_2 + ucu_s_2*ucu_w_1_t_4;
+        /* (ucu-L_c_4) moment about joint 4 that accelerates joint 4, per unit */
+        const real ucu_J_4_xy = m->ucu_J_4_xy[i];
+        const real ucu_J_4_xz = m->ucu_J_4_xz[i];
+        const real ucu_L_c_4_r0_y = ucu_J_4_xy*ucu_s_4 + ucu_J_4_xz*ucu_c_4;
+        /* (ucu-D_1_4) inertia of joint 4 along joint 1 */
+        const real ucu_J_4_xx = m->ucu_J_4_xx[i];
+        const real ucu_D_1_4 = ucu_J_4_xx*ucu_s_2 + ucu_J_4_xz*ucu_v_1_t_2 - ucu_J_4_xy*ucu_v_1_t;
+        /* (ucu-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
+           inertia and weight */
+        const real ucu_d_Gamma_4_t = inv_ucu_end_p1_r5_x*ucu_J_4_xx;
+        const real ucu_d_Gamma_4_t_2 = inv_ucu_root_2*(ucu_L_c_4_r0_y +
+            ucu_d_Gamma_4_t*ucu_n_m1_t);
+        const real ucu_d_Gamma_4_t_3 = inv_ucu_v_1_r0_y*(ucu_d_Gamma_4_t*ucu_w_1_t_2 +
+            ucu_d_Gamma_4_t_2*ucu_v_1_r0_x - ucu_D_1_4);
+        const real ucu_h_4_z = m->ucu_h_4_z[i];
+        const real ucu_d_Gamma_4_x = ucu_c_4*ucu_d_Gamma_4_t_2 - ucu_h_4_z -
+            ucu_d_Gamma_4_t_3*ucu_s_4;
+        const real ucu_h_4_y = m->ucu_h_4_y[i];
+        const real ucu_d_Gamma_4_y = ucu_h_4_y - ucu_c_4*ucu_d_Gamma_4_t_3 -
+            ucu_d_Gamma_4_t_2*ucu_s_4;
+        /* (ucu-J_4) inertia tensor of link 4 about the connection point */
+        const real ucu_J_4_yz = m->ucu_J_4_yz[i];
+        const real ucu_J_4_t = ucu_J_4_yz*ucu_s_4;
+        const real ucu_J_4_yy = m->ucu_J_4_yy[i];
+        const real ucu__x = ucu_J_4_yy*ucu_c_4 - ucu_J_4_t;
+        const real ucu_J_4_t_2 = ucu_J_4_yz*ucu_c_4;
+        const real ucu_J_4_zz = m->ucu_J_4_zz[i];
+        const real ucu__x_2 = ucu_J_4_t_2 - ucu_J_4_zz*ucu_s_4;
+        /* (ucu-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
+           about the connection point */
+        const real ucu_J_2_xz = m->ucu_J_2_xz[i];
+        const real ucu_Jc_2_xy = ucu_J_4_xy*ucu_c_4 - ucu_J_2_xz - ucu_J_4_xz*ucu_s_4;
+        /* (ucu-L_c_2) moment about joint 2 that accelerates joint 2, per unit */
+        const real ucu_J_2_xy = m->ucu_J_2_xy[i];
+        const real ucu_J_2_yz = m->ucu_J_2_yz[i];
+        const real ucu_L_c_2_r0_y = ucu_s_2*(ucu_J_2_xy + ucu_L_c_4_r0_y) -
+            ucu_c_2*(ucu__x*ucu_s_4 + ucu__x_2*ucu_c_4 - ucu_J_2_yz);
+        /* (ucu-h_4) first moment of link 4 about the connection point */
+        const real ucu_h_4_r1_x = ucu_c_4*ucu_h_4_y - ucu_h_4_z*ucu_s_4;
+        /* (ucu-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real ucu_d_Gamma_2_t = inv_ucu_end_p1_r5_x*ucu_L_c_4_r0_y;
+        const real ucu_J_2_yy = m->ucu_J_2_yy[i];
+        const real ucu_d_Gamma_2_t_2 = inv_ucu_root_2*(ucu_J_2_yy + ucu_c_4*(ucu_J_4_t +
+            ucu_J_4_zz*ucu_c_4) + ucu_d_Gamma_2_t*ucu_n_m1_t + ucu_s_4*(ucu_J_4_t_2 +
+            ucu_J_4_yy*ucu_s_4));
+        const real ucu_d_Gamma_2_t_3 = inv_ucu_v_1_r0_y*(ucu_d_Gamma_2_t*ucu_w_1_t_2 +
+            ucu_d_Gamma_2_t_2*ucu_v_1_r0_x - ucu_L_c_2_r0_y);
+        const real ucu_h_4_x = m->ucu_h_4_x[i];
+        const real ucu_d_Gamma_2_y = ucu_d_Gamma_2_t_2 + ucu_h_4_x;
+        /* (ucu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real ucu_d_Gamma_1_t = inv_ucu_end_p1_r5_x*ucu_D_1_4;
+        const real ucu_d_Gamma_1_t_2 = inv_ucu_root_2*(ucu_L_c_2_r0_y +
+            ucu_d_Gamma_1_t*ucu_n_m1_t);
+        const real ucu_J_2_zz = m->ucu_J_2_zz[i];
+        const real ucu_Jc_2_xx = m->ucu_Jc_2_xx[i];
+        const real ucu_d_Gamma_1_t_3 = ucu_c_2*(ucu_Jc_2_xy*ucu_s_2 - ucu_c_2*(ucu_J_2_zz +
+            ucu__x*ucu_c_4 - ucu__x_2*ucu_s_4)) + ucu_d_Gamma_1_t*ucu_w_1_t_2 +
+            ucu_d_Gamma_1_t_2*ucu_v_1_r0_x - ucu_s_2*(ucu_Jc_2_xx*ucu_s_2 - ucu_Jc_2_xy*ucu_c_2);
+        const real ucu_d_Gamma_1_t_4 = ucu_c_2*ucu_d_Gamma_1_t_2;
+        const real ucu_d_Gamma_1_x = ucu_c_2*ucu_h_4_x + ucu_h_4_r1_x*ucu_s_2 -
+            inv_ucu_v_1_r0_y*ucu_d_Gamma_1_t_3;
+        const real ucu_d_Gamma_1_y = ucu_c_4*ucu_h_4_z + ucu_h_4_y*ucu_s_4 -
+            ucu_d_Gamma_1_t_2*ucu_s_2;
+        const real ucu_d_Gamma_1_r1_x = -ucu_c_2*ucu_d_Gamma_1_y - ucu_d_Gamma_1_t_4*ucu_s_2;
+        const real ucu_d_Gamma_1_r1_y = ucu_c_2*ucu_d_Gamma_1_t_4 - ucu_d_Gamma_1_y*ucu_s_2;
+        const real ucu_d_Gamma_1_r3_y = ucu_c_4*ucu_d_Gamma_1_x - ucu_d_Gamma_1_r1_y*ucu_s_4;
+        /* (ucu-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real ucu_d_Gamma_2_r1_y = -ucu_c_4*ucu_d_Gamma_2_t_3 - ucu_d_Gamma_2_y*ucu_s_4;
+        /* (ucu-d_G) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real ucu_d_G_xz = ucu_d_Gamma_1_r1_x*ucu_w_1_t_3 - ucu__r1_x*ucu_h_4_r1_x;
+        const real ucu_d_G_yz = ucu_d_Gamma_1_r1_x*ucu_w_1_t_4 - ucu__r1_y*ucu_h_4_r1_x;
+        /* (ucu-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real ucu_d_c_xx = ucu_h_4_z*(ucu__r1_x_2 + ucu_s_2*ucu_w_1_t_3) -
+            ucu__r1_x*(ucu_c_4*ucu_d_Gamma_2_y - ucu_d_Gamma_2_t_3*ucu_s_4) -
+            ucu__r1_x_2*ucu_d_Gamma_4_x - ucu_h_4_x*(ucu__r1_x*ucu_c_4 + ucu_v_1_t_2*ucu_w_1_t_3)
+            - ucu_w_1_t_3*(ucu_c_4*ucu_d_Gamma_1_r1_y + ucu_d_Gamma_1_x*ucu_s_4);
+        const real ucu_d_c_xy = ucu_d_alpha_4_zy*ucu_h_4_z - ucu__r1_x*ucu_d_Gamma_2_r1_y -
+            ucu__r1_x_2*ucu_d_Gamma_4_y - ucu_d_Gamma_1_r3_y*ucu_w_1_t_3 -
+            ucu_h_4_x*(ucu__r1_y*ucu_c_4 + ucu_v_1_t_2*ucu_w_1_t_4);
+        const real ucu_d_c_yy = ucu_h_4_x*(ucu__r1_y*ucu_s_4 - ucu_v_1_t*ucu_w_1_t_4) -
+            ucu__r1_y*ucu_d_Gamma_2_r1_y - ucu__r1_y_2*ucu_d_Gamma_4_y -
+            ucu_d_Gamma_1_r3_y*ucu_w_1_t_4 - ucu_d_alpha_4_zy*ucu_h_4_y;
+        /* (ucu-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real ucu_Q_t = R(0.5)*ucu_d_c_xx;
+        const real ucu_Q_t_2 = R(0.5)*ucu_d_c_yy;
+        const real ucu_Q_t_3 = axis_x_ucu_axes4_x*ucu_Q_t + axis_y_ucu_axes4_in_base_x*ucu_d_c_xy
+            - ucu_axis_z_x*ucu_d_G_xz;
+        const real ucu_Q_t_4 = axis_x_ucu_axes4_y*ucu_Q_t + axis_y_ucu_axes4_in_base_y*ucu_d_c_xy
+            - ucu_axis_z_y*ucu_d_G_xz;
+        const real ucu_Q_t_5 = axis_x_ucu_axes4_z*ucu_Q_t + axis_y_ucu_axes4_in_base_z*ucu_d_c_xy
+            - ucu_axis_z_z*ucu_d_G_xz;
+        const real ucu_Q_t_6 = axis_y_ucu_axes4_in_base_x*ucu_Q_t_2 - ucu_axis_z_x*ucu_d_G_yz;
+        const real ucu_Q_t_7 = axis_y_ucu_axes4_in_base_y*ucu_Q_t_2 - ucu_axis_z_y*ucu_d_G_yz;
+        const real ucu_Q_t_8 = axis_y_ucu_axes4_in_base_z*ucu_Q_t_2 - ucu_axis_z_z*ucu_d_G_yz;
+        const real ucu_Q_t_9 = axis_x_ucu_axes4_x*ucu_Q_t_3 +
+            axis_y_ucu_axes4_in_base_x*ucu_Q_t_6;
+        const real ucu_Q_t_10 = 2*ucu_Q_t_9;
+        const real ucu_Q_t_11 = axis_x_ucu_axes4_x*ucu_Q_t_4 + axis_x_ucu_axes4_y*ucu_Q_t_3 +
+            axis_y_ucu_axes4_in_base_x*ucu_Q_t_7 + axis_y_ucu_axes4_in_base_y*ucu_Q_t_6;
+        const real ucu_Q_t_12 = axis_x_ucu_axes4_x*ucu_Q_t_5 + axis_x_ucu_axes4_z*ucu_Q_t_3 +
+            axis_y_ucu_axes4_in_base_x*ucu_Q_t_8 + axis_y_ucu_axes4_in_base_z*ucu_Q_t_6;
+        const real ucu_Q_t_13 = axis_x_ucu_axes4_y*ucu_Q_t_4 +
+            axis_y_ucu_axes4_in_base_y*ucu_Q_t_7;
+        const real ucu_Q_t_14 = 2*ucu_Q_t_13;
+        const real ucu_Q_t_15 = axis_x_ucu_axes4_y*ucu_Q_t_5 + axis_x_ucu_axes4_z*ucu_Q_t_4 +
+            axis_y_ucu_axes4_in_base_y*ucu_Q_t_8 + axis_y_ucu_axes4_in_base_z*ucu_Q_t_7;
+        const real ucu_Q_t_16 = axis_x_ucu_axes4_z*ucu_Q_t_5 +
+            axis_y_ucu_axes4_in_base_z*ucu_Q_t_8;
+        const real ucu_Q_t_17 = 2*ucu_Q_t_16;
+        /* (ucu-o_4) moment part of reciprocal wrench 4 */
+        const real ucu_o_4_x = inv_ucu_end_p1_r5_x*ucu_end_p1_r3_x;
+        /* (ucu-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal
+           links' inertia and weight */
+        const real ucu_dalpha_Gamma_4_t = ucu_J_4_xx*ucu_o_4_x;
+        /* (ucu-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
+           links' inertia and weight */
+        const real ucu_dalpha_Gamma_2_t = ucu_L_c_4_r0_y*ucu_o_4_x;
+        /* (ucu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
+           links' inertia and weight */
+        const real ucu_dalpha_Gamma_1_t = ucu_D_1_4*ucu_o_4_x;
+        /* (ucu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
+           and without the mass at the connection point */
+        const real ucu_dalpha_c_xx = ucu__r1_x*ucu_dalpha_Gamma_2_t +
+            ucu__r1_x_2*ucu_dalpha_Gamma_4_t + ucu_dalpha_Gamma_1_t*ucu_w_1_t_3 -
+            ucu_h_4_z*ucu_o_4_x;
+        const real ucu_dalpha_c_xz = ucu_h_4_z - ucu_D_1_4*ucu_w_1_t_3 - ucu_J_4_xx*ucu__r1_x_2 -
+            ucu_L_c_4_r0_y*ucu__r1_x;
+        const real ucu_dalpha_c_yx = ucu__r1_y*ucu_dalpha_Gamma_2_t +
+            ucu__r1_y_2*ucu_dalpha_Gamma_4_t + ucu_dalpha_Gamma_1_t*ucu_w_1_t_4 +
+            ucu_h_4_y*ucu_o_4_x;
+        const real ucu_dalpha_c_yz = -ucu_h_4_y - ucu_D_1_4*ucu_w_1_t_4 - ucu_J_4_xx*ucu__r1_y_2 -
+            ucu_L_c_4_r0_y*ucu__r1_y;
+        const real ucu_dalpha_c_in_base_x = axis_x_ucu_axes4_x*ucu_dalpha_c_xx +
+            axis_y_ucu_axes4_in_base_x*ucu_dalpha_c_yx;
+        const real ucu_dalpha_c_in_base_y = axis_x_ucu_axes4_y*ucu_dalpha_c_xx +
+            axis_y_ucu_axes4_in_base_y*ucu_dalpha_c_yx;
+        const real ucu_dalpha_c_in_base_z = axis_x_ucu_axes4_z*ucu_dalpha_c_xx +
+            axis_y_ucu_axes4_in_base_z*ucu_dalpha_c_yx;
+        const real ucu_dalpha_c_in_base_x_2 = axis_x_ucu_axes4_x*ucu_dalpha_c_xz +
+            axis_y_ucu_axes4_in_base_x*ucu_dalpha_c_yz;
+        const real ucu_dalpha_c_in_base_y_2 = axis_x_ucu_axes4_y*ucu_dalpha_c_xz +
+            axis_y_ucu_axes4_in_base_y*ucu_dalpha_c_yz;
+        const real ucu_dalpha_c_in_base_z_2 = axis_x_ucu_axes4_z*ucu_dalpha_c_xz +
+            axis_y_ucu_axes4_in_base_z*ucu_dalpha_c_yz;
+        /* (M_ta) coupling block of M */
+        const real ucu_M_ta_t = ucu_Q_t_11*ucu_q_in_base_z;
+        const real ucu_M_ta_t_2 = ucu_Q_t_12*ucu_q_in_base_y;
+        const real ucu_M_ta_t_3 = ucu_Q_t_15*ucu_q_in_base_x;
+        const real ucu_M_ta_t_4 = ucu_M_ta_t - ucu_M_ta_t_2 -
+            axis_x_ucu_axes4_x*ucu_dalpha_c_in_base_x - ucu_axis_z_x*ucu_dalpha_c_in_base_x_2;
+        const real ucu_M_ta_t_5 = axis_x_ucu_axes4_y*ucu_dalpha_c_in_base_x +
+            ucu_Q_t_10*ucu_q_in_base_z + ucu_axis_z_y*ucu_dalpha_c_in_base_x_2 -
+            ucu_Q_t_12*ucu_q_in_base_x;
+        const real ucu_M_ta_t_6 = ucu_Q_t_10*ucu_q_in_base_y -
+            axis_x_ucu_axes4_z*ucu_dalpha_c_in_base_x - ucu_Q_t_11*ucu_q_in_base_x -
+            ucu_axis_z_z*ucu_dalpha_c_in_base_x_2;
+        const real ucu_M_ta_t_7 = ucu_Q_t_14*ucu_q_in_base_z -
+            axis_x_ucu_axes4_x*ucu_dalpha_c_in_base_y - ucu_Q_t_15*ucu_q_in_base_y -
+            ucu_axis_z_x*ucu_dalpha_c_in_base_y_2;
+        const real ucu_M_ta_t_8 = ucu_M_ta_t + axis_x_ucu_axes4_y*ucu_dalpha_c_in_base_y +
+            ucu_axis_z_y*ucu_dalpha_c_in_base_y_2 - ucu_M_ta_t_3;
+        const real ucu_M_ta_t_9 = ucu_Q_t_11*ucu_q_in_base_y -
+            axis_x_ucu_axes4_z*ucu_dalpha_c_in_base_y - ucu_Q_t_14*ucu_q_in_base_x -
+            ucu_axis_z_z*ucu_dalpha_c_in_base_y_2;
+        const real ucu_M_ta_t_10 = ucu_Q_t_15*ucu_q_in_base_z -
+            axis_x_ucu_axes4_x*ucu_dalpha_c_in_base_z - ucu_Q_t_17*ucu_q_in_base_y -
+            ucu_axis_z_x*ucu_dalpha_c_in_base_z_2;
+        const real ucu_M_ta_t_11 = axis_x_ucu_axes4_y*ucu_dalpha_c_in_base_z +
+            ucu_Q_t_12*ucu_q_in_base_z + ucu_axis_z_y*ucu_dalpha_c_in_base_z_2 -
+            ucu_Q_t_17*ucu_q_in_base_x;
+        const real ucu_M_ta_t_12 = ucu_M_ta_t_3 + axis_x_ucu_axes4_z*ucu_dalpha_c_in_base_z +
+            ucu_axis_z_z*ucu_dalpha_c_in_base_z_2 - ucu_M_ta_t_2;
+        /* (ucu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
+           balances the leg's inertia and weight along all freedoms */
+        const real ucu_dalpha_G_m1_t = inv_ucu_end_p1_r5_x*ucu_dalpha_Gamma_4_t;
+        /* (ucu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
+           the leg's inertia and weight along all freedoms */
+        const real ucu_d_G_m1_t = inv_ucu_end_p1_r5_x*ucu_d_Gamma_4_x;
+        const real ucu_d_G_m1_t_2 = inv_ucu_end_p1_r5_x*ucu_d_Gamma_4_y;
+        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real ucu_n_m1_in_base_x = axis_x_ucu_axes4_x*ucu_end_p1_r3_x -
+            ucu_axis_z_x*ucu_end_p1_r5_x;
+        const real ucu_n_m1_in_base_y = axis_x_ucu_axes4_y*ucu_end_p1_r3_x -
+            ucu_axis_z_y*ucu_end_p1_r5_x;
+        const real ucu_n_m1_in_base_z = axis_x_ucu_axes4_z*ucu_end_p1_r3_x -
+            ucu_axis_z_z*ucu_end_p1_r5_x;
+        /* (ucu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
+           balances the leg's inertia and weight along all freedoms */
+        const real ucu_dalpha_G_m1_in_base_y = axis_x_ucu_axes4_y*ucu_dalpha_G_m1_t -
+            ucu_axis_z_y*ucu_d_Gamma_4_t;
+        const real ucu_dalpha_G_m1_in_base_z = axis_x_ucu_axes4_z*ucu_dalpha_G_m1_t -
+            ucu_axis_z_z*ucu_d_Gamma_4_t;
+        /* (ucu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
+           the leg's inertia and weight along all freedoms */
+        const real ucu_d_G_m1_in_base_x = -axis_x_ucu_axes4_x*ucu_d_G_m1_t -
+            axis_y_ucu_axes4_in_base_x*ucu_d_G_m1_t_2;
+        const real ucu_d_G_m1_in_base_y = -axis_x_ucu_axes4_y*ucu_d_G_m1_t -
+            axis_y_ucu_axes4_in_base_y*ucu_d_G_m1_t_2;
+        const real ucu_d_G_m1_in_base_z = -axis_x_ucu_axes4_z*ucu_d_G_m1_t -
+            axis_y_ucu_axes4_in_base_z*ucu_d_G_m1_t_2;
+        /* (ucu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
+           the leg's inertia and weight along all freedoms */
+        const real ucu_d_G_m_xx = ucu_d_G_m1_in_base_x*ucu_n_m1_in_base_x;
+        const real ucu_d_G_m_xy = ucu_d_G_m1_in_base_y*ucu_n_m1_in_base_x;
+        const real ucu_d_G_m_xz = ucu_d_G_m1_in_base_z*ucu_n_m1_in_base_x;
+        const real ucu_d_G_m_yx = ucu_d_G_m1_in_base_x*ucu_n_m1_in_base_y;
+        /* (M_aa) rotational block of M */
+        const real ucu_M_aa_t = ucu_M_ta_t_7*ucu_q_in_base_z + ucu_d_G_m_xy*ucu_q_in_base_z -
+            ucu_M_ta_t_10*ucu_q_in_base_y - ucu_d_G_m_xz*ucu_q_in_base_y -
+            ucu_n_m1_in_base_x*(axis_x_ucu_axes4_x*ucu_dalpha_G_m1_t -
+            ucu_axis_z_x*ucu_d_Gamma_4_t);
+        const real ucu_M_aa_t_2 = ucu_M_ta_t_8*ucu_q_in_base_z + ucu_d_G_m_xx*ucu_q_in_base_z +
+            ucu_dalpha_G_m1_in_base_y*ucu_n_m1_in_base_x - ucu_M_ta_t_11*ucu_q_in_base_y -
+            ucu_d_G_m_xz*ucu_q_in_base_x;
+        const real ucu_M_aa_t_3 = ucu_M_ta_t_12*ucu_q_in_base_y + ucu_M_ta_t_9*ucu_q_in_base_z +
+            ucu_d_G_m_xx*ucu_q_in_base_y - ucu_d_G_m_xy*ucu_q_in_base_x -
+            ucu_dalpha_G_m1_in_base_z*ucu_n_m1_in_base_x;
+        const real ucu_M_aa_t_4 = ucu_M_ta_t_11*ucu_q_in_base_x + ucu_d_G_m_yx*ucu_q_in_base_z +
+            ucu_dalpha_G_m1_in_base_y*ucu_n_m1_in_base_y - ucu_M_ta_t_5*ucu_q_in_base_z -
+            ucu_d_G_m1_in_base_z*ucu_n_m1_in_base_y*ucu_q_in_base_x;
+        const real ucu_M_aa_t_5 = ucu_M_ta_t_12*ucu_q_in_base_x + ucu_M_ta_t_6*ucu_q_in_base_z +
+            ucu_dalpha_G_m1_in_base_z*ucu_n_m1_in_base_y +
+            ucu_d_G_m1_in_base_y*ucu_n_m1_in_base_y*ucu_q_in_base_x -
+            ucu_d_G_m_yx*ucu_q_in_base_y;
+        const real ucu_M_aa_t_6 = ucu_M_ta_t_6*ucu_q_in_base_y +
+            ucu_d_G_m1_in_base_x*ucu_n_m1_in_base_z*ucu_q_in_base_y - ucu_M_ta_t_9*ucu_q_in_base_x
+            - ucu_dalpha_G_m1_in_base_z*ucu_n_m1_in_base_z -
+            ucu_d_G_m1_in_base_y*ucu_n_m1_in_base_z*ucu_q_in_base_x;
+        terms[0*count + k] = add ? terms[0*count + k] + ucu_Q_t_10 : ucu_Q_t_10;  /* total_ucu_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + ucu_Q_t_11 : ucu_Q_t_11;  /* total_ucu_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + ucu_Q_t_12 : ucu_Q_t_12;  /* total_ucu_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + ucu_Q_t_14 : ucu_Q_t_14;  /* total_ucu_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + ucu_Q_t_15 : ucu_Q_t_15;  /* total_ucu_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + ucu_Q_t_17 : ucu_Q_t_17;  /* total_ucu_zz */
+        terms[6*count + k] = add ? terms[6*count + k] + ucu_M_ta_t_4 : ucu_M_ta_t_4;  /* total_ucu_xx_2 */
+        terms[7*count + k] = add ? terms[7*count + k] + ucu_M_ta_t_5 : ucu_M_ta_t_5;  /* total_ucu_xy_2 */
+        terms[8*count + k] = add ? terms[8*count + k] + ucu_M_ta_t_6 : ucu_M_ta_t_6;  /* total_ucu_xz_2 */
+        terms[9*count + k] = add ? terms[9*count + k] + ucu_M_ta_t_7 : ucu_M_ta_t_7;  /* total_ucu_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + ucu_M_ta_t_8 : ucu_M_ta_t_8;  /* total_ucu_yy_2 */
+        terms[11*count + k] = add ? terms[11*count + k] + ucu_M_ta_t_9 : ucu_M_ta_t_9;  /* total_ucu_yz_2 */
+        terms[12*count + k] = add ? terms[12*count + k] + ucu_M_ta_t_10 : ucu_M_ta_t_10;  /* total_ucu_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + ucu_M_ta_t_11 : ucu_M_ta_t_11;  /* total_ucu_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + ucu_M_ta_t_12 : ucu_M_ta_t_12;  /* total_ucu_zz_2 */
+        terms[15*count + k] = add ? terms[15*count + k] + ucu_M_aa_t : ucu_M_aa_t;  /* total_ucu_xx_3 */
+        terms[16*count + k] = add ? terms[16*count + k] + ucu_M_aa_t_2 : ucu_M_aa_t_2;  /* total_ucu_xy_3 */
+        terms[17*count + k] = add ? terms[17*count + k] + ucu_M_aa_t_3 : ucu_M_aa_t_3;  /* total_ucu_xz_3 */
+        terms[18*count + k] = add ? terms[18*count + k] + ucu_M_aa_t_4 : ucu_M_aa_t_4;  /* total_ucu_yy_3 */
+        terms[19*count + k] = add ? terms[19*count + k] + ucu_M_aa_t_5 : ucu_M_aa_t_5;  /* total_ucu_yz_3 */
+        terms[20*count + k] = add ? terms[20*count + k] + ucu_M_aa_t_6 : ucu_M_aa_t_6;  /* total_ucu_zz_3 */
+        o[0*count + k] = UNLESS(magnitude(ucu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ucu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(ucu_rho2_4) > TOLERANCE*TOLERANCE*1) +
+            UNLESS(magnitude(-ucu_end_p1_r5_x) > TOLERANCE*1) + UNLESS(magnitude(ucu_root_2) >
+            TOLERANCE*R(0.8)) + UNLESS(magnitude(ucu_v_1_r0_y) > TOLERANCE*R(0.8));
+    }
+}
+
+INLINE void M_place_ucu(size_t w, size_t count, const real *o, size_t first, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        t->singular[k] += o[0*count + first + k];
+    }
+}
+
+INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums, real *M, verdict
+    *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        /* (M_tt) translational block of M */
+        const real m_star = m->m_star;
+        const real total_ucu_xx = sums[0*w + k];
+        const real M_tt_xx = m_star - total_ucu_xx;
+        const real total_ucu_yy = sums[3*w + k];
+        const real M_tt_yy = m_star - total_ucu_yy;
+        const real total_ucu_zz = sums[5*w + k];
+        const real M_tt_zz = m_star - total_ucu_zz;
+        /* (M_ta) coupling block of M */
+        const real h_star_in_base_z = s[14*w + k];
+        const real total_ucu_xy_2 = sums[7*w + k];
+        const real M_ta_xy = h_star_in_base_z - total_ucu_xy_2;
+        const real h_star_in_base_y = s[13*w + k];
+        const real total_ucu_xz_2 = sums[8*w + k];
+        const real M_ta_xz = total_ucu_xz_2 - h_star_in_base_y;
+        const real total_ucu_yx = sums[9*w + k];
+        const real M_ta_yx = total_ucu_yx - h_star_in_base_z;
+        const real h_star_in_base_x = s[12*w + k];
+        const real total_ucu_yz_2 = sums[11*w + k];
+        const real M_ta_yz = h_star_in_base_x + total_ucu_yz_2;
+        const real total_ucu_zx = sums[12*w + k];
+        const real M_ta_zx = h_star_in_base_y + total_ucu_zx;
+        const real total_ucu_zy = sums[13*w + k];
+        const real M_ta_zy = -h_star_in_base_x - total_ucu_zy;
+        /* (M_aa) rotational block of M */
+        const real J_star_t_8 = s[15*w + k];
+        const real total_ucu_xx_3 = sums[15*w + k];
+        const real M_aa_xx = J_star_t_8 - total_ucu_xx_3;
+        const real J_star_t_9 = s[16*w + k];
+        const real total_ucu_xy_3 = sums[16*w + k];
+        const real M_aa_xy = J_star_t_9 + total_ucu_xy_3;
+        const real J_star_t_10 = s[17*w + k];
+        const real total_ucu_xz_3 = sums[17*w + k];
+        const real M_aa_xz = J_star_t_10 - total_ucu_xz_3;
+        const real J_star_t_13 = s[18*w + k];
+        const real total_ucu_yy_3 = sums[18*w + k];
+        const real M_aa_yy = J_star_t_13 + total_ucu_yy_3;
+        const real J_star_t_15 = s[19*w + k];
+        const real total_ucu_yz_3 = sums[19*w + k];
+        const real M_aa_yz = J_star_t_15 + total_ucu_yz_3;
+        const real J_star_t_17 = s[20*w + k];
+        const real total_ucu_zz_3 = sums[20*w + k];
+        const real M_aa_zz = J_star_t_17 - total_ucu_zz_3;
+        M[0*w + k] = M_tt_xx;
+        const real total_ucu_xy = sums[1*w + k];
+        M[1*w + k] = -total_ucu_xy;
+        M[6*w + k] = -total_ucu_xy;
+        const real total_ucu_xz = sums[2*w + k];
+        M[2*w + k] = -total_ucu_xz;
+        M[12*w + k] = -total_ucu_xz;
+        M[7*w + k] = M_tt_yy;
+        const real total_ucu_yz = sums[4*w + k];
+        M[8*w + k] = -total_ucu_yz;
+        M[13*w + k] = -total_ucu_yz;
+        M[14*w + k] = M_tt_zz;
+        const real total_ucu_xx_2 = sums[6*w + k];
+        M[3*w + k] = total_ucu_xx_2;
+        M[18*w + k] = total_ucu_xx_2;
+        M[4*w + k] = M_ta_xy;
+        M[24*w + k] = M_ta_xy;
+        M[5*w + k] = M_ta_xz;
+        M[30*w + k] = M_ta_xz;
+        M[9*w + k] = M_ta_yx;
+        M[19*w + k] = M_ta_yx;
+        const real total_ucu_yy_2 = sums[10*w + k];
+        M[10*w + k] = -total_ucu_yy_2;
+        M[25*w + k] = -total_ucu_yy_2;
+        M[11*w + k] = M_ta_yz;
+        M[31*w + k] = M_ta_yz;
+        M[15*w + k] = M_ta_zx;
+        M[20*w + k] = M_ta_zx;
+        M[16*w + k] = M_ta_zy;
+        M[26*w + k] = M_ta_zy;
+        const real total_ucu_zz_2 = sums[14*w + k];
+        M[17*w + k] = -total_ucu_zz_2;
+        M[32*w + k] = -total_ucu_zz_2;
+        M[21*w + k] = M_aa_xx;
+        M[22*w + k] = M_aa_xy;
+        M[27*w + k] = M_aa_xy;
+        M[23*w + k] = M_aa_xz;
+        M[33*w + k] = M_aa_xz;
+        M[28*w + k] = M_aa_yy;
+        M[29*w + k] = M_aa_yz;
+        M[34*w + k] = M_aa_yz;
+        M[35*w + k] = M_aa_zz;
+        t->total[k] += (((M_tt_xx + total_ucu_xy) + (total_ucu_xz + (M_tt_yy + total_ucu_yz))) +
+            ((M_tt_zz + total_ucu_xx_2) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((total_ucu_yy_2 +
+            M_ta_yz) + (M_ta_zx + (M_ta_zy + total_ucu_zz_2))) + ((M_aa_xx + (M_aa_xy + M_aa_xz))
+            + (M_aa_yy + (M_aa_yz + M_aa_zz))));
+    }
+}
+
+INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
+{
+    real s[21] = {0}, sums[21] = {0}, terms_ucu[21*LEGS(6)] = {0}, o_ucu[1*LEGS(6)] = {0};
+    M_before(m, 1, X, s, t);
+    M_legs_ucu(m, 1, 0, 1, s, 0, LEGS(6), 0, terms_ucu, o_ucu);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        M_place_ucu(1, LEGS(6), o_ucu, leg, t);
+    }
+    for (size_t n = 0; n < 21; ++n) {
+        sums[n] = total(terms_ucu + n*LEGS(6), 6);
+    }
+    M_after(m, 1, s, sums, M, t);
+}
+
+INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
+{
+    real s[21*LANES], sums[21*LANES], o_ucu[1*LANES];
+    M_before(m, LANES, X, s, t);
+    clear(sums, 21*LANES);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        M_legs_ucu(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ucu);
+        M_place_ucu(LANES, LANES, o_ucu, 0, t);
+    }
+    M_after(m, LANES, s, sums, M, t);
+}
+
+/* ---- Z: 2109 mul, 1530 add, 30 div, 18 sqrt, 0 trig, every leg counted ---- */
+INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s, verdict
+    *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
+        const real X_0 = X[0*w + k];
+        const real t_x = X_0;
+        const real X_1 = X[1*w + k];
+        const real t_y = X_1;
+        const real X_2 = X[2*w + k];
+        const real t_z = X_2;
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+        const real quaternion_scale = 2/quaternion_norm2;
+        const real quaternion_sx = X_3*quaternion_scale;
+        const real quaternion_sy = X_4*quaternion_scale;
+        const real quaternion_sz = X_5*quaternion_scale;
+        const real quaternion_wx = X_6*quaternion_sx;
+        const real quaternion_wy = X_6*quaternion_sy;
+        const real quaternion_wz = X_6*quaternion_sz;
+        const real quaternion_xx = X_3*quaternion_sx;
+        const real quaternion_xy = X_3*quaternion_sy;
+        const real quaternion_xz = X_3*quaternion_sz;
+        const real quaternion_yy = X_4*quaternion_sy;
+        const real quaternion_yz = X_4*quaternion_sz;
+        const real quaternion_zz = X_5*quaternion_sz;
+        const real R_xx = 1 - quaternion_yy - quaternion_zz;
+        const real R_xy = quaternion_xy - quaternion_wz;
+        const real R_xz = quaternion_wy + quaternion_xz;
+        const real R_yx = quaternion_wz + quaternion_xy;
+        const real R_yy = 1 - quaternion_xx - quaternion_zz;
+        const real R_yz = quaternion_yz - quaternion_wx;
+        const real R_zx = quaternion_xz - quaternion_wy;
+        const real R_zy = quaternion_wx + quaternion_yz;
+        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        /* V: named entries */
+        const real V_0 = V[0*w + k];
+        const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
+        const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
+        const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
+        const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
+        const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
+        const real omega_z = V_5;
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_z = m->h_star_z;
+        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
+        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
+        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        /* (Z_p) centripetal force and weight of the platform */
+        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
+        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
+        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t = m->Z_p_t;
+        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
+        const real Z_p_t_2 = m->Z_p_t_2;
+        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
+        const real Z_p_t_3 = m->Z_p_t_3;
+        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
+        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real gravity_z = m->gravity_z;
+        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
+        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_xx = m->J_star_xx;
+        const real J_star_xy = m->J_star_xy;
+        const real J_star_xz = m->J_star_xz;
+        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
+        const real J_star_yy = m->J_star_yy;
+        const real J_star_yz = m->J_star_yz;
+        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
+        const real J_star_zz = m->J_star_zz;
+        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
+        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
+            g_r0_z*h_star_y;
+        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
+            g_r0_x*h_star_z;
+        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
+            g_r0_y*h_star_x;
+        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
+        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
+        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
+        s[18*w + k] = Z_p_x;
+        s[19*w + k] = Z_p_y;
+        s[20*w + k] = Z_p_z;
+        s[21*w + k] = Z_q_in_base_x;
+        s[22*w + k] = Z_q_in_base_y;
+        s[23*w + k] = Z_q_in_base_z;
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+    }
+}
+
+INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, int add, real *terms, real *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        /* (ucu-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
+        const real ucu_platform_point_x = m->ucu_platform_point_x[i];
+        const real ucu_platform_point_y = m->ucu_platform_point_y[i];
+        const real ucu_platform_point_z = m->ucu_platform_point_z[i];
+        const real ucu_q_in_base_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
+            R_xz*ucu_platform_point_z;
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real ucu_q_in_base_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
+            R_yz*ucu_platform_point_z;
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real ucu_q_in_base_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
+            R_zz*ucu_platform_point_z;
+        const real t_x = s[0*w + j];
+        const real ucu_base_point_x = m->ucu_base_point_x[i];
+        const real ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x;
+        const real t_y = s[1*w + j];
+        const real ucu_base_point_y = m->ucu_base_point_y[i];
+        const real ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y;
+        const real t_z = s[2*w + j];
+        const real ucu_base_point_z = m->ucu_base_point_z[i];
+        const real ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z;
+        /* (ucu-px_1) component along the reference direction */
+        const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
+        const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
+        const real ucu_base_frame_zx = m->ucu_base_frame_zx[i];
+        const real ucu_px_1 = ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx +
+            ucu_S_z*ucu_base_frame_zx;
+        /* (ucu-py_1) component across the reference direction */
+        const real ucu_base_frame_xy = m->ucu_base_frame_xy[i];
+        const real ucu_base_frame_yy = m->ucu_base_frame_yy[i];
+        const real ucu_base_frame_zy = m->ucu_base_frame_zy[i];
+        const real ucu_py_1 = ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy +
+            ucu_S_z*ucu_base_frame_zy;
+        /* (ucu-rho2_1) squared amplitude */
+        const real ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1;
+        /* (ucu-root_1) amplitude, with the sign of the branch */
+        const real ucu_branch_1 = m->ucu_branch_1[i];
+        const real ucu_root_1 = ucu_branch_1*root(ucu_rho2_1);
+        /* (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
+        const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
+        const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
+        const real ucu_xi_1_t = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
+            ucu_S_z*ucu_base_frame_zz;
+        /* (ucu-rho2_2) squared amplitude */
+        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t;
+        /* (ucu-root_2) amplitude, with the sign of the branch */
+        const real ucu_branch_2 = m->ucu_branch_2[i];
+        const real ucu_root_2 = ucu_branch_2*root(ucu_rho2_2);
+        /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ucu_root_2 = 1/ucu_root_2;
+        const real ucu_c_2 = inv_ucu_root_2*ucu_root_1;
+        /* (ucu-s_2) sine of the angle of joint 2 from its reference direction */
+        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t;
+        /* (ucu-px_4) component along the reference direction */
+        const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
+        const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
+        const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
+        const real ucu_end_p1_r0_x = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
+            R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
+            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
+            R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
+            R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
+        const real ucu_end_p1_r0_y = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
+            R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
+            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
+            R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
+            R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
+        const real ucu_end_p1_r0_z = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
+            R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
+            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
+            R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
+            R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
+        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ucu_root_1 = 1/ucu_root_1;
+        const real ucu_c_1 = inv_ucu_root_1*ucu_py_1;
+        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
+        /* (ucu-px_4) component along the reference direction */
+        const real ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x;
+        const real ucu_end_p1_r1_y = -ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1;
+        const real ucu_end_p1_r3_x = ucu_end_p1_r0_z*ucu_s_2 - ucu_c_2*ucu_end_p1_r1_y;
+        const real ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_end_p1_r1_y*ucu_s_2;
+        /* (ucu-rho2_4) squared amplitude */
+        const real ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y;
+        /* (ucu-root_4) amplitude, with the sign of the branch */
+        const real ucu_branch_4 = m->ucu_branch_4[i];
+        const real ucu_root_4 = ucu_branch_4*root(ucu_rho2_4);
+        /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
+        const real inv_ucu_root_4 = 1/ucu_root_4;
+        const real ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y;
+        /* (ucu-s_4) sine of the angle of joint 4 from its reference direction */
+        const real ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x;
+        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
+        const real ucu_v_1_t = ucu_c_2*ucu_c_4;
+        const real ucu_v_1_t_2 = ucu_c_2*ucu_s_4;
+        const real ucu_v_1_t_3 = ucu_root_2*ucu_v_1_t_2;
+        const real ucu_v_1_t_4 = ucu_root_2*ucu_v_1_t;
+        /* (ucu-w_1) force part of reciprocal wrench 1 */
+        const real ucu_axis_z_x = inv_ucu_root_2*ucu_S_x;
+        const real ucu_axis_z_y = inv_ucu_root_2*ucu_S_y;
+        const real ucu_axis_z_z = inv_ucu_root_2*ucu_S_z;
+        const real ucu_w_1_t = ucu_s_2*ucu_s_4;
+        const real axis_y_ucu_axes4_r4_x = -ucu_c_1*ucu_c_4 - ucu_s_1*ucu_w_1_t;
+        const real axis_y_ucu_axes4_r4_y = ucu_c_4*ucu_s_1 - ucu_c_1*ucu_w_1_t;
+        const real axis_y_ucu_axes4_in_base_x = axis_y_ucu_axes4_r4_x*ucu_base_frame_xx +
+            axis_y_ucu_axes4_r4_y*ucu_base_frame_xy + ucu_base_frame_xz*ucu_v_1_t_2;
+        const real axis_y_ucu_axes4_in_base_y = axis_y_ucu_axes4_r4_x*ucu_base_frame_yx +
+            axis_y_ucu_axes4_r4_y*ucu_base_frame_yy + ucu_base_frame_yz*ucu_v_1_t_2;
+        const real axis_y_ucu_axes4_in_base_z = axis_y_ucu_axes4_r4_x*ucu_base_frame_zx +
+            axis_y_ucu_axes4_r4_y*ucu_base_frame_zy + ucu_base_frame_zz*ucu_v_1_t_2;
+        const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_in_base_y*ucu_axis_z_z -
+            axis_y_ucu_axes4_in_base_z*ucu_axis_z_y;
+        const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_in_base_z*ucu_axis_z_x -
+            axis_y_ucu_axes4_in_base_x*ucu_axis_z_z;
+        const real axis_x_ucu_axes4_z = axis_y_ucu_axes4_in_base_x*ucu_axis_z_y -
+            axis_y_ucu_axes4_in_base_y*ucu_axis_z_x;
+        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4;
+        const real ucu_end_p1_r5_y = ucu_c_4*ucu_end_p1_r1_x - ucu_end_p1_r3_y*ucu_s_4;
+        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
+        const real ucu_v_1_r0_x = ucu_c_4*ucu_v_1_t_3 - ucu_s_4*ucu_v_1_t_4;
+        const real ucu_v_1_r0_y = ucu_c_4*ucu_v_1_t_4 + ucu_s_4*ucu_v_1_t_3;
+        /* (ucu-w_1) force part of reciprocal wrench 1 */
+        const real ucu_w_1_t_2 = ucu_end_p1_r3_x*ucu_v_1_t + ucu_end_p1_r5_x*ucu_s_2;
+        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real ucu_n_m1_t = ucu_end_p1_r3_x*ucu_s_4;
+        /* (ucu-w_1) force part of reciprocal wrench 1 */
+        const real inv_ucu_v_1_r0_y = 1/ucu_v_1_r0_y;
+        /* (ucu-w_4) force part of reciprocal wrench 4 */
+        const real inv_ucu_end_p1_r5_x = 1/ucu_end_p1_r5_x;
+        /* (ucu-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real ucu_S_dot_t = omega_y*ucu_q_in_base_z - omega_z*ucu_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real ucu_S_dot_t_2 = omega_z*ucu_q_in_base_x - omega_x*ucu_q_in_base_z;
+        const real ucu_S_dot_t_3 = omega_x*ucu_q_in_base_y - omega_y*ucu_q_in_base_x;
+        const real t_dot_x = s[12*w + j];
+        const real ucu_S_dot_x = t_dot_x + ucu_S_dot_t;
+        const real t_dot_y = s[13*w + j];
+        const real ucu_S_dot_y = t_dot_y + ucu_S_dot_t_2;
+        const real t_dot_z = s[14*w + j];
+        const real ucu_S_dot_z = t_dot_z + ucu_S_dot_t_3;
+        /* (ucu-eta_1) rate at which the joints turn along moment direction 1 */
+        const real ucu_eta_1 = omega_x*(axis_x_ucu_axes4_x*ucu_end_p1_r3_x -
+            ucu_axis_z_x*ucu_end_p1_r5_x) + omega_y*(axis_x_ucu_axes4_y*ucu_end_p1_r3_x -
+            ucu_axis_z_y*ucu_end_p1_r5_x) + omega_z*(axis_x_ucu_axes4_z*ucu_end_p1_r3_x -
+            ucu_axis_z_z*ucu_end_p1_r5_x);
+        /* (ucu-S_dot) velocity of the connection point */
+        const real ucu_S_dot_r0_x = ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx
+            + ucu_S_dot_z*ucu_base_frame_zx;
+        const real ucu_S_dot_r0_y = ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy
+            + ucu_S_dot_z*ucu_base_frame_zy;
+        const real ucu_S_dot_r0_z = ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz
+            + ucu_S_dot_z*ucu_base_frame_zz;
+        const real ucu_S_dot_r1_y = -ucu_S_dot_r0_x*ucu_s_1 - ucu_S_dot_r0_y*ucu_c_1;
+        const real ucu_S_dot_r3_x = ucu_S_dot_r0_z*ucu_s_2 - ucu_S_dot_r1_y*ucu_c_2;
+        /* (ucu-qd_4) rate of joint 4 */
+        const real ucu_qd_4_t = inv_ucu_v_1_r0_y*(ucu_S_dot_r0_y*ucu_s_1 -
+            ucu_S_dot_r0_x*ucu_c_1);
+        const real ucu_qd_4_t_2 = inv_ucu_root_2*(-ucu_S_dot_r0_z*ucu_c_2 - ucu_S_dot_r1_y*ucu_s_2
+            - ucu_qd_4_t*ucu_v_1_r0_x);
+        const real ucu_qd_4_t_3 = inv_ucu_end_p1_r5_x*(ucu_eta_1 + ucu_qd_4_t*ucu_w_1_t_2 -
+            ucu_n_m1_t*ucu_qd_4_t_2);
+        /* (ucu-omega_1) angular velocity of link 1 */
+        const real ucu_omega_1_t = ucu_qd_4_t*ucu_s_2;
+        const real ucu_omega_1_t_2 = ucu_c_2*ucu_qd_4_t;
+        /* (ucu-omega_2) angular velocity of link 2 */
+        const real ucu_omega_2_r1_x = ucu_qd_4_t_2*ucu_s_4 - ucu_c_4*ucu_omega_1_t_2;
+        const real ucu_omega_2_r1_y = ucu_c_4*ucu_qd_4_t_2 + ucu_omega_1_t_2*ucu_s_4;
+        /* (ucu-omega_4) angular velocity of link 4 */
+        const real ucu_omega_4_z = ucu_omega_1_t - ucu_qd_4_t_3;
+        /* (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
+        const real ucu_zeta_4_x = ucu_omega_2_r1_y*ucu_qd_4_t_3;
+        /* (ucu-u_1) centripetal acceleration of the connection point */
+        const real ucu_u_1_x = omega_y*ucu_S_dot_t_3 - omega_z*ucu_S_dot_t_2;
+        const real ucu_u_1_y = omega_z*ucu_S_dot_t - omega_x*ucu_S_dot_t_3;
+        const real ucu_u_1_z = omega_x*ucu_S_dot_t_2 - omega_y*ucu_S_dot_t;
+        /* (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real ucu_zeta_2_x = ucu_omega_1_t_2*ucu_qd_4_t_2;
+        const real ucu_zeta_2_y = ucu_omega_1_t*ucu_qd_4_t_2;
+        /* (ucu-W_2) centripetal tensor of link 2 */
+        const real ucu_W_2_t = ucu_omega_1_t*ucu_omega_1_t;
+        const real ucu_W_2_t_2 = ucu_omega_1_t_2*ucu_omega_1_t_2;
+        const real ucu_W_2_t_3 = ucu_qd_4_t_2*ucu_qd_4_t_2;
+        const real ucu_W_2_xy = ucu_omega_1_t*ucu_omega_1_t_2;
+        /* (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real ucu_zeta_2_t = ucu_c_4*ucu_zeta_2_y;
+        /* (ucu-W_2) centripetal tensor of link 2 */
+        const real ucu_W_2_t_4 = ucu_omega_2_r1_x*ucu_omega_2_r1_x;
+        const real ucu_W_2_t_5 = ucu_omega_2_r1_y*ucu_omega_2_r1_y;
+        const real ucu_W_2_xy_2 = ucu_omega_2_r1_x*ucu_omega_2_r1_y;
+        /* (ucu-bias) acceleration of the connection point at zero joint accelerations */
+        const real ucu_bias_t = 2*ucu_S_dot_r3_x;
+        const real ucu_bias_x = ucu_bias_t*ucu_omega_2_r1_y +
+            ucu_root_2*(ucu_omega_1_t*ucu_omega_2_r1_x + ucu_s_4*ucu_zeta_2_y);
+        const real ucu_bias_y = ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_t*ucu_omega_2_r1_y) -
+            ucu_bias_t*ucu_omega_2_r1_x;
+        /* (ucu-u_1) centripetal acceleration of the connection point */
+        const real ucu_u_1_tip_x = axis_x_ucu_axes4_x*ucu_u_1_x + axis_x_ucu_axes4_y*ucu_u_1_y +
+            axis_x_ucu_axes4_z*ucu_u_1_z;
+        const real ucu_u_1_tip_y = axis_y_ucu_axes4_in_base_x*ucu_u_1_x +
+            axis_y_ucu_axes4_in_base_y*ucu_u_1_y + axis_y_ucu_axes4_in_base_z*ucu_u_1_z;
+        /* (ucu-rel_o) remainder without the acceleration in: acceleration of the connection point left to
+           the joint accelerations */
+        const real ucu_rel_o_x = ucu_u_1_tip_x - ucu_bias_x;
+        const real ucu_rel_o_y = ucu_u_1_tip_y - ucu_bias_y;
+        /* (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations */
+        const real ucu_beta_4_x = -ucu_zeta_2_t - ucu_zeta_4_x;
+        /* (ucu-nd_m1) rate of moment direction 1 */
+        const real ucu_omega_tip_x = axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y +
+            axis_x_ucu_axes4_z*omega_z;
+        const real ucu_omega_tip_y = axis_y_ucu_axes4_in_base_x*omega_x +
+            axis_y_ucu_axes4_in_base_y*omega_y + axis_y_ucu_axes4_in_base_z*omega_z;
+        const real ucu_omega_tip_z = omega_x*ucu_axis_z_x + omega_y*ucu_axis_z_y +
+            omega_z*ucu_axis_z_z;
+        const real ucu_nd_m1_x = ucu_end_p1_r5_y*ucu_omega_tip_x - ucu_end_p1_r5_x*ucu_omega_tip_y
+            - ucu_end_p1_r5_y*ucu_omega_2_r1_x;
+        const real ucu_nd_m1_z = ucu_end_p1_r5_y*ucu_omega_tip_z - ucu_end_p1_r3_x*ucu_omega_tip_y
+            - ucu_end_p1_r5_y*ucu_omega_4_z;
+        /* (ucu-nu_1) bias of the angular acceleration along moment direction 1 */
+        const real ucu_nu_1_t = ucu_beta_4_x*ucu_end_p1_r3_x + ucu_end_p1_r5_x*ucu_zeta_2_x;
+        const real ucu_nu_1_t_2 = ucu_nd_m1_x*(ucu_omega_2_r1_x - ucu_omega_tip_x) +
+            ucu_nd_m1_z*(ucu_omega_4_z - ucu_omega_tip_z) + (ucu_omega_2_r1_y -
+            ucu_omega_tip_y)*(ucu_end_p1_r3_x*ucu_omega_4_z + ucu_end_p1_r5_x*ucu_omega_2_r1_x);
+        const real ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2;
+        /* (ucu-qdd_4_o) remainder without the acceleration in: acceleration of joint 4 */
+        const real ucu_qdd_4_o_t = inv_ucu_v_1_r0_y*(ucu_c_4*ucu_rel_o_y + ucu_rel_o_x*ucu_s_4);
+        const real ucu_qdd_4_o_t_2 = inv_ucu_root_2*(ucu_qdd_4_o_t*ucu_v_1_r0_x +
+            ucu_rel_o_y*ucu_s_4 - ucu_c_4*ucu_rel_o_x);
+        /* (ucu-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+        const real ucu_alpha_1_o_t = ucu_qdd_4_o_t*ucu_s_2;
+        const real ucu_alpha_1_o_t_2 = ucu_c_2*ucu_qdd_4_o_t;
+        /* (ucu-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        const real ucu_alpha_2_o_x = ucu_alpha_1_o_t - ucu_zeta_2_x;
+        const real ucu_alpha_2_o_y = -ucu_alpha_1_o_t_2 - ucu_zeta_2_y;
+        /* (ucu-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4 */
+        const real ucu_alpha_4_o_x = ucu_alpha_2_o_y*ucu_c_4 - ucu_zeta_4_x -
+            ucu_qdd_4_o_t_2*ucu_s_4;
+        const real ucu_alpha_4_o_y = ucu_omega_2_r1_x*ucu_qd_4_t_3 - ucu_alpha_2_o_y*ucu_s_4 -
+            ucu_c_4*ucu_qdd_4_o_t_2;
+        const real ucu_alpha_4_o_z = ucu_alpha_2_o_x - inv_ucu_end_p1_r5_x*(ucu_nu_1 +
+            ucu_n_m1_t*ucu_qdd_4_o_t_2 + ucu_qdd_4_o_t*ucu_w_1_t_2);
+        /* (ucu-W_4) centripetal tensor of link 4 */
+        const real ucu_W_4_t = ucu_omega_4_z*ucu_omega_4_z;
+        const real ucu_W_4_xz = ucu_omega_2_r1_x*ucu_omega_4_z;
+        const real ucu_W_4_yz = ucu_omega_2_r1_y*ucu_omega_4_z;
+        /* (ucu-B_4_o) remainder of the acceleration tensor of link 4 */
+        const real ucu_B_4_o_xy = ucu_W_2_xy_2 - ucu_alpha_4_o_z;
+        const real ucu_B_4_o_xz = ucu_W_4_xz + ucu_alpha_4_o_y;
+        const real ucu_B_4_o_yx = ucu_W_2_xy_2 + ucu_alpha_4_o_z;
+        const real ucu_B_4_o_yz = ucu_W_4_yz - ucu_alpha_4_o_x;
+        const real ucu_B_4_o_zx = ucu_W_4_xz - ucu_alpha_4_o_y;
+        const real ucu_B_4_o_zy = ucu_W_4_yz + ucu_alpha_4_o_x;
+        /* (ucu-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning
+           about its reference point */
+        const real ucu_h_4_x = m->ucu_h_4_x[i];
+        const real ucu_h_4_y = m->ucu_h_4_y[i];
+        const real ucu_h_4_z = m->ucu_h_4_z[i];
+        const real ucu_phi_4_o_z = ucu_B_4_o_zx*ucu_h_4_y + ucu_B_4_o_zy*ucu_h_4_z -
+            ucu_h_4_x*(ucu_W_2_t_4 + ucu_W_2_t_5);
+        /* (ucu-acc_4_o) remainder without the acceleration in: acceleration of the reference point of
+           link 4, less gravity */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real gravity_z = m->gravity_z;
+        const real ucu_acc_4_o_x = ucu_u_1_tip_x - axis_x_ucu_axes4_x*gravity_x -
+            axis_x_ucu_axes4_y*gravity_y - axis_x_ucu_axes4_z*gravity_z;
+        const real ucu_acc_4_o_y = ucu_u_1_tip_y - axis_y_ucu_axes4_in_base_x*gravity_x -
+            axis_y_ucu_axes4_in_base_y*gravity_y - axis_y_ucu_axes4_in_base_z*gravity_z;
+        const real ucu_acc_4_o_z = ucu_axis_z_x*ucu_u_1_x + ucu_axis_z_y*ucu_u_1_y +
+            ucu_axis_z_z*ucu_u_1_z - gravity_x*ucu_axis_z_x - gravity_y*ucu_axis_z_y -
+            gravity_z*ucu_axis_z_z;
+        /* (ucu-mu_4_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 4, about their reference points */
+        const real ucu_J_4_xy = m->ucu_J_4_xy[i];
+        const real ucu_J_4_xz = m->ucu_J_4_xz[i];
+        const real ucu_J_4_yz = m->ucu_J_4_yz[i];
+        const real ucu_Sigma_4_yy = m->ucu_Sigma_4_yy[i];
+        const real ucu_Sigma_4_zz = m->ucu_Sigma_4_zz[i];
+        const real ucu_mu_4_o_x = ucu_B_4_o_yx*ucu_J_4_xy + ucu_B_4_o_zy*ucu_Sigma_4_yy +
+            ucu_J_4_xz*(ucu_W_2_t_5 - ucu_W_4_t) + ucu_acc_4_o_z*ucu_h_4_z -
+            ucu_B_4_o_yz*ucu_Sigma_4_zz - ucu_B_4_o_zx*ucu_J_4_yz - ucu_acc_4_o_y*ucu_h_4_x;
+        const real ucu_Sigma_4_xx = m->ucu_Sigma_4_xx[i];
+        const real ucu_mu_4_o_y = ucu_B_4_o_xz*ucu_Sigma_4_zz + ucu_B_4_o_zy*ucu_J_4_yz +
+            ucu_acc_4_o_x*ucu_h_4_x - ucu_B_4_o_xy*ucu_J_4_xz - ucu_B_4_o_zx*ucu_Sigma_4_xx -
+            ucu_J_4_xy*(ucu_W_2_t_4 - ucu_W_4_t) - ucu_acc_4_o_z*ucu_h_4_y;
+        const real ucu_mu_4_o_z = ucu_B_4_o_xz*ucu_J_4_xz + ucu_B_4_o_yx*ucu_Sigma_4_xx +
+            ucu_J_4_yz*(ucu_W_2_t_4 - ucu_W_2_t_5) + ucu_acc_4_o_y*ucu_h_4_y -
+            ucu_B_4_o_xy*ucu_Sigma_4_yy - ucu_B_4_o_yz*ucu_J_4_xy - ucu_acc_4_o_x*ucu_h_4_z;
+        /* (ucu-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real ucu_g_r0_x = m->ucu_g_r0_x[i];
+        const real ucu_g_r0_y = m->ucu_g_r0_y[i];
+        const real ucu_g_r1_x = ucu_g_r0_y*ucu_s_1 - ucu_c_1*ucu_g_r0_x;
+        const real ucu_g_r1_y = -ucu_c_1*ucu_g_r0_y - ucu_g_r0_x*ucu_s_1;
+        const real ucu_g_r0_z = m->ucu_g_r0_z[i];
+        const real ucu_g_r3_x = ucu_g_r0_z*ucu_s_2 - ucu_c_2*ucu_g_r1_y;
+        const real ucu_g_r3_y = -ucu_c_2*ucu_g_r0_z - ucu_g_r1_y*ucu_s_2;
+        /* (ucu-B_2_o) remainder of the acceleration tensor of link 2 */
+        const real ucu_B_2_o_xy = ucu_qdd_4_o_t_2 - ucu_W_2_xy;
+        const real ucu_B_2_o_yx = -ucu_W_2_xy - ucu_qdd_4_o_t_2;
+        const real ucu_B_2_o_zx = ucu_zeta_2_y - ucu_alpha_2_o_y;
+        const real ucu_B_2_o_zy = ucu_alpha_2_o_x - ucu_zeta_2_x;
+        /* (ucu-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 2, about their reference points */
+        const real ucu_J_2_xy = m->ucu_J_2_xy[i];
+        const real ucu_J_2_xz = m->ucu_J_2_xz[i];
+        const real ucu_J_2_yz = m->ucu_J_2_yz[i];
+        const real ucu_Sigma_2_yy = m->ucu_Sigma_2_yy[i];
+        const real ucu_Sigma_2_zz = m->ucu_Sigma_2_zz[i];
+        const real ucu_h_2_y = m->ucu_h_2_y[i];
+        const real ucu_h_2_z = m->ucu_h_2_z[i];
+        const real ucu_mu_2_o_x = ucu_B_2_o_yx*ucu_J_2_xy + ucu_B_2_o_zx*ucu_J_2_xz +
+            ucu_B_2_o_zy*ucu_Sigma_2_yy + ucu_Sigma_2_zz*ucu_alpha_1_o_t + ucu_g_r1_x*ucu_h_2_z +
+            ucu_g_r3_y*ucu_h_2_y - ucu_J_2_yz*(ucu_W_2_t_2 - ucu_W_2_t_3);
+        const real ucu_Sigma_2_xx = m->ucu_Sigma_2_xx[i];
+        const real ucu_h_2_x = m->ucu_h_2_x[i];
+        const real ucu_mu_2_o_y = ucu_B_2_o_xy*ucu_J_2_yz + ucu_g_r1_x*ucu_h_2_x -
+            ucu_B_2_o_zx*ucu_Sigma_2_xx - ucu_B_2_o_zy*ucu_J_2_xz - ucu_J_2_xy*(ucu_W_2_t -
+            ucu_W_2_t_3) - ucu_Sigma_2_zz*ucu_alpha_1_o_t_2 - ucu_g_r3_x*ucu_h_2_y;
+        const real ucu_mu_2_o_z = ucu_B_2_o_yx*ucu_Sigma_2_xx + ucu_J_2_xy*ucu_alpha_1_o_t +
+            ucu_J_2_yz*ucu_alpha_1_o_t_2 - ucu_B_2_o_xy*ucu_Sigma_2_yy - ucu_J_2_xz*(ucu_W_2_t -
+            ucu_W_2_t_2) - ucu_g_r3_x*ucu_h_2_z - ucu_g_r3_y*ucu_h_2_x;
+        /* (ucu-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
+           outwards, the force at the connection point left out */
+        const real ucu_N_2_o_x = ucu_mu_2_o_x + ucu_mu_4_o_z;
+        const real ucu_N_2_o_y = ucu_mu_2_o_y + ucu_c_4*ucu_mu_4_o_x - ucu_mu_4_o_y*ucu_s_4;
+        const real ucu_N_2_o_z = ucu_mu_2_o_z + ucu_c_4*ucu_mu_4_o_y + ucu_mu_4_o_x*ucu_s_4;
+        /* (ucu-G_o) remainder without the acceleration in: force at the connection point that balances
+           the leg's inertia and weight along all freedoms */
+        const real ucu_G_o_t = inv_ucu_end_p1_r5_x*ucu_mu_4_o_z;
+        const real ucu_G_o_t_2 = inv_ucu_root_2*(ucu_N_2_o_z + ucu_G_o_t*ucu_n_m1_t);
+        const real ucu_G_o_t_3 = inv_ucu_v_1_r0_y*(ucu_G_o_t*ucu_w_1_t_2 +
+            ucu_G_o_t_2*ucu_v_1_r0_x + ucu_N_2_o_y*ucu_c_2 - ucu_N_2_o_x*ucu_s_2);
+        /* (ucu-c_o) remainder without the acceleration in: leg force on the platform without actuation
+           and without the mass at the connection point */
+        const real ucu_c_o_x = ucu_G_o_t_3*ucu_s_4 + ucu_h_4_y*(ucu_W_2_t_5 + ucu_W_4_t) -
+            ucu_B_4_o_xy*ucu_h_4_z - ucu_B_4_o_xz*ucu_h_4_x - ucu_G_o_t_2*ucu_c_4;
+        const real ucu_c_o_y = ucu_G_o_t_2*ucu_s_4 + ucu_G_o_t_3*ucu_c_4 + ucu_h_4_z*(ucu_W_2_t_4
+            + ucu_W_4_t) - ucu_B_4_o_yx*ucu_h_4_y - ucu_B_4_o_yz*ucu_h_4_x;
+        /* (ucu-U) velocity and gravity terms of the leg force */
+        const real ucu_U_in_base_x = ucu_axis_z_x*ucu_phi_4_o_z - axis_x_ucu_axes4_x*ucu_c_o_x -
+            axis_y_ucu_axes4_in_base_x*ucu_c_o_y;
+        const real ucu_U_in_base_y = ucu_axis_z_y*ucu_phi_4_o_z - axis_x_ucu_axes4_y*ucu_c_o_x -
+            axis_y_ucu_axes4_in_base_y*ucu_c_o_y;
+        const real ucu_U_in_base_z = ucu_axis_z_z*ucu_phi_4_o_z - axis_x_ucu_axes4_z*ucu_c_o_x -
+            axis_y_ucu_axes4_in_base_z*ucu_c_o_y;
+        /* (ucu-G_m_o) remainder without the acceleration in: moment at the connection point that balances
+           the leg's inertia and weight along all freedoms */
+        const real ucu_G_m_o_x = ucu_G_o_t*ucu_end_p1_r3_x;
+        /* (Z_a) rotational part of Z */
+        const real ucu_Z_a_t = ucu_U_in_base_z*ucu_q_in_base_y + ucu_axis_z_x*ucu_mu_4_o_z -
+            axis_x_ucu_axes4_x*ucu_G_m_o_x - ucu_U_in_base_y*ucu_q_in_base_z;
+        const real ucu_Z_a_t_2 = ucu_U_in_base_x*ucu_q_in_base_z + ucu_axis_z_y*ucu_mu_4_o_z -
+            axis_x_ucu_axes4_y*ucu_G_m_o_x - ucu_U_in_base_z*ucu_q_in_base_x;
+        const real ucu_Z_a_t_3 = ucu_U_in_base_y*ucu_q_in_base_x + ucu_axis_z_z*ucu_mu_4_o_z -
+            axis_x_ucu_axes4_z*ucu_G_m_o_x - ucu_U_in_base_x*ucu_q_in_base_y;
+        terms[0*count + k] = add ? terms[0*count + k] + ucu_U_in_base_x : ucu_U_in_base_x;  /* total_ucu_x */
+        terms[1*count + k] = add ? terms[1*count + k] + ucu_U_in_base_y : ucu_U_in_base_y;  /* total_ucu_y */
+        terms[2*count + k] = add ? terms[2*count + k] + ucu_U_in_base_z : ucu_U_in_base_z;  /* total_ucu_z */
+        terms[3*count + k] = add ? terms[3*count + k] + ucu_Z_a_t : ucu_Z_a_t;  /* total_ucu_x_2 */
+        terms[4*count + k] = add ? terms[4*count + k] + ucu_Z_a_t_2 : ucu_Z_a_t_2;  /* total_ucu_y_2 */
+        terms[5*count + k] = add ? terms[5*count + k] + ucu_Z_a_t_3 : ucu_Z_a_t_3;  /* total_ucu_z_2 */
+        o[0*count + k] = UNLESS(magnitude(ucu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ucu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(ucu_rho2_4) > TOLERANCE*TOLERANCE*1) +
+            UNLESS(magnitude(-ucu_end_p1_r5_x) > TOLERANCE*1) + UNLESS(magnitude(ucu_root_2) >
+            TOLERANCE*R(0.8)) + UNLESS(magnitude(ucu_v_1_r0_y) > TOLERANCE*R(0.8));
+    }
+}
+
+INLINE void Z_place_ucu(size_t w, size_t count, const real *o, size_t first, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        t->singular[k] += o[0*count + first + k];
+    }
+}
+
+INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        /* (Z_t) translational part of Z */
+        const real Z_p_x = s[18*w + k];
+        const real total_ucu_x = sums[0*w + k];
+        const real Z_t_x = Z_p_x + total_ucu_x;
+        const real Z_p_y = s[19*w + k];
+        const real total_ucu_y = sums[1*w + k];
+        const real Z_t_y = Z_p_y + total_ucu_y;
+        const real Z_p_z = s[20*w + k];
+        const real total_ucu_z = sums[2*w + k];
+        const real Z_t_z = Z_p_z + total_ucu_z;
+        /* (Z_a) rotational part of Z */
+        const real Z_q_in_base_x = s[21*w + k];
+        const real total_ucu_x_2 = sums[3*w + k];
+        const real Z_a_x = Z_q_in_base_x + total_ucu_x_2;
+        const real Z_q_in_base_y = s[22*w + k];
+        const real total_ucu_y_2 = sums[4*w + k];
+        const real Z_a_y = Z_q_in_base_y + total_ucu_y_2;
+        const real Z_q_in_base_z = s[23*w + k];
+        const real total_ucu_z_2 = sums[5*w + k];
+        const real Z_a_z = Z_q_in_base_z + total_ucu_z_2;
+        Z[0*w + k] = Z_t_x;
+        Z[1*w + k] = Z_t_y;
+        Z[2*w + k] = Z_t_z;
+        Z[3*w + k] = Z_a_x;
+        Z[4*w + k] = Z_a_y;
+        Z[5*w + k] = Z_a_z;
+        t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
+    }
+}
+
+INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+{
+    real s[24] = {0}, sums[6] = {0}, terms_ucu[6*LEGS(6)] = {0}, o_ucu[1*LEGS(6)] = {0};
+    Z_before(m, 1, X, V, s, t);
+    Z_legs_ucu(m, 1, 0, 1, s, 0, LEGS(6), 0, terms_ucu, o_ucu);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        Z_place_ucu(1, LEGS(6), o_ucu, leg, t);
+    }
+    for (size_t n = 0; n < 6; ++n) {
+        sums[n] = total(terms_ucu + n*LEGS(6), 6);
+    }
+    Z_after(1, s, sums, Z, t);
+}
+
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+{
+    real s[24*LANES], sums[6*LANES], o_ucu[1*LANES];
+    Z_before(m, LANES, X, V, s, t);
+    clear(sums, 6*LANES);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        Z_legs_ucu(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ucu);
+        Z_place_ucu(LANES, LANES, o_ucu, 0, t);
+    }
+    Z_after(LANES, s, sums, Z, t);
 }
 
 /* ---- H: 186 mul, 138 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES];
-} H_values;
-typedef struct {
-    real entry[6][8], singular[8];
-} H_results_upru;
-
-INLINE void H_before(size_t w, const real *X, H_values *s, verdict *t)
+INLINE void H_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -3510,188 +3552,156 @@ INLINE void H_before(size_t w, const real *X, H_values *s, verdict *t)
         const real R_zx = quaternion_xz - quaternion_wy;
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void H_legs_upru(const prepared *m, size_t leg, size_t legs, const H_values *s, size_t
-    states, size_t count, H_results_upru *o)
+INLINE void H_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real branch_2 = m->branch_2[i];
-        const real upru_base_frame_xx = m->upru_base_frame_xx[i];
-        const real upru_base_frame_xy = m->upru_base_frame_xy[i];
-        const real upru_base_frame_xz = m->upru_base_frame_xz[i];
-        const real upru_base_frame_yx = m->upru_base_frame_yx[i];
-        const real upru_base_frame_yy = m->upru_base_frame_yy[i];
-        const real upru_base_frame_yz = m->upru_base_frame_yz[i];
-        const real upru_base_frame_zx = m->upru_base_frame_zx[i];
-        const real upru_base_frame_zy = m->upru_base_frame_zy[i];
-        const real upru_base_frame_zz = m->upru_base_frame_zz[i];
-        const real upru_base_point_x = m->upru_base_point_x[i];
-        const real upru_base_point_y = m->upru_base_point_y[i];
-        const real upru_base_point_z = m->upru_base_point_z[i];
-        const real upru_platform_point_x = m->upru_platform_point_x[i];
-        const real upru_platform_point_y = m->upru_platform_point_y[i];
-        const real upru_platform_point_z = m->upru_platform_point_z[i];
-        /* (upru-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*upru_platform_point_x + R_xy*upru_platform_point_y +
-            R_xz*upru_platform_point_z;
-        const real q_in_base_y = R_yx*upru_platform_point_x + R_yy*upru_platform_point_y +
-            R_yz*upru_platform_point_z;
-        const real q_in_base_z = R_zx*upru_platform_point_x + R_zy*upru_platform_point_y +
-            R_zz*upru_platform_point_z;
-        const real S_x = q_in_base_x + t_x - upru_base_point_x;
-        const real S_y = q_in_base_y + t_y - upru_base_point_y;
-        const real S_z = q_in_base_z + t_z - upru_base_point_z;
-        /* (upru-K2) component along the reference direction */
-        const real px_1 = S_x*upru_base_frame_xx + S_y*upru_base_frame_yx +
-            S_z*upru_base_frame_zx;
-        /* (upru-K3) component across the reference direction */
-        const real py_1 = S_x*upru_base_frame_xy + S_y*upru_base_frame_yy +
-            S_z*upru_base_frame_zy;
-        /* (upru-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upru-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upru_base_frame_xz + S_y*upru_base_frame_yz +
-            S_z*upru_base_frame_zz;
-        /* (upru-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upru-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upru-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        /* (upru-V7) force part of reciprocal wrench 1 */
-        const real axis_z_x = S_x*inv_root_2;
-        const real axis_z_y = S_y*inv_root_2;
-        const real axis_z_z = S_z*inv_root_2;
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_3_t = axis_z_z*q_in_base_y - axis_z_y*q_in_base_z;
-        const real H_a_3_t_2 = axis_z_x*q_in_base_z - axis_z_z*q_in_base_x;
-        const real H_a_3_t_3 = axis_z_y*q_in_base_x - axis_z_x*q_in_base_y;
-        o->entry[0][k] = axis_z_x;
-        o->entry[1][k] = axis_z_y;
-        o->entry[2][k] = axis_z_z;
-        o->entry[3][k] = H_a_3_t;
-        o->entry[4][k] = H_a_3_t_2;
-        o->entry[5][k] = H_a_3_t_3;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(root_2) > TOLERANCE*R(0.8));
+        /* (ucu-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
+        const real ucu_platform_point_x = m->ucu_platform_point_x[i];
+        const real ucu_platform_point_y = m->ucu_platform_point_y[i];
+        const real ucu_platform_point_z = m->ucu_platform_point_z[i];
+        const real ucu_q_in_base_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
+            R_xz*ucu_platform_point_z;
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real ucu_q_in_base_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
+            R_yz*ucu_platform_point_z;
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real ucu_q_in_base_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
+            R_zz*ucu_platform_point_z;
+        const real t_x = s[0*w + j];
+        const real ucu_base_point_x = m->ucu_base_point_x[i];
+        const real ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x;
+        const real t_y = s[1*w + j];
+        const real ucu_base_point_y = m->ucu_base_point_y[i];
+        const real ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y;
+        const real t_z = s[2*w + j];
+        const real ucu_base_point_z = m->ucu_base_point_z[i];
+        const real ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z;
+        /* (ucu-px_1) component along the reference direction */
+        const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
+        const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
+        const real ucu_base_frame_zx = m->ucu_base_frame_zx[i];
+        const real ucu_px_1 = ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx +
+            ucu_S_z*ucu_base_frame_zx;
+        /* (ucu-py_1) component across the reference direction */
+        const real ucu_base_frame_xy = m->ucu_base_frame_xy[i];
+        const real ucu_base_frame_yy = m->ucu_base_frame_yy[i];
+        const real ucu_base_frame_zy = m->ucu_base_frame_zy[i];
+        const real ucu_py_1 = ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy +
+            ucu_S_z*ucu_base_frame_zy;
+        /* (ucu-rho2_1) squared amplitude */
+        const real ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1;
+        /* (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
+        const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
+        const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
+        const real ucu_xi_1_t = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
+            ucu_S_z*ucu_base_frame_zz;
+        /* (ucu-rho2_2) squared amplitude */
+        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t;
+        /* (ucu-root_2) amplitude, with the sign of the branch */
+        const real ucu_branch_2 = m->ucu_branch_2[i];
+        const real ucu_root_2 = ucu_branch_2*root(ucu_rho2_2);
+        /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ucu_root_2 = 1/ucu_root_2;
+        /* (ucu-w_1) force part of reciprocal wrench 1 */
+        const real ucu_axis_z_x = inv_ucu_root_2*ucu_S_x;
+        const real ucu_axis_z_y = inv_ucu_root_2*ucu_S_y;
+        const real ucu_axis_z_z = inv_ucu_root_2*ucu_S_z;
+        /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
+        const real ucu_H_a_3_t = ucu_axis_z_z*ucu_q_in_base_y - ucu_axis_z_y*ucu_q_in_base_z;
+        const real ucu_H_a_3_t_2 = ucu_axis_z_x*ucu_q_in_base_z - ucu_axis_z_z*ucu_q_in_base_x;
+        const real ucu_H_a_3_t_3 = ucu_axis_z_y*ucu_q_in_base_x - ucu_axis_z_x*ucu_q_in_base_y;
+        o[0*count + k] = ucu_axis_z_x;
+        o[1*count + k] = ucu_axis_z_y;
+        o[2*count + k] = ucu_axis_z_z;
+        o[3*count + k] = ucu_H_a_3_t;
+        o[4*count + k] = ucu_H_a_3_t_2;
+        o[5*count + k] = ucu_H_a_3_t_3;
+        o[7*count + k] = (ucu_axis_z_x + (ucu_axis_z_y + ucu_axis_z_z)) + (ucu_H_a_3_t +
+            (ucu_H_a_3_t_2 + ucu_H_a_3_t_3));
+        o[6*count + k] = UNLESS(magnitude(ucu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ucu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(ucu_root_2) > TOLERANCE*R(0.8));
     }
 }
 
-INLINE void H_place_upru(size_t w, const H_results_upru *o, size_t leg, size_t first, real *H,
+INLINE void H_place_ucu(size_t w, size_t count, const real *o, size_t leg, size_t first, real *H,
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(6 + leg)*w + k] = o->entry[1][first + k];
-        H[(12 + leg)*w + k] = o->entry[2][first + k];
-        H[(18 + leg)*w + k] = o->entry[3][first + k];
-        H[(24 + leg)*w + k] = o->entry[4][first + k];
-        H[(30 + leg)*w + k] = o->entry[5][first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(6 + leg)*w + k] = o[1*count + first + k];
+        H[(12 + leg)*w + k] = o[2*count + first + k];
+        H[(18 + leg)*w + k] = o[3*count + first + k];
+        H[(24 + leg)*w + k] = o[4*count + first + k];
+        H[(30 + leg)*w + k] = o[5*count + first + k];
+        t->singular[k] += o[6*count + first + k];
+        t->total[k] += o[7*count + first + k];
     }
 }
 
-INLINE void H_run(const prepared *m, size_t w, const real *X, real *H, verdict *t)
+INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    H_values values, *const s = &values;
-    H_results_upru results_upru;
-    H_before(w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        H_legs_upru(m, 0, 1, s, 0, 6, &results_upru);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            H_place_upru(w, &results_upru, leg, leg, H, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 6; ++leg) {
-            H_legs_upru(m, leg, 0, s, 1, w, &results_upru);
-            H_place_upru(w, &results_upru, leg, 0, H, t);
-        }
+    real s[12] = {0}, o_ucu[8*LEGS(6)] = {0};
+    H_before(1, X, s, t);
+    H_legs_ucu(m, 1, 0, 1, s, 0, LEGS(6), o_ucu);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        H_place_ucu(1, LEGS(6), o_ucu, leg, leg, H, t);
+    }
+}
+
+INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
+{
+    real s[12*LANES], o_ucu[8*LANES];
+    H_before(LANES, X, s, t);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        H_legs_ucu(m, LANES, leg, 0, s, 1, LANES, o_ucu);
+        H_place_ucu(LANES, LANES, o_ucu, leg, 0, H, t);
     }
 }
 
 /* ---- required: 2205 mul, 1641 add, 30 div, 18 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
-        t_ddot_x[LANES], t_ddot_y[LANES], t_ddot_z[LANES], alpha_x[LANES], alpha_y[LANES],
-        alpha_z[LANES], f_p_x[LANES], f_p_y[LANES], f_p_z[LANES], mu_p_in_base_x[LANES],
-        mu_p_in_base_y[LANES], mu_p_in_base_z[LANES], sum[6][LANES];
-} required_values;
-typedef struct {
-    real sum[6][8], entry[6][8], singular[8];
-} required_results_upru;
-
 INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, required_values *s, verdict *t)
+    *A, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real A_2 = A[2*w + k];
-        const real A_3 = A[3*w + k];
-        const real A_4 = A[4*w + k];
-        const real A_5 = A[5*w + k];
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_zz = m->J_star_zz;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real m_star = m->m_star;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -3716,53 +3726,78 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
+        const real A_2 = A[2*w + k];
         const real t_ddot_z = A_2;
+        const real A_3 = A[3*w + k];
         const real alpha_x = A_3;
+        const real A_4 = A[4*w + k];
         const real alpha_y = A_4;
+        const real A_5 = A[5*w + k];
         const real alpha_z = A_5;
-        /* (L2) first moment about the platform origin */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_z = m->h_star_z;
         const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
         const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
         const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
-        /* (P1) centripetal tensor of the platform */
+        /* (W_p) centripetal tensor of the platform */
         const real W_p_t = omega_x*omega_x;
         const real W_p_t_2 = omega_y*omega_y;
         const real W_p_t_3 = omega_z*omega_z;
         const real W_p_xy = omega_x*omega_y;
         const real W_p_xz = omega_x*omega_z;
         const real W_p_yz = omega_y*omega_z;
-        /* (M6) gyroscopic moment and moment of the weight of the platform */
+        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
         const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
         const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
         const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_xx = m->J_star_xx;
+        const real J_star_xy = m->J_star_xy;
+        const real J_star_xz = m->J_star_xz;
         const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
+        const real J_star_yy = m->J_star_yy;
+        const real J_star_yz = m->J_star_yz;
         const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
+        const real J_star_zz = m->J_star_zz;
         const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        /* (E1) acceleration of the platform origin, less gravity */
+        /* (a_t) acceleration of the platform origin, less gravity */
+        const real gravity_x = m->gravity_x;
         const real a_t_x = t_ddot_x - gravity_x;
+        const real gravity_y = m->gravity_y;
         const real a_t_y = t_ddot_y - gravity_y;
+        const real gravity_z = m->gravity_z;
         const real a_t_z = t_ddot_z - gravity_z;
-        /* (E2) inertia force of the platform less its weight */
+        /* (f_p) inertia force of the platform less its weight */
+        const real m_star = m->m_star;
         const real f_p_x = a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) +
             h_star_in_base_z*(W_p_xz + alpha_y) - h_star_in_base_x*(W_p_t_2 + W_p_t_3);
         const real f_p_y = a_t_y*m_star + h_star_in_base_x*(W_p_xy + alpha_z) +
             h_star_in_base_z*(W_p_yz - alpha_x) - h_star_in_base_y*(W_p_t + W_p_t_3);
         const real f_p_z = a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) +
             h_star_in_base_y*(W_p_yz + alpha_x) - h_star_in_base_z*(W_p_t + W_p_t_2);
-        /* (E1) acceleration of the platform origin, less gravity */
+        /* (a_t) acceleration of the platform origin, less gravity */
         const real a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
         const real a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
         const real a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
-        /* (E3) inertia moment of the platform less that of its weight */
+        /* (mu_p) inertia moment of the platform less that of its weight */
         const real alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
         const real alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
         const real alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
@@ -3775,464 +3810,479 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z;
         const real mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z;
         const real mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->t_ddot_z[k] = t_ddot_z;
-        s->alpha_x[k] = alpha_x;
-        s->alpha_y[k] = alpha_y;
-        s->alpha_z[k] = alpha_z;
-        s->f_p_x[k] = f_p_x;
-        s->f_p_y[k] = f_p_y;
-        s->f_p_z[k] = f_p_z;
-        s->mu_p_in_base_x[k] = mu_p_in_base_x;
-        s->mu_p_in_base_y[k] = mu_p_in_base_y;
-        s->mu_p_in_base_z[k] = mu_p_in_base_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
+        s[18*w + k] = t_ddot_x;
+        s[19*w + k] = t_ddot_y;
+        s[20*w + k] = t_ddot_z;
+        s[21*w + k] = alpha_x;
+        s[22*w + k] = alpha_y;
+        s[23*w + k] = alpha_z;
+        s[24*w + k] = f_p_x;
+        s[25*w + k] = f_p_y;
+        s[26*w + k] = f_p_z;
+        s[27*w + k] = mu_p_in_base_x;
+        s[28*w + k] = mu_p_in_base_y;
+        s[29*w + k] = mu_p_in_base_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void required_legs_upru(const prepared *m, size_t leg, size_t legs, const required_values
-    *s, size_t states, size_t count, int add, required_results_upru *o)
+INLINE void required_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real t_ddot_z = s->t_ddot_z[j];
-        const real alpha_x = s->alpha_x[j];
-        const real alpha_y = s->alpha_y[j];
-        const real alpha_z = s->alpha_z[j];
+        /* (ucu-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
+        const real ucu_platform_point_x = m->ucu_platform_point_x[i];
+        const real ucu_platform_point_y = m->ucu_platform_point_y[i];
+        const real ucu_platform_point_z = m->ucu_platform_point_z[i];
+        const real ucu_q_in_base_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
+            R_xz*ucu_platform_point_z;
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real ucu_q_in_base_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
+            R_yz*ucu_platform_point_z;
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real ucu_q_in_base_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
+            R_zz*ucu_platform_point_z;
+        const real t_x = s[0*w + j];
+        const real ucu_base_point_x = m->ucu_base_point_x[i];
+        const real ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x;
+        const real t_y = s[1*w + j];
+        const real ucu_base_point_y = m->ucu_base_point_y[i];
+        const real ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y;
+        const real t_z = s[2*w + j];
+        const real ucu_base_point_z = m->ucu_base_point_z[i];
+        const real ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z;
+        /* (ucu-px_1) component along the reference direction */
+        const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
+        const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
+        const real ucu_base_frame_zx = m->ucu_base_frame_zx[i];
+        const real ucu_px_1 = ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx +
+            ucu_S_z*ucu_base_frame_zx;
+        /* (ucu-py_1) component across the reference direction */
+        const real ucu_base_frame_xy = m->ucu_base_frame_xy[i];
+        const real ucu_base_frame_yy = m->ucu_base_frame_yy[i];
+        const real ucu_base_frame_zy = m->ucu_base_frame_zy[i];
+        const real ucu_py_1 = ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy +
+            ucu_S_z*ucu_base_frame_zy;
+        /* (ucu-rho2_1) squared amplitude */
+        const real ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1;
+        /* (ucu-root_1) amplitude, with the sign of the branch */
+        const real ucu_branch_1 = m->ucu_branch_1[i];
+        const real ucu_root_1 = ucu_branch_1*root(ucu_rho2_1);
+        /* (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
+        const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
+        const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
+        const real ucu_xi_1_t = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
+            ucu_S_z*ucu_base_frame_zz;
+        /* (ucu-rho2_2) squared amplitude */
+        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t;
+        /* (ucu-root_2) amplitude, with the sign of the branch */
+        const real ucu_branch_2 = m->ucu_branch_2[i];
+        const real ucu_root_2 = ucu_branch_2*root(ucu_rho2_2);
+        /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ucu_root_2 = 1/ucu_root_2;
+        const real ucu_c_2 = inv_ucu_root_2*ucu_root_1;
+        /* (ucu-s_2) sine of the angle of joint 2 from its reference direction */
+        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t;
+        /* (ucu-px_4) component along the reference direction */
+        const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
+        const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
+        const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
+        const real ucu_end_p1_r0_x = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
+            R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
+            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
+            R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
+            R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
+        const real ucu_end_p1_r0_y = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
+            R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
+            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
+            R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
+            R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
+        const real ucu_end_p1_r0_z = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
+            R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
+            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
+            R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
+            R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
+        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ucu_root_1 = 1/ucu_root_1;
+        const real ucu_c_1 = inv_ucu_root_1*ucu_py_1;
+        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
+        /* (ucu-px_4) component along the reference direction */
+        const real ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x;
+        const real ucu_end_p1_r1_y = -ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1;
+        const real ucu_end_p1_r3_x = ucu_end_p1_r0_z*ucu_s_2 - ucu_c_2*ucu_end_p1_r1_y;
+        const real ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_end_p1_r1_y*ucu_s_2;
+        /* (ucu-rho2_4) squared amplitude */
+        const real ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y;
+        /* (ucu-root_4) amplitude, with the sign of the branch */
+        const real ucu_branch_4 = m->ucu_branch_4[i];
+        const real ucu_root_4 = ucu_branch_4*root(ucu_rho2_4);
+        /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
+        const real inv_ucu_root_4 = 1/ucu_root_4;
+        const real ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y;
+        /* (ucu-s_4) sine of the angle of joint 4 from its reference direction */
+        const real ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x;
+        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
+        const real ucu_v_1_t = ucu_c_2*ucu_c_4;
+        const real ucu_v_1_t_2 = ucu_c_2*ucu_s_4;
+        const real ucu_v_1_t_3 = ucu_root_2*ucu_v_1_t_2;
+        const real ucu_v_1_t_4 = ucu_root_2*ucu_v_1_t;
+        /* (ucu-w_1) force part of reciprocal wrench 1 */
+        const real ucu_axis_z_x = inv_ucu_root_2*ucu_S_x;
+        const real ucu_axis_z_y = inv_ucu_root_2*ucu_S_y;
+        const real ucu_axis_z_z = inv_ucu_root_2*ucu_S_z;
+        const real ucu_w_1_t = ucu_s_2*ucu_s_4;
+        const real axis_y_ucu_axes4_r4_x = -ucu_c_1*ucu_c_4 - ucu_s_1*ucu_w_1_t;
+        const real axis_y_ucu_axes4_r4_y = ucu_c_4*ucu_s_1 - ucu_c_1*ucu_w_1_t;
+        const real axis_y_ucu_axes4_in_base_x = axis_y_ucu_axes4_r4_x*ucu_base_frame_xx +
+            axis_y_ucu_axes4_r4_y*ucu_base_frame_xy + ucu_base_frame_xz*ucu_v_1_t_2;
+        const real axis_y_ucu_axes4_in_base_y = axis_y_ucu_axes4_r4_x*ucu_base_frame_yx +
+            axis_y_ucu_axes4_r4_y*ucu_base_frame_yy + ucu_base_frame_yz*ucu_v_1_t_2;
+        const real axis_y_ucu_axes4_in_base_z = axis_y_ucu_axes4_r4_x*ucu_base_frame_zx +
+            axis_y_ucu_axes4_r4_y*ucu_base_frame_zy + ucu_base_frame_zz*ucu_v_1_t_2;
+        const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_in_base_y*ucu_axis_z_z -
+            axis_y_ucu_axes4_in_base_z*ucu_axis_z_y;
+        const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_in_base_z*ucu_axis_z_x -
+            axis_y_ucu_axes4_in_base_x*ucu_axis_z_z;
+        const real axis_x_ucu_axes4_z = axis_y_ucu_axes4_in_base_x*ucu_axis_z_y -
+            axis_y_ucu_axes4_in_base_y*ucu_axis_z_x;
+        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4;
+        const real ucu_end_p1_r5_y = ucu_c_4*ucu_end_p1_r1_x - ucu_end_p1_r3_y*ucu_s_4;
+        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
+        const real ucu_v_1_r0_x = ucu_c_4*ucu_v_1_t_3 - ucu_s_4*ucu_v_1_t_4;
+        const real ucu_v_1_r0_y = ucu_c_4*ucu_v_1_t_4 + ucu_s_4*ucu_v_1_t_3;
+        /* (ucu-w_1) force part of reciprocal wrench 1 */
+        const real ucu_w_1_t_2 = ucu_end_p1_r3_x*ucu_v_1_t + ucu_end_p1_r5_x*ucu_s_2;
+        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real ucu_n_m1_t = ucu_end_p1_r3_x*ucu_s_4;
+        /* (ucu-w_1) force part of reciprocal wrench 1 */
+        const real inv_ucu_v_1_r0_y = 1/ucu_v_1_r0_y;
+        /* (ucu-w_4) force part of reciprocal wrench 4 */
+        const real inv_ucu_end_p1_r5_x = 1/ucu_end_p1_r5_x;
+        /* (ucu-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real ucu_S_dot_t = omega_y*ucu_q_in_base_z - omega_z*ucu_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real ucu_S_dot_t_2 = omega_z*ucu_q_in_base_x - omega_x*ucu_q_in_base_z;
+        const real ucu_S_dot_t_3 = omega_x*ucu_q_in_base_y - omega_y*ucu_q_in_base_x;
+        const real t_dot_x = s[12*w + j];
+        const real ucu_S_dot_x = t_dot_x + ucu_S_dot_t;
+        const real t_dot_y = s[13*w + j];
+        const real ucu_S_dot_y = t_dot_y + ucu_S_dot_t_2;
+        const real t_dot_z = s[14*w + j];
+        const real ucu_S_dot_z = t_dot_z + ucu_S_dot_t_3;
+        const real ucu_S_dot_r0_x = ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx
+            + ucu_S_dot_z*ucu_base_frame_zx;
+        const real ucu_S_dot_r0_y = ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy
+            + ucu_S_dot_z*ucu_base_frame_zy;
+        const real ucu_S_dot_r0_z = ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz
+            + ucu_S_dot_z*ucu_base_frame_zz;
+        const real ucu_S_dot_r1_y = -ucu_S_dot_r0_x*ucu_s_1 - ucu_S_dot_r0_y*ucu_c_1;
+        const real ucu_S_dot_r3_x = ucu_S_dot_r0_z*ucu_s_2 - ucu_S_dot_r1_y*ucu_c_2;
+        /* (ucu-qd_4) rate of joint 4 */
+        const real ucu_qd_4_t = inv_ucu_v_1_r0_y*(ucu_S_dot_r0_y*ucu_s_1 -
+            ucu_S_dot_r0_x*ucu_c_1);
+        const real ucu_qd_4_t_2 = inv_ucu_root_2*(-ucu_S_dot_r0_z*ucu_c_2 - ucu_S_dot_r1_y*ucu_s_2
+            - ucu_qd_4_t*ucu_v_1_r0_x);
+        /* (ucu-omega_1) angular velocity of link 1 */
+        const real ucu_omega_1_t = ucu_qd_4_t*ucu_s_2;
+        const real ucu_omega_1_t_2 = ucu_c_2*ucu_qd_4_t;
+        /* (ucu-omega_2) angular velocity of link 2 */
+        const real ucu_omega_2_r1_x = ucu_qd_4_t_2*ucu_s_4 - ucu_c_4*ucu_omega_1_t_2;
+        const real ucu_omega_2_r1_y = ucu_c_4*ucu_qd_4_t_2 + ucu_omega_1_t_2*ucu_s_4;
+        /* (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real ucu_zeta_2_x = ucu_omega_1_t_2*ucu_qd_4_t_2;
+        const real ucu_zeta_2_y = ucu_omega_1_t*ucu_qd_4_t_2;
+        /* (ucu-W_2) centripetal tensor of link 2 */
+        const real ucu_W_2_t = ucu_omega_1_t*ucu_omega_1_t;
+        const real ucu_W_2_t_2 = ucu_omega_1_t_2*ucu_omega_1_t_2;
+        const real ucu_W_2_t_3 = ucu_qd_4_t_2*ucu_qd_4_t_2;
+        const real ucu_W_2_xy = ucu_omega_1_t*ucu_omega_1_t_2;
+        /* (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real ucu_zeta_2_t = ucu_c_4*ucu_zeta_2_y;
+        /* (ucu-W_2) centripetal tensor of link 2 */
+        const real ucu_W_2_t_4 = ucu_omega_2_r1_x*ucu_omega_2_r1_x;
+        const real ucu_W_2_t_5 = ucu_omega_2_r1_y*ucu_omega_2_r1_y;
+        const real ucu_W_2_xy_2 = ucu_omega_2_r1_x*ucu_omega_2_r1_y;
+        /* (ucu-bias) acceleration of the connection point at zero joint accelerations */
+        const real ucu_bias_t = 2*ucu_S_dot_r3_x;
+        const real ucu_bias_x = ucu_bias_t*ucu_omega_2_r1_y +
+            ucu_root_2*(ucu_omega_1_t*ucu_omega_2_r1_x + ucu_s_4*ucu_zeta_2_y);
+        const real ucu_bias_y = ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_t*ucu_omega_2_r1_y) -
+            ucu_bias_t*ucu_omega_2_r1_x;
+        /* (ucu-nd_m1) rate of moment direction 1 */
+        const real ucu_omega_tip_x = axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y +
+            axis_x_ucu_axes4_z*omega_z;
+        const real ucu_omega_tip_y = axis_y_ucu_axes4_in_base_x*omega_x +
+            axis_y_ucu_axes4_in_base_y*omega_y + axis_y_ucu_axes4_in_base_z*omega_z;
+        const real ucu_omega_tip_z = omega_x*ucu_axis_z_x + omega_y*ucu_axis_z_y +
+            omega_z*ucu_axis_z_z;
+        const real ucu_nd_m1_x = ucu_end_p1_r5_y*ucu_omega_tip_x - ucu_end_p1_r5_x*ucu_omega_tip_y
+            - ucu_end_p1_r5_y*ucu_omega_2_r1_x;
+        /* (ucu-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real ucu_g_r0_x = m->ucu_g_r0_x[i];
+        const real ucu_g_r0_y = m->ucu_g_r0_y[i];
+        const real ucu_g_r1_x = ucu_g_r0_y*ucu_s_1 - ucu_c_1*ucu_g_r0_x;
+        const real ucu_g_r1_y = -ucu_c_1*ucu_g_r0_y - ucu_g_r0_x*ucu_s_1;
+        const real ucu_g_r0_z = m->ucu_g_r0_z[i];
+        const real ucu_g_r3_x = ucu_g_r0_z*ucu_s_2 - ucu_c_2*ucu_g_r1_y;
+        const real ucu_g_r3_y = -ucu_c_2*ucu_g_r0_z - ucu_g_r1_y*ucu_s_2;
+        /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
+        const real ucu_H_a_3_t = ucu_axis_z_z*ucu_q_in_base_y - ucu_axis_z_y*ucu_q_in_base_z;
+        const real ucu_H_a_3_t_2 = ucu_axis_z_x*ucu_q_in_base_z - ucu_axis_z_z*ucu_q_in_base_x;
+        const real ucu_H_a_3_t_3 = ucu_axis_z_y*ucu_q_in_base_x - ucu_axis_z_x*ucu_q_in_base_y;
+        /* (ucu-qd_1) rate of joint 1 */
+        const real ucu_qd_1_t = ucu_omega_tip_z -
+            inv_ucu_end_p1_r5_x*(ucu_end_p1_r3_x*ucu_omega_tip_x + ucu_qd_4_t*ucu_w_1_t_2 -
+            ucu_n_m1_t*ucu_qd_4_t_2);
+        /* (ucu-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_y = s[22*w + j];
+        const real alpha_z = s[23*w + j];
+        const real t_ddot_x = s[18*w + j];
+        const real ucu_a_p_x = t_ddot_x + alpha_y*ucu_q_in_base_z - alpha_z*ucu_q_in_base_y;
+        const real alpha_x = s[21*w + j];
+        const real t_ddot_y = s[19*w + j];
+        const real ucu_a_p_y = t_ddot_y + alpha_z*ucu_q_in_base_x - alpha_x*ucu_q_in_base_z;
+        const real t_ddot_z = s[20*w + j];
+        const real ucu_a_p_z = t_ddot_z + alpha_x*ucu_q_in_base_y - alpha_y*ucu_q_in_base_x;
+        /* (ucu-S_ddot) acceleration of the connection point */
+        const real ucu_S_ddot_x = ucu_a_p_x + omega_y*ucu_S_dot_t_3 - omega_z*ucu_S_dot_t_2;
+        const real ucu_S_ddot_y = ucu_a_p_y + omega_z*ucu_S_dot_t - omega_x*ucu_S_dot_t_3;
+        const real ucu_S_ddot_z = ucu_a_p_z + omega_x*ucu_S_dot_t_2 - omega_y*ucu_S_dot_t;
+        const real ucu_S_ddot_tip_x = axis_x_ucu_axes4_x*ucu_S_ddot_x +
+            axis_x_ucu_axes4_y*ucu_S_ddot_y + axis_x_ucu_axes4_z*ucu_S_ddot_z;
+        const real ucu_S_ddot_tip_y = axis_y_ucu_axes4_in_base_x*ucu_S_ddot_x +
+            axis_y_ucu_axes4_in_base_y*ucu_S_ddot_y + axis_y_ucu_axes4_in_base_z*ucu_S_ddot_z;
+        /* (ucu-rel) acceleration of the connection point left to the joint accelerations */
+        const real ucu_rel_x = ucu_S_ddot_tip_x - ucu_bias_x;
+        const real ucu_rel_y = ucu_S_ddot_tip_y - ucu_bias_y;
+        /* (ucu-omega_4) angular velocity of link 4 */
+        const real ucu_omega_4_z = ucu_omega_1_t + ucu_qd_1_t;
+        /* (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
+        const real ucu_zeta_4_x = ucu_omega_2_r1_y*ucu_qd_1_t;
+        /* (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations */
+        const real ucu_beta_4_x = ucu_zeta_4_x - ucu_zeta_2_t;
+        /* (ucu-nd_m1) rate of moment direction 1 */
+        const real ucu_nd_m1_z = ucu_end_p1_r5_y*ucu_omega_tip_z - ucu_end_p1_r3_x*ucu_omega_tip_y
+            - ucu_end_p1_r5_y*ucu_omega_4_z;
+        /* (ucu-nu_1) bias of the angular acceleration along moment direction 1 */
+        const real ucu_nu_1_t = ucu_beta_4_x*ucu_end_p1_r3_x + ucu_end_p1_r5_x*ucu_zeta_2_x;
+        const real ucu_nu_1_t_2 = ucu_nd_m1_x*(ucu_omega_2_r1_x - ucu_omega_tip_x) +
+            ucu_nd_m1_z*(ucu_omega_4_z - ucu_omega_tip_z) + (ucu_omega_2_r1_y -
+            ucu_omega_tip_y)*(ucu_end_p1_r3_x*ucu_omega_4_z + ucu_end_p1_r5_x*ucu_omega_2_r1_x);
+        const real ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2;
+        /* (ucu-etad_1) acceleration with which the joints turn along moment direction 1 */
+        const real ucu_etad_1_t = ucu_end_p1_r3_x*(alpha_x*axis_x_ucu_axes4_x +
+            alpha_y*axis_x_ucu_axes4_y + alpha_z*axis_x_ucu_axes4_z) -
+            ucu_end_p1_r5_x*(alpha_x*ucu_axis_z_x + alpha_y*ucu_axis_z_y + alpha_z*ucu_axis_z_z);
+        const real ucu_etad_1 = ucu_etad_1_t + ucu_nu_1;
+        /* (ucu-qdd_1) acceleration of joint 1 */
+        const real ucu_qdd_1_t = inv_ucu_v_1_r0_y*(ucu_c_4*ucu_rel_y + ucu_rel_x*ucu_s_4);
+        const real ucu_qdd_1_t_2 = inv_ucu_root_2*(ucu_qdd_1_t*ucu_v_1_r0_x + ucu_rel_y*ucu_s_4 -
+            ucu_c_4*ucu_rel_x);
+        /* (ucu-acc_4) acceleration of the reference point of link 4, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real J_2_xy = m->J_2_xy[i];
-        const real J_2_xz = m->J_2_xz[i];
-        const real J_2_yz = m->J_2_yz[i];
-        const real J_4_xy = m->J_4_xy[i];
-        const real J_4_xz = m->J_4_xz[i];
-        const real J_4_yz = m->J_4_yz[i];
-        const real Sigma_2_xx = m->Sigma_2_xx[i];
-        const real Sigma_2_yy = m->Sigma_2_yy[i];
-        const real Sigma_2_zz = m->Sigma_2_zz[i];
-        const real Sigma_4_xx = m->Sigma_4_xx[i];
-        const real Sigma_4_yy = m->Sigma_4_yy[i];
-        const real Sigma_4_zz = m->Sigma_4_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real branch_4 = m->branch_4[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real g_r0_z = m->g_r0_z[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real h_2_z = m->h_2_z[i];
-        const real h_4_x = m->h_4_x[i];
-        const real h_4_y = m->h_4_y[i];
-        const real h_4_z = m->h_4_z[i];
-        const real upru_base_frame_xx = m->upru_base_frame_xx[i];
-        const real upru_base_frame_xy = m->upru_base_frame_xy[i];
-        const real upru_base_frame_xz = m->upru_base_frame_xz[i];
-        const real upru_base_frame_yx = m->upru_base_frame_yx[i];
-        const real upru_base_frame_yy = m->upru_base_frame_yy[i];
-        const real upru_base_frame_yz = m->upru_base_frame_yz[i];
-        const real upru_base_frame_zx = m->upru_base_frame_zx[i];
-        const real upru_base_frame_zy = m->upru_base_frame_zy[i];
-        const real upru_base_frame_zz = m->upru_base_frame_zz[i];
-        const real upru_base_point_x = m->upru_base_point_x[i];
-        const real upru_base_point_y = m->upru_base_point_y[i];
-        const real upru_base_point_z = m->upru_base_point_z[i];
-        const real upru_platform_joint_axis_platform_x = m->upru_platform_joint_axis_platform_x[i];
-        const real upru_platform_joint_axis_platform_y = m->upru_platform_joint_axis_platform_y[i];
-        const real upru_platform_joint_axis_platform_z = m->upru_platform_joint_axis_platform_z[i];
-        const real upru_platform_point_x = m->upru_platform_point_x[i];
-        const real upru_platform_point_y = m->upru_platform_point_y[i];
-        const real upru_platform_point_z = m->upru_platform_point_z[i];
-        /* (upru-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*upru_platform_point_x + R_xy*upru_platform_point_y +
-            R_xz*upru_platform_point_z;
-        const real q_in_base_y = R_yx*upru_platform_point_x + R_yy*upru_platform_point_y +
-            R_yz*upru_platform_point_z;
-        const real q_in_base_z = R_zx*upru_platform_point_x + R_zy*upru_platform_point_y +
-            R_zz*upru_platform_point_z;
-        const real S_x = q_in_base_x + t_x - upru_base_point_x;
-        const real S_y = q_in_base_y + t_y - upru_base_point_y;
-        const real S_z = q_in_base_z + t_z - upru_base_point_z;
-        /* (upru-K2) component along the reference direction */
-        const real px_1 = S_x*upru_base_frame_xx + S_y*upru_base_frame_yx +
-            S_z*upru_base_frame_zx;
-        /* (upru-K3) component across the reference direction */
-        const real py_1 = S_x*upru_base_frame_xy + S_y*upru_base_frame_yy +
-            S_z*upru_base_frame_zy;
-        /* (upru-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upru-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upru-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upru_base_frame_xz + S_y*upru_base_frame_yz +
-            S_z*upru_base_frame_zz;
-        /* (upru-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upru-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upru-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upru-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upru-K20) component along the reference direction */
-        const real end_p1_r0_x = upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xx +
-            R_yx*upru_base_frame_yx + R_zx*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xx + R_yy*upru_base_frame_yx
-            + R_zy*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xx + R_yz*upru_base_frame_yx
-            + R_zz*upru_base_frame_zx);
-        const real end_p1_r0_y = upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xy +
-            R_yx*upru_base_frame_yy + R_zx*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xy + R_yy*upru_base_frame_yy
-            + R_zy*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xy + R_yz*upru_base_frame_yy
-            + R_zz*upru_base_frame_zy);
-        const real end_p1_r0_z = upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xz +
-            R_yx*upru_base_frame_yz + R_zx*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xz + R_yy*upru_base_frame_yz
-            + R_zy*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xz + R_yz*upru_base_frame_yz
-            + R_zz*upru_base_frame_zz);
-        /* (upru-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upru-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upru-K20) component along the reference direction */
-        const real end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x;
-        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
-        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
-        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
-        /* (upru-K23) squared amplitude */
-        const real rho2_4 = end_p1_r1_x*end_p1_r1_x + end_p1_r3_y*end_p1_r3_y;
-        /* (upru-K24) amplitude, with the sign of the branch */
-        const real root_4 = branch_4*root(rho2_4);
-        /* (upru-K25) cosine of the angle of joint 4 from its reference direction */
-        const real inv_root_4 = 1/root_4;
-        const real c_4 = end_p1_r3_y*inv_root_4;
-        /* (upru-K26) sine of the angle of joint 4 from its reference direction */
-        const real s_4 = end_p1_r1_x*inv_root_4;
-        /* (upru-V3) velocity of the connection point per rate of joint 1 */
-        const real v_1_t = c_2*c_4;
-        const real v_1_t_2 = c_2*s_4;
-        const real v_1_t_3 = root_2*v_1_t_2;
-        const real v_1_t_4 = root_2*v_1_t;
-        /* (upru-V7) force part of reciprocal wrench 1 */
-        const real axis_z_x = S_x*inv_root_2;
-        const real axis_z_y = S_y*inv_root_2;
-        const real axis_z_z = S_z*inv_root_2;
-        const real w_1_t = s_2*s_4;
-        const real axis_y_upru_axes4_r4_x = -c_1*c_4 - s_1*w_1_t;
-        const real axis_y_upru_axes4_r4_y = c_4*s_1 - c_1*w_1_t;
-        const real axis_y_upru_axes4_in_base_x = axis_y_upru_axes4_r4_x*upru_base_frame_xx +
-            axis_y_upru_axes4_r4_y*upru_base_frame_xy + upru_base_frame_xz*v_1_t_2;
-        const real axis_y_upru_axes4_in_base_y = axis_y_upru_axes4_r4_x*upru_base_frame_yx +
-            axis_y_upru_axes4_r4_y*upru_base_frame_yy + upru_base_frame_yz*v_1_t_2;
-        const real axis_y_upru_axes4_in_base_z = axis_y_upru_axes4_r4_x*upru_base_frame_zx +
-            axis_y_upru_axes4_r4_y*upru_base_frame_zy + upru_base_frame_zz*v_1_t_2;
-        const real axis_x_upru_axes4_x = axis_y_upru_axes4_in_base_y*axis_z_z -
-            axis_y_upru_axes4_in_base_z*axis_z_y;
-        const real axis_x_upru_axes4_y = axis_y_upru_axes4_in_base_z*axis_z_x -
-            axis_y_upru_axes4_in_base_x*axis_z_z;
-        const real axis_x_upru_axes4_z = axis_y_upru_axes4_in_base_x*axis_z_y -
-            axis_y_upru_axes4_in_base_y*axis_z_x;
-        /* (upru-V6) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4;
-        const real end_p1_r5_y = c_4*end_p1_r1_x - end_p1_r3_y*s_4;
-        /* (upru-V3) velocity of the connection point per rate of joint 1 */
-        const real v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4;
-        const real v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3;
-        /* (upru-V7) force part of reciprocal wrench 1 */
-        const real w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2;
-        /* (upru-V6) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_t = end_p1_r3_x*s_4;
-        /* (upru-V7) force part of reciprocal wrench 1 */
-        const real inv_v_1_r0_y = 1/v_1_r0_y;
-        /* (upru-V13) force part of reciprocal wrench 4 */
-        const real inv_end_p1_r5_x = 1/end_p1_r5_x;
-        /* (upru-N2) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
-        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
-        const real g_r3_x = g_r0_z*s_2 - c_2*g_r1_y;
-        const real g_r3_y = -c_2*g_r0_z - g_r1_y*s_2;
-        /* (upru-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        const real S_dot_r0_x = S_dot_x*upru_base_frame_xx + S_dot_y*upru_base_frame_yx +
-            S_dot_z*upru_base_frame_zx;
-        const real S_dot_r0_y = S_dot_x*upru_base_frame_xy + S_dot_y*upru_base_frame_yy +
-            S_dot_z*upru_base_frame_zy;
-        const real S_dot_r0_z = S_dot_x*upru_base_frame_xz + S_dot_y*upru_base_frame_yz +
-            S_dot_z*upru_base_frame_zz;
-        const real S_dot_r1_y = -S_dot_r0_x*s_1 - S_dot_r0_y*c_1;
-        const real S_dot_r3_x = S_dot_r0_z*s_2 - S_dot_r1_y*c_2;
-        /* (upru-V20) rate of joint 1 */
-        const real qd_1_t = inv_v_1_r0_y*(S_dot_r0_y*s_1 - S_dot_r0_x*c_1);
-        const real qd_1_t_2 = inv_root_2*(-S_dot_r0_z*c_2 - S_dot_r1_y*s_2 - qd_1_t*v_1_r0_x);
-        /* (upru-V24) angular velocity of link 1 */
-        const real omega_1_t = qd_1_t*s_2;
-        const real omega_1_t_2 = c_2*qd_1_t;
-        /* (upru-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_x = omega_1_t_2*qd_1_t_2;
-        const real zeta_2_y = omega_1_t*qd_1_t_2;
-        /* (upru-V25) angular velocity of link 2 */
-        const real omega_2_r1_x = qd_1_t_2*s_4 - c_4*omega_1_t_2;
-        const real omega_2_r1_y = c_4*qd_1_t_2 + omega_1_t_2*s_4;
-        /* (upru-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_t = c_4*zeta_2_y;
-        /* (upru-A10) rate of moment direction 1 */
-        const real omega_tip_x = axis_x_upru_axes4_x*omega_x + axis_x_upru_axes4_y*omega_y +
-            axis_x_upru_axes4_z*omega_z;
-        const real omega_tip_y = axis_y_upru_axes4_in_base_x*omega_x +
-            axis_y_upru_axes4_in_base_y*omega_y + axis_y_upru_axes4_in_base_z*omega_z;
-        const real omega_tip_z = axis_z_x*omega_x + axis_z_y*omega_y + axis_z_z*omega_z;
-        const real nd_m1_x = end_p1_r5_y*omega_tip_x - end_p1_r5_x*omega_tip_y -
-            end_p1_r5_y*omega_2_r1_x;
-        /* (upru-V26) centripetal tensor of link 2 */
-        const real W_2_t = omega_1_t*omega_1_t;
-        const real W_2_t_2 = omega_1_t_2*omega_1_t_2;
-        const real W_2_t_3 = qd_1_t_2*qd_1_t_2;
-        const real W_2_xy = omega_1_t*omega_1_t_2;
-        const real W_2_t_4 = omega_2_r1_x*omega_2_r1_x;
-        const real W_2_t_5 = omega_2_r1_y*omega_2_r1_y;
-        const real W_2_xy_2 = omega_2_r1_x*omega_2_r1_y;
-        /* (upru-A7) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_r3_x;
-        const real bias_x = bias_t*omega_2_r1_y + root_2*(omega_1_t*omega_2_r1_x + s_4*zeta_2_y);
-        const real bias_y = root_2*(zeta_2_t + omega_1_t*omega_2_r1_y) - bias_t*omega_2_r1_x;
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_3_t = axis_z_z*q_in_base_y - axis_z_y*q_in_base_z;
-        const real H_a_3_t_2 = axis_z_x*q_in_base_z - axis_z_z*q_in_base_x;
-        const real H_a_3_t_3 = axis_z_y*q_in_base_x - axis_z_x*q_in_base_y;
-        /* (upru-V20) rate of joint 1 */
-        const real qd_1_t_3 = omega_tip_z - inv_end_p1_r5_x*(end_p1_r3_x*omega_tip_x +
-            qd_1_t*w_1_t_2 - n_m1_t*qd_1_t_2);
-        /* (upru-A5) angular acceleration of link 4 from the turning of axis 4 */
-        const real zeta_4_x = omega_2_r1_y*qd_1_t_3;
-        /* (upru-A6) angular acceleration of link 4 at zero joint accelerations */
-        const real beta_4_x = zeta_4_x - zeta_2_t;
-        /* (upru-V27) angular velocity of link 4 */
-        const real omega_4_z = omega_1_t + qd_1_t_3;
-        /* (upru-A10) rate of moment direction 1 */
-        const real nd_m1_z = end_p1_r5_y*omega_tip_z - end_p1_r3_x*omega_tip_y -
-            end_p1_r5_y*omega_4_z;
-        /* (upru-A11) bias of the angular acceleration along moment direction 1 */
-        const real nu_1_t = beta_4_x*end_p1_r3_x + end_p1_r5_x*zeta_2_x;
-        const real nu_1_t_2 = nd_m1_x*(omega_2_r1_x - omega_tip_x) + nd_m1_z*(omega_4_z -
-            omega_tip_z) + (omega_2_r1_y - omega_tip_y)*(end_p1_r3_x*omega_4_z +
-            end_p1_r5_x*omega_2_r1_x);
-        const real nu_1 = -nu_1_t - nu_1_t_2;
-        /* (upru-A12) acceleration with which the joints turn along moment direction 1 */
-        const real etad_1_t = end_p1_r3_x*(alpha_x*axis_x_upru_axes4_x +
-            alpha_y*axis_x_upru_axes4_y + alpha_z*axis_x_upru_axes4_z) -
-            end_p1_r5_x*(alpha_x*axis_z_x + alpha_y*axis_z_y + alpha_z*axis_z_z);
-        const real etad_1 = etad_1_t + nu_1;
-        /* (upru-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
-        const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
-        const real a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x;
-        /* (upru-A3) acceleration of the connection point */
-        const real S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z;
-        const real S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x;
-        const real S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y;
-        const real S_ddot_tip_x = S_ddot_x*axis_x_upru_axes4_x + S_ddot_y*axis_x_upru_axes4_y +
-            S_ddot_z*axis_x_upru_axes4_z;
-        const real S_ddot_tip_y = S_ddot_x*axis_y_upru_axes4_in_base_x +
-            S_ddot_y*axis_y_upru_axes4_in_base_y + S_ddot_z*axis_y_upru_axes4_in_base_z;
-        /* (upru-A8) acceleration of the connection point left to the joint accelerations */
-        const real rel_x = S_ddot_tip_x - bias_x;
-        const real rel_y = S_ddot_tip_y - bias_y;
-        /* (upru-A13) acceleration of joint 1 */
-        const real qdd_1_t = inv_v_1_r0_y*(c_4*rel_y + rel_x*s_4);
-        const real qdd_1_t_2 = inv_root_2*(qdd_1_t*v_1_r0_x + rel_y*s_4 - c_4*rel_x);
-        /* (upru-N3) acceleration of the reference point of link 4, less gravity */
-        const real acc_4_x = S_ddot_tip_x - axis_x_upru_axes4_x*gravity_x -
-            axis_x_upru_axes4_y*gravity_y - axis_x_upru_axes4_z*gravity_z;
-        const real acc_4_y = S_ddot_tip_y - axis_y_upru_axes4_in_base_x*gravity_x -
-            axis_y_upru_axes4_in_base_y*gravity_y - axis_y_upru_axes4_in_base_z*gravity_z;
-        const real acc_4_z = S_ddot_x*axis_z_x + S_ddot_y*axis_z_y + S_ddot_z*axis_z_z -
-            axis_z_x*gravity_x - axis_z_y*gravity_y - axis_z_z*gravity_z;
-        /* (upru-A20) angular acceleration of link 1 */
-        const real alpha_1_t = qdd_1_t*s_2;
-        const real alpha_1_t_2 = c_2*qdd_1_t;
-        /* (upru-A22) angular acceleration of link 2 */
-        const real alpha_2_x = alpha_1_t - zeta_2_x;
-        const real alpha_2_y = -alpha_1_t_2 - zeta_2_y;
-        /* (upru-A24) acceleration tensor of link 2 */
-        const real B_2_xy = qdd_1_t_2 - W_2_xy;
-        const real B_2_yx = -W_2_xy - qdd_1_t_2;
-        const real B_2_zx = zeta_2_y - alpha_2_y;
-        const real B_2_zy = alpha_2_x - zeta_2_x;
-        /* (upru-N29) inertia moment of the links that turn with link 2, about their reference points */
-        const real mu_2_x = B_2_yx*J_2_xy + B_2_zx*J_2_xz + B_2_zy*Sigma_2_yy +
-            Sigma_2_zz*alpha_1_t + g_r1_x*h_2_z + g_r3_y*h_2_y - J_2_yz*(W_2_t_2 - W_2_t_3);
-        const real mu_2_y = B_2_xy*J_2_yz + g_r1_x*h_2_x - B_2_zx*Sigma_2_xx - B_2_zy*J_2_xz -
-            J_2_xy*(W_2_t - W_2_t_3) - Sigma_2_zz*alpha_1_t_2 - g_r3_x*h_2_y;
-        const real mu_2_z = B_2_yx*Sigma_2_xx + J_2_xy*alpha_1_t + J_2_yz*alpha_1_t_2 -
-            B_2_xy*Sigma_2_yy - J_2_xz*(W_2_t - W_2_t_2) - g_r3_x*h_2_z - g_r3_y*h_2_x;
-        /* (upru-A26) angular acceleration of link 4 */
-        const real alpha_4_x = zeta_4_x + alpha_2_y*c_4 - qdd_1_t_2*s_4;
-        const real alpha_4_y = -alpha_2_y*s_4 - c_4*qdd_1_t_2 - omega_2_r1_x*qd_1_t_3;
-        const real alpha_4_z = alpha_2_x - inv_end_p1_r5_x*(etad_1 + n_m1_t*qdd_1_t_2 +
-            qdd_1_t*w_1_t_2);
-        /* (upru-V28) centripetal tensor of link 4 */
-        const real W_4_t = omega_4_z*omega_4_z;
-        const real W_4_xz = omega_2_r1_x*omega_4_z;
-        const real W_4_yz = omega_2_r1_y*omega_4_z;
-        /* (upru-A30) acceleration tensor of link 4 */
-        const real B_4_xy = W_2_xy_2 - alpha_4_z;
-        const real B_4_xz = W_4_xz + alpha_4_y;
-        const real B_4_yx = W_2_xy_2 + alpha_4_z;
-        const real B_4_yz = W_4_yz - alpha_4_x;
-        const real B_4_zx = W_4_xz - alpha_4_y;
-        const real B_4_zy = W_4_yz + alpha_4_x;
-        /* (upru-N21) inertia moment of the links that turn with link 4, about their reference points */
-        const real mu_4_x = B_4_yx*J_4_xy + B_4_zy*Sigma_4_yy + J_4_xz*(W_2_t_5 - W_4_t) +
-            acc_4_z*h_4_z - B_4_yz*Sigma_4_zz - B_4_zx*J_4_yz - acc_4_y*h_4_x;
-        const real mu_4_y = B_4_xz*Sigma_4_zz + B_4_zy*J_4_yz + acc_4_x*h_4_x - B_4_xy*J_4_xz -
-            B_4_zx*Sigma_4_xx - J_4_xy*(W_2_t_4 - W_4_t) - acc_4_z*h_4_y;
-        const real mu_4_z = B_4_xz*J_4_xz + B_4_yx*Sigma_4_xx + J_4_yz*(W_2_t_4 - W_2_t_5) +
-            acc_4_y*h_4_y - B_4_xy*Sigma_4_yy - B_4_yz*J_4_xy - acc_4_x*h_4_z;
-        /* (upru-N31) moment about joint 2 of the links from 2 outwards, the force at the connection point
+        const real ucu_acc_4_x = ucu_S_ddot_tip_x - axis_x_ucu_axes4_x*gravity_x -
+            axis_x_ucu_axes4_y*gravity_y - axis_x_ucu_axes4_z*gravity_z;
+        const real ucu_acc_4_y = ucu_S_ddot_tip_y - axis_y_ucu_axes4_in_base_x*gravity_x -
+            axis_y_ucu_axes4_in_base_y*gravity_y - axis_y_ucu_axes4_in_base_z*gravity_z;
+        const real ucu_acc_4_z = ucu_S_ddot_x*ucu_axis_z_x + ucu_S_ddot_y*ucu_axis_z_y +
+            ucu_S_ddot_z*ucu_axis_z_z - gravity_x*ucu_axis_z_x - gravity_y*ucu_axis_z_y -
+            gravity_z*ucu_axis_z_z;
+        /* (ucu-alpha_1) angular acceleration of link 1 */
+        const real ucu_alpha_1_t = ucu_qdd_1_t*ucu_s_2;
+        const real ucu_alpha_1_t_2 = ucu_c_2*ucu_qdd_1_t;
+        /* (ucu-alpha_2) angular acceleration of link 2 */
+        const real ucu_alpha_2_x = ucu_alpha_1_t - ucu_zeta_2_x;
+        const real ucu_alpha_2_y = -ucu_alpha_1_t_2 - ucu_zeta_2_y;
+        /* (ucu-alpha_4) angular acceleration of link 4 */
+        const real ucu_alpha_4_x = ucu_zeta_4_x + ucu_alpha_2_y*ucu_c_4 - ucu_qdd_1_t_2*ucu_s_4;
+        const real ucu_alpha_4_y = -ucu_alpha_2_y*ucu_s_4 - ucu_c_4*ucu_qdd_1_t_2 -
+            ucu_omega_2_r1_x*ucu_qd_1_t;
+        const real ucu_alpha_4_z = ucu_alpha_2_x - inv_ucu_end_p1_r5_x*(ucu_etad_1 +
+            ucu_n_m1_t*ucu_qdd_1_t_2 + ucu_qdd_1_t*ucu_w_1_t_2);
+        /* (ucu-W_4) centripetal tensor of link 4 */
+        const real ucu_W_4_t = ucu_omega_4_z*ucu_omega_4_z;
+        const real ucu_W_4_xz = ucu_omega_2_r1_x*ucu_omega_4_z;
+        const real ucu_W_4_yz = ucu_omega_2_r1_y*ucu_omega_4_z;
+        /* (ucu-B_4) acceleration tensor of link 4 */
+        const real ucu_B_4_xy = ucu_W_2_xy_2 - ucu_alpha_4_z;
+        const real ucu_B_4_xz = ucu_W_4_xz + ucu_alpha_4_y;
+        const real ucu_B_4_yx = ucu_W_2_xy_2 + ucu_alpha_4_z;
+        const real ucu_B_4_yz = ucu_W_4_yz - ucu_alpha_4_x;
+        const real ucu_B_4_zx = ucu_W_4_xz - ucu_alpha_4_y;
+        const real ucu_B_4_zy = ucu_W_4_yz + ucu_alpha_4_x;
+        /* (ucu-phi_4) inertia force of link 4 from its turning about its reference point */
+        const real ucu_h_4_x = m->ucu_h_4_x[i];
+        const real ucu_h_4_y = m->ucu_h_4_y[i];
+        const real ucu_h_4_z = m->ucu_h_4_z[i];
+        const real ucu_phi_4_z = ucu_B_4_zx*ucu_h_4_y + ucu_B_4_zy*ucu_h_4_z -
+            ucu_h_4_x*(ucu_W_2_t_4 + ucu_W_2_t_5);
+        /* (ucu-mu_4) inertia moment of the links that turn with link 4, about their reference points */
+        const real ucu_J_4_xy = m->ucu_J_4_xy[i];
+        const real ucu_J_4_xz = m->ucu_J_4_xz[i];
+        const real ucu_J_4_yz = m->ucu_J_4_yz[i];
+        const real ucu_Sigma_4_yy = m->ucu_Sigma_4_yy[i];
+        const real ucu_Sigma_4_zz = m->ucu_Sigma_4_zz[i];
+        const real ucu_mu_4_x = ucu_B_4_yx*ucu_J_4_xy + ucu_B_4_zy*ucu_Sigma_4_yy +
+            ucu_J_4_xz*(ucu_W_2_t_5 - ucu_W_4_t) + ucu_acc_4_z*ucu_h_4_z -
+            ucu_B_4_yz*ucu_Sigma_4_zz - ucu_B_4_zx*ucu_J_4_yz - ucu_acc_4_y*ucu_h_4_x;
+        const real ucu_Sigma_4_xx = m->ucu_Sigma_4_xx[i];
+        const real ucu_mu_4_y = ucu_B_4_xz*ucu_Sigma_4_zz + ucu_B_4_zy*ucu_J_4_yz +
+            ucu_acc_4_x*ucu_h_4_x - ucu_B_4_xy*ucu_J_4_xz - ucu_B_4_zx*ucu_Sigma_4_xx -
+            ucu_J_4_xy*(ucu_W_2_t_4 - ucu_W_4_t) - ucu_acc_4_z*ucu_h_4_y;
+        const real ucu_mu_4_z = ucu_B_4_xz*ucu_J_4_xz + ucu_B_4_yx*ucu_Sigma_4_xx +
+            ucu_J_4_yz*(ucu_W_2_t_4 - ucu_W_2_t_5) + ucu_acc_4_y*ucu_h_4_y -
+            ucu_B_4_xy*ucu_Sigma_4_yy - ucu_B_4_yz*ucu_J_4_xy - ucu_acc_4_x*ucu_h_4_z;
+        /* (ucu-B_2) acceleration tensor of link 2 */
+        const real ucu_B_2_xy = ucu_qdd_1_t_2 - ucu_W_2_xy;
+        const real ucu_B_2_yx = -ucu_W_2_xy - ucu_qdd_1_t_2;
+        const real ucu_B_2_zx = ucu_zeta_2_y - ucu_alpha_2_y;
+        const real ucu_B_2_zy = ucu_alpha_2_x - ucu_zeta_2_x;
+        /* (ucu-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+        const real ucu_J_2_xy = m->ucu_J_2_xy[i];
+        const real ucu_J_2_xz = m->ucu_J_2_xz[i];
+        const real ucu_J_2_yz = m->ucu_J_2_yz[i];
+        const real ucu_Sigma_2_yy = m->ucu_Sigma_2_yy[i];
+        const real ucu_Sigma_2_zz = m->ucu_Sigma_2_zz[i];
+        const real ucu_h_2_y = m->ucu_h_2_y[i];
+        const real ucu_h_2_z = m->ucu_h_2_z[i];
+        const real ucu_mu_2_x = ucu_B_2_yx*ucu_J_2_xy + ucu_B_2_zx*ucu_J_2_xz +
+            ucu_B_2_zy*ucu_Sigma_2_yy + ucu_Sigma_2_zz*ucu_alpha_1_t + ucu_g_r1_x*ucu_h_2_z +
+            ucu_g_r3_y*ucu_h_2_y - ucu_J_2_yz*(ucu_W_2_t_2 - ucu_W_2_t_3);
+        const real ucu_Sigma_2_xx = m->ucu_Sigma_2_xx[i];
+        const real ucu_h_2_x = m->ucu_h_2_x[i];
+        const real ucu_mu_2_y = ucu_B_2_xy*ucu_J_2_yz + ucu_g_r1_x*ucu_h_2_x -
+            ucu_B_2_zx*ucu_Sigma_2_xx - ucu_B_2_zy*ucu_J_2_xz - ucu_J_2_xy*(ucu_W_2_t -
+            ucu_W_2_t_3) - ucu_Sigma_2_zz*ucu_alpha_1_t_2 - ucu_g_r3_x*ucu_h_2_y;
+        const real ucu_mu_2_z = ucu_B_2_yx*ucu_Sigma_2_xx + ucu_J_2_xy*ucu_alpha_1_t +
+            ucu_J_2_yz*ucu_alpha_1_t_2 - ucu_B_2_xy*ucu_Sigma_2_yy - ucu_J_2_xz*(ucu_W_2_t -
+            ucu_W_2_t_2) - ucu_g_r3_x*ucu_h_2_z - ucu_g_r3_y*ucu_h_2_x;
+        /* (ucu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
            left out */
-        const real N_2_x = mu_2_x + mu_4_z;
-        const real N_2_y = mu_2_y + c_4*mu_4_x - mu_4_y*s_4;
-        const real N_2_z = mu_2_z + c_4*mu_4_y + mu_4_x*s_4;
-        /* (upru-N41) force at the connection point that balances the leg's inertia and weight along all
+        const real ucu_N_2_x = ucu_mu_2_x + ucu_mu_4_z;
+        const real ucu_N_2_y = ucu_mu_2_y + ucu_c_4*ucu_mu_4_x - ucu_mu_4_y*ucu_s_4;
+        const real ucu_N_2_z = ucu_mu_2_z + ucu_c_4*ucu_mu_4_y + ucu_mu_4_x*ucu_s_4;
+        /* (ucu-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real G_t = inv_end_p1_r5_x*mu_4_z;
-        const real G_t_2 = inv_root_2*(N_2_z + G_t*n_m1_t);
-        const real G_t_3 = inv_v_1_r0_y*(G_t*w_1_t_2 + G_t_2*v_1_r0_x + N_2_y*c_2 - N_2_x*s_2);
-        /* (upru-N5) inertia force of link 4 from its turning about its reference point */
-        const real phi_4_z = B_4_zx*h_4_y + B_4_zy*h_4_z - h_4_x*(W_2_t_4 + W_2_t_5);
-        /* (upru-N53) leg force on the platform without actuation and without the mass at the connection
+        const real ucu_G_t = inv_ucu_end_p1_r5_x*ucu_mu_4_z;
+        const real ucu_G_t_2 = inv_ucu_root_2*(ucu_N_2_z + ucu_G_t*ucu_n_m1_t);
+        const real ucu_G_t_3 = inv_ucu_v_1_r0_y*(ucu_G_t*ucu_w_1_t_2 + ucu_G_t_2*ucu_v_1_r0_x +
+            ucu_N_2_y*ucu_c_2 - ucu_N_2_x*ucu_s_2);
+        /* (ucu-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_x = G_t_3*s_4 + h_4_y*(W_2_t_5 + W_4_t) - B_4_xy*h_4_z - B_4_xz*h_4_x -
-            G_t_2*c_4;
-        const real c_y = G_t_2*s_4 + G_t_3*c_4 + h_4_z*(W_2_t_4 + W_4_t) - B_4_yx*h_4_y -
-            B_4_yz*h_4_x;
-        /* (upru-N49) moment at the connection point that balances the leg's inertia and weight along all
+        const real ucu_c_x = ucu_G_t_3*ucu_s_4 + ucu_h_4_y*(ucu_W_2_t_5 + ucu_W_4_t) -
+            ucu_B_4_xy*ucu_h_4_z - ucu_B_4_xz*ucu_h_4_x - ucu_G_t_2*ucu_c_4;
+        const real ucu_c_y = ucu_G_t_2*ucu_s_4 + ucu_G_t_3*ucu_c_4 + ucu_h_4_z*(ucu_W_2_t_4 +
+            ucu_W_4_t) - ucu_B_4_yx*ucu_h_4_y - ucu_B_4_yz*ucu_h_4_x;
+        /* (ucu-G_m) moment at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real G_m_x = G_t*end_p1_r3_x;
-        /* (upru-N53) leg force on the platform without actuation and without the mass at the connection
+        const real ucu_G_m_x = ucu_G_t*ucu_end_p1_r3_x;
+        /* (ucu-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_in_base_x = axis_x_upru_axes4_x*c_x + axis_y_upru_axes4_in_base_x*c_y -
-            axis_z_x*phi_4_z;
-        const real c_in_base_y = axis_x_upru_axes4_y*c_x + axis_y_upru_axes4_in_base_y*c_y -
-            axis_z_y*phi_4_z;
-        const real c_in_base_z = axis_x_upru_axes4_z*c_x + axis_y_upru_axes4_in_base_z*c_y -
-            axis_z_z*phi_4_z;
-        /* (E5) moment that actuators and external wrench must give */
-        const real R_a_t = G_m_x*axis_x_upru_axes4_x + c_in_base_z*q_in_base_y - axis_z_x*mu_4_z -
-            c_in_base_y*q_in_base_z;
-        const real R_a_t_2 = G_m_x*axis_x_upru_axes4_y + c_in_base_x*q_in_base_z - axis_z_y*mu_4_z
-            - c_in_base_z*q_in_base_x;
-        const real R_a_t_3 = G_m_x*axis_x_upru_axes4_z + c_in_base_y*q_in_base_x - axis_z_z*mu_4_z
-            - c_in_base_x*q_in_base_y;
-        o->sum[0][k] = add ? o->sum[0][k] + c_in_base_x : c_in_base_x;  /* total_upru_x */
-        o->sum[1][k] = add ? o->sum[1][k] + c_in_base_y : c_in_base_y;  /* total_upru_y */
-        o->sum[2][k] = add ? o->sum[2][k] + c_in_base_z : c_in_base_z;  /* total_upru_z */
-        o->sum[3][k] = add ? o->sum[3][k] + R_a_t : R_a_t;  /* total_upru_x_2 */
-        o->sum[4][k] = add ? o->sum[4][k] + R_a_t_2 : R_a_t_2;  /* total_upru_y_2 */
-        o->sum[5][k] = add ? o->sum[5][k] + R_a_t_3 : R_a_t_3;  /* total_upru_z_2 */
-        o->entry[0][k] = axis_z_x;
-        o->entry[1][k] = axis_z_y;
-        o->entry[2][k] = axis_z_z;
-        o->entry[3][k] = H_a_3_t;
-        o->entry[4][k] = H_a_3_t_2;
-        o->entry[5][k] = H_a_3_t_3;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_4) > TOLERANCE*TOLERANCE*1) + UNLESS(magnitude(-end_p1_r5_x) >
-            TOLERANCE*1) + UNLESS(magnitude(root_2) > TOLERANCE*R(0.8)) +
-            UNLESS(magnitude(v_1_r0_y) > TOLERANCE*R(0.8));
+        const real ucu_c_in_base_x = axis_x_ucu_axes4_x*ucu_c_x +
+            axis_y_ucu_axes4_in_base_x*ucu_c_y - ucu_axis_z_x*ucu_phi_4_z;
+        const real ucu_c_in_base_y = axis_x_ucu_axes4_y*ucu_c_x +
+            axis_y_ucu_axes4_in_base_y*ucu_c_y - ucu_axis_z_y*ucu_phi_4_z;
+        const real ucu_c_in_base_z = axis_x_ucu_axes4_z*ucu_c_x +
+            axis_y_ucu_axes4_in_base_z*ucu_c_y - ucu_axis_z_z*ucu_phi_4_z;
+        /* (R_a) moment that actuators and external wrench must give */
+        const real ucu_R_a_t = axis_x_ucu_axes4_x*ucu_G_m_x + ucu_c_in_base_z*ucu_q_in_base_y -
+            ucu_axis_z_x*ucu_mu_4_z - ucu_c_in_base_y*ucu_q_in_base_z;
+        const real ucu_R_a_t_2 = axis_x_ucu_axes4_y*ucu_G_m_x + ucu_c_in_base_x*ucu_q_in_base_z -
+            ucu_axis_z_y*ucu_mu_4_z - ucu_c_in_base_z*ucu_q_in_base_x;
+        const real ucu_R_a_t_3 = axis_x_ucu_axes4_z*ucu_G_m_x + ucu_c_in_base_y*ucu_q_in_base_x -
+            ucu_axis_z_z*ucu_mu_4_z - ucu_c_in_base_x*ucu_q_in_base_y;
+        terms[0*count + k] = add ? terms[0*count + k] + ucu_c_in_base_x : ucu_c_in_base_x;  /* total_ucu_x */
+        terms[1*count + k] = add ? terms[1*count + k] + ucu_c_in_base_y : ucu_c_in_base_y;  /* total_ucu_y */
+        terms[2*count + k] = add ? terms[2*count + k] + ucu_c_in_base_z : ucu_c_in_base_z;  /* total_ucu_z */
+        terms[3*count + k] = add ? terms[3*count + k] + ucu_R_a_t : ucu_R_a_t;  /* total_ucu_x_2 */
+        terms[4*count + k] = add ? terms[4*count + k] + ucu_R_a_t_2 : ucu_R_a_t_2;  /* total_ucu_y_2 */
+        terms[5*count + k] = add ? terms[5*count + k] + ucu_R_a_t_3 : ucu_R_a_t_3;  /* total_ucu_z_2 */
+        o[0*count + k] = ucu_axis_z_x;
+        o[1*count + k] = ucu_axis_z_y;
+        o[2*count + k] = ucu_axis_z_z;
+        o[3*count + k] = ucu_H_a_3_t;
+        o[4*count + k] = ucu_H_a_3_t_2;
+        o[5*count + k] = ucu_H_a_3_t_3;
+        o[6*count + k] = UNLESS(magnitude(ucu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ucu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(ucu_rho2_4) > TOLERANCE*TOLERANCE*1) +
+            UNLESS(magnitude(-ucu_end_p1_r5_x) > TOLERANCE*1) + UNLESS(magnitude(ucu_root_2) >
+            TOLERANCE*R(0.8)) + UNLESS(magnitude(ucu_v_1_r0_y) > TOLERANCE*R(0.8));
     }
 }
 
-INLINE void required_place_upru(size_t w, const required_results_upru *o, size_t leg, size_t
-    first, real *H, verdict *t)
+INLINE void required_place_ucu(size_t w, size_t count, const real *o, size_t leg, size_t first,
+    real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(6 + leg)*w + k] = o->entry[1][first + k];
-        H[(12 + leg)*w + k] = o->entry[2][first + k];
-        H[(18 + leg)*w + k] = o->entry[3][first + k];
-        H[(24 + leg)*w + k] = o->entry[4][first + k];
-        H[(30 + leg)*w + k] = o->entry[5][first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(6 + leg)*w + k] = o[1*count + first + k];
+        H[(12 + leg)*w + k] = o[2*count + first + k];
+        H[(18 + leg)*w + k] = o[3*count + first + k];
+        H[(24 + leg)*w + k] = o[4*count + first + k];
+        H[(30 + leg)*w + k] = o[5*count + first + k];
+        t->singular[k] += o[6*count + first + k];
     }
 }
 
-INLINE void required_after(size_t w, const required_values *s, real *required)
+INLINE void required_after(size_t w, const real *s, const real *sums, real *required)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real f_p_x = s->f_p_x[k];
-        const real f_p_y = s->f_p_y[k];
-        const real f_p_z = s->f_p_z[k];
-        const real mu_p_in_base_x = s->mu_p_in_base_x[k];
-        const real mu_p_in_base_y = s->mu_p_in_base_y[k];
-        const real mu_p_in_base_z = s->mu_p_in_base_z[k];
-        const real total_upru_x = s->sum[0][k];
-        const real total_upru_y = s->sum[1][k];
-        const real total_upru_z = s->sum[2][k];
-        const real total_upru_x_2 = s->sum[3][k];
-        const real total_upru_y_2 = s->sum[4][k];
-        const real total_upru_z_2 = s->sum[5][k];
-        /* (E4) force that actuators and external wrench must give */
-        const real R_t_x = f_p_x - total_upru_x;
-        const real R_t_y = f_p_y - total_upru_y;
-        const real R_t_z = f_p_z - total_upru_z;
-        /* (E5) moment that actuators and external wrench must give */
-        const real R_a_x = mu_p_in_base_x - total_upru_x_2;
-        const real R_a_y = mu_p_in_base_y - total_upru_y_2;
-        const real R_a_z = mu_p_in_base_z - total_upru_z_2;
+        /* (R_t) force that actuators and external wrench must give */
+        const real f_p_x = s[24*w + k];
+        const real total_ucu_x = sums[0*w + k];
+        const real R_t_x = f_p_x - total_ucu_x;
+        const real f_p_y = s[25*w + k];
+        const real total_ucu_y = sums[1*w + k];
+        const real R_t_y = f_p_y - total_ucu_y;
+        const real f_p_z = s[26*w + k];
+        const real total_ucu_z = sums[2*w + k];
+        const real R_t_z = f_p_z - total_ucu_z;
+        /* (R_a) moment that actuators and external wrench must give */
+        const real mu_p_in_base_x = s[27*w + k];
+        const real total_ucu_x_2 = sums[3*w + k];
+        const real R_a_x = mu_p_in_base_x - total_ucu_x_2;
+        const real mu_p_in_base_y = s[28*w + k];
+        const real total_ucu_y_2 = sums[4*w + k];
+        const real R_a_y = mu_p_in_base_y - total_ucu_y_2;
+        const real mu_p_in_base_z = s[29*w + k];
+        const real total_ucu_z_2 = sums[5*w + k];
+        const real R_a_z = mu_p_in_base_z - total_ucu_z_2;
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
         required[2*w + k] = R_t_z;
@@ -4242,61 +4292,49 @@ INLINE void required_after(size_t w, const required_values *s, real *required)
     }
 }
 
-INLINE void required_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+    *required, real *H, verdict *t)
+{
+    real s[30] = {0}, sums[6] = {0}, terms_ucu[6*LEGS(6)] = {0}, o_ucu[7*LEGS(6)] = {0};
+    required_before(m, 1, X, V, A, s, t);
+    required_legs_ucu(m, 1, 0, 1, s, 0, LEGS(6), 0, terms_ucu, o_ucu);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        required_place_ucu(1, LEGS(6), o_ucu, leg, leg, H, t);
+    }
+    for (size_t n = 0; n < 6; ++n) {
+        sums[n] = total(terms_ucu + n*LEGS(6), 6);
+    }
+    required_after(1, s, sums, required);
+}
+
+INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, verdict *t)
 {
-    required_values values, *const s = &values;
-    required_results_upru results_upru;
-    required_before(m, w, X, V, A, s, t);
-    if (w == 1) {  /* the legs side by side */
-        required_legs_upru(m, 0, 1, s, 0, 6, 0, &results_upru);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            required_place_upru(w, &results_upru, leg, leg, H, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_upru.sum[n], 6);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_upru.sum, 0, sizeof results_upru.sum);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            required_legs_upru(m, leg, 0, s, 1, w, 1, &results_upru);
-            required_place_upru(w, &results_upru, leg, 0, H, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_upru.sum[n][k];
-            }
-        }
+    real s[30*LANES], sums[6*LANES], o_ucu[7*LANES];
+    required_before(m, LANES, X, V, A, s, t);
+    clear(sums, 6*LANES);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        required_legs_ucu(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ucu);
+        required_place_ucu(LANES, LANES, o_ucu, leg, 0, H, t);
     }
-    required_after(w, s, required);
+    required_after(LANES, s, sums, required);
 }
 
 /* ---- inverse_kinematics: 444 mul, 288 add, 18 div, 18 sqrt, 18 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES];
-} inverse_kinematics_values;
-typedef struct {
-    real entry[4][8], singular[8];
-} inverse_kinematics_results_upru;
-
-INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematics_values *s,
-    verdict *t)
+INLINE void inverse_kinematics_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -4320,201 +4358,187 @@ INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematic
         const real R_zx = quaternion_xz - quaternion_wy;
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void inverse_kinematics_legs_upru(const prepared *m, size_t leg, size_t legs, const
-    inverse_kinematics_values *s, size_t states, size_t count, inverse_kinematics_results_upru *o)
+INLINE void inverse_kinematics_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs,
+    const real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real branch_4 = m->branch_4[i];
-        const real upru_base_frame_xx = m->upru_base_frame_xx[i];
-        const real upru_base_frame_xy = m->upru_base_frame_xy[i];
-        const real upru_base_frame_xz = m->upru_base_frame_xz[i];
-        const real upru_base_frame_yx = m->upru_base_frame_yx[i];
-        const real upru_base_frame_yy = m->upru_base_frame_yy[i];
-        const real upru_base_frame_yz = m->upru_base_frame_yz[i];
-        const real upru_base_frame_zx = m->upru_base_frame_zx[i];
-        const real upru_base_frame_zy = m->upru_base_frame_zy[i];
-        const real upru_base_frame_zz = m->upru_base_frame_zz[i];
-        const real upru_base_point_x = m->upru_base_point_x[i];
-        const real upru_base_point_y = m->upru_base_point_y[i];
-        const real upru_base_point_z = m->upru_base_point_z[i];
-        const real upru_platform_joint_axis_platform_x = m->upru_platform_joint_axis_platform_x[i];
-        const real upru_platform_joint_axis_platform_y = m->upru_platform_joint_axis_platform_y[i];
-        const real upru_platform_joint_axis_platform_z = m->upru_platform_joint_axis_platform_z[i];
-        const real upru_platform_point_x = m->upru_platform_point_x[i];
-        const real upru_platform_point_y = m->upru_platform_point_y[i];
-        const real upru_platform_point_z = m->upru_platform_point_z[i];
-        /* (upru-K1) from the base point to the connection point */
-        const real S_x = t_x + R_xx*upru_platform_point_x + R_xy*upru_platform_point_y +
-            R_xz*upru_platform_point_z - upru_base_point_x;
-        const real S_y = t_y + R_yx*upru_platform_point_x + R_yy*upru_platform_point_y +
-            R_yz*upru_platform_point_z - upru_base_point_y;
-        const real S_z = t_z + R_zx*upru_platform_point_x + R_zy*upru_platform_point_y +
-            R_zz*upru_platform_point_z - upru_base_point_z;
-        /* (upru-K2) component along the reference direction */
-        const real px_1 = S_x*upru_base_frame_xx + S_y*upru_base_frame_yx +
-            S_z*upru_base_frame_zx;
-        /* (upru-K3) component across the reference direction */
-        const real py_1 = S_x*upru_base_frame_xy + S_y*upru_base_frame_yy +
-            S_z*upru_base_frame_zy;
-        /* (upru-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upru-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upru-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upru_base_frame_xz + S_y*upru_base_frame_yz +
-            S_z*upru_base_frame_zz;
-        /* (upru-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upru-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upru-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upru-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upru-K20) component along the reference direction */
-        const real end_p1_r0_x = upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xx +
-            R_yx*upru_base_frame_yx + R_zx*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xx + R_yy*upru_base_frame_yx
-            + R_zy*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xx + R_yz*upru_base_frame_yx
-            + R_zz*upru_base_frame_zx);
-        const real end_p1_r0_y = upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xy +
-            R_yx*upru_base_frame_yy + R_zx*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xy + R_yy*upru_base_frame_yy
-            + R_zy*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xy + R_yz*upru_base_frame_yy
-            + R_zz*upru_base_frame_zy);
-        const real end_p1_r0_z = upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xz +
-            R_yx*upru_base_frame_yz + R_zx*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xz + R_yy*upru_base_frame_yz
-            + R_zy*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xz + R_yz*upru_base_frame_yz
-            + R_zz*upru_base_frame_zz);
-        /* (upru-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upru-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upru-K20) component along the reference direction */
-        const real end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x;
-        const real end_p1_r3_y = -c_2*end_p1_r0_z - s_2*(-c_1*end_p1_r0_y - end_p1_r0_x*s_1);
-        /* (upru-K23) squared amplitude */
-        const real rho2_4 = end_p1_r1_x*end_p1_r1_x + end_p1_r3_y*end_p1_r3_y;
-        /* (upru-K24) amplitude, with the sign of the branch */
-        const real root_4 = branch_4*root(rho2_4);
-        /* (upru-K25) cosine of the angle of joint 4 from its reference direction */
-        const real inv_root_4 = 1/root_4;
-        /* (upru-K8) displacement of joint 1 */
-        const real q_1 = angle(c_1, s_1);
-        /* (upru-K17) displacement of joint 2 */
-        const real q_2 = angle(-s_2, c_2);
-        /* (upru-K27) displacement of joint 4 */
-        const real q_4 = angle(-end_p1_r3_y*inv_root_4, end_p1_r1_x*inv_root_4);
-        o->entry[0][k] = q_1;
-        o->entry[1][k] = q_2;
-        o->entry[2][k] = root_2;
-        o->entry[3][k] = q_4;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_4) > TOLERANCE*TOLERANCE*1);
+        /* (ucu-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
+        const real t_x = s[0*w + j];
+        const real ucu_base_point_x = m->ucu_base_point_x[i];
+        const real ucu_platform_point_x = m->ucu_platform_point_x[i];
+        const real ucu_platform_point_y = m->ucu_platform_point_y[i];
+        const real ucu_platform_point_z = m->ucu_platform_point_z[i];
+        const real ucu_S_x = t_x + R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
+            R_xz*ucu_platform_point_z - ucu_base_point_x;
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real t_y = s[1*w + j];
+        const real ucu_base_point_y = m->ucu_base_point_y[i];
+        const real ucu_S_y = t_y + R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
+            R_yz*ucu_platform_point_z - ucu_base_point_y;
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real t_z = s[2*w + j];
+        const real ucu_base_point_z = m->ucu_base_point_z[i];
+        const real ucu_S_z = t_z + R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
+            R_zz*ucu_platform_point_z - ucu_base_point_z;
+        /* (ucu-px_1) component along the reference direction */
+        const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
+        const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
+        const real ucu_base_frame_zx = m->ucu_base_frame_zx[i];
+        const real ucu_px_1 = ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx +
+            ucu_S_z*ucu_base_frame_zx;
+        /* (ucu-py_1) component across the reference direction */
+        const real ucu_base_frame_xy = m->ucu_base_frame_xy[i];
+        const real ucu_base_frame_yy = m->ucu_base_frame_yy[i];
+        const real ucu_base_frame_zy = m->ucu_base_frame_zy[i];
+        const real ucu_py_1 = ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy +
+            ucu_S_z*ucu_base_frame_zy;
+        /* (ucu-rho2_1) squared amplitude */
+        const real ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1;
+        /* (ucu-root_1) amplitude, with the sign of the branch */
+        const real ucu_branch_1 = m->ucu_branch_1[i];
+        const real ucu_root_1 = ucu_branch_1*root(ucu_rho2_1);
+        /* (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
+        const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
+        const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
+        const real ucu_xi_1_t = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
+            ucu_S_z*ucu_base_frame_zz;
+        /* (ucu-rho2_2) squared amplitude */
+        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t;
+        /* (ucu-root_2) amplitude, with the sign of the branch */
+        const real ucu_branch_2 = m->ucu_branch_2[i];
+        const real ucu_root_2 = ucu_branch_2*root(ucu_rho2_2);
+        /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ucu_root_2 = 1/ucu_root_2;
+        const real ucu_c_2 = inv_ucu_root_2*ucu_root_1;
+        /* (ucu-s_2) sine of the angle of joint 2 from its reference direction */
+        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t;
+        /* (ucu-px_4) component along the reference direction */
+        const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
+        const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
+        const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
+        const real ucu_end_p1_r0_x = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
+            R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
+            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
+            R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
+            R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
+        const real ucu_end_p1_r0_y = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
+            R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
+            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
+            R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
+            R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
+        const real ucu_end_p1_r0_z = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
+            R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
+            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
+            R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
+            R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
+        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ucu_root_1 = 1/ucu_root_1;
+        const real ucu_c_1 = inv_ucu_root_1*ucu_py_1;
+        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
+        /* (ucu-px_4) component along the reference direction */
+        const real ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x;
+        const real ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_s_2*(-ucu_c_1*ucu_end_p1_r0_y
+            - ucu_end_p1_r0_x*ucu_s_1);
+        /* (ucu-rho2_4) squared amplitude */
+        const real ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y;
+        /* (ucu-root_4) amplitude, with the sign of the branch */
+        const real ucu_branch_4 = m->ucu_branch_4[i];
+        const real ucu_root_4 = ucu_branch_4*root(ucu_rho2_4);
+        /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
+        const real inv_ucu_root_4 = 1/ucu_root_4;
+        /* (ucu-q_1) displacement of joint 1 */
+        const real ucu_q_1 = angle(ucu_c_1, ucu_s_1);
+        /* (ucu-q_2) displacement of joint 2 */
+        const real ucu_q_2 = angle(-ucu_s_2, ucu_c_2);
+        /* (ucu-q_4) displacement of joint 4 */
+        const real ucu_q_4 = angle(-inv_ucu_root_4*ucu_end_p1_r3_y,
+            inv_ucu_root_4*ucu_end_p1_r1_x);
+        o[0*count + k] = ucu_q_1;
+        o[1*count + k] = ucu_q_2;
+        o[2*count + k] = ucu_root_2;
+        o[3*count + k] = ucu_q_4;
+        o[5*count + k] = (ucu_q_1 + ucu_q_2) + (ucu_root_2 + ucu_q_4);
+        o[4*count + k] = UNLESS(magnitude(ucu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ucu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(ucu_rho2_4) > TOLERANCE*TOLERANCE*1);
     }
 }
 
-INLINE void inverse_kinematics_place_upru(size_t w, const inverse_kinematics_results_upru *o,
-    size_t leg, size_t first, real *q, verdict *t)
+INLINE void inverse_kinematics_place_ucu(size_t w, size_t count, const real *o, size_t leg, size_t
+    first, real *q, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        q[(4*leg)*w + k] = o->entry[0][first + k];
-        q[(1 + 4*leg)*w + k] = o->entry[1][first + k];
-        q[(2 + 4*leg)*w + k] = o->entry[2][first + k];
-        q[(3 + 4*leg)*w + k] = o->entry[3][first + k];
-        t->singular[k] += o->singular[first + k];
+        q[(4*leg)*w + k] = o[0*count + first + k];
+        q[(1 + 4*leg)*w + k] = o[1*count + first + k];
+        q[(2 + 4*leg)*w + k] = o[2*count + first + k];
+        q[(3 + 4*leg)*w + k] = o[3*count + first + k];
+        t->singular[k] += o[4*count + first + k];
+        t->total[k] += o[5*count + first + k];
     }
 }
 
-INLINE void inverse_kinematics_run(const prepared *m, size_t w, const real *X, real *q, verdict
-    *t)
+INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    inverse_kinematics_values values, *const s = &values;
-    inverse_kinematics_results_upru results_upru;
-    inverse_kinematics_before(w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        inverse_kinematics_legs_upru(m, 0, 1, s, 0, 6, &results_upru);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            inverse_kinematics_place_upru(w, &results_upru, leg, leg, q, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 6; ++leg) {
-            inverse_kinematics_legs_upru(m, leg, 0, s, 1, w, &results_upru);
-            inverse_kinematics_place_upru(w, &results_upru, leg, 0, q, t);
-        }
+    real s[12] = {0}, o_ucu[6*LEGS(6)] = {0};
+    inverse_kinematics_before(1, X, s, t);
+    inverse_kinematics_legs_ucu(m, 1, 0, 1, s, 0, LEGS(6), o_ucu);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        inverse_kinematics_place_ucu(1, LEGS(6), o_ucu, leg, leg, q, t);
+    }
+}
+
+INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
+{
+    real s[12*LANES], o_ucu[6*LANES];
+    inverse_kinematics_before(LANES, X, s, t);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        inverse_kinematics_legs_ucu(m, LANES, leg, 0, s, 1, LANES, o_ucu);
+        inverse_kinematics_place_ucu(LANES, LANES, o_ucu, leg, 0, q, t);
     }
 }
 
 /* ---- joint_rates: 876 mul, 528 add, 30 div, 18 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES];
-} joint_rates_values;
-typedef struct {
-    real entry[4][8], singular[8];
-} joint_rates_results_upru;
-
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rates_values *s,
-    verdict *t)
+INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -4539,280 +4563,266 @@ INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rat
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void joint_rates_legs_upru(const prepared *m, size_t leg, size_t legs, const
-    joint_rates_values *s, size_t states, size_t count, joint_rates_results_upru *o)
+INLINE void joint_rates_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real branch_4 = m->branch_4[i];
-        const real upru_base_frame_xx = m->upru_base_frame_xx[i];
-        const real upru_base_frame_xy = m->upru_base_frame_xy[i];
-        const real upru_base_frame_xz = m->upru_base_frame_xz[i];
-        const real upru_base_frame_yx = m->upru_base_frame_yx[i];
-        const real upru_base_frame_yy = m->upru_base_frame_yy[i];
-        const real upru_base_frame_yz = m->upru_base_frame_yz[i];
-        const real upru_base_frame_zx = m->upru_base_frame_zx[i];
-        const real upru_base_frame_zy = m->upru_base_frame_zy[i];
-        const real upru_base_frame_zz = m->upru_base_frame_zz[i];
-        const real upru_base_point_x = m->upru_base_point_x[i];
-        const real upru_base_point_y = m->upru_base_point_y[i];
-        const real upru_base_point_z = m->upru_base_point_z[i];
-        const real upru_platform_joint_axis_platform_x = m->upru_platform_joint_axis_platform_x[i];
-        const real upru_platform_joint_axis_platform_y = m->upru_platform_joint_axis_platform_y[i];
-        const real upru_platform_joint_axis_platform_z = m->upru_platform_joint_axis_platform_z[i];
-        const real upru_platform_point_x = m->upru_platform_point_x[i];
-        const real upru_platform_point_y = m->upru_platform_point_y[i];
-        const real upru_platform_point_z = m->upru_platform_point_z[i];
-        /* (upru-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*upru_platform_point_x + R_xy*upru_platform_point_y +
-            R_xz*upru_platform_point_z;
-        const real q_in_base_y = R_yx*upru_platform_point_x + R_yy*upru_platform_point_y +
-            R_yz*upru_platform_point_z;
-        const real q_in_base_z = R_zx*upru_platform_point_x + R_zy*upru_platform_point_y +
-            R_zz*upru_platform_point_z;
-        const real S_x = q_in_base_x + t_x - upru_base_point_x;
-        const real S_y = q_in_base_y + t_y - upru_base_point_y;
-        const real S_z = q_in_base_z + t_z - upru_base_point_z;
-        /* (upru-K2) component along the reference direction */
-        const real px_1 = S_x*upru_base_frame_xx + S_y*upru_base_frame_yx +
-            S_z*upru_base_frame_zx;
-        /* (upru-K3) component across the reference direction */
-        const real py_1 = S_x*upru_base_frame_xy + S_y*upru_base_frame_yy +
-            S_z*upru_base_frame_zy;
-        /* (upru-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upru-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upru-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upru_base_frame_xz + S_y*upru_base_frame_yz +
-            S_z*upru_base_frame_zz;
-        /* (upru-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upru-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upru-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upru-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upru-K20) component along the reference direction */
-        const real end_p1_r0_x = upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xx +
-            R_yx*upru_base_frame_yx + R_zx*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xx + R_yy*upru_base_frame_yx
-            + R_zy*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xx + R_yz*upru_base_frame_yx
-            + R_zz*upru_base_frame_zx);
-        const real end_p1_r0_y = upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xy +
-            R_yx*upru_base_frame_yy + R_zx*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xy + R_yy*upru_base_frame_yy
-            + R_zy*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xy + R_yz*upru_base_frame_yy
-            + R_zz*upru_base_frame_zy);
-        const real end_p1_r0_z = upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xz +
-            R_yx*upru_base_frame_yz + R_zx*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xz + R_yy*upru_base_frame_yz
-            + R_zy*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xz + R_yz*upru_base_frame_yz
-            + R_zz*upru_base_frame_zz);
-        /* (upru-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upru-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upru-K20) component along the reference direction */
-        const real end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x;
-        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
-        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
-        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
-        /* (upru-K23) squared amplitude */
-        const real rho2_4 = end_p1_r1_x*end_p1_r1_x + end_p1_r3_y*end_p1_r3_y;
-        /* (upru-K24) amplitude, with the sign of the branch */
-        const real root_4 = branch_4*root(rho2_4);
-        /* (upru-K25) cosine of the angle of joint 4 from its reference direction */
-        const real inv_root_4 = 1/root_4;
-        const real c_4 = end_p1_r3_y*inv_root_4;
-        /* (upru-K26) sine of the angle of joint 4 from its reference direction */
-        const real s_4 = end_p1_r1_x*inv_root_4;
-        /* (upru-V3) velocity of the connection point per rate of joint 1 */
-        const real v_1_t = c_2*c_4;
-        const real v_1_t_2 = c_2*s_4;
-        const real v_1_t_3 = root_2*v_1_t_2;
-        const real v_1_t_4 = root_2*v_1_t;
-        /* (upru-V7) force part of reciprocal wrench 1 */
-        const real axis_z_x = S_x*inv_root_2;
-        const real axis_z_y = S_y*inv_root_2;
-        const real axis_z_z = S_z*inv_root_2;
-        const real w_1_t = s_2*s_4;
-        const real axis_y_upru_axes4_r4_x = -c_1*c_4 - s_1*w_1_t;
-        const real axis_y_upru_axes4_r4_y = c_4*s_1 - c_1*w_1_t;
-        const real axis_y_upru_axes4_in_base_x = axis_y_upru_axes4_r4_x*upru_base_frame_xx +
-            axis_y_upru_axes4_r4_y*upru_base_frame_xy + upru_base_frame_xz*v_1_t_2;
-        const real axis_y_upru_axes4_in_base_y = axis_y_upru_axes4_r4_x*upru_base_frame_yx +
-            axis_y_upru_axes4_r4_y*upru_base_frame_yy + upru_base_frame_yz*v_1_t_2;
-        const real axis_y_upru_axes4_in_base_z = axis_y_upru_axes4_r4_x*upru_base_frame_zx +
-            axis_y_upru_axes4_r4_y*upru_base_frame_zy + upru_base_frame_zz*v_1_t_2;
-        /* (upru-V6) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4;
-        /* (upru-V3) velocity of the connection point per rate of joint 1 */
-        const real v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3;
-        /* (upru-V7) force part of reciprocal wrench 1 */
-        const real w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2;
-        /* (upru-V1) velocity of the connection point */
-        const real S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_r0_x = S_dot_x*upru_base_frame_xx + S_dot_y*upru_base_frame_yx +
-            S_dot_z*upru_base_frame_zx;
-        const real S_dot_r0_y = S_dot_x*upru_base_frame_xy + S_dot_y*upru_base_frame_yy +
-            S_dot_z*upru_base_frame_zy;
-        const real S_dot_r0_z = S_dot_x*upru_base_frame_xz + S_dot_y*upru_base_frame_yz +
-            S_dot_z*upru_base_frame_zz;
-        const real S_dot_r1_y = -S_dot_r0_x*s_1 - S_dot_r0_y*c_1;
-        const real S_dot_r3_x = S_dot_r0_z*s_2 - S_dot_r1_y*c_2;
-        /* (upru-V20) rate of joint 1 */
-        const real qd_1_t = (S_dot_r0_y*s_1 - S_dot_r0_x*c_1)/v_1_r0_y;
-        const real qd_1_t_2 = inv_root_2*(-S_dot_r0_z*c_2 - S_dot_r1_y*s_2 - qd_1_t*(c_4*v_1_t_3 -
-            s_4*v_1_t_4));
-        /* (upru-A10) rate of moment direction 1 */
-        const real nd_m1_t = end_p1_r3_x*(omega_x*(axis_y_upru_axes4_in_base_y*axis_z_z -
-            axis_y_upru_axes4_in_base_z*axis_z_y) + omega_y*(axis_y_upru_axes4_in_base_z*axis_z_x
-            - axis_y_upru_axes4_in_base_x*axis_z_z) +
-            omega_z*(axis_y_upru_axes4_in_base_x*axis_z_y -
-            axis_y_upru_axes4_in_base_y*axis_z_x));
-        /* (upru-V20) rate of joint 1 */
-        const real qd_1_t_3 = axis_z_x*omega_x + axis_z_y*omega_y + axis_z_z*omega_z - (nd_m1_t +
-            qd_1_t*w_1_t_2 - end_p1_r3_x*qd_1_t_2*s_4)/end_p1_r5_x;
-        o->entry[0][k] = qd_1_t;
-        o->entry[1][k] = qd_1_t_2;
-        o->entry[2][k] = S_dot_r3_x;
-        o->entry[3][k] = qd_1_t_3;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_4) > TOLERANCE*TOLERANCE*1) + UNLESS(magnitude(-end_p1_r5_x) >
-            TOLERANCE*1) + UNLESS(magnitude(root_2) > TOLERANCE*R(0.8)) +
-            UNLESS(magnitude(v_1_r0_y) > TOLERANCE*R(0.8));
+        /* (ucu-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
+        const real ucu_platform_point_x = m->ucu_platform_point_x[i];
+        const real ucu_platform_point_y = m->ucu_platform_point_y[i];
+        const real ucu_platform_point_z = m->ucu_platform_point_z[i];
+        const real ucu_q_in_base_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
+            R_xz*ucu_platform_point_z;
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real ucu_q_in_base_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
+            R_yz*ucu_platform_point_z;
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real ucu_q_in_base_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
+            R_zz*ucu_platform_point_z;
+        const real t_x = s[0*w + j];
+        const real ucu_base_point_x = m->ucu_base_point_x[i];
+        const real ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x;
+        const real t_y = s[1*w + j];
+        const real ucu_base_point_y = m->ucu_base_point_y[i];
+        const real ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y;
+        const real t_z = s[2*w + j];
+        const real ucu_base_point_z = m->ucu_base_point_z[i];
+        const real ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z;
+        /* (ucu-px_1) component along the reference direction */
+        const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
+        const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
+        const real ucu_base_frame_zx = m->ucu_base_frame_zx[i];
+        const real ucu_px_1 = ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx +
+            ucu_S_z*ucu_base_frame_zx;
+        /* (ucu-py_1) component across the reference direction */
+        const real ucu_base_frame_xy = m->ucu_base_frame_xy[i];
+        const real ucu_base_frame_yy = m->ucu_base_frame_yy[i];
+        const real ucu_base_frame_zy = m->ucu_base_frame_zy[i];
+        const real ucu_py_1 = ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy +
+            ucu_S_z*ucu_base_frame_zy;
+        /* (ucu-rho2_1) squared amplitude */
+        const real ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1;
+        /* (ucu-root_1) amplitude, with the sign of the branch */
+        const real ucu_branch_1 = m->ucu_branch_1[i];
+        const real ucu_root_1 = ucu_branch_1*root(ucu_rho2_1);
+        /* (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
+        const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
+        const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
+        const real ucu_xi_1_t = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
+            ucu_S_z*ucu_base_frame_zz;
+        /* (ucu-rho2_2) squared amplitude */
+        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t;
+        /* (ucu-root_2) amplitude, with the sign of the branch */
+        const real ucu_branch_2 = m->ucu_branch_2[i];
+        const real ucu_root_2 = ucu_branch_2*root(ucu_rho2_2);
+        /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ucu_root_2 = 1/ucu_root_2;
+        const real ucu_c_2 = inv_ucu_root_2*ucu_root_1;
+        /* (ucu-s_2) sine of the angle of joint 2 from its reference direction */
+        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t;
+        /* (ucu-px_4) component along the reference direction */
+        const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
+        const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
+        const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
+        const real ucu_end_p1_r0_x = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
+            R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
+            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
+            R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
+            R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
+        const real ucu_end_p1_r0_y = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
+            R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
+            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
+            R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
+            R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
+        const real ucu_end_p1_r0_z = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
+            R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
+            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
+            R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
+            R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
+        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ucu_root_1 = 1/ucu_root_1;
+        const real ucu_c_1 = inv_ucu_root_1*ucu_py_1;
+        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
+        /* (ucu-px_4) component along the reference direction */
+        const real ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x;
+        const real ucu_end_p1_r1_y = -ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1;
+        const real ucu_end_p1_r3_x = ucu_end_p1_r0_z*ucu_s_2 - ucu_c_2*ucu_end_p1_r1_y;
+        const real ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_end_p1_r1_y*ucu_s_2;
+        /* (ucu-rho2_4) squared amplitude */
+        const real ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y;
+        /* (ucu-root_4) amplitude, with the sign of the branch */
+        const real ucu_branch_4 = m->ucu_branch_4[i];
+        const real ucu_root_4 = ucu_branch_4*root(ucu_rho2_4);
+        /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
+        const real inv_ucu_root_4 = 1/ucu_root_4;
+        const real ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y;
+        /* (ucu-s_4) sine of the angle of joint 4 from its reference direction */
+        const real ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x;
+        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
+        const real ucu_v_1_t = ucu_c_2*ucu_c_4;
+        const real ucu_v_1_t_2 = ucu_c_2*ucu_s_4;
+        const real ucu_v_1_t_3 = ucu_root_2*ucu_v_1_t_2;
+        const real ucu_v_1_t_4 = ucu_root_2*ucu_v_1_t;
+        /* (ucu-w_1) force part of reciprocal wrench 1 */
+        const real ucu_axis_z_x = inv_ucu_root_2*ucu_S_x;
+        const real ucu_axis_z_y = inv_ucu_root_2*ucu_S_y;
+        const real ucu_axis_z_z = inv_ucu_root_2*ucu_S_z;
+        const real ucu_w_1_t = ucu_s_2*ucu_s_4;
+        const real axis_y_ucu_axes4_r4_x = -ucu_c_1*ucu_c_4 - ucu_s_1*ucu_w_1_t;
+        const real axis_y_ucu_axes4_r4_y = ucu_c_4*ucu_s_1 - ucu_c_1*ucu_w_1_t;
+        const real axis_y_ucu_axes4_in_base_x = axis_y_ucu_axes4_r4_x*ucu_base_frame_xx +
+            axis_y_ucu_axes4_r4_y*ucu_base_frame_xy + ucu_base_frame_xz*ucu_v_1_t_2;
+        const real axis_y_ucu_axes4_in_base_y = axis_y_ucu_axes4_r4_x*ucu_base_frame_yx +
+            axis_y_ucu_axes4_r4_y*ucu_base_frame_yy + ucu_base_frame_yz*ucu_v_1_t_2;
+        const real axis_y_ucu_axes4_in_base_z = axis_y_ucu_axes4_r4_x*ucu_base_frame_zx +
+            axis_y_ucu_axes4_r4_y*ucu_base_frame_zy + ucu_base_frame_zz*ucu_v_1_t_2;
+        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4;
+        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
+        const real ucu_v_1_r0_y = ucu_c_4*ucu_v_1_t_4 + ucu_s_4*ucu_v_1_t_3;
+        /* (ucu-w_1) force part of reciprocal wrench 1 */
+        const real ucu_w_1_t_2 = ucu_end_p1_r3_x*ucu_v_1_t + ucu_end_p1_r5_x*ucu_s_2;
+        /* (ucu-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real t_dot_x = s[12*w + j];
+        const real ucu_S_dot_x = t_dot_x + omega_y*ucu_q_in_base_z - omega_z*ucu_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real t_dot_y = s[13*w + j];
+        const real ucu_S_dot_y = t_dot_y + omega_z*ucu_q_in_base_x - omega_x*ucu_q_in_base_z;
+        const real t_dot_z = s[14*w + j];
+        const real ucu_S_dot_z = t_dot_z + omega_x*ucu_q_in_base_y - omega_y*ucu_q_in_base_x;
+        const real ucu_S_dot_r0_x = ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx
+            + ucu_S_dot_z*ucu_base_frame_zx;
+        const real ucu_S_dot_r0_y = ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy
+            + ucu_S_dot_z*ucu_base_frame_zy;
+        const real ucu_S_dot_r0_z = ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz
+            + ucu_S_dot_z*ucu_base_frame_zz;
+        const real ucu_S_dot_r1_y = -ucu_S_dot_r0_x*ucu_s_1 - ucu_S_dot_r0_y*ucu_c_1;
+        const real ucu_S_dot_r3_x = ucu_S_dot_r0_z*ucu_s_2 - ucu_S_dot_r1_y*ucu_c_2;
+        /* (ucu-qd_4) rate of joint 4 */
+        const real ucu_qd_4_t = (ucu_S_dot_r0_y*ucu_s_1 - ucu_S_dot_r0_x*ucu_c_1)/ucu_v_1_r0_y;
+        const real ucu_qd_4_t_2 = inv_ucu_root_2*(-ucu_S_dot_r0_z*ucu_c_2 - ucu_S_dot_r1_y*ucu_s_2
+            - ucu_qd_4_t*(ucu_c_4*ucu_v_1_t_3 - ucu_s_4*ucu_v_1_t_4));
+        /* (ucu-nd_m1) rate of moment direction 1 */
+        const real ucu_nd_m1_t = ucu_end_p1_r3_x*(omega_x*(axis_y_ucu_axes4_in_base_y*ucu_axis_z_z
+            - axis_y_ucu_axes4_in_base_z*ucu_axis_z_y) +
+            omega_y*(axis_y_ucu_axes4_in_base_z*ucu_axis_z_x -
+            axis_y_ucu_axes4_in_base_x*ucu_axis_z_z) +
+            omega_z*(axis_y_ucu_axes4_in_base_x*ucu_axis_z_y -
+            axis_y_ucu_axes4_in_base_y*ucu_axis_z_x));
+        /* (ucu-qd_1) rate of joint 1 */
+        const real ucu_qd_1_t = omega_x*ucu_axis_z_x + omega_y*ucu_axis_z_y + omega_z*ucu_axis_z_z
+            - (ucu_nd_m1_t + ucu_qd_4_t*ucu_w_1_t_2 -
+            ucu_end_p1_r3_x*ucu_qd_4_t_2*ucu_s_4)/ucu_end_p1_r5_x;
+        o[0*count + k] = ucu_qd_4_t;
+        o[1*count + k] = ucu_qd_4_t_2;
+        o[2*count + k] = ucu_S_dot_r3_x;
+        o[3*count + k] = ucu_qd_1_t;
+        o[5*count + k] = (ucu_qd_4_t + ucu_qd_4_t_2) + (ucu_S_dot_r3_x + ucu_qd_1_t);
+        o[4*count + k] = UNLESS(magnitude(ucu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ucu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(ucu_rho2_4) > TOLERANCE*TOLERANCE*1) +
+            UNLESS(magnitude(-ucu_end_p1_r5_x) > TOLERANCE*1) + UNLESS(magnitude(ucu_root_2) >
+            TOLERANCE*R(0.8)) + UNLESS(magnitude(ucu_v_1_r0_y) > TOLERANCE*R(0.8));
     }
 }
 
-INLINE void joint_rates_place_upru(size_t w, const joint_rates_results_upru *o, size_t leg, size_t
-    first, real *qd, verdict *t)
+INLINE void joint_rates_place_ucu(size_t w, size_t count, const real *o, size_t leg, size_t first,
+    real *qd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qd[(4*leg)*w + k] = o->entry[0][first + k];
-        qd[(1 + 4*leg)*w + k] = o->entry[1][first + k];
-        qd[(2 + 4*leg)*w + k] = o->entry[2][first + k];
-        qd[(3 + 4*leg)*w + k] = o->entry[3][first + k];
-        t->singular[k] += o->singular[first + k];
+        qd[(4*leg)*w + k] = o[0*count + first + k];
+        qd[(1 + 4*leg)*w + k] = o[1*count + first + k];
+        qd[(2 + 4*leg)*w + k] = o[2*count + first + k];
+        qd[(3 + 4*leg)*w + k] = o[3*count + first + k];
+        t->singular[k] += o[4*count + first + k];
+        t->total[k] += o[5*count + first + k];
     }
 }
 
-INLINE void joint_rates_run(const prepared *m, size_t w, const real *X, const real *V, real *qd,
+INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+{
+    real s[18] = {0}, o_ucu[6*LEGS(6)] = {0};
+    joint_rates_before(1, X, V, s, t);
+    joint_rates_legs_ucu(m, 1, 0, 1, s, 0, LEGS(6), o_ucu);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        joint_rates_place_ucu(1, LEGS(6), o_ucu, leg, leg, qd, t);
+    }
+}
+
+INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    joint_rates_values values, *const s = &values;
-    joint_rates_results_upru results_upru;
-    joint_rates_before(w, X, V, s, t);
-    if (w == 1) {  /* the legs side by side */
-        joint_rates_legs_upru(m, 0, 1, s, 0, 6, &results_upru);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            joint_rates_place_upru(w, &results_upru, leg, leg, qd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 6; ++leg) {
-            joint_rates_legs_upru(m, leg, 0, s, 1, w, &results_upru);
-            joint_rates_place_upru(w, &results_upru, leg, 0, qd, t);
-        }
+    real s[18*LANES], o_ucu[6*LANES];
+    joint_rates_before(LANES, X, V, s, t);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        joint_rates_legs_ucu(m, LANES, leg, 0, s, 1, LANES, o_ucu);
+        joint_rates_place_ucu(LANES, LANES, o_ucu, leg, 0, qd, t);
     }
 }
 
 /* ---- joint_accelerations: 1356 mul, 864 add, 30 div, 18 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
-        t_ddot_x[LANES], t_ddot_y[LANES], t_ddot_z[LANES], alpha_x[LANES], alpha_y[LANES],
-        alpha_z[LANES];
-} joint_accelerations_values;
-typedef struct {
-    real entry[4][8], singular[8];
-} joint_accelerations_results_upru;
-
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A,
-    joint_accelerations_values *s, verdict *t)
+INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
+    *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real A_2 = A[2*w + k];
-        const real A_3 = A[3*w + k];
-        const real A_4 = A[4*w + k];
-        const real A_5 = A[5*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -4837,369 +4847,369 @@ INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, c
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
+        const real A_2 = A[2*w + k];
         const real t_ddot_z = A_2;
+        const real A_3 = A[3*w + k];
         const real alpha_x = A_3;
+        const real A_4 = A[4*w + k];
         const real alpha_y = A_4;
+        const real A_5 = A[5*w + k];
         const real alpha_z = A_5;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->t_ddot_z[k] = t_ddot_z;
-        s->alpha_x[k] = alpha_x;
-        s->alpha_y[k] = alpha_y;
-        s->alpha_z[k] = alpha_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
+        s[18*w + k] = t_ddot_x;
+        s[19*w + k] = t_ddot_y;
+        s[20*w + k] = t_ddot_z;
+        s[21*w + k] = alpha_x;
+        s[22*w + k] = alpha_y;
+        s[23*w + k] = alpha_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void joint_accelerations_legs_upru(const prepared *m, size_t leg, size_t legs, const
-    joint_accelerations_values *s, size_t states, size_t count, joint_accelerations_results_upru
-    *o)
+INLINE void joint_accelerations_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs,
+    const real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real t_ddot_z = s->t_ddot_z[j];
-        const real alpha_x = s->alpha_x[j];
-        const real alpha_y = s->alpha_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real branch_4 = m->branch_4[i];
-        const real upru_base_frame_xx = m->upru_base_frame_xx[i];
-        const real upru_base_frame_xy = m->upru_base_frame_xy[i];
-        const real upru_base_frame_xz = m->upru_base_frame_xz[i];
-        const real upru_base_frame_yx = m->upru_base_frame_yx[i];
-        const real upru_base_frame_yy = m->upru_base_frame_yy[i];
-        const real upru_base_frame_yz = m->upru_base_frame_yz[i];
-        const real upru_base_frame_zx = m->upru_base_frame_zx[i];
-        const real upru_base_frame_zy = m->upru_base_frame_zy[i];
-        const real upru_base_frame_zz = m->upru_base_frame_zz[i];
-        const real upru_base_point_x = m->upru_base_point_x[i];
-        const real upru_base_point_y = m->upru_base_point_y[i];
-        const real upru_base_point_z = m->upru_base_point_z[i];
-        const real upru_platform_joint_axis_platform_x = m->upru_platform_joint_axis_platform_x[i];
-        const real upru_platform_joint_axis_platform_y = m->upru_platform_joint_axis_platform_y[i];
-        const real upru_platform_joint_axis_platform_z = m->upru_platform_joint_axis_platform_z[i];
-        const real upru_platform_point_x = m->upru_platform_point_x[i];
-        const real upru_platform_point_y = m->upru_platform_point_y[i];
-        const real upru_platform_point_z = m->upru_platform_point_z[i];
-        /* (upru-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*upru_platform_point_x + R_xy*upru_platform_point_y +
-            R_xz*upru_platform_point_z;
-        const real q_in_base_y = R_yx*upru_platform_point_x + R_yy*upru_platform_point_y +
-            R_yz*upru_platform_point_z;
-        const real q_in_base_z = R_zx*upru_platform_point_x + R_zy*upru_platform_point_y +
-            R_zz*upru_platform_point_z;
-        const real S_x = q_in_base_x + t_x - upru_base_point_x;
-        const real S_y = q_in_base_y + t_y - upru_base_point_y;
-        const real S_z = q_in_base_z + t_z - upru_base_point_z;
-        /* (upru-K2) component along the reference direction */
-        const real px_1 = S_x*upru_base_frame_xx + S_y*upru_base_frame_yx +
-            S_z*upru_base_frame_zx;
-        /* (upru-K3) component across the reference direction */
-        const real py_1 = S_x*upru_base_frame_xy + S_y*upru_base_frame_yy +
-            S_z*upru_base_frame_zy;
-        /* (upru-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upru-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upru-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upru_base_frame_xz + S_y*upru_base_frame_yz +
-            S_z*upru_base_frame_zz;
-        /* (upru-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upru-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upru-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upru-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upru-K20) component along the reference direction */
-        const real end_p1_r0_x = upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xx +
-            R_yx*upru_base_frame_yx + R_zx*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xx + R_yy*upru_base_frame_yx
-            + R_zy*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xx + R_yz*upru_base_frame_yx
-            + R_zz*upru_base_frame_zx);
-        const real end_p1_r0_y = upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xy +
-            R_yx*upru_base_frame_yy + R_zx*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xy + R_yy*upru_base_frame_yy
-            + R_zy*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xy + R_yz*upru_base_frame_yy
-            + R_zz*upru_base_frame_zy);
-        const real end_p1_r0_z = upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xz +
-            R_yx*upru_base_frame_yz + R_zx*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xz + R_yy*upru_base_frame_yz
-            + R_zy*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xz + R_yz*upru_base_frame_yz
-            + R_zz*upru_base_frame_zz);
-        /* (upru-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upru-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upru-K20) component along the reference direction */
-        const real end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x;
-        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
-        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
-        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
-        /* (upru-K23) squared amplitude */
-        const real rho2_4 = end_p1_r1_x*end_p1_r1_x + end_p1_r3_y*end_p1_r3_y;
-        /* (upru-K24) amplitude, with the sign of the branch */
-        const real root_4 = branch_4*root(rho2_4);
-        /* (upru-K25) cosine of the angle of joint 4 from its reference direction */
-        const real inv_root_4 = 1/root_4;
-        const real c_4 = end_p1_r3_y*inv_root_4;
-        /* (upru-K26) sine of the angle of joint 4 from its reference direction */
-        const real s_4 = end_p1_r1_x*inv_root_4;
-        /* (upru-V3) velocity of the connection point per rate of joint 1 */
-        const real v_1_t = c_2*c_4;
-        const real v_1_t_2 = c_2*s_4;
-        const real v_1_t_3 = root_2*v_1_t_2;
-        const real v_1_t_4 = root_2*v_1_t;
-        /* (upru-V7) force part of reciprocal wrench 1 */
-        const real axis_z_x = S_x*inv_root_2;
-        const real axis_z_y = S_y*inv_root_2;
-        const real axis_z_z = S_z*inv_root_2;
-        const real w_1_t = s_2*s_4;
-        const real axis_y_upru_axes4_r4_x = -c_1*c_4 - s_1*w_1_t;
-        const real axis_y_upru_axes4_r4_y = c_4*s_1 - c_1*w_1_t;
-        const real axis_y_upru_axes4_in_base_x = axis_y_upru_axes4_r4_x*upru_base_frame_xx +
-            axis_y_upru_axes4_r4_y*upru_base_frame_xy + upru_base_frame_xz*v_1_t_2;
-        const real axis_y_upru_axes4_in_base_y = axis_y_upru_axes4_r4_x*upru_base_frame_yx +
-            axis_y_upru_axes4_r4_y*upru_base_frame_yy + upru_base_frame_yz*v_1_t_2;
-        const real axis_y_upru_axes4_in_base_z = axis_y_upru_axes4_r4_x*upru_base_frame_zx +
-            axis_y_upru_axes4_r4_y*upru_base_frame_zy + upru_base_frame_zz*v_1_t_2;
-        const real axis_x_upru_axes4_x = axis_y_upru_axes4_in_base_y*axis_z_z -
-            axis_y_upru_axes4_in_base_z*axis_z_y;
-        const real axis_x_upru_axes4_y = axis_y_upru_axes4_in_base_z*axis_z_x -
-            axis_y_upru_axes4_in_base_x*axis_z_z;
-        const real axis_x_upru_axes4_z = axis_y_upru_axes4_in_base_x*axis_z_y -
-            axis_y_upru_axes4_in_base_y*axis_z_x;
-        /* (upru-V6) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4;
-        const real end_p1_r5_y = c_4*end_p1_r1_x - end_p1_r3_y*s_4;
-        /* (upru-V3) velocity of the connection point per rate of joint 1 */
-        const real v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4;
-        const real v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3;
-        /* (upru-V7) force part of reciprocal wrench 1 */
-        const real w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2;
-        /* (upru-V6) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_t = end_p1_r3_x*s_4;
-        /* (upru-V7) force part of reciprocal wrench 1 */
-        const real inv_v_1_r0_y = 1/v_1_r0_y;
-        /* (upru-V13) force part of reciprocal wrench 4 */
-        const real inv_end_p1_r5_x = 1/end_p1_r5_x;
-        /* (upru-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        const real S_dot_r0_x = S_dot_x*upru_base_frame_xx + S_dot_y*upru_base_frame_yx +
-            S_dot_z*upru_base_frame_zx;
-        const real S_dot_r0_y = S_dot_x*upru_base_frame_xy + S_dot_y*upru_base_frame_yy +
-            S_dot_z*upru_base_frame_zy;
-        const real S_dot_r0_z = S_dot_x*upru_base_frame_xz + S_dot_y*upru_base_frame_yz +
-            S_dot_z*upru_base_frame_zz;
-        const real S_dot_r1_y = -S_dot_r0_x*s_1 - S_dot_r0_y*c_1;
-        const real S_dot_r3_x = S_dot_r0_z*s_2 - S_dot_r1_y*c_2;
-        /* (upru-V20) rate of joint 1 */
-        const real qd_1_t = inv_v_1_r0_y*(S_dot_r0_y*s_1 - S_dot_r0_x*c_1);
-        const real qd_1_t_2 = inv_root_2*(-S_dot_r0_z*c_2 - S_dot_r1_y*s_2 - qd_1_t*v_1_r0_x);
-        /* (upru-V24) angular velocity of link 1 */
-        const real omega_1_t = qd_1_t*s_2;
-        const real omega_1_t_2 = c_2*qd_1_t;
-        /* (upru-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_y = omega_1_t*qd_1_t_2;
-        /* (upru-V25) angular velocity of link 2 */
-        const real omega_2_r1_x = qd_1_t_2*s_4 - c_4*omega_1_t_2;
-        const real omega_2_r1_y = c_4*qd_1_t_2 + omega_1_t_2*s_4;
-        /* (upru-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_t = c_4*zeta_2_y;
-        /* (upru-A10) rate of moment direction 1 */
-        const real omega_tip_x = axis_x_upru_axes4_x*omega_x + axis_x_upru_axes4_y*omega_y +
-            axis_x_upru_axes4_z*omega_z;
-        const real omega_tip_y = axis_y_upru_axes4_in_base_x*omega_x +
-            axis_y_upru_axes4_in_base_y*omega_y + axis_y_upru_axes4_in_base_z*omega_z;
-        const real omega_tip_z = axis_z_x*omega_x + axis_z_y*omega_y + axis_z_z*omega_z;
-        const real nd_m1_x = end_p1_r5_y*omega_tip_x - end_p1_r5_x*omega_tip_y -
-            end_p1_r5_y*omega_2_r1_x;
-        /* (upru-A7) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_r3_x;
-        const real bias_x = bias_t*omega_2_r1_y + root_2*(omega_1_t*omega_2_r1_x + s_4*zeta_2_y);
-        const real bias_y = root_2*(zeta_2_t + omega_1_t*omega_2_r1_y) - bias_t*omega_2_r1_x;
-        /* (upru-V20) rate of joint 1 */
-        const real qd_1_t_3 = omega_tip_z - inv_end_p1_r5_x*(end_p1_r3_x*omega_tip_x +
-            qd_1_t*w_1_t_2 - n_m1_t*qd_1_t_2);
-        /* (upru-A6) angular acceleration of link 4 at zero joint accelerations */
-        const real beta_4_x = omega_2_r1_y*qd_1_t_3 - zeta_2_t;
-        /* (upru-V27) angular velocity of link 4 */
-        const real omega_4_z = omega_1_t + qd_1_t_3;
-        /* (upru-A10) rate of moment direction 1 */
-        const real nd_m1_z = end_p1_r5_y*omega_tip_z - end_p1_r3_x*omega_tip_y -
-            end_p1_r5_y*omega_4_z;
-        /* (upru-A11) bias of the angular acceleration along moment direction 1 */
-        const real nu_1_t = beta_4_x*end_p1_r3_x + end_p1_r5_x*omega_1_t_2*qd_1_t_2;
-        const real nu_1_t_2 = nd_m1_x*(omega_2_r1_x - omega_tip_x) + nd_m1_z*(omega_4_z -
-            omega_tip_z) + (omega_2_r1_y - omega_tip_y)*(end_p1_r3_x*omega_4_z +
-            end_p1_r5_x*omega_2_r1_x);
-        const real nu_1 = -nu_1_t - nu_1_t_2;
-        /* (upru-A12) acceleration with which the joints turn along moment direction 1 */
-        const real etad_1_t = end_p1_r3_x*(alpha_x*axis_x_upru_axes4_x +
-            alpha_y*axis_x_upru_axes4_y + alpha_z*axis_x_upru_axes4_z) -
-            end_p1_r5_x*(alpha_x*axis_z_x + alpha_y*axis_z_y + alpha_z*axis_z_z);
-        const real etad_1 = etad_1_t + nu_1;
-        /* (upru-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
-        const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
-        const real a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x;
-        /* (upru-A3) acceleration of the connection point */
-        const real S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z;
-        const real S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x;
-        const real S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y;
-        /* (upru-A8) acceleration of the connection point left to the joint accelerations */
-        const real rel_x = S_ddot_x*axis_x_upru_axes4_x + S_ddot_y*axis_x_upru_axes4_y +
-            S_ddot_z*axis_x_upru_axes4_z - bias_x;
-        const real rel_y = S_ddot_x*axis_y_upru_axes4_in_base_x +
-            S_ddot_y*axis_y_upru_axes4_in_base_y + S_ddot_z*axis_y_upru_axes4_in_base_z - bias_y;
-        const real rel_z = S_ddot_x*axis_z_x + S_ddot_y*axis_z_y + S_ddot_z*axis_z_z +
-            root_2*(omega_2_r1_x*omega_2_r1_x + omega_2_r1_y*omega_2_r1_y);
-        /* (upru-A13) acceleration of joint 1 */
-        const real qdd_1_t = inv_v_1_r0_y*(c_4*rel_y + rel_x*s_4);
-        const real qdd_1_t_2 = inv_root_2*(qdd_1_t*v_1_r0_x + rel_y*s_4 - c_4*rel_x);
-        const real qdd_1_t_3 = inv_end_p1_r5_x*(etad_1 + n_m1_t*qdd_1_t_2 + qdd_1_t*w_1_t_2);
-        o->entry[0][k] = qdd_1_t;
-        o->entry[1][k] = -qdd_1_t_2;
-        o->entry[2][k] = rel_z;
-        o->entry[3][k] = -qdd_1_t_3;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_4) > TOLERANCE*TOLERANCE*1) + UNLESS(magnitude(-end_p1_r5_x) >
-            TOLERANCE*1) + UNLESS(magnitude(root_2) > TOLERANCE*R(0.8)) +
-            UNLESS(magnitude(v_1_r0_y) > TOLERANCE*R(0.8));
+        /* (ucu-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
+        const real ucu_platform_point_x = m->ucu_platform_point_x[i];
+        const real ucu_platform_point_y = m->ucu_platform_point_y[i];
+        const real ucu_platform_point_z = m->ucu_platform_point_z[i];
+        const real ucu_q_in_base_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
+            R_xz*ucu_platform_point_z;
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real ucu_q_in_base_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
+            R_yz*ucu_platform_point_z;
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real ucu_q_in_base_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
+            R_zz*ucu_platform_point_z;
+        const real t_x = s[0*w + j];
+        const real ucu_base_point_x = m->ucu_base_point_x[i];
+        const real ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x;
+        const real t_y = s[1*w + j];
+        const real ucu_base_point_y = m->ucu_base_point_y[i];
+        const real ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y;
+        const real t_z = s[2*w + j];
+        const real ucu_base_point_z = m->ucu_base_point_z[i];
+        const real ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z;
+        /* (ucu-px_1) component along the reference direction */
+        const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
+        const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
+        const real ucu_base_frame_zx = m->ucu_base_frame_zx[i];
+        const real ucu_px_1 = ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx +
+            ucu_S_z*ucu_base_frame_zx;
+        /* (ucu-py_1) component across the reference direction */
+        const real ucu_base_frame_xy = m->ucu_base_frame_xy[i];
+        const real ucu_base_frame_yy = m->ucu_base_frame_yy[i];
+        const real ucu_base_frame_zy = m->ucu_base_frame_zy[i];
+        const real ucu_py_1 = ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy +
+            ucu_S_z*ucu_base_frame_zy;
+        /* (ucu-rho2_1) squared amplitude */
+        const real ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1;
+        /* (ucu-root_1) amplitude, with the sign of the branch */
+        const real ucu_branch_1 = m->ucu_branch_1[i];
+        const real ucu_root_1 = ucu_branch_1*root(ucu_rho2_1);
+        /* (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
+        const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
+        const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
+        const real ucu_xi_1_t = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
+            ucu_S_z*ucu_base_frame_zz;
+        /* (ucu-rho2_2) squared amplitude */
+        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t;
+        /* (ucu-root_2) amplitude, with the sign of the branch */
+        const real ucu_branch_2 = m->ucu_branch_2[i];
+        const real ucu_root_2 = ucu_branch_2*root(ucu_rho2_2);
+        /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ucu_root_2 = 1/ucu_root_2;
+        const real ucu_c_2 = inv_ucu_root_2*ucu_root_1;
+        /* (ucu-s_2) sine of the angle of joint 2 from its reference direction */
+        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t;
+        /* (ucu-px_4) component along the reference direction */
+        const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
+        const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
+        const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
+        const real ucu_end_p1_r0_x = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
+            R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
+            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
+            R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
+            R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
+        const real ucu_end_p1_r0_y = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
+            R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
+            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
+            R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
+            R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
+        const real ucu_end_p1_r0_z = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
+            R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
+            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
+            R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
+            R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
+        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ucu_root_1 = 1/ucu_root_1;
+        const real ucu_c_1 = inv_ucu_root_1*ucu_py_1;
+        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
+        /* (ucu-px_4) component along the reference direction */
+        const real ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x;
+        const real ucu_end_p1_r1_y = -ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1;
+        const real ucu_end_p1_r3_x = ucu_end_p1_r0_z*ucu_s_2 - ucu_c_2*ucu_end_p1_r1_y;
+        const real ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_end_p1_r1_y*ucu_s_2;
+        /* (ucu-rho2_4) squared amplitude */
+        const real ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y;
+        /* (ucu-root_4) amplitude, with the sign of the branch */
+        const real ucu_branch_4 = m->ucu_branch_4[i];
+        const real ucu_root_4 = ucu_branch_4*root(ucu_rho2_4);
+        /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
+        const real inv_ucu_root_4 = 1/ucu_root_4;
+        const real ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y;
+        /* (ucu-s_4) sine of the angle of joint 4 from its reference direction */
+        const real ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x;
+        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
+        const real ucu_v_1_t = ucu_c_2*ucu_c_4;
+        const real ucu_v_1_t_2 = ucu_c_2*ucu_s_4;
+        const real ucu_v_1_t_3 = ucu_root_2*ucu_v_1_t_2;
+        const real ucu_v_1_t_4 = ucu_root_2*ucu_v_1_t;
+        /* (ucu-w_1) force part of reciprocal wrench 1 */
+        const real ucu_axis_z_x = inv_ucu_root_2*ucu_S_x;
+        const real ucu_axis_z_y = inv_ucu_root_2*ucu_S_y;
+        const real ucu_axis_z_z = inv_ucu_root_2*ucu_S_z;
+        const real ucu_w_1_t = ucu_s_2*ucu_s_4;
+        const real axis_y_ucu_axes4_r4_x = -ucu_c_1*ucu_c_4 - ucu_s_1*ucu_w_1_t;
+        const real axis_y_ucu_axes4_r4_y = ucu_c_4*ucu_s_1 - ucu_c_1*ucu_w_1_t;
+        const real axis_y_ucu_axes4_in_base_x = axis_y_ucu_axes4_r4_x*ucu_base_frame_xx +
+            axis_y_ucu_axes4_r4_y*ucu_base_frame_xy + ucu_base_frame_xz*ucu_v_1_t_2;
+        const real axis_y_ucu_axes4_in_base_y = axis_y_ucu_axes4_r4_x*ucu_base_frame_yx +
+            axis_y_ucu_axes4_r4_y*ucu_base_frame_yy + ucu_base_frame_yz*ucu_v_1_t_2;
+        const real axis_y_ucu_axes4_in_base_z = axis_y_ucu_axes4_r4_x*ucu_base_frame_zx +
+            axis_y_ucu_axes4_r4_y*ucu_base_frame_zy + ucu_base_frame_zz*ucu_v_1_t_2;
+        const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_in_base_y*ucu_axis_z_z -
+            axis_y_ucu_axes4_in_base_z*ucu_axis_z_y;
+        const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_in_base_z*ucu_axis_z_x -
+            axis_y_ucu_axes4_in_base_x*ucu_axis_z_z;
+        const real axis_x_ucu_axes4_z = axis_y_ucu_axes4_in_base_x*ucu_axis_z_y -
+            axis_y_ucu_axes4_in_base_y*ucu_axis_z_x;
+        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4;
+        const real ucu_end_p1_r5_y = ucu_c_4*ucu_end_p1_r1_x - ucu_end_p1_r3_y*ucu_s_4;
+        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
+        const real ucu_v_1_r0_x = ucu_c_4*ucu_v_1_t_3 - ucu_s_4*ucu_v_1_t_4;
+        const real ucu_v_1_r0_y = ucu_c_4*ucu_v_1_t_4 + ucu_s_4*ucu_v_1_t_3;
+        /* (ucu-w_1) force part of reciprocal wrench 1 */
+        const real ucu_w_1_t_2 = ucu_end_p1_r3_x*ucu_v_1_t + ucu_end_p1_r5_x*ucu_s_2;
+        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real ucu_n_m1_t = ucu_end_p1_r3_x*ucu_s_4;
+        /* (ucu-w_1) force part of reciprocal wrench 1 */
+        const real inv_ucu_v_1_r0_y = 1/ucu_v_1_r0_y;
+        /* (ucu-w_4) force part of reciprocal wrench 4 */
+        const real inv_ucu_end_p1_r5_x = 1/ucu_end_p1_r5_x;
+        /* (ucu-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real ucu_S_dot_t = omega_y*ucu_q_in_base_z - omega_z*ucu_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real ucu_S_dot_t_2 = omega_z*ucu_q_in_base_x - omega_x*ucu_q_in_base_z;
+        const real ucu_S_dot_t_3 = omega_x*ucu_q_in_base_y - omega_y*ucu_q_in_base_x;
+        const real t_dot_x = s[12*w + j];
+        const real ucu_S_dot_x = t_dot_x + ucu_S_dot_t;
+        const real t_dot_y = s[13*w + j];
+        const real ucu_S_dot_y = t_dot_y + ucu_S_dot_t_2;
+        const real t_dot_z = s[14*w + j];
+        const real ucu_S_dot_z = t_dot_z + ucu_S_dot_t_3;
+        const real ucu_S_dot_r0_x = ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx
+            + ucu_S_dot_z*ucu_base_frame_zx;
+        const real ucu_S_dot_r0_y = ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy
+            + ucu_S_dot_z*ucu_base_frame_zy;
+        const real ucu_S_dot_r0_z = ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz
+            + ucu_S_dot_z*ucu_base_frame_zz;
+        const real ucu_S_dot_r1_y = -ucu_S_dot_r0_x*ucu_s_1 - ucu_S_dot_r0_y*ucu_c_1;
+        const real ucu_S_dot_r3_x = ucu_S_dot_r0_z*ucu_s_2 - ucu_S_dot_r1_y*ucu_c_2;
+        /* (ucu-qd_4) rate of joint 4 */
+        const real ucu_qd_4_t = inv_ucu_v_1_r0_y*(ucu_S_dot_r0_y*ucu_s_1 -
+            ucu_S_dot_r0_x*ucu_c_1);
+        const real ucu_qd_4_t_2 = inv_ucu_root_2*(-ucu_S_dot_r0_z*ucu_c_2 - ucu_S_dot_r1_y*ucu_s_2
+            - ucu_qd_4_t*ucu_v_1_r0_x);
+        /* (ucu-omega_1) angular velocity of link 1 */
+        const real ucu_omega_1_t = ucu_qd_4_t*ucu_s_2;
+        const real ucu_omega_1_t_2 = ucu_c_2*ucu_qd_4_t;
+        /* (ucu-omega_2) angular velocity of link 2 */
+        const real ucu_omega_2_r1_x = ucu_qd_4_t_2*ucu_s_4 - ucu_c_4*ucu_omega_1_t_2;
+        const real ucu_omega_2_r1_y = ucu_c_4*ucu_qd_4_t_2 + ucu_omega_1_t_2*ucu_s_4;
+        /* (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real ucu_zeta_2_y = ucu_omega_1_t*ucu_qd_4_t_2;
+        const real ucu_zeta_2_t = ucu_c_4*ucu_zeta_2_y;
+        /* (ucu-bias) acceleration of the connection point at zero joint accelerations */
+        const real ucu_bias_t = 2*ucu_S_dot_r3_x;
+        const real ucu_bias_x = ucu_bias_t*ucu_omega_2_r1_y +
+            ucu_root_2*(ucu_omega_1_t*ucu_omega_2_r1_x + ucu_s_4*ucu_zeta_2_y);
+        const real ucu_bias_y = ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_t*ucu_omega_2_r1_y) -
+            ucu_bias_t*ucu_omega_2_r1_x;
+        /* (ucu-nd_m1) rate of moment direction 1 */
+        const real ucu_omega_tip_x = axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y +
+            axis_x_ucu_axes4_z*omega_z;
+        const real ucu_omega_tip_y = axis_y_ucu_axes4_in_base_x*omega_x +
+            axis_y_ucu_axes4_in_base_y*omega_y + axis_y_ucu_axes4_in_base_z*omega_z;
+        const real ucu_omega_tip_z = omega_x*ucu_axis_z_x + omega_y*ucu_axis_z_y +
+            omega_z*ucu_axis_z_z;
+        const real ucu_nd_m1_x = ucu_end_p1_r5_y*ucu_omega_tip_x - ucu_end_p1_r5_x*ucu_omega_tip_y
+            - ucu_end_p1_r5_y*ucu_omega_2_r1_x;
+        /* (ucu-qd_1) rate of joint 1 */
+        const real ucu_qd_1_t = ucu_omega_tip_z -
+            inv_ucu_end_p1_r5_x*(ucu_end_p1_r3_x*ucu_omega_tip_x + ucu_qd_4_t*ucu_w_1_t_2 -
+            ucu_n_m1_t*ucu_qd_4_t_2);
+        /* (ucu-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_y = s[22*w + j];
+        const real alpha_z = s[23*w + j];
+        const real t_ddot_x = s[18*w + j];
+        const real ucu_a_p_x = t_ddot_x + alpha_y*ucu_q_in_base_z - alpha_z*ucu_q_in_base_y;
+        const real alpha_x = s[21*w + j];
+        const real t_ddot_y = s[19*w + j];
+        const real ucu_a_p_y = t_ddot_y + alpha_z*ucu_q_in_base_x - alpha_x*ucu_q_in_base_z;
+        const real t_ddot_z = s[20*w + j];
+        const real ucu_a_p_z = t_ddot_z + alpha_x*ucu_q_in_base_y - alpha_y*ucu_q_in_base_x;
+        /* (ucu-S_ddot) acceleration of the connection point */
+        const real ucu_S_ddot_x = ucu_a_p_x + omega_y*ucu_S_dot_t_3 - omega_z*ucu_S_dot_t_2;
+        const real ucu_S_ddot_y = ucu_a_p_y + omega_z*ucu_S_dot_t - omega_x*ucu_S_dot_t_3;
+        const real ucu_S_ddot_z = ucu_a_p_z + omega_x*ucu_S_dot_t_2 - omega_y*ucu_S_dot_t;
+        /* (ucu-rel) acceleration of the connection point left to the joint accelerations */
+        const real ucu_rel_x = axis_x_ucu_axes4_x*ucu_S_ddot_x + axis_x_ucu_axes4_y*ucu_S_ddot_y +
+            axis_x_ucu_axes4_z*ucu_S_ddot_z - ucu_bias_x;
+        const real ucu_rel_y = axis_y_ucu_axes4_in_base_x*ucu_S_ddot_x +
+            axis_y_ucu_axes4_in_base_y*ucu_S_ddot_y + axis_y_ucu_axes4_in_base_z*ucu_S_ddot_z -
+            ucu_bias_y;
+        const real ucu_rel_z = ucu_S_ddot_x*ucu_axis_z_x + ucu_S_ddot_y*ucu_axis_z_y +
+            ucu_S_ddot_z*ucu_axis_z_z + ucu_root_2*(ucu_omega_2_r1_x*ucu_omega_2_r1_x +
+            ucu_omega_2_r1_y*ucu_omega_2_r1_y);
+        /* (ucu-omega_4) angular velocity of link 4 */
+        const real ucu_omega_4_z = ucu_omega_1_t + ucu_qd_1_t;
+        /* (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations */
+        const real ucu_beta_4_x = ucu_omega_2_r1_y*ucu_qd_1_t - ucu_zeta_2_t;
+        /* (ucu-nd_m1) rate of moment direction 1 */
+        const real ucu_nd_m1_z = ucu_end_p1_r5_y*ucu_omega_tip_z - ucu_end_p1_r3_x*ucu_omega_tip_y
+            - ucu_end_p1_r5_y*ucu_omega_4_z;
+        /* (ucu-nu_1) bias of the angular acceleration along moment direction 1 */
+        const real ucu_nu_1_t = ucu_beta_4_x*ucu_end_p1_r3_x +
+            ucu_end_p1_r5_x*ucu_omega_1_t_2*ucu_qd_4_t_2;
+        const real ucu_nu_1_t_2 = ucu_nd_m1_x*(ucu_omega_2_r1_x - ucu_omega_tip_x) +
+            ucu_nd_m1_z*(ucu_omega_4_z - ucu_omega_tip_z) + (ucu_omega_2_r1_y -
+            ucu_omega_tip_y)*(ucu_end_p1_r3_x*ucu_omega_4_z + ucu_end_p1_r5_x*ucu_omega_2_r1_x);
+        const real ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2;
+        /* (ucu-etad_1) acceleration with which the joints turn along moment direction 1 */
+        const real ucu_etad_1_t = ucu_end_p1_r3_x*(alpha_x*axis_x_ucu_axes4_x +
+            alpha_y*axis_x_ucu_axes4_y + alpha_z*axis_x_ucu_axes4_z) -
+            ucu_end_p1_r5_x*(alpha_x*ucu_axis_z_x + alpha_y*ucu_axis_z_y + alpha_z*ucu_axis_z_z);
+        const real ucu_etad_1 = ucu_etad_1_t + ucu_nu_1;
+        /* (ucu-qdd_1) acceleration of joint 1 */
+        const real ucu_qdd_1_t = inv_ucu_v_1_r0_y*(ucu_c_4*ucu_rel_y + ucu_rel_x*ucu_s_4);
+        const real ucu_qdd_1_t_2 = inv_ucu_root_2*(ucu_qdd_1_t*ucu_v_1_r0_x + ucu_rel_y*ucu_s_4 -
+            ucu_c_4*ucu_rel_x);
+        const real ucu_qdd_1_t_3 = inv_ucu_end_p1_r5_x*(ucu_etad_1 + ucu_n_m1_t*ucu_qdd_1_t_2 +
+            ucu_qdd_1_t*ucu_w_1_t_2);
+        o[0*count + k] = ucu_qdd_1_t;
+        o[1*count + k] = -ucu_qdd_1_t_2;
+        o[2*count + k] = ucu_rel_z;
+        o[3*count + k] = -ucu_qdd_1_t_3;
+        o[5*count + k] = (ucu_qdd_1_t + ucu_qdd_1_t_2) + (ucu_rel_z + ucu_qdd_1_t_3);
+        o[4*count + k] = UNLESS(magnitude(ucu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ucu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(ucu_rho2_4) > TOLERANCE*TOLERANCE*1) +
+            UNLESS(magnitude(-ucu_end_p1_r5_x) > TOLERANCE*1) + UNLESS(magnitude(ucu_root_2) >
+            TOLERANCE*R(0.8)) + UNLESS(magnitude(ucu_v_1_r0_y) > TOLERANCE*R(0.8));
     }
 }
 
-INLINE void joint_accelerations_place_upru(size_t w, const joint_accelerations_results_upru *o,
-    size_t leg, size_t first, real *qdd, verdict *t)
+INLINE void joint_accelerations_place_ucu(size_t w, size_t count, const real *o, size_t leg,
+    size_t first, real *qdd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qdd[(4*leg)*w + k] = o->entry[0][first + k];
-        qdd[(1 + 4*leg)*w + k] = o->entry[1][first + k];
-        qdd[(2 + 4*leg)*w + k] = o->entry[2][first + k];
-        qdd[(3 + 4*leg)*w + k] = o->entry[3][first + k];
-        t->singular[k] += o->singular[first + k];
+        qdd[(4*leg)*w + k] = o[0*count + first + k];
+        qdd[(1 + 4*leg)*w + k] = o[1*count + first + k];
+        qdd[(2 + 4*leg)*w + k] = o[2*count + first + k];
+        qdd[(3 + 4*leg)*w + k] = o[3*count + first + k];
+        t->singular[k] += o[4*count + first + k];
+        t->total[k] += o[5*count + first + k];
     }
 }
 
-INLINE void joint_accelerations_run(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd, verdict *t)
+INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd, verdict *t)
 {
-    joint_accelerations_values values, *const s = &values;
-    joint_accelerations_results_upru results_upru;
-    joint_accelerations_before(w, X, V, A, s, t);
-    if (w == 1) {  /* the legs side by side */
-        joint_accelerations_legs_upru(m, 0, 1, s, 0, 6, &results_upru);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            joint_accelerations_place_upru(w, &results_upru, leg, leg, qdd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 6; ++leg) {
-            joint_accelerations_legs_upru(m, leg, 0, s, 1, w, &results_upru);
-            joint_accelerations_place_upru(w, &results_upru, leg, 0, qdd, t);
-        }
+    real s[24] = {0}, o_ucu[6*LEGS(6)] = {0};
+    joint_accelerations_before(1, X, V, A, s, t);
+    joint_accelerations_legs_ucu(m, 1, 0, 1, s, 0, LEGS(6), o_ucu);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        joint_accelerations_place_ucu(1, LEGS(6), o_ucu, leg, leg, qdd, t);
+    }
+}
+
+INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, verdict *t)
+{
+    real s[24*LANES], o_ucu[6*LANES];
+    joint_accelerations_before(LANES, X, V, A, s, t);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        joint_accelerations_legs_ucu(m, LANES, leg, 0, s, 1, LANES, o_ucu);
+        joint_accelerations_place_ucu(LANES, LANES, o_ucu, leg, 0, qdd, t);
     }
 }
 
 /* ---- legs: 2058 mul, 1488 add, 30 div, 18 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
-        t_ddot_x[LANES], t_ddot_y[LANES], t_ddot_z[LANES], alpha_x[LANES], alpha_y[LANES],
-        alpha_z[LANES];
-} legs_values;
-typedef struct {
-    real entry[9][8], singular[8];
-} legs_results_upru;
-
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, legs_values *s,
-    verdict *t)
+INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real A_2 = A[2*w + k];
-        const real A_3 = A[3*w + k];
-        const real A_4 = A[4*w + k];
-        const real A_5 = A[5*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -5224,484 +5234,520 @@ INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, l
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
+        const real A_2 = A[2*w + k];
         const real t_ddot_z = A_2;
+        const real A_3 = A[3*w + k];
         const real alpha_x = A_3;
+        const real A_4 = A[4*w + k];
         const real alpha_y = A_4;
+        const real A_5 = A[5*w + k];
         const real alpha_z = A_5;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->t_ddot_z[k] = t_ddot_z;
-        s->alpha_x[k] = alpha_x;
-        s->alpha_y[k] = alpha_y;
-        s->alpha_z[k] = alpha_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
+        s[18*w + k] = t_ddot_x;
+        s[19*w + k] = t_ddot_y;
+        s[20*w + k] = t_ddot_z;
+        s[21*w + k] = alpha_x;
+        s[22*w + k] = alpha_y;
+        s[23*w + k] = alpha_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void legs_legs_upru(const prepared *m, size_t leg, size_t legs, const legs_values *s,
-    size_t states, size_t count, legs_results_upru *o)
+INLINE void legs_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real t_ddot_z = s->t_ddot_z[j];
-        const real alpha_x = s->alpha_x[j];
-        const real alpha_y = s->alpha_y[j];
-        const real alpha_z = s->alpha_z[j];
+        /* (ucu-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
+        const real ucu_platform_point_x = m->ucu_platform_point_x[i];
+        const real ucu_platform_point_y = m->ucu_platform_point_y[i];
+        const real ucu_platform_point_z = m->ucu_platform_point_z[i];
+        const real ucu_q_in_base_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
+            R_xz*ucu_platform_point_z;
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real ucu_q_in_base_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
+            R_yz*ucu_platform_point_z;
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real ucu_q_in_base_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
+            R_zz*ucu_platform_point_z;
+        const real t_x = s[0*w + j];
+        const real ucu_base_point_x = m->ucu_base_point_x[i];
+        const real ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x;
+        const real t_y = s[1*w + j];
+        const real ucu_base_point_y = m->ucu_base_point_y[i];
+        const real ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y;
+        const real t_z = s[2*w + j];
+        const real ucu_base_point_z = m->ucu_base_point_z[i];
+        const real ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z;
+        /* (ucu-px_1) component along the reference direction */
+        const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
+        const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
+        const real ucu_base_frame_zx = m->ucu_base_frame_zx[i];
+        const real ucu_px_1 = ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx +
+            ucu_S_z*ucu_base_frame_zx;
+        /* (ucu-py_1) component across the reference direction */
+        const real ucu_base_frame_xy = m->ucu_base_frame_xy[i];
+        const real ucu_base_frame_yy = m->ucu_base_frame_yy[i];
+        const real ucu_base_frame_zy = m->ucu_base_frame_zy[i];
+        const real ucu_py_1 = ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy +
+            ucu_S_z*ucu_base_frame_zy;
+        /* (ucu-rho2_1) squared amplitude */
+        const real ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1;
+        /* (ucu-root_1) amplitude, with the sign of the branch */
+        const real ucu_branch_1 = m->ucu_branch_1[i];
+        const real ucu_root_1 = ucu_branch_1*root(ucu_rho2_1);
+        /* (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
+        const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
+        const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
+        const real ucu_xi_1_t = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
+            ucu_S_z*ucu_base_frame_zz;
+        /* (ucu-rho2_2) squared amplitude */
+        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t;
+        /* (ucu-root_2) amplitude, with the sign of the branch */
+        const real ucu_branch_2 = m->ucu_branch_2[i];
+        const real ucu_root_2 = ucu_branch_2*root(ucu_rho2_2);
+        /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ucu_root_2 = 1/ucu_root_2;
+        const real ucu_c_2 = inv_ucu_root_2*ucu_root_1;
+        /* (ucu-s_2) sine of the angle of joint 2 from its reference direction */
+        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t;
+        /* (ucu-px_4) component along the reference direction */
+        const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
+        const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
+        const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
+        const real ucu_end_p1_r0_x = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
+            R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
+            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
+            R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
+            R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
+        const real ucu_end_p1_r0_y = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
+            R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
+            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
+            R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
+            R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
+        const real ucu_end_p1_r0_z = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
+            R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
+            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
+            R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
+            R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
+        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ucu_root_1 = 1/ucu_root_1;
+        const real ucu_c_1 = inv_ucu_root_1*ucu_py_1;
+        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
+        /* (ucu-px_4) component along the reference direction */
+        const real ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x;
+        const real ucu_end_p1_r1_y = -ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1;
+        const real ucu_end_p1_r3_x = ucu_end_p1_r0_z*ucu_s_2 - ucu_c_2*ucu_end_p1_r1_y;
+        const real ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_end_p1_r1_y*ucu_s_2;
+        /* (ucu-rho2_4) squared amplitude */
+        const real ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y;
+        /* (ucu-root_4) amplitude, with the sign of the branch */
+        const real ucu_branch_4 = m->ucu_branch_4[i];
+        const real ucu_root_4 = ucu_branch_4*root(ucu_rho2_4);
+        /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
+        const real inv_ucu_root_4 = 1/ucu_root_4;
+        const real ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y;
+        /* (ucu-s_4) sine of the angle of joint 4 from its reference direction */
+        const real ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x;
+        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
+        const real ucu_v_1_t = ucu_c_2*ucu_c_4;
+        const real ucu_v_1_t_2 = ucu_c_2*ucu_s_4;
+        const real ucu_v_1_t_3 = ucu_root_2*ucu_v_1_t_2;
+        const real ucu_v_1_t_4 = ucu_root_2*ucu_v_1_t;
+        /* (ucu-w_1) force part of reciprocal wrench 1 */
+        const real ucu_axis_z_x = inv_ucu_root_2*ucu_S_x;
+        const real ucu_axis_z_y = inv_ucu_root_2*ucu_S_y;
+        const real ucu_axis_z_z = inv_ucu_root_2*ucu_S_z;
+        const real ucu_w_1_t = ucu_s_2*ucu_s_4;
+        const real axis_y_ucu_axes4_r4_x = -ucu_c_1*ucu_c_4 - ucu_s_1*ucu_w_1_t;
+        const real axis_y_ucu_axes4_r4_y = ucu_c_4*ucu_s_1 - ucu_c_1*ucu_w_1_t;
+        const real axis_y_ucu_axes4_in_base_x = axis_y_ucu_axes4_r4_x*ucu_base_frame_xx +
+            axis_y_ucu_axes4_r4_y*ucu_base_frame_xy + ucu_base_frame_xz*ucu_v_1_t_2;
+        const real axis_y_ucu_axes4_in_base_y = axis_y_ucu_axes4_r4_x*ucu_base_frame_yx +
+            axis_y_ucu_axes4_r4_y*ucu_base_frame_yy + ucu_base_frame_yz*ucu_v_1_t_2;
+        const real axis_y_ucu_axes4_in_base_z = axis_y_ucu_axes4_r4_x*ucu_base_frame_zx +
+            axis_y_ucu_axes4_r4_y*ucu_base_frame_zy + ucu_base_frame_zz*ucu_v_1_t_2;
+        const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_in_base_y*ucu_axis_z_z -
+            axis_y_ucu_axes4_in_base_z*ucu_axis_z_y;
+        const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_in_base_z*ucu_axis_z_x -
+            axis_y_ucu_axes4_in_base_x*ucu_axis_z_z;
+        const real axis_x_ucu_axes4_z = axis_y_ucu_axes4_in_base_x*ucu_axis_z_y -
+            axis_y_ucu_axes4_in_base_y*ucu_axis_z_x;
+        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4;
+        const real ucu_end_p1_r5_y = ucu_c_4*ucu_end_p1_r1_x - ucu_end_p1_r3_y*ucu_s_4;
+        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
+        const real ucu_v_1_r0_x = ucu_c_4*ucu_v_1_t_3 - ucu_s_4*ucu_v_1_t_4;
+        const real ucu_v_1_r0_y = ucu_c_4*ucu_v_1_t_4 + ucu_s_4*ucu_v_1_t_3;
+        /* (ucu-w_1) force part of reciprocal wrench 1 */
+        const real ucu_w_1_t_2 = ucu_end_p1_r3_x*ucu_v_1_t + ucu_end_p1_r5_x*ucu_s_2;
+        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real ucu_n_m1_t = ucu_end_p1_r3_x*ucu_s_4;
+        /* (ucu-w_1) force part of reciprocal wrench 1 */
+        const real inv_ucu_v_1_r0_y = 1/ucu_v_1_r0_y;
+        /* (ucu-w_4) force part of reciprocal wrench 4 */
+        const real inv_ucu_end_p1_r5_x = 1/ucu_end_p1_r5_x;
+        /* (ucu-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real ucu_S_dot_t = omega_y*ucu_q_in_base_z - omega_z*ucu_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real ucu_S_dot_t_2 = omega_z*ucu_q_in_base_x - omega_x*ucu_q_in_base_z;
+        const real ucu_S_dot_t_3 = omega_x*ucu_q_in_base_y - omega_y*ucu_q_in_base_x;
+        const real t_dot_x = s[12*w + j];
+        const real ucu_S_dot_x = t_dot_x + ucu_S_dot_t;
+        const real t_dot_y = s[13*w + j];
+        const real ucu_S_dot_y = t_dot_y + ucu_S_dot_t_2;
+        const real t_dot_z = s[14*w + j];
+        const real ucu_S_dot_z = t_dot_z + ucu_S_dot_t_3;
+        const real ucu_S_dot_r0_x = ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx
+            + ucu_S_dot_z*ucu_base_frame_zx;
+        const real ucu_S_dot_r0_y = ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy
+            + ucu_S_dot_z*ucu_base_frame_zy;
+        const real ucu_S_dot_r0_z = ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz
+            + ucu_S_dot_z*ucu_base_frame_zz;
+        const real ucu_S_dot_r1_y = -ucu_S_dot_r0_x*ucu_s_1 - ucu_S_dot_r0_y*ucu_c_1;
+        const real ucu_S_dot_r3_x = ucu_S_dot_r0_z*ucu_s_2 - ucu_S_dot_r1_y*ucu_c_2;
+        /* (ucu-qd_4) rate of joint 4 */
+        const real ucu_qd_4_t = inv_ucu_v_1_r0_y*(ucu_S_dot_r0_y*ucu_s_1 -
+            ucu_S_dot_r0_x*ucu_c_1);
+        const real ucu_qd_4_t_2 = inv_ucu_root_2*(-ucu_S_dot_r0_z*ucu_c_2 - ucu_S_dot_r1_y*ucu_s_2
+            - ucu_qd_4_t*ucu_v_1_r0_x);
+        /* (ucu-omega_1) angular velocity of link 1 */
+        const real ucu_omega_1_t = ucu_qd_4_t*ucu_s_2;
+        const real ucu_omega_1_t_2 = ucu_c_2*ucu_qd_4_t;
+        /* (ucu-omega_2) angular velocity of link 2 */
+        const real ucu_omega_2_r1_x = ucu_qd_4_t_2*ucu_s_4 - ucu_c_4*ucu_omega_1_t_2;
+        const real ucu_omega_2_r1_y = ucu_c_4*ucu_qd_4_t_2 + ucu_omega_1_t_2*ucu_s_4;
+        /* (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real ucu_zeta_2_x = ucu_omega_1_t_2*ucu_qd_4_t_2;
+        const real ucu_zeta_2_y = ucu_omega_1_t*ucu_qd_4_t_2;
+        /* (ucu-W_2) centripetal tensor of link 2 */
+        const real ucu_W_2_t = ucu_omega_1_t*ucu_omega_1_t;
+        const real ucu_W_2_t_2 = ucu_omega_1_t_2*ucu_omega_1_t_2;
+        const real ucu_W_2_t_3 = ucu_qd_4_t_2*ucu_qd_4_t_2;
+        const real ucu_W_2_xy = ucu_omega_1_t*ucu_omega_1_t_2;
+        /* (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real ucu_zeta_2_t = ucu_c_4*ucu_zeta_2_y;
+        /* (ucu-W_2) centripetal tensor of link 2 */
+        const real ucu_W_2_t_4 = ucu_omega_2_r1_x*ucu_omega_2_r1_x;
+        const real ucu_W_2_t_5 = ucu_omega_2_r1_y*ucu_omega_2_r1_y;
+        const real ucu_W_2_xy_2 = ucu_omega_2_r1_x*ucu_omega_2_r1_y;
+        /* (ucu-bias) acceleration of the connection point at zero joint accelerations */
+        const real ucu_bias_t = 2*ucu_S_dot_r3_x;
+        const real ucu_bias_x = ucu_bias_t*ucu_omega_2_r1_y +
+            ucu_root_2*(ucu_omega_1_t*ucu_omega_2_r1_x + ucu_s_4*ucu_zeta_2_y);
+        const real ucu_bias_y = ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_t*ucu_omega_2_r1_y) -
+            ucu_bias_t*ucu_omega_2_r1_x;
+        /* (ucu-nd_m1) rate of moment direction 1 */
+        const real ucu_omega_tip_x = axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y +
+            axis_x_ucu_axes4_z*omega_z;
+        const real ucu_omega_tip_y = axis_y_ucu_axes4_in_base_x*omega_x +
+            axis_y_ucu_axes4_in_base_y*omega_y + axis_y_ucu_axes4_in_base_z*omega_z;
+        const real ucu_omega_tip_z = omega_x*ucu_axis_z_x + omega_y*ucu_axis_z_y +
+            omega_z*ucu_axis_z_z;
+        const real ucu_nd_m1_x = ucu_end_p1_r5_y*ucu_omega_tip_x - ucu_end_p1_r5_x*ucu_omega_tip_y
+            - ucu_end_p1_r5_y*ucu_omega_2_r1_x;
+        /* (ucu-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real ucu_g_r0_x = m->ucu_g_r0_x[i];
+        const real ucu_g_r0_y = m->ucu_g_r0_y[i];
+        const real ucu_g_r1_x = ucu_g_r0_y*ucu_s_1 - ucu_c_1*ucu_g_r0_x;
+        const real ucu_g_r1_y = -ucu_c_1*ucu_g_r0_y - ucu_g_r0_x*ucu_s_1;
+        const real ucu_g_r0_z = m->ucu_g_r0_z[i];
+        const real ucu_g_r3_x = ucu_g_r0_z*ucu_s_2 - ucu_c_2*ucu_g_r1_y;
+        const real ucu_g_r3_y = -ucu_c_2*ucu_g_r0_z - ucu_g_r1_y*ucu_s_2;
+        /* (ucu-qd_1) rate of joint 1 */
+        const real ucu_qd_1_t = ucu_omega_tip_z -
+            inv_ucu_end_p1_r5_x*(ucu_end_p1_r3_x*ucu_omega_tip_x + ucu_qd_4_t*ucu_w_1_t_2 -
+            ucu_n_m1_t*ucu_qd_4_t_2);
+        /* (ucu-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_y = s[22*w + j];
+        const real alpha_z = s[23*w + j];
+        const real t_ddot_x = s[18*w + j];
+        const real ucu_a_p_x = t_ddot_x + alpha_y*ucu_q_in_base_z - alpha_z*ucu_q_in_base_y;
+        const real alpha_x = s[21*w + j];
+        const real t_ddot_y = s[19*w + j];
+        const real ucu_a_p_y = t_ddot_y + alpha_z*ucu_q_in_base_x - alpha_x*ucu_q_in_base_z;
+        const real t_ddot_z = s[20*w + j];
+        const real ucu_a_p_z = t_ddot_z + alpha_x*ucu_q_in_base_y - alpha_y*ucu_q_in_base_x;
+        /* (ucu-S_ddot) acceleration of the connection point */
+        const real ucu_S_ddot_x = ucu_a_p_x + omega_y*ucu_S_dot_t_3 - omega_z*ucu_S_dot_t_2;
+        const real ucu_S_ddot_y = ucu_a_p_y + omega_z*ucu_S_dot_t - omega_x*ucu_S_dot_t_3;
+        const real ucu_S_ddot_z = ucu_a_p_z + omega_x*ucu_S_dot_t_2 - omega_y*ucu_S_dot_t;
+        const real ucu_S_ddot_tip_x = axis_x_ucu_axes4_x*ucu_S_ddot_x +
+            axis_x_ucu_axes4_y*ucu_S_ddot_y + axis_x_ucu_axes4_z*ucu_S_ddot_z;
+        const real ucu_S_ddot_tip_y = axis_y_ucu_axes4_in_base_x*ucu_S_ddot_x +
+            axis_y_ucu_axes4_in_base_y*ucu_S_ddot_y + axis_y_ucu_axes4_in_base_z*ucu_S_ddot_z;
+        /* (ucu-rel) acceleration of the connection point left to the joint accelerations */
+        const real ucu_rel_x = ucu_S_ddot_tip_x - ucu_bias_x;
+        const real ucu_rel_y = ucu_S_ddot_tip_y - ucu_bias_y;
+        /* (ucu-omega_4) angular velocity of link 4 */
+        const real ucu_omega_4_z = ucu_omega_1_t + ucu_qd_1_t;
+        /* (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
+        const real ucu_zeta_4_x = ucu_omega_2_r1_y*ucu_qd_1_t;
+        /* (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations */
+        const real ucu_beta_4_x = ucu_zeta_4_x - ucu_zeta_2_t;
+        /* (ucu-nd_m1) rate of moment direction 1 */
+        const real ucu_nd_m1_z = ucu_end_p1_r5_y*ucu_omega_tip_z - ucu_end_p1_r3_x*ucu_omega_tip_y
+            - ucu_end_p1_r5_y*ucu_omega_4_z;
+        /* (ucu-nu_1) bias of the angular acceleration along moment direction 1 */
+        const real ucu_nu_1_t = ucu_beta_4_x*ucu_end_p1_r3_x + ucu_end_p1_r5_x*ucu_zeta_2_x;
+        const real ucu_nu_1_t_2 = ucu_nd_m1_x*(ucu_omega_2_r1_x - ucu_omega_tip_x) +
+            ucu_nd_m1_z*(ucu_omega_4_z - ucu_omega_tip_z) + (ucu_omega_2_r1_y -
+            ucu_omega_tip_y)*(ucu_end_p1_r3_x*ucu_omega_4_z + ucu_end_p1_r5_x*ucu_omega_2_r1_x);
+        const real ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2;
+        /* (ucu-etad_1) acceleration with which the joints turn along moment direction 1 */
+        const real ucu_etad_1_t = ucu_end_p1_r3_x*(alpha_x*axis_x_ucu_axes4_x +
+            alpha_y*axis_x_ucu_axes4_y + alpha_z*axis_x_ucu_axes4_z) -
+            ucu_end_p1_r5_x*(alpha_x*ucu_axis_z_x + alpha_y*ucu_axis_z_y + alpha_z*ucu_axis_z_z);
+        const real ucu_etad_1 = ucu_etad_1_t + ucu_nu_1;
+        /* (ucu-qdd_1) acceleration of joint 1 */
+        const real ucu_qdd_1_t = inv_ucu_v_1_r0_y*(ucu_c_4*ucu_rel_y + ucu_rel_x*ucu_s_4);
+        const real ucu_qdd_1_t_2 = inv_ucu_root_2*(ucu_qdd_1_t*ucu_v_1_r0_x + ucu_rel_y*ucu_s_4 -
+            ucu_c_4*ucu_rel_x);
+        /* (ucu-acc_4) acceleration of the reference point of link 4, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real J_2_xy = m->J_2_xy[i];
-        const real J_2_xz = m->J_2_xz[i];
-        const real J_2_yz = m->J_2_yz[i];
-        const real J_4_xy = m->J_4_xy[i];
-        const real J_4_xz = m->J_4_xz[i];
-        const real J_4_yz = m->J_4_yz[i];
-        const real Sigma_2_xx = m->Sigma_2_xx[i];
-        const real Sigma_2_yy = m->Sigma_2_yy[i];
-        const real Sigma_2_zz = m->Sigma_2_zz[i];
-        const real Sigma_4_xx = m->Sigma_4_xx[i];
-        const real Sigma_4_yy = m->Sigma_4_yy[i];
-        const real Sigma_4_zz = m->Sigma_4_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real branch_4 = m->branch_4[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real g_r0_z = m->g_r0_z[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real h_2_z = m->h_2_z[i];
-        const real h_4_x = m->h_4_x[i];
-        const real h_4_y = m->h_4_y[i];
-        const real h_4_z = m->h_4_z[i];
-        const real upru_base_frame_xx = m->upru_base_frame_xx[i];
-        const real upru_base_frame_xy = m->upru_base_frame_xy[i];
-        const real upru_base_frame_xz = m->upru_base_frame_xz[i];
-        const real upru_base_frame_yx = m->upru_base_frame_yx[i];
-        const real upru_base_frame_yy = m->upru_base_frame_yy[i];
-        const real upru_base_frame_yz = m->upru_base_frame_yz[i];
-        const real upru_base_frame_zx = m->upru_base_frame_zx[i];
-        const real upru_base_frame_zy = m->upru_base_frame_zy[i];
-        const real upru_base_frame_zz = m->upru_base_frame_zz[i];
-        const real upru_base_point_x = m->upru_base_point_x[i];
-        const real upru_base_point_y = m->upru_base_point_y[i];
-        const real upru_base_point_z = m->upru_base_point_z[i];
-        const real upru_link4_mass = m->upru_link4_mass[i];
-        const real upru_platform_joint_axis_platform_x = m->upru_platform_joint_axis_platform_x[i];
-        const real upru_platform_joint_axis_platform_y = m->upru_platform_joint_axis_platform_y[i];
-        const real upru_platform_joint_axis_platform_z = m->upru_platform_joint_axis_platform_z[i];
-        const real upru_platform_point_x = m->upru_platform_point_x[i];
-        const real upru_platform_point_y = m->upru_platform_point_y[i];
-        const real upru_platform_point_z = m->upru_platform_point_z[i];
-        /* (upru-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*upru_platform_point_x + R_xy*upru_platform_point_y +
-            R_xz*upru_platform_point_z;
-        const real q_in_base_y = R_yx*upru_platform_point_x + R_yy*upru_platform_point_y +
-            R_yz*upru_platform_point_z;
-        const real q_in_base_z = R_zx*upru_platform_point_x + R_zy*upru_platform_point_y +
-            R_zz*upru_platform_point_z;
-        const real S_x = q_in_base_x + t_x - upru_base_point_x;
-        const real S_y = q_in_base_y + t_y - upru_base_point_y;
-        const real S_z = q_in_base_z + t_z - upru_base_point_z;
-        /* (upru-K2) component along the reference direction */
-        const real px_1 = S_x*upru_base_frame_xx + S_y*upru_base_frame_yx +
-            S_z*upru_base_frame_zx;
-        /* (upru-K3) component across the reference direction */
-        const real py_1 = S_x*upru_base_frame_xy + S_y*upru_base_frame_yy +
-            S_z*upru_base_frame_zy;
-        /* (upru-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upru-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upru-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upru_base_frame_xz + S_y*upru_base_frame_yz +
-            S_z*upru_base_frame_zz;
-        /* (upru-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upru-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upru-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upru-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upru-K20) component along the reference direction */
-        const real end_p1_r0_x = upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xx +
-            R_yx*upru_base_frame_yx + R_zx*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xx + R_yy*upru_base_frame_yx
-            + R_zy*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xx + R_yz*upru_base_frame_yx
-            + R_zz*upru_base_frame_zx);
-        const real end_p1_r0_y = upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xy +
-            R_yx*upru_base_frame_yy + R_zx*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xy + R_yy*upru_base_frame_yy
-            + R_zy*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xy + R_yz*upru_base_frame_yy
-            + R_zz*upru_base_frame_zy);
-        const real end_p1_r0_z = upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xz +
-            R_yx*upru_base_frame_yz + R_zx*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xz + R_yy*upru_base_frame_yz
-            + R_zy*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xz + R_yz*upru_base_frame_yz
-            + R_zz*upru_base_frame_zz);
-        /* (upru-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upru-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upru-K20) component along the reference direction */
-        const real end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x;
-        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
-        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
-        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
-        /* (upru-K23) squared amplitude */
-        const real rho2_4 = end_p1_r1_x*end_p1_r1_x + end_p1_r3_y*end_p1_r3_y;
-        /* (upru-K24) amplitude, with the sign of the branch */
-        const real root_4 = branch_4*root(rho2_4);
-        /* (upru-K25) cosine of the angle of joint 4 from its reference direction */
-        const real inv_root_4 = 1/root_4;
-        const real c_4 = end_p1_r3_y*inv_root_4;
-        /* (upru-K26) sine of the angle of joint 4 from its reference direction */
-        const real s_4 = end_p1_r1_x*inv_root_4;
-        /* (upru-V3) velocity of the connection point per rate of joint 1 */
-        const real v_1_t = c_2*c_4;
-        const real v_1_t_2 = c_2*s_4;
-        const real v_1_t_3 = root_2*v_1_t_2;
-        const real v_1_t_4 = root_2*v_1_t;
-        /* (upru-V7) force part of reciprocal wrench 1 */
-        const real axis_z_x = S_x*inv_root_2;
-        const real axis_z_y = S_y*inv_root_2;
-        const real axis_z_z = S_z*inv_root_2;
-        const real w_1_t = s_2*s_4;
-        const real axis_y_upru_axes4_r4_x = -c_1*c_4 - s_1*w_1_t;
-        const real axis_y_upru_axes4_r4_y = c_4*s_1 - c_1*w_1_t;
-        const real axis_y_upru_axes4_in_base_x = axis_y_upru_axes4_r4_x*upru_base_frame_xx +
-            axis_y_upru_axes4_r4_y*upru_base_frame_xy + upru_base_frame_xz*v_1_t_2;
-        const real axis_y_upru_axes4_in_base_y = axis_y_upru_axes4_r4_x*upru_base_frame_yx +
-            axis_y_upru_axes4_r4_y*upru_base_frame_yy + upru_base_frame_yz*v_1_t_2;
-        const real axis_y_upru_axes4_in_base_z = axis_y_upru_axes4_r4_x*upru_base_frame_zx +
-            axis_y_upru_axes4_r4_y*upru_base_frame_zy + upru_base_frame_zz*v_1_t_2;
-        const real axis_x_upru_axes4_x = axis_y_upru_axes4_in_base_y*axis_z_z -
-            axis_y_upru_axes4_in_base_z*axis_z_y;
-        const real axis_x_upru_axes4_y = axis_y_upru_axes4_in_base_z*axis_z_x -
-            axis_y_upru_axes4_in_base_x*axis_z_z;
-        const real axis_x_upru_axes4_z = axis_y_upru_axes4_in_base_x*axis_z_y -
-            axis_y_upru_axes4_in_base_y*axis_z_x;
-        /* (upru-V6) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4;
-        const real end_p1_r5_y = c_4*end_p1_r1_x - end_p1_r3_y*s_4;
-        /* (upru-V3) velocity of the connection point per rate of joint 1 */
-        const real v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4;
-        const real v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3;
-        /* (upru-V7) force part of reciprocal wrench 1 */
-        const real w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2;
-        /* (upru-V6) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_t = end_p1_r3_x*s_4;
-        /* (upru-V7) force part of reciprocal wrench 1 */
-        const real inv_v_1_r0_y = 1/v_1_r0_y;
-        /* (upru-V13) force part of reciprocal wrench 4 */
-        const real inv_end_p1_r5_x = 1/end_p1_r5_x;
-        /* (upru-N2) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
-        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
-        const real g_r3_x = g_r0_z*s_2 - c_2*g_r1_y;
-        const real g_r3_y = -c_2*g_r0_z - g_r1_y*s_2;
-        /* (upru-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        const real S_dot_r0_x = S_dot_x*upru_base_frame_xx + S_dot_y*upru_base_frame_yx +
-            S_dot_z*upru_base_frame_zx;
-        const real S_dot_r0_y = S_dot_x*upru_base_frame_xy + S_dot_y*upru_base_frame_yy +
-            S_dot_z*upru_base_frame_zy;
-        const real S_dot_r0_z = S_dot_x*upru_base_frame_xz + S_dot_y*upru_base_frame_yz +
-            S_dot_z*upru_base_frame_zz;
-        const real S_dot_r1_y = -S_dot_r0_x*s_1 - S_dot_r0_y*c_1;
-        const real S_dot_r3_x = S_dot_r0_z*s_2 - S_dot_r1_y*c_2;
-        /* (upru-V20) rate of joint 1 */
-        const real qd_1_t = inv_v_1_r0_y*(S_dot_r0_y*s_1 - S_dot_r0_x*c_1);
-        const real qd_1_t_2 = inv_root_2*(-S_dot_r0_z*c_2 - S_dot_r1_y*s_2 - qd_1_t*v_1_r0_x);
-        /* (upru-V24) angular velocity of link 1 */
-        const real omega_1_t = qd_1_t*s_2;
-        const real omega_1_t_2 = c_2*qd_1_t;
-        /* (upru-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_x = omega_1_t_2*qd_1_t_2;
-        const real zeta_2_y = omega_1_t*qd_1_t_2;
-        /* (upru-V25) angular velocity of link 2 */
-        const real omega_2_r1_x = qd_1_t_2*s_4 - c_4*omega_1_t_2;
-        const real omega_2_r1_y = c_4*qd_1_t_2 + omega_1_t_2*s_4;
-        /* (upru-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_t = c_4*zeta_2_y;
-        /* (upru-A10) rate of moment direction 1 */
-        const real omega_tip_x = axis_x_upru_axes4_x*omega_x + axis_x_upru_axes4_y*omega_y +
-            axis_x_upru_axes4_z*omega_z;
-        const real omega_tip_y = axis_y_upru_axes4_in_base_x*omega_x +
-            axis_y_upru_axes4_in_base_y*omega_y + axis_y_upru_axes4_in_base_z*omega_z;
-        const real omega_tip_z = axis_z_x*omega_x + axis_z_y*omega_y + axis_z_z*omega_z;
-        const real nd_m1_x = end_p1_r5_y*omega_tip_x - end_p1_r5_x*omega_tip_y -
-            end_p1_r5_y*omega_2_r1_x;
-        /* (upru-V26) centripetal tensor of link 2 */
-        const real W_2_t = omega_1_t*omega_1_t;
-        const real W_2_t_2 = omega_1_t_2*omega_1_t_2;
-        const real W_2_t_3 = qd_1_t_2*qd_1_t_2;
-        const real W_2_xy = omega_1_t*omega_1_t_2;
-        const real W_2_t_4 = omega_2_r1_x*omega_2_r1_x;
-        const real W_2_t_5 = omega_2_r1_y*omega_2_r1_y;
-        const real W_2_xy_2 = omega_2_r1_x*omega_2_r1_y;
-        /* (upru-A7) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_r3_x;
-        const real bias_x = bias_t*omega_2_r1_y + root_2*(omega_1_t*omega_2_r1_x + s_4*zeta_2_y);
-        const real bias_y = root_2*(zeta_2_t + omega_1_t*omega_2_r1_y) - bias_t*omega_2_r1_x;
-        /* (upru-V20) rate of joint 1 */
-        const real qd_1_t_3 = omega_tip_z - inv_end_p1_r5_x*(end_p1_r3_x*omega_tip_x +
-            qd_1_t*w_1_t_2 - n_m1_t*qd_1_t_2);
-        /* (upru-A5) angular acceleration of link 4 from the turning of axis 4 */
-        const real zeta_4_x = omega_2_r1_y*qd_1_t_3;
-        /* (upru-A6) angular acceleration of link 4 at zero joint accelerations */
-        const real beta_4_x = zeta_4_x - zeta_2_t;
-        /* (upru-V27) angular velocity of link 4 */
-        const real omega_4_z = omega_1_t + qd_1_t_3;
-        /* (upru-A10) rate of moment direction 1 */
-        const real nd_m1_z = end_p1_r5_y*omega_tip_z - end_p1_r3_x*omega_tip_y -
-            end_p1_r5_y*omega_4_z;
-        /* (upru-A11) bias of the angular acceleration along moment direction 1 */
-        const real nu_1_t = beta_4_x*end_p1_r3_x + end_p1_r5_x*zeta_2_x;
-        const real nu_1_t_2 = nd_m1_x*(omega_2_r1_x - omega_tip_x) + nd_m1_z*(omega_4_z -
-            omega_tip_z) + (omega_2_r1_y - omega_tip_y)*(end_p1_r3_x*omega_4_z +
-            end_p1_r5_x*omega_2_r1_x);
-        const real nu_1 = -nu_1_t - nu_1_t_2;
-        /* (upru-A12) acceleration with which the joints turn along moment direction 1 */
-        const real etad_1_t = end_p1_r3_x*(alpha_x*axis_x_upru_axes4_x +
-            alpha_y*axis_x_upru_axes4_y + alpha_z*axis_x_upru_axes4_z) -
-            end_p1_r5_x*(alpha_x*axis_z_x + alpha_y*axis_z_y + alpha_z*axis_z_z);
-        const real etad_1 = etad_1_t + nu_1;
-        /* (upru-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
-        const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
-        const real a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x;
-        /* (upru-A3) acceleration of the connection point */
-        const real S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z;
-        const real S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x;
-        const real S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y;
-        const real S_ddot_tip_x = S_ddot_x*axis_x_upru_axes4_x + S_ddot_y*axis_x_upru_axes4_y +
-            S_ddot_z*axis_x_upru_axes4_z;
-        const real S_ddot_tip_y = S_ddot_x*axis_y_upru_axes4_in_base_x +
-            S_ddot_y*axis_y_upru_axes4_in_base_y + S_ddot_z*axis_y_upru_axes4_in_base_z;
-        /* (upru-A8) acceleration of the connection point left to the joint accelerations */
-        const real rel_x = S_ddot_tip_x - bias_x;
-        const real rel_y = S_ddot_tip_y - bias_y;
-        /* (upru-A13) acceleration of joint 1 */
-        const real qdd_1_t = inv_v_1_r0_y*(c_4*rel_y + rel_x*s_4);
-        const real qdd_1_t_2 = inv_root_2*(qdd_1_t*v_1_r0_x + rel_y*s_4 - c_4*rel_x);
-        /* (upru-N3) acceleration of the reference point of link 4, less gravity */
-        const real acc_4_x = S_ddot_tip_x - axis_x_upru_axes4_x*gravity_x -
-            axis_x_upru_axes4_y*gravity_y - axis_x_upru_axes4_z*gravity_z;
-        const real acc_4_y = S_ddot_tip_y - axis_y_upru_axes4_in_base_x*gravity_x -
-            axis_y_upru_axes4_in_base_y*gravity_y - axis_y_upru_axes4_in_base_z*gravity_z;
-        const real acc_4_z = S_ddot_x*axis_z_x + S_ddot_y*axis_z_y + S_ddot_z*axis_z_z -
-            axis_z_x*gravity_x - axis_z_y*gravity_y - axis_z_z*gravity_z;
-        /* (upru-A20) angular acceleration of link 1 */
-        const real alpha_1_t = qdd_1_t*s_2;
-        const real alpha_1_t_2 = c_2*qdd_1_t;
-        /* (upru-A22) angular acceleration of link 2 */
-        const real alpha_2_x = alpha_1_t - zeta_2_x;
-        const real alpha_2_y = -alpha_1_t_2 - zeta_2_y;
-        /* (upru-A24) acceleration tensor of link 2 */
-        const real B_2_xy = qdd_1_t_2 - W_2_xy;
-        const real B_2_yx = -W_2_xy - qdd_1_t_2;
-        const real B_2_zx = zeta_2_y - alpha_2_y;
-        const real B_2_zy = alpha_2_x - zeta_2_x;
-        /* (upru-N29) inertia moment of the links that turn with link 2, about their reference points */
-        const real mu_2_x = B_2_yx*J_2_xy + B_2_zx*J_2_xz + B_2_zy*Sigma_2_yy +
-            Sigma_2_zz*alpha_1_t + g_r1_x*h_2_z + g_r3_y*h_2_y - J_2_yz*(W_2_t_2 - W_2_t_3);
-        const real mu_2_y = B_2_xy*J_2_yz + g_r1_x*h_2_x - B_2_zx*Sigma_2_xx - B_2_zy*J_2_xz -
-            J_2_xy*(W_2_t - W_2_t_3) - Sigma_2_zz*alpha_1_t_2 - g_r3_x*h_2_y;
-        const real mu_2_z = B_2_yx*Sigma_2_xx + J_2_xy*alpha_1_t + J_2_yz*alpha_1_t_2 -
-            B_2_xy*Sigma_2_yy - J_2_xz*(W_2_t - W_2_t_2) - g_r3_x*h_2_z - g_r3_y*h_2_x;
-        /* (upru-A26) angular acceleration of link 4 */
-        const real alpha_4_x = zeta_4_x + alpha_2_y*c_4 - qdd_1_t_2*s_4;
-        const real alpha_4_y = -alpha_2_y*s_4 - c_4*qdd_1_t_2 - omega_2_r1_x*qd_1_t_3;
-        const real alpha_4_z = alpha_2_x - inv_end_p1_r5_x*(etad_1 + n_m1_t*qdd_1_t_2 +
-            qdd_1_t*w_1_t_2);
-        /* (upru-V28) centripetal tensor of link 4 */
-        const real W_4_t = omega_4_z*omega_4_z;
-        const real W_4_xz = omega_2_r1_x*omega_4_z;
-        const real W_4_yz = omega_2_r1_y*omega_4_z;
-        /* (upru-A30) acceleration tensor of link 4 */
-        const real B_4_xy = W_2_xy_2 - alpha_4_z;
-        const real B_4_xz = W_4_xz + alpha_4_y;
-        const real B_4_yx = W_2_xy_2 + alpha_4_z;
-        const real B_4_yz = W_4_yz - alpha_4_x;
-        const real B_4_zx = W_4_xz - alpha_4_y;
-        const real B_4_zy = W_4_yz + alpha_4_x;
-        /* (upru-N21) inertia moment of the links that turn with link 4, about their reference points */
-        const real mu_4_x = B_4_yx*J_4_xy + B_4_zy*Sigma_4_yy + J_4_xz*(W_2_t_5 - W_4_t) +
-            acc_4_z*h_4_z - B_4_yz*Sigma_4_zz - B_4_zx*J_4_yz - acc_4_y*h_4_x;
-        const real mu_4_y = B_4_xz*Sigma_4_zz + B_4_zy*J_4_yz + acc_4_x*h_4_x - B_4_xy*J_4_xz -
-            B_4_zx*Sigma_4_xx - J_4_xy*(W_2_t_4 - W_4_t) - acc_4_z*h_4_y;
-        const real mu_4_z = B_4_xz*J_4_xz + B_4_yx*Sigma_4_xx + J_4_yz*(W_2_t_4 - W_2_t_5) +
-            acc_4_y*h_4_y - B_4_xy*Sigma_4_yy - B_4_yz*J_4_xy - acc_4_x*h_4_z;
-        /* (upru-N31) moment about joint 2 of the links from 2 outwards, the force at the connection point
+        const real ucu_acc_4_x = ucu_S_ddot_tip_x - axis_x_ucu_axes4_x*gravity_x -
+            axis_x_ucu_axes4_y*gravity_y - axis_x_ucu_axes4_z*gravity_z;
+        const real ucu_acc_4_y = ucu_S_ddot_tip_y - axis_y_ucu_axes4_in_base_x*gravity_x -
+            axis_y_ucu_axes4_in_base_y*gravity_y - axis_y_ucu_axes4_in_base_z*gravity_z;
+        const real ucu_acc_4_z = ucu_S_ddot_x*ucu_axis_z_x + ucu_S_ddot_y*ucu_axis_z_y +
+            ucu_S_ddot_z*ucu_axis_z_z - gravity_x*ucu_axis_z_x - gravity_y*ucu_axis_z_y -
+            gravity_z*ucu_axis_z_z;
+        /* (ucu-alpha_1) angular acceleration of link 1 */
+        const real ucu_alpha_1_t = ucu_qdd_1_t*ucu_s_2;
+        const real ucu_alpha_1_t_2 = ucu_c_2*ucu_qdd_1_t;
+        /* (ucu-alpha_2) angular acceleration of link 2 */
+        const real ucu_alpha_2_x = ucu_alpha_1_t - ucu_zeta_2_x;
+        const real ucu_alpha_2_y = -ucu_alpha_1_t_2 - ucu_zeta_2_y;
+        /* (ucu-alpha_4) angular acceleration of link 4 */
+        const real ucu_alpha_4_x = ucu_zeta_4_x + ucu_alpha_2_y*ucu_c_4 - ucu_qdd_1_t_2*ucu_s_4;
+        const real ucu_alpha_4_y = -ucu_alpha_2_y*ucu_s_4 - ucu_c_4*ucu_qdd_1_t_2 -
+            ucu_omega_2_r1_x*ucu_qd_1_t;
+        const real ucu_alpha_4_z = ucu_alpha_2_x - inv_ucu_end_p1_r5_x*(ucu_etad_1 +
+            ucu_n_m1_t*ucu_qdd_1_t_2 + ucu_qdd_1_t*ucu_w_1_t_2);
+        /* (ucu-W_4) centripetal tensor of link 4 */
+        const real ucu_W_4_t = ucu_omega_4_z*ucu_omega_4_z;
+        const real ucu_W_4_xz = ucu_omega_2_r1_x*ucu_omega_4_z;
+        const real ucu_W_4_yz = ucu_omega_2_r1_y*ucu_omega_4_z;
+        /* (ucu-B_4) acceleration tensor of link 4 */
+        const real ucu_B_4_xy = ucu_W_2_xy_2 - ucu_alpha_4_z;
+        const real ucu_B_4_xz = ucu_W_4_xz + ucu_alpha_4_y;
+        const real ucu_B_4_yx = ucu_W_2_xy_2 + ucu_alpha_4_z;
+        const real ucu_B_4_yz = ucu_W_4_yz - ucu_alpha_4_x;
+        const real ucu_B_4_zx = ucu_W_4_xz - ucu_alpha_4_y;
+        const real ucu_B_4_zy = ucu_W_4_yz + ucu_alpha_4_x;
+        /* (ucu-mu_4) inertia moment of the links that turn with link 4, about their reference points */
+        const real ucu_J_4_xy = m->ucu_J_4_xy[i];
+        const real ucu_J_4_xz = m->ucu_J_4_xz[i];
+        const real ucu_J_4_yz = m->ucu_J_4_yz[i];
+        const real ucu_Sigma_4_yy = m->ucu_Sigma_4_yy[i];
+        const real ucu_Sigma_4_zz = m->ucu_Sigma_4_zz[i];
+        const real ucu_h_4_x = m->ucu_h_4_x[i];
+        const real ucu_h_4_z = m->ucu_h_4_z[i];
+        const real ucu_mu_4_x = ucu_B_4_yx*ucu_J_4_xy + ucu_B_4_zy*ucu_Sigma_4_yy +
+            ucu_J_4_xz*(ucu_W_2_t_5 - ucu_W_4_t) + ucu_acc_4_z*ucu_h_4_z -
+            ucu_B_4_yz*ucu_Sigma_4_zz - ucu_B_4_zx*ucu_J_4_yz - ucu_acc_4_y*ucu_h_4_x;
+        const real ucu_Sigma_4_xx = m->ucu_Sigma_4_xx[i];
+        const real ucu_h_4_y = m->ucu_h_4_y[i];
+        const real ucu_mu_4_y = ucu_B_4_xz*ucu_Sigma_4_zz + ucu_B_4_zy*ucu_J_4_yz +
+            ucu_acc_4_x*ucu_h_4_x - ucu_B_4_xy*ucu_J_4_xz - ucu_B_4_zx*ucu_Sigma_4_xx -
+            ucu_J_4_xy*(ucu_W_2_t_4 - ucu_W_4_t) - ucu_acc_4_z*ucu_h_4_y;
+        const real ucu_mu_4_z = ucu_B_4_xz*ucu_J_4_xz + ucu_B_4_yx*ucu_Sigma_4_xx +
+            ucu_J_4_yz*(ucu_W_2_t_4 - ucu_W_2_t_5) + ucu_acc_4_y*ucu_h_4_y -
+            ucu_B_4_xy*ucu_Sigma_4_yy - ucu_B_4_yz*ucu_J_4_xy - ucu_acc_4_x*ucu_h_4_z;
+        /* (ucu-B_2) acceleration tensor of link 2 */
+        const real ucu_B_2_xy = ucu_qdd_1_t_2 - ucu_W_2_xy;
+        const real ucu_B_2_yx = -ucu_W_2_xy - ucu_qdd_1_t_2;
+        const real ucu_B_2_zx = ucu_zeta_2_y - ucu_alpha_2_y;
+        const real ucu_B_2_zy = ucu_alpha_2_x - ucu_zeta_2_x;
+        /* (ucu-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+        const real ucu_J_2_xy = m->ucu_J_2_xy[i];
+        const real ucu_J_2_xz = m->ucu_J_2_xz[i];
+        const real ucu_J_2_yz = m->ucu_J_2_yz[i];
+        const real ucu_Sigma_2_yy = m->ucu_Sigma_2_yy[i];
+        const real ucu_Sigma_2_zz = m->ucu_Sigma_2_zz[i];
+        const real ucu_h_2_y = m->ucu_h_2_y[i];
+        const real ucu_h_2_z = m->ucu_h_2_z[i];
+        const real ucu_mu_2_x = ucu_B_2_yx*ucu_J_2_xy + ucu_B_2_zx*ucu_J_2_xz +
+            ucu_B_2_zy*ucu_Sigma_2_yy + ucu_Sigma_2_zz*ucu_alpha_1_t + ucu_g_r1_x*ucu_h_2_z +
+            ucu_g_r3_y*ucu_h_2_y - ucu_J_2_yz*(ucu_W_2_t_2 - ucu_W_2_t_3);
+        const real ucu_Sigma_2_xx = m->ucu_Sigma_2_xx[i];
+        const real ucu_h_2_x = m->ucu_h_2_x[i];
+        const real ucu_mu_2_y = ucu_B_2_xy*ucu_J_2_yz + ucu_g_r1_x*ucu_h_2_x -
+            ucu_B_2_zx*ucu_Sigma_2_xx - ucu_B_2_zy*ucu_J_2_xz - ucu_J_2_xy*(ucu_W_2_t -
+            ucu_W_2_t_3) - ucu_Sigma_2_zz*ucu_alpha_1_t_2 - ucu_g_r3_x*ucu_h_2_y;
+        const real ucu_mu_2_z = ucu_B_2_yx*ucu_Sigma_2_xx + ucu_J_2_xy*ucu_alpha_1_t +
+            ucu_J_2_yz*ucu_alpha_1_t_2 - ucu_B_2_xy*ucu_Sigma_2_yy - ucu_J_2_xz*(ucu_W_2_t -
+            ucu_W_2_t_2) - ucu_g_r3_x*ucu_h_2_z - ucu_g_r3_y*ucu_h_2_x;
+        /* (ucu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
            left out */
-        const real N_2_x = mu_2_x + mu_4_z;
-        const real N_2_y = mu_2_y + c_4*mu_4_x - mu_4_y*s_4;
-        const real N_2_z = mu_2_z + c_4*mu_4_y + mu_4_x*s_4;
-        /* (upru-N41) force at the connection point that balances the leg's inertia and weight along all
+        const real ucu_N_2_x = ucu_mu_2_x + ucu_mu_4_z;
+        const real ucu_N_2_y = ucu_mu_2_y + ucu_c_4*ucu_mu_4_x - ucu_mu_4_y*ucu_s_4;
+        const real ucu_N_2_z = ucu_mu_2_z + ucu_c_4*ucu_mu_4_y + ucu_mu_4_x*ucu_s_4;
+        /* (ucu-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real G_t = inv_end_p1_r5_x*mu_4_z;
-        const real G_t_2 = inv_root_2*(N_2_z + G_t*n_m1_t);
-        const real G_t_3 = inv_v_1_r0_y*(G_t*w_1_t_2 + G_t_2*v_1_r0_x + N_2_y*c_2 - N_2_x*s_2);
-        /* (upru-N53) leg force on the platform without actuation and without the mass at the connection
+        const real ucu_G_t = inv_ucu_end_p1_r5_x*ucu_mu_4_z;
+        const real ucu_G_t_2 = inv_ucu_root_2*(ucu_N_2_z + ucu_G_t*ucu_n_m1_t);
+        const real ucu_G_t_3 = inv_ucu_v_1_r0_y*(ucu_G_t*ucu_w_1_t_2 + ucu_G_t_2*ucu_v_1_r0_x +
+            ucu_N_2_y*ucu_c_2 - ucu_N_2_x*ucu_s_2);
+        /* (ucu-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_x = G_t_3*s_4 + h_4_y*(W_2_t_5 + W_4_t) - B_4_xy*h_4_z - B_4_xz*h_4_x -
-            G_t_2*c_4;
-        const real c_y = G_t_2*s_4 + G_t_3*c_4 + h_4_z*(W_2_t_4 + W_4_t) - B_4_yx*h_4_y -
-            B_4_yz*h_4_x;
-        /* (upru-N63) leg force on the platform without actuation, the last link's mass included */
-        const real c_true_x = c_x - acc_4_x*upru_link4_mass;
-        const real c_true_y = c_y - acc_4_y*upru_link4_mass;
-        const real c_true_z = h_4_x*(W_2_t_4 + W_2_t_5) - B_4_zx*h_4_y - B_4_zy*h_4_z -
-            acc_4_z*upru_link4_mass;
-        const real c_true_in_base_x = axis_x_upru_axes4_x*c_true_x +
-            axis_y_upru_axes4_in_base_x*c_true_y + axis_z_x*c_true_z;
-        const real c_true_in_base_y = axis_x_upru_axes4_y*c_true_x +
-            axis_y_upru_axes4_in_base_y*c_true_y + axis_z_y*c_true_z;
-        const real c_true_in_base_z = axis_x_upru_axes4_z*c_true_x +
-            axis_y_upru_axes4_in_base_z*c_true_y + axis_z_z*c_true_z;
-        /* (upru-N49) moment at the connection point that balances the leg's inertia and weight along all
+        const real ucu_c_x = ucu_G_t_3*ucu_s_4 + ucu_h_4_y*(ucu_W_2_t_5 + ucu_W_4_t) -
+            ucu_B_4_xy*ucu_h_4_z - ucu_B_4_xz*ucu_h_4_x - ucu_G_t_2*ucu_c_4;
+        const real ucu_c_y = ucu_G_t_2*ucu_s_4 + ucu_G_t_3*ucu_c_4 + ucu_h_4_z*(ucu_W_2_t_4 +
+            ucu_W_4_t) - ucu_B_4_yx*ucu_h_4_y - ucu_B_4_yz*ucu_h_4_x;
+        /* (ucu-c_true) leg force on the platform without actuation, the last link's mass included */
+        const real ucu_link4_mass = m->ucu_link4_mass[i];
+        const real ucu_c_true_x = ucu_c_x - ucu_acc_4_x*ucu_link4_mass;
+        const real ucu_c_true_y = ucu_c_y - ucu_acc_4_y*ucu_link4_mass;
+        const real ucu_c_true_z = ucu_h_4_x*(ucu_W_2_t_4 + ucu_W_2_t_5) - ucu_B_4_zx*ucu_h_4_y -
+            ucu_B_4_zy*ucu_h_4_z - ucu_acc_4_z*ucu_link4_mass;
+        const real ucu_c_true_in_base_x = axis_x_ucu_axes4_x*ucu_c_true_x +
+            axis_y_ucu_axes4_in_base_x*ucu_c_true_y + ucu_axis_z_x*ucu_c_true_z;
+        const real ucu_c_true_in_base_y = axis_x_ucu_axes4_y*ucu_c_true_x +
+            axis_y_ucu_axes4_in_base_y*ucu_c_true_y + ucu_axis_z_y*ucu_c_true_z;
+        const real ucu_c_true_in_base_z = axis_x_ucu_axes4_z*ucu_c_true_x +
+            axis_y_ucu_axes4_in_base_z*ucu_c_true_y + ucu_axis_z_z*ucu_c_true_z;
+        /* (ucu-G_m) moment at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real G_m_x = G_t*end_p1_r3_x;
-        /* (upru-N58) moment of the leg on the platform without actuation */
-        const real c_m_in_base_x = G_m_x*axis_x_upru_axes4_x - axis_z_x*mu_4_z;
-        const real c_m_in_base_y = G_m_x*axis_x_upru_axes4_y - axis_z_y*mu_4_z;
-        const real c_m_in_base_z = G_m_x*axis_x_upru_axes4_z - axis_z_z*mu_4_z;
-        o->entry[0][k] = c_true_in_base_x;
-        o->entry[1][k] = c_true_in_base_y;
-        o->entry[2][k] = c_true_in_base_z;
-        o->entry[3][k] = c_m_in_base_x;
-        o->entry[4][k] = c_m_in_base_y;
-        o->entry[5][k] = c_m_in_base_z;
-        o->entry[6][k] = axis_z_x;
-        o->entry[7][k] = axis_z_y;
-        o->entry[8][k] = axis_z_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_4) > TOLERANCE*TOLERANCE*1) + UNLESS(magnitude(-end_p1_r5_x) >
-            TOLERANCE*1) + UNLESS(magnitude(root_2) > TOLERANCE*R(0.8)) +
-            UNLESS(magnitude(v_1_r0_y) > TOLERANCE*R(0.8));
+        const real ucu_G_m_x = ucu_G_t*ucu_end_p1_r3_x;
+        /* (ucu-c_m) moment of the leg on the platform without actuation */
+        const real ucu_c_m_in_base_x = axis_x_ucu_axes4_x*ucu_G_m_x - ucu_axis_z_x*ucu_mu_4_z;
+        const real ucu_c_m_in_base_y = axis_x_ucu_axes4_y*ucu_G_m_x - ucu_axis_z_y*ucu_mu_4_z;
+        const real ucu_c_m_in_base_z = axis_x_ucu_axes4_z*ucu_G_m_x - ucu_axis_z_z*ucu_mu_4_z;
+        o[0*count + k] = ucu_c_true_in_base_x;
+        o[1*count + k] = ucu_c_true_in_base_y;
+        o[2*count + k] = ucu_c_true_in_base_z;
+        o[3*count + k] = ucu_c_m_in_base_x;
+        o[4*count + k] = ucu_c_m_in_base_y;
+        o[5*count + k] = ucu_c_m_in_base_z;
+        o[6*count + k] = ucu_axis_z_x;
+        o[7*count + k] = ucu_axis_z_y;
+        o[8*count + k] = ucu_axis_z_z;
+        o[9*count + k] = UNLESS(magnitude(ucu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ucu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(ucu_rho2_4) > TOLERANCE*TOLERANCE*1) +
+            UNLESS(magnitude(-ucu_end_p1_r5_x) > TOLERANCE*1) + UNLESS(magnitude(ucu_root_2) >
+            TOLERANCE*R(0.8)) + UNLESS(magnitude(ucu_v_1_r0_y) > TOLERANCE*R(0.8));
     }
 }
 
-INLINE void legs_place_upru(size_t w, const legs_results_upru *o, size_t leg, size_t first, real
+INLINE void legs_place_ucu(size_t w, size_t count, const real *o, size_t leg, size_t first, real
     *leg_force, real *drive, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        leg_force[(6*leg)*w + k] = o->entry[0][first + k];
-        leg_force[(1 + 6*leg)*w + k] = o->entry[1][first + k];
-        leg_force[(2 + 6*leg)*w + k] = o->entry[2][first + k];
-        leg_force[(3 + 6*leg)*w + k] = o->entry[3][first + k];
-        leg_force[(4 + 6*leg)*w + k] = o->entry[4][first + k];
-        leg_force[(5 + 6*leg)*w + k] = o->entry[5][first + k];
-        drive[(6*leg)*w + k] = o->entry[6][first + k];
-        drive[(1 + 6*leg)*w + k] = o->entry[7][first + k];
-        drive[(2 + 6*leg)*w + k] = o->entry[8][first + k];
-        t->singular[k] += o->singular[first + k];
+        leg_force[(6*leg)*w + k] = o[0*count + first + k];
+        leg_force[(1 + 6*leg)*w + k] = o[1*count + first + k];
+        leg_force[(2 + 6*leg)*w + k] = o[2*count + first + k];
+        leg_force[(3 + 6*leg)*w + k] = o[3*count + first + k];
+        leg_force[(4 + 6*leg)*w + k] = o[4*count + first + k];
+        leg_force[(5 + 6*leg)*w + k] = o[5*count + first + k];
+        drive[(6*leg)*w + k] = o[6*count + first + k];
+        drive[(1 + 6*leg)*w + k] = o[7*count + first + k];
+        drive[(2 + 6*leg)*w + k] = o[8*count + first + k];
+        t->singular[k] += o[9*count + first + k];
     }
 }
 
-INLINE void legs_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
-    real *leg_force, real *drive, verdict *t)
+INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
+    *leg_force, real *drive, verdict *t)
 {
-    legs_values values, *const s = &values;
-    legs_results_upru results_upru;
-    clear(drive, 36*w);
-    legs_before(w, X, V, A, s, t);
-    if (w == 1) {  /* the legs side by side */
-        legs_legs_upru(m, 0, 1, s, 0, 6, &results_upru);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            legs_place_upru(w, &results_upru, leg, leg, leg_force, drive, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 6; ++leg) {
-            legs_legs_upru(m, leg, 0, s, 1, w, &results_upru);
-            legs_place_upru(w, &results_upru, leg, 0, leg_force, drive, t);
-        }
+    real s[24] = {0}, o_ucu[10*LEGS(6)] = {0};
+    clear(drive, 36);
+    legs_before(1, X, V, A, s, t);
+    legs_legs_ucu(m, 1, 0, 1, s, 0, LEGS(6), o_ucu);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        legs_place_ucu(1, LEGS(6), o_ucu, leg, leg, leg_force, drive, t);
     }
 }
 
 /* ---- potential: 615 mul, 414 add, 18 div, 18 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], potential_t[LANES],
-        sum[1][LANES];
-} potential_values;
-typedef struct {
-    real sum[1][8], singular[8];
-} potential_results_upru;
-
-INLINE void potential_before(const prepared *m, size_t w, const real *X, potential_values *s,
-    verdict *t)
+INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
+        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+        const real quaternion_scale = 2/quaternion_norm2;
+        const real quaternion_sx = X_3*quaternion_scale;
+        const real quaternion_sy = X_4*quaternion_scale;
+        const real quaternion_sz = X_5*quaternion_scale;
+        const real quaternion_wx = X_6*quaternion_sx;
+        const real quaternion_wy = X_6*quaternion_sy;
+        const real quaternion_wz = X_6*quaternion_sz;
+        const real quaternion_xx = X_3*quaternion_sx;
+        const real quaternion_xy = X_3*quaternion_sy;
+        const real quaternion_xz = X_3*quaternion_sz;
+        const real quaternion_yy = X_4*quaternion_sy;
+        const real quaternion_yz = X_4*quaternion_sz;
+        const real quaternion_zz = X_5*quaternion_sz;
+        const real R_xx = 1 - quaternion_yy - quaternion_zz;
+        const real R_xy = quaternion_xy - quaternion_wz;
+        const real R_xz = quaternion_wy + quaternion_xz;
+        const real R_yx = quaternion_wz + quaternion_xy;
+        const real R_yy = 1 - quaternion_xx - quaternion_zz;
+        const real R_yz = quaternion_yz - quaternion_wx;
+        const real R_zx = quaternion_xz - quaternion_wy;
+        const real R_zy = quaternion_wx + quaternion_yz;
+        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
@@ -5709,262 +5755,207 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, potenti
         const real h_star_y = m->h_star_y;
         const real h_star_z = m->h_star_z;
         const real m_star = m->m_star;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* (V1) potential energy */
         const real potential_t = gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z +
             m_star*t_x) + gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
             gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->potential_t[k] = potential_t;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = potential_t;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void potential_legs_upru(const prepared *m, size_t leg, size_t legs, const potential_values
-    *s, size_t states, size_t count, int add, potential_results_upru *o)
+INLINE void potential_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real b_r0_x = m->b_r0_x[i];
-        const real b_r0_y = m->b_r0_y[i];
-        const real b_r0_z = m->b_r0_z[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real branch_4 = m->branch_4[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real g_r0_z = m->g_r0_z[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real h_2_z = m->h_2_z[i];
-        const real h_4_x = m->h_4_x[i];
-        const real h_4_y = m->h_4_y[i];
-        const real h_4_z = m->h_4_z[i];
-        const real upru_base_frame_xx = m->upru_base_frame_xx[i];
-        const real upru_base_frame_xy = m->upru_base_frame_xy[i];
-        const real upru_base_frame_xz = m->upru_base_frame_xz[i];
-        const real upru_base_frame_yx = m->upru_base_frame_yx[i];
-        const real upru_base_frame_yy = m->upru_base_frame_yy[i];
-        const real upru_base_frame_yz = m->upru_base_frame_yz[i];
-        const real upru_base_frame_zx = m->upru_base_frame_zx[i];
-        const real upru_base_frame_zy = m->upru_base_frame_zy[i];
-        const real upru_base_frame_zz = m->upru_base_frame_zz[i];
-        const real upru_base_point_x = m->upru_base_point_x[i];
-        const real upru_base_point_y = m->upru_base_point_y[i];
-        const real upru_base_point_z = m->upru_base_point_z[i];
-        const real upru_link2_mass = m->upru_link2_mass[i];
-        const real upru_platform_joint_axis_platform_x = m->upru_platform_joint_axis_platform_x[i];
-        const real upru_platform_joint_axis_platform_y = m->upru_platform_joint_axis_platform_y[i];
-        const real upru_platform_joint_axis_platform_z = m->upru_platform_joint_axis_platform_z[i];
-        const real upru_platform_point_x = m->upru_platform_point_x[i];
-        const real upru_platform_point_y = m->upru_platform_point_y[i];
-        const real upru_platform_point_z = m->upru_platform_point_z[i];
-        /* (upru-K1) from the base point to the connection point */
-        const real S_x = t_x + R_xx*upru_platform_point_x + R_xy*upru_platform_point_y +
-            R_xz*upru_platform_point_z - upru_base_point_x;
-        const real S_y = t_y + R_yx*upru_platform_point_x + R_yy*upru_platform_point_y +
-            R_yz*upru_platform_point_z - upru_base_point_y;
-        const real S_z = t_z + R_zx*upru_platform_point_x + R_zy*upru_platform_point_y +
-            R_zz*upru_platform_point_z - upru_base_point_z;
-        /* (upru-K2) component along the reference direction */
-        const real px_1 = S_x*upru_base_frame_xx + S_y*upru_base_frame_yx +
-            S_z*upru_base_frame_zx;
-        /* (upru-K3) component across the reference direction */
-        const real py_1 = S_x*upru_base_frame_xy + S_y*upru_base_frame_yy +
-            S_z*upru_base_frame_zy;
-        /* (upru-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upru-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upru-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upru_base_frame_xz + S_y*upru_base_frame_yz +
-            S_z*upru_base_frame_zz;
-        /* (upru-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upru-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upru-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upru-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upru-K20) component along the reference direction */
-        const real end_p1_r0_x = upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xx +
-            R_yx*upru_base_frame_yx + R_zx*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xx + R_yy*upru_base_frame_yx
-            + R_zy*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xx + R_yz*upru_base_frame_yx
-            + R_zz*upru_base_frame_zx);
-        const real end_p1_r0_y = upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xy +
-            R_yx*upru_base_frame_yy + R_zx*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xy + R_yy*upru_base_frame_yy
-            + R_zy*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xy + R_yz*upru_base_frame_yy
-            + R_zz*upru_base_frame_zy);
-        const real end_p1_r0_z = upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xz +
-            R_yx*upru_base_frame_yz + R_zx*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xz + R_yy*upru_base_frame_yz
-            + R_zy*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xz + R_yz*upru_base_frame_yz
-            + R_zz*upru_base_frame_zz);
-        /* (upru-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upru-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upru-K20) component along the reference direction */
-        const real end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x;
-        const real end_p1_r3_y = -c_2*end_p1_r0_z - s_2*(-c_1*end_p1_r0_y - end_p1_r0_x*s_1);
-        /* (upru-K23) squared amplitude */
-        const real rho2_4 = end_p1_r1_x*end_p1_r1_x + end_p1_r3_y*end_p1_r3_y;
-        /* (upru-K24) amplitude, with the sign of the branch */
-        const real root_4 = branch_4*root(rho2_4);
-        /* (upru-K25) cosine of the angle of joint 4 from its reference direction */
-        const real inv_root_4 = 1/root_4;
-        const real c_4 = end_p1_r3_y*inv_root_4;
-        /* (upru-K26) sine of the angle of joint 4 from its reference direction */
-        const real s_4 = end_p1_r1_x*inv_root_4;
-        /* (upru-N2) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
-        /* (V1) potential energy */
-        const real b_r1_y = -b_r0_x*s_1 - b_r0_y*c_1;
-        const real potential_t_2 = (g_r0_y*s_1 - c_1*g_r0_x)*(h_2_y + c_4*h_4_z + h_4_y*s_4 +
-            upru_link2_mass*(b_r0_y*s_1 - b_r0_x*c_1)) + (-c_2*g_r0_z - g_r1_y*s_2)*(c_4*h_4_y +
-            upru_link2_mass*(-b_r0_z*c_2 - b_r1_y*s_2) - h_2_z - h_4_z*s_4) + (g_r0_z*s_2 -
-            c_2*g_r1_y)*(h_2_x + h_4_x + upru_link2_mass*(b_r0_z*s_2 - b_r1_y*c_2));
-        o->sum[0][k] = add ? o->sum[0][k] + potential_t_2 : potential_t_2;  /* total_upru */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_4) > TOLERANCE*TOLERANCE*1);
+        /* (ucu-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
+        const real t_x = s[0*w + j];
+        const real ucu_base_point_x = m->ucu_base_point_x[i];
+        const real ucu_platform_point_x = m->ucu_platform_point_x[i];
+        const real ucu_platform_point_y = m->ucu_platform_point_y[i];
+        const real ucu_platform_point_z = m->ucu_platform_point_z[i];
+        const real ucu_S_x = t_x + R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
+            R_xz*ucu_platform_point_z - ucu_base_point_x;
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real t_y = s[1*w + j];
+        const real ucu_base_point_y = m->ucu_base_point_y[i];
+        const real ucu_S_y = t_y + R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
+            R_yz*ucu_platform_point_z - ucu_base_point_y;
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real t_z = s[2*w + j];
+        const real ucu_base_point_z = m->ucu_base_point_z[i];
+        const real ucu_S_z = t_z + R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
+            R_zz*ucu_platform_point_z - ucu_base_point_z;
+        /* (ucu-px_1) component along the reference direction */
+        const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
+        const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
+        const real ucu_base_frame_zx = m->ucu_base_frame_zx[i];
+        const real ucu_px_1 = ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx +
+            ucu_S_z*ucu_base_frame_zx;
+        /* (ucu-py_1) component across the reference direction */
+        const real ucu_base_frame_xy = m->ucu_base_frame_xy[i];
+        const real ucu_base_frame_yy = m->ucu_base_frame_yy[i];
+        const real ucu_base_frame_zy = m->ucu_base_frame_zy[i];
+        const real ucu_py_1 = ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy +
+            ucu_S_z*ucu_base_frame_zy;
+        /* (ucu-rho2_1) squared amplitude */
+        const real ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1;
+        /* (ucu-root_1) amplitude, with the sign of the branch */
+        const real ucu_branch_1 = m->ucu_branch_1[i];
+        const real ucu_root_1 = ucu_branch_1*root(ucu_rho2_1);
+        /* (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
+        const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
+        const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
+        const real ucu_xi_1_t = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
+            ucu_S_z*ucu_base_frame_zz;
+        /* (ucu-rho2_2) squared amplitude */
+        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t;
+        /* (ucu-root_2) amplitude, with the sign of the branch */
+        const real ucu_branch_2 = m->ucu_branch_2[i];
+        const real ucu_root_2 = ucu_branch_2*root(ucu_rho2_2);
+        /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ucu_root_2 = 1/ucu_root_2;
+        const real ucu_c_2 = inv_ucu_root_2*ucu_root_1;
+        /* (ucu-s_2) sine of the angle of joint 2 from its reference direction */
+        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t;
+        /* (ucu-px_4) component along the reference direction */
+        const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
+        const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
+        const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
+        const real ucu_end_p1_r0_x = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
+            R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
+            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
+            R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
+            R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
+        const real ucu_end_p1_r0_y = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
+            R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
+            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
+            R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
+            R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
+        const real ucu_end_p1_r0_z = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
+            R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
+            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
+            R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
+            R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
+        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ucu_root_1 = 1/ucu_root_1;
+        const real ucu_c_1 = inv_ucu_root_1*ucu_py_1;
+        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
+        /* (ucu-px_4) component along the reference direction */
+        const real ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x;
+        const real ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_s_2*(-ucu_c_1*ucu_end_p1_r0_y
+            - ucu_end_p1_r0_x*ucu_s_1);
+        /* (ucu-rho2_4) squared amplitude */
+        const real ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y;
+        /* (ucu-root_4) amplitude, with the sign of the branch */
+        const real ucu_branch_4 = m->ucu_branch_4[i];
+        const real ucu_root_4 = ucu_branch_4*root(ucu_rho2_4);
+        /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
+        const real inv_ucu_root_4 = 1/ucu_root_4;
+        const real ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y;
+        /* (ucu-s_4) sine of the angle of joint 4 from its reference direction */
+        const real ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x;
+        /* (ucu-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real ucu_g_r0_x = m->ucu_g_r0_x[i];
+        const real ucu_g_r0_y = m->ucu_g_r0_y[i];
+        const real ucu_g_r1_y = -ucu_c_1*ucu_g_r0_y - ucu_g_r0_x*ucu_s_1;
+        /* (potential) potential energy */
+        const real ucu_b_r0_x = m->ucu_b_r0_x[i];
+        const real ucu_b_r0_y = m->ucu_b_r0_y[i];
+        const real ucu_b_r1_y = -ucu_b_r0_x*ucu_s_1 - ucu_b_r0_y*ucu_c_1;
+        const real ucu_b_r0_z = m->ucu_b_r0_z[i];
+        const real ucu_g_r0_z = m->ucu_g_r0_z[i];
+        const real ucu_h_2_x = m->ucu_h_2_x[i];
+        const real ucu_h_2_y = m->ucu_h_2_y[i];
+        const real ucu_h_2_z = m->ucu_h_2_z[i];
+        const real ucu_h_4_x = m->ucu_h_4_x[i];
+        const real ucu_h_4_y = m->ucu_h_4_y[i];
+        const real ucu_h_4_z = m->ucu_h_4_z[i];
+        const real ucu_link2_mass = m->ucu_link2_mass[i];
+        const real ucu_potential_t = (ucu_g_r0_y*ucu_s_1 - ucu_c_1*ucu_g_r0_x)*(ucu_h_2_y +
+            ucu_c_4*ucu_h_4_z + ucu_h_4_y*ucu_s_4 + ucu_link2_mass*(ucu_b_r0_y*ucu_s_1 -
+            ucu_b_r0_x*ucu_c_1)) + (-ucu_c_2*ucu_g_r0_z - ucu_g_r1_y*ucu_s_2)*(ucu_c_4*ucu_h_4_y +
+            ucu_link2_mass*(-ucu_b_r0_z*ucu_c_2 - ucu_b_r1_y*ucu_s_2) - ucu_h_2_z -
+            ucu_h_4_z*ucu_s_4) + (ucu_g_r0_z*ucu_s_2 - ucu_c_2*ucu_g_r1_y)*(ucu_h_2_x + ucu_h_4_x
+            + ucu_link2_mass*(ucu_b_r0_z*ucu_s_2 - ucu_b_r1_y*ucu_c_2));
+        terms[0*count + k] = add ? terms[0*count + k] + ucu_potential_t : ucu_potential_t;  /* total_ucu */
+        o[0*count + k] = UNLESS(magnitude(ucu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ucu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(ucu_rho2_4) > TOLERANCE*TOLERANCE*1);
     }
 }
 
-INLINE void potential_place_upru(size_t w, const potential_results_upru *o, size_t first, verdict
-    *t)
+INLINE void potential_place_ucu(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
+        t->singular[k] += o[0*count + first + k];
     }
 }
 
-INLINE void potential_after(size_t w, const potential_values *s, real *potential)
+INLINE void potential_after(size_t w, const real *s, const real *sums, real *potential)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real potential_t = s->potential_t[k];
-        const real total_upru = s->sum[0][k];
-        /* (V1) potential energy */
-        const real potential_ = -potential_t - total_upru;
+        /* (potential) potential energy */
+        const real potential_t = s[12*w + k];
+        const real total_ucu = sums[0*w + k];
+        const real potential_ = -potential_t - total_ucu;
         potential[0*w + k] = potential_;
     }
 }
 
-INLINE void potential_run(const prepared *m, size_t w, const real *X, real *potential, verdict *t)
+INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    potential_values values, *const s = &values;
-    potential_results_upru results_upru;
-    potential_before(m, w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        memset(results_upru.sum, 0, sizeof results_upru.sum);
-        potential_legs_upru(m, 0, 1, s, 0, 6, 0, &results_upru);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            potential_place_upru(w, &results_upru, leg, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_upru.sum[n], 6);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_upru.sum, 0, sizeof results_upru.sum);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            potential_legs_upru(m, leg, 0, s, 1, w, 1, &results_upru);
-            potential_place_upru(w, &results_upru, 0, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_upru.sum[n][k];
-            }
-        }
+    real s[13] = {0}, sums[1] = {0}, terms_ucu[1*LEGS(6)] = {0}, o_ucu[1*LEGS(6)] = {0};
+    potential_before(m, 1, X, s, t);
+    potential_legs_ucu(m, 1, 0, 1, s, 0, LEGS(6), 0, terms_ucu, o_ucu);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        potential_place_ucu(1, LEGS(6), o_ucu, leg, t);
     }
-    potential_after(w, s, potential);
+    for (size_t n = 0; n < 1; ++n) {
+        sums[n] = total(terms_ucu + n*LEGS(6), 6);
+    }
+    potential_after(1, s, sums, potential);
 }
 
 /* ---- condition: 589 mul, 384 add, 18 div, 37 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], sum[1][LANES];
-} condition_values;
-typedef struct {
-    real sum[1][8], entry[7][8], singular[8];
-} condition_results_upru;
-
-INLINE void condition_before(const prepared *m, size_t w, const real *X, condition_values *s, real
-    *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real legs_size = m->legs_size;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -5988,451 +5979,973 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, conditi
         const real R_zx = quaternion_xz - quaternion_wy;
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
+        t->total[k] += legs_size;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void condition_legs_upru(const prepared *m, size_t leg, size_t legs, const condition_values
-    *s, size_t states, size_t count, int add, condition_results_upru *o)
+INLINE void condition_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
+        /* (ucu-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
+        const real ucu_platform_point_x = m->ucu_platform_point_x[i];
+        const real ucu_platform_point_y = m->ucu_platform_point_y[i];
+        const real ucu_platform_point_z = m->ucu_platform_point_z[i];
+        const real ucu_q_in_base_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
+            R_xz*ucu_platform_point_z;
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real ucu_q_in_base_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
+            R_yz*ucu_platform_point_z;
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real ucu_q_in_base_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
+            R_zz*ucu_platform_point_z;
+        const real t_x = s[0*w + j];
+        const real ucu_base_point_x = m->ucu_base_point_x[i];
+        const real ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x;
+        const real t_y = s[1*w + j];
+        const real ucu_base_point_y = m->ucu_base_point_y[i];
+        const real ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y;
+        const real t_z = s[2*w + j];
+        const real ucu_base_point_z = m->ucu_base_point_z[i];
+        const real ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z;
+        /* (ucu-px_1) component along the reference direction */
+        const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
+        const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
+        const real ucu_base_frame_zx = m->ucu_base_frame_zx[i];
+        const real ucu_px_1 = ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx +
+            ucu_S_z*ucu_base_frame_zx;
+        /* (ucu-py_1) component across the reference direction */
+        const real ucu_base_frame_xy = m->ucu_base_frame_xy[i];
+        const real ucu_base_frame_yy = m->ucu_base_frame_yy[i];
+        const real ucu_base_frame_zy = m->ucu_base_frame_zy[i];
+        const real ucu_py_1 = ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy +
+            ucu_S_z*ucu_base_frame_zy;
+        /* (ucu-rho2_1) squared amplitude */
+        const real ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1;
+        /* (ucu-root_1) amplitude, with the sign of the branch */
+        const real ucu_branch_1 = m->ucu_branch_1[i];
+        const real ucu_root_1 = ucu_branch_1*root(ucu_rho2_1);
+        /* (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
+        const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
+        const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
+        const real ucu_xi_1_t = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
+            ucu_S_z*ucu_base_frame_zz;
+        /* (ucu-rho2_2) squared amplitude */
+        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t;
+        /* (ucu-root_2) amplitude, with the sign of the branch */
+        const real ucu_branch_2 = m->ucu_branch_2[i];
+        const real ucu_root_2 = ucu_branch_2*root(ucu_rho2_2);
+        /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ucu_root_2 = 1/ucu_root_2;
+        const real ucu_c_2 = inv_ucu_root_2*ucu_root_1;
+        /* (ucu-px_4) component along the reference direction */
+        const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
+        const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
+        const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
+        const real ucu_end_p1_r0_x = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
+            R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
+            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
+            R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
+            R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
+        const real ucu_end_p1_r0_y = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
+            R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
+            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
+            R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
+            R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
+        const real ucu_end_p1_r0_z = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
+            R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
+            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
+            R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
+            R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
+        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ucu_root_1 = 1/ucu_root_1;
+        const real ucu_c_1 = inv_ucu_root_1*ucu_py_1;
+        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
+        /* (ucu-px_4) component along the reference direction */
+        const real ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x;
+        const real ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z -
+            inv_ucu_root_2*ucu_xi_1_t*(-ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1);
+        /* (ucu-rho2_4) squared amplitude */
+        const real ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y;
+        /* (ucu-root_4) amplitude, with the sign of the branch */
+        const real ucu_branch_4 = m->ucu_branch_4[i];
+        const real ucu_root_4 = ucu_branch_4*root(ucu_rho2_4);
+        /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
+        const real inv_ucu_root_4 = 1/ucu_root_4;
+        const real ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y;
+        /* (ucu-s_4) sine of the angle of joint 4 from its reference direction */
+        const real ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x;
+        /* (ucu-w_1) force part of reciprocal wrench 1 */
+        const real ucu_axis_z_x = inv_ucu_root_2*ucu_S_x;
+        const real ucu_axis_z_y = inv_ucu_root_2*ucu_S_y;
+        const real ucu_axis_z_z = inv_ucu_root_2*ucu_S_z;
+        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4;
+        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
+        const real ucu_v_1_r0_y = ucu_c_2*ucu_c_4*ucu_c_4*ucu_root_2 +
+            ucu_c_2*ucu_root_2*ucu_s_4*ucu_s_4;
+        /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
+        const real ucu_H_a_3_t = ucu_axis_z_z*ucu_q_in_base_y - ucu_axis_z_y*ucu_q_in_base_z;
+        const real ucu_H_a_3_t_2 = ucu_axis_z_x*ucu_q_in_base_z - ucu_axis_z_z*ucu_q_in_base_x;
+        const real ucu_H_a_3_t_3 = ucu_axis_z_y*ucu_q_in_base_x - ucu_axis_z_x*ucu_q_in_base_y;
+        /* (spread) rms distance of the platform points from their centroid */
         const real b_c_x = m->b_c_x;
+        const real ucu_spread_t = b_c_x - ucu_platform_point_x;
         const real b_c_y = m->b_c_y;
+        const real ucu_spread_t_2 = b_c_y - ucu_platform_point_y;
         const real b_c_z = m->b_c_z;
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real branch_4 = m->branch_4[i];
-        const real upru_base_frame_xx = m->upru_base_frame_xx[i];
-        const real upru_base_frame_xy = m->upru_base_frame_xy[i];
-        const real upru_base_frame_xz = m->upru_base_frame_xz[i];
-        const real upru_base_frame_yx = m->upru_base_frame_yx[i];
-        const real upru_base_frame_yy = m->upru_base_frame_yy[i];
-        const real upru_base_frame_yz = m->upru_base_frame_yz[i];
-        const real upru_base_frame_zx = m->upru_base_frame_zx[i];
-        const real upru_base_frame_zy = m->upru_base_frame_zy[i];
-        const real upru_base_frame_zz = m->upru_base_frame_zz[i];
-        const real upru_base_point_x = m->upru_base_point_x[i];
-        const real upru_base_point_y = m->upru_base_point_y[i];
-        const real upru_base_point_z = m->upru_base_point_z[i];
-        const real upru_platform_joint_axis_platform_x = m->upru_platform_joint_axis_platform_x[i];
-        const real upru_platform_joint_axis_platform_y = m->upru_platform_joint_axis_platform_y[i];
-        const real upru_platform_joint_axis_platform_z = m->upru_platform_joint_axis_platform_z[i];
-        const real upru_platform_point_x = m->upru_platform_point_x[i];
-        const real upru_platform_point_y = m->upru_platform_point_y[i];
-        const real upru_platform_point_z = m->upru_platform_point_z[i];
-        /* (upru-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*upru_platform_point_x + R_xy*upru_platform_point_y +
-            R_xz*upru_platform_point_z;
-        const real q_in_base_y = R_yx*upru_platform_point_x + R_yy*upru_platform_point_y +
-            R_yz*upru_platform_point_z;
-        const real q_in_base_z = R_zx*upru_platform_point_x + R_zy*upru_platform_point_y +
-            R_zz*upru_platform_point_z;
-        const real S_x = q_in_base_x + t_x - upru_base_point_x;
-        const real S_y = q_in_base_y + t_y - upru_base_point_y;
-        const real S_z = q_in_base_z + t_z - upru_base_point_z;
-        /* (upru-K2) component along the reference direction */
-        const real px_1 = S_x*upru_base_frame_xx + S_y*upru_base_frame_yx +
-            S_z*upru_base_frame_zx;
-        /* (upru-K3) component across the reference direction */
-        const real py_1 = S_x*upru_base_frame_xy + S_y*upru_base_frame_yy +
-            S_z*upru_base_frame_zy;
-        /* (upru-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upru-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upru-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upru_base_frame_xz + S_y*upru_base_frame_yz +
-            S_z*upru_base_frame_zz;
-        /* (upru-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upru-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upru-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upru-K20) component along the reference direction */
-        const real end_p1_r0_x = upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xx +
-            R_yx*upru_base_frame_yx + R_zx*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xx + R_yy*upru_base_frame_yx
-            + R_zy*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xx + R_yz*upru_base_frame_yx
-            + R_zz*upru_base_frame_zx);
-        const real end_p1_r0_y = upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xy +
-            R_yx*upru_base_frame_yy + R_zx*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xy + R_yy*upru_base_frame_yy
-            + R_zy*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xy + R_yz*upru_base_frame_yy
-            + R_zz*upru_base_frame_zy);
-        const real end_p1_r0_z = upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xz +
-            R_yx*upru_base_frame_yz + R_zx*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xz + R_yy*upru_base_frame_yz
-            + R_zy*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xz + R_yz*upru_base_frame_yz
-            + R_zz*upru_base_frame_zz);
-        /* (upru-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upru-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upru-K20) component along the reference direction */
-        const real end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x;
-        const real end_p1_r3_y = -c_2*end_p1_r0_z - inv_root_2*xi_1_t*(-c_1*end_p1_r0_y -
-            end_p1_r0_x*s_1);
-        /* (upru-K23) squared amplitude */
-        const real rho2_4 = end_p1_r1_x*end_p1_r1_x + end_p1_r3_y*end_p1_r3_y;
-        /* (upru-K24) amplitude, with the sign of the branch */
-        const real root_4 = branch_4*root(rho2_4);
-        /* (upru-K25) cosine of the angle of joint 4 from its reference direction */
-        const real inv_root_4 = 1/root_4;
-        const real c_4 = end_p1_r3_y*inv_root_4;
-        /* (upru-K26) sine of the angle of joint 4 from its reference direction */
-        const real s_4 = end_p1_r1_x*inv_root_4;
-        /* (upru-V7) force part of reciprocal wrench 1 */
-        const real axis_z_x = S_x*inv_root_2;
-        const real axis_z_y = S_y*inv_root_2;
-        const real axis_z_z = S_z*inv_root_2;
-        /* (upru-V6) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4;
-        /* (upru-V3) velocity of the connection point per rate of joint 1 */
-        const real v_1_r0_y = c_2*c_4*c_4*root_2 + c_2*root_2*s_4*s_4;
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_3_t = axis_z_z*q_in_base_y - axis_z_y*q_in_base_z;
-        const real H_a_3_t_2 = axis_z_x*q_in_base_z - axis_z_z*q_in_base_x;
-        const real H_a_3_t_3 = axis_z_y*q_in_base_x - axis_z_x*q_in_base_y;
-        /* (C2) rms distance of the platform points from their centroid */
-        const real spread_t_2 = b_c_x - upru_platform_point_x;
-        const real spread_t_3 = b_c_y - upru_platform_point_y;
-        const real spread_t_4 = b_c_z - upru_platform_point_z;
-        const real spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 +
-            spread_t_4*spread_t_4;
-        /* (upru-K4) squared amplitude */
-        const real pivot_size = magnitude(rho2_1);
-        /* (upru-K13) squared amplitude */
-        const real pivot_size_2 = magnitude(rho2_2);
-        /* (upru-K23) squared amplitude */
-        const real pivot_size_3 = magnitude(rho2_4);
-        /* (upru-V7) force part of reciprocal wrench 1 */
-        const real pivot_size_4 = magnitude(end_p1_r5_x);
-        const real pivot_size_5 = magnitude(root_2);
-        const real pivot_size_6 = magnitude(v_1_r0_y);
-        /* (upru-N41) force at the connection point that balances the leg's inertia and weight along all
+        const real ucu_spread_t_3 = b_c_z - ucu_platform_point_z;
+        const real ucu_spread_t_4 = ucu_spread_t*ucu_spread_t + ucu_spread_t_2*ucu_spread_t_2 +
+            ucu_spread_t_3*ucu_spread_t_3;
+        /* (ucu-rho2_1) squared amplitude */
+        const real ucu_pivot_size = magnitude(ucu_rho2_1);
+        /* (ucu-rho2_2) squared amplitude */
+        const real ucu_pivot_size_2 = magnitude(ucu_rho2_2);
+        /* (ucu-rho2_4) squared amplitude */
+        const real ucu_pivot_size_3 = magnitude(ucu_rho2_4);
+        /* (ucu-w_1) force part of reciprocal wrench 1 */
+        const real ucu_pivot_size_4 = magnitude(ucu_end_p1_r5_x);
+        const real ucu_pivot_size_5 = magnitude(ucu_root_2);
+        const real ucu_pivot_size_6 = magnitude(ucu_v_1_r0_y);
+        /* (ucu-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real least_pivots = lesser(lesser(lesser(lesser(lesser(R(1.25)*root(pivot_size),
-            R(1.25)*root(pivot_size_2)), root(pivot_size_3)), pivot_size_4),
-            R(1.25)*pivot_size_5), R(1.25)*pivot_size_6);
-        o->sum[0][k] = add ? o->sum[0][k] + spread_t_5 : spread_t_5;  /* total_upru */
-        o->entry[0][k] = axis_z_x;
-        o->entry[1][k] = axis_z_y;
-        o->entry[2][k] = axis_z_z;
-        o->entry[3][k] = H_a_3_t;
-        o->entry[4][k] = H_a_3_t_2;
-        o->entry[5][k] = H_a_3_t_3;
-        o->entry[6][k] = least_pivots;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_4) > TOLERANCE*TOLERANCE*1) + UNLESS(magnitude(-end_p1_r5_x) >
-            TOLERANCE*1) + UNLESS(magnitude(root_2) > TOLERANCE*R(0.8)) +
-            UNLESS(magnitude(v_1_r0_y) > TOLERANCE*R(0.8));
+        const real ucu_least_pivots =
+            lesser(lesser(lesser(lesser(lesser(R(1.25)*root(ucu_pivot_size),
+            R(1.25)*root(ucu_pivot_size_2)), root(ucu_pivot_size_3)), ucu_pivot_size_4),
+            R(1.25)*ucu_pivot_size_5), R(1.25)*ucu_pivot_size_6);
+        terms[0*count + k] = add ? terms[0*count + k] + ucu_spread_t_4 : ucu_spread_t_4;  /* total_ucu */
+        o[0*count + k] = ucu_axis_z_x;
+        o[1*count + k] = ucu_axis_z_y;
+        o[2*count + k] = ucu_axis_z_z;
+        o[3*count + k] = ucu_H_a_3_t;
+        o[4*count + k] = ucu_H_a_3_t_2;
+        o[5*count + k] = ucu_H_a_3_t_3;
+        o[6*count + k] = ucu_least_pivots;
+        o[8*count + k] = (ucu_axis_z_x + (ucu_axis_z_y + ucu_axis_z_z)) + ((ucu_H_a_3_t +
+            ucu_H_a_3_t_2) + (ucu_H_a_3_t_3 + ucu_least_pivots));
+        o[7*count + k] = UNLESS(magnitude(ucu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ucu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(ucu_rho2_4) > TOLERANCE*TOLERANCE*1) +
+            UNLESS(magnitude(-ucu_end_p1_r5_x) > TOLERANCE*1) + UNLESS(magnitude(ucu_root_2) >
+            TOLERANCE*R(0.8)) + UNLESS(magnitude(ucu_v_1_r0_y) > TOLERANCE*R(0.8));
     }
 }
 
-INLINE void condition_place_upru(size_t w, const condition_results_upru *o, size_t leg, size_t
-    first, real *H, real *pivots, verdict *t)
+INLINE void condition_place_ucu(size_t w, size_t count, const real *o, size_t leg, size_t first,
+    real *H, real *pivots, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(6 + leg)*w + k] = o->entry[1][first + k];
-        H[(12 + leg)*w + k] = o->entry[2][first + k];
-        H[(18 + leg)*w + k] = o->entry[3][first + k];
-        H[(24 + leg)*w + k] = o->entry[4][first + k];
-        H[(30 + leg)*w + k] = o->entry[5][first + k];
-        pivots[(leg)*w + k] = o->entry[6][first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(6 + leg)*w + k] = o[1*count + first + k];
+        H[(12 + leg)*w + k] = o[2*count + first + k];
+        H[(18 + leg)*w + k] = o[3*count + first + k];
+        H[(24 + leg)*w + k] = o[4*count + first + k];
+        H[(30 + leg)*w + k] = o[5*count + first + k];
+        pivots[(leg)*w + k] = o[6*count + first + k];
+        t->singular[k] += o[7*count + first + k];
+        t->total[k] += o[8*count + first + k];
     }
 }
 
-INLINE void condition_after(const prepared *m, size_t w, const condition_values *s, real *lengths)
+INLINE void condition_after(const prepared *m, size_t w, const real *sums, real *lengths, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real total_upru = s->sum[0][k];
+        /* (spread) rms distance of the platform points from their centroid */
         const real spread_t = m->spread_t;
-        /* (C2) rms distance of the platform points from their centroid */
-        const real spread_ = spread_t*root(total_upru);
+        const real total_ucu = sums[0*w + k];
+        const real spread_ = spread_t*root(total_ucu);
         lengths[0*w + k] = spread_;
+        t->total[k] += spread_;
     }
 }
 
-INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, real *lengths, real
-    *pivots, real *reach, verdict *t)
+INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
+    real *reach, verdict *t)
 {
-    condition_values values, *const s = &values;
-    condition_results_upru results_upru;
-    clear(reach, 6*w);
-    condition_before(m, w, X, s, lengths, t);
-    if (w == 1) {  /* the legs side by side */
-        memset(results_upru.sum, 0, sizeof results_upru.sum);
-        condition_legs_upru(m, 0, 1, s, 0, 6, 0, &results_upru);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            condition_place_upru(w, &results_upru, leg, leg, H, pivots, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_upru.sum[n], 6);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_upru.sum, 0, sizeof results_upru.sum);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            condition_legs_upru(m, leg, 0, s, 1, w, 1, &results_upru);
-            condition_place_upru(w, &results_upru, leg, 0, H, pivots, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_upru.sum[n][k];
-            }
-        }
+    real s[12] = {0}, sums[1] = {0}, terms_ucu[1*LEGS(6)] = {0}, o_ucu[9*LEGS(6)] = {0};
+    clear(reach, 6);
+    condition_before(m, 1, X, s, lengths, t);
+    condition_legs_ucu(m, 1, 0, 1, s, 0, LEGS(6), 0, terms_ucu, o_ucu);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        condition_place_ucu(1, LEGS(6), o_ucu, leg, leg, H, pivots, t);
     }
-    condition_after(m, w, s, lengths);
+    for (size_t n = 0; n < 1; ++n) {
+        sums[n] = total(terms_ucu + n*LEGS(6), 6);
+    }
+    condition_after(m, 1, sums, lengths, t);
 }
 
 /* ---- what users call, as steps over these ---- */
 
-INLINE void M_any(const prepared *m, size_t w, const real *X, real *M_out, int *code)
+INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    M_run(m, X, M_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(36, 1, M_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(36, M_out);
+    }
+}
+
+INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
     real X_in[7*LANES], M[36*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    M_run(m, w, X, M, &why);
-    check(36, w, M, why.overflow);
-    judge(&why, w, code);
-    deliver(M, 36, w, code, M_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    M_run_lanes(m, X, M, &why);
+    suspect(&why, code);
+    deliver(36, M, M_out);
 }
 
-INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, real *Z_out, int
-    *code)
+INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    Z_run(m, X, V, Z_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(6, 1, Z_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(6, Z_out);
+    }
+}
+
+INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     real X_in[7*LANES], V_in[6*LANES], Z[6*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    Z_run(m, w, X, V, Z, &why);
-    check(6, w, Z, why.overflow);
-    judge(&why, w, code);
-    deliver(Z, 6, w, code, Z_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    Z_run_lanes(m, X, V, Z, &why);
+    suspect(&why, code);
+    deliver(6, Z, Z_out);
 }
 
-INLINE void H_any(const prepared *m, size_t w, const real *X, real *H_out, int *code)
+INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    H_run(m, X, H_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(36, 1, H_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(36, H_out);
+    }
+}
+
+INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
     real X_in[7*LANES], H[36*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    H_run(m, w, X, H, &why);
-    check(36, w, H, why.overflow);
-    judge(&why, w, code);
-    deliver(H, 36, w, code, H_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    H_run_lanes(m, X, H, &why);
+    suspect(&why, code);
+    deliver(36, H, H_out);
 }
 
-INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, real *q_out, int
-    *code)
+INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(24, 1, q_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(24, q_out);
+    }
+}
+
+INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     real X_in[7*LANES], q[24*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    inverse_kinematics_run(m, w, X, q, &why);
-    check(24, w, q, why.overflow);
-    judge(&why, w, code);
-    deliver(q, 24, w, code, q_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    suspect(&why, code);
+    deliver(24, q, q_out);
 }
 
-INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *qd_out, int *code)
+INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    joint_rates_run(m, X, V, qd_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(24, 1, qd_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(24, qd_out);
+    }
+}
+
+INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
 {
     real X_in[7*LANES], V_in[6*LANES], qd[24*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    joint_rates_run(m, w, X, V, qd, &why);
-    check(24, w, qd, why.overflow);
-    judge(&why, w, code);
-    deliver(qd, 24, w, code, qd_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    joint_rates_run_lanes(m, X, V, qd, &why);
+    suspect(&why, code);
+    deliver(24, qd, qd_out);
 }
 
-INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd_out, int *code)
+INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+        check(6, 1, A, why.invalid);
+    }
+    joint_accelerations_run(m, X, V, A, qdd_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(24, 1, qdd_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(24, qdd_out);
+    }
+}
+
+INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
 {
     real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], qdd[24*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    A = side_by_side(6, w, A, A_in, why.invalid);
-    joint_accelerations_run(m, w, X, V, A, qdd, &why);
-    check(24, w, qdd, why.overflow);
-    judge(&why, w, code);
-    deliver(qdd, 24, w, code, qdd_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    A = side_by_side(6, A, A_in, why.total);
+    joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
+    suspect(&why, code);
+    deliver(24, qdd, qdd_out);
 }
 
-INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *V, real *M_out,
-    real *Z_out, real *H_out, int *code)
+INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    dynamics_run(m, X, V, M_out, Z_out, H_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(36, 1, M_out, why.overflow);
+        check(6, 1, Z_out, why.overflow);
+        check(36, 1, H_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(36, M_out);
+        refuse(6, Z_out);
+        refuse(36, H_out);
+    }
+}
+
+INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out, int *code)
 {
     real X_in[7*LANES], V_in[6*LANES], M[36*LANES], Z[6*LANES], H[36*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    dynamics_run(m, w, X, V, M, Z, H, &why);
-    check(36, w, M, why.overflow);
-    check(6, w, Z, why.overflow);
-    check(36, w, H, why.overflow);
-    judge(&why, w, code);
-    deliver(M, 36, w, code, M_out);
-    deliver(Z, 6, w, code, Z_out);
-    deliver(H, 36, w, code, H_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    dynamics_run_lanes(m, X, V, M, Z, H, &why);
+    suspect(&why, code);
+    deliver(36, M, M_out);
+    deliver(6, Z, Z_out);
+    deliver(36, H, H_out);
 }
 
-INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, const real *V, const
-    real *A, const real *wrench, real *tau_out, int *code)
+INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, real *x, real
+    *unsure, real *total)
 {
-    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], wrench_in[6*LANES], required[6*LANES],
-        H[36*LANES], subtract_2[6*LANES], tau[6*LANES], work[48*LANES];
+    for (size_t k = 0; k < w; ++k) {
+        real a00 = a[(0)*w + k];
+        real a01 = a[(1)*w + k];
+        real a02 = a[(2)*w + k];
+        real a03 = a[(3)*w + k];
+        real a04 = a[(4)*w + k];
+        real a05 = a[(5)*w + k];
+        real b0 = b[0*w + k];
+        real a10 = a[(2*stride + 0)*w + k];
+        real a11 = a[(2*stride + 1)*w + k];
+        real a12 = a[(2*stride + 2)*w + k];
+        real a13 = a[(2*stride + 3)*w + k];
+        real a14 = a[(2*stride + 4)*w + k];
+        real a15 = a[(2*stride + 5)*w + k];
+        real b1 = b[2*w + k];
+        real a20 = a[(1*stride + 0)*w + k];
+        real a21 = a[(1*stride + 1)*w + k];
+        real a22 = a[(1*stride + 2)*w + k];
+        real a23 = a[(1*stride + 3)*w + k];
+        real a24 = a[(1*stride + 4)*w + k];
+        real a25 = a[(1*stride + 5)*w + k];
+        real b2 = b[1*w + k];
+        real a30 = a[(3*stride + 0)*w + k];
+        real a31 = a[(3*stride + 1)*w + k];
+        real a32 = a[(3*stride + 2)*w + k];
+        real a33 = a[(3*stride + 3)*w + k];
+        real a34 = a[(3*stride + 4)*w + k];
+        real a35 = a[(3*stride + 5)*w + k];
+        real b3 = b[3*w + k];
+        real a40 = a[(4*stride + 0)*w + k];
+        real a41 = a[(4*stride + 1)*w + k];
+        real a42 = a[(4*stride + 2)*w + k];
+        real a43 = a[(4*stride + 3)*w + k];
+        real a44 = a[(4*stride + 4)*w + k];
+        real a45 = a[(4*stride + 5)*w + k];
+        real b4 = b[4*w + k];
+        real a50 = a[(5*stride + 0)*w + k];
+        real a51 = a[(5*stride + 1)*w + k];
+        real a52 = a[(5*stride + 2)*w + k];
+        real a53 = a[(5*stride + 3)*w + k];
+        real a54 = a[(5*stride + 4)*w + k];
+        real a55 = a[(5*stride + 5)*w + k];
+        real b5 = b[5*w + k];
+        const real f0 = 1/a00;
+        const real d1 = a00*a11 - a10*a01;
+        const real f1 = a00/d1;
+        const real g10 = a10*f0;
+        a12 -= g10*a02;
+        a13 -= g10*a03;
+        a14 -= g10*a04;
+        a15 -= g10*a05;
+        b1 -= g10*b0;
+        const real g20 = a20*f0;
+        a21 -= g20*a01;
+        a22 -= g20*a02;
+        a23 -= g20*a03;
+        a24 -= g20*a04;
+        a25 -= g20*a05;
+        b2 -= g20*b0;
+        const real g30 = a30*f0;
+        a31 -= g30*a01;
+        a32 -= g30*a02;
+        a33 -= g30*a03;
+        a34 -= g30*a04;
+        a35 -= g30*a05;
+        b3 -= g30*b0;
+        const real g40 = a40*f0;
+        a41 -= g40*a01;
+        a42 -= g40*a02;
+        a43 -= g40*a03;
+        a44 -= g40*a04;
+        a45 -= g40*a05;
+        b4 -= g40*b0;
+        const real g50 = a50*f0;
+        a51 -= g50*a01;
+        a52 -= g50*a02;
+        a53 -= g50*a03;
+        a54 -= g50*a04;
+        a55 -= g50*a05;
+        b5 -= g50*b0;
+        const real g21 = a21*f1;
+        a22 -= g21*a12;
+        a23 -= g21*a13;
+        a24 -= g21*a14;
+        a25 -= g21*a15;
+        b2 -= g21*b1;
+        const real g31 = a31*f1;
+        a32 -= g31*a12;
+        a33 -= g31*a13;
+        a34 -= g31*a14;
+        a35 -= g31*a15;
+        b3 -= g31*b1;
+        const real g41 = a41*f1;
+        a42 -= g41*a12;
+        a43 -= g41*a13;
+        a44 -= g41*a14;
+        a45 -= g41*a15;
+        b4 -= g41*b1;
+        const real g51 = a51*f1;
+        a52 -= g51*a12;
+        a53 -= g51*a13;
+        a54 -= g51*a14;
+        a55 -= g51*a15;
+        b5 -= g51*b1;
+        const real f2 = 1/a22;
+        const real d3 = a22*a33 - a32*a23;
+        const real f3 = a22/d3;
+        const real g32 = a32*f2;
+        a34 -= g32*a24;
+        a35 -= g32*a25;
+        b3 -= g32*b2;
+        const real g42 = a42*f2;
+        a43 -= g42*a23;
+        a44 -= g42*a24;
+        a45 -= g42*a25;
+        b4 -= g42*b2;
+        const real g52 = a52*f2;
+        a53 -= g52*a23;
+        a54 -= g52*a24;
+        a55 -= g52*a25;
+        b5 -= g52*b2;
+        const real g43 = a43*f3;
+        a44 -= g43*a34;
+        a45 -= g43*a35;
+        b4 -= g43*b3;
+        const real g53 = a53*f3;
+        a54 -= g53*a34;
+        a55 -= g53*a35;
+        b5 -= g53*b3;
+        const real f4 = 1/a44;
+        const real d5 = a44*a55 - a54*a45;
+        const real f5 = a44/d5;
+        const real g54 = a54*f4;
+        b5 -= g54*b4;
+        const real x5 = (b5)*f5;
+        const real x4 = (b4)*f4 - a45*f4*x5;
+        const real x3 = (b3 - a35*x5)*f3 - a34*f3*x4;
+        const real x2 = (b2 - a25*x5 - a24*x4)*f2 - a23*f2*x3;
+        const real x1 = (b1 - a15*x5 - a14*x4 - a13*x3)*f1 - a12*f1*x2;
+        const real x0 = (b0 - a05*x5 - a04*x4 - a03*x3 - a02*x2)*f0 - a01*f0*x1;
+        x[0*w + k] = x0;
+        x[1*w + k] = x1;
+        x[2*w + k] = x2;
+        x[3*w + k] = x3;
+        x[4*w + k] = x4;
+        x[5*w + k] = x5;
+        total[k] += (x0 + (x1 + x2)) + (x3 + (x4 + x5));
+        const real most0 = larger(larger(magnitude(g21), magnitude(g31)), larger(magnitude(g41),
+            magnitude(g51)));
+        const real most1 = larger(larger(larger(magnitude(g20), magnitude(g30)),
+            larger(magnitude(g40), larger(magnitude(g50), magnitude(g32)))),
+            larger(larger(magnitude(g42), magnitude(g52)), larger(magnitude(g43),
+            larger(magnitude(g53), magnitude(g54)))));
+        const real most2 = magnitude(g10);
+        const real most3 = magnitude(f1);
+        const real most4 = larger(larger(magnitude(f0), magnitude(f2)), larger(magnitude(f3),
+            larger(magnitude(f4), magnitude(f5))));
+        unsure[k] += UNLESS(most0 <= R(2.5)) + UNLESS(most1 <= R(10)) + UNLESS(most2 <= R(40)) +
+            UNLESS(most3 <= R(1000)) + UNLESS(most4 <= R(4000)) + UNLESS(is_finite(a00 + d1 + a22
+            + d3 + a44 + d5));
+    }
+}
+
+INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau_out, int *code)
+{
+    real wrench_in[6], required[6] = {0}, H[36] = {0}, subtract_2[6] = {0}, unsure_4[1] = {0},
+        work[48];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    A = side_by_side(6, w, A, A_in, why.invalid);
-    wrench = optional(6, w, wrench, 0, wrench_in, why.invalid);
-    required_run(m, w, X, V, A, required, H, &why);
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+        check(6, 1, A, why.invalid);
+    }
+    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    required_run(m, X, V, A, required, H, &why);
     const real *const extend_1 = wrench;
-    for (size_t i = 0; i < 6*w; ++i) {
+    for (size_t i = 0; i < 6; ++i) {
         subtract_2[i] = required[i] - extend_1[i];
     }
-    set_matrix(6, w, H, work);
-    solve(6, w, subtract_2, work, tau, why.singular);
-    check(6, w, tau, why.overflow);
-    judge(&why, w, code);
-    deliver(tau, 6, w, code, tau_out);
+    eliminate_0(1, 6, H, subtract_2, tau_out, unsure_4, why.total);
+    if (unsure_4[0] > 0) {
+        set_matrix(6, 1, H, work);
+        solve_apart(6, subtract_2, work, tau_out, why.singular);
+        check(6, 1, tau_out, why.overflow);
+    }
+    if (!is_finite(why.total[0])) {
+        check(6, 1, tau_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(6, tau_out);
+    }
 }
 
-INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, const real *V, const
-    real *tau, const real *wrench, real *A_out, int *code)
+INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau_out, int *code)
 {
-    real X_in[7*LANES], V_in[6*LANES], tau_in[6*LANES], wrench_in[6*LANES], M[36*LANES], Z[6*LANES],
-        H[36*LANES], times_1[6*LANES] = {0}, add_3[6*LANES], subtract_4[6*LANES], A[6*LANES],
-        work[48*LANES];
+    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], wrench_in[6*LANES], required[6*LANES],
+        H[36*LANES], subtract_2[6*LANES], tau[6*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    tau = side_by_side(6, w, tau, tau_in, why.invalid);
-    wrench = optional(6, w, wrench, 0, wrench_in, why.invalid);
-    dynamics_run(m, w, X, V, M, Z, H, &why);
-    product(6, 6, 1, w, H, tau, times_1);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    A = side_by_side(6, A, A_in, why.total);
+    wrench = optional_side_by_side(6, wrench, 0, wrench_in, why.total);
+    required_run_lanes(m, X, V, A, required, H, &why);
+    const real *const extend_1 = wrench;
+    for (size_t i = 0; i < 6*LANES; ++i) {
+        subtract_2[i] = required[i] - extend_1[i];
+    }
+    eliminate_0(LANES, 6, H, subtract_2, tau, why.singular, why.total);
+    suspect(&why, code);
+    deliver(6, tau, tau_out);
+}
+
+INLINE void eliminate_1(size_t w, size_t stride, const real *a, const real *b, real *x, real
+    *unsure, real *total)
+{
+    for (size_t k = 0; k < w; ++k) {
+        real a00 = a[(0)*w + k];
+        real a01 = a[(1)*w + k];
+        real a02 = a[(2)*w + k];
+        real a03 = a[(3)*w + k];
+        real a04 = a[(4)*w + k];
+        real a05 = a[(5)*w + k];
+        real b0 = b[0*w + k];
+        real a10 = a[(1*stride + 0)*w + k];
+        real a11 = a[(1*stride + 1)*w + k];
+        real a12 = a[(1*stride + 2)*w + k];
+        real a13 = a[(1*stride + 3)*w + k];
+        real a14 = a[(1*stride + 4)*w + k];
+        real a15 = a[(1*stride + 5)*w + k];
+        real b1 = b[1*w + k];
+        real a20 = a[(2*stride + 0)*w + k];
+        real a21 = a[(2*stride + 1)*w + k];
+        real a22 = a[(2*stride + 2)*w + k];
+        real a23 = a[(2*stride + 3)*w + k];
+        real a24 = a[(2*stride + 4)*w + k];
+        real a25 = a[(2*stride + 5)*w + k];
+        real b2 = b[2*w + k];
+        real a30 = a[(3*stride + 0)*w + k];
+        real a31 = a[(3*stride + 1)*w + k];
+        real a32 = a[(3*stride + 2)*w + k];
+        real a33 = a[(3*stride + 3)*w + k];
+        real a34 = a[(3*stride + 4)*w + k];
+        real a35 = a[(3*stride + 5)*w + k];
+        real b3 = b[3*w + k];
+        real a40 = a[(4*stride + 0)*w + k];
+        real a41 = a[(4*stride + 1)*w + k];
+        real a42 = a[(4*stride + 2)*w + k];
+        real a43 = a[(4*stride + 3)*w + k];
+        real a44 = a[(4*stride + 4)*w + k];
+        real a45 = a[(4*stride + 5)*w + k];
+        real b4 = b[4*w + k];
+        real a50 = a[(5*stride + 0)*w + k];
+        real a51 = a[(5*stride + 1)*w + k];
+        real a52 = a[(5*stride + 2)*w + k];
+        real a53 = a[(5*stride + 3)*w + k];
+        real a54 = a[(5*stride + 4)*w + k];
+        real a55 = a[(5*stride + 5)*w + k];
+        real b5 = b[5*w + k];
+        const real f0 = 1/a00;
+        const real d1 = a00*a11 - a10*a01;
+        const real f1 = a00/d1;
+        const real g10 = a10*f0;
+        a12 -= g10*a02;
+        a13 -= g10*a03;
+        a14 -= g10*a04;
+        a15 -= g10*a05;
+        b1 -= g10*b0;
+        const real g20 = a20*f0;
+        a21 -= g20*a01;
+        a22 -= g20*a02;
+        a23 -= g20*a03;
+        a24 -= g20*a04;
+        a25 -= g20*a05;
+        b2 -= g20*b0;
+        const real g30 = a30*f0;
+        a31 -= g30*a01;
+        a32 -= g30*a02;
+        a33 -= g30*a03;
+        a34 -= g30*a04;
+        a35 -= g30*a05;
+        b3 -= g30*b0;
+        const real g40 = a40*f0;
+        a41 -= g40*a01;
+        a42 -= g40*a02;
+        a43 -= g40*a03;
+        a44 -= g40*a04;
+        a45 -= g40*a05;
+        b4 -= g40*b0;
+        const real g50 = a50*f0;
+        a51 -= g50*a01;
+        a52 -= g50*a02;
+        a53 -= g50*a03;
+        a54 -= g50*a04;
+        a55 -= g50*a05;
+        b5 -= g50*b0;
+        const real g21 = a21*f1;
+        a22 -= g21*a12;
+        a23 -= g21*a13;
+        a24 -= g21*a14;
+        a25 -= g21*a15;
+        b2 -= g21*b1;
+        const real g31 = a31*f1;
+        a32 -= g31*a12;
+        a33 -= g31*a13;
+        a34 -= g31*a14;
+        a35 -= g31*a15;
+        b3 -= g31*b1;
+        const real g41 = a41*f1;
+        a42 -= g41*a12;
+        a43 -= g41*a13;
+        a44 -= g41*a14;
+        a45 -= g41*a15;
+        b4 -= g41*b1;
+        const real g51 = a51*f1;
+        a52 -= g51*a12;
+        a53 -= g51*a13;
+        a54 -= g51*a14;
+        a55 -= g51*a15;
+        b5 -= g51*b1;
+        const real f2 = 1/a22;
+        const real d3 = a22*a33 - a32*a23;
+        const real f3 = a22/d3;
+        const real g32 = a32*f2;
+        a34 -= g32*a24;
+        a35 -= g32*a25;
+        b3 -= g32*b2;
+        const real g42 = a42*f2;
+        a43 -= g42*a23;
+        a44 -= g42*a24;
+        a45 -= g42*a25;
+        b4 -= g42*b2;
+        const real g52 = a52*f2;
+        a53 -= g52*a23;
+        a54 -= g52*a24;
+        a55 -= g52*a25;
+        b5 -= g52*b2;
+        const real g43 = a43*f3;
+        a44 -= g43*a34;
+        a45 -= g43*a35;
+        b4 -= g43*b3;
+        const real g53 = a53*f3;
+        a54 -= g53*a34;
+        a55 -= g53*a35;
+        b5 -= g53*b3;
+        const real f4 = 1/a44;
+        const real d5 = a44*a55 - a54*a45;
+        const real f5 = a44/d5;
+        const real g54 = a54*f4;
+        b5 -= g54*b4;
+        const real x5 = (b5)*f5;
+        const real x4 = (b4)*f4 - a45*f4*x5;
+        const real x3 = (b3 - a35*x5)*f3 - a34*f3*x4;
+        const real x2 = (b2 - a25*x5 - a24*x4)*f2 - a23*f2*x3;
+        const real x1 = (b1 - a15*x5 - a14*x4 - a13*x3)*f1 - a12*f1*x2;
+        const real x0 = (b0 - a05*x5 - a04*x4 - a03*x3 - a02*x2)*f0 - a01*f0*x1;
+        x[0*w + k] = x0;
+        x[1*w + k] = x1;
+        x[2*w + k] = x2;
+        x[3*w + k] = x3;
+        x[4*w + k] = x4;
+        x[5*w + k] = x5;
+        total[k] += (x0 + (x1 + x2)) + (x3 + (x4 + x5));
+        const real most0 = larger(larger(larger(magnitude(g30), magnitude(g40)),
+            larger(magnitude(g50), magnitude(g31))), larger(larger(magnitude(g41),
+            magnitude(g51)), larger(magnitude(g32), larger(magnitude(g42), magnitude(g52)))));
+        const real most1 = larger(larger(magnitude(g10), larger(magnitude(g20), magnitude(g21))),
+            larger(magnitude(g43), larger(magnitude(g53), magnitude(g54))));
+        const real most2 = larger(magnitude(f0), larger(magnitude(f1), magnitude(f2)));
+        const real most3 = larger(magnitude(f3), larger(magnitude(f4), magnitude(f5)));
+        unsure[k] += UNLESS(most0 <= R(0.625)) + UNLESS(most1 <= R(10)) + UNLESS(most2 <= R(62.5))
+            + UNLESS(most3 <= R(1000)) + UNLESS(is_finite(a00 + d1 + a22 + d3 + a44 + d5));
+    }
+}
+
+INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
+    const real *wrench, real *A_out, int *code)
+{
+    real wrench_in[6], M[36] = {0}, Z[6] = {0}, H[36] = {0}, times_1[6] = {0}, add_3[6] = {0},
+        subtract_4[6] = {0}, unsure_7[1] = {0}, work[48];
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6) + total(tau, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+        check(6, 1, tau, why.invalid);
+    }
+    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    dynamics_run(m, X, V, M, Z, H, &why);
+    product(6, 6, 1, 1, H, tau, times_1);
     const real *const extend_2 = wrench;
-    for (size_t i = 0; i < 6*w; ++i) {
+    for (size_t i = 0; i < 6; ++i) {
         add_3[i] = times_1[i] + extend_2[i];
     }
-    for (size_t i = 0; i < 6*w; ++i) {
+    for (size_t i = 0; i < 6; ++i) {
         subtract_4[i] = add_3[i] - Z[i];
     }
-    set_matrix(6, w, M, work);
-    solve(6, w, subtract_4, work, A, why.singular);
-    check(6, w, A, why.overflow);
-    judge(&why, w, code);
-    deliver(A, 6, w, code, A_out);
+    eliminate_1(1, 6, M, subtract_4, A_out, unsure_7, why.total);
+    if (unsure_7[0] > 0) {
+        set_matrix(6, 1, M, work);
+        solve_apart(6, subtract_4, work, A_out, why.singular);
+        check(6, 1, A_out, why.overflow);
+    }
+    if (!is_finite(why.total[0])) {
+        check(6, 1, A_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(6, A_out);
+    }
 }
 
-INLINE void complete_acceleration_any(const real *A, real *completed_out, int *code)
+INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
+    *tau, const real *wrench, real *A_out, int *code)
+{
+    real X_in[7*LANES], V_in[6*LANES], tau_in[6*LANES], wrench_in[6*LANES], M[36*LANES], Z[6*LANES],
+        H[36*LANES], times_1[6*LANES] = {0}, add_3[6*LANES], subtract_4[6*LANES], A[6*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    tau = side_by_side(6, tau, tau_in, why.total);
+    wrench = optional_side_by_side(6, wrench, 0, wrench_in, why.total);
+    dynamics_run_lanes(m, X, V, M, Z, H, &why);
+    product(6, 6, 1, LANES, H, tau, times_1);
+    const real *const extend_2 = wrench;
+    for (size_t i = 0; i < 6*LANES; ++i) {
+        add_3[i] = times_1[i] + extend_2[i];
+    }
+    for (size_t i = 0; i < 6*LANES; ++i) {
+        subtract_4[i] = add_3[i] - Z[i];
+    }
+    eliminate_1(LANES, 6, M, subtract_4, A, why.singular, why.total);
+    suspect(&why, code);
+    deliver(6, A, A_out);
+}
+
+INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
 {
     verdict why;
     start(1, &why);
     check(6, 1, A, why.invalid);
     const real *const completed = A;
     check(6, 1, completed, why.overflow);
-    judge(&why, 1, code);
-    deliver(completed, 6, 1, code, completed_out);
+    judge(&why, code);
+    copy(6, completed, completed_out);
+    if (*code != OK) {
+        refuse(6, completed_out);
+    }
 }
 
-INLINE void leg_reactions_any(const prepared *m, const real *X, const real *V, const real *A,
+INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out, int *code)
 {
     static const size_t places_0[] = {0, 1, 2, 3, 4, 5};
     real wrench_in[6], required[6] = {0}, H[36] = {0}, subtract_2[6] = {0}, solve_3[6] = {0},
-        leg_force[36] = {0}, drive[36] = {0}, forces[36] = {0}, work[48];
+        unsure_5[1] = {0}, leg_force[36] = {0}, drive[36] = {0}, forces[36] = {0}, work[48];
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
-    check(6, 1, V, why.invalid);
-    check(6, 1, A, why.invalid);
-    wrench = optional(6, 1, wrench, 0, wrench_in, why.invalid);
-    required_run(m, 1, X, V, A, required, H, &why);
+    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+        check(6, 1, A, why.invalid);
+    }
+    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    required_run(m, X, V, A, required, H, &why);
     const real *const extend_1 = wrench;
     for (size_t i = 0; i < 6; ++i) {
         subtract_2[i] = required[i] - extend_1[i];
     }
-    set_matrix(6, 1, H, work);
-    solve_state(6, subtract_2, work, solve_3, why.singular);
-    legs_run(m, 1, X, V, A, leg_force, drive, &why);
+    eliminate_0(1, 6, H, subtract_2, solve_3, unsure_5, why.total);
+    if (unsure_5[0] > 0) {
+        set_matrix(6, 1, H, work);
+        solve_apart(6, subtract_2, work, solve_3, why.singular);
+        check(6, 1, solve_3, why.overflow);
+    }
+    legs_run(m, X, V, A, leg_force, drive, &why);
     for (size_t i = 0; i < 36; ++i) {
         forces[i] = leg_force[i];
     }
     add_forces(6, 6, 1, places_0, solve_3, drive, forces);
     check(36, 1, forces, why.overflow);
-    judge(&why, 1, code);
-    deliver(forces, 36, 1, code, forces_out);
+    judge(&why, code);
+    copy(36, forces, forces_out);
+    if (*code != OK) {
+        refuse(36, forces_out);
+    }
 }
 
-INLINE void energy_any(const prepared *m, const real *X, const real *V, real *kinetic_out, real
+INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out, int *code)
 {
     real M[36] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
-    check(6, 1, V, why.invalid);
-    M_run(m, 1, X, M, &why);
-    potential_run(m, 1, X, potential_of_potential, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    M_run(m, X, M, &why);
+    potential_run(m, X, potential_of_potential, &why);
     half_form(6, 1, V, M, kinetic);
     const real *const potential = potential_of_potential;
     check(1, 1, kinetic, why.overflow);
     check(1, 1, potential, why.overflow);
-    judge(&why, 1, code);
-    deliver(kinetic, 1, 1, code, kinetic_out);
-    deliver(potential, 1, 1, code, potential_out);
+    judge(&why, code);
+    copy(1, kinetic, kinetic_out);
+    copy(1, potential, potential_out);
+    if (*code != OK) {
+        refuse(1, kinetic_out);
+        refuse(1, potential_out);
+    }
 }
 
-INLINE void condition_any(const prepared *m, const real *X, const real *length, real *sigma_out,
+INLINE void condition_one(const prepared *m, const real *X, const real *length, real *sigma_out,
     real *legs_out, int *code)
 {
     static const size_t places_0[] = {3, 4, 5};
@@ -6442,8 +6955,8 @@ INLINE void condition_any(const prepared *m, const real *X, const real *length, 
     start(1, &why);
     check(7, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, 1, length, 0, length_in, why.invalid);
-    condition_run(m, 1, X, H, lengths, legs, reach, &why);
+    length = optional(1, length, 0, length_in, why.invalid);
+    condition_run(m, X, H, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
             lengths[i] : lengths[1 + i];
@@ -6453,42 +6966,57 @@ INLINE void condition_any(const prepared *m, const real *X, const real *length, 
     }
     divide_rows(3, 6, 1, places_0, choose_length_1, divide_rows_2);
     singular_values(6, 6, divide_rows_2, sigma);
+    if (!is_finite(why.total[0])) {
+        check(6, 1, legs, why.overflow);
+    }
     check(6, 1, sigma, why.overflow);
-    check(6, 1, legs, why.overflow);
-    judge(&why, 1, code);
-    deliver(sigma, 6, 1, code, sigma_out);
-    deliver(legs, 6, 1, code, legs_out);
+    judge(&why, code);
+    copy(6, sigma, sigma_out);
+    copy(6, legs, legs_out);
+    if (*code != OK) {
+        refuse(6, sigma_out);
+        refuse(6, legs_out);
+    }
 }
 
-static void mismatch_any(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
+static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
     static const size_t places_0[] = {2, 6, 10, 14, 18, 22};
     real q[24] = {0}, take_1[6] = {0}, gap[6] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
-    check(6, 1, q_actuated, why.invalid);
-    inverse_kinematics_run(m, 1, X, q, &why);
+    const real total_in = total(X, 7) + total(q_actuated, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, q_actuated, why.invalid);
+    }
+    inverse_kinematics_run(m, X, q, &why);
     take(6, 1, places_0, q, take_1);
     for (size_t i = 0; i < 6; ++i) {
         gap[i] = q_actuated[i] - take_1[i];
     }
     check(6, 1, gap, why.overflow);
-    judge(&why, 1, code);
-    deliver(gap, 6, 1, code, gap_out);
+    judge(&why, code);
+    copy(6, gap, gap_out);
+    if (*code != OK) {
+        refuse(6, gap_out);
+    }
 }
 
-static void slope_any(const prepared *m, const real *X, real *slope_out, int *code)
+static void slope_one(const prepared *m, const real *X, real *slope_out, int *code)
 {
-    real slope[36] = {0};
     verdict why;
     start(1, &why);
     check(7, 1, X, why.invalid);
-    H_run(m, 1, X, slope, &why);
-    check(36, 1, slope, why.overflow);
-    judge(&why, 1, code);
-    deliver(slope, 36, 1, code, slope_out);
+    H_run(m, X, slope_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(36, 1, slope_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(36, slope_out);
+    }
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -6499,12 +7027,12 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
     real trial[7] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    mismatch_any(m, found, q_actuated, gap, &code);
+    mismatch_one(m, found, q_actuated, gap, &code);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        slope_any(m, found, slope, &code);
+        slope_one(m, found, slope, &code);
         if (code != OK) {
             break;
         }
@@ -6518,7 +7046,7 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            mismatch_any(m, trial, q_actuated, next, &tried);
+            mismatch_one(m, trial, q_actuated, next, &tried);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -6536,21 +7064,27 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 }
 
 
-INLINE void forward_kinematics_any(const prepared *m, const real *q_actuated, const real *X0, real
+INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
     *X_out, int *code)
 {
     real X[7] = {0};
     verdict why;
     start(1, &why);
-    check(6, 1, q_actuated, why.invalid);
-    check(7, 1, X0, why.invalid);
+    const real total_in = total(q_actuated, 6) + total(X0, 7);
+    if (!is_finite(total_in)) {
+        check(6, 1, q_actuated, why.invalid);
+        check(7, 1, X0, why.invalid);
+    }
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(7, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 7, 1, code, X_out);
+    judge(&why, code);
+    copy(7, X, X_out);
+    if (*code != OK) {
+        refuse(7, X_out);
+    }
 }
 
-INLINE void dissipation_any(const real *V, real *dissipation_out, int *code)
+INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 {
     real subtract_1[6] = {0};
     verdict why;
@@ -6561,93 +7095,271 @@ INLINE void dissipation_any(const real *V, real *dissipation_out, int *code)
     }
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
-    judge(&why, 1, code);
-    deliver(dissipation, 1, 1, code, dissipation_out);
+    judge(&why, code);
+    copy(1, dissipation, dissipation_out);
+    if (*code != OK) {
+        refuse(1, dissipation_out);
+    }
 }
 
-INLINE void momentum_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *momentum_out, int *code)
+INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
+    *code)
+{
+    real M[36] = {0}, momentum[6] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    M_run(m, X, M, &why);
+    product(6, 6, 1, 1, M, V, momentum);
+    check(6, 1, momentum, why.overflow);
+    judge(&why, code);
+    copy(6, momentum, momentum_out);
+    if (*code != OK) {
+        refuse(6, momentum_out);
+    }
+}
+
+INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
+    int *code)
 {
     real X_in[7*LANES], V_in[6*LANES], M[36*LANES], momentum[6*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    M_run(m, w, X, M, &why);
-    product(6, 6, 1, w, M, V, momentum);
-    check(6, w, momentum, why.overflow);
-    judge(&why, w, code);
-    deliver(momentum, 6, w, code, momentum_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    M_run_lanes(m, X, M, &why);
+    product(6, 6, 1, LANES, M, V, momentum);
+    add_up(6, momentum, why.total);
+    suspect(&why, code);
+    deliver(6, momentum, momentum_out);
 }
 
-INLINE void actuator_positions_any(const prepared *m, size_t w, const real *X, real *q_out, int
-    *code)
+INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
+{
+    static const size_t places_0[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23};
+    real q[24] = {0}, margins[24] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q, &why);
+    for (size_t i = 0; i < 24; ++i) {
+        margins[i] = q[i];
+    }
+    unlimited(24, 24, 1, places_0, margins, why.overflow);
+    judge(&why, code);
+    copy(24, margins, margins_out);
+    if (*code != OK) {
+        refuse(24, margins_out);
+    }
+}
+
+INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
+{
+    static const size_t places_0[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23};
+    real X_in[7*LANES], q[24*LANES], margins[24*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    for (size_t i = 0; i < 24*LANES; ++i) {
+        margins[i] = q[i];
+    }
+    unlimited(24, 24, LANES, places_0, margins, why.invalid);
+    suspect(&why, code);
+    deliver(24, margins, margins_out);
+}
+
+INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
+{
+    real q[24] = {0}, subtract_1[24] = {0}, within[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q, &why);
+    for (size_t i = 0; i < 24; ++i) {
+        subtract_1[i] = q[i] - q[i];
+    }
+    not_negative(24, 1, subtract_1, within, why.overflow);
+    check(1, 1, within, why.overflow);
+    judge(&why, code);
+    copy(1, within, within_out);
+    if (*code != OK) {
+        refuse(1, within_out);
+    }
+}
+
+INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
+{
+    real X_in[7*LANES], q[24*LANES], subtract_1[24*LANES], within[1*LANES] = {0};
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    for (size_t i = 0; i < 24*LANES; ++i) {
+        subtract_1[i] = q[i] - q[i];
+    }
+    not_negative(24, LANES, subtract_1, within, why.invalid);
+    add_up(1, within, why.total);
+    suspect(&why, code);
+    deliver(1, within, within_out);
+}
+
+INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
+{
+    static const size_t places_0[] = {2, 6, 10, 14, 18, 22};
+    real q_of_inverse_kinematics[24] = {0}, q[6] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
+    take(6, 1, places_0, q_of_inverse_kinematics, q);
+    check(6, 1, q, why.overflow);
+    judge(&why, code);
+    copy(6, q, q_out);
+    if (*code != OK) {
+        refuse(6, q_out);
+    }
+}
+
+INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     static const size_t places_0[] = {2, 6, 10, 14, 18, 22};
     real X_in[7*LANES], q_of_inverse_kinematics[24*LANES], q[6*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    inverse_kinematics_run(m, w, X, q_of_inverse_kinematics, &why);
-    take(6, 1*w, places_0, q_of_inverse_kinematics, q);
-    check(6, w, q, why.overflow);
-    judge(&why, w, code);
-    deliver(q, 6, w, code, q_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
+    take(6, 1*LANES, places_0, q_of_inverse_kinematics, q);
+    add_up(6, q, why.total);
+    suspect(&why, code);
+    deliver(6, q, q_out);
 }
 
-INLINE void actuator_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *qd_out, int *code)
+INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
+{
+    static const size_t places_0[] = {2, 6, 10, 14, 18, 22};
+    real qd_of_joint_rates[24] = {0}, qd[6] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    joint_rates_run(m, X, V, qd_of_joint_rates, &why);
+    take(6, 1, places_0, qd_of_joint_rates, qd);
+    check(6, 1, qd, why.overflow);
+    judge(&why, code);
+    copy(6, qd, qd_out);
+    if (*code != OK) {
+        refuse(6, qd_out);
+    }
+}
+
+INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
+    int *code)
 {
     static const size_t places_0[] = {2, 6, 10, 14, 18, 22};
     real X_in[7*LANES], V_in[6*LANES], qd_of_joint_rates[24*LANES], qd[6*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    joint_rates_run(m, w, X, V, qd_of_joint_rates, &why);
-    take(6, 1*w, places_0, qd_of_joint_rates, qd);
-    check(6, w, qd, why.overflow);
-    judge(&why, w, code);
-    deliver(qd, 6, w, code, qd_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
+    take(6, 1*LANES, places_0, qd_of_joint_rates, qd);
+    add_up(6, qd, why.total);
+    suspect(&why, code);
+    deliver(6, qd, qd_out);
 }
 
-INLINE void actuator_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd_out, int *code)
+INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
+{
+    static const size_t places_0[] = {2, 6, 10, 14, 18, 22};
+    real qdd_of_joint_accelerations[24] = {0}, qdd[6] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+        check(6, 1, A, why.invalid);
+    }
+    joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
+    take(6, 1, places_0, qdd_of_joint_accelerations, qdd);
+    check(6, 1, qdd, why.overflow);
+    judge(&why, code);
+    copy(6, qdd, qdd_out);
+    if (*code != OK) {
+        refuse(6, qdd_out);
+    }
+}
+
+INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out, int *code)
 {
     static const size_t places_0[] = {2, 6, 10, 14, 18, 22};
     real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], qdd_of_joint_accelerations[24*LANES],
         qdd[6*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    A = side_by_side(6, w, A, A_in, why.invalid);
-    joint_accelerations_run(m, w, X, V, A, qdd_of_joint_accelerations, &why);
-    take(6, 1*w, places_0, qdd_of_joint_accelerations, qdd);
-    check(6, w, qdd, why.overflow);
-    judge(&why, w, code);
-    deliver(qdd, 6, w, code, qdd_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    A = side_by_side(6, A, A_in, why.total);
+    joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
+    take(6, 1*LANES, places_0, qdd_of_joint_accelerations, qdd);
+    add_up(6, qdd, why.total);
+    suspect(&why, code);
+    deliver(6, qdd, qdd_out);
 }
 
-INLINE void power_any(const prepared *m, size_t w, const real *X, const real *V, const real *tau,
-    real *power_out, int *code)
+INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out, int *code)
+{
+    real H[36] = {0}, times_1[6] = {0}, power[1] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6) + total(tau, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+        check(6, 1, tau, why.invalid);
+    }
+    H_run(m, X, H, &why);
+    product(6, 6, 1, 1, H, tau, times_1);
+    inner(6, 1, times_1, V, power);
+    check(1, 1, power, why.overflow);
+    judge(&why, code);
+    copy(1, power, power_out);
+    if (*code != OK) {
+        refuse(1, power_out);
+    }
+}
+
+INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out, int *code)
 {
     real X_in[7*LANES], V_in[6*LANES], tau_in[6*LANES], H[36*LANES], times_1[6*LANES] = {0},
         power[1*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    tau = side_by_side(6, w, tau, tau_in, why.invalid);
-    H_run(m, w, X, H, &why);
-    product(6, 6, 1, w, H, tau, times_1);
-    inner(6, w, times_1, V, power);
-    check(1, w, power, why.overflow);
-    judge(&why, w, code);
-    deliver(power, 1, w, code, power_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    tau = side_by_side(6, tau, tau_in, why.total);
+    H_run_lanes(m, X, H, &why);
+    product(6, 6, 1, LANES, H, tau, times_1);
+    inner(6, LANES, times_1, V, power);
+    add_up(1, power, why.total);
+    suspect(&why, code);
+    deliver(1, power, power_out);
 }
 
-INLINE void rotation_any(const real *X, real *R_out, int *code)
+INLINE void rotation_one(const real *X, real *R_out, int *code)
 {
     real R[9] = {0};
     verdict why;
@@ -6656,64 +7368,88 @@ INLINE void rotation_any(const real *X, real *R_out, int *code)
     const real *const take_1 = X + 3;
     rotation_of_quaternion(take_1, R);
     check(9, 1, R, why.overflow);
-    judge(&why, 1, code);
-    deliver(R, 9, 1, code, R_out);
+    judge(&why, code);
+    copy(9, R, R_out);
+    if (*code != OK) {
+        refuse(9, R_out);
+    }
 }
 
-INLINE void pose_any(const real *t, const real *R, real *X_out, int *code)
+INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
 {
     real quaternion_of_rotation_1[4] = {0}, join_2[7] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, t, why.invalid);
-    check(9, 1, R, why.invalid);
+    const real total_in = total(t, 3) + total(R, 9);
+    if (!is_finite(total_in)) {
+        check(3, 1, t, why.invalid);
+        check(9, 1, R, why.invalid);
+    }
     quaternion_of_rotation(R, quaternion_of_rotation_1);
     beside(1, 3, 4, t, quaternion_of_rotation_1, join_2);
     const real *const X = join_2;
     check(7, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 7, 1, code, X_out);
+    judge(&why, code);
+    copy(7, X, X_out);
+    if (*code != OK) {
+        refuse(7, X_out);
+    }
 }
 
-INLINE void X_dot_any(const real *X, const real *V, real *X_dot_out, int *code)
+INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
 {
     real quaternion_rate_3[4] = {0}, X_dot[7] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
-    check(6, 1, V, why.invalid);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
     const real *const take_1 = V + 3;
     const real *const take_2 = X + 3;
     quaternion_rate(take_2, take_1, quaternion_rate_3);
     const real *const take_4 = V;
     beside(1, 3, 4, take_4, quaternion_rate_3, X_dot);
     check(7, 1, X_dot, why.overflow);
-    judge(&why, 1, code);
-    deliver(X_dot, 7, 1, code, X_dot_out);
+    judge(&why, code);
+    copy(7, X_dot, X_dot_out);
+    if (*code != OK) {
+        refuse(7, X_dot_out);
+    }
 }
 
-INLINE void pose_from_rpy_any(const real *t, const real *rpy, real *X_out, int *code)
+INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *code)
 {
     real quaternion_of_rpy_1[4] = {0}, join_2[7] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, t, why.invalid);
-    check(3, 1, rpy, why.invalid);
+    const real total_in = total(t, 3) + total(rpy, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, t, why.invalid);
+        check(3, 1, rpy, why.invalid);
+    }
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
     beside(1, 3, 4, t, quaternion_of_rpy_1, join_2);
     const real *const X = join_2;
     check(7, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 7, 1, code, X_out);
+    judge(&why, code);
+    copy(7, X, X_out);
+    if (*code != OK) {
+        refuse(7, X_out);
+    }
 }
 
-INLINE void retract_any(const real *X, const real *step, real *X_moved_out, int *code)
+INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
 {
     real turn_quaternion_5[4] = {0}, add_6[3] = {0}, X_moved[7] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
-    check(6, 1, step, why.invalid);
+    const real total_in = total(X, 7) + total(step, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, step, why.invalid);
+    }
     const real *const take_1 = X;
     const real *const take_2 = X + 3;
     const real *const take_3 = step;
@@ -6724,17 +7460,23 @@ INLINE void retract_any(const real *X, const real *step, real *X_moved_out, int 
     }
     beside(1, 3, 4, add_6, turn_quaternion_5, X_moved);
     check(7, 1, X_moved, why.overflow);
-    judge(&why, 1, code);
-    deliver(X_moved, 7, 1, code, X_moved_out);
+    judge(&why, code);
+    copy(7, X_moved, X_moved_out);
+    if (*code != OK) {
+        refuse(7, X_moved_out);
+    }
 }
 
-INLINE void difference_any(const real *X0, const real *X1, real *step_out, int *code)
+INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
 {
     real turn_between_5[3] = {0}, subtract_6[3] = {0}, step[6] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X0, why.invalid);
-    check(7, 1, X1, why.invalid);
+    const real total_in = total(X0, 7) + total(X1, 7);
+    if (!is_finite(total_in)) {
+        check(7, 1, X0, why.invalid);
+        check(7, 1, X1, why.invalid);
+    }
     const real *const take_1 = X0;
     const real *const take_2 = X0 + 3;
     const real *const take_3 = X1;
@@ -6745,19 +7487,25 @@ INLINE void difference_any(const real *X0, const real *X1, real *step_out, int *
     }
     beside(1, 3, 3, subtract_6, turn_between_5, step);
     check(6, 1, step, why.overflow);
-    judge(&why, 1, code);
-    deliver(step, 6, 1, code, step_out);
+    judge(&why, code);
+    copy(6, step, step_out);
+    if (*code != OK) {
+        refuse(6, step_out);
+    }
 }
 
-INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real *X_out, int *code)
+INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
 {
     real turn_between_5[3] = {0}, subtract_6[3] = {0}, join_7[6] = {0}, scale_8[6] = {0},
         turn_quaternion_13[4] = {0}, add_14[3] = {0}, X[7] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X0, why.invalid);
-    check(7, 1, X1, why.invalid);
-    check(1, 1, s, why.invalid);
+    const real total_in = total(X0, 7) + total(X1, 7) + total(s, 1);
+    if (!is_finite(total_in)) {
+        check(7, 1, X0, why.invalid);
+        check(7, 1, X1, why.invalid);
+        check(1, 1, s, why.invalid);
+    }
     const real *const take_1 = X0;
     const real *const take_2 = X0 + 3;
     const real *const take_3 = X1;
@@ -6780,8 +7528,11 @@ INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real 
     }
     beside(1, 3, 4, add_14, turn_quaternion_13, X);
     check(7, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 7, 1, code, X_out);
+    judge(&why, code);
+    copy(7, X, X_out);
+    if (*code != OK) {
+        refuse(7, X_out);
+    }
 }
 
 /* ---- one state, and batches ---- */
@@ -6790,7 +7541,7 @@ int hexapod_6ucu_M(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, 
     *M)
 {
     int code;
-    M_any(model, 1, X, M, &code);
+    M_one(model, X, M, &code);
     return code;
 }
 
@@ -6798,9 +7549,9 @@ size_t hexapod_6ucu_M_batch(const hexapod_6ucu_model *model, size_t n, const hex
     hexapod_6ucu_real *M, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        M_any(model, LANES, X + 7*i, M + 36*i, codes);
+        M_lanes(model, X + 7*i, M + 36*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6ucu_M(model, X + 7*(i + k), M + 36*(i + k));
@@ -6819,7 +7570,7 @@ int hexapod_6ucu_Z(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, 
     hexapod_6ucu_real *V, hexapod_6ucu_real *Z)
 {
     int code;
-    Z_any(model, 1, X, V, Z, &code);
+    Z_one(model, X, V, Z, &code);
     return code;
 }
 
@@ -6827,9 +7578,9 @@ size_t hexapod_6ucu_Z_batch(const hexapod_6ucu_model *model, size_t n, const hex
     const hexapod_6ucu_real *V, hexapod_6ucu_real *Z, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        Z_any(model, LANES, X + 7*i, V + 6*i, Z + 6*i, codes);
+        Z_lanes(model, X + 7*i, V + 6*i, Z + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6ucu_Z(model, X + 7*(i + k), V + 6*(i + k), Z + 6*(i + k));
@@ -6848,7 +7599,7 @@ int hexapod_6ucu_H(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, 
     *H)
 {
     int code;
-    H_any(model, 1, X, H, &code);
+    H_one(model, X, H, &code);
     return code;
 }
 
@@ -6856,9 +7607,9 @@ size_t hexapod_6ucu_H_batch(const hexapod_6ucu_model *model, size_t n, const hex
     hexapod_6ucu_real *H, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        H_any(model, LANES, X + 7*i, H + 36*i, codes);
+        H_lanes(model, X + 7*i, H + 36*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6ucu_H(model, X + 7*(i + k), H + 36*(i + k));
@@ -6877,7 +7628,7 @@ int hexapod_6ucu_inverse_kinematics(const hexapod_6ucu_model *model, const hexap
     hexapod_6ucu_real *q)
 {
     int code;
-    inverse_kinematics_any(model, 1, X, q, &code);
+    inverse_kinematics_one(model, X, q, &code);
     return code;
 }
 
@@ -6885,9 +7636,9 @@ size_t hexapod_6ucu_inverse_kinematics_batch(const hexapod_6ucu_model *model, si
     hexapod_6ucu_real *X, hexapod_6ucu_real *q, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_kinematics_any(model, LANES, X + 7*i, q + 24*i, codes);
+        inverse_kinematics_lanes(model, X + 7*i, q + 24*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6ucu_inverse_kinematics(model, X + 7*(i + k), q + 24*(i + k));
@@ -6906,7 +7657,7 @@ int hexapod_6ucu_joint_rates(const hexapod_6ucu_model *model, const hexapod_6ucu
     hexapod_6ucu_real *V, hexapod_6ucu_real *rates)
 {
     int code;
-    joint_rates_any(model, 1, X, V, rates, &code);
+    joint_rates_one(model, X, V, rates, &code);
     return code;
 }
 
@@ -6914,9 +7665,9 @@ size_t hexapod_6ucu_joint_rates_batch(const hexapod_6ucu_model *model, size_t n,
     hexapod_6ucu_real *X, const hexapod_6ucu_real *V, hexapod_6ucu_real *rates, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_rates_any(model, LANES, X + 7*i, V + 6*i, rates + 24*i, codes);
+        joint_rates_lanes(model, X + 7*i, V + 6*i, rates + 24*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6ucu_joint_rates(model, X + 7*(i + k), V + 6*(i + k), rates + 24*(i + k));
@@ -6935,7 +7686,7 @@ int hexapod_6ucu_joint_accelerations(const hexapod_6ucu_model *model, const hexa
     const hexapod_6ucu_real *V, const hexapod_6ucu_real *A, hexapod_6ucu_real *accelerations)
 {
     int code;
-    joint_accelerations_any(model, 1, X, V, A, accelerations, &code);
+    joint_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
@@ -6944,9 +7695,9 @@ size_t hexapod_6ucu_joint_accelerations_batch(const hexapod_6ucu_model *model, s
     hexapod_6ucu_real *accelerations, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_accelerations_any(model, LANES, X + 7*i, V + 6*i, A + 6*i, accelerations + 24*i, codes);
+        joint_accelerations_lanes(model, X + 7*i, V + 6*i, A + 6*i, accelerations + 24*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6ucu_joint_accelerations(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k),
@@ -6967,7 +7718,7 @@ int hexapod_6ucu_dynamics(const hexapod_6ucu_model *model, const hexapod_6ucu_re
     hexapod_6ucu_real *V, hexapod_6ucu_real *M, hexapod_6ucu_real *Z, hexapod_6ucu_real *H)
 {
     int code;
-    dynamics_any(model, 1, X, V, M, Z, H, &code);
+    dynamics_one(model, X, V, M, Z, H, &code);
     return code;
 }
 
@@ -6976,9 +7727,9 @@ size_t hexapod_6ucu_dynamics_batch(const hexapod_6ucu_model *model, size_t n, co
     hexapod_6ucu_real *H, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        dynamics_any(model, LANES, X + 7*i, V + 6*i, M + 36*i, Z + 6*i, H + 36*i, codes);
+        dynamics_lanes(model, X + 7*i, V + 6*i, M + 36*i, Z + 6*i, H + 36*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6ucu_dynamics(model, X + 7*(i + k), V + 6*(i + k), M + 36*(i + k), Z + 6*(i +
@@ -6999,7 +7750,7 @@ int hexapod_6ucu_inverse_dynamics(const hexapod_6ucu_model *model, const hexapod
     hexapod_6ucu_real *tau)
 {
     int code;
-    inverse_dynamics_any(model, 1, X, V, A, wrench, tau, &code);
+    inverse_dynamics_one(model, X, V, A, wrench, tau, &code);
     return code;
 }
 
@@ -7008,10 +7759,10 @@ size_t hexapod_6ucu_inverse_dynamics_batch(const hexapod_6ucu_model *model, size
     hexapod_6ucu_real *wrench, hexapod_6ucu_real *tau, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_dynamics_any(model, LANES, X + 7*i, V + 6*i, A + 6*i, wrench ? wrench + 6*i : NULL, tau +
-            6*i, codes);
+        inverse_dynamics_lanes(model, X + 7*i, V + 6*i, A + 6*i, wrench ? wrench + 6*i : NULL, tau + 6*i,
+            codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6ucu_inverse_dynamics(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k),
@@ -7033,7 +7784,7 @@ int hexapod_6ucu_forward_dynamics(const hexapod_6ucu_model *model, const hexapod
     hexapod_6ucu_real *A)
 {
     int code;
-    forward_dynamics_any(model, 1, X, V, tau, wrench, A, &code);
+    forward_dynamics_one(model, X, V, tau, wrench, A, &code);
     return code;
 }
 
@@ -7042,10 +7793,10 @@ size_t hexapod_6ucu_forward_dynamics_batch(const hexapod_6ucu_model *model, size
     hexapod_6ucu_real *wrench, hexapod_6ucu_real *A, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        forward_dynamics_any(model, LANES, X + 7*i, V + 6*i, tau + 6*i, wrench ? wrench + 6*i : NULL, A +
-            6*i, codes);
+        forward_dynamics_lanes(model, X + 7*i, V + 6*i, tau + 6*i, wrench ? wrench + 6*i : NULL, A + 6*i,
+            codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6ucu_forward_dynamics(model, X + 7*(i + k), V + 6*(i + k), tau + 6*(i + k),
@@ -7071,7 +7822,7 @@ int hexapod_6ucu_complete_acceleration(const hexapod_6ucu_model *model, const he
     (void)X;
     (void)V;
     (void)wrench;
-    complete_acceleration_any(A, completed, &code);
+    complete_acceleration_one(A, completed, &code);
     return code;
 }
 
@@ -7093,7 +7844,7 @@ int hexapod_6ucu_leg_reactions(const hexapod_6ucu_model *model, const hexapod_6u
     hexapod_6ucu_real *forces)
 {
     int code;
-    leg_reactions_any(model, X, V, A, wrench, forces, &code);
+    leg_reactions_one(model, X, V, A, wrench, forces, &code);
     return code;
 }
 
@@ -7114,7 +7865,7 @@ int hexapod_6ucu_energy(const hexapod_6ucu_model *model, const hexapod_6ucu_real
     hexapod_6ucu_real *V, hexapod_6ucu_real *kinetic, hexapod_6ucu_real *potential)
 {
     int code;
-    energy_any(model, X, V, kinetic, potential, &code);
+    energy_one(model, X, V, kinetic, potential, &code);
     return code;
 }
 
@@ -7134,7 +7885,7 @@ int hexapod_6ucu_condition(const hexapod_6ucu_model *model, const hexapod_6ucu_r
     hexapod_6ucu_real *sigma, hexapod_6ucu_real *legs)
 {
     int code;
-    condition_any(model, X, NULL, sigma, legs, &code);
+    condition_one(model, X, NULL, sigma, legs, &code);
     return code;
 }
 
@@ -7153,7 +7904,7 @@ int hexapod_6ucu_forward_kinematics(const hexapod_6ucu_model *model, const hexap
     *q_actuated, const hexapod_6ucu_real *X0, hexapod_6ucu_real *X)
 {
     int code;
-    forward_kinematics_any(model, q_actuated, X0, X, &code);
+    forward_kinematics_one(model, q_actuated, X0, X, &code);
     return code;
 }
 
@@ -7174,7 +7925,7 @@ int hexapod_6ucu_dissipation(const hexapod_6ucu_model *model, const hexapod_6ucu
     int code;
     (void)model;
     (void)X;
-    dissipation_any(V, dissipation, &code);
+    dissipation_one(V, dissipation, &code);
     return code;
 }
 
@@ -7193,7 +7944,7 @@ int hexapod_6ucu_momentum(const hexapod_6ucu_model *model, const hexapod_6ucu_re
     hexapod_6ucu_real *V, hexapod_6ucu_real *momentum)
 {
     int code;
-    momentum_any(model, 1, X, V, momentum, &code);
+    momentum_one(model, X, V, momentum, &code);
     return code;
 }
 
@@ -7201,9 +7952,9 @@ size_t hexapod_6ucu_momentum_batch(const hexapod_6ucu_model *model, size_t n, co
     hexapod_6ucu_real *X, const hexapod_6ucu_real *V, hexapod_6ucu_real *momentum, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        momentum_any(model, LANES, X + 7*i, V + 6*i, momentum + 6*i, codes);
+        momentum_lanes(model, X + 7*i, V + 6*i, momentum + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6ucu_momentum(model, X + 7*(i + k), V + 6*(i + k), momentum + 6*(i + k));
@@ -7218,11 +7969,69 @@ size_t hexapod_6ucu_momentum_batch(const hexapod_6ucu_model *model, size_t n, co
     return failed;
 }
 
+int hexapod_6ucu_joint_margins(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X,
+    hexapod_6ucu_real *margins)
+{
+    int code;
+    joint_margins_one(model, X, margins, &code);
+    return code;
+}
+
+size_t hexapod_6ucu_joint_margins_batch(const hexapod_6ucu_model *model, size_t n, const
+    hexapod_6ucu_real *X, hexapod_6ucu_real *margins, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        joint_margins_lanes(model, X + 7*i, margins + 24*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = hexapod_6ucu_joint_margins(model, X + 7*(i + k), margins + 24*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = hexapod_6ucu_joint_margins(model, X + 7*i, margins + 24*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hexapod_6ucu_within_limits(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X,
+    hexapod_6ucu_real *within)
+{
+    int code;
+    within_limits_one(model, X, within, &code);
+    return code;
+}
+
+size_t hexapod_6ucu_within_limits_batch(const hexapod_6ucu_model *model, size_t n, const
+    hexapod_6ucu_real *X, hexapod_6ucu_real *within, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        within_limits_lanes(model, X + 7*i, within + 1*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = hexapod_6ucu_within_limits(model, X + 7*(i + k), within + 1*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = hexapod_6ucu_within_limits(model, X + 7*i, within + 1*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
 int hexapod_6ucu_actuator_positions(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X,
     hexapod_6ucu_real *q)
 {
     int code;
-    actuator_positions_any(model, 1, X, q, &code);
+    actuator_positions_one(model, X, q, &code);
     return code;
 }
 
@@ -7230,9 +8039,9 @@ size_t hexapod_6ucu_actuator_positions_batch(const hexapod_6ucu_model *model, si
     hexapod_6ucu_real *X, hexapod_6ucu_real *q, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_positions_any(model, LANES, X + 7*i, q + 6*i, codes);
+        actuator_positions_lanes(model, X + 7*i, q + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6ucu_actuator_positions(model, X + 7*(i + k), q + 6*(i + k));
@@ -7251,7 +8060,7 @@ int hexapod_6ucu_actuator_rates(const hexapod_6ucu_model *model, const hexapod_6
     hexapod_6ucu_real *V, hexapod_6ucu_real *rates)
 {
     int code;
-    actuator_rates_any(model, 1, X, V, rates, &code);
+    actuator_rates_one(model, X, V, rates, &code);
     return code;
 }
 
@@ -7259,9 +8068,9 @@ size_t hexapod_6ucu_actuator_rates_batch(const hexapod_6ucu_model *model, size_t
     hexapod_6ucu_real *X, const hexapod_6ucu_real *V, hexapod_6ucu_real *rates, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_rates_any(model, LANES, X + 7*i, V + 6*i, rates + 6*i, codes);
+        actuator_rates_lanes(model, X + 7*i, V + 6*i, rates + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6ucu_actuator_rates(model, X + 7*(i + k), V + 6*(i + k), rates + 6*(i + k));
@@ -7280,7 +8089,7 @@ int hexapod_6ucu_actuator_accelerations(const hexapod_6ucu_model *model, const h
     *X, const hexapod_6ucu_real *V, const hexapod_6ucu_real *A, hexapod_6ucu_real *accelerations)
 {
     int code;
-    actuator_accelerations_any(model, 1, X, V, A, accelerations, &code);
+    actuator_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
@@ -7289,9 +8098,9 @@ size_t hexapod_6ucu_actuator_accelerations_batch(const hexapod_6ucu_model *model
     hexapod_6ucu_real *accelerations, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_accelerations_any(model, LANES, X + 7*i, V + 6*i, A + 6*i, accelerations + 6*i, codes);
+        actuator_accelerations_lanes(model, X + 7*i, V + 6*i, A + 6*i, accelerations + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6ucu_actuator_accelerations(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k),
@@ -7312,7 +8121,7 @@ int hexapod_6ucu_power(const hexapod_6ucu_model *model, const hexapod_6ucu_real 
     hexapod_6ucu_real *V, const hexapod_6ucu_real *tau, hexapod_6ucu_real *power)
 {
     int code;
-    power_any(model, 1, X, V, tau, power, &code);
+    power_one(model, X, V, tau, power, &code);
     return code;
 }
 
@@ -7321,9 +8130,9 @@ size_t hexapod_6ucu_power_batch(const hexapod_6ucu_model *model, size_t n, const
     *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        power_any(model, LANES, X + 7*i, V + 6*i, tau + 6*i, power + 1*i, codes);
+        power_lanes(model, X + 7*i, V + 6*i, tau + 6*i, power + 1*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6ucu_power(model, X + 7*(i + k), V + 6*(i + k), tau + 6*(i + k), power + 1*(i +
@@ -7342,7 +8151,7 @@ size_t hexapod_6ucu_power_batch(const hexapod_6ucu_model *model, size_t n, const
 int hexapod_6ucu_rotation(const hexapod_6ucu_real *X, hexapod_6ucu_real *R)
 {
     int code;
-    rotation_any(X, R, &code);
+    rotation_one(X, R, &code);
     return code;
 }
 
@@ -7361,7 +8170,7 @@ int hexapod_6ucu_pose(const hexapod_6ucu_real *t, const hexapod_6ucu_real *R, he
     *X)
 {
     int code;
-    pose_any(t, R, X, &code);
+    pose_one(t, R, X, &code);
     return code;
 }
 
@@ -7380,7 +8189,7 @@ int hexapod_6ucu_X_dot(const hexapod_6ucu_real *X, const hexapod_6ucu_real *V, h
     *X_dot)
 {
     int code;
-    X_dot_any(X, V, X_dot, &code);
+    X_dot_one(X, V, X_dot, &code);
     return code;
 }
 
@@ -7399,7 +8208,7 @@ int hexapod_6ucu_pose_from_rpy(const hexapod_6ucu_real *t, const hexapod_6ucu_re
     hexapod_6ucu_real *X)
 {
     int code;
-    pose_from_rpy_any(t, rpy, X, &code);
+    pose_from_rpy_one(t, rpy, X, &code);
     return code;
 }
 
@@ -7418,7 +8227,7 @@ int hexapod_6ucu_retract(const hexapod_6ucu_real *X, const hexapod_6ucu_real *st
     hexapod_6ucu_real *X_moved)
 {
     int code;
-    retract_any(X, step, X_moved, &code);
+    retract_one(X, step, X_moved, &code);
     return code;
 }
 
@@ -7437,7 +8246,7 @@ int hexapod_6ucu_difference(const hexapod_6ucu_real *X0, const hexapod_6ucu_real
     hexapod_6ucu_real *step)
 {
     int code;
-    difference_any(X0, X1, step, &code);
+    difference_one(X0, X1, step, &code);
     return code;
 }
 
@@ -7456,7 +8265,7 @@ int hexapod_6ucu_interpolate(const hexapod_6ucu_real *X0, const hexapod_6ucu_rea
     hexapod_6ucu_real *s, hexapod_6ucu_real *X)
 {
     int code;
-    interpolate_any(X0, X1, s, X, &code);
+    interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 

@@ -51,6 +51,7 @@ typedef HEXAPOD_6UCU_REAL hexapod_6ucu_real;
 #define HEXAPOD_6UCU_NC 0
 #define HEXAPOD_6UCU_NW 6
 #define HEXAPOD_6UCU_NJ 24
+#define HEXAPOD_6UCU_OVERCONSTRAINED 0
 
 enum {
     HEXAPOD_6UCU_OK = 0,
@@ -71,46 +72,47 @@ typedef struct {
     /* inertia tensor about the centre of mass, platform axes [kg m^2] */
     hexapod_6ucu_real platform_inertia[3][3];
     /* base point, base frame [m] */
-    hexapod_6ucu_real upru_base_point[6][3];
+    hexapod_6ucu_real ucu_base_point[6][3];
     /* rotation from leg axes to base axes [-] */
-    hexapod_6ucu_real upru_base_frame[6][3][3];
+    hexapod_6ucu_real ucu_base_frame[6][3][3];
     /* platform joint, platform frame [m] */
-    hexapod_6ucu_real upru_platform_point[6][3];
+    hexapod_6ucu_real ucu_platform_point[6][3];
     /* axis_platform of the platform joint [-] */
-    hexapod_6ucu_real upru_platform_joint_axis_platform[6][3];
+    hexapod_6ucu_real ucu_platform_joint_axis_platform[6][3];
     /* mass of link 2 [kg] */
-    hexapod_6ucu_real upru_link2_mass[6];
+    hexapod_6ucu_real ucu_link2_mass[6];
     /* centre of mass of link 2, link frame [m] */
-    hexapod_6ucu_real upru_link2_centre_of_mass[6][3];
+    hexapod_6ucu_real ucu_link2_centre_of_mass[6][3];
     /* inertia tensor of link 2 about its centre of mass, link axes [kg m^2] */
-    hexapod_6ucu_real upru_link2_inertia[6][3][3];
+    hexapod_6ucu_real ucu_link2_inertia[6][3][3];
     /* mass of link 4 [kg] */
-    hexapod_6ucu_real upru_link4_mass[6];
+    hexapod_6ucu_real ucu_link4_mass[6];
     /* centre of mass of link 4, link frame [m] */
-    hexapod_6ucu_real upru_link4_centre_of_mass[6][3];
+    hexapod_6ucu_real ucu_link4_centre_of_mass[6][3];
     /* inertia tensor of link 4 about its centre of mass, link axes [kg m^2] */
-    hexapod_6ucu_real upru_link4_inertia[6][3][3];
+    hexapod_6ucu_real ucu_link4_inertia[6][3][3];
 } hexapod_6ucu_params;
 
 /* What depends on the parameters alone; set by hexapod_6ucu_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
-    hexapod_6ucu_real J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+    /* 6 legs of type ucu; copies of the first fill up */
+    hexapod_6ucu_real ucu_J_2_xy[8], ucu_J_2_xz[8], ucu_J_2_yy[8], ucu_J_2_yz[8], ucu_J_2_zz[8],
+            ucu_J_4_xx[8], ucu_J_4_xy[8], ucu_J_4_xz[8], ucu_J_4_yy[8], ucu_J_4_yz[8], ucu_J_4_zz[8],
+            ucu_Jc_2_xx[8], ucu_Sigma_2_xx[8], ucu_Sigma_2_yy[8], ucu_Sigma_2_zz[8],
+            ucu_Sigma_4_xx[8], ucu_Sigma_4_yy[8], ucu_Sigma_4_zz[8], ucu_b_r0_x[8], ucu_b_r0_y[8],
+            ucu_b_r0_z[8], ucu_base_frame_xx[8], ucu_base_frame_xy[8], ucu_base_frame_xz[8],
+            ucu_base_frame_yx[8], ucu_base_frame_yy[8], ucu_base_frame_yz[8], ucu_base_frame_zx[8],
+            ucu_base_frame_zy[8], ucu_base_frame_zz[8], ucu_base_point_x[8], ucu_base_point_y[8],
+            ucu_base_point_z[8], ucu_branch_1[8], ucu_branch_2[8], ucu_branch_4[8], ucu_g_r0_x[8],
+            ucu_g_r0_y[8], ucu_g_r0_z[8], ucu_h_2_x[8], ucu_h_2_y[8], ucu_h_2_z[8], ucu_h_4_x[8],
+            ucu_h_4_y[8], ucu_h_4_z[8], ucu_link2_mass[8], ucu_link4_mass[8],
+            ucu_platform_joint_axis_platform_x[8], ucu_platform_joint_axis_platform_y[8],
+            ucu_platform_joint_axis_platform_z[8], ucu_platform_point_x[8], ucu_platform_point_y[8],
+            ucu_platform_point_z[8];
+    hexapod_6ucu_real J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
             J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
             h_star_x, h_star_y, h_star_z, legs_size, m_star, spread_t;
-    /* legs of type upru */
-    hexapod_6ucu_real J_2_xy[6], J_2_xz[6], J_2_yy[6], J_2_yz[6], J_2_zz[6], J_4_xx[6], J_4_xy[6],
-            J_4_xz[6], J_4_yy[6], J_4_yz[6], J_4_zz[6], Jc_2_xx[6], Sigma_2_xx[6], Sigma_2_yy[6],
-            Sigma_2_zz[6], Sigma_4_xx[6], Sigma_4_yy[6], Sigma_4_zz[6], b_r0_x[6], b_r0_y[6],
-            b_r0_z[6], branch_1[6], branch_2[6], branch_4[6], g_r0_x[6], g_r0_y[6], g_r0_z[6],
-            h_2_x[6], h_2_y[6], h_2_z[6], h_4_x[6], h_4_y[6], h_4_z[6], upru_base_frame_xx[6],
-            upru_base_frame_xy[6], upru_base_frame_xz[6], upru_base_frame_yx[6],
-            upru_base_frame_yy[6], upru_base_frame_yz[6], upru_base_frame_zx[6],
-            upru_base_frame_zy[6], upru_base_frame_zz[6], upru_base_point_x[6], upru_base_point_y[6],
-            upru_base_point_z[6], upru_link2_mass[6], upru_link4_mass[6],
-            upru_platform_joint_axis_platform_x[6], upru_platform_joint_axis_platform_y[6],
-            upru_platform_joint_axis_platform_z[6], upru_platform_point_x[6],
-            upru_platform_point_y[6], upru_platform_point_z[6];
 } hexapod_6ucu_model;
 
 extern const hexapod_6ucu_params hexapod_6ucu_default_params;
@@ -127,13 +129,13 @@ extern const char *const hexapod_6ucu_ACTUATOR_NAMES[HEXAPOD_6UCU_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int hexapod_6ucu_prepare(const hexapod_6ucu_params *params, hexapod_6ucu_model *model);
 
-/* Inertia matrix M. 2421 mul, 1629 add, 30 div, 18 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 2355 mul, 1563 add, 30 div, 18 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int hexapod_6ucu_M(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, hexapod_6ucu_real
     *M);
 size_t hexapod_6ucu_M_batch(const hexapod_6ucu_model *model, size_t n, const hexapod_6ucu_real *X,
     hexapod_6ucu_real *M, int *status);
 
-/* Velocity and gravity terms Z. 2079 mul, 1506 add, 30 div, 18 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 2109 mul, 1530 add, 30 div, 18 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int hexapod_6ucu_Z(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
     hexapod_6ucu_real *V, hexapod_6ucu_real *Z);
@@ -169,7 +171,7 @@ size_t hexapod_6ucu_joint_accelerations_batch(const hexapod_6ucu_model *model, s
     hexapod_6ucu_real *X, const hexapod_6ucu_real *V, const hexapod_6ucu_real *A,
     hexapod_6ucu_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 3819 mul, 2745 add, 30 div, 18 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 3783 mul, 2703 add, 30 div, 18 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int hexapod_6ucu_dynamics(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
     hexapod_6ucu_real *V, hexapod_6ucu_real *M, hexapod_6ucu_real *Z, hexapod_6ucu_real *H);
@@ -187,7 +189,7 @@ size_t hexapod_6ucu_inverse_dynamics_batch(const hexapod_6ucu_model *model, size
     hexapod_6ucu_real *X, const hexapod_6ucu_real *V, const hexapod_6ucu_real *A, const
     hexapod_6ucu_real *wrench, hexapod_6ucu_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 3819 mul, 2745 add, 30 div, 18
+/* Acceleration A under the actuator forces tau and the wrench. 3783 mul, 2703 add, 30 div, 18
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int hexapod_6ucu_forward_dynamics(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X,
@@ -250,12 +252,27 @@ int hexapod_6ucu_dissipation(const hexapod_6ucu_model *model, const hexapod_6ucu
 size_t hexapod_6ucu_dissipation_batch(const hexapod_6ucu_model *model, size_t n, const
     hexapod_6ucu_real *X, const hexapod_6ucu_real *V, hexapod_6ucu_real *dissipation, int *status);
 
-/* Generalised momentum M V. 2421 mul, 1629 add, 30 div, 18 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 2355 mul, 1563 add, 30 div, 18 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int hexapod_6ucu_momentum(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
     hexapod_6ucu_real *V, hexapod_6ucu_real *momentum);
 size_t hexapod_6ucu_momentum_batch(const hexapod_6ucu_model *model, size_t n, const
     hexapod_6ucu_real *X, const hexapod_6ucu_real *V, hexapod_6ucu_real *momentum, int *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 444 mul, 288 add, 18 div, 18 sqrt, 18 trig. In: X (NQ). Out: margins (NJ).
+   */
+int hexapod_6ucu_joint_margins(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X,
+    hexapod_6ucu_real *margins);
+size_t hexapod_6ucu_joint_margins_batch(const hexapod_6ucu_model *model, size_t n, const
+    hexapod_6ucu_real *X, hexapod_6ucu_real *margins, int *status);
+
+/* Whether all joints are within their limits of displacement. 444 mul, 288 add, 18 div, 18 sqrt,
+   18 trig. In: X (NQ). Out: within (1). */
+int hexapod_6ucu_within_limits(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X,
+    hexapod_6ucu_real *within);
+size_t hexapod_6ucu_within_limits_batch(const hexapod_6ucu_model *model, size_t n, const
+    hexapod_6ucu_real *X, hexapod_6ucu_real *within, int *status);
 
 /* Displacements of the actuated joints, in the order of tau. 444 mul, 288 add, 18 div, 18 sqrt,
    18 trig. In: X (NQ). Out: q (NU). */

@@ -33,6 +33,7 @@ __all__ = [
     "NC",
     "NW",
     "NJ",
+    "OVERCONSTRAINED",
     "ACTUATED",
     "ACTUATOR_NAMES",
     "H",
@@ -57,6 +58,7 @@ __all__ = [
     "inverse_dynamics",
     "inverse_kinematics",
     "joint_accelerations",
+    "joint_margins",
     "joint_rates",
     "leg_reactions",
     "momentum",
@@ -66,6 +68,7 @@ __all__ = [
     "power",
     "retract",
     "rotation",
+    "within_limits",
 ]
 
 NQ = 7
@@ -74,6 +77,7 @@ NU = 6
 NC = 0
 NW = 6
 NJ = 24
+OVERCONSTRAINED = 0
 
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
@@ -94,7 +98,7 @@ _SHAPES = {  # of the arrays that functions give
     "reach": (6,),
 }
 # Where the entries of a leg type's legs stand in these arrays, row by row.
-_H_upru = (
+_H_ucu = (
     [0, 1, 2, 3, 4, 5],
     [6, 7, 8, 9, 10, 11],
     [12, 13, 14, 15, 16, 17],
@@ -102,25 +106,25 @@ _H_upru = (
     [24, 25, 26, 27, 28, 29],
     [30, 31, 32, 33, 34, 35],
 )
-_q_upru = (
+_q_ucu = (
     [0, 4, 8, 12, 16, 20],
     [1, 5, 9, 13, 17, 21],
     [2, 6, 10, 14, 18, 22],
     [3, 7, 11, 15, 19, 23],
 )
-_qd_upru = (
+_qd_ucu = (
     [0, 4, 8, 12, 16, 20],
     [1, 5, 9, 13, 17, 21],
     [2, 6, 10, 14, 18, 22],
     [3, 7, 11, 15, 19, 23],
 )
-_qdd_upru = (
+_qdd_ucu = (
     [0, 4, 8, 12, 16, 20],
     [1, 5, 9, 13, 17, 21],
     [2, 6, 10, 14, 18, 22],
     [3, 7, 11, 15, 19, 23],
 )
-_leg_force_upru = (
+_leg_force_ucu = (
     [0, 6, 12, 18, 24, 30],
     [1, 7, 13, 19, 25, 31],
     [2, 8, 14, 20, 26, 32],
@@ -128,12 +132,12 @@ _leg_force_upru = (
     [4, 10, 16, 22, 28, 34],
     [5, 11, 17, 23, 29, 35],
 )
-_drive_upru = (
+_drive_ucu = (
     [0, 6, 12, 18, 24, 30],
     [1, 7, 13, 19, 25, 31],
     [2, 8, 14, 20, 26, 32],
 )
-_pivots_upru = (
+_pivots_ucu = (
     [0, 1, 2, 3, 4, 5],
 )
 ACTUATED = (2, 6, 10, 14, 18, 22)  # places of the actuated joints in q, in the order of tau
@@ -144,7 +148,7 @@ _DEFAULTS = {
     "platform_mass": 12.0,
     "platform_centre_of_mass": [0.0, 0.0, 0.04],
     "platform_inertia": [[0.35, 0.0, 0.0], [0.0, 0.35, 0.0], [0.0, 0.0, 0.6]],
-    "upru_base_point": [
+    "ucu_base_point": [
         [-0.07595833716604927, 0.3902743704941056, 0.017731158385886236],
         [0.3759666878769001, 0.12935533563203033, 0.017731158385886236],
         [-0.3000083507108508, -0.2609190348620751, 0.017731158385886236],
@@ -152,7 +156,7 @@ _DEFAULTS = {
         [0.37596668787689996, -0.12935533563203055, 0.017731158385886236],
         [-0.07595833716604977, -0.39027437049410546, 0.017731158385886236],
     ],
-    "upru_base_frame": [
+    "ucu_base_frame": [
         [[0.0, 0.7666445685820955, -0.6420717292200091], [0.0, 0.6420717292200091, 0.7666445685820955], [1.0, 0.0, 0.0]],
         [[0.0, 0.17272814426528374, -0.9849695366754605], [0.0, 0.9849695366754605, 0.17272814426528374], [1.0, 0.0, 0.0]],
         [[0.0, -0.9393727128473789, -0.34289780745545156], [0.0, 0.34289780745545156, -0.9393727128473789], [1.0, 0.0, 0.0]],
@@ -160,7 +164,7 @@ _DEFAULTS = {
         [[0.0, 0.17272814426528307, 0.9849695366754606], [0.0, -0.9849695366754606, 0.17272814426528307], [1.0, 0.0, 0.0]],
         [[0.0, 0.7666445685820946, 0.6420717292200101], [0.0, -0.6420717292200101, 0.7666445685820946], [1.0, 0.0, 0.0]],
     ],
-    "upru_platform_point": [
+    "ucu_platform_point": [
         [0.22999337057462865, 0.19262151876600273, -0.02],
         [0.05181844327958512, 0.29549086100263816, -0.02],
         [-0.28181181385421367, 0.10286934223663546, -0.02],
@@ -168,7 +172,7 @@ _DEFAULTS = {
         [0.05181844327958492, -0.29549086100263816, -0.02],
         [0.22999337057462838, -0.19262151876600303, -0.02],
     ],
-    "upru_platform_joint_axis_platform": [
+    "ucu_platform_joint_axis_platform": [
         [0.6880543868285199, 0.7219737789685693, 0.07304124347156919],
         [-0.1805949487370712, 0.9697110861370941, 0.16445629788327362],
         [0.11364948075415938, 0.4371834362403796, 0.8921627870525446],
@@ -176,7 +180,7 @@ _DEFAULTS = {
         [-0.3453877674323409, 0.9365354312017414, 0.060072258255133563],
         [-0.09560027856573304, 0.4532422409753462, 0.8862460480779593],
     ],
-    "upru_link2_mass": [
+    "ucu_link2_mass": [
         2.4,
         2.4,
         2.4,
@@ -184,7 +188,7 @@ _DEFAULTS = {
         2.4,
         2.4,
     ],
-    "upru_link2_centre_of_mass": [
+    "ucu_link2_centre_of_mass": [
         [0.18, 0.0, 0.0],
         [0.18, 0.0, 0.0],
         [0.18, 0.0, 0.0],
@@ -192,7 +196,7 @@ _DEFAULTS = {
         [0.18, 0.0, 0.0],
         [0.18, 0.0, 0.0],
     ],
-    "upru_link2_inertia": [
+    "ucu_link2_inertia": [
         [[0.0010799999999999998, 0.0, 0.0], [0.0, 0.026459999999999997, 0.0], [0.0, 0.0, 0.026459999999999997]],
         [[0.0010799999999999998, 0.0, 0.0], [0.0, 0.026459999999999997, 0.0], [0.0, 0.0, 0.026459999999999997]],
         [[0.0010799999999999998, 0.0, 0.0], [0.0, 0.026459999999999997, 0.0], [0.0, 0.0, 0.026459999999999997]],
@@ -200,7 +204,7 @@ _DEFAULTS = {
         [[0.0010799999999999998, 0.0, 0.0], [0.0, 0.026459999999999997, 0.0], [0.0, 0.0, 0.026459999999999997]],
         [[0.0010799999999999998, 0.0, 0.0], [0.0, 0.026459999999999997, 0.0], [0.0, 0.0, 0.026459999999999997]],
     ],
-    "upru_link4_mass": [
+    "ucu_link4_mass": [
         1.1,
         1.1,
         1.1,
@@ -208,7 +212,7 @@ _DEFAULTS = {
         1.1,
         1.1,
     ],
-    "upru_link4_centre_of_mass": [
+    "ucu_link4_centre_of_mass": [
         [-0.22, 0.0, 0.0],
         [-0.22, 0.0, 0.0],
         [-0.22, 0.0, 0.0],
@@ -216,7 +220,7 @@ _DEFAULTS = {
         [-0.22, 0.0, 0.0],
         [-0.22, 0.0, 0.0],
     ],
-    "upru_link4_inertia": [
+    "ucu_link4_inertia": [
         [[0.00022000000000000003, 0.0, 0.0], [0.0, 0.01785666666666667, 0.0], [0.0, 0.0, 0.01785666666666667]],
         [[0.00022000000000000003, 0.0, 0.0], [0.0, 0.01785666666666667, 0.0], [0.0, 0.0, 0.01785666666666667]],
         [[0.00022000000000000003, 0.0, 0.0], [0.0, 0.01785666666666667, 0.0], [0.0, 0.0, 0.01785666666666667]],
@@ -230,16 +234,16 @@ _RULES = {  # shape, in all and of one; entries that are zero by structure; what
     "platform_mass": ((), (), (), "mass"),
     "platform_centre_of_mass": ((3,), (3,), (), "free"),
     "platform_inertia": ((3, 3), (3, 3), (), "inertia"),
-    "upru_base_point": ((6, 3), (3,), (), "free"),
-    "upru_base_frame": ((6, 3, 3), (3, 3), (), "rotation"),
-    "upru_platform_point": ((6, 3), (3,), (), "free"),
-    "upru_platform_joint_axis_platform": ((6, 3), (3,), (), "unit"),
-    "upru_link2_mass": ((6,), (), (), "mass"),
-    "upru_link2_centre_of_mass": ((6, 3), (3,), (), "free"),
-    "upru_link2_inertia": ((6, 3, 3), (3, 3), (), "inertia"),
-    "upru_link4_mass": ((6,), (), (), "mass"),
-    "upru_link4_centre_of_mass": ((6, 3), (3,), (), "free"),
-    "upru_link4_inertia": ((6, 3, 3), (3, 3), (), "inertia"),
+    "ucu_base_point": ((6, 3), (3,), (), "free"),
+    "ucu_base_frame": ((6, 3, 3), (3, 3), (), "rotation"),
+    "ucu_platform_point": ((6, 3), (3,), (), "free"),
+    "ucu_platform_joint_axis_platform": ((6, 3), (3,), (), "unit"),
+    "ucu_link2_mass": ((6,), (), (), "mass"),
+    "ucu_link2_centre_of_mass": ((6, 3), (3,), (), "free"),
+    "ucu_link2_inertia": ((6, 3, 3), (3, 3), (), "inertia"),
+    "ucu_link4_mass": ((6,), (), (), "mass"),
+    "ucu_link4_centre_of_mass": ((6, 3), (3,), (), "free"),
+    "ucu_link4_inertia": ((6, 3, 3), (3, 3), (), "inertia"),
 }
 
 
@@ -255,16 +259,16 @@ class Parameters:
         platform_mass: mass of the platform [kg], a number.
         platform_centre_of_mass: centre of mass, platform frame [m], shape (3,).
         platform_inertia: inertia tensor about the centre of mass, platform axes [kg m^2], shape (3, 3).
-        upru_base_point: base point, base frame [m], shape (6, 3).
-        upru_base_frame: rotation from leg axes to base axes [-], shape (6, 3, 3).
-        upru_platform_point: platform joint, platform frame [m], shape (6, 3).
-        upru_platform_joint_axis_platform: axis_platform of the platform joint [-], shape (6, 3).
-        upru_link2_mass: mass of link 2 [kg], shape (6,).
-        upru_link2_centre_of_mass: centre of mass of link 2, link frame [m], shape (6, 3).
-        upru_link2_inertia: inertia tensor of link 2 about its centre of mass, link axes [kg m^2], shape (6, 3, 3).
-        upru_link4_mass: mass of link 4 [kg], shape (6,).
-        upru_link4_centre_of_mass: centre of mass of link 4, link frame [m], shape (6, 3).
-        upru_link4_inertia: inertia tensor of link 4 about its centre of mass, link axes [kg m^2], shape (6, 3, 3).
+        ucu_base_point: base point, base frame [m], shape (6, 3).
+        ucu_base_frame: rotation from leg axes to base axes [-], shape (6, 3, 3).
+        ucu_platform_point: platform joint, platform frame [m], shape (6, 3).
+        ucu_platform_joint_axis_platform: axis_platform of the platform joint [-], shape (6, 3).
+        ucu_link2_mass: mass of link 2 [kg], shape (6,).
+        ucu_link2_centre_of_mass: centre of mass of link 2, link frame [m], shape (6, 3).
+        ucu_link2_inertia: inertia tensor of link 2 about its centre of mass, link axes [kg m^2], shape (6, 3, 3).
+        ucu_link4_mass: mass of link 4 [kg], shape (6,).
+        ucu_link4_centre_of_mass: centre of mass of link 4, link frame [m], shape (6, 3).
+        ucu_link4_inertia: inertia tensor of link 4 about its centre of mass, link axes [kg m^2], shape (6, 3, 3).
     """
 
     def __init__(self, **values):
@@ -365,7 +369,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return np.full(shape, default)
+        return _filled(shape, default) if isinstance(default, float) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -378,6 +382,16 @@ def _argument(function, name, value, shape, default=None, rule=""):
     elif rule == "positive" and not np.all((array > 0.0) & (array < np.inf)):
         raise ValueError(f"{function}: {name} must be positive and finite")
     return array
+
+
+_FILLED = {}
+
+
+def _filled(shape, value):
+    """An array of one value, made once."""
+    if (shape, value) not in _FILLED:
+        _FILLED[shape, value] = _frozen(np.full(shape, value))
+    return _FILLED[shape, value]
 
 
 def _lead(leads):
@@ -471,16 +485,16 @@ HOME_X = _frozen(np.array([0.0, 0.0, 0.75, 0.0, 0.0, 0.0, 1.0]))
 HOME_Q = _frozen(np.array([0.14999999999999997, 0.45, 0.8, 0.20000000000000026, 0.15, -0.45, 0.8, 0.2000000000000001, 0.15, 0.45, 0.8, 0.20000000000000084, 0.15, -0.45, 0.8, 0.2000000000000002, 0.15, 0.44999999999999996, 0.8, 0.19999999999999998, 0.15000000000000002, -0.44999999999999996, 0.8, 0.19999999999999987]))
 
 _BRANCHES = {  # assembly branch of home, a sign per leg
-    "branch_1": np.array([1.0, 1.0, 1.0, 1.0, 1.0, 1.0]),
-    "branch_2": np.array([1.0, 1.0, 1.0, 1.0, 1.0, 1.0]),
-    "branch_4": np.array([1.0, 1.0, -1.0, -1.0, -1.0, -1.0]),
+    "ucu_branch_1": np.array([1.0, 1.0, 1.0, 1.0, 1.0, 1.0]),
+    "ucu_branch_2": np.array([1.0, 1.0, 1.0, 1.0, 1.0, 1.0]),
+    "ucu_branch_4": np.array([1.0, 1.0, -1.0, -1.0, -1.0, -1.0]),
 }
 
 
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
-    _upru = 6
+    _ucu = 6
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -494,52 +508,52 @@ def _prepare(p):
     platform_inertia_yy = p.platform_inertia[1, 1]
     platform_inertia_yz = p.platform_inertia[1, 2]
     platform_inertia_zz = p.platform_inertia[2, 2]
-    upru_base_point_x = p.upru_base_point[:, 0]
-    upru_base_point_y = p.upru_base_point[:, 1]
-    upru_base_point_z = p.upru_base_point[:, 2]
-    upru_base_frame_xx = p.upru_base_frame[:, 0, 0]
-    upru_base_frame_xy = p.upru_base_frame[:, 0, 1]
-    upru_base_frame_xz = p.upru_base_frame[:, 0, 2]
-    upru_base_frame_yx = p.upru_base_frame[:, 1, 0]
-    upru_base_frame_yy = p.upru_base_frame[:, 1, 1]
-    upru_base_frame_yz = p.upru_base_frame[:, 1, 2]
-    upru_base_frame_zx = p.upru_base_frame[:, 2, 0]
-    upru_base_frame_zy = p.upru_base_frame[:, 2, 1]
-    upru_base_frame_zz = p.upru_base_frame[:, 2, 2]
-    upru_platform_point_x = p.upru_platform_point[:, 0]
-    upru_platform_point_y = p.upru_platform_point[:, 1]
-    upru_platform_point_z = p.upru_platform_point[:, 2]
-    upru_platform_joint_axis_platform_x = p.upru_platform_joint_axis_platform[:, 0]
-    upru_platform_joint_axis_platform_y = p.upru_platform_joint_axis_platform[:, 1]
-    upru_platform_joint_axis_platform_z = p.upru_platform_joint_axis_platform[:, 2]
-    upru_link2_mass = p.upru_link2_mass
-    upru_link2_centre_of_mass_x = p.upru_link2_centre_of_mass[:, 0]
-    upru_link2_centre_of_mass_y = p.upru_link2_centre_of_mass[:, 1]
-    upru_link2_centre_of_mass_z = p.upru_link2_centre_of_mass[:, 2]
-    upru_link2_inertia_xx = p.upru_link2_inertia[:, 0, 0]
-    upru_link2_inertia_xy = p.upru_link2_inertia[:, 0, 1]
-    upru_link2_inertia_xz = p.upru_link2_inertia[:, 0, 2]
-    upru_link2_inertia_yy = p.upru_link2_inertia[:, 1, 1]
-    upru_link2_inertia_yz = p.upru_link2_inertia[:, 1, 2]
-    upru_link2_inertia_zz = p.upru_link2_inertia[:, 2, 2]
-    upru_link4_mass = p.upru_link4_mass
-    upru_link4_centre_of_mass_x = p.upru_link4_centre_of_mass[:, 0]
-    upru_link4_centre_of_mass_y = p.upru_link4_centre_of_mass[:, 1]
-    upru_link4_centre_of_mass_z = p.upru_link4_centre_of_mass[:, 2]
-    upru_link4_inertia_xx = p.upru_link4_inertia[:, 0, 0]
-    upru_link4_inertia_xy = p.upru_link4_inertia[:, 0, 1]
-    upru_link4_inertia_xz = p.upru_link4_inertia[:, 0, 2]
-    upru_link4_inertia_yy = p.upru_link4_inertia[:, 1, 1]
-    upru_link4_inertia_yz = p.upru_link4_inertia[:, 1, 2]
-    upru_link4_inertia_zz = p.upru_link4_inertia[:, 2, 2]
-    branch_1 = _BRANCHES["branch_1"]
-    branch_2 = _BRANCHES["branch_2"]
-    branch_4 = _BRANCHES["branch_4"]
-    # (L2) first moment about the platform origin
+    ucu_base_point_x = p.ucu_base_point[:, 0]
+    ucu_base_point_y = p.ucu_base_point[:, 1]
+    ucu_base_point_z = p.ucu_base_point[:, 2]
+    ucu_base_frame_xx = p.ucu_base_frame[:, 0, 0]
+    ucu_base_frame_xy = p.ucu_base_frame[:, 0, 1]
+    ucu_base_frame_xz = p.ucu_base_frame[:, 0, 2]
+    ucu_base_frame_yx = p.ucu_base_frame[:, 1, 0]
+    ucu_base_frame_yy = p.ucu_base_frame[:, 1, 1]
+    ucu_base_frame_yz = p.ucu_base_frame[:, 1, 2]
+    ucu_base_frame_zx = p.ucu_base_frame[:, 2, 0]
+    ucu_base_frame_zy = p.ucu_base_frame[:, 2, 1]
+    ucu_base_frame_zz = p.ucu_base_frame[:, 2, 2]
+    ucu_platform_point_x = p.ucu_platform_point[:, 0]
+    ucu_platform_point_y = p.ucu_platform_point[:, 1]
+    ucu_platform_point_z = p.ucu_platform_point[:, 2]
+    ucu_platform_joint_axis_platform_x = p.ucu_platform_joint_axis_platform[:, 0]
+    ucu_platform_joint_axis_platform_y = p.ucu_platform_joint_axis_platform[:, 1]
+    ucu_platform_joint_axis_platform_z = p.ucu_platform_joint_axis_platform[:, 2]
+    ucu_link2_mass = p.ucu_link2_mass
+    ucu_link2_centre_of_mass_x = p.ucu_link2_centre_of_mass[:, 0]
+    ucu_link2_centre_of_mass_y = p.ucu_link2_centre_of_mass[:, 1]
+    ucu_link2_centre_of_mass_z = p.ucu_link2_centre_of_mass[:, 2]
+    ucu_link2_inertia_xx = p.ucu_link2_inertia[:, 0, 0]
+    ucu_link2_inertia_xy = p.ucu_link2_inertia[:, 0, 1]
+    ucu_link2_inertia_xz = p.ucu_link2_inertia[:, 0, 2]
+    ucu_link2_inertia_yy = p.ucu_link2_inertia[:, 1, 1]
+    ucu_link2_inertia_yz = p.ucu_link2_inertia[:, 1, 2]
+    ucu_link2_inertia_zz = p.ucu_link2_inertia[:, 2, 2]
+    ucu_link4_mass = p.ucu_link4_mass
+    ucu_link4_centre_of_mass_x = p.ucu_link4_centre_of_mass[:, 0]
+    ucu_link4_centre_of_mass_y = p.ucu_link4_centre_of_mass[:, 1]
+    ucu_link4_centre_of_mass_z = p.ucu_link4_centre_of_mass[:, 2]
+    ucu_link4_inertia_xx = p.ucu_link4_inertia[:, 0, 0]
+    ucu_link4_inertia_xy = p.ucu_link4_inertia[:, 0, 1]
+    ucu_link4_inertia_xz = p.ucu_link4_inertia[:, 0, 2]
+    ucu_link4_inertia_yy = p.ucu_link4_inertia[:, 1, 1]
+    ucu_link4_inertia_yz = p.ucu_link4_inertia[:, 1, 2]
+    ucu_link4_inertia_zz = p.ucu_link4_inertia[:, 2, 2]
+    ucu_branch_1 = _BRANCHES["ucu_branch_1"]
+    ucu_branch_2 = _BRANCHES["ucu_branch_2"]
+    ucu_branch_4 = _BRANCHES["ucu_branch_4"]
+    # (h_star) first moment about the platform origin
     h_star_t = platform_centre_of_mass_x*platform_mass
     h_star_t_2 = platform_centre_of_mass_y*platform_mass
     h_star_t_3 = platform_centre_of_mass_z*platform_mass
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_t = platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_2 = platform_centre_of_mass_y*platform_centre_of_mass_y
     J_star_t_3 = platform_centre_of_mass_z*platform_centre_of_mass_z
@@ -550,181 +564,177 @@ def _prepare(p):
     J_star_t_8 = platform_mass*(J_star_t_2 - J_star_t_4)
     J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass
     J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4)
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread_t = 0.16666666666666666*sqrt(6.0)
-    # (C3) rms size of the legs, taken where the platform points coincide
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     legs_size = 1.9595917942265426*spread_t
-    # (upru-G3) inertia tensor of link 2 about the origin of link 2
-    J_2_t = upru_link2_centre_of_mass_x*upru_link2_centre_of_mass_x
-    J_2_t_2 = upru_link2_centre_of_mass_y*upru_link2_centre_of_mass_y
-    J_2_t_3 = upru_link2_centre_of_mass_z*upru_link2_centre_of_mass_z
-    J_2_t_4 = J_2_t + J_2_t_2 + J_2_t_3
-    J_2_xx = upru_link2_inertia_xx - upru_link2_mass*(J_2_t - J_2_t_4)
-    J_2_xy = (
-    upru_link2_inertia_xy -
-        upru_link2_centre_of_mass_x*upru_link2_centre_of_mass_y*upru_link2_mass
+    # (ucu-h_4) first moment of link 4 about the connection point
+    ucu_h_4_x = ucu_link4_centre_of_mass_x*ucu_link4_mass
+    ucu_h_4_y = ucu_link4_centre_of_mass_y*ucu_link4_mass
+    ucu_h_4_z = ucu_link4_centre_of_mass_z*ucu_link4_mass
+    # (ucu-J_4) inertia tensor of link 4 about the connection point
+    ucu_J_4_t = ucu_link4_centre_of_mass_x*ucu_link4_centre_of_mass_x
+    ucu_J_4_t_2 = ucu_link4_centre_of_mass_y*ucu_link4_centre_of_mass_y
+    ucu_J_4_t_3 = ucu_link4_centre_of_mass_z*ucu_link4_centre_of_mass_z
+    ucu_J_4_t_4 = ucu_J_4_t + ucu_J_4_t_2 + ucu_J_4_t_3
+    ucu_J_4_xx = ucu_link4_inertia_xx - ucu_link4_mass*(ucu_J_4_t - ucu_J_4_t_4)
+    ucu_J_4_xy = (
+    ucu_link4_inertia_xy - ucu_link4_centre_of_mass_x*ucu_link4_centre_of_mass_y*ucu_link4_mass
     )
-    J_2_xz = (
-    upru_link2_inertia_xz -
-        upru_link2_centre_of_mass_x*upru_link2_centre_of_mass_z*upru_link2_mass
+    ucu_J_4_xz = (
+    ucu_link4_inertia_xz - ucu_link4_centre_of_mass_x*ucu_link4_centre_of_mass_z*ucu_link4_mass
     )
-    J_2_yy = upru_link2_inertia_yy - upru_link2_mass*(J_2_t_2 - J_2_t_4)
-    J_2_yz = (
-    upru_link2_inertia_yz -
-        upru_link2_centre_of_mass_y*upru_link2_centre_of_mass_z*upru_link2_mass
+    ucu_J_4_yy = ucu_link4_inertia_yy - ucu_link4_mass*(ucu_J_4_t_2 - ucu_J_4_t_4)
+    ucu_J_4_yz = (
+    ucu_link4_inertia_yz - ucu_link4_centre_of_mass_y*ucu_link4_centre_of_mass_z*ucu_link4_mass
     )
-    J_2_zz = upru_link2_inertia_zz - upru_link2_mass*(J_2_t_3 - J_2_t_4)
-    # (upru-G5) inertia tensor of link 4 about the connection point
-    J_4_t = upru_link4_centre_of_mass_x*upru_link4_centre_of_mass_x
-    J_4_t_2 = upru_link4_centre_of_mass_y*upru_link4_centre_of_mass_y
-    J_4_t_3 = upru_link4_centre_of_mass_z*upru_link4_centre_of_mass_z
-    J_4_t_4 = J_4_t + J_4_t_2 + J_4_t_3
-    J_4_xx = upru_link4_inertia_xx - upru_link4_mass*(J_4_t - J_4_t_4)
-    J_4_xy = (
-    upru_link4_inertia_xy -
-        upru_link4_centre_of_mass_x*upru_link4_centre_of_mass_y*upru_link4_mass
+    ucu_J_4_zz = ucu_link4_inertia_zz - ucu_link4_mass*(ucu_J_4_t_3 - ucu_J_4_t_4)
+    # (ucu-J_2) inertia tensor of link 2 about the origin of link 2
+    ucu_J_2_t = ucu_link2_centre_of_mass_x*ucu_link2_centre_of_mass_x
+    ucu_J_2_t_2 = ucu_link2_centre_of_mass_y*ucu_link2_centre_of_mass_y
+    ucu_J_2_t_3 = ucu_link2_centre_of_mass_z*ucu_link2_centre_of_mass_z
+    ucu_J_2_t_4 = ucu_J_2_t + ucu_J_2_t_2 + ucu_J_2_t_3
+    ucu_J_2_xx = ucu_link2_inertia_xx - ucu_link2_mass*(ucu_J_2_t - ucu_J_2_t_4)
+    ucu_J_2_xy = (
+    ucu_link2_inertia_xy - ucu_link2_centre_of_mass_x*ucu_link2_centre_of_mass_y*ucu_link2_mass
     )
-    J_4_xz = (
-    upru_link4_inertia_xz -
-        upru_link4_centre_of_mass_x*upru_link4_centre_of_mass_z*upru_link4_mass
+    ucu_J_2_xz = (
+    ucu_link2_inertia_xz - ucu_link2_centre_of_mass_x*ucu_link2_centre_of_mass_z*ucu_link2_mass
     )
-    J_4_yy = upru_link4_inertia_yy - upru_link4_mass*(J_4_t_2 - J_4_t_4)
-    J_4_yz = (
-    upru_link4_inertia_yz -
-        upru_link4_centre_of_mass_y*upru_link4_centre_of_mass_z*upru_link4_mass
+    ucu_J_2_yy = ucu_link2_inertia_yy - ucu_link2_mass*(ucu_J_2_t_2 - ucu_J_2_t_4)
+    ucu_J_2_yz = (
+    ucu_link2_inertia_yz - ucu_link2_centre_of_mass_y*ucu_link2_centre_of_mass_z*ucu_link2_mass
     )
-    J_4_zz = upru_link4_inertia_zz - upru_link4_mass*(J_4_t_3 - J_4_t_4)
-    # (upru-N13) inertia tensor of the links from 2 outwards about joint 2
-    Jc_2_xx = J_2_xx + J_4_xx
-    # (upru-G4) first moment of link 4 about the connection point
-    h_4_x = upru_link4_centre_of_mass_x*upru_link4_mass
-    h_4_y = upru_link4_centre_of_mass_y*upru_link4_mass
-    h_4_z = upru_link4_centre_of_mass_z*upru_link4_mass
-    # (L2) first moment about the platform origin
-    h_star_t_4 = upru_link4_mass*upru_platform_point_x
-    h_star_t_5 = upru_link4_mass*upru_platform_point_y
-    h_star_t_6 = upru_link4_mass*upru_platform_point_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t_11 = upru_platform_point_x*upru_platform_point_x
-    J_star_t_12 = upru_platform_point_y*upru_platform_point_y
-    J_star_t_13 = upru_platform_point_z*upru_platform_point_z
-    J_star_t_14 = J_star_t_11 + J_star_t_12 + J_star_t_13
-    J_star_t_15 = upru_link4_mass*(J_star_t_11 - J_star_t_14)
-    J_star_t_16 = upru_link4_mass*upru_platform_point_x*upru_platform_point_y
-    J_star_t_17 = upru_link4_mass*upru_platform_point_x*upru_platform_point_z
-    J_star_t_18 = upru_link4_mass*(J_star_t_12 - J_star_t_14)
-    J_star_t_19 = upru_link4_mass*upru_platform_point_y*upru_platform_point_z
-    J_star_t_20 = upru_link4_mass*(J_star_t_13 - J_star_t_14)
-    # (upru-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-    g_r0_x = (
-    gravity_x*upru_base_frame_xx + gravity_y*upru_base_frame_yx + gravity_z*upru_base_frame_zx
+    ucu_J_2_zz = ucu_link2_inertia_zz - ucu_link2_mass*(ucu_J_2_t_3 - ucu_J_2_t_4)
+    # (ucu-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+    ucu_Jc_2_xx = ucu_J_2_xx + ucu_J_4_xx
+    # (h_star) first moment about the platform origin
+    ucu_h_star_t = ucu_link4_mass*ucu_platform_point_x
+    ucu_h_star_t_2 = ucu_link4_mass*ucu_platform_point_y
+    ucu_h_star_t_3 = ucu_link4_mass*ucu_platform_point_z
+    # (J_star) inertia tensor about the platform origin
+    ucu_J_star_t = ucu_platform_point_x*ucu_platform_point_x
+    ucu_J_star_t_2 = ucu_platform_point_y*ucu_platform_point_y
+    ucu_J_star_t_3 = ucu_platform_point_z*ucu_platform_point_z
+    ucu_J_star_t_4 = ucu_J_star_t + ucu_J_star_t_2 + ucu_J_star_t_3
+    ucu_J_star_t_5 = ucu_link4_mass*(ucu_J_star_t - ucu_J_star_t_4)
+    ucu_J_star_t_6 = ucu_link4_mass*ucu_platform_point_x*ucu_platform_point_y
+    ucu_J_star_t_7 = ucu_link4_mass*ucu_platform_point_x*ucu_platform_point_z
+    ucu_J_star_t_8 = ucu_link4_mass*(ucu_J_star_t_2 - ucu_J_star_t_4)
+    ucu_J_star_t_9 = ucu_link4_mass*ucu_platform_point_y*ucu_platform_point_z
+    ucu_J_star_t_10 = ucu_link4_mass*(ucu_J_star_t_3 - ucu_J_star_t_4)
+    # (ucu-trace_J_4) half the trace of that inertia tensor
+    ucu_trace_J_4 = 0.5*ucu_J_4_xx + 0.5*ucu_J_4_yy + 0.5*ucu_J_4_zz
+    # (ucu-Sigma_4) second moment of mass of the links that turn with link 4
+    ucu_Sigma_4_xx = ucu_trace_J_4 - ucu_J_4_yy
+    ucu_Sigma_4_yy = ucu_trace_J_4 - ucu_J_4_zz
+    ucu_Sigma_4_zz = ucu_trace_J_4 - ucu_J_4_xx
+    # (ucu-h_2) first moment of link 2 about the origin of link 2
+    ucu_h_2_x = ucu_link2_centre_of_mass_x*ucu_link2_mass
+    ucu_h_2_y = ucu_link2_centre_of_mass_y*ucu_link2_mass
+    ucu_h_2_z = ucu_link2_centre_of_mass_z*ucu_link2_mass
+    # (ucu-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+    ucu_g_r0_x = (
+    gravity_x*ucu_base_frame_xx + gravity_y*ucu_base_frame_yx + gravity_z*ucu_base_frame_zx
     )
-    g_r0_y = (
-    gravity_x*upru_base_frame_xy + gravity_y*upru_base_frame_yy + gravity_z*upru_base_frame_zy
+    ucu_g_r0_y = (
+    gravity_x*ucu_base_frame_xy + gravity_y*ucu_base_frame_yy + gravity_z*ucu_base_frame_zy
     )
-    g_r0_z = (
-    gravity_x*upru_base_frame_xz + gravity_y*upru_base_frame_yz + gravity_z*upru_base_frame_zz
+    ucu_g_r0_z = (
+    gravity_x*ucu_base_frame_xz + gravity_y*ucu_base_frame_yz + gravity_z*ucu_base_frame_zz
     )
-    # (upru-G2) first moment of link 2 about the origin of link 2
-    h_2_x = upru_link2_centre_of_mass_x*upru_link2_mass
-    h_2_y = upru_link2_centre_of_mass_y*upru_link2_mass
-    h_2_z = upru_link2_centre_of_mass_z*upru_link2_mass
-    # (upru-N27) half the trace of that inertia tensor
-    trace_J_2 = 0.5*J_2_xx + 0.5*J_2_yy + 0.5*J_2_zz
-    # (upru-N28) second moment of mass of the links that turn with link 2
-    Sigma_2_xx = trace_J_2 - J_2_xx
-    Sigma_2_yy = trace_J_2 - J_2_zz
-    Sigma_2_zz = trace_J_2 - J_2_yy
-    # (upru-N19) half the trace of that inertia tensor
-    trace_J_4 = 0.5*J_4_xx + 0.5*J_4_yy + 0.5*J_4_zz
-    # (upru-N20) second moment of mass of the links that turn with link 4
-    Sigma_4_xx = trace_J_4 - J_4_yy
-    Sigma_4_yy = trace_J_4 - J_4_zz
-    Sigma_4_zz = trace_J_4 - J_4_xx
-    # (V1) potential energy
-    b_r0_x = (
-    upru_base_frame_xx*upru_base_point_x + upru_base_frame_yx*upru_base_point_y +
-        upru_base_frame_zx*upru_base_point_z
+    # (ucu-trace_J_2) half the trace of that inertia tensor
+    ucu_trace_J_2 = 0.5*ucu_J_2_xx + 0.5*ucu_J_2_yy + 0.5*ucu_J_2_zz
+    # (ucu-Sigma_2) second moment of mass of the links that turn with link 2
+    ucu_Sigma_2_xx = ucu_trace_J_2 - ucu_J_2_xx
+    ucu_Sigma_2_yy = ucu_trace_J_2 - ucu_J_2_zz
+    ucu_Sigma_2_zz = ucu_trace_J_2 - ucu_J_2_yy
+    # (potential) potential energy
+    ucu_b_r0_x = (
+    ucu_base_frame_xx*ucu_base_point_x + ucu_base_frame_yx*ucu_base_point_y +
+        ucu_base_frame_zx*ucu_base_point_z
     )
-    b_r0_y = (
-    upru_base_frame_xy*upru_base_point_x + upru_base_frame_yy*upru_base_point_y +
-        upru_base_frame_zy*upru_base_point_z
+    ucu_b_r0_y = (
+    ucu_base_frame_xy*ucu_base_point_x + ucu_base_frame_yy*ucu_base_point_y +
+        ucu_base_frame_zy*ucu_base_point_z
     )
-    b_r0_z = (
-    upru_base_frame_xz*upru_base_point_x + upru_base_frame_yz*upru_base_point_y +
-        upru_base_frame_zz*upru_base_point_z
+    ucu_b_r0_z = (
+    ucu_base_frame_xz*ucu_base_point_x + ucu_base_frame_yz*ucu_base_point_y +
+        ucu_base_frame_zz*ucu_base_point_z
     )
-    total_upru = np.sum(np.broadcast_to(upru_link4_mass, _upru))
-    total_upru_x = np.sum(np.broadcast_to(h_star_t_4, _upru))
-    total_upru_y = np.sum(np.broadcast_to(h_star_t_5, _upru))
-    total_upru_z = np.sum(np.broadcast_to(h_star_t_6, _upru))
-    total_upru_xx = np.sum(np.broadcast_to(J_star_t_15, _upru))
-    total_upru_xy = np.sum(np.broadcast_to(J_star_t_16, _upru))
-    total_upru_xz = np.sum(np.broadcast_to(J_star_t_17, _upru))
-    total_upru_yy = np.sum(np.broadcast_to(J_star_t_18, _upru))
-    total_upru_yz = np.sum(np.broadcast_to(J_star_t_19, _upru))
-    total_upru_zz = np.sum(np.broadcast_to(J_star_t_20, _upru))
-    total_upru_x_2 = np.sum(np.broadcast_to(upru_platform_point_x, _upru))
-    total_upru_y_2 = np.sum(np.broadcast_to(upru_platform_point_y, _upru))
-    total_upru_z_2 = np.sum(np.broadcast_to(upru_platform_point_z, _upru))
-    # (L1) mass of the platform with the gathered masses
-    m_star = platform_mass + total_upru
-    # (L2) first moment about the platform origin
-    h_star_x = h_star_t + total_upru_x
-    h_star_y = h_star_t_2 + total_upru_y
-    h_star_z = h_star_t_3 + total_upru_z
-    # (L3) inertia tensor about the platform origin
-    J_star_xx = platform_inertia_xx - J_star_t_5 - total_upru_xx
-    J_star_xy = platform_inertia_xy - J_star_t_6 - total_upru_xy
-    J_star_xz = platform_inertia_xz - J_star_t_7 - total_upru_xz
-    J_star_yy = platform_inertia_yy - J_star_t_8 - total_upru_yy
-    J_star_yz = platform_inertia_yz - J_star_t_9 - total_upru_yz
-    J_star_zz = platform_inertia_zz - J_star_t_10 - total_upru_zz
-    J_star_t_21 = J_star_xx - J_star_yy
-    J_star_t_22 = 0.5*J_star_t_21
-    J_star_t_23 = J_star_xx - J_star_zz
-    J_star_t_24 = 0.5*J_star_t_23
-    # (M4) centripetal force and weight of the platform
+    total_ucu = np.sum(np.broadcast_to(ucu_link4_mass, _ucu))
+    total_ucu_x = np.sum(np.broadcast_to(ucu_h_star_t, _ucu))
+    total_ucu_y = np.sum(np.broadcast_to(ucu_h_star_t_2, _ucu))
+    total_ucu_z = np.sum(np.broadcast_to(ucu_h_star_t_3, _ucu))
+    total_ucu_xx = np.sum(np.broadcast_to(ucu_J_star_t_5, _ucu))
+    total_ucu_xy = np.sum(np.broadcast_to(ucu_J_star_t_6, _ucu))
+    total_ucu_xz = np.sum(np.broadcast_to(ucu_J_star_t_7, _ucu))
+    total_ucu_yy = np.sum(np.broadcast_to(ucu_J_star_t_8, _ucu))
+    total_ucu_yz = np.sum(np.broadcast_to(ucu_J_star_t_9, _ucu))
+    total_ucu_zz = np.sum(np.broadcast_to(ucu_J_star_t_10, _ucu))
+    total_ucu_x_2 = np.sum(np.broadcast_to(ucu_platform_point_x, _ucu))
+    total_ucu_y_2 = np.sum(np.broadcast_to(ucu_platform_point_y, _ucu))
+    total_ucu_z_2 = np.sum(np.broadcast_to(ucu_platform_point_z, _ucu))
+    # (m_star) mass of the platform with the gathered masses
+    m_star = platform_mass + total_ucu
+    # (h_star) first moment about the platform origin
+    h_star_x = h_star_t + total_ucu_x
+    h_star_y = h_star_t_2 + total_ucu_y
+    h_star_z = h_star_t_3 + total_ucu_z
+    # (J_star) inertia tensor about the platform origin
+    J_star_xx = platform_inertia_xx - J_star_t_5 - total_ucu_xx
+    J_star_xy = platform_inertia_xy - J_star_t_6 - total_ucu_xy
+    J_star_xz = platform_inertia_xz - J_star_t_7 - total_ucu_xz
+    J_star_yy = platform_inertia_yy - J_star_t_8 - total_ucu_yy
+    J_star_yz = platform_inertia_yz - J_star_t_9 - total_ucu_yz
+    J_star_zz = platform_inertia_zz - J_star_t_10 - total_ucu_zz
+    J_star_t_11 = J_star_xx - J_star_yy
+    J_star_t_12 = 0.5*J_star_t_11
+    J_star_t_13 = J_star_xx - J_star_zz
+    J_star_t_14 = 0.5*J_star_t_13
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
     Z_p_t_3 = gravity_z*m_star
-    # (C1) centroid of the platform points
-    b_c_x = 0.16666666666666666*total_upru_x_2
-    b_c_y = 0.16666666666666666*total_upru_y_2
-    b_c_z = 0.16666666666666666*total_upru_z_2
+    # (b_c) centroid of the platform points
+    b_c_x = 0.16666666666666666*total_ucu_x_2
+    b_c_y = 0.16666666666666666*total_ucu_y_2
+    b_c_z = 0.16666666666666666*total_ucu_z_2
     return {
         "dynamics": (
-        (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
                 J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
                 h_star_y, h_star_z, m_star,),
             (
-                (_upru,
-        (J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_4_xx, J_4_xy, J_4_xz, J_4_yy, J_4_yz, J_4_zz,
-                    Jc_2_xx, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_4_xx, Sigma_4_yy,
-                    Sigma_4_zz, branch_1, branch_2, branch_4, g_r0_x, g_r0_y, g_r0_z, h_2_x,
-                    h_2_y, h_2_z, h_4_x, h_4_y, h_4_z, upru_base_frame_xx, upru_base_frame_xy,
-                    upru_base_frame_xz, upru_base_frame_yx, upru_base_frame_yy,
-                    upru_base_frame_yz, upru_base_frame_zx, upru_base_frame_zy,
-                    upru_base_frame_zz, upru_base_point_x, upru_base_point_y, upru_base_point_z,
-                    upru_platform_joint_axis_platform_x, upru_platform_joint_axis_platform_y,
-                    upru_platform_joint_axis_platform_z, upru_platform_point_x,
-                    upru_platform_point_y, upru_platform_point_z,),
+                (_ucu,
+        (ucu_J_2_xy, ucu_J_2_xz, ucu_J_2_yy, ucu_J_2_yz, ucu_J_2_zz, ucu_J_4_xx, ucu_J_4_xy,
+                    ucu_J_4_xz, ucu_J_4_yy, ucu_J_4_yz, ucu_J_4_zz, ucu_Jc_2_xx, ucu_Sigma_2_xx,
+                    ucu_Sigma_2_yy, ucu_Sigma_2_zz, ucu_Sigma_4_xx, ucu_Sigma_4_yy,
+                    ucu_Sigma_4_zz, ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz,
+                    ucu_base_frame_yx, ucu_base_frame_yy, ucu_base_frame_yz, ucu_base_frame_zx,
+                    ucu_base_frame_zy, ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y,
+                    ucu_base_point_z, ucu_branch_1, ucu_branch_2, ucu_branch_4, ucu_g_r0_x,
+                    ucu_g_r0_y, ucu_g_r0_z, ucu_h_2_x, ucu_h_2_y, ucu_h_2_z, ucu_h_4_x, ucu_h_4_y,
+                    ucu_h_4_z, ucu_platform_joint_axis_platform_x,
+                    ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
+                    ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
+        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
                 h_star_z, m_star,),
             (
-                (_upru,
-        (J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_4_xx, J_4_xy, J_4_xz, J_4_yy, J_4_yz, J_4_zz,
-                    Jc_2_xx, branch_1, branch_2, branch_4, h_4_x, h_4_y, h_4_z,
-                    upru_base_frame_xx, upru_base_frame_xy, upru_base_frame_xz,
-                    upru_base_frame_yx, upru_base_frame_yy, upru_base_frame_yz,
-                    upru_base_frame_zx, upru_base_frame_zy, upru_base_frame_zz, upru_base_point_x,
-                    upru_base_point_y, upru_base_point_z, upru_platform_joint_axis_platform_x,
-                    upru_platform_joint_axis_platform_y, upru_platform_joint_axis_platform_z,
-                    upru_platform_point_x, upru_platform_point_y, upru_platform_point_z,),
+                (_ucu,
+        (ucu_J_2_xy, ucu_J_2_xz, ucu_J_2_yy, ucu_J_2_yz, ucu_J_2_zz, ucu_J_4_xx, ucu_J_4_xy,
+                    ucu_J_4_xz, ucu_J_4_yy, ucu_J_4_yz, ucu_J_4_zz, ucu_Jc_2_xx,
+                    ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx,
+                    ucu_base_frame_yy, ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy,
+                    ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y, ucu_base_point_z,
+                    ucu_branch_1, ucu_branch_2, ucu_branch_4, ucu_h_4_x, ucu_h_4_y, ucu_h_4_z,
+                    ucu_platform_joint_axis_platform_x, ucu_platform_joint_axis_platform_y,
+                    ucu_platform_joint_axis_platform_z, ucu_platform_point_x,
+                    ucu_platform_point_y, ucu_platform_point_z,),
                 ),
             ),
         ),
@@ -732,28 +742,29 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
                 Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
             (
-                (_upru,
-        (J_2_xy, J_2_xz, J_2_yz, J_4_xy, J_4_xz, J_4_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz,
-                    Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, branch_1, branch_2, branch_4, g_r0_x,
-                    g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_4_x, h_4_y, h_4_z, upru_base_frame_xx,
-                    upru_base_frame_xy, upru_base_frame_xz, upru_base_frame_yx,
-                    upru_base_frame_yy, upru_base_frame_yz, upru_base_frame_zx,
-                    upru_base_frame_zy, upru_base_frame_zz, upru_base_point_x, upru_base_point_y,
-                    upru_base_point_z, upru_platform_joint_axis_platform_x,
-                    upru_platform_joint_axis_platform_y, upru_platform_joint_axis_platform_z,
-                    upru_platform_point_x, upru_platform_point_y, upru_platform_point_z,),
+                (_ucu,
+        (ucu_J_2_xy, ucu_J_2_xz, ucu_J_2_yz, ucu_J_4_xy, ucu_J_4_xz, ucu_J_4_yz, ucu_Sigma_2_xx,
+                    ucu_Sigma_2_yy, ucu_Sigma_2_zz, ucu_Sigma_4_xx, ucu_Sigma_4_yy,
+                    ucu_Sigma_4_zz, ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz,
+                    ucu_base_frame_yx, ucu_base_frame_yy, ucu_base_frame_yz, ucu_base_frame_zx,
+                    ucu_base_frame_zy, ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y,
+                    ucu_base_point_z, ucu_branch_1, ucu_branch_2, ucu_branch_4, ucu_g_r0_x,
+                    ucu_g_r0_y, ucu_g_r0_z, ucu_h_2_x, ucu_h_2_y, ucu_h_2_z, ucu_h_4_x, ucu_h_4_y,
+                    ucu_h_4_z, ucu_platform_joint_axis_platform_x,
+                    ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
+                    ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,),
                 ),
             ),
         ),
         "H": (
         (),
             (
-                (_upru,
-        (branch_2, upru_base_frame_xx, upru_base_frame_xy, upru_base_frame_xz, upru_base_frame_yx,
-                    upru_base_frame_yy, upru_base_frame_yz, upru_base_frame_zx,
-                    upru_base_frame_zy, upru_base_frame_zz, upru_base_point_x, upru_base_point_y,
-                    upru_base_point_z, upru_platform_point_x, upru_platform_point_y,
-                    upru_platform_point_z,),
+                (_ucu,
+        (ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx,
+                    ucu_base_frame_yy, ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy,
+                    ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y, ucu_base_point_z,
+                    ucu_branch_2, ucu_platform_point_x, ucu_platform_point_y,
+                    ucu_platform_point_z,),
                 ),
             ),
         ),
@@ -761,106 +772,110 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
                 gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
-                (_upru,
-        (J_2_xy, J_2_xz, J_2_yz, J_4_xy, J_4_xz, J_4_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz,
-                    Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, branch_1, branch_2, branch_4, g_r0_x,
-                    g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_4_x, h_4_y, h_4_z, upru_base_frame_xx,
-                    upru_base_frame_xy, upru_base_frame_xz, upru_base_frame_yx,
-                    upru_base_frame_yy, upru_base_frame_yz, upru_base_frame_zx,
-                    upru_base_frame_zy, upru_base_frame_zz, upru_base_point_x, upru_base_point_y,
-                    upru_base_point_z, upru_platform_joint_axis_platform_x,
-                    upru_platform_joint_axis_platform_y, upru_platform_joint_axis_platform_z,
-                    upru_platform_point_x, upru_platform_point_y, upru_platform_point_z,),
+                (_ucu,
+        (ucu_J_2_xy, ucu_J_2_xz, ucu_J_2_yz, ucu_J_4_xy, ucu_J_4_xz, ucu_J_4_yz, ucu_Sigma_2_xx,
+                    ucu_Sigma_2_yy, ucu_Sigma_2_zz, ucu_Sigma_4_xx, ucu_Sigma_4_yy,
+                    ucu_Sigma_4_zz, ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz,
+                    ucu_base_frame_yx, ucu_base_frame_yy, ucu_base_frame_yz, ucu_base_frame_zx,
+                    ucu_base_frame_zy, ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y,
+                    ucu_base_point_z, ucu_branch_1, ucu_branch_2, ucu_branch_4, ucu_g_r0_x,
+                    ucu_g_r0_y, ucu_g_r0_z, ucu_h_2_x, ucu_h_2_y, ucu_h_2_z, ucu_h_4_x, ucu_h_4_y,
+                    ucu_h_4_z, ucu_platform_joint_axis_platform_x,
+                    ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
+                    ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,),
                 ),
             ),
         ),
         "inverse_kinematics": (
         (),
             (
-                (_upru,
-        (branch_1, branch_2, branch_4, upru_base_frame_xx, upru_base_frame_xy, upru_base_frame_xz,
-                    upru_base_frame_yx, upru_base_frame_yy, upru_base_frame_yz,
-                    upru_base_frame_zx, upru_base_frame_zy, upru_base_frame_zz, upru_base_point_x,
-                    upru_base_point_y, upru_base_point_z, upru_platform_joint_axis_platform_x,
-                    upru_platform_joint_axis_platform_y, upru_platform_joint_axis_platform_z,
-                    upru_platform_point_x, upru_platform_point_y, upru_platform_point_z,),
+                (_ucu,
+        (ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx,
+                    ucu_base_frame_yy, ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy,
+                    ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y, ucu_base_point_z,
+                    ucu_branch_1, ucu_branch_2, ucu_branch_4, ucu_platform_joint_axis_platform_x,
+                    ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
+                    ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,),
                 ),
             ),
         ),
         "joint_rates": (
         (),
             (
-                (_upru,
-        (branch_1, branch_2, branch_4, upru_base_frame_xx, upru_base_frame_xy, upru_base_frame_xz,
-                    upru_base_frame_yx, upru_base_frame_yy, upru_base_frame_yz,
-                    upru_base_frame_zx, upru_base_frame_zy, upru_base_frame_zz, upru_base_point_x,
-                    upru_base_point_y, upru_base_point_z, upru_platform_joint_axis_platform_x,
-                    upru_platform_joint_axis_platform_y, upru_platform_joint_axis_platform_z,
-                    upru_platform_point_x, upru_platform_point_y, upru_platform_point_z,),
+                (_ucu,
+        (ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx,
+                    ucu_base_frame_yy, ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy,
+                    ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y, ucu_base_point_z,
+                    ucu_branch_1, ucu_branch_2, ucu_branch_4, ucu_platform_joint_axis_platform_x,
+                    ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
+                    ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,),
                 ),
             ),
         ),
         "joint_accelerations": (
         (),
             (
-                (_upru,
-        (branch_1, branch_2, branch_4, upru_base_frame_xx, upru_base_frame_xy, upru_base_frame_xz,
-                    upru_base_frame_yx, upru_base_frame_yy, upru_base_frame_yz,
-                    upru_base_frame_zx, upru_base_frame_zy, upru_base_frame_zz, upru_base_point_x,
-                    upru_base_point_y, upru_base_point_z, upru_platform_joint_axis_platform_x,
-                    upru_platform_joint_axis_platform_y, upru_platform_joint_axis_platform_z,
-                    upru_platform_point_x, upru_platform_point_y, upru_platform_point_z,),
+                (_ucu,
+        (ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx,
+                    ucu_base_frame_yy, ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy,
+                    ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y, ucu_base_point_z,
+                    ucu_branch_1, ucu_branch_2, ucu_branch_4, ucu_platform_joint_axis_platform_x,
+                    ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
+                    ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,),
                 ),
             ),
         ),
         "legs": (
         (gravity_x, gravity_y, gravity_z,),
             (
-                (_upru,
-        (J_2_xy, J_2_xz, J_2_yz, J_4_xy, J_4_xz, J_4_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz,
-                    Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, branch_1, branch_2, branch_4, g_r0_x,
-                    g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_4_x, h_4_y, h_4_z, upru_base_frame_xx,
-                    upru_base_frame_xy, upru_base_frame_xz, upru_base_frame_yx,
-                    upru_base_frame_yy, upru_base_frame_yz, upru_base_frame_zx,
-                    upru_base_frame_zy, upru_base_frame_zz, upru_base_point_x, upru_base_point_y,
-                    upru_base_point_z, upru_link4_mass, upru_platform_joint_axis_platform_x,
-                    upru_platform_joint_axis_platform_y, upru_platform_joint_axis_platform_z,
-                    upru_platform_point_x, upru_platform_point_y, upru_platform_point_z,),
+                (_ucu,
+        (ucu_J_2_xy, ucu_J_2_xz, ucu_J_2_yz, ucu_J_4_xy, ucu_J_4_xz, ucu_J_4_yz, ucu_Sigma_2_xx,
+                    ucu_Sigma_2_yy, ucu_Sigma_2_zz, ucu_Sigma_4_xx, ucu_Sigma_4_yy,
+                    ucu_Sigma_4_zz, ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz,
+                    ucu_base_frame_yx, ucu_base_frame_yy, ucu_base_frame_yz, ucu_base_frame_zx,
+                    ucu_base_frame_zy, ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y,
+                    ucu_base_point_z, ucu_branch_1, ucu_branch_2, ucu_branch_4, ucu_g_r0_x,
+                    ucu_g_r0_y, ucu_g_r0_z, ucu_h_2_x, ucu_h_2_y, ucu_h_2_z, ucu_h_4_x, ucu_h_4_y,
+                    ucu_h_4_z, ucu_link4_mass, ucu_platform_joint_axis_platform_x,
+                    ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
+                    ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,),
                 ),
             ),
         ),
         "potential": (
         (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
-                (_upru,
-        (b_r0_x, b_r0_y, b_r0_z, branch_1, branch_2, branch_4, g_r0_x, g_r0_y, g_r0_z, h_2_x,
-                    h_2_y, h_2_z, h_4_x, h_4_y, h_4_z, upru_base_frame_xx, upru_base_frame_xy,
-                    upru_base_frame_xz, upru_base_frame_yx, upru_base_frame_yy,
-                    upru_base_frame_yz, upru_base_frame_zx, upru_base_frame_zy,
-                    upru_base_frame_zz, upru_base_point_x, upru_base_point_y, upru_base_point_z,
-                    upru_link2_mass, upru_platform_joint_axis_platform_x,
-                    upru_platform_joint_axis_platform_y, upru_platform_joint_axis_platform_z,
-                    upru_platform_point_x, upru_platform_point_y, upru_platform_point_z,),
+                (_ucu,
+        (ucu_b_r0_x, ucu_b_r0_y, ucu_b_r0_z, ucu_base_frame_xx, ucu_base_frame_xy,
+                    ucu_base_frame_xz, ucu_base_frame_yx, ucu_base_frame_yy, ucu_base_frame_yz,
+                    ucu_base_frame_zx, ucu_base_frame_zy, ucu_base_frame_zz, ucu_base_point_x,
+                    ucu_base_point_y, ucu_base_point_z, ucu_branch_1, ucu_branch_2, ucu_branch_4,
+                    ucu_g_r0_x, ucu_g_r0_y, ucu_g_r0_z, ucu_h_2_x, ucu_h_2_y, ucu_h_2_z,
+                    ucu_h_4_x, ucu_h_4_y, ucu_h_4_z, ucu_link2_mass,
+                    ucu_platform_joint_axis_platform_x, ucu_platform_joint_axis_platform_y,
+                    ucu_platform_joint_axis_platform_z, ucu_platform_point_x,
+                    ucu_platform_point_y, ucu_platform_point_z,),
                 ),
             ),
         ),
         "condition": (
         (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
             (
-                (_upru,
-        (branch_1, branch_2, branch_4, upru_base_frame_xx, upru_base_frame_xy, upru_base_frame_xz,
-                    upru_base_frame_yx, upru_base_frame_yy, upru_base_frame_yz,
-                    upru_base_frame_zx, upru_base_frame_zy, upru_base_frame_zz, upru_base_point_x,
-                    upru_base_point_y, upru_base_point_z, upru_platform_joint_axis_platform_x,
-                    upru_platform_joint_axis_platform_y, upru_platform_joint_axis_platform_z,
-                    upru_platform_point_x, upru_platform_point_y, upru_platform_point_z,),
+                (_ucu,
+        (ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx,
+                    ucu_base_frame_yy, ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy,
+                    ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y, ucu_base_point_z,
+                    ucu_branch_1, ucu_branch_2, ucu_branch_4, ucu_platform_joint_axis_platform_x,
+                    ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
+                    ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,),
                 ),
             ),
         ),
     }
 
 
-_FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
+_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
@@ -906,17 +921,19 @@ class _Floats:
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
-        for k in range(self.states):
-            try:
-                ok, arrays = function(self, *(row[k] for row in rows))
-            except (ZeroDivisionError, OverflowError):
-                continue
-            if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
-                for a, array in zip(found, arrays):
-                    a[k] = array
-        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
+        found = [self.state(function, names, [row[k] for row in rows]) for k in range(self.states)]
+        return [np.array(a).T.reshape(*_SHAPES[n], self.states) for a, n in zip(zip(*found), names)]
+
+    def state(self, function, names, given):
+        """Lists that a function gives at a state."""
+        try:
+            ok, arrays = function(self, *given)
+        except (ZeroDivisionError, OverflowError):
+            ok = False
+        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+            return arrays
+        return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
 
 
 class _Arrays:
@@ -984,35 +1001,44 @@ def _mode(p, states):
     return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
 
 
-def _call(function, steps, p, *arguments, mode=_mode):
-    """What the steps give at arguments (name, value, shape of a state, default, rule)."""
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+    """What the steps give at arguments (name, value, shape of a state, default, rule).
+
+    Where that may be infinite only NaN makes a state impossible.
+    """
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
     lead, p = _lead(leads), _given(p)
     read = [a[4:] != ("unused",) for a in arguments]
     if lead or mode is _Judged:
-        results = _many(steps, p, lead, given, shapes, read, mode)
+        results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
-        results = _one(steps, p, given, shapes, read)
+        results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
 
 
-def _one(steps, p, given, shapes, read):
+def _one(steps, p, given, shapes, read, unbounded):
     """Results at a single state."""
     states = [v.reshape(*shape, 1) for v, shape in zip(given, shapes)]
     with np.errstate(all="ignore"):
-        results = [a[..., 0] for a in steps(_Floats(p, 1), *states)]
-    if all(all(map(math.isfinite, v.ravel().tolist())) for v in (*compress(given, read), *results)):
-        return [np.array(a)[()] for a in results]
+        results = [a[..., 0].copy() for a in steps(_Floats(p, 1), *states)]
+    looked_at = [np.minimum(a, 0.0) for a in results] if unbounded else results
+    entries = (v.ravel().tolist() for v in (*compress(given, read), *looked_at))
+    if all(all(map(math.isfinite, row)) for row in entries):
+        return [a[()] for a in results]
     return [np.full(a.shape, np.nan)[()] for a in results]
 
 
-def _many(steps, p, lead, given, shapes, read, mode):
+def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block."""
     count = math.prod(lead)
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
+    if count > _BLOCK:
+        # Never touched, freed at once: the C library, which learns from it, then keeps the memory
+        # of intermediate arrays from block to block instead of giving its pages back.
+        np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
         for first in range(0, max(count, 1), _BLOCK):
             block = slice(first, min(first + _BLOCK, count))
@@ -1024,7 +1050,7 @@ def _many(steps, p, lead, given, shapes, read, mode):
             _all_finite(compress(states, read), good)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite(found, good)
+            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -1053,6 +1079,18 @@ def _with_forces(a, amounts, directions, legs):
     for k, leg in enumerate(legs):
         result[leg] += amounts[k] * directions[k]
     return result
+
+
+def _unlimited(a, places):
+    """a, some entries infinite; what is not known stays so."""
+    result = np.array(a)
+    result[places] += np.inf
+    return result
+
+
+def _not_negative(a):
+    """1 where no entry is negative, else 0; NaN where one is not finite."""
+    return np.where(np.isfinite(a).all(axis=0), np.all(a >= 0.0, axis=0), np.nan)
 
 
 def _rows_divided(a, b, places):
@@ -1155,8 +1193,8 @@ def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
     n, states = b.shape
     if 0 < states <= _FEW:
-        matrices, rights = np.moveaxis(a, -1, 0).tolist(), b.T.tolist()
-        return np.array([_solve_one(*each) for each in zip(matrices, rights)]).T.reshape(n, states)
+        systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
+        return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
     good = np.all((size > 0.0) & np.isfinite(size), axis=0)
     rows = np.concatenate((a, b[:, None]), axis=1)
@@ -1183,28 +1221,32 @@ def _solve(a, b):
 
 
 def _solve_one(a, b):
-    """The same for one system of nested lists."""
-    n = len(b)
-    failure = [np.nan] * n
-    for i, row in enumerate(a):
-        size = max(map(abs, row), default=0.0)
-        if not 0.0 < size < np.inf:
-            return failure
-        a[i] = [v / size for v in row] + [b[i] / size]
-    for k in range(n):
-        best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
-            a[k], a[best] = a[best], a[k]
-        if not abs(a[k][k]) > _PIVOT:
-            return failure
-        head = a[k]
-        for i in range(k + 1, n):
-            factor = a[i][k] / head[k]
-            a[i] = [v - factor * h for v, h in zip(a[i], head)]
-    x = [0.0] * n
-    for k in reversed(range(n)):
-        x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
-    return x if all(map(math.isfinite, x)) else failure
+    """The same for one system of nested lists: the rows left lose an entry at every step."""
+    rows, heads = [], []
+    for row, right in zip(a, b):
+        size = max(map(abs, row))
+        if not 0.0 < size < math.inf:
+            return [math.nan] * len(b)
+        rows.append([v / size for v in (*row, right)])
+    while rows:
+        column = [abs(row[0]) for row in rows]
+        largest = max(column)
+        if largest > _CLEARLY * column[0]:
+            best = column.index(largest)
+            rows[0], rows[best] = rows[best], rows[0]
+        pivot, *head = rows[0]
+        if not abs(pivot) > _PIVOT:
+            return [math.nan] * len(b)
+        heads.append((pivot, head))
+        for i in range(1, len(rows)):
+            first, *row = rows[i]
+            factor = first / pivot
+            rows[i] = [v - factor * h for v, h in zip(row, head)]
+        del rows[0]
+    x = []
+    for pivot, (*head, right) in reversed(heads):
+        x.insert(0, (right - sum([h * v for h, v in zip(head, x)])) / pivot)
+    return x if all(map(math.isfinite, x)) else [math.nan] * len(b)
 
 
 def _matrices(a, *others):
@@ -1315,12 +1357,12 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 3819 mul, 2745 add, 30 div, 18 sqrt, 0 trig
+# dynamics: 3783 mul, 2703 add, 30 div, 18 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
-    J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
+    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
         Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
         m_star,
     ) = shared
@@ -1376,666 +1418,788 @@ def _run_dynamics(m, X, V):
     out_M = m.zeros("M")
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy
-    J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
     J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_12 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_15 = 2.0*J_star_t_14 + J_star_xx
-    # (M4) centripetal force and weight of the platform
+    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
+    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
     Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
     Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z_2*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x_2*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y - g_r0_y_2*h_star_x
+    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
+    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
     sums = [0.0] * 27
     for leg, k in legs[0]:
         (
-        J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_4_xx, J_4_xy, J_4_xz, J_4_yy, J_4_yz, J_4_zz,
-            Jc_2_xx, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_4_xx, Sigma_4_yy, Sigma_4_zz,
-            branch_1, branch_2, branch_4, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_4_x,
-            h_4_y, h_4_z, upru_base_frame_xx, upru_base_frame_xy, upru_base_frame_xz,
-            upru_base_frame_yx, upru_base_frame_yy, upru_base_frame_yz, upru_base_frame_zx,
-            upru_base_frame_zy, upru_base_frame_zz, upru_base_point_x, upru_base_point_y,
-            upru_base_point_z, upru_platform_joint_axis_platform_x,
-            upru_platform_joint_axis_platform_y, upru_platform_joint_axis_platform_z,
-            upru_platform_point_x, upru_platform_point_y, upru_platform_point_z,
+        ucu_J_2_xy, ucu_J_2_xz, ucu_J_2_yy, ucu_J_2_yz, ucu_J_2_zz, ucu_J_4_xx, ucu_J_4_xy,
+            ucu_J_4_xz, ucu_J_4_yy, ucu_J_4_yz, ucu_J_4_zz, ucu_Jc_2_xx, ucu_Sigma_2_xx,
+            ucu_Sigma_2_yy, ucu_Sigma_2_zz, ucu_Sigma_4_xx, ucu_Sigma_4_yy, ucu_Sigma_4_zz,
+            ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx,
+            ucu_base_frame_yy, ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy,
+            ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y, ucu_base_point_z, ucu_branch_1,
+            ucu_branch_2, ucu_branch_4, ucu_g_r0_x, ucu_g_r0_y, ucu_g_r0_z, ucu_h_2_x, ucu_h_2_y,
+            ucu_h_2_z, ucu_h_4_x, ucu_h_4_y, ucu_h_4_z, ucu_platform_joint_axis_platform_x,
+            ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
+            ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
         ) = k
-        # (upru-K1) from the base point to the connection point
-        q_in_base_x = (
-        R_xx*upru_platform_point_x + R_xy*upru_platform_point_y + R_xz*upru_platform_point_z
+        # (ucu-S) from the base point to the connection point
+        ucu_q_in_base_x = (
+        R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
-        q_in_base_y = (
-        R_yx*upru_platform_point_x + R_yy*upru_platform_point_y + R_yz*upru_platform_point_z
+        ucu_q_in_base_y = (
+        R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y + R_yz*ucu_platform_point_z
         )
-        q_in_base_z = (
-        R_zx*upru_platform_point_x + R_zy*upru_platform_point_y + R_zz*upru_platform_point_z
+        ucu_q_in_base_z = (
+        R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        S_x = q_in_base_x + t_x - upru_base_point_x
-        S_y = q_in_base_y + t_y - upru_base_point_y
-        S_z = q_in_base_z + t_z - upru_base_point_z
-        # (upru-K2) component along the reference direction
-        px_1 = S_x*upru_base_frame_xx + S_y*upru_base_frame_yx + S_z*upru_base_frame_zx
-        # (upru-K3) component across the reference direction
-        py_1 = S_x*upru_base_frame_xy + S_y*upru_base_frame_yy + S_z*upru_base_frame_zy
-        # (upru-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (upru-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (upru-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*upru_base_frame_xz + S_y*upru_base_frame_yz + S_z*upru_base_frame_zz
-        # (upru-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (upru-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (upru-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (upru-K16) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (upru-K20) component along the reference direction
-        end_p1_r0_x = (
-        upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xx + R_yx*upru_base_frame_yx +
-            R_zx*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xx + R_yy*upru_base_frame_yx
-            + R_zy*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xx + R_yz*upru_base_frame_yx
-            + R_zz*upru_base_frame_zx)
+        ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x
+        ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y
+        ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z
+        # (ucu-px_1) component along the reference direction
+        ucu_px_1 = (
+        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
         )
-        end_p1_r0_y = (
-        upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xy + R_yx*upru_base_frame_yy +
-            R_zx*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xy + R_yy*upru_base_frame_yy
-            + R_zy*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xy + R_yz*upru_base_frame_yy
-            + R_zz*upru_base_frame_zy)
+        # (ucu-py_1) component across the reference direction
+        ucu_py_1 = (
+        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
         )
-        end_p1_r0_z = (
-        upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xz + R_yx*upru_base_frame_yz +
-            R_zx*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xz + R_yy*upru_base_frame_yz
-            + R_zy*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xz + R_yz*upru_base_frame_yz
-            + R_zz*upru_base_frame_zz)
+        # (ucu-rho2_1) squared amplitude
+        ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1
+        # (ucu-root_1) amplitude, with the sign of the branch
+        ucu_root_1 = ucu_branch_1*sqrt(ucu_rho2_1)
+        # (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ucu_xi_1_t = (
+        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
         )
-        # (upru-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (upru-K7) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (upru-K20) component along the reference direction
-        end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x
-        end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1
-        end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
-        end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
-        # (upru-K23) squared amplitude
-        rho2_4 = end_p1_r1_x*end_p1_r1_x + end_p1_r3_y*end_p1_r3_y
-        # (upru-K24) amplitude, with the sign of the branch
-        root_4 = branch_4*sqrt(rho2_4)
-        # (upru-K25) cosine of the angle of joint 4 from its reference direction
-        inv_root_4 = 1.0/root_4
-        c_4 = end_p1_r3_y*inv_root_4
-        # (upru-K26) sine of the angle of joint 4 from its reference direction
-        s_4 = end_p1_r1_x*inv_root_4
-        # (upru-V3) velocity of the connection point per rate of joint 1
-        v_1_t = c_2*c_4
-        v_1_t_2 = c_2*s_4
-        v_1_t_3 = root_2*v_1_t_2
-        v_1_t_4 = root_2*v_1_t
-        # (upru-V7) force part of reciprocal wrench 1
-        axis_z_x = S_x*inv_root_2
-        axis_z_y = S_y*inv_root_2
-        axis_z_z = S_z*inv_root_2
-        w_1_t = s_2*s_4
-        axis_y_upru_axes4_r4_x = -c_1*c_4 - s_1*w_1_t
-        axis_y_upru_axes4_r4_y = c_4*s_1 - c_1*w_1_t
-        axis_y_upru_axes4_in_base_x = (
-        axis_y_upru_axes4_r4_x*upru_base_frame_xx + axis_y_upru_axes4_r4_y*upru_base_frame_xy +
-            upru_base_frame_xz*v_1_t_2
+        # (ucu-rho2_2) squared amplitude
+        ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t
+        # (ucu-root_2) amplitude, with the sign of the branch
+        ucu_root_2 = ucu_branch_2*sqrt(ucu_rho2_2)
+        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ucu_root_2 = 1.0/ucu_root_2
+        ucu_c_2 = inv_ucu_root_2*ucu_root_1
+        # (ucu-s_2) sine of the angle of joint 2 from its reference direction
+        ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t
+        # (ucu-px_4) component along the reference direction
+        ucu_end_p1_r0_x = (
+        ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
+            R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
+            R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
+            ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
+            R_zz*ucu_base_frame_zx)
         )
-        axis_y_upru_axes4_in_base_y = (
-        axis_y_upru_axes4_r4_x*upru_base_frame_yx + axis_y_upru_axes4_r4_y*upru_base_frame_yy +
-            upru_base_frame_yz*v_1_t_2
+        ucu_end_p1_r0_y = (
+        ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
+            R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
+            R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
+            ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
+            R_zz*ucu_base_frame_zy)
         )
-        axis_y_upru_axes4_in_base_z = (
-        axis_y_upru_axes4_r4_x*upru_base_frame_zx + axis_y_upru_axes4_r4_y*upru_base_frame_zy +
-            upru_base_frame_zz*v_1_t_2
+        ucu_end_p1_r0_z = (
+        ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
+            R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
+            R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
+            ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
+            R_zz*ucu_base_frame_zz)
         )
-        axis_x_upru_axes4_x = (
-        axis_y_upru_axes4_in_base_y*axis_z_z - axis_y_upru_axes4_in_base_z*axis_z_y
+        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ucu_root_1 = 1.0/ucu_root_1
+        ucu_c_1 = inv_ucu_root_1*ucu_py_1
+        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
+        ucu_s_1 = inv_ucu_root_1*ucu_px_1
+        # (ucu-px_4) component along the reference direction
+        ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x
+        ucu_end_p1_r1_y = -ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1
+        ucu_end_p1_r3_x = ucu_end_p1_r0_z*ucu_s_2 - ucu_c_2*ucu_end_p1_r1_y
+        ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_end_p1_r1_y*ucu_s_2
+        # (ucu-rho2_4) squared amplitude
+        ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y
+        # (ucu-root_4) amplitude, with the sign of the branch
+        ucu_root_4 = ucu_branch_4*sqrt(ucu_rho2_4)
+        # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
+        inv_ucu_root_4 = 1.0/ucu_root_4
+        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y
+        # (ucu-s_4) sine of the angle of joint 4 from its reference direction
+        ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x
+        # (ucu-v_1) velocity of the connection point per rate of joint 1
+        ucu_v_1_t = ucu_c_2*ucu_c_4
+        ucu_v_1_t_2 = ucu_c_2*ucu_s_4
+        ucu_v_1_t_3 = ucu_root_2*ucu_v_1_t_2
+        ucu_v_1_t_4 = ucu_root_2*ucu_v_1_t
+        # (ucu-w_1) force part of reciprocal wrench 1
+        ucu_axis_z_x = inv_ucu_root_2*ucu_S_x
+        ucu_axis_z_y = inv_ucu_root_2*ucu_S_y
+        ucu_axis_z_z = inv_ucu_root_2*ucu_S_z
+        ucu_w_1_t = ucu_s_2*ucu_s_4
+        axis_y_ucu_axes4_r4_x = -ucu_c_1*ucu_c_4 - ucu_s_1*ucu_w_1_t
+        axis_y_ucu_axes4_r4_y = ucu_c_4*ucu_s_1 - ucu_c_1*ucu_w_1_t
+        axis_y_ucu_axes4_in_base_x = (
+        axis_y_ucu_axes4_r4_x*ucu_base_frame_xx + axis_y_ucu_axes4_r4_y*ucu_base_frame_xy +
+            ucu_base_frame_xz*ucu_v_1_t_2
         )
-        axis_x_upru_axes4_y = (
-        axis_y_upru_axes4_in_base_z*axis_z_x - axis_y_upru_axes4_in_base_x*axis_z_z
+        axis_y_ucu_axes4_in_base_y = (
+        axis_y_ucu_axes4_r4_x*ucu_base_frame_yx + axis_y_ucu_axes4_r4_y*ucu_base_frame_yy +
+            ucu_base_frame_yz*ucu_v_1_t_2
         )
-        axis_x_upru_axes4_z = (
-        axis_y_upru_axes4_in_base_x*axis_z_y - axis_y_upru_axes4_in_base_y*axis_z_x
+        axis_y_ucu_axes4_in_base_z = (
+        axis_y_ucu_axes4_r4_x*ucu_base_frame_zx + axis_y_ucu_axes4_r4_y*ucu_base_frame_zy +
+            ucu_base_frame_zz*ucu_v_1_t_2
         )
-        # (upru-G5) inertia tensor of link 4 about the connection point
-        J_4_t = J_4_yz*s_4
-        _x = J_4_yy*c_4 - J_4_t
-        J_4_t_2 = J_4_yz*c_4
-        _x_2 = J_4_t_2 - J_4_zz*s_4
-        _x_3 = J_4_xy*c_4 - J_4_xz*s_4
-        _y = J_4_xy*s_4 + J_4_xz*c_4
-        # (upru-N13) inertia tensor of the links from 2 outwards about joint 2
-        Jc_2_xy = _x_3 - J_2_xz
-        _y_2 = s_2*(J_2_xy + _y) - c_2*(_x*s_4 + _x_2*c_4 - J_2_yz)
-        # (upru-N9) moment about joint 4 that accelerates joint 4, per unit
-        L_c4_r2_y = J_4_xx*s_2 - _x_3*c_2
-        # (upru-V6) direction 1 of the moment that the platform joint transmits
-        end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4
-        end_p1_r5_y = c_4*end_p1_r1_x - end_p1_r3_y*s_4
-        # (upru-V3) velocity of the connection point per rate of joint 1
-        v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4
-        v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3
-        # (upru-V7) force part of reciprocal wrench 1
-        w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2
-        # (upru-V6) direction 1 of the moment that the platform joint transmits
-        n_m1_t = end_p1_r3_x*s_4
-        # (upru-V7) force part of reciprocal wrench 1
-        inv_v_1_r0_y = 1.0/v_1_r0_y
-        w_1_t_3 = inv_v_1_r0_y*s_4
-        w_1_t_4 = c_4*inv_v_1_r0_y
-        # (upru-V9) force part of reciprocal wrench 2
-        w_2_t = inv_root_2*inv_v_1_r0_y*v_1_r0_x
-        _r1_x = c_4*inv_root_2 - s_4*w_2_t
-        _r1_y = -c_4*w_2_t - inv_root_2*s_4
-        # (upru-V13) force part of reciprocal wrench 4
-        inv_end_p1_r5_x = 1.0/end_p1_r5_x
-        w_4_t = inv_end_p1_r5_x*inv_root_2*n_m1_t
-        w_4_t_2 = inv_v_1_r0_y*(inv_end_p1_r5_x*w_1_t_2 + v_1_r0_x*w_4_t)
-        _r1_x_2 = c_4*w_4_t - s_4*w_4_t_2
-        _r1_y_2 = -c_4*w_4_t_2 - s_4*w_4_t
-        # (upru-G4) first moment of link 4 about the connection point
-        h_4_r1_x = c_4*h_4_y - h_4_z*s_4
-        # (upru-N39) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_t = L_c4_r2_y*inv_end_p1_r5_x
-        d_Gamma_1_t_2 = inv_root_2*(_y_2 + d_Gamma_1_t*n_m1_t)
-        d_Gamma_1_t_3 = (
-        c_2*(Jc_2_xy*s_2 - c_2*(J_2_zz + _x*c_4 - _x_2*s_4)) + d_Gamma_1_t*w_1_t_2 +
-            d_Gamma_1_t_2*v_1_r0_x - s_2*(Jc_2_xx*s_2 - Jc_2_xy*c_2)
+        axis_x_ucu_axes4_x = (
+        axis_y_ucu_axes4_in_base_y*ucu_axis_z_z - axis_y_ucu_axes4_in_base_z*ucu_axis_z_y
         )
-        d_Gamma_1_t_4 = c_2*d_Gamma_1_t_2
-        d_Gamma_1_x = c_2*h_4_x + h_4_r1_x*s_2 - d_Gamma_1_t_3*inv_v_1_r0_y
-        d_Gamma_1_y = c_4*h_4_z + h_4_y*s_4 - d_Gamma_1_t_2*s_2
-        # (upru-N35) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_t = _y*inv_end_p1_r5_x
-        d_Gamma_2_t_2 = (
-        inv_root_2*(J_2_yy + c_4*(J_4_t + J_4_zz*c_4) + d_Gamma_2_t*n_m1_t + s_4*(J_4_t_2 +
-            J_4_yy*s_4))
+        axis_x_ucu_axes4_y = (
+        axis_y_ucu_axes4_in_base_z*ucu_axis_z_x - axis_y_ucu_axes4_in_base_x*ucu_axis_z_z
         )
-        d_Gamma_2_t_3 = inv_v_1_r0_y*(d_Gamma_2_t*w_1_t_2 + d_Gamma_2_t_2*v_1_r0_x - _y_2)
-        d_Gamma_2_y = d_Gamma_2_t_2 + h_4_x
-        # (upru-N25) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-        d_Gamma_4_t = J_4_xx*inv_end_p1_r5_x
-        d_Gamma_4_t_2 = inv_root_2*(_y + d_Gamma_4_t*n_m1_t)
-        d_Gamma_4_t_3 = inv_v_1_r0_y*(d_Gamma_4_t*w_1_t_2 + d_Gamma_4_t_2*v_1_r0_x - L_c4_r2_y)
-        d_Gamma_4_x = c_4*d_Gamma_4_t_2 - h_4_z - d_Gamma_4_t_3*s_4
-        d_Gamma_4_y = h_4_y - c_4*d_Gamma_4_t_3 - d_Gamma_4_t_2*s_4
-        # (upru-N39) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_r1_x = -c_2*d_Gamma_1_y - d_Gamma_1_t_4*s_2
-        d_Gamma_1_r1_y = c_2*d_Gamma_1_t_4 - d_Gamma_1_y*s_2
-        d_Gamma_1_r3_y = c_4*d_Gamma_1_x - d_Gamma_1_r1_y*s_4
-        # (upru-N35) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_r1_y = -c_4*d_Gamma_2_t_3 - d_Gamma_2_y*s_4
-        # (upru-N43) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_xz = d_Gamma_1_r1_x*w_1_t_3 - _r1_x*h_4_r1_x
-        d_G_yz = d_Gamma_1_r1_x*w_1_t_4 - _r1_y*h_4_r1_x
-        # (upru-A28) coefficient of the acceleration in: angular acceleration of link 4
-        d_alpha_4_zy = _r1_y_2 + s_2*w_1_t_4
-        # (upru-N55) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_xx = (
-        h_4_z*(_r1_x_2 + s_2*w_1_t_3) - _r1_x*(c_4*d_Gamma_2_y - d_Gamma_2_t_3*s_4) -
-            _r1_x_2*d_Gamma_4_x - h_4_x*(_r1_x*c_4 + v_1_t_2*w_1_t_3) -
-            w_1_t_3*(c_4*d_Gamma_1_r1_y + d_Gamma_1_x*s_4)
+        axis_x_ucu_axes4_z = (
+        axis_y_ucu_axes4_in_base_x*ucu_axis_z_y - axis_y_ucu_axes4_in_base_y*ucu_axis_z_x
         )
-        d_c_xy = (
-        d_alpha_4_zy*h_4_z - _r1_x*d_Gamma_2_r1_y - _r1_x_2*d_Gamma_4_y - d_Gamma_1_r3_y*w_1_t_3 -
-            h_4_x*(_r1_y*c_4 + v_1_t_2*w_1_t_4)
+        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
+        ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4
+        ucu_end_p1_r5_y = ucu_c_4*ucu_end_p1_r1_x - ucu_end_p1_r3_y*ucu_s_4
+        # (ucu-v_1) velocity of the connection point per rate of joint 1
+        ucu_v_1_r0_x = ucu_c_4*ucu_v_1_t_3 - ucu_s_4*ucu_v_1_t_4
+        ucu_v_1_r0_y = ucu_c_4*ucu_v_1_t_4 + ucu_s_4*ucu_v_1_t_3
+        # (ucu-w_1) force part of reciprocal wrench 1
+        ucu_w_1_t_2 = ucu_end_p1_r3_x*ucu_v_1_t + ucu_end_p1_r5_x*ucu_s_2
+        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
+        ucu_n_m1_t = ucu_end_p1_r3_x*ucu_s_4
+        # (ucu-w_1) force part of reciprocal wrench 1
+        inv_ucu_v_1_r0_y = 1.0/ucu_v_1_r0_y
+        ucu_w_1_t_3 = inv_ucu_v_1_r0_y*ucu_s_4
+        ucu_w_1_t_4 = inv_ucu_v_1_r0_y*ucu_c_4
+        # (ucu-w_2) force part of reciprocal wrench 2
+        ucu_w_2_t = inv_ucu_root_2*inv_ucu_v_1_r0_y*ucu_v_1_r0_x
+        ucu__r1_x = inv_ucu_root_2*ucu_c_4 - ucu_s_4*ucu_w_2_t
+        ucu__r1_y = -inv_ucu_root_2*ucu_s_4 - ucu_c_4*ucu_w_2_t
+        # (ucu-w_4) force part of reciprocal wrench 4
+        inv_ucu_end_p1_r5_x = 1.0/ucu_end_p1_r5_x
+        ucu_w_4_t = inv_ucu_end_p1_r5_x*inv_ucu_root_2*ucu_n_m1_t
+        ucu_w_4_t_2 = inv_ucu_v_1_r0_y*(inv_ucu_end_p1_r5_x*ucu_w_1_t_2 + ucu_v_1_r0_x*ucu_w_4_t)
+        ucu__r1_x_2 = ucu_c_4*ucu_w_4_t - ucu_s_4*ucu_w_4_t_2
+        ucu__r1_y_2 = -ucu_c_4*ucu_w_4_t_2 - ucu_s_4*ucu_w_4_t
+        # (ucu-d_alpha_4) coefficient of the acceleration in: angular acceleration of link 4
+        ucu_d_alpha_4_zy = ucu__r1_y_2 + ucu_s_2*ucu_w_1_t_4
+        # (ucu-L_c_4) moment about joint 4 that accelerates joint 4, per unit
+        ucu_L_c_4_r0_y = ucu_J_4_xy*ucu_s_4 + ucu_J_4_xz*ucu_c_4
+        # (ucu-D_1_4) inertia of joint 4 along joint 1
+        ucu_D_1_4 = ucu_J_4_xx*ucu_s_2 + ucu_J_4_xz*ucu_v_1_t_2 - ucu_J_4_xy*ucu_v_1_t
+        # (ucu-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+        ucu_d_Gamma_4_t = inv_ucu_end_p1_r5_x*ucu_J_4_xx
+        ucu_d_Gamma_4_t_2 = inv_ucu_root_2*(ucu_L_c_4_r0_y + ucu_d_Gamma_4_t*ucu_n_m1_t)
+        ucu_d_Gamma_4_t_3 = (
+        inv_ucu_v_1_r0_y*(ucu_d_Gamma_4_t*ucu_w_1_t_2 + ucu_d_Gamma_4_t_2*ucu_v_1_r0_x -
+            ucu_D_1_4)
         )
-        d_c_yy = (
-        h_4_x*(_r1_y*s_4 - v_1_t*w_1_t_4) - _r1_y*d_Gamma_2_r1_y - _r1_y_2*d_Gamma_4_y -
-            d_Gamma_1_r3_y*w_1_t_4 - d_alpha_4_zy*h_4_y
+        ucu_d_Gamma_4_x = ucu_c_4*ucu_d_Gamma_4_t_2 - ucu_h_4_z - ucu_d_Gamma_4_t_3*ucu_s_4
+        ucu_d_Gamma_4_y = ucu_h_4_y - ucu_c_4*ucu_d_Gamma_4_t_3 - ucu_d_Gamma_4_t_2*ucu_s_4
+        # (ucu-J_4) inertia tensor of link 4 about the connection point
+        ucu_J_4_t = ucu_J_4_yz*ucu_s_4
+        ucu__x = ucu_J_4_yy*ucu_c_4 - ucu_J_4_t
+        ucu_J_4_t_2 = ucu_J_4_yz*ucu_c_4
+        ucu__x_2 = ucu_J_4_t_2 - ucu_J_4_zz*ucu_s_4
+        # (ucu-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+        ucu_Jc_2_xy = ucu_J_4_xy*ucu_c_4 - ucu_J_2_xz - ucu_J_4_xz*ucu_s_4
+        # (ucu-L_c_2) moment about joint 2 that accelerates joint 2, per unit
+        ucu_L_c_2_r0_y = (
+        ucu_s_2*(ucu_J_2_xy + ucu_L_c_4_r0_y) - ucu_c_2*(ucu__x*ucu_s_4 + ucu__x_2*ucu_c_4 -
+            ucu_J_2_yz)
         )
-        # (upru-N57) inertia of the leg at the connection point, without the mass gathered there
-        Q_t = 0.5*d_c_xx
-        Q_t_2 = 0.5*d_c_yy
-        Q_t_3 = Q_t*axis_x_upru_axes4_x + axis_y_upru_axes4_in_base_x*d_c_xy - axis_z_x*d_G_xz
-        Q_t_4 = Q_t*axis_x_upru_axes4_y + axis_y_upru_axes4_in_base_y*d_c_xy - axis_z_y*d_G_xz
-        Q_t_5 = Q_t*axis_x_upru_axes4_z + axis_y_upru_axes4_in_base_z*d_c_xy - axis_z_z*d_G_xz
-        Q_t_6 = Q_t_2*axis_y_upru_axes4_in_base_x - axis_z_x*d_G_yz
-        Q_t_7 = Q_t_2*axis_y_upru_axes4_in_base_y - axis_z_y*d_G_yz
-        Q_t_8 = Q_t_2*axis_y_upru_axes4_in_base_z - axis_z_z*d_G_yz
-        Q_t_9 = Q_t_3*axis_x_upru_axes4_x + Q_t_6*axis_y_upru_axes4_in_base_x
-        Q_t_10 = 2.0*Q_t_9
-        Q_t_11 = (
-        Q_t_3*axis_x_upru_axes4_y + Q_t_4*axis_x_upru_axes4_x + Q_t_6*axis_y_upru_axes4_in_base_y
-            + Q_t_7*axis_y_upru_axes4_in_base_x
+        # (ucu-h_4) first moment of link 4 about the connection point
+        ucu_h_4_r1_x = ucu_c_4*ucu_h_4_y - ucu_h_4_z*ucu_s_4
+        # (ucu-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        ucu_d_Gamma_2_t = inv_ucu_end_p1_r5_x*ucu_L_c_4_r0_y
+        ucu_d_Gamma_2_t_2 = (
+        inv_ucu_root_2*(ucu_J_2_yy + ucu_c_4*(ucu_J_4_t + ucu_J_4_zz*ucu_c_4) +
+            ucu_d_Gamma_2_t*ucu_n_m1_t + ucu_s_4*(ucu_J_4_t_2 + ucu_J_4_yy*ucu_s_4))
         )
-        Q_t_12 = (
-        Q_t_3*axis_x_upru_axes4_z + Q_t_5*axis_x_upru_axes4_x + Q_t_6*axis_y_upru_axes4_in_base_z
-            + Q_t_8*axis_y_upru_axes4_in_base_x
+        ucu_d_Gamma_2_t_3 = (
+        inv_ucu_v_1_r0_y*(ucu_d_Gamma_2_t*ucu_w_1_t_2 + ucu_d_Gamma_2_t_2*ucu_v_1_r0_x -
+            ucu_L_c_2_r0_y)
         )
-        Q_t_13 = Q_t_4*axis_x_upru_axes4_y + Q_t_7*axis_y_upru_axes4_in_base_y
-        Q_t_14 = 2.0*Q_t_13
-        Q_t_15 = (
-        Q_t_4*axis_x_upru_axes4_z + Q_t_5*axis_x_upru_axes4_y + Q_t_7*axis_y_upru_axes4_in_base_z
-            + Q_t_8*axis_y_upru_axes4_in_base_y
+        ucu_d_Gamma_2_y = ucu_d_Gamma_2_t_2 + ucu_h_4_x
+        # (ucu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        ucu_d_Gamma_1_t = inv_ucu_end_p1_r5_x*ucu_D_1_4
+        ucu_d_Gamma_1_t_2 = inv_ucu_root_2*(ucu_L_c_2_r0_y + ucu_d_Gamma_1_t*ucu_n_m1_t)
+        ucu_d_Gamma_1_t_3 = (
+        ucu_c_2*(ucu_Jc_2_xy*ucu_s_2 - ucu_c_2*(ucu_J_2_zz + ucu__x*ucu_c_4 - ucu__x_2*ucu_s_4)) +
+            ucu_d_Gamma_1_t*ucu_w_1_t_2 + ucu_d_Gamma_1_t_2*ucu_v_1_r0_x -
+            ucu_s_2*(ucu_Jc_2_xx*ucu_s_2 - ucu_Jc_2_xy*ucu_c_2)
         )
-        Q_t_16 = Q_t_5*axis_x_upru_axes4_z + Q_t_8*axis_y_upru_axes4_in_base_z
-        Q_t_17 = 2.0*Q_t_16
-        # (upru-V18) moment part of reciprocal wrench 4
-        o_4_x = end_p1_r3_x*inv_end_p1_r5_x
-        # (upru-N38) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d0_Gamma_1_t = L_c4_r2_y*o_4_x
-        # (upru-N34) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d0_Gamma_2_t = _y*o_4_x
-        # (upru-N24) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-        d0_Gamma_4_t = J_4_xx*o_4_x
-        # (upru-N54) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d0_c_xx = _r1_x*d0_Gamma_2_t + _r1_x_2*d0_Gamma_4_t + d0_Gamma_1_t*w_1_t_3 - h_4_z*o_4_x
-        d0_c_xz = h_4_z - J_4_xx*_r1_x_2 - L_c4_r2_y*w_1_t_3 - _r1_x*_y
-        d0_c_yx = _r1_y*d0_Gamma_2_t + _r1_y_2*d0_Gamma_4_t + d0_Gamma_1_t*w_1_t_4 + h_4_y*o_4_x
-        d0_c_yz = -h_4_y - J_4_xx*_r1_y_2 - L_c4_r2_y*w_1_t_4 - _r1_y*_y
-        # (M2) coupling block of M
-        M_ta_t = Q_t_11*q_in_base_z
-        M_ta_t_2 = Q_t_12*q_in_base_y
-        M_ta_t_3 = Q_t_10*q_in_base_z - Q_t_12*q_in_base_x
-        M_ta_t_4 = Q_t_10*q_in_base_y - Q_t_11*q_in_base_x
-        M_ta_t_5 = Q_t_14*q_in_base_z - Q_t_15*q_in_base_y
-        M_ta_t_6 = Q_t_15*q_in_base_x
-        M_ta_t_7 = M_ta_t - M_ta_t_6
-        M_ta_t_8 = Q_t_11*q_in_base_y - Q_t_14*q_in_base_x
-        M_ta_t_9 = Q_t_15*q_in_base_z - Q_t_17*q_in_base_y
-        M_ta_t_10 = Q_t_12*q_in_base_z - Q_t_17*q_in_base_x
-        M_ta_t_11 = M_ta_t_6 - M_ta_t_2
-        # (upru-N54) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d0_c_in_base_x = axis_x_upru_axes4_x*d0_c_xx + axis_y_upru_axes4_in_base_x*d0_c_yx
-        d0_c_in_base_y = axis_x_upru_axes4_y*d0_c_xx + axis_y_upru_axes4_in_base_y*d0_c_yx
-        d0_c_in_base_z = axis_x_upru_axes4_z*d0_c_xx + axis_y_upru_axes4_in_base_z*d0_c_yx
-        d0_c_in_base_x_2 = axis_x_upru_axes4_x*d0_c_xz + axis_y_upru_axes4_in_base_x*d0_c_yz
-        d0_c_in_base_y_2 = axis_x_upru_axes4_y*d0_c_xz + axis_y_upru_axes4_in_base_y*d0_c_yz
-        d0_c_in_base_z_2 = axis_x_upru_axes4_z*d0_c_xz + axis_y_upru_axes4_in_base_z*d0_c_yz
-        d0_c_in_base_y_3 = axis_x_upru_axes4_y*d0_c_in_base_x + axis_z_y*d0_c_in_base_x_2
-        d0_c_in_base_z_3 = axis_x_upru_axes4_z*d0_c_in_base_x + axis_z_z*d0_c_in_base_x_2
-        d0_c_in_base_x_3 = axis_x_upru_axes4_x*d0_c_in_base_y + axis_z_x*d0_c_in_base_y_2
-        d0_c_in_base_y_4 = axis_x_upru_axes4_y*d0_c_in_base_y + axis_z_y*d0_c_in_base_y_2
-        d0_c_in_base_z_4 = axis_x_upru_axes4_z*d0_c_in_base_y + axis_z_z*d0_c_in_base_y_2
-        d0_c_in_base_x_4 = axis_x_upru_axes4_x*d0_c_in_base_z + axis_z_x*d0_c_in_base_z_2
-        d0_c_in_base_y_5 = axis_x_upru_axes4_y*d0_c_in_base_z + axis_z_y*d0_c_in_base_z_2
-        d0_c_in_base_z_5 = axis_x_upru_axes4_z*d0_c_in_base_z + axis_z_z*d0_c_in_base_z_2
-        # (M2) coupling block of M
-        M_ta_t_12 = (
-        M_ta_t - M_ta_t_2 - axis_x_upru_axes4_x*d0_c_in_base_x - axis_z_x*d0_c_in_base_x_2
+        ucu_d_Gamma_1_t_4 = ucu_c_2*ucu_d_Gamma_1_t_2
+        ucu_d_Gamma_1_x = (
+        ucu_c_2*ucu_h_4_x + ucu_h_4_r1_x*ucu_s_2 - inv_ucu_v_1_r0_y*ucu_d_Gamma_1_t_3
         )
-        M_ta_t_13 = M_ta_t_3 + d0_c_in_base_y_3
-        M_ta_t_14 = M_ta_t_4 - d0_c_in_base_z_3
-        M_ta_t_15 = M_ta_t_5 - d0_c_in_base_x_3
-        M_ta_t_16 = M_ta_t_7 + d0_c_in_base_y_4
-        M_ta_t_17 = M_ta_t_8 - d0_c_in_base_z_4
-        M_ta_t_18 = M_ta_t_9 - d0_c_in_base_x_4
-        M_ta_t_19 = M_ta_t_10 + d0_c_in_base_y_5
-        M_ta_t_20 = M_ta_t_11 + d0_c_in_base_z_5
-        # (upru-N46) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        d0_G_m1_t = d0_Gamma_4_t*inv_end_p1_r5_x
-        # (upru-N47) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        d_G_m1_t = d_Gamma_4_x*inv_end_p1_r5_x
-        d_G_m1_t_2 = d_Gamma_4_y*inv_end_p1_r5_x
-        # (upru-V6) direction 1 of the moment that the platform joint transmits
-        n_m1_in_base_x = axis_x_upru_axes4_x*end_p1_r3_x - axis_z_x*end_p1_r5_x
-        n_m1_in_base_y = axis_x_upru_axes4_y*end_p1_r3_x - axis_z_y*end_p1_r5_x
-        n_m1_in_base_z = axis_x_upru_axes4_z*end_p1_r3_x - axis_z_z*end_p1_r5_x
-        # (upru-N47) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        d_G_m1_in_base_x = -axis_x_upru_axes4_x*d_G_m1_t - axis_y_upru_axes4_in_base_x*d_G_m1_t_2
-        d_G_m1_in_base_y = -axis_x_upru_axes4_y*d_G_m1_t - axis_y_upru_axes4_in_base_y*d_G_m1_t_2
-        d_G_m1_in_base_z = -axis_x_upru_axes4_z*d_G_m1_t - axis_y_upru_axes4_in_base_z*d_G_m1_t_2
-        # (upru-N51) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_m_xx = d_G_m1_in_base_x*n_m1_in_base_x
-        d_G_m_xy = d_G_m1_in_base_y*n_m1_in_base_x
-        d_G_m_xz = d_G_m1_in_base_z*n_m1_in_base_x
-        d_G_m_yx = d_G_m1_in_base_x*n_m1_in_base_y
-        # (upru-N46) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        d0_G_m1_in_base_y = axis_x_upru_axes4_y*d0_G_m1_t - axis_z_y*d_Gamma_4_t
-        d0_G_m1_in_base_z = axis_x_upru_axes4_z*d0_G_m1_t - axis_z_z*d_Gamma_4_t
-        # (M3) rotational block of M
-        M_aa_t = (
-        M_ta_t_5*q_in_base_z + d0_c_in_base_x_4*q_in_base_y + d_G_m_xy*q_in_base_z -
-            M_ta_t_9*q_in_base_y - d0_c_in_base_x_3*q_in_base_z - d_G_m_xz*q_in_base_y -
-            n_m1_in_base_x*(axis_x_upru_axes4_x*d0_G_m1_t - axis_z_x*d_Gamma_4_t)
+        ucu_d_Gamma_1_y = ucu_c_4*ucu_h_4_z + ucu_h_4_y*ucu_s_4 - ucu_d_Gamma_1_t_2*ucu_s_2
+        ucu_d_Gamma_1_r1_x = -ucu_c_2*ucu_d_Gamma_1_y - ucu_d_Gamma_1_t_4*ucu_s_2
+        ucu_d_Gamma_1_r1_y = ucu_c_2*ucu_d_Gamma_1_t_4 - ucu_d_Gamma_1_y*ucu_s_2
+        ucu_d_Gamma_1_r3_y = ucu_c_4*ucu_d_Gamma_1_x - ucu_d_Gamma_1_r1_y*ucu_s_4
+        # (ucu-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        ucu_d_Gamma_2_r1_y = -ucu_c_4*ucu_d_Gamma_2_t_3 - ucu_d_Gamma_2_y*ucu_s_4
+        # (ucu-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        ucu_d_G_xz = ucu_d_Gamma_1_r1_x*ucu_w_1_t_3 - ucu__r1_x*ucu_h_4_r1_x
+        ucu_d_G_yz = ucu_d_Gamma_1_r1_x*ucu_w_1_t_4 - ucu__r1_y*ucu_h_4_r1_x
+        # (ucu-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        ucu_d_c_xx = (
+        ucu_h_4_z*(ucu__r1_x_2 + ucu_s_2*ucu_w_1_t_3) - ucu__r1_x*(ucu_c_4*ucu_d_Gamma_2_y -
+            ucu_d_Gamma_2_t_3*ucu_s_4) - ucu__r1_x_2*ucu_d_Gamma_4_x -
+            ucu_h_4_x*(ucu__r1_x*ucu_c_4 + ucu_v_1_t_2*ucu_w_1_t_3) -
+            ucu_w_1_t_3*(ucu_c_4*ucu_d_Gamma_1_r1_y + ucu_d_Gamma_1_x*ucu_s_4)
         )
-        M_aa_t_2 = (
-        M_ta_t_7*q_in_base_z + d0_G_m1_in_base_y*n_m1_in_base_x + d0_c_in_base_y_4*q_in_base_z +
-            d_G_m_xx*q_in_base_z - M_ta_t_10*q_in_base_y - d0_c_in_base_y_5*q_in_base_y -
-            d_G_m_xz*q_in_base_x
+        ucu_d_c_xy = (
+        ucu_d_alpha_4_zy*ucu_h_4_z - ucu__r1_x*ucu_d_Gamma_2_r1_y - ucu__r1_x_2*ucu_d_Gamma_4_y -
+            ucu_d_Gamma_1_r3_y*ucu_w_1_t_3 - ucu_h_4_x*(ucu__r1_y*ucu_c_4 +
+            ucu_v_1_t_2*ucu_w_1_t_4)
         )
-        M_aa_t_3 = (
-        d0_G_m1_in_base_z*n_m1_in_base_x + d0_c_in_base_z_4*q_in_base_z + d_G_m_xy*q_in_base_x -
-            M_ta_t_11*q_in_base_y - M_ta_t_8*q_in_base_z - d0_c_in_base_z_5*q_in_base_y -
-            d_G_m_xx*q_in_base_y
+        ucu_d_c_yy = (
+        ucu_h_4_x*(ucu__r1_y*ucu_s_4 - ucu_v_1_t*ucu_w_1_t_4) - ucu__r1_y*ucu_d_Gamma_2_r1_y -
+            ucu__r1_y_2*ucu_d_Gamma_4_y - ucu_d_Gamma_1_r3_y*ucu_w_1_t_4 -
+            ucu_d_alpha_4_zy*ucu_h_4_y
         )
-        M_aa_t_4 = (
-        M_ta_t_3*q_in_base_z + d0_c_in_base_y_3*q_in_base_z +
-            d_G_m1_in_base_z*n_m1_in_base_y*q_in_base_x - M_ta_t_10*q_in_base_x -
-            d0_G_m1_in_base_y*n_m1_in_base_y - d0_c_in_base_y_5*q_in_base_x - d_G_m_yx*q_in_base_z
+        # (ucu-Q) inertia of the leg at the connection point, without the mass gathered there
+        ucu_Q_t = 0.5*ucu_d_c_xx
+        ucu_Q_t_2 = 0.5*ucu_d_c_yy
+        ucu_Q_t_3 = (
+        axis_x_ucu_axes4_x*ucu_Q_t + axis_y_ucu_axes4_in_base_x*ucu_d_c_xy -
+            ucu_axis_z_x*ucu_d_G_xz
         )
-        M_aa_t_5 = (
-        M_ta_t_11*q_in_base_x + M_ta_t_4*q_in_base_z + d0_G_m1_in_base_z*n_m1_in_base_y +
-            d0_c_in_base_z_5*q_in_base_x + d_G_m1_in_base_y*n_m1_in_base_y*q_in_base_x -
-            d0_c_in_base_z_3*q_in_base_z - d_G_m_yx*q_in_base_y
+        ucu_Q_t_4 = (
+        axis_x_ucu_axes4_y*ucu_Q_t + axis_y_ucu_axes4_in_base_y*ucu_d_c_xy -
+            ucu_axis_z_y*ucu_d_G_xz
         )
-        M_aa_t_6 = (
-        M_ta_t_4*q_in_base_y + d0_c_in_base_z_4*q_in_base_x +
-            d_G_m1_in_base_x*n_m1_in_base_z*q_in_base_y - M_ta_t_8*q_in_base_x -
-            d0_G_m1_in_base_z*n_m1_in_base_z - d0_c_in_base_z_3*q_in_base_y -
-            d_G_m1_in_base_y*n_m1_in_base_z*q_in_base_x
+        ucu_Q_t_5 = (
+        axis_x_ucu_axes4_z*ucu_Q_t + axis_y_ucu_axes4_in_base_z*ucu_d_c_xy -
+            ucu_axis_z_z*ucu_d_G_xz
         )
-        # (upru-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-        g_r3_x = g_r0_z*s_2 - c_2*g_r1_y
-        g_r3_y = -c_2*g_r0_z - g_r1_y*s_2
-        # (upru-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        # (upru-V19) rate at which the joints turn along moment direction 1
-        eta_1 = n_m1_in_base_x*omega_x + n_m1_in_base_y*omega_y + n_m1_in_base_z*omega_z
-        # (upru-V1) velocity of the connection point
-        S_dot_r0_x = (
-        S_dot_x*upru_base_frame_xx + S_dot_y*upru_base_frame_yx + S_dot_z*upru_base_frame_zx
+        ucu_Q_t_6 = axis_y_ucu_axes4_in_base_x*ucu_Q_t_2 - ucu_axis_z_x*ucu_d_G_yz
+        ucu_Q_t_7 = axis_y_ucu_axes4_in_base_y*ucu_Q_t_2 - ucu_axis_z_y*ucu_d_G_yz
+        ucu_Q_t_8 = axis_y_ucu_axes4_in_base_z*ucu_Q_t_2 - ucu_axis_z_z*ucu_d_G_yz
+        ucu_Q_t_9 = axis_x_ucu_axes4_x*ucu_Q_t_3 + axis_y_ucu_axes4_in_base_x*ucu_Q_t_6
+        ucu_Q_t_10 = 2.0*ucu_Q_t_9
+        ucu_Q_t_11 = (
+        axis_x_ucu_axes4_x*ucu_Q_t_4 + axis_x_ucu_axes4_y*ucu_Q_t_3 +
+            axis_y_ucu_axes4_in_base_x*ucu_Q_t_7 + axis_y_ucu_axes4_in_base_y*ucu_Q_t_6
         )
-        S_dot_r0_y = (
-        S_dot_x*upru_base_frame_xy + S_dot_y*upru_base_frame_yy + S_dot_z*upru_base_frame_zy
+        ucu_Q_t_12 = (
+        axis_x_ucu_axes4_x*ucu_Q_t_5 + axis_x_ucu_axes4_z*ucu_Q_t_3 +
+            axis_y_ucu_axes4_in_base_x*ucu_Q_t_8 + axis_y_ucu_axes4_in_base_z*ucu_Q_t_6
         )
-        S_dot_r0_z = (
-        S_dot_x*upru_base_frame_xz + S_dot_y*upru_base_frame_yz + S_dot_z*upru_base_frame_zz
+        ucu_Q_t_13 = axis_x_ucu_axes4_y*ucu_Q_t_4 + axis_y_ucu_axes4_in_base_y*ucu_Q_t_7
+        ucu_Q_t_14 = 2.0*ucu_Q_t_13
+        ucu_Q_t_15 = (
+        axis_x_ucu_axes4_y*ucu_Q_t_5 + axis_x_ucu_axes4_z*ucu_Q_t_4 +
+            axis_y_ucu_axes4_in_base_y*ucu_Q_t_8 + axis_y_ucu_axes4_in_base_z*ucu_Q_t_7
         )
-        S_dot_r1_y = -S_dot_r0_x*s_1 - S_dot_r0_y*c_1
-        S_dot_r3_x = S_dot_r0_z*s_2 - S_dot_r1_y*c_2
-        # (upru-V20) rate of joint 1
-        qd_1_t = inv_v_1_r0_y*(S_dot_r0_y*s_1 - S_dot_r0_x*c_1)
-        qd_1_t_2 = inv_root_2*(-S_dot_r0_z*c_2 - S_dot_r1_y*s_2 - qd_1_t*v_1_r0_x)
-        qd_1_t_3 = inv_end_p1_r5_x*(eta_1 + qd_1_t*w_1_t_2 - n_m1_t*qd_1_t_2)
-        # (upru-V24) angular velocity of link 1
-        omega_1_t = qd_1_t*s_2
-        omega_1_t_2 = c_2*qd_1_t
-        # (upru-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_x = omega_1_t_2*qd_1_t_2
-        zeta_2_y = omega_1_t*qd_1_t_2
-        # (upru-V25) angular velocity of link 2
-        omega_2_r1_x = qd_1_t_2*s_4 - c_4*omega_1_t_2
-        omega_2_r1_y = c_4*qd_1_t_2 + omega_1_t_2*s_4
-        # (upru-A5) angular acceleration of link 4 from the turning of axis 4
-        zeta_4_x = omega_2_r1_y*qd_1_t_3
-        # (upru-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_t = c_4*zeta_2_y
-        # (upru-A6) angular acceleration of link 4 at zero joint accelerations
-        beta_4_x = -zeta_2_t - zeta_4_x
-        # (upru-V27) angular velocity of link 4
-        omega_4_z = omega_1_t - qd_1_t_3
-        # (upru-A10) rate of moment direction 1
-        omega_tip_x = (
-        axis_x_upru_axes4_x*omega_x + axis_x_upru_axes4_y*omega_y + axis_x_upru_axes4_z*omega_z
+        ucu_Q_t_16 = axis_x_ucu_axes4_z*ucu_Q_t_5 + axis_y_ucu_axes4_in_base_z*ucu_Q_t_8
+        ucu_Q_t_17 = 2.0*ucu_Q_t_16
+        # (ucu-o_4) moment part of reciprocal wrench 4
+        ucu_o_4_x = inv_ucu_end_p1_r5_x*ucu_end_p1_r3_x
+        # (ucu-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+        ucu_dalpha_Gamma_4_t = ucu_J_4_xx*ucu_o_4_x
+        # (ucu-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        ucu_dalpha_Gamma_2_t = ucu_L_c_4_r0_y*ucu_o_4_x
+        # (ucu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        ucu_dalpha_Gamma_1_t = ucu_D_1_4*ucu_o_4_x
+        # (ucu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        ucu_dalpha_c_xx = (
+        ucu__r1_x*ucu_dalpha_Gamma_2_t + ucu__r1_x_2*ucu_dalpha_Gamma_4_t +
+            ucu_dalpha_Gamma_1_t*ucu_w_1_t_3 - ucu_h_4_z*ucu_o_4_x
         )
-        omega_tip_y = (
-        axis_y_upru_axes4_in_base_x*omega_x + axis_y_upru_axes4_in_base_y*omega_y +
-            axis_y_upru_axes4_in_base_z*omega_z
+        ucu_dalpha_c_xz = (
+        ucu_h_4_z - ucu_D_1_4*ucu_w_1_t_3 - ucu_J_4_xx*ucu__r1_x_2 - ucu_L_c_4_r0_y*ucu__r1_x
         )
-        omega_tip_z = axis_z_x*omega_x + axis_z_y*omega_y + axis_z_z*omega_z
-        nd_m1_x = end_p1_r5_y*omega_tip_x - end_p1_r5_x*omega_tip_y - end_p1_r5_y*omega_2_r1_x
-        nd_m1_z = end_p1_r5_y*omega_tip_z - end_p1_r3_x*omega_tip_y - end_p1_r5_y*omega_4_z
-        # (upru-A11) bias of the angular acceleration along moment direction 1
-        nu_1_t = beta_4_x*end_p1_r3_x + end_p1_r5_x*zeta_2_x
-        nu_1_t_2 = (
-        nd_m1_x*(omega_2_r1_x - omega_tip_x) + nd_m1_z*(omega_4_z - omega_tip_z) + (omega_2_r1_y -
-            omega_tip_y)*(end_p1_r3_x*omega_4_z + end_p1_r5_x*omega_2_r1_x)
+        ucu_dalpha_c_yx = (
+        ucu__r1_y*ucu_dalpha_Gamma_2_t + ucu__r1_y_2*ucu_dalpha_Gamma_4_t +
+            ucu_dalpha_Gamma_1_t*ucu_w_1_t_4 + ucu_h_4_y*ucu_o_4_x
         )
-        nu_1 = -nu_1_t - nu_1_t_2
-        # (upru-V26) centripetal tensor of link 2
-        W_2_t = omega_1_t*omega_1_t
-        W_2_t_2 = omega_1_t_2*omega_1_t_2
-        W_2_t_3 = qd_1_t_2*qd_1_t_2
-        W_2_xy = omega_1_t*omega_1_t_2
-        W_2_t_4 = omega_2_r1_x*omega_2_r1_x
-        W_2_t_5 = omega_2_r1_y*omega_2_r1_y
-        W_2_xy_2 = omega_2_r1_x*omega_2_r1_y
-        # (upru-A7) acceleration of the connection point at zero joint accelerations
-        bias_t = 2.0*S_dot_r3_x
-        bias_x = bias_t*omega_2_r1_y + root_2*(omega_1_t*omega_2_r1_x + s_4*zeta_2_y)
-        bias_y = root_2*(zeta_2_t + omega_1_t*omega_2_r1_y) - bias_t*omega_2_r1_x
-        # (upru-A1) centripetal acceleration of the connection point
-        u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
-        u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y
-        u_1_tip_x = (
-        axis_x_upru_axes4_x*u_1_x + axis_x_upru_axes4_y*u_1_y + axis_x_upru_axes4_z*u_1_z
+        ucu_dalpha_c_yz = (
+        -ucu_h_4_y - ucu_D_1_4*ucu_w_1_t_4 - ucu_J_4_xx*ucu__r1_y_2 - ucu_L_c_4_r0_y*ucu__r1_y
         )
-        u_1_tip_y = (
-        axis_y_upru_axes4_in_base_x*u_1_x + axis_y_upru_axes4_in_base_y*u_1_y +
-            axis_y_upru_axes4_in_base_z*u_1_z
+        ucu_dalpha_c_in_base_x = (
+        axis_x_ucu_axes4_x*ucu_dalpha_c_xx + axis_y_ucu_axes4_in_base_x*ucu_dalpha_c_yx
         )
-        # (upru-A9) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_x = u_1_tip_x - bias_x
-        rel_o_y = u_1_tip_y - bias_y
-        # (upru-A14) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_o_t = inv_v_1_r0_y*(c_4*rel_o_y + rel_o_x*s_4)
-        qdd_1_o_t_2 = inv_root_2*(qdd_1_o_t*v_1_r0_x + rel_o_y*s_4 - c_4*rel_o_x)
-        # (upru-A21) remainder without the acceleration in: angular acceleration of link 1
-        alpha_1_o_t = qdd_1_o_t*s_2
-        alpha_1_o_t_2 = c_2*qdd_1_o_t
-        # (upru-A23) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_o_x = alpha_1_o_t - zeta_2_x
-        alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-        # (upru-A25) remainder of the acceleration tensor of link 2
-        B_2_o_xy = qdd_1_o_t_2 - W_2_xy
-        B_2_o_yx = -W_2_xy - qdd_1_o_t_2
-        B_2_o_zx = zeta_2_y - alpha_2_o_y
-        B_2_o_zy = alpha_2_o_x - zeta_2_x
-        # (upru-N30) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_o_x = (
-        B_2_o_yx*J_2_xy + B_2_o_zx*J_2_xz + B_2_o_zy*Sigma_2_yy + Sigma_2_zz*alpha_1_o_t +
-            g_r1_x*h_2_z + g_r3_y*h_2_y - J_2_yz*(W_2_t_2 - W_2_t_3)
+        ucu_dalpha_c_in_base_y = (
+        axis_x_ucu_axes4_y*ucu_dalpha_c_xx + axis_y_ucu_axes4_in_base_y*ucu_dalpha_c_yx
         )
-        mu_2_o_y = (
-        B_2_o_xy*J_2_yz + g_r1_x*h_2_x - B_2_o_zx*Sigma_2_xx - B_2_o_zy*J_2_xz - J_2_xy*(W_2_t -
-            W_2_t_3) - Sigma_2_zz*alpha_1_o_t_2 - g_r3_x*h_2_y
+        ucu_dalpha_c_in_base_z = (
+        axis_x_ucu_axes4_z*ucu_dalpha_c_xx + axis_y_ucu_axes4_in_base_z*ucu_dalpha_c_yx
         )
-        mu_2_o_z = (
-        B_2_o_yx*Sigma_2_xx + J_2_xy*alpha_1_o_t + J_2_yz*alpha_1_o_t_2 - B_2_o_xy*Sigma_2_yy -
-            J_2_xz*(W_2_t - W_2_t_2) - g_r3_x*h_2_z - g_r3_y*h_2_x
+        ucu_dalpha_c_in_base_x_2 = (
+        axis_x_ucu_axes4_x*ucu_dalpha_c_xz + axis_y_ucu_axes4_in_base_x*ucu_dalpha_c_yz
         )
-        # (upru-N4) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
-        acc_4_o_x = u_1_tip_x - c_4*g_r3_y - g_r1_x*s_4
-        acc_4_o_y = u_1_tip_y + g_r3_y*s_4 - c_4*g_r1_x
-        acc_4_o_z = axis_z_x*u_1_x + axis_z_y*u_1_y + axis_z_z*u_1_z - g_r3_x
-        # (upru-A29) remainder without the acceleration in: angular acceleration of link 4
-        alpha_4_o_x = alpha_2_o_y*c_4 - zeta_4_x - qdd_1_o_t_2*s_4
-        alpha_4_o_y = omega_2_r1_x*qd_1_t_3 - alpha_2_o_y*s_4 - c_4*qdd_1_o_t_2
-        alpha_4_o_z = (
-        alpha_2_o_x - inv_end_p1_r5_x*(nu_1 + n_m1_t*qdd_1_o_t_2 + qdd_1_o_t*w_1_t_2)
+        ucu_dalpha_c_in_base_y_2 = (
+        axis_x_ucu_axes4_y*ucu_dalpha_c_xz + axis_y_ucu_axes4_in_base_y*ucu_dalpha_c_yz
         )
-        # (upru-V28) centripetal tensor of link 4
-        W_4_t = omega_4_z*omega_4_z
-        W_4_xz = omega_2_r1_x*omega_4_z
-        W_4_yz = omega_2_r1_y*omega_4_z
-        # (upru-A31) remainder of the acceleration tensor of link 4
-        B_4_o_xy = W_2_xy_2 - alpha_4_o_z
-        B_4_o_xz = W_4_xz + alpha_4_o_y
-        B_4_o_yx = W_2_xy_2 + alpha_4_o_z
-        B_4_o_yz = W_4_yz - alpha_4_o_x
-        B_4_o_zx = W_4_xz - alpha_4_o_y
-        B_4_o_zy = W_4_yz + alpha_4_o_x
-        # (upru-N22) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
-        mu_4_o_x = (
-        B_4_o_yx*J_4_xy + B_4_o_zy*Sigma_4_yy + J_4_xz*(W_2_t_5 - W_4_t) + acc_4_o_z*h_4_z -
-            B_4_o_yz*Sigma_4_zz - B_4_o_zx*J_4_yz - acc_4_o_y*h_4_x
+        ucu_dalpha_c_in_base_z_2 = (
+        axis_x_ucu_axes4_z*ucu_dalpha_c_xz + axis_y_ucu_axes4_in_base_z*ucu_dalpha_c_yz
         )
-        mu_4_o_y = (
-        B_4_o_xz*Sigma_4_zz + B_4_o_zy*J_4_yz + acc_4_o_x*h_4_x - B_4_o_xy*J_4_xz -
-            B_4_o_zx*Sigma_4_xx - J_4_xy*(W_2_t_4 - W_4_t) - acc_4_o_z*h_4_y
+        # (M_ta) coupling block of M
+        ucu_M_ta_t = ucu_Q_t_11*ucu_q_in_base_z
+        ucu_M_ta_t_2 = ucu_Q_t_12*ucu_q_in_base_y
+        ucu_M_ta_t_3 = ucu_Q_t_15*ucu_q_in_base_x
+        ucu_M_ta_t_4 = (
+        ucu_M_ta_t - ucu_M_ta_t_2 - axis_x_ucu_axes4_x*ucu_dalpha_c_in_base_x -
+            ucu_axis_z_x*ucu_dalpha_c_in_base_x_2
         )
-        mu_4_o_z = (
-        B_4_o_xz*J_4_xz + B_4_o_yx*Sigma_4_xx + J_4_yz*(W_2_t_4 - W_2_t_5) + acc_4_o_y*h_4_y -
-            B_4_o_xy*Sigma_4_yy - B_4_o_yz*J_4_xy - acc_4_o_x*h_4_z
+        ucu_M_ta_t_5 = (
+        axis_x_ucu_axes4_y*ucu_dalpha_c_in_base_x + ucu_Q_t_10*ucu_q_in_base_z +
+            ucu_axis_z_y*ucu_dalpha_c_in_base_x_2 - ucu_Q_t_12*ucu_q_in_base_x
         )
-        # (upru-N32) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_o_x = mu_2_o_x + mu_4_o_z
-        N_2_o_y = mu_2_o_y + c_4*mu_4_o_x - mu_4_o_y*s_4
-        N_2_o_z = mu_2_o_z + c_4*mu_4_o_y + mu_4_o_x*s_4
-        # (upru-N44) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_o_t = inv_end_p1_r5_x*mu_4_o_z
-        G_o_t_2 = inv_root_2*(N_2_o_z + G_o_t*n_m1_t)
-        G_o_t_3 = inv_v_1_r0_y*(G_o_t*w_1_t_2 + G_o_t_2*v_1_r0_x + N_2_o_y*c_2 - N_2_o_x*s_2)
-        # (upru-N8) remainder without the acceleration in: inertia force of link 4 from its turning about its reference point
-        phi_4_o_z = B_4_o_zx*h_4_y + B_4_o_zy*h_4_z - h_4_x*(W_2_t_4 + W_2_t_5)
-        # (upru-N56) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_o_x = (
-        G_o_t_3*s_4 + h_4_y*(W_2_t_5 + W_4_t) - B_4_o_xy*h_4_z - B_4_o_xz*h_4_x - G_o_t_2*c_4
+        ucu_M_ta_t_6 = (
+        ucu_Q_t_10*ucu_q_in_base_y - axis_x_ucu_axes4_z*ucu_dalpha_c_in_base_x -
+            ucu_Q_t_11*ucu_q_in_base_x - ucu_axis_z_z*ucu_dalpha_c_in_base_x_2
         )
-        c_o_y = (
-        G_o_t_2*s_4 + G_o_t_3*c_4 + h_4_z*(W_2_t_4 + W_4_t) - B_4_o_yx*h_4_y - B_4_o_yz*h_4_x
+        ucu_M_ta_t_7 = (
+        ucu_Q_t_14*ucu_q_in_base_z - axis_x_ucu_axes4_x*ucu_dalpha_c_in_base_y -
+            ucu_Q_t_15*ucu_q_in_base_y - ucu_axis_z_x*ucu_dalpha_c_in_base_y_2
         )
-        # (upru-N62) velocity and gravity terms of the leg force
-        U_in_base_x = (
-        axis_z_x*phi_4_o_z - axis_x_upru_axes4_x*c_o_x - axis_y_upru_axes4_in_base_x*c_o_y
+        ucu_M_ta_t_8 = (
+        ucu_M_ta_t + axis_x_ucu_axes4_y*ucu_dalpha_c_in_base_y +
+            ucu_axis_z_y*ucu_dalpha_c_in_base_y_2 - ucu_M_ta_t_3
         )
-        U_in_base_y = (
-        axis_z_y*phi_4_o_z - axis_x_upru_axes4_y*c_o_x - axis_y_upru_axes4_in_base_y*c_o_y
+        ucu_M_ta_t_9 = (
+        ucu_Q_t_11*ucu_q_in_base_y - axis_x_ucu_axes4_z*ucu_dalpha_c_in_base_y -
+            ucu_Q_t_14*ucu_q_in_base_x - ucu_axis_z_z*ucu_dalpha_c_in_base_y_2
         )
-        U_in_base_z = (
-        axis_z_z*phi_4_o_z - axis_x_upru_axes4_z*c_o_x - axis_y_upru_axes4_in_base_z*c_o_y
+        ucu_M_ta_t_10 = (
+        ucu_Q_t_15*ucu_q_in_base_z - axis_x_ucu_axes4_x*ucu_dalpha_c_in_base_z -
+            ucu_Q_t_17*ucu_q_in_base_y - ucu_axis_z_x*ucu_dalpha_c_in_base_z_2
         )
-        # (upru-N52) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        G_m_o_x = G_o_t*end_p1_r3_x
-        # (M7) rotational part of Z
-        Z_a_t = (
-        U_in_base_z*q_in_base_y + axis_z_x*mu_4_o_z - G_m_o_x*axis_x_upru_axes4_x -
-            U_in_base_y*q_in_base_z
+        ucu_M_ta_t_11 = (
+        axis_x_ucu_axes4_y*ucu_dalpha_c_in_base_z + ucu_Q_t_12*ucu_q_in_base_z +
+            ucu_axis_z_y*ucu_dalpha_c_in_base_z_2 - ucu_Q_t_17*ucu_q_in_base_x
         )
-        Z_a_t_2 = (
-        U_in_base_x*q_in_base_z + axis_z_y*mu_4_o_z - G_m_o_x*axis_x_upru_axes4_y -
-            U_in_base_z*q_in_base_x
+        ucu_M_ta_t_12 = (
+        ucu_M_ta_t_3 + axis_x_ucu_axes4_z*ucu_dalpha_c_in_base_z +
+            ucu_axis_z_z*ucu_dalpha_c_in_base_z_2 - ucu_M_ta_t_2
         )
-        Z_a_t_3 = (
-        U_in_base_y*q_in_base_x + axis_z_z*mu_4_o_z - G_m_o_x*axis_x_upru_axes4_z -
-            U_in_base_x*q_in_base_y
+        # (ucu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        ucu_dalpha_G_m1_t = inv_ucu_end_p1_r5_x*ucu_dalpha_Gamma_4_t
+        # (ucu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        ucu_d_G_m1_t = inv_ucu_end_p1_r5_x*ucu_d_Gamma_4_x
+        ucu_d_G_m1_t_2 = inv_ucu_end_p1_r5_x*ucu_d_Gamma_4_y
+        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
+        ucu_n_m1_in_base_x = axis_x_ucu_axes4_x*ucu_end_p1_r3_x - ucu_axis_z_x*ucu_end_p1_r5_x
+        ucu_n_m1_in_base_y = axis_x_ucu_axes4_y*ucu_end_p1_r3_x - ucu_axis_z_y*ucu_end_p1_r5_x
+        ucu_n_m1_in_base_z = axis_x_ucu_axes4_z*ucu_end_p1_r3_x - ucu_axis_z_z*ucu_end_p1_r5_x
+        # (ucu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        ucu_dalpha_G_m1_in_base_y = (
+        axis_x_ucu_axes4_y*ucu_dalpha_G_m1_t - ucu_axis_z_y*ucu_d_Gamma_4_t
         )
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_3_t = axis_z_z*q_in_base_y - axis_z_y*q_in_base_z
-        H_a_3_t_2 = axis_z_x*q_in_base_z - axis_z_z*q_in_base_x
-        H_a_3_t_3 = axis_z_y*q_in_base_x - axis_z_x*q_in_base_y
+        ucu_dalpha_G_m1_in_base_z = (
+        axis_x_ucu_axes4_z*ucu_dalpha_G_m1_t - ucu_axis_z_z*ucu_d_Gamma_4_t
+        )
+        # (ucu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        ucu_d_G_m1_in_base_x = (
+        -axis_x_ucu_axes4_x*ucu_d_G_m1_t - axis_y_ucu_axes4_in_base_x*ucu_d_G_m1_t_2
+        )
+        ucu_d_G_m1_in_base_y = (
+        -axis_x_ucu_axes4_y*ucu_d_G_m1_t - axis_y_ucu_axes4_in_base_y*ucu_d_G_m1_t_2
+        )
+        ucu_d_G_m1_in_base_z = (
+        -axis_x_ucu_axes4_z*ucu_d_G_m1_t - axis_y_ucu_axes4_in_base_z*ucu_d_G_m1_t_2
+        )
+        # (ucu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        ucu_d_G_m_xx = ucu_d_G_m1_in_base_x*ucu_n_m1_in_base_x
+        ucu_d_G_m_xy = ucu_d_G_m1_in_base_y*ucu_n_m1_in_base_x
+        ucu_d_G_m_xz = ucu_d_G_m1_in_base_z*ucu_n_m1_in_base_x
+        ucu_d_G_m_yx = ucu_d_G_m1_in_base_x*ucu_n_m1_in_base_y
+        # (M_aa) rotational block of M
+        ucu_M_aa_t = (
+        ucu_M_ta_t_7*ucu_q_in_base_z + ucu_d_G_m_xy*ucu_q_in_base_z -
+            ucu_M_ta_t_10*ucu_q_in_base_y - ucu_d_G_m_xz*ucu_q_in_base_y -
+            ucu_n_m1_in_base_x*(axis_x_ucu_axes4_x*ucu_dalpha_G_m1_t -
+            ucu_axis_z_x*ucu_d_Gamma_4_t)
+        )
+        ucu_M_aa_t_2 = (
+        ucu_M_ta_t_8*ucu_q_in_base_z + ucu_d_G_m_xx*ucu_q_in_base_z +
+            ucu_dalpha_G_m1_in_base_y*ucu_n_m1_in_base_x - ucu_M_ta_t_11*ucu_q_in_base_y -
+            ucu_d_G_m_xz*ucu_q_in_base_x
+        )
+        ucu_M_aa_t_3 = (
+        ucu_M_ta_t_12*ucu_q_in_base_y + ucu_M_ta_t_9*ucu_q_in_base_z +
+            ucu_d_G_m_xx*ucu_q_in_base_y - ucu_d_G_m_xy*ucu_q_in_base_x -
+            ucu_dalpha_G_m1_in_base_z*ucu_n_m1_in_base_x
+        )
+        ucu_M_aa_t_4 = (
+        ucu_M_ta_t_11*ucu_q_in_base_x + ucu_d_G_m_yx*ucu_q_in_base_z +
+            ucu_dalpha_G_m1_in_base_y*ucu_n_m1_in_base_y - ucu_M_ta_t_5*ucu_q_in_base_z -
+            ucu_d_G_m1_in_base_z*ucu_n_m1_in_base_y*ucu_q_in_base_x
+        )
+        ucu_M_aa_t_5 = (
+        ucu_M_ta_t_12*ucu_q_in_base_x + ucu_M_ta_t_6*ucu_q_in_base_z +
+            ucu_dalpha_G_m1_in_base_z*ucu_n_m1_in_base_y +
+            ucu_d_G_m1_in_base_y*ucu_n_m1_in_base_y*ucu_q_in_base_x - ucu_d_G_m_yx*ucu_q_in_base_y
+        )
+        ucu_M_aa_t_6 = (
+        ucu_M_ta_t_6*ucu_q_in_base_y + ucu_d_G_m1_in_base_x*ucu_n_m1_in_base_z*ucu_q_in_base_y -
+            ucu_M_ta_t_9*ucu_q_in_base_x - ucu_dalpha_G_m1_in_base_z*ucu_n_m1_in_base_z -
+            ucu_d_G_m1_in_base_y*ucu_n_m1_in_base_z*ucu_q_in_base_x
+        )
+        # (ucu-S_dot) velocity of the connection point
+        ucu_S_dot_t = omega_y*ucu_q_in_base_z - omega_z*ucu_q_in_base_y
+        ucu_S_dot_t_2 = omega_z*ucu_q_in_base_x - omega_x*ucu_q_in_base_z
+        ucu_S_dot_t_3 = omega_x*ucu_q_in_base_y - omega_y*ucu_q_in_base_x
+        ucu_S_dot_x = t_dot_x + ucu_S_dot_t
+        ucu_S_dot_y = t_dot_y + ucu_S_dot_t_2
+        ucu_S_dot_z = t_dot_z + ucu_S_dot_t_3
+        # (ucu-eta_1) rate at which the joints turn along moment direction 1
+        ucu_eta_1 = (
+        omega_x*ucu_n_m1_in_base_x + omega_y*ucu_n_m1_in_base_y + omega_z*ucu_n_m1_in_base_z
+        )
+        # (ucu-S_dot) velocity of the connection point
+        ucu_S_dot_r0_x = (
+        ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx +
+            ucu_S_dot_z*ucu_base_frame_zx
+        )
+        ucu_S_dot_r0_y = (
+        ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy +
+            ucu_S_dot_z*ucu_base_frame_zy
+        )
+        ucu_S_dot_r0_z = (
+        ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
+            ucu_S_dot_z*ucu_base_frame_zz
+        )
+        ucu_S_dot_r1_y = -ucu_S_dot_r0_x*ucu_s_1 - ucu_S_dot_r0_y*ucu_c_1
+        ucu_S_dot_r3_x = ucu_S_dot_r0_z*ucu_s_2 - ucu_S_dot_r1_y*ucu_c_2
+        # (ucu-qd_4) rate of joint 4
+        ucu_qd_4_t = inv_ucu_v_1_r0_y*(ucu_S_dot_r0_y*ucu_s_1 - ucu_S_dot_r0_x*ucu_c_1)
+        ucu_qd_4_t_2 = (
+        inv_ucu_root_2*(-ucu_S_dot_r0_z*ucu_c_2 - ucu_S_dot_r1_y*ucu_s_2 -
+            ucu_qd_4_t*ucu_v_1_r0_x)
+        )
+        ucu_qd_4_t_3 = (
+        inv_ucu_end_p1_r5_x*(ucu_eta_1 + ucu_qd_4_t*ucu_w_1_t_2 - ucu_n_m1_t*ucu_qd_4_t_2)
+        )
+        # (ucu-omega_1) angular velocity of link 1
+        ucu_omega_1_t = ucu_qd_4_t*ucu_s_2
+        ucu_omega_1_t_2 = ucu_c_2*ucu_qd_4_t
+        # (ucu-omega_2) angular velocity of link 2
+        ucu_omega_2_r1_x = ucu_qd_4_t_2*ucu_s_4 - ucu_c_4*ucu_omega_1_t_2
+        ucu_omega_2_r1_y = ucu_c_4*ucu_qd_4_t_2 + ucu_omega_1_t_2*ucu_s_4
+        # (ucu-omega_4) angular velocity of link 4
+        ucu_omega_4_z = ucu_omega_1_t - ucu_qd_4_t_3
+        # (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4
+        ucu_zeta_4_x = ucu_omega_2_r1_y*ucu_qd_4_t_3
+        # (ucu-u_1) centripetal acceleration of the connection point
+        ucu_u_1_x = omega_y*ucu_S_dot_t_3 - omega_z*ucu_S_dot_t_2
+        ucu_u_1_y = omega_z*ucu_S_dot_t - omega_x*ucu_S_dot_t_3
+        ucu_u_1_z = omega_x*ucu_S_dot_t_2 - omega_y*ucu_S_dot_t
+        # (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        ucu_zeta_2_x = ucu_omega_1_t_2*ucu_qd_4_t_2
+        ucu_zeta_2_y = ucu_omega_1_t*ucu_qd_4_t_2
+        # (ucu-W_2) centripetal tensor of link 2
+        ucu_W_2_t = ucu_omega_1_t*ucu_omega_1_t
+        ucu_W_2_t_2 = ucu_omega_1_t_2*ucu_omega_1_t_2
+        ucu_W_2_t_3 = ucu_qd_4_t_2*ucu_qd_4_t_2
+        ucu_W_2_xy = ucu_omega_1_t*ucu_omega_1_t_2
+        # (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        ucu_zeta_2_t = ucu_c_4*ucu_zeta_2_y
+        # (ucu-W_2) centripetal tensor of link 2
+        ucu_W_2_t_4 = ucu_omega_2_r1_x*ucu_omega_2_r1_x
+        ucu_W_2_t_5 = ucu_omega_2_r1_y*ucu_omega_2_r1_y
+        ucu_W_2_xy_2 = ucu_omega_2_r1_x*ucu_omega_2_r1_y
+        # (ucu-bias) acceleration of the connection point at zero joint accelerations
+        ucu_bias_t = 2.0*ucu_S_dot_r3_x
+        ucu_bias_x = (
+        ucu_bias_t*ucu_omega_2_r1_y + ucu_root_2*(ucu_omega_1_t*ucu_omega_2_r1_x +
+            ucu_s_4*ucu_zeta_2_y)
+        )
+        ucu_bias_y = (
+        ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_t*ucu_omega_2_r1_y) - ucu_bias_t*ucu_omega_2_r1_x
+        )
+        # (ucu-u_1) centripetal acceleration of the connection point
+        ucu_u_1_tip_x = (
+        axis_x_ucu_axes4_x*ucu_u_1_x + axis_x_ucu_axes4_y*ucu_u_1_y + axis_x_ucu_axes4_z*ucu_u_1_z
+        )
+        ucu_u_1_tip_y = (
+        axis_y_ucu_axes4_in_base_x*ucu_u_1_x + axis_y_ucu_axes4_in_base_y*ucu_u_1_y +
+            axis_y_ucu_axes4_in_base_z*ucu_u_1_z
+        )
+        # (ucu-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        ucu_rel_o_x = ucu_u_1_tip_x - ucu_bias_x
+        ucu_rel_o_y = ucu_u_1_tip_y - ucu_bias_y
+        # (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations
+        ucu_beta_4_x = -ucu_zeta_2_t - ucu_zeta_4_x
+        # (ucu-nd_m1) rate of moment direction 1
+        ucu_omega_tip_x = (
+        axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y + axis_x_ucu_axes4_z*omega_z
+        )
+        ucu_omega_tip_y = (
+        axis_y_ucu_axes4_in_base_x*omega_x + axis_y_ucu_axes4_in_base_y*omega_y +
+            axis_y_ucu_axes4_in_base_z*omega_z
+        )
+        ucu_omega_tip_z = omega_x*ucu_axis_z_x + omega_y*ucu_axis_z_y + omega_z*ucu_axis_z_z
+        ucu_nd_m1_x = (
+        ucu_end_p1_r5_y*ucu_omega_tip_x - ucu_end_p1_r5_x*ucu_omega_tip_y -
+            ucu_end_p1_r5_y*ucu_omega_2_r1_x
+        )
+        ucu_nd_m1_z = (
+        ucu_end_p1_r5_y*ucu_omega_tip_z - ucu_end_p1_r3_x*ucu_omega_tip_y -
+            ucu_end_p1_r5_y*ucu_omega_4_z
+        )
+        # (ucu-nu_1) bias of the angular acceleration along moment direction 1
+        ucu_nu_1_t = ucu_beta_4_x*ucu_end_p1_r3_x + ucu_end_p1_r5_x*ucu_zeta_2_x
+        ucu_nu_1_t_2 = (
+        ucu_nd_m1_x*(ucu_omega_2_r1_x - ucu_omega_tip_x) + ucu_nd_m1_z*(ucu_omega_4_z -
+            ucu_omega_tip_z) + (ucu_omega_2_r1_y - ucu_omega_tip_y)*(ucu_end_p1_r3_x*ucu_omega_4_z
+            + ucu_end_p1_r5_x*ucu_omega_2_r1_x)
+        )
+        ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2
+        # (ucu-qdd_4_o) remainder without the acceleration in: acceleration of joint 4
+        ucu_qdd_4_o_t = inv_ucu_v_1_r0_y*(ucu_c_4*ucu_rel_o_y + ucu_rel_o_x*ucu_s_4)
+        ucu_qdd_4_o_t_2 = (
+        inv_ucu_root_2*(ucu_qdd_4_o_t*ucu_v_1_r0_x + ucu_rel_o_y*ucu_s_4 - ucu_c_4*ucu_rel_o_x)
+        )
+        # (ucu-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        ucu_alpha_1_o_t = ucu_qdd_4_o_t*ucu_s_2
+        ucu_alpha_1_o_t_2 = ucu_c_2*ucu_qdd_4_o_t
+        # (ucu-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        ucu_alpha_2_o_x = ucu_alpha_1_o_t - ucu_zeta_2_x
+        ucu_alpha_2_o_y = -ucu_alpha_1_o_t_2 - ucu_zeta_2_y
+        # (ucu-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4
+        ucu_alpha_4_o_x = ucu_alpha_2_o_y*ucu_c_4 - ucu_zeta_4_x - ucu_qdd_4_o_t_2*ucu_s_4
+        ucu_alpha_4_o_y = (
+        ucu_omega_2_r1_x*ucu_qd_4_t_3 - ucu_alpha_2_o_y*ucu_s_4 - ucu_c_4*ucu_qdd_4_o_t_2
+        )
+        ucu_alpha_4_o_z = (
+        ucu_alpha_2_o_x - inv_ucu_end_p1_r5_x*(ucu_nu_1 + ucu_n_m1_t*ucu_qdd_4_o_t_2 +
+            ucu_qdd_4_o_t*ucu_w_1_t_2)
+        )
+        # (ucu-W_4) centripetal tensor of link 4
+        ucu_W_4_t = ucu_omega_4_z*ucu_omega_4_z
+        ucu_W_4_xz = ucu_omega_2_r1_x*ucu_omega_4_z
+        ucu_W_4_yz = ucu_omega_2_r1_y*ucu_omega_4_z
+        # (ucu-B_4_o) remainder of the acceleration tensor of link 4
+        ucu_B_4_o_xy = ucu_W_2_xy_2 - ucu_alpha_4_o_z
+        ucu_B_4_o_xz = ucu_W_4_xz + ucu_alpha_4_o_y
+        ucu_B_4_o_yx = ucu_W_2_xy_2 + ucu_alpha_4_o_z
+        ucu_B_4_o_yz = ucu_W_4_yz - ucu_alpha_4_o_x
+        ucu_B_4_o_zx = ucu_W_4_xz - ucu_alpha_4_o_y
+        ucu_B_4_o_zy = ucu_W_4_yz + ucu_alpha_4_o_x
+        # (ucu-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning about its reference point
+        ucu_phi_4_o_z = (
+        ucu_B_4_o_zx*ucu_h_4_y + ucu_B_4_o_zy*ucu_h_4_z - ucu_h_4_x*(ucu_W_2_t_4 + ucu_W_2_t_5)
+        )
+        # (ucu-acc_4_o) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+        ucu_acc_4_o_x = (
+        ucu_u_1_tip_x - axis_x_ucu_axes4_x*gravity_x - axis_x_ucu_axes4_y*gravity_y -
+            axis_x_ucu_axes4_z*gravity_z
+        )
+        ucu_acc_4_o_y = (
+        ucu_u_1_tip_y - axis_y_ucu_axes4_in_base_x*gravity_x -
+            axis_y_ucu_axes4_in_base_y*gravity_y - axis_y_ucu_axes4_in_base_z*gravity_z
+        )
+        ucu_acc_4_o_z = (
+        ucu_axis_z_x*ucu_u_1_x + ucu_axis_z_y*ucu_u_1_y + ucu_axis_z_z*ucu_u_1_z -
+            gravity_x*ucu_axis_z_x - gravity_y*ucu_axis_z_y - gravity_z*ucu_axis_z_z
+        )
+        # (ucu-mu_4_o) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
+        ucu_mu_4_o_x = (
+        ucu_B_4_o_yx*ucu_J_4_xy + ucu_B_4_o_zy*ucu_Sigma_4_yy + ucu_J_4_xz*(ucu_W_2_t_5 -
+            ucu_W_4_t) + ucu_acc_4_o_z*ucu_h_4_z - ucu_B_4_o_yz*ucu_Sigma_4_zz -
+            ucu_B_4_o_zx*ucu_J_4_yz - ucu_acc_4_o_y*ucu_h_4_x
+        )
+        ucu_mu_4_o_y = (
+        ucu_B_4_o_xz*ucu_Sigma_4_zz + ucu_B_4_o_zy*ucu_J_4_yz + ucu_acc_4_o_x*ucu_h_4_x -
+            ucu_B_4_o_xy*ucu_J_4_xz - ucu_B_4_o_zx*ucu_Sigma_4_xx - ucu_J_4_xy*(ucu_W_2_t_4 -
+            ucu_W_4_t) - ucu_acc_4_o_z*ucu_h_4_y
+        )
+        ucu_mu_4_o_z = (
+        ucu_B_4_o_xz*ucu_J_4_xz + ucu_B_4_o_yx*ucu_Sigma_4_xx + ucu_J_4_yz*(ucu_W_2_t_4 -
+            ucu_W_2_t_5) + ucu_acc_4_o_y*ucu_h_4_y - ucu_B_4_o_xy*ucu_Sigma_4_yy -
+            ucu_B_4_o_yz*ucu_J_4_xy - ucu_acc_4_o_x*ucu_h_4_z
+        )
+        # (ucu-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        ucu_g_r1_x = ucu_g_r0_y*ucu_s_1 - ucu_c_1*ucu_g_r0_x
+        ucu_g_r1_y = -ucu_c_1*ucu_g_r0_y - ucu_g_r0_x*ucu_s_1
+        ucu_g_r3_x = ucu_g_r0_z*ucu_s_2 - ucu_c_2*ucu_g_r1_y
+        ucu_g_r3_y = -ucu_c_2*ucu_g_r0_z - ucu_g_r1_y*ucu_s_2
+        # (ucu-B_2_o) remainder of the acceleration tensor of link 2
+        ucu_B_2_o_xy = ucu_qdd_4_o_t_2 - ucu_W_2_xy
+        ucu_B_2_o_yx = -ucu_W_2_xy - ucu_qdd_4_o_t_2
+        ucu_B_2_o_zx = ucu_zeta_2_y - ucu_alpha_2_o_y
+        ucu_B_2_o_zy = ucu_alpha_2_o_x - ucu_zeta_2_x
+        # (ucu-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        ucu_mu_2_o_x = (
+        ucu_B_2_o_yx*ucu_J_2_xy + ucu_B_2_o_zx*ucu_J_2_xz + ucu_B_2_o_zy*ucu_Sigma_2_yy +
+            ucu_Sigma_2_zz*ucu_alpha_1_o_t + ucu_g_r1_x*ucu_h_2_z + ucu_g_r3_y*ucu_h_2_y -
+            ucu_J_2_yz*(ucu_W_2_t_2 - ucu_W_2_t_3)
+        )
+        ucu_mu_2_o_y = (
+        ucu_B_2_o_xy*ucu_J_2_yz + ucu_g_r1_x*ucu_h_2_x - ucu_B_2_o_zx*ucu_Sigma_2_xx -
+            ucu_B_2_o_zy*ucu_J_2_xz - ucu_J_2_xy*(ucu_W_2_t - ucu_W_2_t_3) -
+            ucu_Sigma_2_zz*ucu_alpha_1_o_t_2 - ucu_g_r3_x*ucu_h_2_y
+        )
+        ucu_mu_2_o_z = (
+        ucu_B_2_o_yx*ucu_Sigma_2_xx + ucu_J_2_xy*ucu_alpha_1_o_t + ucu_J_2_yz*ucu_alpha_1_o_t_2 -
+            ucu_B_2_o_xy*ucu_Sigma_2_yy - ucu_J_2_xz*(ucu_W_2_t - ucu_W_2_t_2) -
+            ucu_g_r3_x*ucu_h_2_z - ucu_g_r3_y*ucu_h_2_x
+        )
+        # (ucu-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        ucu_N_2_o_x = ucu_mu_2_o_x + ucu_mu_4_o_z
+        ucu_N_2_o_y = ucu_mu_2_o_y + ucu_c_4*ucu_mu_4_o_x - ucu_mu_4_o_y*ucu_s_4
+        ucu_N_2_o_z = ucu_mu_2_o_z + ucu_c_4*ucu_mu_4_o_y + ucu_mu_4_o_x*ucu_s_4
+        # (ucu-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        ucu_G_o_t = inv_ucu_end_p1_r5_x*ucu_mu_4_o_z
+        ucu_G_o_t_2 = inv_ucu_root_2*(ucu_N_2_o_z + ucu_G_o_t*ucu_n_m1_t)
+        ucu_G_o_t_3 = (
+        inv_ucu_v_1_r0_y*(ucu_G_o_t*ucu_w_1_t_2 + ucu_G_o_t_2*ucu_v_1_r0_x + ucu_N_2_o_y*ucu_c_2 -
+            ucu_N_2_o_x*ucu_s_2)
+        )
+        # (ucu-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        ucu_c_o_x = (
+        ucu_G_o_t_3*ucu_s_4 + ucu_h_4_y*(ucu_W_2_t_5 + ucu_W_4_t) - ucu_B_4_o_xy*ucu_h_4_z -
+            ucu_B_4_o_xz*ucu_h_4_x - ucu_G_o_t_2*ucu_c_4
+        )
+        ucu_c_o_y = (
+        ucu_G_o_t_2*ucu_s_4 + ucu_G_o_t_3*ucu_c_4 + ucu_h_4_z*(ucu_W_2_t_4 + ucu_W_4_t) -
+            ucu_B_4_o_yx*ucu_h_4_y - ucu_B_4_o_yz*ucu_h_4_x
+        )
+        # (ucu-U) velocity and gravity terms of the leg force
+        ucu_U_in_base_x = (
+        ucu_axis_z_x*ucu_phi_4_o_z - axis_x_ucu_axes4_x*ucu_c_o_x -
+            axis_y_ucu_axes4_in_base_x*ucu_c_o_y
+        )
+        ucu_U_in_base_y = (
+        ucu_axis_z_y*ucu_phi_4_o_z - axis_x_ucu_axes4_y*ucu_c_o_x -
+            axis_y_ucu_axes4_in_base_y*ucu_c_o_y
+        )
+        ucu_U_in_base_z = (
+        ucu_axis_z_z*ucu_phi_4_o_z - axis_x_ucu_axes4_z*ucu_c_o_x -
+            axis_y_ucu_axes4_in_base_z*ucu_c_o_y
+        )
+        # (ucu-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        ucu_G_m_o_x = ucu_G_o_t*ucu_end_p1_r3_x
+        # (Z_a) rotational part of Z
+        ucu_Z_a_t = (
+        ucu_U_in_base_z*ucu_q_in_base_y + ucu_axis_z_x*ucu_mu_4_o_z -
+            axis_x_ucu_axes4_x*ucu_G_m_o_x - ucu_U_in_base_y*ucu_q_in_base_z
+        )
+        ucu_Z_a_t_2 = (
+        ucu_U_in_base_x*ucu_q_in_base_z + ucu_axis_z_y*ucu_mu_4_o_z -
+            axis_x_ucu_axes4_y*ucu_G_m_o_x - ucu_U_in_base_z*ucu_q_in_base_x
+        )
+        ucu_Z_a_t_3 = (
+        ucu_U_in_base_y*ucu_q_in_base_x + ucu_axis_z_z*ucu_mu_4_o_z -
+            axis_x_ucu_axes4_z*ucu_G_m_o_x - ucu_U_in_base_x*ucu_q_in_base_y
+        )
+        # (ucu-H_a_3) moment of the column's unit force about the platform origin
+        ucu_H_a_3_t = ucu_axis_z_z*ucu_q_in_base_y - ucu_axis_z_y*ucu_q_in_base_z
+        ucu_H_a_3_t_2 = ucu_axis_z_x*ucu_q_in_base_z - ucu_axis_z_z*ucu_q_in_base_x
+        ucu_H_a_3_t_3 = ucu_axis_z_y*ucu_q_in_base_x - ucu_axis_z_x*ucu_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_4) >
-            _TOLERANCE * _TOLERANCE * 1.0) & (abs(-end_p1_r5_x) > _TOLERANCE * 1.0) & (abs(root_2)
-            > _TOLERANCE * 0.8) & (abs(v_1_r0_y) > _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(ucu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ucu_rho2_4) >
+            _TOLERANCE * _TOLERANCE * 1.0) & (abs(-ucu_end_p1_r5_x) > _TOLERANCE * 1.0) &
+            (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_r0_y) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
-        Q_t_10, Q_t_11, Q_t_12, Q_t_14, Q_t_15, Q_t_17, M_ta_t_12, M_ta_t_13, M_ta_t_14,
-            M_ta_t_15, M_ta_t_16, M_ta_t_17, M_ta_t_18, M_ta_t_19, M_ta_t_20, M_aa_t,
-            M_aa_t_2, M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y,
-            U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
+        ucu_Q_t_10, ucu_Q_t_11, ucu_Q_t_12, ucu_Q_t_14, ucu_Q_t_15, ucu_Q_t_17, ucu_M_ta_t_4,
+            ucu_M_ta_t_5, ucu_M_ta_t_6, ucu_M_ta_t_7, ucu_M_ta_t_8, ucu_M_ta_t_9,
+            ucu_M_ta_t_10, ucu_M_ta_t_11, ucu_M_ta_t_12, ucu_M_aa_t, ucu_M_aa_t_2,
+            ucu_M_aa_t_3, ucu_M_aa_t_4, ucu_M_aa_t_5, ucu_M_aa_t_6, ucu_U_in_base_x,
+            ucu_U_in_base_y, ucu_U_in_base_z, ucu_Z_a_t, ucu_Z_a_t_2, ucu_Z_a_t_3,
         ))
-        out_H[_H_upru[0][leg]] = axis_z_x
-        out_H[_H_upru[1][leg]] = axis_z_y
-        out_H[_H_upru[2][leg]] = axis_z_z
-        out_H[_H_upru[3][leg]] = H_a_3_t
-        out_H[_H_upru[4][leg]] = H_a_3_t_2
-        out_H[_H_upru[5][leg]] = H_a_3_t_3
+        out_H[_H_ucu[0][leg]] = ucu_axis_z_x
+        out_H[_H_ucu[1][leg]] = ucu_axis_z_y
+        out_H[_H_ucu[2][leg]] = ucu_axis_z_z
+        out_H[_H_ucu[3][leg]] = ucu_H_a_3_t
+        out_H[_H_ucu[4][leg]] = ucu_H_a_3_t_2
+        out_H[_H_ucu[5][leg]] = ucu_H_a_3_t_3
     (
-    total_upru_xx, total_upru_xy, total_upru_xz, total_upru_yy, total_upru_yz, total_upru_zz,
-        total_upru_xx_2, total_upru_xy_2, total_upru_xz_2, total_upru_yx, total_upru_yy_2,
-        total_upru_yz_2, total_upru_zx, total_upru_zy, total_upru_zz_2, total_upru_xx_3,
-        total_upru_xy_3, total_upru_xz_3, total_upru_yy_3, total_upru_yz_3, total_upru_zz_3,
-        total_upru_x, total_upru_y, total_upru_z, total_upru_x_2, total_upru_y_2, total_upru_z_2,
+    total_ucu_xx, total_ucu_xy, total_ucu_xz, total_ucu_yy, total_ucu_yz, total_ucu_zz,
+        total_ucu_xx_2, total_ucu_xy_2, total_ucu_xz_2, total_ucu_yx, total_ucu_yy_2,
+        total_ucu_yz_2, total_ucu_zx, total_ucu_zy, total_ucu_zz_2, total_ucu_xx_3,
+        total_ucu_xy_3, total_ucu_xz_3, total_ucu_yy_3, total_ucu_yz_3, total_ucu_zz_3,
+        total_ucu_x, total_ucu_y, total_ucu_z, total_ucu_x_2, total_ucu_y_2, total_ucu_z_2,
     ) = sums
-    # (M1) translational block of M
-    M_tt_xx = m_star - total_upru_xx
-    M_tt_yy = m_star - total_upru_yy
-    M_tt_zz = m_star - total_upru_zz
-    # (M2) coupling block of M
-    M_ta_xy = h_star_in_base_z - total_upru_xy_2
-    M_ta_xz = total_upru_xz_2 - h_star_in_base_y
-    M_ta_yx = total_upru_yx - h_star_in_base_z
-    M_ta_yz = h_star_in_base_x + total_upru_yz_2
-    M_ta_zx = h_star_in_base_y + total_upru_zx
-    M_ta_zy = -h_star_in_base_x - total_upru_zy
-    # (M3) rotational block of M
-    M_aa_xx = J_star_t_8 - total_upru_xx_3
-    M_aa_xy = J_star_t_9 + total_upru_xy_3
-    M_aa_xz = J_star_t_10 + total_upru_xz_3
-    M_aa_yy = J_star_t_12 - total_upru_yy_3
-    M_aa_yz = J_star_t_13 + total_upru_yz_3
-    M_aa_zz = J_star_t_15 - total_upru_zz_3
-    # (M5) translational part of Z
-    Z_t_x = Z_p_x + total_upru_x
-    Z_t_y = Z_p_y + total_upru_y
-    Z_t_z = Z_p_z + total_upru_z
-    # (M7) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_upru_x_2
-    Z_a_y = Z_q_in_base_y + total_upru_y_2
-    Z_a_z = Z_q_in_base_z + total_upru_z_2
+    # (M_tt) translational block of M
+    M_tt_xx = m_star - total_ucu_xx
+    M_tt_yy = m_star - total_ucu_yy
+    M_tt_zz = m_star - total_ucu_zz
+    # (M_ta) coupling block of M
+    M_ta_xy = h_star_in_base_z - total_ucu_xy_2
+    M_ta_xz = total_ucu_xz_2 - h_star_in_base_y
+    M_ta_yx = total_ucu_yx - h_star_in_base_z
+    M_ta_yz = h_star_in_base_x + total_ucu_yz_2
+    M_ta_zx = h_star_in_base_y + total_ucu_zx
+    M_ta_zy = -h_star_in_base_x - total_ucu_zy
+    # (M_aa) rotational block of M
+    M_aa_xx = J_star_t_8 - total_ucu_xx_3
+    M_aa_xy = J_star_t_9 + total_ucu_xy_3
+    M_aa_xz = J_star_t_10 - total_ucu_xz_3
+    M_aa_yy = J_star_t_13 + total_ucu_yy_3
+    M_aa_yz = J_star_t_15 + total_ucu_yz_3
+    M_aa_zz = J_star_t_17 - total_ucu_zz_3
+    # (Z_t) translational part of Z
+    Z_t_x = Z_p_x + total_ucu_x
+    Z_t_y = Z_p_y + total_ucu_y
+    Z_t_z = Z_p_z + total_ucu_z
+    # (Z_a) rotational part of Z
+    Z_a_x = Z_q_in_base_x + total_ucu_x_2
+    Z_a_y = Z_q_in_base_y + total_ucu_y_2
+    Z_a_z = Z_q_in_base_z + total_ucu_z_2
     out_M[0] = M_tt_xx
-    out_M[1] = -total_upru_xy
-    out_M[6] = -total_upru_xy
-    out_M[2] = -total_upru_xz
-    out_M[12] = -total_upru_xz
+    out_M[1] = -total_ucu_xy
+    out_M[6] = -total_ucu_xy
+    out_M[2] = -total_ucu_xz
+    out_M[12] = -total_ucu_xz
     out_M[7] = M_tt_yy
-    out_M[8] = -total_upru_yz
-    out_M[13] = -total_upru_yz
+    out_M[8] = -total_ucu_yz
+    out_M[13] = -total_ucu_yz
     out_M[14] = M_tt_zz
-    out_M[3] = total_upru_xx_2
-    out_M[18] = total_upru_xx_2
+    out_M[3] = total_ucu_xx_2
+    out_M[18] = total_ucu_xx_2
     out_M[4] = M_ta_xy
     out_M[24] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -total_upru_yy_2
-    out_M[25] = -total_upru_yy_2
+    out_M[10] = -total_ucu_yy_2
+    out_M[25] = -total_ucu_yy_2
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
     out_M[20] = M_ta_zx
     out_M[16] = M_ta_zy
     out_M[26] = M_ta_zy
-    out_M[17] = -total_upru_zz_2
-    out_M[32] = -total_upru_zz_2
+    out_M[17] = -total_ucu_zz_2
+    out_M[32] = -total_ucu_zz_2
     out_M[21] = M_aa_xx
     out_M[22] = M_aa_xy
     out_M[27] = M_aa_xy
@@ -2054,12 +2218,12 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 2421 mul, 1629 add, 30 div, 18 sqrt, 0 trig
+# M: 2355 mul, 1563 add, 30 div, 18 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
     (
-    J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
+    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
         h_star_z, m_star,
     ) = shared
     X_0 = X[0]
@@ -2099,427 +2263,494 @@ def _run_M(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_M = m.zeros("M")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy
-    J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
     J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_12 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_15 = 2.0*J_star_t_14 + J_star_xx
+    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
+    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
     sums = [0.0] * 21
     for leg, k in legs[0]:
         (
-        J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_4_xx, J_4_xy, J_4_xz, J_4_yy, J_4_yz, J_4_zz,
-            Jc_2_xx, branch_1, branch_2, branch_4, h_4_x, h_4_y, h_4_z, upru_base_frame_xx,
-            upru_base_frame_xy, upru_base_frame_xz, upru_base_frame_yx, upru_base_frame_yy,
-            upru_base_frame_yz, upru_base_frame_zx, upru_base_frame_zy, upru_base_frame_zz,
-            upru_base_point_x, upru_base_point_y, upru_base_point_z,
-            upru_platform_joint_axis_platform_x, upru_platform_joint_axis_platform_y,
-            upru_platform_joint_axis_platform_z, upru_platform_point_x, upru_platform_point_y,
-            upru_platform_point_z,
+        ucu_J_2_xy, ucu_J_2_xz, ucu_J_2_yy, ucu_J_2_yz, ucu_J_2_zz, ucu_J_4_xx, ucu_J_4_xy,
+            ucu_J_4_xz, ucu_J_4_yy, ucu_J_4_yz, ucu_J_4_zz, ucu_Jc_2_xx, ucu_base_frame_xx,
+            ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx, ucu_base_frame_yy,
+            ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy, ucu_base_frame_zz,
+            ucu_base_point_x, ucu_base_point_y, ucu_base_point_z, ucu_branch_1, ucu_branch_2,
+            ucu_branch_4, ucu_h_4_x, ucu_h_4_y, ucu_h_4_z, ucu_platform_joint_axis_platform_x,
+            ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
+            ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
         ) = k
-        # (upru-K1) from the base point to the connection point
-        q_in_base_x = (
-        R_xx*upru_platform_point_x + R_xy*upru_platform_point_y + R_xz*upru_platform_point_z
+        # (ucu-S) from the base point to the connection point
+        ucu_q_in_base_x = (
+        R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
-        q_in_base_y = (
-        R_yx*upru_platform_point_x + R_yy*upru_platform_point_y + R_yz*upru_platform_point_z
+        ucu_q_in_base_y = (
+        R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y + R_yz*ucu_platform_point_z
         )
-        q_in_base_z = (
-        R_zx*upru_platform_point_x + R_zy*upru_platform_point_y + R_zz*upru_platform_point_z
+        ucu_q_in_base_z = (
+        R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        S_x = q_in_base_x + t_x - upru_base_point_x
-        S_y = q_in_base_y + t_y - upru_base_point_y
-        S_z = q_in_base_z + t_z - upru_base_point_z
-        # (upru-K2) component along the reference direction
-        px_1 = S_x*upru_base_frame_xx + S_y*upru_base_frame_yx + S_z*upru_base_frame_zx
-        # (upru-K3) component across the reference direction
-        py_1 = S_x*upru_base_frame_xy + S_y*upru_base_frame_yy + S_z*upru_base_frame_zy
-        # (upru-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (upru-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (upru-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*upru_base_frame_xz + S_y*upru_base_frame_yz + S_z*upru_base_frame_zz
-        # (upru-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (upru-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (upru-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (upru-K16) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (upru-K20) component along the reference direction
-        end_p1_r0_x = (
-        upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xx + R_yx*upru_base_frame_yx +
-            R_zx*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xx + R_yy*upru_base_frame_yx
-            + R_zy*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xx + R_yz*upru_base_frame_yx
-            + R_zz*upru_base_frame_zx)
+        ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x
+        ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y
+        ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z
+        # (ucu-px_1) component along the reference direction
+        ucu_px_1 = (
+        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
         )
-        end_p1_r0_y = (
-        upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xy + R_yx*upru_base_frame_yy +
-            R_zx*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xy + R_yy*upru_base_frame_yy
-            + R_zy*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xy + R_yz*upru_base_frame_yy
-            + R_zz*upru_base_frame_zy)
+        # (ucu-py_1) component across the reference direction
+        ucu_py_1 = (
+        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
         )
-        end_p1_r0_z = (
-        upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xz + R_yx*upru_base_frame_yz +
-            R_zx*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xz + R_yy*upru_base_frame_yz
-            + R_zy*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xz + R_yz*upru_base_frame_yz
-            + R_zz*upru_base_frame_zz)
+        # (ucu-rho2_1) squared amplitude
+        ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1
+        # (ucu-root_1) amplitude, with the sign of the branch
+        ucu_root_1 = ucu_branch_1*sqrt(ucu_rho2_1)
+        # (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ucu_xi_1_t = (
+        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
         )
-        # (upru-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (upru-K7) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (upru-K20) component along the reference direction
-        end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x
-        end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1
-        end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
-        end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
-        # (upru-K23) squared amplitude
-        rho2_4 = end_p1_r1_x*end_p1_r1_x + end_p1_r3_y*end_p1_r3_y
-        # (upru-K24) amplitude, with the sign of the branch
-        root_4 = branch_4*sqrt(rho2_4)
-        # (upru-K25) cosine of the angle of joint 4 from its reference direction
-        inv_root_4 = 1.0/root_4
-        c_4 = end_p1_r3_y*inv_root_4
-        # (upru-K26) sine of the angle of joint 4 from its reference direction
-        s_4 = end_p1_r1_x*inv_root_4
-        # (upru-V3) velocity of the connection point per rate of joint 1
-        v_1_t = c_2*c_4
-        v_1_t_2 = c_2*s_4
-        v_1_t_3 = root_2*v_1_t_2
-        v_1_t_4 = root_2*v_1_t
-        # (upru-V7) force part of reciprocal wrench 1
-        axis_z_x = S_x*inv_root_2
-        axis_z_y = S_y*inv_root_2
-        axis_z_z = S_z*inv_root_2
-        w_1_t = s_2*s_4
-        axis_y_upru_axes4_r4_x = -c_1*c_4 - s_1*w_1_t
-        axis_y_upru_axes4_r4_y = c_4*s_1 - c_1*w_1_t
-        axis_y_upru_axes4_in_base_x = (
-        axis_y_upru_axes4_r4_x*upru_base_frame_xx + axis_y_upru_axes4_r4_y*upru_base_frame_xy +
-            upru_base_frame_xz*v_1_t_2
+        # (ucu-rho2_2) squared amplitude
+        ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t
+        # (ucu-root_2) amplitude, with the sign of the branch
+        ucu_root_2 = ucu_branch_2*sqrt(ucu_rho2_2)
+        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ucu_root_2 = 1.0/ucu_root_2
+        ucu_c_2 = inv_ucu_root_2*ucu_root_1
+        # (ucu-s_2) sine of the angle of joint 2 from its reference direction
+        ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t
+        # (ucu-px_4) component along the reference direction
+        ucu_end_p1_r0_x = (
+        ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
+            R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
+            R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
+            ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
+            R_zz*ucu_base_frame_zx)
         )
-        axis_y_upru_axes4_in_base_y = (
-        axis_y_upru_axes4_r4_x*upru_base_frame_yx + axis_y_upru_axes4_r4_y*upru_base_frame_yy +
-            upru_base_frame_yz*v_1_t_2
+        ucu_end_p1_r0_y = (
+        ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
+            R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
+            R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
+            ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
+            R_zz*ucu_base_frame_zy)
         )
-        axis_y_upru_axes4_in_base_z = (
-        axis_y_upru_axes4_r4_x*upru_base_frame_zx + axis_y_upru_axes4_r4_y*upru_base_frame_zy +
-            upru_base_frame_zz*v_1_t_2
+        ucu_end_p1_r0_z = (
+        ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
+            R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
+            R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
+            ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
+            R_zz*ucu_base_frame_zz)
         )
-        axis_x_upru_axes4_x = (
-        axis_y_upru_axes4_in_base_y*axis_z_z - axis_y_upru_axes4_in_base_z*axis_z_y
+        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ucu_root_1 = 1.0/ucu_root_1
+        ucu_c_1 = inv_ucu_root_1*ucu_py_1
+        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
+        ucu_s_1 = inv_ucu_root_1*ucu_px_1
+        # (ucu-px_4) component along the reference direction
+        ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x
+        ucu_end_p1_r1_y = -ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1
+        ucu_end_p1_r3_x = ucu_end_p1_r0_z*ucu_s_2 - ucu_c_2*ucu_end_p1_r1_y
+        ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_end_p1_r1_y*ucu_s_2
+        # (ucu-rho2_4) squared amplitude
+        ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y
+        # (ucu-root_4) amplitude, with the sign of the branch
+        ucu_root_4 = ucu_branch_4*sqrt(ucu_rho2_4)
+        # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
+        inv_ucu_root_4 = 1.0/ucu_root_4
+        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y
+        # (ucu-s_4) sine of the angle of joint 4 from its reference direction
+        ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x
+        # (ucu-v_1) velocity of the connection point per rate of joint 1
+        ucu_v_1_t = ucu_c_2*ucu_c_4
+        ucu_v_1_t_2 = ucu_c_2*ucu_s_4
+        ucu_v_1_t_3 = ucu_root_2*ucu_v_1_t_2
+        ucu_v_1_t_4 = ucu_root_2*ucu_v_1_t
+        # (ucu-w_1) force part of reciprocal wrench 1
+        ucu_axis_z_x = inv_ucu_root_2*ucu_S_x
+        ucu_axis_z_y = inv_ucu_root_2*ucu_S_y
+        ucu_axis_z_z = inv_ucu_root_2*ucu_S_z
+        ucu_w_1_t = ucu_s_2*ucu_s_4
+        axis_y_ucu_axes4_r4_x = -ucu_c_1*ucu_c_4 - ucu_s_1*ucu_w_1_t
+        axis_y_ucu_axes4_r4_y = ucu_c_4*ucu_s_1 - ucu_c_1*ucu_w_1_t
+        axis_y_ucu_axes4_in_base_x = (
+        axis_y_ucu_axes4_r4_x*ucu_base_frame_xx + axis_y_ucu_axes4_r4_y*ucu_base_frame_xy +
+            ucu_base_frame_xz*ucu_v_1_t_2
         )
-        axis_x_upru_axes4_y = (
-        axis_y_upru_axes4_in_base_z*axis_z_x - axis_y_upru_axes4_in_base_x*axis_z_z
+        axis_y_ucu_axes4_in_base_y = (
+        axis_y_ucu_axes4_r4_x*ucu_base_frame_yx + axis_y_ucu_axes4_r4_y*ucu_base_frame_yy +
+            ucu_base_frame_yz*ucu_v_1_t_2
         )
-        axis_x_upru_axes4_z = (
-        axis_y_upru_axes4_in_base_x*axis_z_y - axis_y_upru_axes4_in_base_y*axis_z_x
+        axis_y_ucu_axes4_in_base_z = (
+        axis_y_ucu_axes4_r4_x*ucu_base_frame_zx + axis_y_ucu_axes4_r4_y*ucu_base_frame_zy +
+            ucu_base_frame_zz*ucu_v_1_t_2
         )
-        # (upru-G5) inertia tensor of link 4 about the connection point
-        J_4_t = J_4_yz*s_4
-        _x = J_4_yy*c_4 - J_4_t
-        J_4_t_2 = J_4_yz*c_4
-        _x_2 = J_4_t_2 - J_4_zz*s_4
-        _x_3 = J_4_xy*c_4 - J_4_xz*s_4
-        _y = J_4_xy*s_4 + J_4_xz*c_4
-        # (upru-N13) inertia tensor of the links from 2 outwards about joint 2
-        Jc_2_xy = _x_3 - J_2_xz
-        _y_2 = s_2*(J_2_xy + _y) - c_2*(_x*s_4 + _x_2*c_4 - J_2_yz)
-        # (upru-N9) moment about joint 4 that accelerates joint 4, per unit
-        L_c4_r2_y = J_4_xx*s_2 - _x_3*c_2
-        # (upru-V6) direction 1 of the moment that the platform joint transmits
-        end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4
-        # (upru-V3) velocity of the connection point per rate of joint 1
-        v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4
-        v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3
-        # (upru-V7) force part of reciprocal wrench 1
-        w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2
-        # (upru-V6) direction 1 of the moment that the platform joint transmits
-        n_m1_t = end_p1_r3_x*s_4
-        # (upru-V7) force part of reciprocal wrench 1
-        inv_v_1_r0_y = 1.0/v_1_r0_y
-        w_1_t_3 = inv_v_1_r0_y*s_4
-        w_1_t_4 = c_4*inv_v_1_r0_y
-        # (upru-V9) force part of reciprocal wrench 2
-        w_2_t = inv_root_2*inv_v_1_r0_y*v_1_r0_x
-        _r1_x = c_4*inv_root_2 - s_4*w_2_t
-        _r1_y = -c_4*w_2_t - inv_root_2*s_4
-        # (upru-V13) force part of reciprocal wrench 4
-        inv_end_p1_r5_x = 1.0/end_p1_r5_x
-        w_4_t = inv_end_p1_r5_x*inv_root_2*n_m1_t
-        w_4_t_2 = inv_v_1_r0_y*(inv_end_p1_r5_x*w_1_t_2 + v_1_r0_x*w_4_t)
-        _r1_x_2 = c_4*w_4_t - s_4*w_4_t_2
-        _r1_y_2 = -c_4*w_4_t_2 - s_4*w_4_t
-        # (upru-G4) first moment of link 4 about the connection point
-        h_4_r1_x = c_4*h_4_y - h_4_z*s_4
-        # (upru-N39) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_t = L_c4_r2_y*inv_end_p1_r5_x
-        d_Gamma_1_t_2 = inv_root_2*(_y_2 + d_Gamma_1_t*n_m1_t)
-        d_Gamma_1_t_3 = (
-        c_2*(Jc_2_xy*s_2 - c_2*(J_2_zz + _x*c_4 - _x_2*s_4)) + d_Gamma_1_t*w_1_t_2 +
-            d_Gamma_1_t_2*v_1_r0_x - s_2*(Jc_2_xx*s_2 - Jc_2_xy*c_2)
+        axis_x_ucu_axes4_x = (
+        axis_y_ucu_axes4_in_base_y*ucu_axis_z_z - axis_y_ucu_axes4_in_base_z*ucu_axis_z_y
         )
-        d_Gamma_1_t_4 = c_2*d_Gamma_1_t_2
-        d_Gamma_1_x = c_2*h_4_x + h_4_r1_x*s_2 - d_Gamma_1_t_3*inv_v_1_r0_y
-        d_Gamma_1_y = c_4*h_4_z + h_4_y*s_4 - d_Gamma_1_t_2*s_2
-        # (upru-N35) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_t = _y*inv_end_p1_r5_x
-        d_Gamma_2_t_2 = (
-        inv_root_2*(J_2_yy + c_4*(J_4_t + J_4_zz*c_4) + d_Gamma_2_t*n_m1_t + s_4*(J_4_t_2 +
-            J_4_yy*s_4))
+        axis_x_ucu_axes4_y = (
+        axis_y_ucu_axes4_in_base_z*ucu_axis_z_x - axis_y_ucu_axes4_in_base_x*ucu_axis_z_z
         )
-        d_Gamma_2_t_3 = inv_v_1_r0_y*(d_Gamma_2_t*w_1_t_2 + d_Gamma_2_t_2*v_1_r0_x - _y_2)
-        d_Gamma_2_y = d_Gamma_2_t_2 + h_4_x
-        # (upru-N25) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-        d_Gamma_4_t = J_4_xx*inv_end_p1_r5_x
-        d_Gamma_4_t_2 = inv_root_2*(_y + d_Gamma_4_t*n_m1_t)
-        d_Gamma_4_t_3 = inv_v_1_r0_y*(d_Gamma_4_t*w_1_t_2 + d_Gamma_4_t_2*v_1_r0_x - L_c4_r2_y)
-        d_Gamma_4_x = c_4*d_Gamma_4_t_2 - h_4_z - d_Gamma_4_t_3*s_4
-        d_Gamma_4_y = h_4_y - c_4*d_Gamma_4_t_3 - d_Gamma_4_t_2*s_4
-        # (upru-N39) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_r1_x = -c_2*d_Gamma_1_y - d_Gamma_1_t_4*s_2
-        d_Gamma_1_r1_y = c_2*d_Gamma_1_t_4 - d_Gamma_1_y*s_2
-        d_Gamma_1_r3_y = c_4*d_Gamma_1_x - d_Gamma_1_r1_y*s_4
-        # (upru-N35) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_r1_y = -c_4*d_Gamma_2_t_3 - d_Gamma_2_y*s_4
-        # (upru-N43) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_xz = d_Gamma_1_r1_x*w_1_t_3 - _r1_x*h_4_r1_x
-        d_G_yz = d_Gamma_1_r1_x*w_1_t_4 - _r1_y*h_4_r1_x
-        # (upru-A28) coefficient of the acceleration in: angular acceleration of link 4
-        d_alpha_4_zy = _r1_y_2 + s_2*w_1_t_4
-        # (upru-N55) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_xx = (
-        h_4_z*(_r1_x_2 + s_2*w_1_t_3) - _r1_x*(c_4*d_Gamma_2_y - d_Gamma_2_t_3*s_4) -
-            _r1_x_2*d_Gamma_4_x - h_4_x*(_r1_x*c_4 + v_1_t_2*w_1_t_3) -
-            w_1_t_3*(c_4*d_Gamma_1_r1_y + d_Gamma_1_x*s_4)
+        axis_x_ucu_axes4_z = (
+        axis_y_ucu_axes4_in_base_x*ucu_axis_z_y - axis_y_ucu_axes4_in_base_y*ucu_axis_z_x
         )
-        d_c_xy = (
-        d_alpha_4_zy*h_4_z - _r1_x*d_Gamma_2_r1_y - _r1_x_2*d_Gamma_4_y - d_Gamma_1_r3_y*w_1_t_3 -
-            h_4_x*(_r1_y*c_4 + v_1_t_2*w_1_t_4)
+        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
+        ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4
+        # (ucu-v_1) velocity of the connection point per rate of joint 1
+        ucu_v_1_r0_x = ucu_c_4*ucu_v_1_t_3 - ucu_s_4*ucu_v_1_t_4
+        ucu_v_1_r0_y = ucu_c_4*ucu_v_1_t_4 + ucu_s_4*ucu_v_1_t_3
+        # (ucu-w_1) force part of reciprocal wrench 1
+        ucu_w_1_t_2 = ucu_end_p1_r3_x*ucu_v_1_t + ucu_end_p1_r5_x*ucu_s_2
+        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
+        ucu_n_m1_t = ucu_end_p1_r3_x*ucu_s_4
+        # (ucu-w_1) force part of reciprocal wrench 1
+        inv_ucu_v_1_r0_y = 1.0/ucu_v_1_r0_y
+        ucu_w_1_t_3 = inv_ucu_v_1_r0_y*ucu_s_4
+        ucu_w_1_t_4 = inv_ucu_v_1_r0_y*ucu_c_4
+        # (ucu-w_2) force part of reciprocal wrench 2
+        ucu_w_2_t = inv_ucu_root_2*inv_ucu_v_1_r0_y*ucu_v_1_r0_x
+        ucu__r1_x = inv_ucu_root_2*ucu_c_4 - ucu_s_4*ucu_w_2_t
+        ucu__r1_y = -inv_ucu_root_2*ucu_s_4 - ucu_c_4*ucu_w_2_t
+        # (ucu-w_4) force part of reciprocal wrench 4
+        inv_ucu_end_p1_r5_x = 1.0/ucu_end_p1_r5_x
+        ucu_w_4_t = inv_ucu_end_p1_r5_x*inv_ucu_root_2*ucu_n_m1_t
+        ucu_w_4_t_2 = inv_ucu_v_1_r0_y*(inv_ucu_end_p1_r5_x*ucu_w_1_t_2 + ucu_v_1_r0_x*ucu_w_4_t)
+        ucu__r1_x_2 = ucu_c_4*ucu_w_4_t - ucu_s_4*ucu_w_4_t_2
+        ucu__r1_y_2 = -ucu_c_4*ucu_w_4_t_2 - ucu_s_4*ucu_w_4_t
+        # (ucu-d_alpha_4) coefficient of the acceleration in: angular acceleration of link 4
+        ucu_d_alpha_4_zy = ucu__r1_y_2 + ucu_s_2*ucu_w_1_t_4
+        # (ucu-L_c_4) moment about joint 4 that accelerates joint 4, per unit
+        ucu_L_c_4_r0_y = ucu_J_4_xy*ucu_s_4 + ucu_J_4_xz*ucu_c_4
+        # (ucu-D_1_4) inertia of joint 4 along joint 1
+        ucu_D_1_4 = ucu_J_4_xx*ucu_s_2 + ucu_J_4_xz*ucu_v_1_t_2 - ucu_J_4_xy*ucu_v_1_t
+        # (ucu-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+        ucu_d_Gamma_4_t = inv_ucu_end_p1_r5_x*ucu_J_4_xx
+        ucu_d_Gamma_4_t_2 = inv_ucu_root_2*(ucu_L_c_4_r0_y + ucu_d_Gamma_4_t*ucu_n_m1_t)
+        ucu_d_Gamma_4_t_3 = (
+        inv_ucu_v_1_r0_y*(ucu_d_Gamma_4_t*ucu_w_1_t_2 + ucu_d_Gamma_4_t_2*ucu_v_1_r0_x -
+            ucu_D_1_4)
         )
-        d_c_yy = (
-        h_4_x*(_r1_y*s_4 - v_1_t*w_1_t_4) - _r1_y*d_Gamma_2_r1_y - _r1_y_2*d_Gamma_4_y -
-            d_Gamma_1_r3_y*w_1_t_4 - d_alpha_4_zy*h_4_y
+        ucu_d_Gamma_4_x = ucu_c_4*ucu_d_Gamma_4_t_2 - ucu_h_4_z - ucu_d_Gamma_4_t_3*ucu_s_4
+        ucu_d_Gamma_4_y = ucu_h_4_y - ucu_c_4*ucu_d_Gamma_4_t_3 - ucu_d_Gamma_4_t_2*ucu_s_4
+        # (ucu-J_4) inertia tensor of link 4 about the connection point
+        ucu_J_4_t = ucu_J_4_yz*ucu_s_4
+        ucu__x = ucu_J_4_yy*ucu_c_4 - ucu_J_4_t
+        ucu_J_4_t_2 = ucu_J_4_yz*ucu_c_4
+        ucu__x_2 = ucu_J_4_t_2 - ucu_J_4_zz*ucu_s_4
+        # (ucu-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+        ucu_Jc_2_xy = ucu_J_4_xy*ucu_c_4 - ucu_J_2_xz - ucu_J_4_xz*ucu_s_4
+        # (ucu-L_c_2) moment about joint 2 that accelerates joint 2, per unit
+        ucu_L_c_2_r0_y = (
+        ucu_s_2*(ucu_J_2_xy + ucu_L_c_4_r0_y) - ucu_c_2*(ucu__x*ucu_s_4 + ucu__x_2*ucu_c_4 -
+            ucu_J_2_yz)
         )
-        # (upru-N57) inertia of the leg at the connection point, without the mass gathered there
-        Q_t = 0.5*d_c_xx
-        Q_t_2 = 0.5*d_c_yy
-        Q_t_3 = Q_t*axis_x_upru_axes4_x + axis_y_upru_axes4_in_base_x*d_c_xy - axis_z_x*d_G_xz
-        Q_t_4 = Q_t*axis_x_upru_axes4_y + axis_y_upru_axes4_in_base_y*d_c_xy - axis_z_y*d_G_xz
-        Q_t_5 = Q_t*axis_x_upru_axes4_z + axis_y_upru_axes4_in_base_z*d_c_xy - axis_z_z*d_G_xz
-        Q_t_6 = Q_t_2*axis_y_upru_axes4_in_base_x - axis_z_x*d_G_yz
-        Q_t_7 = Q_t_2*axis_y_upru_axes4_in_base_y - axis_z_y*d_G_yz
-        Q_t_8 = Q_t_2*axis_y_upru_axes4_in_base_z - axis_z_z*d_G_yz
-        Q_t_9 = Q_t_3*axis_x_upru_axes4_x + Q_t_6*axis_y_upru_axes4_in_base_x
-        Q_t_10 = 2.0*Q_t_9
-        Q_t_11 = (
-        Q_t_3*axis_x_upru_axes4_y + Q_t_4*axis_x_upru_axes4_x + Q_t_6*axis_y_upru_axes4_in_base_y
-            + Q_t_7*axis_y_upru_axes4_in_base_x
+        # (ucu-h_4) first moment of link 4 about the connection point
+        ucu_h_4_r1_x = ucu_c_4*ucu_h_4_y - ucu_h_4_z*ucu_s_4
+        # (ucu-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        ucu_d_Gamma_2_t = inv_ucu_end_p1_r5_x*ucu_L_c_4_r0_y
+        ucu_d_Gamma_2_t_2 = (
+        inv_ucu_root_2*(ucu_J_2_yy + ucu_c_4*(ucu_J_4_t + ucu_J_4_zz*ucu_c_4) +
+            ucu_d_Gamma_2_t*ucu_n_m1_t + ucu_s_4*(ucu_J_4_t_2 + ucu_J_4_yy*ucu_s_4))
         )
-        Q_t_12 = (
-        Q_t_3*axis_x_upru_axes4_z + Q_t_5*axis_x_upru_axes4_x + Q_t_6*axis_y_upru_axes4_in_base_z
-            + Q_t_8*axis_y_upru_axes4_in_base_x
+        ucu_d_Gamma_2_t_3 = (
+        inv_ucu_v_1_r0_y*(ucu_d_Gamma_2_t*ucu_w_1_t_2 + ucu_d_Gamma_2_t_2*ucu_v_1_r0_x -
+            ucu_L_c_2_r0_y)
         )
-        Q_t_13 = Q_t_4*axis_x_upru_axes4_y + Q_t_7*axis_y_upru_axes4_in_base_y
-        Q_t_14 = 2.0*Q_t_13
-        Q_t_15 = (
-        Q_t_4*axis_x_upru_axes4_z + Q_t_5*axis_x_upru_axes4_y + Q_t_7*axis_y_upru_axes4_in_base_z
-            + Q_t_8*axis_y_upru_axes4_in_base_y
+        ucu_d_Gamma_2_y = ucu_d_Gamma_2_t_2 + ucu_h_4_x
+        # (ucu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        ucu_d_Gamma_1_t = inv_ucu_end_p1_r5_x*ucu_D_1_4
+        ucu_d_Gamma_1_t_2 = inv_ucu_root_2*(ucu_L_c_2_r0_y + ucu_d_Gamma_1_t*ucu_n_m1_t)
+        ucu_d_Gamma_1_t_3 = (
+        ucu_c_2*(ucu_Jc_2_xy*ucu_s_2 - ucu_c_2*(ucu_J_2_zz + ucu__x*ucu_c_4 - ucu__x_2*ucu_s_4)) +
+            ucu_d_Gamma_1_t*ucu_w_1_t_2 + ucu_d_Gamma_1_t_2*ucu_v_1_r0_x -
+            ucu_s_2*(ucu_Jc_2_xx*ucu_s_2 - ucu_Jc_2_xy*ucu_c_2)
         )
-        Q_t_16 = Q_t_5*axis_x_upru_axes4_z + Q_t_8*axis_y_upru_axes4_in_base_z
-        Q_t_17 = 2.0*Q_t_16
-        # (upru-V18) moment part of reciprocal wrench 4
-        o_4_x = end_p1_r3_x*inv_end_p1_r5_x
-        # (upru-N38) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d0_Gamma_1_t = L_c4_r2_y*o_4_x
-        # (upru-N34) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d0_Gamma_2_t = _y*o_4_x
-        # (upru-N24) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-        d0_Gamma_4_t = J_4_xx*o_4_x
-        # (upru-N54) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d0_c_xx = _r1_x*d0_Gamma_2_t + _r1_x_2*d0_Gamma_4_t + d0_Gamma_1_t*w_1_t_3 - h_4_z*o_4_x
-        d0_c_xz = h_4_z - J_4_xx*_r1_x_2 - L_c4_r2_y*w_1_t_3 - _r1_x*_y
-        d0_c_yx = _r1_y*d0_Gamma_2_t + _r1_y_2*d0_Gamma_4_t + d0_Gamma_1_t*w_1_t_4 + h_4_y*o_4_x
-        d0_c_yz = -h_4_y - J_4_xx*_r1_y_2 - L_c4_r2_y*w_1_t_4 - _r1_y*_y
-        # (M2) coupling block of M
-        M_ta_t = Q_t_11*q_in_base_z
-        M_ta_t_2 = Q_t_12*q_in_base_y
-        M_ta_t_3 = Q_t_10*q_in_base_z - Q_t_12*q_in_base_x
-        M_ta_t_4 = Q_t_10*q_in_base_y - Q_t_11*q_in_base_x
-        M_ta_t_5 = Q_t_14*q_in_base_z - Q_t_15*q_in_base_y
-        M_ta_t_6 = Q_t_15*q_in_base_x
-        M_ta_t_7 = M_ta_t - M_ta_t_6
-        M_ta_t_8 = Q_t_11*q_in_base_y - Q_t_14*q_in_base_x
-        M_ta_t_9 = Q_t_15*q_in_base_z - Q_t_17*q_in_base_y
-        M_ta_t_10 = Q_t_12*q_in_base_z - Q_t_17*q_in_base_x
-        M_ta_t_11 = M_ta_t_6 - M_ta_t_2
-        # (upru-N54) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d0_c_in_base_x = axis_x_upru_axes4_x*d0_c_xx + axis_y_upru_axes4_in_base_x*d0_c_yx
-        d0_c_in_base_y = axis_x_upru_axes4_y*d0_c_xx + axis_y_upru_axes4_in_base_y*d0_c_yx
-        d0_c_in_base_z = axis_x_upru_axes4_z*d0_c_xx + axis_y_upru_axes4_in_base_z*d0_c_yx
-        d0_c_in_base_x_2 = axis_x_upru_axes4_x*d0_c_xz + axis_y_upru_axes4_in_base_x*d0_c_yz
-        d0_c_in_base_y_2 = axis_x_upru_axes4_y*d0_c_xz + axis_y_upru_axes4_in_base_y*d0_c_yz
-        d0_c_in_base_z_2 = axis_x_upru_axes4_z*d0_c_xz + axis_y_upru_axes4_in_base_z*d0_c_yz
-        d0_c_in_base_y_3 = axis_x_upru_axes4_y*d0_c_in_base_x + axis_z_y*d0_c_in_base_x_2
-        d0_c_in_base_z_3 = axis_x_upru_axes4_z*d0_c_in_base_x + axis_z_z*d0_c_in_base_x_2
-        d0_c_in_base_x_3 = axis_x_upru_axes4_x*d0_c_in_base_y + axis_z_x*d0_c_in_base_y_2
-        d0_c_in_base_y_4 = axis_x_upru_axes4_y*d0_c_in_base_y + axis_z_y*d0_c_in_base_y_2
-        d0_c_in_base_z_4 = axis_x_upru_axes4_z*d0_c_in_base_y + axis_z_z*d0_c_in_base_y_2
-        d0_c_in_base_x_4 = axis_x_upru_axes4_x*d0_c_in_base_z + axis_z_x*d0_c_in_base_z_2
-        d0_c_in_base_y_5 = axis_x_upru_axes4_y*d0_c_in_base_z + axis_z_y*d0_c_in_base_z_2
-        d0_c_in_base_z_5 = axis_x_upru_axes4_z*d0_c_in_base_z + axis_z_z*d0_c_in_base_z_2
-        # (M2) coupling block of M
-        M_ta_t_12 = (
-        M_ta_t - M_ta_t_2 - axis_x_upru_axes4_x*d0_c_in_base_x - axis_z_x*d0_c_in_base_x_2
+        ucu_d_Gamma_1_t_4 = ucu_c_2*ucu_d_Gamma_1_t_2
+        ucu_d_Gamma_1_x = (
+        ucu_c_2*ucu_h_4_x + ucu_h_4_r1_x*ucu_s_2 - inv_ucu_v_1_r0_y*ucu_d_Gamma_1_t_3
         )
-        M_ta_t_13 = M_ta_t_3 + d0_c_in_base_y_3
-        M_ta_t_14 = M_ta_t_4 - d0_c_in_base_z_3
-        M_ta_t_15 = M_ta_t_5 - d0_c_in_base_x_3
-        M_ta_t_16 = M_ta_t_7 + d0_c_in_base_y_4
-        M_ta_t_17 = M_ta_t_8 - d0_c_in_base_z_4
-        M_ta_t_18 = M_ta_t_9 - d0_c_in_base_x_4
-        M_ta_t_19 = M_ta_t_10 + d0_c_in_base_y_5
-        M_ta_t_20 = M_ta_t_11 + d0_c_in_base_z_5
-        # (upru-N46) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        d0_G_m1_t = d0_Gamma_4_t*inv_end_p1_r5_x
-        # (upru-N47) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        d_G_m1_t = d_Gamma_4_x*inv_end_p1_r5_x
-        d_G_m1_t_2 = d_Gamma_4_y*inv_end_p1_r5_x
-        # (upru-V6) direction 1 of the moment that the platform joint transmits
-        n_m1_in_base_x = axis_x_upru_axes4_x*end_p1_r3_x - axis_z_x*end_p1_r5_x
-        n_m1_in_base_y = axis_x_upru_axes4_y*end_p1_r3_x - axis_z_y*end_p1_r5_x
-        n_m1_in_base_z = axis_x_upru_axes4_z*end_p1_r3_x - axis_z_z*end_p1_r5_x
-        # (upru-N47) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        d_G_m1_in_base_x = -axis_x_upru_axes4_x*d_G_m1_t - axis_y_upru_axes4_in_base_x*d_G_m1_t_2
-        d_G_m1_in_base_y = -axis_x_upru_axes4_y*d_G_m1_t - axis_y_upru_axes4_in_base_y*d_G_m1_t_2
-        d_G_m1_in_base_z = -axis_x_upru_axes4_z*d_G_m1_t - axis_y_upru_axes4_in_base_z*d_G_m1_t_2
-        # (upru-N51) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_m_xx = d_G_m1_in_base_x*n_m1_in_base_x
-        d_G_m_xy = d_G_m1_in_base_y*n_m1_in_base_x
-        d_G_m_xz = d_G_m1_in_base_z*n_m1_in_base_x
-        d_G_m_yx = d_G_m1_in_base_x*n_m1_in_base_y
-        # (upru-N46) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        d0_G_m1_in_base_y = axis_x_upru_axes4_y*d0_G_m1_t - axis_z_y*d_Gamma_4_t
-        d0_G_m1_in_base_z = axis_x_upru_axes4_z*d0_G_m1_t - axis_z_z*d_Gamma_4_t
-        # (M3) rotational block of M
-        M_aa_t = (
-        M_ta_t_5*q_in_base_z + d0_c_in_base_x_4*q_in_base_y + d_G_m_xy*q_in_base_z -
-            M_ta_t_9*q_in_base_y - d0_c_in_base_x_3*q_in_base_z - d_G_m_xz*q_in_base_y -
-            n_m1_in_base_x*(axis_x_upru_axes4_x*d0_G_m1_t - axis_z_x*d_Gamma_4_t)
+        ucu_d_Gamma_1_y = ucu_c_4*ucu_h_4_z + ucu_h_4_y*ucu_s_4 - ucu_d_Gamma_1_t_2*ucu_s_2
+        ucu_d_Gamma_1_r1_x = -ucu_c_2*ucu_d_Gamma_1_y - ucu_d_Gamma_1_t_4*ucu_s_2
+        ucu_d_Gamma_1_r1_y = ucu_c_2*ucu_d_Gamma_1_t_4 - ucu_d_Gamma_1_y*ucu_s_2
+        ucu_d_Gamma_1_r3_y = ucu_c_4*ucu_d_Gamma_1_x - ucu_d_Gamma_1_r1_y*ucu_s_4
+        # (ucu-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        ucu_d_Gamma_2_r1_y = -ucu_c_4*ucu_d_Gamma_2_t_3 - ucu_d_Gamma_2_y*ucu_s_4
+        # (ucu-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        ucu_d_G_xz = ucu_d_Gamma_1_r1_x*ucu_w_1_t_3 - ucu__r1_x*ucu_h_4_r1_x
+        ucu_d_G_yz = ucu_d_Gamma_1_r1_x*ucu_w_1_t_4 - ucu__r1_y*ucu_h_4_r1_x
+        # (ucu-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        ucu_d_c_xx = (
+        ucu_h_4_z*(ucu__r1_x_2 + ucu_s_2*ucu_w_1_t_3) - ucu__r1_x*(ucu_c_4*ucu_d_Gamma_2_y -
+            ucu_d_Gamma_2_t_3*ucu_s_4) - ucu__r1_x_2*ucu_d_Gamma_4_x -
+            ucu_h_4_x*(ucu__r1_x*ucu_c_4 + ucu_v_1_t_2*ucu_w_1_t_3) -
+            ucu_w_1_t_3*(ucu_c_4*ucu_d_Gamma_1_r1_y + ucu_d_Gamma_1_x*ucu_s_4)
         )
-        M_aa_t_2 = (
-        M_ta_t_7*q_in_base_z + d0_G_m1_in_base_y*n_m1_in_base_x + d0_c_in_base_y_4*q_in_base_z +
-            d_G_m_xx*q_in_base_z - M_ta_t_10*q_in_base_y - d0_c_in_base_y_5*q_in_base_y -
-            d_G_m_xz*q_in_base_x
+        ucu_d_c_xy = (
+        ucu_d_alpha_4_zy*ucu_h_4_z - ucu__r1_x*ucu_d_Gamma_2_r1_y - ucu__r1_x_2*ucu_d_Gamma_4_y -
+            ucu_d_Gamma_1_r3_y*ucu_w_1_t_3 - ucu_h_4_x*(ucu__r1_y*ucu_c_4 +
+            ucu_v_1_t_2*ucu_w_1_t_4)
         )
-        M_aa_t_3 = (
-        d0_G_m1_in_base_z*n_m1_in_base_x + d0_c_in_base_z_4*q_in_base_z + d_G_m_xy*q_in_base_x -
-            M_ta_t_11*q_in_base_y - M_ta_t_8*q_in_base_z - d0_c_in_base_z_5*q_in_base_y -
-            d_G_m_xx*q_in_base_y
+        ucu_d_c_yy = (
+        ucu_h_4_x*(ucu__r1_y*ucu_s_4 - ucu_v_1_t*ucu_w_1_t_4) - ucu__r1_y*ucu_d_Gamma_2_r1_y -
+            ucu__r1_y_2*ucu_d_Gamma_4_y - ucu_d_Gamma_1_r3_y*ucu_w_1_t_4 -
+            ucu_d_alpha_4_zy*ucu_h_4_y
         )
-        M_aa_t_4 = (
-        M_ta_t_3*q_in_base_z + d0_c_in_base_y_3*q_in_base_z +
-            d_G_m1_in_base_z*n_m1_in_base_y*q_in_base_x - M_ta_t_10*q_in_base_x -
-            d0_G_m1_in_base_y*n_m1_in_base_y - d0_c_in_base_y_5*q_in_base_x - d_G_m_yx*q_in_base_z
+        # (ucu-Q) inertia of the leg at the connection point, without the mass gathered there
+        ucu_Q_t = 0.5*ucu_d_c_xx
+        ucu_Q_t_2 = 0.5*ucu_d_c_yy
+        ucu_Q_t_3 = (
+        axis_x_ucu_axes4_x*ucu_Q_t + axis_y_ucu_axes4_in_base_x*ucu_d_c_xy -
+            ucu_axis_z_x*ucu_d_G_xz
         )
-        M_aa_t_5 = (
-        M_ta_t_11*q_in_base_x + M_ta_t_4*q_in_base_z + d0_G_m1_in_base_z*n_m1_in_base_y +
-            d0_c_in_base_z_5*q_in_base_x + d_G_m1_in_base_y*n_m1_in_base_y*q_in_base_x -
-            d0_c_in_base_z_3*q_in_base_z - d_G_m_yx*q_in_base_y
+        ucu_Q_t_4 = (
+        axis_x_ucu_axes4_y*ucu_Q_t + axis_y_ucu_axes4_in_base_y*ucu_d_c_xy -
+            ucu_axis_z_y*ucu_d_G_xz
         )
-        M_aa_t_6 = (
-        M_ta_t_4*q_in_base_y + d0_c_in_base_z_4*q_in_base_x +
-            d_G_m1_in_base_x*n_m1_in_base_z*q_in_base_y - M_ta_t_8*q_in_base_x -
-            d0_G_m1_in_base_z*n_m1_in_base_z - d0_c_in_base_z_3*q_in_base_y -
-            d_G_m1_in_base_y*n_m1_in_base_z*q_in_base_x
+        ucu_Q_t_5 = (
+        axis_x_ucu_axes4_z*ucu_Q_t + axis_y_ucu_axes4_in_base_z*ucu_d_c_xy -
+            ucu_axis_z_z*ucu_d_G_xz
+        )
+        ucu_Q_t_6 = axis_y_ucu_axes4_in_base_x*ucu_Q_t_2 - ucu_axis_z_x*ucu_d_G_yz
+        ucu_Q_t_7 = axis_y_ucu_axes4_in_base_y*ucu_Q_t_2 - ucu_axis_z_y*ucu_d_G_yz
+        ucu_Q_t_8 = axis_y_ucu_axes4_in_base_z*ucu_Q_t_2 - ucu_axis_z_z*ucu_d_G_yz
+        ucu_Q_t_9 = axis_x_ucu_axes4_x*ucu_Q_t_3 + axis_y_ucu_axes4_in_base_x*ucu_Q_t_6
+        ucu_Q_t_10 = 2.0*ucu_Q_t_9
+        ucu_Q_t_11 = (
+        axis_x_ucu_axes4_x*ucu_Q_t_4 + axis_x_ucu_axes4_y*ucu_Q_t_3 +
+            axis_y_ucu_axes4_in_base_x*ucu_Q_t_7 + axis_y_ucu_axes4_in_base_y*ucu_Q_t_6
+        )
+        ucu_Q_t_12 = (
+        axis_x_ucu_axes4_x*ucu_Q_t_5 + axis_x_ucu_axes4_z*ucu_Q_t_3 +
+            axis_y_ucu_axes4_in_base_x*ucu_Q_t_8 + axis_y_ucu_axes4_in_base_z*ucu_Q_t_6
+        )
+        ucu_Q_t_13 = axis_x_ucu_axes4_y*ucu_Q_t_4 + axis_y_ucu_axes4_in_base_y*ucu_Q_t_7
+        ucu_Q_t_14 = 2.0*ucu_Q_t_13
+        ucu_Q_t_15 = (
+        axis_x_ucu_axes4_y*ucu_Q_t_5 + axis_x_ucu_axes4_z*ucu_Q_t_4 +
+            axis_y_ucu_axes4_in_base_y*ucu_Q_t_8 + axis_y_ucu_axes4_in_base_z*ucu_Q_t_7
+        )
+        ucu_Q_t_16 = axis_x_ucu_axes4_z*ucu_Q_t_5 + axis_y_ucu_axes4_in_base_z*ucu_Q_t_8
+        ucu_Q_t_17 = 2.0*ucu_Q_t_16
+        # (ucu-o_4) moment part of reciprocal wrench 4
+        ucu_o_4_x = inv_ucu_end_p1_r5_x*ucu_end_p1_r3_x
+        # (ucu-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+        ucu_dalpha_Gamma_4_t = ucu_J_4_xx*ucu_o_4_x
+        # (ucu-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        ucu_dalpha_Gamma_2_t = ucu_L_c_4_r0_y*ucu_o_4_x
+        # (ucu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        ucu_dalpha_Gamma_1_t = ucu_D_1_4*ucu_o_4_x
+        # (ucu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        ucu_dalpha_c_xx = (
+        ucu__r1_x*ucu_dalpha_Gamma_2_t + ucu__r1_x_2*ucu_dalpha_Gamma_4_t +
+            ucu_dalpha_Gamma_1_t*ucu_w_1_t_3 - ucu_h_4_z*ucu_o_4_x
+        )
+        ucu_dalpha_c_xz = (
+        ucu_h_4_z - ucu_D_1_4*ucu_w_1_t_3 - ucu_J_4_xx*ucu__r1_x_2 - ucu_L_c_4_r0_y*ucu__r1_x
+        )
+        ucu_dalpha_c_yx = (
+        ucu__r1_y*ucu_dalpha_Gamma_2_t + ucu__r1_y_2*ucu_dalpha_Gamma_4_t +
+            ucu_dalpha_Gamma_1_t*ucu_w_1_t_4 + ucu_h_4_y*ucu_o_4_x
+        )
+        ucu_dalpha_c_yz = (
+        -ucu_h_4_y - ucu_D_1_4*ucu_w_1_t_4 - ucu_J_4_xx*ucu__r1_y_2 - ucu_L_c_4_r0_y*ucu__r1_y
+        )
+        ucu_dalpha_c_in_base_x = (
+        axis_x_ucu_axes4_x*ucu_dalpha_c_xx + axis_y_ucu_axes4_in_base_x*ucu_dalpha_c_yx
+        )
+        ucu_dalpha_c_in_base_y = (
+        axis_x_ucu_axes4_y*ucu_dalpha_c_xx + axis_y_ucu_axes4_in_base_y*ucu_dalpha_c_yx
+        )
+        ucu_dalpha_c_in_base_z = (
+        axis_x_ucu_axes4_z*ucu_dalpha_c_xx + axis_y_ucu_axes4_in_base_z*ucu_dalpha_c_yx
+        )
+        ucu_dalpha_c_in_base_x_2 = (
+        axis_x_ucu_axes4_x*ucu_dalpha_c_xz + axis_y_ucu_axes4_in_base_x*ucu_dalpha_c_yz
+        )
+        ucu_dalpha_c_in_base_y_2 = (
+        axis_x_ucu_axes4_y*ucu_dalpha_c_xz + axis_y_ucu_axes4_in_base_y*ucu_dalpha_c_yz
+        )
+        ucu_dalpha_c_in_base_z_2 = (
+        axis_x_ucu_axes4_z*ucu_dalpha_c_xz + axis_y_ucu_axes4_in_base_z*ucu_dalpha_c_yz
+        )
+        # (M_ta) coupling block of M
+        ucu_M_ta_t = ucu_Q_t_11*ucu_q_in_base_z
+        ucu_M_ta_t_2 = ucu_Q_t_12*ucu_q_in_base_y
+        ucu_M_ta_t_3 = ucu_Q_t_15*ucu_q_in_base_x
+        ucu_M_ta_t_4 = (
+        ucu_M_ta_t - ucu_M_ta_t_2 - axis_x_ucu_axes4_x*ucu_dalpha_c_in_base_x -
+            ucu_axis_z_x*ucu_dalpha_c_in_base_x_2
+        )
+        ucu_M_ta_t_5 = (
+        axis_x_ucu_axes4_y*ucu_dalpha_c_in_base_x + ucu_Q_t_10*ucu_q_in_base_z +
+            ucu_axis_z_y*ucu_dalpha_c_in_base_x_2 - ucu_Q_t_12*ucu_q_in_base_x
+        )
+        ucu_M_ta_t_6 = (
+        ucu_Q_t_10*ucu_q_in_base_y - axis_x_ucu_axes4_z*ucu_dalpha_c_in_base_x -
+            ucu_Q_t_11*ucu_q_in_base_x - ucu_axis_z_z*ucu_dalpha_c_in_base_x_2
+        )
+        ucu_M_ta_t_7 = (
+        ucu_Q_t_14*ucu_q_in_base_z - axis_x_ucu_axes4_x*ucu_dalpha_c_in_base_y -
+            ucu_Q_t_15*ucu_q_in_base_y - ucu_axis_z_x*ucu_dalpha_c_in_base_y_2
+        )
+        ucu_M_ta_t_8 = (
+        ucu_M_ta_t + axis_x_ucu_axes4_y*ucu_dalpha_c_in_base_y +
+            ucu_axis_z_y*ucu_dalpha_c_in_base_y_2 - ucu_M_ta_t_3
+        )
+        ucu_M_ta_t_9 = (
+        ucu_Q_t_11*ucu_q_in_base_y - axis_x_ucu_axes4_z*ucu_dalpha_c_in_base_y -
+            ucu_Q_t_14*ucu_q_in_base_x - ucu_axis_z_z*ucu_dalpha_c_in_base_y_2
+        )
+        ucu_M_ta_t_10 = (
+        ucu_Q_t_15*ucu_q_in_base_z - axis_x_ucu_axes4_x*ucu_dalpha_c_in_base_z -
+            ucu_Q_t_17*ucu_q_in_base_y - ucu_axis_z_x*ucu_dalpha_c_in_base_z_2
+        )
+        ucu_M_ta_t_11 = (
+        axis_x_ucu_axes4_y*ucu_dalpha_c_in_base_z + ucu_Q_t_12*ucu_q_in_base_z +
+            ucu_axis_z_y*ucu_dalpha_c_in_base_z_2 - ucu_Q_t_17*ucu_q_in_base_x
+        )
+        ucu_M_ta_t_12 = (
+        ucu_M_ta_t_3 + axis_x_ucu_axes4_z*ucu_dalpha_c_in_base_z +
+            ucu_axis_z_z*ucu_dalpha_c_in_base_z_2 - ucu_M_ta_t_2
+        )
+        # (ucu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        ucu_dalpha_G_m1_t = inv_ucu_end_p1_r5_x*ucu_dalpha_Gamma_4_t
+        # (ucu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        ucu_d_G_m1_t = inv_ucu_end_p1_r5_x*ucu_d_Gamma_4_x
+        ucu_d_G_m1_t_2 = inv_ucu_end_p1_r5_x*ucu_d_Gamma_4_y
+        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
+        ucu_n_m1_in_base_x = axis_x_ucu_axes4_x*ucu_end_p1_r3_x - ucu_axis_z_x*ucu_end_p1_r5_x
+        ucu_n_m1_in_base_y = axis_x_ucu_axes4_y*ucu_end_p1_r3_x - ucu_axis_z_y*ucu_end_p1_r5_x
+        ucu_n_m1_in_base_z = axis_x_ucu_axes4_z*ucu_end_p1_r3_x - ucu_axis_z_z*ucu_end_p1_r5_x
+        # (ucu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        ucu_dalpha_G_m1_in_base_y = (
+        axis_x_ucu_axes4_y*ucu_dalpha_G_m1_t - ucu_axis_z_y*ucu_d_Gamma_4_t
+        )
+        ucu_dalpha_G_m1_in_base_z = (
+        axis_x_ucu_axes4_z*ucu_dalpha_G_m1_t - ucu_axis_z_z*ucu_d_Gamma_4_t
+        )
+        # (ucu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        ucu_d_G_m1_in_base_x = (
+        -axis_x_ucu_axes4_x*ucu_d_G_m1_t - axis_y_ucu_axes4_in_base_x*ucu_d_G_m1_t_2
+        )
+        ucu_d_G_m1_in_base_y = (
+        -axis_x_ucu_axes4_y*ucu_d_G_m1_t - axis_y_ucu_axes4_in_base_y*ucu_d_G_m1_t_2
+        )
+        ucu_d_G_m1_in_base_z = (
+        -axis_x_ucu_axes4_z*ucu_d_G_m1_t - axis_y_ucu_axes4_in_base_z*ucu_d_G_m1_t_2
+        )
+        # (ucu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        ucu_d_G_m_xx = ucu_d_G_m1_in_base_x*ucu_n_m1_in_base_x
+        ucu_d_G_m_xy = ucu_d_G_m1_in_base_y*ucu_n_m1_in_base_x
+        ucu_d_G_m_xz = ucu_d_G_m1_in_base_z*ucu_n_m1_in_base_x
+        ucu_d_G_m_yx = ucu_d_G_m1_in_base_x*ucu_n_m1_in_base_y
+        # (M_aa) rotational block of M
+        ucu_M_aa_t = (
+        ucu_M_ta_t_7*ucu_q_in_base_z + ucu_d_G_m_xy*ucu_q_in_base_z -
+            ucu_M_ta_t_10*ucu_q_in_base_y - ucu_d_G_m_xz*ucu_q_in_base_y -
+            ucu_n_m1_in_base_x*(axis_x_ucu_axes4_x*ucu_dalpha_G_m1_t -
+            ucu_axis_z_x*ucu_d_Gamma_4_t)
+        )
+        ucu_M_aa_t_2 = (
+        ucu_M_ta_t_8*ucu_q_in_base_z + ucu_d_G_m_xx*ucu_q_in_base_z +
+            ucu_dalpha_G_m1_in_base_y*ucu_n_m1_in_base_x - ucu_M_ta_t_11*ucu_q_in_base_y -
+            ucu_d_G_m_xz*ucu_q_in_base_x
+        )
+        ucu_M_aa_t_3 = (
+        ucu_M_ta_t_12*ucu_q_in_base_y + ucu_M_ta_t_9*ucu_q_in_base_z +
+            ucu_d_G_m_xx*ucu_q_in_base_y - ucu_d_G_m_xy*ucu_q_in_base_x -
+            ucu_dalpha_G_m1_in_base_z*ucu_n_m1_in_base_x
+        )
+        ucu_M_aa_t_4 = (
+        ucu_M_ta_t_11*ucu_q_in_base_x + ucu_d_G_m_yx*ucu_q_in_base_z +
+            ucu_dalpha_G_m1_in_base_y*ucu_n_m1_in_base_y - ucu_M_ta_t_5*ucu_q_in_base_z -
+            ucu_d_G_m1_in_base_z*ucu_n_m1_in_base_y*ucu_q_in_base_x
+        )
+        ucu_M_aa_t_5 = (
+        ucu_M_ta_t_12*ucu_q_in_base_x + ucu_M_ta_t_6*ucu_q_in_base_z +
+            ucu_dalpha_G_m1_in_base_z*ucu_n_m1_in_base_y +
+            ucu_d_G_m1_in_base_y*ucu_n_m1_in_base_y*ucu_q_in_base_x - ucu_d_G_m_yx*ucu_q_in_base_y
+        )
+        ucu_M_aa_t_6 = (
+        ucu_M_ta_t_6*ucu_q_in_base_y + ucu_d_G_m1_in_base_x*ucu_n_m1_in_base_z*ucu_q_in_base_y -
+            ucu_M_ta_t_9*ucu_q_in_base_x - ucu_dalpha_G_m1_in_base_z*ucu_n_m1_in_base_z -
+            ucu_d_G_m1_in_base_y*ucu_n_m1_in_base_z*ucu_q_in_base_x
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_4) >
-            _TOLERANCE * _TOLERANCE * 1.0) & (abs(-end_p1_r5_x) > _TOLERANCE * 1.0) & (abs(root_2)
-            > _TOLERANCE * 0.8) & (abs(v_1_r0_y) > _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(ucu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ucu_rho2_4) >
+            _TOLERANCE * _TOLERANCE * 1.0) & (abs(-ucu_end_p1_r5_x) > _TOLERANCE * 1.0) &
+            (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_r0_y) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
-        Q_t_10, Q_t_11, Q_t_12, Q_t_14, Q_t_15, Q_t_17, M_ta_t_12, M_ta_t_13, M_ta_t_14,
-            M_ta_t_15, M_ta_t_16, M_ta_t_17, M_ta_t_18, M_ta_t_19, M_ta_t_20, M_aa_t,
-            M_aa_t_2, M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6,
+        ucu_Q_t_10, ucu_Q_t_11, ucu_Q_t_12, ucu_Q_t_14, ucu_Q_t_15, ucu_Q_t_17, ucu_M_ta_t_4,
+            ucu_M_ta_t_5, ucu_M_ta_t_6, ucu_M_ta_t_7, ucu_M_ta_t_8, ucu_M_ta_t_9,
+            ucu_M_ta_t_10, ucu_M_ta_t_11, ucu_M_ta_t_12, ucu_M_aa_t, ucu_M_aa_t_2,
+            ucu_M_aa_t_3, ucu_M_aa_t_4, ucu_M_aa_t_5, ucu_M_aa_t_6,
         ))
     (
-    total_upru_xx, total_upru_xy, total_upru_xz, total_upru_yy, total_upru_yz, total_upru_zz,
-        total_upru_xx_2, total_upru_xy_2, total_upru_xz_2, total_upru_yx, total_upru_yy_2,
-        total_upru_yz_2, total_upru_zx, total_upru_zy, total_upru_zz_2, total_upru_xx_3,
-        total_upru_xy_3, total_upru_xz_3, total_upru_yy_3, total_upru_yz_3, total_upru_zz_3,
+    total_ucu_xx, total_ucu_xy, total_ucu_xz, total_ucu_yy, total_ucu_yz, total_ucu_zz,
+        total_ucu_xx_2, total_ucu_xy_2, total_ucu_xz_2, total_ucu_yx, total_ucu_yy_2,
+        total_ucu_yz_2, total_ucu_zx, total_ucu_zy, total_ucu_zz_2, total_ucu_xx_3,
+        total_ucu_xy_3, total_ucu_xz_3, total_ucu_yy_3, total_ucu_yz_3, total_ucu_zz_3,
     ) = sums
-    # (M1) translational block of M
-    M_tt_xx = m_star - total_upru_xx
-    M_tt_yy = m_star - total_upru_yy
-    M_tt_zz = m_star - total_upru_zz
-    # (M2) coupling block of M
-    M_ta_xy = h_star_in_base_z - total_upru_xy_2
-    M_ta_xz = total_upru_xz_2 - h_star_in_base_y
-    M_ta_yx = total_upru_yx - h_star_in_base_z
-    M_ta_yz = h_star_in_base_x + total_upru_yz_2
-    M_ta_zx = h_star_in_base_y + total_upru_zx
-    M_ta_zy = -h_star_in_base_x - total_upru_zy
-    # (M3) rotational block of M
-    M_aa_xx = J_star_t_8 - total_upru_xx_3
-    M_aa_xy = J_star_t_9 + total_upru_xy_3
-    M_aa_xz = J_star_t_10 + total_upru_xz_3
-    M_aa_yy = J_star_t_12 - total_upru_yy_3
-    M_aa_yz = J_star_t_13 + total_upru_yz_3
-    M_aa_zz = J_star_t_15 - total_upru_zz_3
+    # (M_tt) translational block of M
+    M_tt_xx = m_star - total_ucu_xx
+    M_tt_yy = m_star - total_ucu_yy
+    M_tt_zz = m_star - total_ucu_zz
+    # (M_ta) coupling block of M
+    M_ta_xy = h_star_in_base_z - total_ucu_xy_2
+    M_ta_xz = total_ucu_xz_2 - h_star_in_base_y
+    M_ta_yx = total_ucu_yx - h_star_in_base_z
+    M_ta_yz = h_star_in_base_x + total_ucu_yz_2
+    M_ta_zx = h_star_in_base_y + total_ucu_zx
+    M_ta_zy = -h_star_in_base_x - total_ucu_zy
+    # (M_aa) rotational block of M
+    M_aa_xx = J_star_t_8 - total_ucu_xx_3
+    M_aa_xy = J_star_t_9 + total_ucu_xy_3
+    M_aa_xz = J_star_t_10 - total_ucu_xz_3
+    M_aa_yy = J_star_t_13 + total_ucu_yy_3
+    M_aa_yz = J_star_t_15 + total_ucu_yz_3
+    M_aa_zz = J_star_t_17 - total_ucu_zz_3
     out_M[0] = M_tt_xx
-    out_M[1] = -total_upru_xy
-    out_M[6] = -total_upru_xy
-    out_M[2] = -total_upru_xz
-    out_M[12] = -total_upru_xz
+    out_M[1] = -total_ucu_xy
+    out_M[6] = -total_ucu_xy
+    out_M[2] = -total_ucu_xz
+    out_M[12] = -total_ucu_xz
     out_M[7] = M_tt_yy
-    out_M[8] = -total_upru_yz
-    out_M[13] = -total_upru_yz
+    out_M[8] = -total_ucu_yz
+    out_M[13] = -total_ucu_yz
     out_M[14] = M_tt_zz
-    out_M[3] = total_upru_xx_2
-    out_M[18] = total_upru_xx_2
+    out_M[3] = total_ucu_xx_2
+    out_M[18] = total_ucu_xx_2
     out_M[4] = M_ta_xy
     out_M[24] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -total_upru_yy_2
-    out_M[25] = -total_upru_yy_2
+    out_M[10] = -total_ucu_yy_2
+    out_M[25] = -total_ucu_yy_2
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
     out_M[20] = M_ta_zx
     out_M[16] = M_ta_zy
     out_M[26] = M_ta_zy
-    out_M[17] = -total_upru_zz_2
-    out_M[32] = -total_upru_zz_2
+    out_M[17] = -total_ucu_zz_2
+    out_M[32] = -total_ucu_zz_2
     out_M[21] = M_aa_xx
     out_M[22] = M_aa_xy
     out_M[27] = M_aa_xy
@@ -2532,7 +2763,7 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 2079 mul, 1506 add, 30 div, 18 sqrt, 0 trig
+# Z: 2109 mul, 1530 add, 30 div, 18 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
@@ -2590,387 +2821,441 @@ def _run_Z(m, X, V):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_Z = m.zeros("Z")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (M4) centripetal force and weight of the platform
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
     Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
     Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z_2*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x_2*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y - g_r0_y_2*h_star_x
+    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
+    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_2_xy, J_2_xz, J_2_yz, J_4_xy, J_4_xz, J_4_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz,
-            Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, branch_1, branch_2, branch_4, g_r0_x, g_r0_y,
-            g_r0_z, h_2_x, h_2_y, h_2_z, h_4_x, h_4_y, h_4_z, upru_base_frame_xx,
-            upru_base_frame_xy, upru_base_frame_xz, upru_base_frame_yx, upru_base_frame_yy,
-            upru_base_frame_yz, upru_base_frame_zx, upru_base_frame_zy, upru_base_frame_zz,
-            upru_base_point_x, upru_base_point_y, upru_base_point_z,
-            upru_platform_joint_axis_platform_x, upru_platform_joint_axis_platform_y,
-            upru_platform_joint_axis_platform_z, upru_platform_point_x, upru_platform_point_y,
-            upru_platform_point_z,
+        ucu_J_2_xy, ucu_J_2_xz, ucu_J_2_yz, ucu_J_4_xy, ucu_J_4_xz, ucu_J_4_yz, ucu_Sigma_2_xx,
+            ucu_Sigma_2_yy, ucu_Sigma_2_zz, ucu_Sigma_4_xx, ucu_Sigma_4_yy, ucu_Sigma_4_zz,
+            ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx,
+            ucu_base_frame_yy, ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy,
+            ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y, ucu_base_point_z, ucu_branch_1,
+            ucu_branch_2, ucu_branch_4, ucu_g_r0_x, ucu_g_r0_y, ucu_g_r0_z, ucu_h_2_x, ucu_h_2_y,
+            ucu_h_2_z, ucu_h_4_x, ucu_h_4_y, ucu_h_4_z, ucu_platform_joint_axis_platform_x,
+            ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
+            ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
         ) = k
-        # (upru-K1) from the base point to the connection point
-        q_in_base_x = (
-        R_xx*upru_platform_point_x + R_xy*upru_platform_point_y + R_xz*upru_platform_point_z
+        # (ucu-S) from the base point to the connection point
+        ucu_q_in_base_x = (
+        R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
-        q_in_base_y = (
-        R_yx*upru_platform_point_x + R_yy*upru_platform_point_y + R_yz*upru_platform_point_z
+        ucu_q_in_base_y = (
+        R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y + R_yz*ucu_platform_point_z
         )
-        q_in_base_z = (
-        R_zx*upru_platform_point_x + R_zy*upru_platform_point_y + R_zz*upru_platform_point_z
+        ucu_q_in_base_z = (
+        R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        S_x = q_in_base_x + t_x - upru_base_point_x
-        S_y = q_in_base_y + t_y - upru_base_point_y
-        S_z = q_in_base_z + t_z - upru_base_point_z
-        # (upru-K2) component along the reference direction
-        px_1 = S_x*upru_base_frame_xx + S_y*upru_base_frame_yx + S_z*upru_base_frame_zx
-        # (upru-K3) component across the reference direction
-        py_1 = S_x*upru_base_frame_xy + S_y*upru_base_frame_yy + S_z*upru_base_frame_zy
-        # (upru-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (upru-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (upru-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*upru_base_frame_xz + S_y*upru_base_frame_yz + S_z*upru_base_frame_zz
-        # (upru-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (upru-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (upru-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (upru-K16) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (upru-K20) component along the reference direction
-        end_p1_r0_x = (
-        upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xx + R_yx*upru_base_frame_yx +
-            R_zx*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xx + R_yy*upru_base_frame_yx
-            + R_zy*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xx + R_yz*upru_base_frame_yx
-            + R_zz*upru_base_frame_zx)
+        ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x
+        ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y
+        ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z
+        # (ucu-px_1) component along the reference direction
+        ucu_px_1 = (
+        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
         )
-        end_p1_r0_y = (
-        upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xy + R_yx*upru_base_frame_yy +
-            R_zx*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xy + R_yy*upru_base_frame_yy
-            + R_zy*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xy + R_yz*upru_base_frame_yy
-            + R_zz*upru_base_frame_zy)
+        # (ucu-py_1) component across the reference direction
+        ucu_py_1 = (
+        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
         )
-        end_p1_r0_z = (
-        upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xz + R_yx*upru_base_frame_yz +
-            R_zx*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xz + R_yy*upru_base_frame_yz
-            + R_zy*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xz + R_yz*upru_base_frame_yz
-            + R_zz*upru_base_frame_zz)
+        # (ucu-rho2_1) squared amplitude
+        ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1
+        # (ucu-root_1) amplitude, with the sign of the branch
+        ucu_root_1 = ucu_branch_1*sqrt(ucu_rho2_1)
+        # (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ucu_xi_1_t = (
+        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
         )
-        # (upru-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (upru-K7) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (upru-K20) component along the reference direction
-        end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x
-        end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1
-        end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
-        end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
-        # (upru-K23) squared amplitude
-        rho2_4 = end_p1_r1_x*end_p1_r1_x + end_p1_r3_y*end_p1_r3_y
-        # (upru-K24) amplitude, with the sign of the branch
-        root_4 = branch_4*sqrt(rho2_4)
-        # (upru-K25) cosine of the angle of joint 4 from its reference direction
-        inv_root_4 = 1.0/root_4
-        c_4 = end_p1_r3_y*inv_root_4
-        # (upru-K26) sine of the angle of joint 4 from its reference direction
-        s_4 = end_p1_r1_x*inv_root_4
-        # (upru-V3) velocity of the connection point per rate of joint 1
-        v_1_t = c_2*c_4
-        v_1_t_2 = c_2*s_4
-        v_1_t_3 = root_2*v_1_t_2
-        v_1_t_4 = root_2*v_1_t
-        # (upru-V7) force part of reciprocal wrench 1
-        axis_z_x = S_x*inv_root_2
-        axis_z_y = S_y*inv_root_2
-        axis_z_z = S_z*inv_root_2
-        w_1_t = s_2*s_4
-        axis_y_upru_axes4_r4_x = -c_1*c_4 - s_1*w_1_t
-        axis_y_upru_axes4_r4_y = c_4*s_1 - c_1*w_1_t
-        axis_y_upru_axes4_in_base_x = (
-        axis_y_upru_axes4_r4_x*upru_base_frame_xx + axis_y_upru_axes4_r4_y*upru_base_frame_xy +
-            upru_base_frame_xz*v_1_t_2
+        # (ucu-rho2_2) squared amplitude
+        ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t
+        # (ucu-root_2) amplitude, with the sign of the branch
+        ucu_root_2 = ucu_branch_2*sqrt(ucu_rho2_2)
+        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ucu_root_2 = 1.0/ucu_root_2
+        ucu_c_2 = inv_ucu_root_2*ucu_root_1
+        # (ucu-s_2) sine of the angle of joint 2 from its reference direction
+        ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t
+        # (ucu-px_4) component along the reference direction
+        ucu_end_p1_r0_x = (
+        ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
+            R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
+            R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
+            ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
+            R_zz*ucu_base_frame_zx)
         )
-        axis_y_upru_axes4_in_base_y = (
-        axis_y_upru_axes4_r4_x*upru_base_frame_yx + axis_y_upru_axes4_r4_y*upru_base_frame_yy +
-            upru_base_frame_yz*v_1_t_2
+        ucu_end_p1_r0_y = (
+        ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
+            R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
+            R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
+            ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
+            R_zz*ucu_base_frame_zy)
         )
-        axis_y_upru_axes4_in_base_z = (
-        axis_y_upru_axes4_r4_x*upru_base_frame_zx + axis_y_upru_axes4_r4_y*upru_base_frame_zy +
-            upru_base_frame_zz*v_1_t_2
+        ucu_end_p1_r0_z = (
+        ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
+            R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
+            R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
+            ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
+            R_zz*ucu_base_frame_zz)
         )
-        axis_x_upru_axes4_x = (
-        axis_y_upru_axes4_in_base_y*axis_z_z - axis_y_upru_axes4_in_base_z*axis_z_y
+        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ucu_root_1 = 1.0/ucu_root_1
+        ucu_c_1 = inv_ucu_root_1*ucu_py_1
+        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
+        ucu_s_1 = inv_ucu_root_1*ucu_px_1
+        # (ucu-px_4) component along the reference direction
+        ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x
+        ucu_end_p1_r1_y = -ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1
+        ucu_end_p1_r3_x = ucu_end_p1_r0_z*ucu_s_2 - ucu_c_2*ucu_end_p1_r1_y
+        ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_end_p1_r1_y*ucu_s_2
+        # (ucu-rho2_4) squared amplitude
+        ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y
+        # (ucu-root_4) amplitude, with the sign of the branch
+        ucu_root_4 = ucu_branch_4*sqrt(ucu_rho2_4)
+        # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
+        inv_ucu_root_4 = 1.0/ucu_root_4
+        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y
+        # (ucu-s_4) sine of the angle of joint 4 from its reference direction
+        ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x
+        # (ucu-v_1) velocity of the connection point per rate of joint 1
+        ucu_v_1_t = ucu_c_2*ucu_c_4
+        ucu_v_1_t_2 = ucu_c_2*ucu_s_4
+        ucu_v_1_t_3 = ucu_root_2*ucu_v_1_t_2
+        ucu_v_1_t_4 = ucu_root_2*ucu_v_1_t
+        # (ucu-w_1) force part of reciprocal wrench 1
+        ucu_axis_z_x = inv_ucu_root_2*ucu_S_x
+        ucu_axis_z_y = inv_ucu_root_2*ucu_S_y
+        ucu_axis_z_z = inv_ucu_root_2*ucu_S_z
+        ucu_w_1_t = ucu_s_2*ucu_s_4
+        axis_y_ucu_axes4_r4_x = -ucu_c_1*ucu_c_4 - ucu_s_1*ucu_w_1_t
+        axis_y_ucu_axes4_r4_y = ucu_c_4*ucu_s_1 - ucu_c_1*ucu_w_1_t
+        axis_y_ucu_axes4_in_base_x = (
+        axis_y_ucu_axes4_r4_x*ucu_base_frame_xx + axis_y_ucu_axes4_r4_y*ucu_base_frame_xy +
+            ucu_base_frame_xz*ucu_v_1_t_2
         )
-        axis_x_upru_axes4_y = (
-        axis_y_upru_axes4_in_base_z*axis_z_x - axis_y_upru_axes4_in_base_x*axis_z_z
+        axis_y_ucu_axes4_in_base_y = (
+        axis_y_ucu_axes4_r4_x*ucu_base_frame_yx + axis_y_ucu_axes4_r4_y*ucu_base_frame_yy +
+            ucu_base_frame_yz*ucu_v_1_t_2
         )
-        axis_x_upru_axes4_z = (
-        axis_y_upru_axes4_in_base_x*axis_z_y - axis_y_upru_axes4_in_base_y*axis_z_x
+        axis_y_ucu_axes4_in_base_z = (
+        axis_y_ucu_axes4_r4_x*ucu_base_frame_zx + axis_y_ucu_axes4_r4_y*ucu_base_frame_zy +
+            ucu_base_frame_zz*ucu_v_1_t_2
         )
-        # (upru-V6) direction 1 of the moment that the platform joint transmits
-        end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4
-        end_p1_r5_y = c_4*end_p1_r1_x - end_p1_r3_y*s_4
-        # (upru-V3) velocity of the connection point per rate of joint 1
-        v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4
-        v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3
-        # (upru-V7) force part of reciprocal wrench 1
-        w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2
-        # (upru-V6) direction 1 of the moment that the platform joint transmits
-        n_m1_t = end_p1_r3_x*s_4
-        # (upru-V7) force part of reciprocal wrench 1
-        inv_v_1_r0_y = 1.0/v_1_r0_y
-        # (upru-V13) force part of reciprocal wrench 4
-        inv_end_p1_r5_x = 1.0/end_p1_r5_x
-        # (upru-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-        g_r3_x = g_r0_z*s_2 - c_2*g_r1_y
-        g_r3_y = -c_2*g_r0_z - g_r1_y*s_2
-        # (upru-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        # (upru-V19) rate at which the joints turn along moment direction 1
-        eta_1 = (
-        omega_x*(axis_x_upru_axes4_x*end_p1_r3_x - axis_z_x*end_p1_r5_x) +
-            omega_y*(axis_x_upru_axes4_y*end_p1_r3_x - axis_z_y*end_p1_r5_x) +
-            omega_z*(axis_x_upru_axes4_z*end_p1_r3_x - axis_z_z*end_p1_r5_x)
+        axis_x_ucu_axes4_x = (
+        axis_y_ucu_axes4_in_base_y*ucu_axis_z_z - axis_y_ucu_axes4_in_base_z*ucu_axis_z_y
         )
-        # (upru-V1) velocity of the connection point
-        S_dot_r0_x = (
-        S_dot_x*upru_base_frame_xx + S_dot_y*upru_base_frame_yx + S_dot_z*upru_base_frame_zx
+        axis_x_ucu_axes4_y = (
+        axis_y_ucu_axes4_in_base_z*ucu_axis_z_x - axis_y_ucu_axes4_in_base_x*ucu_axis_z_z
         )
-        S_dot_r0_y = (
-        S_dot_x*upru_base_frame_xy + S_dot_y*upru_base_frame_yy + S_dot_z*upru_base_frame_zy
+        axis_x_ucu_axes4_z = (
+        axis_y_ucu_axes4_in_base_x*ucu_axis_z_y - axis_y_ucu_axes4_in_base_y*ucu_axis_z_x
         )
-        S_dot_r0_z = (
-        S_dot_x*upru_base_frame_xz + S_dot_y*upru_base_frame_yz + S_dot_z*upru_base_frame_zz
+        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
+        ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4
+        ucu_end_p1_r5_y = ucu_c_4*ucu_end_p1_r1_x - ucu_end_p1_r3_y*ucu_s_4
+        # (ucu-v_1) velocity of the connection point per rate of joint 1
+        ucu_v_1_r0_x = ucu_c_4*ucu_v_1_t_3 - ucu_s_4*ucu_v_1_t_4
+        ucu_v_1_r0_y = ucu_c_4*ucu_v_1_t_4 + ucu_s_4*ucu_v_1_t_3
+        # (ucu-w_1) force part of reciprocal wrench 1
+        ucu_w_1_t_2 = ucu_end_p1_r3_x*ucu_v_1_t + ucu_end_p1_r5_x*ucu_s_2
+        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
+        ucu_n_m1_t = ucu_end_p1_r3_x*ucu_s_4
+        # (ucu-w_1) force part of reciprocal wrench 1
+        inv_ucu_v_1_r0_y = 1.0/ucu_v_1_r0_y
+        # (ucu-w_4) force part of reciprocal wrench 4
+        inv_ucu_end_p1_r5_x = 1.0/ucu_end_p1_r5_x
+        # (ucu-S_dot) velocity of the connection point
+        ucu_S_dot_t = omega_y*ucu_q_in_base_z - omega_z*ucu_q_in_base_y
+        ucu_S_dot_t_2 = omega_z*ucu_q_in_base_x - omega_x*ucu_q_in_base_z
+        ucu_S_dot_t_3 = omega_x*ucu_q_in_base_y - omega_y*ucu_q_in_base_x
+        ucu_S_dot_x = t_dot_x + ucu_S_dot_t
+        ucu_S_dot_y = t_dot_y + ucu_S_dot_t_2
+        ucu_S_dot_z = t_dot_z + ucu_S_dot_t_3
+        # (ucu-eta_1) rate at which the joints turn along moment direction 1
+        ucu_eta_1 = (
+        omega_x*(axis_x_ucu_axes4_x*ucu_end_p1_r3_x - ucu_axis_z_x*ucu_end_p1_r5_x) +
+            omega_y*(axis_x_ucu_axes4_y*ucu_end_p1_r3_x - ucu_axis_z_y*ucu_end_p1_r5_x) +
+            omega_z*(axis_x_ucu_axes4_z*ucu_end_p1_r3_x - ucu_axis_z_z*ucu_end_p1_r5_x)
         )
-        S_dot_r1_y = -S_dot_r0_x*s_1 - S_dot_r0_y*c_1
-        S_dot_r3_x = S_dot_r0_z*s_2 - S_dot_r1_y*c_2
-        # (upru-V20) rate of joint 1
-        qd_1_t = inv_v_1_r0_y*(S_dot_r0_y*s_1 - S_dot_r0_x*c_1)
-        qd_1_t_2 = inv_root_2*(-S_dot_r0_z*c_2 - S_dot_r1_y*s_2 - qd_1_t*v_1_r0_x)
-        qd_1_t_3 = inv_end_p1_r5_x*(eta_1 + qd_1_t*w_1_t_2 - n_m1_t*qd_1_t_2)
-        # (upru-V24) angular velocity of link 1
-        omega_1_t = qd_1_t*s_2
-        omega_1_t_2 = c_2*qd_1_t
-        # (upru-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_x = omega_1_t_2*qd_1_t_2
-        zeta_2_y = omega_1_t*qd_1_t_2
-        # (upru-V25) angular velocity of link 2
-        omega_2_r1_x = qd_1_t_2*s_4 - c_4*omega_1_t_2
-        omega_2_r1_y = c_4*qd_1_t_2 + omega_1_t_2*s_4
-        # (upru-A5) angular acceleration of link 4 from the turning of axis 4
-        zeta_4_x = omega_2_r1_y*qd_1_t_3
-        # (upru-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_t = c_4*zeta_2_y
-        # (upru-A6) angular acceleration of link 4 at zero joint accelerations
-        beta_4_x = -zeta_2_t - zeta_4_x
-        # (upru-V27) angular velocity of link 4
-        omega_4_z = omega_1_t - qd_1_t_3
-        # (upru-A10) rate of moment direction 1
-        omega_tip_x = (
-        axis_x_upru_axes4_x*omega_x + axis_x_upru_axes4_y*omega_y + axis_x_upru_axes4_z*omega_z
+        # (ucu-S_dot) velocity of the connection point
+        ucu_S_dot_r0_x = (
+        ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx +
+            ucu_S_dot_z*ucu_base_frame_zx
         )
-        omega_tip_y = (
-        axis_y_upru_axes4_in_base_x*omega_x + axis_y_upru_axes4_in_base_y*omega_y +
-            axis_y_upru_axes4_in_base_z*omega_z
+        ucu_S_dot_r0_y = (
+        ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy +
+            ucu_S_dot_z*ucu_base_frame_zy
         )
-        omega_tip_z = axis_z_x*omega_x + axis_z_y*omega_y + axis_z_z*omega_z
-        nd_m1_x = end_p1_r5_y*omega_tip_x - end_p1_r5_x*omega_tip_y - end_p1_r5_y*omega_2_r1_x
-        nd_m1_z = end_p1_r5_y*omega_tip_z - end_p1_r3_x*omega_tip_y - end_p1_r5_y*omega_4_z
-        # (upru-A11) bias of the angular acceleration along moment direction 1
-        nu_1_t = beta_4_x*end_p1_r3_x + end_p1_r5_x*zeta_2_x
-        nu_1_t_2 = (
-        nd_m1_x*(omega_2_r1_x - omega_tip_x) + nd_m1_z*(omega_4_z - omega_tip_z) + (omega_2_r1_y -
-            omega_tip_y)*(end_p1_r3_x*omega_4_z + end_p1_r5_x*omega_2_r1_x)
+        ucu_S_dot_r0_z = (
+        ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
+            ucu_S_dot_z*ucu_base_frame_zz
         )
-        nu_1 = -nu_1_t - nu_1_t_2
-        # (upru-V26) centripetal tensor of link 2
-        W_2_t = omega_1_t*omega_1_t
-        W_2_t_2 = omega_1_t_2*omega_1_t_2
-        W_2_t_3 = qd_1_t_2*qd_1_t_2
-        W_2_xy = omega_1_t*omega_1_t_2
-        W_2_t_4 = omega_2_r1_x*omega_2_r1_x
-        W_2_t_5 = omega_2_r1_y*omega_2_r1_y
-        W_2_xy_2 = omega_2_r1_x*omega_2_r1_y
-        # (upru-A7) acceleration of the connection point at zero joint accelerations
-        bias_t = 2.0*S_dot_r3_x
-        bias_x = bias_t*omega_2_r1_y + root_2*(omega_1_t*omega_2_r1_x + s_4*zeta_2_y)
-        bias_y = root_2*(zeta_2_t + omega_1_t*omega_2_r1_y) - bias_t*omega_2_r1_x
-        # (upru-A1) centripetal acceleration of the connection point
-        u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
-        u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y
-        u_1_tip_x = (
-        axis_x_upru_axes4_x*u_1_x + axis_x_upru_axes4_y*u_1_y + axis_x_upru_axes4_z*u_1_z
+        ucu_S_dot_r1_y = -ucu_S_dot_r0_x*ucu_s_1 - ucu_S_dot_r0_y*ucu_c_1
+        ucu_S_dot_r3_x = ucu_S_dot_r0_z*ucu_s_2 - ucu_S_dot_r1_y*ucu_c_2
+        # (ucu-qd_4) rate of joint 4
+        ucu_qd_4_t = inv_ucu_v_1_r0_y*(ucu_S_dot_r0_y*ucu_s_1 - ucu_S_dot_r0_x*ucu_c_1)
+        ucu_qd_4_t_2 = (
+        inv_ucu_root_2*(-ucu_S_dot_r0_z*ucu_c_2 - ucu_S_dot_r1_y*ucu_s_2 -
+            ucu_qd_4_t*ucu_v_1_r0_x)
         )
-        u_1_tip_y = (
-        axis_y_upru_axes4_in_base_x*u_1_x + axis_y_upru_axes4_in_base_y*u_1_y +
-            axis_y_upru_axes4_in_base_z*u_1_z
+        ucu_qd_4_t_3 = (
+        inv_ucu_end_p1_r5_x*(ucu_eta_1 + ucu_qd_4_t*ucu_w_1_t_2 - ucu_n_m1_t*ucu_qd_4_t_2)
         )
-        # (upru-A9) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_x = u_1_tip_x - bias_x
-        rel_o_y = u_1_tip_y - bias_y
-        # (upru-A14) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_o_t = inv_v_1_r0_y*(c_4*rel_o_y + rel_o_x*s_4)
-        qdd_1_o_t_2 = inv_root_2*(qdd_1_o_t*v_1_r0_x + rel_o_y*s_4 - c_4*rel_o_x)
-        # (upru-A21) remainder without the acceleration in: angular acceleration of link 1
-        alpha_1_o_t = qdd_1_o_t*s_2
-        alpha_1_o_t_2 = c_2*qdd_1_o_t
-        # (upru-A23) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_o_x = alpha_1_o_t - zeta_2_x
-        alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-        # (upru-A25) remainder of the acceleration tensor of link 2
-        B_2_o_xy = qdd_1_o_t_2 - W_2_xy
-        B_2_o_yx = -W_2_xy - qdd_1_o_t_2
-        B_2_o_zx = zeta_2_y - alpha_2_o_y
-        B_2_o_zy = alpha_2_o_x - zeta_2_x
-        # (upru-N30) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_o_x = (
-        B_2_o_yx*J_2_xy + B_2_o_zx*J_2_xz + B_2_o_zy*Sigma_2_yy + Sigma_2_zz*alpha_1_o_t +
-            g_r1_x*h_2_z + g_r3_y*h_2_y - J_2_yz*(W_2_t_2 - W_2_t_3)
+        # (ucu-omega_1) angular velocity of link 1
+        ucu_omega_1_t = ucu_qd_4_t*ucu_s_2
+        ucu_omega_1_t_2 = ucu_c_2*ucu_qd_4_t
+        # (ucu-omega_2) angular velocity of link 2
+        ucu_omega_2_r1_x = ucu_qd_4_t_2*ucu_s_4 - ucu_c_4*ucu_omega_1_t_2
+        ucu_omega_2_r1_y = ucu_c_4*ucu_qd_4_t_2 + ucu_omega_1_t_2*ucu_s_4
+        # (ucu-omega_4) angular velocity of link 4
+        ucu_omega_4_z = ucu_omega_1_t - ucu_qd_4_t_3
+        # (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4
+        ucu_zeta_4_x = ucu_omega_2_r1_y*ucu_qd_4_t_3
+        # (ucu-u_1) centripetal acceleration of the connection point
+        ucu_u_1_x = omega_y*ucu_S_dot_t_3 - omega_z*ucu_S_dot_t_2
+        ucu_u_1_y = omega_z*ucu_S_dot_t - omega_x*ucu_S_dot_t_3
+        ucu_u_1_z = omega_x*ucu_S_dot_t_2 - omega_y*ucu_S_dot_t
+        # (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        ucu_zeta_2_x = ucu_omega_1_t_2*ucu_qd_4_t_2
+        ucu_zeta_2_y = ucu_omega_1_t*ucu_qd_4_t_2
+        # (ucu-W_2) centripetal tensor of link 2
+        ucu_W_2_t = ucu_omega_1_t*ucu_omega_1_t
+        ucu_W_2_t_2 = ucu_omega_1_t_2*ucu_omega_1_t_2
+        ucu_W_2_t_3 = ucu_qd_4_t_2*ucu_qd_4_t_2
+        ucu_W_2_xy = ucu_omega_1_t*ucu_omega_1_t_2
+        # (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        ucu_zeta_2_t = ucu_c_4*ucu_zeta_2_y
+        # (ucu-W_2) centripetal tensor of link 2
+        ucu_W_2_t_4 = ucu_omega_2_r1_x*ucu_omega_2_r1_x
+        ucu_W_2_t_5 = ucu_omega_2_r1_y*ucu_omega_2_r1_y
+        ucu_W_2_xy_2 = ucu_omega_2_r1_x*ucu_omega_2_r1_y
+        # (ucu-bias) acceleration of the connection point at zero joint accelerations
+        ucu_bias_t = 2.0*ucu_S_dot_r3_x
+        ucu_bias_x = (
+        ucu_bias_t*ucu_omega_2_r1_y + ucu_root_2*(ucu_omega_1_t*ucu_omega_2_r1_x +
+            ucu_s_4*ucu_zeta_2_y)
         )
-        mu_2_o_y = (
-        B_2_o_xy*J_2_yz + g_r1_x*h_2_x - B_2_o_zx*Sigma_2_xx - B_2_o_zy*J_2_xz - J_2_xy*(W_2_t -
-            W_2_t_3) - Sigma_2_zz*alpha_1_o_t_2 - g_r3_x*h_2_y
+        ucu_bias_y = (
+        ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_t*ucu_omega_2_r1_y) - ucu_bias_t*ucu_omega_2_r1_x
         )
-        mu_2_o_z = (
-        B_2_o_yx*Sigma_2_xx + J_2_xy*alpha_1_o_t + J_2_yz*alpha_1_o_t_2 - B_2_o_xy*Sigma_2_yy -
-            J_2_xz*(W_2_t - W_2_t_2) - g_r3_x*h_2_z - g_r3_y*h_2_x
+        # (ucu-u_1) centripetal acceleration of the connection point
+        ucu_u_1_tip_x = (
+        axis_x_ucu_axes4_x*ucu_u_1_x + axis_x_ucu_axes4_y*ucu_u_1_y + axis_x_ucu_axes4_z*ucu_u_1_z
         )
-        # (upru-N4) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
-        acc_4_o_x = u_1_tip_x - c_4*g_r3_y - g_r1_x*s_4
-        acc_4_o_y = u_1_tip_y + g_r3_y*s_4 - c_4*g_r1_x
-        acc_4_o_z = axis_z_x*u_1_x + axis_z_y*u_1_y + axis_z_z*u_1_z - g_r3_x
-        # (upru-A29) remainder without the acceleration in: angular acceleration of link 4
-        alpha_4_o_x = alpha_2_o_y*c_4 - zeta_4_x - qdd_1_o_t_2*s_4
-        alpha_4_o_y = omega_2_r1_x*qd_1_t_3 - alpha_2_o_y*s_4 - c_4*qdd_1_o_t_2
-        alpha_4_o_z = (
-        alpha_2_o_x - inv_end_p1_r5_x*(nu_1 + n_m1_t*qdd_1_o_t_2 + qdd_1_o_t*w_1_t_2)
+        ucu_u_1_tip_y = (
+        axis_y_ucu_axes4_in_base_x*ucu_u_1_x + axis_y_ucu_axes4_in_base_y*ucu_u_1_y +
+            axis_y_ucu_axes4_in_base_z*ucu_u_1_z
         )
-        # (upru-V28) centripetal tensor of link 4
-        W_4_t = omega_4_z*omega_4_z
-        W_4_xz = omega_2_r1_x*omega_4_z
-        W_4_yz = omega_2_r1_y*omega_4_z
-        # (upru-A31) remainder of the acceleration tensor of link 4
-        B_4_o_xy = W_2_xy_2 - alpha_4_o_z
-        B_4_o_xz = W_4_xz + alpha_4_o_y
-        B_4_o_yx = W_2_xy_2 + alpha_4_o_z
-        B_4_o_yz = W_4_yz - alpha_4_o_x
-        B_4_o_zx = W_4_xz - alpha_4_o_y
-        B_4_o_zy = W_4_yz + alpha_4_o_x
-        # (upru-N22) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
-        mu_4_o_x = (
-        B_4_o_yx*J_4_xy + B_4_o_zy*Sigma_4_yy + J_4_xz*(W_2_t_5 - W_4_t) + acc_4_o_z*h_4_z -
-            B_4_o_yz*Sigma_4_zz - B_4_o_zx*J_4_yz - acc_4_o_y*h_4_x
+        # (ucu-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        ucu_rel_o_x = ucu_u_1_tip_x - ucu_bias_x
+        ucu_rel_o_y = ucu_u_1_tip_y - ucu_bias_y
+        # (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations
+        ucu_beta_4_x = -ucu_zeta_2_t - ucu_zeta_4_x
+        # (ucu-nd_m1) rate of moment direction 1
+        ucu_omega_tip_x = (
+        axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y + axis_x_ucu_axes4_z*omega_z
         )
-        mu_4_o_y = (
-        B_4_o_xz*Sigma_4_zz + B_4_o_zy*J_4_yz + acc_4_o_x*h_4_x - B_4_o_xy*J_4_xz -
-            B_4_o_zx*Sigma_4_xx - J_4_xy*(W_2_t_4 - W_4_t) - acc_4_o_z*h_4_y
+        ucu_omega_tip_y = (
+        axis_y_ucu_axes4_in_base_x*omega_x + axis_y_ucu_axes4_in_base_y*omega_y +
+            axis_y_ucu_axes4_in_base_z*omega_z
         )
-        mu_4_o_z = (
-        B_4_o_xz*J_4_xz + B_4_o_yx*Sigma_4_xx + J_4_yz*(W_2_t_4 - W_2_t_5) + acc_4_o_y*h_4_y -
-            B_4_o_xy*Sigma_4_yy - B_4_o_yz*J_4_xy - acc_4_o_x*h_4_z
+        ucu_omega_tip_z = omega_x*ucu_axis_z_x + omega_y*ucu_axis_z_y + omega_z*ucu_axis_z_z
+        ucu_nd_m1_x = (
+        ucu_end_p1_r5_y*ucu_omega_tip_x - ucu_end_p1_r5_x*ucu_omega_tip_y -
+            ucu_end_p1_r5_y*ucu_omega_2_r1_x
         )
-        # (upru-N32) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_o_x = mu_2_o_x + mu_4_o_z
-        N_2_o_y = mu_2_o_y + c_4*mu_4_o_x - mu_4_o_y*s_4
-        N_2_o_z = mu_2_o_z + c_4*mu_4_o_y + mu_4_o_x*s_4
-        # (upru-N44) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_o_t = inv_end_p1_r5_x*mu_4_o_z
-        G_o_t_2 = inv_root_2*(N_2_o_z + G_o_t*n_m1_t)
-        G_o_t_3 = inv_v_1_r0_y*(G_o_t*w_1_t_2 + G_o_t_2*v_1_r0_x + N_2_o_y*c_2 - N_2_o_x*s_2)
-        # (upru-N8) remainder without the acceleration in: inertia force of link 4 from its turning about its reference point
-        phi_4_o_z = B_4_o_zx*h_4_y + B_4_o_zy*h_4_z - h_4_x*(W_2_t_4 + W_2_t_5)
-        # (upru-N56) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_o_x = (
-        G_o_t_3*s_4 + h_4_y*(W_2_t_5 + W_4_t) - B_4_o_xy*h_4_z - B_4_o_xz*h_4_x - G_o_t_2*c_4
+        ucu_nd_m1_z = (
+        ucu_end_p1_r5_y*ucu_omega_tip_z - ucu_end_p1_r3_x*ucu_omega_tip_y -
+            ucu_end_p1_r5_y*ucu_omega_4_z
         )
-        c_o_y = (
-        G_o_t_2*s_4 + G_o_t_3*c_4 + h_4_z*(W_2_t_4 + W_4_t) - B_4_o_yx*h_4_y - B_4_o_yz*h_4_x
+        # (ucu-nu_1) bias of the angular acceleration along moment direction 1
+        ucu_nu_1_t = ucu_beta_4_x*ucu_end_p1_r3_x + ucu_end_p1_r5_x*ucu_zeta_2_x
+        ucu_nu_1_t_2 = (
+        ucu_nd_m1_x*(ucu_omega_2_r1_x - ucu_omega_tip_x) + ucu_nd_m1_z*(ucu_omega_4_z -
+            ucu_omega_tip_z) + (ucu_omega_2_r1_y - ucu_omega_tip_y)*(ucu_end_p1_r3_x*ucu_omega_4_z
+            + ucu_end_p1_r5_x*ucu_omega_2_r1_x)
         )
-        # (upru-N62) velocity and gravity terms of the leg force
-        U_in_base_x = (
-        axis_z_x*phi_4_o_z - axis_x_upru_axes4_x*c_o_x - axis_y_upru_axes4_in_base_x*c_o_y
+        ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2
+        # (ucu-qdd_4_o) remainder without the acceleration in: acceleration of joint 4
+        ucu_qdd_4_o_t = inv_ucu_v_1_r0_y*(ucu_c_4*ucu_rel_o_y + ucu_rel_o_x*ucu_s_4)
+        ucu_qdd_4_o_t_2 = (
+        inv_ucu_root_2*(ucu_qdd_4_o_t*ucu_v_1_r0_x + ucu_rel_o_y*ucu_s_4 - ucu_c_4*ucu_rel_o_x)
         )
-        U_in_base_y = (
-        axis_z_y*phi_4_o_z - axis_x_upru_axes4_y*c_o_x - axis_y_upru_axes4_in_base_y*c_o_y
+        # (ucu-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        ucu_alpha_1_o_t = ucu_qdd_4_o_t*ucu_s_2
+        ucu_alpha_1_o_t_2 = ucu_c_2*ucu_qdd_4_o_t
+        # (ucu-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        ucu_alpha_2_o_x = ucu_alpha_1_o_t - ucu_zeta_2_x
+        ucu_alpha_2_o_y = -ucu_alpha_1_o_t_2 - ucu_zeta_2_y
+        # (ucu-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4
+        ucu_alpha_4_o_x = ucu_alpha_2_o_y*ucu_c_4 - ucu_zeta_4_x - ucu_qdd_4_o_t_2*ucu_s_4
+        ucu_alpha_4_o_y = (
+        ucu_omega_2_r1_x*ucu_qd_4_t_3 - ucu_alpha_2_o_y*ucu_s_4 - ucu_c_4*ucu_qdd_4_o_t_2
         )
-        U_in_base_z = (
-        axis_z_z*phi_4_o_z - axis_x_upru_axes4_z*c_o_x - axis_y_upru_axes4_in_base_z*c_o_y
+        ucu_alpha_4_o_z = (
+        ucu_alpha_2_o_x - inv_ucu_end_p1_r5_x*(ucu_nu_1 + ucu_n_m1_t*ucu_qdd_4_o_t_2 +
+            ucu_qdd_4_o_t*ucu_w_1_t_2)
         )
-        # (upru-N52) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        G_m_o_x = G_o_t*end_p1_r3_x
-        # (M7) rotational part of Z
-        Z_a_t = (
-        U_in_base_z*q_in_base_y + axis_z_x*mu_4_o_z - G_m_o_x*axis_x_upru_axes4_x -
-            U_in_base_y*q_in_base_z
+        # (ucu-W_4) centripetal tensor of link 4
+        ucu_W_4_t = ucu_omega_4_z*ucu_omega_4_z
+        ucu_W_4_xz = ucu_omega_2_r1_x*ucu_omega_4_z
+        ucu_W_4_yz = ucu_omega_2_r1_y*ucu_omega_4_z
+        # (ucu-B_4_o) remainder of the acceleration tensor of link 4
+        ucu_B_4_o_xy = ucu_W_2_xy_2 - ucu_alpha_4_o_z
+        ucu_B_4_o_xz = ucu_W_4_xz + ucu_alpha_4_o_y
+        ucu_B_4_o_yx = ucu_W_2_xy_2 + ucu_alpha_4_o_z
+        ucu_B_4_o_yz = ucu_W_4_yz - ucu_alpha_4_o_x
+        ucu_B_4_o_zx = ucu_W_4_xz - ucu_alpha_4_o_y
+        ucu_B_4_o_zy = ucu_W_4_yz + ucu_alpha_4_o_x
+        # (ucu-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning about its reference point
+        ucu_phi_4_o_z = (
+        ucu_B_4_o_zx*ucu_h_4_y + ucu_B_4_o_zy*ucu_h_4_z - ucu_h_4_x*(ucu_W_2_t_4 + ucu_W_2_t_5)
         )
-        Z_a_t_2 = (
-        U_in_base_x*q_in_base_z + axis_z_y*mu_4_o_z - G_m_o_x*axis_x_upru_axes4_y -
-            U_in_base_z*q_in_base_x
+        # (ucu-acc_4_o) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+        ucu_acc_4_o_x = (
+        ucu_u_1_tip_x - axis_x_ucu_axes4_x*gravity_x - axis_x_ucu_axes4_y*gravity_y -
+            axis_x_ucu_axes4_z*gravity_z
         )
-        Z_a_t_3 = (
-        U_in_base_y*q_in_base_x + axis_z_z*mu_4_o_z - G_m_o_x*axis_x_upru_axes4_z -
-            U_in_base_x*q_in_base_y
+        ucu_acc_4_o_y = (
+        ucu_u_1_tip_y - axis_y_ucu_axes4_in_base_x*gravity_x -
+            axis_y_ucu_axes4_in_base_y*gravity_y - axis_y_ucu_axes4_in_base_z*gravity_z
+        )
+        ucu_acc_4_o_z = (
+        ucu_axis_z_x*ucu_u_1_x + ucu_axis_z_y*ucu_u_1_y + ucu_axis_z_z*ucu_u_1_z -
+            gravity_x*ucu_axis_z_x - gravity_y*ucu_axis_z_y - gravity_z*ucu_axis_z_z
+        )
+        # (ucu-mu_4_o) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
+        ucu_mu_4_o_x = (
+        ucu_B_4_o_yx*ucu_J_4_xy + ucu_B_4_o_zy*ucu_Sigma_4_yy + ucu_J_4_xz*(ucu_W_2_t_5 -
+            ucu_W_4_t) + ucu_acc_4_o_z*ucu_h_4_z - ucu_B_4_o_yz*ucu_Sigma_4_zz -
+            ucu_B_4_o_zx*ucu_J_4_yz - ucu_acc_4_o_y*ucu_h_4_x
+        )
+        ucu_mu_4_o_y = (
+        ucu_B_4_o_xz*ucu_Sigma_4_zz + ucu_B_4_o_zy*ucu_J_4_yz + ucu_acc_4_o_x*ucu_h_4_x -
+            ucu_B_4_o_xy*ucu_J_4_xz - ucu_B_4_o_zx*ucu_Sigma_4_xx - ucu_J_4_xy*(ucu_W_2_t_4 -
+            ucu_W_4_t) - ucu_acc_4_o_z*ucu_h_4_y
+        )
+        ucu_mu_4_o_z = (
+        ucu_B_4_o_xz*ucu_J_4_xz + ucu_B_4_o_yx*ucu_Sigma_4_xx + ucu_J_4_yz*(ucu_W_2_t_4 -
+            ucu_W_2_t_5) + ucu_acc_4_o_y*ucu_h_4_y - ucu_B_4_o_xy*ucu_Sigma_4_yy -
+            ucu_B_4_o_yz*ucu_J_4_xy - ucu_acc_4_o_x*ucu_h_4_z
+        )
+        # (ucu-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        ucu_g_r1_x = ucu_g_r0_y*ucu_s_1 - ucu_c_1*ucu_g_r0_x
+        ucu_g_r1_y = -ucu_c_1*ucu_g_r0_y - ucu_g_r0_x*ucu_s_1
+        ucu_g_r3_x = ucu_g_r0_z*ucu_s_2 - ucu_c_2*ucu_g_r1_y
+        ucu_g_r3_y = -ucu_c_2*ucu_g_r0_z - ucu_g_r1_y*ucu_s_2
+        # (ucu-B_2_o) remainder of the acceleration tensor of link 2
+        ucu_B_2_o_xy = ucu_qdd_4_o_t_2 - ucu_W_2_xy
+        ucu_B_2_o_yx = -ucu_W_2_xy - ucu_qdd_4_o_t_2
+        ucu_B_2_o_zx = ucu_zeta_2_y - ucu_alpha_2_o_y
+        ucu_B_2_o_zy = ucu_alpha_2_o_x - ucu_zeta_2_x
+        # (ucu-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        ucu_mu_2_o_x = (
+        ucu_B_2_o_yx*ucu_J_2_xy + ucu_B_2_o_zx*ucu_J_2_xz + ucu_B_2_o_zy*ucu_Sigma_2_yy +
+            ucu_Sigma_2_zz*ucu_alpha_1_o_t + ucu_g_r1_x*ucu_h_2_z + ucu_g_r3_y*ucu_h_2_y -
+            ucu_J_2_yz*(ucu_W_2_t_2 - ucu_W_2_t_3)
+        )
+        ucu_mu_2_o_y = (
+        ucu_B_2_o_xy*ucu_J_2_yz + ucu_g_r1_x*ucu_h_2_x - ucu_B_2_o_zx*ucu_Sigma_2_xx -
+            ucu_B_2_o_zy*ucu_J_2_xz - ucu_J_2_xy*(ucu_W_2_t - ucu_W_2_t_3) -
+            ucu_Sigma_2_zz*ucu_alpha_1_o_t_2 - ucu_g_r3_x*ucu_h_2_y
+        )
+        ucu_mu_2_o_z = (
+        ucu_B_2_o_yx*ucu_Sigma_2_xx + ucu_J_2_xy*ucu_alpha_1_o_t + ucu_J_2_yz*ucu_alpha_1_o_t_2 -
+            ucu_B_2_o_xy*ucu_Sigma_2_yy - ucu_J_2_xz*(ucu_W_2_t - ucu_W_2_t_2) -
+            ucu_g_r3_x*ucu_h_2_z - ucu_g_r3_y*ucu_h_2_x
+        )
+        # (ucu-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        ucu_N_2_o_x = ucu_mu_2_o_x + ucu_mu_4_o_z
+        ucu_N_2_o_y = ucu_mu_2_o_y + ucu_c_4*ucu_mu_4_o_x - ucu_mu_4_o_y*ucu_s_4
+        ucu_N_2_o_z = ucu_mu_2_o_z + ucu_c_4*ucu_mu_4_o_y + ucu_mu_4_o_x*ucu_s_4
+        # (ucu-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        ucu_G_o_t = inv_ucu_end_p1_r5_x*ucu_mu_4_o_z
+        ucu_G_o_t_2 = inv_ucu_root_2*(ucu_N_2_o_z + ucu_G_o_t*ucu_n_m1_t)
+        ucu_G_o_t_3 = (
+        inv_ucu_v_1_r0_y*(ucu_G_o_t*ucu_w_1_t_2 + ucu_G_o_t_2*ucu_v_1_r0_x + ucu_N_2_o_y*ucu_c_2 -
+            ucu_N_2_o_x*ucu_s_2)
+        )
+        # (ucu-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        ucu_c_o_x = (
+        ucu_G_o_t_3*ucu_s_4 + ucu_h_4_y*(ucu_W_2_t_5 + ucu_W_4_t) - ucu_B_4_o_xy*ucu_h_4_z -
+            ucu_B_4_o_xz*ucu_h_4_x - ucu_G_o_t_2*ucu_c_4
+        )
+        ucu_c_o_y = (
+        ucu_G_o_t_2*ucu_s_4 + ucu_G_o_t_3*ucu_c_4 + ucu_h_4_z*(ucu_W_2_t_4 + ucu_W_4_t) -
+            ucu_B_4_o_yx*ucu_h_4_y - ucu_B_4_o_yz*ucu_h_4_x
+        )
+        # (ucu-U) velocity and gravity terms of the leg force
+        ucu_U_in_base_x = (
+        ucu_axis_z_x*ucu_phi_4_o_z - axis_x_ucu_axes4_x*ucu_c_o_x -
+            axis_y_ucu_axes4_in_base_x*ucu_c_o_y
+        )
+        ucu_U_in_base_y = (
+        ucu_axis_z_y*ucu_phi_4_o_z - axis_x_ucu_axes4_y*ucu_c_o_x -
+            axis_y_ucu_axes4_in_base_y*ucu_c_o_y
+        )
+        ucu_U_in_base_z = (
+        ucu_axis_z_z*ucu_phi_4_o_z - axis_x_ucu_axes4_z*ucu_c_o_x -
+            axis_y_ucu_axes4_in_base_z*ucu_c_o_y
+        )
+        # (ucu-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        ucu_G_m_o_x = ucu_G_o_t*ucu_end_p1_r3_x
+        # (Z_a) rotational part of Z
+        ucu_Z_a_t = (
+        ucu_U_in_base_z*ucu_q_in_base_y + ucu_axis_z_x*ucu_mu_4_o_z -
+            axis_x_ucu_axes4_x*ucu_G_m_o_x - ucu_U_in_base_y*ucu_q_in_base_z
+        )
+        ucu_Z_a_t_2 = (
+        ucu_U_in_base_x*ucu_q_in_base_z + ucu_axis_z_y*ucu_mu_4_o_z -
+            axis_x_ucu_axes4_y*ucu_G_m_o_x - ucu_U_in_base_z*ucu_q_in_base_x
+        )
+        ucu_Z_a_t_3 = (
+        ucu_U_in_base_y*ucu_q_in_base_x + ucu_axis_z_z*ucu_mu_4_o_z -
+            axis_x_ucu_axes4_z*ucu_G_m_o_x - ucu_U_in_base_x*ucu_q_in_base_y
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_4) >
-            _TOLERANCE * _TOLERANCE * 1.0) & (abs(-end_p1_r5_x) > _TOLERANCE * 1.0) & (abs(root_2)
-            > _TOLERANCE * 0.8) & (abs(v_1_r0_y) > _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(ucu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ucu_rho2_4) >
+            _TOLERANCE * _TOLERANCE * 1.0) & (abs(-ucu_end_p1_r5_x) > _TOLERANCE * 1.0) &
+            (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_r0_y) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
-        U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
+        ucu_U_in_base_x, ucu_U_in_base_y, ucu_U_in_base_z, ucu_Z_a_t, ucu_Z_a_t_2,
+            ucu_Z_a_t_3,
         ))
-    (
-    total_upru_x, total_upru_y, total_upru_z, total_upru_x_2, total_upru_y_2, total_upru_z_2,
-    ) = sums
-    # (M5) translational part of Z
-    Z_t_x = Z_p_x + total_upru_x
-    Z_t_y = Z_p_y + total_upru_y
-    Z_t_z = Z_p_z + total_upru_z
-    # (M7) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_upru_x_2
-    Z_a_y = Z_q_in_base_y + total_upru_y_2
-    Z_a_z = Z_q_in_base_z + total_upru_z_2
+    total_ucu_x, total_ucu_y, total_ucu_z, total_ucu_x_2, total_ucu_y_2, total_ucu_z_2 = sums
+    # (Z_t) translational part of Z
+    Z_t_x = Z_p_x + total_ucu_x
+    Z_t_y = Z_p_y + total_ucu_y
+    Z_t_z = Z_p_z + total_ucu_z
+    # (Z_a) rotational part of Z
+    Z_a_x = Z_q_in_base_x + total_ucu_x_2
+    Z_a_y = Z_q_in_base_y + total_ucu_y_2
+    Z_a_z = Z_q_in_base_z + total_ucu_z_2
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
@@ -3023,57 +3308,63 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        branch_2, upru_base_frame_xx, upru_base_frame_xy, upru_base_frame_xz, upru_base_frame_yx,
-            upru_base_frame_yy, upru_base_frame_yz, upru_base_frame_zx, upru_base_frame_zy,
-            upru_base_frame_zz, upru_base_point_x, upru_base_point_y, upru_base_point_z,
-            upru_platform_point_x, upru_platform_point_y, upru_platform_point_z,
+        ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx,
+            ucu_base_frame_yy, ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy,
+            ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y, ucu_base_point_z, ucu_branch_2,
+            ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
         ) = k
-        # (upru-K1) from the base point to the connection point
-        q_in_base_x = (
-        R_xx*upru_platform_point_x + R_xy*upru_platform_point_y + R_xz*upru_platform_point_z
+        # (ucu-S) from the base point to the connection point
+        ucu_q_in_base_x = (
+        R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
-        q_in_base_y = (
-        R_yx*upru_platform_point_x + R_yy*upru_platform_point_y + R_yz*upru_platform_point_z
+        ucu_q_in_base_y = (
+        R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y + R_yz*ucu_platform_point_z
         )
-        q_in_base_z = (
-        R_zx*upru_platform_point_x + R_zy*upru_platform_point_y + R_zz*upru_platform_point_z
+        ucu_q_in_base_z = (
+        R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        S_x = q_in_base_x + t_x - upru_base_point_x
-        S_y = q_in_base_y + t_y - upru_base_point_y
-        S_z = q_in_base_z + t_z - upru_base_point_z
-        # (upru-K2) component along the reference direction
-        px_1 = S_x*upru_base_frame_xx + S_y*upru_base_frame_yx + S_z*upru_base_frame_zx
-        # (upru-K3) component across the reference direction
-        py_1 = S_x*upru_base_frame_xy + S_y*upru_base_frame_yy + S_z*upru_base_frame_zy
-        # (upru-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (upru-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*upru_base_frame_xz + S_y*upru_base_frame_yz + S_z*upru_base_frame_zz
-        # (upru-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (upru-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (upru-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        # (upru-V7) force part of reciprocal wrench 1
-        axis_z_x = S_x*inv_root_2
-        axis_z_y = S_y*inv_root_2
-        axis_z_z = S_z*inv_root_2
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_3_t = axis_z_z*q_in_base_y - axis_z_y*q_in_base_z
-        H_a_3_t_2 = axis_z_x*q_in_base_z - axis_z_z*q_in_base_x
-        H_a_3_t_3 = axis_z_y*q_in_base_x - axis_z_x*q_in_base_y
+        ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x
+        ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y
+        ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z
+        # (ucu-px_1) component along the reference direction
+        ucu_px_1 = (
+        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
+        )
+        # (ucu-py_1) component across the reference direction
+        ucu_py_1 = (
+        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
+        )
+        # (ucu-rho2_1) squared amplitude
+        ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1
+        # (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ucu_xi_1_t = (
+        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
+        )
+        # (ucu-rho2_2) squared amplitude
+        ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t
+        # (ucu-root_2) amplitude, with the sign of the branch
+        ucu_root_2 = ucu_branch_2*sqrt(ucu_rho2_2)
+        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ucu_root_2 = 1.0/ucu_root_2
+        # (ucu-w_1) force part of reciprocal wrench 1
+        ucu_axis_z_x = inv_ucu_root_2*ucu_S_x
+        ucu_axis_z_y = inv_ucu_root_2*ucu_S_y
+        ucu_axis_z_z = inv_ucu_root_2*ucu_S_z
+        # (ucu-H_a_3) moment of the column's unit force about the platform origin
+        ucu_H_a_3_t = ucu_axis_z_z*ucu_q_in_base_y - ucu_axis_z_y*ucu_q_in_base_z
+        ucu_H_a_3_t_2 = ucu_axis_z_x*ucu_q_in_base_z - ucu_axis_z_z*ucu_q_in_base_x
+        ucu_H_a_3_t_3 = ucu_axis_z_y*ucu_q_in_base_x - ucu_axis_z_x*ucu_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_2) >
+        ok & m.every(leg, (abs(ucu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ucu_root_2) >
             _TOLERANCE * 0.8))
         )
-        out_H[_H_upru[0][leg]] = axis_z_x
-        out_H[_H_upru[1][leg]] = axis_z_y
-        out_H[_H_upru[2][leg]] = axis_z_z
-        out_H[_H_upru[3][leg]] = H_a_3_t
-        out_H[_H_upru[4][leg]] = H_a_3_t_2
-        out_H[_H_upru[5][leg]] = H_a_3_t_3
+        out_H[_H_ucu[0][leg]] = ucu_axis_z_x
+        out_H[_H_ucu[1][leg]] = ucu_axis_z_y
+        out_H[_H_ucu[2][leg]] = ucu_axis_z_z
+        out_H[_H_ucu[3][leg]] = ucu_H_a_3_t
+        out_H[_H_ucu[4][leg]] = ucu_H_a_3_t_2
+        out_H[_H_ucu[5][leg]] = ucu_H_a_3_t_3
     return ok, (out_H,)
 
 
@@ -3149,29 +3440,29 @@ def _run_required(m, X, V, A):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (P1) centripetal tensor of the platform
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_x*omega_x
     W_p_t_2 = omega_y*omega_y
     W_p_t_3 = omega_z*omega_z
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
     W_p_yz = omega_y*omega_z
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
-    # (E2) inertia force of the platform less its weight
+    # (f_p) inertia force of the platform less its weight
     f_p_x = (
     a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) + h_star_in_base_z*(W_p_xz + alpha_y) -
         h_star_in_base_x*(W_p_t_2 + W_p_t_3)
@@ -3184,11 +3475,11 @@ def _run_required(m, X, V, A):
     a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) + h_star_in_base_y*(W_p_yz + alpha_x) -
         h_star_in_base_z*(W_p_t + W_p_t_2)
     )
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
     a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
     a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
-    # (E3) inertia moment of the platform less that of its weight
+    # (mu_p) inertia moment of the platform less that of its weight
     alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
     alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
     alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
@@ -3210,372 +3501,425 @@ def _run_required(m, X, V, A):
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_2_xy, J_2_xz, J_2_yz, J_4_xy, J_4_xz, J_4_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz,
-            Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, branch_1, branch_2, branch_4, g_r0_x, g_r0_y,
-            g_r0_z, h_2_x, h_2_y, h_2_z, h_4_x, h_4_y, h_4_z, upru_base_frame_xx,
-            upru_base_frame_xy, upru_base_frame_xz, upru_base_frame_yx, upru_base_frame_yy,
-            upru_base_frame_yz, upru_base_frame_zx, upru_base_frame_zy, upru_base_frame_zz,
-            upru_base_point_x, upru_base_point_y, upru_base_point_z,
-            upru_platform_joint_axis_platform_x, upru_platform_joint_axis_platform_y,
-            upru_platform_joint_axis_platform_z, upru_platform_point_x, upru_platform_point_y,
-            upru_platform_point_z,
+        ucu_J_2_xy, ucu_J_2_xz, ucu_J_2_yz, ucu_J_4_xy, ucu_J_4_xz, ucu_J_4_yz, ucu_Sigma_2_xx,
+            ucu_Sigma_2_yy, ucu_Sigma_2_zz, ucu_Sigma_4_xx, ucu_Sigma_4_yy, ucu_Sigma_4_zz,
+            ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx,
+            ucu_base_frame_yy, ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy,
+            ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y, ucu_base_point_z, ucu_branch_1,
+            ucu_branch_2, ucu_branch_4, ucu_g_r0_x, ucu_g_r0_y, ucu_g_r0_z, ucu_h_2_x, ucu_h_2_y,
+            ucu_h_2_z, ucu_h_4_x, ucu_h_4_y, ucu_h_4_z, ucu_platform_joint_axis_platform_x,
+            ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
+            ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
         ) = k
-        # (upru-K1) from the base point to the connection point
-        q_in_base_x = (
-        R_xx*upru_platform_point_x + R_xy*upru_platform_point_y + R_xz*upru_platform_point_z
+        # (ucu-S) from the base point to the connection point
+        ucu_q_in_base_x = (
+        R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
-        q_in_base_y = (
-        R_yx*upru_platform_point_x + R_yy*upru_platform_point_y + R_yz*upru_platform_point_z
+        ucu_q_in_base_y = (
+        R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y + R_yz*ucu_platform_point_z
         )
-        q_in_base_z = (
-        R_zx*upru_platform_point_x + R_zy*upru_platform_point_y + R_zz*upru_platform_point_z
+        ucu_q_in_base_z = (
+        R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        S_x = q_in_base_x + t_x - upru_base_point_x
-        S_y = q_in_base_y + t_y - upru_base_point_y
-        S_z = q_in_base_z + t_z - upru_base_point_z
-        # (upru-K2) component along the reference direction
-        px_1 = S_x*upru_base_frame_xx + S_y*upru_base_frame_yx + S_z*upru_base_frame_zx
-        # (upru-K3) component across the reference direction
-        py_1 = S_x*upru_base_frame_xy + S_y*upru_base_frame_yy + S_z*upru_base_frame_zy
-        # (upru-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (upru-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (upru-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*upru_base_frame_xz + S_y*upru_base_frame_yz + S_z*upru_base_frame_zz
-        # (upru-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (upru-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (upru-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (upru-K16) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (upru-K20) component along the reference direction
-        end_p1_r0_x = (
-        upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xx + R_yx*upru_base_frame_yx +
-            R_zx*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xx + R_yy*upru_base_frame_yx
-            + R_zy*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xx + R_yz*upru_base_frame_yx
-            + R_zz*upru_base_frame_zx)
+        ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x
+        ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y
+        ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z
+        # (ucu-px_1) component along the reference direction
+        ucu_px_1 = (
+        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
         )
-        end_p1_r0_y = (
-        upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xy + R_yx*upru_base_frame_yy +
-            R_zx*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xy + R_yy*upru_base_frame_yy
-            + R_zy*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xy + R_yz*upru_base_frame_yy
-            + R_zz*upru_base_frame_zy)
+        # (ucu-py_1) component across the reference direction
+        ucu_py_1 = (
+        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
         )
-        end_p1_r0_z = (
-        upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xz + R_yx*upru_base_frame_yz +
-            R_zx*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xz + R_yy*upru_base_frame_yz
-            + R_zy*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xz + R_yz*upru_base_frame_yz
-            + R_zz*upru_base_frame_zz)
+        # (ucu-rho2_1) squared amplitude
+        ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1
+        # (ucu-root_1) amplitude, with the sign of the branch
+        ucu_root_1 = ucu_branch_1*sqrt(ucu_rho2_1)
+        # (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ucu_xi_1_t = (
+        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
         )
-        # (upru-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (upru-K7) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (upru-K20) component along the reference direction
-        end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x
-        end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1
-        end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
-        end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
-        # (upru-K23) squared amplitude
-        rho2_4 = end_p1_r1_x*end_p1_r1_x + end_p1_r3_y*end_p1_r3_y
-        # (upru-K24) amplitude, with the sign of the branch
-        root_4 = branch_4*sqrt(rho2_4)
-        # (upru-K25) cosine of the angle of joint 4 from its reference direction
-        inv_root_4 = 1.0/root_4
-        c_4 = end_p1_r3_y*inv_root_4
-        # (upru-K26) sine of the angle of joint 4 from its reference direction
-        s_4 = end_p1_r1_x*inv_root_4
-        # (upru-V3) velocity of the connection point per rate of joint 1
-        v_1_t = c_2*c_4
-        v_1_t_2 = c_2*s_4
-        v_1_t_3 = root_2*v_1_t_2
-        v_1_t_4 = root_2*v_1_t
-        # (upru-V7) force part of reciprocal wrench 1
-        axis_z_x = S_x*inv_root_2
-        axis_z_y = S_y*inv_root_2
-        axis_z_z = S_z*inv_root_2
-        w_1_t = s_2*s_4
-        axis_y_upru_axes4_r4_x = -c_1*c_4 - s_1*w_1_t
-        axis_y_upru_axes4_r4_y = c_4*s_1 - c_1*w_1_t
-        axis_y_upru_axes4_in_base_x = (
-        axis_y_upru_axes4_r4_x*upru_base_frame_xx + axis_y_upru_axes4_r4_y*upru_base_frame_xy +
-            upru_base_frame_xz*v_1_t_2
+        # (ucu-rho2_2) squared amplitude
+        ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t
+        # (ucu-root_2) amplitude, with the sign of the branch
+        ucu_root_2 = ucu_branch_2*sqrt(ucu_rho2_2)
+        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ucu_root_2 = 1.0/ucu_root_2
+        ucu_c_2 = inv_ucu_root_2*ucu_root_1
+        # (ucu-s_2) sine of the angle of joint 2 from its reference direction
+        ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t
+        # (ucu-px_4) component along the reference direction
+        ucu_end_p1_r0_x = (
+        ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
+            R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
+            R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
+            ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
+            R_zz*ucu_base_frame_zx)
         )
-        axis_y_upru_axes4_in_base_y = (
-        axis_y_upru_axes4_r4_x*upru_base_frame_yx + axis_y_upru_axes4_r4_y*upru_base_frame_yy +
-            upru_base_frame_yz*v_1_t_2
+        ucu_end_p1_r0_y = (
+        ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
+            R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
+            R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
+            ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
+            R_zz*ucu_base_frame_zy)
         )
-        axis_y_upru_axes4_in_base_z = (
-        axis_y_upru_axes4_r4_x*upru_base_frame_zx + axis_y_upru_axes4_r4_y*upru_base_frame_zy +
-            upru_base_frame_zz*v_1_t_2
+        ucu_end_p1_r0_z = (
+        ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
+            R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
+            R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
+            ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
+            R_zz*ucu_base_frame_zz)
         )
-        axis_x_upru_axes4_x = (
-        axis_y_upru_axes4_in_base_y*axis_z_z - axis_y_upru_axes4_in_base_z*axis_z_y
+        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ucu_root_1 = 1.0/ucu_root_1
+        ucu_c_1 = inv_ucu_root_1*ucu_py_1
+        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
+        ucu_s_1 = inv_ucu_root_1*ucu_px_1
+        # (ucu-px_4) component along the reference direction
+        ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x
+        ucu_end_p1_r1_y = -ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1
+        ucu_end_p1_r3_x = ucu_end_p1_r0_z*ucu_s_2 - ucu_c_2*ucu_end_p1_r1_y
+        ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_end_p1_r1_y*ucu_s_2
+        # (ucu-rho2_4) squared amplitude
+        ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y
+        # (ucu-root_4) amplitude, with the sign of the branch
+        ucu_root_4 = ucu_branch_4*sqrt(ucu_rho2_4)
+        # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
+        inv_ucu_root_4 = 1.0/ucu_root_4
+        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y
+        # (ucu-s_4) sine of the angle of joint 4 from its reference direction
+        ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x
+        # (ucu-v_1) velocity of the connection point per rate of joint 1
+        ucu_v_1_t = ucu_c_2*ucu_c_4
+        ucu_v_1_t_2 = ucu_c_2*ucu_s_4
+        ucu_v_1_t_3 = ucu_root_2*ucu_v_1_t_2
+        ucu_v_1_t_4 = ucu_root_2*ucu_v_1_t
+        # (ucu-w_1) force part of reciprocal wrench 1
+        ucu_axis_z_x = inv_ucu_root_2*ucu_S_x
+        ucu_axis_z_y = inv_ucu_root_2*ucu_S_y
+        ucu_axis_z_z = inv_ucu_root_2*ucu_S_z
+        ucu_w_1_t = ucu_s_2*ucu_s_4
+        axis_y_ucu_axes4_r4_x = -ucu_c_1*ucu_c_4 - ucu_s_1*ucu_w_1_t
+        axis_y_ucu_axes4_r4_y = ucu_c_4*ucu_s_1 - ucu_c_1*ucu_w_1_t
+        axis_y_ucu_axes4_in_base_x = (
+        axis_y_ucu_axes4_r4_x*ucu_base_frame_xx + axis_y_ucu_axes4_r4_y*ucu_base_frame_xy +
+            ucu_base_frame_xz*ucu_v_1_t_2
         )
-        axis_x_upru_axes4_y = (
-        axis_y_upru_axes4_in_base_z*axis_z_x - axis_y_upru_axes4_in_base_x*axis_z_z
+        axis_y_ucu_axes4_in_base_y = (
+        axis_y_ucu_axes4_r4_x*ucu_base_frame_yx + axis_y_ucu_axes4_r4_y*ucu_base_frame_yy +
+            ucu_base_frame_yz*ucu_v_1_t_2
         )
-        axis_x_upru_axes4_z = (
-        axis_y_upru_axes4_in_base_x*axis_z_y - axis_y_upru_axes4_in_base_y*axis_z_x
+        axis_y_ucu_axes4_in_base_z = (
+        axis_y_ucu_axes4_r4_x*ucu_base_frame_zx + axis_y_ucu_axes4_r4_y*ucu_base_frame_zy +
+            ucu_base_frame_zz*ucu_v_1_t_2
         )
-        # (upru-V6) direction 1 of the moment that the platform joint transmits
-        end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4
-        end_p1_r5_y = c_4*end_p1_r1_x - end_p1_r3_y*s_4
-        # (upru-V3) velocity of the connection point per rate of joint 1
-        v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4
-        v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3
-        # (upru-V7) force part of reciprocal wrench 1
-        w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2
-        # (upru-V6) direction 1 of the moment that the platform joint transmits
-        n_m1_t = end_p1_r3_x*s_4
-        # (upru-V7) force part of reciprocal wrench 1
-        inv_v_1_r0_y = 1.0/v_1_r0_y
-        # (upru-V13) force part of reciprocal wrench 4
-        inv_end_p1_r5_x = 1.0/end_p1_r5_x
-        # (upru-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-        g_r3_x = g_r0_z*s_2 - c_2*g_r1_y
-        g_r3_y = -c_2*g_r0_z - g_r1_y*s_2
-        # (upru-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_r0_x = (
-        S_dot_x*upru_base_frame_xx + S_dot_y*upru_base_frame_yx + S_dot_z*upru_base_frame_zx
+        axis_x_ucu_axes4_x = (
+        axis_y_ucu_axes4_in_base_y*ucu_axis_z_z - axis_y_ucu_axes4_in_base_z*ucu_axis_z_y
         )
-        S_dot_r0_y = (
-        S_dot_x*upru_base_frame_xy + S_dot_y*upru_base_frame_yy + S_dot_z*upru_base_frame_zy
+        axis_x_ucu_axes4_y = (
+        axis_y_ucu_axes4_in_base_z*ucu_axis_z_x - axis_y_ucu_axes4_in_base_x*ucu_axis_z_z
         )
-        S_dot_r0_z = (
-        S_dot_x*upru_base_frame_xz + S_dot_y*upru_base_frame_yz + S_dot_z*upru_base_frame_zz
+        axis_x_ucu_axes4_z = (
+        axis_y_ucu_axes4_in_base_x*ucu_axis_z_y - axis_y_ucu_axes4_in_base_y*ucu_axis_z_x
         )
-        S_dot_r1_y = -S_dot_r0_x*s_1 - S_dot_r0_y*c_1
-        S_dot_r3_x = S_dot_r0_z*s_2 - S_dot_r1_y*c_2
-        # (upru-V20) rate of joint 1
-        qd_1_t = inv_v_1_r0_y*(S_dot_r0_y*s_1 - S_dot_r0_x*c_1)
-        qd_1_t_2 = inv_root_2*(-S_dot_r0_z*c_2 - S_dot_r1_y*s_2 - qd_1_t*v_1_r0_x)
-        # (upru-V24) angular velocity of link 1
-        omega_1_t = qd_1_t*s_2
-        omega_1_t_2 = c_2*qd_1_t
-        # (upru-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_x = omega_1_t_2*qd_1_t_2
-        zeta_2_y = omega_1_t*qd_1_t_2
-        # (upru-V25) angular velocity of link 2
-        omega_2_r1_x = qd_1_t_2*s_4 - c_4*omega_1_t_2
-        omega_2_r1_y = c_4*qd_1_t_2 + omega_1_t_2*s_4
-        # (upru-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_t = c_4*zeta_2_y
-        # (upru-A10) rate of moment direction 1
-        omega_tip_x = (
-        axis_x_upru_axes4_x*omega_x + axis_x_upru_axes4_y*omega_y + axis_x_upru_axes4_z*omega_z
+        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
+        ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4
+        ucu_end_p1_r5_y = ucu_c_4*ucu_end_p1_r1_x - ucu_end_p1_r3_y*ucu_s_4
+        # (ucu-v_1) velocity of the connection point per rate of joint 1
+        ucu_v_1_r0_x = ucu_c_4*ucu_v_1_t_3 - ucu_s_4*ucu_v_1_t_4
+        ucu_v_1_r0_y = ucu_c_4*ucu_v_1_t_4 + ucu_s_4*ucu_v_1_t_3
+        # (ucu-w_1) force part of reciprocal wrench 1
+        ucu_w_1_t_2 = ucu_end_p1_r3_x*ucu_v_1_t + ucu_end_p1_r5_x*ucu_s_2
+        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
+        ucu_n_m1_t = ucu_end_p1_r3_x*ucu_s_4
+        # (ucu-w_1) force part of reciprocal wrench 1
+        inv_ucu_v_1_r0_y = 1.0/ucu_v_1_r0_y
+        # (ucu-w_4) force part of reciprocal wrench 4
+        inv_ucu_end_p1_r5_x = 1.0/ucu_end_p1_r5_x
+        # (ucu-S_dot) velocity of the connection point
+        ucu_S_dot_t = omega_y*ucu_q_in_base_z - omega_z*ucu_q_in_base_y
+        ucu_S_dot_t_2 = omega_z*ucu_q_in_base_x - omega_x*ucu_q_in_base_z
+        ucu_S_dot_t_3 = omega_x*ucu_q_in_base_y - omega_y*ucu_q_in_base_x
+        ucu_S_dot_x = t_dot_x + ucu_S_dot_t
+        ucu_S_dot_y = t_dot_y + ucu_S_dot_t_2
+        ucu_S_dot_z = t_dot_z + ucu_S_dot_t_3
+        ucu_S_dot_r0_x = (
+        ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx +
+            ucu_S_dot_z*ucu_base_frame_zx
         )
-        omega_tip_y = (
-        axis_y_upru_axes4_in_base_x*omega_x + axis_y_upru_axes4_in_base_y*omega_y +
-            axis_y_upru_axes4_in_base_z*omega_z
+        ucu_S_dot_r0_y = (
+        ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy +
+            ucu_S_dot_z*ucu_base_frame_zy
         )
-        omega_tip_z = axis_z_x*omega_x + axis_z_y*omega_y + axis_z_z*omega_z
-        nd_m1_x = end_p1_r5_y*omega_tip_x - end_p1_r5_x*omega_tip_y - end_p1_r5_y*omega_2_r1_x
-        # (upru-V26) centripetal tensor of link 2
-        W_2_t = omega_1_t*omega_1_t
-        W_2_t_2 = omega_1_t_2*omega_1_t_2
-        W_2_t_3 = qd_1_t_2*qd_1_t_2
-        W_2_xy = omega_1_t*omega_1_t_2
-        W_2_t_4 = omega_2_r1_x*omega_2_r1_x
-        W_2_t_5 = omega_2_r1_y*omega_2_r1_y
-        W_2_xy_2 = omega_2_r1_x*omega_2_r1_y
-        # (upru-A7) acceleration of the connection point at zero joint accelerations
-        bias_t = 2.0*S_dot_r3_x
-        bias_x = bias_t*omega_2_r1_y + root_2*(omega_1_t*omega_2_r1_x + s_4*zeta_2_y)
-        bias_y = root_2*(zeta_2_t + omega_1_t*omega_2_r1_y) - bias_t*omega_2_r1_x
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_3_t = axis_z_z*q_in_base_y - axis_z_y*q_in_base_z
-        H_a_3_t_2 = axis_z_x*q_in_base_z - axis_z_z*q_in_base_x
-        H_a_3_t_3 = axis_z_y*q_in_base_x - axis_z_x*q_in_base_y
-        # (upru-V20) rate of joint 1
-        qd_1_t_3 = (
-        omega_tip_z - inv_end_p1_r5_x*(end_p1_r3_x*omega_tip_x + qd_1_t*w_1_t_2 - n_m1_t*qd_1_t_2)
+        ucu_S_dot_r0_z = (
+        ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
+            ucu_S_dot_z*ucu_base_frame_zz
         )
-        # (upru-A5) angular acceleration of link 4 from the turning of axis 4
-        zeta_4_x = omega_2_r1_y*qd_1_t_3
-        # (upru-A6) angular acceleration of link 4 at zero joint accelerations
-        beta_4_x = zeta_4_x - zeta_2_t
-        # (upru-V27) angular velocity of link 4
-        omega_4_z = omega_1_t + qd_1_t_3
-        # (upru-A10) rate of moment direction 1
-        nd_m1_z = end_p1_r5_y*omega_tip_z - end_p1_r3_x*omega_tip_y - end_p1_r5_y*omega_4_z
-        # (upru-A11) bias of the angular acceleration along moment direction 1
-        nu_1_t = beta_4_x*end_p1_r3_x + end_p1_r5_x*zeta_2_x
-        nu_1_t_2 = (
-        nd_m1_x*(omega_2_r1_x - omega_tip_x) + nd_m1_z*(omega_4_z - omega_tip_z) + (omega_2_r1_y -
-            omega_tip_y)*(end_p1_r3_x*omega_4_z + end_p1_r5_x*omega_2_r1_x)
+        ucu_S_dot_r1_y = -ucu_S_dot_r0_x*ucu_s_1 - ucu_S_dot_r0_y*ucu_c_1
+        ucu_S_dot_r3_x = ucu_S_dot_r0_z*ucu_s_2 - ucu_S_dot_r1_y*ucu_c_2
+        # (ucu-qd_4) rate of joint 4
+        ucu_qd_4_t = inv_ucu_v_1_r0_y*(ucu_S_dot_r0_y*ucu_s_1 - ucu_S_dot_r0_x*ucu_c_1)
+        ucu_qd_4_t_2 = (
+        inv_ucu_root_2*(-ucu_S_dot_r0_z*ucu_c_2 - ucu_S_dot_r1_y*ucu_s_2 -
+            ucu_qd_4_t*ucu_v_1_r0_x)
         )
-        nu_1 = -nu_1_t - nu_1_t_2
-        # (upru-A12) acceleration with which the joints turn along moment direction 1
-        etad_1_t = (
-        end_p1_r3_x*(alpha_x*axis_x_upru_axes4_x + alpha_y*axis_x_upru_axes4_y +
-            alpha_z*axis_x_upru_axes4_z) - end_p1_r5_x*(alpha_x*axis_z_x + alpha_y*axis_z_y +
-            alpha_z*axis_z_z)
+        # (ucu-omega_1) angular velocity of link 1
+        ucu_omega_1_t = ucu_qd_4_t*ucu_s_2
+        ucu_omega_1_t_2 = ucu_c_2*ucu_qd_4_t
+        # (ucu-omega_2) angular velocity of link 2
+        ucu_omega_2_r1_x = ucu_qd_4_t_2*ucu_s_4 - ucu_c_4*ucu_omega_1_t_2
+        ucu_omega_2_r1_y = ucu_c_4*ucu_qd_4_t_2 + ucu_omega_1_t_2*ucu_s_4
+        # (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        ucu_zeta_2_x = ucu_omega_1_t_2*ucu_qd_4_t_2
+        ucu_zeta_2_y = ucu_omega_1_t*ucu_qd_4_t_2
+        # (ucu-W_2) centripetal tensor of link 2
+        ucu_W_2_t = ucu_omega_1_t*ucu_omega_1_t
+        ucu_W_2_t_2 = ucu_omega_1_t_2*ucu_omega_1_t_2
+        ucu_W_2_t_3 = ucu_qd_4_t_2*ucu_qd_4_t_2
+        ucu_W_2_xy = ucu_omega_1_t*ucu_omega_1_t_2
+        # (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        ucu_zeta_2_t = ucu_c_4*ucu_zeta_2_y
+        # (ucu-W_2) centripetal tensor of link 2
+        ucu_W_2_t_4 = ucu_omega_2_r1_x*ucu_omega_2_r1_x
+        ucu_W_2_t_5 = ucu_omega_2_r1_y*ucu_omega_2_r1_y
+        ucu_W_2_xy_2 = ucu_omega_2_r1_x*ucu_omega_2_r1_y
+        # (ucu-bias) acceleration of the connection point at zero joint accelerations
+        ucu_bias_t = 2.0*ucu_S_dot_r3_x
+        ucu_bias_x = (
+        ucu_bias_t*ucu_omega_2_r1_y + ucu_root_2*(ucu_omega_1_t*ucu_omega_2_r1_x +
+            ucu_s_4*ucu_zeta_2_y)
         )
-        etad_1 = etad_1_t + nu_1
-        # (upru-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (upru-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        S_ddot_tip_x = (
-        S_ddot_x*axis_x_upru_axes4_x + S_ddot_y*axis_x_upru_axes4_y + S_ddot_z*axis_x_upru_axes4_z
+        ucu_bias_y = (
+        ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_t*ucu_omega_2_r1_y) - ucu_bias_t*ucu_omega_2_r1_x
         )
-        S_ddot_tip_y = (
-        S_ddot_x*axis_y_upru_axes4_in_base_x + S_ddot_y*axis_y_upru_axes4_in_base_y +
-            S_ddot_z*axis_y_upru_axes4_in_base_z
+        # (ucu-nd_m1) rate of moment direction 1
+        ucu_omega_tip_x = (
+        axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y + axis_x_ucu_axes4_z*omega_z
         )
-        # (upru-A8) acceleration of the connection point left to the joint accelerations
-        rel_x = S_ddot_tip_x - bias_x
-        rel_y = S_ddot_tip_y - bias_y
-        # (upru-A13) acceleration of joint 1
-        qdd_1_t = inv_v_1_r0_y*(c_4*rel_y + rel_x*s_4)
-        qdd_1_t_2 = inv_root_2*(qdd_1_t*v_1_r0_x + rel_y*s_4 - c_4*rel_x)
-        # (upru-N3) acceleration of the reference point of link 4, less gravity
-        acc_4_x = (
-        S_ddot_tip_x - axis_x_upru_axes4_x*gravity_x - axis_x_upru_axes4_y*gravity_y -
-            axis_x_upru_axes4_z*gravity_z
+        ucu_omega_tip_y = (
+        axis_y_ucu_axes4_in_base_x*omega_x + axis_y_ucu_axes4_in_base_y*omega_y +
+            axis_y_ucu_axes4_in_base_z*omega_z
         )
-        acc_4_y = (
-        S_ddot_tip_y - axis_y_upru_axes4_in_base_x*gravity_x -
-            axis_y_upru_axes4_in_base_y*gravity_y - axis_y_upru_axes4_in_base_z*gravity_z
+        ucu_omega_tip_z = omega_x*ucu_axis_z_x + omega_y*ucu_axis_z_y + omega_z*ucu_axis_z_z
+        ucu_nd_m1_x = (
+        ucu_end_p1_r5_y*ucu_omega_tip_x - ucu_end_p1_r5_x*ucu_omega_tip_y -
+            ucu_end_p1_r5_y*ucu_omega_2_r1_x
         )
-        acc_4_z = (
-        S_ddot_x*axis_z_x + S_ddot_y*axis_z_y + S_ddot_z*axis_z_z - axis_z_x*gravity_x -
-            axis_z_y*gravity_y - axis_z_z*gravity_z
+        # (ucu-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        ucu_g_r1_x = ucu_g_r0_y*ucu_s_1 - ucu_c_1*ucu_g_r0_x
+        ucu_g_r1_y = -ucu_c_1*ucu_g_r0_y - ucu_g_r0_x*ucu_s_1
+        ucu_g_r3_x = ucu_g_r0_z*ucu_s_2 - ucu_c_2*ucu_g_r1_y
+        ucu_g_r3_y = -ucu_c_2*ucu_g_r0_z - ucu_g_r1_y*ucu_s_2
+        # (ucu-H_a_3) moment of the column's unit force about the platform origin
+        ucu_H_a_3_t = ucu_axis_z_z*ucu_q_in_base_y - ucu_axis_z_y*ucu_q_in_base_z
+        ucu_H_a_3_t_2 = ucu_axis_z_x*ucu_q_in_base_z - ucu_axis_z_z*ucu_q_in_base_x
+        ucu_H_a_3_t_3 = ucu_axis_z_y*ucu_q_in_base_x - ucu_axis_z_x*ucu_q_in_base_y
+        # (ucu-qd_1) rate of joint 1
+        ucu_qd_1_t = (
+        ucu_omega_tip_z - inv_ucu_end_p1_r5_x*(ucu_end_p1_r3_x*ucu_omega_tip_x +
+            ucu_qd_4_t*ucu_w_1_t_2 - ucu_n_m1_t*ucu_qd_4_t_2)
         )
-        # (upru-A20) angular acceleration of link 1
-        alpha_1_t = qdd_1_t*s_2
-        alpha_1_t_2 = c_2*qdd_1_t
-        # (upru-A22) angular acceleration of link 2
-        alpha_2_x = alpha_1_t - zeta_2_x
-        alpha_2_y = -alpha_1_t_2 - zeta_2_y
-        # (upru-A24) acceleration tensor of link 2
-        B_2_xy = qdd_1_t_2 - W_2_xy
-        B_2_yx = -W_2_xy - qdd_1_t_2
-        B_2_zx = zeta_2_y - alpha_2_y
-        B_2_zy = alpha_2_x - zeta_2_x
-        # (upru-N29) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_x = (
-        B_2_yx*J_2_xy + B_2_zx*J_2_xz + B_2_zy*Sigma_2_yy + Sigma_2_zz*alpha_1_t + g_r1_x*h_2_z +
-            g_r3_y*h_2_y - J_2_yz*(W_2_t_2 - W_2_t_3)
+        # (ucu-a_p) acceleration of the connection point without its centripetal part
+        ucu_a_p_x = t_ddot_x + alpha_y*ucu_q_in_base_z - alpha_z*ucu_q_in_base_y
+        ucu_a_p_y = t_ddot_y + alpha_z*ucu_q_in_base_x - alpha_x*ucu_q_in_base_z
+        ucu_a_p_z = t_ddot_z + alpha_x*ucu_q_in_base_y - alpha_y*ucu_q_in_base_x
+        # (ucu-S_ddot) acceleration of the connection point
+        ucu_S_ddot_x = ucu_a_p_x + omega_y*ucu_S_dot_t_3 - omega_z*ucu_S_dot_t_2
+        ucu_S_ddot_y = ucu_a_p_y + omega_z*ucu_S_dot_t - omega_x*ucu_S_dot_t_3
+        ucu_S_ddot_z = ucu_a_p_z + omega_x*ucu_S_dot_t_2 - omega_y*ucu_S_dot_t
+        ucu_S_ddot_tip_x = (
+        axis_x_ucu_axes4_x*ucu_S_ddot_x + axis_x_ucu_axes4_y*ucu_S_ddot_y +
+            axis_x_ucu_axes4_z*ucu_S_ddot_z
         )
-        mu_2_y = (
-        B_2_xy*J_2_yz + g_r1_x*h_2_x - B_2_zx*Sigma_2_xx - B_2_zy*J_2_xz - J_2_xy*(W_2_t -
-            W_2_t_3) - Sigma_2_zz*alpha_1_t_2 - g_r3_x*h_2_y
+        ucu_S_ddot_tip_y = (
+        axis_y_ucu_axes4_in_base_x*ucu_S_ddot_x + axis_y_ucu_axes4_in_base_y*ucu_S_ddot_y +
+            axis_y_ucu_axes4_in_base_z*ucu_S_ddot_z
         )
-        mu_2_z = (
-        B_2_yx*Sigma_2_xx + J_2_xy*alpha_1_t + J_2_yz*alpha_1_t_2 - B_2_xy*Sigma_2_yy -
-            J_2_xz*(W_2_t - W_2_t_2) - g_r3_x*h_2_z - g_r3_y*h_2_x
+        # (ucu-rel) acceleration of the connection point left to the joint accelerations
+        ucu_rel_x = ucu_S_ddot_tip_x - ucu_bias_x
+        ucu_rel_y = ucu_S_ddot_tip_y - ucu_bias_y
+        # (ucu-omega_4) angular velocity of link 4
+        ucu_omega_4_z = ucu_omega_1_t + ucu_qd_1_t
+        # (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4
+        ucu_zeta_4_x = ucu_omega_2_r1_y*ucu_qd_1_t
+        # (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations
+        ucu_beta_4_x = ucu_zeta_4_x - ucu_zeta_2_t
+        # (ucu-nd_m1) rate of moment direction 1
+        ucu_nd_m1_z = (
+        ucu_end_p1_r5_y*ucu_omega_tip_z - ucu_end_p1_r3_x*ucu_omega_tip_y -
+            ucu_end_p1_r5_y*ucu_omega_4_z
         )
-        # (upru-A26) angular acceleration of link 4
-        alpha_4_x = zeta_4_x + alpha_2_y*c_4 - qdd_1_t_2*s_4
-        alpha_4_y = -alpha_2_y*s_4 - c_4*qdd_1_t_2 - omega_2_r1_x*qd_1_t_3
-        alpha_4_z = alpha_2_x - inv_end_p1_r5_x*(etad_1 + n_m1_t*qdd_1_t_2 + qdd_1_t*w_1_t_2)
-        # (upru-V28) centripetal tensor of link 4
-        W_4_t = omega_4_z*omega_4_z
-        W_4_xz = omega_2_r1_x*omega_4_z
-        W_4_yz = omega_2_r1_y*omega_4_z
-        # (upru-A30) acceleration tensor of link 4
-        B_4_xy = W_2_xy_2 - alpha_4_z
-        B_4_xz = W_4_xz + alpha_4_y
-        B_4_yx = W_2_xy_2 + alpha_4_z
-        B_4_yz = W_4_yz - alpha_4_x
-        B_4_zx = W_4_xz - alpha_4_y
-        B_4_zy = W_4_yz + alpha_4_x
-        # (upru-N21) inertia moment of the links that turn with link 4, about their reference points
-        mu_4_x = (
-        B_4_yx*J_4_xy + B_4_zy*Sigma_4_yy + J_4_xz*(W_2_t_5 - W_4_t) + acc_4_z*h_4_z -
-            B_4_yz*Sigma_4_zz - B_4_zx*J_4_yz - acc_4_y*h_4_x
+        # (ucu-nu_1) bias of the angular acceleration along moment direction 1
+        ucu_nu_1_t = ucu_beta_4_x*ucu_end_p1_r3_x + ucu_end_p1_r5_x*ucu_zeta_2_x
+        ucu_nu_1_t_2 = (
+        ucu_nd_m1_x*(ucu_omega_2_r1_x - ucu_omega_tip_x) + ucu_nd_m1_z*(ucu_omega_4_z -
+            ucu_omega_tip_z) + (ucu_omega_2_r1_y - ucu_omega_tip_y)*(ucu_end_p1_r3_x*ucu_omega_4_z
+            + ucu_end_p1_r5_x*ucu_omega_2_r1_x)
         )
-        mu_4_y = (
-        B_4_xz*Sigma_4_zz + B_4_zy*J_4_yz + acc_4_x*h_4_x - B_4_xy*J_4_xz - B_4_zx*Sigma_4_xx -
-            J_4_xy*(W_2_t_4 - W_4_t) - acc_4_z*h_4_y
+        ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2
+        # (ucu-etad_1) acceleration with which the joints turn along moment direction 1
+        ucu_etad_1_t = (
+        ucu_end_p1_r3_x*(alpha_x*axis_x_ucu_axes4_x + alpha_y*axis_x_ucu_axes4_y +
+            alpha_z*axis_x_ucu_axes4_z) - ucu_end_p1_r5_x*(alpha_x*ucu_axis_z_x +
+            alpha_y*ucu_axis_z_y + alpha_z*ucu_axis_z_z)
         )
-        mu_4_z = (
-        B_4_xz*J_4_xz + B_4_yx*Sigma_4_xx + J_4_yz*(W_2_t_4 - W_2_t_5) + acc_4_y*h_4_y -
-            B_4_xy*Sigma_4_yy - B_4_yz*J_4_xy - acc_4_x*h_4_z
+        ucu_etad_1 = ucu_etad_1_t + ucu_nu_1
+        # (ucu-qdd_1) acceleration of joint 1
+        ucu_qdd_1_t = inv_ucu_v_1_r0_y*(ucu_c_4*ucu_rel_y + ucu_rel_x*ucu_s_4)
+        ucu_qdd_1_t_2 = (
+        inv_ucu_root_2*(ucu_qdd_1_t*ucu_v_1_r0_x + ucu_rel_y*ucu_s_4 - ucu_c_4*ucu_rel_x)
         )
-        # (upru-N31) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_x = mu_2_x + mu_4_z
-        N_2_y = mu_2_y + c_4*mu_4_x - mu_4_y*s_4
-        N_2_z = mu_2_z + c_4*mu_4_y + mu_4_x*s_4
-        # (upru-N41) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_t = inv_end_p1_r5_x*mu_4_z
-        G_t_2 = inv_root_2*(N_2_z + G_t*n_m1_t)
-        G_t_3 = inv_v_1_r0_y*(G_t*w_1_t_2 + G_t_2*v_1_r0_x + N_2_y*c_2 - N_2_x*s_2)
-        # (upru-N5) inertia force of link 4 from its turning about its reference point
-        phi_4_z = B_4_zx*h_4_y + B_4_zy*h_4_z - h_4_x*(W_2_t_4 + W_2_t_5)
-        # (upru-N53) leg force on the platform without actuation and without the mass at the connection point
-        c_x = G_t_3*s_4 + h_4_y*(W_2_t_5 + W_4_t) - B_4_xy*h_4_z - B_4_xz*h_4_x - G_t_2*c_4
-        c_y = G_t_2*s_4 + G_t_3*c_4 + h_4_z*(W_2_t_4 + W_4_t) - B_4_yx*h_4_y - B_4_yz*h_4_x
-        # (upru-N49) moment at the connection point that balances the leg's inertia and weight along all freedoms
-        G_m_x = G_t*end_p1_r3_x
-        # (upru-N53) leg force on the platform without actuation and without the mass at the connection point
-        c_in_base_x = axis_x_upru_axes4_x*c_x + axis_y_upru_axes4_in_base_x*c_y - axis_z_x*phi_4_z
-        c_in_base_y = axis_x_upru_axes4_y*c_x + axis_y_upru_axes4_in_base_y*c_y - axis_z_y*phi_4_z
-        c_in_base_z = axis_x_upru_axes4_z*c_x + axis_y_upru_axes4_in_base_z*c_y - axis_z_z*phi_4_z
-        # (E5) moment that actuators and external wrench must give
-        R_a_t = (
-        G_m_x*axis_x_upru_axes4_x + c_in_base_z*q_in_base_y - axis_z_x*mu_4_z -
-            c_in_base_y*q_in_base_z
+        # (ucu-acc_4) acceleration of the reference point of link 4, less gravity
+        ucu_acc_4_x = (
+        ucu_S_ddot_tip_x - axis_x_ucu_axes4_x*gravity_x - axis_x_ucu_axes4_y*gravity_y -
+            axis_x_ucu_axes4_z*gravity_z
         )
-        R_a_t_2 = (
-        G_m_x*axis_x_upru_axes4_y + c_in_base_x*q_in_base_z - axis_z_y*mu_4_z -
-            c_in_base_z*q_in_base_x
+        ucu_acc_4_y = (
+        ucu_S_ddot_tip_y - axis_y_ucu_axes4_in_base_x*gravity_x -
+            axis_y_ucu_axes4_in_base_y*gravity_y - axis_y_ucu_axes4_in_base_z*gravity_z
         )
-        R_a_t_3 = (
-        G_m_x*axis_x_upru_axes4_z + c_in_base_y*q_in_base_x - axis_z_z*mu_4_z -
-            c_in_base_x*q_in_base_y
+        ucu_acc_4_z = (
+        ucu_S_ddot_x*ucu_axis_z_x + ucu_S_ddot_y*ucu_axis_z_y + ucu_S_ddot_z*ucu_axis_z_z -
+            gravity_x*ucu_axis_z_x - gravity_y*ucu_axis_z_y - gravity_z*ucu_axis_z_z
+        )
+        # (ucu-alpha_1) angular acceleration of link 1
+        ucu_alpha_1_t = ucu_qdd_1_t*ucu_s_2
+        ucu_alpha_1_t_2 = ucu_c_2*ucu_qdd_1_t
+        # (ucu-alpha_2) angular acceleration of link 2
+        ucu_alpha_2_x = ucu_alpha_1_t - ucu_zeta_2_x
+        ucu_alpha_2_y = -ucu_alpha_1_t_2 - ucu_zeta_2_y
+        # (ucu-alpha_4) angular acceleration of link 4
+        ucu_alpha_4_x = ucu_zeta_4_x + ucu_alpha_2_y*ucu_c_4 - ucu_qdd_1_t_2*ucu_s_4
+        ucu_alpha_4_y = (
+        -ucu_alpha_2_y*ucu_s_4 - ucu_c_4*ucu_qdd_1_t_2 - ucu_omega_2_r1_x*ucu_qd_1_t
+        )
+        ucu_alpha_4_z = (
+        ucu_alpha_2_x - inv_ucu_end_p1_r5_x*(ucu_etad_1 + ucu_n_m1_t*ucu_qdd_1_t_2 +
+            ucu_qdd_1_t*ucu_w_1_t_2)
+        )
+        # (ucu-W_4) centripetal tensor of link 4
+        ucu_W_4_t = ucu_omega_4_z*ucu_omega_4_z
+        ucu_W_4_xz = ucu_omega_2_r1_x*ucu_omega_4_z
+        ucu_W_4_yz = ucu_omega_2_r1_y*ucu_omega_4_z
+        # (ucu-B_4) acceleration tensor of link 4
+        ucu_B_4_xy = ucu_W_2_xy_2 - ucu_alpha_4_z
+        ucu_B_4_xz = ucu_W_4_xz + ucu_alpha_4_y
+        ucu_B_4_yx = ucu_W_2_xy_2 + ucu_alpha_4_z
+        ucu_B_4_yz = ucu_W_4_yz - ucu_alpha_4_x
+        ucu_B_4_zx = ucu_W_4_xz - ucu_alpha_4_y
+        ucu_B_4_zy = ucu_W_4_yz + ucu_alpha_4_x
+        # (ucu-phi_4) inertia force of link 4 from its turning about its reference point
+        ucu_phi_4_z = (
+        ucu_B_4_zx*ucu_h_4_y + ucu_B_4_zy*ucu_h_4_z - ucu_h_4_x*(ucu_W_2_t_4 + ucu_W_2_t_5)
+        )
+        # (ucu-mu_4) inertia moment of the links that turn with link 4, about their reference points
+        ucu_mu_4_x = (
+        ucu_B_4_yx*ucu_J_4_xy + ucu_B_4_zy*ucu_Sigma_4_yy + ucu_J_4_xz*(ucu_W_2_t_5 - ucu_W_4_t) +
+            ucu_acc_4_z*ucu_h_4_z - ucu_B_4_yz*ucu_Sigma_4_zz - ucu_B_4_zx*ucu_J_4_yz -
+            ucu_acc_4_y*ucu_h_4_x
+        )
+        ucu_mu_4_y = (
+        ucu_B_4_xz*ucu_Sigma_4_zz + ucu_B_4_zy*ucu_J_4_yz + ucu_acc_4_x*ucu_h_4_x -
+            ucu_B_4_xy*ucu_J_4_xz - ucu_B_4_zx*ucu_Sigma_4_xx - ucu_J_4_xy*(ucu_W_2_t_4 -
+            ucu_W_4_t) - ucu_acc_4_z*ucu_h_4_y
+        )
+        ucu_mu_4_z = (
+        ucu_B_4_xz*ucu_J_4_xz + ucu_B_4_yx*ucu_Sigma_4_xx + ucu_J_4_yz*(ucu_W_2_t_4 - ucu_W_2_t_5)
+            + ucu_acc_4_y*ucu_h_4_y - ucu_B_4_xy*ucu_Sigma_4_yy - ucu_B_4_yz*ucu_J_4_xy -
+            ucu_acc_4_x*ucu_h_4_z
+        )
+        # (ucu-B_2) acceleration tensor of link 2
+        ucu_B_2_xy = ucu_qdd_1_t_2 - ucu_W_2_xy
+        ucu_B_2_yx = -ucu_W_2_xy - ucu_qdd_1_t_2
+        ucu_B_2_zx = ucu_zeta_2_y - ucu_alpha_2_y
+        ucu_B_2_zy = ucu_alpha_2_x - ucu_zeta_2_x
+        # (ucu-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        ucu_mu_2_x = (
+        ucu_B_2_yx*ucu_J_2_xy + ucu_B_2_zx*ucu_J_2_xz + ucu_B_2_zy*ucu_Sigma_2_yy +
+            ucu_Sigma_2_zz*ucu_alpha_1_t + ucu_g_r1_x*ucu_h_2_z + ucu_g_r3_y*ucu_h_2_y -
+            ucu_J_2_yz*(ucu_W_2_t_2 - ucu_W_2_t_3)
+        )
+        ucu_mu_2_y = (
+        ucu_B_2_xy*ucu_J_2_yz + ucu_g_r1_x*ucu_h_2_x - ucu_B_2_zx*ucu_Sigma_2_xx -
+            ucu_B_2_zy*ucu_J_2_xz - ucu_J_2_xy*(ucu_W_2_t - ucu_W_2_t_3) -
+            ucu_Sigma_2_zz*ucu_alpha_1_t_2 - ucu_g_r3_x*ucu_h_2_y
+        )
+        ucu_mu_2_z = (
+        ucu_B_2_yx*ucu_Sigma_2_xx + ucu_J_2_xy*ucu_alpha_1_t + ucu_J_2_yz*ucu_alpha_1_t_2 -
+            ucu_B_2_xy*ucu_Sigma_2_yy - ucu_J_2_xz*(ucu_W_2_t - ucu_W_2_t_2) -
+            ucu_g_r3_x*ucu_h_2_z - ucu_g_r3_y*ucu_h_2_x
+        )
+        # (ucu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        ucu_N_2_x = ucu_mu_2_x + ucu_mu_4_z
+        ucu_N_2_y = ucu_mu_2_y + ucu_c_4*ucu_mu_4_x - ucu_mu_4_y*ucu_s_4
+        ucu_N_2_z = ucu_mu_2_z + ucu_c_4*ucu_mu_4_y + ucu_mu_4_x*ucu_s_4
+        # (ucu-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        ucu_G_t = inv_ucu_end_p1_r5_x*ucu_mu_4_z
+        ucu_G_t_2 = inv_ucu_root_2*(ucu_N_2_z + ucu_G_t*ucu_n_m1_t)
+        ucu_G_t_3 = (
+        inv_ucu_v_1_r0_y*(ucu_G_t*ucu_w_1_t_2 + ucu_G_t_2*ucu_v_1_r0_x + ucu_N_2_y*ucu_c_2 -
+            ucu_N_2_x*ucu_s_2)
+        )
+        # (ucu-c) leg force on the platform without actuation and without the mass at the connection point
+        ucu_c_x = (
+        ucu_G_t_3*ucu_s_4 + ucu_h_4_y*(ucu_W_2_t_5 + ucu_W_4_t) - ucu_B_4_xy*ucu_h_4_z -
+            ucu_B_4_xz*ucu_h_4_x - ucu_G_t_2*ucu_c_4
+        )
+        ucu_c_y = (
+        ucu_G_t_2*ucu_s_4 + ucu_G_t_3*ucu_c_4 + ucu_h_4_z*(ucu_W_2_t_4 + ucu_W_4_t) -
+            ucu_B_4_yx*ucu_h_4_y - ucu_B_4_yz*ucu_h_4_x
+        )
+        # (ucu-G_m) moment at the connection point that balances the leg's inertia and weight along all freedoms
+        ucu_G_m_x = ucu_G_t*ucu_end_p1_r3_x
+        # (ucu-c) leg force on the platform without actuation and without the mass at the connection point
+        ucu_c_in_base_x = (
+        axis_x_ucu_axes4_x*ucu_c_x + axis_y_ucu_axes4_in_base_x*ucu_c_y - ucu_axis_z_x*ucu_phi_4_z
+        )
+        ucu_c_in_base_y = (
+        axis_x_ucu_axes4_y*ucu_c_x + axis_y_ucu_axes4_in_base_y*ucu_c_y - ucu_axis_z_y*ucu_phi_4_z
+        )
+        ucu_c_in_base_z = (
+        axis_x_ucu_axes4_z*ucu_c_x + axis_y_ucu_axes4_in_base_z*ucu_c_y - ucu_axis_z_z*ucu_phi_4_z
+        )
+        # (R_a) moment that actuators and external wrench must give
+        ucu_R_a_t = (
+        axis_x_ucu_axes4_x*ucu_G_m_x + ucu_c_in_base_z*ucu_q_in_base_y - ucu_axis_z_x*ucu_mu_4_z -
+            ucu_c_in_base_y*ucu_q_in_base_z
+        )
+        ucu_R_a_t_2 = (
+        axis_x_ucu_axes4_y*ucu_G_m_x + ucu_c_in_base_x*ucu_q_in_base_z - ucu_axis_z_y*ucu_mu_4_z -
+            ucu_c_in_base_z*ucu_q_in_base_x
+        )
+        ucu_R_a_t_3 = (
+        axis_x_ucu_axes4_z*ucu_G_m_x + ucu_c_in_base_y*ucu_q_in_base_x - ucu_axis_z_z*ucu_mu_4_z -
+            ucu_c_in_base_x*ucu_q_in_base_y
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_4) >
-            _TOLERANCE * _TOLERANCE * 1.0) & (abs(-end_p1_r5_x) > _TOLERANCE * 1.0) & (abs(root_2)
-            > _TOLERANCE * 0.8) & (abs(v_1_r0_y) > _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(ucu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ucu_rho2_4) >
+            _TOLERANCE * _TOLERANCE * 1.0) & (abs(-ucu_end_p1_r5_x) > _TOLERANCE * 1.0) &
+            (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_r0_y) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
-        c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
+        ucu_c_in_base_x, ucu_c_in_base_y, ucu_c_in_base_z, ucu_R_a_t, ucu_R_a_t_2,
+            ucu_R_a_t_3,
         ))
-        out_H[_H_upru[0][leg]] = axis_z_x
-        out_H[_H_upru[1][leg]] = axis_z_y
-        out_H[_H_upru[2][leg]] = axis_z_z
-        out_H[_H_upru[3][leg]] = H_a_3_t
-        out_H[_H_upru[4][leg]] = H_a_3_t_2
-        out_H[_H_upru[5][leg]] = H_a_3_t_3
-    (
-    total_upru_x, total_upru_y, total_upru_z, total_upru_x_2, total_upru_y_2, total_upru_z_2,
-    ) = sums
-    # (E4) force that actuators and external wrench must give
-    R_t_x = f_p_x - total_upru_x
-    R_t_y = f_p_y - total_upru_y
-    R_t_z = f_p_z - total_upru_z
-    # (E5) moment that actuators and external wrench must give
-    R_a_x = mu_p_in_base_x - total_upru_x_2
-    R_a_y = mu_p_in_base_y - total_upru_y_2
-    R_a_z = mu_p_in_base_z - total_upru_z_2
+        out_H[_H_ucu[0][leg]] = ucu_axis_z_x
+        out_H[_H_ucu[1][leg]] = ucu_axis_z_y
+        out_H[_H_ucu[2][leg]] = ucu_axis_z_z
+        out_H[_H_ucu[3][leg]] = ucu_H_a_3_t
+        out_H[_H_ucu[4][leg]] = ucu_H_a_3_t_2
+        out_H[_H_ucu[5][leg]] = ucu_H_a_3_t_3
+    total_ucu_x, total_ucu_y, total_ucu_z, total_ucu_x_2, total_ucu_y_2, total_ucu_z_2 = sums
+    # (R_t) force that actuators and external wrench must give
+    R_t_x = f_p_x - total_ucu_x
+    R_t_y = f_p_y - total_ucu_y
+    R_t_z = f_p_z - total_ucu_z
+    # (R_a) moment that actuators and external wrench must give
+    R_a_x = mu_p_in_base_x - total_ucu_x_2
+    R_a_y = mu_p_in_base_y - total_ucu_y_2
+    R_a_z = mu_p_in_base_z - total_ucu_z_2
     out_required[0] = R_t_x
     out_required[1] = R_t_y
     out_required[2] = R_t_z
@@ -3629,99 +3973,104 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, branch_4, upru_base_frame_xx, upru_base_frame_xy, upru_base_frame_xz,
-            upru_base_frame_yx, upru_base_frame_yy, upru_base_frame_yz, upru_base_frame_zx,
-            upru_base_frame_zy, upru_base_frame_zz, upru_base_point_x, upru_base_point_y,
-            upru_base_point_z, upru_platform_joint_axis_platform_x,
-            upru_platform_joint_axis_platform_y, upru_platform_joint_axis_platform_z,
-            upru_platform_point_x, upru_platform_point_y, upru_platform_point_z,
+        ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx,
+            ucu_base_frame_yy, ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy,
+            ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y, ucu_base_point_z, ucu_branch_1,
+            ucu_branch_2, ucu_branch_4, ucu_platform_joint_axis_platform_x,
+            ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
+            ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
         ) = k
-        # (upru-K1) from the base point to the connection point
-        S_x = (
-        t_x + R_xx*upru_platform_point_x + R_xy*upru_platform_point_y + R_xz*upru_platform_point_z
-            - upru_base_point_x
+        # (ucu-S) from the base point to the connection point
+        ucu_S_x = (
+        t_x + R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z -
+            ucu_base_point_x
         )
-        S_y = (
-        t_y + R_yx*upru_platform_point_x + R_yy*upru_platform_point_y + R_yz*upru_platform_point_z
-            - upru_base_point_y
+        ucu_S_y = (
+        t_y + R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y + R_yz*ucu_platform_point_z -
+            ucu_base_point_y
         )
-        S_z = (
-        t_z + R_zx*upru_platform_point_x + R_zy*upru_platform_point_y + R_zz*upru_platform_point_z
-            - upru_base_point_z
+        ucu_S_z = (
+        t_z + R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z -
+            ucu_base_point_z
         )
-        # (upru-K2) component along the reference direction
-        px_1 = S_x*upru_base_frame_xx + S_y*upru_base_frame_yx + S_z*upru_base_frame_zx
-        # (upru-K3) component across the reference direction
-        py_1 = S_x*upru_base_frame_xy + S_y*upru_base_frame_yy + S_z*upru_base_frame_zy
-        # (upru-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (upru-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (upru-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*upru_base_frame_xz + S_y*upru_base_frame_yz + S_z*upru_base_frame_zz
-        # (upru-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (upru-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (upru-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (upru-K16) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (upru-K20) component along the reference direction
-        end_p1_r0_x = (
-        upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xx + R_yx*upru_base_frame_yx +
-            R_zx*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xx + R_yy*upru_base_frame_yx
-            + R_zy*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xx + R_yz*upru_base_frame_yx
-            + R_zz*upru_base_frame_zx)
+        # (ucu-px_1) component along the reference direction
+        ucu_px_1 = (
+        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
         )
-        end_p1_r0_y = (
-        upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xy + R_yx*upru_base_frame_yy +
-            R_zx*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xy + R_yy*upru_base_frame_yy
-            + R_zy*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xy + R_yz*upru_base_frame_yy
-            + R_zz*upru_base_frame_zy)
+        # (ucu-py_1) component across the reference direction
+        ucu_py_1 = (
+        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
         )
-        end_p1_r0_z = (
-        upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xz + R_yx*upru_base_frame_yz +
-            R_zx*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xz + R_yy*upru_base_frame_yz
-            + R_zy*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xz + R_yz*upru_base_frame_yz
-            + R_zz*upru_base_frame_zz)
+        # (ucu-rho2_1) squared amplitude
+        ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1
+        # (ucu-root_1) amplitude, with the sign of the branch
+        ucu_root_1 = ucu_branch_1*sqrt(ucu_rho2_1)
+        # (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ucu_xi_1_t = (
+        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
         )
-        # (upru-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (upru-K7) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (upru-K20) component along the reference direction
-        end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x
-        end_p1_r3_y = -c_2*end_p1_r0_z - s_2*(-c_1*end_p1_r0_y - end_p1_r0_x*s_1)
-        # (upru-K23) squared amplitude
-        rho2_4 = end_p1_r1_x*end_p1_r1_x + end_p1_r3_y*end_p1_r3_y
-        # (upru-K24) amplitude, with the sign of the branch
-        root_4 = branch_4*sqrt(rho2_4)
-        # (upru-K25) cosine of the angle of joint 4 from its reference direction
-        inv_root_4 = 1.0/root_4
-        # (upru-K8) displacement of joint 1
-        q_1 = atan2(c_1, s_1)
-        # (upru-K17) displacement of joint 2
-        q_2 = atan2(-s_2, c_2)
-        # (upru-K27) displacement of joint 4
-        q_4 = atan2(-end_p1_r3_y*inv_root_4, end_p1_r1_x*inv_root_4)
+        # (ucu-rho2_2) squared amplitude
+        ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t
+        # (ucu-root_2) amplitude, with the sign of the branch
+        ucu_root_2 = ucu_branch_2*sqrt(ucu_rho2_2)
+        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ucu_root_2 = 1.0/ucu_root_2
+        ucu_c_2 = inv_ucu_root_2*ucu_root_1
+        # (ucu-s_2) sine of the angle of joint 2 from its reference direction
+        ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t
+        # (ucu-px_4) component along the reference direction
+        ucu_end_p1_r0_x = (
+        ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
+            R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
+            R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
+            ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
+            R_zz*ucu_base_frame_zx)
+        )
+        ucu_end_p1_r0_y = (
+        ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
+            R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
+            R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
+            ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
+            R_zz*ucu_base_frame_zy)
+        )
+        ucu_end_p1_r0_z = (
+        ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
+            R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
+            R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
+            ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
+            R_zz*ucu_base_frame_zz)
+        )
+        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ucu_root_1 = 1.0/ucu_root_1
+        ucu_c_1 = inv_ucu_root_1*ucu_py_1
+        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
+        ucu_s_1 = inv_ucu_root_1*ucu_px_1
+        # (ucu-px_4) component along the reference direction
+        ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x
+        ucu_end_p1_r3_y = (
+        -ucu_c_2*ucu_end_p1_r0_z - ucu_s_2*(-ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1)
+        )
+        # (ucu-rho2_4) squared amplitude
+        ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y
+        # (ucu-root_4) amplitude, with the sign of the branch
+        ucu_root_4 = ucu_branch_4*sqrt(ucu_rho2_4)
+        # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
+        inv_ucu_root_4 = 1.0/ucu_root_4
+        # (ucu-q_1) displacement of joint 1
+        ucu_q_1 = atan2(ucu_c_1, ucu_s_1)
+        # (ucu-q_2) displacement of joint 2
+        ucu_q_2 = atan2(-ucu_s_2, ucu_c_2)
+        # (ucu-q_4) displacement of joint 4
+        ucu_q_4 = atan2(-inv_ucu_root_4*ucu_end_p1_r3_y, inv_ucu_root_4*ucu_end_p1_r1_x)
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_4) >
+        ok & m.every(leg, (abs(ucu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ucu_rho2_4) >
             _TOLERANCE * _TOLERANCE * 1.0))
         )
-        out_q[_q_upru[0][leg]] = q_1
-        out_q[_q_upru[1][leg]] = q_2
-        out_q[_q_upru[2][leg]] = root_2
-        out_q[_q_upru[3][leg]] = q_4
+        out_q[_q_ucu[0][leg]] = ucu_q_1
+        out_q[_q_ucu[1][leg]] = ucu_q_2
+        out_q[_q_ucu[2][leg]] = ucu_root_2
+        out_q[_q_ucu[3][leg]] = ucu_q_4
     return ok, (out_q,)
 
 
@@ -3781,161 +4130,170 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, branch_4, upru_base_frame_xx, upru_base_frame_xy, upru_base_frame_xz,
-            upru_base_frame_yx, upru_base_frame_yy, upru_base_frame_yz, upru_base_frame_zx,
-            upru_base_frame_zy, upru_base_frame_zz, upru_base_point_x, upru_base_point_y,
-            upru_base_point_z, upru_platform_joint_axis_platform_x,
-            upru_platform_joint_axis_platform_y, upru_platform_joint_axis_platform_z,
-            upru_platform_point_x, upru_platform_point_y, upru_platform_point_z,
+        ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx,
+            ucu_base_frame_yy, ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy,
+            ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y, ucu_base_point_z, ucu_branch_1,
+            ucu_branch_2, ucu_branch_4, ucu_platform_joint_axis_platform_x,
+            ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
+            ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
         ) = k
-        # (upru-K1) from the base point to the connection point
-        q_in_base_x = (
-        R_xx*upru_platform_point_x + R_xy*upru_platform_point_y + R_xz*upru_platform_point_z
+        # (ucu-S) from the base point to the connection point
+        ucu_q_in_base_x = (
+        R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
-        q_in_base_y = (
-        R_yx*upru_platform_point_x + R_yy*upru_platform_point_y + R_yz*upru_platform_point_z
+        ucu_q_in_base_y = (
+        R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y + R_yz*ucu_platform_point_z
         )
-        q_in_base_z = (
-        R_zx*upru_platform_point_x + R_zy*upru_platform_point_y + R_zz*upru_platform_point_z
+        ucu_q_in_base_z = (
+        R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        S_x = q_in_base_x + t_x - upru_base_point_x
-        S_y = q_in_base_y + t_y - upru_base_point_y
-        S_z = q_in_base_z + t_z - upru_base_point_z
-        # (upru-K2) component along the reference direction
-        px_1 = S_x*upru_base_frame_xx + S_y*upru_base_frame_yx + S_z*upru_base_frame_zx
-        # (upru-K3) component across the reference direction
-        py_1 = S_x*upru_base_frame_xy + S_y*upru_base_frame_yy + S_z*upru_base_frame_zy
-        # (upru-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (upru-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (upru-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*upru_base_frame_xz + S_y*upru_base_frame_yz + S_z*upru_base_frame_zz
-        # (upru-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (upru-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (upru-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (upru-K16) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (upru-K20) component along the reference direction
-        end_p1_r0_x = (
-        upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xx + R_yx*upru_base_frame_yx +
-            R_zx*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xx + R_yy*upru_base_frame_yx
-            + R_zy*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xx + R_yz*upru_base_frame_yx
-            + R_zz*upru_base_frame_zx)
+        ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x
+        ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y
+        ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z
+        # (ucu-px_1) component along the reference direction
+        ucu_px_1 = (
+        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
         )
-        end_p1_r0_y = (
-        upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xy + R_yx*upru_base_frame_yy +
-            R_zx*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xy + R_yy*upru_base_frame_yy
-            + R_zy*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xy + R_yz*upru_base_frame_yy
-            + R_zz*upru_base_frame_zy)
+        # (ucu-py_1) component across the reference direction
+        ucu_py_1 = (
+        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
         )
-        end_p1_r0_z = (
-        upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xz + R_yx*upru_base_frame_yz +
-            R_zx*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xz + R_yy*upru_base_frame_yz
-            + R_zy*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xz + R_yz*upru_base_frame_yz
-            + R_zz*upru_base_frame_zz)
+        # (ucu-rho2_1) squared amplitude
+        ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1
+        # (ucu-root_1) amplitude, with the sign of the branch
+        ucu_root_1 = ucu_branch_1*sqrt(ucu_rho2_1)
+        # (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ucu_xi_1_t = (
+        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
         )
-        # (upru-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (upru-K7) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (upru-K20) component along the reference direction
-        end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x
-        end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1
-        end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
-        end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
-        # (upru-K23) squared amplitude
-        rho2_4 = end_p1_r1_x*end_p1_r1_x + end_p1_r3_y*end_p1_r3_y
-        # (upru-K24) amplitude, with the sign of the branch
-        root_4 = branch_4*sqrt(rho2_4)
-        # (upru-K25) cosine of the angle of joint 4 from its reference direction
-        inv_root_4 = 1.0/root_4
-        c_4 = end_p1_r3_y*inv_root_4
-        # (upru-K26) sine of the angle of joint 4 from its reference direction
-        s_4 = end_p1_r1_x*inv_root_4
-        # (upru-V3) velocity of the connection point per rate of joint 1
-        v_1_t = c_2*c_4
-        v_1_t_2 = c_2*s_4
-        v_1_t_3 = root_2*v_1_t_2
-        v_1_t_4 = root_2*v_1_t
-        # (upru-V7) force part of reciprocal wrench 1
-        axis_z_x = S_x*inv_root_2
-        axis_z_y = S_y*inv_root_2
-        axis_z_z = S_z*inv_root_2
-        w_1_t = s_2*s_4
-        axis_y_upru_axes4_r4_x = -c_1*c_4 - s_1*w_1_t
-        axis_y_upru_axes4_r4_y = c_4*s_1 - c_1*w_1_t
-        axis_y_upru_axes4_in_base_x = (
-        axis_y_upru_axes4_r4_x*upru_base_frame_xx + axis_y_upru_axes4_r4_y*upru_base_frame_xy +
-            upru_base_frame_xz*v_1_t_2
+        # (ucu-rho2_2) squared amplitude
+        ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t
+        # (ucu-root_2) amplitude, with the sign of the branch
+        ucu_root_2 = ucu_branch_2*sqrt(ucu_rho2_2)
+        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ucu_root_2 = 1.0/ucu_root_2
+        ucu_c_2 = inv_ucu_root_2*ucu_root_1
+        # (ucu-s_2) sine of the angle of joint 2 from its reference direction
+        ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t
+        # (ucu-px_4) component along the reference direction
+        ucu_end_p1_r0_x = (
+        ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
+            R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
+            R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
+            ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
+            R_zz*ucu_base_frame_zx)
         )
-        axis_y_upru_axes4_in_base_y = (
-        axis_y_upru_axes4_r4_x*upru_base_frame_yx + axis_y_upru_axes4_r4_y*upru_base_frame_yy +
-            upru_base_frame_yz*v_1_t_2
+        ucu_end_p1_r0_y = (
+        ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
+            R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
+            R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
+            ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
+            R_zz*ucu_base_frame_zy)
         )
-        axis_y_upru_axes4_in_base_z = (
-        axis_y_upru_axes4_r4_x*upru_base_frame_zx + axis_y_upru_axes4_r4_y*upru_base_frame_zy +
-            upru_base_frame_zz*v_1_t_2
+        ucu_end_p1_r0_z = (
+        ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
+            R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
+            R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
+            ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
+            R_zz*ucu_base_frame_zz)
         )
-        # (upru-V6) direction 1 of the moment that the platform joint transmits
-        end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4
-        # (upru-V3) velocity of the connection point per rate of joint 1
-        v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3
-        # (upru-V7) force part of reciprocal wrench 1
-        w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2
-        # (upru-V1) velocity of the connection point
-        S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_r0_x = (
-        S_dot_x*upru_base_frame_xx + S_dot_y*upru_base_frame_yx + S_dot_z*upru_base_frame_zx
+        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ucu_root_1 = 1.0/ucu_root_1
+        ucu_c_1 = inv_ucu_root_1*ucu_py_1
+        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
+        ucu_s_1 = inv_ucu_root_1*ucu_px_1
+        # (ucu-px_4) component along the reference direction
+        ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x
+        ucu_end_p1_r1_y = -ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1
+        ucu_end_p1_r3_x = ucu_end_p1_r0_z*ucu_s_2 - ucu_c_2*ucu_end_p1_r1_y
+        ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_end_p1_r1_y*ucu_s_2
+        # (ucu-rho2_4) squared amplitude
+        ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y
+        # (ucu-root_4) amplitude, with the sign of the branch
+        ucu_root_4 = ucu_branch_4*sqrt(ucu_rho2_4)
+        # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
+        inv_ucu_root_4 = 1.0/ucu_root_4
+        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y
+        # (ucu-s_4) sine of the angle of joint 4 from its reference direction
+        ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x
+        # (ucu-v_1) velocity of the connection point per rate of joint 1
+        ucu_v_1_t = ucu_c_2*ucu_c_4
+        ucu_v_1_t_2 = ucu_c_2*ucu_s_4
+        ucu_v_1_t_3 = ucu_root_2*ucu_v_1_t_2
+        ucu_v_1_t_4 = ucu_root_2*ucu_v_1_t
+        # (ucu-w_1) force part of reciprocal wrench 1
+        ucu_axis_z_x = inv_ucu_root_2*ucu_S_x
+        ucu_axis_z_y = inv_ucu_root_2*ucu_S_y
+        ucu_axis_z_z = inv_ucu_root_2*ucu_S_z
+        ucu_w_1_t = ucu_s_2*ucu_s_4
+        axis_y_ucu_axes4_r4_x = -ucu_c_1*ucu_c_4 - ucu_s_1*ucu_w_1_t
+        axis_y_ucu_axes4_r4_y = ucu_c_4*ucu_s_1 - ucu_c_1*ucu_w_1_t
+        axis_y_ucu_axes4_in_base_x = (
+        axis_y_ucu_axes4_r4_x*ucu_base_frame_xx + axis_y_ucu_axes4_r4_y*ucu_base_frame_xy +
+            ucu_base_frame_xz*ucu_v_1_t_2
         )
-        S_dot_r0_y = (
-        S_dot_x*upru_base_frame_xy + S_dot_y*upru_base_frame_yy + S_dot_z*upru_base_frame_zy
+        axis_y_ucu_axes4_in_base_y = (
+        axis_y_ucu_axes4_r4_x*ucu_base_frame_yx + axis_y_ucu_axes4_r4_y*ucu_base_frame_yy +
+            ucu_base_frame_yz*ucu_v_1_t_2
         )
-        S_dot_r0_z = (
-        S_dot_x*upru_base_frame_xz + S_dot_y*upru_base_frame_yz + S_dot_z*upru_base_frame_zz
+        axis_y_ucu_axes4_in_base_z = (
+        axis_y_ucu_axes4_r4_x*ucu_base_frame_zx + axis_y_ucu_axes4_r4_y*ucu_base_frame_zy +
+            ucu_base_frame_zz*ucu_v_1_t_2
         )
-        S_dot_r1_y = -S_dot_r0_x*s_1 - S_dot_r0_y*c_1
-        S_dot_r3_x = S_dot_r0_z*s_2 - S_dot_r1_y*c_2
-        # (upru-V20) rate of joint 1
-        qd_1_t = (S_dot_r0_y*s_1 - S_dot_r0_x*c_1)/v_1_r0_y
-        qd_1_t_2 = (
-        inv_root_2*(-S_dot_r0_z*c_2 - S_dot_r1_y*s_2 - qd_1_t*(c_4*v_1_t_3 - s_4*v_1_t_4))
+        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
+        ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4
+        # (ucu-v_1) velocity of the connection point per rate of joint 1
+        ucu_v_1_r0_y = ucu_c_4*ucu_v_1_t_4 + ucu_s_4*ucu_v_1_t_3
+        # (ucu-w_1) force part of reciprocal wrench 1
+        ucu_w_1_t_2 = ucu_end_p1_r3_x*ucu_v_1_t + ucu_end_p1_r5_x*ucu_s_2
+        # (ucu-S_dot) velocity of the connection point
+        ucu_S_dot_x = t_dot_x + omega_y*ucu_q_in_base_z - omega_z*ucu_q_in_base_y
+        ucu_S_dot_y = t_dot_y + omega_z*ucu_q_in_base_x - omega_x*ucu_q_in_base_z
+        ucu_S_dot_z = t_dot_z + omega_x*ucu_q_in_base_y - omega_y*ucu_q_in_base_x
+        ucu_S_dot_r0_x = (
+        ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx +
+            ucu_S_dot_z*ucu_base_frame_zx
         )
-        # (upru-A10) rate of moment direction 1
-        nd_m1_t = (
-        end_p1_r3_x*(omega_x*(axis_y_upru_axes4_in_base_y*axis_z_z -
-            axis_y_upru_axes4_in_base_z*axis_z_y) + omega_y*(axis_y_upru_axes4_in_base_z*axis_z_x
-            - axis_y_upru_axes4_in_base_x*axis_z_z) +
-            omega_z*(axis_y_upru_axes4_in_base_x*axis_z_y - axis_y_upru_axes4_in_base_y*axis_z_x))
+        ucu_S_dot_r0_y = (
+        ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy +
+            ucu_S_dot_z*ucu_base_frame_zy
         )
-        # (upru-V20) rate of joint 1
-        qd_1_t_3 = (
-        axis_z_x*omega_x + axis_z_y*omega_y + axis_z_z*omega_z - (nd_m1_t + qd_1_t*w_1_t_2 -
-            end_p1_r3_x*qd_1_t_2*s_4)/end_p1_r5_x
+        ucu_S_dot_r0_z = (
+        ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
+            ucu_S_dot_z*ucu_base_frame_zz
+        )
+        ucu_S_dot_r1_y = -ucu_S_dot_r0_x*ucu_s_1 - ucu_S_dot_r0_y*ucu_c_1
+        ucu_S_dot_r3_x = ucu_S_dot_r0_z*ucu_s_2 - ucu_S_dot_r1_y*ucu_c_2
+        # (ucu-qd_4) rate of joint 4
+        ucu_qd_4_t = (ucu_S_dot_r0_y*ucu_s_1 - ucu_S_dot_r0_x*ucu_c_1)/ucu_v_1_r0_y
+        ucu_qd_4_t_2 = (
+        inv_ucu_root_2*(-ucu_S_dot_r0_z*ucu_c_2 - ucu_S_dot_r1_y*ucu_s_2 -
+            ucu_qd_4_t*(ucu_c_4*ucu_v_1_t_3 - ucu_s_4*ucu_v_1_t_4))
+        )
+        # (ucu-nd_m1) rate of moment direction 1
+        ucu_nd_m1_t = (
+        ucu_end_p1_r3_x*(omega_x*(axis_y_ucu_axes4_in_base_y*ucu_axis_z_z -
+            axis_y_ucu_axes4_in_base_z*ucu_axis_z_y) +
+            omega_y*(axis_y_ucu_axes4_in_base_z*ucu_axis_z_x -
+            axis_y_ucu_axes4_in_base_x*ucu_axis_z_z) +
+            omega_z*(axis_y_ucu_axes4_in_base_x*ucu_axis_z_y -
+            axis_y_ucu_axes4_in_base_y*ucu_axis_z_x))
+        )
+        # (ucu-qd_1) rate of joint 1
+        ucu_qd_1_t = (
+        omega_x*ucu_axis_z_x + omega_y*ucu_axis_z_y + omega_z*ucu_axis_z_z - (ucu_nd_m1_t +
+            ucu_qd_4_t*ucu_w_1_t_2 - ucu_end_p1_r3_x*ucu_qd_4_t_2*ucu_s_4)/ucu_end_p1_r5_x
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_4) >
-            _TOLERANCE * _TOLERANCE * 1.0) & (abs(-end_p1_r5_x) > _TOLERANCE * 1.0) & (abs(root_2)
-            > _TOLERANCE * 0.8) & (abs(v_1_r0_y) > _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(ucu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ucu_rho2_4) >
+            _TOLERANCE * _TOLERANCE * 1.0) & (abs(-ucu_end_p1_r5_x) > _TOLERANCE * 1.0) &
+            (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_r0_y) > _TOLERANCE * 0.8))
         )
-        out_qd[_qd_upru[0][leg]] = qd_1_t
-        out_qd[_qd_upru[1][leg]] = qd_1_t_2
-        out_qd[_qd_upru[2][leg]] = S_dot_r3_x
-        out_qd[_qd_upru[3][leg]] = qd_1_t_3
+        out_qd[_qd_ucu[0][leg]] = ucu_qd_4_t
+        out_qd[_qd_ucu[1][leg]] = ucu_qd_4_t_2
+        out_qd[_qd_ucu[2][leg]] = ucu_S_dot_r3_x
+        out_qd[_qd_ucu[3][leg]] = ucu_qd_1_t
     return ok, (out_qd,)
 
 
@@ -4008,240 +4366,265 @@ def _run_joint_accelerations(m, X, V, A):
     out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, branch_4, upru_base_frame_xx, upru_base_frame_xy, upru_base_frame_xz,
-            upru_base_frame_yx, upru_base_frame_yy, upru_base_frame_yz, upru_base_frame_zx,
-            upru_base_frame_zy, upru_base_frame_zz, upru_base_point_x, upru_base_point_y,
-            upru_base_point_z, upru_platform_joint_axis_platform_x,
-            upru_platform_joint_axis_platform_y, upru_platform_joint_axis_platform_z,
-            upru_platform_point_x, upru_platform_point_y, upru_platform_point_z,
+        ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx,
+            ucu_base_frame_yy, ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy,
+            ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y, ucu_base_point_z, ucu_branch_1,
+            ucu_branch_2, ucu_branch_4, ucu_platform_joint_axis_platform_x,
+            ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
+            ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
         ) = k
-        # (upru-K1) from the base point to the connection point
-        q_in_base_x = (
-        R_xx*upru_platform_point_x + R_xy*upru_platform_point_y + R_xz*upru_platform_point_z
+        # (ucu-S) from the base point to the connection point
+        ucu_q_in_base_x = (
+        R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
-        q_in_base_y = (
-        R_yx*upru_platform_point_x + R_yy*upru_platform_point_y + R_yz*upru_platform_point_z
+        ucu_q_in_base_y = (
+        R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y + R_yz*ucu_platform_point_z
         )
-        q_in_base_z = (
-        R_zx*upru_platform_point_x + R_zy*upru_platform_point_y + R_zz*upru_platform_point_z
+        ucu_q_in_base_z = (
+        R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        S_x = q_in_base_x + t_x - upru_base_point_x
-        S_y = q_in_base_y + t_y - upru_base_point_y
-        S_z = q_in_base_z + t_z - upru_base_point_z
-        # (upru-K2) component along the reference direction
-        px_1 = S_x*upru_base_frame_xx + S_y*upru_base_frame_yx + S_z*upru_base_frame_zx
-        # (upru-K3) component across the reference direction
-        py_1 = S_x*upru_base_frame_xy + S_y*upru_base_frame_yy + S_z*upru_base_frame_zy
-        # (upru-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (upru-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (upru-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*upru_base_frame_xz + S_y*upru_base_frame_yz + S_z*upru_base_frame_zz
-        # (upru-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (upru-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (upru-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (upru-K16) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (upru-K20) component along the reference direction
-        end_p1_r0_x = (
-        upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xx + R_yx*upru_base_frame_yx +
-            R_zx*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xx + R_yy*upru_base_frame_yx
-            + R_zy*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xx + R_yz*upru_base_frame_yx
-            + R_zz*upru_base_frame_zx)
+        ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x
+        ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y
+        ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z
+        # (ucu-px_1) component along the reference direction
+        ucu_px_1 = (
+        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
         )
-        end_p1_r0_y = (
-        upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xy + R_yx*upru_base_frame_yy +
-            R_zx*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xy + R_yy*upru_base_frame_yy
-            + R_zy*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xy + R_yz*upru_base_frame_yy
-            + R_zz*upru_base_frame_zy)
+        # (ucu-py_1) component across the reference direction
+        ucu_py_1 = (
+        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
         )
-        end_p1_r0_z = (
-        upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xz + R_yx*upru_base_frame_yz +
-            R_zx*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xz + R_yy*upru_base_frame_yz
-            + R_zy*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xz + R_yz*upru_base_frame_yz
-            + R_zz*upru_base_frame_zz)
+        # (ucu-rho2_1) squared amplitude
+        ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1
+        # (ucu-root_1) amplitude, with the sign of the branch
+        ucu_root_1 = ucu_branch_1*sqrt(ucu_rho2_1)
+        # (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ucu_xi_1_t = (
+        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
         )
-        # (upru-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (upru-K7) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (upru-K20) component along the reference direction
-        end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x
-        end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1
-        end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
-        end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
-        # (upru-K23) squared amplitude
-        rho2_4 = end_p1_r1_x*end_p1_r1_x + end_p1_r3_y*end_p1_r3_y
-        # (upru-K24) amplitude, with the sign of the branch
-        root_4 = branch_4*sqrt(rho2_4)
-        # (upru-K25) cosine of the angle of joint 4 from its reference direction
-        inv_root_4 = 1.0/root_4
-        c_4 = end_p1_r3_y*inv_root_4
-        # (upru-K26) sine of the angle of joint 4 from its reference direction
-        s_4 = end_p1_r1_x*inv_root_4
-        # (upru-V3) velocity of the connection point per rate of joint 1
-        v_1_t = c_2*c_4
-        v_1_t_2 = c_2*s_4
-        v_1_t_3 = root_2*v_1_t_2
-        v_1_t_4 = root_2*v_1_t
-        # (upru-V7) force part of reciprocal wrench 1
-        axis_z_x = S_x*inv_root_2
-        axis_z_y = S_y*inv_root_2
-        axis_z_z = S_z*inv_root_2
-        w_1_t = s_2*s_4
-        axis_y_upru_axes4_r4_x = -c_1*c_4 - s_1*w_1_t
-        axis_y_upru_axes4_r4_y = c_4*s_1 - c_1*w_1_t
-        axis_y_upru_axes4_in_base_x = (
-        axis_y_upru_axes4_r4_x*upru_base_frame_xx + axis_y_upru_axes4_r4_y*upru_base_frame_xy +
-            upru_base_frame_xz*v_1_t_2
+        # (ucu-rho2_2) squared amplitude
+        ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t
+        # (ucu-root_2) amplitude, with the sign of the branch
+        ucu_root_2 = ucu_branch_2*sqrt(ucu_rho2_2)
+        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ucu_root_2 = 1.0/ucu_root_2
+        ucu_c_2 = inv_ucu_root_2*ucu_root_1
+        # (ucu-s_2) sine of the angle of joint 2 from its reference direction
+        ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t
+        # (ucu-px_4) component along the reference direction
+        ucu_end_p1_r0_x = (
+        ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
+            R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
+            R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
+            ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
+            R_zz*ucu_base_frame_zx)
         )
-        axis_y_upru_axes4_in_base_y = (
-        axis_y_upru_axes4_r4_x*upru_base_frame_yx + axis_y_upru_axes4_r4_y*upru_base_frame_yy +
-            upru_base_frame_yz*v_1_t_2
+        ucu_end_p1_r0_y = (
+        ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
+            R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
+            R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
+            ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
+            R_zz*ucu_base_frame_zy)
         )
-        axis_y_upru_axes4_in_base_z = (
-        axis_y_upru_axes4_r4_x*upru_base_frame_zx + axis_y_upru_axes4_r4_y*upru_base_frame_zy +
-            upru_base_frame_zz*v_1_t_2
+        ucu_end_p1_r0_z = (
+        ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
+            R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
+            R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
+            ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
+            R_zz*ucu_base_frame_zz)
         )
-        axis_x_upru_axes4_x = (
-        axis_y_upru_axes4_in_base_y*axis_z_z - axis_y_upru_axes4_in_base_z*axis_z_y
+        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ucu_root_1 = 1.0/ucu_root_1
+        ucu_c_1 = inv_ucu_root_1*ucu_py_1
+        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
+        ucu_s_1 = inv_ucu_root_1*ucu_px_1
+        # (ucu-px_4) component along the reference direction
+        ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x
+        ucu_end_p1_r1_y = -ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1
+        ucu_end_p1_r3_x = ucu_end_p1_r0_z*ucu_s_2 - ucu_c_2*ucu_end_p1_r1_y
+        ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_end_p1_r1_y*ucu_s_2
+        # (ucu-rho2_4) squared amplitude
+        ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y
+        # (ucu-root_4) amplitude, with the sign of the branch
+        ucu_root_4 = ucu_branch_4*sqrt(ucu_rho2_4)
+        # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
+        inv_ucu_root_4 = 1.0/ucu_root_4
+        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y
+        # (ucu-s_4) sine of the angle of joint 4 from its reference direction
+        ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x
+        # (ucu-v_1) velocity of the connection point per rate of joint 1
+        ucu_v_1_t = ucu_c_2*ucu_c_4
+        ucu_v_1_t_2 = ucu_c_2*ucu_s_4
+        ucu_v_1_t_3 = ucu_root_2*ucu_v_1_t_2
+        ucu_v_1_t_4 = ucu_root_2*ucu_v_1_t
+        # (ucu-w_1) force part of reciprocal wrench 1
+        ucu_axis_z_x = inv_ucu_root_2*ucu_S_x
+        ucu_axis_z_y = inv_ucu_root_2*ucu_S_y
+        ucu_axis_z_z = inv_ucu_root_2*ucu_S_z
+        ucu_w_1_t = ucu_s_2*ucu_s_4
+        axis_y_ucu_axes4_r4_x = -ucu_c_1*ucu_c_4 - ucu_s_1*ucu_w_1_t
+        axis_y_ucu_axes4_r4_y = ucu_c_4*ucu_s_1 - ucu_c_1*ucu_w_1_t
+        axis_y_ucu_axes4_in_base_x = (
+        axis_y_ucu_axes4_r4_x*ucu_base_frame_xx + axis_y_ucu_axes4_r4_y*ucu_base_frame_xy +
+            ucu_base_frame_xz*ucu_v_1_t_2
         )
-        axis_x_upru_axes4_y = (
-        axis_y_upru_axes4_in_base_z*axis_z_x - axis_y_upru_axes4_in_base_x*axis_z_z
+        axis_y_ucu_axes4_in_base_y = (
+        axis_y_ucu_axes4_r4_x*ucu_base_frame_yx + axis_y_ucu_axes4_r4_y*ucu_base_frame_yy +
+            ucu_base_frame_yz*ucu_v_1_t_2
         )
-        axis_x_upru_axes4_z = (
-        axis_y_upru_axes4_in_base_x*axis_z_y - axis_y_upru_axes4_in_base_y*axis_z_x
+        axis_y_ucu_axes4_in_base_z = (
+        axis_y_ucu_axes4_r4_x*ucu_base_frame_zx + axis_y_ucu_axes4_r4_y*ucu_base_frame_zy +
+            ucu_base_frame_zz*ucu_v_1_t_2
         )
-        # (upru-V6) direction 1 of the moment that the platform joint transmits
-        end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4
-        end_p1_r5_y = c_4*end_p1_r1_x - end_p1_r3_y*s_4
-        # (upru-V3) velocity of the connection point per rate of joint 1
-        v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4
-        v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3
-        # (upru-V7) force part of reciprocal wrench 1
-        w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2
-        # (upru-V6) direction 1 of the moment that the platform joint transmits
-        n_m1_t = end_p1_r3_x*s_4
-        # (upru-V7) force part of reciprocal wrench 1
-        inv_v_1_r0_y = 1.0/v_1_r0_y
-        # (upru-V13) force part of reciprocal wrench 4
-        inv_end_p1_r5_x = 1.0/end_p1_r5_x
-        # (upru-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_r0_x = (
-        S_dot_x*upru_base_frame_xx + S_dot_y*upru_base_frame_yx + S_dot_z*upru_base_frame_zx
+        axis_x_ucu_axes4_x = (
+        axis_y_ucu_axes4_in_base_y*ucu_axis_z_z - axis_y_ucu_axes4_in_base_z*ucu_axis_z_y
         )
-        S_dot_r0_y = (
-        S_dot_x*upru_base_frame_xy + S_dot_y*upru_base_frame_yy + S_dot_z*upru_base_frame_zy
+        axis_x_ucu_axes4_y = (
+        axis_y_ucu_axes4_in_base_z*ucu_axis_z_x - axis_y_ucu_axes4_in_base_x*ucu_axis_z_z
         )
-        S_dot_r0_z = (
-        S_dot_x*upru_base_frame_xz + S_dot_y*upru_base_frame_yz + S_dot_z*upru_base_frame_zz
+        axis_x_ucu_axes4_z = (
+        axis_y_ucu_axes4_in_base_x*ucu_axis_z_y - axis_y_ucu_axes4_in_base_y*ucu_axis_z_x
         )
-        S_dot_r1_y = -S_dot_r0_x*s_1 - S_dot_r0_y*c_1
-        S_dot_r3_x = S_dot_r0_z*s_2 - S_dot_r1_y*c_2
-        # (upru-V20) rate of joint 1
-        qd_1_t = inv_v_1_r0_y*(S_dot_r0_y*s_1 - S_dot_r0_x*c_1)
-        qd_1_t_2 = inv_root_2*(-S_dot_r0_z*c_2 - S_dot_r1_y*s_2 - qd_1_t*v_1_r0_x)
-        # (upru-V24) angular velocity of link 1
-        omega_1_t = qd_1_t*s_2
-        omega_1_t_2 = c_2*qd_1_t
-        # (upru-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_y = omega_1_t*qd_1_t_2
-        # (upru-V25) angular velocity of link 2
-        omega_2_r1_x = qd_1_t_2*s_4 - c_4*omega_1_t_2
-        omega_2_r1_y = c_4*qd_1_t_2 + omega_1_t_2*s_4
-        # (upru-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_t = c_4*zeta_2_y
-        # (upru-A10) rate of moment direction 1
-        omega_tip_x = (
-        axis_x_upru_axes4_x*omega_x + axis_x_upru_axes4_y*omega_y + axis_x_upru_axes4_z*omega_z
+        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
+        ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4
+        ucu_end_p1_r5_y = ucu_c_4*ucu_end_p1_r1_x - ucu_end_p1_r3_y*ucu_s_4
+        # (ucu-v_1) velocity of the connection point per rate of joint 1
+        ucu_v_1_r0_x = ucu_c_4*ucu_v_1_t_3 - ucu_s_4*ucu_v_1_t_4
+        ucu_v_1_r0_y = ucu_c_4*ucu_v_1_t_4 + ucu_s_4*ucu_v_1_t_3
+        # (ucu-w_1) force part of reciprocal wrench 1
+        ucu_w_1_t_2 = ucu_end_p1_r3_x*ucu_v_1_t + ucu_end_p1_r5_x*ucu_s_2
+        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
+        ucu_n_m1_t = ucu_end_p1_r3_x*ucu_s_4
+        # (ucu-w_1) force part of reciprocal wrench 1
+        inv_ucu_v_1_r0_y = 1.0/ucu_v_1_r0_y
+        # (ucu-w_4) force part of reciprocal wrench 4
+        inv_ucu_end_p1_r5_x = 1.0/ucu_end_p1_r5_x
+        # (ucu-S_dot) velocity of the connection point
+        ucu_S_dot_t = omega_y*ucu_q_in_base_z - omega_z*ucu_q_in_base_y
+        ucu_S_dot_t_2 = omega_z*ucu_q_in_base_x - omega_x*ucu_q_in_base_z
+        ucu_S_dot_t_3 = omega_x*ucu_q_in_base_y - omega_y*ucu_q_in_base_x
+        ucu_S_dot_x = t_dot_x + ucu_S_dot_t
+        ucu_S_dot_y = t_dot_y + ucu_S_dot_t_2
+        ucu_S_dot_z = t_dot_z + ucu_S_dot_t_3
+        ucu_S_dot_r0_x = (
+        ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx +
+            ucu_S_dot_z*ucu_base_frame_zx
         )
-        omega_tip_y = (
-        axis_y_upru_axes4_in_base_x*omega_x + axis_y_upru_axes4_in_base_y*omega_y +
-            axis_y_upru_axes4_in_base_z*omega_z
+        ucu_S_dot_r0_y = (
+        ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy +
+            ucu_S_dot_z*ucu_base_frame_zy
         )
-        omega_tip_z = axis_z_x*omega_x + axis_z_y*omega_y + axis_z_z*omega_z
-        nd_m1_x = end_p1_r5_y*omega_tip_x - end_p1_r5_x*omega_tip_y - end_p1_r5_y*omega_2_r1_x
-        # (upru-A7) acceleration of the connection point at zero joint accelerations
-        bias_t = 2.0*S_dot_r3_x
-        bias_x = bias_t*omega_2_r1_y + root_2*(omega_1_t*omega_2_r1_x + s_4*zeta_2_y)
-        bias_y = root_2*(zeta_2_t + omega_1_t*omega_2_r1_y) - bias_t*omega_2_r1_x
-        # (upru-V20) rate of joint 1
-        qd_1_t_3 = (
-        omega_tip_z - inv_end_p1_r5_x*(end_p1_r3_x*omega_tip_x + qd_1_t*w_1_t_2 - n_m1_t*qd_1_t_2)
+        ucu_S_dot_r0_z = (
+        ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
+            ucu_S_dot_z*ucu_base_frame_zz
         )
-        # (upru-A6) angular acceleration of link 4 at zero joint accelerations
-        beta_4_x = omega_2_r1_y*qd_1_t_3 - zeta_2_t
-        # (upru-V27) angular velocity of link 4
-        omega_4_z = omega_1_t + qd_1_t_3
-        # (upru-A10) rate of moment direction 1
-        nd_m1_z = end_p1_r5_y*omega_tip_z - end_p1_r3_x*omega_tip_y - end_p1_r5_y*omega_4_z
-        # (upru-A11) bias of the angular acceleration along moment direction 1
-        nu_1_t = beta_4_x*end_p1_r3_x + end_p1_r5_x*omega_1_t_2*qd_1_t_2
-        nu_1_t_2 = (
-        nd_m1_x*(omega_2_r1_x - omega_tip_x) + nd_m1_z*(omega_4_z - omega_tip_z) + (omega_2_r1_y -
-            omega_tip_y)*(end_p1_r3_x*omega_4_z + end_p1_r5_x*omega_2_r1_x)
+        ucu_S_dot_r1_y = -ucu_S_dot_r0_x*ucu_s_1 - ucu_S_dot_r0_y*ucu_c_1
+        ucu_S_dot_r3_x = ucu_S_dot_r0_z*ucu_s_2 - ucu_S_dot_r1_y*ucu_c_2
+        # (ucu-qd_4) rate of joint 4
+        ucu_qd_4_t = inv_ucu_v_1_r0_y*(ucu_S_dot_r0_y*ucu_s_1 - ucu_S_dot_r0_x*ucu_c_1)
+        ucu_qd_4_t_2 = (
+        inv_ucu_root_2*(-ucu_S_dot_r0_z*ucu_c_2 - ucu_S_dot_r1_y*ucu_s_2 -
+            ucu_qd_4_t*ucu_v_1_r0_x)
         )
-        nu_1 = -nu_1_t - nu_1_t_2
-        # (upru-A12) acceleration with which the joints turn along moment direction 1
-        etad_1_t = (
-        end_p1_r3_x*(alpha_x*axis_x_upru_axes4_x + alpha_y*axis_x_upru_axes4_y +
-            alpha_z*axis_x_upru_axes4_z) - end_p1_r5_x*(alpha_x*axis_z_x + alpha_y*axis_z_y +
-            alpha_z*axis_z_z)
+        # (ucu-omega_1) angular velocity of link 1
+        ucu_omega_1_t = ucu_qd_4_t*ucu_s_2
+        ucu_omega_1_t_2 = ucu_c_2*ucu_qd_4_t
+        # (ucu-omega_2) angular velocity of link 2
+        ucu_omega_2_r1_x = ucu_qd_4_t_2*ucu_s_4 - ucu_c_4*ucu_omega_1_t_2
+        ucu_omega_2_r1_y = ucu_c_4*ucu_qd_4_t_2 + ucu_omega_1_t_2*ucu_s_4
+        # (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        ucu_zeta_2_y = ucu_omega_1_t*ucu_qd_4_t_2
+        ucu_zeta_2_t = ucu_c_4*ucu_zeta_2_y
+        # (ucu-bias) acceleration of the connection point at zero joint accelerations
+        ucu_bias_t = 2.0*ucu_S_dot_r3_x
+        ucu_bias_x = (
+        ucu_bias_t*ucu_omega_2_r1_y + ucu_root_2*(ucu_omega_1_t*ucu_omega_2_r1_x +
+            ucu_s_4*ucu_zeta_2_y)
         )
-        etad_1 = etad_1_t + nu_1
-        # (upru-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (upru-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        # (upru-A8) acceleration of the connection point left to the joint accelerations
-        rel_x = (
-        S_ddot_x*axis_x_upru_axes4_x + S_ddot_y*axis_x_upru_axes4_y + S_ddot_z*axis_x_upru_axes4_z
-            - bias_x
+        ucu_bias_y = (
+        ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_t*ucu_omega_2_r1_y) - ucu_bias_t*ucu_omega_2_r1_x
         )
-        rel_y = (
-        S_ddot_x*axis_y_upru_axes4_in_base_x + S_ddot_y*axis_y_upru_axes4_in_base_y +
-            S_ddot_z*axis_y_upru_axes4_in_base_z - bias_y
+        # (ucu-nd_m1) rate of moment direction 1
+        ucu_omega_tip_x = (
+        axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y + axis_x_ucu_axes4_z*omega_z
         )
-        rel_z = (
-        S_ddot_x*axis_z_x + S_ddot_y*axis_z_y + S_ddot_z*axis_z_z +
-            root_2*(omega_2_r1_x*omega_2_r1_x + omega_2_r1_y*omega_2_r1_y)
+        ucu_omega_tip_y = (
+        axis_y_ucu_axes4_in_base_x*omega_x + axis_y_ucu_axes4_in_base_y*omega_y +
+            axis_y_ucu_axes4_in_base_z*omega_z
         )
-        # (upru-A13) acceleration of joint 1
-        qdd_1_t = inv_v_1_r0_y*(c_4*rel_y + rel_x*s_4)
-        qdd_1_t_2 = inv_root_2*(qdd_1_t*v_1_r0_x + rel_y*s_4 - c_4*rel_x)
-        qdd_1_t_3 = inv_end_p1_r5_x*(etad_1 + n_m1_t*qdd_1_t_2 + qdd_1_t*w_1_t_2)
+        ucu_omega_tip_z = omega_x*ucu_axis_z_x + omega_y*ucu_axis_z_y + omega_z*ucu_axis_z_z
+        ucu_nd_m1_x = (
+        ucu_end_p1_r5_y*ucu_omega_tip_x - ucu_end_p1_r5_x*ucu_omega_tip_y -
+            ucu_end_p1_r5_y*ucu_omega_2_r1_x
+        )
+        # (ucu-qd_1) rate of joint 1
+        ucu_qd_1_t = (
+        ucu_omega_tip_z - inv_ucu_end_p1_r5_x*(ucu_end_p1_r3_x*ucu_omega_tip_x +
+            ucu_qd_4_t*ucu_w_1_t_2 - ucu_n_m1_t*ucu_qd_4_t_2)
+        )
+        # (ucu-a_p) acceleration of the connection point without its centripetal part
+        ucu_a_p_x = t_ddot_x + alpha_y*ucu_q_in_base_z - alpha_z*ucu_q_in_base_y
+        ucu_a_p_y = t_ddot_y + alpha_z*ucu_q_in_base_x - alpha_x*ucu_q_in_base_z
+        ucu_a_p_z = t_ddot_z + alpha_x*ucu_q_in_base_y - alpha_y*ucu_q_in_base_x
+        # (ucu-S_ddot) acceleration of the connection point
+        ucu_S_ddot_x = ucu_a_p_x + omega_y*ucu_S_dot_t_3 - omega_z*ucu_S_dot_t_2
+        ucu_S_ddot_y = ucu_a_p_y + omega_z*ucu_S_dot_t - omega_x*ucu_S_dot_t_3
+        ucu_S_ddot_z = ucu_a_p_z + omega_x*ucu_S_dot_t_2 - omega_y*ucu_S_dot_t
+        # (ucu-rel) acceleration of the connection point left to the joint accelerations
+        ucu_rel_x = (
+        axis_x_ucu_axes4_x*ucu_S_ddot_x + axis_x_ucu_axes4_y*ucu_S_ddot_y +
+            axis_x_ucu_axes4_z*ucu_S_ddot_z - ucu_bias_x
+        )
+        ucu_rel_y = (
+        axis_y_ucu_axes4_in_base_x*ucu_S_ddot_x + axis_y_ucu_axes4_in_base_y*ucu_S_ddot_y +
+            axis_y_ucu_axes4_in_base_z*ucu_S_ddot_z - ucu_bias_y
+        )
+        ucu_rel_z = (
+        ucu_S_ddot_x*ucu_axis_z_x + ucu_S_ddot_y*ucu_axis_z_y + ucu_S_ddot_z*ucu_axis_z_z +
+            ucu_root_2*(ucu_omega_2_r1_x*ucu_omega_2_r1_x + ucu_omega_2_r1_y*ucu_omega_2_r1_y)
+        )
+        # (ucu-omega_4) angular velocity of link 4
+        ucu_omega_4_z = ucu_omega_1_t + ucu_qd_1_t
+        # (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations
+        ucu_beta_4_x = ucu_omega_2_r1_y*ucu_qd_1_t - ucu_zeta_2_t
+        # (ucu-nd_m1) rate of moment direction 1
+        ucu_nd_m1_z = (
+        ucu_end_p1_r5_y*ucu_omega_tip_z - ucu_end_p1_r3_x*ucu_omega_tip_y -
+            ucu_end_p1_r5_y*ucu_omega_4_z
+        )
+        # (ucu-nu_1) bias of the angular acceleration along moment direction 1
+        ucu_nu_1_t = ucu_beta_4_x*ucu_end_p1_r3_x + ucu_end_p1_r5_x*ucu_omega_1_t_2*ucu_qd_4_t_2
+        ucu_nu_1_t_2 = (
+        ucu_nd_m1_x*(ucu_omega_2_r1_x - ucu_omega_tip_x) + ucu_nd_m1_z*(ucu_omega_4_z -
+            ucu_omega_tip_z) + (ucu_omega_2_r1_y - ucu_omega_tip_y)*(ucu_end_p1_r3_x*ucu_omega_4_z
+            + ucu_end_p1_r5_x*ucu_omega_2_r1_x)
+        )
+        ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2
+        # (ucu-etad_1) acceleration with which the joints turn along moment direction 1
+        ucu_etad_1_t = (
+        ucu_end_p1_r3_x*(alpha_x*axis_x_ucu_axes4_x + alpha_y*axis_x_ucu_axes4_y +
+            alpha_z*axis_x_ucu_axes4_z) - ucu_end_p1_r5_x*(alpha_x*ucu_axis_z_x +
+            alpha_y*ucu_axis_z_y + alpha_z*ucu_axis_z_z)
+        )
+        ucu_etad_1 = ucu_etad_1_t + ucu_nu_1
+        # (ucu-qdd_1) acceleration of joint 1
+        ucu_qdd_1_t = inv_ucu_v_1_r0_y*(ucu_c_4*ucu_rel_y + ucu_rel_x*ucu_s_4)
+        ucu_qdd_1_t_2 = (
+        inv_ucu_root_2*(ucu_qdd_1_t*ucu_v_1_r0_x + ucu_rel_y*ucu_s_4 - ucu_c_4*ucu_rel_x)
+        )
+        ucu_qdd_1_t_3 = (
+        inv_ucu_end_p1_r5_x*(ucu_etad_1 + ucu_n_m1_t*ucu_qdd_1_t_2 + ucu_qdd_1_t*ucu_w_1_t_2)
+        )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_4) >
-            _TOLERANCE * _TOLERANCE * 1.0) & (abs(-end_p1_r5_x) > _TOLERANCE * 1.0) & (abs(root_2)
-            > _TOLERANCE * 0.8) & (abs(v_1_r0_y) > _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(ucu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ucu_rho2_4) >
+            _TOLERANCE * _TOLERANCE * 1.0) & (abs(-ucu_end_p1_r5_x) > _TOLERANCE * 1.0) &
+            (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_r0_y) > _TOLERANCE * 0.8))
         )
-        out_qdd[_qdd_upru[0][leg]] = qdd_1_t
-        out_qdd[_qdd_upru[1][leg]] = -qdd_1_t_2
-        out_qdd[_qdd_upru[2][leg]] = rel_z
-        out_qdd[_qdd_upru[3][leg]] = -qdd_1_t_3
+        out_qdd[_qdd_ucu[0][leg]] = ucu_qdd_1_t
+        out_qdd[_qdd_ucu[1][leg]] = -ucu_qdd_1_t_2
+        out_qdd[_qdd_ucu[2][leg]] = ucu_rel_z
+        out_qdd[_qdd_ucu[3][leg]] = -ucu_qdd_1_t_3
     return ok, (out_qdd,)
 
 
@@ -4316,357 +4699,408 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        J_2_xy, J_2_xz, J_2_yz, J_4_xy, J_4_xz, J_4_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz,
-            Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, branch_1, branch_2, branch_4, g_r0_x, g_r0_y,
-            g_r0_z, h_2_x, h_2_y, h_2_z, h_4_x, h_4_y, h_4_z, upru_base_frame_xx,
-            upru_base_frame_xy, upru_base_frame_xz, upru_base_frame_yx, upru_base_frame_yy,
-            upru_base_frame_yz, upru_base_frame_zx, upru_base_frame_zy, upru_base_frame_zz,
-            upru_base_point_x, upru_base_point_y, upru_base_point_z, upru_link4_mass,
-            upru_platform_joint_axis_platform_x, upru_platform_joint_axis_platform_y,
-            upru_platform_joint_axis_platform_z, upru_platform_point_x, upru_platform_point_y,
-            upru_platform_point_z,
+        ucu_J_2_xy, ucu_J_2_xz, ucu_J_2_yz, ucu_J_4_xy, ucu_J_4_xz, ucu_J_4_yz, ucu_Sigma_2_xx,
+            ucu_Sigma_2_yy, ucu_Sigma_2_zz, ucu_Sigma_4_xx, ucu_Sigma_4_yy, ucu_Sigma_4_zz,
+            ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx,
+            ucu_base_frame_yy, ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy,
+            ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y, ucu_base_point_z, ucu_branch_1,
+            ucu_branch_2, ucu_branch_4, ucu_g_r0_x, ucu_g_r0_y, ucu_g_r0_z, ucu_h_2_x, ucu_h_2_y,
+            ucu_h_2_z, ucu_h_4_x, ucu_h_4_y, ucu_h_4_z, ucu_link4_mass,
+            ucu_platform_joint_axis_platform_x, ucu_platform_joint_axis_platform_y,
+            ucu_platform_joint_axis_platform_z, ucu_platform_point_x, ucu_platform_point_y,
+            ucu_platform_point_z,
         ) = k
-        # (upru-K1) from the base point to the connection point
-        q_in_base_x = (
-        R_xx*upru_platform_point_x + R_xy*upru_platform_point_y + R_xz*upru_platform_point_z
+        # (ucu-S) from the base point to the connection point
+        ucu_q_in_base_x = (
+        R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
-        q_in_base_y = (
-        R_yx*upru_platform_point_x + R_yy*upru_platform_point_y + R_yz*upru_platform_point_z
+        ucu_q_in_base_y = (
+        R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y + R_yz*ucu_platform_point_z
         )
-        q_in_base_z = (
-        R_zx*upru_platform_point_x + R_zy*upru_platform_point_y + R_zz*upru_platform_point_z
+        ucu_q_in_base_z = (
+        R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        S_x = q_in_base_x + t_x - upru_base_point_x
-        S_y = q_in_base_y + t_y - upru_base_point_y
-        S_z = q_in_base_z + t_z - upru_base_point_z
-        # (upru-K2) component along the reference direction
-        px_1 = S_x*upru_base_frame_xx + S_y*upru_base_frame_yx + S_z*upru_base_frame_zx
-        # (upru-K3) component across the reference direction
-        py_1 = S_x*upru_base_frame_xy + S_y*upru_base_frame_yy + S_z*upru_base_frame_zy
-        # (upru-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (upru-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (upru-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*upru_base_frame_xz + S_y*upru_base_frame_yz + S_z*upru_base_frame_zz
-        # (upru-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (upru-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (upru-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (upru-K16) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (upru-K20) component along the reference direction
-        end_p1_r0_x = (
-        upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xx + R_yx*upru_base_frame_yx +
-            R_zx*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xx + R_yy*upru_base_frame_yx
-            + R_zy*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xx + R_yz*upru_base_frame_yx
-            + R_zz*upru_base_frame_zx)
+        ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x
+        ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y
+        ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z
+        # (ucu-px_1) component along the reference direction
+        ucu_px_1 = (
+        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
         )
-        end_p1_r0_y = (
-        upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xy + R_yx*upru_base_frame_yy +
-            R_zx*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xy + R_yy*upru_base_frame_yy
-            + R_zy*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xy + R_yz*upru_base_frame_yy
-            + R_zz*upru_base_frame_zy)
+        # (ucu-py_1) component across the reference direction
+        ucu_py_1 = (
+        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
         )
-        end_p1_r0_z = (
-        upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xz + R_yx*upru_base_frame_yz +
-            R_zx*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xz + R_yy*upru_base_frame_yz
-            + R_zy*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xz + R_yz*upru_base_frame_yz
-            + R_zz*upru_base_frame_zz)
+        # (ucu-rho2_1) squared amplitude
+        ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1
+        # (ucu-root_1) amplitude, with the sign of the branch
+        ucu_root_1 = ucu_branch_1*sqrt(ucu_rho2_1)
+        # (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ucu_xi_1_t = (
+        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
         )
-        # (upru-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (upru-K7) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (upru-K20) component along the reference direction
-        end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x
-        end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1
-        end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
-        end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
-        # (upru-K23) squared amplitude
-        rho2_4 = end_p1_r1_x*end_p1_r1_x + end_p1_r3_y*end_p1_r3_y
-        # (upru-K24) amplitude, with the sign of the branch
-        root_4 = branch_4*sqrt(rho2_4)
-        # (upru-K25) cosine of the angle of joint 4 from its reference direction
-        inv_root_4 = 1.0/root_4
-        c_4 = end_p1_r3_y*inv_root_4
-        # (upru-K26) sine of the angle of joint 4 from its reference direction
-        s_4 = end_p1_r1_x*inv_root_4
-        # (upru-V3) velocity of the connection point per rate of joint 1
-        v_1_t = c_2*c_4
-        v_1_t_2 = c_2*s_4
-        v_1_t_3 = root_2*v_1_t_2
-        v_1_t_4 = root_2*v_1_t
-        # (upru-V7) force part of reciprocal wrench 1
-        axis_z_x = S_x*inv_root_2
-        axis_z_y = S_y*inv_root_2
-        axis_z_z = S_z*inv_root_2
-        w_1_t = s_2*s_4
-        axis_y_upru_axes4_r4_x = -c_1*c_4 - s_1*w_1_t
-        axis_y_upru_axes4_r4_y = c_4*s_1 - c_1*w_1_t
-        axis_y_upru_axes4_in_base_x = (
-        axis_y_upru_axes4_r4_x*upru_base_frame_xx + axis_y_upru_axes4_r4_y*upru_base_frame_xy +
-            upru_base_frame_xz*v_1_t_2
+        # (ucu-rho2_2) squared amplitude
+        ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t
+        # (ucu-root_2) amplitude, with the sign of the branch
+        ucu_root_2 = ucu_branch_2*sqrt(ucu_rho2_2)
+        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ucu_root_2 = 1.0/ucu_root_2
+        ucu_c_2 = inv_ucu_root_2*ucu_root_1
+        # (ucu-s_2) sine of the angle of joint 2 from its reference direction
+        ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t
+        # (ucu-px_4) component along the reference direction
+        ucu_end_p1_r0_x = (
+        ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
+            R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
+            R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
+            ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
+            R_zz*ucu_base_frame_zx)
         )
-        axis_y_upru_axes4_in_base_y = (
-        axis_y_upru_axes4_r4_x*upru_base_frame_yx + axis_y_upru_axes4_r4_y*upru_base_frame_yy +
-            upru_base_frame_yz*v_1_t_2
+        ucu_end_p1_r0_y = (
+        ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
+            R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
+            R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
+            ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
+            R_zz*ucu_base_frame_zy)
         )
-        axis_y_upru_axes4_in_base_z = (
-        axis_y_upru_axes4_r4_x*upru_base_frame_zx + axis_y_upru_axes4_r4_y*upru_base_frame_zy +
-            upru_base_frame_zz*v_1_t_2
+        ucu_end_p1_r0_z = (
+        ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
+            R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
+            R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
+            ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
+            R_zz*ucu_base_frame_zz)
         )
-        axis_x_upru_axes4_x = (
-        axis_y_upru_axes4_in_base_y*axis_z_z - axis_y_upru_axes4_in_base_z*axis_z_y
+        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ucu_root_1 = 1.0/ucu_root_1
+        ucu_c_1 = inv_ucu_root_1*ucu_py_1
+        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
+        ucu_s_1 = inv_ucu_root_1*ucu_px_1
+        # (ucu-px_4) component along the reference direction
+        ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x
+        ucu_end_p1_r1_y = -ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1
+        ucu_end_p1_r3_x = ucu_end_p1_r0_z*ucu_s_2 - ucu_c_2*ucu_end_p1_r1_y
+        ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_end_p1_r1_y*ucu_s_2
+        # (ucu-rho2_4) squared amplitude
+        ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y
+        # (ucu-root_4) amplitude, with the sign of the branch
+        ucu_root_4 = ucu_branch_4*sqrt(ucu_rho2_4)
+        # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
+        inv_ucu_root_4 = 1.0/ucu_root_4
+        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y
+        # (ucu-s_4) sine of the angle of joint 4 from its reference direction
+        ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x
+        # (ucu-v_1) velocity of the connection point per rate of joint 1
+        ucu_v_1_t = ucu_c_2*ucu_c_4
+        ucu_v_1_t_2 = ucu_c_2*ucu_s_4
+        ucu_v_1_t_3 = ucu_root_2*ucu_v_1_t_2
+        ucu_v_1_t_4 = ucu_root_2*ucu_v_1_t
+        # (ucu-w_1) force part of reciprocal wrench 1
+        ucu_axis_z_x = inv_ucu_root_2*ucu_S_x
+        ucu_axis_z_y = inv_ucu_root_2*ucu_S_y
+        ucu_axis_z_z = inv_ucu_root_2*ucu_S_z
+        ucu_w_1_t = ucu_s_2*ucu_s_4
+        axis_y_ucu_axes4_r4_x = -ucu_c_1*ucu_c_4 - ucu_s_1*ucu_w_1_t
+        axis_y_ucu_axes4_r4_y = ucu_c_4*ucu_s_1 - ucu_c_1*ucu_w_1_t
+        axis_y_ucu_axes4_in_base_x = (
+        axis_y_ucu_axes4_r4_x*ucu_base_frame_xx + axis_y_ucu_axes4_r4_y*ucu_base_frame_xy +
+            ucu_base_frame_xz*ucu_v_1_t_2
         )
-        axis_x_upru_axes4_y = (
-        axis_y_upru_axes4_in_base_z*axis_z_x - axis_y_upru_axes4_in_base_x*axis_z_z
+        axis_y_ucu_axes4_in_base_y = (
+        axis_y_ucu_axes4_r4_x*ucu_base_frame_yx + axis_y_ucu_axes4_r4_y*ucu_base_frame_yy +
+            ucu_base_frame_yz*ucu_v_1_t_2
         )
-        axis_x_upru_axes4_z = (
-        axis_y_upru_axes4_in_base_x*axis_z_y - axis_y_upru_axes4_in_base_y*axis_z_x
+        axis_y_ucu_axes4_in_base_z = (
+        axis_y_ucu_axes4_r4_x*ucu_base_frame_zx + axis_y_ucu_axes4_r4_y*ucu_base_frame_zy +
+            ucu_base_frame_zz*ucu_v_1_t_2
         )
-        # (upru-V6) direction 1 of the moment that the platform joint transmits
-        end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4
-        end_p1_r5_y = c_4*end_p1_r1_x - end_p1_r3_y*s_4
-        # (upru-V3) velocity of the connection point per rate of joint 1
-        v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4
-        v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3
-        # (upru-V7) force part of reciprocal wrench 1
-        w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2
-        # (upru-V6) direction 1 of the moment that the platform joint transmits
-        n_m1_t = end_p1_r3_x*s_4
-        # (upru-V7) force part of reciprocal wrench 1
-        inv_v_1_r0_y = 1.0/v_1_r0_y
-        # (upru-V13) force part of reciprocal wrench 4
-        inv_end_p1_r5_x = 1.0/end_p1_r5_x
-        # (upru-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-        g_r3_x = g_r0_z*s_2 - c_2*g_r1_y
-        g_r3_y = -c_2*g_r0_z - g_r1_y*s_2
-        # (upru-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_r0_x = (
-        S_dot_x*upru_base_frame_xx + S_dot_y*upru_base_frame_yx + S_dot_z*upru_base_frame_zx
+        axis_x_ucu_axes4_x = (
+        axis_y_ucu_axes4_in_base_y*ucu_axis_z_z - axis_y_ucu_axes4_in_base_z*ucu_axis_z_y
         )
-        S_dot_r0_y = (
-        S_dot_x*upru_base_frame_xy + S_dot_y*upru_base_frame_yy + S_dot_z*upru_base_frame_zy
+        axis_x_ucu_axes4_y = (
+        axis_y_ucu_axes4_in_base_z*ucu_axis_z_x - axis_y_ucu_axes4_in_base_x*ucu_axis_z_z
         )
-        S_dot_r0_z = (
-        S_dot_x*upru_base_frame_xz + S_dot_y*upru_base_frame_yz + S_dot_z*upru_base_frame_zz
+        axis_x_ucu_axes4_z = (
+        axis_y_ucu_axes4_in_base_x*ucu_axis_z_y - axis_y_ucu_axes4_in_base_y*ucu_axis_z_x
         )
-        S_dot_r1_y = -S_dot_r0_x*s_1 - S_dot_r0_y*c_1
-        S_dot_r3_x = S_dot_r0_z*s_2 - S_dot_r1_y*c_2
-        # (upru-V20) rate of joint 1
-        qd_1_t = inv_v_1_r0_y*(S_dot_r0_y*s_1 - S_dot_r0_x*c_1)
-        qd_1_t_2 = inv_root_2*(-S_dot_r0_z*c_2 - S_dot_r1_y*s_2 - qd_1_t*v_1_r0_x)
-        # (upru-V24) angular velocity of link 1
-        omega_1_t = qd_1_t*s_2
-        omega_1_t_2 = c_2*qd_1_t
-        # (upru-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_x = omega_1_t_2*qd_1_t_2
-        zeta_2_y = omega_1_t*qd_1_t_2
-        # (upru-V25) angular velocity of link 2
-        omega_2_r1_x = qd_1_t_2*s_4 - c_4*omega_1_t_2
-        omega_2_r1_y = c_4*qd_1_t_2 + omega_1_t_2*s_4
-        # (upru-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_t = c_4*zeta_2_y
-        # (upru-A10) rate of moment direction 1
-        omega_tip_x = (
-        axis_x_upru_axes4_x*omega_x + axis_x_upru_axes4_y*omega_y + axis_x_upru_axes4_z*omega_z
+        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
+        ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4
+        ucu_end_p1_r5_y = ucu_c_4*ucu_end_p1_r1_x - ucu_end_p1_r3_y*ucu_s_4
+        # (ucu-v_1) velocity of the connection point per rate of joint 1
+        ucu_v_1_r0_x = ucu_c_4*ucu_v_1_t_3 - ucu_s_4*ucu_v_1_t_4
+        ucu_v_1_r0_y = ucu_c_4*ucu_v_1_t_4 + ucu_s_4*ucu_v_1_t_3
+        # (ucu-w_1) force part of reciprocal wrench 1
+        ucu_w_1_t_2 = ucu_end_p1_r3_x*ucu_v_1_t + ucu_end_p1_r5_x*ucu_s_2
+        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
+        ucu_n_m1_t = ucu_end_p1_r3_x*ucu_s_4
+        # (ucu-w_1) force part of reciprocal wrench 1
+        inv_ucu_v_1_r0_y = 1.0/ucu_v_1_r0_y
+        # (ucu-w_4) force part of reciprocal wrench 4
+        inv_ucu_end_p1_r5_x = 1.0/ucu_end_p1_r5_x
+        # (ucu-S_dot) velocity of the connection point
+        ucu_S_dot_t = omega_y*ucu_q_in_base_z - omega_z*ucu_q_in_base_y
+        ucu_S_dot_t_2 = omega_z*ucu_q_in_base_x - omega_x*ucu_q_in_base_z
+        ucu_S_dot_t_3 = omega_x*ucu_q_in_base_y - omega_y*ucu_q_in_base_x
+        ucu_S_dot_x = t_dot_x + ucu_S_dot_t
+        ucu_S_dot_y = t_dot_y + ucu_S_dot_t_2
+        ucu_S_dot_z = t_dot_z + ucu_S_dot_t_3
+        ucu_S_dot_r0_x = (
+        ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx +
+            ucu_S_dot_z*ucu_base_frame_zx
         )
-        omega_tip_y = (
-        axis_y_upru_axes4_in_base_x*omega_x + axis_y_upru_axes4_in_base_y*omega_y +
-            axis_y_upru_axes4_in_base_z*omega_z
+        ucu_S_dot_r0_y = (
+        ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy +
+            ucu_S_dot_z*ucu_base_frame_zy
         )
-        omega_tip_z = axis_z_x*omega_x + axis_z_y*omega_y + axis_z_z*omega_z
-        nd_m1_x = end_p1_r5_y*omega_tip_x - end_p1_r5_x*omega_tip_y - end_p1_r5_y*omega_2_r1_x
-        # (upru-V26) centripetal tensor of link 2
-        W_2_t = omega_1_t*omega_1_t
-        W_2_t_2 = omega_1_t_2*omega_1_t_2
-        W_2_t_3 = qd_1_t_2*qd_1_t_2
-        W_2_xy = omega_1_t*omega_1_t_2
-        W_2_t_4 = omega_2_r1_x*omega_2_r1_x
-        W_2_t_5 = omega_2_r1_y*omega_2_r1_y
-        W_2_xy_2 = omega_2_r1_x*omega_2_r1_y
-        # (upru-A7) acceleration of the connection point at zero joint accelerations
-        bias_t = 2.0*S_dot_r3_x
-        bias_x = bias_t*omega_2_r1_y + root_2*(omega_1_t*omega_2_r1_x + s_4*zeta_2_y)
-        bias_y = root_2*(zeta_2_t + omega_1_t*omega_2_r1_y) - bias_t*omega_2_r1_x
-        # (upru-V20) rate of joint 1
-        qd_1_t_3 = (
-        omega_tip_z - inv_end_p1_r5_x*(end_p1_r3_x*omega_tip_x + qd_1_t*w_1_t_2 - n_m1_t*qd_1_t_2)
+        ucu_S_dot_r0_z = (
+        ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
+            ucu_S_dot_z*ucu_base_frame_zz
         )
-        # (upru-A5) angular acceleration of link 4 from the turning of axis 4
-        zeta_4_x = omega_2_r1_y*qd_1_t_3
-        # (upru-A6) angular acceleration of link 4 at zero joint accelerations
-        beta_4_x = zeta_4_x - zeta_2_t
-        # (upru-V27) angular velocity of link 4
-        omega_4_z = omega_1_t + qd_1_t_3
-        # (upru-A10) rate of moment direction 1
-        nd_m1_z = end_p1_r5_y*omega_tip_z - end_p1_r3_x*omega_tip_y - end_p1_r5_y*omega_4_z
-        # (upru-A11) bias of the angular acceleration along moment direction 1
-        nu_1_t = beta_4_x*end_p1_r3_x + end_p1_r5_x*zeta_2_x
-        nu_1_t_2 = (
-        nd_m1_x*(omega_2_r1_x - omega_tip_x) + nd_m1_z*(omega_4_z - omega_tip_z) + (omega_2_r1_y -
-            omega_tip_y)*(end_p1_r3_x*omega_4_z + end_p1_r5_x*omega_2_r1_x)
+        ucu_S_dot_r1_y = -ucu_S_dot_r0_x*ucu_s_1 - ucu_S_dot_r0_y*ucu_c_1
+        ucu_S_dot_r3_x = ucu_S_dot_r0_z*ucu_s_2 - ucu_S_dot_r1_y*ucu_c_2
+        # (ucu-qd_4) rate of joint 4
+        ucu_qd_4_t = inv_ucu_v_1_r0_y*(ucu_S_dot_r0_y*ucu_s_1 - ucu_S_dot_r0_x*ucu_c_1)
+        ucu_qd_4_t_2 = (
+        inv_ucu_root_2*(-ucu_S_dot_r0_z*ucu_c_2 - ucu_S_dot_r1_y*ucu_s_2 -
+            ucu_qd_4_t*ucu_v_1_r0_x)
         )
-        nu_1 = -nu_1_t - nu_1_t_2
-        # (upru-A12) acceleration with which the joints turn along moment direction 1
-        etad_1_t = (
-        end_p1_r3_x*(alpha_x*axis_x_upru_axes4_x + alpha_y*axis_x_upru_axes4_y +
-            alpha_z*axis_x_upru_axes4_z) - end_p1_r5_x*(alpha_x*axis_z_x + alpha_y*axis_z_y +
-            alpha_z*axis_z_z)
+        # (ucu-omega_1) angular velocity of link 1
+        ucu_omega_1_t = ucu_qd_4_t*ucu_s_2
+        ucu_omega_1_t_2 = ucu_c_2*ucu_qd_4_t
+        # (ucu-omega_2) angular velocity of link 2
+        ucu_omega_2_r1_x = ucu_qd_4_t_2*ucu_s_4 - ucu_c_4*ucu_omega_1_t_2
+        ucu_omega_2_r1_y = ucu_c_4*ucu_qd_4_t_2 + ucu_omega_1_t_2*ucu_s_4
+        # (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        ucu_zeta_2_x = ucu_omega_1_t_2*ucu_qd_4_t_2
+        ucu_zeta_2_y = ucu_omega_1_t*ucu_qd_4_t_2
+        # (ucu-W_2) centripetal tensor of link 2
+        ucu_W_2_t = ucu_omega_1_t*ucu_omega_1_t
+        ucu_W_2_t_2 = ucu_omega_1_t_2*ucu_omega_1_t_2
+        ucu_W_2_t_3 = ucu_qd_4_t_2*ucu_qd_4_t_2
+        ucu_W_2_xy = ucu_omega_1_t*ucu_omega_1_t_2
+        # (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        ucu_zeta_2_t = ucu_c_4*ucu_zeta_2_y
+        # (ucu-W_2) centripetal tensor of link 2
+        ucu_W_2_t_4 = ucu_omega_2_r1_x*ucu_omega_2_r1_x
+        ucu_W_2_t_5 = ucu_omega_2_r1_y*ucu_omega_2_r1_y
+        ucu_W_2_xy_2 = ucu_omega_2_r1_x*ucu_omega_2_r1_y
+        # (ucu-bias) acceleration of the connection point at zero joint accelerations
+        ucu_bias_t = 2.0*ucu_S_dot_r3_x
+        ucu_bias_x = (
+        ucu_bias_t*ucu_omega_2_r1_y + ucu_root_2*(ucu_omega_1_t*ucu_omega_2_r1_x +
+            ucu_s_4*ucu_zeta_2_y)
         )
-        etad_1 = etad_1_t + nu_1
-        # (upru-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (upru-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        S_ddot_tip_x = (
-        S_ddot_x*axis_x_upru_axes4_x + S_ddot_y*axis_x_upru_axes4_y + S_ddot_z*axis_x_upru_axes4_z
+        ucu_bias_y = (
+        ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_t*ucu_omega_2_r1_y) - ucu_bias_t*ucu_omega_2_r1_x
         )
-        S_ddot_tip_y = (
-        S_ddot_x*axis_y_upru_axes4_in_base_x + S_ddot_y*axis_y_upru_axes4_in_base_y +
-            S_ddot_z*axis_y_upru_axes4_in_base_z
+        # (ucu-nd_m1) rate of moment direction 1
+        ucu_omega_tip_x = (
+        axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y + axis_x_ucu_axes4_z*omega_z
         )
-        # (upru-A8) acceleration of the connection point left to the joint accelerations
-        rel_x = S_ddot_tip_x - bias_x
-        rel_y = S_ddot_tip_y - bias_y
-        # (upru-A13) acceleration of joint 1
-        qdd_1_t = inv_v_1_r0_y*(c_4*rel_y + rel_x*s_4)
-        qdd_1_t_2 = inv_root_2*(qdd_1_t*v_1_r0_x + rel_y*s_4 - c_4*rel_x)
-        # (upru-N3) acceleration of the reference point of link 4, less gravity
-        acc_4_x = (
-        S_ddot_tip_x - axis_x_upru_axes4_x*gravity_x - axis_x_upru_axes4_y*gravity_y -
-            axis_x_upru_axes4_z*gravity_z
+        ucu_omega_tip_y = (
+        axis_y_ucu_axes4_in_base_x*omega_x + axis_y_ucu_axes4_in_base_y*omega_y +
+            axis_y_ucu_axes4_in_base_z*omega_z
         )
-        acc_4_y = (
-        S_ddot_tip_y - axis_y_upru_axes4_in_base_x*gravity_x -
-            axis_y_upru_axes4_in_base_y*gravity_y - axis_y_upru_axes4_in_base_z*gravity_z
+        ucu_omega_tip_z = omega_x*ucu_axis_z_x + omega_y*ucu_axis_z_y + omega_z*ucu_axis_z_z
+        ucu_nd_m1_x = (
+        ucu_end_p1_r5_y*ucu_omega_tip_x - ucu_end_p1_r5_x*ucu_omega_tip_y -
+            ucu_end_p1_r5_y*ucu_omega_2_r1_x
         )
-        acc_4_z = (
-        S_ddot_x*axis_z_x + S_ddot_y*axis_z_y + S_ddot_z*axis_z_z - axis_z_x*gravity_x -
-            axis_z_y*gravity_y - axis_z_z*gravity_z
+        # (ucu-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        ucu_g_r1_x = ucu_g_r0_y*ucu_s_1 - ucu_c_1*ucu_g_r0_x
+        ucu_g_r1_y = -ucu_c_1*ucu_g_r0_y - ucu_g_r0_x*ucu_s_1
+        ucu_g_r3_x = ucu_g_r0_z*ucu_s_2 - ucu_c_2*ucu_g_r1_y
+        ucu_g_r3_y = -ucu_c_2*ucu_g_r0_z - ucu_g_r1_y*ucu_s_2
+        # (ucu-qd_1) rate of joint 1
+        ucu_qd_1_t = (
+        ucu_omega_tip_z - inv_ucu_end_p1_r5_x*(ucu_end_p1_r3_x*ucu_omega_tip_x +
+            ucu_qd_4_t*ucu_w_1_t_2 - ucu_n_m1_t*ucu_qd_4_t_2)
         )
-        # (upru-A20) angular acceleration of link 1
-        alpha_1_t = qdd_1_t*s_2
-        alpha_1_t_2 = c_2*qdd_1_t
-        # (upru-A22) angular acceleration of link 2
-        alpha_2_x = alpha_1_t - zeta_2_x
-        alpha_2_y = -alpha_1_t_2 - zeta_2_y
-        # (upru-A24) acceleration tensor of link 2
-        B_2_xy = qdd_1_t_2 - W_2_xy
-        B_2_yx = -W_2_xy - qdd_1_t_2
-        B_2_zx = zeta_2_y - alpha_2_y
-        B_2_zy = alpha_2_x - zeta_2_x
-        # (upru-N29) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_x = (
-        B_2_yx*J_2_xy + B_2_zx*J_2_xz + B_2_zy*Sigma_2_yy + Sigma_2_zz*alpha_1_t + g_r1_x*h_2_z +
-            g_r3_y*h_2_y - J_2_yz*(W_2_t_2 - W_2_t_3)
+        # (ucu-a_p) acceleration of the connection point without its centripetal part
+        ucu_a_p_x = t_ddot_x + alpha_y*ucu_q_in_base_z - alpha_z*ucu_q_in_base_y
+        ucu_a_p_y = t_ddot_y + alpha_z*ucu_q_in_base_x - alpha_x*ucu_q_in_base_z
+        ucu_a_p_z = t_ddot_z + alpha_x*ucu_q_in_base_y - alpha_y*ucu_q_in_base_x
+        # (ucu-S_ddot) acceleration of the connection point
+        ucu_S_ddot_x = ucu_a_p_x + omega_y*ucu_S_dot_t_3 - omega_z*ucu_S_dot_t_2
+        ucu_S_ddot_y = ucu_a_p_y + omega_z*ucu_S_dot_t - omega_x*ucu_S_dot_t_3
+        ucu_S_ddot_z = ucu_a_p_z + omega_x*ucu_S_dot_t_2 - omega_y*ucu_S_dot_t
+        ucu_S_ddot_tip_x = (
+        axis_x_ucu_axes4_x*ucu_S_ddot_x + axis_x_ucu_axes4_y*ucu_S_ddot_y +
+            axis_x_ucu_axes4_z*ucu_S_ddot_z
         )
-        mu_2_y = (
-        B_2_xy*J_2_yz + g_r1_x*h_2_x - B_2_zx*Sigma_2_xx - B_2_zy*J_2_xz - J_2_xy*(W_2_t -
-            W_2_t_3) - Sigma_2_zz*alpha_1_t_2 - g_r3_x*h_2_y
+        ucu_S_ddot_tip_y = (
+        axis_y_ucu_axes4_in_base_x*ucu_S_ddot_x + axis_y_ucu_axes4_in_base_y*ucu_S_ddot_y +
+            axis_y_ucu_axes4_in_base_z*ucu_S_ddot_z
         )
-        mu_2_z = (
-        B_2_yx*Sigma_2_xx + J_2_xy*alpha_1_t + J_2_yz*alpha_1_t_2 - B_2_xy*Sigma_2_yy -
-            J_2_xz*(W_2_t - W_2_t_2) - g_r3_x*h_2_z - g_r3_y*h_2_x
+        # (ucu-rel) acceleration of the connection point left to the joint accelerations
+        ucu_rel_x = ucu_S_ddot_tip_x - ucu_bias_x
+        ucu_rel_y = ucu_S_ddot_tip_y - ucu_bias_y
+        # (ucu-omega_4) angular velocity of link 4
+        ucu_omega_4_z = ucu_omega_1_t + ucu_qd_1_t
+        # (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4
+        ucu_zeta_4_x = ucu_omega_2_r1_y*ucu_qd_1_t
+        # (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations
+        ucu_beta_4_x = ucu_zeta_4_x - ucu_zeta_2_t
+        # (ucu-nd_m1) rate of moment direction 1
+        ucu_nd_m1_z = (
+        ucu_end_p1_r5_y*ucu_omega_tip_z - ucu_end_p1_r3_x*ucu_omega_tip_y -
+            ucu_end_p1_r5_y*ucu_omega_4_z
         )
-        # (upru-A26) angular acceleration of link 4
-        alpha_4_x = zeta_4_x + alpha_2_y*c_4 - qdd_1_t_2*s_4
-        alpha_4_y = -alpha_2_y*s_4 - c_4*qdd_1_t_2 - omega_2_r1_x*qd_1_t_3
-        alpha_4_z = alpha_2_x - inv_end_p1_r5_x*(etad_1 + n_m1_t*qdd_1_t_2 + qdd_1_t*w_1_t_2)
-        # (upru-V28) centripetal tensor of link 4
-        W_4_t = omega_4_z*omega_4_z
-        W_4_xz = omega_2_r1_x*omega_4_z
-        W_4_yz = omega_2_r1_y*omega_4_z
-        # (upru-A30) acceleration tensor of link 4
-        B_4_xy = W_2_xy_2 - alpha_4_z
-        B_4_xz = W_4_xz + alpha_4_y
-        B_4_yx = W_2_xy_2 + alpha_4_z
-        B_4_yz = W_4_yz - alpha_4_x
-        B_4_zx = W_4_xz - alpha_4_y
-        B_4_zy = W_4_yz + alpha_4_x
-        # (upru-N21) inertia moment of the links that turn with link 4, about their reference points
-        mu_4_x = (
-        B_4_yx*J_4_xy + B_4_zy*Sigma_4_yy + J_4_xz*(W_2_t_5 - W_4_t) + acc_4_z*h_4_z -
-            B_4_yz*Sigma_4_zz - B_4_zx*J_4_yz - acc_4_y*h_4_x
+        # (ucu-nu_1) bias of the angular acceleration along moment direction 1
+        ucu_nu_1_t = ucu_beta_4_x*ucu_end_p1_r3_x + ucu_end_p1_r5_x*ucu_zeta_2_x
+        ucu_nu_1_t_2 = (
+        ucu_nd_m1_x*(ucu_omega_2_r1_x - ucu_omega_tip_x) + ucu_nd_m1_z*(ucu_omega_4_z -
+            ucu_omega_tip_z) + (ucu_omega_2_r1_y - ucu_omega_tip_y)*(ucu_end_p1_r3_x*ucu_omega_4_z
+            + ucu_end_p1_r5_x*ucu_omega_2_r1_x)
         )
-        mu_4_y = (
-        B_4_xz*Sigma_4_zz + B_4_zy*J_4_yz + acc_4_x*h_4_x - B_4_xy*J_4_xz - B_4_zx*Sigma_4_xx -
-            J_4_xy*(W_2_t_4 - W_4_t) - acc_4_z*h_4_y
+        ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2
+        # (ucu-etad_1) acceleration with which the joints turn along moment direction 1
+        ucu_etad_1_t = (
+        ucu_end_p1_r3_x*(alpha_x*axis_x_ucu_axes4_x + alpha_y*axis_x_ucu_axes4_y +
+            alpha_z*axis_x_ucu_axes4_z) - ucu_end_p1_r5_x*(alpha_x*ucu_axis_z_x +
+            alpha_y*ucu_axis_z_y + alpha_z*ucu_axis_z_z)
         )
-        mu_4_z = (
-        B_4_xz*J_4_xz + B_4_yx*Sigma_4_xx + J_4_yz*(W_2_t_4 - W_2_t_5) + acc_4_y*h_4_y -
-            B_4_xy*Sigma_4_yy - B_4_yz*J_4_xy - acc_4_x*h_4_z
+        ucu_etad_1 = ucu_etad_1_t + ucu_nu_1
+        # (ucu-qdd_1) acceleration of joint 1
+        ucu_qdd_1_t = inv_ucu_v_1_r0_y*(ucu_c_4*ucu_rel_y + ucu_rel_x*ucu_s_4)
+        ucu_qdd_1_t_2 = (
+        inv_ucu_root_2*(ucu_qdd_1_t*ucu_v_1_r0_x + ucu_rel_y*ucu_s_4 - ucu_c_4*ucu_rel_x)
         )
-        # (upru-N31) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_x = mu_2_x + mu_4_z
-        N_2_y = mu_2_y + c_4*mu_4_x - mu_4_y*s_4
-        N_2_z = mu_2_z + c_4*mu_4_y + mu_4_x*s_4
-        # (upru-N41) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_t = inv_end_p1_r5_x*mu_4_z
-        G_t_2 = inv_root_2*(N_2_z + G_t*n_m1_t)
-        G_t_3 = inv_v_1_r0_y*(G_t*w_1_t_2 + G_t_2*v_1_r0_x + N_2_y*c_2 - N_2_x*s_2)
-        # (upru-N53) leg force on the platform without actuation and without the mass at the connection point
-        c_x = G_t_3*s_4 + h_4_y*(W_2_t_5 + W_4_t) - B_4_xy*h_4_z - B_4_xz*h_4_x - G_t_2*c_4
-        c_y = G_t_2*s_4 + G_t_3*c_4 + h_4_z*(W_2_t_4 + W_4_t) - B_4_yx*h_4_y - B_4_yz*h_4_x
-        # (upru-N63) leg force on the platform without actuation, the last link's mass included
-        c_true_x = c_x - acc_4_x*upru_link4_mass
-        c_true_y = c_y - acc_4_y*upru_link4_mass
-        c_true_z = (
-        h_4_x*(W_2_t_4 + W_2_t_5) - B_4_zx*h_4_y - B_4_zy*h_4_z - acc_4_z*upru_link4_mass
+        # (ucu-acc_4) acceleration of the reference point of link 4, less gravity
+        ucu_acc_4_x = (
+        ucu_S_ddot_tip_x - axis_x_ucu_axes4_x*gravity_x - axis_x_ucu_axes4_y*gravity_y -
+            axis_x_ucu_axes4_z*gravity_z
         )
-        c_true_in_base_x = (
-        axis_x_upru_axes4_x*c_true_x + axis_y_upru_axes4_in_base_x*c_true_y + axis_z_x*c_true_z
+        ucu_acc_4_y = (
+        ucu_S_ddot_tip_y - axis_y_ucu_axes4_in_base_x*gravity_x -
+            axis_y_ucu_axes4_in_base_y*gravity_y - axis_y_ucu_axes4_in_base_z*gravity_z
         )
-        c_true_in_base_y = (
-        axis_x_upru_axes4_y*c_true_x + axis_y_upru_axes4_in_base_y*c_true_y + axis_z_y*c_true_z
+        ucu_acc_4_z = (
+        ucu_S_ddot_x*ucu_axis_z_x + ucu_S_ddot_y*ucu_axis_z_y + ucu_S_ddot_z*ucu_axis_z_z -
+            gravity_x*ucu_axis_z_x - gravity_y*ucu_axis_z_y - gravity_z*ucu_axis_z_z
         )
-        c_true_in_base_z = (
-        axis_x_upru_axes4_z*c_true_x + axis_y_upru_axes4_in_base_z*c_true_y + axis_z_z*c_true_z
+        # (ucu-alpha_1) angular acceleration of link 1
+        ucu_alpha_1_t = ucu_qdd_1_t*ucu_s_2
+        ucu_alpha_1_t_2 = ucu_c_2*ucu_qdd_1_t
+        # (ucu-alpha_2) angular acceleration of link 2
+        ucu_alpha_2_x = ucu_alpha_1_t - ucu_zeta_2_x
+        ucu_alpha_2_y = -ucu_alpha_1_t_2 - ucu_zeta_2_y
+        # (ucu-alpha_4) angular acceleration of link 4
+        ucu_alpha_4_x = ucu_zeta_4_x + ucu_alpha_2_y*ucu_c_4 - ucu_qdd_1_t_2*ucu_s_4
+        ucu_alpha_4_y = (
+        -ucu_alpha_2_y*ucu_s_4 - ucu_c_4*ucu_qdd_1_t_2 - ucu_omega_2_r1_x*ucu_qd_1_t
         )
-        # (upru-N49) moment at the connection point that balances the leg's inertia and weight along all freedoms
-        G_m_x = G_t*end_p1_r3_x
-        # (upru-N58) moment of the leg on the platform without actuation
-        c_m_in_base_x = G_m_x*axis_x_upru_axes4_x - axis_z_x*mu_4_z
-        c_m_in_base_y = G_m_x*axis_x_upru_axes4_y - axis_z_y*mu_4_z
-        c_m_in_base_z = G_m_x*axis_x_upru_axes4_z - axis_z_z*mu_4_z
+        ucu_alpha_4_z = (
+        ucu_alpha_2_x - inv_ucu_end_p1_r5_x*(ucu_etad_1 + ucu_n_m1_t*ucu_qdd_1_t_2 +
+            ucu_qdd_1_t*ucu_w_1_t_2)
+        )
+        # (ucu-W_4) centripetal tensor of link 4
+        ucu_W_4_t = ucu_omega_4_z*ucu_omega_4_z
+        ucu_W_4_xz = ucu_omega_2_r1_x*ucu_omega_4_z
+        ucu_W_4_yz = ucu_omega_2_r1_y*ucu_omega_4_z
+        # (ucu-B_4) acceleration tensor of link 4
+        ucu_B_4_xy = ucu_W_2_xy_2 - ucu_alpha_4_z
+        ucu_B_4_xz = ucu_W_4_xz + ucu_alpha_4_y
+        ucu_B_4_yx = ucu_W_2_xy_2 + ucu_alpha_4_z
+        ucu_B_4_yz = ucu_W_4_yz - ucu_alpha_4_x
+        ucu_B_4_zx = ucu_W_4_xz - ucu_alpha_4_y
+        ucu_B_4_zy = ucu_W_4_yz + ucu_alpha_4_x
+        # (ucu-mu_4) inertia moment of the links that turn with link 4, about their reference points
+        ucu_mu_4_x = (
+        ucu_B_4_yx*ucu_J_4_xy + ucu_B_4_zy*ucu_Sigma_4_yy + ucu_J_4_xz*(ucu_W_2_t_5 - ucu_W_4_t) +
+            ucu_acc_4_z*ucu_h_4_z - ucu_B_4_yz*ucu_Sigma_4_zz - ucu_B_4_zx*ucu_J_4_yz -
+            ucu_acc_4_y*ucu_h_4_x
+        )
+        ucu_mu_4_y = (
+        ucu_B_4_xz*ucu_Sigma_4_zz + ucu_B_4_zy*ucu_J_4_yz + ucu_acc_4_x*ucu_h_4_x -
+            ucu_B_4_xy*ucu_J_4_xz - ucu_B_4_zx*ucu_Sigma_4_xx - ucu_J_4_xy*(ucu_W_2_t_4 -
+            ucu_W_4_t) - ucu_acc_4_z*ucu_h_4_y
+        )
+        ucu_mu_4_z = (
+        ucu_B_4_xz*ucu_J_4_xz + ucu_B_4_yx*ucu_Sigma_4_xx + ucu_J_4_yz*(ucu_W_2_t_4 - ucu_W_2_t_5)
+            + ucu_acc_4_y*ucu_h_4_y - ucu_B_4_xy*ucu_Sigma_4_yy - ucu_B_4_yz*ucu_J_4_xy -
+            ucu_acc_4_x*ucu_h_4_z
+        )
+        # (ucu-B_2) acceleration tensor of link 2
+        ucu_B_2_xy = ucu_qdd_1_t_2 - ucu_W_2_xy
+        ucu_B_2_yx = -ucu_W_2_xy - ucu_qdd_1_t_2
+        ucu_B_2_zx = ucu_zeta_2_y - ucu_alpha_2_y
+        ucu_B_2_zy = ucu_alpha_2_x - ucu_zeta_2_x
+        # (ucu-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        ucu_mu_2_x = (
+        ucu_B_2_yx*ucu_J_2_xy + ucu_B_2_zx*ucu_J_2_xz + ucu_B_2_zy*ucu_Sigma_2_yy +
+            ucu_Sigma_2_zz*ucu_alpha_1_t + ucu_g_r1_x*ucu_h_2_z + ucu_g_r3_y*ucu_h_2_y -
+            ucu_J_2_yz*(ucu_W_2_t_2 - ucu_W_2_t_3)
+        )
+        ucu_mu_2_y = (
+        ucu_B_2_xy*ucu_J_2_yz + ucu_g_r1_x*ucu_h_2_x - ucu_B_2_zx*ucu_Sigma_2_xx -
+            ucu_B_2_zy*ucu_J_2_xz - ucu_J_2_xy*(ucu_W_2_t - ucu_W_2_t_3) -
+            ucu_Sigma_2_zz*ucu_alpha_1_t_2 - ucu_g_r3_x*ucu_h_2_y
+        )
+        ucu_mu_2_z = (
+        ucu_B_2_yx*ucu_Sigma_2_xx + ucu_J_2_xy*ucu_alpha_1_t + ucu_J_2_yz*ucu_alpha_1_t_2 -
+            ucu_B_2_xy*ucu_Sigma_2_yy - ucu_J_2_xz*(ucu_W_2_t - ucu_W_2_t_2) -
+            ucu_g_r3_x*ucu_h_2_z - ucu_g_r3_y*ucu_h_2_x
+        )
+        # (ucu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        ucu_N_2_x = ucu_mu_2_x + ucu_mu_4_z
+        ucu_N_2_y = ucu_mu_2_y + ucu_c_4*ucu_mu_4_x - ucu_mu_4_y*ucu_s_4
+        ucu_N_2_z = ucu_mu_2_z + ucu_c_4*ucu_mu_4_y + ucu_mu_4_x*ucu_s_4
+        # (ucu-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        ucu_G_t = inv_ucu_end_p1_r5_x*ucu_mu_4_z
+        ucu_G_t_2 = inv_ucu_root_2*(ucu_N_2_z + ucu_G_t*ucu_n_m1_t)
+        ucu_G_t_3 = (
+        inv_ucu_v_1_r0_y*(ucu_G_t*ucu_w_1_t_2 + ucu_G_t_2*ucu_v_1_r0_x + ucu_N_2_y*ucu_c_2 -
+            ucu_N_2_x*ucu_s_2)
+        )
+        # (ucu-c) leg force on the platform without actuation and without the mass at the connection point
+        ucu_c_x = (
+        ucu_G_t_3*ucu_s_4 + ucu_h_4_y*(ucu_W_2_t_5 + ucu_W_4_t) - ucu_B_4_xy*ucu_h_4_z -
+            ucu_B_4_xz*ucu_h_4_x - ucu_G_t_2*ucu_c_4
+        )
+        ucu_c_y = (
+        ucu_G_t_2*ucu_s_4 + ucu_G_t_3*ucu_c_4 + ucu_h_4_z*(ucu_W_2_t_4 + ucu_W_4_t) -
+            ucu_B_4_yx*ucu_h_4_y - ucu_B_4_yz*ucu_h_4_x
+        )
+        # (ucu-c_true) leg force on the platform without actuation, the last link's mass included
+        ucu_c_true_x = ucu_c_x - ucu_acc_4_x*ucu_link4_mass
+        ucu_c_true_y = ucu_c_y - ucu_acc_4_y*ucu_link4_mass
+        ucu_c_true_z = (
+        ucu_h_4_x*(ucu_W_2_t_4 + ucu_W_2_t_5) - ucu_B_4_zx*ucu_h_4_y - ucu_B_4_zy*ucu_h_4_z -
+            ucu_acc_4_z*ucu_link4_mass
+        )
+        ucu_c_true_in_base_x = (
+        axis_x_ucu_axes4_x*ucu_c_true_x + axis_y_ucu_axes4_in_base_x*ucu_c_true_y +
+            ucu_axis_z_x*ucu_c_true_z
+        )
+        ucu_c_true_in_base_y = (
+        axis_x_ucu_axes4_y*ucu_c_true_x + axis_y_ucu_axes4_in_base_y*ucu_c_true_y +
+            ucu_axis_z_y*ucu_c_true_z
+        )
+        ucu_c_true_in_base_z = (
+        axis_x_ucu_axes4_z*ucu_c_true_x + axis_y_ucu_axes4_in_base_z*ucu_c_true_y +
+            ucu_axis_z_z*ucu_c_true_z
+        )
+        # (ucu-G_m) moment at the connection point that balances the leg's inertia and weight along all freedoms
+        ucu_G_m_x = ucu_G_t*ucu_end_p1_r3_x
+        # (ucu-c_m) moment of the leg on the platform without actuation
+        ucu_c_m_in_base_x = axis_x_ucu_axes4_x*ucu_G_m_x - ucu_axis_z_x*ucu_mu_4_z
+        ucu_c_m_in_base_y = axis_x_ucu_axes4_y*ucu_G_m_x - ucu_axis_z_y*ucu_mu_4_z
+        ucu_c_m_in_base_z = axis_x_ucu_axes4_z*ucu_G_m_x - ucu_axis_z_z*ucu_mu_4_z
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_4) >
-            _TOLERANCE * _TOLERANCE * 1.0) & (abs(-end_p1_r5_x) > _TOLERANCE * 1.0) & (abs(root_2)
-            > _TOLERANCE * 0.8) & (abs(v_1_r0_y) > _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(ucu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ucu_rho2_4) >
+            _TOLERANCE * _TOLERANCE * 1.0) & (abs(-ucu_end_p1_r5_x) > _TOLERANCE * 1.0) &
+            (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_r0_y) > _TOLERANCE * 0.8))
         )
-        out_leg_force[_leg_force_upru[0][leg]] = c_true_in_base_x
-        out_leg_force[_leg_force_upru[1][leg]] = c_true_in_base_y
-        out_leg_force[_leg_force_upru[2][leg]] = c_true_in_base_z
-        out_leg_force[_leg_force_upru[3][leg]] = c_m_in_base_x
-        out_leg_force[_leg_force_upru[4][leg]] = c_m_in_base_y
-        out_leg_force[_leg_force_upru[5][leg]] = c_m_in_base_z
-        out_drive[_drive_upru[0][leg]] = axis_z_x
-        out_drive[_drive_upru[1][leg]] = axis_z_y
-        out_drive[_drive_upru[2][leg]] = axis_z_z
+        out_leg_force[_leg_force_ucu[0][leg]] = ucu_c_true_in_base_x
+        out_leg_force[_leg_force_ucu[1][leg]] = ucu_c_true_in_base_y
+        out_leg_force[_leg_force_ucu[2][leg]] = ucu_c_true_in_base_z
+        out_leg_force[_leg_force_ucu[3][leg]] = ucu_c_m_in_base_x
+        out_leg_force[_leg_force_ucu[4][leg]] = ucu_c_m_in_base_y
+        out_leg_force[_leg_force_ucu[5][leg]] = ucu_c_m_in_base_z
+        out_drive[_drive_ucu[0][leg]] = ucu_axis_z_x
+        out_drive[_drive_ucu[1][leg]] = ucu_axis_z_y
+        out_drive[_drive_ucu[2][leg]] = ucu_axis_z_z
     return ok, (out_leg_force, out_drive,)
 
 
@@ -4712,7 +5146,7 @@ def _run_potential(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_potential = m.zeros("potential")
-    # (V1) potential energy
+    # (potential) potential energy
     potential_t = (
     gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
         gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
@@ -4721,110 +5155,117 @@ def _run_potential(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        b_r0_x, b_r0_y, b_r0_z, branch_1, branch_2, branch_4, g_r0_x, g_r0_y, g_r0_z, h_2_x,
-            h_2_y, h_2_z, h_4_x, h_4_y, h_4_z, upru_base_frame_xx, upru_base_frame_xy,
-            upru_base_frame_xz, upru_base_frame_yx, upru_base_frame_yy, upru_base_frame_yz,
-            upru_base_frame_zx, upru_base_frame_zy, upru_base_frame_zz, upru_base_point_x,
-            upru_base_point_y, upru_base_point_z, upru_link2_mass,
-            upru_platform_joint_axis_platform_x, upru_platform_joint_axis_platform_y,
-            upru_platform_joint_axis_platform_z, upru_platform_point_x, upru_platform_point_y,
-            upru_platform_point_z,
+        ucu_b_r0_x, ucu_b_r0_y, ucu_b_r0_z, ucu_base_frame_xx, ucu_base_frame_xy,
+            ucu_base_frame_xz, ucu_base_frame_yx, ucu_base_frame_yy, ucu_base_frame_yz,
+            ucu_base_frame_zx, ucu_base_frame_zy, ucu_base_frame_zz, ucu_base_point_x,
+            ucu_base_point_y, ucu_base_point_z, ucu_branch_1, ucu_branch_2, ucu_branch_4,
+            ucu_g_r0_x, ucu_g_r0_y, ucu_g_r0_z, ucu_h_2_x, ucu_h_2_y, ucu_h_2_z, ucu_h_4_x,
+            ucu_h_4_y, ucu_h_4_z, ucu_link2_mass, ucu_platform_joint_axis_platform_x,
+            ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
+            ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
         ) = k
-        # (upru-K1) from the base point to the connection point
-        S_x = (
-        t_x + R_xx*upru_platform_point_x + R_xy*upru_platform_point_y + R_xz*upru_platform_point_z
-            - upru_base_point_x
+        # (ucu-S) from the base point to the connection point
+        ucu_S_x = (
+        t_x + R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z -
+            ucu_base_point_x
         )
-        S_y = (
-        t_y + R_yx*upru_platform_point_x + R_yy*upru_platform_point_y + R_yz*upru_platform_point_z
-            - upru_base_point_y
+        ucu_S_y = (
+        t_y + R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y + R_yz*ucu_platform_point_z -
+            ucu_base_point_y
         )
-        S_z = (
-        t_z + R_zx*upru_platform_point_x + R_zy*upru_platform_point_y + R_zz*upru_platform_point_z
-            - upru_base_point_z
+        ucu_S_z = (
+        t_z + R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z -
+            ucu_base_point_z
         )
-        # (upru-K2) component along the reference direction
-        px_1 = S_x*upru_base_frame_xx + S_y*upru_base_frame_yx + S_z*upru_base_frame_zx
-        # (upru-K3) component across the reference direction
-        py_1 = S_x*upru_base_frame_xy + S_y*upru_base_frame_yy + S_z*upru_base_frame_zy
-        # (upru-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (upru-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (upru-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*upru_base_frame_xz + S_y*upru_base_frame_yz + S_z*upru_base_frame_zz
-        # (upru-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (upru-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (upru-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (upru-K16) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (upru-K20) component along the reference direction
-        end_p1_r0_x = (
-        upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xx + R_yx*upru_base_frame_yx +
-            R_zx*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xx + R_yy*upru_base_frame_yx
-            + R_zy*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xx + R_yz*upru_base_frame_yx
-            + R_zz*upru_base_frame_zx)
+        # (ucu-px_1) component along the reference direction
+        ucu_px_1 = (
+        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
         )
-        end_p1_r0_y = (
-        upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xy + R_yx*upru_base_frame_yy +
-            R_zx*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xy + R_yy*upru_base_frame_yy
-            + R_zy*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xy + R_yz*upru_base_frame_yy
-            + R_zz*upru_base_frame_zy)
+        # (ucu-py_1) component across the reference direction
+        ucu_py_1 = (
+        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
         )
-        end_p1_r0_z = (
-        upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xz + R_yx*upru_base_frame_yz +
-            R_zx*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xz + R_yy*upru_base_frame_yz
-            + R_zy*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xz + R_yz*upru_base_frame_yz
-            + R_zz*upru_base_frame_zz)
+        # (ucu-rho2_1) squared amplitude
+        ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1
+        # (ucu-root_1) amplitude, with the sign of the branch
+        ucu_root_1 = ucu_branch_1*sqrt(ucu_rho2_1)
+        # (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ucu_xi_1_t = (
+        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
         )
-        # (upru-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (upru-K7) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (upru-K20) component along the reference direction
-        end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x
-        end_p1_r3_y = -c_2*end_p1_r0_z - s_2*(-c_1*end_p1_r0_y - end_p1_r0_x*s_1)
-        # (upru-K23) squared amplitude
-        rho2_4 = end_p1_r1_x*end_p1_r1_x + end_p1_r3_y*end_p1_r3_y
-        # (upru-K24) amplitude, with the sign of the branch
-        root_4 = branch_4*sqrt(rho2_4)
-        # (upru-K25) cosine of the angle of joint 4 from its reference direction
-        inv_root_4 = 1.0/root_4
-        c_4 = end_p1_r3_y*inv_root_4
-        # (upru-K26) sine of the angle of joint 4 from its reference direction
-        s_4 = end_p1_r1_x*inv_root_4
-        # (upru-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-        # (V1) potential energy
-        b_r1_y = -b_r0_x*s_1 - b_r0_y*c_1
-        potential_t_2 = (
-        (g_r0_y*s_1 - c_1*g_r0_x)*(h_2_y + c_4*h_4_z + h_4_y*s_4 + upru_link2_mass*(b_r0_y*s_1 -
-            b_r0_x*c_1)) + (-c_2*g_r0_z - g_r1_y*s_2)*(c_4*h_4_y + upru_link2_mass*(-b_r0_z*c_2 -
-            b_r1_y*s_2) - h_2_z - h_4_z*s_4) + (g_r0_z*s_2 - c_2*g_r1_y)*(h_2_x + h_4_x +
-            upru_link2_mass*(b_r0_z*s_2 - b_r1_y*c_2))
+        # (ucu-rho2_2) squared amplitude
+        ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t
+        # (ucu-root_2) amplitude, with the sign of the branch
+        ucu_root_2 = ucu_branch_2*sqrt(ucu_rho2_2)
+        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ucu_root_2 = 1.0/ucu_root_2
+        ucu_c_2 = inv_ucu_root_2*ucu_root_1
+        # (ucu-s_2) sine of the angle of joint 2 from its reference direction
+        ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t
+        # (ucu-px_4) component along the reference direction
+        ucu_end_p1_r0_x = (
+        ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
+            R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
+            R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
+            ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
+            R_zz*ucu_base_frame_zx)
+        )
+        ucu_end_p1_r0_y = (
+        ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
+            R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
+            R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
+            ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
+            R_zz*ucu_base_frame_zy)
+        )
+        ucu_end_p1_r0_z = (
+        ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
+            R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
+            R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
+            ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
+            R_zz*ucu_base_frame_zz)
+        )
+        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ucu_root_1 = 1.0/ucu_root_1
+        ucu_c_1 = inv_ucu_root_1*ucu_py_1
+        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
+        ucu_s_1 = inv_ucu_root_1*ucu_px_1
+        # (ucu-px_4) component along the reference direction
+        ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x
+        ucu_end_p1_r3_y = (
+        -ucu_c_2*ucu_end_p1_r0_z - ucu_s_2*(-ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1)
+        )
+        # (ucu-rho2_4) squared amplitude
+        ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y
+        # (ucu-root_4) amplitude, with the sign of the branch
+        ucu_root_4 = ucu_branch_4*sqrt(ucu_rho2_4)
+        # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
+        inv_ucu_root_4 = 1.0/ucu_root_4
+        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y
+        # (ucu-s_4) sine of the angle of joint 4 from its reference direction
+        ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x
+        # (ucu-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        ucu_g_r1_y = -ucu_c_1*ucu_g_r0_y - ucu_g_r0_x*ucu_s_1
+        # (potential) potential energy
+        ucu_b_r1_y = -ucu_b_r0_x*ucu_s_1 - ucu_b_r0_y*ucu_c_1
+        ucu_potential_t = (
+        (ucu_g_r0_y*ucu_s_1 - ucu_c_1*ucu_g_r0_x)*(ucu_h_2_y + ucu_c_4*ucu_h_4_z +
+            ucu_h_4_y*ucu_s_4 + ucu_link2_mass*(ucu_b_r0_y*ucu_s_1 - ucu_b_r0_x*ucu_c_1)) +
+            (-ucu_c_2*ucu_g_r0_z - ucu_g_r1_y*ucu_s_2)*(ucu_c_4*ucu_h_4_y +
+            ucu_link2_mass*(-ucu_b_r0_z*ucu_c_2 - ucu_b_r1_y*ucu_s_2) - ucu_h_2_z -
+            ucu_h_4_z*ucu_s_4) + (ucu_g_r0_z*ucu_s_2 - ucu_c_2*ucu_g_r1_y)*(ucu_h_2_x + ucu_h_4_x
+            + ucu_link2_mass*(ucu_b_r0_z*ucu_s_2 - ucu_b_r1_y*ucu_c_2))
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_4) >
+        ok & m.every(leg, (abs(ucu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ucu_rho2_4) >
             _TOLERANCE * _TOLERANCE * 1.0))
         )
         sums = m.added(sums, leg, (
-        potential_t_2,
+        ucu_potential_t,
         ))
-    total_upru, = sums
-    # (V1) potential energy
-    potential = -potential_t - total_upru
+    total_ucu, = sums
+    # (potential) potential energy
+    potential = -potential_t - total_ucu
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -4881,136 +5322,145 @@ def _run_condition(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, branch_4, upru_base_frame_xx, upru_base_frame_xy, upru_base_frame_xz,
-            upru_base_frame_yx, upru_base_frame_yy, upru_base_frame_yz, upru_base_frame_zx,
-            upru_base_frame_zy, upru_base_frame_zz, upru_base_point_x, upru_base_point_y,
-            upru_base_point_z, upru_platform_joint_axis_platform_x,
-            upru_platform_joint_axis_platform_y, upru_platform_joint_axis_platform_z,
-            upru_platform_point_x, upru_platform_point_y, upru_platform_point_z,
+        ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx,
+            ucu_base_frame_yy, ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy,
+            ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y, ucu_base_point_z, ucu_branch_1,
+            ucu_branch_2, ucu_branch_4, ucu_platform_joint_axis_platform_x,
+            ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
+            ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
         ) = k
-        # (upru-K1) from the base point to the connection point
-        q_in_base_x = (
-        R_xx*upru_platform_point_x + R_xy*upru_platform_point_y + R_xz*upru_platform_point_z
+        # (ucu-S) from the base point to the connection point
+        ucu_q_in_base_x = (
+        R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
-        q_in_base_y = (
-        R_yx*upru_platform_point_x + R_yy*upru_platform_point_y + R_yz*upru_platform_point_z
+        ucu_q_in_base_y = (
+        R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y + R_yz*ucu_platform_point_z
         )
-        q_in_base_z = (
-        R_zx*upru_platform_point_x + R_zy*upru_platform_point_y + R_zz*upru_platform_point_z
+        ucu_q_in_base_z = (
+        R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        S_x = q_in_base_x + t_x - upru_base_point_x
-        S_y = q_in_base_y + t_y - upru_base_point_y
-        S_z = q_in_base_z + t_z - upru_base_point_z
-        # (upru-K2) component along the reference direction
-        px_1 = S_x*upru_base_frame_xx + S_y*upru_base_frame_yx + S_z*upru_base_frame_zx
-        # (upru-K3) component across the reference direction
-        py_1 = S_x*upru_base_frame_xy + S_y*upru_base_frame_yy + S_z*upru_base_frame_zy
-        # (upru-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (upru-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (upru-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*upru_base_frame_xz + S_y*upru_base_frame_yz + S_z*upru_base_frame_zz
-        # (upru-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (upru-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (upru-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (upru-K20) component along the reference direction
-        end_p1_r0_x = (
-        upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xx + R_yx*upru_base_frame_yx +
-            R_zx*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xx + R_yy*upru_base_frame_yx
-            + R_zy*upru_base_frame_zx) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xx + R_yz*upru_base_frame_yx
-            + R_zz*upru_base_frame_zx)
+        ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x
+        ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y
+        ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z
+        # (ucu-px_1) component along the reference direction
+        ucu_px_1 = (
+        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
         )
-        end_p1_r0_y = (
-        upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xy + R_yx*upru_base_frame_yy +
-            R_zx*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xy + R_yy*upru_base_frame_yy
-            + R_zy*upru_base_frame_zy) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xy + R_yz*upru_base_frame_yy
-            + R_zz*upru_base_frame_zy)
+        # (ucu-py_1) component across the reference direction
+        ucu_py_1 = (
+        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
         )
-        end_p1_r0_z = (
-        upru_platform_joint_axis_platform_x*(R_xx*upru_base_frame_xz + R_yx*upru_base_frame_yz +
-            R_zx*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_y*(R_xy*upru_base_frame_xz + R_yy*upru_base_frame_yz
-            + R_zy*upru_base_frame_zz) +
-            upru_platform_joint_axis_platform_z*(R_xz*upru_base_frame_xz + R_yz*upru_base_frame_yz
-            + R_zz*upru_base_frame_zz)
+        # (ucu-rho2_1) squared amplitude
+        ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1
+        # (ucu-root_1) amplitude, with the sign of the branch
+        ucu_root_1 = ucu_branch_1*sqrt(ucu_rho2_1)
+        # (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ucu_xi_1_t = (
+        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
         )
-        # (upru-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (upru-K7) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (upru-K20) component along the reference direction
-        end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x
-        end_p1_r3_y = -c_2*end_p1_r0_z - inv_root_2*xi_1_t*(-c_1*end_p1_r0_y - end_p1_r0_x*s_1)
-        # (upru-K23) squared amplitude
-        rho2_4 = end_p1_r1_x*end_p1_r1_x + end_p1_r3_y*end_p1_r3_y
-        # (upru-K24) amplitude, with the sign of the branch
-        root_4 = branch_4*sqrt(rho2_4)
-        # (upru-K25) cosine of the angle of joint 4 from its reference direction
-        inv_root_4 = 1.0/root_4
-        c_4 = end_p1_r3_y*inv_root_4
-        # (upru-K26) sine of the angle of joint 4 from its reference direction
-        s_4 = end_p1_r1_x*inv_root_4
-        # (upru-V7) force part of reciprocal wrench 1
-        axis_z_x = S_x*inv_root_2
-        axis_z_y = S_y*inv_root_2
-        axis_z_z = S_z*inv_root_2
-        # (upru-V6) direction 1 of the moment that the platform joint transmits
-        end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4
-        # (upru-V3) velocity of the connection point per rate of joint 1
-        v_1_r0_y = c_2*c_4*c_4*root_2 + c_2*root_2*s_4*s_4
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_3_t = axis_z_z*q_in_base_y - axis_z_y*q_in_base_z
-        H_a_3_t_2 = axis_z_x*q_in_base_z - axis_z_z*q_in_base_x
-        H_a_3_t_3 = axis_z_y*q_in_base_x - axis_z_x*q_in_base_y
-        # (C2) rms distance of the platform points from their centroid
-        spread_t_2 = b_c_x - upru_platform_point_x
-        spread_t_3 = b_c_y - upru_platform_point_y
-        spread_t_4 = b_c_z - upru_platform_point_z
-        spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 + spread_t_4*spread_t_4
-        # (upru-K4) squared amplitude
-        pivot_size = abs(rho2_1)
-        # (upru-K13) squared amplitude
-        pivot_size_2 = abs(rho2_2)
-        # (upru-K23) squared amplitude
-        pivot_size_3 = abs(rho2_4)
-        # (upru-V7) force part of reciprocal wrench 1
-        pivot_size_4 = abs(end_p1_r5_x)
-        pivot_size_5 = abs(root_2)
-        pivot_size_6 = abs(v_1_r0_y)
-        # (upru-N41) force at the connection point that balances the leg's inertia and weight along all freedoms
-        least_pivots = (
-        least(least(least(least(least(1.25*sqrt(pivot_size), 1.25*sqrt(pivot_size_2)),
-            sqrt(pivot_size_3)), pivot_size_4), 1.25*pivot_size_5), 1.25*pivot_size_6)
+        # (ucu-rho2_2) squared amplitude
+        ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t
+        # (ucu-root_2) amplitude, with the sign of the branch
+        ucu_root_2 = ucu_branch_2*sqrt(ucu_rho2_2)
+        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ucu_root_2 = 1.0/ucu_root_2
+        ucu_c_2 = inv_ucu_root_2*ucu_root_1
+        # (ucu-px_4) component along the reference direction
+        ucu_end_p1_r0_x = (
+        ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
+            R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
+            R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
+            ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
+            R_zz*ucu_base_frame_zx)
+        )
+        ucu_end_p1_r0_y = (
+        ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
+            R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
+            R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
+            ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
+            R_zz*ucu_base_frame_zy)
+        )
+        ucu_end_p1_r0_z = (
+        ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
+            R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
+            R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
+            ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
+            R_zz*ucu_base_frame_zz)
+        )
+        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ucu_root_1 = 1.0/ucu_root_1
+        ucu_c_1 = inv_ucu_root_1*ucu_py_1
+        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
+        ucu_s_1 = inv_ucu_root_1*ucu_px_1
+        # (ucu-px_4) component along the reference direction
+        ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x
+        ucu_end_p1_r3_y = (
+        -ucu_c_2*ucu_end_p1_r0_z - inv_ucu_root_2*ucu_xi_1_t*(-ucu_c_1*ucu_end_p1_r0_y -
+            ucu_end_p1_r0_x*ucu_s_1)
+        )
+        # (ucu-rho2_4) squared amplitude
+        ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y
+        # (ucu-root_4) amplitude, with the sign of the branch
+        ucu_root_4 = ucu_branch_4*sqrt(ucu_rho2_4)
+        # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
+        inv_ucu_root_4 = 1.0/ucu_root_4
+        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y
+        # (ucu-s_4) sine of the angle of joint 4 from its reference direction
+        ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x
+        # (ucu-w_1) force part of reciprocal wrench 1
+        ucu_axis_z_x = inv_ucu_root_2*ucu_S_x
+        ucu_axis_z_y = inv_ucu_root_2*ucu_S_y
+        ucu_axis_z_z = inv_ucu_root_2*ucu_S_z
+        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
+        ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4
+        # (ucu-v_1) velocity of the connection point per rate of joint 1
+        ucu_v_1_r0_y = ucu_c_2*ucu_c_4*ucu_c_4*ucu_root_2 + ucu_c_2*ucu_root_2*ucu_s_4*ucu_s_4
+        # (ucu-H_a_3) moment of the column's unit force about the platform origin
+        ucu_H_a_3_t = ucu_axis_z_z*ucu_q_in_base_y - ucu_axis_z_y*ucu_q_in_base_z
+        ucu_H_a_3_t_2 = ucu_axis_z_x*ucu_q_in_base_z - ucu_axis_z_z*ucu_q_in_base_x
+        ucu_H_a_3_t_3 = ucu_axis_z_y*ucu_q_in_base_x - ucu_axis_z_x*ucu_q_in_base_y
+        # (spread) rms distance of the platform points from their centroid
+        ucu_spread_t = b_c_x - ucu_platform_point_x
+        ucu_spread_t_2 = b_c_y - ucu_platform_point_y
+        ucu_spread_t_3 = b_c_z - ucu_platform_point_z
+        ucu_spread_t_4 = (
+        ucu_spread_t*ucu_spread_t + ucu_spread_t_2*ucu_spread_t_2 + ucu_spread_t_3*ucu_spread_t_3
+        )
+        # (ucu-rho2_1) squared amplitude
+        ucu_pivot_size = abs(ucu_rho2_1)
+        # (ucu-rho2_2) squared amplitude
+        ucu_pivot_size_2 = abs(ucu_rho2_2)
+        # (ucu-rho2_4) squared amplitude
+        ucu_pivot_size_3 = abs(ucu_rho2_4)
+        # (ucu-w_1) force part of reciprocal wrench 1
+        ucu_pivot_size_4 = abs(ucu_end_p1_r5_x)
+        ucu_pivot_size_5 = abs(ucu_root_2)
+        ucu_pivot_size_6 = abs(ucu_v_1_r0_y)
+        # (ucu-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        ucu_least_pivots = (
+        least(least(least(least(least(1.25*sqrt(ucu_pivot_size), 1.25*sqrt(ucu_pivot_size_2)),
+            sqrt(ucu_pivot_size_3)), ucu_pivot_size_4), 1.25*ucu_pivot_size_5),
+            1.25*ucu_pivot_size_6)
         )
         clear = (
-        clear & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_4) >
-            _TOLERANCE * _TOLERANCE * 1.0) & (abs(-end_p1_r5_x) > _TOLERANCE * 1.0) & (abs(root_2)
-            > _TOLERANCE * 0.8) & (abs(v_1_r0_y) > _TOLERANCE * 0.8))
+        clear & m.every(leg, (abs(ucu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ucu_rho2_4) >
+            _TOLERANCE * _TOLERANCE * 1.0) & (abs(-ucu_end_p1_r5_x) > _TOLERANCE * 1.0) &
+            (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_r0_y) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
-        spread_t_5,
+        ucu_spread_t_4,
         ))
-        out_H[_H_upru[0][leg]] = axis_z_x
-        out_H[_H_upru[1][leg]] = axis_z_y
-        out_H[_H_upru[2][leg]] = axis_z_z
-        out_H[_H_upru[3][leg]] = H_a_3_t
-        out_H[_H_upru[4][leg]] = H_a_3_t_2
-        out_H[_H_upru[5][leg]] = H_a_3_t_3
-        out_pivots[_pivots_upru[0][leg]] = least_pivots
-    total_upru, = sums
-    # (C2) rms distance of the platform points from their centroid
-    spread = spread_t*sqrt(total_upru)
+        out_H[_H_ucu[0][leg]] = ucu_axis_z_x
+        out_H[_H_ucu[1][leg]] = ucu_axis_z_y
+        out_H[_H_ucu[2][leg]] = ucu_axis_z_z
+        out_H[_H_ucu[3][leg]] = ucu_H_a_3_t
+        out_H[_H_ucu[4][leg]] = ucu_H_a_3_t_2
+        out_H[_H_ucu[5][leg]] = ucu_H_a_3_t_3
+        out_pivots[_pivots_ucu[0][leg]] = ucu_least_pivots
+    total_ucu, = sums
+    # (spread) rms distance of the platform points from their centroid
+    spread = spread_t*sqrt(total_ucu)
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 
@@ -5136,6 +5586,20 @@ def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
     momentum = np.einsum("ijs,js->is", M, V)
     return (momentum,)
+
+
+def _steps_joint_margins(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    margins = _unlimited(q, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19,
+        20, 21, 22, 23])
+    return (margins,)
+
+
+def _steps_within_limits(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    subtract_1 = q - q
+    within = _not_negative(subtract_1)
+    return (within,)
 
 
 def _steps_actuator_positions(m, X):
@@ -5572,6 +6036,40 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+    )
+
+
+def joint_margins(X, p=None):
+    """How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+    where there is none.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        margins: distances, in the order of q [m or rad] (..., NJ).
+    """
+    return _call(
+        "joint_margins", _steps_joint_margins, p,
+        ("X", X, (NQ,)),
+        unbounded=True,
+    )
+
+
+def within_limits(X, p=None):
+    """Whether all joints are within their limits of displacement.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        within: 1 where no margin is negative, else 0; NaN is neither (...,).
+    """
+    return _call(
+        "within_limits", _steps_within_limits, p,
+        ("X", X, (NQ,)),
     )
 
 

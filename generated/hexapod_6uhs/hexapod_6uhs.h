@@ -51,6 +51,7 @@ typedef HEXAPOD_6UHS_REAL hexapod_6uhs_real;
 #define HEXAPOD_6UHS_NC 0
 #define HEXAPOD_6UHS_NW 6
 #define HEXAPOD_6UHS_NJ 18
+#define HEXAPOD_6UHS_OVERCONSTRAINED 0
 
 enum {
     HEXAPOD_6UHS_OK = 0,
@@ -99,22 +100,24 @@ typedef struct {
 /* What depends on the parameters alone; set by hexapod_6uhs_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
-    hexapod_6uhs_real J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+    /* 6 legs of type uhs; copies of the first fill up */
+    hexapod_6uhs_real inv_uhs_joint3_pitch[8], inv_uhs_size[8], inv_uhs_size_t_3[8], uhs_J_2_xy[8],
+            uhs_J_2_xz[8], uhs_J_2_yy[8], uhs_J_2_yz[8], uhs_J_2_zz[8], uhs_J_3_xx[8], uhs_J_3_xy[8],
+            uhs_J_3_xz[8], uhs_J_3_yy[8], uhs_J_3_yz[8], uhs_J_3_zz[8], uhs_Jc_2_xx[8],
+            uhs_Sigma_2_xx[8], uhs_Sigma_2_yy[8], uhs_Sigma_2_zz[8], uhs_Sigma_3_xx[8],
+            uhs_Sigma_3_yy[8], uhs_Sigma_3_zz[8], uhs_b_r0_x[8], uhs_b_r0_y[8], uhs_b_r0_z[8],
+            uhs_base_frame_xx[8], uhs_base_frame_xy[8], uhs_base_frame_xz[8], uhs_base_frame_yx[8],
+            uhs_base_frame_yy[8], uhs_base_frame_yz[8], uhs_base_frame_zx[8], uhs_base_frame_zy[8],
+            uhs_base_frame_zz[8], uhs_base_point_x[8], uhs_base_point_y[8], uhs_base_point_z[8],
+            uhs_bias_t[8], uhs_branch_1[8], uhs_branch_2[8], uhs_d_G_t[8], uhs_d_phi_3_t[8],
+            uhs_d_phi_3_t_2[8], uhs_g_r0_x[8], uhs_g_r0_y[8], uhs_g_r0_z[8], uhs_h_2_x[8],
+            uhs_h_2_y[8], uhs_h_2_z[8], uhs_h_3_x[8], uhs_h_3_y[8], uhs_h_3_z[8],
+            uhs_joint3_offset_x[8], uhs_link2_mass[8], uhs_link3_mass[8],
+            uhs_platform_joint_offset_x[8], uhs_platform_point_x[8], uhs_platform_point_y[8],
+            uhs_platform_point_z[8], uhs_size[8], uhs_size_t[8];
+    hexapod_6uhs_real J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
             J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
             h_star_x, h_star_y, h_star_z, legs_size, m_star, spread_t;
-    /* legs of type uhs */
-    hexapod_6uhs_real J_2_xy[6], J_2_xz[6], J_2_yy[6], J_2_yz[6], J_2_zz[6], J_3_xx[6], J_3_xy[6],
-            J_3_xz[6], J_3_yy[6], J_3_yz[6], J_3_zz[6], Jc_2_xx[6], Sigma_2_xx[6], Sigma_2_yy[6],
-            Sigma_2_zz[6], Sigma_3_xx[6], Sigma_3_yy[6], Sigma_3_zz[6], b_r0_x[6], b_r0_y[6],
-            b_r0_z[6], branch_1[6], branch_2[6], d_G_t[6], d_phi_3_t[6], d_phi_3_t_2[6], g_r0_x[6],
-            g_r0_y[6], g_r0_z[6], h_2_x[6], h_2_y[6], h_2_z[6], h_3_x[6], h_3_y[6], h_3_z[6],
-            inv_size[6], inv_size_t_3[6], inv_uhs_joint3_pitch[6], size_[6], size_t_[6],
-            uhs_base_frame_xx[6], uhs_base_frame_xy[6], uhs_base_frame_xz[6], uhs_base_frame_yx[6],
-            uhs_base_frame_yy[6], uhs_base_frame_yz[6], uhs_base_frame_zx[6], uhs_base_frame_zy[6],
-            uhs_base_frame_zz[6], uhs_base_point_x[6], uhs_base_point_y[6], uhs_base_point_z[6],
-            uhs_joint3_offset_x[6], uhs_joint3_pitch[6], uhs_link2_mass[6], uhs_link3_mass[6],
-            uhs_platform_joint_offset_x[6], uhs_platform_point_x[6], uhs_platform_point_y[6],
-            uhs_platform_point_z[6];
 } hexapod_6uhs_model;
 
 extern const hexapod_6uhs_params hexapod_6uhs_default_params;
@@ -131,13 +134,13 @@ extern const char *const hexapod_6uhs_ACTUATOR_NAMES[HEXAPOD_6UHS_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *model);
 
-/* Inertia matrix M. 1341 mul, 951 add, 24 div, 12 sqrt, 12 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 1347 mul, 957 add, 24 div, 12 sqrt, 12 trig. In: X (NQ). Out: M (NV x NV). */
 int hexapod_6uhs_M(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X, hexapod_6uhs_real
     *M);
 size_t hexapod_6uhs_M_batch(const hexapod_6uhs_model *model, size_t n, const hexapod_6uhs_real *X,
     hexapod_6uhs_real *M, int *status);
 
-/* Velocity and gravity terms Z. 1539 mul, 1164 add, 24 div, 12 sqrt, 12 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 1563 mul, 1188 add, 24 div, 12 sqrt, 12 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int hexapod_6uhs_Z(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X, const
     hexapod_6uhs_real *V, hexapod_6uhs_real *Z);
@@ -165,7 +168,7 @@ int hexapod_6uhs_joint_rates(const hexapod_6uhs_model *model, const hexapod_6uhs
 size_t hexapod_6uhs_joint_rates_batch(const hexapod_6uhs_model *model, size_t n, const
     hexapod_6uhs_real *X, const hexapod_6uhs_real *V, hexapod_6uhs_real *rates, int *status);
 
-/* Accelerations of all joints. 876 mul, 546 add, 24 div, 12 sqrt, 12 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 870 mul, 546 add, 24 div, 12 sqrt, 12 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int hexapod_6uhs_joint_accelerations(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X,
     const hexapod_6uhs_real *V, const hexapod_6uhs_real *A, hexapod_6uhs_real *accelerations);
@@ -173,7 +176,7 @@ size_t hexapod_6uhs_joint_accelerations_batch(const hexapod_6uhs_model *model, s
     hexapod_6uhs_real *X, const hexapod_6uhs_real *V, const hexapod_6uhs_real *A,
     hexapod_6uhs_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 2547 mul, 1917 add, 24 div, 12 sqrt, 12 trig. In: X
+/* M, Z and H together, sharing the work. 2577 mul, 1947 add, 24 div, 12 sqrt, 12 trig. In: X
    (NQ), V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int hexapod_6uhs_dynamics(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X, const
     hexapod_6uhs_real *V, hexapod_6uhs_real *M, hexapod_6uhs_real *Z, hexapod_6uhs_real *H);
@@ -181,7 +184,7 @@ size_t hexapod_6uhs_dynamics_batch(const hexapod_6uhs_model *model, size_t n, co
     hexapod_6uhs_real *X, const hexapod_6uhs_real *V, hexapod_6uhs_real *M, hexapod_6uhs_real *Z,
     hexapod_6uhs_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 1683 mul, 1287 add, 24 div, 12 sqrt, 12
+/* Actuator forces tau for the acceleration A, by Eq. 3. 1677 mul, 1287 add, 24 div, 12 sqrt, 12
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
    NULL). Out: tau (NU). */
 int hexapod_6uhs_inverse_dynamics(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X,
@@ -191,7 +194,7 @@ size_t hexapod_6uhs_inverse_dynamics_batch(const hexapod_6uhs_model *model, size
     hexapod_6uhs_real *X, const hexapod_6uhs_real *V, const hexapod_6uhs_real *A, const
     hexapod_6uhs_real *wrench, hexapod_6uhs_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 2547 mul, 1917 add, 24 div, 12
+/* Acceleration A under the actuator forces tau and the wrench. 2577 mul, 1947 add, 24 div, 12
    sqrt, 12 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int hexapod_6uhs_forward_dynamics(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X,
@@ -212,7 +215,7 @@ size_t hexapod_6uhs_complete_acceleration_batch(const hexapod_6uhs_model *model,
     hexapod_6uhs_real *wrench, hexapod_6uhs_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 1536 mul, 1152 add, 24 div, 12 sqrt, 12 trig; inverse dynamics
+   forces of inverse_dynamics. 1530 mul, 1152 add, 24 div, 12 sqrt, 12 trig; inverse dynamics
    apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (6 x 3). */
 int hexapod_6uhs_leg_reactions(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X, const
     hexapod_6uhs_real *V, const hexapod_6uhs_real *A, const hexapod_6uhs_real *wrench,
@@ -254,12 +257,27 @@ int hexapod_6uhs_dissipation(const hexapod_6uhs_model *model, const hexapod_6uhs
 size_t hexapod_6uhs_dissipation_batch(const hexapod_6uhs_model *model, size_t n, const
     hexapod_6uhs_real *X, const hexapod_6uhs_real *V, hexapod_6uhs_real *dissipation, int *status);
 
-/* Generalised momentum M V. 1341 mul, 951 add, 24 div, 12 sqrt, 12 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 1347 mul, 957 add, 24 div, 12 sqrt, 12 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int hexapod_6uhs_momentum(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X, const
     hexapod_6uhs_real *V, hexapod_6uhs_real *momentum);
 size_t hexapod_6uhs_momentum_batch(const hexapod_6uhs_model *model, size_t n, const
     hexapod_6uhs_real *X, const hexapod_6uhs_real *V, hexapod_6uhs_real *momentum, int *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 192 mul, 132 add, 12 div, 12 sqrt, 12 trig. In: X (NQ). Out: margins (NJ).
+   */
+int hexapod_6uhs_joint_margins(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X,
+    hexapod_6uhs_real *margins);
+size_t hexapod_6uhs_joint_margins_batch(const hexapod_6uhs_model *model, size_t n, const
+    hexapod_6uhs_real *X, hexapod_6uhs_real *margins, int *status);
+
+/* Whether all joints are within their limits of displacement. 192 mul, 132 add, 12 div, 12 sqrt,
+   12 trig. In: X (NQ). Out: within (1). */
+int hexapod_6uhs_within_limits(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X,
+    hexapod_6uhs_real *within);
+size_t hexapod_6uhs_within_limits_batch(const hexapod_6uhs_model *model, size_t n, const
+    hexapod_6uhs_real *X, hexapod_6uhs_real *within, int *status);
 
 /* Displacements of the actuated joints, in the order of tau. 192 mul, 132 add, 12 div, 12 sqrt,
    12 trig. In: X (NQ). Out: q (NU). */
@@ -275,7 +293,7 @@ int hexapod_6uhs_actuator_rates(const hexapod_6uhs_model *model, const hexapod_6
 size_t hexapod_6uhs_actuator_rates_batch(const hexapod_6uhs_model *model, size_t n, const
     hexapod_6uhs_real *X, const hexapod_6uhs_real *V, hexapod_6uhs_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 876 mul, 546 add, 24 div, 12 sqrt,
+/* Accelerations of the actuated joints, in the order of tau. 870 mul, 546 add, 24 div, 12 sqrt,
    12 trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int hexapod_6uhs_actuator_accelerations(const hexapod_6uhs_model *model, const hexapod_6uhs_real
     *X, const hexapod_6uhs_real *V, const hexapod_6uhs_real *A, hexapod_6uhs_real *accelerations);

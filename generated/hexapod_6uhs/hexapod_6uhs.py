@@ -33,6 +33,7 @@ __all__ = [
     "NC",
     "NW",
     "NJ",
+    "OVERCONSTRAINED",
     "ACTUATED",
     "ACTUATOR_NAMES",
     "H",
@@ -57,6 +58,7 @@ __all__ = [
     "inverse_dynamics",
     "inverse_kinematics",
     "joint_accelerations",
+    "joint_margins",
     "joint_rates",
     "leg_reactions",
     "momentum",
@@ -66,6 +68,7 @@ __all__ = [
     "power",
     "retract",
     "rotation",
+    "within_limits",
 ]
 
 NQ = 7
@@ -74,6 +77,7 @@ NU = 6
 NC = 0
 NW = 6
 NJ = 18
+OVERCONSTRAINED = 0
 
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
@@ -379,7 +383,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return np.full(shape, default)
+        return _filled(shape, default) if isinstance(default, float) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -392,6 +396,16 @@ def _argument(function, name, value, shape, default=None, rule=""):
     elif rule == "positive" and not np.all((array > 0.0) & (array < np.inf)):
         raise ValueError(f"{function}: {name} must be positive and finite")
     return array
+
+
+_FILLED = {}
+
+
+def _filled(shape, value):
+    """An array of one value, made once."""
+    if (shape, value) not in _FILLED:
+        _FILLED[shape, value] = _frozen(np.full(shape, value))
+    return _FILLED[shape, value]
 
 
 def _lead(leads):
@@ -485,8 +499,8 @@ HOME_X = _frozen(np.array([0.0, 0.0, 0.75, 0.0, 0.0, 0.0, 1.0]))
 HOME_Q = _frozen(np.array([0.15, 0.45, 5.0, 0.15, -0.45, 5.0, 0.15, 0.45, 5.0, 0.15, -0.45, 5.0, 0.15, 0.45, 5.0, 0.15, -0.45, 5.0]))
 
 _BRANCHES = {  # assembly branch of home, a sign per leg
-    "branch_1": np.array([1.0, 1.0, 1.0, 1.0, 1.0, 1.0]),
-    "branch_2": np.array([1.0, 1.0, 1.0, 1.0, 1.0, 1.0]),
+    "uhs_branch_1": np.array([1.0, 1.0, 1.0, 1.0, 1.0, 1.0]),
+    "uhs_branch_2": np.array([1.0, 1.0, 1.0, 1.0, 1.0, 1.0]),
 }
 
 
@@ -545,13 +559,13 @@ def _prepare(p):
     uhs_link3_inertia_yy = p.uhs_link3_inertia[:, 1, 1]
     uhs_link3_inertia_yz = p.uhs_link3_inertia[:, 1, 2]
     uhs_link3_inertia_zz = p.uhs_link3_inertia[:, 2, 2]
-    branch_1 = _BRANCHES["branch_1"]
-    branch_2 = _BRANCHES["branch_2"]
-    # (L2) first moment about the platform origin
+    uhs_branch_1 = _BRANCHES["uhs_branch_1"]
+    uhs_branch_2 = _BRANCHES["uhs_branch_2"]
+    # (h_star) first moment about the platform origin
     h_star_t = platform_centre_of_mass_x*platform_mass
     h_star_t_2 = platform_centre_of_mass_y*platform_mass
     h_star_t_3 = platform_centre_of_mass_z*platform_mass
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_t = platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_2 = platform_centre_of_mass_y*platform_centre_of_mass_y
     J_star_t_3 = platform_centre_of_mass_z*platform_centre_of_mass_z
@@ -562,191 +576,195 @@ def _prepare(p):
     J_star_t_8 = platform_mass*(J_star_t_2 - J_star_t_4)
     J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass
     J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4)
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread_t = 0.16666666666666666*sqrt(6.0)
-    # (uhs-G2) length of the leg's lever arms, the measure of what is near singular
-    size_t = (
+    # (uhs-size) length of the leg's lever arms, the measure of what is near singular
+    uhs_size_t = (
     0.6400000000000001 + uhs_joint3_offset_x*uhs_joint3_offset_x +
         uhs_joint3_pitch*uhs_joint3_pitch
     )
-    size = sqrt(size_t)
-    # (uhs-K24) displacement of joint 3
+    uhs_size = sqrt(uhs_size_t)
+    # (uhs-q_3) displacement of joint 3
     inv_uhs_joint3_pitch = 1.0/uhs_joint3_pitch
-    # (uhs-G4) inertia tensor of link 2 about the origin of link 2
-    J_2_t = uhs_link2_centre_of_mass_x*uhs_link2_centre_of_mass_x
-    J_2_t_2 = uhs_link2_centre_of_mass_y*uhs_link2_centre_of_mass_y
-    J_2_t_3 = uhs_link2_centre_of_mass_z*uhs_link2_centre_of_mass_z
-    J_2_t_4 = J_2_t + J_2_t_2 + J_2_t_3
-    J_2_xx = uhs_link2_inertia_xx - uhs_link2_mass*(J_2_t - J_2_t_4)
-    J_2_xy = (
-    uhs_link2_inertia_xy - uhs_link2_centre_of_mass_x*uhs_link2_centre_of_mass_y*uhs_link2_mass
-    )
-    J_2_xz = (
-    uhs_link2_inertia_xz - uhs_link2_centre_of_mass_x*uhs_link2_centre_of_mass_z*uhs_link2_mass
-    )
-    J_2_yy = uhs_link2_inertia_yy - uhs_link2_mass*(J_2_t_2 - J_2_t_4)
-    J_2_yz = (
-    uhs_link2_inertia_yz - uhs_link2_centre_of_mass_y*uhs_link2_centre_of_mass_z*uhs_link2_mass
-    )
-    J_2_zz = uhs_link2_inertia_zz - uhs_link2_mass*(J_2_t_3 - J_2_t_4)
-    # (uhs-G5) connection point to the centre of mass of link 3
-    rho_tip_3_x = uhs_link3_centre_of_mass_x - uhs_platform_joint_offset_x
-    # (uhs-G7) inertia tensor of link 3 about the connection point
-    J_3_t = rho_tip_3_x*rho_tip_3_x
-    J_3_t_2 = uhs_link3_centre_of_mass_y*uhs_link3_centre_of_mass_y
-    J_3_t_3 = uhs_link3_centre_of_mass_z*uhs_link3_centre_of_mass_z
-    J_3_t_4 = J_3_t + J_3_t_2 + J_3_t_3
-    J_3_xx = uhs_link3_inertia_xx - uhs_link3_mass*(J_3_t - J_3_t_4)
-    J_3_xy = uhs_link3_inertia_xy - rho_tip_3_x*uhs_link3_centre_of_mass_y*uhs_link3_mass
-    J_3_xz = uhs_link3_inertia_xz - rho_tip_3_x*uhs_link3_centre_of_mass_z*uhs_link3_mass
-    J_3_yy = uhs_link3_inertia_yy - uhs_link3_mass*(J_3_t_2 - J_3_t_4)
-    J_3_yz = (
+    # (uhs-rho_tip_3) connection point to the centre of mass of link 3
+    uhs_rho_tip_3_x = uhs_link3_centre_of_mass_x - uhs_platform_joint_offset_x
+    # (uhs-h_3) first moment of link 3 about the connection point
+    uhs_h_3_x = uhs_link3_mass*uhs_rho_tip_3_x
+    uhs_h_3_y = uhs_link3_centre_of_mass_y*uhs_link3_mass
+    uhs_h_3_z = uhs_link3_centre_of_mass_z*uhs_link3_mass
+    # (uhs-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+    uhs_d_phi_3_t = inv_uhs_joint3_pitch*uhs_h_3_z
+    uhs_d_phi_3_t_2 = inv_uhs_joint3_pitch*uhs_h_3_y
+    # (uhs-J_3) inertia tensor of link 3 about the connection point
+    uhs_J_3_t = uhs_rho_tip_3_x*uhs_rho_tip_3_x
+    uhs_J_3_t_2 = uhs_link3_centre_of_mass_y*uhs_link3_centre_of_mass_y
+    uhs_J_3_t_3 = uhs_link3_centre_of_mass_z*uhs_link3_centre_of_mass_z
+    uhs_J_3_t_4 = uhs_J_3_t + uhs_J_3_t_2 + uhs_J_3_t_3
+    uhs_J_3_xx = uhs_link3_inertia_xx - uhs_link3_mass*(uhs_J_3_t - uhs_J_3_t_4)
+    uhs_J_3_xy = uhs_link3_inertia_xy - uhs_link3_centre_of_mass_y*uhs_link3_mass*uhs_rho_tip_3_x
+    uhs_J_3_xz = uhs_link3_inertia_xz - uhs_link3_centre_of_mass_z*uhs_link3_mass*uhs_rho_tip_3_x
+    uhs_J_3_yy = uhs_link3_inertia_yy - uhs_link3_mass*(uhs_J_3_t_2 - uhs_J_3_t_4)
+    uhs_J_3_yz = (
     uhs_link3_inertia_yz - uhs_link3_centre_of_mass_y*uhs_link3_centre_of_mass_z*uhs_link3_mass
     )
-    J_3_zz = uhs_link3_inertia_zz - uhs_link3_mass*(J_3_t_3 - J_3_t_4)
-    # (uhs-N12) inertia tensor of the links from 2 outwards about joint 2
-    Jc_2_xx = J_2_xx + J_3_xx
-    # (uhs-G6) first moment of link 3 about the connection point
-    h_3_x = rho_tip_3_x*uhs_link3_mass
-    h_3_y = uhs_link3_centre_of_mass_y*uhs_link3_mass
-    h_3_z = uhs_link3_centre_of_mass_z*uhs_link3_mass
-    # (uhs-N38) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    d_G_t = J_3_xx*inv_uhs_joint3_pitch*inv_uhs_joint3_pitch
-    # (uhs-N6) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-    d_phi_3_t = h_3_z*inv_uhs_joint3_pitch
-    d_phi_3_t_2 = h_3_y*inv_uhs_joint3_pitch
-    # (L2) first moment about the platform origin
-    h_star_t_4 = uhs_link3_mass*uhs_platform_point_x
-    h_star_t_5 = uhs_link3_mass*uhs_platform_point_y
-    h_star_t_6 = uhs_link3_mass*uhs_platform_point_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t_11 = uhs_platform_point_x*uhs_platform_point_x
-    J_star_t_12 = uhs_platform_point_y*uhs_platform_point_y
-    J_star_t_13 = uhs_platform_point_z*uhs_platform_point_z
-    J_star_t_14 = J_star_t_11 + J_star_t_12 + J_star_t_13
-    J_star_t_15 = uhs_link3_mass*(J_star_t_11 - J_star_t_14)
-    J_star_t_16 = uhs_link3_mass*uhs_platform_point_x*uhs_platform_point_y
-    J_star_t_17 = uhs_link3_mass*uhs_platform_point_x*uhs_platform_point_z
-    J_star_t_18 = uhs_link3_mass*(J_star_t_12 - J_star_t_14)
-    J_star_t_19 = uhs_link3_mass*uhs_platform_point_y*uhs_platform_point_z
-    J_star_t_20 = uhs_link3_mass*(J_star_t_13 - J_star_t_14)
-    # (uhs-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-    g_r0_x = (
+    uhs_J_3_zz = uhs_link3_inertia_zz - uhs_link3_mass*(uhs_J_3_t_3 - uhs_J_3_t_4)
+    # (uhs-J_2) inertia tensor of link 2 about the origin of link 2
+    uhs_J_2_t = uhs_link2_centre_of_mass_x*uhs_link2_centre_of_mass_x
+    uhs_J_2_t_2 = uhs_link2_centre_of_mass_y*uhs_link2_centre_of_mass_y
+    uhs_J_2_t_3 = uhs_link2_centre_of_mass_z*uhs_link2_centre_of_mass_z
+    uhs_J_2_t_4 = uhs_J_2_t + uhs_J_2_t_2 + uhs_J_2_t_3
+    uhs_J_2_xx = uhs_link2_inertia_xx - uhs_link2_mass*(uhs_J_2_t - uhs_J_2_t_4)
+    uhs_J_2_xy = (
+    uhs_link2_inertia_xy - uhs_link2_centre_of_mass_x*uhs_link2_centre_of_mass_y*uhs_link2_mass
+    )
+    uhs_J_2_xz = (
+    uhs_link2_inertia_xz - uhs_link2_centre_of_mass_x*uhs_link2_centre_of_mass_z*uhs_link2_mass
+    )
+    uhs_J_2_yy = uhs_link2_inertia_yy - uhs_link2_mass*(uhs_J_2_t_2 - uhs_J_2_t_4)
+    uhs_J_2_yz = (
+    uhs_link2_inertia_yz - uhs_link2_centre_of_mass_y*uhs_link2_centre_of_mass_z*uhs_link2_mass
+    )
+    uhs_J_2_zz = uhs_link2_inertia_zz - uhs_link2_mass*(uhs_J_2_t_3 - uhs_J_2_t_4)
+    # (uhs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+    uhs_Jc_2_xx = uhs_J_2_xx + uhs_J_3_xx
+    # (uhs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    uhs_d_G_t = inv_uhs_joint3_pitch*inv_uhs_joint3_pitch*uhs_J_3_xx
+    # (h_star) first moment about the platform origin
+    uhs_h_star_t = uhs_link3_mass*uhs_platform_point_x
+    uhs_h_star_t_2 = uhs_link3_mass*uhs_platform_point_y
+    uhs_h_star_t_3 = uhs_link3_mass*uhs_platform_point_z
+    # (J_star) inertia tensor about the platform origin
+    uhs_J_star_t = uhs_platform_point_x*uhs_platform_point_x
+    uhs_J_star_t_2 = uhs_platform_point_y*uhs_platform_point_y
+    uhs_J_star_t_3 = uhs_platform_point_z*uhs_platform_point_z
+    uhs_J_star_t_4 = uhs_J_star_t + uhs_J_star_t_2 + uhs_J_star_t_3
+    uhs_J_star_t_5 = uhs_link3_mass*(uhs_J_star_t - uhs_J_star_t_4)
+    uhs_J_star_t_6 = uhs_link3_mass*uhs_platform_point_x*uhs_platform_point_y
+    uhs_J_star_t_7 = uhs_link3_mass*uhs_platform_point_x*uhs_platform_point_z
+    uhs_J_star_t_8 = uhs_link3_mass*(uhs_J_star_t_2 - uhs_J_star_t_4)
+    uhs_J_star_t_9 = uhs_link3_mass*uhs_platform_point_y*uhs_platform_point_z
+    uhs_J_star_t_10 = uhs_link3_mass*(uhs_J_star_t_3 - uhs_J_star_t_4)
+    # (uhs-bias) acceleration of the connection point at zero joint accelerations
+    uhs_bias_t = 2.0*uhs_joint3_pitch
+    # (uhs-trace_J_3) half the trace of that inertia tensor
+    uhs_trace_J_3 = 0.5*uhs_J_3_xx + 0.5*uhs_J_3_yy + 0.5*uhs_J_3_zz
+    # (uhs-Sigma_3) second moment of mass of the links that turn with link 3
+    uhs_Sigma_3_xx = uhs_trace_J_3 - uhs_J_3_yy
+    uhs_Sigma_3_yy = uhs_trace_J_3 - uhs_J_3_zz
+    uhs_Sigma_3_zz = uhs_trace_J_3 - uhs_J_3_xx
+    # (uhs-h_2) first moment of link 2 about the origin of link 2
+    uhs_h_2_x = uhs_link2_centre_of_mass_x*uhs_link2_mass
+    uhs_h_2_y = uhs_link2_centre_of_mass_y*uhs_link2_mass
+    uhs_h_2_z = uhs_link2_centre_of_mass_z*uhs_link2_mass
+    # (uhs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+    uhs_g_r0_x = (
     gravity_x*uhs_base_frame_xx + gravity_y*uhs_base_frame_yx + gravity_z*uhs_base_frame_zx
     )
-    g_r0_y = (
+    uhs_g_r0_y = (
     gravity_x*uhs_base_frame_xy + gravity_y*uhs_base_frame_yy + gravity_z*uhs_base_frame_zy
     )
-    g_r0_z = (
+    uhs_g_r0_z = (
     gravity_x*uhs_base_frame_xz + gravity_y*uhs_base_frame_yz + gravity_z*uhs_base_frame_zz
     )
-    # (uhs-G3) first moment of link 2 about the origin of link 2
-    h_2_x = uhs_link2_centre_of_mass_x*uhs_link2_mass
-    h_2_y = uhs_link2_centre_of_mass_y*uhs_link2_mass
-    h_2_z = uhs_link2_centre_of_mass_z*uhs_link2_mass
-    # (uhs-N25) half the trace of that inertia tensor
-    trace_J_2 = 0.5*J_2_xx + 0.5*J_2_yy + 0.5*J_2_zz
-    # (uhs-N26) second moment of mass of the links that turn with link 2
-    Sigma_2_xx = trace_J_2 - J_2_xx
-    Sigma_2_yy = trace_J_2 - J_2_zz
-    Sigma_2_zz = trace_J_2 - J_2_yy
-    # (uhs-N18) half the trace of that inertia tensor
-    trace_J_3 = 0.5*J_3_xx + 0.5*J_3_yy + 0.5*J_3_zz
-    # (uhs-N19) second moment of mass of the links that turn with link 3
-    Sigma_3_xx = trace_J_3 - J_3_yy
-    Sigma_3_yy = trace_J_3 - J_3_zz
-    Sigma_3_zz = trace_J_3 - J_3_xx
-    # (V1) potential energy
-    b_r0_x = (
+    # (uhs-trace_J_2) half the trace of that inertia tensor
+    uhs_trace_J_2 = 0.5*uhs_J_2_xx + 0.5*uhs_J_2_yy + 0.5*uhs_J_2_zz
+    # (uhs-Sigma_2) second moment of mass of the links that turn with link 2
+    uhs_Sigma_2_xx = uhs_trace_J_2 - uhs_J_2_xx
+    uhs_Sigma_2_yy = uhs_trace_J_2 - uhs_J_2_zz
+    uhs_Sigma_2_zz = uhs_trace_J_2 - uhs_J_2_yy
+    # (potential) potential energy
+    uhs_b_r0_x = (
     uhs_base_frame_xx*uhs_base_point_x + uhs_base_frame_yx*uhs_base_point_y +
         uhs_base_frame_zx*uhs_base_point_z
     )
-    b_r0_y = (
+    uhs_b_r0_y = (
     uhs_base_frame_xy*uhs_base_point_x + uhs_base_frame_yy*uhs_base_point_y +
         uhs_base_frame_zy*uhs_base_point_z
     )
-    b_r0_z = (
+    uhs_b_r0_z = (
     uhs_base_frame_xz*uhs_base_point_x + uhs_base_frame_yz*uhs_base_point_y +
         uhs_base_frame_zz*uhs_base_point_z
     )
-    # (uhs-K5) squared amplitude
-    inv_size_t_3 = 1.0/size_t
-    # (uhs-V7) reciprocal vector 1
-    inv_size = 1.0/size
+    # (uhs-rho2_1) squared amplitude
+    inv_uhs_size_t_3 = 1.0/uhs_size_t
+    # (uhs-w_1) reciprocal vector 1
+    inv_uhs_size = 1.0/uhs_size
     total_uhs = np.sum(np.broadcast_to(uhs_link3_mass, _uhs))
-    total_uhs_x = np.sum(np.broadcast_to(h_star_t_4, _uhs))
-    total_uhs_y = np.sum(np.broadcast_to(h_star_t_5, _uhs))
-    total_uhs_z = np.sum(np.broadcast_to(h_star_t_6, _uhs))
-    total_uhs_xx = np.sum(np.broadcast_to(J_star_t_15, _uhs))
-    total_uhs_xy = np.sum(np.broadcast_to(J_star_t_16, _uhs))
-    total_uhs_xz = np.sum(np.broadcast_to(J_star_t_17, _uhs))
-    total_uhs_yy = np.sum(np.broadcast_to(J_star_t_18, _uhs))
-    total_uhs_yz = np.sum(np.broadcast_to(J_star_t_19, _uhs))
-    total_uhs_zz = np.sum(np.broadcast_to(J_star_t_20, _uhs))
+    total_uhs_x = np.sum(np.broadcast_to(uhs_h_star_t, _uhs))
+    total_uhs_y = np.sum(np.broadcast_to(uhs_h_star_t_2, _uhs))
+    total_uhs_z = np.sum(np.broadcast_to(uhs_h_star_t_3, _uhs))
+    total_uhs_xx = np.sum(np.broadcast_to(uhs_J_star_t_5, _uhs))
+    total_uhs_xy = np.sum(np.broadcast_to(uhs_J_star_t_6, _uhs))
+    total_uhs_xz = np.sum(np.broadcast_to(uhs_J_star_t_7, _uhs))
+    total_uhs_yy = np.sum(np.broadcast_to(uhs_J_star_t_8, _uhs))
+    total_uhs_yz = np.sum(np.broadcast_to(uhs_J_star_t_9, _uhs))
+    total_uhs_zz = np.sum(np.broadcast_to(uhs_J_star_t_10, _uhs))
     total_uhs_x_2 = np.sum(np.broadcast_to(uhs_platform_point_x, _uhs))
     total_uhs_y_2 = np.sum(np.broadcast_to(uhs_platform_point_y, _uhs))
     total_uhs_z_2 = np.sum(np.broadcast_to(uhs_platform_point_z, _uhs))
-    total_uhs_2 = np.sum(np.broadcast_to(size_t, _uhs))
-    # (L1) mass of the platform with the gathered masses
+    total_uhs_2 = np.sum(np.broadcast_to(uhs_size_t, _uhs))
+    # (m_star) mass of the platform with the gathered masses
     m_star = platform_mass + total_uhs
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_x = h_star_t + total_uhs_x
     h_star_y = h_star_t_2 + total_uhs_y
     h_star_z = h_star_t_3 + total_uhs_z
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_xx = platform_inertia_xx - J_star_t_5 - total_uhs_xx
     J_star_xy = platform_inertia_xy - J_star_t_6 - total_uhs_xy
     J_star_xz = platform_inertia_xz - J_star_t_7 - total_uhs_xz
     J_star_yy = platform_inertia_yy - J_star_t_8 - total_uhs_yy
     J_star_yz = platform_inertia_yz - J_star_t_9 - total_uhs_yz
     J_star_zz = platform_inertia_zz - J_star_t_10 - total_uhs_zz
-    J_star_t_21 = J_star_xx - J_star_yy
-    J_star_t_22 = 0.5*J_star_t_21
-    J_star_t_23 = J_star_xx - J_star_zz
-    J_star_t_24 = 0.5*J_star_t_23
-    # (M4) centripetal force and weight of the platform
+    J_star_t_11 = J_star_xx - J_star_yy
+    J_star_t_12 = 0.5*J_star_t_11
+    J_star_t_13 = J_star_xx - J_star_zz
+    J_star_t_14 = 0.5*J_star_t_13
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
     Z_p_t_3 = gravity_z*m_star
-    # (C1) centroid of the platform points
+    # (b_c) centroid of the platform points
     b_c_x = 0.16666666666666666*total_uhs_x_2
     b_c_y = 0.16666666666666666*total_uhs_y_2
     b_c_z = 0.16666666666666666*total_uhs_z_2
-    # (C3) rms size of the legs, taken where the platform points coincide
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     legs_size = spread_t*sqrt(total_uhs_2)
     return {
         "dynamics": (
-        (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
                 J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
                 h_star_y, h_star_z, m_star,),
             (
                 (_uhs,
-        (J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz, J_3_zz,
-                    Jc_2_xx, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy,
-                    Sigma_3_zz, branch_1, branch_2, d_G_t, d_phi_3_t, d_phi_3_t_2, g_r0_x, g_r0_y,
-                    g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, inv_uhs_joint3_pitch, size,
-                    size_t, uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz,
-                    uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx,
-                    uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y,
-                    uhs_base_point_z, uhs_joint3_offset_x, uhs_joint3_pitch,
-                    uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
-                    uhs_platform_point_z,),
+        (inv_uhs_joint3_pitch, uhs_J_2_xy, uhs_J_2_xz, uhs_J_2_yy, uhs_J_2_yz, uhs_J_2_zz,
+                    uhs_J_3_xx, uhs_J_3_xy, uhs_J_3_xz, uhs_J_3_yy, uhs_J_3_yz, uhs_J_3_zz,
+                    uhs_Jc_2_xx, uhs_Sigma_2_xx, uhs_Sigma_2_yy, uhs_Sigma_2_zz, uhs_Sigma_3_xx,
+                    uhs_Sigma_3_yy, uhs_Sigma_3_zz, uhs_base_frame_xx, uhs_base_frame_xy,
+                    uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz,
+                    uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x,
+                    uhs_base_point_y, uhs_base_point_z, uhs_bias_t, uhs_branch_1, uhs_branch_2,
+                    uhs_d_G_t, uhs_d_phi_3_t, uhs_d_phi_3_t_2, uhs_g_r0_x, uhs_g_r0_y, uhs_g_r0_z,
+                    uhs_h_2_x, uhs_h_2_y, uhs_h_2_z, uhs_h_3_x, uhs_h_3_y, uhs_h_3_z,
+                    uhs_joint3_offset_x, uhs_platform_joint_offset_x, uhs_platform_point_x,
+                    uhs_platform_point_y, uhs_platform_point_z, uhs_size, uhs_size_t,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
+        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
                 h_star_z, m_star,),
             (
                 (_uhs,
-        (J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz, J_3_zz,
-                    Jc_2_xx, branch_1, branch_2, d_G_t, d_phi_3_t, d_phi_3_t_2, h_3_x, h_3_y,
-                    h_3_z, inv_uhs_joint3_pitch, size, size_t, uhs_base_frame_xx,
-                    uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy,
-                    uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz,
-                    uhs_base_point_x, uhs_base_point_y, uhs_base_point_z, uhs_joint3_offset_x,
+        (inv_uhs_joint3_pitch, uhs_J_2_xy, uhs_J_2_xz, uhs_J_2_yy, uhs_J_2_yz, uhs_J_2_zz,
+                    uhs_J_3_xx, uhs_J_3_xy, uhs_J_3_xz, uhs_J_3_yy, uhs_J_3_yz, uhs_J_3_zz,
+                    uhs_Jc_2_xx, uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz,
+                    uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx,
+                    uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y,
+                    uhs_base_point_z, uhs_branch_1, uhs_branch_2, uhs_d_G_t, uhs_d_phi_3_t,
+                    uhs_d_phi_3_t_2, uhs_h_3_x, uhs_h_3_y, uhs_h_3_z, uhs_joint3_offset_x,
                     uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
-                    uhs_platform_point_z,),
+                    uhs_platform_point_z, uhs_size, uhs_size_t,),
                 ),
             ),
         ),
@@ -755,15 +773,16 @@ def _prepare(p):
                 Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
             (
                 (_uhs,
-        (J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz,
-                    Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, g_r0_x, g_r0_y,
-                    g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, inv_uhs_joint3_pitch, size,
-                    size_t, uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz,
-                    uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx,
-                    uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y,
-                    uhs_base_point_z, uhs_joint3_offset_x, uhs_joint3_pitch,
+        (inv_uhs_joint3_pitch, uhs_J_2_xy, uhs_J_2_xz, uhs_J_2_yz, uhs_J_3_xy, uhs_J_3_xz,
+                    uhs_J_3_yz, uhs_Sigma_2_xx, uhs_Sigma_2_yy, uhs_Sigma_2_zz, uhs_Sigma_3_xx,
+                    uhs_Sigma_3_yy, uhs_Sigma_3_zz, uhs_base_frame_xx, uhs_base_frame_xy,
+                    uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz,
+                    uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x,
+                    uhs_base_point_y, uhs_base_point_z, uhs_bias_t, uhs_branch_1, uhs_branch_2,
+                    uhs_g_r0_x, uhs_g_r0_y, uhs_g_r0_z, uhs_h_2_x, uhs_h_2_y, uhs_h_2_z,
+                    uhs_h_3_x, uhs_h_3_y, uhs_h_3_z, uhs_joint3_offset_x,
                     uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
-                    uhs_platform_point_z,),
+                    uhs_platform_point_z, uhs_size, uhs_size_t,),
                 ),
             ),
         ),
@@ -771,11 +790,11 @@ def _prepare(p):
         (),
             (
                 (_uhs,
-        (branch_2, inv_uhs_joint3_pitch, size, size_t, uhs_base_frame_xx, uhs_base_frame_xy,
-                    uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz,
-                    uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x,
-                    uhs_base_point_y, uhs_base_point_z, uhs_platform_point_x,
-                    uhs_platform_point_y, uhs_platform_point_z,),
+        (inv_uhs_joint3_pitch, uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz,
+                    uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx,
+                    uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y,
+                    uhs_base_point_z, uhs_branch_2, uhs_platform_point_x, uhs_platform_point_y,
+                    uhs_platform_point_z, uhs_size, uhs_size_t,),
                 ),
             ),
         ),
@@ -784,15 +803,16 @@ def _prepare(p):
                 gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
                 (_uhs,
-        (J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz,
-                    Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, g_r0_x, g_r0_y,
-                    g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, inv_uhs_joint3_pitch, size,
-                    size_t, uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz,
-                    uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx,
-                    uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y,
-                    uhs_base_point_z, uhs_joint3_offset_x, uhs_joint3_pitch,
+        (inv_uhs_joint3_pitch, uhs_J_2_xy, uhs_J_2_xz, uhs_J_2_yz, uhs_J_3_xy, uhs_J_3_xz,
+                    uhs_J_3_yz, uhs_Sigma_2_xx, uhs_Sigma_2_yy, uhs_Sigma_2_zz, uhs_Sigma_3_xx,
+                    uhs_Sigma_3_yy, uhs_Sigma_3_zz, uhs_base_frame_xx, uhs_base_frame_xy,
+                    uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz,
+                    uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x,
+                    uhs_base_point_y, uhs_base_point_z, uhs_bias_t, uhs_branch_1, uhs_branch_2,
+                    uhs_g_r0_x, uhs_g_r0_y, uhs_g_r0_z, uhs_h_2_x, uhs_h_2_y, uhs_h_2_z,
+                    uhs_h_3_x, uhs_h_3_y, uhs_h_3_z, uhs_joint3_offset_x,
                     uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
-                    uhs_platform_point_z,),
+                    uhs_platform_point_z, uhs_size, uhs_size_t,),
                 ),
             ),
         ),
@@ -800,12 +820,12 @@ def _prepare(p):
         (),
             (
                 (_uhs,
-        (branch_1, branch_2, inv_uhs_joint3_pitch, size_t, uhs_base_frame_xx, uhs_base_frame_xy,
-                    uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz,
-                    uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x,
-                    uhs_base_point_y, uhs_base_point_z, uhs_joint3_offset_x,
+        (inv_uhs_joint3_pitch, uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz,
+                    uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx,
+                    uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y,
+                    uhs_base_point_z, uhs_branch_1, uhs_branch_2, uhs_joint3_offset_x,
                     uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
-                    uhs_platform_point_z,),
+                    uhs_platform_point_z, uhs_size_t,),
                 ),
             ),
         ),
@@ -813,12 +833,12 @@ def _prepare(p):
         (),
             (
                 (_uhs,
-        (branch_1, branch_2, inv_uhs_joint3_pitch, size, size_t, uhs_base_frame_xx,
-                    uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy,
-                    uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz,
-                    uhs_base_point_x, uhs_base_point_y, uhs_base_point_z, uhs_joint3_offset_x,
+        (inv_uhs_joint3_pitch, uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz,
+                    uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx,
+                    uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y,
+                    uhs_base_point_z, uhs_branch_1, uhs_branch_2, uhs_joint3_offset_x,
                     uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
-                    uhs_platform_point_z,),
+                    uhs_platform_point_z, uhs_size, uhs_size_t,),
                 ),
             ),
         ),
@@ -826,12 +846,12 @@ def _prepare(p):
         (),
             (
                 (_uhs,
-        (branch_1, branch_2, inv_uhs_joint3_pitch, size, size_t, uhs_base_frame_xx,
-                    uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy,
-                    uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz,
-                    uhs_base_point_x, uhs_base_point_y, uhs_base_point_z, uhs_joint3_offset_x,
-                    uhs_joint3_pitch, uhs_platform_joint_offset_x, uhs_platform_point_x,
-                    uhs_platform_point_y, uhs_platform_point_z,),
+        (inv_uhs_joint3_pitch, uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz,
+                    uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx,
+                    uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y,
+                    uhs_base_point_z, uhs_bias_t, uhs_branch_1, uhs_branch_2, uhs_joint3_offset_x,
+                    uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
+                    uhs_platform_point_z, uhs_size, uhs_size_t,),
                 ),
             ),
         ),
@@ -839,15 +859,16 @@ def _prepare(p):
         (gravity_x, gravity_y, gravity_z,),
             (
                 (_uhs,
-        (J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz,
-                    Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, g_r0_x, g_r0_y,
-                    g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, inv_uhs_joint3_pitch, size,
-                    size_t, uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz,
-                    uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx,
-                    uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y,
-                    uhs_base_point_z, uhs_joint3_offset_x, uhs_joint3_pitch, uhs_link3_mass,
+        (inv_uhs_joint3_pitch, uhs_J_2_xy, uhs_J_2_xz, uhs_J_2_yz, uhs_J_3_xy, uhs_J_3_xz,
+                    uhs_J_3_yz, uhs_Sigma_2_xx, uhs_Sigma_2_yy, uhs_Sigma_2_zz, uhs_Sigma_3_xx,
+                    uhs_Sigma_3_yy, uhs_Sigma_3_zz, uhs_base_frame_xx, uhs_base_frame_xy,
+                    uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz,
+                    uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x,
+                    uhs_base_point_y, uhs_base_point_z, uhs_bias_t, uhs_branch_1, uhs_branch_2,
+                    uhs_g_r0_x, uhs_g_r0_y, uhs_g_r0_z, uhs_h_2_x, uhs_h_2_y, uhs_h_2_z,
+                    uhs_h_3_x, uhs_h_3_y, uhs_h_3_z, uhs_joint3_offset_x, uhs_link3_mass,
                     uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
-                    uhs_platform_point_z,),
+                    uhs_platform_point_z, uhs_size, uhs_size_t,),
                 ),
             ),
         ),
@@ -855,13 +876,14 @@ def _prepare(p):
         (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
                 (_uhs,
-        (b_r0_x, b_r0_y, b_r0_z, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z,
-                    h_3_x, h_3_y, h_3_z, inv_uhs_joint3_pitch, size_t, uhs_base_frame_xx,
+        (inv_uhs_joint3_pitch, uhs_b_r0_x, uhs_b_r0_y, uhs_b_r0_z, uhs_base_frame_xx,
                     uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy,
                     uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz,
-                    uhs_base_point_x, uhs_base_point_y, uhs_base_point_z, uhs_joint3_offset_x,
+                    uhs_base_point_x, uhs_base_point_y, uhs_base_point_z, uhs_branch_1,
+                    uhs_branch_2, uhs_g_r0_x, uhs_g_r0_y, uhs_g_r0_z, uhs_h_2_x, uhs_h_2_y,
+                    uhs_h_2_z, uhs_h_3_x, uhs_h_3_y, uhs_h_3_z, uhs_joint3_offset_x,
                     uhs_link2_mass, uhs_platform_joint_offset_x, uhs_platform_point_x,
-                    uhs_platform_point_y, uhs_platform_point_z,),
+                    uhs_platform_point_y, uhs_platform_point_z, uhs_size_t,),
                 ),
             ),
         ),
@@ -869,19 +891,21 @@ def _prepare(p):
         (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
             (
                 (_uhs,
-        (branch_1, branch_2, inv_size, inv_size_t_3, inv_uhs_joint3_pitch, size, size_t,
-                    uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx,
-                    uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy,
-                    uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y, uhs_base_point_z,
-                    uhs_joint3_offset_x, uhs_platform_joint_offset_x, uhs_platform_point_x,
-                    uhs_platform_point_y, uhs_platform_point_z,),
+        (inv_uhs_joint3_pitch, inv_uhs_size, inv_uhs_size_t_3, uhs_base_frame_xx,
+                    uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy,
+                    uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz,
+                    uhs_base_point_x, uhs_base_point_y, uhs_base_point_z, uhs_branch_1,
+                    uhs_branch_2, uhs_joint3_offset_x, uhs_platform_joint_offset_x,
+                    uhs_platform_point_x, uhs_platform_point_y, uhs_platform_point_z, uhs_size,
+                    uhs_size_t,),
                 ),
             ),
         ),
     }
 
 
-_FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
+_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
@@ -927,17 +951,19 @@ class _Floats:
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
-        for k in range(self.states):
-            try:
-                ok, arrays = function(self, *(row[k] for row in rows))
-            except (ZeroDivisionError, OverflowError):
-                continue
-            if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
-                for a, array in zip(found, arrays):
-                    a[k] = array
-        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
+        found = [self.state(function, names, [row[k] for row in rows]) for k in range(self.states)]
+        return [np.array(a).T.reshape(*_SHAPES[n], self.states) for a, n in zip(zip(*found), names)]
+
+    def state(self, function, names, given):
+        """Lists that a function gives at a state."""
+        try:
+            ok, arrays = function(self, *given)
+        except (ZeroDivisionError, OverflowError):
+            ok = False
+        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+            return arrays
+        return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
 
 
 class _Arrays:
@@ -1005,35 +1031,44 @@ def _mode(p, states):
     return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
 
 
-def _call(function, steps, p, *arguments, mode=_mode):
-    """What the steps give at arguments (name, value, shape of a state, default, rule)."""
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+    """What the steps give at arguments (name, value, shape of a state, default, rule).
+
+    Where that may be infinite only NaN makes a state impossible.
+    """
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
     lead, p = _lead(leads), _given(p)
     read = [a[4:] != ("unused",) for a in arguments]
     if lead or mode is _Judged:
-        results = _many(steps, p, lead, given, shapes, read, mode)
+        results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
-        results = _one(steps, p, given, shapes, read)
+        results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
 
 
-def _one(steps, p, given, shapes, read):
+def _one(steps, p, given, shapes, read, unbounded):
     """Results at a single state."""
     states = [v.reshape(*shape, 1) for v, shape in zip(given, shapes)]
     with np.errstate(all="ignore"):
-        results = [a[..., 0] for a in steps(_Floats(p, 1), *states)]
-    if all(all(map(math.isfinite, v.ravel().tolist())) for v in (*compress(given, read), *results)):
-        return [np.array(a)[()] for a in results]
+        results = [a[..., 0].copy() for a in steps(_Floats(p, 1), *states)]
+    looked_at = [np.minimum(a, 0.0) for a in results] if unbounded else results
+    entries = (v.ravel().tolist() for v in (*compress(given, read), *looked_at))
+    if all(all(map(math.isfinite, row)) for row in entries):
+        return [a[()] for a in results]
     return [np.full(a.shape, np.nan)[()] for a in results]
 
 
-def _many(steps, p, lead, given, shapes, read, mode):
+def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block."""
     count = math.prod(lead)
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
+    if count > _BLOCK:
+        # Never touched, freed at once: the C library, which learns from it, then keeps the memory
+        # of intermediate arrays from block to block instead of giving its pages back.
+        np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
         for first in range(0, max(count, 1), _BLOCK):
             block = slice(first, min(first + _BLOCK, count))
@@ -1045,7 +1080,7 @@ def _many(steps, p, lead, given, shapes, read, mode):
             _all_finite(compress(states, read), good)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite(found, good)
+            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -1074,6 +1109,18 @@ def _with_forces(a, amounts, directions, legs):
     for k, leg in enumerate(legs):
         result[leg] += amounts[k] * directions[k]
     return result
+
+
+def _unlimited(a, places):
+    """a, some entries infinite; what is not known stays so."""
+    result = np.array(a)
+    result[places] += np.inf
+    return result
+
+
+def _not_negative(a):
+    """1 where no entry is negative, else 0; NaN where one is not finite."""
+    return np.where(np.isfinite(a).all(axis=0), np.all(a >= 0.0, axis=0), np.nan)
 
 
 def _rows_divided(a, b, places):
@@ -1176,8 +1223,8 @@ def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
     n, states = b.shape
     if 0 < states <= _FEW:
-        matrices, rights = np.moveaxis(a, -1, 0).tolist(), b.T.tolist()
-        return np.array([_solve_one(*each) for each in zip(matrices, rights)]).T.reshape(n, states)
+        systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
+        return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
     good = np.all((size > 0.0) & np.isfinite(size), axis=0)
     rows = np.concatenate((a, b[:, None]), axis=1)
@@ -1204,28 +1251,32 @@ def _solve(a, b):
 
 
 def _solve_one(a, b):
-    """The same for one system of nested lists."""
-    n = len(b)
-    failure = [np.nan] * n
-    for i, row in enumerate(a):
-        size = max(map(abs, row), default=0.0)
-        if not 0.0 < size < np.inf:
-            return failure
-        a[i] = [v / size for v in row] + [b[i] / size]
-    for k in range(n):
-        best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
-            a[k], a[best] = a[best], a[k]
-        if not abs(a[k][k]) > _PIVOT:
-            return failure
-        head = a[k]
-        for i in range(k + 1, n):
-            factor = a[i][k] / head[k]
-            a[i] = [v - factor * h for v, h in zip(a[i], head)]
-    x = [0.0] * n
-    for k in reversed(range(n)):
-        x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
-    return x if all(map(math.isfinite, x)) else failure
+    """The same for one system of nested lists: the rows left lose an entry at every step."""
+    rows, heads = [], []
+    for row, right in zip(a, b):
+        size = max(map(abs, row))
+        if not 0.0 < size < math.inf:
+            return [math.nan] * len(b)
+        rows.append([v / size for v in (*row, right)])
+    while rows:
+        column = [abs(row[0]) for row in rows]
+        largest = max(column)
+        if largest > _CLEARLY * column[0]:
+            best = column.index(largest)
+            rows[0], rows[best] = rows[best], rows[0]
+        pivot, *head = rows[0]
+        if not abs(pivot) > _PIVOT:
+            return [math.nan] * len(b)
+        heads.append((pivot, head))
+        for i in range(1, len(rows)):
+            first, *row = rows[i]
+            factor = first / pivot
+            rows[i] = [v - factor * h for v, h in zip(row, head)]
+        del rows[0]
+    x = []
+    for pivot, (*head, right) in reversed(heads):
+        x.insert(0, (right - sum([h * v for h, v in zip(head, x)])) / pivot)
+    return x if all(map(math.isfinite, x)) else [math.nan] * len(b)
 
 
 def _matrices(a, *others):
@@ -1336,14 +1387,14 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 2547 mul, 1917 add, 24 div, 12 sqrt, 12 trig
+# dynamics: 2577 mul, 1947 add, 24 div, 12 sqrt, 12 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("dynamics")
     (
-    J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
+    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
         Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
         m_star,
     ) = shared
@@ -1399,446 +1450,510 @@ def _run_dynamics(m, X, V):
     out_M = m.zeros("M")
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy
-    J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
     J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_12 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_15 = 2.0*J_star_t_14 + J_star_xx
-    # (M4) centripetal force and weight of the platform
+    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
+    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
     Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
     Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z_2*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x_2*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y - g_r0_y_2*h_star_x
+    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
+    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
     sums = [0.0] * 27
     for leg, k in legs[0]:
         (
-        J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz, J_3_zz,
-            Jc_2_xx, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz,
-            branch_1, branch_2, d_G_t, d_phi_3_t, d_phi_3_t_2, g_r0_x, g_r0_y, g_r0_z, h_2_x,
-            h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, inv_uhs_joint3_pitch, size, size_t,
-            uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx,
-            uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy,
-            uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y, uhs_base_point_z,
-            uhs_joint3_offset_x, uhs_joint3_pitch, uhs_platform_joint_offset_x,
-            uhs_platform_point_x, uhs_platform_point_y, uhs_platform_point_z,
+        inv_uhs_joint3_pitch, uhs_J_2_xy, uhs_J_2_xz, uhs_J_2_yy, uhs_J_2_yz, uhs_J_2_zz,
+            uhs_J_3_xx, uhs_J_3_xy, uhs_J_3_xz, uhs_J_3_yy, uhs_J_3_yz, uhs_J_3_zz, uhs_Jc_2_xx,
+            uhs_Sigma_2_xx, uhs_Sigma_2_yy, uhs_Sigma_2_zz, uhs_Sigma_3_xx, uhs_Sigma_3_yy,
+            uhs_Sigma_3_zz, uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz,
+            uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx,
+            uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y,
+            uhs_base_point_z, uhs_bias_t, uhs_branch_1, uhs_branch_2, uhs_d_G_t, uhs_d_phi_3_t,
+            uhs_d_phi_3_t_2, uhs_g_r0_x, uhs_g_r0_y, uhs_g_r0_z, uhs_h_2_x, uhs_h_2_y, uhs_h_2_z,
+            uhs_h_3_x, uhs_h_3_y, uhs_h_3_z, uhs_joint3_offset_x, uhs_platform_joint_offset_x,
+            uhs_platform_point_x, uhs_platform_point_y, uhs_platform_point_z, uhs_size,
+            uhs_size_t,
         ) = k
-        # (uhs-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (uhs-S) from the base point to the connection point
+        uhs_q_in_base_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
-        q_in_base_y = (
+        uhs_q_in_base_y = (
         R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y + R_yz*uhs_platform_point_z
         )
-        q_in_base_z = (
+        uhs_q_in_base_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - uhs_base_point_x
-        S_y = q_in_base_y + t_y - uhs_base_point_y
-        S_z = q_in_base_z + t_z - uhs_base_point_z
-        # (uhs-K2) component along the reference direction
-        px_1 = S_x*uhs_base_frame_xx + S_y*uhs_base_frame_yx + S_z*uhs_base_frame_zx
-        # (uhs-K3) component across the reference direction
-        py_1 = S_x*uhs_base_frame_xy + S_y*uhs_base_frame_yy + S_z*uhs_base_frame_zy
-        # (uhs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (uhs-K7) root, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (uhs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*uhs_base_frame_xz + S_y*uhs_base_frame_yz + S_z*uhs_base_frame_zz
-        # (uhs-K16) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (uhs-K18) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (uhs-K23) from the origin of joint 3 to the connection point
-        x_3_x = root_2 - uhs_joint3_offset_x
-        # (uhs-K24) displacement of joint 3
-        q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - x_3_x)
-        # (uhs-K19) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = inv_rho2_2*root_1*root_2
-        # (uhs-K20) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*root_2*xi_1_t
-        # (uhs-K25) cosine of the angle of joint 3 from its reference direction
-        c_3_t = sin(q_3)
-        # (uhs-K26) sine of the angle of joint 3 from its reference direction
-        s_3 = cos(q_3)
-        # (uhs-V4) velocity of the connection point per rate of joint 1
-        v_1_t = c_2*c_3_t
-        v_1_t_2 = c_2*s_3
-        v_1_t_3 = root_2*v_1_t_2
-        v_1_t_4 = root_2*v_1_t
-        # (uhs-V7) reciprocal vector 1
-        inv_root_2 = 1.0/root_2
-        axis_z_x = S_x*inv_root_2
-        axis_z_y = S_y*inv_root_2
-        axis_z_z = S_z*inv_root_2
-        w_1_t = s_2*s_3
-        # (uhs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*py_1*root_1
-        # (uhs-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*px_1*root_1
-        # (uhs-V7) reciprocal vector 1
-        axis_y_uhs_axes3_r4_x = -c_1*c_3_t - s_1*w_1_t
-        axis_y_uhs_axes3_r4_y = c_3_t*s_1 - c_1*w_1_t
+        uhs_S_x = t_x + uhs_q_in_base_x - uhs_base_point_x
+        uhs_S_y = t_y + uhs_q_in_base_y - uhs_base_point_y
+        uhs_S_z = t_z + uhs_q_in_base_z - uhs_base_point_z
+        # (uhs-px_1) component along the reference direction
+        uhs_px_1 = (
+        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
+        )
+        # (uhs-py_1) component across the reference direction
+        uhs_py_1 = (
+        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
+        )
+        # (uhs-rho2_1) squared amplitude
+        uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1
+        # (uhs-root_1) root, with the sign of the branch
+        uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
+        # (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        uhs_xi_1_t = (
+        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
+        )
+        # (uhs-rho2_2) squared amplitude
+        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t
+        # (uhs-root_2) root, with the sign of the branch
+        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
+        # (uhs-x_3) from the origin of joint 3 to the connection point
+        uhs_x_3_x = uhs_root_2 - uhs_joint3_offset_x
+        # (uhs-q_3) displacement of joint 3
+        uhs_q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_x)
+        # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_uhs_rho2_2 = 1.0/uhs_rho2_2
+        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
+        # (uhs-s_2) sine of the angle of joint 2 from its reference direction
+        uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_t
+        # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
+        uhs_c_3_t = sin(uhs_q_3)
+        # (uhs-s_3) sine of the angle of joint 3 from its reference direction
+        uhs_s_3 = cos(uhs_q_3)
+        # (uhs-v_1) velocity of the connection point per rate of joint 1
+        uhs_v_1_t = uhs_c_2*uhs_c_3_t
+        uhs_v_1_t_2 = uhs_c_2*uhs_s_3
+        uhs_v_1_t_3 = uhs_root_2*uhs_v_1_t_2
+        uhs_v_1_t_4 = uhs_root_2*uhs_v_1_t
+        # (uhs-w_1) reciprocal vector 1
+        inv_uhs_root_2 = 1.0/uhs_root_2
+        uhs_axis_z_x = inv_uhs_root_2*uhs_S_x
+        uhs_axis_z_y = inv_uhs_root_2*uhs_S_y
+        uhs_axis_z_z = inv_uhs_root_2*uhs_S_z
+        uhs_w_1_t = uhs_s_2*uhs_s_3
+        # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
+        uhs_c_1 = inv_uhs_rho2_1*uhs_py_1*uhs_root_1
+        # (uhs-s_1) sine of the angle of joint 1 from its reference direction
+        uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1
+        # (uhs-w_1) reciprocal vector 1
+        axis_y_uhs_axes3_r4_x = -uhs_c_1*uhs_c_3_t - uhs_s_1*uhs_w_1_t
+        axis_y_uhs_axes3_r4_y = uhs_c_3_t*uhs_s_1 - uhs_c_1*uhs_w_1_t
         axis_y_uhs_axes3_in_base_x = (
         axis_y_uhs_axes3_r4_x*uhs_base_frame_xx + axis_y_uhs_axes3_r4_y*uhs_base_frame_xy +
-            uhs_base_frame_xz*v_1_t_2
+            uhs_base_frame_xz*uhs_v_1_t_2
         )
         axis_y_uhs_axes3_in_base_y = (
         axis_y_uhs_axes3_r4_x*uhs_base_frame_yx + axis_y_uhs_axes3_r4_y*uhs_base_frame_yy +
-            uhs_base_frame_yz*v_1_t_2
+            uhs_base_frame_yz*uhs_v_1_t_2
         )
         axis_y_uhs_axes3_in_base_z = (
         axis_y_uhs_axes3_r4_x*uhs_base_frame_zx + axis_y_uhs_axes3_r4_y*uhs_base_frame_zy +
-            uhs_base_frame_zz*v_1_t_2
+            uhs_base_frame_zz*uhs_v_1_t_2
         )
         axis_x_uhs_axes3_x = (
-        axis_y_uhs_axes3_in_base_y*axis_z_z - axis_y_uhs_axes3_in_base_z*axis_z_y
+        axis_y_uhs_axes3_in_base_y*uhs_axis_z_z - axis_y_uhs_axes3_in_base_z*uhs_axis_z_y
         )
         axis_x_uhs_axes3_y = (
-        axis_y_uhs_axes3_in_base_z*axis_z_x - axis_y_uhs_axes3_in_base_x*axis_z_z
+        axis_y_uhs_axes3_in_base_z*uhs_axis_z_x - axis_y_uhs_axes3_in_base_x*uhs_axis_z_z
         )
         axis_x_uhs_axes3_z = (
-        axis_y_uhs_axes3_in_base_x*axis_z_y - axis_y_uhs_axes3_in_base_y*axis_z_x
+        axis_y_uhs_axes3_in_base_x*uhs_axis_z_y - axis_y_uhs_axes3_in_base_y*uhs_axis_z_x
         )
-        # (uhs-G7) inertia tensor of link 3 about the connection point
-        J_3_t = J_3_yz*s_3
-        _x = J_3_yy*c_3_t - J_3_t
-        J_3_t_2 = J_3_yz*c_3_t
-        _x_2 = J_3_t_2 - J_3_zz*s_3
-        _x_3 = J_3_xy*c_3_t - J_3_xz*s_3
-        _y = J_3_xy*s_3 + J_3_xz*c_3_t
-        # (uhs-N12) inertia tensor of the links from 2 outwards about joint 2
-        Jc_2_xy = _x_3 - J_2_xz
-        _y_2 = s_2*(J_2_xy + _y) - c_2*(_x*s_3 + _x_2*c_3_t - J_2_yz)
-        # (uhs-V4) velocity of the connection point per rate of joint 1
-        v_1_r0_x = c_3_t*v_1_t_3 - s_3*v_1_t_4
-        v_1_r0_y = c_3_t*v_1_t_4 + s_3*v_1_t_3
-        # (uhs-V7) reciprocal vector 1
-        inv_v_1_r0_y = 1.0/v_1_r0_y
-        w_1_t_2 = inv_v_1_r0_y*s_3
-        w_1_t_3 = c_3_t*inv_v_1_r0_y
-        # (uhs-V8) reciprocal vector 2
-        w_2_t = inv_root_2*inv_v_1_r0_y*v_1_r0_x
-        _r1_x = c_3_t*inv_root_2 - s_3*w_2_t
-        _r1_y = -c_3_t*w_2_t - inv_root_2*s_3
-        # (uhs-G6) first moment of link 3 about the connection point
-        h_3_r1_x = c_3_t*h_3_y - h_3_z*s_3
-        # (uhs-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_t = _y_2*inv_root_2
-        d_Gamma_1_t_2 = (
-        s_2*(Jc_2_xx*s_2 - Jc_2_xy*c_2) - c_2*(Jc_2_xy*s_2 - c_2*(J_2_zz + _x*c_3_t - _x_2*s_3)) -
-            d_Gamma_1_t*v_1_r0_x
+        # (uhs-v_1) velocity of the connection point per rate of joint 1
+        uhs_v_1_r0_x = uhs_c_3_t*uhs_v_1_t_3 - uhs_s_3*uhs_v_1_t_4
+        uhs_v_1_r0_y = uhs_c_3_t*uhs_v_1_t_4 + uhs_s_3*uhs_v_1_t_3
+        # (uhs-w_1) reciprocal vector 1
+        inv_uhs_v_1_r0_y = 1.0/uhs_v_1_r0_y
+        uhs_w_1_t_2 = inv_uhs_v_1_r0_y*uhs_s_3
+        uhs_w_1_t_3 = inv_uhs_v_1_r0_y*uhs_c_3_t
+        # (uhs-w_2) reciprocal vector 2
+        uhs_w_2_t = inv_uhs_root_2*inv_uhs_v_1_r0_y*uhs_v_1_r0_x
+        uhs__r1_x = inv_uhs_root_2*uhs_c_3_t - uhs_s_3*uhs_w_2_t
+        uhs__r1_y = -inv_uhs_root_2*uhs_s_3 - uhs_c_3_t*uhs_w_2_t
+        # (uhs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
+        uhs_d_alpha_3_t = uhs_s_2*uhs_w_1_t_3
+        # (uhs-L_c_3) moment about joint 3 that accelerates joint 3, per unit
+        uhs_L_c_3_r0_y = uhs_J_3_xy*uhs_s_3 + uhs_J_3_xz*uhs_c_3_t
+        # (uhs-D_1_3) inertia of joint 3 along joint 1
+        uhs_D_1_3 = uhs_J_3_xx*uhs_s_2 + uhs_J_3_xz*uhs_v_1_t_2 - uhs_J_3_xy*uhs_v_1_t
+        # (uhs-J_3) inertia tensor of link 3 about the connection point
+        uhs_J_3_t = uhs_J_3_yz*uhs_s_3
+        uhs__x = uhs_J_3_yy*uhs_c_3_t - uhs_J_3_t
+        uhs_J_3_t_2 = uhs_J_3_yz*uhs_c_3_t
+        uhs__x_2 = uhs_J_3_t_2 - uhs_J_3_zz*uhs_s_3
+        # (uhs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+        uhs_Jc_2_xy = uhs_J_3_xy*uhs_c_3_t - uhs_J_2_xz - uhs_J_3_xz*uhs_s_3
+        # (uhs-L_c_2) moment about joint 2 that accelerates joint 2, per unit
+        uhs_L_c_2_r0_y = (
+        uhs_s_2*(uhs_J_2_xy + uhs_L_c_3_r0_y) - uhs_c_2*(uhs__x*uhs_s_3 + uhs__x_2*uhs_c_3_t -
+            uhs_J_2_yz)
         )
-        d_Gamma_1_t_3 = inv_uhs_joint3_pitch*(J_3_xx*s_2 - _x_3*c_2)
-        _r0_y = d_Gamma_1_t_3*s_2 - c_2*d_Gamma_1_t
-        d_Gamma_1_x = c_2*h_3_x + d_Gamma_1_t_2*inv_v_1_r0_y + h_3_r1_x*s_2
-        d_Gamma_1_y = c_3_t*h_3_z + h_3_y*s_3 - c_2*d_Gamma_1_t_3 - d_Gamma_1_t*s_2
-        # (uhs-N32) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_t = (
-        inv_root_2*(J_2_yy + c_3_t*(J_3_t + J_3_zz*c_3_t) + s_3*(J_3_t_2 + J_3_yy*s_3))
+        # (uhs-h_3) first moment of link 3 about the connection point
+        uhs_h_3_r1_x = uhs_c_3_t*uhs_h_3_y - uhs_h_3_z*uhs_s_3
+        # (uhs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        uhs_d_Gamma_2_t = (
+        inv_uhs_root_2*(uhs_J_2_yy + uhs_c_3_t*(uhs_J_3_t + uhs_J_3_zz*uhs_c_3_t) +
+            uhs_s_3*(uhs_J_3_t_2 + uhs_J_3_yy*uhs_s_3))
         )
-        d_Gamma_2_t_2 = inv_v_1_r0_y*(_y_2 - d_Gamma_2_t*v_1_r0_x)
-        d_Gamma_2_x = _y*inv_uhs_joint3_pitch - h_3_r1_x
-        d_Gamma_2_y = d_Gamma_2_t + h_3_x
-        # (uhs-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_r1_x = _r0_y*s_2 - c_2*d_Gamma_1_y
-        d_Gamma_1_r1_y = -_r0_y*c_2 - d_Gamma_1_y*s_2
-        d_Gamma_1_r3_y = c_3_t*d_Gamma_1_x - d_Gamma_1_r1_y*s_3
-        # (uhs-N32) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_r1_y = c_3_t*d_Gamma_2_t_2 - d_Gamma_2_y*s_3
-        # (uhs-A23) coefficient of the acceleration in: angular acceleration of link 3
-        d_alpha_3_t = s_2*w_1_t_3
-        # (uhs-N41) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_xx = (
-        h_3_z*s_2*w_1_t_2 - _r1_x*(c_3_t*d_Gamma_2_y + d_Gamma_2_t_2*s_3) - h_3_x*(_r1_x*c_3_t +
-            v_1_t_2*w_1_t_2) - w_1_t_2*(c_3_t*d_Gamma_1_r1_y + d_Gamma_1_x*s_3)
+        uhs_d_Gamma_2_t_2 = inv_uhs_v_1_r0_y*(uhs_L_c_2_r0_y - uhs_d_Gamma_2_t*uhs_v_1_r0_x)
+        uhs_d_Gamma_2_x = inv_uhs_joint3_pitch*uhs_L_c_3_r0_y - uhs_h_3_r1_x
+        uhs_d_Gamma_2_y = uhs_d_Gamma_2_t + uhs_h_3_x
+        # (uhs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        uhs_d_Gamma_1_t = inv_uhs_root_2*uhs_L_c_2_r0_y
+        uhs_d_Gamma_1_t_2 = (
+        uhs_s_2*(uhs_Jc_2_xx*uhs_s_2 - uhs_Jc_2_xy*uhs_c_2) - uhs_c_2*(uhs_Jc_2_xy*uhs_s_2 -
+            uhs_c_2*(uhs_J_2_zz + uhs__x*uhs_c_3_t - uhs__x_2*uhs_s_3)) -
+            uhs_d_Gamma_1_t*uhs_v_1_r0_x
         )
-        d_c_xy = (
-        d_alpha_3_t*h_3_z - _r1_x*d_Gamma_2_r1_y - d_Gamma_1_r3_y*w_1_t_2 - h_3_x*(_r1_y*c_3_t +
-            v_1_t_2*w_1_t_3)
+        uhs_d_Gamma_1_t_3 = inv_uhs_joint3_pitch*uhs_D_1_3
+        uhs__r0_y = uhs_d_Gamma_1_t_3*uhs_s_2 - uhs_c_2*uhs_d_Gamma_1_t
+        uhs_d_Gamma_1_x = (
+        inv_uhs_v_1_r0_y*uhs_d_Gamma_1_t_2 + uhs_c_2*uhs_h_3_x + uhs_h_3_r1_x*uhs_s_2
         )
-        d_c_xz = d_phi_3_t - _r1_x*d_Gamma_2_x - d_Gamma_1_r1_x*w_1_t_2
-        d_c_yz = -d_phi_3_t_2 - _r1_y*d_Gamma_2_x - d_Gamma_1_r1_x*w_1_t_3
-        # (uhs-N43) inertia of the leg at the connection point, without the mass gathered there
-        Q_t = (
-        d_c_xx + _r1_y*d_Gamma_2_r1_y + d_Gamma_1_r3_y*w_1_t_3 + d_alpha_3_t*h_3_y -
-            h_3_x*(_r1_y*s_3 - v_1_t*w_1_t_3)
+        uhs_d_Gamma_1_y = (
+        uhs_c_3_t*uhs_h_3_z + uhs_h_3_y*uhs_s_3 - uhs_c_2*uhs_d_Gamma_1_t_3 -
+            uhs_d_Gamma_1_t*uhs_s_2
         )
-        Q_t_2 = 0.5*Q_t
-        Q_t_3 = d_G_t + d_c_xx
-        Q_t_4 = 0.5*Q_t_3
-        Q_t_5 = axis_x_uhs_axes3_x*d_c_xy + axis_z_x*d_c_yz - Q_t_2*axis_y_uhs_axes3_in_base_x
-        Q_t_6 = axis_x_uhs_axes3_y*d_c_xy + axis_z_y*d_c_yz - Q_t_2*axis_y_uhs_axes3_in_base_y
-        Q_t_7 = axis_x_uhs_axes3_z*d_c_xy + axis_z_z*d_c_yz - Q_t_2*axis_y_uhs_axes3_in_base_z
-        Q_t_8 = Q_t_4*axis_z_x - axis_x_uhs_axes3_x*d_c_xz
-        Q_t_9 = Q_t_4*axis_z_y - axis_x_uhs_axes3_y*d_c_xz
-        Q_t_10 = Q_t_4*axis_z_z - axis_x_uhs_axes3_z*d_c_xz
-        Q_t_11 = Q_t_5*axis_y_uhs_axes3_in_base_x - Q_t_8*axis_z_x
-        Q_t_12 = 2.0*Q_t_11 + d_c_xx
-        Q_t_13 = (
-        Q_t_5*axis_y_uhs_axes3_in_base_y + Q_t_6*axis_y_uhs_axes3_in_base_x - Q_t_8*axis_z_y -
-            Q_t_9*axis_z_x
+        uhs_d_Gamma_1_r1_x = uhs__r0_y*uhs_s_2 - uhs_c_2*uhs_d_Gamma_1_y
+        uhs_d_Gamma_1_r1_y = -uhs__r0_y*uhs_c_2 - uhs_d_Gamma_1_y*uhs_s_2
+        uhs_d_Gamma_1_r3_y = uhs_c_3_t*uhs_d_Gamma_1_x - uhs_d_Gamma_1_r1_y*uhs_s_3
+        # (uhs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        uhs_d_Gamma_2_r1_y = uhs_c_3_t*uhs_d_Gamma_2_t_2 - uhs_d_Gamma_2_y*uhs_s_3
+        # (uhs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        uhs_d_c_xx = (
+        uhs_h_3_z*uhs_s_2*uhs_w_1_t_2 - uhs__r1_x*(uhs_c_3_t*uhs_d_Gamma_2_y +
+            uhs_d_Gamma_2_t_2*uhs_s_3) - uhs_h_3_x*(uhs__r1_x*uhs_c_3_t + uhs_v_1_t_2*uhs_w_1_t_2)
+            - uhs_w_1_t_2*(uhs_c_3_t*uhs_d_Gamma_1_r1_y + uhs_d_Gamma_1_x*uhs_s_3)
         )
-        Q_t_14 = (
-        Q_t_5*axis_y_uhs_axes3_in_base_z + Q_t_7*axis_y_uhs_axes3_in_base_x - Q_t_10*axis_z_x -
-            Q_t_8*axis_z_z
+        uhs_d_c_xy = (
+        uhs_d_alpha_3_t*uhs_h_3_z - uhs__r1_x*uhs_d_Gamma_2_r1_y - uhs_d_Gamma_1_r3_y*uhs_w_1_t_2
+            - uhs_h_3_x*(uhs__r1_y*uhs_c_3_t + uhs_v_1_t_2*uhs_w_1_t_3)
         )
-        Q_t_15 = Q_t_6*axis_y_uhs_axes3_in_base_y - Q_t_9*axis_z_y
-        Q_t_16 = 2.0*Q_t_15 + d_c_xx
-        Q_t_17 = (
-        Q_t_6*axis_y_uhs_axes3_in_base_z + Q_t_7*axis_y_uhs_axes3_in_base_y - Q_t_10*axis_z_y -
-            Q_t_9*axis_z_z
+        uhs_d_c_xz = uhs_d_phi_3_t - uhs__r1_x*uhs_d_Gamma_2_x - uhs_d_Gamma_1_r1_x*uhs_w_1_t_2
+        uhs_d_c_yz = -uhs_d_phi_3_t_2 - uhs__r1_y*uhs_d_Gamma_2_x - uhs_d_Gamma_1_r1_x*uhs_w_1_t_3
+        # (uhs-Q) inertia of the leg at the connection point, without the mass gathered there
+        uhs_Q_t = (
+        uhs_d_c_xx + uhs__r1_y*uhs_d_Gamma_2_r1_y + uhs_d_Gamma_1_r3_y*uhs_w_1_t_3 +
+            uhs_d_alpha_3_t*uhs_h_3_y - uhs_h_3_x*(uhs__r1_y*uhs_s_3 - uhs_v_1_t*uhs_w_1_t_3)
         )
-        Q_t_18 = Q_t_7*axis_y_uhs_axes3_in_base_z - Q_t_10*axis_z_z
-        Q_t_19 = 2.0*Q_t_18 + d_c_xx
-        # (M2) coupling block of M
-        M_ta_t = Q_t_13*q_in_base_z
-        M_ta_t_2 = Q_t_14*q_in_base_y
-        M_ta_t_3 = M_ta_t - M_ta_t_2
-        M_ta_t_4 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x
-        M_ta_t_5 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x
-        M_ta_t_6 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y
-        M_ta_t_7 = Q_t_17*q_in_base_x
-        M_ta_t_8 = M_ta_t - M_ta_t_7
-        M_ta_t_9 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x
-        M_ta_t_10 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y
-        M_ta_t_11 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x
-        M_ta_t_12 = M_ta_t_7 - M_ta_t_2
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
-        M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y
-        M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z
-        M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x
-        M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z
-        M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
-        # (uhs-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-        g_r3_x = g_r0_z*s_2 - c_2*g_r1_y
-        g_r3_y = -c_2*g_r0_z - g_r1_y*s_2
-        # (uhs-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_r0_x = (
-        S_dot_x*uhs_base_frame_xx + S_dot_y*uhs_base_frame_yx + S_dot_z*uhs_base_frame_zx
+        uhs_Q_t_2 = 0.5*uhs_Q_t
+        uhs_Q_t_3 = uhs_d_G_t + uhs_d_c_xx
+        uhs_Q_t_4 = 0.5*uhs_Q_t_3
+        uhs_Q_t_5 = (
+        axis_x_uhs_axes3_x*uhs_d_c_xy + uhs_axis_z_x*uhs_d_c_yz -
+            axis_y_uhs_axes3_in_base_x*uhs_Q_t_2
         )
-        S_dot_r0_y = (
-        S_dot_x*uhs_base_frame_xy + S_dot_y*uhs_base_frame_yy + S_dot_z*uhs_base_frame_zy
+        uhs_Q_t_6 = (
+        axis_x_uhs_axes3_y*uhs_d_c_xy + uhs_axis_z_y*uhs_d_c_yz -
+            axis_y_uhs_axes3_in_base_y*uhs_Q_t_2
         )
-        S_dot_r0_z = (
-        S_dot_x*uhs_base_frame_xz + S_dot_y*uhs_base_frame_yz + S_dot_z*uhs_base_frame_zz
+        uhs_Q_t_7 = (
+        axis_x_uhs_axes3_z*uhs_d_c_xy + uhs_axis_z_z*uhs_d_c_yz -
+            axis_y_uhs_axes3_in_base_z*uhs_Q_t_2
         )
-        S_dot_r1_y = -S_dot_r0_x*s_1 - S_dot_r0_y*c_1
-        # (uhs-V10) rate of joint 1
-        qd_3 = inv_uhs_joint3_pitch*(S_dot_r0_z*s_2 - S_dot_r1_y*c_2)
-        qd_1 = inv_v_1_r0_y*(S_dot_r0_y*s_1 - S_dot_r0_x*c_1)
-        qd_2 = inv_root_2*(-S_dot_r0_z*c_2 - S_dot_r1_y*s_2 - qd_1*v_1_r0_x)
-        # (uhs-V13) angular velocity of link 1
-        omega_1_t = qd_1*s_2
-        omega_1_t_2 = c_2*qd_1
-        # (uhs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_x = omega_1_t_2*qd_2
-        zeta_2_y = omega_1_t*qd_2
-        # (uhs-V14) angular velocity of link 2
-        omega_2_r1_x = qd_2*s_3 - c_3_t*omega_1_t_2
-        omega_2_r1_y = c_3_t*qd_2 + omega_1_t_2*s_3
-        # (uhs-A5) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_x = omega_2_r1_y*qd_3
-        zeta_3_y = omega_2_r1_x*qd_3
-        # (uhs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_t = c_3_t*zeta_2_y
-        zeta_2_t_2 = s_3*zeta_2_y
-        # (uhs-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_x = zeta_3_x - zeta_2_t
-        beta_3_y = zeta_2_t_2 - zeta_3_y
-        # (uhs-V16) angular velocity of link 3
-        omega_3_z = omega_1_t + qd_3
-        # (uhs-V15) centripetal tensor of link 2
-        W_2_t = omega_1_t*omega_1_t
-        W_2_t_2 = omega_1_t_2*omega_1_t_2
-        W_2_t_3 = qd_2*qd_2
-        W_2_xy = omega_1_t*omega_1_t_2
-        # (uhs-V17) centripetal tensor of link 3
-        W_3_t = omega_2_r1_x*omega_2_r1_x
-        W_3_t_2 = omega_2_r1_y*omega_2_r1_y
-        W_3_t_3 = omega_3_z*omega_3_z
-        W_3_xy = omega_2_r1_x*omega_2_r1_y
-        W_3_xz = omega_2_r1_x*omega_3_z
-        W_3_yz = omega_2_r1_y*omega_3_z
-        W_3_zz = W_3_t + W_3_t_2
-        # (uhs-A7) acceleration of the connection point at zero joint accelerations
-        bias_t = 2.0*qd_3*uhs_joint3_pitch
-        bias_x = (
-        bias_t*omega_2_r1_y + uhs_joint3_offset_x*(zeta_2_t_2 + omega_1_t*omega_2_r1_x) +
-            x_3_x*(W_3_xz + beta_3_y)
+        uhs_Q_t_8 = uhs_Q_t_4*uhs_axis_z_x - axis_x_uhs_axes3_x*uhs_d_c_xz
+        uhs_Q_t_9 = uhs_Q_t_4*uhs_axis_z_y - axis_x_uhs_axes3_y*uhs_d_c_xz
+        uhs_Q_t_10 = uhs_Q_t_4*uhs_axis_z_z - axis_x_uhs_axes3_z*uhs_d_c_xz
+        uhs_Q_t_11 = axis_y_uhs_axes3_in_base_x*uhs_Q_t_5 - uhs_Q_t_8*uhs_axis_z_x
+        uhs_Q_t_12 = 2.0*uhs_Q_t_11 + uhs_d_c_xx
+        uhs_Q_t_13 = (
+        axis_y_uhs_axes3_in_base_x*uhs_Q_t_6 + axis_y_uhs_axes3_in_base_y*uhs_Q_t_5 -
+            uhs_Q_t_8*uhs_axis_z_y - uhs_Q_t_9*uhs_axis_z_x
         )
-        bias_y = (
-        uhs_joint3_offset_x*(zeta_2_t + omega_1_t*omega_2_r1_y) + x_3_x*(W_3_yz - beta_3_x) -
-            bias_t*omega_2_r1_x
+        uhs_Q_t_14 = (
+        axis_y_uhs_axes3_in_base_x*uhs_Q_t_7 + axis_y_uhs_axes3_in_base_z*uhs_Q_t_5 -
+            uhs_Q_t_10*uhs_axis_z_x - uhs_Q_t_8*uhs_axis_z_z
         )
-        bias_z = -W_3_zz*uhs_joint3_offset_x - W_3_zz*x_3_x
-        # (uhs-A1) centripetal acceleration of the connection point
-        u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
-        u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y
-        u_1_tip_x = axis_x_uhs_axes3_x*u_1_x + axis_x_uhs_axes3_y*u_1_y + axis_x_uhs_axes3_z*u_1_z
-        u_1_tip_y = (
-        axis_y_uhs_axes3_in_base_x*u_1_x + axis_y_uhs_axes3_in_base_y*u_1_y +
-            axis_y_uhs_axes3_in_base_z*u_1_z
+        uhs_Q_t_15 = axis_y_uhs_axes3_in_base_y*uhs_Q_t_6 - uhs_Q_t_9*uhs_axis_z_y
+        uhs_Q_t_16 = 2.0*uhs_Q_t_15 + uhs_d_c_xx
+        uhs_Q_t_17 = (
+        axis_y_uhs_axes3_in_base_y*uhs_Q_t_7 + axis_y_uhs_axes3_in_base_z*uhs_Q_t_6 -
+            uhs_Q_t_10*uhs_axis_z_y - uhs_Q_t_9*uhs_axis_z_z
         )
-        u_1_tip_z = axis_z_x*u_1_x + axis_z_y*u_1_y + axis_z_z*u_1_z
-        # (uhs-A9) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_x = u_1_tip_x - bias_x
-        rel_o_y = u_1_tip_y - bias_y
-        rel_o_z = u_1_tip_z - bias_z
-        # (uhs-A11) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_o = inv_v_1_r0_y*(c_3_t*rel_o_y + rel_o_x*s_3)
-        qdd_2_o = inv_root_2*(qdd_1_o*v_1_r0_x + rel_o_y*s_3 - c_3_t*rel_o_x)
-        # (uhs-A17) remainder without the acceleration in: angular acceleration of link 1
-        alpha_1_o_t = qdd_1_o*s_2
-        alpha_1_o_t_2 = c_2*qdd_1_o
-        # (uhs-A19) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_o_x = alpha_1_o_t - zeta_2_x
-        alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-        # (uhs-A21) remainder of the acceleration tensor of link 2
-        B_2_o_xy = qdd_2_o - W_2_xy
-        B_2_o_yx = -W_2_xy - qdd_2_o
-        B_2_o_zx = zeta_2_y - alpha_2_o_y
-        B_2_o_zy = alpha_2_o_x - zeta_2_x
-        # (uhs-N28) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_o_x = (
-        B_2_o_yx*J_2_xy + B_2_o_zx*J_2_xz + B_2_o_zy*Sigma_2_yy + Sigma_2_zz*alpha_1_o_t +
-            g_r1_x*h_2_z + g_r3_y*h_2_y - J_2_yz*(W_2_t_2 - W_2_t_3)
+        uhs_Q_t_18 = axis_y_uhs_axes3_in_base_z*uhs_Q_t_7 - uhs_Q_t_10*uhs_axis_z_z
+        uhs_Q_t_19 = 2.0*uhs_Q_t_18 + uhs_d_c_xx
+        # (M_ta) coupling block of M
+        uhs_M_ta_t = uhs_Q_t_13*uhs_q_in_base_z
+        uhs_M_ta_t_2 = uhs_Q_t_14*uhs_q_in_base_y
+        uhs_M_ta_t_3 = uhs_M_ta_t - uhs_M_ta_t_2
+        uhs_M_ta_t_4 = uhs_Q_t_12*uhs_q_in_base_z - uhs_Q_t_14*uhs_q_in_base_x
+        uhs_M_ta_t_5 = uhs_Q_t_12*uhs_q_in_base_y - uhs_Q_t_13*uhs_q_in_base_x
+        uhs_M_ta_t_6 = uhs_Q_t_16*uhs_q_in_base_z - uhs_Q_t_17*uhs_q_in_base_y
+        uhs_M_ta_t_7 = uhs_Q_t_17*uhs_q_in_base_x
+        uhs_M_ta_t_8 = uhs_M_ta_t - uhs_M_ta_t_7
+        uhs_M_ta_t_9 = uhs_Q_t_13*uhs_q_in_base_y - uhs_Q_t_16*uhs_q_in_base_x
+        uhs_M_ta_t_10 = uhs_Q_t_17*uhs_q_in_base_z - uhs_Q_t_19*uhs_q_in_base_y
+        uhs_M_ta_t_11 = uhs_Q_t_14*uhs_q_in_base_z - uhs_Q_t_19*uhs_q_in_base_x
+        uhs_M_ta_t_12 = uhs_M_ta_t_7 - uhs_M_ta_t_2
+        # (M_aa) rotational block of M
+        uhs_M_aa_t = uhs_M_ta_t_6*uhs_q_in_base_z - uhs_M_ta_t_10*uhs_q_in_base_y
+        uhs_M_aa_t_2 = uhs_M_ta_t_8*uhs_q_in_base_z - uhs_M_ta_t_11*uhs_q_in_base_y
+        uhs_M_aa_t_3 = uhs_M_ta_t_12*uhs_q_in_base_y + uhs_M_ta_t_9*uhs_q_in_base_z
+        uhs_M_aa_t_4 = uhs_M_ta_t_4*uhs_q_in_base_z - uhs_M_ta_t_11*uhs_q_in_base_x
+        uhs_M_aa_t_5 = uhs_M_ta_t_12*uhs_q_in_base_x + uhs_M_ta_t_5*uhs_q_in_base_z
+        uhs_M_aa_t_6 = uhs_M_ta_t_5*uhs_q_in_base_y - uhs_M_ta_t_9*uhs_q_in_base_x
+        # (uhs-S_dot) velocity of the connection point
+        uhs_S_dot_t = omega_y*uhs_q_in_base_z - omega_z*uhs_q_in_base_y
+        uhs_S_dot_t_2 = omega_z*uhs_q_in_base_x - omega_x*uhs_q_in_base_z
+        uhs_S_dot_t_3 = omega_x*uhs_q_in_base_y - omega_y*uhs_q_in_base_x
+        uhs_S_dot_x = t_dot_x + uhs_S_dot_t
+        uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2
+        uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3
+        uhs_S_dot_r0_x = (
+        uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx +
+            uhs_S_dot_z*uhs_base_frame_zx
         )
-        mu_2_o_y = (
-        B_2_o_xy*J_2_yz + g_r1_x*h_2_x - B_2_o_zx*Sigma_2_xx - B_2_o_zy*J_2_xz - J_2_xy*(W_2_t -
-            W_2_t_3) - Sigma_2_zz*alpha_1_o_t_2 - g_r3_x*h_2_y
+        uhs_S_dot_r0_y = (
+        uhs_S_dot_x*uhs_base_frame_xy + uhs_S_dot_y*uhs_base_frame_yy +
+            uhs_S_dot_z*uhs_base_frame_zy
         )
-        mu_2_o_z = (
-        B_2_o_yx*Sigma_2_xx + J_2_xy*alpha_1_o_t + J_2_yz*alpha_1_o_t_2 - B_2_o_xy*Sigma_2_yy -
-            J_2_xz*(W_2_t - W_2_t_2) - g_r3_x*h_2_z - g_r3_y*h_2_x
+        uhs_S_dot_r0_z = (
+        uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz +
+            uhs_S_dot_z*uhs_base_frame_zz
         )
-        # (uhs-N4) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        acc_3_o_x = u_1_tip_x - c_3_t*g_r3_y - g_r1_x*s_3
-        acc_3_o_y = u_1_tip_y + g_r3_y*s_3 - c_3_t*g_r1_x
-        acc_3_o_z = u_1_tip_z - g_r3_x
-        # (uhs-A24) remainder without the acceleration in: angular acceleration of link 3
-        alpha_3_o_x = zeta_3_x + alpha_2_o_y*c_3_t - qdd_2_o*s_3
-        alpha_3_o_y = -zeta_3_y - alpha_2_o_y*s_3 - c_3_t*qdd_2_o
-        alpha_3_o_z = alpha_2_o_x + inv_uhs_joint3_pitch*rel_o_z
-        # (uhs-A26) remainder of the acceleration tensor of link 3
-        B_3_o_xy = W_3_xy - alpha_3_o_z
-        B_3_o_xz = W_3_xz + alpha_3_o_y
-        B_3_o_yx = W_3_xy + alpha_3_o_z
-        B_3_o_yz = W_3_yz - alpha_3_o_x
-        B_3_o_zx = W_3_xz - alpha_3_o_y
-        B_3_o_zy = W_3_yz + alpha_3_o_x
-        # (uhs-N21) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        mu_3_o_x = (
-        B_3_o_yx*J_3_xy + B_3_o_zy*Sigma_3_yy + J_3_xz*(W_3_t_2 - W_3_t_3) + acc_3_o_z*h_3_z -
-            B_3_o_yz*Sigma_3_zz - B_3_o_zx*J_3_yz - acc_3_o_y*h_3_x
+        uhs_S_dot_r1_y = -uhs_S_dot_r0_x*uhs_s_1 - uhs_S_dot_r0_y*uhs_c_1
+        # (uhs-qd_3) rate of joint 3
+        uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_S_dot_r0_z*uhs_s_2 - uhs_S_dot_r1_y*uhs_c_2)
+        uhs_qd_1 = inv_uhs_v_1_r0_y*(uhs_S_dot_r0_y*uhs_s_1 - uhs_S_dot_r0_x*uhs_c_1)
+        uhs_qd_2 = (
+        inv_uhs_root_2*(-uhs_S_dot_r0_z*uhs_c_2 - uhs_S_dot_r1_y*uhs_s_2 - uhs_qd_1*uhs_v_1_r0_x)
         )
-        mu_3_o_y = (
-        B_3_o_xz*Sigma_3_zz + B_3_o_zy*J_3_yz + acc_3_o_x*h_3_x - B_3_o_xy*J_3_xz -
-            B_3_o_zx*Sigma_3_xx - J_3_xy*(W_3_t - W_3_t_3) - acc_3_o_z*h_3_y
+        # (uhs-omega_1) angular velocity of link 1
+        uhs_omega_1_t = uhs_qd_1*uhs_s_2
+        uhs_omega_1_t_2 = uhs_c_2*uhs_qd_1
+        # (uhs-omega_2) angular velocity of link 2
+        uhs_omega_2_r1_x = uhs_qd_2*uhs_s_3 - uhs_c_3_t*uhs_omega_1_t_2
+        uhs_omega_2_r1_y = uhs_c_3_t*uhs_qd_2 + uhs_omega_1_t_2*uhs_s_3
+        # (uhs-omega_3) angular velocity of link 3
+        uhs_omega_3_z = uhs_omega_1_t + uhs_qd_3
+        # (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        uhs_zeta_3_x = uhs_omega_2_r1_y*uhs_qd_3
+        uhs_zeta_3_y = uhs_omega_2_r1_x*uhs_qd_3
+        # (uhs-u_1) centripetal acceleration of the connection point
+        uhs_u_1_x = omega_y*uhs_S_dot_t_3 - omega_z*uhs_S_dot_t_2
+        uhs_u_1_y = omega_z*uhs_S_dot_t - omega_x*uhs_S_dot_t_3
+        uhs_u_1_z = omega_x*uhs_S_dot_t_2 - omega_y*uhs_S_dot_t
+        # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        uhs_zeta_2_x = uhs_omega_1_t_2*uhs_qd_2
+        uhs_zeta_2_y = uhs_omega_1_t*uhs_qd_2
+        uhs_zeta_2_t = uhs_c_3_t*uhs_zeta_2_y
+        uhs_zeta_2_t_2 = uhs_s_3*uhs_zeta_2_y
+        # (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        uhs_beta_3_x = uhs_zeta_3_x - uhs_zeta_2_t
+        uhs_beta_3_y = uhs_zeta_2_t_2 - uhs_zeta_3_y
+        # (uhs-W_2) centripetal tensor of link 2
+        uhs_W_2_t = uhs_omega_1_t*uhs_omega_1_t
+        uhs_W_2_t_2 = uhs_omega_1_t_2*uhs_omega_1_t_2
+        uhs_W_2_t_3 = uhs_qd_2*uhs_qd_2
+        uhs_W_2_xy = uhs_omega_1_t*uhs_omega_1_t_2
+        # (uhs-W_3) centripetal tensor of link 3
+        uhs_W_3_t = uhs_omega_2_r1_x*uhs_omega_2_r1_x
+        uhs_W_3_t_2 = uhs_omega_2_r1_y*uhs_omega_2_r1_y
+        uhs_W_3_t_3 = uhs_omega_3_z*uhs_omega_3_z
+        uhs_W_3_xy = uhs_omega_2_r1_x*uhs_omega_2_r1_y
+        uhs_W_3_xz = uhs_omega_2_r1_x*uhs_omega_3_z
+        uhs_W_3_yz = uhs_omega_2_r1_y*uhs_omega_3_z
+        uhs_W_3_zz = uhs_W_3_t + uhs_W_3_t_2
+        # (uhs-bias) acceleration of the connection point at zero joint accelerations
+        uhs_bias_t_2 = uhs_bias_t*uhs_qd_3
+        uhs_bias_x = (
+        uhs_bias_t_2*uhs_omega_2_r1_y + uhs_joint3_offset_x*(uhs_zeta_2_t_2 +
+            uhs_omega_1_t*uhs_omega_2_r1_x) + uhs_x_3_x*(uhs_W_3_xz + uhs_beta_3_y)
         )
-        mu_3_o_z = (
-        B_3_o_xz*J_3_xz + B_3_o_yx*Sigma_3_xx + J_3_yz*(W_3_t - W_3_t_2) + acc_3_o_y*h_3_y -
-            B_3_o_xy*Sigma_3_yy - B_3_o_yz*J_3_xy - acc_3_o_x*h_3_z
+        uhs_bias_y = (
+        uhs_joint3_offset_x*(uhs_zeta_2_t + uhs_omega_1_t*uhs_omega_2_r1_y) +
+            uhs_x_3_x*(uhs_W_3_yz - uhs_beta_3_x) - uhs_bias_t_2*uhs_omega_2_r1_x
         )
-        # (uhs-N30) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_o_x = mu_2_o_x + mu_3_o_z
-        N_2_o_y = mu_2_o_y + c_3_t*mu_3_o_x - mu_3_o_y*s_3
-        N_2_o_z = mu_2_o_z + c_3_t*mu_3_o_y + mu_3_o_x*s_3
-        # (uhs-N39) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_o_t = N_2_o_z*inv_root_2
-        G_o_t_2 = inv_v_1_r0_y*(G_o_t*v_1_r0_x + N_2_o_y*c_2 - N_2_o_x*s_2)
-        # (uhs-N42) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_o_x = (
-        G_o_t_2*s_3 + h_3_y*(W_3_t_2 + W_3_t_3) - B_3_o_xy*h_3_z - B_3_o_xz*h_3_x - G_o_t*c_3_t
+        uhs_bias_z = -uhs_W_3_zz*uhs_joint3_offset_x - uhs_W_3_zz*uhs_x_3_x
+        # (uhs-u_1) centripetal acceleration of the connection point
+        uhs_u_1_tip_x = (
+        axis_x_uhs_axes3_x*uhs_u_1_x + axis_x_uhs_axes3_y*uhs_u_1_y + axis_x_uhs_axes3_z*uhs_u_1_z
         )
-        c_o_y = (
-        G_o_t*s_3 + G_o_t_2*c_3_t + h_3_z*(W_3_t + W_3_t_3) - B_3_o_yx*h_3_y - B_3_o_yz*h_3_x
+        uhs_u_1_tip_y = (
+        axis_y_uhs_axes3_in_base_x*uhs_u_1_x + axis_y_uhs_axes3_in_base_y*uhs_u_1_y +
+            axis_y_uhs_axes3_in_base_z*uhs_u_1_z
         )
-        c_o_z = W_3_zz*h_3_x - B_3_o_zx*h_3_y - B_3_o_zy*h_3_z - inv_uhs_joint3_pitch*mu_3_o_z
-        # (uhs-N44) velocity and gravity terms of the leg force
-        U_in_base_x = (
-        -axis_x_uhs_axes3_x*c_o_x - axis_y_uhs_axes3_in_base_x*c_o_y - axis_z_x*c_o_z
+        uhs_u_1_tip_z = uhs_axis_z_x*uhs_u_1_x + uhs_axis_z_y*uhs_u_1_y + uhs_axis_z_z*uhs_u_1_z
+        # (uhs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        uhs_rel_o_x = uhs_u_1_tip_x - uhs_bias_x
+        uhs_rel_o_y = uhs_u_1_tip_y - uhs_bias_y
+        uhs_rel_o_z = uhs_u_1_tip_z - uhs_bias_z
+        # (uhs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
+        uhs_qdd_1_o = inv_uhs_v_1_r0_y*(uhs_c_3_t*uhs_rel_o_y + uhs_rel_o_x*uhs_s_3)
+        uhs_qdd_2_o = (
+        inv_uhs_root_2*(uhs_qdd_1_o*uhs_v_1_r0_x + uhs_rel_o_y*uhs_s_3 - uhs_c_3_t*uhs_rel_o_x)
         )
-        U_in_base_y = (
-        -axis_x_uhs_axes3_y*c_o_x - axis_y_uhs_axes3_in_base_y*c_o_y - axis_z_y*c_o_z
+        # (uhs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        uhs_alpha_1_o_t = uhs_qdd_1_o*uhs_s_2
+        uhs_alpha_1_o_t_2 = uhs_c_2*uhs_qdd_1_o
+        # (uhs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        uhs_alpha_2_o_x = uhs_alpha_1_o_t - uhs_zeta_2_x
+        uhs_alpha_2_o_y = -uhs_alpha_1_o_t_2 - uhs_zeta_2_y
+        # (uhs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        uhs_alpha_3_o_x = uhs_zeta_3_x + uhs_alpha_2_o_y*uhs_c_3_t - uhs_qdd_2_o*uhs_s_3
+        uhs_alpha_3_o_y = -uhs_zeta_3_y - uhs_alpha_2_o_y*uhs_s_3 - uhs_c_3_t*uhs_qdd_2_o
+        uhs_alpha_3_o_z = uhs_alpha_2_o_x + inv_uhs_joint3_pitch*uhs_rel_o_z
+        # (uhs-B_3_o) remainder of the acceleration tensor of link 3
+        uhs_B_3_o_xy = uhs_W_3_xy - uhs_alpha_3_o_z
+        uhs_B_3_o_xz = uhs_W_3_xz + uhs_alpha_3_o_y
+        uhs_B_3_o_yx = uhs_W_3_xy + uhs_alpha_3_o_z
+        uhs_B_3_o_yz = uhs_W_3_yz - uhs_alpha_3_o_x
+        uhs_B_3_o_zx = uhs_W_3_xz - uhs_alpha_3_o_y
+        uhs_B_3_o_zy = uhs_W_3_yz + uhs_alpha_3_o_x
+        # (uhs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        uhs_acc_3_o_x = (
+        uhs_u_1_tip_x - axis_x_uhs_axes3_x*gravity_x - axis_x_uhs_axes3_y*gravity_y -
+            axis_x_uhs_axes3_z*gravity_z
         )
-        U_in_base_z = (
-        -axis_x_uhs_axes3_z*c_o_x - axis_y_uhs_axes3_in_base_z*c_o_y - axis_z_z*c_o_z
+        uhs_acc_3_o_y = (
+        uhs_u_1_tip_y - axis_y_uhs_axes3_in_base_x*gravity_x -
+            axis_y_uhs_axes3_in_base_y*gravity_y - axis_y_uhs_axes3_in_base_z*gravity_z
         )
-        # (M7) rotational part of Z
-        Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
-        Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
-        Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
-        # (uhs-V9) reciprocal vector 3
-        w_3_t = axis_z_x*inv_uhs_joint3_pitch
-        w_3_t_2 = axis_z_y*inv_uhs_joint3_pitch
-        w_3_t_3 = axis_z_z*inv_uhs_joint3_pitch
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_3_x = q_in_base_y*w_3_t_3 - q_in_base_z*w_3_t_2
-        H_a_3_y = q_in_base_z*w_3_t - q_in_base_x*w_3_t_3
-        H_a_3_z = q_in_base_x*w_3_t_2 - q_in_base_y*w_3_t
+        uhs_acc_3_o_z = (
+        uhs_u_1_tip_z - gravity_x*uhs_axis_z_x - gravity_y*uhs_axis_z_y - gravity_z*uhs_axis_z_z
+        )
+        # (uhs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        uhs_mu_3_o_x = (
+        uhs_B_3_o_yx*uhs_J_3_xy + uhs_B_3_o_zy*uhs_Sigma_3_yy + uhs_J_3_xz*(uhs_W_3_t_2 -
+            uhs_W_3_t_3) + uhs_acc_3_o_z*uhs_h_3_z - uhs_B_3_o_yz*uhs_Sigma_3_zz -
+            uhs_B_3_o_zx*uhs_J_3_yz - uhs_acc_3_o_y*uhs_h_3_x
+        )
+        uhs_mu_3_o_y = (
+        uhs_B_3_o_xz*uhs_Sigma_3_zz + uhs_B_3_o_zy*uhs_J_3_yz + uhs_acc_3_o_x*uhs_h_3_x -
+            uhs_B_3_o_xy*uhs_J_3_xz - uhs_B_3_o_zx*uhs_Sigma_3_xx - uhs_J_3_xy*(uhs_W_3_t -
+            uhs_W_3_t_3) - uhs_acc_3_o_z*uhs_h_3_y
+        )
+        uhs_mu_3_o_z = (
+        uhs_B_3_o_xz*uhs_J_3_xz + uhs_B_3_o_yx*uhs_Sigma_3_xx + uhs_J_3_yz*(uhs_W_3_t -
+            uhs_W_3_t_2) + uhs_acc_3_o_y*uhs_h_3_y - uhs_B_3_o_xy*uhs_Sigma_3_yy -
+            uhs_B_3_o_yz*uhs_J_3_xy - uhs_acc_3_o_x*uhs_h_3_z
+        )
+        # (uhs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        uhs_g_r1_x = uhs_g_r0_y*uhs_s_1 - uhs_c_1*uhs_g_r0_x
+        uhs_g_r1_y = -uhs_c_1*uhs_g_r0_y - uhs_g_r0_x*uhs_s_1
+        uhs_g_r3_x = uhs_g_r0_z*uhs_s_2 - uhs_c_2*uhs_g_r1_y
+        uhs_g_r3_y = -uhs_c_2*uhs_g_r0_z - uhs_g_r1_y*uhs_s_2
+        # (uhs-B_2_o) remainder of the acceleration tensor of link 2
+        uhs_B_2_o_xy = uhs_qdd_2_o - uhs_W_2_xy
+        uhs_B_2_o_yx = -uhs_W_2_xy - uhs_qdd_2_o
+        uhs_B_2_o_zx = uhs_zeta_2_y - uhs_alpha_2_o_y
+        uhs_B_2_o_zy = uhs_alpha_2_o_x - uhs_zeta_2_x
+        # (uhs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        uhs_mu_2_o_x = (
+        uhs_B_2_o_yx*uhs_J_2_xy + uhs_B_2_o_zx*uhs_J_2_xz + uhs_B_2_o_zy*uhs_Sigma_2_yy +
+            uhs_Sigma_2_zz*uhs_alpha_1_o_t + uhs_g_r1_x*uhs_h_2_z + uhs_g_r3_y*uhs_h_2_y -
+            uhs_J_2_yz*(uhs_W_2_t_2 - uhs_W_2_t_3)
+        )
+        uhs_mu_2_o_y = (
+        uhs_B_2_o_xy*uhs_J_2_yz + uhs_g_r1_x*uhs_h_2_x - uhs_B_2_o_zx*uhs_Sigma_2_xx -
+            uhs_B_2_o_zy*uhs_J_2_xz - uhs_J_2_xy*(uhs_W_2_t - uhs_W_2_t_3) -
+            uhs_Sigma_2_zz*uhs_alpha_1_o_t_2 - uhs_g_r3_x*uhs_h_2_y
+        )
+        uhs_mu_2_o_z = (
+        uhs_B_2_o_yx*uhs_Sigma_2_xx + uhs_J_2_xy*uhs_alpha_1_o_t + uhs_J_2_yz*uhs_alpha_1_o_t_2 -
+            uhs_B_2_o_xy*uhs_Sigma_2_yy - uhs_J_2_xz*(uhs_W_2_t - uhs_W_2_t_2) -
+            uhs_g_r3_x*uhs_h_2_z - uhs_g_r3_y*uhs_h_2_x
+        )
+        # (uhs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        uhs_N_2_o_x = uhs_mu_2_o_x + uhs_mu_3_o_z
+        uhs_N_2_o_y = uhs_mu_2_o_y + uhs_c_3_t*uhs_mu_3_o_x - uhs_mu_3_o_y*uhs_s_3
+        uhs_N_2_o_z = uhs_mu_2_o_z + uhs_c_3_t*uhs_mu_3_o_y + uhs_mu_3_o_x*uhs_s_3
+        # (uhs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        uhs_G_o_t = inv_uhs_root_2*uhs_N_2_o_z
+        uhs_G_o_t_2 = (
+        inv_uhs_v_1_r0_y*(uhs_G_o_t*uhs_v_1_r0_x + uhs_N_2_o_y*uhs_c_2 - uhs_N_2_o_x*uhs_s_2)
+        )
+        # (uhs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        uhs_c_o_x = (
+        uhs_G_o_t_2*uhs_s_3 + uhs_h_3_y*(uhs_W_3_t_2 + uhs_W_3_t_3) - uhs_B_3_o_xy*uhs_h_3_z -
+            uhs_B_3_o_xz*uhs_h_3_x - uhs_G_o_t*uhs_c_3_t
+        )
+        uhs_c_o_y = (
+        uhs_G_o_t*uhs_s_3 + uhs_G_o_t_2*uhs_c_3_t + uhs_h_3_z*(uhs_W_3_t + uhs_W_3_t_3) -
+            uhs_B_3_o_yx*uhs_h_3_y - uhs_B_3_o_yz*uhs_h_3_x
+        )
+        uhs_c_o_z = (
+        uhs_W_3_zz*uhs_h_3_x - inv_uhs_joint3_pitch*uhs_mu_3_o_z - uhs_B_3_o_zx*uhs_h_3_y -
+            uhs_B_3_o_zy*uhs_h_3_z
+        )
+        # (uhs-U) velocity and gravity terms of the leg force
+        uhs_U_in_base_x = (
+        -axis_x_uhs_axes3_x*uhs_c_o_x - axis_y_uhs_axes3_in_base_x*uhs_c_o_y -
+            uhs_axis_z_x*uhs_c_o_z
+        )
+        uhs_U_in_base_y = (
+        -axis_x_uhs_axes3_y*uhs_c_o_x - axis_y_uhs_axes3_in_base_y*uhs_c_o_y -
+            uhs_axis_z_y*uhs_c_o_z
+        )
+        uhs_U_in_base_z = (
+        -axis_x_uhs_axes3_z*uhs_c_o_x - axis_y_uhs_axes3_in_base_z*uhs_c_o_y -
+            uhs_axis_z_z*uhs_c_o_z
+        )
+        # (Z_a) rotational part of Z
+        uhs_Z_a_t = uhs_U_in_base_z*uhs_q_in_base_y - uhs_U_in_base_y*uhs_q_in_base_z
+        uhs_Z_a_t_2 = uhs_U_in_base_x*uhs_q_in_base_z - uhs_U_in_base_z*uhs_q_in_base_x
+        uhs_Z_a_t_3 = uhs_U_in_base_y*uhs_q_in_base_x - uhs_U_in_base_x*uhs_q_in_base_y
+        # (uhs-w_3) reciprocal vector 3
+        uhs_w_3_t = inv_uhs_joint3_pitch*uhs_axis_z_x
+        uhs_w_3_t_2 = inv_uhs_joint3_pitch*uhs_axis_z_y
+        uhs_w_3_t_3 = inv_uhs_joint3_pitch*uhs_axis_z_z
+        # (uhs-H_a_3) moment of the column's unit force about the platform origin
+        uhs_H_a_3_x = uhs_q_in_base_y*uhs_w_3_t_3 - uhs_q_in_base_z*uhs_w_3_t_2
+        uhs_H_a_3_y = uhs_q_in_base_z*uhs_w_3_t - uhs_q_in_base_x*uhs_w_3_t_3
+        uhs_H_a_3_z = uhs_q_in_base_x*uhs_w_3_t_2 - uhs_q_in_base_y*uhs_w_3_t
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * size_t) & (abs(root_2) > _TOLERANCE * size) & (abs(v_1_r0_y)
-            > _TOLERANCE * size))
+        ok & m.every(leg, (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) &
+            (abs(uhs_rho2_2) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) >
+            _TOLERANCE * uhs_size) & (abs(uhs_v_1_r0_y) > _TOLERANCE * uhs_size))
         )
         sums = m.added(sums, leg, (
-        Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_3, M_ta_t_4, M_ta_t_5,
-            M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2,
-            M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y, U_in_base_z,
-            Z_a_t, Z_a_t_2, Z_a_t_3,
+        uhs_Q_t_12, uhs_Q_t_13, uhs_Q_t_14, uhs_Q_t_16, uhs_Q_t_17, uhs_Q_t_19, uhs_M_ta_t_3,
+            uhs_M_ta_t_4, uhs_M_ta_t_5, uhs_M_ta_t_6, uhs_M_ta_t_8, uhs_M_ta_t_9,
+            uhs_M_ta_t_10, uhs_M_ta_t_11, uhs_M_ta_t_12, uhs_M_aa_t, uhs_M_aa_t_2,
+            uhs_M_aa_t_3, uhs_M_aa_t_4, uhs_M_aa_t_5, uhs_M_aa_t_6, uhs_U_in_base_x,
+            uhs_U_in_base_y, uhs_U_in_base_z, uhs_Z_a_t, uhs_Z_a_t_2, uhs_Z_a_t_3,
         ))
-        out_H[_H_uhs[0][leg]] = w_3_t
-        out_H[_H_uhs[1][leg]] = w_3_t_2
-        out_H[_H_uhs[2][leg]] = w_3_t_3
-        out_H[_H_uhs[3][leg]] = H_a_3_x
-        out_H[_H_uhs[4][leg]] = H_a_3_y
-        out_H[_H_uhs[5][leg]] = H_a_3_z
+        out_H[_H_uhs[0][leg]] = uhs_w_3_t
+        out_H[_H_uhs[1][leg]] = uhs_w_3_t_2
+        out_H[_H_uhs[2][leg]] = uhs_w_3_t_3
+        out_H[_H_uhs[3][leg]] = uhs_H_a_3_x
+        out_H[_H_uhs[4][leg]] = uhs_H_a_3_y
+        out_H[_H_uhs[5][leg]] = uhs_H_a_3_z
     (
     total_uhs_xx, total_uhs_xy, total_uhs_xz, total_uhs_yy, total_uhs_yz, total_uhs_zz,
         total_uhs_xx_2, total_uhs_xy_2, total_uhs_xz_2, total_uhs_yx, total_uhs_yy_2,
@@ -1846,29 +1961,29 @@ def _run_dynamics(m, X, V):
         total_uhs_xy_3, total_uhs_xz_3, total_uhs_yy_3, total_uhs_yz_3, total_uhs_zz_3,
         total_uhs_x, total_uhs_y, total_uhs_z, total_uhs_x_2, total_uhs_y_2, total_uhs_z_2,
     ) = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = m_star - total_uhs_xx
     M_tt_yy = m_star - total_uhs_yy
     M_tt_zz = m_star - total_uhs_zz
-    # (M2) coupling block of M
+    # (M_ta) coupling block of M
     M_ta_xy = h_star_in_base_z - total_uhs_xy_2
     M_ta_xz = total_uhs_xz_2 - h_star_in_base_y
     M_ta_yx = total_uhs_yx - h_star_in_base_z
     M_ta_yz = h_star_in_base_x + total_uhs_yz_2
     M_ta_zx = h_star_in_base_y + total_uhs_zx
     M_ta_zy = -h_star_in_base_x - total_uhs_zy
-    # (M3) rotational block of M
+    # (M_aa) rotational block of M
     M_aa_xx = J_star_t_8 - total_uhs_xx_3
     M_aa_xy = J_star_t_9 + total_uhs_xy_3
     M_aa_xz = J_star_t_10 - total_uhs_xz_3
-    M_aa_yy = J_star_t_12 - total_uhs_yy_3
-    M_aa_yz = J_star_t_13 + total_uhs_yz_3
-    M_aa_zz = J_star_t_15 - total_uhs_zz_3
-    # (M5) translational part of Z
+    M_aa_yy = J_star_t_13 - total_uhs_yy_3
+    M_aa_yz = J_star_t_15 + total_uhs_yz_3
+    M_aa_zz = J_star_t_17 - total_uhs_zz_3
+    # (Z_t) translational part of Z
     Z_t_x = Z_p_x + total_uhs_x
     Z_t_y = Z_p_y + total_uhs_y
     Z_t_z = Z_p_z + total_uhs_z
-    # (M7) rotational part of Z
+    # (Z_a) rotational part of Z
     Z_a_x = Z_q_in_base_x + total_uhs_x_2
     Z_a_y = Z_q_in_base_y + total_uhs_y_2
     Z_a_z = Z_q_in_base_z + total_uhs_z_2
@@ -1917,14 +2032,14 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 1341 mul, 951 add, 24 div, 12 sqrt, 12 trig
+# M: 1347 mul, 957 add, 24 div, 12 sqrt, 12 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("M")
     (
-    J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
+    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
         h_star_z, m_star,
     ) = shared
     X_0 = X[0]
@@ -1964,237 +2079,267 @@ def _run_M(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_M = m.zeros("M")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy
-    J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
     J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_12 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_15 = 2.0*J_star_t_14 + J_star_xx
+    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
+    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
     sums = [0.0] * 21
     for leg, k in legs[0]:
         (
-        J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz, J_3_zz,
-            Jc_2_xx, branch_1, branch_2, d_G_t, d_phi_3_t, d_phi_3_t_2, h_3_x, h_3_y, h_3_z,
-            inv_uhs_joint3_pitch, size, size_t, uhs_base_frame_xx, uhs_base_frame_xy,
-            uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz,
-            uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x,
-            uhs_base_point_y, uhs_base_point_z, uhs_joint3_offset_x, uhs_platform_joint_offset_x,
-            uhs_platform_point_x, uhs_platform_point_y, uhs_platform_point_z,
+        inv_uhs_joint3_pitch, uhs_J_2_xy, uhs_J_2_xz, uhs_J_2_yy, uhs_J_2_yz, uhs_J_2_zz,
+            uhs_J_3_xx, uhs_J_3_xy, uhs_J_3_xz, uhs_J_3_yy, uhs_J_3_yz, uhs_J_3_zz, uhs_Jc_2_xx,
+            uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx,
+            uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy,
+            uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y, uhs_base_point_z, uhs_branch_1,
+            uhs_branch_2, uhs_d_G_t, uhs_d_phi_3_t, uhs_d_phi_3_t_2, uhs_h_3_x, uhs_h_3_y,
+            uhs_h_3_z, uhs_joint3_offset_x, uhs_platform_joint_offset_x, uhs_platform_point_x,
+            uhs_platform_point_y, uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
-        # (uhs-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (uhs-S) from the base point to the connection point
+        uhs_q_in_base_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
-        q_in_base_y = (
+        uhs_q_in_base_y = (
         R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y + R_yz*uhs_platform_point_z
         )
-        q_in_base_z = (
+        uhs_q_in_base_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - uhs_base_point_x
-        S_y = q_in_base_y + t_y - uhs_base_point_y
-        S_z = q_in_base_z + t_z - uhs_base_point_z
-        # (uhs-K2) component along the reference direction
-        px_1 = S_x*uhs_base_frame_xx + S_y*uhs_base_frame_yx + S_z*uhs_base_frame_zx
-        # (uhs-K3) component across the reference direction
-        py_1 = S_x*uhs_base_frame_xy + S_y*uhs_base_frame_yy + S_z*uhs_base_frame_zy
-        # (uhs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (uhs-K7) root, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (uhs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*uhs_base_frame_xz + S_y*uhs_base_frame_yz + S_z*uhs_base_frame_zz
-        # (uhs-K16) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (uhs-K18) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (uhs-K23) from the origin of joint 3 to the connection point
-        x_3_x = root_2 - uhs_joint3_offset_x
-        # (uhs-K24) displacement of joint 3
-        q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - x_3_x)
-        # (uhs-K19) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = inv_rho2_2*root_1*root_2
-        # (uhs-K20) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*root_2*xi_1_t
-        # (uhs-K25) cosine of the angle of joint 3 from its reference direction
-        c_3_t = sin(q_3)
-        # (uhs-K26) sine of the angle of joint 3 from its reference direction
-        s_3 = cos(q_3)
-        # (uhs-V4) velocity of the connection point per rate of joint 1
-        v_1_t = c_2*c_3_t
-        v_1_t_2 = c_2*s_3
-        v_1_t_3 = root_2*v_1_t_2
-        v_1_t_4 = root_2*v_1_t
-        # (uhs-V7) reciprocal vector 1
-        inv_root_2 = 1.0/root_2
-        axis_z_x = S_x*inv_root_2
-        axis_z_y = S_y*inv_root_2
-        axis_z_z = S_z*inv_root_2
-        w_1_t = s_2*s_3
-        # (uhs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*py_1*root_1
-        # (uhs-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*px_1*root_1
-        # (uhs-V7) reciprocal vector 1
-        axis_y_uhs_axes3_r4_x = -c_1*c_3_t - s_1*w_1_t
-        axis_y_uhs_axes3_r4_y = c_3_t*s_1 - c_1*w_1_t
+        uhs_S_x = t_x + uhs_q_in_base_x - uhs_base_point_x
+        uhs_S_y = t_y + uhs_q_in_base_y - uhs_base_point_y
+        uhs_S_z = t_z + uhs_q_in_base_z - uhs_base_point_z
+        # (uhs-px_1) component along the reference direction
+        uhs_px_1 = (
+        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
+        )
+        # (uhs-py_1) component across the reference direction
+        uhs_py_1 = (
+        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
+        )
+        # (uhs-rho2_1) squared amplitude
+        uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1
+        # (uhs-root_1) root, with the sign of the branch
+        uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
+        # (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        uhs_xi_1_t = (
+        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
+        )
+        # (uhs-rho2_2) squared amplitude
+        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t
+        # (uhs-root_2) root, with the sign of the branch
+        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
+        # (uhs-x_3) from the origin of joint 3 to the connection point
+        uhs_x_3_x = uhs_root_2 - uhs_joint3_offset_x
+        # (uhs-q_3) displacement of joint 3
+        uhs_q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_x)
+        # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_uhs_rho2_2 = 1.0/uhs_rho2_2
+        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
+        # (uhs-s_2) sine of the angle of joint 2 from its reference direction
+        uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_t
+        # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
+        uhs_c_3_t = sin(uhs_q_3)
+        # (uhs-s_3) sine of the angle of joint 3 from its reference direction
+        uhs_s_3 = cos(uhs_q_3)
+        # (uhs-v_1) velocity of the connection point per rate of joint 1
+        uhs_v_1_t = uhs_c_2*uhs_c_3_t
+        uhs_v_1_t_2 = uhs_c_2*uhs_s_3
+        uhs_v_1_t_3 = uhs_root_2*uhs_v_1_t_2
+        uhs_v_1_t_4 = uhs_root_2*uhs_v_1_t
+        # (uhs-w_1) reciprocal vector 1
+        inv_uhs_root_2 = 1.0/uhs_root_2
+        uhs_axis_z_x = inv_uhs_root_2*uhs_S_x
+        uhs_axis_z_y = inv_uhs_root_2*uhs_S_y
+        uhs_axis_z_z = inv_uhs_root_2*uhs_S_z
+        uhs_w_1_t = uhs_s_2*uhs_s_3
+        # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
+        uhs_c_1 = inv_uhs_rho2_1*uhs_py_1*uhs_root_1
+        # (uhs-s_1) sine of the angle of joint 1 from its reference direction
+        uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1
+        # (uhs-w_1) reciprocal vector 1
+        axis_y_uhs_axes3_r4_x = -uhs_c_1*uhs_c_3_t - uhs_s_1*uhs_w_1_t
+        axis_y_uhs_axes3_r4_y = uhs_c_3_t*uhs_s_1 - uhs_c_1*uhs_w_1_t
         axis_y_uhs_axes3_in_base_x = (
         axis_y_uhs_axes3_r4_x*uhs_base_frame_xx + axis_y_uhs_axes3_r4_y*uhs_base_frame_xy +
-            uhs_base_frame_xz*v_1_t_2
+            uhs_base_frame_xz*uhs_v_1_t_2
         )
         axis_y_uhs_axes3_in_base_y = (
         axis_y_uhs_axes3_r4_x*uhs_base_frame_yx + axis_y_uhs_axes3_r4_y*uhs_base_frame_yy +
-            uhs_base_frame_yz*v_1_t_2
+            uhs_base_frame_yz*uhs_v_1_t_2
         )
         axis_y_uhs_axes3_in_base_z = (
         axis_y_uhs_axes3_r4_x*uhs_base_frame_zx + axis_y_uhs_axes3_r4_y*uhs_base_frame_zy +
-            uhs_base_frame_zz*v_1_t_2
+            uhs_base_frame_zz*uhs_v_1_t_2
         )
         axis_x_uhs_axes3_x = (
-        axis_y_uhs_axes3_in_base_y*axis_z_z - axis_y_uhs_axes3_in_base_z*axis_z_y
+        axis_y_uhs_axes3_in_base_y*uhs_axis_z_z - axis_y_uhs_axes3_in_base_z*uhs_axis_z_y
         )
         axis_x_uhs_axes3_y = (
-        axis_y_uhs_axes3_in_base_z*axis_z_x - axis_y_uhs_axes3_in_base_x*axis_z_z
+        axis_y_uhs_axes3_in_base_z*uhs_axis_z_x - axis_y_uhs_axes3_in_base_x*uhs_axis_z_z
         )
         axis_x_uhs_axes3_z = (
-        axis_y_uhs_axes3_in_base_x*axis_z_y - axis_y_uhs_axes3_in_base_y*axis_z_x
+        axis_y_uhs_axes3_in_base_x*uhs_axis_z_y - axis_y_uhs_axes3_in_base_y*uhs_axis_z_x
         )
-        # (uhs-G7) inertia tensor of link 3 about the connection point
-        J_3_t = J_3_yz*s_3
-        _x = J_3_yy*c_3_t - J_3_t
-        J_3_t_2 = J_3_yz*c_3_t
-        _x_2 = J_3_t_2 - J_3_zz*s_3
-        _x_3 = J_3_xy*c_3_t - J_3_xz*s_3
-        _y = J_3_xy*s_3 + J_3_xz*c_3_t
-        # (uhs-N12) inertia tensor of the links from 2 outwards about joint 2
-        Jc_2_xy = _x_3 - J_2_xz
-        _y_2 = s_2*(J_2_xy + _y) - c_2*(_x*s_3 + _x_2*c_3_t - J_2_yz)
-        # (uhs-V4) velocity of the connection point per rate of joint 1
-        v_1_r0_x = c_3_t*v_1_t_3 - s_3*v_1_t_4
-        v_1_r0_y = c_3_t*v_1_t_4 + s_3*v_1_t_3
-        # (uhs-V7) reciprocal vector 1
-        inv_v_1_r0_y = 1.0/v_1_r0_y
-        w_1_t_2 = inv_v_1_r0_y*s_3
-        w_1_t_3 = c_3_t*inv_v_1_r0_y
-        # (uhs-V8) reciprocal vector 2
-        w_2_t = inv_root_2*inv_v_1_r0_y*v_1_r0_x
-        _r1_x = c_3_t*inv_root_2 - s_3*w_2_t
-        _r1_y = -c_3_t*w_2_t - inv_root_2*s_3
-        # (uhs-G6) first moment of link 3 about the connection point
-        h_3_r1_x = c_3_t*h_3_y - h_3_z*s_3
-        # (uhs-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_t = _y_2*inv_root_2
-        d_Gamma_1_t_2 = (
-        s_2*(Jc_2_xx*s_2 - Jc_2_xy*c_2) - c_2*(Jc_2_xy*s_2 - c_2*(J_2_zz + _x*c_3_t - _x_2*s_3)) -
-            d_Gamma_1_t*v_1_r0_x
+        # (uhs-v_1) velocity of the connection point per rate of joint 1
+        uhs_v_1_r0_x = uhs_c_3_t*uhs_v_1_t_3 - uhs_s_3*uhs_v_1_t_4
+        uhs_v_1_r0_y = uhs_c_3_t*uhs_v_1_t_4 + uhs_s_3*uhs_v_1_t_3
+        # (uhs-w_1) reciprocal vector 1
+        inv_uhs_v_1_r0_y = 1.0/uhs_v_1_r0_y
+        uhs_w_1_t_2 = inv_uhs_v_1_r0_y*uhs_s_3
+        uhs_w_1_t_3 = inv_uhs_v_1_r0_y*uhs_c_3_t
+        # (uhs-w_2) reciprocal vector 2
+        uhs_w_2_t = inv_uhs_root_2*inv_uhs_v_1_r0_y*uhs_v_1_r0_x
+        uhs__r1_x = inv_uhs_root_2*uhs_c_3_t - uhs_s_3*uhs_w_2_t
+        uhs__r1_y = -inv_uhs_root_2*uhs_s_3 - uhs_c_3_t*uhs_w_2_t
+        # (uhs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
+        uhs_d_alpha_3_t = uhs_s_2*uhs_w_1_t_3
+        # (uhs-L_c_3) moment about joint 3 that accelerates joint 3, per unit
+        uhs_L_c_3_r0_y = uhs_J_3_xy*uhs_s_3 + uhs_J_3_xz*uhs_c_3_t
+        # (uhs-D_1_3) inertia of joint 3 along joint 1
+        uhs_D_1_3 = uhs_J_3_xx*uhs_s_2 + uhs_J_3_xz*uhs_v_1_t_2 - uhs_J_3_xy*uhs_v_1_t
+        # (uhs-J_3) inertia tensor of link 3 about the connection point
+        uhs_J_3_t = uhs_J_3_yz*uhs_s_3
+        uhs__x = uhs_J_3_yy*uhs_c_3_t - uhs_J_3_t
+        uhs_J_3_t_2 = uhs_J_3_yz*uhs_c_3_t
+        uhs__x_2 = uhs_J_3_t_2 - uhs_J_3_zz*uhs_s_3
+        # (uhs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+        uhs_Jc_2_xy = uhs_J_3_xy*uhs_c_3_t - uhs_J_2_xz - uhs_J_3_xz*uhs_s_3
+        # (uhs-L_c_2) moment about joint 2 that accelerates joint 2, per unit
+        uhs_L_c_2_r0_y = (
+        uhs_s_2*(uhs_J_2_xy + uhs_L_c_3_r0_y) - uhs_c_2*(uhs__x*uhs_s_3 + uhs__x_2*uhs_c_3_t -
+            uhs_J_2_yz)
         )
-        d_Gamma_1_t_3 = inv_uhs_joint3_pitch*(J_3_xx*s_2 - _x_3*c_2)
-        _r0_y = d_Gamma_1_t_3*s_2 - c_2*d_Gamma_1_t
-        d_Gamma_1_x = c_2*h_3_x + d_Gamma_1_t_2*inv_v_1_r0_y + h_3_r1_x*s_2
-        d_Gamma_1_y = c_3_t*h_3_z + h_3_y*s_3 - c_2*d_Gamma_1_t_3 - d_Gamma_1_t*s_2
-        # (uhs-N32) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_t = (
-        inv_root_2*(J_2_yy + c_3_t*(J_3_t + J_3_zz*c_3_t) + s_3*(J_3_t_2 + J_3_yy*s_3))
+        # (uhs-h_3) first moment of link 3 about the connection point
+        uhs_h_3_r1_x = uhs_c_3_t*uhs_h_3_y - uhs_h_3_z*uhs_s_3
+        # (uhs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        uhs_d_Gamma_2_t = (
+        inv_uhs_root_2*(uhs_J_2_yy + uhs_c_3_t*(uhs_J_3_t + uhs_J_3_zz*uhs_c_3_t) +
+            uhs_s_3*(uhs_J_3_t_2 + uhs_J_3_yy*uhs_s_3))
         )
-        d_Gamma_2_t_2 = inv_v_1_r0_y*(_y_2 - d_Gamma_2_t*v_1_r0_x)
-        d_Gamma_2_x = _y*inv_uhs_joint3_pitch - h_3_r1_x
-        d_Gamma_2_y = d_Gamma_2_t + h_3_x
-        # (uhs-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_r1_x = _r0_y*s_2 - c_2*d_Gamma_1_y
-        d_Gamma_1_r1_y = -_r0_y*c_2 - d_Gamma_1_y*s_2
-        d_Gamma_1_r3_y = c_3_t*d_Gamma_1_x - d_Gamma_1_r1_y*s_3
-        # (uhs-N32) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_r1_y = c_3_t*d_Gamma_2_t_2 - d_Gamma_2_y*s_3
-        # (uhs-A23) coefficient of the acceleration in: angular acceleration of link 3
-        d_alpha_3_t = s_2*w_1_t_3
-        # (uhs-N41) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_xx = (
-        h_3_z*s_2*w_1_t_2 - _r1_x*(c_3_t*d_Gamma_2_y + d_Gamma_2_t_2*s_3) - h_3_x*(_r1_x*c_3_t +
-            v_1_t_2*w_1_t_2) - w_1_t_2*(c_3_t*d_Gamma_1_r1_y + d_Gamma_1_x*s_3)
+        uhs_d_Gamma_2_t_2 = inv_uhs_v_1_r0_y*(uhs_L_c_2_r0_y - uhs_d_Gamma_2_t*uhs_v_1_r0_x)
+        uhs_d_Gamma_2_x = inv_uhs_joint3_pitch*uhs_L_c_3_r0_y - uhs_h_3_r1_x
+        uhs_d_Gamma_2_y = uhs_d_Gamma_2_t + uhs_h_3_x
+        # (uhs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        uhs_d_Gamma_1_t = inv_uhs_root_2*uhs_L_c_2_r0_y
+        uhs_d_Gamma_1_t_2 = (
+        uhs_s_2*(uhs_Jc_2_xx*uhs_s_2 - uhs_Jc_2_xy*uhs_c_2) - uhs_c_2*(uhs_Jc_2_xy*uhs_s_2 -
+            uhs_c_2*(uhs_J_2_zz + uhs__x*uhs_c_3_t - uhs__x_2*uhs_s_3)) -
+            uhs_d_Gamma_1_t*uhs_v_1_r0_x
         )
-        d_c_xy = (
-        d_alpha_3_t*h_3_z - _r1_x*d_Gamma_2_r1_y - d_Gamma_1_r3_y*w_1_t_2 - h_3_x*(_r1_y*c_3_t +
-            v_1_t_2*w_1_t_3)
+        uhs_d_Gamma_1_t_3 = inv_uhs_joint3_pitch*uhs_D_1_3
+        uhs__r0_y = uhs_d_Gamma_1_t_3*uhs_s_2 - uhs_c_2*uhs_d_Gamma_1_t
+        uhs_d_Gamma_1_x = (
+        inv_uhs_v_1_r0_y*uhs_d_Gamma_1_t_2 + uhs_c_2*uhs_h_3_x + uhs_h_3_r1_x*uhs_s_2
         )
-        d_c_xz = d_phi_3_t - _r1_x*d_Gamma_2_x - d_Gamma_1_r1_x*w_1_t_2
-        d_c_yz = -d_phi_3_t_2 - _r1_y*d_Gamma_2_x - d_Gamma_1_r1_x*w_1_t_3
-        # (uhs-N43) inertia of the leg at the connection point, without the mass gathered there
-        Q_t = (
-        d_c_xx + _r1_y*d_Gamma_2_r1_y + d_Gamma_1_r3_y*w_1_t_3 + d_alpha_3_t*h_3_y -
-            h_3_x*(_r1_y*s_3 - v_1_t*w_1_t_3)
+        uhs_d_Gamma_1_y = (
+        uhs_c_3_t*uhs_h_3_z + uhs_h_3_y*uhs_s_3 - uhs_c_2*uhs_d_Gamma_1_t_3 -
+            uhs_d_Gamma_1_t*uhs_s_2
         )
-        Q_t_2 = 0.5*Q_t
-        Q_t_3 = d_G_t + d_c_xx
-        Q_t_4 = 0.5*Q_t_3
-        Q_t_5 = axis_x_uhs_axes3_x*d_c_xy + axis_z_x*d_c_yz - Q_t_2*axis_y_uhs_axes3_in_base_x
-        Q_t_6 = axis_x_uhs_axes3_y*d_c_xy + axis_z_y*d_c_yz - Q_t_2*axis_y_uhs_axes3_in_base_y
-        Q_t_7 = axis_x_uhs_axes3_z*d_c_xy + axis_z_z*d_c_yz - Q_t_2*axis_y_uhs_axes3_in_base_z
-        Q_t_8 = Q_t_4*axis_z_x - axis_x_uhs_axes3_x*d_c_xz
-        Q_t_9 = Q_t_4*axis_z_y - axis_x_uhs_axes3_y*d_c_xz
-        Q_t_10 = Q_t_4*axis_z_z - axis_x_uhs_axes3_z*d_c_xz
-        Q_t_11 = Q_t_5*axis_y_uhs_axes3_in_base_x - Q_t_8*axis_z_x
-        Q_t_12 = 2.0*Q_t_11 + d_c_xx
-        Q_t_13 = (
-        Q_t_5*axis_y_uhs_axes3_in_base_y + Q_t_6*axis_y_uhs_axes3_in_base_x - Q_t_8*axis_z_y -
-            Q_t_9*axis_z_x
+        uhs_d_Gamma_1_r1_x = uhs__r0_y*uhs_s_2 - uhs_c_2*uhs_d_Gamma_1_y
+        uhs_d_Gamma_1_r1_y = -uhs__r0_y*uhs_c_2 - uhs_d_Gamma_1_y*uhs_s_2
+        uhs_d_Gamma_1_r3_y = uhs_c_3_t*uhs_d_Gamma_1_x - uhs_d_Gamma_1_r1_y*uhs_s_3
+        # (uhs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        uhs_d_Gamma_2_r1_y = uhs_c_3_t*uhs_d_Gamma_2_t_2 - uhs_d_Gamma_2_y*uhs_s_3
+        # (uhs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        uhs_d_c_xx = (
+        uhs_h_3_z*uhs_s_2*uhs_w_1_t_2 - uhs__r1_x*(uhs_c_3_t*uhs_d_Gamma_2_y +
+            uhs_d_Gamma_2_t_2*uhs_s_3) - uhs_h_3_x*(uhs__r1_x*uhs_c_3_t + uhs_v_1_t_2*uhs_w_1_t_2)
+            - uhs_w_1_t_2*(uhs_c_3_t*uhs_d_Gamma_1_r1_y + uhs_d_Gamma_1_x*uhs_s_3)
         )
-        Q_t_14 = (
-        Q_t_5*axis_y_uhs_axes3_in_base_z + Q_t_7*axis_y_uhs_axes3_in_base_x - Q_t_10*axis_z_x -
-            Q_t_8*axis_z_z
+        uhs_d_c_xy = (
+        uhs_d_alpha_3_t*uhs_h_3_z - uhs__r1_x*uhs_d_Gamma_2_r1_y - uhs_d_Gamma_1_r3_y*uhs_w_1_t_2
+            - uhs_h_3_x*(uhs__r1_y*uhs_c_3_t + uhs_v_1_t_2*uhs_w_1_t_3)
         )
-        Q_t_15 = Q_t_6*axis_y_uhs_axes3_in_base_y - Q_t_9*axis_z_y
-        Q_t_16 = 2.0*Q_t_15 + d_c_xx
-        Q_t_17 = (
-        Q_t_6*axis_y_uhs_axes3_in_base_z + Q_t_7*axis_y_uhs_axes3_in_base_y - Q_t_10*axis_z_y -
-            Q_t_9*axis_z_z
+        uhs_d_c_xz = uhs_d_phi_3_t - uhs__r1_x*uhs_d_Gamma_2_x - uhs_d_Gamma_1_r1_x*uhs_w_1_t_2
+        uhs_d_c_yz = -uhs_d_phi_3_t_2 - uhs__r1_y*uhs_d_Gamma_2_x - uhs_d_Gamma_1_r1_x*uhs_w_1_t_3
+        # (uhs-Q) inertia of the leg at the connection point, without the mass gathered there
+        uhs_Q_t = (
+        uhs_d_c_xx + uhs__r1_y*uhs_d_Gamma_2_r1_y + uhs_d_Gamma_1_r3_y*uhs_w_1_t_3 +
+            uhs_d_alpha_3_t*uhs_h_3_y - uhs_h_3_x*(uhs__r1_y*uhs_s_3 - uhs_v_1_t*uhs_w_1_t_3)
         )
-        Q_t_18 = Q_t_7*axis_y_uhs_axes3_in_base_z - Q_t_10*axis_z_z
-        Q_t_19 = 2.0*Q_t_18 + d_c_xx
-        # (M2) coupling block of M
-        M_ta_t = Q_t_13*q_in_base_z
-        M_ta_t_2 = Q_t_14*q_in_base_y
-        M_ta_t_3 = M_ta_t - M_ta_t_2
-        M_ta_t_4 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x
-        M_ta_t_5 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x
-        M_ta_t_6 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y
-        M_ta_t_7 = Q_t_17*q_in_base_x
-        M_ta_t_8 = M_ta_t - M_ta_t_7
-        M_ta_t_9 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x
-        M_ta_t_10 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y
-        M_ta_t_11 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x
-        M_ta_t_12 = M_ta_t_7 - M_ta_t_2
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
-        M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y
-        M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z
-        M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x
-        M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z
-        M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
+        uhs_Q_t_2 = 0.5*uhs_Q_t
+        uhs_Q_t_3 = uhs_d_G_t + uhs_d_c_xx
+        uhs_Q_t_4 = 0.5*uhs_Q_t_3
+        uhs_Q_t_5 = (
+        axis_x_uhs_axes3_x*uhs_d_c_xy + uhs_axis_z_x*uhs_d_c_yz -
+            axis_y_uhs_axes3_in_base_x*uhs_Q_t_2
+        )
+        uhs_Q_t_6 = (
+        axis_x_uhs_axes3_y*uhs_d_c_xy + uhs_axis_z_y*uhs_d_c_yz -
+            axis_y_uhs_axes3_in_base_y*uhs_Q_t_2
+        )
+        uhs_Q_t_7 = (
+        axis_x_uhs_axes3_z*uhs_d_c_xy + uhs_axis_z_z*uhs_d_c_yz -
+            axis_y_uhs_axes3_in_base_z*uhs_Q_t_2
+        )
+        uhs_Q_t_8 = uhs_Q_t_4*uhs_axis_z_x - axis_x_uhs_axes3_x*uhs_d_c_xz
+        uhs_Q_t_9 = uhs_Q_t_4*uhs_axis_z_y - axis_x_uhs_axes3_y*uhs_d_c_xz
+        uhs_Q_t_10 = uhs_Q_t_4*uhs_axis_z_z - axis_x_uhs_axes3_z*uhs_d_c_xz
+        uhs_Q_t_11 = axis_y_uhs_axes3_in_base_x*uhs_Q_t_5 - uhs_Q_t_8*uhs_axis_z_x
+        uhs_Q_t_12 = 2.0*uhs_Q_t_11 + uhs_d_c_xx
+        uhs_Q_t_13 = (
+        axis_y_uhs_axes3_in_base_x*uhs_Q_t_6 + axis_y_uhs_axes3_in_base_y*uhs_Q_t_5 -
+            uhs_Q_t_8*uhs_axis_z_y - uhs_Q_t_9*uhs_axis_z_x
+        )
+        uhs_Q_t_14 = (
+        axis_y_uhs_axes3_in_base_x*uhs_Q_t_7 + axis_y_uhs_axes3_in_base_z*uhs_Q_t_5 -
+            uhs_Q_t_10*uhs_axis_z_x - uhs_Q_t_8*uhs_axis_z_z
+        )
+        uhs_Q_t_15 = axis_y_uhs_axes3_in_base_y*uhs_Q_t_6 - uhs_Q_t_9*uhs_axis_z_y
+        uhs_Q_t_16 = 2.0*uhs_Q_t_15 + uhs_d_c_xx
+        uhs_Q_t_17 = (
+        axis_y_uhs_axes3_in_base_y*uhs_Q_t_7 + axis_y_uhs_axes3_in_base_z*uhs_Q_t_6 -
+            uhs_Q_t_10*uhs_axis_z_y - uhs_Q_t_9*uhs_axis_z_z
+        )
+        uhs_Q_t_18 = axis_y_uhs_axes3_in_base_z*uhs_Q_t_7 - uhs_Q_t_10*uhs_axis_z_z
+        uhs_Q_t_19 = 2.0*uhs_Q_t_18 + uhs_d_c_xx
+        # (M_ta) coupling block of M
+        uhs_M_ta_t = uhs_Q_t_13*uhs_q_in_base_z
+        uhs_M_ta_t_2 = uhs_Q_t_14*uhs_q_in_base_y
+        uhs_M_ta_t_3 = uhs_M_ta_t - uhs_M_ta_t_2
+        uhs_M_ta_t_4 = uhs_Q_t_12*uhs_q_in_base_z - uhs_Q_t_14*uhs_q_in_base_x
+        uhs_M_ta_t_5 = uhs_Q_t_12*uhs_q_in_base_y - uhs_Q_t_13*uhs_q_in_base_x
+        uhs_M_ta_t_6 = uhs_Q_t_16*uhs_q_in_base_z - uhs_Q_t_17*uhs_q_in_base_y
+        uhs_M_ta_t_7 = uhs_Q_t_17*uhs_q_in_base_x
+        uhs_M_ta_t_8 = uhs_M_ta_t - uhs_M_ta_t_7
+        uhs_M_ta_t_9 = uhs_Q_t_13*uhs_q_in_base_y - uhs_Q_t_16*uhs_q_in_base_x
+        uhs_M_ta_t_10 = uhs_Q_t_17*uhs_q_in_base_z - uhs_Q_t_19*uhs_q_in_base_y
+        uhs_M_ta_t_11 = uhs_Q_t_14*uhs_q_in_base_z - uhs_Q_t_19*uhs_q_in_base_x
+        uhs_M_ta_t_12 = uhs_M_ta_t_7 - uhs_M_ta_t_2
+        # (M_aa) rotational block of M
+        uhs_M_aa_t = uhs_M_ta_t_6*uhs_q_in_base_z - uhs_M_ta_t_10*uhs_q_in_base_y
+        uhs_M_aa_t_2 = uhs_M_ta_t_8*uhs_q_in_base_z - uhs_M_ta_t_11*uhs_q_in_base_y
+        uhs_M_aa_t_3 = uhs_M_ta_t_12*uhs_q_in_base_y + uhs_M_ta_t_9*uhs_q_in_base_z
+        uhs_M_aa_t_4 = uhs_M_ta_t_4*uhs_q_in_base_z - uhs_M_ta_t_11*uhs_q_in_base_x
+        uhs_M_aa_t_5 = uhs_M_ta_t_12*uhs_q_in_base_x + uhs_M_ta_t_5*uhs_q_in_base_z
+        uhs_M_aa_t_6 = uhs_M_ta_t_5*uhs_q_in_base_y - uhs_M_ta_t_9*uhs_q_in_base_x
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * size_t) & (abs(root_2) > _TOLERANCE * size) & (abs(v_1_r0_y)
-            > _TOLERANCE * size))
+        ok & m.every(leg, (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) &
+            (abs(uhs_rho2_2) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) >
+            _TOLERANCE * uhs_size) & (abs(uhs_v_1_r0_y) > _TOLERANCE * uhs_size))
         )
         sums = m.added(sums, leg, (
-        Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_3, M_ta_t_4, M_ta_t_5,
-            M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2,
-            M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6,
+        uhs_Q_t_12, uhs_Q_t_13, uhs_Q_t_14, uhs_Q_t_16, uhs_Q_t_17, uhs_Q_t_19, uhs_M_ta_t_3,
+            uhs_M_ta_t_4, uhs_M_ta_t_5, uhs_M_ta_t_6, uhs_M_ta_t_8, uhs_M_ta_t_9,
+            uhs_M_ta_t_10, uhs_M_ta_t_11, uhs_M_ta_t_12, uhs_M_aa_t, uhs_M_aa_t_2,
+            uhs_M_aa_t_3, uhs_M_aa_t_4, uhs_M_aa_t_5, uhs_M_aa_t_6,
         ))
     (
     total_uhs_xx, total_uhs_xy, total_uhs_xz, total_uhs_yy, total_uhs_yz, total_uhs_zz,
@@ -2202,24 +2347,24 @@ def _run_M(m, X):
         total_uhs_yz_2, total_uhs_zx, total_uhs_zy, total_uhs_zz_2, total_uhs_xx_3,
         total_uhs_xy_3, total_uhs_xz_3, total_uhs_yy_3, total_uhs_yz_3, total_uhs_zz_3,
     ) = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = m_star - total_uhs_xx
     M_tt_yy = m_star - total_uhs_yy
     M_tt_zz = m_star - total_uhs_zz
-    # (M2) coupling block of M
+    # (M_ta) coupling block of M
     M_ta_xy = h_star_in_base_z - total_uhs_xy_2
     M_ta_xz = total_uhs_xz_2 - h_star_in_base_y
     M_ta_yx = total_uhs_yx - h_star_in_base_z
     M_ta_yz = h_star_in_base_x + total_uhs_yz_2
     M_ta_zx = h_star_in_base_y + total_uhs_zx
     M_ta_zy = -h_star_in_base_x - total_uhs_zy
-    # (M3) rotational block of M
+    # (M_aa) rotational block of M
     M_aa_xx = J_star_t_8 - total_uhs_xx_3
     M_aa_xy = J_star_t_9 + total_uhs_xy_3
     M_aa_xz = J_star_t_10 - total_uhs_xz_3
-    M_aa_yy = J_star_t_12 - total_uhs_yy_3
-    M_aa_yz = J_star_t_13 + total_uhs_yz_3
-    M_aa_zz = J_star_t_15 - total_uhs_zz_3
+    M_aa_yy = J_star_t_13 - total_uhs_yy_3
+    M_aa_yz = J_star_t_15 + total_uhs_yz_3
+    M_aa_zz = J_star_t_17 - total_uhs_zz_3
     out_M[0] = M_tt_xx
     out_M[1] = -total_uhs_xy
     out_M[6] = -total_uhs_xy
@@ -2259,7 +2404,7 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 1539 mul, 1164 add, 24 div, 12 sqrt, 12 trig
+# Z: 1563 mul, 1188 add, 24 div, 12 sqrt, 12 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -2319,311 +2464,353 @@ def _run_Z(m, X, V):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_Z = m.zeros("Z")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (M4) centripetal force and weight of the platform
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
     Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
     Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z_2*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x_2*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y - g_r0_y_2*h_star_x
+    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
+    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz,
-            Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x,
-            h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, inv_uhs_joint3_pitch, size, size_t,
-            uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx,
-            uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy,
-            uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y, uhs_base_point_z,
-            uhs_joint3_offset_x, uhs_joint3_pitch, uhs_platform_joint_offset_x,
-            uhs_platform_point_x, uhs_platform_point_y, uhs_platform_point_z,
+        inv_uhs_joint3_pitch, uhs_J_2_xy, uhs_J_2_xz, uhs_J_2_yz, uhs_J_3_xy, uhs_J_3_xz,
+            uhs_J_3_yz, uhs_Sigma_2_xx, uhs_Sigma_2_yy, uhs_Sigma_2_zz, uhs_Sigma_3_xx,
+            uhs_Sigma_3_yy, uhs_Sigma_3_zz, uhs_base_frame_xx, uhs_base_frame_xy,
+            uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz,
+            uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x,
+            uhs_base_point_y, uhs_base_point_z, uhs_bias_t, uhs_branch_1, uhs_branch_2,
+            uhs_g_r0_x, uhs_g_r0_y, uhs_g_r0_z, uhs_h_2_x, uhs_h_2_y, uhs_h_2_z, uhs_h_3_x,
+            uhs_h_3_y, uhs_h_3_z, uhs_joint3_offset_x, uhs_platform_joint_offset_x,
+            uhs_platform_point_x, uhs_platform_point_y, uhs_platform_point_z, uhs_size,
+            uhs_size_t,
         ) = k
-        # (uhs-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (uhs-S) from the base point to the connection point
+        uhs_q_in_base_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
-        q_in_base_y = (
+        uhs_q_in_base_y = (
         R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y + R_yz*uhs_platform_point_z
         )
-        q_in_base_z = (
+        uhs_q_in_base_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - uhs_base_point_x
-        S_y = q_in_base_y + t_y - uhs_base_point_y
-        S_z = q_in_base_z + t_z - uhs_base_point_z
-        # (uhs-K2) component along the reference direction
-        px_1 = S_x*uhs_base_frame_xx + S_y*uhs_base_frame_yx + S_z*uhs_base_frame_zx
-        # (uhs-K3) component across the reference direction
-        py_1 = S_x*uhs_base_frame_xy + S_y*uhs_base_frame_yy + S_z*uhs_base_frame_zy
-        # (uhs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (uhs-K7) root, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (uhs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*uhs_base_frame_xz + S_y*uhs_base_frame_yz + S_z*uhs_base_frame_zz
-        # (uhs-K16) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (uhs-K18) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (uhs-K23) from the origin of joint 3 to the connection point
-        x_3_x = root_2 - uhs_joint3_offset_x
-        # (uhs-K24) displacement of joint 3
-        q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - x_3_x)
-        # (uhs-K19) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = inv_rho2_2*root_1*root_2
-        # (uhs-K20) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*root_2*xi_1_t
-        # (uhs-K25) cosine of the angle of joint 3 from its reference direction
-        c_3_t = sin(q_3)
-        # (uhs-K26) sine of the angle of joint 3 from its reference direction
-        s_3 = cos(q_3)
-        # (uhs-V4) velocity of the connection point per rate of joint 1
-        v_1_t = c_2*s_3
-        v_1_t_2 = root_2*v_1_t
-        v_1_t_3 = c_2*c_3_t*root_2
-        # (uhs-V7) reciprocal vector 1
-        inv_root_2 = 1.0/root_2
-        axis_z_x = S_x*inv_root_2
-        axis_z_y = S_y*inv_root_2
-        axis_z_z = S_z*inv_root_2
-        w_1_t = s_2*s_3
-        # (uhs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*py_1*root_1
-        # (uhs-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*px_1*root_1
-        # (uhs-V7) reciprocal vector 1
-        axis_y_uhs_axes3_r4_x = -c_1*c_3_t - s_1*w_1_t
-        axis_y_uhs_axes3_r4_y = c_3_t*s_1 - c_1*w_1_t
+        uhs_S_x = t_x + uhs_q_in_base_x - uhs_base_point_x
+        uhs_S_y = t_y + uhs_q_in_base_y - uhs_base_point_y
+        uhs_S_z = t_z + uhs_q_in_base_z - uhs_base_point_z
+        # (uhs-px_1) component along the reference direction
+        uhs_px_1 = (
+        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
+        )
+        # (uhs-py_1) component across the reference direction
+        uhs_py_1 = (
+        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
+        )
+        # (uhs-rho2_1) squared amplitude
+        uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1
+        # (uhs-root_1) root, with the sign of the branch
+        uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
+        # (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        uhs_xi_1_t = (
+        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
+        )
+        # (uhs-rho2_2) squared amplitude
+        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t
+        # (uhs-root_2) root, with the sign of the branch
+        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
+        # (uhs-x_3) from the origin of joint 3 to the connection point
+        uhs_x_3_x = uhs_root_2 - uhs_joint3_offset_x
+        # (uhs-q_3) displacement of joint 3
+        uhs_q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_x)
+        # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_uhs_rho2_2 = 1.0/uhs_rho2_2
+        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
+        # (uhs-s_2) sine of the angle of joint 2 from its reference direction
+        uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_t
+        # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
+        uhs_c_3_t = sin(uhs_q_3)
+        # (uhs-s_3) sine of the angle of joint 3 from its reference direction
+        uhs_s_3 = cos(uhs_q_3)
+        # (uhs-v_1) velocity of the connection point per rate of joint 1
+        uhs_v_1_t = uhs_c_2*uhs_s_3
+        uhs_v_1_t_2 = uhs_root_2*uhs_v_1_t
+        uhs_v_1_t_3 = uhs_c_2*uhs_c_3_t*uhs_root_2
+        # (uhs-w_1) reciprocal vector 1
+        inv_uhs_root_2 = 1.0/uhs_root_2
+        uhs_axis_z_x = inv_uhs_root_2*uhs_S_x
+        uhs_axis_z_y = inv_uhs_root_2*uhs_S_y
+        uhs_axis_z_z = inv_uhs_root_2*uhs_S_z
+        uhs_w_1_t = uhs_s_2*uhs_s_3
+        # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
+        uhs_c_1 = inv_uhs_rho2_1*uhs_py_1*uhs_root_1
+        # (uhs-s_1) sine of the angle of joint 1 from its reference direction
+        uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1
+        # (uhs-w_1) reciprocal vector 1
+        axis_y_uhs_axes3_r4_x = -uhs_c_1*uhs_c_3_t - uhs_s_1*uhs_w_1_t
+        axis_y_uhs_axes3_r4_y = uhs_c_3_t*uhs_s_1 - uhs_c_1*uhs_w_1_t
         axis_y_uhs_axes3_in_base_x = (
         axis_y_uhs_axes3_r4_x*uhs_base_frame_xx + axis_y_uhs_axes3_r4_y*uhs_base_frame_xy +
-            uhs_base_frame_xz*v_1_t
+            uhs_base_frame_xz*uhs_v_1_t
         )
         axis_y_uhs_axes3_in_base_y = (
         axis_y_uhs_axes3_r4_x*uhs_base_frame_yx + axis_y_uhs_axes3_r4_y*uhs_base_frame_yy +
-            uhs_base_frame_yz*v_1_t
+            uhs_base_frame_yz*uhs_v_1_t
         )
         axis_y_uhs_axes3_in_base_z = (
         axis_y_uhs_axes3_r4_x*uhs_base_frame_zx + axis_y_uhs_axes3_r4_y*uhs_base_frame_zy +
-            uhs_base_frame_zz*v_1_t
+            uhs_base_frame_zz*uhs_v_1_t
         )
         axis_x_uhs_axes3_x = (
-        axis_y_uhs_axes3_in_base_y*axis_z_z - axis_y_uhs_axes3_in_base_z*axis_z_y
+        axis_y_uhs_axes3_in_base_y*uhs_axis_z_z - axis_y_uhs_axes3_in_base_z*uhs_axis_z_y
         )
         axis_x_uhs_axes3_y = (
-        axis_y_uhs_axes3_in_base_z*axis_z_x - axis_y_uhs_axes3_in_base_x*axis_z_z
+        axis_y_uhs_axes3_in_base_z*uhs_axis_z_x - axis_y_uhs_axes3_in_base_x*uhs_axis_z_z
         )
         axis_x_uhs_axes3_z = (
-        axis_y_uhs_axes3_in_base_x*axis_z_y - axis_y_uhs_axes3_in_base_y*axis_z_x
+        axis_y_uhs_axes3_in_base_x*uhs_axis_z_y - axis_y_uhs_axes3_in_base_y*uhs_axis_z_x
         )
-        # (uhs-V4) velocity of the connection point per rate of joint 1
-        v_1_r0_x = c_3_t*v_1_t_2 - s_3*v_1_t_3
-        v_1_r0_y = c_3_t*v_1_t_3 + s_3*v_1_t_2
-        # (uhs-V7) reciprocal vector 1
-        inv_v_1_r0_y = 1.0/v_1_r0_y
-        # (uhs-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-        g_r3_x = g_r0_z*s_2 - c_2*g_r1_y
-        g_r3_y = -c_2*g_r0_z - g_r1_y*s_2
-        # (uhs-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_r0_x = (
-        S_dot_x*uhs_base_frame_xx + S_dot_y*uhs_base_frame_yx + S_dot_z*uhs_base_frame_zx
+        # (uhs-v_1) velocity of the connection point per rate of joint 1
+        uhs_v_1_r0_x = uhs_c_3_t*uhs_v_1_t_2 - uhs_s_3*uhs_v_1_t_3
+        uhs_v_1_r0_y = uhs_c_3_t*uhs_v_1_t_3 + uhs_s_3*uhs_v_1_t_2
+        # (uhs-w_1) reciprocal vector 1
+        inv_uhs_v_1_r0_y = 1.0/uhs_v_1_r0_y
+        # (uhs-S_dot) velocity of the connection point
+        uhs_S_dot_t = omega_y*uhs_q_in_base_z - omega_z*uhs_q_in_base_y
+        uhs_S_dot_t_2 = omega_z*uhs_q_in_base_x - omega_x*uhs_q_in_base_z
+        uhs_S_dot_t_3 = omega_x*uhs_q_in_base_y - omega_y*uhs_q_in_base_x
+        uhs_S_dot_x = t_dot_x + uhs_S_dot_t
+        uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2
+        uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3
+        uhs_S_dot_r0_x = (
+        uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx +
+            uhs_S_dot_z*uhs_base_frame_zx
         )
-        S_dot_r0_y = (
-        S_dot_x*uhs_base_frame_xy + S_dot_y*uhs_base_frame_yy + S_dot_z*uhs_base_frame_zy
+        uhs_S_dot_r0_y = (
+        uhs_S_dot_x*uhs_base_frame_xy + uhs_S_dot_y*uhs_base_frame_yy +
+            uhs_S_dot_z*uhs_base_frame_zy
         )
-        S_dot_r0_z = (
-        S_dot_x*uhs_base_frame_xz + S_dot_y*uhs_base_frame_yz + S_dot_z*uhs_base_frame_zz
+        uhs_S_dot_r0_z = (
+        uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz +
+            uhs_S_dot_z*uhs_base_frame_zz
         )
-        S_dot_r1_y = -S_dot_r0_x*s_1 - S_dot_r0_y*c_1
-        # (uhs-V10) rate of joint 1
-        qd_3 = inv_uhs_joint3_pitch*(S_dot_r0_z*s_2 - S_dot_r1_y*c_2)
-        qd_1 = inv_v_1_r0_y*(S_dot_r0_y*s_1 - S_dot_r0_x*c_1)
-        qd_2 = inv_root_2*(-S_dot_r0_z*c_2 - S_dot_r1_y*s_2 - qd_1*v_1_r0_x)
-        # (uhs-V13) angular velocity of link 1
-        omega_1_t = qd_1*s_2
-        omega_1_t_2 = c_2*qd_1
-        # (uhs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_x = omega_1_t_2*qd_2
-        zeta_2_y = omega_1_t*qd_2
-        # (uhs-V14) angular velocity of link 2
-        omega_2_r1_x = qd_2*s_3 - c_3_t*omega_1_t_2
-        omega_2_r1_y = c_3_t*qd_2 + omega_1_t_2*s_3
-        # (uhs-A5) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_x = omega_2_r1_y*qd_3
-        zeta_3_y = omega_2_r1_x*qd_3
-        # (uhs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_t = c_3_t*zeta_2_y
-        zeta_2_t_2 = s_3*zeta_2_y
-        # (uhs-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_x = zeta_3_x - zeta_2_t
-        beta_3_y = zeta_2_t_2 - zeta_3_y
-        # (uhs-V16) angular velocity of link 3
-        omega_3_z = omega_1_t + qd_3
-        # (uhs-V15) centripetal tensor of link 2
-        W_2_t = omega_1_t*omega_1_t
-        W_2_t_2 = omega_1_t_2*omega_1_t_2
-        W_2_t_3 = qd_2*qd_2
-        W_2_xy = omega_1_t*omega_1_t_2
-        # (uhs-V17) centripetal tensor of link 3
-        W_3_t = omega_2_r1_x*omega_2_r1_x
-        W_3_t_2 = omega_2_r1_y*omega_2_r1_y
-        W_3_t_3 = omega_3_z*omega_3_z
-        W_3_xy = omega_2_r1_x*omega_2_r1_y
-        W_3_xz = omega_2_r1_x*omega_3_z
-        W_3_yz = omega_2_r1_y*omega_3_z
-        W_3_zz = W_3_t + W_3_t_2
-        # (uhs-A7) acceleration of the connection point at zero joint accelerations
-        bias_t = 2.0*qd_3*uhs_joint3_pitch
-        bias_x = (
-        bias_t*omega_2_r1_y + uhs_joint3_offset_x*(zeta_2_t_2 + omega_1_t*omega_2_r1_x) +
-            x_3_x*(W_3_xz + beta_3_y)
+        uhs_S_dot_r1_y = -uhs_S_dot_r0_x*uhs_s_1 - uhs_S_dot_r0_y*uhs_c_1
+        # (uhs-qd_3) rate of joint 3
+        uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_S_dot_r0_z*uhs_s_2 - uhs_S_dot_r1_y*uhs_c_2)
+        uhs_qd_1 = inv_uhs_v_1_r0_y*(uhs_S_dot_r0_y*uhs_s_1 - uhs_S_dot_r0_x*uhs_c_1)
+        uhs_qd_2 = (
+        inv_uhs_root_2*(-uhs_S_dot_r0_z*uhs_c_2 - uhs_S_dot_r1_y*uhs_s_2 - uhs_qd_1*uhs_v_1_r0_x)
         )
-        bias_y = (
-        uhs_joint3_offset_x*(zeta_2_t + omega_1_t*omega_2_r1_y) + x_3_x*(W_3_yz - beta_3_x) -
-            bias_t*omega_2_r1_x
+        # (uhs-omega_1) angular velocity of link 1
+        uhs_omega_1_t = uhs_qd_1*uhs_s_2
+        uhs_omega_1_t_2 = uhs_c_2*uhs_qd_1
+        # (uhs-omega_2) angular velocity of link 2
+        uhs_omega_2_r1_x = uhs_qd_2*uhs_s_3 - uhs_c_3_t*uhs_omega_1_t_2
+        uhs_omega_2_r1_y = uhs_c_3_t*uhs_qd_2 + uhs_omega_1_t_2*uhs_s_3
+        # (uhs-omega_3) angular velocity of link 3
+        uhs_omega_3_z = uhs_omega_1_t + uhs_qd_3
+        # (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        uhs_zeta_3_x = uhs_omega_2_r1_y*uhs_qd_3
+        uhs_zeta_3_y = uhs_omega_2_r1_x*uhs_qd_3
+        # (uhs-u_1) centripetal acceleration of the connection point
+        uhs_u_1_x = omega_y*uhs_S_dot_t_3 - omega_z*uhs_S_dot_t_2
+        uhs_u_1_y = omega_z*uhs_S_dot_t - omega_x*uhs_S_dot_t_3
+        uhs_u_1_z = omega_x*uhs_S_dot_t_2 - omega_y*uhs_S_dot_t
+        # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        uhs_zeta_2_x = uhs_omega_1_t_2*uhs_qd_2
+        uhs_zeta_2_y = uhs_omega_1_t*uhs_qd_2
+        uhs_zeta_2_t = uhs_c_3_t*uhs_zeta_2_y
+        uhs_zeta_2_t_2 = uhs_s_3*uhs_zeta_2_y
+        # (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        uhs_beta_3_x = uhs_zeta_3_x - uhs_zeta_2_t
+        uhs_beta_3_y = uhs_zeta_2_t_2 - uhs_zeta_3_y
+        # (uhs-W_2) centripetal tensor of link 2
+        uhs_W_2_t = uhs_omega_1_t*uhs_omega_1_t
+        uhs_W_2_t_2 = uhs_omega_1_t_2*uhs_omega_1_t_2
+        uhs_W_2_t_3 = uhs_qd_2*uhs_qd_2
+        uhs_W_2_xy = uhs_omega_1_t*uhs_omega_1_t_2
+        # (uhs-W_3) centripetal tensor of link 3
+        uhs_W_3_t = uhs_omega_2_r1_x*uhs_omega_2_r1_x
+        uhs_W_3_t_2 = uhs_omega_2_r1_y*uhs_omega_2_r1_y
+        uhs_W_3_t_3 = uhs_omega_3_z*uhs_omega_3_z
+        uhs_W_3_xy = uhs_omega_2_r1_x*uhs_omega_2_r1_y
+        uhs_W_3_xz = uhs_omega_2_r1_x*uhs_omega_3_z
+        uhs_W_3_yz = uhs_omega_2_r1_y*uhs_omega_3_z
+        uhs_W_3_zz = uhs_W_3_t + uhs_W_3_t_2
+        # (uhs-bias) acceleration of the connection point at zero joint accelerations
+        uhs_bias_t_2 = uhs_bias_t*uhs_qd_3
+        uhs_bias_x = (
+        uhs_bias_t_2*uhs_omega_2_r1_y + uhs_joint3_offset_x*(uhs_zeta_2_t_2 +
+            uhs_omega_1_t*uhs_omega_2_r1_x) + uhs_x_3_x*(uhs_W_3_xz + uhs_beta_3_y)
         )
-        bias_z = -W_3_zz*uhs_joint3_offset_x - W_3_zz*x_3_x
-        # (uhs-A1) centripetal acceleration of the connection point
-        u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
-        u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y
-        u_1_tip_x = axis_x_uhs_axes3_x*u_1_x + axis_x_uhs_axes3_y*u_1_y + axis_x_uhs_axes3_z*u_1_z
-        u_1_tip_y = (
-        axis_y_uhs_axes3_in_base_x*u_1_x + axis_y_uhs_axes3_in_base_y*u_1_y +
-            axis_y_uhs_axes3_in_base_z*u_1_z
+        uhs_bias_y = (
+        uhs_joint3_offset_x*(uhs_zeta_2_t + uhs_omega_1_t*uhs_omega_2_r1_y) +
+            uhs_x_3_x*(uhs_W_3_yz - uhs_beta_3_x) - uhs_bias_t_2*uhs_omega_2_r1_x
         )
-        u_1_tip_z = axis_z_x*u_1_x + axis_z_y*u_1_y + axis_z_z*u_1_z
-        # (uhs-A9) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_x = u_1_tip_x - bias_x
-        rel_o_y = u_1_tip_y - bias_y
-        rel_o_z = u_1_tip_z - bias_z
-        # (uhs-A11) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_o = inv_v_1_r0_y*(c_3_t*rel_o_y + rel_o_x*s_3)
-        qdd_2_o = inv_root_2*(qdd_1_o*v_1_r0_x + rel_o_y*s_3 - c_3_t*rel_o_x)
-        # (uhs-A17) remainder without the acceleration in: angular acceleration of link 1
-        alpha_1_o_t = qdd_1_o*s_2
-        alpha_1_o_t_2 = c_2*qdd_1_o
-        # (uhs-A19) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_o_x = alpha_1_o_t - zeta_2_x
-        alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-        # (uhs-A21) remainder of the acceleration tensor of link 2
-        B_2_o_xy = qdd_2_o - W_2_xy
-        B_2_o_yx = -W_2_xy - qdd_2_o
-        B_2_o_zx = zeta_2_y - alpha_2_o_y
-        B_2_o_zy = alpha_2_o_x - zeta_2_x
-        # (uhs-N28) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_o_x = (
-        B_2_o_yx*J_2_xy + B_2_o_zx*J_2_xz + B_2_o_zy*Sigma_2_yy + Sigma_2_zz*alpha_1_o_t +
-            g_r1_x*h_2_z + g_r3_y*h_2_y - J_2_yz*(W_2_t_2 - W_2_t_3)
+        uhs_bias_z = -uhs_W_3_zz*uhs_joint3_offset_x - uhs_W_3_zz*uhs_x_3_x
+        # (uhs-u_1) centripetal acceleration of the connection point
+        uhs_u_1_tip_x = (
+        axis_x_uhs_axes3_x*uhs_u_1_x + axis_x_uhs_axes3_y*uhs_u_1_y + axis_x_uhs_axes3_z*uhs_u_1_z
         )
-        mu_2_o_y = (
-        B_2_o_xy*J_2_yz + g_r1_x*h_2_x - B_2_o_zx*Sigma_2_xx - B_2_o_zy*J_2_xz - J_2_xy*(W_2_t -
-            W_2_t_3) - Sigma_2_zz*alpha_1_o_t_2 - g_r3_x*h_2_y
+        uhs_u_1_tip_y = (
+        axis_y_uhs_axes3_in_base_x*uhs_u_1_x + axis_y_uhs_axes3_in_base_y*uhs_u_1_y +
+            axis_y_uhs_axes3_in_base_z*uhs_u_1_z
         )
-        mu_2_o_z = (
-        B_2_o_yx*Sigma_2_xx + J_2_xy*alpha_1_o_t + J_2_yz*alpha_1_o_t_2 - B_2_o_xy*Sigma_2_yy -
-            J_2_xz*(W_2_t - W_2_t_2) - g_r3_x*h_2_z - g_r3_y*h_2_x
+        uhs_u_1_tip_z = uhs_axis_z_x*uhs_u_1_x + uhs_axis_z_y*uhs_u_1_y + uhs_axis_z_z*uhs_u_1_z
+        # (uhs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        uhs_rel_o_x = uhs_u_1_tip_x - uhs_bias_x
+        uhs_rel_o_y = uhs_u_1_tip_y - uhs_bias_y
+        uhs_rel_o_z = uhs_u_1_tip_z - uhs_bias_z
+        # (uhs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
+        uhs_qdd_1_o = inv_uhs_v_1_r0_y*(uhs_c_3_t*uhs_rel_o_y + uhs_rel_o_x*uhs_s_3)
+        uhs_qdd_2_o = (
+        inv_uhs_root_2*(uhs_qdd_1_o*uhs_v_1_r0_x + uhs_rel_o_y*uhs_s_3 - uhs_c_3_t*uhs_rel_o_x)
         )
-        # (uhs-N4) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        acc_3_o_x = u_1_tip_x - c_3_t*g_r3_y - g_r1_x*s_3
-        acc_3_o_y = u_1_tip_y + g_r3_y*s_3 - c_3_t*g_r1_x
-        acc_3_o_z = u_1_tip_z - g_r3_x
-        # (uhs-A24) remainder without the acceleration in: angular acceleration of link 3
-        alpha_3_o_x = zeta_3_x + alpha_2_o_y*c_3_t - qdd_2_o*s_3
-        alpha_3_o_y = -zeta_3_y - alpha_2_o_y*s_3 - c_3_t*qdd_2_o
-        alpha_3_o_z = alpha_2_o_x + inv_uhs_joint3_pitch*rel_o_z
-        # (uhs-A26) remainder of the acceleration tensor of link 3
-        B_3_o_xy = W_3_xy - alpha_3_o_z
-        B_3_o_xz = W_3_xz + alpha_3_o_y
-        B_3_o_yx = W_3_xy + alpha_3_o_z
-        B_3_o_yz = W_3_yz - alpha_3_o_x
-        B_3_o_zx = W_3_xz - alpha_3_o_y
-        B_3_o_zy = W_3_yz + alpha_3_o_x
-        # (uhs-N21) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        mu_3_o_x = (
-        B_3_o_yx*J_3_xy + B_3_o_zy*Sigma_3_yy + J_3_xz*(W_3_t_2 - W_3_t_3) + acc_3_o_z*h_3_z -
-            B_3_o_yz*Sigma_3_zz - B_3_o_zx*J_3_yz - acc_3_o_y*h_3_x
+        # (uhs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        uhs_alpha_1_o_t = uhs_qdd_1_o*uhs_s_2
+        uhs_alpha_1_o_t_2 = uhs_c_2*uhs_qdd_1_o
+        # (uhs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        uhs_alpha_2_o_x = uhs_alpha_1_o_t - uhs_zeta_2_x
+        uhs_alpha_2_o_y = -uhs_alpha_1_o_t_2 - uhs_zeta_2_y
+        # (uhs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        uhs_alpha_3_o_x = uhs_zeta_3_x + uhs_alpha_2_o_y*uhs_c_3_t - uhs_qdd_2_o*uhs_s_3
+        uhs_alpha_3_o_y = -uhs_zeta_3_y - uhs_alpha_2_o_y*uhs_s_3 - uhs_c_3_t*uhs_qdd_2_o
+        uhs_alpha_3_o_z = uhs_alpha_2_o_x + inv_uhs_joint3_pitch*uhs_rel_o_z
+        # (uhs-B_3_o) remainder of the acceleration tensor of link 3
+        uhs_B_3_o_xy = uhs_W_3_xy - uhs_alpha_3_o_z
+        uhs_B_3_o_xz = uhs_W_3_xz + uhs_alpha_3_o_y
+        uhs_B_3_o_yx = uhs_W_3_xy + uhs_alpha_3_o_z
+        uhs_B_3_o_yz = uhs_W_3_yz - uhs_alpha_3_o_x
+        uhs_B_3_o_zx = uhs_W_3_xz - uhs_alpha_3_o_y
+        uhs_B_3_o_zy = uhs_W_3_yz + uhs_alpha_3_o_x
+        # (uhs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        uhs_acc_3_o_x = (
+        uhs_u_1_tip_x - axis_x_uhs_axes3_x*gravity_x - axis_x_uhs_axes3_y*gravity_y -
+            axis_x_uhs_axes3_z*gravity_z
         )
-        mu_3_o_y = (
-        B_3_o_xz*Sigma_3_zz + B_3_o_zy*J_3_yz + acc_3_o_x*h_3_x - B_3_o_xy*J_3_xz -
-            B_3_o_zx*Sigma_3_xx - J_3_xy*(W_3_t - W_3_t_3) - acc_3_o_z*h_3_y
+        uhs_acc_3_o_y = (
+        uhs_u_1_tip_y - axis_y_uhs_axes3_in_base_x*gravity_x -
+            axis_y_uhs_axes3_in_base_y*gravity_y - axis_y_uhs_axes3_in_base_z*gravity_z
         )
-        mu_3_o_z = (
-        B_3_o_xz*J_3_xz + B_3_o_yx*Sigma_3_xx + J_3_yz*(W_3_t - W_3_t_2) + acc_3_o_y*h_3_y -
-            B_3_o_xy*Sigma_3_yy - B_3_o_yz*J_3_xy - acc_3_o_x*h_3_z
+        uhs_acc_3_o_z = (
+        uhs_u_1_tip_z - gravity_x*uhs_axis_z_x - gravity_y*uhs_axis_z_y - gravity_z*uhs_axis_z_z
         )
-        # (uhs-N30) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_o_x = mu_2_o_x + mu_3_o_z
-        N_2_o_y = mu_2_o_y + c_3_t*mu_3_o_x - mu_3_o_y*s_3
-        N_2_o_z = mu_2_o_z + c_3_t*mu_3_o_y + mu_3_o_x*s_3
-        # (uhs-N39) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_o_t = N_2_o_z*inv_root_2
-        G_o_t_2 = inv_v_1_r0_y*(G_o_t*v_1_r0_x + N_2_o_y*c_2 - N_2_o_x*s_2)
-        # (uhs-N42) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_o_x = (
-        G_o_t_2*s_3 + h_3_y*(W_3_t_2 + W_3_t_3) - B_3_o_xy*h_3_z - B_3_o_xz*h_3_x - G_o_t*c_3_t
+        # (uhs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        uhs_mu_3_o_x = (
+        uhs_B_3_o_yx*uhs_J_3_xy + uhs_B_3_o_zy*uhs_Sigma_3_yy + uhs_J_3_xz*(uhs_W_3_t_2 -
+            uhs_W_3_t_3) + uhs_acc_3_o_z*uhs_h_3_z - uhs_B_3_o_yz*uhs_Sigma_3_zz -
+            uhs_B_3_o_zx*uhs_J_3_yz - uhs_acc_3_o_y*uhs_h_3_x
         )
-        c_o_y = (
-        G_o_t*s_3 + G_o_t_2*c_3_t + h_3_z*(W_3_t + W_3_t_3) - B_3_o_yx*h_3_y - B_3_o_yz*h_3_x
+        uhs_mu_3_o_y = (
+        uhs_B_3_o_xz*uhs_Sigma_3_zz + uhs_B_3_o_zy*uhs_J_3_yz + uhs_acc_3_o_x*uhs_h_3_x -
+            uhs_B_3_o_xy*uhs_J_3_xz - uhs_B_3_o_zx*uhs_Sigma_3_xx - uhs_J_3_xy*(uhs_W_3_t -
+            uhs_W_3_t_3) - uhs_acc_3_o_z*uhs_h_3_y
         )
-        c_o_z = W_3_zz*h_3_x - B_3_o_zx*h_3_y - B_3_o_zy*h_3_z - inv_uhs_joint3_pitch*mu_3_o_z
-        # (uhs-N44) velocity and gravity terms of the leg force
-        U_in_base_x = (
-        -axis_x_uhs_axes3_x*c_o_x - axis_y_uhs_axes3_in_base_x*c_o_y - axis_z_x*c_o_z
+        uhs_mu_3_o_z = (
+        uhs_B_3_o_xz*uhs_J_3_xz + uhs_B_3_o_yx*uhs_Sigma_3_xx + uhs_J_3_yz*(uhs_W_3_t -
+            uhs_W_3_t_2) + uhs_acc_3_o_y*uhs_h_3_y - uhs_B_3_o_xy*uhs_Sigma_3_yy -
+            uhs_B_3_o_yz*uhs_J_3_xy - uhs_acc_3_o_x*uhs_h_3_z
         )
-        U_in_base_y = (
-        -axis_x_uhs_axes3_y*c_o_x - axis_y_uhs_axes3_in_base_y*c_o_y - axis_z_y*c_o_z
+        # (uhs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        uhs_g_r1_x = uhs_g_r0_y*uhs_s_1 - uhs_c_1*uhs_g_r0_x
+        uhs_g_r1_y = -uhs_c_1*uhs_g_r0_y - uhs_g_r0_x*uhs_s_1
+        uhs_g_r3_x = uhs_g_r0_z*uhs_s_2 - uhs_c_2*uhs_g_r1_y
+        uhs_g_r3_y = -uhs_c_2*uhs_g_r0_z - uhs_g_r1_y*uhs_s_2
+        # (uhs-B_2_o) remainder of the acceleration tensor of link 2
+        uhs_B_2_o_xy = uhs_qdd_2_o - uhs_W_2_xy
+        uhs_B_2_o_yx = -uhs_W_2_xy - uhs_qdd_2_o
+        uhs_B_2_o_zx = uhs_zeta_2_y - uhs_alpha_2_o_y
+        uhs_B_2_o_zy = uhs_alpha_2_o_x - uhs_zeta_2_x
+        # (uhs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        uhs_mu_2_o_x = (
+        uhs_B_2_o_yx*uhs_J_2_xy + uhs_B_2_o_zx*uhs_J_2_xz + uhs_B_2_o_zy*uhs_Sigma_2_yy +
+            uhs_Sigma_2_zz*uhs_alpha_1_o_t + uhs_g_r1_x*uhs_h_2_z + uhs_g_r3_y*uhs_h_2_y -
+            uhs_J_2_yz*(uhs_W_2_t_2 - uhs_W_2_t_3)
         )
-        U_in_base_z = (
-        -axis_x_uhs_axes3_z*c_o_x - axis_y_uhs_axes3_in_base_z*c_o_y - axis_z_z*c_o_z
+        uhs_mu_2_o_y = (
+        uhs_B_2_o_xy*uhs_J_2_yz + uhs_g_r1_x*uhs_h_2_x - uhs_B_2_o_zx*uhs_Sigma_2_xx -
+            uhs_B_2_o_zy*uhs_J_2_xz - uhs_J_2_xy*(uhs_W_2_t - uhs_W_2_t_3) -
+            uhs_Sigma_2_zz*uhs_alpha_1_o_t_2 - uhs_g_r3_x*uhs_h_2_y
         )
-        # (M7) rotational part of Z
-        Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
-        Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
-        Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
+        uhs_mu_2_o_z = (
+        uhs_B_2_o_yx*uhs_Sigma_2_xx + uhs_J_2_xy*uhs_alpha_1_o_t + uhs_J_2_yz*uhs_alpha_1_o_t_2 -
+            uhs_B_2_o_xy*uhs_Sigma_2_yy - uhs_J_2_xz*(uhs_W_2_t - uhs_W_2_t_2) -
+            uhs_g_r3_x*uhs_h_2_z - uhs_g_r3_y*uhs_h_2_x
+        )
+        # (uhs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        uhs_N_2_o_x = uhs_mu_2_o_x + uhs_mu_3_o_z
+        uhs_N_2_o_y = uhs_mu_2_o_y + uhs_c_3_t*uhs_mu_3_o_x - uhs_mu_3_o_y*uhs_s_3
+        uhs_N_2_o_z = uhs_mu_2_o_z + uhs_c_3_t*uhs_mu_3_o_y + uhs_mu_3_o_x*uhs_s_3
+        # (uhs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        uhs_G_o_t = inv_uhs_root_2*uhs_N_2_o_z
+        uhs_G_o_t_2 = (
+        inv_uhs_v_1_r0_y*(uhs_G_o_t*uhs_v_1_r0_x + uhs_N_2_o_y*uhs_c_2 - uhs_N_2_o_x*uhs_s_2)
+        )
+        # (uhs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        uhs_c_o_x = (
+        uhs_G_o_t_2*uhs_s_3 + uhs_h_3_y*(uhs_W_3_t_2 + uhs_W_3_t_3) - uhs_B_3_o_xy*uhs_h_3_z -
+            uhs_B_3_o_xz*uhs_h_3_x - uhs_G_o_t*uhs_c_3_t
+        )
+        uhs_c_o_y = (
+        uhs_G_o_t*uhs_s_3 + uhs_G_o_t_2*uhs_c_3_t + uhs_h_3_z*(uhs_W_3_t + uhs_W_3_t_3) -
+            uhs_B_3_o_yx*uhs_h_3_y - uhs_B_3_o_yz*uhs_h_3_x
+        )
+        uhs_c_o_z = (
+        uhs_W_3_zz*uhs_h_3_x - inv_uhs_joint3_pitch*uhs_mu_3_o_z - uhs_B_3_o_zx*uhs_h_3_y -
+            uhs_B_3_o_zy*uhs_h_3_z
+        )
+        # (uhs-U) velocity and gravity terms of the leg force
+        uhs_U_in_base_x = (
+        -axis_x_uhs_axes3_x*uhs_c_o_x - axis_y_uhs_axes3_in_base_x*uhs_c_o_y -
+            uhs_axis_z_x*uhs_c_o_z
+        )
+        uhs_U_in_base_y = (
+        -axis_x_uhs_axes3_y*uhs_c_o_x - axis_y_uhs_axes3_in_base_y*uhs_c_o_y -
+            uhs_axis_z_y*uhs_c_o_z
+        )
+        uhs_U_in_base_z = (
+        -axis_x_uhs_axes3_z*uhs_c_o_x - axis_y_uhs_axes3_in_base_z*uhs_c_o_y -
+            uhs_axis_z_z*uhs_c_o_z
+        )
+        # (Z_a) rotational part of Z
+        uhs_Z_a_t = uhs_U_in_base_z*uhs_q_in_base_y - uhs_U_in_base_y*uhs_q_in_base_z
+        uhs_Z_a_t_2 = uhs_U_in_base_x*uhs_q_in_base_z - uhs_U_in_base_z*uhs_q_in_base_x
+        uhs_Z_a_t_3 = uhs_U_in_base_y*uhs_q_in_base_x - uhs_U_in_base_x*uhs_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * size_t) & (abs(root_2) > _TOLERANCE * size) & (abs(v_1_r0_y)
-            > _TOLERANCE * size))
+        ok & m.every(leg, (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) &
+            (abs(uhs_rho2_2) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) >
+            _TOLERANCE * uhs_size) & (abs(uhs_v_1_r0_y) > _TOLERANCE * uhs_size))
         )
         sums = m.added(sums, leg, (
-        U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
+        uhs_U_in_base_x, uhs_U_in_base_y, uhs_U_in_base_z, uhs_Z_a_t, uhs_Z_a_t_2,
+            uhs_Z_a_t_3,
         ))
     total_uhs_x, total_uhs_y, total_uhs_z, total_uhs_x_2, total_uhs_y_2, total_uhs_z_2 = sums
-    # (M5) translational part of Z
+    # (Z_t) translational part of Z
     Z_t_x = Z_p_x + total_uhs_x
     Z_t_y = Z_p_y + total_uhs_y
     Z_t_z = Z_p_z + total_uhs_z
-    # (M7) rotational part of Z
+    # (Z_a) rotational part of Z
     Z_a_x = Z_q_in_base_x + total_uhs_x_2
     Z_a_y = Z_q_in_base_y + total_uhs_y_2
     Z_a_z = Z_q_in_base_z + total_uhs_z_2
@@ -2679,61 +2866,68 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        branch_2, inv_uhs_joint3_pitch, size, size_t, uhs_base_frame_xx, uhs_base_frame_xy,
-            uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz,
-            uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x,
-            uhs_base_point_y, uhs_base_point_z, uhs_platform_point_x, uhs_platform_point_y,
-            uhs_platform_point_z,
+        inv_uhs_joint3_pitch, uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz,
+            uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx,
+            uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y,
+            uhs_base_point_z, uhs_branch_2, uhs_platform_point_x, uhs_platform_point_y,
+            uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
-        # (uhs-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (uhs-S) from the base point to the connection point
+        uhs_q_in_base_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
-        q_in_base_y = (
+        uhs_q_in_base_y = (
         R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y + R_yz*uhs_platform_point_z
         )
-        q_in_base_z = (
+        uhs_q_in_base_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - uhs_base_point_x
-        S_y = q_in_base_y + t_y - uhs_base_point_y
-        S_z = q_in_base_z + t_z - uhs_base_point_z
-        # (uhs-K2) component along the reference direction
-        px_1 = S_x*uhs_base_frame_xx + S_y*uhs_base_frame_yx + S_z*uhs_base_frame_zx
-        # (uhs-K3) component across the reference direction
-        py_1 = S_x*uhs_base_frame_xy + S_y*uhs_base_frame_yy + S_z*uhs_base_frame_zy
-        # (uhs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (uhs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*uhs_base_frame_xz + S_y*uhs_base_frame_yz + S_z*uhs_base_frame_zz
-        # (uhs-K16) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (uhs-K18) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (uhs-V7) reciprocal vector 1
-        inv_root_2 = 1.0/root_2
-        # (uhs-V9) reciprocal vector 3
-        w_3_t = S_x*inv_root_2*inv_uhs_joint3_pitch
-        w_3_t_2 = S_y*inv_root_2*inv_uhs_joint3_pitch
-        w_3_t_3 = S_z*inv_root_2*inv_uhs_joint3_pitch
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_3_x = q_in_base_y*w_3_t_3 - q_in_base_z*w_3_t_2
-        H_a_3_y = q_in_base_z*w_3_t - q_in_base_x*w_3_t_3
-        H_a_3_z = q_in_base_x*w_3_t_2 - q_in_base_y*w_3_t
-        ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * size_t) & (abs(root_2) > _TOLERANCE * size))
+        uhs_S_x = t_x + uhs_q_in_base_x - uhs_base_point_x
+        uhs_S_y = t_y + uhs_q_in_base_y - uhs_base_point_y
+        uhs_S_z = t_z + uhs_q_in_base_z - uhs_base_point_z
+        # (uhs-px_1) component along the reference direction
+        uhs_px_1 = (
+        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
         )
-        out_H[_H_uhs[0][leg]] = w_3_t
-        out_H[_H_uhs[1][leg]] = w_3_t_2
-        out_H[_H_uhs[2][leg]] = w_3_t_3
-        out_H[_H_uhs[3][leg]] = H_a_3_x
-        out_H[_H_uhs[4][leg]] = H_a_3_y
-        out_H[_H_uhs[5][leg]] = H_a_3_z
+        # (uhs-py_1) component across the reference direction
+        uhs_py_1 = (
+        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
+        )
+        # (uhs-rho2_1) squared amplitude
+        uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1
+        # (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        uhs_xi_1_t = (
+        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
+        )
+        # (uhs-rho2_2) squared amplitude
+        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t
+        # (uhs-root_2) root, with the sign of the branch
+        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
+        # (uhs-w_1) reciprocal vector 1
+        inv_uhs_root_2 = 1.0/uhs_root_2
+        # (uhs-w_3) reciprocal vector 3
+        uhs_w_3_t = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_x
+        uhs_w_3_t_2 = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_y
+        uhs_w_3_t_3 = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_z
+        # (uhs-H_a_3) moment of the column's unit force about the platform origin
+        uhs_H_a_3_x = uhs_q_in_base_y*uhs_w_3_t_3 - uhs_q_in_base_z*uhs_w_3_t_2
+        uhs_H_a_3_y = uhs_q_in_base_z*uhs_w_3_t - uhs_q_in_base_x*uhs_w_3_t_3
+        uhs_H_a_3_z = uhs_q_in_base_x*uhs_w_3_t_2 - uhs_q_in_base_y*uhs_w_3_t
+        ok = (
+        ok & m.every(leg, (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) &
+            (abs(uhs_rho2_2) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) >
+            _TOLERANCE * uhs_size))
+        )
+        out_H[_H_uhs[0][leg]] = uhs_w_3_t
+        out_H[_H_uhs[1][leg]] = uhs_w_3_t_2
+        out_H[_H_uhs[2][leg]] = uhs_w_3_t_3
+        out_H[_H_uhs[3][leg]] = uhs_H_a_3_x
+        out_H[_H_uhs[4][leg]] = uhs_H_a_3_y
+        out_H[_H_uhs[5][leg]] = uhs_H_a_3_z
     return ok, (out_H,)
 
 
-# required: 1683 mul, 1287 add, 24 div, 12 sqrt, 12 trig
+# required: 1677 mul, 1287 add, 24 div, 12 sqrt, 12 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -2807,29 +3001,29 @@ def _run_required(m, X, V, A):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (P1) centripetal tensor of the platform
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_x*omega_x
     W_p_t_2 = omega_y*omega_y
     W_p_t_3 = omega_z*omega_z
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
     W_p_yz = omega_y*omega_z
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
-    # (E2) inertia force of the platform less its weight
+    # (f_p) inertia force of the platform less its weight
     f_p_x = (
     a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) + h_star_in_base_z*(W_p_xz + alpha_y) -
         h_star_in_base_x*(W_p_t_2 + W_p_t_3)
@@ -2842,11 +3036,11 @@ def _run_required(m, X, V, A):
     a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) + h_star_in_base_y*(W_p_yz + alpha_x) -
         h_star_in_base_z*(W_p_t + W_p_t_2)
     )
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
     a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
     a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
-    # (E3) inertia moment of the platform less that of its weight
+    # (mu_p) inertia moment of the platform less that of its weight
     alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
     alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
     alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
@@ -2868,296 +3062,340 @@ def _run_required(m, X, V, A):
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz,
-            Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x,
-            h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, inv_uhs_joint3_pitch, size, size_t,
-            uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx,
-            uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy,
-            uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y, uhs_base_point_z,
-            uhs_joint3_offset_x, uhs_joint3_pitch, uhs_platform_joint_offset_x,
-            uhs_platform_point_x, uhs_platform_point_y, uhs_platform_point_z,
+        inv_uhs_joint3_pitch, uhs_J_2_xy, uhs_J_2_xz, uhs_J_2_yz, uhs_J_3_xy, uhs_J_3_xz,
+            uhs_J_3_yz, uhs_Sigma_2_xx, uhs_Sigma_2_yy, uhs_Sigma_2_zz, uhs_Sigma_3_xx,
+            uhs_Sigma_3_yy, uhs_Sigma_3_zz, uhs_base_frame_xx, uhs_base_frame_xy,
+            uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz,
+            uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x,
+            uhs_base_point_y, uhs_base_point_z, uhs_bias_t, uhs_branch_1, uhs_branch_2,
+            uhs_g_r0_x, uhs_g_r0_y, uhs_g_r0_z, uhs_h_2_x, uhs_h_2_y, uhs_h_2_z, uhs_h_3_x,
+            uhs_h_3_y, uhs_h_3_z, uhs_joint3_offset_x, uhs_platform_joint_offset_x,
+            uhs_platform_point_x, uhs_platform_point_y, uhs_platform_point_z, uhs_size,
+            uhs_size_t,
         ) = k
-        # (uhs-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (uhs-S) from the base point to the connection point
+        uhs_q_in_base_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
-        q_in_base_y = (
+        uhs_q_in_base_y = (
         R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y + R_yz*uhs_platform_point_z
         )
-        q_in_base_z = (
+        uhs_q_in_base_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - uhs_base_point_x
-        S_y = q_in_base_y + t_y - uhs_base_point_y
-        S_z = q_in_base_z + t_z - uhs_base_point_z
-        # (uhs-K2) component along the reference direction
-        px_1 = S_x*uhs_base_frame_xx + S_y*uhs_base_frame_yx + S_z*uhs_base_frame_zx
-        # (uhs-K3) component across the reference direction
-        py_1 = S_x*uhs_base_frame_xy + S_y*uhs_base_frame_yy + S_z*uhs_base_frame_zy
-        # (uhs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (uhs-K7) root, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (uhs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*uhs_base_frame_xz + S_y*uhs_base_frame_yz + S_z*uhs_base_frame_zz
-        # (uhs-K16) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (uhs-K18) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (uhs-K23) from the origin of joint 3 to the connection point
-        x_3_x = root_2 - uhs_joint3_offset_x
-        # (uhs-K24) displacement of joint 3
-        q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - x_3_x)
-        # (uhs-K19) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = inv_rho2_2*root_1*root_2
-        # (uhs-K20) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*root_2*xi_1_t
-        # (uhs-K25) cosine of the angle of joint 3 from its reference direction
-        c_3_t = sin(q_3)
-        # (uhs-K26) sine of the angle of joint 3 from its reference direction
-        s_3 = cos(q_3)
-        # (uhs-V4) velocity of the connection point per rate of joint 1
-        v_1_t = c_2*s_3
-        v_1_t_2 = root_2*v_1_t
-        v_1_t_3 = c_2*c_3_t*root_2
-        # (uhs-V7) reciprocal vector 1
-        inv_root_2 = 1.0/root_2
-        axis_z_x = S_x*inv_root_2
-        axis_z_y = S_y*inv_root_2
-        axis_z_z = S_z*inv_root_2
-        w_1_t = s_2*s_3
-        # (uhs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*py_1*root_1
-        # (uhs-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*px_1*root_1
-        # (uhs-V7) reciprocal vector 1
-        axis_y_uhs_axes3_r4_x = -c_1*c_3_t - s_1*w_1_t
-        axis_y_uhs_axes3_r4_y = c_3_t*s_1 - c_1*w_1_t
+        uhs_S_x = t_x + uhs_q_in_base_x - uhs_base_point_x
+        uhs_S_y = t_y + uhs_q_in_base_y - uhs_base_point_y
+        uhs_S_z = t_z + uhs_q_in_base_z - uhs_base_point_z
+        # (uhs-px_1) component along the reference direction
+        uhs_px_1 = (
+        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
+        )
+        # (uhs-py_1) component across the reference direction
+        uhs_py_1 = (
+        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
+        )
+        # (uhs-rho2_1) squared amplitude
+        uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1
+        # (uhs-root_1) root, with the sign of the branch
+        uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
+        # (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        uhs_xi_1_t = (
+        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
+        )
+        # (uhs-rho2_2) squared amplitude
+        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t
+        # (uhs-root_2) root, with the sign of the branch
+        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
+        # (uhs-x_3) from the origin of joint 3 to the connection point
+        uhs_x_3_x = uhs_root_2 - uhs_joint3_offset_x
+        # (uhs-q_3) displacement of joint 3
+        uhs_q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_x)
+        # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_uhs_rho2_2 = 1.0/uhs_rho2_2
+        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
+        # (uhs-s_2) sine of the angle of joint 2 from its reference direction
+        uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_t
+        # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
+        uhs_c_3_t = sin(uhs_q_3)
+        # (uhs-s_3) sine of the angle of joint 3 from its reference direction
+        uhs_s_3 = cos(uhs_q_3)
+        # (uhs-v_1) velocity of the connection point per rate of joint 1
+        uhs_v_1_t = uhs_c_2*uhs_s_3
+        uhs_v_1_t_2 = uhs_root_2*uhs_v_1_t
+        uhs_v_1_t_3 = uhs_c_2*uhs_c_3_t*uhs_root_2
+        # (uhs-w_1) reciprocal vector 1
+        inv_uhs_root_2 = 1.0/uhs_root_2
+        uhs_axis_z_x = inv_uhs_root_2*uhs_S_x
+        uhs_axis_z_y = inv_uhs_root_2*uhs_S_y
+        uhs_axis_z_z = inv_uhs_root_2*uhs_S_z
+        uhs_w_1_t = uhs_s_2*uhs_s_3
+        # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
+        uhs_c_1 = inv_uhs_rho2_1*uhs_py_1*uhs_root_1
+        # (uhs-s_1) sine of the angle of joint 1 from its reference direction
+        uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1
+        # (uhs-w_1) reciprocal vector 1
+        axis_y_uhs_axes3_r4_x = -uhs_c_1*uhs_c_3_t - uhs_s_1*uhs_w_1_t
+        axis_y_uhs_axes3_r4_y = uhs_c_3_t*uhs_s_1 - uhs_c_1*uhs_w_1_t
         axis_y_uhs_axes3_in_base_x = (
         axis_y_uhs_axes3_r4_x*uhs_base_frame_xx + axis_y_uhs_axes3_r4_y*uhs_base_frame_xy +
-            uhs_base_frame_xz*v_1_t
+            uhs_base_frame_xz*uhs_v_1_t
         )
         axis_y_uhs_axes3_in_base_y = (
         axis_y_uhs_axes3_r4_x*uhs_base_frame_yx + axis_y_uhs_axes3_r4_y*uhs_base_frame_yy +
-            uhs_base_frame_yz*v_1_t
+            uhs_base_frame_yz*uhs_v_1_t
         )
         axis_y_uhs_axes3_in_base_z = (
         axis_y_uhs_axes3_r4_x*uhs_base_frame_zx + axis_y_uhs_axes3_r4_y*uhs_base_frame_zy +
-            uhs_base_frame_zz*v_1_t
+            uhs_base_frame_zz*uhs_v_1_t
         )
         axis_x_uhs_axes3_x = (
-        axis_y_uhs_axes3_in_base_y*axis_z_z - axis_y_uhs_axes3_in_base_z*axis_z_y
+        axis_y_uhs_axes3_in_base_y*uhs_axis_z_z - axis_y_uhs_axes3_in_base_z*uhs_axis_z_y
         )
         axis_x_uhs_axes3_y = (
-        axis_y_uhs_axes3_in_base_z*axis_z_x - axis_y_uhs_axes3_in_base_x*axis_z_z
+        axis_y_uhs_axes3_in_base_z*uhs_axis_z_x - axis_y_uhs_axes3_in_base_x*uhs_axis_z_z
         )
         axis_x_uhs_axes3_z = (
-        axis_y_uhs_axes3_in_base_x*axis_z_y - axis_y_uhs_axes3_in_base_y*axis_z_x
+        axis_y_uhs_axes3_in_base_x*uhs_axis_z_y - axis_y_uhs_axes3_in_base_y*uhs_axis_z_x
         )
-        # (uhs-V4) velocity of the connection point per rate of joint 1
-        v_1_r0_x = c_3_t*v_1_t_2 - s_3*v_1_t_3
-        v_1_r0_y = c_3_t*v_1_t_3 + s_3*v_1_t_2
-        # (uhs-V7) reciprocal vector 1
-        inv_v_1_r0_y = 1.0/v_1_r0_y
-        # (uhs-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-        g_r3_x = g_r0_z*s_2 - c_2*g_r1_y
-        g_r3_y = -c_2*g_r0_z - g_r1_y*s_2
-        # (uhs-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_r0_x = (
-        S_dot_x*uhs_base_frame_xx + S_dot_y*uhs_base_frame_yx + S_dot_z*uhs_base_frame_zx
+        # (uhs-v_1) velocity of the connection point per rate of joint 1
+        uhs_v_1_r0_x = uhs_c_3_t*uhs_v_1_t_2 - uhs_s_3*uhs_v_1_t_3
+        uhs_v_1_r0_y = uhs_c_3_t*uhs_v_1_t_3 + uhs_s_3*uhs_v_1_t_2
+        # (uhs-w_1) reciprocal vector 1
+        inv_uhs_v_1_r0_y = 1.0/uhs_v_1_r0_y
+        # (uhs-S_dot) velocity of the connection point
+        uhs_S_dot_t = omega_y*uhs_q_in_base_z - omega_z*uhs_q_in_base_y
+        uhs_S_dot_t_2 = omega_z*uhs_q_in_base_x - omega_x*uhs_q_in_base_z
+        uhs_S_dot_t_3 = omega_x*uhs_q_in_base_y - omega_y*uhs_q_in_base_x
+        uhs_S_dot_x = t_dot_x + uhs_S_dot_t
+        uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2
+        uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3
+        uhs_S_dot_r0_x = (
+        uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx +
+            uhs_S_dot_z*uhs_base_frame_zx
         )
-        S_dot_r0_y = (
-        S_dot_x*uhs_base_frame_xy + S_dot_y*uhs_base_frame_yy + S_dot_z*uhs_base_frame_zy
+        uhs_S_dot_r0_y = (
+        uhs_S_dot_x*uhs_base_frame_xy + uhs_S_dot_y*uhs_base_frame_yy +
+            uhs_S_dot_z*uhs_base_frame_zy
         )
-        S_dot_r0_z = (
-        S_dot_x*uhs_base_frame_xz + S_dot_y*uhs_base_frame_yz + S_dot_z*uhs_base_frame_zz
+        uhs_S_dot_r0_z = (
+        uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz +
+            uhs_S_dot_z*uhs_base_frame_zz
         )
-        S_dot_r1_y = -S_dot_r0_x*s_1 - S_dot_r0_y*c_1
-        # (uhs-V10) rate of joint 1
-        qd_3 = inv_uhs_joint3_pitch*(S_dot_r0_z*s_2 - S_dot_r1_y*c_2)
-        qd_1 = inv_v_1_r0_y*(S_dot_r0_y*s_1 - S_dot_r0_x*c_1)
-        qd_2 = inv_root_2*(-S_dot_r0_z*c_2 - S_dot_r1_y*s_2 - qd_1*v_1_r0_x)
-        # (uhs-V13) angular velocity of link 1
-        omega_1_t = qd_1*s_2
-        omega_1_t_2 = c_2*qd_1
-        # (uhs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_x = omega_1_t_2*qd_2
-        zeta_2_y = omega_1_t*qd_2
-        # (uhs-V14) angular velocity of link 2
-        omega_2_r1_x = qd_2*s_3 - c_3_t*omega_1_t_2
-        omega_2_r1_y = c_3_t*qd_2 + omega_1_t_2*s_3
-        # (uhs-A5) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_x = omega_2_r1_y*qd_3
-        zeta_3_y = omega_2_r1_x*qd_3
-        # (uhs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_t = c_3_t*zeta_2_y
-        zeta_2_t_2 = s_3*zeta_2_y
-        # (uhs-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_x = zeta_3_x - zeta_2_t
-        beta_3_y = zeta_2_t_2 - zeta_3_y
-        # (uhs-V16) angular velocity of link 3
-        omega_3_z = omega_1_t + qd_3
-        # (uhs-V15) centripetal tensor of link 2
-        W_2_t = omega_1_t*omega_1_t
-        W_2_t_2 = omega_1_t_2*omega_1_t_2
-        W_2_t_3 = qd_2*qd_2
-        W_2_xy = omega_1_t*omega_1_t_2
-        # (uhs-V17) centripetal tensor of link 3
-        W_3_t = omega_2_r1_x*omega_2_r1_x
-        W_3_t_2 = omega_2_r1_y*omega_2_r1_y
-        W_3_t_3 = omega_3_z*omega_3_z
-        W_3_xy = omega_2_r1_x*omega_2_r1_y
-        W_3_xz = omega_2_r1_x*omega_3_z
-        W_3_yz = omega_2_r1_y*omega_3_z
-        W_3_zz = W_3_t + W_3_t_2
-        # (uhs-A7) acceleration of the connection point at zero joint accelerations
-        bias_t = 2.0*qd_3*uhs_joint3_pitch
-        bias_x = (
-        bias_t*omega_2_r1_y + uhs_joint3_offset_x*(zeta_2_t_2 + omega_1_t*omega_2_r1_x) +
-            x_3_x*(W_3_xz + beta_3_y)
+        uhs_S_dot_r1_y = -uhs_S_dot_r0_x*uhs_s_1 - uhs_S_dot_r0_y*uhs_c_1
+        # (uhs-qd_3) rate of joint 3
+        uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_S_dot_r0_z*uhs_s_2 - uhs_S_dot_r1_y*uhs_c_2)
+        uhs_qd_1 = inv_uhs_v_1_r0_y*(uhs_S_dot_r0_y*uhs_s_1 - uhs_S_dot_r0_x*uhs_c_1)
+        uhs_qd_2 = (
+        inv_uhs_root_2*(-uhs_S_dot_r0_z*uhs_c_2 - uhs_S_dot_r1_y*uhs_s_2 - uhs_qd_1*uhs_v_1_r0_x)
         )
-        bias_y = (
-        uhs_joint3_offset_x*(zeta_2_t + omega_1_t*omega_2_r1_y) + x_3_x*(W_3_yz - beta_3_x) -
-            bias_t*omega_2_r1_x
+        # (uhs-omega_1) angular velocity of link 1
+        uhs_omega_1_t = uhs_qd_1*uhs_s_2
+        uhs_omega_1_t_2 = uhs_c_2*uhs_qd_1
+        # (uhs-omega_2) angular velocity of link 2
+        uhs_omega_2_r1_x = uhs_qd_2*uhs_s_3 - uhs_c_3_t*uhs_omega_1_t_2
+        uhs_omega_2_r1_y = uhs_c_3_t*uhs_qd_2 + uhs_omega_1_t_2*uhs_s_3
+        # (uhs-omega_3) angular velocity of link 3
+        uhs_omega_3_z = uhs_omega_1_t + uhs_qd_3
+        # (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        uhs_zeta_3_x = uhs_omega_2_r1_y*uhs_qd_3
+        uhs_zeta_3_y = uhs_omega_2_r1_x*uhs_qd_3
+        # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        uhs_zeta_2_x = uhs_omega_1_t_2*uhs_qd_2
+        uhs_zeta_2_y = uhs_omega_1_t*uhs_qd_2
+        uhs_zeta_2_t = uhs_c_3_t*uhs_zeta_2_y
+        uhs_zeta_2_t_2 = uhs_s_3*uhs_zeta_2_y
+        # (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        uhs_beta_3_x = uhs_zeta_3_x - uhs_zeta_2_t
+        uhs_beta_3_y = uhs_zeta_2_t_2 - uhs_zeta_3_y
+        # (uhs-W_2) centripetal tensor of link 2
+        uhs_W_2_t = uhs_omega_1_t*uhs_omega_1_t
+        uhs_W_2_t_2 = uhs_omega_1_t_2*uhs_omega_1_t_2
+        uhs_W_2_t_3 = uhs_qd_2*uhs_qd_2
+        uhs_W_2_xy = uhs_omega_1_t*uhs_omega_1_t_2
+        # (uhs-W_3) centripetal tensor of link 3
+        uhs_W_3_t = uhs_omega_2_r1_x*uhs_omega_2_r1_x
+        uhs_W_3_t_2 = uhs_omega_2_r1_y*uhs_omega_2_r1_y
+        uhs_W_3_t_3 = uhs_omega_3_z*uhs_omega_3_z
+        uhs_W_3_xy = uhs_omega_2_r1_x*uhs_omega_2_r1_y
+        uhs_W_3_xz = uhs_omega_2_r1_x*uhs_omega_3_z
+        uhs_W_3_yz = uhs_omega_2_r1_y*uhs_omega_3_z
+        uhs_W_3_zz = uhs_W_3_t + uhs_W_3_t_2
+        # (uhs-bias) acceleration of the connection point at zero joint accelerations
+        uhs_bias_t_2 = uhs_bias_t*uhs_qd_3
+        uhs_bias_x = (
+        uhs_bias_t_2*uhs_omega_2_r1_y + uhs_joint3_offset_x*(uhs_zeta_2_t_2 +
+            uhs_omega_1_t*uhs_omega_2_r1_x) + uhs_x_3_x*(uhs_W_3_xz + uhs_beta_3_y)
         )
-        bias_z = -W_3_zz*uhs_joint3_offset_x - W_3_zz*x_3_x
-        # (uhs-V9) reciprocal vector 3
-        w_3_t = axis_z_x*inv_uhs_joint3_pitch
-        w_3_t_2 = axis_z_y*inv_uhs_joint3_pitch
-        w_3_t_3 = axis_z_z*inv_uhs_joint3_pitch
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_3_x = q_in_base_y*w_3_t_3 - q_in_base_z*w_3_t_2
-        H_a_3_y = q_in_base_z*w_3_t - q_in_base_x*w_3_t_3
-        H_a_3_z = q_in_base_x*w_3_t_2 - q_in_base_y*w_3_t
-        # (uhs-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (uhs-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        S_ddot_tip_x = (
-        S_ddot_x*axis_x_uhs_axes3_x + S_ddot_y*axis_x_uhs_axes3_y + S_ddot_z*axis_x_uhs_axes3_z
+        uhs_bias_y = (
+        uhs_joint3_offset_x*(uhs_zeta_2_t + uhs_omega_1_t*uhs_omega_2_r1_y) +
+            uhs_x_3_x*(uhs_W_3_yz - uhs_beta_3_x) - uhs_bias_t_2*uhs_omega_2_r1_x
         )
-        S_ddot_tip_y = (
-        S_ddot_x*axis_y_uhs_axes3_in_base_x + S_ddot_y*axis_y_uhs_axes3_in_base_y +
-            S_ddot_z*axis_y_uhs_axes3_in_base_z
+        uhs_bias_z = -uhs_W_3_zz*uhs_joint3_offset_x - uhs_W_3_zz*uhs_x_3_x
+        # (uhs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        uhs_g_r1_x = uhs_g_r0_y*uhs_s_1 - uhs_c_1*uhs_g_r0_x
+        uhs_g_r1_y = -uhs_c_1*uhs_g_r0_y - uhs_g_r0_x*uhs_s_1
+        uhs_g_r3_x = uhs_g_r0_z*uhs_s_2 - uhs_c_2*uhs_g_r1_y
+        uhs_g_r3_y = -uhs_c_2*uhs_g_r0_z - uhs_g_r1_y*uhs_s_2
+        # (uhs-w_3) reciprocal vector 3
+        uhs_w_3_t = inv_uhs_joint3_pitch*uhs_axis_z_x
+        uhs_w_3_t_2 = inv_uhs_joint3_pitch*uhs_axis_z_y
+        uhs_w_3_t_3 = inv_uhs_joint3_pitch*uhs_axis_z_z
+        # (uhs-H_a_3) moment of the column's unit force about the platform origin
+        uhs_H_a_3_x = uhs_q_in_base_y*uhs_w_3_t_3 - uhs_q_in_base_z*uhs_w_3_t_2
+        uhs_H_a_3_y = uhs_q_in_base_z*uhs_w_3_t - uhs_q_in_base_x*uhs_w_3_t_3
+        uhs_H_a_3_z = uhs_q_in_base_x*uhs_w_3_t_2 - uhs_q_in_base_y*uhs_w_3_t
+        # (uhs-a_p) acceleration of the connection point without its centripetal part
+        uhs_a_p_x = t_ddot_x + alpha_y*uhs_q_in_base_z - alpha_z*uhs_q_in_base_y
+        uhs_a_p_y = t_ddot_y + alpha_z*uhs_q_in_base_x - alpha_x*uhs_q_in_base_z
+        uhs_a_p_z = t_ddot_z + alpha_x*uhs_q_in_base_y - alpha_y*uhs_q_in_base_x
+        # (uhs-S_ddot) acceleration of the connection point
+        uhs_S_ddot_x = uhs_a_p_x + omega_y*uhs_S_dot_t_3 - omega_z*uhs_S_dot_t_2
+        uhs_S_ddot_y = uhs_a_p_y + omega_z*uhs_S_dot_t - omega_x*uhs_S_dot_t_3
+        uhs_S_ddot_z = uhs_a_p_z + omega_x*uhs_S_dot_t_2 - omega_y*uhs_S_dot_t
+        uhs_S_ddot_tip_x = (
+        axis_x_uhs_axes3_x*uhs_S_ddot_x + axis_x_uhs_axes3_y*uhs_S_ddot_y +
+            axis_x_uhs_axes3_z*uhs_S_ddot_z
         )
-        S_ddot_tip_z = S_ddot_x*axis_z_x + S_ddot_y*axis_z_y + S_ddot_z*axis_z_z
-        # (uhs-A8) acceleration of the connection point left to the joint accelerations
-        rel_x = S_ddot_tip_x - bias_x
-        rel_y = S_ddot_tip_y - bias_y
-        rel_z = S_ddot_tip_z - bias_z
-        # (uhs-A10) acceleration of joint 1
-        qdd_1 = inv_v_1_r0_y*(c_3_t*rel_y + rel_x*s_3)
-        qdd_2 = inv_root_2*(qdd_1*v_1_r0_x + rel_y*s_3 - c_3_t*rel_x)
-        # (uhs-N3) acceleration of the reference point of link 3, less gravity
-        acc_3_x = (
-        S_ddot_tip_x - axis_x_uhs_axes3_x*gravity_x - axis_x_uhs_axes3_y*gravity_y -
+        uhs_S_ddot_tip_y = (
+        axis_y_uhs_axes3_in_base_x*uhs_S_ddot_x + axis_y_uhs_axes3_in_base_y*uhs_S_ddot_y +
+            axis_y_uhs_axes3_in_base_z*uhs_S_ddot_z
+        )
+        uhs_S_ddot_tip_z = (
+        uhs_S_ddot_x*uhs_axis_z_x + uhs_S_ddot_y*uhs_axis_z_y + uhs_S_ddot_z*uhs_axis_z_z
+        )
+        # (uhs-rel) acceleration of the connection point left to the joint accelerations
+        uhs_rel_x = uhs_S_ddot_tip_x - uhs_bias_x
+        uhs_rel_y = uhs_S_ddot_tip_y - uhs_bias_y
+        uhs_rel_z = uhs_S_ddot_tip_z - uhs_bias_z
+        # (uhs-qdd_1) acceleration of joint 1
+        uhs_qdd_1 = inv_uhs_v_1_r0_y*(uhs_c_3_t*uhs_rel_y + uhs_rel_x*uhs_s_3)
+        uhs_qdd_2 = (
+        inv_uhs_root_2*(uhs_qdd_1*uhs_v_1_r0_x + uhs_rel_y*uhs_s_3 - uhs_c_3_t*uhs_rel_x)
+        )
+        # (uhs-acc_3) acceleration of the reference point of link 3, less gravity
+        uhs_acc_3_x = (
+        uhs_S_ddot_tip_x - axis_x_uhs_axes3_x*gravity_x - axis_x_uhs_axes3_y*gravity_y -
             axis_x_uhs_axes3_z*gravity_z
         )
-        acc_3_y = (
-        S_ddot_tip_y - axis_y_uhs_axes3_in_base_x*gravity_x - axis_y_uhs_axes3_in_base_y*gravity_y
-            - axis_y_uhs_axes3_in_base_z*gravity_z
+        uhs_acc_3_y = (
+        uhs_S_ddot_tip_y - axis_y_uhs_axes3_in_base_x*gravity_x -
+            axis_y_uhs_axes3_in_base_y*gravity_y - axis_y_uhs_axes3_in_base_z*gravity_z
         )
-        acc_3_z = S_ddot_tip_z - axis_z_x*gravity_x - axis_z_y*gravity_y - axis_z_z*gravity_z
-        # (uhs-A16) angular acceleration of link 1
-        alpha_1_t = qdd_1*s_2
-        alpha_1_t_2 = c_2*qdd_1
-        # (uhs-A18) angular acceleration of link 2
-        alpha_2_x = alpha_1_t - zeta_2_x
-        alpha_2_y = -alpha_1_t_2 - zeta_2_y
-        # (uhs-A20) acceleration tensor of link 2
-        B_2_xy = qdd_2 - W_2_xy
-        B_2_yx = -W_2_xy - qdd_2
-        B_2_zx = zeta_2_y - alpha_2_y
-        B_2_zy = alpha_2_x - zeta_2_x
-        # (uhs-N27) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_x = (
-        B_2_yx*J_2_xy + B_2_zx*J_2_xz + B_2_zy*Sigma_2_yy + Sigma_2_zz*alpha_1_t + g_r1_x*h_2_z +
-            g_r3_y*h_2_y - J_2_yz*(W_2_t_2 - W_2_t_3)
+        uhs_acc_3_z = (
+        uhs_S_ddot_tip_z - gravity_x*uhs_axis_z_x - gravity_y*uhs_axis_z_y -
+            gravity_z*uhs_axis_z_z
         )
-        mu_2_y = (
-        B_2_xy*J_2_yz + g_r1_x*h_2_x - B_2_zx*Sigma_2_xx - B_2_zy*J_2_xz - J_2_xy*(W_2_t -
-            W_2_t_3) - Sigma_2_zz*alpha_1_t_2 - g_r3_x*h_2_y
+        # (uhs-alpha_1) angular acceleration of link 1
+        uhs_alpha_1_t = uhs_qdd_1*uhs_s_2
+        uhs_alpha_1_t_2 = uhs_c_2*uhs_qdd_1
+        # (uhs-alpha_2) angular acceleration of link 2
+        uhs_alpha_2_x = uhs_alpha_1_t - uhs_zeta_2_x
+        uhs_alpha_2_y = -uhs_alpha_1_t_2 - uhs_zeta_2_y
+        # (uhs-alpha_3) angular acceleration of link 3
+        uhs_alpha_3_x = uhs_zeta_3_x + uhs_alpha_2_y*uhs_c_3_t - uhs_qdd_2*uhs_s_3
+        uhs_alpha_3_y = -uhs_zeta_3_y - uhs_alpha_2_y*uhs_s_3 - uhs_c_3_t*uhs_qdd_2
+        uhs_alpha_3_z = uhs_alpha_2_x + inv_uhs_joint3_pitch*uhs_rel_z
+        # (uhs-B_3) acceleration tensor of link 3
+        uhs_B_3_xy = uhs_W_3_xy - uhs_alpha_3_z
+        uhs_B_3_xz = uhs_W_3_xz + uhs_alpha_3_y
+        uhs_B_3_yx = uhs_W_3_xy + uhs_alpha_3_z
+        uhs_B_3_yz = uhs_W_3_yz - uhs_alpha_3_x
+        uhs_B_3_zx = uhs_W_3_xz - uhs_alpha_3_y
+        uhs_B_3_zy = uhs_W_3_yz + uhs_alpha_3_x
+        # (uhs-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        uhs_mu_3_x = (
+        uhs_B_3_yx*uhs_J_3_xy + uhs_B_3_zy*uhs_Sigma_3_yy + uhs_J_3_xz*(uhs_W_3_t_2 - uhs_W_3_t_3)
+            + uhs_acc_3_z*uhs_h_3_z - uhs_B_3_yz*uhs_Sigma_3_zz - uhs_B_3_zx*uhs_J_3_yz -
+            uhs_acc_3_y*uhs_h_3_x
         )
-        mu_2_z = (
-        B_2_yx*Sigma_2_xx + J_2_xy*alpha_1_t + J_2_yz*alpha_1_t_2 - B_2_xy*Sigma_2_yy -
-            J_2_xz*(W_2_t - W_2_t_2) - g_r3_x*h_2_z - g_r3_y*h_2_x
+        uhs_mu_3_y = (
+        uhs_B_3_xz*uhs_Sigma_3_zz + uhs_B_3_zy*uhs_J_3_yz + uhs_acc_3_x*uhs_h_3_x -
+            uhs_B_3_xy*uhs_J_3_xz - uhs_B_3_zx*uhs_Sigma_3_xx - uhs_J_3_xy*(uhs_W_3_t -
+            uhs_W_3_t_3) - uhs_acc_3_z*uhs_h_3_y
         )
-        # (uhs-A22) angular acceleration of link 3
-        alpha_3_x = zeta_3_x + alpha_2_y*c_3_t - qdd_2*s_3
-        alpha_3_y = -zeta_3_y - alpha_2_y*s_3 - c_3_t*qdd_2
-        alpha_3_z = alpha_2_x + inv_uhs_joint3_pitch*rel_z
-        # (uhs-A25) acceleration tensor of link 3
-        B_3_xy = W_3_xy - alpha_3_z
-        B_3_xz = W_3_xz + alpha_3_y
-        B_3_yx = W_3_xy + alpha_3_z
-        B_3_yz = W_3_yz - alpha_3_x
-        B_3_zx = W_3_xz - alpha_3_y
-        B_3_zy = W_3_yz + alpha_3_x
-        # (uhs-N20) inertia moment of the links that turn with link 3, about their reference points
-        mu_3_x = (
-        B_3_yx*J_3_xy + B_3_zy*Sigma_3_yy + J_3_xz*(W_3_t_2 - W_3_t_3) + acc_3_z*h_3_z -
-            B_3_yz*Sigma_3_zz - B_3_zx*J_3_yz - acc_3_y*h_3_x
+        uhs_mu_3_z = (
+        uhs_B_3_xz*uhs_J_3_xz + uhs_B_3_yx*uhs_Sigma_3_xx + uhs_J_3_yz*(uhs_W_3_t - uhs_W_3_t_2) +
+            uhs_acc_3_y*uhs_h_3_y - uhs_B_3_xy*uhs_Sigma_3_yy - uhs_B_3_yz*uhs_J_3_xy -
+            uhs_acc_3_x*uhs_h_3_z
         )
-        mu_3_y = (
-        B_3_xz*Sigma_3_zz + B_3_zy*J_3_yz + acc_3_x*h_3_x - B_3_xy*J_3_xz - B_3_zx*Sigma_3_xx -
-            J_3_xy*(W_3_t - W_3_t_3) - acc_3_z*h_3_y
+        # (uhs-B_2) acceleration tensor of link 2
+        uhs_B_2_xy = uhs_qdd_2 - uhs_W_2_xy
+        uhs_B_2_yx = -uhs_W_2_xy - uhs_qdd_2
+        uhs_B_2_zx = uhs_zeta_2_y - uhs_alpha_2_y
+        uhs_B_2_zy = uhs_alpha_2_x - uhs_zeta_2_x
+        # (uhs-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        uhs_mu_2_x = (
+        uhs_B_2_yx*uhs_J_2_xy + uhs_B_2_zx*uhs_J_2_xz + uhs_B_2_zy*uhs_Sigma_2_yy +
+            uhs_Sigma_2_zz*uhs_alpha_1_t + uhs_g_r1_x*uhs_h_2_z + uhs_g_r3_y*uhs_h_2_y -
+            uhs_J_2_yz*(uhs_W_2_t_2 - uhs_W_2_t_3)
         )
-        mu_3_z = (
-        B_3_xz*J_3_xz + B_3_yx*Sigma_3_xx + J_3_yz*(W_3_t - W_3_t_2) + acc_3_y*h_3_y -
-            B_3_xy*Sigma_3_yy - B_3_yz*J_3_xy - acc_3_x*h_3_z
+        uhs_mu_2_y = (
+        uhs_B_2_xy*uhs_J_2_yz + uhs_g_r1_x*uhs_h_2_x - uhs_B_2_zx*uhs_Sigma_2_xx -
+            uhs_B_2_zy*uhs_J_2_xz - uhs_J_2_xy*(uhs_W_2_t - uhs_W_2_t_3) -
+            uhs_Sigma_2_zz*uhs_alpha_1_t_2 - uhs_g_r3_x*uhs_h_2_y
         )
-        # (uhs-N29) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_x = mu_2_x + mu_3_z
-        N_2_y = mu_2_y + c_3_t*mu_3_x - mu_3_y*s_3
-        N_2_z = mu_2_z + c_3_t*mu_3_y + mu_3_x*s_3
-        # (uhs-N37) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_t = N_2_z*inv_root_2
-        G_t_2 = inv_v_1_r0_y*(G_t*v_1_r0_x + N_2_y*c_2 - N_2_x*s_2)
-        # (uhs-N40) leg force on the platform without actuation and without the mass at the connection point
-        c_x = G_t_2*s_3 + h_3_y*(W_3_t_2 + W_3_t_3) - B_3_xy*h_3_z - B_3_xz*h_3_x - G_t*c_3_t
-        c_y = G_t*s_3 + G_t_2*c_3_t + h_3_z*(W_3_t + W_3_t_3) - B_3_yx*h_3_y - B_3_yz*h_3_x
-        c_z = W_3_zz*h_3_x - B_3_zx*h_3_y - B_3_zy*h_3_z - inv_uhs_joint3_pitch*mu_3_z
-        c_in_base_x = axis_x_uhs_axes3_x*c_x + axis_y_uhs_axes3_in_base_x*c_y + axis_z_x*c_z
-        c_in_base_y = axis_x_uhs_axes3_y*c_x + axis_y_uhs_axes3_in_base_y*c_y + axis_z_y*c_z
-        c_in_base_z = axis_x_uhs_axes3_z*c_x + axis_y_uhs_axes3_in_base_z*c_y + axis_z_z*c_z
-        # (E5) moment that actuators and external wrench must give
-        R_a_t = c_in_base_z*q_in_base_y - c_in_base_y*q_in_base_z
-        R_a_t_2 = c_in_base_x*q_in_base_z - c_in_base_z*q_in_base_x
-        R_a_t_3 = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y
+        uhs_mu_2_z = (
+        uhs_B_2_yx*uhs_Sigma_2_xx + uhs_J_2_xy*uhs_alpha_1_t + uhs_J_2_yz*uhs_alpha_1_t_2 -
+            uhs_B_2_xy*uhs_Sigma_2_yy - uhs_J_2_xz*(uhs_W_2_t - uhs_W_2_t_2) -
+            uhs_g_r3_x*uhs_h_2_z - uhs_g_r3_y*uhs_h_2_x
+        )
+        # (uhs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        uhs_N_2_x = uhs_mu_2_x + uhs_mu_3_z
+        uhs_N_2_y = uhs_mu_2_y + uhs_c_3_t*uhs_mu_3_x - uhs_mu_3_y*uhs_s_3
+        uhs_N_2_z = uhs_mu_2_z + uhs_c_3_t*uhs_mu_3_y + uhs_mu_3_x*uhs_s_3
+        # (uhs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        uhs_G_t = inv_uhs_root_2*uhs_N_2_z
+        uhs_G_t_2 = (
+        inv_uhs_v_1_r0_y*(uhs_G_t*uhs_v_1_r0_x + uhs_N_2_y*uhs_c_2 - uhs_N_2_x*uhs_s_2)
+        )
+        # (uhs-c) leg force on the platform without actuation and without the mass at the connection point
+        uhs_c_x = (
+        uhs_G_t_2*uhs_s_3 + uhs_h_3_y*(uhs_W_3_t_2 + uhs_W_3_t_3) - uhs_B_3_xy*uhs_h_3_z -
+            uhs_B_3_xz*uhs_h_3_x - uhs_G_t*uhs_c_3_t
+        )
+        uhs_c_y = (
+        uhs_G_t*uhs_s_3 + uhs_G_t_2*uhs_c_3_t + uhs_h_3_z*(uhs_W_3_t + uhs_W_3_t_3) -
+            uhs_B_3_yx*uhs_h_3_y - uhs_B_3_yz*uhs_h_3_x
+        )
+        uhs_c_z = (
+        uhs_W_3_zz*uhs_h_3_x - inv_uhs_joint3_pitch*uhs_mu_3_z - uhs_B_3_zx*uhs_h_3_y -
+            uhs_B_3_zy*uhs_h_3_z
+        )
+        uhs_c_in_base_x = (
+        axis_x_uhs_axes3_x*uhs_c_x + axis_y_uhs_axes3_in_base_x*uhs_c_y + uhs_axis_z_x*uhs_c_z
+        )
+        uhs_c_in_base_y = (
+        axis_x_uhs_axes3_y*uhs_c_x + axis_y_uhs_axes3_in_base_y*uhs_c_y + uhs_axis_z_y*uhs_c_z
+        )
+        uhs_c_in_base_z = (
+        axis_x_uhs_axes3_z*uhs_c_x + axis_y_uhs_axes3_in_base_z*uhs_c_y + uhs_axis_z_z*uhs_c_z
+        )
+        # (R_a) moment that actuators and external wrench must give
+        uhs_R_a_t = uhs_c_in_base_z*uhs_q_in_base_y - uhs_c_in_base_y*uhs_q_in_base_z
+        uhs_R_a_t_2 = uhs_c_in_base_x*uhs_q_in_base_z - uhs_c_in_base_z*uhs_q_in_base_x
+        uhs_R_a_t_3 = uhs_c_in_base_y*uhs_q_in_base_x - uhs_c_in_base_x*uhs_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * size_t) & (abs(root_2) > _TOLERANCE * size) & (abs(v_1_r0_y)
-            > _TOLERANCE * size))
+        ok & m.every(leg, (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) &
+            (abs(uhs_rho2_2) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) >
+            _TOLERANCE * uhs_size) & (abs(uhs_v_1_r0_y) > _TOLERANCE * uhs_size))
         )
         sums = m.added(sums, leg, (
-        c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
+        uhs_c_in_base_x, uhs_c_in_base_y, uhs_c_in_base_z, uhs_R_a_t, uhs_R_a_t_2,
+            uhs_R_a_t_3,
         ))
-        out_H[_H_uhs[0][leg]] = w_3_t
-        out_H[_H_uhs[1][leg]] = w_3_t_2
-        out_H[_H_uhs[2][leg]] = w_3_t_3
-        out_H[_H_uhs[3][leg]] = H_a_3_x
-        out_H[_H_uhs[4][leg]] = H_a_3_y
-        out_H[_H_uhs[5][leg]] = H_a_3_z
+        out_H[_H_uhs[0][leg]] = uhs_w_3_t
+        out_H[_H_uhs[1][leg]] = uhs_w_3_t_2
+        out_H[_H_uhs[2][leg]] = uhs_w_3_t_3
+        out_H[_H_uhs[3][leg]] = uhs_H_a_3_x
+        out_H[_H_uhs[4][leg]] = uhs_H_a_3_y
+        out_H[_H_uhs[5][leg]] = uhs_H_a_3_z
     total_uhs_x, total_uhs_y, total_uhs_z, total_uhs_x_2, total_uhs_y_2, total_uhs_z_2 = sums
-    # (E4) force that actuators and external wrench must give
+    # (R_t) force that actuators and external wrench must give
     R_t_x = f_p_x - total_uhs_x
     R_t_y = f_p_y - total_uhs_y
     R_t_z = f_p_z - total_uhs_z
-    # (E5) moment that actuators and external wrench must give
+    # (R_a) moment that actuators and external wrench must give
     R_a_x = mu_p_in_base_x - total_uhs_x_2
     R_a_y = mu_p_in_base_y - total_uhs_y_2
     R_a_z = mu_p_in_base_z - total_uhs_z_2
@@ -3214,58 +3452,67 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, inv_uhs_joint3_pitch, size_t, uhs_base_frame_xx, uhs_base_frame_xy,
-            uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz,
-            uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x,
-            uhs_base_point_y, uhs_base_point_z, uhs_joint3_offset_x, uhs_platform_joint_offset_x,
-            uhs_platform_point_x, uhs_platform_point_y, uhs_platform_point_z,
+        inv_uhs_joint3_pitch, uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz,
+            uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx,
+            uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y,
+            uhs_base_point_z, uhs_branch_1, uhs_branch_2, uhs_joint3_offset_x,
+            uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
+            uhs_platform_point_z, uhs_size_t,
         ) = k
-        # (uhs-K1) from the base point to the connection point
-        S_x = (
+        # (uhs-S) from the base point to the connection point
+        uhs_S_x = (
         t_x + R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z -
             uhs_base_point_x
         )
-        S_y = (
+        uhs_S_y = (
         t_y + R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y + R_yz*uhs_platform_point_z -
             uhs_base_point_y
         )
-        S_z = (
+        uhs_S_z = (
         t_z + R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z -
             uhs_base_point_z
         )
-        # (uhs-K2) component along the reference direction
-        px_1 = S_x*uhs_base_frame_xx + S_y*uhs_base_frame_yx + S_z*uhs_base_frame_zx
-        # (uhs-K3) component across the reference direction
-        py_1 = S_x*uhs_base_frame_xy + S_y*uhs_base_frame_yy + S_z*uhs_base_frame_zy
-        # (uhs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (uhs-K7) root, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (uhs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*uhs_base_frame_xz + S_y*uhs_base_frame_yz + S_z*uhs_base_frame_zz
-        # (uhs-K16) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (uhs-K18) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (uhs-K23) from the origin of joint 3 to the connection point
-        x_3_x = root_2 - uhs_joint3_offset_x
-        # (uhs-K24) displacement of joint 3
-        q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - x_3_x)
-        # (uhs-K19) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        # (uhs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        # (uhs-K10) displacement of joint 1
-        q_1 = atan2(inv_rho2_1*py_1*root_1, inv_rho2_1*px_1*root_1)
-        # (uhs-K21) displacement of joint 2
-        q_2 = atan2(-inv_rho2_2*root_2*xi_1_t, inv_rho2_2*root_1*root_2)
-        ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * size_t))
+        # (uhs-px_1) component along the reference direction
+        uhs_px_1 = (
+        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
         )
-        out_q[_q_uhs[0][leg]] = q_1
-        out_q[_q_uhs[1][leg]] = q_2
-        out_q[_q_uhs[2][leg]] = -q_3
+        # (uhs-py_1) component across the reference direction
+        uhs_py_1 = (
+        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
+        )
+        # (uhs-rho2_1) squared amplitude
+        uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1
+        # (uhs-root_1) root, with the sign of the branch
+        uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
+        # (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        uhs_xi_1_t = (
+        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
+        )
+        # (uhs-rho2_2) squared amplitude
+        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t
+        # (uhs-root_2) root, with the sign of the branch
+        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
+        # (uhs-x_3) from the origin of joint 3 to the connection point
+        uhs_x_3_x = uhs_root_2 - uhs_joint3_offset_x
+        # (uhs-q_3) displacement of joint 3
+        uhs_q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_x)
+        # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_uhs_rho2_2 = 1.0/uhs_rho2_2
+        # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
+        # (uhs-q_1) displacement of joint 1
+        uhs_q_1 = atan2(inv_uhs_rho2_1*uhs_py_1*uhs_root_1, inv_uhs_rho2_1*uhs_px_1*uhs_root_1)
+        # (uhs-q_2) displacement of joint 2
+        uhs_q_2 = (
+        atan2(-inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_t, inv_uhs_rho2_2*uhs_root_1*uhs_root_2)
+        )
+        ok = (
+        ok & m.every(leg, (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) &
+            (abs(uhs_rho2_2) > _TOLERANCE * _TOLERANCE * uhs_size_t))
+        )
+        out_q[_q_uhs[0][leg]] = uhs_q_1
+        out_q[_q_uhs[1][leg]] = uhs_q_2
+        out_q[_q_uhs[2][leg]] = -uhs_q_3
     return ok, (out_q,)
 
 
@@ -3327,93 +3574,105 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, inv_uhs_joint3_pitch, size, size_t, uhs_base_frame_xx,
-            uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy,
-            uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz,
-            uhs_base_point_x, uhs_base_point_y, uhs_base_point_z, uhs_joint3_offset_x,
+        inv_uhs_joint3_pitch, uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz,
+            uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx,
+            uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y,
+            uhs_base_point_z, uhs_branch_1, uhs_branch_2, uhs_joint3_offset_x,
             uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
-            uhs_platform_point_z,
+            uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
-        # (uhs-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (uhs-S) from the base point to the connection point
+        uhs_q_in_base_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
-        q_in_base_y = (
+        uhs_q_in_base_y = (
         R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y + R_yz*uhs_platform_point_z
         )
-        q_in_base_z = (
+        uhs_q_in_base_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - uhs_base_point_x
-        S_y = q_in_base_y + t_y - uhs_base_point_y
-        S_z = q_in_base_z + t_z - uhs_base_point_z
-        # (uhs-K2) component along the reference direction
-        px_1 = S_x*uhs_base_frame_xx + S_y*uhs_base_frame_yx + S_z*uhs_base_frame_zx
-        # (uhs-K3) component across the reference direction
-        py_1 = S_x*uhs_base_frame_xy + S_y*uhs_base_frame_yy + S_z*uhs_base_frame_zy
-        # (uhs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (uhs-K7) root, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (uhs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*uhs_base_frame_xz + S_y*uhs_base_frame_yz + S_z*uhs_base_frame_zz
-        # (uhs-K16) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (uhs-K18) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (uhs-K23) from the origin of joint 3 to the connection point
-        x_3_x = root_2 - uhs_joint3_offset_x
-        # (uhs-K24) displacement of joint 3
-        q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - x_3_x)
-        # (uhs-K19) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = inv_rho2_2*root_1*root_2
-        # (uhs-K20) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*root_2*xi_1_t
-        # (uhs-K25) cosine of the angle of joint 3 from its reference direction
-        c_3_t = sin(q_3)
-        # (uhs-K26) sine of the angle of joint 3 from its reference direction
-        s_3 = cos(q_3)
-        # (uhs-V4) velocity of the connection point per rate of joint 1
-        v_1_t = c_2*root_2*s_3
-        v_1_t_2 = c_2*c_3_t*root_2
-        # (uhs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*py_1*root_1
-        # (uhs-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*px_1*root_1
-        # (uhs-V4) velocity of the connection point per rate of joint 1
-        v_1_r0_y = c_3_t*v_1_t_2 + s_3*v_1_t
-        # (uhs-V1) velocity of the connection point
-        S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_r0_x = (
-        S_dot_x*uhs_base_frame_xx + S_dot_y*uhs_base_frame_yx + S_dot_z*uhs_base_frame_zx
+        uhs_S_x = t_x + uhs_q_in_base_x - uhs_base_point_x
+        uhs_S_y = t_y + uhs_q_in_base_y - uhs_base_point_y
+        uhs_S_z = t_z + uhs_q_in_base_z - uhs_base_point_z
+        # (uhs-px_1) component along the reference direction
+        uhs_px_1 = (
+        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
         )
-        S_dot_r0_y = (
-        S_dot_x*uhs_base_frame_xy + S_dot_y*uhs_base_frame_yy + S_dot_z*uhs_base_frame_zy
+        # (uhs-py_1) component across the reference direction
+        uhs_py_1 = (
+        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
         )
-        S_dot_r0_z = (
-        S_dot_x*uhs_base_frame_xz + S_dot_y*uhs_base_frame_yz + S_dot_z*uhs_base_frame_zz
+        # (uhs-rho2_1) squared amplitude
+        uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1
+        # (uhs-root_1) root, with the sign of the branch
+        uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
+        # (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        uhs_xi_1_t = (
+        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
         )
-        S_dot_r1_y = -S_dot_r0_x*s_1 - S_dot_r0_y*c_1
-        # (uhs-V10) rate of joint 1
-        qd_3 = inv_uhs_joint3_pitch*(S_dot_r0_z*s_2 - S_dot_r1_y*c_2)
-        qd_1 = (S_dot_r0_y*s_1 - S_dot_r0_x*c_1)/v_1_r0_y
-        qd_2 = (-S_dot_r0_z*c_2 - S_dot_r1_y*s_2 - qd_1*(c_3_t*v_1_t - s_3*v_1_t_2))/root_2
+        # (uhs-rho2_2) squared amplitude
+        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t
+        # (uhs-root_2) root, with the sign of the branch
+        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
+        # (uhs-x_3) from the origin of joint 3 to the connection point
+        uhs_x_3_x = uhs_root_2 - uhs_joint3_offset_x
+        # (uhs-q_3) displacement of joint 3
+        uhs_q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_x)
+        # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_uhs_rho2_2 = 1.0/uhs_rho2_2
+        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
+        # (uhs-s_2) sine of the angle of joint 2 from its reference direction
+        uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_t
+        # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
+        uhs_c_3_t = sin(uhs_q_3)
+        # (uhs-s_3) sine of the angle of joint 3 from its reference direction
+        uhs_s_3 = cos(uhs_q_3)
+        # (uhs-v_1) velocity of the connection point per rate of joint 1
+        uhs_v_1_t = uhs_c_2*uhs_root_2*uhs_s_3
+        uhs_v_1_t_2 = uhs_c_2*uhs_c_3_t*uhs_root_2
+        # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
+        uhs_c_1 = inv_uhs_rho2_1*uhs_py_1*uhs_root_1
+        # (uhs-s_1) sine of the angle of joint 1 from its reference direction
+        uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1
+        # (uhs-v_1) velocity of the connection point per rate of joint 1
+        uhs_v_1_r0_y = uhs_c_3_t*uhs_v_1_t_2 + uhs_s_3*uhs_v_1_t
+        # (uhs-S_dot) velocity of the connection point
+        uhs_S_dot_x = t_dot_x + omega_y*uhs_q_in_base_z - omega_z*uhs_q_in_base_y
+        uhs_S_dot_y = t_dot_y + omega_z*uhs_q_in_base_x - omega_x*uhs_q_in_base_z
+        uhs_S_dot_z = t_dot_z + omega_x*uhs_q_in_base_y - omega_y*uhs_q_in_base_x
+        uhs_S_dot_r0_x = (
+        uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx +
+            uhs_S_dot_z*uhs_base_frame_zx
+        )
+        uhs_S_dot_r0_y = (
+        uhs_S_dot_x*uhs_base_frame_xy + uhs_S_dot_y*uhs_base_frame_yy +
+            uhs_S_dot_z*uhs_base_frame_zy
+        )
+        uhs_S_dot_r0_z = (
+        uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz +
+            uhs_S_dot_z*uhs_base_frame_zz
+        )
+        uhs_S_dot_r1_y = -uhs_S_dot_r0_x*uhs_s_1 - uhs_S_dot_r0_y*uhs_c_1
+        # (uhs-qd_3) rate of joint 3
+        uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_S_dot_r0_z*uhs_s_2 - uhs_S_dot_r1_y*uhs_c_2)
+        uhs_qd_1 = (uhs_S_dot_r0_y*uhs_s_1 - uhs_S_dot_r0_x*uhs_c_1)/uhs_v_1_r0_y
+        uhs_qd_2 = (
+        (-uhs_S_dot_r0_z*uhs_c_2 - uhs_S_dot_r1_y*uhs_s_2 - uhs_qd_1*(uhs_c_3_t*uhs_v_1_t -
+            uhs_s_3*uhs_v_1_t_2))/uhs_root_2
+        )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * size_t) & (abs(root_2) > _TOLERANCE * size) & (abs(v_1_r0_y)
-            > _TOLERANCE * size))
+        ok & m.every(leg, (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) &
+            (abs(uhs_rho2_2) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) >
+            _TOLERANCE * uhs_size) & (abs(uhs_v_1_r0_y) > _TOLERANCE * uhs_size))
         )
-        out_qd[_qd_uhs[0][leg]] = qd_1
-        out_qd[_qd_uhs[1][leg]] = qd_2
-        out_qd[_qd_uhs[2][leg]] = qd_3
+        out_qd[_qd_uhs[0][leg]] = uhs_qd_1
+        out_qd[_qd_uhs[1][leg]] = uhs_qd_2
+        out_qd[_qd_uhs[2][leg]] = uhs_qd_3
     return ok, (out_qd,)
 
 
-# joint_accelerations: 876 mul, 546 add, 24 div, 12 sqrt, 12 trig
+# joint_accelerations: 870 mul, 546 add, 24 div, 12 sqrt, 12 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -3484,174 +3743,193 @@ def _run_joint_accelerations(m, X, V, A):
     out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, inv_uhs_joint3_pitch, size, size_t, uhs_base_frame_xx,
-            uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy,
-            uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz,
-            uhs_base_point_x, uhs_base_point_y, uhs_base_point_z, uhs_joint3_offset_x,
-            uhs_joint3_pitch, uhs_platform_joint_offset_x, uhs_platform_point_x,
-            uhs_platform_point_y, uhs_platform_point_z,
+        inv_uhs_joint3_pitch, uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz,
+            uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx,
+            uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y,
+            uhs_base_point_z, uhs_bias_t, uhs_branch_1, uhs_branch_2, uhs_joint3_offset_x,
+            uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
+            uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
-        # (uhs-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (uhs-S) from the base point to the connection point
+        uhs_q_in_base_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
-        q_in_base_y = (
+        uhs_q_in_base_y = (
         R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y + R_yz*uhs_platform_point_z
         )
-        q_in_base_z = (
+        uhs_q_in_base_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - uhs_base_point_x
-        S_y = q_in_base_y + t_y - uhs_base_point_y
-        S_z = q_in_base_z + t_z - uhs_base_point_z
-        # (uhs-K2) component along the reference direction
-        px_1 = S_x*uhs_base_frame_xx + S_y*uhs_base_frame_yx + S_z*uhs_base_frame_zx
-        # (uhs-K3) component across the reference direction
-        py_1 = S_x*uhs_base_frame_xy + S_y*uhs_base_frame_yy + S_z*uhs_base_frame_zy
-        # (uhs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (uhs-K7) root, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (uhs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*uhs_base_frame_xz + S_y*uhs_base_frame_yz + S_z*uhs_base_frame_zz
-        # (uhs-K16) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (uhs-K18) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (uhs-K23) from the origin of joint 3 to the connection point
-        x_3_x = root_2 - uhs_joint3_offset_x
-        # (uhs-K24) displacement of joint 3
-        q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - x_3_x)
-        # (uhs-K19) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = inv_rho2_2*root_1*root_2
-        # (uhs-K20) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*root_2*xi_1_t
-        # (uhs-K25) cosine of the angle of joint 3 from its reference direction
-        c_3_t = sin(q_3)
-        # (uhs-K26) sine of the angle of joint 3 from its reference direction
-        s_3 = cos(q_3)
-        # (uhs-V4) velocity of the connection point per rate of joint 1
-        v_1_t = c_2*s_3
-        v_1_t_2 = root_2*v_1_t
-        v_1_t_3 = c_2*c_3_t*root_2
-        # (uhs-V7) reciprocal vector 1
-        inv_root_2 = 1.0/root_2
-        axis_z_x = S_x*inv_root_2
-        axis_z_y = S_y*inv_root_2
-        axis_z_z = S_z*inv_root_2
-        w_1_t = s_2*s_3
-        # (uhs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*py_1*root_1
-        # (uhs-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*px_1*root_1
-        # (uhs-V7) reciprocal vector 1
-        axis_y_uhs_axes3_r4_x = -c_1*c_3_t - s_1*w_1_t
-        axis_y_uhs_axes3_r4_y = c_3_t*s_1 - c_1*w_1_t
+        uhs_S_x = t_x + uhs_q_in_base_x - uhs_base_point_x
+        uhs_S_y = t_y + uhs_q_in_base_y - uhs_base_point_y
+        uhs_S_z = t_z + uhs_q_in_base_z - uhs_base_point_z
+        # (uhs-px_1) component along the reference direction
+        uhs_px_1 = (
+        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
+        )
+        # (uhs-py_1) component across the reference direction
+        uhs_py_1 = (
+        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
+        )
+        # (uhs-rho2_1) squared amplitude
+        uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1
+        # (uhs-root_1) root, with the sign of the branch
+        uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
+        # (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        uhs_xi_1_t = (
+        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
+        )
+        # (uhs-rho2_2) squared amplitude
+        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t
+        # (uhs-root_2) root, with the sign of the branch
+        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
+        # (uhs-x_3) from the origin of joint 3 to the connection point
+        uhs_x_3_x = uhs_root_2 - uhs_joint3_offset_x
+        # (uhs-q_3) displacement of joint 3
+        uhs_q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_x)
+        # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_uhs_rho2_2 = 1.0/uhs_rho2_2
+        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
+        # (uhs-s_2) sine of the angle of joint 2 from its reference direction
+        uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_t
+        # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
+        uhs_c_3_t = sin(uhs_q_3)
+        # (uhs-s_3) sine of the angle of joint 3 from its reference direction
+        uhs_s_3 = cos(uhs_q_3)
+        # (uhs-v_1) velocity of the connection point per rate of joint 1
+        uhs_v_1_t = uhs_c_2*uhs_s_3
+        uhs_v_1_t_2 = uhs_root_2*uhs_v_1_t
+        uhs_v_1_t_3 = uhs_c_2*uhs_c_3_t*uhs_root_2
+        # (uhs-w_1) reciprocal vector 1
+        inv_uhs_root_2 = 1.0/uhs_root_2
+        uhs_axis_z_x = inv_uhs_root_2*uhs_S_x
+        uhs_axis_z_y = inv_uhs_root_2*uhs_S_y
+        uhs_axis_z_z = inv_uhs_root_2*uhs_S_z
+        uhs_w_1_t = uhs_s_2*uhs_s_3
+        # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
+        uhs_c_1 = inv_uhs_rho2_1*uhs_py_1*uhs_root_1
+        # (uhs-s_1) sine of the angle of joint 1 from its reference direction
+        uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1
+        # (uhs-w_1) reciprocal vector 1
+        axis_y_uhs_axes3_r4_x = -uhs_c_1*uhs_c_3_t - uhs_s_1*uhs_w_1_t
+        axis_y_uhs_axes3_r4_y = uhs_c_3_t*uhs_s_1 - uhs_c_1*uhs_w_1_t
         axis_y_uhs_axes3_in_base_x = (
         axis_y_uhs_axes3_r4_x*uhs_base_frame_xx + axis_y_uhs_axes3_r4_y*uhs_base_frame_xy +
-            uhs_base_frame_xz*v_1_t
+            uhs_base_frame_xz*uhs_v_1_t
         )
         axis_y_uhs_axes3_in_base_y = (
         axis_y_uhs_axes3_r4_x*uhs_base_frame_yx + axis_y_uhs_axes3_r4_y*uhs_base_frame_yy +
-            uhs_base_frame_yz*v_1_t
+            uhs_base_frame_yz*uhs_v_1_t
         )
         axis_y_uhs_axes3_in_base_z = (
         axis_y_uhs_axes3_r4_x*uhs_base_frame_zx + axis_y_uhs_axes3_r4_y*uhs_base_frame_zy +
-            uhs_base_frame_zz*v_1_t
+            uhs_base_frame_zz*uhs_v_1_t
         )
-        # (uhs-V4) velocity of the connection point per rate of joint 1
-        v_1_r0_x = c_3_t*v_1_t_2 - s_3*v_1_t_3
-        v_1_r0_y = c_3_t*v_1_t_3 + s_3*v_1_t_2
-        # (uhs-V7) reciprocal vector 1
-        inv_v_1_r0_y = 1.0/v_1_r0_y
-        # (uhs-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_r0_x = (
-        S_dot_x*uhs_base_frame_xx + S_dot_y*uhs_base_frame_yx + S_dot_z*uhs_base_frame_zx
+        # (uhs-v_1) velocity of the connection point per rate of joint 1
+        uhs_v_1_r0_x = uhs_c_3_t*uhs_v_1_t_2 - uhs_s_3*uhs_v_1_t_3
+        uhs_v_1_r0_y = uhs_c_3_t*uhs_v_1_t_3 + uhs_s_3*uhs_v_1_t_2
+        # (uhs-w_1) reciprocal vector 1
+        inv_uhs_v_1_r0_y = 1.0/uhs_v_1_r0_y
+        # (uhs-S_dot) velocity of the connection point
+        uhs_S_dot_t = omega_y*uhs_q_in_base_z - omega_z*uhs_q_in_base_y
+        uhs_S_dot_t_2 = omega_z*uhs_q_in_base_x - omega_x*uhs_q_in_base_z
+        uhs_S_dot_t_3 = omega_x*uhs_q_in_base_y - omega_y*uhs_q_in_base_x
+        uhs_S_dot_x = t_dot_x + uhs_S_dot_t
+        uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2
+        uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3
+        uhs_S_dot_r0_x = (
+        uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx +
+            uhs_S_dot_z*uhs_base_frame_zx
         )
-        S_dot_r0_y = (
-        S_dot_x*uhs_base_frame_xy + S_dot_y*uhs_base_frame_yy + S_dot_z*uhs_base_frame_zy
+        uhs_S_dot_r0_y = (
+        uhs_S_dot_x*uhs_base_frame_xy + uhs_S_dot_y*uhs_base_frame_yy +
+            uhs_S_dot_z*uhs_base_frame_zy
         )
-        S_dot_r0_z = (
-        S_dot_x*uhs_base_frame_xz + S_dot_y*uhs_base_frame_yz + S_dot_z*uhs_base_frame_zz
+        uhs_S_dot_r0_z = (
+        uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz +
+            uhs_S_dot_z*uhs_base_frame_zz
         )
-        S_dot_r1_y = -S_dot_r0_x*s_1 - S_dot_r0_y*c_1
-        # (uhs-V10) rate of joint 1
-        qd_3 = inv_uhs_joint3_pitch*(S_dot_r0_z*s_2 - S_dot_r1_y*c_2)
-        qd_1 = inv_v_1_r0_y*(S_dot_r0_y*s_1 - S_dot_r0_x*c_1)
-        qd_2 = inv_root_2*(-S_dot_r0_z*c_2 - S_dot_r1_y*s_2 - qd_1*v_1_r0_x)
-        # (uhs-V13) angular velocity of link 1
-        omega_1_t = qd_1*s_2
-        omega_1_t_2 = c_2*qd_1
-        # (uhs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_y = omega_1_t*qd_2
-        # (uhs-V14) angular velocity of link 2
-        omega_2_r1_x = qd_2*s_3 - c_3_t*omega_1_t_2
-        omega_2_r1_y = c_3_t*qd_2 + omega_1_t_2*s_3
-        # (uhs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_t = c_3_t*zeta_2_y
-        zeta_2_t_2 = s_3*zeta_2_y
-        # (uhs-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_x = omega_2_r1_y*qd_3 - zeta_2_t
-        beta_3_y = zeta_2_t_2 - omega_2_r1_x*qd_3
-        # (uhs-V16) angular velocity of link 3
-        omega_3_z = omega_1_t + qd_3
-        # (uhs-V17) centripetal tensor of link 3
-        W_3_zz = omega_2_r1_x*omega_2_r1_x + omega_2_r1_y*omega_2_r1_y
-        # (uhs-A7) acceleration of the connection point at zero joint accelerations
-        bias_t = 2.0*qd_3*uhs_joint3_pitch
-        bias_x = (
-        bias_t*omega_2_r1_y + uhs_joint3_offset_x*(zeta_2_t_2 + omega_1_t*omega_2_r1_x) +
-            x_3_x*(beta_3_y + omega_2_r1_x*omega_3_z)
+        uhs_S_dot_r1_y = -uhs_S_dot_r0_x*uhs_s_1 - uhs_S_dot_r0_y*uhs_c_1
+        # (uhs-qd_3) rate of joint 3
+        uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_S_dot_r0_z*uhs_s_2 - uhs_S_dot_r1_y*uhs_c_2)
+        uhs_qd_1 = inv_uhs_v_1_r0_y*(uhs_S_dot_r0_y*uhs_s_1 - uhs_S_dot_r0_x*uhs_c_1)
+        uhs_qd_2 = (
+        inv_uhs_root_2*(-uhs_S_dot_r0_z*uhs_c_2 - uhs_S_dot_r1_y*uhs_s_2 - uhs_qd_1*uhs_v_1_r0_x)
         )
-        bias_y = (
-        uhs_joint3_offset_x*(zeta_2_t + omega_1_t*omega_2_r1_y) + x_3_x*(omega_2_r1_y*omega_3_z -
-            beta_3_x) - bias_t*omega_2_r1_x
+        # (uhs-omega_1) angular velocity of link 1
+        uhs_omega_1_t = uhs_qd_1*uhs_s_2
+        uhs_omega_1_t_2 = uhs_c_2*uhs_qd_1
+        # (uhs-omega_2) angular velocity of link 2
+        uhs_omega_2_r1_x = uhs_qd_2*uhs_s_3 - uhs_c_3_t*uhs_omega_1_t_2
+        uhs_omega_2_r1_y = uhs_c_3_t*uhs_qd_2 + uhs_omega_1_t_2*uhs_s_3
+        # (uhs-omega_3) angular velocity of link 3
+        uhs_omega_3_z = uhs_omega_1_t + uhs_qd_3
+        # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        uhs_zeta_2_y = uhs_omega_1_t*uhs_qd_2
+        uhs_zeta_2_t = uhs_c_3_t*uhs_zeta_2_y
+        uhs_zeta_2_t_2 = uhs_s_3*uhs_zeta_2_y
+        # (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        uhs_beta_3_x = uhs_omega_2_r1_y*uhs_qd_3 - uhs_zeta_2_t
+        uhs_beta_3_y = uhs_zeta_2_t_2 - uhs_omega_2_r1_x*uhs_qd_3
+        # (uhs-W_3) centripetal tensor of link 3
+        uhs_W_3_zz = uhs_omega_2_r1_x*uhs_omega_2_r1_x + uhs_omega_2_r1_y*uhs_omega_2_r1_y
+        # (uhs-bias) acceleration of the connection point at zero joint accelerations
+        uhs_bias_t_2 = uhs_bias_t*uhs_qd_3
+        uhs_bias_x = (
+        uhs_bias_t_2*uhs_omega_2_r1_y + uhs_joint3_offset_x*(uhs_zeta_2_t_2 +
+            uhs_omega_1_t*uhs_omega_2_r1_x) + uhs_x_3_x*(uhs_beta_3_y +
+            uhs_omega_2_r1_x*uhs_omega_3_z)
         )
-        bias_z = -W_3_zz*uhs_joint3_offset_x - W_3_zz*x_3_x
-        # (uhs-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (uhs-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        # (uhs-A8) acceleration of the connection point left to the joint accelerations
-        rel_x = (
-        S_ddot_x*(axis_y_uhs_axes3_in_base_y*axis_z_z - axis_y_uhs_axes3_in_base_z*axis_z_y) +
-            S_ddot_y*(axis_y_uhs_axes3_in_base_z*axis_z_x - axis_y_uhs_axes3_in_base_x*axis_z_z) +
-            S_ddot_z*(axis_y_uhs_axes3_in_base_x*axis_z_y - axis_y_uhs_axes3_in_base_y*axis_z_x) -
-            bias_x
+        uhs_bias_y = (
+        uhs_joint3_offset_x*(uhs_zeta_2_t + uhs_omega_1_t*uhs_omega_2_r1_y) +
+            uhs_x_3_x*(uhs_omega_2_r1_y*uhs_omega_3_z - uhs_beta_3_x) -
+            uhs_bias_t_2*uhs_omega_2_r1_x
         )
-        rel_y = (
-        S_ddot_x*axis_y_uhs_axes3_in_base_x + S_ddot_y*axis_y_uhs_axes3_in_base_y +
-            S_ddot_z*axis_y_uhs_axes3_in_base_z - bias_y
+        uhs_bias_z = -uhs_W_3_zz*uhs_joint3_offset_x - uhs_W_3_zz*uhs_x_3_x
+        # (uhs-a_p) acceleration of the connection point without its centripetal part
+        uhs_a_p_x = t_ddot_x + alpha_y*uhs_q_in_base_z - alpha_z*uhs_q_in_base_y
+        uhs_a_p_y = t_ddot_y + alpha_z*uhs_q_in_base_x - alpha_x*uhs_q_in_base_z
+        uhs_a_p_z = t_ddot_z + alpha_x*uhs_q_in_base_y - alpha_y*uhs_q_in_base_x
+        # (uhs-S_ddot) acceleration of the connection point
+        uhs_S_ddot_x = uhs_a_p_x + omega_y*uhs_S_dot_t_3 - omega_z*uhs_S_dot_t_2
+        uhs_S_ddot_y = uhs_a_p_y + omega_z*uhs_S_dot_t - omega_x*uhs_S_dot_t_3
+        uhs_S_ddot_z = uhs_a_p_z + omega_x*uhs_S_dot_t_2 - omega_y*uhs_S_dot_t
+        # (uhs-rel) acceleration of the connection point left to the joint accelerations
+        uhs_rel_x = (
+        uhs_S_ddot_x*(axis_y_uhs_axes3_in_base_y*uhs_axis_z_z -
+            axis_y_uhs_axes3_in_base_z*uhs_axis_z_y) +
+            uhs_S_ddot_y*(axis_y_uhs_axes3_in_base_z*uhs_axis_z_x -
+            axis_y_uhs_axes3_in_base_x*uhs_axis_z_z) +
+            uhs_S_ddot_z*(axis_y_uhs_axes3_in_base_x*uhs_axis_z_y -
+            axis_y_uhs_axes3_in_base_y*uhs_axis_z_x) - uhs_bias_x
         )
-        rel_z = S_ddot_x*axis_z_x + S_ddot_y*axis_z_y + S_ddot_z*axis_z_z - bias_z
-        # (uhs-A10) acceleration of joint 1
-        qdd_3 = inv_uhs_joint3_pitch*rel_z
-        qdd_1 = inv_v_1_r0_y*(c_3_t*rel_y + rel_x*s_3)
-        qdd_2 = inv_root_2*(qdd_1*v_1_r0_x + rel_y*s_3 - c_3_t*rel_x)
+        uhs_rel_y = (
+        axis_y_uhs_axes3_in_base_x*uhs_S_ddot_x + axis_y_uhs_axes3_in_base_y*uhs_S_ddot_y +
+            axis_y_uhs_axes3_in_base_z*uhs_S_ddot_z - uhs_bias_y
+        )
+        uhs_rel_z = (
+        uhs_S_ddot_x*uhs_axis_z_x + uhs_S_ddot_y*uhs_axis_z_y + uhs_S_ddot_z*uhs_axis_z_z -
+            uhs_bias_z
+        )
+        # (uhs-qdd_1) acceleration of joint 1
+        uhs_qdd_3 = inv_uhs_joint3_pitch*uhs_rel_z
+        uhs_qdd_1 = inv_uhs_v_1_r0_y*(uhs_c_3_t*uhs_rel_y + uhs_rel_x*uhs_s_3)
+        uhs_qdd_2 = (
+        inv_uhs_root_2*(uhs_qdd_1*uhs_v_1_r0_x + uhs_rel_y*uhs_s_3 - uhs_c_3_t*uhs_rel_x)
+        )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * size_t) & (abs(root_2) > _TOLERANCE * size) & (abs(v_1_r0_y)
-            > _TOLERANCE * size))
+        ok & m.every(leg, (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) &
+            (abs(uhs_rho2_2) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) >
+            _TOLERANCE * uhs_size) & (abs(uhs_v_1_r0_y) > _TOLERANCE * uhs_size))
         )
-        out_qdd[_qdd_uhs[0][leg]] = qdd_1
-        out_qdd[_qdd_uhs[1][leg]] = -qdd_2
-        out_qdd[_qdd_uhs[2][leg]] = qdd_3
+        out_qdd[_qdd_uhs[0][leg]] = uhs_qdd_1
+        out_qdd[_qdd_uhs[1][leg]] = -uhs_qdd_2
+        out_qdd[_qdd_uhs[2][leg]] = uhs_qdd_3
     return ok, (out_qdd,)
 
 
-# legs: 1536 mul, 1152 add, 24 div, 12 sqrt, 12 trig
+# legs: 1530 mul, 1152 add, 24 div, 12 sqrt, 12 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -3724,289 +4002,329 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz,
-            Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x,
-            h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, inv_uhs_joint3_pitch, size, size_t,
-            uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx,
-            uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy,
-            uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y, uhs_base_point_z,
-            uhs_joint3_offset_x, uhs_joint3_pitch, uhs_link3_mass, uhs_platform_joint_offset_x,
-            uhs_platform_point_x, uhs_platform_point_y, uhs_platform_point_z,
+        inv_uhs_joint3_pitch, uhs_J_2_xy, uhs_J_2_xz, uhs_J_2_yz, uhs_J_3_xy, uhs_J_3_xz,
+            uhs_J_3_yz, uhs_Sigma_2_xx, uhs_Sigma_2_yy, uhs_Sigma_2_zz, uhs_Sigma_3_xx,
+            uhs_Sigma_3_yy, uhs_Sigma_3_zz, uhs_base_frame_xx, uhs_base_frame_xy,
+            uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz,
+            uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x,
+            uhs_base_point_y, uhs_base_point_z, uhs_bias_t, uhs_branch_1, uhs_branch_2,
+            uhs_g_r0_x, uhs_g_r0_y, uhs_g_r0_z, uhs_h_2_x, uhs_h_2_y, uhs_h_2_z, uhs_h_3_x,
+            uhs_h_3_y, uhs_h_3_z, uhs_joint3_offset_x, uhs_link3_mass,
+            uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
+            uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
-        # (uhs-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (uhs-S) from the base point to the connection point
+        uhs_q_in_base_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
-        q_in_base_y = (
+        uhs_q_in_base_y = (
         R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y + R_yz*uhs_platform_point_z
         )
-        q_in_base_z = (
+        uhs_q_in_base_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - uhs_base_point_x
-        S_y = q_in_base_y + t_y - uhs_base_point_y
-        S_z = q_in_base_z + t_z - uhs_base_point_z
-        # (uhs-K2) component along the reference direction
-        px_1 = S_x*uhs_base_frame_xx + S_y*uhs_base_frame_yx + S_z*uhs_base_frame_zx
-        # (uhs-K3) component across the reference direction
-        py_1 = S_x*uhs_base_frame_xy + S_y*uhs_base_frame_yy + S_z*uhs_base_frame_zy
-        # (uhs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (uhs-K7) root, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (uhs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*uhs_base_frame_xz + S_y*uhs_base_frame_yz + S_z*uhs_base_frame_zz
-        # (uhs-K16) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (uhs-K18) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (uhs-K23) from the origin of joint 3 to the connection point
-        x_3_x = root_2 - uhs_joint3_offset_x
-        # (uhs-K24) displacement of joint 3
-        q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - x_3_x)
-        # (uhs-K19) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = inv_rho2_2*root_1*root_2
-        # (uhs-K20) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*root_2*xi_1_t
-        # (uhs-K25) cosine of the angle of joint 3 from its reference direction
-        c_3_t = sin(q_3)
-        # (uhs-K26) sine of the angle of joint 3 from its reference direction
-        s_3 = cos(q_3)
-        # (uhs-V4) velocity of the connection point per rate of joint 1
-        v_1_t = c_2*s_3
-        v_1_t_2 = root_2*v_1_t
-        v_1_t_3 = c_2*c_3_t*root_2
-        # (uhs-V7) reciprocal vector 1
-        inv_root_2 = 1.0/root_2
-        axis_z_x = S_x*inv_root_2
-        axis_z_y = S_y*inv_root_2
-        axis_z_z = S_z*inv_root_2
-        w_1_t = s_2*s_3
-        # (uhs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*py_1*root_1
-        # (uhs-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*px_1*root_1
-        # (uhs-V7) reciprocal vector 1
-        axis_y_uhs_axes3_r4_x = -c_1*c_3_t - s_1*w_1_t
-        axis_y_uhs_axes3_r4_y = c_3_t*s_1 - c_1*w_1_t
+        uhs_S_x = t_x + uhs_q_in_base_x - uhs_base_point_x
+        uhs_S_y = t_y + uhs_q_in_base_y - uhs_base_point_y
+        uhs_S_z = t_z + uhs_q_in_base_z - uhs_base_point_z
+        # (uhs-px_1) component along the reference direction
+        uhs_px_1 = (
+        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
+        )
+        # (uhs-py_1) component across the reference direction
+        uhs_py_1 = (
+        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
+        )
+        # (uhs-rho2_1) squared amplitude
+        uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1
+        # (uhs-root_1) root, with the sign of the branch
+        uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
+        # (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        uhs_xi_1_t = (
+        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
+        )
+        # (uhs-rho2_2) squared amplitude
+        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t
+        # (uhs-root_2) root, with the sign of the branch
+        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
+        # (uhs-x_3) from the origin of joint 3 to the connection point
+        uhs_x_3_x = uhs_root_2 - uhs_joint3_offset_x
+        # (uhs-q_3) displacement of joint 3
+        uhs_q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_x)
+        # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_uhs_rho2_2 = 1.0/uhs_rho2_2
+        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
+        # (uhs-s_2) sine of the angle of joint 2 from its reference direction
+        uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_t
+        # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
+        uhs_c_3_t = sin(uhs_q_3)
+        # (uhs-s_3) sine of the angle of joint 3 from its reference direction
+        uhs_s_3 = cos(uhs_q_3)
+        # (uhs-v_1) velocity of the connection point per rate of joint 1
+        uhs_v_1_t = uhs_c_2*uhs_s_3
+        uhs_v_1_t_2 = uhs_root_2*uhs_v_1_t
+        uhs_v_1_t_3 = uhs_c_2*uhs_c_3_t*uhs_root_2
+        # (uhs-w_1) reciprocal vector 1
+        inv_uhs_root_2 = 1.0/uhs_root_2
+        uhs_axis_z_x = inv_uhs_root_2*uhs_S_x
+        uhs_axis_z_y = inv_uhs_root_2*uhs_S_y
+        uhs_axis_z_z = inv_uhs_root_2*uhs_S_z
+        uhs_w_1_t = uhs_s_2*uhs_s_3
+        # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
+        uhs_c_1 = inv_uhs_rho2_1*uhs_py_1*uhs_root_1
+        # (uhs-s_1) sine of the angle of joint 1 from its reference direction
+        uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1
+        # (uhs-w_1) reciprocal vector 1
+        axis_y_uhs_axes3_r4_x = -uhs_c_1*uhs_c_3_t - uhs_s_1*uhs_w_1_t
+        axis_y_uhs_axes3_r4_y = uhs_c_3_t*uhs_s_1 - uhs_c_1*uhs_w_1_t
         axis_y_uhs_axes3_in_base_x = (
         axis_y_uhs_axes3_r4_x*uhs_base_frame_xx + axis_y_uhs_axes3_r4_y*uhs_base_frame_xy +
-            uhs_base_frame_xz*v_1_t
+            uhs_base_frame_xz*uhs_v_1_t
         )
         axis_y_uhs_axes3_in_base_y = (
         axis_y_uhs_axes3_r4_x*uhs_base_frame_yx + axis_y_uhs_axes3_r4_y*uhs_base_frame_yy +
-            uhs_base_frame_yz*v_1_t
+            uhs_base_frame_yz*uhs_v_1_t
         )
         axis_y_uhs_axes3_in_base_z = (
         axis_y_uhs_axes3_r4_x*uhs_base_frame_zx + axis_y_uhs_axes3_r4_y*uhs_base_frame_zy +
-            uhs_base_frame_zz*v_1_t
+            uhs_base_frame_zz*uhs_v_1_t
         )
         axis_x_uhs_axes3_x = (
-        axis_y_uhs_axes3_in_base_y*axis_z_z - axis_y_uhs_axes3_in_base_z*axis_z_y
+        axis_y_uhs_axes3_in_base_y*uhs_axis_z_z - axis_y_uhs_axes3_in_base_z*uhs_axis_z_y
         )
         axis_x_uhs_axes3_y = (
-        axis_y_uhs_axes3_in_base_z*axis_z_x - axis_y_uhs_axes3_in_base_x*axis_z_z
+        axis_y_uhs_axes3_in_base_z*uhs_axis_z_x - axis_y_uhs_axes3_in_base_x*uhs_axis_z_z
         )
         axis_x_uhs_axes3_z = (
-        axis_y_uhs_axes3_in_base_x*axis_z_y - axis_y_uhs_axes3_in_base_y*axis_z_x
+        axis_y_uhs_axes3_in_base_x*uhs_axis_z_y - axis_y_uhs_axes3_in_base_y*uhs_axis_z_x
         )
-        # (uhs-V4) velocity of the connection point per rate of joint 1
-        v_1_r0_x = c_3_t*v_1_t_2 - s_3*v_1_t_3
-        v_1_r0_y = c_3_t*v_1_t_3 + s_3*v_1_t_2
-        # (uhs-V7) reciprocal vector 1
-        inv_v_1_r0_y = 1.0/v_1_r0_y
-        # (uhs-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-        g_r3_x = g_r0_z*s_2 - c_2*g_r1_y
-        g_r3_y = -c_2*g_r0_z - g_r1_y*s_2
-        # (uhs-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_r0_x = (
-        S_dot_x*uhs_base_frame_xx + S_dot_y*uhs_base_frame_yx + S_dot_z*uhs_base_frame_zx
+        # (uhs-v_1) velocity of the connection point per rate of joint 1
+        uhs_v_1_r0_x = uhs_c_3_t*uhs_v_1_t_2 - uhs_s_3*uhs_v_1_t_3
+        uhs_v_1_r0_y = uhs_c_3_t*uhs_v_1_t_3 + uhs_s_3*uhs_v_1_t_2
+        # (uhs-w_1) reciprocal vector 1
+        inv_uhs_v_1_r0_y = 1.0/uhs_v_1_r0_y
+        # (uhs-S_dot) velocity of the connection point
+        uhs_S_dot_t = omega_y*uhs_q_in_base_z - omega_z*uhs_q_in_base_y
+        uhs_S_dot_t_2 = omega_z*uhs_q_in_base_x - omega_x*uhs_q_in_base_z
+        uhs_S_dot_t_3 = omega_x*uhs_q_in_base_y - omega_y*uhs_q_in_base_x
+        uhs_S_dot_x = t_dot_x + uhs_S_dot_t
+        uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2
+        uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3
+        uhs_S_dot_r0_x = (
+        uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx +
+            uhs_S_dot_z*uhs_base_frame_zx
         )
-        S_dot_r0_y = (
-        S_dot_x*uhs_base_frame_xy + S_dot_y*uhs_base_frame_yy + S_dot_z*uhs_base_frame_zy
+        uhs_S_dot_r0_y = (
+        uhs_S_dot_x*uhs_base_frame_xy + uhs_S_dot_y*uhs_base_frame_yy +
+            uhs_S_dot_z*uhs_base_frame_zy
         )
-        S_dot_r0_z = (
-        S_dot_x*uhs_base_frame_xz + S_dot_y*uhs_base_frame_yz + S_dot_z*uhs_base_frame_zz
+        uhs_S_dot_r0_z = (
+        uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz +
+            uhs_S_dot_z*uhs_base_frame_zz
         )
-        S_dot_r1_y = -S_dot_r0_x*s_1 - S_dot_r0_y*c_1
-        # (uhs-V10) rate of joint 1
-        qd_3 = inv_uhs_joint3_pitch*(S_dot_r0_z*s_2 - S_dot_r1_y*c_2)
-        qd_1 = inv_v_1_r0_y*(S_dot_r0_y*s_1 - S_dot_r0_x*c_1)
-        qd_2 = inv_root_2*(-S_dot_r0_z*c_2 - S_dot_r1_y*s_2 - qd_1*v_1_r0_x)
-        # (uhs-V13) angular velocity of link 1
-        omega_1_t = qd_1*s_2
-        omega_1_t_2 = c_2*qd_1
-        # (uhs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_x = omega_1_t_2*qd_2
-        zeta_2_y = omega_1_t*qd_2
-        # (uhs-V14) angular velocity of link 2
-        omega_2_r1_x = qd_2*s_3 - c_3_t*omega_1_t_2
-        omega_2_r1_y = c_3_t*qd_2 + omega_1_t_2*s_3
-        # (uhs-A5) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_x = omega_2_r1_y*qd_3
-        zeta_3_y = omega_2_r1_x*qd_3
-        # (uhs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_t = c_3_t*zeta_2_y
-        zeta_2_t_2 = s_3*zeta_2_y
-        # (uhs-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_x = zeta_3_x - zeta_2_t
-        beta_3_y = zeta_2_t_2 - zeta_3_y
-        # (uhs-V16) angular velocity of link 3
-        omega_3_z = omega_1_t + qd_3
-        # (uhs-V15) centripetal tensor of link 2
-        W_2_t = omega_1_t*omega_1_t
-        W_2_t_2 = omega_1_t_2*omega_1_t_2
-        W_2_t_3 = qd_2*qd_2
-        W_2_xy = omega_1_t*omega_1_t_2
-        # (uhs-V17) centripetal tensor of link 3
-        W_3_t = omega_2_r1_x*omega_2_r1_x
-        W_3_t_2 = omega_2_r1_y*omega_2_r1_y
-        W_3_t_3 = omega_3_z*omega_3_z
-        W_3_xy = omega_2_r1_x*omega_2_r1_y
-        W_3_xz = omega_2_r1_x*omega_3_z
-        W_3_yz = omega_2_r1_y*omega_3_z
-        W_3_zz = W_3_t + W_3_t_2
-        # (uhs-A7) acceleration of the connection point at zero joint accelerations
-        bias_t = 2.0*qd_3*uhs_joint3_pitch
-        bias_x = (
-        bias_t*omega_2_r1_y + uhs_joint3_offset_x*(zeta_2_t_2 + omega_1_t*omega_2_r1_x) +
-            x_3_x*(W_3_xz + beta_3_y)
+        uhs_S_dot_r1_y = -uhs_S_dot_r0_x*uhs_s_1 - uhs_S_dot_r0_y*uhs_c_1
+        # (uhs-qd_3) rate of joint 3
+        uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_S_dot_r0_z*uhs_s_2 - uhs_S_dot_r1_y*uhs_c_2)
+        uhs_qd_1 = inv_uhs_v_1_r0_y*(uhs_S_dot_r0_y*uhs_s_1 - uhs_S_dot_r0_x*uhs_c_1)
+        uhs_qd_2 = (
+        inv_uhs_root_2*(-uhs_S_dot_r0_z*uhs_c_2 - uhs_S_dot_r1_y*uhs_s_2 - uhs_qd_1*uhs_v_1_r0_x)
         )
-        bias_y = (
-        uhs_joint3_offset_x*(zeta_2_t + omega_1_t*omega_2_r1_y) + x_3_x*(W_3_yz - beta_3_x) -
-            bias_t*omega_2_r1_x
+        # (uhs-omega_1) angular velocity of link 1
+        uhs_omega_1_t = uhs_qd_1*uhs_s_2
+        uhs_omega_1_t_2 = uhs_c_2*uhs_qd_1
+        # (uhs-omega_2) angular velocity of link 2
+        uhs_omega_2_r1_x = uhs_qd_2*uhs_s_3 - uhs_c_3_t*uhs_omega_1_t_2
+        uhs_omega_2_r1_y = uhs_c_3_t*uhs_qd_2 + uhs_omega_1_t_2*uhs_s_3
+        # (uhs-omega_3) angular velocity of link 3
+        uhs_omega_3_z = uhs_omega_1_t + uhs_qd_3
+        # (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        uhs_zeta_3_x = uhs_omega_2_r1_y*uhs_qd_3
+        uhs_zeta_3_y = uhs_omega_2_r1_x*uhs_qd_3
+        # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        uhs_zeta_2_x = uhs_omega_1_t_2*uhs_qd_2
+        uhs_zeta_2_y = uhs_omega_1_t*uhs_qd_2
+        uhs_zeta_2_t = uhs_c_3_t*uhs_zeta_2_y
+        uhs_zeta_2_t_2 = uhs_s_3*uhs_zeta_2_y
+        # (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        uhs_beta_3_x = uhs_zeta_3_x - uhs_zeta_2_t
+        uhs_beta_3_y = uhs_zeta_2_t_2 - uhs_zeta_3_y
+        # (uhs-W_2) centripetal tensor of link 2
+        uhs_W_2_t = uhs_omega_1_t*uhs_omega_1_t
+        uhs_W_2_t_2 = uhs_omega_1_t_2*uhs_omega_1_t_2
+        uhs_W_2_t_3 = uhs_qd_2*uhs_qd_2
+        uhs_W_2_xy = uhs_omega_1_t*uhs_omega_1_t_2
+        # (uhs-W_3) centripetal tensor of link 3
+        uhs_W_3_t = uhs_omega_2_r1_x*uhs_omega_2_r1_x
+        uhs_W_3_t_2 = uhs_omega_2_r1_y*uhs_omega_2_r1_y
+        uhs_W_3_t_3 = uhs_omega_3_z*uhs_omega_3_z
+        uhs_W_3_xy = uhs_omega_2_r1_x*uhs_omega_2_r1_y
+        uhs_W_3_xz = uhs_omega_2_r1_x*uhs_omega_3_z
+        uhs_W_3_yz = uhs_omega_2_r1_y*uhs_omega_3_z
+        uhs_W_3_zz = uhs_W_3_t + uhs_W_3_t_2
+        # (uhs-bias) acceleration of the connection point at zero joint accelerations
+        uhs_bias_t_2 = uhs_bias_t*uhs_qd_3
+        uhs_bias_x = (
+        uhs_bias_t_2*uhs_omega_2_r1_y + uhs_joint3_offset_x*(uhs_zeta_2_t_2 +
+            uhs_omega_1_t*uhs_omega_2_r1_x) + uhs_x_3_x*(uhs_W_3_xz + uhs_beta_3_y)
         )
-        bias_z = -W_3_zz*uhs_joint3_offset_x - W_3_zz*x_3_x
-        # (uhs-V9) reciprocal vector 3
-        w_3_t = axis_z_x*inv_uhs_joint3_pitch
-        w_3_t_2 = axis_z_y*inv_uhs_joint3_pitch
-        w_3_t_3 = axis_z_z*inv_uhs_joint3_pitch
-        # (uhs-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (uhs-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        S_ddot_tip_x = (
-        S_ddot_x*axis_x_uhs_axes3_x + S_ddot_y*axis_x_uhs_axes3_y + S_ddot_z*axis_x_uhs_axes3_z
+        uhs_bias_y = (
+        uhs_joint3_offset_x*(uhs_zeta_2_t + uhs_omega_1_t*uhs_omega_2_r1_y) +
+            uhs_x_3_x*(uhs_W_3_yz - uhs_beta_3_x) - uhs_bias_t_2*uhs_omega_2_r1_x
         )
-        S_ddot_tip_y = (
-        S_ddot_x*axis_y_uhs_axes3_in_base_x + S_ddot_y*axis_y_uhs_axes3_in_base_y +
-            S_ddot_z*axis_y_uhs_axes3_in_base_z
+        uhs_bias_z = -uhs_W_3_zz*uhs_joint3_offset_x - uhs_W_3_zz*uhs_x_3_x
+        # (uhs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        uhs_g_r1_x = uhs_g_r0_y*uhs_s_1 - uhs_c_1*uhs_g_r0_x
+        uhs_g_r1_y = -uhs_c_1*uhs_g_r0_y - uhs_g_r0_x*uhs_s_1
+        uhs_g_r3_x = uhs_g_r0_z*uhs_s_2 - uhs_c_2*uhs_g_r1_y
+        uhs_g_r3_y = -uhs_c_2*uhs_g_r0_z - uhs_g_r1_y*uhs_s_2
+        # (uhs-w_3) reciprocal vector 3
+        uhs_w_3_t = inv_uhs_joint3_pitch*uhs_axis_z_x
+        uhs_w_3_t_2 = inv_uhs_joint3_pitch*uhs_axis_z_y
+        uhs_w_3_t_3 = inv_uhs_joint3_pitch*uhs_axis_z_z
+        # (uhs-a_p) acceleration of the connection point without its centripetal part
+        uhs_a_p_x = t_ddot_x + alpha_y*uhs_q_in_base_z - alpha_z*uhs_q_in_base_y
+        uhs_a_p_y = t_ddot_y + alpha_z*uhs_q_in_base_x - alpha_x*uhs_q_in_base_z
+        uhs_a_p_z = t_ddot_z + alpha_x*uhs_q_in_base_y - alpha_y*uhs_q_in_base_x
+        # (uhs-S_ddot) acceleration of the connection point
+        uhs_S_ddot_x = uhs_a_p_x + omega_y*uhs_S_dot_t_3 - omega_z*uhs_S_dot_t_2
+        uhs_S_ddot_y = uhs_a_p_y + omega_z*uhs_S_dot_t - omega_x*uhs_S_dot_t_3
+        uhs_S_ddot_z = uhs_a_p_z + omega_x*uhs_S_dot_t_2 - omega_y*uhs_S_dot_t
+        uhs_S_ddot_tip_x = (
+        axis_x_uhs_axes3_x*uhs_S_ddot_x + axis_x_uhs_axes3_y*uhs_S_ddot_y +
+            axis_x_uhs_axes3_z*uhs_S_ddot_z
         )
-        S_ddot_tip_z = S_ddot_x*axis_z_x + S_ddot_y*axis_z_y + S_ddot_z*axis_z_z
-        # (uhs-A8) acceleration of the connection point left to the joint accelerations
-        rel_x = S_ddot_tip_x - bias_x
-        rel_y = S_ddot_tip_y - bias_y
-        rel_z = S_ddot_tip_z - bias_z
-        # (uhs-A10) acceleration of joint 1
-        qdd_1 = inv_v_1_r0_y*(c_3_t*rel_y + rel_x*s_3)
-        qdd_2 = inv_root_2*(qdd_1*v_1_r0_x + rel_y*s_3 - c_3_t*rel_x)
-        # (uhs-N3) acceleration of the reference point of link 3, less gravity
-        acc_3_x = (
-        S_ddot_tip_x - axis_x_uhs_axes3_x*gravity_x - axis_x_uhs_axes3_y*gravity_y -
+        uhs_S_ddot_tip_y = (
+        axis_y_uhs_axes3_in_base_x*uhs_S_ddot_x + axis_y_uhs_axes3_in_base_y*uhs_S_ddot_y +
+            axis_y_uhs_axes3_in_base_z*uhs_S_ddot_z
+        )
+        uhs_S_ddot_tip_z = (
+        uhs_S_ddot_x*uhs_axis_z_x + uhs_S_ddot_y*uhs_axis_z_y + uhs_S_ddot_z*uhs_axis_z_z
+        )
+        # (uhs-rel) acceleration of the connection point left to the joint accelerations
+        uhs_rel_x = uhs_S_ddot_tip_x - uhs_bias_x
+        uhs_rel_y = uhs_S_ddot_tip_y - uhs_bias_y
+        uhs_rel_z = uhs_S_ddot_tip_z - uhs_bias_z
+        # (uhs-qdd_1) acceleration of joint 1
+        uhs_qdd_1 = inv_uhs_v_1_r0_y*(uhs_c_3_t*uhs_rel_y + uhs_rel_x*uhs_s_3)
+        uhs_qdd_2 = (
+        inv_uhs_root_2*(uhs_qdd_1*uhs_v_1_r0_x + uhs_rel_y*uhs_s_3 - uhs_c_3_t*uhs_rel_x)
+        )
+        # (uhs-acc_3) acceleration of the reference point of link 3, less gravity
+        uhs_acc_3_x = (
+        uhs_S_ddot_tip_x - axis_x_uhs_axes3_x*gravity_x - axis_x_uhs_axes3_y*gravity_y -
             axis_x_uhs_axes3_z*gravity_z
         )
-        acc_3_y = (
-        S_ddot_tip_y - axis_y_uhs_axes3_in_base_x*gravity_x - axis_y_uhs_axes3_in_base_y*gravity_y
-            - axis_y_uhs_axes3_in_base_z*gravity_z
+        uhs_acc_3_y = (
+        uhs_S_ddot_tip_y - axis_y_uhs_axes3_in_base_x*gravity_x -
+            axis_y_uhs_axes3_in_base_y*gravity_y - axis_y_uhs_axes3_in_base_z*gravity_z
         )
-        acc_3_z = S_ddot_tip_z - axis_z_x*gravity_x - axis_z_y*gravity_y - axis_z_z*gravity_z
-        # (uhs-A16) angular acceleration of link 1
-        alpha_1_t = qdd_1*s_2
-        alpha_1_t_2 = c_2*qdd_1
-        # (uhs-A18) angular acceleration of link 2
-        alpha_2_x = alpha_1_t - zeta_2_x
-        alpha_2_y = -alpha_1_t_2 - zeta_2_y
-        # (uhs-A20) acceleration tensor of link 2
-        B_2_xy = qdd_2 - W_2_xy
-        B_2_yx = -W_2_xy - qdd_2
-        B_2_zx = zeta_2_y - alpha_2_y
-        B_2_zy = alpha_2_x - zeta_2_x
-        # (uhs-N27) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_x = (
-        B_2_yx*J_2_xy + B_2_zx*J_2_xz + B_2_zy*Sigma_2_yy + Sigma_2_zz*alpha_1_t + g_r1_x*h_2_z +
-            g_r3_y*h_2_y - J_2_yz*(W_2_t_2 - W_2_t_3)
+        uhs_acc_3_z = (
+        uhs_S_ddot_tip_z - gravity_x*uhs_axis_z_x - gravity_y*uhs_axis_z_y -
+            gravity_z*uhs_axis_z_z
         )
-        mu_2_y = (
-        B_2_xy*J_2_yz + g_r1_x*h_2_x - B_2_zx*Sigma_2_xx - B_2_zy*J_2_xz - J_2_xy*(W_2_t -
-            W_2_t_3) - Sigma_2_zz*alpha_1_t_2 - g_r3_x*h_2_y
+        # (uhs-alpha_1) angular acceleration of link 1
+        uhs_alpha_1_t = uhs_qdd_1*uhs_s_2
+        uhs_alpha_1_t_2 = uhs_c_2*uhs_qdd_1
+        # (uhs-alpha_2) angular acceleration of link 2
+        uhs_alpha_2_x = uhs_alpha_1_t - uhs_zeta_2_x
+        uhs_alpha_2_y = -uhs_alpha_1_t_2 - uhs_zeta_2_y
+        # (uhs-alpha_3) angular acceleration of link 3
+        uhs_alpha_3_x = uhs_zeta_3_x + uhs_alpha_2_y*uhs_c_3_t - uhs_qdd_2*uhs_s_3
+        uhs_alpha_3_y = -uhs_zeta_3_y - uhs_alpha_2_y*uhs_s_3 - uhs_c_3_t*uhs_qdd_2
+        uhs_alpha_3_z = uhs_alpha_2_x + inv_uhs_joint3_pitch*uhs_rel_z
+        # (uhs-B_3) acceleration tensor of link 3
+        uhs_B_3_xy = uhs_W_3_xy - uhs_alpha_3_z
+        uhs_B_3_xz = uhs_W_3_xz + uhs_alpha_3_y
+        uhs_B_3_yx = uhs_W_3_xy + uhs_alpha_3_z
+        uhs_B_3_yz = uhs_W_3_yz - uhs_alpha_3_x
+        uhs_B_3_zx = uhs_W_3_xz - uhs_alpha_3_y
+        uhs_B_3_zy = uhs_W_3_yz + uhs_alpha_3_x
+        # (uhs-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        uhs_mu_3_x = (
+        uhs_B_3_yx*uhs_J_3_xy + uhs_B_3_zy*uhs_Sigma_3_yy + uhs_J_3_xz*(uhs_W_3_t_2 - uhs_W_3_t_3)
+            + uhs_acc_3_z*uhs_h_3_z - uhs_B_3_yz*uhs_Sigma_3_zz - uhs_B_3_zx*uhs_J_3_yz -
+            uhs_acc_3_y*uhs_h_3_x
         )
-        mu_2_z = (
-        B_2_yx*Sigma_2_xx + J_2_xy*alpha_1_t + J_2_yz*alpha_1_t_2 - B_2_xy*Sigma_2_yy -
-            J_2_xz*(W_2_t - W_2_t_2) - g_r3_x*h_2_z - g_r3_y*h_2_x
+        uhs_mu_3_y = (
+        uhs_B_3_xz*uhs_Sigma_3_zz + uhs_B_3_zy*uhs_J_3_yz + uhs_acc_3_x*uhs_h_3_x -
+            uhs_B_3_xy*uhs_J_3_xz - uhs_B_3_zx*uhs_Sigma_3_xx - uhs_J_3_xy*(uhs_W_3_t -
+            uhs_W_3_t_3) - uhs_acc_3_z*uhs_h_3_y
         )
-        # (uhs-A22) angular acceleration of link 3
-        alpha_3_x = zeta_3_x + alpha_2_y*c_3_t - qdd_2*s_3
-        alpha_3_y = -zeta_3_y - alpha_2_y*s_3 - c_3_t*qdd_2
-        alpha_3_z = alpha_2_x + inv_uhs_joint3_pitch*rel_z
-        # (uhs-A25) acceleration tensor of link 3
-        B_3_xy = W_3_xy - alpha_3_z
-        B_3_xz = W_3_xz + alpha_3_y
-        B_3_yx = W_3_xy + alpha_3_z
-        B_3_yz = W_3_yz - alpha_3_x
-        B_3_zx = W_3_xz - alpha_3_y
-        B_3_zy = W_3_yz + alpha_3_x
-        # (uhs-N20) inertia moment of the links that turn with link 3, about their reference points
-        mu_3_x = (
-        B_3_yx*J_3_xy + B_3_zy*Sigma_3_yy + J_3_xz*(W_3_t_2 - W_3_t_3) + acc_3_z*h_3_z -
-            B_3_yz*Sigma_3_zz - B_3_zx*J_3_yz - acc_3_y*h_3_x
+        uhs_mu_3_z = (
+        uhs_B_3_xz*uhs_J_3_xz + uhs_B_3_yx*uhs_Sigma_3_xx + uhs_J_3_yz*(uhs_W_3_t - uhs_W_3_t_2) +
+            uhs_acc_3_y*uhs_h_3_y - uhs_B_3_xy*uhs_Sigma_3_yy - uhs_B_3_yz*uhs_J_3_xy -
+            uhs_acc_3_x*uhs_h_3_z
         )
-        mu_3_y = (
-        B_3_xz*Sigma_3_zz + B_3_zy*J_3_yz + acc_3_x*h_3_x - B_3_xy*J_3_xz - B_3_zx*Sigma_3_xx -
-            J_3_xy*(W_3_t - W_3_t_3) - acc_3_z*h_3_y
+        # (uhs-B_2) acceleration tensor of link 2
+        uhs_B_2_xy = uhs_qdd_2 - uhs_W_2_xy
+        uhs_B_2_yx = -uhs_W_2_xy - uhs_qdd_2
+        uhs_B_2_zx = uhs_zeta_2_y - uhs_alpha_2_y
+        uhs_B_2_zy = uhs_alpha_2_x - uhs_zeta_2_x
+        # (uhs-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        uhs_mu_2_x = (
+        uhs_B_2_yx*uhs_J_2_xy + uhs_B_2_zx*uhs_J_2_xz + uhs_B_2_zy*uhs_Sigma_2_yy +
+            uhs_Sigma_2_zz*uhs_alpha_1_t + uhs_g_r1_x*uhs_h_2_z + uhs_g_r3_y*uhs_h_2_y -
+            uhs_J_2_yz*(uhs_W_2_t_2 - uhs_W_2_t_3)
         )
-        mu_3_z = (
-        B_3_xz*J_3_xz + B_3_yx*Sigma_3_xx + J_3_yz*(W_3_t - W_3_t_2) + acc_3_y*h_3_y -
-            B_3_xy*Sigma_3_yy - B_3_yz*J_3_xy - acc_3_x*h_3_z
+        uhs_mu_2_y = (
+        uhs_B_2_xy*uhs_J_2_yz + uhs_g_r1_x*uhs_h_2_x - uhs_B_2_zx*uhs_Sigma_2_xx -
+            uhs_B_2_zy*uhs_J_2_xz - uhs_J_2_xy*(uhs_W_2_t - uhs_W_2_t_3) -
+            uhs_Sigma_2_zz*uhs_alpha_1_t_2 - uhs_g_r3_x*uhs_h_2_y
         )
-        # (uhs-N29) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_x = mu_2_x + mu_3_z
-        N_2_y = mu_2_y + c_3_t*mu_3_x - mu_3_y*s_3
-        N_2_z = mu_2_z + c_3_t*mu_3_y + mu_3_x*s_3
-        # (uhs-N37) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_t = N_2_z*inv_root_2
-        G_t_2 = inv_v_1_r0_y*(G_t*v_1_r0_x + N_2_y*c_2 - N_2_x*s_2)
-        # (uhs-N40) leg force on the platform without actuation and without the mass at the connection point
-        c_x = G_t_2*s_3 + h_3_y*(W_3_t_2 + W_3_t_3) - B_3_xy*h_3_z - B_3_xz*h_3_x - G_t*c_3_t
-        c_y = G_t*s_3 + G_t_2*c_3_t + h_3_z*(W_3_t + W_3_t_3) - B_3_yx*h_3_y - B_3_yz*h_3_x
-        c_z = W_3_zz*h_3_x - B_3_zx*h_3_y - B_3_zy*h_3_z - inv_uhs_joint3_pitch*mu_3_z
-        # (uhs-N45) leg force on the platform without actuation, the last link's mass included
-        c_true_x = c_x - acc_3_x*uhs_link3_mass
-        c_true_y = c_y - acc_3_y*uhs_link3_mass
-        c_true_z = c_z - acc_3_z*uhs_link3_mass
-        c_true_in_base_x = (
-        axis_x_uhs_axes3_x*c_true_x + axis_y_uhs_axes3_in_base_x*c_true_y + axis_z_x*c_true_z
+        uhs_mu_2_z = (
+        uhs_B_2_yx*uhs_Sigma_2_xx + uhs_J_2_xy*uhs_alpha_1_t + uhs_J_2_yz*uhs_alpha_1_t_2 -
+            uhs_B_2_xy*uhs_Sigma_2_yy - uhs_J_2_xz*(uhs_W_2_t - uhs_W_2_t_2) -
+            uhs_g_r3_x*uhs_h_2_z - uhs_g_r3_y*uhs_h_2_x
         )
-        c_true_in_base_y = (
-        axis_x_uhs_axes3_y*c_true_x + axis_y_uhs_axes3_in_base_y*c_true_y + axis_z_y*c_true_z
+        # (uhs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        uhs_N_2_x = uhs_mu_2_x + uhs_mu_3_z
+        uhs_N_2_y = uhs_mu_2_y + uhs_c_3_t*uhs_mu_3_x - uhs_mu_3_y*uhs_s_3
+        uhs_N_2_z = uhs_mu_2_z + uhs_c_3_t*uhs_mu_3_y + uhs_mu_3_x*uhs_s_3
+        # (uhs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        uhs_G_t = inv_uhs_root_2*uhs_N_2_z
+        uhs_G_t_2 = (
+        inv_uhs_v_1_r0_y*(uhs_G_t*uhs_v_1_r0_x + uhs_N_2_y*uhs_c_2 - uhs_N_2_x*uhs_s_2)
         )
-        c_true_in_base_z = (
-        axis_x_uhs_axes3_z*c_true_x + axis_y_uhs_axes3_in_base_z*c_true_y + axis_z_z*c_true_z
+        # (uhs-c) leg force on the platform without actuation and without the mass at the connection point
+        uhs_c_x = (
+        uhs_G_t_2*uhs_s_3 + uhs_h_3_y*(uhs_W_3_t_2 + uhs_W_3_t_3) - uhs_B_3_xy*uhs_h_3_z -
+            uhs_B_3_xz*uhs_h_3_x - uhs_G_t*uhs_c_3_t
+        )
+        uhs_c_y = (
+        uhs_G_t*uhs_s_3 + uhs_G_t_2*uhs_c_3_t + uhs_h_3_z*(uhs_W_3_t + uhs_W_3_t_3) -
+            uhs_B_3_yx*uhs_h_3_y - uhs_B_3_yz*uhs_h_3_x
+        )
+        uhs_c_z = (
+        uhs_W_3_zz*uhs_h_3_x - inv_uhs_joint3_pitch*uhs_mu_3_z - uhs_B_3_zx*uhs_h_3_y -
+            uhs_B_3_zy*uhs_h_3_z
+        )
+        # (uhs-c_true) leg force on the platform without actuation, the last link's mass included
+        uhs_c_true_x = uhs_c_x - uhs_acc_3_x*uhs_link3_mass
+        uhs_c_true_y = uhs_c_y - uhs_acc_3_y*uhs_link3_mass
+        uhs_c_true_z = uhs_c_z - uhs_acc_3_z*uhs_link3_mass
+        uhs_c_true_in_base_x = (
+        axis_x_uhs_axes3_x*uhs_c_true_x + axis_y_uhs_axes3_in_base_x*uhs_c_true_y +
+            uhs_axis_z_x*uhs_c_true_z
+        )
+        uhs_c_true_in_base_y = (
+        axis_x_uhs_axes3_y*uhs_c_true_x + axis_y_uhs_axes3_in_base_y*uhs_c_true_y +
+            uhs_axis_z_y*uhs_c_true_z
+        )
+        uhs_c_true_in_base_z = (
+        axis_x_uhs_axes3_z*uhs_c_true_x + axis_y_uhs_axes3_in_base_z*uhs_c_true_y +
+            uhs_axis_z_z*uhs_c_true_z
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * size_t) & (abs(root_2) > _TOLERANCE * size) & (abs(v_1_r0_y)
-            > _TOLERANCE * size))
+        ok & m.every(leg, (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) &
+            (abs(uhs_rho2_2) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) >
+            _TOLERANCE * uhs_size) & (abs(uhs_v_1_r0_y) > _TOLERANCE * uhs_size))
         )
-        out_leg_force[_leg_force_uhs[0][leg]] = c_true_in_base_x
-        out_leg_force[_leg_force_uhs[1][leg]] = c_true_in_base_y
-        out_leg_force[_leg_force_uhs[2][leg]] = c_true_in_base_z
-        out_drive[_drive_uhs[0][leg]] = w_3_t
-        out_drive[_drive_uhs[1][leg]] = w_3_t_2
-        out_drive[_drive_uhs[2][leg]] = w_3_t_3
+        out_leg_force[_leg_force_uhs[0][leg]] = uhs_c_true_in_base_x
+        out_leg_force[_leg_force_uhs[1][leg]] = uhs_c_true_in_base_y
+        out_leg_force[_leg_force_uhs[2][leg]] = uhs_c_true_in_base_z
+        out_drive[_drive_uhs[0][leg]] = uhs_w_3_t
+        out_drive[_drive_uhs[1][leg]] = uhs_w_3_t_2
+        out_drive[_drive_uhs[2][leg]] = uhs_w_3_t_3
     return ok, (out_leg_force, out_drive,)
 
 
@@ -4054,7 +4372,7 @@ def _run_potential(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_potential = m.zeros("potential")
-    # (V1) potential energy
+    # (potential) potential energy
     potential_t = (
     gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
         gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
@@ -4063,78 +4381,87 @@ def _run_potential(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        b_r0_x, b_r0_y, b_r0_z, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z,
-            h_3_x, h_3_y, h_3_z, inv_uhs_joint3_pitch, size_t, uhs_base_frame_xx,
+        inv_uhs_joint3_pitch, uhs_b_r0_x, uhs_b_r0_y, uhs_b_r0_z, uhs_base_frame_xx,
             uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy,
             uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz,
-            uhs_base_point_x, uhs_base_point_y, uhs_base_point_z, uhs_joint3_offset_x,
-            uhs_link2_mass, uhs_platform_joint_offset_x, uhs_platform_point_x,
-            uhs_platform_point_y, uhs_platform_point_z,
+            uhs_base_point_x, uhs_base_point_y, uhs_base_point_z, uhs_branch_1, uhs_branch_2,
+            uhs_g_r0_x, uhs_g_r0_y, uhs_g_r0_z, uhs_h_2_x, uhs_h_2_y, uhs_h_2_z, uhs_h_3_x,
+            uhs_h_3_y, uhs_h_3_z, uhs_joint3_offset_x, uhs_link2_mass,
+            uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
+            uhs_platform_point_z, uhs_size_t,
         ) = k
-        # (uhs-K1) from the base point to the connection point
-        S_x = (
+        # (uhs-S) from the base point to the connection point
+        uhs_S_x = (
         t_x + R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z -
             uhs_base_point_x
         )
-        S_y = (
+        uhs_S_y = (
         t_y + R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y + R_yz*uhs_platform_point_z -
             uhs_base_point_y
         )
-        S_z = (
+        uhs_S_z = (
         t_z + R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z -
             uhs_base_point_z
         )
-        # (uhs-K2) component along the reference direction
-        px_1 = S_x*uhs_base_frame_xx + S_y*uhs_base_frame_yx + S_z*uhs_base_frame_zx
-        # (uhs-K3) component across the reference direction
-        py_1 = S_x*uhs_base_frame_xy + S_y*uhs_base_frame_yy + S_z*uhs_base_frame_zy
-        # (uhs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (uhs-K7) root, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (uhs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*uhs_base_frame_xz + S_y*uhs_base_frame_yz + S_z*uhs_base_frame_zz
-        # (uhs-K16) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (uhs-K18) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (uhs-K23) from the origin of joint 3 to the connection point
-        x_3_x = root_2 - uhs_joint3_offset_x
-        # (uhs-K24) displacement of joint 3
-        q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - x_3_x)
-        # (uhs-K19) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = inv_rho2_2*root_1*root_2
-        # (uhs-K20) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*root_2*xi_1_t
-        # (uhs-K25) cosine of the angle of joint 3 from its reference direction
-        c_3_t = sin(q_3)
-        # (uhs-K26) sine of the angle of joint 3 from its reference direction
-        s_3 = cos(q_3)
-        # (uhs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*py_1*root_1
-        # (uhs-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*px_1*root_1
-        # (uhs-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-        # (V1) potential energy
-        b_r1_y = -b_r0_x*s_1 - b_r0_y*c_1
-        potential_t_2 = (
-        (g_r0_y*s_1 - c_1*g_r0_x)*(h_2_y + c_3_t*h_3_z + h_3_y*s_3 + uhs_link2_mass*(b_r0_y*s_1 -
-            b_r0_x*c_1)) + (-c_2*g_r0_z - g_r1_y*s_2)*(c_3_t*h_3_y + uhs_link2_mass*(-b_r0_z*c_2 -
-            b_r1_y*s_2) - h_2_z - h_3_z*s_3) + (g_r0_z*s_2 - c_2*g_r1_y)*(h_2_x + h_3_x +
-            uhs_link2_mass*(b_r0_z*s_2 - b_r1_y*c_2))
+        # (uhs-px_1) component along the reference direction
+        uhs_px_1 = (
+        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
+        )
+        # (uhs-py_1) component across the reference direction
+        uhs_py_1 = (
+        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
+        )
+        # (uhs-rho2_1) squared amplitude
+        uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1
+        # (uhs-root_1) root, with the sign of the branch
+        uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
+        # (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        uhs_xi_1_t = (
+        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
+        )
+        # (uhs-rho2_2) squared amplitude
+        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t
+        # (uhs-root_2) root, with the sign of the branch
+        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
+        # (uhs-x_3) from the origin of joint 3 to the connection point
+        uhs_x_3_x = uhs_root_2 - uhs_joint3_offset_x
+        # (uhs-q_3) displacement of joint 3
+        uhs_q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_x)
+        # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_uhs_rho2_2 = 1.0/uhs_rho2_2
+        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
+        # (uhs-s_2) sine of the angle of joint 2 from its reference direction
+        uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_t
+        # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
+        uhs_c_3_t = sin(uhs_q_3)
+        # (uhs-s_3) sine of the angle of joint 3 from its reference direction
+        uhs_s_3 = cos(uhs_q_3)
+        # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
+        uhs_c_1 = inv_uhs_rho2_1*uhs_py_1*uhs_root_1
+        # (uhs-s_1) sine of the angle of joint 1 from its reference direction
+        uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1
+        # (uhs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        uhs_g_r1_y = -uhs_c_1*uhs_g_r0_y - uhs_g_r0_x*uhs_s_1
+        # (potential) potential energy
+        uhs_b_r1_y = -uhs_b_r0_x*uhs_s_1 - uhs_b_r0_y*uhs_c_1
+        uhs_potential_t = (
+        (uhs_g_r0_y*uhs_s_1 - uhs_c_1*uhs_g_r0_x)*(uhs_h_2_y + uhs_c_3_t*uhs_h_3_z +
+            uhs_h_3_y*uhs_s_3 + uhs_link2_mass*(uhs_b_r0_y*uhs_s_1 - uhs_b_r0_x*uhs_c_1)) +
+            (-uhs_c_2*uhs_g_r0_z - uhs_g_r1_y*uhs_s_2)*(uhs_c_3_t*uhs_h_3_y +
+            uhs_link2_mass*(-uhs_b_r0_z*uhs_c_2 - uhs_b_r1_y*uhs_s_2) - uhs_h_2_z -
+            uhs_h_3_z*uhs_s_3) + (uhs_g_r0_z*uhs_s_2 - uhs_c_2*uhs_g_r1_y)*(uhs_h_2_x + uhs_h_3_x
+            + uhs_link2_mass*(uhs_b_r0_z*uhs_s_2 - uhs_b_r1_y*uhs_c_2))
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * size_t))
+        ok & m.every(leg, (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) &
+            (abs(uhs_rho2_2) > _TOLERANCE * _TOLERANCE * uhs_size_t))
         )
         sums = m.added(sums, leg, (
-        potential_t_2,
+        uhs_potential_t,
         ))
     total_uhs, = sums
-    # (V1) potential energy
+    # (potential) potential energy
     potential = -potential_t - total_uhs
     out_potential[0] = potential
     return ok, (out_potential,)
@@ -4194,94 +4521,102 @@ def _run_condition(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, inv_size, inv_size_t_3, inv_uhs_joint3_pitch, size, size_t,
-            uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx,
-            uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy,
-            uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y, uhs_base_point_z,
+        inv_uhs_joint3_pitch, inv_uhs_size, inv_uhs_size_t_3, uhs_base_frame_xx,
+            uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy,
+            uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz,
+            uhs_base_point_x, uhs_base_point_y, uhs_base_point_z, uhs_branch_1, uhs_branch_2,
             uhs_joint3_offset_x, uhs_platform_joint_offset_x, uhs_platform_point_x,
-            uhs_platform_point_y, uhs_platform_point_z,
+            uhs_platform_point_y, uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
-        # (uhs-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (uhs-S) from the base point to the connection point
+        uhs_q_in_base_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
-        q_in_base_y = (
+        uhs_q_in_base_y = (
         R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y + R_yz*uhs_platform_point_z
         )
-        q_in_base_z = (
+        uhs_q_in_base_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - uhs_base_point_x
-        S_y = q_in_base_y + t_y - uhs_base_point_y
-        S_z = q_in_base_z + t_z - uhs_base_point_z
-        # (uhs-K2) component along the reference direction
-        px_1 = S_x*uhs_base_frame_xx + S_y*uhs_base_frame_yx + S_z*uhs_base_frame_zx
-        # (uhs-K3) component across the reference direction
-        py_1 = S_x*uhs_base_frame_xy + S_y*uhs_base_frame_yy + S_z*uhs_base_frame_zy
-        # (uhs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (uhs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*uhs_base_frame_xz + S_y*uhs_base_frame_yz + S_z*uhs_base_frame_zz
-        # (uhs-K16) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (uhs-K18) root, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (uhs-K23) from the origin of joint 3 to the connection point
-        x_3_x = root_2 - uhs_joint3_offset_x
-        # (uhs-K24) displacement of joint 3
-        q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - x_3_x)
-        # (uhs-K19) cosine of the angle of joint 2 from its reference direction
-        c_2 = branch_1*sqrt(rho2_1)*root_2/rho2_2
-        # (uhs-K25) cosine of the angle of joint 3 from its reference direction
-        c_3_t = sin(q_3)
-        # (uhs-K26) sine of the angle of joint 3 from its reference direction
-        s_3 = cos(q_3)
-        # (uhs-V7) reciprocal vector 1
-        inv_root_2 = 1.0/root_2
-        # (uhs-V4) velocity of the connection point per rate of joint 1
-        v_1_r0_y = c_2*c_3_t*c_3_t*root_2 + c_2*root_2*s_3*s_3
-        # (uhs-V9) reciprocal vector 3
-        w_3_t = S_x*inv_root_2*inv_uhs_joint3_pitch
-        w_3_t_2 = S_y*inv_root_2*inv_uhs_joint3_pitch
-        w_3_t_3 = S_z*inv_root_2*inv_uhs_joint3_pitch
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_3_x = q_in_base_y*w_3_t_3 - q_in_base_z*w_3_t_2
-        H_a_3_y = q_in_base_z*w_3_t - q_in_base_x*w_3_t_3
-        H_a_3_z = q_in_base_x*w_3_t_2 - q_in_base_y*w_3_t
-        # (C2) rms distance of the platform points from their centroid
-        spread_t_2 = b_c_x - uhs_platform_point_x
-        spread_t_3 = b_c_y - uhs_platform_point_y
-        spread_t_4 = b_c_z - uhs_platform_point_z
-        spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 + spread_t_4*spread_t_4
-        # (uhs-K5) squared amplitude
-        pivot_size = abs(rho2_1)
-        # (uhs-K16) squared amplitude
-        pivot_size_2 = abs(rho2_2)
-        # (uhs-V7) reciprocal vector 1
-        pivot_size_3 = abs(root_2)
-        pivot_size_4 = abs(v_1_r0_y)
-        # (uhs-N37) force at the connection point that balances the leg's inertia and weight along all freedoms
-        least_pivots = (
-        least(least(least(inv_size*pivot_size_3, inv_size*pivot_size_4),
-            sqrt(inv_size_t_3*pivot_size)), sqrt(inv_size_t_3*pivot_size_2))
+        uhs_S_x = t_x + uhs_q_in_base_x - uhs_base_point_x
+        uhs_S_y = t_y + uhs_q_in_base_y - uhs_base_point_y
+        uhs_S_z = t_z + uhs_q_in_base_z - uhs_base_point_z
+        # (uhs-px_1) component along the reference direction
+        uhs_px_1 = (
+        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
+        )
+        # (uhs-py_1) component across the reference direction
+        uhs_py_1 = (
+        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
+        )
+        # (uhs-rho2_1) squared amplitude
+        uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1
+        # (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        uhs_xi_1_t = (
+        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
+        )
+        # (uhs-rho2_2) squared amplitude
+        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t
+        # (uhs-root_2) root, with the sign of the branch
+        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
+        # (uhs-x_3) from the origin of joint 3 to the connection point
+        uhs_x_3_x = uhs_root_2 - uhs_joint3_offset_x
+        # (uhs-q_3) displacement of joint 3
+        uhs_q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_x)
+        # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
+        uhs_c_2 = uhs_branch_1*sqrt(uhs_rho2_1)*uhs_root_2/uhs_rho2_2
+        # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
+        uhs_c_3_t = sin(uhs_q_3)
+        # (uhs-s_3) sine of the angle of joint 3 from its reference direction
+        uhs_s_3 = cos(uhs_q_3)
+        # (uhs-w_1) reciprocal vector 1
+        inv_uhs_root_2 = 1.0/uhs_root_2
+        # (uhs-v_1) velocity of the connection point per rate of joint 1
+        uhs_v_1_r0_y = uhs_c_2*uhs_c_3_t*uhs_c_3_t*uhs_root_2 + uhs_c_2*uhs_root_2*uhs_s_3*uhs_s_3
+        # (uhs-w_3) reciprocal vector 3
+        uhs_w_3_t = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_x
+        uhs_w_3_t_2 = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_y
+        uhs_w_3_t_3 = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_z
+        # (uhs-H_a_3) moment of the column's unit force about the platform origin
+        uhs_H_a_3_x = uhs_q_in_base_y*uhs_w_3_t_3 - uhs_q_in_base_z*uhs_w_3_t_2
+        uhs_H_a_3_y = uhs_q_in_base_z*uhs_w_3_t - uhs_q_in_base_x*uhs_w_3_t_3
+        uhs_H_a_3_z = uhs_q_in_base_x*uhs_w_3_t_2 - uhs_q_in_base_y*uhs_w_3_t
+        # (spread) rms distance of the platform points from their centroid
+        uhs_spread_t = b_c_x - uhs_platform_point_x
+        uhs_spread_t_2 = b_c_y - uhs_platform_point_y
+        uhs_spread_t_3 = b_c_z - uhs_platform_point_z
+        uhs_spread_t_4 = (
+        uhs_spread_t*uhs_spread_t + uhs_spread_t_2*uhs_spread_t_2 + uhs_spread_t_3*uhs_spread_t_3
+        )
+        # (uhs-rho2_1) squared amplitude
+        uhs_pivot_size = abs(uhs_rho2_1)
+        # (uhs-rho2_2) squared amplitude
+        uhs_pivot_size_2 = abs(uhs_rho2_2)
+        # (uhs-w_1) reciprocal vector 1
+        uhs_pivot_size_3 = abs(uhs_root_2)
+        uhs_pivot_size_4 = abs(uhs_v_1_r0_y)
+        # (uhs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        uhs_least_pivots = (
+        least(least(least(inv_uhs_size*uhs_pivot_size_3, inv_uhs_size*uhs_pivot_size_4),
+            sqrt(inv_uhs_size_t_3*uhs_pivot_size)), sqrt(inv_uhs_size_t_3*uhs_pivot_size_2))
         )
         clear = (
-        clear & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * size_t) & (abs(root_2) > _TOLERANCE * size) & (abs(v_1_r0_y)
-            > _TOLERANCE * size))
+        clear & m.every(leg, (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) &
+            (abs(uhs_rho2_2) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) >
+            _TOLERANCE * uhs_size) & (abs(uhs_v_1_r0_y) > _TOLERANCE * uhs_size))
         )
         sums = m.added(sums, leg, (
-        spread_t_5,
+        uhs_spread_t_4,
         ))
-        out_H[_H_uhs[0][leg]] = w_3_t
-        out_H[_H_uhs[1][leg]] = w_3_t_2
-        out_H[_H_uhs[2][leg]] = w_3_t_3
-        out_H[_H_uhs[3][leg]] = H_a_3_x
-        out_H[_H_uhs[4][leg]] = H_a_3_y
-        out_H[_H_uhs[5][leg]] = H_a_3_z
-        out_pivots[_pivots_uhs[0][leg]] = least_pivots
+        out_H[_H_uhs[0][leg]] = uhs_w_3_t
+        out_H[_H_uhs[1][leg]] = uhs_w_3_t_2
+        out_H[_H_uhs[2][leg]] = uhs_w_3_t_3
+        out_H[_H_uhs[3][leg]] = uhs_H_a_3_x
+        out_H[_H_uhs[4][leg]] = uhs_H_a_3_y
+        out_H[_H_uhs[5][leg]] = uhs_H_a_3_z
+        out_pivots[_pivots_uhs[0][leg]] = uhs_least_pivots
     total_uhs, = sums
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(total_uhs)
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
@@ -4408,6 +4743,19 @@ def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
     momentum = np.einsum("ijs,js->is", M, V)
     return (momentum,)
+
+
+def _steps_joint_margins(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    margins = _unlimited(q, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17])
+    return (margins,)
+
+
+def _steps_within_limits(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    subtract_1 = q - q
+    within = _not_negative(subtract_1)
+    return (within,)
 
 
 def _steps_actuator_positions(m, X):
@@ -4844,6 +5192,40 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+    )
+
+
+def joint_margins(X, p=None):
+    """How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+    where there is none.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        margins: distances, in the order of q [m or rad] (..., NJ).
+    """
+    return _call(
+        "joint_margins", _steps_joint_margins, p,
+        ("X", X, (NQ,)),
+        unbounded=True,
+    )
+
+
+def within_limits(X, p=None):
+    """Whether all joints are within their limits of displacement.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        within: 1 where no margin is negative, else 0; NaN is neither (...,).
+    """
+    return _call(
+        "within_limits", _steps_within_limits, p,
+        ("X", X, (NQ,)),
     )
 
 

@@ -61,6 +61,7 @@ typedef HEXAPOD_6X6R_REAL hexapod_6x6r_real;
 #define HEXAPOD_6X6R_NC 0
 #define HEXAPOD_6X6R_NW 6
 #define HEXAPOD_6X6R_NJ 30
+#define HEXAPOD_6X6R_OVERCONSTRAINED 0
 
 enum {
     HEXAPOD_6X6R_OK = 0,
@@ -81,81 +82,86 @@ typedef struct {
     /* inertia tensor about the centre of mass, platform axes [kg m^2] */
     hexapod_6x6r_real platform_inertia[3][3];
     /* base point, base frame [m] */
-    hexapod_6x6r_real rrrrrr_base_point[6][3];
+    hexapod_6x6r_real six_r_base_point[6][3];
     /* rotation from leg axes to base axes [-] */
-    hexapod_6x6r_real rrrrrr_base_frame[6][3][3];
+    hexapod_6x6r_real six_r_base_frame[6][3][3];
     /* platform joint, platform frame [m] */
-    hexapod_6x6r_real rrrrrr_platform_point[6][3];
+    hexapod_6x6r_real six_r_platform_point[6][3];
     /* offset of joint 2, preceding link's frame [m] */
-    hexapod_6x6r_real rrrrrr_joint2_offset[6][3];
+    hexapod_6x6r_real six_r_joint2_offset[6][3];
     /* offset of joint 3, preceding link's frame [m] */
-    hexapod_6x6r_real rrrrrr_joint3_offset[6][3];
+    hexapod_6x6r_real six_r_joint3_offset[6][3];
     /* offset of joint 4, preceding link's frame [m] */
-    hexapod_6x6r_real rrrrrr_joint4_offset[6][3];
+    hexapod_6x6r_real six_r_joint4_offset[6][3];
     /* offset of joint 5, preceding link's frame [m] */
-    hexapod_6x6r_real rrrrrr_joint5_offset[6][3];
+    hexapod_6x6r_real six_r_joint5_offset[6][3];
     /* offset of platform joint, preceding link's frame [m] */
-    hexapod_6x6r_real rrrrrr_platform_joint_offset[6][3];
+    hexapod_6x6r_real six_r_platform_joint_offset[6][3];
     /* axis_platform of the platform joint [-] */
-    hexapod_6x6r_real rrrrrr_platform_joint_axis_platform[6][3];
+    hexapod_6x6r_real six_r_platform_joint_axis_platform[6][3];
     /* mass of link 1 [kg] */
-    hexapod_6x6r_real rrrrrr_link1_mass[6];
+    hexapod_6x6r_real six_r_link1_mass[6];
     /* centre of mass of link 1, link frame [m] */
-    hexapod_6x6r_real rrrrrr_link1_centre_of_mass[6][3];
+    hexapod_6x6r_real six_r_link1_centre_of_mass[6][3];
     /* inertia tensor of link 1 about its centre of mass, link axes [kg m^2] */
-    hexapod_6x6r_real rrrrrr_link1_inertia[6][3][3];
+    hexapod_6x6r_real six_r_link1_inertia[6][3][3];
     /* mass of link 2 [kg] */
-    hexapod_6x6r_real rrrrrr_link2_mass[6];
+    hexapod_6x6r_real six_r_link2_mass[6];
     /* centre of mass of link 2, link frame [m] */
-    hexapod_6x6r_real rrrrrr_link2_centre_of_mass[6][3];
+    hexapod_6x6r_real six_r_link2_centre_of_mass[6][3];
     /* inertia tensor of link 2 about its centre of mass, link axes [kg m^2] */
-    hexapod_6x6r_real rrrrrr_link2_inertia[6][3][3];
+    hexapod_6x6r_real six_r_link2_inertia[6][3][3];
     /* mass of link 3 [kg] */
-    hexapod_6x6r_real rrrrrr_link3_mass[6];
+    hexapod_6x6r_real six_r_link3_mass[6];
     /* centre of mass of link 3, link frame [m] */
-    hexapod_6x6r_real rrrrrr_link3_centre_of_mass[6][3];
+    hexapod_6x6r_real six_r_link3_centre_of_mass[6][3];
     /* inertia tensor of link 3 about its centre of mass, link axes [kg m^2] */
-    hexapod_6x6r_real rrrrrr_link3_inertia[6][3][3];
+    hexapod_6x6r_real six_r_link3_inertia[6][3][3];
     /* mass of link 4 [kg] */
-    hexapod_6x6r_real rrrrrr_link4_mass[6];
+    hexapod_6x6r_real six_r_link4_mass[6];
     /* centre of mass of link 4, link frame [m] */
-    hexapod_6x6r_real rrrrrr_link4_centre_of_mass[6][3];
+    hexapod_6x6r_real six_r_link4_centre_of_mass[6][3];
     /* inertia tensor of link 4 about its centre of mass, link axes [kg m^2] */
-    hexapod_6x6r_real rrrrrr_link4_inertia[6][3][3];
+    hexapod_6x6r_real six_r_link4_inertia[6][3][3];
     /* mass of link 5 [kg] */
-    hexapod_6x6r_real rrrrrr_link5_mass[6];
+    hexapod_6x6r_real six_r_link5_mass[6];
     /* centre of mass of link 5, link frame [m] */
-    hexapod_6x6r_real rrrrrr_link5_centre_of_mass[6][3];
+    hexapod_6x6r_real six_r_link5_centre_of_mass[6][3];
     /* inertia tensor of link 5 about its centre of mass, link axes [kg m^2] */
-    hexapod_6x6r_real rrrrrr_link5_inertia[6][3][3];
+    hexapod_6x6r_real six_r_link5_inertia[6][3][3];
 } hexapod_6x6r_params;
 
 /* What depends on the parameters alone; set by hexapod_6x6r_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
-    hexapod_6x6r_real J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+    /* 6 legs of type six_r; copies of the first fill up */
+    hexapod_6x6r_real inv_six_r_size[8], six_r_J_1_xx[8], six_r_J_2_xx[8], six_r_J_2_xy[8],
+            six_r_J_2_xz[8], six_r_J_2_yy[8], six_r_J_2_yz[8], six_r_J_2_zz[8], six_r_J_3_xx[8],
+            six_r_J_3_xy[8], six_r_J_3_xz[8], six_r_J_3_yy[8], six_r_J_3_yz[8], six_r_J_3_zz[8],
+            six_r_J_4_xx[8], six_r_J_4_xy[8], six_r_J_4_xz[8], six_r_J_4_yy[8], six_r_J_4_yz[8],
+            six_r_J_5_xx[8], six_r_J_5_xy[8], six_r_J_5_xz[8], six_r_J_5_yy[8], six_r_J_5_yz[8],
+            six_r_J_5_zz[8], six_r_Jc_2_t[8], six_r_Jc_3_t_2[8], six_r_Jc_3_t_3[8], six_r_Jc_4_xx[8],
+            six_r_Sigma_2_xx[8], six_r_Sigma_2_yy[8], six_r_Sigma_2_zz[8], six_r_Sigma_3_xx[8],
+            six_r_Sigma_3_yy[8], six_r_Sigma_3_zz[8], six_r_Sigma_4_xx[8], six_r_Sigma_4_yy[8],
+            six_r_Sigma_4_zz[8], six_r_Sigma_5_xx[8], six_r_Sigma_5_yy[8], six_r_Sigma_5_zz[8],
+            six_r_b_r0_x[8], six_r_b_r0_y[8], six_r_b_r0_z[8], six_r_base_frame_xx[8],
+            six_r_base_frame_xy[8], six_r_base_frame_xz[8], six_r_base_frame_yx[8],
+            six_r_base_frame_yy[8], six_r_base_frame_yz[8], six_r_base_frame_zx[8],
+            six_r_base_frame_zy[8], six_r_base_frame_zz[8], six_r_base_point_x[8],
+            six_r_base_point_y[8], six_r_base_point_z[8], six_r_g_r0_x[8], six_r_g_r0_y[8],
+            six_r_g_r0_z[8], six_r_h_1_x[8], six_r_h_1_y[8], six_r_h_1_z[8], six_r_h_2_x[8],
+            six_r_h_2_y[8], six_r_h_2_z[8], six_r_h_3_x[8], six_r_h_3_y[8], six_r_h_3_z[8],
+            six_r_h_4_x[8], six_r_h_4_y[8], six_r_h_4_z[8], six_r_h_5_x[8], six_r_h_5_y[8],
+            six_r_h_5_z[8], six_r_hc_3_x[8], six_r_joint2_offset_x[8], six_r_joint3_offset_x[8],
+            six_r_joint4_offset_x[8], six_r_joint5_offset_x[8], six_r_link1_mass[8],
+            six_r_link2_mass[8], six_r_link3_mass[8], six_r_link4_mass[8], six_r_link5_mass[8],
+            six_r_platform_joint_axis_platform_x[8], six_r_platform_joint_axis_platform_y[8],
+            six_r_platform_joint_axis_platform_z[8], six_r_platform_joint_offset_x[8],
+            six_r_platform_point_x[8], six_r_platform_point_y[8], six_r_platform_point_z[8],
+            six_r_size[8], six_r_size_t[8];
+    hexapod_6x6r_real J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
             J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
             h_star_x, h_star_y, h_star_z, legs_size, m_star, spread_t;
-    /* legs of type rrrrrr */
-    hexapod_6x6r_real J_1_xx[6], J_2_xx[6], J_2_xy[6], J_2_xz[6], J_2_yy[6], J_2_yz[6], J_2_zz[6],
-            J_3_xx[6], J_3_xy[6], J_3_xz[6], J_3_yy[6], J_3_yz[6], J_3_zz[6], J_4_xx[6], J_4_xy[6],
-            J_4_xz[6], J_4_yy[6], J_4_yz[6], J_5_xx[6], J_5_xy[6], J_5_xz[6], J_5_yy[6], J_5_yz[6],
-            J_5_zz[6], Jc_2_t[6], Jc_3_t_2[6], Jc_3_t_3[6], Jc_4_xx[6], Sigma_2_xx[6], Sigma_2_yy[6],
-            Sigma_2_zz[6], Sigma_3_xx[6], Sigma_3_yy[6], Sigma_3_zz[6], Sigma_4_xx[6], Sigma_4_yy[6],
-            Sigma_4_zz[6], Sigma_5_xx[6], Sigma_5_yy[6], Sigma_5_zz[6], b_r0_x[6], b_r0_y[6],
-            b_r0_z[6], g_r0_x[6], g_r0_y[6], g_r0_z[6], h_1_x[6], h_1_y[6], h_1_z[6], h_2_x[6],
-            h_2_y[6], h_2_z[6], h_3_x[6], h_3_y[6], h_3_z[6], h_4_x[6], h_4_y[6], h_4_z[6], h_5_x[6],
-            h_5_y[6], h_5_z[6], hc_3_x[6], inv_size[6], rrrrrr_base_frame_xx[6],
-            rrrrrr_base_frame_xy[6], rrrrrr_base_frame_xz[6], rrrrrr_base_frame_yx[6],
-            rrrrrr_base_frame_yy[6], rrrrrr_base_frame_yz[6], rrrrrr_base_frame_zx[6],
-            rrrrrr_base_frame_zy[6], rrrrrr_base_frame_zz[6], rrrrrr_base_point_x[6],
-            rrrrrr_base_point_y[6], rrrrrr_base_point_z[6], rrrrrr_joint2_offset_x[6],
-            rrrrrr_joint3_offset_x[6], rrrrrr_joint4_offset_x[6], rrrrrr_joint5_offset_x[6],
-            rrrrrr_link1_mass[6], rrrrrr_link2_mass[6], rrrrrr_link3_mass[6], rrrrrr_link4_mass[6],
-            rrrrrr_link5_mass[6], rrrrrr_platform_joint_axis_platform_x[6],
-            rrrrrr_platform_joint_axis_platform_y[6], rrrrrr_platform_joint_axis_platform_z[6],
-            rrrrrr_platform_joint_offset_x[6], rrrrrr_platform_point_x[6], rrrrrr_platform_point_y[6],
-            rrrrrr_platform_point_z[6], size_[6], size_t_[6];
 } hexapod_6x6r_model;
 
 extern const hexapod_6x6r_params hexapod_6x6r_default_params;
@@ -172,14 +178,14 @@ extern const char *const hexapod_6x6r_ACTUATOR_NAMES[HEXAPOD_6X6R_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *model);
 
-/* Inertia matrix M. 7275 mul, 5289 add, 30 div, 30 sqrt, 60 trig; the iteration of q apart. In: X
+/* Inertia matrix M. 7179 mul, 5211 add, 30 div, 30 sqrt, 60 trig; the iteration of q apart. In: X
    (NQ), q0 (NJ, or NULL). Out: M (NV x NV). */
 int hexapod_6x6r_M(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
     hexapod_6x6r_real *q0, hexapod_6x6r_real *M);
 size_t hexapod_6x6r_M_batch(const hexapod_6x6r_model *model, size_t n, const hexapod_6x6r_real *X,
     const hexapod_6x6r_real *q0, hexapod_6x6r_real *M, int *status);
 
-/* Velocity and gravity terms Z. 5337 mul, 3972 add, 30 div, 30 sqrt, 60 trig; the iteration of q
+/* Velocity and gravity terms Z. 5367 mul, 3996 add, 30 div, 30 sqrt, 60 trig; the iteration of q
    apart. In: X (NQ), q0 (NJ, or NULL), V (NV). Out: Z (NV). */
 int hexapod_6x6r_Z(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
     hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, hexapod_6x6r_real *Z);
@@ -220,7 +226,7 @@ size_t hexapod_6x6r_joint_accelerations_batch(const hexapod_6x6r_model *model, s
     hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const
     hexapod_6x6r_real *A, hexapod_6x6r_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 10749 mul, 8193 add, 30 div, 30 sqrt, 60 trig; the
+/* M, Z and H together, sharing the work. 10683 mul, 8139 add, 30 div, 30 sqrt, 60 trig; the
    iteration of q apart. In: X (NQ), q0 (NJ, or NULL), V (NV). Out: M (NV x NV), Z (NV), H (NV x
    NU). */
 int hexapod_6x6r_dynamics(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
@@ -240,7 +246,7 @@ size_t hexapod_6x6r_inverse_dynamics_batch(const hexapod_6x6r_model *model, size
     hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const
     hexapod_6x6r_real *A, const hexapod_6x6r_real *wrench, hexapod_6x6r_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 10749 mul, 8193 add, 30 div, 30
+/* Acceleration A under the actuator forces tau and the wrench. 10683 mul, 8139 add, 30 div, 30
    sqrt, 60 trig; the solution of the linear equations apart; the iteration of q apart. In: X
    (NQ), q0 (NJ, or NULL), V (NV), tau (NU), wrench (NW, or NULL). Out: A (NV). */
 int hexapod_6x6r_forward_dynamics(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X,
@@ -309,13 +315,28 @@ size_t hexapod_6x6r_dissipation_batch(const hexapod_6x6r_model *model, size_t n,
     hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V,
     hexapod_6x6r_real *dissipation, int *status);
 
-/* Generalised momentum M V. 7275 mul, 5289 add, 30 div, 30 sqrt, 60 trig; the iteration of q
+/* Generalised momentum M V. 7179 mul, 5211 add, 30 div, 30 sqrt, 60 trig; the iteration of q
    apart. In: X (NQ), q0 (NJ, or NULL), V (NV). Out: momentum (NV). */
 int hexapod_6x6r_momentum(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
     hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, hexapod_6x6r_real *momentum);
 size_t hexapod_6x6r_momentum_batch(const hexapod_6x6r_model *model, size_t n, const
     hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V,
     hexapod_6x6r_real *momentum, int *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 0 mul, 0 add, 0 div, 0 sqrt, 0 trig; the iteration of q apart. In: X (NQ),
+   q0 (NJ, or NULL). Out: margins (NJ). */
+int hexapod_6x6r_joint_margins(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
+    hexapod_6x6r_real *q0, hexapod_6x6r_real *margins);
+size_t hexapod_6x6r_joint_margins_batch(const hexapod_6x6r_model *model, size_t n, const
+    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, hexapod_6x6r_real *margins, int *status);
+
+/* Whether all joints are within their limits of displacement. 0 mul, 0 add, 0 div, 0 sqrt, 0
+   trig; the iteration of q apart. In: X (NQ), q0 (NJ, or NULL). Out: within (1). */
+int hexapod_6x6r_within_limits(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
+    hexapod_6x6r_real *q0, hexapod_6x6r_real *within);
+size_t hexapod_6x6r_within_limits_batch(const hexapod_6x6r_model *model, size_t n, const
+    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, hexapod_6x6r_real *within, int *status);
 
 /* Displacements of the actuated joints, in the order of tau. 0 mul, 0 add, 0 div, 0 sqrt, 0 trig;
    the iteration of q apart. In: X (NQ), q0 (NJ, or NULL). Out: q (NU). */

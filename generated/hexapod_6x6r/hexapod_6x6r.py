@@ -33,6 +33,7 @@ __all__ = [
     "NC",
     "NW",
     "NJ",
+    "OVERCONSTRAINED",
     "ACTUATED",
     "ACTUATOR_NAMES",
     "H",
@@ -57,6 +58,7 @@ __all__ = [
     "inverse_dynamics",
     "inverse_kinematics",
     "joint_accelerations",
+    "joint_margins",
     "joint_rates",
     "leg_reactions",
     "momentum",
@@ -66,6 +68,7 @@ __all__ = [
     "power",
     "retract",
     "rotation",
+    "within_limits",
 ]
 
 NQ = 7
@@ -74,6 +77,7 @@ NU = 6
 NC = 0
 NW = 6
 NJ = 30
+OVERCONSTRAINED = 0
 
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
@@ -92,11 +96,11 @@ _SHAPES = {  # of the arrays that functions give
     "lengths": (2,),
     "pivots": (6,),
     "reach": (6,),
-    "gap_rrrrrr": (6, 5),
-    "jacobian_rrrrrr": (6, 25),
+    "gap_six_r": (6, 5),
+    "jacobian_six_r": (6, 25),
 }
 # Where the entries of a leg type's legs stand in these arrays, row by row.
-_H_rrrrrr = (
+_H_six_r = (
     [0, 1, 2, 3, 4, 5],
     [6, 7, 8, 9, 10, 11],
     [12, 13, 14, 15, 16, 17],
@@ -104,28 +108,28 @@ _H_rrrrrr = (
     [24, 25, 26, 27, 28, 29],
     [30, 31, 32, 33, 34, 35],
 )
-_q_rrrrrr = (
+_q_six_r = (
     [0, 5, 10, 15, 20, 25],
     [1, 6, 11, 16, 21, 26],
     [2, 7, 12, 17, 22, 27],
     [3, 8, 13, 18, 23, 28],
     [4, 9, 14, 19, 24, 29],
 )
-_qd_rrrrrr = (
+_qd_six_r = (
     [0, 5, 10, 15, 20, 25],
     [1, 6, 11, 16, 21, 26],
     [2, 7, 12, 17, 22, 27],
     [3, 8, 13, 18, 23, 28],
     [4, 9, 14, 19, 24, 29],
 )
-_qdd_rrrrrr = (
+_qdd_six_r = (
     [0, 5, 10, 15, 20, 25],
     [1, 6, 11, 16, 21, 26],
     [2, 7, 12, 17, 22, 27],
     [3, 8, 13, 18, 23, 28],
     [4, 9, 14, 19, 24, 29],
 )
-_leg_force_rrrrrr = (
+_leg_force_six_r = (
     [0, 6, 12, 18, 24, 30],
     [1, 7, 13, 19, 25, 31],
     [2, 8, 14, 20, 26, 32],
@@ -133,7 +137,7 @@ _leg_force_rrrrrr = (
     [4, 10, 16, 22, 28, 34],
     [5, 11, 17, 23, 29, 35],
 )
-_drive_rrrrrr = (
+_drive_six_r = (
     [0, 6, 12, 18, 24, 30],
     [1, 7, 13, 19, 25, 31],
     [2, 8, 14, 20, 26, 32],
@@ -141,17 +145,17 @@ _drive_rrrrrr = (
     [4, 10, 16, 22, 28, 34],
     [5, 11, 17, 23, 29, 35],
 )
-_pivots_rrrrrr = (
+_pivots_six_r = (
     [0, 1, 2, 3, 4, 5],
 )
-_gap_rrrrrr_rrrrrr = (
+_gap_six_r_six_r = (
     [0, 5, 10, 15, 20, 25],
     [1, 6, 11, 16, 21, 26],
     [2, 7, 12, 17, 22, 27],
     [3, 8, 13, 18, 23, 28],
     [4, 9, 14, 19, 24, 29],
 )
-_jacobian_rrrrrr_rrrrrr = (
+_jacobian_six_r_six_r = (
     [0, 25, 50, 75, 100, 125],
     [5, 30, 55, 80, 105, 130],
     [10, 35, 60, 85, 110, 135],
@@ -181,7 +185,7 @@ _DEFAULTS = {
     "platform_mass": 12.0,
     "platform_centre_of_mass": [0.0, 0.0, 0.04],
     "platform_inertia": [[0.35, 0.0, 0.0], [0.0, 0.35, 0.0], [0.0, 0.0, 0.6]],
-    "rrrrrr_base_point": [
+    "six_r_base_point": [
         [0.020807551663432733, -0.07013231424259622, -0.15528011642847428],
         [-0.07114014159199791, -0.01704628879020814, -0.15528011642847428],
         [0.05033258992856515, 0.053086025452388004, -0.15528011642847428],
@@ -189,7 +193,7 @@ _DEFAULTS = {
         [-0.07114014159199789, 0.017046288790208308, -0.15528011642847428],
         [0.02080755166343279, 0.0701323142425962, -0.15528011642847428],
     ],
-    "rrrrrr_base_frame": [
+    "six_r_base_frame": [
         [[0.0, 0.7666445685820955, -0.6420717292200091], [0.0, 0.6420717292200091, 0.7666445685820955], [1.0, 0.0, 0.0]],
         [[0.0, 0.17272814426528374, -0.9849695366754605], [0.0, 0.9849695366754605, 0.17272814426528374], [1.0, 0.0, 0.0]],
         [[0.0, -0.9393727128473789, -0.34289780745545156], [0.0, 0.34289780745545156, -0.9393727128473789], [1.0, 0.0, 0.0]],
@@ -197,7 +201,7 @@ _DEFAULTS = {
         [[0.0, 0.17272814426528307, 0.9849695366754606], [0.0, -0.9849695366754606, 0.17272814426528307], [1.0, 0.0, 0.0]],
         [[0.0, 0.7666445685820946, 0.6420717292200101], [0.0, -0.6420717292200101, 0.7666445685820946], [1.0, 0.0, 0.0]],
     ],
-    "rrrrrr_platform_point": [
+    "six_r_platform_point": [
         [0.22999337057462865, 0.19262151876600273, -0.02],
         [0.05181844327958512, 0.29549086100263816, -0.02],
         [-0.28181181385421367, 0.10286934223663546, -0.02],
@@ -205,7 +209,7 @@ _DEFAULTS = {
         [0.05181844327958492, -0.29549086100263816, -0.02],
         [0.22999337057462838, -0.19262151876600303, -0.02],
     ],
-    "rrrrrr_joint2_offset": [
+    "six_r_joint2_offset": [
         [0.12, 0.0, 0.0],
         [0.12, 0.0, 0.0],
         [0.12, 0.0, 0.0],
@@ -213,7 +217,7 @@ _DEFAULTS = {
         [0.12, 0.0, 0.0],
         [0.12, 0.0, 0.0],
     ],
-    "rrrrrr_joint3_offset": [
+    "six_r_joint3_offset": [
         [0.45, 0.0, 0.0],
         [0.45, 0.0, 0.0],
         [0.45, 0.0, 0.0],
@@ -221,7 +225,7 @@ _DEFAULTS = {
         [0.45, 0.0, 0.0],
         [0.45, 0.0, 0.0],
     ],
-    "rrrrrr_joint4_offset": [
+    "six_r_joint4_offset": [
         [0.35, 0.0, 0.0],
         [0.35, 0.0, 0.0],
         [0.35, 0.0, 0.0],
@@ -229,7 +233,7 @@ _DEFAULTS = {
         [0.35, 0.0, 0.0],
         [0.35, 0.0, 0.0],
     ],
-    "rrrrrr_joint5_offset": [
+    "six_r_joint5_offset": [
         [0.1, 0.0, 0.0],
         [0.1, 0.0, 0.0],
         [0.1, 0.0, 0.0],
@@ -237,7 +241,7 @@ _DEFAULTS = {
         [0.1, 0.0, 0.0],
         [0.1, 0.0, 0.0],
     ],
-    "rrrrrr_platform_joint_offset": [
+    "six_r_platform_joint_offset": [
         [0.05, 0.0, 0.0],
         [0.05, 0.0, 0.0],
         [0.05, 0.0, 0.0],
@@ -245,7 +249,7 @@ _DEFAULTS = {
         [0.05, 0.0, 0.0],
         [0.05, 0.0, 0.0],
     ],
-    "rrrrrr_platform_joint_axis_platform": [
+    "six_r_platform_joint_axis_platform": [
         [0.19988156437684884, 0.7307446848136459, -0.6527323845488815],
         [0.5329026785406458, 0.5384748549053485, -0.6527323845488815],
         [-0.7327842429174946, -0.19226982990829714, -0.6527323845488815],
@@ -253,7 +257,7 @@ _DEFAULTS = {
         [0.5329026785406454, -0.5384748549053489, -0.6527323845488815],
         [0.19988156437684793, -0.7307446848136461, -0.6527323845488815],
     ],
-    "rrrrrr_link1_mass": [
+    "six_r_link1_mass": [
         3.0,
         3.0,
         3.0,
@@ -261,7 +265,7 @@ _DEFAULTS = {
         3.0,
         3.0,
     ],
-    "rrrrrr_link1_centre_of_mass": [
+    "six_r_link1_centre_of_mass": [
         [0.06, 0.0, 0.0],
         [0.06, 0.0, 0.0],
         [0.06, 0.0, 0.0],
@@ -269,7 +273,7 @@ _DEFAULTS = {
         [0.06, 0.0, 0.0],
         [0.06, 0.0, 0.0],
     ],
-    "rrrrrr_link1_inertia": [
+    "six_r_link1_inertia": [
         [[0.0006, 0.0, 0.0], [0.0, 0.0038999999999999994, 0.0], [0.0, 0.0, 0.0038999999999999994]],
         [[0.0006, 0.0, 0.0], [0.0, 0.0038999999999999994, 0.0], [0.0, 0.0, 0.0038999999999999994]],
         [[0.0006, 0.0, 0.0], [0.0, 0.0038999999999999994, 0.0], [0.0, 0.0, 0.0038999999999999994]],
@@ -277,7 +281,7 @@ _DEFAULTS = {
         [[0.0006, 0.0, 0.0], [0.0, 0.0038999999999999994, 0.0], [0.0, 0.0, 0.0038999999999999994]],
         [[0.0006, 0.0, 0.0], [0.0, 0.0038999999999999994, 0.0], [0.0, 0.0, 0.0038999999999999994]],
     ],
-    "rrrrrr_link2_mass": [
+    "six_r_link2_mass": [
         2.0,
         2.0,
         2.0,
@@ -285,7 +289,7 @@ _DEFAULTS = {
         2.0,
         2.0,
     ],
-    "rrrrrr_link2_centre_of_mass": [
+    "six_r_link2_centre_of_mass": [
         [0.225, 0.0, 0.0],
         [0.225, 0.0, 0.0],
         [0.225, 0.0, 0.0],
@@ -293,7 +297,7 @@ _DEFAULTS = {
         [0.225, 0.0, 0.0],
         [0.225, 0.0, 0.0],
     ],
-    "rrrrrr_link2_inertia": [
+    "six_r_link2_inertia": [
         [[0.0004, 0.0, 0.0], [0.0, 0.03395, 0.0], [0.0, 0.0, 0.03395]],
         [[0.0004, 0.0, 0.0], [0.0, 0.03395, 0.0], [0.0, 0.0, 0.03395]],
         [[0.0004, 0.0, 0.0], [0.0, 0.03395, 0.0], [0.0, 0.0, 0.03395]],
@@ -301,7 +305,7 @@ _DEFAULTS = {
         [[0.0004, 0.0, 0.0], [0.0, 0.03395, 0.0], [0.0, 0.0, 0.03395]],
         [[0.0004, 0.0, 0.0], [0.0, 0.03395, 0.0], [0.0, 0.0, 0.03395]],
     ],
-    "rrrrrr_link3_mass": [
+    "six_r_link3_mass": [
         1.2,
         1.2,
         1.2,
@@ -309,7 +313,7 @@ _DEFAULTS = {
         1.2,
         1.2,
     ],
-    "rrrrrr_link3_centre_of_mass": [
+    "six_r_link3_centre_of_mass": [
         [0.225, 0.0, 0.0],
         [0.225, 0.0, 0.0],
         [0.225, 0.0, 0.0],
@@ -317,7 +321,7 @@ _DEFAULTS = {
         [0.225, 0.0, 0.0],
         [0.225, 0.0, 0.0],
     ],
-    "rrrrrr_link3_inertia": [
+    "six_r_link3_inertia": [
         [[0.00024, 0.0, 0.0], [0.0, 0.020370000000000003, 0.0], [0.0, 0.0, 0.020370000000000003]],
         [[0.00024, 0.0, 0.0], [0.0, 0.020370000000000003, 0.0], [0.0, 0.0, 0.020370000000000003]],
         [[0.00024, 0.0, 0.0], [0.0, 0.020370000000000003, 0.0], [0.0, 0.0, 0.020370000000000003]],
@@ -325,7 +329,7 @@ _DEFAULTS = {
         [[0.00024, 0.0, 0.0], [0.0, 0.020370000000000003, 0.0], [0.0, 0.0, 0.020370000000000003]],
         [[0.00024, 0.0, 0.0], [0.0, 0.020370000000000003, 0.0], [0.0, 0.0, 0.020370000000000003]],
     ],
-    "rrrrrr_link4_mass": [
+    "six_r_link4_mass": [
         0.4,
         0.4,
         0.4,
@@ -333,7 +337,7 @@ _DEFAULTS = {
         0.4,
         0.4,
     ],
-    "rrrrrr_link4_centre_of_mass": [
+    "six_r_link4_centre_of_mass": [
         [0.0, 0.0, 0.0],
         [0.0, 0.0, 0.0],
         [0.0, 0.0, 0.0],
@@ -341,7 +345,7 @@ _DEFAULTS = {
         [0.0, 0.0, 0.0],
         [0.0, 0.0, 0.0],
     ],
-    "rrrrrr_link4_inertia": [
+    "six_r_link4_inertia": [
         [[0.0008, 0.0, 0.0], [0.0, 0.0008, 0.0], [0.0, 0.0, 0.0008]],
         [[0.0008, 0.0, 0.0], [0.0, 0.0008, 0.0], [0.0, 0.0, 0.0008]],
         [[0.0008, 0.0, 0.0], [0.0, 0.0008, 0.0], [0.0, 0.0, 0.0008]],
@@ -349,7 +353,7 @@ _DEFAULTS = {
         [[0.0008, 0.0, 0.0], [0.0, 0.0008, 0.0], [0.0, 0.0, 0.0008]],
         [[0.0008, 0.0, 0.0], [0.0, 0.0008, 0.0], [0.0, 0.0, 0.0008]],
     ],
-    "rrrrrr_link5_mass": [
+    "six_r_link5_mass": [
         0.3,
         0.3,
         0.3,
@@ -357,7 +361,7 @@ _DEFAULTS = {
         0.3,
         0.3,
     ],
-    "rrrrrr_link5_centre_of_mass": [
+    "six_r_link5_centre_of_mass": [
         [0.0, 0.0, 0.0],
         [0.0, 0.0, 0.0],
         [0.0, 0.0, 0.0],
@@ -365,7 +369,7 @@ _DEFAULTS = {
         [0.0, 0.0, 0.0],
         [0.0, 0.0, 0.0],
     ],
-    "rrrrrr_link5_inertia": [
+    "six_r_link5_inertia": [
         [[0.0006, 0.0, 0.0], [0.0, 0.0006, 0.0], [0.0, 0.0, 0.0006]],
         [[0.0006, 0.0, 0.0], [0.0, 0.0006, 0.0], [0.0, 0.0, 0.0006]],
         [[0.0006, 0.0, 0.0], [0.0, 0.0006, 0.0], [0.0, 0.0, 0.0006]],
@@ -379,30 +383,30 @@ _RULES = {  # shape, in all and of one; entries that are zero by structure; what
     "platform_mass": ((), (), (), "mass"),
     "platform_centre_of_mass": ((3,), (3,), (), "free"),
     "platform_inertia": ((3, 3), (3, 3), (), "inertia"),
-    "rrrrrr_base_point": ((6, 3), (3,), (), "free"),
-    "rrrrrr_base_frame": ((6, 3, 3), (3, 3), (), "rotation"),
-    "rrrrrr_platform_point": ((6, 3), (3,), (), "free"),
-    "rrrrrr_joint2_offset": ((6, 3), (3,), (1, 2), "free"),
-    "rrrrrr_joint3_offset": ((6, 3), (3,), (1, 2), "free"),
-    "rrrrrr_joint4_offset": ((6, 3), (3,), (1, 2), "free"),
-    "rrrrrr_joint5_offset": ((6, 3), (3,), (1, 2), "free"),
-    "rrrrrr_platform_joint_offset": ((6, 3), (3,), (1, 2), "free"),
-    "rrrrrr_platform_joint_axis_platform": ((6, 3), (3,), (), "unit"),
-    "rrrrrr_link1_mass": ((6,), (), (), "mass"),
-    "rrrrrr_link1_centre_of_mass": ((6, 3), (3,), (), "free"),
-    "rrrrrr_link1_inertia": ((6, 3, 3), (3, 3), (), "inertia"),
-    "rrrrrr_link2_mass": ((6,), (), (), "mass"),
-    "rrrrrr_link2_centre_of_mass": ((6, 3), (3,), (), "free"),
-    "rrrrrr_link2_inertia": ((6, 3, 3), (3, 3), (), "inertia"),
-    "rrrrrr_link3_mass": ((6,), (), (), "mass"),
-    "rrrrrr_link3_centre_of_mass": ((6, 3), (3,), (), "free"),
-    "rrrrrr_link3_inertia": ((6, 3, 3), (3, 3), (), "inertia"),
-    "rrrrrr_link4_mass": ((6,), (), (), "mass"),
-    "rrrrrr_link4_centre_of_mass": ((6, 3), (3,), (), "free"),
-    "rrrrrr_link4_inertia": ((6, 3, 3), (3, 3), (), "inertia"),
-    "rrrrrr_link5_mass": ((6,), (), (), "mass"),
-    "rrrrrr_link5_centre_of_mass": ((6, 3), (3,), (), "free"),
-    "rrrrrr_link5_inertia": ((6, 3, 3), (3, 3), (), "inertia"),
+    "six_r_base_point": ((6, 3), (3,), (), "free"),
+    "six_r_base_frame": ((6, 3, 3), (3, 3), (), "rotation"),
+    "six_r_platform_point": ((6, 3), (3,), (), "free"),
+    "six_r_joint2_offset": ((6, 3), (3,), (1, 2), "free"),
+    "six_r_joint3_offset": ((6, 3), (3,), (1, 2), "free"),
+    "six_r_joint4_offset": ((6, 3), (3,), (1, 2), "free"),
+    "six_r_joint5_offset": ((6, 3), (3,), (1, 2), "free"),
+    "six_r_platform_joint_offset": ((6, 3), (3,), (1, 2), "free"),
+    "six_r_platform_joint_axis_platform": ((6, 3), (3,), (), "unit"),
+    "six_r_link1_mass": ((6,), (), (), "mass"),
+    "six_r_link1_centre_of_mass": ((6, 3), (3,), (), "free"),
+    "six_r_link1_inertia": ((6, 3, 3), (3, 3), (), "inertia"),
+    "six_r_link2_mass": ((6,), (), (), "mass"),
+    "six_r_link2_centre_of_mass": ((6, 3), (3,), (), "free"),
+    "six_r_link2_inertia": ((6, 3, 3), (3, 3), (), "inertia"),
+    "six_r_link3_mass": ((6,), (), (), "mass"),
+    "six_r_link3_centre_of_mass": ((6, 3), (3,), (), "free"),
+    "six_r_link3_inertia": ((6, 3, 3), (3, 3), (), "inertia"),
+    "six_r_link4_mass": ((6,), (), (), "mass"),
+    "six_r_link4_centre_of_mass": ((6, 3), (3,), (), "free"),
+    "six_r_link4_inertia": ((6, 3, 3), (3, 3), (), "inertia"),
+    "six_r_link5_mass": ((6,), (), (), "mass"),
+    "six_r_link5_centre_of_mass": ((6, 3), (3,), (), "free"),
+    "six_r_link5_inertia": ((6, 3, 3), (3, 3), (), "inertia"),
 }
 
 
@@ -418,30 +422,30 @@ class Parameters:
         platform_mass: mass of the platform [kg], a number.
         platform_centre_of_mass: centre of mass, platform frame [m], shape (3,).
         platform_inertia: inertia tensor about the centre of mass, platform axes [kg m^2], shape (3, 3).
-        rrrrrr_base_point: base point, base frame [m], shape (6, 3).
-        rrrrrr_base_frame: rotation from leg axes to base axes [-], shape (6, 3, 3).
-        rrrrrr_platform_point: platform joint, platform frame [m], shape (6, 3).
-        rrrrrr_joint2_offset: offset of joint 2, preceding link's frame [m], shape (6, 3).
-        rrrrrr_joint3_offset: offset of joint 3, preceding link's frame [m], shape (6, 3).
-        rrrrrr_joint4_offset: offset of joint 4, preceding link's frame [m], shape (6, 3).
-        rrrrrr_joint5_offset: offset of joint 5, preceding link's frame [m], shape (6, 3).
-        rrrrrr_platform_joint_offset: offset of platform joint, preceding link's frame [m], shape (6, 3).
-        rrrrrr_platform_joint_axis_platform: axis_platform of the platform joint [-], shape (6, 3).
-        rrrrrr_link1_mass: mass of link 1 [kg], shape (6,).
-        rrrrrr_link1_centre_of_mass: centre of mass of link 1, link frame [m], shape (6, 3).
-        rrrrrr_link1_inertia: inertia tensor of link 1 about its centre of mass, link axes [kg m^2], shape (6, 3, 3).
-        rrrrrr_link2_mass: mass of link 2 [kg], shape (6,).
-        rrrrrr_link2_centre_of_mass: centre of mass of link 2, link frame [m], shape (6, 3).
-        rrrrrr_link2_inertia: inertia tensor of link 2 about its centre of mass, link axes [kg m^2], shape (6, 3, 3).
-        rrrrrr_link3_mass: mass of link 3 [kg], shape (6,).
-        rrrrrr_link3_centre_of_mass: centre of mass of link 3, link frame [m], shape (6, 3).
-        rrrrrr_link3_inertia: inertia tensor of link 3 about its centre of mass, link axes [kg m^2], shape (6, 3, 3).
-        rrrrrr_link4_mass: mass of link 4 [kg], shape (6,).
-        rrrrrr_link4_centre_of_mass: centre of mass of link 4, link frame [m], shape (6, 3).
-        rrrrrr_link4_inertia: inertia tensor of link 4 about its centre of mass, link axes [kg m^2], shape (6, 3, 3).
-        rrrrrr_link5_mass: mass of link 5 [kg], shape (6,).
-        rrrrrr_link5_centre_of_mass: centre of mass of link 5, link frame [m], shape (6, 3).
-        rrrrrr_link5_inertia: inertia tensor of link 5 about its centre of mass, link axes [kg m^2], shape (6, 3, 3).
+        six_r_base_point: base point, base frame [m], shape (6, 3).
+        six_r_base_frame: rotation from leg axes to base axes [-], shape (6, 3, 3).
+        six_r_platform_point: platform joint, platform frame [m], shape (6, 3).
+        six_r_joint2_offset: offset of joint 2, preceding link's frame [m], shape (6, 3).
+        six_r_joint3_offset: offset of joint 3, preceding link's frame [m], shape (6, 3).
+        six_r_joint4_offset: offset of joint 4, preceding link's frame [m], shape (6, 3).
+        six_r_joint5_offset: offset of joint 5, preceding link's frame [m], shape (6, 3).
+        six_r_platform_joint_offset: offset of platform joint, preceding link's frame [m], shape (6, 3).
+        six_r_platform_joint_axis_platform: axis_platform of the platform joint [-], shape (6, 3).
+        six_r_link1_mass: mass of link 1 [kg], shape (6,).
+        six_r_link1_centre_of_mass: centre of mass of link 1, link frame [m], shape (6, 3).
+        six_r_link1_inertia: inertia tensor of link 1 about its centre of mass, link axes [kg m^2], shape (6, 3, 3).
+        six_r_link2_mass: mass of link 2 [kg], shape (6,).
+        six_r_link2_centre_of_mass: centre of mass of link 2, link frame [m], shape (6, 3).
+        six_r_link2_inertia: inertia tensor of link 2 about its centre of mass, link axes [kg m^2], shape (6, 3, 3).
+        six_r_link3_mass: mass of link 3 [kg], shape (6,).
+        six_r_link3_centre_of_mass: centre of mass of link 3, link frame [m], shape (6, 3).
+        six_r_link3_inertia: inertia tensor of link 3 about its centre of mass, link axes [kg m^2], shape (6, 3, 3).
+        six_r_link4_mass: mass of link 4 [kg], shape (6,).
+        six_r_link4_centre_of_mass: centre of mass of link 4, link frame [m], shape (6, 3).
+        six_r_link4_inertia: inertia tensor of link 4 about its centre of mass, link axes [kg m^2], shape (6, 3, 3).
+        six_r_link5_mass: mass of link 5 [kg], shape (6,).
+        six_r_link5_centre_of_mass: centre of mass of link 5, link frame [m], shape (6, 3).
+        six_r_link5_inertia: inertia tensor of link 5 about its centre of mass, link axes [kg m^2], shape (6, 3, 3).
     """
 
     def __init__(self, **values):
@@ -542,7 +546,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return np.full(shape, default)
+        return _filled(shape, default) if isinstance(default, float) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -555,6 +559,16 @@ def _argument(function, name, value, shape, default=None, rule=""):
     elif rule == "positive" and not np.all((array > 0.0) & (array < np.inf)):
         raise ValueError(f"{function}: {name} must be positive and finite")
     return array
+
+
+_FILLED = {}
+
+
+def _filled(shape, value):
+    """An array of one value, made once."""
+    if (shape, value) not in _FILLED:
+        _FILLED[shape, value] = _frozen(np.full(shape, value))
+    return _FILLED[shape, value]
 
 
 def _lead(leads):
@@ -648,14 +662,14 @@ HOME_X = _frozen(np.array([0.0, 0.0, 0.75, 0.0, 0.0, 0.0, 1.0]))
 HOME_Q = _frozen(np.array([0.15, 0.9, -1.0, 0.5, 0.8, -0.15, 0.9, -1.0, -0.5, 0.8, 0.15, 0.9, -1.0, 0.5, 0.8, -0.15, 0.9, -1.0, -0.5, 0.8, 0.15, 0.9, -1.0, 0.5, 0.8, -0.15, 0.9, -1.0, -0.5, 0.8]))
 
 _BRANCHES = {  # assembly branch of home, a sign per leg
-    "sigma_closure": np.array([1.0, 1.0, 1.0, 1.0, 1.0, 1.0]),
+    "six_r_sigma_closure": np.array([1.0, 1.0, 1.0, 1.0, 1.0, 1.0]),
 }
 
 
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
-    _rrrrrr = 6
+    _six_r = 6
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -669,79 +683,79 @@ def _prepare(p):
     platform_inertia_yy = p.platform_inertia[1, 1]
     platform_inertia_yz = p.platform_inertia[1, 2]
     platform_inertia_zz = p.platform_inertia[2, 2]
-    rrrrrr_base_point_x = p.rrrrrr_base_point[:, 0]
-    rrrrrr_base_point_y = p.rrrrrr_base_point[:, 1]
-    rrrrrr_base_point_z = p.rrrrrr_base_point[:, 2]
-    rrrrrr_base_frame_xx = p.rrrrrr_base_frame[:, 0, 0]
-    rrrrrr_base_frame_xy = p.rrrrrr_base_frame[:, 0, 1]
-    rrrrrr_base_frame_xz = p.rrrrrr_base_frame[:, 0, 2]
-    rrrrrr_base_frame_yx = p.rrrrrr_base_frame[:, 1, 0]
-    rrrrrr_base_frame_yy = p.rrrrrr_base_frame[:, 1, 1]
-    rrrrrr_base_frame_yz = p.rrrrrr_base_frame[:, 1, 2]
-    rrrrrr_base_frame_zx = p.rrrrrr_base_frame[:, 2, 0]
-    rrrrrr_base_frame_zy = p.rrrrrr_base_frame[:, 2, 1]
-    rrrrrr_base_frame_zz = p.rrrrrr_base_frame[:, 2, 2]
-    rrrrrr_platform_point_x = p.rrrrrr_platform_point[:, 0]
-    rrrrrr_platform_point_y = p.rrrrrr_platform_point[:, 1]
-    rrrrrr_platform_point_z = p.rrrrrr_platform_point[:, 2]
-    rrrrrr_joint2_offset_x = p.rrrrrr_joint2_offset[:, 0]
-    rrrrrr_joint3_offset_x = p.rrrrrr_joint3_offset[:, 0]
-    rrrrrr_joint4_offset_x = p.rrrrrr_joint4_offset[:, 0]
-    rrrrrr_joint5_offset_x = p.rrrrrr_joint5_offset[:, 0]
-    rrrrrr_platform_joint_offset_x = p.rrrrrr_platform_joint_offset[:, 0]
-    rrrrrr_platform_joint_axis_platform_x = p.rrrrrr_platform_joint_axis_platform[:, 0]
-    rrrrrr_platform_joint_axis_platform_y = p.rrrrrr_platform_joint_axis_platform[:, 1]
-    rrrrrr_platform_joint_axis_platform_z = p.rrrrrr_platform_joint_axis_platform[:, 2]
-    rrrrrr_link1_mass = p.rrrrrr_link1_mass
-    rrrrrr_link1_centre_of_mass_x = p.rrrrrr_link1_centre_of_mass[:, 0]
-    rrrrrr_link1_centre_of_mass_y = p.rrrrrr_link1_centre_of_mass[:, 1]
-    rrrrrr_link1_centre_of_mass_z = p.rrrrrr_link1_centre_of_mass[:, 2]
-    rrrrrr_link1_inertia_xx = p.rrrrrr_link1_inertia[:, 0, 0]
-    rrrrrr_link2_mass = p.rrrrrr_link2_mass
-    rrrrrr_link2_centre_of_mass_x = p.rrrrrr_link2_centre_of_mass[:, 0]
-    rrrrrr_link2_centre_of_mass_y = p.rrrrrr_link2_centre_of_mass[:, 1]
-    rrrrrr_link2_centre_of_mass_z = p.rrrrrr_link2_centre_of_mass[:, 2]
-    rrrrrr_link2_inertia_xx = p.rrrrrr_link2_inertia[:, 0, 0]
-    rrrrrr_link2_inertia_xy = p.rrrrrr_link2_inertia[:, 0, 1]
-    rrrrrr_link2_inertia_xz = p.rrrrrr_link2_inertia[:, 0, 2]
-    rrrrrr_link2_inertia_yy = p.rrrrrr_link2_inertia[:, 1, 1]
-    rrrrrr_link2_inertia_yz = p.rrrrrr_link2_inertia[:, 1, 2]
-    rrrrrr_link2_inertia_zz = p.rrrrrr_link2_inertia[:, 2, 2]
-    rrrrrr_link3_mass = p.rrrrrr_link3_mass
-    rrrrrr_link3_centre_of_mass_x = p.rrrrrr_link3_centre_of_mass[:, 0]
-    rrrrrr_link3_centre_of_mass_y = p.rrrrrr_link3_centre_of_mass[:, 1]
-    rrrrrr_link3_centre_of_mass_z = p.rrrrrr_link3_centre_of_mass[:, 2]
-    rrrrrr_link3_inertia_xx = p.rrrrrr_link3_inertia[:, 0, 0]
-    rrrrrr_link3_inertia_xy = p.rrrrrr_link3_inertia[:, 0, 1]
-    rrrrrr_link3_inertia_xz = p.rrrrrr_link3_inertia[:, 0, 2]
-    rrrrrr_link3_inertia_yy = p.rrrrrr_link3_inertia[:, 1, 1]
-    rrrrrr_link3_inertia_yz = p.rrrrrr_link3_inertia[:, 1, 2]
-    rrrrrr_link3_inertia_zz = p.rrrrrr_link3_inertia[:, 2, 2]
-    rrrrrr_link4_mass = p.rrrrrr_link4_mass
-    rrrrrr_link4_centre_of_mass_x = p.rrrrrr_link4_centre_of_mass[:, 0]
-    rrrrrr_link4_centre_of_mass_y = p.rrrrrr_link4_centre_of_mass[:, 1]
-    rrrrrr_link4_centre_of_mass_z = p.rrrrrr_link4_centre_of_mass[:, 2]
-    rrrrrr_link4_inertia_xx = p.rrrrrr_link4_inertia[:, 0, 0]
-    rrrrrr_link4_inertia_xy = p.rrrrrr_link4_inertia[:, 0, 1]
-    rrrrrr_link4_inertia_xz = p.rrrrrr_link4_inertia[:, 0, 2]
-    rrrrrr_link4_inertia_yy = p.rrrrrr_link4_inertia[:, 1, 1]
-    rrrrrr_link4_inertia_yz = p.rrrrrr_link4_inertia[:, 1, 2]
-    rrrrrr_link4_inertia_zz = p.rrrrrr_link4_inertia[:, 2, 2]
-    rrrrrr_link5_mass = p.rrrrrr_link5_mass
-    rrrrrr_link5_centre_of_mass_x = p.rrrrrr_link5_centre_of_mass[:, 0]
-    rrrrrr_link5_centre_of_mass_y = p.rrrrrr_link5_centre_of_mass[:, 1]
-    rrrrrr_link5_centre_of_mass_z = p.rrrrrr_link5_centre_of_mass[:, 2]
-    rrrrrr_link5_inertia_xx = p.rrrrrr_link5_inertia[:, 0, 0]
-    rrrrrr_link5_inertia_xy = p.rrrrrr_link5_inertia[:, 0, 1]
-    rrrrrr_link5_inertia_xz = p.rrrrrr_link5_inertia[:, 0, 2]
-    rrrrrr_link5_inertia_yy = p.rrrrrr_link5_inertia[:, 1, 1]
-    rrrrrr_link5_inertia_yz = p.rrrrrr_link5_inertia[:, 1, 2]
-    rrrrrr_link5_inertia_zz = p.rrrrrr_link5_inertia[:, 2, 2]
-    # (L2) first moment about the platform origin
+    six_r_base_point_x = p.six_r_base_point[:, 0]
+    six_r_base_point_y = p.six_r_base_point[:, 1]
+    six_r_base_point_z = p.six_r_base_point[:, 2]
+    six_r_base_frame_xx = p.six_r_base_frame[:, 0, 0]
+    six_r_base_frame_xy = p.six_r_base_frame[:, 0, 1]
+    six_r_base_frame_xz = p.six_r_base_frame[:, 0, 2]
+    six_r_base_frame_yx = p.six_r_base_frame[:, 1, 0]
+    six_r_base_frame_yy = p.six_r_base_frame[:, 1, 1]
+    six_r_base_frame_yz = p.six_r_base_frame[:, 1, 2]
+    six_r_base_frame_zx = p.six_r_base_frame[:, 2, 0]
+    six_r_base_frame_zy = p.six_r_base_frame[:, 2, 1]
+    six_r_base_frame_zz = p.six_r_base_frame[:, 2, 2]
+    six_r_platform_point_x = p.six_r_platform_point[:, 0]
+    six_r_platform_point_y = p.six_r_platform_point[:, 1]
+    six_r_platform_point_z = p.six_r_platform_point[:, 2]
+    six_r_joint2_offset_x = p.six_r_joint2_offset[:, 0]
+    six_r_joint3_offset_x = p.six_r_joint3_offset[:, 0]
+    six_r_joint4_offset_x = p.six_r_joint4_offset[:, 0]
+    six_r_joint5_offset_x = p.six_r_joint5_offset[:, 0]
+    six_r_platform_joint_offset_x = p.six_r_platform_joint_offset[:, 0]
+    six_r_platform_joint_axis_platform_x = p.six_r_platform_joint_axis_platform[:, 0]
+    six_r_platform_joint_axis_platform_y = p.six_r_platform_joint_axis_platform[:, 1]
+    six_r_platform_joint_axis_platform_z = p.six_r_platform_joint_axis_platform[:, 2]
+    six_r_link1_mass = p.six_r_link1_mass
+    six_r_link1_centre_of_mass_x = p.six_r_link1_centre_of_mass[:, 0]
+    six_r_link1_centre_of_mass_y = p.six_r_link1_centre_of_mass[:, 1]
+    six_r_link1_centre_of_mass_z = p.six_r_link1_centre_of_mass[:, 2]
+    six_r_link1_inertia_xx = p.six_r_link1_inertia[:, 0, 0]
+    six_r_link2_mass = p.six_r_link2_mass
+    six_r_link2_centre_of_mass_x = p.six_r_link2_centre_of_mass[:, 0]
+    six_r_link2_centre_of_mass_y = p.six_r_link2_centre_of_mass[:, 1]
+    six_r_link2_centre_of_mass_z = p.six_r_link2_centre_of_mass[:, 2]
+    six_r_link2_inertia_xx = p.six_r_link2_inertia[:, 0, 0]
+    six_r_link2_inertia_xy = p.six_r_link2_inertia[:, 0, 1]
+    six_r_link2_inertia_xz = p.six_r_link2_inertia[:, 0, 2]
+    six_r_link2_inertia_yy = p.six_r_link2_inertia[:, 1, 1]
+    six_r_link2_inertia_yz = p.six_r_link2_inertia[:, 1, 2]
+    six_r_link2_inertia_zz = p.six_r_link2_inertia[:, 2, 2]
+    six_r_link3_mass = p.six_r_link3_mass
+    six_r_link3_centre_of_mass_x = p.six_r_link3_centre_of_mass[:, 0]
+    six_r_link3_centre_of_mass_y = p.six_r_link3_centre_of_mass[:, 1]
+    six_r_link3_centre_of_mass_z = p.six_r_link3_centre_of_mass[:, 2]
+    six_r_link3_inertia_xx = p.six_r_link3_inertia[:, 0, 0]
+    six_r_link3_inertia_xy = p.six_r_link3_inertia[:, 0, 1]
+    six_r_link3_inertia_xz = p.six_r_link3_inertia[:, 0, 2]
+    six_r_link3_inertia_yy = p.six_r_link3_inertia[:, 1, 1]
+    six_r_link3_inertia_yz = p.six_r_link3_inertia[:, 1, 2]
+    six_r_link3_inertia_zz = p.six_r_link3_inertia[:, 2, 2]
+    six_r_link4_mass = p.six_r_link4_mass
+    six_r_link4_centre_of_mass_x = p.six_r_link4_centre_of_mass[:, 0]
+    six_r_link4_centre_of_mass_y = p.six_r_link4_centre_of_mass[:, 1]
+    six_r_link4_centre_of_mass_z = p.six_r_link4_centre_of_mass[:, 2]
+    six_r_link4_inertia_xx = p.six_r_link4_inertia[:, 0, 0]
+    six_r_link4_inertia_xy = p.six_r_link4_inertia[:, 0, 1]
+    six_r_link4_inertia_xz = p.six_r_link4_inertia[:, 0, 2]
+    six_r_link4_inertia_yy = p.six_r_link4_inertia[:, 1, 1]
+    six_r_link4_inertia_yz = p.six_r_link4_inertia[:, 1, 2]
+    six_r_link4_inertia_zz = p.six_r_link4_inertia[:, 2, 2]
+    six_r_link5_mass = p.six_r_link5_mass
+    six_r_link5_centre_of_mass_x = p.six_r_link5_centre_of_mass[:, 0]
+    six_r_link5_centre_of_mass_y = p.six_r_link5_centre_of_mass[:, 1]
+    six_r_link5_centre_of_mass_z = p.six_r_link5_centre_of_mass[:, 2]
+    six_r_link5_inertia_xx = p.six_r_link5_inertia[:, 0, 0]
+    six_r_link5_inertia_xy = p.six_r_link5_inertia[:, 0, 1]
+    six_r_link5_inertia_xz = p.six_r_link5_inertia[:, 0, 2]
+    six_r_link5_inertia_yy = p.six_r_link5_inertia[:, 1, 1]
+    six_r_link5_inertia_yz = p.six_r_link5_inertia[:, 1, 2]
+    six_r_link5_inertia_zz = p.six_r_link5_inertia[:, 2, 2]
+    # (h_star) first moment about the platform origin
     h_star_t = platform_centre_of_mass_x*platform_mass
     h_star_t_2 = platform_centre_of_mass_y*platform_mass
     h_star_t_3 = platform_centre_of_mass_z*platform_mass
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_t = platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_2 = platform_centre_of_mass_y*platform_centre_of_mass_y
     J_star_t_3 = platform_centre_of_mass_z*platform_centre_of_mass_z
@@ -752,279 +766,288 @@ def _prepare(p):
     J_star_t_8 = platform_mass*(J_star_t_2 - J_star_t_4)
     J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass
     J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4)
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread_t = 0.16666666666666666*sqrt(6.0)
-    # (rrrrrr-G4) inertia tensor of link 1 about the origin of link 1
-    J_1_t = rrrrrr_link1_centre_of_mass_x*rrrrrr_link1_centre_of_mass_x
-    J_1_t_2 = (
-    J_1_t + rrrrrr_link1_centre_of_mass_y*rrrrrr_link1_centre_of_mass_y +
-        rrrrrr_link1_centre_of_mass_z*rrrrrr_link1_centre_of_mass_z
+    # (six_r-rho_tip_5) connection point to the centre of mass of link 5
+    six_r_rho_tip_5_x = six_r_link5_centre_of_mass_x - six_r_platform_joint_offset_x
+    # (six_r-h_5) first moment of link 5 about the connection point
+    six_r_h_5_x = six_r_link5_mass*six_r_rho_tip_5_x
+    six_r_h_5_y = six_r_link5_centre_of_mass_y*six_r_link5_mass
+    six_r_h_5_z = six_r_link5_centre_of_mass_z*six_r_link5_mass
+    # (six_r-size) length of the leg's lever arms, the measure of what is near singular
+    six_r_size_t = six_r_platform_joint_offset_x*six_r_platform_joint_offset_x
+    six_r_size_t_2 = (
+    6.98155500249e-07 + six_r_joint3_offset_x*six_r_joint3_offset_x +
+        six_r_joint4_offset_x*six_r_joint4_offset_x + six_r_joint5_offset_x*six_r_joint5_offset_x
+        + six_r_size_t
     )
-    J_1_xx = rrrrrr_link1_inertia_xx - rrrrrr_link1_mass*(J_1_t - J_1_t_2)
-    # (rrrrrr-G6) inertia tensor of link 2 about the origin of link 2
-    J_2_t = rrrrrr_link2_centre_of_mass_x*rrrrrr_link2_centre_of_mass_x
-    J_2_t_2 = rrrrrr_link2_centre_of_mass_y*rrrrrr_link2_centre_of_mass_y
-    J_2_t_3 = rrrrrr_link2_centre_of_mass_z*rrrrrr_link2_centre_of_mass_z
-    J_2_t_4 = J_2_t + J_2_t_2 + J_2_t_3
-    J_2_xx = rrrrrr_link2_inertia_xx - rrrrrr_link2_mass*(J_2_t - J_2_t_4)
-    J_2_xy = (
-    rrrrrr_link2_inertia_xy -
-        rrrrrr_link2_centre_of_mass_x*rrrrrr_link2_centre_of_mass_y*rrrrrr_link2_mass
+    six_r_size = sqrt(six_r_size_t_2)
+    # (six_r-J_5) inertia tensor of link 5 about the connection point
+    six_r_J_5_t = six_r_rho_tip_5_x*six_r_rho_tip_5_x
+    six_r_J_5_t_2 = six_r_link5_centre_of_mass_y*six_r_link5_centre_of_mass_y
+    six_r_J_5_t_3 = six_r_link5_centre_of_mass_z*six_r_link5_centre_of_mass_z
+    six_r_J_5_t_4 = six_r_J_5_t + six_r_J_5_t_2 + six_r_J_5_t_3
+    six_r_J_5_xx = six_r_link5_inertia_xx - six_r_link5_mass*(six_r_J_5_t - six_r_J_5_t_4)
+    six_r_J_5_xy = (
+    six_r_link5_inertia_xy - six_r_link5_centre_of_mass_y*six_r_link5_mass*six_r_rho_tip_5_x
     )
-    J_2_xz = (
-    rrrrrr_link2_inertia_xz -
-        rrrrrr_link2_centre_of_mass_x*rrrrrr_link2_centre_of_mass_z*rrrrrr_link2_mass
+    six_r_J_5_xz = (
+    six_r_link5_inertia_xz - six_r_link5_centre_of_mass_z*six_r_link5_mass*six_r_rho_tip_5_x
     )
-    J_2_yy = rrrrrr_link2_inertia_yy - rrrrrr_link2_mass*(J_2_t_2 - J_2_t_4)
-    J_2_yz = (
-    rrrrrr_link2_inertia_yz -
-        rrrrrr_link2_centre_of_mass_y*rrrrrr_link2_centre_of_mass_z*rrrrrr_link2_mass
+    six_r_J_5_yy = six_r_link5_inertia_yy - six_r_link5_mass*(six_r_J_5_t_2 - six_r_J_5_t_4)
+    six_r_J_5_yz = (
+    six_r_link5_inertia_yz -
+        six_r_link5_centre_of_mass_y*six_r_link5_centre_of_mass_z*six_r_link5_mass
     )
-    J_2_zz = rrrrrr_link2_inertia_zz - rrrrrr_link2_mass*(J_2_t_3 - J_2_t_4)
-    # (rrrrrr-G8) inertia tensor of link 3 about the origin of link 3
-    J_3_t = rrrrrr_link3_centre_of_mass_x*rrrrrr_link3_centre_of_mass_x
-    J_3_t_2 = rrrrrr_link3_centre_of_mass_y*rrrrrr_link3_centre_of_mass_y
-    J_3_t_3 = rrrrrr_link3_centre_of_mass_z*rrrrrr_link3_centre_of_mass_z
-    J_3_t_4 = J_3_t + J_3_t_2 + J_3_t_3
-    J_3_xx = rrrrrr_link3_inertia_xx - rrrrrr_link3_mass*(J_3_t - J_3_t_4)
-    J_3_xy = (
-    rrrrrr_link3_inertia_xy -
-        rrrrrr_link3_centre_of_mass_x*rrrrrr_link3_centre_of_mass_y*rrrrrr_link3_mass
+    six_r_J_5_zz = six_r_link5_inertia_zz - six_r_link5_mass*(six_r_J_5_t_3 - six_r_J_5_t_4)
+    # (six_r-J_4) inertia tensor of link 4 about the origin of link 4
+    six_r_J_4_t = six_r_link4_centre_of_mass_x*six_r_link4_centre_of_mass_x
+    six_r_J_4_t_2 = six_r_link4_centre_of_mass_y*six_r_link4_centre_of_mass_y
+    six_r_J_4_t_3 = six_r_link4_centre_of_mass_z*six_r_link4_centre_of_mass_z
+    six_r_J_4_t_4 = six_r_J_4_t + six_r_J_4_t_2 + six_r_J_4_t_3
+    six_r_J_4_xx = six_r_link4_inertia_xx - six_r_link4_mass*(six_r_J_4_t - six_r_J_4_t_4)
+    six_r_J_4_xy = (
+    six_r_link4_inertia_xy -
+        six_r_link4_centre_of_mass_x*six_r_link4_centre_of_mass_y*six_r_link4_mass
     )
-    J_3_xz = (
-    rrrrrr_link3_inertia_xz -
-        rrrrrr_link3_centre_of_mass_x*rrrrrr_link3_centre_of_mass_z*rrrrrr_link3_mass
+    six_r_J_4_xz = (
+    six_r_link4_inertia_xz -
+        six_r_link4_centre_of_mass_x*six_r_link4_centre_of_mass_z*six_r_link4_mass
     )
-    J_3_yy = rrrrrr_link3_inertia_yy - rrrrrr_link3_mass*(J_3_t_2 - J_3_t_4)
-    J_3_yz = (
-    rrrrrr_link3_inertia_yz -
-        rrrrrr_link3_centre_of_mass_y*rrrrrr_link3_centre_of_mass_z*rrrrrr_link3_mass
+    six_r_J_4_yy = six_r_link4_inertia_yy - six_r_link4_mass*(six_r_J_4_t_2 - six_r_J_4_t_4)
+    six_r_J_4_yz = (
+    six_r_link4_inertia_yz -
+        six_r_link4_centre_of_mass_y*six_r_link4_centre_of_mass_z*six_r_link4_mass
     )
-    J_3_zz = rrrrrr_link3_inertia_zz - rrrrrr_link3_mass*(J_3_t_3 - J_3_t_4)
-    # (rrrrrr-G10) inertia tensor of link 4 about the origin of link 4
-    J_4_t = rrrrrr_link4_centre_of_mass_x*rrrrrr_link4_centre_of_mass_x
-    J_4_t_2 = rrrrrr_link4_centre_of_mass_y*rrrrrr_link4_centre_of_mass_y
-    J_4_t_3 = rrrrrr_link4_centre_of_mass_z*rrrrrr_link4_centre_of_mass_z
-    J_4_t_4 = J_4_t + J_4_t_2 + J_4_t_3
-    J_4_xx = rrrrrr_link4_inertia_xx - rrrrrr_link4_mass*(J_4_t - J_4_t_4)
-    J_4_xy = (
-    rrrrrr_link4_inertia_xy -
-        rrrrrr_link4_centre_of_mass_x*rrrrrr_link4_centre_of_mass_y*rrrrrr_link4_mass
+    six_r_J_4_zz = six_r_link4_inertia_zz - six_r_link4_mass*(six_r_J_4_t_3 - six_r_J_4_t_4)
+    # (six_r-Jc_4) inertia tensor of the links from 4 outwards about joint 4, that of the last link about the connection point
+    six_r_Jc_4_xx = six_r_J_4_zz + six_r_J_5_zz
+    # (six_r-h_4) first moment of link 4 about the origin of link 4
+    six_r_h_4_x = six_r_link4_centre_of_mass_x*six_r_link4_mass
+    six_r_h_4_y = six_r_link4_centre_of_mass_y*six_r_link4_mass
+    six_r_h_4_z = six_r_link4_centre_of_mass_z*six_r_link4_mass
+    # (six_r-J_3) inertia tensor of link 3 about the origin of link 3
+    six_r_J_3_t = six_r_link3_centre_of_mass_x*six_r_link3_centre_of_mass_x
+    six_r_J_3_t_2 = six_r_link3_centre_of_mass_y*six_r_link3_centre_of_mass_y
+    six_r_J_3_t_3 = six_r_link3_centre_of_mass_z*six_r_link3_centre_of_mass_z
+    six_r_J_3_t_4 = six_r_J_3_t + six_r_J_3_t_2 + six_r_J_3_t_3
+    six_r_J_3_xx = six_r_link3_inertia_xx - six_r_link3_mass*(six_r_J_3_t - six_r_J_3_t_4)
+    six_r_J_3_xy = (
+    six_r_link3_inertia_xy -
+        six_r_link3_centre_of_mass_x*six_r_link3_centre_of_mass_y*six_r_link3_mass
     )
-    J_4_xz = (
-    rrrrrr_link4_inertia_xz -
-        rrrrrr_link4_centre_of_mass_x*rrrrrr_link4_centre_of_mass_z*rrrrrr_link4_mass
+    six_r_J_3_xz = (
+    six_r_link3_inertia_xz -
+        six_r_link3_centre_of_mass_x*six_r_link3_centre_of_mass_z*six_r_link3_mass
     )
-    J_4_yy = rrrrrr_link4_inertia_yy - rrrrrr_link4_mass*(J_4_t_2 - J_4_t_4)
-    J_4_yz = (
-    rrrrrr_link4_inertia_yz -
-        rrrrrr_link4_centre_of_mass_y*rrrrrr_link4_centre_of_mass_z*rrrrrr_link4_mass
+    six_r_J_3_yy = six_r_link3_inertia_yy - six_r_link3_mass*(six_r_J_3_t_2 - six_r_J_3_t_4)
+    six_r_J_3_yz = (
+    six_r_link3_inertia_yz -
+        six_r_link3_centre_of_mass_y*six_r_link3_centre_of_mass_z*six_r_link3_mass
     )
-    J_4_zz = rrrrrr_link4_inertia_zz - rrrrrr_link4_mass*(J_4_t_3 - J_4_t_4)
-    # (rrrrrr-G11) connection point to the centre of mass of link 5
-    rho_tip_5_x = rrrrrr_link5_centre_of_mass_x - rrrrrr_platform_joint_offset_x
-    # (rrrrrr-G13) inertia tensor of link 5 about the connection point
-    J_5_t = rho_tip_5_x*rho_tip_5_x
-    J_5_t_2 = rrrrrr_link5_centre_of_mass_y*rrrrrr_link5_centre_of_mass_y
-    J_5_t_3 = rrrrrr_link5_centre_of_mass_z*rrrrrr_link5_centre_of_mass_z
-    J_5_t_4 = J_5_t + J_5_t_2 + J_5_t_3
-    J_5_xx = rrrrrr_link5_inertia_xx - rrrrrr_link5_mass*(J_5_t - J_5_t_4)
-    J_5_xy = rrrrrr_link5_inertia_xy - rho_tip_5_x*rrrrrr_link5_centre_of_mass_y*rrrrrr_link5_mass
-    J_5_xz = rrrrrr_link5_inertia_xz - rho_tip_5_x*rrrrrr_link5_centre_of_mass_z*rrrrrr_link5_mass
-    J_5_yy = rrrrrr_link5_inertia_yy - rrrrrr_link5_mass*(J_5_t_2 - J_5_t_4)
-    J_5_yz = (
-    rrrrrr_link5_inertia_yz -
-        rrrrrr_link5_centre_of_mass_y*rrrrrr_link5_centre_of_mass_z*rrrrrr_link5_mass
+    six_r_J_3_zz = six_r_link3_inertia_zz - six_r_link3_mass*(six_r_J_3_t_3 - six_r_J_3_t_4)
+    # (six_r-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link about the connection point
+    six_r_Jc_3_t = 0.5*six_r_link4_mass
+    six_r_Jc_3_t_2 = six_r_joint4_offset_x*(six_r_h_4_x + six_r_Jc_3_t*six_r_joint4_offset_x)
+    six_r_Jc_3_t_3 = 2.0*six_r_Jc_3_t_2
+    # (six_r-h_3) first moment of link 3 about the origin of link 3
+    six_r_h_3_x = six_r_link3_centre_of_mass_x*six_r_link3_mass
+    six_r_h_3_y = six_r_link3_centre_of_mass_y*six_r_link3_mass
+    six_r_h_3_z = six_r_link3_centre_of_mass_z*six_r_link3_mass
+    # (six_r-hc_3) first moment of the links from 3 outwards
+    six_r_hc_3_x = six_r_h_3_x + six_r_h_4_x + six_r_joint4_offset_x*six_r_link4_mass
+    # (six_r-J_2) inertia tensor of link 2 about the origin of link 2
+    six_r_J_2_t = six_r_link2_centre_of_mass_x*six_r_link2_centre_of_mass_x
+    six_r_J_2_t_2 = six_r_link2_centre_of_mass_y*six_r_link2_centre_of_mass_y
+    six_r_J_2_t_3 = six_r_link2_centre_of_mass_z*six_r_link2_centre_of_mass_z
+    six_r_J_2_t_4 = six_r_J_2_t + six_r_J_2_t_2 + six_r_J_2_t_3
+    six_r_J_2_xx = six_r_link2_inertia_xx - six_r_link2_mass*(six_r_J_2_t - six_r_J_2_t_4)
+    six_r_J_2_xy = (
+    six_r_link2_inertia_xy -
+        six_r_link2_centre_of_mass_x*six_r_link2_centre_of_mass_y*six_r_link2_mass
     )
-    J_5_zz = rrrrrr_link5_inertia_zz - rrrrrr_link5_mass*(J_5_t_3 - J_5_t_4)
-    # (rrrrrr-N33) inertia tensor of the links from 4 outwards about joint 4
-    Jc_4_xx = J_4_zz + J_5_zz
-    # (rrrrrr-G9) first moment of link 4 about the origin of link 4
-    h_4_x = rrrrrr_link4_centre_of_mass_x*rrrrrr_link4_mass
-    h_4_y = rrrrrr_link4_centre_of_mass_y*rrrrrr_link4_mass
-    h_4_z = rrrrrr_link4_centre_of_mass_z*rrrrrr_link4_mass
-    # (rrrrrr-N44) inertia tensor of the links from 3 outwards about joint 3
-    Jc_3_t = 0.5*rrrrrr_link4_mass
-    Jc_3_t_2 = rrrrrr_joint4_offset_x*(h_4_x + Jc_3_t*rrrrrr_joint4_offset_x)
-    Jc_3_t_3 = 2.0*Jc_3_t_2
-    # (rrrrrr-G7) first moment of link 3 about the origin of link 3
-    h_3_x = rrrrrr_link3_centre_of_mass_x*rrrrrr_link3_mass
-    h_3_y = rrrrrr_link3_centre_of_mass_y*rrrrrr_link3_mass
-    h_3_z = rrrrrr_link3_centre_of_mass_z*rrrrrr_link3_mass
-    # (rrrrrr-N43) first moment of the links from 3 outwards
-    hc_3_x = h_3_x + h_4_x + rrrrrr_joint4_offset_x*rrrrrr_link4_mass
-    # (rrrrrr-N53) inertia tensor of the links from 2 outwards about joint 2
-    Jc_2_t = rrrrrr_joint3_offset_x*(Jc_3_t + 0.5*rrrrrr_link3_mass)
-    # (rrrrrr-G5) first moment of link 2 about the origin of link 2
-    h_2_x = rrrrrr_link2_centre_of_mass_x*rrrrrr_link2_mass
-    h_2_y = rrrrrr_link2_centre_of_mass_y*rrrrrr_link2_mass
-    h_2_z = rrrrrr_link2_centre_of_mass_z*rrrrrr_link2_mass
-    # (rrrrrr-G12) first moment of link 5 about the connection point
-    h_5_x = rho_tip_5_x*rrrrrr_link5_mass
-    h_5_y = rrrrrr_link5_centre_of_mass_y*rrrrrr_link5_mass
-    h_5_z = rrrrrr_link5_centre_of_mass_z*rrrrrr_link5_mass
-    # (rrrrrr-G2) length of the leg's lever arms, the measure of what is near singular
-    size_t = rrrrrr_platform_joint_offset_x*rrrrrr_platform_joint_offset_x
-    size_t_2 = (
-    6.98155500249e-07 + rrrrrr_joint3_offset_x*rrrrrr_joint3_offset_x +
-        rrrrrr_joint4_offset_x*rrrrrr_joint4_offset_x +
-        rrrrrr_joint5_offset_x*rrrrrr_joint5_offset_x + size_t
+    six_r_J_2_xz = (
+    six_r_link2_inertia_xz -
+        six_r_link2_centre_of_mass_x*six_r_link2_centre_of_mass_z*six_r_link2_mass
     )
-    size = sqrt(size_t_2)
-    # (L2) first moment about the platform origin
-    h_star_t_4 = rrrrrr_link5_mass*rrrrrr_platform_point_x
-    h_star_t_5 = rrrrrr_link5_mass*rrrrrr_platform_point_y
-    h_star_t_6 = rrrrrr_link5_mass*rrrrrr_platform_point_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t_11 = rrrrrr_platform_point_x*rrrrrr_platform_point_x
-    J_star_t_12 = rrrrrr_platform_point_y*rrrrrr_platform_point_y
-    J_star_t_13 = rrrrrr_platform_point_z*rrrrrr_platform_point_z
-    J_star_t_14 = J_star_t_11 + J_star_t_12 + J_star_t_13
-    J_star_t_15 = rrrrrr_link5_mass*(J_star_t_11 - J_star_t_14)
-    J_star_t_16 = rrrrrr_link5_mass*rrrrrr_platform_point_x*rrrrrr_platform_point_y
-    J_star_t_17 = rrrrrr_link5_mass*rrrrrr_platform_point_x*rrrrrr_platform_point_z
-    J_star_t_18 = rrrrrr_link5_mass*(J_star_t_12 - J_star_t_14)
-    J_star_t_19 = rrrrrr_link5_mass*rrrrrr_platform_point_y*rrrrrr_platform_point_z
-    J_star_t_20 = rrrrrr_link5_mass*(J_star_t_13 - J_star_t_14)
-    # (rrrrrr-N16) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
-    g_r0_x = (
-    gravity_x*rrrrrr_base_frame_xy + gravity_y*rrrrrr_base_frame_yy +
-        gravity_z*rrrrrr_base_frame_zy
+    six_r_J_2_yy = six_r_link2_inertia_yy - six_r_link2_mass*(six_r_J_2_t_2 - six_r_J_2_t_4)
+    six_r_J_2_yz = (
+    six_r_link2_inertia_yz -
+        six_r_link2_centre_of_mass_y*six_r_link2_centre_of_mass_z*six_r_link2_mass
     )
-    g_r0_y = (
-    gravity_x*rrrrrr_base_frame_xz + gravity_y*rrrrrr_base_frame_yz +
-        gravity_z*rrrrrr_base_frame_zz
+    six_r_J_2_zz = six_r_link2_inertia_zz - six_r_link2_mass*(six_r_J_2_t_3 - six_r_J_2_t_4)
+    # (six_r-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+    six_r_Jc_2_t = six_r_joint3_offset_x*(six_r_Jc_3_t + 0.5*six_r_link3_mass)
+    # (six_r-h_2) first moment of link 2 about the origin of link 2
+    six_r_h_2_x = six_r_link2_centre_of_mass_x*six_r_link2_mass
+    six_r_h_2_y = six_r_link2_centre_of_mass_y*six_r_link2_mass
+    six_r_h_2_z = six_r_link2_centre_of_mass_z*six_r_link2_mass
+    # (six_r-J_1) inertia tensor of link 1 about the origin of link 1
+    six_r_J_1_t = six_r_link1_centre_of_mass_x*six_r_link1_centre_of_mass_x
+    six_r_J_1_t_2 = (
+    six_r_J_1_t + six_r_link1_centre_of_mass_y*six_r_link1_centre_of_mass_y +
+        six_r_link1_centre_of_mass_z*six_r_link1_centre_of_mass_z
     )
-    g_r0_z = (
-    gravity_x*rrrrrr_base_frame_xx + gravity_y*rrrrrr_base_frame_yx +
-        gravity_z*rrrrrr_base_frame_zx
+    six_r_J_1_xx = six_r_link1_inertia_xx - six_r_link1_mass*(six_r_J_1_t - six_r_J_1_t_2)
+    # (h_star) first moment about the platform origin
+    six_r_h_star_t = six_r_link5_mass*six_r_platform_point_x
+    six_r_h_star_t_2 = six_r_link5_mass*six_r_platform_point_y
+    six_r_h_star_t_3 = six_r_link5_mass*six_r_platform_point_z
+    # (J_star) inertia tensor about the platform origin
+    six_r_J_star_t = six_r_platform_point_x*six_r_platform_point_x
+    six_r_J_star_t_2 = six_r_platform_point_y*six_r_platform_point_y
+    six_r_J_star_t_3 = six_r_platform_point_z*six_r_platform_point_z
+    six_r_J_star_t_4 = six_r_J_star_t + six_r_J_star_t_2 + six_r_J_star_t_3
+    six_r_J_star_t_5 = six_r_link5_mass*(six_r_J_star_t - six_r_J_star_t_4)
+    six_r_J_star_t_6 = six_r_link5_mass*six_r_platform_point_x*six_r_platform_point_y
+    six_r_J_star_t_7 = six_r_link5_mass*six_r_platform_point_x*six_r_platform_point_z
+    six_r_J_star_t_8 = six_r_link5_mass*(six_r_J_star_t_2 - six_r_J_star_t_4)
+    six_r_J_star_t_9 = six_r_link5_mass*six_r_platform_point_y*six_r_platform_point_z
+    six_r_J_star_t_10 = six_r_link5_mass*(six_r_J_star_t_3 - six_r_J_star_t_4)
+    # (six_r-trace_J_5) half the trace of that inertia tensor
+    six_r_trace_J_5 = 0.5*six_r_J_5_xx + 0.5*six_r_J_5_yy + 0.5*six_r_J_5_zz
+    # (six_r-Sigma_5) second moment of mass of the links that turn with link 5
+    six_r_Sigma_5_xx = six_r_trace_J_5 - six_r_J_5_xx
+    six_r_Sigma_5_yy = six_r_trace_J_5 - six_r_J_5_yy
+    six_r_Sigma_5_zz = six_r_trace_J_5 - six_r_J_5_zz
+    # (six_r-acc_4_o) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+    six_r_g_r0_x = (
+    gravity_x*six_r_base_frame_xy + gravity_y*six_r_base_frame_yy + gravity_z*six_r_base_frame_zy
     )
-    # (rrrrrr-N70) half the trace of that inertia tensor
-    trace_J_4 = 0.5*J_4_xx + 0.5*J_4_yy + 0.5*J_4_zz
-    # (rrrrrr-N71) second moment of mass of the links that turn with link 4
-    Sigma_4_xx = trace_J_4 - J_4_zz
-    Sigma_4_yy = trace_J_4 - J_4_yy
-    Sigma_4_zz = trace_J_4 - J_4_xx
-    # (rrrrrr-N62) half the trace of that inertia tensor
-    trace_J_5 = 0.5*J_5_xx + 0.5*J_5_yy + 0.5*J_5_zz
-    # (rrrrrr-N63) second moment of mass of the links that turn with link 5
-    Sigma_5_xx = trace_J_5 - J_5_xx
-    Sigma_5_yy = trace_J_5 - J_5_yy
-    Sigma_5_zz = trace_J_5 - J_5_zz
-    # (rrrrrr-N80) half the trace of that inertia tensor
-    trace_J_3 = 0.5*J_3_xx + 0.5*J_3_yy + 0.5*J_3_zz
-    # (rrrrrr-N81) second moment of mass of the links that turn with link 3
-    Sigma_3_xx = trace_J_3 - J_3_xx
-    Sigma_3_yy = trace_J_3 - J_3_yy
-    Sigma_3_zz = trace_J_3 - J_3_zz
-    # (rrrrrr-N92) half the trace of that inertia tensor
-    trace_J_2 = 0.5*J_2_xx + 0.5*J_2_yy + 0.5*J_2_zz
-    # (rrrrrr-N93) second moment of mass of the links that turn with link 2
-    Sigma_2_xx = trace_J_2 - J_2_xx
-    Sigma_2_yy = trace_J_2 - J_2_yy
-    Sigma_2_zz = trace_J_2 - J_2_zz
-    # (rrrrrr-G3) first moment of link 1 about the origin of link 1
-    h_1_x = rrrrrr_link1_centre_of_mass_x*rrrrrr_link1_mass
-    h_1_y = rrrrrr_link1_centre_of_mass_y*rrrrrr_link1_mass
-    h_1_z = rrrrrr_link1_centre_of_mass_z*rrrrrr_link1_mass
-    # (V1) potential energy
-    b_r0_x = (
-    rrrrrr_base_frame_xy*rrrrrr_base_point_x + rrrrrr_base_frame_yy*rrrrrr_base_point_y +
-        rrrrrr_base_frame_zy*rrrrrr_base_point_z
+    six_r_g_r0_y = (
+    gravity_x*six_r_base_frame_xz + gravity_y*six_r_base_frame_yz + gravity_z*six_r_base_frame_zz
     )
-    b_r0_y = (
-    rrrrrr_base_frame_xz*rrrrrr_base_point_x + rrrrrr_base_frame_yz*rrrrrr_base_point_y +
-        rrrrrr_base_frame_zz*rrrrrr_base_point_z
+    six_r_g_r0_z = (
+    gravity_x*six_r_base_frame_xx + gravity_y*six_r_base_frame_yx + gravity_z*six_r_base_frame_zx
     )
-    b_r0_z = (
-    rrrrrr_base_frame_xx*rrrrrr_base_point_x + rrrrrr_base_frame_yx*rrrrrr_base_point_y +
-        rrrrrr_base_frame_zx*rrrrrr_base_point_z
+    # (six_r-trace_J_4) half the trace of that inertia tensor
+    six_r_trace_J_4 = 0.5*six_r_J_4_xx + 0.5*six_r_J_4_yy + 0.5*six_r_J_4_zz
+    # (six_r-Sigma_4) second moment of mass of the links that turn with link 4
+    six_r_Sigma_4_xx = six_r_trace_J_4 - six_r_J_4_zz
+    six_r_Sigma_4_yy = six_r_trace_J_4 - six_r_J_4_yy
+    six_r_Sigma_4_zz = six_r_trace_J_4 - six_r_J_4_xx
+    # (six_r-trace_J_3) half the trace of that inertia tensor
+    six_r_trace_J_3 = 0.5*six_r_J_3_xx + 0.5*six_r_J_3_yy + 0.5*six_r_J_3_zz
+    # (six_r-Sigma_3) second moment of mass of the links that turn with link 3
+    six_r_Sigma_3_xx = six_r_trace_J_3 - six_r_J_3_xx
+    six_r_Sigma_3_yy = six_r_trace_J_3 - six_r_J_3_yy
+    six_r_Sigma_3_zz = six_r_trace_J_3 - six_r_J_3_zz
+    # (six_r-trace_J_2) half the trace of that inertia tensor
+    six_r_trace_J_2 = 0.5*six_r_J_2_xx + 0.5*six_r_J_2_yy + 0.5*six_r_J_2_zz
+    # (six_r-Sigma_2) second moment of mass of the links that turn with link 2
+    six_r_Sigma_2_xx = six_r_trace_J_2 - six_r_J_2_xx
+    six_r_Sigma_2_yy = six_r_trace_J_2 - six_r_J_2_yy
+    six_r_Sigma_2_zz = six_r_trace_J_2 - six_r_J_2_zz
+    # (six_r-h_1) first moment of link 1 about the origin of link 1
+    six_r_h_1_x = six_r_link1_centre_of_mass_x*six_r_link1_mass
+    six_r_h_1_y = six_r_link1_centre_of_mass_y*six_r_link1_mass
+    six_r_h_1_z = six_r_link1_centre_of_mass_z*six_r_link1_mass
+    # (potential) potential energy
+    six_r_b_r0_x = (
+    six_r_base_frame_xy*six_r_base_point_x + six_r_base_frame_yy*six_r_base_point_y +
+        six_r_base_frame_zy*six_r_base_point_z
     )
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    inv_size = 1.0/size
-    total_rrrrrr = np.sum(np.broadcast_to(rrrrrr_link5_mass, _rrrrrr))
-    total_rrrrrr_x = np.sum(np.broadcast_to(h_star_t_4, _rrrrrr))
-    total_rrrrrr_y = np.sum(np.broadcast_to(h_star_t_5, _rrrrrr))
-    total_rrrrrr_z = np.sum(np.broadcast_to(h_star_t_6, _rrrrrr))
-    total_rrrrrr_xx = np.sum(np.broadcast_to(J_star_t_15, _rrrrrr))
-    total_rrrrrr_xy = np.sum(np.broadcast_to(J_star_t_16, _rrrrrr))
-    total_rrrrrr_xz = np.sum(np.broadcast_to(J_star_t_17, _rrrrrr))
-    total_rrrrrr_yy = np.sum(np.broadcast_to(J_star_t_18, _rrrrrr))
-    total_rrrrrr_yz = np.sum(np.broadcast_to(J_star_t_19, _rrrrrr))
-    total_rrrrrr_zz = np.sum(np.broadcast_to(J_star_t_20, _rrrrrr))
-    total_rrrrrr_x_2 = np.sum(np.broadcast_to(rrrrrr_platform_point_x, _rrrrrr))
-    total_rrrrrr_y_2 = np.sum(np.broadcast_to(rrrrrr_platform_point_y, _rrrrrr))
-    total_rrrrrr_z_2 = np.sum(np.broadcast_to(rrrrrr_platform_point_z, _rrrrrr))
-    total_rrrrrr_2 = np.sum(np.broadcast_to(size_t_2, _rrrrrr))
-    # (L1) mass of the platform with the gathered masses
-    m_star = platform_mass + total_rrrrrr
-    # (L2) first moment about the platform origin
-    h_star_x = h_star_t + total_rrrrrr_x
-    h_star_y = h_star_t_2 + total_rrrrrr_y
-    h_star_z = h_star_t_3 + total_rrrrrr_z
-    # (L3) inertia tensor about the platform origin
-    J_star_xx = platform_inertia_xx - J_star_t_5 - total_rrrrrr_xx
-    J_star_xy = platform_inertia_xy - J_star_t_6 - total_rrrrrr_xy
-    J_star_xz = platform_inertia_xz - J_star_t_7 - total_rrrrrr_xz
-    J_star_yy = platform_inertia_yy - J_star_t_8 - total_rrrrrr_yy
-    J_star_yz = platform_inertia_yz - J_star_t_9 - total_rrrrrr_yz
-    J_star_zz = platform_inertia_zz - J_star_t_10 - total_rrrrrr_zz
-    J_star_t_21 = J_star_xx - J_star_yy
-    J_star_t_22 = 0.5*J_star_t_21
-    J_star_t_23 = J_star_xx - J_star_zz
-    J_star_t_24 = 0.5*J_star_t_23
-    # (M4) centripetal force and weight of the platform
+    six_r_b_r0_y = (
+    six_r_base_frame_xz*six_r_base_point_x + six_r_base_frame_yz*six_r_base_point_y +
+        six_r_base_frame_zz*six_r_base_point_z
+    )
+    six_r_b_r0_z = (
+    six_r_base_frame_xx*six_r_base_point_x + six_r_base_frame_yx*six_r_base_point_y +
+        six_r_base_frame_zx*six_r_base_point_z
+    )
+    # (six_r-w_1) force part of reciprocal wrench 1
+    inv_six_r_size = 1.0/six_r_size
+    total_six_r = np.sum(np.broadcast_to(six_r_link5_mass, _six_r))
+    total_six_r_x = np.sum(np.broadcast_to(six_r_h_star_t, _six_r))
+    total_six_r_y = np.sum(np.broadcast_to(six_r_h_star_t_2, _six_r))
+    total_six_r_z = np.sum(np.broadcast_to(six_r_h_star_t_3, _six_r))
+    total_six_r_xx = np.sum(np.broadcast_to(six_r_J_star_t_5, _six_r))
+    total_six_r_xy = np.sum(np.broadcast_to(six_r_J_star_t_6, _six_r))
+    total_six_r_xz = np.sum(np.broadcast_to(six_r_J_star_t_7, _six_r))
+    total_six_r_yy = np.sum(np.broadcast_to(six_r_J_star_t_8, _six_r))
+    total_six_r_yz = np.sum(np.broadcast_to(six_r_J_star_t_9, _six_r))
+    total_six_r_zz = np.sum(np.broadcast_to(six_r_J_star_t_10, _six_r))
+    total_six_r_x_2 = np.sum(np.broadcast_to(six_r_platform_point_x, _six_r))
+    total_six_r_y_2 = np.sum(np.broadcast_to(six_r_platform_point_y, _six_r))
+    total_six_r_z_2 = np.sum(np.broadcast_to(six_r_platform_point_z, _six_r))
+    total_six_r_2 = np.sum(np.broadcast_to(six_r_size_t_2, _six_r))
+    # (m_star) mass of the platform with the gathered masses
+    m_star = platform_mass + total_six_r
+    # (h_star) first moment about the platform origin
+    h_star_x = h_star_t + total_six_r_x
+    h_star_y = h_star_t_2 + total_six_r_y
+    h_star_z = h_star_t_3 + total_six_r_z
+    # (J_star) inertia tensor about the platform origin
+    J_star_xx = platform_inertia_xx - J_star_t_5 - total_six_r_xx
+    J_star_xy = platform_inertia_xy - J_star_t_6 - total_six_r_xy
+    J_star_xz = platform_inertia_xz - J_star_t_7 - total_six_r_xz
+    J_star_yy = platform_inertia_yy - J_star_t_8 - total_six_r_yy
+    J_star_yz = platform_inertia_yz - J_star_t_9 - total_six_r_yz
+    J_star_zz = platform_inertia_zz - J_star_t_10 - total_six_r_zz
+    J_star_t_11 = J_star_xx - J_star_yy
+    J_star_t_12 = 0.5*J_star_t_11
+    J_star_t_13 = J_star_xx - J_star_zz
+    J_star_t_14 = 0.5*J_star_t_13
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
     Z_p_t_3 = gravity_z*m_star
-    # (C1) centroid of the platform points
-    b_c_x = 0.16666666666666666*total_rrrrrr_x_2
-    b_c_y = 0.16666666666666666*total_rrrrrr_y_2
-    b_c_z = 0.16666666666666666*total_rrrrrr_z_2
-    # (C3) rms size of the legs, taken where the platform points coincide
-    legs_size = spread_t*sqrt(total_rrrrrr_2)
+    # (b_c) centroid of the platform points
+    b_c_x = 0.16666666666666666*total_six_r_x_2
+    b_c_y = 0.16666666666666666*total_six_r_y_2
+    b_c_z = 0.16666666666666666*total_six_r_z_2
+    # (legs_size) rms size of the legs, taken where the platform points coincide
+    legs_size = spread_t*sqrt(total_six_r_2)
     return {
         "dynamics": (
-        (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
                 J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
                 h_star_y, h_star_z, m_star,),
             (
-                (_rrrrrr,
-        (J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yy,
-                    J_3_yz, J_3_zz, J_4_xx, J_4_xy, J_4_xz, J_4_yy, J_4_yz, J_5_xx, J_5_xy,
-                    J_5_xz, J_5_yy, J_5_yz, J_5_zz, Jc_2_t, Jc_3_t_2, Jc_3_t_3, Jc_4_xx,
-                    Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz,
-                    Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, Sigma_5_xx, Sigma_5_yy, Sigma_5_zz,
-                    g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y,
-                    h_3_z, h_4_x, h_4_y, h_4_z, h_5_x, h_5_y, h_5_z, hc_3_x, rrrrrr_base_frame_xx,
-                    rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
-                    rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
-                    rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
-                    rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x,
-                    rrrrrr_link3_mass, rrrrrr_link4_mass, rrrrrr_platform_joint_axis_platform_x,
-                    rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
-                    rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x,
-                    rrrrrr_platform_point_y, rrrrrr_platform_point_z, size, size_t,),
+                (_six_r,
+        (six_r_J_1_xx, six_r_J_2_xx, six_r_J_2_xy, six_r_J_2_xz, six_r_J_2_yy, six_r_J_2_yz,
+                    six_r_J_2_zz, six_r_J_3_xx, six_r_J_3_xy, six_r_J_3_xz, six_r_J_3_yy,
+                    six_r_J_3_yz, six_r_J_3_zz, six_r_J_4_xx, six_r_J_4_xy, six_r_J_4_xz,
+                    six_r_J_4_yy, six_r_J_4_yz, six_r_J_5_xx, six_r_J_5_xy, six_r_J_5_xz,
+                    six_r_J_5_yy, six_r_J_5_yz, six_r_J_5_zz, six_r_Jc_2_t, six_r_Jc_3_t_2,
+                    six_r_Jc_3_t_3, six_r_Jc_4_xx, six_r_Sigma_2_xx, six_r_Sigma_2_yy,
+                    six_r_Sigma_2_zz, six_r_Sigma_3_xx, six_r_Sigma_3_yy, six_r_Sigma_3_zz,
+                    six_r_Sigma_4_xx, six_r_Sigma_4_yy, six_r_Sigma_4_zz, six_r_Sigma_5_xx,
+                    six_r_Sigma_5_yy, six_r_Sigma_5_zz, six_r_base_frame_xx, six_r_base_frame_xy,
+                    six_r_base_frame_xz, six_r_base_frame_yx, six_r_base_frame_yy,
+                    six_r_base_frame_yz, six_r_base_frame_zx, six_r_base_frame_zy,
+                    six_r_base_frame_zz, six_r_g_r0_x, six_r_g_r0_y, six_r_g_r0_z, six_r_h_1_y,
+                    six_r_h_1_z, six_r_h_2_x, six_r_h_2_y, six_r_h_2_z, six_r_h_3_x, six_r_h_3_y,
+                    six_r_h_3_z, six_r_h_4_x, six_r_h_4_y, six_r_h_4_z, six_r_h_5_x, six_r_h_5_y,
+                    six_r_h_5_z, six_r_hc_3_x, six_r_joint2_offset_x, six_r_joint3_offset_x,
+                    six_r_joint4_offset_x, six_r_joint5_offset_x, six_r_link3_mass,
+                    six_r_link4_mass, six_r_platform_joint_axis_platform_x,
+                    six_r_platform_joint_axis_platform_y, six_r_platform_joint_axis_platform_z,
+                    six_r_platform_joint_offset_x, six_r_platform_point_x, six_r_platform_point_y,
+                    six_r_platform_point_z, six_r_size, six_r_size_t,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
+        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
                 h_star_z, m_star,),
             (
-                (_rrrrrr,
-        (J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yy,
-                    J_3_yz, J_3_zz, J_4_xx, J_4_xy, J_4_xz, J_4_yy, J_4_yz, J_5_xx, J_5_xy,
-                    J_5_xz, J_5_yy, J_5_yz, J_5_zz, Jc_2_t, Jc_3_t_2, Jc_3_t_3, Jc_4_xx, h_3_y,
-                    h_3_z, h_4_y, h_4_z, h_5_x, h_5_y, h_5_z, hc_3_x, rrrrrr_base_frame_xx,
-                    rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
-                    rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
-                    rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
-                    rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x,
-                    rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
-                    rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
-                    rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z,
-                    size, size_t,),
+                (_six_r,
+        (six_r_J_1_xx, six_r_J_2_xx, six_r_J_2_xy, six_r_J_2_xz, six_r_J_2_yy, six_r_J_2_yz,
+                    six_r_J_2_zz, six_r_J_3_xx, six_r_J_3_xy, six_r_J_3_xz, six_r_J_3_yy,
+                    six_r_J_3_yz, six_r_J_3_zz, six_r_J_4_xx, six_r_J_4_xy, six_r_J_4_xz,
+                    six_r_J_4_yy, six_r_J_4_yz, six_r_J_5_xx, six_r_J_5_xy, six_r_J_5_xz,
+                    six_r_J_5_yy, six_r_J_5_yz, six_r_J_5_zz, six_r_Jc_2_t, six_r_Jc_3_t_2,
+                    six_r_Jc_3_t_3, six_r_Jc_4_xx, six_r_base_frame_xx, six_r_base_frame_xy,
+                    six_r_base_frame_xz, six_r_base_frame_yx, six_r_base_frame_yy,
+                    six_r_base_frame_yz, six_r_base_frame_zx, six_r_base_frame_zy,
+                    six_r_base_frame_zz, six_r_h_3_y, six_r_h_3_z, six_r_h_4_y, six_r_h_4_z,
+                    six_r_h_5_x, six_r_h_5_y, six_r_h_5_z, six_r_hc_3_x, six_r_joint2_offset_x,
+                    six_r_joint3_offset_x, six_r_joint4_offset_x, six_r_joint5_offset_x,
+                    six_r_platform_joint_axis_platform_x, six_r_platform_joint_axis_platform_y,
+                    six_r_platform_joint_axis_platform_z, six_r_platform_joint_offset_x,
+                    six_r_platform_point_x, six_r_platform_point_y, six_r_platform_point_z,
+                    six_r_size, six_r_size_t,),
                 ),
             ),
         ),
@@ -1032,35 +1055,39 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
                 Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
             (
-                (_rrrrrr,
-        (J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, J_4_xy, J_4_xz, J_4_yz, J_5_xy,
-                    J_5_xz, J_5_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy,
-                    Sigma_3_zz, Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, Sigma_5_xx, Sigma_5_yy,
-                    Sigma_5_zz, g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x,
-                    h_3_y, h_3_z, h_4_x, h_4_y, h_4_z, h_5_x, h_5_y, h_5_z, rrrrrr_base_frame_xx,
-                    rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
-                    rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
-                    rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
-                    rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x,
-                    rrrrrr_link3_mass, rrrrrr_link4_mass, rrrrrr_platform_joint_axis_platform_x,
-                    rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
-                    rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x,
-                    rrrrrr_platform_point_y, rrrrrr_platform_point_z, size, size_t,),
+                (_six_r,
+        (six_r_J_1_xx, six_r_J_2_xy, six_r_J_2_xz, six_r_J_2_yz, six_r_J_3_xy, six_r_J_3_xz,
+                    six_r_J_3_yz, six_r_J_4_xy, six_r_J_4_xz, six_r_J_4_yz, six_r_J_5_xy,
+                    six_r_J_5_xz, six_r_J_5_yz, six_r_Sigma_2_xx, six_r_Sigma_2_yy,
+                    six_r_Sigma_2_zz, six_r_Sigma_3_xx, six_r_Sigma_3_yy, six_r_Sigma_3_zz,
+                    six_r_Sigma_4_xx, six_r_Sigma_4_yy, six_r_Sigma_4_zz, six_r_Sigma_5_xx,
+                    six_r_Sigma_5_yy, six_r_Sigma_5_zz, six_r_base_frame_xx, six_r_base_frame_xy,
+                    six_r_base_frame_xz, six_r_base_frame_yx, six_r_base_frame_yy,
+                    six_r_base_frame_yz, six_r_base_frame_zx, six_r_base_frame_zy,
+                    six_r_base_frame_zz, six_r_g_r0_x, six_r_g_r0_y, six_r_g_r0_z, six_r_h_1_y,
+                    six_r_h_1_z, six_r_h_2_x, six_r_h_2_y, six_r_h_2_z, six_r_h_3_x, six_r_h_3_y,
+                    six_r_h_3_z, six_r_h_4_x, six_r_h_4_y, six_r_h_4_z, six_r_h_5_x, six_r_h_5_y,
+                    six_r_h_5_z, six_r_joint2_offset_x, six_r_joint3_offset_x,
+                    six_r_joint4_offset_x, six_r_joint5_offset_x, six_r_link3_mass,
+                    six_r_link4_mass, six_r_platform_joint_axis_platform_x,
+                    six_r_platform_joint_axis_platform_y, six_r_platform_joint_axis_platform_z,
+                    six_r_platform_joint_offset_x, six_r_platform_point_x, six_r_platform_point_y,
+                    six_r_platform_point_z, six_r_size, six_r_size_t,),
                 ),
             ),
         ),
         "H": (
         (),
             (
-                (_rrrrrr,
-        (rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
-                    rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
-                    rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
-                    rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x,
-                    rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
-                    rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
-                    rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z,
-                    size, size_t,),
+                (_six_r,
+        (six_r_base_frame_xx, six_r_base_frame_xy, six_r_base_frame_xz, six_r_base_frame_yx,
+                    six_r_base_frame_yy, six_r_base_frame_yz, six_r_base_frame_zx,
+                    six_r_base_frame_zy, six_r_base_frame_zz, six_r_joint2_offset_x,
+                    six_r_joint3_offset_x, six_r_joint4_offset_x, six_r_joint5_offset_x,
+                    six_r_platform_joint_axis_platform_x, six_r_platform_joint_axis_platform_y,
+                    six_r_platform_joint_axis_platform_z, six_r_platform_joint_offset_x,
+                    six_r_platform_point_x, six_r_platform_point_y, six_r_platform_point_z,
+                    six_r_size, six_r_size_t,),
                 ),
             ),
         ),
@@ -1068,27 +1095,31 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
                 gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
-                (_rrrrrr,
-        (J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, J_4_xy, J_4_xz, J_4_yz, J_5_xy,
-                    J_5_xz, J_5_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy,
-                    Sigma_3_zz, Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, Sigma_5_xx, Sigma_5_yy,
-                    Sigma_5_zz, g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x,
-                    h_3_y, h_3_z, h_4_x, h_4_y, h_4_z, h_5_x, h_5_y, h_5_z, rrrrrr_base_frame_xx,
-                    rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
-                    rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
-                    rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
-                    rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x,
-                    rrrrrr_link3_mass, rrrrrr_link4_mass, rrrrrr_platform_joint_axis_platform_x,
-                    rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
-                    rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x,
-                    rrrrrr_platform_point_y, rrrrrr_platform_point_z, size, size_t,),
+                (_six_r,
+        (six_r_J_1_xx, six_r_J_2_xy, six_r_J_2_xz, six_r_J_2_yz, six_r_J_3_xy, six_r_J_3_xz,
+                    six_r_J_3_yz, six_r_J_4_xy, six_r_J_4_xz, six_r_J_4_yz, six_r_J_5_xy,
+                    six_r_J_5_xz, six_r_J_5_yz, six_r_Sigma_2_xx, six_r_Sigma_2_yy,
+                    six_r_Sigma_2_zz, six_r_Sigma_3_xx, six_r_Sigma_3_yy, six_r_Sigma_3_zz,
+                    six_r_Sigma_4_xx, six_r_Sigma_4_yy, six_r_Sigma_4_zz, six_r_Sigma_5_xx,
+                    six_r_Sigma_5_yy, six_r_Sigma_5_zz, six_r_base_frame_xx, six_r_base_frame_xy,
+                    six_r_base_frame_xz, six_r_base_frame_yx, six_r_base_frame_yy,
+                    six_r_base_frame_yz, six_r_base_frame_zx, six_r_base_frame_zy,
+                    six_r_base_frame_zz, six_r_g_r0_x, six_r_g_r0_y, six_r_g_r0_z, six_r_h_1_y,
+                    six_r_h_1_z, six_r_h_2_x, six_r_h_2_y, six_r_h_2_z, six_r_h_3_x, six_r_h_3_y,
+                    six_r_h_3_z, six_r_h_4_x, six_r_h_4_y, six_r_h_4_z, six_r_h_5_x, six_r_h_5_y,
+                    six_r_h_5_z, six_r_joint2_offset_x, six_r_joint3_offset_x,
+                    six_r_joint4_offset_x, six_r_joint5_offset_x, six_r_link3_mass,
+                    six_r_link4_mass, six_r_platform_joint_axis_platform_x,
+                    six_r_platform_joint_axis_platform_y, six_r_platform_joint_axis_platform_z,
+                    six_r_platform_joint_offset_x, six_r_platform_point_x, six_r_platform_point_y,
+                    six_r_platform_point_z, six_r_size, six_r_size_t,),
                 ),
             ),
         ),
         "inverse_kinematics": (
         (),
             (
-                (_rrrrrr,
+                (_six_r,
         (),
                 ),
             ),
@@ -1096,99 +1127,105 @@ def _prepare(p):
         "joint_rates": (
         (),
             (
-                (_rrrrrr,
-        (rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
-                    rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
-                    rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
-                    rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x,
-                    rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
-                    rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
-                    rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z,
-                    size, size_t,),
+                (_six_r,
+        (six_r_base_frame_xx, six_r_base_frame_xy, six_r_base_frame_xz, six_r_base_frame_yx,
+                    six_r_base_frame_yy, six_r_base_frame_yz, six_r_base_frame_zx,
+                    six_r_base_frame_zy, six_r_base_frame_zz, six_r_joint2_offset_x,
+                    six_r_joint3_offset_x, six_r_joint4_offset_x, six_r_joint5_offset_x,
+                    six_r_platform_joint_axis_platform_x, six_r_platform_joint_axis_platform_y,
+                    six_r_platform_joint_axis_platform_z, six_r_platform_joint_offset_x,
+                    six_r_platform_point_x, six_r_platform_point_y, six_r_platform_point_z,
+                    six_r_size, six_r_size_t,),
                 ),
             ),
         ),
         "joint_accelerations": (
         (),
             (
-                (_rrrrrr,
-        (rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
-                    rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
-                    rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
-                    rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x,
-                    rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
-                    rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
-                    rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z,
-                    size, size_t,),
+                (_six_r,
+        (six_r_base_frame_xx, six_r_base_frame_xy, six_r_base_frame_xz, six_r_base_frame_yx,
+                    six_r_base_frame_yy, six_r_base_frame_yz, six_r_base_frame_zx,
+                    six_r_base_frame_zy, six_r_base_frame_zz, six_r_joint2_offset_x,
+                    six_r_joint3_offset_x, six_r_joint4_offset_x, six_r_joint5_offset_x,
+                    six_r_platform_joint_axis_platform_x, six_r_platform_joint_axis_platform_y,
+                    six_r_platform_joint_axis_platform_z, six_r_platform_joint_offset_x,
+                    six_r_platform_point_x, six_r_platform_point_y, six_r_platform_point_z,
+                    six_r_size, six_r_size_t,),
                 ),
             ),
         ),
         "legs": (
         (gravity_x, gravity_y, gravity_z,),
             (
-                (_rrrrrr,
-        (J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, J_4_xy, J_4_xz, J_4_yz, J_5_xy,
-                    J_5_xz, J_5_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy,
-                    Sigma_3_zz, Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, Sigma_5_xx, Sigma_5_yy,
-                    Sigma_5_zz, g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x,
-                    h_3_y, h_3_z, h_4_x, h_4_y, h_4_z, h_5_x, h_5_y, h_5_z, rrrrrr_base_frame_xx,
-                    rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
-                    rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
-                    rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
-                    rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x,
-                    rrrrrr_link3_mass, rrrrrr_link4_mass, rrrrrr_link5_mass,
-                    rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
-                    rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
-                    rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z,
-                    size, size_t,),
+                (_six_r,
+        (six_r_J_1_xx, six_r_J_2_xy, six_r_J_2_xz, six_r_J_2_yz, six_r_J_3_xy, six_r_J_3_xz,
+                    six_r_J_3_yz, six_r_J_4_xy, six_r_J_4_xz, six_r_J_4_yz, six_r_J_5_xy,
+                    six_r_J_5_xz, six_r_J_5_yz, six_r_Sigma_2_xx, six_r_Sigma_2_yy,
+                    six_r_Sigma_2_zz, six_r_Sigma_3_xx, six_r_Sigma_3_yy, six_r_Sigma_3_zz,
+                    six_r_Sigma_4_xx, six_r_Sigma_4_yy, six_r_Sigma_4_zz, six_r_Sigma_5_xx,
+                    six_r_Sigma_5_yy, six_r_Sigma_5_zz, six_r_base_frame_xx, six_r_base_frame_xy,
+                    six_r_base_frame_xz, six_r_base_frame_yx, six_r_base_frame_yy,
+                    six_r_base_frame_yz, six_r_base_frame_zx, six_r_base_frame_zy,
+                    six_r_base_frame_zz, six_r_g_r0_x, six_r_g_r0_y, six_r_g_r0_z, six_r_h_1_y,
+                    six_r_h_1_z, six_r_h_2_x, six_r_h_2_y, six_r_h_2_z, six_r_h_3_x, six_r_h_3_y,
+                    six_r_h_3_z, six_r_h_4_x, six_r_h_4_y, six_r_h_4_z, six_r_h_5_x, six_r_h_5_y,
+                    six_r_h_5_z, six_r_joint2_offset_x, six_r_joint3_offset_x,
+                    six_r_joint4_offset_x, six_r_joint5_offset_x, six_r_link3_mass,
+                    six_r_link4_mass, six_r_link5_mass, six_r_platform_joint_axis_platform_x,
+                    six_r_platform_joint_axis_platform_y, six_r_platform_joint_axis_platform_z,
+                    six_r_platform_joint_offset_x, six_r_platform_point_x, six_r_platform_point_y,
+                    six_r_platform_point_z, six_r_size, six_r_size_t,),
                 ),
             ),
         ),
         "potential": (
         (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
-                (_rrrrrr,
-        (b_r0_x, b_r0_y, b_r0_z, g_r0_x, g_r0_y, g_r0_z, h_1_x, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z,
-                    h_3_x, h_3_y, h_3_z, h_4_x, h_4_y, h_4_z, h_5_x, h_5_y, h_5_z,
-                    rrrrrr_joint2_offset_x, rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x,
-                    rrrrrr_link1_mass, rrrrrr_link2_mass, rrrrrr_link3_mass, rrrrrr_link4_mass,),
+                (_six_r,
+        (six_r_b_r0_x, six_r_b_r0_y, six_r_b_r0_z, six_r_g_r0_x, six_r_g_r0_y, six_r_g_r0_z,
+                    six_r_h_1_x, six_r_h_1_y, six_r_h_1_z, six_r_h_2_x, six_r_h_2_y, six_r_h_2_z,
+                    six_r_h_3_x, six_r_h_3_y, six_r_h_3_z, six_r_h_4_x, six_r_h_4_y, six_r_h_4_z,
+                    six_r_h_5_x, six_r_h_5_y, six_r_h_5_z, six_r_joint2_offset_x,
+                    six_r_joint3_offset_x, six_r_joint4_offset_x, six_r_link1_mass,
+                    six_r_link2_mass, six_r_link3_mass, six_r_link4_mass,),
                 ),
             ),
         ),
         "condition": (
         (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
             (
-                (_rrrrrr,
-        (inv_size, rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz,
-                    rrrrrr_base_frame_yx, rrrrrr_base_frame_yy, rrrrrr_base_frame_yz,
-                    rrrrrr_base_frame_zx, rrrrrr_base_frame_zy, rrrrrr_base_frame_zz,
-                    rrrrrr_joint2_offset_x, rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x,
-                    rrrrrr_joint5_offset_x, rrrrrr_platform_joint_axis_platform_x,
-                    rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
-                    rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x,
-                    rrrrrr_platform_point_y, rrrrrr_platform_point_z, size, size_t,),
+                (_six_r,
+        (inv_six_r_size, six_r_base_frame_xx, six_r_base_frame_xy, six_r_base_frame_xz,
+                    six_r_base_frame_yx, six_r_base_frame_yy, six_r_base_frame_yz,
+                    six_r_base_frame_zx, six_r_base_frame_zy, six_r_base_frame_zz,
+                    six_r_joint2_offset_x, six_r_joint3_offset_x, six_r_joint4_offset_x,
+                    six_r_joint5_offset_x, six_r_platform_joint_axis_platform_x,
+                    six_r_platform_joint_axis_platform_y, six_r_platform_joint_axis_platform_z,
+                    six_r_platform_joint_offset_x, six_r_platform_point_x, six_r_platform_point_y,
+                    six_r_platform_point_z, six_r_size, six_r_size_t,),
                 ),
             ),
         ),
-        "closure_rrrrrr": (
+        "closure_six_r": (
         (),
             (
-                (_rrrrrr,
-        (rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
-                    rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
-                    rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_base_point_x,
-                    rrrrrr_base_point_y, rrrrrr_base_point_z, rrrrrr_joint2_offset_x,
-                    rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x,
-                    rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
-                    rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
-                    rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z,),
+                (_six_r,
+        (six_r_base_frame_xx, six_r_base_frame_xy, six_r_base_frame_xz, six_r_base_frame_yx,
+                    six_r_base_frame_yy, six_r_base_frame_yz, six_r_base_frame_zx,
+                    six_r_base_frame_zy, six_r_base_frame_zz, six_r_base_point_x,
+                    six_r_base_point_y, six_r_base_point_z, six_r_joint2_offset_x,
+                    six_r_joint3_offset_x, six_r_joint4_offset_x, six_r_joint5_offset_x,
+                    six_r_platform_joint_axis_platform_x, six_r_platform_joint_axis_platform_y,
+                    six_r_platform_joint_axis_platform_z, six_r_platform_joint_offset_x,
+                    six_r_platform_point_x, six_r_platform_point_y, six_r_platform_point_z,),
                 ),
             ),
         ),
     }
 
 
-_FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
+_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
@@ -1234,17 +1271,19 @@ class _Floats:
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
-        for k in range(self.states):
-            try:
-                ok, arrays = function(self, *(row[k] for row in rows))
-            except (ZeroDivisionError, OverflowError):
-                continue
-            if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
-                for a, array in zip(found, arrays):
-                    a[k] = array
-        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
+        found = [self.state(function, names, [row[k] for row in rows]) for k in range(self.states)]
+        return [np.array(a).T.reshape(*_SHAPES[n], self.states) for a, n in zip(zip(*found), names)]
+
+    def state(self, function, names, given):
+        """Lists that a function gives at a state."""
+        try:
+            ok, arrays = function(self, *given)
+        except (ZeroDivisionError, OverflowError):
+            ok = False
+        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+            return arrays
+        return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
 
 
 class _Arrays:
@@ -1312,35 +1351,44 @@ def _mode(p, states):
     return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
 
 
-def _call(function, steps, p, *arguments, mode=_mode):
-    """What the steps give at arguments (name, value, shape of a state, default, rule)."""
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+    """What the steps give at arguments (name, value, shape of a state, default, rule).
+
+    Where that may be infinite only NaN makes a state impossible.
+    """
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
     lead, p = _lead(leads), _given(p)
     read = [a[4:] != ("unused",) for a in arguments]
     if lead or mode is _Judged:
-        results = _many(steps, p, lead, given, shapes, read, mode)
+        results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
-        results = _one(steps, p, given, shapes, read)
+        results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
 
 
-def _one(steps, p, given, shapes, read):
+def _one(steps, p, given, shapes, read, unbounded):
     """Results at a single state."""
     states = [v.reshape(*shape, 1) for v, shape in zip(given, shapes)]
     with np.errstate(all="ignore"):
-        results = [a[..., 0] for a in steps(_Floats(p, 1), *states)]
-    if all(all(map(math.isfinite, v.ravel().tolist())) for v in (*compress(given, read), *results)):
-        return [np.array(a)[()] for a in results]
+        results = [a[..., 0].copy() for a in steps(_Floats(p, 1), *states)]
+    looked_at = [np.minimum(a, 0.0) for a in results] if unbounded else results
+    entries = (v.ravel().tolist() for v in (*compress(given, read), *looked_at))
+    if all(all(map(math.isfinite, row)) for row in entries):
+        return [a[()] for a in results]
     return [np.full(a.shape, np.nan)[()] for a in results]
 
 
-def _many(steps, p, lead, given, shapes, read, mode):
+def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block."""
     count = math.prod(lead)
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
+    if count > _BLOCK:
+        # Never touched, freed at once: the C library, which learns from it, then keeps the memory
+        # of intermediate arrays from block to block instead of giving its pages back.
+        np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
         for first in range(0, max(count, 1), _BLOCK):
             block = slice(first, min(first + _BLOCK, count))
@@ -1352,7 +1400,7 @@ def _many(steps, p, lead, given, shapes, read, mode):
             _all_finite(compress(states, read), good)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite(found, good)
+            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -1388,6 +1436,18 @@ def _wrapped(a, places):
     result = np.array(a)
     result[places] = np.pi - np.remainder(np.pi - a[places], 2.0 * np.pi)
     return result
+
+
+def _unlimited(a, places):
+    """a, some entries infinite; what is not known stays so."""
+    result = np.array(a)
+    result[places] += np.inf
+    return result
+
+
+def _not_negative(a):
+    """1 where no entry is negative, else 0; NaN where one is not finite."""
+    return np.where(np.isfinite(a).all(axis=0), np.all(a >= 0.0, axis=0), np.nan)
 
 
 def _rows_divided(a, b, places):
@@ -1490,8 +1550,8 @@ def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
     n, states = b.shape
     if 0 < states <= _FEW:
-        matrices, rights = np.moveaxis(a, -1, 0).tolist(), b.T.tolist()
-        return np.array([_solve_one(*each) for each in zip(matrices, rights)]).T.reshape(n, states)
+        systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
+        return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
     good = np.all((size > 0.0) & np.isfinite(size), axis=0)
     rows = np.concatenate((a, b[:, None]), axis=1)
@@ -1518,28 +1578,32 @@ def _solve(a, b):
 
 
 def _solve_one(a, b):
-    """The same for one system of nested lists."""
-    n = len(b)
-    failure = [np.nan] * n
-    for i, row in enumerate(a):
-        size = max(map(abs, row), default=0.0)
-        if not 0.0 < size < np.inf:
-            return failure
-        a[i] = [v / size for v in row] + [b[i] / size]
-    for k in range(n):
-        best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
-            a[k], a[best] = a[best], a[k]
-        if not abs(a[k][k]) > _PIVOT:
-            return failure
-        head = a[k]
-        for i in range(k + 1, n):
-            factor = a[i][k] / head[k]
-            a[i] = [v - factor * h for v, h in zip(a[i], head)]
-    x = [0.0] * n
-    for k in reversed(range(n)):
-        x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
-    return x if all(map(math.isfinite, x)) else failure
+    """The same for one system of nested lists: the rows left lose an entry at every step."""
+    rows, heads = [], []
+    for row, right in zip(a, b):
+        size = max(map(abs, row))
+        if not 0.0 < size < math.inf:
+            return [math.nan] * len(b)
+        rows.append([v / size for v in (*row, right)])
+    while rows:
+        column = [abs(row[0]) for row in rows]
+        largest = max(column)
+        if largest > _CLEARLY * column[0]:
+            best = column.index(largest)
+            rows[0], rows[best] = rows[best], rows[0]
+        pivot, *head = rows[0]
+        if not abs(pivot) > _PIVOT:
+            return [math.nan] * len(b)
+        heads.append((pivot, head))
+        for i in range(1, len(rows)):
+            first, *row = rows[i]
+            factor = first / pivot
+            rows[i] = [v - factor * h for v, h in zip(row, head)]
+        del rows[0]
+    x = []
+    for pivot, (*head, right) in reversed(heads):
+        x.insert(0, (right - sum([h * v for h, v in zip(head, x)])) / pivot)
+    return x if all(map(math.isfinite, x)) else [math.nan] * len(b)
 
 
 def _matrices(a, *others):
@@ -1704,14 +1768,14 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 10749 mul, 8193 add, 30 div, 30 sqrt, 60 trig
+# dynamics: 10683 mul, 8139 add, 30 div, 30 sqrt, 60 trig
 def _run_dynamics(m, X, V, q):
     sqrt = m.sqrt
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("dynamics")
     (
-    J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
+    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
         Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
         m_star,
     ) = shared
@@ -1761,1667 +1825,2066 @@ def _run_dynamics(m, X, V, q):
     out_M = m.zeros("M")
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy
-    J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
     J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_12 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_15 = 2.0*J_star_t_14 + J_star_xx
-    # (M4) centripetal force and weight of the platform
+    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
+    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
     Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
     Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z_2*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x_2*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y - g_r0_y_2*h_star_x
+    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
+    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
     sums = [0.0] * 27
     for leg, k in legs[0]:
         (
-        J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yy,
-            J_3_yz, J_3_zz, J_4_xx, J_4_xy, J_4_xz, J_4_yy, J_4_yz, J_5_xx, J_5_xy, J_5_xz,
-            J_5_yy, J_5_yz, J_5_zz, Jc_2_t, Jc_3_t_2, Jc_3_t_3, Jc_4_xx, Sigma_2_xx, Sigma_2_yy,
-            Sigma_2_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, Sigma_4_xx, Sigma_4_yy, Sigma_4_zz,
-            Sigma_5_xx, Sigma_5_yy, Sigma_5_zz, g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x,
-            h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, h_4_x, h_4_y, h_4_z, h_5_x, h_5_y, h_5_z, hc_3_x,
-            rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz,
-            rrrrrr_base_frame_yx, rrrrrr_base_frame_yy, rrrrrr_base_frame_yz,
-            rrrrrr_base_frame_zx, rrrrrr_base_frame_zy, rrrrrr_base_frame_zz,
-            rrrrrr_joint2_offset_x, rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x,
-            rrrrrr_joint5_offset_x, rrrrrr_link3_mass, rrrrrr_link4_mass,
-            rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
-            rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
-            rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z, size,
-            size_t,
+        six_r_J_1_xx, six_r_J_2_xx, six_r_J_2_xy, six_r_J_2_xz, six_r_J_2_yy, six_r_J_2_yz,
+            six_r_J_2_zz, six_r_J_3_xx, six_r_J_3_xy, six_r_J_3_xz, six_r_J_3_yy, six_r_J_3_yz,
+            six_r_J_3_zz, six_r_J_4_xx, six_r_J_4_xy, six_r_J_4_xz, six_r_J_4_yy, six_r_J_4_yz,
+            six_r_J_5_xx, six_r_J_5_xy, six_r_J_5_xz, six_r_J_5_yy, six_r_J_5_yz, six_r_J_5_zz,
+            six_r_Jc_2_t, six_r_Jc_3_t_2, six_r_Jc_3_t_3, six_r_Jc_4_xx, six_r_Sigma_2_xx,
+            six_r_Sigma_2_yy, six_r_Sigma_2_zz, six_r_Sigma_3_xx, six_r_Sigma_3_yy,
+            six_r_Sigma_3_zz, six_r_Sigma_4_xx, six_r_Sigma_4_yy, six_r_Sigma_4_zz,
+            six_r_Sigma_5_xx, six_r_Sigma_5_yy, six_r_Sigma_5_zz, six_r_base_frame_xx,
+            six_r_base_frame_xy, six_r_base_frame_xz, six_r_base_frame_yx, six_r_base_frame_yy,
+            six_r_base_frame_yz, six_r_base_frame_zx, six_r_base_frame_zy, six_r_base_frame_zz,
+            six_r_g_r0_x, six_r_g_r0_y, six_r_g_r0_z, six_r_h_1_y, six_r_h_1_z, six_r_h_2_x,
+            six_r_h_2_y, six_r_h_2_z, six_r_h_3_x, six_r_h_3_y, six_r_h_3_z, six_r_h_4_x,
+            six_r_h_4_y, six_r_h_4_z, six_r_h_5_x, six_r_h_5_y, six_r_h_5_z, six_r_hc_3_x,
+            six_r_joint2_offset_x, six_r_joint3_offset_x, six_r_joint4_offset_x,
+            six_r_joint5_offset_x, six_r_link3_mass, six_r_link4_mass,
+            six_r_platform_joint_axis_platform_x, six_r_platform_joint_axis_platform_y,
+            six_r_platform_joint_axis_platform_z, six_r_platform_joint_offset_x,
+            six_r_platform_point_x, six_r_platform_point_y, six_r_platform_point_z, six_r_size,
+            six_r_size_t,
         ) = k
-        q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
-        q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
-        q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
-        q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
-        q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
-        # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
-        c_5_t = sin(q_5)
-        # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
-        s_5 = cos(q_5)
-        # (rrrrrr-V2) from joint 4 to the connection point, along the links
-        r_4_t = c_5_t*rrrrrr_platform_joint_offset_x
-        r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5
-        # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
-        c_4_t = sin(q_4)
-        # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
-        s_4 = cos(q_4)
-        # (rrrrrr-V2) from joint 4 to the connection point, along the links
-        r_4_t_2 = r_4_t*s_4
-        r_4_t_3 = c_4_t*r_4_t
-        # (rrrrrr-V3) from joint 3 to the connection point, along the links
-        r_3_x = r_4_z + rrrrrr_joint4_offset_x
-        # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
-        c_3 = cos(q_3)
-        # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
-        s_3 = sin(q_3)
-        # (rrrrrr-V3) from joint 3 to the connection point, along the links
-        r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3
-        # (rrrrrr-V4) from joint 2 to the connection point, along the links
-        r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3
-        # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
-        c_2_t = sin(q_2)
-        # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
-        s_2 = cos(q_2)
-        # (rrrrrr-V4) from joint 2 to the connection point, along the links
-        r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2
-        # (rrrrrr-V5) from joint 1 to the connection point, along the links
-        r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y
-        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-        e_1_r2_x = c_3*s_2 - c_2_t*s_3
-        e_1_r2_y = -c_2_t*c_3 - s_2*s_3
-        v_1_t = c_4_t*e_1_r2_y
-        v_1_t_2 = e_1_r2_y*s_4
-        e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5
-        e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x
-        # (rrrrrr-V5) from joint 1 to the connection point, along the links
-        r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x
-        r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2
-        r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3
-        r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3
-        r_1_t = r_4_t_3*s_4
-        r_1_r4_x = r_1_t - c_4_t*r_1_r2_y
-        r_1_t_2 = c_4_t*r_4_t_3
-        r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4
-        r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y
-        r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5
-        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-        v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t
-        v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t
-        v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x
-        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-        v_2_t = c_4_t*c_5_t
-        v_2_t_2 = c_4_t*s_5
-        # (rrrrrr-V4) from joint 2 to the connection point, along the links
-        r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3
-        r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3
-        r_2_r2_x = r_1_t - c_4_t*r_2_r0_y
-        r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4
-        r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y
-        r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5
-        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-        v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4
-        v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t
-        v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2
-        # (rrrrrr-V3) from joint 3 to the connection point, along the links
-        r_3_r1_x = r_1_t - c_4_t*r_4_t_2
-        r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4
-        r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y
-        r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5
-        # (rrrrrr-V8) velocity of the connection point per rate of joint 3
-        v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4
-        v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t
-        v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2
-        # (rrrrrr-V9) velocity of the connection point per rate of joint 4
-        v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
-        # (rrrrrr-V13) force part of reciprocal wrench 1
-        w_1_t = c_4_t*s_3
-        w_1_t_2 = c_3*c_4_t
-        axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
-        axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
-        # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
-        c_1_t = sin(q_1)
-        # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
-        s_1 = cos(q_1)
-        # (rrrrrr-V13) force part of reciprocal wrench 1
-        axis_z_rrrrrr_axes5_r7_x = -axis_z_rrrrrr_axes5_r5_x*s_1 - c_1_t*s_4
-        axis_z_rrrrrr_axes5_r7_y = s_1*s_4 - axis_z_rrrrrr_axes5_r5_x*c_1_t
-        axis_z_rrrrrr_axes5_in_base_x = (
-        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
-            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
-            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
-        )
-        axis_z_rrrrrr_axes5_in_base_y = (
-        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
-            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
-            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
-        )
-        axis_z_rrrrrr_axes5_in_base_z = (
-        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
-            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
-            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
-        )
-        w_1_t_3 = s_4*s_5
-        axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
-        axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
-        axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
-        axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
-        axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
-        axis_y_rrrrrr_axes5_r7_y = s_1*v_2_t_2 - axis_y_rrrrrr_axes5_r5_x*c_1_t
-        axis_y_rrrrrr_axes5_in_base_x = (
-        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
-            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
-            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
-        )
-        axis_y_rrrrrr_axes5_in_base_y = (
-        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
-            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
-            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
-        )
-        axis_y_rrrrrr_axes5_in_base_z = (
-        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
-            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
-            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
-        )
-        axis_x_rrrrrr_axes5_x = (
-        axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_z -
-            axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_y
-        )
-        axis_x_rrrrrr_axes5_y = (
-        axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_x -
-            axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_z
-        )
-        axis_x_rrrrrr_axes5_z = (
-        axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
-            axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
-        )
-        # (rrrrrr-G13) inertia tensor of link 5 about the connection point
-        J_5_t = J_5_xy*s_5
-        _x = -J_5_t - J_5_xx*c_5_t
-        J_5_t_2 = J_5_xy*c_5_t
-        _x_2 = -J_5_t_2 - J_5_yy*s_5
-        _x_3 = -J_5_xz*c_5_t - J_5_yz*s_5
-        _y = J_5_xz*s_5 - J_5_yz*c_5_t
-        # (rrrrrr-N33) inertia tensor of the links from 4 outwards about joint 4
-        Jc_4_xy = _x_3 - J_4_yz
-        Jc_4_xz = J_4_xz + _y
-        Jc_4_yy = J_4_yy - _x*c_5_t - _x_2*s_5
-        Jc_4_yz = _x*s_5 - J_4_xy - _x_2*c_5_t
-        Jc_4_zz = J_4_xx + s_5*(J_5_xx*s_5 - J_5_t_2) - c_5_t*(J_5_t - J_5_yy*c_5_t)
-        Jc_4_t = Jc_4_xy*s_4
-        _x_4 = -Jc_4_t - Jc_4_xx*c_4_t
-        Jc_4_t_2 = Jc_4_xy*c_4_t
-        _x_5 = -Jc_4_t_2 - Jc_4_yy*s_4
-        _x_6 = -Jc_4_xz*c_4_t - Jc_4_yz*s_4
-        _y_2 = Jc_4_xz*s_4 - Jc_4_yz*c_4_t
-        # (rrrrrr-G9) first moment of link 4 about the origin of link 4
-        h_4_r1_x = h_4_y*s_4 - c_4_t*h_4_z
-        h_4_r1_y = c_4_t*h_4_y + h_4_z*s_4
-        # (rrrrrr-N44) inertia tensor of the links from 3 outwards about joint 3
-        Jc_3_t = h_4_r1_x*rrrrrr_joint4_offset_x
-        Jc_3_t_4 = h_4_r1_y*rrrrrr_joint4_offset_x
-        Jc_3_xx = J_3_xx + Jc_3_t_3 + Jc_4_zz - 2.0*Jc_3_t_2
-        Jc_3_xy = J_3_xy + _x_6 - Jc_3_t
-        Jc_3_xz = J_3_xz + _y_2 - Jc_3_t_4
-        Jc_3_yy = J_3_yy + Jc_3_t_3 - _x_4*c_4_t - _x_5*s_4
-        Jc_3_yz = J_3_yz + _x_4*s_4 - _x_5*c_4_t
-        Jc_3_zz = (
-        J_3_zz + Jc_3_t_3 + s_4*(Jc_4_xx*s_4 - Jc_4_t_2) - c_4_t*(Jc_4_t - Jc_4_yy*c_4_t)
-        )
-        # (rrrrrr-N43) first moment of the links from 3 outwards
-        hc_3_y = h_3_y + h_4_r1_x
-        hc_3_z = h_3_z + h_4_r1_y
-        # (rrrrrr-N44) inertia tensor of the links from 3 outwards about joint 3
-        Jc_3_t_5 = Jc_3_xy*s_3
-        _x_7 = Jc_3_xx*c_3 - Jc_3_t_5
-        Jc_3_t_6 = Jc_3_xy*c_3
-        _x_8 = Jc_3_t_6 - Jc_3_yy*s_3
-        _x_9 = Jc_3_xz*c_3 - Jc_3_yz*s_3
-        _y_3 = Jc_3_xz*s_3 + Jc_3_yz*c_3
-        # (rrrrrr-N43) first moment of the links from 3 outwards
-        hc_3_r0_x = c_3*hc_3_x - hc_3_y*s_3
-        hc_3_r0_y = c_3*hc_3_y + hc_3_x*s_3
-        # (rrrrrr-N53) inertia tensor of the links from 2 outwards about joint 2
-        Jc_2_t_2 = rrrrrr_joint3_offset_x*(Jc_2_t + hc_3_r0_x)
-        Jc_2_t_3 = 2.0*Jc_2_t_2
-        Jc_2_xy = J_2_xy + _x_7*s_3 + _x_8*c_3 - hc_3_r0_y*rrrrrr_joint3_offset_x
-        Jc_2_zz = J_2_zz + Jc_2_t_3 + Jc_3_zz
-        _y_4 = s_2*(J_2_xz + _x_9 - hc_3_z*rrrrrr_joint3_offset_x) - c_2_t*(J_2_yz + _y_3)
-        _y_5 = (
-        s_2*(s_2*(J_2_xx + Jc_2_t_3 + _x_7*c_3 - 2.0*Jc_2_t_2 - _x_8*s_3) - Jc_2_xy*c_2_t) -
-            c_2_t*(Jc_2_xy*s_2 - c_2_t*(J_2_yy + Jc_2_t_3 + c_3*(Jc_3_t_5 + Jc_3_yy*c_3) +
-            s_3*(Jc_3_t_6 + Jc_3_xx*s_3)))
-        )
-        # (rrrrrr-N59) inertia tensor of the links from 1 outwards about joint 1
-        Jc_1_zz = J_1_xx + _y_5
-        # (rrrrrr-N48) moment about joint 2 that accelerates joint 3, per unit
-        L_c3_2_z = Jc_3_zz + hc_3_r0_x*rrrrrr_joint3_offset_x
-        L_c3_2_r0_y = _x_9*s_2 - _y_3*c_2_t
-        # (rrrrrr-N37) moment about joint 3 that accelerates joint 4, per unit
-        L_c4_3_y = _x_6 - Jc_3_t
-        L_c4_3_z = _y_2 - Jc_3_t_4
-        # (rrrrrr-N39) moment about joint 2 that accelerates joint 4, per unit
-        L_c4_2_y = Jc_4_zz*s_3 + L_c4_3_y*c_3 - h_4_r1_x*rrrrrr_joint3_offset_x
-        L_c4_2_z = L_c4_3_z - c_3*h_4_r1_y*rrrrrr_joint3_offset_x
-        L_c4_2_r0_y = s_2*(Jc_4_zz*c_3 - L_c4_3_y*s_3) - L_c4_2_y*c_2_t
-        # (rrrrrr-N27) moment about joint 5 that accelerates joint 5, per unit
-        L_c5_r2_x = -J_5_zz*c_4_t - _x_3*s_4
-        L_c5_r2_y = J_5_zz*s_4 - _x_3*c_4_t
-        L_c5_r5_y = s_2*(_y*c_3 - L_c5_r2_x*s_3) - c_2_t*(L_c5_r2_x*c_3 + _y*s_3)
-        # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-        end_p1_r0_x = (
-        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy +
-            R_yx*rrrrrr_base_frame_yy + R_zx*rrrrrr_base_frame_zy) +
-            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
-            R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
-            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
-            R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy)
-        )
-        end_p1_r0_y = (
-        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz +
-            R_yx*rrrrrr_base_frame_yz + R_zx*rrrrrr_base_frame_zz) +
-            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
-            R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
-            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
-            R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz)
-        )
-        end_p1_r0_z = (
-        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx +
-            R_yx*rrrrrr_base_frame_yx + R_zx*rrrrrr_base_frame_zx) +
-            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
-            R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
-            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
-            R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx)
-        )
-        end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x
-        end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1
-        end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y
-        end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2
-        end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3
-        end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3
-        end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y
-        end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4
-        end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
-        end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
-        # (rrrrrr-V13) force part of reciprocal wrench 1
-        w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
-        w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
-        w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
-        w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
-        w_1_t_8 = size*w_1_t_4
-        w_1_t_9 = size*w_1_t_6
-        w_1_t_10 = size*w_1_t_5
-        w_1_t_11 = size*w_1_t_7
-        w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
-        w_1_t_13 = c_5_t*end_p1_r6_x*size
-        w_1_t_14 = end_p1_r8_y*size
-        w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
-        inv_w_1_t_69 = 1.0/w_1_t_15
-        w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
-        w_1_t_17 = inv_w_1_t_69*w_1_t_14
-        w_1_t_18 = w_1_t_13*w_1_t_17
-        w_1_t_19 = w_1_t_16*w_1_t_18
-        w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
-        w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
-        w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
-        w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
-        w_1_t_24 = w_1_t_11*w_1_t_17
-        w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
-        w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
-        w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
-        w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
-        w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
-        w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
-        w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
-        inv_w_1_t_101 = 1.0/w_1_t_31
-        w_1_t_32 = inv_w_1_t_101*w_1_t_19
-        w_1_t_33 = inv_w_1_t_101*v_4_z
-        w_1_t_34 = inv_w_1_t_101*w_1_t_12
-        w_1_t_35 = inv_w_1_t_101*w_1_t_20
-        w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
-        w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
-        w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
-        w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
-        w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
-        w_1_t_41 = w_1_t_10*w_1_t_34
-        w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
-        w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
-        w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
-        w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
-        w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
-        w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
-        w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
-        w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
-        w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
-        w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
-        w_1_t_52 = (
-        sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
-            w_1_t_40*w_1_t_40)
-        )
-        inv_w_1_t_150 = 1.0/w_1_t_52
-        w_1_t_53 = inv_w_1_t_150*v_1_x
-        w_1_t_54 = inv_w_1_t_150*w_1_t_37
-        w_1_t_55 = inv_w_1_t_150*w_1_t_38
-        w_1_t_56 = inv_w_1_t_150*w_1_t_39
-        w_1_t_57 = inv_w_1_t_150*w_1_t_40
-        w_1_t_58 = (
-        v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 +
-            w_1_t_46*w_1_t_57
-        )
-        w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
-        w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
-        w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
-        w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
-        w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
-        w_1_t_64 = (
-        v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 +
-            w_1_t_51*w_1_t_57
-        )
-        w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
-        w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
-        w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
-        w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
-        w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
-        w_1_t_70 = (
-        sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
-            w_1_t_63*w_1_t_63)
-        )
-        inv_w_1_t_194 = 1.0/w_1_t_70
-        w_1_t_71 = inv_w_1_t_194*w_1_t_59
-        w_1_t_72 = inv_w_1_t_194*w_1_t_60
-        w_1_t_73 = inv_w_1_t_194*w_1_t_61
-        w_1_t_74 = inv_w_1_t_194*w_1_t_62
-        w_1_t_75 = inv_w_1_t_194*w_1_t_63
-        w_1_t_76 = (
-        w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
-            w_1_t_69*w_1_t_75
-        )
-        w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
-        w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
-        w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
-        w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
-        w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
-        w_1_t_82 = (
-        sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
-            w_1_t_81*w_1_t_81)
-        )
-        inv_w_1_t_222 = 1.0/w_1_t_82
-        w_1_t_83 = inv_w_1_t_222*w_1_t_77
-        w_1_t_84 = inv_w_1_t_222*w_1_t_78
-        w_1_t_85 = inv_w_1_t_222*w_1_t_79
-        w_1_t_86 = inv_w_1_t_222*w_1_t_80
-        w_1_t_87 = inv_w_1_t_222*w_1_t_81
-        w_1_t_88 = inv_w_1_t_150*inv_w_1_t_194*w_1_t_58
-        w_1_t_89 = inv_w_1_t_222*(inv_w_1_t_150*w_1_t_64 - w_1_t_76*w_1_t_88)
-        w_1_t_90 = w_1_t_71*w_1_t_88 + w_1_t_83*w_1_t_89 - inv_w_1_t_150*w_1_t_53
-        w_1_t_91 = w_1_t_72*w_1_t_88 + w_1_t_84*w_1_t_89 - inv_w_1_t_150*w_1_t_54
-        w_1_t_92 = w_1_t_73*w_1_t_88 + w_1_t_85*w_1_t_89 - inv_w_1_t_150*w_1_t_55
-        w_1_t_93 = size*(w_1_t_74*w_1_t_88 + w_1_t_86*w_1_t_89 - inv_w_1_t_150*w_1_t_56)
-        w_1_t_94 = size*(w_1_t_75*w_1_t_88 + w_1_t_87*w_1_t_89 - inv_w_1_t_150*w_1_t_57)
-        # (rrrrrr-V16) force part of reciprocal wrench 2
-        w_2_t = inv_w_1_t_194*inv_w_1_t_222*w_1_t_76
-        w_2_t_2 = inv_w_1_t_194*w_1_t_71 - w_1_t_83*w_2_t
-        w_2_t_3 = inv_w_1_t_194*w_1_t_72 - w_1_t_84*w_2_t
-        w_2_t_4 = w_1_t_85*w_2_t - inv_w_1_t_194*w_1_t_73
-        w_2_t_5 = size*(inv_w_1_t_194*w_1_t_74 - w_1_t_86*w_2_t)
-        w_2_t_6 = size*(inv_w_1_t_194*w_1_t_75 - w_1_t_87*w_2_t)
-        # (rrrrrr-V19) force part of reciprocal wrench 3
-        w_3_t = inv_w_1_t_222*w_1_t_83
-        w_3_t_2 = inv_w_1_t_222*w_1_t_84
-        w_3_t_3 = inv_w_1_t_222*w_1_t_85
-        w_3_t_4 = inv_w_1_t_222*size*w_1_t_86
-        w_3_t_5 = inv_w_1_t_222*size*w_1_t_87
-        # (rrrrrr-V22) force part of reciprocal wrench 4
-        w_4_t = inv_w_1_t_101*inv_w_1_t_150*w_1_t_36
-        w_4_t_2 = inv_w_1_t_194*(inv_w_1_t_101*w_1_t_42 - w_1_t_58*w_4_t)
-        w_4_t_3 = inv_w_1_t_222*(w_1_t_64*w_4_t + w_1_t_76*w_4_t_2 - inv_w_1_t_101*w_1_t_47)
-        w_4_t_4 = w_1_t_53*w_4_t + w_1_t_71*w_4_t_2 - w_1_t_83*w_4_t_3
-        w_4_t_5 = inv_w_1_t_101*w_1_t_32 + w_1_t_54*w_4_t + w_1_t_72*w_4_t_2 - w_1_t_84*w_4_t_3
-        w_4_t_6 = inv_w_1_t_101*w_1_t_33 + w_1_t_55*w_4_t + w_1_t_73*w_4_t_2 - w_1_t_85*w_4_t_3
-        w_4_t_7 = (
-        size*(inv_w_1_t_101*w_1_t_34 + w_1_t_56*w_4_t + w_1_t_74*w_4_t_2 - w_1_t_86*w_4_t_3)
-        )
-        w_4_t_8 = (
-        size*(inv_w_1_t_101*w_1_t_35 + w_1_t_57*w_4_t + w_1_t_75*w_4_t_2 - w_1_t_87*w_4_t_3)
-        )
-        # (rrrrrr-V25) force part of reciprocal wrench 5
-        w_5_t = inv_w_1_t_101*inv_w_1_t_69*w_1_t_18
-        w_5_t_2 = inv_w_1_t_150*(inv_w_1_t_69*w_1_t_21 + w_1_t_36*w_5_t)
-        w_5_t_3 = inv_w_1_t_194*(inv_w_1_t_69*w_1_t_25 + w_1_t_42*w_5_t - w_1_t_58*w_5_t_2)
-        w_5_t_4 = (
-        inv_w_1_t_222*(inv_w_1_t_69*w_1_t_28 + w_1_t_64*w_5_t_2 + w_1_t_76*w_5_t_3 -
-            w_1_t_47*w_5_t)
-        )
-        w_5_t_5 = w_1_t_53*w_5_t_2 + w_1_t_71*w_5_t_3 - w_1_t_83*w_5_t_4
-        w_5_t_6 = (
-        inv_w_1_t_69*w_1_t_16 + w_1_t_32*w_5_t + w_1_t_54*w_5_t_2 + w_1_t_72*w_5_t_3 -
-            w_1_t_84*w_5_t_4
-        )
-        w_5_t_7 = w_1_t_33*w_5_t + w_1_t_55*w_5_t_2 + w_1_t_73*w_5_t_3 - w_1_t_85*w_5_t_4
-        w_5_t_8 = size*(w_1_t_34*w_5_t + w_1_t_56*w_5_t_2 + w_1_t_74*w_5_t_3 - w_1_t_86*w_5_t_4)
-        w_5_t_9 = (
-        size*(w_1_t_35*w_5_t + w_1_t_57*w_5_t_2 + w_1_t_75*w_5_t_3 - inv_w_1_t_69*w_1_t_17 -
-            w_1_t_87*w_5_t_4)
-        )
-        # (rrrrrr-N112) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_t = L_c5_r5_y*inv_w_1_t_69
-        d_Gamma_1_t_2 = inv_w_1_t_101*(L_c4_2_r0_y - d_Gamma_1_t*w_1_t_18)
-        d_Gamma_1_t_3 = inv_w_1_t_150*(Jc_1_zz + d_Gamma_1_t_2*w_1_t_36 - d_Gamma_1_t*w_1_t_21)
-        d_Gamma_1_t_4 = (
-        inv_w_1_t_194*(_y_4 + d_Gamma_1_t_2*w_1_t_42 - d_Gamma_1_t*w_1_t_25 -
-            d_Gamma_1_t_3*w_1_t_58)
-        )
-        d_Gamma_1_t_5 = (
-        inv_w_1_t_222*(L_c3_2_r0_y + d_Gamma_1_t*w_1_t_28 + d_Gamma_1_t_2*w_1_t_47 -
-            d_Gamma_1_t_3*w_1_t_64 - d_Gamma_1_t_4*w_1_t_76)
-        )
-        d_Gamma_1_x = (
-        d_Gamma_1_t_3*w_1_t_53 + d_Gamma_1_t_4*w_1_t_71 + d_Gamma_1_t_5*w_1_t_83 + e_1_r6_y*h_5_z
-            + h_5_y*v_1_t
-        )
-        d_Gamma_1_y = (
-        d_Gamma_1_t*w_1_t_16 - d_Gamma_1_t_2*w_1_t_32 - d_Gamma_1_t_3*w_1_t_54 -
-            d_Gamma_1_t_4*w_1_t_72 - d_Gamma_1_t_5*w_1_t_84 - e_1_r6_x*h_5_z - h_5_x*v_1_t
-        )
-        d_Gamma_1_z = (
-        d_Gamma_1_t_2*w_1_t_33 + d_Gamma_1_t_3*w_1_t_55 + d_Gamma_1_t_4*w_1_t_73 +
-            d_Gamma_1_t_5*w_1_t_85 + e_1_r6_x*h_5_y - e_1_r6_y*h_5_x
-        )
-        # (rrrrrr-N102) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_t = h_5_z*v_2_t_2 - h_5_y*s_4
-        d_Gamma_2_t_2 = h_5_z*v_2_t - h_5_x*s_4
-        d_Gamma_2_t_3 = h_5_y*v_2_t - h_5_x*v_2_t_2
-        d_Gamma_2_t_4 = L_c5_r2_y*inv_w_1_t_69
-        d_Gamma_2_t_5 = d_Gamma_2_t_4*w_1_t_18
-        d_Gamma_2_t_6 = inv_w_1_t_101*(L_c4_2_z - d_Gamma_2_t_5)
-        d_Gamma_2_t_7 = d_Gamma_2_t_4*w_1_t_21
-        d_Gamma_2_t_8 = inv_w_1_t_150*(_y_4 + d_Gamma_2_t_6*w_1_t_36 - d_Gamma_2_t_7)
-        d_Gamma_2_t_9 = d_Gamma_2_t_4*w_1_t_25
-        d_Gamma_2_t_10 = (
-        inv_w_1_t_194*(Jc_2_zz + d_Gamma_2_t_6*w_1_t_42 - d_Gamma_2_t_9 - d_Gamma_2_t_8*w_1_t_58)
-        )
-        d_Gamma_2_t_11 = d_Gamma_2_t_4*w_1_t_28
-        d_Gamma_2_t_12 = (
-        inv_w_1_t_222*(L_c3_2_z + d_Gamma_2_t_11 + d_Gamma_2_t_6*w_1_t_47 -
-            d_Gamma_2_t_10*w_1_t_76 - d_Gamma_2_t_8*w_1_t_64)
-        )
-        d_Gamma_2_t_13 = d_Gamma_2_t_4*w_1_t_16
-        d_Gamma_2_x = (
-        d_Gamma_2_t + d_Gamma_2_t_10*w_1_t_71 + d_Gamma_2_t_12*w_1_t_83 + d_Gamma_2_t_8*w_1_t_53
-        )
-        d_Gamma_2_y = (
-        d_Gamma_2_t_13 - d_Gamma_2_t_2 - d_Gamma_2_t_10*w_1_t_72 - d_Gamma_2_t_12*w_1_t_84 -
-            d_Gamma_2_t_6*w_1_t_32 - d_Gamma_2_t_8*w_1_t_54
-        )
-        d_Gamma_2_z = (
-        d_Gamma_2_t_3 + d_Gamma_2_t_10*w_1_t_73 + d_Gamma_2_t_12*w_1_t_85 + d_Gamma_2_t_6*w_1_t_33
-            + d_Gamma_2_t_8*w_1_t_55
-        )
-        # (rrrrrr-N90) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        d_Gamma_3_t = inv_w_1_t_101*(L_c4_3_z - d_Gamma_2_t_5)
-        d_Gamma_3_t_2 = inv_w_1_t_150*(L_c3_2_r0_y + d_Gamma_3_t*w_1_t_36 - d_Gamma_2_t_7)
-        d_Gamma_3_t_3 = (
-        inv_w_1_t_194*(L_c3_2_z + d_Gamma_3_t*w_1_t_42 - d_Gamma_2_t_9 - d_Gamma_3_t_2*w_1_t_58)
-        )
-        d_Gamma_3_t_4 = (
-        inv_w_1_t_222*(Jc_3_zz + d_Gamma_2_t_11 + d_Gamma_3_t*w_1_t_47 - d_Gamma_3_t_2*w_1_t_64 -
-            d_Gamma_3_t_3*w_1_t_76)
-        )
-        d_Gamma_3_x = (
-        d_Gamma_2_t + d_Gamma_3_t_2*w_1_t_53 + d_Gamma_3_t_3*w_1_t_71 + d_Gamma_3_t_4*w_1_t_83
-        )
-        d_Gamma_3_y = (
-        d_Gamma_2_t_13 - d_Gamma_2_t_2 - d_Gamma_3_t*w_1_t_32 - d_Gamma_3_t_2*w_1_t_54 -
-            d_Gamma_3_t_3*w_1_t_72 - d_Gamma_3_t_4*w_1_t_84
-        )
-        d_Gamma_3_z = (
-        d_Gamma_2_t_3 + d_Gamma_3_t*w_1_t_33 + d_Gamma_3_t_2*w_1_t_55 + d_Gamma_3_t_3*w_1_t_73 +
-            d_Gamma_3_t_4*w_1_t_85
-        )
-        # (rrrrrr-N78) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-        d_Gamma_4_t = _y*inv_w_1_t_69
-        d_Gamma_4_t_2 = inv_w_1_t_101*(Jc_4_zz - d_Gamma_4_t*w_1_t_18)
-        d_Gamma_4_t_3 = (
-        inv_w_1_t_150*(L_c4_2_r0_y + d_Gamma_4_t_2*w_1_t_36 - d_Gamma_4_t*w_1_t_21)
-        )
-        d_Gamma_4_t_4 = (
-        inv_w_1_t_194*(L_c4_2_z + d_Gamma_4_t_2*w_1_t_42 - d_Gamma_4_t*w_1_t_25 -
-            d_Gamma_4_t_3*w_1_t_58)
-        )
-        d_Gamma_4_t_5 = (
-        inv_w_1_t_222*(L_c4_3_z + d_Gamma_4_t*w_1_t_28 + d_Gamma_4_t_2*w_1_t_47 -
-            d_Gamma_4_t_3*w_1_t_64 - d_Gamma_4_t_4*w_1_t_76)
-        )
-        d_Gamma_4_x = (
-        d_Gamma_4_t_3*w_1_t_53 + d_Gamma_4_t_4*w_1_t_71 + d_Gamma_4_t_5*w_1_t_83 - c_5_t*h_5_z
-        )
-        d_Gamma_4_y = (
-        d_Gamma_4_t*w_1_t_16 - d_Gamma_4_t_2*w_1_t_32 - d_Gamma_4_t_3*w_1_t_54 -
-            d_Gamma_4_t_4*w_1_t_72 - d_Gamma_4_t_5*w_1_t_84 - h_5_z*s_5
-        )
-        d_Gamma_4_z = (
-        c_5_t*h_5_x + d_Gamma_4_t_2*w_1_t_33 + d_Gamma_4_t_3*w_1_t_55 + d_Gamma_4_t_4*w_1_t_73 +
-            d_Gamma_4_t_5*w_1_t_85 + h_5_y*s_5
-        )
-        # (rrrrrr-N68) coefficient of the acceleration in: moment about axis 5 of the distal links' inertia and weight
-        d_Gamma_5_t = J_5_zz*inv_w_1_t_69
-        d_Gamma_5_t_2 = inv_w_1_t_101*(_y - d_Gamma_5_t*w_1_t_18)
-        d_Gamma_5_t_3 = inv_w_1_t_150*(L_c5_r5_y + d_Gamma_5_t_2*w_1_t_36 - d_Gamma_5_t*w_1_t_21)
-        d_Gamma_5_t_4 = (
-        inv_w_1_t_194*(L_c5_r2_y + d_Gamma_5_t_2*w_1_t_42 - d_Gamma_5_t*w_1_t_25 -
-            d_Gamma_5_t_3*w_1_t_58)
-        )
-        d_Gamma_5_t_5 = (
-        inv_w_1_t_222*(L_c5_r2_y + d_Gamma_5_t*w_1_t_28 + d_Gamma_5_t_2*w_1_t_47 -
-            d_Gamma_5_t_3*w_1_t_64 - d_Gamma_5_t_4*w_1_t_76)
-        )
-        d_Gamma_5_t_6 = (
-        d_Gamma_5_t_2*w_1_t_33 + d_Gamma_5_t_3*w_1_t_55 + d_Gamma_5_t_4*w_1_t_73 +
-            d_Gamma_5_t_5*w_1_t_85
-        )
-        d_Gamma_5_x = (
-        d_Gamma_5_t_3*w_1_t_53 + d_Gamma_5_t_4*w_1_t_71 + d_Gamma_5_t_5*w_1_t_83 - h_5_y
-        )
-        d_Gamma_5_y = (
-        h_5_x + d_Gamma_5_t*w_1_t_16 - d_Gamma_5_t_2*w_1_t_32 - d_Gamma_5_t_3*w_1_t_54 -
-            d_Gamma_5_t_4*w_1_t_72 - d_Gamma_5_t_5*w_1_t_84
-        )
-        # (rrrrrr-A48) coefficient of the acceleration in: angular acceleration of link 5
-        d_alpha_5_xz = s_5*w_4_t_6 + v_2_t*w_3_t_3 - e_1_r6_x*w_1_t_92 - v_2_t*w_2_t_4
-        d_alpha_5_yz = v_2_t_2*w_3_t_3 - c_5_t*w_4_t_6 - e_1_r6_y*w_1_t_92 - v_2_t_2*w_2_t_4
-        d_alpha_5_zy = w_5_t_6 - s_4*w_2_t_3 - s_4*w_3_t_2 - v_1_t*w_1_t_91
-        d_alpha_5_zz = s_4*w_3_t_3 + v_1_t*w_1_t_92 - w_5_t_7 - s_4*w_2_t_4
-        # (rrrrrr-N25) coefficient of the acceleration in: inertia force of link 5 from its turning about its reference point
-        d_phi_5_t = (
-        h_5_z*(v_2_t_2*w_2_t_2 + v_2_t_2*w_3_t - c_5_t*w_4_t_4 - e_1_r6_y*w_1_t_90) -
-            h_5_y*(s_4*w_2_t_2 + s_4*w_3_t + v_1_t*w_1_t_90 - w_5_t_5)
-        )
-        # (rrrrrr-N132) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_xx = (
-        d_Gamma_1_x*w_1_t_90 + d_Gamma_5_x*w_5_t_5 - d_phi_5_t - d_Gamma_2_x*w_2_t_2 -
-            d_Gamma_3_x*w_3_t - d_Gamma_4_x*w_4_t_4
-        )
-        d_c_xy = (
-        d_Gamma_1_y*w_1_t_90 + d_Gamma_5_y*w_5_t_5 + d_alpha_5_zy*h_5_y - d_Gamma_2_y*w_2_t_2 -
-            d_Gamma_3_y*w_3_t - d_Gamma_4_y*w_4_t_4 - h_5_z*(c_5_t*w_4_t_5 + e_1_r6_y*w_1_t_91 -
-            v_2_t_2*w_2_t_3 - v_2_t_2*w_3_t_2)
-        )
-        d_c_xz = (
-        d_Gamma_1_z*w_1_t_90 + d_Gamma_5_t_6*w_5_t_5 + d_alpha_5_zz*h_5_y - d_Gamma_2_z*w_2_t_2 -
-            d_Gamma_3_z*w_3_t - d_Gamma_4_z*w_4_t_4 - d_alpha_5_yz*h_5_z
-        )
-        d_c_yy = (
-        d_Gamma_2_y*w_2_t_3 + d_Gamma_3_y*w_3_t_2 + d_Gamma_4_y*w_4_t_5 + h_5_z*(e_1_r6_x*w_1_t_91
-            - s_5*w_4_t_5 - v_2_t*w_2_t_3 - v_2_t*w_3_t_2) - d_Gamma_1_y*w_1_t_91 -
-            d_Gamma_5_y*w_5_t_6 - d_alpha_5_zy*h_5_x
-        )
-        d_c_yz = (
-        d_Gamma_2_z*w_2_t_3 + d_Gamma_3_z*w_3_t_2 + d_Gamma_4_z*w_4_t_5 + d_alpha_5_xz*h_5_z -
-            d_Gamma_1_z*w_1_t_91 - d_Gamma_5_t_6*w_5_t_6 - d_alpha_5_zz*h_5_x
-        )
-        # (rrrrrr-N134) inertia of the leg at the connection point, without the mass gathered there
-        Q_t = d_c_xx - d_c_yy
-        Q_t_2 = 0.5*Q_t
-        Q_t_3 = (
-        d_c_xx + d_Gamma_3_z*w_3_t_3 + d_Gamma_4_z*w_4_t_6 + d_alpha_5_xz*h_5_y -
-            d_Gamma_1_z*w_1_t_92 - d_Gamma_2_z*w_2_t_4 - d_Gamma_5_t_6*w_5_t_7 -
-            d_alpha_5_yz*h_5_x
-        )
-        Q_t_4 = 0.5*Q_t_3
-        Q_t_5 = (
-        axis_x_rrrrrr_axes5_x*d_c_xy + axis_z_rrrrrr_axes5_in_base_x*d_c_yz -
-            Q_t_2*axis_y_rrrrrr_axes5_in_base_x
-        )
-        Q_t_6 = (
-        axis_x_rrrrrr_axes5_y*d_c_xy + axis_z_rrrrrr_axes5_in_base_y*d_c_yz -
-            Q_t_2*axis_y_rrrrrr_axes5_in_base_y
-        )
-        Q_t_7 = (
-        axis_x_rrrrrr_axes5_z*d_c_xy + axis_z_rrrrrr_axes5_in_base_z*d_c_yz -
-            Q_t_2*axis_y_rrrrrr_axes5_in_base_z
-        )
-        Q_t_8 = Q_t_4*axis_z_rrrrrr_axes5_in_base_x - axis_x_rrrrrr_axes5_x*d_c_xz
-        Q_t_9 = Q_t_4*axis_z_rrrrrr_axes5_in_base_y - axis_x_rrrrrr_axes5_y*d_c_xz
-        Q_t_10 = Q_t_4*axis_z_rrrrrr_axes5_in_base_z - axis_x_rrrrrr_axes5_z*d_c_xz
-        Q_t_11 = Q_t_5*axis_y_rrrrrr_axes5_in_base_x - Q_t_8*axis_z_rrrrrr_axes5_in_base_x
-        Q_t_12 = 2.0*Q_t_11 + d_c_xx
-        Q_t_13 = (
-        Q_t_5*axis_y_rrrrrr_axes5_in_base_y + Q_t_6*axis_y_rrrrrr_axes5_in_base_x -
-            Q_t_8*axis_z_rrrrrr_axes5_in_base_y - Q_t_9*axis_z_rrrrrr_axes5_in_base_x
-        )
-        Q_t_14 = (
-        Q_t_5*axis_y_rrrrrr_axes5_in_base_z + Q_t_7*axis_y_rrrrrr_axes5_in_base_x -
-            Q_t_10*axis_z_rrrrrr_axes5_in_base_x - Q_t_8*axis_z_rrrrrr_axes5_in_base_z
-        )
-        Q_t_15 = Q_t_6*axis_y_rrrrrr_axes5_in_base_y - Q_t_9*axis_z_rrrrrr_axes5_in_base_y
-        Q_t_16 = 2.0*Q_t_15 + d_c_xx
-        Q_t_17 = (
-        Q_t_6*axis_y_rrrrrr_axes5_in_base_z + Q_t_7*axis_y_rrrrrr_axes5_in_base_y -
-            Q_t_10*axis_z_rrrrrr_axes5_in_base_y - Q_t_9*axis_z_rrrrrr_axes5_in_base_z
-        )
-        Q_t_18 = Q_t_7*axis_y_rrrrrr_axes5_in_base_z - Q_t_10*axis_z_rrrrrr_axes5_in_base_z
-        Q_t_19 = 2.0*Q_t_18 + d_c_xx
-        # (rrrrrr-V28) moment part of reciprocal wrench 1
-        o_1_t = end_p1_r8_y*w_1_t_93
-        o_1_t_2 = end_p1_r8_y*w_1_t_94
-        o_1_y = end_p1_r6_x*w_1_t_94 - end_p1_r8_x*w_1_t_93
-        # (rrrrrr-V29) moment part of reciprocal wrench 2
-        o_2_t = end_p1_r8_y*w_2_t_5
-        o_2_t_2 = end_p1_r8_y*w_2_t_6
-        o_2_y = end_p1_r8_x*w_2_t_5 - end_p1_r6_x*w_2_t_6
-        # (rrrrrr-V30) moment part of reciprocal wrench 3
-        o_3_t = end_p1_r8_y*w_3_t_4
-        o_3_t_2 = end_p1_r8_y*w_3_t_5
-        o_3_y = end_p1_r8_x*w_3_t_4 - end_p1_r6_x*w_3_t_5
-        # (rrrrrr-V31) moment part of reciprocal wrench 4
-        o_4_t = end_p1_r8_y*w_4_t_7
-        o_4_t_2 = end_p1_r8_y*w_4_t_8
-        o_4_y = end_p1_r8_x*w_4_t_7 - end_p1_r6_x*w_4_t_8
-        # (rrrrrr-V32) moment part of reciprocal wrench 5
-        o_5_t = end_p1_r8_y*w_5_t_8
-        o_5_t_2 = end_p1_r8_y*w_5_t_9
-        o_5_y = end_p1_r6_x*w_5_t_9 - end_p1_r8_x*w_5_t_8
-        # (rrrrrr-N111) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d0_Gamma_1_x = (
-        Jc_1_zz*o_1_t + L_c5_r5_y*o_5_t - L_c3_2_r0_y*o_3_t - L_c4_2_r0_y*o_4_t - _y_4*o_2_t
-        )
-        d0_Gamma_1_y = (
-        Jc_1_zz*o_1_y + L_c3_2_r0_y*o_3_y + L_c4_2_r0_y*o_4_y + L_c5_r5_y*o_5_y + _y_4*o_2_y
-        )
-        d0_Gamma_1_z = (
-        L_c3_2_r0_y*o_3_t_2 + L_c4_2_r0_y*o_4_t_2 + _y_4*o_2_t_2 - Jc_1_zz*o_1_t_2 -
-            L_c5_r5_y*o_5_t_2
-        )
-        # (rrrrrr-N101) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d0_Gamma_2_t = L_c5_r2_y*o_5_t
-        d0_Gamma_2_t_2 = L_c5_r2_y*o_5_y
-        d0_Gamma_2_t_3 = L_c5_r2_y*o_5_t_2
-        d0_Gamma_2_x = d0_Gamma_2_t + _y_4*o_1_t - Jc_2_zz*o_2_t - L_c3_2_z*o_3_t - L_c4_2_z*o_4_t
-        d0_Gamma_2_y = (
-        d0_Gamma_2_t_2 + Jc_2_zz*o_2_y + L_c3_2_z*o_3_y + L_c4_2_z*o_4_y + _y_4*o_1_y
-        )
-        d0_Gamma_2_z = (
-        Jc_2_zz*o_2_t_2 + L_c3_2_z*o_3_t_2 + L_c4_2_z*o_4_t_2 - d0_Gamma_2_t_3 - _y_4*o_1_t_2
-        )
-        # (rrrrrr-N89) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        d0_Gamma_3_x = (
-        d0_Gamma_2_t + L_c3_2_r0_y*o_1_t - Jc_3_zz*o_3_t - L_c3_2_z*o_2_t - L_c4_3_z*o_4_t
-        )
-        d0_Gamma_3_y = (
-        d0_Gamma_2_t_2 + Jc_3_zz*o_3_y + L_c3_2_r0_y*o_1_y + L_c3_2_z*o_2_y + L_c4_3_z*o_4_y
-        )
-        d0_Gamma_3_z = (
-        Jc_3_zz*o_3_t_2 + L_c3_2_z*o_2_t_2 + L_c4_3_z*o_4_t_2 - d0_Gamma_2_t_3 -
-            L_c3_2_r0_y*o_1_t_2
-        )
-        # (rrrrrr-N77) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-        d0_Gamma_4_x = (
-        L_c4_2_r0_y*o_1_t + _y*o_5_t - Jc_4_zz*o_4_t - L_c4_2_z*o_2_t - L_c4_3_z*o_3_t
-        )
-        d0_Gamma_4_y = (
-        Jc_4_zz*o_4_y + L_c4_2_r0_y*o_1_y + L_c4_2_z*o_2_y + L_c4_3_z*o_3_y + _y*o_5_y
-        )
-        d0_Gamma_4_z = (
-        Jc_4_zz*o_4_t_2 + L_c4_2_z*o_2_t_2 + L_c4_3_z*o_3_t_2 - L_c4_2_r0_y*o_1_t_2 - _y*o_5_t_2
-        )
-        # (rrrrrr-N67) coefficient of the acceleration in: moment about axis 5 of the distal links' inertia and weight
-        d0_Gamma_5_x = (
-        J_5_zz*o_5_t + L_c5_r5_y*o_1_t - L_c5_r2_y*o_2_t - L_c5_r2_y*o_3_t - _y*o_4_t
-        )
-        d0_Gamma_5_y = (
-        J_5_zz*o_5_y + L_c5_r2_y*o_2_y + L_c5_r2_y*o_3_y + L_c5_r5_y*o_1_y + _y*o_4_y
-        )
-        d0_Gamma_5_z = (
-        L_c5_r2_y*o_2_t_2 + L_c5_r2_y*o_3_t_2 + _y*o_4_t_2 - J_5_zz*o_5_t_2 - L_c5_r5_y*o_1_t_2
-        )
-        # (rrrrrr-A47) coefficient of the acceleration in: angular acceleration of link 5
-        d0_alpha_5_xx = e_1_r6_x*o_1_t - o_2_t*v_2_t - o_3_t*v_2_t - o_4_t*s_5
-        d0_alpha_5_xy = e_1_r6_x*o_1_y + o_2_y*v_2_t + o_3_y*v_2_t + o_4_y*s_5
-        d0_alpha_5_xz = o_2_t_2*v_2_t + o_3_t_2*v_2_t + o_4_t_2*s_5 - e_1_r6_x*o_1_t_2
-        d0_alpha_5_yx = c_5_t*o_4_t + e_1_r6_y*o_1_t - o_2_t*v_2_t_2 - o_3_t*v_2_t_2
-        d0_alpha_5_yy = e_1_r6_y*o_1_y + o_2_y*v_2_t_2 + o_3_y*v_2_t_2 - c_5_t*o_4_y
-        d0_alpha_5_yz = o_2_t_2*v_2_t_2 + o_3_t_2*v_2_t_2 - c_5_t*o_4_t_2 - e_1_r6_y*o_1_t_2
-        d0_alpha_5_zx = o_5_t - o_1_t*v_1_t - o_2_t*s_4 - o_3_t*s_4
-        d0_alpha_5_zy = o_5_y + o_2_y*s_4 + o_3_y*s_4 - o_1_y*v_1_t
-        d0_alpha_5_zz = o_1_t_2*v_1_t + o_2_t_2*s_4 + o_3_t_2*s_4 - o_5_t_2
-        # (rrrrrr-N131) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d0_c_xx = (
-        d0_Gamma_1_x*w_1_t_90 + d0_Gamma_5_x*w_5_t_5 + d0_alpha_5_zx*h_5_y - d0_Gamma_2_x*w_2_t_2
-            - d0_Gamma_3_x*w_3_t - d0_Gamma_4_x*w_4_t_4 - d0_alpha_5_yx*h_5_z
-        )
-        d0_c_xy = (
-        d0_Gamma_1_y*w_1_t_90 + d0_Gamma_5_y*w_5_t_5 + d0_alpha_5_zy*h_5_y - d0_Gamma_2_y*w_2_t_2
-            - d0_Gamma_3_y*w_3_t - d0_Gamma_4_y*w_4_t_4 - d0_alpha_5_yy*h_5_z
-        )
-        d0_c_xz = (
-        d0_Gamma_1_z*w_1_t_90 + d0_Gamma_5_z*w_5_t_5 + d0_alpha_5_zz*h_5_y - d0_Gamma_2_z*w_2_t_2
-            - d0_Gamma_3_z*w_3_t - d0_Gamma_4_z*w_4_t_4 - d0_alpha_5_yz*h_5_z
-        )
-        d0_c_yx = (
-        d0_Gamma_2_x*w_2_t_3 + d0_Gamma_3_x*w_3_t_2 + d0_Gamma_4_x*w_4_t_5 + d0_alpha_5_xx*h_5_z -
-            d0_Gamma_1_x*w_1_t_91 - d0_Gamma_5_x*w_5_t_6 - d0_alpha_5_zx*h_5_x
-        )
-        d0_c_yy = (
-        d0_Gamma_2_y*w_2_t_3 + d0_Gamma_3_y*w_3_t_2 + d0_Gamma_4_y*w_4_t_5 + d0_alpha_5_xy*h_5_z -
-            d0_Gamma_1_y*w_1_t_91 - d0_Gamma_5_y*w_5_t_6 - d0_alpha_5_zy*h_5_x
-        )
-        d0_c_yz = (
-        d0_Gamma_2_z*w_2_t_3 + d0_Gamma_3_z*w_3_t_2 + d0_Gamma_4_z*w_4_t_5 + d0_alpha_5_xz*h_5_z -
-            d0_Gamma_1_z*w_1_t_91 - d0_Gamma_5_z*w_5_t_6 - d0_alpha_5_zz*h_5_x
-        )
-        d0_c_zx = (
-        d0_Gamma_1_x*w_1_t_92 + d0_Gamma_2_x*w_2_t_4 + d0_Gamma_5_x*w_5_t_7 + d0_alpha_5_yx*h_5_x
-            - d0_Gamma_3_x*w_3_t_3 - d0_Gamma_4_x*w_4_t_6 - d0_alpha_5_xx*h_5_y
-        )
-        d0_c_zy = (
-        d0_Gamma_1_y*w_1_t_92 + d0_Gamma_2_y*w_2_t_4 + d0_Gamma_5_y*w_5_t_7 + d0_alpha_5_yy*h_5_x
-            - d0_Gamma_3_y*w_3_t_3 - d0_Gamma_4_y*w_4_t_6 - d0_alpha_5_xy*h_5_y
-        )
-        d0_c_zz = (
-        d0_Gamma_1_z*w_1_t_92 + d0_Gamma_2_z*w_2_t_4 + d0_Gamma_5_z*w_5_t_7 + d0_alpha_5_yz*h_5_x
-            - d0_Gamma_3_z*w_3_t_3 - d0_Gamma_4_z*w_4_t_6 - d0_alpha_5_xz*h_5_y
-        )
-        # (M2) coupling block of M
-        q_in_base_x = (
-        R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
-        )
-        q_in_base_y = (
-        R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y + R_yz*rrrrrr_platform_point_z
-        )
-        q_in_base_z = (
-        R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y + R_zz*rrrrrr_platform_point_z
-        )
-        M_ta_t = Q_t_13*q_in_base_z
-        M_ta_t_2 = Q_t_14*q_in_base_y
-        M_ta_t_3 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x
-        M_ta_t_4 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x
-        M_ta_t_5 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y
-        M_ta_t_6 = Q_t_17*q_in_base_x
-        M_ta_t_7 = M_ta_t - M_ta_t_6
-        M_ta_t_8 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x
-        M_ta_t_9 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y
-        M_ta_t_10 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x
-        M_ta_t_11 = M_ta_t_2 - M_ta_t_6
-        # (rrrrrr-N131) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d0_c_in_base_x = (
-        axis_x_rrrrrr_axes5_x*d0_c_xx + axis_y_rrrrrr_axes5_in_base_x*d0_c_yx +
-            axis_z_rrrrrr_axes5_in_base_x*d0_c_zx
-        )
-        d0_c_in_base_y = (
-        axis_x_rrrrrr_axes5_y*d0_c_xx + axis_y_rrrrrr_axes5_in_base_y*d0_c_yx +
-            axis_z_rrrrrr_axes5_in_base_y*d0_c_zx
-        )
-        d0_c_in_base_z = (
-        axis_x_rrrrrr_axes5_z*d0_c_xx + axis_y_rrrrrr_axes5_in_base_z*d0_c_yx +
-            axis_z_rrrrrr_axes5_in_base_z*d0_c_zx
-        )
-        d0_c_in_base_x_2 = (
-        axis_x_rrrrrr_axes5_x*d0_c_xy + axis_y_rrrrrr_axes5_in_base_x*d0_c_yy +
-            axis_z_rrrrrr_axes5_in_base_x*d0_c_zy
-        )
-        d0_c_in_base_y_2 = (
-        axis_x_rrrrrr_axes5_y*d0_c_xy + axis_y_rrrrrr_axes5_in_base_y*d0_c_yy +
-            axis_z_rrrrrr_axes5_in_base_y*d0_c_zy
-        )
-        d0_c_in_base_z_2 = (
-        axis_x_rrrrrr_axes5_z*d0_c_xy + axis_y_rrrrrr_axes5_in_base_z*d0_c_yy +
-            axis_z_rrrrrr_axes5_in_base_z*d0_c_zy
-        )
-        d0_c_in_base_x_3 = (
-        axis_x_rrrrrr_axes5_x*d0_c_xz + axis_y_rrrrrr_axes5_in_base_x*d0_c_yz +
-            axis_z_rrrrrr_axes5_in_base_x*d0_c_zz
-        )
-        d0_c_in_base_y_3 = (
-        axis_x_rrrrrr_axes5_y*d0_c_xz + axis_y_rrrrrr_axes5_in_base_y*d0_c_yz +
-            axis_z_rrrrrr_axes5_in_base_y*d0_c_zz
-        )
-        d0_c_in_base_z_3 = (
-        axis_x_rrrrrr_axes5_z*d0_c_xz + axis_y_rrrrrr_axes5_in_base_z*d0_c_yz +
-            axis_z_rrrrrr_axes5_in_base_z*d0_c_zz
-        )
-        d0_c_in_base_y_4 = (
-        axis_x_rrrrrr_axes5_y*d0_c_in_base_x + axis_y_rrrrrr_axes5_in_base_y*d0_c_in_base_x_2 +
-            axis_z_rrrrrr_axes5_in_base_y*d0_c_in_base_x_3
-        )
-        d0_c_in_base_z_4 = (
-        axis_x_rrrrrr_axes5_z*d0_c_in_base_x + axis_y_rrrrrr_axes5_in_base_z*d0_c_in_base_x_2 +
-            axis_z_rrrrrr_axes5_in_base_z*d0_c_in_base_x_3
-        )
-        d0_c_in_base_x_4 = (
-        axis_x_rrrrrr_axes5_x*d0_c_in_base_y + axis_y_rrrrrr_axes5_in_base_x*d0_c_in_base_y_2 +
-            axis_z_rrrrrr_axes5_in_base_x*d0_c_in_base_y_3
-        )
-        d0_c_in_base_y_5 = (
-        axis_x_rrrrrr_axes5_y*d0_c_in_base_y + axis_y_rrrrrr_axes5_in_base_y*d0_c_in_base_y_2 +
-            axis_z_rrrrrr_axes5_in_base_y*d0_c_in_base_y_3
-        )
-        d0_c_in_base_z_5 = (
-        axis_x_rrrrrr_axes5_z*d0_c_in_base_y + axis_y_rrrrrr_axes5_in_base_z*d0_c_in_base_y_2 +
-            axis_z_rrrrrr_axes5_in_base_z*d0_c_in_base_y_3
-        )
-        d0_c_in_base_x_5 = (
-        axis_x_rrrrrr_axes5_x*d0_c_in_base_z + axis_y_rrrrrr_axes5_in_base_x*d0_c_in_base_z_2 +
-            axis_z_rrrrrr_axes5_in_base_x*d0_c_in_base_z_3
-        )
-        d0_c_in_base_y_6 = (
-        axis_x_rrrrrr_axes5_y*d0_c_in_base_z + axis_y_rrrrrr_axes5_in_base_y*d0_c_in_base_z_2 +
-            axis_z_rrrrrr_axes5_in_base_y*d0_c_in_base_z_3
-        )
-        d0_c_in_base_z_6 = (
-        axis_x_rrrrrr_axes5_z*d0_c_in_base_z + axis_y_rrrrrr_axes5_in_base_z*d0_c_in_base_z_2 +
-            axis_z_rrrrrr_axes5_in_base_z*d0_c_in_base_z_3
-        )
-        # (M2) coupling block of M
-        M_ta_t_12 = (
-        M_ta_t - M_ta_t_2 - axis_x_rrrrrr_axes5_x*d0_c_in_base_x -
-            axis_y_rrrrrr_axes5_in_base_x*d0_c_in_base_x_2 -
-            axis_z_rrrrrr_axes5_in_base_x*d0_c_in_base_x_3
-        )
-        M_ta_t_13 = M_ta_t_3 + d0_c_in_base_y_4
-        M_ta_t_14 = M_ta_t_4 - d0_c_in_base_z_4
-        M_ta_t_15 = M_ta_t_5 - d0_c_in_base_x_4
-        M_ta_t_16 = M_ta_t_7 + d0_c_in_base_y_5
-        M_ta_t_17 = M_ta_t_8 - d0_c_in_base_z_5
-        M_ta_t_18 = M_ta_t_9 - d0_c_in_base_x_5
-        M_ta_t_19 = M_ta_t_10 + d0_c_in_base_y_6
-        M_ta_t_20 = M_ta_t_11 - d0_c_in_base_z_6
-        # (rrrrrr-N119) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        d0_G_m1_x = (
-        d0_Gamma_2_x*w_2_t_5 + d0_Gamma_3_x*w_3_t_4 + d0_Gamma_4_x*w_4_t_7 - d0_Gamma_1_x*w_1_t_93
-            - d0_Gamma_5_x*w_5_t_8
-        )
-        d0_G_m1_y = (
-        d0_Gamma_2_y*w_2_t_5 + d0_Gamma_3_y*w_3_t_4 + d0_Gamma_4_y*w_4_t_7 - d0_Gamma_1_y*w_1_t_93
-            - d0_Gamma_5_y*w_5_t_8
-        )
-        d0_G_m1_z = (
-        d0_Gamma_2_z*w_2_t_5 + d0_Gamma_3_z*w_3_t_4 + d0_Gamma_4_z*w_4_t_7 - d0_Gamma_1_z*w_1_t_93
-            - d0_Gamma_5_z*w_5_t_8
-        )
-        # (rrrrrr-N123) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
-        d0_G_m2_x = (
-        d0_Gamma_2_x*w_2_t_6 + d0_Gamma_3_x*w_3_t_5 + d0_Gamma_4_x*w_4_t_8 - d0_Gamma_1_x*w_1_t_94
-            - d0_Gamma_5_x*w_5_t_9
-        )
-        d0_G_m2_y = (
-        d0_Gamma_2_y*w_2_t_6 + d0_Gamma_3_y*w_3_t_5 + d0_Gamma_4_y*w_4_t_8 - d0_Gamma_1_y*w_1_t_94
-            - d0_Gamma_5_y*w_5_t_9
-        )
-        d0_G_m2_z = (
-        d0_Gamma_2_z*w_2_t_6 + d0_Gamma_3_z*w_3_t_5 + d0_Gamma_4_z*w_4_t_8 - d0_Gamma_1_z*w_1_t_94
-            - d0_Gamma_5_z*w_5_t_9
-        )
-        # (rrrrrr-N120) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        d_G_m1_x = (
-        d_Gamma_2_x*w_2_t_5 + d_Gamma_3_x*w_3_t_4 + d_Gamma_4_x*w_4_t_7 - d_Gamma_1_x*w_1_t_93 -
-            d_Gamma_5_x*w_5_t_8
-        )
-        d_G_m1_y = (
-        d_Gamma_2_y*w_2_t_5 + d_Gamma_3_y*w_3_t_4 + d_Gamma_4_y*w_4_t_7 - d_Gamma_1_y*w_1_t_93 -
-            d_Gamma_5_y*w_5_t_8
-        )
-        d_G_m1_z = (
-        d_Gamma_2_z*w_2_t_5 + d_Gamma_3_z*w_3_t_4 + d_Gamma_4_z*w_4_t_7 - d_Gamma_1_z*w_1_t_93 -
-            d_Gamma_5_t_6*w_5_t_8
-        )
-        # (rrrrrr-N124) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
-        d_G_m2_x = (
-        d_Gamma_2_x*w_2_t_6 + d_Gamma_3_x*w_3_t_5 + d_Gamma_4_x*w_4_t_8 - d_Gamma_1_x*w_1_t_94 -
-            d_Gamma_5_x*w_5_t_9
-        )
-        d_G_m2_y = (
-        d_Gamma_2_y*w_2_t_6 + d_Gamma_3_y*w_3_t_5 + d_Gamma_4_y*w_4_t_8 - d_Gamma_1_y*w_1_t_94 -
-            d_Gamma_5_y*w_5_t_9
-        )
-        d_G_m2_z = (
-        d_Gamma_2_z*w_2_t_6 + d_Gamma_3_z*w_3_t_5 + d_Gamma_4_z*w_4_t_8 - d_Gamma_1_z*w_1_t_94 -
-            d_Gamma_5_t_6*w_5_t_9
-        )
-        # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-        n_m1_in_base_x = (
-        axis_y_rrrrrr_axes5_in_base_x*end_p1_r8_x - axis_x_rrrrrr_axes5_x*end_p1_r8_y
-        )
-        n_m1_in_base_y = (
-        axis_y_rrrrrr_axes5_in_base_y*end_p1_r8_x - axis_x_rrrrrr_axes5_y*end_p1_r8_y
-        )
-        n_m1_in_base_z = (
-        axis_y_rrrrrr_axes5_in_base_z*end_p1_r8_x - axis_x_rrrrrr_axes5_z*end_p1_r8_y
-        )
-        # (rrrrrr-N120) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        d_G_m1_in_base_x = (
-        axis_x_rrrrrr_axes5_x*d_G_m1_x + axis_y_rrrrrr_axes5_in_base_x*d_G_m1_y +
-            axis_z_rrrrrr_axes5_in_base_x*d_G_m1_z
-        )
-        d_G_m1_in_base_y = (
-        axis_x_rrrrrr_axes5_y*d_G_m1_x + axis_y_rrrrrr_axes5_in_base_y*d_G_m1_y +
-            axis_z_rrrrrr_axes5_in_base_y*d_G_m1_z
-        )
-        d_G_m1_in_base_z = (
-        axis_x_rrrrrr_axes5_z*d_G_m1_x + axis_y_rrrrrr_axes5_in_base_z*d_G_m1_y +
-            axis_z_rrrrrr_axes5_in_base_z*d_G_m1_z
-        )
-        # (rrrrrr-V12) direction 2 of the moment that the platform joint transmits
-        n_m2_in_base_x = (
-        axis_z_rrrrrr_axes5_in_base_x*end_p1_r8_y - axis_y_rrrrrr_axes5_in_base_x*end_p1_r6_x
-        )
-        n_m2_in_base_y = (
-        axis_z_rrrrrr_axes5_in_base_y*end_p1_r8_y - axis_y_rrrrrr_axes5_in_base_y*end_p1_r6_x
-        )
-        n_m2_in_base_z = (
-        axis_z_rrrrrr_axes5_in_base_z*end_p1_r8_y - axis_y_rrrrrr_axes5_in_base_z*end_p1_r6_x
-        )
-        # (rrrrrr-N124) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
-        d_G_m2_in_base_x = (
-        axis_x_rrrrrr_axes5_x*d_G_m2_x + axis_y_rrrrrr_axes5_in_base_x*d_G_m2_y +
-            axis_z_rrrrrr_axes5_in_base_x*d_G_m2_z
-        )
-        d_G_m2_in_base_y = (
-        axis_x_rrrrrr_axes5_y*d_G_m2_x + axis_y_rrrrrr_axes5_in_base_y*d_G_m2_y +
-            axis_z_rrrrrr_axes5_in_base_y*d_G_m2_z
-        )
-        d_G_m2_in_base_z = (
-        axis_x_rrrrrr_axes5_z*d_G_m2_x + axis_y_rrrrrr_axes5_in_base_z*d_G_m2_y +
-            axis_z_rrrrrr_axes5_in_base_z*d_G_m2_z
-        )
-        # (rrrrrr-N128) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_m_xx = d_G_m1_in_base_x*n_m1_in_base_x + d_G_m2_in_base_x*n_m2_in_base_x
-        d_G_m_xy = d_G_m1_in_base_y*n_m1_in_base_x + d_G_m2_in_base_y*n_m2_in_base_x
-        d_G_m_xz = d_G_m1_in_base_z*n_m1_in_base_x + d_G_m2_in_base_z*n_m2_in_base_x
-        d_G_m_yx = d_G_m1_in_base_x*n_m1_in_base_y + d_G_m2_in_base_x*n_m2_in_base_y
-        # (rrrrrr-N119) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        d0_G_m1_in_base_y = (
-        axis_x_rrrrrr_axes5_y*d0_G_m1_x + axis_y_rrrrrr_axes5_in_base_y*d0_G_m1_y +
-            axis_z_rrrrrr_axes5_in_base_y*d0_G_m1_z
-        )
-        d0_G_m1_in_base_z = (
-        axis_x_rrrrrr_axes5_z*d0_G_m1_x + axis_y_rrrrrr_axes5_in_base_z*d0_G_m1_y +
-            axis_z_rrrrrr_axes5_in_base_z*d0_G_m1_z
-        )
-        # (rrrrrr-N123) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
-        d0_G_m2_in_base_y = (
-        axis_x_rrrrrr_axes5_y*d0_G_m2_x + axis_y_rrrrrr_axes5_in_base_y*d0_G_m2_y +
-            axis_z_rrrrrr_axes5_in_base_y*d0_G_m2_z
-        )
-        d0_G_m2_in_base_z = (
-        axis_x_rrrrrr_axes5_z*d0_G_m2_x + axis_y_rrrrrr_axes5_in_base_z*d0_G_m2_y +
-            axis_z_rrrrrr_axes5_in_base_z*d0_G_m2_z
-        )
-        # (M3) rotational block of M
-        M_aa_t = (
-        M_ta_t_5*q_in_base_z + d0_c_in_base_x_5*q_in_base_y + d_G_m_xy*q_in_base_z -
-            M_ta_t_9*q_in_base_y - d0_c_in_base_x_4*q_in_base_z - d_G_m_xz*q_in_base_y -
-            n_m1_in_base_x*(axis_x_rrrrrr_axes5_x*d0_G_m1_x +
-            axis_y_rrrrrr_axes5_in_base_x*d0_G_m1_y + axis_z_rrrrrr_axes5_in_base_x*d0_G_m1_z) -
-            n_m2_in_base_x*(axis_x_rrrrrr_axes5_x*d0_G_m2_x +
-            axis_y_rrrrrr_axes5_in_base_x*d0_G_m2_y + axis_z_rrrrrr_axes5_in_base_x*d0_G_m2_z)
-        )
-        M_aa_t_2 = (
-        M_ta_t_7*q_in_base_z + d0_G_m1_in_base_y*n_m1_in_base_x + d0_G_m2_in_base_y*n_m2_in_base_x
-            + d0_c_in_base_y_5*q_in_base_z + d_G_m_xx*q_in_base_z - M_ta_t_10*q_in_base_y -
-            d0_c_in_base_y_6*q_in_base_y - d_G_m_xz*q_in_base_x
-        )
-        M_aa_t_3 = (
-        M_ta_t_11*q_in_base_y + d0_G_m1_in_base_z*n_m1_in_base_x +
-            d0_G_m2_in_base_z*n_m2_in_base_x + d0_c_in_base_z_5*q_in_base_z + d_G_m_xy*q_in_base_x
-            - M_ta_t_8*q_in_base_z - d0_c_in_base_z_6*q_in_base_y - d_G_m_xx*q_in_base_y
-        )
-        M_aa_t_4 = (
-        M_ta_t_3*q_in_base_z + d0_c_in_base_y_4*q_in_base_z +
-            q_in_base_x*(d_G_m1_in_base_z*n_m1_in_base_y + d_G_m2_in_base_z*n_m2_in_base_y) -
-            M_ta_t_10*q_in_base_x - d0_G_m1_in_base_y*n_m1_in_base_y -
-            d0_G_m2_in_base_y*n_m2_in_base_y - d0_c_in_base_y_6*q_in_base_x - d_G_m_yx*q_in_base_z
-        )
-        M_aa_t_5 = (
-        M_ta_t_4*q_in_base_z + d0_G_m1_in_base_z*n_m1_in_base_y + d0_G_m2_in_base_z*n_m2_in_base_y
-            + d0_c_in_base_z_6*q_in_base_x + q_in_base_x*(d_G_m1_in_base_y*n_m1_in_base_y +
-            d_G_m2_in_base_y*n_m2_in_base_y) - M_ta_t_11*q_in_base_x -
-            d0_c_in_base_z_4*q_in_base_z - d_G_m_yx*q_in_base_y
-        )
-        M_aa_t_6 = (
-        M_ta_t_4*q_in_base_y + d0_c_in_base_z_5*q_in_base_x +
-            q_in_base_y*(d_G_m1_in_base_x*n_m1_in_base_z + d_G_m2_in_base_x*n_m2_in_base_z) -
-            M_ta_t_8*q_in_base_x - d0_G_m1_in_base_z*n_m1_in_base_z -
-            d0_G_m2_in_base_z*n_m2_in_base_z - d0_c_in_base_z_4*q_in_base_y -
-            q_in_base_x*(d_G_m1_in_base_y*n_m1_in_base_z + d_G_m2_in_base_y*n_m2_in_base_z)
-        )
-        # (rrrrrr-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        # (rrrrrr-V33) rate at which the joints turn along moment direction 1
-        eta_1 = n_m1_in_base_x*omega_x + n_m1_in_base_y*omega_y + n_m1_in_base_z*omega_z
-        # (rrrrrr-V34) rate at which the joints turn along moment direction 2
-        eta_2 = n_m2_in_base_x*omega_x + n_m2_in_base_y*omega_y + n_m2_in_base_z*omega_z
-        # (rrrrrr-V1) velocity of the connection point
-        S_dot_tip_x = (
-        S_dot_x*axis_x_rrrrrr_axes5_x + S_dot_y*axis_x_rrrrrr_axes5_y +
-            S_dot_z*axis_x_rrrrrr_axes5_z
-        )
-        S_dot_tip_y = (
-        S_dot_x*axis_y_rrrrrr_axes5_in_base_x + S_dot_y*axis_y_rrrrrr_axes5_in_base_y +
-            S_dot_z*axis_y_rrrrrr_axes5_in_base_z
-        )
-        S_dot_tip_z = (
-        S_dot_x*axis_z_rrrrrr_axes5_in_base_x + S_dot_y*axis_z_rrrrrr_axes5_in_base_y +
-            S_dot_z*axis_z_rrrrrr_axes5_in_base_z
-        )
-        # (rrrrrr-V35) rate of joint 1
-        qd_1_t = eta_1*size
-        qd_1_t_2 = eta_2*size
-        qd_1_t_3 = (
-        inv_w_1_t_222*(S_dot_tip_x*w_1_t_83 + S_dot_tip_z*w_1_t_85 + qd_1_t*w_1_t_86 +
-            qd_1_t_2*w_1_t_87 - S_dot_tip_y*w_1_t_84)
-        )
-        qd_1_t_4 = (
-        inv_w_1_t_194*(S_dot_tip_x*w_1_t_71 + S_dot_tip_z*w_1_t_73 + qd_1_t*w_1_t_74 +
-            qd_1_t_2*w_1_t_75 - S_dot_tip_y*w_1_t_72 - qd_1_t_3*w_1_t_76)
-        )
-        qd_1_t_5 = (
-        inv_w_1_t_150*(S_dot_tip_y*w_1_t_54 + qd_1_t_3*w_1_t_64 + qd_1_t_4*w_1_t_58 -
-            S_dot_tip_x*w_1_t_53 - S_dot_tip_z*w_1_t_55 - qd_1_t*w_1_t_56 - qd_1_t_2*w_1_t_57)
-        )
-        qd_1_t_6 = (
-        inv_w_1_t_101*(S_dot_tip_z*w_1_t_33 + qd_1_t*w_1_t_34 + qd_1_t_2*w_1_t_35 +
-            qd_1_t_3*w_1_t_47 + qd_1_t_4*w_1_t_42 - S_dot_tip_y*w_1_t_32 - qd_1_t_5*w_1_t_36)
-        )
-        qd_1_t_7 = (
-        inv_w_1_t_69*(S_dot_tip_y*w_1_t_16 + qd_1_t_2*w_1_t_17 + qd_1_t_3*w_1_t_28 +
-            qd_1_t_5*w_1_t_21 - qd_1_t_4*w_1_t_25 - qd_1_t_6*w_1_t_18)
-        )
-        # (rrrrrr-V40) angular velocity of link 1
-        omega_1_t = qd_1_t_5*s_2
-        omega_1_t_2 = c_2_t*qd_1_t_5
-        # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_x = omega_1_t_2*qd_1_t_4
-        zeta_2_y = omega_1_t*qd_1_t_4
-        # (rrrrrr-V42) angular velocity of link 2
-        omega_2_r0_x = omega_1_t_2*s_3 - c_3*omega_1_t
-        omega_2_r0_y = c_3*omega_1_t_2 + omega_1_t*s_3
-        # (rrrrrr-A5) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_x = omega_2_r0_y*qd_1_t_3
-        zeta_3_y = omega_2_r0_x*qd_1_t_3
-        # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_r0_x = c_3*zeta_2_x + s_3*zeta_2_y
-        zeta_2_r0_y = c_3*zeta_2_y - s_3*zeta_2_x
-        # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_x = zeta_2_r0_x + zeta_3_x
-        beta_3_y = zeta_2_r0_y - zeta_3_y
-        # (rrrrrr-V44) angular velocity of link 3
-        omega_3_z = qd_1_t_3 + qd_1_t_4
-        omega_3_r1_x = omega_3_z*s_4 - c_4_t*omega_2_r0_y
-        omega_3_r1_y = -c_4_t*omega_3_z - omega_2_r0_y*s_4
-        # (rrrrrr-A7) angular acceleration of link 4 from the turning of axis 4
-        zeta_4_x = omega_3_r1_y*qd_1_t_6
-        zeta_4_y = omega_3_r1_x*qd_1_t_6
-        # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_t = beta_3_y*c_4_t
-        beta_3_t_2 = beta_3_y*s_4
-        # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
-        beta_4_x = zeta_4_x - beta_3_t
-        beta_4_y = -beta_3_t_2 - zeta_4_y
-        # (rrrrrr-V46) angular velocity of link 4
-        omega_4_z = omega_2_r0_x + qd_1_t_6
-        omega_4_t = c_5_t*omega_3_r1_y
-        omega_4_r1_x = omega_4_z*s_5 - omega_4_t
-        omega_4_t_2 = omega_3_r1_y*s_5
-        omega_4_r1_y = -omega_4_t_2 - c_5_t*omega_4_z
-        # (rrrrrr-A9) angular acceleration of link 5 from the turning of axis 5
-        zeta_5_x = omega_4_r1_y*qd_1_t_7
-        zeta_5_y = omega_4_r1_x*qd_1_t_7
-        # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
-        beta_4_t = beta_3_x*s_5
-        beta_4_r1_x = beta_4_t - beta_4_y*c_5_t
-        beta_4_t_2 = beta_3_x*c_5_t
-        beta_4_r1_y = -beta_4_t_2 - beta_4_y*s_5
-        # (rrrrrr-A10) angular acceleration of link 5 at zero joint accelerations
-        beta_5_x = beta_4_r1_x + zeta_5_x
-        beta_5_y = beta_4_r1_y - zeta_5_y
-        # (rrrrrr-V48) angular velocity of link 5
-        omega_5_z = omega_3_r1_x + qd_1_t_7
-        # (rrrrrr-A14) rate of moment direction 1
-        nd_m1_t = end_p1_r8_y*omega_4_r1_y
-        omega_tip_x = (
-        axis_x_rrrrrr_axes5_x*omega_x + axis_x_rrrrrr_axes5_y*omega_y +
-            axis_x_rrrrrr_axes5_z*omega_z
-        )
-        omega_tip_y = (
-        axis_y_rrrrrr_axes5_in_base_x*omega_x + axis_y_rrrrrr_axes5_in_base_y*omega_y +
-            axis_y_rrrrrr_axes5_in_base_z*omega_z
-        )
-        omega_tip_z = (
-        axis_z_rrrrrr_axes5_in_base_x*omega_x + axis_z_rrrrrr_axes5_in_base_y*omega_y +
-            axis_z_rrrrrr_axes5_in_base_z*omega_z
-        )
-        nd_m1_t_2 = end_p1_r8_x*omega_tip_z - end_p1_r6_x*omega_tip_x
-        nd_m1_x = -nd_m1_t_2 - end_p1_r6_x*omega_4_r1_x
-        nd_m1_y = end_p1_r6_x*omega_tip_y - end_p1_r6_x*omega_4_r1_y - end_p1_r8_y*omega_tip_z
-        # (rrrrrr-A15) bias of the angular acceleration along moment direction 1
-        nu_1_t = beta_5_x*end_p1_r8_y - beta_5_y*end_p1_r8_x
-        nu_1_t_2 = omega_4_r1_x - omega_tip_x
-        nu_1_t_3 = omega_4_r1_y - omega_tip_y
-        nu_1_t_4 = omega_5_z - omega_tip_z
-        nu_1_t_5 = (
-        nd_m1_x*nu_1_t_2 + nd_m1_y*nu_1_t_3 + nu_1_t_4*(nd_m1_t + end_p1_r8_x*omega_4_r1_x)
-        )
-        nu_1 = nu_1_t - nu_1_t_5
-        # (rrrrrr-A16) rate of moment direction 2
-        nd_m2_y = end_p1_r8_x*omega_tip_y - end_p1_r8_x*omega_4_r1_y - end_p1_r8_y*omega_tip_x
-        nd_m2_z = nd_m1_t_2 - end_p1_r8_x*omega_5_z
-        # (rrrrrr-A17) bias of the angular acceleration along moment direction 2
-        nu_2_t = beta_5_y*end_p1_r6_x - beta_4_x*end_p1_r8_y
-        nu_2_t_2 = (
-        nd_m2_y*nu_1_t_3 + nd_m2_z*nu_1_t_4 + nu_1_t_2*(nd_m1_t + end_p1_r6_x*omega_5_z)
-        )
-        nu_2 = nu_2_t - nu_2_t_2
-        # (rrrrrr-V43) centripetal tensor of link 2
-        W_2_t = omega_1_t*omega_1_t
-        W_2_t_2 = omega_1_t_2*omega_1_t_2
-        W_2_t_3 = qd_1_t_4*qd_1_t_4
-        W_2_xy = omega_1_t*omega_1_t_2
-        # (rrrrrr-V45) centripetal tensor of link 3
-        W_3_t = omega_2_r0_x*omega_2_r0_x
-        W_3_t_2 = omega_2_r0_y*omega_2_r0_y
-        W_3_t_3 = omega_3_z*omega_3_z
-        W_3_xx = W_3_t_2 + W_3_t_3
-        W_3_xy = omega_2_r0_x*omega_2_r0_y
-        W_3_xz = omega_2_r0_x*omega_3_z
-        W_3_yz = omega_2_r0_y*omega_3_z
-        # (rrrrrr-V47) centripetal tensor of link 4
-        W_4_t = omega_3_r1_x*omega_3_r1_x
-        W_4_t_2 = omega_3_r1_y*omega_3_r1_y
-        W_4_t_3 = omega_4_z*omega_4_z
-        W_4_xy = omega_3_r1_x*omega_3_r1_y
-        W_4_xz = omega_3_r1_x*omega_4_z
-        W_4_yz = omega_3_r1_y*omega_4_z
-        # (rrrrrr-V49) centripetal tensor of link 5
-        W_5_t = omega_4_r1_x*omega_4_r1_x
-        W_5_t_2 = omega_4_r1_y*omega_4_r1_y
-        W_5_t_3 = omega_5_z*omega_5_z
-        W_5_xx = W_5_t_2 + W_5_t_3
-        W_5_xy = omega_4_r1_x*omega_4_r1_y
-        W_5_xz = omega_4_r1_x*omega_5_z
-        W_5_yz = omega_4_r1_y*omega_5_z
-        # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-        bias_t = rrrrrr_joint2_offset_x*s_2
-        bias_t_2 = c_2_t*rrrrrr_joint2_offset_x
-        d_2_r2_x = bias_t*c_3 - bias_t_2*s_3
-        d_2_r2_y = -bias_t*s_3 - bias_t_2*c_3
-        bias_t_3 = c_4_t*d_2_r2_y
-        bias_t_4 = d_2_r2_y*s_4
-        d_2_r6_x = bias_t_4*c_5_t + d_2_r2_x*s_5
-        d_2_r6_y = bias_t_4*s_5 - c_5_t*d_2_r2_x
-        # (rrrrrr-V40) angular velocity of link 1
-        omega_1_x = e_1_r6_x*qd_1_t_5
-        omega_1_y = e_1_r6_y*qd_1_t_5
-        omega_1_z = qd_1_t_5*v_1_t
-        # (rrrrrr-V41) centripetal tensor of link 1
-        W_1_t = omega_1_x*omega_1_x
-        W_1_t_2 = omega_1_y*omega_1_y
-        W_1_t_3 = omega_1_z*omega_1_z
-        W_1_xy = omega_1_x*omega_1_y
-        W_1_xz = omega_1_x*omega_1_z
-        W_1_yz = omega_1_y*omega_1_z
-        # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-        bias_t_5 = c_3*rrrrrr_joint3_offset_x
-        bias_t_6 = rrrrrr_joint3_offset_x*s_3
-        bias_t_7 = bias_t_6*c_4_t
-        bias_t_8 = bias_t_6*s_4
-        d_3_r4_x = bias_t_5*s_5 - bias_t_8*c_5_t
-        d_3_r4_y = -bias_t_5*c_5_t - bias_t_8*s_5
-        # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_t = c_4_t*zeta_2_r0_y
-        zeta_2_t_2 = s_4*zeta_2_r0_y
-        zeta_2_r4_x = c_5_t*zeta_2_t_2 + s_5*zeta_2_r0_x
-        zeta_2_r4_y = s_5*zeta_2_t_2 - c_5_t*zeta_2_r0_x
-        # (rrrrrr-V42) angular velocity of link 2
-        omega_2_x = qd_1_t_4*v_2_t - omega_1_x
-        omega_2_y = qd_1_t_4*v_2_t_2 - omega_1_y
-        omega_2_z = omega_1_z + qd_1_t_4*s_4
-        # (rrrrrr-V43) centripetal tensor of link 2
-        W_2_t_4 = omega_2_x*omega_2_x
-        W_2_t_5 = omega_2_y*omega_2_y
-        W_2_t_6 = omega_2_z*omega_2_z
-        W_2_xy_2 = omega_2_x*omega_2_y
-        W_2_xz = omega_2_x*omega_2_z
-        W_2_yz = omega_2_y*omega_2_z
-        # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-        bias_t_9 = rrrrrr_joint4_offset_x*s_5
-        bias_t_10 = c_5_t*rrrrrr_joint4_offset_x
-        # (rrrrrr-V44) angular velocity of link 3
-        omega_3_r3_x = omega_2_r0_x*s_5 - omega_4_t
-        omega_3_r3_y = -omega_4_t_2 - c_5_t*omega_2_r0_x
-        # (rrrrrr-V45) centripetal tensor of link 3
-        W_3_xy_2 = omega_3_r3_x*omega_3_r3_y
-        # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-        bias_t_11 = rrrrrr_joint5_offset_x*s_5
-        bias_t_12 = c_5_t*rrrrrr_joint5_offset_x
-        bias_t_13 = W_5_xy + beta_4_x
-        bias_x = (
-        W_1_xy*d_2_r6_y + W_1_xz*bias_t_3 + bias_t_7*(W_2_xz + zeta_2_r4_y) + d_3_r4_y*(W_2_xy_2 +
-            zeta_2_t) - W_5_xx*rrrrrr_platform_joint_offset_x - bias_t_10*(W_3_xy_2 + beta_3_t) -
-            bias_t_11*(W_4_t + W_5_t_2) - bias_t_12*(W_5_xy - beta_4_x) - bias_t_9*(W_4_t +
-            omega_3_r3_y*omega_3_r3_y) - d_2_r6_x*(W_1_t_2 + W_1_t_3) - d_3_r4_x*(W_2_t_5 +
-            W_2_t_6)
-        )
-        bias_y = (
-        W_1_xy*d_2_r6_x + W_1_yz*bias_t_3 + bias_t_10*(W_4_t + omega_3_r3_x*omega_3_r3_x) +
-            bias_t_11*bias_t_13 + bias_t_12*(W_4_t + W_5_t) +
-            bias_t_13*rrrrrr_platform_joint_offset_x + bias_t_7*(W_2_yz - zeta_2_r4_x) +
-            bias_t_9*(W_3_xy_2 - beta_3_t) + d_3_r4_x*(W_2_xy_2 - zeta_2_t) - d_2_r6_y*(W_1_t +
-            W_1_t_3) - d_3_r4_y*(W_2_t_4 + W_2_t_6)
-        )
-        bias_z = (
-        bias_t_11*(omega_3_r1_x*omega_4_r1_x - beta_4_r1_y) + bias_t_3*(W_1_t + W_1_t_2) +
-            bias_t_9*(beta_4_t_2 + omega_3_r1_x*omega_3_r3_x - beta_3_t_2*s_5) + d_3_r4_x*(W_2_xz
-            - zeta_2_r4_y) + d_3_r4_y*(W_2_yz + zeta_2_r4_x) +
-            rrrrrr_platform_joint_offset_x*(W_5_xz - beta_5_y) - W_1_xz*d_2_r6_x - W_1_yz*d_2_r6_y
-            - bias_t_10*(beta_4_t + beta_3_t_2*c_5_t + omega_3_r1_x*omega_3_r3_y) -
-            bias_t_12*(beta_4_r1_x + omega_3_r1_x*omega_4_r1_y) - bias_t_7*(W_2_t_4 + W_2_t_5)
-        )
-        # (rrrrrr-A1) centripetal acceleration of the connection point
-        u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
-        u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y
-        u_1_tip_x = (
-        axis_x_rrrrrr_axes5_x*u_1_x + axis_x_rrrrrr_axes5_y*u_1_y + axis_x_rrrrrr_axes5_z*u_1_z
-        )
-        u_1_tip_y = (
-        axis_y_rrrrrr_axes5_in_base_x*u_1_x + axis_y_rrrrrr_axes5_in_base_y*u_1_y +
-            axis_y_rrrrrr_axes5_in_base_z*u_1_z
-        )
-        u_1_tip_z = (
-        axis_z_rrrrrr_axes5_in_base_x*u_1_x + axis_z_rrrrrr_axes5_in_base_y*u_1_y +
-            axis_z_rrrrrr_axes5_in_base_z*u_1_z
-        )
-        # (rrrrrr-A13) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_x = u_1_tip_x - bias_x
-        rel_o_y = u_1_tip_y - bias_y
-        rel_o_z = u_1_tip_z - bias_z
-        # (rrrrrr-A21) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_o_t = nu_1*size
-        qdd_1_o_t_2 = nu_2*size
-        qdd_1_o_t_3 = (
-        inv_w_1_t_222*(qdd_1_o_t*w_1_t_86 + qdd_1_o_t_2*w_1_t_87 + rel_o_x*w_1_t_83 +
-            rel_o_z*w_1_t_85 - rel_o_y*w_1_t_84)
-        )
-        qdd_1_o_t_4 = (
-        inv_w_1_t_194*(qdd_1_o_t*w_1_t_74 + qdd_1_o_t_2*w_1_t_75 + rel_o_x*w_1_t_71 +
-            rel_o_z*w_1_t_73 - qdd_1_o_t_3*w_1_t_76 - rel_o_y*w_1_t_72)
-        )
-        qdd_1_o_t_5 = (
-        inv_w_1_t_150*(qdd_1_o_t_3*w_1_t_64 + qdd_1_o_t_4*w_1_t_58 + rel_o_y*w_1_t_54 -
-            qdd_1_o_t*w_1_t_56 - qdd_1_o_t_2*w_1_t_57 - rel_o_x*w_1_t_53 - rel_o_z*w_1_t_55)
-        )
-        qdd_1_o_t_6 = (
-        inv_w_1_t_101*(qdd_1_o_t*w_1_t_34 + qdd_1_o_t_2*w_1_t_35 + qdd_1_o_t_3*w_1_t_47 +
-            qdd_1_o_t_4*w_1_t_42 + rel_o_z*w_1_t_33 - qdd_1_o_t_5*w_1_t_36 - rel_o_y*w_1_t_32)
-        )
-        # (rrrrrr-A31) remainder without the acceleration in: angular acceleration of link 1
-        alpha_1_o_t = qdd_1_o_t_5*s_2
-        alpha_1_o_t_2 = c_2_t*qdd_1_o_t_5
-        # (rrrrrr-A35) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_o_x = zeta_2_x - alpha_1_o_t
-        alpha_2_o_y = alpha_1_o_t_2 + zeta_2_y
-        # (rrrrrr-A37) remainder of the acceleration tensor of link 2
-        B_2_o_xy = -W_2_xy - qdd_1_o_t_4
-        B_2_o_yx = qdd_1_o_t_4 - W_2_xy
-        B_2_o_zx = -alpha_2_o_y - zeta_2_y
-        B_2_o_zy = alpha_2_o_x + zeta_2_x
-        # (rrrrrr-A55) remainder without the acceleration in: acceleration of the origin of joint 3
-        a_o3_o_t = rrrrrr_joint3_offset_x*(W_2_t_2 + W_2_t_3)
-        a_o3_o_t_2 = B_2_o_yx*rrrrrr_joint3_offset_x
-        a_o3_o_t_3 = B_2_o_zx*rrrrrr_joint3_offset_x
-        # (rrrrrr-A39) remainder without the acceleration in: angular acceleration of link 3
-        alpha_3_o_x = zeta_3_x + alpha_2_o_x*c_3 + alpha_2_o_y*s_3
-        alpha_3_o_y = alpha_2_o_y*c_3 - zeta_3_y - alpha_2_o_x*s_3
-        alpha_3_o_z = qdd_1_o_t_3 + qdd_1_o_t_4
-        # (rrrrrr-A41) remainder of the acceleration tensor of link 3
-        B_3_o_xy = W_3_xy - alpha_3_o_z
-        B_3_o_xz = W_3_xz + alpha_3_o_y
-        B_3_o_yx = W_3_xy + alpha_3_o_z
-        B_3_o_yz = W_3_yz - alpha_3_o_x
-        B_3_o_zx = W_3_xz - alpha_3_o_y
-        B_3_o_zy = W_3_yz + alpha_3_o_x
-        # (rrrrrr-A55) remainder without the acceleration in: acceleration of the origin of joint 3
-        a_o3_o_r0_x = a_o3_o_t_2*s_3 - a_o3_o_t*c_3
-        a_o3_o_r0_y = a_o3_o_t*s_3 + a_o3_o_t_2*c_3
-        # (rrrrrr-A57) remainder without the acceleration in: acceleration of the origin of joint 4
-        a_o4_o_x = a_o3_o_r0_x - W_3_xx*rrrrrr_joint4_offset_x
-        a_o4_o_y = a_o3_o_r0_y + B_3_o_yx*rrrrrr_joint4_offset_x
-        a_o4_o_z = a_o3_o_t_3 + B_3_o_zx*rrrrrr_joint4_offset_x
-        # (rrrrrr-N16) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
-        g_r1_x = g_r0_y*s_1 - c_1_t*g_r0_x
-        g_r1_y = -c_1_t*g_r0_y - g_r0_x*s_1
-        g_r3_x = g_r0_z*s_2 - c_2_t*g_r1_y
-        g_r3_y = -c_2_t*g_r0_z - g_r1_y*s_2
-        g_r4_x = c_3*g_r3_x + g_r3_y*s_3
-        g_r4_y = c_3*g_r3_y - g_r3_x*s_3
-        g_r6_x = g_r1_x*s_4 - c_4_t*g_r4_y
-        g_r6_y = -c_4_t*g_r1_x - g_r4_y*s_4
-        acc_4_o_x = a_o4_o_z*s_4 - g_r6_x - a_o4_o_y*c_4_t
-        acc_4_o_y = -g_r6_y - a_o4_o_y*s_4 - a_o4_o_z*c_4_t
-        acc_4_o_z = a_o4_o_x - g_r4_x
-        # (rrrrrr-A43) remainder without the acceleration in: angular acceleration of link 4
-        alpha_4_o_x = zeta_4_x + alpha_3_o_z*s_4 - alpha_3_o_y*c_4_t
-        alpha_4_o_y = -zeta_4_y - alpha_3_o_y*s_4 - alpha_3_o_z*c_4_t
-        alpha_4_o_z = alpha_3_o_x + qdd_1_o_t_6
-        # (rrrrrr-A45) remainder of the acceleration tensor of link 4
-        B_4_o_xy = W_4_xy - alpha_4_o_z
-        B_4_o_xz = W_4_xz + alpha_4_o_y
-        B_4_o_yx = W_4_xy + alpha_4_o_z
-        B_4_o_yz = W_4_yz - alpha_4_o_x
-        B_4_o_zx = W_4_xz - alpha_4_o_y
-        B_4_o_zy = W_4_yz + alpha_4_o_x
-        # (rrrrrr-N73) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
-        mu_4_o_x = (
-        B_4_o_yx*J_4_xz + B_4_o_zx*J_4_yz + B_4_o_zy*Sigma_4_yy - B_4_o_yz*Sigma_4_zz -
-            J_4_xy*(W_4_t_2 - W_4_t_3) - acc_4_o_y*h_4_x - acc_4_o_z*h_4_y
-        )
-        mu_4_o_y = (
-        B_4_o_xy*J_4_xy + B_4_o_xz*Sigma_4_zz + acc_4_o_x*h_4_x - B_4_o_zx*Sigma_4_xx -
-            B_4_o_zy*J_4_yz - J_4_xz*(W_4_t - W_4_t_3) - acc_4_o_z*h_4_z
-        )
-        mu_4_o_z = (
-        B_4_o_yx*Sigma_4_xx + acc_4_o_x*h_4_y + acc_4_o_y*h_4_z - B_4_o_xy*Sigma_4_yy -
-            B_4_o_xz*J_4_xy - B_4_o_yz*J_4_xz - J_4_yz*(W_4_t - W_4_t_2)
-        )
-        # (rrrrrr-N22) remainder without the acceleration in: acceleration of the reference point of link 5, less gravity
-        acc_5_o_x = u_1_tip_x + c_5_t*g_r6_y - g_r4_x*s_5
-        acc_5_o_y = u_1_tip_y + c_5_t*g_r4_x + g_r6_y*s_5
-        acc_5_o_z = u_1_tip_z - g_r6_x
-        # (rrrrrr-A49) remainder without the acceleration in: angular acceleration of link 5
-        alpha_5_o_x = zeta_5_x + alpha_4_o_z*s_5 - alpha_4_o_y*c_5_t
-        alpha_5_o_y = -zeta_5_y - alpha_4_o_y*s_5 - alpha_4_o_z*c_5_t
-        alpha_5_o_z = (
-        alpha_4_o_x + inv_w_1_t_69*(qdd_1_o_t_2*w_1_t_17 + qdd_1_o_t_3*w_1_t_28 +
-            qdd_1_o_t_5*w_1_t_21 + rel_o_y*w_1_t_16 - qdd_1_o_t_4*w_1_t_25 - qdd_1_o_t_6*w_1_t_18)
-        )
-        # (rrrrrr-A51) remainder of the acceleration tensor of link 5
-        B_5_o_xy = W_5_xy - alpha_5_o_z
-        B_5_o_xz = W_5_xz + alpha_5_o_y
-        B_5_o_yx = W_5_xy + alpha_5_o_z
-        B_5_o_yz = W_5_yz - alpha_5_o_x
-        B_5_o_zx = W_5_xz - alpha_5_o_y
-        B_5_o_zy = W_5_yz + alpha_5_o_x
-        # (rrrrrr-N65) remainder without the acceleration in: inertia moment of the links that turn with link 5, about their reference points
-        mu_5_o_x = (
-        B_5_o_yx*J_5_xz + B_5_o_zy*Sigma_5_yy + J_5_yz*(W_5_t_2 - W_5_t_3) + acc_5_o_z*h_5_y -
-            B_5_o_yz*Sigma_5_zz - B_5_o_zx*J_5_xy - acc_5_o_y*h_5_z
-        )
-        mu_5_o_y = (
-        B_5_o_xz*Sigma_5_zz + B_5_o_zy*J_5_xy + acc_5_o_x*h_5_z - B_5_o_xy*J_5_yz -
-            B_5_o_zx*Sigma_5_xx - J_5_xz*(W_5_t - W_5_t_3) - acc_5_o_z*h_5_x
-        )
-        mu_5_o_z = (
-        B_5_o_xz*J_5_yz + B_5_o_yx*Sigma_5_xx + J_5_xy*(W_5_t - W_5_t_2) + acc_5_o_y*h_5_x -
-            B_5_o_xy*Sigma_5_yy - B_5_o_yz*J_5_xz - acc_5_o_x*h_5_y
-        )
-        # (rrrrrr-N75) remainder without the acceleration in: moment about joint 4 of the links from 4 outwards, the force at the connection point left out
-        N_4_o_x = mu_4_o_x + mu_5_o_z
-        N_4_o_y = mu_4_o_y - c_5_t*mu_5_o_x - mu_5_o_y*s_5
-        N_4_o_z = mu_4_o_z + mu_5_o_x*s_5 - c_5_t*mu_5_o_y
-        # (rrrrrr-N20) remainder without the acceleration in: inertia force of link 4 less its weight
-        f_4_o_x = (
-        B_4_o_xz*h_4_x + acc_4_o_x*rrrrrr_link4_mass - B_4_o_xy*h_4_y - h_4_z*(W_4_t_2 + W_4_t_3)
-        )
-        f_4_o_y = (
-        B_4_o_yx*h_4_z + B_4_o_yz*h_4_x + acc_4_o_y*rrrrrr_link4_mass + h_4_y*(W_4_t + W_4_t_3)
-        )
-        f_4_o_z = (
-        B_4_o_zx*h_4_z + acc_4_o_z*rrrrrr_link4_mass - B_4_o_zy*h_4_y - h_4_x*(W_4_t + W_4_t_2)
-        )
-        # (rrrrrr-N10) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        acc_3_o_x = a_o3_o_r0_x - g_r4_x
-        acc_3_o_y = a_o3_o_r0_y - g_r4_y
-        acc_3_o_z = a_o3_o_t_3 - g_r1_x
-        # (rrrrrr-N83) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        mu_3_o_x = (
-        B_3_o_yx*J_3_xz + B_3_o_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_o_z*h_3_y -
-            B_3_o_yz*Sigma_3_zz - B_3_o_zx*J_3_xy - acc_3_o_y*h_3_z
-        )
-        mu_3_o_y = (
-        B_3_o_xz*Sigma_3_zz + B_3_o_zy*J_3_xy + acc_3_o_x*h_3_z - B_3_o_xy*J_3_yz -
-            B_3_o_zx*Sigma_3_xx - J_3_xz*(W_3_t - W_3_t_3) - acc_3_o_z*h_3_x
-        )
-        mu_3_o_z = (
-        B_3_o_xz*J_3_yz + B_3_o_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_o_y*h_3_x -
-            B_3_o_xy*Sigma_3_yy - B_3_o_yz*J_3_xz - acc_3_o_x*h_3_y
-        )
-        # (rrrrrr-N20) remainder without the acceleration in: inertia force of link 4 less its weight
-        f_4_o_r0_x = -c_4_t*f_4_o_x - f_4_o_y*s_4
-        f_4_o_r0_y = f_4_o_x*s_4 - c_4_t*f_4_o_y
-        # (rrrrrr-N85) remainder without the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-        N_3_o_x = N_4_o_z + mu_3_o_x
-        N_3_o_y = mu_3_o_y - N_4_o_x*c_4_t - N_4_o_y*s_4 - f_4_o_r0_y*rrrrrr_joint4_offset_x
-        N_3_o_z = mu_3_o_z + N_4_o_x*s_4 + f_4_o_r0_x*rrrrrr_joint4_offset_x - N_4_o_y*c_4_t
-        # (rrrrrr-N14) remainder without the acceleration in: inertia force of link 3 less its weight
-        f_3_o_x = B_3_o_xy*h_3_y + B_3_o_xz*h_3_z + acc_3_o_x*rrrrrr_link3_mass - W_3_xx*h_3_x
-        f_3_o_y = (
-        B_3_o_yx*h_3_x + B_3_o_yz*h_3_z + acc_3_o_y*rrrrrr_link3_mass - h_3_y*(W_3_t + W_3_t_3)
-        )
-        f_3_o_z = (
-        B_3_o_zx*h_3_x + B_3_o_zy*h_3_y + acc_3_o_z*rrrrrr_link3_mass - h_3_z*(W_3_t + W_3_t_2)
-        )
-        # (rrrrrr-N87) remainder without the acceleration in: inertia force of the links from 3 outwards, the last link left out
-        T_3_o_x = f_3_o_x + f_4_o_z
-        T_3_o_y = f_3_o_y + f_4_o_r0_x
-        T_3_o_z = f_3_o_z + f_4_o_r0_y
-        # (rrrrrr-N95) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_o_x = (
-        B_2_o_yx*J_2_xz + B_2_o_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z -
-            B_2_o_zx*J_2_xy - Sigma_2_zz*alpha_1_o_t - g_r1_x*h_2_y
-        )
-        mu_2_o_y = (
-        B_2_o_zy*J_2_xy + Sigma_2_zz*alpha_1_o_t_2 + g_r1_x*h_2_x - B_2_o_xy*J_2_yz -
-            B_2_o_zx*Sigma_2_xx - J_2_xz*(W_2_t - W_2_t_3) - g_r3_x*h_2_z
-        )
-        mu_2_o_z = (
-        B_2_o_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + J_2_yz*alpha_1_o_t_2 + g_r3_x*h_2_y -
-            B_2_o_xy*Sigma_2_yy - J_2_xz*alpha_1_o_t - g_r3_y*h_2_x
-        )
-        # (rrrrrr-N97) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_o_x = mu_2_o_x + N_3_o_x*c_3 - N_3_o_y*s_3
-        N_2_o_y = mu_2_o_y + N_3_o_x*s_3 + N_3_o_y*c_3 - T_3_o_z*rrrrrr_joint3_offset_x
-        N_2_o_z = N_3_o_z + mu_2_o_z + rrrrrr_joint3_offset_x*(T_3_o_x*s_3 + T_3_o_y*c_3)
-        # (rrrrrr-N107) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_o_z = -J_1_xx*qdd_1_o_t_5 - g_r1_x*h_1_y - g_r1_y*h_1_z
-        # (rrrrrr-N109) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_o_z = mu_1_o_z + N_2_o_x*s_2 - N_2_o_y*c_2_t
-        # (rrrrrr-N117) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_o_t = inv_w_1_t_69*mu_5_o_z
-        G_o_t_2 = inv_w_1_t_101*(G_o_t*w_1_t_18 - N_4_o_z)
-        G_o_t_3 = inv_w_1_t_150*(G_o_t*w_1_t_21 + G_o_t_2*w_1_t_36 - N_1_o_z)
-        G_o_t_4 = inv_w_1_t_194*(G_o_t*w_1_t_25 + G_o_t_2*w_1_t_42 - N_2_o_z - G_o_t_3*w_1_t_58)
-        G_o_t_5 = (
-        inv_w_1_t_222*(N_3_o_z + G_o_t*w_1_t_28 + G_o_t_3*w_1_t_64 + G_o_t_4*w_1_t_76 -
-            G_o_t_2*w_1_t_47)
-        )
-        G_o_t_6 = size*(G_o_t_2*w_1_t_34 + G_o_t_3*w_1_t_56 + G_o_t_4*w_1_t_74 - G_o_t_5*w_1_t_86)
-        G_o_t_7 = (
-        size*(G_o_t_2*w_1_t_35 + G_o_t_3*w_1_t_57 + G_o_t_4*w_1_t_75 - G_o_t*w_1_t_17 -
-            G_o_t_5*w_1_t_87)
-        )
-        # (rrrrrr-N133) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_o_x = (
-        G_o_t_3*w_1_t_53 + G_o_t_4*w_1_t_71 + W_5_xx*h_5_x - B_5_o_xy*h_5_y - B_5_o_xz*h_5_z -
-            G_o_t_5*w_1_t_83
-        )
-        c_o_y = (
-        G_o_t_5*w_1_t_84 + h_5_y*(W_5_t + W_5_t_3) - B_5_o_yx*h_5_x - B_5_o_yz*h_5_z -
-            G_o_t*w_1_t_16 - G_o_t_2*w_1_t_32 - G_o_t_3*w_1_t_54 - G_o_t_4*w_1_t_72
-        )
-        c_o_z = (
-        G_o_t_2*w_1_t_33 + G_o_t_3*w_1_t_55 + G_o_t_4*w_1_t_73 + h_5_z*(W_5_t + W_5_t_2) -
-            B_5_o_zx*h_5_x - B_5_o_zy*h_5_y - G_o_t_5*w_1_t_85
-        )
-        # (rrrrrr-N139) velocity and gravity terms of the leg force
-        U_in_base_x = (
-        -axis_x_rrrrrr_axes5_x*c_o_x - axis_y_rrrrrr_axes5_in_base_x*c_o_y -
-            axis_z_rrrrrr_axes5_in_base_x*c_o_z
-        )
-        U_in_base_y = (
-        -axis_x_rrrrrr_axes5_y*c_o_x - axis_y_rrrrrr_axes5_in_base_y*c_o_y -
-            axis_z_rrrrrr_axes5_in_base_y*c_o_z
-        )
-        U_in_base_z = (
-        -axis_x_rrrrrr_axes5_z*c_o_x - axis_y_rrrrrr_axes5_in_base_z*c_o_y -
-            axis_z_rrrrrr_axes5_in_base_z*c_o_z
-        )
-        # (rrrrrr-N129) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        G_m_o_t = G_o_t_6*end_p1_r8_y
-        G_m_o_t_2 = G_o_t_7*end_p1_r8_y
-        G_m_o_y = G_o_t_7*end_p1_r6_x - G_o_t_6*end_p1_r8_x
-        # (M7) rotational part of Z
-        Z_a_t = (
-        G_m_o_t*axis_x_rrrrrr_axes5_x + G_m_o_y*axis_y_rrrrrr_axes5_in_base_x +
-            U_in_base_z*q_in_base_y - G_m_o_t_2*axis_z_rrrrrr_axes5_in_base_x -
-            U_in_base_y*q_in_base_z
-        )
-        Z_a_t_2 = (
-        G_m_o_t*axis_x_rrrrrr_axes5_y + G_m_o_y*axis_y_rrrrrr_axes5_in_base_y +
-            U_in_base_x*q_in_base_z - G_m_o_t_2*axis_z_rrrrrr_axes5_in_base_y -
-            U_in_base_z*q_in_base_x
-        )
-        Z_a_t_3 = (
-        G_m_o_t*axis_x_rrrrrr_axes5_z + G_m_o_y*axis_y_rrrrrr_axes5_in_base_z +
-            U_in_base_y*q_in_base_x - G_m_o_t_2*axis_z_rrrrrr_axes5_in_base_z -
-            U_in_base_x*q_in_base_y
-        )
-        # (rrrrrr-V16) force part of reciprocal wrench 2
-        w_2_in_base_x = (
-        axis_x_rrrrrr_axes5_x*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_x*w_2_t_3 -
-            axis_z_rrrrrr_axes5_in_base_x*w_2_t_4
-        )
-        w_2_in_base_y = (
-        axis_x_rrrrrr_axes5_y*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_y*w_2_t_3 -
-            axis_z_rrrrrr_axes5_in_base_y*w_2_t_4
-        )
-        w_2_in_base_z = (
-        axis_x_rrrrrr_axes5_z*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_z*w_2_t_3 -
-            axis_z_rrrrrr_axes5_in_base_z*w_2_t_4
-        )
-        # (rrrrrr-V29) moment part of reciprocal wrench 2
-        o_2_x = n_m1_in_base_x*w_2_t_5 + n_m2_in_base_x*w_2_t_6
-        o_2_y_2 = n_m1_in_base_y*w_2_t_5 + n_m2_in_base_y*w_2_t_6
-        o_2_z = n_m1_in_base_z*w_2_t_5 + n_m2_in_base_z*w_2_t_6
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_2_x = o_2_x + q_in_base_y*w_2_in_base_z - q_in_base_z*w_2_in_base_y
-        H_a_2_y = o_2_y_2 + q_in_base_z*w_2_in_base_x - q_in_base_x*w_2_in_base_z
-        H_a_2_z = o_2_z + q_in_base_x*w_2_in_base_y - q_in_base_y*w_2_in_base_x
+        six_r_q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
+        six_r_q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
+        six_r_q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
+        six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
+        six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
+        six_r_c_5_t = sin(six_r_q_5)
+        # (six_r-s_5) sine of the angle of joint 5 from its reference direction
+        six_r_s_5 = cos(six_r_q_5)
+        # (six_r-r_4) from joint 4 to the connection point, along the links
+        six_r_r_4_t = six_r_c_5_t*six_r_platform_joint_offset_x
+        six_r_r_4_z = six_r_joint5_offset_x + six_r_platform_joint_offset_x*six_r_s_5
+        # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
+        six_r_c_4_t = sin(six_r_q_4)
+        # (six_r-s_4) sine of the angle of joint 4 from its reference direction
+        six_r_s_4 = cos(six_r_q_4)
+        # (six_r-r_4) from joint 4 to the connection point, along the links
+        six_r_r_4_t_2 = six_r_r_4_t*six_r_s_4
+        six_r_r_4_t_3 = six_r_c_4_t*six_r_r_4_t
+        # (six_r-r_3) from joint 3 to the connection point, along the links
+        six_r_r_3_x = six_r_joint4_offset_x + six_r_r_4_z
+        # (six_r-c_3) cosine of the angle of joint 3 from its reference direction
+        six_r_c_3 = cos(six_r_q_3)
+        # (six_r-s_3) sine of the angle of joint 3 from its reference direction
+        six_r_s_3 = sin(six_r_q_3)
+        # (six_r-r_3) from joint 3 to the connection point, along the links
+        six_r_r_3_r0_y = six_r_c_3*six_r_r_4_t_2 + six_r_r_3_x*six_r_s_3
+        # (six_r-r_2) from joint 2 to the connection point, along the links
+        six_r_r_2_x = six_r_joint3_offset_x + six_r_c_3*six_r_r_3_x - six_r_r_4_t_2*six_r_s_3
+        # (six_r-c_2) cosine of the angle of joint 2 from its reference direction
+        six_r_c_2_t = sin(six_r_q_2)
+        # (six_r-s_2) sine of the angle of joint 2 from its reference direction
+        six_r_s_2 = cos(six_r_q_2)
+        # (six_r-r_2) from joint 2 to the connection point, along the links
+        six_r_r_2_r0_x = -six_r_c_2_t*six_r_r_2_x - six_r_r_3_r0_y*six_r_s_2
+        # (six_r-r_1) from joint 1 to the connection point, along the links
+        six_r_r_1_z = six_r_joint2_offset_x + six_r_r_2_x*six_r_s_2 - six_r_c_2_t*six_r_r_3_r0_y
+        # (six_r-v_1) velocity of the connection point per rate of joint 1
+        six_r_e_1_r2_x = six_r_c_3*six_r_s_2 - six_r_c_2_t*six_r_s_3
+        six_r_e_1_r2_y = -six_r_c_2_t*six_r_c_3 - six_r_s_2*six_r_s_3
+        six_r_v_1_t = six_r_c_4_t*six_r_e_1_r2_y
+        six_r_v_1_t_2 = six_r_e_1_r2_y*six_r_s_4
+        six_r_e_1_r6_x = six_r_c_5_t*six_r_v_1_t_2 + six_r_e_1_r2_x*six_r_s_5
+        six_r_e_1_r6_y = six_r_s_5*six_r_v_1_t_2 - six_r_c_5_t*six_r_e_1_r2_x
+        # (six_r-r_1) from joint 1 to the connection point, along the links
+        six_r_r_1_r1_x = six_r_r_1_z*six_r_s_2 - six_r_c_2_t*six_r_r_2_r0_x
+        six_r_r_1_r1_y = -six_r_c_2_t*six_r_r_1_z - six_r_r_2_r0_x*six_r_s_2
+        six_r_r_1_r2_x = six_r_c_3*six_r_r_1_r1_x + six_r_r_1_r1_y*six_r_s_3
+        six_r_r_1_r2_y = six_r_c_3*six_r_r_1_r1_y - six_r_r_1_r1_x*six_r_s_3
+        six_r_r_1_t = six_r_r_4_t_3*six_r_s_4
+        six_r_r_1_r4_x = six_r_r_1_t - six_r_c_4_t*six_r_r_1_r2_y
+        six_r_r_1_t_2 = six_r_c_4_t*six_r_r_4_t_3
+        six_r_r_1_r4_y = -six_r_r_1_t_2 - six_r_r_1_r2_y*six_r_s_4
+        six_r_r_1_r6_x = six_r_r_1_r2_x*six_r_s_5 - six_r_c_5_t*six_r_r_1_r4_y
+        six_r_r_1_r6_y = -six_r_c_5_t*six_r_r_1_r2_x - six_r_r_1_r4_y*six_r_s_5
+        # (six_r-v_1) velocity of the connection point per rate of joint 1
+        six_r_v_1_x = six_r_e_1_r6_y*six_r_r_1_r4_x + six_r_r_1_r6_y*six_r_v_1_t
+        six_r_v_1_y = -six_r_e_1_r6_x*six_r_r_1_r4_x - six_r_r_1_r6_x*six_r_v_1_t
+        six_r_v_1_z = six_r_e_1_r6_x*six_r_r_1_r6_y - six_r_e_1_r6_y*six_r_r_1_r6_x
+        # (six_r-v_2) velocity of the connection point per rate of joint 2
+        six_r_v_2_t = six_r_c_4_t*six_r_c_5_t
+        six_r_v_2_t_2 = six_r_c_4_t*six_r_s_5
+        # (six_r-r_2) from joint 2 to the connection point, along the links
+        six_r_r_2_r0_x_2 = six_r_c_3*six_r_r_2_x + six_r_r_3_r0_y*six_r_s_3
+        six_r_r_2_r0_y = six_r_c_3*six_r_r_3_r0_y - six_r_r_2_x*six_r_s_3
+        six_r_r_2_r2_x = six_r_r_1_t - six_r_c_4_t*six_r_r_2_r0_y
+        six_r_r_2_r2_y = -six_r_r_1_t_2 - six_r_r_2_r0_y*six_r_s_4
+        six_r_r_2_r4_x = six_r_r_2_r0_x_2*six_r_s_5 - six_r_c_5_t*six_r_r_2_r2_y
+        six_r_r_2_r4_y = -six_r_c_5_t*six_r_r_2_r0_x_2 - six_r_r_2_r2_y*six_r_s_5
+        # (six_r-v_2) velocity of the connection point per rate of joint 2
+        six_r_v_2_x = six_r_r_2_r2_x*six_r_v_2_t_2 - six_r_r_2_r4_y*six_r_s_4
+        six_r_v_2_y = six_r_r_2_r4_x*six_r_s_4 - six_r_r_2_r2_x*six_r_v_2_t
+        six_r_v_2_z = six_r_r_2_r4_y*six_r_v_2_t - six_r_r_2_r4_x*six_r_v_2_t_2
+        # (six_r-r_3) from joint 3 to the connection point, along the links
+        six_r_r_3_r1_x = six_r_r_1_t - six_r_c_4_t*six_r_r_4_t_2
+        six_r_r_3_r1_y = -six_r_r_1_t_2 - six_r_r_4_t_2*six_r_s_4
+        six_r_r_3_r3_x = six_r_r_3_x*six_r_s_5 - six_r_c_5_t*six_r_r_3_r1_y
+        six_r_r_3_r3_y = -six_r_c_5_t*six_r_r_3_x - six_r_r_3_r1_y*six_r_s_5
+        # (six_r-v_3) velocity of the connection point per rate of joint 3
+        six_r_v_3_x = six_r_r_3_r1_x*six_r_v_2_t_2 - six_r_r_3_r3_y*six_r_s_4
+        six_r_v_3_y = six_r_r_3_r3_x*six_r_s_4 - six_r_r_3_r1_x*six_r_v_2_t
+        six_r_v_3_z = six_r_r_3_r3_y*six_r_v_2_t - six_r_r_3_r3_x*six_r_v_2_t_2
+        # (six_r-v_4) velocity of the connection point per rate of joint 4
+        six_r_v_4_z = (
+        six_r_c_5_t*(six_r_c_5_t*six_r_r_4_t + six_r_r_4_z*six_r_s_5) +
+            six_r_s_5*(six_r_r_4_t*six_r_s_5 - six_r_c_5_t*six_r_r_4_z)
+        )
+        # (six_r-w_1) force part of reciprocal wrench 1
+        six_r_w_1_t = six_r_c_4_t*six_r_s_3
+        six_r_w_1_t_2 = six_r_c_3*six_r_c_4_t
+        axis_z_six_r_axes5_r5_x = six_r_s_2*six_r_w_1_t_2 - six_r_c_2_t*six_r_w_1_t
+        axis_z_six_r_axes5_r5_y = six_r_c_2_t*six_r_w_1_t_2 + six_r_s_2*six_r_w_1_t
+        # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
+        six_r_c_1_t = sin(six_r_q_1)
+        # (six_r-s_1) sine of the angle of joint 1 from its reference direction
+        six_r_s_1 = cos(six_r_q_1)
+        # (six_r-w_1) force part of reciprocal wrench 1
+        axis_z_six_r_axes5_r7_x = -axis_z_six_r_axes5_r5_x*six_r_s_1 - six_r_c_1_t*six_r_s_4
+        axis_z_six_r_axes5_r7_y = six_r_s_1*six_r_s_4 - axis_z_six_r_axes5_r5_x*six_r_c_1_t
+        axis_z_six_r_axes5_in_base_x = (
+        axis_z_six_r_axes5_r5_y*six_r_base_frame_xx + axis_z_six_r_axes5_r7_x*six_r_base_frame_xy
+            + axis_z_six_r_axes5_r7_y*six_r_base_frame_xz
+        )
+        axis_z_six_r_axes5_in_base_y = (
+        axis_z_six_r_axes5_r5_y*six_r_base_frame_yx + axis_z_six_r_axes5_r7_x*six_r_base_frame_yy
+            + axis_z_six_r_axes5_r7_y*six_r_base_frame_yz
+        )
+        axis_z_six_r_axes5_in_base_z = (
+        axis_z_six_r_axes5_r5_y*six_r_base_frame_zx + axis_z_six_r_axes5_r7_x*six_r_base_frame_zy
+            + axis_z_six_r_axes5_r7_y*six_r_base_frame_zz
+        )
+        six_r_w_1_t_3 = six_r_s_4*six_r_s_5
+        axis_y_six_r_axes5_r4_x = -six_r_c_3*six_r_c_5_t - six_r_s_3*six_r_w_1_t_3
+        axis_y_six_r_axes5_r4_y = six_r_c_3*six_r_w_1_t_3 - six_r_c_5_t*six_r_s_3
+        axis_y_six_r_axes5_r5_x = (
+        -axis_y_six_r_axes5_r4_x*six_r_c_2_t - axis_y_six_r_axes5_r4_y*six_r_s_2
+        )
+        axis_y_six_r_axes5_r5_y = (
+        axis_y_six_r_axes5_r4_x*six_r_s_2 - axis_y_six_r_axes5_r4_y*six_r_c_2_t
+        )
+        axis_y_six_r_axes5_r7_x = -axis_y_six_r_axes5_r5_x*six_r_s_1 - six_r_c_1_t*six_r_v_2_t_2
+        axis_y_six_r_axes5_r7_y = six_r_s_1*six_r_v_2_t_2 - axis_y_six_r_axes5_r5_x*six_r_c_1_t
+        axis_y_six_r_axes5_in_base_x = (
+        axis_y_six_r_axes5_r5_y*six_r_base_frame_xx + axis_y_six_r_axes5_r7_x*six_r_base_frame_xy
+            + axis_y_six_r_axes5_r7_y*six_r_base_frame_xz
+        )
+        axis_y_six_r_axes5_in_base_y = (
+        axis_y_six_r_axes5_r5_y*six_r_base_frame_yx + axis_y_six_r_axes5_r7_x*six_r_base_frame_yy
+            + axis_y_six_r_axes5_r7_y*six_r_base_frame_yz
+        )
+        axis_y_six_r_axes5_in_base_z = (
+        axis_y_six_r_axes5_r5_y*six_r_base_frame_zx + axis_y_six_r_axes5_r7_x*six_r_base_frame_zy
+            + axis_y_six_r_axes5_r7_y*six_r_base_frame_zz
+        )
+        axis_x_six_r_axes5_x = (
+        axis_y_six_r_axes5_in_base_y*axis_z_six_r_axes5_in_base_z -
+            axis_y_six_r_axes5_in_base_z*axis_z_six_r_axes5_in_base_y
+        )
+        axis_x_six_r_axes5_y = (
+        axis_y_six_r_axes5_in_base_z*axis_z_six_r_axes5_in_base_x -
+            axis_y_six_r_axes5_in_base_x*axis_z_six_r_axes5_in_base_z
+        )
+        axis_x_six_r_axes5_z = (
+        axis_y_six_r_axes5_in_base_x*axis_z_six_r_axes5_in_base_y -
+            axis_y_six_r_axes5_in_base_y*axis_z_six_r_axes5_in_base_x
+        )
+        # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
+        six_r_end_p1_r0_x = (
+        six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xy + R_yx*six_r_base_frame_yy
+            + R_zx*six_r_base_frame_zy) +
+            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xy +
+            R_yy*six_r_base_frame_yy + R_zy*six_r_base_frame_zy) +
+            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xy +
+            R_yz*six_r_base_frame_yy + R_zz*six_r_base_frame_zy)
+        )
+        six_r_end_p1_r0_y = (
+        six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xz + R_yx*six_r_base_frame_yz
+            + R_zx*six_r_base_frame_zz) +
+            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xz +
+            R_yy*six_r_base_frame_yz + R_zy*six_r_base_frame_zz) +
+            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xz +
+            R_yz*six_r_base_frame_yz + R_zz*six_r_base_frame_zz)
+        )
+        six_r_end_p1_r0_z = (
+        six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xx + R_yx*six_r_base_frame_yx
+            + R_zx*six_r_base_frame_zx) +
+            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xx +
+            R_yy*six_r_base_frame_yx + R_zy*six_r_base_frame_zx) +
+            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xx +
+            R_yz*six_r_base_frame_yx + R_zz*six_r_base_frame_zx)
+        )
+        six_r_end_p1_r1_x = six_r_end_p1_r0_y*six_r_s_1 - six_r_c_1_t*six_r_end_p1_r0_x
+        six_r_end_p1_r1_y = -six_r_c_1_t*six_r_end_p1_r0_y - six_r_end_p1_r0_x*six_r_s_1
+        six_r_end_p1_r3_x = six_r_end_p1_r0_z*six_r_s_2 - six_r_c_2_t*six_r_end_p1_r1_y
+        six_r_end_p1_r3_y = -six_r_c_2_t*six_r_end_p1_r0_z - six_r_end_p1_r1_y*six_r_s_2
+        six_r_end_p1_r4_x = six_r_c_3*six_r_end_p1_r3_x + six_r_end_p1_r3_y*six_r_s_3
+        six_r_end_p1_r4_y = six_r_c_3*six_r_end_p1_r3_y - six_r_end_p1_r3_x*six_r_s_3
+        six_r_end_p1_r6_x = six_r_end_p1_r1_x*six_r_s_4 - six_r_c_4_t*six_r_end_p1_r4_y
+        six_r_end_p1_r6_y = -six_r_c_4_t*six_r_end_p1_r1_x - six_r_end_p1_r4_y*six_r_s_4
+        six_r_end_p1_r8_x = six_r_end_p1_r4_x*six_r_s_5 - six_r_c_5_t*six_r_end_p1_r6_y
+        six_r_end_p1_r8_y = -six_r_c_5_t*six_r_end_p1_r4_x - six_r_end_p1_r6_y*six_r_s_5
+        # (six_r-w_1) force part of reciprocal wrench 1
+        six_r_w_1_t_4 = six_r_e_1_r6_x*six_r_end_p1_r8_y - six_r_e_1_r6_y*six_r_end_p1_r8_x
+        six_r_w_1_t_5 = six_r_end_p1_r8_y*six_r_v_2_t - six_r_end_p1_r8_x*six_r_v_2_t_2
+        six_r_w_1_t_6 = six_r_e_1_r6_y*six_r_end_p1_r6_x + six_r_end_p1_r8_y*six_r_v_1_t
+        six_r_w_1_t_7 = six_r_end_p1_r6_x*six_r_v_2_t_2 - six_r_end_p1_r8_y*six_r_s_4
+        six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4
+        six_r_w_1_t_9 = six_r_size*six_r_w_1_t_6
+        six_r_w_1_t_10 = six_r_size*six_r_w_1_t_5
+        six_r_w_1_t_11 = six_r_size*six_r_w_1_t_7
+        six_r_w_1_t_12 = six_r_size*(-six_r_c_5_t*six_r_end_p1_r8_x - six_r_end_p1_r8_y*six_r_s_5)
+        six_r_w_1_t_13 = six_r_c_5_t*six_r_end_p1_r6_x*six_r_size
+        six_r_w_1_t_14 = six_r_end_p1_r8_y*six_r_size
+        six_r_w_1_t_15 = sqrt(six_r_size_t + six_r_w_1_t_14*six_r_w_1_t_14)
+        inv_six_r_w_1_t_69 = 1.0/six_r_w_1_t_15
+        six_r_w_1_t_16 = inv_six_r_w_1_t_69*six_r_platform_joint_offset_x
+        six_r_w_1_t_17 = inv_six_r_w_1_t_69*six_r_w_1_t_14
+        six_r_w_1_t_18 = six_r_w_1_t_13*six_r_w_1_t_17
+        six_r_w_1_t_19 = six_r_w_1_t_16*six_r_w_1_t_18
+        six_r_w_1_t_20 = six_r_w_1_t_13 - six_r_w_1_t_17*six_r_w_1_t_18
+        six_r_w_1_t_21 = six_r_v_1_y*six_r_w_1_t_16 - six_r_w_1_t_17*six_r_w_1_t_9
+        six_r_w_1_t_22 = six_r_v_1_y - six_r_w_1_t_16*six_r_w_1_t_21
+        six_r_w_1_t_23 = six_r_w_1_t_9 + six_r_w_1_t_17*six_r_w_1_t_21
+        six_r_w_1_t_24 = six_r_w_1_t_11*six_r_w_1_t_17
+        six_r_w_1_t_25 = six_r_v_2_y*six_r_w_1_t_16 - six_r_w_1_t_24
+        six_r_w_1_t_26 = six_r_v_2_y - six_r_w_1_t_16*six_r_w_1_t_25
+        six_r_w_1_t_27 = six_r_w_1_t_11 + six_r_w_1_t_17*six_r_w_1_t_25
+        six_r_w_1_t_28 = six_r_w_1_t_24 - six_r_v_3_y*six_r_w_1_t_16
+        six_r_w_1_t_29 = six_r_v_3_y + six_r_w_1_t_16*six_r_w_1_t_28
+        six_r_w_1_t_30 = six_r_w_1_t_11 - six_r_w_1_t_17*six_r_w_1_t_28
+        six_r_w_1_t_31 = (
+        sqrt(six_r_v_4_z*six_r_v_4_z + six_r_w_1_t_12*six_r_w_1_t_12 +
+            six_r_w_1_t_19*six_r_w_1_t_19 + six_r_w_1_t_20*six_r_w_1_t_20)
+        )
+        inv_six_r_w_1_t_101 = 1.0/six_r_w_1_t_31
+        six_r_w_1_t_32 = inv_six_r_w_1_t_101*six_r_w_1_t_19
+        six_r_w_1_t_33 = inv_six_r_w_1_t_101*six_r_v_4_z
+        six_r_w_1_t_34 = inv_six_r_w_1_t_101*six_r_w_1_t_12
+        six_r_w_1_t_35 = inv_six_r_w_1_t_101*six_r_w_1_t_20
+        six_r_w_1_t_36 = (
+        six_r_w_1_t_22*six_r_w_1_t_32 + six_r_w_1_t_23*six_r_w_1_t_35 +
+            six_r_w_1_t_34*six_r_w_1_t_8 - six_r_v_1_z*six_r_w_1_t_33
+        )
+        six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_36 - six_r_w_1_t_22
+        six_r_w_1_t_38 = six_r_v_1_z + six_r_w_1_t_33*six_r_w_1_t_36
+        six_r_w_1_t_39 = six_r_w_1_t_34*six_r_w_1_t_36 - six_r_w_1_t_8
+        six_r_w_1_t_40 = six_r_w_1_t_35*six_r_w_1_t_36 - six_r_w_1_t_23
+        six_r_w_1_t_41 = six_r_w_1_t_10*six_r_w_1_t_34
+        six_r_w_1_t_42 = (
+        six_r_w_1_t_41 + six_r_w_1_t_26*six_r_w_1_t_32 + six_r_w_1_t_27*six_r_w_1_t_35 -
+            six_r_v_2_z*six_r_w_1_t_33
+        )
+        six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_42 - six_r_w_1_t_26
+        six_r_w_1_t_44 = six_r_v_2_z + six_r_w_1_t_33*six_r_w_1_t_42
+        six_r_w_1_t_45 = six_r_w_1_t_34*six_r_w_1_t_42 - six_r_w_1_t_10
+        six_r_w_1_t_46 = six_r_w_1_t_35*six_r_w_1_t_42 - six_r_w_1_t_27
+        six_r_w_1_t_47 = (
+        six_r_w_1_t_41 + six_r_w_1_t_29*six_r_w_1_t_32 + six_r_w_1_t_30*six_r_w_1_t_35 -
+            six_r_v_3_z*six_r_w_1_t_33
+        )
+        six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_47 - six_r_w_1_t_29
+        six_r_w_1_t_49 = six_r_v_3_z + six_r_w_1_t_33*six_r_w_1_t_47
+        six_r_w_1_t_50 = six_r_w_1_t_34*six_r_w_1_t_47 - six_r_w_1_t_10
+        six_r_w_1_t_51 = six_r_w_1_t_35*six_r_w_1_t_47 - six_r_w_1_t_30
+        six_r_w_1_t_52 = (
+        sqrt(six_r_v_1_x*six_r_v_1_x + six_r_w_1_t_37*six_r_w_1_t_37 +
+            six_r_w_1_t_38*six_r_w_1_t_38 + six_r_w_1_t_39*six_r_w_1_t_39 +
+            six_r_w_1_t_40*six_r_w_1_t_40)
+        )
+        inv_six_r_w_1_t_150 = 1.0/six_r_w_1_t_52
+        six_r_w_1_t_53 = inv_six_r_w_1_t_150*six_r_v_1_x
+        six_r_w_1_t_54 = inv_six_r_w_1_t_150*six_r_w_1_t_37
+        six_r_w_1_t_55 = inv_six_r_w_1_t_150*six_r_w_1_t_38
+        six_r_w_1_t_56 = inv_six_r_w_1_t_150*six_r_w_1_t_39
+        six_r_w_1_t_57 = inv_six_r_w_1_t_150*six_r_w_1_t_40
+        six_r_w_1_t_58 = (
+        six_r_v_2_x*six_r_w_1_t_53 + six_r_w_1_t_43*six_r_w_1_t_54 + six_r_w_1_t_44*six_r_w_1_t_55
+            + six_r_w_1_t_45*six_r_w_1_t_56 + six_r_w_1_t_46*six_r_w_1_t_57
+        )
+        six_r_w_1_t_59 = six_r_v_2_x - six_r_w_1_t_53*six_r_w_1_t_58
+        six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_58
+        six_r_w_1_t_61 = six_r_w_1_t_44 - six_r_w_1_t_55*six_r_w_1_t_58
+        six_r_w_1_t_62 = six_r_w_1_t_45 - six_r_w_1_t_56*six_r_w_1_t_58
+        six_r_w_1_t_63 = six_r_w_1_t_46 - six_r_w_1_t_57*six_r_w_1_t_58
+        six_r_w_1_t_64 = (
+        six_r_v_3_x*six_r_w_1_t_53 + six_r_w_1_t_48*six_r_w_1_t_54 + six_r_w_1_t_49*six_r_w_1_t_55
+            + six_r_w_1_t_50*six_r_w_1_t_56 + six_r_w_1_t_51*six_r_w_1_t_57
+        )
+        six_r_w_1_t_65 = six_r_v_3_x - six_r_w_1_t_53*six_r_w_1_t_64
+        six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_64
+        six_r_w_1_t_67 = six_r_w_1_t_49 - six_r_w_1_t_55*six_r_w_1_t_64
+        six_r_w_1_t_68 = six_r_w_1_t_50 - six_r_w_1_t_56*six_r_w_1_t_64
+        six_r_w_1_t_69 = six_r_w_1_t_51 - six_r_w_1_t_57*six_r_w_1_t_64
+        six_r_w_1_t_70 = (
+        sqrt(six_r_w_1_t_59*six_r_w_1_t_59 + six_r_w_1_t_60*six_r_w_1_t_60 +
+            six_r_w_1_t_61*six_r_w_1_t_61 + six_r_w_1_t_62*six_r_w_1_t_62 +
+            six_r_w_1_t_63*six_r_w_1_t_63)
+        )
+        inv_six_r_w_1_t_194 = 1.0/six_r_w_1_t_70
+        six_r_w_1_t_71 = inv_six_r_w_1_t_194*six_r_w_1_t_59
+        six_r_w_1_t_72 = inv_six_r_w_1_t_194*six_r_w_1_t_60
+        six_r_w_1_t_73 = inv_six_r_w_1_t_194*six_r_w_1_t_61
+        six_r_w_1_t_74 = inv_six_r_w_1_t_194*six_r_w_1_t_62
+        six_r_w_1_t_75 = inv_six_r_w_1_t_194*six_r_w_1_t_63
+        six_r_w_1_t_76 = (
+        six_r_w_1_t_65*six_r_w_1_t_71 + six_r_w_1_t_66*six_r_w_1_t_72 +
+            six_r_w_1_t_67*six_r_w_1_t_73 + six_r_w_1_t_68*six_r_w_1_t_74 +
+            six_r_w_1_t_69*six_r_w_1_t_75
+        )
+        six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_76
+        six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_76
+        six_r_w_1_t_79 = six_r_w_1_t_67 - six_r_w_1_t_73*six_r_w_1_t_76
+        six_r_w_1_t_80 = six_r_w_1_t_68 - six_r_w_1_t_74*six_r_w_1_t_76
+        six_r_w_1_t_81 = six_r_w_1_t_69 - six_r_w_1_t_75*six_r_w_1_t_76
+        six_r_w_1_t_82 = (
+        sqrt(six_r_w_1_t_77*six_r_w_1_t_77 + six_r_w_1_t_78*six_r_w_1_t_78 +
+            six_r_w_1_t_79*six_r_w_1_t_79 + six_r_w_1_t_80*six_r_w_1_t_80 +
+            six_r_w_1_t_81*six_r_w_1_t_81)
+        )
+        inv_six_r_w_1_t_222 = 1.0/six_r_w_1_t_82
+        six_r_w_1_t_83 = inv_six_r_w_1_t_222*six_r_w_1_t_77
+        six_r_w_1_t_84 = inv_six_r_w_1_t_222*six_r_w_1_t_78
+        six_r_w_1_t_85 = inv_six_r_w_1_t_222*six_r_w_1_t_79
+        six_r_w_1_t_86 = inv_six_r_w_1_t_222*six_r_w_1_t_80
+        six_r_w_1_t_87 = inv_six_r_w_1_t_222*six_r_w_1_t_81
+        six_r_w_1_t_88 = inv_six_r_w_1_t_150*inv_six_r_w_1_t_194*six_r_w_1_t_58
+        six_r_w_1_t_89 = (
+        inv_six_r_w_1_t_222*(inv_six_r_w_1_t_150*six_r_w_1_t_64 - six_r_w_1_t_76*six_r_w_1_t_88)
+        )
+        six_r_w_1_t_90 = (
+        six_r_w_1_t_71*six_r_w_1_t_88 + six_r_w_1_t_83*six_r_w_1_t_89 -
+            inv_six_r_w_1_t_150*six_r_w_1_t_53
+        )
+        six_r_w_1_t_91 = (
+        six_r_w_1_t_72*six_r_w_1_t_88 + six_r_w_1_t_84*six_r_w_1_t_89 -
+            inv_six_r_w_1_t_150*six_r_w_1_t_54
+        )
+        six_r_w_1_t_92 = (
+        six_r_w_1_t_73*six_r_w_1_t_88 + six_r_w_1_t_85*six_r_w_1_t_89 -
+            inv_six_r_w_1_t_150*six_r_w_1_t_55
+        )
+        six_r_w_1_t_93 = (
+        six_r_size*(six_r_w_1_t_74*six_r_w_1_t_88 + six_r_w_1_t_86*six_r_w_1_t_89 -
+            inv_six_r_w_1_t_150*six_r_w_1_t_56)
+        )
+        six_r_w_1_t_94 = (
+        six_r_size*(six_r_w_1_t_75*six_r_w_1_t_88 + six_r_w_1_t_87*six_r_w_1_t_89 -
+            inv_six_r_w_1_t_150*six_r_w_1_t_57)
+        )
+        # (six_r-w_2) force part of reciprocal wrench 2
+        six_r_w_2_t = inv_six_r_w_1_t_194*inv_six_r_w_1_t_222*six_r_w_1_t_76
+        six_r_w_2_t_2 = inv_six_r_w_1_t_194*six_r_w_1_t_71 - six_r_w_1_t_83*six_r_w_2_t
+        six_r_w_2_t_3 = inv_six_r_w_1_t_194*six_r_w_1_t_72 - six_r_w_1_t_84*six_r_w_2_t
+        six_r_w_2_t_4 = six_r_w_1_t_85*six_r_w_2_t - inv_six_r_w_1_t_194*six_r_w_1_t_73
+        six_r_w_2_t_5 = (
+        six_r_size*(inv_six_r_w_1_t_194*six_r_w_1_t_74 - six_r_w_1_t_86*six_r_w_2_t)
+        )
+        six_r_w_2_t_6 = (
+        six_r_size*(inv_six_r_w_1_t_194*six_r_w_1_t_75 - six_r_w_1_t_87*six_r_w_2_t)
+        )
+        # (six_r-w_3) force part of reciprocal wrench 3
+        six_r_w_3_t = inv_six_r_w_1_t_222*six_r_w_1_t_83
+        six_r_w_3_t_2 = inv_six_r_w_1_t_222*six_r_w_1_t_84
+        six_r_w_3_t_3 = inv_six_r_w_1_t_222*six_r_w_1_t_85
+        six_r_w_3_t_4 = inv_six_r_w_1_t_222*six_r_size*six_r_w_1_t_86
+        six_r_w_3_t_5 = inv_six_r_w_1_t_222*six_r_size*six_r_w_1_t_87
+        # (six_r-w_4) force part of reciprocal wrench 4
+        six_r_w_4_t = inv_six_r_w_1_t_101*inv_six_r_w_1_t_150*six_r_w_1_t_36
+        six_r_w_4_t_2 = (
+        inv_six_r_w_1_t_194*(inv_six_r_w_1_t_101*six_r_w_1_t_42 - six_r_w_1_t_58*six_r_w_4_t)
+        )
+        six_r_w_4_t_3 = (
+        inv_six_r_w_1_t_222*(six_r_w_1_t_64*six_r_w_4_t + six_r_w_1_t_76*six_r_w_4_t_2 -
+            inv_six_r_w_1_t_101*six_r_w_1_t_47)
+        )
+        six_r_w_4_t_4 = (
+        six_r_w_1_t_53*six_r_w_4_t + six_r_w_1_t_71*six_r_w_4_t_2 - six_r_w_1_t_83*six_r_w_4_t_3
+        )
+        six_r_w_4_t_5 = (
+        inv_six_r_w_1_t_101*six_r_w_1_t_32 + six_r_w_1_t_54*six_r_w_4_t +
+            six_r_w_1_t_72*six_r_w_4_t_2 - six_r_w_1_t_84*six_r_w_4_t_3
+        )
+        six_r_w_4_t_6 = (
+        inv_six_r_w_1_t_101*six_r_w_1_t_33 + six_r_w_1_t_55*six_r_w_4_t +
+            six_r_w_1_t_73*six_r_w_4_t_2 - six_r_w_1_t_85*six_r_w_4_t_3
+        )
+        six_r_w_4_t_7 = (
+        six_r_size*(inv_six_r_w_1_t_101*six_r_w_1_t_34 + six_r_w_1_t_56*six_r_w_4_t +
+            six_r_w_1_t_74*six_r_w_4_t_2 - six_r_w_1_t_86*six_r_w_4_t_3)
+        )
+        six_r_w_4_t_8 = (
+        six_r_size*(inv_six_r_w_1_t_101*six_r_w_1_t_35 + six_r_w_1_t_57*six_r_w_4_t +
+            six_r_w_1_t_75*six_r_w_4_t_2 - six_r_w_1_t_87*six_r_w_4_t_3)
+        )
+        # (six_r-w_5) force part of reciprocal wrench 5
+        six_r_w_5_t = inv_six_r_w_1_t_101*inv_six_r_w_1_t_69*six_r_w_1_t_18
+        six_r_w_5_t_2 = (
+        inv_six_r_w_1_t_150*(inv_six_r_w_1_t_69*six_r_w_1_t_21 + six_r_w_1_t_36*six_r_w_5_t)
+        )
+        six_r_w_5_t_3 = (
+        inv_six_r_w_1_t_194*(inv_six_r_w_1_t_69*six_r_w_1_t_25 + six_r_w_1_t_42*six_r_w_5_t -
+            six_r_w_1_t_58*six_r_w_5_t_2)
+        )
+        six_r_w_5_t_4 = (
+        inv_six_r_w_1_t_222*(inv_six_r_w_1_t_69*six_r_w_1_t_28 + six_r_w_1_t_64*six_r_w_5_t_2 +
+            six_r_w_1_t_76*six_r_w_5_t_3 - six_r_w_1_t_47*six_r_w_5_t)
+        )
+        six_r_w_5_t_5 = (
+        six_r_w_1_t_53*six_r_w_5_t_2 + six_r_w_1_t_71*six_r_w_5_t_3 - six_r_w_1_t_83*six_r_w_5_t_4
+        )
+        six_r_w_5_t_6 = (
+        inv_six_r_w_1_t_69*six_r_w_1_t_16 + six_r_w_1_t_32*six_r_w_5_t +
+            six_r_w_1_t_54*six_r_w_5_t_2 + six_r_w_1_t_72*six_r_w_5_t_3 -
+            six_r_w_1_t_84*six_r_w_5_t_4
+        )
+        six_r_w_5_t_7 = (
+        six_r_w_1_t_33*six_r_w_5_t + six_r_w_1_t_55*six_r_w_5_t_2 + six_r_w_1_t_73*six_r_w_5_t_3 -
+            six_r_w_1_t_85*six_r_w_5_t_4
+        )
+        six_r_w_5_t_8 = (
+        six_r_size*(six_r_w_1_t_34*six_r_w_5_t + six_r_w_1_t_56*six_r_w_5_t_2 +
+            six_r_w_1_t_74*six_r_w_5_t_3 - six_r_w_1_t_86*six_r_w_5_t_4)
+        )
+        six_r_w_5_t_9 = (
+        six_r_size*(six_r_w_1_t_35*six_r_w_5_t + six_r_w_1_t_57*six_r_w_5_t_2 +
+            six_r_w_1_t_75*six_r_w_5_t_3 - inv_six_r_w_1_t_69*six_r_w_1_t_17 -
+            six_r_w_1_t_87*six_r_w_5_t_4)
+        )
+        # (six_r-d_alpha_5) coefficient of the acceleration in: angular acceleration of link 5
+        six_r_d_alpha_5_xz = (
+        six_r_s_5*six_r_w_4_t_6 + six_r_v_2_t*six_r_w_3_t_3 - six_r_e_1_r6_x*six_r_w_1_t_92 -
+            six_r_v_2_t*six_r_w_2_t_4
+        )
+        six_r_d_alpha_5_yz = (
+        six_r_v_2_t_2*six_r_w_3_t_3 - six_r_c_5_t*six_r_w_4_t_6 - six_r_e_1_r6_y*six_r_w_1_t_92 -
+            six_r_v_2_t_2*six_r_w_2_t_4
+        )
+        six_r_d_alpha_5_zy = (
+        six_r_w_5_t_6 - six_r_s_4*six_r_w_2_t_3 - six_r_s_4*six_r_w_3_t_2 -
+            six_r_v_1_t*six_r_w_1_t_91
+        )
+        six_r_d_alpha_5_zz = (
+        six_r_s_4*six_r_w_3_t_3 + six_r_v_1_t*six_r_w_1_t_92 - six_r_w_5_t_7 -
+            six_r_s_4*six_r_w_2_t_4
+        )
+        # (six_r-d_phi_5) coefficient of the acceleration in: inertia force of link 5 from its turning about its reference point
+        six_r_d_phi_5_t = (
+        six_r_h_5_z*(six_r_v_2_t_2*six_r_w_2_t_2 + six_r_v_2_t_2*six_r_w_3_t -
+            six_r_c_5_t*six_r_w_4_t_4 - six_r_e_1_r6_y*six_r_w_1_t_90) -
+            six_r_h_5_y*(six_r_s_4*six_r_w_2_t_2 + six_r_s_4*six_r_w_3_t +
+            six_r_v_1_t*six_r_w_1_t_90 - six_r_w_5_t_5)
+        )
+        # (six_r-L_c_5) moment about joint 5 that accelerates joint 5, per unit
+        six_r_L_c_5_r0_y = six_r_J_5_xz*six_r_s_5 - six_r_J_5_yz*six_r_c_5_t
+        # (six_r-D_3_5) inertia of joint 5 along joint 3
+        six_r_D_3_5 = (
+        six_r_J_5_xz*six_r_v_2_t + six_r_J_5_yz*six_r_v_2_t_2 + six_r_J_5_zz*six_r_s_4
+        )
+        # (six_r-D_1_5) inertia of joint 5 along joint 1
+        six_r_D_1_5 = (
+        six_r_J_5_xz*six_r_e_1_r6_x + six_r_J_5_yz*six_r_e_1_r6_y - six_r_J_5_zz*six_r_v_1_t
+        )
+        # (six_r-d_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal links' inertia and weight
+        six_r_d_Gamma_5_t = inv_six_r_w_1_t_69*six_r_J_5_zz
+        six_r_d_Gamma_5_t_2 = (
+        inv_six_r_w_1_t_101*(six_r_L_c_5_r0_y - six_r_d_Gamma_5_t*six_r_w_1_t_18)
+        )
+        six_r_d_Gamma_5_t_3 = (
+        inv_six_r_w_1_t_150*(six_r_D_1_5 + six_r_d_Gamma_5_t_2*six_r_w_1_t_36 -
+            six_r_d_Gamma_5_t*six_r_w_1_t_21)
+        )
+        six_r_d_Gamma_5_t_4 = (
+        inv_six_r_w_1_t_194*(six_r_D_3_5 + six_r_d_Gamma_5_t_2*six_r_w_1_t_42 -
+            six_r_d_Gamma_5_t*six_r_w_1_t_25 - six_r_d_Gamma_5_t_3*six_r_w_1_t_58)
+        )
+        six_r_d_Gamma_5_t_5 = (
+        inv_six_r_w_1_t_222*(six_r_D_3_5 + six_r_d_Gamma_5_t*six_r_w_1_t_28 +
+            six_r_d_Gamma_5_t_2*six_r_w_1_t_47 - six_r_d_Gamma_5_t_3*six_r_w_1_t_64 -
+            six_r_d_Gamma_5_t_4*six_r_w_1_t_76)
+        )
+        six_r_d_Gamma_5_t_6 = (
+        six_r_d_Gamma_5_t_2*six_r_w_1_t_33 + six_r_d_Gamma_5_t_3*six_r_w_1_t_55 +
+            six_r_d_Gamma_5_t_4*six_r_w_1_t_73 + six_r_d_Gamma_5_t_5*six_r_w_1_t_85
+        )
+        six_r_d_Gamma_5_x = (
+        six_r_d_Gamma_5_t_3*six_r_w_1_t_53 + six_r_d_Gamma_5_t_4*six_r_w_1_t_71 +
+            six_r_d_Gamma_5_t_5*six_r_w_1_t_83 - six_r_h_5_y
+        )
+        six_r_d_Gamma_5_y = (
+        six_r_h_5_x + six_r_d_Gamma_5_t*six_r_w_1_t_16 - six_r_d_Gamma_5_t_2*six_r_w_1_t_32 -
+            six_r_d_Gamma_5_t_3*six_r_w_1_t_54 - six_r_d_Gamma_5_t_4*six_r_w_1_t_72 -
+            six_r_d_Gamma_5_t_5*six_r_w_1_t_84
+        )
+        # (six_r-J_5) inertia tensor of link 5 about the connection point
+        six_r_J_5_t = six_r_J_5_xy*six_r_s_5
+        six_r__x = -six_r_J_5_t - six_r_J_5_xx*six_r_c_5_t
+        six_r_J_5_t_2 = six_r_J_5_xy*six_r_c_5_t
+        six_r__x_2 = -six_r_J_5_t_2 - six_r_J_5_yy*six_r_s_5
+        # (six_r-Jc_4) inertia tensor of the links from 4 outwards about joint 4, that of the last link about the connection point
+        six_r_Jc_4_xy = -six_r_J_4_yz - six_r_J_5_xz*six_r_c_5_t - six_r_J_5_yz*six_r_s_5
+        six_r_Jc_4_xz = six_r_J_4_xz + six_r_L_c_5_r0_y
+        six_r_Jc_4_yy = six_r_J_4_yy - six_r__x*six_r_c_5_t - six_r__x_2*six_r_s_5
+        six_r_Jc_4_yz = six_r__x*six_r_s_5 - six_r_J_4_xy - six_r__x_2*six_r_c_5_t
+        six_r_Jc_4_zz = (
+        six_r_J_4_xx + six_r_s_5*(six_r_J_5_xx*six_r_s_5 - six_r_J_5_t_2) -
+            six_r_c_5_t*(six_r_J_5_t - six_r_J_5_yy*six_r_c_5_t)
+        )
+        # (six_r-L_c_4) moment about joint 4 that accelerates joint 4, per unit
+        six_r_L_c_4_r0_x = -six_r_Jc_4_xz*six_r_c_4_t - six_r_Jc_4_yz*six_r_s_4
+        six_r_L_c_4_r0_y = six_r_Jc_4_xz*six_r_s_4 - six_r_Jc_4_yz*six_r_c_4_t
+        # (six_r-P_c_4) force that accelerates joint 4, per unit
+        six_r_P_c_4_r0_x = -six_r_c_4_t*six_r_h_4_y - six_r_h_4_z*six_r_s_4
+        six_r_P_c_4_r0_y = six_r_h_4_y*six_r_s_4 - six_r_c_4_t*six_r_h_4_z
+        # (six_r-L_c_4_3) moment about joint 3 that accelerates joint 4, per unit
+        six_r_L_c_4_3_t = six_r_P_c_4_r0_y*six_r_joint4_offset_x
+        six_r_L_c_4_3_t_2 = six_r_P_c_4_r0_x*six_r_joint4_offset_x
+        six_r_L_c_4_3_y = six_r_L_c_4_r0_x - six_r_L_c_4_3_t
+        six_r_L_c_4_3_z = six_r_L_c_4_3_t_2 + six_r_L_c_4_r0_y
+        # (six_r-L_c_4_2) moment about joint 2 that accelerates joint 4, per unit
+        six_r_L_c_4_2_y = (
+        six_r_Jc_4_zz*six_r_s_3 + six_r_L_c_4_3_y*six_r_c_3 -
+            six_r_P_c_4_r0_y*six_r_joint3_offset_x
+        )
+        six_r_L_c_4_2_z = six_r_L_c_4_3_z + six_r_P_c_4_r0_x*six_r_c_3*six_r_joint3_offset_x
+        six_r_L_c_4_2_r0_y = (
+        six_r_s_2*(six_r_Jc_4_zz*six_r_c_3 - six_r_L_c_4_3_y*six_r_s_3) -
+            six_r_L_c_4_2_y*six_r_c_2_t
+        )
+        # (six_r-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+        six_r_d_Gamma_4_t = inv_six_r_w_1_t_69*six_r_L_c_5_r0_y
+        six_r_d_Gamma_4_t_2 = (
+        inv_six_r_w_1_t_101*(six_r_Jc_4_zz - six_r_d_Gamma_4_t*six_r_w_1_t_18)
+        )
+        six_r_d_Gamma_4_t_3 = (
+        inv_six_r_w_1_t_150*(six_r_L_c_4_2_r0_y + six_r_d_Gamma_4_t_2*six_r_w_1_t_36 -
+            six_r_d_Gamma_4_t*six_r_w_1_t_21)
+        )
+        six_r_d_Gamma_4_t_4 = (
+        inv_six_r_w_1_t_194*(six_r_L_c_4_2_z + six_r_d_Gamma_4_t_2*six_r_w_1_t_42 -
+            six_r_d_Gamma_4_t*six_r_w_1_t_25 - six_r_d_Gamma_4_t_3*six_r_w_1_t_58)
+        )
+        six_r_d_Gamma_4_t_5 = (
+        inv_six_r_w_1_t_222*(six_r_L_c_4_3_z + six_r_d_Gamma_4_t*six_r_w_1_t_28 +
+            six_r_d_Gamma_4_t_2*six_r_w_1_t_47 - six_r_d_Gamma_4_t_3*six_r_w_1_t_64 -
+            six_r_d_Gamma_4_t_4*six_r_w_1_t_76)
+        )
+        six_r_d_Gamma_4_x = (
+        six_r_d_Gamma_4_t_3*six_r_w_1_t_53 + six_r_d_Gamma_4_t_4*six_r_w_1_t_71 +
+            six_r_d_Gamma_4_t_5*six_r_w_1_t_83 - six_r_c_5_t*six_r_h_5_z
+        )
+        six_r_d_Gamma_4_y = (
+        six_r_d_Gamma_4_t*six_r_w_1_t_16 - six_r_d_Gamma_4_t_2*six_r_w_1_t_32 -
+            six_r_d_Gamma_4_t_3*six_r_w_1_t_54 - six_r_d_Gamma_4_t_4*six_r_w_1_t_72 -
+            six_r_d_Gamma_4_t_5*six_r_w_1_t_84 - six_r_h_5_z*six_r_s_5
+        )
+        six_r_d_Gamma_4_z = (
+        six_r_c_5_t*six_r_h_5_x + six_r_d_Gamma_4_t_2*six_r_w_1_t_33 +
+            six_r_d_Gamma_4_t_3*six_r_w_1_t_55 + six_r_d_Gamma_4_t_4*six_r_w_1_t_73 +
+            six_r_d_Gamma_4_t_5*six_r_w_1_t_85 + six_r_h_5_y*six_r_s_5
+        )
+        # (six_r-Jc_4) inertia tensor of the links from 4 outwards about joint 4, that of the last link about the connection point
+        six_r_Jc_4_t = six_r_Jc_4_xy*six_r_s_4
+        six_r__x_3 = -six_r_Jc_4_t - six_r_Jc_4_xx*six_r_c_4_t
+        six_r_Jc_4_t_2 = six_r_Jc_4_xy*six_r_c_4_t
+        six_r__x_4 = -six_r_Jc_4_t_2 - six_r_Jc_4_yy*six_r_s_4
+        # (six_r-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link about the connection point
+        six_r_Jc_3_xx = six_r_J_3_xx + six_r_Jc_3_t_3 + six_r_Jc_4_zz - 2.0*six_r_Jc_3_t_2
+        six_r_Jc_3_xy = six_r_J_3_xy + six_r_L_c_4_r0_x - six_r_L_c_4_3_t
+        six_r_Jc_3_xz = six_r_J_3_xz + six_r_L_c_4_3_t_2 + six_r_L_c_4_r0_y
+        six_r_Jc_3_yy = (
+        six_r_J_3_yy + six_r_Jc_3_t_3 - six_r__x_3*six_r_c_4_t - six_r__x_4*six_r_s_4
+        )
+        six_r_Jc_3_yz = six_r_J_3_yz + six_r__x_3*six_r_s_4 - six_r__x_4*six_r_c_4_t
+        six_r_Jc_3_zz = (
+        six_r_J_3_zz + six_r_Jc_3_t_3 + six_r_s_4*(six_r_Jc_4_xx*six_r_s_4 - six_r_Jc_4_t_2) -
+            six_r_c_4_t*(six_r_Jc_4_t - six_r_Jc_4_yy*six_r_c_4_t)
+        )
+        # (six_r-hc_3) first moment of the links from 3 outwards
+        six_r_hc_3_y = six_r_P_c_4_r0_y + six_r_h_3_y
+        six_r_hc_3_z = six_r_h_3_z - six_r_P_c_4_r0_x
+        # (six_r-L_c_3) moment about joint 3 that accelerates joint 3, per unit
+        six_r_L_c_3_r0_x = six_r_Jc_3_xz*six_r_c_3 - six_r_Jc_3_yz*six_r_s_3
+        six_r_L_c_3_r0_y = six_r_Jc_3_xz*six_r_s_3 + six_r_Jc_3_yz*six_r_c_3
+        # (six_r-P_c_3) force that accelerates joint 3, per unit
+        six_r_P_c_3_r0_x = -six_r_c_3*six_r_hc_3_y - six_r_hc_3_x*six_r_s_3
+        six_r_P_c_3_r0_y = six_r_c_3*six_r_hc_3_x - six_r_hc_3_y*six_r_s_3
+        # (six_r-L_c_3_2) moment about joint 2 that accelerates joint 3, per unit
+        six_r_L_c_3_2_z = six_r_Jc_3_zz + six_r_P_c_3_r0_y*six_r_joint3_offset_x
+        six_r_L_c_3_2_r0_y = six_r_L_c_3_r0_x*six_r_s_2 - six_r_L_c_3_r0_y*six_r_c_2_t
+        # (six_r-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        six_r_d_Gamma_3_t = six_r_h_5_z*six_r_v_2_t_2 - six_r_h_5_y*six_r_s_4
+        six_r_d_Gamma_3_t_2 = six_r_h_5_z*six_r_v_2_t - six_r_h_5_x*six_r_s_4
+        six_r_d_Gamma_3_t_3 = six_r_h_5_y*six_r_v_2_t - six_r_h_5_x*six_r_v_2_t_2
+        six_r_d_Gamma_3_t_4 = inv_six_r_w_1_t_69*six_r_D_3_5
+        six_r_d_Gamma_3_t_5 = six_r_d_Gamma_3_t_4*six_r_w_1_t_18
+        six_r_d_Gamma_3_t_6 = inv_six_r_w_1_t_101*(six_r_L_c_4_3_z - six_r_d_Gamma_3_t_5)
+        six_r_d_Gamma_3_t_7 = six_r_d_Gamma_3_t_4*six_r_w_1_t_21
+        six_r_d_Gamma_3_t_8 = (
+        inv_six_r_w_1_t_150*(six_r_L_c_3_2_r0_y + six_r_d_Gamma_3_t_6*six_r_w_1_t_36 -
+            six_r_d_Gamma_3_t_7)
+        )
+        six_r_d_Gamma_3_t_9 = six_r_d_Gamma_3_t_4*six_r_w_1_t_25
+        six_r_d_Gamma_3_t_10 = (
+        inv_six_r_w_1_t_194*(six_r_L_c_3_2_z + six_r_d_Gamma_3_t_6*six_r_w_1_t_42 -
+            six_r_d_Gamma_3_t_9 - six_r_d_Gamma_3_t_8*six_r_w_1_t_58)
+        )
+        six_r_d_Gamma_3_t_11 = six_r_d_Gamma_3_t_4*six_r_w_1_t_28
+        six_r_d_Gamma_3_t_12 = (
+        inv_six_r_w_1_t_222*(six_r_Jc_3_zz + six_r_d_Gamma_3_t_11 +
+            six_r_d_Gamma_3_t_6*six_r_w_1_t_47 - six_r_d_Gamma_3_t_10*six_r_w_1_t_76 -
+            six_r_d_Gamma_3_t_8*six_r_w_1_t_64)
+        )
+        six_r_d_Gamma_3_t_13 = six_r_d_Gamma_3_t_4*six_r_w_1_t_16
+        six_r_d_Gamma_3_x = (
+        six_r_d_Gamma_3_t + six_r_d_Gamma_3_t_10*six_r_w_1_t_71 +
+            six_r_d_Gamma_3_t_12*six_r_w_1_t_83 + six_r_d_Gamma_3_t_8*six_r_w_1_t_53
+        )
+        six_r_d_Gamma_3_y = (
+        six_r_d_Gamma_3_t_13 - six_r_d_Gamma_3_t_2 - six_r_d_Gamma_3_t_10*six_r_w_1_t_72 -
+            six_r_d_Gamma_3_t_12*six_r_w_1_t_84 - six_r_d_Gamma_3_t_6*six_r_w_1_t_32 -
+            six_r_d_Gamma_3_t_8*six_r_w_1_t_54
+        )
+        six_r_d_Gamma_3_z = (
+        six_r_d_Gamma_3_t_3 + six_r_d_Gamma_3_t_10*six_r_w_1_t_73 +
+            six_r_d_Gamma_3_t_12*six_r_w_1_t_85 + six_r_d_Gamma_3_t_6*six_r_w_1_t_33 +
+            six_r_d_Gamma_3_t_8*six_r_w_1_t_55
+        )
+        # (six_r-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link about the connection point
+        six_r_Jc_3_t = six_r_Jc_3_xy*six_r_s_3
+        six_r__x_5 = six_r_Jc_3_xx*six_r_c_3 - six_r_Jc_3_t
+        six_r_Jc_3_t_4 = six_r_Jc_3_xy*six_r_c_3
+        six_r__x_6 = six_r_Jc_3_t_4 - six_r_Jc_3_yy*six_r_s_3
+        # (six_r-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+        six_r_Jc_2_t_2 = six_r_joint3_offset_x*(six_r_Jc_2_t + six_r_P_c_3_r0_y)
+        six_r_Jc_2_t_3 = 2.0*six_r_Jc_2_t_2
+        six_r_Jc_2_xy = (
+        six_r_J_2_xy + six_r_P_c_3_r0_x*six_r_joint3_offset_x + six_r__x_5*six_r_s_3 +
+            six_r__x_6*six_r_c_3
+        )
+        six_r_Jc_2_zz = six_r_J_2_zz + six_r_Jc_2_t_3 + six_r_Jc_3_zz
+        # (six_r-L_c_2) moment about joint 2 that accelerates joint 2, per unit
+        six_r_L_c_2_r0_y = (
+        six_r_s_2*(six_r_J_2_xz + six_r_L_c_3_r0_x - six_r_hc_3_z*six_r_joint3_offset_x) -
+            six_r_c_2_t*(six_r_J_2_yz + six_r_L_c_3_r0_y)
+        )
+        # (six_r-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        six_r_d_Gamma_2_t = inv_six_r_w_1_t_101*(six_r_L_c_4_2_z - six_r_d_Gamma_3_t_5)
+        six_r_d_Gamma_2_t_2 = (
+        inv_six_r_w_1_t_150*(six_r_L_c_2_r0_y + six_r_d_Gamma_2_t*six_r_w_1_t_36 -
+            six_r_d_Gamma_3_t_7)
+        )
+        six_r_d_Gamma_2_t_3 = (
+        inv_six_r_w_1_t_194*(six_r_Jc_2_zz + six_r_d_Gamma_2_t*six_r_w_1_t_42 -
+            six_r_d_Gamma_3_t_9 - six_r_d_Gamma_2_t_2*six_r_w_1_t_58)
+        )
+        six_r_d_Gamma_2_t_4 = (
+        inv_six_r_w_1_t_222*(six_r_L_c_3_2_z + six_r_d_Gamma_3_t_11 +
+            six_r_d_Gamma_2_t*six_r_w_1_t_47 - six_r_d_Gamma_2_t_2*six_r_w_1_t_64 -
+            six_r_d_Gamma_2_t_3*six_r_w_1_t_76)
+        )
+        six_r_d_Gamma_2_x = (
+        six_r_d_Gamma_3_t + six_r_d_Gamma_2_t_2*six_r_w_1_t_53 +
+            six_r_d_Gamma_2_t_3*six_r_w_1_t_71 + six_r_d_Gamma_2_t_4*six_r_w_1_t_83
+        )
+        six_r_d_Gamma_2_y = (
+        six_r_d_Gamma_3_t_13 - six_r_d_Gamma_3_t_2 - six_r_d_Gamma_2_t*six_r_w_1_t_32 -
+            six_r_d_Gamma_2_t_2*six_r_w_1_t_54 - six_r_d_Gamma_2_t_3*six_r_w_1_t_72 -
+            six_r_d_Gamma_2_t_4*six_r_w_1_t_84
+        )
+        six_r_d_Gamma_2_z = (
+        six_r_d_Gamma_3_t_3 + six_r_d_Gamma_2_t*six_r_w_1_t_33 +
+            six_r_d_Gamma_2_t_2*six_r_w_1_t_55 + six_r_d_Gamma_2_t_3*six_r_w_1_t_73 +
+            six_r_d_Gamma_2_t_4*six_r_w_1_t_85
+        )
+        # (six_r-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+        six_r__y = (
+        six_r_s_2*(six_r_s_2*(six_r_J_2_xx + six_r_Jc_2_t_3 + six_r__x_5*six_r_c_3 -
+            2.0*six_r_Jc_2_t_2 - six_r__x_6*six_r_s_3) - six_r_Jc_2_xy*six_r_c_2_t) -
+            six_r_c_2_t*(six_r_Jc_2_xy*six_r_s_2 - six_r_c_2_t*(six_r_J_2_yy + six_r_Jc_2_t_3 +
+            six_r_c_3*(six_r_Jc_3_t + six_r_Jc_3_yy*six_r_c_3) + six_r_s_3*(six_r_Jc_3_t_4 +
+            six_r_Jc_3_xx*six_r_s_3)))
+        )
+        # (six_r-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link about the connection point
+        six_r_Jc_1_zz = six_r_J_1_xx + six_r__y
+        # (six_r-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        six_r_d_Gamma_1_t = inv_six_r_w_1_t_69*six_r_D_1_5
+        six_r_d_Gamma_1_t_2 = (
+        inv_six_r_w_1_t_101*(six_r_L_c_4_2_r0_y - six_r_d_Gamma_1_t*six_r_w_1_t_18)
+        )
+        six_r_d_Gamma_1_t_3 = (
+        inv_six_r_w_1_t_150*(six_r_Jc_1_zz + six_r_d_Gamma_1_t_2*six_r_w_1_t_36 -
+            six_r_d_Gamma_1_t*six_r_w_1_t_21)
+        )
+        six_r_d_Gamma_1_t_4 = (
+        inv_six_r_w_1_t_194*(six_r_L_c_2_r0_y + six_r_d_Gamma_1_t_2*six_r_w_1_t_42 -
+            six_r_d_Gamma_1_t*six_r_w_1_t_25 - six_r_d_Gamma_1_t_3*six_r_w_1_t_58)
+        )
+        six_r_d_Gamma_1_t_5 = (
+        inv_six_r_w_1_t_222*(six_r_L_c_3_2_r0_y + six_r_d_Gamma_1_t*six_r_w_1_t_28 +
+            six_r_d_Gamma_1_t_2*six_r_w_1_t_47 - six_r_d_Gamma_1_t_3*six_r_w_1_t_64 -
+            six_r_d_Gamma_1_t_4*six_r_w_1_t_76)
+        )
+        six_r_d_Gamma_1_x = (
+        six_r_d_Gamma_1_t_3*six_r_w_1_t_53 + six_r_d_Gamma_1_t_4*six_r_w_1_t_71 +
+            six_r_d_Gamma_1_t_5*six_r_w_1_t_83 + six_r_e_1_r6_y*six_r_h_5_z +
+            six_r_h_5_y*six_r_v_1_t
+        )
+        six_r_d_Gamma_1_y = (
+        six_r_d_Gamma_1_t*six_r_w_1_t_16 - six_r_d_Gamma_1_t_2*six_r_w_1_t_32 -
+            six_r_d_Gamma_1_t_3*six_r_w_1_t_54 - six_r_d_Gamma_1_t_4*six_r_w_1_t_72 -
+            six_r_d_Gamma_1_t_5*six_r_w_1_t_84 - six_r_e_1_r6_x*six_r_h_5_z -
+            six_r_h_5_x*six_r_v_1_t
+        )
+        six_r_d_Gamma_1_z = (
+        six_r_d_Gamma_1_t_2*six_r_w_1_t_33 + six_r_d_Gamma_1_t_3*six_r_w_1_t_55 +
+            six_r_d_Gamma_1_t_4*six_r_w_1_t_73 + six_r_d_Gamma_1_t_5*six_r_w_1_t_85 +
+            six_r_e_1_r6_x*six_r_h_5_y - six_r_e_1_r6_y*six_r_h_5_x
+        )
+        # (six_r-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        six_r_d_c_xx = (
+        six_r_d_Gamma_1_x*six_r_w_1_t_90 + six_r_d_Gamma_5_x*six_r_w_5_t_5 - six_r_d_phi_5_t -
+            six_r_d_Gamma_2_x*six_r_w_2_t_2 - six_r_d_Gamma_3_x*six_r_w_3_t -
+            six_r_d_Gamma_4_x*six_r_w_4_t_4
+        )
+        six_r_d_c_xy = (
+        six_r_d_Gamma_1_y*six_r_w_1_t_90 + six_r_d_Gamma_5_y*six_r_w_5_t_5 +
+            six_r_d_alpha_5_zy*six_r_h_5_y - six_r_d_Gamma_2_y*six_r_w_2_t_2 -
+            six_r_d_Gamma_3_y*six_r_w_3_t - six_r_d_Gamma_4_y*six_r_w_4_t_4 -
+            six_r_h_5_z*(six_r_c_5_t*six_r_w_4_t_5 + six_r_e_1_r6_y*six_r_w_1_t_91 -
+            six_r_v_2_t_2*six_r_w_2_t_3 - six_r_v_2_t_2*six_r_w_3_t_2)
+        )
+        six_r_d_c_xz = (
+        six_r_d_Gamma_1_z*six_r_w_1_t_90 + six_r_d_Gamma_5_t_6*six_r_w_5_t_5 +
+            six_r_d_alpha_5_zz*six_r_h_5_y - six_r_d_Gamma_2_z*six_r_w_2_t_2 -
+            six_r_d_Gamma_3_z*six_r_w_3_t - six_r_d_Gamma_4_z*six_r_w_4_t_4 -
+            six_r_d_alpha_5_yz*six_r_h_5_z
+        )
+        six_r_d_c_yy = (
+        six_r_d_Gamma_2_y*six_r_w_2_t_3 + six_r_d_Gamma_3_y*six_r_w_3_t_2 +
+            six_r_d_Gamma_4_y*six_r_w_4_t_5 + six_r_h_5_z*(six_r_e_1_r6_x*six_r_w_1_t_91 -
+            six_r_s_5*six_r_w_4_t_5 - six_r_v_2_t*six_r_w_2_t_3 - six_r_v_2_t*six_r_w_3_t_2) -
+            six_r_d_Gamma_1_y*six_r_w_1_t_91 - six_r_d_Gamma_5_y*six_r_w_5_t_6 -
+            six_r_d_alpha_5_zy*six_r_h_5_x
+        )
+        six_r_d_c_yz = (
+        six_r_d_Gamma_2_z*six_r_w_2_t_3 + six_r_d_Gamma_3_z*six_r_w_3_t_2 +
+            six_r_d_Gamma_4_z*six_r_w_4_t_5 + six_r_d_alpha_5_xz*six_r_h_5_z -
+            six_r_d_Gamma_1_z*six_r_w_1_t_91 - six_r_d_Gamma_5_t_6*six_r_w_5_t_6 -
+            six_r_d_alpha_5_zz*six_r_h_5_x
+        )
+        # (six_r-Q) inertia of the leg at the connection point, without the mass gathered there
+        six_r_Q_t = six_r_d_c_xx - six_r_d_c_yy
+        six_r_Q_t_2 = 0.5*six_r_Q_t
+        six_r_Q_t_3 = (
+        six_r_d_c_xx + six_r_d_Gamma_3_z*six_r_w_3_t_3 + six_r_d_Gamma_4_z*six_r_w_4_t_6 +
+            six_r_d_alpha_5_xz*six_r_h_5_y - six_r_d_Gamma_1_z*six_r_w_1_t_92 -
+            six_r_d_Gamma_2_z*six_r_w_2_t_4 - six_r_d_Gamma_5_t_6*six_r_w_5_t_7 -
+            six_r_d_alpha_5_yz*six_r_h_5_x
+        )
+        six_r_Q_t_4 = 0.5*six_r_Q_t_3
+        six_r_Q_t_5 = (
+        axis_x_six_r_axes5_x*six_r_d_c_xy + axis_z_six_r_axes5_in_base_x*six_r_d_c_yz -
+            axis_y_six_r_axes5_in_base_x*six_r_Q_t_2
+        )
+        six_r_Q_t_6 = (
+        axis_x_six_r_axes5_y*six_r_d_c_xy + axis_z_six_r_axes5_in_base_y*six_r_d_c_yz -
+            axis_y_six_r_axes5_in_base_y*six_r_Q_t_2
+        )
+        six_r_Q_t_7 = (
+        axis_x_six_r_axes5_z*six_r_d_c_xy + axis_z_six_r_axes5_in_base_z*six_r_d_c_yz -
+            axis_y_six_r_axes5_in_base_z*six_r_Q_t_2
+        )
+        six_r_Q_t_8 = axis_z_six_r_axes5_in_base_x*six_r_Q_t_4 - axis_x_six_r_axes5_x*six_r_d_c_xz
+        six_r_Q_t_9 = axis_z_six_r_axes5_in_base_y*six_r_Q_t_4 - axis_x_six_r_axes5_y*six_r_d_c_xz
+        six_r_Q_t_10 = (
+        axis_z_six_r_axes5_in_base_z*six_r_Q_t_4 - axis_x_six_r_axes5_z*six_r_d_c_xz
+        )
+        six_r_Q_t_11 = (
+        axis_y_six_r_axes5_in_base_x*six_r_Q_t_5 - axis_z_six_r_axes5_in_base_x*six_r_Q_t_8
+        )
+        six_r_Q_t_12 = 2.0*six_r_Q_t_11 + six_r_d_c_xx
+        six_r_Q_t_13 = (
+        axis_y_six_r_axes5_in_base_x*six_r_Q_t_6 + axis_y_six_r_axes5_in_base_y*six_r_Q_t_5 -
+            axis_z_six_r_axes5_in_base_x*six_r_Q_t_9 - axis_z_six_r_axes5_in_base_y*six_r_Q_t_8
+        )
+        six_r_Q_t_14 = (
+        axis_y_six_r_axes5_in_base_x*six_r_Q_t_7 + axis_y_six_r_axes5_in_base_z*six_r_Q_t_5 -
+            axis_z_six_r_axes5_in_base_x*six_r_Q_t_10 - axis_z_six_r_axes5_in_base_z*six_r_Q_t_8
+        )
+        six_r_Q_t_15 = (
+        axis_y_six_r_axes5_in_base_y*six_r_Q_t_6 - axis_z_six_r_axes5_in_base_y*six_r_Q_t_9
+        )
+        six_r_Q_t_16 = 2.0*six_r_Q_t_15 + six_r_d_c_xx
+        six_r_Q_t_17 = (
+        axis_y_six_r_axes5_in_base_y*six_r_Q_t_7 + axis_y_six_r_axes5_in_base_z*six_r_Q_t_6 -
+            axis_z_six_r_axes5_in_base_y*six_r_Q_t_10 - axis_z_six_r_axes5_in_base_z*six_r_Q_t_9
+        )
+        six_r_Q_t_18 = (
+        axis_y_six_r_axes5_in_base_z*six_r_Q_t_7 - axis_z_six_r_axes5_in_base_z*six_r_Q_t_10
+        )
+        six_r_Q_t_19 = 2.0*six_r_Q_t_18 + six_r_d_c_xx
+        # (six_r-o_1) moment part of reciprocal wrench 1
+        six_r_o_1_t = six_r_end_p1_r8_y*six_r_w_1_t_93
+        six_r_o_1_t_2 = six_r_end_p1_r8_y*six_r_w_1_t_94
+        six_r_o_1_y = six_r_end_p1_r6_x*six_r_w_1_t_94 - six_r_end_p1_r8_x*six_r_w_1_t_93
+        # (six_r-o_2) moment part of reciprocal wrench 2
+        six_r_o_2_t = six_r_end_p1_r8_y*six_r_w_2_t_5
+        six_r_o_2_t_2 = six_r_end_p1_r8_y*six_r_w_2_t_6
+        six_r_o_2_y = six_r_end_p1_r8_x*six_r_w_2_t_5 - six_r_end_p1_r6_x*six_r_w_2_t_6
+        # (six_r-o_3) moment part of reciprocal wrench 3
+        six_r_o_3_t = six_r_end_p1_r8_y*six_r_w_3_t_4
+        six_r_o_3_t_2 = six_r_end_p1_r8_y*six_r_w_3_t_5
+        six_r_o_3_y = six_r_end_p1_r8_x*six_r_w_3_t_4 - six_r_end_p1_r6_x*six_r_w_3_t_5
+        # (six_r-o_4) moment part of reciprocal wrench 4
+        six_r_o_4_t = six_r_end_p1_r8_y*six_r_w_4_t_7
+        six_r_o_4_t_2 = six_r_end_p1_r8_y*six_r_w_4_t_8
+        six_r_o_4_y = six_r_end_p1_r8_x*six_r_w_4_t_7 - six_r_end_p1_r6_x*six_r_w_4_t_8
+        # (six_r-o_5) moment part of reciprocal wrench 5
+        six_r_o_5_t = six_r_end_p1_r8_y*six_r_w_5_t_8
+        six_r_o_5_t_2 = six_r_end_p1_r8_y*six_r_w_5_t_9
+        six_r_o_5_y = six_r_end_p1_r6_x*six_r_w_5_t_9 - six_r_end_p1_r8_x*six_r_w_5_t_8
+        # (six_r-dalpha_alpha_5) coefficient of the acceleration in: angular acceleration of link 5
+        six_r_dalpha_alpha_5_xx = (
+        six_r_e_1_r6_x*six_r_o_1_t - six_r_o_2_t*six_r_v_2_t - six_r_o_3_t*six_r_v_2_t -
+            six_r_o_4_t*six_r_s_5
+        )
+        six_r_dalpha_alpha_5_xy = (
+        six_r_e_1_r6_x*six_r_o_1_y + six_r_o_2_y*six_r_v_2_t + six_r_o_3_y*six_r_v_2_t +
+            six_r_o_4_y*six_r_s_5
+        )
+        six_r_dalpha_alpha_5_xz = (
+        six_r_o_2_t_2*six_r_v_2_t + six_r_o_3_t_2*six_r_v_2_t + six_r_o_4_t_2*six_r_s_5 -
+            six_r_e_1_r6_x*six_r_o_1_t_2
+        )
+        six_r_dalpha_alpha_5_yx = (
+        six_r_c_5_t*six_r_o_4_t + six_r_e_1_r6_y*six_r_o_1_t - six_r_o_2_t*six_r_v_2_t_2 -
+            six_r_o_3_t*six_r_v_2_t_2
+        )
+        six_r_dalpha_alpha_5_yy = (
+        six_r_e_1_r6_y*six_r_o_1_y + six_r_o_2_y*six_r_v_2_t_2 + six_r_o_3_y*six_r_v_2_t_2 -
+            six_r_c_5_t*six_r_o_4_y
+        )
+        six_r_dalpha_alpha_5_yz = (
+        six_r_o_2_t_2*six_r_v_2_t_2 + six_r_o_3_t_2*six_r_v_2_t_2 - six_r_c_5_t*six_r_o_4_t_2 -
+            six_r_e_1_r6_y*six_r_o_1_t_2
+        )
+        six_r_dalpha_alpha_5_zx = (
+        six_r_o_5_t - six_r_o_1_t*six_r_v_1_t - six_r_o_2_t*six_r_s_4 - six_r_o_3_t*six_r_s_4
+        )
+        six_r_dalpha_alpha_5_zy = (
+        six_r_o_5_y + six_r_o_2_y*six_r_s_4 + six_r_o_3_y*six_r_s_4 - six_r_o_1_y*six_r_v_1_t
+        )
+        six_r_dalpha_alpha_5_zz = (
+        six_r_o_1_t_2*six_r_v_1_t + six_r_o_2_t_2*six_r_s_4 + six_r_o_3_t_2*six_r_s_4 -
+            six_r_o_5_t_2
+        )
+        # (six_r-dalpha_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal links' inertia and weight
+        six_r_dalpha_Gamma_5_x = (
+        six_r_D_1_5*six_r_o_1_t + six_r_J_5_zz*six_r_o_5_t - six_r_D_3_5*six_r_o_2_t -
+            six_r_D_3_5*six_r_o_3_t - six_r_L_c_5_r0_y*six_r_o_4_t
+        )
+        six_r_dalpha_Gamma_5_y = (
+        six_r_D_1_5*six_r_o_1_y + six_r_D_3_5*six_r_o_2_y + six_r_D_3_5*six_r_o_3_y +
+            six_r_J_5_zz*six_r_o_5_y + six_r_L_c_5_r0_y*six_r_o_4_y
+        )
+        six_r_dalpha_Gamma_5_z = (
+        six_r_D_3_5*six_r_o_2_t_2 + six_r_D_3_5*six_r_o_3_t_2 + six_r_L_c_5_r0_y*six_r_o_4_t_2 -
+            six_r_D_1_5*six_r_o_1_t_2 - six_r_J_5_zz*six_r_o_5_t_2
+        )
+        # (six_r-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+        six_r_dalpha_Gamma_4_x = (
+        six_r_L_c_4_2_r0_y*six_r_o_1_t + six_r_L_c_5_r0_y*six_r_o_5_t - six_r_Jc_4_zz*six_r_o_4_t
+            - six_r_L_c_4_2_z*six_r_o_2_t - six_r_L_c_4_3_z*six_r_o_3_t
+        )
+        six_r_dalpha_Gamma_4_y = (
+        six_r_Jc_4_zz*six_r_o_4_y + six_r_L_c_4_2_r0_y*six_r_o_1_y + six_r_L_c_4_2_z*six_r_o_2_y +
+            six_r_L_c_4_3_z*six_r_o_3_y + six_r_L_c_5_r0_y*six_r_o_5_y
+        )
+        six_r_dalpha_Gamma_4_z = (
+        six_r_Jc_4_zz*six_r_o_4_t_2 + six_r_L_c_4_2_z*six_r_o_2_t_2 +
+            six_r_L_c_4_3_z*six_r_o_3_t_2 - six_r_L_c_4_2_r0_y*six_r_o_1_t_2 -
+            six_r_L_c_5_r0_y*six_r_o_5_t_2
+        )
+        # (six_r-dalpha_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        six_r_dalpha_Gamma_3_t = six_r_D_3_5*six_r_o_5_t
+        six_r_dalpha_Gamma_3_t_2 = six_r_D_3_5*six_r_o_5_y
+        six_r_dalpha_Gamma_3_t_3 = six_r_D_3_5*six_r_o_5_t_2
+        six_r_dalpha_Gamma_3_x = (
+        six_r_dalpha_Gamma_3_t + six_r_L_c_3_2_r0_y*six_r_o_1_t - six_r_Jc_3_zz*six_r_o_3_t -
+            six_r_L_c_3_2_z*six_r_o_2_t - six_r_L_c_4_3_z*six_r_o_4_t
+        )
+        six_r_dalpha_Gamma_3_y = (
+        six_r_dalpha_Gamma_3_t_2 + six_r_Jc_3_zz*six_r_o_3_y + six_r_L_c_3_2_r0_y*six_r_o_1_y +
+            six_r_L_c_3_2_z*six_r_o_2_y + six_r_L_c_4_3_z*six_r_o_4_y
+        )
+        six_r_dalpha_Gamma_3_z = (
+        six_r_Jc_3_zz*six_r_o_3_t_2 + six_r_L_c_3_2_z*six_r_o_2_t_2 +
+            six_r_L_c_4_3_z*six_r_o_4_t_2 - six_r_dalpha_Gamma_3_t_3 -
+            six_r_L_c_3_2_r0_y*six_r_o_1_t_2
+        )
+        # (six_r-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        six_r_dalpha_Gamma_2_x = (
+        six_r_dalpha_Gamma_3_t + six_r_L_c_2_r0_y*six_r_o_1_t - six_r_Jc_2_zz*six_r_o_2_t -
+            six_r_L_c_3_2_z*six_r_o_3_t - six_r_L_c_4_2_z*six_r_o_4_t
+        )
+        six_r_dalpha_Gamma_2_y = (
+        six_r_dalpha_Gamma_3_t_2 + six_r_Jc_2_zz*six_r_o_2_y + six_r_L_c_2_r0_y*six_r_o_1_y +
+            six_r_L_c_3_2_z*six_r_o_3_y + six_r_L_c_4_2_z*six_r_o_4_y
+        )
+        six_r_dalpha_Gamma_2_z = (
+        six_r_Jc_2_zz*six_r_o_2_t_2 + six_r_L_c_3_2_z*six_r_o_3_t_2 +
+            six_r_L_c_4_2_z*six_r_o_4_t_2 - six_r_dalpha_Gamma_3_t_3 -
+            six_r_L_c_2_r0_y*six_r_o_1_t_2
+        )
+        # (six_r-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        six_r_dalpha_Gamma_1_x = (
+        six_r_D_1_5*six_r_o_5_t + six_r_Jc_1_zz*six_r_o_1_t - six_r_L_c_2_r0_y*six_r_o_2_t -
+            six_r_L_c_3_2_r0_y*six_r_o_3_t - six_r_L_c_4_2_r0_y*six_r_o_4_t
+        )
+        six_r_dalpha_Gamma_1_y = (
+        six_r_D_1_5*six_r_o_5_y + six_r_Jc_1_zz*six_r_o_1_y + six_r_L_c_2_r0_y*six_r_o_2_y +
+            six_r_L_c_3_2_r0_y*six_r_o_3_y + six_r_L_c_4_2_r0_y*six_r_o_4_y
+        )
+        six_r_dalpha_Gamma_1_z = (
+        six_r_L_c_2_r0_y*six_r_o_2_t_2 + six_r_L_c_3_2_r0_y*six_r_o_3_t_2 +
+            six_r_L_c_4_2_r0_y*six_r_o_4_t_2 - six_r_D_1_5*six_r_o_5_t_2 -
+            six_r_Jc_1_zz*six_r_o_1_t_2
+        )
+        # (six_r-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        six_r_dalpha_c_xx = (
+        six_r_dalpha_Gamma_1_x*six_r_w_1_t_90 + six_r_dalpha_Gamma_5_x*six_r_w_5_t_5 +
+            six_r_dalpha_alpha_5_zx*six_r_h_5_y - six_r_dalpha_Gamma_2_x*six_r_w_2_t_2 -
+            six_r_dalpha_Gamma_3_x*six_r_w_3_t - six_r_dalpha_Gamma_4_x*six_r_w_4_t_4 -
+            six_r_dalpha_alpha_5_yx*six_r_h_5_z
+        )
+        six_r_dalpha_c_xy = (
+        six_r_dalpha_Gamma_1_y*six_r_w_1_t_90 + six_r_dalpha_Gamma_5_y*six_r_w_5_t_5 +
+            six_r_dalpha_alpha_5_zy*six_r_h_5_y - six_r_dalpha_Gamma_2_y*six_r_w_2_t_2 -
+            six_r_dalpha_Gamma_3_y*six_r_w_3_t - six_r_dalpha_Gamma_4_y*six_r_w_4_t_4 -
+            six_r_dalpha_alpha_5_yy*six_r_h_5_z
+        )
+        six_r_dalpha_c_xz = (
+        six_r_dalpha_Gamma_1_z*six_r_w_1_t_90 + six_r_dalpha_Gamma_5_z*six_r_w_5_t_5 +
+            six_r_dalpha_alpha_5_zz*six_r_h_5_y - six_r_dalpha_Gamma_2_z*six_r_w_2_t_2 -
+            six_r_dalpha_Gamma_3_z*six_r_w_3_t - six_r_dalpha_Gamma_4_z*six_r_w_4_t_4 -
+            six_r_dalpha_alpha_5_yz*six_r_h_5_z
+        )
+        six_r_dalpha_c_yx = (
+        six_r_dalpha_Gamma_2_x*six_r_w_2_t_3 + six_r_dalpha_Gamma_3_x*six_r_w_3_t_2 +
+            six_r_dalpha_Gamma_4_x*six_r_w_4_t_5 + six_r_dalpha_alpha_5_xx*six_r_h_5_z -
+            six_r_dalpha_Gamma_1_x*six_r_w_1_t_91 - six_r_dalpha_Gamma_5_x*six_r_w_5_t_6 -
+            six_r_dalpha_alpha_5_zx*six_r_h_5_x
+        )
+        six_r_dalpha_c_yy = (
+        six_r_dalpha_Gamma_2_y*six_r_w_2_t_3 + six_r_dalpha_Gamma_3_y*six_r_w_3_t_2 +
+            six_r_dalpha_Gamma_4_y*six_r_w_4_t_5 + six_r_dalpha_alpha_5_xy*six_r_h_5_z -
+            six_r_dalpha_Gamma_1_y*six_r_w_1_t_91 - six_r_dalpha_Gamma_5_y*six_r_w_5_t_6 -
+            six_r_dalpha_alpha_5_zy*six_r_h_5_x
+        )
+        six_r_dalpha_c_yz = (
+        six_r_dalpha_Gamma_2_z*six_r_w_2_t_3 + six_r_dalpha_Gamma_3_z*six_r_w_3_t_2 +
+            six_r_dalpha_Gamma_4_z*six_r_w_4_t_5 + six_r_dalpha_alpha_5_xz*six_r_h_5_z -
+            six_r_dalpha_Gamma_1_z*six_r_w_1_t_91 - six_r_dalpha_Gamma_5_z*six_r_w_5_t_6 -
+            six_r_dalpha_alpha_5_zz*six_r_h_5_x
+        )
+        six_r_dalpha_c_zx = (
+        six_r_dalpha_Gamma_1_x*six_r_w_1_t_92 + six_r_dalpha_Gamma_2_x*six_r_w_2_t_4 +
+            six_r_dalpha_Gamma_5_x*six_r_w_5_t_7 + six_r_dalpha_alpha_5_yx*six_r_h_5_x -
+            six_r_dalpha_Gamma_3_x*six_r_w_3_t_3 - six_r_dalpha_Gamma_4_x*six_r_w_4_t_6 -
+            six_r_dalpha_alpha_5_xx*six_r_h_5_y
+        )
+        six_r_dalpha_c_zy = (
+        six_r_dalpha_Gamma_1_y*six_r_w_1_t_92 + six_r_dalpha_Gamma_2_y*six_r_w_2_t_4 +
+            six_r_dalpha_Gamma_5_y*six_r_w_5_t_7 + six_r_dalpha_alpha_5_yy*six_r_h_5_x -
+            six_r_dalpha_Gamma_3_y*six_r_w_3_t_3 - six_r_dalpha_Gamma_4_y*six_r_w_4_t_6 -
+            six_r_dalpha_alpha_5_xy*six_r_h_5_y
+        )
+        six_r_dalpha_c_zz = (
+        six_r_dalpha_Gamma_1_z*six_r_w_1_t_92 + six_r_dalpha_Gamma_2_z*six_r_w_2_t_4 +
+            six_r_dalpha_Gamma_5_z*six_r_w_5_t_7 + six_r_dalpha_alpha_5_yz*six_r_h_5_x -
+            six_r_dalpha_Gamma_3_z*six_r_w_3_t_3 - six_r_dalpha_Gamma_4_z*six_r_w_4_t_6 -
+            six_r_dalpha_alpha_5_xz*six_r_h_5_y
+        )
+        six_r_dalpha_c_in_base_x = (
+        axis_x_six_r_axes5_x*six_r_dalpha_c_xx + axis_y_six_r_axes5_in_base_x*six_r_dalpha_c_yx +
+            axis_z_six_r_axes5_in_base_x*six_r_dalpha_c_zx
+        )
+        six_r_dalpha_c_in_base_y = (
+        axis_x_six_r_axes5_y*six_r_dalpha_c_xx + axis_y_six_r_axes5_in_base_y*six_r_dalpha_c_yx +
+            axis_z_six_r_axes5_in_base_y*six_r_dalpha_c_zx
+        )
+        six_r_dalpha_c_in_base_z = (
+        axis_x_six_r_axes5_z*six_r_dalpha_c_xx + axis_y_six_r_axes5_in_base_z*six_r_dalpha_c_yx +
+            axis_z_six_r_axes5_in_base_z*six_r_dalpha_c_zx
+        )
+        six_r_dalpha_c_in_base_x_2 = (
+        axis_x_six_r_axes5_x*six_r_dalpha_c_xy + axis_y_six_r_axes5_in_base_x*six_r_dalpha_c_yy +
+            axis_z_six_r_axes5_in_base_x*six_r_dalpha_c_zy
+        )
+        six_r_dalpha_c_in_base_y_2 = (
+        axis_x_six_r_axes5_y*six_r_dalpha_c_xy + axis_y_six_r_axes5_in_base_y*six_r_dalpha_c_yy +
+            axis_z_six_r_axes5_in_base_y*six_r_dalpha_c_zy
+        )
+        six_r_dalpha_c_in_base_z_2 = (
+        axis_x_six_r_axes5_z*six_r_dalpha_c_xy + axis_y_six_r_axes5_in_base_z*six_r_dalpha_c_yy +
+            axis_z_six_r_axes5_in_base_z*six_r_dalpha_c_zy
+        )
+        six_r_dalpha_c_in_base_x_3 = (
+        axis_x_six_r_axes5_x*six_r_dalpha_c_xz + axis_y_six_r_axes5_in_base_x*six_r_dalpha_c_yz +
+            axis_z_six_r_axes5_in_base_x*six_r_dalpha_c_zz
+        )
+        six_r_dalpha_c_in_base_y_3 = (
+        axis_x_six_r_axes5_y*six_r_dalpha_c_xz + axis_y_six_r_axes5_in_base_y*six_r_dalpha_c_yz +
+            axis_z_six_r_axes5_in_base_y*six_r_dalpha_c_zz
+        )
+        six_r_dalpha_c_in_base_z_3 = (
+        axis_x_six_r_axes5_z*six_r_dalpha_c_xz + axis_y_six_r_axes5_in_base_z*six_r_dalpha_c_yz +
+            axis_z_six_r_axes5_in_base_z*six_r_dalpha_c_zz
+        )
+        # (M_ta) coupling block of M
+        six_r_q_in_base_x = (
+        R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
+        )
+        six_r_q_in_base_y = (
+        R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y + R_yz*six_r_platform_point_z
+        )
+        six_r_q_in_base_z = (
+        R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y + R_zz*six_r_platform_point_z
+        )
+        six_r_M_ta_t = six_r_Q_t_13*six_r_q_in_base_z
+        six_r_M_ta_t_2 = six_r_Q_t_14*six_r_q_in_base_y
+        six_r_M_ta_t_3 = six_r_Q_t_17*six_r_q_in_base_x
+        six_r_M_ta_t_4 = (
+        six_r_M_ta_t - six_r_M_ta_t_2 - axis_x_six_r_axes5_x*six_r_dalpha_c_in_base_x -
+            axis_y_six_r_axes5_in_base_x*six_r_dalpha_c_in_base_x_2 -
+            axis_z_six_r_axes5_in_base_x*six_r_dalpha_c_in_base_x_3
+        )
+        six_r_M_ta_t_5 = (
+        axis_x_six_r_axes5_y*six_r_dalpha_c_in_base_x +
+            axis_y_six_r_axes5_in_base_y*six_r_dalpha_c_in_base_x_2 +
+            axis_z_six_r_axes5_in_base_y*six_r_dalpha_c_in_base_x_3 +
+            six_r_Q_t_12*six_r_q_in_base_z - six_r_Q_t_14*six_r_q_in_base_x
+        )
+        six_r_M_ta_t_6 = (
+        six_r_Q_t_12*six_r_q_in_base_y - axis_x_six_r_axes5_z*six_r_dalpha_c_in_base_x -
+            axis_y_six_r_axes5_in_base_z*six_r_dalpha_c_in_base_x_2 -
+            axis_z_six_r_axes5_in_base_z*six_r_dalpha_c_in_base_x_3 -
+            six_r_Q_t_13*six_r_q_in_base_x
+        )
+        six_r_M_ta_t_7 = (
+        six_r_Q_t_16*six_r_q_in_base_z - axis_x_six_r_axes5_x*six_r_dalpha_c_in_base_y -
+            axis_y_six_r_axes5_in_base_x*six_r_dalpha_c_in_base_y_2 -
+            axis_z_six_r_axes5_in_base_x*six_r_dalpha_c_in_base_y_3 -
+            six_r_Q_t_17*six_r_q_in_base_y
+        )
+        six_r_M_ta_t_8 = (
+        six_r_M_ta_t + axis_x_six_r_axes5_y*six_r_dalpha_c_in_base_y +
+            axis_y_six_r_axes5_in_base_y*six_r_dalpha_c_in_base_y_2 +
+            axis_z_six_r_axes5_in_base_y*six_r_dalpha_c_in_base_y_3 - six_r_M_ta_t_3
+        )
+        six_r_M_ta_t_9 = (
+        six_r_Q_t_13*six_r_q_in_base_y - axis_x_six_r_axes5_z*six_r_dalpha_c_in_base_y -
+            axis_y_six_r_axes5_in_base_z*six_r_dalpha_c_in_base_y_2 -
+            axis_z_six_r_axes5_in_base_z*six_r_dalpha_c_in_base_y_3 -
+            six_r_Q_t_16*six_r_q_in_base_x
+        )
+        six_r_M_ta_t_10 = (
+        six_r_Q_t_17*six_r_q_in_base_z - axis_x_six_r_axes5_x*six_r_dalpha_c_in_base_z -
+            axis_y_six_r_axes5_in_base_x*six_r_dalpha_c_in_base_z_2 -
+            axis_z_six_r_axes5_in_base_x*six_r_dalpha_c_in_base_z_3 -
+            six_r_Q_t_19*six_r_q_in_base_y
+        )
+        six_r_M_ta_t_11 = (
+        axis_x_six_r_axes5_y*six_r_dalpha_c_in_base_z +
+            axis_y_six_r_axes5_in_base_y*six_r_dalpha_c_in_base_z_2 +
+            axis_z_six_r_axes5_in_base_y*six_r_dalpha_c_in_base_z_3 +
+            six_r_Q_t_14*six_r_q_in_base_z - six_r_Q_t_19*six_r_q_in_base_x
+        )
+        six_r_M_ta_t_12 = (
+        six_r_M_ta_t_2 - six_r_M_ta_t_3 - axis_x_six_r_axes5_z*six_r_dalpha_c_in_base_z -
+            axis_y_six_r_axes5_in_base_z*six_r_dalpha_c_in_base_z_2 -
+            axis_z_six_r_axes5_in_base_z*six_r_dalpha_c_in_base_z_3
+        )
+        # (six_r-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        six_r_dalpha_G_m1_x = (
+        six_r_dalpha_Gamma_2_x*six_r_w_2_t_5 + six_r_dalpha_Gamma_3_x*six_r_w_3_t_4 +
+            six_r_dalpha_Gamma_4_x*six_r_w_4_t_7 - six_r_dalpha_Gamma_1_x*six_r_w_1_t_93 -
+            six_r_dalpha_Gamma_5_x*six_r_w_5_t_8
+        )
+        six_r_dalpha_G_m1_y = (
+        six_r_dalpha_Gamma_2_y*six_r_w_2_t_5 + six_r_dalpha_Gamma_3_y*six_r_w_3_t_4 +
+            six_r_dalpha_Gamma_4_y*six_r_w_4_t_7 - six_r_dalpha_Gamma_1_y*six_r_w_1_t_93 -
+            six_r_dalpha_Gamma_5_y*six_r_w_5_t_8
+        )
+        six_r_dalpha_G_m1_z = (
+        six_r_dalpha_Gamma_2_z*six_r_w_2_t_5 + six_r_dalpha_Gamma_3_z*six_r_w_3_t_4 +
+            six_r_dalpha_Gamma_4_z*six_r_w_4_t_7 - six_r_dalpha_Gamma_1_z*six_r_w_1_t_93 -
+            six_r_dalpha_Gamma_5_z*six_r_w_5_t_8
+        )
+        # (six_r-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        six_r_dalpha_G_m2_x = (
+        six_r_dalpha_Gamma_2_x*six_r_w_2_t_6 + six_r_dalpha_Gamma_3_x*six_r_w_3_t_5 +
+            six_r_dalpha_Gamma_4_x*six_r_w_4_t_8 - six_r_dalpha_Gamma_1_x*six_r_w_1_t_94 -
+            six_r_dalpha_Gamma_5_x*six_r_w_5_t_9
+        )
+        six_r_dalpha_G_m2_y = (
+        six_r_dalpha_Gamma_2_y*six_r_w_2_t_6 + six_r_dalpha_Gamma_3_y*six_r_w_3_t_5 +
+            six_r_dalpha_Gamma_4_y*six_r_w_4_t_8 - six_r_dalpha_Gamma_1_y*six_r_w_1_t_94 -
+            six_r_dalpha_Gamma_5_y*six_r_w_5_t_9
+        )
+        six_r_dalpha_G_m2_z = (
+        six_r_dalpha_Gamma_2_z*six_r_w_2_t_6 + six_r_dalpha_Gamma_3_z*six_r_w_3_t_5 +
+            six_r_dalpha_Gamma_4_z*six_r_w_4_t_8 - six_r_dalpha_Gamma_1_z*six_r_w_1_t_94 -
+            six_r_dalpha_Gamma_5_z*six_r_w_5_t_9
+        )
+        # (six_r-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        six_r_d_G_m1_x = (
+        six_r_d_Gamma_2_x*six_r_w_2_t_5 + six_r_d_Gamma_3_x*six_r_w_3_t_4 +
+            six_r_d_Gamma_4_x*six_r_w_4_t_7 - six_r_d_Gamma_1_x*six_r_w_1_t_93 -
+            six_r_d_Gamma_5_x*six_r_w_5_t_8
+        )
+        six_r_d_G_m1_y = (
+        six_r_d_Gamma_2_y*six_r_w_2_t_5 + six_r_d_Gamma_3_y*six_r_w_3_t_4 +
+            six_r_d_Gamma_4_y*six_r_w_4_t_7 - six_r_d_Gamma_1_y*six_r_w_1_t_93 -
+            six_r_d_Gamma_5_y*six_r_w_5_t_8
+        )
+        six_r_d_G_m1_z = (
+        six_r_d_Gamma_2_z*six_r_w_2_t_5 + six_r_d_Gamma_3_z*six_r_w_3_t_4 +
+            six_r_d_Gamma_4_z*six_r_w_4_t_7 - six_r_d_Gamma_1_z*six_r_w_1_t_93 -
+            six_r_d_Gamma_5_t_6*six_r_w_5_t_8
+        )
+        # (six_r-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        six_r_d_G_m2_x = (
+        six_r_d_Gamma_2_x*six_r_w_2_t_6 + six_r_d_Gamma_3_x*six_r_w_3_t_5 +
+            six_r_d_Gamma_4_x*six_r_w_4_t_8 - six_r_d_Gamma_1_x*six_r_w_1_t_94 -
+            six_r_d_Gamma_5_x*six_r_w_5_t_9
+        )
+        six_r_d_G_m2_y = (
+        six_r_d_Gamma_2_y*six_r_w_2_t_6 + six_r_d_Gamma_3_y*six_r_w_3_t_5 +
+            six_r_d_Gamma_4_y*six_r_w_4_t_8 - six_r_d_Gamma_1_y*six_r_w_1_t_94 -
+            six_r_d_Gamma_5_y*six_r_w_5_t_9
+        )
+        six_r_d_G_m2_z = (
+        six_r_d_Gamma_2_z*six_r_w_2_t_6 + six_r_d_Gamma_3_z*six_r_w_3_t_5 +
+            six_r_d_Gamma_4_z*six_r_w_4_t_8 - six_r_d_Gamma_1_z*six_r_w_1_t_94 -
+            six_r_d_Gamma_5_t_6*six_r_w_5_t_9
+        )
+        # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
+        six_r_n_m1_in_base_x = (
+        axis_y_six_r_axes5_in_base_x*six_r_end_p1_r8_x - axis_x_six_r_axes5_x*six_r_end_p1_r8_y
+        )
+        six_r_n_m1_in_base_y = (
+        axis_y_six_r_axes5_in_base_y*six_r_end_p1_r8_x - axis_x_six_r_axes5_y*six_r_end_p1_r8_y
+        )
+        six_r_n_m1_in_base_z = (
+        axis_y_six_r_axes5_in_base_z*six_r_end_p1_r8_x - axis_x_six_r_axes5_z*six_r_end_p1_r8_y
+        )
+        # (six_r-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        six_r_dalpha_G_m1_in_base_y = (
+        axis_x_six_r_axes5_y*six_r_dalpha_G_m1_x +
+            axis_y_six_r_axes5_in_base_y*six_r_dalpha_G_m1_y +
+            axis_z_six_r_axes5_in_base_y*six_r_dalpha_G_m1_z
+        )
+        six_r_dalpha_G_m1_in_base_z = (
+        axis_x_six_r_axes5_z*six_r_dalpha_G_m1_x +
+            axis_y_six_r_axes5_in_base_z*six_r_dalpha_G_m1_y +
+            axis_z_six_r_axes5_in_base_z*six_r_dalpha_G_m1_z
+        )
+        # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
+        six_r_n_m2_in_base_x = (
+        axis_z_six_r_axes5_in_base_x*six_r_end_p1_r8_y -
+            axis_y_six_r_axes5_in_base_x*six_r_end_p1_r6_x
+        )
+        six_r_n_m2_in_base_y = (
+        axis_z_six_r_axes5_in_base_y*six_r_end_p1_r8_y -
+            axis_y_six_r_axes5_in_base_y*six_r_end_p1_r6_x
+        )
+        six_r_n_m2_in_base_z = (
+        axis_z_six_r_axes5_in_base_z*six_r_end_p1_r8_y -
+            axis_y_six_r_axes5_in_base_z*six_r_end_p1_r6_x
+        )
+        # (six_r-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        six_r_dalpha_G_m2_in_base_y = (
+        axis_x_six_r_axes5_y*six_r_dalpha_G_m2_x +
+            axis_y_six_r_axes5_in_base_y*six_r_dalpha_G_m2_y +
+            axis_z_six_r_axes5_in_base_y*six_r_dalpha_G_m2_z
+        )
+        six_r_dalpha_G_m2_in_base_z = (
+        axis_x_six_r_axes5_z*six_r_dalpha_G_m2_x +
+            axis_y_six_r_axes5_in_base_z*six_r_dalpha_G_m2_y +
+            axis_z_six_r_axes5_in_base_z*six_r_dalpha_G_m2_z
+        )
+        # (six_r-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        six_r_d_G_m1_in_base_x = (
+        axis_x_six_r_axes5_x*six_r_d_G_m1_x + axis_y_six_r_axes5_in_base_x*six_r_d_G_m1_y +
+            axis_z_six_r_axes5_in_base_x*six_r_d_G_m1_z
+        )
+        six_r_d_G_m1_in_base_y = (
+        axis_x_six_r_axes5_y*six_r_d_G_m1_x + axis_y_six_r_axes5_in_base_y*six_r_d_G_m1_y +
+            axis_z_six_r_axes5_in_base_y*six_r_d_G_m1_z
+        )
+        six_r_d_G_m1_in_base_z = (
+        axis_x_six_r_axes5_z*six_r_d_G_m1_x + axis_y_six_r_axes5_in_base_z*six_r_d_G_m1_y +
+            axis_z_six_r_axes5_in_base_z*six_r_d_G_m1_z
+        )
+        # (six_r-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        six_r_d_G_m2_in_base_x = (
+        axis_x_six_r_axes5_x*six_r_d_G_m2_x + axis_y_six_r_axes5_in_base_x*six_r_d_G_m2_y +
+            axis_z_six_r_axes5_in_base_x*six_r_d_G_m2_z
+        )
+        six_r_d_G_m2_in_base_y = (
+        axis_x_six_r_axes5_y*six_r_d_G_m2_x + axis_y_six_r_axes5_in_base_y*six_r_d_G_m2_y +
+            axis_z_six_r_axes5_in_base_y*six_r_d_G_m2_z
+        )
+        six_r_d_G_m2_in_base_z = (
+        axis_x_six_r_axes5_z*six_r_d_G_m2_x + axis_y_six_r_axes5_in_base_z*six_r_d_G_m2_y +
+            axis_z_six_r_axes5_in_base_z*six_r_d_G_m2_z
+        )
+        # (six_r-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        six_r_d_G_m_xx = (
+        six_r_d_G_m1_in_base_x*six_r_n_m1_in_base_x + six_r_d_G_m2_in_base_x*six_r_n_m2_in_base_x
+        )
+        six_r_d_G_m_xy = (
+        six_r_d_G_m1_in_base_y*six_r_n_m1_in_base_x + six_r_d_G_m2_in_base_y*six_r_n_m2_in_base_x
+        )
+        six_r_d_G_m_xz = (
+        six_r_d_G_m1_in_base_z*six_r_n_m1_in_base_x + six_r_d_G_m2_in_base_z*six_r_n_m2_in_base_x
+        )
+        six_r_d_G_m_yx = (
+        six_r_d_G_m1_in_base_x*six_r_n_m1_in_base_y + six_r_d_G_m2_in_base_x*six_r_n_m2_in_base_y
+        )
+        # (M_aa) rotational block of M
+        six_r_M_aa_t = (
+        six_r_M_ta_t_7*six_r_q_in_base_z + six_r_d_G_m_xy*six_r_q_in_base_z -
+            six_r_M_ta_t_10*six_r_q_in_base_y - six_r_d_G_m_xz*six_r_q_in_base_y -
+            six_r_n_m1_in_base_x*(axis_x_six_r_axes5_x*six_r_dalpha_G_m1_x +
+            axis_y_six_r_axes5_in_base_x*six_r_dalpha_G_m1_y +
+            axis_z_six_r_axes5_in_base_x*six_r_dalpha_G_m1_z) -
+            six_r_n_m2_in_base_x*(axis_x_six_r_axes5_x*six_r_dalpha_G_m2_x +
+            axis_y_six_r_axes5_in_base_x*six_r_dalpha_G_m2_y +
+            axis_z_six_r_axes5_in_base_x*six_r_dalpha_G_m2_z)
+        )
+        six_r_M_aa_t_2 = (
+        six_r_M_ta_t_8*six_r_q_in_base_z + six_r_d_G_m_xx*six_r_q_in_base_z +
+            six_r_dalpha_G_m1_in_base_y*six_r_n_m1_in_base_x +
+            six_r_dalpha_G_m2_in_base_y*six_r_n_m2_in_base_x - six_r_M_ta_t_11*six_r_q_in_base_y -
+            six_r_d_G_m_xz*six_r_q_in_base_x
+        )
+        six_r_M_aa_t_3 = (
+        six_r_M_ta_t_9*six_r_q_in_base_z + six_r_d_G_m_xx*six_r_q_in_base_y -
+            six_r_M_ta_t_12*six_r_q_in_base_y - six_r_d_G_m_xy*six_r_q_in_base_x -
+            six_r_dalpha_G_m1_in_base_z*six_r_n_m1_in_base_x -
+            six_r_dalpha_G_m2_in_base_z*six_r_n_m2_in_base_x
+        )
+        six_r_M_aa_t_4 = (
+        six_r_M_ta_t_11*six_r_q_in_base_x + six_r_d_G_m_yx*six_r_q_in_base_z +
+            six_r_dalpha_G_m1_in_base_y*six_r_n_m1_in_base_y +
+            six_r_dalpha_G_m2_in_base_y*six_r_n_m2_in_base_y - six_r_M_ta_t_5*six_r_q_in_base_z -
+            six_r_q_in_base_x*(six_r_d_G_m1_in_base_z*six_r_n_m1_in_base_y +
+            six_r_d_G_m2_in_base_z*six_r_n_m2_in_base_y)
+        )
+        six_r_M_aa_t_5 = (
+        six_r_M_ta_t_6*six_r_q_in_base_z + six_r_dalpha_G_m1_in_base_z*six_r_n_m1_in_base_y +
+            six_r_dalpha_G_m2_in_base_z*six_r_n_m2_in_base_y +
+            six_r_q_in_base_x*(six_r_d_G_m1_in_base_y*six_r_n_m1_in_base_y +
+            six_r_d_G_m2_in_base_y*six_r_n_m2_in_base_y) - six_r_M_ta_t_12*six_r_q_in_base_x -
+            six_r_d_G_m_yx*six_r_q_in_base_y
+        )
+        six_r_M_aa_t_6 = (
+        six_r_M_ta_t_6*six_r_q_in_base_y +
+            six_r_q_in_base_y*(six_r_d_G_m1_in_base_x*six_r_n_m1_in_base_z +
+            six_r_d_G_m2_in_base_x*six_r_n_m2_in_base_z) - six_r_M_ta_t_9*six_r_q_in_base_x -
+            six_r_dalpha_G_m1_in_base_z*six_r_n_m1_in_base_z -
+            six_r_dalpha_G_m2_in_base_z*six_r_n_m2_in_base_z -
+            six_r_q_in_base_x*(six_r_d_G_m1_in_base_y*six_r_n_m1_in_base_z +
+            six_r_d_G_m2_in_base_y*six_r_n_m2_in_base_z)
+        )
+        # (six_r-S_dot) velocity of the connection point
+        six_r_S_dot_t = omega_y*six_r_q_in_base_z - omega_z*six_r_q_in_base_y
+        six_r_S_dot_t_2 = omega_z*six_r_q_in_base_x - omega_x*six_r_q_in_base_z
+        six_r_S_dot_t_3 = omega_x*six_r_q_in_base_y - omega_y*six_r_q_in_base_x
+        six_r_S_dot_x = six_r_S_dot_t + t_dot_x
+        six_r_S_dot_y = six_r_S_dot_t_2 + t_dot_y
+        six_r_S_dot_z = six_r_S_dot_t_3 + t_dot_z
+        # (six_r-eta_1) rate at which the joints turn along moment direction 1
+        six_r_eta_1 = (
+        omega_x*six_r_n_m1_in_base_x + omega_y*six_r_n_m1_in_base_y + omega_z*six_r_n_m1_in_base_z
+        )
+        # (six_r-eta_2) rate at which the joints turn along moment direction 2
+        six_r_eta_2 = (
+        omega_x*six_r_n_m2_in_base_x + omega_y*six_r_n_m2_in_base_y + omega_z*six_r_n_m2_in_base_z
+        )
+        # (six_r-S_dot) velocity of the connection point
+        six_r_S_dot_tip_x = (
+        axis_x_six_r_axes5_x*six_r_S_dot_x + axis_x_six_r_axes5_y*six_r_S_dot_y +
+            axis_x_six_r_axes5_z*six_r_S_dot_z
+        )
+        six_r_S_dot_tip_y = (
+        axis_y_six_r_axes5_in_base_x*six_r_S_dot_x + axis_y_six_r_axes5_in_base_y*six_r_S_dot_y +
+            axis_y_six_r_axes5_in_base_z*six_r_S_dot_z
+        )
+        six_r_S_dot_tip_z = (
+        axis_z_six_r_axes5_in_base_x*six_r_S_dot_x + axis_z_six_r_axes5_in_base_y*six_r_S_dot_y +
+            axis_z_six_r_axes5_in_base_z*six_r_S_dot_z
+        )
+        # (six_r-qd_5) rate of joint 5
+        six_r_qd_5_t = six_r_eta_1*six_r_size
+        six_r_qd_5_t_2 = six_r_eta_2*six_r_size
+        six_r_qd_5_t_3 = (
+        inv_six_r_w_1_t_222*(six_r_S_dot_tip_x*six_r_w_1_t_83 + six_r_S_dot_tip_z*six_r_w_1_t_85 +
+            six_r_qd_5_t*six_r_w_1_t_86 + six_r_qd_5_t_2*six_r_w_1_t_87 -
+            six_r_S_dot_tip_y*six_r_w_1_t_84)
+        )
+        six_r_qd_5_t_4 = (
+        inv_six_r_w_1_t_194*(six_r_S_dot_tip_x*six_r_w_1_t_71 + six_r_S_dot_tip_z*six_r_w_1_t_73 +
+            six_r_qd_5_t*six_r_w_1_t_74 + six_r_qd_5_t_2*six_r_w_1_t_75 -
+            six_r_S_dot_tip_y*six_r_w_1_t_72 - six_r_qd_5_t_3*six_r_w_1_t_76)
+        )
+        six_r_qd_5_t_5 = (
+        inv_six_r_w_1_t_150*(six_r_S_dot_tip_y*six_r_w_1_t_54 + six_r_qd_5_t_3*six_r_w_1_t_64 +
+            six_r_qd_5_t_4*six_r_w_1_t_58 - six_r_S_dot_tip_x*six_r_w_1_t_53 -
+            six_r_S_dot_tip_z*six_r_w_1_t_55 - six_r_qd_5_t*six_r_w_1_t_56 -
+            six_r_qd_5_t_2*six_r_w_1_t_57)
+        )
+        six_r_qd_5_t_6 = (
+        inv_six_r_w_1_t_101*(six_r_S_dot_tip_z*six_r_w_1_t_33 + six_r_qd_5_t*six_r_w_1_t_34 +
+            six_r_qd_5_t_2*six_r_w_1_t_35 + six_r_qd_5_t_3*six_r_w_1_t_47 +
+            six_r_qd_5_t_4*six_r_w_1_t_42 - six_r_S_dot_tip_y*six_r_w_1_t_32 -
+            six_r_qd_5_t_5*six_r_w_1_t_36)
+        )
+        six_r_qd_5_t_7 = (
+        inv_six_r_w_1_t_69*(six_r_S_dot_tip_y*six_r_w_1_t_16 + six_r_qd_5_t_2*six_r_w_1_t_17 +
+            six_r_qd_5_t_3*six_r_w_1_t_28 + six_r_qd_5_t_5*six_r_w_1_t_21 -
+            six_r_qd_5_t_4*six_r_w_1_t_25 - six_r_qd_5_t_6*six_r_w_1_t_18)
+        )
+        # (six_r-omega_1) angular velocity of link 1
+        six_r_omega_1_t = six_r_qd_5_t_5*six_r_s_2
+        six_r_omega_1_t_2 = six_r_c_2_t*six_r_qd_5_t_5
+        # (six_r-omega_2) angular velocity of link 2
+        six_r_omega_2_r0_x = six_r_omega_1_t_2*six_r_s_3 - six_r_c_3*six_r_omega_1_t
+        six_r_omega_2_r0_y = six_r_c_3*six_r_omega_1_t_2 + six_r_omega_1_t*six_r_s_3
+        # (six_r-omega_3) angular velocity of link 3
+        six_r_omega_3_z = six_r_qd_5_t_3 + six_r_qd_5_t_4
+        six_r_omega_3_r1_x = six_r_omega_3_z*six_r_s_4 - six_r_c_4_t*six_r_omega_2_r0_y
+        six_r_omega_3_r1_y = -six_r_c_4_t*six_r_omega_3_z - six_r_omega_2_r0_y*six_r_s_4
+        # (six_r-omega_4) angular velocity of link 4
+        six_r_omega_4_z = six_r_omega_2_r0_x + six_r_qd_5_t_6
+        six_r_omega_4_t = six_r_c_5_t*six_r_omega_3_r1_y
+        six_r_omega_4_r1_x = six_r_omega_4_z*six_r_s_5 - six_r_omega_4_t
+        six_r_omega_4_t_2 = six_r_omega_3_r1_y*six_r_s_5
+        six_r_omega_4_r1_y = -six_r_omega_4_t_2 - six_r_c_5_t*six_r_omega_4_z
+        # (six_r-omega_5) angular velocity of link 5
+        six_r_omega_5_z = six_r_omega_3_r1_x + six_r_qd_5_t_7
+        # (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5
+        six_r_zeta_5_x = six_r_omega_4_r1_y*six_r_qd_5_t_7
+        six_r_zeta_5_y = six_r_omega_4_r1_x*six_r_qd_5_t_7
+        # (six_r-u_1) centripetal acceleration of the connection point
+        six_r_u_1_x = omega_y*six_r_S_dot_t_3 - omega_z*six_r_S_dot_t_2
+        six_r_u_1_y = omega_z*six_r_S_dot_t - omega_x*six_r_S_dot_t_3
+        six_r_u_1_z = omega_x*six_r_S_dot_t_2 - omega_y*six_r_S_dot_t
+        # (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        six_r_zeta_2_x = six_r_omega_1_t_2*six_r_qd_5_t_4
+        six_r_zeta_2_y = six_r_omega_1_t*six_r_qd_5_t_4
+        # (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        six_r_zeta_3_x = six_r_omega_2_r0_y*six_r_qd_5_t_3
+        six_r_zeta_3_y = six_r_omega_2_r0_x*six_r_qd_5_t_3
+        # (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        six_r_zeta_2_r0_x = six_r_c_3*six_r_zeta_2_x + six_r_s_3*six_r_zeta_2_y
+        six_r_zeta_2_r0_y = six_r_c_3*six_r_zeta_2_y - six_r_s_3*six_r_zeta_2_x
+        # (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations
+        six_r_beta_3_x = six_r_zeta_2_r0_x + six_r_zeta_3_x
+        six_r_beta_3_y = six_r_zeta_2_r0_y - six_r_zeta_3_y
+        # (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4
+        six_r_zeta_4_x = six_r_omega_3_r1_y*six_r_qd_5_t_6
+        six_r_zeta_4_y = six_r_omega_3_r1_x*six_r_qd_5_t_6
+        # (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations
+        six_r_beta_3_t = six_r_beta_3_y*six_r_c_4_t
+        six_r_beta_3_t_2 = six_r_beta_3_y*six_r_s_4
+        # (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations
+        six_r_beta_4_x = six_r_zeta_4_x - six_r_beta_3_t
+        six_r_beta_4_y = -six_r_beta_3_t_2 - six_r_zeta_4_y
+        six_r_beta_4_t = six_r_beta_3_x*six_r_s_5
+        six_r_beta_4_r1_x = six_r_beta_4_t - six_r_beta_4_y*six_r_c_5_t
+        six_r_beta_4_t_2 = six_r_beta_3_x*six_r_c_5_t
+        six_r_beta_4_r1_y = -six_r_beta_4_t_2 - six_r_beta_4_y*six_r_s_5
+        # (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations
+        six_r_beta_5_x = six_r_beta_4_r1_x + six_r_zeta_5_x
+        six_r_beta_5_y = six_r_beta_4_r1_y - six_r_zeta_5_y
+        # (six_r-W_2) centripetal tensor of link 2
+        six_r_W_2_t = six_r_omega_1_t*six_r_omega_1_t
+        six_r_W_2_t_2 = six_r_omega_1_t_2*six_r_omega_1_t_2
+        six_r_W_2_t_3 = six_r_qd_5_t_4*six_r_qd_5_t_4
+        six_r_W_2_xy = six_r_omega_1_t*six_r_omega_1_t_2
+        # (six_r-W_3) centripetal tensor of link 3
+        six_r_W_3_t = six_r_omega_2_r0_x*six_r_omega_2_r0_x
+        six_r_W_3_t_2 = six_r_omega_2_r0_y*six_r_omega_2_r0_y
+        six_r_W_3_t_3 = six_r_omega_3_z*six_r_omega_3_z
+        six_r_W_3_xx = six_r_W_3_t_2 + six_r_W_3_t_3
+        six_r_W_3_xy = six_r_omega_2_r0_x*six_r_omega_2_r0_y
+        six_r_W_3_xz = six_r_omega_2_r0_x*six_r_omega_3_z
+        six_r_W_3_yz = six_r_omega_2_r0_y*six_r_omega_3_z
+        # (six_r-W_4) centripetal tensor of link 4
+        six_r_W_4_t = six_r_omega_3_r1_x*six_r_omega_3_r1_x
+        six_r_W_4_t_2 = six_r_omega_3_r1_y*six_r_omega_3_r1_y
+        six_r_W_4_t_3 = six_r_omega_4_z*six_r_omega_4_z
+        six_r_W_4_xy = six_r_omega_3_r1_x*six_r_omega_3_r1_y
+        six_r_W_4_xz = six_r_omega_3_r1_x*six_r_omega_4_z
+        six_r_W_4_yz = six_r_omega_3_r1_y*six_r_omega_4_z
+        # (six_r-W_5) centripetal tensor of link 5
+        six_r_W_5_t = six_r_omega_4_r1_x*six_r_omega_4_r1_x
+        six_r_W_5_t_2 = six_r_omega_4_r1_y*six_r_omega_4_r1_y
+        six_r_W_5_t_3 = six_r_omega_5_z*six_r_omega_5_z
+        six_r_W_5_xx = six_r_W_5_t_2 + six_r_W_5_t_3
+        six_r_W_5_xy = six_r_omega_4_r1_x*six_r_omega_4_r1_y
+        six_r_W_5_xz = six_r_omega_4_r1_x*six_r_omega_5_z
+        six_r_W_5_yz = six_r_omega_4_r1_y*six_r_omega_5_z
+        # (six_r-bias) acceleration of the connection point at zero joint accelerations
+        six_r_bias_t = six_r_joint2_offset_x*six_r_s_2
+        six_r_bias_t_2 = six_r_c_2_t*six_r_joint2_offset_x
+        six_r_d_2_r2_x = six_r_bias_t*six_r_c_3 - six_r_bias_t_2*six_r_s_3
+        six_r_d_2_r2_y = -six_r_bias_t*six_r_s_3 - six_r_bias_t_2*six_r_c_3
+        six_r_bias_t_3 = six_r_c_4_t*six_r_d_2_r2_y
+        six_r_bias_t_4 = six_r_d_2_r2_y*six_r_s_4
+        six_r_d_2_r6_x = six_r_bias_t_4*six_r_c_5_t + six_r_d_2_r2_x*six_r_s_5
+        six_r_d_2_r6_y = six_r_bias_t_4*six_r_s_5 - six_r_c_5_t*six_r_d_2_r2_x
+        # (six_r-omega_1) angular velocity of link 1
+        six_r_omega_1_x = six_r_e_1_r6_x*six_r_qd_5_t_5
+        six_r_omega_1_y = six_r_e_1_r6_y*six_r_qd_5_t_5
+        six_r_omega_1_z = six_r_qd_5_t_5*six_r_v_1_t
+        # (six_r-W_1) centripetal tensor of link 1
+        six_r_W_1_t = six_r_omega_1_x*six_r_omega_1_x
+        six_r_W_1_t_2 = six_r_omega_1_y*six_r_omega_1_y
+        six_r_W_1_t_3 = six_r_omega_1_z*six_r_omega_1_z
+        six_r_W_1_xy = six_r_omega_1_x*six_r_omega_1_y
+        six_r_W_1_xz = six_r_omega_1_x*six_r_omega_1_z
+        six_r_W_1_yz = six_r_omega_1_y*six_r_omega_1_z
+        # (six_r-bias) acceleration of the connection point at zero joint accelerations
+        six_r_bias_t_5 = six_r_c_3*six_r_joint3_offset_x
+        six_r_bias_t_6 = six_r_joint3_offset_x*six_r_s_3
+        six_r_bias_t_7 = six_r_bias_t_6*six_r_c_4_t
+        six_r_bias_t_8 = six_r_bias_t_6*six_r_s_4
+        six_r_d_3_r4_x = six_r_bias_t_5*six_r_s_5 - six_r_bias_t_8*six_r_c_5_t
+        six_r_d_3_r4_y = -six_r_bias_t_5*six_r_c_5_t - six_r_bias_t_8*six_r_s_5
+        # (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        six_r_zeta_2_t = six_r_c_4_t*six_r_zeta_2_r0_y
+        six_r_zeta_2_t_2 = six_r_s_4*six_r_zeta_2_r0_y
+        six_r_zeta_2_r4_x = six_r_c_5_t*six_r_zeta_2_t_2 + six_r_s_5*six_r_zeta_2_r0_x
+        six_r_zeta_2_r4_y = six_r_s_5*six_r_zeta_2_t_2 - six_r_c_5_t*six_r_zeta_2_r0_x
+        # (six_r-omega_2) angular velocity of link 2
+        six_r_omega_2_x = six_r_qd_5_t_4*six_r_v_2_t - six_r_omega_1_x
+        six_r_omega_2_y = six_r_qd_5_t_4*six_r_v_2_t_2 - six_r_omega_1_y
+        six_r_omega_2_z = six_r_omega_1_z + six_r_qd_5_t_4*six_r_s_4
+        # (six_r-W_2) centripetal tensor of link 2
+        six_r_W_2_t_4 = six_r_omega_2_x*six_r_omega_2_x
+        six_r_W_2_t_5 = six_r_omega_2_y*six_r_omega_2_y
+        six_r_W_2_t_6 = six_r_omega_2_z*six_r_omega_2_z
+        six_r_W_2_xy_2 = six_r_omega_2_x*six_r_omega_2_y
+        six_r_W_2_xz = six_r_omega_2_x*six_r_omega_2_z
+        six_r_W_2_yz = six_r_omega_2_y*six_r_omega_2_z
+        # (six_r-bias) acceleration of the connection point at zero joint accelerations
+        six_r_bias_t_9 = six_r_joint4_offset_x*six_r_s_5
+        six_r_bias_t_10 = six_r_c_5_t*six_r_joint4_offset_x
+        # (six_r-omega_3) angular velocity of link 3
+        six_r_omega_3_r3_x = six_r_omega_2_r0_x*six_r_s_5 - six_r_omega_4_t
+        six_r_omega_3_r3_y = -six_r_omega_4_t_2 - six_r_c_5_t*six_r_omega_2_r0_x
+        # (six_r-W_3) centripetal tensor of link 3
+        six_r_W_3_xy_2 = six_r_omega_3_r3_x*six_r_omega_3_r3_y
+        # (six_r-bias) acceleration of the connection point at zero joint accelerations
+        six_r_bias_t_11 = six_r_joint5_offset_x*six_r_s_5
+        six_r_bias_t_12 = six_r_c_5_t*six_r_joint5_offset_x
+        six_r_bias_t_13 = six_r_W_5_xy + six_r_beta_4_x
+        six_r_bias_x = (
+        six_r_W_1_xy*six_r_d_2_r6_y + six_r_W_1_xz*six_r_bias_t_3 + six_r_bias_t_7*(six_r_W_2_xz +
+            six_r_zeta_2_r4_y) + six_r_d_3_r4_y*(six_r_W_2_xy_2 + six_r_zeta_2_t) -
+            six_r_W_5_xx*six_r_platform_joint_offset_x - six_r_bias_t_10*(six_r_W_3_xy_2 +
+            six_r_beta_3_t) - six_r_bias_t_11*(six_r_W_4_t + six_r_W_5_t_2) -
+            six_r_bias_t_12*(six_r_W_5_xy - six_r_beta_4_x) - six_r_bias_t_9*(six_r_W_4_t +
+            six_r_omega_3_r3_y*six_r_omega_3_r3_y) - six_r_d_2_r6_x*(six_r_W_1_t_2 +
+            six_r_W_1_t_3) - six_r_d_3_r4_x*(six_r_W_2_t_5 + six_r_W_2_t_6)
+        )
+        six_r_bias_y = (
+        six_r_W_1_xy*six_r_d_2_r6_x + six_r_W_1_yz*six_r_bias_t_3 + six_r_bias_t_10*(six_r_W_4_t +
+            six_r_omega_3_r3_x*six_r_omega_3_r3_x) + six_r_bias_t_11*six_r_bias_t_13 +
+            six_r_bias_t_12*(six_r_W_4_t + six_r_W_5_t) +
+            six_r_bias_t_13*six_r_platform_joint_offset_x + six_r_bias_t_7*(six_r_W_2_yz -
+            six_r_zeta_2_r4_x) + six_r_bias_t_9*(six_r_W_3_xy_2 - six_r_beta_3_t) +
+            six_r_d_3_r4_x*(six_r_W_2_xy_2 - six_r_zeta_2_t) - six_r_d_2_r6_y*(six_r_W_1_t +
+            six_r_W_1_t_3) - six_r_d_3_r4_y*(six_r_W_2_t_4 + six_r_W_2_t_6)
+        )
+        six_r_bias_z = (
+        six_r_bias_t_11*(six_r_omega_3_r1_x*six_r_omega_4_r1_x - six_r_beta_4_r1_y) +
+            six_r_bias_t_3*(six_r_W_1_t + six_r_W_1_t_2) + six_r_bias_t_9*(six_r_beta_4_t_2 +
+            six_r_omega_3_r1_x*six_r_omega_3_r3_x - six_r_beta_3_t_2*six_r_s_5) +
+            six_r_d_3_r4_x*(six_r_W_2_xz - six_r_zeta_2_r4_y) + six_r_d_3_r4_y*(six_r_W_2_yz +
+            six_r_zeta_2_r4_x) + six_r_platform_joint_offset_x*(six_r_W_5_xz - six_r_beta_5_y) -
+            six_r_W_1_xz*six_r_d_2_r6_x - six_r_W_1_yz*six_r_d_2_r6_y -
+            six_r_bias_t_10*(six_r_beta_4_t + six_r_beta_3_t_2*six_r_c_5_t +
+            six_r_omega_3_r1_x*six_r_omega_3_r3_y) - six_r_bias_t_12*(six_r_beta_4_r1_x +
+            six_r_omega_3_r1_x*six_r_omega_4_r1_y) - six_r_bias_t_7*(six_r_W_2_t_4 +
+            six_r_W_2_t_5)
+        )
+        # (six_r-u_1) centripetal acceleration of the connection point
+        six_r_u_1_tip_x = (
+        axis_x_six_r_axes5_x*six_r_u_1_x + axis_x_six_r_axes5_y*six_r_u_1_y +
+            axis_x_six_r_axes5_z*six_r_u_1_z
+        )
+        six_r_u_1_tip_y = (
+        axis_y_six_r_axes5_in_base_x*six_r_u_1_x + axis_y_six_r_axes5_in_base_y*six_r_u_1_y +
+            axis_y_six_r_axes5_in_base_z*six_r_u_1_z
+        )
+        six_r_u_1_tip_z = (
+        axis_z_six_r_axes5_in_base_x*six_r_u_1_x + axis_z_six_r_axes5_in_base_y*six_r_u_1_y +
+            axis_z_six_r_axes5_in_base_z*six_r_u_1_z
+        )
+        # (six_r-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        six_r_rel_o_x = six_r_u_1_tip_x - six_r_bias_x
+        six_r_rel_o_y = six_r_u_1_tip_y - six_r_bias_y
+        six_r_rel_o_z = six_r_u_1_tip_z - six_r_bias_z
+        # (six_r-nd_m1) rate of moment direction 1
+        six_r_nd_m1_t = six_r_end_p1_r8_y*six_r_omega_4_r1_y
+        six_r_omega_tip_x = (
+        axis_x_six_r_axes5_x*omega_x + axis_x_six_r_axes5_y*omega_y + axis_x_six_r_axes5_z*omega_z
+        )
+        six_r_omega_tip_y = (
+        axis_y_six_r_axes5_in_base_x*omega_x + axis_y_six_r_axes5_in_base_y*omega_y +
+            axis_y_six_r_axes5_in_base_z*omega_z
+        )
+        six_r_omega_tip_z = (
+        axis_z_six_r_axes5_in_base_x*omega_x + axis_z_six_r_axes5_in_base_y*omega_y +
+            axis_z_six_r_axes5_in_base_z*omega_z
+        )
+        six_r_nd_m1_t_2 = (
+        six_r_end_p1_r8_x*six_r_omega_tip_z - six_r_end_p1_r6_x*six_r_omega_tip_x
+        )
+        six_r_nd_m1_x = -six_r_nd_m1_t_2 - six_r_end_p1_r6_x*six_r_omega_4_r1_x
+        six_r_nd_m1_y = (
+        six_r_end_p1_r6_x*six_r_omega_tip_y - six_r_end_p1_r6_x*six_r_omega_4_r1_y -
+            six_r_end_p1_r8_y*six_r_omega_tip_z
+        )
+        # (six_r-nu_1) bias of the angular acceleration along moment direction 1
+        six_r_nu_1_t = six_r_beta_5_x*six_r_end_p1_r8_y - six_r_beta_5_y*six_r_end_p1_r8_x
+        six_r_nu_1_t_2 = six_r_omega_4_r1_x - six_r_omega_tip_x
+        six_r_nu_1_t_3 = six_r_omega_4_r1_y - six_r_omega_tip_y
+        six_r_nu_1_t_4 = six_r_omega_5_z - six_r_omega_tip_z
+        six_r_nu_1_t_5 = (
+        six_r_nd_m1_x*six_r_nu_1_t_2 + six_r_nd_m1_y*six_r_nu_1_t_3 +
+            six_r_nu_1_t_4*(six_r_nd_m1_t + six_r_end_p1_r8_x*six_r_omega_4_r1_x)
+        )
+        six_r_nu_1 = six_r_nu_1_t - six_r_nu_1_t_5
+        # (six_r-nd_m2) rate of moment direction 2
+        six_r_nd_m2_y = (
+        six_r_end_p1_r8_x*six_r_omega_tip_y - six_r_end_p1_r8_x*six_r_omega_4_r1_y -
+            six_r_end_p1_r8_y*six_r_omega_tip_x
+        )
+        six_r_nd_m2_z = six_r_nd_m1_t_2 - six_r_end_p1_r8_x*six_r_omega_5_z
+        # (six_r-nu_2) bias of the angular acceleration along moment direction 2
+        six_r_nu_2_t = six_r_beta_5_y*six_r_end_p1_r6_x - six_r_beta_4_x*six_r_end_p1_r8_y
+        six_r_nu_2_t_2 = (
+        six_r_nd_m2_y*six_r_nu_1_t_3 + six_r_nd_m2_z*six_r_nu_1_t_4 +
+            six_r_nu_1_t_2*(six_r_nd_m1_t + six_r_end_p1_r6_x*six_r_omega_5_z)
+        )
+        six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2
+        # (six_r-qdd_5_o) remainder without the acceleration in: acceleration of joint 5
+        six_r_qdd_5_o_t = six_r_nu_1*six_r_size
+        six_r_qdd_5_o_t_2 = six_r_nu_2*six_r_size
+        six_r_qdd_5_o_t_3 = (
+        inv_six_r_w_1_t_222*(six_r_qdd_5_o_t*six_r_w_1_t_86 + six_r_qdd_5_o_t_2*six_r_w_1_t_87 +
+            six_r_rel_o_x*six_r_w_1_t_83 + six_r_rel_o_z*six_r_w_1_t_85 -
+            six_r_rel_o_y*six_r_w_1_t_84)
+        )
+        six_r_qdd_5_o_t_4 = (
+        inv_six_r_w_1_t_194*(six_r_qdd_5_o_t*six_r_w_1_t_74 + six_r_qdd_5_o_t_2*six_r_w_1_t_75 +
+            six_r_rel_o_x*six_r_w_1_t_71 + six_r_rel_o_z*six_r_w_1_t_73 -
+            six_r_qdd_5_o_t_3*six_r_w_1_t_76 - six_r_rel_o_y*six_r_w_1_t_72)
+        )
+        six_r_qdd_5_o_t_5 = (
+        inv_six_r_w_1_t_150*(six_r_qdd_5_o_t_3*six_r_w_1_t_64 + six_r_qdd_5_o_t_4*six_r_w_1_t_58 +
+            six_r_rel_o_y*six_r_w_1_t_54 - six_r_qdd_5_o_t*six_r_w_1_t_56 -
+            six_r_qdd_5_o_t_2*six_r_w_1_t_57 - six_r_rel_o_x*six_r_w_1_t_53 -
+            six_r_rel_o_z*six_r_w_1_t_55)
+        )
+        six_r_qdd_5_o_t_6 = (
+        inv_six_r_w_1_t_101*(six_r_qdd_5_o_t*six_r_w_1_t_34 + six_r_qdd_5_o_t_2*six_r_w_1_t_35 +
+            six_r_qdd_5_o_t_3*six_r_w_1_t_47 + six_r_qdd_5_o_t_4*six_r_w_1_t_42 +
+            six_r_rel_o_z*six_r_w_1_t_33 - six_r_qdd_5_o_t_5*six_r_w_1_t_36 -
+            six_r_rel_o_y*six_r_w_1_t_32)
+        )
+        # (six_r-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        six_r_alpha_1_o_t = six_r_qdd_5_o_t_5*six_r_s_2
+        six_r_alpha_1_o_t_2 = six_r_c_2_t*six_r_qdd_5_o_t_5
+        # (six_r-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        six_r_alpha_2_o_x = six_r_zeta_2_x - six_r_alpha_1_o_t
+        six_r_alpha_2_o_y = six_r_alpha_1_o_t_2 + six_r_zeta_2_y
+        # (six_r-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        six_r_alpha_3_o_x = (
+        six_r_zeta_3_x + six_r_alpha_2_o_x*six_r_c_3 + six_r_alpha_2_o_y*six_r_s_3
+        )
+        six_r_alpha_3_o_y = (
+        six_r_alpha_2_o_y*six_r_c_3 - six_r_zeta_3_y - six_r_alpha_2_o_x*six_r_s_3
+        )
+        six_r_alpha_3_o_z = six_r_qdd_5_o_t_3 + six_r_qdd_5_o_t_4
+        # (six_r-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4
+        six_r_alpha_4_o_x = (
+        six_r_zeta_4_x + six_r_alpha_3_o_z*six_r_s_4 - six_r_alpha_3_o_y*six_r_c_4_t
+        )
+        six_r_alpha_4_o_y = (
+        -six_r_zeta_4_y - six_r_alpha_3_o_y*six_r_s_4 - six_r_alpha_3_o_z*six_r_c_4_t
+        )
+        six_r_alpha_4_o_z = six_r_alpha_3_o_x + six_r_qdd_5_o_t_6
+        # (six_r-alpha_5_o) remainder without the acceleration in: angular acceleration of link 5
+        six_r_alpha_5_o_x = (
+        six_r_zeta_5_x + six_r_alpha_4_o_z*six_r_s_5 - six_r_alpha_4_o_y*six_r_c_5_t
+        )
+        six_r_alpha_5_o_y = (
+        -six_r_zeta_5_y - six_r_alpha_4_o_y*six_r_s_5 - six_r_alpha_4_o_z*six_r_c_5_t
+        )
+        six_r_alpha_5_o_z = (
+        six_r_alpha_4_o_x + inv_six_r_w_1_t_69*(six_r_qdd_5_o_t_2*six_r_w_1_t_17 +
+            six_r_qdd_5_o_t_3*six_r_w_1_t_28 + six_r_qdd_5_o_t_5*six_r_w_1_t_21 +
+            six_r_rel_o_y*six_r_w_1_t_16 - six_r_qdd_5_o_t_4*six_r_w_1_t_25 -
+            six_r_qdd_5_o_t_6*six_r_w_1_t_18)
+        )
+        # (six_r-B_5_o) remainder of the acceleration tensor of link 5
+        six_r_B_5_o_xy = six_r_W_5_xy - six_r_alpha_5_o_z
+        six_r_B_5_o_xz = six_r_W_5_xz + six_r_alpha_5_o_y
+        six_r_B_5_o_yx = six_r_W_5_xy + six_r_alpha_5_o_z
+        six_r_B_5_o_yz = six_r_W_5_yz - six_r_alpha_5_o_x
+        six_r_B_5_o_zx = six_r_W_5_xz - six_r_alpha_5_o_y
+        six_r_B_5_o_zy = six_r_W_5_yz + six_r_alpha_5_o_x
+        # (six_r-acc_5_o) remainder without the acceleration in: acceleration of the reference point of link 5, less gravity
+        six_r_acc_5_o_x = (
+        six_r_u_1_tip_x - axis_x_six_r_axes5_x*gravity_x - axis_x_six_r_axes5_y*gravity_y -
+            axis_x_six_r_axes5_z*gravity_z
+        )
+        six_r_acc_5_o_y = (
+        six_r_u_1_tip_y - axis_y_six_r_axes5_in_base_x*gravity_x -
+            axis_y_six_r_axes5_in_base_y*gravity_y - axis_y_six_r_axes5_in_base_z*gravity_z
+        )
+        six_r_acc_5_o_z = (
+        six_r_u_1_tip_z - axis_z_six_r_axes5_in_base_x*gravity_x -
+            axis_z_six_r_axes5_in_base_y*gravity_y - axis_z_six_r_axes5_in_base_z*gravity_z
+        )
+        # (six_r-mu_5_o) remainder without the acceleration in: inertia moment of the links that turn with link 5, about their reference points
+        six_r_mu_5_o_x = (
+        six_r_B_5_o_yx*six_r_J_5_xz + six_r_B_5_o_zy*six_r_Sigma_5_yy +
+            six_r_J_5_yz*(six_r_W_5_t_2 - six_r_W_5_t_3) + six_r_acc_5_o_z*six_r_h_5_y -
+            six_r_B_5_o_yz*six_r_Sigma_5_zz - six_r_B_5_o_zx*six_r_J_5_xy -
+            six_r_acc_5_o_y*six_r_h_5_z
+        )
+        six_r_mu_5_o_y = (
+        six_r_B_5_o_xz*six_r_Sigma_5_zz + six_r_B_5_o_zy*six_r_J_5_xy +
+            six_r_acc_5_o_x*six_r_h_5_z - six_r_B_5_o_xy*six_r_J_5_yz -
+            six_r_B_5_o_zx*six_r_Sigma_5_xx - six_r_J_5_xz*(six_r_W_5_t - six_r_W_5_t_3) -
+            six_r_acc_5_o_z*six_r_h_5_x
+        )
+        six_r_mu_5_o_z = (
+        six_r_B_5_o_xz*six_r_J_5_yz + six_r_B_5_o_yx*six_r_Sigma_5_xx + six_r_J_5_xy*(six_r_W_5_t
+            - six_r_W_5_t_2) + six_r_acc_5_o_y*six_r_h_5_x - six_r_B_5_o_xy*six_r_Sigma_5_yy -
+            six_r_B_5_o_yz*six_r_J_5_xz - six_r_acc_5_o_x*six_r_h_5_y
+        )
+        # (six_r-B_2_o) remainder of the acceleration tensor of link 2
+        six_r_B_2_o_xy = -six_r_W_2_xy - six_r_qdd_5_o_t_4
+        six_r_B_2_o_yx = six_r_qdd_5_o_t_4 - six_r_W_2_xy
+        six_r_B_2_o_zx = -six_r_alpha_2_o_y - six_r_zeta_2_y
+        six_r_B_2_o_zy = six_r_alpha_2_o_x + six_r_zeta_2_x
+        # (six_r-a_o_3_o) remainder without the acceleration in: acceleration of the origin of joint 3
+        six_r_a_o_3_o_t = six_r_joint3_offset_x*(six_r_W_2_t_2 + six_r_W_2_t_3)
+        six_r_a_o_3_o_t_2 = six_r_B_2_o_yx*six_r_joint3_offset_x
+        six_r_a_o_3_o_t_3 = six_r_B_2_o_zx*six_r_joint3_offset_x
+        # (six_r-B_3_o) remainder of the acceleration tensor of link 3
+        six_r_B_3_o_xy = six_r_W_3_xy - six_r_alpha_3_o_z
+        six_r_B_3_o_xz = six_r_W_3_xz + six_r_alpha_3_o_y
+        six_r_B_3_o_yx = six_r_W_3_xy + six_r_alpha_3_o_z
+        six_r_B_3_o_yz = six_r_W_3_yz - six_r_alpha_3_o_x
+        six_r_B_3_o_zx = six_r_W_3_xz - six_r_alpha_3_o_y
+        six_r_B_3_o_zy = six_r_W_3_yz + six_r_alpha_3_o_x
+        # (six_r-a_o_3_o) remainder without the acceleration in: acceleration of the origin of joint 3
+        six_r_a_o_3_o_r0_x = six_r_a_o_3_o_t_2*six_r_s_3 - six_r_a_o_3_o_t*six_r_c_3
+        six_r_a_o_3_o_r0_y = six_r_a_o_3_o_t*six_r_s_3 + six_r_a_o_3_o_t_2*six_r_c_3
+        # (six_r-a_o_4_o) remainder without the acceleration in: acceleration of the origin of joint 4
+        six_r_a_o_4_o_x = six_r_a_o_3_o_r0_x - six_r_W_3_xx*six_r_joint4_offset_x
+        six_r_a_o_4_o_y = six_r_a_o_3_o_r0_y + six_r_B_3_o_yx*six_r_joint4_offset_x
+        six_r_a_o_4_o_z = six_r_a_o_3_o_t_3 + six_r_B_3_o_zx*six_r_joint4_offset_x
+        # (six_r-acc_4_o) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+        six_r_g_r1_x = six_r_g_r0_y*six_r_s_1 - six_r_c_1_t*six_r_g_r0_x
+        six_r_g_r1_y = -six_r_c_1_t*six_r_g_r0_y - six_r_g_r0_x*six_r_s_1
+        six_r_g_r3_x = six_r_g_r0_z*six_r_s_2 - six_r_c_2_t*six_r_g_r1_y
+        six_r_g_r3_y = -six_r_c_2_t*six_r_g_r0_z - six_r_g_r1_y*six_r_s_2
+        six_r_g_r4_x = six_r_c_3*six_r_g_r3_x + six_r_g_r3_y*six_r_s_3
+        six_r_g_r4_y = six_r_c_3*six_r_g_r3_y - six_r_g_r3_x*six_r_s_3
+        six_r_acc_4_o_x = (
+        six_r_a_o_4_o_z*six_r_s_4 + six_r_c_4_t*six_r_g_r4_y - six_r_a_o_4_o_y*six_r_c_4_t -
+            six_r_g_r1_x*six_r_s_4
+        )
+        six_r_acc_4_o_y = (
+        six_r_c_4_t*six_r_g_r1_x + six_r_g_r4_y*six_r_s_4 - six_r_a_o_4_o_y*six_r_s_4 -
+            six_r_a_o_4_o_z*six_r_c_4_t
+        )
+        six_r_acc_4_o_z = six_r_a_o_4_o_x - six_r_g_r4_x
+        # (six_r-B_4_o) remainder of the acceleration tensor of link 4
+        six_r_B_4_o_xy = six_r_W_4_xy - six_r_alpha_4_o_z
+        six_r_B_4_o_xz = six_r_W_4_xz + six_r_alpha_4_o_y
+        six_r_B_4_o_yx = six_r_W_4_xy + six_r_alpha_4_o_z
+        six_r_B_4_o_yz = six_r_W_4_yz - six_r_alpha_4_o_x
+        six_r_B_4_o_zx = six_r_W_4_xz - six_r_alpha_4_o_y
+        six_r_B_4_o_zy = six_r_W_4_yz + six_r_alpha_4_o_x
+        # (six_r-mu_4_o) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
+        six_r_mu_4_o_x = (
+        six_r_B_4_o_yx*six_r_J_4_xz + six_r_B_4_o_zx*six_r_J_4_yz +
+            six_r_B_4_o_zy*six_r_Sigma_4_yy - six_r_B_4_o_yz*six_r_Sigma_4_zz -
+            six_r_J_4_xy*(six_r_W_4_t_2 - six_r_W_4_t_3) - six_r_acc_4_o_y*six_r_h_4_x -
+            six_r_acc_4_o_z*six_r_h_4_y
+        )
+        six_r_mu_4_o_y = (
+        six_r_B_4_o_xy*six_r_J_4_xy + six_r_B_4_o_xz*six_r_Sigma_4_zz +
+            six_r_acc_4_o_x*six_r_h_4_x - six_r_B_4_o_zx*six_r_Sigma_4_xx -
+            six_r_B_4_o_zy*six_r_J_4_yz - six_r_J_4_xz*(six_r_W_4_t - six_r_W_4_t_3) -
+            six_r_acc_4_o_z*six_r_h_4_z
+        )
+        six_r_mu_4_o_z = (
+        six_r_B_4_o_yx*six_r_Sigma_4_xx + six_r_acc_4_o_x*six_r_h_4_y +
+            six_r_acc_4_o_y*six_r_h_4_z - six_r_B_4_o_xy*six_r_Sigma_4_yy -
+            six_r_B_4_o_xz*six_r_J_4_xy - six_r_B_4_o_yz*six_r_J_4_xz - six_r_J_4_yz*(six_r_W_4_t
+            - six_r_W_4_t_2)
+        )
+        # (six_r-N_4_o) remainder without the acceleration in: moment about joint 4 of the links from 4 outwards, the force at the connection point left out
+        six_r_N_4_o_x = six_r_mu_4_o_x + six_r_mu_5_o_z
+        six_r_N_4_o_y = six_r_mu_4_o_y - six_r_c_5_t*six_r_mu_5_o_x - six_r_mu_5_o_y*six_r_s_5
+        six_r_N_4_o_z = six_r_mu_4_o_z + six_r_mu_5_o_x*six_r_s_5 - six_r_c_5_t*six_r_mu_5_o_y
+        # (six_r-f_4_o) remainder without the acceleration in: inertia force of link 4 less its weight
+        six_r_f_4_o_x = (
+        six_r_B_4_o_xz*six_r_h_4_x + six_r_acc_4_o_x*six_r_link4_mass - six_r_B_4_o_xy*six_r_h_4_y
+            - six_r_h_4_z*(six_r_W_4_t_2 + six_r_W_4_t_3)
+        )
+        six_r_f_4_o_y = (
+        six_r_B_4_o_yx*six_r_h_4_z + six_r_B_4_o_yz*six_r_h_4_x + six_r_acc_4_o_y*six_r_link4_mass
+            + six_r_h_4_y*(six_r_W_4_t + six_r_W_4_t_3)
+        )
+        six_r_f_4_o_z = (
+        six_r_B_4_o_zx*six_r_h_4_z + six_r_acc_4_o_z*six_r_link4_mass - six_r_B_4_o_zy*six_r_h_4_y
+            - six_r_h_4_x*(six_r_W_4_t + six_r_W_4_t_2)
+        )
+        # (six_r-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        six_r_acc_3_o_x = six_r_a_o_3_o_r0_x - six_r_g_r4_x
+        six_r_acc_3_o_y = six_r_a_o_3_o_r0_y - six_r_g_r4_y
+        six_r_acc_3_o_z = six_r_a_o_3_o_t_3 - six_r_g_r1_x
+        # (six_r-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        six_r_mu_3_o_x = (
+        six_r_B_3_o_yx*six_r_J_3_xz + six_r_B_3_o_zy*six_r_Sigma_3_yy +
+            six_r_J_3_yz*(six_r_W_3_t_2 - six_r_W_3_t_3) + six_r_acc_3_o_z*six_r_h_3_y -
+            six_r_B_3_o_yz*six_r_Sigma_3_zz - six_r_B_3_o_zx*six_r_J_3_xy -
+            six_r_acc_3_o_y*six_r_h_3_z
+        )
+        six_r_mu_3_o_y = (
+        six_r_B_3_o_xz*six_r_Sigma_3_zz + six_r_B_3_o_zy*six_r_J_3_xy +
+            six_r_acc_3_o_x*six_r_h_3_z - six_r_B_3_o_xy*six_r_J_3_yz -
+            six_r_B_3_o_zx*six_r_Sigma_3_xx - six_r_J_3_xz*(six_r_W_3_t - six_r_W_3_t_3) -
+            six_r_acc_3_o_z*six_r_h_3_x
+        )
+        six_r_mu_3_o_z = (
+        six_r_B_3_o_xz*six_r_J_3_yz + six_r_B_3_o_yx*six_r_Sigma_3_xx + six_r_J_3_xy*(six_r_W_3_t
+            - six_r_W_3_t_2) + six_r_acc_3_o_y*six_r_h_3_x - six_r_B_3_o_xy*six_r_Sigma_3_yy -
+            six_r_B_3_o_yz*six_r_J_3_xz - six_r_acc_3_o_x*six_r_h_3_y
+        )
+        # (six_r-f_4_o) remainder without the acceleration in: inertia force of link 4 less its weight
+        six_r_f_4_o_r0_x = -six_r_c_4_t*six_r_f_4_o_x - six_r_f_4_o_y*six_r_s_4
+        six_r_f_4_o_r0_y = six_r_f_4_o_x*six_r_s_4 - six_r_c_4_t*six_r_f_4_o_y
+        # (six_r-N_3_o) remainder without the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
+        six_r_N_3_o_x = six_r_N_4_o_z + six_r_mu_3_o_x
+        six_r_N_3_o_y = (
+        six_r_mu_3_o_y - six_r_N_4_o_x*six_r_c_4_t - six_r_N_4_o_y*six_r_s_4 -
+            six_r_f_4_o_r0_y*six_r_joint4_offset_x
+        )
+        six_r_N_3_o_z = (
+        six_r_mu_3_o_z + six_r_N_4_o_x*six_r_s_4 + six_r_f_4_o_r0_x*six_r_joint4_offset_x -
+            six_r_N_4_o_y*six_r_c_4_t
+        )
+        # (six_r-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight
+        six_r_f_3_o_x = (
+        six_r_B_3_o_xy*six_r_h_3_y + six_r_B_3_o_xz*six_r_h_3_z + six_r_acc_3_o_x*six_r_link3_mass
+            - six_r_W_3_xx*six_r_h_3_x
+        )
+        six_r_f_3_o_y = (
+        six_r_B_3_o_yx*six_r_h_3_x + six_r_B_3_o_yz*six_r_h_3_z + six_r_acc_3_o_y*six_r_link3_mass
+            - six_r_h_3_y*(six_r_W_3_t + six_r_W_3_t_3)
+        )
+        six_r_f_3_o_z = (
+        six_r_B_3_o_zx*six_r_h_3_x + six_r_B_3_o_zy*six_r_h_3_y + six_r_acc_3_o_z*six_r_link3_mass
+            - six_r_h_3_z*(six_r_W_3_t + six_r_W_3_t_2)
+        )
+        # (six_r-T_3_o) remainder without the acceleration in: inertia force of the links from 3 outwards, the last link left out
+        six_r_T_3_o_x = six_r_f_3_o_x + six_r_f_4_o_z
+        six_r_T_3_o_y = six_r_f_3_o_y + six_r_f_4_o_r0_x
+        six_r_T_3_o_z = six_r_f_3_o_z + six_r_f_4_o_r0_y
+        # (six_r-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        six_r_mu_2_o_x = (
+        six_r_B_2_o_yx*six_r_J_2_xz + six_r_B_2_o_zy*six_r_Sigma_2_yy +
+            six_r_J_2_yz*(six_r_W_2_t_2 - six_r_W_2_t_3) + six_r_g_r3_y*six_r_h_2_z -
+            six_r_B_2_o_zx*six_r_J_2_xy - six_r_Sigma_2_zz*six_r_alpha_1_o_t -
+            six_r_g_r1_x*six_r_h_2_y
+        )
+        six_r_mu_2_o_y = (
+        six_r_B_2_o_zy*six_r_J_2_xy + six_r_Sigma_2_zz*six_r_alpha_1_o_t_2 +
+            six_r_g_r1_x*six_r_h_2_x - six_r_B_2_o_xy*six_r_J_2_yz -
+            six_r_B_2_o_zx*six_r_Sigma_2_xx - six_r_J_2_xz*(six_r_W_2_t - six_r_W_2_t_3) -
+            six_r_g_r3_x*six_r_h_2_z
+        )
+        six_r_mu_2_o_z = (
+        six_r_B_2_o_yx*six_r_Sigma_2_xx + six_r_J_2_xy*(six_r_W_2_t - six_r_W_2_t_2) +
+            six_r_J_2_yz*six_r_alpha_1_o_t_2 + six_r_g_r3_x*six_r_h_2_y -
+            six_r_B_2_o_xy*six_r_Sigma_2_yy - six_r_J_2_xz*six_r_alpha_1_o_t -
+            six_r_g_r3_y*six_r_h_2_x
+        )
+        # (six_r-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        six_r_N_2_o_x = six_r_mu_2_o_x + six_r_N_3_o_x*six_r_c_3 - six_r_N_3_o_y*six_r_s_3
+        six_r_N_2_o_y = (
+        six_r_mu_2_o_y + six_r_N_3_o_x*six_r_s_3 + six_r_N_3_o_y*six_r_c_3 -
+            six_r_T_3_o_z*six_r_joint3_offset_x
+        )
+        six_r_N_2_o_z = (
+        six_r_N_3_o_z + six_r_mu_2_o_z + six_r_joint3_offset_x*(six_r_T_3_o_x*six_r_s_3 +
+            six_r_T_3_o_y*six_r_c_3)
+        )
+        # (six_r-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        six_r_mu_1_o_z = (
+        -six_r_J_1_xx*six_r_qdd_5_o_t_5 - six_r_g_r1_x*six_r_h_1_y - six_r_g_r1_y*six_r_h_1_z
+        )
+        # (six_r-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        six_r_N_1_o_z = six_r_mu_1_o_z + six_r_N_2_o_x*six_r_s_2 - six_r_N_2_o_y*six_r_c_2_t
+        # (six_r-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        six_r_G_o_t = inv_six_r_w_1_t_69*six_r_mu_5_o_z
+        six_r_G_o_t_2 = inv_six_r_w_1_t_101*(six_r_G_o_t*six_r_w_1_t_18 - six_r_N_4_o_z)
+        six_r_G_o_t_3 = (
+        inv_six_r_w_1_t_150*(six_r_G_o_t*six_r_w_1_t_21 + six_r_G_o_t_2*six_r_w_1_t_36 -
+            six_r_N_1_o_z)
+        )
+        six_r_G_o_t_4 = (
+        inv_six_r_w_1_t_194*(six_r_G_o_t*six_r_w_1_t_25 + six_r_G_o_t_2*six_r_w_1_t_42 -
+            six_r_N_2_o_z - six_r_G_o_t_3*six_r_w_1_t_58)
+        )
+        six_r_G_o_t_5 = (
+        inv_six_r_w_1_t_222*(six_r_N_3_o_z + six_r_G_o_t*six_r_w_1_t_28 +
+            six_r_G_o_t_3*six_r_w_1_t_64 + six_r_G_o_t_4*six_r_w_1_t_76 -
+            six_r_G_o_t_2*six_r_w_1_t_47)
+        )
+        six_r_G_o_t_6 = (
+        six_r_size*(six_r_G_o_t_2*six_r_w_1_t_34 + six_r_G_o_t_3*six_r_w_1_t_56 +
+            six_r_G_o_t_4*six_r_w_1_t_74 - six_r_G_o_t_5*six_r_w_1_t_86)
+        )
+        six_r_G_o_t_7 = (
+        six_r_size*(six_r_G_o_t_2*six_r_w_1_t_35 + six_r_G_o_t_3*six_r_w_1_t_57 +
+            six_r_G_o_t_4*six_r_w_1_t_75 - six_r_G_o_t*six_r_w_1_t_17 -
+            six_r_G_o_t_5*six_r_w_1_t_87)
+        )
+        # (six_r-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        six_r_c_o_x = (
+        six_r_G_o_t_3*six_r_w_1_t_53 + six_r_G_o_t_4*six_r_w_1_t_71 + six_r_W_5_xx*six_r_h_5_x -
+            six_r_B_5_o_xy*six_r_h_5_y - six_r_B_5_o_xz*six_r_h_5_z - six_r_G_o_t_5*six_r_w_1_t_83
+        )
+        six_r_c_o_y = (
+        six_r_G_o_t_5*six_r_w_1_t_84 + six_r_h_5_y*(six_r_W_5_t + six_r_W_5_t_3) -
+            six_r_B_5_o_yx*six_r_h_5_x - six_r_B_5_o_yz*six_r_h_5_z - six_r_G_o_t*six_r_w_1_t_16 -
+            six_r_G_o_t_2*six_r_w_1_t_32 - six_r_G_o_t_3*six_r_w_1_t_54 -
+            six_r_G_o_t_4*six_r_w_1_t_72
+        )
+        six_r_c_o_z = (
+        six_r_G_o_t_2*six_r_w_1_t_33 + six_r_G_o_t_3*six_r_w_1_t_55 + six_r_G_o_t_4*six_r_w_1_t_73
+            + six_r_h_5_z*(six_r_W_5_t + six_r_W_5_t_2) - six_r_B_5_o_zx*six_r_h_5_x -
+            six_r_B_5_o_zy*six_r_h_5_y - six_r_G_o_t_5*six_r_w_1_t_85
+        )
+        # (six_r-U) velocity and gravity terms of the leg force
+        six_r_U_in_base_x = (
+        -axis_x_six_r_axes5_x*six_r_c_o_x - axis_y_six_r_axes5_in_base_x*six_r_c_o_y -
+            axis_z_six_r_axes5_in_base_x*six_r_c_o_z
+        )
+        six_r_U_in_base_y = (
+        -axis_x_six_r_axes5_y*six_r_c_o_x - axis_y_six_r_axes5_in_base_y*six_r_c_o_y -
+            axis_z_six_r_axes5_in_base_y*six_r_c_o_z
+        )
+        six_r_U_in_base_z = (
+        -axis_x_six_r_axes5_z*six_r_c_o_x - axis_y_six_r_axes5_in_base_z*six_r_c_o_y -
+            axis_z_six_r_axes5_in_base_z*six_r_c_o_z
+        )
+        # (six_r-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        six_r_G_m_o_t = six_r_G_o_t_6*six_r_end_p1_r8_y
+        six_r_G_m_o_t_2 = six_r_G_o_t_7*six_r_end_p1_r8_y
+        six_r_G_m_o_y = six_r_G_o_t_7*six_r_end_p1_r6_x - six_r_G_o_t_6*six_r_end_p1_r8_x
+        # (Z_a) rotational part of Z
+        six_r_Z_a_t = (
+        axis_x_six_r_axes5_x*six_r_G_m_o_t + axis_y_six_r_axes5_in_base_x*six_r_G_m_o_y +
+            six_r_U_in_base_z*six_r_q_in_base_y - axis_z_six_r_axes5_in_base_x*six_r_G_m_o_t_2 -
+            six_r_U_in_base_y*six_r_q_in_base_z
+        )
+        six_r_Z_a_t_2 = (
+        axis_x_six_r_axes5_y*six_r_G_m_o_t + axis_y_six_r_axes5_in_base_y*six_r_G_m_o_y +
+            six_r_U_in_base_x*six_r_q_in_base_z - axis_z_six_r_axes5_in_base_y*six_r_G_m_o_t_2 -
+            six_r_U_in_base_z*six_r_q_in_base_x
+        )
+        six_r_Z_a_t_3 = (
+        axis_x_six_r_axes5_z*six_r_G_m_o_t + axis_y_six_r_axes5_in_base_z*six_r_G_m_o_y +
+            six_r_U_in_base_y*six_r_q_in_base_x - axis_z_six_r_axes5_in_base_z*six_r_G_m_o_t_2 -
+            six_r_U_in_base_x*six_r_q_in_base_y
+        )
+        # (six_r-w_2) force part of reciprocal wrench 2
+        six_r_w_2_in_base_x = (
+        axis_x_six_r_axes5_x*six_r_w_2_t_2 - axis_y_six_r_axes5_in_base_x*six_r_w_2_t_3 -
+            axis_z_six_r_axes5_in_base_x*six_r_w_2_t_4
+        )
+        six_r_w_2_in_base_y = (
+        axis_x_six_r_axes5_y*six_r_w_2_t_2 - axis_y_six_r_axes5_in_base_y*six_r_w_2_t_3 -
+            axis_z_six_r_axes5_in_base_y*six_r_w_2_t_4
+        )
+        six_r_w_2_in_base_z = (
+        axis_x_six_r_axes5_z*six_r_w_2_t_2 - axis_y_six_r_axes5_in_base_z*six_r_w_2_t_3 -
+            axis_z_six_r_axes5_in_base_z*six_r_w_2_t_4
+        )
+        # (six_r-o_2) moment part of reciprocal wrench 2
+        six_r_o_2_x = six_r_n_m1_in_base_x*six_r_w_2_t_5 + six_r_n_m2_in_base_x*six_r_w_2_t_6
+        six_r_o_2_y_2 = six_r_n_m1_in_base_y*six_r_w_2_t_5 + six_r_n_m2_in_base_y*six_r_w_2_t_6
+        six_r_o_2_z = six_r_n_m1_in_base_z*six_r_w_2_t_5 + six_r_n_m2_in_base_z*six_r_w_2_t_6
+        # (six_r-H_a_2) moment of the column's unit force about the platform origin
+        six_r_H_a_2_x = (
+        six_r_o_2_x + six_r_q_in_base_y*six_r_w_2_in_base_z -
+            six_r_q_in_base_z*six_r_w_2_in_base_y
+        )
+        six_r_H_a_2_y = (
+        six_r_o_2_y_2 + six_r_q_in_base_z*six_r_w_2_in_base_x -
+            six_r_q_in_base_x*six_r_w_2_in_base_z
+        )
+        six_r_H_a_2_z = (
+        six_r_o_2_z + six_r_q_in_base_x*six_r_w_2_in_base_y -
+            six_r_q_in_base_y*six_r_w_2_in_base_x
+        )
         ok = (
-        ok & m.every(leg, (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE *
-            size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
-            (abs(w_1_t_82) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(six_r_w_1_t_15) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_31) >
+            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_52) > _TOLERANCE * six_r_size) &
+            (abs(six_r_w_1_t_70) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_82) > _TOLERANCE *
+            six_r_size))
         )
         sums = m.added(sums, leg, (
-        Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_12, M_ta_t_13, M_ta_t_14,
-            M_ta_t_15, M_ta_t_16, M_ta_t_17, M_ta_t_18, M_ta_t_19, M_ta_t_20, M_aa_t,
-            M_aa_t_2, M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y,
-            U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
+        six_r_Q_t_12, six_r_Q_t_13, six_r_Q_t_14, six_r_Q_t_16, six_r_Q_t_17, six_r_Q_t_19,
+            six_r_M_ta_t_4, six_r_M_ta_t_5, six_r_M_ta_t_6, six_r_M_ta_t_7, six_r_M_ta_t_8,
+            six_r_M_ta_t_9, six_r_M_ta_t_10, six_r_M_ta_t_11, six_r_M_ta_t_12, six_r_M_aa_t,
+            six_r_M_aa_t_2, six_r_M_aa_t_3, six_r_M_aa_t_4, six_r_M_aa_t_5, six_r_M_aa_t_6,
+            six_r_U_in_base_x, six_r_U_in_base_y, six_r_U_in_base_z, six_r_Z_a_t,
+            six_r_Z_a_t_2, six_r_Z_a_t_3,
         ))
-        out_H[_H_rrrrrr[0][leg]] = w_2_in_base_x
-        out_H[_H_rrrrrr[1][leg]] = w_2_in_base_y
-        out_H[_H_rrrrrr[2][leg]] = w_2_in_base_z
-        out_H[_H_rrrrrr[3][leg]] = H_a_2_x
-        out_H[_H_rrrrrr[4][leg]] = H_a_2_y
-        out_H[_H_rrrrrr[5][leg]] = H_a_2_z
+        out_H[_H_six_r[0][leg]] = six_r_w_2_in_base_x
+        out_H[_H_six_r[1][leg]] = six_r_w_2_in_base_y
+        out_H[_H_six_r[2][leg]] = six_r_w_2_in_base_z
+        out_H[_H_six_r[3][leg]] = six_r_H_a_2_x
+        out_H[_H_six_r[4][leg]] = six_r_H_a_2_y
+        out_H[_H_six_r[5][leg]] = six_r_H_a_2_z
     (
-    total_rrrrrr_xx, total_rrrrrr_xy, total_rrrrrr_xz, total_rrrrrr_yy, total_rrrrrr_yz,
-        total_rrrrrr_zz, total_rrrrrr_xx_2, total_rrrrrr_xy_2, total_rrrrrr_xz_2, total_rrrrrr_yx,
-        total_rrrrrr_yy_2, total_rrrrrr_yz_2, total_rrrrrr_zx, total_rrrrrr_zy, total_rrrrrr_zz_2,
-        total_rrrrrr_xx_3, total_rrrrrr_xy_3, total_rrrrrr_xz_3, total_rrrrrr_yy_3,
-        total_rrrrrr_yz_3, total_rrrrrr_zz_3, total_rrrrrr_x, total_rrrrrr_y, total_rrrrrr_z,
-        total_rrrrrr_x_2, total_rrrrrr_y_2, total_rrrrrr_z_2,
+    total_six_r_xx, total_six_r_xy, total_six_r_xz, total_six_r_yy, total_six_r_yz,
+        total_six_r_zz, total_six_r_xx_2, total_six_r_xy_2, total_six_r_xz_2, total_six_r_yx,
+        total_six_r_yy_2, total_six_r_yz_2, total_six_r_zx, total_six_r_zy, total_six_r_zz_2,
+        total_six_r_xx_3, total_six_r_xy_3, total_six_r_xz_3, total_six_r_yy_3, total_six_r_yz_3,
+        total_six_r_zz_3, total_six_r_x, total_six_r_y, total_six_r_z, total_six_r_x_2,
+        total_six_r_y_2, total_six_r_z_2,
     ) = sums
-    # (M1) translational block of M
-    M_tt_xx = m_star - total_rrrrrr_xx
-    M_tt_yy = m_star - total_rrrrrr_yy
-    M_tt_zz = m_star - total_rrrrrr_zz
-    # (M2) coupling block of M
-    M_ta_xy = h_star_in_base_z - total_rrrrrr_xy_2
-    M_ta_xz = total_rrrrrr_xz_2 - h_star_in_base_y
-    M_ta_yx = total_rrrrrr_yx - h_star_in_base_z
-    M_ta_yz = h_star_in_base_x + total_rrrrrr_yz_2
-    M_ta_zx = h_star_in_base_y + total_rrrrrr_zx
-    M_ta_zy = -h_star_in_base_x - total_rrrrrr_zy
-    # (M3) rotational block of M
-    M_aa_xx = J_star_t_8 - total_rrrrrr_xx_3
-    M_aa_xy = J_star_t_9 + total_rrrrrr_xy_3
-    M_aa_xz = J_star_t_10 + total_rrrrrr_xz_3
-    M_aa_yy = J_star_t_12 - total_rrrrrr_yy_3
-    M_aa_yz = J_star_t_13 + total_rrrrrr_yz_3
-    M_aa_zz = J_star_t_15 - total_rrrrrr_zz_3
-    # (M5) translational part of Z
-    Z_t_x = Z_p_x + total_rrrrrr_x
-    Z_t_y = Z_p_y + total_rrrrrr_y
-    Z_t_z = Z_p_z + total_rrrrrr_z
-    # (M7) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_rrrrrr_x_2
-    Z_a_y = Z_q_in_base_y + total_rrrrrr_y_2
-    Z_a_z = Z_q_in_base_z + total_rrrrrr_z_2
+    # (M_tt) translational block of M
+    M_tt_xx = m_star - total_six_r_xx
+    M_tt_yy = m_star - total_six_r_yy
+    M_tt_zz = m_star - total_six_r_zz
+    # (M_ta) coupling block of M
+    M_ta_xy = h_star_in_base_z - total_six_r_xy_2
+    M_ta_xz = total_six_r_xz_2 - h_star_in_base_y
+    M_ta_yx = total_six_r_yx - h_star_in_base_z
+    M_ta_yz = h_star_in_base_x + total_six_r_yz_2
+    M_ta_zx = h_star_in_base_y + total_six_r_zx
+    M_ta_zy = -h_star_in_base_x - total_six_r_zy
+    # (M_aa) rotational block of M
+    M_aa_xx = J_star_t_8 - total_six_r_xx_3
+    M_aa_xy = J_star_t_9 + total_six_r_xy_3
+    M_aa_xz = J_star_t_10 - total_six_r_xz_3
+    M_aa_yy = J_star_t_13 + total_six_r_yy_3
+    M_aa_yz = J_star_t_15 + total_six_r_yz_3
+    M_aa_zz = J_star_t_17 - total_six_r_zz_3
+    # (Z_t) translational part of Z
+    Z_t_x = Z_p_x + total_six_r_x
+    Z_t_y = Z_p_y + total_six_r_y
+    Z_t_z = Z_p_z + total_six_r_z
+    # (Z_a) rotational part of Z
+    Z_a_x = Z_q_in_base_x + total_six_r_x_2
+    Z_a_y = Z_q_in_base_y + total_six_r_y_2
+    Z_a_z = Z_q_in_base_z + total_six_r_z_2
     out_M[0] = M_tt_xx
-    out_M[1] = -total_rrrrrr_xy
-    out_M[6] = -total_rrrrrr_xy
-    out_M[2] = -total_rrrrrr_xz
-    out_M[12] = -total_rrrrrr_xz
+    out_M[1] = -total_six_r_xy
+    out_M[6] = -total_six_r_xy
+    out_M[2] = -total_six_r_xz
+    out_M[12] = -total_six_r_xz
     out_M[7] = M_tt_yy
-    out_M[8] = -total_rrrrrr_yz
-    out_M[13] = -total_rrrrrr_yz
+    out_M[8] = -total_six_r_yz
+    out_M[13] = -total_six_r_yz
     out_M[14] = M_tt_zz
-    out_M[3] = total_rrrrrr_xx_2
-    out_M[18] = total_rrrrrr_xx_2
+    out_M[3] = total_six_r_xx_2
+    out_M[18] = total_six_r_xx_2
     out_M[4] = M_ta_xy
     out_M[24] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -total_rrrrrr_yy_2
-    out_M[25] = -total_rrrrrr_yy_2
+    out_M[10] = -total_six_r_yy_2
+    out_M[25] = -total_six_r_yy_2
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
     out_M[20] = M_ta_zx
     out_M[16] = M_ta_zy
     out_M[26] = M_ta_zy
-    out_M[17] = total_rrrrrr_zz_2
-    out_M[32] = total_rrrrrr_zz_2
+    out_M[17] = total_six_r_zz_2
+    out_M[32] = total_six_r_zz_2
     out_M[21] = M_aa_xx
     out_M[22] = M_aa_xy
     out_M[27] = M_aa_xy
@@ -3440,14 +3903,14 @@ def _run_dynamics(m, X, V, q):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 7275 mul, 5289 add, 30 div, 30 sqrt, 60 trig
+# M: 7179 mul, 5211 add, 30 div, 30 sqrt, 60 trig
 def _run_M(m, X, q):
     sqrt = m.sqrt
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("M")
     (
-    J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
+    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
         h_star_z, m_star,
     ) = shared
     X_3 = X[3]
@@ -3481,1097 +3944,1364 @@ def _run_M(m, X, q):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_M = m.zeros("M")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy
-    J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
     J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_12 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_15 = 2.0*J_star_t_14 + J_star_xx
+    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
+    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
     sums = [0.0] * 21
     for leg, k in legs[0]:
         (
-        J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yy,
-            J_3_yz, J_3_zz, J_4_xx, J_4_xy, J_4_xz, J_4_yy, J_4_yz, J_5_xx, J_5_xy, J_5_xz,
-            J_5_yy, J_5_yz, J_5_zz, Jc_2_t, Jc_3_t_2, Jc_3_t_3, Jc_4_xx, h_3_y, h_3_z, h_4_y,
-            h_4_z, h_5_x, h_5_y, h_5_z, hc_3_x, rrrrrr_base_frame_xx, rrrrrr_base_frame_xy,
-            rrrrrr_base_frame_xz, rrrrrr_base_frame_yx, rrrrrr_base_frame_yy,
-            rrrrrr_base_frame_yz, rrrrrr_base_frame_zx, rrrrrr_base_frame_zy,
-            rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x, rrrrrr_joint3_offset_x,
-            rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x, rrrrrr_platform_joint_axis_platform_x,
-            rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
-            rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x, rrrrrr_platform_point_y,
-            rrrrrr_platform_point_z, size, size_t,
+        six_r_J_1_xx, six_r_J_2_xx, six_r_J_2_xy, six_r_J_2_xz, six_r_J_2_yy, six_r_J_2_yz,
+            six_r_J_2_zz, six_r_J_3_xx, six_r_J_3_xy, six_r_J_3_xz, six_r_J_3_yy, six_r_J_3_yz,
+            six_r_J_3_zz, six_r_J_4_xx, six_r_J_4_xy, six_r_J_4_xz, six_r_J_4_yy, six_r_J_4_yz,
+            six_r_J_5_xx, six_r_J_5_xy, six_r_J_5_xz, six_r_J_5_yy, six_r_J_5_yz, six_r_J_5_zz,
+            six_r_Jc_2_t, six_r_Jc_3_t_2, six_r_Jc_3_t_3, six_r_Jc_4_xx, six_r_base_frame_xx,
+            six_r_base_frame_xy, six_r_base_frame_xz, six_r_base_frame_yx, six_r_base_frame_yy,
+            six_r_base_frame_yz, six_r_base_frame_zx, six_r_base_frame_zy, six_r_base_frame_zz,
+            six_r_h_3_y, six_r_h_3_z, six_r_h_4_y, six_r_h_4_z, six_r_h_5_x, six_r_h_5_y,
+            six_r_h_5_z, six_r_hc_3_x, six_r_joint2_offset_x, six_r_joint3_offset_x,
+            six_r_joint4_offset_x, six_r_joint5_offset_x, six_r_platform_joint_axis_platform_x,
+            six_r_platform_joint_axis_platform_y, six_r_platform_joint_axis_platform_z,
+            six_r_platform_joint_offset_x, six_r_platform_point_x, six_r_platform_point_y,
+            six_r_platform_point_z, six_r_size, six_r_size_t,
         ) = k
-        q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
-        q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
-        q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
-        q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
-        q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
-        # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
-        c_5_t = sin(q_5)
-        # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
-        s_5 = cos(q_5)
-        # (rrrrrr-V2) from joint 4 to the connection point, along the links
-        r_4_t = c_5_t*rrrrrr_platform_joint_offset_x
-        r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5
-        # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
-        c_4_t = sin(q_4)
-        # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
-        s_4 = cos(q_4)
-        # (rrrrrr-V2) from joint 4 to the connection point, along the links
-        r_4_t_2 = r_4_t*s_4
-        r_4_t_3 = c_4_t*r_4_t
-        # (rrrrrr-V3) from joint 3 to the connection point, along the links
-        r_3_x = r_4_z + rrrrrr_joint4_offset_x
-        # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
-        c_3 = cos(q_3)
-        # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
-        s_3 = sin(q_3)
-        # (rrrrrr-V3) from joint 3 to the connection point, along the links
-        r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3
-        # (rrrrrr-V4) from joint 2 to the connection point, along the links
-        r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3
-        # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
-        c_2_t = sin(q_2)
-        # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
-        s_2 = cos(q_2)
-        # (rrrrrr-V4) from joint 2 to the connection point, along the links
-        r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2
-        # (rrrrrr-V5) from joint 1 to the connection point, along the links
-        r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y
-        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-        e_1_r2_x = c_3*s_2 - c_2_t*s_3
-        e_1_r2_y = -c_2_t*c_3 - s_2*s_3
-        v_1_t = c_4_t*e_1_r2_y
-        v_1_t_2 = e_1_r2_y*s_4
-        e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5
-        e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x
-        # (rrrrrr-V5) from joint 1 to the connection point, along the links
-        r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x
-        r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2
-        r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3
-        r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3
-        r_1_t = r_4_t_3*s_4
-        r_1_r4_x = r_1_t - c_4_t*r_1_r2_y
-        r_1_t_2 = c_4_t*r_4_t_3
-        r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4
-        r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y
-        r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5
-        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-        v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t
-        v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t
-        v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x
-        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-        v_2_t = c_4_t*c_5_t
-        v_2_t_2 = c_4_t*s_5
-        # (rrrrrr-V4) from joint 2 to the connection point, along the links
-        r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3
-        r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3
-        r_2_r2_x = r_1_t - c_4_t*r_2_r0_y
-        r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4
-        r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y
-        r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5
-        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-        v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4
-        v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t
-        v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2
-        # (rrrrrr-V3) from joint 3 to the connection point, along the links
-        r_3_r1_x = r_1_t - c_4_t*r_4_t_2
-        r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4
-        r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y
-        r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5
-        # (rrrrrr-V8) velocity of the connection point per rate of joint 3
-        v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4
-        v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t
-        v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2
-        # (rrrrrr-V9) velocity of the connection point per rate of joint 4
-        v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
-        # (rrrrrr-V13) force part of reciprocal wrench 1
-        w_1_t = c_4_t*s_3
-        w_1_t_2 = c_3*c_4_t
-        axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
-        axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
-        # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
-        c_1_t = sin(q_1)
-        # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
-        s_1 = cos(q_1)
-        # (rrrrrr-V13) force part of reciprocal wrench 1
-        axis_z_rrrrrr_axes5_r7_x = -axis_z_rrrrrr_axes5_r5_x*s_1 - c_1_t*s_4
-        axis_z_rrrrrr_axes5_r7_y = s_1*s_4 - axis_z_rrrrrr_axes5_r5_x*c_1_t
-        axis_z_rrrrrr_axes5_in_base_x = (
-        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
-            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
-            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
-        )
-        axis_z_rrrrrr_axes5_in_base_y = (
-        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
-            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
-            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
-        )
-        axis_z_rrrrrr_axes5_in_base_z = (
-        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
-            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
-            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
-        )
-        w_1_t_3 = s_4*s_5
-        axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
-        axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
-        axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
-        axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
-        axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
-        axis_y_rrrrrr_axes5_r7_y = s_1*v_2_t_2 - axis_y_rrrrrr_axes5_r5_x*c_1_t
-        axis_y_rrrrrr_axes5_in_base_x = (
-        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
-            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
-            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
-        )
-        axis_y_rrrrrr_axes5_in_base_y = (
-        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
-            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
-            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
-        )
-        axis_y_rrrrrr_axes5_in_base_z = (
-        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
-            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
-            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
-        )
-        axis_x_rrrrrr_axes5_x = (
-        axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_z -
-            axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_y
-        )
-        axis_x_rrrrrr_axes5_y = (
-        axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_x -
-            axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_z
-        )
-        axis_x_rrrrrr_axes5_z = (
-        axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
-            axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
-        )
-        # (rrrrrr-G13) inertia tensor of link 5 about the connection point
-        J_5_t = J_5_xy*s_5
-        _x = -J_5_t - J_5_xx*c_5_t
-        J_5_t_2 = J_5_xy*c_5_t
-        _x_2 = -J_5_t_2 - J_5_yy*s_5
-        _x_3 = -J_5_xz*c_5_t - J_5_yz*s_5
-        _y = J_5_xz*s_5 - J_5_yz*c_5_t
-        # (rrrrrr-N33) inertia tensor of the links from 4 outwards about joint 4
-        Jc_4_xy = _x_3 - J_4_yz
-        Jc_4_xz = J_4_xz + _y
-        Jc_4_yy = J_4_yy - _x*c_5_t - _x_2*s_5
-        Jc_4_yz = _x*s_5 - J_4_xy - _x_2*c_5_t
-        Jc_4_zz = J_4_xx + s_5*(J_5_xx*s_5 - J_5_t_2) - c_5_t*(J_5_t - J_5_yy*c_5_t)
-        Jc_4_t = Jc_4_xy*s_4
-        _x_4 = -Jc_4_t - Jc_4_xx*c_4_t
-        Jc_4_t_2 = Jc_4_xy*c_4_t
-        _x_5 = -Jc_4_t_2 - Jc_4_yy*s_4
-        _x_6 = -Jc_4_xz*c_4_t - Jc_4_yz*s_4
-        _y_2 = Jc_4_xz*s_4 - Jc_4_yz*c_4_t
-        # (rrrrrr-G9) first moment of link 4 about the origin of link 4
-        h_4_r1_x = h_4_y*s_4 - c_4_t*h_4_z
-        h_4_r1_y = c_4_t*h_4_y + h_4_z*s_4
-        # (rrrrrr-N44) inertia tensor of the links from 3 outwards about joint 3
-        Jc_3_t = h_4_r1_x*rrrrrr_joint4_offset_x
-        Jc_3_t_4 = h_4_r1_y*rrrrrr_joint4_offset_x
-        Jc_3_xx = J_3_xx + Jc_3_t_3 + Jc_4_zz - 2.0*Jc_3_t_2
-        Jc_3_xy = J_3_xy + _x_6 - Jc_3_t
-        Jc_3_xz = J_3_xz + _y_2 - Jc_3_t_4
-        Jc_3_yy = J_3_yy + Jc_3_t_3 - _x_4*c_4_t - _x_5*s_4
-        Jc_3_yz = J_3_yz + _x_4*s_4 - _x_5*c_4_t
-        Jc_3_zz = (
-        J_3_zz + Jc_3_t_3 + s_4*(Jc_4_xx*s_4 - Jc_4_t_2) - c_4_t*(Jc_4_t - Jc_4_yy*c_4_t)
-        )
-        # (rrrrrr-N43) first moment of the links from 3 outwards
-        hc_3_y = h_3_y + h_4_r1_x
-        hc_3_z = h_3_z + h_4_r1_y
-        # (rrrrrr-N44) inertia tensor of the links from 3 outwards about joint 3
-        Jc_3_t_5 = Jc_3_xy*s_3
-        _x_7 = Jc_3_xx*c_3 - Jc_3_t_5
-        Jc_3_t_6 = Jc_3_xy*c_3
-        _x_8 = Jc_3_t_6 - Jc_3_yy*s_3
-        _x_9 = Jc_3_xz*c_3 - Jc_3_yz*s_3
-        _y_3 = Jc_3_xz*s_3 + Jc_3_yz*c_3
-        # (rrrrrr-N43) first moment of the links from 3 outwards
-        hc_3_r0_x = c_3*hc_3_x - hc_3_y*s_3
-        hc_3_r0_y = c_3*hc_3_y + hc_3_x*s_3
-        # (rrrrrr-N53) inertia tensor of the links from 2 outwards about joint 2
-        Jc_2_t_2 = rrrrrr_joint3_offset_x*(Jc_2_t + hc_3_r0_x)
-        Jc_2_t_3 = 2.0*Jc_2_t_2
-        Jc_2_xy = J_2_xy + _x_7*s_3 + _x_8*c_3 - hc_3_r0_y*rrrrrr_joint3_offset_x
-        Jc_2_zz = J_2_zz + Jc_2_t_3 + Jc_3_zz
-        _y_4 = s_2*(J_2_xz + _x_9 - hc_3_z*rrrrrr_joint3_offset_x) - c_2_t*(J_2_yz + _y_3)
-        _y_5 = (
-        s_2*(s_2*(J_2_xx + Jc_2_t_3 + _x_7*c_3 - 2.0*Jc_2_t_2 - _x_8*s_3) - Jc_2_xy*c_2_t) -
-            c_2_t*(Jc_2_xy*s_2 - c_2_t*(J_2_yy + Jc_2_t_3 + c_3*(Jc_3_t_5 + Jc_3_yy*c_3) +
-            s_3*(Jc_3_t_6 + Jc_3_xx*s_3)))
-        )
-        # (rrrrrr-N59) inertia tensor of the links from 1 outwards about joint 1
-        Jc_1_zz = J_1_xx + _y_5
-        # (rrrrrr-N48) moment about joint 2 that accelerates joint 3, per unit
-        L_c3_2_z = Jc_3_zz + hc_3_r0_x*rrrrrr_joint3_offset_x
-        L_c3_2_r0_y = _x_9*s_2 - _y_3*c_2_t
-        # (rrrrrr-N37) moment about joint 3 that accelerates joint 4, per unit
-        L_c4_3_y = _x_6 - Jc_3_t
-        L_c4_3_z = _y_2 - Jc_3_t_4
-        # (rrrrrr-N39) moment about joint 2 that accelerates joint 4, per unit
-        L_c4_2_y = Jc_4_zz*s_3 + L_c4_3_y*c_3 - h_4_r1_x*rrrrrr_joint3_offset_x
-        L_c4_2_z = L_c4_3_z - c_3*h_4_r1_y*rrrrrr_joint3_offset_x
-        L_c4_2_r0_y = s_2*(Jc_4_zz*c_3 - L_c4_3_y*s_3) - L_c4_2_y*c_2_t
-        # (rrrrrr-N27) moment about joint 5 that accelerates joint 5, per unit
-        L_c5_r2_x = -J_5_zz*c_4_t - _x_3*s_4
-        L_c5_r2_y = J_5_zz*s_4 - _x_3*c_4_t
-        L_c5_r5_y = s_2*(_y*c_3 - L_c5_r2_x*s_3) - c_2_t*(L_c5_r2_x*c_3 + _y*s_3)
-        # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-        end_p1_r0_x = (
-        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy +
-            R_yx*rrrrrr_base_frame_yy + R_zx*rrrrrr_base_frame_zy) +
-            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
-            R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
-            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
-            R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy)
-        )
-        end_p1_r0_y = (
-        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz +
-            R_yx*rrrrrr_base_frame_yz + R_zx*rrrrrr_base_frame_zz) +
-            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
-            R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
-            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
-            R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz)
-        )
-        end_p1_r0_z = (
-        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx +
-            R_yx*rrrrrr_base_frame_yx + R_zx*rrrrrr_base_frame_zx) +
-            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
-            R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
-            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
-            R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx)
-        )
-        end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x
-        end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1
-        end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y
-        end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2
-        end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3
-        end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3
-        end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y
-        end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4
-        end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
-        end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
-        # (rrrrrr-V13) force part of reciprocal wrench 1
-        w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
-        w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
-        w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
-        w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
-        w_1_t_8 = size*w_1_t_4
-        w_1_t_9 = size*w_1_t_6
-        w_1_t_10 = size*w_1_t_5
-        w_1_t_11 = size*w_1_t_7
-        w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
-        w_1_t_13 = c_5_t*end_p1_r6_x*size
-        w_1_t_14 = end_p1_r8_y*size
-        w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
-        inv_w_1_t_69 = 1.0/w_1_t_15
-        w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
-        w_1_t_17 = inv_w_1_t_69*w_1_t_14
-        w_1_t_18 = w_1_t_13*w_1_t_17
-        w_1_t_19 = w_1_t_16*w_1_t_18
-        w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
-        w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
-        w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
-        w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
-        w_1_t_24 = w_1_t_11*w_1_t_17
-        w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
-        w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
-        w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
-        w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
-        w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
-        w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
-        w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
-        inv_w_1_t_101 = 1.0/w_1_t_31
-        w_1_t_32 = inv_w_1_t_101*w_1_t_19
-        w_1_t_33 = inv_w_1_t_101*v_4_z
-        w_1_t_34 = inv_w_1_t_101*w_1_t_12
-        w_1_t_35 = inv_w_1_t_101*w_1_t_20
-        w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
-        w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
-        w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
-        w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
-        w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
-        w_1_t_41 = w_1_t_10*w_1_t_34
-        w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
-        w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
-        w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
-        w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
-        w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
-        w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
-        w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
-        w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
-        w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
-        w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
-        w_1_t_52 = (
-        sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
-            w_1_t_40*w_1_t_40)
-        )
-        inv_w_1_t_150 = 1.0/w_1_t_52
-        w_1_t_53 = inv_w_1_t_150*v_1_x
-        w_1_t_54 = inv_w_1_t_150*w_1_t_37
-        w_1_t_55 = inv_w_1_t_150*w_1_t_38
-        w_1_t_56 = inv_w_1_t_150*w_1_t_39
-        w_1_t_57 = inv_w_1_t_150*w_1_t_40
-        w_1_t_58 = (
-        v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 +
-            w_1_t_46*w_1_t_57
-        )
-        w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
-        w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
-        w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
-        w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
-        w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
-        w_1_t_64 = (
-        v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 +
-            w_1_t_51*w_1_t_57
-        )
-        w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
-        w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
-        w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
-        w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
-        w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
-        w_1_t_70 = (
-        sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
-            w_1_t_63*w_1_t_63)
-        )
-        inv_w_1_t_194 = 1.0/w_1_t_70
-        w_1_t_71 = inv_w_1_t_194*w_1_t_59
-        w_1_t_72 = inv_w_1_t_194*w_1_t_60
-        w_1_t_73 = inv_w_1_t_194*w_1_t_61
-        w_1_t_74 = inv_w_1_t_194*w_1_t_62
-        w_1_t_75 = inv_w_1_t_194*w_1_t_63
-        w_1_t_76 = (
-        w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
-            w_1_t_69*w_1_t_75
-        )
-        w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
-        w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
-        w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
-        w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
-        w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
-        w_1_t_82 = (
-        sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
-            w_1_t_81*w_1_t_81)
-        )
-        inv_w_1_t_222 = 1.0/w_1_t_82
-        w_1_t_83 = inv_w_1_t_222*w_1_t_77
-        w_1_t_84 = inv_w_1_t_222*w_1_t_78
-        w_1_t_85 = inv_w_1_t_222*w_1_t_79
-        w_1_t_86 = inv_w_1_t_222*w_1_t_80
-        w_1_t_87 = inv_w_1_t_222*w_1_t_81
-        w_1_t_88 = inv_w_1_t_150*inv_w_1_t_194*w_1_t_58
-        w_1_t_89 = inv_w_1_t_222*(inv_w_1_t_150*w_1_t_64 - w_1_t_76*w_1_t_88)
-        w_1_t_90 = w_1_t_71*w_1_t_88 + w_1_t_83*w_1_t_89 - inv_w_1_t_150*w_1_t_53
-        w_1_t_91 = w_1_t_72*w_1_t_88 + w_1_t_84*w_1_t_89 - inv_w_1_t_150*w_1_t_54
-        w_1_t_92 = w_1_t_73*w_1_t_88 + w_1_t_85*w_1_t_89 - inv_w_1_t_150*w_1_t_55
-        w_1_t_93 = size*(w_1_t_74*w_1_t_88 + w_1_t_86*w_1_t_89 - inv_w_1_t_150*w_1_t_56)
-        w_1_t_94 = size*(w_1_t_75*w_1_t_88 + w_1_t_87*w_1_t_89 - inv_w_1_t_150*w_1_t_57)
-        # (rrrrrr-V16) force part of reciprocal wrench 2
-        w_2_t = inv_w_1_t_194*inv_w_1_t_222*w_1_t_76
-        w_2_t_2 = inv_w_1_t_194*w_1_t_71 - w_1_t_83*w_2_t
-        w_2_t_3 = inv_w_1_t_194*w_1_t_72 - w_1_t_84*w_2_t
-        w_2_t_4 = w_1_t_85*w_2_t - inv_w_1_t_194*w_1_t_73
-        w_2_t_5 = size*(inv_w_1_t_194*w_1_t_74 - w_1_t_86*w_2_t)
-        w_2_t_6 = size*(inv_w_1_t_194*w_1_t_75 - w_1_t_87*w_2_t)
-        # (rrrrrr-V19) force part of reciprocal wrench 3
-        w_3_t = inv_w_1_t_222*w_1_t_83
-        w_3_t_2 = inv_w_1_t_222*w_1_t_84
-        w_3_t_3 = inv_w_1_t_222*w_1_t_85
-        w_3_t_4 = inv_w_1_t_222*size*w_1_t_86
-        w_3_t_5 = inv_w_1_t_222*size*w_1_t_87
-        # (rrrrrr-V22) force part of reciprocal wrench 4
-        w_4_t = inv_w_1_t_101*inv_w_1_t_150*w_1_t_36
-        w_4_t_2 = inv_w_1_t_194*(inv_w_1_t_101*w_1_t_42 - w_1_t_58*w_4_t)
-        w_4_t_3 = inv_w_1_t_222*(w_1_t_64*w_4_t + w_1_t_76*w_4_t_2 - inv_w_1_t_101*w_1_t_47)
-        w_4_t_4 = w_1_t_53*w_4_t + w_1_t_71*w_4_t_2 - w_1_t_83*w_4_t_3
-        w_4_t_5 = inv_w_1_t_101*w_1_t_32 + w_1_t_54*w_4_t + w_1_t_72*w_4_t_2 - w_1_t_84*w_4_t_3
-        w_4_t_6 = inv_w_1_t_101*w_1_t_33 + w_1_t_55*w_4_t + w_1_t_73*w_4_t_2 - w_1_t_85*w_4_t_3
-        w_4_t_7 = (
-        size*(inv_w_1_t_101*w_1_t_34 + w_1_t_56*w_4_t + w_1_t_74*w_4_t_2 - w_1_t_86*w_4_t_3)
-        )
-        w_4_t_8 = (
-        size*(inv_w_1_t_101*w_1_t_35 + w_1_t_57*w_4_t + w_1_t_75*w_4_t_2 - w_1_t_87*w_4_t_3)
-        )
-        # (rrrrrr-V25) force part of reciprocal wrench 5
-        w_5_t = inv_w_1_t_101*inv_w_1_t_69*w_1_t_18
-        w_5_t_2 = inv_w_1_t_150*(inv_w_1_t_69*w_1_t_21 + w_1_t_36*w_5_t)
-        w_5_t_3 = inv_w_1_t_194*(inv_w_1_t_69*w_1_t_25 + w_1_t_42*w_5_t - w_1_t_58*w_5_t_2)
-        w_5_t_4 = (
-        inv_w_1_t_222*(inv_w_1_t_69*w_1_t_28 + w_1_t_64*w_5_t_2 + w_1_t_76*w_5_t_3 -
-            w_1_t_47*w_5_t)
-        )
-        w_5_t_5 = w_1_t_53*w_5_t_2 + w_1_t_71*w_5_t_3 - w_1_t_83*w_5_t_4
-        w_5_t_6 = (
-        inv_w_1_t_69*w_1_t_16 + w_1_t_32*w_5_t + w_1_t_54*w_5_t_2 + w_1_t_72*w_5_t_3 -
-            w_1_t_84*w_5_t_4
-        )
-        w_5_t_7 = w_1_t_33*w_5_t + w_1_t_55*w_5_t_2 + w_1_t_73*w_5_t_3 - w_1_t_85*w_5_t_4
-        w_5_t_8 = size*(w_1_t_34*w_5_t + w_1_t_56*w_5_t_2 + w_1_t_74*w_5_t_3 - w_1_t_86*w_5_t_4)
-        w_5_t_9 = (
-        size*(w_1_t_35*w_5_t + w_1_t_57*w_5_t_2 + w_1_t_75*w_5_t_3 - inv_w_1_t_69*w_1_t_17 -
-            w_1_t_87*w_5_t_4)
-        )
-        # (rrrrrr-N112) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_t = L_c5_r5_y*inv_w_1_t_69
-        d_Gamma_1_t_2 = inv_w_1_t_101*(L_c4_2_r0_y - d_Gamma_1_t*w_1_t_18)
-        d_Gamma_1_t_3 = inv_w_1_t_150*(Jc_1_zz + d_Gamma_1_t_2*w_1_t_36 - d_Gamma_1_t*w_1_t_21)
-        d_Gamma_1_t_4 = (
-        inv_w_1_t_194*(_y_4 + d_Gamma_1_t_2*w_1_t_42 - d_Gamma_1_t*w_1_t_25 -
-            d_Gamma_1_t_3*w_1_t_58)
-        )
-        d_Gamma_1_t_5 = (
-        inv_w_1_t_222*(L_c3_2_r0_y + d_Gamma_1_t*w_1_t_28 + d_Gamma_1_t_2*w_1_t_47 -
-            d_Gamma_1_t_3*w_1_t_64 - d_Gamma_1_t_4*w_1_t_76)
-        )
-        d_Gamma_1_x = (
-        d_Gamma_1_t_3*w_1_t_53 + d_Gamma_1_t_4*w_1_t_71 + d_Gamma_1_t_5*w_1_t_83 + e_1_r6_y*h_5_z
-            + h_5_y*v_1_t
-        )
-        d_Gamma_1_y = (
-        d_Gamma_1_t*w_1_t_16 - d_Gamma_1_t_2*w_1_t_32 - d_Gamma_1_t_3*w_1_t_54 -
-            d_Gamma_1_t_4*w_1_t_72 - d_Gamma_1_t_5*w_1_t_84 - e_1_r6_x*h_5_z - h_5_x*v_1_t
-        )
-        d_Gamma_1_z = (
-        d_Gamma_1_t_2*w_1_t_33 + d_Gamma_1_t_3*w_1_t_55 + d_Gamma_1_t_4*w_1_t_73 +
-            d_Gamma_1_t_5*w_1_t_85 + e_1_r6_x*h_5_y - e_1_r6_y*h_5_x
-        )
-        # (rrrrrr-N102) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_t = h_5_z*v_2_t_2 - h_5_y*s_4
-        d_Gamma_2_t_2 = h_5_z*v_2_t - h_5_x*s_4
-        d_Gamma_2_t_3 = h_5_y*v_2_t - h_5_x*v_2_t_2
-        d_Gamma_2_t_4 = L_c5_r2_y*inv_w_1_t_69
-        d_Gamma_2_t_5 = d_Gamma_2_t_4*w_1_t_18
-        d_Gamma_2_t_6 = inv_w_1_t_101*(L_c4_2_z - d_Gamma_2_t_5)
-        d_Gamma_2_t_7 = d_Gamma_2_t_4*w_1_t_21
-        d_Gamma_2_t_8 = inv_w_1_t_150*(_y_4 + d_Gamma_2_t_6*w_1_t_36 - d_Gamma_2_t_7)
-        d_Gamma_2_t_9 = d_Gamma_2_t_4*w_1_t_25
-        d_Gamma_2_t_10 = (
-        inv_w_1_t_194*(Jc_2_zz + d_Gamma_2_t_6*w_1_t_42 - d_Gamma_2_t_9 - d_Gamma_2_t_8*w_1_t_58)
-        )
-        d_Gamma_2_t_11 = d_Gamma_2_t_4*w_1_t_28
-        d_Gamma_2_t_12 = (
-        inv_w_1_t_222*(L_c3_2_z + d_Gamma_2_t_11 + d_Gamma_2_t_6*w_1_t_47 -
-            d_Gamma_2_t_10*w_1_t_76 - d_Gamma_2_t_8*w_1_t_64)
-        )
-        d_Gamma_2_t_13 = d_Gamma_2_t_4*w_1_t_16
-        d_Gamma_2_x = (
-        d_Gamma_2_t + d_Gamma_2_t_10*w_1_t_71 + d_Gamma_2_t_12*w_1_t_83 + d_Gamma_2_t_8*w_1_t_53
-        )
-        d_Gamma_2_y = (
-        d_Gamma_2_t_13 - d_Gamma_2_t_2 - d_Gamma_2_t_10*w_1_t_72 - d_Gamma_2_t_12*w_1_t_84 -
-            d_Gamma_2_t_6*w_1_t_32 - d_Gamma_2_t_8*w_1_t_54
-        )
-        d_Gamma_2_z = (
-        d_Gamma_2_t_3 + d_Gamma_2_t_10*w_1_t_73 + d_Gamma_2_t_12*w_1_t_85 + d_Gamma_2_t_6*w_1_t_33
-            + d_Gamma_2_t_8*w_1_t_55
-        )
-        # (rrrrrr-N90) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        d_Gamma_3_t = inv_w_1_t_101*(L_c4_3_z - d_Gamma_2_t_5)
-        d_Gamma_3_t_2 = inv_w_1_t_150*(L_c3_2_r0_y + d_Gamma_3_t*w_1_t_36 - d_Gamma_2_t_7)
-        d_Gamma_3_t_3 = (
-        inv_w_1_t_194*(L_c3_2_z + d_Gamma_3_t*w_1_t_42 - d_Gamma_2_t_9 - d_Gamma_3_t_2*w_1_t_58)
-        )
-        d_Gamma_3_t_4 = (
-        inv_w_1_t_222*(Jc_3_zz + d_Gamma_2_t_11 + d_Gamma_3_t*w_1_t_47 - d_Gamma_3_t_2*w_1_t_64 -
-            d_Gamma_3_t_3*w_1_t_76)
-        )
-        d_Gamma_3_x = (
-        d_Gamma_2_t + d_Gamma_3_t_2*w_1_t_53 + d_Gamma_3_t_3*w_1_t_71 + d_Gamma_3_t_4*w_1_t_83
-        )
-        d_Gamma_3_y = (
-        d_Gamma_2_t_13 - d_Gamma_2_t_2 - d_Gamma_3_t*w_1_t_32 - d_Gamma_3_t_2*w_1_t_54 -
-            d_Gamma_3_t_3*w_1_t_72 - d_Gamma_3_t_4*w_1_t_84
-        )
-        d_Gamma_3_z = (
-        d_Gamma_2_t_3 + d_Gamma_3_t*w_1_t_33 + d_Gamma_3_t_2*w_1_t_55 + d_Gamma_3_t_3*w_1_t_73 +
-            d_Gamma_3_t_4*w_1_t_85
-        )
-        # (rrrrrr-N78) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-        d_Gamma_4_t = _y*inv_w_1_t_69
-        d_Gamma_4_t_2 = inv_w_1_t_101*(Jc_4_zz - d_Gamma_4_t*w_1_t_18)
-        d_Gamma_4_t_3 = (
-        inv_w_1_t_150*(L_c4_2_r0_y + d_Gamma_4_t_2*w_1_t_36 - d_Gamma_4_t*w_1_t_21)
-        )
-        d_Gamma_4_t_4 = (
-        inv_w_1_t_194*(L_c4_2_z + d_Gamma_4_t_2*w_1_t_42 - d_Gamma_4_t*w_1_t_25 -
-            d_Gamma_4_t_3*w_1_t_58)
-        )
-        d_Gamma_4_t_5 = (
-        inv_w_1_t_222*(L_c4_3_z + d_Gamma_4_t*w_1_t_28 + d_Gamma_4_t_2*w_1_t_47 -
-            d_Gamma_4_t_3*w_1_t_64 - d_Gamma_4_t_4*w_1_t_76)
-        )
-        d_Gamma_4_x = (
-        d_Gamma_4_t_3*w_1_t_53 + d_Gamma_4_t_4*w_1_t_71 + d_Gamma_4_t_5*w_1_t_83 - c_5_t*h_5_z
-        )
-        d_Gamma_4_y = (
-        d_Gamma_4_t*w_1_t_16 - d_Gamma_4_t_2*w_1_t_32 - d_Gamma_4_t_3*w_1_t_54 -
-            d_Gamma_4_t_4*w_1_t_72 - d_Gamma_4_t_5*w_1_t_84 - h_5_z*s_5
-        )
-        d_Gamma_4_z = (
-        c_5_t*h_5_x + d_Gamma_4_t_2*w_1_t_33 + d_Gamma_4_t_3*w_1_t_55 + d_Gamma_4_t_4*w_1_t_73 +
-            d_Gamma_4_t_5*w_1_t_85 + h_5_y*s_5
-        )
-        # (rrrrrr-N68) coefficient of the acceleration in: moment about axis 5 of the distal links' inertia and weight
-        d_Gamma_5_t = J_5_zz*inv_w_1_t_69
-        d_Gamma_5_t_2 = inv_w_1_t_101*(_y - d_Gamma_5_t*w_1_t_18)
-        d_Gamma_5_t_3 = inv_w_1_t_150*(L_c5_r5_y + d_Gamma_5_t_2*w_1_t_36 - d_Gamma_5_t*w_1_t_21)
-        d_Gamma_5_t_4 = (
-        inv_w_1_t_194*(L_c5_r2_y + d_Gamma_5_t_2*w_1_t_42 - d_Gamma_5_t*w_1_t_25 -
-            d_Gamma_5_t_3*w_1_t_58)
-        )
-        d_Gamma_5_t_5 = (
-        inv_w_1_t_222*(L_c5_r2_y + d_Gamma_5_t*w_1_t_28 + d_Gamma_5_t_2*w_1_t_47 -
-            d_Gamma_5_t_3*w_1_t_64 - d_Gamma_5_t_4*w_1_t_76)
-        )
-        d_Gamma_5_t_6 = (
-        d_Gamma_5_t_2*w_1_t_33 + d_Gamma_5_t_3*w_1_t_55 + d_Gamma_5_t_4*w_1_t_73 +
-            d_Gamma_5_t_5*w_1_t_85
-        )
-        d_Gamma_5_x = (
-        d_Gamma_5_t_3*w_1_t_53 + d_Gamma_5_t_4*w_1_t_71 + d_Gamma_5_t_5*w_1_t_83 - h_5_y
-        )
-        d_Gamma_5_y = (
-        h_5_x + d_Gamma_5_t*w_1_t_16 - d_Gamma_5_t_2*w_1_t_32 - d_Gamma_5_t_3*w_1_t_54 -
-            d_Gamma_5_t_4*w_1_t_72 - d_Gamma_5_t_5*w_1_t_84
-        )
-        # (rrrrrr-A48) coefficient of the acceleration in: angular acceleration of link 5
-        d_alpha_5_xz = s_5*w_4_t_6 + v_2_t*w_3_t_3 - e_1_r6_x*w_1_t_92 - v_2_t*w_2_t_4
-        d_alpha_5_yz = v_2_t_2*w_3_t_3 - c_5_t*w_4_t_6 - e_1_r6_y*w_1_t_92 - v_2_t_2*w_2_t_4
-        d_alpha_5_zy = w_5_t_6 - s_4*w_2_t_3 - s_4*w_3_t_2 - v_1_t*w_1_t_91
-        d_alpha_5_zz = s_4*w_3_t_3 + v_1_t*w_1_t_92 - w_5_t_7 - s_4*w_2_t_4
-        # (rrrrrr-N25) coefficient of the acceleration in: inertia force of link 5 from its turning about its reference point
-        d_phi_5_t = (
-        h_5_z*(v_2_t_2*w_2_t_2 + v_2_t_2*w_3_t - c_5_t*w_4_t_4 - e_1_r6_y*w_1_t_90) -
-            h_5_y*(s_4*w_2_t_2 + s_4*w_3_t + v_1_t*w_1_t_90 - w_5_t_5)
-        )
-        # (rrrrrr-N132) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_xx = (
-        d_Gamma_1_x*w_1_t_90 + d_Gamma_5_x*w_5_t_5 - d_phi_5_t - d_Gamma_2_x*w_2_t_2 -
-            d_Gamma_3_x*w_3_t - d_Gamma_4_x*w_4_t_4
-        )
-        d_c_xy = (
-        d_Gamma_1_y*w_1_t_90 + d_Gamma_5_y*w_5_t_5 + d_alpha_5_zy*h_5_y - d_Gamma_2_y*w_2_t_2 -
-            d_Gamma_3_y*w_3_t - d_Gamma_4_y*w_4_t_4 - h_5_z*(c_5_t*w_4_t_5 + e_1_r6_y*w_1_t_91 -
-            v_2_t_2*w_2_t_3 - v_2_t_2*w_3_t_2)
-        )
-        d_c_xz = (
-        d_Gamma_1_z*w_1_t_90 + d_Gamma_5_t_6*w_5_t_5 + d_alpha_5_zz*h_5_y - d_Gamma_2_z*w_2_t_2 -
-            d_Gamma_3_z*w_3_t - d_Gamma_4_z*w_4_t_4 - d_alpha_5_yz*h_5_z
-        )
-        d_c_yy = (
-        d_Gamma_2_y*w_2_t_3 + d_Gamma_3_y*w_3_t_2 + d_Gamma_4_y*w_4_t_5 + h_5_z*(e_1_r6_x*w_1_t_91
-            - s_5*w_4_t_5 - v_2_t*w_2_t_3 - v_2_t*w_3_t_2) - d_Gamma_1_y*w_1_t_91 -
-            d_Gamma_5_y*w_5_t_6 - d_alpha_5_zy*h_5_x
-        )
-        d_c_yz = (
-        d_Gamma_2_z*w_2_t_3 + d_Gamma_3_z*w_3_t_2 + d_Gamma_4_z*w_4_t_5 + d_alpha_5_xz*h_5_z -
-            d_Gamma_1_z*w_1_t_91 - d_Gamma_5_t_6*w_5_t_6 - d_alpha_5_zz*h_5_x
-        )
-        # (rrrrrr-N134) inertia of the leg at the connection point, without the mass gathered there
-        Q_t = d_c_xx - d_c_yy
-        Q_t_2 = 0.5*Q_t
-        Q_t_3 = (
-        d_c_xx + d_Gamma_3_z*w_3_t_3 + d_Gamma_4_z*w_4_t_6 + d_alpha_5_xz*h_5_y -
-            d_Gamma_1_z*w_1_t_92 - d_Gamma_2_z*w_2_t_4 - d_Gamma_5_t_6*w_5_t_7 -
-            d_alpha_5_yz*h_5_x
-        )
-        Q_t_4 = 0.5*Q_t_3
-        Q_t_5 = (
-        axis_x_rrrrrr_axes5_x*d_c_xy + axis_z_rrrrrr_axes5_in_base_x*d_c_yz -
-            Q_t_2*axis_y_rrrrrr_axes5_in_base_x
-        )
-        Q_t_6 = (
-        axis_x_rrrrrr_axes5_y*d_c_xy + axis_z_rrrrrr_axes5_in_base_y*d_c_yz -
-            Q_t_2*axis_y_rrrrrr_axes5_in_base_y
-        )
-        Q_t_7 = (
-        axis_x_rrrrrr_axes5_z*d_c_xy + axis_z_rrrrrr_axes5_in_base_z*d_c_yz -
-            Q_t_2*axis_y_rrrrrr_axes5_in_base_z
-        )
-        Q_t_8 = Q_t_4*axis_z_rrrrrr_axes5_in_base_x - axis_x_rrrrrr_axes5_x*d_c_xz
-        Q_t_9 = Q_t_4*axis_z_rrrrrr_axes5_in_base_y - axis_x_rrrrrr_axes5_y*d_c_xz
-        Q_t_10 = Q_t_4*axis_z_rrrrrr_axes5_in_base_z - axis_x_rrrrrr_axes5_z*d_c_xz
-        Q_t_11 = Q_t_5*axis_y_rrrrrr_axes5_in_base_x - Q_t_8*axis_z_rrrrrr_axes5_in_base_x
-        Q_t_12 = 2.0*Q_t_11 + d_c_xx
-        Q_t_13 = (
-        Q_t_5*axis_y_rrrrrr_axes5_in_base_y + Q_t_6*axis_y_rrrrrr_axes5_in_base_x -
-            Q_t_8*axis_z_rrrrrr_axes5_in_base_y - Q_t_9*axis_z_rrrrrr_axes5_in_base_x
-        )
-        Q_t_14 = (
-        Q_t_5*axis_y_rrrrrr_axes5_in_base_z + Q_t_7*axis_y_rrrrrr_axes5_in_base_x -
-            Q_t_10*axis_z_rrrrrr_axes5_in_base_x - Q_t_8*axis_z_rrrrrr_axes5_in_base_z
-        )
-        Q_t_15 = Q_t_6*axis_y_rrrrrr_axes5_in_base_y - Q_t_9*axis_z_rrrrrr_axes5_in_base_y
-        Q_t_16 = 2.0*Q_t_15 + d_c_xx
-        Q_t_17 = (
-        Q_t_6*axis_y_rrrrrr_axes5_in_base_z + Q_t_7*axis_y_rrrrrr_axes5_in_base_y -
-            Q_t_10*axis_z_rrrrrr_axes5_in_base_y - Q_t_9*axis_z_rrrrrr_axes5_in_base_z
-        )
-        Q_t_18 = Q_t_7*axis_y_rrrrrr_axes5_in_base_z - Q_t_10*axis_z_rrrrrr_axes5_in_base_z
-        Q_t_19 = 2.0*Q_t_18 + d_c_xx
-        # (rrrrrr-V28) moment part of reciprocal wrench 1
-        o_1_t = end_p1_r8_y*w_1_t_93
-        o_1_t_2 = end_p1_r8_y*w_1_t_94
-        o_1_y = end_p1_r6_x*w_1_t_94 - end_p1_r8_x*w_1_t_93
-        # (rrrrrr-V29) moment part of reciprocal wrench 2
-        o_2_t = end_p1_r8_y*w_2_t_5
-        o_2_t_2 = end_p1_r8_y*w_2_t_6
-        o_2_y = end_p1_r8_x*w_2_t_5 - end_p1_r6_x*w_2_t_6
-        # (rrrrrr-V30) moment part of reciprocal wrench 3
-        o_3_t = end_p1_r8_y*w_3_t_4
-        o_3_t_2 = end_p1_r8_y*w_3_t_5
-        o_3_y = end_p1_r8_x*w_3_t_4 - end_p1_r6_x*w_3_t_5
-        # (rrrrrr-V31) moment part of reciprocal wrench 4
-        o_4_t = end_p1_r8_y*w_4_t_7
-        o_4_t_2 = end_p1_r8_y*w_4_t_8
-        o_4_y = end_p1_r8_x*w_4_t_7 - end_p1_r6_x*w_4_t_8
-        # (rrrrrr-V32) moment part of reciprocal wrench 5
-        o_5_t = end_p1_r8_y*w_5_t_8
-        o_5_t_2 = end_p1_r8_y*w_5_t_9
-        o_5_y = end_p1_r6_x*w_5_t_9 - end_p1_r8_x*w_5_t_8
-        # (rrrrrr-N111) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d0_Gamma_1_x = (
-        Jc_1_zz*o_1_t + L_c5_r5_y*o_5_t - L_c3_2_r0_y*o_3_t - L_c4_2_r0_y*o_4_t - _y_4*o_2_t
-        )
-        d0_Gamma_1_y = (
-        Jc_1_zz*o_1_y + L_c3_2_r0_y*o_3_y + L_c4_2_r0_y*o_4_y + L_c5_r5_y*o_5_y + _y_4*o_2_y
-        )
-        d0_Gamma_1_z = (
-        L_c3_2_r0_y*o_3_t_2 + L_c4_2_r0_y*o_4_t_2 + _y_4*o_2_t_2 - Jc_1_zz*o_1_t_2 -
-            L_c5_r5_y*o_5_t_2
-        )
-        # (rrrrrr-N101) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d0_Gamma_2_t = L_c5_r2_y*o_5_t
-        d0_Gamma_2_t_2 = L_c5_r2_y*o_5_y
-        d0_Gamma_2_t_3 = L_c5_r2_y*o_5_t_2
-        d0_Gamma_2_x = d0_Gamma_2_t + _y_4*o_1_t - Jc_2_zz*o_2_t - L_c3_2_z*o_3_t - L_c4_2_z*o_4_t
-        d0_Gamma_2_y = (
-        d0_Gamma_2_t_2 + Jc_2_zz*o_2_y + L_c3_2_z*o_3_y + L_c4_2_z*o_4_y + _y_4*o_1_y
-        )
-        d0_Gamma_2_z = (
-        Jc_2_zz*o_2_t_2 + L_c3_2_z*o_3_t_2 + L_c4_2_z*o_4_t_2 - d0_Gamma_2_t_3 - _y_4*o_1_t_2
-        )
-        # (rrrrrr-N89) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        d0_Gamma_3_x = (
-        d0_Gamma_2_t + L_c3_2_r0_y*o_1_t - Jc_3_zz*o_3_t - L_c3_2_z*o_2_t - L_c4_3_z*o_4_t
-        )
-        d0_Gamma_3_y = (
-        d0_Gamma_2_t_2 + Jc_3_zz*o_3_y + L_c3_2_r0_y*o_1_y + L_c3_2_z*o_2_y + L_c4_3_z*o_4_y
-        )
-        d0_Gamma_3_z = (
-        Jc_3_zz*o_3_t_2 + L_c3_2_z*o_2_t_2 + L_c4_3_z*o_4_t_2 - d0_Gamma_2_t_3 -
-            L_c3_2_r0_y*o_1_t_2
-        )
-        # (rrrrrr-N77) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-        d0_Gamma_4_x = (
-        L_c4_2_r0_y*o_1_t + _y*o_5_t - Jc_4_zz*o_4_t - L_c4_2_z*o_2_t - L_c4_3_z*o_3_t
-        )
-        d0_Gamma_4_y = (
-        Jc_4_zz*o_4_y + L_c4_2_r0_y*o_1_y + L_c4_2_z*o_2_y + L_c4_3_z*o_3_y + _y*o_5_y
-        )
-        d0_Gamma_4_z = (
-        Jc_4_zz*o_4_t_2 + L_c4_2_z*o_2_t_2 + L_c4_3_z*o_3_t_2 - L_c4_2_r0_y*o_1_t_2 - _y*o_5_t_2
-        )
-        # (rrrrrr-N67) coefficient of the acceleration in: moment about axis 5 of the distal links' inertia and weight
-        d0_Gamma_5_x = (
-        J_5_zz*o_5_t + L_c5_r5_y*o_1_t - L_c5_r2_y*o_2_t - L_c5_r2_y*o_3_t - _y*o_4_t
-        )
-        d0_Gamma_5_y = (
-        J_5_zz*o_5_y + L_c5_r2_y*o_2_y + L_c5_r2_y*o_3_y + L_c5_r5_y*o_1_y + _y*o_4_y
-        )
-        d0_Gamma_5_z = (
-        L_c5_r2_y*o_2_t_2 + L_c5_r2_y*o_3_t_2 + _y*o_4_t_2 - J_5_zz*o_5_t_2 - L_c5_r5_y*o_1_t_2
-        )
-        # (rrrrrr-A47) coefficient of the acceleration in: angular acceleration of link 5
-        d0_alpha_5_xx = e_1_r6_x*o_1_t - o_2_t*v_2_t - o_3_t*v_2_t - o_4_t*s_5
-        d0_alpha_5_xy = e_1_r6_x*o_1_y + o_2_y*v_2_t + o_3_y*v_2_t + o_4_y*s_5
-        d0_alpha_5_xz = o_2_t_2*v_2_t + o_3_t_2*v_2_t + o_4_t_2*s_5 - e_1_r6_x*o_1_t_2
-        d0_alpha_5_yx = c_5_t*o_4_t + e_1_r6_y*o_1_t - o_2_t*v_2_t_2 - o_3_t*v_2_t_2
-        d0_alpha_5_yy = e_1_r6_y*o_1_y + o_2_y*v_2_t_2 + o_3_y*v_2_t_2 - c_5_t*o_4_y
-        d0_alpha_5_yz = o_2_t_2*v_2_t_2 + o_3_t_2*v_2_t_2 - c_5_t*o_4_t_2 - e_1_r6_y*o_1_t_2
-        d0_alpha_5_zx = o_5_t - o_1_t*v_1_t - o_2_t*s_4 - o_3_t*s_4
-        d0_alpha_5_zy = o_5_y + o_2_y*s_4 + o_3_y*s_4 - o_1_y*v_1_t
-        d0_alpha_5_zz = o_1_t_2*v_1_t + o_2_t_2*s_4 + o_3_t_2*s_4 - o_5_t_2
-        # (rrrrrr-N131) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d0_c_xx = (
-        d0_Gamma_1_x*w_1_t_90 + d0_Gamma_5_x*w_5_t_5 + d0_alpha_5_zx*h_5_y - d0_Gamma_2_x*w_2_t_2
-            - d0_Gamma_3_x*w_3_t - d0_Gamma_4_x*w_4_t_4 - d0_alpha_5_yx*h_5_z
-        )
-        d0_c_xy = (
-        d0_Gamma_1_y*w_1_t_90 + d0_Gamma_5_y*w_5_t_5 + d0_alpha_5_zy*h_5_y - d0_Gamma_2_y*w_2_t_2
-            - d0_Gamma_3_y*w_3_t - d0_Gamma_4_y*w_4_t_4 - d0_alpha_5_yy*h_5_z
-        )
-        d0_c_xz = (
-        d0_Gamma_1_z*w_1_t_90 + d0_Gamma_5_z*w_5_t_5 + d0_alpha_5_zz*h_5_y - d0_Gamma_2_z*w_2_t_2
-            - d0_Gamma_3_z*w_3_t - d0_Gamma_4_z*w_4_t_4 - d0_alpha_5_yz*h_5_z
-        )
-        d0_c_yx = (
-        d0_Gamma_2_x*w_2_t_3 + d0_Gamma_3_x*w_3_t_2 + d0_Gamma_4_x*w_4_t_5 + d0_alpha_5_xx*h_5_z -
-            d0_Gamma_1_x*w_1_t_91 - d0_Gamma_5_x*w_5_t_6 - d0_alpha_5_zx*h_5_x
-        )
-        d0_c_yy = (
-        d0_Gamma_2_y*w_2_t_3 + d0_Gamma_3_y*w_3_t_2 + d0_Gamma_4_y*w_4_t_5 + d0_alpha_5_xy*h_5_z -
-            d0_Gamma_1_y*w_1_t_91 - d0_Gamma_5_y*w_5_t_6 - d0_alpha_5_zy*h_5_x
-        )
-        d0_c_yz = (
-        d0_Gamma_2_z*w_2_t_3 + d0_Gamma_3_z*w_3_t_2 + d0_Gamma_4_z*w_4_t_5 + d0_alpha_5_xz*h_5_z -
-            d0_Gamma_1_z*w_1_t_91 - d0_Gamma_5_z*w_5_t_6 - d0_alpha_5_zz*h_5_x
-        )
-        d0_c_zx = (
-        d0_Gamma_1_x*w_1_t_92 + d0_Gamma_2_x*w_2_t_4 + d0_Gamma_5_x*w_5_t_7 + d0_alpha_5_yx*h_5_x
-            - d0_Gamma_3_x*w_3_t_3 - d0_Gamma_4_x*w_4_t_6 - d0_alpha_5_xx*h_5_y
-        )
-        d0_c_zy = (
-        d0_Gamma_1_y*w_1_t_92 + d0_Gamma_2_y*w_2_t_4 + d0_Gamma_5_y*w_5_t_7 + d0_alpha_5_yy*h_5_x
-            - d0_Gamma_3_y*w_3_t_3 - d0_Gamma_4_y*w_4_t_6 - d0_alpha_5_xy*h_5_y
-        )
-        d0_c_zz = (
-        d0_Gamma_1_z*w_1_t_92 + d0_Gamma_2_z*w_2_t_4 + d0_Gamma_5_z*w_5_t_7 + d0_alpha_5_yz*h_5_x
-            - d0_Gamma_3_z*w_3_t_3 - d0_Gamma_4_z*w_4_t_6 - d0_alpha_5_xz*h_5_y
-        )
-        # (M2) coupling block of M
-        q_in_base_x = (
-        R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
-        )
-        q_in_base_y = (
-        R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y + R_yz*rrrrrr_platform_point_z
-        )
-        q_in_base_z = (
-        R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y + R_zz*rrrrrr_platform_point_z
-        )
-        M_ta_t = Q_t_13*q_in_base_z
-        M_ta_t_2 = Q_t_14*q_in_base_y
-        M_ta_t_3 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x
-        M_ta_t_4 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x
-        M_ta_t_5 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y
-        M_ta_t_6 = Q_t_17*q_in_base_x
-        M_ta_t_7 = M_ta_t - M_ta_t_6
-        M_ta_t_8 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x
-        M_ta_t_9 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y
-        M_ta_t_10 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x
-        M_ta_t_11 = M_ta_t_2 - M_ta_t_6
-        # (rrrrrr-N131) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d0_c_in_base_x = (
-        axis_x_rrrrrr_axes5_x*d0_c_xx + axis_y_rrrrrr_axes5_in_base_x*d0_c_yx +
-            axis_z_rrrrrr_axes5_in_base_x*d0_c_zx
-        )
-        d0_c_in_base_y = (
-        axis_x_rrrrrr_axes5_y*d0_c_xx + axis_y_rrrrrr_axes5_in_base_y*d0_c_yx +
-            axis_z_rrrrrr_axes5_in_base_y*d0_c_zx
-        )
-        d0_c_in_base_z = (
-        axis_x_rrrrrr_axes5_z*d0_c_xx + axis_y_rrrrrr_axes5_in_base_z*d0_c_yx +
-            axis_z_rrrrrr_axes5_in_base_z*d0_c_zx
-        )
-        d0_c_in_base_x_2 = (
-        axis_x_rrrrrr_axes5_x*d0_c_xy + axis_y_rrrrrr_axes5_in_base_x*d0_c_yy +
-            axis_z_rrrrrr_axes5_in_base_x*d0_c_zy
-        )
-        d0_c_in_base_y_2 = (
-        axis_x_rrrrrr_axes5_y*d0_c_xy + axis_y_rrrrrr_axes5_in_base_y*d0_c_yy +
-            axis_z_rrrrrr_axes5_in_base_y*d0_c_zy
-        )
-        d0_c_in_base_z_2 = (
-        axis_x_rrrrrr_axes5_z*d0_c_xy + axis_y_rrrrrr_axes5_in_base_z*d0_c_yy +
-            axis_z_rrrrrr_axes5_in_base_z*d0_c_zy
-        )
-        d0_c_in_base_x_3 = (
-        axis_x_rrrrrr_axes5_x*d0_c_xz + axis_y_rrrrrr_axes5_in_base_x*d0_c_yz +
-            axis_z_rrrrrr_axes5_in_base_x*d0_c_zz
-        )
-        d0_c_in_base_y_3 = (
-        axis_x_rrrrrr_axes5_y*d0_c_xz + axis_y_rrrrrr_axes5_in_base_y*d0_c_yz +
-            axis_z_rrrrrr_axes5_in_base_y*d0_c_zz
-        )
-        d0_c_in_base_z_3 = (
-        axis_x_rrrrrr_axes5_z*d0_c_xz + axis_y_rrrrrr_axes5_in_base_z*d0_c_yz +
-            axis_z_rrrrrr_axes5_in_base_z*d0_c_zz
-        )
-        d0_c_in_base_y_4 = (
-        axis_x_rrrrrr_axes5_y*d0_c_in_base_x + axis_y_rrrrrr_axes5_in_base_y*d0_c_in_base_x_2 +
-            axis_z_rrrrrr_axes5_in_base_y*d0_c_in_base_x_3
-        )
-        d0_c_in_base_z_4 = (
-        axis_x_rrrrrr_axes5_z*d0_c_in_base_x + axis_y_rrrrrr_axes5_in_base_z*d0_c_in_base_x_2 +
-            axis_z_rrrrrr_axes5_in_base_z*d0_c_in_base_x_3
-        )
-        d0_c_in_base_x_4 = (
-        axis_x_rrrrrr_axes5_x*d0_c_in_base_y + axis_y_rrrrrr_axes5_in_base_x*d0_c_in_base_y_2 +
-            axis_z_rrrrrr_axes5_in_base_x*d0_c_in_base_y_3
-        )
-        d0_c_in_base_y_5 = (
-        axis_x_rrrrrr_axes5_y*d0_c_in_base_y + axis_y_rrrrrr_axes5_in_base_y*d0_c_in_base_y_2 +
-            axis_z_rrrrrr_axes5_in_base_y*d0_c_in_base_y_3
-        )
-        d0_c_in_base_z_5 = (
-        axis_x_rrrrrr_axes5_z*d0_c_in_base_y + axis_y_rrrrrr_axes5_in_base_z*d0_c_in_base_y_2 +
-            axis_z_rrrrrr_axes5_in_base_z*d0_c_in_base_y_3
-        )
-        d0_c_in_base_x_5 = (
-        axis_x_rrrrrr_axes5_x*d0_c_in_base_z + axis_y_rrrrrr_axes5_in_base_x*d0_c_in_base_z_2 +
-            axis_z_rrrrrr_axes5_in_base_x*d0_c_in_base_z_3
-        )
-        d0_c_in_base_y_6 = (
-        axis_x_rrrrrr_axes5_y*d0_c_in_base_z + axis_y_rrrrrr_axes5_in_base_y*d0_c_in_base_z_2 +
-            axis_z_rrrrrr_axes5_in_base_y*d0_c_in_base_z_3
-        )
-        d0_c_in_base_z_6 = (
-        axis_x_rrrrrr_axes5_z*d0_c_in_base_z + axis_y_rrrrrr_axes5_in_base_z*d0_c_in_base_z_2 +
-            axis_z_rrrrrr_axes5_in_base_z*d0_c_in_base_z_3
-        )
-        # (M2) coupling block of M
-        M_ta_t_12 = (
-        M_ta_t - M_ta_t_2 - axis_x_rrrrrr_axes5_x*d0_c_in_base_x -
-            axis_y_rrrrrr_axes5_in_base_x*d0_c_in_base_x_2 -
-            axis_z_rrrrrr_axes5_in_base_x*d0_c_in_base_x_3
-        )
-        M_ta_t_13 = M_ta_t_3 + d0_c_in_base_y_4
-        M_ta_t_14 = M_ta_t_4 - d0_c_in_base_z_4
-        M_ta_t_15 = M_ta_t_5 - d0_c_in_base_x_4
-        M_ta_t_16 = M_ta_t_7 + d0_c_in_base_y_5
-        M_ta_t_17 = M_ta_t_8 - d0_c_in_base_z_5
-        M_ta_t_18 = M_ta_t_9 - d0_c_in_base_x_5
-        M_ta_t_19 = M_ta_t_10 + d0_c_in_base_y_6
-        M_ta_t_20 = M_ta_t_11 - d0_c_in_base_z_6
-        # (rrrrrr-N119) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        d0_G_m1_x = (
-        d0_Gamma_2_x*w_2_t_5 + d0_Gamma_3_x*w_3_t_4 + d0_Gamma_4_x*w_4_t_7 - d0_Gamma_1_x*w_1_t_93
-            - d0_Gamma_5_x*w_5_t_8
-        )
-        d0_G_m1_y = (
-        d0_Gamma_2_y*w_2_t_5 + d0_Gamma_3_y*w_3_t_4 + d0_Gamma_4_y*w_4_t_7 - d0_Gamma_1_y*w_1_t_93
-            - d0_Gamma_5_y*w_5_t_8
-        )
-        d0_G_m1_z = (
-        d0_Gamma_2_z*w_2_t_5 + d0_Gamma_3_z*w_3_t_4 + d0_Gamma_4_z*w_4_t_7 - d0_Gamma_1_z*w_1_t_93
-            - d0_Gamma_5_z*w_5_t_8
-        )
-        # (rrrrrr-N123) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
-        d0_G_m2_x = (
-        d0_Gamma_2_x*w_2_t_6 + d0_Gamma_3_x*w_3_t_5 + d0_Gamma_4_x*w_4_t_8 - d0_Gamma_1_x*w_1_t_94
-            - d0_Gamma_5_x*w_5_t_9
-        )
-        d0_G_m2_y = (
-        d0_Gamma_2_y*w_2_t_6 + d0_Gamma_3_y*w_3_t_5 + d0_Gamma_4_y*w_4_t_8 - d0_Gamma_1_y*w_1_t_94
-            - d0_Gamma_5_y*w_5_t_9
-        )
-        d0_G_m2_z = (
-        d0_Gamma_2_z*w_2_t_6 + d0_Gamma_3_z*w_3_t_5 + d0_Gamma_4_z*w_4_t_8 - d0_Gamma_1_z*w_1_t_94
-            - d0_Gamma_5_z*w_5_t_9
-        )
-        # (rrrrrr-N120) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        d_G_m1_x = (
-        d_Gamma_2_x*w_2_t_5 + d_Gamma_3_x*w_3_t_4 + d_Gamma_4_x*w_4_t_7 - d_Gamma_1_x*w_1_t_93 -
-            d_Gamma_5_x*w_5_t_8
-        )
-        d_G_m1_y = (
-        d_Gamma_2_y*w_2_t_5 + d_Gamma_3_y*w_3_t_4 + d_Gamma_4_y*w_4_t_7 - d_Gamma_1_y*w_1_t_93 -
-            d_Gamma_5_y*w_5_t_8
-        )
-        d_G_m1_z = (
-        d_Gamma_2_z*w_2_t_5 + d_Gamma_3_z*w_3_t_4 + d_Gamma_4_z*w_4_t_7 - d_Gamma_1_z*w_1_t_93 -
-            d_Gamma_5_t_6*w_5_t_8
-        )
-        # (rrrrrr-N124) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
-        d_G_m2_x = (
-        d_Gamma_2_x*w_2_t_6 + d_Gamma_3_x*w_3_t_5 + d_Gamma_4_x*w_4_t_8 - d_Gamma_1_x*w_1_t_94 -
-            d_Gamma_5_x*w_5_t_9
-        )
-        d_G_m2_y = (
-        d_Gamma_2_y*w_2_t_6 + d_Gamma_3_y*w_3_t_5 + d_Gamma_4_y*w_4_t_8 - d_Gamma_1_y*w_1_t_94 -
-            d_Gamma_5_y*w_5_t_9
-        )
-        d_G_m2_z = (
-        d_Gamma_2_z*w_2_t_6 + d_Gamma_3_z*w_3_t_5 + d_Gamma_4_z*w_4_t_8 - d_Gamma_1_z*w_1_t_94 -
-            d_Gamma_5_t_6*w_5_t_9
-        )
-        # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-        n_m1_in_base_x = (
-        axis_y_rrrrrr_axes5_in_base_x*end_p1_r8_x - axis_x_rrrrrr_axes5_x*end_p1_r8_y
-        )
-        n_m1_in_base_y = (
-        axis_y_rrrrrr_axes5_in_base_y*end_p1_r8_x - axis_x_rrrrrr_axes5_y*end_p1_r8_y
-        )
-        n_m1_in_base_z = (
-        axis_y_rrrrrr_axes5_in_base_z*end_p1_r8_x - axis_x_rrrrrr_axes5_z*end_p1_r8_y
-        )
-        # (rrrrrr-N120) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        d_G_m1_in_base_x = (
-        axis_x_rrrrrr_axes5_x*d_G_m1_x + axis_y_rrrrrr_axes5_in_base_x*d_G_m1_y +
-            axis_z_rrrrrr_axes5_in_base_x*d_G_m1_z
-        )
-        d_G_m1_in_base_y = (
-        axis_x_rrrrrr_axes5_y*d_G_m1_x + axis_y_rrrrrr_axes5_in_base_y*d_G_m1_y +
-            axis_z_rrrrrr_axes5_in_base_y*d_G_m1_z
-        )
-        d_G_m1_in_base_z = (
-        axis_x_rrrrrr_axes5_z*d_G_m1_x + axis_y_rrrrrr_axes5_in_base_z*d_G_m1_y +
-            axis_z_rrrrrr_axes5_in_base_z*d_G_m1_z
-        )
-        # (rrrrrr-V12) direction 2 of the moment that the platform joint transmits
-        n_m2_in_base_x = (
-        axis_z_rrrrrr_axes5_in_base_x*end_p1_r8_y - axis_y_rrrrrr_axes5_in_base_x*end_p1_r6_x
-        )
-        n_m2_in_base_y = (
-        axis_z_rrrrrr_axes5_in_base_y*end_p1_r8_y - axis_y_rrrrrr_axes5_in_base_y*end_p1_r6_x
-        )
-        n_m2_in_base_z = (
-        axis_z_rrrrrr_axes5_in_base_z*end_p1_r8_y - axis_y_rrrrrr_axes5_in_base_z*end_p1_r6_x
-        )
-        # (rrrrrr-N124) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
-        d_G_m2_in_base_x = (
-        axis_x_rrrrrr_axes5_x*d_G_m2_x + axis_y_rrrrrr_axes5_in_base_x*d_G_m2_y +
-            axis_z_rrrrrr_axes5_in_base_x*d_G_m2_z
-        )
-        d_G_m2_in_base_y = (
-        axis_x_rrrrrr_axes5_y*d_G_m2_x + axis_y_rrrrrr_axes5_in_base_y*d_G_m2_y +
-            axis_z_rrrrrr_axes5_in_base_y*d_G_m2_z
-        )
-        d_G_m2_in_base_z = (
-        axis_x_rrrrrr_axes5_z*d_G_m2_x + axis_y_rrrrrr_axes5_in_base_z*d_G_m2_y +
-            axis_z_rrrrrr_axes5_in_base_z*d_G_m2_z
-        )
-        # (rrrrrr-N128) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_m_xx = d_G_m1_in_base_x*n_m1_in_base_x + d_G_m2_in_base_x*n_m2_in_base_x
-        d_G_m_xy = d_G_m1_in_base_y*n_m1_in_base_x + d_G_m2_in_base_y*n_m2_in_base_x
-        d_G_m_xz = d_G_m1_in_base_z*n_m1_in_base_x + d_G_m2_in_base_z*n_m2_in_base_x
-        d_G_m_yx = d_G_m1_in_base_x*n_m1_in_base_y + d_G_m2_in_base_x*n_m2_in_base_y
-        # (rrrrrr-N119) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        d0_G_m1_in_base_y = (
-        axis_x_rrrrrr_axes5_y*d0_G_m1_x + axis_y_rrrrrr_axes5_in_base_y*d0_G_m1_y +
-            axis_z_rrrrrr_axes5_in_base_y*d0_G_m1_z
-        )
-        d0_G_m1_in_base_z = (
-        axis_x_rrrrrr_axes5_z*d0_G_m1_x + axis_y_rrrrrr_axes5_in_base_z*d0_G_m1_y +
-            axis_z_rrrrrr_axes5_in_base_z*d0_G_m1_z
-        )
-        # (rrrrrr-N123) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
-        d0_G_m2_in_base_y = (
-        axis_x_rrrrrr_axes5_y*d0_G_m2_x + axis_y_rrrrrr_axes5_in_base_y*d0_G_m2_y +
-            axis_z_rrrrrr_axes5_in_base_y*d0_G_m2_z
-        )
-        d0_G_m2_in_base_z = (
-        axis_x_rrrrrr_axes5_z*d0_G_m2_x + axis_y_rrrrrr_axes5_in_base_z*d0_G_m2_y +
-            axis_z_rrrrrr_axes5_in_base_z*d0_G_m2_z
-        )
-        # (M3) rotational block of M
-        M_aa_t = (
-        M_ta_t_5*q_in_base_z + d0_c_in_base_x_5*q_in_base_y + d_G_m_xy*q_in_base_z -
-            M_ta_t_9*q_in_base_y - d0_c_in_base_x_4*q_in_base_z - d_G_m_xz*q_in_base_y -
-            n_m1_in_base_x*(axis_x_rrrrrr_axes5_x*d0_G_m1_x +
-            axis_y_rrrrrr_axes5_in_base_x*d0_G_m1_y + axis_z_rrrrrr_axes5_in_base_x*d0_G_m1_z) -
-            n_m2_in_base_x*(axis_x_rrrrrr_axes5_x*d0_G_m2_x +
-            axis_y_rrrrrr_axes5_in_base_x*d0_G_m2_y + axis_z_rrrrrr_axes5_in_base_x*d0_G_m2_z)
-        )
-        M_aa_t_2 = (
-        M_ta_t_7*q_in_base_z + d0_G_m1_in_base_y*n_m1_in_base_x + d0_G_m2_in_base_y*n_m2_in_base_x
-            + d0_c_in_base_y_5*q_in_base_z + d_G_m_xx*q_in_base_z - M_ta_t_10*q_in_base_y -
-            d0_c_in_base_y_6*q_in_base_y - d_G_m_xz*q_in_base_x
-        )
-        M_aa_t_3 = (
-        M_ta_t_11*q_in_base_y + d0_G_m1_in_base_z*n_m1_in_base_x +
-            d0_G_m2_in_base_z*n_m2_in_base_x + d0_c_in_base_z_5*q_in_base_z + d_G_m_xy*q_in_base_x
-            - M_ta_t_8*q_in_base_z - d0_c_in_base_z_6*q_in_base_y - d_G_m_xx*q_in_base_y
-        )
-        M_aa_t_4 = (
-        M_ta_t_3*q_in_base_z + d0_c_in_base_y_4*q_in_base_z +
-            q_in_base_x*(d_G_m1_in_base_z*n_m1_in_base_y + d_G_m2_in_base_z*n_m2_in_base_y) -
-            M_ta_t_10*q_in_base_x - d0_G_m1_in_base_y*n_m1_in_base_y -
-            d0_G_m2_in_base_y*n_m2_in_base_y - d0_c_in_base_y_6*q_in_base_x - d_G_m_yx*q_in_base_z
-        )
-        M_aa_t_5 = (
-        M_ta_t_4*q_in_base_z + d0_G_m1_in_base_z*n_m1_in_base_y + d0_G_m2_in_base_z*n_m2_in_base_y
-            + d0_c_in_base_z_6*q_in_base_x + q_in_base_x*(d_G_m1_in_base_y*n_m1_in_base_y +
-            d_G_m2_in_base_y*n_m2_in_base_y) - M_ta_t_11*q_in_base_x -
-            d0_c_in_base_z_4*q_in_base_z - d_G_m_yx*q_in_base_y
-        )
-        M_aa_t_6 = (
-        M_ta_t_4*q_in_base_y + d0_c_in_base_z_5*q_in_base_x +
-            q_in_base_y*(d_G_m1_in_base_x*n_m1_in_base_z + d_G_m2_in_base_x*n_m2_in_base_z) -
-            M_ta_t_8*q_in_base_x - d0_G_m1_in_base_z*n_m1_in_base_z -
-            d0_G_m2_in_base_z*n_m2_in_base_z - d0_c_in_base_z_4*q_in_base_y -
-            q_in_base_x*(d_G_m1_in_base_y*n_m1_in_base_z + d_G_m2_in_base_y*n_m2_in_base_z)
+        six_r_q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
+        six_r_q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
+        six_r_q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
+        six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
+        six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
+        six_r_c_5_t = sin(six_r_q_5)
+        # (six_r-s_5) sine of the angle of joint 5 from its reference direction
+        six_r_s_5 = cos(six_r_q_5)
+        # (six_r-r_4) from joint 4 to the connection point, along the links
+        six_r_r_4_t = six_r_c_5_t*six_r_platform_joint_offset_x
+        six_r_r_4_z = six_r_joint5_offset_x + six_r_platform_joint_offset_x*six_r_s_5
+        # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
+        six_r_c_4_t = sin(six_r_q_4)
+        # (six_r-s_4) sine of the angle of joint 4 from its reference direction
+        six_r_s_4 = cos(six_r_q_4)
+        # (six_r-r_4) from joint 4 to the connection point, along the links
+        six_r_r_4_t_2 = six_r_r_4_t*six_r_s_4
+        six_r_r_4_t_3 = six_r_c_4_t*six_r_r_4_t
+        # (six_r-r_3) from joint 3 to the connection point, along the links
+        six_r_r_3_x = six_r_joint4_offset_x + six_r_r_4_z
+        # (six_r-c_3) cosine of the angle of joint 3 from its reference direction
+        six_r_c_3 = cos(six_r_q_3)
+        # (six_r-s_3) sine of the angle of joint 3 from its reference direction
+        six_r_s_3 = sin(six_r_q_3)
+        # (six_r-r_3) from joint 3 to the connection point, along the links
+        six_r_r_3_r0_y = six_r_c_3*six_r_r_4_t_2 + six_r_r_3_x*six_r_s_3
+        # (six_r-r_2) from joint 2 to the connection point, along the links
+        six_r_r_2_x = six_r_joint3_offset_x + six_r_c_3*six_r_r_3_x - six_r_r_4_t_2*six_r_s_3
+        # (six_r-c_2) cosine of the angle of joint 2 from its reference direction
+        six_r_c_2_t = sin(six_r_q_2)
+        # (six_r-s_2) sine of the angle of joint 2 from its reference direction
+        six_r_s_2 = cos(six_r_q_2)
+        # (six_r-r_2) from joint 2 to the connection point, along the links
+        six_r_r_2_r0_x = -six_r_c_2_t*six_r_r_2_x - six_r_r_3_r0_y*six_r_s_2
+        # (six_r-r_1) from joint 1 to the connection point, along the links
+        six_r_r_1_z = six_r_joint2_offset_x + six_r_r_2_x*six_r_s_2 - six_r_c_2_t*six_r_r_3_r0_y
+        # (six_r-v_1) velocity of the connection point per rate of joint 1
+        six_r_e_1_r2_x = six_r_c_3*six_r_s_2 - six_r_c_2_t*six_r_s_3
+        six_r_e_1_r2_y = -six_r_c_2_t*six_r_c_3 - six_r_s_2*six_r_s_3
+        six_r_v_1_t = six_r_c_4_t*six_r_e_1_r2_y
+        six_r_v_1_t_2 = six_r_e_1_r2_y*six_r_s_4
+        six_r_e_1_r6_x = six_r_c_5_t*six_r_v_1_t_2 + six_r_e_1_r2_x*six_r_s_5
+        six_r_e_1_r6_y = six_r_s_5*six_r_v_1_t_2 - six_r_c_5_t*six_r_e_1_r2_x
+        # (six_r-r_1) from joint 1 to the connection point, along the links
+        six_r_r_1_r1_x = six_r_r_1_z*six_r_s_2 - six_r_c_2_t*six_r_r_2_r0_x
+        six_r_r_1_r1_y = -six_r_c_2_t*six_r_r_1_z - six_r_r_2_r0_x*six_r_s_2
+        six_r_r_1_r2_x = six_r_c_3*six_r_r_1_r1_x + six_r_r_1_r1_y*six_r_s_3
+        six_r_r_1_r2_y = six_r_c_3*six_r_r_1_r1_y - six_r_r_1_r1_x*six_r_s_3
+        six_r_r_1_t = six_r_r_4_t_3*six_r_s_4
+        six_r_r_1_r4_x = six_r_r_1_t - six_r_c_4_t*six_r_r_1_r2_y
+        six_r_r_1_t_2 = six_r_c_4_t*six_r_r_4_t_3
+        six_r_r_1_r4_y = -six_r_r_1_t_2 - six_r_r_1_r2_y*six_r_s_4
+        six_r_r_1_r6_x = six_r_r_1_r2_x*six_r_s_5 - six_r_c_5_t*six_r_r_1_r4_y
+        six_r_r_1_r6_y = -six_r_c_5_t*six_r_r_1_r2_x - six_r_r_1_r4_y*six_r_s_5
+        # (six_r-v_1) velocity of the connection point per rate of joint 1
+        six_r_v_1_x = six_r_e_1_r6_y*six_r_r_1_r4_x + six_r_r_1_r6_y*six_r_v_1_t
+        six_r_v_1_y = -six_r_e_1_r6_x*six_r_r_1_r4_x - six_r_r_1_r6_x*six_r_v_1_t
+        six_r_v_1_z = six_r_e_1_r6_x*six_r_r_1_r6_y - six_r_e_1_r6_y*six_r_r_1_r6_x
+        # (six_r-v_2) velocity of the connection point per rate of joint 2
+        six_r_v_2_t = six_r_c_4_t*six_r_c_5_t
+        six_r_v_2_t_2 = six_r_c_4_t*six_r_s_5
+        # (six_r-r_2) from joint 2 to the connection point, along the links
+        six_r_r_2_r0_x_2 = six_r_c_3*six_r_r_2_x + six_r_r_3_r0_y*six_r_s_3
+        six_r_r_2_r0_y = six_r_c_3*six_r_r_3_r0_y - six_r_r_2_x*six_r_s_3
+        six_r_r_2_r2_x = six_r_r_1_t - six_r_c_4_t*six_r_r_2_r0_y
+        six_r_r_2_r2_y = -six_r_r_1_t_2 - six_r_r_2_r0_y*six_r_s_4
+        six_r_r_2_r4_x = six_r_r_2_r0_x_2*six_r_s_5 - six_r_c_5_t*six_r_r_2_r2_y
+        six_r_r_2_r4_y = -six_r_c_5_t*six_r_r_2_r0_x_2 - six_r_r_2_r2_y*six_r_s_5
+        # (six_r-v_2) velocity of the connection point per rate of joint 2
+        six_r_v_2_x = six_r_r_2_r2_x*six_r_v_2_t_2 - six_r_r_2_r4_y*six_r_s_4
+        six_r_v_2_y = six_r_r_2_r4_x*six_r_s_4 - six_r_r_2_r2_x*six_r_v_2_t
+        six_r_v_2_z = six_r_r_2_r4_y*six_r_v_2_t - six_r_r_2_r4_x*six_r_v_2_t_2
+        # (six_r-r_3) from joint 3 to the connection point, along the links
+        six_r_r_3_r1_x = six_r_r_1_t - six_r_c_4_t*six_r_r_4_t_2
+        six_r_r_3_r1_y = -six_r_r_1_t_2 - six_r_r_4_t_2*six_r_s_4
+        six_r_r_3_r3_x = six_r_r_3_x*six_r_s_5 - six_r_c_5_t*six_r_r_3_r1_y
+        six_r_r_3_r3_y = -six_r_c_5_t*six_r_r_3_x - six_r_r_3_r1_y*six_r_s_5
+        # (six_r-v_3) velocity of the connection point per rate of joint 3
+        six_r_v_3_x = six_r_r_3_r1_x*six_r_v_2_t_2 - six_r_r_3_r3_y*six_r_s_4
+        six_r_v_3_y = six_r_r_3_r3_x*six_r_s_4 - six_r_r_3_r1_x*six_r_v_2_t
+        six_r_v_3_z = six_r_r_3_r3_y*six_r_v_2_t - six_r_r_3_r3_x*six_r_v_2_t_2
+        # (six_r-v_4) velocity of the connection point per rate of joint 4
+        six_r_v_4_z = (
+        six_r_c_5_t*(six_r_c_5_t*six_r_r_4_t + six_r_r_4_z*six_r_s_5) +
+            six_r_s_5*(six_r_r_4_t*six_r_s_5 - six_r_c_5_t*six_r_r_4_z)
+        )
+        # (six_r-w_1) force part of reciprocal wrench 1
+        six_r_w_1_t = six_r_c_4_t*six_r_s_3
+        six_r_w_1_t_2 = six_r_c_3*six_r_c_4_t
+        axis_z_six_r_axes5_r5_x = six_r_s_2*six_r_w_1_t_2 - six_r_c_2_t*six_r_w_1_t
+        axis_z_six_r_axes5_r5_y = six_r_c_2_t*six_r_w_1_t_2 + six_r_s_2*six_r_w_1_t
+        # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
+        six_r_c_1_t = sin(six_r_q_1)
+        # (six_r-s_1) sine of the angle of joint 1 from its reference direction
+        six_r_s_1 = cos(six_r_q_1)
+        # (six_r-w_1) force part of reciprocal wrench 1
+        axis_z_six_r_axes5_r7_x = -axis_z_six_r_axes5_r5_x*six_r_s_1 - six_r_c_1_t*six_r_s_4
+        axis_z_six_r_axes5_r7_y = six_r_s_1*six_r_s_4 - axis_z_six_r_axes5_r5_x*six_r_c_1_t
+        axis_z_six_r_axes5_in_base_x = (
+        axis_z_six_r_axes5_r5_y*six_r_base_frame_xx + axis_z_six_r_axes5_r7_x*six_r_base_frame_xy
+            + axis_z_six_r_axes5_r7_y*six_r_base_frame_xz
+        )
+        axis_z_six_r_axes5_in_base_y = (
+        axis_z_six_r_axes5_r5_y*six_r_base_frame_yx + axis_z_six_r_axes5_r7_x*six_r_base_frame_yy
+            + axis_z_six_r_axes5_r7_y*six_r_base_frame_yz
+        )
+        axis_z_six_r_axes5_in_base_z = (
+        axis_z_six_r_axes5_r5_y*six_r_base_frame_zx + axis_z_six_r_axes5_r7_x*six_r_base_frame_zy
+            + axis_z_six_r_axes5_r7_y*six_r_base_frame_zz
+        )
+        six_r_w_1_t_3 = six_r_s_4*six_r_s_5
+        axis_y_six_r_axes5_r4_x = -six_r_c_3*six_r_c_5_t - six_r_s_3*six_r_w_1_t_3
+        axis_y_six_r_axes5_r4_y = six_r_c_3*six_r_w_1_t_3 - six_r_c_5_t*six_r_s_3
+        axis_y_six_r_axes5_r5_x = (
+        -axis_y_six_r_axes5_r4_x*six_r_c_2_t - axis_y_six_r_axes5_r4_y*six_r_s_2
+        )
+        axis_y_six_r_axes5_r5_y = (
+        axis_y_six_r_axes5_r4_x*six_r_s_2 - axis_y_six_r_axes5_r4_y*six_r_c_2_t
+        )
+        axis_y_six_r_axes5_r7_x = -axis_y_six_r_axes5_r5_x*six_r_s_1 - six_r_c_1_t*six_r_v_2_t_2
+        axis_y_six_r_axes5_r7_y = six_r_s_1*six_r_v_2_t_2 - axis_y_six_r_axes5_r5_x*six_r_c_1_t
+        axis_y_six_r_axes5_in_base_x = (
+        axis_y_six_r_axes5_r5_y*six_r_base_frame_xx + axis_y_six_r_axes5_r7_x*six_r_base_frame_xy
+            + axis_y_six_r_axes5_r7_y*six_r_base_frame_xz
+        )
+        axis_y_six_r_axes5_in_base_y = (
+        axis_y_six_r_axes5_r5_y*six_r_base_frame_yx + axis_y_six_r_axes5_r7_x*six_r_base_frame_yy
+            + axis_y_six_r_axes5_r7_y*six_r_base_frame_yz
+        )
+        axis_y_six_r_axes5_in_base_z = (
+        axis_y_six_r_axes5_r5_y*six_r_base_frame_zx + axis_y_six_r_axes5_r7_x*six_r_base_frame_zy
+            + axis_y_six_r_axes5_r7_y*six_r_base_frame_zz
+        )
+        axis_x_six_r_axes5_x = (
+        axis_y_six_r_axes5_in_base_y*axis_z_six_r_axes5_in_base_z -
+            axis_y_six_r_axes5_in_base_z*axis_z_six_r_axes5_in_base_y
+        )
+        axis_x_six_r_axes5_y = (
+        axis_y_six_r_axes5_in_base_z*axis_z_six_r_axes5_in_base_x -
+            axis_y_six_r_axes5_in_base_x*axis_z_six_r_axes5_in_base_z
+        )
+        axis_x_six_r_axes5_z = (
+        axis_y_six_r_axes5_in_base_x*axis_z_six_r_axes5_in_base_y -
+            axis_y_six_r_axes5_in_base_y*axis_z_six_r_axes5_in_base_x
+        )
+        # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
+        six_r_end_p1_r0_x = (
+        six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xy + R_yx*six_r_base_frame_yy
+            + R_zx*six_r_base_frame_zy) +
+            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xy +
+            R_yy*six_r_base_frame_yy + R_zy*six_r_base_frame_zy) +
+            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xy +
+            R_yz*six_r_base_frame_yy + R_zz*six_r_base_frame_zy)
+        )
+        six_r_end_p1_r0_y = (
+        six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xz + R_yx*six_r_base_frame_yz
+            + R_zx*six_r_base_frame_zz) +
+            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xz +
+            R_yy*six_r_base_frame_yz + R_zy*six_r_base_frame_zz) +
+            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xz +
+            R_yz*six_r_base_frame_yz + R_zz*six_r_base_frame_zz)
+        )
+        six_r_end_p1_r0_z = (
+        six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xx + R_yx*six_r_base_frame_yx
+            + R_zx*six_r_base_frame_zx) +
+            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xx +
+            R_yy*six_r_base_frame_yx + R_zy*six_r_base_frame_zx) +
+            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xx +
+            R_yz*six_r_base_frame_yx + R_zz*six_r_base_frame_zx)
+        )
+        six_r_end_p1_r1_x = six_r_end_p1_r0_y*six_r_s_1 - six_r_c_1_t*six_r_end_p1_r0_x
+        six_r_end_p1_r1_y = -six_r_c_1_t*six_r_end_p1_r0_y - six_r_end_p1_r0_x*six_r_s_1
+        six_r_end_p1_r3_x = six_r_end_p1_r0_z*six_r_s_2 - six_r_c_2_t*six_r_end_p1_r1_y
+        six_r_end_p1_r3_y = -six_r_c_2_t*six_r_end_p1_r0_z - six_r_end_p1_r1_y*six_r_s_2
+        six_r_end_p1_r4_x = six_r_c_3*six_r_end_p1_r3_x + six_r_end_p1_r3_y*six_r_s_3
+        six_r_end_p1_r4_y = six_r_c_3*six_r_end_p1_r3_y - six_r_end_p1_r3_x*six_r_s_3
+        six_r_end_p1_r6_x = six_r_end_p1_r1_x*six_r_s_4 - six_r_c_4_t*six_r_end_p1_r4_y
+        six_r_end_p1_r6_y = -six_r_c_4_t*six_r_end_p1_r1_x - six_r_end_p1_r4_y*six_r_s_4
+        six_r_end_p1_r8_x = six_r_end_p1_r4_x*six_r_s_5 - six_r_c_5_t*six_r_end_p1_r6_y
+        six_r_end_p1_r8_y = -six_r_c_5_t*six_r_end_p1_r4_x - six_r_end_p1_r6_y*six_r_s_5
+        # (six_r-w_1) force part of reciprocal wrench 1
+        six_r_w_1_t_4 = six_r_e_1_r6_x*six_r_end_p1_r8_y - six_r_e_1_r6_y*six_r_end_p1_r8_x
+        six_r_w_1_t_5 = six_r_end_p1_r8_y*six_r_v_2_t - six_r_end_p1_r8_x*six_r_v_2_t_2
+        six_r_w_1_t_6 = six_r_e_1_r6_y*six_r_end_p1_r6_x + six_r_end_p1_r8_y*six_r_v_1_t
+        six_r_w_1_t_7 = six_r_end_p1_r6_x*six_r_v_2_t_2 - six_r_end_p1_r8_y*six_r_s_4
+        six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4
+        six_r_w_1_t_9 = six_r_size*six_r_w_1_t_6
+        six_r_w_1_t_10 = six_r_size*six_r_w_1_t_5
+        six_r_w_1_t_11 = six_r_size*six_r_w_1_t_7
+        six_r_w_1_t_12 = six_r_size*(-six_r_c_5_t*six_r_end_p1_r8_x - six_r_end_p1_r8_y*six_r_s_5)
+        six_r_w_1_t_13 = six_r_c_5_t*six_r_end_p1_r6_x*six_r_size
+        six_r_w_1_t_14 = six_r_end_p1_r8_y*six_r_size
+        six_r_w_1_t_15 = sqrt(six_r_size_t + six_r_w_1_t_14*six_r_w_1_t_14)
+        inv_six_r_w_1_t_69 = 1.0/six_r_w_1_t_15
+        six_r_w_1_t_16 = inv_six_r_w_1_t_69*six_r_platform_joint_offset_x
+        six_r_w_1_t_17 = inv_six_r_w_1_t_69*six_r_w_1_t_14
+        six_r_w_1_t_18 = six_r_w_1_t_13*six_r_w_1_t_17
+        six_r_w_1_t_19 = six_r_w_1_t_16*six_r_w_1_t_18
+        six_r_w_1_t_20 = six_r_w_1_t_13 - six_r_w_1_t_17*six_r_w_1_t_18
+        six_r_w_1_t_21 = six_r_v_1_y*six_r_w_1_t_16 - six_r_w_1_t_17*six_r_w_1_t_9
+        six_r_w_1_t_22 = six_r_v_1_y - six_r_w_1_t_16*six_r_w_1_t_21
+        six_r_w_1_t_23 = six_r_w_1_t_9 + six_r_w_1_t_17*six_r_w_1_t_21
+        six_r_w_1_t_24 = six_r_w_1_t_11*six_r_w_1_t_17
+        six_r_w_1_t_25 = six_r_v_2_y*six_r_w_1_t_16 - six_r_w_1_t_24
+        six_r_w_1_t_26 = six_r_v_2_y - six_r_w_1_t_16*six_r_w_1_t_25
+        six_r_w_1_t_27 = six_r_w_1_t_11 + six_r_w_1_t_17*six_r_w_1_t_25
+        six_r_w_1_t_28 = six_r_w_1_t_24 - six_r_v_3_y*six_r_w_1_t_16
+        six_r_w_1_t_29 = six_r_v_3_y + six_r_w_1_t_16*six_r_w_1_t_28
+        six_r_w_1_t_30 = six_r_w_1_t_11 - six_r_w_1_t_17*six_r_w_1_t_28
+        six_r_w_1_t_31 = (
+        sqrt(six_r_v_4_z*six_r_v_4_z + six_r_w_1_t_12*six_r_w_1_t_12 +
+            six_r_w_1_t_19*six_r_w_1_t_19 + six_r_w_1_t_20*six_r_w_1_t_20)
+        )
+        inv_six_r_w_1_t_101 = 1.0/six_r_w_1_t_31
+        six_r_w_1_t_32 = inv_six_r_w_1_t_101*six_r_w_1_t_19
+        six_r_w_1_t_33 = inv_six_r_w_1_t_101*six_r_v_4_z
+        six_r_w_1_t_34 = inv_six_r_w_1_t_101*six_r_w_1_t_12
+        six_r_w_1_t_35 = inv_six_r_w_1_t_101*six_r_w_1_t_20
+        six_r_w_1_t_36 = (
+        six_r_w_1_t_22*six_r_w_1_t_32 + six_r_w_1_t_23*six_r_w_1_t_35 +
+            six_r_w_1_t_34*six_r_w_1_t_8 - six_r_v_1_z*six_r_w_1_t_33
+        )
+        six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_36 - six_r_w_1_t_22
+        six_r_w_1_t_38 = six_r_v_1_z + six_r_w_1_t_33*six_r_w_1_t_36
+        six_r_w_1_t_39 = six_r_w_1_t_34*six_r_w_1_t_36 - six_r_w_1_t_8
+        six_r_w_1_t_40 = six_r_w_1_t_35*six_r_w_1_t_36 - six_r_w_1_t_23
+        six_r_w_1_t_41 = six_r_w_1_t_10*six_r_w_1_t_34
+        six_r_w_1_t_42 = (
+        six_r_w_1_t_41 + six_r_w_1_t_26*six_r_w_1_t_32 + six_r_w_1_t_27*six_r_w_1_t_35 -
+            six_r_v_2_z*six_r_w_1_t_33
+        )
+        six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_42 - six_r_w_1_t_26
+        six_r_w_1_t_44 = six_r_v_2_z + six_r_w_1_t_33*six_r_w_1_t_42
+        six_r_w_1_t_45 = six_r_w_1_t_34*six_r_w_1_t_42 - six_r_w_1_t_10
+        six_r_w_1_t_46 = six_r_w_1_t_35*six_r_w_1_t_42 - six_r_w_1_t_27
+        six_r_w_1_t_47 = (
+        six_r_w_1_t_41 + six_r_w_1_t_29*six_r_w_1_t_32 + six_r_w_1_t_30*six_r_w_1_t_35 -
+            six_r_v_3_z*six_r_w_1_t_33
+        )
+        six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_47 - six_r_w_1_t_29
+        six_r_w_1_t_49 = six_r_v_3_z + six_r_w_1_t_33*six_r_w_1_t_47
+        six_r_w_1_t_50 = six_r_w_1_t_34*six_r_w_1_t_47 - six_r_w_1_t_10
+        six_r_w_1_t_51 = six_r_w_1_t_35*six_r_w_1_t_47 - six_r_w_1_t_30
+        six_r_w_1_t_52 = (
+        sqrt(six_r_v_1_x*six_r_v_1_x + six_r_w_1_t_37*six_r_w_1_t_37 +
+            six_r_w_1_t_38*six_r_w_1_t_38 + six_r_w_1_t_39*six_r_w_1_t_39 +
+            six_r_w_1_t_40*six_r_w_1_t_40)
+        )
+        inv_six_r_w_1_t_150 = 1.0/six_r_w_1_t_52
+        six_r_w_1_t_53 = inv_six_r_w_1_t_150*six_r_v_1_x
+        six_r_w_1_t_54 = inv_six_r_w_1_t_150*six_r_w_1_t_37
+        six_r_w_1_t_55 = inv_six_r_w_1_t_150*six_r_w_1_t_38
+        six_r_w_1_t_56 = inv_six_r_w_1_t_150*six_r_w_1_t_39
+        six_r_w_1_t_57 = inv_six_r_w_1_t_150*six_r_w_1_t_40
+        six_r_w_1_t_58 = (
+        six_r_v_2_x*six_r_w_1_t_53 + six_r_w_1_t_43*six_r_w_1_t_54 + six_r_w_1_t_44*six_r_w_1_t_55
+            + six_r_w_1_t_45*six_r_w_1_t_56 + six_r_w_1_t_46*six_r_w_1_t_57
+        )
+        six_r_w_1_t_59 = six_r_v_2_x - six_r_w_1_t_53*six_r_w_1_t_58
+        six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_58
+        six_r_w_1_t_61 = six_r_w_1_t_44 - six_r_w_1_t_55*six_r_w_1_t_58
+        six_r_w_1_t_62 = six_r_w_1_t_45 - six_r_w_1_t_56*six_r_w_1_t_58
+        six_r_w_1_t_63 = six_r_w_1_t_46 - six_r_w_1_t_57*six_r_w_1_t_58
+        six_r_w_1_t_64 = (
+        six_r_v_3_x*six_r_w_1_t_53 + six_r_w_1_t_48*six_r_w_1_t_54 + six_r_w_1_t_49*six_r_w_1_t_55
+            + six_r_w_1_t_50*six_r_w_1_t_56 + six_r_w_1_t_51*six_r_w_1_t_57
+        )
+        six_r_w_1_t_65 = six_r_v_3_x - six_r_w_1_t_53*six_r_w_1_t_64
+        six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_64
+        six_r_w_1_t_67 = six_r_w_1_t_49 - six_r_w_1_t_55*six_r_w_1_t_64
+        six_r_w_1_t_68 = six_r_w_1_t_50 - six_r_w_1_t_56*six_r_w_1_t_64
+        six_r_w_1_t_69 = six_r_w_1_t_51 - six_r_w_1_t_57*six_r_w_1_t_64
+        six_r_w_1_t_70 = (
+        sqrt(six_r_w_1_t_59*six_r_w_1_t_59 + six_r_w_1_t_60*six_r_w_1_t_60 +
+            six_r_w_1_t_61*six_r_w_1_t_61 + six_r_w_1_t_62*six_r_w_1_t_62 +
+            six_r_w_1_t_63*six_r_w_1_t_63)
+        )
+        inv_six_r_w_1_t_194 = 1.0/six_r_w_1_t_70
+        six_r_w_1_t_71 = inv_six_r_w_1_t_194*six_r_w_1_t_59
+        six_r_w_1_t_72 = inv_six_r_w_1_t_194*six_r_w_1_t_60
+        six_r_w_1_t_73 = inv_six_r_w_1_t_194*six_r_w_1_t_61
+        six_r_w_1_t_74 = inv_six_r_w_1_t_194*six_r_w_1_t_62
+        six_r_w_1_t_75 = inv_six_r_w_1_t_194*six_r_w_1_t_63
+        six_r_w_1_t_76 = (
+        six_r_w_1_t_65*six_r_w_1_t_71 + six_r_w_1_t_66*six_r_w_1_t_72 +
+            six_r_w_1_t_67*six_r_w_1_t_73 + six_r_w_1_t_68*six_r_w_1_t_74 +
+            six_r_w_1_t_69*six_r_w_1_t_75
+        )
+        six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_76
+        six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_76
+        six_r_w_1_t_79 = six_r_w_1_t_67 - six_r_w_1_t_73*six_r_w_1_t_76
+        six_r_w_1_t_80 = six_r_w_1_t_68 - six_r_w_1_t_74*six_r_w_1_t_76
+        six_r_w_1_t_81 = six_r_w_1_t_69 - six_r_w_1_t_75*six_r_w_1_t_76
+        six_r_w_1_t_82 = (
+        sqrt(six_r_w_1_t_77*six_r_w_1_t_77 + six_r_w_1_t_78*six_r_w_1_t_78 +
+            six_r_w_1_t_79*six_r_w_1_t_79 + six_r_w_1_t_80*six_r_w_1_t_80 +
+            six_r_w_1_t_81*six_r_w_1_t_81)
+        )
+        inv_six_r_w_1_t_222 = 1.0/six_r_w_1_t_82
+        six_r_w_1_t_83 = inv_six_r_w_1_t_222*six_r_w_1_t_77
+        six_r_w_1_t_84 = inv_six_r_w_1_t_222*six_r_w_1_t_78
+        six_r_w_1_t_85 = inv_six_r_w_1_t_222*six_r_w_1_t_79
+        six_r_w_1_t_86 = inv_six_r_w_1_t_222*six_r_w_1_t_80
+        six_r_w_1_t_87 = inv_six_r_w_1_t_222*six_r_w_1_t_81
+        six_r_w_1_t_88 = inv_six_r_w_1_t_150*inv_six_r_w_1_t_194*six_r_w_1_t_58
+        six_r_w_1_t_89 = (
+        inv_six_r_w_1_t_222*(inv_six_r_w_1_t_150*six_r_w_1_t_64 - six_r_w_1_t_76*six_r_w_1_t_88)
+        )
+        six_r_w_1_t_90 = (
+        six_r_w_1_t_71*six_r_w_1_t_88 + six_r_w_1_t_83*six_r_w_1_t_89 -
+            inv_six_r_w_1_t_150*six_r_w_1_t_53
+        )
+        six_r_w_1_t_91 = (
+        six_r_w_1_t_72*six_r_w_1_t_88 + six_r_w_1_t_84*six_r_w_1_t_89 -
+            inv_six_r_w_1_t_150*six_r_w_1_t_54
+        )
+        six_r_w_1_t_92 = (
+        six_r_w_1_t_73*six_r_w_1_t_88 + six_r_w_1_t_85*six_r_w_1_t_89 -
+            inv_six_r_w_1_t_150*six_r_w_1_t_55
+        )
+        six_r_w_1_t_93 = (
+        six_r_size*(six_r_w_1_t_74*six_r_w_1_t_88 + six_r_w_1_t_86*six_r_w_1_t_89 -
+            inv_six_r_w_1_t_150*six_r_w_1_t_56)
+        )
+        six_r_w_1_t_94 = (
+        six_r_size*(six_r_w_1_t_75*six_r_w_1_t_88 + six_r_w_1_t_87*six_r_w_1_t_89 -
+            inv_six_r_w_1_t_150*six_r_w_1_t_57)
+        )
+        # (six_r-w_2) force part of reciprocal wrench 2
+        six_r_w_2_t = inv_six_r_w_1_t_194*inv_six_r_w_1_t_222*six_r_w_1_t_76
+        six_r_w_2_t_2 = inv_six_r_w_1_t_194*six_r_w_1_t_71 - six_r_w_1_t_83*six_r_w_2_t
+        six_r_w_2_t_3 = inv_six_r_w_1_t_194*six_r_w_1_t_72 - six_r_w_1_t_84*six_r_w_2_t
+        six_r_w_2_t_4 = six_r_w_1_t_85*six_r_w_2_t - inv_six_r_w_1_t_194*six_r_w_1_t_73
+        six_r_w_2_t_5 = (
+        six_r_size*(inv_six_r_w_1_t_194*six_r_w_1_t_74 - six_r_w_1_t_86*six_r_w_2_t)
+        )
+        six_r_w_2_t_6 = (
+        six_r_size*(inv_six_r_w_1_t_194*six_r_w_1_t_75 - six_r_w_1_t_87*six_r_w_2_t)
+        )
+        # (six_r-w_3) force part of reciprocal wrench 3
+        six_r_w_3_t = inv_six_r_w_1_t_222*six_r_w_1_t_83
+        six_r_w_3_t_2 = inv_six_r_w_1_t_222*six_r_w_1_t_84
+        six_r_w_3_t_3 = inv_six_r_w_1_t_222*six_r_w_1_t_85
+        six_r_w_3_t_4 = inv_six_r_w_1_t_222*six_r_size*six_r_w_1_t_86
+        six_r_w_3_t_5 = inv_six_r_w_1_t_222*six_r_size*six_r_w_1_t_87
+        # (six_r-w_4) force part of reciprocal wrench 4
+        six_r_w_4_t = inv_six_r_w_1_t_101*inv_six_r_w_1_t_150*six_r_w_1_t_36
+        six_r_w_4_t_2 = (
+        inv_six_r_w_1_t_194*(inv_six_r_w_1_t_101*six_r_w_1_t_42 - six_r_w_1_t_58*six_r_w_4_t)
+        )
+        six_r_w_4_t_3 = (
+        inv_six_r_w_1_t_222*(six_r_w_1_t_64*six_r_w_4_t + six_r_w_1_t_76*six_r_w_4_t_2 -
+            inv_six_r_w_1_t_101*six_r_w_1_t_47)
+        )
+        six_r_w_4_t_4 = (
+        six_r_w_1_t_53*six_r_w_4_t + six_r_w_1_t_71*six_r_w_4_t_2 - six_r_w_1_t_83*six_r_w_4_t_3
+        )
+        six_r_w_4_t_5 = (
+        inv_six_r_w_1_t_101*six_r_w_1_t_32 + six_r_w_1_t_54*six_r_w_4_t +
+            six_r_w_1_t_72*six_r_w_4_t_2 - six_r_w_1_t_84*six_r_w_4_t_3
+        )
+        six_r_w_4_t_6 = (
+        inv_six_r_w_1_t_101*six_r_w_1_t_33 + six_r_w_1_t_55*six_r_w_4_t +
+            six_r_w_1_t_73*six_r_w_4_t_2 - six_r_w_1_t_85*six_r_w_4_t_3
+        )
+        six_r_w_4_t_7 = (
+        six_r_size*(inv_six_r_w_1_t_101*six_r_w_1_t_34 + six_r_w_1_t_56*six_r_w_4_t +
+            six_r_w_1_t_74*six_r_w_4_t_2 - six_r_w_1_t_86*six_r_w_4_t_3)
+        )
+        six_r_w_4_t_8 = (
+        six_r_size*(inv_six_r_w_1_t_101*six_r_w_1_t_35 + six_r_w_1_t_57*six_r_w_4_t +
+            six_r_w_1_t_75*six_r_w_4_t_2 - six_r_w_1_t_87*six_r_w_4_t_3)
+        )
+        # (six_r-w_5) force part of reciprocal wrench 5
+        six_r_w_5_t = inv_six_r_w_1_t_101*inv_six_r_w_1_t_69*six_r_w_1_t_18
+        six_r_w_5_t_2 = (
+        inv_six_r_w_1_t_150*(inv_six_r_w_1_t_69*six_r_w_1_t_21 + six_r_w_1_t_36*six_r_w_5_t)
+        )
+        six_r_w_5_t_3 = (
+        inv_six_r_w_1_t_194*(inv_six_r_w_1_t_69*six_r_w_1_t_25 + six_r_w_1_t_42*six_r_w_5_t -
+            six_r_w_1_t_58*six_r_w_5_t_2)
+        )
+        six_r_w_5_t_4 = (
+        inv_six_r_w_1_t_222*(inv_six_r_w_1_t_69*six_r_w_1_t_28 + six_r_w_1_t_64*six_r_w_5_t_2 +
+            six_r_w_1_t_76*six_r_w_5_t_3 - six_r_w_1_t_47*six_r_w_5_t)
+        )
+        six_r_w_5_t_5 = (
+        six_r_w_1_t_53*six_r_w_5_t_2 + six_r_w_1_t_71*six_r_w_5_t_3 - six_r_w_1_t_83*six_r_w_5_t_4
+        )
+        six_r_w_5_t_6 = (
+        inv_six_r_w_1_t_69*six_r_w_1_t_16 + six_r_w_1_t_32*six_r_w_5_t +
+            six_r_w_1_t_54*six_r_w_5_t_2 + six_r_w_1_t_72*six_r_w_5_t_3 -
+            six_r_w_1_t_84*six_r_w_5_t_4
+        )
+        six_r_w_5_t_7 = (
+        six_r_w_1_t_33*six_r_w_5_t + six_r_w_1_t_55*six_r_w_5_t_2 + six_r_w_1_t_73*six_r_w_5_t_3 -
+            six_r_w_1_t_85*six_r_w_5_t_4
+        )
+        six_r_w_5_t_8 = (
+        six_r_size*(six_r_w_1_t_34*six_r_w_5_t + six_r_w_1_t_56*six_r_w_5_t_2 +
+            six_r_w_1_t_74*six_r_w_5_t_3 - six_r_w_1_t_86*six_r_w_5_t_4)
+        )
+        six_r_w_5_t_9 = (
+        six_r_size*(six_r_w_1_t_35*six_r_w_5_t + six_r_w_1_t_57*six_r_w_5_t_2 +
+            six_r_w_1_t_75*six_r_w_5_t_3 - inv_six_r_w_1_t_69*six_r_w_1_t_17 -
+            six_r_w_1_t_87*six_r_w_5_t_4)
+        )
+        # (six_r-d_alpha_5) coefficient of the acceleration in: angular acceleration of link 5
+        six_r_d_alpha_5_xz = (
+        six_r_s_5*six_r_w_4_t_6 + six_r_v_2_t*six_r_w_3_t_3 - six_r_e_1_r6_x*six_r_w_1_t_92 -
+            six_r_v_2_t*six_r_w_2_t_4
+        )
+        six_r_d_alpha_5_yz = (
+        six_r_v_2_t_2*six_r_w_3_t_3 - six_r_c_5_t*six_r_w_4_t_6 - six_r_e_1_r6_y*six_r_w_1_t_92 -
+            six_r_v_2_t_2*six_r_w_2_t_4
+        )
+        six_r_d_alpha_5_zy = (
+        six_r_w_5_t_6 - six_r_s_4*six_r_w_2_t_3 - six_r_s_4*six_r_w_3_t_2 -
+            six_r_v_1_t*six_r_w_1_t_91
+        )
+        six_r_d_alpha_5_zz = (
+        six_r_s_4*six_r_w_3_t_3 + six_r_v_1_t*six_r_w_1_t_92 - six_r_w_5_t_7 -
+            six_r_s_4*six_r_w_2_t_4
+        )
+        # (six_r-d_phi_5) coefficient of the acceleration in: inertia force of link 5 from its turning about its reference point
+        six_r_d_phi_5_t = (
+        six_r_h_5_z*(six_r_v_2_t_2*six_r_w_2_t_2 + six_r_v_2_t_2*six_r_w_3_t -
+            six_r_c_5_t*six_r_w_4_t_4 - six_r_e_1_r6_y*six_r_w_1_t_90) -
+            six_r_h_5_y*(six_r_s_4*six_r_w_2_t_2 + six_r_s_4*six_r_w_3_t +
+            six_r_v_1_t*six_r_w_1_t_90 - six_r_w_5_t_5)
+        )
+        # (six_r-L_c_5) moment about joint 5 that accelerates joint 5, per unit
+        six_r_L_c_5_r0_y = six_r_J_5_xz*six_r_s_5 - six_r_J_5_yz*six_r_c_5_t
+        # (six_r-D_3_5) inertia of joint 5 along joint 3
+        six_r_D_3_5 = (
+        six_r_J_5_xz*six_r_v_2_t + six_r_J_5_yz*six_r_v_2_t_2 + six_r_J_5_zz*six_r_s_4
+        )
+        # (six_r-D_1_5) inertia of joint 5 along joint 1
+        six_r_D_1_5 = (
+        six_r_J_5_xz*six_r_e_1_r6_x + six_r_J_5_yz*six_r_e_1_r6_y - six_r_J_5_zz*six_r_v_1_t
+        )
+        # (six_r-d_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal links' inertia and weight
+        six_r_d_Gamma_5_t = inv_six_r_w_1_t_69*six_r_J_5_zz
+        six_r_d_Gamma_5_t_2 = (
+        inv_six_r_w_1_t_101*(six_r_L_c_5_r0_y - six_r_d_Gamma_5_t*six_r_w_1_t_18)
+        )
+        six_r_d_Gamma_5_t_3 = (
+        inv_six_r_w_1_t_150*(six_r_D_1_5 + six_r_d_Gamma_5_t_2*six_r_w_1_t_36 -
+            six_r_d_Gamma_5_t*six_r_w_1_t_21)
+        )
+        six_r_d_Gamma_5_t_4 = (
+        inv_six_r_w_1_t_194*(six_r_D_3_5 + six_r_d_Gamma_5_t_2*six_r_w_1_t_42 -
+            six_r_d_Gamma_5_t*six_r_w_1_t_25 - six_r_d_Gamma_5_t_3*six_r_w_1_t_58)
+        )
+        six_r_d_Gamma_5_t_5 = (
+        inv_six_r_w_1_t_222*(six_r_D_3_5 + six_r_d_Gamma_5_t*six_r_w_1_t_28 +
+            six_r_d_Gamma_5_t_2*six_r_w_1_t_47 - six_r_d_Gamma_5_t_3*six_r_w_1_t_64 -
+            six_r_d_Gamma_5_t_4*six_r_w_1_t_76)
+        )
+        six_r_d_Gamma_5_t_6 = (
+        six_r_d_Gamma_5_t_2*six_r_w_1_t_33 + six_r_d_Gamma_5_t_3*six_r_w_1_t_55 +
+            six_r_d_Gamma_5_t_4*six_r_w_1_t_73 + six_r_d_Gamma_5_t_5*six_r_w_1_t_85
+        )
+        six_r_d_Gamma_5_x = (
+        six_r_d_Gamma_5_t_3*six_r_w_1_t_53 + six_r_d_Gamma_5_t_4*six_r_w_1_t_71 +
+            six_r_d_Gamma_5_t_5*six_r_w_1_t_83 - six_r_h_5_y
+        )
+        six_r_d_Gamma_5_y = (
+        six_r_h_5_x + six_r_d_Gamma_5_t*six_r_w_1_t_16 - six_r_d_Gamma_5_t_2*six_r_w_1_t_32 -
+            six_r_d_Gamma_5_t_3*six_r_w_1_t_54 - six_r_d_Gamma_5_t_4*six_r_w_1_t_72 -
+            six_r_d_Gamma_5_t_5*six_r_w_1_t_84
+        )
+        # (six_r-J_5) inertia tensor of link 5 about the connection point
+        six_r_J_5_t = six_r_J_5_xy*six_r_s_5
+        six_r__x = -six_r_J_5_t - six_r_J_5_xx*six_r_c_5_t
+        six_r_J_5_t_2 = six_r_J_5_xy*six_r_c_5_t
+        six_r__x_2 = -six_r_J_5_t_2 - six_r_J_5_yy*six_r_s_5
+        # (six_r-Jc_4) inertia tensor of the links from 4 outwards about joint 4, that of the last link about the connection point
+        six_r_Jc_4_xy = -six_r_J_4_yz - six_r_J_5_xz*six_r_c_5_t - six_r_J_5_yz*six_r_s_5
+        six_r_Jc_4_xz = six_r_J_4_xz + six_r_L_c_5_r0_y
+        six_r_Jc_4_yy = six_r_J_4_yy - six_r__x*six_r_c_5_t - six_r__x_2*six_r_s_5
+        six_r_Jc_4_yz = six_r__x*six_r_s_5 - six_r_J_4_xy - six_r__x_2*six_r_c_5_t
+        six_r_Jc_4_zz = (
+        six_r_J_4_xx + six_r_s_5*(six_r_J_5_xx*six_r_s_5 - six_r_J_5_t_2) -
+            six_r_c_5_t*(six_r_J_5_t - six_r_J_5_yy*six_r_c_5_t)
+        )
+        # (six_r-L_c_4) moment about joint 4 that accelerates joint 4, per unit
+        six_r_L_c_4_r0_x = -six_r_Jc_4_xz*six_r_c_4_t - six_r_Jc_4_yz*six_r_s_4
+        six_r_L_c_4_r0_y = six_r_Jc_4_xz*six_r_s_4 - six_r_Jc_4_yz*six_r_c_4_t
+        # (six_r-P_c_4) force that accelerates joint 4, per unit
+        six_r_P_c_4_r0_x = -six_r_c_4_t*six_r_h_4_y - six_r_h_4_z*six_r_s_4
+        six_r_P_c_4_r0_y = six_r_h_4_y*six_r_s_4 - six_r_c_4_t*six_r_h_4_z
+        # (six_r-L_c_4_3) moment about joint 3 that accelerates joint 4, per unit
+        six_r_L_c_4_3_t = six_r_P_c_4_r0_y*six_r_joint4_offset_x
+        six_r_L_c_4_3_t_2 = six_r_P_c_4_r0_x*six_r_joint4_offset_x
+        six_r_L_c_4_3_y = six_r_L_c_4_r0_x - six_r_L_c_4_3_t
+        six_r_L_c_4_3_z = six_r_L_c_4_3_t_2 + six_r_L_c_4_r0_y
+        # (six_r-L_c_4_2) moment about joint 2 that accelerates joint 4, per unit
+        six_r_L_c_4_2_y = (
+        six_r_Jc_4_zz*six_r_s_3 + six_r_L_c_4_3_y*six_r_c_3 -
+            six_r_P_c_4_r0_y*six_r_joint3_offset_x
+        )
+        six_r_L_c_4_2_z = six_r_L_c_4_3_z + six_r_P_c_4_r0_x*six_r_c_3*six_r_joint3_offset_x
+        six_r_L_c_4_2_r0_y = (
+        six_r_s_2*(six_r_Jc_4_zz*six_r_c_3 - six_r_L_c_4_3_y*six_r_s_3) -
+            six_r_L_c_4_2_y*six_r_c_2_t
+        )
+        # (six_r-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+        six_r_d_Gamma_4_t = inv_six_r_w_1_t_69*six_r_L_c_5_r0_y
+        six_r_d_Gamma_4_t_2 = (
+        inv_six_r_w_1_t_101*(six_r_Jc_4_zz - six_r_d_Gamma_4_t*six_r_w_1_t_18)
+        )
+        six_r_d_Gamma_4_t_3 = (
+        inv_six_r_w_1_t_150*(six_r_L_c_4_2_r0_y + six_r_d_Gamma_4_t_2*six_r_w_1_t_36 -
+            six_r_d_Gamma_4_t*six_r_w_1_t_21)
+        )
+        six_r_d_Gamma_4_t_4 = (
+        inv_six_r_w_1_t_194*(six_r_L_c_4_2_z + six_r_d_Gamma_4_t_2*six_r_w_1_t_42 -
+            six_r_d_Gamma_4_t*six_r_w_1_t_25 - six_r_d_Gamma_4_t_3*six_r_w_1_t_58)
+        )
+        six_r_d_Gamma_4_t_5 = (
+        inv_six_r_w_1_t_222*(six_r_L_c_4_3_z + six_r_d_Gamma_4_t*six_r_w_1_t_28 +
+            six_r_d_Gamma_4_t_2*six_r_w_1_t_47 - six_r_d_Gamma_4_t_3*six_r_w_1_t_64 -
+            six_r_d_Gamma_4_t_4*six_r_w_1_t_76)
+        )
+        six_r_d_Gamma_4_x = (
+        six_r_d_Gamma_4_t_3*six_r_w_1_t_53 + six_r_d_Gamma_4_t_4*six_r_w_1_t_71 +
+            six_r_d_Gamma_4_t_5*six_r_w_1_t_83 - six_r_c_5_t*six_r_h_5_z
+        )
+        six_r_d_Gamma_4_y = (
+        six_r_d_Gamma_4_t*six_r_w_1_t_16 - six_r_d_Gamma_4_t_2*six_r_w_1_t_32 -
+            six_r_d_Gamma_4_t_3*six_r_w_1_t_54 - six_r_d_Gamma_4_t_4*six_r_w_1_t_72 -
+            six_r_d_Gamma_4_t_5*six_r_w_1_t_84 - six_r_h_5_z*six_r_s_5
+        )
+        six_r_d_Gamma_4_z = (
+        six_r_c_5_t*six_r_h_5_x + six_r_d_Gamma_4_t_2*six_r_w_1_t_33 +
+            six_r_d_Gamma_4_t_3*six_r_w_1_t_55 + six_r_d_Gamma_4_t_4*six_r_w_1_t_73 +
+            six_r_d_Gamma_4_t_5*six_r_w_1_t_85 + six_r_h_5_y*six_r_s_5
+        )
+        # (six_r-Jc_4) inertia tensor of the links from 4 outwards about joint 4, that of the last link about the connection point
+        six_r_Jc_4_t = six_r_Jc_4_xy*six_r_s_4
+        six_r__x_3 = -six_r_Jc_4_t - six_r_Jc_4_xx*six_r_c_4_t
+        six_r_Jc_4_t_2 = six_r_Jc_4_xy*six_r_c_4_t
+        six_r__x_4 = -six_r_Jc_4_t_2 - six_r_Jc_4_yy*six_r_s_4
+        # (six_r-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link about the connection point
+        six_r_Jc_3_xx = six_r_J_3_xx + six_r_Jc_3_t_3 + six_r_Jc_4_zz - 2.0*six_r_Jc_3_t_2
+        six_r_Jc_3_xy = six_r_J_3_xy + six_r_L_c_4_r0_x - six_r_L_c_4_3_t
+        six_r_Jc_3_xz = six_r_J_3_xz + six_r_L_c_4_3_t_2 + six_r_L_c_4_r0_y
+        six_r_Jc_3_yy = (
+        six_r_J_3_yy + six_r_Jc_3_t_3 - six_r__x_3*six_r_c_4_t - six_r__x_4*six_r_s_4
+        )
+        six_r_Jc_3_yz = six_r_J_3_yz + six_r__x_3*six_r_s_4 - six_r__x_4*six_r_c_4_t
+        six_r_Jc_3_zz = (
+        six_r_J_3_zz + six_r_Jc_3_t_3 + six_r_s_4*(six_r_Jc_4_xx*six_r_s_4 - six_r_Jc_4_t_2) -
+            six_r_c_4_t*(six_r_Jc_4_t - six_r_Jc_4_yy*six_r_c_4_t)
+        )
+        # (six_r-hc_3) first moment of the links from 3 outwards
+        six_r_hc_3_y = six_r_P_c_4_r0_y + six_r_h_3_y
+        six_r_hc_3_z = six_r_h_3_z - six_r_P_c_4_r0_x
+        # (six_r-L_c_3) moment about joint 3 that accelerates joint 3, per unit
+        six_r_L_c_3_r0_x = six_r_Jc_3_xz*six_r_c_3 - six_r_Jc_3_yz*six_r_s_3
+        six_r_L_c_3_r0_y = six_r_Jc_3_xz*six_r_s_3 + six_r_Jc_3_yz*six_r_c_3
+        # (six_r-P_c_3) force that accelerates joint 3, per unit
+        six_r_P_c_3_r0_x = -six_r_c_3*six_r_hc_3_y - six_r_hc_3_x*six_r_s_3
+        six_r_P_c_3_r0_y = six_r_c_3*six_r_hc_3_x - six_r_hc_3_y*six_r_s_3
+        # (six_r-L_c_3_2) moment about joint 2 that accelerates joint 3, per unit
+        six_r_L_c_3_2_z = six_r_Jc_3_zz + six_r_P_c_3_r0_y*six_r_joint3_offset_x
+        six_r_L_c_3_2_r0_y = six_r_L_c_3_r0_x*six_r_s_2 - six_r_L_c_3_r0_y*six_r_c_2_t
+        # (six_r-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        six_r_d_Gamma_3_t = six_r_h_5_z*six_r_v_2_t_2 - six_r_h_5_y*six_r_s_4
+        six_r_d_Gamma_3_t_2 = six_r_h_5_z*six_r_v_2_t - six_r_h_5_x*six_r_s_4
+        six_r_d_Gamma_3_t_3 = six_r_h_5_y*six_r_v_2_t - six_r_h_5_x*six_r_v_2_t_2
+        six_r_d_Gamma_3_t_4 = inv_six_r_w_1_t_69*six_r_D_3_5
+        six_r_d_Gamma_3_t_5 = six_r_d_Gamma_3_t_4*six_r_w_1_t_18
+        six_r_d_Gamma_3_t_6 = inv_six_r_w_1_t_101*(six_r_L_c_4_3_z - six_r_d_Gamma_3_t_5)
+        six_r_d_Gamma_3_t_7 = six_r_d_Gamma_3_t_4*six_r_w_1_t_21
+        six_r_d_Gamma_3_t_8 = (
+        inv_six_r_w_1_t_150*(six_r_L_c_3_2_r0_y + six_r_d_Gamma_3_t_6*six_r_w_1_t_36 -
+            six_r_d_Gamma_3_t_7)
+        )
+        six_r_d_Gamma_3_t_9 = six_r_d_Gamma_3_t_4*six_r_w_1_t_25
+        six_r_d_Gamma_3_t_10 = (
+        inv_six_r_w_1_t_194*(six_r_L_c_3_2_z + six_r_d_Gamma_3_t_6*six_r_w_1_t_42 -
+            six_r_d_Gamma_3_t_9 - six_r_d_Gamma_3_t_8*six_r_w_1_t_58)
+        )
+        six_r_d_Gamma_3_t_11 = six_r_d_Gamma_3_t_4*six_r_w_1_t_28
+        six_r_d_Gamma_3_t_12 = (
+        inv_six_r_w_1_t_222*(six_r_Jc_3_zz + six_r_d_Gamma_3_t_11 +
+            six_r_d_Gamma_3_t_6*six_r_w_1_t_47 - six_r_d_Gamma_3_t_10*six_r_w_1_t_76 -
+            six_r_d_Gamma_3_t_8*six_r_w_1_t_64)
+        )
+        six_r_d_Gamma_3_t_13 = six_r_d_Gamma_3_t_4*six_r_w_1_t_16
+        six_r_d_Gamma_3_x = (
+        six_r_d_Gamma_3_t + six_r_d_Gamma_3_t_10*six_r_w_1_t_71 +
+            six_r_d_Gamma_3_t_12*six_r_w_1_t_83 + six_r_d_Gamma_3_t_8*six_r_w_1_t_53
+        )
+        six_r_d_Gamma_3_y = (
+        six_r_d_Gamma_3_t_13 - six_r_d_Gamma_3_t_2 - six_r_d_Gamma_3_t_10*six_r_w_1_t_72 -
+            six_r_d_Gamma_3_t_12*six_r_w_1_t_84 - six_r_d_Gamma_3_t_6*six_r_w_1_t_32 -
+            six_r_d_Gamma_3_t_8*six_r_w_1_t_54
+        )
+        six_r_d_Gamma_3_z = (
+        six_r_d_Gamma_3_t_3 + six_r_d_Gamma_3_t_10*six_r_w_1_t_73 +
+            six_r_d_Gamma_3_t_12*six_r_w_1_t_85 + six_r_d_Gamma_3_t_6*six_r_w_1_t_33 +
+            six_r_d_Gamma_3_t_8*six_r_w_1_t_55
+        )
+        # (six_r-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link about the connection point
+        six_r_Jc_3_t = six_r_Jc_3_xy*six_r_s_3
+        six_r__x_5 = six_r_Jc_3_xx*six_r_c_3 - six_r_Jc_3_t
+        six_r_Jc_3_t_4 = six_r_Jc_3_xy*six_r_c_3
+        six_r__x_6 = six_r_Jc_3_t_4 - six_r_Jc_3_yy*six_r_s_3
+        # (six_r-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+        six_r_Jc_2_t_2 = six_r_joint3_offset_x*(six_r_Jc_2_t + six_r_P_c_3_r0_y)
+        six_r_Jc_2_t_3 = 2.0*six_r_Jc_2_t_2
+        six_r_Jc_2_xy = (
+        six_r_J_2_xy + six_r_P_c_3_r0_x*six_r_joint3_offset_x + six_r__x_5*six_r_s_3 +
+            six_r__x_6*six_r_c_3
+        )
+        six_r_Jc_2_zz = six_r_J_2_zz + six_r_Jc_2_t_3 + six_r_Jc_3_zz
+        # (six_r-L_c_2) moment about joint 2 that accelerates joint 2, per unit
+        six_r_L_c_2_r0_y = (
+        six_r_s_2*(six_r_J_2_xz + six_r_L_c_3_r0_x - six_r_hc_3_z*six_r_joint3_offset_x) -
+            six_r_c_2_t*(six_r_J_2_yz + six_r_L_c_3_r0_y)
+        )
+        # (six_r-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        six_r_d_Gamma_2_t = inv_six_r_w_1_t_101*(six_r_L_c_4_2_z - six_r_d_Gamma_3_t_5)
+        six_r_d_Gamma_2_t_2 = (
+        inv_six_r_w_1_t_150*(six_r_L_c_2_r0_y + six_r_d_Gamma_2_t*six_r_w_1_t_36 -
+            six_r_d_Gamma_3_t_7)
+        )
+        six_r_d_Gamma_2_t_3 = (
+        inv_six_r_w_1_t_194*(six_r_Jc_2_zz + six_r_d_Gamma_2_t*six_r_w_1_t_42 -
+            six_r_d_Gamma_3_t_9 - six_r_d_Gamma_2_t_2*six_r_w_1_t_58)
+        )
+        six_r_d_Gamma_2_t_4 = (
+        inv_six_r_w_1_t_222*(six_r_L_c_3_2_z + six_r_d_Gamma_3_t_11 +
+            six_r_d_Gamma_2_t*six_r_w_1_t_47 - six_r_d_Gamma_2_t_2*six_r_w_1_t_64 -
+            six_r_d_Gamma_2_t_3*six_r_w_1_t_76)
+        )
+        six_r_d_Gamma_2_x = (
+        six_r_d_Gamma_3_t + six_r_d_Gamma_2_t_2*six_r_w_1_t_53 +
+            six_r_d_Gamma_2_t_3*six_r_w_1_t_71 + six_r_d_Gamma_2_t_4*six_r_w_1_t_83
+        )
+        six_r_d_Gamma_2_y = (
+        six_r_d_Gamma_3_t_13 - six_r_d_Gamma_3_t_2 - six_r_d_Gamma_2_t*six_r_w_1_t_32 -
+            six_r_d_Gamma_2_t_2*six_r_w_1_t_54 - six_r_d_Gamma_2_t_3*six_r_w_1_t_72 -
+            six_r_d_Gamma_2_t_4*six_r_w_1_t_84
+        )
+        six_r_d_Gamma_2_z = (
+        six_r_d_Gamma_3_t_3 + six_r_d_Gamma_2_t*six_r_w_1_t_33 +
+            six_r_d_Gamma_2_t_2*six_r_w_1_t_55 + six_r_d_Gamma_2_t_3*six_r_w_1_t_73 +
+            six_r_d_Gamma_2_t_4*six_r_w_1_t_85
+        )
+        # (six_r-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+        six_r__y = (
+        six_r_s_2*(six_r_s_2*(six_r_J_2_xx + six_r_Jc_2_t_3 + six_r__x_5*six_r_c_3 -
+            2.0*six_r_Jc_2_t_2 - six_r__x_6*six_r_s_3) - six_r_Jc_2_xy*six_r_c_2_t) -
+            six_r_c_2_t*(six_r_Jc_2_xy*six_r_s_2 - six_r_c_2_t*(six_r_J_2_yy + six_r_Jc_2_t_3 +
+            six_r_c_3*(six_r_Jc_3_t + six_r_Jc_3_yy*six_r_c_3) + six_r_s_3*(six_r_Jc_3_t_4 +
+            six_r_Jc_3_xx*six_r_s_3)))
+        )
+        # (six_r-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link about the connection point
+        six_r_Jc_1_zz = six_r_J_1_xx + six_r__y
+        # (six_r-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        six_r_d_Gamma_1_t = inv_six_r_w_1_t_69*six_r_D_1_5
+        six_r_d_Gamma_1_t_2 = (
+        inv_six_r_w_1_t_101*(six_r_L_c_4_2_r0_y - six_r_d_Gamma_1_t*six_r_w_1_t_18)
+        )
+        six_r_d_Gamma_1_t_3 = (
+        inv_six_r_w_1_t_150*(six_r_Jc_1_zz + six_r_d_Gamma_1_t_2*six_r_w_1_t_36 -
+            six_r_d_Gamma_1_t*six_r_w_1_t_21)
+        )
+        six_r_d_Gamma_1_t_4 = (
+        inv_six_r_w_1_t_194*(six_r_L_c_2_r0_y + six_r_d_Gamma_1_t_2*six_r_w_1_t_42 -
+            six_r_d_Gamma_1_t*six_r_w_1_t_25 - six_r_d_Gamma_1_t_3*six_r_w_1_t_58)
+        )
+        six_r_d_Gamma_1_t_5 = (
+        inv_six_r_w_1_t_222*(six_r_L_c_3_2_r0_y + six_r_d_Gamma_1_t*six_r_w_1_t_28 +
+            six_r_d_Gamma_1_t_2*six_r_w_1_t_47 - six_r_d_Gamma_1_t_3*six_r_w_1_t_64 -
+            six_r_d_Gamma_1_t_4*six_r_w_1_t_76)
+        )
+        six_r_d_Gamma_1_x = (
+        six_r_d_Gamma_1_t_3*six_r_w_1_t_53 + six_r_d_Gamma_1_t_4*six_r_w_1_t_71 +
+            six_r_d_Gamma_1_t_5*six_r_w_1_t_83 + six_r_e_1_r6_y*six_r_h_5_z +
+            six_r_h_5_y*six_r_v_1_t
+        )
+        six_r_d_Gamma_1_y = (
+        six_r_d_Gamma_1_t*six_r_w_1_t_16 - six_r_d_Gamma_1_t_2*six_r_w_1_t_32 -
+            six_r_d_Gamma_1_t_3*six_r_w_1_t_54 - six_r_d_Gamma_1_t_4*six_r_w_1_t_72 -
+            six_r_d_Gamma_1_t_5*six_r_w_1_t_84 - six_r_e_1_r6_x*six_r_h_5_z -
+            six_r_h_5_x*six_r_v_1_t
+        )
+        six_r_d_Gamma_1_z = (
+        six_r_d_Gamma_1_t_2*six_r_w_1_t_33 + six_r_d_Gamma_1_t_3*six_r_w_1_t_55 +
+            six_r_d_Gamma_1_t_4*six_r_w_1_t_73 + six_r_d_Gamma_1_t_5*six_r_w_1_t_85 +
+            six_r_e_1_r6_x*six_r_h_5_y - six_r_e_1_r6_y*six_r_h_5_x
+        )
+        # (six_r-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        six_r_d_c_xx = (
+        six_r_d_Gamma_1_x*six_r_w_1_t_90 + six_r_d_Gamma_5_x*six_r_w_5_t_5 - six_r_d_phi_5_t -
+            six_r_d_Gamma_2_x*six_r_w_2_t_2 - six_r_d_Gamma_3_x*six_r_w_3_t -
+            six_r_d_Gamma_4_x*six_r_w_4_t_4
+        )
+        six_r_d_c_xy = (
+        six_r_d_Gamma_1_y*six_r_w_1_t_90 + six_r_d_Gamma_5_y*six_r_w_5_t_5 +
+            six_r_d_alpha_5_zy*six_r_h_5_y - six_r_d_Gamma_2_y*six_r_w_2_t_2 -
+            six_r_d_Gamma_3_y*six_r_w_3_t - six_r_d_Gamma_4_y*six_r_w_4_t_4 -
+            six_r_h_5_z*(six_r_c_5_t*six_r_w_4_t_5 + six_r_e_1_r6_y*six_r_w_1_t_91 -
+            six_r_v_2_t_2*six_r_w_2_t_3 - six_r_v_2_t_2*six_r_w_3_t_2)
+        )
+        six_r_d_c_xz = (
+        six_r_d_Gamma_1_z*six_r_w_1_t_90 + six_r_d_Gamma_5_t_6*six_r_w_5_t_5 +
+            six_r_d_alpha_5_zz*six_r_h_5_y - six_r_d_Gamma_2_z*six_r_w_2_t_2 -
+            six_r_d_Gamma_3_z*six_r_w_3_t - six_r_d_Gamma_4_z*six_r_w_4_t_4 -
+            six_r_d_alpha_5_yz*six_r_h_5_z
+        )
+        six_r_d_c_yy = (
+        six_r_d_Gamma_2_y*six_r_w_2_t_3 + six_r_d_Gamma_3_y*six_r_w_3_t_2 +
+            six_r_d_Gamma_4_y*six_r_w_4_t_5 + six_r_h_5_z*(six_r_e_1_r6_x*six_r_w_1_t_91 -
+            six_r_s_5*six_r_w_4_t_5 - six_r_v_2_t*six_r_w_2_t_3 - six_r_v_2_t*six_r_w_3_t_2) -
+            six_r_d_Gamma_1_y*six_r_w_1_t_91 - six_r_d_Gamma_5_y*six_r_w_5_t_6 -
+            six_r_d_alpha_5_zy*six_r_h_5_x
+        )
+        six_r_d_c_yz = (
+        six_r_d_Gamma_2_z*six_r_w_2_t_3 + six_r_d_Gamma_3_z*six_r_w_3_t_2 +
+            six_r_d_Gamma_4_z*six_r_w_4_t_5 + six_r_d_alpha_5_xz*six_r_h_5_z -
+            six_r_d_Gamma_1_z*six_r_w_1_t_91 - six_r_d_Gamma_5_t_6*six_r_w_5_t_6 -
+            six_r_d_alpha_5_zz*six_r_h_5_x
+        )
+        # (six_r-Q) inertia of the leg at the connection point, without the mass gathered there
+        six_r_Q_t = six_r_d_c_xx - six_r_d_c_yy
+        six_r_Q_t_2 = 0.5*six_r_Q_t
+        six_r_Q_t_3 = (
+        six_r_d_c_xx + six_r_d_Gamma_3_z*six_r_w_3_t_3 + six_r_d_Gamma_4_z*six_r_w_4_t_6 +
+            six_r_d_alpha_5_xz*six_r_h_5_y - six_r_d_Gamma_1_z*six_r_w_1_t_92 -
+            six_r_d_Gamma_2_z*six_r_w_2_t_4 - six_r_d_Gamma_5_t_6*six_r_w_5_t_7 -
+            six_r_d_alpha_5_yz*six_r_h_5_x
+        )
+        six_r_Q_t_4 = 0.5*six_r_Q_t_3
+        six_r_Q_t_5 = (
+        axis_x_six_r_axes5_x*six_r_d_c_xy + axis_z_six_r_axes5_in_base_x*six_r_d_c_yz -
+            axis_y_six_r_axes5_in_base_x*six_r_Q_t_2
+        )
+        six_r_Q_t_6 = (
+        axis_x_six_r_axes5_y*six_r_d_c_xy + axis_z_six_r_axes5_in_base_y*six_r_d_c_yz -
+            axis_y_six_r_axes5_in_base_y*six_r_Q_t_2
+        )
+        six_r_Q_t_7 = (
+        axis_x_six_r_axes5_z*six_r_d_c_xy + axis_z_six_r_axes5_in_base_z*six_r_d_c_yz -
+            axis_y_six_r_axes5_in_base_z*six_r_Q_t_2
+        )
+        six_r_Q_t_8 = axis_z_six_r_axes5_in_base_x*six_r_Q_t_4 - axis_x_six_r_axes5_x*six_r_d_c_xz
+        six_r_Q_t_9 = axis_z_six_r_axes5_in_base_y*six_r_Q_t_4 - axis_x_six_r_axes5_y*six_r_d_c_xz
+        six_r_Q_t_10 = (
+        axis_z_six_r_axes5_in_base_z*six_r_Q_t_4 - axis_x_six_r_axes5_z*six_r_d_c_xz
+        )
+        six_r_Q_t_11 = (
+        axis_y_six_r_axes5_in_base_x*six_r_Q_t_5 - axis_z_six_r_axes5_in_base_x*six_r_Q_t_8
+        )
+        six_r_Q_t_12 = 2.0*six_r_Q_t_11 + six_r_d_c_xx
+        six_r_Q_t_13 = (
+        axis_y_six_r_axes5_in_base_x*six_r_Q_t_6 + axis_y_six_r_axes5_in_base_y*six_r_Q_t_5 -
+            axis_z_six_r_axes5_in_base_x*six_r_Q_t_9 - axis_z_six_r_axes5_in_base_y*six_r_Q_t_8
+        )
+        six_r_Q_t_14 = (
+        axis_y_six_r_axes5_in_base_x*six_r_Q_t_7 + axis_y_six_r_axes5_in_base_z*six_r_Q_t_5 -
+            axis_z_six_r_axes5_in_base_x*six_r_Q_t_10 - axis_z_six_r_axes5_in_base_z*six_r_Q_t_8
+        )
+        six_r_Q_t_15 = (
+        axis_y_six_r_axes5_in_base_y*six_r_Q_t_6 - axis_z_six_r_axes5_in_base_y*six_r_Q_t_9
+        )
+        six_r_Q_t_16 = 2.0*six_r_Q_t_15 + six_r_d_c_xx
+        six_r_Q_t_17 = (
+        axis_y_six_r_axes5_in_base_y*six_r_Q_t_7 + axis_y_six_r_axes5_in_base_z*six_r_Q_t_6 -
+            axis_z_six_r_axes5_in_base_y*six_r_Q_t_10 - axis_z_six_r_axes5_in_base_z*six_r_Q_t_9
+        )
+        six_r_Q_t_18 = (
+        axis_y_six_r_axes5_in_base_z*six_r_Q_t_7 - axis_z_six_r_axes5_in_base_z*six_r_Q_t_10
+        )
+        six_r_Q_t_19 = 2.0*six_r_Q_t_18 + six_r_d_c_xx
+        # (six_r-o_1) moment part of reciprocal wrench 1
+        six_r_o_1_t = six_r_end_p1_r8_y*six_r_w_1_t_93
+        six_r_o_1_t_2 = six_r_end_p1_r8_y*six_r_w_1_t_94
+        six_r_o_1_y = six_r_end_p1_r6_x*six_r_w_1_t_94 - six_r_end_p1_r8_x*six_r_w_1_t_93
+        # (six_r-o_2) moment part of reciprocal wrench 2
+        six_r_o_2_t = six_r_end_p1_r8_y*six_r_w_2_t_5
+        six_r_o_2_t_2 = six_r_end_p1_r8_y*six_r_w_2_t_6
+        six_r_o_2_y = six_r_end_p1_r8_x*six_r_w_2_t_5 - six_r_end_p1_r6_x*six_r_w_2_t_6
+        # (six_r-o_3) moment part of reciprocal wrench 3
+        six_r_o_3_t = six_r_end_p1_r8_y*six_r_w_3_t_4
+        six_r_o_3_t_2 = six_r_end_p1_r8_y*six_r_w_3_t_5
+        six_r_o_3_y = six_r_end_p1_r8_x*six_r_w_3_t_4 - six_r_end_p1_r6_x*six_r_w_3_t_5
+        # (six_r-o_4) moment part of reciprocal wrench 4
+        six_r_o_4_t = six_r_end_p1_r8_y*six_r_w_4_t_7
+        six_r_o_4_t_2 = six_r_end_p1_r8_y*six_r_w_4_t_8
+        six_r_o_4_y = six_r_end_p1_r8_x*six_r_w_4_t_7 - six_r_end_p1_r6_x*six_r_w_4_t_8
+        # (six_r-o_5) moment part of reciprocal wrench 5
+        six_r_o_5_t = six_r_end_p1_r8_y*six_r_w_5_t_8
+        six_r_o_5_t_2 = six_r_end_p1_r8_y*six_r_w_5_t_9
+        six_r_o_5_y = six_r_end_p1_r6_x*six_r_w_5_t_9 - six_r_end_p1_r8_x*six_r_w_5_t_8
+        # (six_r-dalpha_alpha_5) coefficient of the acceleration in: angular acceleration of link 5
+        six_r_dalpha_alpha_5_xx = (
+        six_r_e_1_r6_x*six_r_o_1_t - six_r_o_2_t*six_r_v_2_t - six_r_o_3_t*six_r_v_2_t -
+            six_r_o_4_t*six_r_s_5
+        )
+        six_r_dalpha_alpha_5_xy = (
+        six_r_e_1_r6_x*six_r_o_1_y + six_r_o_2_y*six_r_v_2_t + six_r_o_3_y*six_r_v_2_t +
+            six_r_o_4_y*six_r_s_5
+        )
+        six_r_dalpha_alpha_5_xz = (
+        six_r_o_2_t_2*six_r_v_2_t + six_r_o_3_t_2*six_r_v_2_t + six_r_o_4_t_2*six_r_s_5 -
+            six_r_e_1_r6_x*six_r_o_1_t_2
+        )
+        six_r_dalpha_alpha_5_yx = (
+        six_r_c_5_t*six_r_o_4_t + six_r_e_1_r6_y*six_r_o_1_t - six_r_o_2_t*six_r_v_2_t_2 -
+            six_r_o_3_t*six_r_v_2_t_2
+        )
+        six_r_dalpha_alpha_5_yy = (
+        six_r_e_1_r6_y*six_r_o_1_y + six_r_o_2_y*six_r_v_2_t_2 + six_r_o_3_y*six_r_v_2_t_2 -
+            six_r_c_5_t*six_r_o_4_y
+        )
+        six_r_dalpha_alpha_5_yz = (
+        six_r_o_2_t_2*six_r_v_2_t_2 + six_r_o_3_t_2*six_r_v_2_t_2 - six_r_c_5_t*six_r_o_4_t_2 -
+            six_r_e_1_r6_y*six_r_o_1_t_2
+        )
+        six_r_dalpha_alpha_5_zx = (
+        six_r_o_5_t - six_r_o_1_t*six_r_v_1_t - six_r_o_2_t*six_r_s_4 - six_r_o_3_t*six_r_s_4
+        )
+        six_r_dalpha_alpha_5_zy = (
+        six_r_o_5_y + six_r_o_2_y*six_r_s_4 + six_r_o_3_y*six_r_s_4 - six_r_o_1_y*six_r_v_1_t
+        )
+        six_r_dalpha_alpha_5_zz = (
+        six_r_o_1_t_2*six_r_v_1_t + six_r_o_2_t_2*six_r_s_4 + six_r_o_3_t_2*six_r_s_4 -
+            six_r_o_5_t_2
+        )
+        # (six_r-dalpha_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal links' inertia and weight
+        six_r_dalpha_Gamma_5_x = (
+        six_r_D_1_5*six_r_o_1_t + six_r_J_5_zz*six_r_o_5_t - six_r_D_3_5*six_r_o_2_t -
+            six_r_D_3_5*six_r_o_3_t - six_r_L_c_5_r0_y*six_r_o_4_t
+        )
+        six_r_dalpha_Gamma_5_y = (
+        six_r_D_1_5*six_r_o_1_y + six_r_D_3_5*six_r_o_2_y + six_r_D_3_5*six_r_o_3_y +
+            six_r_J_5_zz*six_r_o_5_y + six_r_L_c_5_r0_y*six_r_o_4_y
+        )
+        six_r_dalpha_Gamma_5_z = (
+        six_r_D_3_5*six_r_o_2_t_2 + six_r_D_3_5*six_r_o_3_t_2 + six_r_L_c_5_r0_y*six_r_o_4_t_2 -
+            six_r_D_1_5*six_r_o_1_t_2 - six_r_J_5_zz*six_r_o_5_t_2
+        )
+        # (six_r-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+        six_r_dalpha_Gamma_4_x = (
+        six_r_L_c_4_2_r0_y*six_r_o_1_t + six_r_L_c_5_r0_y*six_r_o_5_t - six_r_Jc_4_zz*six_r_o_4_t
+            - six_r_L_c_4_2_z*six_r_o_2_t - six_r_L_c_4_3_z*six_r_o_3_t
+        )
+        six_r_dalpha_Gamma_4_y = (
+        six_r_Jc_4_zz*six_r_o_4_y + six_r_L_c_4_2_r0_y*six_r_o_1_y + six_r_L_c_4_2_z*six_r_o_2_y +
+            six_r_L_c_4_3_z*six_r_o_3_y + six_r_L_c_5_r0_y*six_r_o_5_y
+        )
+        six_r_dalpha_Gamma_4_z = (
+        six_r_Jc_4_zz*six_r_o_4_t_2 + six_r_L_c_4_2_z*six_r_o_2_t_2 +
+            six_r_L_c_4_3_z*six_r_o_3_t_2 - six_r_L_c_4_2_r0_y*six_r_o_1_t_2 -
+            six_r_L_c_5_r0_y*six_r_o_5_t_2
+        )
+        # (six_r-dalpha_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        six_r_dalpha_Gamma_3_t = six_r_D_3_5*six_r_o_5_t
+        six_r_dalpha_Gamma_3_t_2 = six_r_D_3_5*six_r_o_5_y
+        six_r_dalpha_Gamma_3_t_3 = six_r_D_3_5*six_r_o_5_t_2
+        six_r_dalpha_Gamma_3_x = (
+        six_r_dalpha_Gamma_3_t + six_r_L_c_3_2_r0_y*six_r_o_1_t - six_r_Jc_3_zz*six_r_o_3_t -
+            six_r_L_c_3_2_z*six_r_o_2_t - six_r_L_c_4_3_z*six_r_o_4_t
+        )
+        six_r_dalpha_Gamma_3_y = (
+        six_r_dalpha_Gamma_3_t_2 + six_r_Jc_3_zz*six_r_o_3_y + six_r_L_c_3_2_r0_y*six_r_o_1_y +
+            six_r_L_c_3_2_z*six_r_o_2_y + six_r_L_c_4_3_z*six_r_o_4_y
+        )
+        six_r_dalpha_Gamma_3_z = (
+        six_r_Jc_3_zz*six_r_o_3_t_2 + six_r_L_c_3_2_z*six_r_o_2_t_2 +
+            six_r_L_c_4_3_z*six_r_o_4_t_2 - six_r_dalpha_Gamma_3_t_3 -
+            six_r_L_c_3_2_r0_y*six_r_o_1_t_2
+        )
+        # (six_r-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        six_r_dalpha_Gamma_2_x = (
+        six_r_dalpha_Gamma_3_t + six_r_L_c_2_r0_y*six_r_o_1_t - six_r_Jc_2_zz*six_r_o_2_t -
+            six_r_L_c_3_2_z*six_r_o_3_t - six_r_L_c_4_2_z*six_r_o_4_t
+        )
+        six_r_dalpha_Gamma_2_y = (
+        six_r_dalpha_Gamma_3_t_2 + six_r_Jc_2_zz*six_r_o_2_y + six_r_L_c_2_r0_y*six_r_o_1_y +
+            six_r_L_c_3_2_z*six_r_o_3_y + six_r_L_c_4_2_z*six_r_o_4_y
+        )
+        six_r_dalpha_Gamma_2_z = (
+        six_r_Jc_2_zz*six_r_o_2_t_2 + six_r_L_c_3_2_z*six_r_o_3_t_2 +
+            six_r_L_c_4_2_z*six_r_o_4_t_2 - six_r_dalpha_Gamma_3_t_3 -
+            six_r_L_c_2_r0_y*six_r_o_1_t_2
+        )
+        # (six_r-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        six_r_dalpha_Gamma_1_x = (
+        six_r_D_1_5*six_r_o_5_t + six_r_Jc_1_zz*six_r_o_1_t - six_r_L_c_2_r0_y*six_r_o_2_t -
+            six_r_L_c_3_2_r0_y*six_r_o_3_t - six_r_L_c_4_2_r0_y*six_r_o_4_t
+        )
+        six_r_dalpha_Gamma_1_y = (
+        six_r_D_1_5*six_r_o_5_y + six_r_Jc_1_zz*six_r_o_1_y + six_r_L_c_2_r0_y*six_r_o_2_y +
+            six_r_L_c_3_2_r0_y*six_r_o_3_y + six_r_L_c_4_2_r0_y*six_r_o_4_y
+        )
+        six_r_dalpha_Gamma_1_z = (
+        six_r_L_c_2_r0_y*six_r_o_2_t_2 + six_r_L_c_3_2_r0_y*six_r_o_3_t_2 +
+            six_r_L_c_4_2_r0_y*six_r_o_4_t_2 - six_r_D_1_5*six_r_o_5_t_2 -
+            six_r_Jc_1_zz*six_r_o_1_t_2
+        )
+        # (six_r-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        six_r_dalpha_c_xx = (
+        six_r_dalpha_Gamma_1_x*six_r_w_1_t_90 + six_r_dalpha_Gamma_5_x*six_r_w_5_t_5 +
+            six_r_dalpha_alpha_5_zx*six_r_h_5_y - six_r_dalpha_Gamma_2_x*six_r_w_2_t_2 -
+            six_r_dalpha_Gamma_3_x*six_r_w_3_t - six_r_dalpha_Gamma_4_x*six_r_w_4_t_4 -
+            six_r_dalpha_alpha_5_yx*six_r_h_5_z
+        )
+        six_r_dalpha_c_xy = (
+        six_r_dalpha_Gamma_1_y*six_r_w_1_t_90 + six_r_dalpha_Gamma_5_y*six_r_w_5_t_5 +
+            six_r_dalpha_alpha_5_zy*six_r_h_5_y - six_r_dalpha_Gamma_2_y*six_r_w_2_t_2 -
+            six_r_dalpha_Gamma_3_y*six_r_w_3_t - six_r_dalpha_Gamma_4_y*six_r_w_4_t_4 -
+            six_r_dalpha_alpha_5_yy*six_r_h_5_z
+        )
+        six_r_dalpha_c_xz = (
+        six_r_dalpha_Gamma_1_z*six_r_w_1_t_90 + six_r_dalpha_Gamma_5_z*six_r_w_5_t_5 +
+            six_r_dalpha_alpha_5_zz*six_r_h_5_y - six_r_dalpha_Gamma_2_z*six_r_w_2_t_2 -
+            six_r_dalpha_Gamma_3_z*six_r_w_3_t - six_r_dalpha_Gamma_4_z*six_r_w_4_t_4 -
+            six_r_dalpha_alpha_5_yz*six_r_h_5_z
+        )
+        six_r_dalpha_c_yx = (
+        six_r_dalpha_Gamma_2_x*six_r_w_2_t_3 + six_r_dalpha_Gamma_3_x*six_r_w_3_t_2 +
+            six_r_dalpha_Gamma_4_x*six_r_w_4_t_5 + six_r_dalpha_alpha_5_xx*six_r_h_5_z -
+            six_r_dalpha_Gamma_1_x*six_r_w_1_t_91 - six_r_dalpha_Gamma_5_x*six_r_w_5_t_6 -
+            six_r_dalpha_alpha_5_zx*six_r_h_5_x
+        )
+        six_r_dalpha_c_yy = (
+        six_r_dalpha_Gamma_2_y*six_r_w_2_t_3 + six_r_dalpha_Gamma_3_y*six_r_w_3_t_2 +
+            six_r_dalpha_Gamma_4_y*six_r_w_4_t_5 + six_r_dalpha_alpha_5_xy*six_r_h_5_z -
+            six_r_dalpha_Gamma_1_y*six_r_w_1_t_91 - six_r_dalpha_Gamma_5_y*six_r_w_5_t_6 -
+            six_r_dalpha_alpha_5_zy*six_r_h_5_x
+        )
+        six_r_dalpha_c_yz = (
+        six_r_dalpha_Gamma_2_z*six_r_w_2_t_3 + six_r_dalpha_Gamma_3_z*six_r_w_3_t_2 +
+            six_r_dalpha_Gamma_4_z*six_r_w_4_t_5 + six_r_dalpha_alpha_5_xz*six_r_h_5_z -
+            six_r_dalpha_Gamma_1_z*six_r_w_1_t_91 - six_r_dalpha_Gamma_5_z*six_r_w_5_t_6 -
+            six_r_dalpha_alpha_5_zz*six_r_h_5_x
+        )
+        six_r_dalpha_c_zx = (
+        six_r_dalpha_Gamma_1_x*six_r_w_1_t_92 + six_r_dalpha_Gamma_2_x*six_r_w_2_t_4 +
+            six_r_dalpha_Gamma_5_x*six_r_w_5_t_7 + six_r_dalpha_alpha_5_yx*six_r_h_5_x -
+            six_r_dalpha_Gamma_3_x*six_r_w_3_t_3 - six_r_dalpha_Gamma_4_x*six_r_w_4_t_6 -
+            six_r_dalpha_alpha_5_xx*six_r_h_5_y
+        )
+        six_r_dalpha_c_zy = (
+        six_r_dalpha_Gamma_1_y*six_r_w_1_t_92 + six_r_dalpha_Gamma_2_y*six_r_w_2_t_4 +
+            six_r_dalpha_Gamma_5_y*six_r_w_5_t_7 + six_r_dalpha_alpha_5_yy*six_r_h_5_x -
+            six_r_dalpha_Gamma_3_y*six_r_w_3_t_3 - six_r_dalpha_Gamma_4_y*six_r_w_4_t_6 -
+            six_r_dalpha_alpha_5_xy*six_r_h_5_y
+        )
+        six_r_dalpha_c_zz = (
+        six_r_dalpha_Gamma_1_z*six_r_w_1_t_92 + six_r_dalpha_Gamma_2_z*six_r_w_2_t_4 +
+            six_r_dalpha_Gamma_5_z*six_r_w_5_t_7 + six_r_dalpha_alpha_5_yz*six_r_h_5_x -
+            six_r_dalpha_Gamma_3_z*six_r_w_3_t_3 - six_r_dalpha_Gamma_4_z*six_r_w_4_t_6 -
+            six_r_dalpha_alpha_5_xz*six_r_h_5_y
+        )
+        six_r_dalpha_c_in_base_x = (
+        axis_x_six_r_axes5_x*six_r_dalpha_c_xx + axis_y_six_r_axes5_in_base_x*six_r_dalpha_c_yx +
+            axis_z_six_r_axes5_in_base_x*six_r_dalpha_c_zx
+        )
+        six_r_dalpha_c_in_base_y = (
+        axis_x_six_r_axes5_y*six_r_dalpha_c_xx + axis_y_six_r_axes5_in_base_y*six_r_dalpha_c_yx +
+            axis_z_six_r_axes5_in_base_y*six_r_dalpha_c_zx
+        )
+        six_r_dalpha_c_in_base_z = (
+        axis_x_six_r_axes5_z*six_r_dalpha_c_xx + axis_y_six_r_axes5_in_base_z*six_r_dalpha_c_yx +
+            axis_z_six_r_axes5_in_base_z*six_r_dalpha_c_zx
+        )
+        six_r_dalpha_c_in_base_x_2 = (
+        axis_x_six_r_axes5_x*six_r_dalpha_c_xy + axis_y_six_r_axes5_in_base_x*six_r_dalpha_c_yy +
+            axis_z_six_r_axes5_in_base_x*six_r_dalpha_c_zy
+        )
+        six_r_dalpha_c_in_base_y_2 = (
+        axis_x_six_r_axes5_y*six_r_dalpha_c_xy + axis_y_six_r_axes5_in_base_y*six_r_dalpha_c_yy +
+            axis_z_six_r_axes5_in_base_y*six_r_dalpha_c_zy
+        )
+        six_r_dalpha_c_in_base_z_2 = (
+        axis_x_six_r_axes5_z*six_r_dalpha_c_xy + axis_y_six_r_axes5_in_base_z*six_r_dalpha_c_yy +
+            axis_z_six_r_axes5_in_base_z*six_r_dalpha_c_zy
+        )
+        six_r_dalpha_c_in_base_x_3 = (
+        axis_x_six_r_axes5_x*six_r_dalpha_c_xz + axis_y_six_r_axes5_in_base_x*six_r_dalpha_c_yz +
+            axis_z_six_r_axes5_in_base_x*six_r_dalpha_c_zz
+        )
+        six_r_dalpha_c_in_base_y_3 = (
+        axis_x_six_r_axes5_y*six_r_dalpha_c_xz + axis_y_six_r_axes5_in_base_y*six_r_dalpha_c_yz +
+            axis_z_six_r_axes5_in_base_y*six_r_dalpha_c_zz
+        )
+        six_r_dalpha_c_in_base_z_3 = (
+        axis_x_six_r_axes5_z*six_r_dalpha_c_xz + axis_y_six_r_axes5_in_base_z*six_r_dalpha_c_yz +
+            axis_z_six_r_axes5_in_base_z*six_r_dalpha_c_zz
+        )
+        # (M_ta) coupling block of M
+        six_r_q_in_base_x = (
+        R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
+        )
+        six_r_q_in_base_y = (
+        R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y + R_yz*six_r_platform_point_z
+        )
+        six_r_q_in_base_z = (
+        R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y + R_zz*six_r_platform_point_z
+        )
+        six_r_M_ta_t = six_r_Q_t_13*six_r_q_in_base_z
+        six_r_M_ta_t_2 = six_r_Q_t_14*six_r_q_in_base_y
+        six_r_M_ta_t_3 = six_r_Q_t_17*six_r_q_in_base_x
+        six_r_M_ta_t_4 = (
+        six_r_M_ta_t - six_r_M_ta_t_2 - axis_x_six_r_axes5_x*six_r_dalpha_c_in_base_x -
+            axis_y_six_r_axes5_in_base_x*six_r_dalpha_c_in_base_x_2 -
+            axis_z_six_r_axes5_in_base_x*six_r_dalpha_c_in_base_x_3
+        )
+        six_r_M_ta_t_5 = (
+        axis_x_six_r_axes5_y*six_r_dalpha_c_in_base_x +
+            axis_y_six_r_axes5_in_base_y*six_r_dalpha_c_in_base_x_2 +
+            axis_z_six_r_axes5_in_base_y*six_r_dalpha_c_in_base_x_3 +
+            six_r_Q_t_12*six_r_q_in_base_z - six_r_Q_t_14*six_r_q_in_base_x
+        )
+        six_r_M_ta_t_6 = (
+        six_r_Q_t_12*six_r_q_in_base_y - axis_x_six_r_axes5_z*six_r_dalpha_c_in_base_x -
+            axis_y_six_r_axes5_in_base_z*six_r_dalpha_c_in_base_x_2 -
+            axis_z_six_r_axes5_in_base_z*six_r_dalpha_c_in_base_x_3 -
+            six_r_Q_t_13*six_r_q_in_base_x
+        )
+        six_r_M_ta_t_7 = (
+        six_r_Q_t_16*six_r_q_in_base_z - axis_x_six_r_axes5_x*six_r_dalpha_c_in_base_y -
+            axis_y_six_r_axes5_in_base_x*six_r_dalpha_c_in_base_y_2 -
+            axis_z_six_r_axes5_in_base_x*six_r_dalpha_c_in_base_y_3 -
+            six_r_Q_t_17*six_r_q_in_base_y
+        )
+        six_r_M_ta_t_8 = (
+        six_r_M_ta_t + axis_x_six_r_axes5_y*six_r_dalpha_c_in_base_y +
+            axis_y_six_r_axes5_in_base_y*six_r_dalpha_c_in_base_y_2 +
+            axis_z_six_r_axes5_in_base_y*six_r_dalpha_c_in_base_y_3 - six_r_M_ta_t_3
+        )
+        six_r_M_ta_t_9 = (
+        six_r_Q_t_13*six_r_q_in_base_y - axis_x_six_r_axes5_z*six_r_dalpha_c_in_base_y -
+            axis_y_six_r_axes5_in_base_z*six_r_dalpha_c_in_base_y_2 -
+            axis_z_six_r_axes5_in_base_z*six_r_dalpha_c_in_base_y_3 -
+            six_r_Q_t_16*six_r_q_in_base_x
+        )
+        six_r_M_ta_t_10 = (
+        six_r_Q_t_17*six_r_q_in_base_z - axis_x_six_r_axes5_x*six_r_dalpha_c_in_base_z -
+            axis_y_six_r_axes5_in_base_x*six_r_dalpha_c_in_base_z_2 -
+            axis_z_six_r_axes5_in_base_x*six_r_dalpha_c_in_base_z_3 -
+            six_r_Q_t_19*six_r_q_in_base_y
+        )
+        six_r_M_ta_t_11 = (
+        axis_x_six_r_axes5_y*six_r_dalpha_c_in_base_z +
+            axis_y_six_r_axes5_in_base_y*six_r_dalpha_c_in_base_z_2 +
+            axis_z_six_r_axes5_in_base_y*six_r_dalpha_c_in_base_z_3 +
+            six_r_Q_t_14*six_r_q_in_base_z - six_r_Q_t_19*six_r_q_in_base_x
+        )
+        six_r_M_ta_t_12 = (
+        six_r_M_ta_t_2 - six_r_M_ta_t_3 - axis_x_six_r_axes5_z*six_r_dalpha_c_in_base_z -
+            axis_y_six_r_axes5_in_base_z*six_r_dalpha_c_in_base_z_2 -
+            axis_z_six_r_axes5_in_base_z*six_r_dalpha_c_in_base_z_3
+        )
+        # (six_r-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        six_r_dalpha_G_m1_x = (
+        six_r_dalpha_Gamma_2_x*six_r_w_2_t_5 + six_r_dalpha_Gamma_3_x*six_r_w_3_t_4 +
+            six_r_dalpha_Gamma_4_x*six_r_w_4_t_7 - six_r_dalpha_Gamma_1_x*six_r_w_1_t_93 -
+            six_r_dalpha_Gamma_5_x*six_r_w_5_t_8
+        )
+        six_r_dalpha_G_m1_y = (
+        six_r_dalpha_Gamma_2_y*six_r_w_2_t_5 + six_r_dalpha_Gamma_3_y*six_r_w_3_t_4 +
+            six_r_dalpha_Gamma_4_y*six_r_w_4_t_7 - six_r_dalpha_Gamma_1_y*six_r_w_1_t_93 -
+            six_r_dalpha_Gamma_5_y*six_r_w_5_t_8
+        )
+        six_r_dalpha_G_m1_z = (
+        six_r_dalpha_Gamma_2_z*six_r_w_2_t_5 + six_r_dalpha_Gamma_3_z*six_r_w_3_t_4 +
+            six_r_dalpha_Gamma_4_z*six_r_w_4_t_7 - six_r_dalpha_Gamma_1_z*six_r_w_1_t_93 -
+            six_r_dalpha_Gamma_5_z*six_r_w_5_t_8
+        )
+        # (six_r-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        six_r_dalpha_G_m2_x = (
+        six_r_dalpha_Gamma_2_x*six_r_w_2_t_6 + six_r_dalpha_Gamma_3_x*six_r_w_3_t_5 +
+            six_r_dalpha_Gamma_4_x*six_r_w_4_t_8 - six_r_dalpha_Gamma_1_x*six_r_w_1_t_94 -
+            six_r_dalpha_Gamma_5_x*six_r_w_5_t_9
+        )
+        six_r_dalpha_G_m2_y = (
+        six_r_dalpha_Gamma_2_y*six_r_w_2_t_6 + six_r_dalpha_Gamma_3_y*six_r_w_3_t_5 +
+            six_r_dalpha_Gamma_4_y*six_r_w_4_t_8 - six_r_dalpha_Gamma_1_y*six_r_w_1_t_94 -
+            six_r_dalpha_Gamma_5_y*six_r_w_5_t_9
+        )
+        six_r_dalpha_G_m2_z = (
+        six_r_dalpha_Gamma_2_z*six_r_w_2_t_6 + six_r_dalpha_Gamma_3_z*six_r_w_3_t_5 +
+            six_r_dalpha_Gamma_4_z*six_r_w_4_t_8 - six_r_dalpha_Gamma_1_z*six_r_w_1_t_94 -
+            six_r_dalpha_Gamma_5_z*six_r_w_5_t_9
+        )
+        # (six_r-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        six_r_d_G_m1_x = (
+        six_r_d_Gamma_2_x*six_r_w_2_t_5 + six_r_d_Gamma_3_x*six_r_w_3_t_4 +
+            six_r_d_Gamma_4_x*six_r_w_4_t_7 - six_r_d_Gamma_1_x*six_r_w_1_t_93 -
+            six_r_d_Gamma_5_x*six_r_w_5_t_8
+        )
+        six_r_d_G_m1_y = (
+        six_r_d_Gamma_2_y*six_r_w_2_t_5 + six_r_d_Gamma_3_y*six_r_w_3_t_4 +
+            six_r_d_Gamma_4_y*six_r_w_4_t_7 - six_r_d_Gamma_1_y*six_r_w_1_t_93 -
+            six_r_d_Gamma_5_y*six_r_w_5_t_8
+        )
+        six_r_d_G_m1_z = (
+        six_r_d_Gamma_2_z*six_r_w_2_t_5 + six_r_d_Gamma_3_z*six_r_w_3_t_4 +
+            six_r_d_Gamma_4_z*six_r_w_4_t_7 - six_r_d_Gamma_1_z*six_r_w_1_t_93 -
+            six_r_d_Gamma_5_t_6*six_r_w_5_t_8
+        )
+        # (six_r-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        six_r_d_G_m2_x = (
+        six_r_d_Gamma_2_x*six_r_w_2_t_6 + six_r_d_Gamma_3_x*six_r_w_3_t_5 +
+            six_r_d_Gamma_4_x*six_r_w_4_t_8 - six_r_d_Gamma_1_x*six_r_w_1_t_94 -
+            six_r_d_Gamma_5_x*six_r_w_5_t_9
+        )
+        six_r_d_G_m2_y = (
+        six_r_d_Gamma_2_y*six_r_w_2_t_6 + six_r_d_Gamma_3_y*six_r_w_3_t_5 +
+            six_r_d_Gamma_4_y*six_r_w_4_t_8 - six_r_d_Gamma_1_y*six_r_w_1_t_94 -
+            six_r_d_Gamma_5_y*six_r_w_5_t_9
+        )
+        six_r_d_G_m2_z = (
+        six_r_d_Gamma_2_z*six_r_w_2_t_6 + six_r_d_Gamma_3_z*six_r_w_3_t_5 +
+            six_r_d_Gamma_4_z*six_r_w_4_t_8 - six_r_d_Gamma_1_z*six_r_w_1_t_94 -
+            six_r_d_Gamma_5_t_6*six_r_w_5_t_9
+        )
+        # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
+        six_r_n_m1_in_base_x = (
+        axis_y_six_r_axes5_in_base_x*six_r_end_p1_r8_x - axis_x_six_r_axes5_x*six_r_end_p1_r8_y
+        )
+        six_r_n_m1_in_base_y = (
+        axis_y_six_r_axes5_in_base_y*six_r_end_p1_r8_x - axis_x_six_r_axes5_y*six_r_end_p1_r8_y
+        )
+        six_r_n_m1_in_base_z = (
+        axis_y_six_r_axes5_in_base_z*six_r_end_p1_r8_x - axis_x_six_r_axes5_z*six_r_end_p1_r8_y
+        )
+        # (six_r-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        six_r_dalpha_G_m1_in_base_y = (
+        axis_x_six_r_axes5_y*six_r_dalpha_G_m1_x +
+            axis_y_six_r_axes5_in_base_y*six_r_dalpha_G_m1_y +
+            axis_z_six_r_axes5_in_base_y*six_r_dalpha_G_m1_z
+        )
+        six_r_dalpha_G_m1_in_base_z = (
+        axis_x_six_r_axes5_z*six_r_dalpha_G_m1_x +
+            axis_y_six_r_axes5_in_base_z*six_r_dalpha_G_m1_y +
+            axis_z_six_r_axes5_in_base_z*six_r_dalpha_G_m1_z
+        )
+        # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
+        six_r_n_m2_in_base_x = (
+        axis_z_six_r_axes5_in_base_x*six_r_end_p1_r8_y -
+            axis_y_six_r_axes5_in_base_x*six_r_end_p1_r6_x
+        )
+        six_r_n_m2_in_base_y = (
+        axis_z_six_r_axes5_in_base_y*six_r_end_p1_r8_y -
+            axis_y_six_r_axes5_in_base_y*six_r_end_p1_r6_x
+        )
+        six_r_n_m2_in_base_z = (
+        axis_z_six_r_axes5_in_base_z*six_r_end_p1_r8_y -
+            axis_y_six_r_axes5_in_base_z*six_r_end_p1_r6_x
+        )
+        # (six_r-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        six_r_dalpha_G_m2_in_base_y = (
+        axis_x_six_r_axes5_y*six_r_dalpha_G_m2_x +
+            axis_y_six_r_axes5_in_base_y*six_r_dalpha_G_m2_y +
+            axis_z_six_r_axes5_in_base_y*six_r_dalpha_G_m2_z
+        )
+        six_r_dalpha_G_m2_in_base_z = (
+        axis_x_six_r_axes5_z*six_r_dalpha_G_m2_x +
+            axis_y_six_r_axes5_in_base_z*six_r_dalpha_G_m2_y +
+            axis_z_six_r_axes5_in_base_z*six_r_dalpha_G_m2_z
+        )
+        # (six_r-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        six_r_d_G_m1_in_base_x = (
+        axis_x_six_r_axes5_x*six_r_d_G_m1_x + axis_y_six_r_axes5_in_base_x*six_r_d_G_m1_y +
+            axis_z_six_r_axes5_in_base_x*six_r_d_G_m1_z
+        )
+        six_r_d_G_m1_in_base_y = (
+        axis_x_six_r_axes5_y*six_r_d_G_m1_x + axis_y_six_r_axes5_in_base_y*six_r_d_G_m1_y +
+            axis_z_six_r_axes5_in_base_y*six_r_d_G_m1_z
+        )
+        six_r_d_G_m1_in_base_z = (
+        axis_x_six_r_axes5_z*six_r_d_G_m1_x + axis_y_six_r_axes5_in_base_z*six_r_d_G_m1_y +
+            axis_z_six_r_axes5_in_base_z*six_r_d_G_m1_z
+        )
+        # (six_r-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        six_r_d_G_m2_in_base_x = (
+        axis_x_six_r_axes5_x*six_r_d_G_m2_x + axis_y_six_r_axes5_in_base_x*six_r_d_G_m2_y +
+            axis_z_six_r_axes5_in_base_x*six_r_d_G_m2_z
+        )
+        six_r_d_G_m2_in_base_y = (
+        axis_x_six_r_axes5_y*six_r_d_G_m2_x + axis_y_six_r_axes5_in_base_y*six_r_d_G_m2_y +
+            axis_z_six_r_axes5_in_base_y*six_r_d_G_m2_z
+        )
+        six_r_d_G_m2_in_base_z = (
+        axis_x_six_r_axes5_z*six_r_d_G_m2_x + axis_y_six_r_axes5_in_base_z*six_r_d_G_m2_y +
+            axis_z_six_r_axes5_in_base_z*six_r_d_G_m2_z
+        )
+        # (six_r-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        six_r_d_G_m_xx = (
+        six_r_d_G_m1_in_base_x*six_r_n_m1_in_base_x + six_r_d_G_m2_in_base_x*six_r_n_m2_in_base_x
+        )
+        six_r_d_G_m_xy = (
+        six_r_d_G_m1_in_base_y*six_r_n_m1_in_base_x + six_r_d_G_m2_in_base_y*six_r_n_m2_in_base_x
+        )
+        six_r_d_G_m_xz = (
+        six_r_d_G_m1_in_base_z*six_r_n_m1_in_base_x + six_r_d_G_m2_in_base_z*six_r_n_m2_in_base_x
+        )
+        six_r_d_G_m_yx = (
+        six_r_d_G_m1_in_base_x*six_r_n_m1_in_base_y + six_r_d_G_m2_in_base_x*six_r_n_m2_in_base_y
+        )
+        # (M_aa) rotational block of M
+        six_r_M_aa_t = (
+        six_r_M_ta_t_7*six_r_q_in_base_z + six_r_d_G_m_xy*six_r_q_in_base_z -
+            six_r_M_ta_t_10*six_r_q_in_base_y - six_r_d_G_m_xz*six_r_q_in_base_y -
+            six_r_n_m1_in_base_x*(axis_x_six_r_axes5_x*six_r_dalpha_G_m1_x +
+            axis_y_six_r_axes5_in_base_x*six_r_dalpha_G_m1_y +
+            axis_z_six_r_axes5_in_base_x*six_r_dalpha_G_m1_z) -
+            six_r_n_m2_in_base_x*(axis_x_six_r_axes5_x*six_r_dalpha_G_m2_x +
+            axis_y_six_r_axes5_in_base_x*six_r_dalpha_G_m2_y +
+            axis_z_six_r_axes5_in_base_x*six_r_dalpha_G_m2_z)
+        )
+        six_r_M_aa_t_2 = (
+        six_r_M_ta_t_8*six_r_q_in_base_z + six_r_d_G_m_xx*six_r_q_in_base_z +
+            six_r_dalpha_G_m1_in_base_y*six_r_n_m1_in_base_x +
+            six_r_dalpha_G_m2_in_base_y*six_r_n_m2_in_base_x - six_r_M_ta_t_11*six_r_q_in_base_y -
+            six_r_d_G_m_xz*six_r_q_in_base_x
+        )
+        six_r_M_aa_t_3 = (
+        six_r_M_ta_t_9*six_r_q_in_base_z + six_r_d_G_m_xx*six_r_q_in_base_y -
+            six_r_M_ta_t_12*six_r_q_in_base_y - six_r_d_G_m_xy*six_r_q_in_base_x -
+            six_r_dalpha_G_m1_in_base_z*six_r_n_m1_in_base_x -
+            six_r_dalpha_G_m2_in_base_z*six_r_n_m2_in_base_x
+        )
+        six_r_M_aa_t_4 = (
+        six_r_M_ta_t_11*six_r_q_in_base_x + six_r_d_G_m_yx*six_r_q_in_base_z +
+            six_r_dalpha_G_m1_in_base_y*six_r_n_m1_in_base_y +
+            six_r_dalpha_G_m2_in_base_y*six_r_n_m2_in_base_y - six_r_M_ta_t_5*six_r_q_in_base_z -
+            six_r_q_in_base_x*(six_r_d_G_m1_in_base_z*six_r_n_m1_in_base_y +
+            six_r_d_G_m2_in_base_z*six_r_n_m2_in_base_y)
+        )
+        six_r_M_aa_t_5 = (
+        six_r_M_ta_t_6*six_r_q_in_base_z + six_r_dalpha_G_m1_in_base_z*six_r_n_m1_in_base_y +
+            six_r_dalpha_G_m2_in_base_z*six_r_n_m2_in_base_y +
+            six_r_q_in_base_x*(six_r_d_G_m1_in_base_y*six_r_n_m1_in_base_y +
+            six_r_d_G_m2_in_base_y*six_r_n_m2_in_base_y) - six_r_M_ta_t_12*six_r_q_in_base_x -
+            six_r_d_G_m_yx*six_r_q_in_base_y
+        )
+        six_r_M_aa_t_6 = (
+        six_r_M_ta_t_6*six_r_q_in_base_y +
+            six_r_q_in_base_y*(six_r_d_G_m1_in_base_x*six_r_n_m1_in_base_z +
+            six_r_d_G_m2_in_base_x*six_r_n_m2_in_base_z) - six_r_M_ta_t_9*six_r_q_in_base_x -
+            six_r_dalpha_G_m1_in_base_z*six_r_n_m1_in_base_z -
+            six_r_dalpha_G_m2_in_base_z*six_r_n_m2_in_base_z -
+            six_r_q_in_base_x*(six_r_d_G_m1_in_base_y*six_r_n_m1_in_base_z +
+            six_r_d_G_m2_in_base_y*six_r_n_m2_in_base_z)
         )
         ok = (
-        ok & m.every(leg, (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE *
-            size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
-            (abs(w_1_t_82) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(six_r_w_1_t_15) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_31) >
+            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_52) > _TOLERANCE * six_r_size) &
+            (abs(six_r_w_1_t_70) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_82) > _TOLERANCE *
+            six_r_size))
         )
         sums = m.added(sums, leg, (
-        Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_12, M_ta_t_13, M_ta_t_14,
-            M_ta_t_15, M_ta_t_16, M_ta_t_17, M_ta_t_18, M_ta_t_19, M_ta_t_20, M_aa_t,
-            M_aa_t_2, M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6,
+        six_r_Q_t_12, six_r_Q_t_13, six_r_Q_t_14, six_r_Q_t_16, six_r_Q_t_17, six_r_Q_t_19,
+            six_r_M_ta_t_4, six_r_M_ta_t_5, six_r_M_ta_t_6, six_r_M_ta_t_7, six_r_M_ta_t_8,
+            six_r_M_ta_t_9, six_r_M_ta_t_10, six_r_M_ta_t_11, six_r_M_ta_t_12, six_r_M_aa_t,
+            six_r_M_aa_t_2, six_r_M_aa_t_3, six_r_M_aa_t_4, six_r_M_aa_t_5, six_r_M_aa_t_6,
         ))
     (
-    total_rrrrrr_xx, total_rrrrrr_xy, total_rrrrrr_xz, total_rrrrrr_yy, total_rrrrrr_yz,
-        total_rrrrrr_zz, total_rrrrrr_xx_2, total_rrrrrr_xy_2, total_rrrrrr_xz_2, total_rrrrrr_yx,
-        total_rrrrrr_yy_2, total_rrrrrr_yz_2, total_rrrrrr_zx, total_rrrrrr_zy, total_rrrrrr_zz_2,
-        total_rrrrrr_xx_3, total_rrrrrr_xy_3, total_rrrrrr_xz_3, total_rrrrrr_yy_3,
-        total_rrrrrr_yz_3, total_rrrrrr_zz_3,
+    total_six_r_xx, total_six_r_xy, total_six_r_xz, total_six_r_yy, total_six_r_yz,
+        total_six_r_zz, total_six_r_xx_2, total_six_r_xy_2, total_six_r_xz_2, total_six_r_yx,
+        total_six_r_yy_2, total_six_r_yz_2, total_six_r_zx, total_six_r_zy, total_six_r_zz_2,
+        total_six_r_xx_3, total_six_r_xy_3, total_six_r_xz_3, total_six_r_yy_3, total_six_r_yz_3,
+        total_six_r_zz_3,
     ) = sums
-    # (M1) translational block of M
-    M_tt_xx = m_star - total_rrrrrr_xx
-    M_tt_yy = m_star - total_rrrrrr_yy
-    M_tt_zz = m_star - total_rrrrrr_zz
-    # (M2) coupling block of M
-    M_ta_xy = h_star_in_base_z - total_rrrrrr_xy_2
-    M_ta_xz = total_rrrrrr_xz_2 - h_star_in_base_y
-    M_ta_yx = total_rrrrrr_yx - h_star_in_base_z
-    M_ta_yz = h_star_in_base_x + total_rrrrrr_yz_2
-    M_ta_zx = h_star_in_base_y + total_rrrrrr_zx
-    M_ta_zy = -h_star_in_base_x - total_rrrrrr_zy
-    # (M3) rotational block of M
-    M_aa_xx = J_star_t_8 - total_rrrrrr_xx_3
-    M_aa_xy = J_star_t_9 + total_rrrrrr_xy_3
-    M_aa_xz = J_star_t_10 + total_rrrrrr_xz_3
-    M_aa_yy = J_star_t_12 - total_rrrrrr_yy_3
-    M_aa_yz = J_star_t_13 + total_rrrrrr_yz_3
-    M_aa_zz = J_star_t_15 - total_rrrrrr_zz_3
+    # (M_tt) translational block of M
+    M_tt_xx = m_star - total_six_r_xx
+    M_tt_yy = m_star - total_six_r_yy
+    M_tt_zz = m_star - total_six_r_zz
+    # (M_ta) coupling block of M
+    M_ta_xy = h_star_in_base_z - total_six_r_xy_2
+    M_ta_xz = total_six_r_xz_2 - h_star_in_base_y
+    M_ta_yx = total_six_r_yx - h_star_in_base_z
+    M_ta_yz = h_star_in_base_x + total_six_r_yz_2
+    M_ta_zx = h_star_in_base_y + total_six_r_zx
+    M_ta_zy = -h_star_in_base_x - total_six_r_zy
+    # (M_aa) rotational block of M
+    M_aa_xx = J_star_t_8 - total_six_r_xx_3
+    M_aa_xy = J_star_t_9 + total_six_r_xy_3
+    M_aa_xz = J_star_t_10 - total_six_r_xz_3
+    M_aa_yy = J_star_t_13 + total_six_r_yy_3
+    M_aa_yz = J_star_t_15 + total_six_r_yz_3
+    M_aa_zz = J_star_t_17 - total_six_r_zz_3
     out_M[0] = M_tt_xx
-    out_M[1] = -total_rrrrrr_xy
-    out_M[6] = -total_rrrrrr_xy
-    out_M[2] = -total_rrrrrr_xz
-    out_M[12] = -total_rrrrrr_xz
+    out_M[1] = -total_six_r_xy
+    out_M[6] = -total_six_r_xy
+    out_M[2] = -total_six_r_xz
+    out_M[12] = -total_six_r_xz
     out_M[7] = M_tt_yy
-    out_M[8] = -total_rrrrrr_yz
-    out_M[13] = -total_rrrrrr_yz
+    out_M[8] = -total_six_r_yz
+    out_M[13] = -total_six_r_yz
     out_M[14] = M_tt_zz
-    out_M[3] = total_rrrrrr_xx_2
-    out_M[18] = total_rrrrrr_xx_2
+    out_M[3] = total_six_r_xx_2
+    out_M[18] = total_six_r_xx_2
     out_M[4] = M_ta_xy
     out_M[24] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -total_rrrrrr_yy_2
-    out_M[25] = -total_rrrrrr_yy_2
+    out_M[10] = -total_six_r_yy_2
+    out_M[25] = -total_six_r_yy_2
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
     out_M[20] = M_ta_zx
     out_M[16] = M_ta_zy
     out_M[26] = M_ta_zy
-    out_M[17] = total_rrrrrr_zz_2
-    out_M[32] = total_rrrrrr_zz_2
+    out_M[17] = total_six_r_zz_2
+    out_M[32] = total_six_r_zz_2
     out_M[21] = M_aa_xx
     out_M[22] = M_aa_xy
     out_M[27] = M_aa_xy
@@ -4584,7 +5314,7 @@ def _run_M(m, X, q):
     return ok, (out_M,)
 
 
-# Z: 5337 mul, 3972 add, 30 div, 30 sqrt, 60 trig
+# Z: 5367 mul, 3996 add, 30 div, 30 sqrt, 60 trig
 def _run_Z(m, X, V, q):
     sqrt = m.sqrt
     sin = m.sin
@@ -4638,887 +5368,1026 @@ def _run_Z(m, X, V, q):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_Z = m.zeros("Z")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (M4) centripetal force and weight of the platform
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
     Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
     Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z_2*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x_2*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y - g_r0_y_2*h_star_x
+    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
+    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, J_4_xy, J_4_xz, J_4_yz, J_5_xy,
-            J_5_xz, J_5_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy,
-            Sigma_3_zz, Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, Sigma_5_xx, Sigma_5_yy, Sigma_5_zz,
-            g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, h_4_x,
-            h_4_y, h_4_z, h_5_x, h_5_y, h_5_z, rrrrrr_base_frame_xx, rrrrrr_base_frame_xy,
-            rrrrrr_base_frame_xz, rrrrrr_base_frame_yx, rrrrrr_base_frame_yy,
-            rrrrrr_base_frame_yz, rrrrrr_base_frame_zx, rrrrrr_base_frame_zy,
-            rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x, rrrrrr_joint3_offset_x,
-            rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x, rrrrrr_link3_mass, rrrrrr_link4_mass,
-            rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
-            rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
-            rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z, size,
-            size_t,
+        six_r_J_1_xx, six_r_J_2_xy, six_r_J_2_xz, six_r_J_2_yz, six_r_J_3_xy, six_r_J_3_xz,
+            six_r_J_3_yz, six_r_J_4_xy, six_r_J_4_xz, six_r_J_4_yz, six_r_J_5_xy, six_r_J_5_xz,
+            six_r_J_5_yz, six_r_Sigma_2_xx, six_r_Sigma_2_yy, six_r_Sigma_2_zz, six_r_Sigma_3_xx,
+            six_r_Sigma_3_yy, six_r_Sigma_3_zz, six_r_Sigma_4_xx, six_r_Sigma_4_yy,
+            six_r_Sigma_4_zz, six_r_Sigma_5_xx, six_r_Sigma_5_yy, six_r_Sigma_5_zz,
+            six_r_base_frame_xx, six_r_base_frame_xy, six_r_base_frame_xz, six_r_base_frame_yx,
+            six_r_base_frame_yy, six_r_base_frame_yz, six_r_base_frame_zx, six_r_base_frame_zy,
+            six_r_base_frame_zz, six_r_g_r0_x, six_r_g_r0_y, six_r_g_r0_z, six_r_h_1_y,
+            six_r_h_1_z, six_r_h_2_x, six_r_h_2_y, six_r_h_2_z, six_r_h_3_x, six_r_h_3_y,
+            six_r_h_3_z, six_r_h_4_x, six_r_h_4_y, six_r_h_4_z, six_r_h_5_x, six_r_h_5_y,
+            six_r_h_5_z, six_r_joint2_offset_x, six_r_joint3_offset_x, six_r_joint4_offset_x,
+            six_r_joint5_offset_x, six_r_link3_mass, six_r_link4_mass,
+            six_r_platform_joint_axis_platform_x, six_r_platform_joint_axis_platform_y,
+            six_r_platform_joint_axis_platform_z, six_r_platform_joint_offset_x,
+            six_r_platform_point_x, six_r_platform_point_y, six_r_platform_point_z, six_r_size,
+            six_r_size_t,
         ) = k
-        q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
-        q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
-        q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
-        q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
-        q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
-        # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
-        c_5_t = sin(q_5)
-        # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
-        s_5 = cos(q_5)
-        # (rrrrrr-V2) from joint 4 to the connection point, along the links
-        r_4_t = c_5_t*rrrrrr_platform_joint_offset_x
-        r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5
-        # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
-        c_4_t = sin(q_4)
-        # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
-        s_4 = cos(q_4)
-        # (rrrrrr-V2) from joint 4 to the connection point, along the links
-        r_4_t_2 = r_4_t*s_4
-        r_4_t_3 = c_4_t*r_4_t
-        # (rrrrrr-V3) from joint 3 to the connection point, along the links
-        r_3_x = r_4_z + rrrrrr_joint4_offset_x
-        # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
-        c_3 = cos(q_3)
-        # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
-        s_3 = sin(q_3)
-        # (rrrrrr-V3) from joint 3 to the connection point, along the links
-        r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3
-        # (rrrrrr-V4) from joint 2 to the connection point, along the links
-        r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3
-        # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
-        c_2_t = sin(q_2)
-        # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
-        s_2 = cos(q_2)
-        # (rrrrrr-V4) from joint 2 to the connection point, along the links
-        r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2
-        # (rrrrrr-V5) from joint 1 to the connection point, along the links
-        r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y
-        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-        e_1_r2_x = c_3*s_2 - c_2_t*s_3
-        e_1_r2_y = -c_2_t*c_3 - s_2*s_3
-        v_1_t = c_4_t*e_1_r2_y
-        v_1_t_2 = e_1_r2_y*s_4
-        e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5
-        e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x
-        # (rrrrrr-V5) from joint 1 to the connection point, along the links
-        r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x
-        r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2
-        r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3
-        r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3
-        r_1_t = r_4_t_3*s_4
-        r_1_r4_x = r_1_t - c_4_t*r_1_r2_y
-        r_1_t_2 = c_4_t*r_4_t_3
-        r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4
-        r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y
-        r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5
-        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-        v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t
-        v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t
-        v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x
-        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-        v_2_t = c_4_t*c_5_t
-        v_2_t_2 = c_4_t*s_5
-        # (rrrrrr-V4) from joint 2 to the connection point, along the links
-        r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3
-        r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3
-        r_2_r2_x = r_1_t - c_4_t*r_2_r0_y
-        r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4
-        r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y
-        r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5
-        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-        v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4
-        v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t
-        v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2
-        # (rrrrrr-V3) from joint 3 to the connection point, along the links
-        r_3_r1_x = r_1_t - c_4_t*r_4_t_2
-        r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4
-        r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y
-        r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5
-        # (rrrrrr-V8) velocity of the connection point per rate of joint 3
-        v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4
-        v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t
-        v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2
-        # (rrrrrr-V9) velocity of the connection point per rate of joint 4
-        v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
-        # (rrrrrr-V13) force part of reciprocal wrench 1
-        w_1_t = c_4_t*s_3
-        w_1_t_2 = c_3*c_4_t
-        axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
-        axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
-        # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
-        c_1_t = sin(q_1)
-        # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
-        s_1 = cos(q_1)
-        # (rrrrrr-V13) force part of reciprocal wrench 1
-        axis_z_rrrrrr_axes5_r7_x = -axis_z_rrrrrr_axes5_r5_x*s_1 - c_1_t*s_4
-        axis_z_rrrrrr_axes5_r7_y = s_1*s_4 - axis_z_rrrrrr_axes5_r5_x*c_1_t
-        axis_z_rrrrrr_axes5_in_base_x = (
-        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
-            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
-            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
-        )
-        axis_z_rrrrrr_axes5_in_base_y = (
-        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
-            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
-            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
-        )
-        axis_z_rrrrrr_axes5_in_base_z = (
-        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
-            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
-            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
-        )
-        w_1_t_3 = s_4*s_5
-        axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
-        axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
-        axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
-        axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
-        axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
-        axis_y_rrrrrr_axes5_r7_y = s_1*v_2_t_2 - axis_y_rrrrrr_axes5_r5_x*c_1_t
-        axis_y_rrrrrr_axes5_in_base_x = (
-        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
-            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
-            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
-        )
-        axis_y_rrrrrr_axes5_in_base_y = (
-        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
-            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
-            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
-        )
-        axis_y_rrrrrr_axes5_in_base_z = (
-        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
-            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
-            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
-        )
-        axis_x_rrrrrr_axes5_x = (
-        axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_z -
-            axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_y
-        )
-        axis_x_rrrrrr_axes5_y = (
-        axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_x -
-            axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_z
-        )
-        axis_x_rrrrrr_axes5_z = (
-        axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
-            axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
-        )
-        # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-        end_p1_r0_x = (
-        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy +
-            R_yx*rrrrrr_base_frame_yy + R_zx*rrrrrr_base_frame_zy) +
-            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
-            R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
-            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
-            R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy)
-        )
-        end_p1_r0_y = (
-        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz +
-            R_yx*rrrrrr_base_frame_yz + R_zx*rrrrrr_base_frame_zz) +
-            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
-            R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
-            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
-            R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz)
-        )
-        end_p1_r0_z = (
-        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx +
-            R_yx*rrrrrr_base_frame_yx + R_zx*rrrrrr_base_frame_zx) +
-            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
-            R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
-            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
-            R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx)
-        )
-        end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x
-        end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1
-        end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y
-        end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2
-        end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3
-        end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3
-        end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y
-        end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4
-        end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
-        end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
-        # (rrrrrr-V13) force part of reciprocal wrench 1
-        w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
-        w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
-        w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
-        w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
-        w_1_t_8 = size*w_1_t_4
-        w_1_t_9 = size*w_1_t_6
-        w_1_t_10 = size*w_1_t_5
-        w_1_t_11 = size*w_1_t_7
-        w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
-        w_1_t_13 = c_5_t*end_p1_r6_x*size
-        w_1_t_14 = end_p1_r8_y*size
-        w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
-        inv_w_1_t_69 = 1.0/w_1_t_15
-        w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
-        w_1_t_17 = inv_w_1_t_69*w_1_t_14
-        w_1_t_18 = w_1_t_13*w_1_t_17
-        w_1_t_19 = w_1_t_16*w_1_t_18
-        w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
-        w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
-        w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
-        w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
-        w_1_t_24 = w_1_t_11*w_1_t_17
-        w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
-        w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
-        w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
-        w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
-        w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
-        w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
-        w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
-        inv_w_1_t_101 = 1.0/w_1_t_31
-        w_1_t_32 = inv_w_1_t_101*w_1_t_19
-        w_1_t_33 = inv_w_1_t_101*v_4_z
-        w_1_t_34 = inv_w_1_t_101*w_1_t_12
-        w_1_t_35 = inv_w_1_t_101*w_1_t_20
-        w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
-        w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
-        w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
-        w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
-        w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
-        w_1_t_41 = w_1_t_10*w_1_t_34
-        w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
-        w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
-        w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
-        w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
-        w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
-        w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
-        w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
-        w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
-        w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
-        w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
-        w_1_t_52 = (
-        sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
-            w_1_t_40*w_1_t_40)
-        )
-        inv_w_1_t_150 = 1.0/w_1_t_52
-        w_1_t_53 = inv_w_1_t_150*v_1_x
-        w_1_t_54 = inv_w_1_t_150*w_1_t_37
-        w_1_t_55 = inv_w_1_t_150*w_1_t_38
-        w_1_t_56 = inv_w_1_t_150*w_1_t_39
-        w_1_t_57 = inv_w_1_t_150*w_1_t_40
-        w_1_t_58 = (
-        v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 +
-            w_1_t_46*w_1_t_57
-        )
-        w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
-        w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
-        w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
-        w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
-        w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
-        w_1_t_64 = (
-        v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 +
-            w_1_t_51*w_1_t_57
-        )
-        w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
-        w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
-        w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
-        w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
-        w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
-        w_1_t_70 = (
-        sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
-            w_1_t_63*w_1_t_63)
-        )
-        inv_w_1_t_194 = 1.0/w_1_t_70
-        w_1_t_71 = inv_w_1_t_194*w_1_t_59
-        w_1_t_72 = inv_w_1_t_194*w_1_t_60
-        w_1_t_73 = inv_w_1_t_194*w_1_t_61
-        w_1_t_74 = inv_w_1_t_194*w_1_t_62
-        w_1_t_75 = inv_w_1_t_194*w_1_t_63
-        w_1_t_76 = (
-        w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
-            w_1_t_69*w_1_t_75
-        )
-        w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
-        w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
-        w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
-        w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
-        w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
-        w_1_t_82 = (
-        sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
-            w_1_t_81*w_1_t_81)
-        )
-        inv_w_1_t_222 = 1.0/w_1_t_82
-        w_1_t_83 = inv_w_1_t_222*w_1_t_77
-        w_1_t_84 = inv_w_1_t_222*w_1_t_78
-        w_1_t_85 = inv_w_1_t_222*w_1_t_79
-        w_1_t_86 = inv_w_1_t_222*w_1_t_80
-        w_1_t_87 = inv_w_1_t_222*w_1_t_81
-        # (M2) coupling block of M
-        q_in_base_x = (
-        R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
-        )
-        q_in_base_y = (
-        R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y + R_yz*rrrrrr_platform_point_z
-        )
-        q_in_base_z = (
-        R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y + R_zz*rrrrrr_platform_point_z
-        )
-        # (rrrrrr-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        # (rrrrrr-V33) rate at which the joints turn along moment direction 1
-        eta_1 = (
-        omega_x*(axis_y_rrrrrr_axes5_in_base_x*end_p1_r8_x - axis_x_rrrrrr_axes5_x*end_p1_r8_y) +
-            omega_y*(axis_y_rrrrrr_axes5_in_base_y*end_p1_r8_x -
-            axis_x_rrrrrr_axes5_y*end_p1_r8_y) +
-            omega_z*(axis_y_rrrrrr_axes5_in_base_z*end_p1_r8_x -
-            axis_x_rrrrrr_axes5_z*end_p1_r8_y)
-        )
-        # (rrrrrr-V34) rate at which the joints turn along moment direction 2
-        eta_2 = (
-        omega_x*(axis_z_rrrrrr_axes5_in_base_x*end_p1_r8_y -
-            axis_y_rrrrrr_axes5_in_base_x*end_p1_r6_x) +
-            omega_y*(axis_z_rrrrrr_axes5_in_base_y*end_p1_r8_y -
-            axis_y_rrrrrr_axes5_in_base_y*end_p1_r6_x) +
-            omega_z*(axis_z_rrrrrr_axes5_in_base_z*end_p1_r8_y -
-            axis_y_rrrrrr_axes5_in_base_z*end_p1_r6_x)
-        )
-        # (rrrrrr-V1) velocity of the connection point
-        S_dot_tip_x = (
-        S_dot_x*axis_x_rrrrrr_axes5_x + S_dot_y*axis_x_rrrrrr_axes5_y +
-            S_dot_z*axis_x_rrrrrr_axes5_z
-        )
-        S_dot_tip_y = (
-        S_dot_x*axis_y_rrrrrr_axes5_in_base_x + S_dot_y*axis_y_rrrrrr_axes5_in_base_y +
-            S_dot_z*axis_y_rrrrrr_axes5_in_base_z
-        )
-        S_dot_tip_z = (
-        S_dot_x*axis_z_rrrrrr_axes5_in_base_x + S_dot_y*axis_z_rrrrrr_axes5_in_base_y +
-            S_dot_z*axis_z_rrrrrr_axes5_in_base_z
-        )
-        # (rrrrrr-V35) rate of joint 1
-        qd_1_t = eta_1*size
-        qd_1_t_2 = eta_2*size
-        qd_1_t_3 = (
-        inv_w_1_t_222*(S_dot_tip_x*w_1_t_83 + S_dot_tip_z*w_1_t_85 + qd_1_t*w_1_t_86 +
-            qd_1_t_2*w_1_t_87 - S_dot_tip_y*w_1_t_84)
-        )
-        qd_1_t_4 = (
-        inv_w_1_t_194*(S_dot_tip_x*w_1_t_71 + S_dot_tip_z*w_1_t_73 + qd_1_t*w_1_t_74 +
-            qd_1_t_2*w_1_t_75 - S_dot_tip_y*w_1_t_72 - qd_1_t_3*w_1_t_76)
-        )
-        qd_1_t_5 = (
-        inv_w_1_t_150*(S_dot_tip_y*w_1_t_54 + qd_1_t_3*w_1_t_64 + qd_1_t_4*w_1_t_58 -
-            S_dot_tip_x*w_1_t_53 - S_dot_tip_z*w_1_t_55 - qd_1_t*w_1_t_56 - qd_1_t_2*w_1_t_57)
-        )
-        qd_1_t_6 = (
-        inv_w_1_t_101*(S_dot_tip_z*w_1_t_33 + qd_1_t*w_1_t_34 + qd_1_t_2*w_1_t_35 +
-            qd_1_t_3*w_1_t_47 + qd_1_t_4*w_1_t_42 - S_dot_tip_y*w_1_t_32 - qd_1_t_5*w_1_t_36)
-        )
-        qd_1_t_7 = (
-        inv_w_1_t_69*(S_dot_tip_y*w_1_t_16 + qd_1_t_2*w_1_t_17 + qd_1_t_3*w_1_t_28 +
-            qd_1_t_5*w_1_t_21 - qd_1_t_4*w_1_t_25 - qd_1_t_6*w_1_t_18)
-        )
-        # (rrrrrr-V40) angular velocity of link 1
-        omega_1_t = qd_1_t_5*s_2
-        omega_1_t_2 = c_2_t*qd_1_t_5
-        # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_x = omega_1_t_2*qd_1_t_4
-        zeta_2_y = omega_1_t*qd_1_t_4
-        # (rrrrrr-V42) angular velocity of link 2
-        omega_2_r0_x = omega_1_t_2*s_3 - c_3*omega_1_t
-        omega_2_r0_y = c_3*omega_1_t_2 + omega_1_t*s_3
-        # (rrrrrr-A5) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_x = omega_2_r0_y*qd_1_t_3
-        zeta_3_y = omega_2_r0_x*qd_1_t_3
-        # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_r0_x = c_3*zeta_2_x + s_3*zeta_2_y
-        zeta_2_r0_y = c_3*zeta_2_y - s_3*zeta_2_x
-        # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_x = zeta_2_r0_x + zeta_3_x
-        beta_3_y = zeta_2_r0_y - zeta_3_y
-        # (rrrrrr-V44) angular velocity of link 3
-        omega_3_z = qd_1_t_3 + qd_1_t_4
-        omega_3_r1_x = omega_3_z*s_4 - c_4_t*omega_2_r0_y
-        omega_3_r1_y = -c_4_t*omega_3_z - omega_2_r0_y*s_4
-        # (rrrrrr-A7) angular acceleration of link 4 from the turning of axis 4
-        zeta_4_x = omega_3_r1_y*qd_1_t_6
-        zeta_4_y = omega_3_r1_x*qd_1_t_6
-        # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_t = beta_3_y*c_4_t
-        beta_3_t_2 = beta_3_y*s_4
-        # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
-        beta_4_x = zeta_4_x - beta_3_t
-        beta_4_y = -beta_3_t_2 - zeta_4_y
-        # (rrrrrr-V46) angular velocity of link 4
-        omega_4_z = omega_2_r0_x + qd_1_t_6
-        omega_4_t = c_5_t*omega_3_r1_y
-        omega_4_r1_x = omega_4_z*s_5 - omega_4_t
-        omega_4_t_2 = omega_3_r1_y*s_5
-        omega_4_r1_y = -omega_4_t_2 - c_5_t*omega_4_z
-        # (rrrrrr-A9) angular acceleration of link 5 from the turning of axis 5
-        zeta_5_x = omega_4_r1_y*qd_1_t_7
-        zeta_5_y = omega_4_r1_x*qd_1_t_7
-        # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
-        beta_4_t = beta_3_x*s_5
-        beta_4_r1_x = beta_4_t - beta_4_y*c_5_t
-        beta_4_t_2 = beta_3_x*c_5_t
-        beta_4_r1_y = -beta_4_t_2 - beta_4_y*s_5
-        # (rrrrrr-A10) angular acceleration of link 5 at zero joint accelerations
-        beta_5_x = beta_4_r1_x + zeta_5_x
-        beta_5_y = beta_4_r1_y - zeta_5_y
-        # (rrrrrr-V48) angular velocity of link 5
-        omega_5_z = omega_3_r1_x + qd_1_t_7
-        # (rrrrrr-A14) rate of moment direction 1
-        nd_m1_t = end_p1_r8_y*omega_4_r1_y
-        omega_tip_x = (
-        axis_x_rrrrrr_axes5_x*omega_x + axis_x_rrrrrr_axes5_y*omega_y +
-            axis_x_rrrrrr_axes5_z*omega_z
-        )
-        omega_tip_y = (
-        axis_y_rrrrrr_axes5_in_base_x*omega_x + axis_y_rrrrrr_axes5_in_base_y*omega_y +
-            axis_y_rrrrrr_axes5_in_base_z*omega_z
-        )
-        omega_tip_z = (
-        axis_z_rrrrrr_axes5_in_base_x*omega_x + axis_z_rrrrrr_axes5_in_base_y*omega_y +
-            axis_z_rrrrrr_axes5_in_base_z*omega_z
-        )
-        nd_m1_t_2 = end_p1_r8_x*omega_tip_z - end_p1_r6_x*omega_tip_x
-        nd_m1_x = -nd_m1_t_2 - end_p1_r6_x*omega_4_r1_x
-        nd_m1_y = end_p1_r6_x*omega_tip_y - end_p1_r6_x*omega_4_r1_y - end_p1_r8_y*omega_tip_z
-        # (rrrrrr-A15) bias of the angular acceleration along moment direction 1
-        nu_1_t = beta_5_x*end_p1_r8_y - beta_5_y*end_p1_r8_x
-        nu_1_t_2 = omega_4_r1_x - omega_tip_x
-        nu_1_t_3 = omega_4_r1_y - omega_tip_y
-        nu_1_t_4 = omega_5_z - omega_tip_z
-        nu_1_t_5 = (
-        nd_m1_x*nu_1_t_2 + nd_m1_y*nu_1_t_3 + nu_1_t_4*(nd_m1_t + end_p1_r8_x*omega_4_r1_x)
-        )
-        nu_1 = nu_1_t - nu_1_t_5
-        # (rrrrrr-A16) rate of moment direction 2
-        nd_m2_y = end_p1_r8_x*omega_tip_y - end_p1_r8_x*omega_4_r1_y - end_p1_r8_y*omega_tip_x
-        nd_m2_z = nd_m1_t_2 - end_p1_r8_x*omega_5_z
-        # (rrrrrr-A17) bias of the angular acceleration along moment direction 2
-        nu_2_t = beta_5_y*end_p1_r6_x - beta_4_x*end_p1_r8_y
-        nu_2_t_2 = (
-        nd_m2_y*nu_1_t_3 + nd_m2_z*nu_1_t_4 + nu_1_t_2*(nd_m1_t + end_p1_r6_x*omega_5_z)
-        )
-        nu_2 = nu_2_t - nu_2_t_2
-        # (rrrrrr-V43) centripetal tensor of link 2
-        W_2_t = omega_1_t*omega_1_t
-        W_2_t_2 = omega_1_t_2*omega_1_t_2
-        W_2_t_3 = qd_1_t_4*qd_1_t_4
-        W_2_xy = omega_1_t*omega_1_t_2
-        # (rrrrrr-V45) centripetal tensor of link 3
-        W_3_t = omega_2_r0_x*omega_2_r0_x
-        W_3_t_2 = omega_2_r0_y*omega_2_r0_y
-        W_3_t_3 = omega_3_z*omega_3_z
-        W_3_xx = W_3_t_2 + W_3_t_3
-        W_3_xy = omega_2_r0_x*omega_2_r0_y
-        W_3_xz = omega_2_r0_x*omega_3_z
-        W_3_yz = omega_2_r0_y*omega_3_z
-        # (rrrrrr-V47) centripetal tensor of link 4
-        W_4_t = omega_3_r1_x*omega_3_r1_x
-        W_4_t_2 = omega_3_r1_y*omega_3_r1_y
-        W_4_t_3 = omega_4_z*omega_4_z
-        W_4_xy = omega_3_r1_x*omega_3_r1_y
-        W_4_xz = omega_3_r1_x*omega_4_z
-        W_4_yz = omega_3_r1_y*omega_4_z
-        # (rrrrrr-V49) centripetal tensor of link 5
-        W_5_t = omega_4_r1_x*omega_4_r1_x
-        W_5_t_2 = omega_4_r1_y*omega_4_r1_y
-        W_5_t_3 = omega_5_z*omega_5_z
-        W_5_xx = W_5_t_2 + W_5_t_3
-        W_5_xy = omega_4_r1_x*omega_4_r1_y
-        W_5_xz = omega_4_r1_x*omega_5_z
-        W_5_yz = omega_4_r1_y*omega_5_z
-        # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-        bias_t = rrrrrr_joint2_offset_x*s_2
-        bias_t_2 = c_2_t*rrrrrr_joint2_offset_x
-        d_2_r2_x = bias_t*c_3 - bias_t_2*s_3
-        d_2_r2_y = -bias_t*s_3 - bias_t_2*c_3
-        bias_t_3 = c_4_t*d_2_r2_y
-        bias_t_4 = d_2_r2_y*s_4
-        d_2_r6_x = bias_t_4*c_5_t + d_2_r2_x*s_5
-        d_2_r6_y = bias_t_4*s_5 - c_5_t*d_2_r2_x
-        # (rrrrrr-V40) angular velocity of link 1
-        omega_1_x = e_1_r6_x*qd_1_t_5
-        omega_1_y = e_1_r6_y*qd_1_t_5
-        omega_1_z = qd_1_t_5*v_1_t
-        # (rrrrrr-V41) centripetal tensor of link 1
-        W_1_t = omega_1_x*omega_1_x
-        W_1_t_2 = omega_1_y*omega_1_y
-        W_1_t_3 = omega_1_z*omega_1_z
-        W_1_xy = omega_1_x*omega_1_y
-        W_1_xz = omega_1_x*omega_1_z
-        W_1_yz = omega_1_y*omega_1_z
-        # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-        bias_t_5 = c_3*rrrrrr_joint3_offset_x
-        bias_t_6 = rrrrrr_joint3_offset_x*s_3
-        bias_t_7 = bias_t_6*c_4_t
-        bias_t_8 = bias_t_6*s_4
-        d_3_r4_x = bias_t_5*s_5 - bias_t_8*c_5_t
-        d_3_r4_y = -bias_t_5*c_5_t - bias_t_8*s_5
-        # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_t = c_4_t*zeta_2_r0_y
-        zeta_2_t_2 = s_4*zeta_2_r0_y
-        zeta_2_r4_x = c_5_t*zeta_2_t_2 + s_5*zeta_2_r0_x
-        zeta_2_r4_y = s_5*zeta_2_t_2 - c_5_t*zeta_2_r0_x
-        # (rrrrrr-V42) angular velocity of link 2
-        omega_2_x = qd_1_t_4*v_2_t - omega_1_x
-        omega_2_y = qd_1_t_4*v_2_t_2 - omega_1_y
-        omega_2_z = omega_1_z + qd_1_t_4*s_4
-        # (rrrrrr-V43) centripetal tensor of link 2
-        W_2_t_4 = omega_2_x*omega_2_x
-        W_2_t_5 = omega_2_y*omega_2_y
-        W_2_t_6 = omega_2_z*omega_2_z
-        W_2_xy_2 = omega_2_x*omega_2_y
-        W_2_xz = omega_2_x*omega_2_z
-        W_2_yz = omega_2_y*omega_2_z
-        # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-        bias_t_9 = rrrrrr_joint4_offset_x*s_5
-        bias_t_10 = c_5_t*rrrrrr_joint4_offset_x
-        # (rrrrrr-V44) angular velocity of link 3
-        omega_3_r3_x = omega_2_r0_x*s_5 - omega_4_t
-        omega_3_r3_y = -omega_4_t_2 - c_5_t*omega_2_r0_x
-        # (rrrrrr-V45) centripetal tensor of link 3
-        W_3_xy_2 = omega_3_r3_x*omega_3_r3_y
-        # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-        bias_t_11 = rrrrrr_joint5_offset_x*s_5
-        bias_t_12 = c_5_t*rrrrrr_joint5_offset_x
-        bias_t_13 = W_5_xy + beta_4_x
-        bias_x = (
-        W_1_xy*d_2_r6_y + W_1_xz*bias_t_3 + bias_t_7*(W_2_xz + zeta_2_r4_y) + d_3_r4_y*(W_2_xy_2 +
-            zeta_2_t) - W_5_xx*rrrrrr_platform_joint_offset_x - bias_t_10*(W_3_xy_2 + beta_3_t) -
-            bias_t_11*(W_4_t + W_5_t_2) - bias_t_12*(W_5_xy - beta_4_x) - bias_t_9*(W_4_t +
-            omega_3_r3_y*omega_3_r3_y) - d_2_r6_x*(W_1_t_2 + W_1_t_3) - d_3_r4_x*(W_2_t_5 +
-            W_2_t_6)
-        )
-        bias_y = (
-        W_1_xy*d_2_r6_x + W_1_yz*bias_t_3 + bias_t_10*(W_4_t + omega_3_r3_x*omega_3_r3_x) +
-            bias_t_11*bias_t_13 + bias_t_12*(W_4_t + W_5_t) +
-            bias_t_13*rrrrrr_platform_joint_offset_x + bias_t_7*(W_2_yz - zeta_2_r4_x) +
-            bias_t_9*(W_3_xy_2 - beta_3_t) + d_3_r4_x*(W_2_xy_2 - zeta_2_t) - d_2_r6_y*(W_1_t +
-            W_1_t_3) - d_3_r4_y*(W_2_t_4 + W_2_t_6)
-        )
-        bias_z = (
-        bias_t_11*(omega_3_r1_x*omega_4_r1_x - beta_4_r1_y) + bias_t_3*(W_1_t + W_1_t_2) +
-            bias_t_9*(beta_4_t_2 + omega_3_r1_x*omega_3_r3_x - beta_3_t_2*s_5) + d_3_r4_x*(W_2_xz
-            - zeta_2_r4_y) + d_3_r4_y*(W_2_yz + zeta_2_r4_x) +
-            rrrrrr_platform_joint_offset_x*(W_5_xz - beta_5_y) - W_1_xz*d_2_r6_x - W_1_yz*d_2_r6_y
-            - bias_t_10*(beta_4_t + beta_3_t_2*c_5_t + omega_3_r1_x*omega_3_r3_y) -
-            bias_t_12*(beta_4_r1_x + omega_3_r1_x*omega_4_r1_y) - bias_t_7*(W_2_t_4 + W_2_t_5)
-        )
-        # (rrrrrr-A1) centripetal acceleration of the connection point
-        u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
-        u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y
-        u_1_tip_x = (
-        axis_x_rrrrrr_axes5_x*u_1_x + axis_x_rrrrrr_axes5_y*u_1_y + axis_x_rrrrrr_axes5_z*u_1_z
-        )
-        u_1_tip_y = (
-        axis_y_rrrrrr_axes5_in_base_x*u_1_x + axis_y_rrrrrr_axes5_in_base_y*u_1_y +
-            axis_y_rrrrrr_axes5_in_base_z*u_1_z
-        )
-        u_1_tip_z = (
-        axis_z_rrrrrr_axes5_in_base_x*u_1_x + axis_z_rrrrrr_axes5_in_base_y*u_1_y +
-            axis_z_rrrrrr_axes5_in_base_z*u_1_z
-        )
-        # (rrrrrr-A13) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_x = u_1_tip_x - bias_x
-        rel_o_y = u_1_tip_y - bias_y
-        rel_o_z = u_1_tip_z - bias_z
-        # (rrrrrr-A21) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_o_t = nu_1*size
-        qdd_1_o_t_2 = nu_2*size
-        qdd_1_o_t_3 = (
-        inv_w_1_t_222*(qdd_1_o_t*w_1_t_86 + qdd_1_o_t_2*w_1_t_87 + rel_o_x*w_1_t_83 +
-            rel_o_z*w_1_t_85 - rel_o_y*w_1_t_84)
-        )
-        qdd_1_o_t_4 = (
-        inv_w_1_t_194*(qdd_1_o_t*w_1_t_74 + qdd_1_o_t_2*w_1_t_75 + rel_o_x*w_1_t_71 +
-            rel_o_z*w_1_t_73 - qdd_1_o_t_3*w_1_t_76 - rel_o_y*w_1_t_72)
-        )
-        qdd_1_o_t_5 = (
-        inv_w_1_t_150*(qdd_1_o_t_3*w_1_t_64 + qdd_1_o_t_4*w_1_t_58 + rel_o_y*w_1_t_54 -
-            qdd_1_o_t*w_1_t_56 - qdd_1_o_t_2*w_1_t_57 - rel_o_x*w_1_t_53 - rel_o_z*w_1_t_55)
-        )
-        qdd_1_o_t_6 = (
-        inv_w_1_t_101*(qdd_1_o_t*w_1_t_34 + qdd_1_o_t_2*w_1_t_35 + qdd_1_o_t_3*w_1_t_47 +
-            qdd_1_o_t_4*w_1_t_42 + rel_o_z*w_1_t_33 - qdd_1_o_t_5*w_1_t_36 - rel_o_y*w_1_t_32)
-        )
-        # (rrrrrr-A31) remainder without the acceleration in: angular acceleration of link 1
-        alpha_1_o_t = qdd_1_o_t_5*s_2
-        alpha_1_o_t_2 = c_2_t*qdd_1_o_t_5
-        # (rrrrrr-A35) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_o_x = zeta_2_x - alpha_1_o_t
-        alpha_2_o_y = alpha_1_o_t_2 + zeta_2_y
-        # (rrrrrr-A37) remainder of the acceleration tensor of link 2
-        B_2_o_xy = -W_2_xy - qdd_1_o_t_4
-        B_2_o_yx = qdd_1_o_t_4 - W_2_xy
-        B_2_o_zx = -alpha_2_o_y - zeta_2_y
-        B_2_o_zy = alpha_2_o_x + zeta_2_x
-        # (rrrrrr-A55) remainder without the acceleration in: acceleration of the origin of joint 3
-        a_o3_o_t = rrrrrr_joint3_offset_x*(W_2_t_2 + W_2_t_3)
-        a_o3_o_t_2 = B_2_o_yx*rrrrrr_joint3_offset_x
-        a_o3_o_t_3 = B_2_o_zx*rrrrrr_joint3_offset_x
-        # (rrrrrr-A39) remainder without the acceleration in: angular acceleration of link 3
-        alpha_3_o_x = zeta_3_x + alpha_2_o_x*c_3 + alpha_2_o_y*s_3
-        alpha_3_o_y = alpha_2_o_y*c_3 - zeta_3_y - alpha_2_o_x*s_3
-        alpha_3_o_z = qdd_1_o_t_3 + qdd_1_o_t_4
-        # (rrrrrr-A41) remainder of the acceleration tensor of link 3
-        B_3_o_xy = W_3_xy - alpha_3_o_z
-        B_3_o_xz = W_3_xz + alpha_3_o_y
-        B_3_o_yx = W_3_xy + alpha_3_o_z
-        B_3_o_yz = W_3_yz - alpha_3_o_x
-        B_3_o_zx = W_3_xz - alpha_3_o_y
-        B_3_o_zy = W_3_yz + alpha_3_o_x
-        # (rrrrrr-A55) remainder without the acceleration in: acceleration of the origin of joint 3
-        a_o3_o_r0_x = a_o3_o_t_2*s_3 - a_o3_o_t*c_3
-        a_o3_o_r0_y = a_o3_o_t*s_3 + a_o3_o_t_2*c_3
-        # (rrrrrr-A57) remainder without the acceleration in: acceleration of the origin of joint 4
-        a_o4_o_x = a_o3_o_r0_x - W_3_xx*rrrrrr_joint4_offset_x
-        a_o4_o_y = a_o3_o_r0_y + B_3_o_yx*rrrrrr_joint4_offset_x
-        a_o4_o_z = a_o3_o_t_3 + B_3_o_zx*rrrrrr_joint4_offset_x
-        # (rrrrrr-N16) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
-        g_r1_x = g_r0_y*s_1 - c_1_t*g_r0_x
-        g_r1_y = -c_1_t*g_r0_y - g_r0_x*s_1
-        g_r3_x = g_r0_z*s_2 - c_2_t*g_r1_y
-        g_r3_y = -c_2_t*g_r0_z - g_r1_y*s_2
-        g_r4_x = c_3*g_r3_x + g_r3_y*s_3
-        g_r4_y = c_3*g_r3_y - g_r3_x*s_3
-        g_r6_x = g_r1_x*s_4 - c_4_t*g_r4_y
-        g_r6_y = -c_4_t*g_r1_x - g_r4_y*s_4
-        acc_4_o_x = a_o4_o_z*s_4 - g_r6_x - a_o4_o_y*c_4_t
-        acc_4_o_y = -g_r6_y - a_o4_o_y*s_4 - a_o4_o_z*c_4_t
-        acc_4_o_z = a_o4_o_x - g_r4_x
-        # (rrrrrr-A43) remainder without the acceleration in: angular acceleration of link 4
-        alpha_4_o_x = zeta_4_x + alpha_3_o_z*s_4 - alpha_3_o_y*c_4_t
-        alpha_4_o_y = -zeta_4_y - alpha_3_o_y*s_4 - alpha_3_o_z*c_4_t
-        alpha_4_o_z = alpha_3_o_x + qdd_1_o_t_6
-        # (rrrrrr-A45) remainder of the acceleration tensor of link 4
-        B_4_o_xy = W_4_xy - alpha_4_o_z
-        B_4_o_xz = W_4_xz + alpha_4_o_y
-        B_4_o_yx = W_4_xy + alpha_4_o_z
-        B_4_o_yz = W_4_yz - alpha_4_o_x
-        B_4_o_zx = W_4_xz - alpha_4_o_y
-        B_4_o_zy = W_4_yz + alpha_4_o_x
-        # (rrrrrr-N73) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
-        mu_4_o_x = (
-        B_4_o_yx*J_4_xz + B_4_o_zx*J_4_yz + B_4_o_zy*Sigma_4_yy - B_4_o_yz*Sigma_4_zz -
-            J_4_xy*(W_4_t_2 - W_4_t_3) - acc_4_o_y*h_4_x - acc_4_o_z*h_4_y
-        )
-        mu_4_o_y = (
-        B_4_o_xy*J_4_xy + B_4_o_xz*Sigma_4_zz + acc_4_o_x*h_4_x - B_4_o_zx*Sigma_4_xx -
-            B_4_o_zy*J_4_yz - J_4_xz*(W_4_t - W_4_t_3) - acc_4_o_z*h_4_z
-        )
-        mu_4_o_z = (
-        B_4_o_yx*Sigma_4_xx + acc_4_o_x*h_4_y + acc_4_o_y*h_4_z - B_4_o_xy*Sigma_4_yy -
-            B_4_o_xz*J_4_xy - B_4_o_yz*J_4_xz - J_4_yz*(W_4_t - W_4_t_2)
-        )
-        # (rrrrrr-N22) remainder without the acceleration in: acceleration of the reference point of link 5, less gravity
-        acc_5_o_x = u_1_tip_x + c_5_t*g_r6_y - g_r4_x*s_5
-        acc_5_o_y = u_1_tip_y + c_5_t*g_r4_x + g_r6_y*s_5
-        acc_5_o_z = u_1_tip_z - g_r6_x
-        # (rrrrrr-A49) remainder without the acceleration in: angular acceleration of link 5
-        alpha_5_o_x = zeta_5_x + alpha_4_o_z*s_5 - alpha_4_o_y*c_5_t
-        alpha_5_o_y = -zeta_5_y - alpha_4_o_y*s_5 - alpha_4_o_z*c_5_t
-        alpha_5_o_z = (
-        alpha_4_o_x + inv_w_1_t_69*(qdd_1_o_t_2*w_1_t_17 + qdd_1_o_t_3*w_1_t_28 +
-            qdd_1_o_t_5*w_1_t_21 + rel_o_y*w_1_t_16 - qdd_1_o_t_4*w_1_t_25 - qdd_1_o_t_6*w_1_t_18)
-        )
-        # (rrrrrr-A51) remainder of the acceleration tensor of link 5
-        B_5_o_xy = W_5_xy - alpha_5_o_z
-        B_5_o_xz = W_5_xz + alpha_5_o_y
-        B_5_o_yx = W_5_xy + alpha_5_o_z
-        B_5_o_yz = W_5_yz - alpha_5_o_x
-        B_5_o_zx = W_5_xz - alpha_5_o_y
-        B_5_o_zy = W_5_yz + alpha_5_o_x
-        # (rrrrrr-N65) remainder without the acceleration in: inertia moment of the links that turn with link 5, about their reference points
-        mu_5_o_x = (
-        B_5_o_yx*J_5_xz + B_5_o_zy*Sigma_5_yy + J_5_yz*(W_5_t_2 - W_5_t_3) + acc_5_o_z*h_5_y -
-            B_5_o_yz*Sigma_5_zz - B_5_o_zx*J_5_xy - acc_5_o_y*h_5_z
-        )
-        mu_5_o_y = (
-        B_5_o_xz*Sigma_5_zz + B_5_o_zy*J_5_xy + acc_5_o_x*h_5_z - B_5_o_xy*J_5_yz -
-            B_5_o_zx*Sigma_5_xx - J_5_xz*(W_5_t - W_5_t_3) - acc_5_o_z*h_5_x
-        )
-        mu_5_o_z = (
-        B_5_o_xz*J_5_yz + B_5_o_yx*Sigma_5_xx + J_5_xy*(W_5_t - W_5_t_2) + acc_5_o_y*h_5_x -
-            B_5_o_xy*Sigma_5_yy - B_5_o_yz*J_5_xz - acc_5_o_x*h_5_y
-        )
-        # (rrrrrr-N75) remainder without the acceleration in: moment about joint 4 of the links from 4 outwards, the force at the connection point left out
-        N_4_o_x = mu_4_o_x + mu_5_o_z
-        N_4_o_y = mu_4_o_y - c_5_t*mu_5_o_x - mu_5_o_y*s_5
-        N_4_o_z = mu_4_o_z + mu_5_o_x*s_5 - c_5_t*mu_5_o_y
-        # (rrrrrr-N20) remainder without the acceleration in: inertia force of link 4 less its weight
-        f_4_o_x = (
-        B_4_o_xz*h_4_x + acc_4_o_x*rrrrrr_link4_mass - B_4_o_xy*h_4_y - h_4_z*(W_4_t_2 + W_4_t_3)
-        )
-        f_4_o_y = (
-        B_4_o_yx*h_4_z + B_4_o_yz*h_4_x + acc_4_o_y*rrrrrr_link4_mass + h_4_y*(W_4_t + W_4_t_3)
-        )
-        f_4_o_z = (
-        B_4_o_zx*h_4_z + acc_4_o_z*rrrrrr_link4_mass - B_4_o_zy*h_4_y - h_4_x*(W_4_t + W_4_t_2)
-        )
-        # (rrrrrr-N10) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        acc_3_o_x = a_o3_o_r0_x - g_r4_x
-        acc_3_o_y = a_o3_o_r0_y - g_r4_y
-        acc_3_o_z = a_o3_o_t_3 - g_r1_x
-        # (rrrrrr-N83) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        mu_3_o_x = (
-        B_3_o_yx*J_3_xz + B_3_o_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_o_z*h_3_y -
-            B_3_o_yz*Sigma_3_zz - B_3_o_zx*J_3_xy - acc_3_o_y*h_3_z
-        )
-        mu_3_o_y = (
-        B_3_o_xz*Sigma_3_zz + B_3_o_zy*J_3_xy + acc_3_o_x*h_3_z - B_3_o_xy*J_3_yz -
-            B_3_o_zx*Sigma_3_xx - J_3_xz*(W_3_t - W_3_t_3) - acc_3_o_z*h_3_x
-        )
-        mu_3_o_z = (
-        B_3_o_xz*J_3_yz + B_3_o_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_o_y*h_3_x -
-            B_3_o_xy*Sigma_3_yy - B_3_o_yz*J_3_xz - acc_3_o_x*h_3_y
-        )
-        # (rrrrrr-N20) remainder without the acceleration in: inertia force of link 4 less its weight
-        f_4_o_r0_x = -c_4_t*f_4_o_x - f_4_o_y*s_4
-        f_4_o_r0_y = f_4_o_x*s_4 - c_4_t*f_4_o_y
-        # (rrrrrr-N85) remainder without the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-        N_3_o_x = N_4_o_z + mu_3_o_x
-        N_3_o_y = mu_3_o_y - N_4_o_x*c_4_t - N_4_o_y*s_4 - f_4_o_r0_y*rrrrrr_joint4_offset_x
-        N_3_o_z = mu_3_o_z + N_4_o_x*s_4 + f_4_o_r0_x*rrrrrr_joint4_offset_x - N_4_o_y*c_4_t
-        # (rrrrrr-N14) remainder without the acceleration in: inertia force of link 3 less its weight
-        f_3_o_x = B_3_o_xy*h_3_y + B_3_o_xz*h_3_z + acc_3_o_x*rrrrrr_link3_mass - W_3_xx*h_3_x
-        f_3_o_y = (
-        B_3_o_yx*h_3_x + B_3_o_yz*h_3_z + acc_3_o_y*rrrrrr_link3_mass - h_3_y*(W_3_t + W_3_t_3)
-        )
-        f_3_o_z = (
-        B_3_o_zx*h_3_x + B_3_o_zy*h_3_y + acc_3_o_z*rrrrrr_link3_mass - h_3_z*(W_3_t + W_3_t_2)
-        )
-        # (rrrrrr-N87) remainder without the acceleration in: inertia force of the links from 3 outwards, the last link left out
-        T_3_o_x = f_3_o_x + f_4_o_z
-        T_3_o_y = f_3_o_y + f_4_o_r0_x
-        T_3_o_z = f_3_o_z + f_4_o_r0_y
-        # (rrrrrr-N95) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_o_x = (
-        B_2_o_yx*J_2_xz + B_2_o_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z -
-            B_2_o_zx*J_2_xy - Sigma_2_zz*alpha_1_o_t - g_r1_x*h_2_y
-        )
-        mu_2_o_y = (
-        B_2_o_zy*J_2_xy + Sigma_2_zz*alpha_1_o_t_2 + g_r1_x*h_2_x - B_2_o_xy*J_2_yz -
-            B_2_o_zx*Sigma_2_xx - J_2_xz*(W_2_t - W_2_t_3) - g_r3_x*h_2_z
-        )
-        mu_2_o_z = (
-        B_2_o_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + J_2_yz*alpha_1_o_t_2 + g_r3_x*h_2_y -
-            B_2_o_xy*Sigma_2_yy - J_2_xz*alpha_1_o_t - g_r3_y*h_2_x
-        )
-        # (rrrrrr-N97) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_o_x = mu_2_o_x + N_3_o_x*c_3 - N_3_o_y*s_3
-        N_2_o_y = mu_2_o_y + N_3_o_x*s_3 + N_3_o_y*c_3 - T_3_o_z*rrrrrr_joint3_offset_x
-        N_2_o_z = N_3_o_z + mu_2_o_z + rrrrrr_joint3_offset_x*(T_3_o_x*s_3 + T_3_o_y*c_3)
-        # (rrrrrr-N107) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_o_z = -J_1_xx*qdd_1_o_t_5 - g_r1_x*h_1_y - g_r1_y*h_1_z
-        # (rrrrrr-N109) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_o_z = mu_1_o_z + N_2_o_x*s_2 - N_2_o_y*c_2_t
-        # (rrrrrr-N117) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_o_t = inv_w_1_t_69*mu_5_o_z
-        G_o_t_2 = inv_w_1_t_101*(G_o_t*w_1_t_18 - N_4_o_z)
-        G_o_t_3 = inv_w_1_t_150*(G_o_t*w_1_t_21 + G_o_t_2*w_1_t_36 - N_1_o_z)
-        G_o_t_4 = inv_w_1_t_194*(G_o_t*w_1_t_25 + G_o_t_2*w_1_t_42 - N_2_o_z - G_o_t_3*w_1_t_58)
-        G_o_t_5 = (
-        inv_w_1_t_222*(N_3_o_z + G_o_t*w_1_t_28 + G_o_t_3*w_1_t_64 + G_o_t_4*w_1_t_76 -
-            G_o_t_2*w_1_t_47)
-        )
-        G_o_t_6 = size*(G_o_t_2*w_1_t_34 + G_o_t_3*w_1_t_56 + G_o_t_4*w_1_t_74 - G_o_t_5*w_1_t_86)
-        G_o_t_7 = (
-        size*(G_o_t_2*w_1_t_35 + G_o_t_3*w_1_t_57 + G_o_t_4*w_1_t_75 - G_o_t*w_1_t_17 -
-            G_o_t_5*w_1_t_87)
-        )
-        # (rrrrrr-N133) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_o_x = (
-        G_o_t_3*w_1_t_53 + G_o_t_4*w_1_t_71 + W_5_xx*h_5_x - B_5_o_xy*h_5_y - B_5_o_xz*h_5_z -
-            G_o_t_5*w_1_t_83
-        )
-        c_o_y = (
-        G_o_t_5*w_1_t_84 + h_5_y*(W_5_t + W_5_t_3) - B_5_o_yx*h_5_x - B_5_o_yz*h_5_z -
-            G_o_t*w_1_t_16 - G_o_t_2*w_1_t_32 - G_o_t_3*w_1_t_54 - G_o_t_4*w_1_t_72
-        )
-        c_o_z = (
-        G_o_t_2*w_1_t_33 + G_o_t_3*w_1_t_55 + G_o_t_4*w_1_t_73 + h_5_z*(W_5_t + W_5_t_2) -
-            B_5_o_zx*h_5_x - B_5_o_zy*h_5_y - G_o_t_5*w_1_t_85
-        )
-        # (rrrrrr-N139) velocity and gravity terms of the leg force
-        U_in_base_x = (
-        -axis_x_rrrrrr_axes5_x*c_o_x - axis_y_rrrrrr_axes5_in_base_x*c_o_y -
-            axis_z_rrrrrr_axes5_in_base_x*c_o_z
-        )
-        U_in_base_y = (
-        -axis_x_rrrrrr_axes5_y*c_o_x - axis_y_rrrrrr_axes5_in_base_y*c_o_y -
-            axis_z_rrrrrr_axes5_in_base_y*c_o_z
-        )
-        U_in_base_z = (
-        -axis_x_rrrrrr_axes5_z*c_o_x - axis_y_rrrrrr_axes5_in_base_z*c_o_y -
-            axis_z_rrrrrr_axes5_in_base_z*c_o_z
-        )
-        # (rrrrrr-N129) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        G_m_o_t = G_o_t_6*end_p1_r8_y
-        G_m_o_t_2 = G_o_t_7*end_p1_r8_y
-        G_m_o_y = G_o_t_7*end_p1_r6_x - G_o_t_6*end_p1_r8_x
-        # (M7) rotational part of Z
-        Z_a_t = (
-        G_m_o_t*axis_x_rrrrrr_axes5_x + G_m_o_y*axis_y_rrrrrr_axes5_in_base_x +
-            U_in_base_z*q_in_base_y - G_m_o_t_2*axis_z_rrrrrr_axes5_in_base_x -
-            U_in_base_y*q_in_base_z
-        )
-        Z_a_t_2 = (
-        G_m_o_t*axis_x_rrrrrr_axes5_y + G_m_o_y*axis_y_rrrrrr_axes5_in_base_y +
-            U_in_base_x*q_in_base_z - G_m_o_t_2*axis_z_rrrrrr_axes5_in_base_y -
-            U_in_base_z*q_in_base_x
-        )
-        Z_a_t_3 = (
-        G_m_o_t*axis_x_rrrrrr_axes5_z + G_m_o_y*axis_y_rrrrrr_axes5_in_base_z +
-            U_in_base_y*q_in_base_x - G_m_o_t_2*axis_z_rrrrrr_axes5_in_base_z -
-            U_in_base_x*q_in_base_y
+        six_r_q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
+        six_r_q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
+        six_r_q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
+        six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
+        six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
+        six_r_c_5_t = sin(six_r_q_5)
+        # (six_r-s_5) sine of the angle of joint 5 from its reference direction
+        six_r_s_5 = cos(six_r_q_5)
+        # (six_r-r_4) from joint 4 to the connection point, along the links
+        six_r_r_4_t = six_r_c_5_t*six_r_platform_joint_offset_x
+        six_r_r_4_z = six_r_joint5_offset_x + six_r_platform_joint_offset_x*six_r_s_5
+        # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
+        six_r_c_4_t = sin(six_r_q_4)
+        # (six_r-s_4) sine of the angle of joint 4 from its reference direction
+        six_r_s_4 = cos(six_r_q_4)
+        # (six_r-r_4) from joint 4 to the connection point, along the links
+        six_r_r_4_t_2 = six_r_r_4_t*six_r_s_4
+        six_r_r_4_t_3 = six_r_c_4_t*six_r_r_4_t
+        # (six_r-r_3) from joint 3 to the connection point, along the links
+        six_r_r_3_x = six_r_joint4_offset_x + six_r_r_4_z
+        # (six_r-c_3) cosine of the angle of joint 3 from its reference direction
+        six_r_c_3 = cos(six_r_q_3)
+        # (six_r-s_3) sine of the angle of joint 3 from its reference direction
+        six_r_s_3 = sin(six_r_q_3)
+        # (six_r-r_3) from joint 3 to the connection point, along the links
+        six_r_r_3_r0_y = six_r_c_3*six_r_r_4_t_2 + six_r_r_3_x*six_r_s_3
+        # (six_r-r_2) from joint 2 to the connection point, along the links
+        six_r_r_2_x = six_r_joint3_offset_x + six_r_c_3*six_r_r_3_x - six_r_r_4_t_2*six_r_s_3
+        # (six_r-c_2) cosine of the angle of joint 2 from its reference direction
+        six_r_c_2_t = sin(six_r_q_2)
+        # (six_r-s_2) sine of the angle of joint 2 from its reference direction
+        six_r_s_2 = cos(six_r_q_2)
+        # (six_r-r_2) from joint 2 to the connection point, along the links
+        six_r_r_2_r0_x = -six_r_c_2_t*six_r_r_2_x - six_r_r_3_r0_y*six_r_s_2
+        # (six_r-r_1) from joint 1 to the connection point, along the links
+        six_r_r_1_z = six_r_joint2_offset_x + six_r_r_2_x*six_r_s_2 - six_r_c_2_t*six_r_r_3_r0_y
+        # (six_r-v_1) velocity of the connection point per rate of joint 1
+        six_r_e_1_r2_x = six_r_c_3*six_r_s_2 - six_r_c_2_t*six_r_s_3
+        six_r_e_1_r2_y = -six_r_c_2_t*six_r_c_3 - six_r_s_2*six_r_s_3
+        six_r_v_1_t = six_r_c_4_t*six_r_e_1_r2_y
+        six_r_v_1_t_2 = six_r_e_1_r2_y*six_r_s_4
+        six_r_e_1_r6_x = six_r_c_5_t*six_r_v_1_t_2 + six_r_e_1_r2_x*six_r_s_5
+        six_r_e_1_r6_y = six_r_s_5*six_r_v_1_t_2 - six_r_c_5_t*six_r_e_1_r2_x
+        # (six_r-r_1) from joint 1 to the connection point, along the links
+        six_r_r_1_r1_x = six_r_r_1_z*six_r_s_2 - six_r_c_2_t*six_r_r_2_r0_x
+        six_r_r_1_r1_y = -six_r_c_2_t*six_r_r_1_z - six_r_r_2_r0_x*six_r_s_2
+        six_r_r_1_r2_x = six_r_c_3*six_r_r_1_r1_x + six_r_r_1_r1_y*six_r_s_3
+        six_r_r_1_r2_y = six_r_c_3*six_r_r_1_r1_y - six_r_r_1_r1_x*six_r_s_3
+        six_r_r_1_t = six_r_r_4_t_3*six_r_s_4
+        six_r_r_1_r4_x = six_r_r_1_t - six_r_c_4_t*six_r_r_1_r2_y
+        six_r_r_1_t_2 = six_r_c_4_t*six_r_r_4_t_3
+        six_r_r_1_r4_y = -six_r_r_1_t_2 - six_r_r_1_r2_y*six_r_s_4
+        six_r_r_1_r6_x = six_r_r_1_r2_x*six_r_s_5 - six_r_c_5_t*six_r_r_1_r4_y
+        six_r_r_1_r6_y = -six_r_c_5_t*six_r_r_1_r2_x - six_r_r_1_r4_y*six_r_s_5
+        # (six_r-v_1) velocity of the connection point per rate of joint 1
+        six_r_v_1_x = six_r_e_1_r6_y*six_r_r_1_r4_x + six_r_r_1_r6_y*six_r_v_1_t
+        six_r_v_1_y = -six_r_e_1_r6_x*six_r_r_1_r4_x - six_r_r_1_r6_x*six_r_v_1_t
+        six_r_v_1_z = six_r_e_1_r6_x*six_r_r_1_r6_y - six_r_e_1_r6_y*six_r_r_1_r6_x
+        # (six_r-v_2) velocity of the connection point per rate of joint 2
+        six_r_v_2_t = six_r_c_4_t*six_r_c_5_t
+        six_r_v_2_t_2 = six_r_c_4_t*six_r_s_5
+        # (six_r-r_2) from joint 2 to the connection point, along the links
+        six_r_r_2_r0_x_2 = six_r_c_3*six_r_r_2_x + six_r_r_3_r0_y*six_r_s_3
+        six_r_r_2_r0_y = six_r_c_3*six_r_r_3_r0_y - six_r_r_2_x*six_r_s_3
+        six_r_r_2_r2_x = six_r_r_1_t - six_r_c_4_t*six_r_r_2_r0_y
+        six_r_r_2_r2_y = -six_r_r_1_t_2 - six_r_r_2_r0_y*six_r_s_4
+        six_r_r_2_r4_x = six_r_r_2_r0_x_2*six_r_s_5 - six_r_c_5_t*six_r_r_2_r2_y
+        six_r_r_2_r4_y = -six_r_c_5_t*six_r_r_2_r0_x_2 - six_r_r_2_r2_y*six_r_s_5
+        # (six_r-v_2) velocity of the connection point per rate of joint 2
+        six_r_v_2_x = six_r_r_2_r2_x*six_r_v_2_t_2 - six_r_r_2_r4_y*six_r_s_4
+        six_r_v_2_y = six_r_r_2_r4_x*six_r_s_4 - six_r_r_2_r2_x*six_r_v_2_t
+        six_r_v_2_z = six_r_r_2_r4_y*six_r_v_2_t - six_r_r_2_r4_x*six_r_v_2_t_2
+        # (six_r-r_3) from joint 3 to the connection point, along the links
+        six_r_r_3_r1_x = six_r_r_1_t - six_r_c_4_t*six_r_r_4_t_2
+        six_r_r_3_r1_y = -six_r_r_1_t_2 - six_r_r_4_t_2*six_r_s_4
+        six_r_r_3_r3_x = six_r_r_3_x*six_r_s_5 - six_r_c_5_t*six_r_r_3_r1_y
+        six_r_r_3_r3_y = -six_r_c_5_t*six_r_r_3_x - six_r_r_3_r1_y*six_r_s_5
+        # (six_r-v_3) velocity of the connection point per rate of joint 3
+        six_r_v_3_x = six_r_r_3_r1_x*six_r_v_2_t_2 - six_r_r_3_r3_y*six_r_s_4
+        six_r_v_3_y = six_r_r_3_r3_x*six_r_s_4 - six_r_r_3_r1_x*six_r_v_2_t
+        six_r_v_3_z = six_r_r_3_r3_y*six_r_v_2_t - six_r_r_3_r3_x*six_r_v_2_t_2
+        # (six_r-v_4) velocity of the connection point per rate of joint 4
+        six_r_v_4_z = (
+        six_r_c_5_t*(six_r_c_5_t*six_r_r_4_t + six_r_r_4_z*six_r_s_5) +
+            six_r_s_5*(six_r_r_4_t*six_r_s_5 - six_r_c_5_t*six_r_r_4_z)
+        )
+        # (six_r-w_1) force part of reciprocal wrench 1
+        six_r_w_1_t = six_r_c_4_t*six_r_s_3
+        six_r_w_1_t_2 = six_r_c_3*six_r_c_4_t
+        axis_z_six_r_axes5_r5_x = six_r_s_2*six_r_w_1_t_2 - six_r_c_2_t*six_r_w_1_t
+        axis_z_six_r_axes5_r5_y = six_r_c_2_t*six_r_w_1_t_2 + six_r_s_2*six_r_w_1_t
+        # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
+        six_r_c_1_t = sin(six_r_q_1)
+        # (six_r-s_1) sine of the angle of joint 1 from its reference direction
+        six_r_s_1 = cos(six_r_q_1)
+        # (six_r-w_1) force part of reciprocal wrench 1
+        axis_z_six_r_axes5_r7_x = -axis_z_six_r_axes5_r5_x*six_r_s_1 - six_r_c_1_t*six_r_s_4
+        axis_z_six_r_axes5_r7_y = six_r_s_1*six_r_s_4 - axis_z_six_r_axes5_r5_x*six_r_c_1_t
+        axis_z_six_r_axes5_in_base_x = (
+        axis_z_six_r_axes5_r5_y*six_r_base_frame_xx + axis_z_six_r_axes5_r7_x*six_r_base_frame_xy
+            + axis_z_six_r_axes5_r7_y*six_r_base_frame_xz
+        )
+        axis_z_six_r_axes5_in_base_y = (
+        axis_z_six_r_axes5_r5_y*six_r_base_frame_yx + axis_z_six_r_axes5_r7_x*six_r_base_frame_yy
+            + axis_z_six_r_axes5_r7_y*six_r_base_frame_yz
+        )
+        axis_z_six_r_axes5_in_base_z = (
+        axis_z_six_r_axes5_r5_y*six_r_base_frame_zx + axis_z_six_r_axes5_r7_x*six_r_base_frame_zy
+            + axis_z_six_r_axes5_r7_y*six_r_base_frame_zz
+        )
+        six_r_w_1_t_3 = six_r_s_4*six_r_s_5
+        axis_y_six_r_axes5_r4_x = -six_r_c_3*six_r_c_5_t - six_r_s_3*six_r_w_1_t_3
+        axis_y_six_r_axes5_r4_y = six_r_c_3*six_r_w_1_t_3 - six_r_c_5_t*six_r_s_3
+        axis_y_six_r_axes5_r5_x = (
+        -axis_y_six_r_axes5_r4_x*six_r_c_2_t - axis_y_six_r_axes5_r4_y*six_r_s_2
+        )
+        axis_y_six_r_axes5_r5_y = (
+        axis_y_six_r_axes5_r4_x*six_r_s_2 - axis_y_six_r_axes5_r4_y*six_r_c_2_t
+        )
+        axis_y_six_r_axes5_r7_x = -axis_y_six_r_axes5_r5_x*six_r_s_1 - six_r_c_1_t*six_r_v_2_t_2
+        axis_y_six_r_axes5_r7_y = six_r_s_1*six_r_v_2_t_2 - axis_y_six_r_axes5_r5_x*six_r_c_1_t
+        axis_y_six_r_axes5_in_base_x = (
+        axis_y_six_r_axes5_r5_y*six_r_base_frame_xx + axis_y_six_r_axes5_r7_x*six_r_base_frame_xy
+            + axis_y_six_r_axes5_r7_y*six_r_base_frame_xz
+        )
+        axis_y_six_r_axes5_in_base_y = (
+        axis_y_six_r_axes5_r5_y*six_r_base_frame_yx + axis_y_six_r_axes5_r7_x*six_r_base_frame_yy
+            + axis_y_six_r_axes5_r7_y*six_r_base_frame_yz
+        )
+        axis_y_six_r_axes5_in_base_z = (
+        axis_y_six_r_axes5_r5_y*six_r_base_frame_zx + axis_y_six_r_axes5_r7_x*six_r_base_frame_zy
+            + axis_y_six_r_axes5_r7_y*six_r_base_frame_zz
+        )
+        axis_x_six_r_axes5_x = (
+        axis_y_six_r_axes5_in_base_y*axis_z_six_r_axes5_in_base_z -
+            axis_y_six_r_axes5_in_base_z*axis_z_six_r_axes5_in_base_y
+        )
+        axis_x_six_r_axes5_y = (
+        axis_y_six_r_axes5_in_base_z*axis_z_six_r_axes5_in_base_x -
+            axis_y_six_r_axes5_in_base_x*axis_z_six_r_axes5_in_base_z
+        )
+        axis_x_six_r_axes5_z = (
+        axis_y_six_r_axes5_in_base_x*axis_z_six_r_axes5_in_base_y -
+            axis_y_six_r_axes5_in_base_y*axis_z_six_r_axes5_in_base_x
+        )
+        # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
+        six_r_end_p1_r0_x = (
+        six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xy + R_yx*six_r_base_frame_yy
+            + R_zx*six_r_base_frame_zy) +
+            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xy +
+            R_yy*six_r_base_frame_yy + R_zy*six_r_base_frame_zy) +
+            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xy +
+            R_yz*six_r_base_frame_yy + R_zz*six_r_base_frame_zy)
+        )
+        six_r_end_p1_r0_y = (
+        six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xz + R_yx*six_r_base_frame_yz
+            + R_zx*six_r_base_frame_zz) +
+            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xz +
+            R_yy*six_r_base_frame_yz + R_zy*six_r_base_frame_zz) +
+            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xz +
+            R_yz*six_r_base_frame_yz + R_zz*six_r_base_frame_zz)
+        )
+        six_r_end_p1_r0_z = (
+        six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xx + R_yx*six_r_base_frame_yx
+            + R_zx*six_r_base_frame_zx) +
+            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xx +
+            R_yy*six_r_base_frame_yx + R_zy*six_r_base_frame_zx) +
+            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xx +
+            R_yz*six_r_base_frame_yx + R_zz*six_r_base_frame_zx)
+        )
+        six_r_end_p1_r1_x = six_r_end_p1_r0_y*six_r_s_1 - six_r_c_1_t*six_r_end_p1_r0_x
+        six_r_end_p1_r1_y = -six_r_c_1_t*six_r_end_p1_r0_y - six_r_end_p1_r0_x*six_r_s_1
+        six_r_end_p1_r3_x = six_r_end_p1_r0_z*six_r_s_2 - six_r_c_2_t*six_r_end_p1_r1_y
+        six_r_end_p1_r3_y = -six_r_c_2_t*six_r_end_p1_r0_z - six_r_end_p1_r1_y*six_r_s_2
+        six_r_end_p1_r4_x = six_r_c_3*six_r_end_p1_r3_x + six_r_end_p1_r3_y*six_r_s_3
+        six_r_end_p1_r4_y = six_r_c_3*six_r_end_p1_r3_y - six_r_end_p1_r3_x*six_r_s_3
+        six_r_end_p1_r6_x = six_r_end_p1_r1_x*six_r_s_4 - six_r_c_4_t*six_r_end_p1_r4_y
+        six_r_end_p1_r6_y = -six_r_c_4_t*six_r_end_p1_r1_x - six_r_end_p1_r4_y*six_r_s_4
+        six_r_end_p1_r8_x = six_r_end_p1_r4_x*six_r_s_5 - six_r_c_5_t*six_r_end_p1_r6_y
+        six_r_end_p1_r8_y = -six_r_c_5_t*six_r_end_p1_r4_x - six_r_end_p1_r6_y*six_r_s_5
+        # (six_r-w_1) force part of reciprocal wrench 1
+        six_r_w_1_t_4 = six_r_e_1_r6_x*six_r_end_p1_r8_y - six_r_e_1_r6_y*six_r_end_p1_r8_x
+        six_r_w_1_t_5 = six_r_end_p1_r8_y*six_r_v_2_t - six_r_end_p1_r8_x*six_r_v_2_t_2
+        six_r_w_1_t_6 = six_r_e_1_r6_y*six_r_end_p1_r6_x + six_r_end_p1_r8_y*six_r_v_1_t
+        six_r_w_1_t_7 = six_r_end_p1_r6_x*six_r_v_2_t_2 - six_r_end_p1_r8_y*six_r_s_4
+        six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4
+        six_r_w_1_t_9 = six_r_size*six_r_w_1_t_6
+        six_r_w_1_t_10 = six_r_size*six_r_w_1_t_5
+        six_r_w_1_t_11 = six_r_size*six_r_w_1_t_7
+        six_r_w_1_t_12 = six_r_size*(-six_r_c_5_t*six_r_end_p1_r8_x - six_r_end_p1_r8_y*six_r_s_5)
+        six_r_w_1_t_13 = six_r_c_5_t*six_r_end_p1_r6_x*six_r_size
+        six_r_w_1_t_14 = six_r_end_p1_r8_y*six_r_size
+        six_r_w_1_t_15 = sqrt(six_r_size_t + six_r_w_1_t_14*six_r_w_1_t_14)
+        inv_six_r_w_1_t_69 = 1.0/six_r_w_1_t_15
+        six_r_w_1_t_16 = inv_six_r_w_1_t_69*six_r_platform_joint_offset_x
+        six_r_w_1_t_17 = inv_six_r_w_1_t_69*six_r_w_1_t_14
+        six_r_w_1_t_18 = six_r_w_1_t_13*six_r_w_1_t_17
+        six_r_w_1_t_19 = six_r_w_1_t_16*six_r_w_1_t_18
+        six_r_w_1_t_20 = six_r_w_1_t_13 - six_r_w_1_t_17*six_r_w_1_t_18
+        six_r_w_1_t_21 = six_r_v_1_y*six_r_w_1_t_16 - six_r_w_1_t_17*six_r_w_1_t_9
+        six_r_w_1_t_22 = six_r_v_1_y - six_r_w_1_t_16*six_r_w_1_t_21
+        six_r_w_1_t_23 = six_r_w_1_t_9 + six_r_w_1_t_17*six_r_w_1_t_21
+        six_r_w_1_t_24 = six_r_w_1_t_11*six_r_w_1_t_17
+        six_r_w_1_t_25 = six_r_v_2_y*six_r_w_1_t_16 - six_r_w_1_t_24
+        six_r_w_1_t_26 = six_r_v_2_y - six_r_w_1_t_16*six_r_w_1_t_25
+        six_r_w_1_t_27 = six_r_w_1_t_11 + six_r_w_1_t_17*six_r_w_1_t_25
+        six_r_w_1_t_28 = six_r_w_1_t_24 - six_r_v_3_y*six_r_w_1_t_16
+        six_r_w_1_t_29 = six_r_v_3_y + six_r_w_1_t_16*six_r_w_1_t_28
+        six_r_w_1_t_30 = six_r_w_1_t_11 - six_r_w_1_t_17*six_r_w_1_t_28
+        six_r_w_1_t_31 = (
+        sqrt(six_r_v_4_z*six_r_v_4_z + six_r_w_1_t_12*six_r_w_1_t_12 +
+            six_r_w_1_t_19*six_r_w_1_t_19 + six_r_w_1_t_20*six_r_w_1_t_20)
+        )
+        inv_six_r_w_1_t_101 = 1.0/six_r_w_1_t_31
+        six_r_w_1_t_32 = inv_six_r_w_1_t_101*six_r_w_1_t_19
+        six_r_w_1_t_33 = inv_six_r_w_1_t_101*six_r_v_4_z
+        six_r_w_1_t_34 = inv_six_r_w_1_t_101*six_r_w_1_t_12
+        six_r_w_1_t_35 = inv_six_r_w_1_t_101*six_r_w_1_t_20
+        six_r_w_1_t_36 = (
+        six_r_w_1_t_22*six_r_w_1_t_32 + six_r_w_1_t_23*six_r_w_1_t_35 +
+            six_r_w_1_t_34*six_r_w_1_t_8 - six_r_v_1_z*six_r_w_1_t_33
+        )
+        six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_36 - six_r_w_1_t_22
+        six_r_w_1_t_38 = six_r_v_1_z + six_r_w_1_t_33*six_r_w_1_t_36
+        six_r_w_1_t_39 = six_r_w_1_t_34*six_r_w_1_t_36 - six_r_w_1_t_8
+        six_r_w_1_t_40 = six_r_w_1_t_35*six_r_w_1_t_36 - six_r_w_1_t_23
+        six_r_w_1_t_41 = six_r_w_1_t_10*six_r_w_1_t_34
+        six_r_w_1_t_42 = (
+        six_r_w_1_t_41 + six_r_w_1_t_26*six_r_w_1_t_32 + six_r_w_1_t_27*six_r_w_1_t_35 -
+            six_r_v_2_z*six_r_w_1_t_33
+        )
+        six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_42 - six_r_w_1_t_26
+        six_r_w_1_t_44 = six_r_v_2_z + six_r_w_1_t_33*six_r_w_1_t_42
+        six_r_w_1_t_45 = six_r_w_1_t_34*six_r_w_1_t_42 - six_r_w_1_t_10
+        six_r_w_1_t_46 = six_r_w_1_t_35*six_r_w_1_t_42 - six_r_w_1_t_27
+        six_r_w_1_t_47 = (
+        six_r_w_1_t_41 + six_r_w_1_t_29*six_r_w_1_t_32 + six_r_w_1_t_30*six_r_w_1_t_35 -
+            six_r_v_3_z*six_r_w_1_t_33
+        )
+        six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_47 - six_r_w_1_t_29
+        six_r_w_1_t_49 = six_r_v_3_z + six_r_w_1_t_33*six_r_w_1_t_47
+        six_r_w_1_t_50 = six_r_w_1_t_34*six_r_w_1_t_47 - six_r_w_1_t_10
+        six_r_w_1_t_51 = six_r_w_1_t_35*six_r_w_1_t_47 - six_r_w_1_t_30
+        six_r_w_1_t_52 = (
+        sqrt(six_r_v_1_x*six_r_v_1_x + six_r_w_1_t_37*six_r_w_1_t_37 +
+            six_r_w_1_t_38*six_r_w_1_t_38 + six_r_w_1_t_39*six_r_w_1_t_39 +
+            six_r_w_1_t_40*six_r_w_1_t_40)
+        )
+        inv_six_r_w_1_t_150 = 1.0/six_r_w_1_t_52
+        six_r_w_1_t_53 = inv_six_r_w_1_t_150*six_r_v_1_x
+        six_r_w_1_t_54 = inv_six_r_w_1_t_150*six_r_w_1_t_37
+        six_r_w_1_t_55 = inv_six_r_w_1_t_150*six_r_w_1_t_38
+        six_r_w_1_t_56 = inv_six_r_w_1_t_150*six_r_w_1_t_39
+        six_r_w_1_t_57 = inv_six_r_w_1_t_150*six_r_w_1_t_40
+        six_r_w_1_t_58 = (
+        six_r_v_2_x*six_r_w_1_t_53 + six_r_w_1_t_43*six_r_w_1_t_54 + six_r_w_1_t_44*six_r_w_1_t_55
+            + six_r_w_1_t_45*six_r_w_1_t_56 + six_r_w_1_t_46*six_r_w_1_t_57
+        )
+        six_r_w_1_t_59 = six_r_v_2_x - six_r_w_1_t_53*six_r_w_1_t_58
+        six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_58
+        six_r_w_1_t_61 = six_r_w_1_t_44 - six_r_w_1_t_55*six_r_w_1_t_58
+        six_r_w_1_t_62 = six_r_w_1_t_45 - six_r_w_1_t_56*six_r_w_1_t_58
+        six_r_w_1_t_63 = six_r_w_1_t_46 - six_r_w_1_t_57*six_r_w_1_t_58
+        six_r_w_1_t_64 = (
+        six_r_v_3_x*six_r_w_1_t_53 + six_r_w_1_t_48*six_r_w_1_t_54 + six_r_w_1_t_49*six_r_w_1_t_55
+            + six_r_w_1_t_50*six_r_w_1_t_56 + six_r_w_1_t_51*six_r_w_1_t_57
+        )
+        six_r_w_1_t_65 = six_r_v_3_x - six_r_w_1_t_53*six_r_w_1_t_64
+        six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_64
+        six_r_w_1_t_67 = six_r_w_1_t_49 - six_r_w_1_t_55*six_r_w_1_t_64
+        six_r_w_1_t_68 = six_r_w_1_t_50 - six_r_w_1_t_56*six_r_w_1_t_64
+        six_r_w_1_t_69 = six_r_w_1_t_51 - six_r_w_1_t_57*six_r_w_1_t_64
+        six_r_w_1_t_70 = (
+        sqrt(six_r_w_1_t_59*six_r_w_1_t_59 + six_r_w_1_t_60*six_r_w_1_t_60 +
+            six_r_w_1_t_61*six_r_w_1_t_61 + six_r_w_1_t_62*six_r_w_1_t_62 +
+            six_r_w_1_t_63*six_r_w_1_t_63)
+        )
+        inv_six_r_w_1_t_194 = 1.0/six_r_w_1_t_70
+        six_r_w_1_t_71 = inv_six_r_w_1_t_194*six_r_w_1_t_59
+        six_r_w_1_t_72 = inv_six_r_w_1_t_194*six_r_w_1_t_60
+        six_r_w_1_t_73 = inv_six_r_w_1_t_194*six_r_w_1_t_61
+        six_r_w_1_t_74 = inv_six_r_w_1_t_194*six_r_w_1_t_62
+        six_r_w_1_t_75 = inv_six_r_w_1_t_194*six_r_w_1_t_63
+        six_r_w_1_t_76 = (
+        six_r_w_1_t_65*six_r_w_1_t_71 + six_r_w_1_t_66*six_r_w_1_t_72 +
+            six_r_w_1_t_67*six_r_w_1_t_73 + six_r_w_1_t_68*six_r_w_1_t_74 +
+            six_r_w_1_t_69*six_r_w_1_t_75
+        )
+        six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_76
+        six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_76
+        six_r_w_1_t_79 = six_r_w_1_t_67 - six_r_w_1_t_73*six_r_w_1_t_76
+        six_r_w_1_t_80 = six_r_w_1_t_68 - six_r_w_1_t_74*six_r_w_1_t_76
+        six_r_w_1_t_81 = six_r_w_1_t_69 - six_r_w_1_t_75*six_r_w_1_t_76
+        six_r_w_1_t_82 = (
+        sqrt(six_r_w_1_t_77*six_r_w_1_t_77 + six_r_w_1_t_78*six_r_w_1_t_78 +
+            six_r_w_1_t_79*six_r_w_1_t_79 + six_r_w_1_t_80*six_r_w_1_t_80 +
+            six_r_w_1_t_81*six_r_w_1_t_81)
+        )
+        inv_six_r_w_1_t_222 = 1.0/six_r_w_1_t_82
+        six_r_w_1_t_83 = inv_six_r_w_1_t_222*six_r_w_1_t_77
+        six_r_w_1_t_84 = inv_six_r_w_1_t_222*six_r_w_1_t_78
+        six_r_w_1_t_85 = inv_six_r_w_1_t_222*six_r_w_1_t_79
+        six_r_w_1_t_86 = inv_six_r_w_1_t_222*six_r_w_1_t_80
+        six_r_w_1_t_87 = inv_six_r_w_1_t_222*six_r_w_1_t_81
+        # (M_ta) coupling block of M
+        six_r_q_in_base_x = (
+        R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
+        )
+        six_r_q_in_base_y = (
+        R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y + R_yz*six_r_platform_point_z
+        )
+        six_r_q_in_base_z = (
+        R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y + R_zz*six_r_platform_point_z
+        )
+        # (six_r-S_dot) velocity of the connection point
+        six_r_S_dot_t = omega_y*six_r_q_in_base_z - omega_z*six_r_q_in_base_y
+        six_r_S_dot_t_2 = omega_z*six_r_q_in_base_x - omega_x*six_r_q_in_base_z
+        six_r_S_dot_t_3 = omega_x*six_r_q_in_base_y - omega_y*six_r_q_in_base_x
+        six_r_S_dot_x = six_r_S_dot_t + t_dot_x
+        six_r_S_dot_y = six_r_S_dot_t_2 + t_dot_y
+        six_r_S_dot_z = six_r_S_dot_t_3 + t_dot_z
+        # (six_r-eta_1) rate at which the joints turn along moment direction 1
+        six_r_eta_1 = (
+        omega_x*(axis_y_six_r_axes5_in_base_x*six_r_end_p1_r8_x -
+            axis_x_six_r_axes5_x*six_r_end_p1_r8_y) +
+            omega_y*(axis_y_six_r_axes5_in_base_y*six_r_end_p1_r8_x -
+            axis_x_six_r_axes5_y*six_r_end_p1_r8_y) +
+            omega_z*(axis_y_six_r_axes5_in_base_z*six_r_end_p1_r8_x -
+            axis_x_six_r_axes5_z*six_r_end_p1_r8_y)
+        )
+        # (six_r-eta_2) rate at which the joints turn along moment direction 2
+        six_r_eta_2 = (
+        omega_x*(axis_z_six_r_axes5_in_base_x*six_r_end_p1_r8_y -
+            axis_y_six_r_axes5_in_base_x*six_r_end_p1_r6_x) +
+            omega_y*(axis_z_six_r_axes5_in_base_y*six_r_end_p1_r8_y -
+            axis_y_six_r_axes5_in_base_y*six_r_end_p1_r6_x) +
+            omega_z*(axis_z_six_r_axes5_in_base_z*six_r_end_p1_r8_y -
+            axis_y_six_r_axes5_in_base_z*six_r_end_p1_r6_x)
+        )
+        # (six_r-S_dot) velocity of the connection point
+        six_r_S_dot_tip_x = (
+        axis_x_six_r_axes5_x*six_r_S_dot_x + axis_x_six_r_axes5_y*six_r_S_dot_y +
+            axis_x_six_r_axes5_z*six_r_S_dot_z
+        )
+        six_r_S_dot_tip_y = (
+        axis_y_six_r_axes5_in_base_x*six_r_S_dot_x + axis_y_six_r_axes5_in_base_y*six_r_S_dot_y +
+            axis_y_six_r_axes5_in_base_z*six_r_S_dot_z
+        )
+        six_r_S_dot_tip_z = (
+        axis_z_six_r_axes5_in_base_x*six_r_S_dot_x + axis_z_six_r_axes5_in_base_y*six_r_S_dot_y +
+            axis_z_six_r_axes5_in_base_z*six_r_S_dot_z
+        )
+        # (six_r-qd_5) rate of joint 5
+        six_r_qd_5_t = six_r_eta_1*six_r_size
+        six_r_qd_5_t_2 = six_r_eta_2*six_r_size
+        six_r_qd_5_t_3 = (
+        inv_six_r_w_1_t_222*(six_r_S_dot_tip_x*six_r_w_1_t_83 + six_r_S_dot_tip_z*six_r_w_1_t_85 +
+            six_r_qd_5_t*six_r_w_1_t_86 + six_r_qd_5_t_2*six_r_w_1_t_87 -
+            six_r_S_dot_tip_y*six_r_w_1_t_84)
+        )
+        six_r_qd_5_t_4 = (
+        inv_six_r_w_1_t_194*(six_r_S_dot_tip_x*six_r_w_1_t_71 + six_r_S_dot_tip_z*six_r_w_1_t_73 +
+            six_r_qd_5_t*six_r_w_1_t_74 + six_r_qd_5_t_2*six_r_w_1_t_75 -
+            six_r_S_dot_tip_y*six_r_w_1_t_72 - six_r_qd_5_t_3*six_r_w_1_t_76)
+        )
+        six_r_qd_5_t_5 = (
+        inv_six_r_w_1_t_150*(six_r_S_dot_tip_y*six_r_w_1_t_54 + six_r_qd_5_t_3*six_r_w_1_t_64 +
+            six_r_qd_5_t_4*six_r_w_1_t_58 - six_r_S_dot_tip_x*six_r_w_1_t_53 -
+            six_r_S_dot_tip_z*six_r_w_1_t_55 - six_r_qd_5_t*six_r_w_1_t_56 -
+            six_r_qd_5_t_2*six_r_w_1_t_57)
+        )
+        six_r_qd_5_t_6 = (
+        inv_six_r_w_1_t_101*(six_r_S_dot_tip_z*six_r_w_1_t_33 + six_r_qd_5_t*six_r_w_1_t_34 +
+            six_r_qd_5_t_2*six_r_w_1_t_35 + six_r_qd_5_t_3*six_r_w_1_t_47 +
+            six_r_qd_5_t_4*six_r_w_1_t_42 - six_r_S_dot_tip_y*six_r_w_1_t_32 -
+            six_r_qd_5_t_5*six_r_w_1_t_36)
+        )
+        six_r_qd_5_t_7 = (
+        inv_six_r_w_1_t_69*(six_r_S_dot_tip_y*six_r_w_1_t_16 + six_r_qd_5_t_2*six_r_w_1_t_17 +
+            six_r_qd_5_t_3*six_r_w_1_t_28 + six_r_qd_5_t_5*six_r_w_1_t_21 -
+            six_r_qd_5_t_4*six_r_w_1_t_25 - six_r_qd_5_t_6*six_r_w_1_t_18)
+        )
+        # (six_r-omega_1) angular velocity of link 1
+        six_r_omega_1_t = six_r_qd_5_t_5*six_r_s_2
+        six_r_omega_1_t_2 = six_r_c_2_t*six_r_qd_5_t_5
+        # (six_r-omega_2) angular velocity of link 2
+        six_r_omega_2_r0_x = six_r_omega_1_t_2*six_r_s_3 - six_r_c_3*six_r_omega_1_t
+        six_r_omega_2_r0_y = six_r_c_3*six_r_omega_1_t_2 + six_r_omega_1_t*six_r_s_3
+        # (six_r-omega_3) angular velocity of link 3
+        six_r_omega_3_z = six_r_qd_5_t_3 + six_r_qd_5_t_4
+        six_r_omega_3_r1_x = six_r_omega_3_z*six_r_s_4 - six_r_c_4_t*six_r_omega_2_r0_y
+        six_r_omega_3_r1_y = -six_r_c_4_t*six_r_omega_3_z - six_r_omega_2_r0_y*six_r_s_4
+        # (six_r-omega_4) angular velocity of link 4
+        six_r_omega_4_z = six_r_omega_2_r0_x + six_r_qd_5_t_6
+        six_r_omega_4_t = six_r_c_5_t*six_r_omega_3_r1_y
+        six_r_omega_4_r1_x = six_r_omega_4_z*six_r_s_5 - six_r_omega_4_t
+        six_r_omega_4_t_2 = six_r_omega_3_r1_y*six_r_s_5
+        six_r_omega_4_r1_y = -six_r_omega_4_t_2 - six_r_c_5_t*six_r_omega_4_z
+        # (six_r-omega_5) angular velocity of link 5
+        six_r_omega_5_z = six_r_omega_3_r1_x + six_r_qd_5_t_7
+        # (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5
+        six_r_zeta_5_x = six_r_omega_4_r1_y*six_r_qd_5_t_7
+        six_r_zeta_5_y = six_r_omega_4_r1_x*six_r_qd_5_t_7
+        # (six_r-u_1) centripetal acceleration of the connection point
+        six_r_u_1_x = omega_y*six_r_S_dot_t_3 - omega_z*six_r_S_dot_t_2
+        six_r_u_1_y = omega_z*six_r_S_dot_t - omega_x*six_r_S_dot_t_3
+        six_r_u_1_z = omega_x*six_r_S_dot_t_2 - omega_y*six_r_S_dot_t
+        # (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        six_r_zeta_2_x = six_r_omega_1_t_2*six_r_qd_5_t_4
+        six_r_zeta_2_y = six_r_omega_1_t*six_r_qd_5_t_4
+        # (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        six_r_zeta_3_x = six_r_omega_2_r0_y*six_r_qd_5_t_3
+        six_r_zeta_3_y = six_r_omega_2_r0_x*six_r_qd_5_t_3
+        # (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        six_r_zeta_2_r0_x = six_r_c_3*six_r_zeta_2_x + six_r_s_3*six_r_zeta_2_y
+        six_r_zeta_2_r0_y = six_r_c_3*six_r_zeta_2_y - six_r_s_3*six_r_zeta_2_x
+        # (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations
+        six_r_beta_3_x = six_r_zeta_2_r0_x + six_r_zeta_3_x
+        six_r_beta_3_y = six_r_zeta_2_r0_y - six_r_zeta_3_y
+        # (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4
+        six_r_zeta_4_x = six_r_omega_3_r1_y*six_r_qd_5_t_6
+        six_r_zeta_4_y = six_r_omega_3_r1_x*six_r_qd_5_t_6
+        # (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations
+        six_r_beta_3_t = six_r_beta_3_y*six_r_c_4_t
+        six_r_beta_3_t_2 = six_r_beta_3_y*six_r_s_4
+        # (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations
+        six_r_beta_4_x = six_r_zeta_4_x - six_r_beta_3_t
+        six_r_beta_4_y = -six_r_beta_3_t_2 - six_r_zeta_4_y
+        six_r_beta_4_t = six_r_beta_3_x*six_r_s_5
+        six_r_beta_4_r1_x = six_r_beta_4_t - six_r_beta_4_y*six_r_c_5_t
+        six_r_beta_4_t_2 = six_r_beta_3_x*six_r_c_5_t
+        six_r_beta_4_r1_y = -six_r_beta_4_t_2 - six_r_beta_4_y*six_r_s_5
+        # (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations
+        six_r_beta_5_x = six_r_beta_4_r1_x + six_r_zeta_5_x
+        six_r_beta_5_y = six_r_beta_4_r1_y - six_r_zeta_5_y
+        # (six_r-W_2) centripetal tensor of link 2
+        six_r_W_2_t = six_r_omega_1_t*six_r_omega_1_t
+        six_r_W_2_t_2 = six_r_omega_1_t_2*six_r_omega_1_t_2
+        six_r_W_2_t_3 = six_r_qd_5_t_4*six_r_qd_5_t_4
+        six_r_W_2_xy = six_r_omega_1_t*six_r_omega_1_t_2
+        # (six_r-W_3) centripetal tensor of link 3
+        six_r_W_3_t = six_r_omega_2_r0_x*six_r_omega_2_r0_x
+        six_r_W_3_t_2 = six_r_omega_2_r0_y*six_r_omega_2_r0_y
+        six_r_W_3_t_3 = six_r_omega_3_z*six_r_omega_3_z
+        six_r_W_3_xx = six_r_W_3_t_2 + six_r_W_3_t_3
+        six_r_W_3_xy = six_r_omega_2_r0_x*six_r_omega_2_r0_y
+        six_r_W_3_xz = six_r_omega_2_r0_x*six_r_omega_3_z
+        six_r_W_3_yz = six_r_omega_2_r0_y*six_r_omega_3_z
+        # (six_r-W_4) centripetal tensor of link 4
+        six_r_W_4_t = six_r_omega_3_r1_x*six_r_omega_3_r1_x
+        six_r_W_4_t_2 = six_r_omega_3_r1_y*six_r_omega_3_r1_y
+        six_r_W_4_t_3 = six_r_omega_4_z*six_r_omega_4_z
+        six_r_W_4_xy = six_r_omega_3_r1_x*six_r_omega_3_r1_y
+        six_r_W_4_xz = six_r_omega_3_r1_x*six_r_omega_4_z
+        six_r_W_4_yz = six_r_omega_3_r1_y*six_r_omega_4_z
+        # (six_r-W_5) centripetal tensor of link 5
+        six_r_W_5_t = six_r_omega_4_r1_x*six_r_omega_4_r1_x
+        six_r_W_5_t_2 = six_r_omega_4_r1_y*six_r_omega_4_r1_y
+        six_r_W_5_t_3 = six_r_omega_5_z*six_r_omega_5_z
+        six_r_W_5_xx = six_r_W_5_t_2 + six_r_W_5_t_3
+        six_r_W_5_xy = six_r_omega_4_r1_x*six_r_omega_4_r1_y
+        six_r_W_5_xz = six_r_omega_4_r1_x*six_r_omega_5_z
+        six_r_W_5_yz = six_r_omega_4_r1_y*six_r_omega_5_z
+        # (six_r-bias) acceleration of the connection point at zero joint accelerations
+        six_r_bias_t = six_r_joint2_offset_x*six_r_s_2
+        six_r_bias_t_2 = six_r_c_2_t*six_r_joint2_offset_x
+        six_r_d_2_r2_x = six_r_bias_t*six_r_c_3 - six_r_bias_t_2*six_r_s_3
+        six_r_d_2_r2_y = -six_r_bias_t*six_r_s_3 - six_r_bias_t_2*six_r_c_3
+        six_r_bias_t_3 = six_r_c_4_t*six_r_d_2_r2_y
+        six_r_bias_t_4 = six_r_d_2_r2_y*six_r_s_4
+        six_r_d_2_r6_x = six_r_bias_t_4*six_r_c_5_t + six_r_d_2_r2_x*six_r_s_5
+        six_r_d_2_r6_y = six_r_bias_t_4*six_r_s_5 - six_r_c_5_t*six_r_d_2_r2_x
+        # (six_r-omega_1) angular velocity of link 1
+        six_r_omega_1_x = six_r_e_1_r6_x*six_r_qd_5_t_5
+        six_r_omega_1_y = six_r_e_1_r6_y*six_r_qd_5_t_5
+        six_r_omega_1_z = six_r_qd_5_t_5*six_r_v_1_t
+        # (six_r-W_1) centripetal tensor of link 1
+        six_r_W_1_t = six_r_omega_1_x*six_r_omega_1_x
+        six_r_W_1_t_2 = six_r_omega_1_y*six_r_omega_1_y
+        six_r_W_1_t_3 = six_r_omega_1_z*six_r_omega_1_z
+        six_r_W_1_xy = six_r_omega_1_x*six_r_omega_1_y
+        six_r_W_1_xz = six_r_omega_1_x*six_r_omega_1_z
+        six_r_W_1_yz = six_r_omega_1_y*six_r_omega_1_z
+        # (six_r-bias) acceleration of the connection point at zero joint accelerations
+        six_r_bias_t_5 = six_r_c_3*six_r_joint3_offset_x
+        six_r_bias_t_6 = six_r_joint3_offset_x*six_r_s_3
+        six_r_bias_t_7 = six_r_bias_t_6*six_r_c_4_t
+        six_r_bias_t_8 = six_r_bias_t_6*six_r_s_4
+        six_r_d_3_r4_x = six_r_bias_t_5*six_r_s_5 - six_r_bias_t_8*six_r_c_5_t
+        six_r_d_3_r4_y = -six_r_bias_t_5*six_r_c_5_t - six_r_bias_t_8*six_r_s_5
+        # (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        six_r_zeta_2_t = six_r_c_4_t*six_r_zeta_2_r0_y
+        six_r_zeta_2_t_2 = six_r_s_4*six_r_zeta_2_r0_y
+        six_r_zeta_2_r4_x = six_r_c_5_t*six_r_zeta_2_t_2 + six_r_s_5*six_r_zeta_2_r0_x
+        six_r_zeta_2_r4_y = six_r_s_5*six_r_zeta_2_t_2 - six_r_c_5_t*six_r_zeta_2_r0_x
+        # (six_r-omega_2) angular velocity of link 2
+        six_r_omega_2_x = six_r_qd_5_t_4*six_r_v_2_t - six_r_omega_1_x
+        six_r_omega_2_y = six_r_qd_5_t_4*six_r_v_2_t_2 - six_r_omega_1_y
+        six_r_omega_2_z = six_r_omega_1_z + six_r_qd_5_t_4*six_r_s_4
+        # (six_r-W_2) centripetal tensor of link 2
+        six_r_W_2_t_4 = six_r_omega_2_x*six_r_omega_2_x
+        six_r_W_2_t_5 = six_r_omega_2_y*six_r_omega_2_y
+        six_r_W_2_t_6 = six_r_omega_2_z*six_r_omega_2_z
+        six_r_W_2_xy_2 = six_r_omega_2_x*six_r_omega_2_y
+        six_r_W_2_xz = six_r_omega_2_x*six_r_omega_2_z
+        six_r_W_2_yz = six_r_omega_2_y*six_r_omega_2_z
+        # (six_r-bias) acceleration of the connection point at zero joint accelerations
+        six_r_bias_t_9 = six_r_joint4_offset_x*six_r_s_5
+        six_r_bias_t_10 = six_r_c_5_t*six_r_joint4_offset_x
+        # (six_r-omega_3) angular velocity of link 3
+        six_r_omega_3_r3_x = six_r_omega_2_r0_x*six_r_s_5 - six_r_omega_4_t
+        six_r_omega_3_r3_y = -six_r_omega_4_t_2 - six_r_c_5_t*six_r_omega_2_r0_x
+        # (six_r-W_3) centripetal tensor of link 3
+        six_r_W_3_xy_2 = six_r_omega_3_r3_x*six_r_omega_3_r3_y
+        # (six_r-bias) acceleration of the connection point at zero joint accelerations
+        six_r_bias_t_11 = six_r_joint5_offset_x*six_r_s_5
+        six_r_bias_t_12 = six_r_c_5_t*six_r_joint5_offset_x
+        six_r_bias_t_13 = six_r_W_5_xy + six_r_beta_4_x
+        six_r_bias_x = (
+        six_r_W_1_xy*six_r_d_2_r6_y + six_r_W_1_xz*six_r_bias_t_3 + six_r_bias_t_7*(six_r_W_2_xz +
+            six_r_zeta_2_r4_y) + six_r_d_3_r4_y*(six_r_W_2_xy_2 + six_r_zeta_2_t) -
+            six_r_W_5_xx*six_r_platform_joint_offset_x - six_r_bias_t_10*(six_r_W_3_xy_2 +
+            six_r_beta_3_t) - six_r_bias_t_11*(six_r_W_4_t + six_r_W_5_t_2) -
+            six_r_bias_t_12*(six_r_W_5_xy - six_r_beta_4_x) - six_r_bias_t_9*(six_r_W_4_t +
+            six_r_omega_3_r3_y*six_r_omega_3_r3_y) - six_r_d_2_r6_x*(six_r_W_1_t_2 +
+            six_r_W_1_t_3) - six_r_d_3_r4_x*(six_r_W_2_t_5 + six_r_W_2_t_6)
+        )
+        six_r_bias_y = (
+        six_r_W_1_xy*six_r_d_2_r6_x + six_r_W_1_yz*six_r_bias_t_3 + six_r_bias_t_10*(six_r_W_4_t +
+            six_r_omega_3_r3_x*six_r_omega_3_r3_x) + six_r_bias_t_11*six_r_bias_t_13 +
+            six_r_bias_t_12*(six_r_W_4_t + six_r_W_5_t) +
+            six_r_bias_t_13*six_r_platform_joint_offset_x + six_r_bias_t_7*(six_r_W_2_yz -
+            six_r_zeta_2_r4_x) + six_r_bias_t_9*(six_r_W_3_xy_2 - six_r_beta_3_t) +
+            six_r_d_3_r4_x*(six_r_W_2_xy_2 - six_r_zeta_2_t) - six_r_d_2_r6_y*(six_r_W_1_t +
+            six_r_W_1_t_3) - six_r_d_3_r4_y*(six_r_W_2_t_4 + six_r_W_2_t_6)
+        )
+        six_r_bias_z = (
+        six_r_bias_t_11*(six_r_omega_3_r1_x*six_r_omega_4_r1_x - six_r_beta_4_r1_y) +
+            six_r_bias_t_3*(six_r_W_1_t + six_r_W_1_t_2) + six_r_bias_t_9*(six_r_beta_4_t_2 +
+            six_r_omega_3_r1_x*six_r_omega_3_r3_x - six_r_beta_3_t_2*six_r_s_5) +
+            six_r_d_3_r4_x*(six_r_W_2_xz - six_r_zeta_2_r4_y) + six_r_d_3_r4_y*(six_r_W_2_yz +
+            six_r_zeta_2_r4_x) + six_r_platform_joint_offset_x*(six_r_W_5_xz - six_r_beta_5_y) -
+            six_r_W_1_xz*six_r_d_2_r6_x - six_r_W_1_yz*six_r_d_2_r6_y -
+            six_r_bias_t_10*(six_r_beta_4_t + six_r_beta_3_t_2*six_r_c_5_t +
+            six_r_omega_3_r1_x*six_r_omega_3_r3_y) - six_r_bias_t_12*(six_r_beta_4_r1_x +
+            six_r_omega_3_r1_x*six_r_omega_4_r1_y) - six_r_bias_t_7*(six_r_W_2_t_4 +
+            six_r_W_2_t_5)
+        )
+        # (six_r-u_1) centripetal acceleration of the connection point
+        six_r_u_1_tip_x = (
+        axis_x_six_r_axes5_x*six_r_u_1_x + axis_x_six_r_axes5_y*six_r_u_1_y +
+            axis_x_six_r_axes5_z*six_r_u_1_z
+        )
+        six_r_u_1_tip_y = (
+        axis_y_six_r_axes5_in_base_x*six_r_u_1_x + axis_y_six_r_axes5_in_base_y*six_r_u_1_y +
+            axis_y_six_r_axes5_in_base_z*six_r_u_1_z
+        )
+        six_r_u_1_tip_z = (
+        axis_z_six_r_axes5_in_base_x*six_r_u_1_x + axis_z_six_r_axes5_in_base_y*six_r_u_1_y +
+            axis_z_six_r_axes5_in_base_z*six_r_u_1_z
+        )
+        # (six_r-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        six_r_rel_o_x = six_r_u_1_tip_x - six_r_bias_x
+        six_r_rel_o_y = six_r_u_1_tip_y - six_r_bias_y
+        six_r_rel_o_z = six_r_u_1_tip_z - six_r_bias_z
+        # (six_r-nd_m1) rate of moment direction 1
+        six_r_nd_m1_t = six_r_end_p1_r8_y*six_r_omega_4_r1_y
+        six_r_omega_tip_x = (
+        axis_x_six_r_axes5_x*omega_x + axis_x_six_r_axes5_y*omega_y + axis_x_six_r_axes5_z*omega_z
+        )
+        six_r_omega_tip_y = (
+        axis_y_six_r_axes5_in_base_x*omega_x + axis_y_six_r_axes5_in_base_y*omega_y +
+            axis_y_six_r_axes5_in_base_z*omega_z
+        )
+        six_r_omega_tip_z = (
+        axis_z_six_r_axes5_in_base_x*omega_x + axis_z_six_r_axes5_in_base_y*omega_y +
+            axis_z_six_r_axes5_in_base_z*omega_z
+        )
+        six_r_nd_m1_t_2 = (
+        six_r_end_p1_r8_x*six_r_omega_tip_z - six_r_end_p1_r6_x*six_r_omega_tip_x
+        )
+        six_r_nd_m1_x = -six_r_nd_m1_t_2 - six_r_end_p1_r6_x*six_r_omega_4_r1_x
+        six_r_nd_m1_y = (
+        six_r_end_p1_r6_x*six_r_omega_tip_y - six_r_end_p1_r6_x*six_r_omega_4_r1_y -
+            six_r_end_p1_r8_y*six_r_omega_tip_z
+        )
+        # (six_r-nu_1) bias of the angular acceleration along moment direction 1
+        six_r_nu_1_t = six_r_beta_5_x*six_r_end_p1_r8_y - six_r_beta_5_y*six_r_end_p1_r8_x
+        six_r_nu_1_t_2 = six_r_omega_4_r1_x - six_r_omega_tip_x
+        six_r_nu_1_t_3 = six_r_omega_4_r1_y - six_r_omega_tip_y
+        six_r_nu_1_t_4 = six_r_omega_5_z - six_r_omega_tip_z
+        six_r_nu_1_t_5 = (
+        six_r_nd_m1_x*six_r_nu_1_t_2 + six_r_nd_m1_y*six_r_nu_1_t_3 +
+            six_r_nu_1_t_4*(six_r_nd_m1_t + six_r_end_p1_r8_x*six_r_omega_4_r1_x)
+        )
+        six_r_nu_1 = six_r_nu_1_t - six_r_nu_1_t_5
+        # (six_r-nd_m2) rate of moment direction 2
+        six_r_nd_m2_y = (
+        six_r_end_p1_r8_x*six_r_omega_tip_y - six_r_end_p1_r8_x*six_r_omega_4_r1_y -
+            six_r_end_p1_r8_y*six_r_omega_tip_x
+        )
+        six_r_nd_m2_z = six_r_nd_m1_t_2 - six_r_end_p1_r8_x*six_r_omega_5_z
+        # (six_r-nu_2) bias of the angular acceleration along moment direction 2
+        six_r_nu_2_t = six_r_beta_5_y*six_r_end_p1_r6_x - six_r_beta_4_x*six_r_end_p1_r8_y
+        six_r_nu_2_t_2 = (
+        six_r_nd_m2_y*six_r_nu_1_t_3 + six_r_nd_m2_z*six_r_nu_1_t_4 +
+            six_r_nu_1_t_2*(six_r_nd_m1_t + six_r_end_p1_r6_x*six_r_omega_5_z)
+        )
+        six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2
+        # (six_r-qdd_5_o) remainder without the acceleration in: acceleration of joint 5
+        six_r_qdd_5_o_t = six_r_nu_1*six_r_size
+        six_r_qdd_5_o_t_2 = six_r_nu_2*six_r_size
+        six_r_qdd_5_o_t_3 = (
+        inv_six_r_w_1_t_222*(six_r_qdd_5_o_t*six_r_w_1_t_86 + six_r_qdd_5_o_t_2*six_r_w_1_t_87 +
+            six_r_rel_o_x*six_r_w_1_t_83 + six_r_rel_o_z*six_r_w_1_t_85 -
+            six_r_rel_o_y*six_r_w_1_t_84)
+        )
+        six_r_qdd_5_o_t_4 = (
+        inv_six_r_w_1_t_194*(six_r_qdd_5_o_t*six_r_w_1_t_74 + six_r_qdd_5_o_t_2*six_r_w_1_t_75 +
+            six_r_rel_o_x*six_r_w_1_t_71 + six_r_rel_o_z*six_r_w_1_t_73 -
+            six_r_qdd_5_o_t_3*six_r_w_1_t_76 - six_r_rel_o_y*six_r_w_1_t_72)
+        )
+        six_r_qdd_5_o_t_5 = (
+        inv_six_r_w_1_t_150*(six_r_qdd_5_o_t_3*six_r_w_1_t_64 + six_r_qdd_5_o_t_4*six_r_w_1_t_58 +
+            six_r_rel_o_y*six_r_w_1_t_54 - six_r_qdd_5_o_t*six_r_w_1_t_56 -
+            six_r_qdd_5_o_t_2*six_r_w_1_t_57 - six_r_rel_o_x*six_r_w_1_t_53 -
+            six_r_rel_o_z*six_r_w_1_t_55)
+        )
+        six_r_qdd_5_o_t_6 = (
+        inv_six_r_w_1_t_101*(six_r_qdd_5_o_t*six_r_w_1_t_34 + six_r_qdd_5_o_t_2*six_r_w_1_t_35 +
+            six_r_qdd_5_o_t_3*six_r_w_1_t_47 + six_r_qdd_5_o_t_4*six_r_w_1_t_42 +
+            six_r_rel_o_z*six_r_w_1_t_33 - six_r_qdd_5_o_t_5*six_r_w_1_t_36 -
+            six_r_rel_o_y*six_r_w_1_t_32)
+        )
+        # (six_r-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        six_r_alpha_1_o_t = six_r_qdd_5_o_t_5*six_r_s_2
+        six_r_alpha_1_o_t_2 = six_r_c_2_t*six_r_qdd_5_o_t_5
+        # (six_r-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        six_r_alpha_2_o_x = six_r_zeta_2_x - six_r_alpha_1_o_t
+        six_r_alpha_2_o_y = six_r_alpha_1_o_t_2 + six_r_zeta_2_y
+        # (six_r-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        six_r_alpha_3_o_x = (
+        six_r_zeta_3_x + six_r_alpha_2_o_x*six_r_c_3 + six_r_alpha_2_o_y*six_r_s_3
+        )
+        six_r_alpha_3_o_y = (
+        six_r_alpha_2_o_y*six_r_c_3 - six_r_zeta_3_y - six_r_alpha_2_o_x*six_r_s_3
+        )
+        six_r_alpha_3_o_z = six_r_qdd_5_o_t_3 + six_r_qdd_5_o_t_4
+        # (six_r-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4
+        six_r_alpha_4_o_x = (
+        six_r_zeta_4_x + six_r_alpha_3_o_z*six_r_s_4 - six_r_alpha_3_o_y*six_r_c_4_t
+        )
+        six_r_alpha_4_o_y = (
+        -six_r_zeta_4_y - six_r_alpha_3_o_y*six_r_s_4 - six_r_alpha_3_o_z*six_r_c_4_t
+        )
+        six_r_alpha_4_o_z = six_r_alpha_3_o_x + six_r_qdd_5_o_t_6
+        # (six_r-alpha_5_o) remainder without the acceleration in: angular acceleration of link 5
+        six_r_alpha_5_o_x = (
+        six_r_zeta_5_x + six_r_alpha_4_o_z*six_r_s_5 - six_r_alpha_4_o_y*six_r_c_5_t
+        )
+        six_r_alpha_5_o_y = (
+        -six_r_zeta_5_y - six_r_alpha_4_o_y*six_r_s_5 - six_r_alpha_4_o_z*six_r_c_5_t
+        )
+        six_r_alpha_5_o_z = (
+        six_r_alpha_4_o_x + inv_six_r_w_1_t_69*(six_r_qdd_5_o_t_2*six_r_w_1_t_17 +
+            six_r_qdd_5_o_t_3*six_r_w_1_t_28 + six_r_qdd_5_o_t_5*six_r_w_1_t_21 +
+            six_r_rel_o_y*six_r_w_1_t_16 - six_r_qdd_5_o_t_4*six_r_w_1_t_25 -
+            six_r_qdd_5_o_t_6*six_r_w_1_t_18)
+        )
+        # (six_r-B_5_o) remainder of the acceleration tensor of link 5
+        six_r_B_5_o_xy = six_r_W_5_xy - six_r_alpha_5_o_z
+        six_r_B_5_o_xz = six_r_W_5_xz + six_r_alpha_5_o_y
+        six_r_B_5_o_yx = six_r_W_5_xy + six_r_alpha_5_o_z
+        six_r_B_5_o_yz = six_r_W_5_yz - six_r_alpha_5_o_x
+        six_r_B_5_o_zx = six_r_W_5_xz - six_r_alpha_5_o_y
+        six_r_B_5_o_zy = six_r_W_5_yz + six_r_alpha_5_o_x
+        # (six_r-acc_5_o) remainder without the acceleration in: acceleration of the reference point of link 5, less gravity
+        six_r_acc_5_o_x = (
+        six_r_u_1_tip_x - axis_x_six_r_axes5_x*gravity_x - axis_x_six_r_axes5_y*gravity_y -
+            axis_x_six_r_axes5_z*gravity_z
+        )
+        six_r_acc_5_o_y = (
+        six_r_u_1_tip_y - axis_y_six_r_axes5_in_base_x*gravity_x -
+            axis_y_six_r_axes5_in_base_y*gravity_y - axis_y_six_r_axes5_in_base_z*gravity_z
+        )
+        six_r_acc_5_o_z = (
+        six_r_u_1_tip_z - axis_z_six_r_axes5_in_base_x*gravity_x -
+            axis_z_six_r_axes5_in_base_y*gravity_y - axis_z_six_r_axes5_in_base_z*gravity_z
+        )
+        # (six_r-mu_5_o) remainder without the acceleration in: inertia moment of the links that turn with link 5, about their reference points
+        six_r_mu_5_o_x = (
+        six_r_B_5_o_yx*six_r_J_5_xz + six_r_B_5_o_zy*six_r_Sigma_5_yy +
+            six_r_J_5_yz*(six_r_W_5_t_2 - six_r_W_5_t_3) + six_r_acc_5_o_z*six_r_h_5_y -
+            six_r_B_5_o_yz*six_r_Sigma_5_zz - six_r_B_5_o_zx*six_r_J_5_xy -
+            six_r_acc_5_o_y*six_r_h_5_z
+        )
+        six_r_mu_5_o_y = (
+        six_r_B_5_o_xz*six_r_Sigma_5_zz + six_r_B_5_o_zy*six_r_J_5_xy +
+            six_r_acc_5_o_x*six_r_h_5_z - six_r_B_5_o_xy*six_r_J_5_yz -
+            six_r_B_5_o_zx*six_r_Sigma_5_xx - six_r_J_5_xz*(six_r_W_5_t - six_r_W_5_t_3) -
+            six_r_acc_5_o_z*six_r_h_5_x
+        )
+        six_r_mu_5_o_z = (
+        six_r_B_5_o_xz*six_r_J_5_yz + six_r_B_5_o_yx*six_r_Sigma_5_xx + six_r_J_5_xy*(six_r_W_5_t
+            - six_r_W_5_t_2) + six_r_acc_5_o_y*six_r_h_5_x - six_r_B_5_o_xy*six_r_Sigma_5_yy -
+            six_r_B_5_o_yz*six_r_J_5_xz - six_r_acc_5_o_x*six_r_h_5_y
+        )
+        # (six_r-B_2_o) remainder of the acceleration tensor of link 2
+        six_r_B_2_o_xy = -six_r_W_2_xy - six_r_qdd_5_o_t_4
+        six_r_B_2_o_yx = six_r_qdd_5_o_t_4 - six_r_W_2_xy
+        six_r_B_2_o_zx = -six_r_alpha_2_o_y - six_r_zeta_2_y
+        six_r_B_2_o_zy = six_r_alpha_2_o_x + six_r_zeta_2_x
+        # (six_r-a_o_3_o) remainder without the acceleration in: acceleration of the origin of joint 3
+        six_r_a_o_3_o_t = six_r_joint3_offset_x*(six_r_W_2_t_2 + six_r_W_2_t_3)
+        six_r_a_o_3_o_t_2 = six_r_B_2_o_yx*six_r_joint3_offset_x
+        six_r_a_o_3_o_t_3 = six_r_B_2_o_zx*six_r_joint3_offset_x
+        # (six_r-B_3_o) remainder of the acceleration tensor of link 3
+        six_r_B_3_o_xy = six_r_W_3_xy - six_r_alpha_3_o_z
+        six_r_B_3_o_xz = six_r_W_3_xz + six_r_alpha_3_o_y
+        six_r_B_3_o_yx = six_r_W_3_xy + six_r_alpha_3_o_z
+        six_r_B_3_o_yz = six_r_W_3_yz - six_r_alpha_3_o_x
+        six_r_B_3_o_zx = six_r_W_3_xz - six_r_alpha_3_o_y
+        six_r_B_3_o_zy = six_r_W_3_yz + six_r_alpha_3_o_x
+        # (six_r-a_o_3_o) remainder without the acceleration in: acceleration of the origin of joint 3
+        six_r_a_o_3_o_r0_x = six_r_a_o_3_o_t_2*six_r_s_3 - six_r_a_o_3_o_t*six_r_c_3
+        six_r_a_o_3_o_r0_y = six_r_a_o_3_o_t*six_r_s_3 + six_r_a_o_3_o_t_2*six_r_c_3
+        # (six_r-a_o_4_o) remainder without the acceleration in: acceleration of the origin of joint 4
+        six_r_a_o_4_o_x = six_r_a_o_3_o_r0_x - six_r_W_3_xx*six_r_joint4_offset_x
+        six_r_a_o_4_o_y = six_r_a_o_3_o_r0_y + six_r_B_3_o_yx*six_r_joint4_offset_x
+        six_r_a_o_4_o_z = six_r_a_o_3_o_t_3 + six_r_B_3_o_zx*six_r_joint4_offset_x
+        # (six_r-acc_4_o) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+        six_r_g_r1_x = six_r_g_r0_y*six_r_s_1 - six_r_c_1_t*six_r_g_r0_x
+        six_r_g_r1_y = -six_r_c_1_t*six_r_g_r0_y - six_r_g_r0_x*six_r_s_1
+        six_r_g_r3_x = six_r_g_r0_z*six_r_s_2 - six_r_c_2_t*six_r_g_r1_y
+        six_r_g_r3_y = -six_r_c_2_t*six_r_g_r0_z - six_r_g_r1_y*six_r_s_2
+        six_r_g_r4_x = six_r_c_3*six_r_g_r3_x + six_r_g_r3_y*six_r_s_3
+        six_r_g_r4_y = six_r_c_3*six_r_g_r3_y - six_r_g_r3_x*six_r_s_3
+        six_r_acc_4_o_x = (
+        six_r_a_o_4_o_z*six_r_s_4 + six_r_c_4_t*six_r_g_r4_y - six_r_a_o_4_o_y*six_r_c_4_t -
+            six_r_g_r1_x*six_r_s_4
+        )
+        six_r_acc_4_o_y = (
+        six_r_c_4_t*six_r_g_r1_x + six_r_g_r4_y*six_r_s_4 - six_r_a_o_4_o_y*six_r_s_4 -
+            six_r_a_o_4_o_z*six_r_c_4_t
+        )
+        six_r_acc_4_o_z = six_r_a_o_4_o_x - six_r_g_r4_x
+        # (six_r-B_4_o) remainder of the acceleration tensor of link 4
+        six_r_B_4_o_xy = six_r_W_4_xy - six_r_alpha_4_o_z
+        six_r_B_4_o_xz = six_r_W_4_xz + six_r_alpha_4_o_y
+        six_r_B_4_o_yx = six_r_W_4_xy + six_r_alpha_4_o_z
+        six_r_B_4_o_yz = six_r_W_4_yz - six_r_alpha_4_o_x
+        six_r_B_4_o_zx = six_r_W_4_xz - six_r_alpha_4_o_y
+        six_r_B_4_o_zy = six_r_W_4_yz + six_r_alpha_4_o_x
+        # (six_r-mu_4_o) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
+        six_r_mu_4_o_x = (
+        six_r_B_4_o_yx*six_r_J_4_xz + six_r_B_4_o_zx*six_r_J_4_yz +
+            six_r_B_4_o_zy*six_r_Sigma_4_yy - six_r_B_4_o_yz*six_r_Sigma_4_zz -
+            six_r_J_4_xy*(six_r_W_4_t_2 - six_r_W_4_t_3) - six_r_acc_4_o_y*six_r_h_4_x -
+            six_r_acc_4_o_z*six_r_h_4_y
+        )
+        six_r_mu_4_o_y = (
+        six_r_B_4_o_xy*six_r_J_4_xy + six_r_B_4_o_xz*six_r_Sigma_4_zz +
+            six_r_acc_4_o_x*six_r_h_4_x - six_r_B_4_o_zx*six_r_Sigma_4_xx -
+            six_r_B_4_o_zy*six_r_J_4_yz - six_r_J_4_xz*(six_r_W_4_t - six_r_W_4_t_3) -
+            six_r_acc_4_o_z*six_r_h_4_z
+        )
+        six_r_mu_4_o_z = (
+        six_r_B_4_o_yx*six_r_Sigma_4_xx + six_r_acc_4_o_x*six_r_h_4_y +
+            six_r_acc_4_o_y*six_r_h_4_z - six_r_B_4_o_xy*six_r_Sigma_4_yy -
+            six_r_B_4_o_xz*six_r_J_4_xy - six_r_B_4_o_yz*six_r_J_4_xz - six_r_J_4_yz*(six_r_W_4_t
+            - six_r_W_4_t_2)
+        )
+        # (six_r-N_4_o) remainder without the acceleration in: moment about joint 4 of the links from 4 outwards, the force at the connection point left out
+        six_r_N_4_o_x = six_r_mu_4_o_x + six_r_mu_5_o_z
+        six_r_N_4_o_y = six_r_mu_4_o_y - six_r_c_5_t*six_r_mu_5_o_x - six_r_mu_5_o_y*six_r_s_5
+        six_r_N_4_o_z = six_r_mu_4_o_z + six_r_mu_5_o_x*six_r_s_5 - six_r_c_5_t*six_r_mu_5_o_y
+        # (six_r-f_4_o) remainder without the acceleration in: inertia force of link 4 less its weight
+        six_r_f_4_o_x = (
+        six_r_B_4_o_xz*six_r_h_4_x + six_r_acc_4_o_x*six_r_link4_mass - six_r_B_4_o_xy*six_r_h_4_y
+            - six_r_h_4_z*(six_r_W_4_t_2 + six_r_W_4_t_3)
+        )
+        six_r_f_4_o_y = (
+        six_r_B_4_o_yx*six_r_h_4_z + six_r_B_4_o_yz*six_r_h_4_x + six_r_acc_4_o_y*six_r_link4_mass
+            + six_r_h_4_y*(six_r_W_4_t + six_r_W_4_t_3)
+        )
+        six_r_f_4_o_z = (
+        six_r_B_4_o_zx*six_r_h_4_z + six_r_acc_4_o_z*six_r_link4_mass - six_r_B_4_o_zy*six_r_h_4_y
+            - six_r_h_4_x*(six_r_W_4_t + six_r_W_4_t_2)
+        )
+        # (six_r-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        six_r_acc_3_o_x = six_r_a_o_3_o_r0_x - six_r_g_r4_x
+        six_r_acc_3_o_y = six_r_a_o_3_o_r0_y - six_r_g_r4_y
+        six_r_acc_3_o_z = six_r_a_o_3_o_t_3 - six_r_g_r1_x
+        # (six_r-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        six_r_mu_3_o_x = (
+        six_r_B_3_o_yx*six_r_J_3_xz + six_r_B_3_o_zy*six_r_Sigma_3_yy +
+            six_r_J_3_yz*(six_r_W_3_t_2 - six_r_W_3_t_3) + six_r_acc_3_o_z*six_r_h_3_y -
+            six_r_B_3_o_yz*six_r_Sigma_3_zz - six_r_B_3_o_zx*six_r_J_3_xy -
+            six_r_acc_3_o_y*six_r_h_3_z
+        )
+        six_r_mu_3_o_y = (
+        six_r_B_3_o_xz*six_r_Sigma_3_zz + six_r_B_3_o_zy*six_r_J_3_xy +
+            six_r_acc_3_o_x*six_r_h_3_z - six_r_B_3_o_xy*six_r_J_3_yz -
+            six_r_B_3_o_zx*six_r_Sigma_3_xx - six_r_J_3_xz*(six_r_W_3_t - six_r_W_3_t_3) -
+            six_r_acc_3_o_z*six_r_h_3_x
+        )
+        six_r_mu_3_o_z = (
+        six_r_B_3_o_xz*six_r_J_3_yz + six_r_B_3_o_yx*six_r_Sigma_3_xx + six_r_J_3_xy*(six_r_W_3_t
+            - six_r_W_3_t_2) + six_r_acc_3_o_y*six_r_h_3_x - six_r_B_3_o_xy*six_r_Sigma_3_yy -
+            six_r_B_3_o_yz*six_r_J_3_xz - six_r_acc_3_o_x*six_r_h_3_y
+        )
+        # (six_r-f_4_o) remainder without the acceleration in: inertia force of link 4 less its weight
+        six_r_f_4_o_r0_x = -six_r_c_4_t*six_r_f_4_o_x - six_r_f_4_o_y*six_r_s_4
+        six_r_f_4_o_r0_y = six_r_f_4_o_x*six_r_s_4 - six_r_c_4_t*six_r_f_4_o_y
+        # (six_r-N_3_o) remainder without the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
+        six_r_N_3_o_x = six_r_N_4_o_z + six_r_mu_3_o_x
+        six_r_N_3_o_y = (
+        six_r_mu_3_o_y - six_r_N_4_o_x*six_r_c_4_t - six_r_N_4_o_y*six_r_s_4 -
+            six_r_f_4_o_r0_y*six_r_joint4_offset_x
+        )
+        six_r_N_3_o_z = (
+        six_r_mu_3_o_z + six_r_N_4_o_x*six_r_s_4 + six_r_f_4_o_r0_x*six_r_joint4_offset_x -
+            six_r_N_4_o_y*six_r_c_4_t
+        )
+        # (six_r-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight
+        six_r_f_3_o_x = (
+        six_r_B_3_o_xy*six_r_h_3_y + six_r_B_3_o_xz*six_r_h_3_z + six_r_acc_3_o_x*six_r_link3_mass
+            - six_r_W_3_xx*six_r_h_3_x
+        )
+        six_r_f_3_o_y = (
+        six_r_B_3_o_yx*six_r_h_3_x + six_r_B_3_o_yz*six_r_h_3_z + six_r_acc_3_o_y*six_r_link3_mass
+            - six_r_h_3_y*(six_r_W_3_t + six_r_W_3_t_3)
+        )
+        six_r_f_3_o_z = (
+        six_r_B_3_o_zx*six_r_h_3_x + six_r_B_3_o_zy*six_r_h_3_y + six_r_acc_3_o_z*six_r_link3_mass
+            - six_r_h_3_z*(six_r_W_3_t + six_r_W_3_t_2)
+        )
+        # (six_r-T_3_o) remainder without the acceleration in: inertia force of the links from 3 outwards, the last link left out
+        six_r_T_3_o_x = six_r_f_3_o_x + six_r_f_4_o_z
+        six_r_T_3_o_y = six_r_f_3_o_y + six_r_f_4_o_r0_x
+        six_r_T_3_o_z = six_r_f_3_o_z + six_r_f_4_o_r0_y
+        # (six_r-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        six_r_mu_2_o_x = (
+        six_r_B_2_o_yx*six_r_J_2_xz + six_r_B_2_o_zy*six_r_Sigma_2_yy +
+            six_r_J_2_yz*(six_r_W_2_t_2 - six_r_W_2_t_3) + six_r_g_r3_y*six_r_h_2_z -
+            six_r_B_2_o_zx*six_r_J_2_xy - six_r_Sigma_2_zz*six_r_alpha_1_o_t -
+            six_r_g_r1_x*six_r_h_2_y
+        )
+        six_r_mu_2_o_y = (
+        six_r_B_2_o_zy*six_r_J_2_xy + six_r_Sigma_2_zz*six_r_alpha_1_o_t_2 +
+            six_r_g_r1_x*six_r_h_2_x - six_r_B_2_o_xy*six_r_J_2_yz -
+            six_r_B_2_o_zx*six_r_Sigma_2_xx - six_r_J_2_xz*(six_r_W_2_t - six_r_W_2_t_3) -
+            six_r_g_r3_x*six_r_h_2_z
+        )
+        six_r_mu_2_o_z = (
+        six_r_B_2_o_yx*six_r_Sigma_2_xx + six_r_J_2_xy*(six_r_W_2_t - six_r_W_2_t_2) +
+            six_r_J_2_yz*six_r_alpha_1_o_t_2 + six_r_g_r3_x*six_r_h_2_y -
+            six_r_B_2_o_xy*six_r_Sigma_2_yy - six_r_J_2_xz*six_r_alpha_1_o_t -
+            six_r_g_r3_y*six_r_h_2_x
+        )
+        # (six_r-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        six_r_N_2_o_x = six_r_mu_2_o_x + six_r_N_3_o_x*six_r_c_3 - six_r_N_3_o_y*six_r_s_3
+        six_r_N_2_o_y = (
+        six_r_mu_2_o_y + six_r_N_3_o_x*six_r_s_3 + six_r_N_3_o_y*six_r_c_3 -
+            six_r_T_3_o_z*six_r_joint3_offset_x
+        )
+        six_r_N_2_o_z = (
+        six_r_N_3_o_z + six_r_mu_2_o_z + six_r_joint3_offset_x*(six_r_T_3_o_x*six_r_s_3 +
+            six_r_T_3_o_y*six_r_c_3)
+        )
+        # (six_r-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        six_r_mu_1_o_z = (
+        -six_r_J_1_xx*six_r_qdd_5_o_t_5 - six_r_g_r1_x*six_r_h_1_y - six_r_g_r1_y*six_r_h_1_z
+        )
+        # (six_r-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        six_r_N_1_o_z = six_r_mu_1_o_z + six_r_N_2_o_x*six_r_s_2 - six_r_N_2_o_y*six_r_c_2_t
+        # (six_r-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        six_r_G_o_t = inv_six_r_w_1_t_69*six_r_mu_5_o_z
+        six_r_G_o_t_2 = inv_six_r_w_1_t_101*(six_r_G_o_t*six_r_w_1_t_18 - six_r_N_4_o_z)
+        six_r_G_o_t_3 = (
+        inv_six_r_w_1_t_150*(six_r_G_o_t*six_r_w_1_t_21 + six_r_G_o_t_2*six_r_w_1_t_36 -
+            six_r_N_1_o_z)
+        )
+        six_r_G_o_t_4 = (
+        inv_six_r_w_1_t_194*(six_r_G_o_t*six_r_w_1_t_25 + six_r_G_o_t_2*six_r_w_1_t_42 -
+            six_r_N_2_o_z - six_r_G_o_t_3*six_r_w_1_t_58)
+        )
+        six_r_G_o_t_5 = (
+        inv_six_r_w_1_t_222*(six_r_N_3_o_z + six_r_G_o_t*six_r_w_1_t_28 +
+            six_r_G_o_t_3*six_r_w_1_t_64 + six_r_G_o_t_4*six_r_w_1_t_76 -
+            six_r_G_o_t_2*six_r_w_1_t_47)
+        )
+        six_r_G_o_t_6 = (
+        six_r_size*(six_r_G_o_t_2*six_r_w_1_t_34 + six_r_G_o_t_3*six_r_w_1_t_56 +
+            six_r_G_o_t_4*six_r_w_1_t_74 - six_r_G_o_t_5*six_r_w_1_t_86)
+        )
+        six_r_G_o_t_7 = (
+        six_r_size*(six_r_G_o_t_2*six_r_w_1_t_35 + six_r_G_o_t_3*six_r_w_1_t_57 +
+            six_r_G_o_t_4*six_r_w_1_t_75 - six_r_G_o_t*six_r_w_1_t_17 -
+            six_r_G_o_t_5*six_r_w_1_t_87)
+        )
+        # (six_r-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        six_r_c_o_x = (
+        six_r_G_o_t_3*six_r_w_1_t_53 + six_r_G_o_t_4*six_r_w_1_t_71 + six_r_W_5_xx*six_r_h_5_x -
+            six_r_B_5_o_xy*six_r_h_5_y - six_r_B_5_o_xz*six_r_h_5_z - six_r_G_o_t_5*six_r_w_1_t_83
+        )
+        six_r_c_o_y = (
+        six_r_G_o_t_5*six_r_w_1_t_84 + six_r_h_5_y*(six_r_W_5_t + six_r_W_5_t_3) -
+            six_r_B_5_o_yx*six_r_h_5_x - six_r_B_5_o_yz*six_r_h_5_z - six_r_G_o_t*six_r_w_1_t_16 -
+            six_r_G_o_t_2*six_r_w_1_t_32 - six_r_G_o_t_3*six_r_w_1_t_54 -
+            six_r_G_o_t_4*six_r_w_1_t_72
+        )
+        six_r_c_o_z = (
+        six_r_G_o_t_2*six_r_w_1_t_33 + six_r_G_o_t_3*six_r_w_1_t_55 + six_r_G_o_t_4*six_r_w_1_t_73
+            + six_r_h_5_z*(six_r_W_5_t + six_r_W_5_t_2) - six_r_B_5_o_zx*six_r_h_5_x -
+            six_r_B_5_o_zy*six_r_h_5_y - six_r_G_o_t_5*six_r_w_1_t_85
+        )
+        # (six_r-U) velocity and gravity terms of the leg force
+        six_r_U_in_base_x = (
+        -axis_x_six_r_axes5_x*six_r_c_o_x - axis_y_six_r_axes5_in_base_x*six_r_c_o_y -
+            axis_z_six_r_axes5_in_base_x*six_r_c_o_z
+        )
+        six_r_U_in_base_y = (
+        -axis_x_six_r_axes5_y*six_r_c_o_x - axis_y_six_r_axes5_in_base_y*six_r_c_o_y -
+            axis_z_six_r_axes5_in_base_y*six_r_c_o_z
+        )
+        six_r_U_in_base_z = (
+        -axis_x_six_r_axes5_z*six_r_c_o_x - axis_y_six_r_axes5_in_base_z*six_r_c_o_y -
+            axis_z_six_r_axes5_in_base_z*six_r_c_o_z
+        )
+        # (six_r-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        six_r_G_m_o_t = six_r_G_o_t_6*six_r_end_p1_r8_y
+        six_r_G_m_o_t_2 = six_r_G_o_t_7*six_r_end_p1_r8_y
+        six_r_G_m_o_y = six_r_G_o_t_7*six_r_end_p1_r6_x - six_r_G_o_t_6*six_r_end_p1_r8_x
+        # (Z_a) rotational part of Z
+        six_r_Z_a_t = (
+        axis_x_six_r_axes5_x*six_r_G_m_o_t + axis_y_six_r_axes5_in_base_x*six_r_G_m_o_y +
+            six_r_U_in_base_z*six_r_q_in_base_y - axis_z_six_r_axes5_in_base_x*six_r_G_m_o_t_2 -
+            six_r_U_in_base_y*six_r_q_in_base_z
+        )
+        six_r_Z_a_t_2 = (
+        axis_x_six_r_axes5_y*six_r_G_m_o_t + axis_y_six_r_axes5_in_base_y*six_r_G_m_o_y +
+            six_r_U_in_base_x*six_r_q_in_base_z - axis_z_six_r_axes5_in_base_y*six_r_G_m_o_t_2 -
+            six_r_U_in_base_z*six_r_q_in_base_x
+        )
+        six_r_Z_a_t_3 = (
+        axis_x_six_r_axes5_z*six_r_G_m_o_t + axis_y_six_r_axes5_in_base_z*six_r_G_m_o_y +
+            six_r_U_in_base_y*six_r_q_in_base_x - axis_z_six_r_axes5_in_base_z*six_r_G_m_o_t_2 -
+            six_r_U_in_base_x*six_r_q_in_base_y
         )
         ok = (
-        ok & m.every(leg, (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE *
-            size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
-            (abs(w_1_t_82) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(six_r_w_1_t_15) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_31) >
+            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_52) > _TOLERANCE * six_r_size) &
+            (abs(six_r_w_1_t_70) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_82) > _TOLERANCE *
+            six_r_size))
         )
         sums = m.added(sums, leg, (
-        U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
+        six_r_U_in_base_x, six_r_U_in_base_y, six_r_U_in_base_z, six_r_Z_a_t, six_r_Z_a_t_2,
+            six_r_Z_a_t_3,
         ))
     (
-    total_rrrrrr_x, total_rrrrrr_y, total_rrrrrr_z, total_rrrrrr_x_2, total_rrrrrr_y_2,
-        total_rrrrrr_z_2,
+    total_six_r_x, total_six_r_y, total_six_r_z, total_six_r_x_2, total_six_r_y_2,
+        total_six_r_z_2,
     ) = sums
-    # (M5) translational part of Z
-    Z_t_x = Z_p_x + total_rrrrrr_x
-    Z_t_y = Z_p_y + total_rrrrrr_y
-    Z_t_z = Z_p_z + total_rrrrrr_z
-    # (M7) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_rrrrrr_x_2
-    Z_a_y = Z_q_in_base_y + total_rrrrrr_y_2
-    Z_a_z = Z_q_in_base_z + total_rrrrrr_z_2
+    # (Z_t) translational part of Z
+    Z_t_x = Z_p_x + total_six_r_x
+    Z_t_y = Z_p_y + total_six_r_y
+    Z_t_z = Z_p_z + total_six_r_z
+    # (Z_a) rotational part of Z
+    Z_a_x = Z_q_in_base_x + total_six_r_x_2
+    Z_a_y = Z_q_in_base_y + total_six_r_y_2
+    Z_a_z = Z_q_in_base_z + total_six_r_z_2
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
@@ -5567,359 +6436,400 @@ def _run_H(m, X, q):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
-            rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
-            rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
-            rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x,
-            rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
-            rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
-            rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z, size,
-            size_t,
+        six_r_base_frame_xx, six_r_base_frame_xy, six_r_base_frame_xz, six_r_base_frame_yx,
+            six_r_base_frame_yy, six_r_base_frame_yz, six_r_base_frame_zx, six_r_base_frame_zy,
+            six_r_base_frame_zz, six_r_joint2_offset_x, six_r_joint3_offset_x,
+            six_r_joint4_offset_x, six_r_joint5_offset_x, six_r_platform_joint_axis_platform_x,
+            six_r_platform_joint_axis_platform_y, six_r_platform_joint_axis_platform_z,
+            six_r_platform_joint_offset_x, six_r_platform_point_x, six_r_platform_point_y,
+            six_r_platform_point_z, six_r_size, six_r_size_t,
         ) = k
-        q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
-        q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
-        q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
-        q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
-        q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
-        # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
-        c_5_t = sin(q_5)
-        # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
-        s_5 = cos(q_5)
-        # (rrrrrr-V2) from joint 4 to the connection point, along the links
-        r_4_t = c_5_t*rrrrrr_platform_joint_offset_x
-        r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5
-        # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
-        c_4_t = sin(q_4)
-        # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
-        s_4 = cos(q_4)
-        # (rrrrrr-V2) from joint 4 to the connection point, along the links
-        r_4_t_2 = r_4_t*s_4
-        r_4_t_3 = c_4_t*r_4_t
-        # (rrrrrr-V3) from joint 3 to the connection point, along the links
-        r_3_x = r_4_z + rrrrrr_joint4_offset_x
-        # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
-        c_3 = cos(q_3)
-        # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
-        s_3 = sin(q_3)
-        # (rrrrrr-V3) from joint 3 to the connection point, along the links
-        r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3
-        # (rrrrrr-V4) from joint 2 to the connection point, along the links
-        r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3
-        # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
-        c_2_t = sin(q_2)
-        # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
-        s_2 = cos(q_2)
-        # (rrrrrr-V4) from joint 2 to the connection point, along the links
-        r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2
-        # (rrrrrr-V5) from joint 1 to the connection point, along the links
-        r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y
-        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-        e_1_r2_x = c_3*s_2 - c_2_t*s_3
-        e_1_r2_y = -c_2_t*c_3 - s_2*s_3
-        v_1_t = c_4_t*e_1_r2_y
-        v_1_t_2 = e_1_r2_y*s_4
-        e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5
-        e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x
-        # (rrrrrr-V5) from joint 1 to the connection point, along the links
-        r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x
-        r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2
-        r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3
-        r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3
-        r_1_t = r_4_t_3*s_4
-        r_1_r4_x = r_1_t - c_4_t*r_1_r2_y
-        r_1_t_2 = c_4_t*r_4_t_3
-        r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4
-        r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y
-        r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5
-        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-        v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t
-        v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t
-        v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x
-        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-        v_2_t = c_4_t*c_5_t
-        v_2_t_2 = c_4_t*s_5
-        # (rrrrrr-V4) from joint 2 to the connection point, along the links
-        r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3
-        r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3
-        r_2_r2_x = r_1_t - c_4_t*r_2_r0_y
-        r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4
-        r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y
-        r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5
-        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-        v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4
-        v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t
-        v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2
-        # (rrrrrr-V3) from joint 3 to the connection point, along the links
-        r_3_r1_x = r_1_t - c_4_t*r_4_t_2
-        r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4
-        r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y
-        r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5
-        # (rrrrrr-V8) velocity of the connection point per rate of joint 3
-        v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4
-        v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t
-        v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2
-        # (rrrrrr-V9) velocity of the connection point per rate of joint 4
-        v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
-        # (rrrrrr-V13) force part of reciprocal wrench 1
-        w_1_t = c_4_t*s_3
-        w_1_t_2 = c_3*c_4_t
-        axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
-        axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
-        # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
-        c_1_t = sin(q_1)
-        # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
-        s_1 = cos(q_1)
-        # (rrrrrr-V13) force part of reciprocal wrench 1
-        axis_z_rrrrrr_axes5_r7_x = -axis_z_rrrrrr_axes5_r5_x*s_1 - c_1_t*s_4
-        axis_z_rrrrrr_axes5_r7_y = s_1*s_4 - axis_z_rrrrrr_axes5_r5_x*c_1_t
-        axis_z_rrrrrr_axes5_in_base_x = (
-        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
-            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
-            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
+        six_r_q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
+        six_r_q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
+        six_r_q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
+        six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
+        six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
+        six_r_c_5_t = sin(six_r_q_5)
+        # (six_r-s_5) sine of the angle of joint 5 from its reference direction
+        six_r_s_5 = cos(six_r_q_5)
+        # (six_r-r_4) from joint 4 to the connection point, along the links
+        six_r_r_4_t = six_r_c_5_t*six_r_platform_joint_offset_x
+        six_r_r_4_z = six_r_joint5_offset_x + six_r_platform_joint_offset_x*six_r_s_5
+        # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
+        six_r_c_4_t = sin(six_r_q_4)
+        # (six_r-s_4) sine of the angle of joint 4 from its reference direction
+        six_r_s_4 = cos(six_r_q_4)
+        # (six_r-r_4) from joint 4 to the connection point, along the links
+        six_r_r_4_t_2 = six_r_r_4_t*six_r_s_4
+        six_r_r_4_t_3 = six_r_c_4_t*six_r_r_4_t
+        # (six_r-r_3) from joint 3 to the connection point, along the links
+        six_r_r_3_x = six_r_joint4_offset_x + six_r_r_4_z
+        # (six_r-c_3) cosine of the angle of joint 3 from its reference direction
+        six_r_c_3 = cos(six_r_q_3)
+        # (six_r-s_3) sine of the angle of joint 3 from its reference direction
+        six_r_s_3 = sin(six_r_q_3)
+        # (six_r-r_3) from joint 3 to the connection point, along the links
+        six_r_r_3_r0_y = six_r_c_3*six_r_r_4_t_2 + six_r_r_3_x*six_r_s_3
+        # (six_r-r_2) from joint 2 to the connection point, along the links
+        six_r_r_2_x = six_r_joint3_offset_x + six_r_c_3*six_r_r_3_x - six_r_r_4_t_2*six_r_s_3
+        # (six_r-c_2) cosine of the angle of joint 2 from its reference direction
+        six_r_c_2_t = sin(six_r_q_2)
+        # (six_r-s_2) sine of the angle of joint 2 from its reference direction
+        six_r_s_2 = cos(six_r_q_2)
+        # (six_r-r_2) from joint 2 to the connection point, along the links
+        six_r_r_2_r0_x = -six_r_c_2_t*six_r_r_2_x - six_r_r_3_r0_y*six_r_s_2
+        # (six_r-r_1) from joint 1 to the connection point, along the links
+        six_r_r_1_z = six_r_joint2_offset_x + six_r_r_2_x*six_r_s_2 - six_r_c_2_t*six_r_r_3_r0_y
+        # (six_r-v_1) velocity of the connection point per rate of joint 1
+        six_r_e_1_r2_x = six_r_c_3*six_r_s_2 - six_r_c_2_t*six_r_s_3
+        six_r_e_1_r2_y = -six_r_c_2_t*six_r_c_3 - six_r_s_2*six_r_s_3
+        six_r_v_1_t = six_r_c_4_t*six_r_e_1_r2_y
+        six_r_v_1_t_2 = six_r_e_1_r2_y*six_r_s_4
+        six_r_e_1_r6_x = six_r_c_5_t*six_r_v_1_t_2 + six_r_e_1_r2_x*six_r_s_5
+        six_r_e_1_r6_y = six_r_s_5*six_r_v_1_t_2 - six_r_c_5_t*six_r_e_1_r2_x
+        # (six_r-r_1) from joint 1 to the connection point, along the links
+        six_r_r_1_r1_x = six_r_r_1_z*six_r_s_2 - six_r_c_2_t*six_r_r_2_r0_x
+        six_r_r_1_r1_y = -six_r_c_2_t*six_r_r_1_z - six_r_r_2_r0_x*six_r_s_2
+        six_r_r_1_r2_x = six_r_c_3*six_r_r_1_r1_x + six_r_r_1_r1_y*six_r_s_3
+        six_r_r_1_r2_y = six_r_c_3*six_r_r_1_r1_y - six_r_r_1_r1_x*six_r_s_3
+        six_r_r_1_t = six_r_r_4_t_3*six_r_s_4
+        six_r_r_1_r4_x = six_r_r_1_t - six_r_c_4_t*six_r_r_1_r2_y
+        six_r_r_1_t_2 = six_r_c_4_t*six_r_r_4_t_3
+        six_r_r_1_r4_y = -six_r_r_1_t_2 - six_r_r_1_r2_y*six_r_s_4
+        six_r_r_1_r6_x = six_r_r_1_r2_x*six_r_s_5 - six_r_c_5_t*six_r_r_1_r4_y
+        six_r_r_1_r6_y = -six_r_c_5_t*six_r_r_1_r2_x - six_r_r_1_r4_y*six_r_s_5
+        # (six_r-v_1) velocity of the connection point per rate of joint 1
+        six_r_v_1_x = six_r_e_1_r6_y*six_r_r_1_r4_x + six_r_r_1_r6_y*six_r_v_1_t
+        six_r_v_1_y = -six_r_e_1_r6_x*six_r_r_1_r4_x - six_r_r_1_r6_x*six_r_v_1_t
+        six_r_v_1_z = six_r_e_1_r6_x*six_r_r_1_r6_y - six_r_e_1_r6_y*six_r_r_1_r6_x
+        # (six_r-v_2) velocity of the connection point per rate of joint 2
+        six_r_v_2_t = six_r_c_4_t*six_r_c_5_t
+        six_r_v_2_t_2 = six_r_c_4_t*six_r_s_5
+        # (six_r-r_2) from joint 2 to the connection point, along the links
+        six_r_r_2_r0_x_2 = six_r_c_3*six_r_r_2_x + six_r_r_3_r0_y*six_r_s_3
+        six_r_r_2_r0_y = six_r_c_3*six_r_r_3_r0_y - six_r_r_2_x*six_r_s_3
+        six_r_r_2_r2_x = six_r_r_1_t - six_r_c_4_t*six_r_r_2_r0_y
+        six_r_r_2_r2_y = -six_r_r_1_t_2 - six_r_r_2_r0_y*six_r_s_4
+        six_r_r_2_r4_x = six_r_r_2_r0_x_2*six_r_s_5 - six_r_c_5_t*six_r_r_2_r2_y
+        six_r_r_2_r4_y = -six_r_c_5_t*six_r_r_2_r0_x_2 - six_r_r_2_r2_y*six_r_s_5
+        # (six_r-v_2) velocity of the connection point per rate of joint 2
+        six_r_v_2_x = six_r_r_2_r2_x*six_r_v_2_t_2 - six_r_r_2_r4_y*six_r_s_4
+        six_r_v_2_y = six_r_r_2_r4_x*six_r_s_4 - six_r_r_2_r2_x*six_r_v_2_t
+        six_r_v_2_z = six_r_r_2_r4_y*six_r_v_2_t - six_r_r_2_r4_x*six_r_v_2_t_2
+        # (six_r-r_3) from joint 3 to the connection point, along the links
+        six_r_r_3_r1_x = six_r_r_1_t - six_r_c_4_t*six_r_r_4_t_2
+        six_r_r_3_r1_y = -six_r_r_1_t_2 - six_r_r_4_t_2*six_r_s_4
+        six_r_r_3_r3_x = six_r_r_3_x*six_r_s_5 - six_r_c_5_t*six_r_r_3_r1_y
+        six_r_r_3_r3_y = -six_r_c_5_t*six_r_r_3_x - six_r_r_3_r1_y*six_r_s_5
+        # (six_r-v_3) velocity of the connection point per rate of joint 3
+        six_r_v_3_x = six_r_r_3_r1_x*six_r_v_2_t_2 - six_r_r_3_r3_y*six_r_s_4
+        six_r_v_3_y = six_r_r_3_r3_x*six_r_s_4 - six_r_r_3_r1_x*six_r_v_2_t
+        six_r_v_3_z = six_r_r_3_r3_y*six_r_v_2_t - six_r_r_3_r3_x*six_r_v_2_t_2
+        # (six_r-v_4) velocity of the connection point per rate of joint 4
+        six_r_v_4_z = (
+        six_r_c_5_t*(six_r_c_5_t*six_r_r_4_t + six_r_r_4_z*six_r_s_5) +
+            six_r_s_5*(six_r_r_4_t*six_r_s_5 - six_r_c_5_t*six_r_r_4_z)
         )
-        axis_z_rrrrrr_axes5_in_base_y = (
-        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
-            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
-            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
+        # (six_r-w_1) force part of reciprocal wrench 1
+        six_r_w_1_t = six_r_c_4_t*six_r_s_3
+        six_r_w_1_t_2 = six_r_c_3*six_r_c_4_t
+        axis_z_six_r_axes5_r5_x = six_r_s_2*six_r_w_1_t_2 - six_r_c_2_t*six_r_w_1_t
+        axis_z_six_r_axes5_r5_y = six_r_c_2_t*six_r_w_1_t_2 + six_r_s_2*six_r_w_1_t
+        # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
+        six_r_c_1_t = sin(six_r_q_1)
+        # (six_r-s_1) sine of the angle of joint 1 from its reference direction
+        six_r_s_1 = cos(six_r_q_1)
+        # (six_r-w_1) force part of reciprocal wrench 1
+        axis_z_six_r_axes5_r7_x = -axis_z_six_r_axes5_r5_x*six_r_s_1 - six_r_c_1_t*six_r_s_4
+        axis_z_six_r_axes5_r7_y = six_r_s_1*six_r_s_4 - axis_z_six_r_axes5_r5_x*six_r_c_1_t
+        axis_z_six_r_axes5_in_base_x = (
+        axis_z_six_r_axes5_r5_y*six_r_base_frame_xx + axis_z_six_r_axes5_r7_x*six_r_base_frame_xy
+            + axis_z_six_r_axes5_r7_y*six_r_base_frame_xz
         )
-        axis_z_rrrrrr_axes5_in_base_z = (
-        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
-            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
-            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
+        axis_z_six_r_axes5_in_base_y = (
+        axis_z_six_r_axes5_r5_y*six_r_base_frame_yx + axis_z_six_r_axes5_r7_x*six_r_base_frame_yy
+            + axis_z_six_r_axes5_r7_y*six_r_base_frame_yz
         )
-        w_1_t_3 = s_4*s_5
-        axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
-        axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
-        axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
-        axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
-        axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
-        axis_y_rrrrrr_axes5_r7_y = s_1*v_2_t_2 - axis_y_rrrrrr_axes5_r5_x*c_1_t
-        axis_y_rrrrrr_axes5_in_base_x = (
-        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
-            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
-            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
+        axis_z_six_r_axes5_in_base_z = (
+        axis_z_six_r_axes5_r5_y*six_r_base_frame_zx + axis_z_six_r_axes5_r7_x*six_r_base_frame_zy
+            + axis_z_six_r_axes5_r7_y*six_r_base_frame_zz
         )
-        axis_y_rrrrrr_axes5_in_base_y = (
-        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
-            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
-            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
+        six_r_w_1_t_3 = six_r_s_4*six_r_s_5
+        axis_y_six_r_axes5_r4_x = -six_r_c_3*six_r_c_5_t - six_r_s_3*six_r_w_1_t_3
+        axis_y_six_r_axes5_r4_y = six_r_c_3*six_r_w_1_t_3 - six_r_c_5_t*six_r_s_3
+        axis_y_six_r_axes5_r5_x = (
+        -axis_y_six_r_axes5_r4_x*six_r_c_2_t - axis_y_six_r_axes5_r4_y*six_r_s_2
         )
-        axis_y_rrrrrr_axes5_in_base_z = (
-        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
-            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
-            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
+        axis_y_six_r_axes5_r5_y = (
+        axis_y_six_r_axes5_r4_x*six_r_s_2 - axis_y_six_r_axes5_r4_y*six_r_c_2_t
         )
-        axis_x_rrrrrr_axes5_x = (
-        axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_z -
-            axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_y
+        axis_y_six_r_axes5_r7_x = -axis_y_six_r_axes5_r5_x*six_r_s_1 - six_r_c_1_t*six_r_v_2_t_2
+        axis_y_six_r_axes5_r7_y = six_r_s_1*six_r_v_2_t_2 - axis_y_six_r_axes5_r5_x*six_r_c_1_t
+        axis_y_six_r_axes5_in_base_x = (
+        axis_y_six_r_axes5_r5_y*six_r_base_frame_xx + axis_y_six_r_axes5_r7_x*six_r_base_frame_xy
+            + axis_y_six_r_axes5_r7_y*six_r_base_frame_xz
         )
-        axis_x_rrrrrr_axes5_y = (
-        axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_x -
-            axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_z
+        axis_y_six_r_axes5_in_base_y = (
+        axis_y_six_r_axes5_r5_y*six_r_base_frame_yx + axis_y_six_r_axes5_r7_x*six_r_base_frame_yy
+            + axis_y_six_r_axes5_r7_y*six_r_base_frame_yz
         )
-        axis_x_rrrrrr_axes5_z = (
-        axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
-            axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
+        axis_y_six_r_axes5_in_base_z = (
+        axis_y_six_r_axes5_r5_y*six_r_base_frame_zx + axis_y_six_r_axes5_r7_x*six_r_base_frame_zy
+            + axis_y_six_r_axes5_r7_y*six_r_base_frame_zz
         )
-        # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-        end_p1_r0_x = (
-        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy +
-            R_yx*rrrrrr_base_frame_yy + R_zx*rrrrrr_base_frame_zy) +
-            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
-            R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
-            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
-            R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy)
+        axis_x_six_r_axes5_x = (
+        axis_y_six_r_axes5_in_base_y*axis_z_six_r_axes5_in_base_z -
+            axis_y_six_r_axes5_in_base_z*axis_z_six_r_axes5_in_base_y
         )
-        end_p1_r0_y = (
-        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz +
-            R_yx*rrrrrr_base_frame_yz + R_zx*rrrrrr_base_frame_zz) +
-            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
-            R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
-            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
-            R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz)
+        axis_x_six_r_axes5_y = (
+        axis_y_six_r_axes5_in_base_z*axis_z_six_r_axes5_in_base_x -
+            axis_y_six_r_axes5_in_base_x*axis_z_six_r_axes5_in_base_z
         )
-        end_p1_r0_z = (
-        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx +
-            R_yx*rrrrrr_base_frame_yx + R_zx*rrrrrr_base_frame_zx) +
-            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
-            R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
-            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
-            R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx)
+        axis_x_six_r_axes5_z = (
+        axis_y_six_r_axes5_in_base_x*axis_z_six_r_axes5_in_base_y -
+            axis_y_six_r_axes5_in_base_y*axis_z_six_r_axes5_in_base_x
         )
-        end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x
-        end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1
-        end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y
-        end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2
-        end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3
-        end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3
-        end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y
-        end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4
-        end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
-        end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
-        # (rrrrrr-V13) force part of reciprocal wrench 1
-        w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
-        w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
-        w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
-        w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
-        w_1_t_8 = size*w_1_t_4
-        w_1_t_9 = size*w_1_t_6
-        w_1_t_10 = size*w_1_t_5
-        w_1_t_11 = size*w_1_t_7
-        w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
-        w_1_t_13 = c_5_t*end_p1_r6_x*size
-        w_1_t_14 = end_p1_r8_y*size
-        w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
-        inv_w_1_t_69 = 1.0/w_1_t_15
-        w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
-        w_1_t_17 = inv_w_1_t_69*w_1_t_14
-        w_1_t_18 = w_1_t_13*w_1_t_17
-        w_1_t_19 = w_1_t_16*w_1_t_18
-        w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
-        w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
-        w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
-        w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
-        w_1_t_24 = w_1_t_11*w_1_t_17
-        w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
-        w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
-        w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
-        w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
-        w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
-        w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
-        w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
-        inv_w_1_t_101 = 1.0/w_1_t_31
-        w_1_t_32 = inv_w_1_t_101*w_1_t_19
-        w_1_t_33 = inv_w_1_t_101*v_4_z
-        w_1_t_34 = inv_w_1_t_101*w_1_t_12
-        w_1_t_35 = inv_w_1_t_101*w_1_t_20
-        w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
-        w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
-        w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
-        w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
-        w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
-        w_1_t_41 = w_1_t_10*w_1_t_34
-        w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
-        w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
-        w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
-        w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
-        w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
-        w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
-        w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
-        w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
-        w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
-        w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
-        w_1_t_52 = (
-        sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
-            w_1_t_40*w_1_t_40)
+        # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
+        six_r_end_p1_r0_x = (
+        six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xy + R_yx*six_r_base_frame_yy
+            + R_zx*six_r_base_frame_zy) +
+            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xy +
+            R_yy*six_r_base_frame_yy + R_zy*six_r_base_frame_zy) +
+            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xy +
+            R_yz*six_r_base_frame_yy + R_zz*six_r_base_frame_zy)
         )
-        inv_w_1_t_150 = 1.0/w_1_t_52
-        w_1_t_53 = inv_w_1_t_150*v_1_x
-        w_1_t_54 = inv_w_1_t_150*w_1_t_37
-        w_1_t_55 = inv_w_1_t_150*w_1_t_38
-        w_1_t_56 = inv_w_1_t_150*w_1_t_39
-        w_1_t_57 = inv_w_1_t_150*w_1_t_40
-        w_1_t_58 = (
-        v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 +
-            w_1_t_46*w_1_t_57
+        six_r_end_p1_r0_y = (
+        six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xz + R_yx*six_r_base_frame_yz
+            + R_zx*six_r_base_frame_zz) +
+            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xz +
+            R_yy*six_r_base_frame_yz + R_zy*six_r_base_frame_zz) +
+            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xz +
+            R_yz*six_r_base_frame_yz + R_zz*six_r_base_frame_zz)
         )
-        w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
-        w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
-        w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
-        w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
-        w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
-        w_1_t_64 = (
-        v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 +
-            w_1_t_51*w_1_t_57
+        six_r_end_p1_r0_z = (
+        six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xx + R_yx*six_r_base_frame_yx
+            + R_zx*six_r_base_frame_zx) +
+            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xx +
+            R_yy*six_r_base_frame_yx + R_zy*six_r_base_frame_zx) +
+            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xx +
+            R_yz*six_r_base_frame_yx + R_zz*six_r_base_frame_zx)
         )
-        w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
-        w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
-        w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
-        w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
-        w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
-        w_1_t_70 = (
-        sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
-            w_1_t_63*w_1_t_63)
+        six_r_end_p1_r1_x = six_r_end_p1_r0_y*six_r_s_1 - six_r_c_1_t*six_r_end_p1_r0_x
+        six_r_end_p1_r1_y = -six_r_c_1_t*six_r_end_p1_r0_y - six_r_end_p1_r0_x*six_r_s_1
+        six_r_end_p1_r3_x = six_r_end_p1_r0_z*six_r_s_2 - six_r_c_2_t*six_r_end_p1_r1_y
+        six_r_end_p1_r3_y = -six_r_c_2_t*six_r_end_p1_r0_z - six_r_end_p1_r1_y*six_r_s_2
+        six_r_end_p1_r4_x = six_r_c_3*six_r_end_p1_r3_x + six_r_end_p1_r3_y*six_r_s_3
+        six_r_end_p1_r4_y = six_r_c_3*six_r_end_p1_r3_y - six_r_end_p1_r3_x*six_r_s_3
+        six_r_end_p1_r6_x = six_r_end_p1_r1_x*six_r_s_4 - six_r_c_4_t*six_r_end_p1_r4_y
+        six_r_end_p1_r6_y = -six_r_c_4_t*six_r_end_p1_r1_x - six_r_end_p1_r4_y*six_r_s_4
+        six_r_end_p1_r8_x = six_r_end_p1_r4_x*six_r_s_5 - six_r_c_5_t*six_r_end_p1_r6_y
+        six_r_end_p1_r8_y = -six_r_c_5_t*six_r_end_p1_r4_x - six_r_end_p1_r6_y*six_r_s_5
+        # (six_r-w_1) force part of reciprocal wrench 1
+        six_r_w_1_t_4 = six_r_e_1_r6_x*six_r_end_p1_r8_y - six_r_e_1_r6_y*six_r_end_p1_r8_x
+        six_r_w_1_t_5 = six_r_end_p1_r8_y*six_r_v_2_t - six_r_end_p1_r8_x*six_r_v_2_t_2
+        six_r_w_1_t_6 = six_r_e_1_r6_y*six_r_end_p1_r6_x + six_r_end_p1_r8_y*six_r_v_1_t
+        six_r_w_1_t_7 = six_r_end_p1_r6_x*six_r_v_2_t_2 - six_r_end_p1_r8_y*six_r_s_4
+        six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4
+        six_r_w_1_t_9 = six_r_size*six_r_w_1_t_6
+        six_r_w_1_t_10 = six_r_size*six_r_w_1_t_5
+        six_r_w_1_t_11 = six_r_size*six_r_w_1_t_7
+        six_r_w_1_t_12 = six_r_size*(-six_r_c_5_t*six_r_end_p1_r8_x - six_r_end_p1_r8_y*six_r_s_5)
+        six_r_w_1_t_13 = six_r_c_5_t*six_r_end_p1_r6_x*six_r_size
+        six_r_w_1_t_14 = six_r_end_p1_r8_y*six_r_size
+        six_r_w_1_t_15 = sqrt(six_r_size_t + six_r_w_1_t_14*six_r_w_1_t_14)
+        inv_six_r_w_1_t_69 = 1.0/six_r_w_1_t_15
+        six_r_w_1_t_16 = inv_six_r_w_1_t_69*six_r_platform_joint_offset_x
+        six_r_w_1_t_17 = inv_six_r_w_1_t_69*six_r_w_1_t_14
+        six_r_w_1_t_18 = six_r_w_1_t_13*six_r_w_1_t_17
+        six_r_w_1_t_19 = six_r_w_1_t_16*six_r_w_1_t_18
+        six_r_w_1_t_20 = six_r_w_1_t_13 - six_r_w_1_t_17*six_r_w_1_t_18
+        six_r_w_1_t_21 = six_r_v_1_y*six_r_w_1_t_16 - six_r_w_1_t_17*six_r_w_1_t_9
+        six_r_w_1_t_22 = six_r_v_1_y - six_r_w_1_t_16*six_r_w_1_t_21
+        six_r_w_1_t_23 = six_r_w_1_t_9 + six_r_w_1_t_17*six_r_w_1_t_21
+        six_r_w_1_t_24 = six_r_w_1_t_11*six_r_w_1_t_17
+        six_r_w_1_t_25 = six_r_v_2_y*six_r_w_1_t_16 - six_r_w_1_t_24
+        six_r_w_1_t_26 = six_r_v_2_y - six_r_w_1_t_16*six_r_w_1_t_25
+        six_r_w_1_t_27 = six_r_w_1_t_11 + six_r_w_1_t_17*six_r_w_1_t_25
+        six_r_w_1_t_28 = six_r_w_1_t_24 - six_r_v_3_y*six_r_w_1_t_16
+        six_r_w_1_t_29 = six_r_v_3_y + six_r_w_1_t_16*six_r_w_1_t_28
+        six_r_w_1_t_30 = six_r_w_1_t_11 - six_r_w_1_t_17*six_r_w_1_t_28
+        six_r_w_1_t_31 = (
+        sqrt(six_r_v_4_z*six_r_v_4_z + six_r_w_1_t_12*six_r_w_1_t_12 +
+            six_r_w_1_t_19*six_r_w_1_t_19 + six_r_w_1_t_20*six_r_w_1_t_20)
         )
-        inv_w_1_t_194 = 1.0/w_1_t_70
-        w_1_t_71 = inv_w_1_t_194*w_1_t_59
-        w_1_t_72 = inv_w_1_t_194*w_1_t_60
-        w_1_t_73 = inv_w_1_t_194*w_1_t_61
-        w_1_t_74 = inv_w_1_t_194*w_1_t_62
-        w_1_t_75 = inv_w_1_t_194*w_1_t_63
-        w_1_t_76 = (
-        w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
-            w_1_t_69*w_1_t_75
+        inv_six_r_w_1_t_101 = 1.0/six_r_w_1_t_31
+        six_r_w_1_t_32 = inv_six_r_w_1_t_101*six_r_w_1_t_19
+        six_r_w_1_t_33 = inv_six_r_w_1_t_101*six_r_v_4_z
+        six_r_w_1_t_34 = inv_six_r_w_1_t_101*six_r_w_1_t_12
+        six_r_w_1_t_35 = inv_six_r_w_1_t_101*six_r_w_1_t_20
+        six_r_w_1_t_36 = (
+        six_r_w_1_t_22*six_r_w_1_t_32 + six_r_w_1_t_23*six_r_w_1_t_35 +
+            six_r_w_1_t_34*six_r_w_1_t_8 - six_r_v_1_z*six_r_w_1_t_33
         )
-        w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
-        w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
-        w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
-        w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
-        w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
-        w_1_t_82 = (
-        sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
-            w_1_t_81*w_1_t_81)
+        six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_36 - six_r_w_1_t_22
+        six_r_w_1_t_38 = six_r_v_1_z + six_r_w_1_t_33*six_r_w_1_t_36
+        six_r_w_1_t_39 = six_r_w_1_t_34*six_r_w_1_t_36 - six_r_w_1_t_8
+        six_r_w_1_t_40 = six_r_w_1_t_35*six_r_w_1_t_36 - six_r_w_1_t_23
+        six_r_w_1_t_41 = six_r_w_1_t_10*six_r_w_1_t_34
+        six_r_w_1_t_42 = (
+        six_r_w_1_t_41 + six_r_w_1_t_26*six_r_w_1_t_32 + six_r_w_1_t_27*six_r_w_1_t_35 -
+            six_r_v_2_z*six_r_w_1_t_33
         )
-        inv_w_1_t_222 = 1.0/w_1_t_82
-        # (rrrrrr-V16) force part of reciprocal wrench 2
-        w_2_t = inv_w_1_t_194*inv_w_1_t_222*w_1_t_76
-        w_2_t_2 = inv_w_1_t_194*w_1_t_71 - inv_w_1_t_222*w_1_t_77*w_2_t
-        w_2_t_3 = inv_w_1_t_194*w_1_t_72 - inv_w_1_t_222*w_1_t_78*w_2_t
-        w_2_t_4 = inv_w_1_t_222*w_1_t_79*w_2_t - inv_w_1_t_194*w_1_t_73
-        w_2_t_5 = size*(inv_w_1_t_194*w_1_t_74 - inv_w_1_t_222*w_1_t_80*w_2_t)
-        w_2_t_6 = size*(inv_w_1_t_194*w_1_t_75 - inv_w_1_t_222*w_1_t_81*w_2_t)
-        # (M2) coupling block of M
-        q_in_base_x = (
-        R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
+        six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_42 - six_r_w_1_t_26
+        six_r_w_1_t_44 = six_r_v_2_z + six_r_w_1_t_33*six_r_w_1_t_42
+        six_r_w_1_t_45 = six_r_w_1_t_34*six_r_w_1_t_42 - six_r_w_1_t_10
+        six_r_w_1_t_46 = six_r_w_1_t_35*six_r_w_1_t_42 - six_r_w_1_t_27
+        six_r_w_1_t_47 = (
+        six_r_w_1_t_41 + six_r_w_1_t_29*six_r_w_1_t_32 + six_r_w_1_t_30*six_r_w_1_t_35 -
+            six_r_v_3_z*six_r_w_1_t_33
         )
-        q_in_base_y = (
-        R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y + R_yz*rrrrrr_platform_point_z
+        six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_47 - six_r_w_1_t_29
+        six_r_w_1_t_49 = six_r_v_3_z + six_r_w_1_t_33*six_r_w_1_t_47
+        six_r_w_1_t_50 = six_r_w_1_t_34*six_r_w_1_t_47 - six_r_w_1_t_10
+        six_r_w_1_t_51 = six_r_w_1_t_35*six_r_w_1_t_47 - six_r_w_1_t_30
+        six_r_w_1_t_52 = (
+        sqrt(six_r_v_1_x*six_r_v_1_x + six_r_w_1_t_37*six_r_w_1_t_37 +
+            six_r_w_1_t_38*six_r_w_1_t_38 + six_r_w_1_t_39*six_r_w_1_t_39 +
+            six_r_w_1_t_40*six_r_w_1_t_40)
         )
-        q_in_base_z = (
-        R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y + R_zz*rrrrrr_platform_point_z
+        inv_six_r_w_1_t_150 = 1.0/six_r_w_1_t_52
+        six_r_w_1_t_53 = inv_six_r_w_1_t_150*six_r_v_1_x
+        six_r_w_1_t_54 = inv_six_r_w_1_t_150*six_r_w_1_t_37
+        six_r_w_1_t_55 = inv_six_r_w_1_t_150*six_r_w_1_t_38
+        six_r_w_1_t_56 = inv_six_r_w_1_t_150*six_r_w_1_t_39
+        six_r_w_1_t_57 = inv_six_r_w_1_t_150*six_r_w_1_t_40
+        six_r_w_1_t_58 = (
+        six_r_v_2_x*six_r_w_1_t_53 + six_r_w_1_t_43*six_r_w_1_t_54 + six_r_w_1_t_44*six_r_w_1_t_55
+            + six_r_w_1_t_45*six_r_w_1_t_56 + six_r_w_1_t_46*six_r_w_1_t_57
         )
-        # (rrrrrr-V16) force part of reciprocal wrench 2
-        w_2_in_base_x = (
-        axis_x_rrrrrr_axes5_x*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_x*w_2_t_3 -
-            axis_z_rrrrrr_axes5_in_base_x*w_2_t_4
+        six_r_w_1_t_59 = six_r_v_2_x - six_r_w_1_t_53*six_r_w_1_t_58
+        six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_58
+        six_r_w_1_t_61 = six_r_w_1_t_44 - six_r_w_1_t_55*six_r_w_1_t_58
+        six_r_w_1_t_62 = six_r_w_1_t_45 - six_r_w_1_t_56*six_r_w_1_t_58
+        six_r_w_1_t_63 = six_r_w_1_t_46 - six_r_w_1_t_57*six_r_w_1_t_58
+        six_r_w_1_t_64 = (
+        six_r_v_3_x*six_r_w_1_t_53 + six_r_w_1_t_48*six_r_w_1_t_54 + six_r_w_1_t_49*six_r_w_1_t_55
+            + six_r_w_1_t_50*six_r_w_1_t_56 + six_r_w_1_t_51*six_r_w_1_t_57
         )
-        w_2_in_base_y = (
-        axis_x_rrrrrr_axes5_y*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_y*w_2_t_3 -
-            axis_z_rrrrrr_axes5_in_base_y*w_2_t_4
+        six_r_w_1_t_65 = six_r_v_3_x - six_r_w_1_t_53*six_r_w_1_t_64
+        six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_64
+        six_r_w_1_t_67 = six_r_w_1_t_49 - six_r_w_1_t_55*six_r_w_1_t_64
+        six_r_w_1_t_68 = six_r_w_1_t_50 - six_r_w_1_t_56*six_r_w_1_t_64
+        six_r_w_1_t_69 = six_r_w_1_t_51 - six_r_w_1_t_57*six_r_w_1_t_64
+        six_r_w_1_t_70 = (
+        sqrt(six_r_w_1_t_59*six_r_w_1_t_59 + six_r_w_1_t_60*six_r_w_1_t_60 +
+            six_r_w_1_t_61*six_r_w_1_t_61 + six_r_w_1_t_62*six_r_w_1_t_62 +
+            six_r_w_1_t_63*six_r_w_1_t_63)
         )
-        w_2_in_base_z = (
-        axis_x_rrrrrr_axes5_z*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_z*w_2_t_3 -
-            axis_z_rrrrrr_axes5_in_base_z*w_2_t_4
+        inv_six_r_w_1_t_194 = 1.0/six_r_w_1_t_70
+        six_r_w_1_t_71 = inv_six_r_w_1_t_194*six_r_w_1_t_59
+        six_r_w_1_t_72 = inv_six_r_w_1_t_194*six_r_w_1_t_60
+        six_r_w_1_t_73 = inv_six_r_w_1_t_194*six_r_w_1_t_61
+        six_r_w_1_t_74 = inv_six_r_w_1_t_194*six_r_w_1_t_62
+        six_r_w_1_t_75 = inv_six_r_w_1_t_194*six_r_w_1_t_63
+        six_r_w_1_t_76 = (
+        six_r_w_1_t_65*six_r_w_1_t_71 + six_r_w_1_t_66*six_r_w_1_t_72 +
+            six_r_w_1_t_67*six_r_w_1_t_73 + six_r_w_1_t_68*six_r_w_1_t_74 +
+            six_r_w_1_t_69*six_r_w_1_t_75
         )
-        # (rrrrrr-V29) moment part of reciprocal wrench 2
-        o_2_x = (
-        w_2_t_5*(axis_y_rrrrrr_axes5_in_base_x*end_p1_r8_x - axis_x_rrrrrr_axes5_x*end_p1_r8_y) +
-            w_2_t_6*(axis_z_rrrrrr_axes5_in_base_x*end_p1_r8_y -
-            axis_y_rrrrrr_axes5_in_base_x*end_p1_r6_x)
+        six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_76
+        six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_76
+        six_r_w_1_t_79 = six_r_w_1_t_67 - six_r_w_1_t_73*six_r_w_1_t_76
+        six_r_w_1_t_80 = six_r_w_1_t_68 - six_r_w_1_t_74*six_r_w_1_t_76
+        six_r_w_1_t_81 = six_r_w_1_t_69 - six_r_w_1_t_75*six_r_w_1_t_76
+        six_r_w_1_t_82 = (
+        sqrt(six_r_w_1_t_77*six_r_w_1_t_77 + six_r_w_1_t_78*six_r_w_1_t_78 +
+            six_r_w_1_t_79*six_r_w_1_t_79 + six_r_w_1_t_80*six_r_w_1_t_80 +
+            six_r_w_1_t_81*six_r_w_1_t_81)
         )
-        o_2_y = (
-        w_2_t_5*(axis_y_rrrrrr_axes5_in_base_y*end_p1_r8_x - axis_x_rrrrrr_axes5_y*end_p1_r8_y) +
-            w_2_t_6*(axis_z_rrrrrr_axes5_in_base_y*end_p1_r8_y -
-            axis_y_rrrrrr_axes5_in_base_y*end_p1_r6_x)
+        inv_six_r_w_1_t_222 = 1.0/six_r_w_1_t_82
+        # (six_r-w_2) force part of reciprocal wrench 2
+        six_r_w_2_t = inv_six_r_w_1_t_194*inv_six_r_w_1_t_222*six_r_w_1_t_76
+        six_r_w_2_t_2 = (
+        inv_six_r_w_1_t_194*six_r_w_1_t_71 - inv_six_r_w_1_t_222*six_r_w_1_t_77*six_r_w_2_t
         )
-        o_2_z = (
-        w_2_t_5*(axis_y_rrrrrr_axes5_in_base_z*end_p1_r8_x - axis_x_rrrrrr_axes5_z*end_p1_r8_y) +
-            w_2_t_6*(axis_z_rrrrrr_axes5_in_base_z*end_p1_r8_y -
-            axis_y_rrrrrr_axes5_in_base_z*end_p1_r6_x)
+        six_r_w_2_t_3 = (
+        inv_six_r_w_1_t_194*six_r_w_1_t_72 - inv_six_r_w_1_t_222*six_r_w_1_t_78*six_r_w_2_t
         )
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_2_x = o_2_x + q_in_base_y*w_2_in_base_z - q_in_base_z*w_2_in_base_y
-        H_a_2_y = o_2_y + q_in_base_z*w_2_in_base_x - q_in_base_x*w_2_in_base_z
-        H_a_2_z = o_2_z + q_in_base_x*w_2_in_base_y - q_in_base_y*w_2_in_base_x
+        six_r_w_2_t_4 = (
+        inv_six_r_w_1_t_222*six_r_w_1_t_79*six_r_w_2_t - inv_six_r_w_1_t_194*six_r_w_1_t_73
+        )
+        six_r_w_2_t_5 = (
+        six_r_size*(inv_six_r_w_1_t_194*six_r_w_1_t_74 -
+            inv_six_r_w_1_t_222*six_r_w_1_t_80*six_r_w_2_t)
+        )
+        six_r_w_2_t_6 = (
+        six_r_size*(inv_six_r_w_1_t_194*six_r_w_1_t_75 -
+            inv_six_r_w_1_t_222*six_r_w_1_t_81*six_r_w_2_t)
+        )
+        # (M_ta) coupling block of M
+        six_r_q_in_base_x = (
+        R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
+        )
+        six_r_q_in_base_y = (
+        R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y + R_yz*six_r_platform_point_z
+        )
+        six_r_q_in_base_z = (
+        R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y + R_zz*six_r_platform_point_z
+        )
+        # (six_r-w_2) force part of reciprocal wrench 2
+        six_r_w_2_in_base_x = (
+        axis_x_six_r_axes5_x*six_r_w_2_t_2 - axis_y_six_r_axes5_in_base_x*six_r_w_2_t_3 -
+            axis_z_six_r_axes5_in_base_x*six_r_w_2_t_4
+        )
+        six_r_w_2_in_base_y = (
+        axis_x_six_r_axes5_y*six_r_w_2_t_2 - axis_y_six_r_axes5_in_base_y*six_r_w_2_t_3 -
+            axis_z_six_r_axes5_in_base_y*six_r_w_2_t_4
+        )
+        six_r_w_2_in_base_z = (
+        axis_x_six_r_axes5_z*six_r_w_2_t_2 - axis_y_six_r_axes5_in_base_z*six_r_w_2_t_3 -
+            axis_z_six_r_axes5_in_base_z*six_r_w_2_t_4
+        )
+        # (six_r-o_2) moment part of reciprocal wrench 2
+        six_r_o_2_x = (
+        six_r_w_2_t_5*(axis_y_six_r_axes5_in_base_x*six_r_end_p1_r8_x -
+            axis_x_six_r_axes5_x*six_r_end_p1_r8_y) +
+            six_r_w_2_t_6*(axis_z_six_r_axes5_in_base_x*six_r_end_p1_r8_y -
+            axis_y_six_r_axes5_in_base_x*six_r_end_p1_r6_x)
+        )
+        six_r_o_2_y = (
+        six_r_w_2_t_5*(axis_y_six_r_axes5_in_base_y*six_r_end_p1_r8_x -
+            axis_x_six_r_axes5_y*six_r_end_p1_r8_y) +
+            six_r_w_2_t_6*(axis_z_six_r_axes5_in_base_y*six_r_end_p1_r8_y -
+            axis_y_six_r_axes5_in_base_y*six_r_end_p1_r6_x)
+        )
+        six_r_o_2_z = (
+        six_r_w_2_t_5*(axis_y_six_r_axes5_in_base_z*six_r_end_p1_r8_x -
+            axis_x_six_r_axes5_z*six_r_end_p1_r8_y) +
+            six_r_w_2_t_6*(axis_z_six_r_axes5_in_base_z*six_r_end_p1_r8_y -
+            axis_y_six_r_axes5_in_base_z*six_r_end_p1_r6_x)
+        )
+        # (six_r-H_a_2) moment of the column's unit force about the platform origin
+        six_r_H_a_2_x = (
+        six_r_o_2_x + six_r_q_in_base_y*six_r_w_2_in_base_z -
+            six_r_q_in_base_z*six_r_w_2_in_base_y
+        )
+        six_r_H_a_2_y = (
+        six_r_o_2_y + six_r_q_in_base_z*six_r_w_2_in_base_x -
+            six_r_q_in_base_x*six_r_w_2_in_base_z
+        )
+        six_r_H_a_2_z = (
+        six_r_o_2_z + six_r_q_in_base_x*six_r_w_2_in_base_y -
+            six_r_q_in_base_y*six_r_w_2_in_base_x
+        )
         ok = (
-        ok & m.every(leg, (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE *
-            size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
-            (abs(w_1_t_82) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(six_r_w_1_t_15) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_31) >
+            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_52) > _TOLERANCE * six_r_size) &
+            (abs(six_r_w_1_t_70) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_82) > _TOLERANCE *
+            six_r_size))
         )
-        out_H[_H_rrrrrr[0][leg]] = w_2_in_base_x
-        out_H[_H_rrrrrr[1][leg]] = w_2_in_base_y
-        out_H[_H_rrrrrr[2][leg]] = w_2_in_base_z
-        out_H[_H_rrrrrr[3][leg]] = H_a_2_x
-        out_H[_H_rrrrrr[4][leg]] = H_a_2_y
-        out_H[_H_rrrrrr[5][leg]] = H_a_2_z
+        out_H[_H_six_r[0][leg]] = six_r_w_2_in_base_x
+        out_H[_H_six_r[1][leg]] = six_r_w_2_in_base_y
+        out_H[_H_six_r[2][leg]] = six_r_w_2_in_base_z
+        out_H[_H_six_r[3][leg]] = six_r_H_a_2_x
+        out_H[_H_six_r[4][leg]] = six_r_H_a_2_y
+        out_H[_H_six_r[5][leg]] = six_r_H_a_2_z
     return ok, (out_H,)
 
 
@@ -5991,29 +6901,29 @@ def _run_required(m, X, V, A, q):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (P1) centripetal tensor of the platform
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_x*omega_x
     W_p_t_2 = omega_y*omega_y
     W_p_t_3 = omega_z*omega_z
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
     W_p_yz = omega_y*omega_z
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
-    # (E2) inertia force of the platform less its weight
+    # (f_p) inertia force of the platform less its weight
     f_p_x = (
     a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) + h_star_in_base_z*(W_p_xz + alpha_y) -
         h_star_in_base_x*(W_p_t_2 + W_p_t_3)
@@ -6026,11 +6936,11 @@ def _run_required(m, X, V, A, q):
     a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) + h_star_in_base_y*(W_p_yz + alpha_x) -
         h_star_in_base_z*(W_p_t + W_p_t_2)
     )
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
     a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
     a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
-    # (E3) inertia moment of the platform less that of its weight
+    # (mu_p) inertia moment of the platform less that of its weight
     alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
     alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
     alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
@@ -6052,903 +6962,1021 @@ def _run_required(m, X, V, A, q):
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, J_4_xy, J_4_xz, J_4_yz, J_5_xy,
-            J_5_xz, J_5_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy,
-            Sigma_3_zz, Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, Sigma_5_xx, Sigma_5_yy, Sigma_5_zz,
-            g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, h_4_x,
-            h_4_y, h_4_z, h_5_x, h_5_y, h_5_z, rrrrrr_base_frame_xx, rrrrrr_base_frame_xy,
-            rrrrrr_base_frame_xz, rrrrrr_base_frame_yx, rrrrrr_base_frame_yy,
-            rrrrrr_base_frame_yz, rrrrrr_base_frame_zx, rrrrrr_base_frame_zy,
-            rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x, rrrrrr_joint3_offset_x,
-            rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x, rrrrrr_link3_mass, rrrrrr_link4_mass,
-            rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
-            rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
-            rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z, size,
-            size_t,
+        six_r_J_1_xx, six_r_J_2_xy, six_r_J_2_xz, six_r_J_2_yz, six_r_J_3_xy, six_r_J_3_xz,
+            six_r_J_3_yz, six_r_J_4_xy, six_r_J_4_xz, six_r_J_4_yz, six_r_J_5_xy, six_r_J_5_xz,
+            six_r_J_5_yz, six_r_Sigma_2_xx, six_r_Sigma_2_yy, six_r_Sigma_2_zz, six_r_Sigma_3_xx,
+            six_r_Sigma_3_yy, six_r_Sigma_3_zz, six_r_Sigma_4_xx, six_r_Sigma_4_yy,
+            six_r_Sigma_4_zz, six_r_Sigma_5_xx, six_r_Sigma_5_yy, six_r_Sigma_5_zz,
+            six_r_base_frame_xx, six_r_base_frame_xy, six_r_base_frame_xz, six_r_base_frame_yx,
+            six_r_base_frame_yy, six_r_base_frame_yz, six_r_base_frame_zx, six_r_base_frame_zy,
+            six_r_base_frame_zz, six_r_g_r0_x, six_r_g_r0_y, six_r_g_r0_z, six_r_h_1_y,
+            six_r_h_1_z, six_r_h_2_x, six_r_h_2_y, six_r_h_2_z, six_r_h_3_x, six_r_h_3_y,
+            six_r_h_3_z, six_r_h_4_x, six_r_h_4_y, six_r_h_4_z, six_r_h_5_x, six_r_h_5_y,
+            six_r_h_5_z, six_r_joint2_offset_x, six_r_joint3_offset_x, six_r_joint4_offset_x,
+            six_r_joint5_offset_x, six_r_link3_mass, six_r_link4_mass,
+            six_r_platform_joint_axis_platform_x, six_r_platform_joint_axis_platform_y,
+            six_r_platform_joint_axis_platform_z, six_r_platform_joint_offset_x,
+            six_r_platform_point_x, six_r_platform_point_y, six_r_platform_point_z, six_r_size,
+            six_r_size_t,
         ) = k
-        q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
-        q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
-        q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
-        q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
-        q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
-        # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
-        c_5_t = sin(q_5)
-        # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
-        s_5 = cos(q_5)
-        # (rrrrrr-V2) from joint 4 to the connection point, along the links
-        r_4_t = c_5_t*rrrrrr_platform_joint_offset_x
-        r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5
-        # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
-        c_4_t = sin(q_4)
-        # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
-        s_4 = cos(q_4)
-        # (rrrrrr-V2) from joint 4 to the connection point, along the links
-        r_4_t_2 = r_4_t*s_4
-        r_4_t_3 = c_4_t*r_4_t
-        # (rrrrrr-V3) from joint 3 to the connection point, along the links
-        r_3_x = r_4_z + rrrrrr_joint4_offset_x
-        # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
-        c_3 = cos(q_3)
-        # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
-        s_3 = sin(q_3)
-        # (rrrrrr-V3) from joint 3 to the connection point, along the links
-        r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3
-        # (rrrrrr-V4) from joint 2 to the connection point, along the links
-        r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3
-        # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
-        c_2_t = sin(q_2)
-        # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
-        s_2 = cos(q_2)
-        # (rrrrrr-V4) from joint 2 to the connection point, along the links
-        r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2
-        # (rrrrrr-V5) from joint 1 to the connection point, along the links
-        r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y
-        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-        e_1_r2_x = c_3*s_2 - c_2_t*s_3
-        e_1_r2_y = -c_2_t*c_3 - s_2*s_3
-        v_1_t = c_4_t*e_1_r2_y
-        v_1_t_2 = e_1_r2_y*s_4
-        e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5
-        e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x
-        # (rrrrrr-V5) from joint 1 to the connection point, along the links
-        r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x
-        r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2
-        r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3
-        r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3
-        r_1_t = r_4_t_3*s_4
-        r_1_r4_x = r_1_t - c_4_t*r_1_r2_y
-        r_1_t_2 = c_4_t*r_4_t_3
-        r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4
-        r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y
-        r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5
-        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-        v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t
-        v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t
-        v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x
-        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-        v_2_t = c_4_t*c_5_t
-        v_2_t_2 = c_4_t*s_5
-        # (rrrrrr-V4) from joint 2 to the connection point, along the links
-        r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3
-        r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3
-        r_2_r2_x = r_1_t - c_4_t*r_2_r0_y
-        r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4
-        r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y
-        r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5
-        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-        v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4
-        v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t
-        v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2
-        # (rrrrrr-V3) from joint 3 to the connection point, along the links
-        r_3_r1_x = r_1_t - c_4_t*r_4_t_2
-        r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4
-        r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y
-        r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5
-        # (rrrrrr-V8) velocity of the connection point per rate of joint 3
-        v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4
-        v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t
-        v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2
-        # (rrrrrr-V9) velocity of the connection point per rate of joint 4
-        v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
-        # (rrrrrr-V13) force part of reciprocal wrench 1
-        w_1_t = c_4_t*s_3
-        w_1_t_2 = c_3*c_4_t
-        axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
-        axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
-        # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
-        c_1_t = sin(q_1)
-        # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
-        s_1 = cos(q_1)
-        # (rrrrrr-V13) force part of reciprocal wrench 1
-        axis_z_rrrrrr_axes5_r7_x = -axis_z_rrrrrr_axes5_r5_x*s_1 - c_1_t*s_4
-        axis_z_rrrrrr_axes5_r7_y = s_1*s_4 - axis_z_rrrrrr_axes5_r5_x*c_1_t
-        axis_z_rrrrrr_axes5_in_base_x = (
-        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
-            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
-            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
-        )
-        axis_z_rrrrrr_axes5_in_base_y = (
-        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
-            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
-            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
-        )
-        axis_z_rrrrrr_axes5_in_base_z = (
-        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
-            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
-            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
-        )
-        w_1_t_3 = s_4*s_5
-        axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
-        axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
-        axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
-        axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
-        axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
-        axis_y_rrrrrr_axes5_r7_y = s_1*v_2_t_2 - axis_y_rrrrrr_axes5_r5_x*c_1_t
-        axis_y_rrrrrr_axes5_in_base_x = (
-        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
-            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
-            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
-        )
-        axis_y_rrrrrr_axes5_in_base_y = (
-        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
-            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
-            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
-        )
-        axis_y_rrrrrr_axes5_in_base_z = (
-        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
-            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
-            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
-        )
-        axis_x_rrrrrr_axes5_x = (
-        axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_z -
-            axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_y
-        )
-        axis_x_rrrrrr_axes5_y = (
-        axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_x -
-            axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_z
-        )
-        axis_x_rrrrrr_axes5_z = (
-        axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
-            axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
-        )
-        # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-        end_p1_r0_x = (
-        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy +
-            R_yx*rrrrrr_base_frame_yy + R_zx*rrrrrr_base_frame_zy) +
-            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
-            R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
-            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
-            R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy)
-        )
-        end_p1_r0_y = (
-        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz +
-            R_yx*rrrrrr_base_frame_yz + R_zx*rrrrrr_base_frame_zz) +
-            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
-            R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
-            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
-            R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz)
-        )
-        end_p1_r0_z = (
-        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx +
-            R_yx*rrrrrr_base_frame_yx + R_zx*rrrrrr_base_frame_zx) +
-            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
-            R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
-            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
-            R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx)
-        )
-        end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x
-        end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1
-        end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y
-        end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2
-        end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3
-        end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3
-        end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y
-        end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4
-        end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
-        end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
-        # (rrrrrr-V13) force part of reciprocal wrench 1
-        w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
-        w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
-        w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
-        w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
-        w_1_t_8 = size*w_1_t_4
-        w_1_t_9 = size*w_1_t_6
-        w_1_t_10 = size*w_1_t_5
-        w_1_t_11 = size*w_1_t_7
-        w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
-        w_1_t_13 = c_5_t*end_p1_r6_x*size
-        w_1_t_14 = end_p1_r8_y*size
-        w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
-        inv_w_1_t_69 = 1.0/w_1_t_15
-        w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
-        w_1_t_17 = inv_w_1_t_69*w_1_t_14
-        w_1_t_18 = w_1_t_13*w_1_t_17
-        w_1_t_19 = w_1_t_16*w_1_t_18
-        w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
-        w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
-        w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
-        w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
-        w_1_t_24 = w_1_t_11*w_1_t_17
-        w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
-        w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
-        w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
-        w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
-        w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
-        w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
-        w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
-        inv_w_1_t_101 = 1.0/w_1_t_31
-        w_1_t_32 = inv_w_1_t_101*w_1_t_19
-        w_1_t_33 = inv_w_1_t_101*v_4_z
-        w_1_t_34 = inv_w_1_t_101*w_1_t_12
-        w_1_t_35 = inv_w_1_t_101*w_1_t_20
-        w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
-        w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
-        w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
-        w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
-        w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
-        w_1_t_41 = w_1_t_10*w_1_t_34
-        w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
-        w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
-        w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
-        w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
-        w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
-        w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
-        w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
-        w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
-        w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
-        w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
-        w_1_t_52 = (
-        sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
-            w_1_t_40*w_1_t_40)
-        )
-        inv_w_1_t_150 = 1.0/w_1_t_52
-        w_1_t_53 = inv_w_1_t_150*v_1_x
-        w_1_t_54 = inv_w_1_t_150*w_1_t_37
-        w_1_t_55 = inv_w_1_t_150*w_1_t_38
-        w_1_t_56 = inv_w_1_t_150*w_1_t_39
-        w_1_t_57 = inv_w_1_t_150*w_1_t_40
-        w_1_t_58 = (
-        v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 +
-            w_1_t_46*w_1_t_57
-        )
-        w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
-        w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
-        w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
-        w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
-        w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
-        w_1_t_64 = (
-        v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 +
-            w_1_t_51*w_1_t_57
-        )
-        w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
-        w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
-        w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
-        w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
-        w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
-        w_1_t_70 = (
-        sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
-            w_1_t_63*w_1_t_63)
-        )
-        inv_w_1_t_194 = 1.0/w_1_t_70
-        w_1_t_71 = inv_w_1_t_194*w_1_t_59
-        w_1_t_72 = inv_w_1_t_194*w_1_t_60
-        w_1_t_73 = inv_w_1_t_194*w_1_t_61
-        w_1_t_74 = inv_w_1_t_194*w_1_t_62
-        w_1_t_75 = inv_w_1_t_194*w_1_t_63
-        w_1_t_76 = (
-        w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
-            w_1_t_69*w_1_t_75
-        )
-        w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
-        w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
-        w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
-        w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
-        w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
-        w_1_t_82 = (
-        sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
-            w_1_t_81*w_1_t_81)
-        )
-        inv_w_1_t_222 = 1.0/w_1_t_82
-        w_1_t_83 = inv_w_1_t_222*w_1_t_77
-        w_1_t_84 = inv_w_1_t_222*w_1_t_78
-        w_1_t_85 = inv_w_1_t_222*w_1_t_79
-        w_1_t_86 = inv_w_1_t_222*w_1_t_80
-        w_1_t_87 = inv_w_1_t_222*w_1_t_81
-        # (rrrrrr-V16) force part of reciprocal wrench 2
-        w_2_t = inv_w_1_t_194*inv_w_1_t_222*w_1_t_76
-        w_2_t_2 = inv_w_1_t_194*w_1_t_71 - w_1_t_83*w_2_t
-        w_2_t_3 = inv_w_1_t_194*w_1_t_72 - w_1_t_84*w_2_t
-        w_2_t_4 = w_1_t_85*w_2_t - inv_w_1_t_194*w_1_t_73
-        w_2_t_5 = size*(inv_w_1_t_194*w_1_t_74 - w_1_t_86*w_2_t)
-        w_2_t_6 = size*(inv_w_1_t_194*w_1_t_75 - w_1_t_87*w_2_t)
-        # (rrrrrr-V29) moment part of reciprocal wrench 2
-        o_2_t = end_p1_r8_y*w_2_t_5
-        o_2_t_2 = end_p1_r8_y*w_2_t_6
-        o_2_y = end_p1_r8_x*w_2_t_5 - end_p1_r6_x*w_2_t_6
-        # (M2) coupling block of M
-        q_in_base_x = (
-        R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
-        )
-        q_in_base_y = (
-        R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y + R_yz*rrrrrr_platform_point_z
-        )
-        q_in_base_z = (
-        R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y + R_zz*rrrrrr_platform_point_z
-        )
-        # (rrrrrr-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_tip_x = (
-        S_dot_x*axis_x_rrrrrr_axes5_x + S_dot_y*axis_x_rrrrrr_axes5_y +
-            S_dot_z*axis_x_rrrrrr_axes5_z
-        )
-        S_dot_tip_y = (
-        S_dot_x*axis_y_rrrrrr_axes5_in_base_x + S_dot_y*axis_y_rrrrrr_axes5_in_base_y +
-            S_dot_z*axis_y_rrrrrr_axes5_in_base_z
-        )
-        S_dot_tip_z = (
-        S_dot_x*axis_z_rrrrrr_axes5_in_base_x + S_dot_y*axis_z_rrrrrr_axes5_in_base_y +
-            S_dot_z*axis_z_rrrrrr_axes5_in_base_z
-        )
-        # (rrrrrr-A14) rate of moment direction 1
-        omega_tip_x = (
-        axis_x_rrrrrr_axes5_x*omega_x + axis_x_rrrrrr_axes5_y*omega_y +
-            axis_x_rrrrrr_axes5_z*omega_z
-        )
-        omega_tip_y = (
-        axis_y_rrrrrr_axes5_in_base_x*omega_x + axis_y_rrrrrr_axes5_in_base_y*omega_y +
-            axis_y_rrrrrr_axes5_in_base_z*omega_z
-        )
-        omega_tip_z = (
-        axis_z_rrrrrr_axes5_in_base_x*omega_x + axis_z_rrrrrr_axes5_in_base_y*omega_y +
-            axis_z_rrrrrr_axes5_in_base_z*omega_z
-        )
-        nd_m1_t = end_p1_r6_x*omega_tip_y - end_p1_r8_y*omega_tip_z
-        nd_m1_t_2 = end_p1_r8_x*omega_tip_z - end_p1_r6_x*omega_tip_x
-        nd_m1_t_3 = end_p1_r8_y*omega_tip_x - end_p1_r8_x*omega_tip_y
-        # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-        bias_t = rrrrrr_joint2_offset_x*s_2
-        bias_t_2 = c_2_t*rrrrrr_joint2_offset_x
-        d_2_r2_x = bias_t*c_3 - bias_t_2*s_3
-        d_2_r2_y = -bias_t*s_3 - bias_t_2*c_3
-        bias_t_3 = c_4_t*d_2_r2_y
-        bias_t_4 = d_2_r2_y*s_4
-        d_2_r6_x = bias_t_4*c_5_t + d_2_r2_x*s_5
-        d_2_r6_y = bias_t_4*s_5 - c_5_t*d_2_r2_x
-        bias_t_5 = c_3*rrrrrr_joint3_offset_x
-        bias_t_6 = rrrrrr_joint3_offset_x*s_3
-        bias_t_7 = bias_t_6*c_4_t
-        bias_t_8 = bias_t_6*s_4
-        d_3_r4_x = bias_t_5*s_5 - bias_t_8*c_5_t
-        d_3_r4_y = -bias_t_5*c_5_t - bias_t_8*s_5
-        bias_t_9 = rrrrrr_joint4_offset_x*s_5
-        bias_t_10 = c_5_t*rrrrrr_joint4_offset_x
-        bias_t_11 = rrrrrr_joint5_offset_x*s_5
-        bias_t_12 = c_5_t*rrrrrr_joint5_offset_x
-        # (rrrrrr-N16) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
-        g_r1_x = g_r0_y*s_1 - c_1_t*g_r0_x
-        g_r1_y = -c_1_t*g_r0_y - g_r0_x*s_1
-        g_r3_x = g_r0_z*s_2 - c_2_t*g_r1_y
-        g_r3_y = -c_2_t*g_r0_z - g_r1_y*s_2
-        g_r4_x = c_3*g_r3_x + g_r3_y*s_3
-        g_r4_y = c_3*g_r3_y - g_r3_x*s_3
-        # (rrrrrr-V16) force part of reciprocal wrench 2
-        w_2_in_base_x = (
-        axis_x_rrrrrr_axes5_x*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_x*w_2_t_3 -
-            axis_z_rrrrrr_axes5_in_base_x*w_2_t_4
-        )
-        w_2_in_base_y = (
-        axis_x_rrrrrr_axes5_y*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_y*w_2_t_3 -
-            axis_z_rrrrrr_axes5_in_base_y*w_2_t_4
-        )
-        w_2_in_base_z = (
-        axis_x_rrrrrr_axes5_z*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_z*w_2_t_3 -
-            axis_z_rrrrrr_axes5_in_base_z*w_2_t_4
-        )
-        # (rrrrrr-V35) rate of joint 1
-        qd_1_t = nd_m1_t_3*size
-        qd_1_t_2 = nd_m1_t*size
-        qd_1_t_3 = (
-        inv_w_1_t_222*(S_dot_tip_y*w_1_t_84 + qd_1_t*w_1_t_86 + qd_1_t_2*w_1_t_87 -
-            S_dot_tip_x*w_1_t_83 - S_dot_tip_z*w_1_t_85)
-        )
-        qd_1_t_4 = (
-        inv_w_1_t_194*(S_dot_tip_y*w_1_t_72 + qd_1_t*w_1_t_74 + qd_1_t_2*w_1_t_75 -
-            S_dot_tip_x*w_1_t_71 - S_dot_tip_z*w_1_t_73 - qd_1_t_3*w_1_t_76)
-        )
-        qd_1_t_5 = (
-        inv_w_1_t_150*(S_dot_tip_x*w_1_t_53 + S_dot_tip_z*w_1_t_55 + qd_1_t_3*w_1_t_64 +
-            qd_1_t_4*w_1_t_58 - S_dot_tip_y*w_1_t_54 - qd_1_t*w_1_t_56 - qd_1_t_2*w_1_t_57)
-        )
-        qd_1_t_6 = (
-        inv_w_1_t_101*(S_dot_tip_y*w_1_t_32 + qd_1_t*w_1_t_34 + qd_1_t_2*w_1_t_35 +
-            qd_1_t_3*w_1_t_47 + qd_1_t_4*w_1_t_42 - S_dot_tip_z*w_1_t_33 - qd_1_t_5*w_1_t_36)
-        )
-        qd_1_t_7 = (
-        inv_w_1_t_69*(S_dot_tip_y*w_1_t_16 + qd_1_t_4*w_1_t_25 + qd_1_t_6*w_1_t_18 -
-            qd_1_t_2*w_1_t_17 - qd_1_t_3*w_1_t_28 - qd_1_t_5*w_1_t_21)
-        )
-        # (rrrrrr-V40) angular velocity of link 1
-        omega_1_t = qd_1_t_5*s_2
-        omega_1_t_2 = c_2_t*qd_1_t_5
-        # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_x = omega_1_t_2*qd_1_t_4
-        zeta_2_y = omega_1_t*qd_1_t_4
-        # (rrrrrr-V42) angular velocity of link 2
-        omega_2_r0_x = c_3*omega_1_t - omega_1_t_2*s_3
-        omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
-        # (rrrrrr-A5) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_x = omega_2_r0_y*qd_1_t_3
-        zeta_3_y = omega_2_r0_x*qd_1_t_3
-        # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_r0_x = c_3*zeta_2_x + s_3*zeta_2_y
-        zeta_2_r0_y = c_3*zeta_2_y - s_3*zeta_2_x
-        # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_x = zeta_2_r0_x - zeta_3_x
-        beta_3_y = zeta_2_r0_y + zeta_3_y
-        # (rrrrrr-V44) angular velocity of link 3
-        omega_3_z = -qd_1_t_3 - qd_1_t_4
-        omega_3_r1_x = omega_3_z*s_4 - c_4_t*omega_2_r0_y
-        omega_3_r1_y = -c_4_t*omega_3_z - omega_2_r0_y*s_4
-        # (rrrrrr-A7) angular acceleration of link 4 from the turning of axis 4
-        zeta_4_x = omega_3_r1_y*qd_1_t_6
-        zeta_4_y = omega_3_r1_x*qd_1_t_6
-        # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_t = beta_3_y*c_4_t
-        beta_3_t_2 = beta_3_y*s_4
-        # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
-        beta_4_x = -beta_3_t - zeta_4_x
-        beta_4_y = zeta_4_y - beta_3_t_2
-        # (rrrrrr-V46) angular velocity of link 4
-        omega_4_z = omega_2_r0_x - qd_1_t_6
-        omega_4_t = c_5_t*omega_3_r1_y
-        omega_4_r1_x = omega_4_z*s_5 - omega_4_t
-        omega_4_t_2 = omega_3_r1_y*s_5
-        omega_4_r1_y = -omega_4_t_2 - c_5_t*omega_4_z
-        # (rrrrrr-A9) angular acceleration of link 5 from the turning of axis 5
-        zeta_5_x = omega_4_r1_y*qd_1_t_7
-        zeta_5_y = omega_4_r1_x*qd_1_t_7
-        # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
-        beta_4_t = beta_3_x*s_5
-        beta_4_r1_x = beta_4_t - beta_4_y*c_5_t
-        beta_4_t_2 = beta_3_x*c_5_t
-        beta_4_r1_y = -beta_4_t_2 - beta_4_y*s_5
-        # (rrrrrr-A10) angular acceleration of link 5 at zero joint accelerations
-        beta_5_x = beta_4_r1_x + zeta_5_x
-        beta_5_y = beta_4_r1_y - zeta_5_y
-        # (rrrrrr-V48) angular velocity of link 5
-        omega_5_z = omega_3_r1_x + qd_1_t_7
-        # (rrrrrr-A14) rate of moment direction 1
-        nd_m1_t_4 = end_p1_r8_y*omega_4_r1_y
-        nd_m1_x = -nd_m1_t_2 - end_p1_r6_x*omega_4_r1_x
-        nd_m1_y = nd_m1_t - end_p1_r6_x*omega_4_r1_y
-        # (rrrrrr-A15) bias of the angular acceleration along moment direction 1
-        nu_1_t = beta_5_x*end_p1_r8_y - beta_5_y*end_p1_r8_x
-        nu_1_t_2 = omega_4_r1_x - omega_tip_x
-        nu_1_t_3 = omega_4_r1_y - omega_tip_y
-        nu_1_t_4 = omega_5_z - omega_tip_z
-        nu_1_t_5 = (
-        nd_m1_x*nu_1_t_2 + nd_m1_y*nu_1_t_3 + nu_1_t_4*(nd_m1_t_4 + end_p1_r8_x*omega_4_r1_x)
-        )
-        nu_1 = nu_1_t - nu_1_t_5
-        # (rrrrrr-A18) acceleration with which the joints turn along moment direction 1
-        alpha_tip_y = (
-        alpha_x*axis_y_rrrrrr_axes5_in_base_x + alpha_y*axis_y_rrrrrr_axes5_in_base_y +
-            alpha_z*axis_y_rrrrrr_axes5_in_base_z
-        )
-        etad_1_t = (
-        end_p1_r8_y*(alpha_x*axis_x_rrrrrr_axes5_x + alpha_y*axis_x_rrrrrr_axes5_y +
-            alpha_z*axis_x_rrrrrr_axes5_z) - alpha_tip_y*end_p1_r8_x
-        )
-        etad_1 = nu_1 - etad_1_t
-        # (rrrrrr-A16) rate of moment direction 2
-        nd_m2_y = -nd_m1_t_3 - end_p1_r8_x*omega_4_r1_y
-        nd_m2_z = nd_m1_t_2 - end_p1_r8_x*omega_5_z
-        # (rrrrrr-A17) bias of the angular acceleration along moment direction 2
-        nu_2_t = beta_5_y*end_p1_r6_x - beta_4_x*end_p1_r8_y
-        nu_2_t_2 = (
-        nd_m2_y*nu_1_t_3 + nd_m2_z*nu_1_t_4 + nu_1_t_2*(nd_m1_t_4 + end_p1_r6_x*omega_5_z)
-        )
-        nu_2 = nu_2_t - nu_2_t_2
-        # (rrrrrr-A19) acceleration with which the joints turn along moment direction 2
-        etad_2_t = (
-        alpha_tip_y*end_p1_r6_x - end_p1_r8_y*(alpha_x*axis_z_rrrrrr_axes5_in_base_x +
-            alpha_y*axis_z_rrrrrr_axes5_in_base_y + alpha_z*axis_z_rrrrrr_axes5_in_base_z)
-        )
-        etad_2 = nu_2 - etad_2_t
-        # (rrrrrr-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (rrrrrr-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        # (rrrrrr-V43) centripetal tensor of link 2
-        W_2_t = omega_1_t*omega_1_t
-        W_2_t_2 = omega_1_t_2*omega_1_t_2
-        W_2_t_3 = qd_1_t_4*qd_1_t_4
-        W_2_xy = omega_1_t*omega_1_t_2
-        # (rrrrrr-V45) centripetal tensor of link 3
-        W_3_t = omega_2_r0_x*omega_2_r0_x
-        W_3_t_2 = omega_2_r0_y*omega_2_r0_y
-        W_3_t_3 = omega_3_z*omega_3_z
-        W_3_xx = W_3_t_2 + W_3_t_3
-        W_3_xy = omega_2_r0_x*omega_2_r0_y
-        W_3_xz = omega_2_r0_x*omega_3_z
-        W_3_yz = omega_2_r0_y*omega_3_z
-        # (rrrrrr-V47) centripetal tensor of link 4
-        W_4_t = omega_3_r1_x*omega_3_r1_x
-        W_4_t_2 = omega_3_r1_y*omega_3_r1_y
-        W_4_t_3 = omega_4_z*omega_4_z
-        W_4_xy = omega_3_r1_x*omega_3_r1_y
-        W_4_xz = omega_3_r1_x*omega_4_z
-        W_4_yz = omega_3_r1_y*omega_4_z
-        # (rrrrrr-V49) centripetal tensor of link 5
-        W_5_t = omega_4_r1_x*omega_4_r1_x
-        W_5_t_2 = omega_4_r1_y*omega_4_r1_y
-        W_5_t_3 = omega_5_z*omega_5_z
-        W_5_xx = W_5_t_2 + W_5_t_3
-        W_5_xy = omega_4_r1_x*omega_4_r1_y
-        W_5_xz = omega_4_r1_x*omega_5_z
-        W_5_yz = omega_4_r1_y*omega_5_z
-        # (rrrrrr-V40) angular velocity of link 1
-        omega_1_x = e_1_r6_x*qd_1_t_5
-        omega_1_y = e_1_r6_y*qd_1_t_5
-        omega_1_z = qd_1_t_5*v_1_t
-        # (rrrrrr-V41) centripetal tensor of link 1
-        W_1_t = omega_1_x*omega_1_x
-        W_1_t_2 = omega_1_y*omega_1_y
-        W_1_t_3 = omega_1_z*omega_1_z
-        W_1_xy = omega_1_x*omega_1_y
-        W_1_xz = omega_1_x*omega_1_z
-        W_1_yz = omega_1_y*omega_1_z
-        # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_t = c_4_t*zeta_2_r0_y
-        zeta_2_t_2 = s_4*zeta_2_r0_y
-        zeta_2_r4_x = c_5_t*zeta_2_t_2 + s_5*zeta_2_r0_x
-        zeta_2_r4_y = s_5*zeta_2_t_2 - c_5_t*zeta_2_r0_x
-        # (rrrrrr-V42) angular velocity of link 2
-        omega_2_x = omega_1_x - qd_1_t_4*v_2_t
-        omega_2_y = omega_1_y - qd_1_t_4*v_2_t_2
-        omega_2_z = -omega_1_z - qd_1_t_4*s_4
-        # (rrrrrr-V43) centripetal tensor of link 2
-        W_2_t_4 = omega_2_x*omega_2_x
-        W_2_t_5 = omega_2_y*omega_2_y
-        W_2_t_6 = omega_2_z*omega_2_z
-        W_2_xy_2 = omega_2_x*omega_2_y
-        W_2_xz = omega_2_x*omega_2_z
-        W_2_yz = omega_2_y*omega_2_z
-        # (rrrrrr-V44) angular velocity of link 3
-        omega_3_r3_x = omega_2_r0_x*s_5 - omega_4_t
-        omega_3_r3_y = -omega_4_t_2 - c_5_t*omega_2_r0_x
-        # (rrrrrr-V45) centripetal tensor of link 3
-        W_3_xy_2 = omega_3_r3_x*omega_3_r3_y
-        # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-        bias_t_13 = W_5_xy + beta_4_x
-        bias_x = (
-        W_1_xy*d_2_r6_y + W_1_xz*bias_t_3 + bias_t_7*(W_2_xz + zeta_2_r4_y) + d_3_r4_y*(W_2_xy_2 +
-            zeta_2_t) - W_5_xx*rrrrrr_platform_joint_offset_x - bias_t_10*(W_3_xy_2 + beta_3_t) -
-            bias_t_11*(W_4_t + W_5_t_2) - bias_t_12*(W_5_xy - beta_4_x) - bias_t_9*(W_4_t +
-            omega_3_r3_y*omega_3_r3_y) - d_2_r6_x*(W_1_t_2 + W_1_t_3) - d_3_r4_x*(W_2_t_5 +
-            W_2_t_6)
-        )
-        bias_y = (
-        W_1_xy*d_2_r6_x + W_1_yz*bias_t_3 + bias_t_10*(W_4_t + omega_3_r3_x*omega_3_r3_x) +
-            bias_t_11*bias_t_13 + bias_t_12*(W_4_t + W_5_t) +
-            bias_t_13*rrrrrr_platform_joint_offset_x + bias_t_7*(W_2_yz - zeta_2_r4_x) +
-            bias_t_9*(W_3_xy_2 - beta_3_t) + d_3_r4_x*(W_2_xy_2 - zeta_2_t) - d_2_r6_y*(W_1_t +
-            W_1_t_3) - d_3_r4_y*(W_2_t_4 + W_2_t_6)
-        )
-        bias_z = (
-        bias_t_11*(omega_3_r1_x*omega_4_r1_x - beta_4_r1_y) + bias_t_3*(W_1_t + W_1_t_2) +
-            bias_t_9*(beta_4_t_2 + omega_3_r1_x*omega_3_r3_x - beta_3_t_2*s_5) + d_3_r4_x*(W_2_xz
-            - zeta_2_r4_y) + d_3_r4_y*(W_2_yz + zeta_2_r4_x) +
-            rrrrrr_platform_joint_offset_x*(W_5_xz - beta_5_y) - W_1_xz*d_2_r6_x - W_1_yz*d_2_r6_y
-            - bias_t_10*(beta_4_t + beta_3_t_2*c_5_t + omega_3_r1_x*omega_3_r3_y) -
-            bias_t_12*(beta_4_r1_x + omega_3_r1_x*omega_4_r1_y) - bias_t_7*(W_2_t_4 + W_2_t_5)
-        )
-        # (rrrrrr-A3) acceleration of the connection point
-        S_ddot_tip_x = (
-        S_ddot_x*axis_x_rrrrrr_axes5_x + S_ddot_y*axis_x_rrrrrr_axes5_y +
-            S_ddot_z*axis_x_rrrrrr_axes5_z
-        )
-        S_ddot_tip_y = (
-        S_ddot_x*axis_y_rrrrrr_axes5_in_base_x + S_ddot_y*axis_y_rrrrrr_axes5_in_base_y +
-            S_ddot_z*axis_y_rrrrrr_axes5_in_base_z
-        )
-        S_ddot_tip_z = (
-        S_ddot_x*axis_z_rrrrrr_axes5_in_base_x + S_ddot_y*axis_z_rrrrrr_axes5_in_base_y +
-            S_ddot_z*axis_z_rrrrrr_axes5_in_base_z
-        )
-        # (rrrrrr-A12) acceleration of the connection point left to the joint accelerations
-        rel_x = S_ddot_tip_x - bias_x
-        rel_y = S_ddot_tip_y - bias_y
-        rel_z = S_ddot_tip_z - bias_z
-        # (rrrrrr-A20) acceleration of joint 1
-        qdd_1_t = etad_1*size
-        qdd_1_t_2 = etad_2*size
-        qdd_1_t_3 = (
-        inv_w_1_t_222*(qdd_1_t*w_1_t_86 + qdd_1_t_2*w_1_t_87 + rel_x*w_1_t_83 + rel_z*w_1_t_85 -
-            rel_y*w_1_t_84)
-        )
-        qdd_1_t_4 = (
-        inv_w_1_t_194*(qdd_1_t*w_1_t_74 + qdd_1_t_2*w_1_t_75 + rel_x*w_1_t_71 + rel_z*w_1_t_73 -
-            qdd_1_t_3*w_1_t_76 - rel_y*w_1_t_72)
-        )
-        qdd_1_t_5 = (
-        inv_w_1_t_150*(qdd_1_t_3*w_1_t_64 + qdd_1_t_4*w_1_t_58 + rel_y*w_1_t_54 - qdd_1_t*w_1_t_56
-            - qdd_1_t_2*w_1_t_57 - rel_x*w_1_t_53 - rel_z*w_1_t_55)
-        )
-        qdd_1_t_6 = (
-        inv_w_1_t_101*(qdd_1_t*w_1_t_34 + qdd_1_t_2*w_1_t_35 + qdd_1_t_3*w_1_t_47 +
-            qdd_1_t_4*w_1_t_42 + rel_z*w_1_t_33 - qdd_1_t_5*w_1_t_36 - rel_y*w_1_t_32)
-        )
-        # (rrrrrr-N21) acceleration of the reference point of link 5, less gravity
-        acc_5_x = (
-        S_ddot_tip_x - axis_x_rrrrrr_axes5_x*gravity_x - axis_x_rrrrrr_axes5_y*gravity_y -
-            axis_x_rrrrrr_axes5_z*gravity_z
-        )
-        acc_5_y = (
-        S_ddot_tip_y - axis_y_rrrrrr_axes5_in_base_x*gravity_x -
-            axis_y_rrrrrr_axes5_in_base_y*gravity_y - axis_y_rrrrrr_axes5_in_base_z*gravity_z
-        )
-        acc_5_z = (
-        S_ddot_tip_z - axis_z_rrrrrr_axes5_in_base_x*gravity_x -
-            axis_z_rrrrrr_axes5_in_base_y*gravity_y - axis_z_rrrrrr_axes5_in_base_z*gravity_z
-        )
-        # (rrrrrr-A30) angular acceleration of link 1
-        alpha_1_t = qdd_1_t_5*s_2
-        alpha_1_t_2 = c_2_t*qdd_1_t_5
-        # (rrrrrr-A34) angular acceleration of link 2
-        alpha_2_x = zeta_2_x - alpha_1_t
-        alpha_2_y = alpha_1_t_2 + zeta_2_y
-        # (rrrrrr-A36) acceleration tensor of link 2
-        B_2_xy = -W_2_xy - qdd_1_t_4
-        B_2_yx = qdd_1_t_4 - W_2_xy
-        B_2_zx = -alpha_2_y - zeta_2_y
-        B_2_zy = alpha_2_x + zeta_2_x
-        # (rrrrrr-A54) acceleration of the origin of joint 3
-        a_o3_t = rrrrrr_joint3_offset_x*(W_2_t_2 + W_2_t_3)
-        a_o3_t_2 = B_2_yx*rrrrrr_joint3_offset_x
-        a_o3_t_3 = B_2_zx*rrrrrr_joint3_offset_x
-        # (rrrrrr-A38) angular acceleration of link 3
-        alpha_3_x = alpha_2_x*c_3 + alpha_2_y*s_3 - zeta_3_x
-        alpha_3_y = zeta_3_y + alpha_2_y*c_3 - alpha_2_x*s_3
-        alpha_3_z = qdd_1_t_3 + qdd_1_t_4
-        # (rrrrrr-A40) acceleration tensor of link 3
-        B_3_xy = W_3_xy - alpha_3_z
-        B_3_xz = W_3_xz + alpha_3_y
-        B_3_yx = W_3_xy + alpha_3_z
-        B_3_yz = W_3_yz - alpha_3_x
-        B_3_zx = W_3_xz - alpha_3_y
-        B_3_zy = W_3_yz + alpha_3_x
-        # (rrrrrr-A54) acceleration of the origin of joint 3
-        a_o3_r0_x = a_o3_t_2*s_3 - a_o3_t*c_3
-        a_o3_r0_y = a_o3_t*s_3 + a_o3_t_2*c_3
-        # (rrrrrr-A56) acceleration of the origin of joint 4
-        a_o4_x = a_o3_r0_x - W_3_xx*rrrrrr_joint4_offset_x
-        a_o4_y = a_o3_r0_y + B_3_yx*rrrrrr_joint4_offset_x
-        a_o4_z = a_o3_t_3 + B_3_zx*rrrrrr_joint4_offset_x
-        # (rrrrrr-N15) acceleration of the reference point of link 4, less gravity
-        acc_4_x = a_o4_z*s_4 + c_4_t*g_r4_y - a_o4_y*c_4_t - g_r1_x*s_4
-        acc_4_y = c_4_t*g_r1_x + g_r4_y*s_4 - a_o4_y*s_4 - a_o4_z*c_4_t
-        acc_4_z = a_o4_x - g_r4_x
-        # (rrrrrr-A42) angular acceleration of link 4
-        alpha_4_x = alpha_3_z*s_4 - zeta_4_x - alpha_3_y*c_4_t
-        alpha_4_y = zeta_4_y - alpha_3_y*s_4 - alpha_3_z*c_4_t
-        alpha_4_z = alpha_3_x + qdd_1_t_6
-        # (rrrrrr-A44) acceleration tensor of link 4
-        B_4_xy = W_4_xy - alpha_4_z
-        B_4_xz = W_4_xz + alpha_4_y
-        B_4_yx = W_4_xy + alpha_4_z
-        B_4_yz = W_4_yz - alpha_4_x
-        B_4_zx = W_4_xz - alpha_4_y
-        B_4_zy = W_4_yz + alpha_4_x
-        # (rrrrrr-N72) inertia moment of the links that turn with link 4, about their reference points
-        mu_4_x = (
-        B_4_yx*J_4_xz + B_4_zx*J_4_yz + B_4_zy*Sigma_4_yy - B_4_yz*Sigma_4_zz - J_4_xy*(W_4_t_2 -
-            W_4_t_3) - acc_4_y*h_4_x - acc_4_z*h_4_y
-        )
-        mu_4_y = (
-        B_4_xy*J_4_xy + B_4_xz*Sigma_4_zz + acc_4_x*h_4_x - B_4_zx*Sigma_4_xx - B_4_zy*J_4_yz -
-            J_4_xz*(W_4_t - W_4_t_3) - acc_4_z*h_4_z
-        )
-        mu_4_z = (
-        B_4_yx*Sigma_4_xx + acc_4_x*h_4_y + acc_4_y*h_4_z - B_4_xy*Sigma_4_yy - B_4_xz*J_4_xy -
-            B_4_yz*J_4_xz - J_4_yz*(W_4_t - W_4_t_2)
-        )
-        # (rrrrrr-A46) angular acceleration of link 5
-        alpha_5_x = zeta_5_x + alpha_4_z*s_5 - alpha_4_y*c_5_t
-        alpha_5_y = -zeta_5_y - alpha_4_y*s_5 - alpha_4_z*c_5_t
-        alpha_5_z = (
-        alpha_4_x + inv_w_1_t_69*(qdd_1_t_2*w_1_t_17 + qdd_1_t_3*w_1_t_28 + qdd_1_t_5*w_1_t_21 +
-            rel_y*w_1_t_16 - qdd_1_t_4*w_1_t_25 - qdd_1_t_6*w_1_t_18)
-        )
-        # (rrrrrr-A50) acceleration tensor of link 5
-        B_5_xy = W_5_xy - alpha_5_z
-        B_5_xz = W_5_xz + alpha_5_y
-        B_5_yx = W_5_xy + alpha_5_z
-        B_5_yz = W_5_yz - alpha_5_x
-        B_5_zx = W_5_xz - alpha_5_y
-        B_5_zy = W_5_yz + alpha_5_x
-        # (rrrrrr-N64) inertia moment of the links that turn with link 5, about their reference points
-        mu_5_x = (
-        B_5_yx*J_5_xz + B_5_zy*Sigma_5_yy + J_5_yz*(W_5_t_2 - W_5_t_3) + acc_5_z*h_5_y -
-            B_5_yz*Sigma_5_zz - B_5_zx*J_5_xy - acc_5_y*h_5_z
-        )
-        mu_5_y = (
-        B_5_xz*Sigma_5_zz + B_5_zy*J_5_xy + acc_5_x*h_5_z - B_5_xy*J_5_yz - B_5_zx*Sigma_5_xx -
-            J_5_xz*(W_5_t - W_5_t_3) - acc_5_z*h_5_x
-        )
-        mu_5_z = (
-        B_5_xz*J_5_yz + B_5_yx*Sigma_5_xx + J_5_xy*(W_5_t - W_5_t_2) + acc_5_y*h_5_x -
-            B_5_xy*Sigma_5_yy - B_5_yz*J_5_xz - acc_5_x*h_5_y
-        )
-        # (rrrrrr-N74) moment about joint 4 of the links from 4 outwards, the force at the connection point left out
-        N_4_x = mu_4_x + mu_5_z
-        N_4_y = mu_4_y - c_5_t*mu_5_x - mu_5_y*s_5
-        N_4_z = mu_4_z + mu_5_x*s_5 - c_5_t*mu_5_y
-        # (rrrrrr-N19) inertia force of link 4 less its weight
-        f_4_x = (
-        B_4_xz*h_4_x + acc_4_x*rrrrrr_link4_mass - B_4_xy*h_4_y - h_4_z*(W_4_t_2 + W_4_t_3)
-        )
-        f_4_y = B_4_yx*h_4_z + B_4_yz*h_4_x + acc_4_y*rrrrrr_link4_mass + h_4_y*(W_4_t + W_4_t_3)
-        f_4_z = B_4_zx*h_4_z + acc_4_z*rrrrrr_link4_mass - B_4_zy*h_4_y - h_4_x*(W_4_t + W_4_t_2)
-        # (rrrrrr-N9) acceleration of the reference point of link 3, less gravity
-        acc_3_x = a_o3_r0_x - g_r4_x
-        acc_3_y = a_o3_r0_y - g_r4_y
-        acc_3_z = a_o3_t_3 - g_r1_x
-        # (rrrrrr-N82) inertia moment of the links that turn with link 3, about their reference points
-        mu_3_x = (
-        B_3_yx*J_3_xz + B_3_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_z*h_3_y -
-            B_3_yz*Sigma_3_zz - B_3_zx*J_3_xy - acc_3_y*h_3_z
-        )
-        mu_3_y = (
-        B_3_xz*Sigma_3_zz + B_3_zy*J_3_xy + acc_3_x*h_3_z - B_3_xy*J_3_yz - B_3_zx*Sigma_3_xx -
-            J_3_xz*(W_3_t - W_3_t_3) - acc_3_z*h_3_x
-        )
-        mu_3_z = (
-        B_3_xz*J_3_yz + B_3_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_y*h_3_x -
-            B_3_xy*Sigma_3_yy - B_3_yz*J_3_xz - acc_3_x*h_3_y
-        )
-        # (rrrrrr-N19) inertia force of link 4 less its weight
-        f_4_r0_x = -c_4_t*f_4_x - f_4_y*s_4
-        f_4_r0_y = f_4_x*s_4 - c_4_t*f_4_y
-        # (rrrrrr-N84) moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-        N_3_x = N_4_z + mu_3_x
-        N_3_y = mu_3_y - N_4_x*c_4_t - N_4_y*s_4 - f_4_r0_y*rrrrrr_joint4_offset_x
-        N_3_z = mu_3_z + N_4_x*s_4 + f_4_r0_x*rrrrrr_joint4_offset_x - N_4_y*c_4_t
-        # (rrrrrr-N13) inertia force of link 3 less its weight
-        f_3_x = B_3_xy*h_3_y + B_3_xz*h_3_z + acc_3_x*rrrrrr_link3_mass - W_3_xx*h_3_x
-        f_3_y = B_3_yx*h_3_x + B_3_yz*h_3_z + acc_3_y*rrrrrr_link3_mass - h_3_y*(W_3_t + W_3_t_3)
-        f_3_z = B_3_zx*h_3_x + B_3_zy*h_3_y + acc_3_z*rrrrrr_link3_mass - h_3_z*(W_3_t + W_3_t_2)
-        # (rrrrrr-N86) inertia force of the links from 3 outwards, the last link left out
-        T_3_x = f_3_x + f_4_z
-        T_3_y = f_3_y + f_4_r0_x
-        T_3_z = f_3_z + f_4_r0_y
-        # (rrrrrr-N94) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_x = (
-        B_2_yx*J_2_xz + B_2_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z -
-            B_2_zx*J_2_xy - Sigma_2_zz*alpha_1_t - g_r1_x*h_2_y
-        )
-        mu_2_y = (
-        B_2_zy*J_2_xy + Sigma_2_zz*alpha_1_t_2 + g_r1_x*h_2_x - B_2_xy*J_2_yz - B_2_zx*Sigma_2_xx
-            - J_2_xz*(W_2_t - W_2_t_3) - g_r3_x*h_2_z
-        )
-        mu_2_z = (
-        B_2_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + J_2_yz*alpha_1_t_2 + g_r3_x*h_2_y -
-            B_2_xy*Sigma_2_yy - J_2_xz*alpha_1_t - g_r3_y*h_2_x
-        )
-        # (rrrrrr-N96) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_x = mu_2_x + N_3_x*c_3 - N_3_y*s_3
-        N_2_y = mu_2_y + N_3_x*s_3 + N_3_y*c_3 - T_3_z*rrrrrr_joint3_offset_x
-        N_2_z = N_3_z + mu_2_z + rrrrrr_joint3_offset_x*(T_3_x*s_3 + T_3_y*c_3)
-        # (rrrrrr-N106) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_z = -J_1_xx*qdd_1_t_5 - g_r1_x*h_1_y - g_r1_y*h_1_z
-        # (rrrrrr-N108) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_z = mu_1_z + N_2_x*s_2 - N_2_y*c_2_t
-        # (rrrrrr-N114) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_t = inv_w_1_t_69*mu_5_z
-        G_t_2 = inv_w_1_t_101*(G_t*w_1_t_18 - N_4_z)
-        G_t_3 = inv_w_1_t_150*(G_t*w_1_t_21 + G_t_2*w_1_t_36 - N_1_z)
-        G_t_4 = inv_w_1_t_194*(G_t*w_1_t_25 + G_t_2*w_1_t_42 - N_2_z - G_t_3*w_1_t_58)
-        G_t_5 = (
-        inv_w_1_t_222*(N_3_z + G_t*w_1_t_28 + G_t_3*w_1_t_64 + G_t_4*w_1_t_76 - G_t_2*w_1_t_47)
-        )
-        G_t_6 = size*(G_t_2*w_1_t_34 + G_t_3*w_1_t_56 + G_t_4*w_1_t_74 - G_t_5*w_1_t_86)
-        G_t_7 = (
-        size*(G_t_2*w_1_t_35 + G_t_3*w_1_t_57 + G_t_4*w_1_t_75 - G_t*w_1_t_17 - G_t_5*w_1_t_87)
-        )
-        # (rrrrrr-N130) leg force on the platform without actuation and without the mass at the connection point
-        c_x = (
-        G_t_3*w_1_t_53 + G_t_4*w_1_t_71 + W_5_xx*h_5_x - B_5_xy*h_5_y - B_5_xz*h_5_z -
-            G_t_5*w_1_t_83
-        )
-        c_y = (
-        G_t_5*w_1_t_84 + h_5_y*(W_5_t + W_5_t_3) - B_5_yx*h_5_x - B_5_yz*h_5_z - G_t*w_1_t_16 -
-            G_t_2*w_1_t_32 - G_t_3*w_1_t_54 - G_t_4*w_1_t_72
-        )
-        c_z = (
-        G_t_2*w_1_t_33 + G_t_3*w_1_t_55 + G_t_4*w_1_t_73 + h_5_z*(W_5_t + W_5_t_2) - B_5_zx*h_5_x
-            - B_5_zy*h_5_y - G_t_5*w_1_t_85
-        )
-        # (rrrrrr-N126) moment at the connection point that balances the leg's inertia and weight along all freedoms
-        G_m_t = G_t_6*end_p1_r8_y
-        G_m_t_2 = G_t_7*end_p1_r8_y
-        G_m_y = G_t_7*end_p1_r6_x - G_t_6*end_p1_r8_x
-        # (rrrrrr-N130) leg force on the platform without actuation and without the mass at the connection point
-        c_in_base_x = (
-        axis_x_rrrrrr_axes5_x*c_x + axis_y_rrrrrr_axes5_in_base_x*c_y +
-            axis_z_rrrrrr_axes5_in_base_x*c_z
-        )
-        c_in_base_y = (
-        axis_x_rrrrrr_axes5_y*c_x + axis_y_rrrrrr_axes5_in_base_y*c_y +
-            axis_z_rrrrrr_axes5_in_base_y*c_z
-        )
-        c_in_base_z = (
-        axis_x_rrrrrr_axes5_z*c_x + axis_y_rrrrrr_axes5_in_base_z*c_y +
-            axis_z_rrrrrr_axes5_in_base_z*c_z
-        )
-        # (E5) moment that actuators and external wrench must give
-        R_a_t = (
-        G_m_t_2*axis_z_rrrrrr_axes5_in_base_x + c_in_base_z*q_in_base_y -
-            G_m_t*axis_x_rrrrrr_axes5_x - G_m_y*axis_y_rrrrrr_axes5_in_base_x -
-            c_in_base_y*q_in_base_z
-        )
-        R_a_t_2 = (
-        G_m_t_2*axis_z_rrrrrr_axes5_in_base_y + c_in_base_x*q_in_base_z -
-            G_m_t*axis_x_rrrrrr_axes5_y - G_m_y*axis_y_rrrrrr_axes5_in_base_y -
-            c_in_base_z*q_in_base_x
-        )
-        R_a_t_3 = (
-        G_m_t_2*axis_z_rrrrrr_axes5_in_base_z + c_in_base_y*q_in_base_x -
-            G_m_t*axis_x_rrrrrr_axes5_z - G_m_y*axis_y_rrrrrr_axes5_in_base_z -
-            c_in_base_x*q_in_base_y
-        )
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_2_x = (
-        axis_y_rrrrrr_axes5_in_base_x*o_2_y + axis_z_rrrrrr_axes5_in_base_x*o_2_t_2 +
-            q_in_base_y*w_2_in_base_z - axis_x_rrrrrr_axes5_x*o_2_t - q_in_base_z*w_2_in_base_y
-        )
-        H_a_2_y = (
-        axis_y_rrrrrr_axes5_in_base_y*o_2_y + axis_z_rrrrrr_axes5_in_base_y*o_2_t_2 +
-            q_in_base_z*w_2_in_base_x - axis_x_rrrrrr_axes5_y*o_2_t - q_in_base_x*w_2_in_base_z
-        )
-        H_a_2_z = (
-        axis_y_rrrrrr_axes5_in_base_z*o_2_y + axis_z_rrrrrr_axes5_in_base_z*o_2_t_2 +
-            q_in_base_x*w_2_in_base_y - axis_x_rrrrrr_axes5_z*o_2_t - q_in_base_y*w_2_in_base_x
+        six_r_q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
+        six_r_q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
+        six_r_q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
+        six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
+        six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
+        six_r_c_5_t = sin(six_r_q_5)
+        # (six_r-s_5) sine of the angle of joint 5 from its reference direction
+        six_r_s_5 = cos(six_r_q_5)
+        # (six_r-r_4) from joint 4 to the connection point, along the links
+        six_r_r_4_t = six_r_c_5_t*six_r_platform_joint_offset_x
+        six_r_r_4_z = six_r_joint5_offset_x + six_r_platform_joint_offset_x*six_r_s_5
+        # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
+        six_r_c_4_t = sin(six_r_q_4)
+        # (six_r-s_4) sine of the angle of joint 4 from its reference direction
+        six_r_s_4 = cos(six_r_q_4)
+        # (six_r-r_4) from joint 4 to the connection point, along the links
+        six_r_r_4_t_2 = six_r_r_4_t*six_r_s_4
+        six_r_r_4_t_3 = six_r_c_4_t*six_r_r_4_t
+        # (six_r-r_3) from joint 3 to the connection point, along the links
+        six_r_r_3_x = six_r_joint4_offset_x + six_r_r_4_z
+        # (six_r-c_3) cosine of the angle of joint 3 from its reference direction
+        six_r_c_3 = cos(six_r_q_3)
+        # (six_r-s_3) sine of the angle of joint 3 from its reference direction
+        six_r_s_3 = sin(six_r_q_3)
+        # (six_r-r_3) from joint 3 to the connection point, along the links
+        six_r_r_3_r0_y = six_r_c_3*six_r_r_4_t_2 + six_r_r_3_x*six_r_s_3
+        # (six_r-r_2) from joint 2 to the connection point, along the links
+        six_r_r_2_x = six_r_joint3_offset_x + six_r_c_3*six_r_r_3_x - six_r_r_4_t_2*six_r_s_3
+        # (six_r-c_2) cosine of the angle of joint 2 from its reference direction
+        six_r_c_2_t = sin(six_r_q_2)
+        # (six_r-s_2) sine of the angle of joint 2 from its reference direction
+        six_r_s_2 = cos(six_r_q_2)
+        # (six_r-r_2) from joint 2 to the connection point, along the links
+        six_r_r_2_r0_x = -six_r_c_2_t*six_r_r_2_x - six_r_r_3_r0_y*six_r_s_2
+        # (six_r-r_1) from joint 1 to the connection point, along the links
+        six_r_r_1_z = six_r_joint2_offset_x + six_r_r_2_x*six_r_s_2 - six_r_c_2_t*six_r_r_3_r0_y
+        # (six_r-v_1) velocity of the connection point per rate of joint 1
+        six_r_e_1_r2_x = six_r_c_3*six_r_s_2 - six_r_c_2_t*six_r_s_3
+        six_r_e_1_r2_y = -six_r_c_2_t*six_r_c_3 - six_r_s_2*six_r_s_3
+        six_r_v_1_t = six_r_c_4_t*six_r_e_1_r2_y
+        six_r_v_1_t_2 = six_r_e_1_r2_y*six_r_s_4
+        six_r_e_1_r6_x = six_r_c_5_t*six_r_v_1_t_2 + six_r_e_1_r2_x*six_r_s_5
+        six_r_e_1_r6_y = six_r_s_5*six_r_v_1_t_2 - six_r_c_5_t*six_r_e_1_r2_x
+        # (six_r-r_1) from joint 1 to the connection point, along the links
+        six_r_r_1_r1_x = six_r_r_1_z*six_r_s_2 - six_r_c_2_t*six_r_r_2_r0_x
+        six_r_r_1_r1_y = -six_r_c_2_t*six_r_r_1_z - six_r_r_2_r0_x*six_r_s_2
+        six_r_r_1_r2_x = six_r_c_3*six_r_r_1_r1_x + six_r_r_1_r1_y*six_r_s_3
+        six_r_r_1_r2_y = six_r_c_3*six_r_r_1_r1_y - six_r_r_1_r1_x*six_r_s_3
+        six_r_r_1_t = six_r_r_4_t_3*six_r_s_4
+        six_r_r_1_r4_x = six_r_r_1_t - six_r_c_4_t*six_r_r_1_r2_y
+        six_r_r_1_t_2 = six_r_c_4_t*six_r_r_4_t_3
+        six_r_r_1_r4_y = -six_r_r_1_t_2 - six_r_r_1_r2_y*six_r_s_4
+        six_r_r_1_r6_x = six_r_r_1_r2_x*six_r_s_5 - six_r_c_5_t*six_r_r_1_r4_y
+        six_r_r_1_r6_y = -six_r_c_5_t*six_r_r_1_r2_x - six_r_r_1_r4_y*six_r_s_5
+        # (six_r-v_1) velocity of the connection point per rate of joint 1
+        six_r_v_1_x = six_r_e_1_r6_y*six_r_r_1_r4_x + six_r_r_1_r6_y*six_r_v_1_t
+        six_r_v_1_y = -six_r_e_1_r6_x*six_r_r_1_r4_x - six_r_r_1_r6_x*six_r_v_1_t
+        six_r_v_1_z = six_r_e_1_r6_x*six_r_r_1_r6_y - six_r_e_1_r6_y*six_r_r_1_r6_x
+        # (six_r-v_2) velocity of the connection point per rate of joint 2
+        six_r_v_2_t = six_r_c_4_t*six_r_c_5_t
+        six_r_v_2_t_2 = six_r_c_4_t*six_r_s_5
+        # (six_r-r_2) from joint 2 to the connection point, along the links
+        six_r_r_2_r0_x_2 = six_r_c_3*six_r_r_2_x + six_r_r_3_r0_y*six_r_s_3
+        six_r_r_2_r0_y = six_r_c_3*six_r_r_3_r0_y - six_r_r_2_x*six_r_s_3
+        six_r_r_2_r2_x = six_r_r_1_t - six_r_c_4_t*six_r_r_2_r0_y
+        six_r_r_2_r2_y = -six_r_r_1_t_2 - six_r_r_2_r0_y*six_r_s_4
+        six_r_r_2_r4_x = six_r_r_2_r0_x_2*six_r_s_5 - six_r_c_5_t*six_r_r_2_r2_y
+        six_r_r_2_r4_y = -six_r_c_5_t*six_r_r_2_r0_x_2 - six_r_r_2_r2_y*six_r_s_5
+        # (six_r-v_2) velocity of the connection point per rate of joint 2
+        six_r_v_2_x = six_r_r_2_r2_x*six_r_v_2_t_2 - six_r_r_2_r4_y*six_r_s_4
+        six_r_v_2_y = six_r_r_2_r4_x*six_r_s_4 - six_r_r_2_r2_x*six_r_v_2_t
+        six_r_v_2_z = six_r_r_2_r4_y*six_r_v_2_t - six_r_r_2_r4_x*six_r_v_2_t_2
+        # (six_r-r_3) from joint 3 to the connection point, along the links
+        six_r_r_3_r1_x = six_r_r_1_t - six_r_c_4_t*six_r_r_4_t_2
+        six_r_r_3_r1_y = -six_r_r_1_t_2 - six_r_r_4_t_2*six_r_s_4
+        six_r_r_3_r3_x = six_r_r_3_x*six_r_s_5 - six_r_c_5_t*six_r_r_3_r1_y
+        six_r_r_3_r3_y = -six_r_c_5_t*six_r_r_3_x - six_r_r_3_r1_y*six_r_s_5
+        # (six_r-v_3) velocity of the connection point per rate of joint 3
+        six_r_v_3_x = six_r_r_3_r1_x*six_r_v_2_t_2 - six_r_r_3_r3_y*six_r_s_4
+        six_r_v_3_y = six_r_r_3_r3_x*six_r_s_4 - six_r_r_3_r1_x*six_r_v_2_t
+        six_r_v_3_z = six_r_r_3_r3_y*six_r_v_2_t - six_r_r_3_r3_x*six_r_v_2_t_2
+        # (six_r-v_4) velocity of the connection point per rate of joint 4
+        six_r_v_4_z = (
+        six_r_c_5_t*(six_r_c_5_t*six_r_r_4_t + six_r_r_4_z*six_r_s_5) +
+            six_r_s_5*(six_r_r_4_t*six_r_s_5 - six_r_c_5_t*six_r_r_4_z)
+        )
+        # (six_r-w_1) force part of reciprocal wrench 1
+        six_r_w_1_t = six_r_c_4_t*six_r_s_3
+        six_r_w_1_t_2 = six_r_c_3*six_r_c_4_t
+        axis_z_six_r_axes5_r5_x = six_r_s_2*six_r_w_1_t_2 - six_r_c_2_t*six_r_w_1_t
+        axis_z_six_r_axes5_r5_y = six_r_c_2_t*six_r_w_1_t_2 + six_r_s_2*six_r_w_1_t
+        # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
+        six_r_c_1_t = sin(six_r_q_1)
+        # (six_r-s_1) sine of the angle of joint 1 from its reference direction
+        six_r_s_1 = cos(six_r_q_1)
+        # (six_r-w_1) force part of reciprocal wrench 1
+        axis_z_six_r_axes5_r7_x = -axis_z_six_r_axes5_r5_x*six_r_s_1 - six_r_c_1_t*six_r_s_4
+        axis_z_six_r_axes5_r7_y = six_r_s_1*six_r_s_4 - axis_z_six_r_axes5_r5_x*six_r_c_1_t
+        axis_z_six_r_axes5_in_base_x = (
+        axis_z_six_r_axes5_r5_y*six_r_base_frame_xx + axis_z_six_r_axes5_r7_x*six_r_base_frame_xy
+            + axis_z_six_r_axes5_r7_y*six_r_base_frame_xz
+        )
+        axis_z_six_r_axes5_in_base_y = (
+        axis_z_six_r_axes5_r5_y*six_r_base_frame_yx + axis_z_six_r_axes5_r7_x*six_r_base_frame_yy
+            + axis_z_six_r_axes5_r7_y*six_r_base_frame_yz
+        )
+        axis_z_six_r_axes5_in_base_z = (
+        axis_z_six_r_axes5_r5_y*six_r_base_frame_zx + axis_z_six_r_axes5_r7_x*six_r_base_frame_zy
+            + axis_z_six_r_axes5_r7_y*six_r_base_frame_zz
+        )
+        six_r_w_1_t_3 = six_r_s_4*six_r_s_5
+        axis_y_six_r_axes5_r4_x = -six_r_c_3*six_r_c_5_t - six_r_s_3*six_r_w_1_t_3
+        axis_y_six_r_axes5_r4_y = six_r_c_3*six_r_w_1_t_3 - six_r_c_5_t*six_r_s_3
+        axis_y_six_r_axes5_r5_x = (
+        -axis_y_six_r_axes5_r4_x*six_r_c_2_t - axis_y_six_r_axes5_r4_y*six_r_s_2
+        )
+        axis_y_six_r_axes5_r5_y = (
+        axis_y_six_r_axes5_r4_x*six_r_s_2 - axis_y_six_r_axes5_r4_y*six_r_c_2_t
+        )
+        axis_y_six_r_axes5_r7_x = -axis_y_six_r_axes5_r5_x*six_r_s_1 - six_r_c_1_t*six_r_v_2_t_2
+        axis_y_six_r_axes5_r7_y = six_r_s_1*six_r_v_2_t_2 - axis_y_six_r_axes5_r5_x*six_r_c_1_t
+        axis_y_six_r_axes5_in_base_x = (
+        axis_y_six_r_axes5_r5_y*six_r_base_frame_xx + axis_y_six_r_axes5_r7_x*six_r_base_frame_xy
+            + axis_y_six_r_axes5_r7_y*six_r_base_frame_xz
+        )
+        axis_y_six_r_axes5_in_base_y = (
+        axis_y_six_r_axes5_r5_y*six_r_base_frame_yx + axis_y_six_r_axes5_r7_x*six_r_base_frame_yy
+            + axis_y_six_r_axes5_r7_y*six_r_base_frame_yz
+        )
+        axis_y_six_r_axes5_in_base_z = (
+        axis_y_six_r_axes5_r5_y*six_r_base_frame_zx + axis_y_six_r_axes5_r7_x*six_r_base_frame_zy
+            + axis_y_six_r_axes5_r7_y*six_r_base_frame_zz
+        )
+        axis_x_six_r_axes5_x = (
+        axis_y_six_r_axes5_in_base_y*axis_z_six_r_axes5_in_base_z -
+            axis_y_six_r_axes5_in_base_z*axis_z_six_r_axes5_in_base_y
+        )
+        axis_x_six_r_axes5_y = (
+        axis_y_six_r_axes5_in_base_z*axis_z_six_r_axes5_in_base_x -
+            axis_y_six_r_axes5_in_base_x*axis_z_six_r_axes5_in_base_z
+        )
+        axis_x_six_r_axes5_z = (
+        axis_y_six_r_axes5_in_base_x*axis_z_six_r_axes5_in_base_y -
+            axis_y_six_r_axes5_in_base_y*axis_z_six_r_axes5_in_base_x
+        )
+        # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
+        six_r_end_p1_r0_x = (
+        six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xy + R_yx*six_r_base_frame_yy
+            + R_zx*six_r_base_frame_zy) +
+            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xy +
+            R_yy*six_r_base_frame_yy + R_zy*six_r_base_frame_zy) +
+            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xy +
+            R_yz*six_r_base_frame_yy + R_zz*six_r_base_frame_zy)
+        )
+        six_r_end_p1_r0_y = (
+        six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xz + R_yx*six_r_base_frame_yz
+            + R_zx*six_r_base_frame_zz) +
+            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xz +
+            R_yy*six_r_base_frame_yz + R_zy*six_r_base_frame_zz) +
+            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xz +
+            R_yz*six_r_base_frame_yz + R_zz*six_r_base_frame_zz)
+        )
+        six_r_end_p1_r0_z = (
+        six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xx + R_yx*six_r_base_frame_yx
+            + R_zx*six_r_base_frame_zx) +
+            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xx +
+            R_yy*six_r_base_frame_yx + R_zy*six_r_base_frame_zx) +
+            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xx +
+            R_yz*six_r_base_frame_yx + R_zz*six_r_base_frame_zx)
+        )
+        six_r_end_p1_r1_x = six_r_end_p1_r0_y*six_r_s_1 - six_r_c_1_t*six_r_end_p1_r0_x
+        six_r_end_p1_r1_y = -six_r_c_1_t*six_r_end_p1_r0_y - six_r_end_p1_r0_x*six_r_s_1
+        six_r_end_p1_r3_x = six_r_end_p1_r0_z*six_r_s_2 - six_r_c_2_t*six_r_end_p1_r1_y
+        six_r_end_p1_r3_y = -six_r_c_2_t*six_r_end_p1_r0_z - six_r_end_p1_r1_y*six_r_s_2
+        six_r_end_p1_r4_x = six_r_c_3*six_r_end_p1_r3_x + six_r_end_p1_r3_y*six_r_s_3
+        six_r_end_p1_r4_y = six_r_c_3*six_r_end_p1_r3_y - six_r_end_p1_r3_x*six_r_s_3
+        six_r_end_p1_r6_x = six_r_end_p1_r1_x*six_r_s_4 - six_r_c_4_t*six_r_end_p1_r4_y
+        six_r_end_p1_r6_y = -six_r_c_4_t*six_r_end_p1_r1_x - six_r_end_p1_r4_y*six_r_s_4
+        six_r_end_p1_r8_x = six_r_end_p1_r4_x*six_r_s_5 - six_r_c_5_t*six_r_end_p1_r6_y
+        six_r_end_p1_r8_y = -six_r_c_5_t*six_r_end_p1_r4_x - six_r_end_p1_r6_y*six_r_s_5
+        # (six_r-w_1) force part of reciprocal wrench 1
+        six_r_w_1_t_4 = six_r_e_1_r6_x*six_r_end_p1_r8_y - six_r_e_1_r6_y*six_r_end_p1_r8_x
+        six_r_w_1_t_5 = six_r_end_p1_r8_y*six_r_v_2_t - six_r_end_p1_r8_x*six_r_v_2_t_2
+        six_r_w_1_t_6 = six_r_e_1_r6_y*six_r_end_p1_r6_x + six_r_end_p1_r8_y*six_r_v_1_t
+        six_r_w_1_t_7 = six_r_end_p1_r6_x*six_r_v_2_t_2 - six_r_end_p1_r8_y*six_r_s_4
+        six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4
+        six_r_w_1_t_9 = six_r_size*six_r_w_1_t_6
+        six_r_w_1_t_10 = six_r_size*six_r_w_1_t_5
+        six_r_w_1_t_11 = six_r_size*six_r_w_1_t_7
+        six_r_w_1_t_12 = six_r_size*(-six_r_c_5_t*six_r_end_p1_r8_x - six_r_end_p1_r8_y*six_r_s_5)
+        six_r_w_1_t_13 = six_r_c_5_t*six_r_end_p1_r6_x*six_r_size
+        six_r_w_1_t_14 = six_r_end_p1_r8_y*six_r_size
+        six_r_w_1_t_15 = sqrt(six_r_size_t + six_r_w_1_t_14*six_r_w_1_t_14)
+        inv_six_r_w_1_t_69 = 1.0/six_r_w_1_t_15
+        six_r_w_1_t_16 = inv_six_r_w_1_t_69*six_r_platform_joint_offset_x
+        six_r_w_1_t_17 = inv_six_r_w_1_t_69*six_r_w_1_t_14
+        six_r_w_1_t_18 = six_r_w_1_t_13*six_r_w_1_t_17
+        six_r_w_1_t_19 = six_r_w_1_t_16*six_r_w_1_t_18
+        six_r_w_1_t_20 = six_r_w_1_t_13 - six_r_w_1_t_17*six_r_w_1_t_18
+        six_r_w_1_t_21 = six_r_v_1_y*six_r_w_1_t_16 - six_r_w_1_t_17*six_r_w_1_t_9
+        six_r_w_1_t_22 = six_r_v_1_y - six_r_w_1_t_16*six_r_w_1_t_21
+        six_r_w_1_t_23 = six_r_w_1_t_9 + six_r_w_1_t_17*six_r_w_1_t_21
+        six_r_w_1_t_24 = six_r_w_1_t_11*six_r_w_1_t_17
+        six_r_w_1_t_25 = six_r_v_2_y*six_r_w_1_t_16 - six_r_w_1_t_24
+        six_r_w_1_t_26 = six_r_v_2_y - six_r_w_1_t_16*six_r_w_1_t_25
+        six_r_w_1_t_27 = six_r_w_1_t_11 + six_r_w_1_t_17*six_r_w_1_t_25
+        six_r_w_1_t_28 = six_r_w_1_t_24 - six_r_v_3_y*six_r_w_1_t_16
+        six_r_w_1_t_29 = six_r_v_3_y + six_r_w_1_t_16*six_r_w_1_t_28
+        six_r_w_1_t_30 = six_r_w_1_t_11 - six_r_w_1_t_17*six_r_w_1_t_28
+        six_r_w_1_t_31 = (
+        sqrt(six_r_v_4_z*six_r_v_4_z + six_r_w_1_t_12*six_r_w_1_t_12 +
+            six_r_w_1_t_19*six_r_w_1_t_19 + six_r_w_1_t_20*six_r_w_1_t_20)
+        )
+        inv_six_r_w_1_t_101 = 1.0/six_r_w_1_t_31
+        six_r_w_1_t_32 = inv_six_r_w_1_t_101*six_r_w_1_t_19
+        six_r_w_1_t_33 = inv_six_r_w_1_t_101*six_r_v_4_z
+        six_r_w_1_t_34 = inv_six_r_w_1_t_101*six_r_w_1_t_12
+        six_r_w_1_t_35 = inv_six_r_w_1_t_101*six_r_w_1_t_20
+        six_r_w_1_t_36 = (
+        six_r_w_1_t_22*six_r_w_1_t_32 + six_r_w_1_t_23*six_r_w_1_t_35 +
+            six_r_w_1_t_34*six_r_w_1_t_8 - six_r_v_1_z*six_r_w_1_t_33
+        )
+        six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_36 - six_r_w_1_t_22
+        six_r_w_1_t_38 = six_r_v_1_z + six_r_w_1_t_33*six_r_w_1_t_36
+        six_r_w_1_t_39 = six_r_w_1_t_34*six_r_w_1_t_36 - six_r_w_1_t_8
+        six_r_w_1_t_40 = six_r_w_1_t_35*six_r_w_1_t_36 - six_r_w_1_t_23
+        six_r_w_1_t_41 = six_r_w_1_t_10*six_r_w_1_t_34
+        six_r_w_1_t_42 = (
+        six_r_w_1_t_41 + six_r_w_1_t_26*six_r_w_1_t_32 + six_r_w_1_t_27*six_r_w_1_t_35 -
+            six_r_v_2_z*six_r_w_1_t_33
+        )
+        six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_42 - six_r_w_1_t_26
+        six_r_w_1_t_44 = six_r_v_2_z + six_r_w_1_t_33*six_r_w_1_t_42
+        six_r_w_1_t_45 = six_r_w_1_t_34*six_r_w_1_t_42 - six_r_w_1_t_10
+        six_r_w_1_t_46 = six_r_w_1_t_35*six_r_w_1_t_42 - six_r_w_1_t_27
+        six_r_w_1_t_47 = (
+        six_r_w_1_t_41 + six_r_w_1_t_29*six_r_w_1_t_32 + six_r_w_1_t_30*six_r_w_1_t_35 -
+            six_r_v_3_z*six_r_w_1_t_33
+        )
+        six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_47 - six_r_w_1_t_29
+        six_r_w_1_t_49 = six_r_v_3_z + six_r_w_1_t_33*six_r_w_1_t_47
+        six_r_w_1_t_50 = six_r_w_1_t_34*six_r_w_1_t_47 - six_r_w_1_t_10
+        six_r_w_1_t_51 = six_r_w_1_t_35*six_r_w_1_t_47 - six_r_w_1_t_30
+        six_r_w_1_t_52 = (
+        sqrt(six_r_v_1_x*six_r_v_1_x + six_r_w_1_t_37*six_r_w_1_t_37 +
+            six_r_w_1_t_38*six_r_w_1_t_38 + six_r_w_1_t_39*six_r_w_1_t_39 +
+            six_r_w_1_t_40*six_r_w_1_t_40)
+        )
+        inv_six_r_w_1_t_150 = 1.0/six_r_w_1_t_52
+        six_r_w_1_t_53 = inv_six_r_w_1_t_150*six_r_v_1_x
+        six_r_w_1_t_54 = inv_six_r_w_1_t_150*six_r_w_1_t_37
+        six_r_w_1_t_55 = inv_six_r_w_1_t_150*six_r_w_1_t_38
+        six_r_w_1_t_56 = inv_six_r_w_1_t_150*six_r_w_1_t_39
+        six_r_w_1_t_57 = inv_six_r_w_1_t_150*six_r_w_1_t_40
+        six_r_w_1_t_58 = (
+        six_r_v_2_x*six_r_w_1_t_53 + six_r_w_1_t_43*six_r_w_1_t_54 + six_r_w_1_t_44*six_r_w_1_t_55
+            + six_r_w_1_t_45*six_r_w_1_t_56 + six_r_w_1_t_46*six_r_w_1_t_57
+        )
+        six_r_w_1_t_59 = six_r_v_2_x - six_r_w_1_t_53*six_r_w_1_t_58
+        six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_58
+        six_r_w_1_t_61 = six_r_w_1_t_44 - six_r_w_1_t_55*six_r_w_1_t_58
+        six_r_w_1_t_62 = six_r_w_1_t_45 - six_r_w_1_t_56*six_r_w_1_t_58
+        six_r_w_1_t_63 = six_r_w_1_t_46 - six_r_w_1_t_57*six_r_w_1_t_58
+        six_r_w_1_t_64 = (
+        six_r_v_3_x*six_r_w_1_t_53 + six_r_w_1_t_48*six_r_w_1_t_54 + six_r_w_1_t_49*six_r_w_1_t_55
+            + six_r_w_1_t_50*six_r_w_1_t_56 + six_r_w_1_t_51*six_r_w_1_t_57
+        )
+        six_r_w_1_t_65 = six_r_v_3_x - six_r_w_1_t_53*six_r_w_1_t_64
+        six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_64
+        six_r_w_1_t_67 = six_r_w_1_t_49 - six_r_w_1_t_55*six_r_w_1_t_64
+        six_r_w_1_t_68 = six_r_w_1_t_50 - six_r_w_1_t_56*six_r_w_1_t_64
+        six_r_w_1_t_69 = six_r_w_1_t_51 - six_r_w_1_t_57*six_r_w_1_t_64
+        six_r_w_1_t_70 = (
+        sqrt(six_r_w_1_t_59*six_r_w_1_t_59 + six_r_w_1_t_60*six_r_w_1_t_60 +
+            six_r_w_1_t_61*six_r_w_1_t_61 + six_r_w_1_t_62*six_r_w_1_t_62 +
+            six_r_w_1_t_63*six_r_w_1_t_63)
+        )
+        inv_six_r_w_1_t_194 = 1.0/six_r_w_1_t_70
+        six_r_w_1_t_71 = inv_six_r_w_1_t_194*six_r_w_1_t_59
+        six_r_w_1_t_72 = inv_six_r_w_1_t_194*six_r_w_1_t_60
+        six_r_w_1_t_73 = inv_six_r_w_1_t_194*six_r_w_1_t_61
+        six_r_w_1_t_74 = inv_six_r_w_1_t_194*six_r_w_1_t_62
+        six_r_w_1_t_75 = inv_six_r_w_1_t_194*six_r_w_1_t_63
+        six_r_w_1_t_76 = (
+        six_r_w_1_t_65*six_r_w_1_t_71 + six_r_w_1_t_66*six_r_w_1_t_72 +
+            six_r_w_1_t_67*six_r_w_1_t_73 + six_r_w_1_t_68*six_r_w_1_t_74 +
+            six_r_w_1_t_69*six_r_w_1_t_75
+        )
+        six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_76
+        six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_76
+        six_r_w_1_t_79 = six_r_w_1_t_67 - six_r_w_1_t_73*six_r_w_1_t_76
+        six_r_w_1_t_80 = six_r_w_1_t_68 - six_r_w_1_t_74*six_r_w_1_t_76
+        six_r_w_1_t_81 = six_r_w_1_t_69 - six_r_w_1_t_75*six_r_w_1_t_76
+        six_r_w_1_t_82 = (
+        sqrt(six_r_w_1_t_77*six_r_w_1_t_77 + six_r_w_1_t_78*six_r_w_1_t_78 +
+            six_r_w_1_t_79*six_r_w_1_t_79 + six_r_w_1_t_80*six_r_w_1_t_80 +
+            six_r_w_1_t_81*six_r_w_1_t_81)
+        )
+        inv_six_r_w_1_t_222 = 1.0/six_r_w_1_t_82
+        six_r_w_1_t_83 = inv_six_r_w_1_t_222*six_r_w_1_t_77
+        six_r_w_1_t_84 = inv_six_r_w_1_t_222*six_r_w_1_t_78
+        six_r_w_1_t_85 = inv_six_r_w_1_t_222*six_r_w_1_t_79
+        six_r_w_1_t_86 = inv_six_r_w_1_t_222*six_r_w_1_t_80
+        six_r_w_1_t_87 = inv_six_r_w_1_t_222*six_r_w_1_t_81
+        # (six_r-w_2) force part of reciprocal wrench 2
+        six_r_w_2_t = inv_six_r_w_1_t_194*inv_six_r_w_1_t_222*six_r_w_1_t_76
+        six_r_w_2_t_2 = inv_six_r_w_1_t_194*six_r_w_1_t_71 - six_r_w_1_t_83*six_r_w_2_t
+        six_r_w_2_t_3 = inv_six_r_w_1_t_194*six_r_w_1_t_72 - six_r_w_1_t_84*six_r_w_2_t
+        six_r_w_2_t_4 = six_r_w_1_t_85*six_r_w_2_t - inv_six_r_w_1_t_194*six_r_w_1_t_73
+        six_r_w_2_t_5 = (
+        six_r_size*(inv_six_r_w_1_t_194*six_r_w_1_t_74 - six_r_w_1_t_86*six_r_w_2_t)
+        )
+        six_r_w_2_t_6 = (
+        six_r_size*(inv_six_r_w_1_t_194*six_r_w_1_t_75 - six_r_w_1_t_87*six_r_w_2_t)
+        )
+        # (six_r-o_2) moment part of reciprocal wrench 2
+        six_r_o_2_t = six_r_end_p1_r8_y*six_r_w_2_t_5
+        six_r_o_2_t_2 = six_r_end_p1_r8_y*six_r_w_2_t_6
+        six_r_o_2_y = six_r_end_p1_r8_x*six_r_w_2_t_5 - six_r_end_p1_r6_x*six_r_w_2_t_6
+        # (M_ta) coupling block of M
+        six_r_q_in_base_x = (
+        R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
+        )
+        six_r_q_in_base_y = (
+        R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y + R_yz*six_r_platform_point_z
+        )
+        six_r_q_in_base_z = (
+        R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y + R_zz*six_r_platform_point_z
+        )
+        # (six_r-S_dot) velocity of the connection point
+        six_r_S_dot_t = omega_y*six_r_q_in_base_z - omega_z*six_r_q_in_base_y
+        six_r_S_dot_t_2 = omega_z*six_r_q_in_base_x - omega_x*six_r_q_in_base_z
+        six_r_S_dot_t_3 = omega_x*six_r_q_in_base_y - omega_y*six_r_q_in_base_x
+        six_r_S_dot_x = six_r_S_dot_t + t_dot_x
+        six_r_S_dot_y = six_r_S_dot_t_2 + t_dot_y
+        six_r_S_dot_z = six_r_S_dot_t_3 + t_dot_z
+        six_r_S_dot_tip_x = (
+        axis_x_six_r_axes5_x*six_r_S_dot_x + axis_x_six_r_axes5_y*six_r_S_dot_y +
+            axis_x_six_r_axes5_z*six_r_S_dot_z
+        )
+        six_r_S_dot_tip_y = (
+        axis_y_six_r_axes5_in_base_x*six_r_S_dot_x + axis_y_six_r_axes5_in_base_y*six_r_S_dot_y +
+            axis_y_six_r_axes5_in_base_z*six_r_S_dot_z
+        )
+        six_r_S_dot_tip_z = (
+        axis_z_six_r_axes5_in_base_x*six_r_S_dot_x + axis_z_six_r_axes5_in_base_y*six_r_S_dot_y +
+            axis_z_six_r_axes5_in_base_z*six_r_S_dot_z
+        )
+        # (six_r-bias) acceleration of the connection point at zero joint accelerations
+        six_r_bias_t = six_r_joint2_offset_x*six_r_s_2
+        six_r_bias_t_2 = six_r_c_2_t*six_r_joint2_offset_x
+        six_r_d_2_r2_x = six_r_bias_t*six_r_c_3 - six_r_bias_t_2*six_r_s_3
+        six_r_d_2_r2_y = -six_r_bias_t*six_r_s_3 - six_r_bias_t_2*six_r_c_3
+        six_r_bias_t_3 = six_r_c_4_t*six_r_d_2_r2_y
+        six_r_bias_t_4 = six_r_d_2_r2_y*six_r_s_4
+        six_r_d_2_r6_x = six_r_bias_t_4*six_r_c_5_t + six_r_d_2_r2_x*six_r_s_5
+        six_r_d_2_r6_y = six_r_bias_t_4*six_r_s_5 - six_r_c_5_t*six_r_d_2_r2_x
+        six_r_bias_t_5 = six_r_c_3*six_r_joint3_offset_x
+        six_r_bias_t_6 = six_r_joint3_offset_x*six_r_s_3
+        six_r_bias_t_7 = six_r_bias_t_6*six_r_c_4_t
+        six_r_bias_t_8 = six_r_bias_t_6*six_r_s_4
+        six_r_d_3_r4_x = six_r_bias_t_5*six_r_s_5 - six_r_bias_t_8*six_r_c_5_t
+        six_r_d_3_r4_y = -six_r_bias_t_5*six_r_c_5_t - six_r_bias_t_8*six_r_s_5
+        six_r_bias_t_9 = six_r_joint4_offset_x*six_r_s_5
+        six_r_bias_t_10 = six_r_c_5_t*six_r_joint4_offset_x
+        six_r_bias_t_11 = six_r_joint5_offset_x*six_r_s_5
+        six_r_bias_t_12 = six_r_c_5_t*six_r_joint5_offset_x
+        # (six_r-nd_m1) rate of moment direction 1
+        six_r_omega_tip_x = (
+        axis_x_six_r_axes5_x*omega_x + axis_x_six_r_axes5_y*omega_y + axis_x_six_r_axes5_z*omega_z
+        )
+        six_r_omega_tip_y = (
+        axis_y_six_r_axes5_in_base_x*omega_x + axis_y_six_r_axes5_in_base_y*omega_y +
+            axis_y_six_r_axes5_in_base_z*omega_z
+        )
+        six_r_omega_tip_z = (
+        axis_z_six_r_axes5_in_base_x*omega_x + axis_z_six_r_axes5_in_base_y*omega_y +
+            axis_z_six_r_axes5_in_base_z*omega_z
+        )
+        six_r_nd_m1_t = six_r_end_p1_r6_x*six_r_omega_tip_y - six_r_end_p1_r8_y*six_r_omega_tip_z
+        six_r_nd_m1_t_2 = (
+        six_r_end_p1_r8_x*six_r_omega_tip_z - six_r_end_p1_r6_x*six_r_omega_tip_x
+        )
+        six_r_nd_m1_t_3 = (
+        six_r_end_p1_r8_y*six_r_omega_tip_x - six_r_end_p1_r8_x*six_r_omega_tip_y
+        )
+        # (six_r-acc_4_o) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+        six_r_g_r1_x = six_r_g_r0_y*six_r_s_1 - six_r_c_1_t*six_r_g_r0_x
+        six_r_g_r1_y = -six_r_c_1_t*six_r_g_r0_y - six_r_g_r0_x*six_r_s_1
+        six_r_g_r3_x = six_r_g_r0_z*six_r_s_2 - six_r_c_2_t*six_r_g_r1_y
+        six_r_g_r3_y = -six_r_c_2_t*six_r_g_r0_z - six_r_g_r1_y*six_r_s_2
+        six_r_g_r4_x = six_r_c_3*six_r_g_r3_x + six_r_g_r3_y*six_r_s_3
+        six_r_g_r4_y = six_r_c_3*six_r_g_r3_y - six_r_g_r3_x*six_r_s_3
+        # (six_r-w_2) force part of reciprocal wrench 2
+        six_r_w_2_in_base_x = (
+        axis_x_six_r_axes5_x*six_r_w_2_t_2 - axis_y_six_r_axes5_in_base_x*six_r_w_2_t_3 -
+            axis_z_six_r_axes5_in_base_x*six_r_w_2_t_4
+        )
+        six_r_w_2_in_base_y = (
+        axis_x_six_r_axes5_y*six_r_w_2_t_2 - axis_y_six_r_axes5_in_base_y*six_r_w_2_t_3 -
+            axis_z_six_r_axes5_in_base_y*six_r_w_2_t_4
+        )
+        six_r_w_2_in_base_z = (
+        axis_x_six_r_axes5_z*six_r_w_2_t_2 - axis_y_six_r_axes5_in_base_z*six_r_w_2_t_3 -
+            axis_z_six_r_axes5_in_base_z*six_r_w_2_t_4
+        )
+        # (six_r-qd_1) rate of joint 1
+        six_r_qd_1_t = six_r_nd_m1_t_3*six_r_size
+        six_r_qd_1_t_2 = six_r_nd_m1_t*six_r_size
+        six_r_qd_1_t_3 = (
+        inv_six_r_w_1_t_222*(six_r_S_dot_tip_y*six_r_w_1_t_84 + six_r_qd_1_t*six_r_w_1_t_86 +
+            six_r_qd_1_t_2*six_r_w_1_t_87 - six_r_S_dot_tip_x*six_r_w_1_t_83 -
+            six_r_S_dot_tip_z*six_r_w_1_t_85)
+        )
+        six_r_qd_1_t_4 = (
+        inv_six_r_w_1_t_194*(six_r_S_dot_tip_y*six_r_w_1_t_72 + six_r_qd_1_t*six_r_w_1_t_74 +
+            six_r_qd_1_t_2*six_r_w_1_t_75 - six_r_S_dot_tip_x*six_r_w_1_t_71 -
+            six_r_S_dot_tip_z*six_r_w_1_t_73 - six_r_qd_1_t_3*six_r_w_1_t_76)
+        )
+        six_r_qd_1_t_5 = (
+        inv_six_r_w_1_t_150*(six_r_S_dot_tip_x*six_r_w_1_t_53 + six_r_S_dot_tip_z*six_r_w_1_t_55 +
+            six_r_qd_1_t_3*six_r_w_1_t_64 + six_r_qd_1_t_4*six_r_w_1_t_58 -
+            six_r_S_dot_tip_y*six_r_w_1_t_54 - six_r_qd_1_t*six_r_w_1_t_56 -
+            six_r_qd_1_t_2*six_r_w_1_t_57)
+        )
+        six_r_qd_1_t_6 = (
+        inv_six_r_w_1_t_101*(six_r_S_dot_tip_y*six_r_w_1_t_32 + six_r_qd_1_t*six_r_w_1_t_34 +
+            six_r_qd_1_t_2*six_r_w_1_t_35 + six_r_qd_1_t_3*six_r_w_1_t_47 +
+            six_r_qd_1_t_4*six_r_w_1_t_42 - six_r_S_dot_tip_z*six_r_w_1_t_33 -
+            six_r_qd_1_t_5*six_r_w_1_t_36)
+        )
+        six_r_qd_1_t_7 = (
+        inv_six_r_w_1_t_69*(six_r_qd_1_t_2*six_r_w_1_t_17 + six_r_qd_1_t_3*six_r_w_1_t_28 +
+            six_r_qd_1_t_5*six_r_w_1_t_21 - six_r_S_dot_tip_y*six_r_w_1_t_16 -
+            six_r_qd_1_t_4*six_r_w_1_t_25 - six_r_qd_1_t_6*six_r_w_1_t_18)
+        )
+        # (six_r-a_p) acceleration of the connection point without its centripetal part
+        six_r_a_p_x = t_ddot_x + alpha_y*six_r_q_in_base_z - alpha_z*six_r_q_in_base_y
+        six_r_a_p_y = t_ddot_y + alpha_z*six_r_q_in_base_x - alpha_x*six_r_q_in_base_z
+        six_r_a_p_z = t_ddot_z + alpha_x*six_r_q_in_base_y - alpha_y*six_r_q_in_base_x
+        # (six_r-S_ddot) acceleration of the connection point
+        six_r_S_ddot_x = six_r_a_p_x + omega_y*six_r_S_dot_t_3 - omega_z*six_r_S_dot_t_2
+        six_r_S_ddot_y = six_r_a_p_y + omega_z*six_r_S_dot_t - omega_x*six_r_S_dot_t_3
+        six_r_S_ddot_z = six_r_a_p_z + omega_x*six_r_S_dot_t_2 - omega_y*six_r_S_dot_t
+        # (six_r-omega_1) angular velocity of link 1
+        six_r_omega_1_t = six_r_qd_1_t_5*six_r_s_2
+        six_r_omega_1_t_2 = six_r_c_2_t*six_r_qd_1_t_5
+        # (six_r-omega_2) angular velocity of link 2
+        six_r_omega_2_r0_x = six_r_c_3*six_r_omega_1_t - six_r_omega_1_t_2*six_r_s_3
+        six_r_omega_2_r0_y = -six_r_c_3*six_r_omega_1_t_2 - six_r_omega_1_t*six_r_s_3
+        # (six_r-omega_3) angular velocity of link 3
+        six_r_omega_3_z = -six_r_qd_1_t_3 - six_r_qd_1_t_4
+        six_r_omega_3_r1_x = six_r_omega_3_z*six_r_s_4 - six_r_c_4_t*six_r_omega_2_r0_y
+        six_r_omega_3_r1_y = -six_r_c_4_t*six_r_omega_3_z - six_r_omega_2_r0_y*six_r_s_4
+        # (six_r-omega_4) angular velocity of link 4
+        six_r_omega_4_z = six_r_omega_2_r0_x - six_r_qd_1_t_6
+        six_r_omega_4_t = six_r_c_5_t*six_r_omega_3_r1_y
+        six_r_omega_4_r1_x = six_r_omega_4_z*six_r_s_5 - six_r_omega_4_t
+        six_r_omega_4_t_2 = six_r_omega_3_r1_y*six_r_s_5
+        six_r_omega_4_r1_y = -six_r_omega_4_t_2 - six_r_c_5_t*six_r_omega_4_z
+        # (six_r-omega_5) angular velocity of link 5
+        six_r_omega_5_z = six_r_omega_3_r1_x - six_r_qd_1_t_7
+        # (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        six_r_zeta_2_x = six_r_omega_1_t_2*six_r_qd_1_t_4
+        six_r_zeta_2_y = six_r_omega_1_t*six_r_qd_1_t_4
+        # (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        six_r_zeta_3_x = six_r_omega_2_r0_y*six_r_qd_1_t_3
+        six_r_zeta_3_y = six_r_omega_2_r0_x*six_r_qd_1_t_3
+        # (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        six_r_zeta_2_r0_x = six_r_c_3*six_r_zeta_2_x + six_r_s_3*six_r_zeta_2_y
+        six_r_zeta_2_r0_y = six_r_c_3*six_r_zeta_2_y - six_r_s_3*six_r_zeta_2_x
+        # (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations
+        six_r_beta_3_x = six_r_zeta_2_r0_x - six_r_zeta_3_x
+        six_r_beta_3_y = six_r_zeta_2_r0_y + six_r_zeta_3_y
+        # (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4
+        six_r_zeta_4_x = six_r_omega_3_r1_y*six_r_qd_1_t_6
+        six_r_zeta_4_y = six_r_omega_3_r1_x*six_r_qd_1_t_6
+        # (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations
+        six_r_beta_3_t = six_r_beta_3_y*six_r_c_4_t
+        six_r_beta_3_t_2 = six_r_beta_3_y*six_r_s_4
+        # (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations
+        six_r_beta_4_x = -six_r_beta_3_t - six_r_zeta_4_x
+        six_r_beta_4_y = six_r_zeta_4_y - six_r_beta_3_t_2
+        # (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5
+        six_r_zeta_5_x = six_r_omega_4_r1_y*six_r_qd_1_t_7
+        six_r_zeta_5_y = six_r_omega_4_r1_x*six_r_qd_1_t_7
+        # (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations
+        six_r_beta_4_t = six_r_beta_3_x*six_r_s_5
+        six_r_beta_4_r1_x = six_r_beta_4_t - six_r_beta_4_y*six_r_c_5_t
+        six_r_beta_4_t_2 = six_r_beta_3_x*six_r_c_5_t
+        six_r_beta_4_r1_y = -six_r_beta_4_t_2 - six_r_beta_4_y*six_r_s_5
+        # (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations
+        six_r_beta_5_x = six_r_beta_4_r1_x - six_r_zeta_5_x
+        six_r_beta_5_y = six_r_beta_4_r1_y + six_r_zeta_5_y
+        # (six_r-W_2) centripetal tensor of link 2
+        six_r_W_2_t = six_r_omega_1_t*six_r_omega_1_t
+        six_r_W_2_t_2 = six_r_omega_1_t_2*six_r_omega_1_t_2
+        six_r_W_2_t_3 = six_r_qd_1_t_4*six_r_qd_1_t_4
+        six_r_W_2_xy = six_r_omega_1_t*six_r_omega_1_t_2
+        # (six_r-W_3) centripetal tensor of link 3
+        six_r_W_3_t = six_r_omega_2_r0_x*six_r_omega_2_r0_x
+        six_r_W_3_t_2 = six_r_omega_2_r0_y*six_r_omega_2_r0_y
+        six_r_W_3_t_3 = six_r_omega_3_z*six_r_omega_3_z
+        six_r_W_3_xx = six_r_W_3_t_2 + six_r_W_3_t_3
+        six_r_W_3_xy = six_r_omega_2_r0_x*six_r_omega_2_r0_y
+        six_r_W_3_xz = six_r_omega_2_r0_x*six_r_omega_3_z
+        six_r_W_3_yz = six_r_omega_2_r0_y*six_r_omega_3_z
+        # (six_r-W_4) centripetal tensor of link 4
+        six_r_W_4_t = six_r_omega_3_r1_x*six_r_omega_3_r1_x
+        six_r_W_4_t_2 = six_r_omega_3_r1_y*six_r_omega_3_r1_y
+        six_r_W_4_t_3 = six_r_omega_4_z*six_r_omega_4_z
+        six_r_W_4_xy = six_r_omega_3_r1_x*six_r_omega_3_r1_y
+        six_r_W_4_xz = six_r_omega_3_r1_x*six_r_omega_4_z
+        six_r_W_4_yz = six_r_omega_3_r1_y*six_r_omega_4_z
+        # (six_r-W_5) centripetal tensor of link 5
+        six_r_W_5_t = six_r_omega_4_r1_x*six_r_omega_4_r1_x
+        six_r_W_5_t_2 = six_r_omega_4_r1_y*six_r_omega_4_r1_y
+        six_r_W_5_t_3 = six_r_omega_5_z*six_r_omega_5_z
+        six_r_W_5_xx = six_r_W_5_t_2 + six_r_W_5_t_3
+        six_r_W_5_xy = six_r_omega_4_r1_x*six_r_omega_4_r1_y
+        six_r_W_5_xz = six_r_omega_4_r1_x*six_r_omega_5_z
+        six_r_W_5_yz = six_r_omega_4_r1_y*six_r_omega_5_z
+        # (six_r-omega_1) angular velocity of link 1
+        six_r_omega_1_x = six_r_e_1_r6_x*six_r_qd_1_t_5
+        six_r_omega_1_y = six_r_e_1_r6_y*six_r_qd_1_t_5
+        six_r_omega_1_z = six_r_qd_1_t_5*six_r_v_1_t
+        # (six_r-W_1) centripetal tensor of link 1
+        six_r_W_1_t = six_r_omega_1_x*six_r_omega_1_x
+        six_r_W_1_t_2 = six_r_omega_1_y*six_r_omega_1_y
+        six_r_W_1_t_3 = six_r_omega_1_z*six_r_omega_1_z
+        six_r_W_1_xy = six_r_omega_1_x*six_r_omega_1_y
+        six_r_W_1_xz = six_r_omega_1_x*six_r_omega_1_z
+        six_r_W_1_yz = six_r_omega_1_y*six_r_omega_1_z
+        # (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        six_r_zeta_2_t = six_r_c_4_t*six_r_zeta_2_r0_y
+        six_r_zeta_2_t_2 = six_r_s_4*six_r_zeta_2_r0_y
+        six_r_zeta_2_r4_x = six_r_c_5_t*six_r_zeta_2_t_2 + six_r_s_5*six_r_zeta_2_r0_x
+        six_r_zeta_2_r4_y = six_r_s_5*six_r_zeta_2_t_2 - six_r_c_5_t*six_r_zeta_2_r0_x
+        # (six_r-omega_2) angular velocity of link 2
+        six_r_omega_2_x = six_r_omega_1_x - six_r_qd_1_t_4*six_r_v_2_t
+        six_r_omega_2_y = six_r_omega_1_y - six_r_qd_1_t_4*six_r_v_2_t_2
+        six_r_omega_2_z = -six_r_omega_1_z - six_r_qd_1_t_4*six_r_s_4
+        # (six_r-W_2) centripetal tensor of link 2
+        six_r_W_2_t_4 = six_r_omega_2_x*six_r_omega_2_x
+        six_r_W_2_t_5 = six_r_omega_2_y*six_r_omega_2_y
+        six_r_W_2_t_6 = six_r_omega_2_z*six_r_omega_2_z
+        six_r_W_2_xy_2 = six_r_omega_2_x*six_r_omega_2_y
+        six_r_W_2_xz = six_r_omega_2_x*six_r_omega_2_z
+        six_r_W_2_yz = six_r_omega_2_y*six_r_omega_2_z
+        # (six_r-omega_3) angular velocity of link 3
+        six_r_omega_3_r3_x = six_r_omega_2_r0_x*six_r_s_5 - six_r_omega_4_t
+        six_r_omega_3_r3_y = -six_r_omega_4_t_2 - six_r_c_5_t*six_r_omega_2_r0_x
+        # (six_r-W_3) centripetal tensor of link 3
+        six_r_W_3_xy_2 = six_r_omega_3_r3_x*six_r_omega_3_r3_y
+        # (six_r-bias) acceleration of the connection point at zero joint accelerations
+        six_r_bias_t_13 = six_r_W_5_xy + six_r_beta_4_x
+        six_r_bias_x = (
+        six_r_W_1_xy*six_r_d_2_r6_y + six_r_W_1_xz*six_r_bias_t_3 + six_r_bias_t_7*(six_r_W_2_xz +
+            six_r_zeta_2_r4_y) + six_r_d_3_r4_y*(six_r_W_2_xy_2 + six_r_zeta_2_t) -
+            six_r_W_5_xx*six_r_platform_joint_offset_x - six_r_bias_t_10*(six_r_W_3_xy_2 +
+            six_r_beta_3_t) - six_r_bias_t_11*(six_r_W_4_t + six_r_W_5_t_2) -
+            six_r_bias_t_12*(six_r_W_5_xy - six_r_beta_4_x) - six_r_bias_t_9*(six_r_W_4_t +
+            six_r_omega_3_r3_y*six_r_omega_3_r3_y) - six_r_d_2_r6_x*(six_r_W_1_t_2 +
+            six_r_W_1_t_3) - six_r_d_3_r4_x*(six_r_W_2_t_5 + six_r_W_2_t_6)
+        )
+        six_r_bias_y = (
+        six_r_W_1_xy*six_r_d_2_r6_x + six_r_W_1_yz*six_r_bias_t_3 + six_r_bias_t_10*(six_r_W_4_t +
+            six_r_omega_3_r3_x*six_r_omega_3_r3_x) + six_r_bias_t_11*six_r_bias_t_13 +
+            six_r_bias_t_12*(six_r_W_4_t + six_r_W_5_t) +
+            six_r_bias_t_13*six_r_platform_joint_offset_x + six_r_bias_t_7*(six_r_W_2_yz -
+            six_r_zeta_2_r4_x) + six_r_bias_t_9*(six_r_W_3_xy_2 - six_r_beta_3_t) +
+            six_r_d_3_r4_x*(six_r_W_2_xy_2 - six_r_zeta_2_t) - six_r_d_2_r6_y*(six_r_W_1_t +
+            six_r_W_1_t_3) - six_r_d_3_r4_y*(six_r_W_2_t_4 + six_r_W_2_t_6)
+        )
+        six_r_bias_z = (
+        six_r_bias_t_11*(six_r_omega_3_r1_x*six_r_omega_4_r1_x - six_r_beta_4_r1_y) +
+            six_r_bias_t_3*(six_r_W_1_t + six_r_W_1_t_2) + six_r_bias_t_9*(six_r_beta_4_t_2 +
+            six_r_omega_3_r1_x*six_r_omega_3_r3_x - six_r_beta_3_t_2*six_r_s_5) +
+            six_r_d_3_r4_x*(six_r_W_2_xz - six_r_zeta_2_r4_y) + six_r_d_3_r4_y*(six_r_W_2_yz +
+            six_r_zeta_2_r4_x) + six_r_platform_joint_offset_x*(six_r_W_5_xz - six_r_beta_5_y) -
+            six_r_W_1_xz*six_r_d_2_r6_x - six_r_W_1_yz*six_r_d_2_r6_y -
+            six_r_bias_t_10*(six_r_beta_4_t + six_r_beta_3_t_2*six_r_c_5_t +
+            six_r_omega_3_r1_x*six_r_omega_3_r3_y) - six_r_bias_t_12*(six_r_beta_4_r1_x +
+            six_r_omega_3_r1_x*six_r_omega_4_r1_y) - six_r_bias_t_7*(six_r_W_2_t_4 +
+            six_r_W_2_t_5)
+        )
+        # (six_r-S_ddot) acceleration of the connection point
+        six_r_S_ddot_tip_x = (
+        axis_x_six_r_axes5_x*six_r_S_ddot_x + axis_x_six_r_axes5_y*six_r_S_ddot_y +
+            axis_x_six_r_axes5_z*six_r_S_ddot_z
+        )
+        six_r_S_ddot_tip_y = (
+        axis_y_six_r_axes5_in_base_x*six_r_S_ddot_x + axis_y_six_r_axes5_in_base_y*six_r_S_ddot_y
+            + axis_y_six_r_axes5_in_base_z*six_r_S_ddot_z
+        )
+        six_r_S_ddot_tip_z = (
+        axis_z_six_r_axes5_in_base_x*six_r_S_ddot_x + axis_z_six_r_axes5_in_base_y*six_r_S_ddot_y
+            + axis_z_six_r_axes5_in_base_z*six_r_S_ddot_z
+        )
+        # (six_r-rel) acceleration of the connection point left to the joint accelerations
+        six_r_rel_x = six_r_S_ddot_tip_x - six_r_bias_x
+        six_r_rel_y = six_r_S_ddot_tip_y - six_r_bias_y
+        six_r_rel_z = six_r_S_ddot_tip_z - six_r_bias_z
+        # (six_r-nd_m1) rate of moment direction 1
+        six_r_nd_m1_t_4 = six_r_end_p1_r8_y*six_r_omega_4_r1_y
+        six_r_nd_m1_x = -six_r_nd_m1_t_2 - six_r_end_p1_r6_x*six_r_omega_4_r1_x
+        six_r_nd_m1_y = six_r_nd_m1_t - six_r_end_p1_r6_x*six_r_omega_4_r1_y
+        # (six_r-nu_1) bias of the angular acceleration along moment direction 1
+        six_r_nu_1_t = six_r_beta_5_x*six_r_end_p1_r8_y - six_r_beta_5_y*six_r_end_p1_r8_x
+        six_r_nu_1_t_2 = six_r_omega_4_r1_x - six_r_omega_tip_x
+        six_r_nu_1_t_3 = six_r_omega_4_r1_y - six_r_omega_tip_y
+        six_r_nu_1_t_4 = six_r_omega_5_z - six_r_omega_tip_z
+        six_r_nu_1_t_5 = (
+        six_r_nd_m1_x*six_r_nu_1_t_2 + six_r_nd_m1_y*six_r_nu_1_t_3 +
+            six_r_nu_1_t_4*(six_r_nd_m1_t_4 + six_r_end_p1_r8_x*six_r_omega_4_r1_x)
+        )
+        six_r_nu_1 = six_r_nu_1_t - six_r_nu_1_t_5
+        # (six_r-etad_1) acceleration with which the joints turn along moment direction 1
+        six_r_alpha_tip_y = (
+        alpha_x*axis_y_six_r_axes5_in_base_x + alpha_y*axis_y_six_r_axes5_in_base_y +
+            alpha_z*axis_y_six_r_axes5_in_base_z
+        )
+        six_r_etad_1_t = (
+        six_r_end_p1_r8_y*(alpha_x*axis_x_six_r_axes5_x + alpha_y*axis_x_six_r_axes5_y +
+            alpha_z*axis_x_six_r_axes5_z) - six_r_alpha_tip_y*six_r_end_p1_r8_x
+        )
+        six_r_etad_1 = six_r_nu_1 - six_r_etad_1_t
+        # (six_r-nd_m2) rate of moment direction 2
+        six_r_nd_m2_y = -six_r_nd_m1_t_3 - six_r_end_p1_r8_x*six_r_omega_4_r1_y
+        six_r_nd_m2_z = six_r_nd_m1_t_2 - six_r_end_p1_r8_x*six_r_omega_5_z
+        # (six_r-nu_2) bias of the angular acceleration along moment direction 2
+        six_r_nu_2_t = six_r_beta_5_y*six_r_end_p1_r6_x - six_r_beta_4_x*six_r_end_p1_r8_y
+        six_r_nu_2_t_2 = (
+        six_r_nd_m2_y*six_r_nu_1_t_3 + six_r_nd_m2_z*six_r_nu_1_t_4 +
+            six_r_nu_1_t_2*(six_r_nd_m1_t_4 + six_r_end_p1_r6_x*six_r_omega_5_z)
+        )
+        six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2
+        # (six_r-etad_2) acceleration with which the joints turn along moment direction 2
+        six_r_etad_2_t = (
+        six_r_alpha_tip_y*six_r_end_p1_r6_x -
+            six_r_end_p1_r8_y*(alpha_x*axis_z_six_r_axes5_in_base_x +
+            alpha_y*axis_z_six_r_axes5_in_base_y + alpha_z*axis_z_six_r_axes5_in_base_z)
+        )
+        six_r_etad_2 = six_r_nu_2 - six_r_etad_2_t
+        # (six_r-qdd_1) acceleration of joint 1
+        six_r_qdd_1_t = six_r_etad_1*six_r_size
+        six_r_qdd_1_t_2 = six_r_etad_2*six_r_size
+        six_r_qdd_1_t_3 = (
+        inv_six_r_w_1_t_222*(six_r_qdd_1_t*six_r_w_1_t_86 + six_r_qdd_1_t_2*six_r_w_1_t_87 +
+            six_r_rel_x*six_r_w_1_t_83 + six_r_rel_z*six_r_w_1_t_85 - six_r_rel_y*six_r_w_1_t_84)
+        )
+        six_r_qdd_1_t_4 = (
+        inv_six_r_w_1_t_194*(six_r_qdd_1_t*six_r_w_1_t_74 + six_r_qdd_1_t_2*six_r_w_1_t_75 +
+            six_r_rel_x*six_r_w_1_t_71 + six_r_rel_z*six_r_w_1_t_73 -
+            six_r_qdd_1_t_3*six_r_w_1_t_76 - six_r_rel_y*six_r_w_1_t_72)
+        )
+        six_r_qdd_1_t_5 = (
+        inv_six_r_w_1_t_150*(six_r_qdd_1_t_3*six_r_w_1_t_64 + six_r_qdd_1_t_4*six_r_w_1_t_58 +
+            six_r_rel_y*six_r_w_1_t_54 - six_r_qdd_1_t*six_r_w_1_t_56 -
+            six_r_qdd_1_t_2*six_r_w_1_t_57 - six_r_rel_x*six_r_w_1_t_53 -
+            six_r_rel_z*six_r_w_1_t_55)
+        )
+        six_r_qdd_1_t_6 = (
+        inv_six_r_w_1_t_101*(six_r_qdd_1_t*six_r_w_1_t_34 + six_r_qdd_1_t_2*six_r_w_1_t_35 +
+            six_r_qdd_1_t_3*six_r_w_1_t_47 + six_r_qdd_1_t_4*six_r_w_1_t_42 +
+            six_r_rel_z*six_r_w_1_t_33 - six_r_qdd_1_t_5*six_r_w_1_t_36 -
+            six_r_rel_y*six_r_w_1_t_32)
+        )
+        # (six_r-acc_5) acceleration of the reference point of link 5, less gravity
+        six_r_acc_5_x = (
+        six_r_S_ddot_tip_x - axis_x_six_r_axes5_x*gravity_x - axis_x_six_r_axes5_y*gravity_y -
+            axis_x_six_r_axes5_z*gravity_z
+        )
+        six_r_acc_5_y = (
+        six_r_S_ddot_tip_y - axis_y_six_r_axes5_in_base_x*gravity_x -
+            axis_y_six_r_axes5_in_base_y*gravity_y - axis_y_six_r_axes5_in_base_z*gravity_z
+        )
+        six_r_acc_5_z = (
+        six_r_S_ddot_tip_z - axis_z_six_r_axes5_in_base_x*gravity_x -
+            axis_z_six_r_axes5_in_base_y*gravity_y - axis_z_six_r_axes5_in_base_z*gravity_z
+        )
+        # (six_r-alpha_1) angular acceleration of link 1
+        six_r_alpha_1_t = six_r_qdd_1_t_5*six_r_s_2
+        six_r_alpha_1_t_2 = six_r_c_2_t*six_r_qdd_1_t_5
+        # (six_r-alpha_2) angular acceleration of link 2
+        six_r_alpha_2_x = six_r_zeta_2_x - six_r_alpha_1_t
+        six_r_alpha_2_y = six_r_alpha_1_t_2 + six_r_zeta_2_y
+        # (six_r-alpha_3) angular acceleration of link 3
+        six_r_alpha_3_x = six_r_alpha_2_x*six_r_c_3 + six_r_alpha_2_y*six_r_s_3 - six_r_zeta_3_x
+        six_r_alpha_3_y = six_r_zeta_3_y + six_r_alpha_2_y*six_r_c_3 - six_r_alpha_2_x*six_r_s_3
+        six_r_alpha_3_z = six_r_qdd_1_t_3 + six_r_qdd_1_t_4
+        # (six_r-alpha_4) angular acceleration of link 4
+        six_r_alpha_4_x = six_r_alpha_3_z*six_r_s_4 - six_r_zeta_4_x - six_r_alpha_3_y*six_r_c_4_t
+        six_r_alpha_4_y = six_r_zeta_4_y - six_r_alpha_3_y*six_r_s_4 - six_r_alpha_3_z*six_r_c_4_t
+        six_r_alpha_4_z = six_r_alpha_3_x + six_r_qdd_1_t_6
+        # (six_r-alpha_5) angular acceleration of link 5
+        six_r_alpha_5_x = six_r_alpha_4_z*six_r_s_5 - six_r_zeta_5_x - six_r_alpha_4_y*six_r_c_5_t
+        six_r_alpha_5_y = six_r_zeta_5_y - six_r_alpha_4_y*six_r_s_5 - six_r_alpha_4_z*six_r_c_5_t
+        six_r_alpha_5_z = (
+        six_r_alpha_4_x + inv_six_r_w_1_t_69*(six_r_qdd_1_t_2*six_r_w_1_t_17 +
+            six_r_qdd_1_t_3*six_r_w_1_t_28 + six_r_qdd_1_t_5*six_r_w_1_t_21 +
+            six_r_rel_y*six_r_w_1_t_16 - six_r_qdd_1_t_4*six_r_w_1_t_25 -
+            six_r_qdd_1_t_6*six_r_w_1_t_18)
+        )
+        # (six_r-B_5) acceleration tensor of link 5
+        six_r_B_5_xy = six_r_W_5_xy - six_r_alpha_5_z
+        six_r_B_5_xz = six_r_W_5_xz + six_r_alpha_5_y
+        six_r_B_5_yx = six_r_W_5_xy + six_r_alpha_5_z
+        six_r_B_5_yz = six_r_W_5_yz - six_r_alpha_5_x
+        six_r_B_5_zx = six_r_W_5_xz - six_r_alpha_5_y
+        six_r_B_5_zy = six_r_W_5_yz + six_r_alpha_5_x
+        # (six_r-mu_5) inertia moment of the links that turn with link 5, about their reference points
+        six_r_mu_5_x = (
+        six_r_B_5_yx*six_r_J_5_xz + six_r_B_5_zy*six_r_Sigma_5_yy + six_r_J_5_yz*(six_r_W_5_t_2 -
+            six_r_W_5_t_3) + six_r_acc_5_z*six_r_h_5_y - six_r_B_5_yz*six_r_Sigma_5_zz -
+            six_r_B_5_zx*six_r_J_5_xy - six_r_acc_5_y*six_r_h_5_z
+        )
+        six_r_mu_5_y = (
+        six_r_B_5_xz*six_r_Sigma_5_zz + six_r_B_5_zy*six_r_J_5_xy + six_r_acc_5_x*six_r_h_5_z -
+            six_r_B_5_xy*six_r_J_5_yz - six_r_B_5_zx*six_r_Sigma_5_xx - six_r_J_5_xz*(six_r_W_5_t
+            - six_r_W_5_t_3) - six_r_acc_5_z*six_r_h_5_x
+        )
+        six_r_mu_5_z = (
+        six_r_B_5_xz*six_r_J_5_yz + six_r_B_5_yx*six_r_Sigma_5_xx + six_r_J_5_xy*(six_r_W_5_t -
+            six_r_W_5_t_2) + six_r_acc_5_y*six_r_h_5_x - six_r_B_5_xy*six_r_Sigma_5_yy -
+            six_r_B_5_yz*six_r_J_5_xz - six_r_acc_5_x*six_r_h_5_y
+        )
+        # (six_r-B_2) acceleration tensor of link 2
+        six_r_B_2_xy = -six_r_W_2_xy - six_r_qdd_1_t_4
+        six_r_B_2_yx = six_r_qdd_1_t_4 - six_r_W_2_xy
+        six_r_B_2_zx = -six_r_alpha_2_y - six_r_zeta_2_y
+        six_r_B_2_zy = six_r_alpha_2_x + six_r_zeta_2_x
+        # (six_r-a_o_3) acceleration of the origin of joint 3
+        six_r_a_o_3_t = six_r_joint3_offset_x*(six_r_W_2_t_2 + six_r_W_2_t_3)
+        six_r_a_o_3_t_2 = six_r_B_2_yx*six_r_joint3_offset_x
+        six_r_a_o_3_t_3 = six_r_B_2_zx*six_r_joint3_offset_x
+        # (six_r-B_3) acceleration tensor of link 3
+        six_r_B_3_xy = six_r_W_3_xy - six_r_alpha_3_z
+        six_r_B_3_xz = six_r_W_3_xz + six_r_alpha_3_y
+        six_r_B_3_yx = six_r_W_3_xy + six_r_alpha_3_z
+        six_r_B_3_yz = six_r_W_3_yz - six_r_alpha_3_x
+        six_r_B_3_zx = six_r_W_3_xz - six_r_alpha_3_y
+        six_r_B_3_zy = six_r_W_3_yz + six_r_alpha_3_x
+        # (six_r-a_o_3) acceleration of the origin of joint 3
+        six_r_a_o_3_r0_x = six_r_a_o_3_t_2*six_r_s_3 - six_r_a_o_3_t*six_r_c_3
+        six_r_a_o_3_r0_y = six_r_a_o_3_t*six_r_s_3 + six_r_a_o_3_t_2*six_r_c_3
+        # (six_r-a_o_4) acceleration of the origin of joint 4
+        six_r_a_o_4_x = six_r_a_o_3_r0_x - six_r_W_3_xx*six_r_joint4_offset_x
+        six_r_a_o_4_y = six_r_a_o_3_r0_y + six_r_B_3_yx*six_r_joint4_offset_x
+        six_r_a_o_4_z = six_r_a_o_3_t_3 + six_r_B_3_zx*six_r_joint4_offset_x
+        # (six_r-acc_4) acceleration of the reference point of link 4, less gravity
+        six_r_acc_4_x = (
+        six_r_a_o_4_z*six_r_s_4 + six_r_c_4_t*six_r_g_r4_y - six_r_a_o_4_y*six_r_c_4_t -
+            six_r_g_r1_x*six_r_s_4
+        )
+        six_r_acc_4_y = (
+        six_r_c_4_t*six_r_g_r1_x + six_r_g_r4_y*six_r_s_4 - six_r_a_o_4_y*six_r_s_4 -
+            six_r_a_o_4_z*six_r_c_4_t
+        )
+        six_r_acc_4_z = six_r_a_o_4_x - six_r_g_r4_x
+        # (six_r-B_4) acceleration tensor of link 4
+        six_r_B_4_xy = six_r_W_4_xy - six_r_alpha_4_z
+        six_r_B_4_xz = six_r_W_4_xz + six_r_alpha_4_y
+        six_r_B_4_yx = six_r_W_4_xy + six_r_alpha_4_z
+        six_r_B_4_yz = six_r_W_4_yz - six_r_alpha_4_x
+        six_r_B_4_zx = six_r_W_4_xz - six_r_alpha_4_y
+        six_r_B_4_zy = six_r_W_4_yz + six_r_alpha_4_x
+        # (six_r-mu_4) inertia moment of the links that turn with link 4, about their reference points
+        six_r_mu_4_x = (
+        six_r_B_4_yx*six_r_J_4_xz + six_r_B_4_zx*six_r_J_4_yz + six_r_B_4_zy*six_r_Sigma_4_yy -
+            six_r_B_4_yz*six_r_Sigma_4_zz - six_r_J_4_xy*(six_r_W_4_t_2 - six_r_W_4_t_3) -
+            six_r_acc_4_y*six_r_h_4_x - six_r_acc_4_z*six_r_h_4_y
+        )
+        six_r_mu_4_y = (
+        six_r_B_4_xy*six_r_J_4_xy + six_r_B_4_xz*six_r_Sigma_4_zz + six_r_acc_4_x*six_r_h_4_x -
+            six_r_B_4_zx*six_r_Sigma_4_xx - six_r_B_4_zy*six_r_J_4_yz - six_r_J_4_xz*(six_r_W_4_t
+            - six_r_W_4_t_3) - six_r_acc_4_z*six_r_h_4_z
+        )
+        six_r_mu_4_z = (
+        six_r_B_4_yx*six_r_Sigma_4_xx + six_r_acc_4_x*six_r_h_4_y + six_r_acc_4_y*six_r_h_4_z -
+            six_r_B_4_xy*six_r_Sigma_4_yy - six_r_B_4_xz*six_r_J_4_xy - six_r_B_4_yz*six_r_J_4_xz
+            - six_r_J_4_yz*(six_r_W_4_t - six_r_W_4_t_2)
+        )
+        # (six_r-N_4) moment about joint 4 of the links from 4 outwards, the force at the connection point left out
+        six_r_N_4_x = six_r_mu_4_x + six_r_mu_5_z
+        six_r_N_4_y = six_r_mu_4_y - six_r_c_5_t*six_r_mu_5_x - six_r_mu_5_y*six_r_s_5
+        six_r_N_4_z = six_r_mu_4_z + six_r_mu_5_x*six_r_s_5 - six_r_c_5_t*six_r_mu_5_y
+        # (six_r-f_4) inertia force of link 4 less its weight
+        six_r_f_4_x = (
+        six_r_B_4_xz*six_r_h_4_x + six_r_acc_4_x*six_r_link4_mass - six_r_B_4_xy*six_r_h_4_y -
+            six_r_h_4_z*(six_r_W_4_t_2 + six_r_W_4_t_3)
+        )
+        six_r_f_4_y = (
+        six_r_B_4_yx*six_r_h_4_z + six_r_B_4_yz*six_r_h_4_x + six_r_acc_4_y*six_r_link4_mass +
+            six_r_h_4_y*(six_r_W_4_t + six_r_W_4_t_3)
+        )
+        six_r_f_4_z = (
+        six_r_B_4_zx*six_r_h_4_z + six_r_acc_4_z*six_r_link4_mass - six_r_B_4_zy*six_r_h_4_y -
+            six_r_h_4_x*(six_r_W_4_t + six_r_W_4_t_2)
+        )
+        # (six_r-acc_3) acceleration of the reference point of link 3, less gravity
+        six_r_acc_3_x = six_r_a_o_3_r0_x - six_r_g_r4_x
+        six_r_acc_3_y = six_r_a_o_3_r0_y - six_r_g_r4_y
+        six_r_acc_3_z = six_r_a_o_3_t_3 - six_r_g_r1_x
+        # (six_r-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        six_r_mu_3_x = (
+        six_r_B_3_yx*six_r_J_3_xz + six_r_B_3_zy*six_r_Sigma_3_yy + six_r_J_3_yz*(six_r_W_3_t_2 -
+            six_r_W_3_t_3) + six_r_acc_3_z*six_r_h_3_y - six_r_B_3_yz*six_r_Sigma_3_zz -
+            six_r_B_3_zx*six_r_J_3_xy - six_r_acc_3_y*six_r_h_3_z
+        )
+        six_r_mu_3_y = (
+        six_r_B_3_xz*six_r_Sigma_3_zz + six_r_B_3_zy*six_r_J_3_xy + six_r_acc_3_x*six_r_h_3_z -
+            six_r_B_3_xy*six_r_J_3_yz - six_r_B_3_zx*six_r_Sigma_3_xx - six_r_J_3_xz*(six_r_W_3_t
+            - six_r_W_3_t_3) - six_r_acc_3_z*six_r_h_3_x
+        )
+        six_r_mu_3_z = (
+        six_r_B_3_xz*six_r_J_3_yz + six_r_B_3_yx*six_r_Sigma_3_xx + six_r_J_3_xy*(six_r_W_3_t -
+            six_r_W_3_t_2) + six_r_acc_3_y*six_r_h_3_x - six_r_B_3_xy*six_r_Sigma_3_yy -
+            six_r_B_3_yz*six_r_J_3_xz - six_r_acc_3_x*six_r_h_3_y
+        )
+        # (six_r-f_4) inertia force of link 4 less its weight
+        six_r_f_4_r0_x = -six_r_c_4_t*six_r_f_4_x - six_r_f_4_y*six_r_s_4
+        six_r_f_4_r0_y = six_r_f_4_x*six_r_s_4 - six_r_c_4_t*six_r_f_4_y
+        # (six_r-N_3) moment about joint 3 of the links from 3 outwards, the force at the connection point left out
+        six_r_N_3_x = six_r_N_4_z + six_r_mu_3_x
+        six_r_N_3_y = (
+        six_r_mu_3_y - six_r_N_4_x*six_r_c_4_t - six_r_N_4_y*six_r_s_4 -
+            six_r_f_4_r0_y*six_r_joint4_offset_x
+        )
+        six_r_N_3_z = (
+        six_r_mu_3_z + six_r_N_4_x*six_r_s_4 + six_r_f_4_r0_x*six_r_joint4_offset_x -
+            six_r_N_4_y*six_r_c_4_t
+        )
+        # (six_r-f_3) inertia force of link 3 less its weight
+        six_r_f_3_x = (
+        six_r_B_3_xy*six_r_h_3_y + six_r_B_3_xz*six_r_h_3_z + six_r_acc_3_x*six_r_link3_mass -
+            six_r_W_3_xx*six_r_h_3_x
+        )
+        six_r_f_3_y = (
+        six_r_B_3_yx*six_r_h_3_x + six_r_B_3_yz*six_r_h_3_z + six_r_acc_3_y*six_r_link3_mass -
+            six_r_h_3_y*(six_r_W_3_t + six_r_W_3_t_3)
+        )
+        six_r_f_3_z = (
+        six_r_B_3_zx*six_r_h_3_x + six_r_B_3_zy*six_r_h_3_y + six_r_acc_3_z*six_r_link3_mass -
+            six_r_h_3_z*(six_r_W_3_t + six_r_W_3_t_2)
+        )
+        # (six_r-T_3) inertia force of the links from 3 outwards, the last link left out
+        six_r_T_3_x = six_r_f_3_x + six_r_f_4_z
+        six_r_T_3_y = six_r_f_3_y + six_r_f_4_r0_x
+        six_r_T_3_z = six_r_f_3_z + six_r_f_4_r0_y
+        # (six_r-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        six_r_mu_2_x = (
+        six_r_B_2_yx*six_r_J_2_xz + six_r_B_2_zy*six_r_Sigma_2_yy + six_r_J_2_yz*(six_r_W_2_t_2 -
+            six_r_W_2_t_3) + six_r_g_r3_y*six_r_h_2_z - six_r_B_2_zx*six_r_J_2_xy -
+            six_r_Sigma_2_zz*six_r_alpha_1_t - six_r_g_r1_x*six_r_h_2_y
+        )
+        six_r_mu_2_y = (
+        six_r_B_2_zy*six_r_J_2_xy + six_r_Sigma_2_zz*six_r_alpha_1_t_2 + six_r_g_r1_x*six_r_h_2_x
+            - six_r_B_2_xy*six_r_J_2_yz - six_r_B_2_zx*six_r_Sigma_2_xx -
+            six_r_J_2_xz*(six_r_W_2_t - six_r_W_2_t_3) - six_r_g_r3_x*six_r_h_2_z
+        )
+        six_r_mu_2_z = (
+        six_r_B_2_yx*six_r_Sigma_2_xx + six_r_J_2_xy*(six_r_W_2_t - six_r_W_2_t_2) +
+            six_r_J_2_yz*six_r_alpha_1_t_2 + six_r_g_r3_x*six_r_h_2_y -
+            six_r_B_2_xy*six_r_Sigma_2_yy - six_r_J_2_xz*six_r_alpha_1_t -
+            six_r_g_r3_y*six_r_h_2_x
+        )
+        # (six_r-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        six_r_N_2_x = six_r_mu_2_x + six_r_N_3_x*six_r_c_3 - six_r_N_3_y*six_r_s_3
+        six_r_N_2_y = (
+        six_r_mu_2_y + six_r_N_3_x*six_r_s_3 + six_r_N_3_y*six_r_c_3 -
+            six_r_T_3_z*six_r_joint3_offset_x
+        )
+        six_r_N_2_z = (
+        six_r_N_3_z + six_r_mu_2_z + six_r_joint3_offset_x*(six_r_T_3_x*six_r_s_3 +
+            six_r_T_3_y*six_r_c_3)
+        )
+        # (six_r-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        six_r_mu_1_z = (
+        -six_r_J_1_xx*six_r_qdd_1_t_5 - six_r_g_r1_x*six_r_h_1_y - six_r_g_r1_y*six_r_h_1_z
+        )
+        # (six_r-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        six_r_N_1_z = six_r_mu_1_z + six_r_N_2_x*six_r_s_2 - six_r_N_2_y*six_r_c_2_t
+        # (six_r-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        six_r_G_t = inv_six_r_w_1_t_69*six_r_mu_5_z
+        six_r_G_t_2 = inv_six_r_w_1_t_101*(six_r_G_t*six_r_w_1_t_18 - six_r_N_4_z)
+        six_r_G_t_3 = (
+        inv_six_r_w_1_t_150*(six_r_G_t*six_r_w_1_t_21 + six_r_G_t_2*six_r_w_1_t_36 - six_r_N_1_z)
+        )
+        six_r_G_t_4 = (
+        inv_six_r_w_1_t_194*(six_r_G_t*six_r_w_1_t_25 + six_r_G_t_2*six_r_w_1_t_42 - six_r_N_2_z -
+            six_r_G_t_3*six_r_w_1_t_58)
+        )
+        six_r_G_t_5 = (
+        inv_six_r_w_1_t_222*(six_r_N_3_z + six_r_G_t*six_r_w_1_t_28 + six_r_G_t_3*six_r_w_1_t_64 +
+            six_r_G_t_4*six_r_w_1_t_76 - six_r_G_t_2*six_r_w_1_t_47)
+        )
+        six_r_G_t_6 = (
+        six_r_size*(six_r_G_t_2*six_r_w_1_t_34 + six_r_G_t_3*six_r_w_1_t_56 +
+            six_r_G_t_4*six_r_w_1_t_74 - six_r_G_t_5*six_r_w_1_t_86)
+        )
+        six_r_G_t_7 = (
+        six_r_size*(six_r_G_t_2*six_r_w_1_t_35 + six_r_G_t_3*six_r_w_1_t_57 +
+            six_r_G_t_4*six_r_w_1_t_75 - six_r_G_t*six_r_w_1_t_17 - six_r_G_t_5*six_r_w_1_t_87)
+        )
+        # (six_r-c) leg force on the platform without actuation and without the mass at the connection point
+        six_r_c_x = (
+        six_r_G_t_3*six_r_w_1_t_53 + six_r_G_t_4*six_r_w_1_t_71 + six_r_W_5_xx*six_r_h_5_x -
+            six_r_B_5_xy*six_r_h_5_y - six_r_B_5_xz*six_r_h_5_z - six_r_G_t_5*six_r_w_1_t_83
+        )
+        six_r_c_y = (
+        six_r_G_t_5*six_r_w_1_t_84 + six_r_h_5_y*(six_r_W_5_t + six_r_W_5_t_3) -
+            six_r_B_5_yx*six_r_h_5_x - six_r_B_5_yz*six_r_h_5_z - six_r_G_t*six_r_w_1_t_16 -
+            six_r_G_t_2*six_r_w_1_t_32 - six_r_G_t_3*six_r_w_1_t_54 - six_r_G_t_4*six_r_w_1_t_72
+        )
+        six_r_c_z = (
+        six_r_G_t_2*six_r_w_1_t_33 + six_r_G_t_3*six_r_w_1_t_55 + six_r_G_t_4*six_r_w_1_t_73 +
+            six_r_h_5_z*(six_r_W_5_t + six_r_W_5_t_2) - six_r_B_5_zx*six_r_h_5_x -
+            six_r_B_5_zy*six_r_h_5_y - six_r_G_t_5*six_r_w_1_t_85
+        )
+        # (six_r-G_m) moment at the connection point that balances the leg's inertia and weight along all freedoms
+        six_r_G_m_t = six_r_G_t_6*six_r_end_p1_r8_y
+        six_r_G_m_t_2 = six_r_G_t_7*six_r_end_p1_r8_y
+        six_r_G_m_y = six_r_G_t_7*six_r_end_p1_r6_x - six_r_G_t_6*six_r_end_p1_r8_x
+        # (six_r-c) leg force on the platform without actuation and without the mass at the connection point
+        six_r_c_in_base_x = (
+        axis_x_six_r_axes5_x*six_r_c_x + axis_y_six_r_axes5_in_base_x*six_r_c_y +
+            axis_z_six_r_axes5_in_base_x*six_r_c_z
+        )
+        six_r_c_in_base_y = (
+        axis_x_six_r_axes5_y*six_r_c_x + axis_y_six_r_axes5_in_base_y*six_r_c_y +
+            axis_z_six_r_axes5_in_base_y*six_r_c_z
+        )
+        six_r_c_in_base_z = (
+        axis_x_six_r_axes5_z*six_r_c_x + axis_y_six_r_axes5_in_base_z*six_r_c_y +
+            axis_z_six_r_axes5_in_base_z*six_r_c_z
+        )
+        # (R_a) moment that actuators and external wrench must give
+        six_r_R_a_t = (
+        axis_z_six_r_axes5_in_base_x*six_r_G_m_t_2 + six_r_c_in_base_z*six_r_q_in_base_y -
+            axis_x_six_r_axes5_x*six_r_G_m_t - axis_y_six_r_axes5_in_base_x*six_r_G_m_y -
+            six_r_c_in_base_y*six_r_q_in_base_z
+        )
+        six_r_R_a_t_2 = (
+        axis_z_six_r_axes5_in_base_y*six_r_G_m_t_2 + six_r_c_in_base_x*six_r_q_in_base_z -
+            axis_x_six_r_axes5_y*six_r_G_m_t - axis_y_six_r_axes5_in_base_y*six_r_G_m_y -
+            six_r_c_in_base_z*six_r_q_in_base_x
+        )
+        six_r_R_a_t_3 = (
+        axis_z_six_r_axes5_in_base_z*six_r_G_m_t_2 + six_r_c_in_base_y*six_r_q_in_base_x -
+            axis_x_six_r_axes5_z*six_r_G_m_t - axis_y_six_r_axes5_in_base_z*six_r_G_m_y -
+            six_r_c_in_base_x*six_r_q_in_base_y
+        )
+        # (six_r-H_a_2) moment of the column's unit force about the platform origin
+        six_r_H_a_2_x = (
+        axis_y_six_r_axes5_in_base_x*six_r_o_2_y + axis_z_six_r_axes5_in_base_x*six_r_o_2_t_2 +
+            six_r_q_in_base_y*six_r_w_2_in_base_z - axis_x_six_r_axes5_x*six_r_o_2_t -
+            six_r_q_in_base_z*six_r_w_2_in_base_y
+        )
+        six_r_H_a_2_y = (
+        axis_y_six_r_axes5_in_base_y*six_r_o_2_y + axis_z_six_r_axes5_in_base_y*six_r_o_2_t_2 +
+            six_r_q_in_base_z*six_r_w_2_in_base_x - axis_x_six_r_axes5_y*six_r_o_2_t -
+            six_r_q_in_base_x*six_r_w_2_in_base_z
+        )
+        six_r_H_a_2_z = (
+        axis_y_six_r_axes5_in_base_z*six_r_o_2_y + axis_z_six_r_axes5_in_base_z*six_r_o_2_t_2 +
+            six_r_q_in_base_x*six_r_w_2_in_base_y - axis_x_six_r_axes5_z*six_r_o_2_t -
+            six_r_q_in_base_y*six_r_w_2_in_base_x
         )
         ok = (
-        ok & m.every(leg, (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE *
-            size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
-            (abs(w_1_t_82) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(six_r_w_1_t_15) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_31) >
+            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_52) > _TOLERANCE * six_r_size) &
+            (abs(six_r_w_1_t_70) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_82) > _TOLERANCE *
+            six_r_size))
         )
         sums = m.added(sums, leg, (
-        c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
+        six_r_c_in_base_x, six_r_c_in_base_y, six_r_c_in_base_z, six_r_R_a_t, six_r_R_a_t_2,
+            six_r_R_a_t_3,
         ))
-        out_H[_H_rrrrrr[0][leg]] = w_2_in_base_x
-        out_H[_H_rrrrrr[1][leg]] = w_2_in_base_y
-        out_H[_H_rrrrrr[2][leg]] = w_2_in_base_z
-        out_H[_H_rrrrrr[3][leg]] = H_a_2_x
-        out_H[_H_rrrrrr[4][leg]] = H_a_2_y
-        out_H[_H_rrrrrr[5][leg]] = H_a_2_z
+        out_H[_H_six_r[0][leg]] = six_r_w_2_in_base_x
+        out_H[_H_six_r[1][leg]] = six_r_w_2_in_base_y
+        out_H[_H_six_r[2][leg]] = six_r_w_2_in_base_z
+        out_H[_H_six_r[3][leg]] = six_r_H_a_2_x
+        out_H[_H_six_r[4][leg]] = six_r_H_a_2_y
+        out_H[_H_six_r[5][leg]] = six_r_H_a_2_z
     (
-    total_rrrrrr_x, total_rrrrrr_y, total_rrrrrr_z, total_rrrrrr_x_2, total_rrrrrr_y_2,
-        total_rrrrrr_z_2,
+    total_six_r_x, total_six_r_y, total_six_r_z, total_six_r_x_2, total_six_r_y_2,
+        total_six_r_z_2,
     ) = sums
-    # (E4) force that actuators and external wrench must give
-    R_t_x = f_p_x - total_rrrrrr_x
-    R_t_y = f_p_y - total_rrrrrr_y
-    R_t_z = f_p_z - total_rrrrrr_z
-    # (E5) moment that actuators and external wrench must give
-    R_a_x = mu_p_in_base_x - total_rrrrrr_x_2
-    R_a_y = mu_p_in_base_y - total_rrrrrr_y_2
-    R_a_z = mu_p_in_base_z - total_rrrrrr_z_2
+    # (R_t) force that actuators and external wrench must give
+    R_t_x = f_p_x - total_six_r_x
+    R_t_y = f_p_y - total_six_r_y
+    R_t_z = f_p_z - total_six_r_z
+    # (R_a) moment that actuators and external wrench must give
+    R_a_x = mu_p_in_base_x - total_six_r_x_2
+    R_a_y = mu_p_in_base_y - total_six_r_y_2
+    R_a_z = mu_p_in_base_z - total_six_r_z_2
     out_required[0] = R_t_x
     out_required[1] = R_t_y
     out_required[2] = R_t_z
@@ -6964,16 +7992,16 @@ def _run_inverse_kinematics(m, q):
     ok = True
     out_q = m.zeros("q")
     for leg, k in legs[0]:
-        q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
-        q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
-        q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
-        q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
-        q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
-        out_q[_q_rrrrrr[0][leg]] = q_1
-        out_q[_q_rrrrrr[1][leg]] = q_2
-        out_q[_q_rrrrrr[2][leg]] = q_3
-        out_q[_q_rrrrrr[3][leg]] = q_4
-        out_q[_q_rrrrrr[4][leg]] = q_5
+        six_r_q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
+        six_r_q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
+        six_r_q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
+        six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
+        six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        out_q[_q_six_r[0][leg]] = six_r_q_1
+        out_q[_q_six_r[1][leg]] = six_r_q_2
+        out_q[_q_six_r[2][leg]] = six_r_q_3
+        out_q[_q_six_r[3][leg]] = six_r_q_4
+        out_q[_q_six_r[4][leg]] = six_r_q_5
     return ok, (out_q,)
 
 
@@ -7029,369 +8057,395 @@ def _run_joint_rates(m, X, V, q):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
-            rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
-            rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
-            rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x,
-            rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
-            rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
-            rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z, size,
-            size_t,
+        six_r_base_frame_xx, six_r_base_frame_xy, six_r_base_frame_xz, six_r_base_frame_yx,
+            six_r_base_frame_yy, six_r_base_frame_yz, six_r_base_frame_zx, six_r_base_frame_zy,
+            six_r_base_frame_zz, six_r_joint2_offset_x, six_r_joint3_offset_x,
+            six_r_joint4_offset_x, six_r_joint5_offset_x, six_r_platform_joint_axis_platform_x,
+            six_r_platform_joint_axis_platform_y, six_r_platform_joint_axis_platform_z,
+            six_r_platform_joint_offset_x, six_r_platform_point_x, six_r_platform_point_y,
+            six_r_platform_point_z, six_r_size, six_r_size_t,
         ) = k
-        q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
-        q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
-        q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
-        q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
-        q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
-        # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
-        c_5_t = sin(q_5)
-        # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
-        s_5 = cos(q_5)
-        # (rrrrrr-V2) from joint 4 to the connection point, along the links
-        r_4_t = c_5_t*rrrrrr_platform_joint_offset_x
-        r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5
-        # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
-        c_4_t = sin(q_4)
-        # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
-        s_4 = cos(q_4)
-        # (rrrrrr-V2) from joint 4 to the connection point, along the links
-        r_4_t_2 = r_4_t*s_4
-        r_4_t_3 = c_4_t*r_4_t
-        # (rrrrrr-V3) from joint 3 to the connection point, along the links
-        r_3_x = r_4_z + rrrrrr_joint4_offset_x
-        # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
-        c_3 = cos(q_3)
-        # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
-        s_3 = sin(q_3)
-        # (rrrrrr-V3) from joint 3 to the connection point, along the links
-        r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3
-        # (rrrrrr-V4) from joint 2 to the connection point, along the links
-        r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3
-        # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
-        c_2_t = sin(q_2)
-        # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
-        s_2 = cos(q_2)
-        # (rrrrrr-V4) from joint 2 to the connection point, along the links
-        r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2
-        # (rrrrrr-V5) from joint 1 to the connection point, along the links
-        r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y
-        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-        e_1_r2_x = c_3*s_2 - c_2_t*s_3
-        e_1_r2_y = -c_2_t*c_3 - s_2*s_3
-        v_1_t = c_4_t*e_1_r2_y
-        v_1_t_2 = e_1_r2_y*s_4
-        e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5
-        e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x
-        # (rrrrrr-V5) from joint 1 to the connection point, along the links
-        r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x
-        r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2
-        r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3
-        r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3
-        r_1_t = r_4_t_3*s_4
-        r_1_r4_x = r_1_t - c_4_t*r_1_r2_y
-        r_1_t_2 = c_4_t*r_4_t_3
-        r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4
-        r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y
-        r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5
-        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-        v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t
-        v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t
-        v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x
-        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-        v_2_t = c_4_t*c_5_t
-        v_2_t_2 = c_4_t*s_5
-        # (rrrrrr-V4) from joint 2 to the connection point, along the links
-        r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3
-        r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3
-        r_2_r2_x = r_1_t - c_4_t*r_2_r0_y
-        r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4
-        r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y
-        r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5
-        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-        v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4
-        v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t
-        v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2
-        # (rrrrrr-V3) from joint 3 to the connection point, along the links
-        r_3_r1_x = r_1_t - c_4_t*r_4_t_2
-        r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4
-        r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y
-        r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5
-        # (rrrrrr-V8) velocity of the connection point per rate of joint 3
-        v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4
-        v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t
-        v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2
-        # (rrrrrr-V9) velocity of the connection point per rate of joint 4
-        v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
-        # (rrrrrr-V13) force part of reciprocal wrench 1
-        w_1_t = c_4_t*s_3
-        w_1_t_2 = c_3*c_4_t
-        axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
-        axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
-        # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
-        c_1_t = sin(q_1)
-        # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
-        s_1 = cos(q_1)
-        # (rrrrrr-V13) force part of reciprocal wrench 1
-        axis_z_rrrrrr_axes5_r7_x = -axis_z_rrrrrr_axes5_r5_x*s_1 - c_1_t*s_4
-        axis_z_rrrrrr_axes5_r7_y = s_1*s_4 - axis_z_rrrrrr_axes5_r5_x*c_1_t
-        axis_z_rrrrrr_axes5_in_base_x = (
-        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
-            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
-            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
+        six_r_q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
+        six_r_q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
+        six_r_q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
+        six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
+        six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
+        six_r_c_5_t = sin(six_r_q_5)
+        # (six_r-s_5) sine of the angle of joint 5 from its reference direction
+        six_r_s_5 = cos(six_r_q_5)
+        # (six_r-r_4) from joint 4 to the connection point, along the links
+        six_r_r_4_t = six_r_c_5_t*six_r_platform_joint_offset_x
+        six_r_r_4_z = six_r_joint5_offset_x + six_r_platform_joint_offset_x*six_r_s_5
+        # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
+        six_r_c_4_t = sin(six_r_q_4)
+        # (six_r-s_4) sine of the angle of joint 4 from its reference direction
+        six_r_s_4 = cos(six_r_q_4)
+        # (six_r-r_4) from joint 4 to the connection point, along the links
+        six_r_r_4_t_2 = six_r_r_4_t*six_r_s_4
+        six_r_r_4_t_3 = six_r_c_4_t*six_r_r_4_t
+        # (six_r-r_3) from joint 3 to the connection point, along the links
+        six_r_r_3_x = six_r_joint4_offset_x + six_r_r_4_z
+        # (six_r-c_3) cosine of the angle of joint 3 from its reference direction
+        six_r_c_3 = cos(six_r_q_3)
+        # (six_r-s_3) sine of the angle of joint 3 from its reference direction
+        six_r_s_3 = sin(six_r_q_3)
+        # (six_r-r_3) from joint 3 to the connection point, along the links
+        six_r_r_3_r0_y = six_r_c_3*six_r_r_4_t_2 + six_r_r_3_x*six_r_s_3
+        # (six_r-r_2) from joint 2 to the connection point, along the links
+        six_r_r_2_x = six_r_joint3_offset_x + six_r_c_3*six_r_r_3_x - six_r_r_4_t_2*six_r_s_3
+        # (six_r-c_2) cosine of the angle of joint 2 from its reference direction
+        six_r_c_2_t = sin(six_r_q_2)
+        # (six_r-s_2) sine of the angle of joint 2 from its reference direction
+        six_r_s_2 = cos(six_r_q_2)
+        # (six_r-r_2) from joint 2 to the connection point, along the links
+        six_r_r_2_r0_x = -six_r_c_2_t*six_r_r_2_x - six_r_r_3_r0_y*six_r_s_2
+        # (six_r-r_1) from joint 1 to the connection point, along the links
+        six_r_r_1_z = six_r_joint2_offset_x + six_r_r_2_x*six_r_s_2 - six_r_c_2_t*six_r_r_3_r0_y
+        # (six_r-v_1) velocity of the connection point per rate of joint 1
+        six_r_e_1_r2_x = six_r_c_3*six_r_s_2 - six_r_c_2_t*six_r_s_3
+        six_r_e_1_r2_y = -six_r_c_2_t*six_r_c_3 - six_r_s_2*six_r_s_3
+        six_r_v_1_t = six_r_c_4_t*six_r_e_1_r2_y
+        six_r_v_1_t_2 = six_r_e_1_r2_y*six_r_s_4
+        six_r_e_1_r6_x = six_r_c_5_t*six_r_v_1_t_2 + six_r_e_1_r2_x*six_r_s_5
+        six_r_e_1_r6_y = six_r_s_5*six_r_v_1_t_2 - six_r_c_5_t*six_r_e_1_r2_x
+        # (six_r-r_1) from joint 1 to the connection point, along the links
+        six_r_r_1_r1_x = six_r_r_1_z*six_r_s_2 - six_r_c_2_t*six_r_r_2_r0_x
+        six_r_r_1_r1_y = -six_r_c_2_t*six_r_r_1_z - six_r_r_2_r0_x*six_r_s_2
+        six_r_r_1_r2_x = six_r_c_3*six_r_r_1_r1_x + six_r_r_1_r1_y*six_r_s_3
+        six_r_r_1_r2_y = six_r_c_3*six_r_r_1_r1_y - six_r_r_1_r1_x*six_r_s_3
+        six_r_r_1_t = six_r_r_4_t_3*six_r_s_4
+        six_r_r_1_r4_x = six_r_r_1_t - six_r_c_4_t*six_r_r_1_r2_y
+        six_r_r_1_t_2 = six_r_c_4_t*six_r_r_4_t_3
+        six_r_r_1_r4_y = -six_r_r_1_t_2 - six_r_r_1_r2_y*six_r_s_4
+        six_r_r_1_r6_x = six_r_r_1_r2_x*six_r_s_5 - six_r_c_5_t*six_r_r_1_r4_y
+        six_r_r_1_r6_y = -six_r_c_5_t*six_r_r_1_r2_x - six_r_r_1_r4_y*six_r_s_5
+        # (six_r-v_1) velocity of the connection point per rate of joint 1
+        six_r_v_1_x = six_r_e_1_r6_y*six_r_r_1_r4_x + six_r_r_1_r6_y*six_r_v_1_t
+        six_r_v_1_y = -six_r_e_1_r6_x*six_r_r_1_r4_x - six_r_r_1_r6_x*six_r_v_1_t
+        six_r_v_1_z = six_r_e_1_r6_x*six_r_r_1_r6_y - six_r_e_1_r6_y*six_r_r_1_r6_x
+        # (six_r-v_2) velocity of the connection point per rate of joint 2
+        six_r_v_2_t = six_r_c_4_t*six_r_c_5_t
+        six_r_v_2_t_2 = six_r_c_4_t*six_r_s_5
+        # (six_r-r_2) from joint 2 to the connection point, along the links
+        six_r_r_2_r0_x_2 = six_r_c_3*six_r_r_2_x + six_r_r_3_r0_y*six_r_s_3
+        six_r_r_2_r0_y = six_r_c_3*six_r_r_3_r0_y - six_r_r_2_x*six_r_s_3
+        six_r_r_2_r2_x = six_r_r_1_t - six_r_c_4_t*six_r_r_2_r0_y
+        six_r_r_2_r2_y = -six_r_r_1_t_2 - six_r_r_2_r0_y*six_r_s_4
+        six_r_r_2_r4_x = six_r_r_2_r0_x_2*six_r_s_5 - six_r_c_5_t*six_r_r_2_r2_y
+        six_r_r_2_r4_y = -six_r_c_5_t*six_r_r_2_r0_x_2 - six_r_r_2_r2_y*six_r_s_5
+        # (six_r-v_2) velocity of the connection point per rate of joint 2
+        six_r_v_2_x = six_r_r_2_r2_x*six_r_v_2_t_2 - six_r_r_2_r4_y*six_r_s_4
+        six_r_v_2_y = six_r_r_2_r4_x*six_r_s_4 - six_r_r_2_r2_x*six_r_v_2_t
+        six_r_v_2_z = six_r_r_2_r4_y*six_r_v_2_t - six_r_r_2_r4_x*six_r_v_2_t_2
+        # (six_r-r_3) from joint 3 to the connection point, along the links
+        six_r_r_3_r1_x = six_r_r_1_t - six_r_c_4_t*six_r_r_4_t_2
+        six_r_r_3_r1_y = -six_r_r_1_t_2 - six_r_r_4_t_2*six_r_s_4
+        six_r_r_3_r3_x = six_r_r_3_x*six_r_s_5 - six_r_c_5_t*six_r_r_3_r1_y
+        six_r_r_3_r3_y = -six_r_c_5_t*six_r_r_3_x - six_r_r_3_r1_y*six_r_s_5
+        # (six_r-v_3) velocity of the connection point per rate of joint 3
+        six_r_v_3_x = six_r_r_3_r1_x*six_r_v_2_t_2 - six_r_r_3_r3_y*six_r_s_4
+        six_r_v_3_y = six_r_r_3_r3_x*six_r_s_4 - six_r_r_3_r1_x*six_r_v_2_t
+        six_r_v_3_z = six_r_r_3_r3_y*six_r_v_2_t - six_r_r_3_r3_x*six_r_v_2_t_2
+        # (six_r-v_4) velocity of the connection point per rate of joint 4
+        six_r_v_4_z = (
+        six_r_c_5_t*(six_r_c_5_t*six_r_r_4_t + six_r_r_4_z*six_r_s_5) +
+            six_r_s_5*(six_r_r_4_t*six_r_s_5 - six_r_c_5_t*six_r_r_4_z)
         )
-        axis_z_rrrrrr_axes5_in_base_y = (
-        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
-            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
-            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
+        # (six_r-w_1) force part of reciprocal wrench 1
+        six_r_w_1_t = six_r_c_4_t*six_r_s_3
+        six_r_w_1_t_2 = six_r_c_3*six_r_c_4_t
+        axis_z_six_r_axes5_r5_x = six_r_s_2*six_r_w_1_t_2 - six_r_c_2_t*six_r_w_1_t
+        axis_z_six_r_axes5_r5_y = six_r_c_2_t*six_r_w_1_t_2 + six_r_s_2*six_r_w_1_t
+        # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
+        six_r_c_1_t = sin(six_r_q_1)
+        # (six_r-s_1) sine of the angle of joint 1 from its reference direction
+        six_r_s_1 = cos(six_r_q_1)
+        # (six_r-w_1) force part of reciprocal wrench 1
+        axis_z_six_r_axes5_r7_x = -axis_z_six_r_axes5_r5_x*six_r_s_1 - six_r_c_1_t*six_r_s_4
+        axis_z_six_r_axes5_r7_y = six_r_s_1*six_r_s_4 - axis_z_six_r_axes5_r5_x*six_r_c_1_t
+        axis_z_six_r_axes5_in_base_x = (
+        axis_z_six_r_axes5_r5_y*six_r_base_frame_xx + axis_z_six_r_axes5_r7_x*six_r_base_frame_xy
+            + axis_z_six_r_axes5_r7_y*six_r_base_frame_xz
         )
-        axis_z_rrrrrr_axes5_in_base_z = (
-        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
-            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
-            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
+        axis_z_six_r_axes5_in_base_y = (
+        axis_z_six_r_axes5_r5_y*six_r_base_frame_yx + axis_z_six_r_axes5_r7_x*six_r_base_frame_yy
+            + axis_z_six_r_axes5_r7_y*six_r_base_frame_yz
         )
-        w_1_t_3 = s_4*s_5
-        axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
-        axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
-        axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
-        axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
-        axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
-        axis_y_rrrrrr_axes5_r7_y = s_1*v_2_t_2 - axis_y_rrrrrr_axes5_r5_x*c_1_t
-        axis_y_rrrrrr_axes5_in_base_x = (
-        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
-            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
-            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
+        axis_z_six_r_axes5_in_base_z = (
+        axis_z_six_r_axes5_r5_y*six_r_base_frame_zx + axis_z_six_r_axes5_r7_x*six_r_base_frame_zy
+            + axis_z_six_r_axes5_r7_y*six_r_base_frame_zz
         )
-        axis_y_rrrrrr_axes5_in_base_y = (
-        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
-            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
-            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
+        six_r_w_1_t_3 = six_r_s_4*six_r_s_5
+        axis_y_six_r_axes5_r4_x = -six_r_c_3*six_r_c_5_t - six_r_s_3*six_r_w_1_t_3
+        axis_y_six_r_axes5_r4_y = six_r_c_3*six_r_w_1_t_3 - six_r_c_5_t*six_r_s_3
+        axis_y_six_r_axes5_r5_x = (
+        -axis_y_six_r_axes5_r4_x*six_r_c_2_t - axis_y_six_r_axes5_r4_y*six_r_s_2
         )
-        axis_y_rrrrrr_axes5_in_base_z = (
-        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
-            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
-            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
+        axis_y_six_r_axes5_r5_y = (
+        axis_y_six_r_axes5_r4_x*six_r_s_2 - axis_y_six_r_axes5_r4_y*six_r_c_2_t
         )
-        axis_x_rrrrrr_axes5_x = (
-        axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_z -
-            axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_y
+        axis_y_six_r_axes5_r7_x = -axis_y_six_r_axes5_r5_x*six_r_s_1 - six_r_c_1_t*six_r_v_2_t_2
+        axis_y_six_r_axes5_r7_y = six_r_s_1*six_r_v_2_t_2 - axis_y_six_r_axes5_r5_x*six_r_c_1_t
+        axis_y_six_r_axes5_in_base_x = (
+        axis_y_six_r_axes5_r5_y*six_r_base_frame_xx + axis_y_six_r_axes5_r7_x*six_r_base_frame_xy
+            + axis_y_six_r_axes5_r7_y*six_r_base_frame_xz
         )
-        axis_x_rrrrrr_axes5_y = (
-        axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_x -
-            axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_z
+        axis_y_six_r_axes5_in_base_y = (
+        axis_y_six_r_axes5_r5_y*six_r_base_frame_yx + axis_y_six_r_axes5_r7_x*six_r_base_frame_yy
+            + axis_y_six_r_axes5_r7_y*six_r_base_frame_yz
         )
-        axis_x_rrrrrr_axes5_z = (
-        axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
-            axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
+        axis_y_six_r_axes5_in_base_z = (
+        axis_y_six_r_axes5_r5_y*six_r_base_frame_zx + axis_y_six_r_axes5_r7_x*six_r_base_frame_zy
+            + axis_y_six_r_axes5_r7_y*six_r_base_frame_zz
         )
-        # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-        end_p1_r0_x = (
-        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy +
-            R_yx*rrrrrr_base_frame_yy + R_zx*rrrrrr_base_frame_zy) +
-            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
-            R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
-            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
-            R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy)
+        axis_x_six_r_axes5_x = (
+        axis_y_six_r_axes5_in_base_y*axis_z_six_r_axes5_in_base_z -
+            axis_y_six_r_axes5_in_base_z*axis_z_six_r_axes5_in_base_y
         )
-        end_p1_r0_y = (
-        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz +
-            R_yx*rrrrrr_base_frame_yz + R_zx*rrrrrr_base_frame_zz) +
-            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
-            R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
-            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
-            R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz)
+        axis_x_six_r_axes5_y = (
+        axis_y_six_r_axes5_in_base_z*axis_z_six_r_axes5_in_base_x -
+            axis_y_six_r_axes5_in_base_x*axis_z_six_r_axes5_in_base_z
         )
-        end_p1_r0_z = (
-        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx +
-            R_yx*rrrrrr_base_frame_yx + R_zx*rrrrrr_base_frame_zx) +
-            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
-            R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
-            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
-            R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx)
+        axis_x_six_r_axes5_z = (
+        axis_y_six_r_axes5_in_base_x*axis_z_six_r_axes5_in_base_y -
+            axis_y_six_r_axes5_in_base_y*axis_z_six_r_axes5_in_base_x
         )
-        end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x
-        end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1
-        end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y
-        end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2
-        end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3
-        end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3
-        end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y
-        end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4
-        end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
-        end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
-        # (rrrrrr-V13) force part of reciprocal wrench 1
-        w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
-        w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
-        w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
-        w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
-        w_1_t_8 = size*w_1_t_4
-        w_1_t_9 = size*w_1_t_6
-        w_1_t_10 = size*w_1_t_5
-        w_1_t_11 = size*w_1_t_7
-        w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
-        w_1_t_13 = c_5_t*end_p1_r6_x*size
-        w_1_t_14 = end_p1_r8_y*size
-        w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
-        inv_w_1_t_69 = 1.0/w_1_t_15
-        w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
-        w_1_t_17 = inv_w_1_t_69*w_1_t_14
-        w_1_t_18 = w_1_t_13*w_1_t_17
-        w_1_t_19 = w_1_t_16*w_1_t_18
-        w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
-        w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
-        w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
-        w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
-        w_1_t_24 = w_1_t_11*w_1_t_17
-        w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
-        w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
-        w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
-        w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
-        w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
-        w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
-        w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
-        inv_w_1_t_101 = 1.0/w_1_t_31
-        w_1_t_32 = inv_w_1_t_101*w_1_t_19
-        w_1_t_33 = inv_w_1_t_101*v_4_z
-        w_1_t_34 = inv_w_1_t_101*w_1_t_12
-        w_1_t_35 = inv_w_1_t_101*w_1_t_20
-        w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
-        w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
-        w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
-        w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
-        w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
-        w_1_t_41 = w_1_t_10*w_1_t_34
-        w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
-        w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
-        w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
-        w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
-        w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
-        w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
-        w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
-        w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
-        w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
-        w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
-        w_1_t_52 = (
-        sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
-            w_1_t_40*w_1_t_40)
+        # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
+        six_r_end_p1_r0_x = (
+        six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xy + R_yx*six_r_base_frame_yy
+            + R_zx*six_r_base_frame_zy) +
+            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xy +
+            R_yy*six_r_base_frame_yy + R_zy*six_r_base_frame_zy) +
+            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xy +
+            R_yz*six_r_base_frame_yy + R_zz*six_r_base_frame_zy)
         )
-        inv_w_1_t_150 = 1.0/w_1_t_52
-        w_1_t_53 = inv_w_1_t_150*v_1_x
-        w_1_t_54 = inv_w_1_t_150*w_1_t_37
-        w_1_t_55 = inv_w_1_t_150*w_1_t_38
-        w_1_t_56 = inv_w_1_t_150*w_1_t_39
-        w_1_t_57 = inv_w_1_t_150*w_1_t_40
-        w_1_t_58 = (
-        v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 +
-            w_1_t_46*w_1_t_57
+        six_r_end_p1_r0_y = (
+        six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xz + R_yx*six_r_base_frame_yz
+            + R_zx*six_r_base_frame_zz) +
+            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xz +
+            R_yy*six_r_base_frame_yz + R_zy*six_r_base_frame_zz) +
+            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xz +
+            R_yz*six_r_base_frame_yz + R_zz*six_r_base_frame_zz)
         )
-        w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
-        w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
-        w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
-        w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
-        w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
-        w_1_t_64 = (
-        v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 +
-            w_1_t_51*w_1_t_57
+        six_r_end_p1_r0_z = (
+        six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xx + R_yx*six_r_base_frame_yx
+            + R_zx*six_r_base_frame_zx) +
+            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xx +
+            R_yy*six_r_base_frame_yx + R_zy*six_r_base_frame_zx) +
+            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xx +
+            R_yz*six_r_base_frame_yx + R_zz*six_r_base_frame_zx)
         )
-        w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
-        w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
-        w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
-        w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
-        w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
-        w_1_t_70 = (
-        sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
-            w_1_t_63*w_1_t_63)
+        six_r_end_p1_r1_x = six_r_end_p1_r0_y*six_r_s_1 - six_r_c_1_t*six_r_end_p1_r0_x
+        six_r_end_p1_r1_y = -six_r_c_1_t*six_r_end_p1_r0_y - six_r_end_p1_r0_x*six_r_s_1
+        six_r_end_p1_r3_x = six_r_end_p1_r0_z*six_r_s_2 - six_r_c_2_t*six_r_end_p1_r1_y
+        six_r_end_p1_r3_y = -six_r_c_2_t*six_r_end_p1_r0_z - six_r_end_p1_r1_y*six_r_s_2
+        six_r_end_p1_r4_x = six_r_c_3*six_r_end_p1_r3_x + six_r_end_p1_r3_y*six_r_s_3
+        six_r_end_p1_r4_y = six_r_c_3*six_r_end_p1_r3_y - six_r_end_p1_r3_x*six_r_s_3
+        six_r_end_p1_r6_x = six_r_end_p1_r1_x*six_r_s_4 - six_r_c_4_t*six_r_end_p1_r4_y
+        six_r_end_p1_r6_y = -six_r_c_4_t*six_r_end_p1_r1_x - six_r_end_p1_r4_y*six_r_s_4
+        six_r_end_p1_r8_x = six_r_end_p1_r4_x*six_r_s_5 - six_r_c_5_t*six_r_end_p1_r6_y
+        six_r_end_p1_r8_y = -six_r_c_5_t*six_r_end_p1_r4_x - six_r_end_p1_r6_y*six_r_s_5
+        # (six_r-w_1) force part of reciprocal wrench 1
+        six_r_w_1_t_4 = six_r_e_1_r6_x*six_r_end_p1_r8_y - six_r_e_1_r6_y*six_r_end_p1_r8_x
+        six_r_w_1_t_5 = six_r_end_p1_r8_y*six_r_v_2_t - six_r_end_p1_r8_x*six_r_v_2_t_2
+        six_r_w_1_t_6 = six_r_e_1_r6_y*six_r_end_p1_r6_x + six_r_end_p1_r8_y*six_r_v_1_t
+        six_r_w_1_t_7 = six_r_end_p1_r6_x*six_r_v_2_t_2 - six_r_end_p1_r8_y*six_r_s_4
+        six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4
+        six_r_w_1_t_9 = six_r_size*six_r_w_1_t_6
+        six_r_w_1_t_10 = six_r_size*six_r_w_1_t_5
+        six_r_w_1_t_11 = six_r_size*six_r_w_1_t_7
+        six_r_w_1_t_12 = six_r_size*(-six_r_c_5_t*six_r_end_p1_r8_x - six_r_end_p1_r8_y*six_r_s_5)
+        six_r_w_1_t_13 = six_r_c_5_t*six_r_end_p1_r6_x*six_r_size
+        six_r_w_1_t_14 = six_r_end_p1_r8_y*six_r_size
+        six_r_w_1_t_15 = sqrt(six_r_size_t + six_r_w_1_t_14*six_r_w_1_t_14)
+        inv_six_r_w_1_t_69 = 1.0/six_r_w_1_t_15
+        six_r_w_1_t_16 = inv_six_r_w_1_t_69*six_r_platform_joint_offset_x
+        six_r_w_1_t_17 = inv_six_r_w_1_t_69*six_r_w_1_t_14
+        six_r_w_1_t_18 = six_r_w_1_t_13*six_r_w_1_t_17
+        six_r_w_1_t_19 = six_r_w_1_t_16*six_r_w_1_t_18
+        six_r_w_1_t_20 = six_r_w_1_t_13 - six_r_w_1_t_17*six_r_w_1_t_18
+        six_r_w_1_t_21 = six_r_v_1_y*six_r_w_1_t_16 - six_r_w_1_t_17*six_r_w_1_t_9
+        six_r_w_1_t_22 = six_r_v_1_y - six_r_w_1_t_16*six_r_w_1_t_21
+        six_r_w_1_t_23 = six_r_w_1_t_9 + six_r_w_1_t_17*six_r_w_1_t_21
+        six_r_w_1_t_24 = six_r_w_1_t_11*six_r_w_1_t_17
+        six_r_w_1_t_25 = six_r_v_2_y*six_r_w_1_t_16 - six_r_w_1_t_24
+        six_r_w_1_t_26 = six_r_v_2_y - six_r_w_1_t_16*six_r_w_1_t_25
+        six_r_w_1_t_27 = six_r_w_1_t_11 + six_r_w_1_t_17*six_r_w_1_t_25
+        six_r_w_1_t_28 = six_r_w_1_t_24 - six_r_v_3_y*six_r_w_1_t_16
+        six_r_w_1_t_29 = six_r_v_3_y + six_r_w_1_t_16*six_r_w_1_t_28
+        six_r_w_1_t_30 = six_r_w_1_t_11 - six_r_w_1_t_17*six_r_w_1_t_28
+        six_r_w_1_t_31 = (
+        sqrt(six_r_v_4_z*six_r_v_4_z + six_r_w_1_t_12*six_r_w_1_t_12 +
+            six_r_w_1_t_19*six_r_w_1_t_19 + six_r_w_1_t_20*six_r_w_1_t_20)
         )
-        inv_w_1_t_194 = 1.0/w_1_t_70
-        w_1_t_71 = inv_w_1_t_194*w_1_t_59
-        w_1_t_72 = inv_w_1_t_194*w_1_t_60
-        w_1_t_73 = inv_w_1_t_194*w_1_t_61
-        w_1_t_74 = inv_w_1_t_194*w_1_t_62
-        w_1_t_75 = inv_w_1_t_194*w_1_t_63
-        w_1_t_76 = (
-        w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
-            w_1_t_69*w_1_t_75
+        inv_six_r_w_1_t_101 = 1.0/six_r_w_1_t_31
+        six_r_w_1_t_32 = inv_six_r_w_1_t_101*six_r_w_1_t_19
+        six_r_w_1_t_33 = inv_six_r_w_1_t_101*six_r_v_4_z
+        six_r_w_1_t_34 = inv_six_r_w_1_t_101*six_r_w_1_t_12
+        six_r_w_1_t_35 = inv_six_r_w_1_t_101*six_r_w_1_t_20
+        six_r_w_1_t_36 = (
+        six_r_w_1_t_22*six_r_w_1_t_32 + six_r_w_1_t_23*six_r_w_1_t_35 +
+            six_r_w_1_t_34*six_r_w_1_t_8 - six_r_v_1_z*six_r_w_1_t_33
         )
-        w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
-        w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
-        w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
-        w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
-        w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
-        w_1_t_82 = (
-        sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
-            w_1_t_81*w_1_t_81)
+        six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_36 - six_r_w_1_t_22
+        six_r_w_1_t_38 = six_r_v_1_z + six_r_w_1_t_33*six_r_w_1_t_36
+        six_r_w_1_t_39 = six_r_w_1_t_34*six_r_w_1_t_36 - six_r_w_1_t_8
+        six_r_w_1_t_40 = six_r_w_1_t_35*six_r_w_1_t_36 - six_r_w_1_t_23
+        six_r_w_1_t_41 = six_r_w_1_t_10*six_r_w_1_t_34
+        six_r_w_1_t_42 = (
+        six_r_w_1_t_41 + six_r_w_1_t_26*six_r_w_1_t_32 + six_r_w_1_t_27*six_r_w_1_t_35 -
+            six_r_v_2_z*six_r_w_1_t_33
         )
-        inv_w_1_t_222 = 1.0/w_1_t_82
-        # (M2) coupling block of M
-        q_in_base_x = (
-        R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
+        six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_42 - six_r_w_1_t_26
+        six_r_w_1_t_44 = six_r_v_2_z + six_r_w_1_t_33*six_r_w_1_t_42
+        six_r_w_1_t_45 = six_r_w_1_t_34*six_r_w_1_t_42 - six_r_w_1_t_10
+        six_r_w_1_t_46 = six_r_w_1_t_35*six_r_w_1_t_42 - six_r_w_1_t_27
+        six_r_w_1_t_47 = (
+        six_r_w_1_t_41 + six_r_w_1_t_29*six_r_w_1_t_32 + six_r_w_1_t_30*six_r_w_1_t_35 -
+            six_r_v_3_z*six_r_w_1_t_33
         )
-        q_in_base_y = (
-        R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y + R_yz*rrrrrr_platform_point_z
+        six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_47 - six_r_w_1_t_29
+        six_r_w_1_t_49 = six_r_v_3_z + six_r_w_1_t_33*six_r_w_1_t_47
+        six_r_w_1_t_50 = six_r_w_1_t_34*six_r_w_1_t_47 - six_r_w_1_t_10
+        six_r_w_1_t_51 = six_r_w_1_t_35*six_r_w_1_t_47 - six_r_w_1_t_30
+        six_r_w_1_t_52 = (
+        sqrt(six_r_v_1_x*six_r_v_1_x + six_r_w_1_t_37*six_r_w_1_t_37 +
+            six_r_w_1_t_38*six_r_w_1_t_38 + six_r_w_1_t_39*six_r_w_1_t_39 +
+            six_r_w_1_t_40*six_r_w_1_t_40)
         )
-        q_in_base_z = (
-        R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y + R_zz*rrrrrr_platform_point_z
+        inv_six_r_w_1_t_150 = 1.0/six_r_w_1_t_52
+        six_r_w_1_t_53 = inv_six_r_w_1_t_150*six_r_v_1_x
+        six_r_w_1_t_54 = inv_six_r_w_1_t_150*six_r_w_1_t_37
+        six_r_w_1_t_55 = inv_six_r_w_1_t_150*six_r_w_1_t_38
+        six_r_w_1_t_56 = inv_six_r_w_1_t_150*six_r_w_1_t_39
+        six_r_w_1_t_57 = inv_six_r_w_1_t_150*six_r_w_1_t_40
+        six_r_w_1_t_58 = (
+        six_r_v_2_x*six_r_w_1_t_53 + six_r_w_1_t_43*six_r_w_1_t_54 + six_r_w_1_t_44*six_r_w_1_t_55
+            + six_r_w_1_t_45*six_r_w_1_t_56 + six_r_w_1_t_46*six_r_w_1_t_57
         )
-        # (rrrrrr-V1) velocity of the connection point
-        S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_tip_x = (
-        S_dot_x*axis_x_rrrrrr_axes5_x + S_dot_y*axis_x_rrrrrr_axes5_y +
-            S_dot_z*axis_x_rrrrrr_axes5_z
+        six_r_w_1_t_59 = six_r_v_2_x - six_r_w_1_t_53*six_r_w_1_t_58
+        six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_58
+        six_r_w_1_t_61 = six_r_w_1_t_44 - six_r_w_1_t_55*six_r_w_1_t_58
+        six_r_w_1_t_62 = six_r_w_1_t_45 - six_r_w_1_t_56*six_r_w_1_t_58
+        six_r_w_1_t_63 = six_r_w_1_t_46 - six_r_w_1_t_57*six_r_w_1_t_58
+        six_r_w_1_t_64 = (
+        six_r_v_3_x*six_r_w_1_t_53 + six_r_w_1_t_48*six_r_w_1_t_54 + six_r_w_1_t_49*six_r_w_1_t_55
+            + six_r_w_1_t_50*six_r_w_1_t_56 + six_r_w_1_t_51*six_r_w_1_t_57
         )
-        S_dot_tip_y = (
-        S_dot_x*axis_y_rrrrrr_axes5_in_base_x + S_dot_y*axis_y_rrrrrr_axes5_in_base_y +
-            S_dot_z*axis_y_rrrrrr_axes5_in_base_z
+        six_r_w_1_t_65 = six_r_v_3_x - six_r_w_1_t_53*six_r_w_1_t_64
+        six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_64
+        six_r_w_1_t_67 = six_r_w_1_t_49 - six_r_w_1_t_55*six_r_w_1_t_64
+        six_r_w_1_t_68 = six_r_w_1_t_50 - six_r_w_1_t_56*six_r_w_1_t_64
+        six_r_w_1_t_69 = six_r_w_1_t_51 - six_r_w_1_t_57*six_r_w_1_t_64
+        six_r_w_1_t_70 = (
+        sqrt(six_r_w_1_t_59*six_r_w_1_t_59 + six_r_w_1_t_60*six_r_w_1_t_60 +
+            six_r_w_1_t_61*six_r_w_1_t_61 + six_r_w_1_t_62*six_r_w_1_t_62 +
+            six_r_w_1_t_63*six_r_w_1_t_63)
         )
-        S_dot_tip_z = (
-        S_dot_x*axis_z_rrrrrr_axes5_in_base_x + S_dot_y*axis_z_rrrrrr_axes5_in_base_y +
-            S_dot_z*axis_z_rrrrrr_axes5_in_base_z
+        inv_six_r_w_1_t_194 = 1.0/six_r_w_1_t_70
+        six_r_w_1_t_71 = inv_six_r_w_1_t_194*six_r_w_1_t_59
+        six_r_w_1_t_72 = inv_six_r_w_1_t_194*six_r_w_1_t_60
+        six_r_w_1_t_73 = inv_six_r_w_1_t_194*six_r_w_1_t_61
+        six_r_w_1_t_74 = inv_six_r_w_1_t_194*six_r_w_1_t_62
+        six_r_w_1_t_75 = inv_six_r_w_1_t_194*six_r_w_1_t_63
+        six_r_w_1_t_76 = (
+        six_r_w_1_t_65*six_r_w_1_t_71 + six_r_w_1_t_66*six_r_w_1_t_72 +
+            six_r_w_1_t_67*six_r_w_1_t_73 + six_r_w_1_t_68*six_r_w_1_t_74 +
+            six_r_w_1_t_69*six_r_w_1_t_75
         )
-        # (rrrrrr-A14) rate of moment direction 1
-        omega_tip_y = (
-        axis_y_rrrrrr_axes5_in_base_x*omega_x + axis_y_rrrrrr_axes5_in_base_y*omega_y +
-            axis_y_rrrrrr_axes5_in_base_z*omega_z
+        six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_76
+        six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_76
+        six_r_w_1_t_79 = six_r_w_1_t_67 - six_r_w_1_t_73*six_r_w_1_t_76
+        six_r_w_1_t_80 = six_r_w_1_t_68 - six_r_w_1_t_74*six_r_w_1_t_76
+        six_r_w_1_t_81 = six_r_w_1_t_69 - six_r_w_1_t_75*six_r_w_1_t_76
+        six_r_w_1_t_82 = (
+        sqrt(six_r_w_1_t_77*six_r_w_1_t_77 + six_r_w_1_t_78*six_r_w_1_t_78 +
+            six_r_w_1_t_79*six_r_w_1_t_79 + six_r_w_1_t_80*six_r_w_1_t_80 +
+            six_r_w_1_t_81*six_r_w_1_t_81)
         )
-        # (rrrrrr-V35) rate of joint 1
-        qd_1_t = (
-        size*(end_p1_r8_y*(axis_x_rrrrrr_axes5_x*omega_x + axis_x_rrrrrr_axes5_y*omega_y +
-            axis_x_rrrrrr_axes5_z*omega_z) - end_p1_r8_x*omega_tip_y)
+        inv_six_r_w_1_t_222 = 1.0/six_r_w_1_t_82
+        # (M_ta) coupling block of M
+        six_r_q_in_base_x = (
+        R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
         )
-        qd_1_t_2 = (
-        size*(end_p1_r6_x*omega_tip_y - end_p1_r8_y*(axis_z_rrrrrr_axes5_in_base_x*omega_x +
-            axis_z_rrrrrr_axes5_in_base_y*omega_y + axis_z_rrrrrr_axes5_in_base_z*omega_z))
+        six_r_q_in_base_y = (
+        R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y + R_yz*six_r_platform_point_z
         )
-        qd_1_t_3 = (
-        inv_w_1_t_222*(S_dot_tip_y*inv_w_1_t_222*w_1_t_78 + inv_w_1_t_222*qd_1_t*w_1_t_80 +
-            inv_w_1_t_222*qd_1_t_2*w_1_t_81 - S_dot_tip_x*inv_w_1_t_222*w_1_t_77 -
-            S_dot_tip_z*inv_w_1_t_222*w_1_t_79)
+        six_r_q_in_base_z = (
+        R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y + R_zz*six_r_platform_point_z
         )
-        qd_1_t_4 = (
-        inv_w_1_t_194*(S_dot_tip_y*w_1_t_72 + qd_1_t*w_1_t_74 + qd_1_t_2*w_1_t_75 -
-            S_dot_tip_x*w_1_t_71 - S_dot_tip_z*w_1_t_73 - qd_1_t_3*w_1_t_76)
+        # (six_r-S_dot) velocity of the connection point
+        six_r_S_dot_x = t_dot_x + omega_y*six_r_q_in_base_z - omega_z*six_r_q_in_base_y
+        six_r_S_dot_y = t_dot_y + omega_z*six_r_q_in_base_x - omega_x*six_r_q_in_base_z
+        six_r_S_dot_z = t_dot_z + omega_x*six_r_q_in_base_y - omega_y*six_r_q_in_base_x
+        six_r_S_dot_tip_x = (
+        axis_x_six_r_axes5_x*six_r_S_dot_x + axis_x_six_r_axes5_y*six_r_S_dot_y +
+            axis_x_six_r_axes5_z*six_r_S_dot_z
         )
-        qd_1_t_5 = (
-        inv_w_1_t_150*(S_dot_tip_x*w_1_t_53 + S_dot_tip_z*w_1_t_55 + qd_1_t_3*w_1_t_64 +
-            qd_1_t_4*w_1_t_58 - S_dot_tip_y*w_1_t_54 - qd_1_t*w_1_t_56 - qd_1_t_2*w_1_t_57)
+        six_r_S_dot_tip_y = (
+        axis_y_six_r_axes5_in_base_x*six_r_S_dot_x + axis_y_six_r_axes5_in_base_y*six_r_S_dot_y +
+            axis_y_six_r_axes5_in_base_z*six_r_S_dot_z
         )
-        qd_1_t_6 = (
-        inv_w_1_t_101*(S_dot_tip_y*w_1_t_32 + qd_1_t*w_1_t_34 + qd_1_t_2*w_1_t_35 +
-            qd_1_t_3*w_1_t_47 + qd_1_t_4*w_1_t_42 - S_dot_tip_z*w_1_t_33 - qd_1_t_5*w_1_t_36)
+        six_r_S_dot_tip_z = (
+        axis_z_six_r_axes5_in_base_x*six_r_S_dot_x + axis_z_six_r_axes5_in_base_y*six_r_S_dot_y +
+            axis_z_six_r_axes5_in_base_z*six_r_S_dot_z
         )
-        qd_1_t_7 = (
-        inv_w_1_t_69*(S_dot_tip_y*w_1_t_16 + qd_1_t_4*w_1_t_25 + qd_1_t_6*w_1_t_18 -
-            qd_1_t_2*w_1_t_17 - qd_1_t_3*w_1_t_28 - qd_1_t_5*w_1_t_21)
+        # (six_r-nd_m1) rate of moment direction 1
+        six_r_omega_tip_y = (
+        axis_y_six_r_axes5_in_base_x*omega_x + axis_y_six_r_axes5_in_base_y*omega_y +
+            axis_y_six_r_axes5_in_base_z*omega_z
+        )
+        # (six_r-qd_1) rate of joint 1
+        six_r_qd_1_t = (
+        six_r_size*(six_r_end_p1_r8_y*(axis_x_six_r_axes5_x*omega_x + axis_x_six_r_axes5_y*omega_y
+            + axis_x_six_r_axes5_z*omega_z) - six_r_end_p1_r8_x*six_r_omega_tip_y)
+        )
+        six_r_qd_1_t_2 = (
+        six_r_size*(six_r_end_p1_r6_x*six_r_omega_tip_y -
+            six_r_end_p1_r8_y*(axis_z_six_r_axes5_in_base_x*omega_x +
+            axis_z_six_r_axes5_in_base_y*omega_y + axis_z_six_r_axes5_in_base_z*omega_z))
+        )
+        six_r_qd_1_t_3 = (
+        inv_six_r_w_1_t_222*(inv_six_r_w_1_t_222*six_r_S_dot_tip_y*six_r_w_1_t_78 +
+            inv_six_r_w_1_t_222*six_r_qd_1_t*six_r_w_1_t_80 +
+            inv_six_r_w_1_t_222*six_r_qd_1_t_2*six_r_w_1_t_81 -
+            inv_six_r_w_1_t_222*six_r_S_dot_tip_x*six_r_w_1_t_77 -
+            inv_six_r_w_1_t_222*six_r_S_dot_tip_z*six_r_w_1_t_79)
+        )
+        six_r_qd_1_t_4 = (
+        inv_six_r_w_1_t_194*(six_r_S_dot_tip_y*six_r_w_1_t_72 + six_r_qd_1_t*six_r_w_1_t_74 +
+            six_r_qd_1_t_2*six_r_w_1_t_75 - six_r_S_dot_tip_x*six_r_w_1_t_71 -
+            six_r_S_dot_tip_z*six_r_w_1_t_73 - six_r_qd_1_t_3*six_r_w_1_t_76)
+        )
+        six_r_qd_1_t_5 = (
+        inv_six_r_w_1_t_150*(six_r_S_dot_tip_x*six_r_w_1_t_53 + six_r_S_dot_tip_z*six_r_w_1_t_55 +
+            six_r_qd_1_t_3*six_r_w_1_t_64 + six_r_qd_1_t_4*six_r_w_1_t_58 -
+            six_r_S_dot_tip_y*six_r_w_1_t_54 - six_r_qd_1_t*six_r_w_1_t_56 -
+            six_r_qd_1_t_2*six_r_w_1_t_57)
+        )
+        six_r_qd_1_t_6 = (
+        inv_six_r_w_1_t_101*(six_r_S_dot_tip_y*six_r_w_1_t_32 + six_r_qd_1_t*six_r_w_1_t_34 +
+            six_r_qd_1_t_2*six_r_w_1_t_35 + six_r_qd_1_t_3*six_r_w_1_t_47 +
+            six_r_qd_1_t_4*six_r_w_1_t_42 - six_r_S_dot_tip_z*six_r_w_1_t_33 -
+            six_r_qd_1_t_5*six_r_w_1_t_36)
+        )
+        six_r_qd_1_t_7 = (
+        inv_six_r_w_1_t_69*(six_r_qd_1_t_2*six_r_w_1_t_17 + six_r_qd_1_t_3*six_r_w_1_t_28 +
+            six_r_qd_1_t_5*six_r_w_1_t_21 - six_r_S_dot_tip_y*six_r_w_1_t_16 -
+            six_r_qd_1_t_4*six_r_w_1_t_25 - six_r_qd_1_t_6*six_r_w_1_t_18)
         )
         ok = (
-        ok & m.every(leg, (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE *
-            size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
-            (abs(w_1_t_82) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(six_r_w_1_t_15) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_31) >
+            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_52) > _TOLERANCE * six_r_size) &
+            (abs(six_r_w_1_t_70) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_82) > _TOLERANCE *
+            six_r_size))
         )
-        out_qd[_qd_rrrrrr[0][leg]] = qd_1_t_5
-        out_qd[_qd_rrrrrr[1][leg]] = -qd_1_t_4
-        out_qd[_qd_rrrrrr[2][leg]] = -qd_1_t_3
-        out_qd[_qd_rrrrrr[3][leg]] = -qd_1_t_6
-        out_qd[_qd_rrrrrr[4][leg]] = qd_1_t_7
+        out_qd[_qd_six_r[0][leg]] = six_r_qd_1_t_5
+        out_qd[_qd_six_r[1][leg]] = -six_r_qd_1_t_4
+        out_qd[_qd_six_r[2][leg]] = -six_r_qd_1_t_3
+        out_qd[_qd_six_r[3][leg]] = -six_r_qd_1_t_6
+        out_qd[_qd_six_r[4][leg]] = -six_r_qd_1_t_7
     return ok, (out_qd,)
 
 
@@ -7460,584 +8514,625 @@ def _run_joint_accelerations(m, X, V, A, q):
     out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
-        rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
-            rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
-            rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
-            rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x,
-            rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
-            rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
-            rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z, size,
-            size_t,
+        six_r_base_frame_xx, six_r_base_frame_xy, six_r_base_frame_xz, six_r_base_frame_yx,
+            six_r_base_frame_yy, six_r_base_frame_yz, six_r_base_frame_zx, six_r_base_frame_zy,
+            six_r_base_frame_zz, six_r_joint2_offset_x, six_r_joint3_offset_x,
+            six_r_joint4_offset_x, six_r_joint5_offset_x, six_r_platform_joint_axis_platform_x,
+            six_r_platform_joint_axis_platform_y, six_r_platform_joint_axis_platform_z,
+            six_r_platform_joint_offset_x, six_r_platform_point_x, six_r_platform_point_y,
+            six_r_platform_point_z, six_r_size, six_r_size_t,
         ) = k
-        q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
-        q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
-        q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
-        q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
-        q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
-        # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
-        c_5_t = sin(q_5)
-        # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
-        s_5 = cos(q_5)
-        # (rrrrrr-V2) from joint 4 to the connection point, along the links
-        r_4_t = c_5_t*rrrrrr_platform_joint_offset_x
-        r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5
-        # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
-        c_4_t = sin(q_4)
-        # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
-        s_4 = cos(q_4)
-        # (rrrrrr-V2) from joint 4 to the connection point, along the links
-        r_4_t_2 = r_4_t*s_4
-        r_4_t_3 = c_4_t*r_4_t
-        # (rrrrrr-V3) from joint 3 to the connection point, along the links
-        r_3_x = r_4_z + rrrrrr_joint4_offset_x
-        # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
-        c_3 = cos(q_3)
-        # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
-        s_3 = sin(q_3)
-        # (rrrrrr-V3) from joint 3 to the connection point, along the links
-        r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3
-        # (rrrrrr-V4) from joint 2 to the connection point, along the links
-        r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3
-        # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
-        c_2_t = sin(q_2)
-        # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
-        s_2 = cos(q_2)
-        # (rrrrrr-V4) from joint 2 to the connection point, along the links
-        r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2
-        # (rrrrrr-V5) from joint 1 to the connection point, along the links
-        r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y
-        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-        e_1_r2_x = c_3*s_2 - c_2_t*s_3
-        e_1_r2_y = -c_2_t*c_3 - s_2*s_3
-        v_1_t = c_4_t*e_1_r2_y
-        v_1_t_2 = e_1_r2_y*s_4
-        e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5
-        e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x
-        # (rrrrrr-V5) from joint 1 to the connection point, along the links
-        r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x
-        r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2
-        r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3
-        r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3
-        r_1_t = r_4_t_3*s_4
-        r_1_r4_x = r_1_t - c_4_t*r_1_r2_y
-        r_1_t_2 = c_4_t*r_4_t_3
-        r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4
-        r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y
-        r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5
-        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-        v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t
-        v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t
-        v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x
-        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-        v_2_t = c_4_t*c_5_t
-        v_2_t_2 = c_4_t*s_5
-        # (rrrrrr-V4) from joint 2 to the connection point, along the links
-        r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3
-        r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3
-        r_2_r2_x = r_1_t - c_4_t*r_2_r0_y
-        r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4
-        r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y
-        r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5
-        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-        v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4
-        v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t
-        v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2
-        # (rrrrrr-V3) from joint 3 to the connection point, along the links
-        r_3_r1_x = r_1_t - c_4_t*r_4_t_2
-        r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4
-        r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y
-        r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5
-        # (rrrrrr-V8) velocity of the connection point per rate of joint 3
-        v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4
-        v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t
-        v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2
-        # (rrrrrr-V9) velocity of the connection point per rate of joint 4
-        v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
-        # (rrrrrr-V13) force part of reciprocal wrench 1
-        w_1_t = c_4_t*s_3
-        w_1_t_2 = c_3*c_4_t
-        axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
-        axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
-        # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
-        c_1_t = sin(q_1)
-        # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
-        s_1 = cos(q_1)
-        # (rrrrrr-V13) force part of reciprocal wrench 1
-        axis_z_rrrrrr_axes5_r7_x = -axis_z_rrrrrr_axes5_r5_x*s_1 - c_1_t*s_4
-        axis_z_rrrrrr_axes5_r7_y = s_1*s_4 - axis_z_rrrrrr_axes5_r5_x*c_1_t
-        axis_z_rrrrrr_axes5_in_base_x = (
-        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
-            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
-            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
+        six_r_q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
+        six_r_q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
+        six_r_q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
+        six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
+        six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
+        six_r_c_5_t = sin(six_r_q_5)
+        # (six_r-s_5) sine of the angle of joint 5 from its reference direction
+        six_r_s_5 = cos(six_r_q_5)
+        # (six_r-r_4) from joint 4 to the connection point, along the links
+        six_r_r_4_t = six_r_c_5_t*six_r_platform_joint_offset_x
+        six_r_r_4_z = six_r_joint5_offset_x + six_r_platform_joint_offset_x*six_r_s_5
+        # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
+        six_r_c_4_t = sin(six_r_q_4)
+        # (six_r-s_4) sine of the angle of joint 4 from its reference direction
+        six_r_s_4 = cos(six_r_q_4)
+        # (six_r-r_4) from joint 4 to the connection point, along the links
+        six_r_r_4_t_2 = six_r_r_4_t*six_r_s_4
+        six_r_r_4_t_3 = six_r_c_4_t*six_r_r_4_t
+        # (six_r-r_3) from joint 3 to the connection point, along the links
+        six_r_r_3_x = six_r_joint4_offset_x + six_r_r_4_z
+        # (six_r-c_3) cosine of the angle of joint 3 from its reference direction
+        six_r_c_3 = cos(six_r_q_3)
+        # (six_r-s_3) sine of the angle of joint 3 from its reference direction
+        six_r_s_3 = sin(six_r_q_3)
+        # (six_r-r_3) from joint 3 to the connection point, along the links
+        six_r_r_3_r0_y = six_r_c_3*six_r_r_4_t_2 + six_r_r_3_x*six_r_s_3
+        # (six_r-r_2) from joint 2 to the connection point, along the links
+        six_r_r_2_x = six_r_joint3_offset_x + six_r_c_3*six_r_r_3_x - six_r_r_4_t_2*six_r_s_3
+        # (six_r-c_2) cosine of the angle of joint 2 from its reference direction
+        six_r_c_2_t = sin(six_r_q_2)
+        # (six_r-s_2) sine of the angle of joint 2 from its reference direction
+        six_r_s_2 = cos(six_r_q_2)
+        # (six_r-r_2) from joint 2 to the connection point, along the links
+        six_r_r_2_r0_x = -six_r_c_2_t*six_r_r_2_x - six_r_r_3_r0_y*six_r_s_2
+        # (six_r-r_1) from joint 1 to the connection point, along the links
+        six_r_r_1_z = six_r_joint2_offset_x + six_r_r_2_x*six_r_s_2 - six_r_c_2_t*six_r_r_3_r0_y
+        # (six_r-v_1) velocity of the connection point per rate of joint 1
+        six_r_e_1_r2_x = six_r_c_3*six_r_s_2 - six_r_c_2_t*six_r_s_3
+        six_r_e_1_r2_y = -six_r_c_2_t*six_r_c_3 - six_r_s_2*six_r_s_3
+        six_r_v_1_t = six_r_c_4_t*six_r_e_1_r2_y
+        six_r_v_1_t_2 = six_r_e_1_r2_y*six_r_s_4
+        six_r_e_1_r6_x = six_r_c_5_t*six_r_v_1_t_2 + six_r_e_1_r2_x*six_r_s_5
+        six_r_e_1_r6_y = six_r_s_5*six_r_v_1_t_2 - six_r_c_5_t*six_r_e_1_r2_x
+        # (six_r-r_1) from joint 1 to the connection point, along the links
+        six_r_r_1_r1_x = six_r_r_1_z*six_r_s_2 - six_r_c_2_t*six_r_r_2_r0_x
+        six_r_r_1_r1_y = -six_r_c_2_t*six_r_r_1_z - six_r_r_2_r0_x*six_r_s_2
+        six_r_r_1_r2_x = six_r_c_3*six_r_r_1_r1_x + six_r_r_1_r1_y*six_r_s_3
+        six_r_r_1_r2_y = six_r_c_3*six_r_r_1_r1_y - six_r_r_1_r1_x*six_r_s_3
+        six_r_r_1_t = six_r_r_4_t_3*six_r_s_4
+        six_r_r_1_r4_x = six_r_r_1_t - six_r_c_4_t*six_r_r_1_r2_y
+        six_r_r_1_t_2 = six_r_c_4_t*six_r_r_4_t_3
+        six_r_r_1_r4_y = -six_r_r_1_t_2 - six_r_r_1_r2_y*six_r_s_4
+        six_r_r_1_r6_x = six_r_r_1_r2_x*six_r_s_5 - six_r_c_5_t*six_r_r_1_r4_y
+        six_r_r_1_r6_y = -six_r_c_5_t*six_r_r_1_r2_x - six_r_r_1_r4_y*six_r_s_5
+        # (six_r-v_1) velocity of the connection point per rate of joint 1
+        six_r_v_1_x = six_r_e_1_r6_y*six_r_r_1_r4_x + six_r_r_1_r6_y*six_r_v_1_t
+        six_r_v_1_y = -six_r_e_1_r6_x*six_r_r_1_r4_x - six_r_r_1_r6_x*six_r_v_1_t
+        six_r_v_1_z = six_r_e_1_r6_x*six_r_r_1_r6_y - six_r_e_1_r6_y*six_r_r_1_r6_x
+        # (six_r-v_2) velocity of the connection point per rate of joint 2
+        six_r_v_2_t = six_r_c_4_t*six_r_c_5_t
+        six_r_v_2_t_2 = six_r_c_4_t*six_r_s_5
+        # (six_r-r_2) from joint 2 to the connection point, along the links
+        six_r_r_2_r0_x_2 = six_r_c_3*six_r_r_2_x + six_r_r_3_r0_y*six_r_s_3
+        six_r_r_2_r0_y = six_r_c_3*six_r_r_3_r0_y - six_r_r_2_x*six_r_s_3
+        six_r_r_2_r2_x = six_r_r_1_t - six_r_c_4_t*six_r_r_2_r0_y
+        six_r_r_2_r2_y = -six_r_r_1_t_2 - six_r_r_2_r0_y*six_r_s_4
+        six_r_r_2_r4_x = six_r_r_2_r0_x_2*six_r_s_5 - six_r_c_5_t*six_r_r_2_r2_y
+        six_r_r_2_r4_y = -six_r_c_5_t*six_r_r_2_r0_x_2 - six_r_r_2_r2_y*six_r_s_5
+        # (six_r-v_2) velocity of the connection point per rate of joint 2
+        six_r_v_2_x = six_r_r_2_r2_x*six_r_v_2_t_2 - six_r_r_2_r4_y*six_r_s_4
+        six_r_v_2_y = six_r_r_2_r4_x*six_r_s_4 - six_r_r_2_r2_x*six_r_v_2_t
+        six_r_v_2_z = six_r_r_2_r4_y*six_r_v_2_t - six_r_r_2_r4_x*six_r_v_2_t_2
+        # (six_r-r_3) from joint 3 to the connection point, along the links
+        six_r_r_3_r1_x = six_r_r_1_t - six_r_c_4_t*six_r_r_4_t_2
+        six_r_r_3_r1_y = -six_r_r_1_t_2 - six_r_r_4_t_2*six_r_s_4
+        six_r_r_3_r3_x = six_r_r_3_x*six_r_s_5 - six_r_c_5_t*six_r_r_3_r1_y
+        six_r_r_3_r3_y = -six_r_c_5_t*six_r_r_3_x - six_r_r_3_r1_y*six_r_s_5
+        # (six_r-v_3) velocity of the connection point per rate of joint 3
+        six_r_v_3_x = six_r_r_3_r1_x*six_r_v_2_t_2 - six_r_r_3_r3_y*six_r_s_4
+        six_r_v_3_y = six_r_r_3_r3_x*six_r_s_4 - six_r_r_3_r1_x*six_r_v_2_t
+        six_r_v_3_z = six_r_r_3_r3_y*six_r_v_2_t - six_r_r_3_r3_x*six_r_v_2_t_2
+        # (six_r-v_4) velocity of the connection point per rate of joint 4
+        six_r_v_4_z = (
+        six_r_c_5_t*(six_r_c_5_t*six_r_r_4_t + six_r_r_4_z*six_r_s_5) +
+            six_r_s_5*(six_r_r_4_t*six_r_s_5 - six_r_c_5_t*six_r_r_4_z)
         )
-        axis_z_rrrrrr_axes5_in_base_y = (
-        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
-            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
-            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
+        # (six_r-w_1) force part of reciprocal wrench 1
+        six_r_w_1_t = six_r_c_4_t*six_r_s_3
+        six_r_w_1_t_2 = six_r_c_3*six_r_c_4_t
+        axis_z_six_r_axes5_r5_x = six_r_s_2*six_r_w_1_t_2 - six_r_c_2_t*six_r_w_1_t
+        axis_z_six_r_axes5_r5_y = six_r_c_2_t*six_r_w_1_t_2 + six_r_s_2*six_r_w_1_t
+        # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
+        six_r_c_1_t = sin(six_r_q_1)
+        # (six_r-s_1) sine of the angle of joint 1 from its reference direction
+        six_r_s_1 = cos(six_r_q_1)
+        # (six_r-w_1) force part of reciprocal wrench 1
+        axis_z_six_r_axes5_r7_x = -axis_z_six_r_axes5_r5_x*six_r_s_1 - six_r_c_1_t*six_r_s_4
+        axis_z_six_r_axes5_r7_y = six_r_s_1*six_r_s_4 - axis_z_six_r_axes5_r5_x*six_r_c_1_t
+        axis_z_six_r_axes5_in_base_x = (
+        axis_z_six_r_axes5_r5_y*six_r_base_frame_xx + axis_z_six_r_axes5_r7_x*six_r_base_frame_xy
+            + axis_z_six_r_axes5_r7_y*six_r_base_frame_xz
         )
-        axis_z_rrrrrr_axes5_in_base_z = (
-        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
-            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
-            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
+        axis_z_six_r_axes5_in_base_y = (
+        axis_z_six_r_axes5_r5_y*six_r_base_frame_yx + axis_z_six_r_axes5_r7_x*six_r_base_frame_yy
+            + axis_z_six_r_axes5_r7_y*six_r_base_frame_yz
         )
-        w_1_t_3 = s_4*s_5
-        axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
-        axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
-        axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
-        axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
-        axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
-        axis_y_rrrrrr_axes5_r7_y = s_1*v_2_t_2 - axis_y_rrrrrr_axes5_r5_x*c_1_t
-        axis_y_rrrrrr_axes5_in_base_x = (
-        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
-            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
-            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
+        axis_z_six_r_axes5_in_base_z = (
+        axis_z_six_r_axes5_r5_y*six_r_base_frame_zx + axis_z_six_r_axes5_r7_x*six_r_base_frame_zy
+            + axis_z_six_r_axes5_r7_y*six_r_base_frame_zz
         )
-        axis_y_rrrrrr_axes5_in_base_y = (
-        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
-            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
-            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
+        six_r_w_1_t_3 = six_r_s_4*six_r_s_5
+        axis_y_six_r_axes5_r4_x = -six_r_c_3*six_r_c_5_t - six_r_s_3*six_r_w_1_t_3
+        axis_y_six_r_axes5_r4_y = six_r_c_3*six_r_w_1_t_3 - six_r_c_5_t*six_r_s_3
+        axis_y_six_r_axes5_r5_x = (
+        -axis_y_six_r_axes5_r4_x*six_r_c_2_t - axis_y_six_r_axes5_r4_y*six_r_s_2
         )
-        axis_y_rrrrrr_axes5_in_base_z = (
-        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
-            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
-            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
+        axis_y_six_r_axes5_r5_y = (
+        axis_y_six_r_axes5_r4_x*six_r_s_2 - axis_y_six_r_axes5_r4_y*six_r_c_2_t
         )
-        axis_x_rrrrrr_axes5_x = (
-        axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_z -
-            axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_y
+        axis_y_six_r_axes5_r7_x = -axis_y_six_r_axes5_r5_x*six_r_s_1 - six_r_c_1_t*six_r_v_2_t_2
+        axis_y_six_r_axes5_r7_y = six_r_s_1*six_r_v_2_t_2 - axis_y_six_r_axes5_r5_x*six_r_c_1_t
+        axis_y_six_r_axes5_in_base_x = (
+        axis_y_six_r_axes5_r5_y*six_r_base_frame_xx + axis_y_six_r_axes5_r7_x*six_r_base_frame_xy
+            + axis_y_six_r_axes5_r7_y*six_r_base_frame_xz
         )
-        axis_x_rrrrrr_axes5_y = (
-        axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_x -
-            axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_z
+        axis_y_six_r_axes5_in_base_y = (
+        axis_y_six_r_axes5_r5_y*six_r_base_frame_yx + axis_y_six_r_axes5_r7_x*six_r_base_frame_yy
+            + axis_y_six_r_axes5_r7_y*six_r_base_frame_yz
         )
-        axis_x_rrrrrr_axes5_z = (
-        axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
-            axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
+        axis_y_six_r_axes5_in_base_z = (
+        axis_y_six_r_axes5_r5_y*six_r_base_frame_zx + axis_y_six_r_axes5_r7_x*six_r_base_frame_zy
+            + axis_y_six_r_axes5_r7_y*six_r_base_frame_zz
         )
-        # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-        end_p1_r0_x = (
-        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy +
-            R_yx*rrrrrr_base_frame_yy + R_zx*rrrrrr_base_frame_zy) +
-            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
-            R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
-            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
-            R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy)
+        axis_x_six_r_axes5_x = (
+        axis_y_six_r_axes5_in_base_y*axis_z_six_r_axes5_in_base_z -
+            axis_y_six_r_axes5_in_base_z*axis_z_six_r_axes5_in_base_y
         )
-        end_p1_r0_y = (
-        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz +
-            R_yx*rrrrrr_base_frame_yz + R_zx*rrrrrr_base_frame_zz) +
-            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
-            R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
-            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
-            R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz)
+        axis_x_six_r_axes5_y = (
+        axis_y_six_r_axes5_in_base_z*axis_z_six_r_axes5_in_base_x -
+            axis_y_six_r_axes5_in_base_x*axis_z_six_r_axes5_in_base_z
         )
-        end_p1_r0_z = (
-        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx +
-            R_yx*rrrrrr_base_frame_yx + R_zx*rrrrrr_base_frame_zx) +
-            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
-            R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
-            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
-            R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx)
+        axis_x_six_r_axes5_z = (
+        axis_y_six_r_axes5_in_base_x*axis_z_six_r_axes5_in_base_y -
+            axis_y_six_r_axes5_in_base_y*axis_z_six_r_axes5_in_base_x
         )
-        end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x
-        end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1
-        end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y
-        end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2
-        end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3
-        end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3
-        end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y
-        end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4
-        end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
-        end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
-        # (rrrrrr-V13) force part of reciprocal wrench 1
-        w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
-        w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
-        w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
-        w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
-        w_1_t_8 = size*w_1_t_4
-        w_1_t_9 = size*w_1_t_6
-        w_1_t_10 = size*w_1_t_5
-        w_1_t_11 = size*w_1_t_7
-        w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
-        w_1_t_13 = c_5_t*end_p1_r6_x*size
-        w_1_t_14 = end_p1_r8_y*size
-        w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
-        inv_w_1_t_69 = 1.0/w_1_t_15
-        w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
-        w_1_t_17 = inv_w_1_t_69*w_1_t_14
-        w_1_t_18 = w_1_t_13*w_1_t_17
-        w_1_t_19 = w_1_t_16*w_1_t_18
-        w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
-        w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
-        w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
-        w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
-        w_1_t_24 = w_1_t_11*w_1_t_17
-        w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
-        w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
-        w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
-        w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
-        w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
-        w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
-        w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
-        inv_w_1_t_101 = 1.0/w_1_t_31
-        w_1_t_32 = inv_w_1_t_101*w_1_t_19
-        w_1_t_33 = inv_w_1_t_101*v_4_z
-        w_1_t_34 = inv_w_1_t_101*w_1_t_12
-        w_1_t_35 = inv_w_1_t_101*w_1_t_20
-        w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
-        w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
-        w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
-        w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
-        w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
-        w_1_t_41 = w_1_t_10*w_1_t_34
-        w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
-        w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
-        w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
-        w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
-        w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
-        w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
-        w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
-        w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
-        w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
-        w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
-        w_1_t_52 = (
-        sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
-            w_1_t_40*w_1_t_40)
+        # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
+        six_r_end_p1_r0_x = (
+        six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xy + R_yx*six_r_base_frame_yy
+            + R_zx*six_r_base_frame_zy) +
+            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xy +
+            R_yy*six_r_base_frame_yy + R_zy*six_r_base_frame_zy) +
+            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xy +
+            R_yz*six_r_base_frame_yy + R_zz*six_r_base_frame_zy)
         )
-        inv_w_1_t_150 = 1.0/w_1_t_52
-        w_1_t_53 = inv_w_1_t_150*v_1_x
-        w_1_t_54 = inv_w_1_t_150*w_1_t_37
-        w_1_t_55 = inv_w_1_t_150*w_1_t_38
-        w_1_t_56 = inv_w_1_t_150*w_1_t_39
-        w_1_t_57 = inv_w_1_t_150*w_1_t_40
-        w_1_t_58 = (
-        v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 +
-            w_1_t_46*w_1_t_57
+        six_r_end_p1_r0_y = (
+        six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xz + R_yx*six_r_base_frame_yz
+            + R_zx*six_r_base_frame_zz) +
+            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xz +
+            R_yy*six_r_base_frame_yz + R_zy*six_r_base_frame_zz) +
+            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xz +
+            R_yz*six_r_base_frame_yz + R_zz*six_r_base_frame_zz)
         )
-        w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
-        w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
-        w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
-        w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
-        w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
-        w_1_t_64 = (
-        v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 +
-            w_1_t_51*w_1_t_57
+        six_r_end_p1_r0_z = (
+        six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xx + R_yx*six_r_base_frame_yx
+            + R_zx*six_r_base_frame_zx) +
+            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xx +
+            R_yy*six_r_base_frame_yx + R_zy*six_r_base_frame_zx) +
+            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xx +
+            R_yz*six_r_base_frame_yx + R_zz*six_r_base_frame_zx)
         )
-        w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
-        w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
-        w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
-        w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
-        w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
-        w_1_t_70 = (
-        sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
-            w_1_t_63*w_1_t_63)
+        six_r_end_p1_r1_x = six_r_end_p1_r0_y*six_r_s_1 - six_r_c_1_t*six_r_end_p1_r0_x
+        six_r_end_p1_r1_y = -six_r_c_1_t*six_r_end_p1_r0_y - six_r_end_p1_r0_x*six_r_s_1
+        six_r_end_p1_r3_x = six_r_end_p1_r0_z*six_r_s_2 - six_r_c_2_t*six_r_end_p1_r1_y
+        six_r_end_p1_r3_y = -six_r_c_2_t*six_r_end_p1_r0_z - six_r_end_p1_r1_y*six_r_s_2
+        six_r_end_p1_r4_x = six_r_c_3*six_r_end_p1_r3_x + six_r_end_p1_r3_y*six_r_s_3
+        six_r_end_p1_r4_y = six_r_c_3*six_r_end_p1_r3_y - six_r_end_p1_r3_x*six_r_s_3
+        six_r_end_p1_r6_x = six_r_end_p1_r1_x*six_r_s_4 - six_r_c_4_t*six_r_end_p1_r4_y
+        six_r_end_p1_r6_y = -six_r_c_4_t*six_r_end_p1_r1_x - six_r_end_p1_r4_y*six_r_s_4
+        six_r_end_p1_r8_x = six_r_end_p1_r4_x*six_r_s_5 - six_r_c_5_t*six_r_end_p1_r6_y
+        six_r_end_p1_r8_y = -six_r_c_5_t*six_r_end_p1_r4_x - six_r_end_p1_r6_y*six_r_s_5
+        # (six_r-w_1) force part of reciprocal wrench 1
+        six_r_w_1_t_4 = six_r_e_1_r6_x*six_r_end_p1_r8_y - six_r_e_1_r6_y*six_r_end_p1_r8_x
+        six_r_w_1_t_5 = six_r_end_p1_r8_y*six_r_v_2_t - six_r_end_p1_r8_x*six_r_v_2_t_2
+        six_r_w_1_t_6 = six_r_e_1_r6_y*six_r_end_p1_r6_x + six_r_end_p1_r8_y*six_r_v_1_t
+        six_r_w_1_t_7 = six_r_end_p1_r6_x*six_r_v_2_t_2 - six_r_end_p1_r8_y*six_r_s_4
+        six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4
+        six_r_w_1_t_9 = six_r_size*six_r_w_1_t_6
+        six_r_w_1_t_10 = six_r_size*six_r_w_1_t_5
+        six_r_w_1_t_11 = six_r_size*six_r_w_1_t_7
+        six_r_w_1_t_12 = six_r_size*(-six_r_c_5_t*six_r_end_p1_r8_x - six_r_end_p1_r8_y*six_r_s_5)
+        six_r_w_1_t_13 = six_r_c_5_t*six_r_end_p1_r6_x*six_r_size
+        six_r_w_1_t_14 = six_r_end_p1_r8_y*six_r_size
+        six_r_w_1_t_15 = sqrt(six_r_size_t + six_r_w_1_t_14*six_r_w_1_t_14)
+        inv_six_r_w_1_t_69 = 1.0/six_r_w_1_t_15
+        six_r_w_1_t_16 = inv_six_r_w_1_t_69*six_r_platform_joint_offset_x
+        six_r_w_1_t_17 = inv_six_r_w_1_t_69*six_r_w_1_t_14
+        six_r_w_1_t_18 = six_r_w_1_t_13*six_r_w_1_t_17
+        six_r_w_1_t_19 = six_r_w_1_t_16*six_r_w_1_t_18
+        six_r_w_1_t_20 = six_r_w_1_t_13 - six_r_w_1_t_17*six_r_w_1_t_18
+        six_r_w_1_t_21 = six_r_v_1_y*six_r_w_1_t_16 - six_r_w_1_t_17*six_r_w_1_t_9
+        six_r_w_1_t_22 = six_r_v_1_y - six_r_w_1_t_16*six_r_w_1_t_21
+        six_r_w_1_t_23 = six_r_w_1_t_9 + six_r_w_1_t_17*six_r_w_1_t_21
+        six_r_w_1_t_24 = six_r_w_1_t_11*six_r_w_1_t_17
+        six_r_w_1_t_25 = six_r_v_2_y*six_r_w_1_t_16 - six_r_w_1_t_24
+        six_r_w_1_t_26 = six_r_v_2_y - six_r_w_1_t_16*six_r_w_1_t_25
+        six_r_w_1_t_27 = six_r_w_1_t_11 + six_r_w_1_t_17*six_r_w_1_t_25
+        six_r_w_1_t_28 = six_r_w_1_t_24 - six_r_v_3_y*six_r_w_1_t_16
+        six_r_w_1_t_29 = six_r_v_3_y + six_r_w_1_t_16*six_r_w_1_t_28
+        six_r_w_1_t_30 = six_r_w_1_t_11 - six_r_w_1_t_17*six_r_w_1_t_28
+        six_r_w_1_t_31 = (
+        sqrt(six_r_v_4_z*six_r_v_4_z + six_r_w_1_t_12*six_r_w_1_t_12 +
+            six_r_w_1_t_19*six_r_w_1_t_19 + six_r_w_1_t_20*six_r_w_1_t_20)
         )
-        inv_w_1_t_194 = 1.0/w_1_t_70
-        w_1_t_71 = inv_w_1_t_194*w_1_t_59
-        w_1_t_72 = inv_w_1_t_194*w_1_t_60
-        w_1_t_73 = inv_w_1_t_194*w_1_t_61
-        w_1_t_74 = inv_w_1_t_194*w_1_t_62
-        w_1_t_75 = inv_w_1_t_194*w_1_t_63
-        w_1_t_76 = (
-        w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
-            w_1_t_69*w_1_t_75
+        inv_six_r_w_1_t_101 = 1.0/six_r_w_1_t_31
+        six_r_w_1_t_32 = inv_six_r_w_1_t_101*six_r_w_1_t_19
+        six_r_w_1_t_33 = inv_six_r_w_1_t_101*six_r_v_4_z
+        six_r_w_1_t_34 = inv_six_r_w_1_t_101*six_r_w_1_t_12
+        six_r_w_1_t_35 = inv_six_r_w_1_t_101*six_r_w_1_t_20
+        six_r_w_1_t_36 = (
+        six_r_w_1_t_22*six_r_w_1_t_32 + six_r_w_1_t_23*six_r_w_1_t_35 +
+            six_r_w_1_t_34*six_r_w_1_t_8 - six_r_v_1_z*six_r_w_1_t_33
         )
-        w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
-        w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
-        w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
-        w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
-        w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
-        w_1_t_82 = (
-        sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
-            w_1_t_81*w_1_t_81)
+        six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_36 - six_r_w_1_t_22
+        six_r_w_1_t_38 = six_r_v_1_z + six_r_w_1_t_33*six_r_w_1_t_36
+        six_r_w_1_t_39 = six_r_w_1_t_34*six_r_w_1_t_36 - six_r_w_1_t_8
+        six_r_w_1_t_40 = six_r_w_1_t_35*six_r_w_1_t_36 - six_r_w_1_t_23
+        six_r_w_1_t_41 = six_r_w_1_t_10*six_r_w_1_t_34
+        six_r_w_1_t_42 = (
+        six_r_w_1_t_41 + six_r_w_1_t_26*six_r_w_1_t_32 + six_r_w_1_t_27*six_r_w_1_t_35 -
+            six_r_v_2_z*six_r_w_1_t_33
         )
-        inv_w_1_t_222 = 1.0/w_1_t_82
-        w_1_t_83 = inv_w_1_t_222*w_1_t_77
-        w_1_t_84 = inv_w_1_t_222*w_1_t_78
-        w_1_t_85 = inv_w_1_t_222*w_1_t_79
-        w_1_t_86 = inv_w_1_t_222*w_1_t_80
-        w_1_t_87 = inv_w_1_t_222*w_1_t_81
-        # (M2) coupling block of M
-        q_in_base_x = (
-        R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
+        six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_42 - six_r_w_1_t_26
+        six_r_w_1_t_44 = six_r_v_2_z + six_r_w_1_t_33*six_r_w_1_t_42
+        six_r_w_1_t_45 = six_r_w_1_t_34*six_r_w_1_t_42 - six_r_w_1_t_10
+        six_r_w_1_t_46 = six_r_w_1_t_35*six_r_w_1_t_42 - six_r_w_1_t_27
+        six_r_w_1_t_47 = (
+        six_r_w_1_t_41 + six_r_w_1_t_29*six_r_w_1_t_32 + six_r_w_1_t_30*six_r_w_1_t_35 -
+            six_r_v_3_z*six_r_w_1_t_33
         )
-        q_in_base_y = (
-        R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y + R_yz*rrrrrr_platform_point_z
+        six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_47 - six_r_w_1_t_29
+        six_r_w_1_t_49 = six_r_v_3_z + six_r_w_1_t_33*six_r_w_1_t_47
+        six_r_w_1_t_50 = six_r_w_1_t_34*six_r_w_1_t_47 - six_r_w_1_t_10
+        six_r_w_1_t_51 = six_r_w_1_t_35*six_r_w_1_t_47 - six_r_w_1_t_30
+        six_r_w_1_t_52 = (
+        sqrt(six_r_v_1_x*six_r_v_1_x + six_r_w_1_t_37*six_r_w_1_t_37 +
+            six_r_w_1_t_38*six_r_w_1_t_38 + six_r_w_1_t_39*six_r_w_1_t_39 +
+            six_r_w_1_t_40*six_r_w_1_t_40)
         )
-        q_in_base_z = (
-        R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y + R_zz*rrrrrr_platform_point_z
+        inv_six_r_w_1_t_150 = 1.0/six_r_w_1_t_52
+        six_r_w_1_t_53 = inv_six_r_w_1_t_150*six_r_v_1_x
+        six_r_w_1_t_54 = inv_six_r_w_1_t_150*six_r_w_1_t_37
+        six_r_w_1_t_55 = inv_six_r_w_1_t_150*six_r_w_1_t_38
+        six_r_w_1_t_56 = inv_six_r_w_1_t_150*six_r_w_1_t_39
+        six_r_w_1_t_57 = inv_six_r_w_1_t_150*six_r_w_1_t_40
+        six_r_w_1_t_58 = (
+        six_r_v_2_x*six_r_w_1_t_53 + six_r_w_1_t_43*six_r_w_1_t_54 + six_r_w_1_t_44*six_r_w_1_t_55
+            + six_r_w_1_t_45*six_r_w_1_t_56 + six_r_w_1_t_46*six_r_w_1_t_57
         )
-        # (rrrrrr-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_tip_x = (
-        S_dot_x*axis_x_rrrrrr_axes5_x + S_dot_y*axis_x_rrrrrr_axes5_y +
-            S_dot_z*axis_x_rrrrrr_axes5_z
+        six_r_w_1_t_59 = six_r_v_2_x - six_r_w_1_t_53*six_r_w_1_t_58
+        six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_58
+        six_r_w_1_t_61 = six_r_w_1_t_44 - six_r_w_1_t_55*six_r_w_1_t_58
+        six_r_w_1_t_62 = six_r_w_1_t_45 - six_r_w_1_t_56*six_r_w_1_t_58
+        six_r_w_1_t_63 = six_r_w_1_t_46 - six_r_w_1_t_57*six_r_w_1_t_58
+        six_r_w_1_t_64 = (
+        six_r_v_3_x*six_r_w_1_t_53 + six_r_w_1_t_48*six_r_w_1_t_54 + six_r_w_1_t_49*six_r_w_1_t_55
+            + six_r_w_1_t_50*six_r_w_1_t_56 + six_r_w_1_t_51*six_r_w_1_t_57
         )
-        S_dot_tip_y = (
-        S_dot_x*axis_y_rrrrrr_axes5_in_base_x + S_dot_y*axis_y_rrrrrr_axes5_in_base_y +
-            S_dot_z*axis_y_rrrrrr_axes5_in_base_z
+        six_r_w_1_t_65 = six_r_v_3_x - six_r_w_1_t_53*six_r_w_1_t_64
+        six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_64
+        six_r_w_1_t_67 = six_r_w_1_t_49 - six_r_w_1_t_55*six_r_w_1_t_64
+        six_r_w_1_t_68 = six_r_w_1_t_50 - six_r_w_1_t_56*six_r_w_1_t_64
+        six_r_w_1_t_69 = six_r_w_1_t_51 - six_r_w_1_t_57*six_r_w_1_t_64
+        six_r_w_1_t_70 = (
+        sqrt(six_r_w_1_t_59*six_r_w_1_t_59 + six_r_w_1_t_60*six_r_w_1_t_60 +
+            six_r_w_1_t_61*six_r_w_1_t_61 + six_r_w_1_t_62*six_r_w_1_t_62 +
+            six_r_w_1_t_63*six_r_w_1_t_63)
         )
-        S_dot_tip_z = (
-        S_dot_x*axis_z_rrrrrr_axes5_in_base_x + S_dot_y*axis_z_rrrrrr_axes5_in_base_y +
-            S_dot_z*axis_z_rrrrrr_axes5_in_base_z
+        inv_six_r_w_1_t_194 = 1.0/six_r_w_1_t_70
+        six_r_w_1_t_71 = inv_six_r_w_1_t_194*six_r_w_1_t_59
+        six_r_w_1_t_72 = inv_six_r_w_1_t_194*six_r_w_1_t_60
+        six_r_w_1_t_73 = inv_six_r_w_1_t_194*six_r_w_1_t_61
+        six_r_w_1_t_74 = inv_six_r_w_1_t_194*six_r_w_1_t_62
+        six_r_w_1_t_75 = inv_six_r_w_1_t_194*six_r_w_1_t_63
+        six_r_w_1_t_76 = (
+        six_r_w_1_t_65*six_r_w_1_t_71 + six_r_w_1_t_66*six_r_w_1_t_72 +
+            six_r_w_1_t_67*six_r_w_1_t_73 + six_r_w_1_t_68*six_r_w_1_t_74 +
+            six_r_w_1_t_69*six_r_w_1_t_75
         )
-        # (rrrrrr-A14) rate of moment direction 1
-        omega_tip_x = (
-        axis_x_rrrrrr_axes5_x*omega_x + axis_x_rrrrrr_axes5_y*omega_y +
-            axis_x_rrrrrr_axes5_z*omega_z
+        six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_76
+        six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_76
+        six_r_w_1_t_79 = six_r_w_1_t_67 - six_r_w_1_t_73*six_r_w_1_t_76
+        six_r_w_1_t_80 = six_r_w_1_t_68 - six_r_w_1_t_74*six_r_w_1_t_76
+        six_r_w_1_t_81 = six_r_w_1_t_69 - six_r_w_1_t_75*six_r_w_1_t_76
+        six_r_w_1_t_82 = (
+        sqrt(six_r_w_1_t_77*six_r_w_1_t_77 + six_r_w_1_t_78*six_r_w_1_t_78 +
+            six_r_w_1_t_79*six_r_w_1_t_79 + six_r_w_1_t_80*six_r_w_1_t_80 +
+            six_r_w_1_t_81*six_r_w_1_t_81)
         )
-        omega_tip_y = (
-        axis_y_rrrrrr_axes5_in_base_x*omega_x + axis_y_rrrrrr_axes5_in_base_y*omega_y +
-            axis_y_rrrrrr_axes5_in_base_z*omega_z
+        inv_six_r_w_1_t_222 = 1.0/six_r_w_1_t_82
+        six_r_w_1_t_83 = inv_six_r_w_1_t_222*six_r_w_1_t_77
+        six_r_w_1_t_84 = inv_six_r_w_1_t_222*six_r_w_1_t_78
+        six_r_w_1_t_85 = inv_six_r_w_1_t_222*six_r_w_1_t_79
+        six_r_w_1_t_86 = inv_six_r_w_1_t_222*six_r_w_1_t_80
+        six_r_w_1_t_87 = inv_six_r_w_1_t_222*six_r_w_1_t_81
+        # (M_ta) coupling block of M
+        six_r_q_in_base_x = (
+        R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
         )
-        omega_tip_z = (
-        axis_z_rrrrrr_axes5_in_base_x*omega_x + axis_z_rrrrrr_axes5_in_base_y*omega_y +
-            axis_z_rrrrrr_axes5_in_base_z*omega_z
+        six_r_q_in_base_y = (
+        R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y + R_yz*six_r_platform_point_z
         )
-        nd_m1_t = end_p1_r6_x*omega_tip_y - end_p1_r8_y*omega_tip_z
-        nd_m1_t_2 = end_p1_r8_x*omega_tip_z - end_p1_r6_x*omega_tip_x
-        nd_m1_t_3 = end_p1_r8_y*omega_tip_x - end_p1_r8_x*omega_tip_y
-        # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-        bias_t = rrrrrr_joint2_offset_x*s_2
-        bias_t_2 = c_2_t*rrrrrr_joint2_offset_x
-        d_2_r2_x = bias_t*c_3 - bias_t_2*s_3
-        d_2_r2_y = -bias_t*s_3 - bias_t_2*c_3
-        bias_t_3 = c_4_t*d_2_r2_y
-        bias_t_4 = d_2_r2_y*s_4
-        d_2_r6_x = bias_t_4*c_5_t + d_2_r2_x*s_5
-        d_2_r6_y = bias_t_4*s_5 - c_5_t*d_2_r2_x
-        bias_t_5 = c_3*rrrrrr_joint3_offset_x
-        bias_t_6 = rrrrrr_joint3_offset_x*s_3
-        bias_t_7 = bias_t_6*c_4_t
-        bias_t_8 = bias_t_6*s_4
-        d_3_r4_x = bias_t_5*s_5 - bias_t_8*c_5_t
-        d_3_r4_y = -bias_t_5*c_5_t - bias_t_8*s_5
-        bias_t_9 = rrrrrr_joint4_offset_x*s_5
-        bias_t_10 = c_5_t*rrrrrr_joint4_offset_x
-        bias_t_11 = rrrrrr_joint5_offset_x*s_5
-        bias_t_12 = c_5_t*rrrrrr_joint5_offset_x
-        # (rrrrrr-V35) rate of joint 1
-        qd_1_t = nd_m1_t_3*size
-        qd_1_t_2 = nd_m1_t*size
-        qd_1_t_3 = (
-        inv_w_1_t_222*(S_dot_tip_y*w_1_t_84 + qd_1_t*w_1_t_86 + qd_1_t_2*w_1_t_87 -
-            S_dot_tip_x*w_1_t_83 - S_dot_tip_z*w_1_t_85)
+        six_r_q_in_base_z = (
+        R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y + R_zz*six_r_platform_point_z
         )
-        qd_1_t_4 = (
-        inv_w_1_t_194*(S_dot_tip_y*w_1_t_72 + qd_1_t*w_1_t_74 + qd_1_t_2*w_1_t_75 -
-            S_dot_tip_x*w_1_t_71 - S_dot_tip_z*w_1_t_73 - qd_1_t_3*w_1_t_76)
+        # (six_r-S_dot) velocity of the connection point
+        six_r_S_dot_t = omega_y*six_r_q_in_base_z - omega_z*six_r_q_in_base_y
+        six_r_S_dot_t_2 = omega_z*six_r_q_in_base_x - omega_x*six_r_q_in_base_z
+        six_r_S_dot_t_3 = omega_x*six_r_q_in_base_y - omega_y*six_r_q_in_base_x
+        six_r_S_dot_x = six_r_S_dot_t + t_dot_x
+        six_r_S_dot_y = six_r_S_dot_t_2 + t_dot_y
+        six_r_S_dot_z = six_r_S_dot_t_3 + t_dot_z
+        six_r_S_dot_tip_x = (
+        axis_x_six_r_axes5_x*six_r_S_dot_x + axis_x_six_r_axes5_y*six_r_S_dot_y +
+            axis_x_six_r_axes5_z*six_r_S_dot_z
         )
-        qd_1_t_5 = (
-        inv_w_1_t_150*(S_dot_tip_x*w_1_t_53 + S_dot_tip_z*w_1_t_55 + qd_1_t_3*w_1_t_64 +
-            qd_1_t_4*w_1_t_58 - S_dot_tip_y*w_1_t_54 - qd_1_t*w_1_t_56 - qd_1_t_2*w_1_t_57)
+        six_r_S_dot_tip_y = (
+        axis_y_six_r_axes5_in_base_x*six_r_S_dot_x + axis_y_six_r_axes5_in_base_y*six_r_S_dot_y +
+            axis_y_six_r_axes5_in_base_z*six_r_S_dot_z
         )
-        qd_1_t_6 = (
-        inv_w_1_t_101*(S_dot_tip_y*w_1_t_32 + qd_1_t*w_1_t_34 + qd_1_t_2*w_1_t_35 +
-            qd_1_t_3*w_1_t_47 + qd_1_t_4*w_1_t_42 - S_dot_tip_z*w_1_t_33 - qd_1_t_5*w_1_t_36)
+        six_r_S_dot_tip_z = (
+        axis_z_six_r_axes5_in_base_x*six_r_S_dot_x + axis_z_six_r_axes5_in_base_y*six_r_S_dot_y +
+            axis_z_six_r_axes5_in_base_z*six_r_S_dot_z
         )
-        qd_1_t_7 = (
-        inv_w_1_t_69*(S_dot_tip_y*w_1_t_16 + qd_1_t_4*w_1_t_25 + qd_1_t_6*w_1_t_18 -
-            qd_1_t_2*w_1_t_17 - qd_1_t_3*w_1_t_28 - qd_1_t_5*w_1_t_21)
+        # (six_r-bias) acceleration of the connection point at zero joint accelerations
+        six_r_bias_t = six_r_joint2_offset_x*six_r_s_2
+        six_r_bias_t_2 = six_r_c_2_t*six_r_joint2_offset_x
+        six_r_d_2_r2_x = six_r_bias_t*six_r_c_3 - six_r_bias_t_2*six_r_s_3
+        six_r_d_2_r2_y = -six_r_bias_t*six_r_s_3 - six_r_bias_t_2*six_r_c_3
+        six_r_bias_t_3 = six_r_c_4_t*six_r_d_2_r2_y
+        six_r_bias_t_4 = six_r_d_2_r2_y*six_r_s_4
+        six_r_d_2_r6_x = six_r_bias_t_4*six_r_c_5_t + six_r_d_2_r2_x*six_r_s_5
+        six_r_d_2_r6_y = six_r_bias_t_4*six_r_s_5 - six_r_c_5_t*six_r_d_2_r2_x
+        six_r_bias_t_5 = six_r_c_3*six_r_joint3_offset_x
+        six_r_bias_t_6 = six_r_joint3_offset_x*six_r_s_3
+        six_r_bias_t_7 = six_r_bias_t_6*six_r_c_4_t
+        six_r_bias_t_8 = six_r_bias_t_6*six_r_s_4
+        six_r_d_3_r4_x = six_r_bias_t_5*six_r_s_5 - six_r_bias_t_8*six_r_c_5_t
+        six_r_d_3_r4_y = -six_r_bias_t_5*six_r_c_5_t - six_r_bias_t_8*six_r_s_5
+        six_r_bias_t_9 = six_r_joint4_offset_x*six_r_s_5
+        six_r_bias_t_10 = six_r_c_5_t*six_r_joint4_offset_x
+        six_r_bias_t_11 = six_r_joint5_offset_x*six_r_s_5
+        six_r_bias_t_12 = six_r_c_5_t*six_r_joint5_offset_x
+        # (six_r-nd_m1) rate of moment direction 1
+        six_r_omega_tip_x = (
+        axis_x_six_r_axes5_x*omega_x + axis_x_six_r_axes5_y*omega_y + axis_x_six_r_axes5_z*omega_z
         )
-        # (rrrrrr-V40) angular velocity of link 1
-        omega_1_t = qd_1_t_5*s_2
-        omega_1_t_2 = c_2_t*qd_1_t_5
-        # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_x = omega_1_t_2*qd_1_t_4
-        zeta_2_y = omega_1_t*qd_1_t_4
-        # (rrrrrr-V42) angular velocity of link 2
-        omega_2_r0_x = c_3*omega_1_t - omega_1_t_2*s_3
-        omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
-        # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_r0_x = c_3*zeta_2_x + s_3*zeta_2_y
-        zeta_2_r0_y = c_3*zeta_2_y - s_3*zeta_2_x
-        # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_x = zeta_2_r0_x - omega_2_r0_y*qd_1_t_3
-        beta_3_y = zeta_2_r0_y + omega_2_r0_x*qd_1_t_3
-        # (rrrrrr-V44) angular velocity of link 3
-        omega_3_z = -qd_1_t_3 - qd_1_t_4
-        omega_3_r1_x = omega_3_z*s_4 - c_4_t*omega_2_r0_y
-        omega_3_r1_y = -c_4_t*omega_3_z - omega_2_r0_y*s_4
-        # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_t = beta_3_y*c_4_t
-        beta_3_t_2 = beta_3_y*s_4
-        # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
-        beta_4_x = -beta_3_t - omega_3_r1_y*qd_1_t_6
-        beta_4_y = omega_3_r1_x*qd_1_t_6 - beta_3_t_2
-        # (rrrrrr-V46) angular velocity of link 4
-        omega_4_z = omega_2_r0_x - qd_1_t_6
-        omega_4_t = c_5_t*omega_3_r1_y
-        omega_4_r1_x = omega_4_z*s_5 - omega_4_t
-        omega_4_t_2 = omega_3_r1_y*s_5
-        omega_4_r1_y = -omega_4_t_2 - c_5_t*omega_4_z
-        # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
-        beta_4_t = beta_3_x*s_5
-        beta_4_r1_x = beta_4_t - beta_4_y*c_5_t
-        beta_4_t_2 = beta_3_x*c_5_t
-        beta_4_r1_y = -beta_4_t_2 - beta_4_y*s_5
-        # (rrrrrr-A10) angular acceleration of link 5 at zero joint accelerations
-        beta_5_x = beta_4_r1_x + omega_4_r1_y*qd_1_t_7
-        beta_5_y = beta_4_r1_y - omega_4_r1_x*qd_1_t_7
-        # (rrrrrr-V48) angular velocity of link 5
-        omega_5_z = omega_3_r1_x + qd_1_t_7
-        # (rrrrrr-A14) rate of moment direction 1
-        nd_m1_t_4 = end_p1_r8_y*omega_4_r1_y
-        nd_m1_x = -nd_m1_t_2 - end_p1_r6_x*omega_4_r1_x
-        nd_m1_y = nd_m1_t - end_p1_r6_x*omega_4_r1_y
-        # (rrrrrr-A15) bias of the angular acceleration along moment direction 1
-        nu_1_t = beta_5_x*end_p1_r8_y - beta_5_y*end_p1_r8_x
-        nu_1_t_2 = omega_4_r1_x - omega_tip_x
-        nu_1_t_3 = omega_4_r1_y - omega_tip_y
-        nu_1_t_4 = omega_5_z - omega_tip_z
-        nu_1_t_5 = (
-        nd_m1_x*nu_1_t_2 + nd_m1_y*nu_1_t_3 + nu_1_t_4*(nd_m1_t_4 + end_p1_r8_x*omega_4_r1_x)
+        six_r_omega_tip_y = (
+        axis_y_six_r_axes5_in_base_x*omega_x + axis_y_six_r_axes5_in_base_y*omega_y +
+            axis_y_six_r_axes5_in_base_z*omega_z
         )
-        nu_1 = nu_1_t - nu_1_t_5
-        # (rrrrrr-A18) acceleration with which the joints turn along moment direction 1
-        alpha_tip_y = (
-        alpha_x*axis_y_rrrrrr_axes5_in_base_x + alpha_y*axis_y_rrrrrr_axes5_in_base_y +
-            alpha_z*axis_y_rrrrrr_axes5_in_base_z
+        six_r_omega_tip_z = (
+        axis_z_six_r_axes5_in_base_x*omega_x + axis_z_six_r_axes5_in_base_y*omega_y +
+            axis_z_six_r_axes5_in_base_z*omega_z
         )
-        etad_1_t = (
-        end_p1_r8_y*(alpha_x*axis_x_rrrrrr_axes5_x + alpha_y*axis_x_rrrrrr_axes5_y +
-            alpha_z*axis_x_rrrrrr_axes5_z) - alpha_tip_y*end_p1_r8_x
+        six_r_nd_m1_t = six_r_end_p1_r6_x*six_r_omega_tip_y - six_r_end_p1_r8_y*six_r_omega_tip_z
+        six_r_nd_m1_t_2 = (
+        six_r_end_p1_r8_x*six_r_omega_tip_z - six_r_end_p1_r6_x*six_r_omega_tip_x
         )
-        etad_1 = nu_1 - etad_1_t
-        # (rrrrrr-A16) rate of moment direction 2
-        nd_m2_y = -nd_m1_t_3 - end_p1_r8_x*omega_4_r1_y
-        nd_m2_z = nd_m1_t_2 - end_p1_r8_x*omega_5_z
-        # (rrrrrr-A17) bias of the angular acceleration along moment direction 2
-        nu_2_t = beta_5_y*end_p1_r6_x - beta_4_x*end_p1_r8_y
-        nu_2_t_2 = (
-        nd_m2_y*nu_1_t_3 + nd_m2_z*nu_1_t_4 + nu_1_t_2*(nd_m1_t_4 + end_p1_r6_x*omega_5_z)
+        six_r_nd_m1_t_3 = (
+        six_r_end_p1_r8_y*six_r_omega_tip_x - six_r_end_p1_r8_x*six_r_omega_tip_y
         )
-        nu_2 = nu_2_t - nu_2_t_2
-        # (rrrrrr-A19) acceleration with which the joints turn along moment direction 2
-        etad_2_t = (
-        alpha_tip_y*end_p1_r6_x - end_p1_r8_y*(alpha_x*axis_z_rrrrrr_axes5_in_base_x +
-            alpha_y*axis_z_rrrrrr_axes5_in_base_y + alpha_z*axis_z_rrrrrr_axes5_in_base_z)
+        # (six_r-qd_1) rate of joint 1
+        six_r_qd_1_t = six_r_nd_m1_t_3*six_r_size
+        six_r_qd_1_t_2 = six_r_nd_m1_t*six_r_size
+        six_r_qd_1_t_3 = (
+        inv_six_r_w_1_t_222*(six_r_S_dot_tip_y*six_r_w_1_t_84 + six_r_qd_1_t*six_r_w_1_t_86 +
+            six_r_qd_1_t_2*six_r_w_1_t_87 - six_r_S_dot_tip_x*six_r_w_1_t_83 -
+            six_r_S_dot_tip_z*six_r_w_1_t_85)
         )
-        etad_2 = nu_2 - etad_2_t
-        # (rrrrrr-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (rrrrrr-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        # (rrrrrr-V47) centripetal tensor of link 4
-        W_4_t = omega_3_r1_x*omega_3_r1_x
-        # (rrrrrr-V49) centripetal tensor of link 5
-        W_5_t = omega_4_r1_y*omega_4_r1_y
-        W_5_xy = omega_4_r1_x*omega_4_r1_y
-        # (rrrrrr-V40) angular velocity of link 1
-        omega_1_x = e_1_r6_x*qd_1_t_5
-        omega_1_y = e_1_r6_y*qd_1_t_5
-        omega_1_z = qd_1_t_5*v_1_t
-        # (rrrrrr-V41) centripetal tensor of link 1
-        W_1_t = omega_1_x*omega_1_x
-        W_1_t_2 = omega_1_y*omega_1_y
-        W_1_t_3 = omega_1_z*omega_1_z
-        W_1_xy = omega_1_x*omega_1_y
-        W_1_xz = omega_1_x*omega_1_z
-        W_1_yz = omega_1_y*omega_1_z
-        # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_t = c_4_t*zeta_2_r0_y
-        zeta_2_t_2 = s_4*zeta_2_r0_y
-        zeta_2_r4_x = c_5_t*zeta_2_t_2 + s_5*zeta_2_r0_x
-        zeta_2_r4_y = s_5*zeta_2_t_2 - c_5_t*zeta_2_r0_x
-        # (rrrrrr-V42) angular velocity of link 2
-        omega_2_x = omega_1_x - qd_1_t_4*v_2_t
-        omega_2_y = omega_1_y - qd_1_t_4*v_2_t_2
-        omega_2_z = -omega_1_z - qd_1_t_4*s_4
-        # (rrrrrr-V43) centripetal tensor of link 2
-        W_2_t = omega_2_x*omega_2_x
-        W_2_t_2 = omega_2_y*omega_2_y
-        W_2_t_3 = omega_2_z*omega_2_z
-        W_2_xy = omega_2_x*omega_2_y
-        W_2_xz = omega_2_x*omega_2_z
-        W_2_yz = omega_2_y*omega_2_z
-        # (rrrrrr-V44) angular velocity of link 3
-        omega_3_r3_x = omega_2_r0_x*s_5 - omega_4_t
-        omega_3_r3_y = -omega_4_t_2 - c_5_t*omega_2_r0_x
-        # (rrrrrr-V45) centripetal tensor of link 3
-        W_3_xy = omega_3_r3_x*omega_3_r3_y
-        # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-        bias_t_13 = W_5_xy + beta_4_x
-        bias_x = (
-        W_1_xy*d_2_r6_y + W_1_xz*bias_t_3 + bias_t_7*(W_2_xz + zeta_2_r4_y) + d_3_r4_y*(W_2_xy +
-            zeta_2_t) - bias_t_10*(W_3_xy + beta_3_t) - bias_t_11*(W_4_t + W_5_t) -
-            bias_t_12*(W_5_xy - beta_4_x) - bias_t_9*(W_4_t + omega_3_r3_y*omega_3_r3_y) -
-            d_2_r6_x*(W_1_t_2 + W_1_t_3) - d_3_r4_x*(W_2_t_2 + W_2_t_3) -
-            rrrrrr_platform_joint_offset_x*(W_5_t + omega_5_z*omega_5_z)
+        six_r_qd_1_t_4 = (
+        inv_six_r_w_1_t_194*(six_r_S_dot_tip_y*six_r_w_1_t_72 + six_r_qd_1_t*six_r_w_1_t_74 +
+            six_r_qd_1_t_2*six_r_w_1_t_75 - six_r_S_dot_tip_x*six_r_w_1_t_71 -
+            six_r_S_dot_tip_z*six_r_w_1_t_73 - six_r_qd_1_t_3*six_r_w_1_t_76)
         )
-        bias_y = (
-        W_1_xy*d_2_r6_x + W_1_yz*bias_t_3 + bias_t_10*(W_4_t + omega_3_r3_x*omega_3_r3_x) +
-            bias_t_11*bias_t_13 + bias_t_12*(W_4_t + omega_4_r1_x*omega_4_r1_x) +
-            bias_t_13*rrrrrr_platform_joint_offset_x + bias_t_7*(W_2_yz - zeta_2_r4_x) +
-            bias_t_9*(W_3_xy - beta_3_t) + d_3_r4_x*(W_2_xy - zeta_2_t) - d_2_r6_y*(W_1_t +
-            W_1_t_3) - d_3_r4_y*(W_2_t + W_2_t_3)
+        six_r_qd_1_t_5 = (
+        inv_six_r_w_1_t_150*(six_r_S_dot_tip_x*six_r_w_1_t_53 + six_r_S_dot_tip_z*six_r_w_1_t_55 +
+            six_r_qd_1_t_3*six_r_w_1_t_64 + six_r_qd_1_t_4*six_r_w_1_t_58 -
+            six_r_S_dot_tip_y*six_r_w_1_t_54 - six_r_qd_1_t*six_r_w_1_t_56 -
+            six_r_qd_1_t_2*six_r_w_1_t_57)
         )
-        bias_z = (
-        bias_t_11*(omega_3_r1_x*omega_4_r1_x - beta_4_r1_y) + bias_t_3*(W_1_t + W_1_t_2) +
-            bias_t_9*(beta_4_t_2 + omega_3_r1_x*omega_3_r3_x - beta_3_t_2*s_5) + d_3_r4_x*(W_2_xz
-            - zeta_2_r4_y) + d_3_r4_y*(W_2_yz + zeta_2_r4_x) +
-            rrrrrr_platform_joint_offset_x*(omega_4_r1_x*omega_5_z - beta_5_y) - W_1_xz*d_2_r6_x -
-            W_1_yz*d_2_r6_y - bias_t_10*(beta_4_t + beta_3_t_2*c_5_t + omega_3_r1_x*omega_3_r3_y)
-            - bias_t_12*(beta_4_r1_x + omega_3_r1_x*omega_4_r1_y) - bias_t_7*(W_2_t + W_2_t_2)
+        six_r_qd_1_t_6 = (
+        inv_six_r_w_1_t_101*(six_r_S_dot_tip_y*six_r_w_1_t_32 + six_r_qd_1_t*six_r_w_1_t_34 +
+            six_r_qd_1_t_2*six_r_w_1_t_35 + six_r_qd_1_t_3*six_r_w_1_t_47 +
+            six_r_qd_1_t_4*six_r_w_1_t_42 - six_r_S_dot_tip_z*six_r_w_1_t_33 -
+            six_r_qd_1_t_5*six_r_w_1_t_36)
         )
-        # (rrrrrr-A12) acceleration of the connection point left to the joint accelerations
-        rel_x = (
-        S_ddot_x*axis_x_rrrrrr_axes5_x + S_ddot_y*axis_x_rrrrrr_axes5_y +
-            S_ddot_z*axis_x_rrrrrr_axes5_z - bias_x
+        six_r_qd_1_t_7 = (
+        inv_six_r_w_1_t_69*(six_r_qd_1_t_2*six_r_w_1_t_17 + six_r_qd_1_t_3*six_r_w_1_t_28 +
+            six_r_qd_1_t_5*six_r_w_1_t_21 - six_r_S_dot_tip_y*six_r_w_1_t_16 -
+            six_r_qd_1_t_4*six_r_w_1_t_25 - six_r_qd_1_t_6*six_r_w_1_t_18)
         )
-        rel_y = (
-        S_ddot_x*axis_y_rrrrrr_axes5_in_base_x + S_ddot_y*axis_y_rrrrrr_axes5_in_base_y +
-            S_ddot_z*axis_y_rrrrrr_axes5_in_base_z - bias_y
+        # (six_r-a_p) acceleration of the connection point without its centripetal part
+        six_r_a_p_x = t_ddot_x + alpha_y*six_r_q_in_base_z - alpha_z*six_r_q_in_base_y
+        six_r_a_p_y = t_ddot_y + alpha_z*six_r_q_in_base_x - alpha_x*six_r_q_in_base_z
+        six_r_a_p_z = t_ddot_z + alpha_x*six_r_q_in_base_y - alpha_y*six_r_q_in_base_x
+        # (six_r-S_ddot) acceleration of the connection point
+        six_r_S_ddot_x = six_r_a_p_x + omega_y*six_r_S_dot_t_3 - omega_z*six_r_S_dot_t_2
+        six_r_S_ddot_y = six_r_a_p_y + omega_z*six_r_S_dot_t - omega_x*six_r_S_dot_t_3
+        six_r_S_ddot_z = six_r_a_p_z + omega_x*six_r_S_dot_t_2 - omega_y*six_r_S_dot_t
+        # (six_r-omega_1) angular velocity of link 1
+        six_r_omega_1_t = six_r_qd_1_t_5*six_r_s_2
+        six_r_omega_1_t_2 = six_r_c_2_t*six_r_qd_1_t_5
+        # (six_r-omega_2) angular velocity of link 2
+        six_r_omega_2_r0_x = six_r_c_3*six_r_omega_1_t - six_r_omega_1_t_2*six_r_s_3
+        six_r_omega_2_r0_y = -six_r_c_3*six_r_omega_1_t_2 - six_r_omega_1_t*six_r_s_3
+        # (six_r-omega_3) angular velocity of link 3
+        six_r_omega_3_z = -six_r_qd_1_t_3 - six_r_qd_1_t_4
+        six_r_omega_3_r1_x = six_r_omega_3_z*six_r_s_4 - six_r_c_4_t*six_r_omega_2_r0_y
+        six_r_omega_3_r1_y = -six_r_c_4_t*six_r_omega_3_z - six_r_omega_2_r0_y*six_r_s_4
+        # (six_r-omega_4) angular velocity of link 4
+        six_r_omega_4_z = six_r_omega_2_r0_x - six_r_qd_1_t_6
+        six_r_omega_4_t = six_r_c_5_t*six_r_omega_3_r1_y
+        six_r_omega_4_r1_x = six_r_omega_4_z*six_r_s_5 - six_r_omega_4_t
+        six_r_omega_4_t_2 = six_r_omega_3_r1_y*six_r_s_5
+        six_r_omega_4_r1_y = -six_r_omega_4_t_2 - six_r_c_5_t*six_r_omega_4_z
+        # (six_r-omega_5) angular velocity of link 5
+        six_r_omega_5_z = six_r_omega_3_r1_x - six_r_qd_1_t_7
+        # (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        six_r_zeta_2_x = six_r_omega_1_t_2*six_r_qd_1_t_4
+        six_r_zeta_2_y = six_r_omega_1_t*six_r_qd_1_t_4
+        six_r_zeta_2_r0_x = six_r_c_3*six_r_zeta_2_x + six_r_s_3*six_r_zeta_2_y
+        six_r_zeta_2_r0_y = six_r_c_3*six_r_zeta_2_y - six_r_s_3*six_r_zeta_2_x
+        # (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations
+        six_r_beta_3_x = six_r_zeta_2_r0_x - six_r_omega_2_r0_y*six_r_qd_1_t_3
+        six_r_beta_3_y = six_r_zeta_2_r0_y + six_r_omega_2_r0_x*six_r_qd_1_t_3
+        six_r_beta_3_t = six_r_beta_3_y*six_r_c_4_t
+        six_r_beta_3_t_2 = six_r_beta_3_y*six_r_s_4
+        # (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations
+        six_r_beta_4_x = -six_r_beta_3_t - six_r_omega_3_r1_y*six_r_qd_1_t_6
+        six_r_beta_4_y = six_r_omega_3_r1_x*six_r_qd_1_t_6 - six_r_beta_3_t_2
+        six_r_beta_4_t = six_r_beta_3_x*six_r_s_5
+        six_r_beta_4_r1_x = six_r_beta_4_t - six_r_beta_4_y*six_r_c_5_t
+        six_r_beta_4_t_2 = six_r_beta_3_x*six_r_c_5_t
+        six_r_beta_4_r1_y = -six_r_beta_4_t_2 - six_r_beta_4_y*six_r_s_5
+        # (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations
+        six_r_beta_5_x = six_r_beta_4_r1_x - six_r_omega_4_r1_y*six_r_qd_1_t_7
+        six_r_beta_5_y = six_r_beta_4_r1_y + six_r_omega_4_r1_x*six_r_qd_1_t_7
+        # (six_r-W_4) centripetal tensor of link 4
+        six_r_W_4_t = six_r_omega_3_r1_x*six_r_omega_3_r1_x
+        # (six_r-W_5) centripetal tensor of link 5
+        six_r_W_5_t = six_r_omega_4_r1_y*six_r_omega_4_r1_y
+        six_r_W_5_xy = six_r_omega_4_r1_x*six_r_omega_4_r1_y
+        # (six_r-omega_1) angular velocity of link 1
+        six_r_omega_1_x = six_r_e_1_r6_x*six_r_qd_1_t_5
+        six_r_omega_1_y = six_r_e_1_r6_y*six_r_qd_1_t_5
+        six_r_omega_1_z = six_r_qd_1_t_5*six_r_v_1_t
+        # (six_r-W_1) centripetal tensor of link 1
+        six_r_W_1_t = six_r_omega_1_x*six_r_omega_1_x
+        six_r_W_1_t_2 = six_r_omega_1_y*six_r_omega_1_y
+        six_r_W_1_t_3 = six_r_omega_1_z*six_r_omega_1_z
+        six_r_W_1_xy = six_r_omega_1_x*six_r_omega_1_y
+        six_r_W_1_xz = six_r_omega_1_x*six_r_omega_1_z
+        six_r_W_1_yz = six_r_omega_1_y*six_r_omega_1_z
+        # (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        six_r_zeta_2_t = six_r_c_4_t*six_r_zeta_2_r0_y
+        six_r_zeta_2_t_2 = six_r_s_4*six_r_zeta_2_r0_y
+        six_r_zeta_2_r4_x = six_r_c_5_t*six_r_zeta_2_t_2 + six_r_s_5*six_r_zeta_2_r0_x
+        six_r_zeta_2_r4_y = six_r_s_5*six_r_zeta_2_t_2 - six_r_c_5_t*six_r_zeta_2_r0_x
+        # (six_r-omega_2) angular velocity of link 2
+        six_r_omega_2_x = six_r_omega_1_x - six_r_qd_1_t_4*six_r_v_2_t
+        six_r_omega_2_y = six_r_omega_1_y - six_r_qd_1_t_4*six_r_v_2_t_2
+        six_r_omega_2_z = -six_r_omega_1_z - six_r_qd_1_t_4*six_r_s_4
+        # (six_r-W_2) centripetal tensor of link 2
+        six_r_W_2_t = six_r_omega_2_x*six_r_omega_2_x
+        six_r_W_2_t_2 = six_r_omega_2_y*six_r_omega_2_y
+        six_r_W_2_t_3 = six_r_omega_2_z*six_r_omega_2_z
+        six_r_W_2_xy = six_r_omega_2_x*six_r_omega_2_y
+        six_r_W_2_xz = six_r_omega_2_x*six_r_omega_2_z
+        six_r_W_2_yz = six_r_omega_2_y*six_r_omega_2_z
+        # (six_r-omega_3) angular velocity of link 3
+        six_r_omega_3_r3_x = six_r_omega_2_r0_x*six_r_s_5 - six_r_omega_4_t
+        six_r_omega_3_r3_y = -six_r_omega_4_t_2 - six_r_c_5_t*six_r_omega_2_r0_x
+        # (six_r-W_3) centripetal tensor of link 3
+        six_r_W_3_xy = six_r_omega_3_r3_x*six_r_omega_3_r3_y
+        # (six_r-bias) acceleration of the connection point at zero joint accelerations
+        six_r_bias_t_13 = six_r_W_5_xy + six_r_beta_4_x
+        six_r_bias_x = (
+        six_r_W_1_xy*six_r_d_2_r6_y + six_r_W_1_xz*six_r_bias_t_3 + six_r_bias_t_7*(six_r_W_2_xz +
+            six_r_zeta_2_r4_y) + six_r_d_3_r4_y*(six_r_W_2_xy + six_r_zeta_2_t) -
+            six_r_bias_t_10*(six_r_W_3_xy + six_r_beta_3_t) - six_r_bias_t_11*(six_r_W_4_t +
+            six_r_W_5_t) - six_r_bias_t_12*(six_r_W_5_xy - six_r_beta_4_x) -
+            six_r_bias_t_9*(six_r_W_4_t + six_r_omega_3_r3_y*six_r_omega_3_r3_y) -
+            six_r_d_2_r6_x*(six_r_W_1_t_2 + six_r_W_1_t_3) - six_r_d_3_r4_x*(six_r_W_2_t_2 +
+            six_r_W_2_t_3) - six_r_platform_joint_offset_x*(six_r_W_5_t +
+            six_r_omega_5_z*six_r_omega_5_z)
         )
-        rel_z = (
-        S_ddot_x*axis_z_rrrrrr_axes5_in_base_x + S_ddot_y*axis_z_rrrrrr_axes5_in_base_y +
-            S_ddot_z*axis_z_rrrrrr_axes5_in_base_z - bias_z
+        six_r_bias_y = (
+        six_r_W_1_xy*six_r_d_2_r6_x + six_r_W_1_yz*six_r_bias_t_3 + six_r_bias_t_10*(six_r_W_4_t +
+            six_r_omega_3_r3_x*six_r_omega_3_r3_x) + six_r_bias_t_11*six_r_bias_t_13 +
+            six_r_bias_t_12*(six_r_W_4_t + six_r_omega_4_r1_x*six_r_omega_4_r1_x) +
+            six_r_bias_t_13*six_r_platform_joint_offset_x + six_r_bias_t_7*(six_r_W_2_yz -
+            six_r_zeta_2_r4_x) + six_r_bias_t_9*(six_r_W_3_xy - six_r_beta_3_t) +
+            six_r_d_3_r4_x*(six_r_W_2_xy - six_r_zeta_2_t) - six_r_d_2_r6_y*(six_r_W_1_t +
+            six_r_W_1_t_3) - six_r_d_3_r4_y*(six_r_W_2_t + six_r_W_2_t_3)
         )
-        # (rrrrrr-A20) acceleration of joint 1
-        qdd_1_t = etad_1*size
-        qdd_1_t_2 = etad_2*size
-        qdd_1_t_3 = (
-        inv_w_1_t_222*(qdd_1_t*w_1_t_86 + qdd_1_t_2*w_1_t_87 + rel_x*w_1_t_83 + rel_z*w_1_t_85 -
-            rel_y*w_1_t_84)
+        six_r_bias_z = (
+        six_r_bias_t_11*(six_r_omega_3_r1_x*six_r_omega_4_r1_x - six_r_beta_4_r1_y) +
+            six_r_bias_t_3*(six_r_W_1_t + six_r_W_1_t_2) + six_r_bias_t_9*(six_r_beta_4_t_2 +
+            six_r_omega_3_r1_x*six_r_omega_3_r3_x - six_r_beta_3_t_2*six_r_s_5) +
+            six_r_d_3_r4_x*(six_r_W_2_xz - six_r_zeta_2_r4_y) + six_r_d_3_r4_y*(six_r_W_2_yz +
+            six_r_zeta_2_r4_x) + six_r_platform_joint_offset_x*(six_r_omega_4_r1_x*six_r_omega_5_z
+            - six_r_beta_5_y) - six_r_W_1_xz*six_r_d_2_r6_x - six_r_W_1_yz*six_r_d_2_r6_y -
+            six_r_bias_t_10*(six_r_beta_4_t + six_r_beta_3_t_2*six_r_c_5_t +
+            six_r_omega_3_r1_x*six_r_omega_3_r3_y) - six_r_bias_t_12*(six_r_beta_4_r1_x +
+            six_r_omega_3_r1_x*six_r_omega_4_r1_y) - six_r_bias_t_7*(six_r_W_2_t + six_r_W_2_t_2)
         )
-        qdd_1_t_4 = (
-        inv_w_1_t_194*(qdd_1_t*w_1_t_74 + qdd_1_t_2*w_1_t_75 + rel_x*w_1_t_71 + rel_z*w_1_t_73 -
-            qdd_1_t_3*w_1_t_76 - rel_y*w_1_t_72)
+        # (six_r-rel) acceleration of the connection point left to the joint accelerations
+        six_r_rel_x = (
+        axis_x_six_r_axes5_x*six_r_S_ddot_x + axis_x_six_r_axes5_y*six_r_S_ddot_y +
+            axis_x_six_r_axes5_z*six_r_S_ddot_z - six_r_bias_x
         )
-        qdd_1_t_5 = (
-        inv_w_1_t_150*(qdd_1_t_3*w_1_t_64 + qdd_1_t_4*w_1_t_58 + rel_y*w_1_t_54 - qdd_1_t*w_1_t_56
-            - qdd_1_t_2*w_1_t_57 - rel_x*w_1_t_53 - rel_z*w_1_t_55)
+        six_r_rel_y = (
+        axis_y_six_r_axes5_in_base_x*six_r_S_ddot_x + axis_y_six_r_axes5_in_base_y*six_r_S_ddot_y
+            + axis_y_six_r_axes5_in_base_z*six_r_S_ddot_z - six_r_bias_y
         )
-        qdd_1_t_6 = (
-        inv_w_1_t_101*(qdd_1_t*w_1_t_34 + qdd_1_t_2*w_1_t_35 + qdd_1_t_3*w_1_t_47 +
-            qdd_1_t_4*w_1_t_42 + rel_z*w_1_t_33 - qdd_1_t_5*w_1_t_36 - rel_y*w_1_t_32)
+        six_r_rel_z = (
+        axis_z_six_r_axes5_in_base_x*six_r_S_ddot_x + axis_z_six_r_axes5_in_base_y*six_r_S_ddot_y
+            + axis_z_six_r_axes5_in_base_z*six_r_S_ddot_z - six_r_bias_z
         )
-        qdd_1_t_7 = (
-        inv_w_1_t_69*(qdd_1_t_2*w_1_t_17 + qdd_1_t_3*w_1_t_28 + qdd_1_t_5*w_1_t_21 +
-            rel_y*w_1_t_16 - qdd_1_t_4*w_1_t_25 - qdd_1_t_6*w_1_t_18)
+        # (six_r-nd_m1) rate of moment direction 1
+        six_r_nd_m1_t_4 = six_r_end_p1_r8_y*six_r_omega_4_r1_y
+        six_r_nd_m1_x = -six_r_nd_m1_t_2 - six_r_end_p1_r6_x*six_r_omega_4_r1_x
+        six_r_nd_m1_y = six_r_nd_m1_t - six_r_end_p1_r6_x*six_r_omega_4_r1_y
+        # (six_r-nu_1) bias of the angular acceleration along moment direction 1
+        six_r_nu_1_t = six_r_beta_5_x*six_r_end_p1_r8_y - six_r_beta_5_y*six_r_end_p1_r8_x
+        six_r_nu_1_t_2 = six_r_omega_4_r1_x - six_r_omega_tip_x
+        six_r_nu_1_t_3 = six_r_omega_4_r1_y - six_r_omega_tip_y
+        six_r_nu_1_t_4 = six_r_omega_5_z - six_r_omega_tip_z
+        six_r_nu_1_t_5 = (
+        six_r_nd_m1_x*six_r_nu_1_t_2 + six_r_nd_m1_y*six_r_nu_1_t_3 +
+            six_r_nu_1_t_4*(six_r_nd_m1_t_4 + six_r_end_p1_r8_x*six_r_omega_4_r1_x)
+        )
+        six_r_nu_1 = six_r_nu_1_t - six_r_nu_1_t_5
+        # (six_r-etad_1) acceleration with which the joints turn along moment direction 1
+        six_r_alpha_tip_y = (
+        alpha_x*axis_y_six_r_axes5_in_base_x + alpha_y*axis_y_six_r_axes5_in_base_y +
+            alpha_z*axis_y_six_r_axes5_in_base_z
+        )
+        six_r_etad_1_t = (
+        six_r_end_p1_r8_y*(alpha_x*axis_x_six_r_axes5_x + alpha_y*axis_x_six_r_axes5_y +
+            alpha_z*axis_x_six_r_axes5_z) - six_r_alpha_tip_y*six_r_end_p1_r8_x
+        )
+        six_r_etad_1 = six_r_nu_1 - six_r_etad_1_t
+        # (six_r-nd_m2) rate of moment direction 2
+        six_r_nd_m2_y = -six_r_nd_m1_t_3 - six_r_end_p1_r8_x*six_r_omega_4_r1_y
+        six_r_nd_m2_z = six_r_nd_m1_t_2 - six_r_end_p1_r8_x*six_r_omega_5_z
+        # (six_r-nu_2) bias of the angular acceleration along moment direction 2
+        six_r_nu_2_t = six_r_beta_5_y*six_r_end_p1_r6_x - six_r_beta_4_x*six_r_end_p1_r8_y
+        six_r_nu_2_t_2 = (
+        six_r_nd_m2_y*six_r_nu_1_t_3 + six_r_nd_m2_z*six_r_nu_1_t_4 +
+            six_r_nu_1_t_2*(six_r_nd_m1_t_4 + six_r_end_p1_r6_x*six_r_omega_5_z)
+        )
+        six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2
+        # (six_r-etad_2) acceleration with which the joints turn along moment direction 2
+        six_r_etad_2_t = (
+        six_r_alpha_tip_y*six_r_end_p1_r6_x -
+            six_r_end_p1_r8_y*(alpha_x*axis_z_six_r_axes5_in_base_x +
+            alpha_y*axis_z_six_r_axes5_in_base_y + alpha_z*axis_z_six_r_axes5_in_base_z)
+        )
+        six_r_etad_2 = six_r_nu_2 - six_r_etad_2_t
+        # (six_r-qdd_1) acceleration of joint 1
+        six_r_qdd_1_t = six_r_etad_1*six_r_size
+        six_r_qdd_1_t_2 = six_r_etad_2*six_r_size
+        six_r_qdd_1_t_3 = (
+        inv_six_r_w_1_t_222*(six_r_qdd_1_t*six_r_w_1_t_86 + six_r_qdd_1_t_2*six_r_w_1_t_87 +
+            six_r_rel_x*six_r_w_1_t_83 + six_r_rel_z*six_r_w_1_t_85 - six_r_rel_y*six_r_w_1_t_84)
+        )
+        six_r_qdd_1_t_4 = (
+        inv_six_r_w_1_t_194*(six_r_qdd_1_t*six_r_w_1_t_74 + six_r_qdd_1_t_2*six_r_w_1_t_75 +
+            six_r_rel_x*six_r_w_1_t_71 + six_r_rel_z*six_r_w_1_t_73 -
+            six_r_qdd_1_t_3*six_r_w_1_t_76 - six_r_rel_y*six_r_w_1_t_72)
+        )
+        six_r_qdd_1_t_5 = (
+        inv_six_r_w_1_t_150*(six_r_qdd_1_t_3*six_r_w_1_t_64 + six_r_qdd_1_t_4*six_r_w_1_t_58 +
+            six_r_rel_y*six_r_w_1_t_54 - six_r_qdd_1_t*six_r_w_1_t_56 -
+            six_r_qdd_1_t_2*six_r_w_1_t_57 - six_r_rel_x*six_r_w_1_t_53 -
+            six_r_rel_z*six_r_w_1_t_55)
+        )
+        six_r_qdd_1_t_6 = (
+        inv_six_r_w_1_t_101*(six_r_qdd_1_t*six_r_w_1_t_34 + six_r_qdd_1_t_2*six_r_w_1_t_35 +
+            six_r_qdd_1_t_3*six_r_w_1_t_47 + six_r_qdd_1_t_4*six_r_w_1_t_42 +
+            six_r_rel_z*six_r_w_1_t_33 - six_r_qdd_1_t_5*six_r_w_1_t_36 -
+            six_r_rel_y*six_r_w_1_t_32)
+        )
+        six_r_qdd_1_t_7 = (
+        inv_six_r_w_1_t_69*(six_r_qdd_1_t_2*six_r_w_1_t_17 + six_r_qdd_1_t_3*six_r_w_1_t_28 +
+            six_r_qdd_1_t_5*six_r_w_1_t_21 + six_r_rel_y*six_r_w_1_t_16 -
+            six_r_qdd_1_t_4*six_r_w_1_t_25 - six_r_qdd_1_t_6*six_r_w_1_t_18)
         )
         ok = (
-        ok & m.every(leg, (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE *
-            size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
-            (abs(w_1_t_82) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(six_r_w_1_t_15) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_31) >
+            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_52) > _TOLERANCE * six_r_size) &
+            (abs(six_r_w_1_t_70) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_82) > _TOLERANCE *
+            six_r_size))
         )
-        out_qdd[_qdd_rrrrrr[0][leg]] = -qdd_1_t_5
-        out_qdd[_qdd_rrrrrr[1][leg]] = qdd_1_t_4
-        out_qdd[_qdd_rrrrrr[2][leg]] = qdd_1_t_3
-        out_qdd[_qdd_rrrrrr[3][leg]] = qdd_1_t_6
-        out_qdd[_qdd_rrrrrr[4][leg]] = qdd_1_t_7
+        out_qdd[_qdd_six_r[0][leg]] = -six_r_qdd_1_t_5
+        out_qdd[_qdd_six_r[1][leg]] = six_r_qdd_1_t_4
+        out_qdd[_qdd_six_r[2][leg]] = six_r_qdd_1_t_3
+        out_qdd[_qdd_six_r[3][leg]] = six_r_qdd_1_t_6
+        out_qdd[_qdd_six_r[4][leg]] = six_r_qdd_1_t_7
     return ok, (out_qdd,)
 
 
@@ -8108,894 +9203,1008 @@ def _run_legs(m, X, V, A, q):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, J_4_xy, J_4_xz, J_4_yz, J_5_xy,
-            J_5_xz, J_5_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy,
-            Sigma_3_zz, Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, Sigma_5_xx, Sigma_5_yy, Sigma_5_zz,
-            g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, h_4_x,
-            h_4_y, h_4_z, h_5_x, h_5_y, h_5_z, rrrrrr_base_frame_xx, rrrrrr_base_frame_xy,
-            rrrrrr_base_frame_xz, rrrrrr_base_frame_yx, rrrrrr_base_frame_yy,
-            rrrrrr_base_frame_yz, rrrrrr_base_frame_zx, rrrrrr_base_frame_zy,
-            rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x, rrrrrr_joint3_offset_x,
-            rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x, rrrrrr_link3_mass, rrrrrr_link4_mass,
-            rrrrrr_link5_mass, rrrrrr_platform_joint_axis_platform_x,
-            rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
-            rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x, rrrrrr_platform_point_y,
-            rrrrrr_platform_point_z, size, size_t,
+        six_r_J_1_xx, six_r_J_2_xy, six_r_J_2_xz, six_r_J_2_yz, six_r_J_3_xy, six_r_J_3_xz,
+            six_r_J_3_yz, six_r_J_4_xy, six_r_J_4_xz, six_r_J_4_yz, six_r_J_5_xy, six_r_J_5_xz,
+            six_r_J_5_yz, six_r_Sigma_2_xx, six_r_Sigma_2_yy, six_r_Sigma_2_zz, six_r_Sigma_3_xx,
+            six_r_Sigma_3_yy, six_r_Sigma_3_zz, six_r_Sigma_4_xx, six_r_Sigma_4_yy,
+            six_r_Sigma_4_zz, six_r_Sigma_5_xx, six_r_Sigma_5_yy, six_r_Sigma_5_zz,
+            six_r_base_frame_xx, six_r_base_frame_xy, six_r_base_frame_xz, six_r_base_frame_yx,
+            six_r_base_frame_yy, six_r_base_frame_yz, six_r_base_frame_zx, six_r_base_frame_zy,
+            six_r_base_frame_zz, six_r_g_r0_x, six_r_g_r0_y, six_r_g_r0_z, six_r_h_1_y,
+            six_r_h_1_z, six_r_h_2_x, six_r_h_2_y, six_r_h_2_z, six_r_h_3_x, six_r_h_3_y,
+            six_r_h_3_z, six_r_h_4_x, six_r_h_4_y, six_r_h_4_z, six_r_h_5_x, six_r_h_5_y,
+            six_r_h_5_z, six_r_joint2_offset_x, six_r_joint3_offset_x, six_r_joint4_offset_x,
+            six_r_joint5_offset_x, six_r_link3_mass, six_r_link4_mass, six_r_link5_mass,
+            six_r_platform_joint_axis_platform_x, six_r_platform_joint_axis_platform_y,
+            six_r_platform_joint_axis_platform_z, six_r_platform_joint_offset_x,
+            six_r_platform_point_x, six_r_platform_point_y, six_r_platform_point_z, six_r_size,
+            six_r_size_t,
         ) = k
-        q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
-        q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
-        q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
-        q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
-        q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
-        # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
-        c_5_t = sin(q_5)
-        # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
-        s_5 = cos(q_5)
-        # (rrrrrr-V2) from joint 4 to the connection point, along the links
-        r_4_t = c_5_t*rrrrrr_platform_joint_offset_x
-        r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5
-        # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
-        c_4_t = sin(q_4)
-        # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
-        s_4 = cos(q_4)
-        # (rrrrrr-V2) from joint 4 to the connection point, along the links
-        r_4_t_2 = r_4_t*s_4
-        r_4_t_3 = c_4_t*r_4_t
-        # (rrrrrr-V3) from joint 3 to the connection point, along the links
-        r_3_x = r_4_z + rrrrrr_joint4_offset_x
-        # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
-        c_3 = cos(q_3)
-        # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
-        s_3 = sin(q_3)
-        # (rrrrrr-V3) from joint 3 to the connection point, along the links
-        r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3
-        # (rrrrrr-V4) from joint 2 to the connection point, along the links
-        r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3
-        # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
-        c_2_t = sin(q_2)
-        # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
-        s_2 = cos(q_2)
-        # (rrrrrr-V4) from joint 2 to the connection point, along the links
-        r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2
-        # (rrrrrr-V5) from joint 1 to the connection point, along the links
-        r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y
-        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-        e_1_r2_x = c_3*s_2 - c_2_t*s_3
-        e_1_r2_y = -c_2_t*c_3 - s_2*s_3
-        v_1_t = c_4_t*e_1_r2_y
-        v_1_t_2 = e_1_r2_y*s_4
-        e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5
-        e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x
-        # (rrrrrr-V5) from joint 1 to the connection point, along the links
-        r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x
-        r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2
-        r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3
-        r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3
-        r_1_t = r_4_t_3*s_4
-        r_1_r4_x = r_1_t - c_4_t*r_1_r2_y
-        r_1_t_2 = c_4_t*r_4_t_3
-        r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4
-        r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y
-        r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5
-        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-        v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t
-        v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t
-        v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x
-        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-        v_2_t = c_4_t*c_5_t
-        v_2_t_2 = c_4_t*s_5
-        # (rrrrrr-V4) from joint 2 to the connection point, along the links
-        r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3
-        r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3
-        r_2_r2_x = r_1_t - c_4_t*r_2_r0_y
-        r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4
-        r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y
-        r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5
-        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-        v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4
-        v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t
-        v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2
-        # (rrrrrr-V3) from joint 3 to the connection point, along the links
-        r_3_r1_x = r_1_t - c_4_t*r_4_t_2
-        r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4
-        r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y
-        r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5
-        # (rrrrrr-V8) velocity of the connection point per rate of joint 3
-        v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4
-        v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t
-        v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2
-        # (rrrrrr-V9) velocity of the connection point per rate of joint 4
-        v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
-        # (rrrrrr-V13) force part of reciprocal wrench 1
-        w_1_t = c_4_t*s_3
-        w_1_t_2 = c_3*c_4_t
-        axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
-        axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
-        # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
-        c_1_t = sin(q_1)
-        # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
-        s_1 = cos(q_1)
-        # (rrrrrr-V13) force part of reciprocal wrench 1
-        axis_z_rrrrrr_axes5_r7_x = -axis_z_rrrrrr_axes5_r5_x*s_1 - c_1_t*s_4
-        axis_z_rrrrrr_axes5_r7_y = s_1*s_4 - axis_z_rrrrrr_axes5_r5_x*c_1_t
-        axis_z_rrrrrr_axes5_in_base_x = (
-        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
-            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
-            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
-        )
-        axis_z_rrrrrr_axes5_in_base_y = (
-        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
-            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
-            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
-        )
-        axis_z_rrrrrr_axes5_in_base_z = (
-        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
-            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
-            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
-        )
-        w_1_t_3 = s_4*s_5
-        axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
-        axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
-        axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
-        axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
-        axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
-        axis_y_rrrrrr_axes5_r7_y = s_1*v_2_t_2 - axis_y_rrrrrr_axes5_r5_x*c_1_t
-        axis_y_rrrrrr_axes5_in_base_x = (
-        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
-            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
-            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
-        )
-        axis_y_rrrrrr_axes5_in_base_y = (
-        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
-            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
-            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
-        )
-        axis_y_rrrrrr_axes5_in_base_z = (
-        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
-            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
-            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
-        )
-        axis_x_rrrrrr_axes5_x = (
-        axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_z -
-            axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_y
-        )
-        axis_x_rrrrrr_axes5_y = (
-        axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_x -
-            axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_z
-        )
-        axis_x_rrrrrr_axes5_z = (
-        axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
-            axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
-        )
-        # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-        end_p1_r0_x = (
-        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy +
-            R_yx*rrrrrr_base_frame_yy + R_zx*rrrrrr_base_frame_zy) +
-            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
-            R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
-            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
-            R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy)
-        )
-        end_p1_r0_y = (
-        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz +
-            R_yx*rrrrrr_base_frame_yz + R_zx*rrrrrr_base_frame_zz) +
-            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
-            R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
-            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
-            R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz)
-        )
-        end_p1_r0_z = (
-        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx +
-            R_yx*rrrrrr_base_frame_yx + R_zx*rrrrrr_base_frame_zx) +
-            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
-            R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
-            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
-            R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx)
-        )
-        end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x
-        end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1
-        end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y
-        end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2
-        end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3
-        end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3
-        end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y
-        end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4
-        end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
-        end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
-        # (rrrrrr-V13) force part of reciprocal wrench 1
-        w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
-        w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
-        w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
-        w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
-        w_1_t_8 = size*w_1_t_4
-        w_1_t_9 = size*w_1_t_6
-        w_1_t_10 = size*w_1_t_5
-        w_1_t_11 = size*w_1_t_7
-        w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
-        w_1_t_13 = c_5_t*end_p1_r6_x*size
-        w_1_t_14 = end_p1_r8_y*size
-        w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
-        inv_w_1_t_69 = 1.0/w_1_t_15
-        w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
-        w_1_t_17 = inv_w_1_t_69*w_1_t_14
-        w_1_t_18 = w_1_t_13*w_1_t_17
-        w_1_t_19 = w_1_t_16*w_1_t_18
-        w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
-        w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
-        w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
-        w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
-        w_1_t_24 = w_1_t_11*w_1_t_17
-        w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
-        w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
-        w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
-        w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
-        w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
-        w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
-        w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
-        inv_w_1_t_101 = 1.0/w_1_t_31
-        w_1_t_32 = inv_w_1_t_101*w_1_t_19
-        w_1_t_33 = inv_w_1_t_101*v_4_z
-        w_1_t_34 = inv_w_1_t_101*w_1_t_12
-        w_1_t_35 = inv_w_1_t_101*w_1_t_20
-        w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
-        w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
-        w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
-        w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
-        w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
-        w_1_t_41 = w_1_t_10*w_1_t_34
-        w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
-        w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
-        w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
-        w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
-        w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
-        w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
-        w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
-        w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
-        w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
-        w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
-        w_1_t_52 = (
-        sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
-            w_1_t_40*w_1_t_40)
-        )
-        inv_w_1_t_150 = 1.0/w_1_t_52
-        w_1_t_53 = inv_w_1_t_150*v_1_x
-        w_1_t_54 = inv_w_1_t_150*w_1_t_37
-        w_1_t_55 = inv_w_1_t_150*w_1_t_38
-        w_1_t_56 = inv_w_1_t_150*w_1_t_39
-        w_1_t_57 = inv_w_1_t_150*w_1_t_40
-        w_1_t_58 = (
-        v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 +
-            w_1_t_46*w_1_t_57
-        )
-        w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
-        w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
-        w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
-        w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
-        w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
-        w_1_t_64 = (
-        v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 +
-            w_1_t_51*w_1_t_57
-        )
-        w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
-        w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
-        w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
-        w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
-        w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
-        w_1_t_70 = (
-        sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
-            w_1_t_63*w_1_t_63)
-        )
-        inv_w_1_t_194 = 1.0/w_1_t_70
-        w_1_t_71 = inv_w_1_t_194*w_1_t_59
-        w_1_t_72 = inv_w_1_t_194*w_1_t_60
-        w_1_t_73 = inv_w_1_t_194*w_1_t_61
-        w_1_t_74 = inv_w_1_t_194*w_1_t_62
-        w_1_t_75 = inv_w_1_t_194*w_1_t_63
-        w_1_t_76 = (
-        w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
-            w_1_t_69*w_1_t_75
-        )
-        w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
-        w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
-        w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
-        w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
-        w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
-        w_1_t_82 = (
-        sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
-            w_1_t_81*w_1_t_81)
-        )
-        inv_w_1_t_222 = 1.0/w_1_t_82
-        w_1_t_83 = inv_w_1_t_222*w_1_t_77
-        w_1_t_84 = inv_w_1_t_222*w_1_t_78
-        w_1_t_85 = inv_w_1_t_222*w_1_t_79
-        w_1_t_86 = inv_w_1_t_222*w_1_t_80
-        w_1_t_87 = inv_w_1_t_222*w_1_t_81
-        # (rrrrrr-V16) force part of reciprocal wrench 2
-        w_2_t = inv_w_1_t_194*inv_w_1_t_222*w_1_t_76
-        w_2_t_2 = inv_w_1_t_194*w_1_t_71 - w_1_t_83*w_2_t
-        w_2_t_3 = inv_w_1_t_194*w_1_t_72 - w_1_t_84*w_2_t
-        w_2_t_4 = w_1_t_85*w_2_t - inv_w_1_t_194*w_1_t_73
-        w_2_t_5 = size*(inv_w_1_t_194*w_1_t_74 - w_1_t_86*w_2_t)
-        w_2_t_6 = size*(inv_w_1_t_194*w_1_t_75 - w_1_t_87*w_2_t)
-        # (rrrrrr-V29) moment part of reciprocal wrench 2
-        o_2_t = end_p1_r8_y*w_2_t_5
-        o_2_t_2 = end_p1_r8_y*w_2_t_6
-        o_2_y = end_p1_r8_x*w_2_t_5 - end_p1_r6_x*w_2_t_6
-        # (M2) coupling block of M
-        q_in_base_x = (
-        R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
-        )
-        q_in_base_y = (
-        R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y + R_yz*rrrrrr_platform_point_z
-        )
-        q_in_base_z = (
-        R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y + R_zz*rrrrrr_platform_point_z
-        )
-        # (rrrrrr-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_tip_x = (
-        S_dot_x*axis_x_rrrrrr_axes5_x + S_dot_y*axis_x_rrrrrr_axes5_y +
-            S_dot_z*axis_x_rrrrrr_axes5_z
-        )
-        S_dot_tip_y = (
-        S_dot_x*axis_y_rrrrrr_axes5_in_base_x + S_dot_y*axis_y_rrrrrr_axes5_in_base_y +
-            S_dot_z*axis_y_rrrrrr_axes5_in_base_z
-        )
-        S_dot_tip_z = (
-        S_dot_x*axis_z_rrrrrr_axes5_in_base_x + S_dot_y*axis_z_rrrrrr_axes5_in_base_y +
-            S_dot_z*axis_z_rrrrrr_axes5_in_base_z
-        )
-        # (rrrrrr-A14) rate of moment direction 1
-        omega_tip_x = (
-        axis_x_rrrrrr_axes5_x*omega_x + axis_x_rrrrrr_axes5_y*omega_y +
-            axis_x_rrrrrr_axes5_z*omega_z
-        )
-        omega_tip_y = (
-        axis_y_rrrrrr_axes5_in_base_x*omega_x + axis_y_rrrrrr_axes5_in_base_y*omega_y +
-            axis_y_rrrrrr_axes5_in_base_z*omega_z
-        )
-        omega_tip_z = (
-        axis_z_rrrrrr_axes5_in_base_x*omega_x + axis_z_rrrrrr_axes5_in_base_y*omega_y +
-            axis_z_rrrrrr_axes5_in_base_z*omega_z
-        )
-        nd_m1_t = end_p1_r6_x*omega_tip_y - end_p1_r8_y*omega_tip_z
-        nd_m1_t_2 = end_p1_r8_x*omega_tip_z - end_p1_r6_x*omega_tip_x
-        nd_m1_t_3 = end_p1_r8_y*omega_tip_x - end_p1_r8_x*omega_tip_y
-        # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-        bias_t = rrrrrr_joint2_offset_x*s_2
-        bias_t_2 = c_2_t*rrrrrr_joint2_offset_x
-        d_2_r2_x = bias_t*c_3 - bias_t_2*s_3
-        d_2_r2_y = -bias_t*s_3 - bias_t_2*c_3
-        bias_t_3 = c_4_t*d_2_r2_y
-        bias_t_4 = d_2_r2_y*s_4
-        d_2_r6_x = bias_t_4*c_5_t + d_2_r2_x*s_5
-        d_2_r6_y = bias_t_4*s_5 - c_5_t*d_2_r2_x
-        bias_t_5 = c_3*rrrrrr_joint3_offset_x
-        bias_t_6 = rrrrrr_joint3_offset_x*s_3
-        bias_t_7 = bias_t_6*c_4_t
-        bias_t_8 = bias_t_6*s_4
-        d_3_r4_x = bias_t_5*s_5 - bias_t_8*c_5_t
-        d_3_r4_y = -bias_t_5*c_5_t - bias_t_8*s_5
-        bias_t_9 = rrrrrr_joint4_offset_x*s_5
-        bias_t_10 = c_5_t*rrrrrr_joint4_offset_x
-        bias_t_11 = rrrrrr_joint5_offset_x*s_5
-        bias_t_12 = c_5_t*rrrrrr_joint5_offset_x
-        # (rrrrrr-N16) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
-        g_r1_x = g_r0_y*s_1 - c_1_t*g_r0_x
-        g_r1_y = -c_1_t*g_r0_y - g_r0_x*s_1
-        g_r3_x = g_r0_z*s_2 - c_2_t*g_r1_y
-        g_r3_y = -c_2_t*g_r0_z - g_r1_y*s_2
-        g_r4_x = c_3*g_r3_x + g_r3_y*s_3
-        g_r4_y = c_3*g_r3_y - g_r3_x*s_3
-        # (rrrrrr-V16) force part of reciprocal wrench 2
-        w_2_in_base_x = (
-        axis_x_rrrrrr_axes5_x*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_x*w_2_t_3 -
-            axis_z_rrrrrr_axes5_in_base_x*w_2_t_4
-        )
-        w_2_in_base_y = (
-        axis_x_rrrrrr_axes5_y*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_y*w_2_t_3 -
-            axis_z_rrrrrr_axes5_in_base_y*w_2_t_4
-        )
-        w_2_in_base_z = (
-        axis_x_rrrrrr_axes5_z*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_z*w_2_t_3 -
-            axis_z_rrrrrr_axes5_in_base_z*w_2_t_4
-        )
-        # (rrrrrr-V35) rate of joint 1
-        qd_1_t = nd_m1_t_3*size
-        qd_1_t_2 = nd_m1_t*size
-        qd_1_t_3 = (
-        inv_w_1_t_222*(S_dot_tip_y*w_1_t_84 + qd_1_t*w_1_t_86 + qd_1_t_2*w_1_t_87 -
-            S_dot_tip_x*w_1_t_83 - S_dot_tip_z*w_1_t_85)
-        )
-        qd_1_t_4 = (
-        inv_w_1_t_194*(S_dot_tip_y*w_1_t_72 + qd_1_t*w_1_t_74 + qd_1_t_2*w_1_t_75 -
-            S_dot_tip_x*w_1_t_71 - S_dot_tip_z*w_1_t_73 - qd_1_t_3*w_1_t_76)
-        )
-        qd_1_t_5 = (
-        inv_w_1_t_150*(S_dot_tip_x*w_1_t_53 + S_dot_tip_z*w_1_t_55 + qd_1_t_3*w_1_t_64 +
-            qd_1_t_4*w_1_t_58 - S_dot_tip_y*w_1_t_54 - qd_1_t*w_1_t_56 - qd_1_t_2*w_1_t_57)
-        )
-        qd_1_t_6 = (
-        inv_w_1_t_101*(S_dot_tip_y*w_1_t_32 + qd_1_t*w_1_t_34 + qd_1_t_2*w_1_t_35 +
-            qd_1_t_3*w_1_t_47 + qd_1_t_4*w_1_t_42 - S_dot_tip_z*w_1_t_33 - qd_1_t_5*w_1_t_36)
-        )
-        qd_1_t_7 = (
-        inv_w_1_t_69*(S_dot_tip_y*w_1_t_16 + qd_1_t_4*w_1_t_25 + qd_1_t_6*w_1_t_18 -
-            qd_1_t_2*w_1_t_17 - qd_1_t_3*w_1_t_28 - qd_1_t_5*w_1_t_21)
-        )
-        # (rrrrrr-V40) angular velocity of link 1
-        omega_1_t = qd_1_t_5*s_2
-        omega_1_t_2 = c_2_t*qd_1_t_5
-        # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_x = omega_1_t_2*qd_1_t_4
-        zeta_2_y = omega_1_t*qd_1_t_4
-        # (rrrrrr-V42) angular velocity of link 2
-        omega_2_r0_x = c_3*omega_1_t - omega_1_t_2*s_3
-        omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
-        # (rrrrrr-A5) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_x = omega_2_r0_y*qd_1_t_3
-        zeta_3_y = omega_2_r0_x*qd_1_t_3
-        # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_r0_x = c_3*zeta_2_x + s_3*zeta_2_y
-        zeta_2_r0_y = c_3*zeta_2_y - s_3*zeta_2_x
-        # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_x = zeta_2_r0_x - zeta_3_x
-        beta_3_y = zeta_2_r0_y + zeta_3_y
-        # (rrrrrr-V44) angular velocity of link 3
-        omega_3_z = -qd_1_t_3 - qd_1_t_4
-        omega_3_r1_x = omega_3_z*s_4 - c_4_t*omega_2_r0_y
-        omega_3_r1_y = -c_4_t*omega_3_z - omega_2_r0_y*s_4
-        # (rrrrrr-A7) angular acceleration of link 4 from the turning of axis 4
-        zeta_4_x = omega_3_r1_y*qd_1_t_6
-        zeta_4_y = omega_3_r1_x*qd_1_t_6
-        # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_t = beta_3_y*c_4_t
-        beta_3_t_2 = beta_3_y*s_4
-        # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
-        beta_4_x = -beta_3_t - zeta_4_x
-        beta_4_y = zeta_4_y - beta_3_t_2
-        # (rrrrrr-V46) angular velocity of link 4
-        omega_4_z = omega_2_r0_x - qd_1_t_6
-        omega_4_t = c_5_t*omega_3_r1_y
-        omega_4_r1_x = omega_4_z*s_5 - omega_4_t
-        omega_4_t_2 = omega_3_r1_y*s_5
-        omega_4_r1_y = -omega_4_t_2 - c_5_t*omega_4_z
-        # (rrrrrr-A9) angular acceleration of link 5 from the turning of axis 5
-        zeta_5_x = omega_4_r1_y*qd_1_t_7
-        zeta_5_y = omega_4_r1_x*qd_1_t_7
-        # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
-        beta_4_t = beta_3_x*s_5
-        beta_4_r1_x = beta_4_t - beta_4_y*c_5_t
-        beta_4_t_2 = beta_3_x*c_5_t
-        beta_4_r1_y = -beta_4_t_2 - beta_4_y*s_5
-        # (rrrrrr-A10) angular acceleration of link 5 at zero joint accelerations
-        beta_5_x = beta_4_r1_x + zeta_5_x
-        beta_5_y = beta_4_r1_y - zeta_5_y
-        # (rrrrrr-V48) angular velocity of link 5
-        omega_5_z = omega_3_r1_x + qd_1_t_7
-        # (rrrrrr-A14) rate of moment direction 1
-        nd_m1_t_4 = end_p1_r8_y*omega_4_r1_y
-        nd_m1_x = -nd_m1_t_2 - end_p1_r6_x*omega_4_r1_x
-        nd_m1_y = nd_m1_t - end_p1_r6_x*omega_4_r1_y
-        # (rrrrrr-A15) bias of the angular acceleration along moment direction 1
-        nu_1_t = beta_5_x*end_p1_r8_y - beta_5_y*end_p1_r8_x
-        nu_1_t_2 = omega_4_r1_x - omega_tip_x
-        nu_1_t_3 = omega_4_r1_y - omega_tip_y
-        nu_1_t_4 = omega_5_z - omega_tip_z
-        nu_1_t_5 = (
-        nd_m1_x*nu_1_t_2 + nd_m1_y*nu_1_t_3 + nu_1_t_4*(nd_m1_t_4 + end_p1_r8_x*omega_4_r1_x)
-        )
-        nu_1 = nu_1_t - nu_1_t_5
-        # (rrrrrr-A18) acceleration with which the joints turn along moment direction 1
-        alpha_tip_y = (
-        alpha_x*axis_y_rrrrrr_axes5_in_base_x + alpha_y*axis_y_rrrrrr_axes5_in_base_y +
-            alpha_z*axis_y_rrrrrr_axes5_in_base_z
-        )
-        etad_1_t = (
-        end_p1_r8_y*(alpha_x*axis_x_rrrrrr_axes5_x + alpha_y*axis_x_rrrrrr_axes5_y +
-            alpha_z*axis_x_rrrrrr_axes5_z) - alpha_tip_y*end_p1_r8_x
-        )
-        etad_1 = nu_1 - etad_1_t
-        # (rrrrrr-A16) rate of moment direction 2
-        nd_m2_y = -nd_m1_t_3 - end_p1_r8_x*omega_4_r1_y
-        nd_m2_z = nd_m1_t_2 - end_p1_r8_x*omega_5_z
-        # (rrrrrr-A17) bias of the angular acceleration along moment direction 2
-        nu_2_t = beta_5_y*end_p1_r6_x - beta_4_x*end_p1_r8_y
-        nu_2_t_2 = (
-        nd_m2_y*nu_1_t_3 + nd_m2_z*nu_1_t_4 + nu_1_t_2*(nd_m1_t_4 + end_p1_r6_x*omega_5_z)
-        )
-        nu_2 = nu_2_t - nu_2_t_2
-        # (rrrrrr-A19) acceleration with which the joints turn along moment direction 2
-        etad_2_t = (
-        alpha_tip_y*end_p1_r6_x - end_p1_r8_y*(alpha_x*axis_z_rrrrrr_axes5_in_base_x +
-            alpha_y*axis_z_rrrrrr_axes5_in_base_y + alpha_z*axis_z_rrrrrr_axes5_in_base_z)
-        )
-        etad_2 = nu_2 - etad_2_t
-        # (rrrrrr-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (rrrrrr-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        # (rrrrrr-V43) centripetal tensor of link 2
-        W_2_t = omega_1_t*omega_1_t
-        W_2_t_2 = omega_1_t_2*omega_1_t_2
-        W_2_t_3 = qd_1_t_4*qd_1_t_4
-        W_2_xy = omega_1_t*omega_1_t_2
-        # (rrrrrr-V45) centripetal tensor of link 3
-        W_3_t = omega_2_r0_x*omega_2_r0_x
-        W_3_t_2 = omega_2_r0_y*omega_2_r0_y
-        W_3_t_3 = omega_3_z*omega_3_z
-        W_3_xx = W_3_t_2 + W_3_t_3
-        W_3_xy = omega_2_r0_x*omega_2_r0_y
-        W_3_xz = omega_2_r0_x*omega_3_z
-        W_3_yz = omega_2_r0_y*omega_3_z
-        # (rrrrrr-V47) centripetal tensor of link 4
-        W_4_t = omega_3_r1_x*omega_3_r1_x
-        W_4_t_2 = omega_3_r1_y*omega_3_r1_y
-        W_4_t_3 = omega_4_z*omega_4_z
-        W_4_xy = omega_3_r1_x*omega_3_r1_y
-        W_4_xz = omega_3_r1_x*omega_4_z
-        W_4_yz = omega_3_r1_y*omega_4_z
-        # (rrrrrr-V49) centripetal tensor of link 5
-        W_5_t = omega_4_r1_x*omega_4_r1_x
-        W_5_t_2 = omega_4_r1_y*omega_4_r1_y
-        W_5_t_3 = omega_5_z*omega_5_z
-        W_5_xx = W_5_t_2 + W_5_t_3
-        W_5_xy = omega_4_r1_x*omega_4_r1_y
-        W_5_xz = omega_4_r1_x*omega_5_z
-        W_5_yz = omega_4_r1_y*omega_5_z
-        # (rrrrrr-V40) angular velocity of link 1
-        omega_1_x = e_1_r6_x*qd_1_t_5
-        omega_1_y = e_1_r6_y*qd_1_t_5
-        omega_1_z = qd_1_t_5*v_1_t
-        # (rrrrrr-V41) centripetal tensor of link 1
-        W_1_t = omega_1_x*omega_1_x
-        W_1_t_2 = omega_1_y*omega_1_y
-        W_1_t_3 = omega_1_z*omega_1_z
-        W_1_xy = omega_1_x*omega_1_y
-        W_1_xz = omega_1_x*omega_1_z
-        W_1_yz = omega_1_y*omega_1_z
-        # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_t = c_4_t*zeta_2_r0_y
-        zeta_2_t_2 = s_4*zeta_2_r0_y
-        zeta_2_r4_x = c_5_t*zeta_2_t_2 + s_5*zeta_2_r0_x
-        zeta_2_r4_y = s_5*zeta_2_t_2 - c_5_t*zeta_2_r0_x
-        # (rrrrrr-V42) angular velocity of link 2
-        omega_2_x = omega_1_x - qd_1_t_4*v_2_t
-        omega_2_y = omega_1_y - qd_1_t_4*v_2_t_2
-        omega_2_z = -omega_1_z - qd_1_t_4*s_4
-        # (rrrrrr-V43) centripetal tensor of link 2
-        W_2_t_4 = omega_2_x*omega_2_x
-        W_2_t_5 = omega_2_y*omega_2_y
-        W_2_t_6 = omega_2_z*omega_2_z
-        W_2_xy_2 = omega_2_x*omega_2_y
-        W_2_xz = omega_2_x*omega_2_z
-        W_2_yz = omega_2_y*omega_2_z
-        # (rrrrrr-V44) angular velocity of link 3
-        omega_3_r3_x = omega_2_r0_x*s_5 - omega_4_t
-        omega_3_r3_y = -omega_4_t_2 - c_5_t*omega_2_r0_x
-        # (rrrrrr-V45) centripetal tensor of link 3
-        W_3_xy_2 = omega_3_r3_x*omega_3_r3_y
-        # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-        bias_t_13 = W_5_xy + beta_4_x
-        bias_x = (
-        W_1_xy*d_2_r6_y + W_1_xz*bias_t_3 + bias_t_7*(W_2_xz + zeta_2_r4_y) + d_3_r4_y*(W_2_xy_2 +
-            zeta_2_t) - W_5_xx*rrrrrr_platform_joint_offset_x - bias_t_10*(W_3_xy_2 + beta_3_t) -
-            bias_t_11*(W_4_t + W_5_t_2) - bias_t_12*(W_5_xy - beta_4_x) - bias_t_9*(W_4_t +
-            omega_3_r3_y*omega_3_r3_y) - d_2_r6_x*(W_1_t_2 + W_1_t_3) - d_3_r4_x*(W_2_t_5 +
-            W_2_t_6)
-        )
-        bias_y = (
-        W_1_xy*d_2_r6_x + W_1_yz*bias_t_3 + bias_t_10*(W_4_t + omega_3_r3_x*omega_3_r3_x) +
-            bias_t_11*bias_t_13 + bias_t_12*(W_4_t + W_5_t) +
-            bias_t_13*rrrrrr_platform_joint_offset_x + bias_t_7*(W_2_yz - zeta_2_r4_x) +
-            bias_t_9*(W_3_xy_2 - beta_3_t) + d_3_r4_x*(W_2_xy_2 - zeta_2_t) - d_2_r6_y*(W_1_t +
-            W_1_t_3) - d_3_r4_y*(W_2_t_4 + W_2_t_6)
-        )
-        bias_z = (
-        bias_t_11*(omega_3_r1_x*omega_4_r1_x - beta_4_r1_y) + bias_t_3*(W_1_t + W_1_t_2) +
-            bias_t_9*(beta_4_t_2 + omega_3_r1_x*omega_3_r3_x - beta_3_t_2*s_5) + d_3_r4_x*(W_2_xz
-            - zeta_2_r4_y) + d_3_r4_y*(W_2_yz + zeta_2_r4_x) +
-            rrrrrr_platform_joint_offset_x*(W_5_xz - beta_5_y) - W_1_xz*d_2_r6_x - W_1_yz*d_2_r6_y
-            - bias_t_10*(beta_4_t + beta_3_t_2*c_5_t + omega_3_r1_x*omega_3_r3_y) -
-            bias_t_12*(beta_4_r1_x + omega_3_r1_x*omega_4_r1_y) - bias_t_7*(W_2_t_4 + W_2_t_5)
-        )
-        # (rrrrrr-A3) acceleration of the connection point
-        S_ddot_tip_x = (
-        S_ddot_x*axis_x_rrrrrr_axes5_x + S_ddot_y*axis_x_rrrrrr_axes5_y +
-            S_ddot_z*axis_x_rrrrrr_axes5_z
-        )
-        S_ddot_tip_y = (
-        S_ddot_x*axis_y_rrrrrr_axes5_in_base_x + S_ddot_y*axis_y_rrrrrr_axes5_in_base_y +
-            S_ddot_z*axis_y_rrrrrr_axes5_in_base_z
-        )
-        S_ddot_tip_z = (
-        S_ddot_x*axis_z_rrrrrr_axes5_in_base_x + S_ddot_y*axis_z_rrrrrr_axes5_in_base_y +
-            S_ddot_z*axis_z_rrrrrr_axes5_in_base_z
-        )
-        # (rrrrrr-A12) acceleration of the connection point left to the joint accelerations
-        rel_x = S_ddot_tip_x - bias_x
-        rel_y = S_ddot_tip_y - bias_y
-        rel_z = S_ddot_tip_z - bias_z
-        # (rrrrrr-A20) acceleration of joint 1
-        qdd_1_t = etad_1*size
-        qdd_1_t_2 = etad_2*size
-        qdd_1_t_3 = (
-        inv_w_1_t_222*(qdd_1_t*w_1_t_86 + qdd_1_t_2*w_1_t_87 + rel_x*w_1_t_83 + rel_z*w_1_t_85 -
-            rel_y*w_1_t_84)
-        )
-        qdd_1_t_4 = (
-        inv_w_1_t_194*(qdd_1_t*w_1_t_74 + qdd_1_t_2*w_1_t_75 + rel_x*w_1_t_71 + rel_z*w_1_t_73 -
-            qdd_1_t_3*w_1_t_76 - rel_y*w_1_t_72)
-        )
-        qdd_1_t_5 = (
-        inv_w_1_t_150*(qdd_1_t_3*w_1_t_64 + qdd_1_t_4*w_1_t_58 + rel_y*w_1_t_54 - qdd_1_t*w_1_t_56
-            - qdd_1_t_2*w_1_t_57 - rel_x*w_1_t_53 - rel_z*w_1_t_55)
-        )
-        qdd_1_t_6 = (
-        inv_w_1_t_101*(qdd_1_t*w_1_t_34 + qdd_1_t_2*w_1_t_35 + qdd_1_t_3*w_1_t_47 +
-            qdd_1_t_4*w_1_t_42 + rel_z*w_1_t_33 - qdd_1_t_5*w_1_t_36 - rel_y*w_1_t_32)
-        )
-        # (rrrrrr-N21) acceleration of the reference point of link 5, less gravity
-        acc_5_x = (
-        S_ddot_tip_x - axis_x_rrrrrr_axes5_x*gravity_x - axis_x_rrrrrr_axes5_y*gravity_y -
-            axis_x_rrrrrr_axes5_z*gravity_z
-        )
-        acc_5_y = (
-        S_ddot_tip_y - axis_y_rrrrrr_axes5_in_base_x*gravity_x -
-            axis_y_rrrrrr_axes5_in_base_y*gravity_y - axis_y_rrrrrr_axes5_in_base_z*gravity_z
-        )
-        acc_5_z = (
-        S_ddot_tip_z - axis_z_rrrrrr_axes5_in_base_x*gravity_x -
-            axis_z_rrrrrr_axes5_in_base_y*gravity_y - axis_z_rrrrrr_axes5_in_base_z*gravity_z
-        )
-        # (rrrrrr-A30) angular acceleration of link 1
-        alpha_1_t = qdd_1_t_5*s_2
-        alpha_1_t_2 = c_2_t*qdd_1_t_5
-        # (rrrrrr-A34) angular acceleration of link 2
-        alpha_2_x = zeta_2_x - alpha_1_t
-        alpha_2_y = alpha_1_t_2 + zeta_2_y
-        # (rrrrrr-A36) acceleration tensor of link 2
-        B_2_xy = -W_2_xy - qdd_1_t_4
-        B_2_yx = qdd_1_t_4 - W_2_xy
-        B_2_zx = -alpha_2_y - zeta_2_y
-        B_2_zy = alpha_2_x + zeta_2_x
-        # (rrrrrr-A54) acceleration of the origin of joint 3
-        a_o3_t = rrrrrr_joint3_offset_x*(W_2_t_2 + W_2_t_3)
-        a_o3_t_2 = B_2_yx*rrrrrr_joint3_offset_x
-        a_o3_t_3 = B_2_zx*rrrrrr_joint3_offset_x
-        # (rrrrrr-A38) angular acceleration of link 3
-        alpha_3_x = alpha_2_x*c_3 + alpha_2_y*s_3 - zeta_3_x
-        alpha_3_y = zeta_3_y + alpha_2_y*c_3 - alpha_2_x*s_3
-        alpha_3_z = qdd_1_t_3 + qdd_1_t_4
-        # (rrrrrr-A40) acceleration tensor of link 3
-        B_3_xy = W_3_xy - alpha_3_z
-        B_3_xz = W_3_xz + alpha_3_y
-        B_3_yx = W_3_xy + alpha_3_z
-        B_3_yz = W_3_yz - alpha_3_x
-        B_3_zx = W_3_xz - alpha_3_y
-        B_3_zy = W_3_yz + alpha_3_x
-        # (rrrrrr-A54) acceleration of the origin of joint 3
-        a_o3_r0_x = a_o3_t_2*s_3 - a_o3_t*c_3
-        a_o3_r0_y = a_o3_t*s_3 + a_o3_t_2*c_3
-        # (rrrrrr-A56) acceleration of the origin of joint 4
-        a_o4_x = a_o3_r0_x - W_3_xx*rrrrrr_joint4_offset_x
-        a_o4_y = a_o3_r0_y + B_3_yx*rrrrrr_joint4_offset_x
-        a_o4_z = a_o3_t_3 + B_3_zx*rrrrrr_joint4_offset_x
-        # (rrrrrr-N15) acceleration of the reference point of link 4, less gravity
-        acc_4_x = a_o4_z*s_4 + c_4_t*g_r4_y - a_o4_y*c_4_t - g_r1_x*s_4
-        acc_4_y = c_4_t*g_r1_x + g_r4_y*s_4 - a_o4_y*s_4 - a_o4_z*c_4_t
-        acc_4_z = a_o4_x - g_r4_x
-        # (rrrrrr-A42) angular acceleration of link 4
-        alpha_4_x = alpha_3_z*s_4 - zeta_4_x - alpha_3_y*c_4_t
-        alpha_4_y = zeta_4_y - alpha_3_y*s_4 - alpha_3_z*c_4_t
-        alpha_4_z = alpha_3_x + qdd_1_t_6
-        # (rrrrrr-A44) acceleration tensor of link 4
-        B_4_xy = W_4_xy - alpha_4_z
-        B_4_xz = W_4_xz + alpha_4_y
-        B_4_yx = W_4_xy + alpha_4_z
-        B_4_yz = W_4_yz - alpha_4_x
-        B_4_zx = W_4_xz - alpha_4_y
-        B_4_zy = W_4_yz + alpha_4_x
-        # (rrrrrr-N72) inertia moment of the links that turn with link 4, about their reference points
-        mu_4_x = (
-        B_4_yx*J_4_xz + B_4_zx*J_4_yz + B_4_zy*Sigma_4_yy - B_4_yz*Sigma_4_zz - J_4_xy*(W_4_t_2 -
-            W_4_t_3) - acc_4_y*h_4_x - acc_4_z*h_4_y
-        )
-        mu_4_y = (
-        B_4_xy*J_4_xy + B_4_xz*Sigma_4_zz + acc_4_x*h_4_x - B_4_zx*Sigma_4_xx - B_4_zy*J_4_yz -
-            J_4_xz*(W_4_t - W_4_t_3) - acc_4_z*h_4_z
-        )
-        mu_4_z = (
-        B_4_yx*Sigma_4_xx + acc_4_x*h_4_y + acc_4_y*h_4_z - B_4_xy*Sigma_4_yy - B_4_xz*J_4_xy -
-            B_4_yz*J_4_xz - J_4_yz*(W_4_t - W_4_t_2)
-        )
-        # (rrrrrr-A46) angular acceleration of link 5
-        alpha_5_x = zeta_5_x + alpha_4_z*s_5 - alpha_4_y*c_5_t
-        alpha_5_y = -zeta_5_y - alpha_4_y*s_5 - alpha_4_z*c_5_t
-        alpha_5_z = (
-        alpha_4_x + inv_w_1_t_69*(qdd_1_t_2*w_1_t_17 + qdd_1_t_3*w_1_t_28 + qdd_1_t_5*w_1_t_21 +
-            rel_y*w_1_t_16 - qdd_1_t_4*w_1_t_25 - qdd_1_t_6*w_1_t_18)
-        )
-        # (rrrrrr-A50) acceleration tensor of link 5
-        B_5_xy = W_5_xy - alpha_5_z
-        B_5_xz = W_5_xz + alpha_5_y
-        B_5_yx = W_5_xy + alpha_5_z
-        B_5_yz = W_5_yz - alpha_5_x
-        B_5_zx = W_5_xz - alpha_5_y
-        B_5_zy = W_5_yz + alpha_5_x
-        # (rrrrrr-N64) inertia moment of the links that turn with link 5, about their reference points
-        mu_5_x = (
-        B_5_yx*J_5_xz + B_5_zy*Sigma_5_yy + J_5_yz*(W_5_t_2 - W_5_t_3) + acc_5_z*h_5_y -
-            B_5_yz*Sigma_5_zz - B_5_zx*J_5_xy - acc_5_y*h_5_z
-        )
-        mu_5_y = (
-        B_5_xz*Sigma_5_zz + B_5_zy*J_5_xy + acc_5_x*h_5_z - B_5_xy*J_5_yz - B_5_zx*Sigma_5_xx -
-            J_5_xz*(W_5_t - W_5_t_3) - acc_5_z*h_5_x
-        )
-        mu_5_z = (
-        B_5_xz*J_5_yz + B_5_yx*Sigma_5_xx + J_5_xy*(W_5_t - W_5_t_2) + acc_5_y*h_5_x -
-            B_5_xy*Sigma_5_yy - B_5_yz*J_5_xz - acc_5_x*h_5_y
-        )
-        # (rrrrrr-N74) moment about joint 4 of the links from 4 outwards, the force at the connection point left out
-        N_4_x = mu_4_x + mu_5_z
-        N_4_y = mu_4_y - c_5_t*mu_5_x - mu_5_y*s_5
-        N_4_z = mu_4_z + mu_5_x*s_5 - c_5_t*mu_5_y
-        # (rrrrrr-N19) inertia force of link 4 less its weight
-        f_4_x = (
-        B_4_xz*h_4_x + acc_4_x*rrrrrr_link4_mass - B_4_xy*h_4_y - h_4_z*(W_4_t_2 + W_4_t_3)
-        )
-        f_4_y = B_4_yx*h_4_z + B_4_yz*h_4_x + acc_4_y*rrrrrr_link4_mass + h_4_y*(W_4_t + W_4_t_3)
-        f_4_z = B_4_zx*h_4_z + acc_4_z*rrrrrr_link4_mass - B_4_zy*h_4_y - h_4_x*(W_4_t + W_4_t_2)
-        # (rrrrrr-N9) acceleration of the reference point of link 3, less gravity
-        acc_3_x = a_o3_r0_x - g_r4_x
-        acc_3_y = a_o3_r0_y - g_r4_y
-        acc_3_z = a_o3_t_3 - g_r1_x
-        # (rrrrrr-N82) inertia moment of the links that turn with link 3, about their reference points
-        mu_3_x = (
-        B_3_yx*J_3_xz + B_3_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_z*h_3_y -
-            B_3_yz*Sigma_3_zz - B_3_zx*J_3_xy - acc_3_y*h_3_z
-        )
-        mu_3_y = (
-        B_3_xz*Sigma_3_zz + B_3_zy*J_3_xy + acc_3_x*h_3_z - B_3_xy*J_3_yz - B_3_zx*Sigma_3_xx -
-            J_3_xz*(W_3_t - W_3_t_3) - acc_3_z*h_3_x
-        )
-        mu_3_z = (
-        B_3_xz*J_3_yz + B_3_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_y*h_3_x -
-            B_3_xy*Sigma_3_yy - B_3_yz*J_3_xz - acc_3_x*h_3_y
-        )
-        # (rrrrrr-N19) inertia force of link 4 less its weight
-        f_4_r0_x = -c_4_t*f_4_x - f_4_y*s_4
-        f_4_r0_y = f_4_x*s_4 - c_4_t*f_4_y
-        # (rrrrrr-N84) moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-        N_3_x = N_4_z + mu_3_x
-        N_3_y = mu_3_y - N_4_x*c_4_t - N_4_y*s_4 - f_4_r0_y*rrrrrr_joint4_offset_x
-        N_3_z = mu_3_z + N_4_x*s_4 + f_4_r0_x*rrrrrr_joint4_offset_x - N_4_y*c_4_t
-        # (rrrrrr-N13) inertia force of link 3 less its weight
-        f_3_x = B_3_xy*h_3_y + B_3_xz*h_3_z + acc_3_x*rrrrrr_link3_mass - W_3_xx*h_3_x
-        f_3_y = B_3_yx*h_3_x + B_3_yz*h_3_z + acc_3_y*rrrrrr_link3_mass - h_3_y*(W_3_t + W_3_t_3)
-        f_3_z = B_3_zx*h_3_x + B_3_zy*h_3_y + acc_3_z*rrrrrr_link3_mass - h_3_z*(W_3_t + W_3_t_2)
-        # (rrrrrr-N86) inertia force of the links from 3 outwards, the last link left out
-        T_3_x = f_3_x + f_4_z
-        T_3_y = f_3_y + f_4_r0_x
-        T_3_z = f_3_z + f_4_r0_y
-        # (rrrrrr-N94) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_x = (
-        B_2_yx*J_2_xz + B_2_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z -
-            B_2_zx*J_2_xy - Sigma_2_zz*alpha_1_t - g_r1_x*h_2_y
-        )
-        mu_2_y = (
-        B_2_zy*J_2_xy + Sigma_2_zz*alpha_1_t_2 + g_r1_x*h_2_x - B_2_xy*J_2_yz - B_2_zx*Sigma_2_xx
-            - J_2_xz*(W_2_t - W_2_t_3) - g_r3_x*h_2_z
-        )
-        mu_2_z = (
-        B_2_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + J_2_yz*alpha_1_t_2 + g_r3_x*h_2_y -
-            B_2_xy*Sigma_2_yy - J_2_xz*alpha_1_t - g_r3_y*h_2_x
-        )
-        # (rrrrrr-N96) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_x = mu_2_x + N_3_x*c_3 - N_3_y*s_3
-        N_2_y = mu_2_y + N_3_x*s_3 + N_3_y*c_3 - T_3_z*rrrrrr_joint3_offset_x
-        N_2_z = N_3_z + mu_2_z + rrrrrr_joint3_offset_x*(T_3_x*s_3 + T_3_y*c_3)
-        # (rrrrrr-N106) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_z = -J_1_xx*qdd_1_t_5 - g_r1_x*h_1_y - g_r1_y*h_1_z
-        # (rrrrrr-N108) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_z = mu_1_z + N_2_x*s_2 - N_2_y*c_2_t
-        # (rrrrrr-N114) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_t = inv_w_1_t_69*mu_5_z
-        G_t_2 = inv_w_1_t_101*(G_t*w_1_t_18 - N_4_z)
-        G_t_3 = inv_w_1_t_150*(G_t*w_1_t_21 + G_t_2*w_1_t_36 - N_1_z)
-        G_t_4 = inv_w_1_t_194*(G_t*w_1_t_25 + G_t_2*w_1_t_42 - N_2_z - G_t_3*w_1_t_58)
-        G_t_5 = (
-        inv_w_1_t_222*(N_3_z + G_t*w_1_t_28 + G_t_3*w_1_t_64 + G_t_4*w_1_t_76 - G_t_2*w_1_t_47)
-        )
-        G_t_6 = size*(G_t_2*w_1_t_34 + G_t_3*w_1_t_56 + G_t_4*w_1_t_74 - G_t_5*w_1_t_86)
-        G_t_7 = (
-        size*(G_t_2*w_1_t_35 + G_t_3*w_1_t_57 + G_t_4*w_1_t_75 - G_t*w_1_t_17 - G_t_5*w_1_t_87)
-        )
-        # (rrrrrr-N130) leg force on the platform without actuation and without the mass at the connection point
-        c_x = (
-        G_t_3*w_1_t_53 + G_t_4*w_1_t_71 + W_5_xx*h_5_x - B_5_xy*h_5_y - B_5_xz*h_5_z -
-            G_t_5*w_1_t_83
-        )
-        c_y = (
-        G_t_5*w_1_t_84 + h_5_y*(W_5_t + W_5_t_3) - B_5_yx*h_5_x - B_5_yz*h_5_z - G_t*w_1_t_16 -
-            G_t_2*w_1_t_32 - G_t_3*w_1_t_54 - G_t_4*w_1_t_72
-        )
-        c_z = (
-        G_t_2*w_1_t_33 + G_t_3*w_1_t_55 + G_t_4*w_1_t_73 + h_5_z*(W_5_t + W_5_t_2) - B_5_zx*h_5_x
-            - B_5_zy*h_5_y - G_t_5*w_1_t_85
-        )
-        # (rrrrrr-N140) leg force on the platform without actuation, the last link's mass included
-        c_true_x = c_x - acc_5_x*rrrrrr_link5_mass
-        c_true_y = c_y - acc_5_y*rrrrrr_link5_mass
-        c_true_z = c_z - acc_5_z*rrrrrr_link5_mass
-        c_true_in_base_x = (
-        axis_x_rrrrrr_axes5_x*c_true_x + axis_y_rrrrrr_axes5_in_base_x*c_true_y +
-            axis_z_rrrrrr_axes5_in_base_x*c_true_z
-        )
-        c_true_in_base_y = (
-        axis_x_rrrrrr_axes5_y*c_true_x + axis_y_rrrrrr_axes5_in_base_y*c_true_y +
-            axis_z_rrrrrr_axes5_in_base_y*c_true_z
-        )
-        c_true_in_base_z = (
-        axis_x_rrrrrr_axes5_z*c_true_x + axis_y_rrrrrr_axes5_in_base_z*c_true_y +
-            axis_z_rrrrrr_axes5_in_base_z*c_true_z
-        )
-        # (rrrrrr-N126) moment at the connection point that balances the leg's inertia and weight along all freedoms
-        G_m_t = G_t_6*end_p1_r8_y
-        G_m_t_2 = G_t_7*end_p1_r8_y
-        G_m_y = G_t_7*end_p1_r6_x - G_t_6*end_p1_r8_x
-        # (rrrrrr-N135) moment of the leg on the platform without actuation
-        c_m_in_base_x = (
-        G_m_t_2*axis_z_rrrrrr_axes5_in_base_x - G_m_t*axis_x_rrrrrr_axes5_x -
-            G_m_y*axis_y_rrrrrr_axes5_in_base_x
-        )
-        c_m_in_base_y = (
-        G_m_t_2*axis_z_rrrrrr_axes5_in_base_y - G_m_t*axis_x_rrrrrr_axes5_y -
-            G_m_y*axis_y_rrrrrr_axes5_in_base_y
-        )
-        c_m_in_base_z = (
-        G_m_t_2*axis_z_rrrrrr_axes5_in_base_z - G_m_t*axis_x_rrrrrr_axes5_z -
-            G_m_y*axis_y_rrrrrr_axes5_in_base_z
-        )
-        # (rrrrrr-V29) moment part of reciprocal wrench 2
-        o_2_in_base_x = (
-        axis_y_rrrrrr_axes5_in_base_x*o_2_y + axis_z_rrrrrr_axes5_in_base_x*o_2_t_2 -
-            axis_x_rrrrrr_axes5_x*o_2_t
-        )
-        o_2_in_base_y = (
-        axis_y_rrrrrr_axes5_in_base_y*o_2_y + axis_z_rrrrrr_axes5_in_base_y*o_2_t_2 -
-            axis_x_rrrrrr_axes5_y*o_2_t
-        )
-        o_2_in_base_z = (
-        axis_y_rrrrrr_axes5_in_base_z*o_2_y + axis_z_rrrrrr_axes5_in_base_z*o_2_t_2 -
-            axis_x_rrrrrr_axes5_z*o_2_t
+        six_r_q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
+        six_r_q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
+        six_r_q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
+        six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
+        six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
+        six_r_c_5_t = sin(six_r_q_5)
+        # (six_r-s_5) sine of the angle of joint 5 from its reference direction
+        six_r_s_5 = cos(six_r_q_5)
+        # (six_r-r_4) from joint 4 to the connection point, along the links
+        six_r_r_4_t = six_r_c_5_t*six_r_platform_joint_offset_x
+        six_r_r_4_z = six_r_joint5_offset_x + six_r_platform_joint_offset_x*six_r_s_5
+        # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
+        six_r_c_4_t = sin(six_r_q_4)
+        # (six_r-s_4) sine of the angle of joint 4 from its reference direction
+        six_r_s_4 = cos(six_r_q_4)
+        # (six_r-r_4) from joint 4 to the connection point, along the links
+        six_r_r_4_t_2 = six_r_r_4_t*six_r_s_4
+        six_r_r_4_t_3 = six_r_c_4_t*six_r_r_4_t
+        # (six_r-r_3) from joint 3 to the connection point, along the links
+        six_r_r_3_x = six_r_joint4_offset_x + six_r_r_4_z
+        # (six_r-c_3) cosine of the angle of joint 3 from its reference direction
+        six_r_c_3 = cos(six_r_q_3)
+        # (six_r-s_3) sine of the angle of joint 3 from its reference direction
+        six_r_s_3 = sin(six_r_q_3)
+        # (six_r-r_3) from joint 3 to the connection point, along the links
+        six_r_r_3_r0_y = six_r_c_3*six_r_r_4_t_2 + six_r_r_3_x*six_r_s_3
+        # (six_r-r_2) from joint 2 to the connection point, along the links
+        six_r_r_2_x = six_r_joint3_offset_x + six_r_c_3*six_r_r_3_x - six_r_r_4_t_2*six_r_s_3
+        # (six_r-c_2) cosine of the angle of joint 2 from its reference direction
+        six_r_c_2_t = sin(six_r_q_2)
+        # (six_r-s_2) sine of the angle of joint 2 from its reference direction
+        six_r_s_2 = cos(six_r_q_2)
+        # (six_r-r_2) from joint 2 to the connection point, along the links
+        six_r_r_2_r0_x = -six_r_c_2_t*six_r_r_2_x - six_r_r_3_r0_y*six_r_s_2
+        # (six_r-r_1) from joint 1 to the connection point, along the links
+        six_r_r_1_z = six_r_joint2_offset_x + six_r_r_2_x*six_r_s_2 - six_r_c_2_t*six_r_r_3_r0_y
+        # (six_r-v_1) velocity of the connection point per rate of joint 1
+        six_r_e_1_r2_x = six_r_c_3*six_r_s_2 - six_r_c_2_t*six_r_s_3
+        six_r_e_1_r2_y = -six_r_c_2_t*six_r_c_3 - six_r_s_2*six_r_s_3
+        six_r_v_1_t = six_r_c_4_t*six_r_e_1_r2_y
+        six_r_v_1_t_2 = six_r_e_1_r2_y*six_r_s_4
+        six_r_e_1_r6_x = six_r_c_5_t*six_r_v_1_t_2 + six_r_e_1_r2_x*six_r_s_5
+        six_r_e_1_r6_y = six_r_s_5*six_r_v_1_t_2 - six_r_c_5_t*six_r_e_1_r2_x
+        # (six_r-r_1) from joint 1 to the connection point, along the links
+        six_r_r_1_r1_x = six_r_r_1_z*six_r_s_2 - six_r_c_2_t*six_r_r_2_r0_x
+        six_r_r_1_r1_y = -six_r_c_2_t*six_r_r_1_z - six_r_r_2_r0_x*six_r_s_2
+        six_r_r_1_r2_x = six_r_c_3*six_r_r_1_r1_x + six_r_r_1_r1_y*six_r_s_3
+        six_r_r_1_r2_y = six_r_c_3*six_r_r_1_r1_y - six_r_r_1_r1_x*six_r_s_3
+        six_r_r_1_t = six_r_r_4_t_3*six_r_s_4
+        six_r_r_1_r4_x = six_r_r_1_t - six_r_c_4_t*six_r_r_1_r2_y
+        six_r_r_1_t_2 = six_r_c_4_t*six_r_r_4_t_3
+        six_r_r_1_r4_y = -six_r_r_1_t_2 - six_r_r_1_r2_y*six_r_s_4
+        six_r_r_1_r6_x = six_r_r_1_r2_x*six_r_s_5 - six_r_c_5_t*six_r_r_1_r4_y
+        six_r_r_1_r6_y = -six_r_c_5_t*six_r_r_1_r2_x - six_r_r_1_r4_y*six_r_s_5
+        # (six_r-v_1) velocity of the connection point per rate of joint 1
+        six_r_v_1_x = six_r_e_1_r6_y*six_r_r_1_r4_x + six_r_r_1_r6_y*six_r_v_1_t
+        six_r_v_1_y = -six_r_e_1_r6_x*six_r_r_1_r4_x - six_r_r_1_r6_x*six_r_v_1_t
+        six_r_v_1_z = six_r_e_1_r6_x*six_r_r_1_r6_y - six_r_e_1_r6_y*six_r_r_1_r6_x
+        # (six_r-v_2) velocity of the connection point per rate of joint 2
+        six_r_v_2_t = six_r_c_4_t*six_r_c_5_t
+        six_r_v_2_t_2 = six_r_c_4_t*six_r_s_5
+        # (six_r-r_2) from joint 2 to the connection point, along the links
+        six_r_r_2_r0_x_2 = six_r_c_3*six_r_r_2_x + six_r_r_3_r0_y*six_r_s_3
+        six_r_r_2_r0_y = six_r_c_3*six_r_r_3_r0_y - six_r_r_2_x*six_r_s_3
+        six_r_r_2_r2_x = six_r_r_1_t - six_r_c_4_t*six_r_r_2_r0_y
+        six_r_r_2_r2_y = -six_r_r_1_t_2 - six_r_r_2_r0_y*six_r_s_4
+        six_r_r_2_r4_x = six_r_r_2_r0_x_2*six_r_s_5 - six_r_c_5_t*six_r_r_2_r2_y
+        six_r_r_2_r4_y = -six_r_c_5_t*six_r_r_2_r0_x_2 - six_r_r_2_r2_y*six_r_s_5
+        # (six_r-v_2) velocity of the connection point per rate of joint 2
+        six_r_v_2_x = six_r_r_2_r2_x*six_r_v_2_t_2 - six_r_r_2_r4_y*six_r_s_4
+        six_r_v_2_y = six_r_r_2_r4_x*six_r_s_4 - six_r_r_2_r2_x*six_r_v_2_t
+        six_r_v_2_z = six_r_r_2_r4_y*six_r_v_2_t - six_r_r_2_r4_x*six_r_v_2_t_2
+        # (six_r-r_3) from joint 3 to the connection point, along the links
+        six_r_r_3_r1_x = six_r_r_1_t - six_r_c_4_t*six_r_r_4_t_2
+        six_r_r_3_r1_y = -six_r_r_1_t_2 - six_r_r_4_t_2*six_r_s_4
+        six_r_r_3_r3_x = six_r_r_3_x*six_r_s_5 - six_r_c_5_t*six_r_r_3_r1_y
+        six_r_r_3_r3_y = -six_r_c_5_t*six_r_r_3_x - six_r_r_3_r1_y*six_r_s_5
+        # (six_r-v_3) velocity of the connection point per rate of joint 3
+        six_r_v_3_x = six_r_r_3_r1_x*six_r_v_2_t_2 - six_r_r_3_r3_y*six_r_s_4
+        six_r_v_3_y = six_r_r_3_r3_x*six_r_s_4 - six_r_r_3_r1_x*six_r_v_2_t
+        six_r_v_3_z = six_r_r_3_r3_y*six_r_v_2_t - six_r_r_3_r3_x*six_r_v_2_t_2
+        # (six_r-v_4) velocity of the connection point per rate of joint 4
+        six_r_v_4_z = (
+        six_r_c_5_t*(six_r_c_5_t*six_r_r_4_t + six_r_r_4_z*six_r_s_5) +
+            six_r_s_5*(six_r_r_4_t*six_r_s_5 - six_r_c_5_t*six_r_r_4_z)
+        )
+        # (six_r-w_1) force part of reciprocal wrench 1
+        six_r_w_1_t = six_r_c_4_t*six_r_s_3
+        six_r_w_1_t_2 = six_r_c_3*six_r_c_4_t
+        axis_z_six_r_axes5_r5_x = six_r_s_2*six_r_w_1_t_2 - six_r_c_2_t*six_r_w_1_t
+        axis_z_six_r_axes5_r5_y = six_r_c_2_t*six_r_w_1_t_2 + six_r_s_2*six_r_w_1_t
+        # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
+        six_r_c_1_t = sin(six_r_q_1)
+        # (six_r-s_1) sine of the angle of joint 1 from its reference direction
+        six_r_s_1 = cos(six_r_q_1)
+        # (six_r-w_1) force part of reciprocal wrench 1
+        axis_z_six_r_axes5_r7_x = -axis_z_six_r_axes5_r5_x*six_r_s_1 - six_r_c_1_t*six_r_s_4
+        axis_z_six_r_axes5_r7_y = six_r_s_1*six_r_s_4 - axis_z_six_r_axes5_r5_x*six_r_c_1_t
+        axis_z_six_r_axes5_in_base_x = (
+        axis_z_six_r_axes5_r5_y*six_r_base_frame_xx + axis_z_six_r_axes5_r7_x*six_r_base_frame_xy
+            + axis_z_six_r_axes5_r7_y*six_r_base_frame_xz
+        )
+        axis_z_six_r_axes5_in_base_y = (
+        axis_z_six_r_axes5_r5_y*six_r_base_frame_yx + axis_z_six_r_axes5_r7_x*six_r_base_frame_yy
+            + axis_z_six_r_axes5_r7_y*six_r_base_frame_yz
+        )
+        axis_z_six_r_axes5_in_base_z = (
+        axis_z_six_r_axes5_r5_y*six_r_base_frame_zx + axis_z_six_r_axes5_r7_x*six_r_base_frame_zy
+            + axis_z_six_r_axes5_r7_y*six_r_base_frame_zz
+        )
+        six_r_w_1_t_3 = six_r_s_4*six_r_s_5
+        axis_y_six_r_axes5_r4_x = -six_r_c_3*six_r_c_5_t - six_r_s_3*six_r_w_1_t_3
+        axis_y_six_r_axes5_r4_y = six_r_c_3*six_r_w_1_t_3 - six_r_c_5_t*six_r_s_3
+        axis_y_six_r_axes5_r5_x = (
+        -axis_y_six_r_axes5_r4_x*six_r_c_2_t - axis_y_six_r_axes5_r4_y*six_r_s_2
+        )
+        axis_y_six_r_axes5_r5_y = (
+        axis_y_six_r_axes5_r4_x*six_r_s_2 - axis_y_six_r_axes5_r4_y*six_r_c_2_t
+        )
+        axis_y_six_r_axes5_r7_x = -axis_y_six_r_axes5_r5_x*six_r_s_1 - six_r_c_1_t*six_r_v_2_t_2
+        axis_y_six_r_axes5_r7_y = six_r_s_1*six_r_v_2_t_2 - axis_y_six_r_axes5_r5_x*six_r_c_1_t
+        axis_y_six_r_axes5_in_base_x = (
+        axis_y_six_r_axes5_r5_y*six_r_base_frame_xx + axis_y_six_r_axes5_r7_x*six_r_base_frame_xy
+            + axis_y_six_r_axes5_r7_y*six_r_base_frame_xz
+        )
+        axis_y_six_r_axes5_in_base_y = (
+        axis_y_six_r_axes5_r5_y*six_r_base_frame_yx + axis_y_six_r_axes5_r7_x*six_r_base_frame_yy
+            + axis_y_six_r_axes5_r7_y*six_r_base_frame_yz
+        )
+        axis_y_six_r_axes5_in_base_z = (
+        axis_y_six_r_axes5_r5_y*six_r_base_frame_zx + axis_y_six_r_axes5_r7_x*six_r_base_frame_zy
+            + axis_y_six_r_axes5_r7_y*six_r_base_frame_zz
+        )
+        axis_x_six_r_axes5_x = (
+        axis_y_six_r_axes5_in_base_y*axis_z_six_r_axes5_in_base_z -
+            axis_y_six_r_axes5_in_base_z*axis_z_six_r_axes5_in_base_y
+        )
+        axis_x_six_r_axes5_y = (
+        axis_y_six_r_axes5_in_base_z*axis_z_six_r_axes5_in_base_x -
+            axis_y_six_r_axes5_in_base_x*axis_z_six_r_axes5_in_base_z
+        )
+        axis_x_six_r_axes5_z = (
+        axis_y_six_r_axes5_in_base_x*axis_z_six_r_axes5_in_base_y -
+            axis_y_six_r_axes5_in_base_y*axis_z_six_r_axes5_in_base_x
+        )
+        # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
+        six_r_end_p1_r0_x = (
+        six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xy + R_yx*six_r_base_frame_yy
+            + R_zx*six_r_base_frame_zy) +
+            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xy +
+            R_yy*six_r_base_frame_yy + R_zy*six_r_base_frame_zy) +
+            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xy +
+            R_yz*six_r_base_frame_yy + R_zz*six_r_base_frame_zy)
+        )
+        six_r_end_p1_r0_y = (
+        six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xz + R_yx*six_r_base_frame_yz
+            + R_zx*six_r_base_frame_zz) +
+            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xz +
+            R_yy*six_r_base_frame_yz + R_zy*six_r_base_frame_zz) +
+            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xz +
+            R_yz*six_r_base_frame_yz + R_zz*six_r_base_frame_zz)
+        )
+        six_r_end_p1_r0_z = (
+        six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xx + R_yx*six_r_base_frame_yx
+            + R_zx*six_r_base_frame_zx) +
+            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xx +
+            R_yy*six_r_base_frame_yx + R_zy*six_r_base_frame_zx) +
+            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xx +
+            R_yz*six_r_base_frame_yx + R_zz*six_r_base_frame_zx)
+        )
+        six_r_end_p1_r1_x = six_r_end_p1_r0_y*six_r_s_1 - six_r_c_1_t*six_r_end_p1_r0_x
+        six_r_end_p1_r1_y = -six_r_c_1_t*six_r_end_p1_r0_y - six_r_end_p1_r0_x*six_r_s_1
+        six_r_end_p1_r3_x = six_r_end_p1_r0_z*six_r_s_2 - six_r_c_2_t*six_r_end_p1_r1_y
+        six_r_end_p1_r3_y = -six_r_c_2_t*six_r_end_p1_r0_z - six_r_end_p1_r1_y*six_r_s_2
+        six_r_end_p1_r4_x = six_r_c_3*six_r_end_p1_r3_x + six_r_end_p1_r3_y*six_r_s_3
+        six_r_end_p1_r4_y = six_r_c_3*six_r_end_p1_r3_y - six_r_end_p1_r3_x*six_r_s_3
+        six_r_end_p1_r6_x = six_r_end_p1_r1_x*six_r_s_4 - six_r_c_4_t*six_r_end_p1_r4_y
+        six_r_end_p1_r6_y = -six_r_c_4_t*six_r_end_p1_r1_x - six_r_end_p1_r4_y*six_r_s_4
+        six_r_end_p1_r8_x = six_r_end_p1_r4_x*six_r_s_5 - six_r_c_5_t*six_r_end_p1_r6_y
+        six_r_end_p1_r8_y = -six_r_c_5_t*six_r_end_p1_r4_x - six_r_end_p1_r6_y*six_r_s_5
+        # (six_r-w_1) force part of reciprocal wrench 1
+        six_r_w_1_t_4 = six_r_e_1_r6_x*six_r_end_p1_r8_y - six_r_e_1_r6_y*six_r_end_p1_r8_x
+        six_r_w_1_t_5 = six_r_end_p1_r8_y*six_r_v_2_t - six_r_end_p1_r8_x*six_r_v_2_t_2
+        six_r_w_1_t_6 = six_r_e_1_r6_y*six_r_end_p1_r6_x + six_r_end_p1_r8_y*six_r_v_1_t
+        six_r_w_1_t_7 = six_r_end_p1_r6_x*six_r_v_2_t_2 - six_r_end_p1_r8_y*six_r_s_4
+        six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4
+        six_r_w_1_t_9 = six_r_size*six_r_w_1_t_6
+        six_r_w_1_t_10 = six_r_size*six_r_w_1_t_5
+        six_r_w_1_t_11 = six_r_size*six_r_w_1_t_7
+        six_r_w_1_t_12 = six_r_size*(-six_r_c_5_t*six_r_end_p1_r8_x - six_r_end_p1_r8_y*six_r_s_5)
+        six_r_w_1_t_13 = six_r_c_5_t*six_r_end_p1_r6_x*six_r_size
+        six_r_w_1_t_14 = six_r_end_p1_r8_y*six_r_size
+        six_r_w_1_t_15 = sqrt(six_r_size_t + six_r_w_1_t_14*six_r_w_1_t_14)
+        inv_six_r_w_1_t_69 = 1.0/six_r_w_1_t_15
+        six_r_w_1_t_16 = inv_six_r_w_1_t_69*six_r_platform_joint_offset_x
+        six_r_w_1_t_17 = inv_six_r_w_1_t_69*six_r_w_1_t_14
+        six_r_w_1_t_18 = six_r_w_1_t_13*six_r_w_1_t_17
+        six_r_w_1_t_19 = six_r_w_1_t_16*six_r_w_1_t_18
+        six_r_w_1_t_20 = six_r_w_1_t_13 - six_r_w_1_t_17*six_r_w_1_t_18
+        six_r_w_1_t_21 = six_r_v_1_y*six_r_w_1_t_16 - six_r_w_1_t_17*six_r_w_1_t_9
+        six_r_w_1_t_22 = six_r_v_1_y - six_r_w_1_t_16*six_r_w_1_t_21
+        six_r_w_1_t_23 = six_r_w_1_t_9 + six_r_w_1_t_17*six_r_w_1_t_21
+        six_r_w_1_t_24 = six_r_w_1_t_11*six_r_w_1_t_17
+        six_r_w_1_t_25 = six_r_v_2_y*six_r_w_1_t_16 - six_r_w_1_t_24
+        six_r_w_1_t_26 = six_r_v_2_y - six_r_w_1_t_16*six_r_w_1_t_25
+        six_r_w_1_t_27 = six_r_w_1_t_11 + six_r_w_1_t_17*six_r_w_1_t_25
+        six_r_w_1_t_28 = six_r_w_1_t_24 - six_r_v_3_y*six_r_w_1_t_16
+        six_r_w_1_t_29 = six_r_v_3_y + six_r_w_1_t_16*six_r_w_1_t_28
+        six_r_w_1_t_30 = six_r_w_1_t_11 - six_r_w_1_t_17*six_r_w_1_t_28
+        six_r_w_1_t_31 = (
+        sqrt(six_r_v_4_z*six_r_v_4_z + six_r_w_1_t_12*six_r_w_1_t_12 +
+            six_r_w_1_t_19*six_r_w_1_t_19 + six_r_w_1_t_20*six_r_w_1_t_20)
+        )
+        inv_six_r_w_1_t_101 = 1.0/six_r_w_1_t_31
+        six_r_w_1_t_32 = inv_six_r_w_1_t_101*six_r_w_1_t_19
+        six_r_w_1_t_33 = inv_six_r_w_1_t_101*six_r_v_4_z
+        six_r_w_1_t_34 = inv_six_r_w_1_t_101*six_r_w_1_t_12
+        six_r_w_1_t_35 = inv_six_r_w_1_t_101*six_r_w_1_t_20
+        six_r_w_1_t_36 = (
+        six_r_w_1_t_22*six_r_w_1_t_32 + six_r_w_1_t_23*six_r_w_1_t_35 +
+            six_r_w_1_t_34*six_r_w_1_t_8 - six_r_v_1_z*six_r_w_1_t_33
+        )
+        six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_36 - six_r_w_1_t_22
+        six_r_w_1_t_38 = six_r_v_1_z + six_r_w_1_t_33*six_r_w_1_t_36
+        six_r_w_1_t_39 = six_r_w_1_t_34*six_r_w_1_t_36 - six_r_w_1_t_8
+        six_r_w_1_t_40 = six_r_w_1_t_35*six_r_w_1_t_36 - six_r_w_1_t_23
+        six_r_w_1_t_41 = six_r_w_1_t_10*six_r_w_1_t_34
+        six_r_w_1_t_42 = (
+        six_r_w_1_t_41 + six_r_w_1_t_26*six_r_w_1_t_32 + six_r_w_1_t_27*six_r_w_1_t_35 -
+            six_r_v_2_z*six_r_w_1_t_33
+        )
+        six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_42 - six_r_w_1_t_26
+        six_r_w_1_t_44 = six_r_v_2_z + six_r_w_1_t_33*six_r_w_1_t_42
+        six_r_w_1_t_45 = six_r_w_1_t_34*six_r_w_1_t_42 - six_r_w_1_t_10
+        six_r_w_1_t_46 = six_r_w_1_t_35*six_r_w_1_t_42 - six_r_w_1_t_27
+        six_r_w_1_t_47 = (
+        six_r_w_1_t_41 + six_r_w_1_t_29*six_r_w_1_t_32 + six_r_w_1_t_30*six_r_w_1_t_35 -
+            six_r_v_3_z*six_r_w_1_t_33
+        )
+        six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_47 - six_r_w_1_t_29
+        six_r_w_1_t_49 = six_r_v_3_z + six_r_w_1_t_33*six_r_w_1_t_47
+        six_r_w_1_t_50 = six_r_w_1_t_34*six_r_w_1_t_47 - six_r_w_1_t_10
+        six_r_w_1_t_51 = six_r_w_1_t_35*six_r_w_1_t_47 - six_r_w_1_t_30
+        six_r_w_1_t_52 = (
+        sqrt(six_r_v_1_x*six_r_v_1_x + six_r_w_1_t_37*six_r_w_1_t_37 +
+            six_r_w_1_t_38*six_r_w_1_t_38 + six_r_w_1_t_39*six_r_w_1_t_39 +
+            six_r_w_1_t_40*six_r_w_1_t_40)
+        )
+        inv_six_r_w_1_t_150 = 1.0/six_r_w_1_t_52
+        six_r_w_1_t_53 = inv_six_r_w_1_t_150*six_r_v_1_x
+        six_r_w_1_t_54 = inv_six_r_w_1_t_150*six_r_w_1_t_37
+        six_r_w_1_t_55 = inv_six_r_w_1_t_150*six_r_w_1_t_38
+        six_r_w_1_t_56 = inv_six_r_w_1_t_150*six_r_w_1_t_39
+        six_r_w_1_t_57 = inv_six_r_w_1_t_150*six_r_w_1_t_40
+        six_r_w_1_t_58 = (
+        six_r_v_2_x*six_r_w_1_t_53 + six_r_w_1_t_43*six_r_w_1_t_54 + six_r_w_1_t_44*six_r_w_1_t_55
+            + six_r_w_1_t_45*six_r_w_1_t_56 + six_r_w_1_t_46*six_r_w_1_t_57
+        )
+        six_r_w_1_t_59 = six_r_v_2_x - six_r_w_1_t_53*six_r_w_1_t_58
+        six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_58
+        six_r_w_1_t_61 = six_r_w_1_t_44 - six_r_w_1_t_55*six_r_w_1_t_58
+        six_r_w_1_t_62 = six_r_w_1_t_45 - six_r_w_1_t_56*six_r_w_1_t_58
+        six_r_w_1_t_63 = six_r_w_1_t_46 - six_r_w_1_t_57*six_r_w_1_t_58
+        six_r_w_1_t_64 = (
+        six_r_v_3_x*six_r_w_1_t_53 + six_r_w_1_t_48*six_r_w_1_t_54 + six_r_w_1_t_49*six_r_w_1_t_55
+            + six_r_w_1_t_50*six_r_w_1_t_56 + six_r_w_1_t_51*six_r_w_1_t_57
+        )
+        six_r_w_1_t_65 = six_r_v_3_x - six_r_w_1_t_53*six_r_w_1_t_64
+        six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_64
+        six_r_w_1_t_67 = six_r_w_1_t_49 - six_r_w_1_t_55*six_r_w_1_t_64
+        six_r_w_1_t_68 = six_r_w_1_t_50 - six_r_w_1_t_56*six_r_w_1_t_64
+        six_r_w_1_t_69 = six_r_w_1_t_51 - six_r_w_1_t_57*six_r_w_1_t_64
+        six_r_w_1_t_70 = (
+        sqrt(six_r_w_1_t_59*six_r_w_1_t_59 + six_r_w_1_t_60*six_r_w_1_t_60 +
+            six_r_w_1_t_61*six_r_w_1_t_61 + six_r_w_1_t_62*six_r_w_1_t_62 +
+            six_r_w_1_t_63*six_r_w_1_t_63)
+        )
+        inv_six_r_w_1_t_194 = 1.0/six_r_w_1_t_70
+        six_r_w_1_t_71 = inv_six_r_w_1_t_194*six_r_w_1_t_59
+        six_r_w_1_t_72 = inv_six_r_w_1_t_194*six_r_w_1_t_60
+        six_r_w_1_t_73 = inv_six_r_w_1_t_194*six_r_w_1_t_61
+        six_r_w_1_t_74 = inv_six_r_w_1_t_194*six_r_w_1_t_62
+        six_r_w_1_t_75 = inv_six_r_w_1_t_194*six_r_w_1_t_63
+        six_r_w_1_t_76 = (
+        six_r_w_1_t_65*six_r_w_1_t_71 + six_r_w_1_t_66*six_r_w_1_t_72 +
+            six_r_w_1_t_67*six_r_w_1_t_73 + six_r_w_1_t_68*six_r_w_1_t_74 +
+            six_r_w_1_t_69*six_r_w_1_t_75
+        )
+        six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_76
+        six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_76
+        six_r_w_1_t_79 = six_r_w_1_t_67 - six_r_w_1_t_73*six_r_w_1_t_76
+        six_r_w_1_t_80 = six_r_w_1_t_68 - six_r_w_1_t_74*six_r_w_1_t_76
+        six_r_w_1_t_81 = six_r_w_1_t_69 - six_r_w_1_t_75*six_r_w_1_t_76
+        six_r_w_1_t_82 = (
+        sqrt(six_r_w_1_t_77*six_r_w_1_t_77 + six_r_w_1_t_78*six_r_w_1_t_78 +
+            six_r_w_1_t_79*six_r_w_1_t_79 + six_r_w_1_t_80*six_r_w_1_t_80 +
+            six_r_w_1_t_81*six_r_w_1_t_81)
+        )
+        inv_six_r_w_1_t_222 = 1.0/six_r_w_1_t_82
+        six_r_w_1_t_83 = inv_six_r_w_1_t_222*six_r_w_1_t_77
+        six_r_w_1_t_84 = inv_six_r_w_1_t_222*six_r_w_1_t_78
+        six_r_w_1_t_85 = inv_six_r_w_1_t_222*six_r_w_1_t_79
+        six_r_w_1_t_86 = inv_six_r_w_1_t_222*six_r_w_1_t_80
+        six_r_w_1_t_87 = inv_six_r_w_1_t_222*six_r_w_1_t_81
+        # (six_r-w_2) force part of reciprocal wrench 2
+        six_r_w_2_t = inv_six_r_w_1_t_194*inv_six_r_w_1_t_222*six_r_w_1_t_76
+        six_r_w_2_t_2 = inv_six_r_w_1_t_194*six_r_w_1_t_71 - six_r_w_1_t_83*six_r_w_2_t
+        six_r_w_2_t_3 = inv_six_r_w_1_t_194*six_r_w_1_t_72 - six_r_w_1_t_84*six_r_w_2_t
+        six_r_w_2_t_4 = six_r_w_1_t_85*six_r_w_2_t - inv_six_r_w_1_t_194*six_r_w_1_t_73
+        six_r_w_2_t_5 = (
+        six_r_size*(inv_six_r_w_1_t_194*six_r_w_1_t_74 - six_r_w_1_t_86*six_r_w_2_t)
+        )
+        six_r_w_2_t_6 = (
+        six_r_size*(inv_six_r_w_1_t_194*six_r_w_1_t_75 - six_r_w_1_t_87*six_r_w_2_t)
+        )
+        # (six_r-o_2) moment part of reciprocal wrench 2
+        six_r_o_2_t = six_r_end_p1_r8_y*six_r_w_2_t_5
+        six_r_o_2_t_2 = six_r_end_p1_r8_y*six_r_w_2_t_6
+        six_r_o_2_y = six_r_end_p1_r8_x*six_r_w_2_t_5 - six_r_end_p1_r6_x*six_r_w_2_t_6
+        # (M_ta) coupling block of M
+        six_r_q_in_base_x = (
+        R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
+        )
+        six_r_q_in_base_y = (
+        R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y + R_yz*six_r_platform_point_z
+        )
+        six_r_q_in_base_z = (
+        R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y + R_zz*six_r_platform_point_z
+        )
+        # (six_r-S_dot) velocity of the connection point
+        six_r_S_dot_t = omega_y*six_r_q_in_base_z - omega_z*six_r_q_in_base_y
+        six_r_S_dot_t_2 = omega_z*six_r_q_in_base_x - omega_x*six_r_q_in_base_z
+        six_r_S_dot_t_3 = omega_x*six_r_q_in_base_y - omega_y*six_r_q_in_base_x
+        six_r_S_dot_x = six_r_S_dot_t + t_dot_x
+        six_r_S_dot_y = six_r_S_dot_t_2 + t_dot_y
+        six_r_S_dot_z = six_r_S_dot_t_3 + t_dot_z
+        six_r_S_dot_tip_x = (
+        axis_x_six_r_axes5_x*six_r_S_dot_x + axis_x_six_r_axes5_y*six_r_S_dot_y +
+            axis_x_six_r_axes5_z*six_r_S_dot_z
+        )
+        six_r_S_dot_tip_y = (
+        axis_y_six_r_axes5_in_base_x*six_r_S_dot_x + axis_y_six_r_axes5_in_base_y*six_r_S_dot_y +
+            axis_y_six_r_axes5_in_base_z*six_r_S_dot_z
+        )
+        six_r_S_dot_tip_z = (
+        axis_z_six_r_axes5_in_base_x*six_r_S_dot_x + axis_z_six_r_axes5_in_base_y*six_r_S_dot_y +
+            axis_z_six_r_axes5_in_base_z*six_r_S_dot_z
+        )
+        # (six_r-bias) acceleration of the connection point at zero joint accelerations
+        six_r_bias_t = six_r_joint2_offset_x*six_r_s_2
+        six_r_bias_t_2 = six_r_c_2_t*six_r_joint2_offset_x
+        six_r_d_2_r2_x = six_r_bias_t*six_r_c_3 - six_r_bias_t_2*six_r_s_3
+        six_r_d_2_r2_y = -six_r_bias_t*six_r_s_3 - six_r_bias_t_2*six_r_c_3
+        six_r_bias_t_3 = six_r_c_4_t*six_r_d_2_r2_y
+        six_r_bias_t_4 = six_r_d_2_r2_y*six_r_s_4
+        six_r_d_2_r6_x = six_r_bias_t_4*six_r_c_5_t + six_r_d_2_r2_x*six_r_s_5
+        six_r_d_2_r6_y = six_r_bias_t_4*six_r_s_5 - six_r_c_5_t*six_r_d_2_r2_x
+        six_r_bias_t_5 = six_r_c_3*six_r_joint3_offset_x
+        six_r_bias_t_6 = six_r_joint3_offset_x*six_r_s_3
+        six_r_bias_t_7 = six_r_bias_t_6*six_r_c_4_t
+        six_r_bias_t_8 = six_r_bias_t_6*six_r_s_4
+        six_r_d_3_r4_x = six_r_bias_t_5*six_r_s_5 - six_r_bias_t_8*six_r_c_5_t
+        six_r_d_3_r4_y = -six_r_bias_t_5*six_r_c_5_t - six_r_bias_t_8*six_r_s_5
+        six_r_bias_t_9 = six_r_joint4_offset_x*six_r_s_5
+        six_r_bias_t_10 = six_r_c_5_t*six_r_joint4_offset_x
+        six_r_bias_t_11 = six_r_joint5_offset_x*six_r_s_5
+        six_r_bias_t_12 = six_r_c_5_t*six_r_joint5_offset_x
+        # (six_r-nd_m1) rate of moment direction 1
+        six_r_omega_tip_x = (
+        axis_x_six_r_axes5_x*omega_x + axis_x_six_r_axes5_y*omega_y + axis_x_six_r_axes5_z*omega_z
+        )
+        six_r_omega_tip_y = (
+        axis_y_six_r_axes5_in_base_x*omega_x + axis_y_six_r_axes5_in_base_y*omega_y +
+            axis_y_six_r_axes5_in_base_z*omega_z
+        )
+        six_r_omega_tip_z = (
+        axis_z_six_r_axes5_in_base_x*omega_x + axis_z_six_r_axes5_in_base_y*omega_y +
+            axis_z_six_r_axes5_in_base_z*omega_z
+        )
+        six_r_nd_m1_t = six_r_end_p1_r6_x*six_r_omega_tip_y - six_r_end_p1_r8_y*six_r_omega_tip_z
+        six_r_nd_m1_t_2 = (
+        six_r_end_p1_r8_x*six_r_omega_tip_z - six_r_end_p1_r6_x*six_r_omega_tip_x
+        )
+        six_r_nd_m1_t_3 = (
+        six_r_end_p1_r8_y*six_r_omega_tip_x - six_r_end_p1_r8_x*six_r_omega_tip_y
+        )
+        # (six_r-acc_4_o) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+        six_r_g_r1_x = six_r_g_r0_y*six_r_s_1 - six_r_c_1_t*six_r_g_r0_x
+        six_r_g_r1_y = -six_r_c_1_t*six_r_g_r0_y - six_r_g_r0_x*six_r_s_1
+        six_r_g_r3_x = six_r_g_r0_z*six_r_s_2 - six_r_c_2_t*six_r_g_r1_y
+        six_r_g_r3_y = -six_r_c_2_t*six_r_g_r0_z - six_r_g_r1_y*six_r_s_2
+        six_r_g_r4_x = six_r_c_3*six_r_g_r3_x + six_r_g_r3_y*six_r_s_3
+        six_r_g_r4_y = six_r_c_3*six_r_g_r3_y - six_r_g_r3_x*six_r_s_3
+        # (six_r-w_2) force part of reciprocal wrench 2
+        six_r_w_2_in_base_x = (
+        axis_x_six_r_axes5_x*six_r_w_2_t_2 - axis_y_six_r_axes5_in_base_x*six_r_w_2_t_3 -
+            axis_z_six_r_axes5_in_base_x*six_r_w_2_t_4
+        )
+        six_r_w_2_in_base_y = (
+        axis_x_six_r_axes5_y*six_r_w_2_t_2 - axis_y_six_r_axes5_in_base_y*six_r_w_2_t_3 -
+            axis_z_six_r_axes5_in_base_y*six_r_w_2_t_4
+        )
+        six_r_w_2_in_base_z = (
+        axis_x_six_r_axes5_z*six_r_w_2_t_2 - axis_y_six_r_axes5_in_base_z*six_r_w_2_t_3 -
+            axis_z_six_r_axes5_in_base_z*six_r_w_2_t_4
+        )
+        # (six_r-qd_1) rate of joint 1
+        six_r_qd_1_t = six_r_nd_m1_t_3*six_r_size
+        six_r_qd_1_t_2 = six_r_nd_m1_t*six_r_size
+        six_r_qd_1_t_3 = (
+        inv_six_r_w_1_t_222*(six_r_S_dot_tip_y*six_r_w_1_t_84 + six_r_qd_1_t*six_r_w_1_t_86 +
+            six_r_qd_1_t_2*six_r_w_1_t_87 - six_r_S_dot_tip_x*six_r_w_1_t_83 -
+            six_r_S_dot_tip_z*six_r_w_1_t_85)
+        )
+        six_r_qd_1_t_4 = (
+        inv_six_r_w_1_t_194*(six_r_S_dot_tip_y*six_r_w_1_t_72 + six_r_qd_1_t*six_r_w_1_t_74 +
+            six_r_qd_1_t_2*six_r_w_1_t_75 - six_r_S_dot_tip_x*six_r_w_1_t_71 -
+            six_r_S_dot_tip_z*six_r_w_1_t_73 - six_r_qd_1_t_3*six_r_w_1_t_76)
+        )
+        six_r_qd_1_t_5 = (
+        inv_six_r_w_1_t_150*(six_r_S_dot_tip_x*six_r_w_1_t_53 + six_r_S_dot_tip_z*six_r_w_1_t_55 +
+            six_r_qd_1_t_3*six_r_w_1_t_64 + six_r_qd_1_t_4*six_r_w_1_t_58 -
+            six_r_S_dot_tip_y*six_r_w_1_t_54 - six_r_qd_1_t*six_r_w_1_t_56 -
+            six_r_qd_1_t_2*six_r_w_1_t_57)
+        )
+        six_r_qd_1_t_6 = (
+        inv_six_r_w_1_t_101*(six_r_S_dot_tip_y*six_r_w_1_t_32 + six_r_qd_1_t*six_r_w_1_t_34 +
+            six_r_qd_1_t_2*six_r_w_1_t_35 + six_r_qd_1_t_3*six_r_w_1_t_47 +
+            six_r_qd_1_t_4*six_r_w_1_t_42 - six_r_S_dot_tip_z*six_r_w_1_t_33 -
+            six_r_qd_1_t_5*six_r_w_1_t_36)
+        )
+        six_r_qd_1_t_7 = (
+        inv_six_r_w_1_t_69*(six_r_qd_1_t_2*six_r_w_1_t_17 + six_r_qd_1_t_3*six_r_w_1_t_28 +
+            six_r_qd_1_t_5*six_r_w_1_t_21 - six_r_S_dot_tip_y*six_r_w_1_t_16 -
+            six_r_qd_1_t_4*six_r_w_1_t_25 - six_r_qd_1_t_6*six_r_w_1_t_18)
+        )
+        # (six_r-a_p) acceleration of the connection point without its centripetal part
+        six_r_a_p_x = t_ddot_x + alpha_y*six_r_q_in_base_z - alpha_z*six_r_q_in_base_y
+        six_r_a_p_y = t_ddot_y + alpha_z*six_r_q_in_base_x - alpha_x*six_r_q_in_base_z
+        six_r_a_p_z = t_ddot_z + alpha_x*six_r_q_in_base_y - alpha_y*six_r_q_in_base_x
+        # (six_r-S_ddot) acceleration of the connection point
+        six_r_S_ddot_x = six_r_a_p_x + omega_y*six_r_S_dot_t_3 - omega_z*six_r_S_dot_t_2
+        six_r_S_ddot_y = six_r_a_p_y + omega_z*six_r_S_dot_t - omega_x*six_r_S_dot_t_3
+        six_r_S_ddot_z = six_r_a_p_z + omega_x*six_r_S_dot_t_2 - omega_y*six_r_S_dot_t
+        # (six_r-omega_1) angular velocity of link 1
+        six_r_omega_1_t = six_r_qd_1_t_5*six_r_s_2
+        six_r_omega_1_t_2 = six_r_c_2_t*six_r_qd_1_t_5
+        # (six_r-omega_2) angular velocity of link 2
+        six_r_omega_2_r0_x = six_r_c_3*six_r_omega_1_t - six_r_omega_1_t_2*six_r_s_3
+        six_r_omega_2_r0_y = -six_r_c_3*six_r_omega_1_t_2 - six_r_omega_1_t*six_r_s_3
+        # (six_r-omega_3) angular velocity of link 3
+        six_r_omega_3_z = -six_r_qd_1_t_3 - six_r_qd_1_t_4
+        six_r_omega_3_r1_x = six_r_omega_3_z*six_r_s_4 - six_r_c_4_t*six_r_omega_2_r0_y
+        six_r_omega_3_r1_y = -six_r_c_4_t*six_r_omega_3_z - six_r_omega_2_r0_y*six_r_s_4
+        # (six_r-omega_4) angular velocity of link 4
+        six_r_omega_4_z = six_r_omega_2_r0_x - six_r_qd_1_t_6
+        six_r_omega_4_t = six_r_c_5_t*six_r_omega_3_r1_y
+        six_r_omega_4_r1_x = six_r_omega_4_z*six_r_s_5 - six_r_omega_4_t
+        six_r_omega_4_t_2 = six_r_omega_3_r1_y*six_r_s_5
+        six_r_omega_4_r1_y = -six_r_omega_4_t_2 - six_r_c_5_t*six_r_omega_4_z
+        # (six_r-omega_5) angular velocity of link 5
+        six_r_omega_5_z = six_r_omega_3_r1_x - six_r_qd_1_t_7
+        # (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        six_r_zeta_2_x = six_r_omega_1_t_2*six_r_qd_1_t_4
+        six_r_zeta_2_y = six_r_omega_1_t*six_r_qd_1_t_4
+        # (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        six_r_zeta_3_x = six_r_omega_2_r0_y*six_r_qd_1_t_3
+        six_r_zeta_3_y = six_r_omega_2_r0_x*six_r_qd_1_t_3
+        # (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        six_r_zeta_2_r0_x = six_r_c_3*six_r_zeta_2_x + six_r_s_3*six_r_zeta_2_y
+        six_r_zeta_2_r0_y = six_r_c_3*six_r_zeta_2_y - six_r_s_3*six_r_zeta_2_x
+        # (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations
+        six_r_beta_3_x = six_r_zeta_2_r0_x - six_r_zeta_3_x
+        six_r_beta_3_y = six_r_zeta_2_r0_y + six_r_zeta_3_y
+        # (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4
+        six_r_zeta_4_x = six_r_omega_3_r1_y*six_r_qd_1_t_6
+        six_r_zeta_4_y = six_r_omega_3_r1_x*six_r_qd_1_t_6
+        # (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations
+        six_r_beta_3_t = six_r_beta_3_y*six_r_c_4_t
+        six_r_beta_3_t_2 = six_r_beta_3_y*six_r_s_4
+        # (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations
+        six_r_beta_4_x = -six_r_beta_3_t - six_r_zeta_4_x
+        six_r_beta_4_y = six_r_zeta_4_y - six_r_beta_3_t_2
+        # (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5
+        six_r_zeta_5_x = six_r_omega_4_r1_y*six_r_qd_1_t_7
+        six_r_zeta_5_y = six_r_omega_4_r1_x*six_r_qd_1_t_7
+        # (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations
+        six_r_beta_4_t = six_r_beta_3_x*six_r_s_5
+        six_r_beta_4_r1_x = six_r_beta_4_t - six_r_beta_4_y*six_r_c_5_t
+        six_r_beta_4_t_2 = six_r_beta_3_x*six_r_c_5_t
+        six_r_beta_4_r1_y = -six_r_beta_4_t_2 - six_r_beta_4_y*six_r_s_5
+        # (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations
+        six_r_beta_5_x = six_r_beta_4_r1_x - six_r_zeta_5_x
+        six_r_beta_5_y = six_r_beta_4_r1_y + six_r_zeta_5_y
+        # (six_r-W_2) centripetal tensor of link 2
+        six_r_W_2_t = six_r_omega_1_t*six_r_omega_1_t
+        six_r_W_2_t_2 = six_r_omega_1_t_2*six_r_omega_1_t_2
+        six_r_W_2_t_3 = six_r_qd_1_t_4*six_r_qd_1_t_4
+        six_r_W_2_xy = six_r_omega_1_t*six_r_omega_1_t_2
+        # (six_r-W_3) centripetal tensor of link 3
+        six_r_W_3_t = six_r_omega_2_r0_x*six_r_omega_2_r0_x
+        six_r_W_3_t_2 = six_r_omega_2_r0_y*six_r_omega_2_r0_y
+        six_r_W_3_t_3 = six_r_omega_3_z*six_r_omega_3_z
+        six_r_W_3_xx = six_r_W_3_t_2 + six_r_W_3_t_3
+        six_r_W_3_xy = six_r_omega_2_r0_x*six_r_omega_2_r0_y
+        six_r_W_3_xz = six_r_omega_2_r0_x*six_r_omega_3_z
+        six_r_W_3_yz = six_r_omega_2_r0_y*six_r_omega_3_z
+        # (six_r-W_4) centripetal tensor of link 4
+        six_r_W_4_t = six_r_omega_3_r1_x*six_r_omega_3_r1_x
+        six_r_W_4_t_2 = six_r_omega_3_r1_y*six_r_omega_3_r1_y
+        six_r_W_4_t_3 = six_r_omega_4_z*six_r_omega_4_z
+        six_r_W_4_xy = six_r_omega_3_r1_x*six_r_omega_3_r1_y
+        six_r_W_4_xz = six_r_omega_3_r1_x*six_r_omega_4_z
+        six_r_W_4_yz = six_r_omega_3_r1_y*six_r_omega_4_z
+        # (six_r-W_5) centripetal tensor of link 5
+        six_r_W_5_t = six_r_omega_4_r1_x*six_r_omega_4_r1_x
+        six_r_W_5_t_2 = six_r_omega_4_r1_y*six_r_omega_4_r1_y
+        six_r_W_5_t_3 = six_r_omega_5_z*six_r_omega_5_z
+        six_r_W_5_xx = six_r_W_5_t_2 + six_r_W_5_t_3
+        six_r_W_5_xy = six_r_omega_4_r1_x*six_r_omega_4_r1_y
+        six_r_W_5_xz = six_r_omega_4_r1_x*six_r_omega_5_z
+        six_r_W_5_yz = six_r_omega_4_r1_y*six_r_omega_5_z
+        # (six_r-omega_1) angular velocity of link 1
+        six_r_omega_1_x = six_r_e_1_r6_x*six_r_qd_1_t_5
+        six_r_omega_1_y = six_r_e_1_r6_y*six_r_qd_1_t_5
+        six_r_omega_1_z = six_r_qd_1_t_5*six_r_v_1_t
+        # (six_r-W_1) centripetal tensor of link 1
+        six_r_W_1_t = six_r_omega_1_x*six_r_omega_1_x
+        six_r_W_1_t_2 = six_r_omega_1_y*six_r_omega_1_y
+        six_r_W_1_t_3 = six_r_omega_1_z*six_r_omega_1_z
+        six_r_W_1_xy = six_r_omega_1_x*six_r_omega_1_y
+        six_r_W_1_xz = six_r_omega_1_x*six_r_omega_1_z
+        six_r_W_1_yz = six_r_omega_1_y*six_r_omega_1_z
+        # (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        six_r_zeta_2_t = six_r_c_4_t*six_r_zeta_2_r0_y
+        six_r_zeta_2_t_2 = six_r_s_4*six_r_zeta_2_r0_y
+        six_r_zeta_2_r4_x = six_r_c_5_t*six_r_zeta_2_t_2 + six_r_s_5*six_r_zeta_2_r0_x
+        six_r_zeta_2_r4_y = six_r_s_5*six_r_zeta_2_t_2 - six_r_c_5_t*six_r_zeta_2_r0_x
+        # (six_r-omega_2) angular velocity of link 2
+        six_r_omega_2_x = six_r_omega_1_x - six_r_qd_1_t_4*six_r_v_2_t
+        six_r_omega_2_y = six_r_omega_1_y - six_r_qd_1_t_4*six_r_v_2_t_2
+        six_r_omega_2_z = -six_r_omega_1_z - six_r_qd_1_t_4*six_r_s_4
+        # (six_r-W_2) centripetal tensor of link 2
+        six_r_W_2_t_4 = six_r_omega_2_x*six_r_omega_2_x
+        six_r_W_2_t_5 = six_r_omega_2_y*six_r_omega_2_y
+        six_r_W_2_t_6 = six_r_omega_2_z*six_r_omega_2_z
+        six_r_W_2_xy_2 = six_r_omega_2_x*six_r_omega_2_y
+        six_r_W_2_xz = six_r_omega_2_x*six_r_omega_2_z
+        six_r_W_2_yz = six_r_omega_2_y*six_r_omega_2_z
+        # (six_r-omega_3) angular velocity of link 3
+        six_r_omega_3_r3_x = six_r_omega_2_r0_x*six_r_s_5 - six_r_omega_4_t
+        six_r_omega_3_r3_y = -six_r_omega_4_t_2 - six_r_c_5_t*six_r_omega_2_r0_x
+        # (six_r-W_3) centripetal tensor of link 3
+        six_r_W_3_xy_2 = six_r_omega_3_r3_x*six_r_omega_3_r3_y
+        # (six_r-bias) acceleration of the connection point at zero joint accelerations
+        six_r_bias_t_13 = six_r_W_5_xy + six_r_beta_4_x
+        six_r_bias_x = (
+        six_r_W_1_xy*six_r_d_2_r6_y + six_r_W_1_xz*six_r_bias_t_3 + six_r_bias_t_7*(six_r_W_2_xz +
+            six_r_zeta_2_r4_y) + six_r_d_3_r4_y*(six_r_W_2_xy_2 + six_r_zeta_2_t) -
+            six_r_W_5_xx*six_r_platform_joint_offset_x - six_r_bias_t_10*(six_r_W_3_xy_2 +
+            six_r_beta_3_t) - six_r_bias_t_11*(six_r_W_4_t + six_r_W_5_t_2) -
+            six_r_bias_t_12*(six_r_W_5_xy - six_r_beta_4_x) - six_r_bias_t_9*(six_r_W_4_t +
+            six_r_omega_3_r3_y*six_r_omega_3_r3_y) - six_r_d_2_r6_x*(six_r_W_1_t_2 +
+            six_r_W_1_t_3) - six_r_d_3_r4_x*(six_r_W_2_t_5 + six_r_W_2_t_6)
+        )
+        six_r_bias_y = (
+        six_r_W_1_xy*six_r_d_2_r6_x + six_r_W_1_yz*six_r_bias_t_3 + six_r_bias_t_10*(six_r_W_4_t +
+            six_r_omega_3_r3_x*six_r_omega_3_r3_x) + six_r_bias_t_11*six_r_bias_t_13 +
+            six_r_bias_t_12*(six_r_W_4_t + six_r_W_5_t) +
+            six_r_bias_t_13*six_r_platform_joint_offset_x + six_r_bias_t_7*(six_r_W_2_yz -
+            six_r_zeta_2_r4_x) + six_r_bias_t_9*(six_r_W_3_xy_2 - six_r_beta_3_t) +
+            six_r_d_3_r4_x*(six_r_W_2_xy_2 - six_r_zeta_2_t) - six_r_d_2_r6_y*(six_r_W_1_t +
+            six_r_W_1_t_3) - six_r_d_3_r4_y*(six_r_W_2_t_4 + six_r_W_2_t_6)
+        )
+        six_r_bias_z = (
+        six_r_bias_t_11*(six_r_omega_3_r1_x*six_r_omega_4_r1_x - six_r_beta_4_r1_y) +
+            six_r_bias_t_3*(six_r_W_1_t + six_r_W_1_t_2) + six_r_bias_t_9*(six_r_beta_4_t_2 +
+            six_r_omega_3_r1_x*six_r_omega_3_r3_x - six_r_beta_3_t_2*six_r_s_5) +
+            six_r_d_3_r4_x*(six_r_W_2_xz - six_r_zeta_2_r4_y) + six_r_d_3_r4_y*(six_r_W_2_yz +
+            six_r_zeta_2_r4_x) + six_r_platform_joint_offset_x*(six_r_W_5_xz - six_r_beta_5_y) -
+            six_r_W_1_xz*six_r_d_2_r6_x - six_r_W_1_yz*six_r_d_2_r6_y -
+            six_r_bias_t_10*(six_r_beta_4_t + six_r_beta_3_t_2*six_r_c_5_t +
+            six_r_omega_3_r1_x*six_r_omega_3_r3_y) - six_r_bias_t_12*(six_r_beta_4_r1_x +
+            six_r_omega_3_r1_x*six_r_omega_4_r1_y) - six_r_bias_t_7*(six_r_W_2_t_4 +
+            six_r_W_2_t_5)
+        )
+        # (six_r-S_ddot) acceleration of the connection point
+        six_r_S_ddot_tip_x = (
+        axis_x_six_r_axes5_x*six_r_S_ddot_x + axis_x_six_r_axes5_y*six_r_S_ddot_y +
+            axis_x_six_r_axes5_z*six_r_S_ddot_z
+        )
+        six_r_S_ddot_tip_y = (
+        axis_y_six_r_axes5_in_base_x*six_r_S_ddot_x + axis_y_six_r_axes5_in_base_y*six_r_S_ddot_y
+            + axis_y_six_r_axes5_in_base_z*six_r_S_ddot_z
+        )
+        six_r_S_ddot_tip_z = (
+        axis_z_six_r_axes5_in_base_x*six_r_S_ddot_x + axis_z_six_r_axes5_in_base_y*six_r_S_ddot_y
+            + axis_z_six_r_axes5_in_base_z*six_r_S_ddot_z
+        )
+        # (six_r-rel) acceleration of the connection point left to the joint accelerations
+        six_r_rel_x = six_r_S_ddot_tip_x - six_r_bias_x
+        six_r_rel_y = six_r_S_ddot_tip_y - six_r_bias_y
+        six_r_rel_z = six_r_S_ddot_tip_z - six_r_bias_z
+        # (six_r-nd_m1) rate of moment direction 1
+        six_r_nd_m1_t_4 = six_r_end_p1_r8_y*six_r_omega_4_r1_y
+        six_r_nd_m1_x = -six_r_nd_m1_t_2 - six_r_end_p1_r6_x*six_r_omega_4_r1_x
+        six_r_nd_m1_y = six_r_nd_m1_t - six_r_end_p1_r6_x*six_r_omega_4_r1_y
+        # (six_r-nu_1) bias of the angular acceleration along moment direction 1
+        six_r_nu_1_t = six_r_beta_5_x*six_r_end_p1_r8_y - six_r_beta_5_y*six_r_end_p1_r8_x
+        six_r_nu_1_t_2 = six_r_omega_4_r1_x - six_r_omega_tip_x
+        six_r_nu_1_t_3 = six_r_omega_4_r1_y - six_r_omega_tip_y
+        six_r_nu_1_t_4 = six_r_omega_5_z - six_r_omega_tip_z
+        six_r_nu_1_t_5 = (
+        six_r_nd_m1_x*six_r_nu_1_t_2 + six_r_nd_m1_y*six_r_nu_1_t_3 +
+            six_r_nu_1_t_4*(six_r_nd_m1_t_4 + six_r_end_p1_r8_x*six_r_omega_4_r1_x)
+        )
+        six_r_nu_1 = six_r_nu_1_t - six_r_nu_1_t_5
+        # (six_r-etad_1) acceleration with which the joints turn along moment direction 1
+        six_r_alpha_tip_y = (
+        alpha_x*axis_y_six_r_axes5_in_base_x + alpha_y*axis_y_six_r_axes5_in_base_y +
+            alpha_z*axis_y_six_r_axes5_in_base_z
+        )
+        six_r_etad_1_t = (
+        six_r_end_p1_r8_y*(alpha_x*axis_x_six_r_axes5_x + alpha_y*axis_x_six_r_axes5_y +
+            alpha_z*axis_x_six_r_axes5_z) - six_r_alpha_tip_y*six_r_end_p1_r8_x
+        )
+        six_r_etad_1 = six_r_nu_1 - six_r_etad_1_t
+        # (six_r-nd_m2) rate of moment direction 2
+        six_r_nd_m2_y = -six_r_nd_m1_t_3 - six_r_end_p1_r8_x*six_r_omega_4_r1_y
+        six_r_nd_m2_z = six_r_nd_m1_t_2 - six_r_end_p1_r8_x*six_r_omega_5_z
+        # (six_r-nu_2) bias of the angular acceleration along moment direction 2
+        six_r_nu_2_t = six_r_beta_5_y*six_r_end_p1_r6_x - six_r_beta_4_x*six_r_end_p1_r8_y
+        six_r_nu_2_t_2 = (
+        six_r_nd_m2_y*six_r_nu_1_t_3 + six_r_nd_m2_z*six_r_nu_1_t_4 +
+            six_r_nu_1_t_2*(six_r_nd_m1_t_4 + six_r_end_p1_r6_x*six_r_omega_5_z)
+        )
+        six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2
+        # (six_r-etad_2) acceleration with which the joints turn along moment direction 2
+        six_r_etad_2_t = (
+        six_r_alpha_tip_y*six_r_end_p1_r6_x -
+            six_r_end_p1_r8_y*(alpha_x*axis_z_six_r_axes5_in_base_x +
+            alpha_y*axis_z_six_r_axes5_in_base_y + alpha_z*axis_z_six_r_axes5_in_base_z)
+        )
+        six_r_etad_2 = six_r_nu_2 - six_r_etad_2_t
+        # (six_r-qdd_1) acceleration of joint 1
+        six_r_qdd_1_t = six_r_etad_1*six_r_size
+        six_r_qdd_1_t_2 = six_r_etad_2*six_r_size
+        six_r_qdd_1_t_3 = (
+        inv_six_r_w_1_t_222*(six_r_qdd_1_t*six_r_w_1_t_86 + six_r_qdd_1_t_2*six_r_w_1_t_87 +
+            six_r_rel_x*six_r_w_1_t_83 + six_r_rel_z*six_r_w_1_t_85 - six_r_rel_y*six_r_w_1_t_84)
+        )
+        six_r_qdd_1_t_4 = (
+        inv_six_r_w_1_t_194*(six_r_qdd_1_t*six_r_w_1_t_74 + six_r_qdd_1_t_2*six_r_w_1_t_75 +
+            six_r_rel_x*six_r_w_1_t_71 + six_r_rel_z*six_r_w_1_t_73 -
+            six_r_qdd_1_t_3*six_r_w_1_t_76 - six_r_rel_y*six_r_w_1_t_72)
+        )
+        six_r_qdd_1_t_5 = (
+        inv_six_r_w_1_t_150*(six_r_qdd_1_t_3*six_r_w_1_t_64 + six_r_qdd_1_t_4*six_r_w_1_t_58 +
+            six_r_rel_y*six_r_w_1_t_54 - six_r_qdd_1_t*six_r_w_1_t_56 -
+            six_r_qdd_1_t_2*six_r_w_1_t_57 - six_r_rel_x*six_r_w_1_t_53 -
+            six_r_rel_z*six_r_w_1_t_55)
+        )
+        six_r_qdd_1_t_6 = (
+        inv_six_r_w_1_t_101*(six_r_qdd_1_t*six_r_w_1_t_34 + six_r_qdd_1_t_2*six_r_w_1_t_35 +
+            six_r_qdd_1_t_3*six_r_w_1_t_47 + six_r_qdd_1_t_4*six_r_w_1_t_42 +
+            six_r_rel_z*six_r_w_1_t_33 - six_r_qdd_1_t_5*six_r_w_1_t_36 -
+            six_r_rel_y*six_r_w_1_t_32)
+        )
+        # (six_r-acc_5) acceleration of the reference point of link 5, less gravity
+        six_r_acc_5_x = (
+        six_r_S_ddot_tip_x - axis_x_six_r_axes5_x*gravity_x - axis_x_six_r_axes5_y*gravity_y -
+            axis_x_six_r_axes5_z*gravity_z
+        )
+        six_r_acc_5_y = (
+        six_r_S_ddot_tip_y - axis_y_six_r_axes5_in_base_x*gravity_x -
+            axis_y_six_r_axes5_in_base_y*gravity_y - axis_y_six_r_axes5_in_base_z*gravity_z
+        )
+        six_r_acc_5_z = (
+        six_r_S_ddot_tip_z - axis_z_six_r_axes5_in_base_x*gravity_x -
+            axis_z_six_r_axes5_in_base_y*gravity_y - axis_z_six_r_axes5_in_base_z*gravity_z
+        )
+        # (six_r-alpha_1) angular acceleration of link 1
+        six_r_alpha_1_t = six_r_qdd_1_t_5*six_r_s_2
+        six_r_alpha_1_t_2 = six_r_c_2_t*six_r_qdd_1_t_5
+        # (six_r-alpha_2) angular acceleration of link 2
+        six_r_alpha_2_x = six_r_zeta_2_x - six_r_alpha_1_t
+        six_r_alpha_2_y = six_r_alpha_1_t_2 + six_r_zeta_2_y
+        # (six_r-alpha_3) angular acceleration of link 3
+        six_r_alpha_3_x = six_r_alpha_2_x*six_r_c_3 + six_r_alpha_2_y*six_r_s_3 - six_r_zeta_3_x
+        six_r_alpha_3_y = six_r_zeta_3_y + six_r_alpha_2_y*six_r_c_3 - six_r_alpha_2_x*six_r_s_3
+        six_r_alpha_3_z = six_r_qdd_1_t_3 + six_r_qdd_1_t_4
+        # (six_r-alpha_4) angular acceleration of link 4
+        six_r_alpha_4_x = six_r_alpha_3_z*six_r_s_4 - six_r_zeta_4_x - six_r_alpha_3_y*six_r_c_4_t
+        six_r_alpha_4_y = six_r_zeta_4_y - six_r_alpha_3_y*six_r_s_4 - six_r_alpha_3_z*six_r_c_4_t
+        six_r_alpha_4_z = six_r_alpha_3_x + six_r_qdd_1_t_6
+        # (six_r-alpha_5) angular acceleration of link 5
+        six_r_alpha_5_x = six_r_alpha_4_z*six_r_s_5 - six_r_zeta_5_x - six_r_alpha_4_y*six_r_c_5_t
+        six_r_alpha_5_y = six_r_zeta_5_y - six_r_alpha_4_y*six_r_s_5 - six_r_alpha_4_z*six_r_c_5_t
+        six_r_alpha_5_z = (
+        six_r_alpha_4_x + inv_six_r_w_1_t_69*(six_r_qdd_1_t_2*six_r_w_1_t_17 +
+            six_r_qdd_1_t_3*six_r_w_1_t_28 + six_r_qdd_1_t_5*six_r_w_1_t_21 +
+            six_r_rel_y*six_r_w_1_t_16 - six_r_qdd_1_t_4*six_r_w_1_t_25 -
+            six_r_qdd_1_t_6*six_r_w_1_t_18)
+        )
+        # (six_r-B_5) acceleration tensor of link 5
+        six_r_B_5_xy = six_r_W_5_xy - six_r_alpha_5_z
+        six_r_B_5_xz = six_r_W_5_xz + six_r_alpha_5_y
+        six_r_B_5_yx = six_r_W_5_xy + six_r_alpha_5_z
+        six_r_B_5_yz = six_r_W_5_yz - six_r_alpha_5_x
+        six_r_B_5_zx = six_r_W_5_xz - six_r_alpha_5_y
+        six_r_B_5_zy = six_r_W_5_yz + six_r_alpha_5_x
+        # (six_r-mu_5) inertia moment of the links that turn with link 5, about their reference points
+        six_r_mu_5_x = (
+        six_r_B_5_yx*six_r_J_5_xz + six_r_B_5_zy*six_r_Sigma_5_yy + six_r_J_5_yz*(six_r_W_5_t_2 -
+            six_r_W_5_t_3) + six_r_acc_5_z*six_r_h_5_y - six_r_B_5_yz*six_r_Sigma_5_zz -
+            six_r_B_5_zx*six_r_J_5_xy - six_r_acc_5_y*six_r_h_5_z
+        )
+        six_r_mu_5_y = (
+        six_r_B_5_xz*six_r_Sigma_5_zz + six_r_B_5_zy*six_r_J_5_xy + six_r_acc_5_x*six_r_h_5_z -
+            six_r_B_5_xy*six_r_J_5_yz - six_r_B_5_zx*six_r_Sigma_5_xx - six_r_J_5_xz*(six_r_W_5_t
+            - six_r_W_5_t_3) - six_r_acc_5_z*six_r_h_5_x
+        )
+        six_r_mu_5_z = (
+        six_r_B_5_xz*six_r_J_5_yz + six_r_B_5_yx*six_r_Sigma_5_xx + six_r_J_5_xy*(six_r_W_5_t -
+            six_r_W_5_t_2) + six_r_acc_5_y*six_r_h_5_x - six_r_B_5_xy*six_r_Sigma_5_yy -
+            six_r_B_5_yz*six_r_J_5_xz - six_r_acc_5_x*six_r_h_5_y
+        )
+        # (six_r-B_2) acceleration tensor of link 2
+        six_r_B_2_xy = -six_r_W_2_xy - six_r_qdd_1_t_4
+        six_r_B_2_yx = six_r_qdd_1_t_4 - six_r_W_2_xy
+        six_r_B_2_zx = -six_r_alpha_2_y - six_r_zeta_2_y
+        six_r_B_2_zy = six_r_alpha_2_x + six_r_zeta_2_x
+        # (six_r-a_o_3) acceleration of the origin of joint 3
+        six_r_a_o_3_t = six_r_joint3_offset_x*(six_r_W_2_t_2 + six_r_W_2_t_3)
+        six_r_a_o_3_t_2 = six_r_B_2_yx*six_r_joint3_offset_x
+        six_r_a_o_3_t_3 = six_r_B_2_zx*six_r_joint3_offset_x
+        # (six_r-B_3) acceleration tensor of link 3
+        six_r_B_3_xy = six_r_W_3_xy - six_r_alpha_3_z
+        six_r_B_3_xz = six_r_W_3_xz + six_r_alpha_3_y
+        six_r_B_3_yx = six_r_W_3_xy + six_r_alpha_3_z
+        six_r_B_3_yz = six_r_W_3_yz - six_r_alpha_3_x
+        six_r_B_3_zx = six_r_W_3_xz - six_r_alpha_3_y
+        six_r_B_3_zy = six_r_W_3_yz + six_r_alpha_3_x
+        # (six_r-a_o_3) acceleration of the origin of joint 3
+        six_r_a_o_3_r0_x = six_r_a_o_3_t_2*six_r_s_3 - six_r_a_o_3_t*six_r_c_3
+        six_r_a_o_3_r0_y = six_r_a_o_3_t*six_r_s_3 + six_r_a_o_3_t_2*six_r_c_3
+        # (six_r-a_o_4) acceleration of the origin of joint 4
+        six_r_a_o_4_x = six_r_a_o_3_r0_x - six_r_W_3_xx*six_r_joint4_offset_x
+        six_r_a_o_4_y = six_r_a_o_3_r0_y + six_r_B_3_yx*six_r_joint4_offset_x
+        six_r_a_o_4_z = six_r_a_o_3_t_3 + six_r_B_3_zx*six_r_joint4_offset_x
+        # (six_r-acc_4) acceleration of the reference point of link 4, less gravity
+        six_r_acc_4_x = (
+        six_r_a_o_4_z*six_r_s_4 + six_r_c_4_t*six_r_g_r4_y - six_r_a_o_4_y*six_r_c_4_t -
+            six_r_g_r1_x*six_r_s_4
+        )
+        six_r_acc_4_y = (
+        six_r_c_4_t*six_r_g_r1_x + six_r_g_r4_y*six_r_s_4 - six_r_a_o_4_y*six_r_s_4 -
+            six_r_a_o_4_z*six_r_c_4_t
+        )
+        six_r_acc_4_z = six_r_a_o_4_x - six_r_g_r4_x
+        # (six_r-B_4) acceleration tensor of link 4
+        six_r_B_4_xy = six_r_W_4_xy - six_r_alpha_4_z
+        six_r_B_4_xz = six_r_W_4_xz + six_r_alpha_4_y
+        six_r_B_4_yx = six_r_W_4_xy + six_r_alpha_4_z
+        six_r_B_4_yz = six_r_W_4_yz - six_r_alpha_4_x
+        six_r_B_4_zx = six_r_W_4_xz - six_r_alpha_4_y
+        six_r_B_4_zy = six_r_W_4_yz + six_r_alpha_4_x
+        # (six_r-mu_4) inertia moment of the links that turn with link 4, about their reference points
+        six_r_mu_4_x = (
+        six_r_B_4_yx*six_r_J_4_xz + six_r_B_4_zx*six_r_J_4_yz + six_r_B_4_zy*six_r_Sigma_4_yy -
+            six_r_B_4_yz*six_r_Sigma_4_zz - six_r_J_4_xy*(six_r_W_4_t_2 - six_r_W_4_t_3) -
+            six_r_acc_4_y*six_r_h_4_x - six_r_acc_4_z*six_r_h_4_y
+        )
+        six_r_mu_4_y = (
+        six_r_B_4_xy*six_r_J_4_xy + six_r_B_4_xz*six_r_Sigma_4_zz + six_r_acc_4_x*six_r_h_4_x -
+            six_r_B_4_zx*six_r_Sigma_4_xx - six_r_B_4_zy*six_r_J_4_yz - six_r_J_4_xz*(six_r_W_4_t
+            - six_r_W_4_t_3) - six_r_acc_4_z*six_r_h_4_z
+        )
+        six_r_mu_4_z = (
+        six_r_B_4_yx*six_r_Sigma_4_xx + six_r_acc_4_x*six_r_h_4_y + six_r_acc_4_y*six_r_h_4_z -
+            six_r_B_4_xy*six_r_Sigma_4_yy - six_r_B_4_xz*six_r_J_4_xy - six_r_B_4_yz*six_r_J_4_xz
+            - six_r_J_4_yz*(six_r_W_4_t - six_r_W_4_t_2)
+        )
+        # (six_r-N_4) moment about joint 4 of the links from 4 outwards, the force at the connection point left out
+        six_r_N_4_x = six_r_mu_4_x + six_r_mu_5_z
+        six_r_N_4_y = six_r_mu_4_y - six_r_c_5_t*six_r_mu_5_x - six_r_mu_5_y*six_r_s_5
+        six_r_N_4_z = six_r_mu_4_z + six_r_mu_5_x*six_r_s_5 - six_r_c_5_t*six_r_mu_5_y
+        # (six_r-f_4) inertia force of link 4 less its weight
+        six_r_f_4_x = (
+        six_r_B_4_xz*six_r_h_4_x + six_r_acc_4_x*six_r_link4_mass - six_r_B_4_xy*six_r_h_4_y -
+            six_r_h_4_z*(six_r_W_4_t_2 + six_r_W_4_t_3)
+        )
+        six_r_f_4_y = (
+        six_r_B_4_yx*six_r_h_4_z + six_r_B_4_yz*six_r_h_4_x + six_r_acc_4_y*six_r_link4_mass +
+            six_r_h_4_y*(six_r_W_4_t + six_r_W_4_t_3)
+        )
+        six_r_f_4_z = (
+        six_r_B_4_zx*six_r_h_4_z + six_r_acc_4_z*six_r_link4_mass - six_r_B_4_zy*six_r_h_4_y -
+            six_r_h_4_x*(six_r_W_4_t + six_r_W_4_t_2)
+        )
+        # (six_r-acc_3) acceleration of the reference point of link 3, less gravity
+        six_r_acc_3_x = six_r_a_o_3_r0_x - six_r_g_r4_x
+        six_r_acc_3_y = six_r_a_o_3_r0_y - six_r_g_r4_y
+        six_r_acc_3_z = six_r_a_o_3_t_3 - six_r_g_r1_x
+        # (six_r-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        six_r_mu_3_x = (
+        six_r_B_3_yx*six_r_J_3_xz + six_r_B_3_zy*six_r_Sigma_3_yy + six_r_J_3_yz*(six_r_W_3_t_2 -
+            six_r_W_3_t_3) + six_r_acc_3_z*six_r_h_3_y - six_r_B_3_yz*six_r_Sigma_3_zz -
+            six_r_B_3_zx*six_r_J_3_xy - six_r_acc_3_y*six_r_h_3_z
+        )
+        six_r_mu_3_y = (
+        six_r_B_3_xz*six_r_Sigma_3_zz + six_r_B_3_zy*six_r_J_3_xy + six_r_acc_3_x*six_r_h_3_z -
+            six_r_B_3_xy*six_r_J_3_yz - six_r_B_3_zx*six_r_Sigma_3_xx - six_r_J_3_xz*(six_r_W_3_t
+            - six_r_W_3_t_3) - six_r_acc_3_z*six_r_h_3_x
+        )
+        six_r_mu_3_z = (
+        six_r_B_3_xz*six_r_J_3_yz + six_r_B_3_yx*six_r_Sigma_3_xx + six_r_J_3_xy*(six_r_W_3_t -
+            six_r_W_3_t_2) + six_r_acc_3_y*six_r_h_3_x - six_r_B_3_xy*six_r_Sigma_3_yy -
+            six_r_B_3_yz*six_r_J_3_xz - six_r_acc_3_x*six_r_h_3_y
+        )
+        # (six_r-f_4) inertia force of link 4 less its weight
+        six_r_f_4_r0_x = -six_r_c_4_t*six_r_f_4_x - six_r_f_4_y*six_r_s_4
+        six_r_f_4_r0_y = six_r_f_4_x*six_r_s_4 - six_r_c_4_t*six_r_f_4_y
+        # (six_r-N_3) moment about joint 3 of the links from 3 outwards, the force at the connection point left out
+        six_r_N_3_x = six_r_N_4_z + six_r_mu_3_x
+        six_r_N_3_y = (
+        six_r_mu_3_y - six_r_N_4_x*six_r_c_4_t - six_r_N_4_y*six_r_s_4 -
+            six_r_f_4_r0_y*six_r_joint4_offset_x
+        )
+        six_r_N_3_z = (
+        six_r_mu_3_z + six_r_N_4_x*six_r_s_4 + six_r_f_4_r0_x*six_r_joint4_offset_x -
+            six_r_N_4_y*six_r_c_4_t
+        )
+        # (six_r-f_3) inertia force of link 3 less its weight
+        six_r_f_3_x = (
+        six_r_B_3_xy*six_r_h_3_y + six_r_B_3_xz*six_r_h_3_z + six_r_acc_3_x*six_r_link3_mass -
+            six_r_W_3_xx*six_r_h_3_x
+        )
+        six_r_f_3_y = (
+        six_r_B_3_yx*six_r_h_3_x + six_r_B_3_yz*six_r_h_3_z + six_r_acc_3_y*six_r_link3_mass -
+            six_r_h_3_y*(six_r_W_3_t + six_r_W_3_t_3)
+        )
+        six_r_f_3_z = (
+        six_r_B_3_zx*six_r_h_3_x + six_r_B_3_zy*six_r_h_3_y + six_r_acc_3_z*six_r_link3_mass -
+            six_r_h_3_z*(six_r_W_3_t + six_r_W_3_t_2)
+        )
+        # (six_r-T_3) inertia force of the links from 3 outwards, the last link left out
+        six_r_T_3_x = six_r_f_3_x + six_r_f_4_z
+        six_r_T_3_y = six_r_f_3_y + six_r_f_4_r0_x
+        six_r_T_3_z = six_r_f_3_z + six_r_f_4_r0_y
+        # (six_r-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        six_r_mu_2_x = (
+        six_r_B_2_yx*six_r_J_2_xz + six_r_B_2_zy*six_r_Sigma_2_yy + six_r_J_2_yz*(six_r_W_2_t_2 -
+            six_r_W_2_t_3) + six_r_g_r3_y*six_r_h_2_z - six_r_B_2_zx*six_r_J_2_xy -
+            six_r_Sigma_2_zz*six_r_alpha_1_t - six_r_g_r1_x*six_r_h_2_y
+        )
+        six_r_mu_2_y = (
+        six_r_B_2_zy*six_r_J_2_xy + six_r_Sigma_2_zz*six_r_alpha_1_t_2 + six_r_g_r1_x*six_r_h_2_x
+            - six_r_B_2_xy*six_r_J_2_yz - six_r_B_2_zx*six_r_Sigma_2_xx -
+            six_r_J_2_xz*(six_r_W_2_t - six_r_W_2_t_3) - six_r_g_r3_x*six_r_h_2_z
+        )
+        six_r_mu_2_z = (
+        six_r_B_2_yx*six_r_Sigma_2_xx + six_r_J_2_xy*(six_r_W_2_t - six_r_W_2_t_2) +
+            six_r_J_2_yz*six_r_alpha_1_t_2 + six_r_g_r3_x*six_r_h_2_y -
+            six_r_B_2_xy*six_r_Sigma_2_yy - six_r_J_2_xz*six_r_alpha_1_t -
+            six_r_g_r3_y*six_r_h_2_x
+        )
+        # (six_r-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        six_r_N_2_x = six_r_mu_2_x + six_r_N_3_x*six_r_c_3 - six_r_N_3_y*six_r_s_3
+        six_r_N_2_y = (
+        six_r_mu_2_y + six_r_N_3_x*six_r_s_3 + six_r_N_3_y*six_r_c_3 -
+            six_r_T_3_z*six_r_joint3_offset_x
+        )
+        six_r_N_2_z = (
+        six_r_N_3_z + six_r_mu_2_z + six_r_joint3_offset_x*(six_r_T_3_x*six_r_s_3 +
+            six_r_T_3_y*six_r_c_3)
+        )
+        # (six_r-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        six_r_mu_1_z = (
+        -six_r_J_1_xx*six_r_qdd_1_t_5 - six_r_g_r1_x*six_r_h_1_y - six_r_g_r1_y*six_r_h_1_z
+        )
+        # (six_r-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        six_r_N_1_z = six_r_mu_1_z + six_r_N_2_x*six_r_s_2 - six_r_N_2_y*six_r_c_2_t
+        # (six_r-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        six_r_G_t = inv_six_r_w_1_t_69*six_r_mu_5_z
+        six_r_G_t_2 = inv_six_r_w_1_t_101*(six_r_G_t*six_r_w_1_t_18 - six_r_N_4_z)
+        six_r_G_t_3 = (
+        inv_six_r_w_1_t_150*(six_r_G_t*six_r_w_1_t_21 + six_r_G_t_2*six_r_w_1_t_36 - six_r_N_1_z)
+        )
+        six_r_G_t_4 = (
+        inv_six_r_w_1_t_194*(six_r_G_t*six_r_w_1_t_25 + six_r_G_t_2*six_r_w_1_t_42 - six_r_N_2_z -
+            six_r_G_t_3*six_r_w_1_t_58)
+        )
+        six_r_G_t_5 = (
+        inv_six_r_w_1_t_222*(six_r_N_3_z + six_r_G_t*six_r_w_1_t_28 + six_r_G_t_3*six_r_w_1_t_64 +
+            six_r_G_t_4*six_r_w_1_t_76 - six_r_G_t_2*six_r_w_1_t_47)
+        )
+        six_r_G_t_6 = (
+        six_r_size*(six_r_G_t_2*six_r_w_1_t_34 + six_r_G_t_3*six_r_w_1_t_56 +
+            six_r_G_t_4*six_r_w_1_t_74 - six_r_G_t_5*six_r_w_1_t_86)
+        )
+        six_r_G_t_7 = (
+        six_r_size*(six_r_G_t_2*six_r_w_1_t_35 + six_r_G_t_3*six_r_w_1_t_57 +
+            six_r_G_t_4*six_r_w_1_t_75 - six_r_G_t*six_r_w_1_t_17 - six_r_G_t_5*six_r_w_1_t_87)
+        )
+        # (six_r-c) leg force on the platform without actuation and without the mass at the connection point
+        six_r_c_x = (
+        six_r_G_t_3*six_r_w_1_t_53 + six_r_G_t_4*six_r_w_1_t_71 + six_r_W_5_xx*six_r_h_5_x -
+            six_r_B_5_xy*six_r_h_5_y - six_r_B_5_xz*six_r_h_5_z - six_r_G_t_5*six_r_w_1_t_83
+        )
+        six_r_c_y = (
+        six_r_G_t_5*six_r_w_1_t_84 + six_r_h_5_y*(six_r_W_5_t + six_r_W_5_t_3) -
+            six_r_B_5_yx*six_r_h_5_x - six_r_B_5_yz*six_r_h_5_z - six_r_G_t*six_r_w_1_t_16 -
+            six_r_G_t_2*six_r_w_1_t_32 - six_r_G_t_3*six_r_w_1_t_54 - six_r_G_t_4*six_r_w_1_t_72
+        )
+        six_r_c_z = (
+        six_r_G_t_2*six_r_w_1_t_33 + six_r_G_t_3*six_r_w_1_t_55 + six_r_G_t_4*six_r_w_1_t_73 +
+            six_r_h_5_z*(six_r_W_5_t + six_r_W_5_t_2) - six_r_B_5_zx*six_r_h_5_x -
+            six_r_B_5_zy*six_r_h_5_y - six_r_G_t_5*six_r_w_1_t_85
+        )
+        # (six_r-c_true) leg force on the platform without actuation, the last link's mass included
+        six_r_c_true_x = six_r_c_x - six_r_acc_5_x*six_r_link5_mass
+        six_r_c_true_y = six_r_c_y - six_r_acc_5_y*six_r_link5_mass
+        six_r_c_true_z = six_r_c_z - six_r_acc_5_z*six_r_link5_mass
+        six_r_c_true_in_base_x = (
+        axis_x_six_r_axes5_x*six_r_c_true_x + axis_y_six_r_axes5_in_base_x*six_r_c_true_y +
+            axis_z_six_r_axes5_in_base_x*six_r_c_true_z
+        )
+        six_r_c_true_in_base_y = (
+        axis_x_six_r_axes5_y*six_r_c_true_x + axis_y_six_r_axes5_in_base_y*six_r_c_true_y +
+            axis_z_six_r_axes5_in_base_y*six_r_c_true_z
+        )
+        six_r_c_true_in_base_z = (
+        axis_x_six_r_axes5_z*six_r_c_true_x + axis_y_six_r_axes5_in_base_z*six_r_c_true_y +
+            axis_z_six_r_axes5_in_base_z*six_r_c_true_z
+        )
+        # (six_r-G_m) moment at the connection point that balances the leg's inertia and weight along all freedoms
+        six_r_G_m_t = six_r_G_t_6*six_r_end_p1_r8_y
+        six_r_G_m_t_2 = six_r_G_t_7*six_r_end_p1_r8_y
+        six_r_G_m_y = six_r_G_t_7*six_r_end_p1_r6_x - six_r_G_t_6*six_r_end_p1_r8_x
+        # (six_r-c_m) moment of the leg on the platform without actuation
+        six_r_c_m_in_base_x = (
+        axis_z_six_r_axes5_in_base_x*six_r_G_m_t_2 - axis_x_six_r_axes5_x*six_r_G_m_t -
+            axis_y_six_r_axes5_in_base_x*six_r_G_m_y
+        )
+        six_r_c_m_in_base_y = (
+        axis_z_six_r_axes5_in_base_y*six_r_G_m_t_2 - axis_x_six_r_axes5_y*six_r_G_m_t -
+            axis_y_six_r_axes5_in_base_y*six_r_G_m_y
+        )
+        six_r_c_m_in_base_z = (
+        axis_z_six_r_axes5_in_base_z*six_r_G_m_t_2 - axis_x_six_r_axes5_z*six_r_G_m_t -
+            axis_y_six_r_axes5_in_base_z*six_r_G_m_y
+        )
+        # (six_r-o_2) moment part of reciprocal wrench 2
+        six_r_o_2_in_base_x = (
+        axis_y_six_r_axes5_in_base_x*six_r_o_2_y + axis_z_six_r_axes5_in_base_x*six_r_o_2_t_2 -
+            axis_x_six_r_axes5_x*six_r_o_2_t
+        )
+        six_r_o_2_in_base_y = (
+        axis_y_six_r_axes5_in_base_y*six_r_o_2_y + axis_z_six_r_axes5_in_base_y*six_r_o_2_t_2 -
+            axis_x_six_r_axes5_y*six_r_o_2_t
+        )
+        six_r_o_2_in_base_z = (
+        axis_y_six_r_axes5_in_base_z*six_r_o_2_y + axis_z_six_r_axes5_in_base_z*six_r_o_2_t_2 -
+            axis_x_six_r_axes5_z*six_r_o_2_t
         )
         ok = (
-        ok & m.every(leg, (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE *
-            size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
-            (abs(w_1_t_82) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(six_r_w_1_t_15) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_31) >
+            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_52) > _TOLERANCE * six_r_size) &
+            (abs(six_r_w_1_t_70) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_82) > _TOLERANCE *
+            six_r_size))
         )
-        out_leg_force[_leg_force_rrrrrr[0][leg]] = c_true_in_base_x
-        out_leg_force[_leg_force_rrrrrr[1][leg]] = c_true_in_base_y
-        out_leg_force[_leg_force_rrrrrr[2][leg]] = c_true_in_base_z
-        out_leg_force[_leg_force_rrrrrr[3][leg]] = c_m_in_base_x
-        out_leg_force[_leg_force_rrrrrr[4][leg]] = c_m_in_base_y
-        out_leg_force[_leg_force_rrrrrr[5][leg]] = c_m_in_base_z
-        out_drive[_drive_rrrrrr[0][leg]] = w_2_in_base_x
-        out_drive[_drive_rrrrrr[1][leg]] = w_2_in_base_y
-        out_drive[_drive_rrrrrr[2][leg]] = w_2_in_base_z
-        out_drive[_drive_rrrrrr[3][leg]] = o_2_in_base_x
-        out_drive[_drive_rrrrrr[4][leg]] = o_2_in_base_y
-        out_drive[_drive_rrrrrr[5][leg]] = o_2_in_base_z
+        out_leg_force[_leg_force_six_r[0][leg]] = six_r_c_true_in_base_x
+        out_leg_force[_leg_force_six_r[1][leg]] = six_r_c_true_in_base_y
+        out_leg_force[_leg_force_six_r[2][leg]] = six_r_c_true_in_base_z
+        out_leg_force[_leg_force_six_r[3][leg]] = six_r_c_m_in_base_x
+        out_leg_force[_leg_force_six_r[4][leg]] = six_r_c_m_in_base_y
+        out_leg_force[_leg_force_six_r[5][leg]] = six_r_c_m_in_base_z
+        out_drive[_drive_six_r[0][leg]] = six_r_w_2_in_base_x
+        out_drive[_drive_six_r[1][leg]] = six_r_w_2_in_base_y
+        out_drive[_drive_six_r[2][leg]] = six_r_w_2_in_base_z
+        out_drive[_drive_six_r[3][leg]] = six_r_o_2_in_base_x
+        out_drive[_drive_six_r[4][leg]] = six_r_o_2_in_base_y
+        out_drive[_drive_six_r[5][leg]] = six_r_o_2_in_base_z
     return ok, (out_leg_force, out_drive,)
 
 
@@ -9042,7 +10251,7 @@ def _run_potential(m, X, q):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_potential = m.zeros("potential")
-    # (V1) potential energy
+    # (potential) potential energy
     potential_t = (
     gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
         gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
@@ -9051,82 +10260,91 @@ def _run_potential(m, X, q):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        b_r0_x, b_r0_y, b_r0_z, g_r0_x, g_r0_y, g_r0_z, h_1_x, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z,
-            h_3_x, h_3_y, h_3_z, h_4_x, h_4_y, h_4_z, h_5_x, h_5_y, h_5_z, rrrrrr_joint2_offset_x,
-            rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_link1_mass, rrrrrr_link2_mass,
-            rrrrrr_link3_mass, rrrrrr_link4_mass,
+        six_r_b_r0_x, six_r_b_r0_y, six_r_b_r0_z, six_r_g_r0_x, six_r_g_r0_y, six_r_g_r0_z,
+            six_r_h_1_x, six_r_h_1_y, six_r_h_1_z, six_r_h_2_x, six_r_h_2_y, six_r_h_2_z,
+            six_r_h_3_x, six_r_h_3_y, six_r_h_3_z, six_r_h_4_x, six_r_h_4_y, six_r_h_4_z,
+            six_r_h_5_x, six_r_h_5_y, six_r_h_5_z, six_r_joint2_offset_x, six_r_joint3_offset_x,
+            six_r_joint4_offset_x, six_r_link1_mass, six_r_link2_mass, six_r_link3_mass,
+            six_r_link4_mass,
         ) = k
-        q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
-        q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
-        q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
-        q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
-        q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
-        # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
-        c_5_t = sin(q_5)
-        # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
-        s_5 = cos(q_5)
-        # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
-        c_4_t = sin(q_4)
-        # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
-        s_4 = cos(q_4)
-        # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
-        c_3 = cos(q_3)
-        # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
-        s_3 = sin(q_3)
-        # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
-        c_2_t = sin(q_2)
-        # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
-        s_2 = cos(q_2)
-        # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
-        c_1_t = sin(q_1)
-        # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
-        s_1 = cos(q_1)
-        # (rrrrrr-G9) first moment of link 4 about the origin of link 4
-        h_4_r1_x = h_4_y*s_4 - c_4_t*h_4_z
-        # (rrrrrr-N78) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-        d_Gamma_4_t = c_5_t*h_5_x + h_5_y*s_5
-        # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-        bias_t = rrrrrr_joint2_offset_x*s_2
-        bias_t_2 = c_2_t*rrrrrr_joint2_offset_x
-        # (rrrrrr-N16) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
-        g_r1_y = -c_1_t*g_r0_y - g_r0_x*s_1
-        # (V1) potential energy
-        b_r1_x = b_r0_y*s_1 - b_r0_x*c_1_t
-        b_r1_y = -b_r0_x*s_1 - b_r0_y*c_1_t
-        b_r3_x = b_r0_z*s_2 - b_r1_y*c_2_t
-        b_r3_y = -b_r0_z*c_2_t - b_r1_y*s_2
-        potential_t_2 = b_r3_y - bias_t_2
-        # (rrrrrr-G12) first moment of link 5 about the connection point
-        h_5_r0_y = h_5_x*s_5 - c_5_t*h_5_y
-        h_5_r2_x = d_Gamma_4_t*s_4 - c_4_t*h_5_z
-        # (V1) potential energy
-        potential_t_3 = (
-        h_2_x + b_r3_x*rrrrrr_link1_mass + c_2_t*h_1_y + c_3*h_3_x + c_3*h_4_x + c_3*h_5_r0_y +
-            h_1_x*s_2 + rrrrrr_link2_mass*(b_r3_x + bias_t) + rrrrrr_link3_mass*(b_r3_x + bias_t +
-            rrrrrr_joint3_offset_x) + rrrrrr_link4_mass*(b_r3_x + bias_t + rrrrrr_joint3_offset_x
-            + c_3*rrrrrr_joint4_offset_x) - h_3_y*s_3 - h_4_r1_x*s_3 - h_5_r2_x*s_3
+        six_r_q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
+        six_r_q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
+        six_r_q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
+        six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
+        six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
+        six_r_c_5_t = sin(six_r_q_5)
+        # (six_r-s_5) sine of the angle of joint 5 from its reference direction
+        six_r_s_5 = cos(six_r_q_5)
+        # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
+        six_r_c_4_t = sin(six_r_q_4)
+        # (six_r-s_4) sine of the angle of joint 4 from its reference direction
+        six_r_s_4 = cos(six_r_q_4)
+        # (six_r-c_3) cosine of the angle of joint 3 from its reference direction
+        six_r_c_3 = cos(six_r_q_3)
+        # (six_r-s_3) sine of the angle of joint 3 from its reference direction
+        six_r_s_3 = sin(six_r_q_3)
+        # (six_r-c_2) cosine of the angle of joint 2 from its reference direction
+        six_r_c_2_t = sin(six_r_q_2)
+        # (six_r-s_2) sine of the angle of joint 2 from its reference direction
+        six_r_s_2 = cos(six_r_q_2)
+        # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
+        six_r_c_1_t = sin(six_r_q_1)
+        # (six_r-s_1) sine of the angle of joint 1 from its reference direction
+        six_r_s_1 = cos(six_r_q_1)
+        # (six_r-P_c_4) force that accelerates joint 4, per unit
+        six_r_P_c_4_r0_y = six_r_h_4_y*six_r_s_4 - six_r_c_4_t*six_r_h_4_z
+        # (six_r-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+        six_r_d_Gamma_4_t = six_r_c_5_t*six_r_h_5_x + six_r_h_5_y*six_r_s_5
+        # (six_r-bias) acceleration of the connection point at zero joint accelerations
+        six_r_bias_t = six_r_joint2_offset_x*six_r_s_2
+        six_r_bias_t_2 = six_r_c_2_t*six_r_joint2_offset_x
+        # (six_r-acc_4_o) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+        six_r_g_r1_y = -six_r_c_1_t*six_r_g_r0_y - six_r_g_r0_x*six_r_s_1
+        # (potential) potential energy
+        six_r_b_r1_x = six_r_b_r0_y*six_r_s_1 - six_r_b_r0_x*six_r_c_1_t
+        six_r_b_r1_y = -six_r_b_r0_x*six_r_s_1 - six_r_b_r0_y*six_r_c_1_t
+        six_r_b_r3_x = six_r_b_r0_z*six_r_s_2 - six_r_b_r1_y*six_r_c_2_t
+        six_r_b_r3_y = -six_r_b_r0_z*six_r_c_2_t - six_r_b_r1_y*six_r_s_2
+        six_r_potential_t = six_r_b_r3_y - six_r_bias_t_2
+        # (six_r-h_5) first moment of link 5 about the connection point
+        six_r_h_5_r0_y = six_r_h_5_x*six_r_s_5 - six_r_c_5_t*six_r_h_5_y
+        six_r_h_5_r2_x = six_r_d_Gamma_4_t*six_r_s_4 - six_r_c_4_t*six_r_h_5_z
+        # (potential) potential energy
+        six_r_potential_t_2 = (
+        six_r_h_2_x + six_r_b_r3_x*six_r_link1_mass + six_r_c_2_t*six_r_h_1_y +
+            six_r_c_3*six_r_h_3_x + six_r_c_3*six_r_h_4_x + six_r_c_3*six_r_h_5_r0_y +
+            six_r_h_1_x*six_r_s_2 + six_r_link2_mass*(six_r_b_r3_x + six_r_bias_t) +
+            six_r_link3_mass*(six_r_b_r3_x + six_r_bias_t + six_r_joint3_offset_x) +
+            six_r_link4_mass*(six_r_b_r3_x + six_r_bias_t + six_r_joint3_offset_x +
+            six_r_c_3*six_r_joint4_offset_x) - six_r_P_c_4_r0_y*six_r_s_3 - six_r_h_3_y*six_r_s_3
+            - six_r_h_5_r2_x*six_r_s_3
         )
-        potential_t_4 = (
-        h_2_y + b_r3_y*rrrrrr_link1_mass + c_3*h_3_y + c_3*h_4_r1_x + c_3*h_5_r2_x + h_1_y*s_2 +
-            h_3_x*s_3 + h_4_x*s_3 + h_5_r0_y*s_3 + potential_t_2*rrrrrr_link2_mass +
-            potential_t_2*rrrrrr_link3_mass + rrrrrr_link4_mass*(b_r3_y +
-            rrrrrr_joint4_offset_x*s_3 - bias_t_2) - c_2_t*h_1_x
+        six_r_potential_t_3 = (
+        six_r_h_2_y + six_r_P_c_4_r0_y*six_r_c_3 + six_r_b_r3_y*six_r_link1_mass +
+            six_r_c_3*six_r_h_3_y + six_r_c_3*six_r_h_5_r2_x + six_r_h_1_y*six_r_s_2 +
+            six_r_h_3_x*six_r_s_3 + six_r_h_4_x*six_r_s_3 + six_r_h_5_r0_y*six_r_s_3 +
+            six_r_link2_mass*six_r_potential_t + six_r_link3_mass*six_r_potential_t +
+            six_r_link4_mass*(six_r_b_r3_y + six_r_joint4_offset_x*six_r_s_3 - six_r_bias_t_2) -
+            six_r_c_2_t*six_r_h_1_x
         )
-        potential_t_5 = (
-        h_1_z + h_2_z + h_3_z + b_r1_x*rrrrrr_link1_mass + b_r1_x*rrrrrr_link2_mass +
-            b_r1_x*rrrrrr_link3_mass + b_r1_x*rrrrrr_link4_mass + c_4_t*d_Gamma_4_t + c_4_t*h_4_y
-            + h_4_z*s_4 + h_5_z*s_4
+        six_r_potential_t_4 = (
+        six_r_h_1_z + six_r_h_2_z + six_r_h_3_z + six_r_b_r1_x*six_r_link1_mass +
+            six_r_b_r1_x*six_r_link2_mass + six_r_b_r1_x*six_r_link3_mass +
+            six_r_b_r1_x*six_r_link4_mass + six_r_c_4_t*six_r_d_Gamma_4_t +
+            six_r_c_4_t*six_r_h_4_y + six_r_h_4_z*six_r_s_4 + six_r_h_5_z*six_r_s_4
         )
-        potential_t_6 = (
-        potential_t_3*(g_r0_z*s_2 - c_2_t*g_r1_y) + potential_t_4*(-c_2_t*g_r0_z - g_r1_y*s_2) +
-            potential_t_5*(g_r0_y*s_1 - c_1_t*g_r0_x)
+        six_r_potential_t_5 = (
+        six_r_potential_t_2*(six_r_g_r0_z*six_r_s_2 - six_r_c_2_t*six_r_g_r1_y) +
+            six_r_potential_t_3*(-six_r_c_2_t*six_r_g_r0_z - six_r_g_r1_y*six_r_s_2) +
+            six_r_potential_t_4*(six_r_g_r0_y*six_r_s_1 - six_r_c_1_t*six_r_g_r0_x)
         )
         sums = m.added(sums, leg, (
-        potential_t_6,
+        six_r_potential_t_5,
         ))
-    total_rrrrrr, = sums
-    # (V1) potential energy
-    potential = -potential_t - total_rrrrrr
+    total_six_r, = sums
+    # (potential) potential energy
+    potential = -potential_t - total_six_r
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -9179,390 +10397,436 @@ def _run_condition(m, X, q):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        inv_size, rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz,
-            rrrrrr_base_frame_yx, rrrrrr_base_frame_yy, rrrrrr_base_frame_yz,
-            rrrrrr_base_frame_zx, rrrrrr_base_frame_zy, rrrrrr_base_frame_zz,
-            rrrrrr_joint2_offset_x, rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x,
-            rrrrrr_joint5_offset_x, rrrrrr_platform_joint_axis_platform_x,
-            rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
-            rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x, rrrrrr_platform_point_y,
-            rrrrrr_platform_point_z, size, size_t,
+        inv_six_r_size, six_r_base_frame_xx, six_r_base_frame_xy, six_r_base_frame_xz,
+            six_r_base_frame_yx, six_r_base_frame_yy, six_r_base_frame_yz, six_r_base_frame_zx,
+            six_r_base_frame_zy, six_r_base_frame_zz, six_r_joint2_offset_x,
+            six_r_joint3_offset_x, six_r_joint4_offset_x, six_r_joint5_offset_x,
+            six_r_platform_joint_axis_platform_x, six_r_platform_joint_axis_platform_y,
+            six_r_platform_joint_axis_platform_z, six_r_platform_joint_offset_x,
+            six_r_platform_point_x, six_r_platform_point_y, six_r_platform_point_z, six_r_size,
+            six_r_size_t,
         ) = k
-        q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
-        q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
-        q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
-        q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
-        q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
-        # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
-        c_5_t = sin(q_5)
-        # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
-        s_5 = cos(q_5)
-        # (rrrrrr-V2) from joint 4 to the connection point, along the links
-        r_4_t = c_5_t*rrrrrr_platform_joint_offset_x
-        r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5
-        # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
-        c_4_t = sin(q_4)
-        # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
-        s_4 = cos(q_4)
-        # (rrrrrr-V2) from joint 4 to the connection point, along the links
-        r_4_t_2 = r_4_t*s_4
-        r_4_t_3 = c_4_t*r_4_t
-        # (rrrrrr-V3) from joint 3 to the connection point, along the links
-        r_3_x = r_4_z + rrrrrr_joint4_offset_x
-        # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
-        c_3 = cos(q_3)
-        # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
-        s_3 = sin(q_3)
-        # (rrrrrr-V3) from joint 3 to the connection point, along the links
-        r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3
-        # (rrrrrr-V4) from joint 2 to the connection point, along the links
-        r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3
-        # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
-        c_2_t = sin(q_2)
-        # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
-        s_2 = cos(q_2)
-        # (rrrrrr-V4) from joint 2 to the connection point, along the links
-        r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2
-        # (rrrrrr-V5) from joint 1 to the connection point, along the links
-        r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y
-        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-        e_1_r2_x = c_3*s_2 - c_2_t*s_3
-        e_1_r2_y = -c_2_t*c_3 - s_2*s_3
-        v_1_t = c_4_t*e_1_r2_y
-        v_1_t_2 = e_1_r2_y*s_4
-        e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5
-        e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x
-        # (rrrrrr-V5) from joint 1 to the connection point, along the links
-        r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x
-        r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2
-        r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3
-        r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3
-        r_1_t = r_4_t_3*s_4
-        r_1_r4_x = r_1_t - c_4_t*r_1_r2_y
-        r_1_t_2 = c_4_t*r_4_t_3
-        r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4
-        r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y
-        r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5
-        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-        v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t
-        v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t
-        v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x
-        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-        v_2_t = c_4_t*c_5_t
-        v_2_t_2 = c_4_t*s_5
-        # (rrrrrr-V4) from joint 2 to the connection point, along the links
-        r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3
-        r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3
-        r_2_r2_x = r_1_t - c_4_t*r_2_r0_y
-        r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4
-        r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y
-        r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5
-        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-        v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4
-        v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t
-        v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2
-        # (rrrrrr-V3) from joint 3 to the connection point, along the links
-        r_3_r1_x = r_1_t - c_4_t*r_4_t_2
-        r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4
-        r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y
-        r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5
-        # (rrrrrr-V8) velocity of the connection point per rate of joint 3
-        v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4
-        v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t
-        v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2
-        # (rrrrrr-V9) velocity of the connection point per rate of joint 4
-        v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
-        # (rrrrrr-V13) force part of reciprocal wrench 1
-        w_1_t = c_4_t*s_3
-        w_1_t_2 = c_3*c_4_t
-        axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
-        axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
-        # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
-        c_1_t = sin(q_1)
-        # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
-        s_1 = cos(q_1)
-        # (rrrrrr-V13) force part of reciprocal wrench 1
-        axis_z_rrrrrr_axes5_r7_x = -axis_z_rrrrrr_axes5_r5_x*s_1 - c_1_t*s_4
-        axis_z_rrrrrr_axes5_r7_y = s_1*s_4 - axis_z_rrrrrr_axes5_r5_x*c_1_t
-        axis_z_rrrrrr_axes5_in_base_x = (
-        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
-            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
-            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
+        six_r_q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
+        six_r_q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
+        six_r_q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
+        six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
+        six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
+        six_r_c_5_t = sin(six_r_q_5)
+        # (six_r-s_5) sine of the angle of joint 5 from its reference direction
+        six_r_s_5 = cos(six_r_q_5)
+        # (six_r-r_4) from joint 4 to the connection point, along the links
+        six_r_r_4_t = six_r_c_5_t*six_r_platform_joint_offset_x
+        six_r_r_4_z = six_r_joint5_offset_x + six_r_platform_joint_offset_x*six_r_s_5
+        # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
+        six_r_c_4_t = sin(six_r_q_4)
+        # (six_r-s_4) sine of the angle of joint 4 from its reference direction
+        six_r_s_4 = cos(six_r_q_4)
+        # (six_r-r_4) from joint 4 to the connection point, along the links
+        six_r_r_4_t_2 = six_r_r_4_t*six_r_s_4
+        six_r_r_4_t_3 = six_r_c_4_t*six_r_r_4_t
+        # (six_r-r_3) from joint 3 to the connection point, along the links
+        six_r_r_3_x = six_r_joint4_offset_x + six_r_r_4_z
+        # (six_r-c_3) cosine of the angle of joint 3 from its reference direction
+        six_r_c_3 = cos(six_r_q_3)
+        # (six_r-s_3) sine of the angle of joint 3 from its reference direction
+        six_r_s_3 = sin(six_r_q_3)
+        # (six_r-r_3) from joint 3 to the connection point, along the links
+        six_r_r_3_r0_y = six_r_c_3*six_r_r_4_t_2 + six_r_r_3_x*six_r_s_3
+        # (six_r-r_2) from joint 2 to the connection point, along the links
+        six_r_r_2_x = six_r_joint3_offset_x + six_r_c_3*six_r_r_3_x - six_r_r_4_t_2*six_r_s_3
+        # (six_r-c_2) cosine of the angle of joint 2 from its reference direction
+        six_r_c_2_t = sin(six_r_q_2)
+        # (six_r-s_2) sine of the angle of joint 2 from its reference direction
+        six_r_s_2 = cos(six_r_q_2)
+        # (six_r-r_2) from joint 2 to the connection point, along the links
+        six_r_r_2_r0_x = -six_r_c_2_t*six_r_r_2_x - six_r_r_3_r0_y*six_r_s_2
+        # (six_r-r_1) from joint 1 to the connection point, along the links
+        six_r_r_1_z = six_r_joint2_offset_x + six_r_r_2_x*six_r_s_2 - six_r_c_2_t*six_r_r_3_r0_y
+        # (six_r-v_1) velocity of the connection point per rate of joint 1
+        six_r_e_1_r2_x = six_r_c_3*six_r_s_2 - six_r_c_2_t*six_r_s_3
+        six_r_e_1_r2_y = -six_r_c_2_t*six_r_c_3 - six_r_s_2*six_r_s_3
+        six_r_v_1_t = six_r_c_4_t*six_r_e_1_r2_y
+        six_r_v_1_t_2 = six_r_e_1_r2_y*six_r_s_4
+        six_r_e_1_r6_x = six_r_c_5_t*six_r_v_1_t_2 + six_r_e_1_r2_x*six_r_s_5
+        six_r_e_1_r6_y = six_r_s_5*six_r_v_1_t_2 - six_r_c_5_t*six_r_e_1_r2_x
+        # (six_r-r_1) from joint 1 to the connection point, along the links
+        six_r_r_1_r1_x = six_r_r_1_z*six_r_s_2 - six_r_c_2_t*six_r_r_2_r0_x
+        six_r_r_1_r1_y = -six_r_c_2_t*six_r_r_1_z - six_r_r_2_r0_x*six_r_s_2
+        six_r_r_1_r2_x = six_r_c_3*six_r_r_1_r1_x + six_r_r_1_r1_y*six_r_s_3
+        six_r_r_1_r2_y = six_r_c_3*six_r_r_1_r1_y - six_r_r_1_r1_x*six_r_s_3
+        six_r_r_1_t = six_r_r_4_t_3*six_r_s_4
+        six_r_r_1_r4_x = six_r_r_1_t - six_r_c_4_t*six_r_r_1_r2_y
+        six_r_r_1_t_2 = six_r_c_4_t*six_r_r_4_t_3
+        six_r_r_1_r4_y = -six_r_r_1_t_2 - six_r_r_1_r2_y*six_r_s_4
+        six_r_r_1_r6_x = six_r_r_1_r2_x*six_r_s_5 - six_r_c_5_t*six_r_r_1_r4_y
+        six_r_r_1_r6_y = -six_r_c_5_t*six_r_r_1_r2_x - six_r_r_1_r4_y*six_r_s_5
+        # (six_r-v_1) velocity of the connection point per rate of joint 1
+        six_r_v_1_x = six_r_e_1_r6_y*six_r_r_1_r4_x + six_r_r_1_r6_y*six_r_v_1_t
+        six_r_v_1_y = -six_r_e_1_r6_x*six_r_r_1_r4_x - six_r_r_1_r6_x*six_r_v_1_t
+        six_r_v_1_z = six_r_e_1_r6_x*six_r_r_1_r6_y - six_r_e_1_r6_y*six_r_r_1_r6_x
+        # (six_r-v_2) velocity of the connection point per rate of joint 2
+        six_r_v_2_t = six_r_c_4_t*six_r_c_5_t
+        six_r_v_2_t_2 = six_r_c_4_t*six_r_s_5
+        # (six_r-r_2) from joint 2 to the connection point, along the links
+        six_r_r_2_r0_x_2 = six_r_c_3*six_r_r_2_x + six_r_r_3_r0_y*six_r_s_3
+        six_r_r_2_r0_y = six_r_c_3*six_r_r_3_r0_y - six_r_r_2_x*six_r_s_3
+        six_r_r_2_r2_x = six_r_r_1_t - six_r_c_4_t*six_r_r_2_r0_y
+        six_r_r_2_r2_y = -six_r_r_1_t_2 - six_r_r_2_r0_y*six_r_s_4
+        six_r_r_2_r4_x = six_r_r_2_r0_x_2*six_r_s_5 - six_r_c_5_t*six_r_r_2_r2_y
+        six_r_r_2_r4_y = -six_r_c_5_t*six_r_r_2_r0_x_2 - six_r_r_2_r2_y*six_r_s_5
+        # (six_r-v_2) velocity of the connection point per rate of joint 2
+        six_r_v_2_x = six_r_r_2_r2_x*six_r_v_2_t_2 - six_r_r_2_r4_y*six_r_s_4
+        six_r_v_2_y = six_r_r_2_r4_x*six_r_s_4 - six_r_r_2_r2_x*six_r_v_2_t
+        six_r_v_2_z = six_r_r_2_r4_y*six_r_v_2_t - six_r_r_2_r4_x*six_r_v_2_t_2
+        # (six_r-r_3) from joint 3 to the connection point, along the links
+        six_r_r_3_r1_x = six_r_r_1_t - six_r_c_4_t*six_r_r_4_t_2
+        six_r_r_3_r1_y = -six_r_r_1_t_2 - six_r_r_4_t_2*six_r_s_4
+        six_r_r_3_r3_x = six_r_r_3_x*six_r_s_5 - six_r_c_5_t*six_r_r_3_r1_y
+        six_r_r_3_r3_y = -six_r_c_5_t*six_r_r_3_x - six_r_r_3_r1_y*six_r_s_5
+        # (six_r-v_3) velocity of the connection point per rate of joint 3
+        six_r_v_3_x = six_r_r_3_r1_x*six_r_v_2_t_2 - six_r_r_3_r3_y*six_r_s_4
+        six_r_v_3_y = six_r_r_3_r3_x*six_r_s_4 - six_r_r_3_r1_x*six_r_v_2_t
+        six_r_v_3_z = six_r_r_3_r3_y*six_r_v_2_t - six_r_r_3_r3_x*six_r_v_2_t_2
+        # (six_r-v_4) velocity of the connection point per rate of joint 4
+        six_r_v_4_z = (
+        six_r_c_5_t*(six_r_c_5_t*six_r_r_4_t + six_r_r_4_z*six_r_s_5) +
+            six_r_s_5*(six_r_r_4_t*six_r_s_5 - six_r_c_5_t*six_r_r_4_z)
         )
-        axis_z_rrrrrr_axes5_in_base_y = (
-        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
-            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
-            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
+        # (six_r-w_1) force part of reciprocal wrench 1
+        six_r_w_1_t = six_r_c_4_t*six_r_s_3
+        six_r_w_1_t_2 = six_r_c_3*six_r_c_4_t
+        axis_z_six_r_axes5_r5_x = six_r_s_2*six_r_w_1_t_2 - six_r_c_2_t*six_r_w_1_t
+        axis_z_six_r_axes5_r5_y = six_r_c_2_t*six_r_w_1_t_2 + six_r_s_2*six_r_w_1_t
+        # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
+        six_r_c_1_t = sin(six_r_q_1)
+        # (six_r-s_1) sine of the angle of joint 1 from its reference direction
+        six_r_s_1 = cos(six_r_q_1)
+        # (six_r-w_1) force part of reciprocal wrench 1
+        axis_z_six_r_axes5_r7_x = -axis_z_six_r_axes5_r5_x*six_r_s_1 - six_r_c_1_t*six_r_s_4
+        axis_z_six_r_axes5_r7_y = six_r_s_1*six_r_s_4 - axis_z_six_r_axes5_r5_x*six_r_c_1_t
+        axis_z_six_r_axes5_in_base_x = (
+        axis_z_six_r_axes5_r5_y*six_r_base_frame_xx + axis_z_six_r_axes5_r7_x*six_r_base_frame_xy
+            + axis_z_six_r_axes5_r7_y*six_r_base_frame_xz
         )
-        axis_z_rrrrrr_axes5_in_base_z = (
-        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
-            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
-            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
+        axis_z_six_r_axes5_in_base_y = (
+        axis_z_six_r_axes5_r5_y*six_r_base_frame_yx + axis_z_six_r_axes5_r7_x*six_r_base_frame_yy
+            + axis_z_six_r_axes5_r7_y*six_r_base_frame_yz
         )
-        w_1_t_3 = s_4*s_5
-        axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
-        axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
-        axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
-        axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
-        axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
-        axis_y_rrrrrr_axes5_r7_y = s_1*v_2_t_2 - axis_y_rrrrrr_axes5_r5_x*c_1_t
-        axis_y_rrrrrr_axes5_in_base_x = (
-        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
-            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
-            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
+        axis_z_six_r_axes5_in_base_z = (
+        axis_z_six_r_axes5_r5_y*six_r_base_frame_zx + axis_z_six_r_axes5_r7_x*six_r_base_frame_zy
+            + axis_z_six_r_axes5_r7_y*six_r_base_frame_zz
         )
-        axis_y_rrrrrr_axes5_in_base_y = (
-        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
-            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
-            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
+        six_r_w_1_t_3 = six_r_s_4*six_r_s_5
+        axis_y_six_r_axes5_r4_x = -six_r_c_3*six_r_c_5_t - six_r_s_3*six_r_w_1_t_3
+        axis_y_six_r_axes5_r4_y = six_r_c_3*six_r_w_1_t_3 - six_r_c_5_t*six_r_s_3
+        axis_y_six_r_axes5_r5_x = (
+        -axis_y_six_r_axes5_r4_x*six_r_c_2_t - axis_y_six_r_axes5_r4_y*six_r_s_2
         )
-        axis_y_rrrrrr_axes5_in_base_z = (
-        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
-            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
-            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
+        axis_y_six_r_axes5_r5_y = (
+        axis_y_six_r_axes5_r4_x*six_r_s_2 - axis_y_six_r_axes5_r4_y*six_r_c_2_t
         )
-        axis_x_rrrrrr_axes5_x = (
-        axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_z -
-            axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_y
+        axis_y_six_r_axes5_r7_x = -axis_y_six_r_axes5_r5_x*six_r_s_1 - six_r_c_1_t*six_r_v_2_t_2
+        axis_y_six_r_axes5_r7_y = six_r_s_1*six_r_v_2_t_2 - axis_y_six_r_axes5_r5_x*six_r_c_1_t
+        axis_y_six_r_axes5_in_base_x = (
+        axis_y_six_r_axes5_r5_y*six_r_base_frame_xx + axis_y_six_r_axes5_r7_x*six_r_base_frame_xy
+            + axis_y_six_r_axes5_r7_y*six_r_base_frame_xz
         )
-        axis_x_rrrrrr_axes5_y = (
-        axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_x -
-            axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_z
+        axis_y_six_r_axes5_in_base_y = (
+        axis_y_six_r_axes5_r5_y*six_r_base_frame_yx + axis_y_six_r_axes5_r7_x*six_r_base_frame_yy
+            + axis_y_six_r_axes5_r7_y*six_r_base_frame_yz
         )
-        axis_x_rrrrrr_axes5_z = (
-        axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
-            axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
+        axis_y_six_r_axes5_in_base_z = (
+        axis_y_six_r_axes5_r5_y*six_r_base_frame_zx + axis_y_six_r_axes5_r7_x*six_r_base_frame_zy
+            + axis_y_six_r_axes5_r7_y*six_r_base_frame_zz
         )
-        # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-        end_p1_r0_x = (
-        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy +
-            R_yx*rrrrrr_base_frame_yy + R_zx*rrrrrr_base_frame_zy) +
-            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
-            R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
-            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
-            R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy)
+        axis_x_six_r_axes5_x = (
+        axis_y_six_r_axes5_in_base_y*axis_z_six_r_axes5_in_base_z -
+            axis_y_six_r_axes5_in_base_z*axis_z_six_r_axes5_in_base_y
         )
-        end_p1_r0_y = (
-        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz +
-            R_yx*rrrrrr_base_frame_yz + R_zx*rrrrrr_base_frame_zz) +
-            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
-            R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
-            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
-            R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz)
+        axis_x_six_r_axes5_y = (
+        axis_y_six_r_axes5_in_base_z*axis_z_six_r_axes5_in_base_x -
+            axis_y_six_r_axes5_in_base_x*axis_z_six_r_axes5_in_base_z
         )
-        end_p1_r0_z = (
-        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx +
-            R_yx*rrrrrr_base_frame_yx + R_zx*rrrrrr_base_frame_zx) +
-            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
-            R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
-            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
-            R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx)
+        axis_x_six_r_axes5_z = (
+        axis_y_six_r_axes5_in_base_x*axis_z_six_r_axes5_in_base_y -
+            axis_y_six_r_axes5_in_base_y*axis_z_six_r_axes5_in_base_x
         )
-        end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x
-        end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1
-        end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y
-        end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2
-        end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3
-        end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3
-        end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y
-        end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4
-        end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
-        end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
-        # (rrrrrr-V13) force part of reciprocal wrench 1
-        w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
-        w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
-        w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
-        w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
-        w_1_t_8 = size*w_1_t_4
-        w_1_t_9 = size*w_1_t_6
-        w_1_t_10 = size*w_1_t_5
-        w_1_t_11 = size*w_1_t_7
-        w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
-        w_1_t_13 = c_5_t*end_p1_r6_x*size
-        w_1_t_14 = end_p1_r8_y*size
-        w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
-        inv_w_1_t_69 = 1.0/w_1_t_15
-        w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
-        w_1_t_17 = inv_w_1_t_69*w_1_t_14
-        w_1_t_18 = w_1_t_13*w_1_t_17
-        w_1_t_19 = w_1_t_16*w_1_t_18
-        w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
-        w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
-        w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
-        w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
-        w_1_t_24 = w_1_t_11*w_1_t_17
-        w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
-        w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
-        w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
-        w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
-        w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
-        w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
-        w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
-        inv_w_1_t_101 = 1.0/w_1_t_31
-        w_1_t_32 = inv_w_1_t_101*w_1_t_19
-        w_1_t_33 = inv_w_1_t_101*v_4_z
-        w_1_t_34 = inv_w_1_t_101*w_1_t_12
-        w_1_t_35 = inv_w_1_t_101*w_1_t_20
-        w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
-        w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
-        w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
-        w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
-        w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
-        w_1_t_41 = w_1_t_10*w_1_t_34
-        w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
-        w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
-        w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
-        w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
-        w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
-        w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
-        w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
-        w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
-        w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
-        w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
-        w_1_t_52 = (
-        sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
-            w_1_t_40*w_1_t_40)
+        # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
+        six_r_end_p1_r0_x = (
+        six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xy + R_yx*six_r_base_frame_yy
+            + R_zx*six_r_base_frame_zy) +
+            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xy +
+            R_yy*six_r_base_frame_yy + R_zy*six_r_base_frame_zy) +
+            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xy +
+            R_yz*six_r_base_frame_yy + R_zz*six_r_base_frame_zy)
         )
-        inv_w_1_t_150 = 1.0/w_1_t_52
-        w_1_t_53 = inv_w_1_t_150*v_1_x
-        w_1_t_54 = inv_w_1_t_150*w_1_t_37
-        w_1_t_55 = inv_w_1_t_150*w_1_t_38
-        w_1_t_56 = inv_w_1_t_150*w_1_t_39
-        w_1_t_57 = inv_w_1_t_150*w_1_t_40
-        w_1_t_58 = (
-        v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 +
-            w_1_t_46*w_1_t_57
+        six_r_end_p1_r0_y = (
+        six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xz + R_yx*six_r_base_frame_yz
+            + R_zx*six_r_base_frame_zz) +
+            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xz +
+            R_yy*six_r_base_frame_yz + R_zy*six_r_base_frame_zz) +
+            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xz +
+            R_yz*six_r_base_frame_yz + R_zz*six_r_base_frame_zz)
         )
-        w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
-        w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
-        w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
-        w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
-        w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
-        w_1_t_64 = (
-        v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 +
-            w_1_t_51*w_1_t_57
+        six_r_end_p1_r0_z = (
+        six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xx + R_yx*six_r_base_frame_yx
+            + R_zx*six_r_base_frame_zx) +
+            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xx +
+            R_yy*six_r_base_frame_yx + R_zy*six_r_base_frame_zx) +
+            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xx +
+            R_yz*six_r_base_frame_yx + R_zz*six_r_base_frame_zx)
         )
-        w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
-        w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
-        w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
-        w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
-        w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
-        w_1_t_70 = (
-        sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
-            w_1_t_63*w_1_t_63)
+        six_r_end_p1_r1_x = six_r_end_p1_r0_y*six_r_s_1 - six_r_c_1_t*six_r_end_p1_r0_x
+        six_r_end_p1_r1_y = -six_r_c_1_t*six_r_end_p1_r0_y - six_r_end_p1_r0_x*six_r_s_1
+        six_r_end_p1_r3_x = six_r_end_p1_r0_z*six_r_s_2 - six_r_c_2_t*six_r_end_p1_r1_y
+        six_r_end_p1_r3_y = -six_r_c_2_t*six_r_end_p1_r0_z - six_r_end_p1_r1_y*six_r_s_2
+        six_r_end_p1_r4_x = six_r_c_3*six_r_end_p1_r3_x + six_r_end_p1_r3_y*six_r_s_3
+        six_r_end_p1_r4_y = six_r_c_3*six_r_end_p1_r3_y - six_r_end_p1_r3_x*six_r_s_3
+        six_r_end_p1_r6_x = six_r_end_p1_r1_x*six_r_s_4 - six_r_c_4_t*six_r_end_p1_r4_y
+        six_r_end_p1_r6_y = -six_r_c_4_t*six_r_end_p1_r1_x - six_r_end_p1_r4_y*six_r_s_4
+        six_r_end_p1_r8_x = six_r_end_p1_r4_x*six_r_s_5 - six_r_c_5_t*six_r_end_p1_r6_y
+        six_r_end_p1_r8_y = -six_r_c_5_t*six_r_end_p1_r4_x - six_r_end_p1_r6_y*six_r_s_5
+        # (six_r-w_1) force part of reciprocal wrench 1
+        six_r_w_1_t_4 = six_r_e_1_r6_x*six_r_end_p1_r8_y - six_r_e_1_r6_y*six_r_end_p1_r8_x
+        six_r_w_1_t_5 = six_r_end_p1_r8_y*six_r_v_2_t - six_r_end_p1_r8_x*six_r_v_2_t_2
+        six_r_w_1_t_6 = six_r_e_1_r6_y*six_r_end_p1_r6_x + six_r_end_p1_r8_y*six_r_v_1_t
+        six_r_w_1_t_7 = six_r_end_p1_r6_x*six_r_v_2_t_2 - six_r_end_p1_r8_y*six_r_s_4
+        six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4
+        six_r_w_1_t_9 = six_r_size*six_r_w_1_t_6
+        six_r_w_1_t_10 = six_r_size*six_r_w_1_t_5
+        six_r_w_1_t_11 = six_r_size*six_r_w_1_t_7
+        six_r_w_1_t_12 = six_r_size*(-six_r_c_5_t*six_r_end_p1_r8_x - six_r_end_p1_r8_y*six_r_s_5)
+        six_r_w_1_t_13 = six_r_c_5_t*six_r_end_p1_r6_x*six_r_size
+        six_r_w_1_t_14 = six_r_end_p1_r8_y*six_r_size
+        six_r_w_1_t_15 = sqrt(six_r_size_t + six_r_w_1_t_14*six_r_w_1_t_14)
+        inv_six_r_w_1_t_69 = 1.0/six_r_w_1_t_15
+        six_r_w_1_t_16 = inv_six_r_w_1_t_69*six_r_platform_joint_offset_x
+        six_r_w_1_t_17 = inv_six_r_w_1_t_69*six_r_w_1_t_14
+        six_r_w_1_t_18 = six_r_w_1_t_13*six_r_w_1_t_17
+        six_r_w_1_t_19 = six_r_w_1_t_16*six_r_w_1_t_18
+        six_r_w_1_t_20 = six_r_w_1_t_13 - six_r_w_1_t_17*six_r_w_1_t_18
+        six_r_w_1_t_21 = six_r_v_1_y*six_r_w_1_t_16 - six_r_w_1_t_17*six_r_w_1_t_9
+        six_r_w_1_t_22 = six_r_v_1_y - six_r_w_1_t_16*six_r_w_1_t_21
+        six_r_w_1_t_23 = six_r_w_1_t_9 + six_r_w_1_t_17*six_r_w_1_t_21
+        six_r_w_1_t_24 = six_r_w_1_t_11*six_r_w_1_t_17
+        six_r_w_1_t_25 = six_r_v_2_y*six_r_w_1_t_16 - six_r_w_1_t_24
+        six_r_w_1_t_26 = six_r_v_2_y - six_r_w_1_t_16*six_r_w_1_t_25
+        six_r_w_1_t_27 = six_r_w_1_t_11 + six_r_w_1_t_17*six_r_w_1_t_25
+        six_r_w_1_t_28 = six_r_w_1_t_24 - six_r_v_3_y*six_r_w_1_t_16
+        six_r_w_1_t_29 = six_r_v_3_y + six_r_w_1_t_16*six_r_w_1_t_28
+        six_r_w_1_t_30 = six_r_w_1_t_11 - six_r_w_1_t_17*six_r_w_1_t_28
+        six_r_w_1_t_31 = (
+        sqrt(six_r_v_4_z*six_r_v_4_z + six_r_w_1_t_12*six_r_w_1_t_12 +
+            six_r_w_1_t_19*six_r_w_1_t_19 + six_r_w_1_t_20*six_r_w_1_t_20)
         )
-        inv_w_1_t_194 = 1.0/w_1_t_70
-        w_1_t_71 = inv_w_1_t_194*w_1_t_59
-        w_1_t_72 = inv_w_1_t_194*w_1_t_60
-        w_1_t_73 = inv_w_1_t_194*w_1_t_61
-        w_1_t_74 = inv_w_1_t_194*w_1_t_62
-        w_1_t_75 = inv_w_1_t_194*w_1_t_63
-        w_1_t_76 = (
-        w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
-            w_1_t_69*w_1_t_75
+        inv_six_r_w_1_t_101 = 1.0/six_r_w_1_t_31
+        six_r_w_1_t_32 = inv_six_r_w_1_t_101*six_r_w_1_t_19
+        six_r_w_1_t_33 = inv_six_r_w_1_t_101*six_r_v_4_z
+        six_r_w_1_t_34 = inv_six_r_w_1_t_101*six_r_w_1_t_12
+        six_r_w_1_t_35 = inv_six_r_w_1_t_101*six_r_w_1_t_20
+        six_r_w_1_t_36 = (
+        six_r_w_1_t_22*six_r_w_1_t_32 + six_r_w_1_t_23*six_r_w_1_t_35 +
+            six_r_w_1_t_34*six_r_w_1_t_8 - six_r_v_1_z*six_r_w_1_t_33
         )
-        w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
-        w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
-        w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
-        w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
-        w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
-        w_1_t_82 = (
-        sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
-            w_1_t_81*w_1_t_81)
+        six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_36 - six_r_w_1_t_22
+        six_r_w_1_t_38 = six_r_v_1_z + six_r_w_1_t_33*six_r_w_1_t_36
+        six_r_w_1_t_39 = six_r_w_1_t_34*six_r_w_1_t_36 - six_r_w_1_t_8
+        six_r_w_1_t_40 = six_r_w_1_t_35*six_r_w_1_t_36 - six_r_w_1_t_23
+        six_r_w_1_t_41 = six_r_w_1_t_10*six_r_w_1_t_34
+        six_r_w_1_t_42 = (
+        six_r_w_1_t_41 + six_r_w_1_t_26*six_r_w_1_t_32 + six_r_w_1_t_27*six_r_w_1_t_35 -
+            six_r_v_2_z*six_r_w_1_t_33
         )
-        inv_w_1_t_222 = 1.0/w_1_t_82
-        # (rrrrrr-V16) force part of reciprocal wrench 2
-        w_2_t = inv_w_1_t_194*inv_w_1_t_222*w_1_t_76
-        w_2_t_2 = inv_w_1_t_194*w_1_t_71 - inv_w_1_t_222*w_1_t_77*w_2_t
-        w_2_t_3 = inv_w_1_t_194*w_1_t_72 - inv_w_1_t_222*w_1_t_78*w_2_t
-        w_2_t_4 = inv_w_1_t_222*w_1_t_79*w_2_t - inv_w_1_t_194*w_1_t_73
-        w_2_t_5 = size*(inv_w_1_t_194*w_1_t_74 - inv_w_1_t_222*w_1_t_80*w_2_t)
-        w_2_t_6 = size*(inv_w_1_t_194*w_1_t_75 - inv_w_1_t_222*w_1_t_81*w_2_t)
-        # (M2) coupling block of M
-        q_in_base_x = (
-        R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
+        six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_42 - six_r_w_1_t_26
+        six_r_w_1_t_44 = six_r_v_2_z + six_r_w_1_t_33*six_r_w_1_t_42
+        six_r_w_1_t_45 = six_r_w_1_t_34*six_r_w_1_t_42 - six_r_w_1_t_10
+        six_r_w_1_t_46 = six_r_w_1_t_35*six_r_w_1_t_42 - six_r_w_1_t_27
+        six_r_w_1_t_47 = (
+        six_r_w_1_t_41 + six_r_w_1_t_29*six_r_w_1_t_32 + six_r_w_1_t_30*six_r_w_1_t_35 -
+            six_r_v_3_z*six_r_w_1_t_33
         )
-        q_in_base_y = (
-        R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y + R_yz*rrrrrr_platform_point_z
+        six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_47 - six_r_w_1_t_29
+        six_r_w_1_t_49 = six_r_v_3_z + six_r_w_1_t_33*six_r_w_1_t_47
+        six_r_w_1_t_50 = six_r_w_1_t_34*six_r_w_1_t_47 - six_r_w_1_t_10
+        six_r_w_1_t_51 = six_r_w_1_t_35*six_r_w_1_t_47 - six_r_w_1_t_30
+        six_r_w_1_t_52 = (
+        sqrt(six_r_v_1_x*six_r_v_1_x + six_r_w_1_t_37*six_r_w_1_t_37 +
+            six_r_w_1_t_38*six_r_w_1_t_38 + six_r_w_1_t_39*six_r_w_1_t_39 +
+            six_r_w_1_t_40*six_r_w_1_t_40)
         )
-        q_in_base_z = (
-        R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y + R_zz*rrrrrr_platform_point_z
+        inv_six_r_w_1_t_150 = 1.0/six_r_w_1_t_52
+        six_r_w_1_t_53 = inv_six_r_w_1_t_150*six_r_v_1_x
+        six_r_w_1_t_54 = inv_six_r_w_1_t_150*six_r_w_1_t_37
+        six_r_w_1_t_55 = inv_six_r_w_1_t_150*six_r_w_1_t_38
+        six_r_w_1_t_56 = inv_six_r_w_1_t_150*six_r_w_1_t_39
+        six_r_w_1_t_57 = inv_six_r_w_1_t_150*six_r_w_1_t_40
+        six_r_w_1_t_58 = (
+        six_r_v_2_x*six_r_w_1_t_53 + six_r_w_1_t_43*six_r_w_1_t_54 + six_r_w_1_t_44*six_r_w_1_t_55
+            + six_r_w_1_t_45*six_r_w_1_t_56 + six_r_w_1_t_46*six_r_w_1_t_57
         )
-        # (rrrrrr-V16) force part of reciprocal wrench 2
-        w_2_in_base_x = (
-        axis_x_rrrrrr_axes5_x*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_x*w_2_t_3 -
-            axis_z_rrrrrr_axes5_in_base_x*w_2_t_4
+        six_r_w_1_t_59 = six_r_v_2_x - six_r_w_1_t_53*six_r_w_1_t_58
+        six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_58
+        six_r_w_1_t_61 = six_r_w_1_t_44 - six_r_w_1_t_55*six_r_w_1_t_58
+        six_r_w_1_t_62 = six_r_w_1_t_45 - six_r_w_1_t_56*six_r_w_1_t_58
+        six_r_w_1_t_63 = six_r_w_1_t_46 - six_r_w_1_t_57*six_r_w_1_t_58
+        six_r_w_1_t_64 = (
+        six_r_v_3_x*six_r_w_1_t_53 + six_r_w_1_t_48*six_r_w_1_t_54 + six_r_w_1_t_49*six_r_w_1_t_55
+            + six_r_w_1_t_50*six_r_w_1_t_56 + six_r_w_1_t_51*six_r_w_1_t_57
         )
-        w_2_in_base_y = (
-        axis_x_rrrrrr_axes5_y*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_y*w_2_t_3 -
-            axis_z_rrrrrr_axes5_in_base_y*w_2_t_4
+        six_r_w_1_t_65 = six_r_v_3_x - six_r_w_1_t_53*six_r_w_1_t_64
+        six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_64
+        six_r_w_1_t_67 = six_r_w_1_t_49 - six_r_w_1_t_55*six_r_w_1_t_64
+        six_r_w_1_t_68 = six_r_w_1_t_50 - six_r_w_1_t_56*six_r_w_1_t_64
+        six_r_w_1_t_69 = six_r_w_1_t_51 - six_r_w_1_t_57*six_r_w_1_t_64
+        six_r_w_1_t_70 = (
+        sqrt(six_r_w_1_t_59*six_r_w_1_t_59 + six_r_w_1_t_60*six_r_w_1_t_60 +
+            six_r_w_1_t_61*six_r_w_1_t_61 + six_r_w_1_t_62*six_r_w_1_t_62 +
+            six_r_w_1_t_63*six_r_w_1_t_63)
         )
-        w_2_in_base_z = (
-        axis_x_rrrrrr_axes5_z*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_z*w_2_t_3 -
-            axis_z_rrrrrr_axes5_in_base_z*w_2_t_4
+        inv_six_r_w_1_t_194 = 1.0/six_r_w_1_t_70
+        six_r_w_1_t_71 = inv_six_r_w_1_t_194*six_r_w_1_t_59
+        six_r_w_1_t_72 = inv_six_r_w_1_t_194*six_r_w_1_t_60
+        six_r_w_1_t_73 = inv_six_r_w_1_t_194*six_r_w_1_t_61
+        six_r_w_1_t_74 = inv_six_r_w_1_t_194*six_r_w_1_t_62
+        six_r_w_1_t_75 = inv_six_r_w_1_t_194*six_r_w_1_t_63
+        six_r_w_1_t_76 = (
+        six_r_w_1_t_65*six_r_w_1_t_71 + six_r_w_1_t_66*six_r_w_1_t_72 +
+            six_r_w_1_t_67*six_r_w_1_t_73 + six_r_w_1_t_68*six_r_w_1_t_74 +
+            six_r_w_1_t_69*six_r_w_1_t_75
         )
-        # (rrrrrr-V29) moment part of reciprocal wrench 2
-        o_2_x = (
-        w_2_t_5*(axis_y_rrrrrr_axes5_in_base_x*end_p1_r8_x - axis_x_rrrrrr_axes5_x*end_p1_r8_y) +
-            w_2_t_6*(axis_z_rrrrrr_axes5_in_base_x*end_p1_r8_y -
-            axis_y_rrrrrr_axes5_in_base_x*end_p1_r6_x)
+        six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_76
+        six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_76
+        six_r_w_1_t_79 = six_r_w_1_t_67 - six_r_w_1_t_73*six_r_w_1_t_76
+        six_r_w_1_t_80 = six_r_w_1_t_68 - six_r_w_1_t_74*six_r_w_1_t_76
+        six_r_w_1_t_81 = six_r_w_1_t_69 - six_r_w_1_t_75*six_r_w_1_t_76
+        six_r_w_1_t_82 = (
+        sqrt(six_r_w_1_t_77*six_r_w_1_t_77 + six_r_w_1_t_78*six_r_w_1_t_78 +
+            six_r_w_1_t_79*six_r_w_1_t_79 + six_r_w_1_t_80*six_r_w_1_t_80 +
+            six_r_w_1_t_81*six_r_w_1_t_81)
         )
-        o_2_y = (
-        w_2_t_5*(axis_y_rrrrrr_axes5_in_base_y*end_p1_r8_x - axis_x_rrrrrr_axes5_y*end_p1_r8_y) +
-            w_2_t_6*(axis_z_rrrrrr_axes5_in_base_y*end_p1_r8_y -
-            axis_y_rrrrrr_axes5_in_base_y*end_p1_r6_x)
+        inv_six_r_w_1_t_222 = 1.0/six_r_w_1_t_82
+        # (six_r-w_2) force part of reciprocal wrench 2
+        six_r_w_2_t = inv_six_r_w_1_t_194*inv_six_r_w_1_t_222*six_r_w_1_t_76
+        six_r_w_2_t_2 = (
+        inv_six_r_w_1_t_194*six_r_w_1_t_71 - inv_six_r_w_1_t_222*six_r_w_1_t_77*six_r_w_2_t
         )
-        o_2_z = (
-        w_2_t_5*(axis_y_rrrrrr_axes5_in_base_z*end_p1_r8_x - axis_x_rrrrrr_axes5_z*end_p1_r8_y) +
-            w_2_t_6*(axis_z_rrrrrr_axes5_in_base_z*end_p1_r8_y -
-            axis_y_rrrrrr_axes5_in_base_z*end_p1_r6_x)
+        six_r_w_2_t_3 = (
+        inv_six_r_w_1_t_194*six_r_w_1_t_72 - inv_six_r_w_1_t_222*six_r_w_1_t_78*six_r_w_2_t
         )
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_2_x = o_2_x + q_in_base_y*w_2_in_base_z - q_in_base_z*w_2_in_base_y
-        H_a_2_y = o_2_y + q_in_base_z*w_2_in_base_x - q_in_base_x*w_2_in_base_z
-        H_a_2_z = o_2_z + q_in_base_x*w_2_in_base_y - q_in_base_y*w_2_in_base_x
-        # (C2) rms distance of the platform points from their centroid
-        spread_t_2 = b_c_x - rrrrrr_platform_point_x
-        spread_t_3 = b_c_y - rrrrrr_platform_point_y
-        spread_t_4 = b_c_z - rrrrrr_platform_point_z
-        spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 + spread_t_4*spread_t_4
-        # (rrrrrr-V13) force part of reciprocal wrench 1
-        pivot_size = abs(w_1_t_15)
-        pivot_size_2 = abs(w_1_t_31)
-        pivot_size_3 = abs(w_1_t_52)
-        pivot_size_4 = abs(w_1_t_70)
-        pivot_size_5 = abs(w_1_t_82)
-        least_pivots = (
-        least(least(least(least(inv_size*pivot_size, inv_size*pivot_size_2),
-            inv_size*pivot_size_3), inv_size*pivot_size_4), inv_size*pivot_size_5)
+        six_r_w_2_t_4 = (
+        inv_six_r_w_1_t_222*six_r_w_1_t_79*six_r_w_2_t - inv_six_r_w_1_t_194*six_r_w_1_t_73
+        )
+        six_r_w_2_t_5 = (
+        six_r_size*(inv_six_r_w_1_t_194*six_r_w_1_t_74 -
+            inv_six_r_w_1_t_222*six_r_w_1_t_80*six_r_w_2_t)
+        )
+        six_r_w_2_t_6 = (
+        six_r_size*(inv_six_r_w_1_t_194*six_r_w_1_t_75 -
+            inv_six_r_w_1_t_222*six_r_w_1_t_81*six_r_w_2_t)
+        )
+        # (M_ta) coupling block of M
+        six_r_q_in_base_x = (
+        R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
+        )
+        six_r_q_in_base_y = (
+        R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y + R_yz*six_r_platform_point_z
+        )
+        six_r_q_in_base_z = (
+        R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y + R_zz*six_r_platform_point_z
+        )
+        # (six_r-w_2) force part of reciprocal wrench 2
+        six_r_w_2_in_base_x = (
+        axis_x_six_r_axes5_x*six_r_w_2_t_2 - axis_y_six_r_axes5_in_base_x*six_r_w_2_t_3 -
+            axis_z_six_r_axes5_in_base_x*six_r_w_2_t_4
+        )
+        six_r_w_2_in_base_y = (
+        axis_x_six_r_axes5_y*six_r_w_2_t_2 - axis_y_six_r_axes5_in_base_y*six_r_w_2_t_3 -
+            axis_z_six_r_axes5_in_base_y*six_r_w_2_t_4
+        )
+        six_r_w_2_in_base_z = (
+        axis_x_six_r_axes5_z*six_r_w_2_t_2 - axis_y_six_r_axes5_in_base_z*six_r_w_2_t_3 -
+            axis_z_six_r_axes5_in_base_z*six_r_w_2_t_4
+        )
+        # (six_r-o_2) moment part of reciprocal wrench 2
+        six_r_o_2_x = (
+        six_r_w_2_t_5*(axis_y_six_r_axes5_in_base_x*six_r_end_p1_r8_x -
+            axis_x_six_r_axes5_x*six_r_end_p1_r8_y) +
+            six_r_w_2_t_6*(axis_z_six_r_axes5_in_base_x*six_r_end_p1_r8_y -
+            axis_y_six_r_axes5_in_base_x*six_r_end_p1_r6_x)
+        )
+        six_r_o_2_y = (
+        six_r_w_2_t_5*(axis_y_six_r_axes5_in_base_y*six_r_end_p1_r8_x -
+            axis_x_six_r_axes5_y*six_r_end_p1_r8_y) +
+            six_r_w_2_t_6*(axis_z_six_r_axes5_in_base_y*six_r_end_p1_r8_y -
+            axis_y_six_r_axes5_in_base_y*six_r_end_p1_r6_x)
+        )
+        six_r_o_2_z = (
+        six_r_w_2_t_5*(axis_y_six_r_axes5_in_base_z*six_r_end_p1_r8_x -
+            axis_x_six_r_axes5_z*six_r_end_p1_r8_y) +
+            six_r_w_2_t_6*(axis_z_six_r_axes5_in_base_z*six_r_end_p1_r8_y -
+            axis_y_six_r_axes5_in_base_z*six_r_end_p1_r6_x)
+        )
+        # (six_r-H_a_2) moment of the column's unit force about the platform origin
+        six_r_H_a_2_x = (
+        six_r_o_2_x + six_r_q_in_base_y*six_r_w_2_in_base_z -
+            six_r_q_in_base_z*six_r_w_2_in_base_y
+        )
+        six_r_H_a_2_y = (
+        six_r_o_2_y + six_r_q_in_base_z*six_r_w_2_in_base_x -
+            six_r_q_in_base_x*six_r_w_2_in_base_z
+        )
+        six_r_H_a_2_z = (
+        six_r_o_2_z + six_r_q_in_base_x*six_r_w_2_in_base_y -
+            six_r_q_in_base_y*six_r_w_2_in_base_x
+        )
+        # (spread) rms distance of the platform points from their centroid
+        six_r_spread_t = b_c_x - six_r_platform_point_x
+        six_r_spread_t_2 = b_c_y - six_r_platform_point_y
+        six_r_spread_t_3 = b_c_z - six_r_platform_point_z
+        six_r_spread_t_4 = (
+        six_r_spread_t*six_r_spread_t + six_r_spread_t_2*six_r_spread_t_2 +
+            six_r_spread_t_3*six_r_spread_t_3
+        )
+        # (six_r-w_1) force part of reciprocal wrench 1
+        six_r_pivot_size = abs(six_r_w_1_t_15)
+        six_r_pivot_size_2 = abs(six_r_w_1_t_31)
+        six_r_pivot_size_3 = abs(six_r_w_1_t_52)
+        six_r_pivot_size_4 = abs(six_r_w_1_t_70)
+        six_r_pivot_size_5 = abs(six_r_w_1_t_82)
+        six_r_least_pivots = (
+        least(least(least(least(inv_six_r_size*six_r_pivot_size,
+            inv_six_r_size*six_r_pivot_size_2), inv_six_r_size*six_r_pivot_size_3),
+            inv_six_r_size*six_r_pivot_size_4), inv_six_r_size*six_r_pivot_size_5)
         )
         clear = (
-        clear & m.every(leg, (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE *
-            size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
-            (abs(w_1_t_82) > _TOLERANCE * size))
+        clear & m.every(leg, (abs(six_r_w_1_t_15) > _TOLERANCE * six_r_size) &
+            (abs(six_r_w_1_t_31) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_52) > _TOLERANCE *
+            six_r_size) & (abs(six_r_w_1_t_70) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_82) >
+            _TOLERANCE * six_r_size))
         )
         sums = m.added(sums, leg, (
-        spread_t_5,
+        six_r_spread_t_4,
         ))
-        out_H[_H_rrrrrr[0][leg]] = w_2_in_base_x
-        out_H[_H_rrrrrr[1][leg]] = w_2_in_base_y
-        out_H[_H_rrrrrr[2][leg]] = w_2_in_base_z
-        out_H[_H_rrrrrr[3][leg]] = H_a_2_x
-        out_H[_H_rrrrrr[4][leg]] = H_a_2_y
-        out_H[_H_rrrrrr[5][leg]] = H_a_2_z
-        out_pivots[_pivots_rrrrrr[0][leg]] = least_pivots
-    total_rrrrrr, = sums
-    # (C2) rms distance of the platform points from their centroid
-    spread = spread_t*sqrt(total_rrrrrr)
+        out_H[_H_six_r[0][leg]] = six_r_w_2_in_base_x
+        out_H[_H_six_r[1][leg]] = six_r_w_2_in_base_y
+        out_H[_H_six_r[2][leg]] = six_r_w_2_in_base_z
+        out_H[_H_six_r[3][leg]] = six_r_H_a_2_x
+        out_H[_H_six_r[4][leg]] = six_r_H_a_2_y
+        out_H[_H_six_r[5][leg]] = six_r_H_a_2_z
+        out_pivots[_pivots_six_r[0][leg]] = six_r_least_pivots
+    total_six_r, = sums
+    # (spread) rms distance of the platform points from their centroid
+    spread = spread_t*sqrt(total_six_r)
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 
 
-# closure_rrrrrr: 1110 mul, 672 add, 0 div, 0 sqrt, 60 trig
-def _run_closure_rrrrrr(m, X, q):
+# closure_six_r: 1110 mul, 672 add, 0 div, 0 sqrt, 60 trig
+def _run_closure_six_r(m, X, q):
     sin = m.sin
     cos = m.cos
-    shared, legs = m.constants("closure_rrrrrr")
+    shared, legs = m.constants("closure_six_r")
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -9599,211 +10863,223 @@ def _run_closure_rrrrrr(m, X, q):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_gap_rrrrrr = m.zeros("gap_rrrrrr")
-    out_jacobian_rrrrrr = m.zeros("jacobian_rrrrrr")
+    out_gap_six_r = m.zeros("gap_six_r")
+    out_jacobian_six_r = m.zeros("jacobian_six_r")
     for leg, k in legs[0]:
         (
-        rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
-            rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
-            rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_base_point_x, rrrrrr_base_point_y,
-            rrrrrr_base_point_z, rrrrrr_joint2_offset_x, rrrrrr_joint3_offset_x,
-            rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x, rrrrrr_platform_joint_axis_platform_x,
-            rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
-            rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x, rrrrrr_platform_point_y,
-            rrrrrr_platform_point_z,
+        six_r_base_frame_xx, six_r_base_frame_xy, six_r_base_frame_xz, six_r_base_frame_yx,
+            six_r_base_frame_yy, six_r_base_frame_yz, six_r_base_frame_zx, six_r_base_frame_zy,
+            six_r_base_frame_zz, six_r_base_point_x, six_r_base_point_y, six_r_base_point_z,
+            six_r_joint2_offset_x, six_r_joint3_offset_x, six_r_joint4_offset_x,
+            six_r_joint5_offset_x, six_r_platform_joint_axis_platform_x,
+            six_r_platform_joint_axis_platform_y, six_r_platform_joint_axis_platform_z,
+            six_r_platform_joint_offset_x, six_r_platform_point_x, six_r_platform_point_y,
+            six_r_platform_point_z,
         ) = k
-        q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
-        q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
-        q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
-        q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
-        q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
-        # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
-        c_5_t = sin(q_5)
-        # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
-        s_5 = cos(q_5)
-        # (rrrrrr-V2) from joint 4 to the connection point, along the links
-        r_4_t = c_5_t*rrrrrr_platform_joint_offset_x
-        r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5
-        # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
-        c_4_t = sin(q_4)
-        # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
-        s_4 = cos(q_4)
-        # (rrrrrr-V2) from joint 4 to the connection point, along the links
-        r_4_t_2 = r_4_t*s_4
-        r_4_t_3 = c_4_t*r_4_t
-        # (rrrrrr-V3) from joint 3 to the connection point, along the links
-        r_3_x = r_4_z + rrrrrr_joint4_offset_x
-        # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
-        c_3 = cos(q_3)
-        # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
-        s_3 = sin(q_3)
-        # (rrrrrr-V3) from joint 3 to the connection point, along the links
-        r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3
-        # (rrrrrr-V4) from joint 2 to the connection point, along the links
-        r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3
-        # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
-        c_2_t = sin(q_2)
-        # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
-        s_2 = cos(q_2)
-        # (rrrrrr-V4) from joint 2 to the connection point, along the links
-        r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2
-        # (rrrrrr-V5) from joint 1 to the connection point, along the links
-        r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y
-        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-        e_1_r2_x = c_3*s_2 - c_2_t*s_3
-        e_1_r2_y = -c_2_t*c_3 - s_2*s_3
-        v_1_t = c_4_t*e_1_r2_y
-        v_1_t_2 = e_1_r2_y*s_4
-        e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5
-        e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x
-        # (rrrrrr-V5) from joint 1 to the connection point, along the links
-        r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x
-        r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2
-        r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3
-        r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3
-        r_1_t = r_4_t_3*s_4
-        r_1_r4_x = r_1_t - c_4_t*r_1_r2_y
-        r_1_t_2 = c_4_t*r_4_t_3
-        r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4
-        r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y
-        r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5
-        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-        v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t
-        v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t
-        v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x
-        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-        v_2_t = c_4_t*c_5_t
-        v_2_t_2 = c_4_t*s_5
-        # (rrrrrr-V4) from joint 2 to the connection point, along the links
-        r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3
-        r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3
-        r_2_r2_x = r_1_t - c_4_t*r_2_r0_y
-        r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4
-        r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y
-        r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5
-        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-        v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4
-        v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t
-        v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2
-        # (rrrrrr-V3) from joint 3 to the connection point, along the links
-        r_3_r1_x = r_1_t - c_4_t*r_4_t_2
-        r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4
-        r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y
-        r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5
-        # (rrrrrr-V8) velocity of the connection point per rate of joint 3
-        v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4
-        v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t
-        v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2
-        # (rrrrrr-V9) velocity of the connection point per rate of joint 4
-        v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
-        # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
-        c_1_t = sin(q_1)
-        # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
-        s_1 = cos(q_1)
-        # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-        end_p1_r0_x = (
-        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy +
-            R_yx*rrrrrr_base_frame_yy + R_zx*rrrrrr_base_frame_zy) +
-            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
-            R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
-            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
-            R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy)
+        six_r_q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
+        six_r_q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
+        six_r_q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
+        six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
+        six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
+        six_r_c_5_t = sin(six_r_q_5)
+        # (six_r-s_5) sine of the angle of joint 5 from its reference direction
+        six_r_s_5 = cos(six_r_q_5)
+        # (six_r-r_4) from joint 4 to the connection point, along the links
+        six_r_r_4_t = six_r_c_5_t*six_r_platform_joint_offset_x
+        six_r_r_4_z = six_r_joint5_offset_x + six_r_platform_joint_offset_x*six_r_s_5
+        # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
+        six_r_c_4_t = sin(six_r_q_4)
+        # (six_r-s_4) sine of the angle of joint 4 from its reference direction
+        six_r_s_4 = cos(six_r_q_4)
+        # (six_r-r_4) from joint 4 to the connection point, along the links
+        six_r_r_4_t_2 = six_r_r_4_t*six_r_s_4
+        six_r_r_4_t_3 = six_r_c_4_t*six_r_r_4_t
+        # (six_r-r_3) from joint 3 to the connection point, along the links
+        six_r_r_3_x = six_r_joint4_offset_x + six_r_r_4_z
+        # (six_r-c_3) cosine of the angle of joint 3 from its reference direction
+        six_r_c_3 = cos(six_r_q_3)
+        # (six_r-s_3) sine of the angle of joint 3 from its reference direction
+        six_r_s_3 = sin(six_r_q_3)
+        # (six_r-r_3) from joint 3 to the connection point, along the links
+        six_r_r_3_r0_y = six_r_c_3*six_r_r_4_t_2 + six_r_r_3_x*six_r_s_3
+        # (six_r-r_2) from joint 2 to the connection point, along the links
+        six_r_r_2_x = six_r_joint3_offset_x + six_r_c_3*six_r_r_3_x - six_r_r_4_t_2*six_r_s_3
+        # (six_r-c_2) cosine of the angle of joint 2 from its reference direction
+        six_r_c_2_t = sin(six_r_q_2)
+        # (six_r-s_2) sine of the angle of joint 2 from its reference direction
+        six_r_s_2 = cos(six_r_q_2)
+        # (six_r-r_2) from joint 2 to the connection point, along the links
+        six_r_r_2_r0_x = -six_r_c_2_t*six_r_r_2_x - six_r_r_3_r0_y*six_r_s_2
+        # (six_r-r_1) from joint 1 to the connection point, along the links
+        six_r_r_1_z = six_r_joint2_offset_x + six_r_r_2_x*six_r_s_2 - six_r_c_2_t*six_r_r_3_r0_y
+        # (six_r-v_1) velocity of the connection point per rate of joint 1
+        six_r_e_1_r2_x = six_r_c_3*six_r_s_2 - six_r_c_2_t*six_r_s_3
+        six_r_e_1_r2_y = -six_r_c_2_t*six_r_c_3 - six_r_s_2*six_r_s_3
+        six_r_v_1_t = six_r_c_4_t*six_r_e_1_r2_y
+        six_r_v_1_t_2 = six_r_e_1_r2_y*six_r_s_4
+        six_r_e_1_r6_x = six_r_c_5_t*six_r_v_1_t_2 + six_r_e_1_r2_x*six_r_s_5
+        six_r_e_1_r6_y = six_r_s_5*six_r_v_1_t_2 - six_r_c_5_t*six_r_e_1_r2_x
+        # (six_r-r_1) from joint 1 to the connection point, along the links
+        six_r_r_1_r1_x = six_r_r_1_z*six_r_s_2 - six_r_c_2_t*six_r_r_2_r0_x
+        six_r_r_1_r1_y = -six_r_c_2_t*six_r_r_1_z - six_r_r_2_r0_x*six_r_s_2
+        six_r_r_1_r2_x = six_r_c_3*six_r_r_1_r1_x + six_r_r_1_r1_y*six_r_s_3
+        six_r_r_1_r2_y = six_r_c_3*six_r_r_1_r1_y - six_r_r_1_r1_x*six_r_s_3
+        six_r_r_1_t = six_r_r_4_t_3*six_r_s_4
+        six_r_r_1_r4_x = six_r_r_1_t - six_r_c_4_t*six_r_r_1_r2_y
+        six_r_r_1_t_2 = six_r_c_4_t*six_r_r_4_t_3
+        six_r_r_1_r4_y = -six_r_r_1_t_2 - six_r_r_1_r2_y*six_r_s_4
+        six_r_r_1_r6_x = six_r_r_1_r2_x*six_r_s_5 - six_r_c_5_t*six_r_r_1_r4_y
+        six_r_r_1_r6_y = -six_r_c_5_t*six_r_r_1_r2_x - six_r_r_1_r4_y*six_r_s_5
+        # (six_r-v_1) velocity of the connection point per rate of joint 1
+        six_r_v_1_x = six_r_e_1_r6_y*six_r_r_1_r4_x + six_r_r_1_r6_y*six_r_v_1_t
+        six_r_v_1_y = -six_r_e_1_r6_x*six_r_r_1_r4_x - six_r_r_1_r6_x*six_r_v_1_t
+        six_r_v_1_z = six_r_e_1_r6_x*six_r_r_1_r6_y - six_r_e_1_r6_y*six_r_r_1_r6_x
+        # (six_r-v_2) velocity of the connection point per rate of joint 2
+        six_r_v_2_t = six_r_c_4_t*six_r_c_5_t
+        six_r_v_2_t_2 = six_r_c_4_t*six_r_s_5
+        # (six_r-r_2) from joint 2 to the connection point, along the links
+        six_r_r_2_r0_x_2 = six_r_c_3*six_r_r_2_x + six_r_r_3_r0_y*six_r_s_3
+        six_r_r_2_r0_y = six_r_c_3*six_r_r_3_r0_y - six_r_r_2_x*six_r_s_3
+        six_r_r_2_r2_x = six_r_r_1_t - six_r_c_4_t*six_r_r_2_r0_y
+        six_r_r_2_r2_y = -six_r_r_1_t_2 - six_r_r_2_r0_y*six_r_s_4
+        six_r_r_2_r4_x = six_r_r_2_r0_x_2*six_r_s_5 - six_r_c_5_t*six_r_r_2_r2_y
+        six_r_r_2_r4_y = -six_r_c_5_t*six_r_r_2_r0_x_2 - six_r_r_2_r2_y*six_r_s_5
+        # (six_r-v_2) velocity of the connection point per rate of joint 2
+        six_r_v_2_x = six_r_r_2_r2_x*six_r_v_2_t_2 - six_r_r_2_r4_y*six_r_s_4
+        six_r_v_2_y = six_r_r_2_r4_x*six_r_s_4 - six_r_r_2_r2_x*six_r_v_2_t
+        six_r_v_2_z = six_r_r_2_r4_y*six_r_v_2_t - six_r_r_2_r4_x*six_r_v_2_t_2
+        # (six_r-r_3) from joint 3 to the connection point, along the links
+        six_r_r_3_r1_x = six_r_r_1_t - six_r_c_4_t*six_r_r_4_t_2
+        six_r_r_3_r1_y = -six_r_r_1_t_2 - six_r_r_4_t_2*six_r_s_4
+        six_r_r_3_r3_x = six_r_r_3_x*six_r_s_5 - six_r_c_5_t*six_r_r_3_r1_y
+        six_r_r_3_r3_y = -six_r_c_5_t*six_r_r_3_x - six_r_r_3_r1_y*six_r_s_5
+        # (six_r-v_3) velocity of the connection point per rate of joint 3
+        six_r_v_3_x = six_r_r_3_r1_x*six_r_v_2_t_2 - six_r_r_3_r3_y*six_r_s_4
+        six_r_v_3_y = six_r_r_3_r3_x*six_r_s_4 - six_r_r_3_r1_x*six_r_v_2_t
+        six_r_v_3_z = six_r_r_3_r3_y*six_r_v_2_t - six_r_r_3_r3_x*six_r_v_2_t_2
+        # (six_r-v_4) velocity of the connection point per rate of joint 4
+        six_r_v_4_z = (
+        six_r_c_5_t*(six_r_c_5_t*six_r_r_4_t + six_r_r_4_z*six_r_s_5) +
+            six_r_s_5*(six_r_r_4_t*six_r_s_5 - six_r_c_5_t*six_r_r_4_z)
         )
-        end_p1_r0_y = (
-        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz +
-            R_yx*rrrrrr_base_frame_yz + R_zx*rrrrrr_base_frame_zz) +
-            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
-            R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
-            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
-            R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz)
+        # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
+        six_r_c_1_t = sin(six_r_q_1)
+        # (six_r-s_1) sine of the angle of joint 1 from its reference direction
+        six_r_s_1 = cos(six_r_q_1)
+        # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
+        six_r_end_p1_r0_x = (
+        six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xy + R_yx*six_r_base_frame_yy
+            + R_zx*six_r_base_frame_zy) +
+            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xy +
+            R_yy*six_r_base_frame_yy + R_zy*six_r_base_frame_zy) +
+            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xy +
+            R_yz*six_r_base_frame_yy + R_zz*six_r_base_frame_zy)
         )
-        end_p1_r0_z = (
-        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx +
-            R_yx*rrrrrr_base_frame_yx + R_zx*rrrrrr_base_frame_zx) +
-            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
-            R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
-            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
-            R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx)
+        six_r_end_p1_r0_y = (
+        six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xz + R_yx*six_r_base_frame_yz
+            + R_zx*six_r_base_frame_zz) +
+            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xz +
+            R_yy*six_r_base_frame_yz + R_zy*six_r_base_frame_zz) +
+            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xz +
+            R_yz*six_r_base_frame_yz + R_zz*six_r_base_frame_zz)
         )
-        end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x
-        end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1
-        end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y
-        end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2
-        end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3
-        end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3
-        end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y
-        end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4
-        end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
-        end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
-        # (rrrrrr-V13) force part of reciprocal wrench 1
-        w_1_t = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
-        w_1_t_2 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
-        # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-        n_m1_r0_y = -c_5_t*end_p1_r8_x - end_p1_r8_y*s_5
-        # (rrrrrr-V13) force part of reciprocal wrench 1
-        w_1_t_3 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
-        w_1_t_4 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
-        # (rrrrrr-V12) direction 2 of the moment that the platform joint transmits
-        n_m2_t = c_5_t*end_p1_r6_x
-        # (rrrrrr-K1) from the base point to the connection point
-        S_x = (
-        t_x + R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y +
-            R_xz*rrrrrr_platform_point_z - rrrrrr_base_point_x
+        six_r_end_p1_r0_z = (
+        six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xx + R_yx*six_r_base_frame_yx
+            + R_zx*six_r_base_frame_zx) +
+            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xx +
+            R_yy*six_r_base_frame_yx + R_zy*six_r_base_frame_zx) +
+            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xx +
+            R_yz*six_r_base_frame_yx + R_zz*six_r_base_frame_zx)
         )
-        S_y = (
-        t_y + R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y +
-            R_yz*rrrrrr_platform_point_z - rrrrrr_base_point_y
+        six_r_end_p1_r1_x = six_r_end_p1_r0_y*six_r_s_1 - six_r_c_1_t*six_r_end_p1_r0_x
+        six_r_end_p1_r1_y = -six_r_c_1_t*six_r_end_p1_r0_y - six_r_end_p1_r0_x*six_r_s_1
+        six_r_end_p1_r3_x = six_r_end_p1_r0_z*six_r_s_2 - six_r_c_2_t*six_r_end_p1_r1_y
+        six_r_end_p1_r3_y = -six_r_c_2_t*six_r_end_p1_r0_z - six_r_end_p1_r1_y*six_r_s_2
+        six_r_end_p1_r4_x = six_r_c_3*six_r_end_p1_r3_x + six_r_end_p1_r3_y*six_r_s_3
+        six_r_end_p1_r4_y = six_r_c_3*six_r_end_p1_r3_y - six_r_end_p1_r3_x*six_r_s_3
+        six_r_end_p1_r6_x = six_r_end_p1_r1_x*six_r_s_4 - six_r_c_4_t*six_r_end_p1_r4_y
+        six_r_end_p1_r6_y = -six_r_c_4_t*six_r_end_p1_r1_x - six_r_end_p1_r4_y*six_r_s_4
+        six_r_end_p1_r8_x = six_r_end_p1_r4_x*six_r_s_5 - six_r_c_5_t*six_r_end_p1_r6_y
+        six_r_end_p1_r8_y = -six_r_c_5_t*six_r_end_p1_r4_x - six_r_end_p1_r6_y*six_r_s_5
+        # (six_r-w_1) force part of reciprocal wrench 1
+        six_r_w_1_t = six_r_e_1_r6_x*six_r_end_p1_r8_y - six_r_e_1_r6_y*six_r_end_p1_r8_x
+        six_r_w_1_t_2 = six_r_end_p1_r8_y*six_r_v_2_t - six_r_end_p1_r8_x*six_r_v_2_t_2
+        # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
+        six_r_n_m1_r0_y = -six_r_c_5_t*six_r_end_p1_r8_x - six_r_end_p1_r8_y*six_r_s_5
+        # (six_r-w_1) force part of reciprocal wrench 1
+        six_r_w_1_t_3 = six_r_e_1_r6_y*six_r_end_p1_r6_x + six_r_end_p1_r8_y*six_r_v_1_t
+        six_r_w_1_t_4 = six_r_end_p1_r6_x*six_r_v_2_t_2 - six_r_end_p1_r8_y*six_r_s_4
+        # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
+        six_r_n_m2_t = six_r_c_5_t*six_r_end_p1_r6_x
+        # (six_r-S) from the base point to the connection point
+        six_r_S_x = (
+        t_x + R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y +
+            R_xz*six_r_platform_point_z - six_r_base_point_x
         )
-        S_z = (
-        t_z + R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y +
-            R_zz*rrrrrr_platform_point_z - rrrrrr_base_point_z
+        six_r_S_y = (
+        t_y + R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y +
+            R_yz*six_r_platform_point_z - six_r_base_point_y
         )
-        S_r0_x = S_x*rrrrrr_base_frame_xy + S_y*rrrrrr_base_frame_yy + S_z*rrrrrr_base_frame_zy
-        S_r0_y = S_x*rrrrrr_base_frame_xz + S_y*rrrrrr_base_frame_yz + S_z*rrrrrr_base_frame_zz
-        S_r0_z = S_x*rrrrrr_base_frame_xx + S_y*rrrrrr_base_frame_yx + S_z*rrrrrr_base_frame_zx
-        S_r1_x = S_r0_y*s_1 - S_r0_x*c_1_t
-        S_r1_y = -S_r0_x*s_1 - S_r0_y*c_1_t
-        S_r3_x = S_r0_z*s_2 - S_r1_y*c_2_t
-        S_r3_y = -S_r0_z*c_2_t - S_r1_y*s_2
-        S_r4_x = S_r3_x*c_3 + S_r3_y*s_3
-        S_r4_y = S_r3_y*c_3 - S_r3_x*s_3
-        S_r6_y = -S_r1_x*c_4_t - S_r4_y*s_4
-        # (rrrrrr-N141) from the connection point as the links reach it to the platform's
-        gap_x = S_r4_x*s_5 - r_1_r6_x - S_r6_y*c_5_t
-        gap_y = -r_1_r6_y - S_r4_x*c_5_t - S_r6_y*s_5
-        gap_z = S_r1_x*s_4 - r_1_r4_x - S_r4_y*c_4_t
-        out_gap_rrrrrr[_gap_rrrrrr_rrrrrr[0][leg]] = gap_x
-        out_gap_rrrrrr[_gap_rrrrrr_rrrrrr[1][leg]] = gap_y
-        out_gap_rrrrrr[_gap_rrrrrr_rrrrrr[2][leg]] = gap_z
-        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[0][leg]] = v_1_x
-        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[1][leg]] = v_1_y
-        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[2][leg]] = v_1_z
-        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[3][leg]] = v_2_x
-        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[4][leg]] = v_2_y
-        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[5][leg]] = v_2_z
-        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[6][leg]] = v_3_x
-        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[7][leg]] = v_3_y
-        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[8][leg]] = v_3_z
-        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[9][leg]] = v_4_z
-        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[10][leg]] = rrrrrr_platform_joint_offset_x
-        out_gap_rrrrrr[_gap_rrrrrr_rrrrrr[3][leg]] = -end_p1_r6_x
-        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[11][leg]] = -w_1_t
-        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[12][leg]] = -w_1_t_2
-        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[13][leg]] = -w_1_t_2
-        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[14][leg]] = n_m1_r0_y
-        out_gap_rrrrrr[_gap_rrrrrr_rrrrrr[4][leg]] = -end_p1_r8_x
-        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[15][leg]] = -w_1_t_3
-        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[16][leg]] = -w_1_t_4
-        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[17][leg]] = -w_1_t_4
-        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[18][leg]] = n_m2_t
-        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[19][leg]] = end_p1_r8_y
-    return ok, (out_gap_rrrrrr, out_jacobian_rrrrrr,)
+        six_r_S_z = (
+        t_z + R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y +
+            R_zz*six_r_platform_point_z - six_r_base_point_z
+        )
+        six_r_S_r0_x = (
+        six_r_S_x*six_r_base_frame_xy + six_r_S_y*six_r_base_frame_yy +
+            six_r_S_z*six_r_base_frame_zy
+        )
+        six_r_S_r0_y = (
+        six_r_S_x*six_r_base_frame_xz + six_r_S_y*six_r_base_frame_yz +
+            six_r_S_z*six_r_base_frame_zz
+        )
+        six_r_S_r0_z = (
+        six_r_S_x*six_r_base_frame_xx + six_r_S_y*six_r_base_frame_yx +
+            six_r_S_z*six_r_base_frame_zx
+        )
+        six_r_S_r1_x = six_r_S_r0_y*six_r_s_1 - six_r_S_r0_x*six_r_c_1_t
+        six_r_S_r1_y = -six_r_S_r0_x*six_r_s_1 - six_r_S_r0_y*six_r_c_1_t
+        six_r_S_r3_x = six_r_S_r0_z*six_r_s_2 - six_r_S_r1_y*six_r_c_2_t
+        six_r_S_r3_y = -six_r_S_r0_z*six_r_c_2_t - six_r_S_r1_y*six_r_s_2
+        six_r_S_r4_x = six_r_S_r3_x*six_r_c_3 + six_r_S_r3_y*six_r_s_3
+        six_r_S_r4_y = six_r_S_r3_y*six_r_c_3 - six_r_S_r3_x*six_r_s_3
+        six_r_S_r6_y = -six_r_S_r1_x*six_r_c_4_t - six_r_S_r4_y*six_r_s_4
+        # (six_r-gap) from the connection point as the links reach it to the platform's
+        six_r_gap_x = six_r_S_r4_x*six_r_s_5 - six_r_r_1_r6_x - six_r_S_r6_y*six_r_c_5_t
+        six_r_gap_y = -six_r_r_1_r6_y - six_r_S_r4_x*six_r_c_5_t - six_r_S_r6_y*six_r_s_5
+        six_r_gap_z = six_r_S_r1_x*six_r_s_4 - six_r_r_1_r4_x - six_r_S_r4_y*six_r_c_4_t
+        out_gap_six_r[_gap_six_r_six_r[0][leg]] = six_r_gap_x
+        out_gap_six_r[_gap_six_r_six_r[1][leg]] = six_r_gap_y
+        out_gap_six_r[_gap_six_r_six_r[2][leg]] = six_r_gap_z
+        out_jacobian_six_r[_jacobian_six_r_six_r[0][leg]] = six_r_v_1_x
+        out_jacobian_six_r[_jacobian_six_r_six_r[1][leg]] = six_r_v_1_y
+        out_jacobian_six_r[_jacobian_six_r_six_r[2][leg]] = six_r_v_1_z
+        out_jacobian_six_r[_jacobian_six_r_six_r[3][leg]] = six_r_v_2_x
+        out_jacobian_six_r[_jacobian_six_r_six_r[4][leg]] = six_r_v_2_y
+        out_jacobian_six_r[_jacobian_six_r_six_r[5][leg]] = six_r_v_2_z
+        out_jacobian_six_r[_jacobian_six_r_six_r[6][leg]] = six_r_v_3_x
+        out_jacobian_six_r[_jacobian_six_r_six_r[7][leg]] = six_r_v_3_y
+        out_jacobian_six_r[_jacobian_six_r_six_r[8][leg]] = six_r_v_3_z
+        out_jacobian_six_r[_jacobian_six_r_six_r[9][leg]] = six_r_v_4_z
+        out_jacobian_six_r[_jacobian_six_r_six_r[10][leg]] = six_r_platform_joint_offset_x
+        out_gap_six_r[_gap_six_r_six_r[3][leg]] = -six_r_end_p1_r6_x
+        out_jacobian_six_r[_jacobian_six_r_six_r[11][leg]] = -six_r_w_1_t
+        out_jacobian_six_r[_jacobian_six_r_six_r[12][leg]] = -six_r_w_1_t_2
+        out_jacobian_six_r[_jacobian_six_r_six_r[13][leg]] = -six_r_w_1_t_2
+        out_jacobian_six_r[_jacobian_six_r_six_r[14][leg]] = six_r_n_m1_r0_y
+        out_gap_six_r[_gap_six_r_six_r[4][leg]] = -six_r_end_p1_r8_x
+        out_jacobian_six_r[_jacobian_six_r_six_r[15][leg]] = -six_r_w_1_t_3
+        out_jacobian_six_r[_jacobian_six_r_six_r[16][leg]] = -six_r_w_1_t_4
+        out_jacobian_six_r[_jacobian_six_r_six_r[17][leg]] = -six_r_w_1_t_4
+        out_jacobian_six_r[_jacobian_six_r_six_r[18][leg]] = six_r_n_m2_t
+        out_jacobian_six_r[_jacobian_six_r_six_r[19][leg]] = six_r_end_p1_r8_y
+    return ok, (out_gap_six_r, out_jacobian_six_r,)
 
 
 _GIVEN = ()  # positions in q and X of the extra coordinates
 _CLOSURES = (  # function, its inputs, shapes of its arrays; in q the joints of each leg, and those that turn;
     # rows of the Jacobian whose determinant tells the branch, and its signs
-    (_run_closure_rrrrrr, ('X', 'q'), ('gap_rrrrrr', 'jacobian_rrrrrr'), np.array([[0, 1, 2, 3, 4], [5, 6, 7, 8, 9], [10, 11, 12, 13, 14], [15, 16, 17, 18, 19], [20, 21, 22, 23, 24], [25, 26, 27, 28, 29]]), [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29], [0, 1, 2, 3, 4], _BRANCHES["sigma_closure"]),
+    (_run_closure_six_r, ('X', 'q'), ('gap_six_r', 'jacobian_six_r'), np.array([[0, 1, 2, 3, 4], [5, 6, 7, 8, 9], [10, 11, 12, 13, 14], [15, 16, 17, 18, 19], [20, 21, 22, 23, 24], [25, 26, 27, 28, 29]]), [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29], [0, 1, 2, 3, 4], _BRANCHES["six_r_sigma_closure"]),
 )
 _Q = 3  # where a quaternion begins in X
 _DEFAULT = Parameters()
@@ -9943,6 +11219,22 @@ def _steps_momentum(m, X, V, q0):
     M, = m.run(_run_M, ("M",), X, q)
     momentum = np.einsum("ijs,js->is", M, V)
     return (momentum,)
+
+
+def _steps_joint_margins(m, X, q0):
+    q = _closed(m, X, q0)
+    q, = m.run(_run_inverse_kinematics, ("q",), q)
+    margins = _unlimited(q, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19,
+        20, 21, 22, 23, 24, 25, 26, 27, 28, 29])
+    return (margins,)
+
+
+def _steps_within_limits(m, X, q0):
+    q = _closed(m, X, q0)
+    q, = m.run(_run_inverse_kinematics, ("q",), q)
+    subtract_1 = q - q
+    within = _not_negative(subtract_1)
+    return (within,)
 
 
 def _steps_actuator_positions(m, X, q0):
@@ -10418,6 +11710,44 @@ def momentum(X, V, p=None, *, q0=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        ("q0", q0, (NJ,), HOME_Q),
+    )
+
+
+def joint_margins(X, p=None, *, q0=None):
+    """How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+    where there is none.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        q0: first guess of the displacements, by default HOME_Q (..., NJ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        margins: distances, in the order of q [m or rad] (..., NJ).
+    """
+    return _call(
+        "joint_margins", _steps_joint_margins, p,
+        ("X", X, (NQ,)),
+        ("q0", q0, (NJ,), HOME_Q),
+        unbounded=True,
+    )
+
+
+def within_limits(X, p=None, *, q0=None):
+    """Whether all joints are within their limits of displacement.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        q0: first guess of the displacements, by default HOME_Q (..., NJ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        within: 1 where no margin is negative, else 0; NaN is neither (...,).
+    """
+    return _call(
+        "within_limits", _steps_within_limits, p,
+        ("X", X, (NQ,)),
         ("q0", q0, (NJ,), HOME_Q),
     )
 

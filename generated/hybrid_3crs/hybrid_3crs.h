@@ -51,6 +51,7 @@ typedef HYBRID_3CRS_REAL hybrid_3crs_real;
 #define HYBRID_3CRS_NC 0
 #define HYBRID_3CRS_NW 6
 #define HYBRID_3CRS_NJ 9
+#define HYBRID_3CRS_OVERCONSTRAINED 0
 
 enum {
     HYBRID_3CRS_OK = 0,
@@ -71,46 +72,47 @@ typedef struct {
     /* inertia tensor about the centre of mass, platform axes [kg m^2] */
     hybrid_3crs_real platform_inertia[3][3];
     /* base point, base frame [m] */
-    hybrid_3crs_real rprs_base_point[3][3];
+    hybrid_3crs_real crs_base_point[3][3];
     /* rotation from leg axes to base axes [-] */
-    hybrid_3crs_real rprs_base_frame[3][3][3];
+    hybrid_3crs_real crs_base_frame[3][3][3];
     /* platform joint, platform frame [m] */
-    hybrid_3crs_real rprs_platform_point[3][3];
+    hybrid_3crs_real crs_platform_point[3][3];
     /* offset of joint 3, preceding link's frame [m] */
-    hybrid_3crs_real rprs_joint3_offset[3][3];
+    hybrid_3crs_real crs_joint3_offset[3][3];
     /* offset of platform joint, preceding link's frame [m] */
-    hybrid_3crs_real rprs_platform_joint_offset[3][3];
+    hybrid_3crs_real crs_platform_joint_offset[3][3];
     /* mass of link 2 [kg] */
-    hybrid_3crs_real rprs_link2_mass[3];
+    hybrid_3crs_real crs_link2_mass[3];
     /* centre of mass of link 2, link frame [m] */
-    hybrid_3crs_real rprs_link2_centre_of_mass[3][3];
+    hybrid_3crs_real crs_link2_centre_of_mass[3][3];
     /* inertia tensor of link 2 about its centre of mass, link axes [kg m^2] */
-    hybrid_3crs_real rprs_link2_inertia[3][3][3];
+    hybrid_3crs_real crs_link2_inertia[3][3][3];
     /* mass of link 3 [kg] */
-    hybrid_3crs_real rprs_link3_mass[3];
+    hybrid_3crs_real crs_link3_mass[3];
     /* centre of mass of link 3, link frame [m] */
-    hybrid_3crs_real rprs_link3_centre_of_mass[3][3];
+    hybrid_3crs_real crs_link3_centre_of_mass[3][3];
     /* inertia tensor of link 3 about its centre of mass, link axes [kg m^2] */
-    hybrid_3crs_real rprs_link3_inertia[3][3][3];
+    hybrid_3crs_real crs_link3_inertia[3][3][3];
 } hybrid_3crs_params;
 
 /* What depends on the parameters alone; set by hybrid_3crs_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
-    hybrid_3crs_real J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+    /* 3 legs of type crs; copies of the first fill up */
+    hybrid_3crs_real crs_J_2_xx[4], crs_J_3_xx[4], crs_J_3_xy[4], crs_J_3_xz[4], crs_J_3_yy[4],
+            crs_J_3_yz[4], crs_J_3_zz[4], crs_Sigma_3_xx[4], crs_Sigma_3_yy[4], crs_Sigma_3_zz[4],
+            crs_b_r0_x[4], crs_b_r0_y[4], crs_b_r0_z[4], crs_base_frame_xx[4], crs_base_frame_xy[4],
+            crs_base_frame_xz[4], crs_base_frame_yx[4], crs_base_frame_yy[4], crs_base_frame_yz[4],
+            crs_base_frame_zx[4], crs_base_frame_zy[4], crs_base_frame_zz[4], crs_base_point_x[4],
+            crs_base_point_y[4], crs_base_point_z[4], crs_branch_1[4], crs_branch_2[4], crs_g_r0_x[4],
+            crs_g_r0_y[4], crs_g_r0_z[4], crs_h_2_x[4], crs_h_2_y[4], crs_h_2_z[4], crs_h_3_x[4],
+            crs_h_3_y[4], crs_h_3_z[4], crs_joint3_offset_x[4], crs_link2_mass[4], crs_link3_mass[4],
+            crs_platform_joint_offset_x[4], crs_platform_point_x[4], crs_platform_point_y[4],
+            crs_platform_point_z[4], crs_size[4], crs_size_t[4], crs_size_t_2[4], inv_crs_size[4],
+            inv_crs_size_t[4], inv_crs_size_t_2[4];
+    hybrid_3crs_real J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
             J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
             h_star_x, h_star_y, h_star_z, legs_size, m_star, spread_t;
-    /* legs of type rprs */
-    hybrid_3crs_real J_2_xx[3], J_3_xx[3], J_3_xy[3], J_3_xz[3], J_3_yy[3], J_3_yz[3], J_3_zz[3],
-            Sigma_3_xx[3], Sigma_3_yy[3], Sigma_3_zz[3], b_r0_x[3], b_r0_y[3], b_r0_z[3], branch_1[3],
-            branch_2[3], g_r0_x[3], g_r0_y[3], g_r0_z[3], h_2_x[3], h_2_y[3], h_2_z[3], h_3_x[3],
-            h_3_y[3], h_3_z[3], inv_size[3], inv_size_t[3], inv_size_t_2[3], rprs_base_frame_xx[3],
-            rprs_base_frame_xy[3], rprs_base_frame_xz[3], rprs_base_frame_yx[3],
-            rprs_base_frame_yy[3], rprs_base_frame_yz[3], rprs_base_frame_zx[3],
-            rprs_base_frame_zy[3], rprs_base_frame_zz[3], rprs_base_point_x[3], rprs_base_point_y[3],
-            rprs_base_point_z[3], rprs_joint3_offset_x[3], rprs_link2_mass[3], rprs_link3_mass[3],
-            rprs_platform_joint_offset_x[3], rprs_platform_point_x[3], rprs_platform_point_y[3],
-            rprs_platform_point_z[3], size_[3], size_t_[3], size_t_2[3];
 } hybrid_3crs_model;
 
 extern const hybrid_3crs_params hybrid_3crs_default_params;
@@ -254,6 +256,20 @@ int hybrid_3crs_momentum(const hybrid_3crs_model *model, const hybrid_3crs_real 
     hybrid_3crs_real *V, hybrid_3crs_real *momentum);
 size_t hybrid_3crs_momentum_batch(const hybrid_3crs_model *model, size_t n, const hybrid_3crs_real
     *X, const hybrid_3crs_real *V, hybrid_3crs_real *momentum, int *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 93 mul, 72 add, 3 div, 6 sqrt, 6 trig. In: X (NQ). Out: margins (NJ). */
+int hybrid_3crs_joint_margins(const hybrid_3crs_model *model, const hybrid_3crs_real *X,
+    hybrid_3crs_real *margins);
+size_t hybrid_3crs_joint_margins_batch(const hybrid_3crs_model *model, size_t n, const
+    hybrid_3crs_real *X, hybrid_3crs_real *margins, int *status);
+
+/* Whether all joints are within their limits of displacement. 93 mul, 72 add, 3 div, 6 sqrt, 6
+   trig. In: X (NQ). Out: within (1). */
+int hybrid_3crs_within_limits(const hybrid_3crs_model *model, const hybrid_3crs_real *X,
+    hybrid_3crs_real *within);
+size_t hybrid_3crs_within_limits_batch(const hybrid_3crs_model *model, size_t n, const
+    hybrid_3crs_real *X, hybrid_3crs_real *within, int *status);
 
 /* Displacements of the actuated joints, in the order of tau. 93 mul, 72 add, 3 div, 6 sqrt, 6
    trig. In: X (NQ). Out: q (NU). */

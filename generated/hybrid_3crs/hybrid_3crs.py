@@ -33,6 +33,7 @@ __all__ = [
     "NC",
     "NW",
     "NJ",
+    "OVERCONSTRAINED",
     "ACTUATED",
     "ACTUATOR_NAMES",
     "H",
@@ -57,6 +58,7 @@ __all__ = [
     "inverse_dynamics",
     "inverse_kinematics",
     "joint_accelerations",
+    "joint_margins",
     "joint_rates",
     "leg_reactions",
     "momentum",
@@ -66,6 +68,7 @@ __all__ = [
     "power",
     "retract",
     "rotation",
+    "within_limits",
 ]
 
 NQ = 7
@@ -74,6 +77,7 @@ NU = 6
 NC = 0
 NW = 6
 NJ = 9
+OVERCONSTRAINED = 0
 
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
@@ -94,7 +98,7 @@ _SHAPES = {  # of the arrays that functions give
     "reach": (3,),
 }
 # Where the entries of a leg type's legs stand in these arrays, row by row.
-_H_rprs = (
+_H_crs = (
     [0, 2, 4],
     [6, 8, 10],
     [12, 14, 16],
@@ -108,27 +112,27 @@ _H_rprs = (
     [25, 27, 29],
     [31, 33, 35],
 )
-_q_rprs = (
+_q_crs = (
     [0, 3, 6],
     [1, 4, 7],
     [2, 5, 8],
 )
-_qd_rprs = (
+_qd_crs = (
     [0, 3, 6],
     [1, 4, 7],
     [2, 5, 8],
 )
-_qdd_rprs = (
+_qdd_crs = (
     [0, 3, 6],
     [1, 4, 7],
     [2, 5, 8],
 )
-_leg_force_rprs = (
+_leg_force_crs = (
     [0, 3, 6],
     [1, 4, 7],
     [2, 5, 8],
 )
-_drive_rprs = (
+_drive_crs = (
     [0, 6, 12],
     [1, 7, 13],
     [2, 8, 14],
@@ -136,10 +140,10 @@ _drive_rprs = (
     [4, 10, 16],
     [5, 11, 17],
 )
-_pivots_rprs = (
+_pivots_crs = (
     [0, 1, 2],
 )
-_reach_rprs = (
+_reach_crs = (
     [0, 1, 2],
 )
 ACTUATED = (0, 1, 3, 4, 6, 7)  # places of the actuated joints in q, in the order of tau
@@ -150,57 +154,57 @@ _DEFAULTS = {
     "platform_mass": 12.0,
     "platform_centre_of_mass": [0.0, 0.0, 0.04],
     "platform_inertia": [[0.35, 0.0, 0.0], [0.0, 0.35, 0.0], [0.0, 0.0, 0.6]],
-    "rprs_base_point": [
+    "crs_base_point": [
         [-0.06938081942349372, -0.0940425916311898, 0.09681130985905906],
         [0.11613368310208311, -0.013064256340531433, 0.09681130985905906],
         [-0.04675286367858936, 0.10710684797172126, 0.09681130985905906],
     ],
-    "rprs_base_frame": [
+    "crs_base_frame": [
         [[0.0, 0.9800665778412416, -0.19866933079506122], [0.0, 0.19866933079506122, 0.9800665778412416], [1.0, 0.0, 0.0]],
         [[0.0, -0.6620859763419978, -0.7494278884130636], [0.0, 0.7494278884130636, -0.6620859763419978], [1.0, 0.0, 0.0]],
         [[0.0, -0.317980601499244, 0.9480972192081247], [0.0, -0.9480972192081247, -0.317980601499244], [1.0, 0.0, 0.0]],
     ],
-    "rprs_platform_point": [
+    "crs_platform_point": [
         [0.29401997335237245, 0.05960079923851836, -0.02],
         [-0.19862579290259935, 0.22482836652391908, -0.02],
         [-0.0953941804497732, -0.28442916576243743, -0.02],
     ],
-    "rprs_joint3_offset": [
+    "crs_joint3_offset": [
         [0.05, 0.0, 0.0],
         [0.05, 0.0, 0.0],
         [0.05, 0.0, 0.0],
     ],
-    "rprs_platform_joint_offset": [
+    "crs_platform_joint_offset": [
         [0.55, 0.0, 0.0],
         [0.55, 0.0, 0.0],
         [0.55, 0.0, 0.0],
     ],
-    "rprs_link2_mass": [
+    "crs_link2_mass": [
         2.5,
         2.5,
         2.5,
     ],
-    "rprs_link2_centre_of_mass": [
+    "crs_link2_centre_of_mass": [
         [0.0, 0.0, 0.0],
         [0.0, 0.0, 0.0],
         [0.0, 0.0, 0.0],
     ],
-    "rprs_link2_inertia": [
+    "crs_link2_inertia": [
         [[0.005, 0.0, 0.0], [0.0, 0.005, 0.0], [0.0, 0.0, 0.005]],
         [[0.005, 0.0, 0.0], [0.0, 0.005, 0.0], [0.0, 0.0, 0.005]],
         [[0.005, 0.0, 0.0], [0.0, 0.005, 0.0], [0.0, 0.0, 0.005]],
     ],
-    "rprs_link3_mass": [
+    "crs_link3_mass": [
         1.3,
         1.3,
         1.3,
     ],
-    "rprs_link3_centre_of_mass": [
+    "crs_link3_centre_of_mass": [
         [0.275, 0.0, 0.0],
         [0.275, 0.0, 0.0],
         [0.275, 0.0, 0.0],
     ],
-    "rprs_link3_inertia": [
+    "crs_link3_inertia": [
         [[0.00026000000000000003, 0.0, 0.0], [0.0, 0.03290083333333334, 0.0], [0.0, 0.0, 0.03290083333333334]],
         [[0.00026000000000000003, 0.0, 0.0], [0.0, 0.03290083333333334, 0.0], [0.0, 0.0, 0.03290083333333334]],
         [[0.00026000000000000003, 0.0, 0.0], [0.0, 0.03290083333333334, 0.0], [0.0, 0.0, 0.03290083333333334]],
@@ -211,17 +215,17 @@ _RULES = {  # shape, in all and of one; entries that are zero by structure; what
     "platform_mass": ((), (), (), "mass"),
     "platform_centre_of_mass": ((3,), (3,), (), "free"),
     "platform_inertia": ((3, 3), (3, 3), (), "inertia"),
-    "rprs_base_point": ((3, 3), (3,), (), "free"),
-    "rprs_base_frame": ((3, 3, 3), (3, 3), (), "rotation"),
-    "rprs_platform_point": ((3, 3), (3,), (), "free"),
-    "rprs_joint3_offset": ((3, 3), (3,), (1, 2), "free"),
-    "rprs_platform_joint_offset": ((3, 3), (3,), (1, 2), "free"),
-    "rprs_link2_mass": ((3,), (), (), "mass"),
-    "rprs_link2_centre_of_mass": ((3, 3), (3,), (), "free"),
-    "rprs_link2_inertia": ((3, 3, 3), (3, 3), (), "inertia"),
-    "rprs_link3_mass": ((3,), (), (), "mass"),
-    "rprs_link3_centre_of_mass": ((3, 3), (3,), (), "free"),
-    "rprs_link3_inertia": ((3, 3, 3), (3, 3), (), "inertia"),
+    "crs_base_point": ((3, 3), (3,), (), "free"),
+    "crs_base_frame": ((3, 3, 3), (3, 3), (), "rotation"),
+    "crs_platform_point": ((3, 3), (3,), (), "free"),
+    "crs_joint3_offset": ((3, 3), (3,), (1, 2), "free"),
+    "crs_platform_joint_offset": ((3, 3), (3,), (1, 2), "free"),
+    "crs_link2_mass": ((3,), (), (), "mass"),
+    "crs_link2_centre_of_mass": ((3, 3), (3,), (), "free"),
+    "crs_link2_inertia": ((3, 3, 3), (3, 3), (), "inertia"),
+    "crs_link3_mass": ((3,), (), (), "mass"),
+    "crs_link3_centre_of_mass": ((3, 3), (3,), (), "free"),
+    "crs_link3_inertia": ((3, 3, 3), (3, 3), (), "inertia"),
 }
 
 
@@ -237,17 +241,17 @@ class Parameters:
         platform_mass: mass of the platform [kg], a number.
         platform_centre_of_mass: centre of mass, platform frame [m], shape (3,).
         platform_inertia: inertia tensor about the centre of mass, platform axes [kg m^2], shape (3, 3).
-        rprs_base_point: base point, base frame [m], shape (3, 3).
-        rprs_base_frame: rotation from leg axes to base axes [-], shape (3, 3, 3).
-        rprs_platform_point: platform joint, platform frame [m], shape (3, 3).
-        rprs_joint3_offset: offset of joint 3, preceding link's frame [m], shape (3, 3).
-        rprs_platform_joint_offset: offset of platform joint, preceding link's frame [m], shape (3, 3).
-        rprs_link2_mass: mass of link 2 [kg], shape (3,).
-        rprs_link2_centre_of_mass: centre of mass of link 2, link frame [m], shape (3, 3).
-        rprs_link2_inertia: inertia tensor of link 2 about its centre of mass, link axes [kg m^2], shape (3, 3, 3).
-        rprs_link3_mass: mass of link 3 [kg], shape (3,).
-        rprs_link3_centre_of_mass: centre of mass of link 3, link frame [m], shape (3, 3).
-        rprs_link3_inertia: inertia tensor of link 3 about its centre of mass, link axes [kg m^2], shape (3, 3, 3).
+        crs_base_point: base point, base frame [m], shape (3, 3).
+        crs_base_frame: rotation from leg axes to base axes [-], shape (3, 3, 3).
+        crs_platform_point: platform joint, platform frame [m], shape (3, 3).
+        crs_joint3_offset: offset of joint 3, preceding link's frame [m], shape (3, 3).
+        crs_platform_joint_offset: offset of platform joint, preceding link's frame [m], shape (3, 3).
+        crs_link2_mass: mass of link 2 [kg], shape (3,).
+        crs_link2_centre_of_mass: centre of mass of link 2, link frame [m], shape (3, 3).
+        crs_link2_inertia: inertia tensor of link 2 about its centre of mass, link axes [kg m^2], shape (3, 3, 3).
+        crs_link3_mass: mass of link 3 [kg], shape (3,).
+        crs_link3_centre_of_mass: centre of mass of link 3, link frame [m], shape (3, 3).
+        crs_link3_inertia: inertia tensor of link 3 about its centre of mass, link axes [kg m^2], shape (3, 3, 3).
     """
 
     def __init__(self, **values):
@@ -348,7 +352,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return np.full(shape, default)
+        return _filled(shape, default) if isinstance(default, float) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -361,6 +365,16 @@ def _argument(function, name, value, shape, default=None, rule=""):
     elif rule == "positive" and not np.all((array > 0.0) & (array < np.inf)):
         raise ValueError(f"{function}: {name} must be positive and finite")
     return array
+
+
+_FILLED = {}
+
+
+def _filled(shape, value):
+    """An array of one value, made once."""
+    if (shape, value) not in _FILLED:
+        _FILLED[shape, value] = _frozen(np.full(shape, value))
+    return _FILLED[shape, value]
 
 
 def _lead(leads):
@@ -454,15 +468,15 @@ HOME_X = _frozen(np.array([0.0, 0.0, 0.75, 0.0, 0.0, 0.0, 1.0]))
 HOME_Q = _frozen(np.array([0.2, 0.2, 0.8, 0.2, 0.2, 0.8, 0.2, 0.2, 0.8]))
 
 _BRANCHES = {  # assembly branch of home, a sign per leg
-    "branch_1": np.array([1.0, 1.0, 1.0]),
-    "branch_2": np.array([-1.0, -1.0, -1.0]),
+    "crs_branch_1": np.array([1.0, 1.0, 1.0]),
+    "crs_branch_2": np.array([-1.0, -1.0, -1.0]),
 }
 
 
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
-    _rprs = 3
+    _crs = 3
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -476,45 +490,45 @@ def _prepare(p):
     platform_inertia_yy = p.platform_inertia[1, 1]
     platform_inertia_yz = p.platform_inertia[1, 2]
     platform_inertia_zz = p.platform_inertia[2, 2]
-    rprs_base_point_x = p.rprs_base_point[:, 0]
-    rprs_base_point_y = p.rprs_base_point[:, 1]
-    rprs_base_point_z = p.rprs_base_point[:, 2]
-    rprs_base_frame_xx = p.rprs_base_frame[:, 0, 0]
-    rprs_base_frame_xy = p.rprs_base_frame[:, 0, 1]
-    rprs_base_frame_xz = p.rprs_base_frame[:, 0, 2]
-    rprs_base_frame_yx = p.rprs_base_frame[:, 1, 0]
-    rprs_base_frame_yy = p.rprs_base_frame[:, 1, 1]
-    rprs_base_frame_yz = p.rprs_base_frame[:, 1, 2]
-    rprs_base_frame_zx = p.rprs_base_frame[:, 2, 0]
-    rprs_base_frame_zy = p.rprs_base_frame[:, 2, 1]
-    rprs_base_frame_zz = p.rprs_base_frame[:, 2, 2]
-    rprs_platform_point_x = p.rprs_platform_point[:, 0]
-    rprs_platform_point_y = p.rprs_platform_point[:, 1]
-    rprs_platform_point_z = p.rprs_platform_point[:, 2]
-    rprs_joint3_offset_x = p.rprs_joint3_offset[:, 0]
-    rprs_platform_joint_offset_x = p.rprs_platform_joint_offset[:, 0]
-    rprs_link2_mass = p.rprs_link2_mass
-    rprs_link2_centre_of_mass_x = p.rprs_link2_centre_of_mass[:, 0]
-    rprs_link2_centre_of_mass_y = p.rprs_link2_centre_of_mass[:, 1]
-    rprs_link2_centre_of_mass_z = p.rprs_link2_centre_of_mass[:, 2]
-    rprs_link2_inertia_xx = p.rprs_link2_inertia[:, 0, 0]
-    rprs_link3_mass = p.rprs_link3_mass
-    rprs_link3_centre_of_mass_x = p.rprs_link3_centre_of_mass[:, 0]
-    rprs_link3_centre_of_mass_y = p.rprs_link3_centre_of_mass[:, 1]
-    rprs_link3_centre_of_mass_z = p.rprs_link3_centre_of_mass[:, 2]
-    rprs_link3_inertia_xx = p.rprs_link3_inertia[:, 0, 0]
-    rprs_link3_inertia_xy = p.rprs_link3_inertia[:, 0, 1]
-    rprs_link3_inertia_xz = p.rprs_link3_inertia[:, 0, 2]
-    rprs_link3_inertia_yy = p.rprs_link3_inertia[:, 1, 1]
-    rprs_link3_inertia_yz = p.rprs_link3_inertia[:, 1, 2]
-    rprs_link3_inertia_zz = p.rprs_link3_inertia[:, 2, 2]
-    branch_1 = _BRANCHES["branch_1"]
-    branch_2 = _BRANCHES["branch_2"]
-    # (L2) first moment about the platform origin
+    crs_base_point_x = p.crs_base_point[:, 0]
+    crs_base_point_y = p.crs_base_point[:, 1]
+    crs_base_point_z = p.crs_base_point[:, 2]
+    crs_base_frame_xx = p.crs_base_frame[:, 0, 0]
+    crs_base_frame_xy = p.crs_base_frame[:, 0, 1]
+    crs_base_frame_xz = p.crs_base_frame[:, 0, 2]
+    crs_base_frame_yx = p.crs_base_frame[:, 1, 0]
+    crs_base_frame_yy = p.crs_base_frame[:, 1, 1]
+    crs_base_frame_yz = p.crs_base_frame[:, 1, 2]
+    crs_base_frame_zx = p.crs_base_frame[:, 2, 0]
+    crs_base_frame_zy = p.crs_base_frame[:, 2, 1]
+    crs_base_frame_zz = p.crs_base_frame[:, 2, 2]
+    crs_platform_point_x = p.crs_platform_point[:, 0]
+    crs_platform_point_y = p.crs_platform_point[:, 1]
+    crs_platform_point_z = p.crs_platform_point[:, 2]
+    crs_joint3_offset_x = p.crs_joint3_offset[:, 0]
+    crs_platform_joint_offset_x = p.crs_platform_joint_offset[:, 0]
+    crs_link2_mass = p.crs_link2_mass
+    crs_link2_centre_of_mass_x = p.crs_link2_centre_of_mass[:, 0]
+    crs_link2_centre_of_mass_y = p.crs_link2_centre_of_mass[:, 1]
+    crs_link2_centre_of_mass_z = p.crs_link2_centre_of_mass[:, 2]
+    crs_link2_inertia_xx = p.crs_link2_inertia[:, 0, 0]
+    crs_link3_mass = p.crs_link3_mass
+    crs_link3_centre_of_mass_x = p.crs_link3_centre_of_mass[:, 0]
+    crs_link3_centre_of_mass_y = p.crs_link3_centre_of_mass[:, 1]
+    crs_link3_centre_of_mass_z = p.crs_link3_centre_of_mass[:, 2]
+    crs_link3_inertia_xx = p.crs_link3_inertia[:, 0, 0]
+    crs_link3_inertia_xy = p.crs_link3_inertia[:, 0, 1]
+    crs_link3_inertia_xz = p.crs_link3_inertia[:, 0, 2]
+    crs_link3_inertia_yy = p.crs_link3_inertia[:, 1, 1]
+    crs_link3_inertia_yz = p.crs_link3_inertia[:, 1, 2]
+    crs_link3_inertia_zz = p.crs_link3_inertia[:, 2, 2]
+    crs_branch_1 = _BRANCHES["crs_branch_1"]
+    crs_branch_2 = _BRANCHES["crs_branch_2"]
+    # (h_star) first moment about the platform origin
     h_star_t = platform_centre_of_mass_x*platform_mass
     h_star_t_2 = platform_centre_of_mass_y*platform_mass
     h_star_t_3 = platform_centre_of_mass_z*platform_mass
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_t = platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_2 = platform_centre_of_mass_y*platform_centre_of_mass_y
     J_star_t_3 = platform_centre_of_mass_z*platform_centre_of_mass_z
@@ -525,165 +539,165 @@ def _prepare(p):
     J_star_t_8 = platform_mass*(J_star_t_2 - J_star_t_4)
     J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass
     J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4)
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread_t = 0.3333333333333333*sqrt(3.0)
-    # (rprs-G2) length of the leg's lever arms, the measure of what is near singular
-    size_t = rprs_platform_joint_offset_x*rprs_platform_joint_offset_x
-    size_t_2 = 0.30250000000000005 + size_t
-    size = sqrt(size_t_2)
-    # (rprs-K18) cosine of the angle of joint 3 from its reference direction
-    inv_size_t = 1.0/size_t
-    # (rprs-G4) inertia tensor of link 2 about the origin of link 2
-    J_2_t = rprs_link2_centre_of_mass_x*rprs_link2_centre_of_mass_x
-    J_2_t_2 = (
-    J_2_t + rprs_link2_centre_of_mass_y*rprs_link2_centre_of_mass_y +
-        rprs_link2_centre_of_mass_z*rprs_link2_centre_of_mass_z
+    # (crs-size) length of the leg's lever arms, the measure of what is near singular
+    crs_size_t = crs_platform_joint_offset_x*crs_platform_joint_offset_x
+    crs_size_t_2 = 0.30250000000000005 + crs_size_t
+    crs_size = sqrt(crs_size_t_2)
+    # (crs-c_3) cosine of the angle of joint 3 from its reference direction
+    inv_crs_size_t = 1.0/crs_size_t
+    # (crs-rho_tip_3) connection point to the centre of mass of link 3
+    crs_rho_tip_3_x = crs_link3_centre_of_mass_x - crs_platform_joint_offset_x
+    # (crs-h_3) first moment of link 3 about the connection point
+    crs_h_3_x = crs_link3_mass*crs_rho_tip_3_x
+    crs_h_3_y = crs_link3_centre_of_mass_y*crs_link3_mass
+    crs_h_3_z = crs_link3_centre_of_mass_z*crs_link3_mass
+    # (crs-J_3) inertia tensor of link 3 about the connection point
+    crs_J_3_t = crs_rho_tip_3_x*crs_rho_tip_3_x
+    crs_J_3_t_2 = crs_link3_centre_of_mass_y*crs_link3_centre_of_mass_y
+    crs_J_3_t_3 = crs_link3_centre_of_mass_z*crs_link3_centre_of_mass_z
+    crs_J_3_t_4 = crs_J_3_t + crs_J_3_t_2 + crs_J_3_t_3
+    crs_J_3_xx = crs_link3_inertia_xx - crs_link3_mass*(crs_J_3_t - crs_J_3_t_4)
+    crs_J_3_xy = crs_link3_inertia_xy - crs_link3_centre_of_mass_y*crs_link3_mass*crs_rho_tip_3_x
+    crs_J_3_xz = crs_link3_inertia_xz - crs_link3_centre_of_mass_z*crs_link3_mass*crs_rho_tip_3_x
+    crs_J_3_yy = crs_link3_inertia_yy - crs_link3_mass*(crs_J_3_t_2 - crs_J_3_t_4)
+    crs_J_3_yz = (
+    crs_link3_inertia_yz - crs_link3_centre_of_mass_y*crs_link3_centre_of_mass_z*crs_link3_mass
     )
-    J_2_xx = rprs_link2_inertia_xx - rprs_link2_mass*(J_2_t - J_2_t_2)
-    # (rprs-G5) connection point to the centre of mass of link 3
-    rho_tip_3_x = rprs_link3_centre_of_mass_x - rprs_platform_joint_offset_x
-    # (rprs-G7) inertia tensor of link 3 about the connection point
-    J_3_t = rho_tip_3_x*rho_tip_3_x
-    J_3_t_2 = rprs_link3_centre_of_mass_y*rprs_link3_centre_of_mass_y
-    J_3_t_3 = rprs_link3_centre_of_mass_z*rprs_link3_centre_of_mass_z
-    J_3_t_4 = J_3_t + J_3_t_2 + J_3_t_3
-    J_3_xx = rprs_link3_inertia_xx - rprs_link3_mass*(J_3_t - J_3_t_4)
-    J_3_xy = rprs_link3_inertia_xy - rho_tip_3_x*rprs_link3_centre_of_mass_y*rprs_link3_mass
-    J_3_xz = rprs_link3_inertia_xz - rho_tip_3_x*rprs_link3_centre_of_mass_z*rprs_link3_mass
-    J_3_yy = rprs_link3_inertia_yy - rprs_link3_mass*(J_3_t_2 - J_3_t_4)
-    J_3_yz = (
-    rprs_link3_inertia_yz -
-        rprs_link3_centre_of_mass_y*rprs_link3_centre_of_mass_z*rprs_link3_mass
+    crs_J_3_zz = crs_link3_inertia_zz - crs_link3_mass*(crs_J_3_t_3 - crs_J_3_t_4)
+    # (crs-h_2) first moment of link 2 about the origin of link 2
+    crs_h_2_x = crs_link2_centre_of_mass_x*crs_link2_mass
+    crs_h_2_y = crs_link2_centre_of_mass_y*crs_link2_mass
+    crs_h_2_z = crs_link2_centre_of_mass_z*crs_link2_mass
+    # (crs-J_2) inertia tensor of link 2 about the origin of link 2
+    crs_J_2_t = crs_link2_centre_of_mass_x*crs_link2_centre_of_mass_x
+    crs_J_2_t_2 = (
+    crs_J_2_t + crs_link2_centre_of_mass_y*crs_link2_centre_of_mass_y +
+        crs_link2_centre_of_mass_z*crs_link2_centre_of_mass_z
     )
-    J_3_zz = rprs_link3_inertia_zz - rprs_link3_mass*(J_3_t_3 - J_3_t_4)
-    # (rprs-G3) first moment of link 2 about the origin of link 2
-    h_2_x = rprs_link2_centre_of_mass_x*rprs_link2_mass
-    h_2_y = rprs_link2_centre_of_mass_y*rprs_link2_mass
-    h_2_z = rprs_link2_centre_of_mass_z*rprs_link2_mass
-    # (rprs-G6) first moment of link 3 about the connection point
-    h_3_x = rho_tip_3_x*rprs_link3_mass
-    h_3_y = rprs_link3_centre_of_mass_y*rprs_link3_mass
-    h_3_z = rprs_link3_centre_of_mass_z*rprs_link3_mass
-    # (L2) first moment about the platform origin
-    h_star_t_4 = rprs_link3_mass*rprs_platform_point_x
-    h_star_t_5 = rprs_link3_mass*rprs_platform_point_y
-    h_star_t_6 = rprs_link3_mass*rprs_platform_point_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t_11 = rprs_platform_point_x*rprs_platform_point_x
-    J_star_t_12 = rprs_platform_point_y*rprs_platform_point_y
-    J_star_t_13 = rprs_platform_point_z*rprs_platform_point_z
-    J_star_t_14 = J_star_t_11 + J_star_t_12 + J_star_t_13
-    J_star_t_15 = rprs_link3_mass*(J_star_t_11 - J_star_t_14)
-    J_star_t_16 = rprs_link3_mass*rprs_platform_point_x*rprs_platform_point_y
-    J_star_t_17 = rprs_link3_mass*rprs_platform_point_x*rprs_platform_point_z
-    J_star_t_18 = rprs_link3_mass*(J_star_t_12 - J_star_t_14)
-    J_star_t_19 = rprs_link3_mass*rprs_platform_point_y*rprs_platform_point_z
-    J_star_t_20 = rprs_link3_mass*(J_star_t_13 - J_star_t_14)
-    # (rprs-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-    g_r0_x = (
-    gravity_x*rprs_base_frame_xy + gravity_y*rprs_base_frame_yy + gravity_z*rprs_base_frame_zy
+    crs_J_2_xx = crs_link2_inertia_xx - crs_link2_mass*(crs_J_2_t - crs_J_2_t_2)
+    # (h_star) first moment about the platform origin
+    crs_h_star_t = crs_link3_mass*crs_platform_point_x
+    crs_h_star_t_2 = crs_link3_mass*crs_platform_point_y
+    crs_h_star_t_3 = crs_link3_mass*crs_platform_point_z
+    # (J_star) inertia tensor about the platform origin
+    crs_J_star_t = crs_platform_point_x*crs_platform_point_x
+    crs_J_star_t_2 = crs_platform_point_y*crs_platform_point_y
+    crs_J_star_t_3 = crs_platform_point_z*crs_platform_point_z
+    crs_J_star_t_4 = crs_J_star_t + crs_J_star_t_2 + crs_J_star_t_3
+    crs_J_star_t_5 = crs_link3_mass*(crs_J_star_t - crs_J_star_t_4)
+    crs_J_star_t_6 = crs_link3_mass*crs_platform_point_x*crs_platform_point_y
+    crs_J_star_t_7 = crs_link3_mass*crs_platform_point_x*crs_platform_point_z
+    crs_J_star_t_8 = crs_link3_mass*(crs_J_star_t_2 - crs_J_star_t_4)
+    crs_J_star_t_9 = crs_link3_mass*crs_platform_point_y*crs_platform_point_z
+    crs_J_star_t_10 = crs_link3_mass*(crs_J_star_t_3 - crs_J_star_t_4)
+    # (crs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+    crs_g_r0_x = (
+    crs_base_frame_xy*gravity_x + crs_base_frame_yy*gravity_y + crs_base_frame_zy*gravity_z
     )
-    g_r0_y = (
-    gravity_x*rprs_base_frame_xz + gravity_y*rprs_base_frame_yz + gravity_z*rprs_base_frame_zz
+    crs_g_r0_y = (
+    crs_base_frame_xz*gravity_x + crs_base_frame_yz*gravity_y + crs_base_frame_zz*gravity_z
     )
-    g_r0_z = (
-    gravity_x*rprs_base_frame_xx + gravity_y*rprs_base_frame_yx + gravity_z*rprs_base_frame_zx
+    crs_g_r0_z = (
+    crs_base_frame_xx*gravity_x + crs_base_frame_yx*gravity_y + crs_base_frame_zx*gravity_z
     )
-    # (rprs-N23) half the trace of that inertia tensor
-    trace_J_3 = 0.5*J_3_xx + 0.5*J_3_yy + 0.5*J_3_zz
-    # (rprs-N24) second moment of mass of the links that turn with link 3
-    Sigma_3_xx = trace_J_3 - J_3_xx
-    Sigma_3_yy = trace_J_3 - J_3_yy
-    Sigma_3_zz = trace_J_3 - J_3_zz
-    # (V1) potential energy
-    b_r0_x = (
-    rprs_base_frame_xy*rprs_base_point_x + rprs_base_frame_yy*rprs_base_point_y +
-        rprs_base_frame_zy*rprs_base_point_z
+    # (crs-trace_J_3) half the trace of that inertia tensor
+    crs_trace_J_3 = 0.5*crs_J_3_xx + 0.5*crs_J_3_yy + 0.5*crs_J_3_zz
+    # (crs-Sigma_3) second moment of mass of the links that turn with link 3
+    crs_Sigma_3_xx = crs_trace_J_3 - crs_J_3_xx
+    crs_Sigma_3_yy = crs_trace_J_3 - crs_J_3_yy
+    crs_Sigma_3_zz = crs_trace_J_3 - crs_J_3_zz
+    # (potential) potential energy
+    crs_b_r0_x = (
+    crs_base_frame_xy*crs_base_point_x + crs_base_frame_yy*crs_base_point_y +
+        crs_base_frame_zy*crs_base_point_z
     )
-    b_r0_y = (
-    rprs_base_frame_xz*rprs_base_point_x + rprs_base_frame_yz*rprs_base_point_y +
-        rprs_base_frame_zz*rprs_base_point_z
+    crs_b_r0_y = (
+    crs_base_frame_xz*crs_base_point_x + crs_base_frame_yz*crs_base_point_y +
+        crs_base_frame_zz*crs_base_point_z
     )
-    b_r0_z = (
-    rprs_base_frame_xx*rprs_base_point_x + rprs_base_frame_yx*rprs_base_point_y +
-        rprs_base_frame_zx*rprs_base_point_z
+    crs_b_r0_z = (
+    crs_base_frame_xx*crs_base_point_x + crs_base_frame_yx*crs_base_point_y +
+        crs_base_frame_zx*crs_base_point_z
     )
-    # (rprs-K5) squared amplitude
-    inv_size_t_2 = 1.0/size_t_2
-    # (rprs-V5) reciprocal vector 1
-    inv_size = 1.0/size
-    total_rprs = np.sum(np.broadcast_to(rprs_link3_mass, _rprs))
-    total_rprs_x = np.sum(np.broadcast_to(h_star_t_4, _rprs))
-    total_rprs_y = np.sum(np.broadcast_to(h_star_t_5, _rprs))
-    total_rprs_z = np.sum(np.broadcast_to(h_star_t_6, _rprs))
-    total_rprs_xx = np.sum(np.broadcast_to(J_star_t_15, _rprs))
-    total_rprs_xy = np.sum(np.broadcast_to(J_star_t_16, _rprs))
-    total_rprs_xz = np.sum(np.broadcast_to(J_star_t_17, _rprs))
-    total_rprs_yy = np.sum(np.broadcast_to(J_star_t_18, _rprs))
-    total_rprs_yz = np.sum(np.broadcast_to(J_star_t_19, _rprs))
-    total_rprs_zz = np.sum(np.broadcast_to(J_star_t_20, _rprs))
-    total_rprs_x_2 = np.sum(np.broadcast_to(rprs_platform_point_x, _rprs))
-    total_rprs_y_2 = np.sum(np.broadcast_to(rprs_platform_point_y, _rprs))
-    total_rprs_z_2 = np.sum(np.broadcast_to(rprs_platform_point_z, _rprs))
-    total_rprs_2 = np.sum(np.broadcast_to(size_t_2, _rprs))
-    # (L1) mass of the platform with the gathered masses
-    m_star = platform_mass + total_rprs
-    # (L2) first moment about the platform origin
-    h_star_x = h_star_t + total_rprs_x
-    h_star_y = h_star_t_2 + total_rprs_y
-    h_star_z = h_star_t_3 + total_rprs_z
-    # (L3) inertia tensor about the platform origin
-    J_star_xx = platform_inertia_xx - J_star_t_5 - total_rprs_xx
-    J_star_xy = platform_inertia_xy - J_star_t_6 - total_rprs_xy
-    J_star_xz = platform_inertia_xz - J_star_t_7 - total_rprs_xz
-    J_star_yy = platform_inertia_yy - J_star_t_8 - total_rprs_yy
-    J_star_yz = platform_inertia_yz - J_star_t_9 - total_rprs_yz
-    J_star_zz = platform_inertia_zz - J_star_t_10 - total_rprs_zz
-    J_star_t_21 = J_star_xx - J_star_yy
-    J_star_t_22 = 0.5*J_star_t_21
-    J_star_t_23 = J_star_xx - J_star_zz
-    J_star_t_24 = 0.5*J_star_t_23
-    # (M4) centripetal force and weight of the platform
+    # (crs-rho2_1) squared amplitude
+    inv_crs_size_t_2 = 1.0/crs_size_t_2
+    # (crs-w_1) reciprocal vector 1
+    inv_crs_size = 1.0/crs_size
+    total_crs = np.sum(np.broadcast_to(crs_link3_mass, _crs))
+    total_crs_x = np.sum(np.broadcast_to(crs_h_star_t, _crs))
+    total_crs_y = np.sum(np.broadcast_to(crs_h_star_t_2, _crs))
+    total_crs_z = np.sum(np.broadcast_to(crs_h_star_t_3, _crs))
+    total_crs_xx = np.sum(np.broadcast_to(crs_J_star_t_5, _crs))
+    total_crs_xy = np.sum(np.broadcast_to(crs_J_star_t_6, _crs))
+    total_crs_xz = np.sum(np.broadcast_to(crs_J_star_t_7, _crs))
+    total_crs_yy = np.sum(np.broadcast_to(crs_J_star_t_8, _crs))
+    total_crs_yz = np.sum(np.broadcast_to(crs_J_star_t_9, _crs))
+    total_crs_zz = np.sum(np.broadcast_to(crs_J_star_t_10, _crs))
+    total_crs_x_2 = np.sum(np.broadcast_to(crs_platform_point_x, _crs))
+    total_crs_y_2 = np.sum(np.broadcast_to(crs_platform_point_y, _crs))
+    total_crs_z_2 = np.sum(np.broadcast_to(crs_platform_point_z, _crs))
+    total_crs_2 = np.sum(np.broadcast_to(crs_size_t_2, _crs))
+    # (m_star) mass of the platform with the gathered masses
+    m_star = platform_mass + total_crs
+    # (h_star) first moment about the platform origin
+    h_star_x = h_star_t + total_crs_x
+    h_star_y = h_star_t_2 + total_crs_y
+    h_star_z = h_star_t_3 + total_crs_z
+    # (J_star) inertia tensor about the platform origin
+    J_star_xx = platform_inertia_xx - J_star_t_5 - total_crs_xx
+    J_star_xy = platform_inertia_xy - J_star_t_6 - total_crs_xy
+    J_star_xz = platform_inertia_xz - J_star_t_7 - total_crs_xz
+    J_star_yy = platform_inertia_yy - J_star_t_8 - total_crs_yy
+    J_star_yz = platform_inertia_yz - J_star_t_9 - total_crs_yz
+    J_star_zz = platform_inertia_zz - J_star_t_10 - total_crs_zz
+    J_star_t_11 = J_star_xx - J_star_yy
+    J_star_t_12 = 0.5*J_star_t_11
+    J_star_t_13 = J_star_xx - J_star_zz
+    J_star_t_14 = 0.5*J_star_t_13
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
     Z_p_t_3 = gravity_z*m_star
-    # (C1) centroid of the platform points
-    b_c_x = 0.3333333333333333*total_rprs_x_2
-    b_c_y = 0.3333333333333333*total_rprs_y_2
-    b_c_z = 0.3333333333333333*total_rprs_z_2
-    # (C3) rms size of the legs, taken where the platform points coincide
-    legs_size = spread_t*sqrt(total_rprs_2)
+    # (b_c) centroid of the platform points
+    b_c_x = 0.3333333333333333*total_crs_x_2
+    b_c_y = 0.3333333333333333*total_crs_y_2
+    b_c_z = 0.3333333333333333*total_crs_z_2
+    # (legs_size) rms size of the legs, taken where the platform points coincide
+    legs_size = spread_t*sqrt(total_crs_2)
     return {
         "dynamics": (
-        (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
                 J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
                 h_star_y, h_star_z, m_star,),
             (
-                (_rprs,
-        (J_2_xx, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz, J_3_zz, Sigma_3_xx, Sigma_3_yy,
-                    Sigma_3_zz, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_y, h_2_z, h_3_x,
-                    h_3_y, h_3_z, inv_size_t, rprs_base_frame_xx, rprs_base_frame_xy,
-                    rprs_base_frame_xz, rprs_base_frame_yx, rprs_base_frame_yy,
-                    rprs_base_frame_yz, rprs_base_frame_zx, rprs_base_frame_zy,
-                    rprs_base_frame_zz, rprs_base_point_x, rprs_base_point_y, rprs_base_point_z,
-                    rprs_joint3_offset_x, rprs_link2_mass, rprs_platform_joint_offset_x,
-                    rprs_platform_point_x, rprs_platform_point_y, rprs_platform_point_z, size,
-                    size_t, size_t_2,),
+                (_crs,
+        (crs_J_2_xx, crs_J_3_xx, crs_J_3_xy, crs_J_3_xz, crs_J_3_yy, crs_J_3_yz, crs_J_3_zz,
+                    crs_Sigma_3_xx, crs_Sigma_3_yy, crs_Sigma_3_zz, crs_base_frame_xx,
+                    crs_base_frame_xy, crs_base_frame_xz, crs_base_frame_yx, crs_base_frame_yy,
+                    crs_base_frame_yz, crs_base_frame_zx, crs_base_frame_zy, crs_base_frame_zz,
+                    crs_base_point_x, crs_base_point_y, crs_base_point_z, crs_branch_1,
+                    crs_branch_2, crs_g_r0_x, crs_g_r0_y, crs_g_r0_z, crs_h_2_y, crs_h_2_z,
+                    crs_h_3_x, crs_h_3_y, crs_h_3_z, crs_joint3_offset_x, crs_link2_mass,
+                    crs_platform_joint_offset_x, crs_platform_point_x, crs_platform_point_y,
+                    crs_platform_point_z, crs_size, crs_size_t, crs_size_t_2, inv_crs_size_t,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
+        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
                 h_star_z, m_star,),
             (
-                (_rprs,
-        (J_2_xx, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz, J_3_zz, branch_1, branch_2, h_3_x, h_3_y,
-                    h_3_z, inv_size_t, rprs_base_frame_xx, rprs_base_frame_xy, rprs_base_frame_xz,
-                    rprs_base_frame_yx, rprs_base_frame_yy, rprs_base_frame_yz,
-                    rprs_base_frame_zx, rprs_base_frame_zy, rprs_base_frame_zz, rprs_base_point_x,
-                    rprs_base_point_y, rprs_base_point_z, rprs_joint3_offset_x, rprs_link2_mass,
-                    rprs_platform_joint_offset_x, rprs_platform_point_x, rprs_platform_point_y,
-                    rprs_platform_point_z, size, size_t, size_t_2,),
+                (_crs,
+        (crs_J_2_xx, crs_J_3_xx, crs_J_3_xy, crs_J_3_xz, crs_J_3_yy, crs_J_3_yz, crs_J_3_zz,
+                    crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz, crs_base_frame_yx,
+                    crs_base_frame_yy, crs_base_frame_yz, crs_base_frame_zx, crs_base_frame_zy,
+                    crs_base_frame_zz, crs_base_point_x, crs_base_point_y, crs_base_point_z,
+                    crs_branch_1, crs_branch_2, crs_h_3_x, crs_h_3_y, crs_h_3_z,
+                    crs_joint3_offset_x, crs_link2_mass, crs_platform_joint_offset_x,
+                    crs_platform_point_x, crs_platform_point_y, crs_platform_point_z, crs_size,
+                    crs_size_t, crs_size_t_2, inv_crs_size_t,),
                 ),
             ),
         ),
@@ -691,28 +705,29 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
                 Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
             (
-                (_rprs,
-        (J_2_xx, J_3_xy, J_3_xz, J_3_yz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2,
-                    g_r0_x, g_r0_y, g_r0_z, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, inv_size_t,
-                    rprs_base_frame_xx, rprs_base_frame_xy, rprs_base_frame_xz,
-                    rprs_base_frame_yx, rprs_base_frame_yy, rprs_base_frame_yz,
-                    rprs_base_frame_zx, rprs_base_frame_zy, rprs_base_frame_zz, rprs_base_point_x,
-                    rprs_base_point_y, rprs_base_point_z, rprs_joint3_offset_x, rprs_link2_mass,
-                    rprs_platform_joint_offset_x, rprs_platform_point_x, rprs_platform_point_y,
-                    rprs_platform_point_z, size, size_t, size_t_2,),
+                (_crs,
+        (crs_J_2_xx, crs_J_3_xy, crs_J_3_xz, crs_J_3_yz, crs_Sigma_3_xx, crs_Sigma_3_yy,
+                    crs_Sigma_3_zz, crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz,
+                    crs_base_frame_yx, crs_base_frame_yy, crs_base_frame_yz, crs_base_frame_zx,
+                    crs_base_frame_zy, crs_base_frame_zz, crs_base_point_x, crs_base_point_y,
+                    crs_base_point_z, crs_branch_1, crs_branch_2, crs_g_r0_x, crs_g_r0_y,
+                    crs_g_r0_z, crs_h_2_y, crs_h_2_z, crs_h_3_x, crs_h_3_y, crs_h_3_z,
+                    crs_joint3_offset_x, crs_link2_mass, crs_platform_joint_offset_x,
+                    crs_platform_point_x, crs_platform_point_y, crs_platform_point_z, crs_size,
+                    crs_size_t, crs_size_t_2, inv_crs_size_t,),
                 ),
             ),
         ),
         "H": (
         (),
             (
-                (_rprs,
-        (branch_1, branch_2, inv_size_t, rprs_base_frame_xx, rprs_base_frame_xy,
-                    rprs_base_frame_xz, rprs_base_frame_yx, rprs_base_frame_yy,
-                    rprs_base_frame_yz, rprs_base_frame_zx, rprs_base_frame_zy,
-                    rprs_base_frame_zz, rprs_base_point_x, rprs_base_point_y, rprs_base_point_z,
-                    rprs_joint3_offset_x, rprs_platform_joint_offset_x, rprs_platform_point_x,
-                    rprs_platform_point_y, rprs_platform_point_z, size, size_t, size_t_2,),
+                (_crs,
+        (crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz, crs_base_frame_yx,
+                    crs_base_frame_yy, crs_base_frame_yz, crs_base_frame_zx, crs_base_frame_zy,
+                    crs_base_frame_zz, crs_base_point_x, crs_base_point_y, crs_base_point_z,
+                    crs_branch_1, crs_branch_2, crs_joint3_offset_x, crs_platform_joint_offset_x,
+                    crs_platform_point_x, crs_platform_point_y, crs_platform_point_z, crs_size,
+                    crs_size_t, crs_size_t_2, inv_crs_size_t,),
                 ),
             ),
         ),
@@ -720,105 +735,107 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
                 gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
-                (_rprs,
-        (J_2_xx, J_3_xy, J_3_xz, J_3_yz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2,
-                    g_r0_x, g_r0_y, g_r0_z, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, inv_size_t,
-                    rprs_base_frame_xx, rprs_base_frame_xy, rprs_base_frame_xz,
-                    rprs_base_frame_yx, rprs_base_frame_yy, rprs_base_frame_yz,
-                    rprs_base_frame_zx, rprs_base_frame_zy, rprs_base_frame_zz, rprs_base_point_x,
-                    rprs_base_point_y, rprs_base_point_z, rprs_joint3_offset_x, rprs_link2_mass,
-                    rprs_platform_joint_offset_x, rprs_platform_point_x, rprs_platform_point_y,
-                    rprs_platform_point_z, size, size_t, size_t_2,),
+                (_crs,
+        (crs_J_2_xx, crs_J_3_xy, crs_J_3_xz, crs_J_3_yz, crs_Sigma_3_xx, crs_Sigma_3_yy,
+                    crs_Sigma_3_zz, crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz,
+                    crs_base_frame_yx, crs_base_frame_yy, crs_base_frame_yz, crs_base_frame_zx,
+                    crs_base_frame_zy, crs_base_frame_zz, crs_base_point_x, crs_base_point_y,
+                    crs_base_point_z, crs_branch_1, crs_branch_2, crs_g_r0_x, crs_g_r0_y,
+                    crs_g_r0_z, crs_h_2_y, crs_h_2_z, crs_h_3_x, crs_h_3_y, crs_h_3_z,
+                    crs_joint3_offset_x, crs_link2_mass, crs_platform_joint_offset_x,
+                    crs_platform_point_x, crs_platform_point_y, crs_platform_point_z, crs_size,
+                    crs_size_t, crs_size_t_2, inv_crs_size_t,),
                 ),
             ),
         ),
         "inverse_kinematics": (
         (),
             (
-                (_rprs,
-        (branch_1, branch_2, inv_size_t, rprs_base_frame_xx, rprs_base_frame_xy,
-                    rprs_base_frame_xz, rprs_base_frame_yx, rprs_base_frame_yy,
-                    rprs_base_frame_yz, rprs_base_frame_zx, rprs_base_frame_zy,
-                    rprs_base_frame_zz, rprs_base_point_x, rprs_base_point_y, rprs_base_point_z,
-                    rprs_joint3_offset_x, rprs_platform_joint_offset_x, rprs_platform_point_x,
-                    rprs_platform_point_y, rprs_platform_point_z, size_t, size_t_2,),
+                (_crs,
+        (crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz, crs_base_frame_yx,
+                    crs_base_frame_yy, crs_base_frame_yz, crs_base_frame_zx, crs_base_frame_zy,
+                    crs_base_frame_zz, crs_base_point_x, crs_base_point_y, crs_base_point_z,
+                    crs_branch_1, crs_branch_2, crs_joint3_offset_x, crs_platform_joint_offset_x,
+                    crs_platform_point_x, crs_platform_point_y, crs_platform_point_z, crs_size_t,
+                    crs_size_t_2, inv_crs_size_t,),
                 ),
             ),
         ),
         "joint_rates": (
         (),
             (
-                (_rprs,
-        (branch_1, branch_2, inv_size_t, rprs_base_frame_xx, rprs_base_frame_xy,
-                    rprs_base_frame_xz, rprs_base_frame_yx, rprs_base_frame_yy,
-                    rprs_base_frame_yz, rprs_base_frame_zx, rprs_base_frame_zy,
-                    rprs_base_frame_zz, rprs_base_point_x, rprs_base_point_y, rprs_base_point_z,
-                    rprs_joint3_offset_x, rprs_platform_joint_offset_x, rprs_platform_point_x,
-                    rprs_platform_point_y, rprs_platform_point_z, size, size_t, size_t_2,),
+                (_crs,
+        (crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz, crs_base_frame_yx,
+                    crs_base_frame_yy, crs_base_frame_yz, crs_base_frame_zx, crs_base_frame_zy,
+                    crs_base_frame_zz, crs_base_point_x, crs_base_point_y, crs_base_point_z,
+                    crs_branch_1, crs_branch_2, crs_joint3_offset_x, crs_platform_joint_offset_x,
+                    crs_platform_point_x, crs_platform_point_y, crs_platform_point_z, crs_size,
+                    crs_size_t, crs_size_t_2, inv_crs_size_t,),
                 ),
             ),
         ),
         "joint_accelerations": (
         (),
             (
-                (_rprs,
-        (branch_1, branch_2, inv_size_t, rprs_base_frame_xx, rprs_base_frame_xy,
-                    rprs_base_frame_xz, rprs_base_frame_yx, rprs_base_frame_yy,
-                    rprs_base_frame_yz, rprs_base_frame_zx, rprs_base_frame_zy,
-                    rprs_base_frame_zz, rprs_base_point_x, rprs_base_point_y, rprs_base_point_z,
-                    rprs_joint3_offset_x, rprs_platform_joint_offset_x, rprs_platform_point_x,
-                    rprs_platform_point_y, rprs_platform_point_z, size, size_t, size_t_2,),
+                (_crs,
+        (crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz, crs_base_frame_yx,
+                    crs_base_frame_yy, crs_base_frame_yz, crs_base_frame_zx, crs_base_frame_zy,
+                    crs_base_frame_zz, crs_base_point_x, crs_base_point_y, crs_base_point_z,
+                    crs_branch_1, crs_branch_2, crs_joint3_offset_x, crs_platform_joint_offset_x,
+                    crs_platform_point_x, crs_platform_point_y, crs_platform_point_z, crs_size,
+                    crs_size_t, crs_size_t_2, inv_crs_size_t,),
                 ),
             ),
         ),
         "legs": (
         (),
             (
-                (_rprs,
-        (J_2_xx, J_3_xy, J_3_xz, J_3_yz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2,
-                    g_r0_x, g_r0_y, g_r0_z, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, inv_size_t,
-                    rprs_base_frame_xx, rprs_base_frame_xy, rprs_base_frame_xz,
-                    rprs_base_frame_yx, rprs_base_frame_yy, rprs_base_frame_yz,
-                    rprs_base_frame_zx, rprs_base_frame_zy, rprs_base_frame_zz, rprs_base_point_x,
-                    rprs_base_point_y, rprs_base_point_z, rprs_joint3_offset_x, rprs_link2_mass,
-                    rprs_link3_mass, rprs_platform_joint_offset_x, rprs_platform_point_x,
-                    rprs_platform_point_y, rprs_platform_point_z, size, size_t, size_t_2,),
+                (_crs,
+        (crs_J_2_xx, crs_J_3_xy, crs_J_3_xz, crs_J_3_yz, crs_Sigma_3_xx, crs_Sigma_3_yy,
+                    crs_Sigma_3_zz, crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz,
+                    crs_base_frame_yx, crs_base_frame_yy, crs_base_frame_yz, crs_base_frame_zx,
+                    crs_base_frame_zy, crs_base_frame_zz, crs_base_point_x, crs_base_point_y,
+                    crs_base_point_z, crs_branch_1, crs_branch_2, crs_g_r0_x, crs_g_r0_y,
+                    crs_g_r0_z, crs_h_2_y, crs_h_2_z, crs_h_3_x, crs_h_3_y, crs_h_3_z,
+                    crs_joint3_offset_x, crs_link2_mass, crs_link3_mass,
+                    crs_platform_joint_offset_x, crs_platform_point_x, crs_platform_point_y,
+                    crs_platform_point_z, crs_size, crs_size_t, crs_size_t_2, inv_crs_size_t,),
                 ),
             ),
         ),
         "potential": (
         (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
-                (_rprs,
-        (b_r0_x, b_r0_y, b_r0_z, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z,
-                    h_3_x, h_3_y, h_3_z, inv_size_t, rprs_base_frame_xx, rprs_base_frame_xy,
-                    rprs_base_frame_xz, rprs_base_frame_yx, rprs_base_frame_yy,
-                    rprs_base_frame_yz, rprs_base_frame_zx, rprs_base_frame_zy,
-                    rprs_base_frame_zz, rprs_base_point_x, rprs_base_point_y, rprs_base_point_z,
-                    rprs_joint3_offset_x, rprs_link2_mass, rprs_platform_joint_offset_x,
-                    rprs_platform_point_x, rprs_platform_point_y, rprs_platform_point_z, size_t,
-                    size_t_2,),
+                (_crs,
+        (crs_b_r0_x, crs_b_r0_y, crs_b_r0_z, crs_base_frame_xx, crs_base_frame_xy,
+                    crs_base_frame_xz, crs_base_frame_yx, crs_base_frame_yy, crs_base_frame_yz,
+                    crs_base_frame_zx, crs_base_frame_zy, crs_base_frame_zz, crs_base_point_x,
+                    crs_base_point_y, crs_base_point_z, crs_branch_1, crs_branch_2, crs_g_r0_x,
+                    crs_g_r0_y, crs_g_r0_z, crs_h_2_x, crs_h_2_y, crs_h_2_z, crs_h_3_x, crs_h_3_y,
+                    crs_h_3_z, crs_joint3_offset_x, crs_link2_mass, crs_platform_joint_offset_x,
+                    crs_platform_point_x, crs_platform_point_y, crs_platform_point_z, crs_size_t,
+                    crs_size_t_2, inv_crs_size_t,),
                 ),
             ),
         ),
         "condition": (
         (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
             (
-                (_rprs,
-        (branch_1, branch_2, inv_size, inv_size_t, inv_size_t_2, rprs_base_frame_xx,
-                    rprs_base_frame_xy, rprs_base_frame_xz, rprs_base_frame_yx,
-                    rprs_base_frame_yy, rprs_base_frame_yz, rprs_base_frame_zx,
-                    rprs_base_frame_zy, rprs_base_frame_zz, rprs_base_point_x, rprs_base_point_y,
-                    rprs_base_point_z, rprs_joint3_offset_x, rprs_platform_joint_offset_x,
-                    rprs_platform_point_x, rprs_platform_point_y, rprs_platform_point_z, size,
-                    size_t, size_t_2,),
+                (_crs,
+        (crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz, crs_base_frame_yx,
+                    crs_base_frame_yy, crs_base_frame_yz, crs_base_frame_zx, crs_base_frame_zy,
+                    crs_base_frame_zz, crs_base_point_x, crs_base_point_y, crs_base_point_z,
+                    crs_branch_1, crs_branch_2, crs_joint3_offset_x, crs_platform_joint_offset_x,
+                    crs_platform_point_x, crs_platform_point_y, crs_platform_point_z, crs_size,
+                    crs_size_t, crs_size_t_2, inv_crs_size, inv_crs_size_t, inv_crs_size_t_2,),
                 ),
             ),
         ),
     }
 
 
-_FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
+_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
@@ -864,17 +881,19 @@ class _Floats:
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
-        for k in range(self.states):
-            try:
-                ok, arrays = function(self, *(row[k] for row in rows))
-            except (ZeroDivisionError, OverflowError):
-                continue
-            if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
-                for a, array in zip(found, arrays):
-                    a[k] = array
-        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
+        found = [self.state(function, names, [row[k] for row in rows]) for k in range(self.states)]
+        return [np.array(a).T.reshape(*_SHAPES[n], self.states) for a, n in zip(zip(*found), names)]
+
+    def state(self, function, names, given):
+        """Lists that a function gives at a state."""
+        try:
+            ok, arrays = function(self, *given)
+        except (ZeroDivisionError, OverflowError):
+            ok = False
+        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+            return arrays
+        return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
 
 
 class _Arrays:
@@ -942,35 +961,44 @@ def _mode(p, states):
     return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
 
 
-def _call(function, steps, p, *arguments, mode=_mode):
-    """What the steps give at arguments (name, value, shape of a state, default, rule)."""
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+    """What the steps give at arguments (name, value, shape of a state, default, rule).
+
+    Where that may be infinite only NaN makes a state impossible.
+    """
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
     lead, p = _lead(leads), _given(p)
     read = [a[4:] != ("unused",) for a in arguments]
     if lead or mode is _Judged:
-        results = _many(steps, p, lead, given, shapes, read, mode)
+        results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
-        results = _one(steps, p, given, shapes, read)
+        results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
 
 
-def _one(steps, p, given, shapes, read):
+def _one(steps, p, given, shapes, read, unbounded):
     """Results at a single state."""
     states = [v.reshape(*shape, 1) for v, shape in zip(given, shapes)]
     with np.errstate(all="ignore"):
-        results = [a[..., 0] for a in steps(_Floats(p, 1), *states)]
-    if all(all(map(math.isfinite, v.ravel().tolist())) for v in (*compress(given, read), *results)):
-        return [np.array(a)[()] for a in results]
+        results = [a[..., 0].copy() for a in steps(_Floats(p, 1), *states)]
+    looked_at = [np.minimum(a, 0.0) for a in results] if unbounded else results
+    entries = (v.ravel().tolist() for v in (*compress(given, read), *looked_at))
+    if all(all(map(math.isfinite, row)) for row in entries):
+        return [a[()] for a in results]
     return [np.full(a.shape, np.nan)[()] for a in results]
 
 
-def _many(steps, p, lead, given, shapes, read, mode):
+def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block."""
     count = math.prod(lead)
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
+    if count > _BLOCK:
+        # Never touched, freed at once: the C library, which learns from it, then keeps the memory
+        # of intermediate arrays from block to block instead of giving its pages back.
+        np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
         for first in range(0, max(count, 1), _BLOCK):
             block = slice(first, min(first + _BLOCK, count))
@@ -982,7 +1010,7 @@ def _many(steps, p, lead, given, shapes, read, mode):
             _all_finite(compress(states, read), good)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite(found, good)
+            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -1018,6 +1046,18 @@ def _wrapped(a, places):
     result = np.array(a)
     result[places] = np.pi - np.remainder(np.pi - a[places], 2.0 * np.pi)
     return result
+
+
+def _unlimited(a, places):
+    """a, some entries infinite; what is not known stays so."""
+    result = np.array(a)
+    result[places] += np.inf
+    return result
+
+
+def _not_negative(a):
+    """1 where no entry is negative, else 0; NaN where one is not finite."""
+    return np.where(np.isfinite(a).all(axis=0), np.all(a >= 0.0, axis=0), np.nan)
 
 
 def _rows_divided(a, b, places):
@@ -1120,8 +1160,8 @@ def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
     n, states = b.shape
     if 0 < states <= _FEW:
-        matrices, rights = np.moveaxis(a, -1, 0).tolist(), b.T.tolist()
-        return np.array([_solve_one(*each) for each in zip(matrices, rights)]).T.reshape(n, states)
+        systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
+        return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
     good = np.all((size > 0.0) & np.isfinite(size), axis=0)
     rows = np.concatenate((a, b[:, None]), axis=1)
@@ -1148,28 +1188,32 @@ def _solve(a, b):
 
 
 def _solve_one(a, b):
-    """The same for one system of nested lists."""
-    n = len(b)
-    failure = [np.nan] * n
-    for i, row in enumerate(a):
-        size = max(map(abs, row), default=0.0)
-        if not 0.0 < size < np.inf:
-            return failure
-        a[i] = [v / size for v in row] + [b[i] / size]
-    for k in range(n):
-        best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
-            a[k], a[best] = a[best], a[k]
-        if not abs(a[k][k]) > _PIVOT:
-            return failure
-        head = a[k]
-        for i in range(k + 1, n):
-            factor = a[i][k] / head[k]
-            a[i] = [v - factor * h for v, h in zip(a[i], head)]
-    x = [0.0] * n
-    for k in reversed(range(n)):
-        x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
-    return x if all(map(math.isfinite, x)) else failure
+    """The same for one system of nested lists: the rows left lose an entry at every step."""
+    rows, heads = [], []
+    for row, right in zip(a, b):
+        size = max(map(abs, row))
+        if not 0.0 < size < math.inf:
+            return [math.nan] * len(b)
+        rows.append([v / size for v in (*row, right)])
+    while rows:
+        column = [abs(row[0]) for row in rows]
+        largest = max(column)
+        if largest > _CLEARLY * column[0]:
+            best = column.index(largest)
+            rows[0], rows[best] = rows[best], rows[0]
+        pivot, *head = rows[0]
+        if not abs(pivot) > _PIVOT:
+            return [math.nan] * len(b)
+        heads.append((pivot, head))
+        for i in range(1, len(rows)):
+            first, *row = rows[i]
+            factor = first / pivot
+            rows[i] = [v - factor * h for v, h in zip(row, head)]
+        del rows[0]
+    x = []
+    for pivot, (*head, right) in reversed(heads):
+        x.insert(0, (right - sum([h * v for h, v in zip(head, x)])) / pivot)
+    return x if all(map(math.isfinite, x)) else [math.nan] * len(b)
 
 
 def _matrices(a, *others):
@@ -1285,7 +1329,7 @@ def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
-    J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
+    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
         Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
         m_star,
     ) = shared
@@ -1341,451 +1385,487 @@ def _run_dynamics(m, X, V):
     out_M = m.zeros("M")
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy
-    J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
     J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_12 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_15 = 2.0*J_star_t_14 + J_star_xx
-    # (M4) centripetal force and weight of the platform
+    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
+    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
     Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
     Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z_2*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x_2*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y - g_r0_y_2*h_star_x
+    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
+    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
     sums = [0.0] * 27
     for leg, k in legs[0]:
         (
-        J_2_xx, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz, J_3_zz, Sigma_3_xx, Sigma_3_yy,
-            Sigma_3_zz, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_y, h_2_z, h_3_x, h_3_y,
-            h_3_z, inv_size_t, rprs_base_frame_xx, rprs_base_frame_xy, rprs_base_frame_xz,
-            rprs_base_frame_yx, rprs_base_frame_yy, rprs_base_frame_yz, rprs_base_frame_zx,
-            rprs_base_frame_zy, rprs_base_frame_zz, rprs_base_point_x, rprs_base_point_y,
-            rprs_base_point_z, rprs_joint3_offset_x, rprs_link2_mass,
-            rprs_platform_joint_offset_x, rprs_platform_point_x, rprs_platform_point_y,
-            rprs_platform_point_z, size, size_t, size_t_2,
+        crs_J_2_xx, crs_J_3_xx, crs_J_3_xy, crs_J_3_xz, crs_J_3_yy, crs_J_3_yz, crs_J_3_zz,
+            crs_Sigma_3_xx, crs_Sigma_3_yy, crs_Sigma_3_zz, crs_base_frame_xx, crs_base_frame_xy,
+            crs_base_frame_xz, crs_base_frame_yx, crs_base_frame_yy, crs_base_frame_yz,
+            crs_base_frame_zx, crs_base_frame_zy, crs_base_frame_zz, crs_base_point_x,
+            crs_base_point_y, crs_base_point_z, crs_branch_1, crs_branch_2, crs_g_r0_x,
+            crs_g_r0_y, crs_g_r0_z, crs_h_2_y, crs_h_2_z, crs_h_3_x, crs_h_3_y, crs_h_3_z,
+            crs_joint3_offset_x, crs_link2_mass, crs_platform_joint_offset_x,
+            crs_platform_point_x, crs_platform_point_y, crs_platform_point_z, crs_size,
+            crs_size_t, crs_size_t_2, inv_crs_size_t,
         ) = k
-        # (rprs-K1) from the base point to the connection point
-        q_in_base_x = (
-        R_xx*rprs_platform_point_x + R_xy*rprs_platform_point_y + R_xz*rprs_platform_point_z
+        # (crs-S) from the base point to the connection point
+        crs_q_in_base_x = (
+        R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
-        q_in_base_y = (
-        R_yx*rprs_platform_point_x + R_yy*rprs_platform_point_y + R_yz*rprs_platform_point_z
+        crs_q_in_base_y = (
+        R_yx*crs_platform_point_x + R_yy*crs_platform_point_y + R_yz*crs_platform_point_z
         )
-        q_in_base_z = (
-        R_zx*rprs_platform_point_x + R_zy*rprs_platform_point_y + R_zz*rprs_platform_point_z
+        crs_q_in_base_z = (
+        R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rprs_base_point_x
-        S_y = q_in_base_y + t_y - rprs_base_point_y
-        S_z = q_in_base_z + t_z - rprs_base_point_z
-        # (rprs-K2) component along the reference direction
-        px_1 = S_x*rprs_base_frame_xy + S_y*rprs_base_frame_yy + S_z*rprs_base_frame_zy
-        # (rprs-K3) component across the reference direction
-        py_1 = S_x*rprs_base_frame_xz + S_y*rprs_base_frame_yz + S_z*rprs_base_frame_zz
-        # (rprs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rprs-K7) root, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rprs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*rprs_base_frame_xx + S_y*rprs_base_frame_yx + S_z*rprs_base_frame_zx
-        # (rprs-K12) from the centre at zero displacement to the connection point
-        from_centre_2_z = xi_1_t - rprs_joint3_offset_x
-        # (rprs-K14) discriminant of the distance equation
-        disc_2 = size_t - root_1*root_1
-        # (rprs-K15) displacement of joint 2
-        q_2 = from_centre_2_z + branch_2*sqrt(disc_2)
-        # (rprs-K16) from the origin of joint 3 to the connection point
-        x_3_z = xi_1_t - q_2 - rprs_joint3_offset_x
-        # (rprs-K18) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_size_t*root_1*rprs_platform_joint_offset_x
-        # (rprs-K19) sine of the angle of joint 3 from its reference direction
-        s_3 = inv_size_t*rprs_platform_joint_offset_x*x_3_z
-        # (rprs-V2) from joint 1 to the connection point, along the links
-        r_1_t = c_3*rprs_platform_joint_offset_x
-        r_1_t_2 = rprs_platform_joint_offset_x*s_3
-        r_1_z = q_2 + r_1_t_2 + rprs_joint3_offset_x
-        # (rprs-V3) velocity of the connection point per rate of joint 1
-        v_1_z = c_3*(c_3*r_1_t + r_1_z*s_3) + s_3*(r_1_t*s_3 - c_3*r_1_z)
-        # (rprs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*py_1*root_1
-        # (rprs-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*px_1*root_1
-        # (rprs-V5) reciprocal vector 1
-        axis_z_rprs_axes3_in_base_x = rprs_base_frame_xz*s_1 - c_1*rprs_base_frame_xy
-        axis_z_rprs_axes3_in_base_y = rprs_base_frame_yz*s_1 - c_1*rprs_base_frame_yy
-        axis_z_rprs_axes3_in_base_z = rprs_base_frame_zz*s_1 - c_1*rprs_base_frame_zy
-        w_1_t = s_1*s_3
-        w_1_t_2 = c_1*s_3
-        axis_y_rprs_axes3_in_base_x = (
-        rprs_base_frame_xy*w_1_t + rprs_base_frame_xz*w_1_t_2 - c_3*rprs_base_frame_xx
+        crs_S_x = crs_q_in_base_x + t_x - crs_base_point_x
+        crs_S_y = crs_q_in_base_y + t_y - crs_base_point_y
+        crs_S_z = crs_q_in_base_z + t_z - crs_base_point_z
+        # (crs-px_1) component along the reference direction
+        crs_px_1 = (
+        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
         )
-        axis_y_rprs_axes3_in_base_y = (
-        rprs_base_frame_yy*w_1_t + rprs_base_frame_yz*w_1_t_2 - c_3*rprs_base_frame_yx
+        # (crs-py_1) component across the reference direction
+        crs_py_1 = (
+        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
         )
-        axis_y_rprs_axes3_in_base_z = (
-        rprs_base_frame_zy*w_1_t + rprs_base_frame_zz*w_1_t_2 - c_3*rprs_base_frame_zx
+        # (crs-rho2_1) squared amplitude
+        crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1
+        # (crs-root_1) root, with the sign of the branch
+        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        # (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        crs_xi_1_t = (
+        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
         )
-        axis_x_rprs_axes3_x = (
-        axis_y_rprs_axes3_in_base_y*axis_z_rprs_axes3_in_base_z -
-            axis_y_rprs_axes3_in_base_z*axis_z_rprs_axes3_in_base_y
+        # (crs-from_centre_2) from the centre at zero displacement to the connection point
+        crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x
+        # (crs-disc_2) discriminant of the distance equation
+        crs_disc_2 = crs_size_t - crs_root_1*crs_root_1
+        # (crs-q_2) displacement of joint 2
+        crs_q_2 = crs_from_centre_2_z + crs_branch_2*sqrt(crs_disc_2)
+        # (crs-x_3) from the origin of joint 3 to the connection point
+        crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2
+        # (crs-c_3) cosine of the angle of joint 3 from its reference direction
+        crs_c_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        # (crs-s_3) sine of the angle of joint 3 from its reference direction
+        crs_s_3 = crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t
+        # (crs-r_1) from joint 1 to the connection point, along the links
+        crs_r_1_t = crs_c_3*crs_platform_joint_offset_x
+        crs_r_1_t_2 = crs_platform_joint_offset_x*crs_s_3
+        crs_r_1_z = crs_joint3_offset_x + crs_q_2 + crs_r_1_t_2
+        # (crs-v_1) velocity of the connection point per rate of joint 1
+        crs_v_1_z = (
+        crs_c_3*(crs_c_3*crs_r_1_t + crs_r_1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
+            crs_c_3*crs_r_1_z)
         )
-        axis_x_rprs_axes3_y = (
-        axis_y_rprs_axes3_in_base_z*axis_z_rprs_axes3_in_base_x -
-            axis_y_rprs_axes3_in_base_x*axis_z_rprs_axes3_in_base_z
+        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_c_1 = crs_py_1*crs_root_1*inv_crs_rho2_1
+        # (crs-s_1) sine of the angle of joint 1 from its reference direction
+        crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1
+        # (crs-w_1) reciprocal vector 1
+        axis_z_crs_axes3_in_base_x = crs_base_frame_xz*crs_s_1 - crs_base_frame_xy*crs_c_1
+        axis_z_crs_axes3_in_base_y = crs_base_frame_yz*crs_s_1 - crs_base_frame_yy*crs_c_1
+        axis_z_crs_axes3_in_base_z = crs_base_frame_zz*crs_s_1 - crs_base_frame_zy*crs_c_1
+        crs_w_1_t = crs_s_1*crs_s_3
+        crs_w_1_t_2 = crs_c_1*crs_s_3
+        axis_y_crs_axes3_in_base_x = (
+        crs_base_frame_xy*crs_w_1_t + crs_base_frame_xz*crs_w_1_t_2 - crs_base_frame_xx*crs_c_3
         )
-        axis_x_rprs_axes3_z = (
-        axis_y_rprs_axes3_in_base_x*axis_z_rprs_axes3_in_base_y -
-            axis_y_rprs_axes3_in_base_y*axis_z_rprs_axes3_in_base_x
+        axis_y_crs_axes3_in_base_y = (
+        crs_base_frame_yy*crs_w_1_t + crs_base_frame_yz*crs_w_1_t_2 - crs_base_frame_yx*crs_c_3
         )
-        inv_v_1_z = 1.0/v_1_z
-        # (rprs-V6) reciprocal vector 2
-        inv_r_1_t_2 = 1.0/r_1_t_2
-        w_2_t = inv_r_1_t_2*r_1_t
-        _r1_x = s_3 + c_3*w_2_t
-        _r1_y = s_3*w_2_t - c_3
-        # (rprs-V7) reciprocal vector 3
-        w_3_t = c_3*inv_r_1_t_2
-        w_3_t_2 = inv_r_1_t_2*s_3
-        # (rprs-N40) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_x = (
-        c_3*h_3_x + h_3_y*s_3 + inv_v_1_z*(J_2_xx + s_3*(J_3_xx*s_3 - J_3_xy*c_3) -
-            c_3*(J_3_xy*s_3 - J_3_yy*c_3))
+        axis_y_crs_axes3_in_base_z = (
+        crs_base_frame_zy*crs_w_1_t + crs_base_frame_zz*crs_w_1_t_2 - crs_base_frame_zx*crs_c_3
         )
-        # (rprs-N37) coefficient of the acceleration in: force along axis 2 of the distal links' inertia and weight
-        d_Gamma_2_t = inv_r_1_t_2*r_1_t*rprs_link2_mass
-        _r1_y_2 = d_Gamma_2_t*s_3 - c_3*rprs_link2_mass
-        # (rprs-N28) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        d_Gamma_3_t = inv_v_1_z*(J_3_xz*s_3 - J_3_yz*c_3)
-        d_Gamma_3_t_2 = J_3_zz*inv_r_1_t_2
-        d_Gamma_3_x = c_3*d_Gamma_3_t_2 - h_3_y
-        d_Gamma_3_y = h_3_x + d_Gamma_3_t_2*s_3
-        # (rprs-A19) coefficient of the acceleration in: angular acceleration of link 3
-        d_alpha_3_t = inv_v_1_z*s_3
-        d_alpha_3_t_2 = c_3*inv_v_1_z
-        # (rprs-N46) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_xx = h_3_y*w_3_t - _r1_x*(c_3*d_Gamma_2_t + rprs_link2_mass*s_3) - d_Gamma_3_x*w_3_t
-        d_c_xy = h_3_y*w_3_t_2 - _r1_x*_r1_y_2 - d_Gamma_3_y*w_3_t
-        d_c_xz = d_alpha_3_t_2*h_3_z - d_Gamma_3_t*w_3_t
-        d_c_yz = d_alpha_3_t*h_3_z - d_Gamma_3_t*w_3_t_2
-        # (rprs-N48) inertia of the leg at the connection point, without the mass gathered there
-        Q_t = d_c_xx + _r1_y*_r1_y_2 + d_Gamma_3_y*w_3_t_2 + h_3_x*w_3_t_2
-        Q_t_2 = 0.5*Q_t
-        Q_t_3 = d_c_xx + d_Gamma_1_x*inv_v_1_z + d_alpha_3_t*h_3_y + d_alpha_3_t_2*h_3_x
-        Q_t_4 = 0.5*Q_t_3
-        Q_t_5 = (
-        axis_x_rprs_axes3_x*d_c_xy + axis_z_rprs_axes3_in_base_x*d_c_yz -
-            Q_t_2*axis_y_rprs_axes3_in_base_x
+        axis_x_crs_axes3_x = (
+        axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_z -
+            axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_y
         )
-        Q_t_6 = (
-        axis_x_rprs_axes3_y*d_c_xy + axis_z_rprs_axes3_in_base_y*d_c_yz -
-            Q_t_2*axis_y_rprs_axes3_in_base_y
+        axis_x_crs_axes3_y = (
+        axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_x -
+            axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_z
         )
-        Q_t_7 = (
-        axis_x_rprs_axes3_z*d_c_xy + axis_z_rprs_axes3_in_base_z*d_c_yz -
-            Q_t_2*axis_y_rprs_axes3_in_base_z
+        axis_x_crs_axes3_z = (
+        axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_y -
+            axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_x
         )
-        Q_t_8 = Q_t_4*axis_z_rprs_axes3_in_base_x - axis_x_rprs_axes3_x*d_c_xz
-        Q_t_9 = Q_t_4*axis_z_rprs_axes3_in_base_y - axis_x_rprs_axes3_y*d_c_xz
-        Q_t_10 = Q_t_4*axis_z_rprs_axes3_in_base_z - axis_x_rprs_axes3_z*d_c_xz
-        Q_t_11 = Q_t_5*axis_y_rprs_axes3_in_base_x - Q_t_8*axis_z_rprs_axes3_in_base_x
-        Q_t_12 = 2.0*Q_t_11 + d_c_xx
-        Q_t_13 = (
-        Q_t_5*axis_y_rprs_axes3_in_base_y + Q_t_6*axis_y_rprs_axes3_in_base_x -
-            Q_t_8*axis_z_rprs_axes3_in_base_y - Q_t_9*axis_z_rprs_axes3_in_base_x
+        inv_crs_v_1_z = 1.0/crs_v_1_z
+        # (crs-w_3) reciprocal vector 3
+        inv_crs_r_1_t_2 = 1.0/crs_r_1_t_2
+        crs_w_3_t = crs_c_3*inv_crs_r_1_t_2
+        crs_w_3_t_2 = crs_s_3*inv_crs_r_1_t_2
+        # (crs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
+        crs_d_alpha_3_t = crs_s_3*inv_crs_v_1_z
+        crs_d_alpha_3_t_2 = crs_c_3*inv_crs_v_1_z
+        # (crs-w_2) reciprocal vector 2
+        crs_w_2_t = crs_r_1_t*inv_crs_r_1_t_2
+        crs__r1_x = crs_s_3 + crs_c_3*crs_w_2_t
+        crs__r1_y = crs_s_3*crs_w_2_t - crs_c_3
+        # (crs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        crs_d_Gamma_3_t = inv_crs_v_1_z*(crs_J_3_xz*crs_s_3 - crs_J_3_yz*crs_c_3)
+        crs_d_Gamma_3_t_2 = crs_J_3_zz*inv_crs_r_1_t_2
+        crs_d_Gamma_3_x = crs_c_3*crs_d_Gamma_3_t_2 - crs_h_3_y
+        crs_d_Gamma_3_y = crs_h_3_x + crs_d_Gamma_3_t_2*crs_s_3
+        # (crs-d_Gamma_2) coefficient of the acceleration in: force along axis 2 of the distal links' inertia and weight
+        crs_d_Gamma_2_t = crs_link2_mass*crs_r_1_t*inv_crs_r_1_t_2
+        crs__r1_y_2 = crs_d_Gamma_2_t*crs_s_3 - crs_c_3*crs_link2_mass
+        # (crs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        crs_d_Gamma_1_x = (
+        crs_c_3*crs_h_3_x + crs_h_3_y*crs_s_3 + inv_crs_v_1_z*(crs_J_2_xx +
+            crs_s_3*(crs_J_3_xx*crs_s_3 - crs_J_3_xy*crs_c_3) - crs_c_3*(crs_J_3_xy*crs_s_3 -
+            crs_J_3_yy*crs_c_3))
         )
-        Q_t_14 = (
-        Q_t_5*axis_y_rprs_axes3_in_base_z + Q_t_7*axis_y_rprs_axes3_in_base_x -
-            Q_t_10*axis_z_rprs_axes3_in_base_x - Q_t_8*axis_z_rprs_axes3_in_base_z
+        # (crs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        crs_d_c_xx = (
+        crs_h_3_y*crs_w_3_t - crs__r1_x*(crs_c_3*crs_d_Gamma_2_t + crs_link2_mass*crs_s_3) -
+            crs_d_Gamma_3_x*crs_w_3_t
         )
-        Q_t_15 = Q_t_6*axis_y_rprs_axes3_in_base_y - Q_t_9*axis_z_rprs_axes3_in_base_y
-        Q_t_16 = 2.0*Q_t_15 + d_c_xx
-        Q_t_17 = (
-        Q_t_6*axis_y_rprs_axes3_in_base_z + Q_t_7*axis_y_rprs_axes3_in_base_y -
-            Q_t_10*axis_z_rprs_axes3_in_base_y - Q_t_9*axis_z_rprs_axes3_in_base_z
+        crs_d_c_xy = crs_h_3_y*crs_w_3_t_2 - crs__r1_x*crs__r1_y_2 - crs_d_Gamma_3_y*crs_w_3_t
+        crs_d_c_xz = crs_d_alpha_3_t_2*crs_h_3_z - crs_d_Gamma_3_t*crs_w_3_t
+        crs_d_c_yz = crs_d_alpha_3_t*crs_h_3_z - crs_d_Gamma_3_t*crs_w_3_t_2
+        # (crs-Q) inertia of the leg at the connection point, without the mass gathered there
+        crs_Q_t = (
+        crs_d_c_xx + crs__r1_y*crs__r1_y_2 + crs_d_Gamma_3_y*crs_w_3_t_2 + crs_h_3_x*crs_w_3_t_2
         )
-        Q_t_18 = Q_t_7*axis_y_rprs_axes3_in_base_z - Q_t_10*axis_z_rprs_axes3_in_base_z
-        Q_t_19 = 2.0*Q_t_18 + d_c_xx
-        # (M2) coupling block of M
-        M_ta_t = Q_t_13*q_in_base_z
-        M_ta_t_2 = Q_t_14*q_in_base_y
-        M_ta_t_3 = M_ta_t - M_ta_t_2
-        M_ta_t_4 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x
-        M_ta_t_5 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x
-        M_ta_t_6 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y
-        M_ta_t_7 = Q_t_17*q_in_base_x
-        M_ta_t_8 = M_ta_t - M_ta_t_7
-        M_ta_t_9 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x
-        M_ta_t_10 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y
-        M_ta_t_11 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x
-        M_ta_t_12 = M_ta_t_7 - M_ta_t_2
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
-        M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y
-        M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z
-        M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x
-        M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z
-        M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
-        # (rprs-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_r0_x = (
-        S_dot_x*rprs_base_frame_xy + S_dot_y*rprs_base_frame_yy + S_dot_z*rprs_base_frame_zy
+        crs_Q_t_2 = 0.5*crs_Q_t
+        crs_Q_t_3 = (
+        crs_d_c_xx + crs_d_Gamma_1_x*inv_crs_v_1_z + crs_d_alpha_3_t*crs_h_3_y +
+            crs_d_alpha_3_t_2*crs_h_3_x
         )
-        S_dot_r0_y = (
-        S_dot_x*rprs_base_frame_xz + S_dot_y*rprs_base_frame_yz + S_dot_z*rprs_base_frame_zz
+        crs_Q_t_4 = 0.5*crs_Q_t_3
+        crs_Q_t_5 = (
+        axis_x_crs_axes3_x*crs_d_c_xy + axis_z_crs_axes3_in_base_x*crs_d_c_yz -
+            axis_y_crs_axes3_in_base_x*crs_Q_t_2
         )
-        # (rprs-V8) rate of joint 1
-        qd_1 = inv_v_1_z*(S_dot_r0_y*s_1 - S_dot_r0_x*c_1)
-        qd_3 = inv_r_1_t_2*(-S_dot_r0_x*s_1 - S_dot_r0_y*c_1)
-        qd_1_t = (
-        S_dot_x*rprs_base_frame_xx + S_dot_y*rprs_base_frame_yx + S_dot_z*rprs_base_frame_zx -
-            qd_3*r_1_t
+        crs_Q_t_6 = (
+        axis_x_crs_axes3_y*crs_d_c_xy + axis_z_crs_axes3_in_base_y*crs_d_c_yz -
+            axis_y_crs_axes3_in_base_y*crs_Q_t_2
         )
-        # (rprs-V11) angular velocity of link 1
-        omega_1_t = qd_1*s_3
-        omega_1_t_2 = c_3*qd_1
-        # (rprs-A4) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_x = omega_1_t_2*qd_3
-        zeta_3_y = omega_1_t*qd_3
-        # (rprs-V14) centripetal tensor of link 3
-        W_3_t = omega_1_t*omega_1_t
-        W_3_t_2 = omega_1_t_2*omega_1_t_2
-        W_3_t_3 = qd_3*qd_3
-        W_3_xy = omega_1_t*omega_1_t_2
-        # (rprs-A5) acceleration of the connection point at zero joint accelerations
-        bias_t = (
-        omega_1_t*(c_3*q_2 + c_3*rprs_joint3_offset_x) - omega_1_t_2*(q_2*s_3 +
-            rprs_joint3_offset_x*s_3)
+        crs_Q_t_7 = (
+        axis_x_crs_axes3_z*crs_d_c_xy + axis_z_crs_axes3_in_base_z*crs_d_c_yz -
+            axis_y_crs_axes3_in_base_z*crs_Q_t_2
         )
-        bias_t_2 = qd_3*rprs_platform_joint_offset_x
-        bias_t_3 = omega_1_t_2*rprs_platform_joint_offset_x
-        bias_x = bias_t*omega_1_t_2 - bias_t_2*qd_3 - bias_t_3*omega_1_t_2
-        bias_y = bias_t*omega_1_t - bias_t_3*omega_1_t
-        bias_z = (
-        -bias_t_2*omega_1_t - 2.0*qd_1_t*(c_3*omega_1_t - omega_1_t_2*s_3) -
-            rprs_platform_joint_offset_x*zeta_3_y
+        crs_Q_t_8 = axis_z_crs_axes3_in_base_x*crs_Q_t_4 - axis_x_crs_axes3_x*crs_d_c_xz
+        crs_Q_t_9 = axis_z_crs_axes3_in_base_y*crs_Q_t_4 - axis_x_crs_axes3_y*crs_d_c_xz
+        crs_Q_t_10 = axis_z_crs_axes3_in_base_z*crs_Q_t_4 - axis_x_crs_axes3_z*crs_d_c_xz
+        crs_Q_t_11 = axis_y_crs_axes3_in_base_x*crs_Q_t_5 - axis_z_crs_axes3_in_base_x*crs_Q_t_8
+        crs_Q_t_12 = 2.0*crs_Q_t_11 + crs_d_c_xx
+        crs_Q_t_13 = (
+        axis_y_crs_axes3_in_base_x*crs_Q_t_6 + axis_y_crs_axes3_in_base_y*crs_Q_t_5 -
+            axis_z_crs_axes3_in_base_x*crs_Q_t_9 - axis_z_crs_axes3_in_base_y*crs_Q_t_8
         )
-        # (rprs-A1) centripetal acceleration of the connection point
-        u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
-        u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y
-        u_1_tip_x = (
-        axis_x_rprs_axes3_x*u_1_x + axis_x_rprs_axes3_y*u_1_y + axis_x_rprs_axes3_z*u_1_z
+        crs_Q_t_14 = (
+        axis_y_crs_axes3_in_base_x*crs_Q_t_7 + axis_y_crs_axes3_in_base_z*crs_Q_t_5 -
+            axis_z_crs_axes3_in_base_x*crs_Q_t_10 - axis_z_crs_axes3_in_base_z*crs_Q_t_8
         )
-        u_1_tip_y = (
-        axis_y_rprs_axes3_in_base_x*u_1_x + axis_y_rprs_axes3_in_base_y*u_1_y +
-            axis_y_rprs_axes3_in_base_z*u_1_z
+        crs_Q_t_15 = axis_y_crs_axes3_in_base_y*crs_Q_t_6 - axis_z_crs_axes3_in_base_y*crs_Q_t_9
+        crs_Q_t_16 = 2.0*crs_Q_t_15 + crs_d_c_xx
+        crs_Q_t_17 = (
+        axis_y_crs_axes3_in_base_y*crs_Q_t_7 + axis_y_crs_axes3_in_base_z*crs_Q_t_6 -
+            axis_z_crs_axes3_in_base_y*crs_Q_t_10 - axis_z_crs_axes3_in_base_z*crs_Q_t_9
         )
-        u_1_tip_z = (
-        axis_z_rprs_axes3_in_base_x*u_1_x + axis_z_rprs_axes3_in_base_y*u_1_y +
-            axis_z_rprs_axes3_in_base_z*u_1_z
+        crs_Q_t_18 = axis_y_crs_axes3_in_base_z*crs_Q_t_7 - axis_z_crs_axes3_in_base_z*crs_Q_t_10
+        crs_Q_t_19 = 2.0*crs_Q_t_18 + crs_d_c_xx
+        # (M_ta) coupling block of M
+        crs_M_ta_t = crs_Q_t_13*crs_q_in_base_z
+        crs_M_ta_t_2 = crs_Q_t_14*crs_q_in_base_y
+        crs_M_ta_t_3 = crs_M_ta_t - crs_M_ta_t_2
+        crs_M_ta_t_4 = crs_Q_t_12*crs_q_in_base_z - crs_Q_t_14*crs_q_in_base_x
+        crs_M_ta_t_5 = crs_Q_t_12*crs_q_in_base_y - crs_Q_t_13*crs_q_in_base_x
+        crs_M_ta_t_6 = crs_Q_t_16*crs_q_in_base_z - crs_Q_t_17*crs_q_in_base_y
+        crs_M_ta_t_7 = crs_Q_t_17*crs_q_in_base_x
+        crs_M_ta_t_8 = crs_M_ta_t - crs_M_ta_t_7
+        crs_M_ta_t_9 = crs_Q_t_13*crs_q_in_base_y - crs_Q_t_16*crs_q_in_base_x
+        crs_M_ta_t_10 = crs_Q_t_17*crs_q_in_base_z - crs_Q_t_19*crs_q_in_base_y
+        crs_M_ta_t_11 = crs_Q_t_14*crs_q_in_base_z - crs_Q_t_19*crs_q_in_base_x
+        crs_M_ta_t_12 = crs_M_ta_t_7 - crs_M_ta_t_2
+        # (M_aa) rotational block of M
+        crs_M_aa_t = crs_M_ta_t_6*crs_q_in_base_z - crs_M_ta_t_10*crs_q_in_base_y
+        crs_M_aa_t_2 = crs_M_ta_t_8*crs_q_in_base_z - crs_M_ta_t_11*crs_q_in_base_y
+        crs_M_aa_t_3 = crs_M_ta_t_12*crs_q_in_base_y + crs_M_ta_t_9*crs_q_in_base_z
+        crs_M_aa_t_4 = crs_M_ta_t_4*crs_q_in_base_z - crs_M_ta_t_11*crs_q_in_base_x
+        crs_M_aa_t_5 = crs_M_ta_t_12*crs_q_in_base_x + crs_M_ta_t_5*crs_q_in_base_z
+        crs_M_aa_t_6 = crs_M_ta_t_5*crs_q_in_base_y - crs_M_ta_t_9*crs_q_in_base_x
+        # (crs-S_dot) velocity of the connection point
+        crs_S_dot_t = crs_q_in_base_z*omega_y - crs_q_in_base_y*omega_z
+        crs_S_dot_t_2 = crs_q_in_base_x*omega_z - crs_q_in_base_z*omega_x
+        crs_S_dot_t_3 = crs_q_in_base_y*omega_x - crs_q_in_base_x*omega_y
+        crs_S_dot_x = crs_S_dot_t + t_dot_x
+        crs_S_dot_y = crs_S_dot_t_2 + t_dot_y
+        crs_S_dot_z = crs_S_dot_t_3 + t_dot_z
+        crs_S_dot_r0_x = (
+        crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
+            crs_S_dot_z*crs_base_frame_zy
         )
-        # (rprs-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_x = u_1_tip_x - bias_x
-        rel_o_y = u_1_tip_y - bias_y
-        rel_o_z = u_1_tip_z - bias_z
-        # (rprs-A9) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_o = inv_v_1_z*rel_o_z
-        qdd_3_o = inv_r_1_t_2*(-c_3*rel_o_x - rel_o_y*s_3)
-        # (rprs-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-        acc_2_o_z = rel_o_x*s_3 - g_r0_z - c_3*rel_o_y - qdd_3_o*r_1_t
-        # (rprs-N6) remainder without the acceleration in: inertia force of link 2 less its weight
-        f_2_o_t = acc_2_o_z*rprs_link2_mass
-        # (rprs-N33) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_o_z = J_2_xx*qdd_1_o - g_r1_x*h_2_y - g_r1_y*h_2_z
-        # (rprs-N8) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        acc_3_o_x = u_1_tip_x + c_3*g_r1_y - g_r0_z*s_3
-        acc_3_o_y = u_1_tip_y + c_3*g_r0_z + g_r1_y*s_3
-        acc_3_o_z = u_1_tip_z - g_r1_x
-        # (rprs-A15) remainder without the acceleration in: angular acceleration of link 1
-        alpha_1_o_t = qdd_1_o*s_3
-        alpha_1_o_t_2 = c_3*qdd_1_o
-        # (rprs-A20) remainder without the acceleration in: angular acceleration of link 3
-        alpha_3_o_x = alpha_1_o_t + zeta_3_x
-        alpha_3_o_y = zeta_3_y - alpha_1_o_t_2
-        # (rprs-A22) remainder of the acceleration tensor of link 3
-        B_3_o_xy = qdd_3_o - W_3_xy
-        B_3_o_yx = -W_3_xy - qdd_3_o
-        B_3_o_zx = -alpha_3_o_y - zeta_3_y
-        B_3_o_zy = alpha_3_o_x + zeta_3_x
-        # (rprs-N26) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        mu_3_o_x = (
-        B_3_o_yx*J_3_xz + B_3_o_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) +
-            Sigma_3_zz*alpha_1_o_t + acc_3_o_z*h_3_y - B_3_o_zx*J_3_xy - acc_3_o_y*h_3_z
+        crs_S_dot_r0_y = (
+        crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz +
+            crs_S_dot_z*crs_base_frame_zz
         )
-        mu_3_o_y = (
-        B_3_o_zy*J_3_xy + acc_3_o_x*h_3_z - B_3_o_xy*J_3_yz - B_3_o_zx*Sigma_3_xx - J_3_xz*(W_3_t
-            - W_3_t_3) - Sigma_3_zz*alpha_1_o_t_2 - acc_3_o_z*h_3_x
+        # (crs-qd_3) rate of joint 3
+        crs_qd_1 = inv_crs_v_1_z*(crs_S_dot_r0_y*crs_s_1 - crs_S_dot_r0_x*crs_c_1)
+        crs_qd_3 = inv_crs_r_1_t_2*(-crs_S_dot_r0_x*crs_s_1 - crs_S_dot_r0_y*crs_c_1)
+        crs_qd_3_t = (
+        crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
+            crs_S_dot_z*crs_base_frame_zx - crs_qd_3*crs_r_1_t
         )
-        mu_3_o_z = (
-        B_3_o_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + J_3_xz*alpha_1_o_t + acc_3_o_y*h_3_x -
-            B_3_o_xy*Sigma_3_yy - J_3_yz*alpha_1_o_t_2 - acc_3_o_x*h_3_y
+        # (crs-omega_1) angular velocity of link 1
+        crs_omega_1_t = crs_qd_1*crs_s_3
+        crs_omega_1_t_2 = crs_c_3*crs_qd_1
+        # (crs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        crs_zeta_3_x = crs_omega_1_t_2*crs_qd_3
+        crs_zeta_3_y = crs_omega_1_t*crs_qd_3
+        # (crs-u_1) centripetal acceleration of the connection point
+        crs_u_1_x = crs_S_dot_t_3*omega_y - crs_S_dot_t_2*omega_z
+        crs_u_1_y = crs_S_dot_t*omega_z - crs_S_dot_t_3*omega_x
+        crs_u_1_z = crs_S_dot_t_2*omega_x - crs_S_dot_t*omega_y
+        # (crs-W_3) centripetal tensor of link 3
+        crs_W_3_t = crs_omega_1_t*crs_omega_1_t
+        crs_W_3_t_2 = crs_omega_1_t_2*crs_omega_1_t_2
+        crs_W_3_t_3 = crs_qd_3*crs_qd_3
+        crs_W_3_xy = crs_omega_1_t*crs_omega_1_t_2
+        # (crs-bias) acceleration of the connection point at zero joint accelerations
+        crs_bias_t = (
+        crs_omega_1_t*(crs_c_3*crs_joint3_offset_x + crs_c_3*crs_q_2) -
+            crs_omega_1_t_2*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3)
         )
-        # (rprs-N35) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_o_z = mu_1_o_z + mu_3_o_x*s_3 - c_3*mu_3_o_y
-        # (rprs-N44) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_o_t = inv_r_1_t_2*(mu_3_o_z + f_2_o_t*r_1_t)
-        # (rprs-N47) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_o_x = (
-        alpha_1_o_t_2*h_3_z + h_3_x*(W_3_t_2 + W_3_t_3) - B_3_o_xy*h_3_y - G_o_t*c_3 - f_2_o_t*s_3
+        crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_3
+        crs_bias_t_3 = crs_omega_1_t_2*crs_platform_joint_offset_x
+        crs_bias_x = (
+        crs_bias_t*crs_omega_1_t_2 - crs_bias_t_2*crs_qd_3 - crs_bias_t_3*crs_omega_1_t_2
         )
-        c_o_y = (
-        alpha_1_o_t*h_3_z + c_3*f_2_o_t + h_3_y*(W_3_t + W_3_t_3) - B_3_o_yx*h_3_x - G_o_t*s_3
+        crs_bias_y = crs_bias_t*crs_omega_1_t - crs_bias_t_3*crs_omega_1_t
+        crs_bias_z = (
+        -crs_bias_t_2*crs_omega_1_t - crs_platform_joint_offset_x*crs_zeta_3_y -
+            2.0*crs_qd_3_t*(crs_c_3*crs_omega_1_t - crs_omega_1_t_2*crs_s_3)
         )
-        c_o_z = h_3_z*(W_3_t + W_3_t_2) - B_3_o_zx*h_3_x - B_3_o_zy*h_3_y - N_1_o_z*inv_v_1_z
-        # (rprs-N49) velocity and gravity terms of the leg force
-        U_in_base_x = (
-        -axis_x_rprs_axes3_x*c_o_x - axis_y_rprs_axes3_in_base_x*c_o_y -
-            axis_z_rprs_axes3_in_base_x*c_o_z
+        # (crs-u_1) centripetal acceleration of the connection point
+        crs_u_1_tip_x = (
+        axis_x_crs_axes3_x*crs_u_1_x + axis_x_crs_axes3_y*crs_u_1_y + axis_x_crs_axes3_z*crs_u_1_z
         )
-        U_in_base_y = (
-        -axis_x_rprs_axes3_y*c_o_x - axis_y_rprs_axes3_in_base_y*c_o_y -
-            axis_z_rprs_axes3_in_base_y*c_o_z
+        crs_u_1_tip_y = (
+        axis_y_crs_axes3_in_base_x*crs_u_1_x + axis_y_crs_axes3_in_base_y*crs_u_1_y +
+            axis_y_crs_axes3_in_base_z*crs_u_1_z
         )
-        U_in_base_z = (
-        -axis_x_rprs_axes3_z*c_o_x - axis_y_rprs_axes3_in_base_z*c_o_y -
-            axis_z_rprs_axes3_in_base_z*c_o_z
+        crs_u_1_tip_z = (
+        axis_z_crs_axes3_in_base_x*crs_u_1_x + axis_z_crs_axes3_in_base_y*crs_u_1_y +
+            axis_z_crs_axes3_in_base_z*crs_u_1_z
         )
-        # (M7) rotational part of Z
-        Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
-        Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
-        Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
-        # (rprs-V5) reciprocal vector 1
-        w_1_t_3 = axis_z_rprs_axes3_in_base_x*inv_v_1_z
-        w_1_t_4 = axis_z_rprs_axes3_in_base_y*inv_v_1_z
-        w_1_t_5 = axis_z_rprs_axes3_in_base_z*inv_v_1_z
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_x = q_in_base_y*w_1_t_5 - q_in_base_z*w_1_t_4
-        H_a_1_y = q_in_base_z*w_1_t_3 - q_in_base_x*w_1_t_5
-        H_a_1_z = q_in_base_x*w_1_t_4 - q_in_base_y*w_1_t_3
-        # (rprs-V6) reciprocal vector 2
-        w_2_in_base_x = _r1_x*axis_x_rprs_axes3_x + _r1_y*axis_y_rprs_axes3_in_base_x
-        w_2_in_base_y = _r1_x*axis_x_rprs_axes3_y + _r1_y*axis_y_rprs_axes3_in_base_y
-        w_2_in_base_z = _r1_x*axis_x_rprs_axes3_z + _r1_y*axis_y_rprs_axes3_in_base_z
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_2_x = q_in_base_y*w_2_in_base_z - q_in_base_z*w_2_in_base_y
-        H_a_2_y = q_in_base_z*w_2_in_base_x - q_in_base_x*w_2_in_base_z
-        H_a_2_z = q_in_base_x*w_2_in_base_y - q_in_base_y*w_2_in_base_x
+        # (crs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        crs_rel_o_x = crs_u_1_tip_x - crs_bias_x
+        crs_rel_o_y = crs_u_1_tip_y - crs_bias_y
+        crs_rel_o_z = crs_u_1_tip_z - crs_bias_z
+        # (crs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
+        crs_qdd_1_o = crs_rel_o_z*inv_crs_v_1_z
+        crs_qdd_3_o = inv_crs_r_1_t_2*(-crs_c_3*crs_rel_o_x - crs_rel_o_y*crs_s_3)
+        # (crs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        crs_alpha_1_o_t = crs_qdd_1_o*crs_s_3
+        crs_alpha_1_o_t_2 = crs_c_3*crs_qdd_1_o
+        # (crs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        crs_alpha_3_o_x = crs_alpha_1_o_t + crs_zeta_3_x
+        crs_alpha_3_o_y = crs_zeta_3_y - crs_alpha_1_o_t_2
+        # (crs-B_3_o) remainder of the acceleration tensor of link 3
+        crs_B_3_o_xy = crs_qdd_3_o - crs_W_3_xy
+        crs_B_3_o_yx = -crs_W_3_xy - crs_qdd_3_o
+        crs_B_3_o_zx = -crs_alpha_3_o_y - crs_zeta_3_y
+        crs_B_3_o_zy = crs_alpha_3_o_x + crs_zeta_3_x
+        # (crs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        crs_g_r1_x = crs_g_r0_y*crs_s_1 - crs_c_1*crs_g_r0_x
+        crs_g_r1_y = -crs_c_1*crs_g_r0_y - crs_g_r0_x*crs_s_1
+        crs_acc_3_o_x = crs_u_1_tip_x + crs_c_3*crs_g_r1_y - crs_g_r0_z*crs_s_3
+        crs_acc_3_o_y = crs_u_1_tip_y + crs_c_3*crs_g_r0_z + crs_g_r1_y*crs_s_3
+        crs_acc_3_o_z = crs_u_1_tip_z - crs_g_r1_x
+        # (crs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        crs_mu_3_o_x = (
+        crs_B_3_o_yx*crs_J_3_xz + crs_B_3_o_zy*crs_Sigma_3_yy + crs_J_3_yz*(crs_W_3_t_2 -
+            crs_W_3_t_3) + crs_Sigma_3_zz*crs_alpha_1_o_t + crs_acc_3_o_z*crs_h_3_y -
+            crs_B_3_o_zx*crs_J_3_xy - crs_acc_3_o_y*crs_h_3_z
+        )
+        crs_mu_3_o_y = (
+        crs_B_3_o_zy*crs_J_3_xy + crs_acc_3_o_x*crs_h_3_z - crs_B_3_o_xy*crs_J_3_yz -
+            crs_B_3_o_zx*crs_Sigma_3_xx - crs_J_3_xz*(crs_W_3_t - crs_W_3_t_3) -
+            crs_Sigma_3_zz*crs_alpha_1_o_t_2 - crs_acc_3_o_z*crs_h_3_x
+        )
+        crs_mu_3_o_z = (
+        crs_B_3_o_yx*crs_Sigma_3_xx + crs_J_3_xy*(crs_W_3_t - crs_W_3_t_2) +
+            crs_J_3_xz*crs_alpha_1_o_t + crs_acc_3_o_y*crs_h_3_x - crs_B_3_o_xy*crs_Sigma_3_yy -
+            crs_J_3_yz*crs_alpha_1_o_t_2 - crs_acc_3_o_x*crs_h_3_y
+        )
+        # (crs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        crs_acc_2_o_z = (
+        crs_rel_o_x*crs_s_3 - crs_g_r0_z - crs_c_3*crs_rel_o_y - crs_qdd_3_o*crs_r_1_t
+        )
+        # (crs-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight
+        crs_f_2_o_t = crs_acc_2_o_z*crs_link2_mass
+        # (crs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        crs_mu_1_o_z = crs_J_2_xx*crs_qdd_1_o - crs_g_r1_x*crs_h_2_y - crs_g_r1_y*crs_h_2_z
+        # (crs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        crs_N_1_o_z = crs_mu_1_o_z + crs_mu_3_o_x*crs_s_3 - crs_c_3*crs_mu_3_o_y
+        # (crs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        crs_G_o_t = inv_crs_r_1_t_2*(crs_mu_3_o_z + crs_f_2_o_t*crs_r_1_t)
+        # (crs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        crs_c_o_x = (
+        crs_alpha_1_o_t_2*crs_h_3_z + crs_h_3_x*(crs_W_3_t_2 + crs_W_3_t_3) -
+            crs_B_3_o_xy*crs_h_3_y - crs_G_o_t*crs_c_3 - crs_f_2_o_t*crs_s_3
+        )
+        crs_c_o_y = (
+        crs_alpha_1_o_t*crs_h_3_z + crs_c_3*crs_f_2_o_t + crs_h_3_y*(crs_W_3_t + crs_W_3_t_3) -
+            crs_B_3_o_yx*crs_h_3_x - crs_G_o_t*crs_s_3
+        )
+        crs_c_o_z = (
+        crs_h_3_z*(crs_W_3_t + crs_W_3_t_2) - crs_B_3_o_zx*crs_h_3_x - crs_B_3_o_zy*crs_h_3_y -
+            crs_N_1_o_z*inv_crs_v_1_z
+        )
+        # (crs-U) velocity and gravity terms of the leg force
+        crs_U_in_base_x = (
+        -axis_x_crs_axes3_x*crs_c_o_x - axis_y_crs_axes3_in_base_x*crs_c_o_y -
+            axis_z_crs_axes3_in_base_x*crs_c_o_z
+        )
+        crs_U_in_base_y = (
+        -axis_x_crs_axes3_y*crs_c_o_x - axis_y_crs_axes3_in_base_y*crs_c_o_y -
+            axis_z_crs_axes3_in_base_y*crs_c_o_z
+        )
+        crs_U_in_base_z = (
+        -axis_x_crs_axes3_z*crs_c_o_x - axis_y_crs_axes3_in_base_z*crs_c_o_y -
+            axis_z_crs_axes3_in_base_z*crs_c_o_z
+        )
+        # (Z_a) rotational part of Z
+        crs_Z_a_t = crs_U_in_base_z*crs_q_in_base_y - crs_U_in_base_y*crs_q_in_base_z
+        crs_Z_a_t_2 = crs_U_in_base_x*crs_q_in_base_z - crs_U_in_base_z*crs_q_in_base_x
+        crs_Z_a_t_3 = crs_U_in_base_y*crs_q_in_base_x - crs_U_in_base_x*crs_q_in_base_y
+        # (crs-w_1) reciprocal vector 1
+        crs_w_1_t_3 = axis_z_crs_axes3_in_base_x*inv_crs_v_1_z
+        crs_w_1_t_4 = axis_z_crs_axes3_in_base_y*inv_crs_v_1_z
+        crs_w_1_t_5 = axis_z_crs_axes3_in_base_z*inv_crs_v_1_z
+        # (crs-H_a_1) moment of the column's unit force about the platform origin
+        crs_H_a_1_x = crs_q_in_base_y*crs_w_1_t_5 - crs_q_in_base_z*crs_w_1_t_4
+        crs_H_a_1_y = crs_q_in_base_z*crs_w_1_t_3 - crs_q_in_base_x*crs_w_1_t_5
+        crs_H_a_1_z = crs_q_in_base_x*crs_w_1_t_4 - crs_q_in_base_y*crs_w_1_t_3
+        # (crs-w_2) reciprocal vector 2
+        crs_w_2_in_base_x = axis_x_crs_axes3_x*crs__r1_x + axis_y_crs_axes3_in_base_x*crs__r1_y
+        crs_w_2_in_base_y = axis_x_crs_axes3_y*crs__r1_x + axis_y_crs_axes3_in_base_y*crs__r1_y
+        crs_w_2_in_base_z = axis_x_crs_axes3_z*crs__r1_x + axis_y_crs_axes3_in_base_z*crs__r1_y
+        # (crs-H_a_2) moment of the column's unit force about the platform origin
+        crs_H_a_2_x = crs_q_in_base_y*crs_w_2_in_base_z - crs_q_in_base_z*crs_w_2_in_base_y
+        crs_H_a_2_y = crs_q_in_base_z*crs_w_2_in_base_x - crs_q_in_base_x*crs_w_2_in_base_z
+        crs_H_a_2_z = crs_q_in_base_x*crs_w_2_in_base_y - crs_q_in_base_y*crs_w_2_in_base_x
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_2) & (disc_2 >= 0.0) &
-            (abs(v_1_z) > _TOLERANCE * size) & (abs(-r_1_t_2) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2
+            >= 0.0) & (abs(crs_v_1_z) > _TOLERANCE * crs_size) & (abs(-crs_r_1_t_2) > _TOLERANCE *
+            crs_size))
         )
         sums = m.added(sums, leg, (
-        Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_3, M_ta_t_4, M_ta_t_5,
-            M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2,
-            M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y, U_in_base_z,
-            Z_a_t, Z_a_t_2, Z_a_t_3,
+        crs_Q_t_12, crs_Q_t_13, crs_Q_t_14, crs_Q_t_16, crs_Q_t_17, crs_Q_t_19, crs_M_ta_t_3,
+            crs_M_ta_t_4, crs_M_ta_t_5, crs_M_ta_t_6, crs_M_ta_t_8, crs_M_ta_t_9,
+            crs_M_ta_t_10, crs_M_ta_t_11, crs_M_ta_t_12, crs_M_aa_t, crs_M_aa_t_2,
+            crs_M_aa_t_3, crs_M_aa_t_4, crs_M_aa_t_5, crs_M_aa_t_6, crs_U_in_base_x,
+            crs_U_in_base_y, crs_U_in_base_z, crs_Z_a_t, crs_Z_a_t_2, crs_Z_a_t_3,
         ))
-        out_H[_H_rprs[0][leg]] = w_1_t_3
-        out_H[_H_rprs[1][leg]] = w_1_t_4
-        out_H[_H_rprs[2][leg]] = w_1_t_5
-        out_H[_H_rprs[3][leg]] = H_a_1_x
-        out_H[_H_rprs[4][leg]] = H_a_1_y
-        out_H[_H_rprs[5][leg]] = H_a_1_z
-        out_H[_H_rprs[6][leg]] = w_2_in_base_x
-        out_H[_H_rprs[7][leg]] = w_2_in_base_y
-        out_H[_H_rprs[8][leg]] = w_2_in_base_z
-        out_H[_H_rprs[9][leg]] = H_a_2_x
-        out_H[_H_rprs[10][leg]] = H_a_2_y
-        out_H[_H_rprs[11][leg]] = H_a_2_z
+        out_H[_H_crs[0][leg]] = crs_w_1_t_3
+        out_H[_H_crs[1][leg]] = crs_w_1_t_4
+        out_H[_H_crs[2][leg]] = crs_w_1_t_5
+        out_H[_H_crs[3][leg]] = crs_H_a_1_x
+        out_H[_H_crs[4][leg]] = crs_H_a_1_y
+        out_H[_H_crs[5][leg]] = crs_H_a_1_z
+        out_H[_H_crs[6][leg]] = crs_w_2_in_base_x
+        out_H[_H_crs[7][leg]] = crs_w_2_in_base_y
+        out_H[_H_crs[8][leg]] = crs_w_2_in_base_z
+        out_H[_H_crs[9][leg]] = crs_H_a_2_x
+        out_H[_H_crs[10][leg]] = crs_H_a_2_y
+        out_H[_H_crs[11][leg]] = crs_H_a_2_z
     (
-    total_rprs_xx, total_rprs_xy, total_rprs_xz, total_rprs_yy, total_rprs_yz, total_rprs_zz,
-        total_rprs_xx_2, total_rprs_xy_2, total_rprs_xz_2, total_rprs_yx, total_rprs_yy_2,
-        total_rprs_yz_2, total_rprs_zx, total_rprs_zy, total_rprs_zz_2, total_rprs_xx_3,
-        total_rprs_xy_3, total_rprs_xz_3, total_rprs_yy_3, total_rprs_yz_3, total_rprs_zz_3,
-        total_rprs_x, total_rprs_y, total_rprs_z, total_rprs_x_2, total_rprs_y_2, total_rprs_z_2,
+    total_crs_xx, total_crs_xy, total_crs_xz, total_crs_yy, total_crs_yz, total_crs_zz,
+        total_crs_xx_2, total_crs_xy_2, total_crs_xz_2, total_crs_yx, total_crs_yy_2,
+        total_crs_yz_2, total_crs_zx, total_crs_zy, total_crs_zz_2, total_crs_xx_3,
+        total_crs_xy_3, total_crs_xz_3, total_crs_yy_3, total_crs_yz_3, total_crs_zz_3,
+        total_crs_x, total_crs_y, total_crs_z, total_crs_x_2, total_crs_y_2, total_crs_z_2,
     ) = sums
-    # (M1) translational block of M
-    M_tt_xx = m_star - total_rprs_xx
-    M_tt_yy = m_star - total_rprs_yy
-    M_tt_zz = m_star - total_rprs_zz
-    # (M2) coupling block of M
-    M_ta_xy = h_star_in_base_z - total_rprs_xy_2
-    M_ta_xz = total_rprs_xz_2 - h_star_in_base_y
-    M_ta_yx = total_rprs_yx - h_star_in_base_z
-    M_ta_yz = h_star_in_base_x + total_rprs_yz_2
-    M_ta_zx = h_star_in_base_y + total_rprs_zx
-    M_ta_zy = -h_star_in_base_x - total_rprs_zy
-    # (M3) rotational block of M
-    M_aa_xx = J_star_t_8 - total_rprs_xx_3
-    M_aa_xy = J_star_t_9 + total_rprs_xy_3
-    M_aa_xz = J_star_t_10 - total_rprs_xz_3
-    M_aa_yy = J_star_t_12 - total_rprs_yy_3
-    M_aa_yz = J_star_t_13 + total_rprs_yz_3
-    M_aa_zz = J_star_t_15 - total_rprs_zz_3
-    # (M5) translational part of Z
-    Z_t_x = Z_p_x + total_rprs_x
-    Z_t_y = Z_p_y + total_rprs_y
-    Z_t_z = Z_p_z + total_rprs_z
-    # (M7) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_rprs_x_2
-    Z_a_y = Z_q_in_base_y + total_rprs_y_2
-    Z_a_z = Z_q_in_base_z + total_rprs_z_2
+    # (M_tt) translational block of M
+    M_tt_xx = m_star - total_crs_xx
+    M_tt_yy = m_star - total_crs_yy
+    M_tt_zz = m_star - total_crs_zz
+    # (M_ta) coupling block of M
+    M_ta_xy = h_star_in_base_z - total_crs_xy_2
+    M_ta_xz = total_crs_xz_2 - h_star_in_base_y
+    M_ta_yx = total_crs_yx - h_star_in_base_z
+    M_ta_yz = h_star_in_base_x + total_crs_yz_2
+    M_ta_zx = h_star_in_base_y + total_crs_zx
+    M_ta_zy = -h_star_in_base_x - total_crs_zy
+    # (M_aa) rotational block of M
+    M_aa_xx = J_star_t_8 - total_crs_xx_3
+    M_aa_xy = J_star_t_9 + total_crs_xy_3
+    M_aa_xz = J_star_t_10 - total_crs_xz_3
+    M_aa_yy = J_star_t_13 - total_crs_yy_3
+    M_aa_yz = J_star_t_15 + total_crs_yz_3
+    M_aa_zz = J_star_t_17 - total_crs_zz_3
+    # (Z_t) translational part of Z
+    Z_t_x = Z_p_x + total_crs_x
+    Z_t_y = Z_p_y + total_crs_y
+    Z_t_z = Z_p_z + total_crs_z
+    # (Z_a) rotational part of Z
+    Z_a_x = Z_q_in_base_x + total_crs_x_2
+    Z_a_y = Z_q_in_base_y + total_crs_y_2
+    Z_a_z = Z_q_in_base_z + total_crs_z_2
     out_M[0] = M_tt_xx
-    out_M[1] = -total_rprs_xy
-    out_M[6] = -total_rprs_xy
-    out_M[2] = -total_rprs_xz
-    out_M[12] = -total_rprs_xz
+    out_M[1] = -total_crs_xy
+    out_M[6] = -total_crs_xy
+    out_M[2] = -total_crs_xz
+    out_M[12] = -total_crs_xz
     out_M[7] = M_tt_yy
-    out_M[8] = -total_rprs_yz
-    out_M[13] = -total_rprs_yz
+    out_M[8] = -total_crs_yz
+    out_M[13] = -total_crs_yz
     out_M[14] = M_tt_zz
-    out_M[3] = total_rprs_xx_2
-    out_M[18] = total_rprs_xx_2
+    out_M[3] = total_crs_xx_2
+    out_M[18] = total_crs_xx_2
     out_M[4] = M_ta_xy
     out_M[24] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -total_rprs_yy_2
-    out_M[25] = -total_rprs_yy_2
+    out_M[10] = -total_crs_yy_2
+    out_M[25] = -total_crs_yy_2
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
     out_M[20] = M_ta_zx
     out_M[16] = M_ta_zy
     out_M[26] = M_ta_zy
-    out_M[17] = -total_rprs_zz_2
-    out_M[32] = -total_rprs_zz_2
+    out_M[17] = -total_crs_zz_2
+    out_M[32] = -total_crs_zz_2
     out_M[21] = M_aa_xx
     out_M[22] = M_aa_xy
     out_M[27] = M_aa_xy
@@ -1809,7 +1889,7 @@ def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
     (
-    J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
+    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
         h_star_z, m_star,
     ) = shared
     X_0 = X[0]
@@ -1849,257 +1929,278 @@ def _run_M(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_M = m.zeros("M")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy
-    J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
     J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_12 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_15 = 2.0*J_star_t_14 + J_star_xx
+    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
+    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
     sums = [0.0] * 21
     for leg, k in legs[0]:
         (
-        J_2_xx, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz, J_3_zz, branch_1, branch_2, h_3_x, h_3_y,
-            h_3_z, inv_size_t, rprs_base_frame_xx, rprs_base_frame_xy, rprs_base_frame_xz,
-            rprs_base_frame_yx, rprs_base_frame_yy, rprs_base_frame_yz, rprs_base_frame_zx,
-            rprs_base_frame_zy, rprs_base_frame_zz, rprs_base_point_x, rprs_base_point_y,
-            rprs_base_point_z, rprs_joint3_offset_x, rprs_link2_mass,
-            rprs_platform_joint_offset_x, rprs_platform_point_x, rprs_platform_point_y,
-            rprs_platform_point_z, size, size_t, size_t_2,
+        crs_J_2_xx, crs_J_3_xx, crs_J_3_xy, crs_J_3_xz, crs_J_3_yy, crs_J_3_yz, crs_J_3_zz,
+            crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz, crs_base_frame_yx,
+            crs_base_frame_yy, crs_base_frame_yz, crs_base_frame_zx, crs_base_frame_zy,
+            crs_base_frame_zz, crs_base_point_x, crs_base_point_y, crs_base_point_z, crs_branch_1,
+            crs_branch_2, crs_h_3_x, crs_h_3_y, crs_h_3_z, crs_joint3_offset_x, crs_link2_mass,
+            crs_platform_joint_offset_x, crs_platform_point_x, crs_platform_point_y,
+            crs_platform_point_z, crs_size, crs_size_t, crs_size_t_2, inv_crs_size_t,
         ) = k
-        # (rprs-K1) from the base point to the connection point
-        q_in_base_x = (
-        R_xx*rprs_platform_point_x + R_xy*rprs_platform_point_y + R_xz*rprs_platform_point_z
+        # (crs-S) from the base point to the connection point
+        crs_q_in_base_x = (
+        R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
-        q_in_base_y = (
-        R_yx*rprs_platform_point_x + R_yy*rprs_platform_point_y + R_yz*rprs_platform_point_z
+        crs_q_in_base_y = (
+        R_yx*crs_platform_point_x + R_yy*crs_platform_point_y + R_yz*crs_platform_point_z
         )
-        q_in_base_z = (
-        R_zx*rprs_platform_point_x + R_zy*rprs_platform_point_y + R_zz*rprs_platform_point_z
+        crs_q_in_base_z = (
+        R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rprs_base_point_x
-        S_y = q_in_base_y + t_y - rprs_base_point_y
-        S_z = q_in_base_z + t_z - rprs_base_point_z
-        # (rprs-K2) component along the reference direction
-        px_1 = S_x*rprs_base_frame_xy + S_y*rprs_base_frame_yy + S_z*rprs_base_frame_zy
-        # (rprs-K3) component across the reference direction
-        py_1 = S_x*rprs_base_frame_xz + S_y*rprs_base_frame_yz + S_z*rprs_base_frame_zz
-        # (rprs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rprs-K7) root, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rprs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*rprs_base_frame_xx + S_y*rprs_base_frame_yx + S_z*rprs_base_frame_zx
-        # (rprs-K12) from the centre at zero displacement to the connection point
-        from_centre_2_z = xi_1_t - rprs_joint3_offset_x
-        # (rprs-K14) discriminant of the distance equation
-        disc_2 = size_t - root_1*root_1
-        # (rprs-K15) displacement of joint 2
-        q_2 = from_centre_2_z + branch_2*sqrt(disc_2)
-        # (rprs-K16) from the origin of joint 3 to the connection point
-        x_3_z = xi_1_t - q_2 - rprs_joint3_offset_x
-        # (rprs-K18) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_size_t*root_1*rprs_platform_joint_offset_x
-        # (rprs-K19) sine of the angle of joint 3 from its reference direction
-        s_3 = inv_size_t*rprs_platform_joint_offset_x*x_3_z
-        # (rprs-V2) from joint 1 to the connection point, along the links
-        r_1_t = c_3*rprs_platform_joint_offset_x
-        r_1_t_2 = rprs_platform_joint_offset_x*s_3
-        r_1_z = q_2 + r_1_t_2 + rprs_joint3_offset_x
-        # (rprs-V3) velocity of the connection point per rate of joint 1
-        v_1_z = c_3*(c_3*r_1_t + r_1_z*s_3) + s_3*(r_1_t*s_3 - c_3*r_1_z)
-        # (rprs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*py_1*root_1
-        # (rprs-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*px_1*root_1
-        # (rprs-V5) reciprocal vector 1
-        axis_z_rprs_axes3_in_base_x = rprs_base_frame_xz*s_1 - c_1*rprs_base_frame_xy
-        axis_z_rprs_axes3_in_base_y = rprs_base_frame_yz*s_1 - c_1*rprs_base_frame_yy
-        axis_z_rprs_axes3_in_base_z = rprs_base_frame_zz*s_1 - c_1*rprs_base_frame_zy
-        w_1_t = s_1*s_3
-        w_1_t_2 = c_1*s_3
-        axis_y_rprs_axes3_in_base_x = (
-        rprs_base_frame_xy*w_1_t + rprs_base_frame_xz*w_1_t_2 - c_3*rprs_base_frame_xx
+        crs_S_x = crs_q_in_base_x + t_x - crs_base_point_x
+        crs_S_y = crs_q_in_base_y + t_y - crs_base_point_y
+        crs_S_z = crs_q_in_base_z + t_z - crs_base_point_z
+        # (crs-px_1) component along the reference direction
+        crs_px_1 = (
+        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
         )
-        axis_y_rprs_axes3_in_base_y = (
-        rprs_base_frame_yy*w_1_t + rprs_base_frame_yz*w_1_t_2 - c_3*rprs_base_frame_yx
+        # (crs-py_1) component across the reference direction
+        crs_py_1 = (
+        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
         )
-        axis_y_rprs_axes3_in_base_z = (
-        rprs_base_frame_zy*w_1_t + rprs_base_frame_zz*w_1_t_2 - c_3*rprs_base_frame_zx
+        # (crs-rho2_1) squared amplitude
+        crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1
+        # (crs-root_1) root, with the sign of the branch
+        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        # (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        crs_xi_1_t = (
+        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
         )
-        axis_x_rprs_axes3_x = (
-        axis_y_rprs_axes3_in_base_y*axis_z_rprs_axes3_in_base_z -
-            axis_y_rprs_axes3_in_base_z*axis_z_rprs_axes3_in_base_y
+        # (crs-from_centre_2) from the centre at zero displacement to the connection point
+        crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x
+        # (crs-disc_2) discriminant of the distance equation
+        crs_disc_2 = crs_size_t - crs_root_1*crs_root_1
+        # (crs-q_2) displacement of joint 2
+        crs_q_2 = crs_from_centre_2_z + crs_branch_2*sqrt(crs_disc_2)
+        # (crs-x_3) from the origin of joint 3 to the connection point
+        crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2
+        # (crs-c_3) cosine of the angle of joint 3 from its reference direction
+        crs_c_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        # (crs-s_3) sine of the angle of joint 3 from its reference direction
+        crs_s_3 = crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t
+        # (crs-r_1) from joint 1 to the connection point, along the links
+        crs_r_1_t = crs_c_3*crs_platform_joint_offset_x
+        crs_r_1_t_2 = crs_platform_joint_offset_x*crs_s_3
+        crs_r_1_z = crs_joint3_offset_x + crs_q_2 + crs_r_1_t_2
+        # (crs-v_1) velocity of the connection point per rate of joint 1
+        crs_v_1_z = (
+        crs_c_3*(crs_c_3*crs_r_1_t + crs_r_1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
+            crs_c_3*crs_r_1_z)
         )
-        axis_x_rprs_axes3_y = (
-        axis_y_rprs_axes3_in_base_z*axis_z_rprs_axes3_in_base_x -
-            axis_y_rprs_axes3_in_base_x*axis_z_rprs_axes3_in_base_z
+        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_c_1 = crs_py_1*crs_root_1*inv_crs_rho2_1
+        # (crs-s_1) sine of the angle of joint 1 from its reference direction
+        crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1
+        # (crs-w_1) reciprocal vector 1
+        axis_z_crs_axes3_in_base_x = crs_base_frame_xz*crs_s_1 - crs_base_frame_xy*crs_c_1
+        axis_z_crs_axes3_in_base_y = crs_base_frame_yz*crs_s_1 - crs_base_frame_yy*crs_c_1
+        axis_z_crs_axes3_in_base_z = crs_base_frame_zz*crs_s_1 - crs_base_frame_zy*crs_c_1
+        crs_w_1_t = crs_s_1*crs_s_3
+        crs_w_1_t_2 = crs_c_1*crs_s_3
+        axis_y_crs_axes3_in_base_x = (
+        crs_base_frame_xy*crs_w_1_t + crs_base_frame_xz*crs_w_1_t_2 - crs_base_frame_xx*crs_c_3
         )
-        axis_x_rprs_axes3_z = (
-        axis_y_rprs_axes3_in_base_x*axis_z_rprs_axes3_in_base_y -
-            axis_y_rprs_axes3_in_base_y*axis_z_rprs_axes3_in_base_x
+        axis_y_crs_axes3_in_base_y = (
+        crs_base_frame_yy*crs_w_1_t + crs_base_frame_yz*crs_w_1_t_2 - crs_base_frame_yx*crs_c_3
         )
-        inv_v_1_z = 1.0/v_1_z
-        # (rprs-V6) reciprocal vector 2
-        inv_r_1_t_2 = 1.0/r_1_t_2
-        w_2_t = inv_r_1_t_2*r_1_t
-        _r1_x = s_3 + c_3*w_2_t
-        # (rprs-V7) reciprocal vector 3
-        w_3_t = c_3*inv_r_1_t_2
-        w_3_t_2 = inv_r_1_t_2*s_3
-        # (rprs-N40) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_x = (
-        c_3*h_3_x + h_3_y*s_3 + inv_v_1_z*(J_2_xx + s_3*(J_3_xx*s_3 - J_3_xy*c_3) -
-            c_3*(J_3_xy*s_3 - J_3_yy*c_3))
+        axis_y_crs_axes3_in_base_z = (
+        crs_base_frame_zy*crs_w_1_t + crs_base_frame_zz*crs_w_1_t_2 - crs_base_frame_zx*crs_c_3
         )
-        # (rprs-N37) coefficient of the acceleration in: force along axis 2 of the distal links' inertia and weight
-        d_Gamma_2_t = inv_r_1_t_2*r_1_t*rprs_link2_mass
-        _r1_y = d_Gamma_2_t*s_3 - c_3*rprs_link2_mass
-        # (rprs-N28) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        d_Gamma_3_t = inv_v_1_z*(J_3_xz*s_3 - J_3_yz*c_3)
-        d_Gamma_3_t_2 = J_3_zz*inv_r_1_t_2
-        d_Gamma_3_x = c_3*d_Gamma_3_t_2 - h_3_y
-        d_Gamma_3_y = h_3_x + d_Gamma_3_t_2*s_3
-        # (rprs-A19) coefficient of the acceleration in: angular acceleration of link 3
-        d_alpha_3_t = inv_v_1_z*s_3
-        d_alpha_3_t_2 = c_3*inv_v_1_z
-        # (rprs-N46) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_xx = h_3_y*w_3_t - _r1_x*(c_3*d_Gamma_2_t + rprs_link2_mass*s_3) - d_Gamma_3_x*w_3_t
-        d_c_xy = h_3_y*w_3_t_2 - _r1_x*_r1_y - d_Gamma_3_y*w_3_t
-        d_c_xz = d_alpha_3_t_2*h_3_z - d_Gamma_3_t*w_3_t
-        d_c_yz = d_alpha_3_t*h_3_z - d_Gamma_3_t*w_3_t_2
-        # (rprs-N48) inertia of the leg at the connection point, without the mass gathered there
-        Q_t = d_c_xx + _r1_y*(s_3*w_2_t - c_3) + d_Gamma_3_y*w_3_t_2 + h_3_x*w_3_t_2
-        Q_t_2 = 0.5*Q_t
-        Q_t_3 = d_c_xx + d_Gamma_1_x*inv_v_1_z + d_alpha_3_t*h_3_y + d_alpha_3_t_2*h_3_x
-        Q_t_4 = 0.5*Q_t_3
-        Q_t_5 = (
-        axis_x_rprs_axes3_x*d_c_xy + axis_z_rprs_axes3_in_base_x*d_c_yz -
-            Q_t_2*axis_y_rprs_axes3_in_base_x
+        axis_x_crs_axes3_x = (
+        axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_z -
+            axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_y
         )
-        Q_t_6 = (
-        axis_x_rprs_axes3_y*d_c_xy + axis_z_rprs_axes3_in_base_y*d_c_yz -
-            Q_t_2*axis_y_rprs_axes3_in_base_y
+        axis_x_crs_axes3_y = (
+        axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_x -
+            axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_z
         )
-        Q_t_7 = (
-        axis_x_rprs_axes3_z*d_c_xy + axis_z_rprs_axes3_in_base_z*d_c_yz -
-            Q_t_2*axis_y_rprs_axes3_in_base_z
+        axis_x_crs_axes3_z = (
+        axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_y -
+            axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_x
         )
-        Q_t_8 = Q_t_4*axis_z_rprs_axes3_in_base_x - axis_x_rprs_axes3_x*d_c_xz
-        Q_t_9 = Q_t_4*axis_z_rprs_axes3_in_base_y - axis_x_rprs_axes3_y*d_c_xz
-        Q_t_10 = Q_t_4*axis_z_rprs_axes3_in_base_z - axis_x_rprs_axes3_z*d_c_xz
-        Q_t_11 = Q_t_5*axis_y_rprs_axes3_in_base_x - Q_t_8*axis_z_rprs_axes3_in_base_x
-        Q_t_12 = 2.0*Q_t_11 + d_c_xx
-        Q_t_13 = (
-        Q_t_5*axis_y_rprs_axes3_in_base_y + Q_t_6*axis_y_rprs_axes3_in_base_x -
-            Q_t_8*axis_z_rprs_axes3_in_base_y - Q_t_9*axis_z_rprs_axes3_in_base_x
+        inv_crs_v_1_z = 1.0/crs_v_1_z
+        # (crs-w_3) reciprocal vector 3
+        inv_crs_r_1_t_2 = 1.0/crs_r_1_t_2
+        crs_w_3_t = crs_c_3*inv_crs_r_1_t_2
+        crs_w_3_t_2 = crs_s_3*inv_crs_r_1_t_2
+        # (crs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
+        crs_d_alpha_3_t = crs_s_3*inv_crs_v_1_z
+        crs_d_alpha_3_t_2 = crs_c_3*inv_crs_v_1_z
+        # (crs-w_2) reciprocal vector 2
+        crs_w_2_t = crs_r_1_t*inv_crs_r_1_t_2
+        crs__r1_x = crs_s_3 + crs_c_3*crs_w_2_t
+        # (crs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        crs_d_Gamma_3_t = inv_crs_v_1_z*(crs_J_3_xz*crs_s_3 - crs_J_3_yz*crs_c_3)
+        crs_d_Gamma_3_t_2 = crs_J_3_zz*inv_crs_r_1_t_2
+        crs_d_Gamma_3_x = crs_c_3*crs_d_Gamma_3_t_2 - crs_h_3_y
+        crs_d_Gamma_3_y = crs_h_3_x + crs_d_Gamma_3_t_2*crs_s_3
+        # (crs-d_Gamma_2) coefficient of the acceleration in: force along axis 2 of the distal links' inertia and weight
+        crs_d_Gamma_2_t = crs_link2_mass*crs_r_1_t*inv_crs_r_1_t_2
+        crs__r1_y = crs_d_Gamma_2_t*crs_s_3 - crs_c_3*crs_link2_mass
+        # (crs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        crs_d_Gamma_1_x = (
+        crs_c_3*crs_h_3_x + crs_h_3_y*crs_s_3 + inv_crs_v_1_z*(crs_J_2_xx +
+            crs_s_3*(crs_J_3_xx*crs_s_3 - crs_J_3_xy*crs_c_3) - crs_c_3*(crs_J_3_xy*crs_s_3 -
+            crs_J_3_yy*crs_c_3))
         )
-        Q_t_14 = (
-        Q_t_5*axis_y_rprs_axes3_in_base_z + Q_t_7*axis_y_rprs_axes3_in_base_x -
-            Q_t_10*axis_z_rprs_axes3_in_base_x - Q_t_8*axis_z_rprs_axes3_in_base_z
+        # (crs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        crs_d_c_xx = (
+        crs_h_3_y*crs_w_3_t - crs__r1_x*(crs_c_3*crs_d_Gamma_2_t + crs_link2_mass*crs_s_3) -
+            crs_d_Gamma_3_x*crs_w_3_t
         )
-        Q_t_15 = Q_t_6*axis_y_rprs_axes3_in_base_y - Q_t_9*axis_z_rprs_axes3_in_base_y
-        Q_t_16 = 2.0*Q_t_15 + d_c_xx
-        Q_t_17 = (
-        Q_t_6*axis_y_rprs_axes3_in_base_z + Q_t_7*axis_y_rprs_axes3_in_base_y -
-            Q_t_10*axis_z_rprs_axes3_in_base_y - Q_t_9*axis_z_rprs_axes3_in_base_z
+        crs_d_c_xy = crs_h_3_y*crs_w_3_t_2 - crs__r1_x*crs__r1_y - crs_d_Gamma_3_y*crs_w_3_t
+        crs_d_c_xz = crs_d_alpha_3_t_2*crs_h_3_z - crs_d_Gamma_3_t*crs_w_3_t
+        crs_d_c_yz = crs_d_alpha_3_t*crs_h_3_z - crs_d_Gamma_3_t*crs_w_3_t_2
+        # (crs-Q) inertia of the leg at the connection point, without the mass gathered there
+        crs_Q_t = (
+        crs_d_c_xx + crs__r1_y*(crs_s_3*crs_w_2_t - crs_c_3) + crs_d_Gamma_3_y*crs_w_3_t_2 +
+            crs_h_3_x*crs_w_3_t_2
         )
-        Q_t_18 = Q_t_7*axis_y_rprs_axes3_in_base_z - Q_t_10*axis_z_rprs_axes3_in_base_z
-        Q_t_19 = 2.0*Q_t_18 + d_c_xx
-        # (M2) coupling block of M
-        M_ta_t = Q_t_13*q_in_base_z
-        M_ta_t_2 = Q_t_14*q_in_base_y
-        M_ta_t_3 = M_ta_t - M_ta_t_2
-        M_ta_t_4 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x
-        M_ta_t_5 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x
-        M_ta_t_6 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y
-        M_ta_t_7 = Q_t_17*q_in_base_x
-        M_ta_t_8 = M_ta_t - M_ta_t_7
-        M_ta_t_9 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x
-        M_ta_t_10 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y
-        M_ta_t_11 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x
-        M_ta_t_12 = M_ta_t_7 - M_ta_t_2
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
-        M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y
-        M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z
-        M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x
-        M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z
-        M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
+        crs_Q_t_2 = 0.5*crs_Q_t
+        crs_Q_t_3 = (
+        crs_d_c_xx + crs_d_Gamma_1_x*inv_crs_v_1_z + crs_d_alpha_3_t*crs_h_3_y +
+            crs_d_alpha_3_t_2*crs_h_3_x
+        )
+        crs_Q_t_4 = 0.5*crs_Q_t_3
+        crs_Q_t_5 = (
+        axis_x_crs_axes3_x*crs_d_c_xy + axis_z_crs_axes3_in_base_x*crs_d_c_yz -
+            axis_y_crs_axes3_in_base_x*crs_Q_t_2
+        )
+        crs_Q_t_6 = (
+        axis_x_crs_axes3_y*crs_d_c_xy + axis_z_crs_axes3_in_base_y*crs_d_c_yz -
+            axis_y_crs_axes3_in_base_y*crs_Q_t_2
+        )
+        crs_Q_t_7 = (
+        axis_x_crs_axes3_z*crs_d_c_xy + axis_z_crs_axes3_in_base_z*crs_d_c_yz -
+            axis_y_crs_axes3_in_base_z*crs_Q_t_2
+        )
+        crs_Q_t_8 = axis_z_crs_axes3_in_base_x*crs_Q_t_4 - axis_x_crs_axes3_x*crs_d_c_xz
+        crs_Q_t_9 = axis_z_crs_axes3_in_base_y*crs_Q_t_4 - axis_x_crs_axes3_y*crs_d_c_xz
+        crs_Q_t_10 = axis_z_crs_axes3_in_base_z*crs_Q_t_4 - axis_x_crs_axes3_z*crs_d_c_xz
+        crs_Q_t_11 = axis_y_crs_axes3_in_base_x*crs_Q_t_5 - axis_z_crs_axes3_in_base_x*crs_Q_t_8
+        crs_Q_t_12 = 2.0*crs_Q_t_11 + crs_d_c_xx
+        crs_Q_t_13 = (
+        axis_y_crs_axes3_in_base_x*crs_Q_t_6 + axis_y_crs_axes3_in_base_y*crs_Q_t_5 -
+            axis_z_crs_axes3_in_base_x*crs_Q_t_9 - axis_z_crs_axes3_in_base_y*crs_Q_t_8
+        )
+        crs_Q_t_14 = (
+        axis_y_crs_axes3_in_base_x*crs_Q_t_7 + axis_y_crs_axes3_in_base_z*crs_Q_t_5 -
+            axis_z_crs_axes3_in_base_x*crs_Q_t_10 - axis_z_crs_axes3_in_base_z*crs_Q_t_8
+        )
+        crs_Q_t_15 = axis_y_crs_axes3_in_base_y*crs_Q_t_6 - axis_z_crs_axes3_in_base_y*crs_Q_t_9
+        crs_Q_t_16 = 2.0*crs_Q_t_15 + crs_d_c_xx
+        crs_Q_t_17 = (
+        axis_y_crs_axes3_in_base_y*crs_Q_t_7 + axis_y_crs_axes3_in_base_z*crs_Q_t_6 -
+            axis_z_crs_axes3_in_base_y*crs_Q_t_10 - axis_z_crs_axes3_in_base_z*crs_Q_t_9
+        )
+        crs_Q_t_18 = axis_y_crs_axes3_in_base_z*crs_Q_t_7 - axis_z_crs_axes3_in_base_z*crs_Q_t_10
+        crs_Q_t_19 = 2.0*crs_Q_t_18 + crs_d_c_xx
+        # (M_ta) coupling block of M
+        crs_M_ta_t = crs_Q_t_13*crs_q_in_base_z
+        crs_M_ta_t_2 = crs_Q_t_14*crs_q_in_base_y
+        crs_M_ta_t_3 = crs_M_ta_t - crs_M_ta_t_2
+        crs_M_ta_t_4 = crs_Q_t_12*crs_q_in_base_z - crs_Q_t_14*crs_q_in_base_x
+        crs_M_ta_t_5 = crs_Q_t_12*crs_q_in_base_y - crs_Q_t_13*crs_q_in_base_x
+        crs_M_ta_t_6 = crs_Q_t_16*crs_q_in_base_z - crs_Q_t_17*crs_q_in_base_y
+        crs_M_ta_t_7 = crs_Q_t_17*crs_q_in_base_x
+        crs_M_ta_t_8 = crs_M_ta_t - crs_M_ta_t_7
+        crs_M_ta_t_9 = crs_Q_t_13*crs_q_in_base_y - crs_Q_t_16*crs_q_in_base_x
+        crs_M_ta_t_10 = crs_Q_t_17*crs_q_in_base_z - crs_Q_t_19*crs_q_in_base_y
+        crs_M_ta_t_11 = crs_Q_t_14*crs_q_in_base_z - crs_Q_t_19*crs_q_in_base_x
+        crs_M_ta_t_12 = crs_M_ta_t_7 - crs_M_ta_t_2
+        # (M_aa) rotational block of M
+        crs_M_aa_t = crs_M_ta_t_6*crs_q_in_base_z - crs_M_ta_t_10*crs_q_in_base_y
+        crs_M_aa_t_2 = crs_M_ta_t_8*crs_q_in_base_z - crs_M_ta_t_11*crs_q_in_base_y
+        crs_M_aa_t_3 = crs_M_ta_t_12*crs_q_in_base_y + crs_M_ta_t_9*crs_q_in_base_z
+        crs_M_aa_t_4 = crs_M_ta_t_4*crs_q_in_base_z - crs_M_ta_t_11*crs_q_in_base_x
+        crs_M_aa_t_5 = crs_M_ta_t_12*crs_q_in_base_x + crs_M_ta_t_5*crs_q_in_base_z
+        crs_M_aa_t_6 = crs_M_ta_t_5*crs_q_in_base_y - crs_M_ta_t_9*crs_q_in_base_x
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_2) & (disc_2 >= 0.0) &
-            (abs(v_1_z) > _TOLERANCE * size) & (abs(-r_1_t_2) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2
+            >= 0.0) & (abs(crs_v_1_z) > _TOLERANCE * crs_size) & (abs(-crs_r_1_t_2) > _TOLERANCE *
+            crs_size))
         )
         sums = m.added(sums, leg, (
-        Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_3, M_ta_t_4, M_ta_t_5,
-            M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2,
-            M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6,
+        crs_Q_t_12, crs_Q_t_13, crs_Q_t_14, crs_Q_t_16, crs_Q_t_17, crs_Q_t_19, crs_M_ta_t_3,
+            crs_M_ta_t_4, crs_M_ta_t_5, crs_M_ta_t_6, crs_M_ta_t_8, crs_M_ta_t_9,
+            crs_M_ta_t_10, crs_M_ta_t_11, crs_M_ta_t_12, crs_M_aa_t, crs_M_aa_t_2,
+            crs_M_aa_t_3, crs_M_aa_t_4, crs_M_aa_t_5, crs_M_aa_t_6,
         ))
     (
-    total_rprs_xx, total_rprs_xy, total_rprs_xz, total_rprs_yy, total_rprs_yz, total_rprs_zz,
-        total_rprs_xx_2, total_rprs_xy_2, total_rprs_xz_2, total_rprs_yx, total_rprs_yy_2,
-        total_rprs_yz_2, total_rprs_zx, total_rprs_zy, total_rprs_zz_2, total_rprs_xx_3,
-        total_rprs_xy_3, total_rprs_xz_3, total_rprs_yy_3, total_rprs_yz_3, total_rprs_zz_3,
+    total_crs_xx, total_crs_xy, total_crs_xz, total_crs_yy, total_crs_yz, total_crs_zz,
+        total_crs_xx_2, total_crs_xy_2, total_crs_xz_2, total_crs_yx, total_crs_yy_2,
+        total_crs_yz_2, total_crs_zx, total_crs_zy, total_crs_zz_2, total_crs_xx_3,
+        total_crs_xy_3, total_crs_xz_3, total_crs_yy_3, total_crs_yz_3, total_crs_zz_3,
     ) = sums
-    # (M1) translational block of M
-    M_tt_xx = m_star - total_rprs_xx
-    M_tt_yy = m_star - total_rprs_yy
-    M_tt_zz = m_star - total_rprs_zz
-    # (M2) coupling block of M
-    M_ta_xy = h_star_in_base_z - total_rprs_xy_2
-    M_ta_xz = total_rprs_xz_2 - h_star_in_base_y
-    M_ta_yx = total_rprs_yx - h_star_in_base_z
-    M_ta_yz = h_star_in_base_x + total_rprs_yz_2
-    M_ta_zx = h_star_in_base_y + total_rprs_zx
-    M_ta_zy = -h_star_in_base_x - total_rprs_zy
-    # (M3) rotational block of M
-    M_aa_xx = J_star_t_8 - total_rprs_xx_3
-    M_aa_xy = J_star_t_9 + total_rprs_xy_3
-    M_aa_xz = J_star_t_10 - total_rprs_xz_3
-    M_aa_yy = J_star_t_12 - total_rprs_yy_3
-    M_aa_yz = J_star_t_13 + total_rprs_yz_3
-    M_aa_zz = J_star_t_15 - total_rprs_zz_3
+    # (M_tt) translational block of M
+    M_tt_xx = m_star - total_crs_xx
+    M_tt_yy = m_star - total_crs_yy
+    M_tt_zz = m_star - total_crs_zz
+    # (M_ta) coupling block of M
+    M_ta_xy = h_star_in_base_z - total_crs_xy_2
+    M_ta_xz = total_crs_xz_2 - h_star_in_base_y
+    M_ta_yx = total_crs_yx - h_star_in_base_z
+    M_ta_yz = h_star_in_base_x + total_crs_yz_2
+    M_ta_zx = h_star_in_base_y + total_crs_zx
+    M_ta_zy = -h_star_in_base_x - total_crs_zy
+    # (M_aa) rotational block of M
+    M_aa_xx = J_star_t_8 - total_crs_xx_3
+    M_aa_xy = J_star_t_9 + total_crs_xy_3
+    M_aa_xz = J_star_t_10 - total_crs_xz_3
+    M_aa_yy = J_star_t_13 - total_crs_yy_3
+    M_aa_yz = J_star_t_15 + total_crs_yz_3
+    M_aa_zz = J_star_t_17 - total_crs_zz_3
     out_M[0] = M_tt_xx
-    out_M[1] = -total_rprs_xy
-    out_M[6] = -total_rprs_xy
-    out_M[2] = -total_rprs_xz
-    out_M[12] = -total_rprs_xz
+    out_M[1] = -total_crs_xy
+    out_M[6] = -total_crs_xy
+    out_M[2] = -total_crs_xz
+    out_M[12] = -total_crs_xz
     out_M[7] = M_tt_yy
-    out_M[8] = -total_rprs_yz
-    out_M[13] = -total_rprs_yz
+    out_M[8] = -total_crs_yz
+    out_M[13] = -total_crs_yz
     out_M[14] = M_tt_zz
-    out_M[3] = total_rprs_xx_2
-    out_M[18] = total_rprs_xx_2
+    out_M[3] = total_crs_xx_2
+    out_M[18] = total_crs_xx_2
     out_M[4] = M_ta_xy
     out_M[24] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -total_rprs_yy_2
-    out_M[25] = -total_rprs_yy_2
+    out_M[10] = -total_crs_yy_2
+    out_M[25] = -total_crs_yy_2
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
     out_M[20] = M_ta_zx
     out_M[16] = M_ta_zy
     out_M[26] = M_ta_zy
-    out_M[17] = -total_rprs_zz_2
-    out_M[32] = -total_rprs_zz_2
+    out_M[17] = -total_crs_zz_2
+    out_M[32] = -total_crs_zz_2
     out_M[21] = M_aa_xx
     out_M[22] = M_aa_xy
     out_M[27] = M_aa_xy
@@ -2170,270 +2271,295 @@ def _run_Z(m, X, V):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_Z = m.zeros("Z")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (M4) centripetal force and weight of the platform
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
     Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
     Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z_2*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x_2*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y - g_r0_y_2*h_star_x
+    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
+    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_2_xx, J_3_xy, J_3_xz, J_3_yz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2,
-            g_r0_x, g_r0_y, g_r0_z, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, inv_size_t,
-            rprs_base_frame_xx, rprs_base_frame_xy, rprs_base_frame_xz, rprs_base_frame_yx,
-            rprs_base_frame_yy, rprs_base_frame_yz, rprs_base_frame_zx, rprs_base_frame_zy,
-            rprs_base_frame_zz, rprs_base_point_x, rprs_base_point_y, rprs_base_point_z,
-            rprs_joint3_offset_x, rprs_link2_mass, rprs_platform_joint_offset_x,
-            rprs_platform_point_x, rprs_platform_point_y, rprs_platform_point_z, size, size_t,
-            size_t_2,
+        crs_J_2_xx, crs_J_3_xy, crs_J_3_xz, crs_J_3_yz, crs_Sigma_3_xx, crs_Sigma_3_yy,
+            crs_Sigma_3_zz, crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz,
+            crs_base_frame_yx, crs_base_frame_yy, crs_base_frame_yz, crs_base_frame_zx,
+            crs_base_frame_zy, crs_base_frame_zz, crs_base_point_x, crs_base_point_y,
+            crs_base_point_z, crs_branch_1, crs_branch_2, crs_g_r0_x, crs_g_r0_y, crs_g_r0_z,
+            crs_h_2_y, crs_h_2_z, crs_h_3_x, crs_h_3_y, crs_h_3_z, crs_joint3_offset_x,
+            crs_link2_mass, crs_platform_joint_offset_x, crs_platform_point_x,
+            crs_platform_point_y, crs_platform_point_z, crs_size, crs_size_t, crs_size_t_2,
+            inv_crs_size_t,
         ) = k
-        # (rprs-K1) from the base point to the connection point
-        q_in_base_x = (
-        R_xx*rprs_platform_point_x + R_xy*rprs_platform_point_y + R_xz*rprs_platform_point_z
+        # (crs-S) from the base point to the connection point
+        crs_q_in_base_x = (
+        R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
-        q_in_base_y = (
-        R_yx*rprs_platform_point_x + R_yy*rprs_platform_point_y + R_yz*rprs_platform_point_z
+        crs_q_in_base_y = (
+        R_yx*crs_platform_point_x + R_yy*crs_platform_point_y + R_yz*crs_platform_point_z
         )
-        q_in_base_z = (
-        R_zx*rprs_platform_point_x + R_zy*rprs_platform_point_y + R_zz*rprs_platform_point_z
+        crs_q_in_base_z = (
+        R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rprs_base_point_x
-        S_y = q_in_base_y + t_y - rprs_base_point_y
-        S_z = q_in_base_z + t_z - rprs_base_point_z
-        # (rprs-K2) component along the reference direction
-        px_1 = S_x*rprs_base_frame_xy + S_y*rprs_base_frame_yy + S_z*rprs_base_frame_zy
-        # (rprs-K3) component across the reference direction
-        py_1 = S_x*rprs_base_frame_xz + S_y*rprs_base_frame_yz + S_z*rprs_base_frame_zz
-        # (rprs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rprs-K7) root, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rprs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*rprs_base_frame_xx + S_y*rprs_base_frame_yx + S_z*rprs_base_frame_zx
-        # (rprs-K12) from the centre at zero displacement to the connection point
-        from_centre_2_z = xi_1_t - rprs_joint3_offset_x
-        # (rprs-K14) discriminant of the distance equation
-        disc_2 = size_t - root_1*root_1
-        # (rprs-K15) displacement of joint 2
-        q_2 = from_centre_2_z + branch_2*sqrt(disc_2)
-        # (rprs-K16) from the origin of joint 3 to the connection point
-        x_3_z = xi_1_t - q_2 - rprs_joint3_offset_x
-        # (rprs-K18) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_size_t*root_1*rprs_platform_joint_offset_x
-        # (rprs-K19) sine of the angle of joint 3 from its reference direction
-        s_3 = inv_size_t*rprs_platform_joint_offset_x*x_3_z
-        # (rprs-V2) from joint 1 to the connection point, along the links
-        r_1_t = c_3*rprs_platform_joint_offset_x
-        r_1_t_2 = rprs_platform_joint_offset_x*s_3
-        r_1_z = q_2 + r_1_t_2 + rprs_joint3_offset_x
-        # (rprs-V3) velocity of the connection point per rate of joint 1
-        v_1_z = c_3*(c_3*r_1_t + r_1_z*s_3) + s_3*(r_1_t*s_3 - c_3*r_1_z)
-        # (rprs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*py_1*root_1
-        # (rprs-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*px_1*root_1
-        # (rprs-V5) reciprocal vector 1
-        axis_z_rprs_axes3_in_base_x = rprs_base_frame_xz*s_1 - c_1*rprs_base_frame_xy
-        axis_z_rprs_axes3_in_base_y = rprs_base_frame_yz*s_1 - c_1*rprs_base_frame_yy
-        axis_z_rprs_axes3_in_base_z = rprs_base_frame_zz*s_1 - c_1*rprs_base_frame_zy
-        w_1_t = s_1*s_3
-        w_1_t_2 = c_1*s_3
-        axis_y_rprs_axes3_in_base_x = (
-        rprs_base_frame_xy*w_1_t + rprs_base_frame_xz*w_1_t_2 - c_3*rprs_base_frame_xx
+        crs_S_x = crs_q_in_base_x + t_x - crs_base_point_x
+        crs_S_y = crs_q_in_base_y + t_y - crs_base_point_y
+        crs_S_z = crs_q_in_base_z + t_z - crs_base_point_z
+        # (crs-px_1) component along the reference direction
+        crs_px_1 = (
+        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
         )
-        axis_y_rprs_axes3_in_base_y = (
-        rprs_base_frame_yy*w_1_t + rprs_base_frame_yz*w_1_t_2 - c_3*rprs_base_frame_yx
+        # (crs-py_1) component across the reference direction
+        crs_py_1 = (
+        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
         )
-        axis_y_rprs_axes3_in_base_z = (
-        rprs_base_frame_zy*w_1_t + rprs_base_frame_zz*w_1_t_2 - c_3*rprs_base_frame_zx
+        # (crs-rho2_1) squared amplitude
+        crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1
+        # (crs-root_1) root, with the sign of the branch
+        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        # (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        crs_xi_1_t = (
+        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
         )
-        axis_x_rprs_axes3_x = (
-        axis_y_rprs_axes3_in_base_y*axis_z_rprs_axes3_in_base_z -
-            axis_y_rprs_axes3_in_base_z*axis_z_rprs_axes3_in_base_y
+        # (crs-from_centre_2) from the centre at zero displacement to the connection point
+        crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x
+        # (crs-disc_2) discriminant of the distance equation
+        crs_disc_2 = crs_size_t - crs_root_1*crs_root_1
+        # (crs-q_2) displacement of joint 2
+        crs_q_2 = crs_from_centre_2_z + crs_branch_2*sqrt(crs_disc_2)
+        # (crs-x_3) from the origin of joint 3 to the connection point
+        crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2
+        # (crs-c_3) cosine of the angle of joint 3 from its reference direction
+        crs_c_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        # (crs-s_3) sine of the angle of joint 3 from its reference direction
+        crs_s_3 = crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t
+        # (crs-r_1) from joint 1 to the connection point, along the links
+        crs_r_1_t = crs_c_3*crs_platform_joint_offset_x
+        crs_r_1_t_2 = crs_platform_joint_offset_x*crs_s_3
+        crs_r_1_z = crs_joint3_offset_x + crs_q_2 + crs_r_1_t_2
+        # (crs-v_1) velocity of the connection point per rate of joint 1
+        crs_v_1_z = (
+        crs_c_3*(crs_c_3*crs_r_1_t + crs_r_1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
+            crs_c_3*crs_r_1_z)
         )
-        axis_x_rprs_axes3_y = (
-        axis_y_rprs_axes3_in_base_z*axis_z_rprs_axes3_in_base_x -
-            axis_y_rprs_axes3_in_base_x*axis_z_rprs_axes3_in_base_z
+        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_c_1 = crs_py_1*crs_root_1*inv_crs_rho2_1
+        # (crs-s_1) sine of the angle of joint 1 from its reference direction
+        crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1
+        # (crs-w_1) reciprocal vector 1
+        axis_z_crs_axes3_in_base_x = crs_base_frame_xz*crs_s_1 - crs_base_frame_xy*crs_c_1
+        axis_z_crs_axes3_in_base_y = crs_base_frame_yz*crs_s_1 - crs_base_frame_yy*crs_c_1
+        axis_z_crs_axes3_in_base_z = crs_base_frame_zz*crs_s_1 - crs_base_frame_zy*crs_c_1
+        crs_w_1_t = crs_s_1*crs_s_3
+        crs_w_1_t_2 = crs_c_1*crs_s_3
+        axis_y_crs_axes3_in_base_x = (
+        crs_base_frame_xy*crs_w_1_t + crs_base_frame_xz*crs_w_1_t_2 - crs_base_frame_xx*crs_c_3
         )
-        axis_x_rprs_axes3_z = (
-        axis_y_rprs_axes3_in_base_x*axis_z_rprs_axes3_in_base_y -
-            axis_y_rprs_axes3_in_base_y*axis_z_rprs_axes3_in_base_x
+        axis_y_crs_axes3_in_base_y = (
+        crs_base_frame_yy*crs_w_1_t + crs_base_frame_yz*crs_w_1_t_2 - crs_base_frame_yx*crs_c_3
         )
-        inv_v_1_z = 1.0/v_1_z
-        # (rprs-V6) reciprocal vector 2
-        inv_r_1_t_2 = 1.0/r_1_t_2
-        # (rprs-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_r0_x = (
-        S_dot_x*rprs_base_frame_xy + S_dot_y*rprs_base_frame_yy + S_dot_z*rprs_base_frame_zy
+        axis_y_crs_axes3_in_base_z = (
+        crs_base_frame_zy*crs_w_1_t + crs_base_frame_zz*crs_w_1_t_2 - crs_base_frame_zx*crs_c_3
         )
-        S_dot_r0_y = (
-        S_dot_x*rprs_base_frame_xz + S_dot_y*rprs_base_frame_yz + S_dot_z*rprs_base_frame_zz
+        axis_x_crs_axes3_x = (
+        axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_z -
+            axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_y
         )
-        # (rprs-V8) rate of joint 1
-        qd_1 = inv_v_1_z*(S_dot_r0_y*s_1 - S_dot_r0_x*c_1)
-        qd_3 = inv_r_1_t_2*(-S_dot_r0_x*s_1 - S_dot_r0_y*c_1)
-        qd_1_t = (
-        S_dot_x*rprs_base_frame_xx + S_dot_y*rprs_base_frame_yx + S_dot_z*rprs_base_frame_zx -
-            qd_3*r_1_t
+        axis_x_crs_axes3_y = (
+        axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_x -
+            axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_z
         )
-        # (rprs-V11) angular velocity of link 1
-        omega_1_t = qd_1*s_3
-        omega_1_t_2 = c_3*qd_1
-        # (rprs-A4) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_x = omega_1_t_2*qd_3
-        zeta_3_y = omega_1_t*qd_3
-        # (rprs-V14) centripetal tensor of link 3
-        W_3_t = omega_1_t*omega_1_t
-        W_3_t_2 = omega_1_t_2*omega_1_t_2
-        W_3_t_3 = qd_3*qd_3
-        W_3_xy = omega_1_t*omega_1_t_2
-        # (rprs-A5) acceleration of the connection point at zero joint accelerations
-        bias_t = (
-        omega_1_t*(c_3*q_2 + c_3*rprs_joint3_offset_x) - omega_1_t_2*(q_2*s_3 +
-            rprs_joint3_offset_x*s_3)
+        axis_x_crs_axes3_z = (
+        axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_y -
+            axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_x
         )
-        bias_t_2 = qd_3*rprs_platform_joint_offset_x
-        bias_t_3 = omega_1_t_2*rprs_platform_joint_offset_x
-        bias_x = bias_t*omega_1_t_2 - bias_t_2*qd_3 - bias_t_3*omega_1_t_2
-        bias_y = bias_t*omega_1_t - bias_t_3*omega_1_t
-        bias_z = (
-        -bias_t_2*omega_1_t - 2.0*qd_1_t*(c_3*omega_1_t - omega_1_t_2*s_3) -
-            rprs_platform_joint_offset_x*zeta_3_y
+        inv_crs_v_1_z = 1.0/crs_v_1_z
+        # (crs-w_3) reciprocal vector 3
+        inv_crs_r_1_t_2 = 1.0/crs_r_1_t_2
+        # (crs-S_dot) velocity of the connection point
+        crs_S_dot_t = crs_q_in_base_z*omega_y - crs_q_in_base_y*omega_z
+        crs_S_dot_t_2 = crs_q_in_base_x*omega_z - crs_q_in_base_z*omega_x
+        crs_S_dot_t_3 = crs_q_in_base_y*omega_x - crs_q_in_base_x*omega_y
+        crs_S_dot_x = crs_S_dot_t + t_dot_x
+        crs_S_dot_y = crs_S_dot_t_2 + t_dot_y
+        crs_S_dot_z = crs_S_dot_t_3 + t_dot_z
+        crs_S_dot_r0_x = (
+        crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
+            crs_S_dot_z*crs_base_frame_zy
         )
-        # (rprs-A1) centripetal acceleration of the connection point
-        u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
-        u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y
-        u_1_tip_x = (
-        axis_x_rprs_axes3_x*u_1_x + axis_x_rprs_axes3_y*u_1_y + axis_x_rprs_axes3_z*u_1_z
+        crs_S_dot_r0_y = (
+        crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz +
+            crs_S_dot_z*crs_base_frame_zz
         )
-        u_1_tip_y = (
-        axis_y_rprs_axes3_in_base_x*u_1_x + axis_y_rprs_axes3_in_base_y*u_1_y +
-            axis_y_rprs_axes3_in_base_z*u_1_z
+        # (crs-qd_3) rate of joint 3
+        crs_qd_1 = inv_crs_v_1_z*(crs_S_dot_r0_y*crs_s_1 - crs_S_dot_r0_x*crs_c_1)
+        crs_qd_3 = inv_crs_r_1_t_2*(-crs_S_dot_r0_x*crs_s_1 - crs_S_dot_r0_y*crs_c_1)
+        crs_qd_3_t = (
+        crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
+            crs_S_dot_z*crs_base_frame_zx - crs_qd_3*crs_r_1_t
         )
-        u_1_tip_z = (
-        axis_z_rprs_axes3_in_base_x*u_1_x + axis_z_rprs_axes3_in_base_y*u_1_y +
-            axis_z_rprs_axes3_in_base_z*u_1_z
+        # (crs-omega_1) angular velocity of link 1
+        crs_omega_1_t = crs_qd_1*crs_s_3
+        crs_omega_1_t_2 = crs_c_3*crs_qd_1
+        # (crs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        crs_zeta_3_x = crs_omega_1_t_2*crs_qd_3
+        crs_zeta_3_y = crs_omega_1_t*crs_qd_3
+        # (crs-u_1) centripetal acceleration of the connection point
+        crs_u_1_x = crs_S_dot_t_3*omega_y - crs_S_dot_t_2*omega_z
+        crs_u_1_y = crs_S_dot_t*omega_z - crs_S_dot_t_3*omega_x
+        crs_u_1_z = crs_S_dot_t_2*omega_x - crs_S_dot_t*omega_y
+        # (crs-W_3) centripetal tensor of link 3
+        crs_W_3_t = crs_omega_1_t*crs_omega_1_t
+        crs_W_3_t_2 = crs_omega_1_t_2*crs_omega_1_t_2
+        crs_W_3_t_3 = crs_qd_3*crs_qd_3
+        crs_W_3_xy = crs_omega_1_t*crs_omega_1_t_2
+        # (crs-bias) acceleration of the connection point at zero joint accelerations
+        crs_bias_t = (
+        crs_omega_1_t*(crs_c_3*crs_joint3_offset_x + crs_c_3*crs_q_2) -
+            crs_omega_1_t_2*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3)
         )
-        # (rprs-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_x = u_1_tip_x - bias_x
-        rel_o_y = u_1_tip_y - bias_y
-        rel_o_z = u_1_tip_z - bias_z
-        # (rprs-A9) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_o = inv_v_1_z*rel_o_z
-        qdd_3_o = inv_r_1_t_2*(-c_3*rel_o_x - rel_o_y*s_3)
-        # (rprs-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-        acc_2_o_z = rel_o_x*s_3 - g_r0_z - c_3*rel_o_y - qdd_3_o*r_1_t
-        # (rprs-N6) remainder without the acceleration in: inertia force of link 2 less its weight
-        f_2_o_t = acc_2_o_z*rprs_link2_mass
-        # (rprs-N33) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_o_z = J_2_xx*qdd_1_o - g_r1_x*h_2_y - g_r1_y*h_2_z
-        # (rprs-N8) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        acc_3_o_x = u_1_tip_x + c_3*g_r1_y - g_r0_z*s_3
-        acc_3_o_y = u_1_tip_y + c_3*g_r0_z + g_r1_y*s_3
-        acc_3_o_z = u_1_tip_z - g_r1_x
-        # (rprs-A15) remainder without the acceleration in: angular acceleration of link 1
-        alpha_1_o_t = qdd_1_o*s_3
-        alpha_1_o_t_2 = c_3*qdd_1_o
-        # (rprs-A20) remainder without the acceleration in: angular acceleration of link 3
-        alpha_3_o_x = alpha_1_o_t + zeta_3_x
-        alpha_3_o_y = zeta_3_y - alpha_1_o_t_2
-        # (rprs-A22) remainder of the acceleration tensor of link 3
-        B_3_o_xy = qdd_3_o - W_3_xy
-        B_3_o_yx = -W_3_xy - qdd_3_o
-        B_3_o_zx = -alpha_3_o_y - zeta_3_y
-        B_3_o_zy = alpha_3_o_x + zeta_3_x
-        # (rprs-N26) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        mu_3_o_x = (
-        B_3_o_yx*J_3_xz + B_3_o_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) +
-            Sigma_3_zz*alpha_1_o_t + acc_3_o_z*h_3_y - B_3_o_zx*J_3_xy - acc_3_o_y*h_3_z
+        crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_3
+        crs_bias_t_3 = crs_omega_1_t_2*crs_platform_joint_offset_x
+        crs_bias_x = (
+        crs_bias_t*crs_omega_1_t_2 - crs_bias_t_2*crs_qd_3 - crs_bias_t_3*crs_omega_1_t_2
         )
-        mu_3_o_y = (
-        B_3_o_zy*J_3_xy + acc_3_o_x*h_3_z - B_3_o_xy*J_3_yz - B_3_o_zx*Sigma_3_xx - J_3_xz*(W_3_t
-            - W_3_t_3) - Sigma_3_zz*alpha_1_o_t_2 - acc_3_o_z*h_3_x
+        crs_bias_y = crs_bias_t*crs_omega_1_t - crs_bias_t_3*crs_omega_1_t
+        crs_bias_z = (
+        -crs_bias_t_2*crs_omega_1_t - crs_platform_joint_offset_x*crs_zeta_3_y -
+            2.0*crs_qd_3_t*(crs_c_3*crs_omega_1_t - crs_omega_1_t_2*crs_s_3)
         )
-        mu_3_o_z = (
-        B_3_o_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + J_3_xz*alpha_1_o_t + acc_3_o_y*h_3_x -
-            B_3_o_xy*Sigma_3_yy - J_3_yz*alpha_1_o_t_2 - acc_3_o_x*h_3_y
+        # (crs-u_1) centripetal acceleration of the connection point
+        crs_u_1_tip_x = (
+        axis_x_crs_axes3_x*crs_u_1_x + axis_x_crs_axes3_y*crs_u_1_y + axis_x_crs_axes3_z*crs_u_1_z
         )
-        # (rprs-N35) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_o_z = mu_1_o_z + mu_3_o_x*s_3 - c_3*mu_3_o_y
-        # (rprs-N44) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_o_t = inv_r_1_t_2*(mu_3_o_z + f_2_o_t*r_1_t)
-        # (rprs-N47) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_o_x = (
-        alpha_1_o_t_2*h_3_z + h_3_x*(W_3_t_2 + W_3_t_3) - B_3_o_xy*h_3_y - G_o_t*c_3 - f_2_o_t*s_3
+        crs_u_1_tip_y = (
+        axis_y_crs_axes3_in_base_x*crs_u_1_x + axis_y_crs_axes3_in_base_y*crs_u_1_y +
+            axis_y_crs_axes3_in_base_z*crs_u_1_z
         )
-        c_o_y = (
-        alpha_1_o_t*h_3_z + c_3*f_2_o_t + h_3_y*(W_3_t + W_3_t_3) - B_3_o_yx*h_3_x - G_o_t*s_3
+        crs_u_1_tip_z = (
+        axis_z_crs_axes3_in_base_x*crs_u_1_x + axis_z_crs_axes3_in_base_y*crs_u_1_y +
+            axis_z_crs_axes3_in_base_z*crs_u_1_z
         )
-        c_o_z = h_3_z*(W_3_t + W_3_t_2) - B_3_o_zx*h_3_x - B_3_o_zy*h_3_y - N_1_o_z*inv_v_1_z
-        # (rprs-N49) velocity and gravity terms of the leg force
-        U_in_base_x = (
-        -axis_x_rprs_axes3_x*c_o_x - axis_y_rprs_axes3_in_base_x*c_o_y -
-            axis_z_rprs_axes3_in_base_x*c_o_z
+        # (crs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        crs_rel_o_x = crs_u_1_tip_x - crs_bias_x
+        crs_rel_o_y = crs_u_1_tip_y - crs_bias_y
+        crs_rel_o_z = crs_u_1_tip_z - crs_bias_z
+        # (crs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
+        crs_qdd_1_o = crs_rel_o_z*inv_crs_v_1_z
+        crs_qdd_3_o = inv_crs_r_1_t_2*(-crs_c_3*crs_rel_o_x - crs_rel_o_y*crs_s_3)
+        # (crs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        crs_alpha_1_o_t = crs_qdd_1_o*crs_s_3
+        crs_alpha_1_o_t_2 = crs_c_3*crs_qdd_1_o
+        # (crs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        crs_alpha_3_o_x = crs_alpha_1_o_t + crs_zeta_3_x
+        crs_alpha_3_o_y = crs_zeta_3_y - crs_alpha_1_o_t_2
+        # (crs-B_3_o) remainder of the acceleration tensor of link 3
+        crs_B_3_o_xy = crs_qdd_3_o - crs_W_3_xy
+        crs_B_3_o_yx = -crs_W_3_xy - crs_qdd_3_o
+        crs_B_3_o_zx = -crs_alpha_3_o_y - crs_zeta_3_y
+        crs_B_3_o_zy = crs_alpha_3_o_x + crs_zeta_3_x
+        # (crs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        crs_g_r1_x = crs_g_r0_y*crs_s_1 - crs_c_1*crs_g_r0_x
+        crs_g_r1_y = -crs_c_1*crs_g_r0_y - crs_g_r0_x*crs_s_1
+        crs_acc_3_o_x = crs_u_1_tip_x + crs_c_3*crs_g_r1_y - crs_g_r0_z*crs_s_3
+        crs_acc_3_o_y = crs_u_1_tip_y + crs_c_3*crs_g_r0_z + crs_g_r1_y*crs_s_3
+        crs_acc_3_o_z = crs_u_1_tip_z - crs_g_r1_x
+        # (crs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        crs_mu_3_o_x = (
+        crs_B_3_o_yx*crs_J_3_xz + crs_B_3_o_zy*crs_Sigma_3_yy + crs_J_3_yz*(crs_W_3_t_2 -
+            crs_W_3_t_3) + crs_Sigma_3_zz*crs_alpha_1_o_t + crs_acc_3_o_z*crs_h_3_y -
+            crs_B_3_o_zx*crs_J_3_xy - crs_acc_3_o_y*crs_h_3_z
         )
-        U_in_base_y = (
-        -axis_x_rprs_axes3_y*c_o_x - axis_y_rprs_axes3_in_base_y*c_o_y -
-            axis_z_rprs_axes3_in_base_y*c_o_z
+        crs_mu_3_o_y = (
+        crs_B_3_o_zy*crs_J_3_xy + crs_acc_3_o_x*crs_h_3_z - crs_B_3_o_xy*crs_J_3_yz -
+            crs_B_3_o_zx*crs_Sigma_3_xx - crs_J_3_xz*(crs_W_3_t - crs_W_3_t_3) -
+            crs_Sigma_3_zz*crs_alpha_1_o_t_2 - crs_acc_3_o_z*crs_h_3_x
         )
-        U_in_base_z = (
-        -axis_x_rprs_axes3_z*c_o_x - axis_y_rprs_axes3_in_base_z*c_o_y -
-            axis_z_rprs_axes3_in_base_z*c_o_z
+        crs_mu_3_o_z = (
+        crs_B_3_o_yx*crs_Sigma_3_xx + crs_J_3_xy*(crs_W_3_t - crs_W_3_t_2) +
+            crs_J_3_xz*crs_alpha_1_o_t + crs_acc_3_o_y*crs_h_3_x - crs_B_3_o_xy*crs_Sigma_3_yy -
+            crs_J_3_yz*crs_alpha_1_o_t_2 - crs_acc_3_o_x*crs_h_3_y
         )
-        # (M7) rotational part of Z
-        Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
-        Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
-        Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
+        # (crs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        crs_acc_2_o_z = (
+        crs_rel_o_x*crs_s_3 - crs_g_r0_z - crs_c_3*crs_rel_o_y - crs_qdd_3_o*crs_r_1_t
+        )
+        # (crs-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight
+        crs_f_2_o_t = crs_acc_2_o_z*crs_link2_mass
+        # (crs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        crs_mu_1_o_z = crs_J_2_xx*crs_qdd_1_o - crs_g_r1_x*crs_h_2_y - crs_g_r1_y*crs_h_2_z
+        # (crs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        crs_N_1_o_z = crs_mu_1_o_z + crs_mu_3_o_x*crs_s_3 - crs_c_3*crs_mu_3_o_y
+        # (crs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        crs_G_o_t = inv_crs_r_1_t_2*(crs_mu_3_o_z + crs_f_2_o_t*crs_r_1_t)
+        # (crs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        crs_c_o_x = (
+        crs_alpha_1_o_t_2*crs_h_3_z + crs_h_3_x*(crs_W_3_t_2 + crs_W_3_t_3) -
+            crs_B_3_o_xy*crs_h_3_y - crs_G_o_t*crs_c_3 - crs_f_2_o_t*crs_s_3
+        )
+        crs_c_o_y = (
+        crs_alpha_1_o_t*crs_h_3_z + crs_c_3*crs_f_2_o_t + crs_h_3_y*(crs_W_3_t + crs_W_3_t_3) -
+            crs_B_3_o_yx*crs_h_3_x - crs_G_o_t*crs_s_3
+        )
+        crs_c_o_z = (
+        crs_h_3_z*(crs_W_3_t + crs_W_3_t_2) - crs_B_3_o_zx*crs_h_3_x - crs_B_3_o_zy*crs_h_3_y -
+            crs_N_1_o_z*inv_crs_v_1_z
+        )
+        # (crs-U) velocity and gravity terms of the leg force
+        crs_U_in_base_x = (
+        -axis_x_crs_axes3_x*crs_c_o_x - axis_y_crs_axes3_in_base_x*crs_c_o_y -
+            axis_z_crs_axes3_in_base_x*crs_c_o_z
+        )
+        crs_U_in_base_y = (
+        -axis_x_crs_axes3_y*crs_c_o_x - axis_y_crs_axes3_in_base_y*crs_c_o_y -
+            axis_z_crs_axes3_in_base_y*crs_c_o_z
+        )
+        crs_U_in_base_z = (
+        -axis_x_crs_axes3_z*crs_c_o_x - axis_y_crs_axes3_in_base_z*crs_c_o_y -
+            axis_z_crs_axes3_in_base_z*crs_c_o_z
+        )
+        # (Z_a) rotational part of Z
+        crs_Z_a_t = crs_U_in_base_z*crs_q_in_base_y - crs_U_in_base_y*crs_q_in_base_z
+        crs_Z_a_t_2 = crs_U_in_base_x*crs_q_in_base_z - crs_U_in_base_z*crs_q_in_base_x
+        crs_Z_a_t_3 = crs_U_in_base_y*crs_q_in_base_x - crs_U_in_base_x*crs_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_2) & (disc_2 >= 0.0) &
-            (abs(v_1_z) > _TOLERANCE * size) & (abs(-r_1_t_2) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2
+            >= 0.0) & (abs(crs_v_1_z) > _TOLERANCE * crs_size) & (abs(-crs_r_1_t_2) > _TOLERANCE *
+            crs_size))
         )
         sums = m.added(sums, leg, (
-        U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
+        crs_U_in_base_x, crs_U_in_base_y, crs_U_in_base_z, crs_Z_a_t, crs_Z_a_t_2,
+            crs_Z_a_t_3,
         ))
-    (
-    total_rprs_x, total_rprs_y, total_rprs_z, total_rprs_x_2, total_rprs_y_2, total_rprs_z_2,
-    ) = sums
-    # (M5) translational part of Z
-    Z_t_x = Z_p_x + total_rprs_x
-    Z_t_y = Z_p_y + total_rprs_y
-    Z_t_z = Z_p_z + total_rprs_z
-    # (M7) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_rprs_x_2
-    Z_a_y = Z_q_in_base_y + total_rprs_y_2
-    Z_a_z = Z_q_in_base_z + total_rprs_z_2
+    total_crs_x, total_crs_y, total_crs_z, total_crs_x_2, total_crs_y_2, total_crs_z_2 = sums
+    # (Z_t) translational part of Z
+    Z_t_x = Z_p_x + total_crs_x
+    Z_t_y = Z_p_y + total_crs_y
+    Z_t_z = Z_p_z + total_crs_z
+    # (Z_a) rotational part of Z
+    Z_a_x = Z_q_in_base_x + total_crs_x_2
+    Z_a_y = Z_q_in_base_y + total_crs_y_2
+    Z_a_z = Z_q_in_base_z + total_crs_z_2
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
@@ -2486,123 +2612,133 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, inv_size_t, rprs_base_frame_xx, rprs_base_frame_xy,
-            rprs_base_frame_xz, rprs_base_frame_yx, rprs_base_frame_yy, rprs_base_frame_yz,
-            rprs_base_frame_zx, rprs_base_frame_zy, rprs_base_frame_zz, rprs_base_point_x,
-            rprs_base_point_y, rprs_base_point_z, rprs_joint3_offset_x,
-            rprs_platform_joint_offset_x, rprs_platform_point_x, rprs_platform_point_y,
-            rprs_platform_point_z, size, size_t, size_t_2,
+        crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz, crs_base_frame_yx,
+            crs_base_frame_yy, crs_base_frame_yz, crs_base_frame_zx, crs_base_frame_zy,
+            crs_base_frame_zz, crs_base_point_x, crs_base_point_y, crs_base_point_z, crs_branch_1,
+            crs_branch_2, crs_joint3_offset_x, crs_platform_joint_offset_x, crs_platform_point_x,
+            crs_platform_point_y, crs_platform_point_z, crs_size, crs_size_t, crs_size_t_2,
+            inv_crs_size_t,
         ) = k
-        # (rprs-K1) from the base point to the connection point
-        q_in_base_x = (
-        R_xx*rprs_platform_point_x + R_xy*rprs_platform_point_y + R_xz*rprs_platform_point_z
+        # (crs-S) from the base point to the connection point
+        crs_q_in_base_x = (
+        R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
-        q_in_base_y = (
-        R_yx*rprs_platform_point_x + R_yy*rprs_platform_point_y + R_yz*rprs_platform_point_z
+        crs_q_in_base_y = (
+        R_yx*crs_platform_point_x + R_yy*crs_platform_point_y + R_yz*crs_platform_point_z
         )
-        q_in_base_z = (
-        R_zx*rprs_platform_point_x + R_zy*rprs_platform_point_y + R_zz*rprs_platform_point_z
+        crs_q_in_base_z = (
+        R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rprs_base_point_x
-        S_y = q_in_base_y + t_y - rprs_base_point_y
-        S_z = q_in_base_z + t_z - rprs_base_point_z
-        # (rprs-K2) component along the reference direction
-        px_1 = S_x*rprs_base_frame_xy + S_y*rprs_base_frame_yy + S_z*rprs_base_frame_zy
-        # (rprs-K3) component across the reference direction
-        py_1 = S_x*rprs_base_frame_xz + S_y*rprs_base_frame_yz + S_z*rprs_base_frame_zz
-        # (rprs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rprs-K7) root, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rprs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*rprs_base_frame_xx + S_y*rprs_base_frame_yx + S_z*rprs_base_frame_zx
-        # (rprs-K12) from the centre at zero displacement to the connection point
-        from_centre_2_z = xi_1_t - rprs_joint3_offset_x
-        # (rprs-K14) discriminant of the distance equation
-        disc_2 = size_t - root_1*root_1
-        # (rprs-K15) displacement of joint 2
-        q_2 = from_centre_2_z + branch_2*sqrt(disc_2)
-        # (rprs-K16) from the origin of joint 3 to the connection point
-        x_3_z = xi_1_t - q_2 - rprs_joint3_offset_x
-        # (rprs-K18) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_size_t*root_1*rprs_platform_joint_offset_x
-        # (rprs-K19) sine of the angle of joint 3 from its reference direction
-        s_3 = inv_size_t*rprs_platform_joint_offset_x*x_3_z
-        # (rprs-V2) from joint 1 to the connection point, along the links
-        r_1_t = c_3*rprs_platform_joint_offset_x
-        r_1_t_2 = rprs_platform_joint_offset_x*s_3
-        r_1_z = q_2 + r_1_t_2 + rprs_joint3_offset_x
-        # (rprs-V3) velocity of the connection point per rate of joint 1
-        v_1_z = c_3*(c_3*r_1_t + r_1_z*s_3) + s_3*(r_1_t*s_3 - c_3*r_1_z)
-        # (rprs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*py_1*root_1
-        # (rprs-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*px_1*root_1
-        # (rprs-V5) reciprocal vector 1
-        axis_z_rprs_axes3_in_base_x = rprs_base_frame_xz*s_1 - c_1*rprs_base_frame_xy
-        axis_z_rprs_axes3_in_base_y = rprs_base_frame_yz*s_1 - c_1*rprs_base_frame_yy
-        axis_z_rprs_axes3_in_base_z = rprs_base_frame_zz*s_1 - c_1*rprs_base_frame_zy
-        w_1_t = s_1*s_3
-        w_1_t_2 = c_1*s_3
-        axis_y_rprs_axes3_in_base_x = (
-        rprs_base_frame_xy*w_1_t + rprs_base_frame_xz*w_1_t_2 - c_3*rprs_base_frame_xx
+        crs_S_x = crs_q_in_base_x + t_x - crs_base_point_x
+        crs_S_y = crs_q_in_base_y + t_y - crs_base_point_y
+        crs_S_z = crs_q_in_base_z + t_z - crs_base_point_z
+        # (crs-px_1) component along the reference direction
+        crs_px_1 = (
+        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
         )
-        axis_y_rprs_axes3_in_base_y = (
-        rprs_base_frame_yy*w_1_t + rprs_base_frame_yz*w_1_t_2 - c_3*rprs_base_frame_yx
+        # (crs-py_1) component across the reference direction
+        crs_py_1 = (
+        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
         )
-        axis_y_rprs_axes3_in_base_z = (
-        rprs_base_frame_zy*w_1_t + rprs_base_frame_zz*w_1_t_2 - c_3*rprs_base_frame_zx
+        # (crs-rho2_1) squared amplitude
+        crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1
+        # (crs-root_1) root, with the sign of the branch
+        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        # (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        crs_xi_1_t = (
+        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
         )
-        inv_v_1_z = 1.0/v_1_z
-        # (rprs-V6) reciprocal vector 2
-        w_2_t = r_1_t/r_1_t_2
-        _r1_x = s_3 + c_3*w_2_t
-        _r1_y = s_3*w_2_t - c_3
-        # (rprs-V5) reciprocal vector 1
-        w_1_t_3 = axis_z_rprs_axes3_in_base_x*inv_v_1_z
-        w_1_t_4 = axis_z_rprs_axes3_in_base_y*inv_v_1_z
-        w_1_t_5 = axis_z_rprs_axes3_in_base_z*inv_v_1_z
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_x = q_in_base_y*w_1_t_5 - q_in_base_z*w_1_t_4
-        H_a_1_y = q_in_base_z*w_1_t_3 - q_in_base_x*w_1_t_5
-        H_a_1_z = q_in_base_x*w_1_t_4 - q_in_base_y*w_1_t_3
-        # (rprs-V6) reciprocal vector 2
-        w_2_in_base_x = (
-        _r1_x*(axis_y_rprs_axes3_in_base_y*axis_z_rprs_axes3_in_base_z -
-            axis_y_rprs_axes3_in_base_z*axis_z_rprs_axes3_in_base_y) +
-            _r1_y*axis_y_rprs_axes3_in_base_x
+        # (crs-from_centre_2) from the centre at zero displacement to the connection point
+        crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x
+        # (crs-disc_2) discriminant of the distance equation
+        crs_disc_2 = crs_size_t - crs_root_1*crs_root_1
+        # (crs-q_2) displacement of joint 2
+        crs_q_2 = crs_from_centre_2_z + crs_branch_2*sqrt(crs_disc_2)
+        # (crs-x_3) from the origin of joint 3 to the connection point
+        crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2
+        # (crs-c_3) cosine of the angle of joint 3 from its reference direction
+        crs_c_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        # (crs-s_3) sine of the angle of joint 3 from its reference direction
+        crs_s_3 = crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t
+        # (crs-r_1) from joint 1 to the connection point, along the links
+        crs_r_1_t = crs_c_3*crs_platform_joint_offset_x
+        crs_r_1_t_2 = crs_platform_joint_offset_x*crs_s_3
+        crs_r_1_z = crs_joint3_offset_x + crs_q_2 + crs_r_1_t_2
+        # (crs-v_1) velocity of the connection point per rate of joint 1
+        crs_v_1_z = (
+        crs_c_3*(crs_c_3*crs_r_1_t + crs_r_1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
+            crs_c_3*crs_r_1_z)
         )
-        w_2_in_base_y = (
-        _r1_x*(axis_y_rprs_axes3_in_base_z*axis_z_rprs_axes3_in_base_x -
-            axis_y_rprs_axes3_in_base_x*axis_z_rprs_axes3_in_base_z) +
-            _r1_y*axis_y_rprs_axes3_in_base_y
+        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_c_1 = crs_py_1*crs_root_1*inv_crs_rho2_1
+        # (crs-s_1) sine of the angle of joint 1 from its reference direction
+        crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1
+        # (crs-w_1) reciprocal vector 1
+        axis_z_crs_axes3_in_base_x = crs_base_frame_xz*crs_s_1 - crs_base_frame_xy*crs_c_1
+        axis_z_crs_axes3_in_base_y = crs_base_frame_yz*crs_s_1 - crs_base_frame_yy*crs_c_1
+        axis_z_crs_axes3_in_base_z = crs_base_frame_zz*crs_s_1 - crs_base_frame_zy*crs_c_1
+        crs_w_1_t = crs_s_1*crs_s_3
+        crs_w_1_t_2 = crs_c_1*crs_s_3
+        axis_y_crs_axes3_in_base_x = (
+        crs_base_frame_xy*crs_w_1_t + crs_base_frame_xz*crs_w_1_t_2 - crs_base_frame_xx*crs_c_3
         )
-        w_2_in_base_z = (
-        _r1_x*(axis_y_rprs_axes3_in_base_x*axis_z_rprs_axes3_in_base_y -
-            axis_y_rprs_axes3_in_base_y*axis_z_rprs_axes3_in_base_x) +
-            _r1_y*axis_y_rprs_axes3_in_base_z
+        axis_y_crs_axes3_in_base_y = (
+        crs_base_frame_yy*crs_w_1_t + crs_base_frame_yz*crs_w_1_t_2 - crs_base_frame_yx*crs_c_3
         )
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_2_x = q_in_base_y*w_2_in_base_z - q_in_base_z*w_2_in_base_y
-        H_a_2_y = q_in_base_z*w_2_in_base_x - q_in_base_x*w_2_in_base_z
-        H_a_2_z = q_in_base_x*w_2_in_base_y - q_in_base_y*w_2_in_base_x
+        axis_y_crs_axes3_in_base_z = (
+        crs_base_frame_zy*crs_w_1_t + crs_base_frame_zz*crs_w_1_t_2 - crs_base_frame_zx*crs_c_3
+        )
+        inv_crs_v_1_z = 1.0/crs_v_1_z
+        # (crs-w_2) reciprocal vector 2
+        crs_w_2_t = crs_r_1_t/crs_r_1_t_2
+        crs__r1_x = crs_s_3 + crs_c_3*crs_w_2_t
+        crs__r1_y = crs_s_3*crs_w_2_t - crs_c_3
+        # (crs-w_1) reciprocal vector 1
+        crs_w_1_t_3 = axis_z_crs_axes3_in_base_x*inv_crs_v_1_z
+        crs_w_1_t_4 = axis_z_crs_axes3_in_base_y*inv_crs_v_1_z
+        crs_w_1_t_5 = axis_z_crs_axes3_in_base_z*inv_crs_v_1_z
+        # (crs-H_a_1) moment of the column's unit force about the platform origin
+        crs_H_a_1_x = crs_q_in_base_y*crs_w_1_t_5 - crs_q_in_base_z*crs_w_1_t_4
+        crs_H_a_1_y = crs_q_in_base_z*crs_w_1_t_3 - crs_q_in_base_x*crs_w_1_t_5
+        crs_H_a_1_z = crs_q_in_base_x*crs_w_1_t_4 - crs_q_in_base_y*crs_w_1_t_3
+        # (crs-w_2) reciprocal vector 2
+        crs_w_2_in_base_x = (
+        axis_y_crs_axes3_in_base_x*crs__r1_y +
+            crs__r1_x*(axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_z -
+            axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_y)
+        )
+        crs_w_2_in_base_y = (
+        axis_y_crs_axes3_in_base_y*crs__r1_y +
+            crs__r1_x*(axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_x -
+            axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_z)
+        )
+        crs_w_2_in_base_z = (
+        axis_y_crs_axes3_in_base_z*crs__r1_y +
+            crs__r1_x*(axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_y -
+            axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_x)
+        )
+        # (crs-H_a_2) moment of the column's unit force about the platform origin
+        crs_H_a_2_x = crs_q_in_base_y*crs_w_2_in_base_z - crs_q_in_base_z*crs_w_2_in_base_y
+        crs_H_a_2_y = crs_q_in_base_z*crs_w_2_in_base_x - crs_q_in_base_x*crs_w_2_in_base_z
+        crs_H_a_2_z = crs_q_in_base_x*crs_w_2_in_base_y - crs_q_in_base_y*crs_w_2_in_base_x
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_2) & (disc_2 >= 0.0) &
-            (abs(v_1_z) > _TOLERANCE * size) & (abs(-r_1_t_2) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2
+            >= 0.0) & (abs(crs_v_1_z) > _TOLERANCE * crs_size) & (abs(-crs_r_1_t_2) > _TOLERANCE *
+            crs_size))
         )
-        out_H[_H_rprs[0][leg]] = w_1_t_3
-        out_H[_H_rprs[1][leg]] = w_1_t_4
-        out_H[_H_rprs[2][leg]] = w_1_t_5
-        out_H[_H_rprs[3][leg]] = H_a_1_x
-        out_H[_H_rprs[4][leg]] = H_a_1_y
-        out_H[_H_rprs[5][leg]] = H_a_1_z
-        out_H[_H_rprs[6][leg]] = w_2_in_base_x
-        out_H[_H_rprs[7][leg]] = w_2_in_base_y
-        out_H[_H_rprs[8][leg]] = w_2_in_base_z
-        out_H[_H_rprs[9][leg]] = H_a_2_x
-        out_H[_H_rprs[10][leg]] = H_a_2_y
-        out_H[_H_rprs[11][leg]] = H_a_2_z
+        out_H[_H_crs[0][leg]] = crs_w_1_t_3
+        out_H[_H_crs[1][leg]] = crs_w_1_t_4
+        out_H[_H_crs[2][leg]] = crs_w_1_t_5
+        out_H[_H_crs[3][leg]] = crs_H_a_1_x
+        out_H[_H_crs[4][leg]] = crs_H_a_1_y
+        out_H[_H_crs[5][leg]] = crs_H_a_1_z
+        out_H[_H_crs[6][leg]] = crs_w_2_in_base_x
+        out_H[_H_crs[7][leg]] = crs_w_2_in_base_y
+        out_H[_H_crs[8][leg]] = crs_w_2_in_base_z
+        out_H[_H_crs[9][leg]] = crs_H_a_2_x
+        out_H[_H_crs[10][leg]] = crs_H_a_2_y
+        out_H[_H_crs[11][leg]] = crs_H_a_2_z
     return ok, (out_H,)
 
 
@@ -2678,29 +2814,29 @@ def _run_required(m, X, V, A):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (P1) centripetal tensor of the platform
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_x*omega_x
     W_p_t_2 = omega_y*omega_y
     W_p_t_3 = omega_z*omega_z
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
     W_p_yz = omega_y*omega_z
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
-    # (E2) inertia force of the platform less its weight
+    # (f_p) inertia force of the platform less its weight
     f_p_x = (
     a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) + h_star_in_base_z*(W_p_xz + alpha_y) -
         h_star_in_base_x*(W_p_t_2 + W_p_t_3)
@@ -2713,11 +2849,11 @@ def _run_required(m, X, V, A):
     a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) + h_star_in_base_y*(W_p_yz + alpha_x) -
         h_star_in_base_z*(W_p_t + W_p_t_2)
     )
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
     a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
     a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
-    # (E3) inertia moment of the platform less that of its weight
+    # (mu_p) inertia moment of the platform less that of its weight
     alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
     alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
     alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
@@ -2739,271 +2875,299 @@ def _run_required(m, X, V, A):
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_2_xx, J_3_xy, J_3_xz, J_3_yz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2,
-            g_r0_x, g_r0_y, g_r0_z, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, inv_size_t,
-            rprs_base_frame_xx, rprs_base_frame_xy, rprs_base_frame_xz, rprs_base_frame_yx,
-            rprs_base_frame_yy, rprs_base_frame_yz, rprs_base_frame_zx, rprs_base_frame_zy,
-            rprs_base_frame_zz, rprs_base_point_x, rprs_base_point_y, rprs_base_point_z,
-            rprs_joint3_offset_x, rprs_link2_mass, rprs_platform_joint_offset_x,
-            rprs_platform_point_x, rprs_platform_point_y, rprs_platform_point_z, size, size_t,
-            size_t_2,
+        crs_J_2_xx, crs_J_3_xy, crs_J_3_xz, crs_J_3_yz, crs_Sigma_3_xx, crs_Sigma_3_yy,
+            crs_Sigma_3_zz, crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz,
+            crs_base_frame_yx, crs_base_frame_yy, crs_base_frame_yz, crs_base_frame_zx,
+            crs_base_frame_zy, crs_base_frame_zz, crs_base_point_x, crs_base_point_y,
+            crs_base_point_z, crs_branch_1, crs_branch_2, crs_g_r0_x, crs_g_r0_y, crs_g_r0_z,
+            crs_h_2_y, crs_h_2_z, crs_h_3_x, crs_h_3_y, crs_h_3_z, crs_joint3_offset_x,
+            crs_link2_mass, crs_platform_joint_offset_x, crs_platform_point_x,
+            crs_platform_point_y, crs_platform_point_z, crs_size, crs_size_t, crs_size_t_2,
+            inv_crs_size_t,
         ) = k
-        # (rprs-K1) from the base point to the connection point
-        q_in_base_x = (
-        R_xx*rprs_platform_point_x + R_xy*rprs_platform_point_y + R_xz*rprs_platform_point_z
+        # (crs-S) from the base point to the connection point
+        crs_q_in_base_x = (
+        R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
-        q_in_base_y = (
-        R_yx*rprs_platform_point_x + R_yy*rprs_platform_point_y + R_yz*rprs_platform_point_z
+        crs_q_in_base_y = (
+        R_yx*crs_platform_point_x + R_yy*crs_platform_point_y + R_yz*crs_platform_point_z
         )
-        q_in_base_z = (
-        R_zx*rprs_platform_point_x + R_zy*rprs_platform_point_y + R_zz*rprs_platform_point_z
+        crs_q_in_base_z = (
+        R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rprs_base_point_x
-        S_y = q_in_base_y + t_y - rprs_base_point_y
-        S_z = q_in_base_z + t_z - rprs_base_point_z
-        # (rprs-K2) component along the reference direction
-        px_1 = S_x*rprs_base_frame_xy + S_y*rprs_base_frame_yy + S_z*rprs_base_frame_zy
-        # (rprs-K3) component across the reference direction
-        py_1 = S_x*rprs_base_frame_xz + S_y*rprs_base_frame_yz + S_z*rprs_base_frame_zz
-        # (rprs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rprs-K7) root, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rprs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*rprs_base_frame_xx + S_y*rprs_base_frame_yx + S_z*rprs_base_frame_zx
-        # (rprs-K12) from the centre at zero displacement to the connection point
-        from_centre_2_z = xi_1_t - rprs_joint3_offset_x
-        # (rprs-K14) discriminant of the distance equation
-        disc_2 = size_t - root_1*root_1
-        # (rprs-K15) displacement of joint 2
-        q_2 = from_centre_2_z + branch_2*sqrt(disc_2)
-        # (rprs-K16) from the origin of joint 3 to the connection point
-        x_3_z = xi_1_t - q_2 - rprs_joint3_offset_x
-        # (rprs-K18) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_size_t*root_1*rprs_platform_joint_offset_x
-        # (rprs-K19) sine of the angle of joint 3 from its reference direction
-        s_3 = inv_size_t*rprs_platform_joint_offset_x*x_3_z
-        # (rprs-V2) from joint 1 to the connection point, along the links
-        r_1_t = c_3*rprs_platform_joint_offset_x
-        r_1_t_2 = rprs_platform_joint_offset_x*s_3
-        r_1_z = q_2 + r_1_t_2 + rprs_joint3_offset_x
-        # (rprs-V3) velocity of the connection point per rate of joint 1
-        v_1_z = c_3*(c_3*r_1_t + r_1_z*s_3) + s_3*(r_1_t*s_3 - c_3*r_1_z)
-        # (rprs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*py_1*root_1
-        # (rprs-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*px_1*root_1
-        # (rprs-V5) reciprocal vector 1
-        axis_z_rprs_axes3_in_base_x = rprs_base_frame_xz*s_1 - c_1*rprs_base_frame_xy
-        axis_z_rprs_axes3_in_base_y = rprs_base_frame_yz*s_1 - c_1*rprs_base_frame_yy
-        axis_z_rprs_axes3_in_base_z = rprs_base_frame_zz*s_1 - c_1*rprs_base_frame_zy
-        w_1_t = s_1*s_3
-        w_1_t_2 = c_1*s_3
-        axis_y_rprs_axes3_in_base_x = (
-        rprs_base_frame_xy*w_1_t + rprs_base_frame_xz*w_1_t_2 - c_3*rprs_base_frame_xx
+        crs_S_x = crs_q_in_base_x + t_x - crs_base_point_x
+        crs_S_y = crs_q_in_base_y + t_y - crs_base_point_y
+        crs_S_z = crs_q_in_base_z + t_z - crs_base_point_z
+        # (crs-px_1) component along the reference direction
+        crs_px_1 = (
+        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
         )
-        axis_y_rprs_axes3_in_base_y = (
-        rprs_base_frame_yy*w_1_t + rprs_base_frame_yz*w_1_t_2 - c_3*rprs_base_frame_yx
+        # (crs-py_1) component across the reference direction
+        crs_py_1 = (
+        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
         )
-        axis_y_rprs_axes3_in_base_z = (
-        rprs_base_frame_zy*w_1_t + rprs_base_frame_zz*w_1_t_2 - c_3*rprs_base_frame_zx
+        # (crs-rho2_1) squared amplitude
+        crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1
+        # (crs-root_1) root, with the sign of the branch
+        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        # (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        crs_xi_1_t = (
+        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
         )
-        axis_x_rprs_axes3_x = (
-        axis_y_rprs_axes3_in_base_y*axis_z_rprs_axes3_in_base_z -
-            axis_y_rprs_axes3_in_base_z*axis_z_rprs_axes3_in_base_y
+        # (crs-from_centre_2) from the centre at zero displacement to the connection point
+        crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x
+        # (crs-disc_2) discriminant of the distance equation
+        crs_disc_2 = crs_size_t - crs_root_1*crs_root_1
+        # (crs-q_2) displacement of joint 2
+        crs_q_2 = crs_from_centre_2_z + crs_branch_2*sqrt(crs_disc_2)
+        # (crs-x_3) from the origin of joint 3 to the connection point
+        crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2
+        # (crs-c_3) cosine of the angle of joint 3 from its reference direction
+        crs_c_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        # (crs-s_3) sine of the angle of joint 3 from its reference direction
+        crs_s_3 = crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t
+        # (crs-r_1) from joint 1 to the connection point, along the links
+        crs_r_1_t = crs_c_3*crs_platform_joint_offset_x
+        crs_r_1_t_2 = crs_platform_joint_offset_x*crs_s_3
+        crs_r_1_z = crs_joint3_offset_x + crs_q_2 + crs_r_1_t_2
+        # (crs-v_1) velocity of the connection point per rate of joint 1
+        crs_v_1_z = (
+        crs_c_3*(crs_c_3*crs_r_1_t + crs_r_1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
+            crs_c_3*crs_r_1_z)
         )
-        axis_x_rprs_axes3_y = (
-        axis_y_rprs_axes3_in_base_z*axis_z_rprs_axes3_in_base_x -
-            axis_y_rprs_axes3_in_base_x*axis_z_rprs_axes3_in_base_z
+        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_c_1 = crs_py_1*crs_root_1*inv_crs_rho2_1
+        # (crs-s_1) sine of the angle of joint 1 from its reference direction
+        crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1
+        # (crs-w_1) reciprocal vector 1
+        axis_z_crs_axes3_in_base_x = crs_base_frame_xz*crs_s_1 - crs_base_frame_xy*crs_c_1
+        axis_z_crs_axes3_in_base_y = crs_base_frame_yz*crs_s_1 - crs_base_frame_yy*crs_c_1
+        axis_z_crs_axes3_in_base_z = crs_base_frame_zz*crs_s_1 - crs_base_frame_zy*crs_c_1
+        crs_w_1_t = crs_s_1*crs_s_3
+        crs_w_1_t_2 = crs_c_1*crs_s_3
+        axis_y_crs_axes3_in_base_x = (
+        crs_base_frame_xy*crs_w_1_t + crs_base_frame_xz*crs_w_1_t_2 - crs_base_frame_xx*crs_c_3
         )
-        axis_x_rprs_axes3_z = (
-        axis_y_rprs_axes3_in_base_x*axis_z_rprs_axes3_in_base_y -
-            axis_y_rprs_axes3_in_base_y*axis_z_rprs_axes3_in_base_x
+        axis_y_crs_axes3_in_base_y = (
+        crs_base_frame_yy*crs_w_1_t + crs_base_frame_yz*crs_w_1_t_2 - crs_base_frame_yx*crs_c_3
         )
-        inv_v_1_z = 1.0/v_1_z
-        # (rprs-V6) reciprocal vector 2
-        inv_r_1_t_2 = 1.0/r_1_t_2
-        w_2_t = inv_r_1_t_2*r_1_t
-        _r1_x = s_3 + c_3*w_2_t
-        _r1_y = s_3*w_2_t - c_3
-        # (rprs-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_r0_x = (
-        S_dot_x*rprs_base_frame_xy + S_dot_y*rprs_base_frame_yy + S_dot_z*rprs_base_frame_zy
+        axis_y_crs_axes3_in_base_z = (
+        crs_base_frame_zy*crs_w_1_t + crs_base_frame_zz*crs_w_1_t_2 - crs_base_frame_zx*crs_c_3
         )
-        S_dot_r0_y = (
-        S_dot_x*rprs_base_frame_xz + S_dot_y*rprs_base_frame_yz + S_dot_z*rprs_base_frame_zz
+        axis_x_crs_axes3_x = (
+        axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_z -
+            axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_y
         )
-        # (rprs-V8) rate of joint 1
-        qd_1 = inv_v_1_z*(S_dot_r0_y*s_1 - S_dot_r0_x*c_1)
-        qd_3 = inv_r_1_t_2*(-S_dot_r0_x*s_1 - S_dot_r0_y*c_1)
-        qd_1_t = (
-        S_dot_x*rprs_base_frame_xx + S_dot_y*rprs_base_frame_yx + S_dot_z*rprs_base_frame_zx -
-            qd_3*r_1_t
+        axis_x_crs_axes3_y = (
+        axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_x -
+            axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_z
         )
-        # (rprs-V11) angular velocity of link 1
-        omega_1_t = qd_1*s_3
-        omega_1_t_2 = c_3*qd_1
-        # (rprs-A4) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_x = omega_1_t_2*qd_3
-        zeta_3_y = omega_1_t*qd_3
-        # (rprs-V14) centripetal tensor of link 3
-        W_3_t = omega_1_t*omega_1_t
-        W_3_t_2 = omega_1_t_2*omega_1_t_2
-        W_3_t_3 = qd_3*qd_3
-        W_3_xy = omega_1_t*omega_1_t_2
-        # (rprs-A5) acceleration of the connection point at zero joint accelerations
-        bias_t = (
-        omega_1_t*(c_3*q_2 + c_3*rprs_joint3_offset_x) - omega_1_t_2*(q_2*s_3 +
-            rprs_joint3_offset_x*s_3)
+        axis_x_crs_axes3_z = (
+        axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_y -
+            axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_x
         )
-        bias_t_2 = qd_3*rprs_platform_joint_offset_x
-        bias_t_3 = omega_1_t_2*rprs_platform_joint_offset_x
-        bias_x = bias_t*omega_1_t_2 - bias_t_2*qd_3 - bias_t_3*omega_1_t_2
-        bias_y = bias_t*omega_1_t - bias_t_3*omega_1_t
-        bias_z = (
-        -bias_t_2*omega_1_t - 2.0*qd_1_t*(c_3*omega_1_t - omega_1_t_2*s_3) -
-            rprs_platform_joint_offset_x*zeta_3_y
+        inv_crs_v_1_z = 1.0/crs_v_1_z
+        # (crs-w_3) reciprocal vector 3
+        inv_crs_r_1_t_2 = 1.0/crs_r_1_t_2
+        # (crs-w_2) reciprocal vector 2
+        crs_w_2_t = crs_r_1_t*inv_crs_r_1_t_2
+        crs__r1_x = crs_s_3 + crs_c_3*crs_w_2_t
+        crs__r1_y = crs_s_3*crs_w_2_t - crs_c_3
+        # (crs-S_dot) velocity of the connection point
+        crs_S_dot_t = crs_q_in_base_z*omega_y - crs_q_in_base_y*omega_z
+        crs_S_dot_t_2 = crs_q_in_base_x*omega_z - crs_q_in_base_z*omega_x
+        crs_S_dot_t_3 = crs_q_in_base_y*omega_x - crs_q_in_base_x*omega_y
+        crs_S_dot_x = crs_S_dot_t + t_dot_x
+        crs_S_dot_y = crs_S_dot_t_2 + t_dot_y
+        crs_S_dot_z = crs_S_dot_t_3 + t_dot_z
+        crs_S_dot_r0_x = (
+        crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
+            crs_S_dot_z*crs_base_frame_zy
         )
-        # (rprs-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-        # (rprs-V5) reciprocal vector 1
-        w_1_t_3 = axis_z_rprs_axes3_in_base_x*inv_v_1_z
-        w_1_t_4 = axis_z_rprs_axes3_in_base_y*inv_v_1_z
-        w_1_t_5 = axis_z_rprs_axes3_in_base_z*inv_v_1_z
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_x = q_in_base_y*w_1_t_5 - q_in_base_z*w_1_t_4
-        H_a_1_y = q_in_base_z*w_1_t_3 - q_in_base_x*w_1_t_5
-        H_a_1_z = q_in_base_x*w_1_t_4 - q_in_base_y*w_1_t_3
-        # (rprs-V6) reciprocal vector 2
-        w_2_in_base_x = _r1_x*axis_x_rprs_axes3_x + _r1_y*axis_y_rprs_axes3_in_base_x
-        w_2_in_base_y = _r1_x*axis_x_rprs_axes3_y + _r1_y*axis_y_rprs_axes3_in_base_y
-        w_2_in_base_z = _r1_x*axis_x_rprs_axes3_z + _r1_y*axis_y_rprs_axes3_in_base_z
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_2_x = q_in_base_y*w_2_in_base_z - q_in_base_z*w_2_in_base_y
-        H_a_2_y = q_in_base_z*w_2_in_base_x - q_in_base_x*w_2_in_base_z
-        H_a_2_z = q_in_base_x*w_2_in_base_y - q_in_base_y*w_2_in_base_x
-        # (rprs-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (rprs-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        S_ddot_tip_x = (
-        S_ddot_x*axis_x_rprs_axes3_x + S_ddot_y*axis_x_rprs_axes3_y + S_ddot_z*axis_x_rprs_axes3_z
+        crs_S_dot_r0_y = (
+        crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz +
+            crs_S_dot_z*crs_base_frame_zz
         )
-        S_ddot_tip_y = (
-        S_ddot_x*axis_y_rprs_axes3_in_base_x + S_ddot_y*axis_y_rprs_axes3_in_base_y +
-            S_ddot_z*axis_y_rprs_axes3_in_base_z
+        # (crs-qd_3) rate of joint 3
+        crs_qd_1 = inv_crs_v_1_z*(crs_S_dot_r0_y*crs_s_1 - crs_S_dot_r0_x*crs_c_1)
+        crs_qd_3 = inv_crs_r_1_t_2*(-crs_S_dot_r0_x*crs_s_1 - crs_S_dot_r0_y*crs_c_1)
+        crs_qd_3_t = (
+        crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
+            crs_S_dot_z*crs_base_frame_zx - crs_qd_3*crs_r_1_t
         )
-        S_ddot_tip_z = (
-        S_ddot_x*axis_z_rprs_axes3_in_base_x + S_ddot_y*axis_z_rprs_axes3_in_base_y +
-            S_ddot_z*axis_z_rprs_axes3_in_base_z
+        # (crs-omega_1) angular velocity of link 1
+        crs_omega_1_t = crs_qd_1*crs_s_3
+        crs_omega_1_t_2 = crs_c_3*crs_qd_1
+        # (crs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        crs_zeta_3_x = crs_omega_1_t_2*crs_qd_3
+        crs_zeta_3_y = crs_omega_1_t*crs_qd_3
+        # (crs-W_3) centripetal tensor of link 3
+        crs_W_3_t = crs_omega_1_t*crs_omega_1_t
+        crs_W_3_t_2 = crs_omega_1_t_2*crs_omega_1_t_2
+        crs_W_3_t_3 = crs_qd_3*crs_qd_3
+        crs_W_3_xy = crs_omega_1_t*crs_omega_1_t_2
+        # (crs-bias) acceleration of the connection point at zero joint accelerations
+        crs_bias_t = (
+        crs_omega_1_t*(crs_c_3*crs_joint3_offset_x + crs_c_3*crs_q_2) -
+            crs_omega_1_t_2*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3)
         )
-        # (rprs-A6) acceleration of the connection point left to the joint accelerations
-        rel_x = S_ddot_tip_x - bias_x
-        rel_y = S_ddot_tip_y - bias_y
-        rel_z = S_ddot_tip_z - bias_z
-        # (rprs-A8) acceleration of joint 1
-        qdd_1 = inv_v_1_z*rel_z
-        qdd_3 = inv_r_1_t_2*(-c_3*rel_x - rel_y*s_3)
-        # (rprs-N7) acceleration of the reference point of link 3, less gravity
-        acc_3_x = S_ddot_tip_x + c_3*g_r1_y - g_r0_z*s_3
-        acc_3_y = S_ddot_tip_y + c_3*g_r0_z + g_r1_y*s_3
-        acc_3_z = S_ddot_tip_z - g_r1_x
-        # (rprs-N1) acceleration of the reference point of link 2, less gravity
-        acc_2_z = rel_x*s_3 - g_r0_z - c_3*rel_y - qdd_3*r_1_t
-        # (rprs-N5) inertia force of link 2 less its weight
-        f_2_t = acc_2_z*rprs_link2_mass
-        # (rprs-N32) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_z = J_2_xx*qdd_1 - g_r1_x*h_2_y - g_r1_y*h_2_z
-        # (rprs-A14) angular acceleration of link 1
-        alpha_1_t = qdd_1*s_3
-        alpha_1_t_2 = c_3*qdd_1
-        # (rprs-A18) angular acceleration of link 3
-        alpha_3_x = alpha_1_t + zeta_3_x
-        alpha_3_y = zeta_3_y - alpha_1_t_2
-        # (rprs-A21) acceleration tensor of link 3
-        B_3_xy = qdd_3 - W_3_xy
-        B_3_yx = -W_3_xy - qdd_3
-        B_3_zx = -alpha_3_y - zeta_3_y
-        B_3_zy = alpha_3_x + zeta_3_x
-        # (rprs-N25) inertia moment of the links that turn with link 3, about their reference points
-        mu_3_x = (
-        B_3_yx*J_3_xz + B_3_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + Sigma_3_zz*alpha_1_t +
-            acc_3_z*h_3_y - B_3_zx*J_3_xy - acc_3_y*h_3_z
+        crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_3
+        crs_bias_t_3 = crs_omega_1_t_2*crs_platform_joint_offset_x
+        crs_bias_x = (
+        crs_bias_t*crs_omega_1_t_2 - crs_bias_t_2*crs_qd_3 - crs_bias_t_3*crs_omega_1_t_2
         )
-        mu_3_y = (
-        B_3_zy*J_3_xy + acc_3_x*h_3_z - B_3_xy*J_3_yz - B_3_zx*Sigma_3_xx - J_3_xz*(W_3_t -
-            W_3_t_3) - Sigma_3_zz*alpha_1_t_2 - acc_3_z*h_3_x
+        crs_bias_y = crs_bias_t*crs_omega_1_t - crs_bias_t_3*crs_omega_1_t
+        crs_bias_z = (
+        -crs_bias_t_2*crs_omega_1_t - crs_platform_joint_offset_x*crs_zeta_3_y -
+            2.0*crs_qd_3_t*(crs_c_3*crs_omega_1_t - crs_omega_1_t_2*crs_s_3)
         )
-        mu_3_z = (
-        B_3_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + J_3_xz*alpha_1_t + acc_3_y*h_3_x -
-            B_3_xy*Sigma_3_yy - J_3_yz*alpha_1_t_2 - acc_3_x*h_3_y
+        # (crs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        crs_g_r1_x = crs_g_r0_y*crs_s_1 - crs_c_1*crs_g_r0_x
+        crs_g_r1_y = -crs_c_1*crs_g_r0_y - crs_g_r0_x*crs_s_1
+        # (crs-w_1) reciprocal vector 1
+        crs_w_1_t_3 = axis_z_crs_axes3_in_base_x*inv_crs_v_1_z
+        crs_w_1_t_4 = axis_z_crs_axes3_in_base_y*inv_crs_v_1_z
+        crs_w_1_t_5 = axis_z_crs_axes3_in_base_z*inv_crs_v_1_z
+        # (crs-H_a_1) moment of the column's unit force about the platform origin
+        crs_H_a_1_x = crs_q_in_base_y*crs_w_1_t_5 - crs_q_in_base_z*crs_w_1_t_4
+        crs_H_a_1_y = crs_q_in_base_z*crs_w_1_t_3 - crs_q_in_base_x*crs_w_1_t_5
+        crs_H_a_1_z = crs_q_in_base_x*crs_w_1_t_4 - crs_q_in_base_y*crs_w_1_t_3
+        # (crs-w_2) reciprocal vector 2
+        crs_w_2_in_base_x = axis_x_crs_axes3_x*crs__r1_x + axis_y_crs_axes3_in_base_x*crs__r1_y
+        crs_w_2_in_base_y = axis_x_crs_axes3_y*crs__r1_x + axis_y_crs_axes3_in_base_y*crs__r1_y
+        crs_w_2_in_base_z = axis_x_crs_axes3_z*crs__r1_x + axis_y_crs_axes3_in_base_z*crs__r1_y
+        # (crs-H_a_2) moment of the column's unit force about the platform origin
+        crs_H_a_2_x = crs_q_in_base_y*crs_w_2_in_base_z - crs_q_in_base_z*crs_w_2_in_base_y
+        crs_H_a_2_y = crs_q_in_base_z*crs_w_2_in_base_x - crs_q_in_base_x*crs_w_2_in_base_z
+        crs_H_a_2_z = crs_q_in_base_x*crs_w_2_in_base_y - crs_q_in_base_y*crs_w_2_in_base_x
+        # (crs-a_p) acceleration of the connection point without its centripetal part
+        crs_a_p_x = t_ddot_x + alpha_y*crs_q_in_base_z - alpha_z*crs_q_in_base_y
+        crs_a_p_y = t_ddot_y + alpha_z*crs_q_in_base_x - alpha_x*crs_q_in_base_z
+        crs_a_p_z = t_ddot_z + alpha_x*crs_q_in_base_y - alpha_y*crs_q_in_base_x
+        # (crs-S_ddot) acceleration of the connection point
+        crs_S_ddot_x = crs_a_p_x + crs_S_dot_t_3*omega_y - crs_S_dot_t_2*omega_z
+        crs_S_ddot_y = crs_a_p_y + crs_S_dot_t*omega_z - crs_S_dot_t_3*omega_x
+        crs_S_ddot_z = crs_a_p_z + crs_S_dot_t_2*omega_x - crs_S_dot_t*omega_y
+        crs_S_ddot_tip_x = (
+        axis_x_crs_axes3_x*crs_S_ddot_x + axis_x_crs_axes3_y*crs_S_ddot_y +
+            axis_x_crs_axes3_z*crs_S_ddot_z
         )
-        # (rprs-N34) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_z = mu_1_z + mu_3_x*s_3 - c_3*mu_3_y
-        # (rprs-N42) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_t = inv_r_1_t_2*(mu_3_z + f_2_t*r_1_t)
-        # (rprs-N45) leg force on the platform without actuation and without the mass at the connection point
-        c_x = alpha_1_t_2*h_3_z + h_3_x*(W_3_t_2 + W_3_t_3) - B_3_xy*h_3_y - G_t*c_3 - f_2_t*s_3
-        c_y = alpha_1_t*h_3_z + c_3*f_2_t + h_3_y*(W_3_t + W_3_t_3) - B_3_yx*h_3_x - G_t*s_3
-        c_z = h_3_z*(W_3_t + W_3_t_2) - B_3_zx*h_3_x - B_3_zy*h_3_y - N_1_z*inv_v_1_z
-        c_in_base_x = (
-        axis_x_rprs_axes3_x*c_x + axis_y_rprs_axes3_in_base_x*c_y +
-            axis_z_rprs_axes3_in_base_x*c_z
+        crs_S_ddot_tip_y = (
+        axis_y_crs_axes3_in_base_x*crs_S_ddot_x + axis_y_crs_axes3_in_base_y*crs_S_ddot_y +
+            axis_y_crs_axes3_in_base_z*crs_S_ddot_z
         )
-        c_in_base_y = (
-        axis_x_rprs_axes3_y*c_x + axis_y_rprs_axes3_in_base_y*c_y +
-            axis_z_rprs_axes3_in_base_y*c_z
+        crs_S_ddot_tip_z = (
+        axis_z_crs_axes3_in_base_x*crs_S_ddot_x + axis_z_crs_axes3_in_base_y*crs_S_ddot_y +
+            axis_z_crs_axes3_in_base_z*crs_S_ddot_z
         )
-        c_in_base_z = (
-        axis_x_rprs_axes3_z*c_x + axis_y_rprs_axes3_in_base_z*c_y +
-            axis_z_rprs_axes3_in_base_z*c_z
+        # (crs-rel) acceleration of the connection point left to the joint accelerations
+        crs_rel_x = crs_S_ddot_tip_x - crs_bias_x
+        crs_rel_y = crs_S_ddot_tip_y - crs_bias_y
+        crs_rel_z = crs_S_ddot_tip_z - crs_bias_z
+        # (crs-qdd_1) acceleration of joint 1
+        crs_qdd_1 = crs_rel_z*inv_crs_v_1_z
+        crs_qdd_3 = inv_crs_r_1_t_2*(-crs_c_3*crs_rel_x - crs_rel_y*crs_s_3)
+        # (crs-acc_3) acceleration of the reference point of link 3, less gravity
+        crs_acc_3_x = crs_S_ddot_tip_x + crs_c_3*crs_g_r1_y - crs_g_r0_z*crs_s_3
+        crs_acc_3_y = crs_S_ddot_tip_y + crs_c_3*crs_g_r0_z + crs_g_r1_y*crs_s_3
+        crs_acc_3_z = crs_S_ddot_tip_z - crs_g_r1_x
+        # (crs-alpha_1) angular acceleration of link 1
+        crs_alpha_1_t = crs_qdd_1*crs_s_3
+        crs_alpha_1_t_2 = crs_c_3*crs_qdd_1
+        # (crs-alpha_3) angular acceleration of link 3
+        crs_alpha_3_x = crs_alpha_1_t + crs_zeta_3_x
+        crs_alpha_3_y = crs_zeta_3_y - crs_alpha_1_t_2
+        # (crs-B_3) acceleration tensor of link 3
+        crs_B_3_xy = crs_qdd_3 - crs_W_3_xy
+        crs_B_3_yx = -crs_W_3_xy - crs_qdd_3
+        crs_B_3_zx = -crs_alpha_3_y - crs_zeta_3_y
+        crs_B_3_zy = crs_alpha_3_x + crs_zeta_3_x
+        # (crs-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        crs_mu_3_x = (
+        crs_B_3_yx*crs_J_3_xz + crs_B_3_zy*crs_Sigma_3_yy + crs_J_3_yz*(crs_W_3_t_2 - crs_W_3_t_3)
+            + crs_Sigma_3_zz*crs_alpha_1_t + crs_acc_3_z*crs_h_3_y - crs_B_3_zx*crs_J_3_xy -
+            crs_acc_3_y*crs_h_3_z
         )
-        # (E5) moment that actuators and external wrench must give
-        R_a_t = c_in_base_z*q_in_base_y - c_in_base_y*q_in_base_z
-        R_a_t_2 = c_in_base_x*q_in_base_z - c_in_base_z*q_in_base_x
-        R_a_t_3 = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y
+        crs_mu_3_y = (
+        crs_B_3_zy*crs_J_3_xy + crs_acc_3_x*crs_h_3_z - crs_B_3_xy*crs_J_3_yz -
+            crs_B_3_zx*crs_Sigma_3_xx - crs_J_3_xz*(crs_W_3_t - crs_W_3_t_3) -
+            crs_Sigma_3_zz*crs_alpha_1_t_2 - crs_acc_3_z*crs_h_3_x
+        )
+        crs_mu_3_z = (
+        crs_B_3_yx*crs_Sigma_3_xx + crs_J_3_xy*(crs_W_3_t - crs_W_3_t_2) +
+            crs_J_3_xz*crs_alpha_1_t + crs_acc_3_y*crs_h_3_x - crs_B_3_xy*crs_Sigma_3_yy -
+            crs_J_3_yz*crs_alpha_1_t_2 - crs_acc_3_x*crs_h_3_y
+        )
+        # (crs-acc_2) acceleration of the reference point of link 2, less gravity
+        crs_acc_2_z = crs_rel_x*crs_s_3 - crs_g_r0_z - crs_c_3*crs_rel_y - crs_qdd_3*crs_r_1_t
+        # (crs-f_2) inertia force of link 2 less its weight
+        crs_f_2_t = crs_acc_2_z*crs_link2_mass
+        # (crs-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        crs_mu_1_z = crs_J_2_xx*crs_qdd_1 - crs_g_r1_x*crs_h_2_y - crs_g_r1_y*crs_h_2_z
+        # (crs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        crs_N_1_z = crs_mu_1_z + crs_mu_3_x*crs_s_3 - crs_c_3*crs_mu_3_y
+        # (crs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        crs_G_t = inv_crs_r_1_t_2*(crs_mu_3_z + crs_f_2_t*crs_r_1_t)
+        # (crs-c) leg force on the platform without actuation and without the mass at the connection point
+        crs_c_x = (
+        crs_alpha_1_t_2*crs_h_3_z + crs_h_3_x*(crs_W_3_t_2 + crs_W_3_t_3) - crs_B_3_xy*crs_h_3_y -
+            crs_G_t*crs_c_3 - crs_f_2_t*crs_s_3
+        )
+        crs_c_y = (
+        crs_alpha_1_t*crs_h_3_z + crs_c_3*crs_f_2_t + crs_h_3_y*(crs_W_3_t + crs_W_3_t_3) -
+            crs_B_3_yx*crs_h_3_x - crs_G_t*crs_s_3
+        )
+        crs_c_z = (
+        crs_h_3_z*(crs_W_3_t + crs_W_3_t_2) - crs_B_3_zx*crs_h_3_x - crs_B_3_zy*crs_h_3_y -
+            crs_N_1_z*inv_crs_v_1_z
+        )
+        crs_c_in_base_x = (
+        axis_x_crs_axes3_x*crs_c_x + axis_y_crs_axes3_in_base_x*crs_c_y +
+            axis_z_crs_axes3_in_base_x*crs_c_z
+        )
+        crs_c_in_base_y = (
+        axis_x_crs_axes3_y*crs_c_x + axis_y_crs_axes3_in_base_y*crs_c_y +
+            axis_z_crs_axes3_in_base_y*crs_c_z
+        )
+        crs_c_in_base_z = (
+        axis_x_crs_axes3_z*crs_c_x + axis_y_crs_axes3_in_base_z*crs_c_y +
+            axis_z_crs_axes3_in_base_z*crs_c_z
+        )
+        # (R_a) moment that actuators and external wrench must give
+        crs_R_a_t = crs_c_in_base_z*crs_q_in_base_y - crs_c_in_base_y*crs_q_in_base_z
+        crs_R_a_t_2 = crs_c_in_base_x*crs_q_in_base_z - crs_c_in_base_z*crs_q_in_base_x
+        crs_R_a_t_3 = crs_c_in_base_y*crs_q_in_base_x - crs_c_in_base_x*crs_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_2) & (disc_2 >= 0.0) &
-            (abs(v_1_z) > _TOLERANCE * size) & (abs(-r_1_t_2) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2
+            >= 0.0) & (abs(crs_v_1_z) > _TOLERANCE * crs_size) & (abs(-crs_r_1_t_2) > _TOLERANCE *
+            crs_size))
         )
         sums = m.added(sums, leg, (
-        c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
+        crs_c_in_base_x, crs_c_in_base_y, crs_c_in_base_z, crs_R_a_t, crs_R_a_t_2,
+            crs_R_a_t_3,
         ))
-        out_H[_H_rprs[0][leg]] = w_1_t_3
-        out_H[_H_rprs[1][leg]] = w_1_t_4
-        out_H[_H_rprs[2][leg]] = w_1_t_5
-        out_H[_H_rprs[3][leg]] = H_a_1_x
-        out_H[_H_rprs[4][leg]] = H_a_1_y
-        out_H[_H_rprs[5][leg]] = H_a_1_z
-        out_H[_H_rprs[6][leg]] = w_2_in_base_x
-        out_H[_H_rprs[7][leg]] = w_2_in_base_y
-        out_H[_H_rprs[8][leg]] = w_2_in_base_z
-        out_H[_H_rprs[9][leg]] = H_a_2_x
-        out_H[_H_rprs[10][leg]] = H_a_2_y
-        out_H[_H_rprs[11][leg]] = H_a_2_z
-    (
-    total_rprs_x, total_rprs_y, total_rprs_z, total_rprs_x_2, total_rprs_y_2, total_rprs_z_2,
-    ) = sums
-    # (E4) force that actuators and external wrench must give
-    R_t_x = f_p_x - total_rprs_x
-    R_t_y = f_p_y - total_rprs_y
-    R_t_z = f_p_z - total_rprs_z
-    # (E5) moment that actuators and external wrench must give
-    R_a_x = mu_p_in_base_x - total_rprs_x_2
-    R_a_y = mu_p_in_base_y - total_rprs_y_2
-    R_a_z = mu_p_in_base_z - total_rprs_z_2
+        out_H[_H_crs[0][leg]] = crs_w_1_t_3
+        out_H[_H_crs[1][leg]] = crs_w_1_t_4
+        out_H[_H_crs[2][leg]] = crs_w_1_t_5
+        out_H[_H_crs[3][leg]] = crs_H_a_1_x
+        out_H[_H_crs[4][leg]] = crs_H_a_1_y
+        out_H[_H_crs[5][leg]] = crs_H_a_1_z
+        out_H[_H_crs[6][leg]] = crs_w_2_in_base_x
+        out_H[_H_crs[7][leg]] = crs_w_2_in_base_y
+        out_H[_H_crs[8][leg]] = crs_w_2_in_base_z
+        out_H[_H_crs[9][leg]] = crs_H_a_2_x
+        out_H[_H_crs[10][leg]] = crs_H_a_2_y
+        out_H[_H_crs[11][leg]] = crs_H_a_2_z
+    total_crs_x, total_crs_y, total_crs_z, total_crs_x_2, total_crs_y_2, total_crs_z_2 = sums
+    # (R_t) force that actuators and external wrench must give
+    R_t_x = f_p_x - total_crs_x
+    R_t_y = f_p_y - total_crs_y
+    R_t_z = f_p_z - total_crs_z
+    # (R_a) moment that actuators and external wrench must give
+    R_a_x = mu_p_in_base_x - total_crs_x_2
+    R_a_y = mu_p_in_base_y - total_crs_y_2
+    R_a_z = mu_p_in_base_z - total_crs_z_2
     out_required[0] = R_t_x
     out_required[1] = R_t_y
     out_required[2] = R_t_z
@@ -3057,59 +3221,65 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, inv_size_t, rprs_base_frame_xx, rprs_base_frame_xy,
-            rprs_base_frame_xz, rprs_base_frame_yx, rprs_base_frame_yy, rprs_base_frame_yz,
-            rprs_base_frame_zx, rprs_base_frame_zy, rprs_base_frame_zz, rprs_base_point_x,
-            rprs_base_point_y, rprs_base_point_z, rprs_joint3_offset_x,
-            rprs_platform_joint_offset_x, rprs_platform_point_x, rprs_platform_point_y,
-            rprs_platform_point_z, size_t, size_t_2,
+        crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz, crs_base_frame_yx,
+            crs_base_frame_yy, crs_base_frame_yz, crs_base_frame_zx, crs_base_frame_zy,
+            crs_base_frame_zz, crs_base_point_x, crs_base_point_y, crs_base_point_z, crs_branch_1,
+            crs_branch_2, crs_joint3_offset_x, crs_platform_joint_offset_x, crs_platform_point_x,
+            crs_platform_point_y, crs_platform_point_z, crs_size_t, crs_size_t_2, inv_crs_size_t,
         ) = k
-        # (rprs-K1) from the base point to the connection point
-        S_x = (
-        t_x + R_xx*rprs_platform_point_x + R_xy*rprs_platform_point_y + R_xz*rprs_platform_point_z
-            - rprs_base_point_x
+        # (crs-S) from the base point to the connection point
+        crs_S_x = (
+        t_x + R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z -
+            crs_base_point_x
         )
-        S_y = (
-        t_y + R_yx*rprs_platform_point_x + R_yy*rprs_platform_point_y + R_yz*rprs_platform_point_z
-            - rprs_base_point_y
+        crs_S_y = (
+        t_y + R_yx*crs_platform_point_x + R_yy*crs_platform_point_y + R_yz*crs_platform_point_z -
+            crs_base_point_y
         )
-        S_z = (
-        t_z + R_zx*rprs_platform_point_x + R_zy*rprs_platform_point_y + R_zz*rprs_platform_point_z
-            - rprs_base_point_z
+        crs_S_z = (
+        t_z + R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z -
+            crs_base_point_z
         )
-        # (rprs-K2) component along the reference direction
-        px_1 = S_x*rprs_base_frame_xy + S_y*rprs_base_frame_yy + S_z*rprs_base_frame_zy
-        # (rprs-K3) component across the reference direction
-        py_1 = S_x*rprs_base_frame_xz + S_y*rprs_base_frame_yz + S_z*rprs_base_frame_zz
-        # (rprs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rprs-K7) root, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rprs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*rprs_base_frame_xx + S_y*rprs_base_frame_yx + S_z*rprs_base_frame_zx
-        # (rprs-K12) from the centre at zero displacement to the connection point
-        from_centre_2_z = xi_1_t - rprs_joint3_offset_x
-        # (rprs-K14) discriminant of the distance equation
-        disc_2 = size_t - root_1*root_1
-        # (rprs-K15) displacement of joint 2
-        q_2 = from_centre_2_z + branch_2*sqrt(disc_2)
-        # (rprs-K16) from the origin of joint 3 to the connection point
-        x_3_z = xi_1_t - q_2 - rprs_joint3_offset_x
-        # (rprs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        # (rprs-K10) displacement of joint 1
-        q_1 = atan2(inv_rho2_1*py_1*root_1, inv_rho2_1*px_1*root_1)
-        # (rprs-K20) displacement of joint 3
-        q_3 = (
-        atan2(inv_size_t*root_1*rprs_platform_joint_offset_x,
-            inv_size_t*rprs_platform_joint_offset_x*x_3_z)
+        # (crs-px_1) component along the reference direction
+        crs_px_1 = (
+        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
+        )
+        # (crs-py_1) component across the reference direction
+        crs_py_1 = (
+        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
+        )
+        # (crs-rho2_1) squared amplitude
+        crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1
+        # (crs-root_1) root, with the sign of the branch
+        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        # (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        crs_xi_1_t = (
+        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
+        )
+        # (crs-from_centre_2) from the centre at zero displacement to the connection point
+        crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x
+        # (crs-disc_2) discriminant of the distance equation
+        crs_disc_2 = crs_size_t - crs_root_1*crs_root_1
+        # (crs-q_2) displacement of joint 2
+        crs_q_2 = crs_from_centre_2_z + crs_branch_2*sqrt(crs_disc_2)
+        # (crs-x_3) from the origin of joint 3 to the connection point
+        crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2
+        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        # (crs-q_1) displacement of joint 1
+        crs_q_1 = atan2(crs_py_1*crs_root_1*inv_crs_rho2_1, crs_px_1*crs_root_1*inv_crs_rho2_1)
+        # (crs-q_3) displacement of joint 3
+        crs_q_3 = (
+        atan2(crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t,
+            crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t)
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_2) & (disc_2 >= 0.0))
+        ok & m.every(leg, (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2
+            >= 0.0))
         )
-        out_q[_q_rprs[0][leg]] = q_1
-        out_q[_q_rprs[1][leg]] = q_2
-        out_q[_q_rprs[2][leg]] = q_3
+        out_q[_q_crs[0][leg]] = crs_q_1
+        out_q[_q_crs[1][leg]] = crs_q_2
+        out_q[_q_crs[2][leg]] = crs_q_3
     return ok, (out_q,)
 
 
@@ -3169,83 +3339,95 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, inv_size_t, rprs_base_frame_xx, rprs_base_frame_xy,
-            rprs_base_frame_xz, rprs_base_frame_yx, rprs_base_frame_yy, rprs_base_frame_yz,
-            rprs_base_frame_zx, rprs_base_frame_zy, rprs_base_frame_zz, rprs_base_point_x,
-            rprs_base_point_y, rprs_base_point_z, rprs_joint3_offset_x,
-            rprs_platform_joint_offset_x, rprs_platform_point_x, rprs_platform_point_y,
-            rprs_platform_point_z, size, size_t, size_t_2,
+        crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz, crs_base_frame_yx,
+            crs_base_frame_yy, crs_base_frame_yz, crs_base_frame_zx, crs_base_frame_zy,
+            crs_base_frame_zz, crs_base_point_x, crs_base_point_y, crs_base_point_z, crs_branch_1,
+            crs_branch_2, crs_joint3_offset_x, crs_platform_joint_offset_x, crs_platform_point_x,
+            crs_platform_point_y, crs_platform_point_z, crs_size, crs_size_t, crs_size_t_2,
+            inv_crs_size_t,
         ) = k
-        # (rprs-K1) from the base point to the connection point
-        q_in_base_x = (
-        R_xx*rprs_platform_point_x + R_xy*rprs_platform_point_y + R_xz*rprs_platform_point_z
+        # (crs-S) from the base point to the connection point
+        crs_q_in_base_x = (
+        R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
-        q_in_base_y = (
-        R_yx*rprs_platform_point_x + R_yy*rprs_platform_point_y + R_yz*rprs_platform_point_z
+        crs_q_in_base_y = (
+        R_yx*crs_platform_point_x + R_yy*crs_platform_point_y + R_yz*crs_platform_point_z
         )
-        q_in_base_z = (
-        R_zx*rprs_platform_point_x + R_zy*rprs_platform_point_y + R_zz*rprs_platform_point_z
+        crs_q_in_base_z = (
+        R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rprs_base_point_x
-        S_y = q_in_base_y + t_y - rprs_base_point_y
-        S_z = q_in_base_z + t_z - rprs_base_point_z
-        # (rprs-K2) component along the reference direction
-        px_1 = S_x*rprs_base_frame_xy + S_y*rprs_base_frame_yy + S_z*rprs_base_frame_zy
-        # (rprs-K3) component across the reference direction
-        py_1 = S_x*rprs_base_frame_xz + S_y*rprs_base_frame_yz + S_z*rprs_base_frame_zz
-        # (rprs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rprs-K7) root, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rprs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*rprs_base_frame_xx + S_y*rprs_base_frame_yx + S_z*rprs_base_frame_zx
-        # (rprs-K12) from the centre at zero displacement to the connection point
-        from_centre_2_z = xi_1_t - rprs_joint3_offset_x
-        # (rprs-K14) discriminant of the distance equation
-        disc_2 = size_t - root_1*root_1
-        # (rprs-K15) displacement of joint 2
-        q_2 = from_centre_2_z + branch_2*sqrt(disc_2)
-        # (rprs-K16) from the origin of joint 3 to the connection point
-        x_3_z = xi_1_t - q_2 - rprs_joint3_offset_x
-        # (rprs-K18) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_size_t*root_1*rprs_platform_joint_offset_x
-        # (rprs-K19) sine of the angle of joint 3 from its reference direction
-        s_3 = inv_size_t*rprs_platform_joint_offset_x*x_3_z
-        # (rprs-V2) from joint 1 to the connection point, along the links
-        r_1_t = c_3*rprs_platform_joint_offset_x
-        r_1_t_2 = rprs_platform_joint_offset_x*s_3
-        r_1_z = q_2 + r_1_t_2 + rprs_joint3_offset_x
-        # (rprs-V3) velocity of the connection point per rate of joint 1
-        v_1_z = c_3*(c_3*r_1_t + r_1_z*s_3) + s_3*(r_1_t*s_3 - c_3*r_1_z)
-        # (rprs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*py_1*root_1
-        # (rprs-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*px_1*root_1
-        # (rprs-V1) velocity of the connection point
-        S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_r0_x = (
-        S_dot_x*rprs_base_frame_xy + S_dot_y*rprs_base_frame_yy + S_dot_z*rprs_base_frame_zy
+        crs_S_x = crs_q_in_base_x + t_x - crs_base_point_x
+        crs_S_y = crs_q_in_base_y + t_y - crs_base_point_y
+        crs_S_z = crs_q_in_base_z + t_z - crs_base_point_z
+        # (crs-px_1) component along the reference direction
+        crs_px_1 = (
+        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
         )
-        S_dot_r0_y = (
-        S_dot_x*rprs_base_frame_xz + S_dot_y*rprs_base_frame_yz + S_dot_z*rprs_base_frame_zz
+        # (crs-py_1) component across the reference direction
+        crs_py_1 = (
+        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
         )
-        # (rprs-V8) rate of joint 1
-        qd_1 = (S_dot_r0_y*s_1 - S_dot_r0_x*c_1)/v_1_z
-        qd_3 = (-S_dot_r0_x*s_1 - S_dot_r0_y*c_1)/r_1_t_2
-        qd_1_t = (
-        S_dot_x*rprs_base_frame_xx + S_dot_y*rprs_base_frame_yx + S_dot_z*rprs_base_frame_zx -
-            qd_3*r_1_t
+        # (crs-rho2_1) squared amplitude
+        crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1
+        # (crs-root_1) root, with the sign of the branch
+        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        # (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        crs_xi_1_t = (
+        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
+        )
+        # (crs-from_centre_2) from the centre at zero displacement to the connection point
+        crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x
+        # (crs-disc_2) discriminant of the distance equation
+        crs_disc_2 = crs_size_t - crs_root_1*crs_root_1
+        # (crs-q_2) displacement of joint 2
+        crs_q_2 = crs_from_centre_2_z + crs_branch_2*sqrt(crs_disc_2)
+        # (crs-x_3) from the origin of joint 3 to the connection point
+        crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2
+        # (crs-c_3) cosine of the angle of joint 3 from its reference direction
+        crs_c_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        # (crs-s_3) sine of the angle of joint 3 from its reference direction
+        crs_s_3 = crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t
+        # (crs-r_1) from joint 1 to the connection point, along the links
+        crs_r_1_t = crs_c_3*crs_platform_joint_offset_x
+        crs_r_1_t_2 = crs_platform_joint_offset_x*crs_s_3
+        crs_r_1_z = crs_joint3_offset_x + crs_q_2 + crs_r_1_t_2
+        # (crs-v_1) velocity of the connection point per rate of joint 1
+        crs_v_1_z = (
+        crs_c_3*(crs_c_3*crs_r_1_t + crs_r_1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
+            crs_c_3*crs_r_1_z)
+        )
+        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_c_1 = crs_py_1*crs_root_1*inv_crs_rho2_1
+        # (crs-s_1) sine of the angle of joint 1 from its reference direction
+        crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1
+        # (crs-S_dot) velocity of the connection point
+        crs_S_dot_x = t_dot_x + crs_q_in_base_z*omega_y - crs_q_in_base_y*omega_z
+        crs_S_dot_y = t_dot_y + crs_q_in_base_x*omega_z - crs_q_in_base_z*omega_x
+        crs_S_dot_z = t_dot_z + crs_q_in_base_y*omega_x - crs_q_in_base_x*omega_y
+        crs_S_dot_r0_x = (
+        crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
+            crs_S_dot_z*crs_base_frame_zy
+        )
+        crs_S_dot_r0_y = (
+        crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz +
+            crs_S_dot_z*crs_base_frame_zz
+        )
+        # (crs-qd_3) rate of joint 3
+        crs_qd_1 = (crs_S_dot_r0_y*crs_s_1 - crs_S_dot_r0_x*crs_c_1)/crs_v_1_z
+        crs_qd_3 = (-crs_S_dot_r0_x*crs_s_1 - crs_S_dot_r0_y*crs_c_1)/crs_r_1_t_2
+        crs_qd_3_t = (
+        crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
+            crs_S_dot_z*crs_base_frame_zx - crs_qd_3*crs_r_1_t
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_2) & (disc_2 >= 0.0) &
-            (abs(v_1_z) > _TOLERANCE * size) & (abs(-r_1_t_2) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2
+            >= 0.0) & (abs(crs_v_1_z) > _TOLERANCE * crs_size) & (abs(-crs_r_1_t_2) > _TOLERANCE *
+            crs_size))
         )
-        out_qd[_qd_rprs[0][leg]] = qd_1
-        out_qd[_qd_rprs[1][leg]] = qd_1_t
-        out_qd[_qd_rprs[2][leg]] = -qd_3
+        out_qd[_qd_crs[0][leg]] = crs_qd_1
+        out_qd[_qd_crs[1][leg]] = crs_qd_3_t
+        out_qd[_qd_crs[2][leg]] = -crs_qd_3
     return ok, (out_qd,)
 
 
@@ -3318,149 +3500,163 @@ def _run_joint_accelerations(m, X, V, A):
     out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, inv_size_t, rprs_base_frame_xx, rprs_base_frame_xy,
-            rprs_base_frame_xz, rprs_base_frame_yx, rprs_base_frame_yy, rprs_base_frame_yz,
-            rprs_base_frame_zx, rprs_base_frame_zy, rprs_base_frame_zz, rprs_base_point_x,
-            rprs_base_point_y, rprs_base_point_z, rprs_joint3_offset_x,
-            rprs_platform_joint_offset_x, rprs_platform_point_x, rprs_platform_point_y,
-            rprs_platform_point_z, size, size_t, size_t_2,
+        crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz, crs_base_frame_yx,
+            crs_base_frame_yy, crs_base_frame_yz, crs_base_frame_zx, crs_base_frame_zy,
+            crs_base_frame_zz, crs_base_point_x, crs_base_point_y, crs_base_point_z, crs_branch_1,
+            crs_branch_2, crs_joint3_offset_x, crs_platform_joint_offset_x, crs_platform_point_x,
+            crs_platform_point_y, crs_platform_point_z, crs_size, crs_size_t, crs_size_t_2,
+            inv_crs_size_t,
         ) = k
-        # (rprs-K1) from the base point to the connection point
-        q_in_base_x = (
-        R_xx*rprs_platform_point_x + R_xy*rprs_platform_point_y + R_xz*rprs_platform_point_z
+        # (crs-S) from the base point to the connection point
+        crs_q_in_base_x = (
+        R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
-        q_in_base_y = (
-        R_yx*rprs_platform_point_x + R_yy*rprs_platform_point_y + R_yz*rprs_platform_point_z
+        crs_q_in_base_y = (
+        R_yx*crs_platform_point_x + R_yy*crs_platform_point_y + R_yz*crs_platform_point_z
         )
-        q_in_base_z = (
-        R_zx*rprs_platform_point_x + R_zy*rprs_platform_point_y + R_zz*rprs_platform_point_z
+        crs_q_in_base_z = (
+        R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rprs_base_point_x
-        S_y = q_in_base_y + t_y - rprs_base_point_y
-        S_z = q_in_base_z + t_z - rprs_base_point_z
-        # (rprs-K2) component along the reference direction
-        px_1 = S_x*rprs_base_frame_xy + S_y*rprs_base_frame_yy + S_z*rprs_base_frame_zy
-        # (rprs-K3) component across the reference direction
-        py_1 = S_x*rprs_base_frame_xz + S_y*rprs_base_frame_yz + S_z*rprs_base_frame_zz
-        # (rprs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rprs-K7) root, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rprs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*rprs_base_frame_xx + S_y*rprs_base_frame_yx + S_z*rprs_base_frame_zx
-        # (rprs-K12) from the centre at zero displacement to the connection point
-        from_centre_2_z = xi_1_t - rprs_joint3_offset_x
-        # (rprs-K14) discriminant of the distance equation
-        disc_2 = size_t - root_1*root_1
-        # (rprs-K15) displacement of joint 2
-        q_2 = from_centre_2_z + branch_2*sqrt(disc_2)
-        # (rprs-K16) from the origin of joint 3 to the connection point
-        x_3_z = xi_1_t - q_2 - rprs_joint3_offset_x
-        # (rprs-K18) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_size_t*root_1*rprs_platform_joint_offset_x
-        # (rprs-K19) sine of the angle of joint 3 from its reference direction
-        s_3 = inv_size_t*rprs_platform_joint_offset_x*x_3_z
-        # (rprs-V2) from joint 1 to the connection point, along the links
-        r_1_t = c_3*rprs_platform_joint_offset_x
-        r_1_t_2 = rprs_platform_joint_offset_x*s_3
-        r_1_z = q_2 + r_1_t_2 + rprs_joint3_offset_x
-        # (rprs-V3) velocity of the connection point per rate of joint 1
-        v_1_z = c_3*(c_3*r_1_t + r_1_z*s_3) + s_3*(r_1_t*s_3 - c_3*r_1_z)
-        # (rprs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*py_1*root_1
-        # (rprs-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*px_1*root_1
-        # (rprs-V5) reciprocal vector 1
-        axis_z_rprs_axes3_in_base_x = rprs_base_frame_xz*s_1 - c_1*rprs_base_frame_xy
-        axis_z_rprs_axes3_in_base_y = rprs_base_frame_yz*s_1 - c_1*rprs_base_frame_yy
-        axis_z_rprs_axes3_in_base_z = rprs_base_frame_zz*s_1 - c_1*rprs_base_frame_zy
-        w_1_t = s_1*s_3
-        w_1_t_2 = c_1*s_3
-        axis_y_rprs_axes3_in_base_x = (
-        rprs_base_frame_xy*w_1_t + rprs_base_frame_xz*w_1_t_2 - c_3*rprs_base_frame_xx
+        crs_S_x = crs_q_in_base_x + t_x - crs_base_point_x
+        crs_S_y = crs_q_in_base_y + t_y - crs_base_point_y
+        crs_S_z = crs_q_in_base_z + t_z - crs_base_point_z
+        # (crs-px_1) component along the reference direction
+        crs_px_1 = (
+        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
         )
-        axis_y_rprs_axes3_in_base_y = (
-        rprs_base_frame_yy*w_1_t + rprs_base_frame_yz*w_1_t_2 - c_3*rprs_base_frame_yx
+        # (crs-py_1) component across the reference direction
+        crs_py_1 = (
+        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
         )
-        axis_y_rprs_axes3_in_base_z = (
-        rprs_base_frame_zy*w_1_t + rprs_base_frame_zz*w_1_t_2 - c_3*rprs_base_frame_zx
+        # (crs-rho2_1) squared amplitude
+        crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1
+        # (crs-root_1) root, with the sign of the branch
+        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        # (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        crs_xi_1_t = (
+        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
         )
-        inv_v_1_z = 1.0/v_1_z
-        # (rprs-V6) reciprocal vector 2
-        inv_r_1_t_2 = 1.0/r_1_t_2
-        # (rprs-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_r0_x = (
-        S_dot_x*rprs_base_frame_xy + S_dot_y*rprs_base_frame_yy + S_dot_z*rprs_base_frame_zy
+        # (crs-from_centre_2) from the centre at zero displacement to the connection point
+        crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x
+        # (crs-disc_2) discriminant of the distance equation
+        crs_disc_2 = crs_size_t - crs_root_1*crs_root_1
+        # (crs-q_2) displacement of joint 2
+        crs_q_2 = crs_from_centre_2_z + crs_branch_2*sqrt(crs_disc_2)
+        # (crs-x_3) from the origin of joint 3 to the connection point
+        crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2
+        # (crs-c_3) cosine of the angle of joint 3 from its reference direction
+        crs_c_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        # (crs-s_3) sine of the angle of joint 3 from its reference direction
+        crs_s_3 = crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t
+        # (crs-r_1) from joint 1 to the connection point, along the links
+        crs_r_1_t = crs_c_3*crs_platform_joint_offset_x
+        crs_r_1_t_2 = crs_platform_joint_offset_x*crs_s_3
+        crs_r_1_z = crs_joint3_offset_x + crs_q_2 + crs_r_1_t_2
+        # (crs-v_1) velocity of the connection point per rate of joint 1
+        crs_v_1_z = (
+        crs_c_3*(crs_c_3*crs_r_1_t + crs_r_1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
+            crs_c_3*crs_r_1_z)
         )
-        S_dot_r0_y = (
-        S_dot_x*rprs_base_frame_xz + S_dot_y*rprs_base_frame_yz + S_dot_z*rprs_base_frame_zz
+        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_c_1 = crs_py_1*crs_root_1*inv_crs_rho2_1
+        # (crs-s_1) sine of the angle of joint 1 from its reference direction
+        crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1
+        # (crs-w_1) reciprocal vector 1
+        axis_z_crs_axes3_in_base_x = crs_base_frame_xz*crs_s_1 - crs_base_frame_xy*crs_c_1
+        axis_z_crs_axes3_in_base_y = crs_base_frame_yz*crs_s_1 - crs_base_frame_yy*crs_c_1
+        axis_z_crs_axes3_in_base_z = crs_base_frame_zz*crs_s_1 - crs_base_frame_zy*crs_c_1
+        crs_w_1_t = crs_s_1*crs_s_3
+        crs_w_1_t_2 = crs_c_1*crs_s_3
+        axis_y_crs_axes3_in_base_x = (
+        crs_base_frame_xy*crs_w_1_t + crs_base_frame_xz*crs_w_1_t_2 - crs_base_frame_xx*crs_c_3
         )
-        # (rprs-V8) rate of joint 1
-        qd_1 = inv_v_1_z*(S_dot_r0_y*s_1 - S_dot_r0_x*c_1)
-        qd_3 = inv_r_1_t_2*(-S_dot_r0_x*s_1 - S_dot_r0_y*c_1)
-        qd_1_t = (
-        S_dot_x*rprs_base_frame_xx + S_dot_y*rprs_base_frame_yx + S_dot_z*rprs_base_frame_zx -
-            qd_3*r_1_t
+        axis_y_crs_axes3_in_base_y = (
+        crs_base_frame_yy*crs_w_1_t + crs_base_frame_yz*crs_w_1_t_2 - crs_base_frame_yx*crs_c_3
         )
-        # (rprs-V11) angular velocity of link 1
-        omega_1_t = qd_1*s_3
-        omega_1_t_2 = c_3*qd_1
-        # (rprs-A5) acceleration of the connection point at zero joint accelerations
-        bias_t = (
-        omega_1_t*(c_3*q_2 + c_3*rprs_joint3_offset_x) - omega_1_t_2*(q_2*s_3 +
-            rprs_joint3_offset_x*s_3)
+        axis_y_crs_axes3_in_base_z = (
+        crs_base_frame_zy*crs_w_1_t + crs_base_frame_zz*crs_w_1_t_2 - crs_base_frame_zx*crs_c_3
         )
-        bias_t_2 = qd_3*rprs_platform_joint_offset_x
-        bias_t_3 = omega_1_t_2*rprs_platform_joint_offset_x
-        bias_x = bias_t*omega_1_t_2 - bias_t_2*qd_3 - bias_t_3*omega_1_t_2
-        bias_y = bias_t*omega_1_t - bias_t_3*omega_1_t
-        bias_z = (
-        -bias_t_2*omega_1_t - 2.0*qd_1_t*(c_3*omega_1_t - omega_1_t_2*s_3) -
-            omega_1_t*qd_3*rprs_platform_joint_offset_x
+        inv_crs_v_1_z = 1.0/crs_v_1_z
+        # (crs-w_3) reciprocal vector 3
+        inv_crs_r_1_t_2 = 1.0/crs_r_1_t_2
+        # (crs-S_dot) velocity of the connection point
+        crs_S_dot_t = crs_q_in_base_z*omega_y - crs_q_in_base_y*omega_z
+        crs_S_dot_t_2 = crs_q_in_base_x*omega_z - crs_q_in_base_z*omega_x
+        crs_S_dot_t_3 = crs_q_in_base_y*omega_x - crs_q_in_base_x*omega_y
+        crs_S_dot_x = crs_S_dot_t + t_dot_x
+        crs_S_dot_y = crs_S_dot_t_2 + t_dot_y
+        crs_S_dot_z = crs_S_dot_t_3 + t_dot_z
+        crs_S_dot_r0_x = (
+        crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
+            crs_S_dot_z*crs_base_frame_zy
         )
-        # (rprs-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (rprs-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        # (rprs-A6) acceleration of the connection point left to the joint accelerations
-        rel_x = (
-        S_ddot_x*(axis_y_rprs_axes3_in_base_y*axis_z_rprs_axes3_in_base_z -
-            axis_y_rprs_axes3_in_base_z*axis_z_rprs_axes3_in_base_y) +
-            S_ddot_y*(axis_y_rprs_axes3_in_base_z*axis_z_rprs_axes3_in_base_x -
-            axis_y_rprs_axes3_in_base_x*axis_z_rprs_axes3_in_base_z) +
-            S_ddot_z*(axis_y_rprs_axes3_in_base_x*axis_z_rprs_axes3_in_base_y -
-            axis_y_rprs_axes3_in_base_y*axis_z_rprs_axes3_in_base_x) - bias_x
+        crs_S_dot_r0_y = (
+        crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz +
+            crs_S_dot_z*crs_base_frame_zz
         )
-        rel_y = (
-        S_ddot_x*axis_y_rprs_axes3_in_base_x + S_ddot_y*axis_y_rprs_axes3_in_base_y +
-            S_ddot_z*axis_y_rprs_axes3_in_base_z - bias_y
+        # (crs-qd_3) rate of joint 3
+        crs_qd_1 = inv_crs_v_1_z*(crs_S_dot_r0_y*crs_s_1 - crs_S_dot_r0_x*crs_c_1)
+        crs_qd_3 = inv_crs_r_1_t_2*(-crs_S_dot_r0_x*crs_s_1 - crs_S_dot_r0_y*crs_c_1)
+        crs_qd_3_t = (
+        crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
+            crs_S_dot_z*crs_base_frame_zx - crs_qd_3*crs_r_1_t
         )
-        rel_z = (
-        S_ddot_x*axis_z_rprs_axes3_in_base_x + S_ddot_y*axis_z_rprs_axes3_in_base_y +
-            S_ddot_z*axis_z_rprs_axes3_in_base_z - bias_z
+        # (crs-omega_1) angular velocity of link 1
+        crs_omega_1_t = crs_qd_1*crs_s_3
+        crs_omega_1_t_2 = crs_c_3*crs_qd_1
+        # (crs-bias) acceleration of the connection point at zero joint accelerations
+        crs_bias_t = (
+        crs_omega_1_t*(crs_c_3*crs_joint3_offset_x + crs_c_3*crs_q_2) -
+            crs_omega_1_t_2*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3)
         )
-        # (rprs-A8) acceleration of joint 1
-        qdd_1 = inv_v_1_z*rel_z
-        qdd_3 = inv_r_1_t_2*(-c_3*rel_x - rel_y*s_3)
-        qdd_1_t = c_3*rel_y + qdd_3*r_1_t - rel_x*s_3
+        crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_3
+        crs_bias_t_3 = crs_omega_1_t_2*crs_platform_joint_offset_x
+        crs_bias_x = (
+        crs_bias_t*crs_omega_1_t_2 - crs_bias_t_2*crs_qd_3 - crs_bias_t_3*crs_omega_1_t_2
+        )
+        crs_bias_y = crs_bias_t*crs_omega_1_t - crs_bias_t_3*crs_omega_1_t
+        crs_bias_z = (
+        -crs_bias_t_2*crs_omega_1_t - 2.0*crs_qd_3_t*(crs_c_3*crs_omega_1_t -
+            crs_omega_1_t_2*crs_s_3) - crs_omega_1_t*crs_platform_joint_offset_x*crs_qd_3
+        )
+        # (crs-a_p) acceleration of the connection point without its centripetal part
+        crs_a_p_x = t_ddot_x + alpha_y*crs_q_in_base_z - alpha_z*crs_q_in_base_y
+        crs_a_p_y = t_ddot_y + alpha_z*crs_q_in_base_x - alpha_x*crs_q_in_base_z
+        crs_a_p_z = t_ddot_z + alpha_x*crs_q_in_base_y - alpha_y*crs_q_in_base_x
+        # (crs-S_ddot) acceleration of the connection point
+        crs_S_ddot_x = crs_a_p_x + crs_S_dot_t_3*omega_y - crs_S_dot_t_2*omega_z
+        crs_S_ddot_y = crs_a_p_y + crs_S_dot_t*omega_z - crs_S_dot_t_3*omega_x
+        crs_S_ddot_z = crs_a_p_z + crs_S_dot_t_2*omega_x - crs_S_dot_t*omega_y
+        # (crs-rel) acceleration of the connection point left to the joint accelerations
+        crs_rel_x = (
+        crs_S_ddot_x*(axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_z -
+            axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_y) +
+            crs_S_ddot_y*(axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_x -
+            axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_z) +
+            crs_S_ddot_z*(axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_y -
+            axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_x) - crs_bias_x
+        )
+        crs_rel_y = (
+        axis_y_crs_axes3_in_base_x*crs_S_ddot_x + axis_y_crs_axes3_in_base_y*crs_S_ddot_y +
+            axis_y_crs_axes3_in_base_z*crs_S_ddot_z - crs_bias_y
+        )
+        crs_rel_z = (
+        axis_z_crs_axes3_in_base_x*crs_S_ddot_x + axis_z_crs_axes3_in_base_y*crs_S_ddot_y +
+            axis_z_crs_axes3_in_base_z*crs_S_ddot_z - crs_bias_z
+        )
+        # (crs-qdd_1) acceleration of joint 1
+        crs_qdd_1 = crs_rel_z*inv_crs_v_1_z
+        crs_qdd_3 = inv_crs_r_1_t_2*(-crs_c_3*crs_rel_x - crs_rel_y*crs_s_3)
+        crs_qdd_1_t = crs_c_3*crs_rel_y + crs_qdd_3*crs_r_1_t - crs_rel_x*crs_s_3
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_2) & (disc_2 >= 0.0) &
-            (abs(v_1_z) > _TOLERANCE * size) & (abs(-r_1_t_2) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2
+            >= 0.0) & (abs(crs_v_1_z) > _TOLERANCE * crs_size) & (abs(-crs_r_1_t_2) > _TOLERANCE *
+            crs_size))
         )
-        out_qdd[_qdd_rprs[0][leg]] = qdd_1
-        out_qdd[_qdd_rprs[1][leg]] = -qdd_1_t
-        out_qdd[_qdd_rprs[2][leg]] = -qdd_3
+        out_qdd[_qdd_crs[0][leg]] = crs_qdd_1
+        out_qdd[_qdd_crs[1][leg]] = -crs_qdd_1_t
+        out_qdd[_qdd_crs[2][leg]] = -crs_qdd_3
     return ok, (out_qdd,)
 
 
@@ -3534,246 +3730,275 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        J_2_xx, J_3_xy, J_3_xz, J_3_yz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2,
-            g_r0_x, g_r0_y, g_r0_z, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, inv_size_t,
-            rprs_base_frame_xx, rprs_base_frame_xy, rprs_base_frame_xz, rprs_base_frame_yx,
-            rprs_base_frame_yy, rprs_base_frame_yz, rprs_base_frame_zx, rprs_base_frame_zy,
-            rprs_base_frame_zz, rprs_base_point_x, rprs_base_point_y, rprs_base_point_z,
-            rprs_joint3_offset_x, rprs_link2_mass, rprs_link3_mass, rprs_platform_joint_offset_x,
-            rprs_platform_point_x, rprs_platform_point_y, rprs_platform_point_z, size, size_t,
-            size_t_2,
+        crs_J_2_xx, crs_J_3_xy, crs_J_3_xz, crs_J_3_yz, crs_Sigma_3_xx, crs_Sigma_3_yy,
+            crs_Sigma_3_zz, crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz,
+            crs_base_frame_yx, crs_base_frame_yy, crs_base_frame_yz, crs_base_frame_zx,
+            crs_base_frame_zy, crs_base_frame_zz, crs_base_point_x, crs_base_point_y,
+            crs_base_point_z, crs_branch_1, crs_branch_2, crs_g_r0_x, crs_g_r0_y, crs_g_r0_z,
+            crs_h_2_y, crs_h_2_z, crs_h_3_x, crs_h_3_y, crs_h_3_z, crs_joint3_offset_x,
+            crs_link2_mass, crs_link3_mass, crs_platform_joint_offset_x, crs_platform_point_x,
+            crs_platform_point_y, crs_platform_point_z, crs_size, crs_size_t, crs_size_t_2,
+            inv_crs_size_t,
         ) = k
-        # (rprs-K1) from the base point to the connection point
-        q_in_base_x = (
-        R_xx*rprs_platform_point_x + R_xy*rprs_platform_point_y + R_xz*rprs_platform_point_z
+        # (crs-S) from the base point to the connection point
+        crs_q_in_base_x = (
+        R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
-        q_in_base_y = (
-        R_yx*rprs_platform_point_x + R_yy*rprs_platform_point_y + R_yz*rprs_platform_point_z
+        crs_q_in_base_y = (
+        R_yx*crs_platform_point_x + R_yy*crs_platform_point_y + R_yz*crs_platform_point_z
         )
-        q_in_base_z = (
-        R_zx*rprs_platform_point_x + R_zy*rprs_platform_point_y + R_zz*rprs_platform_point_z
+        crs_q_in_base_z = (
+        R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rprs_base_point_x
-        S_y = q_in_base_y + t_y - rprs_base_point_y
-        S_z = q_in_base_z + t_z - rprs_base_point_z
-        # (rprs-K2) component along the reference direction
-        px_1 = S_x*rprs_base_frame_xy + S_y*rprs_base_frame_yy + S_z*rprs_base_frame_zy
-        # (rprs-K3) component across the reference direction
-        py_1 = S_x*rprs_base_frame_xz + S_y*rprs_base_frame_yz + S_z*rprs_base_frame_zz
-        # (rprs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rprs-K7) root, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rprs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*rprs_base_frame_xx + S_y*rprs_base_frame_yx + S_z*rprs_base_frame_zx
-        # (rprs-K12) from the centre at zero displacement to the connection point
-        from_centre_2_z = xi_1_t - rprs_joint3_offset_x
-        # (rprs-K14) discriminant of the distance equation
-        disc_2 = size_t - root_1*root_1
-        # (rprs-K15) displacement of joint 2
-        q_2 = from_centre_2_z + branch_2*sqrt(disc_2)
-        # (rprs-K16) from the origin of joint 3 to the connection point
-        x_3_z = xi_1_t - q_2 - rprs_joint3_offset_x
-        # (rprs-K18) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_size_t*root_1*rprs_platform_joint_offset_x
-        # (rprs-K19) sine of the angle of joint 3 from its reference direction
-        s_3 = inv_size_t*rprs_platform_joint_offset_x*x_3_z
-        # (rprs-V2) from joint 1 to the connection point, along the links
-        r_1_t = c_3*rprs_platform_joint_offset_x
-        r_1_t_2 = rprs_platform_joint_offset_x*s_3
-        r_1_z = q_2 + r_1_t_2 + rprs_joint3_offset_x
-        # (rprs-V3) velocity of the connection point per rate of joint 1
-        v_1_z = c_3*(c_3*r_1_t + r_1_z*s_3) + s_3*(r_1_t*s_3 - c_3*r_1_z)
-        # (rprs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*py_1*root_1
-        # (rprs-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*px_1*root_1
-        # (rprs-V5) reciprocal vector 1
-        axis_z_rprs_axes3_in_base_x = rprs_base_frame_xz*s_1 - c_1*rprs_base_frame_xy
-        axis_z_rprs_axes3_in_base_y = rprs_base_frame_yz*s_1 - c_1*rprs_base_frame_yy
-        axis_z_rprs_axes3_in_base_z = rprs_base_frame_zz*s_1 - c_1*rprs_base_frame_zy
-        w_1_t = s_1*s_3
-        w_1_t_2 = c_1*s_3
-        axis_y_rprs_axes3_in_base_x = (
-        rprs_base_frame_xy*w_1_t + rprs_base_frame_xz*w_1_t_2 - c_3*rprs_base_frame_xx
+        crs_S_x = crs_q_in_base_x + t_x - crs_base_point_x
+        crs_S_y = crs_q_in_base_y + t_y - crs_base_point_y
+        crs_S_z = crs_q_in_base_z + t_z - crs_base_point_z
+        # (crs-px_1) component along the reference direction
+        crs_px_1 = (
+        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
         )
-        axis_y_rprs_axes3_in_base_y = (
-        rprs_base_frame_yy*w_1_t + rprs_base_frame_yz*w_1_t_2 - c_3*rprs_base_frame_yx
+        # (crs-py_1) component across the reference direction
+        crs_py_1 = (
+        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
         )
-        axis_y_rprs_axes3_in_base_z = (
-        rprs_base_frame_zy*w_1_t + rprs_base_frame_zz*w_1_t_2 - c_3*rprs_base_frame_zx
+        # (crs-rho2_1) squared amplitude
+        crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1
+        # (crs-root_1) root, with the sign of the branch
+        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        # (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        crs_xi_1_t = (
+        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
         )
-        axis_x_rprs_axes3_x = (
-        axis_y_rprs_axes3_in_base_y*axis_z_rprs_axes3_in_base_z -
-            axis_y_rprs_axes3_in_base_z*axis_z_rprs_axes3_in_base_y
+        # (crs-from_centre_2) from the centre at zero displacement to the connection point
+        crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x
+        # (crs-disc_2) discriminant of the distance equation
+        crs_disc_2 = crs_size_t - crs_root_1*crs_root_1
+        # (crs-q_2) displacement of joint 2
+        crs_q_2 = crs_from_centre_2_z + crs_branch_2*sqrt(crs_disc_2)
+        # (crs-x_3) from the origin of joint 3 to the connection point
+        crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2
+        # (crs-c_3) cosine of the angle of joint 3 from its reference direction
+        crs_c_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        # (crs-s_3) sine of the angle of joint 3 from its reference direction
+        crs_s_3 = crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t
+        # (crs-r_1) from joint 1 to the connection point, along the links
+        crs_r_1_t = crs_c_3*crs_platform_joint_offset_x
+        crs_r_1_t_2 = crs_platform_joint_offset_x*crs_s_3
+        crs_r_1_z = crs_joint3_offset_x + crs_q_2 + crs_r_1_t_2
+        # (crs-v_1) velocity of the connection point per rate of joint 1
+        crs_v_1_z = (
+        crs_c_3*(crs_c_3*crs_r_1_t + crs_r_1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
+            crs_c_3*crs_r_1_z)
         )
-        axis_x_rprs_axes3_y = (
-        axis_y_rprs_axes3_in_base_z*axis_z_rprs_axes3_in_base_x -
-            axis_y_rprs_axes3_in_base_x*axis_z_rprs_axes3_in_base_z
+        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_c_1 = crs_py_1*crs_root_1*inv_crs_rho2_1
+        # (crs-s_1) sine of the angle of joint 1 from its reference direction
+        crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1
+        # (crs-w_1) reciprocal vector 1
+        axis_z_crs_axes3_in_base_x = crs_base_frame_xz*crs_s_1 - crs_base_frame_xy*crs_c_1
+        axis_z_crs_axes3_in_base_y = crs_base_frame_yz*crs_s_1 - crs_base_frame_yy*crs_c_1
+        axis_z_crs_axes3_in_base_z = crs_base_frame_zz*crs_s_1 - crs_base_frame_zy*crs_c_1
+        crs_w_1_t = crs_s_1*crs_s_3
+        crs_w_1_t_2 = crs_c_1*crs_s_3
+        axis_y_crs_axes3_in_base_x = (
+        crs_base_frame_xy*crs_w_1_t + crs_base_frame_xz*crs_w_1_t_2 - crs_base_frame_xx*crs_c_3
         )
-        axis_x_rprs_axes3_z = (
-        axis_y_rprs_axes3_in_base_x*axis_z_rprs_axes3_in_base_y -
-            axis_y_rprs_axes3_in_base_y*axis_z_rprs_axes3_in_base_x
+        axis_y_crs_axes3_in_base_y = (
+        crs_base_frame_yy*crs_w_1_t + crs_base_frame_yz*crs_w_1_t_2 - crs_base_frame_yx*crs_c_3
         )
-        inv_v_1_z = 1.0/v_1_z
-        # (rprs-V6) reciprocal vector 2
-        inv_r_1_t_2 = 1.0/r_1_t_2
-        w_2_t = inv_r_1_t_2*r_1_t
-        _r1_x = s_3 + c_3*w_2_t
-        _r1_y = s_3*w_2_t - c_3
-        # (rprs-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_r0_x = (
-        S_dot_x*rprs_base_frame_xy + S_dot_y*rprs_base_frame_yy + S_dot_z*rprs_base_frame_zy
+        axis_y_crs_axes3_in_base_z = (
+        crs_base_frame_zy*crs_w_1_t + crs_base_frame_zz*crs_w_1_t_2 - crs_base_frame_zx*crs_c_3
         )
-        S_dot_r0_y = (
-        S_dot_x*rprs_base_frame_xz + S_dot_y*rprs_base_frame_yz + S_dot_z*rprs_base_frame_zz
+        axis_x_crs_axes3_x = (
+        axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_z -
+            axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_y
         )
-        # (rprs-V8) rate of joint 1
-        qd_1 = inv_v_1_z*(S_dot_r0_y*s_1 - S_dot_r0_x*c_1)
-        qd_3 = inv_r_1_t_2*(-S_dot_r0_x*s_1 - S_dot_r0_y*c_1)
-        qd_1_t = (
-        S_dot_x*rprs_base_frame_xx + S_dot_y*rprs_base_frame_yx + S_dot_z*rprs_base_frame_zx -
-            qd_3*r_1_t
+        axis_x_crs_axes3_y = (
+        axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_x -
+            axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_z
         )
-        # (rprs-V11) angular velocity of link 1
-        omega_1_t = qd_1*s_3
-        omega_1_t_2 = c_3*qd_1
-        # (rprs-A4) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_x = omega_1_t_2*qd_3
-        zeta_3_y = omega_1_t*qd_3
-        # (rprs-V14) centripetal tensor of link 3
-        W_3_t = omega_1_t*omega_1_t
-        W_3_t_2 = omega_1_t_2*omega_1_t_2
-        W_3_t_3 = qd_3*qd_3
-        W_3_xy = omega_1_t*omega_1_t_2
-        # (rprs-A5) acceleration of the connection point at zero joint accelerations
-        bias_t = (
-        omega_1_t*(c_3*q_2 + c_3*rprs_joint3_offset_x) - omega_1_t_2*(q_2*s_3 +
-            rprs_joint3_offset_x*s_3)
+        axis_x_crs_axes3_z = (
+        axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_y -
+            axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_x
         )
-        bias_t_2 = qd_3*rprs_platform_joint_offset_x
-        bias_t_3 = omega_1_t_2*rprs_platform_joint_offset_x
-        bias_x = bias_t*omega_1_t_2 - bias_t_2*qd_3 - bias_t_3*omega_1_t_2
-        bias_y = bias_t*omega_1_t - bias_t_3*omega_1_t
-        bias_z = (
-        -bias_t_2*omega_1_t - 2.0*qd_1_t*(c_3*omega_1_t - omega_1_t_2*s_3) -
-            rprs_platform_joint_offset_x*zeta_3_y
+        inv_crs_v_1_z = 1.0/crs_v_1_z
+        # (crs-w_3) reciprocal vector 3
+        inv_crs_r_1_t_2 = 1.0/crs_r_1_t_2
+        # (crs-w_2) reciprocal vector 2
+        crs_w_2_t = crs_r_1_t*inv_crs_r_1_t_2
+        crs__r1_x = crs_s_3 + crs_c_3*crs_w_2_t
+        crs__r1_y = crs_s_3*crs_w_2_t - crs_c_3
+        # (crs-S_dot) velocity of the connection point
+        crs_S_dot_t = crs_q_in_base_z*omega_y - crs_q_in_base_y*omega_z
+        crs_S_dot_t_2 = crs_q_in_base_x*omega_z - crs_q_in_base_z*omega_x
+        crs_S_dot_t_3 = crs_q_in_base_y*omega_x - crs_q_in_base_x*omega_y
+        crs_S_dot_x = crs_S_dot_t + t_dot_x
+        crs_S_dot_y = crs_S_dot_t_2 + t_dot_y
+        crs_S_dot_z = crs_S_dot_t_3 + t_dot_z
+        crs_S_dot_r0_x = (
+        crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
+            crs_S_dot_z*crs_base_frame_zy
         )
-        # (rprs-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-        # (rprs-V5) reciprocal vector 1
-        w_1_t_3 = axis_z_rprs_axes3_in_base_x*inv_v_1_z
-        w_1_t_4 = axis_z_rprs_axes3_in_base_y*inv_v_1_z
-        w_1_t_5 = axis_z_rprs_axes3_in_base_z*inv_v_1_z
-        # (rprs-V6) reciprocal vector 2
-        w_2_in_base_x = _r1_x*axis_x_rprs_axes3_x + _r1_y*axis_y_rprs_axes3_in_base_x
-        w_2_in_base_y = _r1_x*axis_x_rprs_axes3_y + _r1_y*axis_y_rprs_axes3_in_base_y
-        w_2_in_base_z = _r1_x*axis_x_rprs_axes3_z + _r1_y*axis_y_rprs_axes3_in_base_z
-        # (rprs-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (rprs-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        S_ddot_tip_x = (
-        S_ddot_x*axis_x_rprs_axes3_x + S_ddot_y*axis_x_rprs_axes3_y + S_ddot_z*axis_x_rprs_axes3_z
+        crs_S_dot_r0_y = (
+        crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz +
+            crs_S_dot_z*crs_base_frame_zz
         )
-        S_ddot_tip_y = (
-        S_ddot_x*axis_y_rprs_axes3_in_base_x + S_ddot_y*axis_y_rprs_axes3_in_base_y +
-            S_ddot_z*axis_y_rprs_axes3_in_base_z
+        # (crs-qd_3) rate of joint 3
+        crs_qd_1 = inv_crs_v_1_z*(crs_S_dot_r0_y*crs_s_1 - crs_S_dot_r0_x*crs_c_1)
+        crs_qd_3 = inv_crs_r_1_t_2*(-crs_S_dot_r0_x*crs_s_1 - crs_S_dot_r0_y*crs_c_1)
+        crs_qd_3_t = (
+        crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
+            crs_S_dot_z*crs_base_frame_zx - crs_qd_3*crs_r_1_t
         )
-        S_ddot_tip_z = (
-        S_ddot_x*axis_z_rprs_axes3_in_base_x + S_ddot_y*axis_z_rprs_axes3_in_base_y +
-            S_ddot_z*axis_z_rprs_axes3_in_base_z
+        # (crs-omega_1) angular velocity of link 1
+        crs_omega_1_t = crs_qd_1*crs_s_3
+        crs_omega_1_t_2 = crs_c_3*crs_qd_1
+        # (crs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        crs_zeta_3_x = crs_omega_1_t_2*crs_qd_3
+        crs_zeta_3_y = crs_omega_1_t*crs_qd_3
+        # (crs-W_3) centripetal tensor of link 3
+        crs_W_3_t = crs_omega_1_t*crs_omega_1_t
+        crs_W_3_t_2 = crs_omega_1_t_2*crs_omega_1_t_2
+        crs_W_3_t_3 = crs_qd_3*crs_qd_3
+        crs_W_3_xy = crs_omega_1_t*crs_omega_1_t_2
+        # (crs-bias) acceleration of the connection point at zero joint accelerations
+        crs_bias_t = (
+        crs_omega_1_t*(crs_c_3*crs_joint3_offset_x + crs_c_3*crs_q_2) -
+            crs_omega_1_t_2*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3)
         )
-        # (rprs-A6) acceleration of the connection point left to the joint accelerations
-        rel_x = S_ddot_tip_x - bias_x
-        rel_y = S_ddot_tip_y - bias_y
-        rel_z = S_ddot_tip_z - bias_z
-        # (rprs-A8) acceleration of joint 1
-        qdd_1 = inv_v_1_z*rel_z
-        qdd_3 = inv_r_1_t_2*(-c_3*rel_x - rel_y*s_3)
-        # (rprs-N7) acceleration of the reference point of link 3, less gravity
-        acc_3_x = S_ddot_tip_x + c_3*g_r1_y - g_r0_z*s_3
-        acc_3_y = S_ddot_tip_y + c_3*g_r0_z + g_r1_y*s_3
-        acc_3_z = S_ddot_tip_z - g_r1_x
-        # (rprs-N1) acceleration of the reference point of link 2, less gravity
-        acc_2_z = rel_x*s_3 - g_r0_z - c_3*rel_y - qdd_3*r_1_t
-        # (rprs-N5) inertia force of link 2 less its weight
-        f_2_t = acc_2_z*rprs_link2_mass
-        # (rprs-N32) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_z = J_2_xx*qdd_1 - g_r1_x*h_2_y - g_r1_y*h_2_z
-        # (rprs-A14) angular acceleration of link 1
-        alpha_1_t = qdd_1*s_3
-        alpha_1_t_2 = c_3*qdd_1
-        # (rprs-A18) angular acceleration of link 3
-        alpha_3_x = alpha_1_t + zeta_3_x
-        alpha_3_y = zeta_3_y - alpha_1_t_2
-        # (rprs-A21) acceleration tensor of link 3
-        B_3_xy = qdd_3 - W_3_xy
-        B_3_yx = -W_3_xy - qdd_3
-        B_3_zx = -alpha_3_y - zeta_3_y
-        B_3_zy = alpha_3_x + zeta_3_x
-        # (rprs-N25) inertia moment of the links that turn with link 3, about their reference points
-        mu_3_x = (
-        B_3_yx*J_3_xz + B_3_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + Sigma_3_zz*alpha_1_t +
-            acc_3_z*h_3_y - B_3_zx*J_3_xy - acc_3_y*h_3_z
+        crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_3
+        crs_bias_t_3 = crs_omega_1_t_2*crs_platform_joint_offset_x
+        crs_bias_x = (
+        crs_bias_t*crs_omega_1_t_2 - crs_bias_t_2*crs_qd_3 - crs_bias_t_3*crs_omega_1_t_2
         )
-        mu_3_y = (
-        B_3_zy*J_3_xy + acc_3_x*h_3_z - B_3_xy*J_3_yz - B_3_zx*Sigma_3_xx - J_3_xz*(W_3_t -
-            W_3_t_3) - Sigma_3_zz*alpha_1_t_2 - acc_3_z*h_3_x
+        crs_bias_y = crs_bias_t*crs_omega_1_t - crs_bias_t_3*crs_omega_1_t
+        crs_bias_z = (
+        -crs_bias_t_2*crs_omega_1_t - crs_platform_joint_offset_x*crs_zeta_3_y -
+            2.0*crs_qd_3_t*(crs_c_3*crs_omega_1_t - crs_omega_1_t_2*crs_s_3)
         )
-        mu_3_z = (
-        B_3_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + J_3_xz*alpha_1_t + acc_3_y*h_3_x -
-            B_3_xy*Sigma_3_yy - J_3_yz*alpha_1_t_2 - acc_3_x*h_3_y
+        # (crs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        crs_g_r1_x = crs_g_r0_y*crs_s_1 - crs_c_1*crs_g_r0_x
+        crs_g_r1_y = -crs_c_1*crs_g_r0_y - crs_g_r0_x*crs_s_1
+        # (crs-w_1) reciprocal vector 1
+        crs_w_1_t_3 = axis_z_crs_axes3_in_base_x*inv_crs_v_1_z
+        crs_w_1_t_4 = axis_z_crs_axes3_in_base_y*inv_crs_v_1_z
+        crs_w_1_t_5 = axis_z_crs_axes3_in_base_z*inv_crs_v_1_z
+        # (crs-w_2) reciprocal vector 2
+        crs_w_2_in_base_x = axis_x_crs_axes3_x*crs__r1_x + axis_y_crs_axes3_in_base_x*crs__r1_y
+        crs_w_2_in_base_y = axis_x_crs_axes3_y*crs__r1_x + axis_y_crs_axes3_in_base_y*crs__r1_y
+        crs_w_2_in_base_z = axis_x_crs_axes3_z*crs__r1_x + axis_y_crs_axes3_in_base_z*crs__r1_y
+        # (crs-a_p) acceleration of the connection point without its centripetal part
+        crs_a_p_x = t_ddot_x + alpha_y*crs_q_in_base_z - alpha_z*crs_q_in_base_y
+        crs_a_p_y = t_ddot_y + alpha_z*crs_q_in_base_x - alpha_x*crs_q_in_base_z
+        crs_a_p_z = t_ddot_z + alpha_x*crs_q_in_base_y - alpha_y*crs_q_in_base_x
+        # (crs-S_ddot) acceleration of the connection point
+        crs_S_ddot_x = crs_a_p_x + crs_S_dot_t_3*omega_y - crs_S_dot_t_2*omega_z
+        crs_S_ddot_y = crs_a_p_y + crs_S_dot_t*omega_z - crs_S_dot_t_3*omega_x
+        crs_S_ddot_z = crs_a_p_z + crs_S_dot_t_2*omega_x - crs_S_dot_t*omega_y
+        crs_S_ddot_tip_x = (
+        axis_x_crs_axes3_x*crs_S_ddot_x + axis_x_crs_axes3_y*crs_S_ddot_y +
+            axis_x_crs_axes3_z*crs_S_ddot_z
         )
-        # (rprs-N34) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_z = mu_1_z + mu_3_x*s_3 - c_3*mu_3_y
-        # (rprs-N42) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_t = inv_r_1_t_2*(mu_3_z + f_2_t*r_1_t)
-        # (rprs-N45) leg force on the platform without actuation and without the mass at the connection point
-        c_x = alpha_1_t_2*h_3_z + h_3_x*(W_3_t_2 + W_3_t_3) - B_3_xy*h_3_y - G_t*c_3 - f_2_t*s_3
-        c_y = alpha_1_t*h_3_z + c_3*f_2_t + h_3_y*(W_3_t + W_3_t_3) - B_3_yx*h_3_x - G_t*s_3
-        c_z = h_3_z*(W_3_t + W_3_t_2) - B_3_zx*h_3_x - B_3_zy*h_3_y - N_1_z*inv_v_1_z
-        # (rprs-N50) leg force on the platform without actuation, the last link's mass included
-        c_true_x = c_x - acc_3_x*rprs_link3_mass
-        c_true_y = c_y - acc_3_y*rprs_link3_mass
-        c_true_z = c_z - acc_3_z*rprs_link3_mass
-        c_true_in_base_x = (
-        axis_x_rprs_axes3_x*c_true_x + axis_y_rprs_axes3_in_base_x*c_true_y +
-            axis_z_rprs_axes3_in_base_x*c_true_z
+        crs_S_ddot_tip_y = (
+        axis_y_crs_axes3_in_base_x*crs_S_ddot_x + axis_y_crs_axes3_in_base_y*crs_S_ddot_y +
+            axis_y_crs_axes3_in_base_z*crs_S_ddot_z
         )
-        c_true_in_base_y = (
-        axis_x_rprs_axes3_y*c_true_x + axis_y_rprs_axes3_in_base_y*c_true_y +
-            axis_z_rprs_axes3_in_base_y*c_true_z
+        crs_S_ddot_tip_z = (
+        axis_z_crs_axes3_in_base_x*crs_S_ddot_x + axis_z_crs_axes3_in_base_y*crs_S_ddot_y +
+            axis_z_crs_axes3_in_base_z*crs_S_ddot_z
         )
-        c_true_in_base_z = (
-        axis_x_rprs_axes3_z*c_true_x + axis_y_rprs_axes3_in_base_z*c_true_y +
-            axis_z_rprs_axes3_in_base_z*c_true_z
+        # (crs-rel) acceleration of the connection point left to the joint accelerations
+        crs_rel_x = crs_S_ddot_tip_x - crs_bias_x
+        crs_rel_y = crs_S_ddot_tip_y - crs_bias_y
+        crs_rel_z = crs_S_ddot_tip_z - crs_bias_z
+        # (crs-qdd_1) acceleration of joint 1
+        crs_qdd_1 = crs_rel_z*inv_crs_v_1_z
+        crs_qdd_3 = inv_crs_r_1_t_2*(-crs_c_3*crs_rel_x - crs_rel_y*crs_s_3)
+        # (crs-acc_3) acceleration of the reference point of link 3, less gravity
+        crs_acc_3_x = crs_S_ddot_tip_x + crs_c_3*crs_g_r1_y - crs_g_r0_z*crs_s_3
+        crs_acc_3_y = crs_S_ddot_tip_y + crs_c_3*crs_g_r0_z + crs_g_r1_y*crs_s_3
+        crs_acc_3_z = crs_S_ddot_tip_z - crs_g_r1_x
+        # (crs-alpha_1) angular acceleration of link 1
+        crs_alpha_1_t = crs_qdd_1*crs_s_3
+        crs_alpha_1_t_2 = crs_c_3*crs_qdd_1
+        # (crs-alpha_3) angular acceleration of link 3
+        crs_alpha_3_x = crs_alpha_1_t + crs_zeta_3_x
+        crs_alpha_3_y = crs_zeta_3_y - crs_alpha_1_t_2
+        # (crs-B_3) acceleration tensor of link 3
+        crs_B_3_xy = crs_qdd_3 - crs_W_3_xy
+        crs_B_3_yx = -crs_W_3_xy - crs_qdd_3
+        crs_B_3_zx = -crs_alpha_3_y - crs_zeta_3_y
+        crs_B_3_zy = crs_alpha_3_x + crs_zeta_3_x
+        # (crs-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        crs_mu_3_x = (
+        crs_B_3_yx*crs_J_3_xz + crs_B_3_zy*crs_Sigma_3_yy + crs_J_3_yz*(crs_W_3_t_2 - crs_W_3_t_3)
+            + crs_Sigma_3_zz*crs_alpha_1_t + crs_acc_3_z*crs_h_3_y - crs_B_3_zx*crs_J_3_xy -
+            crs_acc_3_y*crs_h_3_z
+        )
+        crs_mu_3_y = (
+        crs_B_3_zy*crs_J_3_xy + crs_acc_3_x*crs_h_3_z - crs_B_3_xy*crs_J_3_yz -
+            crs_B_3_zx*crs_Sigma_3_xx - crs_J_3_xz*(crs_W_3_t - crs_W_3_t_3) -
+            crs_Sigma_3_zz*crs_alpha_1_t_2 - crs_acc_3_z*crs_h_3_x
+        )
+        crs_mu_3_z = (
+        crs_B_3_yx*crs_Sigma_3_xx + crs_J_3_xy*(crs_W_3_t - crs_W_3_t_2) +
+            crs_J_3_xz*crs_alpha_1_t + crs_acc_3_y*crs_h_3_x - crs_B_3_xy*crs_Sigma_3_yy -
+            crs_J_3_yz*crs_alpha_1_t_2 - crs_acc_3_x*crs_h_3_y
+        )
+        # (crs-acc_2) acceleration of the reference point of link 2, less gravity
+        crs_acc_2_z = crs_rel_x*crs_s_3 - crs_g_r0_z - crs_c_3*crs_rel_y - crs_qdd_3*crs_r_1_t
+        # (crs-f_2) inertia force of link 2 less its weight
+        crs_f_2_t = crs_acc_2_z*crs_link2_mass
+        # (crs-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        crs_mu_1_z = crs_J_2_xx*crs_qdd_1 - crs_g_r1_x*crs_h_2_y - crs_g_r1_y*crs_h_2_z
+        # (crs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        crs_N_1_z = crs_mu_1_z + crs_mu_3_x*crs_s_3 - crs_c_3*crs_mu_3_y
+        # (crs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        crs_G_t = inv_crs_r_1_t_2*(crs_mu_3_z + crs_f_2_t*crs_r_1_t)
+        # (crs-c) leg force on the platform without actuation and without the mass at the connection point
+        crs_c_x = (
+        crs_alpha_1_t_2*crs_h_3_z + crs_h_3_x*(crs_W_3_t_2 + crs_W_3_t_3) - crs_B_3_xy*crs_h_3_y -
+            crs_G_t*crs_c_3 - crs_f_2_t*crs_s_3
+        )
+        crs_c_y = (
+        crs_alpha_1_t*crs_h_3_z + crs_c_3*crs_f_2_t + crs_h_3_y*(crs_W_3_t + crs_W_3_t_3) -
+            crs_B_3_yx*crs_h_3_x - crs_G_t*crs_s_3
+        )
+        crs_c_z = (
+        crs_h_3_z*(crs_W_3_t + crs_W_3_t_2) - crs_B_3_zx*crs_h_3_x - crs_B_3_zy*crs_h_3_y -
+            crs_N_1_z*inv_crs_v_1_z
+        )
+        # (crs-c_true) leg force on the platform without actuation, the last link's mass included
+        crs_c_true_x = crs_c_x - crs_acc_3_x*crs_link3_mass
+        crs_c_true_y = crs_c_y - crs_acc_3_y*crs_link3_mass
+        crs_c_true_z = crs_c_z - crs_acc_3_z*crs_link3_mass
+        crs_c_true_in_base_x = (
+        axis_x_crs_axes3_x*crs_c_true_x + axis_y_crs_axes3_in_base_x*crs_c_true_y +
+            axis_z_crs_axes3_in_base_x*crs_c_true_z
+        )
+        crs_c_true_in_base_y = (
+        axis_x_crs_axes3_y*crs_c_true_x + axis_y_crs_axes3_in_base_y*crs_c_true_y +
+            axis_z_crs_axes3_in_base_y*crs_c_true_z
+        )
+        crs_c_true_in_base_z = (
+        axis_x_crs_axes3_z*crs_c_true_x + axis_y_crs_axes3_in_base_z*crs_c_true_y +
+            axis_z_crs_axes3_in_base_z*crs_c_true_z
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_2) & (disc_2 >= 0.0) &
-            (abs(v_1_z) > _TOLERANCE * size) & (abs(-r_1_t_2) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2
+            >= 0.0) & (abs(crs_v_1_z) > _TOLERANCE * crs_size) & (abs(-crs_r_1_t_2) > _TOLERANCE *
+            crs_size))
         )
-        out_leg_force[_leg_force_rprs[0][leg]] = c_true_in_base_x
-        out_leg_force[_leg_force_rprs[1][leg]] = c_true_in_base_y
-        out_leg_force[_leg_force_rprs[2][leg]] = c_true_in_base_z
-        out_drive[_drive_rprs[0][leg]] = w_1_t_3
-        out_drive[_drive_rprs[1][leg]] = w_1_t_4
-        out_drive[_drive_rprs[2][leg]] = w_1_t_5
-        out_drive[_drive_rprs[3][leg]] = w_2_in_base_x
-        out_drive[_drive_rprs[4][leg]] = w_2_in_base_y
-        out_drive[_drive_rprs[5][leg]] = w_2_in_base_z
+        out_leg_force[_leg_force_crs[0][leg]] = crs_c_true_in_base_x
+        out_leg_force[_leg_force_crs[1][leg]] = crs_c_true_in_base_y
+        out_leg_force[_leg_force_crs[2][leg]] = crs_c_true_in_base_z
+        out_drive[_drive_crs[0][leg]] = crs_w_1_t_3
+        out_drive[_drive_crs[1][leg]] = crs_w_1_t_4
+        out_drive[_drive_crs[2][leg]] = crs_w_1_t_5
+        out_drive[_drive_crs[3][leg]] = crs_w_2_in_base_x
+        out_drive[_drive_crs[4][leg]] = crs_w_2_in_base_y
+        out_drive[_drive_crs[5][leg]] = crs_w_2_in_base_z
     return ok, (out_leg_force, out_drive,)
 
 
@@ -3819,7 +4044,7 @@ def _run_potential(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_potential = m.zeros("potential")
-    # (V1) potential energy
+    # (potential) potential energy
     potential_t = (
     gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
         gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
@@ -3828,70 +4053,79 @@ def _run_potential(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        b_r0_x, b_r0_y, b_r0_z, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z,
-            h_3_x, h_3_y, h_3_z, inv_size_t, rprs_base_frame_xx, rprs_base_frame_xy,
-            rprs_base_frame_xz, rprs_base_frame_yx, rprs_base_frame_yy, rprs_base_frame_yz,
-            rprs_base_frame_zx, rprs_base_frame_zy, rprs_base_frame_zz, rprs_base_point_x,
-            rprs_base_point_y, rprs_base_point_z, rprs_joint3_offset_x, rprs_link2_mass,
-            rprs_platform_joint_offset_x, rprs_platform_point_x, rprs_platform_point_y,
-            rprs_platform_point_z, size_t, size_t_2,
+        crs_b_r0_x, crs_b_r0_y, crs_b_r0_z, crs_base_frame_xx, crs_base_frame_xy,
+            crs_base_frame_xz, crs_base_frame_yx, crs_base_frame_yy, crs_base_frame_yz,
+            crs_base_frame_zx, crs_base_frame_zy, crs_base_frame_zz, crs_base_point_x,
+            crs_base_point_y, crs_base_point_z, crs_branch_1, crs_branch_2, crs_g_r0_x,
+            crs_g_r0_y, crs_g_r0_z, crs_h_2_x, crs_h_2_y, crs_h_2_z, crs_h_3_x, crs_h_3_y,
+            crs_h_3_z, crs_joint3_offset_x, crs_link2_mass, crs_platform_joint_offset_x,
+            crs_platform_point_x, crs_platform_point_y, crs_platform_point_z, crs_size_t,
+            crs_size_t_2, inv_crs_size_t,
         ) = k
-        # (rprs-K1) from the base point to the connection point
-        S_x = (
-        t_x + R_xx*rprs_platform_point_x + R_xy*rprs_platform_point_y + R_xz*rprs_platform_point_z
-            - rprs_base_point_x
+        # (crs-S) from the base point to the connection point
+        crs_S_x = (
+        t_x + R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z -
+            crs_base_point_x
         )
-        S_y = (
-        t_y + R_yx*rprs_platform_point_x + R_yy*rprs_platform_point_y + R_yz*rprs_platform_point_z
-            - rprs_base_point_y
+        crs_S_y = (
+        t_y + R_yx*crs_platform_point_x + R_yy*crs_platform_point_y + R_yz*crs_platform_point_z -
+            crs_base_point_y
         )
-        S_z = (
-        t_z + R_zx*rprs_platform_point_x + R_zy*rprs_platform_point_y + R_zz*rprs_platform_point_z
-            - rprs_base_point_z
+        crs_S_z = (
+        t_z + R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z -
+            crs_base_point_z
         )
-        # (rprs-K2) component along the reference direction
-        px_1 = S_x*rprs_base_frame_xy + S_y*rprs_base_frame_yy + S_z*rprs_base_frame_zy
-        # (rprs-K3) component across the reference direction
-        py_1 = S_x*rprs_base_frame_xz + S_y*rprs_base_frame_yz + S_z*rprs_base_frame_zz
-        # (rprs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rprs-K7) root, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rprs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*rprs_base_frame_xx + S_y*rprs_base_frame_yx + S_z*rprs_base_frame_zx
-        # (rprs-K12) from the centre at zero displacement to the connection point
-        from_centre_2_z = xi_1_t - rprs_joint3_offset_x
-        # (rprs-K14) discriminant of the distance equation
-        disc_2 = size_t - root_1*root_1
-        # (rprs-K15) displacement of joint 2
-        q_2 = from_centre_2_z + branch_2*sqrt(disc_2)
-        # (rprs-K16) from the origin of joint 3 to the connection point
-        x_3_z = xi_1_t - q_2 - rprs_joint3_offset_x
-        # (rprs-K18) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_size_t*root_1*rprs_platform_joint_offset_x
-        # (rprs-K19) sine of the angle of joint 3 from its reference direction
-        s_3 = inv_size_t*rprs_platform_joint_offset_x*x_3_z
-        # (rprs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*py_1*root_1
-        # (rprs-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*px_1*root_1
-        # (V1) potential energy
-        potential_t_2 = (
-        g_r0_z*(h_2_x + h_3_x*s_3 + rprs_link2_mass*(b_r0_z + q_2) - c_3*h_3_y) + (g_r0_y*s_1 -
-            c_1*g_r0_x)*(h_2_z + h_3_z + rprs_link2_mass*(b_r0_y*s_1 - b_r0_x*c_1)) + (-c_1*g_r0_y
-            - g_r0_x*s_1)*(rprs_link2_mass*(-b_r0_x*s_1 - b_r0_y*c_1) - h_2_y - c_3*h_3_x -
-            h_3_y*s_3)
+        # (crs-px_1) component along the reference direction
+        crs_px_1 = (
+        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
+        )
+        # (crs-py_1) component across the reference direction
+        crs_py_1 = (
+        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
+        )
+        # (crs-rho2_1) squared amplitude
+        crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1
+        # (crs-root_1) root, with the sign of the branch
+        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        # (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        crs_xi_1_t = (
+        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
+        )
+        # (crs-from_centre_2) from the centre at zero displacement to the connection point
+        crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x
+        # (crs-disc_2) discriminant of the distance equation
+        crs_disc_2 = crs_size_t - crs_root_1*crs_root_1
+        # (crs-q_2) displacement of joint 2
+        crs_q_2 = crs_from_centre_2_z + crs_branch_2*sqrt(crs_disc_2)
+        # (crs-x_3) from the origin of joint 3 to the connection point
+        crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2
+        # (crs-c_3) cosine of the angle of joint 3 from its reference direction
+        crs_c_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        # (crs-s_3) sine of the angle of joint 3 from its reference direction
+        crs_s_3 = crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t
+        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_c_1 = crs_py_1*crs_root_1*inv_crs_rho2_1
+        # (crs-s_1) sine of the angle of joint 1 from its reference direction
+        crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1
+        # (potential) potential energy
+        crs_potential_t = (
+        crs_g_r0_z*(crs_h_2_x + crs_h_3_x*crs_s_3 + crs_link2_mass*(crs_b_r0_z + crs_q_2) -
+            crs_c_3*crs_h_3_y) + (crs_g_r0_y*crs_s_1 - crs_c_1*crs_g_r0_x)*(crs_h_2_z + crs_h_3_z
+            + crs_link2_mass*(crs_b_r0_y*crs_s_1 - crs_b_r0_x*crs_c_1)) + (-crs_c_1*crs_g_r0_y -
+            crs_g_r0_x*crs_s_1)*(crs_link2_mass*(-crs_b_r0_x*crs_s_1 - crs_b_r0_y*crs_c_1) -
+            crs_h_2_y - crs_c_3*crs_h_3_x - crs_h_3_y*crs_s_3)
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_2) & (disc_2 >= 0.0))
+        ok & m.every(leg, (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2
+            >= 0.0))
         )
         sums = m.added(sums, leg, (
-        potential_t_2,
+        crs_potential_t,
         ))
-    total_rprs, = sums
-    # (V1) potential energy
-    potential = -potential_t - total_rprs
+    total_crs, = sums
+    # (potential) potential energy
+    potential = -potential_t - total_crs
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -3948,146 +4182,159 @@ def _run_condition(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, inv_size, inv_size_t, inv_size_t_2, rprs_base_frame_xx,
-            rprs_base_frame_xy, rprs_base_frame_xz, rprs_base_frame_yx, rprs_base_frame_yy,
-            rprs_base_frame_yz, rprs_base_frame_zx, rprs_base_frame_zy, rprs_base_frame_zz,
-            rprs_base_point_x, rprs_base_point_y, rprs_base_point_z, rprs_joint3_offset_x,
-            rprs_platform_joint_offset_x, rprs_platform_point_x, rprs_platform_point_y,
-            rprs_platform_point_z, size, size_t, size_t_2,
+        crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz, crs_base_frame_yx,
+            crs_base_frame_yy, crs_base_frame_yz, crs_base_frame_zx, crs_base_frame_zy,
+            crs_base_frame_zz, crs_base_point_x, crs_base_point_y, crs_base_point_z, crs_branch_1,
+            crs_branch_2, crs_joint3_offset_x, crs_platform_joint_offset_x, crs_platform_point_x,
+            crs_platform_point_y, crs_platform_point_z, crs_size, crs_size_t, crs_size_t_2,
+            inv_crs_size, inv_crs_size_t, inv_crs_size_t_2,
         ) = k
-        # (rprs-K1) from the base point to the connection point
-        q_in_base_x = (
-        R_xx*rprs_platform_point_x + R_xy*rprs_platform_point_y + R_xz*rprs_platform_point_z
+        # (crs-S) from the base point to the connection point
+        crs_q_in_base_x = (
+        R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
-        q_in_base_y = (
-        R_yx*rprs_platform_point_x + R_yy*rprs_platform_point_y + R_yz*rprs_platform_point_z
+        crs_q_in_base_y = (
+        R_yx*crs_platform_point_x + R_yy*crs_platform_point_y + R_yz*crs_platform_point_z
         )
-        q_in_base_z = (
-        R_zx*rprs_platform_point_x + R_zy*rprs_platform_point_y + R_zz*rprs_platform_point_z
+        crs_q_in_base_z = (
+        R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rprs_base_point_x
-        S_y = q_in_base_y + t_y - rprs_base_point_y
-        S_z = q_in_base_z + t_z - rprs_base_point_z
-        # (rprs-K2) component along the reference direction
-        px_1 = S_x*rprs_base_frame_xy + S_y*rprs_base_frame_yy + S_z*rprs_base_frame_zy
-        # (rprs-K3) component across the reference direction
-        py_1 = S_x*rprs_base_frame_xz + S_y*rprs_base_frame_yz + S_z*rprs_base_frame_zz
-        # (rprs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rprs-K7) root, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rprs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*rprs_base_frame_xx + S_y*rprs_base_frame_yx + S_z*rprs_base_frame_zx
-        # (rprs-K12) from the centre at zero displacement to the connection point
-        from_centre_2_z = xi_1_t - rprs_joint3_offset_x
-        # (rprs-K14) discriminant of the distance equation
-        disc_2 = size_t - root_1*root_1
-        # (rprs-K15) displacement of joint 2
-        q_2 = from_centre_2_z + branch_2*sqrt(disc_2)
-        # (rprs-K16) from the origin of joint 3 to the connection point
-        x_3_z = xi_1_t - q_2 - rprs_joint3_offset_x
-        # (rprs-K18) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_size_t*root_1*rprs_platform_joint_offset_x
-        # (rprs-K19) sine of the angle of joint 3 from its reference direction
-        s_3 = inv_size_t*rprs_platform_joint_offset_x*x_3_z
-        # (rprs-V2) from joint 1 to the connection point, along the links
-        r_1_t = c_3*rprs_platform_joint_offset_x
-        r_1_t_2 = rprs_platform_joint_offset_x*s_3
-        r_1_z = q_2 + r_1_t_2 + rprs_joint3_offset_x
-        # (rprs-V3) velocity of the connection point per rate of joint 1
-        v_1_z = c_3*(c_3*r_1_t + r_1_z*s_3) + s_3*(r_1_t*s_3 - c_3*r_1_z)
-        # (rprs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*py_1*root_1
-        # (rprs-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*px_1*root_1
-        # (rprs-V5) reciprocal vector 1
-        axis_z_rprs_axes3_in_base_x = rprs_base_frame_xz*s_1 - c_1*rprs_base_frame_xy
-        axis_z_rprs_axes3_in_base_y = rprs_base_frame_yz*s_1 - c_1*rprs_base_frame_yy
-        axis_z_rprs_axes3_in_base_z = rprs_base_frame_zz*s_1 - c_1*rprs_base_frame_zy
-        w_1_t = s_1*s_3
-        w_1_t_2 = c_1*s_3
-        axis_y_rprs_axes3_in_base_x = (
-        rprs_base_frame_xy*w_1_t + rprs_base_frame_xz*w_1_t_2 - c_3*rprs_base_frame_xx
+        crs_S_x = crs_q_in_base_x + t_x - crs_base_point_x
+        crs_S_y = crs_q_in_base_y + t_y - crs_base_point_y
+        crs_S_z = crs_q_in_base_z + t_z - crs_base_point_z
+        # (crs-px_1) component along the reference direction
+        crs_px_1 = (
+        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
         )
-        axis_y_rprs_axes3_in_base_y = (
-        rprs_base_frame_yy*w_1_t + rprs_base_frame_yz*w_1_t_2 - c_3*rprs_base_frame_yx
+        # (crs-py_1) component across the reference direction
+        crs_py_1 = (
+        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
         )
-        axis_y_rprs_axes3_in_base_z = (
-        rprs_base_frame_zy*w_1_t + rprs_base_frame_zz*w_1_t_2 - c_3*rprs_base_frame_zx
+        # (crs-rho2_1) squared amplitude
+        crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1
+        # (crs-root_1) root, with the sign of the branch
+        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        # (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        crs_xi_1_t = (
+        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
         )
-        inv_v_1_z = 1.0/v_1_z
-        # (rprs-V6) reciprocal vector 2
-        w_2_t = r_1_t/r_1_t_2
-        _r1_x = s_3 + c_3*w_2_t
-        _r1_y = s_3*w_2_t - c_3
-        # (rprs-V5) reciprocal vector 1
-        w_1_t_3 = axis_z_rprs_axes3_in_base_x*inv_v_1_z
-        w_1_t_4 = axis_z_rprs_axes3_in_base_y*inv_v_1_z
-        w_1_t_5 = axis_z_rprs_axes3_in_base_z*inv_v_1_z
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_x = q_in_base_y*w_1_t_5 - q_in_base_z*w_1_t_4
-        H_a_1_y = q_in_base_z*w_1_t_3 - q_in_base_x*w_1_t_5
-        H_a_1_z = q_in_base_x*w_1_t_4 - q_in_base_y*w_1_t_3
-        # (rprs-V6) reciprocal vector 2
-        w_2_in_base_x = (
-        _r1_x*(axis_y_rprs_axes3_in_base_y*axis_z_rprs_axes3_in_base_z -
-            axis_y_rprs_axes3_in_base_z*axis_z_rprs_axes3_in_base_y) +
-            _r1_y*axis_y_rprs_axes3_in_base_x
+        # (crs-from_centre_2) from the centre at zero displacement to the connection point
+        crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x
+        # (crs-disc_2) discriminant of the distance equation
+        crs_disc_2 = crs_size_t - crs_root_1*crs_root_1
+        # (crs-q_2) displacement of joint 2
+        crs_q_2 = crs_from_centre_2_z + crs_branch_2*sqrt(crs_disc_2)
+        # (crs-x_3) from the origin of joint 3 to the connection point
+        crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2
+        # (crs-c_3) cosine of the angle of joint 3 from its reference direction
+        crs_c_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        # (crs-s_3) sine of the angle of joint 3 from its reference direction
+        crs_s_3 = crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t
+        # (crs-r_1) from joint 1 to the connection point, along the links
+        crs_r_1_t = crs_c_3*crs_platform_joint_offset_x
+        crs_r_1_t_2 = crs_platform_joint_offset_x*crs_s_3
+        crs_r_1_z = crs_joint3_offset_x + crs_q_2 + crs_r_1_t_2
+        # (crs-v_1) velocity of the connection point per rate of joint 1
+        crs_v_1_z = (
+        crs_c_3*(crs_c_3*crs_r_1_t + crs_r_1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
+            crs_c_3*crs_r_1_z)
         )
-        w_2_in_base_y = (
-        _r1_x*(axis_y_rprs_axes3_in_base_z*axis_z_rprs_axes3_in_base_x -
-            axis_y_rprs_axes3_in_base_x*axis_z_rprs_axes3_in_base_z) +
-            _r1_y*axis_y_rprs_axes3_in_base_y
+        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_c_1 = crs_py_1*crs_root_1*inv_crs_rho2_1
+        # (crs-s_1) sine of the angle of joint 1 from its reference direction
+        crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1
+        # (crs-w_1) reciprocal vector 1
+        axis_z_crs_axes3_in_base_x = crs_base_frame_xz*crs_s_1 - crs_base_frame_xy*crs_c_1
+        axis_z_crs_axes3_in_base_y = crs_base_frame_yz*crs_s_1 - crs_base_frame_yy*crs_c_1
+        axis_z_crs_axes3_in_base_z = crs_base_frame_zz*crs_s_1 - crs_base_frame_zy*crs_c_1
+        crs_w_1_t = crs_s_1*crs_s_3
+        crs_w_1_t_2 = crs_c_1*crs_s_3
+        axis_y_crs_axes3_in_base_x = (
+        crs_base_frame_xy*crs_w_1_t + crs_base_frame_xz*crs_w_1_t_2 - crs_base_frame_xx*crs_c_3
         )
-        w_2_in_base_z = (
-        _r1_x*(axis_y_rprs_axes3_in_base_x*axis_z_rprs_axes3_in_base_y -
-            axis_y_rprs_axes3_in_base_y*axis_z_rprs_axes3_in_base_x) +
-            _r1_y*axis_y_rprs_axes3_in_base_z
+        axis_y_crs_axes3_in_base_y = (
+        crs_base_frame_yy*crs_w_1_t + crs_base_frame_yz*crs_w_1_t_2 - crs_base_frame_yx*crs_c_3
         )
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_2_x = q_in_base_y*w_2_in_base_z - q_in_base_z*w_2_in_base_y
-        H_a_2_y = q_in_base_z*w_2_in_base_x - q_in_base_x*w_2_in_base_z
-        H_a_2_z = q_in_base_x*w_2_in_base_y - q_in_base_y*w_2_in_base_x
-        # (C2) rms distance of the platform points from their centroid
-        spread_t_2 = b_c_x - rprs_platform_point_x
-        spread_t_3 = b_c_y - rprs_platform_point_y
-        spread_t_4 = b_c_z - rprs_platform_point_z
-        spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 + spread_t_4*spread_t_4
-        # (rprs-K5) squared amplitude
-        pivot_size = abs(rho2_1)
-        # (rprs-V5) reciprocal vector 1
-        pivot_size_2 = abs(v_1_z)
-        pivot_size_3 = abs(r_1_t_2)
-        # (rprs-N42) force at the connection point that balances the leg's inertia and weight along all freedoms
-        least_pivots = (
-        least(least(inv_size*pivot_size_2, inv_size*pivot_size_3), sqrt(inv_size_t_2*pivot_size))
+        axis_y_crs_axes3_in_base_z = (
+        crs_base_frame_zy*crs_w_1_t + crs_base_frame_zz*crs_w_1_t_2 - crs_base_frame_zx*crs_c_3
+        )
+        inv_crs_v_1_z = 1.0/crs_v_1_z
+        # (crs-w_2) reciprocal vector 2
+        crs_w_2_t = crs_r_1_t/crs_r_1_t_2
+        crs__r1_x = crs_s_3 + crs_c_3*crs_w_2_t
+        crs__r1_y = crs_s_3*crs_w_2_t - crs_c_3
+        # (crs-w_1) reciprocal vector 1
+        crs_w_1_t_3 = axis_z_crs_axes3_in_base_x*inv_crs_v_1_z
+        crs_w_1_t_4 = axis_z_crs_axes3_in_base_y*inv_crs_v_1_z
+        crs_w_1_t_5 = axis_z_crs_axes3_in_base_z*inv_crs_v_1_z
+        # (crs-H_a_1) moment of the column's unit force about the platform origin
+        crs_H_a_1_x = crs_q_in_base_y*crs_w_1_t_5 - crs_q_in_base_z*crs_w_1_t_4
+        crs_H_a_1_y = crs_q_in_base_z*crs_w_1_t_3 - crs_q_in_base_x*crs_w_1_t_5
+        crs_H_a_1_z = crs_q_in_base_x*crs_w_1_t_4 - crs_q_in_base_y*crs_w_1_t_3
+        # (crs-w_2) reciprocal vector 2
+        crs_w_2_in_base_x = (
+        axis_y_crs_axes3_in_base_x*crs__r1_y +
+            crs__r1_x*(axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_z -
+            axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_y)
+        )
+        crs_w_2_in_base_y = (
+        axis_y_crs_axes3_in_base_y*crs__r1_y +
+            crs__r1_x*(axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_x -
+            axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_z)
+        )
+        crs_w_2_in_base_z = (
+        axis_y_crs_axes3_in_base_z*crs__r1_y +
+            crs__r1_x*(axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_y -
+            axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_x)
+        )
+        # (crs-H_a_2) moment of the column's unit force about the platform origin
+        crs_H_a_2_x = crs_q_in_base_y*crs_w_2_in_base_z - crs_q_in_base_z*crs_w_2_in_base_y
+        crs_H_a_2_y = crs_q_in_base_z*crs_w_2_in_base_x - crs_q_in_base_x*crs_w_2_in_base_z
+        crs_H_a_2_z = crs_q_in_base_x*crs_w_2_in_base_y - crs_q_in_base_y*crs_w_2_in_base_x
+        # (spread) rms distance of the platform points from their centroid
+        crs_spread_t = b_c_x - crs_platform_point_x
+        crs_spread_t_2 = b_c_y - crs_platform_point_y
+        crs_spread_t_3 = b_c_z - crs_platform_point_z
+        crs_spread_t_4 = (
+        crs_spread_t*crs_spread_t + crs_spread_t_2*crs_spread_t_2 + crs_spread_t_3*crs_spread_t_3
+        )
+        # (crs-rho2_1) squared amplitude
+        crs_pivot_size = abs(crs_rho2_1)
+        # (crs-w_1) reciprocal vector 1
+        crs_pivot_size_2 = abs(crs_v_1_z)
+        crs_pivot_size_3 = abs(crs_r_1_t_2)
+        # (crs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        crs_least_pivots = (
+        least(least(sqrt(crs_pivot_size*inv_crs_size_t_2), crs_pivot_size_2*inv_crs_size),
+            crs_pivot_size_3*inv_crs_size)
         )
         clear = (
-        clear & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_2) & (abs(v_1_z) >
-            _TOLERANCE * size) & (abs(-r_1_t_2) > _TOLERANCE * size))
+        clear & m.every(leg, (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) &
+            (abs(crs_v_1_z) > _TOLERANCE * crs_size) & (abs(-crs_r_1_t_2) > _TOLERANCE *
+            crs_size))
         )
-        reached = reached & m.every(leg, (disc_2 >= 0.0))
+        reached = reached & m.every(leg, (crs_disc_2 >= 0.0))
         sums = m.added(sums, leg, (
-        spread_t_5,
+        crs_spread_t_4,
         ))
-        out_H[_H_rprs[0][leg]] = w_1_t_3
-        out_H[_H_rprs[1][leg]] = w_1_t_4
-        out_H[_H_rprs[2][leg]] = w_1_t_5
-        out_H[_H_rprs[3][leg]] = H_a_1_x
-        out_H[_H_rprs[4][leg]] = H_a_1_y
-        out_H[_H_rprs[5][leg]] = H_a_1_z
-        out_H[_H_rprs[6][leg]] = w_2_in_base_x
-        out_H[_H_rprs[7][leg]] = w_2_in_base_y
-        out_H[_H_rprs[8][leg]] = w_2_in_base_z
-        out_H[_H_rprs[9][leg]] = H_a_2_x
-        out_H[_H_rprs[10][leg]] = H_a_2_y
-        out_H[_H_rprs[11][leg]] = H_a_2_z
-        out_pivots[_pivots_rprs[0][leg]] = least_pivots
-        out_reach[_reach_rprs[0][leg]] = disc_2
-    total_rprs, = sums
-    # (C2) rms distance of the platform points from their centroid
-    spread = spread_t*sqrt(total_rprs)
+        out_H[_H_crs[0][leg]] = crs_w_1_t_3
+        out_H[_H_crs[1][leg]] = crs_w_1_t_4
+        out_H[_H_crs[2][leg]] = crs_w_1_t_5
+        out_H[_H_crs[3][leg]] = crs_H_a_1_x
+        out_H[_H_crs[4][leg]] = crs_H_a_1_y
+        out_H[_H_crs[5][leg]] = crs_H_a_1_z
+        out_H[_H_crs[6][leg]] = crs_w_2_in_base_x
+        out_H[_H_crs[7][leg]] = crs_w_2_in_base_y
+        out_H[_H_crs[8][leg]] = crs_w_2_in_base_z
+        out_H[_H_crs[9][leg]] = crs_H_a_2_x
+        out_H[_H_crs[10][leg]] = crs_H_a_2_y
+        out_H[_H_crs[11][leg]] = crs_H_a_2_z
+        out_pivots[_pivots_crs[0][leg]] = crs_least_pivots
+        out_reach[_reach_crs[0][leg]] = crs_disc_2
+    total_crs, = sums
+    # (spread) rms distance of the platform points from their centroid
+    spread = spread_t*sqrt(total_crs)
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 
@@ -4214,6 +4461,19 @@ def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
     momentum = np.einsum("ijs,js->is", M, V)
     return (momentum,)
+
+
+def _steps_joint_margins(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    margins = _unlimited(q, [0, 1, 2, 3, 4, 5, 6, 7, 8])
+    return (margins,)
+
+
+def _steps_within_limits(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    subtract_1 = q - q
+    within = _not_negative(subtract_1)
+    return (within,)
 
 
 def _steps_actuator_positions(m, X):
@@ -4650,6 +4910,40 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+    )
+
+
+def joint_margins(X, p=None):
+    """How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+    where there is none.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        margins: distances, in the order of q [m or rad] (..., NJ).
+    """
+    return _call(
+        "joint_margins", _steps_joint_margins, p,
+        ("X", X, (NQ,)),
+        unbounded=True,
+    )
+
+
+def within_limits(X, p=None):
+    """Whether all joints are within their limits of displacement.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        within: 1 where no margin is negative, else 0; NaN is neither (...,).
+    """
+    return _call(
+        "within_limits", _steps_within_limits, p,
+        ("X", X, (NQ,)),
     )
 
 

@@ -51,6 +51,7 @@ typedef HYBRID_3PRPS_REAL hybrid_3prps_real;
 #define HYBRID_3PRPS_NC 0
 #define HYBRID_3PRPS_NW 6
 #define HYBRID_3PRPS_NJ 9
+#define HYBRID_3PRPS_OVERCONSTRAINED 0
 
 enum {
     HYBRID_3PRPS_OK = 0,
@@ -99,20 +100,21 @@ typedef struct {
 /* What depends on the parameters alone; set by hybrid_3prps_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
-    hybrid_3prps_real J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+    /* 3 legs of type prps; copies of the first fill up */
+    hybrid_3prps_real prps_Jc_2_zz[4], prps_Q_t_10[4], prps_Q_t_11[4], prps_Q_t_12[4], prps_Q_t_13[4],
+            prps_Q_t_5[4], prps_Q_t_6[4], prps_Q_t_7[4], prps_Q_t_8[4], prps_Q_t_9[4], prps_b_r0_z[4],
+            prps_base_frame_xx[4], prps_base_frame_xy[4], prps_base_frame_xz[4],
+            prps_base_frame_yx[4], prps_base_frame_yy[4], prps_base_frame_yz[4],
+            prps_base_frame_zx[4], prps_base_frame_zy[4], prps_base_frame_zz[4], prps_base_point_x[4],
+            prps_base_point_y[4], prps_base_point_z[4], prps_branch_2[4], prps_g_r0_x[4],
+            prps_g_r0_y[4], prps_g_r0_z[4], prps_h_1_x[4], prps_h_1_y[4], prps_h_1_z[4],
+            prps_h_2_x[4], prps_h_2_y[4], prps_h_2_z[4], prps_h_3_x[4], prps_h_3_y[4], prps_h_3_z[4],
+            prps_link1_mass[4], prps_link2_mass[4], prps_link3_mass[4], prps_platform_point_x[4],
+            prps_platform_point_y[4], prps_platform_point_z[4], prps_potential_t[4],
+            prps_potential_t_2[4], prps_potential_t_3[4], prps_potential_t_4[4];
+    hybrid_3prps_real J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
             J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
             h_star_x, h_star_y, h_star_z, legs_size, m_star, spread_t;
-    /* legs of type prps */
-    hybrid_3prps_real Jc_2_zz[3], Q_t_10[3], Q_t_11[3], Q_t_12[3], Q_t_13[3], Q_t_5[3], Q_t_6[3],
-            Q_t_7[3], Q_t_8[3], Q_t_9[3], b_r0_z[3], branch_2[3], g_r0_x[3], g_r0_y[3], g_r0_z[3],
-            h_1_x[3], h_1_y[3], h_1_z[3], h_2_x[3], h_2_y[3], h_2_z[3], h_3_x[3], h_3_y[3], h_3_z[3],
-            potential_t[3], potential_t_2[3], potential_t_3[3], potential_t_4[3],
-            prps_base_frame_xx[3], prps_base_frame_xy[3], prps_base_frame_xz[3],
-            prps_base_frame_yx[3], prps_base_frame_yy[3], prps_base_frame_yz[3],
-            prps_base_frame_zx[3], prps_base_frame_zy[3], prps_base_frame_zz[3], prps_base_point_x[3],
-            prps_base_point_y[3], prps_base_point_z[3], prps_link1_mass[3], prps_link2_mass[3],
-            prps_link3_mass[3], prps_platform_point_x[3], prps_platform_point_y[3],
-            prps_platform_point_z[3];
 } hybrid_3prps_model;
 
 extern const hybrid_3prps_params hybrid_3prps_default_params;
@@ -258,6 +260,20 @@ int hybrid_3prps_momentum(const hybrid_3prps_model *model, const hybrid_3prps_re
     hybrid_3prps_real *V, hybrid_3prps_real *momentum);
 size_t hybrid_3prps_momentum_batch(const hybrid_3prps_model *model, size_t n, const
     hybrid_3prps_real *X, const hybrid_3prps_real *V, hybrid_3prps_real *momentum, int *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 69 mul, 57 add, 3 div, 3 sqrt, 3 trig. In: X (NQ). Out: margins (NJ). */
+int hybrid_3prps_joint_margins(const hybrid_3prps_model *model, const hybrid_3prps_real *X,
+    hybrid_3prps_real *margins);
+size_t hybrid_3prps_joint_margins_batch(const hybrid_3prps_model *model, size_t n, const
+    hybrid_3prps_real *X, hybrid_3prps_real *margins, int *status);
+
+/* Whether all joints are within their limits of displacement. 69 mul, 57 add, 3 div, 3 sqrt, 3
+   trig. In: X (NQ). Out: within (1). */
+int hybrid_3prps_within_limits(const hybrid_3prps_model *model, const hybrid_3prps_real *X,
+    hybrid_3prps_real *within);
+size_t hybrid_3prps_within_limits_batch(const hybrid_3prps_model *model, size_t n, const
+    hybrid_3prps_real *X, hybrid_3prps_real *within, int *status);
 
 /* Displacements of the actuated joints, in the order of tau. 69 mul, 57 add, 3 div, 3 sqrt, 3
    trig. In: X (NQ). Out: q (NU). */

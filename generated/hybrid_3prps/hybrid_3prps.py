@@ -33,6 +33,7 @@ __all__ = [
     "NC",
     "NW",
     "NJ",
+    "OVERCONSTRAINED",
     "ACTUATED",
     "ACTUATOR_NAMES",
     "H",
@@ -57,6 +58,7 @@ __all__ = [
     "inverse_dynamics",
     "inverse_kinematics",
     "joint_accelerations",
+    "joint_margins",
     "joint_rates",
     "leg_reactions",
     "momentum",
@@ -66,6 +68,7 @@ __all__ = [
     "power",
     "retract",
     "rotation",
+    "within_limits",
 ]
 
 NQ = 7
@@ -74,6 +77,7 @@ NU = 6
 NC = 0
 NW = 6
 NJ = 9
+OVERCONSTRAINED = 0
 
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
@@ -352,7 +356,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return np.full(shape, default)
+        return _filled(shape, default) if isinstance(default, float) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -365,6 +369,16 @@ def _argument(function, name, value, shape, default=None, rule=""):
     elif rule == "positive" and not np.all((array > 0.0) & (array < np.inf)):
         raise ValueError(f"{function}: {name} must be positive and finite")
     return array
+
+
+_FILLED = {}
+
+
+def _filled(shape, value):
+    """An array of one value, made once."""
+    if (shape, value) not in _FILLED:
+        _FILLED[shape, value] = _frozen(np.full(shape, value))
+    return _FILLED[shape, value]
 
 
 def _lead(leads):
@@ -458,7 +472,7 @@ HOME_X = _frozen(np.array([0.0, 0.0, 0.75, 0.0, 0.0, 0.0, 1.0]))
 HOME_Q = _frozen(np.array([0.09999999999999999, -0.3499999999999998, 0.75, 0.10000000000000005, -0.3499999999999999, 0.75, 0.10000000000000002, -0.3499999999999999, 0.75]))
 
 _BRANCHES = {  # assembly branch of home, a sign per leg
-    "branch_2": np.array([1.0, 1.0, 1.0]),
+    "prps_branch_2": np.array([1.0, 1.0, 1.0]),
 }
 
 
@@ -508,12 +522,12 @@ def _prepare(p):
     prps_link3_centre_of_mass_y = p.prps_link3_centre_of_mass[:, 1]
     prps_link3_centre_of_mass_z = p.prps_link3_centre_of_mass[:, 2]
     prps_link3_inertia_zz = p.prps_link3_inertia[:, 2, 2]
-    branch_2 = _BRANCHES["branch_2"]
-    # (L2) first moment about the platform origin
+    prps_branch_2 = _BRANCHES["prps_branch_2"]
+    # (h_star) first moment about the platform origin
     h_star_t = platform_centre_of_mass_x*platform_mass
     h_star_t_2 = platform_centre_of_mass_y*platform_mass
     h_star_t_3 = platform_centre_of_mass_z*platform_mass
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_t = platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_2 = platform_centre_of_mass_y*platform_centre_of_mass_y
     J_star_t_3 = platform_centre_of_mass_z*platform_centre_of_mass_z
@@ -524,161 +538,163 @@ def _prepare(p):
     J_star_t_8 = platform_mass*(J_star_t_2 - J_star_t_4)
     J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass
     J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4)
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread_t = 0.3333333333333333*sqrt(3.0)
-    # (C3) rms size of the legs, taken where the platform points coincide
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     legs_size = 1.299038105676658*spread_t
-    # (prps-N21) force that accelerates joint 1, per unit
-    P_c1_t = prps_link1_mass + prps_link2_mass
-    # (prps-G3) first moment of link 2 about the origin of link 2
-    h_2_x = prps_link2_centre_of_mass_x*prps_link2_mass
-    h_2_y = prps_link2_centre_of_mass_y*prps_link2_mass
-    h_2_z = prps_link2_centre_of_mass_z*prps_link2_mass
-    # (prps-G4) inertia tensor of link 2 about the origin of link 2
-    J_2_t = prps_link2_centre_of_mass_z*prps_link2_centre_of_mass_z
-    J_2_t_2 = (
-    J_2_t + prps_link2_centre_of_mass_x*prps_link2_centre_of_mass_x +
+    # (prps-h_3) first moment of link 3 about the connection point
+    prps_h_3_x = prps_link3_centre_of_mass_x*prps_link3_mass
+    prps_h_3_y = prps_link3_centre_of_mass_y*prps_link3_mass
+    prps_h_3_z = prps_link3_centre_of_mass_z*prps_link3_mass
+    # (prps-J_2) inertia tensor of link 2 about the origin of link 2
+    prps_J_2_t = prps_link2_centre_of_mass_z*prps_link2_centre_of_mass_z
+    prps_J_2_t_2 = (
+    prps_J_2_t + prps_link2_centre_of_mass_x*prps_link2_centre_of_mass_x +
         prps_link2_centre_of_mass_y*prps_link2_centre_of_mass_y
     )
-    # (prps-G6) inertia tensor of link 3 about the connection point
-    J_3_t = prps_link3_centre_of_mass_z*prps_link3_centre_of_mass_z
-    J_3_t_2 = (
-    J_3_t + prps_link3_centre_of_mass_x*prps_link3_centre_of_mass_x +
+    # (prps-J_3) inertia tensor of link 3 about the connection point
+    prps_J_3_t = prps_link3_centre_of_mass_z*prps_link3_centre_of_mass_z
+    prps_J_3_t_2 = (
+    prps_J_3_t + prps_link3_centre_of_mass_x*prps_link3_centre_of_mass_x +
         prps_link3_centre_of_mass_y*prps_link3_centre_of_mass_y
     )
-    # (prps-N16) inertia tensor of the links from 2 outwards about joint 2
-    Jc_2_zz = (
-    prps_link2_inertia_zz + prps_link3_inertia_zz - prps_link2_mass*(J_2_t - J_2_t_2) -
-        prps_link3_mass*(J_3_t - J_3_t_2)
+    # (prps-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+    prps_Jc_2_zz = (
+    prps_link2_inertia_zz + prps_link3_inertia_zz - prps_link2_mass*(prps_J_2_t - prps_J_2_t_2) -
+        prps_link3_mass*(prps_J_3_t - prps_J_3_t_2)
     )
-    # (prps-G5) first moment of link 3 about the connection point
-    h_3_x = prps_link3_centre_of_mass_x*prps_link3_mass
-    h_3_y = prps_link3_centre_of_mass_y*prps_link3_mass
-    h_3_z = prps_link3_centre_of_mass_z*prps_link3_mass
-    # (prps-N43) inertia of the leg at the connection point, without the mass gathered there
-    Q_t = 0.5*P_c1_t
-    Q_t_2 = Q_t*prps_base_frame_xz
-    Q_t_3 = Q_t*prps_base_frame_yz
-    Q_t_4 = Q_t*prps_base_frame_zz
-    Q_t_5 = Q_t_2*prps_base_frame_xz
-    Q_t_6 = Q_t_3*prps_base_frame_xz
-    Q_t_7 = Q_t_2*prps_base_frame_yz
-    Q_t_8 = Q_t_4*prps_base_frame_xz
-    Q_t_9 = Q_t_2*prps_base_frame_zz
-    Q_t_10 = Q_t_3*prps_base_frame_yz
-    Q_t_11 = Q_t_4*prps_base_frame_yz
-    Q_t_12 = Q_t_3*prps_base_frame_zz
-    Q_t_13 = Q_t_4*prps_base_frame_zz
-    # (L2) first moment about the platform origin
-    h_star_t_4 = prps_link3_mass*prps_platform_point_x
-    h_star_t_5 = prps_link3_mass*prps_platform_point_y
-    h_star_t_6 = prps_link3_mass*prps_platform_point_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t_11 = prps_platform_point_x*prps_platform_point_x
-    J_star_t_12 = prps_platform_point_y*prps_platform_point_y
-    J_star_t_13 = prps_platform_point_z*prps_platform_point_z
-    J_star_t_14 = J_star_t_11 + J_star_t_12 + J_star_t_13
-    J_star_t_15 = prps_link3_mass*(J_star_t_11 - J_star_t_14)
-    J_star_t_16 = prps_link3_mass*prps_platform_point_x*prps_platform_point_y
-    J_star_t_17 = prps_link3_mass*prps_platform_point_x*prps_platform_point_z
-    J_star_t_18 = prps_link3_mass*(J_star_t_12 - J_star_t_14)
-    J_star_t_19 = prps_link3_mass*prps_platform_point_y*prps_platform_point_z
-    J_star_t_20 = prps_link3_mass*(J_star_t_13 - J_star_t_14)
-    # (prps-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-    g_r0_x = (
+    # (prps-h_2) first moment of link 2 about the origin of link 2
+    prps_h_2_x = prps_link2_centre_of_mass_x*prps_link2_mass
+    prps_h_2_y = prps_link2_centre_of_mass_y*prps_link2_mass
+    prps_h_2_z = prps_link2_centre_of_mass_z*prps_link2_mass
+    # (prps-P_c_1) force that accelerates joint 1, per unit
+    prps_P_c_1_t = prps_link1_mass + prps_link2_mass
+    # (prps-Q) inertia of the leg at the connection point, without the mass gathered there
+    prps_Q_t = 0.5*prps_P_c_1_t
+    prps_Q_t_2 = prps_Q_t*prps_base_frame_xz
+    prps_Q_t_3 = prps_Q_t*prps_base_frame_yz
+    prps_Q_t_4 = prps_Q_t*prps_base_frame_zz
+    prps_Q_t_5 = prps_Q_t_2*prps_base_frame_xz
+    prps_Q_t_6 = prps_Q_t_3*prps_base_frame_xz
+    prps_Q_t_7 = prps_Q_t_2*prps_base_frame_yz
+    prps_Q_t_8 = prps_Q_t_4*prps_base_frame_xz
+    prps_Q_t_9 = prps_Q_t_2*prps_base_frame_zz
+    prps_Q_t_10 = prps_Q_t_3*prps_base_frame_yz
+    prps_Q_t_11 = prps_Q_t_4*prps_base_frame_yz
+    prps_Q_t_12 = prps_Q_t_3*prps_base_frame_zz
+    prps_Q_t_13 = prps_Q_t_4*prps_base_frame_zz
+    # (h_star) first moment about the platform origin
+    prps_h_star_t = prps_link3_mass*prps_platform_point_x
+    prps_h_star_t_2 = prps_link3_mass*prps_platform_point_y
+    prps_h_star_t_3 = prps_link3_mass*prps_platform_point_z
+    # (J_star) inertia tensor about the platform origin
+    prps_J_star_t = prps_platform_point_x*prps_platform_point_x
+    prps_J_star_t_2 = prps_platform_point_y*prps_platform_point_y
+    prps_J_star_t_3 = prps_platform_point_z*prps_platform_point_z
+    prps_J_star_t_4 = prps_J_star_t + prps_J_star_t_2 + prps_J_star_t_3
+    prps_J_star_t_5 = prps_link3_mass*(prps_J_star_t - prps_J_star_t_4)
+    prps_J_star_t_6 = prps_link3_mass*prps_platform_point_x*prps_platform_point_y
+    prps_J_star_t_7 = prps_link3_mass*prps_platform_point_x*prps_platform_point_z
+    prps_J_star_t_8 = prps_link3_mass*(prps_J_star_t_2 - prps_J_star_t_4)
+    prps_J_star_t_9 = prps_link3_mass*prps_platform_point_y*prps_platform_point_z
+    prps_J_star_t_10 = prps_link3_mass*(prps_J_star_t_3 - prps_J_star_t_4)
+    # (prps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+    prps_g_r0_x = (
     gravity_x*prps_base_frame_xx + gravity_y*prps_base_frame_yx + gravity_z*prps_base_frame_zx
     )
-    g_r0_y = (
+    prps_g_r0_y = (
     gravity_x*prps_base_frame_xy + gravity_y*prps_base_frame_yy + gravity_z*prps_base_frame_zy
     )
-    g_r0_z = (
+    prps_g_r0_z = (
     gravity_x*prps_base_frame_xz + gravity_y*prps_base_frame_yz + gravity_z*prps_base_frame_zz
     )
-    # (prps-G2) first moment of link 1 about the origin of link 1
-    h_1_x = prps_link1_centre_of_mass_x*prps_link1_mass
-    h_1_y = prps_link1_centre_of_mass_y*prps_link1_mass
-    h_1_z = prps_link1_centre_of_mass_z*prps_link1_mass
-    # (V1) potential energy
-    b_r0_x = (
+    # (prps-h_1) first moment of link 1 about the origin of link 1
+    prps_h_1_x = prps_link1_centre_of_mass_x*prps_link1_mass
+    prps_h_1_y = prps_link1_centre_of_mass_y*prps_link1_mass
+    prps_h_1_z = prps_link1_centre_of_mass_z*prps_link1_mass
+    # (potential) potential energy
+    prps_b_r0_x = (
     prps_base_frame_xx*prps_base_point_x + prps_base_frame_yx*prps_base_point_y +
         prps_base_frame_zx*prps_base_point_z
     )
-    b_r0_y = (
+    prps_b_r0_y = (
     prps_base_frame_xy*prps_base_point_x + prps_base_frame_yy*prps_base_point_y +
         prps_base_frame_zy*prps_base_point_z
     )
-    b_r0_z = (
+    prps_b_r0_z = (
     prps_base_frame_xz*prps_base_point_x + prps_base_frame_yz*prps_base_point_y +
         prps_base_frame_zz*prps_base_point_z
     )
-    potential_t = b_r0_x*prps_link1_mass
-    potential_t_2 = b_r0_y*prps_link1_mass
-    potential_t_3 = b_r0_x*prps_link2_mass
-    potential_t_4 = b_r0_y*prps_link2_mass
+    prps_potential_t = prps_b_r0_x*prps_link1_mass
+    prps_potential_t_2 = prps_b_r0_y*prps_link1_mass
+    prps_potential_t_3 = prps_b_r0_x*prps_link2_mass
+    prps_potential_t_4 = prps_b_r0_y*prps_link2_mass
     total_prps = np.sum(np.broadcast_to(prps_link3_mass, _prps))
-    total_prps_x = np.sum(np.broadcast_to(h_star_t_4, _prps))
-    total_prps_y = np.sum(np.broadcast_to(h_star_t_5, _prps))
-    total_prps_z = np.sum(np.broadcast_to(h_star_t_6, _prps))
-    total_prps_xx = np.sum(np.broadcast_to(J_star_t_15, _prps))
-    total_prps_xy = np.sum(np.broadcast_to(J_star_t_16, _prps))
-    total_prps_xz = np.sum(np.broadcast_to(J_star_t_17, _prps))
-    total_prps_yy = np.sum(np.broadcast_to(J_star_t_18, _prps))
-    total_prps_yz = np.sum(np.broadcast_to(J_star_t_19, _prps))
-    total_prps_zz = np.sum(np.broadcast_to(J_star_t_20, _prps))
+    total_prps_x = np.sum(np.broadcast_to(prps_h_star_t, _prps))
+    total_prps_y = np.sum(np.broadcast_to(prps_h_star_t_2, _prps))
+    total_prps_z = np.sum(np.broadcast_to(prps_h_star_t_3, _prps))
+    total_prps_xx = np.sum(np.broadcast_to(prps_J_star_t_5, _prps))
+    total_prps_xy = np.sum(np.broadcast_to(prps_J_star_t_6, _prps))
+    total_prps_xz = np.sum(np.broadcast_to(prps_J_star_t_7, _prps))
+    total_prps_yy = np.sum(np.broadcast_to(prps_J_star_t_8, _prps))
+    total_prps_yz = np.sum(np.broadcast_to(prps_J_star_t_9, _prps))
+    total_prps_zz = np.sum(np.broadcast_to(prps_J_star_t_10, _prps))
     total_prps_x_2 = np.sum(np.broadcast_to(prps_platform_point_x, _prps))
     total_prps_y_2 = np.sum(np.broadcast_to(prps_platform_point_y, _prps))
     total_prps_z_2 = np.sum(np.broadcast_to(prps_platform_point_z, _prps))
-    # (L1) mass of the platform with the gathered masses
+    # (m_star) mass of the platform with the gathered masses
     m_star = platform_mass + total_prps
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_x = h_star_t + total_prps_x
     h_star_y = h_star_t_2 + total_prps_y
     h_star_z = h_star_t_3 + total_prps_z
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_xx = platform_inertia_xx - J_star_t_5 - total_prps_xx
     J_star_xy = platform_inertia_xy - J_star_t_6 - total_prps_xy
     J_star_xz = platform_inertia_xz - J_star_t_7 - total_prps_xz
     J_star_yy = platform_inertia_yy - J_star_t_8 - total_prps_yy
     J_star_yz = platform_inertia_yz - J_star_t_9 - total_prps_yz
     J_star_zz = platform_inertia_zz - J_star_t_10 - total_prps_zz
-    J_star_t_21 = J_star_xx - J_star_yy
-    J_star_t_22 = 0.5*J_star_t_21
-    J_star_t_23 = J_star_xx - J_star_zz
-    J_star_t_24 = 0.5*J_star_t_23
-    # (M4) centripetal force and weight of the platform
+    J_star_t_11 = J_star_xx - J_star_yy
+    J_star_t_12 = 0.5*J_star_t_11
+    J_star_t_13 = J_star_xx - J_star_zz
+    J_star_t_14 = 0.5*J_star_t_13
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
     Z_p_t_3 = gravity_z*m_star
-    # (C1) centroid of the platform points
+    # (b_c) centroid of the platform points
     b_c_x = 0.3333333333333333*total_prps_x_2
     b_c_y = 0.3333333333333333*total_prps_y_2
     b_c_z = 0.3333333333333333*total_prps_z_2
     return {
         "dynamics": (
-        (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
                 J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
                 h_star_y, h_star_z, m_star,),
             (
                 (_prps,
-        (Jc_2_zz, Q_t_10, Q_t_11, Q_t_12, Q_t_13, Q_t_5, Q_t_6, Q_t_7, Q_t_8, Q_t_9, branch_2,
-                    g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_3_x, h_3_y, prps_base_frame_xx,
-                    prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
-                    prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx,
-                    prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x, prps_base_point_y,
-                    prps_base_point_z, prps_link1_mass, prps_link2_mass, prps_platform_point_x,
-                    prps_platform_point_y, prps_platform_point_z,),
+        (prps_Jc_2_zz, prps_Q_t_10, prps_Q_t_11, prps_Q_t_12, prps_Q_t_13, prps_Q_t_5, prps_Q_t_6,
+                    prps_Q_t_7, prps_Q_t_8, prps_Q_t_9, prps_base_frame_xx, prps_base_frame_xy,
+                    prps_base_frame_xz, prps_base_frame_yx, prps_base_frame_yy,
+                    prps_base_frame_yz, prps_base_frame_zx, prps_base_frame_zy,
+                    prps_base_frame_zz, prps_base_point_x, prps_base_point_y, prps_base_point_z,
+                    prps_branch_2, prps_g_r0_x, prps_g_r0_y, prps_g_r0_z, prps_h_2_x, prps_h_2_y,
+                    prps_h_3_x, prps_h_3_y, prps_link1_mass, prps_link2_mass,
+                    prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
+        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
                 h_star_z, m_star,),
             (
                 (_prps,
-        (Jc_2_zz, Q_t_10, Q_t_11, Q_t_12, Q_t_13, Q_t_5, Q_t_6, Q_t_7, Q_t_8, Q_t_9, branch_2,
-                    h_3_x, h_3_y, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_yx,
-                    prps_base_frame_yy, prps_base_frame_zx, prps_base_frame_zy, prps_base_point_x,
-                    prps_base_point_y, prps_base_point_z, prps_platform_point_x,
+        (prps_Jc_2_zz, prps_Q_t_10, prps_Q_t_11, prps_Q_t_12, prps_Q_t_13, prps_Q_t_5, prps_Q_t_6,
+                    prps_Q_t_7, prps_Q_t_8, prps_Q_t_9, prps_base_frame_xx, prps_base_frame_xy,
+                    prps_base_frame_yx, prps_base_frame_yy, prps_base_frame_zx,
+                    prps_base_frame_zy, prps_base_point_x, prps_base_point_y, prps_base_point_z,
+                    prps_branch_2, prps_h_3_x, prps_h_3_y, prps_platform_point_x,
                     prps_platform_point_y, prps_platform_point_z,),
                 ),
             ),
@@ -688,12 +704,13 @@ def _prepare(p):
                 Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
             (
                 (_prps,
-        (Jc_2_zz, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_3_x, h_3_y,
-                    prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
+        (prps_Jc_2_zz, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
                     prps_base_frame_yx, prps_base_frame_yy, prps_base_frame_yz,
                     prps_base_frame_zx, prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x,
-                    prps_base_point_y, prps_base_point_z, prps_link1_mass, prps_link2_mass,
-                    prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,),
+                    prps_base_point_y, prps_base_point_z, prps_branch_2, prps_g_r0_x, prps_g_r0_y,
+                    prps_g_r0_z, prps_h_2_x, prps_h_2_y, prps_h_3_x, prps_h_3_y, prps_link1_mass,
+                    prps_link2_mass, prps_platform_point_x, prps_platform_point_y,
+                    prps_platform_point_z,),
                 ),
             ),
         ),
@@ -701,11 +718,11 @@ def _prepare(p):
         (),
             (
                 (_prps,
-        (branch_2, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
+        (prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
                     prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx,
                     prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x, prps_base_point_y,
-                    prps_base_point_z, prps_platform_point_x, prps_platform_point_y,
-                    prps_platform_point_z,),
+                    prps_base_point_z, prps_branch_2, prps_platform_point_x,
+                    prps_platform_point_y, prps_platform_point_z,),
                 ),
             ),
         ),
@@ -714,12 +731,13 @@ def _prepare(p):
                 gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
                 (_prps,
-        (Jc_2_zz, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_3_x, h_3_y,
-                    prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
+        (prps_Jc_2_zz, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
                     prps_base_frame_yx, prps_base_frame_yy, prps_base_frame_yz,
                     prps_base_frame_zx, prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x,
-                    prps_base_point_y, prps_base_point_z, prps_link1_mass, prps_link2_mass,
-                    prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,),
+                    prps_base_point_y, prps_base_point_z, prps_branch_2, prps_g_r0_x, prps_g_r0_y,
+                    prps_g_r0_z, prps_h_2_x, prps_h_2_y, prps_h_3_x, prps_h_3_y, prps_link1_mass,
+                    prps_link2_mass, prps_platform_point_x, prps_platform_point_y,
+                    prps_platform_point_z,),
                 ),
             ),
         ),
@@ -727,11 +745,11 @@ def _prepare(p):
         (),
             (
                 (_prps,
-        (branch_2, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
+        (prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
                     prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx,
                     prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x, prps_base_point_y,
-                    prps_base_point_z, prps_platform_point_x, prps_platform_point_y,
-                    prps_platform_point_z,),
+                    prps_base_point_z, prps_branch_2, prps_platform_point_x,
+                    prps_platform_point_y, prps_platform_point_z,),
                 ),
             ),
         ),
@@ -739,11 +757,11 @@ def _prepare(p):
         (),
             (
                 (_prps,
-        (branch_2, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
+        (prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
                     prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx,
                     prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x, prps_base_point_y,
-                    prps_base_point_z, prps_platform_point_x, prps_platform_point_y,
-                    prps_platform_point_z,),
+                    prps_base_point_z, prps_branch_2, prps_platform_point_x,
+                    prps_platform_point_y, prps_platform_point_z,),
                 ),
             ),
         ),
@@ -751,11 +769,11 @@ def _prepare(p):
         (),
             (
                 (_prps,
-        (branch_2, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
+        (prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
                     prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx,
                     prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x, prps_base_point_y,
-                    prps_base_point_z, prps_platform_point_x, prps_platform_point_y,
-                    prps_platform_point_z,),
+                    prps_base_point_z, prps_branch_2, prps_platform_point_x,
+                    prps_platform_point_y, prps_platform_point_z,),
                 ),
             ),
         ),
@@ -763,13 +781,13 @@ def _prepare(p):
         (),
             (
                 (_prps,
-        (Jc_2_zz, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_3_x, h_3_y,
-                    prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
+        (prps_Jc_2_zz, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
                     prps_base_frame_yx, prps_base_frame_yy, prps_base_frame_yz,
                     prps_base_frame_zx, prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x,
-                    prps_base_point_y, prps_base_point_z, prps_link1_mass, prps_link2_mass,
-                    prps_link3_mass, prps_platform_point_x, prps_platform_point_y,
-                    prps_platform_point_z,),
+                    prps_base_point_y, prps_base_point_z, prps_branch_2, prps_g_r0_x, prps_g_r0_y,
+                    prps_g_r0_z, prps_h_2_x, prps_h_2_y, prps_h_3_x, prps_h_3_y, prps_link1_mass,
+                    prps_link2_mass, prps_link3_mass, prps_platform_point_x,
+                    prps_platform_point_y, prps_platform_point_z,),
                 ),
             ),
         ),
@@ -777,13 +795,15 @@ def _prepare(p):
         (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
                 (_prps,
-        (b_r0_z, branch_2, g_r0_x, g_r0_y, g_r0_z, h_1_x, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z,
-                    h_3_x, h_3_y, h_3_z, potential_t, potential_t_2, potential_t_3, potential_t_4,
-                    prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
+        (prps_b_r0_z, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
                     prps_base_frame_yx, prps_base_frame_yy, prps_base_frame_yz,
                     prps_base_frame_zx, prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x,
-                    prps_base_point_y, prps_base_point_z, prps_link1_mass, prps_link2_mass,
-                    prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,),
+                    prps_base_point_y, prps_base_point_z, prps_branch_2, prps_g_r0_x, prps_g_r0_y,
+                    prps_g_r0_z, prps_h_1_x, prps_h_1_y, prps_h_1_z, prps_h_2_x, prps_h_2_y,
+                    prps_h_2_z, prps_h_3_x, prps_h_3_y, prps_h_3_z, prps_link1_mass,
+                    prps_link2_mass, prps_platform_point_x, prps_platform_point_y,
+                    prps_platform_point_z, prps_potential_t, prps_potential_t_2,
+                    prps_potential_t_3, prps_potential_t_4,),
                 ),
             ),
         ),
@@ -791,18 +811,19 @@ def _prepare(p):
         (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
             (
                 (_prps,
-        (branch_2, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
+        (prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
                     prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx,
                     prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x, prps_base_point_y,
-                    prps_base_point_z, prps_platform_point_x, prps_platform_point_y,
-                    prps_platform_point_z,),
+                    prps_base_point_z, prps_branch_2, prps_platform_point_x,
+                    prps_platform_point_y, prps_platform_point_z,),
                 ),
             ),
         ),
     }
 
 
-_FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
+_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
@@ -848,17 +869,19 @@ class _Floats:
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
-        for k in range(self.states):
-            try:
-                ok, arrays = function(self, *(row[k] for row in rows))
-            except (ZeroDivisionError, OverflowError):
-                continue
-            if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
-                for a, array in zip(found, arrays):
-                    a[k] = array
-        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
+        found = [self.state(function, names, [row[k] for row in rows]) for k in range(self.states)]
+        return [np.array(a).T.reshape(*_SHAPES[n], self.states) for a, n in zip(zip(*found), names)]
+
+    def state(self, function, names, given):
+        """Lists that a function gives at a state."""
+        try:
+            ok, arrays = function(self, *given)
+        except (ZeroDivisionError, OverflowError):
+            ok = False
+        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+            return arrays
+        return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
 
 
 class _Arrays:
@@ -926,35 +949,44 @@ def _mode(p, states):
     return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
 
 
-def _call(function, steps, p, *arguments, mode=_mode):
-    """What the steps give at arguments (name, value, shape of a state, default, rule)."""
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+    """What the steps give at arguments (name, value, shape of a state, default, rule).
+
+    Where that may be infinite only NaN makes a state impossible.
+    """
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
     lead, p = _lead(leads), _given(p)
     read = [a[4:] != ("unused",) for a in arguments]
     if lead or mode is _Judged:
-        results = _many(steps, p, lead, given, shapes, read, mode)
+        results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
-        results = _one(steps, p, given, shapes, read)
+        results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
 
 
-def _one(steps, p, given, shapes, read):
+def _one(steps, p, given, shapes, read, unbounded):
     """Results at a single state."""
     states = [v.reshape(*shape, 1) for v, shape in zip(given, shapes)]
     with np.errstate(all="ignore"):
-        results = [a[..., 0] for a in steps(_Floats(p, 1), *states)]
-    if all(all(map(math.isfinite, v.ravel().tolist())) for v in (*compress(given, read), *results)):
-        return [np.array(a)[()] for a in results]
+        results = [a[..., 0].copy() for a in steps(_Floats(p, 1), *states)]
+    looked_at = [np.minimum(a, 0.0) for a in results] if unbounded else results
+    entries = (v.ravel().tolist() for v in (*compress(given, read), *looked_at))
+    if all(all(map(math.isfinite, row)) for row in entries):
+        return [a[()] for a in results]
     return [np.full(a.shape, np.nan)[()] for a in results]
 
 
-def _many(steps, p, lead, given, shapes, read, mode):
+def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block."""
     count = math.prod(lead)
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
+    if count > _BLOCK:
+        # Never touched, freed at once: the C library, which learns from it, then keeps the memory
+        # of intermediate arrays from block to block instead of giving its pages back.
+        np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
         for first in range(0, max(count, 1), _BLOCK):
             block = slice(first, min(first + _BLOCK, count))
@@ -966,7 +998,7 @@ def _many(steps, p, lead, given, shapes, read, mode):
             _all_finite(compress(states, read), good)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite(found, good)
+            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -995,6 +1027,18 @@ def _with_forces(a, amounts, directions, legs):
     for k, leg in enumerate(legs):
         result[leg] += amounts[k] * directions[k]
     return result
+
+
+def _unlimited(a, places):
+    """a, some entries infinite; what is not known stays so."""
+    result = np.array(a)
+    result[places] += np.inf
+    return result
+
+
+def _not_negative(a):
+    """1 where no entry is negative, else 0; NaN where one is not finite."""
+    return np.where(np.isfinite(a).all(axis=0), np.all(a >= 0.0, axis=0), np.nan)
 
 
 def _rows_divided(a, b, places):
@@ -1097,8 +1141,8 @@ def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
     n, states = b.shape
     if 0 < states <= _FEW:
-        matrices, rights = np.moveaxis(a, -1, 0).tolist(), b.T.tolist()
-        return np.array([_solve_one(*each) for each in zip(matrices, rights)]).T.reshape(n, states)
+        systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
+        return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
     good = np.all((size > 0.0) & np.isfinite(size), axis=0)
     rows = np.concatenate((a, b[:, None]), axis=1)
@@ -1125,28 +1169,32 @@ def _solve(a, b):
 
 
 def _solve_one(a, b):
-    """The same for one system of nested lists."""
-    n = len(b)
-    failure = [np.nan] * n
-    for i, row in enumerate(a):
-        size = max(map(abs, row), default=0.0)
-        if not 0.0 < size < np.inf:
-            return failure
-        a[i] = [v / size for v in row] + [b[i] / size]
-    for k in range(n):
-        best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
-            a[k], a[best] = a[best], a[k]
-        if not abs(a[k][k]) > _PIVOT:
-            return failure
-        head = a[k]
-        for i in range(k + 1, n):
-            factor = a[i][k] / head[k]
-            a[i] = [v - factor * h for v, h in zip(a[i], head)]
-    x = [0.0] * n
-    for k in reversed(range(n)):
-        x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
-    return x if all(map(math.isfinite, x)) else failure
+    """The same for one system of nested lists: the rows left lose an entry at every step."""
+    rows, heads = [], []
+    for row, right in zip(a, b):
+        size = max(map(abs, row))
+        if not 0.0 < size < math.inf:
+            return [math.nan] * len(b)
+        rows.append([v / size for v in (*row, right)])
+    while rows:
+        column = [abs(row[0]) for row in rows]
+        largest = max(column)
+        if largest > _CLEARLY * column[0]:
+            best = column.index(largest)
+            rows[0], rows[best] = rows[best], rows[0]
+        pivot, *head = rows[0]
+        if not abs(pivot) > _PIVOT:
+            return [math.nan] * len(b)
+        heads.append((pivot, head))
+        for i in range(1, len(rows)):
+            first, *row = rows[i]
+            factor = first / pivot
+            rows[i] = [v - factor * h for v, h in zip(row, head)]
+        del rows[0]
+    x = []
+    for pivot, (*head, right) in reversed(heads):
+        x.insert(0, (right - sum([h * v for h, v in zip(head, x)])) / pivot)
+    return x if all(map(math.isfinite, x)) else [math.nan] * len(b)
 
 
 def _matrices(a, *others):
@@ -1262,7 +1310,7 @@ def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
-    J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
+    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
         Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
         m_star,
     ) = shared
@@ -1318,241 +1366,265 @@ def _run_dynamics(m, X, V):
     out_M = m.zeros("M")
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy
-    J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
     J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_12 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_15 = 2.0*J_star_t_14 + J_star_xx
-    # (M4) centripetal force and weight of the platform
+    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
+    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
     Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
     Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z_2*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x_2*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y - g_r0_y_2*h_star_x
+    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
+    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
     sums = [0.0] * 27
     for leg, k in legs[0]:
         (
-        Jc_2_zz, Q_t_10, Q_t_11, Q_t_12, Q_t_13, Q_t_5, Q_t_6, Q_t_7, Q_t_8, Q_t_9, branch_2,
-            g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_3_x, h_3_y, prps_base_frame_xx,
-            prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx, prps_base_frame_yy,
-            prps_base_frame_yz, prps_base_frame_zx, prps_base_frame_zy, prps_base_frame_zz,
-            prps_base_point_x, prps_base_point_y, prps_base_point_z, prps_link1_mass,
+        prps_Jc_2_zz, prps_Q_t_10, prps_Q_t_11, prps_Q_t_12, prps_Q_t_13, prps_Q_t_5, prps_Q_t_6,
+            prps_Q_t_7, prps_Q_t_8, prps_Q_t_9, prps_base_frame_xx, prps_base_frame_xy,
+            prps_base_frame_xz, prps_base_frame_yx, prps_base_frame_yy, prps_base_frame_yz,
+            prps_base_frame_zx, prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x,
+            prps_base_point_y, prps_base_point_z, prps_branch_2, prps_g_r0_x, prps_g_r0_y,
+            prps_g_r0_z, prps_h_2_x, prps_h_2_y, prps_h_3_x, prps_h_3_y, prps_link1_mass,
             prps_link2_mass, prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,
         ) = k
-        # (prps-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (prps-S) from the base point to the connection point
+        prps_q_in_base_x = (
         R_xx*prps_platform_point_x + R_xy*prps_platform_point_y + R_xz*prps_platform_point_z
         )
-        q_in_base_y = (
+        prps_q_in_base_y = (
         R_yx*prps_platform_point_x + R_yy*prps_platform_point_y + R_yz*prps_platform_point_z
         )
-        q_in_base_z = (
+        prps_q_in_base_z = (
         R_zx*prps_platform_point_x + R_zy*prps_platform_point_y + R_zz*prps_platform_point_z
         )
-        S_x = q_in_base_x + t_x - prps_base_point_x
-        S_y = q_in_base_y + t_y - prps_base_point_y
-        S_z = q_in_base_z + t_z - prps_base_point_z
-        S_r0_x = S_x*prps_base_frame_xx + S_y*prps_base_frame_yx + S_z*prps_base_frame_zx
-        S_r0_y = S_x*prps_base_frame_xy + S_y*prps_base_frame_yy + S_z*prps_base_frame_zy
-        # (prps-K7) squared amplitude
-        rho2_2 = S_r0_x*S_r0_x + S_r0_y*S_r0_y
-        # (prps-K8) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (prps-K9) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = S_r0_x*inv_root_2
-        # (prps-K10) sine of the angle of joint 2 from its reference direction
-        s_2 = S_r0_y*inv_root_2
-        # (prps-N30) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_y = h_3_x + Jc_2_zz*inv_root_2
-        # (prps-N38) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_t = h_3_y*inv_root_2
-        # (prps-N41) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_yy = -d_Gamma_2_y*inv_root_2 - h_3_x*inv_root_2
-        # (prps-N43) inertia of the leg at the connection point, without the mass gathered there
-        axis_y_prps_axes2_in_base_x = c_2*prps_base_frame_xy - prps_base_frame_xx*s_2
-        axis_y_prps_axes2_in_base_y = c_2*prps_base_frame_yy - prps_base_frame_yx*s_2
-        axis_y_prps_axes2_in_base_z = c_2*prps_base_frame_zy - prps_base_frame_zx*s_2
-        axis_x_prps_axes2_in_base_x = c_2*prps_base_frame_xx + prps_base_frame_xy*s_2
-        axis_x_prps_axes2_in_base_y = c_2*prps_base_frame_yx + prps_base_frame_yy*s_2
-        axis_x_prps_axes2_in_base_z = c_2*prps_base_frame_zx + prps_base_frame_zy*s_2
-        Q_t = 0.5*d_c_yy
-        Q_t_2 = Q_t*axis_y_prps_axes2_in_base_x + axis_x_prps_axes2_in_base_x*d_G_t
-        Q_t_3 = Q_t*axis_y_prps_axes2_in_base_y + axis_x_prps_axes2_in_base_y*d_G_t
-        Q_t_4 = Q_t*axis_y_prps_axes2_in_base_z + axis_x_prps_axes2_in_base_z*d_G_t
-        Q_t_14 = Q_t_2*axis_y_prps_axes2_in_base_x - Q_t_5
-        Q_t_15 = 2.0*Q_t_14
-        Q_t_16 = (
-        Q_t_2*axis_y_prps_axes2_in_base_y + Q_t_3*axis_y_prps_axes2_in_base_x - Q_t_6 - Q_t_7
+        prps_S_x = prps_q_in_base_x + t_x - prps_base_point_x
+        prps_S_y = prps_q_in_base_y + t_y - prps_base_point_y
+        prps_S_z = prps_q_in_base_z + t_z - prps_base_point_z
+        prps_S_r0_x = (
+        prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx + prps_S_z*prps_base_frame_zx
         )
-        Q_t_17 = (
-        Q_t_2*axis_y_prps_axes2_in_base_z + Q_t_4*axis_y_prps_axes2_in_base_x - Q_t_8 - Q_t_9
+        prps_S_r0_y = (
+        prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
         )
-        Q_t_18 = Q_t_3*axis_y_prps_axes2_in_base_y - Q_t_10
-        Q_t_19 = 2.0*Q_t_18
-        Q_t_20 = (
-        Q_t_3*axis_y_prps_axes2_in_base_z + Q_t_4*axis_y_prps_axes2_in_base_y - Q_t_11 - Q_t_12
+        # (prps-rho2_2) squared amplitude
+        prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y
+        # (prps-root_2) amplitude, with the sign of the branch
+        prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
+        # (prps-w_2) reciprocal vector 2
+        inv_prps_root_2 = 1.0/prps_root_2
+        # (prps-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+        prps_d_phi_3_t = inv_prps_root_2*prps_h_3_y
+        # (prps-c_2) cosine of the angle of joint 2 from its reference direction
+        prps_c_2 = inv_prps_root_2*prps_S_r0_x
+        # (prps-s_2) sine of the angle of joint 2 from its reference direction
+        prps_s_2 = inv_prps_root_2*prps_S_r0_y
+        # (prps-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        prps_d_Gamma_2_y = prps_h_3_x + inv_prps_root_2*prps_Jc_2_zz
+        # (prps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        prps_d_c_yy = -inv_prps_root_2*prps_d_Gamma_2_y - inv_prps_root_2*prps_h_3_x
+        # (prps-Q) inertia of the leg at the connection point, without the mass gathered there
+        axis_y_prps_axes2_in_base_x = prps_base_frame_xy*prps_c_2 - prps_base_frame_xx*prps_s_2
+        axis_y_prps_axes2_in_base_y = prps_base_frame_yy*prps_c_2 - prps_base_frame_yx*prps_s_2
+        axis_y_prps_axes2_in_base_z = prps_base_frame_zy*prps_c_2 - prps_base_frame_zx*prps_s_2
+        axis_x_prps_axes2_in_base_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
+        axis_x_prps_axes2_in_base_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
+        axis_x_prps_axes2_in_base_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2
+        prps_Q_t = 0.5*prps_d_c_yy
+        prps_Q_t_2 = (
+        axis_x_prps_axes2_in_base_x*prps_d_phi_3_t + axis_y_prps_axes2_in_base_x*prps_Q_t
         )
-        Q_t_21 = Q_t_4*axis_y_prps_axes2_in_base_z - Q_t_13
-        Q_t_22 = 2.0*Q_t_21
-        # (M2) coupling block of M
-        M_ta_t = Q_t_16*q_in_base_z
-        M_ta_t_2 = Q_t_17*q_in_base_y
-        M_ta_t_3 = M_ta_t - M_ta_t_2
-        M_ta_t_4 = Q_t_15*q_in_base_z - Q_t_17*q_in_base_x
-        M_ta_t_5 = Q_t_15*q_in_base_y - Q_t_16*q_in_base_x
-        M_ta_t_6 = Q_t_19*q_in_base_z - Q_t_20*q_in_base_y
-        M_ta_t_7 = Q_t_20*q_in_base_x
-        M_ta_t_8 = M_ta_t - M_ta_t_7
-        M_ta_t_9 = Q_t_16*q_in_base_y - Q_t_19*q_in_base_x
-        M_ta_t_10 = Q_t_20*q_in_base_z - Q_t_22*q_in_base_y
-        M_ta_t_11 = Q_t_17*q_in_base_z - Q_t_22*q_in_base_x
-        M_ta_t_12 = M_ta_t_7 - M_ta_t_2
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
-        M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y
-        M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z
-        M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x
-        M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z
-        M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
-        # (prps-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_tip_x = (
-        S_dot_x*axis_x_prps_axes2_in_base_x + S_dot_y*axis_x_prps_axes2_in_base_y +
-            S_dot_z*axis_x_prps_axes2_in_base_z
+        prps_Q_t_3 = (
+        axis_x_prps_axes2_in_base_y*prps_d_phi_3_t + axis_y_prps_axes2_in_base_y*prps_Q_t
         )
-        # (prps-V8) rate of joint 2
-        qd_2 = (
-        inv_root_2*(S_dot_x*axis_y_prps_axes2_in_base_x + S_dot_y*axis_y_prps_axes2_in_base_y +
-            S_dot_z*axis_y_prps_axes2_in_base_z)
+        prps_Q_t_4 = (
+        axis_x_prps_axes2_in_base_z*prps_d_phi_3_t + axis_y_prps_axes2_in_base_z*prps_Q_t
         )
-        # (prps-V11) centripetal tensor of link 2
-        W_2_t = qd_2*qd_2
-        # (prps-A1) centripetal acceleration of the connection point
-        u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
-        u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y
-        u_1_tip_y = (
-        axis_y_prps_axes2_in_base_x*u_1_x + axis_y_prps_axes2_in_base_y*u_1_y +
-            axis_y_prps_axes2_in_base_z*u_1_z
+        prps_Q_t_14 = axis_y_prps_axes2_in_base_x*prps_Q_t_2 - prps_Q_t_5
+        prps_Q_t_15 = 2.0*prps_Q_t_14
+        prps_Q_t_16 = (
+        axis_y_prps_axes2_in_base_x*prps_Q_t_3 + axis_y_prps_axes2_in_base_y*prps_Q_t_2 -
+            prps_Q_t_6 - prps_Q_t_7
         )
-        # (prps-A6) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_y = u_1_tip_y - 2.0*S_dot_tip_x*qd_2
-        # (prps-A8) remainder without the acceleration in: acceleration of joint 1
-        qdd_2_o = inv_root_2*rel_o_y
-        # (prps-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        acc_1_o_z = (
-        prps_base_frame_xz*u_1_x + prps_base_frame_yz*u_1_y + prps_base_frame_zz*u_1_z - g_r0_z
+        prps_Q_t_17 = (
+        axis_y_prps_axes2_in_base_x*prps_Q_t_4 + axis_y_prps_axes2_in_base_z*prps_Q_t_2 -
+            prps_Q_t_8 - prps_Q_t_9
         )
-        # (prps-N6) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x = c_2*g_r0_x + g_r0_y*s_2
-        g_r1_y = c_2*g_r0_y - g_r0_x*s_2
-        # (prps-N33) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
-        T_1_o_z = acc_1_o_z*prps_link1_mass + acc_1_o_z*prps_link2_mass
-        # (prps-N12) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        acc_3_o_x = (
-        axis_x_prps_axes2_in_base_x*u_1_x + axis_x_prps_axes2_in_base_y*u_1_y +
-            axis_x_prps_axes2_in_base_z*u_1_z - g_r1_x
+        prps_Q_t_18 = axis_y_prps_axes2_in_base_y*prps_Q_t_3 - prps_Q_t_10
+        prps_Q_t_19 = 2.0*prps_Q_t_18
+        prps_Q_t_20 = (
+        axis_y_prps_axes2_in_base_y*prps_Q_t_4 + axis_y_prps_axes2_in_base_z*prps_Q_t_3 -
+            prps_Q_t_11 - prps_Q_t_12
         )
-        acc_3_o_y = u_1_tip_y - g_r1_y
-        # (prps-N28) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_o_z = (
-        Jc_2_zz*qdd_2_o + acc_3_o_y*h_3_x + g_r1_x*h_2_y - acc_3_o_x*h_3_y - g_r1_y*h_2_x
+        prps_Q_t_21 = axis_y_prps_axes2_in_base_z*prps_Q_t_4 - prps_Q_t_13
+        prps_Q_t_22 = 2.0*prps_Q_t_21
+        # (M_ta) coupling block of M
+        prps_M_ta_t = prps_Q_t_16*prps_q_in_base_z
+        prps_M_ta_t_2 = prps_Q_t_17*prps_q_in_base_y
+        prps_M_ta_t_3 = prps_M_ta_t - prps_M_ta_t_2
+        prps_M_ta_t_4 = prps_Q_t_15*prps_q_in_base_z - prps_Q_t_17*prps_q_in_base_x
+        prps_M_ta_t_5 = prps_Q_t_15*prps_q_in_base_y - prps_Q_t_16*prps_q_in_base_x
+        prps_M_ta_t_6 = prps_Q_t_19*prps_q_in_base_z - prps_Q_t_20*prps_q_in_base_y
+        prps_M_ta_t_7 = prps_Q_t_20*prps_q_in_base_x
+        prps_M_ta_t_8 = prps_M_ta_t - prps_M_ta_t_7
+        prps_M_ta_t_9 = prps_Q_t_16*prps_q_in_base_y - prps_Q_t_19*prps_q_in_base_x
+        prps_M_ta_t_10 = prps_Q_t_20*prps_q_in_base_z - prps_Q_t_22*prps_q_in_base_y
+        prps_M_ta_t_11 = prps_Q_t_17*prps_q_in_base_z - prps_Q_t_22*prps_q_in_base_x
+        prps_M_ta_t_12 = prps_M_ta_t_7 - prps_M_ta_t_2
+        # (M_aa) rotational block of M
+        prps_M_aa_t = prps_M_ta_t_6*prps_q_in_base_z - prps_M_ta_t_10*prps_q_in_base_y
+        prps_M_aa_t_2 = prps_M_ta_t_8*prps_q_in_base_z - prps_M_ta_t_11*prps_q_in_base_y
+        prps_M_aa_t_3 = prps_M_ta_t_12*prps_q_in_base_y + prps_M_ta_t_9*prps_q_in_base_z
+        prps_M_aa_t_4 = prps_M_ta_t_4*prps_q_in_base_z - prps_M_ta_t_11*prps_q_in_base_x
+        prps_M_aa_t_5 = prps_M_ta_t_12*prps_q_in_base_x + prps_M_ta_t_5*prps_q_in_base_z
+        prps_M_aa_t_6 = prps_M_ta_t_5*prps_q_in_base_y - prps_M_ta_t_9*prps_q_in_base_x
+        # (prps-S_dot) velocity of the connection point
+        prps_S_dot_t = omega_y*prps_q_in_base_z - omega_z*prps_q_in_base_y
+        prps_S_dot_t_2 = omega_z*prps_q_in_base_x - omega_x*prps_q_in_base_z
+        prps_S_dot_t_3 = omega_x*prps_q_in_base_y - omega_y*prps_q_in_base_x
+        prps_S_dot_x = prps_S_dot_t + t_dot_x
+        prps_S_dot_y = prps_S_dot_t_2 + t_dot_y
+        prps_S_dot_z = prps_S_dot_t_3 + t_dot_z
+        prps_S_dot_tip_x = (
+        axis_x_prps_axes2_in_base_x*prps_S_dot_x + axis_x_prps_axes2_in_base_y*prps_S_dot_y +
+            axis_x_prps_axes2_in_base_z*prps_S_dot_z
         )
-        # (prps-N15) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
-        phi_3_o_x = -W_2_t*h_3_x - h_3_y*qdd_2_o
-        # (prps-N42) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_o_y = W_2_t*h_3_y - h_3_x*qdd_2_o - inv_root_2*mu_2_o_z
-        # (prps-N44) velocity and gravity terms of the leg force
-        U_in_base_x = (
-        T_1_o_z*prps_base_frame_xz + axis_x_prps_axes2_in_base_x*phi_3_o_x -
-            axis_y_prps_axes2_in_base_x*c_o_y
+        # (prps-qd_2) rate of joint 2
+        prps_qd_2 = (
+        inv_prps_root_2*(axis_y_prps_axes2_in_base_x*prps_S_dot_x +
+            axis_y_prps_axes2_in_base_y*prps_S_dot_y + axis_y_prps_axes2_in_base_z*prps_S_dot_z)
         )
-        U_in_base_y = (
-        T_1_o_z*prps_base_frame_yz + axis_x_prps_axes2_in_base_y*phi_3_o_x -
-            axis_y_prps_axes2_in_base_y*c_o_y
+        # (prps-u_1) centripetal acceleration of the connection point
+        prps_u_1_x = omega_y*prps_S_dot_t_3 - omega_z*prps_S_dot_t_2
+        prps_u_1_y = omega_z*prps_S_dot_t - omega_x*prps_S_dot_t_3
+        prps_u_1_z = omega_x*prps_S_dot_t_2 - omega_y*prps_S_dot_t
+        # (prps-W_2) centripetal tensor of link 2
+        prps_W_2_t = prps_qd_2*prps_qd_2
+        # (prps-u_1) centripetal acceleration of the connection point
+        prps_u_1_tip_y = (
+        axis_y_prps_axes2_in_base_x*prps_u_1_x + axis_y_prps_axes2_in_base_y*prps_u_1_y +
+            axis_y_prps_axes2_in_base_z*prps_u_1_z
         )
-        U_in_base_z = (
-        T_1_o_z*prps_base_frame_zz + axis_x_prps_axes2_in_base_z*phi_3_o_x -
-            axis_y_prps_axes2_in_base_z*c_o_y
+        # (prps-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        prps_rel_o_y = prps_u_1_tip_y - 2.0*prps_S_dot_tip_x*prps_qd_2
+        # (prps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        prps_qdd_2_o = inv_prps_root_2*prps_rel_o_y
+        # (prps-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
+        prps_phi_3_o_x = -prps_W_2_t*prps_h_3_x - prps_h_3_y*prps_qdd_2_o
+        # (prps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        prps_g_r1_x = prps_c_2*prps_g_r0_x + prps_g_r0_y*prps_s_2
+        prps_g_r1_y = prps_c_2*prps_g_r0_y - prps_g_r0_x*prps_s_2
+        prps_acc_2_o_z = (
+        prps_base_frame_xz*prps_u_1_x + prps_base_frame_yz*prps_u_1_y +
+            prps_base_frame_zz*prps_u_1_z - prps_g_r0_z
         )
-        # (M7) rotational part of Z
-        Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
-        Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
-        Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_x = prps_base_frame_zz*q_in_base_y - prps_base_frame_yz*q_in_base_z
-        H_a_1_y = prps_base_frame_xz*q_in_base_z - prps_base_frame_zz*q_in_base_x
-        H_a_1_z = prps_base_frame_yz*q_in_base_x - prps_base_frame_xz*q_in_base_y
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_3_x = (
-        axis_x_prps_axes2_in_base_z*q_in_base_y - axis_x_prps_axes2_in_base_y*q_in_base_z
+        # (prps-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        prps_acc_3_o_x = (
+        axis_x_prps_axes2_in_base_x*prps_u_1_x + axis_x_prps_axes2_in_base_y*prps_u_1_y +
+            axis_x_prps_axes2_in_base_z*prps_u_1_z - prps_g_r1_x
         )
-        H_a_3_y = (
-        axis_x_prps_axes2_in_base_x*q_in_base_z - axis_x_prps_axes2_in_base_z*q_in_base_x
+        prps_acc_3_o_y = prps_u_1_tip_y - prps_g_r1_y
+        # (prps-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        prps_mu_2_o_z = (
+        prps_Jc_2_zz*prps_qdd_2_o + prps_acc_3_o_y*prps_h_3_x + prps_g_r1_x*prps_h_2_y -
+            prps_acc_3_o_x*prps_h_3_y - prps_g_r1_y*prps_h_2_x
         )
-        H_a_3_z = (
-        axis_x_prps_axes2_in_base_y*q_in_base_x - axis_x_prps_axes2_in_base_x*q_in_base_y
+        # (prps-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
+        prps_T_1_o_z = prps_acc_2_o_z*prps_link1_mass + prps_acc_2_o_z*prps_link2_mass
+        # (prps-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        prps_c_o_y = (
+        prps_W_2_t*prps_h_3_y - inv_prps_root_2*prps_mu_2_o_z - prps_h_3_x*prps_qdd_2_o
+        )
+        # (prps-U) velocity and gravity terms of the leg force
+        prps_U_in_base_x = (
+        axis_x_prps_axes2_in_base_x*prps_phi_3_o_x + prps_T_1_o_z*prps_base_frame_xz -
+            axis_y_prps_axes2_in_base_x*prps_c_o_y
+        )
+        prps_U_in_base_y = (
+        axis_x_prps_axes2_in_base_y*prps_phi_3_o_x + prps_T_1_o_z*prps_base_frame_yz -
+            axis_y_prps_axes2_in_base_y*prps_c_o_y
+        )
+        prps_U_in_base_z = (
+        axis_x_prps_axes2_in_base_z*prps_phi_3_o_x + prps_T_1_o_z*prps_base_frame_zz -
+            axis_y_prps_axes2_in_base_z*prps_c_o_y
+        )
+        # (Z_a) rotational part of Z
+        prps_Z_a_t = prps_U_in_base_z*prps_q_in_base_y - prps_U_in_base_y*prps_q_in_base_z
+        prps_Z_a_t_2 = prps_U_in_base_x*prps_q_in_base_z - prps_U_in_base_z*prps_q_in_base_x
+        prps_Z_a_t_3 = prps_U_in_base_y*prps_q_in_base_x - prps_U_in_base_x*prps_q_in_base_y
+        # (prps-H_a_1) moment of the column's unit force about the platform origin
+        prps_H_a_1_x = prps_base_frame_zz*prps_q_in_base_y - prps_base_frame_yz*prps_q_in_base_z
+        prps_H_a_1_y = prps_base_frame_xz*prps_q_in_base_z - prps_base_frame_zz*prps_q_in_base_x
+        prps_H_a_1_z = prps_base_frame_yz*prps_q_in_base_x - prps_base_frame_xz*prps_q_in_base_y
+        # (prps-H_a_3) moment of the column's unit force about the platform origin
+        prps_H_a_3_x = (
+        axis_x_prps_axes2_in_base_z*prps_q_in_base_y -
+            axis_x_prps_axes2_in_base_y*prps_q_in_base_z
+        )
+        prps_H_a_3_y = (
+        axis_x_prps_axes2_in_base_x*prps_q_in_base_z -
+            axis_x_prps_axes2_in_base_z*prps_q_in_base_x
+        )
+        prps_H_a_3_z = (
+        axis_x_prps_axes2_in_base_y*prps_q_in_base_x -
+            axis_x_prps_axes2_in_base_x*prps_q_in_base_y
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_2) >
-            _TOLERANCE * 0.75))
+        ok & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
+            (abs(prps_root_2) > _TOLERANCE * 0.75))
         )
         sums = m.added(sums, leg, (
-        Q_t_15, Q_t_16, Q_t_17, Q_t_19, Q_t_20, Q_t_22, M_ta_t_3, M_ta_t_4, M_ta_t_5,
-            M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2,
-            M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y, U_in_base_z,
-            Z_a_t, Z_a_t_2, Z_a_t_3,
+        prps_Q_t_15, prps_Q_t_16, prps_Q_t_17, prps_Q_t_19, prps_Q_t_20, prps_Q_t_22,
+            prps_M_ta_t_3, prps_M_ta_t_4, prps_M_ta_t_5, prps_M_ta_t_6, prps_M_ta_t_8,
+            prps_M_ta_t_9, prps_M_ta_t_10, prps_M_ta_t_11, prps_M_ta_t_12, prps_M_aa_t,
+            prps_M_aa_t_2, prps_M_aa_t_3, prps_M_aa_t_4, prps_M_aa_t_5, prps_M_aa_t_6,
+            prps_U_in_base_x, prps_U_in_base_y, prps_U_in_base_z, prps_Z_a_t, prps_Z_a_t_2,
+            prps_Z_a_t_3,
         ))
         out_H[_H_prps[0][leg]] = prps_base_frame_xz
         out_H[_H_prps[1][leg]] = prps_base_frame_yz
         out_H[_H_prps[2][leg]] = prps_base_frame_zz
-        out_H[_H_prps[3][leg]] = H_a_1_x
-        out_H[_H_prps[4][leg]] = H_a_1_y
-        out_H[_H_prps[5][leg]] = H_a_1_z
+        out_H[_H_prps[3][leg]] = prps_H_a_1_x
+        out_H[_H_prps[4][leg]] = prps_H_a_1_y
+        out_H[_H_prps[5][leg]] = prps_H_a_1_z
         out_H[_H_prps[6][leg]] = axis_x_prps_axes2_in_base_x
         out_H[_H_prps[7][leg]] = axis_x_prps_axes2_in_base_y
         out_H[_H_prps[8][leg]] = axis_x_prps_axes2_in_base_z
-        out_H[_H_prps[9][leg]] = H_a_3_x
-        out_H[_H_prps[10][leg]] = H_a_3_y
-        out_H[_H_prps[11][leg]] = H_a_3_z
+        out_H[_H_prps[9][leg]] = prps_H_a_3_x
+        out_H[_H_prps[10][leg]] = prps_H_a_3_y
+        out_H[_H_prps[11][leg]] = prps_H_a_3_z
     (
     total_prps_xx, total_prps_xy, total_prps_xz, total_prps_yy, total_prps_yz, total_prps_zz,
         total_prps_xx_2, total_prps_xy_2, total_prps_xz_2, total_prps_yx, total_prps_yy_2,
@@ -1560,29 +1632,29 @@ def _run_dynamics(m, X, V):
         total_prps_xy_3, total_prps_xz_3, total_prps_yy_3, total_prps_yz_3, total_prps_zz_3,
         total_prps_x, total_prps_y, total_prps_z, total_prps_x_2, total_prps_y_2, total_prps_z_2,
     ) = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = m_star - total_prps_xx
     M_tt_yy = m_star - total_prps_yy
     M_tt_zz = m_star - total_prps_zz
-    # (M2) coupling block of M
+    # (M_ta) coupling block of M
     M_ta_xy = h_star_in_base_z - total_prps_xy_2
     M_ta_xz = total_prps_xz_2 - h_star_in_base_y
     M_ta_yx = total_prps_yx - h_star_in_base_z
     M_ta_yz = h_star_in_base_x + total_prps_yz_2
     M_ta_zx = h_star_in_base_y + total_prps_zx
     M_ta_zy = -h_star_in_base_x - total_prps_zy
-    # (M3) rotational block of M
+    # (M_aa) rotational block of M
     M_aa_xx = J_star_t_8 - total_prps_xx_3
     M_aa_xy = J_star_t_9 + total_prps_xy_3
     M_aa_xz = J_star_t_10 - total_prps_xz_3
-    M_aa_yy = J_star_t_12 - total_prps_yy_3
-    M_aa_yz = J_star_t_13 + total_prps_yz_3
-    M_aa_zz = J_star_t_15 - total_prps_zz_3
-    # (M5) translational part of Z
+    M_aa_yy = J_star_t_13 - total_prps_yy_3
+    M_aa_yz = J_star_t_15 + total_prps_yz_3
+    M_aa_zz = J_star_t_17 - total_prps_zz_3
+    # (Z_t) translational part of Z
     Z_t_x = Z_p_x + total_prps_x
     Z_t_y = Z_p_y + total_prps_y
     Z_t_z = Z_p_z + total_prps_z
-    # (M7) rotational part of Z
+    # (Z_a) rotational part of Z
     Z_a_x = Z_q_in_base_x + total_prps_x_2
     Z_a_y = Z_q_in_base_y + total_prps_y_2
     Z_a_z = Z_q_in_base_z + total_prps_z_2
@@ -1636,7 +1708,7 @@ def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
     (
-    J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
+    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
         h_star_z, m_star,
     ) = shared
     X_0 = X[0]
@@ -1676,122 +1748,134 @@ def _run_M(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_M = m.zeros("M")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy
-    J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
     J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_12 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_15 = 2.0*J_star_t_14 + J_star_xx
+    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
+    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
     sums = [0.0] * 21
     for leg, k in legs[0]:
         (
-        Jc_2_zz, Q_t_10, Q_t_11, Q_t_12, Q_t_13, Q_t_5, Q_t_6, Q_t_7, Q_t_8, Q_t_9, branch_2,
-            h_3_x, h_3_y, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_yx,
-            prps_base_frame_yy, prps_base_frame_zx, prps_base_frame_zy, prps_base_point_x,
-            prps_base_point_y, prps_base_point_z, prps_platform_point_x, prps_platform_point_y,
-            prps_platform_point_z,
+        prps_Jc_2_zz, prps_Q_t_10, prps_Q_t_11, prps_Q_t_12, prps_Q_t_13, prps_Q_t_5, prps_Q_t_6,
+            prps_Q_t_7, prps_Q_t_8, prps_Q_t_9, prps_base_frame_xx, prps_base_frame_xy,
+            prps_base_frame_yx, prps_base_frame_yy, prps_base_frame_zx, prps_base_frame_zy,
+            prps_base_point_x, prps_base_point_y, prps_base_point_z, prps_branch_2, prps_h_3_x,
+            prps_h_3_y, prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,
         ) = k
-        # (prps-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (prps-S) from the base point to the connection point
+        prps_q_in_base_x = (
         R_xx*prps_platform_point_x + R_xy*prps_platform_point_y + R_xz*prps_platform_point_z
         )
-        q_in_base_y = (
+        prps_q_in_base_y = (
         R_yx*prps_platform_point_x + R_yy*prps_platform_point_y + R_yz*prps_platform_point_z
         )
-        q_in_base_z = (
+        prps_q_in_base_z = (
         R_zx*prps_platform_point_x + R_zy*prps_platform_point_y + R_zz*prps_platform_point_z
         )
-        S_x = q_in_base_x + t_x - prps_base_point_x
-        S_y = q_in_base_y + t_y - prps_base_point_y
-        S_z = q_in_base_z + t_z - prps_base_point_z
-        S_r0_x = S_x*prps_base_frame_xx + S_y*prps_base_frame_yx + S_z*prps_base_frame_zx
-        S_r0_y = S_x*prps_base_frame_xy + S_y*prps_base_frame_yy + S_z*prps_base_frame_zy
-        # (prps-K7) squared amplitude
-        rho2_2 = S_r0_x*S_r0_x + S_r0_y*S_r0_y
-        # (prps-K8) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (prps-K9) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = S_r0_x*inv_root_2
-        # (prps-K10) sine of the angle of joint 2 from its reference direction
-        s_2 = S_r0_y*inv_root_2
-        # (prps-N30) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_y = h_3_x + Jc_2_zz*inv_root_2
-        # (prps-N38) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_t = h_3_y*inv_root_2
-        # (prps-N41) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_yy = -d_Gamma_2_y*inv_root_2 - h_3_x*inv_root_2
-        # (prps-N43) inertia of the leg at the connection point, without the mass gathered there
-        axis_y_prps_axes2_in_base_x = c_2*prps_base_frame_xy - prps_base_frame_xx*s_2
-        axis_y_prps_axes2_in_base_y = c_2*prps_base_frame_yy - prps_base_frame_yx*s_2
-        axis_y_prps_axes2_in_base_z = c_2*prps_base_frame_zy - prps_base_frame_zx*s_2
-        Q_t = 0.5*d_c_yy
-        Q_t_2 = (
-        Q_t*axis_y_prps_axes2_in_base_x + d_G_t*(c_2*prps_base_frame_xx + prps_base_frame_xy*s_2)
+        prps_S_x = prps_q_in_base_x + t_x - prps_base_point_x
+        prps_S_y = prps_q_in_base_y + t_y - prps_base_point_y
+        prps_S_z = prps_q_in_base_z + t_z - prps_base_point_z
+        prps_S_r0_x = (
+        prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx + prps_S_z*prps_base_frame_zx
         )
-        Q_t_3 = (
-        Q_t*axis_y_prps_axes2_in_base_y + d_G_t*(c_2*prps_base_frame_yx + prps_base_frame_yy*s_2)
+        prps_S_r0_y = (
+        prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
         )
-        Q_t_4 = (
-        Q_t*axis_y_prps_axes2_in_base_z + d_G_t*(c_2*prps_base_frame_zx + prps_base_frame_zy*s_2)
+        # (prps-rho2_2) squared amplitude
+        prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y
+        # (prps-root_2) amplitude, with the sign of the branch
+        prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
+        # (prps-w_2) reciprocal vector 2
+        inv_prps_root_2 = 1.0/prps_root_2
+        # (prps-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+        prps_d_phi_3_t = inv_prps_root_2*prps_h_3_y
+        # (prps-c_2) cosine of the angle of joint 2 from its reference direction
+        prps_c_2 = inv_prps_root_2*prps_S_r0_x
+        # (prps-s_2) sine of the angle of joint 2 from its reference direction
+        prps_s_2 = inv_prps_root_2*prps_S_r0_y
+        # (prps-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        prps_d_Gamma_2_y = prps_h_3_x + inv_prps_root_2*prps_Jc_2_zz
+        # (prps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        prps_d_c_yy = -inv_prps_root_2*prps_d_Gamma_2_y - inv_prps_root_2*prps_h_3_x
+        # (prps-Q) inertia of the leg at the connection point, without the mass gathered there
+        axis_y_prps_axes2_in_base_x = prps_base_frame_xy*prps_c_2 - prps_base_frame_xx*prps_s_2
+        axis_y_prps_axes2_in_base_y = prps_base_frame_yy*prps_c_2 - prps_base_frame_yx*prps_s_2
+        axis_y_prps_axes2_in_base_z = prps_base_frame_zy*prps_c_2 - prps_base_frame_zx*prps_s_2
+        prps_Q_t = 0.5*prps_d_c_yy
+        prps_Q_t_2 = (
+        axis_y_prps_axes2_in_base_x*prps_Q_t + prps_d_phi_3_t*(prps_base_frame_xx*prps_c_2 +
+            prps_base_frame_xy*prps_s_2)
         )
-        Q_t_14 = Q_t_2*axis_y_prps_axes2_in_base_x - Q_t_5
-        Q_t_15 = 2.0*Q_t_14
-        Q_t_16 = (
-        Q_t_2*axis_y_prps_axes2_in_base_y + Q_t_3*axis_y_prps_axes2_in_base_x - Q_t_6 - Q_t_7
+        prps_Q_t_3 = (
+        axis_y_prps_axes2_in_base_y*prps_Q_t + prps_d_phi_3_t*(prps_base_frame_yx*prps_c_2 +
+            prps_base_frame_yy*prps_s_2)
         )
-        Q_t_17 = (
-        Q_t_2*axis_y_prps_axes2_in_base_z + Q_t_4*axis_y_prps_axes2_in_base_x - Q_t_8 - Q_t_9
+        prps_Q_t_4 = (
+        axis_y_prps_axes2_in_base_z*prps_Q_t + prps_d_phi_3_t*(prps_base_frame_zx*prps_c_2 +
+            prps_base_frame_zy*prps_s_2)
         )
-        Q_t_18 = Q_t_3*axis_y_prps_axes2_in_base_y - Q_t_10
-        Q_t_19 = 2.0*Q_t_18
-        Q_t_20 = (
-        Q_t_3*axis_y_prps_axes2_in_base_z + Q_t_4*axis_y_prps_axes2_in_base_y - Q_t_11 - Q_t_12
+        prps_Q_t_14 = axis_y_prps_axes2_in_base_x*prps_Q_t_2 - prps_Q_t_5
+        prps_Q_t_15 = 2.0*prps_Q_t_14
+        prps_Q_t_16 = (
+        axis_y_prps_axes2_in_base_x*prps_Q_t_3 + axis_y_prps_axes2_in_base_y*prps_Q_t_2 -
+            prps_Q_t_6 - prps_Q_t_7
         )
-        Q_t_21 = Q_t_4*axis_y_prps_axes2_in_base_z - Q_t_13
-        Q_t_22 = 2.0*Q_t_21
-        # (M2) coupling block of M
-        M_ta_t = Q_t_16*q_in_base_z
-        M_ta_t_2 = Q_t_17*q_in_base_y
-        M_ta_t_3 = M_ta_t - M_ta_t_2
-        M_ta_t_4 = Q_t_15*q_in_base_z - Q_t_17*q_in_base_x
-        M_ta_t_5 = Q_t_15*q_in_base_y - Q_t_16*q_in_base_x
-        M_ta_t_6 = Q_t_19*q_in_base_z - Q_t_20*q_in_base_y
-        M_ta_t_7 = Q_t_20*q_in_base_x
-        M_ta_t_8 = M_ta_t - M_ta_t_7
-        M_ta_t_9 = Q_t_16*q_in_base_y - Q_t_19*q_in_base_x
-        M_ta_t_10 = Q_t_20*q_in_base_z - Q_t_22*q_in_base_y
-        M_ta_t_11 = Q_t_17*q_in_base_z - Q_t_22*q_in_base_x
-        M_ta_t_12 = M_ta_t_7 - M_ta_t_2
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
-        M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y
-        M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z
-        M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x
-        M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z
-        M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
+        prps_Q_t_17 = (
+        axis_y_prps_axes2_in_base_x*prps_Q_t_4 + axis_y_prps_axes2_in_base_z*prps_Q_t_2 -
+            prps_Q_t_8 - prps_Q_t_9
+        )
+        prps_Q_t_18 = axis_y_prps_axes2_in_base_y*prps_Q_t_3 - prps_Q_t_10
+        prps_Q_t_19 = 2.0*prps_Q_t_18
+        prps_Q_t_20 = (
+        axis_y_prps_axes2_in_base_y*prps_Q_t_4 + axis_y_prps_axes2_in_base_z*prps_Q_t_3 -
+            prps_Q_t_11 - prps_Q_t_12
+        )
+        prps_Q_t_21 = axis_y_prps_axes2_in_base_z*prps_Q_t_4 - prps_Q_t_13
+        prps_Q_t_22 = 2.0*prps_Q_t_21
+        # (M_ta) coupling block of M
+        prps_M_ta_t = prps_Q_t_16*prps_q_in_base_z
+        prps_M_ta_t_2 = prps_Q_t_17*prps_q_in_base_y
+        prps_M_ta_t_3 = prps_M_ta_t - prps_M_ta_t_2
+        prps_M_ta_t_4 = prps_Q_t_15*prps_q_in_base_z - prps_Q_t_17*prps_q_in_base_x
+        prps_M_ta_t_5 = prps_Q_t_15*prps_q_in_base_y - prps_Q_t_16*prps_q_in_base_x
+        prps_M_ta_t_6 = prps_Q_t_19*prps_q_in_base_z - prps_Q_t_20*prps_q_in_base_y
+        prps_M_ta_t_7 = prps_Q_t_20*prps_q_in_base_x
+        prps_M_ta_t_8 = prps_M_ta_t - prps_M_ta_t_7
+        prps_M_ta_t_9 = prps_Q_t_16*prps_q_in_base_y - prps_Q_t_19*prps_q_in_base_x
+        prps_M_ta_t_10 = prps_Q_t_20*prps_q_in_base_z - prps_Q_t_22*prps_q_in_base_y
+        prps_M_ta_t_11 = prps_Q_t_17*prps_q_in_base_z - prps_Q_t_22*prps_q_in_base_x
+        prps_M_ta_t_12 = prps_M_ta_t_7 - prps_M_ta_t_2
+        # (M_aa) rotational block of M
+        prps_M_aa_t = prps_M_ta_t_6*prps_q_in_base_z - prps_M_ta_t_10*prps_q_in_base_y
+        prps_M_aa_t_2 = prps_M_ta_t_8*prps_q_in_base_z - prps_M_ta_t_11*prps_q_in_base_y
+        prps_M_aa_t_3 = prps_M_ta_t_12*prps_q_in_base_y + prps_M_ta_t_9*prps_q_in_base_z
+        prps_M_aa_t_4 = prps_M_ta_t_4*prps_q_in_base_z - prps_M_ta_t_11*prps_q_in_base_x
+        prps_M_aa_t_5 = prps_M_ta_t_12*prps_q_in_base_x + prps_M_ta_t_5*prps_q_in_base_z
+        prps_M_aa_t_6 = prps_M_ta_t_5*prps_q_in_base_y - prps_M_ta_t_9*prps_q_in_base_x
         ok = (
-        ok & m.every(leg, (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_2) >
-            _TOLERANCE * 0.75))
+        ok & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
+            (abs(prps_root_2) > _TOLERANCE * 0.75))
         )
         sums = m.added(sums, leg, (
-        Q_t_15, Q_t_16, Q_t_17, Q_t_19, Q_t_20, Q_t_22, M_ta_t_3, M_ta_t_4, M_ta_t_5,
-            M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2,
-            M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6,
+        prps_Q_t_15, prps_Q_t_16, prps_Q_t_17, prps_Q_t_19, prps_Q_t_20, prps_Q_t_22,
+            prps_M_ta_t_3, prps_M_ta_t_4, prps_M_ta_t_5, prps_M_ta_t_6, prps_M_ta_t_8,
+            prps_M_ta_t_9, prps_M_ta_t_10, prps_M_ta_t_11, prps_M_ta_t_12, prps_M_aa_t,
+            prps_M_aa_t_2, prps_M_aa_t_3, prps_M_aa_t_4, prps_M_aa_t_5, prps_M_aa_t_6,
         ))
     (
     total_prps_xx, total_prps_xy, total_prps_xz, total_prps_yy, total_prps_yz, total_prps_zz,
@@ -1799,24 +1883,24 @@ def _run_M(m, X):
         total_prps_yz_2, total_prps_zx, total_prps_zy, total_prps_zz_2, total_prps_xx_3,
         total_prps_xy_3, total_prps_xz_3, total_prps_yy_3, total_prps_yz_3, total_prps_zz_3,
     ) = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = m_star - total_prps_xx
     M_tt_yy = m_star - total_prps_yy
     M_tt_zz = m_star - total_prps_zz
-    # (M2) coupling block of M
+    # (M_ta) coupling block of M
     M_ta_xy = h_star_in_base_z - total_prps_xy_2
     M_ta_xz = total_prps_xz_2 - h_star_in_base_y
     M_ta_yx = total_prps_yx - h_star_in_base_z
     M_ta_yz = h_star_in_base_x + total_prps_yz_2
     M_ta_zx = h_star_in_base_y + total_prps_zx
     M_ta_zy = -h_star_in_base_x - total_prps_zy
-    # (M3) rotational block of M
+    # (M_aa) rotational block of M
     M_aa_xx = J_star_t_8 - total_prps_xx_3
     M_aa_xy = J_star_t_9 + total_prps_xy_3
     M_aa_xz = J_star_t_10 - total_prps_xz_3
-    M_aa_yy = J_star_t_12 - total_prps_yy_3
-    M_aa_yz = J_star_t_13 + total_prps_yz_3
-    M_aa_zz = J_star_t_15 - total_prps_zz_3
+    M_aa_yy = J_star_t_13 - total_prps_yy_3
+    M_aa_yz = J_star_t_15 + total_prps_yz_3
+    M_aa_zz = J_star_t_17 - total_prps_zz_3
     out_M[0] = M_tt_xx
     out_M[1] = -total_prps_xy
     out_M[6] = -total_prps_xy
@@ -1914,158 +1998,169 @@ def _run_Z(m, X, V):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_Z = m.zeros("Z")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (M4) centripetal force and weight of the platform
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
     Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
     Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z_2*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x_2*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y - g_r0_y_2*h_star_x
+    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
+    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        Jc_2_zz, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_3_x, h_3_y, prps_base_frame_xx,
-            prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx, prps_base_frame_yy,
-            prps_base_frame_yz, prps_base_frame_zx, prps_base_frame_zy, prps_base_frame_zz,
-            prps_base_point_x, prps_base_point_y, prps_base_point_z, prps_link1_mass,
-            prps_link2_mass, prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,
+        prps_Jc_2_zz, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
+            prps_base_frame_yx, prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx,
+            prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x, prps_base_point_y,
+            prps_base_point_z, prps_branch_2, prps_g_r0_x, prps_g_r0_y, prps_g_r0_z, prps_h_2_x,
+            prps_h_2_y, prps_h_3_x, prps_h_3_y, prps_link1_mass, prps_link2_mass,
+            prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,
         ) = k
-        # (prps-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (prps-S) from the base point to the connection point
+        prps_q_in_base_x = (
         R_xx*prps_platform_point_x + R_xy*prps_platform_point_y + R_xz*prps_platform_point_z
         )
-        q_in_base_y = (
+        prps_q_in_base_y = (
         R_yx*prps_platform_point_x + R_yy*prps_platform_point_y + R_yz*prps_platform_point_z
         )
-        q_in_base_z = (
+        prps_q_in_base_z = (
         R_zx*prps_platform_point_x + R_zy*prps_platform_point_y + R_zz*prps_platform_point_z
         )
-        S_x = q_in_base_x + t_x - prps_base_point_x
-        S_y = q_in_base_y + t_y - prps_base_point_y
-        S_z = q_in_base_z + t_z - prps_base_point_z
-        S_r0_x = S_x*prps_base_frame_xx + S_y*prps_base_frame_yx + S_z*prps_base_frame_zx
-        S_r0_y = S_x*prps_base_frame_xy + S_y*prps_base_frame_yy + S_z*prps_base_frame_zy
-        # (prps-K7) squared amplitude
-        rho2_2 = S_r0_x*S_r0_x + S_r0_y*S_r0_y
-        # (prps-K8) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (prps-K9) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = S_r0_x*inv_root_2
-        # (prps-K10) sine of the angle of joint 2 from its reference direction
-        s_2 = S_r0_y*inv_root_2
-        # (prps-N43) inertia of the leg at the connection point, without the mass gathered there
-        axis_y_prps_axes2_in_base_x = c_2*prps_base_frame_xy - prps_base_frame_xx*s_2
-        axis_y_prps_axes2_in_base_y = c_2*prps_base_frame_yy - prps_base_frame_yx*s_2
-        axis_y_prps_axes2_in_base_z = c_2*prps_base_frame_zy - prps_base_frame_zx*s_2
-        axis_x_prps_axes2_in_base_x = c_2*prps_base_frame_xx + prps_base_frame_xy*s_2
-        axis_x_prps_axes2_in_base_y = c_2*prps_base_frame_yx + prps_base_frame_yy*s_2
-        axis_x_prps_axes2_in_base_z = c_2*prps_base_frame_zx + prps_base_frame_zy*s_2
-        # (prps-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_tip_x = (
-        S_dot_x*axis_x_prps_axes2_in_base_x + S_dot_y*axis_x_prps_axes2_in_base_y +
-            S_dot_z*axis_x_prps_axes2_in_base_z
+        prps_S_x = prps_q_in_base_x + t_x - prps_base_point_x
+        prps_S_y = prps_q_in_base_y + t_y - prps_base_point_y
+        prps_S_z = prps_q_in_base_z + t_z - prps_base_point_z
+        prps_S_r0_x = (
+        prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx + prps_S_z*prps_base_frame_zx
         )
-        # (prps-V8) rate of joint 2
-        qd_2 = (
-        inv_root_2*(S_dot_x*axis_y_prps_axes2_in_base_x + S_dot_y*axis_y_prps_axes2_in_base_y +
-            S_dot_z*axis_y_prps_axes2_in_base_z)
+        prps_S_r0_y = (
+        prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
         )
-        # (prps-V11) centripetal tensor of link 2
-        W_2_t = qd_2*qd_2
-        # (prps-A1) centripetal acceleration of the connection point
-        u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
-        u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y
-        u_1_tip_y = (
-        axis_y_prps_axes2_in_base_x*u_1_x + axis_y_prps_axes2_in_base_y*u_1_y +
-            axis_y_prps_axes2_in_base_z*u_1_z
+        # (prps-rho2_2) squared amplitude
+        prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y
+        # (prps-root_2) amplitude, with the sign of the branch
+        prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
+        # (prps-w_2) reciprocal vector 2
+        inv_prps_root_2 = 1.0/prps_root_2
+        # (prps-c_2) cosine of the angle of joint 2 from its reference direction
+        prps_c_2 = inv_prps_root_2*prps_S_r0_x
+        # (prps-s_2) sine of the angle of joint 2 from its reference direction
+        prps_s_2 = inv_prps_root_2*prps_S_r0_y
+        # (prps-Q) inertia of the leg at the connection point, without the mass gathered there
+        axis_y_prps_axes2_in_base_x = prps_base_frame_xy*prps_c_2 - prps_base_frame_xx*prps_s_2
+        axis_y_prps_axes2_in_base_y = prps_base_frame_yy*prps_c_2 - prps_base_frame_yx*prps_s_2
+        axis_y_prps_axes2_in_base_z = prps_base_frame_zy*prps_c_2 - prps_base_frame_zx*prps_s_2
+        axis_x_prps_axes2_in_base_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
+        axis_x_prps_axes2_in_base_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
+        axis_x_prps_axes2_in_base_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2
+        # (prps-S_dot) velocity of the connection point
+        prps_S_dot_t = omega_y*prps_q_in_base_z - omega_z*prps_q_in_base_y
+        prps_S_dot_t_2 = omega_z*prps_q_in_base_x - omega_x*prps_q_in_base_z
+        prps_S_dot_t_3 = omega_x*prps_q_in_base_y - omega_y*prps_q_in_base_x
+        prps_S_dot_x = prps_S_dot_t + t_dot_x
+        prps_S_dot_y = prps_S_dot_t_2 + t_dot_y
+        prps_S_dot_z = prps_S_dot_t_3 + t_dot_z
+        prps_S_dot_tip_x = (
+        axis_x_prps_axes2_in_base_x*prps_S_dot_x + axis_x_prps_axes2_in_base_y*prps_S_dot_y +
+            axis_x_prps_axes2_in_base_z*prps_S_dot_z
         )
-        # (prps-A6) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_y = u_1_tip_y - 2.0*S_dot_tip_x*qd_2
-        # (prps-A8) remainder without the acceleration in: acceleration of joint 1
-        qdd_2_o = inv_root_2*rel_o_y
-        # (prps-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        acc_1_o_z = (
-        prps_base_frame_xz*u_1_x + prps_base_frame_yz*u_1_y + prps_base_frame_zz*u_1_z - g_r0_z
+        # (prps-qd_2) rate of joint 2
+        prps_qd_2 = (
+        inv_prps_root_2*(axis_y_prps_axes2_in_base_x*prps_S_dot_x +
+            axis_y_prps_axes2_in_base_y*prps_S_dot_y + axis_y_prps_axes2_in_base_z*prps_S_dot_z)
         )
-        # (prps-N6) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x = c_2*g_r0_x + g_r0_y*s_2
-        g_r1_y = c_2*g_r0_y - g_r0_x*s_2
-        # (prps-N33) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
-        T_1_o_z = acc_1_o_z*prps_link1_mass + acc_1_o_z*prps_link2_mass
-        # (prps-N12) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        acc_3_o_x = (
-        axis_x_prps_axes2_in_base_x*u_1_x + axis_x_prps_axes2_in_base_y*u_1_y +
-            axis_x_prps_axes2_in_base_z*u_1_z - g_r1_x
+        # (prps-u_1) centripetal acceleration of the connection point
+        prps_u_1_x = omega_y*prps_S_dot_t_3 - omega_z*prps_S_dot_t_2
+        prps_u_1_y = omega_z*prps_S_dot_t - omega_x*prps_S_dot_t_3
+        prps_u_1_z = omega_x*prps_S_dot_t_2 - omega_y*prps_S_dot_t
+        # (prps-W_2) centripetal tensor of link 2
+        prps_W_2_t = prps_qd_2*prps_qd_2
+        # (prps-u_1) centripetal acceleration of the connection point
+        prps_u_1_tip_y = (
+        axis_y_prps_axes2_in_base_x*prps_u_1_x + axis_y_prps_axes2_in_base_y*prps_u_1_y +
+            axis_y_prps_axes2_in_base_z*prps_u_1_z
         )
-        acc_3_o_y = u_1_tip_y - g_r1_y
-        # (prps-N28) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_o_z = (
-        Jc_2_zz*qdd_2_o + acc_3_o_y*h_3_x + g_r1_x*h_2_y - acc_3_o_x*h_3_y - g_r1_y*h_2_x
+        # (prps-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        prps_rel_o_y = prps_u_1_tip_y - 2.0*prps_S_dot_tip_x*prps_qd_2
+        # (prps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        prps_qdd_2_o = inv_prps_root_2*prps_rel_o_y
+        # (prps-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
+        prps_phi_3_o_x = -prps_W_2_t*prps_h_3_x - prps_h_3_y*prps_qdd_2_o
+        # (prps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        prps_g_r1_x = prps_c_2*prps_g_r0_x + prps_g_r0_y*prps_s_2
+        prps_g_r1_y = prps_c_2*prps_g_r0_y - prps_g_r0_x*prps_s_2
+        prps_acc_2_o_z = (
+        prps_base_frame_xz*prps_u_1_x + prps_base_frame_yz*prps_u_1_y +
+            prps_base_frame_zz*prps_u_1_z - prps_g_r0_z
         )
-        # (prps-N15) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
-        phi_3_o_x = -W_2_t*h_3_x - h_3_y*qdd_2_o
-        # (prps-N42) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_o_y = W_2_t*h_3_y - h_3_x*qdd_2_o - inv_root_2*mu_2_o_z
-        # (prps-N44) velocity and gravity terms of the leg force
-        U_in_base_x = (
-        T_1_o_z*prps_base_frame_xz + axis_x_prps_axes2_in_base_x*phi_3_o_x -
-            axis_y_prps_axes2_in_base_x*c_o_y
+        # (prps-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        prps_acc_3_o_x = (
+        axis_x_prps_axes2_in_base_x*prps_u_1_x + axis_x_prps_axes2_in_base_y*prps_u_1_y +
+            axis_x_prps_axes2_in_base_z*prps_u_1_z - prps_g_r1_x
         )
-        U_in_base_y = (
-        T_1_o_z*prps_base_frame_yz + axis_x_prps_axes2_in_base_y*phi_3_o_x -
-            axis_y_prps_axes2_in_base_y*c_o_y
+        prps_acc_3_o_y = prps_u_1_tip_y - prps_g_r1_y
+        # (prps-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        prps_mu_2_o_z = (
+        prps_Jc_2_zz*prps_qdd_2_o + prps_acc_3_o_y*prps_h_3_x + prps_g_r1_x*prps_h_2_y -
+            prps_acc_3_o_x*prps_h_3_y - prps_g_r1_y*prps_h_2_x
         )
-        U_in_base_z = (
-        T_1_o_z*prps_base_frame_zz + axis_x_prps_axes2_in_base_z*phi_3_o_x -
-            axis_y_prps_axes2_in_base_z*c_o_y
+        # (prps-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
+        prps_T_1_o_z = prps_acc_2_o_z*prps_link1_mass + prps_acc_2_o_z*prps_link2_mass
+        # (prps-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        prps_c_o_y = (
+        prps_W_2_t*prps_h_3_y - inv_prps_root_2*prps_mu_2_o_z - prps_h_3_x*prps_qdd_2_o
         )
-        # (M7) rotational part of Z
-        Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
-        Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
-        Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
+        # (prps-U) velocity and gravity terms of the leg force
+        prps_U_in_base_x = (
+        axis_x_prps_axes2_in_base_x*prps_phi_3_o_x + prps_T_1_o_z*prps_base_frame_xz -
+            axis_y_prps_axes2_in_base_x*prps_c_o_y
+        )
+        prps_U_in_base_y = (
+        axis_x_prps_axes2_in_base_y*prps_phi_3_o_x + prps_T_1_o_z*prps_base_frame_yz -
+            axis_y_prps_axes2_in_base_y*prps_c_o_y
+        )
+        prps_U_in_base_z = (
+        axis_x_prps_axes2_in_base_z*prps_phi_3_o_x + prps_T_1_o_z*prps_base_frame_zz -
+            axis_y_prps_axes2_in_base_z*prps_c_o_y
+        )
+        # (Z_a) rotational part of Z
+        prps_Z_a_t = prps_U_in_base_z*prps_q_in_base_y - prps_U_in_base_y*prps_q_in_base_z
+        prps_Z_a_t_2 = prps_U_in_base_x*prps_q_in_base_z - prps_U_in_base_z*prps_q_in_base_x
+        prps_Z_a_t_3 = prps_U_in_base_y*prps_q_in_base_x - prps_U_in_base_x*prps_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_2) >
-            _TOLERANCE * 0.75))
+        ok & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
+            (abs(prps_root_2) > _TOLERANCE * 0.75))
         )
         sums = m.added(sums, leg, (
-        U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
+        prps_U_in_base_x, prps_U_in_base_y, prps_U_in_base_z, prps_Z_a_t, prps_Z_a_t_2,
+            prps_Z_a_t_3,
         ))
     (
     total_prps_x, total_prps_y, total_prps_z, total_prps_x_2, total_prps_y_2, total_prps_z_2,
     ) = sums
-    # (M5) translational part of Z
+    # (Z_t) translational part of Z
     Z_t_x = Z_p_x + total_prps_x
     Z_t_y = Z_p_y + total_prps_y
     Z_t_z = Z_p_z + total_prps_z
-    # (M7) rotational part of Z
+    # (Z_a) rotational part of Z
     Z_a_x = Z_q_in_base_x + total_prps_x_2
     Z_a_y = Z_q_in_base_y + total_prps_y_2
     Z_a_z = Z_q_in_base_z + total_prps_z_2
@@ -2121,66 +2216,77 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        branch_2, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
+        prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
             prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx, prps_base_frame_zy,
             prps_base_frame_zz, prps_base_point_x, prps_base_point_y, prps_base_point_z,
-            prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,
+            prps_branch_2, prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,
         ) = k
-        # (prps-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (prps-S) from the base point to the connection point
+        prps_q_in_base_x = (
         R_xx*prps_platform_point_x + R_xy*prps_platform_point_y + R_xz*prps_platform_point_z
         )
-        q_in_base_y = (
+        prps_q_in_base_y = (
         R_yx*prps_platform_point_x + R_yy*prps_platform_point_y + R_yz*prps_platform_point_z
         )
-        q_in_base_z = (
+        prps_q_in_base_z = (
         R_zx*prps_platform_point_x + R_zy*prps_platform_point_y + R_zz*prps_platform_point_z
         )
-        S_x = q_in_base_x + t_x - prps_base_point_x
-        S_y = q_in_base_y + t_y - prps_base_point_y
-        S_z = q_in_base_z + t_z - prps_base_point_z
-        S_r0_x = S_x*prps_base_frame_xx + S_y*prps_base_frame_yx + S_z*prps_base_frame_zx
-        S_r0_y = S_x*prps_base_frame_xy + S_y*prps_base_frame_yy + S_z*prps_base_frame_zy
-        # (prps-K7) squared amplitude
-        rho2_2 = S_r0_x*S_r0_x + S_r0_y*S_r0_y
-        # (prps-K8) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (prps-K9) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = S_r0_x*inv_root_2
-        # (prps-K10) sine of the angle of joint 2 from its reference direction
-        s_2 = S_r0_y*inv_root_2
-        # (prps-N43) inertia of the leg at the connection point, without the mass gathered there
-        axis_x_prps_axes2_in_base_x = c_2*prps_base_frame_xx + prps_base_frame_xy*s_2
-        axis_x_prps_axes2_in_base_y = c_2*prps_base_frame_yx + prps_base_frame_yy*s_2
-        axis_x_prps_axes2_in_base_z = c_2*prps_base_frame_zx + prps_base_frame_zy*s_2
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_x = prps_base_frame_zz*q_in_base_y - prps_base_frame_yz*q_in_base_z
-        H_a_1_y = prps_base_frame_xz*q_in_base_z - prps_base_frame_zz*q_in_base_x
-        H_a_1_z = prps_base_frame_yz*q_in_base_x - prps_base_frame_xz*q_in_base_y
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_3_x = (
-        axis_x_prps_axes2_in_base_z*q_in_base_y - axis_x_prps_axes2_in_base_y*q_in_base_z
+        prps_S_x = prps_q_in_base_x + t_x - prps_base_point_x
+        prps_S_y = prps_q_in_base_y + t_y - prps_base_point_y
+        prps_S_z = prps_q_in_base_z + t_z - prps_base_point_z
+        prps_S_r0_x = (
+        prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx + prps_S_z*prps_base_frame_zx
         )
-        H_a_3_y = (
-        axis_x_prps_axes2_in_base_x*q_in_base_z - axis_x_prps_axes2_in_base_z*q_in_base_x
+        prps_S_r0_y = (
+        prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
         )
-        H_a_3_z = (
-        axis_x_prps_axes2_in_base_y*q_in_base_x - axis_x_prps_axes2_in_base_x*q_in_base_y
+        # (prps-rho2_2) squared amplitude
+        prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y
+        # (prps-root_2) amplitude, with the sign of the branch
+        prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
+        # (prps-w_2) reciprocal vector 2
+        inv_prps_root_2 = 1.0/prps_root_2
+        # (prps-c_2) cosine of the angle of joint 2 from its reference direction
+        prps_c_2 = inv_prps_root_2*prps_S_r0_x
+        # (prps-s_2) sine of the angle of joint 2 from its reference direction
+        prps_s_2 = inv_prps_root_2*prps_S_r0_y
+        # (prps-Q) inertia of the leg at the connection point, without the mass gathered there
+        axis_x_prps_axes2_in_base_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
+        axis_x_prps_axes2_in_base_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
+        axis_x_prps_axes2_in_base_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2
+        # (prps-H_a_1) moment of the column's unit force about the platform origin
+        prps_H_a_1_x = prps_base_frame_zz*prps_q_in_base_y - prps_base_frame_yz*prps_q_in_base_z
+        prps_H_a_1_y = prps_base_frame_xz*prps_q_in_base_z - prps_base_frame_zz*prps_q_in_base_x
+        prps_H_a_1_z = prps_base_frame_yz*prps_q_in_base_x - prps_base_frame_xz*prps_q_in_base_y
+        # (prps-H_a_3) moment of the column's unit force about the platform origin
+        prps_H_a_3_x = (
+        axis_x_prps_axes2_in_base_z*prps_q_in_base_y -
+            axis_x_prps_axes2_in_base_y*prps_q_in_base_z
         )
-        ok = ok & m.every(leg, (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625))
+        prps_H_a_3_y = (
+        axis_x_prps_axes2_in_base_x*prps_q_in_base_z -
+            axis_x_prps_axes2_in_base_z*prps_q_in_base_x
+        )
+        prps_H_a_3_z = (
+        axis_x_prps_axes2_in_base_y*prps_q_in_base_x -
+            axis_x_prps_axes2_in_base_x*prps_q_in_base_y
+        )
+        ok = (
+        ok & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
+            (abs(prps_root_2) > _TOLERANCE * 0.75))
+        )
         out_H[_H_prps[0][leg]] = prps_base_frame_xz
         out_H[_H_prps[1][leg]] = prps_base_frame_yz
         out_H[_H_prps[2][leg]] = prps_base_frame_zz
-        out_H[_H_prps[3][leg]] = H_a_1_x
-        out_H[_H_prps[4][leg]] = H_a_1_y
-        out_H[_H_prps[5][leg]] = H_a_1_z
+        out_H[_H_prps[3][leg]] = prps_H_a_1_x
+        out_H[_H_prps[4][leg]] = prps_H_a_1_y
+        out_H[_H_prps[5][leg]] = prps_H_a_1_z
         out_H[_H_prps[6][leg]] = axis_x_prps_axes2_in_base_x
         out_H[_H_prps[7][leg]] = axis_x_prps_axes2_in_base_y
         out_H[_H_prps[8][leg]] = axis_x_prps_axes2_in_base_z
-        out_H[_H_prps[9][leg]] = H_a_3_x
-        out_H[_H_prps[10][leg]] = H_a_3_y
-        out_H[_H_prps[11][leg]] = H_a_3_z
+        out_H[_H_prps[9][leg]] = prps_H_a_3_x
+        out_H[_H_prps[10][leg]] = prps_H_a_3_y
+        out_H[_H_prps[11][leg]] = prps_H_a_3_z
     return ok, (out_H,)
 
 
@@ -2256,29 +2362,29 @@ def _run_required(m, X, V, A):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (P1) centripetal tensor of the platform
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_x*omega_x
     W_p_t_2 = omega_y*omega_y
     W_p_t_3 = omega_z*omega_z
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
     W_p_yz = omega_y*omega_z
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
-    # (E2) inertia force of the platform less its weight
+    # (f_p) inertia force of the platform less its weight
     f_p_x = (
     a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) + h_star_in_base_z*(W_p_xz + alpha_y) -
         h_star_in_base_x*(W_p_t_2 + W_p_t_3)
@@ -2291,11 +2397,11 @@ def _run_required(m, X, V, A):
     a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) + h_star_in_base_y*(W_p_yz + alpha_x) -
         h_star_in_base_z*(W_p_t + W_p_t_2)
     )
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
     a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
     a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
-    # (E3) inertia moment of the platform less that of its weight
+    # (mu_p) inertia moment of the platform less that of its weight
     alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
     alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
     alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
@@ -2317,155 +2423,168 @@ def _run_required(m, X, V, A):
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        Jc_2_zz, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_3_x, h_3_y, prps_base_frame_xx,
-            prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx, prps_base_frame_yy,
-            prps_base_frame_yz, prps_base_frame_zx, prps_base_frame_zy, prps_base_frame_zz,
-            prps_base_point_x, prps_base_point_y, prps_base_point_z, prps_link1_mass,
-            prps_link2_mass, prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,
+        prps_Jc_2_zz, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
+            prps_base_frame_yx, prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx,
+            prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x, prps_base_point_y,
+            prps_base_point_z, prps_branch_2, prps_g_r0_x, prps_g_r0_y, prps_g_r0_z, prps_h_2_x,
+            prps_h_2_y, prps_h_3_x, prps_h_3_y, prps_link1_mass, prps_link2_mass,
+            prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,
         ) = k
-        # (prps-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (prps-S) from the base point to the connection point
+        prps_q_in_base_x = (
         R_xx*prps_platform_point_x + R_xy*prps_platform_point_y + R_xz*prps_platform_point_z
         )
-        q_in_base_y = (
+        prps_q_in_base_y = (
         R_yx*prps_platform_point_x + R_yy*prps_platform_point_y + R_yz*prps_platform_point_z
         )
-        q_in_base_z = (
+        prps_q_in_base_z = (
         R_zx*prps_platform_point_x + R_zy*prps_platform_point_y + R_zz*prps_platform_point_z
         )
-        S_x = q_in_base_x + t_x - prps_base_point_x
-        S_y = q_in_base_y + t_y - prps_base_point_y
-        S_z = q_in_base_z + t_z - prps_base_point_z
-        S_r0_x = S_x*prps_base_frame_xx + S_y*prps_base_frame_yx + S_z*prps_base_frame_zx
-        S_r0_y = S_x*prps_base_frame_xy + S_y*prps_base_frame_yy + S_z*prps_base_frame_zy
-        # (prps-K7) squared amplitude
-        rho2_2 = S_r0_x*S_r0_x + S_r0_y*S_r0_y
-        # (prps-K8) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (prps-K9) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = S_r0_x*inv_root_2
-        # (prps-K10) sine of the angle of joint 2 from its reference direction
-        s_2 = S_r0_y*inv_root_2
-        # (prps-N43) inertia of the leg at the connection point, without the mass gathered there
-        axis_y_prps_axes2_in_base_x = c_2*prps_base_frame_xy - prps_base_frame_xx*s_2
-        axis_y_prps_axes2_in_base_y = c_2*prps_base_frame_yy - prps_base_frame_yx*s_2
-        axis_y_prps_axes2_in_base_z = c_2*prps_base_frame_zy - prps_base_frame_zx*s_2
-        axis_x_prps_axes2_in_base_x = c_2*prps_base_frame_xx + prps_base_frame_xy*s_2
-        axis_x_prps_axes2_in_base_y = c_2*prps_base_frame_yx + prps_base_frame_yy*s_2
-        axis_x_prps_axes2_in_base_z = c_2*prps_base_frame_zx + prps_base_frame_zy*s_2
-        # (prps-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_tip_x = (
-        S_dot_x*axis_x_prps_axes2_in_base_x + S_dot_y*axis_x_prps_axes2_in_base_y +
-            S_dot_z*axis_x_prps_axes2_in_base_z
+        prps_S_x = prps_q_in_base_x + t_x - prps_base_point_x
+        prps_S_y = prps_q_in_base_y + t_y - prps_base_point_y
+        prps_S_z = prps_q_in_base_z + t_z - prps_base_point_z
+        prps_S_r0_x = (
+        prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx + prps_S_z*prps_base_frame_zx
         )
-        # (prps-V8) rate of joint 2
-        qd_2 = (
-        inv_root_2*(S_dot_x*axis_y_prps_axes2_in_base_x + S_dot_y*axis_y_prps_axes2_in_base_y +
-            S_dot_z*axis_y_prps_axes2_in_base_z)
+        prps_S_r0_y = (
+        prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
         )
-        # (prps-V11) centripetal tensor of link 2
-        W_2_t = qd_2*qd_2
-        # (prps-N6) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x = c_2*g_r0_x + g_r0_y*s_2
-        g_r1_y = c_2*g_r0_y - g_r0_x*s_2
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_x = prps_base_frame_zz*q_in_base_y - prps_base_frame_yz*q_in_base_z
-        H_a_1_y = prps_base_frame_xz*q_in_base_z - prps_base_frame_zz*q_in_base_x
-        H_a_1_z = prps_base_frame_yz*q_in_base_x - prps_base_frame_xz*q_in_base_y
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_3_x = (
-        axis_x_prps_axes2_in_base_z*q_in_base_y - axis_x_prps_axes2_in_base_y*q_in_base_z
+        # (prps-rho2_2) squared amplitude
+        prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y
+        # (prps-root_2) amplitude, with the sign of the branch
+        prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
+        # (prps-w_2) reciprocal vector 2
+        inv_prps_root_2 = 1.0/prps_root_2
+        # (prps-c_2) cosine of the angle of joint 2 from its reference direction
+        prps_c_2 = inv_prps_root_2*prps_S_r0_x
+        # (prps-s_2) sine of the angle of joint 2 from its reference direction
+        prps_s_2 = inv_prps_root_2*prps_S_r0_y
+        # (prps-Q) inertia of the leg at the connection point, without the mass gathered there
+        axis_y_prps_axes2_in_base_x = prps_base_frame_xy*prps_c_2 - prps_base_frame_xx*prps_s_2
+        axis_y_prps_axes2_in_base_y = prps_base_frame_yy*prps_c_2 - prps_base_frame_yx*prps_s_2
+        axis_y_prps_axes2_in_base_z = prps_base_frame_zy*prps_c_2 - prps_base_frame_zx*prps_s_2
+        axis_x_prps_axes2_in_base_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
+        axis_x_prps_axes2_in_base_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
+        axis_x_prps_axes2_in_base_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2
+        # (prps-S_dot) velocity of the connection point
+        prps_S_dot_t = omega_y*prps_q_in_base_z - omega_z*prps_q_in_base_y
+        prps_S_dot_t_2 = omega_z*prps_q_in_base_x - omega_x*prps_q_in_base_z
+        prps_S_dot_t_3 = omega_x*prps_q_in_base_y - omega_y*prps_q_in_base_x
+        prps_S_dot_x = prps_S_dot_t + t_dot_x
+        prps_S_dot_y = prps_S_dot_t_2 + t_dot_y
+        prps_S_dot_z = prps_S_dot_t_3 + t_dot_z
+        prps_S_dot_tip_x = (
+        axis_x_prps_axes2_in_base_x*prps_S_dot_x + axis_x_prps_axes2_in_base_y*prps_S_dot_y +
+            axis_x_prps_axes2_in_base_z*prps_S_dot_z
         )
-        H_a_3_y = (
-        axis_x_prps_axes2_in_base_x*q_in_base_z - axis_x_prps_axes2_in_base_z*q_in_base_x
+        # (prps-qd_2) rate of joint 2
+        prps_qd_2 = (
+        inv_prps_root_2*(axis_y_prps_axes2_in_base_x*prps_S_dot_x +
+            axis_y_prps_axes2_in_base_y*prps_S_dot_y + axis_y_prps_axes2_in_base_z*prps_S_dot_z)
         )
-        H_a_3_z = (
-        axis_x_prps_axes2_in_base_y*q_in_base_x - axis_x_prps_axes2_in_base_x*q_in_base_y
+        # (prps-W_2) centripetal tensor of link 2
+        prps_W_2_t = prps_qd_2*prps_qd_2
+        # (prps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        prps_g_r1_x = prps_c_2*prps_g_r0_x + prps_g_r0_y*prps_s_2
+        prps_g_r1_y = prps_c_2*prps_g_r0_y - prps_g_r0_x*prps_s_2
+        # (prps-H_a_1) moment of the column's unit force about the platform origin
+        prps_H_a_1_x = prps_base_frame_zz*prps_q_in_base_y - prps_base_frame_yz*prps_q_in_base_z
+        prps_H_a_1_y = prps_base_frame_xz*prps_q_in_base_z - prps_base_frame_zz*prps_q_in_base_x
+        prps_H_a_1_z = prps_base_frame_yz*prps_q_in_base_x - prps_base_frame_xz*prps_q_in_base_y
+        # (prps-H_a_3) moment of the column's unit force about the platform origin
+        prps_H_a_3_x = (
+        axis_x_prps_axes2_in_base_z*prps_q_in_base_y -
+            axis_x_prps_axes2_in_base_y*prps_q_in_base_z
         )
-        # (prps-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (prps-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        S_ddot_tip_y = (
-        S_ddot_x*axis_y_prps_axes2_in_base_x + S_ddot_y*axis_y_prps_axes2_in_base_y +
-            S_ddot_z*axis_y_prps_axes2_in_base_z
+        prps_H_a_3_y = (
+        axis_x_prps_axes2_in_base_x*prps_q_in_base_z -
+            axis_x_prps_axes2_in_base_z*prps_q_in_base_x
         )
-        # (prps-A5) acceleration of the connection point left to the joint accelerations
-        rel_y = S_ddot_tip_y - 2.0*S_dot_tip_x*qd_2
-        # (prps-A7) acceleration of joint 1
-        qdd_2 = inv_root_2*rel_y
-        # (prps-N11) acceleration of the reference point of link 3, less gravity
-        acc_3_x = (
-        S_ddot_x*axis_x_prps_axes2_in_base_x + S_ddot_y*axis_x_prps_axes2_in_base_y +
-            S_ddot_z*axis_x_prps_axes2_in_base_z - g_r1_x
+        prps_H_a_3_z = (
+        axis_x_prps_axes2_in_base_y*prps_q_in_base_x -
+            axis_x_prps_axes2_in_base_x*prps_q_in_base_y
         )
-        acc_3_y = S_ddot_tip_y - g_r1_y
-        acc_3_z = (
-        S_ddot_x*prps_base_frame_xz + S_ddot_y*prps_base_frame_yz + S_ddot_z*prps_base_frame_zz -
-            g_r0_z
+        # (prps-a_p) acceleration of the connection point without its centripetal part
+        prps_a_p_x = t_ddot_x + alpha_y*prps_q_in_base_z - alpha_z*prps_q_in_base_y
+        prps_a_p_y = t_ddot_y + alpha_z*prps_q_in_base_x - alpha_x*prps_q_in_base_z
+        prps_a_p_z = t_ddot_z + alpha_x*prps_q_in_base_y - alpha_y*prps_q_in_base_x
+        # (prps-S_ddot) acceleration of the connection point
+        prps_S_ddot_x = prps_a_p_x + omega_y*prps_S_dot_t_3 - omega_z*prps_S_dot_t_2
+        prps_S_ddot_y = prps_a_p_y + omega_z*prps_S_dot_t - omega_x*prps_S_dot_t_3
+        prps_S_ddot_z = prps_a_p_z + omega_x*prps_S_dot_t_2 - omega_y*prps_S_dot_t
+        prps_S_ddot_tip_y = (
+        axis_y_prps_axes2_in_base_x*prps_S_ddot_x + axis_y_prps_axes2_in_base_y*prps_S_ddot_y +
+            axis_y_prps_axes2_in_base_z*prps_S_ddot_z
         )
-        # (prps-N32) inertia force of the links from 1 outwards, the last link left out
-        T_1_z = acc_3_z*prps_link1_mass + acc_3_z*prps_link2_mass
-        # (prps-N27) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_z = Jc_2_zz*qdd_2 + acc_3_y*h_3_x + g_r1_x*h_2_y - acc_3_x*h_3_y - g_r1_y*h_2_x
-        # (prps-N13) inertia force of link 3 from its turning about its reference point
-        phi_3_x = -W_2_t*h_3_x - h_3_y*qdd_2
-        # (prps-N40) leg force on the platform without actuation and without the mass at the connection point
-        c_y = W_2_t*h_3_y - h_3_x*qdd_2 - inv_root_2*mu_2_z
-        c_in_base_x = (
-        axis_y_prps_axes2_in_base_x*c_y - T_1_z*prps_base_frame_xz -
-            axis_x_prps_axes2_in_base_x*phi_3_x
+        # (prps-rel) acceleration of the connection point left to the joint accelerations
+        prps_rel_y = prps_S_ddot_tip_y - 2.0*prps_S_dot_tip_x*prps_qd_2
+        # (prps-qdd_1) acceleration of joint 1
+        prps_qdd_2 = inv_prps_root_2*prps_rel_y
+        # (prps-acc_3) acceleration of the reference point of link 3, less gravity
+        prps_acc_3_x = (
+        axis_x_prps_axes2_in_base_x*prps_S_ddot_x + axis_x_prps_axes2_in_base_y*prps_S_ddot_y +
+            axis_x_prps_axes2_in_base_z*prps_S_ddot_z - prps_g_r1_x
         )
-        c_in_base_y = (
-        axis_y_prps_axes2_in_base_y*c_y - T_1_z*prps_base_frame_yz -
-            axis_x_prps_axes2_in_base_y*phi_3_x
+        prps_acc_3_y = prps_S_ddot_tip_y - prps_g_r1_y
+        prps_acc_3_z = (
+        prps_S_ddot_x*prps_base_frame_xz + prps_S_ddot_y*prps_base_frame_yz +
+            prps_S_ddot_z*prps_base_frame_zz - prps_g_r0_z
         )
-        c_in_base_z = (
-        axis_y_prps_axes2_in_base_z*c_y - T_1_z*prps_base_frame_zz -
-            axis_x_prps_axes2_in_base_z*phi_3_x
+        # (prps-phi_3) inertia force of link 3 from its turning about its reference point
+        prps_phi_3_x = -prps_W_2_t*prps_h_3_x - prps_h_3_y*prps_qdd_2
+        # (prps-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        prps_mu_2_z = (
+        prps_Jc_2_zz*prps_qdd_2 + prps_acc_3_y*prps_h_3_x + prps_g_r1_x*prps_h_2_y -
+            prps_acc_3_x*prps_h_3_y - prps_g_r1_y*prps_h_2_x
         )
-        # (E5) moment that actuators and external wrench must give
-        R_a_t = c_in_base_z*q_in_base_y - c_in_base_y*q_in_base_z
-        R_a_t_2 = c_in_base_x*q_in_base_z - c_in_base_z*q_in_base_x
-        R_a_t_3 = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y
+        # (prps-T_1) inertia force of the links from 1 outwards, the last link left out
+        prps_T_1_z = prps_acc_3_z*prps_link1_mass + prps_acc_3_z*prps_link2_mass
+        # (prps-c) leg force on the platform without actuation and without the mass at the connection point
+        prps_c_y = prps_W_2_t*prps_h_3_y - inv_prps_root_2*prps_mu_2_z - prps_h_3_x*prps_qdd_2
+        prps_c_in_base_x = (
+        axis_y_prps_axes2_in_base_x*prps_c_y - axis_x_prps_axes2_in_base_x*prps_phi_3_x -
+            prps_T_1_z*prps_base_frame_xz
+        )
+        prps_c_in_base_y = (
+        axis_y_prps_axes2_in_base_y*prps_c_y - axis_x_prps_axes2_in_base_y*prps_phi_3_x -
+            prps_T_1_z*prps_base_frame_yz
+        )
+        prps_c_in_base_z = (
+        axis_y_prps_axes2_in_base_z*prps_c_y - axis_x_prps_axes2_in_base_z*prps_phi_3_x -
+            prps_T_1_z*prps_base_frame_zz
+        )
+        # (R_a) moment that actuators and external wrench must give
+        prps_R_a_t = prps_c_in_base_z*prps_q_in_base_y - prps_c_in_base_y*prps_q_in_base_z
+        prps_R_a_t_2 = prps_c_in_base_x*prps_q_in_base_z - prps_c_in_base_z*prps_q_in_base_x
+        prps_R_a_t_3 = prps_c_in_base_y*prps_q_in_base_x - prps_c_in_base_x*prps_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_2) >
-            _TOLERANCE * 0.75))
+        ok & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
+            (abs(prps_root_2) > _TOLERANCE * 0.75))
         )
         sums = m.added(sums, leg, (
-        c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
+        prps_c_in_base_x, prps_c_in_base_y, prps_c_in_base_z, prps_R_a_t, prps_R_a_t_2,
+            prps_R_a_t_3,
         ))
         out_H[_H_prps[0][leg]] = prps_base_frame_xz
         out_H[_H_prps[1][leg]] = prps_base_frame_yz
         out_H[_H_prps[2][leg]] = prps_base_frame_zz
-        out_H[_H_prps[3][leg]] = H_a_1_x
-        out_H[_H_prps[4][leg]] = H_a_1_y
-        out_H[_H_prps[5][leg]] = H_a_1_z
+        out_H[_H_prps[3][leg]] = prps_H_a_1_x
+        out_H[_H_prps[4][leg]] = prps_H_a_1_y
+        out_H[_H_prps[5][leg]] = prps_H_a_1_z
         out_H[_H_prps[6][leg]] = axis_x_prps_axes2_in_base_x
         out_H[_H_prps[7][leg]] = axis_x_prps_axes2_in_base_y
         out_H[_H_prps[8][leg]] = axis_x_prps_axes2_in_base_z
-        out_H[_H_prps[9][leg]] = H_a_3_x
-        out_H[_H_prps[10][leg]] = H_a_3_y
-        out_H[_H_prps[11][leg]] = H_a_3_z
+        out_H[_H_prps[9][leg]] = prps_H_a_3_x
+        out_H[_H_prps[10][leg]] = prps_H_a_3_y
+        out_H[_H_prps[11][leg]] = prps_H_a_3_z
     (
     total_prps_x, total_prps_y, total_prps_z, total_prps_x_2, total_prps_y_2, total_prps_z_2,
     ) = sums
-    # (E4) force that actuators and external wrench must give
+    # (R_t) force that actuators and external wrench must give
     R_t_x = f_p_x - total_prps_x
     R_t_y = f_p_y - total_prps_y
     R_t_z = f_p_z - total_prps_z
-    # (E5) moment that actuators and external wrench must give
+    # (R_a) moment that actuators and external wrench must give
     R_a_x = mu_p_in_base_x - total_prps_x_2
     R_a_y = mu_p_in_base_y - total_prps_y_2
     R_a_z = mu_p_in_base_z - total_prps_z_2
@@ -2522,41 +2641,50 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        branch_2, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
+        prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
             prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx, prps_base_frame_zy,
             prps_base_frame_zz, prps_base_point_x, prps_base_point_y, prps_base_point_z,
-            prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,
+            prps_branch_2, prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,
         ) = k
-        # (prps-K1) from the base point to the connection point
-        S_x = (
+        # (prps-S) from the base point to the connection point
+        prps_S_x = (
         t_x + R_xx*prps_platform_point_x + R_xy*prps_platform_point_y + R_xz*prps_platform_point_z
             - prps_base_point_x
         )
-        S_y = (
+        prps_S_y = (
         t_y + R_yx*prps_platform_point_x + R_yy*prps_platform_point_y + R_yz*prps_platform_point_z
             - prps_base_point_y
         )
-        S_z = (
+        prps_S_z = (
         t_z + R_zx*prps_platform_point_x + R_zy*prps_platform_point_y + R_zz*prps_platform_point_z
             - prps_base_point_z
         )
-        # (prps-K2) displacement of joint 1
-        q_1_t = S_x*prps_base_frame_xz + S_y*prps_base_frame_yz + S_z*prps_base_frame_zz
-        # (prps-K1) from the base point to the connection point
-        S_r0_x = S_x*prps_base_frame_xx + S_y*prps_base_frame_yx + S_z*prps_base_frame_zx
-        S_r0_y = S_x*prps_base_frame_xy + S_y*prps_base_frame_yy + S_z*prps_base_frame_zy
-        # (prps-K7) squared amplitude
-        rho2_2 = S_r0_x*S_r0_x + S_r0_y*S_r0_y
-        # (prps-K8) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (prps-K9) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        # (prps-K11) displacement of joint 2
-        q_2 = atan2(S_r0_y*inv_root_2, S_r0_x*inv_root_2)
-        ok = ok & m.every(leg, (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625))
-        out_q[_q_prps[0][leg]] = q_1_t
-        out_q[_q_prps[1][leg]] = q_2
-        out_q[_q_prps[2][leg]] = root_2
+        # (prps-q_1) displacement of joint 1
+        prps_q_1_t = (
+        prps_S_x*prps_base_frame_xz + prps_S_y*prps_base_frame_yz + prps_S_z*prps_base_frame_zz
+        )
+        # (prps-S) from the base point to the connection point
+        prps_S_r0_x = (
+        prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx + prps_S_z*prps_base_frame_zx
+        )
+        prps_S_r0_y = (
+        prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
+        )
+        # (prps-rho2_2) squared amplitude
+        prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y
+        # (prps-root_2) amplitude, with the sign of the branch
+        prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
+        # (prps-w_2) reciprocal vector 2
+        inv_prps_root_2 = 1.0/prps_root_2
+        # (prps-q_2) displacement of joint 2
+        prps_q_2 = atan2(inv_prps_root_2*prps_S_r0_y, inv_prps_root_2*prps_S_r0_x)
+        ok = (
+        ok & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
+            (abs(prps_root_2) > _TOLERANCE * 0.75))
+        )
+        out_q[_q_prps[0][leg]] = prps_q_1_t
+        out_q[_q_prps[1][leg]] = prps_q_2
+        out_q[_q_prps[2][leg]] = prps_root_2
     return ok, (out_q,)
 
 
@@ -2616,60 +2744,66 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        branch_2, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
+        prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
             prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx, prps_base_frame_zy,
             prps_base_frame_zz, prps_base_point_x, prps_base_point_y, prps_base_point_z,
-            prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,
+            prps_branch_2, prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,
         ) = k
-        # (prps-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (prps-S) from the base point to the connection point
+        prps_q_in_base_x = (
         R_xx*prps_platform_point_x + R_xy*prps_platform_point_y + R_xz*prps_platform_point_z
         )
-        q_in_base_y = (
+        prps_q_in_base_y = (
         R_yx*prps_platform_point_x + R_yy*prps_platform_point_y + R_yz*prps_platform_point_z
         )
-        q_in_base_z = (
+        prps_q_in_base_z = (
         R_zx*prps_platform_point_x + R_zy*prps_platform_point_y + R_zz*prps_platform_point_z
         )
-        S_x = q_in_base_x + t_x - prps_base_point_x
-        S_y = q_in_base_y + t_y - prps_base_point_y
-        S_z = q_in_base_z + t_z - prps_base_point_z
-        S_r0_x = S_x*prps_base_frame_xx + S_y*prps_base_frame_yx + S_z*prps_base_frame_zx
-        S_r0_y = S_x*prps_base_frame_xy + S_y*prps_base_frame_yy + S_z*prps_base_frame_zy
-        # (prps-K7) squared amplitude
-        rho2_2 = S_r0_x*S_r0_x + S_r0_y*S_r0_y
-        # (prps-K8) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (prps-K9) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = S_r0_x*inv_root_2
-        # (prps-K10) sine of the angle of joint 2 from its reference direction
-        s_2 = S_r0_y*inv_root_2
-        # (prps-V1) velocity of the connection point
-        S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_tip_x = (
-        S_dot_x*(c_2*prps_base_frame_xx + prps_base_frame_xy*s_2) +
-            S_dot_y*(c_2*prps_base_frame_yx + prps_base_frame_yy*s_2) +
-            S_dot_z*(c_2*prps_base_frame_zx + prps_base_frame_zy*s_2)
+        prps_S_x = prps_q_in_base_x + t_x - prps_base_point_x
+        prps_S_y = prps_q_in_base_y + t_y - prps_base_point_y
+        prps_S_z = prps_q_in_base_z + t_z - prps_base_point_z
+        prps_S_r0_x = (
+        prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx + prps_S_z*prps_base_frame_zx
         )
-        S_dot_tip_z = (
-        S_dot_x*prps_base_frame_xz + S_dot_y*prps_base_frame_yz + S_dot_z*prps_base_frame_zz
+        prps_S_r0_y = (
+        prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
         )
-        # (prps-V8) rate of joint 2
-        qd_2 = (
-        inv_root_2*(S_dot_x*(c_2*prps_base_frame_xy - prps_base_frame_xx*s_2) +
-            S_dot_y*(c_2*prps_base_frame_yy - prps_base_frame_yx*s_2) +
-            S_dot_z*(c_2*prps_base_frame_zy - prps_base_frame_zx*s_2))
+        # (prps-rho2_2) squared amplitude
+        prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y
+        # (prps-root_2) amplitude, with the sign of the branch
+        prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
+        # (prps-w_2) reciprocal vector 2
+        inv_prps_root_2 = 1.0/prps_root_2
+        # (prps-c_2) cosine of the angle of joint 2 from its reference direction
+        prps_c_2 = inv_prps_root_2*prps_S_r0_x
+        # (prps-s_2) sine of the angle of joint 2 from its reference direction
+        prps_s_2 = inv_prps_root_2*prps_S_r0_y
+        # (prps-S_dot) velocity of the connection point
+        prps_S_dot_x = t_dot_x + omega_y*prps_q_in_base_z - omega_z*prps_q_in_base_y
+        prps_S_dot_y = t_dot_y + omega_z*prps_q_in_base_x - omega_x*prps_q_in_base_z
+        prps_S_dot_z = t_dot_z + omega_x*prps_q_in_base_y - omega_y*prps_q_in_base_x
+        prps_S_dot_tip_x = (
+        prps_S_dot_x*(prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2) +
+            prps_S_dot_y*(prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2) +
+            prps_S_dot_z*(prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2)
+        )
+        prps_S_dot_tip_z = (
+        prps_S_dot_x*prps_base_frame_xz + prps_S_dot_y*prps_base_frame_yz +
+            prps_S_dot_z*prps_base_frame_zz
+        )
+        # (prps-qd_2) rate of joint 2
+        prps_qd_2 = (
+        inv_prps_root_2*(prps_S_dot_x*(prps_base_frame_xy*prps_c_2 - prps_base_frame_xx*prps_s_2)
+            + prps_S_dot_y*(prps_base_frame_yy*prps_c_2 - prps_base_frame_yx*prps_s_2) +
+            prps_S_dot_z*(prps_base_frame_zy*prps_c_2 - prps_base_frame_zx*prps_s_2))
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_2) >
-            _TOLERANCE * 0.75))
+        ok & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
+            (abs(prps_root_2) > _TOLERANCE * 0.75))
         )
-        out_qd[_qd_prps[0][leg]] = S_dot_tip_z
-        out_qd[_qd_prps[1][leg]] = qd_2
-        out_qd[_qd_prps[2][leg]] = S_dot_tip_x
+        out_qd[_qd_prps[0][leg]] = prps_S_dot_tip_z
+        out_qd[_qd_prps[1][leg]] = prps_qd_2
+        out_qd[_qd_prps[2][leg]] = prps_S_dot_tip_x
     return ok, (out_qd,)
 
 
@@ -2742,87 +2876,93 @@ def _run_joint_accelerations(m, X, V, A):
     out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
-        branch_2, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
+        prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
             prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx, prps_base_frame_zy,
             prps_base_frame_zz, prps_base_point_x, prps_base_point_y, prps_base_point_z,
-            prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,
+            prps_branch_2, prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,
         ) = k
-        # (prps-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (prps-S) from the base point to the connection point
+        prps_q_in_base_x = (
         R_xx*prps_platform_point_x + R_xy*prps_platform_point_y + R_xz*prps_platform_point_z
         )
-        q_in_base_y = (
+        prps_q_in_base_y = (
         R_yx*prps_platform_point_x + R_yy*prps_platform_point_y + R_yz*prps_platform_point_z
         )
-        q_in_base_z = (
+        prps_q_in_base_z = (
         R_zx*prps_platform_point_x + R_zy*prps_platform_point_y + R_zz*prps_platform_point_z
         )
-        S_x = q_in_base_x + t_x - prps_base_point_x
-        S_y = q_in_base_y + t_y - prps_base_point_y
-        S_z = q_in_base_z + t_z - prps_base_point_z
-        S_r0_x = S_x*prps_base_frame_xx + S_y*prps_base_frame_yx + S_z*prps_base_frame_zx
-        S_r0_y = S_x*prps_base_frame_xy + S_y*prps_base_frame_yy + S_z*prps_base_frame_zy
-        # (prps-K7) squared amplitude
-        rho2_2 = S_r0_x*S_r0_x + S_r0_y*S_r0_y
-        # (prps-K8) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (prps-K9) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = S_r0_x*inv_root_2
-        # (prps-K10) sine of the angle of joint 2 from its reference direction
-        s_2 = S_r0_y*inv_root_2
-        # (prps-N43) inertia of the leg at the connection point, without the mass gathered there
-        axis_y_prps_axes2_in_base_x = c_2*prps_base_frame_xy - prps_base_frame_xx*s_2
-        axis_y_prps_axes2_in_base_y = c_2*prps_base_frame_yy - prps_base_frame_yx*s_2
-        axis_y_prps_axes2_in_base_z = c_2*prps_base_frame_zy - prps_base_frame_zx*s_2
-        axis_x_prps_axes2_in_base_x = c_2*prps_base_frame_xx + prps_base_frame_xy*s_2
-        axis_x_prps_axes2_in_base_y = c_2*prps_base_frame_yx + prps_base_frame_yy*s_2
-        axis_x_prps_axes2_in_base_z = c_2*prps_base_frame_zx + prps_base_frame_zy*s_2
-        # (prps-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_tip_x = (
-        S_dot_x*axis_x_prps_axes2_in_base_x + S_dot_y*axis_x_prps_axes2_in_base_y +
-            S_dot_z*axis_x_prps_axes2_in_base_z
+        prps_S_x = prps_q_in_base_x + t_x - prps_base_point_x
+        prps_S_y = prps_q_in_base_y + t_y - prps_base_point_y
+        prps_S_z = prps_q_in_base_z + t_z - prps_base_point_z
+        prps_S_r0_x = (
+        prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx + prps_S_z*prps_base_frame_zx
         )
-        # (prps-V8) rate of joint 2
-        qd_2 = (
-        inv_root_2*(S_dot_x*axis_y_prps_axes2_in_base_x + S_dot_y*axis_y_prps_axes2_in_base_y +
-            S_dot_z*axis_y_prps_axes2_in_base_z)
+        prps_S_r0_y = (
+        prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
         )
-        # (prps-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (prps-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        S_ddot_tip_z = (
-        S_ddot_x*prps_base_frame_xz + S_ddot_y*prps_base_frame_yz + S_ddot_z*prps_base_frame_zz
+        # (prps-rho2_2) squared amplitude
+        prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y
+        # (prps-root_2) amplitude, with the sign of the branch
+        prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
+        # (prps-w_2) reciprocal vector 2
+        inv_prps_root_2 = 1.0/prps_root_2
+        # (prps-c_2) cosine of the angle of joint 2 from its reference direction
+        prps_c_2 = inv_prps_root_2*prps_S_r0_x
+        # (prps-s_2) sine of the angle of joint 2 from its reference direction
+        prps_s_2 = inv_prps_root_2*prps_S_r0_y
+        # (prps-Q) inertia of the leg at the connection point, without the mass gathered there
+        axis_y_prps_axes2_in_base_x = prps_base_frame_xy*prps_c_2 - prps_base_frame_xx*prps_s_2
+        axis_y_prps_axes2_in_base_y = prps_base_frame_yy*prps_c_2 - prps_base_frame_yx*prps_s_2
+        axis_y_prps_axes2_in_base_z = prps_base_frame_zy*prps_c_2 - prps_base_frame_zx*prps_s_2
+        axis_x_prps_axes2_in_base_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
+        axis_x_prps_axes2_in_base_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
+        axis_x_prps_axes2_in_base_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2
+        # (prps-S_dot) velocity of the connection point
+        prps_S_dot_t = omega_y*prps_q_in_base_z - omega_z*prps_q_in_base_y
+        prps_S_dot_t_2 = omega_z*prps_q_in_base_x - omega_x*prps_q_in_base_z
+        prps_S_dot_t_3 = omega_x*prps_q_in_base_y - omega_y*prps_q_in_base_x
+        prps_S_dot_x = prps_S_dot_t + t_dot_x
+        prps_S_dot_y = prps_S_dot_t_2 + t_dot_y
+        prps_S_dot_z = prps_S_dot_t_3 + t_dot_z
+        prps_S_dot_tip_x = (
+        axis_x_prps_axes2_in_base_x*prps_S_dot_x + axis_x_prps_axes2_in_base_y*prps_S_dot_y +
+            axis_x_prps_axes2_in_base_z*prps_S_dot_z
         )
-        # (prps-A5) acceleration of the connection point left to the joint accelerations
-        rel_x = (
-        S_ddot_x*axis_x_prps_axes2_in_base_x + S_ddot_y*axis_x_prps_axes2_in_base_y +
-            S_ddot_z*axis_x_prps_axes2_in_base_z + qd_2*qd_2*root_2
+        # (prps-qd_2) rate of joint 2
+        prps_qd_2 = (
+        inv_prps_root_2*(axis_y_prps_axes2_in_base_x*prps_S_dot_x +
+            axis_y_prps_axes2_in_base_y*prps_S_dot_y + axis_y_prps_axes2_in_base_z*prps_S_dot_z)
         )
-        rel_y = (
-        S_ddot_x*axis_y_prps_axes2_in_base_x + S_ddot_y*axis_y_prps_axes2_in_base_y +
-            S_ddot_z*axis_y_prps_axes2_in_base_z - 2.0*S_dot_tip_x*qd_2
+        # (prps-a_p) acceleration of the connection point without its centripetal part
+        prps_a_p_x = t_ddot_x + alpha_y*prps_q_in_base_z - alpha_z*prps_q_in_base_y
+        prps_a_p_y = t_ddot_y + alpha_z*prps_q_in_base_x - alpha_x*prps_q_in_base_z
+        prps_a_p_z = t_ddot_z + alpha_x*prps_q_in_base_y - alpha_y*prps_q_in_base_x
+        # (prps-S_ddot) acceleration of the connection point
+        prps_S_ddot_x = prps_a_p_x + omega_y*prps_S_dot_t_3 - omega_z*prps_S_dot_t_2
+        prps_S_ddot_y = prps_a_p_y + omega_z*prps_S_dot_t - omega_x*prps_S_dot_t_3
+        prps_S_ddot_z = prps_a_p_z + omega_x*prps_S_dot_t_2 - omega_y*prps_S_dot_t
+        prps_S_ddot_tip_z = (
+        prps_S_ddot_x*prps_base_frame_xz + prps_S_ddot_y*prps_base_frame_yz +
+            prps_S_ddot_z*prps_base_frame_zz
         )
-        # (prps-A7) acceleration of joint 1
-        qdd_2 = inv_root_2*rel_y
+        # (prps-rel) acceleration of the connection point left to the joint accelerations
+        prps_rel_x = (
+        axis_x_prps_axes2_in_base_x*prps_S_ddot_x + axis_x_prps_axes2_in_base_y*prps_S_ddot_y +
+            axis_x_prps_axes2_in_base_z*prps_S_ddot_z + prps_qd_2*prps_qd_2*prps_root_2
+        )
+        prps_rel_y = (
+        axis_y_prps_axes2_in_base_x*prps_S_ddot_x + axis_y_prps_axes2_in_base_y*prps_S_ddot_y +
+            axis_y_prps_axes2_in_base_z*prps_S_ddot_z - 2.0*prps_S_dot_tip_x*prps_qd_2
+        )
+        # (prps-qdd_1) acceleration of joint 1
+        prps_qdd_2 = inv_prps_root_2*prps_rel_y
         ok = (
-        ok & m.every(leg, (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_2) >
-            _TOLERANCE * 0.75))
+        ok & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
+            (abs(prps_root_2) > _TOLERANCE * 0.75))
         )
-        out_qdd[_qdd_prps[0][leg]] = S_ddot_tip_z
-        out_qdd[_qdd_prps[1][leg]] = qdd_2
-        out_qdd[_qdd_prps[2][leg]] = rel_x
+        out_qdd[_qdd_prps[0][leg]] = prps_S_ddot_tip_z
+        out_qdd[_qdd_prps[1][leg]] = prps_qdd_2
+        out_qdd[_qdd_prps[2][leg]] = prps_rel_x
     return ok, (out_qdd,)
 
 
@@ -2896,120 +3036,130 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        Jc_2_zz, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_3_x, h_3_y, prps_base_frame_xx,
-            prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx, prps_base_frame_yy,
-            prps_base_frame_yz, prps_base_frame_zx, prps_base_frame_zy, prps_base_frame_zz,
-            prps_base_point_x, prps_base_point_y, prps_base_point_z, prps_link1_mass,
-            prps_link2_mass, prps_link3_mass, prps_platform_point_x, prps_platform_point_y,
-            prps_platform_point_z,
+        prps_Jc_2_zz, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
+            prps_base_frame_yx, prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx,
+            prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x, prps_base_point_y,
+            prps_base_point_z, prps_branch_2, prps_g_r0_x, prps_g_r0_y, prps_g_r0_z, prps_h_2_x,
+            prps_h_2_y, prps_h_3_x, prps_h_3_y, prps_link1_mass, prps_link2_mass, prps_link3_mass,
+            prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,
         ) = k
-        # (prps-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (prps-S) from the base point to the connection point
+        prps_q_in_base_x = (
         R_xx*prps_platform_point_x + R_xy*prps_platform_point_y + R_xz*prps_platform_point_z
         )
-        q_in_base_y = (
+        prps_q_in_base_y = (
         R_yx*prps_platform_point_x + R_yy*prps_platform_point_y + R_yz*prps_platform_point_z
         )
-        q_in_base_z = (
+        prps_q_in_base_z = (
         R_zx*prps_platform_point_x + R_zy*prps_platform_point_y + R_zz*prps_platform_point_z
         )
-        S_x = q_in_base_x + t_x - prps_base_point_x
-        S_y = q_in_base_y + t_y - prps_base_point_y
-        S_z = q_in_base_z + t_z - prps_base_point_z
-        S_r0_x = S_x*prps_base_frame_xx + S_y*prps_base_frame_yx + S_z*prps_base_frame_zx
-        S_r0_y = S_x*prps_base_frame_xy + S_y*prps_base_frame_yy + S_z*prps_base_frame_zy
-        # (prps-K7) squared amplitude
-        rho2_2 = S_r0_x*S_r0_x + S_r0_y*S_r0_y
-        # (prps-K8) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (prps-K9) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = S_r0_x*inv_root_2
-        # (prps-K10) sine of the angle of joint 2 from its reference direction
-        s_2 = S_r0_y*inv_root_2
-        # (prps-N43) inertia of the leg at the connection point, without the mass gathered there
-        axis_y_prps_axes2_in_base_x = c_2*prps_base_frame_xy - prps_base_frame_xx*s_2
-        axis_y_prps_axes2_in_base_y = c_2*prps_base_frame_yy - prps_base_frame_yx*s_2
-        axis_y_prps_axes2_in_base_z = c_2*prps_base_frame_zy - prps_base_frame_zx*s_2
-        axis_x_prps_axes2_in_base_x = c_2*prps_base_frame_xx + prps_base_frame_xy*s_2
-        axis_x_prps_axes2_in_base_y = c_2*prps_base_frame_yx + prps_base_frame_yy*s_2
-        axis_x_prps_axes2_in_base_z = c_2*prps_base_frame_zx + prps_base_frame_zy*s_2
-        # (prps-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_tip_x = (
-        S_dot_x*axis_x_prps_axes2_in_base_x + S_dot_y*axis_x_prps_axes2_in_base_y +
-            S_dot_z*axis_x_prps_axes2_in_base_z
+        prps_S_x = prps_q_in_base_x + t_x - prps_base_point_x
+        prps_S_y = prps_q_in_base_y + t_y - prps_base_point_y
+        prps_S_z = prps_q_in_base_z + t_z - prps_base_point_z
+        prps_S_r0_x = (
+        prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx + prps_S_z*prps_base_frame_zx
         )
-        # (prps-V8) rate of joint 2
-        qd_2 = (
-        inv_root_2*(S_dot_x*axis_y_prps_axes2_in_base_x + S_dot_y*axis_y_prps_axes2_in_base_y +
-            S_dot_z*axis_y_prps_axes2_in_base_z)
+        prps_S_r0_y = (
+        prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
         )
-        # (prps-V11) centripetal tensor of link 2
-        W_2_t = qd_2*qd_2
-        # (prps-N6) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x = c_2*g_r0_x + g_r0_y*s_2
-        g_r1_y = c_2*g_r0_y - g_r0_x*s_2
-        # (prps-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (prps-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        S_ddot_tip_y = (
-        S_ddot_x*axis_y_prps_axes2_in_base_x + S_ddot_y*axis_y_prps_axes2_in_base_y +
-            S_ddot_z*axis_y_prps_axes2_in_base_z
+        # (prps-rho2_2) squared amplitude
+        prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y
+        # (prps-root_2) amplitude, with the sign of the branch
+        prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
+        # (prps-w_2) reciprocal vector 2
+        inv_prps_root_2 = 1.0/prps_root_2
+        # (prps-c_2) cosine of the angle of joint 2 from its reference direction
+        prps_c_2 = inv_prps_root_2*prps_S_r0_x
+        # (prps-s_2) sine of the angle of joint 2 from its reference direction
+        prps_s_2 = inv_prps_root_2*prps_S_r0_y
+        # (prps-Q) inertia of the leg at the connection point, without the mass gathered there
+        axis_y_prps_axes2_in_base_x = prps_base_frame_xy*prps_c_2 - prps_base_frame_xx*prps_s_2
+        axis_y_prps_axes2_in_base_y = prps_base_frame_yy*prps_c_2 - prps_base_frame_yx*prps_s_2
+        axis_y_prps_axes2_in_base_z = prps_base_frame_zy*prps_c_2 - prps_base_frame_zx*prps_s_2
+        axis_x_prps_axes2_in_base_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
+        axis_x_prps_axes2_in_base_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
+        axis_x_prps_axes2_in_base_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2
+        # (prps-S_dot) velocity of the connection point
+        prps_S_dot_t = omega_y*prps_q_in_base_z - omega_z*prps_q_in_base_y
+        prps_S_dot_t_2 = omega_z*prps_q_in_base_x - omega_x*prps_q_in_base_z
+        prps_S_dot_t_3 = omega_x*prps_q_in_base_y - omega_y*prps_q_in_base_x
+        prps_S_dot_x = prps_S_dot_t + t_dot_x
+        prps_S_dot_y = prps_S_dot_t_2 + t_dot_y
+        prps_S_dot_z = prps_S_dot_t_3 + t_dot_z
+        prps_S_dot_tip_x = (
+        axis_x_prps_axes2_in_base_x*prps_S_dot_x + axis_x_prps_axes2_in_base_y*prps_S_dot_y +
+            axis_x_prps_axes2_in_base_z*prps_S_dot_z
         )
-        # (prps-A5) acceleration of the connection point left to the joint accelerations
-        rel_y = S_ddot_tip_y - 2.0*S_dot_tip_x*qd_2
-        # (prps-A7) acceleration of joint 1
-        qdd_2 = inv_root_2*rel_y
-        # (prps-N11) acceleration of the reference point of link 3, less gravity
-        acc_3_x = (
-        S_ddot_x*axis_x_prps_axes2_in_base_x + S_ddot_y*axis_x_prps_axes2_in_base_y +
-            S_ddot_z*axis_x_prps_axes2_in_base_z - g_r1_x
+        # (prps-qd_2) rate of joint 2
+        prps_qd_2 = (
+        inv_prps_root_2*(axis_y_prps_axes2_in_base_x*prps_S_dot_x +
+            axis_y_prps_axes2_in_base_y*prps_S_dot_y + axis_y_prps_axes2_in_base_z*prps_S_dot_z)
         )
-        acc_3_y = S_ddot_tip_y - g_r1_y
-        acc_3_z = (
-        S_ddot_x*prps_base_frame_xz + S_ddot_y*prps_base_frame_yz + S_ddot_z*prps_base_frame_zz -
-            g_r0_z
+        # (prps-W_2) centripetal tensor of link 2
+        prps_W_2_t = prps_qd_2*prps_qd_2
+        # (prps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        prps_g_r1_x = prps_c_2*prps_g_r0_x + prps_g_r0_y*prps_s_2
+        prps_g_r1_y = prps_c_2*prps_g_r0_y - prps_g_r0_x*prps_s_2
+        # (prps-a_p) acceleration of the connection point without its centripetal part
+        prps_a_p_x = t_ddot_x + alpha_y*prps_q_in_base_z - alpha_z*prps_q_in_base_y
+        prps_a_p_y = t_ddot_y + alpha_z*prps_q_in_base_x - alpha_x*prps_q_in_base_z
+        prps_a_p_z = t_ddot_z + alpha_x*prps_q_in_base_y - alpha_y*prps_q_in_base_x
+        # (prps-S_ddot) acceleration of the connection point
+        prps_S_ddot_x = prps_a_p_x + omega_y*prps_S_dot_t_3 - omega_z*prps_S_dot_t_2
+        prps_S_ddot_y = prps_a_p_y + omega_z*prps_S_dot_t - omega_x*prps_S_dot_t_3
+        prps_S_ddot_z = prps_a_p_z + omega_x*prps_S_dot_t_2 - omega_y*prps_S_dot_t
+        prps_S_ddot_tip_y = (
+        axis_y_prps_axes2_in_base_x*prps_S_ddot_x + axis_y_prps_axes2_in_base_y*prps_S_ddot_y +
+            axis_y_prps_axes2_in_base_z*prps_S_ddot_z
         )
-        # (prps-N32) inertia force of the links from 1 outwards, the last link left out
-        T_1_z = acc_3_z*prps_link1_mass + acc_3_z*prps_link2_mass
-        # (prps-N27) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_z = Jc_2_zz*qdd_2 + acc_3_y*h_3_x + g_r1_x*h_2_y - acc_3_x*h_3_y - g_r1_y*h_2_x
-        # (prps-N40) leg force on the platform without actuation and without the mass at the connection point
-        c_y = W_2_t*h_3_y - h_3_x*qdd_2 - inv_root_2*mu_2_z
-        # (prps-N45) leg force on the platform without actuation, the last link's mass included
-        c_true_x = W_2_t*h_3_x + h_3_y*qdd_2 - acc_3_x*prps_link3_mass
-        c_true_y = c_y - acc_3_y*prps_link3_mass
-        c_true_z = -T_1_z - acc_3_z*prps_link3_mass
-        c_true_in_base_x = (
-        axis_x_prps_axes2_in_base_x*c_true_x + axis_y_prps_axes2_in_base_x*c_true_y +
-            c_true_z*prps_base_frame_xz
+        # (prps-rel) acceleration of the connection point left to the joint accelerations
+        prps_rel_y = prps_S_ddot_tip_y - 2.0*prps_S_dot_tip_x*prps_qd_2
+        # (prps-qdd_1) acceleration of joint 1
+        prps_qdd_2 = inv_prps_root_2*prps_rel_y
+        # (prps-acc_3) acceleration of the reference point of link 3, less gravity
+        prps_acc_3_x = (
+        axis_x_prps_axes2_in_base_x*prps_S_ddot_x + axis_x_prps_axes2_in_base_y*prps_S_ddot_y +
+            axis_x_prps_axes2_in_base_z*prps_S_ddot_z - prps_g_r1_x
         )
-        c_true_in_base_y = (
-        axis_x_prps_axes2_in_base_y*c_true_x + axis_y_prps_axes2_in_base_y*c_true_y +
-            c_true_z*prps_base_frame_yz
+        prps_acc_3_y = prps_S_ddot_tip_y - prps_g_r1_y
+        prps_acc_3_z = (
+        prps_S_ddot_x*prps_base_frame_xz + prps_S_ddot_y*prps_base_frame_yz +
+            prps_S_ddot_z*prps_base_frame_zz - prps_g_r0_z
         )
-        c_true_in_base_z = (
-        axis_x_prps_axes2_in_base_z*c_true_x + axis_y_prps_axes2_in_base_z*c_true_y +
-            c_true_z*prps_base_frame_zz
+        # (prps-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        prps_mu_2_z = (
+        prps_Jc_2_zz*prps_qdd_2 + prps_acc_3_y*prps_h_3_x + prps_g_r1_x*prps_h_2_y -
+            prps_acc_3_x*prps_h_3_y - prps_g_r1_y*prps_h_2_x
+        )
+        # (prps-T_1) inertia force of the links from 1 outwards, the last link left out
+        prps_T_1_z = prps_acc_3_z*prps_link1_mass + prps_acc_3_z*prps_link2_mass
+        # (prps-c) leg force on the platform without actuation and without the mass at the connection point
+        prps_c_y = prps_W_2_t*prps_h_3_y - inv_prps_root_2*prps_mu_2_z - prps_h_3_x*prps_qdd_2
+        # (prps-c_true) leg force on the platform without actuation, the last link's mass included
+        prps_c_true_x = (
+        prps_W_2_t*prps_h_3_x + prps_h_3_y*prps_qdd_2 - prps_acc_3_x*prps_link3_mass
+        )
+        prps_c_true_y = prps_c_y - prps_acc_3_y*prps_link3_mass
+        prps_c_true_z = -prps_T_1_z - prps_acc_3_z*prps_link3_mass
+        prps_c_true_in_base_x = (
+        axis_x_prps_axes2_in_base_x*prps_c_true_x + axis_y_prps_axes2_in_base_x*prps_c_true_y +
+            prps_base_frame_xz*prps_c_true_z
+        )
+        prps_c_true_in_base_y = (
+        axis_x_prps_axes2_in_base_y*prps_c_true_x + axis_y_prps_axes2_in_base_y*prps_c_true_y +
+            prps_base_frame_yz*prps_c_true_z
+        )
+        prps_c_true_in_base_z = (
+        axis_x_prps_axes2_in_base_z*prps_c_true_x + axis_y_prps_axes2_in_base_z*prps_c_true_y +
+            prps_base_frame_zz*prps_c_true_z
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_2) >
-            _TOLERANCE * 0.75))
+        ok & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
+            (abs(prps_root_2) > _TOLERANCE * 0.75))
         )
-        out_leg_force[_leg_force_prps[0][leg]] = c_true_in_base_x
-        out_leg_force[_leg_force_prps[1][leg]] = c_true_in_base_y
-        out_leg_force[_leg_force_prps[2][leg]] = c_true_in_base_z
+        out_leg_force[_leg_force_prps[0][leg]] = prps_c_true_in_base_x
+        out_leg_force[_leg_force_prps[1][leg]] = prps_c_true_in_base_y
+        out_leg_force[_leg_force_prps[2][leg]] = prps_c_true_in_base_z
         out_drive[_drive_prps[0][leg]] = prps_base_frame_xz
         out_drive[_drive_prps[1][leg]] = prps_base_frame_yz
         out_drive[_drive_prps[2][leg]] = prps_base_frame_zz
@@ -3061,8 +3211,8 @@ def _run_potential(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_potential = m.zeros("potential")
-    # (V1) potential energy
-    potential_t_5 = (
+    # (potential) potential energy
+    potential_t = (
     gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
         gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
         gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z)
@@ -3070,56 +3220,69 @@ def _run_potential(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        b_r0_z, branch_2, g_r0_x, g_r0_y, g_r0_z, h_1_x, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x,
-            h_3_y, h_3_z, potential_t, potential_t_2, potential_t_3, potential_t_4,
-            prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
-            prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx, prps_base_frame_zy,
-            prps_base_frame_zz, prps_base_point_x, prps_base_point_y, prps_base_point_z,
-            prps_link1_mass, prps_link2_mass, prps_platform_point_x, prps_platform_point_y,
-            prps_platform_point_z,
+        prps_b_r0_z, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
+            prps_base_frame_yx, prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx,
+            prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x, prps_base_point_y,
+            prps_base_point_z, prps_branch_2, prps_g_r0_x, prps_g_r0_y, prps_g_r0_z, prps_h_1_x,
+            prps_h_1_y, prps_h_1_z, prps_h_2_x, prps_h_2_y, prps_h_2_z, prps_h_3_x, prps_h_3_y,
+            prps_h_3_z, prps_link1_mass, prps_link2_mass, prps_platform_point_x,
+            prps_platform_point_y, prps_platform_point_z, prps_potential_t, prps_potential_t_2,
+            prps_potential_t_3, prps_potential_t_4,
         ) = k
-        # (prps-K1) from the base point to the connection point
-        S_x = (
+        # (prps-S) from the base point to the connection point
+        prps_S_x = (
         t_x + R_xx*prps_platform_point_x + R_xy*prps_platform_point_y + R_xz*prps_platform_point_z
             - prps_base_point_x
         )
-        S_y = (
+        prps_S_y = (
         t_y + R_yx*prps_platform_point_x + R_yy*prps_platform_point_y + R_yz*prps_platform_point_z
             - prps_base_point_y
         )
-        S_z = (
+        prps_S_z = (
         t_z + R_zx*prps_platform_point_x + R_zy*prps_platform_point_y + R_zz*prps_platform_point_z
             - prps_base_point_z
         )
-        # (prps-K2) displacement of joint 1
-        q_1_t = S_x*prps_base_frame_xz + S_y*prps_base_frame_yz + S_z*prps_base_frame_zz
-        # (prps-K1) from the base point to the connection point
-        S_r0_x = S_x*prps_base_frame_xx + S_y*prps_base_frame_yx + S_z*prps_base_frame_zx
-        S_r0_y = S_x*prps_base_frame_xy + S_y*prps_base_frame_yy + S_z*prps_base_frame_zy
-        # (prps-K7) squared amplitude
-        rho2_2 = S_r0_x*S_r0_x + S_r0_y*S_r0_y
-        # (prps-K8) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (prps-K9) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = S_r0_x*inv_root_2
-        # (prps-K10) sine of the angle of joint 2 from its reference direction
-        s_2 = S_r0_y*inv_root_2
-        # (V1) potential energy
-        potential_t_6 = b_r0_z + q_1_t
-        potential_t_7 = (
-        g_r0_x*(h_1_x + potential_t + potential_t_3 + c_2*h_2_x + c_2*h_3_x - h_2_y*s_2 -
-            h_3_y*s_2) + g_r0_y*(h_1_y + potential_t_2 + potential_t_4 + c_2*h_2_y + c_2*h_3_y +
-            h_2_x*s_2 + h_3_x*s_2) + g_r0_z*(h_1_z + h_2_z + h_3_z + potential_t_6*prps_link1_mass
-            + potential_t_6*prps_link2_mass)
+        # (prps-q_1) displacement of joint 1
+        prps_q_1_t = (
+        prps_S_x*prps_base_frame_xz + prps_S_y*prps_base_frame_yz + prps_S_z*prps_base_frame_zz
         )
-        ok = ok & m.every(leg, (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625))
+        # (prps-S) from the base point to the connection point
+        prps_S_r0_x = (
+        prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx + prps_S_z*prps_base_frame_zx
+        )
+        prps_S_r0_y = (
+        prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
+        )
+        # (prps-rho2_2) squared amplitude
+        prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y
+        # (prps-root_2) amplitude, with the sign of the branch
+        prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
+        # (prps-w_2) reciprocal vector 2
+        inv_prps_root_2 = 1.0/prps_root_2
+        # (prps-c_2) cosine of the angle of joint 2 from its reference direction
+        prps_c_2 = inv_prps_root_2*prps_S_r0_x
+        # (prps-s_2) sine of the angle of joint 2 from its reference direction
+        prps_s_2 = inv_prps_root_2*prps_S_r0_y
+        # (potential) potential energy
+        prps_potential_t_5 = prps_b_r0_z + prps_q_1_t
+        prps_potential_t_6 = (
+        prps_g_r0_x*(prps_h_1_x + prps_potential_t + prps_potential_t_3 + prps_c_2*prps_h_2_x +
+            prps_c_2*prps_h_3_x - prps_h_2_y*prps_s_2 - prps_h_3_y*prps_s_2) +
+            prps_g_r0_y*(prps_h_1_y + prps_potential_t_2 + prps_potential_t_4 +
+            prps_c_2*prps_h_2_y + prps_c_2*prps_h_3_y + prps_h_2_x*prps_s_2 + prps_h_3_x*prps_s_2)
+            + prps_g_r0_z*(prps_h_1_z + prps_h_2_z + prps_h_3_z +
+            prps_link1_mass*prps_potential_t_5 + prps_link2_mass*prps_potential_t_5)
+        )
+        ok = (
+        ok & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
+            (abs(prps_root_2) > _TOLERANCE * 0.75))
+        )
         sums = m.added(sums, leg, (
-        potential_t_7,
+        prps_potential_t_6,
         ))
     total_prps, = sums
-    # (V1) potential energy
-    potential = -potential_t_5 - total_prps
+    # (potential) potential energy
+    potential = -potential_t - total_prps
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -3176,86 +3339,99 @@ def _run_condition(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        branch_2, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
+        prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
             prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx, prps_base_frame_zy,
             prps_base_frame_zz, prps_base_point_x, prps_base_point_y, prps_base_point_z,
-            prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,
+            prps_branch_2, prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,
         ) = k
-        # (prps-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (prps-S) from the base point to the connection point
+        prps_q_in_base_x = (
         R_xx*prps_platform_point_x + R_xy*prps_platform_point_y + R_xz*prps_platform_point_z
         )
-        q_in_base_y = (
+        prps_q_in_base_y = (
         R_yx*prps_platform_point_x + R_yy*prps_platform_point_y + R_yz*prps_platform_point_z
         )
-        q_in_base_z = (
+        prps_q_in_base_z = (
         R_zx*prps_platform_point_x + R_zy*prps_platform_point_y + R_zz*prps_platform_point_z
         )
-        S_x = q_in_base_x + t_x - prps_base_point_x
-        S_y = q_in_base_y + t_y - prps_base_point_y
-        S_z = q_in_base_z + t_z - prps_base_point_z
-        S_r0_x = S_x*prps_base_frame_xx + S_y*prps_base_frame_yx + S_z*prps_base_frame_zx
-        S_r0_y = S_x*prps_base_frame_xy + S_y*prps_base_frame_yy + S_z*prps_base_frame_zy
-        # (prps-K7) squared amplitude
-        rho2_2 = S_r0_x*S_r0_x + S_r0_y*S_r0_y
-        # (prps-K8) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (prps-K9) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = S_r0_x*inv_root_2
-        # (prps-K10) sine of the angle of joint 2 from its reference direction
-        s_2 = S_r0_y*inv_root_2
-        # (prps-N43) inertia of the leg at the connection point, without the mass gathered there
-        axis_x_prps_axes2_in_base_x = c_2*prps_base_frame_xx + prps_base_frame_xy*s_2
-        axis_x_prps_axes2_in_base_y = c_2*prps_base_frame_yx + prps_base_frame_yy*s_2
-        axis_x_prps_axes2_in_base_z = c_2*prps_base_frame_zx + prps_base_frame_zy*s_2
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_x = prps_base_frame_zz*q_in_base_y - prps_base_frame_yz*q_in_base_z
-        H_a_1_y = prps_base_frame_xz*q_in_base_z - prps_base_frame_zz*q_in_base_x
-        H_a_1_z = prps_base_frame_yz*q_in_base_x - prps_base_frame_xz*q_in_base_y
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_3_x = (
-        axis_x_prps_axes2_in_base_z*q_in_base_y - axis_x_prps_axes2_in_base_y*q_in_base_z
+        prps_S_x = prps_q_in_base_x + t_x - prps_base_point_x
+        prps_S_y = prps_q_in_base_y + t_y - prps_base_point_y
+        prps_S_z = prps_q_in_base_z + t_z - prps_base_point_z
+        prps_S_r0_x = (
+        prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx + prps_S_z*prps_base_frame_zx
         )
-        H_a_3_y = (
-        axis_x_prps_axes2_in_base_x*q_in_base_z - axis_x_prps_axes2_in_base_z*q_in_base_x
+        prps_S_r0_y = (
+        prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
         )
-        H_a_3_z = (
-        axis_x_prps_axes2_in_base_y*q_in_base_x - axis_x_prps_axes2_in_base_x*q_in_base_y
+        # (prps-rho2_2) squared amplitude
+        prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y
+        # (prps-root_2) amplitude, with the sign of the branch
+        prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
+        # (prps-w_2) reciprocal vector 2
+        inv_prps_root_2 = 1.0/prps_root_2
+        # (prps-c_2) cosine of the angle of joint 2 from its reference direction
+        prps_c_2 = inv_prps_root_2*prps_S_r0_x
+        # (prps-s_2) sine of the angle of joint 2 from its reference direction
+        prps_s_2 = inv_prps_root_2*prps_S_r0_y
+        # (prps-Q) inertia of the leg at the connection point, without the mass gathered there
+        axis_x_prps_axes2_in_base_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
+        axis_x_prps_axes2_in_base_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
+        axis_x_prps_axes2_in_base_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2
+        # (prps-H_a_1) moment of the column's unit force about the platform origin
+        prps_H_a_1_x = prps_base_frame_zz*prps_q_in_base_y - prps_base_frame_yz*prps_q_in_base_z
+        prps_H_a_1_y = prps_base_frame_xz*prps_q_in_base_z - prps_base_frame_zz*prps_q_in_base_x
+        prps_H_a_1_z = prps_base_frame_yz*prps_q_in_base_x - prps_base_frame_xz*prps_q_in_base_y
+        # (prps-H_a_3) moment of the column's unit force about the platform origin
+        prps_H_a_3_x = (
+        axis_x_prps_axes2_in_base_z*prps_q_in_base_y -
+            axis_x_prps_axes2_in_base_y*prps_q_in_base_z
         )
-        # (C2) rms distance of the platform points from their centroid
-        spread_t_2 = b_c_x - prps_platform_point_x
-        spread_t_3 = b_c_y - prps_platform_point_y
-        spread_t_4 = b_c_z - prps_platform_point_z
-        spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 + spread_t_4*spread_t_4
-        # (prps-K7) squared amplitude
-        pivot_size = abs(rho2_2)
-        # (prps-N30) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        pivot_size_2 = abs(root_2)
-        # (prps-N37) force at the connection point that balances the leg's inertia and weight along all freedoms
-        least_pivots = least(1.3333333333333333*sqrt(pivot_size), 1.3333333333333333*pivot_size_2)
+        prps_H_a_3_y = (
+        axis_x_prps_axes2_in_base_x*prps_q_in_base_z -
+            axis_x_prps_axes2_in_base_z*prps_q_in_base_x
+        )
+        prps_H_a_3_z = (
+        axis_x_prps_axes2_in_base_y*prps_q_in_base_x -
+            axis_x_prps_axes2_in_base_x*prps_q_in_base_y
+        )
+        # (spread) rms distance of the platform points from their centroid
+        prps_spread_t = b_c_x - prps_platform_point_x
+        prps_spread_t_2 = b_c_y - prps_platform_point_y
+        prps_spread_t_3 = b_c_z - prps_platform_point_z
+        prps_spread_t_4 = (
+        prps_spread_t*prps_spread_t + prps_spread_t_2*prps_spread_t_2 +
+            prps_spread_t_3*prps_spread_t_3
+        )
+        # (prps-rho2_2) squared amplitude
+        prps_pivot_size = abs(prps_rho2_2)
+        # (prps-w_2) reciprocal vector 2
+        prps_pivot_size_2 = abs(prps_root_2)
+        # (prps-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        prps_least_pivots = (
+        least(1.3333333333333333*sqrt(prps_pivot_size), 1.3333333333333333*prps_pivot_size_2)
+        )
         clear = (
-        clear & m.every(leg, (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_2) >
-            _TOLERANCE * 0.75))
+        clear & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
+            (abs(prps_root_2) > _TOLERANCE * 0.75))
         )
         sums = m.added(sums, leg, (
-        spread_t_5,
+        prps_spread_t_4,
         ))
         out_H[_H_prps[0][leg]] = prps_base_frame_xz
         out_H[_H_prps[1][leg]] = prps_base_frame_yz
         out_H[_H_prps[2][leg]] = prps_base_frame_zz
-        out_H[_H_prps[3][leg]] = H_a_1_x
-        out_H[_H_prps[4][leg]] = H_a_1_y
-        out_H[_H_prps[5][leg]] = H_a_1_z
+        out_H[_H_prps[3][leg]] = prps_H_a_1_x
+        out_H[_H_prps[4][leg]] = prps_H_a_1_y
+        out_H[_H_prps[5][leg]] = prps_H_a_1_z
         out_H[_H_prps[6][leg]] = axis_x_prps_axes2_in_base_x
         out_H[_H_prps[7][leg]] = axis_x_prps_axes2_in_base_y
         out_H[_H_prps[8][leg]] = axis_x_prps_axes2_in_base_z
-        out_H[_H_prps[9][leg]] = H_a_3_x
-        out_H[_H_prps[10][leg]] = H_a_3_y
-        out_H[_H_prps[11][leg]] = H_a_3_z
-        out_pivots[_pivots_prps[0][leg]] = least_pivots
+        out_H[_H_prps[9][leg]] = prps_H_a_3_x
+        out_H[_H_prps[10][leg]] = prps_H_a_3_y
+        out_H[_H_prps[11][leg]] = prps_H_a_3_z
+        out_pivots[_pivots_prps[0][leg]] = prps_least_pivots
     total_prps, = sums
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(total_prps)
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
@@ -3382,6 +3558,19 @@ def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
     momentum = np.einsum("ijs,js->is", M, V)
     return (momentum,)
+
+
+def _steps_joint_margins(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    margins = _unlimited(q, [0, 1, 2, 3, 4, 5, 6, 7, 8])
+    return (margins,)
+
+
+def _steps_within_limits(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    subtract_1 = q - q
+    within = _not_negative(subtract_1)
+    return (within,)
 
 
 def _steps_actuator_positions(m, X):
@@ -3818,6 +4007,40 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+    )
+
+
+def joint_margins(X, p=None):
+    """How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+    where there is none.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        margins: distances, in the order of q [m or rad] (..., NJ).
+    """
+    return _call(
+        "joint_margins", _steps_joint_margins, p,
+        ("X", X, (NQ,)),
+        unbounded=True,
+    )
+
+
+def within_limits(X, p=None):
+    """Whether all joints are within their limits of displacement.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        within: 1 where no margin is negative, else 0; NaN is neither (...,).
+    """
+    return _call(
+        "within_limits", _steps_within_limits, p,
+        ("X", X, (NQ,)),
     )
 
 

@@ -51,6 +51,7 @@ typedef HYBRID_3RRRS_REAL hybrid_3rrrs_real;
 #define HYBRID_3RRRS_NC 0
 #define HYBRID_3RRRS_NW 6
 #define HYBRID_3RRRS_NJ 9
+#define HYBRID_3RRRS_OVERCONSTRAINED 0
 
 enum {
     HYBRID_3RRRS_OK = 0,
@@ -105,25 +106,28 @@ typedef struct {
 /* What depends on the parameters alone; set by hybrid_3rrrs_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
-    hybrid_3rrrs_real J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+    /* 3 legs of type rrrs; copies of the first fill up */
+    hybrid_3rrrs_real inv_rrrs_platform_joint_offset_x[4], inv_rrrs_rho2_2_t_4[4], inv_rrrs_size[4],
+            inv_rrrs_size_t[4], inv_rrrs_size_t_2[4], inv_rrrs_size_t_3[4], rrrs_J_1_xx[4],
+            rrrs_J_2_xx[4], rrrs_J_2_xy[4], rrrs_J_2_xz[4], rrrs_J_2_yy[4], rrrs_J_2_yz[4],
+            rrrs_J_3_xx[4], rrrs_J_3_xy[4], rrrs_J_3_xz[4], rrrs_J_3_yy[4], rrrs_J_3_yz[4],
+            rrrs_J_3_zz[4], rrrs_Jc_2_zz[4], rrrs_Kd_2_t[4], rrrs_Kd_2_t_2[4], rrrs_Sigma_2_xx[4],
+            rrrs_Sigma_2_yy[4], rrrs_Sigma_2_zz[4], rrrs_Sigma_3_xx[4], rrrs_Sigma_3_yy[4],
+            rrrs_Sigma_3_zz[4], rrrs_b_r0_x[4], rrrs_b_r0_y[4], rrrs_base_frame_xx[4],
+            rrrs_base_frame_xy[4], rrrs_base_frame_xz[4], rrrs_base_frame_yx[4],
+            rrrs_base_frame_yy[4], rrrs_base_frame_yz[4], rrrs_base_frame_zx[4],
+            rrrs_base_frame_zy[4], rrrs_base_frame_zz[4], rrrs_base_point_x[4], rrrs_base_point_y[4],
+            rrrs_base_point_z[4], rrrs_branch_1[4], rrrs_branch_2[4], rrrs_d_Gamma_3_t[4],
+            rrrs_d_Gamma_3_y[4], rrrs_d_c_yy[4], rrrs_d_phi_3_t[4], rrrs_g_r0_x[4], rrrs_g_r0_y[4],
+            rrrs_g_r0_z[4], rrrs_h_1_x[4], rrrs_h_1_y[4], rrrs_h_1_z[4], rrrs_h_2_x[4], rrrs_h_2_y[4],
+            rrrs_h_2_z[4], rrrs_h_3_x[4], rrrs_h_3_y[4], rrrs_h_3_z[4], rrrs_joint2_offset_x[4],
+            rrrs_joint3_offset_x[4], rrrs_link1_mass[4], rrrs_link2_mass[4], rrrs_link3_mass[4],
+            rrrs_platform_joint_offset_x[4], rrrs_platform_point_x[4], rrrs_platform_point_y[4],
+            rrrs_platform_point_z[4], rrrs_potential_t[4], rrrs_potential_t_2[4], rrrs_rho2_2_t[4],
+            rrrs_size[4], rrrs_size_t_3[4];
+    hybrid_3rrrs_real J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
             J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
             h_star_x, h_star_y, h_star_z, legs_size, m_star, spread_t;
-    /* legs of type rrrs */
-    hybrid_3rrrs_real J_1_xx[3], J_2_xx[3], J_2_xy[3], J_2_xz[3], J_2_yy[3], J_2_yz[3], J_3_xx[3],
-            J_3_xy[3], J_3_xz[3], J_3_yy[3], J_3_yz[3], J_3_zz[3], Jc_2_zz[3], Kd_2_t[3], Kd_2_t_2[3],
-            Sigma_2_xx[3], Sigma_2_yy[3], Sigma_2_zz[3], Sigma_3_xx[3], Sigma_3_yy[3], Sigma_3_zz[3],
-            b_r0_x[3], b_r0_y[3], branch_1[3], branch_2[3], d_Gamma_2_t[3], d_Gamma_2_y[3], d_c_yy[3],
-            d_phi_3_t[3], g_r0_x[3], g_r0_y[3], g_r0_z[3], h_1_x[3], h_1_y[3], h_1_z[3], h_2_x[3],
-            h_2_y[3], h_2_z[3], h_3_x[3], h_3_y[3], h_3_z[3], inv_rho2_2_t_4[3],
-            inv_rrrs_platform_joint_offset_x[3], inv_size[3], inv_size_t[3], inv_size_t_2[3],
-            inv_size_t_3[3], potential_t[3], potential_t_2[3], rho2_2_t[3], rrrs_base_frame_xx[3],
-            rrrs_base_frame_xy[3], rrrs_base_frame_xz[3], rrrs_base_frame_yx[3],
-            rrrs_base_frame_yy[3], rrrs_base_frame_yz[3], rrrs_base_frame_zx[3],
-            rrrs_base_frame_zy[3], rrrs_base_frame_zz[3], rrrs_base_point_x[3], rrrs_base_point_y[3],
-            rrrs_base_point_z[3], rrrs_joint2_offset_x[3], rrrs_joint3_offset_x[3],
-            rrrs_link1_mass[3], rrrs_link2_mass[3], rrrs_link3_mass[3],
-            rrrs_platform_joint_offset_x[3], rrrs_platform_point_x[3], rrrs_platform_point_y[3],
-            rrrs_platform_point_z[3], size_[3], size_t_3[3];
 } hybrid_3rrrs_model;
 
 extern const hybrid_3rrrs_params hybrid_3rrrs_default_params;
@@ -146,7 +150,7 @@ int hybrid_3rrrs_M(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, 
 size_t hybrid_3rrrs_M_batch(const hybrid_3rrrs_model *model, size_t n, const hybrid_3rrrs_real *X,
     hybrid_3rrrs_real *M, int *status);
 
-/* Velocity and gravity terms Z. 912 mul, 663 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 927 mul, 675 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int hybrid_3rrrs_Z(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, const
     hybrid_3rrrs_real *V, hybrid_3rrrs_real *Z);
@@ -182,7 +186,7 @@ size_t hybrid_3rrrs_joint_accelerations_batch(const hybrid_3rrrs_model *model, s
     hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A,
     hybrid_3rrrs_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1350 mul, 1014 add, 12 div, 6 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1365 mul, 1026 add, 12 div, 6 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int hybrid_3rrrs_dynamics(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, const
     hybrid_3rrrs_real *V, hybrid_3rrrs_real *M, hybrid_3rrrs_real *Z, hybrid_3rrrs_real *H);
@@ -200,7 +204,7 @@ size_t hybrid_3rrrs_inverse_dynamics_batch(const hybrid_3rrrs_model *model, size
     hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A, const
     hybrid_3rrrs_real *wrench, hybrid_3rrrs_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1350 mul, 1014 add, 12 div, 6
+/* Acceleration A under the actuator forces tau and the wrench. 1365 mul, 1026 add, 12 div, 6
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int hybrid_3rrrs_forward_dynamics(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,
@@ -269,6 +273,20 @@ int hybrid_3rrrs_momentum(const hybrid_3rrrs_model *model, const hybrid_3rrrs_re
     hybrid_3rrrs_real *V, hybrid_3rrrs_real *momentum);
 size_t hybrid_3rrrs_momentum_batch(const hybrid_3rrrs_model *model, size_t n, const
     hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, hybrid_3rrrs_real *momentum, int *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 144 mul, 84 add, 6 div, 6 sqrt, 9 trig. In: X (NQ). Out: margins (NJ). */
+int hybrid_3rrrs_joint_margins(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,
+    hybrid_3rrrs_real *margins);
+size_t hybrid_3rrrs_joint_margins_batch(const hybrid_3rrrs_model *model, size_t n, const
+    hybrid_3rrrs_real *X, hybrid_3rrrs_real *margins, int *status);
+
+/* Whether all joints are within their limits of displacement. 144 mul, 84 add, 6 div, 6 sqrt, 9
+   trig. In: X (NQ). Out: within (1). */
+int hybrid_3rrrs_within_limits(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,
+    hybrid_3rrrs_real *within);
+size_t hybrid_3rrrs_within_limits_batch(const hybrid_3rrrs_model *model, size_t n, const
+    hybrid_3rrrs_real *X, hybrid_3rrrs_real *within, int *status);
 
 /* Displacements of the actuated joints, in the order of tau. 144 mul, 84 add, 6 div, 6 sqrt, 9
    trig. In: X (NQ). Out: q (NU). */

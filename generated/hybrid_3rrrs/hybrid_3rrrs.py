@@ -33,6 +33,7 @@ __all__ = [
     "NC",
     "NW",
     "NJ",
+    "OVERCONSTRAINED",
     "ACTUATED",
     "ACTUATOR_NAMES",
     "H",
@@ -57,6 +58,7 @@ __all__ = [
     "inverse_dynamics",
     "inverse_kinematics",
     "joint_accelerations",
+    "joint_margins",
     "joint_rates",
     "leg_reactions",
     "momentum",
@@ -66,6 +68,7 @@ __all__ = [
     "power",
     "retract",
     "rotation",
+    "within_limits",
 ]
 
 NQ = 7
@@ -74,6 +77,7 @@ NU = 6
 NC = 0
 NW = 6
 NJ = 9
+OVERCONSTRAINED = 0
 
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
@@ -376,7 +380,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return np.full(shape, default)
+        return _filled(shape, default) if isinstance(default, float) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -389,6 +393,16 @@ def _argument(function, name, value, shape, default=None, rule=""):
     elif rule == "positive" and not np.all((array > 0.0) & (array < np.inf)):
         raise ValueError(f"{function}: {name} must be positive and finite")
     return array
+
+
+_FILLED = {}
+
+
+def _filled(shape, value):
+    """An array of one value, made once."""
+    if (shape, value) not in _FILLED:
+        _FILLED[shape, value] = _frozen(np.full(shape, value))
+    return _FILLED[shape, value]
 
 
 def _lead(leads):
@@ -482,8 +496,8 @@ HOME_X = _frozen(np.array([0.0, 0.0, 0.75, 0.0, 0.0, 0.0, 1.0]))
 HOME_Q = _frozen(np.array([0.15, 0.9, -1.0, 0.15, 0.9, -1.0, 0.15, 0.9, -1.0]))
 
 _BRANCHES = {  # assembly branch of home, a sign per leg
-    "branch_1": np.array([1.0, 1.0, 1.0]),
-    "branch_2": np.array([1.0, 1.0, 1.0]),
+    "rrrs_branch_1": np.array([1.0, 1.0, 1.0]),
+    "rrrs_branch_2": np.array([1.0, 1.0, 1.0]),
 }
 
 
@@ -547,13 +561,13 @@ def _prepare(p):
     rrrs_link3_inertia_yy = p.rrrs_link3_inertia[:, 1, 1]
     rrrs_link3_inertia_yz = p.rrrs_link3_inertia[:, 1, 2]
     rrrs_link3_inertia_zz = p.rrrs_link3_inertia[:, 2, 2]
-    branch_1 = _BRANCHES["branch_1"]
-    branch_2 = _BRANCHES["branch_2"]
-    # (L2) first moment about the platform origin
+    rrrs_branch_1 = _BRANCHES["rrrs_branch_1"]
+    rrrs_branch_2 = _BRANCHES["rrrs_branch_2"]
+    # (h_star) first moment about the platform origin
     h_star_t = platform_centre_of_mass_x*platform_mass
     h_star_t_2 = platform_centre_of_mass_y*platform_mass
     h_star_t_3 = platform_centre_of_mass_z*platform_mass
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_t = platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_2 = platform_centre_of_mass_y*platform_centre_of_mass_y
     J_star_t_3 = platform_centre_of_mass_z*platform_centre_of_mass_z
@@ -564,226 +578,236 @@ def _prepare(p):
     J_star_t_8 = platform_mass*(J_star_t_2 - J_star_t_4)
     J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass
     J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4)
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread_t = 0.3333333333333333*sqrt(3.0)
-    # (rrrs-G2) length of the leg's lever arms, the measure of what is near singular
-    size_t = rrrs_joint3_offset_x*rrrs_joint3_offset_x
-    size_t_2 = rrrs_platform_joint_offset_x*rrrs_platform_joint_offset_x
-    size_t_3 = 6.238219509759999e-07 + size_t + size_t_2
-    size = sqrt(size_t_3)
-    # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-    Kd_2_t = 0.5*size_t
-    Kd_2_t_2 = 0.5*size_t_2
-    # (rrrs-K19) squared amplitude
-    rho2_2_t = size*size*size_t_3
-    # (rrrs-K26) the vector from joint 2 to the connection point, resolved along link 2
-    inv_size_t = 1.0/size_t
-    # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-    inv_size_t_2 = 1.0/size_t_2
-    # (rrrs-G4) inertia tensor of link 1 about the origin of link 1
-    J_1_t = rrrs_link1_centre_of_mass_x*rrrs_link1_centre_of_mass_x
-    J_1_t_2 = (
-    J_1_t + rrrs_link1_centre_of_mass_y*rrrs_link1_centre_of_mass_y +
-        rrrs_link1_centre_of_mass_z*rrrs_link1_centre_of_mass_z
+    # (rrrs-size) length of the leg's lever arms, the measure of what is near singular
+    rrrs_size_t = rrrs_joint3_offset_x*rrrs_joint3_offset_x
+    rrrs_size_t_2 = rrrs_platform_joint_offset_x*rrrs_platform_joint_offset_x
+    rrrs_size_t_3 = 6.238219509759999e-07 + rrrs_size_t + rrrs_size_t_2
+    rrrs_size = sqrt(rrrs_size_t_3)
+    # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+    rrrs_Kd_2_t = 0.5*rrrs_size_t
+    rrrs_Kd_2_t_2 = 0.5*rrrs_size_t_2
+    # (rrrs-rho2_2) squared amplitude
+    rrrs_rho2_2_t = rrrs_size*rrrs_size*rrrs_size_t_3
+    # (rrrs-xi_2) the vector from joint 2 to the connection point, resolved along link 2
+    inv_rrrs_size_t = 1.0/rrrs_size_t
+    # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
+    inv_rrrs_size_t_2 = 1.0/rrrs_size_t_2
+    # (rrrs-rho_tip_3) connection point to the centre of mass of link 3
+    rrrs_rho_tip_3_x = rrrs_link3_centre_of_mass_x - rrrs_platform_joint_offset_x
+    # (rrrs-h_3) first moment of link 3 about the connection point
+    rrrs_h_3_x = rrrs_link3_mass*rrrs_rho_tip_3_x
+    rrrs_h_3_y = rrrs_link3_centre_of_mass_y*rrrs_link3_mass
+    rrrs_h_3_z = rrrs_link3_centre_of_mass_z*rrrs_link3_mass
+    # (rrrs-w_3) reciprocal vector 3
+    inv_rrrs_platform_joint_offset_x = 1.0/rrrs_platform_joint_offset_x
+    # (rrrs-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+    rrrs_d_phi_3_t = inv_rrrs_platform_joint_offset_x*rrrs_h_3_y
+    # (rrrs-J_3) inertia tensor of link 3 about the connection point
+    rrrs_J_3_t = rrrs_rho_tip_3_x*rrrs_rho_tip_3_x
+    rrrs_J_3_t_2 = rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_y
+    rrrs_J_3_t_3 = rrrs_link3_centre_of_mass_z*rrrs_link3_centre_of_mass_z
+    rrrs_J_3_t_4 = rrrs_J_3_t + rrrs_J_3_t_2 + rrrs_J_3_t_3
+    rrrs_J_3_xx = rrrs_link3_inertia_xx - rrrs_link3_mass*(rrrs_J_3_t - rrrs_J_3_t_4)
+    rrrs_J_3_xy = (
+    rrrs_link3_inertia_xy - rrrs_link3_centre_of_mass_y*rrrs_link3_mass*rrrs_rho_tip_3_x
     )
-    J_1_xx = rrrs_link1_inertia_xx - rrrs_link1_mass*(J_1_t - J_1_t_2)
-    # (rrrs-G6) inertia tensor of link 2 about the origin of link 2
-    J_2_t = rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_x
-    J_2_t_2 = rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_y
-    J_2_t_3 = rrrs_link2_centre_of_mass_z*rrrs_link2_centre_of_mass_z
-    J_2_t_4 = J_2_t + J_2_t_2 + J_2_t_3
-    J_2_xx = rrrs_link2_inertia_xx - rrrs_link2_mass*(J_2_t - J_2_t_4)
-    J_2_xy = (
-    rrrs_link2_inertia_xy -
-        rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_y*rrrs_link2_mass
+    rrrs_J_3_xz = (
+    rrrs_link3_inertia_xz - rrrs_link3_centre_of_mass_z*rrrs_link3_mass*rrrs_rho_tip_3_x
     )
-    J_2_xz = (
-    rrrs_link2_inertia_xz -
-        rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_z*rrrs_link2_mass
-    )
-    J_2_yy = rrrs_link2_inertia_yy - rrrs_link2_mass*(J_2_t_2 - J_2_t_4)
-    J_2_yz = (
-    rrrs_link2_inertia_yz -
-        rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_z*rrrs_link2_mass
-    )
-    J_2_zz = rrrs_link2_inertia_zz - rrrs_link2_mass*(J_2_t_3 - J_2_t_4)
-    # (rrrs-G7) connection point to the centre of mass of link 3
-    rho_tip_3_x = rrrs_link3_centre_of_mass_x - rrrs_platform_joint_offset_x
-    # (rrrs-G9) inertia tensor of link 3 about the connection point
-    J_3_t = rho_tip_3_x*rho_tip_3_x
-    J_3_t_2 = rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_y
-    J_3_t_3 = rrrs_link3_centre_of_mass_z*rrrs_link3_centre_of_mass_z
-    J_3_t_4 = J_3_t + J_3_t_2 + J_3_t_3
-    J_3_xx = rrrs_link3_inertia_xx - rrrs_link3_mass*(J_3_t - J_3_t_4)
-    J_3_xy = rrrs_link3_inertia_xy - rho_tip_3_x*rrrs_link3_centre_of_mass_y*rrrs_link3_mass
-    J_3_xz = rrrs_link3_inertia_xz - rho_tip_3_x*rrrs_link3_centre_of_mass_z*rrrs_link3_mass
-    J_3_yy = rrrs_link3_inertia_yy - rrrs_link3_mass*(J_3_t_2 - J_3_t_4)
-    J_3_yz = (
+    rrrs_J_3_yy = rrrs_link3_inertia_yy - rrrs_link3_mass*(rrrs_J_3_t_2 - rrrs_J_3_t_4)
+    rrrs_J_3_yz = (
     rrrs_link3_inertia_yz -
         rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_z*rrrs_link3_mass
     )
-    J_3_zz = rrrs_link3_inertia_zz - rrrs_link3_mass*(J_3_t_3 - J_3_t_4)
-    # (rrrs-N18) inertia tensor of the links from 2 outwards about joint 2
-    Jc_2_zz = J_2_zz + J_3_zz
-    # (rrrs-G5) first moment of link 2 about the origin of link 2
-    h_2_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass
-    h_2_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass
-    h_2_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass
-    # (rrrs-G8) first moment of link 3 about the connection point
-    h_3_x = rho_tip_3_x*rrrs_link3_mass
-    h_3_y = rrrs_link3_centre_of_mass_y*rrrs_link3_mass
-    h_3_z = rrrs_link3_centre_of_mass_z*rrrs_link3_mass
-    # (rrrs-V9) reciprocal vector 3
-    inv_rrrs_platform_joint_offset_x = 1.0/rrrs_platform_joint_offset_x
-    # (rrrs-N41) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-    d_Gamma_2_t = J_3_zz*inv_rrrs_platform_joint_offset_x
-    d_Gamma_2_y = d_Gamma_2_t + h_3_x
-    # (rrrs-N12) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-    d_phi_3_t = h_3_y*inv_rrrs_platform_joint_offset_x
-    # (rrrs-N56) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_yy = (
-    -d_Gamma_2_y*inv_rrrs_platform_joint_offset_x - h_3_x*inv_rrrs_platform_joint_offset_x
+    rrrs_J_3_zz = rrrs_link3_inertia_zz - rrrs_link3_mass*(rrrs_J_3_t_3 - rrrs_J_3_t_4)
+    # (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    rrrs_d_Gamma_3_t = inv_rrrs_platform_joint_offset_x*rrrs_J_3_zz
+    rrrs_d_Gamma_3_y = rrrs_d_Gamma_3_t + rrrs_h_3_x
+    # (rrrs-J_2) inertia tensor of link 2 about the origin of link 2
+    rrrs_J_2_t = rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_x
+    rrrs_J_2_t_2 = rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_y
+    rrrs_J_2_t_3 = rrrs_link2_centre_of_mass_z*rrrs_link2_centre_of_mass_z
+    rrrs_J_2_t_4 = rrrs_J_2_t + rrrs_J_2_t_2 + rrrs_J_2_t_3
+    rrrs_J_2_xx = rrrs_link2_inertia_xx - rrrs_link2_mass*(rrrs_J_2_t - rrrs_J_2_t_4)
+    rrrs_J_2_xy = (
+    rrrs_link2_inertia_xy -
+        rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_y*rrrs_link2_mass
     )
-    # (L2) first moment about the platform origin
-    h_star_t_4 = rrrs_link3_mass*rrrs_platform_point_x
-    h_star_t_5 = rrrs_link3_mass*rrrs_platform_point_y
-    h_star_t_6 = rrrs_link3_mass*rrrs_platform_point_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t_11 = rrrs_platform_point_x*rrrs_platform_point_x
-    J_star_t_12 = rrrs_platform_point_y*rrrs_platform_point_y
-    J_star_t_13 = rrrs_platform_point_z*rrrs_platform_point_z
-    J_star_t_14 = J_star_t_11 + J_star_t_12 + J_star_t_13
-    J_star_t_15 = rrrs_link3_mass*(J_star_t_11 - J_star_t_14)
-    J_star_t_16 = rrrs_link3_mass*rrrs_platform_point_x*rrrs_platform_point_y
-    J_star_t_17 = rrrs_link3_mass*rrrs_platform_point_x*rrrs_platform_point_z
-    J_star_t_18 = rrrs_link3_mass*(J_star_t_12 - J_star_t_14)
-    J_star_t_19 = rrrs_link3_mass*rrrs_platform_point_y*rrrs_platform_point_z
-    J_star_t_20 = rrrs_link3_mass*(J_star_t_13 - J_star_t_14)
-    # (rrrs-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-    g_r0_x = (
+    rrrs_J_2_xz = (
+    rrrs_link2_inertia_xz -
+        rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_z*rrrs_link2_mass
+    )
+    rrrs_J_2_yy = rrrs_link2_inertia_yy - rrrs_link2_mass*(rrrs_J_2_t_2 - rrrs_J_2_t_4)
+    rrrs_J_2_yz = (
+    rrrs_link2_inertia_yz -
+        rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_z*rrrs_link2_mass
+    )
+    rrrs_J_2_zz = rrrs_link2_inertia_zz - rrrs_link2_mass*(rrrs_J_2_t_3 - rrrs_J_2_t_4)
+    # (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+    rrrs_Jc_2_zz = rrrs_J_2_zz + rrrs_J_3_zz
+    # (rrrs-h_2) first moment of link 2 about the origin of link 2
+    rrrs_h_2_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass
+    rrrs_h_2_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass
+    rrrs_h_2_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass
+    # (rrrs-J_1) inertia tensor of link 1 about the origin of link 1
+    rrrs_J_1_t = rrrs_link1_centre_of_mass_x*rrrs_link1_centre_of_mass_x
+    rrrs_J_1_t_2 = (
+    rrrs_J_1_t + rrrs_link1_centre_of_mass_y*rrrs_link1_centre_of_mass_y +
+        rrrs_link1_centre_of_mass_z*rrrs_link1_centre_of_mass_z
+    )
+    rrrs_J_1_xx = rrrs_link1_inertia_xx - rrrs_link1_mass*(rrrs_J_1_t - rrrs_J_1_t_2)
+    # (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    rrrs_d_c_yy = (
+    -inv_rrrs_platform_joint_offset_x*rrrs_d_Gamma_3_y -
+        inv_rrrs_platform_joint_offset_x*rrrs_h_3_x
+    )
+    # (h_star) first moment about the platform origin
+    rrrs_h_star_t = rrrs_link3_mass*rrrs_platform_point_x
+    rrrs_h_star_t_2 = rrrs_link3_mass*rrrs_platform_point_y
+    rrrs_h_star_t_3 = rrrs_link3_mass*rrrs_platform_point_z
+    # (J_star) inertia tensor about the platform origin
+    rrrs_J_star_t = rrrs_platform_point_x*rrrs_platform_point_x
+    rrrs_J_star_t_2 = rrrs_platform_point_y*rrrs_platform_point_y
+    rrrs_J_star_t_3 = rrrs_platform_point_z*rrrs_platform_point_z
+    rrrs_J_star_t_4 = rrrs_J_star_t + rrrs_J_star_t_2 + rrrs_J_star_t_3
+    rrrs_J_star_t_5 = rrrs_link3_mass*(rrrs_J_star_t - rrrs_J_star_t_4)
+    rrrs_J_star_t_6 = rrrs_link3_mass*rrrs_platform_point_x*rrrs_platform_point_y
+    rrrs_J_star_t_7 = rrrs_link3_mass*rrrs_platform_point_x*rrrs_platform_point_z
+    rrrs_J_star_t_8 = rrrs_link3_mass*(rrrs_J_star_t_2 - rrrs_J_star_t_4)
+    rrrs_J_star_t_9 = rrrs_link3_mass*rrrs_platform_point_y*rrrs_platform_point_z
+    rrrs_J_star_t_10 = rrrs_link3_mass*(rrrs_J_star_t_3 - rrrs_J_star_t_4)
+    # (rrrs-trace_J_3) half the trace of that inertia tensor
+    rrrs_trace_J_3 = 0.5*rrrs_J_3_xx + 0.5*rrrs_J_3_yy + 0.5*rrrs_J_3_zz
+    # (rrrs-Sigma_3) second moment of mass of the links that turn with link 3
+    rrrs_Sigma_3_xx = rrrs_trace_J_3 - rrrs_J_3_xx
+    rrrs_Sigma_3_yy = rrrs_trace_J_3 - rrrs_J_3_yy
+    rrrs_Sigma_3_zz = rrrs_trace_J_3 - rrrs_J_3_zz
+    # (rrrs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+    rrrs_g_r0_x = (
     gravity_x*rrrs_base_frame_xy + gravity_y*rrrs_base_frame_yy + gravity_z*rrrs_base_frame_zy
     )
-    g_r0_y = (
+    rrrs_g_r0_y = (
     gravity_x*rrrs_base_frame_xz + gravity_y*rrrs_base_frame_yz + gravity_z*rrrs_base_frame_zz
     )
-    g_r0_z = (
+    rrrs_g_r0_z = (
     gravity_x*rrrs_base_frame_xx + gravity_y*rrrs_base_frame_yx + gravity_z*rrrs_base_frame_zx
     )
-    # (rrrs-N34) half the trace of that inertia tensor
-    trace_J_2 = 0.5*J_2_xx + 0.5*J_2_yy + 0.5*J_2_zz
-    # (rrrs-N35) second moment of mass of the links that turn with link 2
-    Sigma_2_xx = trace_J_2 - J_2_xx
-    Sigma_2_yy = trace_J_2 - J_2_yy
-    Sigma_2_zz = trace_J_2 - J_2_zz
-    # (rrrs-N27) half the trace of that inertia tensor
-    trace_J_3 = 0.5*J_3_xx + 0.5*J_3_yy + 0.5*J_3_zz
-    # (rrrs-N28) second moment of mass of the links that turn with link 3
-    Sigma_3_xx = trace_J_3 - J_3_xx
-    Sigma_3_yy = trace_J_3 - J_3_yy
-    Sigma_3_zz = trace_J_3 - J_3_zz
-    # (rrrs-G3) first moment of link 1 about the origin of link 1
-    h_1_x = rrrs_link1_centre_of_mass_x*rrrs_link1_mass
-    h_1_y = rrrs_link1_centre_of_mass_y*rrrs_link1_mass
-    h_1_z = rrrs_link1_centre_of_mass_z*rrrs_link1_mass
-    # (V1) potential energy
-    b_r0_x = (
+    # (rrrs-trace_J_2) half the trace of that inertia tensor
+    rrrs_trace_J_2 = 0.5*rrrs_J_2_xx + 0.5*rrrs_J_2_yy + 0.5*rrrs_J_2_zz
+    # (rrrs-Sigma_2) second moment of mass of the links that turn with link 2
+    rrrs_Sigma_2_xx = rrrs_trace_J_2 - rrrs_J_2_xx
+    rrrs_Sigma_2_yy = rrrs_trace_J_2 - rrrs_J_2_yy
+    rrrs_Sigma_2_zz = rrrs_trace_J_2 - rrrs_J_2_zz
+    # (rrrs-h_1) first moment of link 1 about the origin of link 1
+    rrrs_h_1_x = rrrs_link1_centre_of_mass_x*rrrs_link1_mass
+    rrrs_h_1_y = rrrs_link1_centre_of_mass_y*rrrs_link1_mass
+    rrrs_h_1_z = rrrs_link1_centre_of_mass_z*rrrs_link1_mass
+    # (potential) potential energy
+    rrrs_b_r0_x = (
     rrrs_base_frame_xy*rrrs_base_point_x + rrrs_base_frame_yy*rrrs_base_point_y +
         rrrs_base_frame_zy*rrrs_base_point_z
     )
-    b_r0_y = (
+    rrrs_b_r0_y = (
     rrrs_base_frame_xz*rrrs_base_point_x + rrrs_base_frame_yz*rrrs_base_point_y +
         rrrs_base_frame_zz*rrrs_base_point_z
     )
-    b_r0_z = (
+    rrrs_b_r0_z = (
     rrrs_base_frame_xx*rrrs_base_point_x + rrrs_base_frame_yx*rrrs_base_point_y +
         rrrs_base_frame_zx*rrrs_base_point_z
     )
-    potential_t = b_r0_z*rrrs_link1_mass
-    potential_t_2 = rrrs_link2_mass*(b_r0_z + rrrs_joint2_offset_x)
-    # (rrrs-K5) squared amplitude
-    inv_size_t_3 = 1.0/size_t_3
-    # (rrrs-K19) squared amplitude
-    inv_rho2_2_t_4 = 1.0/rho2_2_t
-    # (rrrs-V7) reciprocal vector 1
-    inv_size = 1.0/size
+    rrrs_potential_t = rrrs_b_r0_z*rrrs_link1_mass
+    rrrs_potential_t_2 = rrrs_link2_mass*(rrrs_b_r0_z + rrrs_joint2_offset_x)
+    # (rrrs-rho2_1) squared amplitude
+    inv_rrrs_size_t_3 = 1.0/rrrs_size_t_3
+    # (rrrs-rho2_2) squared amplitude
+    inv_rrrs_rho2_2_t_4 = 1.0/rrrs_rho2_2_t
+    # (rrrs-w_1) reciprocal vector 1
+    inv_rrrs_size = 1.0/rrrs_size
     total_rrrs = np.sum(np.broadcast_to(rrrs_link3_mass, _rrrs))
-    total_rrrs_x = np.sum(np.broadcast_to(h_star_t_4, _rrrs))
-    total_rrrs_y = np.sum(np.broadcast_to(h_star_t_5, _rrrs))
-    total_rrrs_z = np.sum(np.broadcast_to(h_star_t_6, _rrrs))
-    total_rrrs_xx = np.sum(np.broadcast_to(J_star_t_15, _rrrs))
-    total_rrrs_xy = np.sum(np.broadcast_to(J_star_t_16, _rrrs))
-    total_rrrs_xz = np.sum(np.broadcast_to(J_star_t_17, _rrrs))
-    total_rrrs_yy = np.sum(np.broadcast_to(J_star_t_18, _rrrs))
-    total_rrrs_yz = np.sum(np.broadcast_to(J_star_t_19, _rrrs))
-    total_rrrs_zz = np.sum(np.broadcast_to(J_star_t_20, _rrrs))
+    total_rrrs_x = np.sum(np.broadcast_to(rrrs_h_star_t, _rrrs))
+    total_rrrs_y = np.sum(np.broadcast_to(rrrs_h_star_t_2, _rrrs))
+    total_rrrs_z = np.sum(np.broadcast_to(rrrs_h_star_t_3, _rrrs))
+    total_rrrs_xx = np.sum(np.broadcast_to(rrrs_J_star_t_5, _rrrs))
+    total_rrrs_xy = np.sum(np.broadcast_to(rrrs_J_star_t_6, _rrrs))
+    total_rrrs_xz = np.sum(np.broadcast_to(rrrs_J_star_t_7, _rrrs))
+    total_rrrs_yy = np.sum(np.broadcast_to(rrrs_J_star_t_8, _rrrs))
+    total_rrrs_yz = np.sum(np.broadcast_to(rrrs_J_star_t_9, _rrrs))
+    total_rrrs_zz = np.sum(np.broadcast_to(rrrs_J_star_t_10, _rrrs))
     total_rrrs_x_2 = np.sum(np.broadcast_to(rrrs_platform_point_x, _rrrs))
     total_rrrs_y_2 = np.sum(np.broadcast_to(rrrs_platform_point_y, _rrrs))
     total_rrrs_z_2 = np.sum(np.broadcast_to(rrrs_platform_point_z, _rrrs))
-    total_rrrs_2 = np.sum(np.broadcast_to(size_t_3, _rrrs))
-    # (L1) mass of the platform with the gathered masses
+    total_rrrs_2 = np.sum(np.broadcast_to(rrrs_size_t_3, _rrrs))
+    # (m_star) mass of the platform with the gathered masses
     m_star = platform_mass + total_rrrs
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_x = h_star_t + total_rrrs_x
     h_star_y = h_star_t_2 + total_rrrs_y
     h_star_z = h_star_t_3 + total_rrrs_z
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_xx = platform_inertia_xx - J_star_t_5 - total_rrrs_xx
     J_star_xy = platform_inertia_xy - J_star_t_6 - total_rrrs_xy
     J_star_xz = platform_inertia_xz - J_star_t_7 - total_rrrs_xz
     J_star_yy = platform_inertia_yy - J_star_t_8 - total_rrrs_yy
     J_star_yz = platform_inertia_yz - J_star_t_9 - total_rrrs_yz
     J_star_zz = platform_inertia_zz - J_star_t_10 - total_rrrs_zz
-    J_star_t_21 = J_star_xx - J_star_yy
-    J_star_t_22 = 0.5*J_star_t_21
-    J_star_t_23 = J_star_xx - J_star_zz
-    J_star_t_24 = 0.5*J_star_t_23
-    # (M4) centripetal force and weight of the platform
+    J_star_t_11 = J_star_xx - J_star_yy
+    J_star_t_12 = 0.5*J_star_t_11
+    J_star_t_13 = J_star_xx - J_star_zz
+    J_star_t_14 = 0.5*J_star_t_13
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
     Z_p_t_3 = gravity_z*m_star
-    # (C1) centroid of the platform points
+    # (b_c) centroid of the platform points
     b_c_x = 0.3333333333333333*total_rrrs_x_2
     b_c_y = 0.3333333333333333*total_rrrs_y_2
     b_c_z = 0.3333333333333333*total_rrrs_z_2
-    # (C3) rms size of the legs, taken where the platform points coincide
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     legs_size = spread_t*sqrt(total_rrrs_2)
     return {
         "dynamics": (
-        (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
                 J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
                 h_star_y, h_star_z, m_star,),
             (
                 (_rrrs,
-        (J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz,
-                    J_3_zz, Jc_2_zz, Kd_2_t, Kd_2_t_2, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz,
-                    Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, d_Gamma_2_t,
-                    d_Gamma_2_y, d_c_yy, d_phi_3_t, g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x,
-                    h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, inv_rrrs_platform_joint_offset_x,
-                    inv_size_t, inv_size_t_2, rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
-                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-                    rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size,
-                    size_t_3,),
+        (inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
+                    rrrs_J_2_xx, rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yy, rrrs_J_2_yz, rrrs_J_3_xx,
+                    rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yy, rrrs_J_3_yz, rrrs_J_3_zz, rrrs_Jc_2_zz,
+                    rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
+                    rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_t,
+                    rrrs_d_Gamma_3_y, rrrs_d_c_yy, rrrs_d_phi_3_t, rrrs_g_r0_x, rrrs_g_r0_y,
+                    rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y, rrrs_h_2_z,
+                    rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
+                    rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
+                    rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
+                    rrrs_size_t_3,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
+        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
                 h_star_z, m_star,),
             (
                 (_rrrs,
-        (J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz,
-                    J_3_zz, Jc_2_zz, Kd_2_t, Kd_2_t_2, branch_1, branch_2, d_Gamma_2_t,
-                    d_Gamma_2_y, d_c_yy, d_phi_3_t, h_3_x, h_3_y, h_3_z,
-                    inv_rrrs_platform_joint_offset_x, inv_size_t, inv_size_t_2, rho2_2_t,
-                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-                    rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x,
+        (inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
+                    rrrs_J_2_xx, rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yy, rrrs_J_2_yz, rrrs_J_3_xx,
+                    rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yy, rrrs_J_3_yz, rrrs_J_3_zz, rrrs_Jc_2_zz,
+                    rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
+                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+                    rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_t, rrrs_d_Gamma_3_y, rrrs_d_c_yy,
+                    rrrs_d_phi_3_t, rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
                     rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-                    rrrs_platform_point_y, rrrs_platform_point_z, size, size_t_3,),
+                    rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
+                    rrrs_size_t_3,),
                 ),
             ),
         ),
@@ -792,16 +816,19 @@ def _prepare(p):
                 Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
             (
                 (_rrrs,
-        (J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, Kd_2_t, Kd_2_t_2, Sigma_2_xx,
-                    Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1,
-                    branch_2, g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x,
-                    h_3_y, h_3_z, inv_rrrs_platform_joint_offset_x, inv_size_t, inv_size_t_2,
-                    rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-                    rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x,
+        (inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
+                    rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yz, rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yz,
+                    rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
+                    rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_r0_x, rrrs_g_r0_y,
+                    rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y, rrrs_h_2_z,
+                    rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
                     rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-                    rrrs_platform_point_y, rrrs_platform_point_z, size, size_t_3,),
+                    rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
+                    rrrs_size_t_3,),
                 ),
             ),
         ),
@@ -809,13 +836,14 @@ def _prepare(p):
         (),
             (
                 (_rrrs,
-        (Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_size_t, inv_size_t_2, rho2_2_t,
-                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-                    rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x,
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
                     rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-                    rrrs_platform_point_y, rrrs_platform_point_z, size, size_t_3,),
+                    rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
+                    rrrs_size_t_3,),
                 ),
             ),
         ),
@@ -824,16 +852,19 @@ def _prepare(p):
                 gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
                 (_rrrs,
-        (J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, Kd_2_t, Kd_2_t_2, Sigma_2_xx,
-                    Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1,
-                    branch_2, g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x,
-                    h_3_y, h_3_z, inv_rrrs_platform_joint_offset_x, inv_size_t, inv_size_t_2,
-                    rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-                    rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x,
+        (inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
+                    rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yz, rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yz,
+                    rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
+                    rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_r0_x, rrrs_g_r0_y,
+                    rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y, rrrs_h_2_z,
+                    rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
                     rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-                    rrrs_platform_point_y, rrrs_platform_point_z, size, size_t_3,),
+                    rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
+                    rrrs_size_t_3,),
                 ),
             ),
         ),
@@ -841,13 +872,13 @@ def _prepare(p):
         (),
             (
                 (_rrrs,
-        (Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_size_t, inv_size_t_2, rho2_2_t,
-                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-                    rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x,
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
                     rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-                    rrrs_platform_point_y, rrrs_platform_point_z, size_t_3,),
+                    rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size_t_3,),
                 ),
             ),
         ),
@@ -855,14 +886,14 @@ def _prepare(p):
         (),
             (
                 (_rrrs,
-        (Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_rrrs_platform_joint_offset_x, inv_size_t,
-                    inv_size_t_2, rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
-                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+        (inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t,
+                    rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
                     rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size,
-                    size_t_3,),
+                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z,
+                    rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,),
                 ),
             ),
         ),
@@ -870,14 +901,14 @@ def _prepare(p):
         (),
             (
                 (_rrrs,
-        (Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_rrrs_platform_joint_offset_x, inv_size_t,
-                    inv_size_t_2, rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
-                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+        (inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t,
+                    rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
                     rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size,
-                    size_t_3,),
+                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z,
+                    rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,),
                 ),
             ),
         ),
@@ -885,17 +916,19 @@ def _prepare(p):
         (gravity_x, gravity_y, gravity_z,),
             (
                 (_rrrs,
-        (J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, Kd_2_t, Kd_2_t_2, Sigma_2_xx,
-                    Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1,
-                    branch_2, g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x,
-                    h_3_y, h_3_z, inv_rrrs_platform_joint_offset_x, inv_size_t, inv_size_t_2,
-                    rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-                    rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x,
+        (inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
+                    rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yz, rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yz,
+                    rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
+                    rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_r0_x, rrrs_g_r0_y,
+                    rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y, rrrs_h_2_z,
+                    rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
                     rrrs_joint3_offset_x, rrrs_link3_mass, rrrs_platform_joint_offset_x,
-                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size,
-                    size_t_3,),
+                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z,
+                    rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,),
                 ),
             ),
         ),
@@ -903,16 +936,17 @@ def _prepare(p):
         (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
                 (_rrrs,
-        (Kd_2_t, Kd_2_t_2, b_r0_x, b_r0_y, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_1_x,
-                    h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, inv_size_t,
-                    inv_size_t_2, potential_t, potential_t_2, rho2_2_t, rrrs_base_frame_xx,
-                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-                    rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
-                    rrrs_link1_mass, rrrs_link2_mass, rrrs_platform_joint_offset_x,
-                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z,
-                    size_t_3,),
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_b_r0_x, rrrs_b_r0_y,
+                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+                    rrrs_g_r0_x, rrrs_g_r0_y, rrrs_g_r0_z, rrrs_h_1_x, rrrs_h_1_y, rrrs_h_1_z,
+                    rrrs_h_2_x, rrrs_h_2_y, rrrs_h_2_z, rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z,
+                    rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_link1_mass, rrrs_link2_mass,
+                    rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+                    rrrs_platform_point_z, rrrs_potential_t, rrrs_potential_t_2, rrrs_rho2_2_t,
+                    rrrs_size_t_3,),
                 ),
             ),
         ),
@@ -920,21 +954,23 @@ def _prepare(p):
         (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
             (
                 (_rrrs,
-        (Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_rho2_2_t_4, inv_size, inv_size_t, inv_size_t_2,
-                    inv_size_t_3, rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
-                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-                    rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size,
-                    size_t_3,),
+        (inv_rrrs_rho2_2_t_4, inv_rrrs_size, inv_rrrs_size_t, inv_rrrs_size_t_2,
+                    inv_rrrs_size_t_3, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
+                    rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
+                    rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
+                    rrrs_size_t_3,),
                 ),
             ),
         ),
     }
 
 
-_FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
+_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
@@ -980,17 +1016,19 @@ class _Floats:
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
-        for k in range(self.states):
-            try:
-                ok, arrays = function(self, *(row[k] for row in rows))
-            except (ZeroDivisionError, OverflowError):
-                continue
-            if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
-                for a, array in zip(found, arrays):
-                    a[k] = array
-        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
+        found = [self.state(function, names, [row[k] for row in rows]) for k in range(self.states)]
+        return [np.array(a).T.reshape(*_SHAPES[n], self.states) for a, n in zip(zip(*found), names)]
+
+    def state(self, function, names, given):
+        """Lists that a function gives at a state."""
+        try:
+            ok, arrays = function(self, *given)
+        except (ZeroDivisionError, OverflowError):
+            ok = False
+        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+            return arrays
+        return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
 
 
 class _Arrays:
@@ -1058,35 +1096,44 @@ def _mode(p, states):
     return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
 
 
-def _call(function, steps, p, *arguments, mode=_mode):
-    """What the steps give at arguments (name, value, shape of a state, default, rule)."""
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+    """What the steps give at arguments (name, value, shape of a state, default, rule).
+
+    Where that may be infinite only NaN makes a state impossible.
+    """
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
     lead, p = _lead(leads), _given(p)
     read = [a[4:] != ("unused",) for a in arguments]
     if lead or mode is _Judged:
-        results = _many(steps, p, lead, given, shapes, read, mode)
+        results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
-        results = _one(steps, p, given, shapes, read)
+        results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
 
 
-def _one(steps, p, given, shapes, read):
+def _one(steps, p, given, shapes, read, unbounded):
     """Results at a single state."""
     states = [v.reshape(*shape, 1) for v, shape in zip(given, shapes)]
     with np.errstate(all="ignore"):
-        results = [a[..., 0] for a in steps(_Floats(p, 1), *states)]
-    if all(all(map(math.isfinite, v.ravel().tolist())) for v in (*compress(given, read), *results)):
-        return [np.array(a)[()] for a in results]
+        results = [a[..., 0].copy() for a in steps(_Floats(p, 1), *states)]
+    looked_at = [np.minimum(a, 0.0) for a in results] if unbounded else results
+    entries = (v.ravel().tolist() for v in (*compress(given, read), *looked_at))
+    if all(all(map(math.isfinite, row)) for row in entries):
+        return [a[()] for a in results]
     return [np.full(a.shape, np.nan)[()] for a in results]
 
 
-def _many(steps, p, lead, given, shapes, read, mode):
+def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block."""
     count = math.prod(lead)
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
+    if count > _BLOCK:
+        # Never touched, freed at once: the C library, which learns from it, then keeps the memory
+        # of intermediate arrays from block to block instead of giving its pages back.
+        np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
         for first in range(0, max(count, 1), _BLOCK):
             block = slice(first, min(first + _BLOCK, count))
@@ -1098,7 +1145,7 @@ def _many(steps, p, lead, given, shapes, read, mode):
             _all_finite(compress(states, read), good)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite(found, good)
+            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -1134,6 +1181,18 @@ def _wrapped(a, places):
     result = np.array(a)
     result[places] = np.pi - np.remainder(np.pi - a[places], 2.0 * np.pi)
     return result
+
+
+def _unlimited(a, places):
+    """a, some entries infinite; what is not known stays so."""
+    result = np.array(a)
+    result[places] += np.inf
+    return result
+
+
+def _not_negative(a):
+    """1 where no entry is negative, else 0; NaN where one is not finite."""
+    return np.where(np.isfinite(a).all(axis=0), np.all(a >= 0.0, axis=0), np.nan)
 
 
 def _rows_divided(a, b, places):
@@ -1236,8 +1295,8 @@ def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
     n, states = b.shape
     if 0 < states <= _FEW:
-        matrices, rights = np.moveaxis(a, -1, 0).tolist(), b.T.tolist()
-        return np.array([_solve_one(*each) for each in zip(matrices, rights)]).T.reshape(n, states)
+        systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
+        return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
     good = np.all((size > 0.0) & np.isfinite(size), axis=0)
     rows = np.concatenate((a, b[:, None]), axis=1)
@@ -1264,28 +1323,32 @@ def _solve(a, b):
 
 
 def _solve_one(a, b):
-    """The same for one system of nested lists."""
-    n = len(b)
-    failure = [np.nan] * n
-    for i, row in enumerate(a):
-        size = max(map(abs, row), default=0.0)
-        if not 0.0 < size < np.inf:
-            return failure
-        a[i] = [v / size for v in row] + [b[i] / size]
-    for k in range(n):
-        best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
-            a[k], a[best] = a[best], a[k]
-        if not abs(a[k][k]) > _PIVOT:
-            return failure
-        head = a[k]
-        for i in range(k + 1, n):
-            factor = a[i][k] / head[k]
-            a[i] = [v - factor * h for v, h in zip(a[i], head)]
-    x = [0.0] * n
-    for k in reversed(range(n)):
-        x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
-    return x if all(map(math.isfinite, x)) else failure
+    """The same for one system of nested lists: the rows left lose an entry at every step."""
+    rows, heads = [], []
+    for row, right in zip(a, b):
+        size = max(map(abs, row))
+        if not 0.0 < size < math.inf:
+            return [math.nan] * len(b)
+        rows.append([v / size for v in (*row, right)])
+    while rows:
+        column = [abs(row[0]) for row in rows]
+        largest = max(column)
+        if largest > _CLEARLY * column[0]:
+            best = column.index(largest)
+            rows[0], rows[best] = rows[best], rows[0]
+        pivot, *head = rows[0]
+        if not abs(pivot) > _PIVOT:
+            return [math.nan] * len(b)
+        heads.append((pivot, head))
+        for i in range(1, len(rows)):
+            first, *row = rows[i]
+            factor = first / pivot
+            rows[i] = [v - factor * h for v, h in zip(row, head)]
+        del rows[0]
+    x = []
+    for pivot, (*head, right) in reversed(heads):
+        x.insert(0, (right - sum([h * v for h, v in zip(head, x)])) / pivot)
+    return x if all(map(math.isfinite, x)) else [math.nan] * len(b)
 
 
 def _matrices(a, *others):
@@ -1396,12 +1459,12 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 1350 mul, 1014 add, 12 div, 6 sqrt, 0 trig
+# dynamics: 1365 mul, 1026 add, 12 div, 6 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
-    J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
+    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
         Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
         m_star,
     ) = shared
@@ -1457,145 +1520,162 @@ def _run_dynamics(m, X, V):
     out_M = m.zeros("M")
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy
-    J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
     J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_12 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_15 = 2.0*J_star_t_14 + J_star_xx
-    # (M4) centripetal force and weight of the platform
+    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
+    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
     Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
     Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z_2*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x_2*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y - g_r0_y_2*h_star_x
+    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
+    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
     sums = [0.0] * 27
     for leg, k in legs[0]:
         (
-        J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz,
-            J_3_zz, Jc_2_zz, Kd_2_t, Kd_2_t_2, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx,
-            Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, d_Gamma_2_t, d_Gamma_2_y, d_c_yy,
-            d_phi_3_t, g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y,
-            h_3_z, inv_rrrs_platform_joint_offset_x, inv_size_t, inv_size_t_2, rho2_2_t,
-            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size, size_t_3,
+        inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
+            rrrs_J_2_xx, rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yy, rrrs_J_2_yz, rrrs_J_3_xx,
+            rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yy, rrrs_J_3_yz, rrrs_J_3_zz, rrrs_Jc_2_zz,
+            rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
+            rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_d_Gamma_3_t, rrrs_d_Gamma_3_y, rrrs_d_c_yy, rrrs_d_phi_3_t, rrrs_g_r0_x,
+            rrrs_g_r0_y, rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y, rrrs_h_2_z,
+            rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+            rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
         ) = k
-        # (rrrs-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (rrrs-S) from the base point to the connection point
+        rrrs_q_in_base_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        q_in_base_y = (
+        rrrs_q_in_base_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        q_in_base_z = (
+        rrrs_q_in_base_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rrrs_base_point_x
-        S_y = q_in_base_y + t_y - rrrs_base_point_y
-        S_z = q_in_base_z + t_z - rrrs_base_point_z
-        # (rrrs-K2) component along the reference direction
-        px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
-        # (rrrs-K3) component across the reference direction
-        py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
-        # (rrrs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rrrs-K7) root, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
-        # (rrrs-K12) from the origin of joint 2 to the connection point
-        x_2_z = xi_1_t - rrrs_joint2_offset_x
-        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
-        Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-        # (rrrs-K17) factor of the cosine in the equation of joint 2
-        Kc_2 = root_1*rrrs_joint3_offset_x
-        # (rrrs-K18) factor of the sine in the equation of joint 2
-        Ks_2 = rrrs_joint3_offset_x*x_2_z
-        # (rrrs-K19) squared amplitude
-        rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
-        # (rrrs-K20) discriminant
-        disc_2 = rho2_2 - Kd_2*Kd_2
-        # (rrrs-K21) root, with the sign of the branch
-        root_2 = branch_2*sqrt(disc_2)
-        # (rrrs-K27) from the origin of joint 3 to the connection point
-        x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-        # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x
-        # (rrrs-K30) sine of the angle of joint 3 from its reference direction
-        s_3 = inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_t = rrrs_platform_joint_offset_x*s_3
-        r_2_x = rrrs_joint3_offset_x + c_3*rrrs_platform_joint_offset_x
-        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2)
-        # (rrrs-K23) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2)
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        e_1_r2_x = c_2*s_3 - c_3*s_2
-        e_1_r2_y = -c_2*c_3 - s_2*s_3
-        # (rrrs-V3) from joint 1 to the connection point, along the links
-        r_1_r1_x = c_2*root_1 - s_2*xi_1_t
-        r_1_r1_y = -c_2*xi_1_t - root_1*s_2
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        v_1_z = e_1_r2_x*(c_3*r_1_r1_y + r_1_r1_x*s_3) - e_1_r2_y*(c_3*r_1_r1_x - r_1_r1_y*s_3)
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_r0_x = c_3*r_2_x + r_2_t*s_3
-        r_2_r0_y = r_2_x*s_3 - c_3*r_2_t
-        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*py_1*root_1
-        # (rrrs-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*px_1*root_1
-        # (rrrs-V7) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1 - c_1*rrrs_base_frame_xy
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1 - c_1*rrrs_base_frame_yy
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1 - c_1*rrrs_base_frame_zy
-        w_1_t = e_1_r2_x*s_1
-        w_1_t_2 = c_1*e_1_r2_x
+        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        # (rrrs-px_1) component along the reference direction
+        rrrs_px_1 = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        )
+        # (rrrs-py_1) component across the reference direction
+        rrrs_py_1 = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrs_xi_1_t = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        )
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-x_3) from the origin of joint 3 to the connection point
+        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrs_s_3 = (
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
+        )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3
+        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
+        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
+        # (rrrs-r_1) from joint 1 to the connection point, along the links
+        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
+        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_z = (
+        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
+            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
+        )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_r0_x = rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3
+        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
+        # (rrrs-w_1) reciprocal vector 1
+        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
+        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
+        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
         axis_y_rrrs_axes3_in_base_x = (
-        e_1_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_t + rrrs_base_frame_xz*w_1_t_2
+        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
+            rrrs_base_frame_xz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_y = (
-        e_1_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_t + rrrs_base_frame_yz*w_1_t_2
+        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
+            rrrs_base_frame_yz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_z = (
-        e_1_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_t + rrrs_base_frame_zz*w_1_t_2
+        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
+            rrrs_base_frame_zz*rrrs_w_1_t_2
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
@@ -1609,329 +1689,387 @@ def _run_dynamics(m, X, V):
         axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
             axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
         )
-        # (rrrs-G9) inertia tensor of link 3 about the connection point
-        J_3_t = J_3_xy*s_3
-        _x = J_3_t + J_3_xx*c_3
-        J_3_t_2 = J_3_xy*c_3
-        _x_2 = J_3_t_2 + J_3_yy*s_3
-        _x_3 = J_3_xz*c_3 + J_3_yz*s_3
-        _y = J_3_yz*c_3 - J_3_xz*s_3
-        # (rrrs-N18) inertia tensor of the links from 2 outwards about joint 2
-        Jc_2_xy = J_2_xy + _x_2*c_3 - _x*s_3
-        _y_2 = (
-        -c_2*(-Jc_2_xy*s_2 - c_2*(J_2_yy + c_3*(J_3_yy*c_3 - J_3_t) - s_3*(J_3_t_2 - J_3_xx*s_3)))
-            - s_2*(-Jc_2_xy*c_2 - s_2*(J_2_xx + _x*c_3 + _x_2*s_3))
+        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
+        # (rrrs-w_2) reciprocal vector 2
+        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
+        # (rrrs-w_3) reciprocal vector 3
+        rrrs_w_3_t = inv_rrrs_platform_joint_offset_x*inv_rrrs_r_2_r0_y*rrrs_r_2_r0_x
+        # (rrrs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
+        rrrs_d_alpha_3_t = inv_rrrs_v_1_z*rrrs_e_1_r2_x
+        rrrs_d_alpha_3_t_2 = inv_rrrs_v_1_z*rrrs_e_1_r2_y
+        # (rrrs-D_1_3) inertia of joint 3 along joint 1
+        rrrs_D_1_3 = rrrs_J_3_xz*rrrs_e_1_r2_x + rrrs_J_3_yz*rrrs_e_1_r2_y
+        # (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        rrrs_d_Gamma_3_t_2 = inv_rrrs_v_1_z*rrrs_D_1_3
+        rrrs_d_Gamma_3_t_3 = rrrs_d_Gamma_3_t*rrrs_r_2_r0_x
+        rrrs_d_Gamma_3_x = -rrrs_h_3_y - inv_rrrs_r_2_r0_y*(rrrs_J_3_zz - rrrs_d_Gamma_3_t_3)
+        # (rrrs-J_3) inertia tensor of link 3 about the connection point
+        rrrs_J_3_t = rrrs_J_3_xy*rrrs_s_3
+        rrrs__x = rrrs_J_3_t + rrrs_J_3_xx*rrrs_c_3
+        rrrs_J_3_t_2 = rrrs_J_3_xy*rrrs_c_3
+        rrrs__x_2 = rrrs_J_3_t_2 + rrrs_J_3_yy*rrrs_s_3
+        # (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+        rrrs_Jc_2_xy = rrrs_J_2_xy + rrrs__x_2*rrrs_c_3 - rrrs__x*rrrs_s_3
+        # (rrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rrrs_d_Gamma_2_x = -rrrs_h_3_y - inv_rrrs_r_2_r0_y*(rrrs_Jc_2_zz - rrrs_d_Gamma_3_t_3)
+        # (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+        rrrs__y = (
+        -rrrs_c_2*(-rrrs_Jc_2_xy*rrrs_s_2 - rrrs_c_2*(rrrs_J_2_yy + rrrs_c_3*(rrrs_J_3_yy*rrrs_c_3
+            - rrrs_J_3_t) - rrrs_s_3*(rrrs_J_3_t_2 - rrrs_J_3_xx*rrrs_s_3))) -
+            rrrs_s_2*(-rrrs_Jc_2_xy*rrrs_c_2 - rrrs_s_2*(rrrs_J_2_xx + rrrs__x*rrrs_c_3 +
+            rrrs__x_2*rrrs_s_3))
         )
-        # (rrrs-V7) reciprocal vector 1
-        inv_v_1_z = 1.0/v_1_z
-        # (rrrs-V8) reciprocal vector 2
-        inv_r_2_r0_y = 1.0/r_2_r0_y
-        # (rrrs-V9) reciprocal vector 3
-        w_3_t = inv_r_2_r0_y*inv_rrrs_platform_joint_offset_x*r_2_r0_x
-        # (rrrs-N50) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_z = e_1_r2_x*h_3_y + inv_v_1_z*(J_1_xx + _y_2) - e_1_r2_y*h_3_x
-        # (rrrs-N41) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_t_2 = d_Gamma_2_t*r_2_r0_x
-        d_Gamma_2_x = -h_3_y - inv_r_2_r0_y*(Jc_2_zz - d_Gamma_2_t_2)
-        # (rrrs-N32) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        d_Gamma_3_t = inv_v_1_z*(-_x_3*s_2 - _y*c_2)
-        d_Gamma_3_x = -h_3_y - inv_r_2_r0_y*(J_3_zz - d_Gamma_2_t_2)
-        # (rrrs-A25) coefficient of the acceleration in: angular acceleration of link 3
-        d_alpha_3_t = e_1_r2_x*inv_v_1_z
-        d_alpha_3_t_2 = e_1_r2_y*inv_v_1_z
-        # (rrrs-N56) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_xx = d_Gamma_2_x*inv_r_2_r0_y + h_3_y*(w_3_t - inv_r_2_r0_y) - d_Gamma_3_x*w_3_t
-        d_c_xy = d_phi_3_t + d_Gamma_2_y*inv_r_2_r0_y - d_Gamma_2_y*w_3_t
-        d_c_xz = (
-        inv_r_2_r0_y*inv_v_1_z*(-c_2*(J_2_yz + _y) - s_2*(J_2_xz + _x_3)) - d_Gamma_3_t*w_3_t -
-            d_alpha_3_t_2*h_3_z
+        # (rrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrrs_d_Gamma_1_z = (
+        inv_rrrs_v_1_z*(rrrs_J_1_xx + rrrs__y) + rrrs_e_1_r2_x*rrrs_h_3_y -
+            rrrs_e_1_r2_y*rrrs_h_3_x
         )
-        d_c_yz = d_alpha_3_t*h_3_z - d_Gamma_3_t*inv_rrrs_platform_joint_offset_x
-        # (rrrs-N58) inertia of the leg at the connection point, without the mass gathered there
-        Q_t = d_c_xx - d_c_yy
-        Q_t_2 = 0.5*Q_t
-        Q_t_3 = d_c_xx + d_Gamma_1_z*inv_v_1_z + d_alpha_3_t*h_3_y - d_alpha_3_t_2*h_3_x
-        Q_t_4 = 0.5*Q_t_3
-        Q_t_5 = (
-        axis_x_rrrs_axes3_x*d_c_xy + axis_z_rrrs_axes3_in_base_x*d_c_yz -
-            Q_t_2*axis_y_rrrs_axes3_in_base_x
+        # (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrrs_d_G_xz = (
+        rrrs_d_Gamma_3_t_2*rrrs_w_3_t - inv_rrrs_r_2_r0_y*inv_rrrs_v_1_z*(-rrrs_c_2*(rrrs_J_2_yz +
+            rrrs_J_3_yz*rrrs_c_3 - rrrs_J_3_xz*rrrs_s_3) - rrrs_s_2*(rrrs_J_2_xz +
+            rrrs_J_3_xz*rrrs_c_3 + rrrs_J_3_yz*rrrs_s_3))
         )
-        Q_t_6 = (
-        axis_x_rrrs_axes3_y*d_c_xy + axis_z_rrrs_axes3_in_base_y*d_c_yz -
-            Q_t_2*axis_y_rrrs_axes3_in_base_y
+        # (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrrs_d_c_xx = (
+        inv_rrrs_r_2_r0_y*rrrs_d_Gamma_2_x + rrrs_h_3_y*(rrrs_w_3_t - inv_rrrs_r_2_r0_y) -
+            rrrs_d_Gamma_3_x*rrrs_w_3_t
         )
-        Q_t_7 = (
-        axis_x_rrrs_axes3_z*d_c_xy + axis_z_rrrs_axes3_in_base_z*d_c_yz -
-            Q_t_2*axis_y_rrrs_axes3_in_base_z
+        rrrs_d_c_xy = (
+        rrrs_d_phi_3_t + inv_rrrs_r_2_r0_y*rrrs_d_Gamma_3_y - rrrs_d_Gamma_3_y*rrrs_w_3_t
         )
-        Q_t_8 = Q_t_4*axis_z_rrrs_axes3_in_base_x - axis_x_rrrs_axes3_x*d_c_xz
-        Q_t_9 = Q_t_4*axis_z_rrrs_axes3_in_base_y - axis_x_rrrs_axes3_y*d_c_xz
-        Q_t_10 = Q_t_4*axis_z_rrrs_axes3_in_base_z - axis_x_rrrs_axes3_z*d_c_xz
-        Q_t_11 = Q_t_5*axis_y_rrrs_axes3_in_base_x - Q_t_8*axis_z_rrrs_axes3_in_base_x
-        Q_t_12 = 2.0*Q_t_11 + d_c_xx
-        Q_t_13 = (
-        Q_t_5*axis_y_rrrs_axes3_in_base_y + Q_t_6*axis_y_rrrs_axes3_in_base_x -
-            Q_t_8*axis_z_rrrs_axes3_in_base_y - Q_t_9*axis_z_rrrs_axes3_in_base_x
+        rrrs_d_c_xz = -rrrs_d_G_xz - rrrs_d_alpha_3_t_2*rrrs_h_3_z
+        rrrs_d_c_yz = (
+        rrrs_d_alpha_3_t*rrrs_h_3_z - inv_rrrs_platform_joint_offset_x*rrrs_d_Gamma_3_t_2
         )
-        Q_t_14 = (
-        Q_t_5*axis_y_rrrs_axes3_in_base_z + Q_t_7*axis_y_rrrs_axes3_in_base_x -
-            Q_t_10*axis_z_rrrs_axes3_in_base_x - Q_t_8*axis_z_rrrs_axes3_in_base_z
+        # (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there
+        rrrs_Q_t = rrrs_d_c_xx - rrrs_d_c_yy
+        rrrs_Q_t_2 = 0.5*rrrs_Q_t
+        rrrs_Q_t_3 = (
+        rrrs_d_c_xx + inv_rrrs_v_1_z*rrrs_d_Gamma_1_z + rrrs_d_alpha_3_t*rrrs_h_3_y -
+            rrrs_d_alpha_3_t_2*rrrs_h_3_x
         )
-        Q_t_15 = Q_t_6*axis_y_rrrs_axes3_in_base_y - Q_t_9*axis_z_rrrs_axes3_in_base_y
-        Q_t_16 = 2.0*Q_t_15 + d_c_xx
-        Q_t_17 = (
-        Q_t_6*axis_y_rrrs_axes3_in_base_z + Q_t_7*axis_y_rrrs_axes3_in_base_y -
-            Q_t_10*axis_z_rrrs_axes3_in_base_y - Q_t_9*axis_z_rrrs_axes3_in_base_z
+        rrrs_Q_t_4 = 0.5*rrrs_Q_t_3
+        rrrs_Q_t_5 = (
+        axis_x_rrrs_axes3_x*rrrs_d_c_xy + axis_z_rrrs_axes3_in_base_x*rrrs_d_c_yz -
+            axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_2
         )
-        Q_t_18 = Q_t_7*axis_y_rrrs_axes3_in_base_z - Q_t_10*axis_z_rrrs_axes3_in_base_z
-        Q_t_19 = 2.0*Q_t_18 + d_c_xx
-        # (M2) coupling block of M
-        M_ta_t = Q_t_13*q_in_base_z
-        M_ta_t_2 = Q_t_14*q_in_base_y
-        M_ta_t_3 = M_ta_t - M_ta_t_2
-        M_ta_t_4 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x
-        M_ta_t_5 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x
-        M_ta_t_6 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y
-        M_ta_t_7 = Q_t_17*q_in_base_x
-        M_ta_t_8 = M_ta_t - M_ta_t_7
-        M_ta_t_9 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x
-        M_ta_t_10 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y
-        M_ta_t_11 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x
-        M_ta_t_12 = M_ta_t_7 - M_ta_t_2
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
-        M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y
-        M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z
-        M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x
-        M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z
-        M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
-        # (rrrs-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        # (rrrs-V10) rate of joint 1
-        qd_2 = (
-        inv_r_2_r0_y*(S_dot_x*axis_x_rrrs_axes3_x + S_dot_y*axis_x_rrrs_axes3_y +
-            S_dot_z*axis_x_rrrs_axes3_z)
+        rrrs_Q_t_6 = (
+        axis_x_rrrs_axes3_y*rrrs_d_c_xy + axis_z_rrrs_axes3_in_base_y*rrrs_d_c_yz -
+            axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_2
         )
-        qd_3 = (
-        inv_rrrs_platform_joint_offset_x*(S_dot_x*axis_y_rrrs_axes3_in_base_x +
-            S_dot_y*axis_y_rrrs_axes3_in_base_y + S_dot_z*axis_y_rrrs_axes3_in_base_z +
-            qd_2*r_2_r0_x)
+        rrrs_Q_t_7 = (
+        axis_x_rrrs_axes3_z*rrrs_d_c_xy + axis_z_rrrs_axes3_in_base_z*rrrs_d_c_yz -
+            axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_2
         )
-        qd_1 = (
-        inv_v_1_z*(S_dot_x*axis_z_rrrs_axes3_in_base_x + S_dot_y*axis_z_rrrs_axes3_in_base_y +
-            S_dot_z*axis_z_rrrs_axes3_in_base_z)
+        rrrs_Q_t_8 = axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_4 - axis_x_rrrs_axes3_x*rrrs_d_c_xz
+        rrrs_Q_t_9 = axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_4 - axis_x_rrrs_axes3_y*rrrs_d_c_xz
+        rrrs_Q_t_10 = axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_4 - axis_x_rrrs_axes3_z*rrrs_d_c_xz
+        rrrs_Q_t_11 = (
+        axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_5 - axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_8
         )
-        # (rrrs-V13) angular velocity of link 1
-        omega_1_t = qd_1*s_2
-        omega_1_t_2 = c_2*qd_1
-        # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_x = omega_1_t_2*qd_2
-        zeta_2_y = omega_1_t*qd_2
-        # (rrrs-V15) angular velocity of link 2
-        omega_2_r0_x = omega_1_t_2*s_3 - c_3*omega_1_t
-        omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
-        # (rrrs-A5) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_y = omega_2_r0_x*qd_3
-        # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_r0_y = s_3*zeta_2_x - c_3*zeta_2_y
-        # (rrrs-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_y = zeta_2_r0_y - zeta_3_y
-        # (rrrs-V17) angular velocity of link 3
-        omega_3_z = qd_3 - qd_2
-        # (rrrs-V16) centripetal tensor of link 2
-        W_2_t = omega_1_t*omega_1_t
-        W_2_t_2 = omega_1_t_2*omega_1_t_2
-        W_2_t_3 = qd_2*qd_2
-        W_2_xy = omega_1_t*omega_1_t_2
-        # (rrrs-V18) centripetal tensor of link 3
-        W_3_t = omega_2_r0_x*omega_2_r0_x
-        W_3_t_2 = omega_2_r0_y*omega_2_r0_y
-        W_3_t_3 = omega_3_z*omega_3_z
-        W_3_xy = omega_2_r0_x*omega_2_r0_y
-        W_3_xz = omega_2_r0_x*omega_3_z
-        W_3_yz = omega_2_r0_y*omega_3_z
-        # (rrrs-A7) acceleration of the connection point at zero joint accelerations
-        bias_t = rrrs_joint2_offset_x*s_2
-        bias_t_2 = c_2*rrrs_joint2_offset_x
-        bias_t_3 = (
-        omega_2_r0_x*(-bias_t*s_3 - bias_t_2*c_3) - omega_2_r0_y*(bias_t_2*s_3 - bias_t*c_3)
+        rrrs_Q_t_12 = 2.0*rrrs_Q_t_11 + rrrs_d_c_xx
+        rrrs_Q_t_13 = (
+        axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_6 + axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_5 -
+            axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_9 - axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_8
         )
-        bias_t_4 = c_3*rrrs_joint3_offset_x
-        bias_t_5 = rrrs_joint3_offset_x*s_3
-        bias_t_6 = bias_t_5*qd_2
-        bias_t_7 = bias_t_4*qd_2
-        bias_t_8 = bias_t_5*omega_2_r0_x - bias_t_4*omega_2_r0_y
-        bias_t_9 = omega_3_z*rrrs_platform_joint_offset_x
-        bias_t_10 = omega_2_r0_y*rrrs_platform_joint_offset_x
-        bias_x = (
-        bias_t_3*omega_2_r0_y + bias_t_8*omega_2_r0_y - bias_t_10*omega_2_r0_y - bias_t_7*qd_2 -
-            bias_t_9*omega_3_z
+        rrrs_Q_t_14 = (
+        axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_7 + axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_5 -
+            axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_10 - axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_8
         )
-        bias_y = (
-        bias_t_10*omega_2_r0_x - bias_t_3*omega_2_r0_x - bias_t_6*qd_2 - bias_t_8*omega_2_r0_x
+        rrrs_Q_t_15 = (
+        axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_6 - axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_9
         )
-        bias_z = (
-        bias_t_5*(c_3*zeta_2_x + s_3*zeta_2_y) + bias_t_9*omega_2_r0_x -
-            beta_3_y*rrrs_platform_joint_offset_x - bias_t_4*zeta_2_r0_y - bias_t_6*omega_2_r0_y -
-            bias_t_7*omega_2_r0_x
+        rrrs_Q_t_16 = 2.0*rrrs_Q_t_15 + rrrs_d_c_xx
+        rrrs_Q_t_17 = (
+        axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_7 + axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_6 -
+            axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_10 - axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_9
         )
-        # (rrrs-A1) centripetal acceleration of the connection point
-        u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
-        u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y
-        u_1_tip_x = (
-        axis_x_rrrs_axes3_x*u_1_x + axis_x_rrrs_axes3_y*u_1_y + axis_x_rrrs_axes3_z*u_1_z
+        rrrs_Q_t_18 = (
+        axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_7 - axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_10
         )
-        u_1_tip_y = (
-        axis_y_rrrs_axes3_in_base_x*u_1_x + axis_y_rrrs_axes3_in_base_y*u_1_y +
-            axis_y_rrrs_axes3_in_base_z*u_1_z
+        rrrs_Q_t_19 = 2.0*rrrs_Q_t_18 + rrrs_d_c_xx
+        # (M_ta) coupling block of M
+        rrrs_M_ta_t = rrrs_Q_t_13*rrrs_q_in_base_z
+        rrrs_M_ta_t_2 = rrrs_Q_t_14*rrrs_q_in_base_y
+        rrrs_M_ta_t_3 = rrrs_M_ta_t - rrrs_M_ta_t_2
+        rrrs_M_ta_t_4 = rrrs_Q_t_12*rrrs_q_in_base_z - rrrs_Q_t_14*rrrs_q_in_base_x
+        rrrs_M_ta_t_5 = rrrs_Q_t_12*rrrs_q_in_base_y - rrrs_Q_t_13*rrrs_q_in_base_x
+        rrrs_M_ta_t_6 = rrrs_Q_t_16*rrrs_q_in_base_z - rrrs_Q_t_17*rrrs_q_in_base_y
+        rrrs_M_ta_t_7 = rrrs_Q_t_17*rrrs_q_in_base_x
+        rrrs_M_ta_t_8 = rrrs_M_ta_t - rrrs_M_ta_t_7
+        rrrs_M_ta_t_9 = rrrs_Q_t_13*rrrs_q_in_base_y - rrrs_Q_t_16*rrrs_q_in_base_x
+        rrrs_M_ta_t_10 = rrrs_Q_t_17*rrrs_q_in_base_z - rrrs_Q_t_19*rrrs_q_in_base_y
+        rrrs_M_ta_t_11 = rrrs_Q_t_14*rrrs_q_in_base_z - rrrs_Q_t_19*rrrs_q_in_base_x
+        rrrs_M_ta_t_12 = rrrs_M_ta_t_7 - rrrs_M_ta_t_2
+        # (M_aa) rotational block of M
+        rrrs_M_aa_t = rrrs_M_ta_t_6*rrrs_q_in_base_z - rrrs_M_ta_t_10*rrrs_q_in_base_y
+        rrrs_M_aa_t_2 = rrrs_M_ta_t_8*rrrs_q_in_base_z - rrrs_M_ta_t_11*rrrs_q_in_base_y
+        rrrs_M_aa_t_3 = rrrs_M_ta_t_12*rrrs_q_in_base_y + rrrs_M_ta_t_9*rrrs_q_in_base_z
+        rrrs_M_aa_t_4 = rrrs_M_ta_t_4*rrrs_q_in_base_z - rrrs_M_ta_t_11*rrrs_q_in_base_x
+        rrrs_M_aa_t_5 = rrrs_M_ta_t_12*rrrs_q_in_base_x + rrrs_M_ta_t_5*rrrs_q_in_base_z
+        rrrs_M_aa_t_6 = rrrs_M_ta_t_5*rrrs_q_in_base_y - rrrs_M_ta_t_9*rrrs_q_in_base_x
+        # (rrrs-S_dot) velocity of the connection point
+        rrrs_S_dot_t = omega_y*rrrs_q_in_base_z - omega_z*rrrs_q_in_base_y
+        rrrs_S_dot_t_2 = omega_z*rrrs_q_in_base_x - omega_x*rrrs_q_in_base_z
+        rrrs_S_dot_t_3 = omega_x*rrrs_q_in_base_y - omega_y*rrrs_q_in_base_x
+        rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
+        rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
+        rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
+        # (rrrs-qd_3) rate of joint 3
+        rrrs_qd_2 = (
+        inv_rrrs_r_2_r0_y*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_x_rrrs_axes3_z*rrrs_S_dot_z)
         )
-        u_1_tip_z = (
-        axis_z_rrrs_axes3_in_base_x*u_1_x + axis_z_rrrs_axes3_in_base_y*u_1_y +
-            axis_z_rrrs_axes3_in_base_z*u_1_z
+        rrrs_qd_3 = (
+        inv_rrrs_platform_joint_offset_x*(axis_y_rrrs_axes3_in_base_x*rrrs_S_dot_x +
+            axis_y_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_dot_z +
+            rrrs_qd_2*rrrs_r_2_r0_x)
         )
-        # (rrrs-A9) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_x = u_1_tip_x - bias_x
-        rel_o_y = u_1_tip_y - bias_y
-        rel_o_z = u_1_tip_z - bias_z
-        # (rrrs-A11) remainder without the acceleration in: acceleration of joint 1
-        qdd_2_o = inv_r_2_r0_y*rel_o_x
-        qdd_1_o = inv_v_1_z*rel_o_z
-        # (rrrs-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-        g_r3_x = -c_2*g_r1_y - g_r0_z*s_2
-        g_r3_y = g_r1_y*s_2 - c_2*g_r0_z
-        # (rrrs-A17) remainder without the acceleration in: angular acceleration of link 1
-        alpha_1_o_t = qdd_1_o*s_2
-        alpha_1_o_t_2 = c_2*qdd_1_o
-        # (rrrs-A21) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_o_x = zeta_2_x - alpha_1_o_t
-        alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-        # (rrrs-A23) remainder of the acceleration tensor of link 2
-        B_2_o_xy = W_2_xy + qdd_2_o
-        B_2_o_yx = W_2_xy - qdd_2_o
-        B_2_o_zx = zeta_2_y - alpha_2_o_y
-        B_2_o_zy = alpha_2_o_x + zeta_2_x
-        # (rrrs-N37) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_o_x = (
-        B_2_o_yx*J_2_xz + B_2_o_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z -
-            B_2_o_zx*J_2_xy - Sigma_2_zz*alpha_1_o_t - g_r1_x*h_2_y
+        rrrs_qd_1 = (
+        inv_rrrs_v_1_z*(axis_z_rrrs_axes3_in_base_x*rrrs_S_dot_x +
+            axis_z_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_z_rrrs_axes3_in_base_z*rrrs_S_dot_z)
         )
-        mu_2_o_y = (
-        B_2_o_zy*J_2_xy + g_r1_x*h_2_x - B_2_o_xy*J_2_yz - B_2_o_zx*Sigma_2_xx - J_2_xz*(W_2_t -
-            W_2_t_3) - Sigma_2_zz*alpha_1_o_t_2 - g_r3_x*h_2_z
+        # (rrrs-omega_1) angular velocity of link 1
+        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_t_2 = rrrs_c_2*rrrs_qd_1
+        # (rrrs-omega_2) angular velocity of link 2
+        rrrs_omega_2_r0_x = rrrs_omega_1_t_2*rrrs_s_3 - rrrs_c_3*rrrs_omega_1_t
+        rrrs_omega_2_r0_y = -rrrs_c_3*rrrs_omega_1_t_2 - rrrs_omega_1_t*rrrs_s_3
+        # (rrrs-omega_3) angular velocity of link 3
+        rrrs_omega_3_z = rrrs_qd_3 - rrrs_qd_2
+        # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrs_zeta_3_y = rrrs_omega_2_r0_x*rrrs_qd_3
+        # (rrrs-u_1) centripetal acceleration of the connection point
+        rrrs_u_1_x = omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2
+        rrrs_u_1_y = omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3
+        rrrs_u_1_z = omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t
+        # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        rrrs_zeta_2_x = rrrs_omega_1_t_2*rrrs_qd_2
+        rrrs_zeta_2_y = rrrs_omega_1_t*rrrs_qd_2
+        rrrs_zeta_2_r0_y = rrrs_s_3*rrrs_zeta_2_x - rrrs_c_3*rrrs_zeta_2_y
+        # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        rrrs_beta_3_y = rrrs_zeta_2_r0_y - rrrs_zeta_3_y
+        # (rrrs-W_2) centripetal tensor of link 2
+        rrrs_W_2_t = rrrs_omega_1_t*rrrs_omega_1_t
+        rrrs_W_2_t_2 = rrrs_omega_1_t_2*rrrs_omega_1_t_2
+        rrrs_W_2_t_3 = rrrs_qd_2*rrrs_qd_2
+        rrrs_W_2_xy = rrrs_omega_1_t*rrrs_omega_1_t_2
+        # (rrrs-W_3) centripetal tensor of link 3
+        rrrs_W_3_t = rrrs_omega_2_r0_x*rrrs_omega_2_r0_x
+        rrrs_W_3_t_2 = rrrs_omega_2_r0_y*rrrs_omega_2_r0_y
+        rrrs_W_3_t_3 = rrrs_omega_3_z*rrrs_omega_3_z
+        rrrs_W_3_xy = rrrs_omega_2_r0_x*rrrs_omega_2_r0_y
+        rrrs_W_3_xz = rrrs_omega_2_r0_x*rrrs_omega_3_z
+        rrrs_W_3_yz = rrrs_omega_2_r0_y*rrrs_omega_3_z
+        # (rrrs-bias) acceleration of the connection point at zero joint accelerations
+        rrrs_bias_t = rrrs_joint2_offset_x*rrrs_s_2
+        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_3 = (
+        rrrs_omega_2_r0_x*(-rrrs_bias_t*rrrs_s_3 - rrrs_bias_t_2*rrrs_c_3) -
+            rrrs_omega_2_r0_y*(rrrs_bias_t_2*rrrs_s_3 - rrrs_bias_t*rrrs_c_3)
         )
-        mu_2_o_z = (
-        B_2_o_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + g_r3_x*h_2_y - B_2_o_xy*Sigma_2_yy -
-            J_2_xz*alpha_1_o_t - J_2_yz*alpha_1_o_t_2 - g_r3_y*h_2_x
+        rrrs_bias_t_4 = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_bias_t_5 = rrrs_joint3_offset_x*rrrs_s_3
+        rrrs_bias_t_6 = rrrs_bias_t_5*rrrs_qd_2
+        rrrs_bias_t_7 = rrrs_bias_t_4*rrrs_qd_2
+        rrrs_bias_t_8 = rrrs_bias_t_5*rrrs_omega_2_r0_x - rrrs_bias_t_4*rrrs_omega_2_r0_y
+        rrrs_bias_t_9 = rrrs_omega_3_z*rrrs_platform_joint_offset_x
+        rrrs_bias_t_10 = rrrs_omega_2_r0_y*rrrs_platform_joint_offset_x
+        rrrs_bias_x = (
+        rrrs_bias_t_3*rrrs_omega_2_r0_y + rrrs_bias_t_8*rrrs_omega_2_r0_y -
+            rrrs_bias_t_10*rrrs_omega_2_r0_y - rrrs_bias_t_7*rrrs_qd_2 -
+            rrrs_bias_t_9*rrrs_omega_3_z
         )
-        # (rrrs-N10) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        acc_3_o_x = u_1_tip_x + g_r3_y*s_3 - c_3*g_r3_x
-        acc_3_o_y = u_1_tip_y - c_3*g_r3_y - g_r3_x*s_3
-        acc_3_o_z = u_1_tip_z - g_r1_x
-        # (rrrs-A26) remainder without the acceleration in: angular acceleration of link 3
-        alpha_3_o_x = alpha_2_o_x*c_3 + omega_2_r0_y*qd_3 - alpha_2_o_y*s_3
-        alpha_3_o_y = alpha_2_o_x*s_3 + alpha_2_o_y*c_3 - zeta_3_y
-        alpha_3_o_z = inv_rrrs_platform_joint_offset_x*(rel_o_y + qdd_2_o*r_2_r0_x) - qdd_2_o
-        # (rrrs-A28) remainder of the acceleration tensor of link 3
-        B_3_o_xy = W_3_xy - alpha_3_o_z
-        B_3_o_xz = W_3_xz + alpha_3_o_y
-        B_3_o_yx = W_3_xy + alpha_3_o_z
-        B_3_o_yz = W_3_yz - alpha_3_o_x
-        B_3_o_zx = W_3_xz - alpha_3_o_y
-        B_3_o_zy = W_3_yz + alpha_3_o_x
-        # (rrrs-N30) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        mu_3_o_x = (
-        B_3_o_yx*J_3_xz + B_3_o_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_o_z*h_3_y -
-            B_3_o_yz*Sigma_3_zz - B_3_o_zx*J_3_xy - acc_3_o_y*h_3_z
+        rrrs_bias_y = (
+        rrrs_bias_t_10*rrrs_omega_2_r0_x - rrrs_bias_t_3*rrrs_omega_2_r0_x -
+            rrrs_bias_t_6*rrrs_qd_2 - rrrs_bias_t_8*rrrs_omega_2_r0_x
         )
-        mu_3_o_y = (
-        B_3_o_xz*Sigma_3_zz + B_3_o_zy*J_3_xy + acc_3_o_x*h_3_z - B_3_o_xy*J_3_yz -
-            B_3_o_zx*Sigma_3_xx - J_3_xz*(W_3_t - W_3_t_3) - acc_3_o_z*h_3_x
+        rrrs_bias_z = (
+        rrrs_bias_t_5*(rrrs_c_3*rrrs_zeta_2_x + rrrs_s_3*rrrs_zeta_2_y) +
+            rrrs_bias_t_9*rrrs_omega_2_r0_x - rrrs_beta_3_y*rrrs_platform_joint_offset_x -
+            rrrs_bias_t_4*rrrs_zeta_2_r0_y - rrrs_bias_t_6*rrrs_omega_2_r0_y -
+            rrrs_bias_t_7*rrrs_omega_2_r0_x
         )
-        mu_3_o_z = (
-        B_3_o_xz*J_3_yz + B_3_o_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_o_y*h_3_x -
-            B_3_o_xy*Sigma_3_yy - B_3_o_yz*J_3_xz - acc_3_o_x*h_3_y
+        # (rrrs-u_1) centripetal acceleration of the connection point
+        rrrs_u_1_tip_x = (
+        axis_x_rrrs_axes3_x*rrrs_u_1_x + axis_x_rrrs_axes3_y*rrrs_u_1_y +
+            axis_x_rrrs_axes3_z*rrrs_u_1_z
         )
-        # (rrrs-N39) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_o_x = mu_2_o_x + c_3*mu_3_o_x + mu_3_o_y*s_3
-        N_2_o_y = mu_2_o_y + c_3*mu_3_o_y - mu_3_o_x*s_3
-        N_2_o_z = mu_2_o_z + mu_3_o_z
-        # (rrrs-N46) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_o_z = J_1_xx*qdd_1_o - g_r1_x*h_1_y - g_r1_y*h_1_z
-        # (rrrs-N48) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_o_z = mu_1_o_z - N_2_o_x*s_2 - N_2_o_y*c_2
-        # (rrrs-N54) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_o_t = inv_rrrs_platform_joint_offset_x*mu_3_o_z
-        # (rrrs-N57) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_o_x = (
-        h_3_x*(W_3_t_2 + W_3_t_3) - B_3_o_xy*h_3_y - B_3_o_xz*h_3_z - inv_r_2_r0_y*(G_o_t*r_2_r0_x
-            - N_2_o_z)
+        rrrs_u_1_tip_y = (
+        axis_y_rrrs_axes3_in_base_x*rrrs_u_1_x + axis_y_rrrs_axes3_in_base_y*rrrs_u_1_y +
+            axis_y_rrrs_axes3_in_base_z*rrrs_u_1_z
         )
-        c_o_y = h_3_y*(W_3_t + W_3_t_3) - G_o_t - B_3_o_yx*h_3_x - B_3_o_yz*h_3_z
-        c_o_z = h_3_z*(W_3_t + W_3_t_2) - B_3_o_zx*h_3_x - B_3_o_zy*h_3_y - N_1_o_z*inv_v_1_z
-        # (rrrs-N59) velocity and gravity terms of the leg force
-        U_in_base_x = (
-        -axis_x_rrrs_axes3_x*c_o_x - axis_y_rrrs_axes3_in_base_x*c_o_y -
-            axis_z_rrrs_axes3_in_base_x*c_o_z
+        rrrs_u_1_tip_z = (
+        axis_z_rrrs_axes3_in_base_x*rrrs_u_1_x + axis_z_rrrs_axes3_in_base_y*rrrs_u_1_y +
+            axis_z_rrrs_axes3_in_base_z*rrrs_u_1_z
         )
-        U_in_base_y = (
-        -axis_x_rrrs_axes3_y*c_o_x - axis_y_rrrs_axes3_in_base_y*c_o_y -
-            axis_z_rrrs_axes3_in_base_y*c_o_z
+        # (rrrs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        rrrs_rel_o_x = rrrs_u_1_tip_x - rrrs_bias_x
+        rrrs_rel_o_y = rrrs_u_1_tip_y - rrrs_bias_y
+        rrrs_rel_o_z = rrrs_u_1_tip_z - rrrs_bias_z
+        # (rrrs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
+        rrrs_qdd_2_o = inv_rrrs_r_2_r0_y*rrrs_rel_o_x
+        rrrs_qdd_1_o = inv_rrrs_v_1_z*rrrs_rel_o_z
+        # (rrrs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        rrrs_alpha_1_o_t = rrrs_qdd_1_o*rrrs_s_2
+        rrrs_alpha_1_o_t_2 = rrrs_c_2*rrrs_qdd_1_o
+        # (rrrs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        rrrs_alpha_2_o_x = rrrs_zeta_2_x - rrrs_alpha_1_o_t
+        rrrs_alpha_2_o_y = -rrrs_alpha_1_o_t_2 - rrrs_zeta_2_y
+        # (rrrs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        rrrs_alpha_3_o_x = (
+        rrrs_alpha_2_o_x*rrrs_c_3 + rrrs_omega_2_r0_y*rrrs_qd_3 - rrrs_alpha_2_o_y*rrrs_s_3
         )
-        U_in_base_z = (
-        -axis_x_rrrs_axes3_z*c_o_x - axis_y_rrrs_axes3_in_base_z*c_o_y -
-            axis_z_rrrs_axes3_in_base_z*c_o_z
+        rrrs_alpha_3_o_y = rrrs_alpha_2_o_x*rrrs_s_3 + rrrs_alpha_2_o_y*rrrs_c_3 - rrrs_zeta_3_y
+        rrrs_alpha_3_o_z = (
+        inv_rrrs_platform_joint_offset_x*(rrrs_rel_o_y + rrrs_qdd_2_o*rrrs_r_2_r0_x) -
+            rrrs_qdd_2_o
         )
-        # (M7) rotational part of Z
-        Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
-        Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
-        Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
-        # (rrrs-V7) reciprocal vector 1
-        w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_v_1_z
-        w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_v_1_z
-        w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_v_1_z
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_x = q_in_base_y*w_1_t_5 - q_in_base_z*w_1_t_4
-        H_a_1_y = q_in_base_z*w_1_t_3 - q_in_base_x*w_1_t_5
-        H_a_1_z = q_in_base_x*w_1_t_4 - q_in_base_y*w_1_t_3
-        # (rrrs-V8) reciprocal vector 2
-        w_2_t = axis_x_rrrs_axes3_x*inv_r_2_r0_y
-        w_2_t_2 = axis_x_rrrs_axes3_y*inv_r_2_r0_y
-        w_2_t_3 = axis_x_rrrs_axes3_z*inv_r_2_r0_y
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_2_x = q_in_base_z*w_2_t_2 - q_in_base_y*w_2_t_3
-        H_a_2_y = q_in_base_x*w_2_t_3 - q_in_base_z*w_2_t
-        H_a_2_z = q_in_base_y*w_2_t - q_in_base_x*w_2_t_2
+        # (rrrs-B_3_o) remainder of the acceleration tensor of link 3
+        rrrs_B_3_o_xy = rrrs_W_3_xy - rrrs_alpha_3_o_z
+        rrrs_B_3_o_xz = rrrs_W_3_xz + rrrs_alpha_3_o_y
+        rrrs_B_3_o_yx = rrrs_W_3_xy + rrrs_alpha_3_o_z
+        rrrs_B_3_o_yz = rrrs_W_3_yz - rrrs_alpha_3_o_x
+        rrrs_B_3_o_zx = rrrs_W_3_xz - rrrs_alpha_3_o_y
+        rrrs_B_3_o_zy = rrrs_W_3_yz + rrrs_alpha_3_o_x
+        # (rrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        rrrs_acc_3_o_x = (
+        rrrs_u_1_tip_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
+            axis_x_rrrs_axes3_z*gravity_z
+        )
+        rrrs_acc_3_o_y = (
+        rrrs_u_1_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x -
+            axis_y_rrrs_axes3_in_base_y*gravity_y - axis_y_rrrs_axes3_in_base_z*gravity_z
+        )
+        rrrs_acc_3_o_z = (
+        rrrs_u_1_tip_z - axis_z_rrrs_axes3_in_base_x*gravity_x -
+            axis_z_rrrs_axes3_in_base_y*gravity_y - axis_z_rrrs_axes3_in_base_z*gravity_z
+        )
+        # (rrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        rrrs_mu_3_o_x = (
+        rrrs_B_3_o_yx*rrrs_J_3_xz + rrrs_B_3_o_zy*rrrs_Sigma_3_yy + rrrs_J_3_yz*(rrrs_W_3_t_2 -
+            rrrs_W_3_t_3) + rrrs_acc_3_o_z*rrrs_h_3_y - rrrs_B_3_o_yz*rrrs_Sigma_3_zz -
+            rrrs_B_3_o_zx*rrrs_J_3_xy - rrrs_acc_3_o_y*rrrs_h_3_z
+        )
+        rrrs_mu_3_o_y = (
+        rrrs_B_3_o_xz*rrrs_Sigma_3_zz + rrrs_B_3_o_zy*rrrs_J_3_xy + rrrs_acc_3_o_x*rrrs_h_3_z -
+            rrrs_B_3_o_xy*rrrs_J_3_yz - rrrs_B_3_o_zx*rrrs_Sigma_3_xx - rrrs_J_3_xz*(rrrs_W_3_t -
+            rrrs_W_3_t_3) - rrrs_acc_3_o_z*rrrs_h_3_x
+        )
+        rrrs_mu_3_o_z = (
+        rrrs_B_3_o_xz*rrrs_J_3_yz + rrrs_B_3_o_yx*rrrs_Sigma_3_xx + rrrs_J_3_xy*(rrrs_W_3_t -
+            rrrs_W_3_t_2) + rrrs_acc_3_o_y*rrrs_h_3_x - rrrs_B_3_o_xy*rrrs_Sigma_3_yy -
+            rrrs_B_3_o_yz*rrrs_J_3_xz - rrrs_acc_3_o_x*rrrs_h_3_y
+        )
+        # (rrrs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        rrrs_g_r1_x = rrrs_g_r0_y*rrrs_s_1 - rrrs_c_1*rrrs_g_r0_x
+        rrrs_g_r1_y = -rrrs_c_1*rrrs_g_r0_y - rrrs_g_r0_x*rrrs_s_1
+        rrrs_g_r3_x = -rrrs_c_2*rrrs_g_r1_y - rrrs_g_r0_z*rrrs_s_2
+        rrrs_g_r3_y = rrrs_g_r1_y*rrrs_s_2 - rrrs_c_2*rrrs_g_r0_z
+        # (rrrs-B_2_o) remainder of the acceleration tensor of link 2
+        rrrs_B_2_o_xy = rrrs_W_2_xy + rrrs_qdd_2_o
+        rrrs_B_2_o_yx = rrrs_W_2_xy - rrrs_qdd_2_o
+        rrrs_B_2_o_zx = rrrs_zeta_2_y - rrrs_alpha_2_o_y
+        rrrs_B_2_o_zy = rrrs_alpha_2_o_x + rrrs_zeta_2_x
+        # (rrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        rrrs_mu_2_o_x = (
+        rrrs_B_2_o_yx*rrrs_J_2_xz + rrrs_B_2_o_zy*rrrs_Sigma_2_yy + rrrs_J_2_yz*(rrrs_W_2_t_2 -
+            rrrs_W_2_t_3) + rrrs_g_r3_y*rrrs_h_2_z - rrrs_B_2_o_zx*rrrs_J_2_xy -
+            rrrs_Sigma_2_zz*rrrs_alpha_1_o_t - rrrs_g_r1_x*rrrs_h_2_y
+        )
+        rrrs_mu_2_o_y = (
+        rrrs_B_2_o_zy*rrrs_J_2_xy + rrrs_g_r1_x*rrrs_h_2_x - rrrs_B_2_o_xy*rrrs_J_2_yz -
+            rrrs_B_2_o_zx*rrrs_Sigma_2_xx - rrrs_J_2_xz*(rrrs_W_2_t - rrrs_W_2_t_3) -
+            rrrs_Sigma_2_zz*rrrs_alpha_1_o_t_2 - rrrs_g_r3_x*rrrs_h_2_z
+        )
+        rrrs_mu_2_o_z = (
+        rrrs_B_2_o_yx*rrrs_Sigma_2_xx + rrrs_J_2_xy*(rrrs_W_2_t - rrrs_W_2_t_2) +
+            rrrs_g_r3_x*rrrs_h_2_y - rrrs_B_2_o_xy*rrrs_Sigma_2_yy - rrrs_J_2_xz*rrrs_alpha_1_o_t
+            - rrrs_J_2_yz*rrrs_alpha_1_o_t_2 - rrrs_g_r3_y*rrrs_h_2_x
+        )
+        # (rrrs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        rrrs_N_2_o_x = rrrs_mu_2_o_x + rrrs_c_3*rrrs_mu_3_o_x + rrrs_mu_3_o_y*rrrs_s_3
+        rrrs_N_2_o_y = rrrs_mu_2_o_y + rrrs_c_3*rrrs_mu_3_o_y - rrrs_mu_3_o_x*rrrs_s_3
+        rrrs_N_2_o_z = rrrs_mu_2_o_z + rrrs_mu_3_o_z
+        # (rrrs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        rrrs_mu_1_o_z = rrrs_J_1_xx*rrrs_qdd_1_o - rrrs_g_r1_x*rrrs_h_1_y - rrrs_g_r1_y*rrrs_h_1_z
+        # (rrrs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrrs_N_1_o_z = rrrs_mu_1_o_z - rrrs_N_2_o_x*rrrs_s_2 - rrrs_N_2_o_y*rrrs_c_2
+        # (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrrs_G_o_t = inv_rrrs_platform_joint_offset_x*rrrs_mu_3_o_z
+        # (rrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrrs_c_o_x = (
+        rrrs_h_3_x*(rrrs_W_3_t_2 + rrrs_W_3_t_3) - inv_rrrs_r_2_r0_y*(rrrs_G_o_t*rrrs_r_2_r0_x -
+            rrrs_N_2_o_z) - rrrs_B_3_o_xy*rrrs_h_3_y - rrrs_B_3_o_xz*rrrs_h_3_z
+        )
+        rrrs_c_o_y = (
+        rrrs_h_3_y*(rrrs_W_3_t + rrrs_W_3_t_3) - rrrs_G_o_t - rrrs_B_3_o_yx*rrrs_h_3_x -
+            rrrs_B_3_o_yz*rrrs_h_3_z
+        )
+        rrrs_c_o_z = (
+        rrrs_h_3_z*(rrrs_W_3_t + rrrs_W_3_t_2) - inv_rrrs_v_1_z*rrrs_N_1_o_z -
+            rrrs_B_3_o_zx*rrrs_h_3_x - rrrs_B_3_o_zy*rrrs_h_3_y
+        )
+        # (rrrs-U) velocity and gravity terms of the leg force
+        rrrs_U_in_base_x = (
+        -axis_x_rrrs_axes3_x*rrrs_c_o_x - axis_y_rrrs_axes3_in_base_x*rrrs_c_o_y -
+            axis_z_rrrs_axes3_in_base_x*rrrs_c_o_z
+        )
+        rrrs_U_in_base_y = (
+        -axis_x_rrrs_axes3_y*rrrs_c_o_x - axis_y_rrrs_axes3_in_base_y*rrrs_c_o_y -
+            axis_z_rrrs_axes3_in_base_y*rrrs_c_o_z
+        )
+        rrrs_U_in_base_z = (
+        -axis_x_rrrs_axes3_z*rrrs_c_o_x - axis_y_rrrs_axes3_in_base_z*rrrs_c_o_y -
+            axis_z_rrrs_axes3_in_base_z*rrrs_c_o_z
+        )
+        # (Z_a) rotational part of Z
+        rrrs_Z_a_t = rrrs_U_in_base_z*rrrs_q_in_base_y - rrrs_U_in_base_y*rrrs_q_in_base_z
+        rrrs_Z_a_t_2 = rrrs_U_in_base_x*rrrs_q_in_base_z - rrrs_U_in_base_z*rrrs_q_in_base_x
+        rrrs_Z_a_t_3 = rrrs_U_in_base_y*rrrs_q_in_base_x - rrrs_U_in_base_x*rrrs_q_in_base_y
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_rrrs_v_1_z
+        rrrs_w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_rrrs_v_1_z
+        rrrs_w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_rrrs_v_1_z
+        # (rrrs-H_a_1) moment of the column's unit force about the platform origin
+        rrrs_H_a_1_x = rrrs_q_in_base_y*rrrs_w_1_t_5 - rrrs_q_in_base_z*rrrs_w_1_t_4
+        rrrs_H_a_1_y = rrrs_q_in_base_z*rrrs_w_1_t_3 - rrrs_q_in_base_x*rrrs_w_1_t_5
+        rrrs_H_a_1_z = rrrs_q_in_base_x*rrrs_w_1_t_4 - rrrs_q_in_base_y*rrrs_w_1_t_3
+        # (rrrs-w_2) reciprocal vector 2
+        rrrs_w_2_t = axis_x_rrrs_axes3_x*inv_rrrs_r_2_r0_y
+        rrrs_w_2_t_2 = axis_x_rrrs_axes3_y*inv_rrrs_r_2_r0_y
+        rrrs_w_2_t_3 = axis_x_rrrs_axes3_z*inv_rrrs_r_2_r0_y
+        # (rrrs-H_a_2) moment of the column's unit force about the platform origin
+        rrrs_H_a_2_x = rrrs_q_in_base_z*rrrs_w_2_t_2 - rrrs_q_in_base_y*rrrs_w_2_t_3
+        rrrs_H_a_2_y = rrrs_q_in_base_x*rrrs_w_2_t_3 - rrrs_q_in_base_z*rrrs_w_2_t
+        rrrs_H_a_2_z = rrrs_q_in_base_y*rrrs_w_2_t - rrrs_q_in_base_x*rrrs_w_2_t_2
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0) & (abs(v_1_z) > _TOLERANCE *
-            size) & (abs(-r_2_r0_y) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
+            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
+            rrrs_size))
         )
         sums = m.added(sums, leg, (
-        Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_3, M_ta_t_4, M_ta_t_5,
-            M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2,
-            M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y, U_in_base_z,
-            Z_a_t, Z_a_t_2, Z_a_t_3,
+        rrrs_Q_t_12, rrrs_Q_t_13, rrrs_Q_t_14, rrrs_Q_t_16, rrrs_Q_t_17, rrrs_Q_t_19,
+            rrrs_M_ta_t_3, rrrs_M_ta_t_4, rrrs_M_ta_t_5, rrrs_M_ta_t_6, rrrs_M_ta_t_8,
+            rrrs_M_ta_t_9, rrrs_M_ta_t_10, rrrs_M_ta_t_11, rrrs_M_ta_t_12, rrrs_M_aa_t,
+            rrrs_M_aa_t_2, rrrs_M_aa_t_3, rrrs_M_aa_t_4, rrrs_M_aa_t_5, rrrs_M_aa_t_6,
+            rrrs_U_in_base_x, rrrs_U_in_base_y, rrrs_U_in_base_z, rrrs_Z_a_t, rrrs_Z_a_t_2,
+            rrrs_Z_a_t_3,
         ))
-        out_H[_H_rrrs[0][leg]] = w_1_t_3
-        out_H[_H_rrrs[1][leg]] = w_1_t_4
-        out_H[_H_rrrs[2][leg]] = w_1_t_5
-        out_H[_H_rrrs[3][leg]] = H_a_1_x
-        out_H[_H_rrrs[4][leg]] = H_a_1_y
-        out_H[_H_rrrs[5][leg]] = H_a_1_z
-        out_H[_H_rrrs[6][leg]] = -w_2_t
-        out_H[_H_rrrs[7][leg]] = -w_2_t_2
-        out_H[_H_rrrs[8][leg]] = -w_2_t_3
-        out_H[_H_rrrs[9][leg]] = H_a_2_x
-        out_H[_H_rrrs[10][leg]] = H_a_2_y
-        out_H[_H_rrrs[11][leg]] = H_a_2_z
+        out_H[_H_rrrs[0][leg]] = rrrs_w_1_t_3
+        out_H[_H_rrrs[1][leg]] = rrrs_w_1_t_4
+        out_H[_H_rrrs[2][leg]] = rrrs_w_1_t_5
+        out_H[_H_rrrs[3][leg]] = rrrs_H_a_1_x
+        out_H[_H_rrrs[4][leg]] = rrrs_H_a_1_y
+        out_H[_H_rrrs[5][leg]] = rrrs_H_a_1_z
+        out_H[_H_rrrs[6][leg]] = -rrrs_w_2_t
+        out_H[_H_rrrs[7][leg]] = -rrrs_w_2_t_2
+        out_H[_H_rrrs[8][leg]] = -rrrs_w_2_t_3
+        out_H[_H_rrrs[9][leg]] = rrrs_H_a_2_x
+        out_H[_H_rrrs[10][leg]] = rrrs_H_a_2_y
+        out_H[_H_rrrs[11][leg]] = rrrs_H_a_2_z
     (
     total_rrrs_xx, total_rrrs_xy, total_rrrs_xz, total_rrrs_yy, total_rrrs_yz, total_rrrs_zz,
         total_rrrs_xx_2, total_rrrs_xy_2, total_rrrs_xz_2, total_rrrs_yx, total_rrrs_yy_2,
@@ -1939,29 +2077,29 @@ def _run_dynamics(m, X, V):
         total_rrrs_xy_3, total_rrrs_xz_3, total_rrrs_yy_3, total_rrrs_yz_3, total_rrrs_zz_3,
         total_rrrs_x, total_rrrs_y, total_rrrs_z, total_rrrs_x_2, total_rrrs_y_2, total_rrrs_z_2,
     ) = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = m_star - total_rrrs_xx
     M_tt_yy = m_star - total_rrrs_yy
     M_tt_zz = m_star - total_rrrs_zz
-    # (M2) coupling block of M
+    # (M_ta) coupling block of M
     M_ta_xy = h_star_in_base_z - total_rrrs_xy_2
     M_ta_xz = total_rrrs_xz_2 - h_star_in_base_y
     M_ta_yx = total_rrrs_yx - h_star_in_base_z
     M_ta_yz = h_star_in_base_x + total_rrrs_yz_2
     M_ta_zx = h_star_in_base_y + total_rrrs_zx
     M_ta_zy = -h_star_in_base_x - total_rrrs_zy
-    # (M3) rotational block of M
+    # (M_aa) rotational block of M
     M_aa_xx = J_star_t_8 - total_rrrs_xx_3
     M_aa_xy = J_star_t_9 + total_rrrs_xy_3
     M_aa_xz = J_star_t_10 - total_rrrs_xz_3
-    M_aa_yy = J_star_t_12 - total_rrrs_yy_3
-    M_aa_yz = J_star_t_13 + total_rrrs_yz_3
-    M_aa_zz = J_star_t_15 - total_rrrs_zz_3
-    # (M5) translational part of Z
+    M_aa_yy = J_star_t_13 - total_rrrs_yy_3
+    M_aa_yz = J_star_t_15 + total_rrrs_yz_3
+    M_aa_zz = J_star_t_17 - total_rrrs_zz_3
+    # (Z_t) translational part of Z
     Z_t_x = Z_p_x + total_rrrs_x
     Z_t_y = Z_p_y + total_rrrs_y
     Z_t_z = Z_p_z + total_rrrs_z
-    # (M7) rotational part of Z
+    # (Z_a) rotational part of Z
     Z_a_x = Z_q_in_base_x + total_rrrs_x_2
     Z_a_y = Z_q_in_base_y + total_rrrs_y_2
     Z_a_z = Z_q_in_base_z + total_rrrs_z_2
@@ -2015,7 +2153,7 @@ def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
     (
-    J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
+    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
         h_star_z, m_star,
     ) = shared
     X_0 = X[0]
@@ -2055,121 +2193,137 @@ def _run_M(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_M = m.zeros("M")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy
-    J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
     J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_12 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_15 = 2.0*J_star_t_14 + J_star_xx
+    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
+    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
     sums = [0.0] * 21
     for leg, k in legs[0]:
         (
-        J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz,
-            J_3_zz, Jc_2_zz, Kd_2_t, Kd_2_t_2, branch_1, branch_2, d_Gamma_2_t, d_Gamma_2_y,
-            d_c_yy, d_phi_3_t, h_3_x, h_3_y, h_3_z, inv_rrrs_platform_joint_offset_x, inv_size_t,
-            inv_size_t_2, rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-            rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-            rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-            rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
-            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-            rrrs_platform_point_z, size, size_t_3,
+        inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
+            rrrs_J_2_xx, rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yy, rrrs_J_2_yz, rrrs_J_3_xx,
+            rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yy, rrrs_J_3_yz, rrrs_J_3_zz, rrrs_Jc_2_zz,
+            rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
+            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_t,
+            rrrs_d_Gamma_3_y, rrrs_d_c_yy, rrrs_d_phi_3_t, rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z,
+            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
+            rrrs_size, rrrs_size_t_3,
         ) = k
-        # (rrrs-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (rrrs-S) from the base point to the connection point
+        rrrs_q_in_base_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        q_in_base_y = (
+        rrrs_q_in_base_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        q_in_base_z = (
+        rrrs_q_in_base_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rrrs_base_point_x
-        S_y = q_in_base_y + t_y - rrrs_base_point_y
-        S_z = q_in_base_z + t_z - rrrs_base_point_z
-        # (rrrs-K2) component along the reference direction
-        px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
-        # (rrrs-K3) component across the reference direction
-        py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
-        # (rrrs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rrrs-K7) root, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
-        # (rrrs-K12) from the origin of joint 2 to the connection point
-        x_2_z = xi_1_t - rrrs_joint2_offset_x
-        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
-        Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-        # (rrrs-K17) factor of the cosine in the equation of joint 2
-        Kc_2 = root_1*rrrs_joint3_offset_x
-        # (rrrs-K18) factor of the sine in the equation of joint 2
-        Ks_2 = rrrs_joint3_offset_x*x_2_z
-        # (rrrs-K19) squared amplitude
-        rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
-        # (rrrs-K20) discriminant
-        disc_2 = rho2_2 - Kd_2*Kd_2
-        # (rrrs-K21) root, with the sign of the branch
-        root_2 = branch_2*sqrt(disc_2)
-        # (rrrs-K27) from the origin of joint 3 to the connection point
-        x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-        # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x
-        # (rrrs-K30) sine of the angle of joint 3 from its reference direction
-        s_3 = inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_t = rrrs_platform_joint_offset_x*s_3
-        r_2_x = rrrs_joint3_offset_x + c_3*rrrs_platform_joint_offset_x
-        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2)
-        # (rrrs-K23) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2)
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        e_1_r2_x = c_2*s_3 - c_3*s_2
-        e_1_r2_y = -c_2*c_3 - s_2*s_3
-        # (rrrs-V3) from joint 1 to the connection point, along the links
-        r_1_r1_x = c_2*root_1 - s_2*xi_1_t
-        r_1_r1_y = -c_2*xi_1_t - root_1*s_2
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        v_1_z = e_1_r2_x*(c_3*r_1_r1_y + r_1_r1_x*s_3) - e_1_r2_y*(c_3*r_1_r1_x - r_1_r1_y*s_3)
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_r0_x = c_3*r_2_x + r_2_t*s_3
-        r_2_r0_y = r_2_x*s_3 - c_3*r_2_t
-        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*py_1*root_1
-        # (rrrs-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*px_1*root_1
-        # (rrrs-V7) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1 - c_1*rrrs_base_frame_xy
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1 - c_1*rrrs_base_frame_yy
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1 - c_1*rrrs_base_frame_zy
-        w_1_t = e_1_r2_x*s_1
-        w_1_t_2 = c_1*e_1_r2_x
+        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        # (rrrs-px_1) component along the reference direction
+        rrrs_px_1 = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        )
+        # (rrrs-py_1) component across the reference direction
+        rrrs_py_1 = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrs_xi_1_t = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        )
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-x_3) from the origin of joint 3 to the connection point
+        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrs_s_3 = (
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
+        )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3
+        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
+        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
+        # (rrrs-r_1) from joint 1 to the connection point, along the links
+        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
+        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_z = (
+        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
+            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
+        )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_r0_x = rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3
+        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
+        # (rrrs-w_1) reciprocal vector 1
+        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
+        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
+        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
         axis_y_rrrs_axes3_in_base_x = (
-        e_1_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_t + rrrs_base_frame_xz*w_1_t_2
+        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
+            rrrs_base_frame_xz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_y = (
-        e_1_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_t + rrrs_base_frame_yz*w_1_t_2
+        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
+            rrrs_base_frame_yz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_z = (
-        e_1_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_t + rrrs_base_frame_zz*w_1_t_2
+        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
+            rrrs_base_frame_zz*rrrs_w_1_t_2
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
@@ -2183,111 +2337,137 @@ def _run_M(m, X):
         axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
             axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
         )
-        # (rrrs-G9) inertia tensor of link 3 about the connection point
-        J_3_t = J_3_xy*s_3
-        _x = J_3_t + J_3_xx*c_3
-        J_3_t_2 = J_3_xy*c_3
-        _x_2 = J_3_t_2 + J_3_yy*s_3
-        _x_3 = J_3_xz*c_3 + J_3_yz*s_3
-        _y = J_3_yz*c_3 - J_3_xz*s_3
-        # (rrrs-N18) inertia tensor of the links from 2 outwards about joint 2
-        Jc_2_xy = J_2_xy + _x_2*c_3 - _x*s_3
-        _y_2 = (
-        -c_2*(-Jc_2_xy*s_2 - c_2*(J_2_yy + c_3*(J_3_yy*c_3 - J_3_t) - s_3*(J_3_t_2 - J_3_xx*s_3)))
-            - s_2*(-Jc_2_xy*c_2 - s_2*(J_2_xx + _x*c_3 + _x_2*s_3))
+        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
+        # (rrrs-w_2) reciprocal vector 2
+        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
+        # (rrrs-w_3) reciprocal vector 3
+        rrrs_w_3_t = inv_rrrs_platform_joint_offset_x*inv_rrrs_r_2_r0_y*rrrs_r_2_r0_x
+        # (rrrs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
+        rrrs_d_alpha_3_t = inv_rrrs_v_1_z*rrrs_e_1_r2_x
+        rrrs_d_alpha_3_t_2 = inv_rrrs_v_1_z*rrrs_e_1_r2_y
+        # (rrrs-D_1_3) inertia of joint 3 along joint 1
+        rrrs_D_1_3 = rrrs_J_3_xz*rrrs_e_1_r2_x + rrrs_J_3_yz*rrrs_e_1_r2_y
+        # (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        rrrs_d_Gamma_3_t_2 = inv_rrrs_v_1_z*rrrs_D_1_3
+        rrrs_d_Gamma_3_t_3 = rrrs_d_Gamma_3_t*rrrs_r_2_r0_x
+        rrrs_d_Gamma_3_x = -rrrs_h_3_y - inv_rrrs_r_2_r0_y*(rrrs_J_3_zz - rrrs_d_Gamma_3_t_3)
+        # (rrrs-J_3) inertia tensor of link 3 about the connection point
+        rrrs_J_3_t = rrrs_J_3_xy*rrrs_s_3
+        rrrs__x = rrrs_J_3_t + rrrs_J_3_xx*rrrs_c_3
+        rrrs_J_3_t_2 = rrrs_J_3_xy*rrrs_c_3
+        rrrs__x_2 = rrrs_J_3_t_2 + rrrs_J_3_yy*rrrs_s_3
+        # (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+        rrrs_Jc_2_xy = rrrs_J_2_xy + rrrs__x_2*rrrs_c_3 - rrrs__x*rrrs_s_3
+        # (rrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rrrs_d_Gamma_2_x = -rrrs_h_3_y - inv_rrrs_r_2_r0_y*(rrrs_Jc_2_zz - rrrs_d_Gamma_3_t_3)
+        # (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+        rrrs__y = (
+        -rrrs_c_2*(-rrrs_Jc_2_xy*rrrs_s_2 - rrrs_c_2*(rrrs_J_2_yy + rrrs_c_3*(rrrs_J_3_yy*rrrs_c_3
+            - rrrs_J_3_t) - rrrs_s_3*(rrrs_J_3_t_2 - rrrs_J_3_xx*rrrs_s_3))) -
+            rrrs_s_2*(-rrrs_Jc_2_xy*rrrs_c_2 - rrrs_s_2*(rrrs_J_2_xx + rrrs__x*rrrs_c_3 +
+            rrrs__x_2*rrrs_s_3))
         )
-        # (rrrs-V7) reciprocal vector 1
-        inv_v_1_z = 1.0/v_1_z
-        # (rrrs-V8) reciprocal vector 2
-        inv_r_2_r0_y = 1.0/r_2_r0_y
-        # (rrrs-V9) reciprocal vector 3
-        w_3_t = inv_r_2_r0_y*inv_rrrs_platform_joint_offset_x*r_2_r0_x
-        # (rrrs-N50) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_z = e_1_r2_x*h_3_y + inv_v_1_z*(J_1_xx + _y_2) - e_1_r2_y*h_3_x
-        # (rrrs-N41) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_t_2 = d_Gamma_2_t*r_2_r0_x
-        d_Gamma_2_x = -h_3_y - inv_r_2_r0_y*(Jc_2_zz - d_Gamma_2_t_2)
-        # (rrrs-N32) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        d_Gamma_3_t = inv_v_1_z*(-_x_3*s_2 - _y*c_2)
-        d_Gamma_3_x = -h_3_y - inv_r_2_r0_y*(J_3_zz - d_Gamma_2_t_2)
-        # (rrrs-A25) coefficient of the acceleration in: angular acceleration of link 3
-        d_alpha_3_t = e_1_r2_x*inv_v_1_z
-        d_alpha_3_t_2 = e_1_r2_y*inv_v_1_z
-        # (rrrs-N56) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_xx = d_Gamma_2_x*inv_r_2_r0_y + h_3_y*(w_3_t - inv_r_2_r0_y) - d_Gamma_3_x*w_3_t
-        d_c_xy = d_phi_3_t + d_Gamma_2_y*inv_r_2_r0_y - d_Gamma_2_y*w_3_t
-        d_c_xz = (
-        inv_r_2_r0_y*inv_v_1_z*(-c_2*(J_2_yz + _y) - s_2*(J_2_xz + _x_3)) - d_Gamma_3_t*w_3_t -
-            d_alpha_3_t_2*h_3_z
+        # (rrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrrs_d_Gamma_1_z = (
+        inv_rrrs_v_1_z*(rrrs_J_1_xx + rrrs__y) + rrrs_e_1_r2_x*rrrs_h_3_y -
+            rrrs_e_1_r2_y*rrrs_h_3_x
         )
-        d_c_yz = d_alpha_3_t*h_3_z - d_Gamma_3_t*inv_rrrs_platform_joint_offset_x
-        # (rrrs-N58) inertia of the leg at the connection point, without the mass gathered there
-        Q_t = d_c_xx - d_c_yy
-        Q_t_2 = 0.5*Q_t
-        Q_t_3 = d_c_xx + d_Gamma_1_z*inv_v_1_z + d_alpha_3_t*h_3_y - d_alpha_3_t_2*h_3_x
-        Q_t_4 = 0.5*Q_t_3
-        Q_t_5 = (
-        axis_x_rrrs_axes3_x*d_c_xy + axis_z_rrrs_axes3_in_base_x*d_c_yz -
-            Q_t_2*axis_y_rrrs_axes3_in_base_x
+        # (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrrs_d_G_xz = (
+        rrrs_d_Gamma_3_t_2*rrrs_w_3_t - inv_rrrs_r_2_r0_y*inv_rrrs_v_1_z*(-rrrs_c_2*(rrrs_J_2_yz +
+            rrrs_J_3_yz*rrrs_c_3 - rrrs_J_3_xz*rrrs_s_3) - rrrs_s_2*(rrrs_J_2_xz +
+            rrrs_J_3_xz*rrrs_c_3 + rrrs_J_3_yz*rrrs_s_3))
         )
-        Q_t_6 = (
-        axis_x_rrrs_axes3_y*d_c_xy + axis_z_rrrs_axes3_in_base_y*d_c_yz -
-            Q_t_2*axis_y_rrrs_axes3_in_base_y
+        # (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrrs_d_c_xx = (
+        inv_rrrs_r_2_r0_y*rrrs_d_Gamma_2_x + rrrs_h_3_y*(rrrs_w_3_t - inv_rrrs_r_2_r0_y) -
+            rrrs_d_Gamma_3_x*rrrs_w_3_t
         )
-        Q_t_7 = (
-        axis_x_rrrs_axes3_z*d_c_xy + axis_z_rrrs_axes3_in_base_z*d_c_yz -
-            Q_t_2*axis_y_rrrs_axes3_in_base_z
+        rrrs_d_c_xy = (
+        rrrs_d_phi_3_t + inv_rrrs_r_2_r0_y*rrrs_d_Gamma_3_y - rrrs_d_Gamma_3_y*rrrs_w_3_t
         )
-        Q_t_8 = Q_t_4*axis_z_rrrs_axes3_in_base_x - axis_x_rrrs_axes3_x*d_c_xz
-        Q_t_9 = Q_t_4*axis_z_rrrs_axes3_in_base_y - axis_x_rrrs_axes3_y*d_c_xz
-        Q_t_10 = Q_t_4*axis_z_rrrs_axes3_in_base_z - axis_x_rrrs_axes3_z*d_c_xz
-        Q_t_11 = Q_t_5*axis_y_rrrs_axes3_in_base_x - Q_t_8*axis_z_rrrs_axes3_in_base_x
-        Q_t_12 = 2.0*Q_t_11 + d_c_xx
-        Q_t_13 = (
-        Q_t_5*axis_y_rrrs_axes3_in_base_y + Q_t_6*axis_y_rrrs_axes3_in_base_x -
-            Q_t_8*axis_z_rrrs_axes3_in_base_y - Q_t_9*axis_z_rrrs_axes3_in_base_x
+        rrrs_d_c_xz = -rrrs_d_G_xz - rrrs_d_alpha_3_t_2*rrrs_h_3_z
+        rrrs_d_c_yz = (
+        rrrs_d_alpha_3_t*rrrs_h_3_z - inv_rrrs_platform_joint_offset_x*rrrs_d_Gamma_3_t_2
         )
-        Q_t_14 = (
-        Q_t_5*axis_y_rrrs_axes3_in_base_z + Q_t_7*axis_y_rrrs_axes3_in_base_x -
-            Q_t_10*axis_z_rrrs_axes3_in_base_x - Q_t_8*axis_z_rrrs_axes3_in_base_z
+        # (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there
+        rrrs_Q_t = rrrs_d_c_xx - rrrs_d_c_yy
+        rrrs_Q_t_2 = 0.5*rrrs_Q_t
+        rrrs_Q_t_3 = (
+        rrrs_d_c_xx + inv_rrrs_v_1_z*rrrs_d_Gamma_1_z + rrrs_d_alpha_3_t*rrrs_h_3_y -
+            rrrs_d_alpha_3_t_2*rrrs_h_3_x
         )
-        Q_t_15 = Q_t_6*axis_y_rrrs_axes3_in_base_y - Q_t_9*axis_z_rrrs_axes3_in_base_y
-        Q_t_16 = 2.0*Q_t_15 + d_c_xx
-        Q_t_17 = (
-        Q_t_6*axis_y_rrrs_axes3_in_base_z + Q_t_7*axis_y_rrrs_axes3_in_base_y -
-            Q_t_10*axis_z_rrrs_axes3_in_base_y - Q_t_9*axis_z_rrrs_axes3_in_base_z
+        rrrs_Q_t_4 = 0.5*rrrs_Q_t_3
+        rrrs_Q_t_5 = (
+        axis_x_rrrs_axes3_x*rrrs_d_c_xy + axis_z_rrrs_axes3_in_base_x*rrrs_d_c_yz -
+            axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_2
         )
-        Q_t_18 = Q_t_7*axis_y_rrrs_axes3_in_base_z - Q_t_10*axis_z_rrrs_axes3_in_base_z
-        Q_t_19 = 2.0*Q_t_18 + d_c_xx
-        # (M2) coupling block of M
-        M_ta_t = Q_t_13*q_in_base_z
-        M_ta_t_2 = Q_t_14*q_in_base_y
-        M_ta_t_3 = M_ta_t - M_ta_t_2
-        M_ta_t_4 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x
-        M_ta_t_5 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x
-        M_ta_t_6 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y
-        M_ta_t_7 = Q_t_17*q_in_base_x
-        M_ta_t_8 = M_ta_t - M_ta_t_7
-        M_ta_t_9 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x
-        M_ta_t_10 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y
-        M_ta_t_11 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x
-        M_ta_t_12 = M_ta_t_7 - M_ta_t_2
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
-        M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y
-        M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z
-        M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x
-        M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z
-        M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
+        rrrs_Q_t_6 = (
+        axis_x_rrrs_axes3_y*rrrs_d_c_xy + axis_z_rrrs_axes3_in_base_y*rrrs_d_c_yz -
+            axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_2
+        )
+        rrrs_Q_t_7 = (
+        axis_x_rrrs_axes3_z*rrrs_d_c_xy + axis_z_rrrs_axes3_in_base_z*rrrs_d_c_yz -
+            axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_2
+        )
+        rrrs_Q_t_8 = axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_4 - axis_x_rrrs_axes3_x*rrrs_d_c_xz
+        rrrs_Q_t_9 = axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_4 - axis_x_rrrs_axes3_y*rrrs_d_c_xz
+        rrrs_Q_t_10 = axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_4 - axis_x_rrrs_axes3_z*rrrs_d_c_xz
+        rrrs_Q_t_11 = (
+        axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_5 - axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_8
+        )
+        rrrs_Q_t_12 = 2.0*rrrs_Q_t_11 + rrrs_d_c_xx
+        rrrs_Q_t_13 = (
+        axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_6 + axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_5 -
+            axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_9 - axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_8
+        )
+        rrrs_Q_t_14 = (
+        axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_7 + axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_5 -
+            axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_10 - axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_8
+        )
+        rrrs_Q_t_15 = (
+        axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_6 - axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_9
+        )
+        rrrs_Q_t_16 = 2.0*rrrs_Q_t_15 + rrrs_d_c_xx
+        rrrs_Q_t_17 = (
+        axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_7 + axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_6 -
+            axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_10 - axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_9
+        )
+        rrrs_Q_t_18 = (
+        axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_7 - axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_10
+        )
+        rrrs_Q_t_19 = 2.0*rrrs_Q_t_18 + rrrs_d_c_xx
+        # (M_ta) coupling block of M
+        rrrs_M_ta_t = rrrs_Q_t_13*rrrs_q_in_base_z
+        rrrs_M_ta_t_2 = rrrs_Q_t_14*rrrs_q_in_base_y
+        rrrs_M_ta_t_3 = rrrs_M_ta_t - rrrs_M_ta_t_2
+        rrrs_M_ta_t_4 = rrrs_Q_t_12*rrrs_q_in_base_z - rrrs_Q_t_14*rrrs_q_in_base_x
+        rrrs_M_ta_t_5 = rrrs_Q_t_12*rrrs_q_in_base_y - rrrs_Q_t_13*rrrs_q_in_base_x
+        rrrs_M_ta_t_6 = rrrs_Q_t_16*rrrs_q_in_base_z - rrrs_Q_t_17*rrrs_q_in_base_y
+        rrrs_M_ta_t_7 = rrrs_Q_t_17*rrrs_q_in_base_x
+        rrrs_M_ta_t_8 = rrrs_M_ta_t - rrrs_M_ta_t_7
+        rrrs_M_ta_t_9 = rrrs_Q_t_13*rrrs_q_in_base_y - rrrs_Q_t_16*rrrs_q_in_base_x
+        rrrs_M_ta_t_10 = rrrs_Q_t_17*rrrs_q_in_base_z - rrrs_Q_t_19*rrrs_q_in_base_y
+        rrrs_M_ta_t_11 = rrrs_Q_t_14*rrrs_q_in_base_z - rrrs_Q_t_19*rrrs_q_in_base_x
+        rrrs_M_ta_t_12 = rrrs_M_ta_t_7 - rrrs_M_ta_t_2
+        # (M_aa) rotational block of M
+        rrrs_M_aa_t = rrrs_M_ta_t_6*rrrs_q_in_base_z - rrrs_M_ta_t_10*rrrs_q_in_base_y
+        rrrs_M_aa_t_2 = rrrs_M_ta_t_8*rrrs_q_in_base_z - rrrs_M_ta_t_11*rrrs_q_in_base_y
+        rrrs_M_aa_t_3 = rrrs_M_ta_t_12*rrrs_q_in_base_y + rrrs_M_ta_t_9*rrrs_q_in_base_z
+        rrrs_M_aa_t_4 = rrrs_M_ta_t_4*rrrs_q_in_base_z - rrrs_M_ta_t_11*rrrs_q_in_base_x
+        rrrs_M_aa_t_5 = rrrs_M_ta_t_12*rrrs_q_in_base_x + rrrs_M_ta_t_5*rrrs_q_in_base_z
+        rrrs_M_aa_t_6 = rrrs_M_ta_t_5*rrrs_q_in_base_y - rrrs_M_ta_t_9*rrrs_q_in_base_x
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0) & (abs(v_1_z) > _TOLERANCE *
-            size) & (abs(-r_2_r0_y) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
+            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
+            rrrs_size))
         )
         sums = m.added(sums, leg, (
-        Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_3, M_ta_t_4, M_ta_t_5,
-            M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2,
-            M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6,
+        rrrs_Q_t_12, rrrs_Q_t_13, rrrs_Q_t_14, rrrs_Q_t_16, rrrs_Q_t_17, rrrs_Q_t_19,
+            rrrs_M_ta_t_3, rrrs_M_ta_t_4, rrrs_M_ta_t_5, rrrs_M_ta_t_6, rrrs_M_ta_t_8,
+            rrrs_M_ta_t_9, rrrs_M_ta_t_10, rrrs_M_ta_t_11, rrrs_M_ta_t_12, rrrs_M_aa_t,
+            rrrs_M_aa_t_2, rrrs_M_aa_t_3, rrrs_M_aa_t_4, rrrs_M_aa_t_5, rrrs_M_aa_t_6,
         ))
     (
     total_rrrs_xx, total_rrrs_xy, total_rrrs_xz, total_rrrs_yy, total_rrrs_yz, total_rrrs_zz,
@@ -2295,24 +2475,24 @@ def _run_M(m, X):
         total_rrrs_yz_2, total_rrrs_zx, total_rrrs_zy, total_rrrs_zz_2, total_rrrs_xx_3,
         total_rrrs_xy_3, total_rrrs_xz_3, total_rrrs_yy_3, total_rrrs_yz_3, total_rrrs_zz_3,
     ) = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = m_star - total_rrrs_xx
     M_tt_yy = m_star - total_rrrs_yy
     M_tt_zz = m_star - total_rrrs_zz
-    # (M2) coupling block of M
+    # (M_ta) coupling block of M
     M_ta_xy = h_star_in_base_z - total_rrrs_xy_2
     M_ta_xz = total_rrrs_xz_2 - h_star_in_base_y
     M_ta_yx = total_rrrs_yx - h_star_in_base_z
     M_ta_yz = h_star_in_base_x + total_rrrs_yz_2
     M_ta_zx = h_star_in_base_y + total_rrrs_zx
     M_ta_zy = -h_star_in_base_x - total_rrrs_zy
-    # (M3) rotational block of M
+    # (M_aa) rotational block of M
     M_aa_xx = J_star_t_8 - total_rrrs_xx_3
     M_aa_xy = J_star_t_9 + total_rrrs_xy_3
     M_aa_xz = J_star_t_10 - total_rrrs_xz_3
-    M_aa_yy = J_star_t_12 - total_rrrs_yy_3
-    M_aa_yz = J_star_t_13 + total_rrrs_yz_3
-    M_aa_zz = J_star_t_15 - total_rrrs_zz_3
+    M_aa_yy = J_star_t_13 - total_rrrs_yy_3
+    M_aa_yz = J_star_t_15 + total_rrrs_yz_3
+    M_aa_zz = J_star_t_17 - total_rrrs_zz_3
     out_M[0] = M_tt_xx
     out_M[1] = -total_rrrs_xy
     out_M[6] = -total_rrrs_xy
@@ -2352,7 +2532,7 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 912 mul, 663 add, 12 div, 6 sqrt, 0 trig
+# Z: 927 mul, 675 add, 12 div, 6 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
@@ -2410,128 +2590,144 @@ def _run_Z(m, X, V):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_Z = m.zeros("Z")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (M4) centripetal force and weight of the platform
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
     Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
     Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z_2*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x_2*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y - g_r0_y_2*h_star_x
+    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
+    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, Kd_2_t, Kd_2_t_2, Sigma_2_xx,
-            Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2,
-            g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
-            inv_rrrs_platform_joint_offset_x, inv_size_t, inv_size_t_2, rho2_2_t,
-            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size, size_t_3,
+        inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
+            rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yz, rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yz,
+            rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
+            rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_g_r0_x, rrrs_g_r0_y, rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y,
+            rrrs_h_2_z, rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
+            rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
+            rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
         ) = k
-        # (rrrs-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (rrrs-S) from the base point to the connection point
+        rrrs_q_in_base_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        q_in_base_y = (
+        rrrs_q_in_base_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        q_in_base_z = (
+        rrrs_q_in_base_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rrrs_base_point_x
-        S_y = q_in_base_y + t_y - rrrs_base_point_y
-        S_z = q_in_base_z + t_z - rrrs_base_point_z
-        # (rrrs-K2) component along the reference direction
-        px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
-        # (rrrs-K3) component across the reference direction
-        py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
-        # (rrrs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rrrs-K7) root, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
-        # (rrrs-K12) from the origin of joint 2 to the connection point
-        x_2_z = xi_1_t - rrrs_joint2_offset_x
-        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
-        Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-        # (rrrs-K17) factor of the cosine in the equation of joint 2
-        Kc_2 = root_1*rrrs_joint3_offset_x
-        # (rrrs-K18) factor of the sine in the equation of joint 2
-        Ks_2 = rrrs_joint3_offset_x*x_2_z
-        # (rrrs-K19) squared amplitude
-        rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
-        # (rrrs-K20) discriminant
-        disc_2 = rho2_2 - Kd_2*Kd_2
-        # (rrrs-K21) root, with the sign of the branch
-        root_2 = branch_2*sqrt(disc_2)
-        # (rrrs-K27) from the origin of joint 3 to the connection point
-        x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-        # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x
-        # (rrrs-K30) sine of the angle of joint 3 from its reference direction
-        s_3 = inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_t = rrrs_platform_joint_offset_x*s_3
-        r_2_x = rrrs_joint3_offset_x + c_3*rrrs_platform_joint_offset_x
-        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2)
-        # (rrrs-K23) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2)
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        e_1_r2_x = c_2*s_3 - c_3*s_2
-        e_1_r2_y = -c_2*c_3 - s_2*s_3
-        # (rrrs-V3) from joint 1 to the connection point, along the links
-        r_1_r1_x = c_2*root_1 - s_2*xi_1_t
-        r_1_r1_y = -c_2*xi_1_t - root_1*s_2
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        v_1_z = e_1_r2_x*(c_3*r_1_r1_y + r_1_r1_x*s_3) - e_1_r2_y*(c_3*r_1_r1_x - r_1_r1_y*s_3)
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_r0_x = c_3*r_2_x + r_2_t*s_3
-        r_2_r0_y = r_2_x*s_3 - c_3*r_2_t
-        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*py_1*root_1
-        # (rrrs-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*px_1*root_1
-        # (rrrs-V7) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1 - c_1*rrrs_base_frame_xy
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1 - c_1*rrrs_base_frame_yy
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1 - c_1*rrrs_base_frame_zy
-        w_1_t = e_1_r2_x*s_1
-        w_1_t_2 = c_1*e_1_r2_x
+        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        # (rrrs-px_1) component along the reference direction
+        rrrs_px_1 = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        )
+        # (rrrs-py_1) component across the reference direction
+        rrrs_py_1 = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrs_xi_1_t = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        )
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-x_3) from the origin of joint 3 to the connection point
+        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrs_s_3 = (
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
+        )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3
+        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
+        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
+        # (rrrs-r_1) from joint 1 to the connection point, along the links
+        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
+        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_z = (
+        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
+            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
+        )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_r0_x = rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3
+        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
+        # (rrrs-w_1) reciprocal vector 1
+        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
+        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
+        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
         axis_y_rrrs_axes3_in_base_x = (
-        e_1_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_t + rrrs_base_frame_xz*w_1_t_2
+        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
+            rrrs_base_frame_xz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_y = (
-        e_1_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_t + rrrs_base_frame_yz*w_1_t_2
+        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
+            rrrs_base_frame_yz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_z = (
-        e_1_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_t + rrrs_base_frame_zz*w_1_t_2
+        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
+            rrrs_base_frame_zz*rrrs_w_1_t_2
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
@@ -2545,213 +2741,246 @@ def _run_Z(m, X, V):
         axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
             axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
         )
-        inv_v_1_z = 1.0/v_1_z
-        # (rrrs-V8) reciprocal vector 2
-        inv_r_2_r0_y = 1.0/r_2_r0_y
-        # (rrrs-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        # (rrrs-V10) rate of joint 1
-        qd_2 = (
-        inv_r_2_r0_y*(S_dot_x*axis_x_rrrs_axes3_x + S_dot_y*axis_x_rrrs_axes3_y +
-            S_dot_z*axis_x_rrrs_axes3_z)
+        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
+        # (rrrs-w_2) reciprocal vector 2
+        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
+        # (rrrs-S_dot) velocity of the connection point
+        rrrs_S_dot_t = omega_y*rrrs_q_in_base_z - omega_z*rrrs_q_in_base_y
+        rrrs_S_dot_t_2 = omega_z*rrrs_q_in_base_x - omega_x*rrrs_q_in_base_z
+        rrrs_S_dot_t_3 = omega_x*rrrs_q_in_base_y - omega_y*rrrs_q_in_base_x
+        rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
+        rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
+        rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
+        # (rrrs-qd_3) rate of joint 3
+        rrrs_qd_2 = (
+        inv_rrrs_r_2_r0_y*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_x_rrrs_axes3_z*rrrs_S_dot_z)
         )
-        qd_3 = (
-        inv_rrrs_platform_joint_offset_x*(S_dot_x*axis_y_rrrs_axes3_in_base_x +
-            S_dot_y*axis_y_rrrs_axes3_in_base_y + S_dot_z*axis_y_rrrs_axes3_in_base_z +
-            qd_2*r_2_r0_x)
+        rrrs_qd_3 = (
+        inv_rrrs_platform_joint_offset_x*(axis_y_rrrs_axes3_in_base_x*rrrs_S_dot_x +
+            axis_y_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_dot_z +
+            rrrs_qd_2*rrrs_r_2_r0_x)
         )
-        qd_1 = (
-        inv_v_1_z*(S_dot_x*axis_z_rrrs_axes3_in_base_x + S_dot_y*axis_z_rrrs_axes3_in_base_y +
-            S_dot_z*axis_z_rrrs_axes3_in_base_z)
+        rrrs_qd_1 = (
+        inv_rrrs_v_1_z*(axis_z_rrrs_axes3_in_base_x*rrrs_S_dot_x +
+            axis_z_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_z_rrrs_axes3_in_base_z*rrrs_S_dot_z)
         )
-        # (rrrs-V13) angular velocity of link 1
-        omega_1_t = qd_1*s_2
-        omega_1_t_2 = c_2*qd_1
-        # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_x = omega_1_t_2*qd_2
-        zeta_2_y = omega_1_t*qd_2
-        # (rrrs-V15) angular velocity of link 2
-        omega_2_r0_x = omega_1_t_2*s_3 - c_3*omega_1_t
-        omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
-        # (rrrs-A5) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_y = omega_2_r0_x*qd_3
-        # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_r0_y = s_3*zeta_2_x - c_3*zeta_2_y
-        # (rrrs-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_y = zeta_2_r0_y - zeta_3_y
-        # (rrrs-V17) angular velocity of link 3
-        omega_3_z = qd_3 - qd_2
-        # (rrrs-V16) centripetal tensor of link 2
-        W_2_t = omega_1_t*omega_1_t
-        W_2_t_2 = omega_1_t_2*omega_1_t_2
-        W_2_t_3 = qd_2*qd_2
-        W_2_xy = omega_1_t*omega_1_t_2
-        # (rrrs-V18) centripetal tensor of link 3
-        W_3_t = omega_2_r0_x*omega_2_r0_x
-        W_3_t_2 = omega_2_r0_y*omega_2_r0_y
-        W_3_t_3 = omega_3_z*omega_3_z
-        W_3_xy = omega_2_r0_x*omega_2_r0_y
-        W_3_xz = omega_2_r0_x*omega_3_z
-        W_3_yz = omega_2_r0_y*omega_3_z
-        # (rrrs-A7) acceleration of the connection point at zero joint accelerations
-        bias_t = rrrs_joint2_offset_x*s_2
-        bias_t_2 = c_2*rrrs_joint2_offset_x
-        bias_t_3 = (
-        omega_2_r0_x*(-bias_t*s_3 - bias_t_2*c_3) - omega_2_r0_y*(bias_t_2*s_3 - bias_t*c_3)
+        # (rrrs-omega_1) angular velocity of link 1
+        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_t_2 = rrrs_c_2*rrrs_qd_1
+        # (rrrs-omega_2) angular velocity of link 2
+        rrrs_omega_2_r0_x = rrrs_omega_1_t_2*rrrs_s_3 - rrrs_c_3*rrrs_omega_1_t
+        rrrs_omega_2_r0_y = -rrrs_c_3*rrrs_omega_1_t_2 - rrrs_omega_1_t*rrrs_s_3
+        # (rrrs-omega_3) angular velocity of link 3
+        rrrs_omega_3_z = rrrs_qd_3 - rrrs_qd_2
+        # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrs_zeta_3_y = rrrs_omega_2_r0_x*rrrs_qd_3
+        # (rrrs-u_1) centripetal acceleration of the connection point
+        rrrs_u_1_x = omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2
+        rrrs_u_1_y = omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3
+        rrrs_u_1_z = omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t
+        # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        rrrs_zeta_2_x = rrrs_omega_1_t_2*rrrs_qd_2
+        rrrs_zeta_2_y = rrrs_omega_1_t*rrrs_qd_2
+        rrrs_zeta_2_r0_y = rrrs_s_3*rrrs_zeta_2_x - rrrs_c_3*rrrs_zeta_2_y
+        # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        rrrs_beta_3_y = rrrs_zeta_2_r0_y - rrrs_zeta_3_y
+        # (rrrs-W_2) centripetal tensor of link 2
+        rrrs_W_2_t = rrrs_omega_1_t*rrrs_omega_1_t
+        rrrs_W_2_t_2 = rrrs_omega_1_t_2*rrrs_omega_1_t_2
+        rrrs_W_2_t_3 = rrrs_qd_2*rrrs_qd_2
+        rrrs_W_2_xy = rrrs_omega_1_t*rrrs_omega_1_t_2
+        # (rrrs-W_3) centripetal tensor of link 3
+        rrrs_W_3_t = rrrs_omega_2_r0_x*rrrs_omega_2_r0_x
+        rrrs_W_3_t_2 = rrrs_omega_2_r0_y*rrrs_omega_2_r0_y
+        rrrs_W_3_t_3 = rrrs_omega_3_z*rrrs_omega_3_z
+        rrrs_W_3_xy = rrrs_omega_2_r0_x*rrrs_omega_2_r0_y
+        rrrs_W_3_xz = rrrs_omega_2_r0_x*rrrs_omega_3_z
+        rrrs_W_3_yz = rrrs_omega_2_r0_y*rrrs_omega_3_z
+        # (rrrs-bias) acceleration of the connection point at zero joint accelerations
+        rrrs_bias_t = rrrs_joint2_offset_x*rrrs_s_2
+        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_3 = (
+        rrrs_omega_2_r0_x*(-rrrs_bias_t*rrrs_s_3 - rrrs_bias_t_2*rrrs_c_3) -
+            rrrs_omega_2_r0_y*(rrrs_bias_t_2*rrrs_s_3 - rrrs_bias_t*rrrs_c_3)
         )
-        bias_t_4 = c_3*rrrs_joint3_offset_x
-        bias_t_5 = rrrs_joint3_offset_x*s_3
-        bias_t_6 = bias_t_5*qd_2
-        bias_t_7 = bias_t_4*qd_2
-        bias_t_8 = bias_t_5*omega_2_r0_x - bias_t_4*omega_2_r0_y
-        bias_t_9 = omega_3_z*rrrs_platform_joint_offset_x
-        bias_t_10 = omega_2_r0_y*rrrs_platform_joint_offset_x
-        bias_x = (
-        bias_t_3*omega_2_r0_y + bias_t_8*omega_2_r0_y - bias_t_10*omega_2_r0_y - bias_t_7*qd_2 -
-            bias_t_9*omega_3_z
+        rrrs_bias_t_4 = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_bias_t_5 = rrrs_joint3_offset_x*rrrs_s_3
+        rrrs_bias_t_6 = rrrs_bias_t_5*rrrs_qd_2
+        rrrs_bias_t_7 = rrrs_bias_t_4*rrrs_qd_2
+        rrrs_bias_t_8 = rrrs_bias_t_5*rrrs_omega_2_r0_x - rrrs_bias_t_4*rrrs_omega_2_r0_y
+        rrrs_bias_t_9 = rrrs_omega_3_z*rrrs_platform_joint_offset_x
+        rrrs_bias_t_10 = rrrs_omega_2_r0_y*rrrs_platform_joint_offset_x
+        rrrs_bias_x = (
+        rrrs_bias_t_3*rrrs_omega_2_r0_y + rrrs_bias_t_8*rrrs_omega_2_r0_y -
+            rrrs_bias_t_10*rrrs_omega_2_r0_y - rrrs_bias_t_7*rrrs_qd_2 -
+            rrrs_bias_t_9*rrrs_omega_3_z
         )
-        bias_y = (
-        bias_t_10*omega_2_r0_x - bias_t_3*omega_2_r0_x - bias_t_6*qd_2 - bias_t_8*omega_2_r0_x
+        rrrs_bias_y = (
+        rrrs_bias_t_10*rrrs_omega_2_r0_x - rrrs_bias_t_3*rrrs_omega_2_r0_x -
+            rrrs_bias_t_6*rrrs_qd_2 - rrrs_bias_t_8*rrrs_omega_2_r0_x
         )
-        bias_z = (
-        bias_t_5*(c_3*zeta_2_x + s_3*zeta_2_y) + bias_t_9*omega_2_r0_x -
-            beta_3_y*rrrs_platform_joint_offset_x - bias_t_4*zeta_2_r0_y - bias_t_6*omega_2_r0_y -
-            bias_t_7*omega_2_r0_x
+        rrrs_bias_z = (
+        rrrs_bias_t_5*(rrrs_c_3*rrrs_zeta_2_x + rrrs_s_3*rrrs_zeta_2_y) +
+            rrrs_bias_t_9*rrrs_omega_2_r0_x - rrrs_beta_3_y*rrrs_platform_joint_offset_x -
+            rrrs_bias_t_4*rrrs_zeta_2_r0_y - rrrs_bias_t_6*rrrs_omega_2_r0_y -
+            rrrs_bias_t_7*rrrs_omega_2_r0_x
         )
-        # (rrrs-A1) centripetal acceleration of the connection point
-        u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
-        u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y
-        u_1_tip_x = (
-        axis_x_rrrs_axes3_x*u_1_x + axis_x_rrrs_axes3_y*u_1_y + axis_x_rrrs_axes3_z*u_1_z
+        # (rrrs-u_1) centripetal acceleration of the connection point
+        rrrs_u_1_tip_x = (
+        axis_x_rrrs_axes3_x*rrrs_u_1_x + axis_x_rrrs_axes3_y*rrrs_u_1_y +
+            axis_x_rrrs_axes3_z*rrrs_u_1_z
         )
-        u_1_tip_y = (
-        axis_y_rrrs_axes3_in_base_x*u_1_x + axis_y_rrrs_axes3_in_base_y*u_1_y +
-            axis_y_rrrs_axes3_in_base_z*u_1_z
+        rrrs_u_1_tip_y = (
+        axis_y_rrrs_axes3_in_base_x*rrrs_u_1_x + axis_y_rrrs_axes3_in_base_y*rrrs_u_1_y +
+            axis_y_rrrs_axes3_in_base_z*rrrs_u_1_z
         )
-        u_1_tip_z = (
-        axis_z_rrrs_axes3_in_base_x*u_1_x + axis_z_rrrs_axes3_in_base_y*u_1_y +
-            axis_z_rrrs_axes3_in_base_z*u_1_z
+        rrrs_u_1_tip_z = (
+        axis_z_rrrs_axes3_in_base_x*rrrs_u_1_x + axis_z_rrrs_axes3_in_base_y*rrrs_u_1_y +
+            axis_z_rrrs_axes3_in_base_z*rrrs_u_1_z
         )
-        # (rrrs-A9) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_x = u_1_tip_x - bias_x
-        rel_o_y = u_1_tip_y - bias_y
-        rel_o_z = u_1_tip_z - bias_z
-        # (rrrs-A11) remainder without the acceleration in: acceleration of joint 1
-        qdd_2_o = inv_r_2_r0_y*rel_o_x
-        qdd_1_o = inv_v_1_z*rel_o_z
-        # (rrrs-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-        g_r3_x = -c_2*g_r1_y - g_r0_z*s_2
-        g_r3_y = g_r1_y*s_2 - c_2*g_r0_z
-        # (rrrs-A17) remainder without the acceleration in: angular acceleration of link 1
-        alpha_1_o_t = qdd_1_o*s_2
-        alpha_1_o_t_2 = c_2*qdd_1_o
-        # (rrrs-A21) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_o_x = zeta_2_x - alpha_1_o_t
-        alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-        # (rrrs-A23) remainder of the acceleration tensor of link 2
-        B_2_o_xy = W_2_xy + qdd_2_o
-        B_2_o_yx = W_2_xy - qdd_2_o
-        B_2_o_zx = zeta_2_y - alpha_2_o_y
-        B_2_o_zy = alpha_2_o_x + zeta_2_x
-        # (rrrs-N37) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_o_x = (
-        B_2_o_yx*J_2_xz + B_2_o_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z -
-            B_2_o_zx*J_2_xy - Sigma_2_zz*alpha_1_o_t - g_r1_x*h_2_y
+        # (rrrs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        rrrs_rel_o_x = rrrs_u_1_tip_x - rrrs_bias_x
+        rrrs_rel_o_y = rrrs_u_1_tip_y - rrrs_bias_y
+        rrrs_rel_o_z = rrrs_u_1_tip_z - rrrs_bias_z
+        # (rrrs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
+        rrrs_qdd_2_o = inv_rrrs_r_2_r0_y*rrrs_rel_o_x
+        rrrs_qdd_1_o = inv_rrrs_v_1_z*rrrs_rel_o_z
+        # (rrrs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        rrrs_alpha_1_o_t = rrrs_qdd_1_o*rrrs_s_2
+        rrrs_alpha_1_o_t_2 = rrrs_c_2*rrrs_qdd_1_o
+        # (rrrs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        rrrs_alpha_2_o_x = rrrs_zeta_2_x - rrrs_alpha_1_o_t
+        rrrs_alpha_2_o_y = -rrrs_alpha_1_o_t_2 - rrrs_zeta_2_y
+        # (rrrs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        rrrs_alpha_3_o_x = (
+        rrrs_alpha_2_o_x*rrrs_c_3 + rrrs_omega_2_r0_y*rrrs_qd_3 - rrrs_alpha_2_o_y*rrrs_s_3
         )
-        mu_2_o_y = (
-        B_2_o_zy*J_2_xy + g_r1_x*h_2_x - B_2_o_xy*J_2_yz - B_2_o_zx*Sigma_2_xx - J_2_xz*(W_2_t -
-            W_2_t_3) - Sigma_2_zz*alpha_1_o_t_2 - g_r3_x*h_2_z
+        rrrs_alpha_3_o_y = rrrs_alpha_2_o_x*rrrs_s_3 + rrrs_alpha_2_o_y*rrrs_c_3 - rrrs_zeta_3_y
+        rrrs_alpha_3_o_z = (
+        inv_rrrs_platform_joint_offset_x*(rrrs_rel_o_y + rrrs_qdd_2_o*rrrs_r_2_r0_x) -
+            rrrs_qdd_2_o
         )
-        mu_2_o_z = (
-        B_2_o_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + g_r3_x*h_2_y - B_2_o_xy*Sigma_2_yy -
-            J_2_xz*alpha_1_o_t - J_2_yz*alpha_1_o_t_2 - g_r3_y*h_2_x
+        # (rrrs-B_3_o) remainder of the acceleration tensor of link 3
+        rrrs_B_3_o_xy = rrrs_W_3_xy - rrrs_alpha_3_o_z
+        rrrs_B_3_o_xz = rrrs_W_3_xz + rrrs_alpha_3_o_y
+        rrrs_B_3_o_yx = rrrs_W_3_xy + rrrs_alpha_3_o_z
+        rrrs_B_3_o_yz = rrrs_W_3_yz - rrrs_alpha_3_o_x
+        rrrs_B_3_o_zx = rrrs_W_3_xz - rrrs_alpha_3_o_y
+        rrrs_B_3_o_zy = rrrs_W_3_yz + rrrs_alpha_3_o_x
+        # (rrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        rrrs_acc_3_o_x = (
+        rrrs_u_1_tip_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
+            axis_x_rrrs_axes3_z*gravity_z
         )
-        # (rrrs-N10) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        acc_3_o_x = u_1_tip_x + g_r3_y*s_3 - c_3*g_r3_x
-        acc_3_o_y = u_1_tip_y - c_3*g_r3_y - g_r3_x*s_3
-        acc_3_o_z = u_1_tip_z - g_r1_x
-        # (rrrs-A26) remainder without the acceleration in: angular acceleration of link 3
-        alpha_3_o_x = alpha_2_o_x*c_3 + omega_2_r0_y*qd_3 - alpha_2_o_y*s_3
-        alpha_3_o_y = alpha_2_o_x*s_3 + alpha_2_o_y*c_3 - zeta_3_y
-        alpha_3_o_z = inv_rrrs_platform_joint_offset_x*(rel_o_y + qdd_2_o*r_2_r0_x) - qdd_2_o
-        # (rrrs-A28) remainder of the acceleration tensor of link 3
-        B_3_o_xy = W_3_xy - alpha_3_o_z
-        B_3_o_xz = W_3_xz + alpha_3_o_y
-        B_3_o_yx = W_3_xy + alpha_3_o_z
-        B_3_o_yz = W_3_yz - alpha_3_o_x
-        B_3_o_zx = W_3_xz - alpha_3_o_y
-        B_3_o_zy = W_3_yz + alpha_3_o_x
-        # (rrrs-N30) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        mu_3_o_x = (
-        B_3_o_yx*J_3_xz + B_3_o_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_o_z*h_3_y -
-            B_3_o_yz*Sigma_3_zz - B_3_o_zx*J_3_xy - acc_3_o_y*h_3_z
+        rrrs_acc_3_o_y = (
+        rrrs_u_1_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x -
+            axis_y_rrrs_axes3_in_base_y*gravity_y - axis_y_rrrs_axes3_in_base_z*gravity_z
         )
-        mu_3_o_y = (
-        B_3_o_xz*Sigma_3_zz + B_3_o_zy*J_3_xy + acc_3_o_x*h_3_z - B_3_o_xy*J_3_yz -
-            B_3_o_zx*Sigma_3_xx - J_3_xz*(W_3_t - W_3_t_3) - acc_3_o_z*h_3_x
+        rrrs_acc_3_o_z = (
+        rrrs_u_1_tip_z - axis_z_rrrs_axes3_in_base_x*gravity_x -
+            axis_z_rrrs_axes3_in_base_y*gravity_y - axis_z_rrrs_axes3_in_base_z*gravity_z
         )
-        mu_3_o_z = (
-        B_3_o_xz*J_3_yz + B_3_o_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_o_y*h_3_x -
-            B_3_o_xy*Sigma_3_yy - B_3_o_yz*J_3_xz - acc_3_o_x*h_3_y
+        # (rrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        rrrs_mu_3_o_x = (
+        rrrs_B_3_o_yx*rrrs_J_3_xz + rrrs_B_3_o_zy*rrrs_Sigma_3_yy + rrrs_J_3_yz*(rrrs_W_3_t_2 -
+            rrrs_W_3_t_3) + rrrs_acc_3_o_z*rrrs_h_3_y - rrrs_B_3_o_yz*rrrs_Sigma_3_zz -
+            rrrs_B_3_o_zx*rrrs_J_3_xy - rrrs_acc_3_o_y*rrrs_h_3_z
         )
-        # (rrrs-N39) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_o_x = mu_2_o_x + c_3*mu_3_o_x + mu_3_o_y*s_3
-        N_2_o_y = mu_2_o_y + c_3*mu_3_o_y - mu_3_o_x*s_3
-        N_2_o_z = mu_2_o_z + mu_3_o_z
-        # (rrrs-N46) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_o_z = J_1_xx*qdd_1_o - g_r1_x*h_1_y - g_r1_y*h_1_z
-        # (rrrs-N48) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_o_z = mu_1_o_z - N_2_o_x*s_2 - N_2_o_y*c_2
-        # (rrrs-N54) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_o_t = inv_rrrs_platform_joint_offset_x*mu_3_o_z
-        # (rrrs-N57) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_o_x = (
-        h_3_x*(W_3_t_2 + W_3_t_3) - B_3_o_xy*h_3_y - B_3_o_xz*h_3_z - inv_r_2_r0_y*(G_o_t*r_2_r0_x
-            - N_2_o_z)
+        rrrs_mu_3_o_y = (
+        rrrs_B_3_o_xz*rrrs_Sigma_3_zz + rrrs_B_3_o_zy*rrrs_J_3_xy + rrrs_acc_3_o_x*rrrs_h_3_z -
+            rrrs_B_3_o_xy*rrrs_J_3_yz - rrrs_B_3_o_zx*rrrs_Sigma_3_xx - rrrs_J_3_xz*(rrrs_W_3_t -
+            rrrs_W_3_t_3) - rrrs_acc_3_o_z*rrrs_h_3_x
         )
-        c_o_y = h_3_y*(W_3_t + W_3_t_3) - G_o_t - B_3_o_yx*h_3_x - B_3_o_yz*h_3_z
-        c_o_z = h_3_z*(W_3_t + W_3_t_2) - B_3_o_zx*h_3_x - B_3_o_zy*h_3_y - N_1_o_z*inv_v_1_z
-        # (rrrs-N59) velocity and gravity terms of the leg force
-        U_in_base_x = (
-        -axis_x_rrrs_axes3_x*c_o_x - axis_y_rrrs_axes3_in_base_x*c_o_y -
-            axis_z_rrrs_axes3_in_base_x*c_o_z
+        rrrs_mu_3_o_z = (
+        rrrs_B_3_o_xz*rrrs_J_3_yz + rrrs_B_3_o_yx*rrrs_Sigma_3_xx + rrrs_J_3_xy*(rrrs_W_3_t -
+            rrrs_W_3_t_2) + rrrs_acc_3_o_y*rrrs_h_3_x - rrrs_B_3_o_xy*rrrs_Sigma_3_yy -
+            rrrs_B_3_o_yz*rrrs_J_3_xz - rrrs_acc_3_o_x*rrrs_h_3_y
         )
-        U_in_base_y = (
-        -axis_x_rrrs_axes3_y*c_o_x - axis_y_rrrs_axes3_in_base_y*c_o_y -
-            axis_z_rrrs_axes3_in_base_y*c_o_z
+        # (rrrs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        rrrs_g_r1_x = rrrs_g_r0_y*rrrs_s_1 - rrrs_c_1*rrrs_g_r0_x
+        rrrs_g_r1_y = -rrrs_c_1*rrrs_g_r0_y - rrrs_g_r0_x*rrrs_s_1
+        rrrs_g_r3_x = -rrrs_c_2*rrrs_g_r1_y - rrrs_g_r0_z*rrrs_s_2
+        rrrs_g_r3_y = rrrs_g_r1_y*rrrs_s_2 - rrrs_c_2*rrrs_g_r0_z
+        # (rrrs-B_2_o) remainder of the acceleration tensor of link 2
+        rrrs_B_2_o_xy = rrrs_W_2_xy + rrrs_qdd_2_o
+        rrrs_B_2_o_yx = rrrs_W_2_xy - rrrs_qdd_2_o
+        rrrs_B_2_o_zx = rrrs_zeta_2_y - rrrs_alpha_2_o_y
+        rrrs_B_2_o_zy = rrrs_alpha_2_o_x + rrrs_zeta_2_x
+        # (rrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        rrrs_mu_2_o_x = (
+        rrrs_B_2_o_yx*rrrs_J_2_xz + rrrs_B_2_o_zy*rrrs_Sigma_2_yy + rrrs_J_2_yz*(rrrs_W_2_t_2 -
+            rrrs_W_2_t_3) + rrrs_g_r3_y*rrrs_h_2_z - rrrs_B_2_o_zx*rrrs_J_2_xy -
+            rrrs_Sigma_2_zz*rrrs_alpha_1_o_t - rrrs_g_r1_x*rrrs_h_2_y
         )
-        U_in_base_z = (
-        -axis_x_rrrs_axes3_z*c_o_x - axis_y_rrrs_axes3_in_base_z*c_o_y -
-            axis_z_rrrs_axes3_in_base_z*c_o_z
+        rrrs_mu_2_o_y = (
+        rrrs_B_2_o_zy*rrrs_J_2_xy + rrrs_g_r1_x*rrrs_h_2_x - rrrs_B_2_o_xy*rrrs_J_2_yz -
+            rrrs_B_2_o_zx*rrrs_Sigma_2_xx - rrrs_J_2_xz*(rrrs_W_2_t - rrrs_W_2_t_3) -
+            rrrs_Sigma_2_zz*rrrs_alpha_1_o_t_2 - rrrs_g_r3_x*rrrs_h_2_z
         )
-        # (M7) rotational part of Z
-        Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
-        Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
-        Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
+        rrrs_mu_2_o_z = (
+        rrrs_B_2_o_yx*rrrs_Sigma_2_xx + rrrs_J_2_xy*(rrrs_W_2_t - rrrs_W_2_t_2) +
+            rrrs_g_r3_x*rrrs_h_2_y - rrrs_B_2_o_xy*rrrs_Sigma_2_yy - rrrs_J_2_xz*rrrs_alpha_1_o_t
+            - rrrs_J_2_yz*rrrs_alpha_1_o_t_2 - rrrs_g_r3_y*rrrs_h_2_x
+        )
+        # (rrrs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        rrrs_N_2_o_x = rrrs_mu_2_o_x + rrrs_c_3*rrrs_mu_3_o_x + rrrs_mu_3_o_y*rrrs_s_3
+        rrrs_N_2_o_y = rrrs_mu_2_o_y + rrrs_c_3*rrrs_mu_3_o_y - rrrs_mu_3_o_x*rrrs_s_3
+        rrrs_N_2_o_z = rrrs_mu_2_o_z + rrrs_mu_3_o_z
+        # (rrrs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        rrrs_mu_1_o_z = rrrs_J_1_xx*rrrs_qdd_1_o - rrrs_g_r1_x*rrrs_h_1_y - rrrs_g_r1_y*rrrs_h_1_z
+        # (rrrs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrrs_N_1_o_z = rrrs_mu_1_o_z - rrrs_N_2_o_x*rrrs_s_2 - rrrs_N_2_o_y*rrrs_c_2
+        # (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrrs_G_o_t = inv_rrrs_platform_joint_offset_x*rrrs_mu_3_o_z
+        # (rrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrrs_c_o_x = (
+        rrrs_h_3_x*(rrrs_W_3_t_2 + rrrs_W_3_t_3) - inv_rrrs_r_2_r0_y*(rrrs_G_o_t*rrrs_r_2_r0_x -
+            rrrs_N_2_o_z) - rrrs_B_3_o_xy*rrrs_h_3_y - rrrs_B_3_o_xz*rrrs_h_3_z
+        )
+        rrrs_c_o_y = (
+        rrrs_h_3_y*(rrrs_W_3_t + rrrs_W_3_t_3) - rrrs_G_o_t - rrrs_B_3_o_yx*rrrs_h_3_x -
+            rrrs_B_3_o_yz*rrrs_h_3_z
+        )
+        rrrs_c_o_z = (
+        rrrs_h_3_z*(rrrs_W_3_t + rrrs_W_3_t_2) - inv_rrrs_v_1_z*rrrs_N_1_o_z -
+            rrrs_B_3_o_zx*rrrs_h_3_x - rrrs_B_3_o_zy*rrrs_h_3_y
+        )
+        # (rrrs-U) velocity and gravity terms of the leg force
+        rrrs_U_in_base_x = (
+        -axis_x_rrrs_axes3_x*rrrs_c_o_x - axis_y_rrrs_axes3_in_base_x*rrrs_c_o_y -
+            axis_z_rrrs_axes3_in_base_x*rrrs_c_o_z
+        )
+        rrrs_U_in_base_y = (
+        -axis_x_rrrs_axes3_y*rrrs_c_o_x - axis_y_rrrs_axes3_in_base_y*rrrs_c_o_y -
+            axis_z_rrrs_axes3_in_base_y*rrrs_c_o_z
+        )
+        rrrs_U_in_base_z = (
+        -axis_x_rrrs_axes3_z*rrrs_c_o_x - axis_y_rrrs_axes3_in_base_z*rrrs_c_o_y -
+            axis_z_rrrs_axes3_in_base_z*rrrs_c_o_z
+        )
+        # (Z_a) rotational part of Z
+        rrrs_Z_a_t = rrrs_U_in_base_z*rrrs_q_in_base_y - rrrs_U_in_base_y*rrrs_q_in_base_z
+        rrrs_Z_a_t_2 = rrrs_U_in_base_x*rrrs_q_in_base_z - rrrs_U_in_base_z*rrrs_q_in_base_x
+        rrrs_Z_a_t_3 = rrrs_U_in_base_y*rrrs_q_in_base_x - rrrs_U_in_base_x*rrrs_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0) & (abs(v_1_z) > _TOLERANCE *
-            size) & (abs(-r_2_r0_y) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
+            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
+            rrrs_size))
         )
         sums = m.added(sums, leg, (
-        U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
+        rrrs_U_in_base_x, rrrs_U_in_base_y, rrrs_U_in_base_z, rrrs_Z_a_t, rrrs_Z_a_t_2,
+            rrrs_Z_a_t_3,
         ))
     (
     total_rrrs_x, total_rrrs_y, total_rrrs_z, total_rrrs_x_2, total_rrrs_y_2, total_rrrs_z_2,
     ) = sums
-    # (M5) translational part of Z
+    # (Z_t) translational part of Z
     Z_t_x = Z_p_x + total_rrrs_x
     Z_t_y = Z_p_y + total_rrrs_y
     Z_t_z = Z_p_z + total_rrrs_z
-    # (M7) rotational part of Z
+    # (Z_a) rotational part of Z
     Z_a_x = Z_q_in_base_x + total_rrrs_x_2
     Z_a_y = Z_q_in_base_y + total_rrrs_y_2
     Z_a_z = Z_q_in_base_z + total_rrrs_z_2
@@ -2807,139 +3036,155 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_size_t, inv_size_t_2, rho2_2_t,
-            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
             rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size, size_t_3,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
+            rrrs_size, rrrs_size_t_3,
         ) = k
-        # (rrrs-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (rrrs-S) from the base point to the connection point
+        rrrs_q_in_base_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        q_in_base_y = (
+        rrrs_q_in_base_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        q_in_base_z = (
+        rrrs_q_in_base_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rrrs_base_point_x
-        S_y = q_in_base_y + t_y - rrrs_base_point_y
-        S_z = q_in_base_z + t_z - rrrs_base_point_z
-        # (rrrs-K2) component along the reference direction
-        px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
-        # (rrrs-K3) component across the reference direction
-        py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
-        # (rrrs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rrrs-K7) root, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
-        # (rrrs-K12) from the origin of joint 2 to the connection point
-        x_2_z = xi_1_t - rrrs_joint2_offset_x
-        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
-        Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-        # (rrrs-K17) factor of the cosine in the equation of joint 2
-        Kc_2 = root_1*rrrs_joint3_offset_x
-        # (rrrs-K18) factor of the sine in the equation of joint 2
-        Ks_2 = rrrs_joint3_offset_x*x_2_z
-        # (rrrs-K19) squared amplitude
-        rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
-        # (rrrs-K20) discriminant
-        disc_2 = rho2_2 - Kd_2*Kd_2
-        # (rrrs-K21) root, with the sign of the branch
-        root_2 = branch_2*sqrt(disc_2)
-        # (rrrs-K27) from the origin of joint 3 to the connection point
-        x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-        # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x
-        # (rrrs-K30) sine of the angle of joint 3 from its reference direction
-        s_3 = inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_x = rrrs_joint3_offset_x + c_3*rrrs_platform_joint_offset_x
-        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2)
-        # (rrrs-K23) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2)
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        e_1_r2_x = c_2*s_3 - c_3*s_2
-        e_1_r2_y = -c_2*c_3 - s_2*s_3
-        # (rrrs-V3) from joint 1 to the connection point, along the links
-        r_1_r1_x = c_2*root_1 - s_2*xi_1_t
-        r_1_r1_y = -c_2*xi_1_t - root_1*s_2
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        v_1_z = e_1_r2_x*(c_3*r_1_r1_y + r_1_r1_x*s_3) - e_1_r2_y*(c_3*r_1_r1_x - r_1_r1_y*s_3)
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_r0_y = r_2_x*s_3 - c_3*rrrs_platform_joint_offset_x*s_3
-        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*py_1*root_1
-        # (rrrs-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*px_1*root_1
-        # (rrrs-V7) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1 - c_1*rrrs_base_frame_xy
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1 - c_1*rrrs_base_frame_yy
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1 - c_1*rrrs_base_frame_zy
-        w_1_t = e_1_r2_x*s_1
-        w_1_t_2 = c_1*e_1_r2_x
+        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        # (rrrs-px_1) component along the reference direction
+        rrrs_px_1 = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        )
+        # (rrrs-py_1) component across the reference direction
+        rrrs_py_1 = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrs_xi_1_t = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        )
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-x_3) from the origin of joint 3 to the connection point
+        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrs_s_3 = (
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
+        )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
+        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
+        # (rrrs-r_1) from joint 1 to the connection point, along the links
+        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
+        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_z = (
+        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
+            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
+        )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_platform_joint_offset_x*rrrs_s_3
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
+        # (rrrs-w_1) reciprocal vector 1
+        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
+        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
+        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
         axis_y_rrrs_axes3_in_base_x = (
-        e_1_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_t + rrrs_base_frame_xz*w_1_t_2
+        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
+            rrrs_base_frame_xz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_y = (
-        e_1_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_t + rrrs_base_frame_yz*w_1_t_2
+        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
+            rrrs_base_frame_yz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_z = (
-        e_1_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_t + rrrs_base_frame_zz*w_1_t_2
+        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
+            rrrs_base_frame_zz*rrrs_w_1_t_2
         )
-        inv_v_1_z = 1.0/v_1_z
-        # (rrrs-V8) reciprocal vector 2
-        inv_r_2_r0_y = 1.0/r_2_r0_y
-        # (rrrs-V7) reciprocal vector 1
-        w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_v_1_z
-        w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_v_1_z
-        w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_v_1_z
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_x = q_in_base_y*w_1_t_5 - q_in_base_z*w_1_t_4
-        H_a_1_y = q_in_base_z*w_1_t_3 - q_in_base_x*w_1_t_5
-        H_a_1_z = q_in_base_x*w_1_t_4 - q_in_base_y*w_1_t_3
-        # (rrrs-V8) reciprocal vector 2
-        w_2_t = (
-        inv_r_2_r0_y*(axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
+        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
+        # (rrrs-w_2) reciprocal vector 2
+        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_rrrs_v_1_z
+        rrrs_w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_rrrs_v_1_z
+        rrrs_w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_rrrs_v_1_z
+        # (rrrs-H_a_1) moment of the column's unit force about the platform origin
+        rrrs_H_a_1_x = rrrs_q_in_base_y*rrrs_w_1_t_5 - rrrs_q_in_base_z*rrrs_w_1_t_4
+        rrrs_H_a_1_y = rrrs_q_in_base_z*rrrs_w_1_t_3 - rrrs_q_in_base_x*rrrs_w_1_t_5
+        rrrs_H_a_1_z = rrrs_q_in_base_x*rrrs_w_1_t_4 - rrrs_q_in_base_y*rrrs_w_1_t_3
+        # (rrrs-w_2) reciprocal vector 2
+        rrrs_w_2_t = (
+        inv_rrrs_r_2_r0_y*(axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
             axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y)
         )
-        w_2_t_2 = (
-        inv_r_2_r0_y*(axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
+        rrrs_w_2_t_2 = (
+        inv_rrrs_r_2_r0_y*(axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
             axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z)
         )
-        w_2_t_3 = (
-        inv_r_2_r0_y*(axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
+        rrrs_w_2_t_3 = (
+        inv_rrrs_r_2_r0_y*(axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
             axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x)
         )
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_2_x = q_in_base_z*w_2_t_2 - q_in_base_y*w_2_t_3
-        H_a_2_y = q_in_base_x*w_2_t_3 - q_in_base_z*w_2_t
-        H_a_2_z = q_in_base_y*w_2_t - q_in_base_x*w_2_t_2
+        # (rrrs-H_a_2) moment of the column's unit force about the platform origin
+        rrrs_H_a_2_x = rrrs_q_in_base_z*rrrs_w_2_t_2 - rrrs_q_in_base_y*rrrs_w_2_t_3
+        rrrs_H_a_2_y = rrrs_q_in_base_x*rrrs_w_2_t_3 - rrrs_q_in_base_z*rrrs_w_2_t
+        rrrs_H_a_2_z = rrrs_q_in_base_y*rrrs_w_2_t - rrrs_q_in_base_x*rrrs_w_2_t_2
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0) & (abs(v_1_z) > _TOLERANCE *
-            size) & (abs(-r_2_r0_y) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
+            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
+            rrrs_size))
         )
-        out_H[_H_rrrs[0][leg]] = w_1_t_3
-        out_H[_H_rrrs[1][leg]] = w_1_t_4
-        out_H[_H_rrrs[2][leg]] = w_1_t_5
-        out_H[_H_rrrs[3][leg]] = H_a_1_x
-        out_H[_H_rrrs[4][leg]] = H_a_1_y
-        out_H[_H_rrrs[5][leg]] = H_a_1_z
-        out_H[_H_rrrs[6][leg]] = -w_2_t
-        out_H[_H_rrrs[7][leg]] = -w_2_t_2
-        out_H[_H_rrrs[8][leg]] = -w_2_t_3
-        out_H[_H_rrrs[9][leg]] = H_a_2_x
-        out_H[_H_rrrs[10][leg]] = H_a_2_y
-        out_H[_H_rrrs[11][leg]] = H_a_2_z
+        out_H[_H_rrrs[0][leg]] = rrrs_w_1_t_3
+        out_H[_H_rrrs[1][leg]] = rrrs_w_1_t_4
+        out_H[_H_rrrs[2][leg]] = rrrs_w_1_t_5
+        out_H[_H_rrrs[3][leg]] = rrrs_H_a_1_x
+        out_H[_H_rrrs[4][leg]] = rrrs_H_a_1_y
+        out_H[_H_rrrs[5][leg]] = rrrs_H_a_1_z
+        out_H[_H_rrrs[6][leg]] = -rrrs_w_2_t
+        out_H[_H_rrrs[7][leg]] = -rrrs_w_2_t_2
+        out_H[_H_rrrs[8][leg]] = -rrrs_w_2_t_3
+        out_H[_H_rrrs[9][leg]] = rrrs_H_a_2_x
+        out_H[_H_rrrs[10][leg]] = rrrs_H_a_2_y
+        out_H[_H_rrrs[11][leg]] = rrrs_H_a_2_z
     return ok, (out_H,)
 
 
@@ -3015,29 +3260,29 @@ def _run_required(m, X, V, A):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (P1) centripetal tensor of the platform
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_x*omega_x
     W_p_t_2 = omega_y*omega_y
     W_p_t_3 = omega_z*omega_z
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
     W_p_yz = omega_y*omega_z
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
-    # (E2) inertia force of the platform less its weight
+    # (f_p) inertia force of the platform less its weight
     f_p_x = (
     a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) + h_star_in_base_z*(W_p_xz + alpha_y) -
         h_star_in_base_x*(W_p_t_2 + W_p_t_3)
@@ -3050,11 +3295,11 @@ def _run_required(m, X, V, A):
     a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) + h_star_in_base_y*(W_p_yz + alpha_x) -
         h_star_in_base_z*(W_p_t + W_p_t_2)
     )
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
     a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
     a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
-    # (E3) inertia moment of the platform less that of its weight
+    # (mu_p) inertia moment of the platform less that of its weight
     alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
     alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
     alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
@@ -3076,98 +3321,114 @@ def _run_required(m, X, V, A):
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, Kd_2_t, Kd_2_t_2, Sigma_2_xx,
-            Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2,
-            g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
-            inv_rrrs_platform_joint_offset_x, inv_size_t, inv_size_t_2, rho2_2_t,
-            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size, size_t_3,
+        inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
+            rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yz, rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yz,
+            rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
+            rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_g_r0_x, rrrs_g_r0_y, rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y,
+            rrrs_h_2_z, rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
+            rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
+            rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
         ) = k
-        # (rrrs-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (rrrs-S) from the base point to the connection point
+        rrrs_q_in_base_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        q_in_base_y = (
+        rrrs_q_in_base_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        q_in_base_z = (
+        rrrs_q_in_base_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rrrs_base_point_x
-        S_y = q_in_base_y + t_y - rrrs_base_point_y
-        S_z = q_in_base_z + t_z - rrrs_base_point_z
-        # (rrrs-K2) component along the reference direction
-        px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
-        # (rrrs-K3) component across the reference direction
-        py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
-        # (rrrs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rrrs-K7) root, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
-        # (rrrs-K12) from the origin of joint 2 to the connection point
-        x_2_z = xi_1_t - rrrs_joint2_offset_x
-        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
-        Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-        # (rrrs-K17) factor of the cosine in the equation of joint 2
-        Kc_2 = root_1*rrrs_joint3_offset_x
-        # (rrrs-K18) factor of the sine in the equation of joint 2
-        Ks_2 = rrrs_joint3_offset_x*x_2_z
-        # (rrrs-K19) squared amplitude
-        rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
-        # (rrrs-K20) discriminant
-        disc_2 = rho2_2 - Kd_2*Kd_2
-        # (rrrs-K21) root, with the sign of the branch
-        root_2 = branch_2*sqrt(disc_2)
-        # (rrrs-K27) from the origin of joint 3 to the connection point
-        x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-        # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x
-        # (rrrs-K30) sine of the angle of joint 3 from its reference direction
-        s_3 = inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_t = rrrs_platform_joint_offset_x*s_3
-        r_2_x = rrrs_joint3_offset_x + c_3*rrrs_platform_joint_offset_x
-        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2)
-        # (rrrs-K23) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2)
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        e_1_r2_x = c_2*s_3 - c_3*s_2
-        e_1_r2_y = -c_2*c_3 - s_2*s_3
-        # (rrrs-V3) from joint 1 to the connection point, along the links
-        r_1_r1_x = c_2*root_1 - s_2*xi_1_t
-        r_1_r1_y = -c_2*xi_1_t - root_1*s_2
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        v_1_z = e_1_r2_x*(c_3*r_1_r1_y + r_1_r1_x*s_3) - e_1_r2_y*(c_3*r_1_r1_x - r_1_r1_y*s_3)
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_r0_x = c_3*r_2_x + r_2_t*s_3
-        r_2_r0_y = r_2_x*s_3 - c_3*r_2_t
-        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*py_1*root_1
-        # (rrrs-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*px_1*root_1
-        # (rrrs-V7) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1 - c_1*rrrs_base_frame_xy
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1 - c_1*rrrs_base_frame_yy
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1 - c_1*rrrs_base_frame_zy
-        w_1_t = e_1_r2_x*s_1
-        w_1_t_2 = c_1*e_1_r2_x
+        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        # (rrrs-px_1) component along the reference direction
+        rrrs_px_1 = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        )
+        # (rrrs-py_1) component across the reference direction
+        rrrs_py_1 = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrs_xi_1_t = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        )
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-x_3) from the origin of joint 3 to the connection point
+        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrs_s_3 = (
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
+        )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3
+        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
+        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
+        # (rrrs-r_1) from joint 1 to the connection point, along the links
+        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
+        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_z = (
+        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
+            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
+        )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_r0_x = rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3
+        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
+        # (rrrs-w_1) reciprocal vector 1
+        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
+        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
+        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
         axis_y_rrrs_axes3_in_base_x = (
-        e_1_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_t + rrrs_base_frame_xz*w_1_t_2
+        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
+            rrrs_base_frame_xz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_y = (
-        e_1_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_t + rrrs_base_frame_yz*w_1_t_2
+        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
+            rrrs_base_frame_yz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_z = (
-        e_1_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_t + rrrs_base_frame_zz*w_1_t_2
+        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
+            rrrs_base_frame_zz*rrrs_w_1_t_2
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
@@ -3181,253 +3442,275 @@ def _run_required(m, X, V, A):
         axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
             axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
         )
-        inv_v_1_z = 1.0/v_1_z
-        # (rrrs-V8) reciprocal vector 2
-        inv_r_2_r0_y = 1.0/r_2_r0_y
-        # (rrrs-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        # (rrrs-V10) rate of joint 1
-        qd_2 = (
-        inv_r_2_r0_y*(S_dot_x*axis_x_rrrs_axes3_x + S_dot_y*axis_x_rrrs_axes3_y +
-            S_dot_z*axis_x_rrrs_axes3_z)
+        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
+        # (rrrs-w_2) reciprocal vector 2
+        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
+        # (rrrs-S_dot) velocity of the connection point
+        rrrs_S_dot_t = omega_y*rrrs_q_in_base_z - omega_z*rrrs_q_in_base_y
+        rrrs_S_dot_t_2 = omega_z*rrrs_q_in_base_x - omega_x*rrrs_q_in_base_z
+        rrrs_S_dot_t_3 = omega_x*rrrs_q_in_base_y - omega_y*rrrs_q_in_base_x
+        rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
+        rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
+        rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
+        # (rrrs-qd_3) rate of joint 3
+        rrrs_qd_2 = (
+        inv_rrrs_r_2_r0_y*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_x_rrrs_axes3_z*rrrs_S_dot_z)
         )
-        qd_3 = (
-        inv_rrrs_platform_joint_offset_x*(S_dot_x*axis_y_rrrs_axes3_in_base_x +
-            S_dot_y*axis_y_rrrs_axes3_in_base_y + S_dot_z*axis_y_rrrs_axes3_in_base_z +
-            qd_2*r_2_r0_x)
+        rrrs_qd_3 = (
+        inv_rrrs_platform_joint_offset_x*(axis_y_rrrs_axes3_in_base_x*rrrs_S_dot_x +
+            axis_y_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_dot_z +
+            rrrs_qd_2*rrrs_r_2_r0_x)
         )
-        qd_1 = (
-        inv_v_1_z*(S_dot_x*axis_z_rrrs_axes3_in_base_x + S_dot_y*axis_z_rrrs_axes3_in_base_y +
-            S_dot_z*axis_z_rrrs_axes3_in_base_z)
+        rrrs_qd_1 = (
+        inv_rrrs_v_1_z*(axis_z_rrrs_axes3_in_base_x*rrrs_S_dot_x +
+            axis_z_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_z_rrrs_axes3_in_base_z*rrrs_S_dot_z)
         )
-        # (rrrs-V13) angular velocity of link 1
-        omega_1_t = qd_1*s_2
-        omega_1_t_2 = c_2*qd_1
-        # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_x = omega_1_t_2*qd_2
-        zeta_2_y = omega_1_t*qd_2
-        # (rrrs-V15) angular velocity of link 2
-        omega_2_r0_x = omega_1_t_2*s_3 - c_3*omega_1_t
-        omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
-        # (rrrs-A5) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_y = omega_2_r0_x*qd_3
-        # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_r0_y = s_3*zeta_2_x - c_3*zeta_2_y
-        # (rrrs-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_y = zeta_2_r0_y - zeta_3_y
-        # (rrrs-V17) angular velocity of link 3
-        omega_3_z = qd_3 - qd_2
-        # (rrrs-V16) centripetal tensor of link 2
-        W_2_t = omega_1_t*omega_1_t
-        W_2_t_2 = omega_1_t_2*omega_1_t_2
-        W_2_t_3 = qd_2*qd_2
-        W_2_xy = omega_1_t*omega_1_t_2
-        # (rrrs-V18) centripetal tensor of link 3
-        W_3_t = omega_2_r0_x*omega_2_r0_x
-        W_3_t_2 = omega_2_r0_y*omega_2_r0_y
-        W_3_t_3 = omega_3_z*omega_3_z
-        W_3_xy = omega_2_r0_x*omega_2_r0_y
-        W_3_xz = omega_2_r0_x*omega_3_z
-        W_3_yz = omega_2_r0_y*omega_3_z
-        # (rrrs-A7) acceleration of the connection point at zero joint accelerations
-        bias_t = rrrs_joint2_offset_x*s_2
-        bias_t_2 = c_2*rrrs_joint2_offset_x
-        bias_t_3 = (
-        omega_2_r0_x*(-bias_t*s_3 - bias_t_2*c_3) - omega_2_r0_y*(bias_t_2*s_3 - bias_t*c_3)
+        # (rrrs-omega_1) angular velocity of link 1
+        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_t_2 = rrrs_c_2*rrrs_qd_1
+        # (rrrs-omega_2) angular velocity of link 2
+        rrrs_omega_2_r0_x = rrrs_omega_1_t_2*rrrs_s_3 - rrrs_c_3*rrrs_omega_1_t
+        rrrs_omega_2_r0_y = -rrrs_c_3*rrrs_omega_1_t_2 - rrrs_omega_1_t*rrrs_s_3
+        # (rrrs-omega_3) angular velocity of link 3
+        rrrs_omega_3_z = rrrs_qd_3 - rrrs_qd_2
+        # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrs_zeta_3_y = rrrs_omega_2_r0_x*rrrs_qd_3
+        # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        rrrs_zeta_2_x = rrrs_omega_1_t_2*rrrs_qd_2
+        rrrs_zeta_2_y = rrrs_omega_1_t*rrrs_qd_2
+        rrrs_zeta_2_r0_y = rrrs_s_3*rrrs_zeta_2_x - rrrs_c_3*rrrs_zeta_2_y
+        # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        rrrs_beta_3_y = rrrs_zeta_2_r0_y - rrrs_zeta_3_y
+        # (rrrs-W_2) centripetal tensor of link 2
+        rrrs_W_2_t = rrrs_omega_1_t*rrrs_omega_1_t
+        rrrs_W_2_t_2 = rrrs_omega_1_t_2*rrrs_omega_1_t_2
+        rrrs_W_2_t_3 = rrrs_qd_2*rrrs_qd_2
+        rrrs_W_2_xy = rrrs_omega_1_t*rrrs_omega_1_t_2
+        # (rrrs-W_3) centripetal tensor of link 3
+        rrrs_W_3_t = rrrs_omega_2_r0_x*rrrs_omega_2_r0_x
+        rrrs_W_3_t_2 = rrrs_omega_2_r0_y*rrrs_omega_2_r0_y
+        rrrs_W_3_t_3 = rrrs_omega_3_z*rrrs_omega_3_z
+        rrrs_W_3_xy = rrrs_omega_2_r0_x*rrrs_omega_2_r0_y
+        rrrs_W_3_xz = rrrs_omega_2_r0_x*rrrs_omega_3_z
+        rrrs_W_3_yz = rrrs_omega_2_r0_y*rrrs_omega_3_z
+        # (rrrs-bias) acceleration of the connection point at zero joint accelerations
+        rrrs_bias_t = rrrs_joint2_offset_x*rrrs_s_2
+        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_3 = (
+        rrrs_omega_2_r0_x*(-rrrs_bias_t*rrrs_s_3 - rrrs_bias_t_2*rrrs_c_3) -
+            rrrs_omega_2_r0_y*(rrrs_bias_t_2*rrrs_s_3 - rrrs_bias_t*rrrs_c_3)
         )
-        bias_t_4 = c_3*rrrs_joint3_offset_x
-        bias_t_5 = rrrs_joint3_offset_x*s_3
-        bias_t_6 = bias_t_5*qd_2
-        bias_t_7 = bias_t_4*qd_2
-        bias_t_8 = bias_t_5*omega_2_r0_x - bias_t_4*omega_2_r0_y
-        bias_t_9 = omega_3_z*rrrs_platform_joint_offset_x
-        bias_t_10 = omega_2_r0_y*rrrs_platform_joint_offset_x
-        bias_x = (
-        bias_t_3*omega_2_r0_y + bias_t_8*omega_2_r0_y - bias_t_10*omega_2_r0_y - bias_t_7*qd_2 -
-            bias_t_9*omega_3_z
+        rrrs_bias_t_4 = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_bias_t_5 = rrrs_joint3_offset_x*rrrs_s_3
+        rrrs_bias_t_6 = rrrs_bias_t_5*rrrs_qd_2
+        rrrs_bias_t_7 = rrrs_bias_t_4*rrrs_qd_2
+        rrrs_bias_t_8 = rrrs_bias_t_5*rrrs_omega_2_r0_x - rrrs_bias_t_4*rrrs_omega_2_r0_y
+        rrrs_bias_t_9 = rrrs_omega_3_z*rrrs_platform_joint_offset_x
+        rrrs_bias_t_10 = rrrs_omega_2_r0_y*rrrs_platform_joint_offset_x
+        rrrs_bias_x = (
+        rrrs_bias_t_3*rrrs_omega_2_r0_y + rrrs_bias_t_8*rrrs_omega_2_r0_y -
+            rrrs_bias_t_10*rrrs_omega_2_r0_y - rrrs_bias_t_7*rrrs_qd_2 -
+            rrrs_bias_t_9*rrrs_omega_3_z
         )
-        bias_y = (
-        bias_t_10*omega_2_r0_x - bias_t_3*omega_2_r0_x - bias_t_6*qd_2 - bias_t_8*omega_2_r0_x
+        rrrs_bias_y = (
+        rrrs_bias_t_10*rrrs_omega_2_r0_x - rrrs_bias_t_3*rrrs_omega_2_r0_x -
+            rrrs_bias_t_6*rrrs_qd_2 - rrrs_bias_t_8*rrrs_omega_2_r0_x
         )
-        bias_z = (
-        bias_t_5*(c_3*zeta_2_x + s_3*zeta_2_y) + bias_t_9*omega_2_r0_x -
-            beta_3_y*rrrs_platform_joint_offset_x - bias_t_4*zeta_2_r0_y - bias_t_6*omega_2_r0_y -
-            bias_t_7*omega_2_r0_x
+        rrrs_bias_z = (
+        rrrs_bias_t_5*(rrrs_c_3*rrrs_zeta_2_x + rrrs_s_3*rrrs_zeta_2_y) +
+            rrrs_bias_t_9*rrrs_omega_2_r0_x - rrrs_beta_3_y*rrrs_platform_joint_offset_x -
+            rrrs_bias_t_4*rrrs_zeta_2_r0_y - rrrs_bias_t_6*rrrs_omega_2_r0_y -
+            rrrs_bias_t_7*rrrs_omega_2_r0_x
         )
-        # (rrrs-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-        g_r3_x = -c_2*g_r1_y - g_r0_z*s_2
-        g_r3_y = g_r1_y*s_2 - c_2*g_r0_z
-        # (rrrs-V7) reciprocal vector 1
-        w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_v_1_z
-        w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_v_1_z
-        w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_v_1_z
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_x = q_in_base_y*w_1_t_5 - q_in_base_z*w_1_t_4
-        H_a_1_y = q_in_base_z*w_1_t_3 - q_in_base_x*w_1_t_5
-        H_a_1_z = q_in_base_x*w_1_t_4 - q_in_base_y*w_1_t_3
-        # (rrrs-V8) reciprocal vector 2
-        w_2_t = axis_x_rrrs_axes3_x*inv_r_2_r0_y
-        w_2_t_2 = axis_x_rrrs_axes3_y*inv_r_2_r0_y
-        w_2_t_3 = axis_x_rrrs_axes3_z*inv_r_2_r0_y
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_2_x = q_in_base_z*w_2_t_2 - q_in_base_y*w_2_t_3
-        H_a_2_y = q_in_base_x*w_2_t_3 - q_in_base_z*w_2_t
-        H_a_2_z = q_in_base_y*w_2_t - q_in_base_x*w_2_t_2
-        # (rrrs-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (rrrs-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        S_ddot_tip_x = (
-        S_ddot_x*axis_x_rrrs_axes3_x + S_ddot_y*axis_x_rrrs_axes3_y + S_ddot_z*axis_x_rrrs_axes3_z
+        # (rrrs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        rrrs_g_r1_x = rrrs_g_r0_y*rrrs_s_1 - rrrs_c_1*rrrs_g_r0_x
+        rrrs_g_r1_y = -rrrs_c_1*rrrs_g_r0_y - rrrs_g_r0_x*rrrs_s_1
+        rrrs_g_r3_x = -rrrs_c_2*rrrs_g_r1_y - rrrs_g_r0_z*rrrs_s_2
+        rrrs_g_r3_y = rrrs_g_r1_y*rrrs_s_2 - rrrs_c_2*rrrs_g_r0_z
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_rrrs_v_1_z
+        rrrs_w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_rrrs_v_1_z
+        rrrs_w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_rrrs_v_1_z
+        # (rrrs-H_a_1) moment of the column's unit force about the platform origin
+        rrrs_H_a_1_x = rrrs_q_in_base_y*rrrs_w_1_t_5 - rrrs_q_in_base_z*rrrs_w_1_t_4
+        rrrs_H_a_1_y = rrrs_q_in_base_z*rrrs_w_1_t_3 - rrrs_q_in_base_x*rrrs_w_1_t_5
+        rrrs_H_a_1_z = rrrs_q_in_base_x*rrrs_w_1_t_4 - rrrs_q_in_base_y*rrrs_w_1_t_3
+        # (rrrs-w_2) reciprocal vector 2
+        rrrs_w_2_t = axis_x_rrrs_axes3_x*inv_rrrs_r_2_r0_y
+        rrrs_w_2_t_2 = axis_x_rrrs_axes3_y*inv_rrrs_r_2_r0_y
+        rrrs_w_2_t_3 = axis_x_rrrs_axes3_z*inv_rrrs_r_2_r0_y
+        # (rrrs-H_a_2) moment of the column's unit force about the platform origin
+        rrrs_H_a_2_x = rrrs_q_in_base_z*rrrs_w_2_t_2 - rrrs_q_in_base_y*rrrs_w_2_t_3
+        rrrs_H_a_2_y = rrrs_q_in_base_x*rrrs_w_2_t_3 - rrrs_q_in_base_z*rrrs_w_2_t
+        rrrs_H_a_2_z = rrrs_q_in_base_y*rrrs_w_2_t - rrrs_q_in_base_x*rrrs_w_2_t_2
+        # (rrrs-a_p) acceleration of the connection point without its centripetal part
+        rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_in_base_z - alpha_z*rrrs_q_in_base_y
+        rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_in_base_x - alpha_x*rrrs_q_in_base_z
+        rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_in_base_y - alpha_y*rrrs_q_in_base_x
+        # (rrrs-S_ddot) acceleration of the connection point
+        rrrs_S_ddot_x = rrrs_a_p_x + omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2
+        rrrs_S_ddot_y = rrrs_a_p_y + omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3
+        rrrs_S_ddot_z = rrrs_a_p_z + omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t
+        rrrs_S_ddot_tip_x = (
+        axis_x_rrrs_axes3_x*rrrs_S_ddot_x + axis_x_rrrs_axes3_y*rrrs_S_ddot_y +
+            axis_x_rrrs_axes3_z*rrrs_S_ddot_z
         )
-        S_ddot_tip_y = (
-        S_ddot_x*axis_y_rrrs_axes3_in_base_x + S_ddot_y*axis_y_rrrs_axes3_in_base_y +
-            S_ddot_z*axis_y_rrrs_axes3_in_base_z
+        rrrs_S_ddot_tip_y = (
+        axis_y_rrrs_axes3_in_base_x*rrrs_S_ddot_x + axis_y_rrrs_axes3_in_base_y*rrrs_S_ddot_y +
+            axis_y_rrrs_axes3_in_base_z*rrrs_S_ddot_z
         )
-        S_ddot_tip_z = (
-        S_ddot_x*axis_z_rrrs_axes3_in_base_x + S_ddot_y*axis_z_rrrs_axes3_in_base_y +
-            S_ddot_z*axis_z_rrrs_axes3_in_base_z
+        rrrs_S_ddot_tip_z = (
+        axis_z_rrrs_axes3_in_base_x*rrrs_S_ddot_x + axis_z_rrrs_axes3_in_base_y*rrrs_S_ddot_y +
+            axis_z_rrrs_axes3_in_base_z*rrrs_S_ddot_z
         )
-        # (rrrs-A8) acceleration of the connection point left to the joint accelerations
-        rel_x = S_ddot_tip_x - bias_x
-        rel_y = S_ddot_tip_y - bias_y
-        rel_z = S_ddot_tip_z - bias_z
-        # (rrrs-A10) acceleration of joint 1
-        qdd_2 = inv_r_2_r0_y*rel_x
-        qdd_1 = inv_v_1_z*rel_z
-        # (rrrs-N9) acceleration of the reference point of link 3, less gravity
-        acc_3_x = (
-        S_ddot_tip_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
+        # (rrrs-rel) acceleration of the connection point left to the joint accelerations
+        rrrs_rel_x = rrrs_S_ddot_tip_x - rrrs_bias_x
+        rrrs_rel_y = rrrs_S_ddot_tip_y - rrrs_bias_y
+        rrrs_rel_z = rrrs_S_ddot_tip_z - rrrs_bias_z
+        # (rrrs-qdd_1) acceleration of joint 1
+        rrrs_qdd_2 = inv_rrrs_r_2_r0_y*rrrs_rel_x
+        rrrs_qdd_1 = inv_rrrs_v_1_z*rrrs_rel_z
+        # (rrrs-acc_3) acceleration of the reference point of link 3, less gravity
+        rrrs_acc_3_x = (
+        rrrs_S_ddot_tip_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
             axis_x_rrrs_axes3_z*gravity_z
         )
-        acc_3_y = (
-        S_ddot_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x -
+        rrrs_acc_3_y = (
+        rrrs_S_ddot_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x -
             axis_y_rrrs_axes3_in_base_y*gravity_y - axis_y_rrrs_axes3_in_base_z*gravity_z
         )
-        acc_3_z = (
-        S_ddot_tip_z - axis_z_rrrs_axes3_in_base_x*gravity_x -
+        rrrs_acc_3_z = (
+        rrrs_S_ddot_tip_z - axis_z_rrrs_axes3_in_base_x*gravity_x -
             axis_z_rrrs_axes3_in_base_y*gravity_y - axis_z_rrrs_axes3_in_base_z*gravity_z
         )
-        # (rrrs-A16) angular acceleration of link 1
-        alpha_1_t = qdd_1*s_2
-        alpha_1_t_2 = c_2*qdd_1
-        # (rrrs-A20) angular acceleration of link 2
-        alpha_2_x = zeta_2_x - alpha_1_t
-        alpha_2_y = -alpha_1_t_2 - zeta_2_y
-        # (rrrs-A22) acceleration tensor of link 2
-        B_2_xy = W_2_xy + qdd_2
-        B_2_yx = W_2_xy - qdd_2
-        B_2_zx = zeta_2_y - alpha_2_y
-        B_2_zy = alpha_2_x + zeta_2_x
-        # (rrrs-N36) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_x = (
-        B_2_yx*J_2_xz + B_2_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z -
-            B_2_zx*J_2_xy - Sigma_2_zz*alpha_1_t - g_r1_x*h_2_y
+        # (rrrs-alpha_1) angular acceleration of link 1
+        rrrs_alpha_1_t = rrrs_qdd_1*rrrs_s_2
+        rrrs_alpha_1_t_2 = rrrs_c_2*rrrs_qdd_1
+        # (rrrs-alpha_2) angular acceleration of link 2
+        rrrs_alpha_2_x = rrrs_zeta_2_x - rrrs_alpha_1_t
+        rrrs_alpha_2_y = -rrrs_alpha_1_t_2 - rrrs_zeta_2_y
+        # (rrrs-alpha_3) angular acceleration of link 3
+        rrrs_alpha_3_x = (
+        rrrs_alpha_2_x*rrrs_c_3 + rrrs_omega_2_r0_y*rrrs_qd_3 - rrrs_alpha_2_y*rrrs_s_3
         )
-        mu_2_y = (
-        B_2_zy*J_2_xy + g_r1_x*h_2_x - B_2_xy*J_2_yz - B_2_zx*Sigma_2_xx - J_2_xz*(W_2_t -
-            W_2_t_3) - Sigma_2_zz*alpha_1_t_2 - g_r3_x*h_2_z
+        rrrs_alpha_3_y = rrrs_alpha_2_x*rrrs_s_3 + rrrs_alpha_2_y*rrrs_c_3 - rrrs_zeta_3_y
+        rrrs_alpha_3_z = (
+        inv_rrrs_platform_joint_offset_x*(rrrs_rel_y + rrrs_qdd_2*rrrs_r_2_r0_x) - rrrs_qdd_2
         )
-        mu_2_z = (
-        B_2_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + g_r3_x*h_2_y - B_2_xy*Sigma_2_yy -
-            J_2_xz*alpha_1_t - J_2_yz*alpha_1_t_2 - g_r3_y*h_2_x
+        # (rrrs-B_3) acceleration tensor of link 3
+        rrrs_B_3_xy = rrrs_W_3_xy - rrrs_alpha_3_z
+        rrrs_B_3_xz = rrrs_W_3_xz + rrrs_alpha_3_y
+        rrrs_B_3_yx = rrrs_W_3_xy + rrrs_alpha_3_z
+        rrrs_B_3_yz = rrrs_W_3_yz - rrrs_alpha_3_x
+        rrrs_B_3_zx = rrrs_W_3_xz - rrrs_alpha_3_y
+        rrrs_B_3_zy = rrrs_W_3_yz + rrrs_alpha_3_x
+        # (rrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        rrrs_mu_3_x = (
+        rrrs_B_3_yx*rrrs_J_3_xz + rrrs_B_3_zy*rrrs_Sigma_3_yy + rrrs_J_3_yz*(rrrs_W_3_t_2 -
+            rrrs_W_3_t_3) + rrrs_acc_3_z*rrrs_h_3_y - rrrs_B_3_yz*rrrs_Sigma_3_zz -
+            rrrs_B_3_zx*rrrs_J_3_xy - rrrs_acc_3_y*rrrs_h_3_z
         )
-        # (rrrs-A24) angular acceleration of link 3
-        alpha_3_x = alpha_2_x*c_3 + omega_2_r0_y*qd_3 - alpha_2_y*s_3
-        alpha_3_y = alpha_2_x*s_3 + alpha_2_y*c_3 - zeta_3_y
-        alpha_3_z = inv_rrrs_platform_joint_offset_x*(rel_y + qdd_2*r_2_r0_x) - qdd_2
-        # (rrrs-A27) acceleration tensor of link 3
-        B_3_xy = W_3_xy - alpha_3_z
-        B_3_xz = W_3_xz + alpha_3_y
-        B_3_yx = W_3_xy + alpha_3_z
-        B_3_yz = W_3_yz - alpha_3_x
-        B_3_zx = W_3_xz - alpha_3_y
-        B_3_zy = W_3_yz + alpha_3_x
-        # (rrrs-N29) inertia moment of the links that turn with link 3, about their reference points
-        mu_3_x = (
-        B_3_yx*J_3_xz + B_3_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_z*h_3_y -
-            B_3_yz*Sigma_3_zz - B_3_zx*J_3_xy - acc_3_y*h_3_z
+        rrrs_mu_3_y = (
+        rrrs_B_3_xz*rrrs_Sigma_3_zz + rrrs_B_3_zy*rrrs_J_3_xy + rrrs_acc_3_x*rrrs_h_3_z -
+            rrrs_B_3_xy*rrrs_J_3_yz - rrrs_B_3_zx*rrrs_Sigma_3_xx - rrrs_J_3_xz*(rrrs_W_3_t -
+            rrrs_W_3_t_3) - rrrs_acc_3_z*rrrs_h_3_x
         )
-        mu_3_y = (
-        B_3_xz*Sigma_3_zz + B_3_zy*J_3_xy + acc_3_x*h_3_z - B_3_xy*J_3_yz - B_3_zx*Sigma_3_xx -
-            J_3_xz*(W_3_t - W_3_t_3) - acc_3_z*h_3_x
+        rrrs_mu_3_z = (
+        rrrs_B_3_xz*rrrs_J_3_yz + rrrs_B_3_yx*rrrs_Sigma_3_xx + rrrs_J_3_xy*(rrrs_W_3_t -
+            rrrs_W_3_t_2) + rrrs_acc_3_y*rrrs_h_3_x - rrrs_B_3_xy*rrrs_Sigma_3_yy -
+            rrrs_B_3_yz*rrrs_J_3_xz - rrrs_acc_3_x*rrrs_h_3_y
         )
-        mu_3_z = (
-        B_3_xz*J_3_yz + B_3_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_y*h_3_x -
-            B_3_xy*Sigma_3_yy - B_3_yz*J_3_xz - acc_3_x*h_3_y
+        # (rrrs-B_2) acceleration tensor of link 2
+        rrrs_B_2_xy = rrrs_W_2_xy + rrrs_qdd_2
+        rrrs_B_2_yx = rrrs_W_2_xy - rrrs_qdd_2
+        rrrs_B_2_zx = rrrs_zeta_2_y - rrrs_alpha_2_y
+        rrrs_B_2_zy = rrrs_alpha_2_x + rrrs_zeta_2_x
+        # (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        rrrs_mu_2_x = (
+        rrrs_B_2_yx*rrrs_J_2_xz + rrrs_B_2_zy*rrrs_Sigma_2_yy + rrrs_J_2_yz*(rrrs_W_2_t_2 -
+            rrrs_W_2_t_3) + rrrs_g_r3_y*rrrs_h_2_z - rrrs_B_2_zx*rrrs_J_2_xy -
+            rrrs_Sigma_2_zz*rrrs_alpha_1_t - rrrs_g_r1_x*rrrs_h_2_y
         )
-        # (rrrs-N38) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_x = mu_2_x + c_3*mu_3_x + mu_3_y*s_3
-        N_2_y = mu_2_y + c_3*mu_3_y - mu_3_x*s_3
-        N_2_z = mu_2_z + mu_3_z
-        # (rrrs-N45) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_z = J_1_xx*qdd_1 - g_r1_x*h_1_y - g_r1_y*h_1_z
-        # (rrrs-N47) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_z = mu_1_z - N_2_x*s_2 - N_2_y*c_2
-        # (rrrs-N52) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_t = inv_rrrs_platform_joint_offset_x*mu_3_z
-        # (rrrs-N55) leg force on the platform without actuation and without the mass at the connection point
-        c_x = (
-        h_3_x*(W_3_t_2 + W_3_t_3) - B_3_xy*h_3_y - B_3_xz*h_3_z - inv_r_2_r0_y*(G_t*r_2_r0_x -
-            N_2_z)
+        rrrs_mu_2_y = (
+        rrrs_B_2_zy*rrrs_J_2_xy + rrrs_g_r1_x*rrrs_h_2_x - rrrs_B_2_xy*rrrs_J_2_yz -
+            rrrs_B_2_zx*rrrs_Sigma_2_xx - rrrs_J_2_xz*(rrrs_W_2_t - rrrs_W_2_t_3) -
+            rrrs_Sigma_2_zz*rrrs_alpha_1_t_2 - rrrs_g_r3_x*rrrs_h_2_z
         )
-        c_y = h_3_y*(W_3_t + W_3_t_3) - G_t - B_3_yx*h_3_x - B_3_yz*h_3_z
-        c_z = h_3_z*(W_3_t + W_3_t_2) - B_3_zx*h_3_x - B_3_zy*h_3_y - N_1_z*inv_v_1_z
-        c_in_base_x = (
-        axis_x_rrrs_axes3_x*c_x + axis_y_rrrs_axes3_in_base_x*c_y +
-            axis_z_rrrs_axes3_in_base_x*c_z
+        rrrs_mu_2_z = (
+        rrrs_B_2_yx*rrrs_Sigma_2_xx + rrrs_J_2_xy*(rrrs_W_2_t - rrrs_W_2_t_2) +
+            rrrs_g_r3_x*rrrs_h_2_y - rrrs_B_2_xy*rrrs_Sigma_2_yy - rrrs_J_2_xz*rrrs_alpha_1_t -
+            rrrs_J_2_yz*rrrs_alpha_1_t_2 - rrrs_g_r3_y*rrrs_h_2_x
         )
-        c_in_base_y = (
-        axis_x_rrrs_axes3_y*c_x + axis_y_rrrs_axes3_in_base_y*c_y +
-            axis_z_rrrs_axes3_in_base_y*c_z
+        # (rrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        rrrs_N_2_x = rrrs_mu_2_x + rrrs_c_3*rrrs_mu_3_x + rrrs_mu_3_y*rrrs_s_3
+        rrrs_N_2_y = rrrs_mu_2_y + rrrs_c_3*rrrs_mu_3_y - rrrs_mu_3_x*rrrs_s_3
+        rrrs_N_2_z = rrrs_mu_2_z + rrrs_mu_3_z
+        # (rrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrrs_mu_1_z = rrrs_J_1_xx*rrrs_qdd_1 - rrrs_g_r1_x*rrrs_h_1_y - rrrs_g_r1_y*rrrs_h_1_z
+        # (rrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrrs_N_1_z = rrrs_mu_1_z - rrrs_N_2_x*rrrs_s_2 - rrrs_N_2_y*rrrs_c_2
+        # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrrs_G_t = inv_rrrs_platform_joint_offset_x*rrrs_mu_3_z
+        # (rrrs-c) leg force on the platform without actuation and without the mass at the connection point
+        rrrs_c_x = (
+        rrrs_h_3_x*(rrrs_W_3_t_2 + rrrs_W_3_t_3) - inv_rrrs_r_2_r0_y*(rrrs_G_t*rrrs_r_2_r0_x -
+            rrrs_N_2_z) - rrrs_B_3_xy*rrrs_h_3_y - rrrs_B_3_xz*rrrs_h_3_z
         )
-        c_in_base_z = (
-        axis_x_rrrs_axes3_z*c_x + axis_y_rrrs_axes3_in_base_z*c_y +
-            axis_z_rrrs_axes3_in_base_z*c_z
+        rrrs_c_y = (
+        rrrs_h_3_y*(rrrs_W_3_t + rrrs_W_3_t_3) - rrrs_G_t - rrrs_B_3_yx*rrrs_h_3_x -
+            rrrs_B_3_yz*rrrs_h_3_z
         )
-        # (E5) moment that actuators and external wrench must give
-        R_a_t = c_in_base_z*q_in_base_y - c_in_base_y*q_in_base_z
-        R_a_t_2 = c_in_base_x*q_in_base_z - c_in_base_z*q_in_base_x
-        R_a_t_3 = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y
+        rrrs_c_z = (
+        rrrs_h_3_z*(rrrs_W_3_t + rrrs_W_3_t_2) - inv_rrrs_v_1_z*rrrs_N_1_z -
+            rrrs_B_3_zx*rrrs_h_3_x - rrrs_B_3_zy*rrrs_h_3_y
+        )
+        rrrs_c_in_base_x = (
+        axis_x_rrrs_axes3_x*rrrs_c_x + axis_y_rrrs_axes3_in_base_x*rrrs_c_y +
+            axis_z_rrrs_axes3_in_base_x*rrrs_c_z
+        )
+        rrrs_c_in_base_y = (
+        axis_x_rrrs_axes3_y*rrrs_c_x + axis_y_rrrs_axes3_in_base_y*rrrs_c_y +
+            axis_z_rrrs_axes3_in_base_y*rrrs_c_z
+        )
+        rrrs_c_in_base_z = (
+        axis_x_rrrs_axes3_z*rrrs_c_x + axis_y_rrrs_axes3_in_base_z*rrrs_c_y +
+            axis_z_rrrs_axes3_in_base_z*rrrs_c_z
+        )
+        # (R_a) moment that actuators and external wrench must give
+        rrrs_R_a_t = rrrs_c_in_base_z*rrrs_q_in_base_y - rrrs_c_in_base_y*rrrs_q_in_base_z
+        rrrs_R_a_t_2 = rrrs_c_in_base_x*rrrs_q_in_base_z - rrrs_c_in_base_z*rrrs_q_in_base_x
+        rrrs_R_a_t_3 = rrrs_c_in_base_y*rrrs_q_in_base_x - rrrs_c_in_base_x*rrrs_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0) & (abs(v_1_z) > _TOLERANCE *
-            size) & (abs(-r_2_r0_y) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
+            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
+            rrrs_size))
         )
         sums = m.added(sums, leg, (
-        c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
+        rrrs_c_in_base_x, rrrs_c_in_base_y, rrrs_c_in_base_z, rrrs_R_a_t, rrrs_R_a_t_2,
+            rrrs_R_a_t_3,
         ))
-        out_H[_H_rrrs[0][leg]] = w_1_t_3
-        out_H[_H_rrrs[1][leg]] = w_1_t_4
-        out_H[_H_rrrs[2][leg]] = w_1_t_5
-        out_H[_H_rrrs[3][leg]] = H_a_1_x
-        out_H[_H_rrrs[4][leg]] = H_a_1_y
-        out_H[_H_rrrs[5][leg]] = H_a_1_z
-        out_H[_H_rrrs[6][leg]] = -w_2_t
-        out_H[_H_rrrs[7][leg]] = -w_2_t_2
-        out_H[_H_rrrs[8][leg]] = -w_2_t_3
-        out_H[_H_rrrs[9][leg]] = H_a_2_x
-        out_H[_H_rrrs[10][leg]] = H_a_2_y
-        out_H[_H_rrrs[11][leg]] = H_a_2_z
+        out_H[_H_rrrs[0][leg]] = rrrs_w_1_t_3
+        out_H[_H_rrrs[1][leg]] = rrrs_w_1_t_4
+        out_H[_H_rrrs[2][leg]] = rrrs_w_1_t_5
+        out_H[_H_rrrs[3][leg]] = rrrs_H_a_1_x
+        out_H[_H_rrrs[4][leg]] = rrrs_H_a_1_y
+        out_H[_H_rrrs[5][leg]] = rrrs_H_a_1_z
+        out_H[_H_rrrs[6][leg]] = -rrrs_w_2_t
+        out_H[_H_rrrs[7][leg]] = -rrrs_w_2_t_2
+        out_H[_H_rrrs[8][leg]] = -rrrs_w_2_t_3
+        out_H[_H_rrrs[9][leg]] = rrrs_H_a_2_x
+        out_H[_H_rrrs[10][leg]] = rrrs_H_a_2_y
+        out_H[_H_rrrs[11][leg]] = rrrs_H_a_2_z
     (
     total_rrrs_x, total_rrrs_y, total_rrrs_z, total_rrrs_x_2, total_rrrs_y_2, total_rrrs_z_2,
     ) = sums
-    # (E4) force that actuators and external wrench must give
+    # (R_t) force that actuators and external wrench must give
     R_t_x = f_p_x - total_rrrs_x
     R_t_y = f_p_y - total_rrrs_y
     R_t_z = f_p_z - total_rrrs_z
-    # (E5) moment that actuators and external wrench must give
+    # (R_a) moment that actuators and external wrench must give
     R_a_x = mu_p_in_base_x - total_rrrs_x_2
     R_a_y = mu_p_in_base_y - total_rrrs_y_2
     R_a_z = mu_p_in_base_z - total_rrrs_z_2
@@ -3484,73 +3767,85 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_size_t, inv_size_t_2, rho2_2_t,
-            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
             rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size_t_3,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
+            rrrs_size_t_3,
         ) = k
-        # (rrrs-K1) from the base point to the connection point
-        S_x = (
+        # (rrrs-S) from the base point to the connection point
+        rrrs_S_x = (
         t_x + R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
             - rrrs_base_point_x
         )
-        S_y = (
+        rrrs_S_y = (
         t_y + R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
             - rrrs_base_point_y
         )
-        S_z = (
+        rrrs_S_z = (
         t_z + R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
             - rrrs_base_point_z
         )
-        # (rrrs-K2) component along the reference direction
-        px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
-        # (rrrs-K3) component across the reference direction
-        py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
-        # (rrrs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rrrs-K7) root, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
-        # (rrrs-K12) from the origin of joint 2 to the connection point
-        x_2_z = xi_1_t - rrrs_joint2_offset_x
-        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
-        Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-        # (rrrs-K17) factor of the cosine in the equation of joint 2
-        Kc_2 = root_1*rrrs_joint3_offset_x
-        # (rrrs-K18) factor of the sine in the equation of joint 2
-        Ks_2 = rrrs_joint3_offset_x*x_2_z
-        # (rrrs-K19) squared amplitude
-        rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
-        # (rrrs-K20) discriminant
-        disc_2 = rho2_2 - Kd_2*Kd_2
-        # (rrrs-K21) root, with the sign of the branch
-        root_2 = branch_2*sqrt(disc_2)
-        # (rrrs-K27) from the origin of joint 3 to the connection point
-        x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        # (rrrs-K10) displacement of joint 1
-        q_1 = atan2(inv_rho2_1*py_1*root_1, inv_rho2_1*px_1*root_1)
-        # (rrrs-K24) displacement of joint 2
-        q_2 = atan2(inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2), -inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2))
-        # (rrrs-K31) displacement of joint 3
-        q_3 = (
-        atan2(-inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x,
-            inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x)
+        # (rrrs-px_1) component along the reference direction
+        rrrs_px_1 = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        )
+        # (rrrs-py_1) component across the reference direction
+        rrrs_py_1 = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrs_xi_1_t = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        )
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-x_3) from the origin of joint 3 to the connection point
+        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        # (rrrs-q_1) displacement of joint 1
+        rrrs_q_1 = (
+        atan2(inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1, inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1)
+        )
+        # (rrrs-q_2) displacement of joint 2
+        rrrs_q_2 = (
+        atan2(inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2),
+            -inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2))
+        )
+        # (rrrs-q_3) displacement of joint 3
+        rrrs_q_3 = (
+        atan2(-inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2,
+            inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x)
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0))
+        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
+            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0))
         )
-        out_q[_q_rrrs[0][leg]] = q_1
-        out_q[_q_rrrs[1][leg]] = q_2
-        out_q[_q_rrrs[2][leg]] = q_3
+        out_q[_q_rrrs[0][leg]] = rrrs_q_1
+        out_q[_q_rrrs[1][leg]] = rrrs_q_2
+        out_q[_q_rrrs[2][leg]] = rrrs_q_3
     return ok, (out_q,)
 
 
@@ -3610,126 +3905,141 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_rrrs_platform_joint_offset_x, inv_size_t,
-            inv_size_t_2, rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+        inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t,
+            rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
             rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
             rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-            rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
-            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-            rrrs_platform_point_z, size, size_t_3,
+            rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
+            rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
+            rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
         ) = k
-        # (rrrs-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (rrrs-S) from the base point to the connection point
+        rrrs_q_in_base_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        q_in_base_y = (
+        rrrs_q_in_base_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        q_in_base_z = (
+        rrrs_q_in_base_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rrrs_base_point_x
-        S_y = q_in_base_y + t_y - rrrs_base_point_y
-        S_z = q_in_base_z + t_z - rrrs_base_point_z
-        # (rrrs-K2) component along the reference direction
-        px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
-        # (rrrs-K3) component across the reference direction
-        py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
-        # (rrrs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rrrs-K7) root, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
-        # (rrrs-K12) from the origin of joint 2 to the connection point
-        x_2_z = xi_1_t - rrrs_joint2_offset_x
-        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
-        Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-        # (rrrs-K17) factor of the cosine in the equation of joint 2
-        Kc_2 = root_1*rrrs_joint3_offset_x
-        # (rrrs-K18) factor of the sine in the equation of joint 2
-        Ks_2 = rrrs_joint3_offset_x*x_2_z
-        # (rrrs-K19) squared amplitude
-        rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
-        # (rrrs-K20) discriminant
-        disc_2 = rho2_2 - Kd_2*Kd_2
-        # (rrrs-K21) root, with the sign of the branch
-        root_2 = branch_2*sqrt(disc_2)
-        # (rrrs-K27) from the origin of joint 3 to the connection point
-        x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-        # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x
-        # (rrrs-K30) sine of the angle of joint 3 from its reference direction
-        s_3 = inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_t = rrrs_platform_joint_offset_x*s_3
-        r_2_x = rrrs_joint3_offset_x + c_3*rrrs_platform_joint_offset_x
-        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2)
-        # (rrrs-K23) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2)
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        e_1_r2_x = c_2*s_3 - c_3*s_2
-        e_1_r2_y = -c_2*c_3 - s_2*s_3
-        # (rrrs-V3) from joint 1 to the connection point, along the links
-        r_1_r1_x = c_2*root_1 - s_2*xi_1_t
-        r_1_r1_y = -c_2*xi_1_t - root_1*s_2
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        v_1_z = e_1_r2_x*(c_3*r_1_r1_y + r_1_r1_x*s_3) - e_1_r2_y*(c_3*r_1_r1_x - r_1_r1_y*s_3)
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_r0_y = r_2_x*s_3 - c_3*r_2_t
-        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*py_1*root_1
-        # (rrrs-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*px_1*root_1
-        # (rrrs-V7) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1 - c_1*rrrs_base_frame_xy
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1 - c_1*rrrs_base_frame_yy
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1 - c_1*rrrs_base_frame_zy
-        w_1_t = e_1_r2_x*s_1
-        w_1_t_2 = c_1*e_1_r2_x
+        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        # (rrrs-px_1) component along the reference direction
+        rrrs_px_1 = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        )
+        # (rrrs-py_1) component across the reference direction
+        rrrs_py_1 = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrs_xi_1_t = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        )
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-x_3) from the origin of joint 3 to the connection point
+        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrs_s_3 = (
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
+        )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3
+        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
+        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
+        # (rrrs-r_1) from joint 1 to the connection point, along the links
+        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
+        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_z = (
+        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
+            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
+        )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
+        # (rrrs-w_1) reciprocal vector 1
+        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
+        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
+        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
         axis_y_rrrs_axes3_in_base_x = (
-        e_1_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_t + rrrs_base_frame_xz*w_1_t_2
+        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
+            rrrs_base_frame_xz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_y = (
-        e_1_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_t + rrrs_base_frame_yz*w_1_t_2
+        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
+            rrrs_base_frame_yz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_z = (
-        e_1_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_t + rrrs_base_frame_zz*w_1_t_2
+        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
+            rrrs_base_frame_zz*rrrs_w_1_t_2
         )
-        # (rrrs-V1) velocity of the connection point
-        S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x
-        # (rrrs-V10) rate of joint 1
-        qd_2 = (
-        (S_dot_x*(axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
+        # (rrrs-S_dot) velocity of the connection point
+        rrrs_S_dot_x = t_dot_x + omega_y*rrrs_q_in_base_z - omega_z*rrrs_q_in_base_y
+        rrrs_S_dot_y = t_dot_y + omega_z*rrrs_q_in_base_x - omega_x*rrrs_q_in_base_z
+        rrrs_S_dot_z = t_dot_z + omega_x*rrrs_q_in_base_y - omega_y*rrrs_q_in_base_x
+        # (rrrs-qd_3) rate of joint 3
+        rrrs_qd_2 = (
+        (rrrs_S_dot_x*(axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
             axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y) +
-            S_dot_y*(axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
+            rrrs_S_dot_y*(axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
             axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z) +
-            S_dot_z*(axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x))/r_2_r0_y
+            rrrs_S_dot_z*(axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
+            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x))/rrrs_r_2_r0_y
         )
-        qd_3 = (
-        inv_rrrs_platform_joint_offset_x*(S_dot_x*axis_y_rrrs_axes3_in_base_x +
-            S_dot_y*axis_y_rrrs_axes3_in_base_y + S_dot_z*axis_y_rrrs_axes3_in_base_z +
-            qd_2*(c_3*r_2_x + r_2_t*s_3))
+        rrrs_qd_3 = (
+        inv_rrrs_platform_joint_offset_x*(axis_y_rrrs_axes3_in_base_x*rrrs_S_dot_x +
+            axis_y_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_dot_z +
+            rrrs_qd_2*(rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3))
         )
-        qd_1 = (
-        (S_dot_x*axis_z_rrrs_axes3_in_base_x + S_dot_y*axis_z_rrrs_axes3_in_base_y +
-            S_dot_z*axis_z_rrrs_axes3_in_base_z)/v_1_z
+        rrrs_qd_1 = (
+        (axis_z_rrrs_axes3_in_base_x*rrrs_S_dot_x + axis_z_rrrs_axes3_in_base_y*rrrs_S_dot_y +
+            axis_z_rrrs_axes3_in_base_z*rrrs_S_dot_z)/rrrs_v_1_z
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0) & (abs(v_1_z) > _TOLERANCE *
-            size) & (abs(-r_2_r0_y) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
+            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
+            rrrs_size))
         )
-        out_qd[_qd_rrrs[0][leg]] = qd_1
-        out_qd[_qd_rrrs[1][leg]] = -qd_2
-        out_qd[_qd_rrrs[2][leg]] = qd_3
+        out_qd[_qd_rrrs[0][leg]] = rrrs_qd_1
+        out_qd[_qd_rrrs[1][leg]] = -rrrs_qd_2
+        out_qd[_qd_rrrs[2][leg]] = rrrs_qd_3
     return ok, (out_qd,)
 
 
@@ -3802,96 +4112,110 @@ def _run_joint_accelerations(m, X, V, A):
     out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
-        Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_rrrs_platform_joint_offset_x, inv_size_t,
-            inv_size_t_2, rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+        inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t,
+            rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
             rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
             rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-            rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
-            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-            rrrs_platform_point_z, size, size_t_3,
+            rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
+            rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
+            rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
         ) = k
-        # (rrrs-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (rrrs-S) from the base point to the connection point
+        rrrs_q_in_base_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        q_in_base_y = (
+        rrrs_q_in_base_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        q_in_base_z = (
+        rrrs_q_in_base_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rrrs_base_point_x
-        S_y = q_in_base_y + t_y - rrrs_base_point_y
-        S_z = q_in_base_z + t_z - rrrs_base_point_z
-        # (rrrs-K2) component along the reference direction
-        px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
-        # (rrrs-K3) component across the reference direction
-        py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
-        # (rrrs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rrrs-K7) root, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
-        # (rrrs-K12) from the origin of joint 2 to the connection point
-        x_2_z = xi_1_t - rrrs_joint2_offset_x
-        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
-        Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-        # (rrrs-K17) factor of the cosine in the equation of joint 2
-        Kc_2 = root_1*rrrs_joint3_offset_x
-        # (rrrs-K18) factor of the sine in the equation of joint 2
-        Ks_2 = rrrs_joint3_offset_x*x_2_z
-        # (rrrs-K19) squared amplitude
-        rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
-        # (rrrs-K20) discriminant
-        disc_2 = rho2_2 - Kd_2*Kd_2
-        # (rrrs-K21) root, with the sign of the branch
-        root_2 = branch_2*sqrt(disc_2)
-        # (rrrs-K27) from the origin of joint 3 to the connection point
-        x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-        # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x
-        # (rrrs-K30) sine of the angle of joint 3 from its reference direction
-        s_3 = inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_t = rrrs_platform_joint_offset_x*s_3
-        r_2_x = rrrs_joint3_offset_x + c_3*rrrs_platform_joint_offset_x
-        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2)
-        # (rrrs-K23) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2)
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        e_1_r2_x = c_2*s_3 - c_3*s_2
-        e_1_r2_y = -c_2*c_3 - s_2*s_3
-        # (rrrs-V3) from joint 1 to the connection point, along the links
-        r_1_r1_x = c_2*root_1 - s_2*xi_1_t
-        r_1_r1_y = -c_2*xi_1_t - root_1*s_2
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        v_1_z = e_1_r2_x*(c_3*r_1_r1_y + r_1_r1_x*s_3) - e_1_r2_y*(c_3*r_1_r1_x - r_1_r1_y*s_3)
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_r0_x = c_3*r_2_x + r_2_t*s_3
-        r_2_r0_y = r_2_x*s_3 - c_3*r_2_t
-        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*py_1*root_1
-        # (rrrs-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*px_1*root_1
-        # (rrrs-V7) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1 - c_1*rrrs_base_frame_xy
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1 - c_1*rrrs_base_frame_yy
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1 - c_1*rrrs_base_frame_zy
-        w_1_t = e_1_r2_x*s_1
-        w_1_t_2 = c_1*e_1_r2_x
+        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        # (rrrs-px_1) component along the reference direction
+        rrrs_px_1 = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        )
+        # (rrrs-py_1) component across the reference direction
+        rrrs_py_1 = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrs_xi_1_t = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        )
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-x_3) from the origin of joint 3 to the connection point
+        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrs_s_3 = (
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
+        )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3
+        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
+        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
+        # (rrrs-r_1) from joint 1 to the connection point, along the links
+        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
+        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_z = (
+        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
+            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
+        )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_r0_x = rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3
+        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
+        # (rrrs-w_1) reciprocal vector 1
+        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
+        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
+        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
         axis_y_rrrs_axes3_in_base_x = (
-        e_1_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_t + rrrs_base_frame_xz*w_1_t_2
+        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
+            rrrs_base_frame_xz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_y = (
-        e_1_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_t + rrrs_base_frame_yz*w_1_t_2
+        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
+            rrrs_base_frame_yz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_z = (
-        e_1_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_t + rrrs_base_frame_zz*w_1_t_2
+        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
+            rrrs_base_frame_zz*rrrs_w_1_t_2
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
@@ -3905,103 +4229,107 @@ def _run_joint_accelerations(m, X, V, A):
         axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
             axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
         )
-        inv_v_1_z = 1.0/v_1_z
-        # (rrrs-V8) reciprocal vector 2
-        inv_r_2_r0_y = 1.0/r_2_r0_y
-        # (rrrs-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        # (rrrs-V10) rate of joint 1
-        qd_2 = (
-        inv_r_2_r0_y*(S_dot_x*axis_x_rrrs_axes3_x + S_dot_y*axis_x_rrrs_axes3_y +
-            S_dot_z*axis_x_rrrs_axes3_z)
+        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
+        # (rrrs-w_2) reciprocal vector 2
+        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
+        # (rrrs-S_dot) velocity of the connection point
+        rrrs_S_dot_t = omega_y*rrrs_q_in_base_z - omega_z*rrrs_q_in_base_y
+        rrrs_S_dot_t_2 = omega_z*rrrs_q_in_base_x - omega_x*rrrs_q_in_base_z
+        rrrs_S_dot_t_3 = omega_x*rrrs_q_in_base_y - omega_y*rrrs_q_in_base_x
+        rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
+        rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
+        rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
+        # (rrrs-qd_3) rate of joint 3
+        rrrs_qd_2 = (
+        inv_rrrs_r_2_r0_y*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_x_rrrs_axes3_z*rrrs_S_dot_z)
         )
-        qd_3 = (
-        inv_rrrs_platform_joint_offset_x*(S_dot_x*axis_y_rrrs_axes3_in_base_x +
-            S_dot_y*axis_y_rrrs_axes3_in_base_y + S_dot_z*axis_y_rrrs_axes3_in_base_z +
-            qd_2*r_2_r0_x)
+        rrrs_qd_3 = (
+        inv_rrrs_platform_joint_offset_x*(axis_y_rrrs_axes3_in_base_x*rrrs_S_dot_x +
+            axis_y_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_dot_z +
+            rrrs_qd_2*rrrs_r_2_r0_x)
         )
-        qd_1 = (
-        inv_v_1_z*(S_dot_x*axis_z_rrrs_axes3_in_base_x + S_dot_y*axis_z_rrrs_axes3_in_base_y +
-            S_dot_z*axis_z_rrrs_axes3_in_base_z)
+        rrrs_qd_1 = (
+        inv_rrrs_v_1_z*(axis_z_rrrs_axes3_in_base_x*rrrs_S_dot_x +
+            axis_z_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_z_rrrs_axes3_in_base_z*rrrs_S_dot_z)
         )
-        # (rrrs-V13) angular velocity of link 1
-        omega_1_t = qd_1*s_2
-        omega_1_t_2 = c_2*qd_1
-        # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_x = omega_1_t_2*qd_2
-        zeta_2_y = omega_1_t*qd_2
-        # (rrrs-V15) angular velocity of link 2
-        omega_2_r0_x = omega_1_t_2*s_3 - c_3*omega_1_t
-        omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
-        # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_r0_y = s_3*zeta_2_x - c_3*zeta_2_y
-        # (rrrs-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_y = zeta_2_r0_y - omega_2_r0_x*qd_3
-        # (rrrs-V17) angular velocity of link 3
-        omega_3_z = qd_3 - qd_2
-        # (rrrs-A7) acceleration of the connection point at zero joint accelerations
-        bias_t = rrrs_joint2_offset_x*s_2
-        bias_t_2 = c_2*rrrs_joint2_offset_x
-        bias_t_3 = (
-        omega_2_r0_x*(-bias_t*s_3 - bias_t_2*c_3) - omega_2_r0_y*(bias_t_2*s_3 - bias_t*c_3)
+        # (rrrs-omega_1) angular velocity of link 1
+        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_t_2 = rrrs_c_2*rrrs_qd_1
+        # (rrrs-omega_2) angular velocity of link 2
+        rrrs_omega_2_r0_x = rrrs_omega_1_t_2*rrrs_s_3 - rrrs_c_3*rrrs_omega_1_t
+        rrrs_omega_2_r0_y = -rrrs_c_3*rrrs_omega_1_t_2 - rrrs_omega_1_t*rrrs_s_3
+        # (rrrs-omega_3) angular velocity of link 3
+        rrrs_omega_3_z = rrrs_qd_3 - rrrs_qd_2
+        # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        rrrs_zeta_2_x = rrrs_omega_1_t_2*rrrs_qd_2
+        rrrs_zeta_2_y = rrrs_omega_1_t*rrrs_qd_2
+        rrrs_zeta_2_r0_y = rrrs_s_3*rrrs_zeta_2_x - rrrs_c_3*rrrs_zeta_2_y
+        # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        rrrs_beta_3_y = rrrs_zeta_2_r0_y - rrrs_omega_2_r0_x*rrrs_qd_3
+        # (rrrs-bias) acceleration of the connection point at zero joint accelerations
+        rrrs_bias_t = rrrs_joint2_offset_x*rrrs_s_2
+        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_3 = (
+        rrrs_omega_2_r0_x*(-rrrs_bias_t*rrrs_s_3 - rrrs_bias_t_2*rrrs_c_3) -
+            rrrs_omega_2_r0_y*(rrrs_bias_t_2*rrrs_s_3 - rrrs_bias_t*rrrs_c_3)
         )
-        bias_t_4 = c_3*rrrs_joint3_offset_x
-        bias_t_5 = rrrs_joint3_offset_x*s_3
-        bias_t_6 = bias_t_5*qd_2
-        bias_t_7 = bias_t_4*qd_2
-        bias_t_8 = bias_t_5*omega_2_r0_x - bias_t_4*omega_2_r0_y
-        bias_t_9 = omega_3_z*rrrs_platform_joint_offset_x
-        bias_t_10 = omega_2_r0_y*rrrs_platform_joint_offset_x
-        bias_x = (
-        bias_t_3*omega_2_r0_y + bias_t_8*omega_2_r0_y - bias_t_10*omega_2_r0_y - bias_t_7*qd_2 -
-            bias_t_9*omega_3_z
+        rrrs_bias_t_4 = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_bias_t_5 = rrrs_joint3_offset_x*rrrs_s_3
+        rrrs_bias_t_6 = rrrs_bias_t_5*rrrs_qd_2
+        rrrs_bias_t_7 = rrrs_bias_t_4*rrrs_qd_2
+        rrrs_bias_t_8 = rrrs_bias_t_5*rrrs_omega_2_r0_x - rrrs_bias_t_4*rrrs_omega_2_r0_y
+        rrrs_bias_t_9 = rrrs_omega_3_z*rrrs_platform_joint_offset_x
+        rrrs_bias_t_10 = rrrs_omega_2_r0_y*rrrs_platform_joint_offset_x
+        rrrs_bias_x = (
+        rrrs_bias_t_3*rrrs_omega_2_r0_y + rrrs_bias_t_8*rrrs_omega_2_r0_y -
+            rrrs_bias_t_10*rrrs_omega_2_r0_y - rrrs_bias_t_7*rrrs_qd_2 -
+            rrrs_bias_t_9*rrrs_omega_3_z
         )
-        bias_y = (
-        bias_t_10*omega_2_r0_x - bias_t_3*omega_2_r0_x - bias_t_6*qd_2 - bias_t_8*omega_2_r0_x
+        rrrs_bias_y = (
+        rrrs_bias_t_10*rrrs_omega_2_r0_x - rrrs_bias_t_3*rrrs_omega_2_r0_x -
+            rrrs_bias_t_6*rrrs_qd_2 - rrrs_bias_t_8*rrrs_omega_2_r0_x
         )
-        bias_z = (
-        bias_t_5*(c_3*zeta_2_x + s_3*zeta_2_y) + bias_t_9*omega_2_r0_x -
-            beta_3_y*rrrs_platform_joint_offset_x - bias_t_4*zeta_2_r0_y - bias_t_6*omega_2_r0_y -
-            bias_t_7*omega_2_r0_x
+        rrrs_bias_z = (
+        rrrs_bias_t_5*(rrrs_c_3*rrrs_zeta_2_x + rrrs_s_3*rrrs_zeta_2_y) +
+            rrrs_bias_t_9*rrrs_omega_2_r0_x - rrrs_beta_3_y*rrrs_platform_joint_offset_x -
+            rrrs_bias_t_4*rrrs_zeta_2_r0_y - rrrs_bias_t_6*rrrs_omega_2_r0_y -
+            rrrs_bias_t_7*rrrs_omega_2_r0_x
         )
-        # (rrrs-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (rrrs-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        # (rrrs-A8) acceleration of the connection point left to the joint accelerations
-        rel_x = (
-        S_ddot_x*axis_x_rrrs_axes3_x + S_ddot_y*axis_x_rrrs_axes3_y + S_ddot_z*axis_x_rrrs_axes3_z
-            - bias_x
+        # (rrrs-a_p) acceleration of the connection point without its centripetal part
+        rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_in_base_z - alpha_z*rrrs_q_in_base_y
+        rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_in_base_x - alpha_x*rrrs_q_in_base_z
+        rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_in_base_y - alpha_y*rrrs_q_in_base_x
+        # (rrrs-S_ddot) acceleration of the connection point
+        rrrs_S_ddot_x = rrrs_a_p_x + omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2
+        rrrs_S_ddot_y = rrrs_a_p_y + omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3
+        rrrs_S_ddot_z = rrrs_a_p_z + omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t
+        # (rrrs-rel) acceleration of the connection point left to the joint accelerations
+        rrrs_rel_x = (
+        axis_x_rrrs_axes3_x*rrrs_S_ddot_x + axis_x_rrrs_axes3_y*rrrs_S_ddot_y +
+            axis_x_rrrs_axes3_z*rrrs_S_ddot_z - rrrs_bias_x
         )
-        rel_y = (
-        S_ddot_x*axis_y_rrrs_axes3_in_base_x + S_ddot_y*axis_y_rrrs_axes3_in_base_y +
-            S_ddot_z*axis_y_rrrs_axes3_in_base_z - bias_y
+        rrrs_rel_y = (
+        axis_y_rrrs_axes3_in_base_x*rrrs_S_ddot_x + axis_y_rrrs_axes3_in_base_y*rrrs_S_ddot_y +
+            axis_y_rrrs_axes3_in_base_z*rrrs_S_ddot_z - rrrs_bias_y
         )
-        rel_z = (
-        S_ddot_x*axis_z_rrrs_axes3_in_base_x + S_ddot_y*axis_z_rrrs_axes3_in_base_y +
-            S_ddot_z*axis_z_rrrs_axes3_in_base_z - bias_z
+        rrrs_rel_z = (
+        axis_z_rrrs_axes3_in_base_x*rrrs_S_ddot_x + axis_z_rrrs_axes3_in_base_y*rrrs_S_ddot_y +
+            axis_z_rrrs_axes3_in_base_z*rrrs_S_ddot_z - rrrs_bias_z
         )
-        # (rrrs-A10) acceleration of joint 1
-        qdd_2 = inv_r_2_r0_y*rel_x
-        qdd_3 = inv_rrrs_platform_joint_offset_x*(rel_y + qdd_2*r_2_r0_x)
-        qdd_1 = inv_v_1_z*rel_z
+        # (rrrs-qdd_1) acceleration of joint 1
+        rrrs_qdd_2 = inv_rrrs_r_2_r0_y*rrrs_rel_x
+        rrrs_qdd_3 = inv_rrrs_platform_joint_offset_x*(rrrs_rel_y + rrrs_qdd_2*rrrs_r_2_r0_x)
+        rrrs_qdd_1 = inv_rrrs_v_1_z*rrrs_rel_z
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0) & (abs(v_1_z) > _TOLERANCE *
-            size) & (abs(-r_2_r0_y) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
+            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
+            rrrs_size))
         )
-        out_qdd[_qdd_rrrs[0][leg]] = qdd_1
-        out_qdd[_qdd_rrrs[1][leg]] = -qdd_2
-        out_qdd[_qdd_rrrs[2][leg]] = qdd_3
+        out_qdd[_qdd_rrrs[0][leg]] = rrrs_qdd_1
+        out_qdd[_qdd_rrrs[1][leg]] = -rrrs_qdd_2
+        out_qdd[_qdd_rrrs[2][leg]] = rrrs_qdd_3
     return ok, (out_qdd,)
 
 
@@ -4076,99 +4404,115 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, Kd_2_t, Kd_2_t_2, Sigma_2_xx,
-            Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2,
-            g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
-            inv_rrrs_platform_joint_offset_x, inv_size_t, inv_size_t_2, rho2_2_t,
-            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_link3_mass,
-            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-            rrrs_platform_point_z, size, size_t_3,
+        inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
+            rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yz, rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yz,
+            rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
+            rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_g_r0_x, rrrs_g_r0_y, rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y,
+            rrrs_h_2_z, rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
+            rrrs_joint3_offset_x, rrrs_link3_mass, rrrs_platform_joint_offset_x,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
+            rrrs_size, rrrs_size_t_3,
         ) = k
-        # (rrrs-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (rrrs-S) from the base point to the connection point
+        rrrs_q_in_base_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        q_in_base_y = (
+        rrrs_q_in_base_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        q_in_base_z = (
+        rrrs_q_in_base_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rrrs_base_point_x
-        S_y = q_in_base_y + t_y - rrrs_base_point_y
-        S_z = q_in_base_z + t_z - rrrs_base_point_z
-        # (rrrs-K2) component along the reference direction
-        px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
-        # (rrrs-K3) component across the reference direction
-        py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
-        # (rrrs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rrrs-K7) root, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
-        # (rrrs-K12) from the origin of joint 2 to the connection point
-        x_2_z = xi_1_t - rrrs_joint2_offset_x
-        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
-        Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-        # (rrrs-K17) factor of the cosine in the equation of joint 2
-        Kc_2 = root_1*rrrs_joint3_offset_x
-        # (rrrs-K18) factor of the sine in the equation of joint 2
-        Ks_2 = rrrs_joint3_offset_x*x_2_z
-        # (rrrs-K19) squared amplitude
-        rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
-        # (rrrs-K20) discriminant
-        disc_2 = rho2_2 - Kd_2*Kd_2
-        # (rrrs-K21) root, with the sign of the branch
-        root_2 = branch_2*sqrt(disc_2)
-        # (rrrs-K27) from the origin of joint 3 to the connection point
-        x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-        # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x
-        # (rrrs-K30) sine of the angle of joint 3 from its reference direction
-        s_3 = inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_t = rrrs_platform_joint_offset_x*s_3
-        r_2_x = rrrs_joint3_offset_x + c_3*rrrs_platform_joint_offset_x
-        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2)
-        # (rrrs-K23) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2)
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        e_1_r2_x = c_2*s_3 - c_3*s_2
-        e_1_r2_y = -c_2*c_3 - s_2*s_3
-        # (rrrs-V3) from joint 1 to the connection point, along the links
-        r_1_r1_x = c_2*root_1 - s_2*xi_1_t
-        r_1_r1_y = -c_2*xi_1_t - root_1*s_2
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        v_1_z = e_1_r2_x*(c_3*r_1_r1_y + r_1_r1_x*s_3) - e_1_r2_y*(c_3*r_1_r1_x - r_1_r1_y*s_3)
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_r0_x = c_3*r_2_x + r_2_t*s_3
-        r_2_r0_y = r_2_x*s_3 - c_3*r_2_t
-        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*py_1*root_1
-        # (rrrs-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*px_1*root_1
-        # (rrrs-V7) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1 - c_1*rrrs_base_frame_xy
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1 - c_1*rrrs_base_frame_yy
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1 - c_1*rrrs_base_frame_zy
-        w_1_t = e_1_r2_x*s_1
-        w_1_t_2 = c_1*e_1_r2_x
+        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        # (rrrs-px_1) component along the reference direction
+        rrrs_px_1 = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        )
+        # (rrrs-py_1) component across the reference direction
+        rrrs_py_1 = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrs_xi_1_t = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        )
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-x_3) from the origin of joint 3 to the connection point
+        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrs_s_3 = (
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
+        )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3
+        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
+        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
+        # (rrrs-r_1) from joint 1 to the connection point, along the links
+        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
+        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_z = (
+        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
+            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
+        )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_r0_x = rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3
+        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
+        # (rrrs-w_1) reciprocal vector 1
+        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
+        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
+        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
         axis_y_rrrs_axes3_in_base_x = (
-        e_1_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_t + rrrs_base_frame_xz*w_1_t_2
+        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
+            rrrs_base_frame_xz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_y = (
-        e_1_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_t + rrrs_base_frame_yz*w_1_t_2
+        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
+            rrrs_base_frame_yz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_z = (
-        e_1_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_t + rrrs_base_frame_zz*w_1_t_2
+        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
+            rrrs_base_frame_zz*rrrs_w_1_t_2
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
@@ -4182,231 +4526,252 @@ def _run_legs(m, X, V, A):
         axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
             axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
         )
-        inv_v_1_z = 1.0/v_1_z
-        # (rrrs-V8) reciprocal vector 2
-        inv_r_2_r0_y = 1.0/r_2_r0_y
-        # (rrrs-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        # (rrrs-V10) rate of joint 1
-        qd_2 = (
-        inv_r_2_r0_y*(S_dot_x*axis_x_rrrs_axes3_x + S_dot_y*axis_x_rrrs_axes3_y +
-            S_dot_z*axis_x_rrrs_axes3_z)
+        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
+        # (rrrs-w_2) reciprocal vector 2
+        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
+        # (rrrs-S_dot) velocity of the connection point
+        rrrs_S_dot_t = omega_y*rrrs_q_in_base_z - omega_z*rrrs_q_in_base_y
+        rrrs_S_dot_t_2 = omega_z*rrrs_q_in_base_x - omega_x*rrrs_q_in_base_z
+        rrrs_S_dot_t_3 = omega_x*rrrs_q_in_base_y - omega_y*rrrs_q_in_base_x
+        rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
+        rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
+        rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
+        # (rrrs-qd_3) rate of joint 3
+        rrrs_qd_2 = (
+        inv_rrrs_r_2_r0_y*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_x_rrrs_axes3_z*rrrs_S_dot_z)
         )
-        qd_3 = (
-        inv_rrrs_platform_joint_offset_x*(S_dot_x*axis_y_rrrs_axes3_in_base_x +
-            S_dot_y*axis_y_rrrs_axes3_in_base_y + S_dot_z*axis_y_rrrs_axes3_in_base_z +
-            qd_2*r_2_r0_x)
+        rrrs_qd_3 = (
+        inv_rrrs_platform_joint_offset_x*(axis_y_rrrs_axes3_in_base_x*rrrs_S_dot_x +
+            axis_y_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_dot_z +
+            rrrs_qd_2*rrrs_r_2_r0_x)
         )
-        qd_1 = (
-        inv_v_1_z*(S_dot_x*axis_z_rrrs_axes3_in_base_x + S_dot_y*axis_z_rrrs_axes3_in_base_y +
-            S_dot_z*axis_z_rrrs_axes3_in_base_z)
+        rrrs_qd_1 = (
+        inv_rrrs_v_1_z*(axis_z_rrrs_axes3_in_base_x*rrrs_S_dot_x +
+            axis_z_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_z_rrrs_axes3_in_base_z*rrrs_S_dot_z)
         )
-        # (rrrs-V13) angular velocity of link 1
-        omega_1_t = qd_1*s_2
-        omega_1_t_2 = c_2*qd_1
-        # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_x = omega_1_t_2*qd_2
-        zeta_2_y = omega_1_t*qd_2
-        # (rrrs-V15) angular velocity of link 2
-        omega_2_r0_x = omega_1_t_2*s_3 - c_3*omega_1_t
-        omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
-        # (rrrs-A5) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_y = omega_2_r0_x*qd_3
-        # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_r0_y = s_3*zeta_2_x - c_3*zeta_2_y
-        # (rrrs-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_y = zeta_2_r0_y - zeta_3_y
-        # (rrrs-V17) angular velocity of link 3
-        omega_3_z = qd_3 - qd_2
-        # (rrrs-V16) centripetal tensor of link 2
-        W_2_t = omega_1_t*omega_1_t
-        W_2_t_2 = omega_1_t_2*omega_1_t_2
-        W_2_t_3 = qd_2*qd_2
-        W_2_xy = omega_1_t*omega_1_t_2
-        # (rrrs-V18) centripetal tensor of link 3
-        W_3_t = omega_2_r0_x*omega_2_r0_x
-        W_3_t_2 = omega_2_r0_y*omega_2_r0_y
-        W_3_t_3 = omega_3_z*omega_3_z
-        W_3_xy = omega_2_r0_x*omega_2_r0_y
-        W_3_xz = omega_2_r0_x*omega_3_z
-        W_3_yz = omega_2_r0_y*omega_3_z
-        # (rrrs-A7) acceleration of the connection point at zero joint accelerations
-        bias_t = rrrs_joint2_offset_x*s_2
-        bias_t_2 = c_2*rrrs_joint2_offset_x
-        bias_t_3 = (
-        omega_2_r0_x*(-bias_t*s_3 - bias_t_2*c_3) - omega_2_r0_y*(bias_t_2*s_3 - bias_t*c_3)
+        # (rrrs-omega_1) angular velocity of link 1
+        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_t_2 = rrrs_c_2*rrrs_qd_1
+        # (rrrs-omega_2) angular velocity of link 2
+        rrrs_omega_2_r0_x = rrrs_omega_1_t_2*rrrs_s_3 - rrrs_c_3*rrrs_omega_1_t
+        rrrs_omega_2_r0_y = -rrrs_c_3*rrrs_omega_1_t_2 - rrrs_omega_1_t*rrrs_s_3
+        # (rrrs-omega_3) angular velocity of link 3
+        rrrs_omega_3_z = rrrs_qd_3 - rrrs_qd_2
+        # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrs_zeta_3_y = rrrs_omega_2_r0_x*rrrs_qd_3
+        # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        rrrs_zeta_2_x = rrrs_omega_1_t_2*rrrs_qd_2
+        rrrs_zeta_2_y = rrrs_omega_1_t*rrrs_qd_2
+        rrrs_zeta_2_r0_y = rrrs_s_3*rrrs_zeta_2_x - rrrs_c_3*rrrs_zeta_2_y
+        # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        rrrs_beta_3_y = rrrs_zeta_2_r0_y - rrrs_zeta_3_y
+        # (rrrs-W_2) centripetal tensor of link 2
+        rrrs_W_2_t = rrrs_omega_1_t*rrrs_omega_1_t
+        rrrs_W_2_t_2 = rrrs_omega_1_t_2*rrrs_omega_1_t_2
+        rrrs_W_2_t_3 = rrrs_qd_2*rrrs_qd_2
+        rrrs_W_2_xy = rrrs_omega_1_t*rrrs_omega_1_t_2
+        # (rrrs-W_3) centripetal tensor of link 3
+        rrrs_W_3_t = rrrs_omega_2_r0_x*rrrs_omega_2_r0_x
+        rrrs_W_3_t_2 = rrrs_omega_2_r0_y*rrrs_omega_2_r0_y
+        rrrs_W_3_t_3 = rrrs_omega_3_z*rrrs_omega_3_z
+        rrrs_W_3_xy = rrrs_omega_2_r0_x*rrrs_omega_2_r0_y
+        rrrs_W_3_xz = rrrs_omega_2_r0_x*rrrs_omega_3_z
+        rrrs_W_3_yz = rrrs_omega_2_r0_y*rrrs_omega_3_z
+        # (rrrs-bias) acceleration of the connection point at zero joint accelerations
+        rrrs_bias_t = rrrs_joint2_offset_x*rrrs_s_2
+        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_3 = (
+        rrrs_omega_2_r0_x*(-rrrs_bias_t*rrrs_s_3 - rrrs_bias_t_2*rrrs_c_3) -
+            rrrs_omega_2_r0_y*(rrrs_bias_t_2*rrrs_s_3 - rrrs_bias_t*rrrs_c_3)
         )
-        bias_t_4 = c_3*rrrs_joint3_offset_x
-        bias_t_5 = rrrs_joint3_offset_x*s_3
-        bias_t_6 = bias_t_5*qd_2
-        bias_t_7 = bias_t_4*qd_2
-        bias_t_8 = bias_t_5*omega_2_r0_x - bias_t_4*omega_2_r0_y
-        bias_t_9 = omega_3_z*rrrs_platform_joint_offset_x
-        bias_t_10 = omega_2_r0_y*rrrs_platform_joint_offset_x
-        bias_x = (
-        bias_t_3*omega_2_r0_y + bias_t_8*omega_2_r0_y - bias_t_10*omega_2_r0_y - bias_t_7*qd_2 -
-            bias_t_9*omega_3_z
+        rrrs_bias_t_4 = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_bias_t_5 = rrrs_joint3_offset_x*rrrs_s_3
+        rrrs_bias_t_6 = rrrs_bias_t_5*rrrs_qd_2
+        rrrs_bias_t_7 = rrrs_bias_t_4*rrrs_qd_2
+        rrrs_bias_t_8 = rrrs_bias_t_5*rrrs_omega_2_r0_x - rrrs_bias_t_4*rrrs_omega_2_r0_y
+        rrrs_bias_t_9 = rrrs_omega_3_z*rrrs_platform_joint_offset_x
+        rrrs_bias_t_10 = rrrs_omega_2_r0_y*rrrs_platform_joint_offset_x
+        rrrs_bias_x = (
+        rrrs_bias_t_3*rrrs_omega_2_r0_y + rrrs_bias_t_8*rrrs_omega_2_r0_y -
+            rrrs_bias_t_10*rrrs_omega_2_r0_y - rrrs_bias_t_7*rrrs_qd_2 -
+            rrrs_bias_t_9*rrrs_omega_3_z
         )
-        bias_y = (
-        bias_t_10*omega_2_r0_x - bias_t_3*omega_2_r0_x - bias_t_6*qd_2 - bias_t_8*omega_2_r0_x
+        rrrs_bias_y = (
+        rrrs_bias_t_10*rrrs_omega_2_r0_x - rrrs_bias_t_3*rrrs_omega_2_r0_x -
+            rrrs_bias_t_6*rrrs_qd_2 - rrrs_bias_t_8*rrrs_omega_2_r0_x
         )
-        bias_z = (
-        bias_t_5*(c_3*zeta_2_x + s_3*zeta_2_y) + bias_t_9*omega_2_r0_x -
-            beta_3_y*rrrs_platform_joint_offset_x - bias_t_4*zeta_2_r0_y - bias_t_6*omega_2_r0_y -
-            bias_t_7*omega_2_r0_x
+        rrrs_bias_z = (
+        rrrs_bias_t_5*(rrrs_c_3*rrrs_zeta_2_x + rrrs_s_3*rrrs_zeta_2_y) +
+            rrrs_bias_t_9*rrrs_omega_2_r0_x - rrrs_beta_3_y*rrrs_platform_joint_offset_x -
+            rrrs_bias_t_4*rrrs_zeta_2_r0_y - rrrs_bias_t_6*rrrs_omega_2_r0_y -
+            rrrs_bias_t_7*rrrs_omega_2_r0_x
         )
-        # (rrrs-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-        g_r3_x = -c_2*g_r1_y - g_r0_z*s_2
-        g_r3_y = g_r1_y*s_2 - c_2*g_r0_z
-        # (rrrs-V7) reciprocal vector 1
-        w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_v_1_z
-        w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_v_1_z
-        w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_v_1_z
-        # (rrrs-V8) reciprocal vector 2
-        w_2_t = axis_x_rrrs_axes3_x*inv_r_2_r0_y
-        w_2_t_2 = axis_x_rrrs_axes3_y*inv_r_2_r0_y
-        w_2_t_3 = axis_x_rrrs_axes3_z*inv_r_2_r0_y
-        # (rrrs-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (rrrs-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        S_ddot_tip_x = (
-        S_ddot_x*axis_x_rrrs_axes3_x + S_ddot_y*axis_x_rrrs_axes3_y + S_ddot_z*axis_x_rrrs_axes3_z
+        # (rrrs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        rrrs_g_r1_x = rrrs_g_r0_y*rrrs_s_1 - rrrs_c_1*rrrs_g_r0_x
+        rrrs_g_r1_y = -rrrs_c_1*rrrs_g_r0_y - rrrs_g_r0_x*rrrs_s_1
+        rrrs_g_r3_x = -rrrs_c_2*rrrs_g_r1_y - rrrs_g_r0_z*rrrs_s_2
+        rrrs_g_r3_y = rrrs_g_r1_y*rrrs_s_2 - rrrs_c_2*rrrs_g_r0_z
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_rrrs_v_1_z
+        rrrs_w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_rrrs_v_1_z
+        rrrs_w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_rrrs_v_1_z
+        # (rrrs-w_2) reciprocal vector 2
+        rrrs_w_2_t = axis_x_rrrs_axes3_x*inv_rrrs_r_2_r0_y
+        rrrs_w_2_t_2 = axis_x_rrrs_axes3_y*inv_rrrs_r_2_r0_y
+        rrrs_w_2_t_3 = axis_x_rrrs_axes3_z*inv_rrrs_r_2_r0_y
+        # (rrrs-a_p) acceleration of the connection point without its centripetal part
+        rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_in_base_z - alpha_z*rrrs_q_in_base_y
+        rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_in_base_x - alpha_x*rrrs_q_in_base_z
+        rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_in_base_y - alpha_y*rrrs_q_in_base_x
+        # (rrrs-S_ddot) acceleration of the connection point
+        rrrs_S_ddot_x = rrrs_a_p_x + omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2
+        rrrs_S_ddot_y = rrrs_a_p_y + omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3
+        rrrs_S_ddot_z = rrrs_a_p_z + omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t
+        rrrs_S_ddot_tip_x = (
+        axis_x_rrrs_axes3_x*rrrs_S_ddot_x + axis_x_rrrs_axes3_y*rrrs_S_ddot_y +
+            axis_x_rrrs_axes3_z*rrrs_S_ddot_z
         )
-        S_ddot_tip_y = (
-        S_ddot_x*axis_y_rrrs_axes3_in_base_x + S_ddot_y*axis_y_rrrs_axes3_in_base_y +
-            S_ddot_z*axis_y_rrrs_axes3_in_base_z
+        rrrs_S_ddot_tip_y = (
+        axis_y_rrrs_axes3_in_base_x*rrrs_S_ddot_x + axis_y_rrrs_axes3_in_base_y*rrrs_S_ddot_y +
+            axis_y_rrrs_axes3_in_base_z*rrrs_S_ddot_z
         )
-        S_ddot_tip_z = (
-        S_ddot_x*axis_z_rrrs_axes3_in_base_x + S_ddot_y*axis_z_rrrs_axes3_in_base_y +
-            S_ddot_z*axis_z_rrrs_axes3_in_base_z
+        rrrs_S_ddot_tip_z = (
+        axis_z_rrrs_axes3_in_base_x*rrrs_S_ddot_x + axis_z_rrrs_axes3_in_base_y*rrrs_S_ddot_y +
+            axis_z_rrrs_axes3_in_base_z*rrrs_S_ddot_z
         )
-        # (rrrs-A8) acceleration of the connection point left to the joint accelerations
-        rel_x = S_ddot_tip_x - bias_x
-        rel_y = S_ddot_tip_y - bias_y
-        rel_z = S_ddot_tip_z - bias_z
-        # (rrrs-A10) acceleration of joint 1
-        qdd_2 = inv_r_2_r0_y*rel_x
-        qdd_1 = inv_v_1_z*rel_z
-        # (rrrs-N9) acceleration of the reference point of link 3, less gravity
-        acc_3_x = (
-        S_ddot_tip_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
+        # (rrrs-rel) acceleration of the connection point left to the joint accelerations
+        rrrs_rel_x = rrrs_S_ddot_tip_x - rrrs_bias_x
+        rrrs_rel_y = rrrs_S_ddot_tip_y - rrrs_bias_y
+        rrrs_rel_z = rrrs_S_ddot_tip_z - rrrs_bias_z
+        # (rrrs-qdd_1) acceleration of joint 1
+        rrrs_qdd_2 = inv_rrrs_r_2_r0_y*rrrs_rel_x
+        rrrs_qdd_1 = inv_rrrs_v_1_z*rrrs_rel_z
+        # (rrrs-acc_3) acceleration of the reference point of link 3, less gravity
+        rrrs_acc_3_x = (
+        rrrs_S_ddot_tip_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
             axis_x_rrrs_axes3_z*gravity_z
         )
-        acc_3_y = (
-        S_ddot_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x -
+        rrrs_acc_3_y = (
+        rrrs_S_ddot_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x -
             axis_y_rrrs_axes3_in_base_y*gravity_y - axis_y_rrrs_axes3_in_base_z*gravity_z
         )
-        acc_3_z = (
-        S_ddot_tip_z - axis_z_rrrs_axes3_in_base_x*gravity_x -
+        rrrs_acc_3_z = (
+        rrrs_S_ddot_tip_z - axis_z_rrrs_axes3_in_base_x*gravity_x -
             axis_z_rrrs_axes3_in_base_y*gravity_y - axis_z_rrrs_axes3_in_base_z*gravity_z
         )
-        # (rrrs-A16) angular acceleration of link 1
-        alpha_1_t = qdd_1*s_2
-        alpha_1_t_2 = c_2*qdd_1
-        # (rrrs-A20) angular acceleration of link 2
-        alpha_2_x = zeta_2_x - alpha_1_t
-        alpha_2_y = -alpha_1_t_2 - zeta_2_y
-        # (rrrs-A22) acceleration tensor of link 2
-        B_2_xy = W_2_xy + qdd_2
-        B_2_yx = W_2_xy - qdd_2
-        B_2_zx = zeta_2_y - alpha_2_y
-        B_2_zy = alpha_2_x + zeta_2_x
-        # (rrrs-N36) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_x = (
-        B_2_yx*J_2_xz + B_2_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z -
-            B_2_zx*J_2_xy - Sigma_2_zz*alpha_1_t - g_r1_x*h_2_y
+        # (rrrs-alpha_1) angular acceleration of link 1
+        rrrs_alpha_1_t = rrrs_qdd_1*rrrs_s_2
+        rrrs_alpha_1_t_2 = rrrs_c_2*rrrs_qdd_1
+        # (rrrs-alpha_2) angular acceleration of link 2
+        rrrs_alpha_2_x = rrrs_zeta_2_x - rrrs_alpha_1_t
+        rrrs_alpha_2_y = -rrrs_alpha_1_t_2 - rrrs_zeta_2_y
+        # (rrrs-alpha_3) angular acceleration of link 3
+        rrrs_alpha_3_x = (
+        rrrs_alpha_2_x*rrrs_c_3 + rrrs_omega_2_r0_y*rrrs_qd_3 - rrrs_alpha_2_y*rrrs_s_3
         )
-        mu_2_y = (
-        B_2_zy*J_2_xy + g_r1_x*h_2_x - B_2_xy*J_2_yz - B_2_zx*Sigma_2_xx - J_2_xz*(W_2_t -
-            W_2_t_3) - Sigma_2_zz*alpha_1_t_2 - g_r3_x*h_2_z
+        rrrs_alpha_3_y = rrrs_alpha_2_x*rrrs_s_3 + rrrs_alpha_2_y*rrrs_c_3 - rrrs_zeta_3_y
+        rrrs_alpha_3_z = (
+        inv_rrrs_platform_joint_offset_x*(rrrs_rel_y + rrrs_qdd_2*rrrs_r_2_r0_x) - rrrs_qdd_2
         )
-        mu_2_z = (
-        B_2_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + g_r3_x*h_2_y - B_2_xy*Sigma_2_yy -
-            J_2_xz*alpha_1_t - J_2_yz*alpha_1_t_2 - g_r3_y*h_2_x
+        # (rrrs-B_3) acceleration tensor of link 3
+        rrrs_B_3_xy = rrrs_W_3_xy - rrrs_alpha_3_z
+        rrrs_B_3_xz = rrrs_W_3_xz + rrrs_alpha_3_y
+        rrrs_B_3_yx = rrrs_W_3_xy + rrrs_alpha_3_z
+        rrrs_B_3_yz = rrrs_W_3_yz - rrrs_alpha_3_x
+        rrrs_B_3_zx = rrrs_W_3_xz - rrrs_alpha_3_y
+        rrrs_B_3_zy = rrrs_W_3_yz + rrrs_alpha_3_x
+        # (rrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        rrrs_mu_3_x = (
+        rrrs_B_3_yx*rrrs_J_3_xz + rrrs_B_3_zy*rrrs_Sigma_3_yy + rrrs_J_3_yz*(rrrs_W_3_t_2 -
+            rrrs_W_3_t_3) + rrrs_acc_3_z*rrrs_h_3_y - rrrs_B_3_yz*rrrs_Sigma_3_zz -
+            rrrs_B_3_zx*rrrs_J_3_xy - rrrs_acc_3_y*rrrs_h_3_z
         )
-        # (rrrs-A24) angular acceleration of link 3
-        alpha_3_x = alpha_2_x*c_3 + omega_2_r0_y*qd_3 - alpha_2_y*s_3
-        alpha_3_y = alpha_2_x*s_3 + alpha_2_y*c_3 - zeta_3_y
-        alpha_3_z = inv_rrrs_platform_joint_offset_x*(rel_y + qdd_2*r_2_r0_x) - qdd_2
-        # (rrrs-A27) acceleration tensor of link 3
-        B_3_xy = W_3_xy - alpha_3_z
-        B_3_xz = W_3_xz + alpha_3_y
-        B_3_yx = W_3_xy + alpha_3_z
-        B_3_yz = W_3_yz - alpha_3_x
-        B_3_zx = W_3_xz - alpha_3_y
-        B_3_zy = W_3_yz + alpha_3_x
-        # (rrrs-N29) inertia moment of the links that turn with link 3, about their reference points
-        mu_3_x = (
-        B_3_yx*J_3_xz + B_3_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_z*h_3_y -
-            B_3_yz*Sigma_3_zz - B_3_zx*J_3_xy - acc_3_y*h_3_z
+        rrrs_mu_3_y = (
+        rrrs_B_3_xz*rrrs_Sigma_3_zz + rrrs_B_3_zy*rrrs_J_3_xy + rrrs_acc_3_x*rrrs_h_3_z -
+            rrrs_B_3_xy*rrrs_J_3_yz - rrrs_B_3_zx*rrrs_Sigma_3_xx - rrrs_J_3_xz*(rrrs_W_3_t -
+            rrrs_W_3_t_3) - rrrs_acc_3_z*rrrs_h_3_x
         )
-        mu_3_y = (
-        B_3_xz*Sigma_3_zz + B_3_zy*J_3_xy + acc_3_x*h_3_z - B_3_xy*J_3_yz - B_3_zx*Sigma_3_xx -
-            J_3_xz*(W_3_t - W_3_t_3) - acc_3_z*h_3_x
+        rrrs_mu_3_z = (
+        rrrs_B_3_xz*rrrs_J_3_yz + rrrs_B_3_yx*rrrs_Sigma_3_xx + rrrs_J_3_xy*(rrrs_W_3_t -
+            rrrs_W_3_t_2) + rrrs_acc_3_y*rrrs_h_3_x - rrrs_B_3_xy*rrrs_Sigma_3_yy -
+            rrrs_B_3_yz*rrrs_J_3_xz - rrrs_acc_3_x*rrrs_h_3_y
         )
-        mu_3_z = (
-        B_3_xz*J_3_yz + B_3_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_y*h_3_x -
-            B_3_xy*Sigma_3_yy - B_3_yz*J_3_xz - acc_3_x*h_3_y
+        # (rrrs-B_2) acceleration tensor of link 2
+        rrrs_B_2_xy = rrrs_W_2_xy + rrrs_qdd_2
+        rrrs_B_2_yx = rrrs_W_2_xy - rrrs_qdd_2
+        rrrs_B_2_zx = rrrs_zeta_2_y - rrrs_alpha_2_y
+        rrrs_B_2_zy = rrrs_alpha_2_x + rrrs_zeta_2_x
+        # (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        rrrs_mu_2_x = (
+        rrrs_B_2_yx*rrrs_J_2_xz + rrrs_B_2_zy*rrrs_Sigma_2_yy + rrrs_J_2_yz*(rrrs_W_2_t_2 -
+            rrrs_W_2_t_3) + rrrs_g_r3_y*rrrs_h_2_z - rrrs_B_2_zx*rrrs_J_2_xy -
+            rrrs_Sigma_2_zz*rrrs_alpha_1_t - rrrs_g_r1_x*rrrs_h_2_y
         )
-        # (rrrs-N38) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_x = mu_2_x + c_3*mu_3_x + mu_3_y*s_3
-        N_2_y = mu_2_y + c_3*mu_3_y - mu_3_x*s_3
-        N_2_z = mu_2_z + mu_3_z
-        # (rrrs-N45) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_z = J_1_xx*qdd_1 - g_r1_x*h_1_y - g_r1_y*h_1_z
-        # (rrrs-N47) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_z = mu_1_z - N_2_x*s_2 - N_2_y*c_2
-        # (rrrs-N52) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_t = inv_rrrs_platform_joint_offset_x*mu_3_z
-        # (rrrs-N55) leg force on the platform without actuation and without the mass at the connection point
-        c_x = (
-        h_3_x*(W_3_t_2 + W_3_t_3) - B_3_xy*h_3_y - B_3_xz*h_3_z - inv_r_2_r0_y*(G_t*r_2_r0_x -
-            N_2_z)
+        rrrs_mu_2_y = (
+        rrrs_B_2_zy*rrrs_J_2_xy + rrrs_g_r1_x*rrrs_h_2_x - rrrs_B_2_xy*rrrs_J_2_yz -
+            rrrs_B_2_zx*rrrs_Sigma_2_xx - rrrs_J_2_xz*(rrrs_W_2_t - rrrs_W_2_t_3) -
+            rrrs_Sigma_2_zz*rrrs_alpha_1_t_2 - rrrs_g_r3_x*rrrs_h_2_z
         )
-        c_y = h_3_y*(W_3_t + W_3_t_3) - G_t - B_3_yx*h_3_x - B_3_yz*h_3_z
-        c_z = h_3_z*(W_3_t + W_3_t_2) - B_3_zx*h_3_x - B_3_zy*h_3_y - N_1_z*inv_v_1_z
-        # (rrrs-N60) leg force on the platform without actuation, the last link's mass included
-        c_true_x = c_x - acc_3_x*rrrs_link3_mass
-        c_true_y = c_y - acc_3_y*rrrs_link3_mass
-        c_true_z = c_z - acc_3_z*rrrs_link3_mass
-        c_true_in_base_x = (
-        axis_x_rrrs_axes3_x*c_true_x + axis_y_rrrs_axes3_in_base_x*c_true_y +
-            axis_z_rrrs_axes3_in_base_x*c_true_z
+        rrrs_mu_2_z = (
+        rrrs_B_2_yx*rrrs_Sigma_2_xx + rrrs_J_2_xy*(rrrs_W_2_t - rrrs_W_2_t_2) +
+            rrrs_g_r3_x*rrrs_h_2_y - rrrs_B_2_xy*rrrs_Sigma_2_yy - rrrs_J_2_xz*rrrs_alpha_1_t -
+            rrrs_J_2_yz*rrrs_alpha_1_t_2 - rrrs_g_r3_y*rrrs_h_2_x
         )
-        c_true_in_base_y = (
-        axis_x_rrrs_axes3_y*c_true_x + axis_y_rrrs_axes3_in_base_y*c_true_y +
-            axis_z_rrrs_axes3_in_base_y*c_true_z
+        # (rrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        rrrs_N_2_x = rrrs_mu_2_x + rrrs_c_3*rrrs_mu_3_x + rrrs_mu_3_y*rrrs_s_3
+        rrrs_N_2_y = rrrs_mu_2_y + rrrs_c_3*rrrs_mu_3_y - rrrs_mu_3_x*rrrs_s_3
+        rrrs_N_2_z = rrrs_mu_2_z + rrrs_mu_3_z
+        # (rrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrrs_mu_1_z = rrrs_J_1_xx*rrrs_qdd_1 - rrrs_g_r1_x*rrrs_h_1_y - rrrs_g_r1_y*rrrs_h_1_z
+        # (rrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrrs_N_1_z = rrrs_mu_1_z - rrrs_N_2_x*rrrs_s_2 - rrrs_N_2_y*rrrs_c_2
+        # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrrs_G_t = inv_rrrs_platform_joint_offset_x*rrrs_mu_3_z
+        # (rrrs-c) leg force on the platform without actuation and without the mass at the connection point
+        rrrs_c_x = (
+        rrrs_h_3_x*(rrrs_W_3_t_2 + rrrs_W_3_t_3) - inv_rrrs_r_2_r0_y*(rrrs_G_t*rrrs_r_2_r0_x -
+            rrrs_N_2_z) - rrrs_B_3_xy*rrrs_h_3_y - rrrs_B_3_xz*rrrs_h_3_z
         )
-        c_true_in_base_z = (
-        axis_x_rrrs_axes3_z*c_true_x + axis_y_rrrs_axes3_in_base_z*c_true_y +
-            axis_z_rrrs_axes3_in_base_z*c_true_z
+        rrrs_c_y = (
+        rrrs_h_3_y*(rrrs_W_3_t + rrrs_W_3_t_3) - rrrs_G_t - rrrs_B_3_yx*rrrs_h_3_x -
+            rrrs_B_3_yz*rrrs_h_3_z
+        )
+        rrrs_c_z = (
+        rrrs_h_3_z*(rrrs_W_3_t + rrrs_W_3_t_2) - inv_rrrs_v_1_z*rrrs_N_1_z -
+            rrrs_B_3_zx*rrrs_h_3_x - rrrs_B_3_zy*rrrs_h_3_y
+        )
+        # (rrrs-c_true) leg force on the platform without actuation, the last link's mass included
+        rrrs_c_true_x = rrrs_c_x - rrrs_acc_3_x*rrrs_link3_mass
+        rrrs_c_true_y = rrrs_c_y - rrrs_acc_3_y*rrrs_link3_mass
+        rrrs_c_true_z = rrrs_c_z - rrrs_acc_3_z*rrrs_link3_mass
+        rrrs_c_true_in_base_x = (
+        axis_x_rrrs_axes3_x*rrrs_c_true_x + axis_y_rrrs_axes3_in_base_x*rrrs_c_true_y +
+            axis_z_rrrs_axes3_in_base_x*rrrs_c_true_z
+        )
+        rrrs_c_true_in_base_y = (
+        axis_x_rrrs_axes3_y*rrrs_c_true_x + axis_y_rrrs_axes3_in_base_y*rrrs_c_true_y +
+            axis_z_rrrs_axes3_in_base_y*rrrs_c_true_z
+        )
+        rrrs_c_true_in_base_z = (
+        axis_x_rrrs_axes3_z*rrrs_c_true_x + axis_y_rrrs_axes3_in_base_z*rrrs_c_true_y +
+            axis_z_rrrs_axes3_in_base_z*rrrs_c_true_z
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0) & (abs(v_1_z) > _TOLERANCE *
-            size) & (abs(-r_2_r0_y) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
+            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
+            rrrs_size))
         )
-        out_leg_force[_leg_force_rrrs[0][leg]] = c_true_in_base_x
-        out_leg_force[_leg_force_rrrs[1][leg]] = c_true_in_base_y
-        out_leg_force[_leg_force_rrrs[2][leg]] = c_true_in_base_z
-        out_drive[_drive_rrrs[0][leg]] = w_1_t_3
-        out_drive[_drive_rrrs[1][leg]] = w_1_t_4
-        out_drive[_drive_rrrs[2][leg]] = w_1_t_5
-        out_drive[_drive_rrrs[3][leg]] = -w_2_t
-        out_drive[_drive_rrrs[4][leg]] = -w_2_t_2
-        out_drive[_drive_rrrs[5][leg]] = -w_2_t_3
+        out_leg_force[_leg_force_rrrs[0][leg]] = rrrs_c_true_in_base_x
+        out_leg_force[_leg_force_rrrs[1][leg]] = rrrs_c_true_in_base_y
+        out_leg_force[_leg_force_rrrs[2][leg]] = rrrs_c_true_in_base_z
+        out_drive[_drive_rrrs[0][leg]] = rrrs_w_1_t_3
+        out_drive[_drive_rrrs[1][leg]] = rrrs_w_1_t_4
+        out_drive[_drive_rrrs[2][leg]] = rrrs_w_1_t_5
+        out_drive[_drive_rrrs[3][leg]] = -rrrs_w_2_t
+        out_drive[_drive_rrrs[4][leg]] = -rrrs_w_2_t_2
+        out_drive[_drive_rrrs[5][leg]] = -rrrs_w_2_t_3
     return ok, (out_leg_force, out_drive,)
 
 
@@ -4452,8 +4817,8 @@ def _run_potential(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_potential = m.zeros("potential")
-    # (V1) potential energy
-    potential_t_3 = (
+    # (potential) potential energy
+    potential_t = (
     gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
         gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
         gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z)
@@ -4461,95 +4826,107 @@ def _run_potential(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        Kd_2_t, Kd_2_t_2, b_r0_x, b_r0_y, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_1_x,
-            h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, inv_size_t, inv_size_t_2,
-            potential_t, potential_t_2, rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
-            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-            rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
-            rrrs_link1_mass, rrrs_link2_mass, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-            rrrs_platform_point_y, rrrs_platform_point_z, size_t_3,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_b_r0_x, rrrs_b_r0_y,
+            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+            rrrs_branch_1, rrrs_branch_2, rrrs_g_r0_x, rrrs_g_r0_y, rrrs_g_r0_z, rrrs_h_1_x,
+            rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y, rrrs_h_2_z, rrrs_h_3_x, rrrs_h_3_y,
+            rrrs_h_3_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_link1_mass,
+            rrrs_link2_mass, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
+            rrrs_platform_point_y, rrrs_platform_point_z, rrrs_potential_t, rrrs_potential_t_2,
+            rrrs_rho2_2_t, rrrs_size_t_3,
         ) = k
-        # (rrrs-K1) from the base point to the connection point
-        S_x = (
+        # (rrrs-S) from the base point to the connection point
+        rrrs_S_x = (
         t_x + R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
             - rrrs_base_point_x
         )
-        S_y = (
+        rrrs_S_y = (
         t_y + R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
             - rrrs_base_point_y
         )
-        S_z = (
+        rrrs_S_z = (
         t_z + R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
             - rrrs_base_point_z
         )
-        # (rrrs-K2) component along the reference direction
-        px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
-        # (rrrs-K3) component across the reference direction
-        py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
-        # (rrrs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rrrs-K7) root, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
-        # (rrrs-K12) from the origin of joint 2 to the connection point
-        x_2_z = xi_1_t - rrrs_joint2_offset_x
-        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
-        Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-        # (rrrs-K17) factor of the cosine in the equation of joint 2
-        Kc_2 = root_1*rrrs_joint3_offset_x
-        # (rrrs-K18) factor of the sine in the equation of joint 2
-        Ks_2 = rrrs_joint3_offset_x*x_2_z
-        # (rrrs-K19) squared amplitude
-        rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
-        # (rrrs-K20) discriminant
-        disc_2 = rho2_2 - Kd_2*Kd_2
-        # (rrrs-K21) root, with the sign of the branch
-        root_2 = branch_2*sqrt(disc_2)
-        # (rrrs-K27) from the origin of joint 3 to the connection point
-        x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-        # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x
-        # (rrrs-K30) sine of the angle of joint 3 from its reference direction
-        s_3 = inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
-        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2)
-        # (rrrs-K23) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2)
-        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*py_1*root_1
-        # (rrrs-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*px_1*root_1
-        # (V1) potential energy
-        b_r1_x = b_r0_y*s_1 - b_r0_x*c_1
-        b_r1_y = -b_r0_x*s_1 - b_r0_y*c_1
-        # (rrrs-G8) first moment of link 3 about the connection point
-        h_3_r0_x = c_3*h_3_x + h_3_y*s_3
-        h_3_r0_y = c_3*h_3_y - h_3_x*s_3
-        # (V1) potential energy
-        potential_t_4 = (
-        (-c_1*g_r0_y - g_r0_x*s_1)*(b_r1_y*rrrs_link1_mass + b_r1_y*rrrs_link2_mass + h_2_y*s_2 +
-            h_3_r0_y*s_2 - h_1_y - c_2*h_2_x - c_2*h_3_r0_x)
+        # (rrrs-px_1) component along the reference direction
+        rrrs_px_1 = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        potential_t_5 = (
-        potential_t_4 + g_r0_z*(h_1_x + potential_t + potential_t_2 - c_2*h_2_y - c_2*h_3_r0_y -
-            h_2_x*s_2 - h_3_r0_x*s_2) + (g_r0_y*s_1 - c_1*g_r0_x)*(h_1_z + h_2_z + h_3_z +
-            b_r1_x*rrrs_link1_mass + b_r1_x*rrrs_link2_mass)
+        # (rrrs-py_1) component across the reference direction
+        rrrs_py_1 = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrs_xi_1_t = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        )
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-x_3) from the origin of joint 3 to the connection point
+        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrs_s_3 = (
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
+        )
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
+        # (potential) potential energy
+        rrrs_b_r1_x = rrrs_b_r0_y*rrrs_s_1 - rrrs_b_r0_x*rrrs_c_1
+        rrrs_b_r1_y = -rrrs_b_r0_x*rrrs_s_1 - rrrs_b_r0_y*rrrs_c_1
+        # (rrrs-h_3) first moment of link 3 about the connection point
+        rrrs_h_3_r0_x = rrrs_c_3*rrrs_h_3_x + rrrs_h_3_y*rrrs_s_3
+        rrrs_h_3_r0_y = rrrs_c_3*rrrs_h_3_y - rrrs_h_3_x*rrrs_s_3
+        # (potential) potential energy
+        rrrs_potential_t_3 = (
+        (-rrrs_c_1*rrrs_g_r0_y - rrrs_g_r0_x*rrrs_s_1)*(rrrs_b_r1_y*rrrs_link1_mass +
+            rrrs_b_r1_y*rrrs_link2_mass + rrrs_h_2_y*rrrs_s_2 + rrrs_h_3_r0_y*rrrs_s_2 -
+            rrrs_h_1_y - rrrs_c_2*rrrs_h_2_x - rrrs_c_2*rrrs_h_3_r0_x)
+        )
+        rrrs_potential_t_4 = (
+        rrrs_potential_t_3 + rrrs_g_r0_z*(rrrs_h_1_x + rrrs_potential_t + rrrs_potential_t_2 -
+            rrrs_c_2*rrrs_h_2_y - rrrs_c_2*rrrs_h_3_r0_y - rrrs_h_2_x*rrrs_s_2 -
+            rrrs_h_3_r0_x*rrrs_s_2) + (rrrs_g_r0_y*rrrs_s_1 - rrrs_c_1*rrrs_g_r0_x)*(rrrs_h_1_z +
+            rrrs_h_2_z + rrrs_h_3_z + rrrs_b_r1_x*rrrs_link1_mass + rrrs_b_r1_x*rrrs_link2_mass)
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0))
+        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
+            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0))
         )
         sums = m.added(sums, leg, (
-        potential_t_5,
+        rrrs_potential_t_4,
         ))
     total_rrrs, = sums
-    # (V1) potential energy
-    potential = -potential_t_3 - total_rrrs
+    # (potential) potential energy
+    potential = -potential_t - total_rrrs
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -4606,165 +4983,184 @@ def _run_condition(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_rho2_2_t_4, inv_size, inv_size_t, inv_size_t_2,
-            inv_size_t_3, rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-            rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-            rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-            rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
-            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-            rrrs_platform_point_z, size, size_t_3,
+        inv_rrrs_rho2_2_t_4, inv_rrrs_size, inv_rrrs_size_t, inv_rrrs_size_t_2, inv_rrrs_size_t_3,
+            rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
+            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
+            rrrs_size, rrrs_size_t_3,
         ) = k
-        # (rrrs-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (rrrs-S) from the base point to the connection point
+        rrrs_q_in_base_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        q_in_base_y = (
+        rrrs_q_in_base_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        q_in_base_z = (
+        rrrs_q_in_base_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rrrs_base_point_x
-        S_y = q_in_base_y + t_y - rrrs_base_point_y
-        S_z = q_in_base_z + t_z - rrrs_base_point_z
-        # (rrrs-K2) component along the reference direction
-        px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
-        # (rrrs-K3) component across the reference direction
-        py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
-        # (rrrs-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rrrs-K7) root, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
-        # (rrrs-K12) from the origin of joint 2 to the connection point
-        x_2_z = xi_1_t - rrrs_joint2_offset_x
-        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
-        Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-        # (rrrs-K17) factor of the cosine in the equation of joint 2
-        Kc_2 = root_1*rrrs_joint3_offset_x
-        # (rrrs-K18) factor of the sine in the equation of joint 2
-        Ks_2 = rrrs_joint3_offset_x*x_2_z
-        # (rrrs-K19) squared amplitude
-        rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
-        # (rrrs-K20) discriminant
-        disc_2 = rho2_2 - Kd_2*Kd_2
-        # (rrrs-K21) root, with the sign of the branch
-        root_2 = branch_2*sqrt(disc_2)
-        # (rrrs-K27) from the origin of joint 3 to the connection point
-        x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-        # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-        c_3 = inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x
-        # (rrrs-K30) sine of the angle of joint 3 from its reference direction
-        s_3 = inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_x = rrrs_joint3_offset_x + c_3*rrrs_platform_joint_offset_x
-        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2 = 1.0/rho2_2
-        c_2 = inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2)
-        # (rrrs-K23) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2)
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        e_1_r2_x = c_2*s_3 - c_3*s_2
-        e_1_r2_y = -c_2*c_3 - s_2*s_3
-        # (rrrs-V3) from joint 1 to the connection point, along the links
-        r_1_r1_x = c_2*root_1 - s_2*xi_1_t
-        r_1_r1_y = -c_2*xi_1_t - root_1*s_2
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        v_1_z = e_1_r2_x*(c_3*r_1_r1_y + r_1_r1_x*s_3) - e_1_r2_y*(c_3*r_1_r1_x - r_1_r1_y*s_3)
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_r0_y = r_2_x*s_3 - c_3*rrrs_platform_joint_offset_x*s_3
-        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*py_1*root_1
-        # (rrrs-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*px_1*root_1
-        # (rrrs-V7) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1 - c_1*rrrs_base_frame_xy
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1 - c_1*rrrs_base_frame_yy
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1 - c_1*rrrs_base_frame_zy
-        w_1_t = e_1_r2_x*s_1
-        w_1_t_2 = c_1*e_1_r2_x
+        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        # (rrrs-px_1) component along the reference direction
+        rrrs_px_1 = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        )
+        # (rrrs-py_1) component across the reference direction
+        rrrs_py_1 = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrs_xi_1_t = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        )
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-x_3) from the origin of joint 3 to the connection point
+        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrs_s_3 = (
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
+        )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
+        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
+        # (rrrs-r_1) from joint 1 to the connection point, along the links
+        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
+        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_z = (
+        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
+            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
+        )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_platform_joint_offset_x*rrrs_s_3
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
+        # (rrrs-w_1) reciprocal vector 1
+        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
+        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
+        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
         axis_y_rrrs_axes3_in_base_x = (
-        e_1_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_t + rrrs_base_frame_xz*w_1_t_2
+        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
+            rrrs_base_frame_xz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_y = (
-        e_1_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_t + rrrs_base_frame_yz*w_1_t_2
+        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
+            rrrs_base_frame_yz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_z = (
-        e_1_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_t + rrrs_base_frame_zz*w_1_t_2
+        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
+            rrrs_base_frame_zz*rrrs_w_1_t_2
         )
-        inv_v_1_z = 1.0/v_1_z
-        # (rrrs-V8) reciprocal vector 2
-        inv_r_2_r0_y = 1.0/r_2_r0_y
-        # (rrrs-V7) reciprocal vector 1
-        w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_v_1_z
-        w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_v_1_z
-        w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_v_1_z
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_x = q_in_base_y*w_1_t_5 - q_in_base_z*w_1_t_4
-        H_a_1_y = q_in_base_z*w_1_t_3 - q_in_base_x*w_1_t_5
-        H_a_1_z = q_in_base_x*w_1_t_4 - q_in_base_y*w_1_t_3
-        # (rrrs-V8) reciprocal vector 2
-        w_2_t = (
-        inv_r_2_r0_y*(axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
+        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
+        # (rrrs-w_2) reciprocal vector 2
+        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_rrrs_v_1_z
+        rrrs_w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_rrrs_v_1_z
+        rrrs_w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_rrrs_v_1_z
+        # (rrrs-H_a_1) moment of the column's unit force about the platform origin
+        rrrs_H_a_1_x = rrrs_q_in_base_y*rrrs_w_1_t_5 - rrrs_q_in_base_z*rrrs_w_1_t_4
+        rrrs_H_a_1_y = rrrs_q_in_base_z*rrrs_w_1_t_3 - rrrs_q_in_base_x*rrrs_w_1_t_5
+        rrrs_H_a_1_z = rrrs_q_in_base_x*rrrs_w_1_t_4 - rrrs_q_in_base_y*rrrs_w_1_t_3
+        # (rrrs-w_2) reciprocal vector 2
+        rrrs_w_2_t = (
+        inv_rrrs_r_2_r0_y*(axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
             axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y)
         )
-        w_2_t_2 = (
-        inv_r_2_r0_y*(axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
+        rrrs_w_2_t_2 = (
+        inv_rrrs_r_2_r0_y*(axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
             axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z)
         )
-        w_2_t_3 = (
-        inv_r_2_r0_y*(axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
+        rrrs_w_2_t_3 = (
+        inv_rrrs_r_2_r0_y*(axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
             axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x)
         )
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_2_x = q_in_base_z*w_2_t_2 - q_in_base_y*w_2_t_3
-        H_a_2_y = q_in_base_x*w_2_t_3 - q_in_base_z*w_2_t
-        H_a_2_z = q_in_base_y*w_2_t - q_in_base_x*w_2_t_2
-        # (C2) rms distance of the platform points from their centroid
-        spread_t_2 = b_c_x - rrrs_platform_point_x
-        spread_t_3 = b_c_y - rrrs_platform_point_y
-        spread_t_4 = b_c_z - rrrs_platform_point_z
-        spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 + spread_t_4*spread_t_4
-        # (rrrs-K5) squared amplitude
-        pivot_size = abs(rho2_1)
-        # (rrrs-K19) squared amplitude
-        pivot_size_2 = abs(rho2_2)
-        # (rrrs-V7) reciprocal vector 1
-        pivot_size_3 = abs(v_1_z)
-        pivot_size_4 = abs(r_2_r0_y)
-        # (rrrs-N52) force at the connection point that balances the leg's inertia and weight along all freedoms
-        least_pivots = (
-        least(least(least(sqrt(inv_rho2_2_t_4*pivot_size_2), inv_size*pivot_size_3),
-            inv_size*pivot_size_4), sqrt(inv_size_t_3*pivot_size))
+        # (rrrs-H_a_2) moment of the column's unit force about the platform origin
+        rrrs_H_a_2_x = rrrs_q_in_base_z*rrrs_w_2_t_2 - rrrs_q_in_base_y*rrrs_w_2_t_3
+        rrrs_H_a_2_y = rrrs_q_in_base_x*rrrs_w_2_t_3 - rrrs_q_in_base_z*rrrs_w_2_t
+        rrrs_H_a_2_z = rrrs_q_in_base_y*rrrs_w_2_t - rrrs_q_in_base_x*rrrs_w_2_t_2
+        # (spread) rms distance of the platform points from their centroid
+        rrrs_spread_t = b_c_x - rrrs_platform_point_x
+        rrrs_spread_t_2 = b_c_y - rrrs_platform_point_y
+        rrrs_spread_t_3 = b_c_z - rrrs_platform_point_z
+        rrrs_spread_t_4 = (
+        rrrs_spread_t*rrrs_spread_t + rrrs_spread_t_2*rrrs_spread_t_2 +
+            rrrs_spread_t_3*rrrs_spread_t_3
+        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_pivot_size = abs(rrrs_rho2_1)
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_pivot_size_2 = abs(rrrs_rho2_2)
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_pivot_size_3 = abs(rrrs_v_1_z)
+        rrrs_pivot_size_4 = abs(rrrs_r_2_r0_y)
+        # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrrs_least_pivots = (
+        least(least(least(sqrt(inv_rrrs_rho2_2_t_4*rrrs_pivot_size_2),
+            inv_rrrs_size*rrrs_pivot_size_3), inv_rrrs_size*rrrs_pivot_size_4),
+            sqrt(inv_rrrs_size_t_3*rrrs_pivot_size))
         )
         clear = (
-        clear & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * rho2_2_t) & (abs(v_1_z) > _TOLERANCE * size) &
-            (abs(-r_2_r0_y) > _TOLERANCE * size))
+        clear & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
+            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (abs(rrrs_v_1_z) >
+            _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE * rrrs_size))
         )
-        reached = reached & m.every(leg, (disc_2 >= 0.0))
+        reached = reached & m.every(leg, (rrrs_disc_2 >= 0.0))
         sums = m.added(sums, leg, (
-        spread_t_5,
+        rrrs_spread_t_4,
         ))
-        out_H[_H_rrrs[0][leg]] = w_1_t_3
-        out_H[_H_rrrs[1][leg]] = w_1_t_4
-        out_H[_H_rrrs[2][leg]] = w_1_t_5
-        out_H[_H_rrrs[3][leg]] = H_a_1_x
-        out_H[_H_rrrs[4][leg]] = H_a_1_y
-        out_H[_H_rrrs[5][leg]] = H_a_1_z
-        out_H[_H_rrrs[6][leg]] = -w_2_t
-        out_H[_H_rrrs[7][leg]] = -w_2_t_2
-        out_H[_H_rrrs[8][leg]] = -w_2_t_3
-        out_H[_H_rrrs[9][leg]] = H_a_2_x
-        out_H[_H_rrrs[10][leg]] = H_a_2_y
-        out_H[_H_rrrs[11][leg]] = H_a_2_z
-        out_pivots[_pivots_rrrs[0][leg]] = least_pivots
-        out_reach[_reach_rrrs[0][leg]] = disc_2
+        out_H[_H_rrrs[0][leg]] = rrrs_w_1_t_3
+        out_H[_H_rrrs[1][leg]] = rrrs_w_1_t_4
+        out_H[_H_rrrs[2][leg]] = rrrs_w_1_t_5
+        out_H[_H_rrrs[3][leg]] = rrrs_H_a_1_x
+        out_H[_H_rrrs[4][leg]] = rrrs_H_a_1_y
+        out_H[_H_rrrs[5][leg]] = rrrs_H_a_1_z
+        out_H[_H_rrrs[6][leg]] = -rrrs_w_2_t
+        out_H[_H_rrrs[7][leg]] = -rrrs_w_2_t_2
+        out_H[_H_rrrs[8][leg]] = -rrrs_w_2_t_3
+        out_H[_H_rrrs[9][leg]] = rrrs_H_a_2_x
+        out_H[_H_rrrs[10][leg]] = rrrs_H_a_2_y
+        out_H[_H_rrrs[11][leg]] = rrrs_H_a_2_z
+        out_pivots[_pivots_rrrs[0][leg]] = rrrs_least_pivots
+        out_reach[_reach_rrrs[0][leg]] = rrrs_disc_2
     total_rrrs, = sums
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(total_rrrs)
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
@@ -4892,6 +5288,19 @@ def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
     momentum = np.einsum("ijs,js->is", M, V)
     return (momentum,)
+
+
+def _steps_joint_margins(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    margins = _unlimited(q, [0, 1, 2, 3, 4, 5, 6, 7, 8])
+    return (margins,)
+
+
+def _steps_within_limits(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    subtract_1 = q - q
+    within = _not_negative(subtract_1)
+    return (within,)
 
 
 def _steps_actuator_positions(m, X):
@@ -5328,6 +5737,40 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+    )
+
+
+def joint_margins(X, p=None):
+    """How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+    where there is none.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        margins: distances, in the order of q [m or rad] (..., NJ).
+    """
+    return _call(
+        "joint_margins", _steps_joint_margins, p,
+        ("X", X, (NQ,)),
+        unbounded=True,
+    )
+
+
+def within_limits(X, p=None):
+    """Whether all joints are within their limits of displacement.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        within: 1 where no margin is negative, else 0; NaN is neither (...,).
+    """
+    return _call(
+        "within_limits", _steps_within_limits, p,
+        ("X", X, (NQ,)),
     )
 
 

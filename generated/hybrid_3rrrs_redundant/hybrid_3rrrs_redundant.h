@@ -52,6 +52,7 @@ typedef HYBRID_3RRRS_REDUNDANT_REAL hybrid_3rrrs_redundant_real;
 #define HYBRID_3RRRS_REDUNDANT_NC 0
 #define HYBRID_3RRRS_REDUNDANT_NW 6
 #define HYBRID_3RRRS_REDUNDANT_NJ 10
+#define HYBRID_3RRRS_REDUNDANT_OVERCONSTRAINED 0
 
 enum {
     HYBRID_3RRRS_REDUNDANT_OK = 0,
@@ -144,52 +145,53 @@ typedef struct {
 /* What depends on the parameters alone; set by hybrid_3rrrs_redundant_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
-    hybrid_3rrrs_redundant_real J_star_t_32, J_star_t_34, J_star_xx, J_star_xy, J_star_xz, J_star_yy,
-            J_star_yz, J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y,
-            gravity_z, h_star_x, h_star_y, h_star_z, legs_size, m_star;
-    /* legs of type rrrrs */
-    hybrid_3rrrs_redundant_real J_1_rrrrs_xx[1], J_2_rrrrs_xx[1], J_2_rrrrs_xy[1], J_2_rrrrs_xz[1],
-            J_2_rrrrs_yy[1], J_2_rrrrs_yz[1], J_2_rrrrs_zz[1], J_3_rrrrs_xx[1], J_3_rrrrs_xy[1],
-            J_3_rrrrs_xz[1], J_3_rrrrs_yy[1], J_3_rrrrs_yz[1], J_4_rrrrs_xx[1], J_4_rrrrs_xy[1],
-            J_4_rrrrs_xz[1], J_4_rrrrs_yy[1], J_4_rrrrs_yz[1], J_4_rrrrs_zz[1], Jc_2_rrrrs_t[1],
-            Jc_2_rrrrs_t_2[1], Jc_3_rrrrs_zz[1], Kd_3_rrrrs_t[1], Kd_3_rrrrs_t_2[1],
-            Sigma_2_rrrrs_xx[1], Sigma_2_rrrrs_yy[1], Sigma_2_rrrrs_zz[1], Sigma_3_rrrrs_xx[1],
-            Sigma_3_rrrrs_yy[1], Sigma_3_rrrrs_zz[1], Sigma_4_rrrrs_xx[1], Sigma_4_rrrrs_yy[1],
-            Sigma_4_rrrrs_zz[1], b_rrrrs_r0_x[1], b_rrrrs_r0_y[1], b_rrrrs_r0_z[1], branch_1_rrrrs[1],
-            branch_3_rrrrs[1], d_G_rrrrs_t[1], d_Gamma_3_rrrrs_t[1], d_Gamma_3_rrrrs_y[1],
-            d_c_rrrrs_yy[1], d_phi_4_rrrrs_t[1], g_r0_x[1], g_r0_y[1], g_r0_z[1], h_1_rrrrs_x[1],
-            h_1_rrrrs_y[1], h_1_rrrrs_z[1], h_2_rrrrs_x[1], h_2_rrrrs_y[1], h_2_rrrrs_z[1],
-            h_3_rrrrs_x[1], h_3_rrrrs_y[1], h_3_rrrrs_z[1], h_4_rrrrs_x[1], h_4_rrrrs_y[1],
-            h_4_rrrrs_z[1], inv_rho2_3_rrrrs_t_4[1], inv_rrrrs_platform_joint_offset_x[1],
-            inv_size_rrrrs[1], inv_size_rrrrs_t_2[1], inv_size_rrrrs_t_3[1], inv_size_rrrrs_t_4[1],
-            potential_t_3[1], potential_t_4[1], rho2_3_rrrrs_t[1], rrrrs_base_frame_xx[1],
+    /* 1 legs of type rrrrs */
+    hybrid_3rrrs_redundant_real inv_rrrrs_platform_joint_offset_x[1], inv_rrrrs_rho2_3_t_4[1],
+            inv_rrrrs_size[1], inv_rrrrs_size_t_2[1], inv_rrrrs_size_t_3[1], inv_rrrrs_size_t_4[1],
+            rrrrs_J_1_xx[1], rrrrs_J_2_xx[1], rrrrs_J_2_xy[1], rrrrs_J_2_xz[1], rrrrs_J_2_yy[1],
+            rrrrs_J_2_yz[1], rrrrs_J_2_zz[1], rrrrs_J_3_xx[1], rrrrs_J_3_xy[1], rrrrs_J_3_xz[1],
+            rrrrs_J_3_yy[1], rrrrs_J_3_yz[1], rrrrs_J_4_xx[1], rrrrs_J_4_xy[1], rrrrs_J_4_xz[1],
+            rrrrs_J_4_yy[1], rrrrs_J_4_yz[1], rrrrs_J_4_zz[1], rrrrs_Jc_2_t[1], rrrrs_Jc_2_t_2[1],
+            rrrrs_Jc_3_zz[1], rrrrs_Kd_3_t[1], rrrrs_Kd_3_t_2[1], rrrrs_Sigma_2_xx[1],
+            rrrrs_Sigma_2_yy[1], rrrrs_Sigma_2_zz[1], rrrrs_Sigma_3_xx[1], rrrrs_Sigma_3_yy[1],
+            rrrrs_Sigma_3_zz[1], rrrrs_Sigma_4_xx[1], rrrrs_Sigma_4_yy[1], rrrrs_Sigma_4_zz[1],
+            rrrrs_b_r0_x[1], rrrrs_b_r0_y[1], rrrrs_b_r0_z[1], rrrrs_base_frame_xx[1],
             rrrrs_base_frame_xy[1], rrrrs_base_frame_xz[1], rrrrs_base_frame_yx[1],
             rrrrs_base_frame_yy[1], rrrrs_base_frame_yz[1], rrrrs_base_frame_zx[1],
             rrrrs_base_frame_zy[1], rrrrs_base_frame_zz[1], rrrrs_base_point_x[1],
-            rrrrs_base_point_y[1], rrrrs_base_point_z[1], rrrrs_joint2_offset_x[1],
-            rrrrs_joint3_offset_x[1], rrrrs_joint4_offset_x[1], rrrrs_link1_mass[1],
-            rrrrs_link2_mass[1], rrrrs_link3_mass[1], rrrrs_link4_mass[1],
-            rrrrs_platform_joint_offset_x[1], rrrrs_platform_point_x[1], rrrrs_platform_point_y[1],
-            rrrrs_platform_point_z[1], size_rrrrs[1], size_rrrrs_t_3[1];
-    /* legs of type rrrs */
-    hybrid_3rrrs_redundant_real J_1_rrrs_xx[2], J_2_rrrs_xx[2], J_2_rrrs_xy[2], J_2_rrrs_xz[2],
-            J_2_rrrs_yy[2], J_2_rrrs_yz[2], J_3_rrrs_xx[2], J_3_rrrs_xy[2], J_3_rrrs_xz[2],
-            J_3_rrrs_yy[2], J_3_rrrs_yz[2], J_3_rrrs_zz[2], Jc_2_rrrs_zz[2], Kd_2_rrrs_t[2],
-            Kd_2_rrrs_t_2[2], Sigma_2_rrrs_xx[2], Sigma_2_rrrs_yy[2], Sigma_2_rrrs_zz[2],
-            Sigma_3_rrrs_xx[2], Sigma_3_rrrs_yy[2], Sigma_3_rrrs_zz[2], b_rrrs_r0_x[2],
-            b_rrrs_r0_y[2], branch_1_rrrs[2], branch_2_rrrs[2], d_Gamma_2_rrrs_t[2],
-            d_Gamma_2_rrrs_y[2], d_c_rrrs_yy[2], d_phi_3_rrrs_t[2], g_r0_x_2[2], g_r0_y_2[2],
-            g_r0_z_2[2], h_1_rrrs_x[2], h_1_rrrs_y[2], h_1_rrrs_z[2], h_2_rrrs_x[2], h_2_rrrs_y[2],
-            h_2_rrrs_z[2], h_3_rrrs_x[2], h_3_rrrs_y[2], h_3_rrrs_z[2], inv_rho2_2_rrrs_t_4[2],
-            inv_rrrs_platform_joint_offset_x[2], inv_size_rrrs[2], inv_size_rrrs_t[2],
-            inv_size_rrrs_t_2[2], inv_size_rrrs_t_3[2], potential_t[2], potential_t_2[2],
-            rho2_2_rrrs_t[2], rrrs_base_frame_xx[2], rrrs_base_frame_xy[2], rrrs_base_frame_xz[2],
+            rrrrs_base_point_y[1], rrrrs_base_point_z[1], rrrrs_branch_1[1], rrrrs_branch_3[1],
+            rrrrs_d_G_t[1], rrrrs_d_Gamma_4_t[1], rrrrs_d_Gamma_4_y[1], rrrrs_d_c_yy[1],
+            rrrrs_d_phi_4_t[1], rrrrs_g_r0_x[1], rrrrs_g_r0_y[1], rrrrs_g_r0_z[1], rrrrs_h_1_x[1],
+            rrrrs_h_1_y[1], rrrrs_h_1_z[1], rrrrs_h_2_x[1], rrrrs_h_2_y[1], rrrrs_h_2_z[1],
+            rrrrs_h_3_x[1], rrrrs_h_3_y[1], rrrrs_h_3_z[1], rrrrs_h_4_x[1], rrrrs_h_4_y[1],
+            rrrrs_h_4_z[1], rrrrs_joint2_offset_x[1], rrrrs_joint3_offset_x[1],
+            rrrrs_joint4_offset_x[1], rrrrs_link1_mass[1], rrrrs_link2_mass[1], rrrrs_link3_mass[1],
+            rrrrs_link4_mass[1], rrrrs_platform_joint_offset_x[1], rrrrs_platform_point_x[1],
+            rrrrs_platform_point_y[1], rrrrs_platform_point_z[1], rrrrs_potential_t[1],
+            rrrrs_potential_t_2[1], rrrrs_rho2_3_t[1], rrrrs_size[1], rrrrs_size_t_3[1];
+    /* 2 legs of type rrrs */
+    hybrid_3rrrs_redundant_real inv_rrrs_platform_joint_offset_x[2], inv_rrrs_rho2_2_t_4[2],
+            inv_rrrs_size[2], inv_rrrs_size_t[2], inv_rrrs_size_t_2[2], inv_rrrs_size_t_3[2],
+            rrrs_J_1_xx[2], rrrs_J_2_xx[2], rrrs_J_2_xy[2], rrrs_J_2_xz[2], rrrs_J_2_yy[2],
+            rrrs_J_2_yz[2], rrrs_J_3_xx[2], rrrs_J_3_xy[2], rrrs_J_3_xz[2], rrrs_J_3_yy[2],
+            rrrs_J_3_yz[2], rrrs_J_3_zz[2], rrrs_Jc_2_zz[2], rrrs_Kd_2_t[2], rrrs_Kd_2_t_2[2],
+            rrrs_Sigma_2_xx[2], rrrs_Sigma_2_yy[2], rrrs_Sigma_2_zz[2], rrrs_Sigma_3_xx[2],
+            rrrs_Sigma_3_yy[2], rrrs_Sigma_3_zz[2], rrrs_b_r0_x[2], rrrs_b_r0_y[2],
+            rrrs_base_frame_xx[2], rrrs_base_frame_xy[2], rrrs_base_frame_xz[2],
             rrrs_base_frame_yx[2], rrrs_base_frame_yy[2], rrrs_base_frame_yz[2],
             rrrs_base_frame_zx[2], rrrs_base_frame_zy[2], rrrs_base_frame_zz[2], rrrs_base_point_x[2],
-            rrrs_base_point_y[2], rrrs_base_point_z[2], rrrs_joint2_offset_x[2],
-            rrrs_joint3_offset_x[2], rrrs_link1_mass[2], rrrs_link2_mass[2], rrrs_link3_mass[2],
-            rrrs_platform_joint_offset_x[2], rrrs_platform_point_x[2], rrrs_platform_point_y[2],
-            rrrs_platform_point_z[2], size_rrrs[2], size_rrrs_t_3[2];
+            rrrs_base_point_y[2], rrrs_base_point_z[2], rrrs_branch_1[2], rrrs_branch_2[2],
+            rrrs_d_Gamma_3_t[2], rrrs_d_Gamma_3_y[2], rrrs_d_c_yy[2], rrrs_d_phi_3_t[2],
+            rrrs_g_r0_x[2], rrrs_g_r0_y[2], rrrs_g_r0_z[2], rrrs_h_1_x[2], rrrs_h_1_y[2],
+            rrrs_h_1_z[2], rrrs_h_2_x[2], rrrs_h_2_y[2], rrrs_h_2_z[2], rrrs_h_3_x[2], rrrs_h_3_y[2],
+            rrrs_h_3_z[2], rrrs_joint2_offset_x[2], rrrs_joint3_offset_x[2], rrrs_link1_mass[2],
+            rrrs_link2_mass[2], rrrs_link3_mass[2], rrrs_platform_joint_offset_x[2],
+            rrrs_platform_point_x[2], rrrs_platform_point_y[2], rrrs_platform_point_z[2],
+            rrrs_potential_t[2], rrrs_potential_t_2[2], rrrs_rho2_2_t[2], rrrs_size[2],
+            rrrs_size_t_3[2];
+    hybrid_3rrrs_redundant_real J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy,
+            J_star_yz, J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y,
+            gravity_z, h_star_x, h_star_y, h_star_z, legs_size, m_star;
 } hybrid_3rrrs_redundant_model;
 
 extern const hybrid_3rrrs_redundant_params hybrid_3rrrs_redundant_default_params;
@@ -206,13 +208,13 @@ extern const char *const hybrid_3rrrs_redundant_ACTUATOR_NAMES[HYBRID_3RRRS_REDU
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, hybrid_3rrrs_redundant_model *model);
 
-/* Inertia matrix M. 759 mul, 580 add, 12 div, 6 sqrt, 2 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 755 mul, 578 add, 12 div, 6 sqrt, 2 trig. In: X (NQ). Out: M (NV x NV). */
 int hybrid_3rrrs_redundant_M(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *M);
 size_t hybrid_3rrrs_redundant_M_batch(const hybrid_3rrrs_redundant_model *model, size_t n, const
     hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *M, int *status);
 
-/* Velocity and gravity terms Z. 1033 mul, 769 add, 12 div, 6 sqrt, 2 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 1048 mul, 781 add, 12 div, 6 sqrt, 2 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int hybrid_3rrrs_redundant_Z(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
@@ -253,7 +255,7 @@ size_t hybrid_3rrrs_redundant_joint_accelerations_batch(const hybrid_3rrrs_redun
     size_t n, const hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V, const
     hybrid_3rrrs_redundant_real *A, hybrid_3rrrs_redundant_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1538 mul, 1196 add, 12 div, 6 sqrt, 2 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1549 mul, 1206 add, 12 div, 6 sqrt, 2 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int hybrid_3rrrs_redundant_dynamics(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
@@ -276,7 +278,7 @@ size_t hybrid_3rrrs_redundant_inverse_dynamics_batch(const hybrid_3rrrs_redundan
     hybrid_3rrrs_redundant_real *A, const hybrid_3rrrs_redundant_real *wrench,
     hybrid_3rrrs_redundant_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1538 mul, 1196 add, 12 div, 6
+/* Acceleration A under the actuator forces tau and the wrench. 1549 mul, 1206 add, 12 div, 6
    sqrt, 2 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int hybrid_3rrrs_redundant_forward_dynamics(const hybrid_3rrrs_redundant_model *model, const
@@ -352,7 +354,7 @@ size_t hybrid_3rrrs_redundant_dissipation_batch(const hybrid_3rrrs_redundant_mod
     n, const hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
     hybrid_3rrrs_redundant_real *dissipation, int *status);
 
-/* Generalised momentum M V. 759 mul, 580 add, 12 div, 6 sqrt, 2 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 755 mul, 578 add, 12 div, 6 sqrt, 2 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int hybrid_3rrrs_redundant_momentum(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
@@ -360,6 +362,22 @@ int hybrid_3rrrs_redundant_momentum(const hybrid_3rrrs_redundant_model *model, c
 size_t hybrid_3rrrs_redundant_momentum_batch(const hybrid_3rrrs_redundant_model *model, size_t n,
     const hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
     hybrid_3rrrs_redundant_real *momentum, int *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 148 mul, 87 add, 6 div, 6 sqrt, 11 trig. In: X (NQ). Out: margins (NJ). */
+int hybrid_3rrrs_redundant_joint_margins(const hybrid_3rrrs_redundant_model *model, const
+    hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *margins);
+size_t hybrid_3rrrs_redundant_joint_margins_batch(const hybrid_3rrrs_redundant_model *model,
+    size_t n, const hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *margins, int
+    *status);
+
+/* Whether all joints are within their limits of displacement. 148 mul, 87 add, 6 div, 6 sqrt, 11
+   trig. In: X (NQ). Out: within (1). */
+int hybrid_3rrrs_redundant_within_limits(const hybrid_3rrrs_redundant_model *model, const
+    hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *within);
+size_t hybrid_3rrrs_redundant_within_limits_batch(const hybrid_3rrrs_redundant_model *model,
+    size_t n, const hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *within, int
+    *status);
 
 /* Displacements of the actuated joints, in the order of tau. 148 mul, 87 add, 6 div, 6 sqrt, 11
    trig. In: X (NQ). Out: q (NU). */

@@ -33,6 +33,7 @@ __all__ = [
     "NC",
     "NW",
     "NJ",
+    "OVERCONSTRAINED",
     "ACTUATED",
     "ACTUATOR_NAMES",
     "H",
@@ -57,6 +58,7 @@ __all__ = [
     "inverse_dynamics",
     "inverse_kinematics",
     "joint_accelerations",
+    "joint_margins",
     "joint_rates",
     "leg_reactions",
     "momentum",
@@ -66,6 +68,7 @@ __all__ = [
     "power",
     "retract",
     "rotation",
+    "within_limits",
 ]
 
 NQ = 8
@@ -74,6 +77,7 @@ NU = 7
 NC = 0
 NW = 6
 NJ = 10
+OVERCONSTRAINED = 0
 
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
@@ -530,7 +534,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return np.full(shape, default)
+        return _filled(shape, default) if isinstance(default, float) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -543,6 +547,16 @@ def _argument(function, name, value, shape, default=None, rule=""):
     elif rule == "positive" and not np.all((array > 0.0) & (array < np.inf)):
         raise ValueError(f"{function}: {name} must be positive and finite")
     return array
+
+
+_FILLED = {}
+
+
+def _filled(shape, value):
+    """An array of one value, made once."""
+    if (shape, value) not in _FILLED:
+        _FILLED[shape, value] = _frozen(np.full(shape, value))
+    return _FILLED[shape, value]
 
 
 def _lead(leads):
@@ -636,10 +650,10 @@ HOME_X = _frozen(np.array([0.0, 0.0, 0.75, 0.0, 0.0, 0.0, 1.0, 1.1]))
 HOME_Q = _frozen(np.array([0.15, 1.1, -0.7, -0.6, 0.15, 0.9, -1.0, 0.15, 0.9, -1.0]))
 
 _BRANCHES = {  # assembly branch of home, a sign per leg
-    "branch_1_rrrrs": np.array([1.0]),
-    "branch_3_rrrrs": np.array([1.0]),
-    "branch_1_rrrs": np.array([1.0, 1.0]),
-    "branch_2_rrrs": np.array([1.0, 1.0]),
+    "rrrrs_branch_1": np.array([1.0]),
+    "rrrrs_branch_3": np.array([1.0]),
+    "rrrs_branch_1": np.array([1.0, 1.0]),
+    "rrrs_branch_2": np.array([1.0, 1.0]),
 }
 
 
@@ -758,15 +772,15 @@ def _prepare(p):
     rrrs_link3_inertia_yy = p.rrrs_link3_inertia[:, 1, 1]
     rrrs_link3_inertia_yz = p.rrrs_link3_inertia[:, 1, 2]
     rrrs_link3_inertia_zz = p.rrrs_link3_inertia[:, 2, 2]
-    branch_1_rrrrs = _BRANCHES["branch_1_rrrrs"]
-    branch_3_rrrrs = _BRANCHES["branch_3_rrrrs"]
-    branch_1_rrrs = _BRANCHES["branch_1_rrrs"]
-    branch_2_rrrs = _BRANCHES["branch_2_rrrs"]
-    # (L2) first moment about the platform origin
+    rrrrs_branch_1 = _BRANCHES["rrrrs_branch_1"]
+    rrrrs_branch_3 = _BRANCHES["rrrrs_branch_3"]
+    rrrs_branch_1 = _BRANCHES["rrrs_branch_1"]
+    rrrs_branch_2 = _BRANCHES["rrrs_branch_2"]
+    # (h_star) first moment about the platform origin
     h_star_t = platform_centre_of_mass_x*platform_mass
     h_star_t_2 = platform_centre_of_mass_y*platform_mass
     h_star_t_3 = platform_centre_of_mass_z*platform_mass
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_t = platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_2 = platform_centre_of_mass_y*platform_centre_of_mass_y
     J_star_t_3 = platform_centre_of_mass_z*platform_centre_of_mass_z
@@ -777,465 +791,466 @@ def _prepare(p):
     J_star_t_8 = platform_mass*(J_star_t_2 - J_star_t_4)
     J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass
     J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4)
-    # (rrrrs-G2) length of the leg's lever arms, the measure of what is near singular
-    size_rrrrs_t = rrrrs_joint4_offset_x*rrrrs_joint4_offset_x
-    size_rrrrs_t_2 = rrrrs_platform_joint_offset_x*rrrrs_platform_joint_offset_x
-    size_rrrrs_t_3 = (
-    6.696672622239999e-07 + rrrrs_joint3_offset_x*rrrrs_joint3_offset_x + size_rrrrs_t +
-        size_rrrrs_t_2
+    # (rrrrs-size) length of the leg's lever arms, the measure of what is near singular
+    rrrrs_size_t = rrrrs_joint4_offset_x*rrrrs_joint4_offset_x
+    rrrrs_size_t_2 = rrrrs_platform_joint_offset_x*rrrrs_platform_joint_offset_x
+    rrrrs_size_t_3 = (
+    6.696672622239999e-07 + rrrrs_joint3_offset_x*rrrrs_joint3_offset_x + rrrrs_size_t +
+        rrrrs_size_t_2
     )
-    size_rrrrs = sqrt(size_rrrrs_t_3)
-    # (rrrrs-K16) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-    Kd_3_rrrrs_t = 0.5*size_rrrrs_t
-    Kd_3_rrrrs_t_2 = 0.5*size_rrrrs_t_2
-    # (rrrrs-K22) squared amplitude
-    rho2_3_rrrrs_t = size_rrrrs*size_rrrrs*size_rrrrs_t_3
-    # (rrrrs-K29) the vector from joint 3 to the connection point, resolved along link 3
-    inv_size_rrrrs_t_2 = 1.0/size_rrrrs_t
-    # (rrrrs-K32) cosine of the angle of joint 4 from its reference direction
-    inv_size_rrrrs_t_3 = 1.0/size_rrrrs_t_2
-    # (rrrrs-G4) inertia tensor of link 1 about the origin of link 1
-    J_1_rrrrs_t = rrrrs_link1_centre_of_mass_x*rrrrs_link1_centre_of_mass_x
-    J_1_rrrrs_t_2 = (
-    J_1_rrrrs_t + rrrrs_link1_centre_of_mass_y*rrrrs_link1_centre_of_mass_y +
-        rrrrs_link1_centre_of_mass_z*rrrrs_link1_centre_of_mass_z
+    rrrrs_size = sqrt(rrrrs_size_t_3)
+    # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
+    rrrrs_Kd_3_t = 0.5*rrrrs_size_t
+    rrrrs_Kd_3_t_2 = 0.5*rrrrs_size_t_2
+    # (rrrrs-rho2_3) squared amplitude
+    rrrrs_rho2_3_t = rrrrs_size*rrrrs_size*rrrrs_size_t_3
+    # (rrrrs-xi_3) the vector from joint 3 to the connection point, resolved along link 3
+    inv_rrrrs_size_t_2 = 1.0/rrrrs_size_t
+    # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
+    inv_rrrrs_size_t_3 = 1.0/rrrrs_size_t_2
+    # (rrrrs-rho_tip_4) connection point to the centre of mass of link 4
+    rrrrs_rho_tip_4_x = rrrrs_link4_centre_of_mass_x - rrrrs_platform_joint_offset_x
+    # (rrrrs-h_4) first moment of link 4 about the connection point
+    rrrrs_h_4_x = rrrrs_link4_mass*rrrrs_rho_tip_4_x
+    rrrrs_h_4_y = rrrrs_link4_centre_of_mass_y*rrrrs_link4_mass
+    rrrrs_h_4_z = rrrrs_link4_centre_of_mass_z*rrrrs_link4_mass
+    # (rrrrs-w_4) reciprocal vector 3
+    inv_rrrrs_platform_joint_offset_x = 1.0/rrrrs_platform_joint_offset_x
+    # (rrrrs-d_phi_4) coefficient of the acceleration in: inertia force of link 4 from its turning about its reference point
+    rrrrs_d_phi_4_t = inv_rrrrs_platform_joint_offset_x*rrrrs_h_4_y
+    # (rrrrs-J_4) inertia tensor of link 4 about the connection point
+    rrrrs_J_4_t = rrrrs_rho_tip_4_x*rrrrs_rho_tip_4_x
+    rrrrs_J_4_t_2 = rrrrs_link4_centre_of_mass_y*rrrrs_link4_centre_of_mass_y
+    rrrrs_J_4_t_3 = rrrrs_link4_centre_of_mass_z*rrrrs_link4_centre_of_mass_z
+    rrrrs_J_4_t_4 = rrrrs_J_4_t + rrrrs_J_4_t_2 + rrrrs_J_4_t_3
+    rrrrs_J_4_xx = rrrrs_link4_inertia_xx - rrrrs_link4_mass*(rrrrs_J_4_t - rrrrs_J_4_t_4)
+    rrrrs_J_4_xy = (
+    rrrrs_link4_inertia_xy - rrrrs_link4_centre_of_mass_y*rrrrs_link4_mass*rrrrs_rho_tip_4_x
     )
-    J_1_rrrrs_xx = rrrrs_link1_inertia_xx - rrrrs_link1_mass*(J_1_rrrrs_t - J_1_rrrrs_t_2)
-    # (rrrrs-G6) inertia tensor of link 2 about the origin of link 2
-    J_2_rrrrs_t = rrrrs_link2_centre_of_mass_x*rrrrs_link2_centre_of_mass_x
-    J_2_rrrrs_t_2 = rrrrs_link2_centre_of_mass_y*rrrrs_link2_centre_of_mass_y
-    J_2_rrrrs_t_3 = rrrrs_link2_centre_of_mass_z*rrrrs_link2_centre_of_mass_z
-    J_2_rrrrs_t_4 = J_2_rrrrs_t + J_2_rrrrs_t_2 + J_2_rrrrs_t_3
-    J_2_rrrrs_xx = rrrrs_link2_inertia_xx - rrrrs_link2_mass*(J_2_rrrrs_t - J_2_rrrrs_t_4)
-    J_2_rrrrs_xy = (
-    rrrrs_link2_inertia_xy -
-        rrrrs_link2_centre_of_mass_x*rrrrs_link2_centre_of_mass_y*rrrrs_link2_mass
+    rrrrs_J_4_xz = (
+    rrrrs_link4_inertia_xz - rrrrs_link4_centre_of_mass_z*rrrrs_link4_mass*rrrrs_rho_tip_4_x
     )
-    J_2_rrrrs_xz = (
-    rrrrs_link2_inertia_xz -
-        rrrrs_link2_centre_of_mass_x*rrrrs_link2_centre_of_mass_z*rrrrs_link2_mass
-    )
-    J_2_rrrrs_yy = rrrrs_link2_inertia_yy - rrrrs_link2_mass*(J_2_rrrrs_t_2 - J_2_rrrrs_t_4)
-    J_2_rrrrs_yz = (
-    rrrrs_link2_inertia_yz -
-        rrrrs_link2_centre_of_mass_y*rrrrs_link2_centre_of_mass_z*rrrrs_link2_mass
-    )
-    J_2_rrrrs_zz = rrrrs_link2_inertia_zz - rrrrs_link2_mass*(J_2_rrrrs_t_3 - J_2_rrrrs_t_4)
-    # (rrrrs-G8) inertia tensor of link 3 about the origin of link 3
-    J_3_rrrrs_t = rrrrs_link3_centre_of_mass_x*rrrrs_link3_centre_of_mass_x
-    J_3_rrrrs_t_2 = rrrrs_link3_centre_of_mass_y*rrrrs_link3_centre_of_mass_y
-    J_3_rrrrs_t_3 = rrrrs_link3_centre_of_mass_z*rrrrs_link3_centre_of_mass_z
-    J_3_rrrrs_t_4 = J_3_rrrrs_t + J_3_rrrrs_t_2 + J_3_rrrrs_t_3
-    J_3_rrrrs_xx = rrrrs_link3_inertia_xx - rrrrs_link3_mass*(J_3_rrrrs_t - J_3_rrrrs_t_4)
-    J_3_rrrrs_xy = (
-    rrrrs_link3_inertia_xy -
-        rrrrs_link3_centre_of_mass_x*rrrrs_link3_centre_of_mass_y*rrrrs_link3_mass
-    )
-    J_3_rrrrs_xz = (
-    rrrrs_link3_inertia_xz -
-        rrrrs_link3_centre_of_mass_x*rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass
-    )
-    J_3_rrrrs_yy = rrrrs_link3_inertia_yy - rrrrs_link3_mass*(J_3_rrrrs_t_2 - J_3_rrrrs_t_4)
-    J_3_rrrrs_yz = (
-    rrrrs_link3_inertia_yz -
-        rrrrs_link3_centre_of_mass_y*rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass
-    )
-    J_3_rrrrs_zz = rrrrs_link3_inertia_zz - rrrrs_link3_mass*(J_3_rrrrs_t_3 - J_3_rrrrs_t_4)
-    # (rrrrs-G9) connection point to the centre of mass of link 4
-    rho_tip_4_rrrrs_x = rrrrs_link4_centre_of_mass_x - rrrrs_platform_joint_offset_x
-    # (rrrrs-G11) inertia tensor of link 4 about the connection point
-    J_4_rrrrs_t = rho_tip_4_rrrrs_x*rho_tip_4_rrrrs_x
-    J_4_rrrrs_t_2 = rrrrs_link4_centre_of_mass_y*rrrrs_link4_centre_of_mass_y
-    J_4_rrrrs_t_3 = rrrrs_link4_centre_of_mass_z*rrrrs_link4_centre_of_mass_z
-    J_4_rrrrs_t_4 = J_4_rrrrs_t + J_4_rrrrs_t_2 + J_4_rrrrs_t_3
-    J_4_rrrrs_xx = rrrrs_link4_inertia_xx - rrrrs_link4_mass*(J_4_rrrrs_t - J_4_rrrrs_t_4)
-    J_4_rrrrs_xy = (
-    rrrrs_link4_inertia_xy - rho_tip_4_rrrrs_x*rrrrs_link4_centre_of_mass_y*rrrrs_link4_mass
-    )
-    J_4_rrrrs_xz = (
-    rrrrs_link4_inertia_xz - rho_tip_4_rrrrs_x*rrrrs_link4_centre_of_mass_z*rrrrs_link4_mass
-    )
-    J_4_rrrrs_yy = rrrrs_link4_inertia_yy - rrrrs_link4_mass*(J_4_rrrrs_t_2 - J_4_rrrrs_t_4)
-    J_4_rrrrs_yz = (
+    rrrrs_J_4_yy = rrrrs_link4_inertia_yy - rrrrs_link4_mass*(rrrrs_J_4_t_2 - rrrrs_J_4_t_4)
+    rrrrs_J_4_yz = (
     rrrrs_link4_inertia_yz -
         rrrrs_link4_centre_of_mass_y*rrrrs_link4_centre_of_mass_z*rrrrs_link4_mass
     )
-    J_4_rrrrs_zz = rrrrs_link4_inertia_zz - rrrrs_link4_mass*(J_4_rrrrs_t_3 - J_4_rrrrs_t_4)
-    # (rrrrs-N25) inertia tensor of the links from 3 outwards about joint 3
-    Jc_3_rrrrs_zz = J_3_rrrrs_zz + J_4_rrrrs_zz
-    # (rrrrs-G7) first moment of link 3 about the origin of link 3
-    h_3_rrrrs_x = rrrrs_link3_centre_of_mass_x*rrrrs_link3_mass
-    h_3_rrrrs_y = rrrrs_link3_centre_of_mass_y*rrrrs_link3_mass
-    h_3_rrrrs_z = rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass
-    # (rrrrs-N34) inertia tensor of the links from 2 outwards about joint 2
-    Jc_2_rrrrs_t = 0.5*rrrrs_joint3_offset_x*rrrrs_link3_mass
-    Jc_2_rrrrs_t_2 = h_3_rrrrs_z*rrrrs_joint3_offset_x
-    # (rrrrs-G5) first moment of link 2 about the origin of link 2
-    h_2_rrrrs_x = rrrrs_link2_centre_of_mass_x*rrrrs_link2_mass
-    h_2_rrrrs_y = rrrrs_link2_centre_of_mass_y*rrrrs_link2_mass
-    h_2_rrrrs_z = rrrrs_link2_centre_of_mass_z*rrrrs_link2_mass
-    # (rrrrs-G10) first moment of link 4 about the connection point
-    h_4_rrrrs_x = rho_tip_4_rrrrs_x*rrrrs_link4_mass
-    h_4_rrrrs_y = rrrrs_link4_centre_of_mass_y*rrrrs_link4_mass
-    h_4_rrrrs_z = rrrrs_link4_centre_of_mass_z*rrrrs_link4_mass
-    # (rrrrs-V11) reciprocal vector 3
-    inv_rrrrs_platform_joint_offset_x = 1.0/rrrrs_platform_joint_offset_x
-    # (rrrrs-N58) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-    d_Gamma_3_rrrrs_t = J_4_rrrrs_zz*inv_rrrrs_platform_joint_offset_x
-    d_Gamma_3_rrrrs_y = d_Gamma_3_rrrrs_t + h_4_rrrrs_x
-    # (rrrrs-N84) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    d_G_rrrrs_t = d_Gamma_3_rrrrs_y*inv_rrrrs_platform_joint_offset_x
-    # (rrrrs-N18) coefficient of the acceleration in: inertia force of link 4 from its turning about its reference point
-    d_phi_4_rrrrs_t = h_4_rrrrs_y*inv_rrrrs_platform_joint_offset_x
-    # (rrrrs-N88) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_rrrrs_yy = -d_G_rrrrs_t - h_4_rrrrs_x*inv_rrrrs_platform_joint_offset_x
-    # (L2) first moment about the platform origin
-    h_star_t_4 = rrrrs_link4_mass*rrrrs_platform_point_x
-    h_star_t_5 = rrrrs_link4_mass*rrrrs_platform_point_y
-    h_star_t_6 = rrrrs_link4_mass*rrrrs_platform_point_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t_11 = rrrrs_platform_point_x*rrrrs_platform_point_x
-    J_star_t_12 = rrrrs_platform_point_y*rrrrs_platform_point_y
-    J_star_t_13 = rrrrs_platform_point_z*rrrrs_platform_point_z
-    J_star_t_14 = J_star_t_11 + J_star_t_12 + J_star_t_13
-    J_star_t_15 = rrrrs_link4_mass*(J_star_t_11 - J_star_t_14)
-    J_star_t_16 = rrrrs_link4_mass*rrrrs_platform_point_x*rrrrs_platform_point_y
-    J_star_t_17 = rrrrs_link4_mass*rrrrs_platform_point_x*rrrrs_platform_point_z
-    J_star_t_18 = rrrrs_link4_mass*(J_star_t_12 - J_star_t_14)
-    J_star_t_19 = rrrrs_link4_mass*rrrrs_platform_point_y*rrrrs_platform_point_z
-    J_star_t_20 = rrrrs_link4_mass*(J_star_t_13 - J_star_t_14)
-    # (rrrrs-N10) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-    g_r0_x = (
+    rrrrs_J_4_zz = rrrrs_link4_inertia_zz - rrrrs_link4_mass*(rrrrs_J_4_t_3 - rrrrs_J_4_t_4)
+    # (rrrrs-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+    rrrrs_d_Gamma_4_t = inv_rrrrs_platform_joint_offset_x*rrrrs_J_4_zz
+    rrrrs_d_Gamma_4_y = rrrrs_d_Gamma_4_t + rrrrs_h_4_x
+    # (rrrrs-J_3) inertia tensor of link 3 about the origin of link 3
+    rrrrs_J_3_t = rrrrs_link3_centre_of_mass_x*rrrrs_link3_centre_of_mass_x
+    rrrrs_J_3_t_2 = rrrrs_link3_centre_of_mass_y*rrrrs_link3_centre_of_mass_y
+    rrrrs_J_3_t_3 = rrrrs_link3_centre_of_mass_z*rrrrs_link3_centre_of_mass_z
+    rrrrs_J_3_t_4 = rrrrs_J_3_t + rrrrs_J_3_t_2 + rrrrs_J_3_t_3
+    rrrrs_J_3_xx = rrrrs_link3_inertia_xx - rrrrs_link3_mass*(rrrrs_J_3_t - rrrrs_J_3_t_4)
+    rrrrs_J_3_xy = (
+    rrrrs_link3_inertia_xy -
+        rrrrs_link3_centre_of_mass_x*rrrrs_link3_centre_of_mass_y*rrrrs_link3_mass
+    )
+    rrrrs_J_3_xz = (
+    rrrrs_link3_inertia_xz -
+        rrrrs_link3_centre_of_mass_x*rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass
+    )
+    rrrrs_J_3_yy = rrrrs_link3_inertia_yy - rrrrs_link3_mass*(rrrrs_J_3_t_2 - rrrrs_J_3_t_4)
+    rrrrs_J_3_yz = (
+    rrrrs_link3_inertia_yz -
+        rrrrs_link3_centre_of_mass_y*rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass
+    )
+    rrrrs_J_3_zz = rrrrs_link3_inertia_zz - rrrrs_link3_mass*(rrrrs_J_3_t_3 - rrrrs_J_3_t_4)
+    # (rrrrs-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link about the connection point
+    rrrrs_Jc_3_zz = rrrrs_J_3_zz + rrrrs_J_4_zz
+    # (rrrrs-h_3) first moment of link 3 about the origin of link 3
+    rrrrs_h_3_x = rrrrs_link3_centre_of_mass_x*rrrrs_link3_mass
+    rrrrs_h_3_y = rrrrs_link3_centre_of_mass_y*rrrrs_link3_mass
+    rrrrs_h_3_z = rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass
+    # (rrrrs-J_1) inertia tensor of link 1 about the origin of link 1
+    rrrrs_J_1_t = rrrrs_link1_centre_of_mass_x*rrrrs_link1_centre_of_mass_x
+    rrrrs_J_1_t_2 = (
+    rrrrs_J_1_t + rrrrs_link1_centre_of_mass_y*rrrrs_link1_centre_of_mass_y +
+        rrrrs_link1_centre_of_mass_z*rrrrs_link1_centre_of_mass_z
+    )
+    rrrrs_J_1_xx = rrrrs_link1_inertia_xx - rrrrs_link1_mass*(rrrrs_J_1_t - rrrrs_J_1_t_2)
+    # (rrrrs-h_2) first moment of link 2 about the origin of link 2
+    rrrrs_h_2_x = rrrrs_link2_centre_of_mass_x*rrrrs_link2_mass
+    rrrrs_h_2_y = rrrrs_link2_centre_of_mass_y*rrrrs_link2_mass
+    rrrrs_h_2_z = rrrrs_link2_centre_of_mass_z*rrrrs_link2_mass
+    # (rrrrs-J_2) inertia tensor of link 2 about the origin of link 2
+    rrrrs_J_2_t = rrrrs_link2_centre_of_mass_x*rrrrs_link2_centre_of_mass_x
+    rrrrs_J_2_t_2 = rrrrs_link2_centre_of_mass_y*rrrrs_link2_centre_of_mass_y
+    rrrrs_J_2_t_3 = rrrrs_link2_centre_of_mass_z*rrrrs_link2_centre_of_mass_z
+    rrrrs_J_2_t_4 = rrrrs_J_2_t + rrrrs_J_2_t_2 + rrrrs_J_2_t_3
+    rrrrs_J_2_xx = rrrrs_link2_inertia_xx - rrrrs_link2_mass*(rrrrs_J_2_t - rrrrs_J_2_t_4)
+    rrrrs_J_2_xy = (
+    rrrrs_link2_inertia_xy -
+        rrrrs_link2_centre_of_mass_x*rrrrs_link2_centre_of_mass_y*rrrrs_link2_mass
+    )
+    rrrrs_J_2_xz = (
+    rrrrs_link2_inertia_xz -
+        rrrrs_link2_centre_of_mass_x*rrrrs_link2_centre_of_mass_z*rrrrs_link2_mass
+    )
+    rrrrs_J_2_yy = rrrrs_link2_inertia_yy - rrrrs_link2_mass*(rrrrs_J_2_t_2 - rrrrs_J_2_t_4)
+    rrrrs_J_2_yz = (
+    rrrrs_link2_inertia_yz -
+        rrrrs_link2_centre_of_mass_y*rrrrs_link2_centre_of_mass_z*rrrrs_link2_mass
+    )
+    rrrrs_J_2_zz = rrrrs_link2_inertia_zz - rrrrs_link2_mass*(rrrrs_J_2_t_3 - rrrrs_J_2_t_4)
+    # (rrrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+    rrrrs_Jc_2_t = 0.5*rrrrs_joint3_offset_x*rrrrs_link3_mass
+    rrrrs_Jc_2_t_2 = rrrrs_h_3_z*rrrrs_joint3_offset_x
+    # (rrrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    rrrrs_d_G_t = inv_rrrrs_platform_joint_offset_x*rrrrs_d_Gamma_4_y
+    # (rrrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    rrrrs_d_c_yy = -rrrrs_d_G_t - inv_rrrrs_platform_joint_offset_x*rrrrs_h_4_x
+    # (h_star) first moment about the platform origin
+    rrrrs_h_star_t = rrrrs_link4_mass*rrrrs_platform_point_x
+    rrrrs_h_star_t_2 = rrrrs_link4_mass*rrrrs_platform_point_y
+    rrrrs_h_star_t_3 = rrrrs_link4_mass*rrrrs_platform_point_z
+    # (J_star) inertia tensor about the platform origin
+    rrrrs_J_star_t = rrrrs_platform_point_x*rrrrs_platform_point_x
+    rrrrs_J_star_t_2 = rrrrs_platform_point_y*rrrrs_platform_point_y
+    rrrrs_J_star_t_3 = rrrrs_platform_point_z*rrrrs_platform_point_z
+    rrrrs_J_star_t_4 = rrrrs_J_star_t + rrrrs_J_star_t_2 + rrrrs_J_star_t_3
+    rrrrs_J_star_t_5 = rrrrs_link4_mass*(rrrrs_J_star_t - rrrrs_J_star_t_4)
+    rrrrs_J_star_t_6 = rrrrs_link4_mass*rrrrs_platform_point_x*rrrrs_platform_point_y
+    rrrrs_J_star_t_7 = rrrrs_link4_mass*rrrrs_platform_point_x*rrrrs_platform_point_z
+    rrrrs_J_star_t_8 = rrrrs_link4_mass*(rrrrs_J_star_t_2 - rrrrs_J_star_t_4)
+    rrrrs_J_star_t_9 = rrrrs_link4_mass*rrrrs_platform_point_y*rrrrs_platform_point_z
+    rrrrs_J_star_t_10 = rrrrs_link4_mass*(rrrrs_J_star_t_3 - rrrrs_J_star_t_4)
+    # (rrrrs-trace_J_4) half the trace of that inertia tensor
+    rrrrs_trace_J_4 = 0.5*rrrrs_J_4_xx + 0.5*rrrrs_J_4_yy + 0.5*rrrrs_J_4_zz
+    # (rrrrs-Sigma_4) second moment of mass of the links that turn with link 4
+    rrrrs_Sigma_4_xx = rrrrs_trace_J_4 - rrrrs_J_4_xx
+    rrrrs_Sigma_4_yy = rrrrs_trace_J_4 - rrrrs_J_4_yy
+    rrrrs_Sigma_4_zz = rrrrs_trace_J_4 - rrrrs_J_4_zz
+    # (rrrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+    rrrrs_g_r0_x = (
     gravity_x*rrrrs_base_frame_xy + gravity_y*rrrrs_base_frame_yy + gravity_z*rrrrs_base_frame_zy
     )
-    g_r0_y = (
+    rrrrs_g_r0_y = (
     gravity_x*rrrrs_base_frame_xz + gravity_y*rrrrs_base_frame_yz + gravity_z*rrrrs_base_frame_zz
     )
-    g_r0_z = (
+    rrrrs_g_r0_z = (
     gravity_x*rrrrs_base_frame_xx + gravity_y*rrrrs_base_frame_yx + gravity_z*rrrrs_base_frame_zx
     )
-    # (rrrrs-N51) half the trace of that inertia tensor
-    trace_J_3_rrrrs_rrrrs = 0.5*J_3_rrrrs_xx + 0.5*J_3_rrrrs_yy + 0.5*J_3_rrrrs_zz
-    # (rrrrs-N52) second moment of mass of the links that turn with link 3
-    Sigma_3_rrrrs_xx = trace_J_3_rrrrs_rrrrs - J_3_rrrrs_xx
-    Sigma_3_rrrrs_yy = trace_J_3_rrrrs_rrrrs - J_3_rrrrs_yy
-    Sigma_3_rrrrs_zz = trace_J_3_rrrrs_rrrrs - J_3_rrrrs_zz
-    # (rrrrs-N43) half the trace of that inertia tensor
-    trace_J_4_rrrrs_rrrrs = 0.5*J_4_rrrrs_xx + 0.5*J_4_rrrrs_yy + 0.5*J_4_rrrrs_zz
-    # (rrrrs-N44) second moment of mass of the links that turn with link 4
-    Sigma_4_rrrrs_xx = trace_J_4_rrrrs_rrrrs - J_4_rrrrs_xx
-    Sigma_4_rrrrs_yy = trace_J_4_rrrrs_rrrrs - J_4_rrrrs_yy
-    Sigma_4_rrrrs_zz = trace_J_4_rrrrs_rrrrs - J_4_rrrrs_zz
-    # (rrrrs-N61) half the trace of that inertia tensor
-    trace_J_2_rrrrs_rrrrs = 0.5*J_2_rrrrs_xx + 0.5*J_2_rrrrs_yy + 0.5*J_2_rrrrs_zz
-    # (rrrrs-N62) second moment of mass of the links that turn with link 2
-    Sigma_2_rrrrs_xx = trace_J_2_rrrrs_rrrrs - J_2_rrrrs_xx
-    Sigma_2_rrrrs_yy = trace_J_2_rrrrs_rrrrs - J_2_rrrrs_yy
-    Sigma_2_rrrrs_zz = trace_J_2_rrrrs_rrrrs - J_2_rrrrs_zz
-    # (rrrrs-G3) first moment of link 1 about the origin of link 1
-    h_1_rrrrs_x = rrrrs_link1_centre_of_mass_x*rrrrs_link1_mass
-    h_1_rrrrs_y = rrrrs_link1_centre_of_mass_y*rrrrs_link1_mass
-    h_1_rrrrs_z = rrrrs_link1_centre_of_mass_z*rrrrs_link1_mass
-    # (V1) potential energy
-    b_rrrrs_r0_x = (
+    # (rrrrs-trace_J_3) half the trace of that inertia tensor
+    rrrrs_trace_J_3 = 0.5*rrrrs_J_3_xx + 0.5*rrrrs_J_3_yy + 0.5*rrrrs_J_3_zz
+    # (rrrrs-Sigma_3) second moment of mass of the links that turn with link 3
+    rrrrs_Sigma_3_xx = rrrrs_trace_J_3 - rrrrs_J_3_xx
+    rrrrs_Sigma_3_yy = rrrrs_trace_J_3 - rrrrs_J_3_yy
+    rrrrs_Sigma_3_zz = rrrrs_trace_J_3 - rrrrs_J_3_zz
+    # (rrrrs-trace_J_2) half the trace of that inertia tensor
+    rrrrs_trace_J_2 = 0.5*rrrrs_J_2_xx + 0.5*rrrrs_J_2_yy + 0.5*rrrrs_J_2_zz
+    # (rrrrs-Sigma_2) second moment of mass of the links that turn with link 2
+    rrrrs_Sigma_2_xx = rrrrs_trace_J_2 - rrrrs_J_2_xx
+    rrrrs_Sigma_2_yy = rrrrs_trace_J_2 - rrrrs_J_2_yy
+    rrrrs_Sigma_2_zz = rrrrs_trace_J_2 - rrrrs_J_2_zz
+    # (rrrrs-h_1) first moment of link 1 about the origin of link 1
+    rrrrs_h_1_x = rrrrs_link1_centre_of_mass_x*rrrrs_link1_mass
+    rrrrs_h_1_y = rrrrs_link1_centre_of_mass_y*rrrrs_link1_mass
+    rrrrs_h_1_z = rrrrs_link1_centre_of_mass_z*rrrrs_link1_mass
+    # (potential) potential energy
+    rrrrs_b_r0_x = (
     rrrrs_base_frame_xy*rrrrs_base_point_x + rrrrs_base_frame_yy*rrrrs_base_point_y +
         rrrrs_base_frame_zy*rrrrs_base_point_z
     )
-    b_rrrrs_r0_y = (
+    rrrrs_b_r0_y = (
     rrrrs_base_frame_xz*rrrrs_base_point_x + rrrrs_base_frame_yz*rrrrs_base_point_y +
         rrrrs_base_frame_zz*rrrrs_base_point_z
     )
-    b_rrrrs_r0_z = (
+    rrrrs_b_r0_z = (
     rrrrs_base_frame_xx*rrrrs_base_point_x + rrrrs_base_frame_yx*rrrrs_base_point_y +
         rrrrs_base_frame_zx*rrrrs_base_point_z
     )
-    potential_t_3 = b_rrrrs_r0_z*rrrrs_link1_mass
-    potential_t_4 = rrrrs_link2_mass*(b_rrrrs_r0_z + rrrrs_joint2_offset_x)
-    # (rrrrs-K7) squared amplitude
-    inv_size_rrrrs_t_4 = 1.0/size_rrrrs_t_3
-    # (rrrrs-K22) squared amplitude
-    inv_rho2_3_rrrrs_t_4 = 1.0/rho2_3_rrrrs_t
-    # (rrrrs-V9) reciprocal vector 1
-    inv_size_rrrrs = 1.0/size_rrrrs
+    rrrrs_potential_t = rrrrs_b_r0_z*rrrrs_link1_mass
+    rrrrs_potential_t_2 = rrrrs_link2_mass*(rrrrs_b_r0_z + rrrrs_joint2_offset_x)
+    # (rrrrs-rho2_1) squared amplitude
+    inv_rrrrs_size_t_4 = 1.0/rrrrs_size_t_3
+    # (rrrrs-rho2_3) squared amplitude
+    inv_rrrrs_rho2_3_t_4 = 1.0/rrrrs_rho2_3_t
+    # (rrrrs-w_1) reciprocal vector 1
+    inv_rrrrs_size = 1.0/rrrrs_size
     total_rrrrs = np.sum(np.broadcast_to(rrrrs_link4_mass, _rrrrs))
-    total_rrrrs_x = np.sum(np.broadcast_to(h_star_t_4, _rrrrs))
-    total_rrrrs_y = np.sum(np.broadcast_to(h_star_t_5, _rrrrs))
-    total_rrrrs_z = np.sum(np.broadcast_to(h_star_t_6, _rrrrs))
-    total_rrrrs_xx = np.sum(np.broadcast_to(J_star_t_15, _rrrrs))
-    total_rrrrs_xy = np.sum(np.broadcast_to(J_star_t_16, _rrrrs))
-    total_rrrrs_xz = np.sum(np.broadcast_to(J_star_t_17, _rrrrs))
-    total_rrrrs_yy = np.sum(np.broadcast_to(J_star_t_18, _rrrrs))
-    total_rrrrs_yz = np.sum(np.broadcast_to(J_star_t_19, _rrrrs))
-    total_rrrrs_zz = np.sum(np.broadcast_to(J_star_t_20, _rrrrs))
+    total_rrrrs_x = np.sum(np.broadcast_to(rrrrs_h_star_t, _rrrrs))
+    total_rrrrs_y = np.sum(np.broadcast_to(rrrrs_h_star_t_2, _rrrrs))
+    total_rrrrs_z = np.sum(np.broadcast_to(rrrrs_h_star_t_3, _rrrrs))
+    total_rrrrs_xx = np.sum(np.broadcast_to(rrrrs_J_star_t_5, _rrrrs))
+    total_rrrrs_xy = np.sum(np.broadcast_to(rrrrs_J_star_t_6, _rrrrs))
+    total_rrrrs_xz = np.sum(np.broadcast_to(rrrrs_J_star_t_7, _rrrrs))
+    total_rrrrs_yy = np.sum(np.broadcast_to(rrrrs_J_star_t_8, _rrrrs))
+    total_rrrrs_yz = np.sum(np.broadcast_to(rrrrs_J_star_t_9, _rrrrs))
+    total_rrrrs_zz = np.sum(np.broadcast_to(rrrrs_J_star_t_10, _rrrrs))
     total_rrrrs_x_2 = np.sum(np.broadcast_to(rrrrs_platform_point_x, _rrrrs))
     total_rrrrs_y_2 = np.sum(np.broadcast_to(rrrrs_platform_point_y, _rrrrs))
     total_rrrrs_z_2 = np.sum(np.broadcast_to(rrrrs_platform_point_z, _rrrrs))
-    total_rrrrs_2 = np.sum(np.broadcast_to(size_rrrrs_t_3, _rrrrs))
-    # (rrrs-G2) length of the leg's lever arms, the measure of what is near singular
-    size_rrrs_t = rrrs_joint3_offset_x*rrrs_joint3_offset_x
-    size_rrrs_t_2 = rrrs_platform_joint_offset_x*rrrs_platform_joint_offset_x
-    size_rrrs_t_3 = 6.696672622239999e-07 + size_rrrs_t + size_rrrs_t_2
-    size_rrrs = sqrt(size_rrrs_t_3)
-    # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-    Kd_2_rrrs_t = 0.5*size_rrrs_t
-    Kd_2_rrrs_t_2 = 0.5*size_rrrs_t_2
-    # (rrrs-K19) squared amplitude
-    rho2_2_rrrs_t = size_rrrs*size_rrrs*size_rrrs_t_3
-    # (rrrs-K26) the vector from joint 2 to the connection point, resolved along link 2
-    inv_size_rrrs_t = 1.0/size_rrrs_t
-    # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-    inv_size_rrrs_t_2 = 1.0/size_rrrs_t_2
-    # (rrrs-G4) inertia tensor of link 1 about the origin of link 1
-    J_1_rrrs_t = rrrs_link1_centre_of_mass_x*rrrs_link1_centre_of_mass_x
-    J_1_rrrs_t_2 = (
-    J_1_rrrs_t + rrrs_link1_centre_of_mass_y*rrrs_link1_centre_of_mass_y +
-        rrrs_link1_centre_of_mass_z*rrrs_link1_centre_of_mass_z
+    total_rrrrs_2 = np.sum(np.broadcast_to(rrrrs_size_t_3, _rrrrs))
+    # (rrrs-size) length of the leg's lever arms, the measure of what is near singular
+    rrrs_size_t = rrrs_joint3_offset_x*rrrs_joint3_offset_x
+    rrrs_size_t_2 = rrrs_platform_joint_offset_x*rrrs_platform_joint_offset_x
+    rrrs_size_t_3 = 6.696672622239999e-07 + rrrs_size_t + rrrs_size_t_2
+    rrrs_size = sqrt(rrrs_size_t_3)
+    # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+    rrrs_Kd_2_t = 0.5*rrrs_size_t
+    rrrs_Kd_2_t_2 = 0.5*rrrs_size_t_2
+    # (rrrs-rho2_2) squared amplitude
+    rrrs_rho2_2_t = rrrs_size*rrrs_size*rrrs_size_t_3
+    # (rrrs-xi_2) the vector from joint 2 to the connection point, resolved along link 2
+    inv_rrrs_size_t = 1.0/rrrs_size_t
+    # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
+    inv_rrrs_size_t_2 = 1.0/rrrs_size_t_2
+    # (rrrs-rho_tip_3) connection point to the centre of mass of link 3
+    rrrs_rho_tip_3_x = rrrs_link3_centre_of_mass_x - rrrs_platform_joint_offset_x
+    # (rrrs-h_3) first moment of link 3 about the connection point
+    rrrs_h_3_x = rrrs_link3_mass*rrrs_rho_tip_3_x
+    rrrs_h_3_y = rrrs_link3_centre_of_mass_y*rrrs_link3_mass
+    rrrs_h_3_z = rrrs_link3_centre_of_mass_z*rrrs_link3_mass
+    # (rrrs-w_3) reciprocal vector 3
+    inv_rrrs_platform_joint_offset_x = 1.0/rrrs_platform_joint_offset_x
+    # (rrrs-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+    rrrs_d_phi_3_t = inv_rrrs_platform_joint_offset_x*rrrs_h_3_y
+    # (rrrs-J_3) inertia tensor of link 3 about the connection point
+    rrrs_J_3_t = rrrs_rho_tip_3_x*rrrs_rho_tip_3_x
+    rrrs_J_3_t_2 = rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_y
+    rrrs_J_3_t_3 = rrrs_link3_centre_of_mass_z*rrrs_link3_centre_of_mass_z
+    rrrs_J_3_t_4 = rrrs_J_3_t + rrrs_J_3_t_2 + rrrs_J_3_t_3
+    rrrs_J_3_xx = rrrs_link3_inertia_xx - rrrs_link3_mass*(rrrs_J_3_t - rrrs_J_3_t_4)
+    rrrs_J_3_xy = (
+    rrrs_link3_inertia_xy - rrrs_link3_centre_of_mass_y*rrrs_link3_mass*rrrs_rho_tip_3_x
     )
-    J_1_rrrs_xx = rrrs_link1_inertia_xx - rrrs_link1_mass*(J_1_rrrs_t - J_1_rrrs_t_2)
-    # (rrrs-G6) inertia tensor of link 2 about the origin of link 2
-    J_2_rrrs_t = rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_x
-    J_2_rrrs_t_2 = rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_y
-    J_2_rrrs_t_3 = rrrs_link2_centre_of_mass_z*rrrs_link2_centre_of_mass_z
-    J_2_rrrs_t_4 = J_2_rrrs_t + J_2_rrrs_t_2 + J_2_rrrs_t_3
-    J_2_rrrs_xx = rrrs_link2_inertia_xx - rrrs_link2_mass*(J_2_rrrs_t - J_2_rrrs_t_4)
-    J_2_rrrs_xy = (
-    rrrs_link2_inertia_xy -
-        rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_y*rrrs_link2_mass
+    rrrs_J_3_xz = (
+    rrrs_link3_inertia_xz - rrrs_link3_centre_of_mass_z*rrrs_link3_mass*rrrs_rho_tip_3_x
     )
-    J_2_rrrs_xz = (
-    rrrs_link2_inertia_xz -
-        rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_z*rrrs_link2_mass
-    )
-    J_2_rrrs_yy = rrrs_link2_inertia_yy - rrrs_link2_mass*(J_2_rrrs_t_2 - J_2_rrrs_t_4)
-    J_2_rrrs_yz = (
-    rrrs_link2_inertia_yz -
-        rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_z*rrrs_link2_mass
-    )
-    J_2_rrrs_zz = rrrs_link2_inertia_zz - rrrs_link2_mass*(J_2_rrrs_t_3 - J_2_rrrs_t_4)
-    # (rrrs-G7) connection point to the centre of mass of link 3
-    rho_tip_3_rrrs_x = rrrs_link3_centre_of_mass_x - rrrs_platform_joint_offset_x
-    # (rrrs-G9) inertia tensor of link 3 about the connection point
-    J_3_rrrs_t = rho_tip_3_rrrs_x*rho_tip_3_rrrs_x
-    J_3_rrrs_t_2 = rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_y
-    J_3_rrrs_t_3 = rrrs_link3_centre_of_mass_z*rrrs_link3_centre_of_mass_z
-    J_3_rrrs_t_4 = J_3_rrrs_t + J_3_rrrs_t_2 + J_3_rrrs_t_3
-    J_3_rrrs_xx = rrrs_link3_inertia_xx - rrrs_link3_mass*(J_3_rrrs_t - J_3_rrrs_t_4)
-    J_3_rrrs_xy = (
-    rrrs_link3_inertia_xy - rho_tip_3_rrrs_x*rrrs_link3_centre_of_mass_y*rrrs_link3_mass
-    )
-    J_3_rrrs_xz = (
-    rrrs_link3_inertia_xz - rho_tip_3_rrrs_x*rrrs_link3_centre_of_mass_z*rrrs_link3_mass
-    )
-    J_3_rrrs_yy = rrrs_link3_inertia_yy - rrrs_link3_mass*(J_3_rrrs_t_2 - J_3_rrrs_t_4)
-    J_3_rrrs_yz = (
+    rrrs_J_3_yy = rrrs_link3_inertia_yy - rrrs_link3_mass*(rrrs_J_3_t_2 - rrrs_J_3_t_4)
+    rrrs_J_3_yz = (
     rrrs_link3_inertia_yz -
         rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_z*rrrs_link3_mass
     )
-    J_3_rrrs_zz = rrrs_link3_inertia_zz - rrrs_link3_mass*(J_3_rrrs_t_3 - J_3_rrrs_t_4)
-    # (rrrs-N18) inertia tensor of the links from 2 outwards about joint 2
-    Jc_2_rrrs_zz = J_2_rrrs_zz + J_3_rrrs_zz
-    # (rrrs-G5) first moment of link 2 about the origin of link 2
-    h_2_rrrs_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass
-    h_2_rrrs_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass
-    h_2_rrrs_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass
-    # (rrrs-G8) first moment of link 3 about the connection point
-    h_3_rrrs_x = rho_tip_3_rrrs_x*rrrs_link3_mass
-    h_3_rrrs_y = rrrs_link3_centre_of_mass_y*rrrs_link3_mass
-    h_3_rrrs_z = rrrs_link3_centre_of_mass_z*rrrs_link3_mass
-    # (rrrs-V9) reciprocal vector 3
-    inv_rrrs_platform_joint_offset_x = 1.0/rrrs_platform_joint_offset_x
-    # (rrrs-N41) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-    d_Gamma_2_rrrs_t = J_3_rrrs_zz*inv_rrrs_platform_joint_offset_x
-    d_Gamma_2_rrrs_y = d_Gamma_2_rrrs_t + h_3_rrrs_x
-    # (rrrs-N12) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-    d_phi_3_rrrs_t = h_3_rrrs_y*inv_rrrs_platform_joint_offset_x
-    # (rrrs-N56) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_rrrs_yy = (
-    -d_Gamma_2_rrrs_y*inv_rrrs_platform_joint_offset_x -
-        h_3_rrrs_x*inv_rrrs_platform_joint_offset_x
+    rrrs_J_3_zz = rrrs_link3_inertia_zz - rrrs_link3_mass*(rrrs_J_3_t_3 - rrrs_J_3_t_4)
+    # (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    rrrs_d_Gamma_3_t = inv_rrrs_platform_joint_offset_x*rrrs_J_3_zz
+    rrrs_d_Gamma_3_y = rrrs_d_Gamma_3_t + rrrs_h_3_x
+    # (rrrs-J_2) inertia tensor of link 2 about the origin of link 2
+    rrrs_J_2_t = rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_x
+    rrrs_J_2_t_2 = rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_y
+    rrrs_J_2_t_3 = rrrs_link2_centre_of_mass_z*rrrs_link2_centre_of_mass_z
+    rrrs_J_2_t_4 = rrrs_J_2_t + rrrs_J_2_t_2 + rrrs_J_2_t_3
+    rrrs_J_2_xx = rrrs_link2_inertia_xx - rrrs_link2_mass*(rrrs_J_2_t - rrrs_J_2_t_4)
+    rrrs_J_2_xy = (
+    rrrs_link2_inertia_xy -
+        rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_y*rrrs_link2_mass
     )
-    # (L2) first moment about the platform origin
-    h_star_t_7 = rrrs_link3_mass*rrrs_platform_point_x
-    h_star_t_8 = rrrs_link3_mass*rrrs_platform_point_y
-    h_star_t_9 = rrrs_link3_mass*rrrs_platform_point_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t_21 = rrrs_platform_point_x*rrrs_platform_point_x
-    J_star_t_22 = rrrs_platform_point_y*rrrs_platform_point_y
-    J_star_t_23 = rrrs_platform_point_z*rrrs_platform_point_z
-    J_star_t_24 = J_star_t_21 + J_star_t_22 + J_star_t_23
-    J_star_t_25 = rrrs_link3_mass*(J_star_t_21 - J_star_t_24)
-    J_star_t_26 = rrrs_link3_mass*rrrs_platform_point_x*rrrs_platform_point_y
-    J_star_t_27 = rrrs_link3_mass*rrrs_platform_point_x*rrrs_platform_point_z
-    J_star_t_28 = rrrs_link3_mass*(J_star_t_22 - J_star_t_24)
-    J_star_t_29 = rrrs_link3_mass*rrrs_platform_point_y*rrrs_platform_point_z
-    J_star_t_30 = rrrs_link3_mass*(J_star_t_23 - J_star_t_24)
-    # (rrrs-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-    g_r0_x_2 = (
+    rrrs_J_2_xz = (
+    rrrs_link2_inertia_xz -
+        rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_z*rrrs_link2_mass
+    )
+    rrrs_J_2_yy = rrrs_link2_inertia_yy - rrrs_link2_mass*(rrrs_J_2_t_2 - rrrs_J_2_t_4)
+    rrrs_J_2_yz = (
+    rrrs_link2_inertia_yz -
+        rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_z*rrrs_link2_mass
+    )
+    rrrs_J_2_zz = rrrs_link2_inertia_zz - rrrs_link2_mass*(rrrs_J_2_t_3 - rrrs_J_2_t_4)
+    # (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+    rrrs_Jc_2_zz = rrrs_J_2_zz + rrrs_J_3_zz
+    # (rrrs-h_2) first moment of link 2 about the origin of link 2
+    rrrs_h_2_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass
+    rrrs_h_2_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass
+    rrrs_h_2_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass
+    # (rrrs-J_1) inertia tensor of link 1 about the origin of link 1
+    rrrs_J_1_t = rrrs_link1_centre_of_mass_x*rrrs_link1_centre_of_mass_x
+    rrrs_J_1_t_2 = (
+    rrrs_J_1_t + rrrs_link1_centre_of_mass_y*rrrs_link1_centre_of_mass_y +
+        rrrs_link1_centre_of_mass_z*rrrs_link1_centre_of_mass_z
+    )
+    rrrs_J_1_xx = rrrs_link1_inertia_xx - rrrs_link1_mass*(rrrs_J_1_t - rrrs_J_1_t_2)
+    # (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    rrrs_d_c_yy = (
+    -inv_rrrs_platform_joint_offset_x*rrrs_d_Gamma_3_y -
+        inv_rrrs_platform_joint_offset_x*rrrs_h_3_x
+    )
+    # (h_star) first moment about the platform origin
+    rrrs_h_star_t = rrrs_link3_mass*rrrs_platform_point_x
+    rrrs_h_star_t_2 = rrrs_link3_mass*rrrs_platform_point_y
+    rrrs_h_star_t_3 = rrrs_link3_mass*rrrs_platform_point_z
+    # (J_star) inertia tensor about the platform origin
+    rrrs_J_star_t = rrrs_platform_point_x*rrrs_platform_point_x
+    rrrs_J_star_t_2 = rrrs_platform_point_y*rrrs_platform_point_y
+    rrrs_J_star_t_3 = rrrs_platform_point_z*rrrs_platform_point_z
+    rrrs_J_star_t_4 = rrrs_J_star_t + rrrs_J_star_t_2 + rrrs_J_star_t_3
+    rrrs_J_star_t_5 = rrrs_link3_mass*(rrrs_J_star_t - rrrs_J_star_t_4)
+    rrrs_J_star_t_6 = rrrs_link3_mass*rrrs_platform_point_x*rrrs_platform_point_y
+    rrrs_J_star_t_7 = rrrs_link3_mass*rrrs_platform_point_x*rrrs_platform_point_z
+    rrrs_J_star_t_8 = rrrs_link3_mass*(rrrs_J_star_t_2 - rrrs_J_star_t_4)
+    rrrs_J_star_t_9 = rrrs_link3_mass*rrrs_platform_point_y*rrrs_platform_point_z
+    rrrs_J_star_t_10 = rrrs_link3_mass*(rrrs_J_star_t_3 - rrrs_J_star_t_4)
+    # (rrrs-trace_J_3) half the trace of that inertia tensor
+    rrrs_trace_J_3 = 0.5*rrrs_J_3_xx + 0.5*rrrs_J_3_yy + 0.5*rrrs_J_3_zz
+    # (rrrs-Sigma_3) second moment of mass of the links that turn with link 3
+    rrrs_Sigma_3_xx = rrrs_trace_J_3 - rrrs_J_3_xx
+    rrrs_Sigma_3_yy = rrrs_trace_J_3 - rrrs_J_3_yy
+    rrrs_Sigma_3_zz = rrrs_trace_J_3 - rrrs_J_3_zz
+    # (rrrs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+    rrrs_g_r0_x = (
     gravity_x*rrrs_base_frame_xy + gravity_y*rrrs_base_frame_yy + gravity_z*rrrs_base_frame_zy
     )
-    g_r0_y_2 = (
+    rrrs_g_r0_y = (
     gravity_x*rrrs_base_frame_xz + gravity_y*rrrs_base_frame_yz + gravity_z*rrrs_base_frame_zz
     )
-    g_r0_z_2 = (
+    rrrs_g_r0_z = (
     gravity_x*rrrs_base_frame_xx + gravity_y*rrrs_base_frame_yx + gravity_z*rrrs_base_frame_zx
     )
-    # (rrrs-N34) half the trace of that inertia tensor
-    trace_J_2_rrrs_rrrs = 0.5*J_2_rrrs_xx + 0.5*J_2_rrrs_yy + 0.5*J_2_rrrs_zz
-    # (rrrs-N35) second moment of mass of the links that turn with link 2
-    Sigma_2_rrrs_xx = trace_J_2_rrrs_rrrs - J_2_rrrs_xx
-    Sigma_2_rrrs_yy = trace_J_2_rrrs_rrrs - J_2_rrrs_yy
-    Sigma_2_rrrs_zz = trace_J_2_rrrs_rrrs - J_2_rrrs_zz
-    # (rrrs-N27) half the trace of that inertia tensor
-    trace_J_3_rrrs_rrrs = 0.5*J_3_rrrs_xx + 0.5*J_3_rrrs_yy + 0.5*J_3_rrrs_zz
-    # (rrrs-N28) second moment of mass of the links that turn with link 3
-    Sigma_3_rrrs_xx = trace_J_3_rrrs_rrrs - J_3_rrrs_xx
-    Sigma_3_rrrs_yy = trace_J_3_rrrs_rrrs - J_3_rrrs_yy
-    Sigma_3_rrrs_zz = trace_J_3_rrrs_rrrs - J_3_rrrs_zz
-    # (rrrs-G3) first moment of link 1 about the origin of link 1
-    h_1_rrrs_x = rrrs_link1_centre_of_mass_x*rrrs_link1_mass
-    h_1_rrrs_y = rrrs_link1_centre_of_mass_y*rrrs_link1_mass
-    h_1_rrrs_z = rrrs_link1_centre_of_mass_z*rrrs_link1_mass
-    # (V1) potential energy
-    b_rrrs_r0_x = (
+    # (rrrs-trace_J_2) half the trace of that inertia tensor
+    rrrs_trace_J_2 = 0.5*rrrs_J_2_xx + 0.5*rrrs_J_2_yy + 0.5*rrrs_J_2_zz
+    # (rrrs-Sigma_2) second moment of mass of the links that turn with link 2
+    rrrs_Sigma_2_xx = rrrs_trace_J_2 - rrrs_J_2_xx
+    rrrs_Sigma_2_yy = rrrs_trace_J_2 - rrrs_J_2_yy
+    rrrs_Sigma_2_zz = rrrs_trace_J_2 - rrrs_J_2_zz
+    # (rrrs-h_1) first moment of link 1 about the origin of link 1
+    rrrs_h_1_x = rrrs_link1_centre_of_mass_x*rrrs_link1_mass
+    rrrs_h_1_y = rrrs_link1_centre_of_mass_y*rrrs_link1_mass
+    rrrs_h_1_z = rrrs_link1_centre_of_mass_z*rrrs_link1_mass
+    # (potential) potential energy
+    rrrs_b_r0_x = (
     rrrs_base_frame_xy*rrrs_base_point_x + rrrs_base_frame_yy*rrrs_base_point_y +
         rrrs_base_frame_zy*rrrs_base_point_z
     )
-    b_rrrs_r0_y = (
+    rrrs_b_r0_y = (
     rrrs_base_frame_xz*rrrs_base_point_x + rrrs_base_frame_yz*rrrs_base_point_y +
         rrrs_base_frame_zz*rrrs_base_point_z
     )
-    b_rrrs_r0_z = (
+    rrrs_b_r0_z = (
     rrrs_base_frame_xx*rrrs_base_point_x + rrrs_base_frame_yx*rrrs_base_point_y +
         rrrs_base_frame_zx*rrrs_base_point_z
     )
-    potential_t = b_rrrs_r0_z*rrrs_link1_mass
-    potential_t_2 = rrrs_link2_mass*(b_rrrs_r0_z + rrrs_joint2_offset_x)
-    # (rrrs-K5) squared amplitude
-    inv_size_rrrs_t_3 = 1.0/size_rrrs_t_3
-    # (rrrs-K19) squared amplitude
-    inv_rho2_2_rrrs_t_4 = 1.0/rho2_2_rrrs_t
-    # (rrrs-V7) reciprocal vector 1
-    inv_size_rrrs = 1.0/size_rrrs
+    rrrs_potential_t = rrrs_b_r0_z*rrrs_link1_mass
+    rrrs_potential_t_2 = rrrs_link2_mass*(rrrs_b_r0_z + rrrs_joint2_offset_x)
+    # (rrrs-rho2_1) squared amplitude
+    inv_rrrs_size_t_3 = 1.0/rrrs_size_t_3
+    # (rrrs-rho2_2) squared amplitude
+    inv_rrrs_rho2_2_t_4 = 1.0/rrrs_rho2_2_t
+    # (rrrs-w_1) reciprocal vector 1
+    inv_rrrs_size = 1.0/rrrs_size
     total_rrrs = np.sum(np.broadcast_to(rrrs_link3_mass, _rrrs))
-    total_rrrs_x = np.sum(np.broadcast_to(h_star_t_7, _rrrs))
-    total_rrrs_y = np.sum(np.broadcast_to(h_star_t_8, _rrrs))
-    total_rrrs_z = np.sum(np.broadcast_to(h_star_t_9, _rrrs))
-    total_rrrs_xx = np.sum(np.broadcast_to(J_star_t_25, _rrrs))
-    total_rrrs_xy = np.sum(np.broadcast_to(J_star_t_26, _rrrs))
-    total_rrrs_xz = np.sum(np.broadcast_to(J_star_t_27, _rrrs))
-    total_rrrs_yy = np.sum(np.broadcast_to(J_star_t_28, _rrrs))
-    total_rrrs_yz = np.sum(np.broadcast_to(J_star_t_29, _rrrs))
-    total_rrrs_zz = np.sum(np.broadcast_to(J_star_t_30, _rrrs))
+    total_rrrs_x = np.sum(np.broadcast_to(rrrs_h_star_t, _rrrs))
+    total_rrrs_y = np.sum(np.broadcast_to(rrrs_h_star_t_2, _rrrs))
+    total_rrrs_z = np.sum(np.broadcast_to(rrrs_h_star_t_3, _rrrs))
+    total_rrrs_xx = np.sum(np.broadcast_to(rrrs_J_star_t_5, _rrrs))
+    total_rrrs_xy = np.sum(np.broadcast_to(rrrs_J_star_t_6, _rrrs))
+    total_rrrs_xz = np.sum(np.broadcast_to(rrrs_J_star_t_7, _rrrs))
+    total_rrrs_yy = np.sum(np.broadcast_to(rrrs_J_star_t_8, _rrrs))
+    total_rrrs_yz = np.sum(np.broadcast_to(rrrs_J_star_t_9, _rrrs))
+    total_rrrs_zz = np.sum(np.broadcast_to(rrrs_J_star_t_10, _rrrs))
     total_rrrs_x_2 = np.sum(np.broadcast_to(rrrs_platform_point_x, _rrrs))
     total_rrrs_y_2 = np.sum(np.broadcast_to(rrrs_platform_point_y, _rrrs))
     total_rrrs_z_2 = np.sum(np.broadcast_to(rrrs_platform_point_z, _rrrs))
-    total_rrrs_2 = np.sum(np.broadcast_to(size_rrrs_t_3, _rrrs))
-    # (L1) mass of the platform with the gathered masses
+    total_rrrs_2 = np.sum(np.broadcast_to(rrrs_size_t_3, _rrrs))
+    # (m_star) mass of the platform with the gathered masses
     m_star = platform_mass + total_rrrrs + total_rrrs
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_x = h_star_t + total_rrrrs_x + total_rrrs_x
     h_star_y = h_star_t_2 + total_rrrrs_y + total_rrrs_y
     h_star_z = h_star_t_3 + total_rrrrs_z + total_rrrs_z
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_xx = platform_inertia_xx - J_star_t_5 - total_rrrrs_xx - total_rrrs_xx
     J_star_xy = platform_inertia_xy - J_star_t_6 - total_rrrrs_xy - total_rrrs_xy
     J_star_xz = platform_inertia_xz - J_star_t_7 - total_rrrrs_xz - total_rrrs_xz
     J_star_yy = platform_inertia_yy - J_star_t_8 - total_rrrrs_yy - total_rrrs_yy
     J_star_yz = platform_inertia_yz - J_star_t_9 - total_rrrrs_yz - total_rrrs_yz
     J_star_zz = platform_inertia_zz - J_star_t_10 - total_rrrrs_zz - total_rrrs_zz
-    J_star_t_31 = J_star_xx - J_star_yy
-    J_star_t_32 = 0.5*J_star_t_31
-    J_star_t_33 = J_star_xx - J_star_zz
-    J_star_t_34 = 0.5*J_star_t_33
-    # (M4) centripetal force and weight of the platform
+    J_star_t_11 = J_star_xx - J_star_yy
+    J_star_t_12 = 0.5*J_star_t_11
+    J_star_t_13 = J_star_xx - J_star_zz
+    J_star_t_14 = 0.5*J_star_t_13
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
     Z_p_t_3 = gravity_z*m_star
-    # (C1) centroid of the platform points
+    # (b_c) centroid of the platform points
     b_c_x = 0.3333333333333333*total_rrrrs_x_2 + 0.3333333333333333*total_rrrs_x_2
     b_c_y = 0.3333333333333333*total_rrrrs_y_2 + 0.3333333333333333*total_rrrs_y_2
     b_c_z = 0.3333333333333333*total_rrrrs_z_2 + 0.3333333333333333*total_rrrs_z_2
-    # (C3) rms size of the legs, taken where the platform points coincide
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     legs_size = sqrt(0.3333333333333333*total_rrrrs_2 + 0.3333333333333333*total_rrrs_2)
     return {
         "dynamics": (
-        (J_star_t_32, J_star_t_34, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
                 J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
                 h_star_y, h_star_z, m_star,),
             (
                 (_rrrrs,
-        (J_1_rrrrs_xx, J_2_rrrrs_xx, J_2_rrrrs_xy, J_2_rrrrs_xz, J_2_rrrrs_yy, J_2_rrrrs_yz,
-                    J_2_rrrrs_zz, J_3_rrrrs_xx, J_3_rrrrs_xy, J_3_rrrrs_xz, J_3_rrrrs_yy,
-                    J_3_rrrrs_yz, J_4_rrrrs_xx, J_4_rrrrs_xy, J_4_rrrrs_xz, J_4_rrrrs_yy,
-                    J_4_rrrrs_yz, J_4_rrrrs_zz, Jc_2_rrrrs_t, Jc_2_rrrrs_t_2, Jc_3_rrrrs_zz,
-                    Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, Sigma_2_rrrrs_xx, Sigma_2_rrrrs_yy,
-                    Sigma_2_rrrrs_zz, Sigma_3_rrrrs_xx, Sigma_3_rrrrs_yy, Sigma_3_rrrrs_zz,
-                    Sigma_4_rrrrs_xx, Sigma_4_rrrrs_yy, Sigma_4_rrrrs_zz, branch_1_rrrrs,
-                    branch_3_rrrrs, d_G_rrrrs_t, d_Gamma_3_rrrrs_t, d_Gamma_3_rrrrs_y,
-                    d_c_rrrrs_yy, d_phi_4_rrrrs_t, g_r0_x, g_r0_y, g_r0_z, h_1_rrrrs_y,
-                    h_1_rrrrs_z, h_2_rrrrs_x, h_2_rrrrs_y, h_2_rrrrs_z, h_3_rrrrs_x, h_3_rrrrs_y,
-                    h_3_rrrrs_z, h_4_rrrrs_x, h_4_rrrrs_y, h_4_rrrrs_z,
-                    inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_2, inv_size_rrrrs_t_3,
-                    rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
-                    rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
-                    rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
-                    rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z,
-                    rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
-                    rrrrs_link3_mass, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
-                    rrrrs_platform_point_y, rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,),
+        (inv_rrrrs_platform_joint_offset_x, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_J_1_xx,
+                    rrrrs_J_2_xx, rrrrs_J_2_xy, rrrrs_J_2_xz, rrrrs_J_2_yy, rrrrs_J_2_yz,
+                    rrrrs_J_2_zz, rrrrs_J_3_xx, rrrrs_J_3_xy, rrrrs_J_3_xz, rrrrs_J_3_yy,
+                    rrrrs_J_3_yz, rrrrs_J_4_xx, rrrrs_J_4_xy, rrrrs_J_4_xz, rrrrs_J_4_yy,
+                    rrrrs_J_4_yz, rrrrs_J_4_zz, rrrrs_Jc_2_t, rrrrs_Jc_2_t_2, rrrrs_Jc_3_zz,
+                    rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_Sigma_2_xx, rrrrs_Sigma_2_yy,
+                    rrrrs_Sigma_2_zz, rrrrs_Sigma_3_xx, rrrrs_Sigma_3_yy, rrrrs_Sigma_3_zz,
+                    rrrrs_Sigma_4_xx, rrrrs_Sigma_4_yy, rrrrs_Sigma_4_zz, rrrrs_base_frame_xx,
+                    rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx,
+                    rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx,
+                    rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
+                    rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3,
+                    rrrrs_d_G_t, rrrrs_d_Gamma_4_t, rrrrs_d_Gamma_4_y, rrrrs_d_c_yy,
+                    rrrrs_d_phi_4_t, rrrrs_g_r0_x, rrrrs_g_r0_y, rrrrs_g_r0_z, rrrrs_h_1_y,
+                    rrrrs_h_1_z, rrrrs_h_2_x, rrrrs_h_2_y, rrrrs_h_2_z, rrrrs_h_3_x, rrrrs_h_3_y,
+                    rrrrs_h_3_z, rrrrs_h_4_x, rrrrs_h_4_y, rrrrs_h_4_z, rrrrs_joint2_offset_x,
+                    rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_link3_mass,
+                    rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
+                    rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,),
                 ),
                 (_rrrs,
-        (J_1_rrrs_xx, J_2_rrrs_xx, J_2_rrrs_xy, J_2_rrrs_xz, J_2_rrrs_yy, J_2_rrrs_yz,
-                    J_3_rrrs_xx, J_3_rrrs_xy, J_3_rrrs_xz, J_3_rrrs_yy, J_3_rrrs_yz, J_3_rrrs_zz,
-                    Jc_2_rrrs_zz, Kd_2_rrrs_t, Kd_2_rrrs_t_2, Sigma_2_rrrs_xx, Sigma_2_rrrs_yy,
-                    Sigma_2_rrrs_zz, Sigma_3_rrrs_xx, Sigma_3_rrrs_yy, Sigma_3_rrrs_zz,
-                    branch_1_rrrs, branch_2_rrrs, d_Gamma_2_rrrs_t, d_Gamma_2_rrrs_y, d_c_rrrs_yy,
-                    d_phi_3_rrrs_t, g_r0_x_2, g_r0_y_2, g_r0_z_2, h_1_rrrs_y, h_1_rrrs_z,
-                    h_2_rrrs_x, h_2_rrrs_y, h_2_rrrs_z, h_3_rrrs_x, h_3_rrrs_y, h_3_rrrs_z,
-                    inv_rrrs_platform_joint_offset_x, inv_size_rrrs_t, inv_size_rrrs_t_2,
-                    rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-                    rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x,
+        (inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
+                    rrrs_J_2_xx, rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yy, rrrs_J_2_yz, rrrs_J_3_xx,
+                    rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yy, rrrs_J_3_yz, rrrs_J_3_zz, rrrs_Jc_2_zz,
+                    rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
+                    rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_t,
+                    rrrs_d_Gamma_3_y, rrrs_d_c_yy, rrrs_d_phi_3_t, rrrs_g_r0_x, rrrs_g_r0_y,
+                    rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y, rrrs_h_2_z,
+                    rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
                     rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-                    rrrs_platform_point_y, rrrs_platform_point_z, size_rrrs, size_rrrs_t_3,),
+                    rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
+                    rrrs_size_t_3,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_32, J_star_t_34, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
+        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
                 h_star_z, m_star,),
             (
                 (_rrrrs,
-        (J_1_rrrrs_xx, J_2_rrrrs_xx, J_2_rrrrs_xy, J_2_rrrrs_xz, J_2_rrrrs_yy, J_2_rrrrs_yz,
-                    J_2_rrrrs_zz, J_3_rrrrs_xx, J_3_rrrrs_xy, J_3_rrrrs_xz, J_3_rrrrs_yy,
-                    J_3_rrrrs_yz, J_4_rrrrs_xx, J_4_rrrrs_xy, J_4_rrrrs_xz, J_4_rrrrs_yy,
-                    J_4_rrrrs_yz, J_4_rrrrs_zz, Jc_2_rrrrs_t, Jc_2_rrrrs_t_2, Jc_3_rrrrs_zz,
-                    Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, branch_1_rrrrs, branch_3_rrrrs, d_G_rrrrs_t,
-                    d_Gamma_3_rrrrs_t, d_Gamma_3_rrrrs_y, d_c_rrrrs_yy, d_phi_4_rrrrs_t,
-                    h_3_rrrrs_x, h_3_rrrrs_y, h_4_rrrrs_x, h_4_rrrrs_y, h_4_rrrrs_z,
-                    inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_2, inv_size_rrrrs_t_3,
-                    rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
-                    rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
-                    rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
-                    rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z,
+        (inv_rrrrs_platform_joint_offset_x, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_J_1_xx,
+                    rrrrs_J_2_xx, rrrrs_J_2_xy, rrrrs_J_2_xz, rrrrs_J_2_yy, rrrrs_J_2_yz,
+                    rrrrs_J_2_zz, rrrrs_J_3_xx, rrrrs_J_3_xy, rrrrs_J_3_xz, rrrrs_J_3_yy,
+                    rrrrs_J_3_yz, rrrrs_J_4_xx, rrrrs_J_4_xy, rrrrs_J_4_xz, rrrrs_J_4_yy,
+                    rrrrs_J_4_yz, rrrrs_J_4_zz, rrrrs_Jc_2_t, rrrrs_Jc_2_t_2, rrrrs_Jc_3_zz,
+                    rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
+                    rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
+                    rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
+                    rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
+                    rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_d_G_t,
+                    rrrrs_d_Gamma_4_t, rrrrs_d_Gamma_4_y, rrrrs_d_c_yy, rrrrs_d_phi_4_t,
+                    rrrrs_h_3_x, rrrrs_h_3_y, rrrrs_h_4_x, rrrrs_h_4_y, rrrrs_h_4_z,
                     rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
                     rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
-                    rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,),
+                    rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,),
                 ),
                 (_rrrs,
-        (J_1_rrrs_xx, J_2_rrrs_xx, J_2_rrrs_xy, J_2_rrrs_xz, J_2_rrrs_yy, J_2_rrrs_yz,
-                    J_3_rrrs_xx, J_3_rrrs_xy, J_3_rrrs_xz, J_3_rrrs_yy, J_3_rrrs_yz, J_3_rrrs_zz,
-                    Jc_2_rrrs_zz, Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs,
-                    d_Gamma_2_rrrs_t, d_Gamma_2_rrrs_y, d_c_rrrs_yy, d_phi_3_rrrs_t, h_3_rrrs_x,
-                    h_3_rrrs_y, h_3_rrrs_z, inv_rrrs_platform_joint_offset_x, inv_size_rrrs_t,
-                    inv_size_rrrs_t_2, rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
+        (inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
+                    rrrs_J_2_xx, rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yy, rrrs_J_2_yz, rrrs_J_3_xx,
+                    rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yy, rrrs_J_3_yz, rrrs_J_3_zz, rrrs_Jc_2_zz,
+                    rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
                     rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
                     rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
                     rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-                    rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z,
-                    size_rrrs, size_rrrs_t_3,),
+                    rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_t, rrrs_d_Gamma_3_y, rrrs_d_c_yy,
+                    rrrs_d_phi_3_t, rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
+                    rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
+                    rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
+                    rrrs_size_t_3,),
                 ),
             ),
         ),
@@ -1244,37 +1259,37 @@ def _prepare(p):
                 Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
             (
                 (_rrrrs,
-        (J_1_rrrrs_xx, J_2_rrrrs_xy, J_2_rrrrs_xz, J_2_rrrrs_yz, J_3_rrrrs_xy, J_3_rrrrs_xz,
-                    J_3_rrrrs_yz, J_4_rrrrs_xy, J_4_rrrrs_xz, J_4_rrrrs_yz, Kd_3_rrrrs_t,
-                    Kd_3_rrrrs_t_2, Sigma_2_rrrrs_xx, Sigma_2_rrrrs_yy, Sigma_2_rrrrs_zz,
-                    Sigma_3_rrrrs_xx, Sigma_3_rrrrs_yy, Sigma_3_rrrrs_zz, Sigma_4_rrrrs_xx,
-                    Sigma_4_rrrrs_yy, Sigma_4_rrrrs_zz, branch_1_rrrrs, branch_3_rrrrs, g_r0_x,
-                    g_r0_y, g_r0_z, h_1_rrrrs_y, h_1_rrrrs_z, h_2_rrrrs_x, h_2_rrrrs_y,
-                    h_2_rrrrs_z, h_3_rrrrs_x, h_3_rrrrs_y, h_3_rrrrs_z, h_4_rrrrs_x, h_4_rrrrs_y,
-                    h_4_rrrrs_z, inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_2,
-                    inv_size_rrrrs_t_3, rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
+        (inv_rrrrs_platform_joint_offset_x, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_J_1_xx,
+                    rrrrs_J_2_xy, rrrrs_J_2_xz, rrrrs_J_2_yz, rrrrs_J_3_xy, rrrrs_J_3_xz,
+                    rrrrs_J_3_yz, rrrrs_J_4_xy, rrrrs_J_4_xz, rrrrs_J_4_yz, rrrrs_Kd_3_t,
+                    rrrrs_Kd_3_t_2, rrrrs_Sigma_2_xx, rrrrs_Sigma_2_yy, rrrrs_Sigma_2_zz,
+                    rrrrs_Sigma_3_xx, rrrrs_Sigma_3_yy, rrrrs_Sigma_3_zz, rrrrs_Sigma_4_xx,
+                    rrrrs_Sigma_4_yy, rrrrs_Sigma_4_zz, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
                     rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
                     rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
                     rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
-                    rrrrs_base_point_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
+                    rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_g_r0_x,
+                    rrrrs_g_r0_y, rrrrs_g_r0_z, rrrrs_h_1_y, rrrrs_h_1_z, rrrrs_h_2_x,
+                    rrrrs_h_2_y, rrrrs_h_2_z, rrrrs_h_3_x, rrrrs_h_3_y, rrrrs_h_3_z, rrrrs_h_4_x,
+                    rrrrs_h_4_y, rrrrs_h_4_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
                     rrrrs_joint4_offset_x, rrrrs_link3_mass, rrrrs_platform_joint_offset_x,
                     rrrrs_platform_point_x, rrrrs_platform_point_y, rrrrs_platform_point_z,
-                    size_rrrrs, size_rrrrs_t_3,),
+                    rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,),
                 ),
                 (_rrrs,
-        (J_1_rrrs_xx, J_2_rrrs_xy, J_2_rrrs_xz, J_2_rrrs_yz, J_3_rrrs_xy, J_3_rrrs_xz,
-                    J_3_rrrs_yz, Kd_2_rrrs_t, Kd_2_rrrs_t_2, Sigma_2_rrrs_xx, Sigma_2_rrrs_yy,
-                    Sigma_2_rrrs_zz, Sigma_3_rrrs_xx, Sigma_3_rrrs_yy, Sigma_3_rrrs_zz,
-                    branch_1_rrrs, branch_2_rrrs, g_r0_x_2, g_r0_y_2, g_r0_z_2, h_1_rrrs_y,
-                    h_1_rrrs_z, h_2_rrrs_x, h_2_rrrs_y, h_2_rrrs_z, h_3_rrrs_x, h_3_rrrs_y,
-                    h_3_rrrs_z, inv_rrrs_platform_joint_offset_x, inv_size_rrrs_t,
-                    inv_size_rrrs_t_2, rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
-                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-                    rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z,
-                    size_rrrs, size_rrrs_t_3,),
+        (inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
+                    rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yz, rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yz,
+                    rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
+                    rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_r0_x, rrrs_g_r0_y,
+                    rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y, rrrs_h_2_z,
+                    rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
+                    rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
+                    rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
+                    rrrs_size_t_3,),
                 ),
             ),
         ),
@@ -1282,24 +1297,25 @@ def _prepare(p):
         (),
             (
                 (_rrrrs,
-        (Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, branch_1_rrrrs, branch_3_rrrrs, inv_size_rrrrs_t_2,
-                    inv_size_rrrrs_t_3, rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
-                    rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
-                    rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
-                    rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
-                    rrrrs_base_point_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
+        (inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2,
+                    rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
+                    rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
+                    rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
+                    rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1,
+                    rrrrs_branch_3, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
                     rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
-                    rrrrs_platform_point_y, rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,),
+                    rrrrs_platform_point_y, rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size,
+                    rrrrs_size_t_3,),
                 ),
                 (_rrrs,
-        (Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs, inv_size_rrrs_t,
-                    inv_size_rrrs_t_2, rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
-                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-                    rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z,
-                    size_rrrs, size_rrrs_t_3,),
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
+                    rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
+                    rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
+                    rrrs_size_t_3,),
                 ),
             ),
         ),
@@ -1308,37 +1324,37 @@ def _prepare(p):
                 gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
                 (_rrrrs,
-        (J_1_rrrrs_xx, J_2_rrrrs_xy, J_2_rrrrs_xz, J_2_rrrrs_yz, J_3_rrrrs_xy, J_3_rrrrs_xz,
-                    J_3_rrrrs_yz, J_4_rrrrs_xy, J_4_rrrrs_xz, J_4_rrrrs_yz, Kd_3_rrrrs_t,
-                    Kd_3_rrrrs_t_2, Sigma_2_rrrrs_xx, Sigma_2_rrrrs_yy, Sigma_2_rrrrs_zz,
-                    Sigma_3_rrrrs_xx, Sigma_3_rrrrs_yy, Sigma_3_rrrrs_zz, Sigma_4_rrrrs_xx,
-                    Sigma_4_rrrrs_yy, Sigma_4_rrrrs_zz, branch_1_rrrrs, branch_3_rrrrs, g_r0_x,
-                    g_r0_y, g_r0_z, h_1_rrrrs_y, h_1_rrrrs_z, h_2_rrrrs_x, h_2_rrrrs_y,
-                    h_2_rrrrs_z, h_3_rrrrs_x, h_3_rrrrs_y, h_3_rrrrs_z, h_4_rrrrs_x, h_4_rrrrs_y,
-                    h_4_rrrrs_z, inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_2,
-                    inv_size_rrrrs_t_3, rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
+        (inv_rrrrs_platform_joint_offset_x, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_J_1_xx,
+                    rrrrs_J_2_xy, rrrrs_J_2_xz, rrrrs_J_2_yz, rrrrs_J_3_xy, rrrrs_J_3_xz,
+                    rrrrs_J_3_yz, rrrrs_J_4_xy, rrrrs_J_4_xz, rrrrs_J_4_yz, rrrrs_Kd_3_t,
+                    rrrrs_Kd_3_t_2, rrrrs_Sigma_2_xx, rrrrs_Sigma_2_yy, rrrrs_Sigma_2_zz,
+                    rrrrs_Sigma_3_xx, rrrrs_Sigma_3_yy, rrrrs_Sigma_3_zz, rrrrs_Sigma_4_xx,
+                    rrrrs_Sigma_4_yy, rrrrs_Sigma_4_zz, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
                     rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
                     rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
                     rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
-                    rrrrs_base_point_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
+                    rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_g_r0_x,
+                    rrrrs_g_r0_y, rrrrs_g_r0_z, rrrrs_h_1_y, rrrrs_h_1_z, rrrrs_h_2_x,
+                    rrrrs_h_2_y, rrrrs_h_2_z, rrrrs_h_3_x, rrrrs_h_3_y, rrrrs_h_3_z, rrrrs_h_4_x,
+                    rrrrs_h_4_y, rrrrs_h_4_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
                     rrrrs_joint4_offset_x, rrrrs_link3_mass, rrrrs_platform_joint_offset_x,
                     rrrrs_platform_point_x, rrrrs_platform_point_y, rrrrs_platform_point_z,
-                    size_rrrrs, size_rrrrs_t_3,),
+                    rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,),
                 ),
                 (_rrrs,
-        (J_1_rrrs_xx, J_2_rrrs_xy, J_2_rrrs_xz, J_2_rrrs_yz, J_3_rrrs_xy, J_3_rrrs_xz,
-                    J_3_rrrs_yz, Kd_2_rrrs_t, Kd_2_rrrs_t_2, Sigma_2_rrrs_xx, Sigma_2_rrrs_yy,
-                    Sigma_2_rrrs_zz, Sigma_3_rrrs_xx, Sigma_3_rrrs_yy, Sigma_3_rrrs_zz,
-                    branch_1_rrrs, branch_2_rrrs, g_r0_x_2, g_r0_y_2, g_r0_z_2, h_1_rrrs_y,
-                    h_1_rrrs_z, h_2_rrrs_x, h_2_rrrs_y, h_2_rrrs_z, h_3_rrrs_x, h_3_rrrs_y,
-                    h_3_rrrs_z, inv_rrrs_platform_joint_offset_x, inv_size_rrrs_t,
-                    inv_size_rrrs_t_2, rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
-                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-                    rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z,
-                    size_rrrs, size_rrrs_t_3,),
+        (inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
+                    rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yz, rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yz,
+                    rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
+                    rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_r0_x, rrrs_g_r0_y,
+                    rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y, rrrs_h_2_z,
+                    rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
+                    rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
+                    rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
+                    rrrs_size_t_3,),
                 ),
             ),
         ),
@@ -1346,24 +1362,24 @@ def _prepare(p):
         (),
             (
                 (_rrrrs,
-        (Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, branch_1_rrrrs, branch_3_rrrrs, inv_size_rrrrs_t_2,
-                    inv_size_rrrrs_t_3, rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
-                    rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
-                    rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
-                    rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
-                    rrrrs_base_point_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
+        (inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2,
+                    rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
+                    rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
+                    rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
+                    rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1,
+                    rrrrs_branch_3, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
                     rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
-                    rrrrs_platform_point_y, rrrrs_platform_point_z, size_rrrrs_t_3,),
+                    rrrrs_platform_point_y, rrrrs_platform_point_z, rrrrs_rho2_3_t,
+                    rrrrs_size_t_3,),
                 ),
                 (_rrrs,
-        (Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs, inv_size_rrrs_t,
-                    inv_size_rrrs_t_2, rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
-                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-                    rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z,
-                    size_rrrs_t_3,),
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
+                    rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
+                    rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size_t_3,),
                 ),
             ),
         ),
@@ -1371,25 +1387,25 @@ def _prepare(p):
         (),
             (
                 (_rrrrs,
-        (Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, branch_1_rrrrs, branch_3_rrrrs,
-                    inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_2, inv_size_rrrrs_t_3,
-                    rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
+        (inv_rrrrs_platform_joint_offset_x, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_Kd_3_t,
+                    rrrrs_Kd_3_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
                     rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
                     rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
-                    rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z,
-                    rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
-                    rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
-                    rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,),
+                    rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1,
+                    rrrrs_branch_3, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
+                    rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
+                    rrrrs_platform_point_y, rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size,
+                    rrrrs_size_t_3,),
                 ),
                 (_rrrs,
-        (Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs,
-                    inv_rrrs_platform_joint_offset_x, inv_size_rrrs_t, inv_size_rrrs_t_2,
-                    rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+        (inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t,
+                    rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
                     rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
                     rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-                    rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x,
-                    rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-                    rrrs_platform_point_y, rrrs_platform_point_z, size_rrrs, size_rrrs_t_3,),
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+                    rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z,
+                    rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,),
                 ),
             ),
         ),
@@ -1397,25 +1413,25 @@ def _prepare(p):
         (),
             (
                 (_rrrrs,
-        (Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, branch_1_rrrrs, branch_3_rrrrs,
-                    inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_2, inv_size_rrrrs_t_3,
-                    rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
+        (inv_rrrrs_platform_joint_offset_x, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_Kd_3_t,
+                    rrrrs_Kd_3_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
                     rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
                     rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
-                    rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z,
-                    rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
-                    rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
-                    rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,),
+                    rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1,
+                    rrrrs_branch_3, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
+                    rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
+                    rrrrs_platform_point_y, rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size,
+                    rrrrs_size_t_3,),
                 ),
                 (_rrrs,
-        (Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs,
-                    inv_rrrs_platform_joint_offset_x, inv_size_rrrs_t, inv_size_rrrs_t_2,
-                    rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+        (inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t,
+                    rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
                     rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
                     rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-                    rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x,
-                    rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-                    rrrs_platform_point_y, rrrs_platform_point_z, size_rrrs, size_rrrs_t_3,),
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+                    rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z,
+                    rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,),
                 ),
             ),
         ),
@@ -1423,37 +1439,37 @@ def _prepare(p):
         (gravity_x, gravity_y, gravity_z,),
             (
                 (_rrrrs,
-        (J_1_rrrrs_xx, J_2_rrrrs_xy, J_2_rrrrs_xz, J_2_rrrrs_yz, J_3_rrrrs_xy, J_3_rrrrs_xz,
-                    J_3_rrrrs_yz, J_4_rrrrs_xy, J_4_rrrrs_xz, J_4_rrrrs_yz, Kd_3_rrrrs_t,
-                    Kd_3_rrrrs_t_2, Sigma_2_rrrrs_xx, Sigma_2_rrrrs_yy, Sigma_2_rrrrs_zz,
-                    Sigma_3_rrrrs_xx, Sigma_3_rrrrs_yy, Sigma_3_rrrrs_zz, Sigma_4_rrrrs_xx,
-                    Sigma_4_rrrrs_yy, Sigma_4_rrrrs_zz, branch_1_rrrrs, branch_3_rrrrs, g_r0_x,
-                    g_r0_y, g_r0_z, h_1_rrrrs_y, h_1_rrrrs_z, h_2_rrrrs_x, h_2_rrrrs_y,
-                    h_2_rrrrs_z, h_3_rrrrs_x, h_3_rrrrs_y, h_3_rrrrs_z, h_4_rrrrs_x, h_4_rrrrs_y,
-                    h_4_rrrrs_z, inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_2,
-                    inv_size_rrrrs_t_3, rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
+        (inv_rrrrs_platform_joint_offset_x, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_J_1_xx,
+                    rrrrs_J_2_xy, rrrrs_J_2_xz, rrrrs_J_2_yz, rrrrs_J_3_xy, rrrrs_J_3_xz,
+                    rrrrs_J_3_yz, rrrrs_J_4_xy, rrrrs_J_4_xz, rrrrs_J_4_yz, rrrrs_Kd_3_t,
+                    rrrrs_Kd_3_t_2, rrrrs_Sigma_2_xx, rrrrs_Sigma_2_yy, rrrrs_Sigma_2_zz,
+                    rrrrs_Sigma_3_xx, rrrrs_Sigma_3_yy, rrrrs_Sigma_3_zz, rrrrs_Sigma_4_xx,
+                    rrrrs_Sigma_4_yy, rrrrs_Sigma_4_zz, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
                     rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
                     rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
                     rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
-                    rrrrs_base_point_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
+                    rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_g_r0_x,
+                    rrrrs_g_r0_y, rrrrs_g_r0_z, rrrrs_h_1_y, rrrrs_h_1_z, rrrrs_h_2_x,
+                    rrrrs_h_2_y, rrrrs_h_2_z, rrrrs_h_3_x, rrrrs_h_3_y, rrrrs_h_3_z, rrrrs_h_4_x,
+                    rrrrs_h_4_y, rrrrs_h_4_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
                     rrrrs_joint4_offset_x, rrrrs_link3_mass, rrrrs_link4_mass,
                     rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
-                    rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,),
+                    rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,),
                 ),
                 (_rrrs,
-        (J_1_rrrs_xx, J_2_rrrs_xy, J_2_rrrs_xz, J_2_rrrs_yz, J_3_rrrs_xy, J_3_rrrs_xz,
-                    J_3_rrrs_yz, Kd_2_rrrs_t, Kd_2_rrrs_t_2, Sigma_2_rrrs_xx, Sigma_2_rrrs_yy,
-                    Sigma_2_rrrs_zz, Sigma_3_rrrs_xx, Sigma_3_rrrs_yy, Sigma_3_rrrs_zz,
-                    branch_1_rrrs, branch_2_rrrs, g_r0_x_2, g_r0_y_2, g_r0_z_2, h_1_rrrs_y,
-                    h_1_rrrs_z, h_2_rrrs_x, h_2_rrrs_y, h_2_rrrs_z, h_3_rrrs_x, h_3_rrrs_y,
-                    h_3_rrrs_z, inv_rrrs_platform_joint_offset_x, inv_size_rrrs_t,
-                    inv_size_rrrs_t_2, rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
-                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-                    rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_link3_mass,
-                    rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-                    rrrs_platform_point_z, size_rrrs, size_rrrs_t_3,),
+        (inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
+                    rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yz, rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yz,
+                    rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
+                    rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_r0_x, rrrs_g_r0_y,
+                    rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y, rrrs_h_2_z,
+                    rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
+                    rrrs_joint3_offset_x, rrrs_link3_mass, rrrs_platform_joint_offset_x,
+                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z,
+                    rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,),
                 ),
             ),
         ),
@@ -1461,32 +1477,32 @@ def _prepare(p):
         (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
                 (_rrrrs,
-        (Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, b_rrrrs_r0_x, b_rrrrs_r0_y, b_rrrrs_r0_z, branch_1_rrrrs,
-                    branch_3_rrrrs, g_r0_x, g_r0_y, g_r0_z, h_1_rrrrs_x, h_1_rrrrs_y, h_1_rrrrs_z,
-                    h_2_rrrrs_x, h_2_rrrrs_y, h_2_rrrrs_z, h_3_rrrrs_x, h_3_rrrrs_y, h_3_rrrrs_z,
-                    h_4_rrrrs_x, h_4_rrrrs_y, h_4_rrrrs_z, inv_size_rrrrs_t_2, inv_size_rrrrs_t_3,
-                    potential_t_3, potential_t_4, rho2_3_rrrrs_t, rrrrs_base_frame_xx,
-                    rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx,
-                    rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx,
-                    rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
-                    rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_joint2_offset_x,
+        (inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_b_r0_x,
+                    rrrrs_b_r0_y, rrrrs_b_r0_z, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
+                    rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
+                    rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
+                    rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
+                    rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_g_r0_x,
+                    rrrrs_g_r0_y, rrrrs_g_r0_z, rrrrs_h_1_x, rrrrs_h_1_y, rrrrs_h_1_z,
+                    rrrrs_h_2_x, rrrrs_h_2_y, rrrrs_h_2_z, rrrrs_h_3_x, rrrrs_h_3_y, rrrrs_h_3_z,
+                    rrrrs_h_4_x, rrrrs_h_4_y, rrrrs_h_4_z, rrrrs_joint2_offset_x,
                     rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_link1_mass,
                     rrrrs_link2_mass, rrrrs_link3_mass, rrrrs_platform_joint_offset_x,
                     rrrrs_platform_point_x, rrrrs_platform_point_y, rrrrs_platform_point_z,
-                    size_rrrrs_t_3,),
+                    rrrrs_potential_t, rrrrs_potential_t_2, rrrrs_rho2_3_t, rrrrs_size_t_3,),
                 ),
                 (_rrrs,
-        (Kd_2_rrrs_t, Kd_2_rrrs_t_2, b_rrrs_r0_x, b_rrrs_r0_y, branch_1_rrrs, branch_2_rrrs,
-                    g_r0_x_2, g_r0_y_2, g_r0_z_2, h_1_rrrs_x, h_1_rrrs_y, h_1_rrrs_z, h_2_rrrs_x,
-                    h_2_rrrs_y, h_2_rrrs_z, h_3_rrrs_x, h_3_rrrs_y, h_3_rrrs_z, inv_size_rrrs_t,
-                    inv_size_rrrs_t_2, potential_t, potential_t_2, rho2_2_rrrs_t,
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_b_r0_x, rrrs_b_r0_y,
                     rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
                     rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
                     rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-                    rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x,
-                    rrrs_joint3_offset_x, rrrs_link1_mass, rrrs_link2_mass,
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+                    rrrs_g_r0_x, rrrs_g_r0_y, rrrs_g_r0_z, rrrs_h_1_x, rrrs_h_1_y, rrrs_h_1_z,
+                    rrrs_h_2_x, rrrs_h_2_y, rrrs_h_2_z, rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z,
+                    rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_link1_mass, rrrs_link2_mass,
                     rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-                    rrrs_platform_point_z, size_rrrs_t_3,),
+                    rrrs_platform_point_z, rrrs_potential_t, rrrs_potential_t_2, rrrs_rho2_2_t,
+                    rrrs_size_t_3,),
                 ),
             ),
         ),
@@ -1494,32 +1510,34 @@ def _prepare(p):
         (b_c_x, b_c_y, b_c_z, legs_size,),
             (
                 (_rrrrs,
-        (Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, branch_1_rrrrs, branch_3_rrrrs, inv_rho2_3_rrrrs_t_4,
-                    inv_size_rrrrs, inv_size_rrrrs_t_2, inv_size_rrrrs_t_3, inv_size_rrrrs_t_4,
-                    rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
-                    rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
-                    rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
-                    rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z,
+        (inv_rrrrs_rho2_3_t_4, inv_rrrrs_size, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3,
+                    inv_rrrrs_size_t_4, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_base_frame_xx,
+                    rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx,
+                    rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx,
+                    rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
+                    rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3,
                     rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
                     rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
-                    rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,),
+                    rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,),
                 ),
                 (_rrrs,
-        (Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs, inv_rho2_2_rrrs_t_4,
-                    inv_size_rrrs, inv_size_rrrs_t, inv_size_rrrs_t_2, inv_size_rrrs_t_3,
-                    rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-                    rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x,
+        (inv_rrrs_rho2_2_t_4, inv_rrrs_size, inv_rrrs_size_t, inv_rrrs_size_t_2,
+                    inv_rrrs_size_t_3, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
                     rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-                    rrrs_platform_point_y, rrrs_platform_point_z, size_rrrs, size_rrrs_t_3,),
+                    rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
+                    rrrs_size_t_3,),
                 ),
             ),
         ),
     }
 
 
-_FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
+_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
@@ -1565,17 +1583,19 @@ class _Floats:
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
-        for k in range(self.states):
-            try:
-                ok, arrays = function(self, *(row[k] for row in rows))
-            except (ZeroDivisionError, OverflowError):
-                continue
-            if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
-                for a, array in zip(found, arrays):
-                    a[k] = array
-        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
+        found = [self.state(function, names, [row[k] for row in rows]) for k in range(self.states)]
+        return [np.array(a).T.reshape(*_SHAPES[n], self.states) for a, n in zip(zip(*found), names)]
+
+    def state(self, function, names, given):
+        """Lists that a function gives at a state."""
+        try:
+            ok, arrays = function(self, *given)
+        except (ZeroDivisionError, OverflowError):
+            ok = False
+        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+            return arrays
+        return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
 
 
 class _Arrays:
@@ -1643,35 +1663,44 @@ def _mode(p, states):
     return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
 
 
-def _call(function, steps, p, *arguments, mode=_mode):
-    """What the steps give at arguments (name, value, shape of a state, default, rule)."""
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+    """What the steps give at arguments (name, value, shape of a state, default, rule).
+
+    Where that may be infinite only NaN makes a state impossible.
+    """
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
     lead, p = _lead(leads), _given(p)
     read = [a[4:] != ("unused",) for a in arguments]
     if lead or mode is _Judged:
-        results = _many(steps, p, lead, given, shapes, read, mode)
+        results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
-        results = _one(steps, p, given, shapes, read)
+        results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
 
 
-def _one(steps, p, given, shapes, read):
+def _one(steps, p, given, shapes, read, unbounded):
     """Results at a single state."""
     states = [v.reshape(*shape, 1) for v, shape in zip(given, shapes)]
     with np.errstate(all="ignore"):
-        results = [a[..., 0] for a in steps(_Floats(p, 1), *states)]
-    if all(all(map(math.isfinite, v.ravel().tolist())) for v in (*compress(given, read), *results)):
-        return [np.array(a)[()] for a in results]
+        results = [a[..., 0].copy() for a in steps(_Floats(p, 1), *states)]
+    looked_at = [np.minimum(a, 0.0) for a in results] if unbounded else results
+    entries = (v.ravel().tolist() for v in (*compress(given, read), *looked_at))
+    if all(all(map(math.isfinite, row)) for row in entries):
+        return [a[()] for a in results]
     return [np.full(a.shape, np.nan)[()] for a in results]
 
 
-def _many(steps, p, lead, given, shapes, read, mode):
+def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block."""
     count = math.prod(lead)
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
+    if count > _BLOCK:
+        # Never touched, freed at once: the C library, which learns from it, then keeps the memory
+        # of intermediate arrays from block to block instead of giving its pages back.
+        np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
         for first in range(0, max(count, 1), _BLOCK):
             block = slice(first, min(first + _BLOCK, count))
@@ -1683,7 +1712,7 @@ def _many(steps, p, lead, given, shapes, read, mode):
             _all_finite(compress(states, read), good)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite(found, good)
+            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -1724,6 +1753,18 @@ def _wrapped(a, places):
     result = np.array(a)
     result[places] = np.pi - np.remainder(np.pi - a[places], 2.0 * np.pi)
     return result
+
+
+def _unlimited(a, places):
+    """a, some entries infinite; what is not known stays so."""
+    result = np.array(a)
+    result[places] += np.inf
+    return result
+
+
+def _not_negative(a):
+    """1 where no entry is negative, else 0; NaN where one is not finite."""
+    return np.where(np.isfinite(a).all(axis=0), np.all(a >= 0.0, axis=0), np.nan)
 
 
 def _rows_divided(a, b, places):
@@ -1826,8 +1867,8 @@ def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
     n, states = b.shape
     if 0 < states <= _FEW:
-        matrices, rights = np.moveaxis(a, -1, 0).tolist(), b.T.tolist()
-        return np.array([_solve_one(*each) for each in zip(matrices, rights)]).T.reshape(n, states)
+        systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
+        return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
     good = np.all((size > 0.0) & np.isfinite(size), axis=0)
     rows = np.concatenate((a, b[:, None]), axis=1)
@@ -1854,28 +1895,32 @@ def _solve(a, b):
 
 
 def _solve_one(a, b):
-    """The same for one system of nested lists."""
-    n = len(b)
-    failure = [np.nan] * n
-    for i, row in enumerate(a):
-        size = max(map(abs, row), default=0.0)
-        if not 0.0 < size < np.inf:
-            return failure
-        a[i] = [v / size for v in row] + [b[i] / size]
-    for k in range(n):
-        best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
-            a[k], a[best] = a[best], a[k]
-        if not abs(a[k][k]) > _PIVOT:
-            return failure
-        head = a[k]
-        for i in range(k + 1, n):
-            factor = a[i][k] / head[k]
-            a[i] = [v - factor * h for v, h in zip(a[i], head)]
-    x = [0.0] * n
-    for k in reversed(range(n)):
-        x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
-    return x if all(map(math.isfinite, x)) else failure
+    """The same for one system of nested lists: the rows left lose an entry at every step."""
+    rows, heads = [], []
+    for row, right in zip(a, b):
+        size = max(map(abs, row))
+        if not 0.0 < size < math.inf:
+            return [math.nan] * len(b)
+        rows.append([v / size for v in (*row, right)])
+    while rows:
+        column = [abs(row[0]) for row in rows]
+        largest = max(column)
+        if largest > _CLEARLY * column[0]:
+            best = column.index(largest)
+            rows[0], rows[best] = rows[best], rows[0]
+        pivot, *head = rows[0]
+        if not abs(pivot) > _PIVOT:
+            return [math.nan] * len(b)
+        heads.append((pivot, head))
+        for i in range(1, len(rows)):
+            first, *row = rows[i]
+            factor = first / pivot
+            rows[i] = [v - factor * h for v, h in zip(row, head)]
+        del rows[0]
+    x = []
+    for pivot, (*head, right) in reversed(heads):
+        x.insert(0, (right - sum([h * v for h, v in zip(head, x)])) / pivot)
+    return x if all(map(math.isfinite, x)) else [math.nan] * len(b)
 
 
 def _matrices(a, *others):
@@ -1986,14 +2031,14 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 1538 mul, 1196 add, 12 div, 6 sqrt, 2 trig
+# dynamics: 1549 mul, 1206 add, 12 div, 6 sqrt, 2 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("dynamics")
     (
-    J_star_t_32, J_star_t_34, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
+    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
         Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
         m_star,
     ) = shared
@@ -2049,200 +2094,202 @@ def _run_dynamics(m, X, V):
     out_M = m.zeros("M")
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_32*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_32*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_32*R_zy
-    J_star_t_4 = J_star_t_34*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_34*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_34*R_zz - J_star_xz*R_zx
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
     J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_12 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_14 = J_star_t_6*R_zz - J_star_t_3*R_zy
-    J_star_t_15 = 2.0*J_star_t_14 - J_star_xx
-    # (M4) centripetal force and weight of the platform
+    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
+    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
     Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
     Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    g_r0_x_3 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y_3 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z_3 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_3*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z_3*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z_3*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x_3*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_3*h_star_y - Z_q_t*omega_r0_y - g_r0_y_3*h_star_x
+    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
+    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
     sums = [0.0] * 27
     for leg, k in legs[0]:
         (
-        J_1_rrrrs_xx, J_2_rrrrs_xx, J_2_rrrrs_xy, J_2_rrrrs_xz, J_2_rrrrs_yy, J_2_rrrrs_yz,
-            J_2_rrrrs_zz, J_3_rrrrs_xx, J_3_rrrrs_xy, J_3_rrrrs_xz, J_3_rrrrs_yy, J_3_rrrrs_yz,
-            J_4_rrrrs_xx, J_4_rrrrs_xy, J_4_rrrrs_xz, J_4_rrrrs_yy, J_4_rrrrs_yz, J_4_rrrrs_zz,
-            Jc_2_rrrrs_t, Jc_2_rrrrs_t_2, Jc_3_rrrrs_zz, Kd_3_rrrrs_t, Kd_3_rrrrs_t_2,
-            Sigma_2_rrrrs_xx, Sigma_2_rrrrs_yy, Sigma_2_rrrrs_zz, Sigma_3_rrrrs_xx,
-            Sigma_3_rrrrs_yy, Sigma_3_rrrrs_zz, Sigma_4_rrrrs_xx, Sigma_4_rrrrs_yy,
-            Sigma_4_rrrrs_zz, branch_1_rrrrs, branch_3_rrrrs, d_G_rrrrs_t, d_Gamma_3_rrrrs_t,
-            d_Gamma_3_rrrrs_y, d_c_rrrrs_yy, d_phi_4_rrrrs_t, g_r0_x, g_r0_y, g_r0_z, h_1_rrrrs_y,
-            h_1_rrrrs_z, h_2_rrrrs_x, h_2_rrrrs_y, h_2_rrrrs_z, h_3_rrrrs_x, h_3_rrrrs_y,
-            h_3_rrrrs_z, h_4_rrrrs_x, h_4_rrrrs_y, h_4_rrrrs_z, inv_rrrrs_platform_joint_offset_x,
-            inv_size_rrrrs_t_2, inv_size_rrrrs_t_3, rho2_3_rrrrs_t, rrrrs_base_frame_xx,
-            rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
-            rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
-            rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_joint2_offset_x,
+        inv_rrrrs_platform_joint_offset_x, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_J_1_xx,
+            rrrrs_J_2_xx, rrrrs_J_2_xy, rrrrs_J_2_xz, rrrrs_J_2_yy, rrrrs_J_2_yz, rrrrs_J_2_zz,
+            rrrrs_J_3_xx, rrrrs_J_3_xy, rrrrs_J_3_xz, rrrrs_J_3_yy, rrrrs_J_3_yz, rrrrs_J_4_xx,
+            rrrrs_J_4_xy, rrrrs_J_4_xz, rrrrs_J_4_yy, rrrrs_J_4_yz, rrrrs_J_4_zz, rrrrs_Jc_2_t,
+            rrrrs_Jc_2_t_2, rrrrs_Jc_3_zz, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_Sigma_2_xx,
+            rrrrs_Sigma_2_yy, rrrrs_Sigma_2_zz, rrrrs_Sigma_3_xx, rrrrs_Sigma_3_yy,
+            rrrrs_Sigma_3_zz, rrrrs_Sigma_4_xx, rrrrs_Sigma_4_yy, rrrrs_Sigma_4_zz,
+            rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx,
+            rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
+            rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z,
+            rrrrs_branch_1, rrrrs_branch_3, rrrrs_d_G_t, rrrrs_d_Gamma_4_t, rrrrs_d_Gamma_4_y,
+            rrrrs_d_c_yy, rrrrs_d_phi_4_t, rrrrs_g_r0_x, rrrrs_g_r0_y, rrrrs_g_r0_z, rrrrs_h_1_y,
+            rrrrs_h_1_z, rrrrs_h_2_x, rrrrs_h_2_y, rrrrs_h_2_z, rrrrs_h_3_x, rrrrs_h_3_y,
+            rrrrs_h_3_z, rrrrs_h_4_x, rrrrs_h_4_y, rrrrs_h_4_z, rrrrs_joint2_offset_x,
             rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_link3_mass,
             rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
-            rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,
+            rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,
         ) = k
-        y_2_extra_rrrrs = X[[7][leg]]
-        yd_2_rrrrs = V[[6][leg]]
-        # (rrrrs-K1) from the base point to the connection point
-        q_rrrrs_in_base_x = (
+        rrrrs_y_2_extra = X[[7][leg]]
+        rrrrs_yd_2 = V[[6][leg]]
+        # (rrrrs-S) from the base point to the connection point
+        rrrrs_q_in_base_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
-        q_rrrrs_in_base_y = (
+        rrrrs_q_in_base_y = (
         R_yx*rrrrs_platform_point_x + R_yy*rrrrs_platform_point_y + R_yz*rrrrs_platform_point_z
         )
-        q_rrrrs_in_base_z = (
+        rrrrs_q_in_base_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        S_rrrrs_x = q_rrrrs_in_base_x + t_x - rrrrs_base_point_x
-        S_rrrrs_y = q_rrrrs_in_base_y + t_y - rrrrs_base_point_y
-        S_rrrrs_z = q_rrrrs_in_base_z + t_z - rrrrs_base_point_z
-        # (rrrrs-K4) component along the reference direction
-        px_1_rrrrs = (
-        S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy +
-            S_rrrrs_z*rrrrs_base_frame_zy
+        rrrrs_S_x = rrrrs_q_in_base_x + t_x - rrrrs_base_point_x
+        rrrrs_S_y = rrrrs_q_in_base_y + t_y - rrrrs_base_point_y
+        rrrrs_S_z = rrrrs_q_in_base_z + t_z - rrrrs_base_point_z
+        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrrs_c_2_t = sin(rrrrs_y_2_extra)
+        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrrs_s_2 = cos(rrrrs_y_2_extra)
+        # (rrrrs-Kr_1) right-hand side of the equation of joint 1
+        rrrrs_Kr_1_t = rrrrs_joint2_offset_x*rrrrs_s_2
+        rrrrs_Kr_1_t_2 = rrrrs_c_2_t*rrrrs_joint2_offset_x
+        # (rrrrs-px_1) component along the reference direction
+        rrrrs_px_1 = (
+        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
+            rrrrs_S_z*rrrrs_base_frame_zy
         )
-        # (rrrrs-K5) component across the reference direction
-        py_1_rrrrs = (
-        S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz +
-            S_rrrrs_z*rrrrs_base_frame_zz
+        # (rrrrs-py_1) component across the reference direction
+        rrrrs_py_1 = (
+        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
+            rrrrs_S_z*rrrrs_base_frame_zz
         )
-        # (rrrrs-K7) squared amplitude
-        rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs
-        # (rrrrs-K9) root, with the sign of the branch
-        root_1_rrrrs = branch_1_rrrrs*sqrt(rho2_1_rrrrs)
-        # (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_rrrrs_t = (
-        S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx +
-            S_rrrrs_z*rrrrs_base_frame_zx
+        # (rrrrs-rho2_1) squared amplitude
+        rrrrs_rho2_1 = rrrrs_px_1*rrrrs_px_1 + rrrrs_py_1*rrrrs_py_1
+        # (rrrrs-root_1) root, with the sign of the branch
+        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
+        # (rrrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrrs_xi_1_t = (
+        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
+            rrrrs_S_z*rrrrs_base_frame_zx
         )
-        # (rrrrs-K14) from the origin of joint 2 to the connection point
-        x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x
-        # (rrrrs-K2) cosine of the angle of joint 2 from its reference direction
-        c_2_rrrrs_t = sin(y_2_extra_rrrrs)
-        # (rrrrs-K3) sine of the angle of joint 2 from its reference direction
-        s_2_rrrrs = cos(y_2_extra_rrrrs)
-        # (rrrrs-K14) from the origin of joint 2 to the connection point
-        x_2_rrrrs_t = c_2_rrrrs_t*root_1_rrrrs
-        x_2_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*x_2_rrrrs_z
-        x_2_rrrrs_t_2 = root_1_rrrrs*s_2_rrrrs
-        x_2_rrrrs_r1_y = x_2_rrrrs_t_2 - c_2_rrrrs_t*x_2_rrrrs_z
-        # (rrrrs-K15) from the origin of joint 3 to the connection point
-        x_3_rrrrs_x = x_2_rrrrs_r1_x - rrrrs_joint3_offset_x
-        # (rrrrs-K16) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-        Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x
-        Kd_3_rrrrs = Kd_3_rrrrs_t + 0.5*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2
-        # (rrrrs-K20) factor of the cosine in the equation of joint 3
-        Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x
-        # (rrrrs-K21) factor of the sine in the equation of joint 3
-        Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y
-        # (rrrrs-K22) squared amplitude
-        rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs
-        # (rrrrs-K23) discriminant
-        disc_3_rrrrs = rho2_3_rrrrs - Kd_3_rrrrs*Kd_3_rrrrs
-        # (rrrrs-K24) root, with the sign of the branch
-        root_3_rrrrs = branch_3_rrrrs*sqrt(disc_3_rrrrs)
-        # (rrrrs-K30) from the origin of joint 4 to the connection point
-        x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
-        # (rrrrs-K32) cosine of the angle of joint 4 from its reference direction
-        c_4_rrrrs = inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x
-        # (rrrrs-K33) sine of the angle of joint 4 from its reference direction
-        s_4_rrrrs = (
-        inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        # (rrrrs-x_2) from the origin of joint 2 to the connection point
+        rrrrs_x_2_z = rrrrs_xi_1_t - rrrrs_joint2_offset_x
+        rrrrs_x_2_t = rrrrs_c_2_t*rrrrs_root_1
+        rrrrs_x_2_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_x_2_z
+        rrrrs_x_2_t_2 = rrrrs_root_1*rrrrs_s_2
+        rrrrs_x_2_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_x_2_z
+        # (rrrrs-x_3) from the origin of joint 3 to the connection point
+        rrrrs_x_3_x = rrrrs_x_2_r1_x - rrrrs_joint3_offset_x
+        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
+        rrrrs_Kd_3_t_3 = rrrrs_x_2_r1_y*rrrrs_x_2_r1_y + rrrrs_x_3_x*rrrrs_x_3_x
+        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
+        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
+        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_x
+        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
+        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_r1_y
+        # (rrrrs-rho2_3) squared amplitude
+        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
+        # (rrrrs-disc_3) discriminant
+        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
+        # (rrrrs-root_3) root, with the sign of the branch
+        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
+        # (rrrrs-x_4) from the origin of joint 4 to the connection point
+        rrrrs_x_4_x = inv_rrrrs_size_t_2*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
+        rrrrs_c_4 = inv_rrrrs_size_t_3*rrrrs_platform_joint_offset_x*rrrrs_x_4_x
+        # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
+        rrrrs_s_4 = (
+        inv_rrrrs_size_t_2*inv_rrrrs_size_t_3*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
         )
-        # (rrrrs-V2) from joint 3 to the connection point, along the links
-        r_3_rrrrs_t = rrrrs_platform_joint_offset_x*s_4_rrrrs
-        r_3_rrrrs_x = rrrrs_joint4_offset_x + c_4_rrrrs*rrrrs_platform_joint_offset_x
-        # (rrrrs-K25) cosine of the angle of joint 3 from its reference direction
-        inv_rho2_3_rrrrs = 1.0/rho2_3_rrrrs
-        c_3_rrrrs = inv_rho2_3_rrrrs*(Kc_3_rrrrs*Kd_3_rrrrs - Ks_3_rrrrs*root_3_rrrrs)
-        # (rrrrs-K26) sine of the angle of joint 3 from its reference direction
-        s_3_rrrrs = inv_rho2_3_rrrrs*(Kc_3_rrrrs*root_3_rrrrs + Kd_3_rrrrs*Ks_3_rrrrs)
-        # (rrrrs-V5) velocity of the connection point per rate of joint 1
-        e_1_rrrrs_r2_x = c_3_rrrrs*s_2_rrrrs - c_2_rrrrs_t*s_3_rrrrs
-        e_1_rrrrs_r2_y = -c_2_rrrrs_t*c_3_rrrrs - s_2_rrrrs*s_3_rrrrs
-        e_1_rrrrs_r3_x = c_4_rrrrs*e_1_rrrrs_r2_x - e_1_rrrrs_r2_y*s_4_rrrrs
-        e_1_rrrrs_r3_y = c_4_rrrrs*e_1_rrrrs_r2_y + e_1_rrrrs_r2_x*s_4_rrrrs
-        # (rrrrs-V4) from joint 1 to the connection point, along the links
-        r_1_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*xi_1_rrrrs_t
-        r_1_rrrrs_r1_y = x_2_rrrrs_t_2 - c_2_rrrrs_t*xi_1_rrrrs_t
-        r_1_rrrrs_r2_x = c_3_rrrrs*r_1_rrrrs_r1_x + r_1_rrrrs_r1_y*s_3_rrrrs
-        r_1_rrrrs_r2_y = c_3_rrrrs*r_1_rrrrs_r1_y - r_1_rrrrs_r1_x*s_3_rrrrs
-        # (rrrrs-V5) velocity of the connection point per rate of joint 1
-        v_1_rrrrs_z = (
-        e_1_rrrrs_r3_x*(c_4_rrrrs*r_1_rrrrs_r2_y + r_1_rrrrs_r2_x*s_4_rrrrs) -
-            e_1_rrrrs_r3_y*(c_4_rrrrs*r_1_rrrrs_r2_x - r_1_rrrrs_r2_y*s_4_rrrrs)
+        # (rrrrs-r_3) from joint 3 to the connection point, along the links
+        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4
+        rrrrs_r_3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
+        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
+        rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
+        # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
+        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrrs_e_1_r2_x = rrrrs_c_3*rrrrs_s_2 - rrrrs_c_2_t*rrrrs_s_3
+        rrrrs_e_1_r2_y = -rrrrs_c_2_t*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
+        rrrrs_e_1_r3_x = rrrrs_c_4*rrrrs_e_1_r2_x - rrrrs_e_1_r2_y*rrrrs_s_4
+        rrrrs_e_1_r3_y = rrrrs_c_4*rrrrs_e_1_r2_y + rrrrs_e_1_r2_x*rrrrs_s_4
+        # (rrrrs-r_1) from joint 1 to the connection point, along the links
+        rrrrs_r_1_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_xi_1_t
+        rrrrs_r_1_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_xi_1_t
+        rrrrs_r_1_r2_x = rrrrs_c_3*rrrrs_r_1_r1_x + rrrrs_r_1_r1_y*rrrrs_s_3
+        rrrrs_r_1_r2_y = rrrrs_c_3*rrrrs_r_1_r1_y - rrrrs_r_1_r1_x*rrrrs_s_3
+        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrrs_v_1_z = (
+        rrrrs_e_1_r3_x*(rrrrs_c_4*rrrrs_r_1_r2_y + rrrrs_r_1_r2_x*rrrrs_s_4) -
+            rrrrs_e_1_r3_y*(rrrrs_c_4*rrrrs_r_1_r2_x - rrrrs_r_1_r2_y*rrrrs_s_4)
         )
-        # (rrrrs-V2) from joint 3 to the connection point, along the links
-        r_3_rrrrs_r0_x = c_4_rrrrs*r_3_rrrrs_x + r_3_rrrrs_t*s_4_rrrrs
-        r_3_rrrrs_r0_y = r_3_rrrrs_x*s_4_rrrrs - c_4_rrrrs*r_3_rrrrs_t
-        # (rrrrs-K10) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrrrs = 1.0/rho2_1_rrrrs
-        c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs
-        # (rrrrs-K11) sine of the angle of joint 1 from its reference direction
-        s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs
-        # (rrrrs-V9) reciprocal vector 1
+        # (rrrrs-r_3) from joint 3 to the connection point, along the links
+        rrrrs_r_3_r0_x = rrrrs_c_4*rrrrs_r_3_x + rrrrs_r_3_t*rrrrs_s_4
+        rrrrs_r_3_r0_y = rrrrs_r_3_x*rrrrs_s_4 - rrrrs_c_4*rrrrs_r_3_t
+        # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
+        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_py_1*rrrrs_root_1
+        # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_px_1*rrrrs_root_1
+        # (rrrrs-w_1) reciprocal vector 1
         axis_z_rrrrs_axes4_in_base_x = (
-        rrrrs_base_frame_xz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_xy
+        rrrrs_base_frame_xz*rrrrs_s_1 - rrrrs_base_frame_xy*rrrrs_c_1
         )
         axis_z_rrrrs_axes4_in_base_y = (
-        rrrrs_base_frame_yz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_yy
+        rrrrs_base_frame_yz*rrrrs_s_1 - rrrrs_base_frame_yy*rrrrs_c_1
         )
         axis_z_rrrrs_axes4_in_base_z = (
-        rrrrs_base_frame_zz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_zy
+        rrrrs_base_frame_zz*rrrrs_s_1 - rrrrs_base_frame_zy*rrrrs_c_1
         )
-        axis_y_rrrrs_axes4_r1_x = c_3_rrrrs*s_4_rrrrs - c_4_rrrrs*s_3_rrrrs
-        axis_y_rrrrs_axes4_r1_y = c_3_rrrrs*c_4_rrrrs + s_3_rrrrs*s_4_rrrrs
+        axis_y_rrrrs_axes4_r1_x = rrrrs_c_3*rrrrs_s_4 - rrrrs_c_4*rrrrs_s_3
+        axis_y_rrrrs_axes4_r1_y = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4
         axis_y_rrrrs_axes4_r2_x = (
-        -axis_y_rrrrs_axes4_r1_x*c_2_rrrrs_t - axis_y_rrrrs_axes4_r1_y*s_2_rrrrs
+        -axis_y_rrrrs_axes4_r1_x*rrrrs_c_2_t - axis_y_rrrrs_axes4_r1_y*rrrrs_s_2
         )
         axis_y_rrrrs_axes4_r2_y = (
-        axis_y_rrrrs_axes4_r1_x*s_2_rrrrs - axis_y_rrrrs_axes4_r1_y*c_2_rrrrs_t
+        axis_y_rrrrs_axes4_r1_x*rrrrs_s_2 - axis_y_rrrrs_axes4_r1_y*rrrrs_c_2_t
         )
-        w_1_rrrrs_t = axis_y_rrrrs_axes4_r2_x*s_1_rrrrs
-        w_1_rrrrs_t_2 = axis_y_rrrrs_axes4_r2_x*c_1_rrrrs
+        rrrrs_w_1_t = axis_y_rrrrs_axes4_r2_x*rrrrs_s_1
+        rrrrs_w_1_t_2 = axis_y_rrrrs_axes4_r2_x*rrrrs_c_1
         axis_y_rrrrs_axes4_in_base_x = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_xx - rrrrs_base_frame_xy*w_1_rrrrs_t -
-            rrrrs_base_frame_xz*w_1_rrrrs_t_2
+        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_xx - rrrrs_base_frame_xy*rrrrs_w_1_t -
+            rrrrs_base_frame_xz*rrrrs_w_1_t_2
         )
         axis_y_rrrrs_axes4_in_base_y = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_yx - rrrrs_base_frame_yy*w_1_rrrrs_t -
-            rrrrs_base_frame_yz*w_1_rrrrs_t_2
+        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_yx - rrrrs_base_frame_yy*rrrrs_w_1_t -
+            rrrrs_base_frame_yz*rrrrs_w_1_t_2
         )
         axis_y_rrrrs_axes4_in_base_z = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_zx - rrrrs_base_frame_zy*w_1_rrrrs_t -
-            rrrrs_base_frame_zz*w_1_rrrrs_t_2
+        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_zx - rrrrs_base_frame_zy*rrrrs_w_1_t -
+            rrrrs_base_frame_zz*rrrrs_w_1_t_2
         )
         axis_x_rrrrs_axes4_x = (
         axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_z -
@@ -2256,588 +2303,608 @@ def _run_dynamics(m, X, V):
         axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_y -
             axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_x
         )
-        # (rrrrs-G11) inertia tensor of link 4 about the connection point
-        J_4_rrrrs_t = J_4_rrrrs_xy*s_4_rrrrs
-        _x = J_4_rrrrs_t + J_4_rrrrs_xx*c_4_rrrrs
-        J_4_rrrrs_t_2 = J_4_rrrrs_xy*c_4_rrrrs
-        _x_2 = J_4_rrrrs_t_2 + J_4_rrrrs_yy*s_4_rrrrs
-        _x_3 = J_4_rrrrs_xz*c_4_rrrrs + J_4_rrrrs_yz*s_4_rrrrs
-        _y = J_4_rrrrs_yz*c_4_rrrrs - J_4_rrrrs_xz*s_4_rrrrs
-        # (rrrrs-N25) inertia tensor of the links from 3 outwards about joint 3
-        Jc_3_rrrrs_xx = J_3_rrrrs_xx + _x*c_4_rrrrs + _x_2*s_4_rrrrs
-        Jc_3_rrrrs_xy = J_3_rrrrs_xy + _x_2*c_4_rrrrs - _x*s_4_rrrrs
-        Jc_3_rrrrs_xz = J_3_rrrrs_xz + _x_3
-        Jc_3_rrrrs_yy = (
-        J_3_rrrrs_yy + c_4_rrrrs*(J_4_rrrrs_yy*c_4_rrrrs - J_4_rrrrs_t) - s_4_rrrrs*(J_4_rrrrs_t_2
-            - J_4_rrrrs_xx*s_4_rrrrs)
-        )
-        Jc_3_rrrrs_yz = J_3_rrrrs_yz + _y
-        Jc_3_rrrrs_t = Jc_3_rrrrs_xy*s_3_rrrrs
-        _x_4 = Jc_3_rrrrs_xx*c_3_rrrrs - Jc_3_rrrrs_t
-        Jc_3_rrrrs_t_2 = Jc_3_rrrrs_xy*c_3_rrrrs
-        _x_5 = Jc_3_rrrrs_t_2 - Jc_3_rrrrs_yy*s_3_rrrrs
-        _x_6 = Jc_3_rrrrs_xz*c_3_rrrrs - Jc_3_rrrrs_yz*s_3_rrrrs
-        _y_2 = Jc_3_rrrrs_xz*s_3_rrrrs + Jc_3_rrrrs_yz*c_3_rrrrs
-        # (rrrrs-G7) first moment of link 3 about the origin of link 3
-        h_3_rrrrs_r0_x = c_3_rrrrs*h_3_rrrrs_x - h_3_rrrrs_y*s_3_rrrrs
-        h_3_rrrrs_r0_y = c_3_rrrrs*h_3_rrrrs_y + h_3_rrrrs_x*s_3_rrrrs
-        # (rrrrs-N34) inertia tensor of the links from 2 outwards about joint 2
-        Jc_2_rrrrs_t_3 = rrrrs_joint3_offset_x*(Jc_2_rrrrs_t + h_3_rrrrs_r0_x)
-        Jc_2_rrrrs_t_4 = 2.0*Jc_2_rrrrs_t_3
-        Jc_2_rrrrs_xy = (
-        J_2_rrrrs_xy + _x_4*s_3_rrrrs + _x_5*c_3_rrrrs - h_3_rrrrs_r0_y*rrrrs_joint3_offset_x
-        )
-        _y_3 = (
-        s_2_rrrrs*(s_2_rrrrs*(J_2_rrrrs_xx + Jc_2_rrrrs_t_4 + _x_4*c_3_rrrrs - 2.0*Jc_2_rrrrs_t_3
-            - _x_5*s_3_rrrrs) - Jc_2_rrrrs_xy*c_2_rrrrs_t) - c_2_rrrrs_t*(Jc_2_rrrrs_xy*s_2_rrrrs
-            - c_2_rrrrs_t*(J_2_rrrrs_yy + Jc_2_rrrrs_t_4 + c_3_rrrrs*(Jc_3_rrrrs_t +
-            Jc_3_rrrrs_yy*c_3_rrrrs) + s_3_rrrrs*(Jc_3_rrrrs_t_2 + Jc_3_rrrrs_xx*s_3_rrrrs)))
-        )
-        # (rrrrs-N29) moment about joint 2 that accelerates joint 3, per unit
-        L_c3_2_rrrrs_z = Jc_3_rrrrs_zz + h_3_rrrrs_r0_x*rrrrs_joint3_offset_x
-        # (rrrrs-V9) reciprocal vector 1
-        inv_v_1_rrrrs_z = 1.0/v_1_rrrrs_z
-        # (rrrrs-V10) reciprocal vector 2
-        inv_r_3_rrrrs_r0_y = 1.0/r_3_rrrrs_r0_y
-        # (rrrrs-V11) reciprocal vector 3
-        w_4_rrrrs_t = inv_r_3_rrrrs_r0_y*inv_rrrrs_platform_joint_offset_x*r_3_rrrrs_r0_x
-        # (rrrrs-N80) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_rrrrs_z = (
-        e_1_rrrrs_r3_x*h_4_rrrrs_y + inv_v_1_rrrrs_z*(J_1_rrrrs_xx + _y_3) -
-            e_1_rrrrs_r3_y*h_4_rrrrs_x
-        )
-        # (rrrrs-N58) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        d_Gamma_3_rrrrs_t_2 = d_Gamma_3_rrrrs_t*r_3_rrrrs_r0_x
-        d_Gamma_3_rrrrs_x = (
-        -h_4_rrrrs_y - inv_r_3_rrrrs_r0_y*(Jc_3_rrrrs_zz - d_Gamma_3_rrrrs_t_2)
-        )
-        # (rrrrs-N48) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-        d_Gamma_4_rrrrs_t = (
-        inv_v_1_rrrrs_z*(s_2_rrrrs*(_x_3*c_3_rrrrs - _y*s_3_rrrrs) - c_2_rrrrs_t*(_x_3*s_3_rrrrs +
-            _y*c_3_rrrrs))
-        )
-        d_Gamma_4_rrrrs_x = -h_4_rrrrs_y - inv_r_3_rrrrs_r0_y*(J_4_rrrrs_zz - d_Gamma_3_rrrrs_t_2)
-        # (rrrrs-N84) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_rrrrs_t_2 = d_Gamma_4_rrrrs_t*inv_rrrrs_platform_joint_offset_x
-        d_G_rrrrs_xx = d_Gamma_4_rrrrs_x*w_4_rrrrs_t - d_Gamma_3_rrrrs_x*inv_r_3_rrrrs_r0_y
-        d_G_rrrrs_xy = d_Gamma_3_rrrrs_y*w_4_rrrrs_t - d_Gamma_3_rrrrs_y*inv_r_3_rrrrs_r0_y
-        d_G_rrrrs_xz = (
-        d_Gamma_4_rrrrs_t*w_4_rrrrs_t - inv_r_3_rrrrs_r0_y*inv_v_1_rrrrs_z*(_x_6*s_2_rrrrs -
-            _y_2*c_2_rrrrs_t)
-        )
-        # (rrrrs-A35) coefficient of the acceleration in: angular acceleration of link 4
-        d_alpha_4_rrrrs_t = e_1_rrrrs_r3_x*inv_v_1_rrrrs_z
-        d_alpha_4_rrrrs_t_2 = e_1_rrrrs_r3_y*inv_v_1_rrrrs_z
-        # (rrrrs-N88) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_rrrrs_xx = h_4_rrrrs_y*(w_4_rrrrs_t - inv_r_3_rrrrs_r0_y) - d_G_rrrrs_xx
-        d_c_rrrrs_xy = d_phi_4_rrrrs_t - d_G_rrrrs_xy
-        d_c_rrrrs_xz = -d_G_rrrrs_xz - d_alpha_4_rrrrs_t_2*h_4_rrrrs_z
-        d_c_rrrrs_yz = d_alpha_4_rrrrs_t*h_4_rrrrs_z - d_G_rrrrs_t_2
-        # (rrrrs-N90) inertia of the leg at the connection point, without the mass gathered there
-        Q_rrrrs_t = d_c_rrrrs_xx - d_c_rrrrs_yy
-        Q_rrrrs_t_2 = 0.5*Q_rrrrs_t
-        Q_rrrrs_t_3 = (
-        d_c_rrrrs_xx + d_Gamma_1_rrrrs_z*inv_v_1_rrrrs_z + d_alpha_4_rrrrs_t*h_4_rrrrs_y -
-            d_alpha_4_rrrrs_t_2*h_4_rrrrs_x
-        )
-        Q_rrrrs_t_4 = 0.5*Q_rrrrs_t_3
-        Q_rrrrs_t_5 = (
-        axis_x_rrrrs_axes4_x*d_c_rrrrs_xy + axis_z_rrrrs_axes4_in_base_x*d_c_rrrrs_yz -
-            Q_rrrrs_t_2*axis_y_rrrrs_axes4_in_base_x
-        )
-        Q_rrrrs_t_6 = (
-        axis_x_rrrrs_axes4_y*d_c_rrrrs_xy + axis_z_rrrrs_axes4_in_base_y*d_c_rrrrs_yz -
-            Q_rrrrs_t_2*axis_y_rrrrs_axes4_in_base_y
-        )
-        Q_rrrrs_t_7 = (
-        axis_x_rrrrs_axes4_z*d_c_rrrrs_xy + axis_z_rrrrs_axes4_in_base_z*d_c_rrrrs_yz -
-            Q_rrrrs_t_2*axis_y_rrrrs_axes4_in_base_z
-        )
-        Q_rrrrs_t_8 = Q_rrrrs_t_4*axis_z_rrrrs_axes4_in_base_x - axis_x_rrrrs_axes4_x*d_c_rrrrs_xz
-        Q_rrrrs_t_9 = Q_rrrrs_t_4*axis_z_rrrrs_axes4_in_base_y - axis_x_rrrrs_axes4_y*d_c_rrrrs_xz
-        Q_rrrrs_t_10 = (
-        Q_rrrrs_t_4*axis_z_rrrrs_axes4_in_base_z - axis_x_rrrrs_axes4_z*d_c_rrrrs_xz
-        )
-        Q_rrrrs_t_11 = (
-        Q_rrrrs_t_5*axis_y_rrrrs_axes4_in_base_x - Q_rrrrs_t_8*axis_z_rrrrs_axes4_in_base_x
-        )
-        Q_rrrrs_t_12 = 2.0*Q_rrrrs_t_11 + d_c_rrrrs_xx
-        Q_rrrrs_t_13 = (
-        Q_rrrrs_t_5*axis_y_rrrrs_axes4_in_base_y + Q_rrrrs_t_6*axis_y_rrrrs_axes4_in_base_x -
-            Q_rrrrs_t_8*axis_z_rrrrs_axes4_in_base_y - Q_rrrrs_t_9*axis_z_rrrrs_axes4_in_base_x
-        )
-        Q_rrrrs_t_14 = (
-        Q_rrrrs_t_5*axis_y_rrrrs_axes4_in_base_z + Q_rrrrs_t_7*axis_y_rrrrs_axes4_in_base_x -
-            Q_rrrrs_t_10*axis_z_rrrrs_axes4_in_base_x - Q_rrrrs_t_8*axis_z_rrrrs_axes4_in_base_z
-        )
-        Q_rrrrs_t_15 = (
-        Q_rrrrs_t_6*axis_y_rrrrs_axes4_in_base_y - Q_rrrrs_t_9*axis_z_rrrrs_axes4_in_base_y
-        )
-        Q_rrrrs_t_16 = 2.0*Q_rrrrs_t_15 + d_c_rrrrs_xx
-        Q_rrrrs_t_17 = (
-        Q_rrrrs_t_6*axis_y_rrrrs_axes4_in_base_z + Q_rrrrs_t_7*axis_y_rrrrs_axes4_in_base_y -
-            Q_rrrrs_t_10*axis_z_rrrrs_axes4_in_base_y - Q_rrrrs_t_9*axis_z_rrrrs_axes4_in_base_z
-        )
-        Q_rrrrs_t_18 = (
-        Q_rrrrs_t_7*axis_y_rrrrs_axes4_in_base_z - Q_rrrrs_t_10*axis_z_rrrrs_axes4_in_base_z
-        )
-        Q_rrrrs_t_19 = 2.0*Q_rrrrs_t_18 + d_c_rrrrs_xx
-        # (M2) coupling block of M
-        M_ta_t = Q_rrrrs_t_13*q_rrrrs_in_base_z
-        M_ta_t_2 = Q_rrrrs_t_14*q_rrrrs_in_base_y
-        M_ta_t_3 = M_ta_t - M_ta_t_2
-        M_ta_t_4 = Q_rrrrs_t_12*q_rrrrs_in_base_z - Q_rrrrs_t_14*q_rrrrs_in_base_x
-        M_ta_t_5 = Q_rrrrs_t_12*q_rrrrs_in_base_y - Q_rrrrs_t_13*q_rrrrs_in_base_x
-        M_ta_t_6 = Q_rrrrs_t_16*q_rrrrs_in_base_z - Q_rrrrs_t_17*q_rrrrs_in_base_y
-        M_ta_t_7 = Q_rrrrs_t_17*q_rrrrs_in_base_x
-        M_ta_t_8 = M_ta_t - M_ta_t_7
-        M_ta_t_9 = Q_rrrrs_t_13*q_rrrrs_in_base_y - Q_rrrrs_t_16*q_rrrrs_in_base_x
-        M_ta_t_10 = Q_rrrrs_t_17*q_rrrrs_in_base_z - Q_rrrrs_t_19*q_rrrrs_in_base_y
-        M_ta_t_11 = Q_rrrrs_t_14*q_rrrrs_in_base_z - Q_rrrrs_t_19*q_rrrrs_in_base_x
-        M_ta_t_12 = M_ta_t_7 - M_ta_t_2
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t_6*q_rrrrs_in_base_z - M_ta_t_10*q_rrrrs_in_base_y
-        M_aa_t_2 = M_ta_t_8*q_rrrrs_in_base_z - M_ta_t_11*q_rrrrs_in_base_y
-        M_aa_t_3 = M_ta_t_12*q_rrrrs_in_base_y + M_ta_t_9*q_rrrrs_in_base_z
-        M_aa_t_4 = M_ta_t_4*q_rrrrs_in_base_z - M_ta_t_11*q_rrrrs_in_base_x
-        M_aa_t_5 = M_ta_t_12*q_rrrrs_in_base_x + M_ta_t_5*q_rrrrs_in_base_z
-        M_aa_t_6 = M_ta_t_5*q_rrrrs_in_base_y - M_ta_t_9*q_rrrrs_in_base_x
-        # (rrrrs-V1) velocity of the connection point
-        S_dot_rrrrs_t = omega_y*q_rrrrs_in_base_z - omega_z*q_rrrrs_in_base_y
-        S_dot_rrrrs_t_2 = omega_z*q_rrrrs_in_base_x - omega_x*q_rrrrs_in_base_z
-        S_dot_rrrrs_t_3 = omega_x*q_rrrrs_in_base_y - omega_y*q_rrrrs_in_base_x
-        S_dot_rrrrs_x = S_dot_rrrrs_t + t_dot_x
-        S_dot_rrrrs_y = S_dot_rrrrs_t_2 + t_dot_y
-        S_dot_rrrrs_z = S_dot_rrrrs_t_3 + t_dot_z
-        # (rrrrs-V3) from joint 2 to the connection point, along the links
-        r_2_rrrrs_r0_x = c_3_rrrrs*x_2_rrrrs_r1_x + s_3_rrrrs*x_2_rrrrs_r1_y
-        r_2_rrrrs_r0_y = c_3_rrrrs*x_2_rrrrs_r1_y - s_3_rrrrs*x_2_rrrrs_r1_x
-        r_2_rrrrs_r1_x = c_4_rrrrs*r_2_rrrrs_r0_x - r_2_rrrrs_r0_y*s_4_rrrrs
-        r_2_rrrrs_r1_y = c_4_rrrrs*r_2_rrrrs_r0_y + r_2_rrrrs_r0_x*s_4_rrrrs
-        # (rrrrs-V12) velocity of the connection point left to the joints that are not extra
-        S_dot_rest_rrrrs_x = (
-        S_dot_rrrrs_x - yd_2_rrrrs*(axis_y_rrrrs_axes4_in_base_x*r_2_rrrrs_r1_x -
-            axis_x_rrrrs_axes4_x*r_2_rrrrs_r1_y)
-        )
-        S_dot_rest_rrrrs_y = (
-        S_dot_rrrrs_y - yd_2_rrrrs*(axis_y_rrrrs_axes4_in_base_y*r_2_rrrrs_r1_x -
-            axis_x_rrrrs_axes4_y*r_2_rrrrs_r1_y)
-        )
-        S_dot_rest_rrrrs_z = (
-        S_dot_rrrrs_z - yd_2_rrrrs*(axis_y_rrrrs_axes4_in_base_z*r_2_rrrrs_r1_x -
-            axis_x_rrrrs_axes4_z*r_2_rrrrs_r1_y)
-        )
-        # (rrrrs-V13) rate of joint 1
-        qd_3_rrrrs = (
-        inv_r_3_rrrrs_r0_y*(S_dot_rest_rrrrs_x*axis_x_rrrrs_axes4_x +
-            S_dot_rest_rrrrs_y*axis_x_rrrrs_axes4_y + S_dot_rest_rrrrs_z*axis_x_rrrrs_axes4_z)
-        )
-        qd_4_rrrrs = (
-        inv_rrrrs_platform_joint_offset_x*(S_dot_rest_rrrrs_x*axis_y_rrrrs_axes4_in_base_x +
-            S_dot_rest_rrrrs_y*axis_y_rrrrs_axes4_in_base_y +
-            S_dot_rest_rrrrs_z*axis_y_rrrrs_axes4_in_base_z + qd_3_rrrrs*r_3_rrrrs_r0_x)
-        )
-        qd_1_rrrrs = (
-        inv_v_1_rrrrs_z*(S_dot_rest_rrrrs_x*axis_z_rrrrs_axes4_in_base_x +
-            S_dot_rest_rrrrs_y*axis_z_rrrrs_axes4_in_base_y +
-            S_dot_rest_rrrrs_z*axis_z_rrrrs_axes4_in_base_z)
-        )
-        # (rrrrs-V16) angular velocity of link 1
-        omega_1_rrrrs_t = qd_1_rrrrs*s_2_rrrrs
-        omega_1_rrrrs_t_2 = c_2_rrrrs_t*qd_1_rrrrs
-        # (rrrrs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_rrrrs_x = omega_1_rrrrs_t_2*yd_2_rrrrs
-        zeta_2_rrrrs_y = omega_1_rrrrs_t*yd_2_rrrrs
-        # (rrrrs-V18) angular velocity of link 2
-        omega_2_rrrrs_r0_x = c_3_rrrrs*omega_1_rrrrs_t - omega_1_rrrrs_t_2*s_3_rrrrs
-        omega_2_rrrrs_r0_y = -c_3_rrrrs*omega_1_rrrrs_t_2 - omega_1_rrrrs_t*s_3_rrrrs
-        # (rrrrs-A5) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_rrrrs_x = omega_2_rrrrs_r0_y*qd_3_rrrrs
-        zeta_3_rrrrs_y = omega_2_rrrrs_r0_x*qd_3_rrrrs
-        # (rrrrs-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_rrrrs_x = -zeta_3_rrrrs_x - c_3_rrrrs*zeta_2_rrrrs_x - s_3_rrrrs*zeta_2_rrrrs_y
-        beta_3_rrrrs_y = zeta_3_rrrrs_y + s_3_rrrrs*zeta_2_rrrrs_x - c_3_rrrrs*zeta_2_rrrrs_y
-        # (rrrrs-V20) angular velocity of link 3
-        omega_3_rrrrs_z = yd_2_rrrrs - qd_3_rrrrs
-        omega_3_rrrrs_r0_x = c_4_rrrrs*omega_2_rrrrs_r0_x - omega_2_rrrrs_r0_y*s_4_rrrrs
-        omega_3_rrrrs_r0_y = c_4_rrrrs*omega_2_rrrrs_r0_y + omega_2_rrrrs_r0_x*s_4_rrrrs
-        # (rrrrs-A7) angular acceleration of link 4 from the turning of axis 4
-        zeta_4_rrrrs_y = omega_3_rrrrs_r0_x*qd_4_rrrrs
-        # (rrrrs-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_rrrrs_r0_y = beta_3_rrrrs_x*s_4_rrrrs + beta_3_rrrrs_y*c_4_rrrrs
-        # (rrrrs-A8) angular acceleration of link 4 at zero joint accelerations
-        beta_4_rrrrs_y = beta_3_rrrrs_r0_y - zeta_4_rrrrs_y
-        # (rrrrs-V22) angular velocity of link 4
-        omega_4_rrrrs_z = omega_3_rrrrs_z + qd_4_rrrrs
-        # (rrrrs-V19) centripetal tensor of link 2
-        W_2_rrrrs_t = omega_1_rrrrs_t*omega_1_rrrrs_t
-        W_2_rrrrs_t_2 = omega_1_rrrrs_t_2*omega_1_rrrrs_t_2
-        W_2_rrrrs_t_3 = yd_2_rrrrs*yd_2_rrrrs
-        W_2_rrrrs_xy = omega_1_rrrrs_t*omega_1_rrrrs_t_2
-        # (rrrrs-V21) centripetal tensor of link 3
-        W_3_rrrrs_t = omega_2_rrrrs_r0_x*omega_2_rrrrs_r0_x
-        W_3_rrrrs_t_2 = omega_2_rrrrs_r0_y*omega_2_rrrrs_r0_y
-        W_3_rrrrs_t_3 = omega_3_rrrrs_z*omega_3_rrrrs_z
-        W_3_rrrrs_xy = omega_2_rrrrs_r0_x*omega_2_rrrrs_r0_y
-        W_3_rrrrs_xz = omega_2_rrrrs_r0_x*omega_3_rrrrs_z
-        W_3_rrrrs_yz = omega_2_rrrrs_r0_y*omega_3_rrrrs_z
-        # (rrrrs-V23) centripetal tensor of link 4
-        W_4_rrrrs_t = omega_3_rrrrs_r0_x*omega_3_rrrrs_r0_x
-        W_4_rrrrs_t_2 = omega_3_rrrrs_r0_y*omega_3_rrrrs_r0_y
-        W_4_rrrrs_t_3 = omega_4_rrrrs_z*omega_4_rrrrs_z
-        W_4_rrrrs_xx = W_4_rrrrs_t_2 + W_4_rrrrs_t_3
-        W_4_rrrrs_xy = omega_3_rrrrs_r0_x*omega_3_rrrrs_r0_y
-        W_4_rrrrs_xz = omega_3_rrrrs_r0_x*omega_4_rrrrs_z
-        W_4_rrrrs_yz = omega_3_rrrrs_r0_y*omega_4_rrrrs_z
-        # (rrrrs-A9) acceleration of the connection point at zero joint accelerations
-        bias_rrrrs_t = rrrrs_joint2_offset_x*s_2_rrrrs
-        bias_rrrrs_t_2 = c_2_rrrrs_t*rrrrs_joint2_offset_x
-        d_2_rrrrs_r2_x = bias_rrrrs_t*c_3_rrrrs - bias_rrrrs_t_2*s_3_rrrrs
-        d_2_rrrrs_r2_y = -bias_rrrrs_t*s_3_rrrrs - bias_rrrrs_t_2*c_3_rrrrs
-        d_2_rrrrs_r3_x = c_4_rrrrs*d_2_rrrrs_r2_x - d_2_rrrrs_r2_y*s_4_rrrrs
-        d_2_rrrrs_r3_y = c_4_rrrrs*d_2_rrrrs_r2_y + d_2_rrrrs_r2_x*s_4_rrrrs
-        bias_rrrrs_t_3 = c_3_rrrrs*rrrrs_joint3_offset_x
-        bias_rrrrs_t_4 = rrrrs_joint3_offset_x*s_3_rrrrs
-        d_3_rrrrs_r1_x = bias_rrrrs_t_3*c_4_rrrrs + bias_rrrrs_t_4*s_4_rrrrs
-        d_3_rrrrs_r1_y = bias_rrrrs_t_3*s_4_rrrrs - bias_rrrrs_t_4*c_4_rrrrs
-        bias_rrrrs_t_5 = c_4_rrrrs*rrrrs_joint4_offset_x
-        bias_rrrrs_t_6 = rrrrs_joint4_offset_x*s_4_rrrrs
-        bias_rrrrs_x = (
-        W_4_rrrrs_xy*bias_rrrrs_t_6 + W_4_rrrrs_xy*d_2_rrrrs_r3_y + W_4_rrrrs_xy*d_3_rrrrs_r1_y -
-            W_4_rrrrs_t_2*d_2_rrrrs_r3_x - W_4_rrrrs_xx*rrrrs_platform_joint_offset_x -
-            bias_rrrrs_t_5*(W_3_rrrrs_t_3 + W_4_rrrrs_t_2) - d_3_rrrrs_r1_x*(W_2_rrrrs_t_3 +
-            W_4_rrrrs_t_2)
-        )
-        bias_rrrrs_y = (
-        W_4_rrrrs_xy*bias_rrrrs_t_5 + W_4_rrrrs_xy*d_2_rrrrs_r3_x + W_4_rrrrs_xy*d_3_rrrrs_r1_x +
-            W_4_rrrrs_xy*rrrrs_platform_joint_offset_x - W_4_rrrrs_t*d_2_rrrrs_r3_y -
-            bias_rrrrs_t_6*(W_3_rrrrs_t_3 + W_4_rrrrs_t) - d_3_rrrrs_r1_y*(W_2_rrrrs_t_3 +
-            W_4_rrrrs_t)
-        )
-        bias_rrrrs_z = (
-        bias_rrrrs_t_5*(omega_3_rrrrs_r0_x*omega_3_rrrrs_z - beta_3_rrrrs_r0_y) +
-            bias_rrrrs_t_6*(beta_3_rrrrs_x*c_4_rrrrs + omega_3_rrrrs_r0_y*omega_3_rrrrs_z -
-            beta_3_rrrrs_y*s_4_rrrrs) + rrrrs_platform_joint_offset_x*(W_4_rrrrs_xz -
-            beta_4_rrrrs_y) + 2.0*d_3_rrrrs_r1_x*omega_3_rrrrs_r0_x*yd_2_rrrrs +
-            2.0*d_3_rrrrs_r1_y*omega_3_rrrrs_r0_y*yd_2_rrrrs
-        )
-        # (rrrrs-A1) centripetal acceleration of the connection point
-        u_1_rrrrs_x = S_dot_rrrrs_t_3*omega_y - S_dot_rrrrs_t_2*omega_z
-        u_1_rrrrs_y = S_dot_rrrrs_t*omega_z - S_dot_rrrrs_t_3*omega_x
-        u_1_rrrrs_z = S_dot_rrrrs_t_2*omega_x - S_dot_rrrrs_t*omega_y
-        u_1_rrrrs_tip_x = (
-        axis_x_rrrrs_axes4_x*u_1_rrrrs_x + axis_x_rrrrs_axes4_y*u_1_rrrrs_y +
-            axis_x_rrrrs_axes4_z*u_1_rrrrs_z
-        )
-        u_1_rrrrs_tip_y = (
-        axis_y_rrrrs_axes4_in_base_x*u_1_rrrrs_x + axis_y_rrrrs_axes4_in_base_y*u_1_rrrrs_y +
-            axis_y_rrrrs_axes4_in_base_z*u_1_rrrrs_z
-        )
-        u_1_rrrrs_tip_z = (
-        axis_z_rrrrs_axes4_in_base_x*u_1_rrrrs_x + axis_z_rrrrs_axes4_in_base_y*u_1_rrrrs_y +
-            axis_z_rrrrs_axes4_in_base_z*u_1_rrrrs_z
-        )
-        # (rrrrs-A12) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_rrrrs_o_x = u_1_rrrrs_tip_x - bias_rrrrs_x
-        rel_rrrrs_o_y = u_1_rrrrs_tip_y - bias_rrrrs_y
-        rel_rrrrs_o_z = u_1_rrrrs_tip_z - bias_rrrrs_z
-        # (rrrrs-A15) remainder without the acceleration in: acceleration of joint 1
-        qdd_3_rrrrs_o = inv_r_3_rrrrs_r0_y*rel_rrrrs_o_x
-        qdd_1_rrrrs_o = inv_v_1_rrrrs_z*rel_rrrrs_o_z
-        # (rrrrs-A23) remainder without the acceleration in: angular acceleration of link 1
-        alpha_1_rrrrs_o_t = qdd_1_rrrrs_o*s_2_rrrrs
-        alpha_1_rrrrs_o_t_2 = c_2_rrrrs_t*qdd_1_rrrrs_o
-        # (rrrrs-A27) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_rrrrs_o_x = alpha_1_rrrrs_o_t - zeta_2_rrrrs_x
-        alpha_2_rrrrs_o_y = -alpha_1_rrrrs_o_t_2 - zeta_2_rrrrs_y
-        # (rrrrs-A29) remainder of the acceleration tensor of link 2
-        B_2_rrrrs_o_zx = zeta_2_rrrrs_y - alpha_2_rrrrs_o_y
-        B_2_rrrrs_o_zy = alpha_2_rrrrs_o_x - zeta_2_rrrrs_x
-        # (rrrrs-A42) remainder without the acceleration in: acceleration of the origin of joint 3
-        a_o3_rrrrs_o_t = rrrrs_joint3_offset_x*(W_2_rrrrs_t_2 + W_2_rrrrs_t_3)
-        a_o3_rrrrs_o_t_2 = W_2_rrrrs_xy*rrrrs_joint3_offset_x
-        # (rrrrs-N10) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        g_r1_x = g_r0_y*s_1_rrrrs - c_1_rrrrs*g_r0_x
-        g_r1_y = -c_1_rrrrs*g_r0_y - g_r0_x*s_1_rrrrs
-        g_r3_x = g_r0_z*s_2_rrrrs - c_2_rrrrs_t*g_r1_y
-        g_r3_y = -c_2_rrrrs_t*g_r0_z - g_r1_y*s_2_rrrrs
-        g_r4_x = c_3_rrrrs*g_r3_x + g_r3_y*s_3_rrrrs
-        g_r4_y = c_3_rrrrs*g_r3_y - g_r3_x*s_3_rrrrs
-        acc_3_rrrrs_o_x = -g_r4_x - a_o3_rrrrs_o_t*c_3_rrrrs - a_o3_rrrrs_o_t_2*s_3_rrrrs
-        acc_3_rrrrs_o_y = a_o3_rrrrs_o_t*s_3_rrrrs - g_r4_y - a_o3_rrrrs_o_t_2*c_3_rrrrs
-        acc_3_rrrrs_o_z = B_2_rrrrs_o_zx*rrrrs_joint3_offset_x - g_r1_x
-        # (rrrrs-A31) remainder without the acceleration in: angular acceleration of link 3
-        alpha_3_rrrrs_o_x = (
-        alpha_2_rrrrs_o_x*c_3_rrrrs + alpha_2_rrrrs_o_y*s_3_rrrrs - zeta_3_rrrrs_x
-        )
-        alpha_3_rrrrs_o_y = (
-        zeta_3_rrrrs_y + alpha_2_rrrrs_o_y*c_3_rrrrs - alpha_2_rrrrs_o_x*s_3_rrrrs
-        )
-        # (rrrrs-A33) remainder of the acceleration tensor of link 3
-        B_3_rrrrs_o_xy = W_3_rrrrs_xy + qdd_3_rrrrs_o
-        B_3_rrrrs_o_xz = W_3_rrrrs_xz + alpha_3_rrrrs_o_y
-        B_3_rrrrs_o_yx = W_3_rrrrs_xy - qdd_3_rrrrs_o
-        B_3_rrrrs_o_yz = W_3_rrrrs_yz - alpha_3_rrrrs_o_x
-        B_3_rrrrs_o_zx = W_3_rrrrs_xz - alpha_3_rrrrs_o_y
-        B_3_rrrrs_o_zy = W_3_rrrrs_yz + alpha_3_rrrrs_o_x
-        # (rrrrs-N54) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        mu_3_rrrrs_o_x = (
-        B_3_rrrrs_o_yx*J_3_rrrrs_xz + B_3_rrrrs_o_zy*Sigma_3_rrrrs_yy +
-            J_3_rrrrs_yz*(W_3_rrrrs_t_2 - W_3_rrrrs_t_3) + acc_3_rrrrs_o_z*h_3_rrrrs_y -
-            B_3_rrrrs_o_yz*Sigma_3_rrrrs_zz - B_3_rrrrs_o_zx*J_3_rrrrs_xy -
-            acc_3_rrrrs_o_y*h_3_rrrrs_z
-        )
-        mu_3_rrrrs_o_y = (
-        B_3_rrrrs_o_xz*Sigma_3_rrrrs_zz + B_3_rrrrs_o_zy*J_3_rrrrs_xy +
-            acc_3_rrrrs_o_x*h_3_rrrrs_z - B_3_rrrrs_o_xy*J_3_rrrrs_yz -
-            B_3_rrrrs_o_zx*Sigma_3_rrrrs_xx - J_3_rrrrs_xz*(W_3_rrrrs_t - W_3_rrrrs_t_3) -
-            acc_3_rrrrs_o_z*h_3_rrrrs_x
-        )
-        mu_3_rrrrs_o_z = (
-        B_3_rrrrs_o_xz*J_3_rrrrs_yz + B_3_rrrrs_o_yx*Sigma_3_rrrrs_xx + J_3_rrrrs_xy*(W_3_rrrrs_t
-            - W_3_rrrrs_t_2) + acc_3_rrrrs_o_y*h_3_rrrrs_x - B_3_rrrrs_o_xy*Sigma_3_rrrrs_yy -
-            B_3_rrrrs_o_yz*J_3_rrrrs_xz - acc_3_rrrrs_o_x*h_3_rrrrs_y
-        )
-        # (rrrrs-N16) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
-        acc_4_rrrrs_o_x = u_1_rrrrs_tip_x + g_r4_y*s_4_rrrrs - c_4_rrrrs*g_r4_x
-        acc_4_rrrrs_o_y = u_1_rrrrs_tip_y - c_4_rrrrs*g_r4_y - g_r4_x*s_4_rrrrs
-        acc_4_rrrrs_o_z = u_1_rrrrs_tip_z - g_r1_x
-        # (rrrrs-A36) remainder without the acceleration in: angular acceleration of link 4
-        alpha_4_rrrrs_o_x = (
-        alpha_3_rrrrs_o_x*c_4_rrrrs + omega_3_rrrrs_r0_y*qd_4_rrrrs - alpha_3_rrrrs_o_y*s_4_rrrrs
-        )
-        alpha_4_rrrrs_o_y = (
-        alpha_3_rrrrs_o_x*s_4_rrrrs + alpha_3_rrrrs_o_y*c_4_rrrrs - zeta_4_rrrrs_y
-        )
-        alpha_4_rrrrs_o_z = (
-        inv_rrrrs_platform_joint_offset_x*(rel_rrrrs_o_y + qdd_3_rrrrs_o*r_3_rrrrs_r0_x) -
-            qdd_3_rrrrs_o
-        )
-        # (rrrrs-A38) remainder of the acceleration tensor of link 4
-        B_4_rrrrs_o_xy = W_4_rrrrs_xy - alpha_4_rrrrs_o_z
-        B_4_rrrrs_o_xz = W_4_rrrrs_xz + alpha_4_rrrrs_o_y
-        B_4_rrrrs_o_yx = W_4_rrrrs_xy + alpha_4_rrrrs_o_z
-        B_4_rrrrs_o_yz = W_4_rrrrs_yz - alpha_4_rrrrs_o_x
-        B_4_rrrrs_o_zx = W_4_rrrrs_xz - alpha_4_rrrrs_o_y
-        B_4_rrrrs_o_zy = W_4_rrrrs_yz + alpha_4_rrrrs_o_x
-        # (rrrrs-N46) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
-        mu_4_rrrrs_o_x = (
-        B_4_rrrrs_o_yx*J_4_rrrrs_xz + B_4_rrrrs_o_zy*Sigma_4_rrrrs_yy +
-            J_4_rrrrs_yz*(W_4_rrrrs_t_2 - W_4_rrrrs_t_3) + acc_4_rrrrs_o_z*h_4_rrrrs_y -
-            B_4_rrrrs_o_yz*Sigma_4_rrrrs_zz - B_4_rrrrs_o_zx*J_4_rrrrs_xy -
-            acc_4_rrrrs_o_y*h_4_rrrrs_z
-        )
-        mu_4_rrrrs_o_y = (
-        B_4_rrrrs_o_xz*Sigma_4_rrrrs_zz + B_4_rrrrs_o_zy*J_4_rrrrs_xy +
-            acc_4_rrrrs_o_x*h_4_rrrrs_z - B_4_rrrrs_o_xy*J_4_rrrrs_yz -
-            B_4_rrrrs_o_zx*Sigma_4_rrrrs_xx - J_4_rrrrs_xz*(W_4_rrrrs_t - W_4_rrrrs_t_3) -
-            acc_4_rrrrs_o_z*h_4_rrrrs_x
-        )
-        mu_4_rrrrs_o_z = (
-        B_4_rrrrs_o_xz*J_4_rrrrs_yz + B_4_rrrrs_o_yx*Sigma_4_rrrrs_xx + J_4_rrrrs_xy*(W_4_rrrrs_t
-            - W_4_rrrrs_t_2) + acc_4_rrrrs_o_y*h_4_rrrrs_x - B_4_rrrrs_o_xy*Sigma_4_rrrrs_yy -
-            B_4_rrrrs_o_yz*J_4_rrrrs_xz - acc_4_rrrrs_o_x*h_4_rrrrs_y
-        )
-        # (rrrrs-N56) remainder without the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-        N_3_rrrrs_o_x = mu_3_rrrrs_o_x + c_4_rrrrs*mu_4_rrrrs_o_x + mu_4_rrrrs_o_y*s_4_rrrrs
-        N_3_rrrrs_o_y = mu_3_rrrrs_o_y + c_4_rrrrs*mu_4_rrrrs_o_y - mu_4_rrrrs_o_x*s_4_rrrrs
-        N_3_rrrrs_o_z = mu_3_rrrrs_o_z + mu_4_rrrrs_o_z
-        # (rrrrs-N14) remainder without the acceleration in: inertia force of link 3 less its weight
-        f_3_rrrrs_o_x = (
-        B_3_rrrrs_o_xy*h_3_rrrrs_y + B_3_rrrrs_o_xz*h_3_rrrrs_z + acc_3_rrrrs_o_x*rrrrs_link3_mass
-            - h_3_rrrrs_x*(W_3_rrrrs_t_2 + W_3_rrrrs_t_3)
-        )
-        f_3_rrrrs_o_y = (
-        B_3_rrrrs_o_yx*h_3_rrrrs_x + B_3_rrrrs_o_yz*h_3_rrrrs_z + acc_3_rrrrs_o_y*rrrrs_link3_mass
-            - h_3_rrrrs_y*(W_3_rrrrs_t + W_3_rrrrs_t_3)
-        )
-        f_3_rrrrs_o_z = (
-        B_3_rrrrs_o_zx*h_3_rrrrs_x + B_3_rrrrs_o_zy*h_3_rrrrs_y + acc_3_rrrrs_o_z*rrrrs_link3_mass
-            - h_3_rrrrs_z*(W_3_rrrrs_t + W_3_rrrrs_t_2)
-        )
-        # (rrrrs-N64) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_rrrrs_o_x = (
-        B_2_rrrrs_o_zy*Sigma_2_rrrrs_yy + J_2_rrrrs_yz*(W_2_rrrrs_t_2 - W_2_rrrrs_t_3) +
-            Sigma_2_rrrrs_zz*alpha_1_rrrrs_o_t + g_r3_y*h_2_rrrrs_z - B_2_rrrrs_o_zx*J_2_rrrrs_xy
-            - J_2_rrrrs_xz*W_2_rrrrs_xy - g_r1_x*h_2_rrrrs_y
-        )
-        mu_2_rrrrs_o_y = (
-        B_2_rrrrs_o_zy*J_2_rrrrs_xy + J_2_rrrrs_yz*W_2_rrrrs_xy + g_r1_x*h_2_rrrrs_x -
-            B_2_rrrrs_o_zx*Sigma_2_rrrrs_xx - J_2_rrrrs_xz*(W_2_rrrrs_t - W_2_rrrrs_t_3) -
-            Sigma_2_rrrrs_zz*alpha_1_rrrrs_o_t_2 - g_r3_x*h_2_rrrrs_z
-        )
-        mu_2_rrrrs_o_z = (
-        J_2_rrrrs_xy*(W_2_rrrrs_t - W_2_rrrrs_t_2) + J_2_rrrrs_xz*alpha_1_rrrrs_o_t +
-            Sigma_2_rrrrs_yy*W_2_rrrrs_xy + g_r3_x*h_2_rrrrs_y - J_2_rrrrs_yz*alpha_1_rrrrs_o_t_2
-            - Sigma_2_rrrrs_xx*W_2_rrrrs_xy - g_r3_y*h_2_rrrrs_x
-        )
-        # (rrrrs-N66) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_rrrrs_o_x = mu_2_rrrrs_o_x + N_3_rrrrs_o_x*c_3_rrrrs - N_3_rrrrs_o_y*s_3_rrrrs
-        N_2_rrrrs_o_y = (
-        mu_2_rrrrs_o_y + N_3_rrrrs_o_x*s_3_rrrrs + N_3_rrrrs_o_y*c_3_rrrrs -
-            f_3_rrrrs_o_z*rrrrs_joint3_offset_x
-        )
-        N_2_rrrrs_o_z = (
-        N_3_rrrrs_o_z + mu_2_rrrrs_o_z + rrrrs_joint3_offset_x*(c_3_rrrrs*f_3_rrrrs_o_y +
-            f_3_rrrrs_o_x*s_3_rrrrs)
-        )
-        # (rrrrs-N76) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rrrrs_o_z = J_1_rrrrs_xx*qdd_1_rrrrs_o - g_r1_x*h_1_rrrrs_y - g_r1_y*h_1_rrrrs_z
-        # (rrrrs-N78) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_rrrrs_o_z = mu_1_rrrrs_o_z + N_2_rrrrs_o_x*s_2_rrrrs - N_2_rrrrs_o_y*c_2_rrrrs_t
-        # (rrrrs-N86) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rrrrs_o_t = inv_rrrrs_platform_joint_offset_x*mu_4_rrrrs_o_z
-        G_rrrrs_o_t_2 = inv_r_3_rrrrs_r0_y*(G_rrrrs_o_t*r_3_rrrrs_r0_x - N_3_rrrrs_o_z)
-        # (rrrrs-N89) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_rrrrs_o_x = (
-        W_4_rrrrs_xx*h_4_rrrrs_x - G_rrrrs_o_t_2 - B_4_rrrrs_o_xy*h_4_rrrrs_y -
-            B_4_rrrrs_o_xz*h_4_rrrrs_z
-        )
-        c_rrrrs_o_y = (
-        h_4_rrrrs_y*(W_4_rrrrs_t + W_4_rrrrs_t_3) - G_rrrrs_o_t - B_4_rrrrs_o_yx*h_4_rrrrs_x -
-            B_4_rrrrs_o_yz*h_4_rrrrs_z
-        )
-        c_rrrrs_o_z = (
-        h_4_rrrrs_z*(W_4_rrrrs_t + W_4_rrrrs_t_2) - B_4_rrrrs_o_zx*h_4_rrrrs_x -
-            B_4_rrrrs_o_zy*h_4_rrrrs_y - N_1_rrrrs_o_z*inv_v_1_rrrrs_z
-        )
-        # (rrrrs-N91) velocity and gravity terms of the leg force
-        U_rrrrs_in_base_x = (
-        -axis_x_rrrrs_axes4_x*c_rrrrs_o_x - axis_y_rrrrs_axes4_in_base_x*c_rrrrs_o_y -
-            axis_z_rrrrs_axes4_in_base_x*c_rrrrs_o_z
-        )
-        U_rrrrs_in_base_y = (
-        -axis_x_rrrrs_axes4_y*c_rrrrs_o_x - axis_y_rrrrs_axes4_in_base_y*c_rrrrs_o_y -
-            axis_z_rrrrs_axes4_in_base_y*c_rrrrs_o_z
-        )
-        U_rrrrs_in_base_z = (
-        -axis_x_rrrrs_axes4_z*c_rrrrs_o_x - axis_y_rrrrs_axes4_in_base_z*c_rrrrs_o_y -
-            axis_z_rrrrs_axes4_in_base_z*c_rrrrs_o_z
-        )
-        # (M7) rotational part of Z
-        Z_a_t = U_rrrrs_in_base_z*q_rrrrs_in_base_y - U_rrrrs_in_base_y*q_rrrrs_in_base_z
-        Z_a_t_2 = U_rrrrs_in_base_x*q_rrrrs_in_base_z - U_rrrrs_in_base_z*q_rrrrs_in_base_x
-        Z_a_t_3 = U_rrrrs_in_base_y*q_rrrrs_in_base_x - U_rrrrs_in_base_x*q_rrrrs_in_base_y
-        # (rrrrs-N96) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
-        P_2_rrrrs_o_t = G_rrrrs_o_t_2*r_2_rrrrs_r1_y - G_rrrrs_o_t*r_2_rrrrs_r1_x
-        P_2_rrrrs_o = N_2_rrrrs_o_z + P_2_rrrrs_o_t
-        # (rrrrs-N70) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_rrrrs_x = (
-        -h_4_rrrrs_y - inv_r_3_rrrrs_r0_y*(L_c3_2_rrrrs_z - d_Gamma_3_rrrrs_t_2)
-        )
-        # (rrrrs-N94) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
-        d_P_2_rrrrs_x = (
-        d_Gamma_2_rrrrs_x + d_G_rrrrs_xx*r_2_rrrrs_r1_y -
-            d_Gamma_4_rrrrs_x*inv_rrrrs_platform_joint_offset_x*r_2_rrrrs_r1_x
-        )
-        d_P_2_rrrrs_y = (
-        d_Gamma_3_rrrrs_y + d_G_rrrrs_xy*r_2_rrrrs_r1_y - d_G_rrrrs_t*r_2_rrrrs_r1_x
-        )
-        d_P_2_rrrrs_z = (
-        d_G_rrrrs_xz*r_2_rrrrs_r1_y + inv_v_1_rrrrs_z*(s_2_rrrrs*(J_2_rrrrs_xz + _x_6 -
-            Jc_2_rrrrs_t_2) - c_2_rrrrs_t*(J_2_rrrrs_yz + _y_2)) - d_G_rrrrs_t_2*r_2_rrrrs_r1_x
-        )
-        d_P_2_rrrrs_in_base_x = (
-        axis_x_rrrrs_axes4_x*d_P_2_rrrrs_x + axis_y_rrrrs_axes4_in_base_x*d_P_2_rrrrs_y +
-            axis_z_rrrrs_axes4_in_base_x*d_P_2_rrrrs_z
-        )
-        d_P_2_rrrrs_in_base_y = (
-        axis_x_rrrrs_axes4_y*d_P_2_rrrrs_x + axis_y_rrrrs_axes4_in_base_y*d_P_2_rrrrs_y +
-            axis_z_rrrrs_axes4_in_base_y*d_P_2_rrrrs_z
-        )
-        d_P_2_rrrrs_in_base_z = (
-        axis_x_rrrrs_axes4_z*d_P_2_rrrrs_x + axis_y_rrrrs_axes4_in_base_z*d_P_2_rrrrs_y +
-            axis_z_rrrrs_axes4_in_base_z*d_P_2_rrrrs_z
-        )
-        # (M8) coupling of extra joint 2 with the rotation of the platform
-        M_ya_2_rrrrs_x = (
-        d_P_2_rrrrs_in_base_z*q_rrrrs_in_base_y - d_P_2_rrrrs_in_base_y*q_rrrrs_in_base_z
-        )
-        M_ya_2_rrrrs_y = (
-        d_P_2_rrrrs_in_base_x*q_rrrrs_in_base_z - d_P_2_rrrrs_in_base_z*q_rrrrs_in_base_x
-        )
-        M_ya_2_rrrrs_z = (
-        d_P_2_rrrrs_in_base_y*q_rrrrs_in_base_x - d_P_2_rrrrs_in_base_x*q_rrrrs_in_base_y
-        )
-        # (rrrrs-A14) coefficient of the acceleration in: acceleration of joint 1
-        d1_qdd_3_rrrrs = inv_r_3_rrrrs_r0_y*r_2_rrrrs_r1_y
-        # (rrrrs-N59) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        d1_Gamma_3_rrrrs_t = (
-        J_4_rrrrs_zz*inv_rrrrs_platform_joint_offset_x*(d1_qdd_3_rrrrs*r_3_rrrrs_r0_x -
-            r_2_rrrrs_r1_x)
-        )
-        d1_Gamma_3_rrrrs = L_c3_2_rrrrs_z + d1_Gamma_3_rrrrs_t - Jc_3_rrrrs_zz*d1_qdd_3_rrrrs
-        # (rrrrs-N49) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-        d1_Gamma_4_rrrrs = J_4_rrrrs_zz + d1_Gamma_3_rrrrs_t - J_4_rrrrs_zz*d1_qdd_3_rrrrs
-        # (rrrrs-N85) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d1_G_rrrrs_t = d1_Gamma_4_rrrrs*inv_rrrrs_platform_joint_offset_x
-        # (rrrrs-N71) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d1_Gamma_2_rrrrs = (
-        J_2_rrrrs_zz + Jc_2_rrrrs_t_4 + Jc_3_rrrrs_zz + d1_Gamma_3_rrrrs_t -
-            L_c3_2_rrrrs_z*d1_qdd_3_rrrrs
-        )
-        # (rrrrs-N95) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
-        d1_P_2_rrrrs_t = (
-        inv_r_3_rrrrs_r0_y*r_2_rrrrs_r1_y*(d1_G_rrrrs_t*r_3_rrrrs_r0_x - d1_Gamma_3_rrrrs) -
-            d1_G_rrrrs_t*r_2_rrrrs_r1_x
-        )
-        d1_P_2_rrrrs = d1_Gamma_2_rrrrs + d1_P_2_rrrrs_t
-        # (rrrrs-V9) reciprocal vector 1
-        w_1_rrrrs_t_3 = axis_z_rrrrs_axes4_in_base_x*inv_v_1_rrrrs_z
-        w_1_rrrrs_t_4 = axis_z_rrrrs_axes4_in_base_y*inv_v_1_rrrrs_z
-        w_1_rrrrs_t_5 = axis_z_rrrrs_axes4_in_base_z*inv_v_1_rrrrs_z
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_1_rrrrs_x = q_rrrrs_in_base_y*w_1_rrrrs_t_5 - q_rrrrs_in_base_z*w_1_rrrrs_t_4
-        H_a_1_rrrrs_y = q_rrrrs_in_base_z*w_1_rrrrs_t_3 - q_rrrrs_in_base_x*w_1_rrrrs_t_5
-        H_a_1_rrrrs_z = q_rrrrs_in_base_x*w_1_rrrrs_t_4 - q_rrrrs_in_base_y*w_1_rrrrs_t_3
-        # (rrrrs-V10) reciprocal vector 2
-        w_3_rrrrs_t = axis_x_rrrrs_axes4_x*inv_r_3_rrrrs_r0_y
-        w_3_rrrrs_t_2 = axis_x_rrrrs_axes4_y*inv_r_3_rrrrs_r0_y
-        w_3_rrrrs_t_3 = axis_x_rrrrs_axes4_z*inv_r_3_rrrrs_r0_y
-        # (M10) moment of the column's unit force about the platform origin
-        H_a_3_rrrrs_x = q_rrrrs_in_base_z*w_3_rrrrs_t_2 - q_rrrrs_in_base_y*w_3_rrrrs_t_3
-        H_a_3_rrrrs_y = q_rrrrs_in_base_x*w_3_rrrrs_t_3 - q_rrrrs_in_base_z*w_3_rrrrs_t
-        H_a_3_rrrrs_z = q_rrrrs_in_base_y*w_3_rrrrs_t - q_rrrrs_in_base_x*w_3_rrrrs_t_2
+        inv_rrrrs_v_1_z = 1.0/rrrrs_v_1_z
+        # (rrrrs-w_3) reciprocal vector 2
+        inv_rrrrs_r_3_r0_y = 1.0/rrrrs_r_3_r0_y
+        # (rrrrs-w_4) reciprocal vector 3
+        rrrrs_w_4_t = inv_rrrrs_platform_joint_offset_x*inv_rrrrs_r_3_r0_y*rrrrs_r_3_r0_x
+        # (rrrrs-d_alpha_4) coefficient of the acceleration in: angular acceleration of link 4
+        rrrrs_d_alpha_4_t = inv_rrrrs_v_1_z*rrrrs_e_1_r3_x
+        rrrrs_d_alpha_4_t_2 = inv_rrrrs_v_1_z*rrrrs_e_1_r3_y
+        # (rrrrs-D_1_4) inertia of joint 4 along joint 1
+        rrrrs_D_1_4 = rrrrs_J_4_xz*rrrrs_e_1_r3_x + rrrrs_J_4_yz*rrrrs_e_1_r3_y
+        # (rrrrs-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+        rrrrs_d_Gamma_4_t_2 = inv_rrrrs_v_1_z*rrrrs_D_1_4
+        rrrrs_d_Gamma_4_t_3 = rrrrs_d_Gamma_4_t*rrrrs_r_3_r0_x
+        rrrrs_d_Gamma_4_x = -rrrrs_h_4_y - inv_rrrrs_r_3_r0_y*(rrrrs_J_4_zz - rrrrs_d_Gamma_4_t_3)
+        # (rrrrs-J_4) inertia tensor of link 4 about the connection point
+        rrrrs_J_4_t = rrrrs_J_4_xy*rrrrs_s_4
+        rrrrs__x = rrrrs_J_4_t + rrrrs_J_4_xx*rrrrs_c_4
+        rrrrs_J_4_t_2 = rrrrs_J_4_xy*rrrrs_c_4
+        rrrrs__x_2 = rrrrs_J_4_t_2 + rrrrs_J_4_yy*rrrrs_s_4
+        # (rrrrs-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link about the connection point
+        rrrrs_Jc_3_xx = rrrrs_J_3_xx + rrrrs__x*rrrrs_c_4 + rrrrs__x_2*rrrrs_s_4
+        rrrrs_Jc_3_xy = rrrrs_J_3_xy + rrrrs__x_2*rrrrs_c_4 - rrrrs__x*rrrrs_s_4
+        rrrrs_Jc_3_xz = rrrrs_J_3_xz + rrrrs_J_4_xz*rrrrs_c_4 + rrrrs_J_4_yz*rrrrs_s_4
+        rrrrs_Jc_3_yy = (
+        rrrrs_J_3_yy + rrrrs_c_4*(rrrrs_J_4_yy*rrrrs_c_4 - rrrrs_J_4_t) - rrrrs_s_4*(rrrrs_J_4_t_2
+            - rrrrs_J_4_xx*rrrrs_s_4)
+        )
+        rrrrs_Jc_3_yz = rrrrs_J_3_yz + rrrrs_J_4_yz*rrrrs_c_4 - rrrrs_J_4_xz*rrrrs_s_4
+        # (rrrrs-L_c_3) moment about joint 3 that accelerates joint 3, per unit
+        rrrrs_L_c_3_r0_x = rrrrs_Jc_3_xz*rrrrs_c_3 - rrrrs_Jc_3_yz*rrrrs_s_3
+        rrrrs_L_c_3_r0_y = rrrrs_Jc_3_xz*rrrrs_s_3 + rrrrs_Jc_3_yz*rrrrs_c_3
+        # (rrrrs-P_c_3) force that accelerates joint 3, per unit
+        rrrrs_P_c_3_r0_x = -rrrrs_c_3*rrrrs_h_3_y - rrrrs_h_3_x*rrrrs_s_3
+        rrrrs_P_c_3_r0_y = rrrrs_c_3*rrrrs_h_3_x - rrrrs_h_3_y*rrrrs_s_3
+        # (rrrrs-L_c_3_2) moment about joint 2 that accelerates joint 3, per unit
+        rrrrs_L_c_3_2_z = rrrrs_Jc_3_zz + rrrrs_P_c_3_r0_y*rrrrs_joint3_offset_x
+        # (rrrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        rrrrs_d_Gamma_3_x = (
+        -rrrrs_h_4_y - inv_rrrrs_r_3_r0_y*(rrrrs_Jc_3_zz - rrrrs_d_Gamma_4_t_3)
+        )
+        # (rrrrs-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link about the connection point
+        rrrrs_Jc_3_t = rrrrs_Jc_3_xy*rrrrs_s_3
+        rrrrs__x_3 = rrrrs_Jc_3_xx*rrrrs_c_3 - rrrrs_Jc_3_t
+        rrrrs_Jc_3_t_2 = rrrrs_Jc_3_xy*rrrrs_c_3
+        rrrrs__x_4 = rrrrs_Jc_3_t_2 - rrrrs_Jc_3_yy*rrrrs_s_3
+        # (rrrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+        rrrrs_Jc_2_t_3 = rrrrs_joint3_offset_x*(rrrrs_Jc_2_t + rrrrs_P_c_3_r0_y)
+        rrrrs_Jc_2_t_4 = 2.0*rrrrs_Jc_2_t_3
+        rrrrs_Jc_2_xy = (
+        rrrrs_J_2_xy + rrrrs_P_c_3_r0_x*rrrrs_joint3_offset_x + rrrrs__x_3*rrrrs_s_3 +
+            rrrrs__x_4*rrrrs_c_3
+        )
+        rrrrs__y = (
+        rrrrs_s_2*(rrrrs_s_2*(rrrrs_J_2_xx + rrrrs_Jc_2_t_4 + rrrrs__x_3*rrrrs_c_3 -
+            2.0*rrrrs_Jc_2_t_3 - rrrrs__x_4*rrrrs_s_3) - rrrrs_Jc_2_xy*rrrrs_c_2_t) -
+            rrrrs_c_2_t*(rrrrs_Jc_2_xy*rrrrs_s_2 - rrrrs_c_2_t*(rrrrs_J_2_yy + rrrrs_Jc_2_t_4 +
+            rrrrs_c_3*(rrrrs_Jc_3_t + rrrrs_Jc_3_yy*rrrrs_c_3) + rrrrs_s_3*(rrrrs_Jc_3_t_2 +
+            rrrrs_Jc_3_xx*rrrrs_s_3)))
+        )
+        # (rrrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrrrs_d_Gamma_1_z = (
+        inv_rrrrs_v_1_z*(rrrrs_J_1_xx + rrrrs__y) + rrrrs_e_1_r3_x*rrrrs_h_4_y -
+            rrrrs_e_1_r3_y*rrrrs_h_4_x
+        )
+        # (rrrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrrrs_d_G_t_2 = inv_rrrrs_platform_joint_offset_x*rrrrs_d_Gamma_4_t_2
+        rrrrs_d_G_xx = rrrrs_d_Gamma_4_x*rrrrs_w_4_t - inv_rrrrs_r_3_r0_y*rrrrs_d_Gamma_3_x
+        rrrrs_d_G_xy = rrrrs_d_Gamma_4_y*rrrrs_w_4_t - inv_rrrrs_r_3_r0_y*rrrrs_d_Gamma_4_y
+        rrrrs_d_G_xz = (
+        rrrrs_d_Gamma_4_t_2*rrrrs_w_4_t -
+            inv_rrrrs_r_3_r0_y*inv_rrrrs_v_1_z*(rrrrs_L_c_3_r0_x*rrrrs_s_2 -
+            rrrrs_L_c_3_r0_y*rrrrs_c_2_t)
+        )
+        # (rrrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrrrs_d_c_xx = rrrrs_h_4_y*(rrrrs_w_4_t - inv_rrrrs_r_3_r0_y) - rrrrs_d_G_xx
+        rrrrs_d_c_xy = rrrrs_d_phi_4_t - rrrrs_d_G_xy
+        rrrrs_d_c_xz = -rrrrs_d_G_xz - rrrrs_d_alpha_4_t_2*rrrrs_h_4_z
+        rrrrs_d_c_yz = rrrrs_d_alpha_4_t*rrrrs_h_4_z - rrrrs_d_G_t_2
+        # (rrrrs-Q) inertia of the leg at the connection point, without the mass gathered there
+        rrrrs_Q_t = rrrrs_d_c_xx - rrrrs_d_c_yy
+        rrrrs_Q_t_2 = 0.5*rrrrs_Q_t
+        rrrrs_Q_t_3 = (
+        rrrrs_d_c_xx + inv_rrrrs_v_1_z*rrrrs_d_Gamma_1_z + rrrrs_d_alpha_4_t*rrrrs_h_4_y -
+            rrrrs_d_alpha_4_t_2*rrrrs_h_4_x
+        )
+        rrrrs_Q_t_4 = 0.5*rrrrs_Q_t_3
+        rrrrs_Q_t_5 = (
+        axis_x_rrrrs_axes4_x*rrrrs_d_c_xy + axis_z_rrrrs_axes4_in_base_x*rrrrs_d_c_yz -
+            axis_y_rrrrs_axes4_in_base_x*rrrrs_Q_t_2
+        )
+        rrrrs_Q_t_6 = (
+        axis_x_rrrrs_axes4_y*rrrrs_d_c_xy + axis_z_rrrrs_axes4_in_base_y*rrrrs_d_c_yz -
+            axis_y_rrrrs_axes4_in_base_y*rrrrs_Q_t_2
+        )
+        rrrrs_Q_t_7 = (
+        axis_x_rrrrs_axes4_z*rrrrs_d_c_xy + axis_z_rrrrs_axes4_in_base_z*rrrrs_d_c_yz -
+            axis_y_rrrrs_axes4_in_base_z*rrrrs_Q_t_2
+        )
+        rrrrs_Q_t_8 = axis_z_rrrrs_axes4_in_base_x*rrrrs_Q_t_4 - axis_x_rrrrs_axes4_x*rrrrs_d_c_xz
+        rrrrs_Q_t_9 = axis_z_rrrrs_axes4_in_base_y*rrrrs_Q_t_4 - axis_x_rrrrs_axes4_y*rrrrs_d_c_xz
+        rrrrs_Q_t_10 = (
+        axis_z_rrrrs_axes4_in_base_z*rrrrs_Q_t_4 - axis_x_rrrrs_axes4_z*rrrrs_d_c_xz
+        )
+        rrrrs_Q_t_11 = (
+        axis_y_rrrrs_axes4_in_base_x*rrrrs_Q_t_5 - axis_z_rrrrs_axes4_in_base_x*rrrrs_Q_t_8
+        )
+        rrrrs_Q_t_12 = 2.0*rrrrs_Q_t_11 + rrrrs_d_c_xx
+        rrrrs_Q_t_13 = (
+        axis_y_rrrrs_axes4_in_base_x*rrrrs_Q_t_6 + axis_y_rrrrs_axes4_in_base_y*rrrrs_Q_t_5 -
+            axis_z_rrrrs_axes4_in_base_x*rrrrs_Q_t_9 - axis_z_rrrrs_axes4_in_base_y*rrrrs_Q_t_8
+        )
+        rrrrs_Q_t_14 = (
+        axis_y_rrrrs_axes4_in_base_x*rrrrs_Q_t_7 + axis_y_rrrrs_axes4_in_base_z*rrrrs_Q_t_5 -
+            axis_z_rrrrs_axes4_in_base_x*rrrrs_Q_t_10 - axis_z_rrrrs_axes4_in_base_z*rrrrs_Q_t_8
+        )
+        rrrrs_Q_t_15 = (
+        axis_y_rrrrs_axes4_in_base_y*rrrrs_Q_t_6 - axis_z_rrrrs_axes4_in_base_y*rrrrs_Q_t_9
+        )
+        rrrrs_Q_t_16 = 2.0*rrrrs_Q_t_15 + rrrrs_d_c_xx
+        rrrrs_Q_t_17 = (
+        axis_y_rrrrs_axes4_in_base_y*rrrrs_Q_t_7 + axis_y_rrrrs_axes4_in_base_z*rrrrs_Q_t_6 -
+            axis_z_rrrrs_axes4_in_base_y*rrrrs_Q_t_10 - axis_z_rrrrs_axes4_in_base_z*rrrrs_Q_t_9
+        )
+        rrrrs_Q_t_18 = (
+        axis_y_rrrrs_axes4_in_base_z*rrrrs_Q_t_7 - axis_z_rrrrs_axes4_in_base_z*rrrrs_Q_t_10
+        )
+        rrrrs_Q_t_19 = 2.0*rrrrs_Q_t_18 + rrrrs_d_c_xx
+        # (M_ta) coupling block of M
+        rrrrs_M_ta_t = rrrrs_Q_t_13*rrrrs_q_in_base_z
+        rrrrs_M_ta_t_2 = rrrrs_Q_t_14*rrrrs_q_in_base_y
+        rrrrs_M_ta_t_3 = rrrrs_M_ta_t - rrrrs_M_ta_t_2
+        rrrrs_M_ta_t_4 = rrrrs_Q_t_12*rrrrs_q_in_base_z - rrrrs_Q_t_14*rrrrs_q_in_base_x
+        rrrrs_M_ta_t_5 = rrrrs_Q_t_12*rrrrs_q_in_base_y - rrrrs_Q_t_13*rrrrs_q_in_base_x
+        rrrrs_M_ta_t_6 = rrrrs_Q_t_16*rrrrs_q_in_base_z - rrrrs_Q_t_17*rrrrs_q_in_base_y
+        rrrrs_M_ta_t_7 = rrrrs_Q_t_17*rrrrs_q_in_base_x
+        rrrrs_M_ta_t_8 = rrrrs_M_ta_t - rrrrs_M_ta_t_7
+        rrrrs_M_ta_t_9 = rrrrs_Q_t_13*rrrrs_q_in_base_y - rrrrs_Q_t_16*rrrrs_q_in_base_x
+        rrrrs_M_ta_t_10 = rrrrs_Q_t_17*rrrrs_q_in_base_z - rrrrs_Q_t_19*rrrrs_q_in_base_y
+        rrrrs_M_ta_t_11 = rrrrs_Q_t_14*rrrrs_q_in_base_z - rrrrs_Q_t_19*rrrrs_q_in_base_x
+        rrrrs_M_ta_t_12 = rrrrs_M_ta_t_7 - rrrrs_M_ta_t_2
+        # (M_aa) rotational block of M
+        rrrrs_M_aa_t = rrrrs_M_ta_t_6*rrrrs_q_in_base_z - rrrrs_M_ta_t_10*rrrrs_q_in_base_y
+        rrrrs_M_aa_t_2 = rrrrs_M_ta_t_8*rrrrs_q_in_base_z - rrrrs_M_ta_t_11*rrrrs_q_in_base_y
+        rrrrs_M_aa_t_3 = rrrrs_M_ta_t_12*rrrrs_q_in_base_y + rrrrs_M_ta_t_9*rrrrs_q_in_base_z
+        rrrrs_M_aa_t_4 = rrrrs_M_ta_t_4*rrrrs_q_in_base_z - rrrrs_M_ta_t_11*rrrrs_q_in_base_x
+        rrrrs_M_aa_t_5 = rrrrs_M_ta_t_12*rrrrs_q_in_base_x + rrrrs_M_ta_t_5*rrrrs_q_in_base_z
+        rrrrs_M_aa_t_6 = rrrrs_M_ta_t_5*rrrrs_q_in_base_y - rrrrs_M_ta_t_9*rrrrs_q_in_base_x
+        # (rrrrs-S_dot) velocity of the connection point
+        rrrrs_S_dot_t = omega_y*rrrrs_q_in_base_z - omega_z*rrrrs_q_in_base_y
+        rrrrs_S_dot_t_2 = omega_z*rrrrs_q_in_base_x - omega_x*rrrrs_q_in_base_z
+        rrrrs_S_dot_t_3 = omega_x*rrrrs_q_in_base_y - omega_y*rrrrs_q_in_base_x
+        rrrrs_S_dot_x = rrrrs_S_dot_t + t_dot_x
+        rrrrs_S_dot_y = rrrrs_S_dot_t_2 + t_dot_y
+        rrrrs_S_dot_z = rrrrs_S_dot_t_3 + t_dot_z
+        # (rrrrs-r_2) from joint 2 to the connection point, along the links
+        rrrrs_r_2_r0_x = rrrrs_c_3*rrrrs_x_2_r1_x + rrrrs_s_3*rrrrs_x_2_r1_y
+        rrrrs_r_2_r0_y = rrrrs_c_3*rrrrs_x_2_r1_y - rrrrs_s_3*rrrrs_x_2_r1_x
+        rrrrs_r_2_r1_x = rrrrs_c_4*rrrrs_r_2_r0_x - rrrrs_r_2_r0_y*rrrrs_s_4
+        rrrrs_r_2_r1_y = rrrrs_c_4*rrrrs_r_2_r0_y + rrrrs_r_2_r0_x*rrrrs_s_4
+        # (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra
+        rrrrs_S_dot_rest_x = (
+        rrrrs_S_dot_x - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_x*rrrrs_r_2_r1_x -
+            axis_x_rrrrs_axes4_x*rrrrs_r_2_r1_y)
+        )
+        rrrrs_S_dot_rest_y = (
+        rrrrs_S_dot_y - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_y*rrrrs_r_2_r1_x -
+            axis_x_rrrrs_axes4_y*rrrrs_r_2_r1_y)
+        )
+        rrrrs_S_dot_rest_z = (
+        rrrrs_S_dot_z - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_z*rrrrs_r_2_r1_x -
+            axis_x_rrrrs_axes4_z*rrrrs_r_2_r1_y)
+        )
+        # (rrrrs-qd_4) rate of joint 4
+        rrrrs_qd_3 = (
+        inv_rrrrs_r_3_r0_y*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+            axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_x_rrrrs_axes4_z*rrrrs_S_dot_rest_z)
+        )
+        rrrrs_qd_4 = (
+        inv_rrrrs_platform_joint_offset_x*(axis_y_rrrrs_axes4_in_base_x*rrrrs_S_dot_rest_x +
+            axis_y_rrrrs_axes4_in_base_y*rrrrs_S_dot_rest_y +
+            axis_y_rrrrs_axes4_in_base_z*rrrrs_S_dot_rest_z + rrrrs_qd_3*rrrrs_r_3_r0_x)
+        )
+        rrrrs_qd_1 = (
+        inv_rrrrs_v_1_z*(axis_z_rrrrs_axes4_in_base_x*rrrrs_S_dot_rest_x +
+            axis_z_rrrrs_axes4_in_base_y*rrrrs_S_dot_rest_y +
+            axis_z_rrrrs_axes4_in_base_z*rrrrs_S_dot_rest_z)
+        )
+        # (rrrrs-omega_1) angular velocity of link 1
+        rrrrs_omega_1_t = rrrrs_qd_1*rrrrs_s_2
+        rrrrs_omega_1_t_2 = rrrrs_c_2_t*rrrrs_qd_1
+        # (rrrrs-omega_2) angular velocity of link 2
+        rrrrs_omega_2_r0_x = rrrrs_c_3*rrrrs_omega_1_t - rrrrs_omega_1_t_2*rrrrs_s_3
+        rrrrs_omega_2_r0_y = -rrrrs_c_3*rrrrs_omega_1_t_2 - rrrrs_omega_1_t*rrrrs_s_3
+        # (rrrrs-omega_3) angular velocity of link 3
+        rrrrs_omega_3_z = rrrrs_yd_2 - rrrrs_qd_3
+        rrrrs_omega_3_r0_x = rrrrs_c_4*rrrrs_omega_2_r0_x - rrrrs_omega_2_r0_y*rrrrs_s_4
+        rrrrs_omega_3_r0_y = rrrrs_c_4*rrrrs_omega_2_r0_y + rrrrs_omega_2_r0_x*rrrrs_s_4
+        # (rrrrs-omega_4) angular velocity of link 4
+        rrrrs_omega_4_z = rrrrs_omega_3_z + rrrrs_qd_4
+        # (rrrrs-zeta_4) angular acceleration of link 4 from the turning of axis 4
+        rrrrs_zeta_4_y = rrrrs_omega_3_r0_x*rrrrs_qd_4
+        # (rrrrs-u_1) centripetal acceleration of the connection point
+        rrrrs_u_1_x = omega_y*rrrrs_S_dot_t_3 - omega_z*rrrrs_S_dot_t_2
+        rrrrs_u_1_y = omega_z*rrrrs_S_dot_t - omega_x*rrrrs_S_dot_t_3
+        rrrrs_u_1_z = omega_x*rrrrs_S_dot_t_2 - omega_y*rrrrs_S_dot_t
+        # (rrrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        rrrrs_zeta_2_x = rrrrs_omega_1_t_2*rrrrs_yd_2
+        rrrrs_zeta_2_y = rrrrs_omega_1_t*rrrrs_yd_2
+        # (rrrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrrs_zeta_3_x = rrrrs_omega_2_r0_y*rrrrs_qd_3
+        rrrrs_zeta_3_y = rrrrs_omega_2_r0_x*rrrrs_qd_3
+        # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        rrrrs_beta_3_x = -rrrrs_zeta_3_x - rrrrs_c_3*rrrrs_zeta_2_x - rrrrs_s_3*rrrrs_zeta_2_y
+        rrrrs_beta_3_y = rrrrs_zeta_3_y + rrrrs_s_3*rrrrs_zeta_2_x - rrrrs_c_3*rrrrs_zeta_2_y
+        rrrrs_beta_3_r0_y = rrrrs_beta_3_x*rrrrs_s_4 + rrrrs_beta_3_y*rrrrs_c_4
+        # (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations
+        rrrrs_beta_4_y = rrrrs_beta_3_r0_y - rrrrs_zeta_4_y
+        # (rrrrs-W_2) centripetal tensor of link 2
+        rrrrs_W_2_t = rrrrs_omega_1_t*rrrrs_omega_1_t
+        rrrrs_W_2_t_2 = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2
+        rrrrs_W_2_t_3 = rrrrs_yd_2*rrrrs_yd_2
+        rrrrs_W_2_xy = rrrrs_omega_1_t*rrrrs_omega_1_t_2
+        # (rrrrs-W_3) centripetal tensor of link 3
+        rrrrs_W_3_t = rrrrs_omega_2_r0_x*rrrrs_omega_2_r0_x
+        rrrrs_W_3_t_2 = rrrrs_omega_2_r0_y*rrrrs_omega_2_r0_y
+        rrrrs_W_3_t_3 = rrrrs_omega_3_z*rrrrs_omega_3_z
+        rrrrs_W_3_xy = rrrrs_omega_2_r0_x*rrrrs_omega_2_r0_y
+        rrrrs_W_3_xz = rrrrs_omega_2_r0_x*rrrrs_omega_3_z
+        rrrrs_W_3_yz = rrrrs_omega_2_r0_y*rrrrs_omega_3_z
+        # (rrrrs-W_4) centripetal tensor of link 4
+        rrrrs_W_4_t = rrrrs_omega_3_r0_x*rrrrs_omega_3_r0_x
+        rrrrs_W_4_t_2 = rrrrs_omega_3_r0_y*rrrrs_omega_3_r0_y
+        rrrrs_W_4_t_3 = rrrrs_omega_4_z*rrrrs_omega_4_z
+        rrrrs_W_4_xx = rrrrs_W_4_t_2 + rrrrs_W_4_t_3
+        rrrrs_W_4_xy = rrrrs_omega_3_r0_x*rrrrs_omega_3_r0_y
+        rrrrs_W_4_xz = rrrrs_omega_3_r0_x*rrrrs_omega_4_z
+        rrrrs_W_4_yz = rrrrs_omega_3_r0_y*rrrrs_omega_4_z
+        # (rrrrs-bias) acceleration of the connection point at zero joint accelerations
+        rrrrs_d_2_r2_x = rrrrs_Kr_1_t*rrrrs_c_3 - rrrrs_Kr_1_t_2*rrrrs_s_3
+        rrrrs_d_2_r2_y = -rrrrs_Kr_1_t*rrrrs_s_3 - rrrrs_Kr_1_t_2*rrrrs_c_3
+        rrrrs_d_2_r3_x = rrrrs_c_4*rrrrs_d_2_r2_x - rrrrs_d_2_r2_y*rrrrs_s_4
+        rrrrs_d_2_r3_y = rrrrs_c_4*rrrrs_d_2_r2_y + rrrrs_d_2_r2_x*rrrrs_s_4
+        rrrrs_bias_t = rrrrs_c_3*rrrrs_joint3_offset_x
+        rrrrs_bias_t_2 = rrrrs_joint3_offset_x*rrrrs_s_3
+        rrrrs_d_3_r1_x = rrrrs_bias_t*rrrrs_c_4 + rrrrs_bias_t_2*rrrrs_s_4
+        rrrrs_d_3_r1_y = rrrrs_bias_t*rrrrs_s_4 - rrrrs_bias_t_2*rrrrs_c_4
+        rrrrs_bias_t_3 = rrrrs_c_4*rrrrs_joint4_offset_x
+        rrrrs_bias_t_4 = rrrrs_joint4_offset_x*rrrrs_s_4
+        rrrrs_bias_x = (
+        rrrrs_W_4_xy*rrrrs_bias_t_4 + rrrrs_W_4_xy*rrrrs_d_2_r3_y + rrrrs_W_4_xy*rrrrs_d_3_r1_y -
+            rrrrs_W_4_t_2*rrrrs_d_2_r3_x - rrrrs_W_4_xx*rrrrs_platform_joint_offset_x -
+            rrrrs_bias_t_3*(rrrrs_W_3_t_3 + rrrrs_W_4_t_2) - rrrrs_d_3_r1_x*(rrrrs_W_2_t_3 +
+            rrrrs_W_4_t_2)
+        )
+        rrrrs_bias_y = (
+        rrrrs_W_4_xy*rrrrs_bias_t_3 + rrrrs_W_4_xy*rrrrs_d_2_r3_x + rrrrs_W_4_xy*rrrrs_d_3_r1_x +
+            rrrrs_W_4_xy*rrrrs_platform_joint_offset_x - rrrrs_W_4_t*rrrrs_d_2_r3_y -
+            rrrrs_bias_t_4*(rrrrs_W_3_t_3 + rrrrs_W_4_t) - rrrrs_d_3_r1_y*(rrrrs_W_2_t_3 +
+            rrrrs_W_4_t)
+        )
+        rrrrs_bias_z = (
+        rrrrs_bias_t_3*(rrrrs_omega_3_r0_x*rrrrs_omega_3_z - rrrrs_beta_3_r0_y) +
+            rrrrs_bias_t_4*(rrrrs_beta_3_x*rrrrs_c_4 + rrrrs_omega_3_r0_y*rrrrs_omega_3_z -
+            rrrrs_beta_3_y*rrrrs_s_4) + rrrrs_platform_joint_offset_x*(rrrrs_W_4_xz -
+            rrrrs_beta_4_y) + 2.0*rrrrs_d_3_r1_x*rrrrs_omega_3_r0_x*rrrrs_yd_2 +
+            2.0*rrrrs_d_3_r1_y*rrrrs_omega_3_r0_y*rrrrs_yd_2
+        )
+        # (rrrrs-u_1) centripetal acceleration of the connection point
+        rrrrs_u_1_tip_x = (
+        axis_x_rrrrs_axes4_x*rrrrs_u_1_x + axis_x_rrrrs_axes4_y*rrrrs_u_1_y +
+            axis_x_rrrrs_axes4_z*rrrrs_u_1_z
+        )
+        rrrrs_u_1_tip_y = (
+        axis_y_rrrrs_axes4_in_base_x*rrrrs_u_1_x + axis_y_rrrrs_axes4_in_base_y*rrrrs_u_1_y +
+            axis_y_rrrrs_axes4_in_base_z*rrrrs_u_1_z
+        )
+        rrrrs_u_1_tip_z = (
+        axis_z_rrrrs_axes4_in_base_x*rrrrs_u_1_x + axis_z_rrrrs_axes4_in_base_y*rrrrs_u_1_y +
+            axis_z_rrrrs_axes4_in_base_z*rrrrs_u_1_z
+        )
+        # (rrrrs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        rrrrs_rel_o_x = rrrrs_u_1_tip_x - rrrrs_bias_x
+        rrrrs_rel_o_y = rrrrs_u_1_tip_y - rrrrs_bias_y
+        rrrrs_rel_o_z = rrrrs_u_1_tip_z - rrrrs_bias_z
+        # (rrrrs-qdd_4_o) remainder without the acceleration in: acceleration of joint 4
+        rrrrs_qdd_3_o = inv_rrrrs_r_3_r0_y*rrrrs_rel_o_x
+        rrrrs_qdd_1_o = inv_rrrrs_v_1_z*rrrrs_rel_o_z
+        # (rrrrs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        rrrrs_alpha_1_o_t = rrrrs_qdd_1_o*rrrrs_s_2
+        rrrrs_alpha_1_o_t_2 = rrrrs_c_2_t*rrrrs_qdd_1_o
+        # (rrrrs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        rrrrs_alpha_2_o_x = rrrrs_alpha_1_o_t - rrrrs_zeta_2_x
+        rrrrs_alpha_2_o_y = -rrrrs_alpha_1_o_t_2 - rrrrs_zeta_2_y
+        # (rrrrs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        rrrrs_alpha_3_o_x = (
+        rrrrs_alpha_2_o_x*rrrrs_c_3 + rrrrs_alpha_2_o_y*rrrrs_s_3 - rrrrs_zeta_3_x
+        )
+        rrrrs_alpha_3_o_y = (
+        rrrrs_zeta_3_y + rrrrs_alpha_2_o_y*rrrrs_c_3 - rrrrs_alpha_2_o_x*rrrrs_s_3
+        )
+        # (rrrrs-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4
+        rrrrs_alpha_4_o_x = (
+        rrrrs_alpha_3_o_x*rrrrs_c_4 + rrrrs_omega_3_r0_y*rrrrs_qd_4 - rrrrs_alpha_3_o_y*rrrrs_s_4
+        )
+        rrrrs_alpha_4_o_y = (
+        rrrrs_alpha_3_o_x*rrrrs_s_4 + rrrrs_alpha_3_o_y*rrrrs_c_4 - rrrrs_zeta_4_y
+        )
+        rrrrs_alpha_4_o_z = (
+        inv_rrrrs_platform_joint_offset_x*(rrrrs_rel_o_y + rrrrs_qdd_3_o*rrrrs_r_3_r0_x) -
+            rrrrs_qdd_3_o
+        )
+        # (rrrrs-B_4_o) remainder of the acceleration tensor of link 4
+        rrrrs_B_4_o_xy = rrrrs_W_4_xy - rrrrs_alpha_4_o_z
+        rrrrs_B_4_o_xz = rrrrs_W_4_xz + rrrrs_alpha_4_o_y
+        rrrrs_B_4_o_yx = rrrrs_W_4_xy + rrrrs_alpha_4_o_z
+        rrrrs_B_4_o_yz = rrrrs_W_4_yz - rrrrs_alpha_4_o_x
+        rrrrs_B_4_o_zx = rrrrs_W_4_xz - rrrrs_alpha_4_o_y
+        rrrrs_B_4_o_zy = rrrrs_W_4_yz + rrrrs_alpha_4_o_x
+        # (rrrrs-acc_4_o) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+        rrrrs_acc_4_o_x = (
+        rrrrs_u_1_tip_x - axis_x_rrrrs_axes4_x*gravity_x - axis_x_rrrrs_axes4_y*gravity_y -
+            axis_x_rrrrs_axes4_z*gravity_z
+        )
+        rrrrs_acc_4_o_y = (
+        rrrrs_u_1_tip_y - axis_y_rrrrs_axes4_in_base_x*gravity_x -
+            axis_y_rrrrs_axes4_in_base_y*gravity_y - axis_y_rrrrs_axes4_in_base_z*gravity_z
+        )
+        rrrrs_acc_4_o_z = (
+        rrrrs_u_1_tip_z - axis_z_rrrrs_axes4_in_base_x*gravity_x -
+            axis_z_rrrrs_axes4_in_base_y*gravity_y - axis_z_rrrrs_axes4_in_base_z*gravity_z
+        )
+        # (rrrrs-mu_4_o) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
+        rrrrs_mu_4_o_x = (
+        rrrrs_B_4_o_yx*rrrrs_J_4_xz + rrrrs_B_4_o_zy*rrrrs_Sigma_4_yy +
+            rrrrs_J_4_yz*(rrrrs_W_4_t_2 - rrrrs_W_4_t_3) + rrrrs_acc_4_o_z*rrrrs_h_4_y -
+            rrrrs_B_4_o_yz*rrrrs_Sigma_4_zz - rrrrs_B_4_o_zx*rrrrs_J_4_xy -
+            rrrrs_acc_4_o_y*rrrrs_h_4_z
+        )
+        rrrrs_mu_4_o_y = (
+        rrrrs_B_4_o_xz*rrrrs_Sigma_4_zz + rrrrs_B_4_o_zy*rrrrs_J_4_xy +
+            rrrrs_acc_4_o_x*rrrrs_h_4_z - rrrrs_B_4_o_xy*rrrrs_J_4_yz -
+            rrrrs_B_4_o_zx*rrrrs_Sigma_4_xx - rrrrs_J_4_xz*(rrrrs_W_4_t - rrrrs_W_4_t_3) -
+            rrrrs_acc_4_o_z*rrrrs_h_4_x
+        )
+        rrrrs_mu_4_o_z = (
+        rrrrs_B_4_o_xz*rrrrs_J_4_yz + rrrrs_B_4_o_yx*rrrrs_Sigma_4_xx + rrrrs_J_4_xy*(rrrrs_W_4_t
+            - rrrrs_W_4_t_2) + rrrrs_acc_4_o_y*rrrrs_h_4_x - rrrrs_B_4_o_xy*rrrrs_Sigma_4_yy -
+            rrrrs_B_4_o_yz*rrrrs_J_4_xz - rrrrs_acc_4_o_x*rrrrs_h_4_y
+        )
+        # (rrrrs-B_2_o) remainder of the acceleration tensor of link 2
+        rrrrs_B_2_o_zx = rrrrs_zeta_2_y - rrrrs_alpha_2_o_y
+        rrrrs_B_2_o_zy = rrrrs_alpha_2_o_x - rrrrs_zeta_2_x
+        # (rrrrs-a_o_3_o) remainder without the acceleration in: acceleration of the origin of joint 3
+        rrrrs_a_o_3_o_t = rrrrs_joint3_offset_x*(rrrrs_W_2_t_2 + rrrrs_W_2_t_3)
+        rrrrs_a_o_3_o_t_2 = rrrrs_W_2_xy*rrrrs_joint3_offset_x
+        # (rrrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        rrrrs_g_r1_x = rrrrs_g_r0_y*rrrrs_s_1 - rrrrs_c_1*rrrrs_g_r0_x
+        rrrrs_g_r1_y = -rrrrs_c_1*rrrrs_g_r0_y - rrrrs_g_r0_x*rrrrs_s_1
+        rrrrs_g_r3_x = rrrrs_g_r0_z*rrrrs_s_2 - rrrrs_c_2_t*rrrrs_g_r1_y
+        rrrrs_g_r3_y = -rrrrs_c_2_t*rrrrs_g_r0_z - rrrrs_g_r1_y*rrrrs_s_2
+        rrrrs_acc_3_o_x = (
+        -rrrrs_a_o_3_o_t*rrrrs_c_3 - rrrrs_a_o_3_o_t_2*rrrrs_s_3 - rrrrs_c_3*rrrrs_g_r3_x -
+            rrrrs_g_r3_y*rrrrs_s_3
+        )
+        rrrrs_acc_3_o_y = (
+        rrrrs_a_o_3_o_t*rrrrs_s_3 + rrrrs_g_r3_x*rrrrs_s_3 - rrrrs_a_o_3_o_t_2*rrrrs_c_3 -
+            rrrrs_c_3*rrrrs_g_r3_y
+        )
+        rrrrs_acc_3_o_z = rrrrs_B_2_o_zx*rrrrs_joint3_offset_x - rrrrs_g_r1_x
+        # (rrrrs-B_3_o) remainder of the acceleration tensor of link 3
+        rrrrs_B_3_o_xy = rrrrs_W_3_xy + rrrrs_qdd_3_o
+        rrrrs_B_3_o_xz = rrrrs_W_3_xz + rrrrs_alpha_3_o_y
+        rrrrs_B_3_o_yx = rrrrs_W_3_xy - rrrrs_qdd_3_o
+        rrrrs_B_3_o_yz = rrrrs_W_3_yz - rrrrs_alpha_3_o_x
+        rrrrs_B_3_o_zx = rrrrs_W_3_xz - rrrrs_alpha_3_o_y
+        rrrrs_B_3_o_zy = rrrrs_W_3_yz + rrrrs_alpha_3_o_x
+        # (rrrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        rrrrs_mu_3_o_x = (
+        rrrrs_B_3_o_yx*rrrrs_J_3_xz + rrrrs_B_3_o_zy*rrrrs_Sigma_3_yy +
+            rrrrs_J_3_yz*(rrrrs_W_3_t_2 - rrrrs_W_3_t_3) + rrrrs_acc_3_o_z*rrrrs_h_3_y -
+            rrrrs_B_3_o_yz*rrrrs_Sigma_3_zz - rrrrs_B_3_o_zx*rrrrs_J_3_xy -
+            rrrrs_acc_3_o_y*rrrrs_h_3_z
+        )
+        rrrrs_mu_3_o_y = (
+        rrrrs_B_3_o_xz*rrrrs_Sigma_3_zz + rrrrs_B_3_o_zy*rrrrs_J_3_xy +
+            rrrrs_acc_3_o_x*rrrrs_h_3_z - rrrrs_B_3_o_xy*rrrrs_J_3_yz -
+            rrrrs_B_3_o_zx*rrrrs_Sigma_3_xx - rrrrs_J_3_xz*(rrrrs_W_3_t - rrrrs_W_3_t_3) -
+            rrrrs_acc_3_o_z*rrrrs_h_3_x
+        )
+        rrrrs_mu_3_o_z = (
+        rrrrs_B_3_o_xz*rrrrs_J_3_yz + rrrrs_B_3_o_yx*rrrrs_Sigma_3_xx + rrrrs_J_3_xy*(rrrrs_W_3_t
+            - rrrrs_W_3_t_2) + rrrrs_acc_3_o_y*rrrrs_h_3_x - rrrrs_B_3_o_xy*rrrrs_Sigma_3_yy -
+            rrrrs_B_3_o_yz*rrrrs_J_3_xz - rrrrs_acc_3_o_x*rrrrs_h_3_y
+        )
+        # (rrrrs-N_3_o) remainder without the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
+        rrrrs_N_3_o_x = rrrrs_mu_3_o_x + rrrrs_c_4*rrrrs_mu_4_o_x + rrrrs_mu_4_o_y*rrrrs_s_4
+        rrrrs_N_3_o_y = rrrrs_mu_3_o_y + rrrrs_c_4*rrrrs_mu_4_o_y - rrrrs_mu_4_o_x*rrrrs_s_4
+        rrrrs_N_3_o_z = rrrrs_mu_3_o_z + rrrrs_mu_4_o_z
+        # (rrrrs-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight
+        rrrrs_f_3_o_x = (
+        rrrrs_B_3_o_xy*rrrrs_h_3_y + rrrrs_B_3_o_xz*rrrrs_h_3_z + rrrrs_acc_3_o_x*rrrrs_link3_mass
+            - rrrrs_h_3_x*(rrrrs_W_3_t_2 + rrrrs_W_3_t_3)
+        )
+        rrrrs_f_3_o_y = (
+        rrrrs_B_3_o_yx*rrrrs_h_3_x + rrrrs_B_3_o_yz*rrrrs_h_3_z + rrrrs_acc_3_o_y*rrrrs_link3_mass
+            - rrrrs_h_3_y*(rrrrs_W_3_t + rrrrs_W_3_t_3)
+        )
+        rrrrs_f_3_o_z = (
+        rrrrs_B_3_o_zx*rrrrs_h_3_x + rrrrs_B_3_o_zy*rrrrs_h_3_y + rrrrs_acc_3_o_z*rrrrs_link3_mass
+            - rrrrs_h_3_z*(rrrrs_W_3_t + rrrrs_W_3_t_2)
+        )
+        # (rrrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        rrrrs_mu_2_o_x = (
+        rrrrs_B_2_o_zy*rrrrs_Sigma_2_yy + rrrrs_J_2_yz*(rrrrs_W_2_t_2 - rrrrs_W_2_t_3) +
+            rrrrs_Sigma_2_zz*rrrrs_alpha_1_o_t + rrrrs_g_r3_y*rrrrs_h_2_z -
+            rrrrs_B_2_o_zx*rrrrs_J_2_xy - rrrrs_J_2_xz*rrrrs_W_2_xy - rrrrs_g_r1_x*rrrrs_h_2_y
+        )
+        rrrrs_mu_2_o_y = (
+        rrrrs_B_2_o_zy*rrrrs_J_2_xy + rrrrs_J_2_yz*rrrrs_W_2_xy + rrrrs_g_r1_x*rrrrs_h_2_x -
+            rrrrs_B_2_o_zx*rrrrs_Sigma_2_xx - rrrrs_J_2_xz*(rrrrs_W_2_t - rrrrs_W_2_t_3) -
+            rrrrs_Sigma_2_zz*rrrrs_alpha_1_o_t_2 - rrrrs_g_r3_x*rrrrs_h_2_z
+        )
+        rrrrs_mu_2_o_z = (
+        rrrrs_J_2_xy*(rrrrs_W_2_t - rrrrs_W_2_t_2) + rrrrs_J_2_xz*rrrrs_alpha_1_o_t +
+            rrrrs_Sigma_2_yy*rrrrs_W_2_xy + rrrrs_g_r3_x*rrrrs_h_2_y -
+            rrrrs_J_2_yz*rrrrs_alpha_1_o_t_2 - rrrrs_Sigma_2_xx*rrrrs_W_2_xy -
+            rrrrs_g_r3_y*rrrrs_h_2_x
+        )
+        # (rrrrs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        rrrrs_N_2_o_x = rrrrs_mu_2_o_x + rrrrs_N_3_o_x*rrrrs_c_3 - rrrrs_N_3_o_y*rrrrs_s_3
+        rrrrs_N_2_o_y = (
+        rrrrs_mu_2_o_y + rrrrs_N_3_o_x*rrrrs_s_3 + rrrrs_N_3_o_y*rrrrs_c_3 -
+            rrrrs_f_3_o_z*rrrrs_joint3_offset_x
+        )
+        rrrrs_N_2_o_z = (
+        rrrrs_N_3_o_z + rrrrs_mu_2_o_z + rrrrs_joint3_offset_x*(rrrrs_c_3*rrrrs_f_3_o_y +
+            rrrrs_f_3_o_x*rrrrs_s_3)
+        )
+        # (rrrrs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        rrrrs_mu_1_o_z = (
+        rrrrs_J_1_xx*rrrrs_qdd_1_o - rrrrs_g_r1_x*rrrrs_h_1_y - rrrrs_g_r1_y*rrrrs_h_1_z
+        )
+        # (rrrrs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrrrs_N_1_o_z = rrrrs_mu_1_o_z + rrrrs_N_2_o_x*rrrrs_s_2 - rrrrs_N_2_o_y*rrrrs_c_2_t
+        # (rrrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrrrs_G_o_t = inv_rrrrs_platform_joint_offset_x*rrrrs_mu_4_o_z
+        rrrrs_G_o_t_2 = inv_rrrrs_r_3_r0_y*(rrrrs_G_o_t*rrrrs_r_3_r0_x - rrrrs_N_3_o_z)
+        # (rrrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrrrs_c_o_x = (
+        rrrrs_W_4_xx*rrrrs_h_4_x - rrrrs_G_o_t_2 - rrrrs_B_4_o_xy*rrrrs_h_4_y -
+            rrrrs_B_4_o_xz*rrrrs_h_4_z
+        )
+        rrrrs_c_o_y = (
+        rrrrs_h_4_y*(rrrrs_W_4_t + rrrrs_W_4_t_3) - rrrrs_G_o_t - rrrrs_B_4_o_yx*rrrrs_h_4_x -
+            rrrrs_B_4_o_yz*rrrrs_h_4_z
+        )
+        rrrrs_c_o_z = (
+        rrrrs_h_4_z*(rrrrs_W_4_t + rrrrs_W_4_t_2) - inv_rrrrs_v_1_z*rrrrs_N_1_o_z -
+            rrrrs_B_4_o_zx*rrrrs_h_4_x - rrrrs_B_4_o_zy*rrrrs_h_4_y
+        )
+        # (rrrrs-U) velocity and gravity terms of the leg force
+        rrrrs_U_in_base_x = (
+        -axis_x_rrrrs_axes4_x*rrrrs_c_o_x - axis_y_rrrrs_axes4_in_base_x*rrrrs_c_o_y -
+            axis_z_rrrrs_axes4_in_base_x*rrrrs_c_o_z
+        )
+        rrrrs_U_in_base_y = (
+        -axis_x_rrrrs_axes4_y*rrrrs_c_o_x - axis_y_rrrrs_axes4_in_base_y*rrrrs_c_o_y -
+            axis_z_rrrrs_axes4_in_base_y*rrrrs_c_o_z
+        )
+        rrrrs_U_in_base_z = (
+        -axis_x_rrrrs_axes4_z*rrrrs_c_o_x - axis_y_rrrrs_axes4_in_base_z*rrrrs_c_o_y -
+            axis_z_rrrrs_axes4_in_base_z*rrrrs_c_o_z
+        )
+        # (Z_a) rotational part of Z
+        rrrrs_Z_a_t = rrrrs_U_in_base_z*rrrrs_q_in_base_y - rrrrs_U_in_base_y*rrrrs_q_in_base_z
+        rrrrs_Z_a_t_2 = rrrrs_U_in_base_x*rrrrs_q_in_base_z - rrrrs_U_in_base_z*rrrrs_q_in_base_x
+        rrrrs_Z_a_t_3 = rrrrs_U_in_base_y*rrrrs_q_in_base_x - rrrrs_U_in_base_x*rrrrs_q_in_base_y
+        # (rrrrs-P_2_o) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
+        rrrrs_P_2_o_t = rrrrs_G_o_t_2*rrrrs_r_2_r1_y - rrrrs_G_o_t*rrrrs_r_2_r1_x
+        rrrrs_P_2_o = rrrrs_N_2_o_z + rrrrs_P_2_o_t
+        # (rrrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rrrrs_d_Gamma_2_x = (
+        -rrrrs_h_4_y - inv_rrrrs_r_3_r0_y*(rrrrs_L_c_3_2_z - rrrrs_d_Gamma_4_t_3)
+        )
+        # (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
+        rrrrs_d_P_2_x = (
+        rrrrs_d_Gamma_2_x + rrrrs_d_G_xx*rrrrs_r_2_r1_y -
+            inv_rrrrs_platform_joint_offset_x*rrrrs_d_Gamma_4_x*rrrrs_r_2_r1_x
+        )
+        rrrrs_d_P_2_y = (
+        rrrrs_d_Gamma_4_y + rrrrs_d_G_xy*rrrrs_r_2_r1_y - rrrrs_d_G_t*rrrrs_r_2_r1_x
+        )
+        rrrrs_d_P_2_z = (
+        inv_rrrrs_v_1_z*(rrrrs_s_2*(rrrrs_J_2_xz + rrrrs_L_c_3_r0_x - rrrrs_Jc_2_t_2) -
+            rrrrs_c_2_t*(rrrrs_J_2_yz + rrrrs_L_c_3_r0_y)) + rrrrs_d_G_xz*rrrrs_r_2_r1_y -
+            rrrrs_d_G_t_2*rrrrs_r_2_r1_x
+        )
+        rrrrs_d_P_2_in_base_x = (
+        axis_x_rrrrs_axes4_x*rrrrs_d_P_2_x + axis_y_rrrrs_axes4_in_base_x*rrrrs_d_P_2_y +
+            axis_z_rrrrs_axes4_in_base_x*rrrrs_d_P_2_z
+        )
+        rrrrs_d_P_2_in_base_y = (
+        axis_x_rrrrs_axes4_y*rrrrs_d_P_2_x + axis_y_rrrrs_axes4_in_base_y*rrrrs_d_P_2_y +
+            axis_z_rrrrs_axes4_in_base_y*rrrrs_d_P_2_z
+        )
+        rrrrs_d_P_2_in_base_z = (
+        axis_x_rrrrs_axes4_z*rrrrs_d_P_2_x + axis_y_rrrrs_axes4_in_base_z*rrrrs_d_P_2_y +
+            axis_z_rrrrs_axes4_in_base_z*rrrrs_d_P_2_z
+        )
+        # (rrrrs-M_ya_2) coupling of extra joint 2 with the rotation of the platform
+        rrrrs_M_ya_2_x = (
+        rrrrs_d_P_2_in_base_z*rrrrs_q_in_base_y - rrrrs_d_P_2_in_base_y*rrrrs_q_in_base_z
+        )
+        rrrrs_M_ya_2_y = (
+        rrrrs_d_P_2_in_base_x*rrrrs_q_in_base_z - rrrrs_d_P_2_in_base_z*rrrrs_q_in_base_x
+        )
+        rrrrs_M_ya_2_z = (
+        rrrrs_d_P_2_in_base_y*rrrrs_q_in_base_x - rrrrs_d_P_2_in_base_x*rrrrs_q_in_base_y
+        )
+        # (rrrrs-dy_2_qdd_1) coefficient of the acceleration in: acceleration of joint 1
+        rrrrs_dy_2_qdd_3 = inv_rrrrs_r_3_r0_y*rrrrs_r_2_r1_y
+        # (rrrrs-dy_2_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rrrrs_dy_2_Gamma_2_t = (
+        inv_rrrrs_platform_joint_offset_x*rrrrs_J_4_zz*(rrrrs_dy_2_qdd_3*rrrrs_r_3_r0_x -
+            rrrrs_r_2_r1_x)
+        )
+        rrrrs_dy_2_Gamma_2 = (
+        rrrrs_J_2_zz + rrrrs_Jc_2_t_4 + rrrrs_Jc_3_zz + rrrrs_dy_2_Gamma_2_t -
+            rrrrs_L_c_3_2_z*rrrrs_dy_2_qdd_3
+        )
+        # (rrrrs-dy_2_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+        rrrrs_dy_2_Gamma_4 = rrrrs_J_4_zz + rrrrs_dy_2_Gamma_2_t - rrrrs_J_4_zz*rrrrs_dy_2_qdd_3
+        # (rrrrs-dy_2_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        rrrrs_dy_2_Gamma_3 = (
+        rrrrs_L_c_3_2_z + rrrrs_dy_2_Gamma_2_t - rrrrs_Jc_3_zz*rrrrs_dy_2_qdd_3
+        )
+        # (rrrrs-dy_2_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrrrs_dy_2_G_t = inv_rrrrs_platform_joint_offset_x*rrrrs_dy_2_Gamma_4
+        # (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
+        rrrrs_dy_2_P_2_t = (
+        inv_rrrrs_r_3_r0_y*rrrrs_r_2_r1_y*(rrrrs_dy_2_G_t*rrrrs_r_3_r0_x - rrrrs_dy_2_Gamma_3) -
+            rrrrs_dy_2_G_t*rrrrs_r_2_r1_x
+        )
+        rrrrs_dy_2_P_2 = rrrrs_dy_2_Gamma_2 + rrrrs_dy_2_P_2_t
+        # (rrrrs-w_1) reciprocal vector 1
+        rrrrs_w_1_t_3 = axis_z_rrrrs_axes4_in_base_x*inv_rrrrs_v_1_z
+        rrrrs_w_1_t_4 = axis_z_rrrrs_axes4_in_base_y*inv_rrrrs_v_1_z
+        rrrrs_w_1_t_5 = axis_z_rrrrs_axes4_in_base_z*inv_rrrrs_v_1_z
+        # (rrrrs-H_a_1) moment of the column's unit force about the platform origin
+        rrrrs_H_a_1_x = rrrrs_q_in_base_y*rrrrs_w_1_t_5 - rrrrs_q_in_base_z*rrrrs_w_1_t_4
+        rrrrs_H_a_1_y = rrrrs_q_in_base_z*rrrrs_w_1_t_3 - rrrrs_q_in_base_x*rrrrs_w_1_t_5
+        rrrrs_H_a_1_z = rrrrs_q_in_base_x*rrrrs_w_1_t_4 - rrrrs_q_in_base_y*rrrrs_w_1_t_3
+        # (rrrrs-w_3) reciprocal vector 2
+        rrrrs_w_3_t = axis_x_rrrrs_axes4_x*inv_rrrrs_r_3_r0_y
+        rrrrs_w_3_t_2 = axis_x_rrrrs_axes4_y*inv_rrrrs_r_3_r0_y
+        rrrrs_w_3_t_3 = axis_x_rrrrs_axes4_z*inv_rrrrs_r_3_r0_y
+        # (rrrrs-H_a_3) moment of the column's unit force about the platform origin
+        rrrrs_H_a_3_x = rrrrs_q_in_base_z*rrrrs_w_3_t_2 - rrrrs_q_in_base_y*rrrrs_w_3_t_3
+        rrrrs_H_a_3_y = rrrrs_q_in_base_x*rrrrs_w_3_t_3 - rrrrs_q_in_base_z*rrrrs_w_3_t
+        rrrrs_H_a_3_z = rrrrs_q_in_base_y*rrrrs_w_3_t - rrrrs_q_in_base_x*rrrrs_w_3_t_2
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
-            (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0)
-            & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE *
-            size_rrrrs))
+        ok & m.every(leg, (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
+            (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0)
+            & (abs(rrrrs_v_1_z) > _TOLERANCE * rrrrs_size) & (abs(-rrrrs_r_3_r0_y) > _TOLERANCE *
+            rrrrs_size))
         )
         sums = m.added(sums, leg, (
-        Q_rrrrs_t_12, Q_rrrrs_t_13, Q_rrrrs_t_14, Q_rrrrs_t_16, Q_rrrrs_t_17, Q_rrrrs_t_19,
-            M_ta_t_3, M_ta_t_4, M_ta_t_5, M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11,
-            M_ta_t_12, M_aa_t, M_aa_t_2, M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6,
-            U_rrrrs_in_base_x, U_rrrrs_in_base_y, U_rrrrs_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
+        rrrrs_Q_t_12, rrrrs_Q_t_13, rrrrs_Q_t_14, rrrrs_Q_t_16, rrrrs_Q_t_17, rrrrs_Q_t_19,
+            rrrrs_M_ta_t_3, rrrrs_M_ta_t_4, rrrrs_M_ta_t_5, rrrrs_M_ta_t_6, rrrrs_M_ta_t_8,
+            rrrrs_M_ta_t_9, rrrrs_M_ta_t_10, rrrrs_M_ta_t_11, rrrrs_M_ta_t_12, rrrrs_M_aa_t,
+            rrrrs_M_aa_t_2, rrrrs_M_aa_t_3, rrrrs_M_aa_t_4, rrrrs_M_aa_t_5, rrrrs_M_aa_t_6,
+            rrrrs_U_in_base_x, rrrrs_U_in_base_y, rrrrs_U_in_base_z, rrrrs_Z_a_t,
+            rrrrs_Z_a_t_2, rrrrs_Z_a_t_3,
         ))
-        out_Z[_Z_rrrrs[0][leg]] = P_2_rrrrs_o
-        out_M[_M_rrrrs[0][leg]] = d_P_2_rrrrs_in_base_x
-        out_M[_M_rrrrs[1][leg]] = d_P_2_rrrrs_in_base_x
-        out_M[_M_rrrrs[2][leg]] = d_P_2_rrrrs_in_base_y
-        out_M[_M_rrrrs[3][leg]] = d_P_2_rrrrs_in_base_y
-        out_M[_M_rrrrs[4][leg]] = d_P_2_rrrrs_in_base_z
-        out_M[_M_rrrrs[5][leg]] = d_P_2_rrrrs_in_base_z
-        out_M[_M_rrrrs[6][leg]] = M_ya_2_rrrrs_x
-        out_M[_M_rrrrs[7][leg]] = M_ya_2_rrrrs_x
-        out_M[_M_rrrrs[8][leg]] = M_ya_2_rrrrs_y
-        out_M[_M_rrrrs[9][leg]] = M_ya_2_rrrrs_y
-        out_M[_M_rrrrs[10][leg]] = M_ya_2_rrrrs_z
-        out_M[_M_rrrrs[11][leg]] = M_ya_2_rrrrs_z
-        out_M[_M_rrrrs[12][leg]] = d1_P_2_rrrrs
-        out_H[_H_rrrrs[0][leg]] = w_1_rrrrs_t_3
-        out_H[_H_rrrrs[1][leg]] = w_1_rrrrs_t_4
-        out_H[_H_rrrrs[2][leg]] = w_1_rrrrs_t_5
-        out_H[_H_rrrrs[3][leg]] = H_a_1_rrrrs_x
-        out_H[_H_rrrrs[4][leg]] = H_a_1_rrrrs_y
-        out_H[_H_rrrrs[5][leg]] = H_a_1_rrrrs_z
+        out_Z[_Z_rrrrs[0][leg]] = rrrrs_P_2_o
+        out_M[_M_rrrrs[0][leg]] = rrrrs_d_P_2_in_base_x
+        out_M[_M_rrrrs[1][leg]] = rrrrs_d_P_2_in_base_x
+        out_M[_M_rrrrs[2][leg]] = rrrrs_d_P_2_in_base_y
+        out_M[_M_rrrrs[3][leg]] = rrrrs_d_P_2_in_base_y
+        out_M[_M_rrrrs[4][leg]] = rrrrs_d_P_2_in_base_z
+        out_M[_M_rrrrs[5][leg]] = rrrrs_d_P_2_in_base_z
+        out_M[_M_rrrrs[6][leg]] = rrrrs_M_ya_2_x
+        out_M[_M_rrrrs[7][leg]] = rrrrs_M_ya_2_x
+        out_M[_M_rrrrs[8][leg]] = rrrrs_M_ya_2_y
+        out_M[_M_rrrrs[9][leg]] = rrrrs_M_ya_2_y
+        out_M[_M_rrrrs[10][leg]] = rrrrs_M_ya_2_z
+        out_M[_M_rrrrs[11][leg]] = rrrrs_M_ya_2_z
+        out_M[_M_rrrrs[12][leg]] = rrrrs_dy_2_P_2
+        out_H[_H_rrrrs[0][leg]] = rrrrs_w_1_t_3
+        out_H[_H_rrrrs[1][leg]] = rrrrs_w_1_t_4
+        out_H[_H_rrrrs[2][leg]] = rrrrs_w_1_t_5
+        out_H[_H_rrrrs[3][leg]] = rrrrs_H_a_1_x
+        out_H[_H_rrrrs[4][leg]] = rrrrs_H_a_1_y
+        out_H[_H_rrrrs[5][leg]] = rrrrs_H_a_1_z
         out_H[_H_rrrrs[6][leg]] = 1.0
-        out_H[_H_rrrrs[7][leg]] = -w_3_rrrrs_t
-        out_H[_H_rrrrs[8][leg]] = -w_3_rrrrs_t_2
-        out_H[_H_rrrrs[9][leg]] = -w_3_rrrrs_t_3
-        out_H[_H_rrrrs[10][leg]] = H_a_3_rrrrs_x
-        out_H[_H_rrrrs[11][leg]] = H_a_3_rrrrs_y
-        out_H[_H_rrrrs[12][leg]] = H_a_3_rrrrs_z
-        out_H[_H_rrrrs[13][leg]] = -d1_qdd_3_rrrrs
+        out_H[_H_rrrrs[7][leg]] = -rrrrs_w_3_t
+        out_H[_H_rrrrs[8][leg]] = -rrrrs_w_3_t_2
+        out_H[_H_rrrrs[9][leg]] = -rrrrs_w_3_t_3
+        out_H[_H_rrrrs[10][leg]] = rrrrs_H_a_3_x
+        out_H[_H_rrrrs[11][leg]] = rrrrs_H_a_3_y
+        out_H[_H_rrrrs[12][leg]] = rrrrs_H_a_3_z
+        out_H[_H_rrrrs[13][leg]] = -rrrrs_dy_2_qdd_3
     (
     total_rrrrs_xx, total_rrrrs_xy, total_rrrrs_xz, total_rrrrs_yy, total_rrrrs_yz,
         total_rrrrs_zz, total_rrrrs_xx_2, total_rrrrs_xy_2, total_rrrrs_xz_2, total_rrrrs_yx,
@@ -2849,116 +2916,116 @@ def _run_dynamics(m, X, V):
     sums = [0.0] * 27
     for leg, k in legs[1]:
         (
-        J_1_rrrs_xx, J_2_rrrs_xx, J_2_rrrs_xy, J_2_rrrs_xz, J_2_rrrs_yy, J_2_rrrs_yz, J_3_rrrs_xx,
-            J_3_rrrs_xy, J_3_rrrs_xz, J_3_rrrs_yy, J_3_rrrs_yz, J_3_rrrs_zz, Jc_2_rrrs_zz,
-            Kd_2_rrrs_t, Kd_2_rrrs_t_2, Sigma_2_rrrs_xx, Sigma_2_rrrs_yy, Sigma_2_rrrs_zz,
-            Sigma_3_rrrs_xx, Sigma_3_rrrs_yy, Sigma_3_rrrs_zz, branch_1_rrrs, branch_2_rrrs,
-            d_Gamma_2_rrrs_t, d_Gamma_2_rrrs_y, d_c_rrrs_yy, d_phi_3_rrrs_t, g_r0_x_2, g_r0_y_2,
-            g_r0_z_2, h_1_rrrs_y, h_1_rrrs_z, h_2_rrrs_x, h_2_rrrs_y, h_2_rrrs_z, h_3_rrrs_x,
-            h_3_rrrs_y, h_3_rrrs_z, inv_rrrs_platform_joint_offset_x, inv_size_rrrs_t,
-            inv_size_rrrs_t_2, rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
-            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-            rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+        inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
+            rrrs_J_2_xx, rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yy, rrrs_J_2_yz, rrrs_J_3_xx,
+            rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yy, rrrs_J_3_yz, rrrs_J_3_zz, rrrs_Jc_2_zz,
+            rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
+            rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_d_Gamma_3_t, rrrs_d_Gamma_3_y, rrrs_d_c_yy, rrrs_d_phi_3_t, rrrs_g_r0_x,
+            rrrs_g_r0_y, rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y, rrrs_h_2_z,
+            rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
             rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-            rrrs_platform_point_z, size_rrrs, size_rrrs_t_3,
+            rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
         ) = k
-        # (rrrs-K1) from the base point to the connection point
-        q_rrrs_in_base_x = (
+        # (rrrs-S) from the base point to the connection point
+        rrrs_q_in_base_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        q_rrrs_in_base_y = (
+        rrrs_q_in_base_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        q_rrrs_in_base_z = (
+        rrrs_q_in_base_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        S_rrrs_x = q_rrrs_in_base_x + t_x - rrrs_base_point_x
-        S_rrrs_y = q_rrrs_in_base_y + t_y - rrrs_base_point_y
-        S_rrrs_z = q_rrrs_in_base_z + t_z - rrrs_base_point_z
-        # (rrrs-K2) component along the reference direction
-        px_1_rrrs = (
-        S_rrrs_x*rrrs_base_frame_xy + S_rrrs_y*rrrs_base_frame_yy + S_rrrs_z*rrrs_base_frame_zy
+        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        # (rrrs-px_1) component along the reference direction
+        rrrs_px_1 = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        # (rrrs-K3) component across the reference direction
-        py_1_rrrs = (
-        S_rrrs_x*rrrs_base_frame_xz + S_rrrs_y*rrrs_base_frame_yz + S_rrrs_z*rrrs_base_frame_zz
+        # (rrrs-py_1) component across the reference direction
+        rrrs_py_1 = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        # (rrrs-K5) squared amplitude
-        rho2_1_rrrs = px_1_rrrs*px_1_rrrs + py_1_rrrs*py_1_rrrs
-        # (rrrs-K7) root, with the sign of the branch
-        root_1_rrrs = branch_1_rrrs*sqrt(rho2_1_rrrs)
-        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_rrrs_t = (
-        S_rrrs_x*rrrs_base_frame_xx + S_rrrs_y*rrrs_base_frame_yx + S_rrrs_z*rrrs_base_frame_zx
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrs_xi_1_t = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        # (rrrs-K12) from the origin of joint 2 to the connection point
-        x_2_rrrs_z = xi_1_rrrs_t - rrrs_joint2_offset_x
-        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z
-        Kd_2_rrrs = Kd_2_rrrs_t + 0.5*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2
-        # (rrrs-K17) factor of the cosine in the equation of joint 2
-        Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x
-        # (rrrs-K18) factor of the sine in the equation of joint 2
-        Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z
-        # (rrrs-K19) squared amplitude
-        rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs
-        # (rrrs-K20) discriminant
-        disc_2_rrrs = rho2_2_rrrs - Kd_2_rrrs*Kd_2_rrrs
-        # (rrrs-K21) root, with the sign of the branch
-        root_2_rrrs = branch_2_rrrs*sqrt(disc_2_rrrs)
-        # (rrrs-K27) from the origin of joint 3 to the connection point
-        x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-        # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-        c_3_rrrs = inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x
-        # (rrrs-K30) sine of the angle of joint 3 from its reference direction
-        s_3_rrrs = (
-        inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-x_3) from the origin of joint 3 to the connection point
+        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrs_s_3 = (
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_rrrs_t = rrrs_platform_joint_offset_x*s_3_rrrs
-        r_2_rrrs_x = rrrs_joint3_offset_x + c_3_rrrs*rrrs_platform_joint_offset_x
-        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2_rrrs = 1.0/rho2_2_rrrs
-        c_2_rrrs = inv_rho2_2_rrrs*(Kc_2_rrrs*Kd_2_rrrs + Ks_2_rrrs*root_2_rrrs)
-        # (rrrs-K23) sine of the angle of joint 2 from its reference direction
-        s_2_rrrs = inv_rho2_2_rrrs*(Kc_2_rrrs*root_2_rrrs - Kd_2_rrrs*Ks_2_rrrs)
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        e_1_rrrs_r2_x = c_2_rrrs*s_3_rrrs - c_3_rrrs*s_2_rrrs
-        e_1_rrrs_r2_y = -c_2_rrrs*c_3_rrrs - s_2_rrrs*s_3_rrrs
-        # (rrrs-V3) from joint 1 to the connection point, along the links
-        r_1_rrrs_r1_x = c_2_rrrs*root_1_rrrs - s_2_rrrs*xi_1_rrrs_t
-        r_1_rrrs_r1_y = -c_2_rrrs*xi_1_rrrs_t - root_1_rrrs*s_2_rrrs
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        v_1_rrrs_z = (
-        e_1_rrrs_r2_x*(c_3_rrrs*r_1_rrrs_r1_y + r_1_rrrs_r1_x*s_3_rrrs) -
-            e_1_rrrs_r2_y*(c_3_rrrs*r_1_rrrs_r1_x - r_1_rrrs_r1_y*s_3_rrrs)
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3
+        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
+        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
+        # (rrrs-r_1) from joint 1 to the connection point, along the links
+        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
+        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_z = (
+        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
+            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
         )
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_rrrs_r0_x = c_3_rrrs*r_2_rrrs_x + r_2_rrrs_t*s_3_rrrs
-        r_2_rrrs_r0_y = r_2_rrrs_x*s_3_rrrs - c_3_rrrs*r_2_rrrs_t
-        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrrs = 1.0/rho2_1_rrrs
-        c_1_rrrs = inv_rho2_1_rrrs*py_1_rrrs*root_1_rrrs
-        # (rrrs-K9) sine of the angle of joint 1 from its reference direction
-        s_1_rrrs = inv_rho2_1_rrrs*px_1_rrrs*root_1_rrrs
-        # (rrrs-V7) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1_rrrs - c_1_rrrs*rrrs_base_frame_xy
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1_rrrs - c_1_rrrs*rrrs_base_frame_yy
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1_rrrs - c_1_rrrs*rrrs_base_frame_zy
-        w_1_rrrs_t = e_1_rrrs_r2_x*s_1_rrrs
-        w_1_rrrs_t_2 = c_1_rrrs*e_1_rrrs_r2_x
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_r0_x = rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3
+        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
+        # (rrrs-w_1) reciprocal vector 1
+        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
+        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
+        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
         axis_y_rrrs_axes3_in_base_x = (
-        e_1_rrrs_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_rrrs_t +
-            rrrs_base_frame_xz*w_1_rrrs_t_2
+        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
+            rrrs_base_frame_xz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_y = (
-        e_1_rrrs_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_rrrs_t +
-            rrrs_base_frame_yz*w_1_rrrs_t_2
+        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
+            rrrs_base_frame_yz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_z = (
-        e_1_rrrs_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_rrrs_t +
-            rrrs_base_frame_zz*w_1_rrrs_t_2
+        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
+            rrrs_base_frame_zz*rrrs_w_1_t_2
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
@@ -2972,373 +3039,387 @@ def _run_dynamics(m, X, V):
         axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
             axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
         )
-        # (rrrs-G9) inertia tensor of link 3 about the connection point
-        J_3_rrrs_t = J_3_rrrs_xy*s_3_rrrs
-        _x_7 = J_3_rrrs_t + J_3_rrrs_xx*c_3_rrrs
-        J_3_rrrs_t_2 = J_3_rrrs_xy*c_3_rrrs
-        _x_8 = J_3_rrrs_t_2 + J_3_rrrs_yy*s_3_rrrs
-        _x_9 = J_3_rrrs_xz*c_3_rrrs + J_3_rrrs_yz*s_3_rrrs
-        _y_4 = J_3_rrrs_yz*c_3_rrrs - J_3_rrrs_xz*s_3_rrrs
-        # (rrrs-N18) inertia tensor of the links from 2 outwards about joint 2
-        Jc_2_rrrs_xy = J_2_rrrs_xy + _x_8*c_3_rrrs - _x_7*s_3_rrrs
-        _y_5 = (
-        -c_2_rrrs*(-Jc_2_rrrs_xy*s_2_rrrs - c_2_rrrs*(J_2_rrrs_yy + c_3_rrrs*(J_3_rrrs_yy*c_3_rrrs
-            - J_3_rrrs_t) - s_3_rrrs*(J_3_rrrs_t_2 - J_3_rrrs_xx*s_3_rrrs))) -
-            s_2_rrrs*(-Jc_2_rrrs_xy*c_2_rrrs - s_2_rrrs*(J_2_rrrs_xx + _x_7*c_3_rrrs +
-            _x_8*s_3_rrrs))
+        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
+        # (rrrs-w_2) reciprocal vector 2
+        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
+        # (rrrs-w_3) reciprocal vector 3
+        rrrs_w_3_t = inv_rrrs_platform_joint_offset_x*inv_rrrs_r_2_r0_y*rrrs_r_2_r0_x
+        # (rrrs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
+        rrrs_d_alpha_3_t = inv_rrrs_v_1_z*rrrs_e_1_r2_x
+        rrrs_d_alpha_3_t_2 = inv_rrrs_v_1_z*rrrs_e_1_r2_y
+        # (rrrs-D_1_3) inertia of joint 3 along joint 1
+        rrrs_D_1_3 = rrrs_J_3_xz*rrrs_e_1_r2_x + rrrs_J_3_yz*rrrs_e_1_r2_y
+        # (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        rrrs_d_Gamma_3_t_2 = inv_rrrs_v_1_z*rrrs_D_1_3
+        rrrs_d_Gamma_3_t_3 = rrrs_d_Gamma_3_t*rrrs_r_2_r0_x
+        rrrs_d_Gamma_3_x = -rrrs_h_3_y - inv_rrrs_r_2_r0_y*(rrrs_J_3_zz - rrrs_d_Gamma_3_t_3)
+        # (rrrs-J_3) inertia tensor of link 3 about the connection point
+        rrrs_J_3_t = rrrs_J_3_xy*rrrs_s_3
+        rrrs__x = rrrs_J_3_t + rrrs_J_3_xx*rrrs_c_3
+        rrrs_J_3_t_2 = rrrs_J_3_xy*rrrs_c_3
+        rrrs__x_2 = rrrs_J_3_t_2 + rrrs_J_3_yy*rrrs_s_3
+        # (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+        rrrs_Jc_2_xy = rrrs_J_2_xy + rrrs__x_2*rrrs_c_3 - rrrs__x*rrrs_s_3
+        # (rrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rrrs_d_Gamma_2_x = -rrrs_h_3_y - inv_rrrs_r_2_r0_y*(rrrs_Jc_2_zz - rrrs_d_Gamma_3_t_3)
+        # (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+        rrrs__y = (
+        -rrrs_c_2*(-rrrs_Jc_2_xy*rrrs_s_2 - rrrs_c_2*(rrrs_J_2_yy + rrrs_c_3*(rrrs_J_3_yy*rrrs_c_3
+            - rrrs_J_3_t) - rrrs_s_3*(rrrs_J_3_t_2 - rrrs_J_3_xx*rrrs_s_3))) -
+            rrrs_s_2*(-rrrs_Jc_2_xy*rrrs_c_2 - rrrs_s_2*(rrrs_J_2_xx + rrrs__x*rrrs_c_3 +
+            rrrs__x_2*rrrs_s_3))
         )
-        # (rrrs-V7) reciprocal vector 1
-        inv_v_1_rrrs_z = 1.0/v_1_rrrs_z
-        # (rrrs-V8) reciprocal vector 2
-        inv_r_2_rrrs_r0_y = 1.0/r_2_rrrs_r0_y
-        # (rrrs-V9) reciprocal vector 3
-        w_3_rrrs_t = inv_r_2_rrrs_r0_y*inv_rrrs_platform_joint_offset_x*r_2_rrrs_r0_x
-        # (rrrs-N50) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_rrrs_z = (
-        e_1_rrrs_r2_x*h_3_rrrs_y + inv_v_1_rrrs_z*(J_1_rrrs_xx + _y_5) - e_1_rrrs_r2_y*h_3_rrrs_x
+        # (rrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrrs_d_Gamma_1_z = (
+        inv_rrrs_v_1_z*(rrrs_J_1_xx + rrrs__y) + rrrs_e_1_r2_x*rrrs_h_3_y -
+            rrrs_e_1_r2_y*rrrs_h_3_x
         )
-        # (rrrs-N41) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_rrrs_t_2 = d_Gamma_2_rrrs_t*r_2_rrrs_r0_x
-        d_Gamma_2_rrrs_x = -h_3_rrrs_y - inv_r_2_rrrs_r0_y*(Jc_2_rrrs_zz - d_Gamma_2_rrrs_t_2)
-        # (rrrs-N32) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        d_Gamma_3_rrrs_t = inv_v_1_rrrs_z*(-_x_9*s_2_rrrs - _y_4*c_2_rrrs)
-        d_Gamma_3_rrrs_x = -h_3_rrrs_y - inv_r_2_rrrs_r0_y*(J_3_rrrs_zz - d_Gamma_2_rrrs_t_2)
-        # (rrrs-A25) coefficient of the acceleration in: angular acceleration of link 3
-        d_alpha_3_rrrs_t = e_1_rrrs_r2_x*inv_v_1_rrrs_z
-        d_alpha_3_rrrs_t_2 = e_1_rrrs_r2_y*inv_v_1_rrrs_z
-        # (rrrs-N56) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_rrrs_xx = (
-        d_Gamma_2_rrrs_x*inv_r_2_rrrs_r0_y + h_3_rrrs_y*(w_3_rrrs_t - inv_r_2_rrrs_r0_y) -
-            d_Gamma_3_rrrs_x*w_3_rrrs_t
+        # (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrrs_d_G_xz = (
+        rrrs_d_Gamma_3_t_2*rrrs_w_3_t - inv_rrrs_r_2_r0_y*inv_rrrs_v_1_z*(-rrrs_c_2*(rrrs_J_2_yz +
+            rrrs_J_3_yz*rrrs_c_3 - rrrs_J_3_xz*rrrs_s_3) - rrrs_s_2*(rrrs_J_2_xz +
+            rrrs_J_3_xz*rrrs_c_3 + rrrs_J_3_yz*rrrs_s_3))
         )
-        d_c_rrrs_xy = (
-        d_phi_3_rrrs_t + d_Gamma_2_rrrs_y*inv_r_2_rrrs_r0_y - d_Gamma_2_rrrs_y*w_3_rrrs_t
+        # (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrrs_d_c_xx = (
+        inv_rrrs_r_2_r0_y*rrrs_d_Gamma_2_x + rrrs_h_3_y*(rrrs_w_3_t - inv_rrrs_r_2_r0_y) -
+            rrrs_d_Gamma_3_x*rrrs_w_3_t
         )
-        d_c_rrrs_xz = (
-        inv_r_2_rrrs_r0_y*inv_v_1_rrrs_z*(-c_2_rrrs*(J_2_rrrs_yz + _y_4) - s_2_rrrs*(J_2_rrrs_xz +
-            _x_9)) - d_Gamma_3_rrrs_t*w_3_rrrs_t - d_alpha_3_rrrs_t_2*h_3_rrrs_z
+        rrrs_d_c_xy = (
+        rrrs_d_phi_3_t + inv_rrrs_r_2_r0_y*rrrs_d_Gamma_3_y - rrrs_d_Gamma_3_y*rrrs_w_3_t
         )
-        d_c_rrrs_yz = (
-        d_alpha_3_rrrs_t*h_3_rrrs_z - d_Gamma_3_rrrs_t*inv_rrrs_platform_joint_offset_x
+        rrrs_d_c_xz = -rrrs_d_G_xz - rrrs_d_alpha_3_t_2*rrrs_h_3_z
+        rrrs_d_c_yz = (
+        rrrs_d_alpha_3_t*rrrs_h_3_z - inv_rrrs_platform_joint_offset_x*rrrs_d_Gamma_3_t_2
         )
-        # (rrrs-N58) inertia of the leg at the connection point, without the mass gathered there
-        Q_rrrs_t = d_c_rrrs_xx - d_c_rrrs_yy
-        Q_rrrs_t_2 = 0.5*Q_rrrs_t
-        Q_rrrs_t_3 = (
-        d_c_rrrs_xx + d_Gamma_1_rrrs_z*inv_v_1_rrrs_z + d_alpha_3_rrrs_t*h_3_rrrs_y -
-            d_alpha_3_rrrs_t_2*h_3_rrrs_x
+        # (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there
+        rrrs_Q_t = rrrs_d_c_xx - rrrs_d_c_yy
+        rrrs_Q_t_2 = 0.5*rrrs_Q_t
+        rrrs_Q_t_3 = (
+        rrrs_d_c_xx + inv_rrrs_v_1_z*rrrs_d_Gamma_1_z + rrrs_d_alpha_3_t*rrrs_h_3_y -
+            rrrs_d_alpha_3_t_2*rrrs_h_3_x
         )
-        Q_rrrs_t_4 = 0.5*Q_rrrs_t_3
-        Q_rrrs_t_5 = (
-        axis_x_rrrs_axes3_x*d_c_rrrs_xy + axis_z_rrrs_axes3_in_base_x*d_c_rrrs_yz -
-            Q_rrrs_t_2*axis_y_rrrs_axes3_in_base_x
+        rrrs_Q_t_4 = 0.5*rrrs_Q_t_3
+        rrrs_Q_t_5 = (
+        axis_x_rrrs_axes3_x*rrrs_d_c_xy + axis_z_rrrs_axes3_in_base_x*rrrs_d_c_yz -
+            axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_2
         )
-        Q_rrrs_t_6 = (
-        axis_x_rrrs_axes3_y*d_c_rrrs_xy + axis_z_rrrs_axes3_in_base_y*d_c_rrrs_yz -
-            Q_rrrs_t_2*axis_y_rrrs_axes3_in_base_y
+        rrrs_Q_t_6 = (
+        axis_x_rrrs_axes3_y*rrrs_d_c_xy + axis_z_rrrs_axes3_in_base_y*rrrs_d_c_yz -
+            axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_2
         )
-        Q_rrrs_t_7 = (
-        axis_x_rrrs_axes3_z*d_c_rrrs_xy + axis_z_rrrs_axes3_in_base_z*d_c_rrrs_yz -
-            Q_rrrs_t_2*axis_y_rrrs_axes3_in_base_z
+        rrrs_Q_t_7 = (
+        axis_x_rrrs_axes3_z*rrrs_d_c_xy + axis_z_rrrs_axes3_in_base_z*rrrs_d_c_yz -
+            axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_2
         )
-        Q_rrrs_t_8 = Q_rrrs_t_4*axis_z_rrrs_axes3_in_base_x - axis_x_rrrs_axes3_x*d_c_rrrs_xz
-        Q_rrrs_t_9 = Q_rrrs_t_4*axis_z_rrrs_axes3_in_base_y - axis_x_rrrs_axes3_y*d_c_rrrs_xz
-        Q_rrrs_t_10 = Q_rrrs_t_4*axis_z_rrrs_axes3_in_base_z - axis_x_rrrs_axes3_z*d_c_rrrs_xz
-        Q_rrrs_t_11 = (
-        Q_rrrs_t_5*axis_y_rrrs_axes3_in_base_x - Q_rrrs_t_8*axis_z_rrrs_axes3_in_base_x
+        rrrs_Q_t_8 = axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_4 - axis_x_rrrs_axes3_x*rrrs_d_c_xz
+        rrrs_Q_t_9 = axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_4 - axis_x_rrrs_axes3_y*rrrs_d_c_xz
+        rrrs_Q_t_10 = axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_4 - axis_x_rrrs_axes3_z*rrrs_d_c_xz
+        rrrs_Q_t_11 = (
+        axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_5 - axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_8
         )
-        Q_rrrs_t_12 = 2.0*Q_rrrs_t_11 + d_c_rrrs_xx
-        Q_rrrs_t_13 = (
-        Q_rrrs_t_5*axis_y_rrrs_axes3_in_base_y + Q_rrrs_t_6*axis_y_rrrs_axes3_in_base_x -
-            Q_rrrs_t_8*axis_z_rrrs_axes3_in_base_y - Q_rrrs_t_9*axis_z_rrrs_axes3_in_base_x
+        rrrs_Q_t_12 = 2.0*rrrs_Q_t_11 + rrrs_d_c_xx
+        rrrs_Q_t_13 = (
+        axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_6 + axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_5 -
+            axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_9 - axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_8
         )
-        Q_rrrs_t_14 = (
-        Q_rrrs_t_5*axis_y_rrrs_axes3_in_base_z + Q_rrrs_t_7*axis_y_rrrs_axes3_in_base_x -
-            Q_rrrs_t_10*axis_z_rrrs_axes3_in_base_x - Q_rrrs_t_8*axis_z_rrrs_axes3_in_base_z
+        rrrs_Q_t_14 = (
+        axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_7 + axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_5 -
+            axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_10 - axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_8
         )
-        Q_rrrs_t_15 = (
-        Q_rrrs_t_6*axis_y_rrrs_axes3_in_base_y - Q_rrrs_t_9*axis_z_rrrs_axes3_in_base_y
+        rrrs_Q_t_15 = (
+        axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_6 - axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_9
         )
-        Q_rrrs_t_16 = 2.0*Q_rrrs_t_15 + d_c_rrrs_xx
-        Q_rrrs_t_17 = (
-        Q_rrrs_t_6*axis_y_rrrs_axes3_in_base_z + Q_rrrs_t_7*axis_y_rrrs_axes3_in_base_y -
-            Q_rrrs_t_10*axis_z_rrrs_axes3_in_base_y - Q_rrrs_t_9*axis_z_rrrs_axes3_in_base_z
+        rrrs_Q_t_16 = 2.0*rrrs_Q_t_15 + rrrs_d_c_xx
+        rrrs_Q_t_17 = (
+        axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_7 + axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_6 -
+            axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_10 - axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_9
         )
-        Q_rrrs_t_18 = (
-        Q_rrrs_t_7*axis_y_rrrs_axes3_in_base_z - Q_rrrs_t_10*axis_z_rrrs_axes3_in_base_z
+        rrrs_Q_t_18 = (
+        axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_7 - axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_10
         )
-        Q_rrrs_t_19 = 2.0*Q_rrrs_t_18 + d_c_rrrs_xx
-        # (M2) coupling block of M
-        M_ta_t_13 = Q_rrrs_t_13*q_rrrs_in_base_z
-        M_ta_t_14 = Q_rrrs_t_14*q_rrrs_in_base_y
-        M_ta_t_15 = M_ta_t_13 - M_ta_t_14
-        M_ta_t_16 = Q_rrrs_t_12*q_rrrs_in_base_z - Q_rrrs_t_14*q_rrrs_in_base_x
-        M_ta_t_17 = Q_rrrs_t_12*q_rrrs_in_base_y - Q_rrrs_t_13*q_rrrs_in_base_x
-        M_ta_t_18 = Q_rrrs_t_16*q_rrrs_in_base_z - Q_rrrs_t_17*q_rrrs_in_base_y
-        M_ta_t_19 = Q_rrrs_t_17*q_rrrs_in_base_x
-        M_ta_t_20 = M_ta_t_13 - M_ta_t_19
-        M_ta_t_21 = Q_rrrs_t_13*q_rrrs_in_base_y - Q_rrrs_t_16*q_rrrs_in_base_x
-        M_ta_t_22 = Q_rrrs_t_17*q_rrrs_in_base_z - Q_rrrs_t_19*q_rrrs_in_base_y
-        M_ta_t_23 = Q_rrrs_t_14*q_rrrs_in_base_z - Q_rrrs_t_19*q_rrrs_in_base_x
-        M_ta_t_24 = M_ta_t_14 - M_ta_t_19
-        # (M3) rotational block of M
-        M_aa_t_7 = M_ta_t_18*q_rrrs_in_base_z - M_ta_t_22*q_rrrs_in_base_y
-        M_aa_t_8 = M_ta_t_20*q_rrrs_in_base_z - M_ta_t_23*q_rrrs_in_base_y
-        M_aa_t_9 = M_ta_t_21*q_rrrs_in_base_z - M_ta_t_24*q_rrrs_in_base_y
-        M_aa_t_10 = M_ta_t_16*q_rrrs_in_base_z - M_ta_t_23*q_rrrs_in_base_x
-        M_aa_t_11 = M_ta_t_17*q_rrrs_in_base_z - M_ta_t_24*q_rrrs_in_base_x
-        M_aa_t_12 = M_ta_t_17*q_rrrs_in_base_y - M_ta_t_21*q_rrrs_in_base_x
-        # (rrrs-V1) velocity of the connection point
-        S_dot_rrrs_t = omega_y*q_rrrs_in_base_z - omega_z*q_rrrs_in_base_y
-        S_dot_rrrs_t_2 = omega_z*q_rrrs_in_base_x - omega_x*q_rrrs_in_base_z
-        S_dot_rrrs_t_3 = omega_x*q_rrrs_in_base_y - omega_y*q_rrrs_in_base_x
-        S_dot_rrrs_x = S_dot_rrrs_t + t_dot_x
-        S_dot_rrrs_y = S_dot_rrrs_t_2 + t_dot_y
-        S_dot_rrrs_z = S_dot_rrrs_t_3 + t_dot_z
-        # (rrrs-V10) rate of joint 1
-        qd_2_rrrs = (
-        inv_r_2_rrrs_r0_y*(S_dot_rrrs_x*axis_x_rrrs_axes3_x + S_dot_rrrs_y*axis_x_rrrs_axes3_y +
-            S_dot_rrrs_z*axis_x_rrrs_axes3_z)
+        rrrs_Q_t_19 = 2.0*rrrs_Q_t_18 + rrrs_d_c_xx
+        # (M_ta) coupling block of M
+        rrrs_M_ta_t = rrrs_Q_t_13*rrrs_q_in_base_z
+        rrrs_M_ta_t_2 = rrrs_Q_t_14*rrrs_q_in_base_y
+        rrrs_M_ta_t_3 = rrrs_M_ta_t - rrrs_M_ta_t_2
+        rrrs_M_ta_t_4 = rrrs_Q_t_12*rrrs_q_in_base_z - rrrs_Q_t_14*rrrs_q_in_base_x
+        rrrs_M_ta_t_5 = rrrs_Q_t_12*rrrs_q_in_base_y - rrrs_Q_t_13*rrrs_q_in_base_x
+        rrrs_M_ta_t_6 = rrrs_Q_t_16*rrrs_q_in_base_z - rrrs_Q_t_17*rrrs_q_in_base_y
+        rrrs_M_ta_t_7 = rrrs_Q_t_17*rrrs_q_in_base_x
+        rrrs_M_ta_t_8 = rrrs_M_ta_t - rrrs_M_ta_t_7
+        rrrs_M_ta_t_9 = rrrs_Q_t_13*rrrs_q_in_base_y - rrrs_Q_t_16*rrrs_q_in_base_x
+        rrrs_M_ta_t_10 = rrrs_Q_t_17*rrrs_q_in_base_z - rrrs_Q_t_19*rrrs_q_in_base_y
+        rrrs_M_ta_t_11 = rrrs_Q_t_14*rrrs_q_in_base_z - rrrs_Q_t_19*rrrs_q_in_base_x
+        rrrs_M_ta_t_12 = rrrs_M_ta_t_7 - rrrs_M_ta_t_2
+        # (M_aa) rotational block of M
+        rrrs_M_aa_t = rrrs_M_ta_t_6*rrrs_q_in_base_z - rrrs_M_ta_t_10*rrrs_q_in_base_y
+        rrrs_M_aa_t_2 = rrrs_M_ta_t_8*rrrs_q_in_base_z - rrrs_M_ta_t_11*rrrs_q_in_base_y
+        rrrs_M_aa_t_3 = rrrs_M_ta_t_12*rrrs_q_in_base_y + rrrs_M_ta_t_9*rrrs_q_in_base_z
+        rrrs_M_aa_t_4 = rrrs_M_ta_t_4*rrrs_q_in_base_z - rrrs_M_ta_t_11*rrrs_q_in_base_x
+        rrrs_M_aa_t_5 = rrrs_M_ta_t_12*rrrs_q_in_base_x + rrrs_M_ta_t_5*rrrs_q_in_base_z
+        rrrs_M_aa_t_6 = rrrs_M_ta_t_5*rrrs_q_in_base_y - rrrs_M_ta_t_9*rrrs_q_in_base_x
+        # (rrrs-S_dot) velocity of the connection point
+        rrrs_S_dot_t = omega_y*rrrs_q_in_base_z - omega_z*rrrs_q_in_base_y
+        rrrs_S_dot_t_2 = omega_z*rrrs_q_in_base_x - omega_x*rrrs_q_in_base_z
+        rrrs_S_dot_t_3 = omega_x*rrrs_q_in_base_y - omega_y*rrrs_q_in_base_x
+        rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
+        rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
+        rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
+        # (rrrs-qd_3) rate of joint 3
+        rrrs_qd_2 = (
+        inv_rrrs_r_2_r0_y*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_x_rrrs_axes3_z*rrrs_S_dot_z)
         )
-        qd_3_rrrs = (
-        inv_rrrs_platform_joint_offset_x*(S_dot_rrrs_x*axis_y_rrrs_axes3_in_base_x +
-            S_dot_rrrs_y*axis_y_rrrs_axes3_in_base_y + S_dot_rrrs_z*axis_y_rrrs_axes3_in_base_z +
-            qd_2_rrrs*r_2_rrrs_r0_x)
+        rrrs_qd_3 = (
+        inv_rrrs_platform_joint_offset_x*(axis_y_rrrs_axes3_in_base_x*rrrs_S_dot_x +
+            axis_y_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_dot_z +
+            rrrs_qd_2*rrrs_r_2_r0_x)
         )
-        qd_1_rrrs = (
-        inv_v_1_rrrs_z*(S_dot_rrrs_x*axis_z_rrrs_axes3_in_base_x +
-            S_dot_rrrs_y*axis_z_rrrs_axes3_in_base_y + S_dot_rrrs_z*axis_z_rrrs_axes3_in_base_z)
+        rrrs_qd_1 = (
+        inv_rrrs_v_1_z*(axis_z_rrrs_axes3_in_base_x*rrrs_S_dot_x +
+            axis_z_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_z_rrrs_axes3_in_base_z*rrrs_S_dot_z)
         )
-        # (rrrs-V13) angular velocity of link 1
-        omega_1_rrrs_t = qd_1_rrrs*s_2_rrrs
-        omega_1_rrrs_t_2 = c_2_rrrs*qd_1_rrrs
-        # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_rrrs_x = omega_1_rrrs_t_2*qd_2_rrrs
-        zeta_2_rrrs_y = omega_1_rrrs_t*qd_2_rrrs
-        # (rrrs-V15) angular velocity of link 2
-        omega_2_rrrs_r0_x = omega_1_rrrs_t_2*s_3_rrrs - c_3_rrrs*omega_1_rrrs_t
-        omega_2_rrrs_r0_y = -c_3_rrrs*omega_1_rrrs_t_2 - omega_1_rrrs_t*s_3_rrrs
-        # (rrrs-A5) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_rrrs_y = omega_2_rrrs_r0_x*qd_3_rrrs
-        # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_rrrs_r0_y = s_3_rrrs*zeta_2_rrrs_x - c_3_rrrs*zeta_2_rrrs_y
-        # (rrrs-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_rrrs_y = zeta_2_rrrs_r0_y - zeta_3_rrrs_y
-        # (rrrs-V17) angular velocity of link 3
-        omega_3_rrrs_z = qd_3_rrrs - qd_2_rrrs
-        # (rrrs-V16) centripetal tensor of link 2
-        W_2_rrrs_t = omega_1_rrrs_t*omega_1_rrrs_t
-        W_2_rrrs_t_2 = omega_1_rrrs_t_2*omega_1_rrrs_t_2
-        W_2_rrrs_t_3 = qd_2_rrrs*qd_2_rrrs
-        W_2_rrrs_xy = omega_1_rrrs_t*omega_1_rrrs_t_2
-        # (rrrs-V18) centripetal tensor of link 3
-        W_3_rrrs_t = omega_2_rrrs_r0_x*omega_2_rrrs_r0_x
-        W_3_rrrs_t_2 = omega_2_rrrs_r0_y*omega_2_rrrs_r0_y
-        W_3_rrrs_t_3 = omega_3_rrrs_z*omega_3_rrrs_z
-        W_3_rrrs_xy = omega_2_rrrs_r0_x*omega_2_rrrs_r0_y
-        W_3_rrrs_xz = omega_2_rrrs_r0_x*omega_3_rrrs_z
-        W_3_rrrs_yz = omega_2_rrrs_r0_y*omega_3_rrrs_z
-        # (rrrs-A7) acceleration of the connection point at zero joint accelerations
-        bias_rrrs_t = rrrs_joint2_offset_x*s_2_rrrs
-        bias_rrrs_t_2 = c_2_rrrs*rrrs_joint2_offset_x
-        bias_rrrs_t_3 = (
-        omega_2_rrrs_r0_x*(-bias_rrrs_t*s_3_rrrs - bias_rrrs_t_2*c_3_rrrs) -
-            omega_2_rrrs_r0_y*(bias_rrrs_t_2*s_3_rrrs - bias_rrrs_t*c_3_rrrs)
+        # (rrrs-omega_1) angular velocity of link 1
+        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_t_2 = rrrs_c_2*rrrs_qd_1
+        # (rrrs-omega_2) angular velocity of link 2
+        rrrs_omega_2_r0_x = rrrs_omega_1_t_2*rrrs_s_3 - rrrs_c_3*rrrs_omega_1_t
+        rrrs_omega_2_r0_y = -rrrs_c_3*rrrs_omega_1_t_2 - rrrs_omega_1_t*rrrs_s_3
+        # (rrrs-omega_3) angular velocity of link 3
+        rrrs_omega_3_z = rrrs_qd_3 - rrrs_qd_2
+        # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrs_zeta_3_y = rrrs_omega_2_r0_x*rrrs_qd_3
+        # (rrrs-u_1) centripetal acceleration of the connection point
+        rrrs_u_1_x = omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2
+        rrrs_u_1_y = omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3
+        rrrs_u_1_z = omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t
+        # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        rrrs_zeta_2_x = rrrs_omega_1_t_2*rrrs_qd_2
+        rrrs_zeta_2_y = rrrs_omega_1_t*rrrs_qd_2
+        rrrs_zeta_2_r0_y = rrrs_s_3*rrrs_zeta_2_x - rrrs_c_3*rrrs_zeta_2_y
+        # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        rrrs_beta_3_y = rrrs_zeta_2_r0_y - rrrs_zeta_3_y
+        # (rrrs-W_2) centripetal tensor of link 2
+        rrrs_W_2_t = rrrs_omega_1_t*rrrs_omega_1_t
+        rrrs_W_2_t_2 = rrrs_omega_1_t_2*rrrs_omega_1_t_2
+        rrrs_W_2_t_3 = rrrs_qd_2*rrrs_qd_2
+        rrrs_W_2_xy = rrrs_omega_1_t*rrrs_omega_1_t_2
+        # (rrrs-W_3) centripetal tensor of link 3
+        rrrs_W_3_t = rrrs_omega_2_r0_x*rrrs_omega_2_r0_x
+        rrrs_W_3_t_2 = rrrs_omega_2_r0_y*rrrs_omega_2_r0_y
+        rrrs_W_3_t_3 = rrrs_omega_3_z*rrrs_omega_3_z
+        rrrs_W_3_xy = rrrs_omega_2_r0_x*rrrs_omega_2_r0_y
+        rrrs_W_3_xz = rrrs_omega_2_r0_x*rrrs_omega_3_z
+        rrrs_W_3_yz = rrrs_omega_2_r0_y*rrrs_omega_3_z
+        # (rrrs-bias) acceleration of the connection point at zero joint accelerations
+        rrrs_bias_t = rrrs_joint2_offset_x*rrrs_s_2
+        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_3 = (
+        rrrs_omega_2_r0_x*(-rrrs_bias_t*rrrs_s_3 - rrrs_bias_t_2*rrrs_c_3) -
+            rrrs_omega_2_r0_y*(rrrs_bias_t_2*rrrs_s_3 - rrrs_bias_t*rrrs_c_3)
         )
-        bias_rrrs_t_4 = c_3_rrrs*rrrs_joint3_offset_x
-        bias_rrrs_t_5 = rrrs_joint3_offset_x*s_3_rrrs
-        bias_rrrs_t_6 = bias_rrrs_t_5*qd_2_rrrs
-        bias_rrrs_t_7 = bias_rrrs_t_4*qd_2_rrrs
-        bias_rrrs_t_8 = bias_rrrs_t_5*omega_2_rrrs_r0_x - bias_rrrs_t_4*omega_2_rrrs_r0_y
-        bias_rrrs_t_9 = omega_3_rrrs_z*rrrs_platform_joint_offset_x
-        bias_rrrs_t_10 = omega_2_rrrs_r0_y*rrrs_platform_joint_offset_x
-        bias_rrrs_x = (
-        bias_rrrs_t_3*omega_2_rrrs_r0_y + bias_rrrs_t_8*omega_2_rrrs_r0_y -
-            bias_rrrs_t_10*omega_2_rrrs_r0_y - bias_rrrs_t_7*qd_2_rrrs -
-            bias_rrrs_t_9*omega_3_rrrs_z
+        rrrs_bias_t_4 = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_bias_t_5 = rrrs_joint3_offset_x*rrrs_s_3
+        rrrs_bias_t_6 = rrrs_bias_t_5*rrrs_qd_2
+        rrrs_bias_t_7 = rrrs_bias_t_4*rrrs_qd_2
+        rrrs_bias_t_8 = rrrs_bias_t_5*rrrs_omega_2_r0_x - rrrs_bias_t_4*rrrs_omega_2_r0_y
+        rrrs_bias_t_9 = rrrs_omega_3_z*rrrs_platform_joint_offset_x
+        rrrs_bias_t_10 = rrrs_omega_2_r0_y*rrrs_platform_joint_offset_x
+        rrrs_bias_x = (
+        rrrs_bias_t_3*rrrs_omega_2_r0_y + rrrs_bias_t_8*rrrs_omega_2_r0_y -
+            rrrs_bias_t_10*rrrs_omega_2_r0_y - rrrs_bias_t_7*rrrs_qd_2 -
+            rrrs_bias_t_9*rrrs_omega_3_z
         )
-        bias_rrrs_y = (
-        bias_rrrs_t_10*omega_2_rrrs_r0_x - bias_rrrs_t_3*omega_2_rrrs_r0_x -
-            bias_rrrs_t_6*qd_2_rrrs - bias_rrrs_t_8*omega_2_rrrs_r0_x
+        rrrs_bias_y = (
+        rrrs_bias_t_10*rrrs_omega_2_r0_x - rrrs_bias_t_3*rrrs_omega_2_r0_x -
+            rrrs_bias_t_6*rrrs_qd_2 - rrrs_bias_t_8*rrrs_omega_2_r0_x
         )
-        bias_rrrs_z = (
-        bias_rrrs_t_5*(c_3_rrrs*zeta_2_rrrs_x + s_3_rrrs*zeta_2_rrrs_y) +
-            bias_rrrs_t_9*omega_2_rrrs_r0_x - beta_3_rrrs_y*rrrs_platform_joint_offset_x -
-            bias_rrrs_t_4*zeta_2_rrrs_r0_y - bias_rrrs_t_6*omega_2_rrrs_r0_y -
-            bias_rrrs_t_7*omega_2_rrrs_r0_x
+        rrrs_bias_z = (
+        rrrs_bias_t_5*(rrrs_c_3*rrrs_zeta_2_x + rrrs_s_3*rrrs_zeta_2_y) +
+            rrrs_bias_t_9*rrrs_omega_2_r0_x - rrrs_beta_3_y*rrrs_platform_joint_offset_x -
+            rrrs_bias_t_4*rrrs_zeta_2_r0_y - rrrs_bias_t_6*rrrs_omega_2_r0_y -
+            rrrs_bias_t_7*rrrs_omega_2_r0_x
         )
-        # (rrrs-A1) centripetal acceleration of the connection point
-        u_1_rrrs_x = S_dot_rrrs_t_3*omega_y - S_dot_rrrs_t_2*omega_z
-        u_1_rrrs_y = S_dot_rrrs_t*omega_z - S_dot_rrrs_t_3*omega_x
-        u_1_rrrs_z = S_dot_rrrs_t_2*omega_x - S_dot_rrrs_t*omega_y
-        u_1_rrrs_tip_x = (
-        axis_x_rrrs_axes3_x*u_1_rrrs_x + axis_x_rrrs_axes3_y*u_1_rrrs_y +
-            axis_x_rrrs_axes3_z*u_1_rrrs_z
+        # (rrrs-u_1) centripetal acceleration of the connection point
+        rrrs_u_1_tip_x = (
+        axis_x_rrrs_axes3_x*rrrs_u_1_x + axis_x_rrrs_axes3_y*rrrs_u_1_y +
+            axis_x_rrrs_axes3_z*rrrs_u_1_z
         )
-        u_1_rrrs_tip_y = (
-        axis_y_rrrs_axes3_in_base_x*u_1_rrrs_x + axis_y_rrrs_axes3_in_base_y*u_1_rrrs_y +
-            axis_y_rrrs_axes3_in_base_z*u_1_rrrs_z
+        rrrs_u_1_tip_y = (
+        axis_y_rrrs_axes3_in_base_x*rrrs_u_1_x + axis_y_rrrs_axes3_in_base_y*rrrs_u_1_y +
+            axis_y_rrrs_axes3_in_base_z*rrrs_u_1_z
         )
-        u_1_rrrs_tip_z = (
-        axis_z_rrrs_axes3_in_base_x*u_1_rrrs_x + axis_z_rrrs_axes3_in_base_y*u_1_rrrs_y +
-            axis_z_rrrs_axes3_in_base_z*u_1_rrrs_z
+        rrrs_u_1_tip_z = (
+        axis_z_rrrs_axes3_in_base_x*rrrs_u_1_x + axis_z_rrrs_axes3_in_base_y*rrrs_u_1_y +
+            axis_z_rrrs_axes3_in_base_z*rrrs_u_1_z
         )
-        # (rrrs-A9) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_rrrs_o_x = u_1_rrrs_tip_x - bias_rrrs_x
-        rel_rrrs_o_y = u_1_rrrs_tip_y - bias_rrrs_y
-        rel_rrrs_o_z = u_1_rrrs_tip_z - bias_rrrs_z
-        # (rrrs-A11) remainder without the acceleration in: acceleration of joint 1
-        qdd_2_rrrs_o = inv_r_2_rrrs_r0_y*rel_rrrs_o_x
-        qdd_1_rrrs_o = inv_v_1_rrrs_z*rel_rrrs_o_z
-        # (rrrs-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x_2 = g_r0_y_2*s_1_rrrs - c_1_rrrs*g_r0_x_2
-        g_r1_y_2 = -c_1_rrrs*g_r0_y_2 - g_r0_x_2*s_1_rrrs
-        g_r3_x_2 = -c_2_rrrs*g_r1_y_2 - g_r0_z_2*s_2_rrrs
-        g_r3_y_2 = g_r1_y_2*s_2_rrrs - c_2_rrrs*g_r0_z_2
-        # (rrrs-A17) remainder without the acceleration in: angular acceleration of link 1
-        alpha_1_rrrs_o_t = qdd_1_rrrs_o*s_2_rrrs
-        alpha_1_rrrs_o_t_2 = c_2_rrrs*qdd_1_rrrs_o
-        # (rrrs-A21) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_rrrs_o_x = zeta_2_rrrs_x - alpha_1_rrrs_o_t
-        alpha_2_rrrs_o_y = -alpha_1_rrrs_o_t_2 - zeta_2_rrrs_y
-        # (rrrs-A23) remainder of the acceleration tensor of link 2
-        B_2_rrrs_o_xy = W_2_rrrs_xy + qdd_2_rrrs_o
-        B_2_rrrs_o_yx = W_2_rrrs_xy - qdd_2_rrrs_o
-        B_2_rrrs_o_zx = zeta_2_rrrs_y - alpha_2_rrrs_o_y
-        B_2_rrrs_o_zy = alpha_2_rrrs_o_x + zeta_2_rrrs_x
-        # (rrrs-N37) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_rrrs_o_x = (
-        B_2_rrrs_o_yx*J_2_rrrs_xz + B_2_rrrs_o_zy*Sigma_2_rrrs_yy + J_2_rrrs_yz*(W_2_rrrs_t_2 -
-            W_2_rrrs_t_3) + g_r3_y_2*h_2_rrrs_z - B_2_rrrs_o_zx*J_2_rrrs_xy -
-            Sigma_2_rrrs_zz*alpha_1_rrrs_o_t - g_r1_x_2*h_2_rrrs_y
+        # (rrrs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        rrrs_rel_o_x = rrrs_u_1_tip_x - rrrs_bias_x
+        rrrs_rel_o_y = rrrs_u_1_tip_y - rrrs_bias_y
+        rrrs_rel_o_z = rrrs_u_1_tip_z - rrrs_bias_z
+        # (rrrs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
+        rrrs_qdd_2_o = inv_rrrs_r_2_r0_y*rrrs_rel_o_x
+        rrrs_qdd_1_o = inv_rrrs_v_1_z*rrrs_rel_o_z
+        # (rrrs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        rrrs_alpha_1_o_t = rrrs_qdd_1_o*rrrs_s_2
+        rrrs_alpha_1_o_t_2 = rrrs_c_2*rrrs_qdd_1_o
+        # (rrrs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        rrrs_alpha_2_o_x = rrrs_zeta_2_x - rrrs_alpha_1_o_t
+        rrrs_alpha_2_o_y = -rrrs_alpha_1_o_t_2 - rrrs_zeta_2_y
+        # (rrrs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        rrrs_alpha_3_o_x = (
+        rrrs_alpha_2_o_x*rrrs_c_3 + rrrs_omega_2_r0_y*rrrs_qd_3 - rrrs_alpha_2_o_y*rrrs_s_3
         )
-        mu_2_rrrs_o_y = (
-        B_2_rrrs_o_zy*J_2_rrrs_xy + g_r1_x_2*h_2_rrrs_x - B_2_rrrs_o_xy*J_2_rrrs_yz -
-            B_2_rrrs_o_zx*Sigma_2_rrrs_xx - J_2_rrrs_xz*(W_2_rrrs_t - W_2_rrrs_t_3) -
-            Sigma_2_rrrs_zz*alpha_1_rrrs_o_t_2 - g_r3_x_2*h_2_rrrs_z
+        rrrs_alpha_3_o_y = rrrs_alpha_2_o_x*rrrs_s_3 + rrrs_alpha_2_o_y*rrrs_c_3 - rrrs_zeta_3_y
+        rrrs_alpha_3_o_z = (
+        inv_rrrs_platform_joint_offset_x*(rrrs_rel_o_y + rrrs_qdd_2_o*rrrs_r_2_r0_x) -
+            rrrs_qdd_2_o
         )
-        mu_2_rrrs_o_z = (
-        B_2_rrrs_o_yx*Sigma_2_rrrs_xx + J_2_rrrs_xy*(W_2_rrrs_t - W_2_rrrs_t_2) +
-            g_r3_x_2*h_2_rrrs_y - B_2_rrrs_o_xy*Sigma_2_rrrs_yy - J_2_rrrs_xz*alpha_1_rrrs_o_t -
-            J_2_rrrs_yz*alpha_1_rrrs_o_t_2 - g_r3_y_2*h_2_rrrs_x
+        # (rrrs-B_3_o) remainder of the acceleration tensor of link 3
+        rrrs_B_3_o_xy = rrrs_W_3_xy - rrrs_alpha_3_o_z
+        rrrs_B_3_o_xz = rrrs_W_3_xz + rrrs_alpha_3_o_y
+        rrrs_B_3_o_yx = rrrs_W_3_xy + rrrs_alpha_3_o_z
+        rrrs_B_3_o_yz = rrrs_W_3_yz - rrrs_alpha_3_o_x
+        rrrs_B_3_o_zx = rrrs_W_3_xz - rrrs_alpha_3_o_y
+        rrrs_B_3_o_zy = rrrs_W_3_yz + rrrs_alpha_3_o_x
+        # (rrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        rrrs_acc_3_o_x = (
+        rrrs_u_1_tip_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
+            axis_x_rrrs_axes3_z*gravity_z
         )
-        # (rrrs-N10) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        acc_3_rrrs_o_x = u_1_rrrs_tip_x + g_r3_y_2*s_3_rrrs - c_3_rrrs*g_r3_x_2
-        acc_3_rrrs_o_y = u_1_rrrs_tip_y - c_3_rrrs*g_r3_y_2 - g_r3_x_2*s_3_rrrs
-        acc_3_rrrs_o_z = u_1_rrrs_tip_z - g_r1_x_2
-        # (rrrs-A26) remainder without the acceleration in: angular acceleration of link 3
-        alpha_3_rrrs_o_x = (
-        alpha_2_rrrs_o_x*c_3_rrrs + omega_2_rrrs_r0_y*qd_3_rrrs - alpha_2_rrrs_o_y*s_3_rrrs
+        rrrs_acc_3_o_y = (
+        rrrs_u_1_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x -
+            axis_y_rrrs_axes3_in_base_y*gravity_y - axis_y_rrrs_axes3_in_base_z*gravity_z
         )
-        alpha_3_rrrs_o_y = alpha_2_rrrs_o_x*s_3_rrrs + alpha_2_rrrs_o_y*c_3_rrrs - zeta_3_rrrs_y
-        alpha_3_rrrs_o_z = (
-        inv_rrrs_platform_joint_offset_x*(rel_rrrs_o_y + qdd_2_rrrs_o*r_2_rrrs_r0_x) -
-            qdd_2_rrrs_o
+        rrrs_acc_3_o_z = (
+        rrrs_u_1_tip_z - axis_z_rrrs_axes3_in_base_x*gravity_x -
+            axis_z_rrrs_axes3_in_base_y*gravity_y - axis_z_rrrs_axes3_in_base_z*gravity_z
         )
-        # (rrrs-A28) remainder of the acceleration tensor of link 3
-        B_3_rrrs_o_xy = W_3_rrrs_xy - alpha_3_rrrs_o_z
-        B_3_rrrs_o_xz = W_3_rrrs_xz + alpha_3_rrrs_o_y
-        B_3_rrrs_o_yx = W_3_rrrs_xy + alpha_3_rrrs_o_z
-        B_3_rrrs_o_yz = W_3_rrrs_yz - alpha_3_rrrs_o_x
-        B_3_rrrs_o_zx = W_3_rrrs_xz - alpha_3_rrrs_o_y
-        B_3_rrrs_o_zy = W_3_rrrs_yz + alpha_3_rrrs_o_x
-        # (rrrs-N30) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        mu_3_rrrs_o_x = (
-        B_3_rrrs_o_yx*J_3_rrrs_xz + B_3_rrrs_o_zy*Sigma_3_rrrs_yy + J_3_rrrs_yz*(W_3_rrrs_t_2 -
-            W_3_rrrs_t_3) + acc_3_rrrs_o_z*h_3_rrrs_y - B_3_rrrs_o_yz*Sigma_3_rrrs_zz -
-            B_3_rrrs_o_zx*J_3_rrrs_xy - acc_3_rrrs_o_y*h_3_rrrs_z
+        # (rrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        rrrs_mu_3_o_x = (
+        rrrs_B_3_o_yx*rrrs_J_3_xz + rrrs_B_3_o_zy*rrrs_Sigma_3_yy + rrrs_J_3_yz*(rrrs_W_3_t_2 -
+            rrrs_W_3_t_3) + rrrs_acc_3_o_z*rrrs_h_3_y - rrrs_B_3_o_yz*rrrs_Sigma_3_zz -
+            rrrs_B_3_o_zx*rrrs_J_3_xy - rrrs_acc_3_o_y*rrrs_h_3_z
         )
-        mu_3_rrrs_o_y = (
-        B_3_rrrs_o_xz*Sigma_3_rrrs_zz + B_3_rrrs_o_zy*J_3_rrrs_xy + acc_3_rrrs_o_x*h_3_rrrs_z -
-            B_3_rrrs_o_xy*J_3_rrrs_yz - B_3_rrrs_o_zx*Sigma_3_rrrs_xx - J_3_rrrs_xz*(W_3_rrrs_t -
-            W_3_rrrs_t_3) - acc_3_rrrs_o_z*h_3_rrrs_x
+        rrrs_mu_3_o_y = (
+        rrrs_B_3_o_xz*rrrs_Sigma_3_zz + rrrs_B_3_o_zy*rrrs_J_3_xy + rrrs_acc_3_o_x*rrrs_h_3_z -
+            rrrs_B_3_o_xy*rrrs_J_3_yz - rrrs_B_3_o_zx*rrrs_Sigma_3_xx - rrrs_J_3_xz*(rrrs_W_3_t -
+            rrrs_W_3_t_3) - rrrs_acc_3_o_z*rrrs_h_3_x
         )
-        mu_3_rrrs_o_z = (
-        B_3_rrrs_o_xz*J_3_rrrs_yz + B_3_rrrs_o_yx*Sigma_3_rrrs_xx + J_3_rrrs_xy*(W_3_rrrs_t -
-            W_3_rrrs_t_2) + acc_3_rrrs_o_y*h_3_rrrs_x - B_3_rrrs_o_xy*Sigma_3_rrrs_yy -
-            B_3_rrrs_o_yz*J_3_rrrs_xz - acc_3_rrrs_o_x*h_3_rrrs_y
+        rrrs_mu_3_o_z = (
+        rrrs_B_3_o_xz*rrrs_J_3_yz + rrrs_B_3_o_yx*rrrs_Sigma_3_xx + rrrs_J_3_xy*(rrrs_W_3_t -
+            rrrs_W_3_t_2) + rrrs_acc_3_o_y*rrrs_h_3_x - rrrs_B_3_o_xy*rrrs_Sigma_3_yy -
+            rrrs_B_3_o_yz*rrrs_J_3_xz - rrrs_acc_3_o_x*rrrs_h_3_y
         )
-        # (rrrs-N39) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_rrrs_o_x = mu_2_rrrs_o_x + c_3_rrrs*mu_3_rrrs_o_x + mu_3_rrrs_o_y*s_3_rrrs
-        N_2_rrrs_o_y = mu_2_rrrs_o_y + c_3_rrrs*mu_3_rrrs_o_y - mu_3_rrrs_o_x*s_3_rrrs
-        N_2_rrrs_o_z = mu_2_rrrs_o_z + mu_3_rrrs_o_z
-        # (rrrs-N46) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rrrs_o_z = J_1_rrrs_xx*qdd_1_rrrs_o - g_r1_x_2*h_1_rrrs_y - g_r1_y_2*h_1_rrrs_z
-        # (rrrs-N48) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_rrrs_o_z = mu_1_rrrs_o_z - N_2_rrrs_o_x*s_2_rrrs - N_2_rrrs_o_y*c_2_rrrs
-        # (rrrs-N54) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rrrs_o_t = inv_rrrs_platform_joint_offset_x*mu_3_rrrs_o_z
-        # (rrrs-N57) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_rrrs_o_x = (
-        h_3_rrrs_x*(W_3_rrrs_t_2 + W_3_rrrs_t_3) - B_3_rrrs_o_xy*h_3_rrrs_y -
-            B_3_rrrs_o_xz*h_3_rrrs_z - inv_r_2_rrrs_r0_y*(G_rrrs_o_t*r_2_rrrs_r0_x - N_2_rrrs_o_z)
+        # (rrrs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        rrrs_g_r1_x = rrrs_g_r0_y*rrrs_s_1 - rrrs_c_1*rrrs_g_r0_x
+        rrrs_g_r1_y = -rrrs_c_1*rrrs_g_r0_y - rrrs_g_r0_x*rrrs_s_1
+        rrrs_g_r3_x = -rrrs_c_2*rrrs_g_r1_y - rrrs_g_r0_z*rrrs_s_2
+        rrrs_g_r3_y = rrrs_g_r1_y*rrrs_s_2 - rrrs_c_2*rrrs_g_r0_z
+        # (rrrs-B_2_o) remainder of the acceleration tensor of link 2
+        rrrs_B_2_o_xy = rrrs_W_2_xy + rrrs_qdd_2_o
+        rrrs_B_2_o_yx = rrrs_W_2_xy - rrrs_qdd_2_o
+        rrrs_B_2_o_zx = rrrs_zeta_2_y - rrrs_alpha_2_o_y
+        rrrs_B_2_o_zy = rrrs_alpha_2_o_x + rrrs_zeta_2_x
+        # (rrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        rrrs_mu_2_o_x = (
+        rrrs_B_2_o_yx*rrrs_J_2_xz + rrrs_B_2_o_zy*rrrs_Sigma_2_yy + rrrs_J_2_yz*(rrrs_W_2_t_2 -
+            rrrs_W_2_t_3) + rrrs_g_r3_y*rrrs_h_2_z - rrrs_B_2_o_zx*rrrs_J_2_xy -
+            rrrs_Sigma_2_zz*rrrs_alpha_1_o_t - rrrs_g_r1_x*rrrs_h_2_y
         )
-        c_rrrs_o_y = (
-        h_3_rrrs_y*(W_3_rrrs_t + W_3_rrrs_t_3) - G_rrrs_o_t - B_3_rrrs_o_yx*h_3_rrrs_x -
-            B_3_rrrs_o_yz*h_3_rrrs_z
+        rrrs_mu_2_o_y = (
+        rrrs_B_2_o_zy*rrrs_J_2_xy + rrrs_g_r1_x*rrrs_h_2_x - rrrs_B_2_o_xy*rrrs_J_2_yz -
+            rrrs_B_2_o_zx*rrrs_Sigma_2_xx - rrrs_J_2_xz*(rrrs_W_2_t - rrrs_W_2_t_3) -
+            rrrs_Sigma_2_zz*rrrs_alpha_1_o_t_2 - rrrs_g_r3_x*rrrs_h_2_z
         )
-        c_rrrs_o_z = (
-        h_3_rrrs_z*(W_3_rrrs_t + W_3_rrrs_t_2) - B_3_rrrs_o_zx*h_3_rrrs_x -
-            B_3_rrrs_o_zy*h_3_rrrs_y - N_1_rrrs_o_z*inv_v_1_rrrs_z
+        rrrs_mu_2_o_z = (
+        rrrs_B_2_o_yx*rrrs_Sigma_2_xx + rrrs_J_2_xy*(rrrs_W_2_t - rrrs_W_2_t_2) +
+            rrrs_g_r3_x*rrrs_h_2_y - rrrs_B_2_o_xy*rrrs_Sigma_2_yy - rrrs_J_2_xz*rrrs_alpha_1_o_t
+            - rrrs_J_2_yz*rrrs_alpha_1_o_t_2 - rrrs_g_r3_y*rrrs_h_2_x
         )
-        # (rrrs-N59) velocity and gravity terms of the leg force
-        U_rrrs_in_base_x = (
-        -axis_x_rrrs_axes3_x*c_rrrs_o_x - axis_y_rrrs_axes3_in_base_x*c_rrrs_o_y -
-            axis_z_rrrs_axes3_in_base_x*c_rrrs_o_z
+        # (rrrs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        rrrs_N_2_o_x = rrrs_mu_2_o_x + rrrs_c_3*rrrs_mu_3_o_x + rrrs_mu_3_o_y*rrrs_s_3
+        rrrs_N_2_o_y = rrrs_mu_2_o_y + rrrs_c_3*rrrs_mu_3_o_y - rrrs_mu_3_o_x*rrrs_s_3
+        rrrs_N_2_o_z = rrrs_mu_2_o_z + rrrs_mu_3_o_z
+        # (rrrs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        rrrs_mu_1_o_z = rrrs_J_1_xx*rrrs_qdd_1_o - rrrs_g_r1_x*rrrs_h_1_y - rrrs_g_r1_y*rrrs_h_1_z
+        # (rrrs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrrs_N_1_o_z = rrrs_mu_1_o_z - rrrs_N_2_o_x*rrrs_s_2 - rrrs_N_2_o_y*rrrs_c_2
+        # (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrrs_G_o_t = inv_rrrs_platform_joint_offset_x*rrrs_mu_3_o_z
+        # (rrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrrs_c_o_x = (
+        rrrs_h_3_x*(rrrs_W_3_t_2 + rrrs_W_3_t_3) - inv_rrrs_r_2_r0_y*(rrrs_G_o_t*rrrs_r_2_r0_x -
+            rrrs_N_2_o_z) - rrrs_B_3_o_xy*rrrs_h_3_y - rrrs_B_3_o_xz*rrrs_h_3_z
         )
-        U_rrrs_in_base_y = (
-        -axis_x_rrrs_axes3_y*c_rrrs_o_x - axis_y_rrrs_axes3_in_base_y*c_rrrs_o_y -
-            axis_z_rrrs_axes3_in_base_y*c_rrrs_o_z
+        rrrs_c_o_y = (
+        rrrs_h_3_y*(rrrs_W_3_t + rrrs_W_3_t_3) - rrrs_G_o_t - rrrs_B_3_o_yx*rrrs_h_3_x -
+            rrrs_B_3_o_yz*rrrs_h_3_z
         )
-        U_rrrs_in_base_z = (
-        -axis_x_rrrs_axes3_z*c_rrrs_o_x - axis_y_rrrs_axes3_in_base_z*c_rrrs_o_y -
-            axis_z_rrrs_axes3_in_base_z*c_rrrs_o_z
+        rrrs_c_o_z = (
+        rrrs_h_3_z*(rrrs_W_3_t + rrrs_W_3_t_2) - inv_rrrs_v_1_z*rrrs_N_1_o_z -
+            rrrs_B_3_o_zx*rrrs_h_3_x - rrrs_B_3_o_zy*rrrs_h_3_y
         )
-        # (M7) rotational part of Z
-        Z_a_t_4 = U_rrrs_in_base_z*q_rrrs_in_base_y - U_rrrs_in_base_y*q_rrrs_in_base_z
-        Z_a_t_5 = U_rrrs_in_base_x*q_rrrs_in_base_z - U_rrrs_in_base_z*q_rrrs_in_base_x
-        Z_a_t_6 = U_rrrs_in_base_y*q_rrrs_in_base_x - U_rrrs_in_base_x*q_rrrs_in_base_y
-        # (rrrs-V7) reciprocal vector 1
-        w_1_rrrs_t_3 = axis_z_rrrs_axes3_in_base_x*inv_v_1_rrrs_z
-        w_1_rrrs_t_4 = axis_z_rrrs_axes3_in_base_y*inv_v_1_rrrs_z
-        w_1_rrrs_t_5 = axis_z_rrrs_axes3_in_base_z*inv_v_1_rrrs_z
-        # (M11) moment of the column's unit force about the platform origin
-        H_a_1_rrrs_x = q_rrrs_in_base_y*w_1_rrrs_t_5 - q_rrrs_in_base_z*w_1_rrrs_t_4
-        H_a_1_rrrs_y = q_rrrs_in_base_z*w_1_rrrs_t_3 - q_rrrs_in_base_x*w_1_rrrs_t_5
-        H_a_1_rrrs_z = q_rrrs_in_base_x*w_1_rrrs_t_4 - q_rrrs_in_base_y*w_1_rrrs_t_3
-        # (rrrs-V8) reciprocal vector 2
-        w_2_rrrs_t = axis_x_rrrs_axes3_x*inv_r_2_rrrs_r0_y
-        w_2_rrrs_t_2 = axis_x_rrrs_axes3_y*inv_r_2_rrrs_r0_y
-        w_2_rrrs_t_3 = axis_x_rrrs_axes3_z*inv_r_2_rrrs_r0_y
-        # (M12) moment of the column's unit force about the platform origin
-        H_a_2_rrrs_x = q_rrrs_in_base_z*w_2_rrrs_t_2 - q_rrrs_in_base_y*w_2_rrrs_t_3
-        H_a_2_rrrs_y = q_rrrs_in_base_x*w_2_rrrs_t_3 - q_rrrs_in_base_z*w_2_rrrs_t
-        H_a_2_rrrs_z = q_rrrs_in_base_y*w_2_rrrs_t - q_rrrs_in_base_x*w_2_rrrs_t_2
+        # (rrrs-U) velocity and gravity terms of the leg force
+        rrrs_U_in_base_x = (
+        -axis_x_rrrs_axes3_x*rrrs_c_o_x - axis_y_rrrs_axes3_in_base_x*rrrs_c_o_y -
+            axis_z_rrrs_axes3_in_base_x*rrrs_c_o_z
+        )
+        rrrs_U_in_base_y = (
+        -axis_x_rrrs_axes3_y*rrrs_c_o_x - axis_y_rrrs_axes3_in_base_y*rrrs_c_o_y -
+            axis_z_rrrs_axes3_in_base_y*rrrs_c_o_z
+        )
+        rrrs_U_in_base_z = (
+        -axis_x_rrrs_axes3_z*rrrs_c_o_x - axis_y_rrrs_axes3_in_base_z*rrrs_c_o_y -
+            axis_z_rrrs_axes3_in_base_z*rrrs_c_o_z
+        )
+        # (Z_a) rotational part of Z
+        rrrs_Z_a_t = rrrs_U_in_base_z*rrrs_q_in_base_y - rrrs_U_in_base_y*rrrs_q_in_base_z
+        rrrs_Z_a_t_2 = rrrs_U_in_base_x*rrrs_q_in_base_z - rrrs_U_in_base_z*rrrs_q_in_base_x
+        rrrs_Z_a_t_3 = rrrs_U_in_base_y*rrrs_q_in_base_x - rrrs_U_in_base_x*rrrs_q_in_base_y
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_rrrs_v_1_z
+        rrrs_w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_rrrs_v_1_z
+        rrrs_w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_rrrs_v_1_z
+        # (rrrs-H_a_1) moment of the column's unit force about the platform origin
+        rrrs_H_a_1_x = rrrs_q_in_base_y*rrrs_w_1_t_5 - rrrs_q_in_base_z*rrrs_w_1_t_4
+        rrrs_H_a_1_y = rrrs_q_in_base_z*rrrs_w_1_t_3 - rrrs_q_in_base_x*rrrs_w_1_t_5
+        rrrs_H_a_1_z = rrrs_q_in_base_x*rrrs_w_1_t_4 - rrrs_q_in_base_y*rrrs_w_1_t_3
+        # (rrrs-w_2) reciprocal vector 2
+        rrrs_w_2_t = axis_x_rrrs_axes3_x*inv_rrrs_r_2_r0_y
+        rrrs_w_2_t_2 = axis_x_rrrs_axes3_y*inv_rrrs_r_2_r0_y
+        rrrs_w_2_t_3 = axis_x_rrrs_axes3_z*inv_rrrs_r_2_r0_y
+        # (rrrs-H_a_2) moment of the column's unit force about the platform origin
+        rrrs_H_a_2_x = rrrs_q_in_base_z*rrrs_w_2_t_2 - rrrs_q_in_base_y*rrrs_w_2_t_3
+        rrrs_H_a_2_y = rrrs_q_in_base_x*rrrs_w_2_t_3 - rrrs_q_in_base_z*rrrs_w_2_t
+        rrrs_H_a_2_z = rrrs_q_in_base_y*rrrs_w_2_t - rrrs_q_in_base_x*rrrs_w_2_t_2
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
-            (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) &
-            (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE *
-            size_rrrs))
+        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
+            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
+            rrrs_size))
         )
         sums = m.added(sums, leg, (
-        Q_rrrs_t_12, Q_rrrs_t_13, Q_rrrs_t_14, Q_rrrs_t_16, Q_rrrs_t_17, Q_rrrs_t_19,
-            M_ta_t_15, M_ta_t_16, M_ta_t_17, M_ta_t_18, M_ta_t_20, M_ta_t_21, M_ta_t_22,
-            M_ta_t_23, M_ta_t_24, M_aa_t_7, M_aa_t_8, M_aa_t_9, M_aa_t_10, M_aa_t_11,
-            M_aa_t_12, U_rrrs_in_base_x, U_rrrs_in_base_y, U_rrrs_in_base_z, Z_a_t_4, Z_a_t_5,
-            Z_a_t_6,
+        rrrs_Q_t_12, rrrs_Q_t_13, rrrs_Q_t_14, rrrs_Q_t_16, rrrs_Q_t_17, rrrs_Q_t_19,
+            rrrs_M_ta_t_3, rrrs_M_ta_t_4, rrrs_M_ta_t_5, rrrs_M_ta_t_6, rrrs_M_ta_t_8,
+            rrrs_M_ta_t_9, rrrs_M_ta_t_10, rrrs_M_ta_t_11, rrrs_M_ta_t_12, rrrs_M_aa_t,
+            rrrs_M_aa_t_2, rrrs_M_aa_t_3, rrrs_M_aa_t_4, rrrs_M_aa_t_5, rrrs_M_aa_t_6,
+            rrrs_U_in_base_x, rrrs_U_in_base_y, rrrs_U_in_base_z, rrrs_Z_a_t, rrrs_Z_a_t_2,
+            rrrs_Z_a_t_3,
         ))
-        out_H[_H_rrrs[0][leg]] = w_1_rrrs_t_3
-        out_H[_H_rrrs[1][leg]] = w_1_rrrs_t_4
-        out_H[_H_rrrs[2][leg]] = w_1_rrrs_t_5
-        out_H[_H_rrrs[3][leg]] = H_a_1_rrrs_x
-        out_H[_H_rrrs[4][leg]] = H_a_1_rrrs_y
-        out_H[_H_rrrs[5][leg]] = H_a_1_rrrs_z
-        out_H[_H_rrrs[6][leg]] = -w_2_rrrs_t
-        out_H[_H_rrrs[7][leg]] = -w_2_rrrs_t_2
-        out_H[_H_rrrs[8][leg]] = -w_2_rrrs_t_3
-        out_H[_H_rrrs[9][leg]] = H_a_2_rrrs_x
-        out_H[_H_rrrs[10][leg]] = H_a_2_rrrs_y
-        out_H[_H_rrrs[11][leg]] = H_a_2_rrrs_z
+        out_H[_H_rrrs[0][leg]] = rrrs_w_1_t_3
+        out_H[_H_rrrs[1][leg]] = rrrs_w_1_t_4
+        out_H[_H_rrrs[2][leg]] = rrrs_w_1_t_5
+        out_H[_H_rrrs[3][leg]] = rrrs_H_a_1_x
+        out_H[_H_rrrs[4][leg]] = rrrs_H_a_1_y
+        out_H[_H_rrrs[5][leg]] = rrrs_H_a_1_z
+        out_H[_H_rrrs[6][leg]] = -rrrs_w_2_t
+        out_H[_H_rrrs[7][leg]] = -rrrs_w_2_t_2
+        out_H[_H_rrrs[8][leg]] = -rrrs_w_2_t_3
+        out_H[_H_rrrs[9][leg]] = rrrs_H_a_2_x
+        out_H[_H_rrrs[10][leg]] = rrrs_H_a_2_y
+        out_H[_H_rrrs[11][leg]] = rrrs_H_a_2_z
     (
     total_rrrs_xx, total_rrrs_xy, total_rrrs_xz, total_rrrs_yy, total_rrrs_yz, total_rrrs_zz,
         total_rrrs_xx_2, total_rrrs_xy_2, total_rrrs_xz_2, total_rrrs_yx, total_rrrs_yy_2,
@@ -3346,14 +3427,14 @@ def _run_dynamics(m, X, V):
         total_rrrs_xy_3, total_rrrs_xz_3, total_rrrs_yy_3, total_rrrs_yz_3, total_rrrs_zz_3,
         total_rrrs_x, total_rrrs_y, total_rrrs_z, total_rrrs_x_2, total_rrrs_y_2, total_rrrs_z_2,
     ) = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = m_star - total_rrrrs_xx - total_rrrs_xx
     M_tt_xy = -total_rrrrs_xy - total_rrrs_xy
     M_tt_xz = -total_rrrrs_xz - total_rrrs_xz
     M_tt_yy = m_star - total_rrrrs_yy - total_rrrs_yy
     M_tt_yz = -total_rrrrs_yz - total_rrrs_yz
     M_tt_zz = m_star - total_rrrrs_zz - total_rrrs_zz
-    # (M2) coupling block of M
+    # (M_ta) coupling block of M
     M_ta_xx = total_rrrrs_xx_2 + total_rrrs_xx_2
     M_ta_xy = h_star_in_base_z - total_rrrrs_xy_2 - total_rrrs_xy_2
     M_ta_xz = total_rrrrs_xz_2 + total_rrrs_xz_2 - h_star_in_base_y
@@ -3362,19 +3443,19 @@ def _run_dynamics(m, X, V):
     M_ta_yz = h_star_in_base_x + total_rrrrs_yz_2 + total_rrrs_yz_2
     M_ta_zx = h_star_in_base_y + total_rrrrs_zx + total_rrrs_zx
     M_ta_zy = -h_star_in_base_x - total_rrrrs_zy - total_rrrs_zy
-    M_ta_zz = total_rrrs_zz_2 - total_rrrrs_zz_2
-    # (M3) rotational block of M
+    M_ta_zz = -total_rrrrs_zz_2 - total_rrrs_zz_2
+    # (M_aa) rotational block of M
     M_aa_xx = J_star_t_8 - total_rrrrs_xx_3 - total_rrrs_xx_3
     M_aa_xy = J_star_t_9 + total_rrrrs_xy_3 + total_rrrs_xy_3
     M_aa_xz = J_star_t_10 - total_rrrrs_xz_3 - total_rrrs_xz_3
-    M_aa_yy = J_star_t_12 - total_rrrrs_yy_3 - total_rrrs_yy_3
-    M_aa_yz = J_star_t_13 + total_rrrrs_yz_3 + total_rrrs_yz_3
-    M_aa_zz = -J_star_t_15 - total_rrrrs_zz_3 - total_rrrs_zz_3
-    # (M5) translational part of Z
+    M_aa_yy = J_star_t_13 - total_rrrrs_yy_3 - total_rrrs_yy_3
+    M_aa_yz = J_star_t_15 + total_rrrrs_yz_3 + total_rrrs_yz_3
+    M_aa_zz = J_star_t_17 - total_rrrrs_zz_3 - total_rrrs_zz_3
+    # (Z_t) translational part of Z
     Z_t_x = Z_p_x + total_rrrrs_x + total_rrrs_x
     Z_t_y = Z_p_y + total_rrrrs_y + total_rrrs_y
     Z_t_z = Z_p_z + total_rrrrs_z + total_rrrs_z
-    # (M7) rotational part of Z
+    # (Z_a) rotational part of Z
     Z_a_x = Z_q_in_base_x + total_rrrrs_x_2 + total_rrrs_x_2
     Z_a_y = Z_q_in_base_y + total_rrrrs_y_2 + total_rrrs_y_2
     Z_a_z = Z_q_in_base_z + total_rrrrs_z_2 + total_rrrs_z_2
@@ -3423,14 +3504,14 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 759 mul, 580 add, 12 div, 6 sqrt, 2 trig
+# M: 755 mul, 578 add, 12 div, 6 sqrt, 2 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("M")
     (
-    J_star_t_32, J_star_t_34, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
+    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
         h_star_z, m_star,
     ) = shared
     X_0 = X[0]
@@ -3470,172 +3551,171 @@ def _run_M(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_M = m.zeros("M")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_32*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_32*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_32*R_zy
-    J_star_t_4 = J_star_t_34*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_34*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_34*R_zz - J_star_xz*R_zx
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
     J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_12 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_14 = J_star_t_6*R_zz - J_star_t_3*R_zy
-    J_star_t_15 = 2.0*J_star_t_14 - J_star_xx
+    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
+    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
     sums = [0.0] * 21
     for leg, k in legs[0]:
         (
-        J_1_rrrrs_xx, J_2_rrrrs_xx, J_2_rrrrs_xy, J_2_rrrrs_xz, J_2_rrrrs_yy, J_2_rrrrs_yz,
-            J_2_rrrrs_zz, J_3_rrrrs_xx, J_3_rrrrs_xy, J_3_rrrrs_xz, J_3_rrrrs_yy, J_3_rrrrs_yz,
-            J_4_rrrrs_xx, J_4_rrrrs_xy, J_4_rrrrs_xz, J_4_rrrrs_yy, J_4_rrrrs_yz, J_4_rrrrs_zz,
-            Jc_2_rrrrs_t, Jc_2_rrrrs_t_2, Jc_3_rrrrs_zz, Kd_3_rrrrs_t, Kd_3_rrrrs_t_2,
-            branch_1_rrrrs, branch_3_rrrrs, d_G_rrrrs_t, d_Gamma_3_rrrrs_t, d_Gamma_3_rrrrs_y,
-            d_c_rrrrs_yy, d_phi_4_rrrrs_t, h_3_rrrrs_x, h_3_rrrrs_y, h_4_rrrrs_x, h_4_rrrrs_y,
-            h_4_rrrrs_z, inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_2,
-            inv_size_rrrrs_t_3, rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
-            rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
-            rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
-            rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
-            rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
-            rrrrs_platform_point_y, rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,
+        inv_rrrrs_platform_joint_offset_x, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_J_1_xx,
+            rrrrs_J_2_xx, rrrrs_J_2_xy, rrrrs_J_2_xz, rrrrs_J_2_yy, rrrrs_J_2_yz, rrrrs_J_2_zz,
+            rrrrs_J_3_xx, rrrrs_J_3_xy, rrrrs_J_3_xz, rrrrs_J_3_yy, rrrrs_J_3_yz, rrrrs_J_4_xx,
+            rrrrs_J_4_xy, rrrrs_J_4_xz, rrrrs_J_4_yy, rrrrs_J_4_yz, rrrrs_J_4_zz, rrrrs_Jc_2_t,
+            rrrrs_Jc_2_t_2, rrrrs_Jc_3_zz, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_base_frame_xx,
+            rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
+            rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
+            rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1,
+            rrrrs_branch_3, rrrrs_d_G_t, rrrrs_d_Gamma_4_t, rrrrs_d_Gamma_4_y, rrrrs_d_c_yy,
+            rrrrs_d_phi_4_t, rrrrs_h_3_x, rrrrs_h_3_y, rrrrs_h_4_x, rrrrs_h_4_y, rrrrs_h_4_z,
+            rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
+            rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
+            rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,
         ) = k
-        y_2_extra_rrrrs = X[[7][leg]]
-        # (rrrrs-K1) from the base point to the connection point
-        q_rrrrs_in_base_x = (
+        rrrrs_y_2_extra = X[[7][leg]]
+        # (rrrrs-S) from the base point to the connection point
+        rrrrs_q_in_base_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
-        q_rrrrs_in_base_y = (
+        rrrrs_q_in_base_y = (
         R_yx*rrrrs_platform_point_x + R_yy*rrrrs_platform_point_y + R_yz*rrrrs_platform_point_z
         )
-        q_rrrrs_in_base_z = (
+        rrrrs_q_in_base_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        S_rrrrs_x = q_rrrrs_in_base_x + t_x - rrrrs_base_point_x
-        S_rrrrs_y = q_rrrrs_in_base_y + t_y - rrrrs_base_point_y
-        S_rrrrs_z = q_rrrrs_in_base_z + t_z - rrrrs_base_point_z
-        # (rrrrs-K4) component along the reference direction
-        px_1_rrrrs = (
-        S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy +
-            S_rrrrs_z*rrrrs_base_frame_zy
+        rrrrs_S_x = rrrrs_q_in_base_x + t_x - rrrrs_base_point_x
+        rrrrs_S_y = rrrrs_q_in_base_y + t_y - rrrrs_base_point_y
+        rrrrs_S_z = rrrrs_q_in_base_z + t_z - rrrrs_base_point_z
+        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrrs_c_2_t = sin(rrrrs_y_2_extra)
+        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrrs_s_2 = cos(rrrrs_y_2_extra)
+        # (rrrrs-px_1) component along the reference direction
+        rrrrs_px_1 = (
+        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
+            rrrrs_S_z*rrrrs_base_frame_zy
         )
-        # (rrrrs-K5) component across the reference direction
-        py_1_rrrrs = (
-        S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz +
-            S_rrrrs_z*rrrrs_base_frame_zz
+        # (rrrrs-py_1) component across the reference direction
+        rrrrs_py_1 = (
+        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
+            rrrrs_S_z*rrrrs_base_frame_zz
         )
-        # (rrrrs-K7) squared amplitude
-        rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs
-        # (rrrrs-K9) root, with the sign of the branch
-        root_1_rrrrs = branch_1_rrrrs*sqrt(rho2_1_rrrrs)
-        # (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_rrrrs_t = (
-        S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx +
-            S_rrrrs_z*rrrrs_base_frame_zx
+        # (rrrrs-rho2_1) squared amplitude
+        rrrrs_rho2_1 = rrrrs_px_1*rrrrs_px_1 + rrrrs_py_1*rrrrs_py_1
+        # (rrrrs-root_1) root, with the sign of the branch
+        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
+        # (rrrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrrs_xi_1_t = (
+        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
+            rrrrs_S_z*rrrrs_base_frame_zx
         )
-        # (rrrrs-K14) from the origin of joint 2 to the connection point
-        x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x
-        # (rrrrs-K2) cosine of the angle of joint 2 from its reference direction
-        c_2_rrrrs_t = sin(y_2_extra_rrrrs)
-        # (rrrrs-K3) sine of the angle of joint 2 from its reference direction
-        s_2_rrrrs = cos(y_2_extra_rrrrs)
-        # (rrrrs-K14) from the origin of joint 2 to the connection point
-        x_2_rrrrs_t = c_2_rrrrs_t*root_1_rrrrs
-        x_2_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*x_2_rrrrs_z
-        x_2_rrrrs_t_2 = root_1_rrrrs*s_2_rrrrs
-        x_2_rrrrs_r1_y = x_2_rrrrs_t_2 - c_2_rrrrs_t*x_2_rrrrs_z
-        # (rrrrs-K15) from the origin of joint 3 to the connection point
-        x_3_rrrrs_x = x_2_rrrrs_r1_x - rrrrs_joint3_offset_x
-        # (rrrrs-K16) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-        Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x
-        Kd_3_rrrrs = Kd_3_rrrrs_t + 0.5*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2
-        # (rrrrs-K20) factor of the cosine in the equation of joint 3
-        Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x
-        # (rrrrs-K21) factor of the sine in the equation of joint 3
-        Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y
-        # (rrrrs-K22) squared amplitude
-        rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs
-        # (rrrrs-K23) discriminant
-        disc_3_rrrrs = rho2_3_rrrrs - Kd_3_rrrrs*Kd_3_rrrrs
-        # (rrrrs-K24) root, with the sign of the branch
-        root_3_rrrrs = branch_3_rrrrs*sqrt(disc_3_rrrrs)
-        # (rrrrs-K30) from the origin of joint 4 to the connection point
-        x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
-        # (rrrrs-K32) cosine of the angle of joint 4 from its reference direction
-        c_4_rrrrs = inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x
-        # (rrrrs-K33) sine of the angle of joint 4 from its reference direction
-        s_4_rrrrs = (
-        inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        # (rrrrs-x_2) from the origin of joint 2 to the connection point
+        rrrrs_x_2_z = rrrrs_xi_1_t - rrrrs_joint2_offset_x
+        rrrrs_x_2_t = rrrrs_c_2_t*rrrrs_root_1
+        rrrrs_x_2_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_x_2_z
+        rrrrs_x_2_t_2 = rrrrs_root_1*rrrrs_s_2
+        rrrrs_x_2_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_x_2_z
+        # (rrrrs-x_3) from the origin of joint 3 to the connection point
+        rrrrs_x_3_x = rrrrs_x_2_r1_x - rrrrs_joint3_offset_x
+        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
+        rrrrs_Kd_3_t_3 = rrrrs_x_2_r1_y*rrrrs_x_2_r1_y + rrrrs_x_3_x*rrrrs_x_3_x
+        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
+        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
+        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_x
+        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
+        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_r1_y
+        # (rrrrs-rho2_3) squared amplitude
+        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
+        # (rrrrs-disc_3) discriminant
+        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
+        # (rrrrs-root_3) root, with the sign of the branch
+        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
+        # (rrrrs-x_4) from the origin of joint 4 to the connection point
+        rrrrs_x_4_x = inv_rrrrs_size_t_2*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
+        rrrrs_c_4 = inv_rrrrs_size_t_3*rrrrs_platform_joint_offset_x*rrrrs_x_4_x
+        # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
+        rrrrs_s_4 = (
+        inv_rrrrs_size_t_2*inv_rrrrs_size_t_3*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
         )
-        # (rrrrs-V2) from joint 3 to the connection point, along the links
-        r_3_rrrrs_t = rrrrs_platform_joint_offset_x*s_4_rrrrs
-        r_3_rrrrs_x = rrrrs_joint4_offset_x + c_4_rrrrs*rrrrs_platform_joint_offset_x
-        # (rrrrs-K25) cosine of the angle of joint 3 from its reference direction
-        inv_rho2_3_rrrrs = 1.0/rho2_3_rrrrs
-        c_3_rrrrs = inv_rho2_3_rrrrs*(Kc_3_rrrrs*Kd_3_rrrrs - Ks_3_rrrrs*root_3_rrrrs)
-        # (rrrrs-K26) sine of the angle of joint 3 from its reference direction
-        s_3_rrrrs = inv_rho2_3_rrrrs*(Kc_3_rrrrs*root_3_rrrrs + Kd_3_rrrrs*Ks_3_rrrrs)
-        # (rrrrs-V5) velocity of the connection point per rate of joint 1
-        e_1_rrrrs_r2_x = c_3_rrrrs*s_2_rrrrs - c_2_rrrrs_t*s_3_rrrrs
-        e_1_rrrrs_r2_y = -c_2_rrrrs_t*c_3_rrrrs - s_2_rrrrs*s_3_rrrrs
-        e_1_rrrrs_r3_x = c_4_rrrrs*e_1_rrrrs_r2_x - e_1_rrrrs_r2_y*s_4_rrrrs
-        e_1_rrrrs_r3_y = c_4_rrrrs*e_1_rrrrs_r2_y + e_1_rrrrs_r2_x*s_4_rrrrs
-        # (rrrrs-V4) from joint 1 to the connection point, along the links
-        r_1_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*xi_1_rrrrs_t
-        r_1_rrrrs_r1_y = x_2_rrrrs_t_2 - c_2_rrrrs_t*xi_1_rrrrs_t
-        r_1_rrrrs_r2_x = c_3_rrrrs*r_1_rrrrs_r1_x + r_1_rrrrs_r1_y*s_3_rrrrs
-        r_1_rrrrs_r2_y = c_3_rrrrs*r_1_rrrrs_r1_y - r_1_rrrrs_r1_x*s_3_rrrrs
-        # (rrrrs-V5) velocity of the connection point per rate of joint 1
-        v_1_rrrrs_z = (
-        e_1_rrrrs_r3_x*(c_4_rrrrs*r_1_rrrrs_r2_y + r_1_rrrrs_r2_x*s_4_rrrrs) -
-            e_1_rrrrs_r3_y*(c_4_rrrrs*r_1_rrrrs_r2_x - r_1_rrrrs_r2_y*s_4_rrrrs)
+        # (rrrrs-r_3) from joint 3 to the connection point, along the links
+        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4
+        rrrrs_r_3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
+        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
+        rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
+        # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
+        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrrs_e_1_r2_x = rrrrs_c_3*rrrrs_s_2 - rrrrs_c_2_t*rrrrs_s_3
+        rrrrs_e_1_r2_y = -rrrrs_c_2_t*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
+        rrrrs_e_1_r3_x = rrrrs_c_4*rrrrs_e_1_r2_x - rrrrs_e_1_r2_y*rrrrs_s_4
+        rrrrs_e_1_r3_y = rrrrs_c_4*rrrrs_e_1_r2_y + rrrrs_e_1_r2_x*rrrrs_s_4
+        # (rrrrs-r_1) from joint 1 to the connection point, along the links
+        rrrrs_r_1_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_xi_1_t
+        rrrrs_r_1_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_xi_1_t
+        rrrrs_r_1_r2_x = rrrrs_c_3*rrrrs_r_1_r1_x + rrrrs_r_1_r1_y*rrrrs_s_3
+        rrrrs_r_1_r2_y = rrrrs_c_3*rrrrs_r_1_r1_y - rrrrs_r_1_r1_x*rrrrs_s_3
+        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrrs_v_1_z = (
+        rrrrs_e_1_r3_x*(rrrrs_c_4*rrrrs_r_1_r2_y + rrrrs_r_1_r2_x*rrrrs_s_4) -
+            rrrrs_e_1_r3_y*(rrrrs_c_4*rrrrs_r_1_r2_x - rrrrs_r_1_r2_y*rrrrs_s_4)
         )
-        # (rrrrs-V2) from joint 3 to the connection point, along the links
-        r_3_rrrrs_r0_x = c_4_rrrrs*r_3_rrrrs_x + r_3_rrrrs_t*s_4_rrrrs
-        r_3_rrrrs_r0_y = r_3_rrrrs_x*s_4_rrrrs - c_4_rrrrs*r_3_rrrrs_t
-        # (rrrrs-K10) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrrrs = 1.0/rho2_1_rrrrs
-        c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs
-        # (rrrrs-K11) sine of the angle of joint 1 from its reference direction
-        s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs
-        # (rrrrs-V9) reciprocal vector 1
+        # (rrrrs-r_3) from joint 3 to the connection point, along the links
+        rrrrs_r_3_r0_x = rrrrs_c_4*rrrrs_r_3_x + rrrrs_r_3_t*rrrrs_s_4
+        rrrrs_r_3_r0_y = rrrrs_r_3_x*rrrrs_s_4 - rrrrs_c_4*rrrrs_r_3_t
+        # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
+        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_py_1*rrrrs_root_1
+        # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_px_1*rrrrs_root_1
+        # (rrrrs-w_1) reciprocal vector 1
         axis_z_rrrrs_axes4_in_base_x = (
-        rrrrs_base_frame_xz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_xy
+        rrrrs_base_frame_xz*rrrrs_s_1 - rrrrs_base_frame_xy*rrrrs_c_1
         )
         axis_z_rrrrs_axes4_in_base_y = (
-        rrrrs_base_frame_yz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_yy
+        rrrrs_base_frame_yz*rrrrs_s_1 - rrrrs_base_frame_yy*rrrrs_c_1
         )
         axis_z_rrrrs_axes4_in_base_z = (
-        rrrrs_base_frame_zz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_zy
+        rrrrs_base_frame_zz*rrrrs_s_1 - rrrrs_base_frame_zy*rrrrs_c_1
         )
-        axis_y_rrrrs_axes4_r1_x = c_3_rrrrs*s_4_rrrrs - c_4_rrrrs*s_3_rrrrs
-        axis_y_rrrrs_axes4_r1_y = c_3_rrrrs*c_4_rrrrs + s_3_rrrrs*s_4_rrrrs
+        axis_y_rrrrs_axes4_r1_x = rrrrs_c_3*rrrrs_s_4 - rrrrs_c_4*rrrrs_s_3
+        axis_y_rrrrs_axes4_r1_y = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4
         axis_y_rrrrs_axes4_r2_x = (
-        -axis_y_rrrrs_axes4_r1_x*c_2_rrrrs_t - axis_y_rrrrs_axes4_r1_y*s_2_rrrrs
+        -axis_y_rrrrs_axes4_r1_x*rrrrs_c_2_t - axis_y_rrrrs_axes4_r1_y*rrrrs_s_2
         )
         axis_y_rrrrs_axes4_r2_y = (
-        axis_y_rrrrs_axes4_r1_x*s_2_rrrrs - axis_y_rrrrs_axes4_r1_y*c_2_rrrrs_t
+        axis_y_rrrrs_axes4_r1_x*rrrrs_s_2 - axis_y_rrrrs_axes4_r1_y*rrrrs_c_2_t
         )
-        w_1_rrrrs_t = axis_y_rrrrs_axes4_r2_x*s_1_rrrrs
-        w_1_rrrrs_t_2 = axis_y_rrrrs_axes4_r2_x*c_1_rrrrs
+        rrrrs_w_1_t = axis_y_rrrrs_axes4_r2_x*rrrrs_s_1
+        rrrrs_w_1_t_2 = axis_y_rrrrs_axes4_r2_x*rrrrs_c_1
         axis_y_rrrrs_axes4_in_base_x = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_xx - rrrrs_base_frame_xy*w_1_rrrrs_t -
-            rrrrs_base_frame_xz*w_1_rrrrs_t_2
+        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_xx - rrrrs_base_frame_xy*rrrrs_w_1_t -
+            rrrrs_base_frame_xz*rrrrs_w_1_t_2
         )
         axis_y_rrrrs_axes4_in_base_y = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_yx - rrrrs_base_frame_yy*w_1_rrrrs_t -
-            rrrrs_base_frame_yz*w_1_rrrrs_t_2
+        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_yx - rrrrs_base_frame_yy*rrrrs_w_1_t -
+            rrrrs_base_frame_yz*rrrrs_w_1_t_2
         )
         axis_y_rrrrs_axes4_in_base_z = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_zx - rrrrs_base_frame_zy*w_1_rrrrs_t -
-            rrrrs_base_frame_zz*w_1_rrrrs_t_2
+        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_zx - rrrrs_base_frame_zy*rrrrs_w_1_t -
+            rrrrs_base_frame_zz*rrrrs_w_1_t_2
         )
         axis_x_rrrrs_axes4_x = (
         axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_z -
@@ -3649,242 +3729,247 @@ def _run_M(m, X):
         axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_y -
             axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_x
         )
-        # (rrrrs-G11) inertia tensor of link 4 about the connection point
-        J_4_rrrrs_t = J_4_rrrrs_xy*s_4_rrrrs
-        _x = J_4_rrrrs_t + J_4_rrrrs_xx*c_4_rrrrs
-        J_4_rrrrs_t_2 = J_4_rrrrs_xy*c_4_rrrrs
-        _x_2 = J_4_rrrrs_t_2 + J_4_rrrrs_yy*s_4_rrrrs
-        _x_3 = J_4_rrrrs_xz*c_4_rrrrs + J_4_rrrrs_yz*s_4_rrrrs
-        _y = J_4_rrrrs_yz*c_4_rrrrs - J_4_rrrrs_xz*s_4_rrrrs
-        # (rrrrs-N25) inertia tensor of the links from 3 outwards about joint 3
-        Jc_3_rrrrs_xx = J_3_rrrrs_xx + _x*c_4_rrrrs + _x_2*s_4_rrrrs
-        Jc_3_rrrrs_xy = J_3_rrrrs_xy + _x_2*c_4_rrrrs - _x*s_4_rrrrs
-        Jc_3_rrrrs_xz = J_3_rrrrs_xz + _x_3
-        Jc_3_rrrrs_yy = (
-        J_3_rrrrs_yy + c_4_rrrrs*(J_4_rrrrs_yy*c_4_rrrrs - J_4_rrrrs_t) - s_4_rrrrs*(J_4_rrrrs_t_2
-            - J_4_rrrrs_xx*s_4_rrrrs)
+        inv_rrrrs_v_1_z = 1.0/rrrrs_v_1_z
+        # (rrrrs-w_3) reciprocal vector 2
+        inv_rrrrs_r_3_r0_y = 1.0/rrrrs_r_3_r0_y
+        # (rrrrs-w_4) reciprocal vector 3
+        rrrrs_w_4_t = inv_rrrrs_platform_joint_offset_x*inv_rrrrs_r_3_r0_y*rrrrs_r_3_r0_x
+        # (rrrrs-d_alpha_4) coefficient of the acceleration in: angular acceleration of link 4
+        rrrrs_d_alpha_4_t = inv_rrrrs_v_1_z*rrrrs_e_1_r3_x
+        rrrrs_d_alpha_4_t_2 = inv_rrrrs_v_1_z*rrrrs_e_1_r3_y
+        # (rrrrs-D_1_4) inertia of joint 4 along joint 1
+        rrrrs_D_1_4 = rrrrs_J_4_xz*rrrrs_e_1_r3_x + rrrrs_J_4_yz*rrrrs_e_1_r3_y
+        # (rrrrs-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+        rrrrs_d_Gamma_4_t_2 = inv_rrrrs_v_1_z*rrrrs_D_1_4
+        rrrrs_d_Gamma_4_t_3 = rrrrs_d_Gamma_4_t*rrrrs_r_3_r0_x
+        rrrrs_d_Gamma_4_x = -rrrrs_h_4_y - inv_rrrrs_r_3_r0_y*(rrrrs_J_4_zz - rrrrs_d_Gamma_4_t_3)
+        # (rrrrs-J_4) inertia tensor of link 4 about the connection point
+        rrrrs_J_4_t = rrrrs_J_4_xy*rrrrs_s_4
+        rrrrs__x = rrrrs_J_4_t + rrrrs_J_4_xx*rrrrs_c_4
+        rrrrs_J_4_t_2 = rrrrs_J_4_xy*rrrrs_c_4
+        rrrrs__x_2 = rrrrs_J_4_t_2 + rrrrs_J_4_yy*rrrrs_s_4
+        # (rrrrs-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link about the connection point
+        rrrrs_Jc_3_xx = rrrrs_J_3_xx + rrrrs__x*rrrrs_c_4 + rrrrs__x_2*rrrrs_s_4
+        rrrrs_Jc_3_xy = rrrrs_J_3_xy + rrrrs__x_2*rrrrs_c_4 - rrrrs__x*rrrrs_s_4
+        rrrrs_Jc_3_xz = rrrrs_J_3_xz + rrrrs_J_4_xz*rrrrs_c_4 + rrrrs_J_4_yz*rrrrs_s_4
+        rrrrs_Jc_3_yy = (
+        rrrrs_J_3_yy + rrrrs_c_4*(rrrrs_J_4_yy*rrrrs_c_4 - rrrrs_J_4_t) - rrrrs_s_4*(rrrrs_J_4_t_2
+            - rrrrs_J_4_xx*rrrrs_s_4)
         )
-        Jc_3_rrrrs_yz = J_3_rrrrs_yz + _y
-        Jc_3_rrrrs_t = Jc_3_rrrrs_xy*s_3_rrrrs
-        _x_4 = Jc_3_rrrrs_xx*c_3_rrrrs - Jc_3_rrrrs_t
-        Jc_3_rrrrs_t_2 = Jc_3_rrrrs_xy*c_3_rrrrs
-        _x_5 = Jc_3_rrrrs_t_2 - Jc_3_rrrrs_yy*s_3_rrrrs
-        _x_6 = Jc_3_rrrrs_xz*c_3_rrrrs - Jc_3_rrrrs_yz*s_3_rrrrs
-        _y_2 = Jc_3_rrrrs_xz*s_3_rrrrs + Jc_3_rrrrs_yz*c_3_rrrrs
-        # (rrrrs-G7) first moment of link 3 about the origin of link 3
-        h_3_rrrrs_r0_x = c_3_rrrrs*h_3_rrrrs_x - h_3_rrrrs_y*s_3_rrrrs
-        h_3_rrrrs_r0_y = c_3_rrrrs*h_3_rrrrs_y + h_3_rrrrs_x*s_3_rrrrs
-        # (rrrrs-N34) inertia tensor of the links from 2 outwards about joint 2
-        Jc_2_rrrrs_t_3 = rrrrs_joint3_offset_x*(Jc_2_rrrrs_t + h_3_rrrrs_r0_x)
-        Jc_2_rrrrs_t_4 = 2.0*Jc_2_rrrrs_t_3
-        Jc_2_rrrrs_xy = (
-        J_2_rrrrs_xy + _x_4*s_3_rrrrs + _x_5*c_3_rrrrs - h_3_rrrrs_r0_y*rrrrs_joint3_offset_x
+        rrrrs_Jc_3_yz = rrrrs_J_3_yz + rrrrs_J_4_yz*rrrrs_c_4 - rrrrs_J_4_xz*rrrrs_s_4
+        # (rrrrs-L_c_3) moment about joint 3 that accelerates joint 3, per unit
+        rrrrs_L_c_3_r0_x = rrrrs_Jc_3_xz*rrrrs_c_3 - rrrrs_Jc_3_yz*rrrrs_s_3
+        rrrrs_L_c_3_r0_y = rrrrs_Jc_3_xz*rrrrs_s_3 + rrrrs_Jc_3_yz*rrrrs_c_3
+        # (rrrrs-P_c_3) force that accelerates joint 3, per unit
+        rrrrs_P_c_3_r0_x = -rrrrs_c_3*rrrrs_h_3_y - rrrrs_h_3_x*rrrrs_s_3
+        rrrrs_P_c_3_r0_y = rrrrs_c_3*rrrrs_h_3_x - rrrrs_h_3_y*rrrrs_s_3
+        # (rrrrs-L_c_3_2) moment about joint 2 that accelerates joint 3, per unit
+        rrrrs_L_c_3_2_z = rrrrs_Jc_3_zz + rrrrs_P_c_3_r0_y*rrrrs_joint3_offset_x
+        # (rrrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        rrrrs_d_Gamma_3_x = (
+        -rrrrs_h_4_y - inv_rrrrs_r_3_r0_y*(rrrrs_Jc_3_zz - rrrrs_d_Gamma_4_t_3)
         )
-        _y_3 = (
-        s_2_rrrrs*(s_2_rrrrs*(J_2_rrrrs_xx + Jc_2_rrrrs_t_4 + _x_4*c_3_rrrrs - 2.0*Jc_2_rrrrs_t_3
-            - _x_5*s_3_rrrrs) - Jc_2_rrrrs_xy*c_2_rrrrs_t) - c_2_rrrrs_t*(Jc_2_rrrrs_xy*s_2_rrrrs
-            - c_2_rrrrs_t*(J_2_rrrrs_yy + Jc_2_rrrrs_t_4 + c_3_rrrrs*(Jc_3_rrrrs_t +
-            Jc_3_rrrrs_yy*c_3_rrrrs) + s_3_rrrrs*(Jc_3_rrrrs_t_2 + Jc_3_rrrrs_xx*s_3_rrrrs)))
+        # (rrrrs-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link about the connection point
+        rrrrs_Jc_3_t = rrrrs_Jc_3_xy*rrrrs_s_3
+        rrrrs__x_3 = rrrrs_Jc_3_xx*rrrrs_c_3 - rrrrs_Jc_3_t
+        rrrrs_Jc_3_t_2 = rrrrs_Jc_3_xy*rrrrs_c_3
+        rrrrs__x_4 = rrrrs_Jc_3_t_2 - rrrrs_Jc_3_yy*rrrrs_s_3
+        # (rrrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+        rrrrs_Jc_2_t_3 = rrrrs_joint3_offset_x*(rrrrs_Jc_2_t + rrrrs_P_c_3_r0_y)
+        rrrrs_Jc_2_t_4 = 2.0*rrrrs_Jc_2_t_3
+        rrrrs_Jc_2_xy = (
+        rrrrs_J_2_xy + rrrrs_P_c_3_r0_x*rrrrs_joint3_offset_x + rrrrs__x_3*rrrrs_s_3 +
+            rrrrs__x_4*rrrrs_c_3
         )
-        # (rrrrs-N29) moment about joint 2 that accelerates joint 3, per unit
-        L_c3_2_rrrrs_z = Jc_3_rrrrs_zz + h_3_rrrrs_r0_x*rrrrs_joint3_offset_x
-        # (rrrrs-V9) reciprocal vector 1
-        inv_v_1_rrrrs_z = 1.0/v_1_rrrrs_z
-        # (rrrrs-V10) reciprocal vector 2
-        inv_r_3_rrrrs_r0_y = 1.0/r_3_rrrrs_r0_y
-        # (rrrrs-V11) reciprocal vector 3
-        w_4_rrrrs_t = inv_r_3_rrrrs_r0_y*inv_rrrrs_platform_joint_offset_x*r_3_rrrrs_r0_x
-        # (rrrrs-N80) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_rrrrs_z = (
-        e_1_rrrrs_r3_x*h_4_rrrrs_y + inv_v_1_rrrrs_z*(J_1_rrrrs_xx + _y_3) -
-            e_1_rrrrs_r3_y*h_4_rrrrs_x
+        rrrrs__y = (
+        rrrrs_s_2*(rrrrs_s_2*(rrrrs_J_2_xx + rrrrs_Jc_2_t_4 + rrrrs__x_3*rrrrs_c_3 -
+            2.0*rrrrs_Jc_2_t_3 - rrrrs__x_4*rrrrs_s_3) - rrrrs_Jc_2_xy*rrrrs_c_2_t) -
+            rrrrs_c_2_t*(rrrrs_Jc_2_xy*rrrrs_s_2 - rrrrs_c_2_t*(rrrrs_J_2_yy + rrrrs_Jc_2_t_4 +
+            rrrrs_c_3*(rrrrs_Jc_3_t + rrrrs_Jc_3_yy*rrrrs_c_3) + rrrrs_s_3*(rrrrs_Jc_3_t_2 +
+            rrrrs_Jc_3_xx*rrrrs_s_3)))
         )
-        # (rrrrs-N58) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        d_Gamma_3_rrrrs_t_2 = d_Gamma_3_rrrrs_t*r_3_rrrrs_r0_x
-        d_Gamma_3_rrrrs_x = (
-        -h_4_rrrrs_y - inv_r_3_rrrrs_r0_y*(Jc_3_rrrrs_zz - d_Gamma_3_rrrrs_t_2)
+        # (rrrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrrrs_d_Gamma_1_z = (
+        inv_rrrrs_v_1_z*(rrrrs_J_1_xx + rrrrs__y) + rrrrs_e_1_r3_x*rrrrs_h_4_y -
+            rrrrs_e_1_r3_y*rrrrs_h_4_x
         )
-        # (rrrrs-N48) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-        d_Gamma_4_rrrrs_t = (
-        inv_v_1_rrrrs_z*(s_2_rrrrs*(_x_3*c_3_rrrrs - _y*s_3_rrrrs) - c_2_rrrrs_t*(_x_3*s_3_rrrrs +
-            _y*c_3_rrrrs))
+        # (rrrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrrrs_d_G_t_2 = inv_rrrrs_platform_joint_offset_x*rrrrs_d_Gamma_4_t_2
+        rrrrs_d_G_xx = rrrrs_d_Gamma_4_x*rrrrs_w_4_t - inv_rrrrs_r_3_r0_y*rrrrs_d_Gamma_3_x
+        rrrrs_d_G_xy = rrrrs_d_Gamma_4_y*rrrrs_w_4_t - inv_rrrrs_r_3_r0_y*rrrrs_d_Gamma_4_y
+        rrrrs_d_G_xz = (
+        rrrrs_d_Gamma_4_t_2*rrrrs_w_4_t -
+            inv_rrrrs_r_3_r0_y*inv_rrrrs_v_1_z*(rrrrs_L_c_3_r0_x*rrrrs_s_2 -
+            rrrrs_L_c_3_r0_y*rrrrs_c_2_t)
         )
-        d_Gamma_4_rrrrs_x = -h_4_rrrrs_y - inv_r_3_rrrrs_r0_y*(J_4_rrrrs_zz - d_Gamma_3_rrrrs_t_2)
-        # (rrrrs-N84) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_rrrrs_t_2 = d_Gamma_4_rrrrs_t*inv_rrrrs_platform_joint_offset_x
-        d_G_rrrrs_xx = d_Gamma_4_rrrrs_x*w_4_rrrrs_t - d_Gamma_3_rrrrs_x*inv_r_3_rrrrs_r0_y
-        d_G_rrrrs_xy = d_Gamma_3_rrrrs_y*w_4_rrrrs_t - d_Gamma_3_rrrrs_y*inv_r_3_rrrrs_r0_y
-        d_G_rrrrs_xz = (
-        d_Gamma_4_rrrrs_t*w_4_rrrrs_t - inv_r_3_rrrrs_r0_y*inv_v_1_rrrrs_z*(_x_6*s_2_rrrrs -
-            _y_2*c_2_rrrrs_t)
+        # (rrrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrrrs_d_c_xx = rrrrs_h_4_y*(rrrrs_w_4_t - inv_rrrrs_r_3_r0_y) - rrrrs_d_G_xx
+        rrrrs_d_c_xy = rrrrs_d_phi_4_t - rrrrs_d_G_xy
+        rrrrs_d_c_xz = -rrrrs_d_G_xz - rrrrs_d_alpha_4_t_2*rrrrs_h_4_z
+        rrrrs_d_c_yz = rrrrs_d_alpha_4_t*rrrrs_h_4_z - rrrrs_d_G_t_2
+        # (rrrrs-Q) inertia of the leg at the connection point, without the mass gathered there
+        rrrrs_Q_t = rrrrs_d_c_xx - rrrrs_d_c_yy
+        rrrrs_Q_t_2 = 0.5*rrrrs_Q_t
+        rrrrs_Q_t_3 = (
+        rrrrs_d_c_xx + inv_rrrrs_v_1_z*rrrrs_d_Gamma_1_z + rrrrs_d_alpha_4_t*rrrrs_h_4_y -
+            rrrrs_d_alpha_4_t_2*rrrrs_h_4_x
         )
-        # (rrrrs-A35) coefficient of the acceleration in: angular acceleration of link 4
-        d_alpha_4_rrrrs_t = e_1_rrrrs_r3_x*inv_v_1_rrrrs_z
-        d_alpha_4_rrrrs_t_2 = e_1_rrrrs_r3_y*inv_v_1_rrrrs_z
-        # (rrrrs-N88) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_rrrrs_xx = h_4_rrrrs_y*(w_4_rrrrs_t - inv_r_3_rrrrs_r0_y) - d_G_rrrrs_xx
-        d_c_rrrrs_xy = d_phi_4_rrrrs_t - d_G_rrrrs_xy
-        d_c_rrrrs_xz = -d_G_rrrrs_xz - d_alpha_4_rrrrs_t_2*h_4_rrrrs_z
-        d_c_rrrrs_yz = d_alpha_4_rrrrs_t*h_4_rrrrs_z - d_G_rrrrs_t_2
-        # (rrrrs-N90) inertia of the leg at the connection point, without the mass gathered there
-        Q_rrrrs_t = d_c_rrrrs_xx - d_c_rrrrs_yy
-        Q_rrrrs_t_2 = 0.5*Q_rrrrs_t
-        Q_rrrrs_t_3 = (
-        d_c_rrrrs_xx + d_Gamma_1_rrrrs_z*inv_v_1_rrrrs_z + d_alpha_4_rrrrs_t*h_4_rrrrs_y -
-            d_alpha_4_rrrrs_t_2*h_4_rrrrs_x
+        rrrrs_Q_t_4 = 0.5*rrrrs_Q_t_3
+        rrrrs_Q_t_5 = (
+        axis_x_rrrrs_axes4_x*rrrrs_d_c_xy + axis_z_rrrrs_axes4_in_base_x*rrrrs_d_c_yz -
+            axis_y_rrrrs_axes4_in_base_x*rrrrs_Q_t_2
         )
-        Q_rrrrs_t_4 = 0.5*Q_rrrrs_t_3
-        Q_rrrrs_t_5 = (
-        axis_x_rrrrs_axes4_x*d_c_rrrrs_xy + axis_z_rrrrs_axes4_in_base_x*d_c_rrrrs_yz -
-            Q_rrrrs_t_2*axis_y_rrrrs_axes4_in_base_x
+        rrrrs_Q_t_6 = (
+        axis_x_rrrrs_axes4_y*rrrrs_d_c_xy + axis_z_rrrrs_axes4_in_base_y*rrrrs_d_c_yz -
+            axis_y_rrrrs_axes4_in_base_y*rrrrs_Q_t_2
         )
-        Q_rrrrs_t_6 = (
-        axis_x_rrrrs_axes4_y*d_c_rrrrs_xy + axis_z_rrrrs_axes4_in_base_y*d_c_rrrrs_yz -
-            Q_rrrrs_t_2*axis_y_rrrrs_axes4_in_base_y
+        rrrrs_Q_t_7 = (
+        axis_x_rrrrs_axes4_z*rrrrs_d_c_xy + axis_z_rrrrs_axes4_in_base_z*rrrrs_d_c_yz -
+            axis_y_rrrrs_axes4_in_base_z*rrrrs_Q_t_2
         )
-        Q_rrrrs_t_7 = (
-        axis_x_rrrrs_axes4_z*d_c_rrrrs_xy + axis_z_rrrrs_axes4_in_base_z*d_c_rrrrs_yz -
-            Q_rrrrs_t_2*axis_y_rrrrs_axes4_in_base_z
+        rrrrs_Q_t_8 = axis_z_rrrrs_axes4_in_base_x*rrrrs_Q_t_4 - axis_x_rrrrs_axes4_x*rrrrs_d_c_xz
+        rrrrs_Q_t_9 = axis_z_rrrrs_axes4_in_base_y*rrrrs_Q_t_4 - axis_x_rrrrs_axes4_y*rrrrs_d_c_xz
+        rrrrs_Q_t_10 = (
+        axis_z_rrrrs_axes4_in_base_z*rrrrs_Q_t_4 - axis_x_rrrrs_axes4_z*rrrrs_d_c_xz
         )
-        Q_rrrrs_t_8 = Q_rrrrs_t_4*axis_z_rrrrs_axes4_in_base_x - axis_x_rrrrs_axes4_x*d_c_rrrrs_xz
-        Q_rrrrs_t_9 = Q_rrrrs_t_4*axis_z_rrrrs_axes4_in_base_y - axis_x_rrrrs_axes4_y*d_c_rrrrs_xz
-        Q_rrrrs_t_10 = (
-        Q_rrrrs_t_4*axis_z_rrrrs_axes4_in_base_z - axis_x_rrrrs_axes4_z*d_c_rrrrs_xz
+        rrrrs_Q_t_11 = (
+        axis_y_rrrrs_axes4_in_base_x*rrrrs_Q_t_5 - axis_z_rrrrs_axes4_in_base_x*rrrrs_Q_t_8
         )
-        Q_rrrrs_t_11 = (
-        Q_rrrrs_t_5*axis_y_rrrrs_axes4_in_base_x - Q_rrrrs_t_8*axis_z_rrrrs_axes4_in_base_x
+        rrrrs_Q_t_12 = 2.0*rrrrs_Q_t_11 + rrrrs_d_c_xx
+        rrrrs_Q_t_13 = (
+        axis_y_rrrrs_axes4_in_base_x*rrrrs_Q_t_6 + axis_y_rrrrs_axes4_in_base_y*rrrrs_Q_t_5 -
+            axis_z_rrrrs_axes4_in_base_x*rrrrs_Q_t_9 - axis_z_rrrrs_axes4_in_base_y*rrrrs_Q_t_8
         )
-        Q_rrrrs_t_12 = 2.0*Q_rrrrs_t_11 + d_c_rrrrs_xx
-        Q_rrrrs_t_13 = (
-        Q_rrrrs_t_5*axis_y_rrrrs_axes4_in_base_y + Q_rrrrs_t_6*axis_y_rrrrs_axes4_in_base_x -
-            Q_rrrrs_t_8*axis_z_rrrrs_axes4_in_base_y - Q_rrrrs_t_9*axis_z_rrrrs_axes4_in_base_x
+        rrrrs_Q_t_14 = (
+        axis_y_rrrrs_axes4_in_base_x*rrrrs_Q_t_7 + axis_y_rrrrs_axes4_in_base_z*rrrrs_Q_t_5 -
+            axis_z_rrrrs_axes4_in_base_x*rrrrs_Q_t_10 - axis_z_rrrrs_axes4_in_base_z*rrrrs_Q_t_8
         )
-        Q_rrrrs_t_14 = (
-        Q_rrrrs_t_5*axis_y_rrrrs_axes4_in_base_z + Q_rrrrs_t_7*axis_y_rrrrs_axes4_in_base_x -
-            Q_rrrrs_t_10*axis_z_rrrrs_axes4_in_base_x - Q_rrrrs_t_8*axis_z_rrrrs_axes4_in_base_z
+        rrrrs_Q_t_15 = (
+        axis_y_rrrrs_axes4_in_base_y*rrrrs_Q_t_6 - axis_z_rrrrs_axes4_in_base_y*rrrrs_Q_t_9
         )
-        Q_rrrrs_t_15 = (
-        Q_rrrrs_t_6*axis_y_rrrrs_axes4_in_base_y - Q_rrrrs_t_9*axis_z_rrrrs_axes4_in_base_y
+        rrrrs_Q_t_16 = 2.0*rrrrs_Q_t_15 + rrrrs_d_c_xx
+        rrrrs_Q_t_17 = (
+        axis_y_rrrrs_axes4_in_base_y*rrrrs_Q_t_7 + axis_y_rrrrs_axes4_in_base_z*rrrrs_Q_t_6 -
+            axis_z_rrrrs_axes4_in_base_y*rrrrs_Q_t_10 - axis_z_rrrrs_axes4_in_base_z*rrrrs_Q_t_9
         )
-        Q_rrrrs_t_16 = 2.0*Q_rrrrs_t_15 + d_c_rrrrs_xx
-        Q_rrrrs_t_17 = (
-        Q_rrrrs_t_6*axis_y_rrrrs_axes4_in_base_z + Q_rrrrs_t_7*axis_y_rrrrs_axes4_in_base_y -
-            Q_rrrrs_t_10*axis_z_rrrrs_axes4_in_base_y - Q_rrrrs_t_9*axis_z_rrrrs_axes4_in_base_z
+        rrrrs_Q_t_18 = (
+        axis_y_rrrrs_axes4_in_base_z*rrrrs_Q_t_7 - axis_z_rrrrs_axes4_in_base_z*rrrrs_Q_t_10
         )
-        Q_rrrrs_t_18 = (
-        Q_rrrrs_t_7*axis_y_rrrrs_axes4_in_base_z - Q_rrrrs_t_10*axis_z_rrrrs_axes4_in_base_z
+        rrrrs_Q_t_19 = 2.0*rrrrs_Q_t_18 + rrrrs_d_c_xx
+        # (M_ta) coupling block of M
+        rrrrs_M_ta_t = rrrrs_Q_t_13*rrrrs_q_in_base_z
+        rrrrs_M_ta_t_2 = rrrrs_Q_t_14*rrrrs_q_in_base_y
+        rrrrs_M_ta_t_3 = rrrrs_M_ta_t - rrrrs_M_ta_t_2
+        rrrrs_M_ta_t_4 = rrrrs_Q_t_12*rrrrs_q_in_base_z - rrrrs_Q_t_14*rrrrs_q_in_base_x
+        rrrrs_M_ta_t_5 = rrrrs_Q_t_12*rrrrs_q_in_base_y - rrrrs_Q_t_13*rrrrs_q_in_base_x
+        rrrrs_M_ta_t_6 = rrrrs_Q_t_16*rrrrs_q_in_base_z - rrrrs_Q_t_17*rrrrs_q_in_base_y
+        rrrrs_M_ta_t_7 = rrrrs_Q_t_17*rrrrs_q_in_base_x
+        rrrrs_M_ta_t_8 = rrrrs_M_ta_t - rrrrs_M_ta_t_7
+        rrrrs_M_ta_t_9 = rrrrs_Q_t_13*rrrrs_q_in_base_y - rrrrs_Q_t_16*rrrrs_q_in_base_x
+        rrrrs_M_ta_t_10 = rrrrs_Q_t_17*rrrrs_q_in_base_z - rrrrs_Q_t_19*rrrrs_q_in_base_y
+        rrrrs_M_ta_t_11 = rrrrs_Q_t_14*rrrrs_q_in_base_z - rrrrs_Q_t_19*rrrrs_q_in_base_x
+        rrrrs_M_ta_t_12 = rrrrs_M_ta_t_7 - rrrrs_M_ta_t_2
+        # (M_aa) rotational block of M
+        rrrrs_M_aa_t = rrrrs_M_ta_t_6*rrrrs_q_in_base_z - rrrrs_M_ta_t_10*rrrrs_q_in_base_y
+        rrrrs_M_aa_t_2 = rrrrs_M_ta_t_8*rrrrs_q_in_base_z - rrrrs_M_ta_t_11*rrrrs_q_in_base_y
+        rrrrs_M_aa_t_3 = rrrrs_M_ta_t_12*rrrrs_q_in_base_y + rrrrs_M_ta_t_9*rrrrs_q_in_base_z
+        rrrrs_M_aa_t_4 = rrrrs_M_ta_t_4*rrrrs_q_in_base_z - rrrrs_M_ta_t_11*rrrrs_q_in_base_x
+        rrrrs_M_aa_t_5 = rrrrs_M_ta_t_12*rrrrs_q_in_base_x + rrrrs_M_ta_t_5*rrrrs_q_in_base_z
+        rrrrs_M_aa_t_6 = rrrrs_M_ta_t_5*rrrrs_q_in_base_y - rrrrs_M_ta_t_9*rrrrs_q_in_base_x
+        # (rrrrs-r_2) from joint 2 to the connection point, along the links
+        rrrrs_r_2_r0_x = rrrrs_c_3*rrrrs_x_2_r1_x + rrrrs_s_3*rrrrs_x_2_r1_y
+        rrrrs_r_2_r0_y = rrrrs_c_3*rrrrs_x_2_r1_y - rrrrs_s_3*rrrrs_x_2_r1_x
+        rrrrs_r_2_r1_x = rrrrs_c_4*rrrrs_r_2_r0_x - rrrrs_r_2_r0_y*rrrrs_s_4
+        rrrrs_r_2_r1_y = rrrrs_c_4*rrrrs_r_2_r0_y + rrrrs_r_2_r0_x*rrrrs_s_4
+        # (rrrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rrrrs_d_Gamma_2_x = (
+        -rrrrs_h_4_y - inv_rrrrs_r_3_r0_y*(rrrrs_L_c_3_2_z - rrrrs_d_Gamma_4_t_3)
         )
-        Q_rrrrs_t_19 = 2.0*Q_rrrrs_t_18 + d_c_rrrrs_xx
-        # (M2) coupling block of M
-        M_ta_t = Q_rrrrs_t_13*q_rrrrs_in_base_z
-        M_ta_t_2 = Q_rrrrs_t_14*q_rrrrs_in_base_y
-        M_ta_t_3 = M_ta_t - M_ta_t_2
-        M_ta_t_4 = Q_rrrrs_t_12*q_rrrrs_in_base_z - Q_rrrrs_t_14*q_rrrrs_in_base_x
-        M_ta_t_5 = Q_rrrrs_t_12*q_rrrrs_in_base_y - Q_rrrrs_t_13*q_rrrrs_in_base_x
-        M_ta_t_6 = Q_rrrrs_t_16*q_rrrrs_in_base_z - Q_rrrrs_t_17*q_rrrrs_in_base_y
-        M_ta_t_7 = Q_rrrrs_t_17*q_rrrrs_in_base_x
-        M_ta_t_8 = M_ta_t - M_ta_t_7
-        M_ta_t_9 = Q_rrrrs_t_13*q_rrrrs_in_base_y - Q_rrrrs_t_16*q_rrrrs_in_base_x
-        M_ta_t_10 = Q_rrrrs_t_17*q_rrrrs_in_base_z - Q_rrrrs_t_19*q_rrrrs_in_base_y
-        M_ta_t_11 = Q_rrrrs_t_14*q_rrrrs_in_base_z - Q_rrrrs_t_19*q_rrrrs_in_base_x
-        M_ta_t_12 = M_ta_t_7 - M_ta_t_2
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t_6*q_rrrrs_in_base_z - M_ta_t_10*q_rrrrs_in_base_y
-        M_aa_t_2 = M_ta_t_8*q_rrrrs_in_base_z - M_ta_t_11*q_rrrrs_in_base_y
-        M_aa_t_3 = M_ta_t_12*q_rrrrs_in_base_y + M_ta_t_9*q_rrrrs_in_base_z
-        M_aa_t_4 = M_ta_t_4*q_rrrrs_in_base_z - M_ta_t_11*q_rrrrs_in_base_x
-        M_aa_t_5 = M_ta_t_12*q_rrrrs_in_base_x + M_ta_t_5*q_rrrrs_in_base_z
-        M_aa_t_6 = M_ta_t_5*q_rrrrs_in_base_y - M_ta_t_9*q_rrrrs_in_base_x
-        # (rrrrs-V3) from joint 2 to the connection point, along the links
-        r_2_rrrrs_r0_x = c_3_rrrrs*x_2_rrrrs_r1_x + s_3_rrrrs*x_2_rrrrs_r1_y
-        r_2_rrrrs_r0_y = c_3_rrrrs*x_2_rrrrs_r1_y - s_3_rrrrs*x_2_rrrrs_r1_x
-        r_2_rrrrs_r1_x = c_4_rrrrs*r_2_rrrrs_r0_x - r_2_rrrrs_r0_y*s_4_rrrrs
-        r_2_rrrrs_r1_y = c_4_rrrrs*r_2_rrrrs_r0_y + r_2_rrrrs_r0_x*s_4_rrrrs
-        # (rrrrs-N70) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_rrrrs_x = (
-        -h_4_rrrrs_y - inv_r_3_rrrrs_r0_y*(L_c3_2_rrrrs_z - d_Gamma_3_rrrrs_t_2)
+        # (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
+        rrrrs_d_P_2_x = (
+        rrrrs_d_Gamma_2_x + rrrrs_d_G_xx*rrrrs_r_2_r1_y -
+            inv_rrrrs_platform_joint_offset_x*rrrrs_d_Gamma_4_x*rrrrs_r_2_r1_x
         )
-        # (rrrrs-N94) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
-        d_P_2_rrrrs_x = (
-        d_Gamma_2_rrrrs_x + d_G_rrrrs_xx*r_2_rrrrs_r1_y -
-            d_Gamma_4_rrrrs_x*inv_rrrrs_platform_joint_offset_x*r_2_rrrrs_r1_x
+        rrrrs_d_P_2_y = (
+        rrrrs_d_Gamma_4_y + rrrrs_d_G_xy*rrrrs_r_2_r1_y - rrrrs_d_G_t*rrrrs_r_2_r1_x
         )
-        d_P_2_rrrrs_y = (
-        d_Gamma_3_rrrrs_y + d_G_rrrrs_xy*r_2_rrrrs_r1_y - d_G_rrrrs_t*r_2_rrrrs_r1_x
+        rrrrs_d_P_2_z = (
+        inv_rrrrs_v_1_z*(rrrrs_s_2*(rrrrs_J_2_xz + rrrrs_L_c_3_r0_x - rrrrs_Jc_2_t_2) -
+            rrrrs_c_2_t*(rrrrs_J_2_yz + rrrrs_L_c_3_r0_y)) + rrrrs_d_G_xz*rrrrs_r_2_r1_y -
+            rrrrs_d_G_t_2*rrrrs_r_2_r1_x
         )
-        d_P_2_rrrrs_z = (
-        d_G_rrrrs_xz*r_2_rrrrs_r1_y + inv_v_1_rrrrs_z*(s_2_rrrrs*(J_2_rrrrs_xz + _x_6 -
-            Jc_2_rrrrs_t_2) - c_2_rrrrs_t*(J_2_rrrrs_yz + _y_2)) - d_G_rrrrs_t_2*r_2_rrrrs_r1_x
+        rrrrs_d_P_2_in_base_x = (
+        axis_x_rrrrs_axes4_x*rrrrs_d_P_2_x + axis_y_rrrrs_axes4_in_base_x*rrrrs_d_P_2_y +
+            axis_z_rrrrs_axes4_in_base_x*rrrrs_d_P_2_z
         )
-        d_P_2_rrrrs_in_base_x = (
-        axis_x_rrrrs_axes4_x*d_P_2_rrrrs_x + axis_y_rrrrs_axes4_in_base_x*d_P_2_rrrrs_y +
-            axis_z_rrrrs_axes4_in_base_x*d_P_2_rrrrs_z
+        rrrrs_d_P_2_in_base_y = (
+        axis_x_rrrrs_axes4_y*rrrrs_d_P_2_x + axis_y_rrrrs_axes4_in_base_y*rrrrs_d_P_2_y +
+            axis_z_rrrrs_axes4_in_base_y*rrrrs_d_P_2_z
         )
-        d_P_2_rrrrs_in_base_y = (
-        axis_x_rrrrs_axes4_y*d_P_2_rrrrs_x + axis_y_rrrrs_axes4_in_base_y*d_P_2_rrrrs_y +
-            axis_z_rrrrs_axes4_in_base_y*d_P_2_rrrrs_z
+        rrrrs_d_P_2_in_base_z = (
+        axis_x_rrrrs_axes4_z*rrrrs_d_P_2_x + axis_y_rrrrs_axes4_in_base_z*rrrrs_d_P_2_y +
+            axis_z_rrrrs_axes4_in_base_z*rrrrs_d_P_2_z
         )
-        d_P_2_rrrrs_in_base_z = (
-        axis_x_rrrrs_axes4_z*d_P_2_rrrrs_x + axis_y_rrrrs_axes4_in_base_z*d_P_2_rrrrs_y +
-            axis_z_rrrrs_axes4_in_base_z*d_P_2_rrrrs_z
+        # (rrrrs-M_ya_2) coupling of extra joint 2 with the rotation of the platform
+        rrrrs_M_ya_2_x = (
+        rrrrs_d_P_2_in_base_z*rrrrs_q_in_base_y - rrrrs_d_P_2_in_base_y*rrrrs_q_in_base_z
         )
-        # (M8) coupling of extra joint 2 with the rotation of the platform
-        M_ya_2_rrrrs_x = (
-        d_P_2_rrrrs_in_base_z*q_rrrrs_in_base_y - d_P_2_rrrrs_in_base_y*q_rrrrs_in_base_z
+        rrrrs_M_ya_2_y = (
+        rrrrs_d_P_2_in_base_x*rrrrs_q_in_base_z - rrrrs_d_P_2_in_base_z*rrrrs_q_in_base_x
         )
-        M_ya_2_rrrrs_y = (
-        d_P_2_rrrrs_in_base_x*q_rrrrs_in_base_z - d_P_2_rrrrs_in_base_z*q_rrrrs_in_base_x
+        rrrrs_M_ya_2_z = (
+        rrrrs_d_P_2_in_base_y*rrrrs_q_in_base_x - rrrrs_d_P_2_in_base_x*rrrrs_q_in_base_y
         )
-        M_ya_2_rrrrs_z = (
-        d_P_2_rrrrs_in_base_y*q_rrrrs_in_base_x - d_P_2_rrrrs_in_base_x*q_rrrrs_in_base_y
+        # (rrrrs-dy_2_qdd_1) coefficient of the acceleration in: acceleration of joint 1
+        rrrrs_dy_2_qdd_3 = inv_rrrrs_r_3_r0_y*rrrrs_r_2_r1_y
+        # (rrrrs-dy_2_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rrrrs_dy_2_Gamma_2_t = (
+        inv_rrrrs_platform_joint_offset_x*rrrrs_J_4_zz*(rrrrs_dy_2_qdd_3*rrrrs_r_3_r0_x -
+            rrrrs_r_2_r1_x)
         )
-        # (rrrrs-A14) coefficient of the acceleration in: acceleration of joint 1
-        d1_qdd_3_rrrrs = inv_r_3_rrrrs_r0_y*r_2_rrrrs_r1_y
-        # (rrrrs-N59) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        d1_Gamma_3_rrrrs_t = (
-        J_4_rrrrs_zz*inv_rrrrs_platform_joint_offset_x*(d1_qdd_3_rrrrs*r_3_rrrrs_r0_x -
-            r_2_rrrrs_r1_x)
+        rrrrs_dy_2_Gamma_2 = (
+        rrrrs_J_2_zz + rrrrs_Jc_2_t_4 + rrrrs_Jc_3_zz + rrrrs_dy_2_Gamma_2_t -
+            rrrrs_L_c_3_2_z*rrrrs_dy_2_qdd_3
         )
-        d1_Gamma_3_rrrrs = L_c3_2_rrrrs_z + d1_Gamma_3_rrrrs_t - Jc_3_rrrrs_zz*d1_qdd_3_rrrrs
-        # (rrrrs-N49) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-        d1_Gamma_4_rrrrs = J_4_rrrrs_zz + d1_Gamma_3_rrrrs_t - J_4_rrrrs_zz*d1_qdd_3_rrrrs
-        # (rrrrs-N85) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d1_G_rrrrs_t = d1_Gamma_4_rrrrs*inv_rrrrs_platform_joint_offset_x
-        # (rrrrs-N71) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d1_Gamma_2_rrrrs = (
-        J_2_rrrrs_zz + Jc_2_rrrrs_t_4 + Jc_3_rrrrs_zz + d1_Gamma_3_rrrrs_t -
-            L_c3_2_rrrrs_z*d1_qdd_3_rrrrs
+        # (rrrrs-dy_2_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+        rrrrs_dy_2_Gamma_4 = rrrrs_J_4_zz + rrrrs_dy_2_Gamma_2_t - rrrrs_J_4_zz*rrrrs_dy_2_qdd_3
+        # (rrrrs-dy_2_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        rrrrs_dy_2_Gamma_3 = (
+        rrrrs_L_c_3_2_z + rrrrs_dy_2_Gamma_2_t - rrrrs_Jc_3_zz*rrrrs_dy_2_qdd_3
         )
-        # (rrrrs-N95) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
-        d1_P_2_rrrrs_t = (
-        inv_r_3_rrrrs_r0_y*r_2_rrrrs_r1_y*(d1_G_rrrrs_t*r_3_rrrrs_r0_x - d1_Gamma_3_rrrrs) -
-            d1_G_rrrrs_t*r_2_rrrrs_r1_x
+        # (rrrrs-dy_2_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrrrs_dy_2_G_t = inv_rrrrs_platform_joint_offset_x*rrrrs_dy_2_Gamma_4
+        # (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
+        rrrrs_dy_2_P_2_t = (
+        inv_rrrrs_r_3_r0_y*rrrrs_r_2_r1_y*(rrrrs_dy_2_G_t*rrrrs_r_3_r0_x - rrrrs_dy_2_Gamma_3) -
+            rrrrs_dy_2_G_t*rrrrs_r_2_r1_x
         )
-        d1_P_2_rrrrs = d1_Gamma_2_rrrrs + d1_P_2_rrrrs_t
+        rrrrs_dy_2_P_2 = rrrrs_dy_2_Gamma_2 + rrrrs_dy_2_P_2_t
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
-            (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0)
-            & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE *
-            size_rrrrs))
+        ok & m.every(leg, (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
+            (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0)
+            & (abs(rrrrs_v_1_z) > _TOLERANCE * rrrrs_size) & (abs(-rrrrs_r_3_r0_y) > _TOLERANCE *
+            rrrrs_size))
         )
         sums = m.added(sums, leg, (
-        Q_rrrrs_t_12, Q_rrrrs_t_13, Q_rrrrs_t_14, Q_rrrrs_t_16, Q_rrrrs_t_17, Q_rrrrs_t_19,
-            M_ta_t_3, M_ta_t_4, M_ta_t_5, M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11,
-            M_ta_t_12, M_aa_t, M_aa_t_2, M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6,
+        rrrrs_Q_t_12, rrrrs_Q_t_13, rrrrs_Q_t_14, rrrrs_Q_t_16, rrrrs_Q_t_17, rrrrs_Q_t_19,
+            rrrrs_M_ta_t_3, rrrrs_M_ta_t_4, rrrrs_M_ta_t_5, rrrrs_M_ta_t_6, rrrrs_M_ta_t_8,
+            rrrrs_M_ta_t_9, rrrrs_M_ta_t_10, rrrrs_M_ta_t_11, rrrrs_M_ta_t_12, rrrrs_M_aa_t,
+            rrrrs_M_aa_t_2, rrrrs_M_aa_t_3, rrrrs_M_aa_t_4, rrrrs_M_aa_t_5, rrrrs_M_aa_t_6,
         ))
-        out_M[_M_rrrrs[0][leg]] = d_P_2_rrrrs_in_base_x
-        out_M[_M_rrrrs[1][leg]] = d_P_2_rrrrs_in_base_x
-        out_M[_M_rrrrs[2][leg]] = d_P_2_rrrrs_in_base_y
-        out_M[_M_rrrrs[3][leg]] = d_P_2_rrrrs_in_base_y
-        out_M[_M_rrrrs[4][leg]] = d_P_2_rrrrs_in_base_z
-        out_M[_M_rrrrs[5][leg]] = d_P_2_rrrrs_in_base_z
-        out_M[_M_rrrrs[6][leg]] = M_ya_2_rrrrs_x
-        out_M[_M_rrrrs[7][leg]] = M_ya_2_rrrrs_x
-        out_M[_M_rrrrs[8][leg]] = M_ya_2_rrrrs_y
-        out_M[_M_rrrrs[9][leg]] = M_ya_2_rrrrs_y
-        out_M[_M_rrrrs[10][leg]] = M_ya_2_rrrrs_z
-        out_M[_M_rrrrs[11][leg]] = M_ya_2_rrrrs_z
-        out_M[_M_rrrrs[12][leg]] = d1_P_2_rrrrs
+        out_M[_M_rrrrs[0][leg]] = rrrrs_d_P_2_in_base_x
+        out_M[_M_rrrrs[1][leg]] = rrrrs_d_P_2_in_base_x
+        out_M[_M_rrrrs[2][leg]] = rrrrs_d_P_2_in_base_y
+        out_M[_M_rrrrs[3][leg]] = rrrrs_d_P_2_in_base_y
+        out_M[_M_rrrrs[4][leg]] = rrrrs_d_P_2_in_base_z
+        out_M[_M_rrrrs[5][leg]] = rrrrs_d_P_2_in_base_z
+        out_M[_M_rrrrs[6][leg]] = rrrrs_M_ya_2_x
+        out_M[_M_rrrrs[7][leg]] = rrrrs_M_ya_2_x
+        out_M[_M_rrrrs[8][leg]] = rrrrs_M_ya_2_y
+        out_M[_M_rrrrs[9][leg]] = rrrrs_M_ya_2_y
+        out_M[_M_rrrrs[10][leg]] = rrrrs_M_ya_2_z
+        out_M[_M_rrrrs[11][leg]] = rrrrs_M_ya_2_z
+        out_M[_M_rrrrs[12][leg]] = rrrrs_dy_2_P_2
     (
     total_rrrrs_xx, total_rrrrs_xy, total_rrrrs_xz, total_rrrrs_yy, total_rrrrs_yz,
         total_rrrrs_zz, total_rrrrs_xx_2, total_rrrrs_xy_2, total_rrrrs_xz_2, total_rrrrs_yx,
@@ -3895,114 +3980,114 @@ def _run_M(m, X):
     sums = [0.0] * 21
     for leg, k in legs[1]:
         (
-        J_1_rrrs_xx, J_2_rrrs_xx, J_2_rrrs_xy, J_2_rrrs_xz, J_2_rrrs_yy, J_2_rrrs_yz, J_3_rrrs_xx,
-            J_3_rrrs_xy, J_3_rrrs_xz, J_3_rrrs_yy, J_3_rrrs_yz, J_3_rrrs_zz, Jc_2_rrrs_zz,
-            Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs, d_Gamma_2_rrrs_t,
-            d_Gamma_2_rrrs_y, d_c_rrrs_yy, d_phi_3_rrrs_t, h_3_rrrs_x, h_3_rrrs_y, h_3_rrrs_z,
-            inv_rrrs_platform_joint_offset_x, inv_size_rrrs_t, inv_size_rrrs_t_2, rho2_2_rrrs_t,
-            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+        inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
+            rrrs_J_2_xx, rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yy, rrrs_J_2_yz, rrrs_J_3_xx,
+            rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yy, rrrs_J_3_yz, rrrs_J_3_zz, rrrs_Jc_2_zz,
+            rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
+            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_t,
+            rrrs_d_Gamma_3_y, rrrs_d_c_yy, rrrs_d_phi_3_t, rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z,
             rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size_rrrs,
-            size_rrrs_t_3,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
+            rrrs_size, rrrs_size_t_3,
         ) = k
-        # (rrrs-K1) from the base point to the connection point
-        q_rrrs_in_base_x = (
+        # (rrrs-S) from the base point to the connection point
+        rrrs_q_in_base_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        q_rrrs_in_base_y = (
+        rrrs_q_in_base_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        q_rrrs_in_base_z = (
+        rrrs_q_in_base_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        S_rrrs_x = q_rrrs_in_base_x + t_x - rrrs_base_point_x
-        S_rrrs_y = q_rrrs_in_base_y + t_y - rrrs_base_point_y
-        S_rrrs_z = q_rrrs_in_base_z + t_z - rrrs_base_point_z
-        # (rrrs-K2) component along the reference direction
-        px_1_rrrs = (
-        S_rrrs_x*rrrs_base_frame_xy + S_rrrs_y*rrrs_base_frame_yy + S_rrrs_z*rrrs_base_frame_zy
+        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        # (rrrs-px_1) component along the reference direction
+        rrrs_px_1 = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        # (rrrs-K3) component across the reference direction
-        py_1_rrrs = (
-        S_rrrs_x*rrrs_base_frame_xz + S_rrrs_y*rrrs_base_frame_yz + S_rrrs_z*rrrs_base_frame_zz
+        # (rrrs-py_1) component across the reference direction
+        rrrs_py_1 = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        # (rrrs-K5) squared amplitude
-        rho2_1_rrrs = px_1_rrrs*px_1_rrrs + py_1_rrrs*py_1_rrrs
-        # (rrrs-K7) root, with the sign of the branch
-        root_1_rrrs = branch_1_rrrs*sqrt(rho2_1_rrrs)
-        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_rrrs_t = (
-        S_rrrs_x*rrrs_base_frame_xx + S_rrrs_y*rrrs_base_frame_yx + S_rrrs_z*rrrs_base_frame_zx
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrs_xi_1_t = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        # (rrrs-K12) from the origin of joint 2 to the connection point
-        x_2_rrrs_z = xi_1_rrrs_t - rrrs_joint2_offset_x
-        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z
-        Kd_2_rrrs = Kd_2_rrrs_t + 0.5*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2
-        # (rrrs-K17) factor of the cosine in the equation of joint 2
-        Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x
-        # (rrrs-K18) factor of the sine in the equation of joint 2
-        Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z
-        # (rrrs-K19) squared amplitude
-        rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs
-        # (rrrs-K20) discriminant
-        disc_2_rrrs = rho2_2_rrrs - Kd_2_rrrs*Kd_2_rrrs
-        # (rrrs-K21) root, with the sign of the branch
-        root_2_rrrs = branch_2_rrrs*sqrt(disc_2_rrrs)
-        # (rrrs-K27) from the origin of joint 3 to the connection point
-        x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-        # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-        c_3_rrrs = inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x
-        # (rrrs-K30) sine of the angle of joint 3 from its reference direction
-        s_3_rrrs = (
-        inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-x_3) from the origin of joint 3 to the connection point
+        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrs_s_3 = (
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_rrrs_t = rrrs_platform_joint_offset_x*s_3_rrrs
-        r_2_rrrs_x = rrrs_joint3_offset_x + c_3_rrrs*rrrs_platform_joint_offset_x
-        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2_rrrs = 1.0/rho2_2_rrrs
-        c_2_rrrs = inv_rho2_2_rrrs*(Kc_2_rrrs*Kd_2_rrrs + Ks_2_rrrs*root_2_rrrs)
-        # (rrrs-K23) sine of the angle of joint 2 from its reference direction
-        s_2_rrrs = inv_rho2_2_rrrs*(Kc_2_rrrs*root_2_rrrs - Kd_2_rrrs*Ks_2_rrrs)
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        e_1_rrrs_r2_x = c_2_rrrs*s_3_rrrs - c_3_rrrs*s_2_rrrs
-        e_1_rrrs_r2_y = -c_2_rrrs*c_3_rrrs - s_2_rrrs*s_3_rrrs
-        # (rrrs-V3) from joint 1 to the connection point, along the links
-        r_1_rrrs_r1_x = c_2_rrrs*root_1_rrrs - s_2_rrrs*xi_1_rrrs_t
-        r_1_rrrs_r1_y = -c_2_rrrs*xi_1_rrrs_t - root_1_rrrs*s_2_rrrs
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        v_1_rrrs_z = (
-        e_1_rrrs_r2_x*(c_3_rrrs*r_1_rrrs_r1_y + r_1_rrrs_r1_x*s_3_rrrs) -
-            e_1_rrrs_r2_y*(c_3_rrrs*r_1_rrrs_r1_x - r_1_rrrs_r1_y*s_3_rrrs)
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3
+        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
+        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
+        # (rrrs-r_1) from joint 1 to the connection point, along the links
+        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
+        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_z = (
+        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
+            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
         )
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_rrrs_r0_x = c_3_rrrs*r_2_rrrs_x + r_2_rrrs_t*s_3_rrrs
-        r_2_rrrs_r0_y = r_2_rrrs_x*s_3_rrrs - c_3_rrrs*r_2_rrrs_t
-        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrrs = 1.0/rho2_1_rrrs
-        c_1_rrrs = inv_rho2_1_rrrs*py_1_rrrs*root_1_rrrs
-        # (rrrs-K9) sine of the angle of joint 1 from its reference direction
-        s_1_rrrs = inv_rho2_1_rrrs*px_1_rrrs*root_1_rrrs
-        # (rrrs-V7) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1_rrrs - c_1_rrrs*rrrs_base_frame_xy
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1_rrrs - c_1_rrrs*rrrs_base_frame_yy
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1_rrrs - c_1_rrrs*rrrs_base_frame_zy
-        w_1_rrrs_t = e_1_rrrs_r2_x*s_1_rrrs
-        w_1_rrrs_t_2 = c_1_rrrs*e_1_rrrs_r2_x
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_r0_x = rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3
+        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
+        # (rrrs-w_1) reciprocal vector 1
+        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
+        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
+        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
         axis_y_rrrs_axes3_in_base_x = (
-        e_1_rrrs_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_rrrs_t +
-            rrrs_base_frame_xz*w_1_rrrs_t_2
+        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
+            rrrs_base_frame_xz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_y = (
-        e_1_rrrs_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_rrrs_t +
-            rrrs_base_frame_yz*w_1_rrrs_t_2
+        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
+            rrrs_base_frame_yz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_z = (
-        e_1_rrrs_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_rrrs_t +
-            rrrs_base_frame_zz*w_1_rrrs_t_2
+        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
+            rrrs_base_frame_zz*rrrs_w_1_t_2
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
@@ -4016,133 +4101,137 @@ def _run_M(m, X):
         axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
             axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
         )
-        # (rrrs-G9) inertia tensor of link 3 about the connection point
-        J_3_rrrs_t = J_3_rrrs_xy*s_3_rrrs
-        _x_7 = J_3_rrrs_t + J_3_rrrs_xx*c_3_rrrs
-        J_3_rrrs_t_2 = J_3_rrrs_xy*c_3_rrrs
-        _x_8 = J_3_rrrs_t_2 + J_3_rrrs_yy*s_3_rrrs
-        _x_9 = J_3_rrrs_xz*c_3_rrrs + J_3_rrrs_yz*s_3_rrrs
-        _y_4 = J_3_rrrs_yz*c_3_rrrs - J_3_rrrs_xz*s_3_rrrs
-        # (rrrs-N18) inertia tensor of the links from 2 outwards about joint 2
-        Jc_2_rrrs_xy = J_2_rrrs_xy + _x_8*c_3_rrrs - _x_7*s_3_rrrs
-        _y_5 = (
-        -c_2_rrrs*(-Jc_2_rrrs_xy*s_2_rrrs - c_2_rrrs*(J_2_rrrs_yy + c_3_rrrs*(J_3_rrrs_yy*c_3_rrrs
-            - J_3_rrrs_t) - s_3_rrrs*(J_3_rrrs_t_2 - J_3_rrrs_xx*s_3_rrrs))) -
-            s_2_rrrs*(-Jc_2_rrrs_xy*c_2_rrrs - s_2_rrrs*(J_2_rrrs_xx + _x_7*c_3_rrrs +
-            _x_8*s_3_rrrs))
+        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
+        # (rrrs-w_2) reciprocal vector 2
+        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
+        # (rrrs-w_3) reciprocal vector 3
+        rrrs_w_3_t = inv_rrrs_platform_joint_offset_x*inv_rrrs_r_2_r0_y*rrrs_r_2_r0_x
+        # (rrrs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
+        rrrs_d_alpha_3_t = inv_rrrs_v_1_z*rrrs_e_1_r2_x
+        rrrs_d_alpha_3_t_2 = inv_rrrs_v_1_z*rrrs_e_1_r2_y
+        # (rrrs-D_1_3) inertia of joint 3 along joint 1
+        rrrs_D_1_3 = rrrs_J_3_xz*rrrs_e_1_r2_x + rrrs_J_3_yz*rrrs_e_1_r2_y
+        # (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        rrrs_d_Gamma_3_t_2 = inv_rrrs_v_1_z*rrrs_D_1_3
+        rrrs_d_Gamma_3_t_3 = rrrs_d_Gamma_3_t*rrrs_r_2_r0_x
+        rrrs_d_Gamma_3_x = -rrrs_h_3_y - inv_rrrs_r_2_r0_y*(rrrs_J_3_zz - rrrs_d_Gamma_3_t_3)
+        # (rrrs-J_3) inertia tensor of link 3 about the connection point
+        rrrs_J_3_t = rrrs_J_3_xy*rrrs_s_3
+        rrrs__x = rrrs_J_3_t + rrrs_J_3_xx*rrrs_c_3
+        rrrs_J_3_t_2 = rrrs_J_3_xy*rrrs_c_3
+        rrrs__x_2 = rrrs_J_3_t_2 + rrrs_J_3_yy*rrrs_s_3
+        # (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+        rrrs_Jc_2_xy = rrrs_J_2_xy + rrrs__x_2*rrrs_c_3 - rrrs__x*rrrs_s_3
+        # (rrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rrrs_d_Gamma_2_x = -rrrs_h_3_y - inv_rrrs_r_2_r0_y*(rrrs_Jc_2_zz - rrrs_d_Gamma_3_t_3)
+        # (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+        rrrs__y = (
+        -rrrs_c_2*(-rrrs_Jc_2_xy*rrrs_s_2 - rrrs_c_2*(rrrs_J_2_yy + rrrs_c_3*(rrrs_J_3_yy*rrrs_c_3
+            - rrrs_J_3_t) - rrrs_s_3*(rrrs_J_3_t_2 - rrrs_J_3_xx*rrrs_s_3))) -
+            rrrs_s_2*(-rrrs_Jc_2_xy*rrrs_c_2 - rrrs_s_2*(rrrs_J_2_xx + rrrs__x*rrrs_c_3 +
+            rrrs__x_2*rrrs_s_3))
         )
-        # (rrrs-V7) reciprocal vector 1
-        inv_v_1_rrrs_z = 1.0/v_1_rrrs_z
-        # (rrrs-V8) reciprocal vector 2
-        inv_r_2_rrrs_r0_y = 1.0/r_2_rrrs_r0_y
-        # (rrrs-V9) reciprocal vector 3
-        w_3_rrrs_t = inv_r_2_rrrs_r0_y*inv_rrrs_platform_joint_offset_x*r_2_rrrs_r0_x
-        # (rrrs-N50) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_rrrs_z = (
-        e_1_rrrs_r2_x*h_3_rrrs_y + inv_v_1_rrrs_z*(J_1_rrrs_xx + _y_5) - e_1_rrrs_r2_y*h_3_rrrs_x
+        # (rrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrrs_d_Gamma_1_z = (
+        inv_rrrs_v_1_z*(rrrs_J_1_xx + rrrs__y) + rrrs_e_1_r2_x*rrrs_h_3_y -
+            rrrs_e_1_r2_y*rrrs_h_3_x
         )
-        # (rrrs-N41) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_rrrs_t_2 = d_Gamma_2_rrrs_t*r_2_rrrs_r0_x
-        d_Gamma_2_rrrs_x = -h_3_rrrs_y - inv_r_2_rrrs_r0_y*(Jc_2_rrrs_zz - d_Gamma_2_rrrs_t_2)
-        # (rrrs-N32) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        d_Gamma_3_rrrs_t = inv_v_1_rrrs_z*(-_x_9*s_2_rrrs - _y_4*c_2_rrrs)
-        d_Gamma_3_rrrs_x = -h_3_rrrs_y - inv_r_2_rrrs_r0_y*(J_3_rrrs_zz - d_Gamma_2_rrrs_t_2)
-        # (rrrs-A25) coefficient of the acceleration in: angular acceleration of link 3
-        d_alpha_3_rrrs_t = e_1_rrrs_r2_x*inv_v_1_rrrs_z
-        d_alpha_3_rrrs_t_2 = e_1_rrrs_r2_y*inv_v_1_rrrs_z
-        # (rrrs-N56) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_rrrs_xx = (
-        d_Gamma_2_rrrs_x*inv_r_2_rrrs_r0_y + h_3_rrrs_y*(w_3_rrrs_t - inv_r_2_rrrs_r0_y) -
-            d_Gamma_3_rrrs_x*w_3_rrrs_t
+        # (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrrs_d_G_xz = (
+        rrrs_d_Gamma_3_t_2*rrrs_w_3_t - inv_rrrs_r_2_r0_y*inv_rrrs_v_1_z*(-rrrs_c_2*(rrrs_J_2_yz +
+            rrrs_J_3_yz*rrrs_c_3 - rrrs_J_3_xz*rrrs_s_3) - rrrs_s_2*(rrrs_J_2_xz +
+            rrrs_J_3_xz*rrrs_c_3 + rrrs_J_3_yz*rrrs_s_3))
         )
-        d_c_rrrs_xy = (
-        d_phi_3_rrrs_t + d_Gamma_2_rrrs_y*inv_r_2_rrrs_r0_y - d_Gamma_2_rrrs_y*w_3_rrrs_t
+        # (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrrs_d_c_xx = (
+        inv_rrrs_r_2_r0_y*rrrs_d_Gamma_2_x + rrrs_h_3_y*(rrrs_w_3_t - inv_rrrs_r_2_r0_y) -
+            rrrs_d_Gamma_3_x*rrrs_w_3_t
         )
-        d_c_rrrs_xz = (
-        inv_r_2_rrrs_r0_y*inv_v_1_rrrs_z*(-c_2_rrrs*(J_2_rrrs_yz + _y_4) - s_2_rrrs*(J_2_rrrs_xz +
-            _x_9)) - d_Gamma_3_rrrs_t*w_3_rrrs_t - d_alpha_3_rrrs_t_2*h_3_rrrs_z
+        rrrs_d_c_xy = (
+        rrrs_d_phi_3_t + inv_rrrs_r_2_r0_y*rrrs_d_Gamma_3_y - rrrs_d_Gamma_3_y*rrrs_w_3_t
         )
-        d_c_rrrs_yz = (
-        d_alpha_3_rrrs_t*h_3_rrrs_z - d_Gamma_3_rrrs_t*inv_rrrs_platform_joint_offset_x
+        rrrs_d_c_xz = -rrrs_d_G_xz - rrrs_d_alpha_3_t_2*rrrs_h_3_z
+        rrrs_d_c_yz = (
+        rrrs_d_alpha_3_t*rrrs_h_3_z - inv_rrrs_platform_joint_offset_x*rrrs_d_Gamma_3_t_2
         )
-        # (rrrs-N58) inertia of the leg at the connection point, without the mass gathered there
-        Q_rrrs_t = d_c_rrrs_xx - d_c_rrrs_yy
-        Q_rrrs_t_2 = 0.5*Q_rrrs_t
-        Q_rrrs_t_3 = (
-        d_c_rrrs_xx + d_Gamma_1_rrrs_z*inv_v_1_rrrs_z + d_alpha_3_rrrs_t*h_3_rrrs_y -
-            d_alpha_3_rrrs_t_2*h_3_rrrs_x
+        # (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there
+        rrrs_Q_t = rrrs_d_c_xx - rrrs_d_c_yy
+        rrrs_Q_t_2 = 0.5*rrrs_Q_t
+        rrrs_Q_t_3 = (
+        rrrs_d_c_xx + inv_rrrs_v_1_z*rrrs_d_Gamma_1_z + rrrs_d_alpha_3_t*rrrs_h_3_y -
+            rrrs_d_alpha_3_t_2*rrrs_h_3_x
         )
-        Q_rrrs_t_4 = 0.5*Q_rrrs_t_3
-        Q_rrrs_t_5 = (
-        axis_x_rrrs_axes3_x*d_c_rrrs_xy + axis_z_rrrs_axes3_in_base_x*d_c_rrrs_yz -
-            Q_rrrs_t_2*axis_y_rrrs_axes3_in_base_x
+        rrrs_Q_t_4 = 0.5*rrrs_Q_t_3
+        rrrs_Q_t_5 = (
+        axis_x_rrrs_axes3_x*rrrs_d_c_xy + axis_z_rrrs_axes3_in_base_x*rrrs_d_c_yz -
+            axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_2
         )
-        Q_rrrs_t_6 = (
-        axis_x_rrrs_axes3_y*d_c_rrrs_xy + axis_z_rrrs_axes3_in_base_y*d_c_rrrs_yz -
-            Q_rrrs_t_2*axis_y_rrrs_axes3_in_base_y
+        rrrs_Q_t_6 = (
+        axis_x_rrrs_axes3_y*rrrs_d_c_xy + axis_z_rrrs_axes3_in_base_y*rrrs_d_c_yz -
+            axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_2
         )
-        Q_rrrs_t_7 = (
-        axis_x_rrrs_axes3_z*d_c_rrrs_xy + axis_z_rrrs_axes3_in_base_z*d_c_rrrs_yz -
-            Q_rrrs_t_2*axis_y_rrrs_axes3_in_base_z
+        rrrs_Q_t_7 = (
+        axis_x_rrrs_axes3_z*rrrs_d_c_xy + axis_z_rrrs_axes3_in_base_z*rrrs_d_c_yz -
+            axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_2
         )
-        Q_rrrs_t_8 = Q_rrrs_t_4*axis_z_rrrs_axes3_in_base_x - axis_x_rrrs_axes3_x*d_c_rrrs_xz
-        Q_rrrs_t_9 = Q_rrrs_t_4*axis_z_rrrs_axes3_in_base_y - axis_x_rrrs_axes3_y*d_c_rrrs_xz
-        Q_rrrs_t_10 = Q_rrrs_t_4*axis_z_rrrs_axes3_in_base_z - axis_x_rrrs_axes3_z*d_c_rrrs_xz
-        Q_rrrs_t_11 = (
-        Q_rrrs_t_5*axis_y_rrrs_axes3_in_base_x - Q_rrrs_t_8*axis_z_rrrs_axes3_in_base_x
+        rrrs_Q_t_8 = axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_4 - axis_x_rrrs_axes3_x*rrrs_d_c_xz
+        rrrs_Q_t_9 = axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_4 - axis_x_rrrs_axes3_y*rrrs_d_c_xz
+        rrrs_Q_t_10 = axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_4 - axis_x_rrrs_axes3_z*rrrs_d_c_xz
+        rrrs_Q_t_11 = (
+        axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_5 - axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_8
         )
-        Q_rrrs_t_12 = 2.0*Q_rrrs_t_11 + d_c_rrrs_xx
-        Q_rrrs_t_13 = (
-        Q_rrrs_t_5*axis_y_rrrs_axes3_in_base_y + Q_rrrs_t_6*axis_y_rrrs_axes3_in_base_x -
-            Q_rrrs_t_8*axis_z_rrrs_axes3_in_base_y - Q_rrrs_t_9*axis_z_rrrs_axes3_in_base_x
+        rrrs_Q_t_12 = 2.0*rrrs_Q_t_11 + rrrs_d_c_xx
+        rrrs_Q_t_13 = (
+        axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_6 + axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_5 -
+            axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_9 - axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_8
         )
-        Q_rrrs_t_14 = (
-        Q_rrrs_t_5*axis_y_rrrs_axes3_in_base_z + Q_rrrs_t_7*axis_y_rrrs_axes3_in_base_x -
-            Q_rrrs_t_10*axis_z_rrrs_axes3_in_base_x - Q_rrrs_t_8*axis_z_rrrs_axes3_in_base_z
+        rrrs_Q_t_14 = (
+        axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_7 + axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_5 -
+            axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_10 - axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_8
         )
-        Q_rrrs_t_15 = (
-        Q_rrrs_t_6*axis_y_rrrs_axes3_in_base_y - Q_rrrs_t_9*axis_z_rrrs_axes3_in_base_y
+        rrrs_Q_t_15 = (
+        axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_6 - axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_9
         )
-        Q_rrrs_t_16 = 2.0*Q_rrrs_t_15 + d_c_rrrs_xx
-        Q_rrrs_t_17 = (
-        Q_rrrs_t_6*axis_y_rrrs_axes3_in_base_z + Q_rrrs_t_7*axis_y_rrrs_axes3_in_base_y -
-            Q_rrrs_t_10*axis_z_rrrs_axes3_in_base_y - Q_rrrs_t_9*axis_z_rrrs_axes3_in_base_z
+        rrrs_Q_t_16 = 2.0*rrrs_Q_t_15 + rrrs_d_c_xx
+        rrrs_Q_t_17 = (
+        axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_7 + axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_6 -
+            axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_10 - axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_9
         )
-        Q_rrrs_t_18 = (
-        Q_rrrs_t_7*axis_y_rrrs_axes3_in_base_z - Q_rrrs_t_10*axis_z_rrrs_axes3_in_base_z
+        rrrs_Q_t_18 = (
+        axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_7 - axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_10
         )
-        Q_rrrs_t_19 = 2.0*Q_rrrs_t_18 + d_c_rrrs_xx
-        # (M2) coupling block of M
-        M_ta_t_13 = Q_rrrs_t_13*q_rrrs_in_base_z
-        M_ta_t_14 = Q_rrrs_t_14*q_rrrs_in_base_y
-        M_ta_t_15 = M_ta_t_13 - M_ta_t_14
-        M_ta_t_16 = Q_rrrs_t_12*q_rrrs_in_base_z - Q_rrrs_t_14*q_rrrs_in_base_x
-        M_ta_t_17 = Q_rrrs_t_12*q_rrrs_in_base_y - Q_rrrs_t_13*q_rrrs_in_base_x
-        M_ta_t_18 = Q_rrrs_t_16*q_rrrs_in_base_z - Q_rrrs_t_17*q_rrrs_in_base_y
-        M_ta_t_19 = Q_rrrs_t_17*q_rrrs_in_base_x
-        M_ta_t_20 = M_ta_t_13 - M_ta_t_19
-        M_ta_t_21 = Q_rrrs_t_13*q_rrrs_in_base_y - Q_rrrs_t_16*q_rrrs_in_base_x
-        M_ta_t_22 = Q_rrrs_t_17*q_rrrs_in_base_z - Q_rrrs_t_19*q_rrrs_in_base_y
-        M_ta_t_23 = Q_rrrs_t_14*q_rrrs_in_base_z - Q_rrrs_t_19*q_rrrs_in_base_x
-        M_ta_t_24 = M_ta_t_14 - M_ta_t_19
-        # (M3) rotational block of M
-        M_aa_t_7 = M_ta_t_18*q_rrrs_in_base_z - M_ta_t_22*q_rrrs_in_base_y
-        M_aa_t_8 = M_ta_t_20*q_rrrs_in_base_z - M_ta_t_23*q_rrrs_in_base_y
-        M_aa_t_9 = M_ta_t_21*q_rrrs_in_base_z - M_ta_t_24*q_rrrs_in_base_y
-        M_aa_t_10 = M_ta_t_16*q_rrrs_in_base_z - M_ta_t_23*q_rrrs_in_base_x
-        M_aa_t_11 = M_ta_t_17*q_rrrs_in_base_z - M_ta_t_24*q_rrrs_in_base_x
-        M_aa_t_12 = M_ta_t_17*q_rrrs_in_base_y - M_ta_t_21*q_rrrs_in_base_x
+        rrrs_Q_t_19 = 2.0*rrrs_Q_t_18 + rrrs_d_c_xx
+        # (M_ta) coupling block of M
+        rrrs_M_ta_t = rrrs_Q_t_13*rrrs_q_in_base_z
+        rrrs_M_ta_t_2 = rrrs_Q_t_14*rrrs_q_in_base_y
+        rrrs_M_ta_t_3 = rrrs_M_ta_t - rrrs_M_ta_t_2
+        rrrs_M_ta_t_4 = rrrs_Q_t_12*rrrs_q_in_base_z - rrrs_Q_t_14*rrrs_q_in_base_x
+        rrrs_M_ta_t_5 = rrrs_Q_t_12*rrrs_q_in_base_y - rrrs_Q_t_13*rrrs_q_in_base_x
+        rrrs_M_ta_t_6 = rrrs_Q_t_16*rrrs_q_in_base_z - rrrs_Q_t_17*rrrs_q_in_base_y
+        rrrs_M_ta_t_7 = rrrs_Q_t_17*rrrs_q_in_base_x
+        rrrs_M_ta_t_8 = rrrs_M_ta_t - rrrs_M_ta_t_7
+        rrrs_M_ta_t_9 = rrrs_Q_t_13*rrrs_q_in_base_y - rrrs_Q_t_16*rrrs_q_in_base_x
+        rrrs_M_ta_t_10 = rrrs_Q_t_17*rrrs_q_in_base_z - rrrs_Q_t_19*rrrs_q_in_base_y
+        rrrs_M_ta_t_11 = rrrs_Q_t_14*rrrs_q_in_base_z - rrrs_Q_t_19*rrrs_q_in_base_x
+        rrrs_M_ta_t_12 = rrrs_M_ta_t_7 - rrrs_M_ta_t_2
+        # (M_aa) rotational block of M
+        rrrs_M_aa_t = rrrs_M_ta_t_6*rrrs_q_in_base_z - rrrs_M_ta_t_10*rrrs_q_in_base_y
+        rrrs_M_aa_t_2 = rrrs_M_ta_t_8*rrrs_q_in_base_z - rrrs_M_ta_t_11*rrrs_q_in_base_y
+        rrrs_M_aa_t_3 = rrrs_M_ta_t_12*rrrs_q_in_base_y + rrrs_M_ta_t_9*rrrs_q_in_base_z
+        rrrs_M_aa_t_4 = rrrs_M_ta_t_4*rrrs_q_in_base_z - rrrs_M_ta_t_11*rrrs_q_in_base_x
+        rrrs_M_aa_t_5 = rrrs_M_ta_t_12*rrrs_q_in_base_x + rrrs_M_ta_t_5*rrrs_q_in_base_z
+        rrrs_M_aa_t_6 = rrrs_M_ta_t_5*rrrs_q_in_base_y - rrrs_M_ta_t_9*rrrs_q_in_base_x
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
-            (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) &
-            (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE *
-            size_rrrs))
+        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
+            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
+            rrrs_size))
         )
         sums = m.added(sums, leg, (
-        Q_rrrs_t_12, Q_rrrs_t_13, Q_rrrs_t_14, Q_rrrs_t_16, Q_rrrs_t_17, Q_rrrs_t_19,
-            M_ta_t_15, M_ta_t_16, M_ta_t_17, M_ta_t_18, M_ta_t_20, M_ta_t_21, M_ta_t_22,
-            M_ta_t_23, M_ta_t_24, M_aa_t_7, M_aa_t_8, M_aa_t_9, M_aa_t_10, M_aa_t_11,
-            M_aa_t_12,
+        rrrs_Q_t_12, rrrs_Q_t_13, rrrs_Q_t_14, rrrs_Q_t_16, rrrs_Q_t_17, rrrs_Q_t_19,
+            rrrs_M_ta_t_3, rrrs_M_ta_t_4, rrrs_M_ta_t_5, rrrs_M_ta_t_6, rrrs_M_ta_t_8,
+            rrrs_M_ta_t_9, rrrs_M_ta_t_10, rrrs_M_ta_t_11, rrrs_M_ta_t_12, rrrs_M_aa_t,
+            rrrs_M_aa_t_2, rrrs_M_aa_t_3, rrrs_M_aa_t_4, rrrs_M_aa_t_5, rrrs_M_aa_t_6,
         ))
     (
     total_rrrs_xx, total_rrrs_xy, total_rrrs_xz, total_rrrs_yy, total_rrrs_yz, total_rrrs_zz,
@@ -4150,14 +4239,14 @@ def _run_M(m, X):
         total_rrrs_yz_2, total_rrrs_zx, total_rrrs_zy, total_rrrs_zz_2, total_rrrs_xx_3,
         total_rrrs_xy_3, total_rrrs_xz_3, total_rrrs_yy_3, total_rrrs_yz_3, total_rrrs_zz_3,
     ) = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = m_star - total_rrrrs_xx - total_rrrs_xx
     M_tt_xy = -total_rrrrs_xy - total_rrrs_xy
     M_tt_xz = -total_rrrrs_xz - total_rrrs_xz
     M_tt_yy = m_star - total_rrrrs_yy - total_rrrs_yy
     M_tt_yz = -total_rrrrs_yz - total_rrrs_yz
     M_tt_zz = m_star - total_rrrrs_zz - total_rrrs_zz
-    # (M2) coupling block of M
+    # (M_ta) coupling block of M
     M_ta_xx = total_rrrrs_xx_2 + total_rrrs_xx_2
     M_ta_xy = h_star_in_base_z - total_rrrrs_xy_2 - total_rrrs_xy_2
     M_ta_xz = total_rrrrs_xz_2 + total_rrrs_xz_2 - h_star_in_base_y
@@ -4166,14 +4255,14 @@ def _run_M(m, X):
     M_ta_yz = h_star_in_base_x + total_rrrrs_yz_2 + total_rrrs_yz_2
     M_ta_zx = h_star_in_base_y + total_rrrrs_zx + total_rrrs_zx
     M_ta_zy = -h_star_in_base_x - total_rrrrs_zy - total_rrrs_zy
-    M_ta_zz = total_rrrs_zz_2 - total_rrrrs_zz_2
-    # (M3) rotational block of M
+    M_ta_zz = -total_rrrrs_zz_2 - total_rrrs_zz_2
+    # (M_aa) rotational block of M
     M_aa_xx = J_star_t_8 - total_rrrrs_xx_3 - total_rrrs_xx_3
     M_aa_xy = J_star_t_9 + total_rrrrs_xy_3 + total_rrrs_xy_3
     M_aa_xz = J_star_t_10 - total_rrrrs_xz_3 - total_rrrs_xz_3
-    M_aa_yy = J_star_t_12 - total_rrrrs_yy_3 - total_rrrs_yy_3
-    M_aa_yz = J_star_t_13 + total_rrrrs_yz_3 + total_rrrs_yz_3
-    M_aa_zz = -J_star_t_15 - total_rrrrs_zz_3 - total_rrrs_zz_3
+    M_aa_yy = J_star_t_13 - total_rrrrs_yy_3 - total_rrrs_yy_3
+    M_aa_yz = J_star_t_15 + total_rrrrs_yz_3 + total_rrrs_yz_3
+    M_aa_zz = J_star_t_17 - total_rrrrs_zz_3 - total_rrrs_zz_3
     out_M[0] = M_tt_xx
     out_M[1] = M_tt_xy
     out_M[7] = M_tt_xy
@@ -4213,7 +4302,7 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 1033 mul, 769 add, 12 div, 6 sqrt, 2 trig
+# Z: 1048 mul, 781 add, 12 div, 6 sqrt, 2 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -4273,180 +4362,182 @@ def _run_Z(m, X, V):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_Z = m.zeros("Z")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (M4) centripetal force and weight of the platform
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
     Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
     Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    g_r0_x_3 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y_3 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z_3 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_3*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z_3*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z_3*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x_3*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_3*h_star_y - Z_q_t*omega_r0_y - g_r0_y_3*h_star_x
+    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
+    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_1_rrrrs_xx, J_2_rrrrs_xy, J_2_rrrrs_xz, J_2_rrrrs_yz, J_3_rrrrs_xy, J_3_rrrrs_xz,
-            J_3_rrrrs_yz, J_4_rrrrs_xy, J_4_rrrrs_xz, J_4_rrrrs_yz, Kd_3_rrrrs_t, Kd_3_rrrrs_t_2,
-            Sigma_2_rrrrs_xx, Sigma_2_rrrrs_yy, Sigma_2_rrrrs_zz, Sigma_3_rrrrs_xx,
-            Sigma_3_rrrrs_yy, Sigma_3_rrrrs_zz, Sigma_4_rrrrs_xx, Sigma_4_rrrrs_yy,
-            Sigma_4_rrrrs_zz, branch_1_rrrrs, branch_3_rrrrs, g_r0_x, g_r0_y, g_r0_z, h_1_rrrrs_y,
-            h_1_rrrrs_z, h_2_rrrrs_x, h_2_rrrrs_y, h_2_rrrrs_z, h_3_rrrrs_x, h_3_rrrrs_y,
-            h_3_rrrrs_z, h_4_rrrrs_x, h_4_rrrrs_y, h_4_rrrrs_z, inv_rrrrs_platform_joint_offset_x,
-            inv_size_rrrrs_t_2, inv_size_rrrrs_t_3, rho2_3_rrrrs_t, rrrrs_base_frame_xx,
-            rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
-            rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
-            rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_joint2_offset_x,
-            rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_link3_mass,
+        inv_rrrrs_platform_joint_offset_x, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_J_1_xx,
+            rrrrs_J_2_xy, rrrrs_J_2_xz, rrrrs_J_2_yz, rrrrs_J_3_xy, rrrrs_J_3_xz, rrrrs_J_3_yz,
+            rrrrs_J_4_xy, rrrrs_J_4_xz, rrrrs_J_4_yz, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2,
+            rrrrs_Sigma_2_xx, rrrrs_Sigma_2_yy, rrrrs_Sigma_2_zz, rrrrs_Sigma_3_xx,
+            rrrrs_Sigma_3_yy, rrrrs_Sigma_3_zz, rrrrs_Sigma_4_xx, rrrrs_Sigma_4_yy,
+            rrrrs_Sigma_4_zz, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
+            rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx,
+            rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
+            rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_g_r0_x, rrrrs_g_r0_y,
+            rrrrs_g_r0_z, rrrrs_h_1_y, rrrrs_h_1_z, rrrrs_h_2_x, rrrrs_h_2_y, rrrrs_h_2_z,
+            rrrrs_h_3_x, rrrrs_h_3_y, rrrrs_h_3_z, rrrrs_h_4_x, rrrrs_h_4_y, rrrrs_h_4_z,
+            rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_link3_mass,
             rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
-            rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,
+            rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,
         ) = k
-        y_2_extra_rrrrs = X[[7][leg]]
-        yd_2_rrrrs = V[[6][leg]]
-        # (rrrrs-K1) from the base point to the connection point
-        q_rrrrs_in_base_x = (
+        rrrrs_y_2_extra = X[[7][leg]]
+        rrrrs_yd_2 = V[[6][leg]]
+        # (rrrrs-S) from the base point to the connection point
+        rrrrs_q_in_base_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
-        q_rrrrs_in_base_y = (
+        rrrrs_q_in_base_y = (
         R_yx*rrrrs_platform_point_x + R_yy*rrrrs_platform_point_y + R_yz*rrrrs_platform_point_z
         )
-        q_rrrrs_in_base_z = (
+        rrrrs_q_in_base_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        S_rrrrs_x = q_rrrrs_in_base_x + t_x - rrrrs_base_point_x
-        S_rrrrs_y = q_rrrrs_in_base_y + t_y - rrrrs_base_point_y
-        S_rrrrs_z = q_rrrrs_in_base_z + t_z - rrrrs_base_point_z
-        # (rrrrs-K4) component along the reference direction
-        px_1_rrrrs = (
-        S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy +
-            S_rrrrs_z*rrrrs_base_frame_zy
+        rrrrs_S_x = rrrrs_q_in_base_x + t_x - rrrrs_base_point_x
+        rrrrs_S_y = rrrrs_q_in_base_y + t_y - rrrrs_base_point_y
+        rrrrs_S_z = rrrrs_q_in_base_z + t_z - rrrrs_base_point_z
+        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrrs_c_2_t = sin(rrrrs_y_2_extra)
+        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrrs_s_2 = cos(rrrrs_y_2_extra)
+        # (rrrrs-Kr_1) right-hand side of the equation of joint 1
+        rrrrs_Kr_1_t = rrrrs_joint2_offset_x*rrrrs_s_2
+        rrrrs_Kr_1_t_2 = rrrrs_c_2_t*rrrrs_joint2_offset_x
+        # (rrrrs-px_1) component along the reference direction
+        rrrrs_px_1 = (
+        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
+            rrrrs_S_z*rrrrs_base_frame_zy
         )
-        # (rrrrs-K5) component across the reference direction
-        py_1_rrrrs = (
-        S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz +
-            S_rrrrs_z*rrrrs_base_frame_zz
+        # (rrrrs-py_1) component across the reference direction
+        rrrrs_py_1 = (
+        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
+            rrrrs_S_z*rrrrs_base_frame_zz
         )
-        # (rrrrs-K7) squared amplitude
-        rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs
-        # (rrrrs-K9) root, with the sign of the branch
-        root_1_rrrrs = branch_1_rrrrs*sqrt(rho2_1_rrrrs)
-        # (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_rrrrs_t = (
-        S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx +
-            S_rrrrs_z*rrrrs_base_frame_zx
+        # (rrrrs-rho2_1) squared amplitude
+        rrrrs_rho2_1 = rrrrs_px_1*rrrrs_px_1 + rrrrs_py_1*rrrrs_py_1
+        # (rrrrs-root_1) root, with the sign of the branch
+        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
+        # (rrrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrrs_xi_1_t = (
+        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
+            rrrrs_S_z*rrrrs_base_frame_zx
         )
-        # (rrrrs-K14) from the origin of joint 2 to the connection point
-        x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x
-        # (rrrrs-K2) cosine of the angle of joint 2 from its reference direction
-        c_2_rrrrs_t = sin(y_2_extra_rrrrs)
-        # (rrrrs-K3) sine of the angle of joint 2 from its reference direction
-        s_2_rrrrs = cos(y_2_extra_rrrrs)
-        # (rrrrs-K14) from the origin of joint 2 to the connection point
-        x_2_rrrrs_t = c_2_rrrrs_t*root_1_rrrrs
-        x_2_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*x_2_rrrrs_z
-        x_2_rrrrs_t_2 = root_1_rrrrs*s_2_rrrrs
-        x_2_rrrrs_r1_y = x_2_rrrrs_t_2 - c_2_rrrrs_t*x_2_rrrrs_z
-        # (rrrrs-K15) from the origin of joint 3 to the connection point
-        x_3_rrrrs_x = x_2_rrrrs_r1_x - rrrrs_joint3_offset_x
-        # (rrrrs-K16) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-        Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x
-        Kd_3_rrrrs = Kd_3_rrrrs_t + 0.5*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2
-        # (rrrrs-K20) factor of the cosine in the equation of joint 3
-        Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x
-        # (rrrrs-K21) factor of the sine in the equation of joint 3
-        Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y
-        # (rrrrs-K22) squared amplitude
-        rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs
-        # (rrrrs-K23) discriminant
-        disc_3_rrrrs = rho2_3_rrrrs - Kd_3_rrrrs*Kd_3_rrrrs
-        # (rrrrs-K24) root, with the sign of the branch
-        root_3_rrrrs = branch_3_rrrrs*sqrt(disc_3_rrrrs)
-        # (rrrrs-K30) from the origin of joint 4 to the connection point
-        x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
-        # (rrrrs-K32) cosine of the angle of joint 4 from its reference direction
-        c_4_rrrrs = inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x
-        # (rrrrs-K33) sine of the angle of joint 4 from its reference direction
-        s_4_rrrrs = (
-        inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        # (rrrrs-x_2) from the origin of joint 2 to the connection point
+        rrrrs_x_2_z = rrrrs_xi_1_t - rrrrs_joint2_offset_x
+        rrrrs_x_2_t = rrrrs_c_2_t*rrrrs_root_1
+        rrrrs_x_2_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_x_2_z
+        rrrrs_x_2_t_2 = rrrrs_root_1*rrrrs_s_2
+        rrrrs_x_2_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_x_2_z
+        # (rrrrs-x_3) from the origin of joint 3 to the connection point
+        rrrrs_x_3_x = rrrrs_x_2_r1_x - rrrrs_joint3_offset_x
+        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
+        rrrrs_Kd_3_t_3 = rrrrs_x_2_r1_y*rrrrs_x_2_r1_y + rrrrs_x_3_x*rrrrs_x_3_x
+        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
+        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
+        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_x
+        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
+        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_r1_y
+        # (rrrrs-rho2_3) squared amplitude
+        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
+        # (rrrrs-disc_3) discriminant
+        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
+        # (rrrrs-root_3) root, with the sign of the branch
+        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
+        # (rrrrs-x_4) from the origin of joint 4 to the connection point
+        rrrrs_x_4_x = inv_rrrrs_size_t_2*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
+        rrrrs_c_4 = inv_rrrrs_size_t_3*rrrrs_platform_joint_offset_x*rrrrs_x_4_x
+        # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
+        rrrrs_s_4 = (
+        inv_rrrrs_size_t_2*inv_rrrrs_size_t_3*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
         )
-        # (rrrrs-V2) from joint 3 to the connection point, along the links
-        r_3_rrrrs_t = rrrrs_platform_joint_offset_x*s_4_rrrrs
-        r_3_rrrrs_x = rrrrs_joint4_offset_x + c_4_rrrrs*rrrrs_platform_joint_offset_x
-        # (rrrrs-K25) cosine of the angle of joint 3 from its reference direction
-        inv_rho2_3_rrrrs = 1.0/rho2_3_rrrrs
-        c_3_rrrrs = inv_rho2_3_rrrrs*(Kc_3_rrrrs*Kd_3_rrrrs - Ks_3_rrrrs*root_3_rrrrs)
-        # (rrrrs-K26) sine of the angle of joint 3 from its reference direction
-        s_3_rrrrs = inv_rho2_3_rrrrs*(Kc_3_rrrrs*root_3_rrrrs + Kd_3_rrrrs*Ks_3_rrrrs)
-        # (rrrrs-V5) velocity of the connection point per rate of joint 1
-        e_1_rrrrs_r2_x = c_3_rrrrs*s_2_rrrrs - c_2_rrrrs_t*s_3_rrrrs
-        e_1_rrrrs_r2_y = -c_2_rrrrs_t*c_3_rrrrs - s_2_rrrrs*s_3_rrrrs
-        # (rrrrs-V4) from joint 1 to the connection point, along the links
-        r_1_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*xi_1_rrrrs_t
-        r_1_rrrrs_r1_y = x_2_rrrrs_t_2 - c_2_rrrrs_t*xi_1_rrrrs_t
-        r_1_rrrrs_r2_x = c_3_rrrrs*r_1_rrrrs_r1_x + r_1_rrrrs_r1_y*s_3_rrrrs
-        r_1_rrrrs_r2_y = c_3_rrrrs*r_1_rrrrs_r1_y - r_1_rrrrs_r1_x*s_3_rrrrs
-        # (rrrrs-V5) velocity of the connection point per rate of joint 1
-        v_1_rrrrs_z = (
-        (c_4_rrrrs*e_1_rrrrs_r2_x - e_1_rrrrs_r2_y*s_4_rrrrs)*(c_4_rrrrs*r_1_rrrrs_r2_y +
-            r_1_rrrrs_r2_x*s_4_rrrrs) - (c_4_rrrrs*e_1_rrrrs_r2_y +
-            e_1_rrrrs_r2_x*s_4_rrrrs)*(c_4_rrrrs*r_1_rrrrs_r2_x - r_1_rrrrs_r2_y*s_4_rrrrs)
+        # (rrrrs-r_3) from joint 3 to the connection point, along the links
+        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4
+        rrrrs_r_3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
+        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
+        rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
+        # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
+        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrrs_e_1_r2_x = rrrrs_c_3*rrrrs_s_2 - rrrrs_c_2_t*rrrrs_s_3
+        rrrrs_e_1_r2_y = -rrrrs_c_2_t*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
+        # (rrrrs-r_1) from joint 1 to the connection point, along the links
+        rrrrs_r_1_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_xi_1_t
+        rrrrs_r_1_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_xi_1_t
+        rrrrs_r_1_r2_x = rrrrs_c_3*rrrrs_r_1_r1_x + rrrrs_r_1_r1_y*rrrrs_s_3
+        rrrrs_r_1_r2_y = rrrrs_c_3*rrrrs_r_1_r1_y - rrrrs_r_1_r1_x*rrrrs_s_3
+        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrrs_v_1_z = (
+        (rrrrs_c_4*rrrrs_e_1_r2_x - rrrrs_e_1_r2_y*rrrrs_s_4)*(rrrrs_c_4*rrrrs_r_1_r2_y +
+            rrrrs_r_1_r2_x*rrrrs_s_4) - (rrrrs_c_4*rrrrs_e_1_r2_y +
+            rrrrs_e_1_r2_x*rrrrs_s_4)*(rrrrs_c_4*rrrrs_r_1_r2_x - rrrrs_r_1_r2_y*rrrrs_s_4)
         )
-        # (rrrrs-V2) from joint 3 to the connection point, along the links
-        r_3_rrrrs_r0_x = c_4_rrrrs*r_3_rrrrs_x + r_3_rrrrs_t*s_4_rrrrs
-        r_3_rrrrs_r0_y = r_3_rrrrs_x*s_4_rrrrs - c_4_rrrrs*r_3_rrrrs_t
-        # (rrrrs-K10) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrrrs = 1.0/rho2_1_rrrrs
-        c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs
-        # (rrrrs-K11) sine of the angle of joint 1 from its reference direction
-        s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs
-        # (rrrrs-V9) reciprocal vector 1
+        # (rrrrs-r_3) from joint 3 to the connection point, along the links
+        rrrrs_r_3_r0_x = rrrrs_c_4*rrrrs_r_3_x + rrrrs_r_3_t*rrrrs_s_4
+        rrrrs_r_3_r0_y = rrrrs_r_3_x*rrrrs_s_4 - rrrrs_c_4*rrrrs_r_3_t
+        # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
+        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_py_1*rrrrs_root_1
+        # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_px_1*rrrrs_root_1
+        # (rrrrs-w_1) reciprocal vector 1
         axis_z_rrrrs_axes4_in_base_x = (
-        rrrrs_base_frame_xz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_xy
+        rrrrs_base_frame_xz*rrrrs_s_1 - rrrrs_base_frame_xy*rrrrs_c_1
         )
         axis_z_rrrrs_axes4_in_base_y = (
-        rrrrs_base_frame_yz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_yy
+        rrrrs_base_frame_yz*rrrrs_s_1 - rrrrs_base_frame_yy*rrrrs_c_1
         )
         axis_z_rrrrs_axes4_in_base_z = (
-        rrrrs_base_frame_zz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_zy
+        rrrrs_base_frame_zz*rrrrs_s_1 - rrrrs_base_frame_zy*rrrrs_c_1
         )
-        axis_y_rrrrs_axes4_r1_x = c_3_rrrrs*s_4_rrrrs - c_4_rrrrs*s_3_rrrrs
-        axis_y_rrrrs_axes4_r1_y = c_3_rrrrs*c_4_rrrrs + s_3_rrrrs*s_4_rrrrs
+        axis_y_rrrrs_axes4_r1_x = rrrrs_c_3*rrrrs_s_4 - rrrrs_c_4*rrrrs_s_3
+        axis_y_rrrrs_axes4_r1_y = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4
         axis_y_rrrrs_axes4_r2_x = (
-        -axis_y_rrrrs_axes4_r1_x*c_2_rrrrs_t - axis_y_rrrrs_axes4_r1_y*s_2_rrrrs
+        -axis_y_rrrrs_axes4_r1_x*rrrrs_c_2_t - axis_y_rrrrs_axes4_r1_y*rrrrs_s_2
         )
         axis_y_rrrrs_axes4_r2_y = (
-        axis_y_rrrrs_axes4_r1_x*s_2_rrrrs - axis_y_rrrrs_axes4_r1_y*c_2_rrrrs_t
+        axis_y_rrrrs_axes4_r1_x*rrrrs_s_2 - axis_y_rrrrs_axes4_r1_y*rrrrs_c_2_t
         )
-        w_1_rrrrs_t = axis_y_rrrrs_axes4_r2_x*s_1_rrrrs
-        w_1_rrrrs_t_2 = axis_y_rrrrs_axes4_r2_x*c_1_rrrrs
+        rrrrs_w_1_t = axis_y_rrrrs_axes4_r2_x*rrrrs_s_1
+        rrrrs_w_1_t_2 = axis_y_rrrrs_axes4_r2_x*rrrrs_c_1
         axis_y_rrrrs_axes4_in_base_x = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_xx - rrrrs_base_frame_xy*w_1_rrrrs_t -
-            rrrrs_base_frame_xz*w_1_rrrrs_t_2
+        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_xx - rrrrs_base_frame_xy*rrrrs_w_1_t -
+            rrrrs_base_frame_xz*rrrrs_w_1_t_2
         )
         axis_y_rrrrs_axes4_in_base_y = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_yx - rrrrs_base_frame_yy*w_1_rrrrs_t -
-            rrrrs_base_frame_yz*w_1_rrrrs_t_2
+        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_yx - rrrrs_base_frame_yy*rrrrs_w_1_t -
+            rrrrs_base_frame_yz*rrrrs_w_1_t_2
         )
         axis_y_rrrrs_axes4_in_base_z = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_zx - rrrrs_base_frame_zy*w_1_rrrrs_t -
-            rrrrs_base_frame_zz*w_1_rrrrs_t_2
+        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_zx - rrrrs_base_frame_zy*rrrrs_w_1_t -
+            rrrrs_base_frame_zz*rrrrs_w_1_t_2
         )
         axis_x_rrrrs_axes4_x = (
         axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_z -
@@ -4460,338 +4551,353 @@ def _run_Z(m, X, V):
         axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_y -
             axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_x
         )
-        inv_v_1_rrrrs_z = 1.0/v_1_rrrrs_z
-        # (rrrrs-V10) reciprocal vector 2
-        inv_r_3_rrrrs_r0_y = 1.0/r_3_rrrrs_r0_y
-        # (rrrrs-V1) velocity of the connection point
-        S_dot_rrrrs_t = omega_y*q_rrrrs_in_base_z - omega_z*q_rrrrs_in_base_y
-        S_dot_rrrrs_t_2 = omega_z*q_rrrrs_in_base_x - omega_x*q_rrrrs_in_base_z
-        S_dot_rrrrs_t_3 = omega_x*q_rrrrs_in_base_y - omega_y*q_rrrrs_in_base_x
-        S_dot_rrrrs_x = S_dot_rrrrs_t + t_dot_x
-        S_dot_rrrrs_y = S_dot_rrrrs_t_2 + t_dot_y
-        S_dot_rrrrs_z = S_dot_rrrrs_t_3 + t_dot_z
-        # (rrrrs-V3) from joint 2 to the connection point, along the links
-        r_2_rrrrs_r0_x = c_3_rrrrs*x_2_rrrrs_r1_x + s_3_rrrrs*x_2_rrrrs_r1_y
-        r_2_rrrrs_r0_y = c_3_rrrrs*x_2_rrrrs_r1_y - s_3_rrrrs*x_2_rrrrs_r1_x
-        r_2_rrrrs_r1_x = c_4_rrrrs*r_2_rrrrs_r0_x - r_2_rrrrs_r0_y*s_4_rrrrs
-        r_2_rrrrs_r1_y = c_4_rrrrs*r_2_rrrrs_r0_y + r_2_rrrrs_r0_x*s_4_rrrrs
-        # (rrrrs-V12) velocity of the connection point left to the joints that are not extra
-        S_dot_rest_rrrrs_x = (
-        S_dot_rrrrs_x - yd_2_rrrrs*(axis_y_rrrrs_axes4_in_base_x*r_2_rrrrs_r1_x -
-            axis_x_rrrrs_axes4_x*r_2_rrrrs_r1_y)
+        inv_rrrrs_v_1_z = 1.0/rrrrs_v_1_z
+        # (rrrrs-w_3) reciprocal vector 2
+        inv_rrrrs_r_3_r0_y = 1.0/rrrrs_r_3_r0_y
+        # (rrrrs-S_dot) velocity of the connection point
+        rrrrs_S_dot_t = omega_y*rrrrs_q_in_base_z - omega_z*rrrrs_q_in_base_y
+        rrrrs_S_dot_t_2 = omega_z*rrrrs_q_in_base_x - omega_x*rrrrs_q_in_base_z
+        rrrrs_S_dot_t_3 = omega_x*rrrrs_q_in_base_y - omega_y*rrrrs_q_in_base_x
+        rrrrs_S_dot_x = rrrrs_S_dot_t + t_dot_x
+        rrrrs_S_dot_y = rrrrs_S_dot_t_2 + t_dot_y
+        rrrrs_S_dot_z = rrrrs_S_dot_t_3 + t_dot_z
+        # (rrrrs-r_2) from joint 2 to the connection point, along the links
+        rrrrs_r_2_r0_x = rrrrs_c_3*rrrrs_x_2_r1_x + rrrrs_s_3*rrrrs_x_2_r1_y
+        rrrrs_r_2_r0_y = rrrrs_c_3*rrrrs_x_2_r1_y - rrrrs_s_3*rrrrs_x_2_r1_x
+        rrrrs_r_2_r1_x = rrrrs_c_4*rrrrs_r_2_r0_x - rrrrs_r_2_r0_y*rrrrs_s_4
+        rrrrs_r_2_r1_y = rrrrs_c_4*rrrrs_r_2_r0_y + rrrrs_r_2_r0_x*rrrrs_s_4
+        # (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra
+        rrrrs_S_dot_rest_x = (
+        rrrrs_S_dot_x - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_x*rrrrs_r_2_r1_x -
+            axis_x_rrrrs_axes4_x*rrrrs_r_2_r1_y)
         )
-        S_dot_rest_rrrrs_y = (
-        S_dot_rrrrs_y - yd_2_rrrrs*(axis_y_rrrrs_axes4_in_base_y*r_2_rrrrs_r1_x -
-            axis_x_rrrrs_axes4_y*r_2_rrrrs_r1_y)
+        rrrrs_S_dot_rest_y = (
+        rrrrs_S_dot_y - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_y*rrrrs_r_2_r1_x -
+            axis_x_rrrrs_axes4_y*rrrrs_r_2_r1_y)
         )
-        S_dot_rest_rrrrs_z = (
-        S_dot_rrrrs_z - yd_2_rrrrs*(axis_y_rrrrs_axes4_in_base_z*r_2_rrrrs_r1_x -
-            axis_x_rrrrs_axes4_z*r_2_rrrrs_r1_y)
+        rrrrs_S_dot_rest_z = (
+        rrrrs_S_dot_z - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_z*rrrrs_r_2_r1_x -
+            axis_x_rrrrs_axes4_z*rrrrs_r_2_r1_y)
         )
-        # (rrrrs-V13) rate of joint 1
-        qd_3_rrrrs = (
-        inv_r_3_rrrrs_r0_y*(S_dot_rest_rrrrs_x*axis_x_rrrrs_axes4_x +
-            S_dot_rest_rrrrs_y*axis_x_rrrrs_axes4_y + S_dot_rest_rrrrs_z*axis_x_rrrrs_axes4_z)
+        # (rrrrs-qd_4) rate of joint 4
+        rrrrs_qd_3 = (
+        inv_rrrrs_r_3_r0_y*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+            axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_x_rrrrs_axes4_z*rrrrs_S_dot_rest_z)
         )
-        qd_4_rrrrs = (
-        inv_rrrrs_platform_joint_offset_x*(S_dot_rest_rrrrs_x*axis_y_rrrrs_axes4_in_base_x +
-            S_dot_rest_rrrrs_y*axis_y_rrrrs_axes4_in_base_y +
-            S_dot_rest_rrrrs_z*axis_y_rrrrs_axes4_in_base_z + qd_3_rrrrs*r_3_rrrrs_r0_x)
+        rrrrs_qd_4 = (
+        inv_rrrrs_platform_joint_offset_x*(axis_y_rrrrs_axes4_in_base_x*rrrrs_S_dot_rest_x +
+            axis_y_rrrrs_axes4_in_base_y*rrrrs_S_dot_rest_y +
+            axis_y_rrrrs_axes4_in_base_z*rrrrs_S_dot_rest_z + rrrrs_qd_3*rrrrs_r_3_r0_x)
         )
-        qd_1_rrrrs = (
-        inv_v_1_rrrrs_z*(S_dot_rest_rrrrs_x*axis_z_rrrrs_axes4_in_base_x +
-            S_dot_rest_rrrrs_y*axis_z_rrrrs_axes4_in_base_y +
-            S_dot_rest_rrrrs_z*axis_z_rrrrs_axes4_in_base_z)
+        rrrrs_qd_1 = (
+        inv_rrrrs_v_1_z*(axis_z_rrrrs_axes4_in_base_x*rrrrs_S_dot_rest_x +
+            axis_z_rrrrs_axes4_in_base_y*rrrrs_S_dot_rest_y +
+            axis_z_rrrrs_axes4_in_base_z*rrrrs_S_dot_rest_z)
         )
-        # (rrrrs-V16) angular velocity of link 1
-        omega_1_rrrrs_t = qd_1_rrrrs*s_2_rrrrs
-        omega_1_rrrrs_t_2 = c_2_rrrrs_t*qd_1_rrrrs
-        # (rrrrs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_rrrrs_x = omega_1_rrrrs_t_2*yd_2_rrrrs
-        zeta_2_rrrrs_y = omega_1_rrrrs_t*yd_2_rrrrs
-        # (rrrrs-V18) angular velocity of link 2
-        omega_2_rrrrs_r0_x = c_3_rrrrs*omega_1_rrrrs_t - omega_1_rrrrs_t_2*s_3_rrrrs
-        omega_2_rrrrs_r0_y = -c_3_rrrrs*omega_1_rrrrs_t_2 - omega_1_rrrrs_t*s_3_rrrrs
-        # (rrrrs-A5) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_rrrrs_x = omega_2_rrrrs_r0_y*qd_3_rrrrs
-        zeta_3_rrrrs_y = omega_2_rrrrs_r0_x*qd_3_rrrrs
-        # (rrrrs-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_rrrrs_x = -zeta_3_rrrrs_x - c_3_rrrrs*zeta_2_rrrrs_x - s_3_rrrrs*zeta_2_rrrrs_y
-        beta_3_rrrrs_y = zeta_3_rrrrs_y + s_3_rrrrs*zeta_2_rrrrs_x - c_3_rrrrs*zeta_2_rrrrs_y
-        # (rrrrs-V20) angular velocity of link 3
-        omega_3_rrrrs_z = yd_2_rrrrs - qd_3_rrrrs
-        omega_3_rrrrs_r0_x = c_4_rrrrs*omega_2_rrrrs_r0_x - omega_2_rrrrs_r0_y*s_4_rrrrs
-        omega_3_rrrrs_r0_y = c_4_rrrrs*omega_2_rrrrs_r0_y + omega_2_rrrrs_r0_x*s_4_rrrrs
-        # (rrrrs-A7) angular acceleration of link 4 from the turning of axis 4
-        zeta_4_rrrrs_y = omega_3_rrrrs_r0_x*qd_4_rrrrs
-        # (rrrrs-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_rrrrs_r0_y = beta_3_rrrrs_x*s_4_rrrrs + beta_3_rrrrs_y*c_4_rrrrs
-        # (rrrrs-A8) angular acceleration of link 4 at zero joint accelerations
-        beta_4_rrrrs_y = beta_3_rrrrs_r0_y - zeta_4_rrrrs_y
-        # (rrrrs-V22) angular velocity of link 4
-        omega_4_rrrrs_z = omega_3_rrrrs_z + qd_4_rrrrs
-        # (rrrrs-V19) centripetal tensor of link 2
-        W_2_rrrrs_t = omega_1_rrrrs_t*omega_1_rrrrs_t
-        W_2_rrrrs_t_2 = omega_1_rrrrs_t_2*omega_1_rrrrs_t_2
-        W_2_rrrrs_t_3 = yd_2_rrrrs*yd_2_rrrrs
-        W_2_rrrrs_xy = omega_1_rrrrs_t*omega_1_rrrrs_t_2
-        # (rrrrs-V21) centripetal tensor of link 3
-        W_3_rrrrs_t = omega_2_rrrrs_r0_x*omega_2_rrrrs_r0_x
-        W_3_rrrrs_t_2 = omega_2_rrrrs_r0_y*omega_2_rrrrs_r0_y
-        W_3_rrrrs_t_3 = omega_3_rrrrs_z*omega_3_rrrrs_z
-        W_3_rrrrs_xy = omega_2_rrrrs_r0_x*omega_2_rrrrs_r0_y
-        W_3_rrrrs_xz = omega_2_rrrrs_r0_x*omega_3_rrrrs_z
-        W_3_rrrrs_yz = omega_2_rrrrs_r0_y*omega_3_rrrrs_z
-        # (rrrrs-V23) centripetal tensor of link 4
-        W_4_rrrrs_t = omega_3_rrrrs_r0_x*omega_3_rrrrs_r0_x
-        W_4_rrrrs_t_2 = omega_3_rrrrs_r0_y*omega_3_rrrrs_r0_y
-        W_4_rrrrs_t_3 = omega_4_rrrrs_z*omega_4_rrrrs_z
-        W_4_rrrrs_xx = W_4_rrrrs_t_2 + W_4_rrrrs_t_3
-        W_4_rrrrs_xy = omega_3_rrrrs_r0_x*omega_3_rrrrs_r0_y
-        W_4_rrrrs_xz = omega_3_rrrrs_r0_x*omega_4_rrrrs_z
-        W_4_rrrrs_yz = omega_3_rrrrs_r0_y*omega_4_rrrrs_z
-        # (rrrrs-A9) acceleration of the connection point at zero joint accelerations
-        bias_rrrrs_t = rrrrs_joint2_offset_x*s_2_rrrrs
-        bias_rrrrs_t_2 = c_2_rrrrs_t*rrrrs_joint2_offset_x
-        d_2_rrrrs_r2_x = bias_rrrrs_t*c_3_rrrrs - bias_rrrrs_t_2*s_3_rrrrs
-        d_2_rrrrs_r2_y = -bias_rrrrs_t*s_3_rrrrs - bias_rrrrs_t_2*c_3_rrrrs
-        d_2_rrrrs_r3_x = c_4_rrrrs*d_2_rrrrs_r2_x - d_2_rrrrs_r2_y*s_4_rrrrs
-        d_2_rrrrs_r3_y = c_4_rrrrs*d_2_rrrrs_r2_y + d_2_rrrrs_r2_x*s_4_rrrrs
-        bias_rrrrs_t_3 = c_3_rrrrs*rrrrs_joint3_offset_x
-        bias_rrrrs_t_4 = rrrrs_joint3_offset_x*s_3_rrrrs
-        d_3_rrrrs_r1_x = bias_rrrrs_t_3*c_4_rrrrs + bias_rrrrs_t_4*s_4_rrrrs
-        d_3_rrrrs_r1_y = bias_rrrrs_t_3*s_4_rrrrs - bias_rrrrs_t_4*c_4_rrrrs
-        bias_rrrrs_t_5 = c_4_rrrrs*rrrrs_joint4_offset_x
-        bias_rrrrs_t_6 = rrrrs_joint4_offset_x*s_4_rrrrs
-        bias_rrrrs_x = (
-        W_4_rrrrs_xy*bias_rrrrs_t_6 + W_4_rrrrs_xy*d_2_rrrrs_r3_y + W_4_rrrrs_xy*d_3_rrrrs_r1_y -
-            W_4_rrrrs_t_2*d_2_rrrrs_r3_x - W_4_rrrrs_xx*rrrrs_platform_joint_offset_x -
-            bias_rrrrs_t_5*(W_3_rrrrs_t_3 + W_4_rrrrs_t_2) - d_3_rrrrs_r1_x*(W_2_rrrrs_t_3 +
-            W_4_rrrrs_t_2)
+        # (rrrrs-omega_1) angular velocity of link 1
+        rrrrs_omega_1_t = rrrrs_qd_1*rrrrs_s_2
+        rrrrs_omega_1_t_2 = rrrrs_c_2_t*rrrrs_qd_1
+        # (rrrrs-omega_2) angular velocity of link 2
+        rrrrs_omega_2_r0_x = rrrrs_c_3*rrrrs_omega_1_t - rrrrs_omega_1_t_2*rrrrs_s_3
+        rrrrs_omega_2_r0_y = -rrrrs_c_3*rrrrs_omega_1_t_2 - rrrrs_omega_1_t*rrrrs_s_3
+        # (rrrrs-omega_3) angular velocity of link 3
+        rrrrs_omega_3_z = rrrrs_yd_2 - rrrrs_qd_3
+        rrrrs_omega_3_r0_x = rrrrs_c_4*rrrrs_omega_2_r0_x - rrrrs_omega_2_r0_y*rrrrs_s_4
+        rrrrs_omega_3_r0_y = rrrrs_c_4*rrrrs_omega_2_r0_y + rrrrs_omega_2_r0_x*rrrrs_s_4
+        # (rrrrs-omega_4) angular velocity of link 4
+        rrrrs_omega_4_z = rrrrs_omega_3_z + rrrrs_qd_4
+        # (rrrrs-zeta_4) angular acceleration of link 4 from the turning of axis 4
+        rrrrs_zeta_4_y = rrrrs_omega_3_r0_x*rrrrs_qd_4
+        # (rrrrs-u_1) centripetal acceleration of the connection point
+        rrrrs_u_1_x = omega_y*rrrrs_S_dot_t_3 - omega_z*rrrrs_S_dot_t_2
+        rrrrs_u_1_y = omega_z*rrrrs_S_dot_t - omega_x*rrrrs_S_dot_t_3
+        rrrrs_u_1_z = omega_x*rrrrs_S_dot_t_2 - omega_y*rrrrs_S_dot_t
+        # (rrrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        rrrrs_zeta_2_x = rrrrs_omega_1_t_2*rrrrs_yd_2
+        rrrrs_zeta_2_y = rrrrs_omega_1_t*rrrrs_yd_2
+        # (rrrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrrs_zeta_3_x = rrrrs_omega_2_r0_y*rrrrs_qd_3
+        rrrrs_zeta_3_y = rrrrs_omega_2_r0_x*rrrrs_qd_3
+        # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        rrrrs_beta_3_x = -rrrrs_zeta_3_x - rrrrs_c_3*rrrrs_zeta_2_x - rrrrs_s_3*rrrrs_zeta_2_y
+        rrrrs_beta_3_y = rrrrs_zeta_3_y + rrrrs_s_3*rrrrs_zeta_2_x - rrrrs_c_3*rrrrs_zeta_2_y
+        rrrrs_beta_3_r0_y = rrrrs_beta_3_x*rrrrs_s_4 + rrrrs_beta_3_y*rrrrs_c_4
+        # (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations
+        rrrrs_beta_4_y = rrrrs_beta_3_r0_y - rrrrs_zeta_4_y
+        # (rrrrs-W_2) centripetal tensor of link 2
+        rrrrs_W_2_t = rrrrs_omega_1_t*rrrrs_omega_1_t
+        rrrrs_W_2_t_2 = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2
+        rrrrs_W_2_t_3 = rrrrs_yd_2*rrrrs_yd_2
+        rrrrs_W_2_xy = rrrrs_omega_1_t*rrrrs_omega_1_t_2
+        # (rrrrs-W_3) centripetal tensor of link 3
+        rrrrs_W_3_t = rrrrs_omega_2_r0_x*rrrrs_omega_2_r0_x
+        rrrrs_W_3_t_2 = rrrrs_omega_2_r0_y*rrrrs_omega_2_r0_y
+        rrrrs_W_3_t_3 = rrrrs_omega_3_z*rrrrs_omega_3_z
+        rrrrs_W_3_xy = rrrrs_omega_2_r0_x*rrrrs_omega_2_r0_y
+        rrrrs_W_3_xz = rrrrs_omega_2_r0_x*rrrrs_omega_3_z
+        rrrrs_W_3_yz = rrrrs_omega_2_r0_y*rrrrs_omega_3_z
+        # (rrrrs-W_4) centripetal tensor of link 4
+        rrrrs_W_4_t = rrrrs_omega_3_r0_x*rrrrs_omega_3_r0_x
+        rrrrs_W_4_t_2 = rrrrs_omega_3_r0_y*rrrrs_omega_3_r0_y
+        rrrrs_W_4_t_3 = rrrrs_omega_4_z*rrrrs_omega_4_z
+        rrrrs_W_4_xx = rrrrs_W_4_t_2 + rrrrs_W_4_t_3
+        rrrrs_W_4_xy = rrrrs_omega_3_r0_x*rrrrs_omega_3_r0_y
+        rrrrs_W_4_xz = rrrrs_omega_3_r0_x*rrrrs_omega_4_z
+        rrrrs_W_4_yz = rrrrs_omega_3_r0_y*rrrrs_omega_4_z
+        # (rrrrs-bias) acceleration of the connection point at zero joint accelerations
+        rrrrs_d_2_r2_x = rrrrs_Kr_1_t*rrrrs_c_3 - rrrrs_Kr_1_t_2*rrrrs_s_3
+        rrrrs_d_2_r2_y = -rrrrs_Kr_1_t*rrrrs_s_3 - rrrrs_Kr_1_t_2*rrrrs_c_3
+        rrrrs_d_2_r3_x = rrrrs_c_4*rrrrs_d_2_r2_x - rrrrs_d_2_r2_y*rrrrs_s_4
+        rrrrs_d_2_r3_y = rrrrs_c_4*rrrrs_d_2_r2_y + rrrrs_d_2_r2_x*rrrrs_s_4
+        rrrrs_bias_t = rrrrs_c_3*rrrrs_joint3_offset_x
+        rrrrs_bias_t_2 = rrrrs_joint3_offset_x*rrrrs_s_3
+        rrrrs_d_3_r1_x = rrrrs_bias_t*rrrrs_c_4 + rrrrs_bias_t_2*rrrrs_s_4
+        rrrrs_d_3_r1_y = rrrrs_bias_t*rrrrs_s_4 - rrrrs_bias_t_2*rrrrs_c_4
+        rrrrs_bias_t_3 = rrrrs_c_4*rrrrs_joint4_offset_x
+        rrrrs_bias_t_4 = rrrrs_joint4_offset_x*rrrrs_s_4
+        rrrrs_bias_x = (
+        rrrrs_W_4_xy*rrrrs_bias_t_4 + rrrrs_W_4_xy*rrrrs_d_2_r3_y + rrrrs_W_4_xy*rrrrs_d_3_r1_y -
+            rrrrs_W_4_t_2*rrrrs_d_2_r3_x - rrrrs_W_4_xx*rrrrs_platform_joint_offset_x -
+            rrrrs_bias_t_3*(rrrrs_W_3_t_3 + rrrrs_W_4_t_2) - rrrrs_d_3_r1_x*(rrrrs_W_2_t_3 +
+            rrrrs_W_4_t_2)
         )
-        bias_rrrrs_y = (
-        W_4_rrrrs_xy*bias_rrrrs_t_5 + W_4_rrrrs_xy*d_2_rrrrs_r3_x + W_4_rrrrs_xy*d_3_rrrrs_r1_x +
-            W_4_rrrrs_xy*rrrrs_platform_joint_offset_x - W_4_rrrrs_t*d_2_rrrrs_r3_y -
-            bias_rrrrs_t_6*(W_3_rrrrs_t_3 + W_4_rrrrs_t) - d_3_rrrrs_r1_y*(W_2_rrrrs_t_3 +
-            W_4_rrrrs_t)
+        rrrrs_bias_y = (
+        rrrrs_W_4_xy*rrrrs_bias_t_3 + rrrrs_W_4_xy*rrrrs_d_2_r3_x + rrrrs_W_4_xy*rrrrs_d_3_r1_x +
+            rrrrs_W_4_xy*rrrrs_platform_joint_offset_x - rrrrs_W_4_t*rrrrs_d_2_r3_y -
+            rrrrs_bias_t_4*(rrrrs_W_3_t_3 + rrrrs_W_4_t) - rrrrs_d_3_r1_y*(rrrrs_W_2_t_3 +
+            rrrrs_W_4_t)
         )
-        bias_rrrrs_z = (
-        bias_rrrrs_t_5*(omega_3_rrrrs_r0_x*omega_3_rrrrs_z - beta_3_rrrrs_r0_y) +
-            bias_rrrrs_t_6*(beta_3_rrrrs_x*c_4_rrrrs + omega_3_rrrrs_r0_y*omega_3_rrrrs_z -
-            beta_3_rrrrs_y*s_4_rrrrs) + rrrrs_platform_joint_offset_x*(W_4_rrrrs_xz -
-            beta_4_rrrrs_y) + 2.0*d_3_rrrrs_r1_x*omega_3_rrrrs_r0_x*yd_2_rrrrs +
-            2.0*d_3_rrrrs_r1_y*omega_3_rrrrs_r0_y*yd_2_rrrrs
+        rrrrs_bias_z = (
+        rrrrs_bias_t_3*(rrrrs_omega_3_r0_x*rrrrs_omega_3_z - rrrrs_beta_3_r0_y) +
+            rrrrs_bias_t_4*(rrrrs_beta_3_x*rrrrs_c_4 + rrrrs_omega_3_r0_y*rrrrs_omega_3_z -
+            rrrrs_beta_3_y*rrrrs_s_4) + rrrrs_platform_joint_offset_x*(rrrrs_W_4_xz -
+            rrrrs_beta_4_y) + 2.0*rrrrs_d_3_r1_x*rrrrs_omega_3_r0_x*rrrrs_yd_2 +
+            2.0*rrrrs_d_3_r1_y*rrrrs_omega_3_r0_y*rrrrs_yd_2
         )
-        # (rrrrs-A1) centripetal acceleration of the connection point
-        u_1_rrrrs_x = S_dot_rrrrs_t_3*omega_y - S_dot_rrrrs_t_2*omega_z
-        u_1_rrrrs_y = S_dot_rrrrs_t*omega_z - S_dot_rrrrs_t_3*omega_x
-        u_1_rrrrs_z = S_dot_rrrrs_t_2*omega_x - S_dot_rrrrs_t*omega_y
-        u_1_rrrrs_tip_x = (
-        axis_x_rrrrs_axes4_x*u_1_rrrrs_x + axis_x_rrrrs_axes4_y*u_1_rrrrs_y +
-            axis_x_rrrrs_axes4_z*u_1_rrrrs_z
+        # (rrrrs-u_1) centripetal acceleration of the connection point
+        rrrrs_u_1_tip_x = (
+        axis_x_rrrrs_axes4_x*rrrrs_u_1_x + axis_x_rrrrs_axes4_y*rrrrs_u_1_y +
+            axis_x_rrrrs_axes4_z*rrrrs_u_1_z
         )
-        u_1_rrrrs_tip_y = (
-        axis_y_rrrrs_axes4_in_base_x*u_1_rrrrs_x + axis_y_rrrrs_axes4_in_base_y*u_1_rrrrs_y +
-            axis_y_rrrrs_axes4_in_base_z*u_1_rrrrs_z
+        rrrrs_u_1_tip_y = (
+        axis_y_rrrrs_axes4_in_base_x*rrrrs_u_1_x + axis_y_rrrrs_axes4_in_base_y*rrrrs_u_1_y +
+            axis_y_rrrrs_axes4_in_base_z*rrrrs_u_1_z
         )
-        u_1_rrrrs_tip_z = (
-        axis_z_rrrrs_axes4_in_base_x*u_1_rrrrs_x + axis_z_rrrrs_axes4_in_base_y*u_1_rrrrs_y +
-            axis_z_rrrrs_axes4_in_base_z*u_1_rrrrs_z
+        rrrrs_u_1_tip_z = (
+        axis_z_rrrrs_axes4_in_base_x*rrrrs_u_1_x + axis_z_rrrrs_axes4_in_base_y*rrrrs_u_1_y +
+            axis_z_rrrrs_axes4_in_base_z*rrrrs_u_1_z
         )
-        # (rrrrs-A12) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_rrrrs_o_x = u_1_rrrrs_tip_x - bias_rrrrs_x
-        rel_rrrrs_o_y = u_1_rrrrs_tip_y - bias_rrrrs_y
-        rel_rrrrs_o_z = u_1_rrrrs_tip_z - bias_rrrrs_z
-        # (rrrrs-A15) remainder without the acceleration in: acceleration of joint 1
-        qdd_3_rrrrs_o = inv_r_3_rrrrs_r0_y*rel_rrrrs_o_x
-        qdd_1_rrrrs_o = inv_v_1_rrrrs_z*rel_rrrrs_o_z
-        # (rrrrs-A23) remainder without the acceleration in: angular acceleration of link 1
-        alpha_1_rrrrs_o_t = qdd_1_rrrrs_o*s_2_rrrrs
-        alpha_1_rrrrs_o_t_2 = c_2_rrrrs_t*qdd_1_rrrrs_o
-        # (rrrrs-A27) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_rrrrs_o_x = alpha_1_rrrrs_o_t - zeta_2_rrrrs_x
-        alpha_2_rrrrs_o_y = -alpha_1_rrrrs_o_t_2 - zeta_2_rrrrs_y
-        # (rrrrs-A29) remainder of the acceleration tensor of link 2
-        B_2_rrrrs_o_zx = zeta_2_rrrrs_y - alpha_2_rrrrs_o_y
-        B_2_rrrrs_o_zy = alpha_2_rrrrs_o_x - zeta_2_rrrrs_x
-        # (rrrrs-A42) remainder without the acceleration in: acceleration of the origin of joint 3
-        a_o3_rrrrs_o_t = rrrrs_joint3_offset_x*(W_2_rrrrs_t_2 + W_2_rrrrs_t_3)
-        a_o3_rrrrs_o_t_2 = W_2_rrrrs_xy*rrrrs_joint3_offset_x
-        # (rrrrs-N10) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        g_r1_x = g_r0_y*s_1_rrrrs - c_1_rrrrs*g_r0_x
-        g_r1_y = -c_1_rrrrs*g_r0_y - g_r0_x*s_1_rrrrs
-        g_r3_x = g_r0_z*s_2_rrrrs - c_2_rrrrs_t*g_r1_y
-        g_r3_y = -c_2_rrrrs_t*g_r0_z - g_r1_y*s_2_rrrrs
-        g_r4_x = c_3_rrrrs*g_r3_x + g_r3_y*s_3_rrrrs
-        g_r4_y = c_3_rrrrs*g_r3_y - g_r3_x*s_3_rrrrs
-        acc_3_rrrrs_o_x = -g_r4_x - a_o3_rrrrs_o_t*c_3_rrrrs - a_o3_rrrrs_o_t_2*s_3_rrrrs
-        acc_3_rrrrs_o_y = a_o3_rrrrs_o_t*s_3_rrrrs - g_r4_y - a_o3_rrrrs_o_t_2*c_3_rrrrs
-        acc_3_rrrrs_o_z = B_2_rrrrs_o_zx*rrrrs_joint3_offset_x - g_r1_x
-        # (rrrrs-A31) remainder without the acceleration in: angular acceleration of link 3
-        alpha_3_rrrrs_o_x = (
-        alpha_2_rrrrs_o_x*c_3_rrrrs + alpha_2_rrrrs_o_y*s_3_rrrrs - zeta_3_rrrrs_x
+        # (rrrrs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        rrrrs_rel_o_x = rrrrs_u_1_tip_x - rrrrs_bias_x
+        rrrrs_rel_o_y = rrrrs_u_1_tip_y - rrrrs_bias_y
+        rrrrs_rel_o_z = rrrrs_u_1_tip_z - rrrrs_bias_z
+        # (rrrrs-qdd_4_o) remainder without the acceleration in: acceleration of joint 4
+        rrrrs_qdd_3_o = inv_rrrrs_r_3_r0_y*rrrrs_rel_o_x
+        rrrrs_qdd_1_o = inv_rrrrs_v_1_z*rrrrs_rel_o_z
+        # (rrrrs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        rrrrs_alpha_1_o_t = rrrrs_qdd_1_o*rrrrs_s_2
+        rrrrs_alpha_1_o_t_2 = rrrrs_c_2_t*rrrrs_qdd_1_o
+        # (rrrrs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        rrrrs_alpha_2_o_x = rrrrs_alpha_1_o_t - rrrrs_zeta_2_x
+        rrrrs_alpha_2_o_y = -rrrrs_alpha_1_o_t_2 - rrrrs_zeta_2_y
+        # (rrrrs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        rrrrs_alpha_3_o_x = (
+        rrrrs_alpha_2_o_x*rrrrs_c_3 + rrrrs_alpha_2_o_y*rrrrs_s_3 - rrrrs_zeta_3_x
         )
-        alpha_3_rrrrs_o_y = (
-        zeta_3_rrrrs_y + alpha_2_rrrrs_o_y*c_3_rrrrs - alpha_2_rrrrs_o_x*s_3_rrrrs
+        rrrrs_alpha_3_o_y = (
+        rrrrs_zeta_3_y + rrrrs_alpha_2_o_y*rrrrs_c_3 - rrrrs_alpha_2_o_x*rrrrs_s_3
         )
-        # (rrrrs-A33) remainder of the acceleration tensor of link 3
-        B_3_rrrrs_o_xy = W_3_rrrrs_xy + qdd_3_rrrrs_o
-        B_3_rrrrs_o_xz = W_3_rrrrs_xz + alpha_3_rrrrs_o_y
-        B_3_rrrrs_o_yx = W_3_rrrrs_xy - qdd_3_rrrrs_o
-        B_3_rrrrs_o_yz = W_3_rrrrs_yz - alpha_3_rrrrs_o_x
-        B_3_rrrrs_o_zx = W_3_rrrrs_xz - alpha_3_rrrrs_o_y
-        B_3_rrrrs_o_zy = W_3_rrrrs_yz + alpha_3_rrrrs_o_x
-        # (rrrrs-N54) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        mu_3_rrrrs_o_x = (
-        B_3_rrrrs_o_yx*J_3_rrrrs_xz + B_3_rrrrs_o_zy*Sigma_3_rrrrs_yy +
-            J_3_rrrrs_yz*(W_3_rrrrs_t_2 - W_3_rrrrs_t_3) + acc_3_rrrrs_o_z*h_3_rrrrs_y -
-            B_3_rrrrs_o_yz*Sigma_3_rrrrs_zz - B_3_rrrrs_o_zx*J_3_rrrrs_xy -
-            acc_3_rrrrs_o_y*h_3_rrrrs_z
+        # (rrrrs-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4
+        rrrrs_alpha_4_o_x = (
+        rrrrs_alpha_3_o_x*rrrrs_c_4 + rrrrs_omega_3_r0_y*rrrrs_qd_4 - rrrrs_alpha_3_o_y*rrrrs_s_4
         )
-        mu_3_rrrrs_o_y = (
-        B_3_rrrrs_o_xz*Sigma_3_rrrrs_zz + B_3_rrrrs_o_zy*J_3_rrrrs_xy +
-            acc_3_rrrrs_o_x*h_3_rrrrs_z - B_3_rrrrs_o_xy*J_3_rrrrs_yz -
-            B_3_rrrrs_o_zx*Sigma_3_rrrrs_xx - J_3_rrrrs_xz*(W_3_rrrrs_t - W_3_rrrrs_t_3) -
-            acc_3_rrrrs_o_z*h_3_rrrrs_x
+        rrrrs_alpha_4_o_y = (
+        rrrrs_alpha_3_o_x*rrrrs_s_4 + rrrrs_alpha_3_o_y*rrrrs_c_4 - rrrrs_zeta_4_y
         )
-        mu_3_rrrrs_o_z = (
-        B_3_rrrrs_o_xz*J_3_rrrrs_yz + B_3_rrrrs_o_yx*Sigma_3_rrrrs_xx + J_3_rrrrs_xy*(W_3_rrrrs_t
-            - W_3_rrrrs_t_2) + acc_3_rrrrs_o_y*h_3_rrrrs_x - B_3_rrrrs_o_xy*Sigma_3_rrrrs_yy -
-            B_3_rrrrs_o_yz*J_3_rrrrs_xz - acc_3_rrrrs_o_x*h_3_rrrrs_y
+        rrrrs_alpha_4_o_z = (
+        inv_rrrrs_platform_joint_offset_x*(rrrrs_rel_o_y + rrrrs_qdd_3_o*rrrrs_r_3_r0_x) -
+            rrrrs_qdd_3_o
         )
-        # (rrrrs-N16) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
-        acc_4_rrrrs_o_x = u_1_rrrrs_tip_x + g_r4_y*s_4_rrrrs - c_4_rrrrs*g_r4_x
-        acc_4_rrrrs_o_y = u_1_rrrrs_tip_y - c_4_rrrrs*g_r4_y - g_r4_x*s_4_rrrrs
-        acc_4_rrrrs_o_z = u_1_rrrrs_tip_z - g_r1_x
-        # (rrrrs-A36) remainder without the acceleration in: angular acceleration of link 4
-        alpha_4_rrrrs_o_x = (
-        alpha_3_rrrrs_o_x*c_4_rrrrs + omega_3_rrrrs_r0_y*qd_4_rrrrs - alpha_3_rrrrs_o_y*s_4_rrrrs
+        # (rrrrs-B_4_o) remainder of the acceleration tensor of link 4
+        rrrrs_B_4_o_xy = rrrrs_W_4_xy - rrrrs_alpha_4_o_z
+        rrrrs_B_4_o_xz = rrrrs_W_4_xz + rrrrs_alpha_4_o_y
+        rrrrs_B_4_o_yx = rrrrs_W_4_xy + rrrrs_alpha_4_o_z
+        rrrrs_B_4_o_yz = rrrrs_W_4_yz - rrrrs_alpha_4_o_x
+        rrrrs_B_4_o_zx = rrrrs_W_4_xz - rrrrs_alpha_4_o_y
+        rrrrs_B_4_o_zy = rrrrs_W_4_yz + rrrrs_alpha_4_o_x
+        # (rrrrs-acc_4_o) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+        rrrrs_acc_4_o_x = (
+        rrrrs_u_1_tip_x - axis_x_rrrrs_axes4_x*gravity_x - axis_x_rrrrs_axes4_y*gravity_y -
+            axis_x_rrrrs_axes4_z*gravity_z
         )
-        alpha_4_rrrrs_o_y = (
-        alpha_3_rrrrs_o_x*s_4_rrrrs + alpha_3_rrrrs_o_y*c_4_rrrrs - zeta_4_rrrrs_y
+        rrrrs_acc_4_o_y = (
+        rrrrs_u_1_tip_y - axis_y_rrrrs_axes4_in_base_x*gravity_x -
+            axis_y_rrrrs_axes4_in_base_y*gravity_y - axis_y_rrrrs_axes4_in_base_z*gravity_z
         )
-        alpha_4_rrrrs_o_z = (
-        inv_rrrrs_platform_joint_offset_x*(rel_rrrrs_o_y + qdd_3_rrrrs_o*r_3_rrrrs_r0_x) -
-            qdd_3_rrrrs_o
+        rrrrs_acc_4_o_z = (
+        rrrrs_u_1_tip_z - axis_z_rrrrs_axes4_in_base_x*gravity_x -
+            axis_z_rrrrs_axes4_in_base_y*gravity_y - axis_z_rrrrs_axes4_in_base_z*gravity_z
         )
-        # (rrrrs-A38) remainder of the acceleration tensor of link 4
-        B_4_rrrrs_o_xy = W_4_rrrrs_xy - alpha_4_rrrrs_o_z
-        B_4_rrrrs_o_xz = W_4_rrrrs_xz + alpha_4_rrrrs_o_y
-        B_4_rrrrs_o_yx = W_4_rrrrs_xy + alpha_4_rrrrs_o_z
-        B_4_rrrrs_o_yz = W_4_rrrrs_yz - alpha_4_rrrrs_o_x
-        B_4_rrrrs_o_zx = W_4_rrrrs_xz - alpha_4_rrrrs_o_y
-        B_4_rrrrs_o_zy = W_4_rrrrs_yz + alpha_4_rrrrs_o_x
-        # (rrrrs-N46) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
-        mu_4_rrrrs_o_x = (
-        B_4_rrrrs_o_yx*J_4_rrrrs_xz + B_4_rrrrs_o_zy*Sigma_4_rrrrs_yy +
-            J_4_rrrrs_yz*(W_4_rrrrs_t_2 - W_4_rrrrs_t_3) + acc_4_rrrrs_o_z*h_4_rrrrs_y -
-            B_4_rrrrs_o_yz*Sigma_4_rrrrs_zz - B_4_rrrrs_o_zx*J_4_rrrrs_xy -
-            acc_4_rrrrs_o_y*h_4_rrrrs_z
+        # (rrrrs-mu_4_o) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
+        rrrrs_mu_4_o_x = (
+        rrrrs_B_4_o_yx*rrrrs_J_4_xz + rrrrs_B_4_o_zy*rrrrs_Sigma_4_yy +
+            rrrrs_J_4_yz*(rrrrs_W_4_t_2 - rrrrs_W_4_t_3) + rrrrs_acc_4_o_z*rrrrs_h_4_y -
+            rrrrs_B_4_o_yz*rrrrs_Sigma_4_zz - rrrrs_B_4_o_zx*rrrrs_J_4_xy -
+            rrrrs_acc_4_o_y*rrrrs_h_4_z
         )
-        mu_4_rrrrs_o_y = (
-        B_4_rrrrs_o_xz*Sigma_4_rrrrs_zz + B_4_rrrrs_o_zy*J_4_rrrrs_xy +
-            acc_4_rrrrs_o_x*h_4_rrrrs_z - B_4_rrrrs_o_xy*J_4_rrrrs_yz -
-            B_4_rrrrs_o_zx*Sigma_4_rrrrs_xx - J_4_rrrrs_xz*(W_4_rrrrs_t - W_4_rrrrs_t_3) -
-            acc_4_rrrrs_o_z*h_4_rrrrs_x
+        rrrrs_mu_4_o_y = (
+        rrrrs_B_4_o_xz*rrrrs_Sigma_4_zz + rrrrs_B_4_o_zy*rrrrs_J_4_xy +
+            rrrrs_acc_4_o_x*rrrrs_h_4_z - rrrrs_B_4_o_xy*rrrrs_J_4_yz -
+            rrrrs_B_4_o_zx*rrrrs_Sigma_4_xx - rrrrs_J_4_xz*(rrrrs_W_4_t - rrrrs_W_4_t_3) -
+            rrrrs_acc_4_o_z*rrrrs_h_4_x
         )
-        mu_4_rrrrs_o_z = (
-        B_4_rrrrs_o_xz*J_4_rrrrs_yz + B_4_rrrrs_o_yx*Sigma_4_rrrrs_xx + J_4_rrrrs_xy*(W_4_rrrrs_t
-            - W_4_rrrrs_t_2) + acc_4_rrrrs_o_y*h_4_rrrrs_x - B_4_rrrrs_o_xy*Sigma_4_rrrrs_yy -
-            B_4_rrrrs_o_yz*J_4_rrrrs_xz - acc_4_rrrrs_o_x*h_4_rrrrs_y
+        rrrrs_mu_4_o_z = (
+        rrrrs_B_4_o_xz*rrrrs_J_4_yz + rrrrs_B_4_o_yx*rrrrs_Sigma_4_xx + rrrrs_J_4_xy*(rrrrs_W_4_t
+            - rrrrs_W_4_t_2) + rrrrs_acc_4_o_y*rrrrs_h_4_x - rrrrs_B_4_o_xy*rrrrs_Sigma_4_yy -
+            rrrrs_B_4_o_yz*rrrrs_J_4_xz - rrrrs_acc_4_o_x*rrrrs_h_4_y
         )
-        # (rrrrs-N56) remainder without the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-        N_3_rrrrs_o_x = mu_3_rrrrs_o_x + c_4_rrrrs*mu_4_rrrrs_o_x + mu_4_rrrrs_o_y*s_4_rrrrs
-        N_3_rrrrs_o_y = mu_3_rrrrs_o_y + c_4_rrrrs*mu_4_rrrrs_o_y - mu_4_rrrrs_o_x*s_4_rrrrs
-        N_3_rrrrs_o_z = mu_3_rrrrs_o_z + mu_4_rrrrs_o_z
-        # (rrrrs-N14) remainder without the acceleration in: inertia force of link 3 less its weight
-        f_3_rrrrs_o_x = (
-        B_3_rrrrs_o_xy*h_3_rrrrs_y + B_3_rrrrs_o_xz*h_3_rrrrs_z + acc_3_rrrrs_o_x*rrrrs_link3_mass
-            - h_3_rrrrs_x*(W_3_rrrrs_t_2 + W_3_rrrrs_t_3)
+        # (rrrrs-B_2_o) remainder of the acceleration tensor of link 2
+        rrrrs_B_2_o_zx = rrrrs_zeta_2_y - rrrrs_alpha_2_o_y
+        rrrrs_B_2_o_zy = rrrrs_alpha_2_o_x - rrrrs_zeta_2_x
+        # (rrrrs-a_o_3_o) remainder without the acceleration in: acceleration of the origin of joint 3
+        rrrrs_a_o_3_o_t = rrrrs_joint3_offset_x*(rrrrs_W_2_t_2 + rrrrs_W_2_t_3)
+        rrrrs_a_o_3_o_t_2 = rrrrs_W_2_xy*rrrrs_joint3_offset_x
+        # (rrrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        rrrrs_g_r1_x = rrrrs_g_r0_y*rrrrs_s_1 - rrrrs_c_1*rrrrs_g_r0_x
+        rrrrs_g_r1_y = -rrrrs_c_1*rrrrs_g_r0_y - rrrrs_g_r0_x*rrrrs_s_1
+        rrrrs_g_r3_x = rrrrs_g_r0_z*rrrrs_s_2 - rrrrs_c_2_t*rrrrs_g_r1_y
+        rrrrs_g_r3_y = -rrrrs_c_2_t*rrrrs_g_r0_z - rrrrs_g_r1_y*rrrrs_s_2
+        rrrrs_acc_3_o_x = (
+        -rrrrs_a_o_3_o_t*rrrrs_c_3 - rrrrs_a_o_3_o_t_2*rrrrs_s_3 - rrrrs_c_3*rrrrs_g_r3_x -
+            rrrrs_g_r3_y*rrrrs_s_3
         )
-        f_3_rrrrs_o_y = (
-        B_3_rrrrs_o_yx*h_3_rrrrs_x + B_3_rrrrs_o_yz*h_3_rrrrs_z + acc_3_rrrrs_o_y*rrrrs_link3_mass
-            - h_3_rrrrs_y*(W_3_rrrrs_t + W_3_rrrrs_t_3)
+        rrrrs_acc_3_o_y = (
+        rrrrs_a_o_3_o_t*rrrrs_s_3 + rrrrs_g_r3_x*rrrrs_s_3 - rrrrs_a_o_3_o_t_2*rrrrs_c_3 -
+            rrrrs_c_3*rrrrs_g_r3_y
         )
-        f_3_rrrrs_o_z = (
-        B_3_rrrrs_o_zx*h_3_rrrrs_x + B_3_rrrrs_o_zy*h_3_rrrrs_y + acc_3_rrrrs_o_z*rrrrs_link3_mass
-            - h_3_rrrrs_z*(W_3_rrrrs_t + W_3_rrrrs_t_2)
+        rrrrs_acc_3_o_z = rrrrs_B_2_o_zx*rrrrs_joint3_offset_x - rrrrs_g_r1_x
+        # (rrrrs-B_3_o) remainder of the acceleration tensor of link 3
+        rrrrs_B_3_o_xy = rrrrs_W_3_xy + rrrrs_qdd_3_o
+        rrrrs_B_3_o_xz = rrrrs_W_3_xz + rrrrs_alpha_3_o_y
+        rrrrs_B_3_o_yx = rrrrs_W_3_xy - rrrrs_qdd_3_o
+        rrrrs_B_3_o_yz = rrrrs_W_3_yz - rrrrs_alpha_3_o_x
+        rrrrs_B_3_o_zx = rrrrs_W_3_xz - rrrrs_alpha_3_o_y
+        rrrrs_B_3_o_zy = rrrrs_W_3_yz + rrrrs_alpha_3_o_x
+        # (rrrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        rrrrs_mu_3_o_x = (
+        rrrrs_B_3_o_yx*rrrrs_J_3_xz + rrrrs_B_3_o_zy*rrrrs_Sigma_3_yy +
+            rrrrs_J_3_yz*(rrrrs_W_3_t_2 - rrrrs_W_3_t_3) + rrrrs_acc_3_o_z*rrrrs_h_3_y -
+            rrrrs_B_3_o_yz*rrrrs_Sigma_3_zz - rrrrs_B_3_o_zx*rrrrs_J_3_xy -
+            rrrrs_acc_3_o_y*rrrrs_h_3_z
         )
-        # (rrrrs-N64) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_rrrrs_o_x = (
-        B_2_rrrrs_o_zy*Sigma_2_rrrrs_yy + J_2_rrrrs_yz*(W_2_rrrrs_t_2 - W_2_rrrrs_t_3) +
-            Sigma_2_rrrrs_zz*alpha_1_rrrrs_o_t + g_r3_y*h_2_rrrrs_z - B_2_rrrrs_o_zx*J_2_rrrrs_xy
-            - J_2_rrrrs_xz*W_2_rrrrs_xy - g_r1_x*h_2_rrrrs_y
+        rrrrs_mu_3_o_y = (
+        rrrrs_B_3_o_xz*rrrrs_Sigma_3_zz + rrrrs_B_3_o_zy*rrrrs_J_3_xy +
+            rrrrs_acc_3_o_x*rrrrs_h_3_z - rrrrs_B_3_o_xy*rrrrs_J_3_yz -
+            rrrrs_B_3_o_zx*rrrrs_Sigma_3_xx - rrrrs_J_3_xz*(rrrrs_W_3_t - rrrrs_W_3_t_3) -
+            rrrrs_acc_3_o_z*rrrrs_h_3_x
         )
-        mu_2_rrrrs_o_y = (
-        B_2_rrrrs_o_zy*J_2_rrrrs_xy + J_2_rrrrs_yz*W_2_rrrrs_xy + g_r1_x*h_2_rrrrs_x -
-            B_2_rrrrs_o_zx*Sigma_2_rrrrs_xx - J_2_rrrrs_xz*(W_2_rrrrs_t - W_2_rrrrs_t_3) -
-            Sigma_2_rrrrs_zz*alpha_1_rrrrs_o_t_2 - g_r3_x*h_2_rrrrs_z
+        rrrrs_mu_3_o_z = (
+        rrrrs_B_3_o_xz*rrrrs_J_3_yz + rrrrs_B_3_o_yx*rrrrs_Sigma_3_xx + rrrrs_J_3_xy*(rrrrs_W_3_t
+            - rrrrs_W_3_t_2) + rrrrs_acc_3_o_y*rrrrs_h_3_x - rrrrs_B_3_o_xy*rrrrs_Sigma_3_yy -
+            rrrrs_B_3_o_yz*rrrrs_J_3_xz - rrrrs_acc_3_o_x*rrrrs_h_3_y
         )
-        mu_2_rrrrs_o_z = (
-        J_2_rrrrs_xy*(W_2_rrrrs_t - W_2_rrrrs_t_2) + J_2_rrrrs_xz*alpha_1_rrrrs_o_t +
-            Sigma_2_rrrrs_yy*W_2_rrrrs_xy + g_r3_x*h_2_rrrrs_y - J_2_rrrrs_yz*alpha_1_rrrrs_o_t_2
-            - Sigma_2_rrrrs_xx*W_2_rrrrs_xy - g_r3_y*h_2_rrrrs_x
+        # (rrrrs-N_3_o) remainder without the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
+        rrrrs_N_3_o_x = rrrrs_mu_3_o_x + rrrrs_c_4*rrrrs_mu_4_o_x + rrrrs_mu_4_o_y*rrrrs_s_4
+        rrrrs_N_3_o_y = rrrrs_mu_3_o_y + rrrrs_c_4*rrrrs_mu_4_o_y - rrrrs_mu_4_o_x*rrrrs_s_4
+        rrrrs_N_3_o_z = rrrrs_mu_3_o_z + rrrrs_mu_4_o_z
+        # (rrrrs-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight
+        rrrrs_f_3_o_x = (
+        rrrrs_B_3_o_xy*rrrrs_h_3_y + rrrrs_B_3_o_xz*rrrrs_h_3_z + rrrrs_acc_3_o_x*rrrrs_link3_mass
+            - rrrrs_h_3_x*(rrrrs_W_3_t_2 + rrrrs_W_3_t_3)
         )
-        # (rrrrs-N66) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_rrrrs_o_x = mu_2_rrrrs_o_x + N_3_rrrrs_o_x*c_3_rrrrs - N_3_rrrrs_o_y*s_3_rrrrs
-        N_2_rrrrs_o_y = (
-        mu_2_rrrrs_o_y + N_3_rrrrs_o_x*s_3_rrrrs + N_3_rrrrs_o_y*c_3_rrrrs -
-            f_3_rrrrs_o_z*rrrrs_joint3_offset_x
+        rrrrs_f_3_o_y = (
+        rrrrs_B_3_o_yx*rrrrs_h_3_x + rrrrs_B_3_o_yz*rrrrs_h_3_z + rrrrs_acc_3_o_y*rrrrs_link3_mass
+            - rrrrs_h_3_y*(rrrrs_W_3_t + rrrrs_W_3_t_3)
         )
-        N_2_rrrrs_o_z = (
-        N_3_rrrrs_o_z + mu_2_rrrrs_o_z + rrrrs_joint3_offset_x*(c_3_rrrrs*f_3_rrrrs_o_y +
-            f_3_rrrrs_o_x*s_3_rrrrs)
+        rrrrs_f_3_o_z = (
+        rrrrs_B_3_o_zx*rrrrs_h_3_x + rrrrs_B_3_o_zy*rrrrs_h_3_y + rrrrs_acc_3_o_z*rrrrs_link3_mass
+            - rrrrs_h_3_z*(rrrrs_W_3_t + rrrrs_W_3_t_2)
         )
-        # (rrrrs-N76) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rrrrs_o_z = J_1_rrrrs_xx*qdd_1_rrrrs_o - g_r1_x*h_1_rrrrs_y - g_r1_y*h_1_rrrrs_z
-        # (rrrrs-N78) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_rrrrs_o_z = mu_1_rrrrs_o_z + N_2_rrrrs_o_x*s_2_rrrrs - N_2_rrrrs_o_y*c_2_rrrrs_t
-        # (rrrrs-N86) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rrrrs_o_t = inv_rrrrs_platform_joint_offset_x*mu_4_rrrrs_o_z
-        G_rrrrs_o_t_2 = inv_r_3_rrrrs_r0_y*(G_rrrrs_o_t*r_3_rrrrs_r0_x - N_3_rrrrs_o_z)
-        # (rrrrs-N89) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_rrrrs_o_x = (
-        W_4_rrrrs_xx*h_4_rrrrs_x - G_rrrrs_o_t_2 - B_4_rrrrs_o_xy*h_4_rrrrs_y -
-            B_4_rrrrs_o_xz*h_4_rrrrs_z
+        # (rrrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        rrrrs_mu_2_o_x = (
+        rrrrs_B_2_o_zy*rrrrs_Sigma_2_yy + rrrrs_J_2_yz*(rrrrs_W_2_t_2 - rrrrs_W_2_t_3) +
+            rrrrs_Sigma_2_zz*rrrrs_alpha_1_o_t + rrrrs_g_r3_y*rrrrs_h_2_z -
+            rrrrs_B_2_o_zx*rrrrs_J_2_xy - rrrrs_J_2_xz*rrrrs_W_2_xy - rrrrs_g_r1_x*rrrrs_h_2_y
         )
-        c_rrrrs_o_y = (
-        h_4_rrrrs_y*(W_4_rrrrs_t + W_4_rrrrs_t_3) - G_rrrrs_o_t - B_4_rrrrs_o_yx*h_4_rrrrs_x -
-            B_4_rrrrs_o_yz*h_4_rrrrs_z
+        rrrrs_mu_2_o_y = (
+        rrrrs_B_2_o_zy*rrrrs_J_2_xy + rrrrs_J_2_yz*rrrrs_W_2_xy + rrrrs_g_r1_x*rrrrs_h_2_x -
+            rrrrs_B_2_o_zx*rrrrs_Sigma_2_xx - rrrrs_J_2_xz*(rrrrs_W_2_t - rrrrs_W_2_t_3) -
+            rrrrs_Sigma_2_zz*rrrrs_alpha_1_o_t_2 - rrrrs_g_r3_x*rrrrs_h_2_z
         )
-        c_rrrrs_o_z = (
-        h_4_rrrrs_z*(W_4_rrrrs_t + W_4_rrrrs_t_2) - B_4_rrrrs_o_zx*h_4_rrrrs_x -
-            B_4_rrrrs_o_zy*h_4_rrrrs_y - N_1_rrrrs_o_z*inv_v_1_rrrrs_z
+        rrrrs_mu_2_o_z = (
+        rrrrs_J_2_xy*(rrrrs_W_2_t - rrrrs_W_2_t_2) + rrrrs_J_2_xz*rrrrs_alpha_1_o_t +
+            rrrrs_Sigma_2_yy*rrrrs_W_2_xy + rrrrs_g_r3_x*rrrrs_h_2_y -
+            rrrrs_J_2_yz*rrrrs_alpha_1_o_t_2 - rrrrs_Sigma_2_xx*rrrrs_W_2_xy -
+            rrrrs_g_r3_y*rrrrs_h_2_x
         )
-        # (rrrrs-N91) velocity and gravity terms of the leg force
-        U_rrrrs_in_base_x = (
-        -axis_x_rrrrs_axes4_x*c_rrrrs_o_x - axis_y_rrrrs_axes4_in_base_x*c_rrrrs_o_y -
-            axis_z_rrrrs_axes4_in_base_x*c_rrrrs_o_z
+        # (rrrrs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        rrrrs_N_2_o_x = rrrrs_mu_2_o_x + rrrrs_N_3_o_x*rrrrs_c_3 - rrrrs_N_3_o_y*rrrrs_s_3
+        rrrrs_N_2_o_y = (
+        rrrrs_mu_2_o_y + rrrrs_N_3_o_x*rrrrs_s_3 + rrrrs_N_3_o_y*rrrrs_c_3 -
+            rrrrs_f_3_o_z*rrrrs_joint3_offset_x
         )
-        U_rrrrs_in_base_y = (
-        -axis_x_rrrrs_axes4_y*c_rrrrs_o_x - axis_y_rrrrs_axes4_in_base_y*c_rrrrs_o_y -
-            axis_z_rrrrs_axes4_in_base_y*c_rrrrs_o_z
+        rrrrs_N_2_o_z = (
+        rrrrs_N_3_o_z + rrrrs_mu_2_o_z + rrrrs_joint3_offset_x*(rrrrs_c_3*rrrrs_f_3_o_y +
+            rrrrs_f_3_o_x*rrrrs_s_3)
         )
-        U_rrrrs_in_base_z = (
-        -axis_x_rrrrs_axes4_z*c_rrrrs_o_x - axis_y_rrrrs_axes4_in_base_z*c_rrrrs_o_y -
-            axis_z_rrrrs_axes4_in_base_z*c_rrrrs_o_z
+        # (rrrrs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        rrrrs_mu_1_o_z = (
+        rrrrs_J_1_xx*rrrrs_qdd_1_o - rrrrs_g_r1_x*rrrrs_h_1_y - rrrrs_g_r1_y*rrrrs_h_1_z
         )
-        # (M7) rotational part of Z
-        Z_a_t = U_rrrrs_in_base_z*q_rrrrs_in_base_y - U_rrrrs_in_base_y*q_rrrrs_in_base_z
-        Z_a_t_2 = U_rrrrs_in_base_x*q_rrrrs_in_base_z - U_rrrrs_in_base_z*q_rrrrs_in_base_x
-        Z_a_t_3 = U_rrrrs_in_base_y*q_rrrrs_in_base_x - U_rrrrs_in_base_x*q_rrrrs_in_base_y
-        # (rrrrs-N96) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
-        P_2_rrrrs_o_t = G_rrrrs_o_t_2*r_2_rrrrs_r1_y - G_rrrrs_o_t*r_2_rrrrs_r1_x
-        P_2_rrrrs_o = N_2_rrrrs_o_z + P_2_rrrrs_o_t
+        # (rrrrs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrrrs_N_1_o_z = rrrrs_mu_1_o_z + rrrrs_N_2_o_x*rrrrs_s_2 - rrrrs_N_2_o_y*rrrrs_c_2_t
+        # (rrrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrrrs_G_o_t = inv_rrrrs_platform_joint_offset_x*rrrrs_mu_4_o_z
+        rrrrs_G_o_t_2 = inv_rrrrs_r_3_r0_y*(rrrrs_G_o_t*rrrrs_r_3_r0_x - rrrrs_N_3_o_z)
+        # (rrrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrrrs_c_o_x = (
+        rrrrs_W_4_xx*rrrrs_h_4_x - rrrrs_G_o_t_2 - rrrrs_B_4_o_xy*rrrrs_h_4_y -
+            rrrrs_B_4_o_xz*rrrrs_h_4_z
+        )
+        rrrrs_c_o_y = (
+        rrrrs_h_4_y*(rrrrs_W_4_t + rrrrs_W_4_t_3) - rrrrs_G_o_t - rrrrs_B_4_o_yx*rrrrs_h_4_x -
+            rrrrs_B_4_o_yz*rrrrs_h_4_z
+        )
+        rrrrs_c_o_z = (
+        rrrrs_h_4_z*(rrrrs_W_4_t + rrrrs_W_4_t_2) - inv_rrrrs_v_1_z*rrrrs_N_1_o_z -
+            rrrrs_B_4_o_zx*rrrrs_h_4_x - rrrrs_B_4_o_zy*rrrrs_h_4_y
+        )
+        # (rrrrs-U) velocity and gravity terms of the leg force
+        rrrrs_U_in_base_x = (
+        -axis_x_rrrrs_axes4_x*rrrrs_c_o_x - axis_y_rrrrs_axes4_in_base_x*rrrrs_c_o_y -
+            axis_z_rrrrs_axes4_in_base_x*rrrrs_c_o_z
+        )
+        rrrrs_U_in_base_y = (
+        -axis_x_rrrrs_axes4_y*rrrrs_c_o_x - axis_y_rrrrs_axes4_in_base_y*rrrrs_c_o_y -
+            axis_z_rrrrs_axes4_in_base_y*rrrrs_c_o_z
+        )
+        rrrrs_U_in_base_z = (
+        -axis_x_rrrrs_axes4_z*rrrrs_c_o_x - axis_y_rrrrs_axes4_in_base_z*rrrrs_c_o_y -
+            axis_z_rrrrs_axes4_in_base_z*rrrrs_c_o_z
+        )
+        # (Z_a) rotational part of Z
+        rrrrs_Z_a_t = rrrrs_U_in_base_z*rrrrs_q_in_base_y - rrrrs_U_in_base_y*rrrrs_q_in_base_z
+        rrrrs_Z_a_t_2 = rrrrs_U_in_base_x*rrrrs_q_in_base_z - rrrrs_U_in_base_z*rrrrs_q_in_base_x
+        rrrrs_Z_a_t_3 = rrrrs_U_in_base_y*rrrrs_q_in_base_x - rrrrs_U_in_base_x*rrrrs_q_in_base_y
+        # (rrrrs-P_2_o) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
+        rrrrs_P_2_o_t = rrrrs_G_o_t_2*rrrrs_r_2_r1_y - rrrrs_G_o_t*rrrrs_r_2_r1_x
+        rrrrs_P_2_o = rrrrs_N_2_o_z + rrrrs_P_2_o_t
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
-            (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0)
-            & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE *
-            size_rrrrs))
+        ok & m.every(leg, (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
+            (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0)
+            & (abs(rrrrs_v_1_z) > _TOLERANCE * rrrrs_size) & (abs(-rrrrs_r_3_r0_y) > _TOLERANCE *
+            rrrrs_size))
         )
         sums = m.added(sums, leg, (
-        U_rrrrs_in_base_x, U_rrrrs_in_base_y, U_rrrrs_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
+        rrrrs_U_in_base_x, rrrrs_U_in_base_y, rrrrs_U_in_base_z, rrrrs_Z_a_t, rrrrs_Z_a_t_2,
+            rrrrs_Z_a_t_3,
         ))
-        out_Z[_Z_rrrrs[0][leg]] = P_2_rrrrs_o
+        out_Z[_Z_rrrrs[0][leg]] = rrrrs_P_2_o
     (
     total_rrrrs_x, total_rrrrs_y, total_rrrrs_z, total_rrrrs_x_2, total_rrrrs_y_2,
         total_rrrrs_z_2,
@@ -4799,114 +4905,114 @@ def _run_Z(m, X, V):
     sums = [0.0] * 6
     for leg, k in legs[1]:
         (
-        J_1_rrrs_xx, J_2_rrrs_xy, J_2_rrrs_xz, J_2_rrrs_yz, J_3_rrrs_xy, J_3_rrrs_xz, J_3_rrrs_yz,
-            Kd_2_rrrs_t, Kd_2_rrrs_t_2, Sigma_2_rrrs_xx, Sigma_2_rrrs_yy, Sigma_2_rrrs_zz,
-            Sigma_3_rrrs_xx, Sigma_3_rrrs_yy, Sigma_3_rrrs_zz, branch_1_rrrs, branch_2_rrrs,
-            g_r0_x_2, g_r0_y_2, g_r0_z_2, h_1_rrrs_y, h_1_rrrs_z, h_2_rrrs_x, h_2_rrrs_y,
-            h_2_rrrs_z, h_3_rrrs_x, h_3_rrrs_y, h_3_rrrs_z, inv_rrrs_platform_joint_offset_x,
-            inv_size_rrrs_t, inv_size_rrrs_t_2, rho2_2_rrrs_t, rrrs_base_frame_xx,
+        inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
+            rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yz, rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yz,
+            rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
+            rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
             rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
             rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_g_r0_x, rrrs_g_r0_y, rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y,
+            rrrs_h_2_z, rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
             rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-            rrrs_platform_point_y, rrrs_platform_point_z, size_rrrs, size_rrrs_t_3,
+            rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
         ) = k
-        # (rrrs-K1) from the base point to the connection point
-        q_rrrs_in_base_x = (
+        # (rrrs-S) from the base point to the connection point
+        rrrs_q_in_base_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        q_rrrs_in_base_y = (
+        rrrs_q_in_base_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        q_rrrs_in_base_z = (
+        rrrs_q_in_base_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        S_rrrs_x = q_rrrs_in_base_x + t_x - rrrs_base_point_x
-        S_rrrs_y = q_rrrs_in_base_y + t_y - rrrs_base_point_y
-        S_rrrs_z = q_rrrs_in_base_z + t_z - rrrs_base_point_z
-        # (rrrs-K2) component along the reference direction
-        px_1_rrrs = (
-        S_rrrs_x*rrrs_base_frame_xy + S_rrrs_y*rrrs_base_frame_yy + S_rrrs_z*rrrs_base_frame_zy
+        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        # (rrrs-px_1) component along the reference direction
+        rrrs_px_1 = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        # (rrrs-K3) component across the reference direction
-        py_1_rrrs = (
-        S_rrrs_x*rrrs_base_frame_xz + S_rrrs_y*rrrs_base_frame_yz + S_rrrs_z*rrrs_base_frame_zz
+        # (rrrs-py_1) component across the reference direction
+        rrrs_py_1 = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        # (rrrs-K5) squared amplitude
-        rho2_1_rrrs = px_1_rrrs*px_1_rrrs + py_1_rrrs*py_1_rrrs
-        # (rrrs-K7) root, with the sign of the branch
-        root_1_rrrs = branch_1_rrrs*sqrt(rho2_1_rrrs)
-        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_rrrs_t = (
-        S_rrrs_x*rrrs_base_frame_xx + S_rrrs_y*rrrs_base_frame_yx + S_rrrs_z*rrrs_base_frame_zx
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrs_xi_1_t = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        # (rrrs-K12) from the origin of joint 2 to the connection point
-        x_2_rrrs_z = xi_1_rrrs_t - rrrs_joint2_offset_x
-        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z
-        Kd_2_rrrs = Kd_2_rrrs_t + 0.5*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2
-        # (rrrs-K17) factor of the cosine in the equation of joint 2
-        Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x
-        # (rrrs-K18) factor of the sine in the equation of joint 2
-        Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z
-        # (rrrs-K19) squared amplitude
-        rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs
-        # (rrrs-K20) discriminant
-        disc_2_rrrs = rho2_2_rrrs - Kd_2_rrrs*Kd_2_rrrs
-        # (rrrs-K21) root, with the sign of the branch
-        root_2_rrrs = branch_2_rrrs*sqrt(disc_2_rrrs)
-        # (rrrs-K27) from the origin of joint 3 to the connection point
-        x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-        # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-        c_3_rrrs = inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x
-        # (rrrs-K30) sine of the angle of joint 3 from its reference direction
-        s_3_rrrs = (
-        inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-x_3) from the origin of joint 3 to the connection point
+        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrs_s_3 = (
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_rrrs_t = rrrs_platform_joint_offset_x*s_3_rrrs
-        r_2_rrrs_x = rrrs_joint3_offset_x + c_3_rrrs*rrrs_platform_joint_offset_x
-        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2_rrrs = 1.0/rho2_2_rrrs
-        c_2_rrrs = inv_rho2_2_rrrs*(Kc_2_rrrs*Kd_2_rrrs + Ks_2_rrrs*root_2_rrrs)
-        # (rrrs-K23) sine of the angle of joint 2 from its reference direction
-        s_2_rrrs = inv_rho2_2_rrrs*(Kc_2_rrrs*root_2_rrrs - Kd_2_rrrs*Ks_2_rrrs)
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        e_1_rrrs_r2_x = c_2_rrrs*s_3_rrrs - c_3_rrrs*s_2_rrrs
-        e_1_rrrs_r2_y = -c_2_rrrs*c_3_rrrs - s_2_rrrs*s_3_rrrs
-        # (rrrs-V3) from joint 1 to the connection point, along the links
-        r_1_rrrs_r1_x = c_2_rrrs*root_1_rrrs - s_2_rrrs*xi_1_rrrs_t
-        r_1_rrrs_r1_y = -c_2_rrrs*xi_1_rrrs_t - root_1_rrrs*s_2_rrrs
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        v_1_rrrs_z = (
-        e_1_rrrs_r2_x*(c_3_rrrs*r_1_rrrs_r1_y + r_1_rrrs_r1_x*s_3_rrrs) -
-            e_1_rrrs_r2_y*(c_3_rrrs*r_1_rrrs_r1_x - r_1_rrrs_r1_y*s_3_rrrs)
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3
+        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
+        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
+        # (rrrs-r_1) from joint 1 to the connection point, along the links
+        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
+        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_z = (
+        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
+            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
         )
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_rrrs_r0_x = c_3_rrrs*r_2_rrrs_x + r_2_rrrs_t*s_3_rrrs
-        r_2_rrrs_r0_y = r_2_rrrs_x*s_3_rrrs - c_3_rrrs*r_2_rrrs_t
-        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrrs = 1.0/rho2_1_rrrs
-        c_1_rrrs = inv_rho2_1_rrrs*py_1_rrrs*root_1_rrrs
-        # (rrrs-K9) sine of the angle of joint 1 from its reference direction
-        s_1_rrrs = inv_rho2_1_rrrs*px_1_rrrs*root_1_rrrs
-        # (rrrs-V7) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1_rrrs - c_1_rrrs*rrrs_base_frame_xy
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1_rrrs - c_1_rrrs*rrrs_base_frame_yy
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1_rrrs - c_1_rrrs*rrrs_base_frame_zy
-        w_1_rrrs_t = e_1_rrrs_r2_x*s_1_rrrs
-        w_1_rrrs_t_2 = c_1_rrrs*e_1_rrrs_r2_x
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_r0_x = rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3
+        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
+        # (rrrs-w_1) reciprocal vector 1
+        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
+        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
+        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
         axis_y_rrrs_axes3_in_base_x = (
-        e_1_rrrs_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_rrrs_t +
-            rrrs_base_frame_xz*w_1_rrrs_t_2
+        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
+            rrrs_base_frame_xz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_y = (
-        e_1_rrrs_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_rrrs_t +
-            rrrs_base_frame_yz*w_1_rrrs_t_2
+        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
+            rrrs_base_frame_yz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_z = (
-        e_1_rrrs_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_rrrs_t +
-            rrrs_base_frame_zz*w_1_rrrs_t_2
+        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
+            rrrs_base_frame_zz*rrrs_w_1_t_2
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
@@ -4920,236 +5026,246 @@ def _run_Z(m, X, V):
         axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
             axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
         )
-        inv_v_1_rrrs_z = 1.0/v_1_rrrs_z
-        # (rrrs-V8) reciprocal vector 2
-        inv_r_2_rrrs_r0_y = 1.0/r_2_rrrs_r0_y
-        # (rrrs-V1) velocity of the connection point
-        S_dot_rrrs_t = omega_y*q_rrrs_in_base_z - omega_z*q_rrrs_in_base_y
-        S_dot_rrrs_t_2 = omega_z*q_rrrs_in_base_x - omega_x*q_rrrs_in_base_z
-        S_dot_rrrs_t_3 = omega_x*q_rrrs_in_base_y - omega_y*q_rrrs_in_base_x
-        S_dot_rrrs_x = S_dot_rrrs_t + t_dot_x
-        S_dot_rrrs_y = S_dot_rrrs_t_2 + t_dot_y
-        S_dot_rrrs_z = S_dot_rrrs_t_3 + t_dot_z
-        # (rrrs-V10) rate of joint 1
-        qd_2_rrrs = (
-        inv_r_2_rrrs_r0_y*(S_dot_rrrs_x*axis_x_rrrs_axes3_x + S_dot_rrrs_y*axis_x_rrrs_axes3_y +
-            S_dot_rrrs_z*axis_x_rrrs_axes3_z)
+        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
+        # (rrrs-w_2) reciprocal vector 2
+        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
+        # (rrrs-S_dot) velocity of the connection point
+        rrrs_S_dot_t = omega_y*rrrs_q_in_base_z - omega_z*rrrs_q_in_base_y
+        rrrs_S_dot_t_2 = omega_z*rrrs_q_in_base_x - omega_x*rrrs_q_in_base_z
+        rrrs_S_dot_t_3 = omega_x*rrrs_q_in_base_y - omega_y*rrrs_q_in_base_x
+        rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
+        rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
+        rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
+        # (rrrs-qd_3) rate of joint 3
+        rrrs_qd_2 = (
+        inv_rrrs_r_2_r0_y*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_x_rrrs_axes3_z*rrrs_S_dot_z)
         )
-        qd_3_rrrs = (
-        inv_rrrs_platform_joint_offset_x*(S_dot_rrrs_x*axis_y_rrrs_axes3_in_base_x +
-            S_dot_rrrs_y*axis_y_rrrs_axes3_in_base_y + S_dot_rrrs_z*axis_y_rrrs_axes3_in_base_z +
-            qd_2_rrrs*r_2_rrrs_r0_x)
+        rrrs_qd_3 = (
+        inv_rrrs_platform_joint_offset_x*(axis_y_rrrs_axes3_in_base_x*rrrs_S_dot_x +
+            axis_y_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_dot_z +
+            rrrs_qd_2*rrrs_r_2_r0_x)
         )
-        qd_1_rrrs = (
-        inv_v_1_rrrs_z*(S_dot_rrrs_x*axis_z_rrrs_axes3_in_base_x +
-            S_dot_rrrs_y*axis_z_rrrs_axes3_in_base_y + S_dot_rrrs_z*axis_z_rrrs_axes3_in_base_z)
+        rrrs_qd_1 = (
+        inv_rrrs_v_1_z*(axis_z_rrrs_axes3_in_base_x*rrrs_S_dot_x +
+            axis_z_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_z_rrrs_axes3_in_base_z*rrrs_S_dot_z)
         )
-        # (rrrs-V13) angular velocity of link 1
-        omega_1_rrrs_t = qd_1_rrrs*s_2_rrrs
-        omega_1_rrrs_t_2 = c_2_rrrs*qd_1_rrrs
-        # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_rrrs_x = omega_1_rrrs_t_2*qd_2_rrrs
-        zeta_2_rrrs_y = omega_1_rrrs_t*qd_2_rrrs
-        # (rrrs-V15) angular velocity of link 2
-        omega_2_rrrs_r0_x = omega_1_rrrs_t_2*s_3_rrrs - c_3_rrrs*omega_1_rrrs_t
-        omega_2_rrrs_r0_y = -c_3_rrrs*omega_1_rrrs_t_2 - omega_1_rrrs_t*s_3_rrrs
-        # (rrrs-A5) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_rrrs_y = omega_2_rrrs_r0_x*qd_3_rrrs
-        # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_rrrs_r0_y = s_3_rrrs*zeta_2_rrrs_x - c_3_rrrs*zeta_2_rrrs_y
-        # (rrrs-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_rrrs_y = zeta_2_rrrs_r0_y - zeta_3_rrrs_y
-        # (rrrs-V17) angular velocity of link 3
-        omega_3_rrrs_z = qd_3_rrrs - qd_2_rrrs
-        # (rrrs-V16) centripetal tensor of link 2
-        W_2_rrrs_t = omega_1_rrrs_t*omega_1_rrrs_t
-        W_2_rrrs_t_2 = omega_1_rrrs_t_2*omega_1_rrrs_t_2
-        W_2_rrrs_t_3 = qd_2_rrrs*qd_2_rrrs
-        W_2_rrrs_xy = omega_1_rrrs_t*omega_1_rrrs_t_2
-        # (rrrs-V18) centripetal tensor of link 3
-        W_3_rrrs_t = omega_2_rrrs_r0_x*omega_2_rrrs_r0_x
-        W_3_rrrs_t_2 = omega_2_rrrs_r0_y*omega_2_rrrs_r0_y
-        W_3_rrrs_t_3 = omega_3_rrrs_z*omega_3_rrrs_z
-        W_3_rrrs_xy = omega_2_rrrs_r0_x*omega_2_rrrs_r0_y
-        W_3_rrrs_xz = omega_2_rrrs_r0_x*omega_3_rrrs_z
-        W_3_rrrs_yz = omega_2_rrrs_r0_y*omega_3_rrrs_z
-        # (rrrs-A7) acceleration of the connection point at zero joint accelerations
-        bias_rrrs_t = rrrs_joint2_offset_x*s_2_rrrs
-        bias_rrrs_t_2 = c_2_rrrs*rrrs_joint2_offset_x
-        bias_rrrs_t_3 = (
-        omega_2_rrrs_r0_x*(-bias_rrrs_t*s_3_rrrs - bias_rrrs_t_2*c_3_rrrs) -
-            omega_2_rrrs_r0_y*(bias_rrrs_t_2*s_3_rrrs - bias_rrrs_t*c_3_rrrs)
+        # (rrrs-omega_1) angular velocity of link 1
+        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_t_2 = rrrs_c_2*rrrs_qd_1
+        # (rrrs-omega_2) angular velocity of link 2
+        rrrs_omega_2_r0_x = rrrs_omega_1_t_2*rrrs_s_3 - rrrs_c_3*rrrs_omega_1_t
+        rrrs_omega_2_r0_y = -rrrs_c_3*rrrs_omega_1_t_2 - rrrs_omega_1_t*rrrs_s_3
+        # (rrrs-omega_3) angular velocity of link 3
+        rrrs_omega_3_z = rrrs_qd_3 - rrrs_qd_2
+        # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrs_zeta_3_y = rrrs_omega_2_r0_x*rrrs_qd_3
+        # (rrrs-u_1) centripetal acceleration of the connection point
+        rrrs_u_1_x = omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2
+        rrrs_u_1_y = omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3
+        rrrs_u_1_z = omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t
+        # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        rrrs_zeta_2_x = rrrs_omega_1_t_2*rrrs_qd_2
+        rrrs_zeta_2_y = rrrs_omega_1_t*rrrs_qd_2
+        rrrs_zeta_2_r0_y = rrrs_s_3*rrrs_zeta_2_x - rrrs_c_3*rrrs_zeta_2_y
+        # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        rrrs_beta_3_y = rrrs_zeta_2_r0_y - rrrs_zeta_3_y
+        # (rrrs-W_2) centripetal tensor of link 2
+        rrrs_W_2_t = rrrs_omega_1_t*rrrs_omega_1_t
+        rrrs_W_2_t_2 = rrrs_omega_1_t_2*rrrs_omega_1_t_2
+        rrrs_W_2_t_3 = rrrs_qd_2*rrrs_qd_2
+        rrrs_W_2_xy = rrrs_omega_1_t*rrrs_omega_1_t_2
+        # (rrrs-W_3) centripetal tensor of link 3
+        rrrs_W_3_t = rrrs_omega_2_r0_x*rrrs_omega_2_r0_x
+        rrrs_W_3_t_2 = rrrs_omega_2_r0_y*rrrs_omega_2_r0_y
+        rrrs_W_3_t_3 = rrrs_omega_3_z*rrrs_omega_3_z
+        rrrs_W_3_xy = rrrs_omega_2_r0_x*rrrs_omega_2_r0_y
+        rrrs_W_3_xz = rrrs_omega_2_r0_x*rrrs_omega_3_z
+        rrrs_W_3_yz = rrrs_omega_2_r0_y*rrrs_omega_3_z
+        # (rrrs-bias) acceleration of the connection point at zero joint accelerations
+        rrrs_bias_t = rrrs_joint2_offset_x*rrrs_s_2
+        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_3 = (
+        rrrs_omega_2_r0_x*(-rrrs_bias_t*rrrs_s_3 - rrrs_bias_t_2*rrrs_c_3) -
+            rrrs_omega_2_r0_y*(rrrs_bias_t_2*rrrs_s_3 - rrrs_bias_t*rrrs_c_3)
         )
-        bias_rrrs_t_4 = c_3_rrrs*rrrs_joint3_offset_x
-        bias_rrrs_t_5 = rrrs_joint3_offset_x*s_3_rrrs
-        bias_rrrs_t_6 = bias_rrrs_t_5*qd_2_rrrs
-        bias_rrrs_t_7 = bias_rrrs_t_4*qd_2_rrrs
-        bias_rrrs_t_8 = bias_rrrs_t_5*omega_2_rrrs_r0_x - bias_rrrs_t_4*omega_2_rrrs_r0_y
-        bias_rrrs_t_9 = omega_3_rrrs_z*rrrs_platform_joint_offset_x
-        bias_rrrs_t_10 = omega_2_rrrs_r0_y*rrrs_platform_joint_offset_x
-        bias_rrrs_x = (
-        bias_rrrs_t_3*omega_2_rrrs_r0_y + bias_rrrs_t_8*omega_2_rrrs_r0_y -
-            bias_rrrs_t_10*omega_2_rrrs_r0_y - bias_rrrs_t_7*qd_2_rrrs -
-            bias_rrrs_t_9*omega_3_rrrs_z
+        rrrs_bias_t_4 = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_bias_t_5 = rrrs_joint3_offset_x*rrrs_s_3
+        rrrs_bias_t_6 = rrrs_bias_t_5*rrrs_qd_2
+        rrrs_bias_t_7 = rrrs_bias_t_4*rrrs_qd_2
+        rrrs_bias_t_8 = rrrs_bias_t_5*rrrs_omega_2_r0_x - rrrs_bias_t_4*rrrs_omega_2_r0_y
+        rrrs_bias_t_9 = rrrs_omega_3_z*rrrs_platform_joint_offset_x
+        rrrs_bias_t_10 = rrrs_omega_2_r0_y*rrrs_platform_joint_offset_x
+        rrrs_bias_x = (
+        rrrs_bias_t_3*rrrs_omega_2_r0_y + rrrs_bias_t_8*rrrs_omega_2_r0_y -
+            rrrs_bias_t_10*rrrs_omega_2_r0_y - rrrs_bias_t_7*rrrs_qd_2 -
+            rrrs_bias_t_9*rrrs_omega_3_z
         )
-        bias_rrrs_y = (
-        bias_rrrs_t_10*omega_2_rrrs_r0_x - bias_rrrs_t_3*omega_2_rrrs_r0_x -
-            bias_rrrs_t_6*qd_2_rrrs - bias_rrrs_t_8*omega_2_rrrs_r0_x
+        rrrs_bias_y = (
+        rrrs_bias_t_10*rrrs_omega_2_r0_x - rrrs_bias_t_3*rrrs_omega_2_r0_x -
+            rrrs_bias_t_6*rrrs_qd_2 - rrrs_bias_t_8*rrrs_omega_2_r0_x
         )
-        bias_rrrs_z = (
-        bias_rrrs_t_5*(c_3_rrrs*zeta_2_rrrs_x + s_3_rrrs*zeta_2_rrrs_y) +
-            bias_rrrs_t_9*omega_2_rrrs_r0_x - beta_3_rrrs_y*rrrs_platform_joint_offset_x -
-            bias_rrrs_t_4*zeta_2_rrrs_r0_y - bias_rrrs_t_6*omega_2_rrrs_r0_y -
-            bias_rrrs_t_7*omega_2_rrrs_r0_x
+        rrrs_bias_z = (
+        rrrs_bias_t_5*(rrrs_c_3*rrrs_zeta_2_x + rrrs_s_3*rrrs_zeta_2_y) +
+            rrrs_bias_t_9*rrrs_omega_2_r0_x - rrrs_beta_3_y*rrrs_platform_joint_offset_x -
+            rrrs_bias_t_4*rrrs_zeta_2_r0_y - rrrs_bias_t_6*rrrs_omega_2_r0_y -
+            rrrs_bias_t_7*rrrs_omega_2_r0_x
         )
-        # (rrrs-A1) centripetal acceleration of the connection point
-        u_1_rrrs_x = S_dot_rrrs_t_3*omega_y - S_dot_rrrs_t_2*omega_z
-        u_1_rrrs_y = S_dot_rrrs_t*omega_z - S_dot_rrrs_t_3*omega_x
-        u_1_rrrs_z = S_dot_rrrs_t_2*omega_x - S_dot_rrrs_t*omega_y
-        u_1_rrrs_tip_x = (
-        axis_x_rrrs_axes3_x*u_1_rrrs_x + axis_x_rrrs_axes3_y*u_1_rrrs_y +
-            axis_x_rrrs_axes3_z*u_1_rrrs_z
+        # (rrrs-u_1) centripetal acceleration of the connection point
+        rrrs_u_1_tip_x = (
+        axis_x_rrrs_axes3_x*rrrs_u_1_x + axis_x_rrrs_axes3_y*rrrs_u_1_y +
+            axis_x_rrrs_axes3_z*rrrs_u_1_z
         )
-        u_1_rrrs_tip_y = (
-        axis_y_rrrs_axes3_in_base_x*u_1_rrrs_x + axis_y_rrrs_axes3_in_base_y*u_1_rrrs_y +
-            axis_y_rrrs_axes3_in_base_z*u_1_rrrs_z
+        rrrs_u_1_tip_y = (
+        axis_y_rrrs_axes3_in_base_x*rrrs_u_1_x + axis_y_rrrs_axes3_in_base_y*rrrs_u_1_y +
+            axis_y_rrrs_axes3_in_base_z*rrrs_u_1_z
         )
-        u_1_rrrs_tip_z = (
-        axis_z_rrrs_axes3_in_base_x*u_1_rrrs_x + axis_z_rrrs_axes3_in_base_y*u_1_rrrs_y +
-            axis_z_rrrs_axes3_in_base_z*u_1_rrrs_z
+        rrrs_u_1_tip_z = (
+        axis_z_rrrs_axes3_in_base_x*rrrs_u_1_x + axis_z_rrrs_axes3_in_base_y*rrrs_u_1_y +
+            axis_z_rrrs_axes3_in_base_z*rrrs_u_1_z
         )
-        # (rrrs-A9) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_rrrs_o_x = u_1_rrrs_tip_x - bias_rrrs_x
-        rel_rrrs_o_y = u_1_rrrs_tip_y - bias_rrrs_y
-        rel_rrrs_o_z = u_1_rrrs_tip_z - bias_rrrs_z
-        # (rrrs-A11) remainder without the acceleration in: acceleration of joint 1
-        qdd_2_rrrs_o = inv_r_2_rrrs_r0_y*rel_rrrs_o_x
-        qdd_1_rrrs_o = inv_v_1_rrrs_z*rel_rrrs_o_z
-        # (rrrs-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x_2 = g_r0_y_2*s_1_rrrs - c_1_rrrs*g_r0_x_2
-        g_r1_y_2 = -c_1_rrrs*g_r0_y_2 - g_r0_x_2*s_1_rrrs
-        g_r3_x_2 = -c_2_rrrs*g_r1_y_2 - g_r0_z_2*s_2_rrrs
-        g_r3_y_2 = g_r1_y_2*s_2_rrrs - c_2_rrrs*g_r0_z_2
-        # (rrrs-A17) remainder without the acceleration in: angular acceleration of link 1
-        alpha_1_rrrs_o_t = qdd_1_rrrs_o*s_2_rrrs
-        alpha_1_rrrs_o_t_2 = c_2_rrrs*qdd_1_rrrs_o
-        # (rrrs-A21) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_rrrs_o_x = zeta_2_rrrs_x - alpha_1_rrrs_o_t
-        alpha_2_rrrs_o_y = -alpha_1_rrrs_o_t_2 - zeta_2_rrrs_y
-        # (rrrs-A23) remainder of the acceleration tensor of link 2
-        B_2_rrrs_o_xy = W_2_rrrs_xy + qdd_2_rrrs_o
-        B_2_rrrs_o_yx = W_2_rrrs_xy - qdd_2_rrrs_o
-        B_2_rrrs_o_zx = zeta_2_rrrs_y - alpha_2_rrrs_o_y
-        B_2_rrrs_o_zy = alpha_2_rrrs_o_x + zeta_2_rrrs_x
-        # (rrrs-N37) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_rrrs_o_x = (
-        B_2_rrrs_o_yx*J_2_rrrs_xz + B_2_rrrs_o_zy*Sigma_2_rrrs_yy + J_2_rrrs_yz*(W_2_rrrs_t_2 -
-            W_2_rrrs_t_3) + g_r3_y_2*h_2_rrrs_z - B_2_rrrs_o_zx*J_2_rrrs_xy -
-            Sigma_2_rrrs_zz*alpha_1_rrrs_o_t - g_r1_x_2*h_2_rrrs_y
+        # (rrrs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        rrrs_rel_o_x = rrrs_u_1_tip_x - rrrs_bias_x
+        rrrs_rel_o_y = rrrs_u_1_tip_y - rrrs_bias_y
+        rrrs_rel_o_z = rrrs_u_1_tip_z - rrrs_bias_z
+        # (rrrs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
+        rrrs_qdd_2_o = inv_rrrs_r_2_r0_y*rrrs_rel_o_x
+        rrrs_qdd_1_o = inv_rrrs_v_1_z*rrrs_rel_o_z
+        # (rrrs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        rrrs_alpha_1_o_t = rrrs_qdd_1_o*rrrs_s_2
+        rrrs_alpha_1_o_t_2 = rrrs_c_2*rrrs_qdd_1_o
+        # (rrrs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        rrrs_alpha_2_o_x = rrrs_zeta_2_x - rrrs_alpha_1_o_t
+        rrrs_alpha_2_o_y = -rrrs_alpha_1_o_t_2 - rrrs_zeta_2_y
+        # (rrrs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        rrrs_alpha_3_o_x = (
+        rrrs_alpha_2_o_x*rrrs_c_3 + rrrs_omega_2_r0_y*rrrs_qd_3 - rrrs_alpha_2_o_y*rrrs_s_3
         )
-        mu_2_rrrs_o_y = (
-        B_2_rrrs_o_zy*J_2_rrrs_xy + g_r1_x_2*h_2_rrrs_x - B_2_rrrs_o_xy*J_2_rrrs_yz -
-            B_2_rrrs_o_zx*Sigma_2_rrrs_xx - J_2_rrrs_xz*(W_2_rrrs_t - W_2_rrrs_t_3) -
-            Sigma_2_rrrs_zz*alpha_1_rrrs_o_t_2 - g_r3_x_2*h_2_rrrs_z
+        rrrs_alpha_3_o_y = rrrs_alpha_2_o_x*rrrs_s_3 + rrrs_alpha_2_o_y*rrrs_c_3 - rrrs_zeta_3_y
+        rrrs_alpha_3_o_z = (
+        inv_rrrs_platform_joint_offset_x*(rrrs_rel_o_y + rrrs_qdd_2_o*rrrs_r_2_r0_x) -
+            rrrs_qdd_2_o
         )
-        mu_2_rrrs_o_z = (
-        B_2_rrrs_o_yx*Sigma_2_rrrs_xx + J_2_rrrs_xy*(W_2_rrrs_t - W_2_rrrs_t_2) +
-            g_r3_x_2*h_2_rrrs_y - B_2_rrrs_o_xy*Sigma_2_rrrs_yy - J_2_rrrs_xz*alpha_1_rrrs_o_t -
-            J_2_rrrs_yz*alpha_1_rrrs_o_t_2 - g_r3_y_2*h_2_rrrs_x
+        # (rrrs-B_3_o) remainder of the acceleration tensor of link 3
+        rrrs_B_3_o_xy = rrrs_W_3_xy - rrrs_alpha_3_o_z
+        rrrs_B_3_o_xz = rrrs_W_3_xz + rrrs_alpha_3_o_y
+        rrrs_B_3_o_yx = rrrs_W_3_xy + rrrs_alpha_3_o_z
+        rrrs_B_3_o_yz = rrrs_W_3_yz - rrrs_alpha_3_o_x
+        rrrs_B_3_o_zx = rrrs_W_3_xz - rrrs_alpha_3_o_y
+        rrrs_B_3_o_zy = rrrs_W_3_yz + rrrs_alpha_3_o_x
+        # (rrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        rrrs_acc_3_o_x = (
+        rrrs_u_1_tip_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
+            axis_x_rrrs_axes3_z*gravity_z
         )
-        # (rrrs-N10) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        acc_3_rrrs_o_x = u_1_rrrs_tip_x + g_r3_y_2*s_3_rrrs - c_3_rrrs*g_r3_x_2
-        acc_3_rrrs_o_y = u_1_rrrs_tip_y - c_3_rrrs*g_r3_y_2 - g_r3_x_2*s_3_rrrs
-        acc_3_rrrs_o_z = u_1_rrrs_tip_z - g_r1_x_2
-        # (rrrs-A26) remainder without the acceleration in: angular acceleration of link 3
-        alpha_3_rrrs_o_x = (
-        alpha_2_rrrs_o_x*c_3_rrrs + omega_2_rrrs_r0_y*qd_3_rrrs - alpha_2_rrrs_o_y*s_3_rrrs
+        rrrs_acc_3_o_y = (
+        rrrs_u_1_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x -
+            axis_y_rrrs_axes3_in_base_y*gravity_y - axis_y_rrrs_axes3_in_base_z*gravity_z
         )
-        alpha_3_rrrs_o_y = alpha_2_rrrs_o_x*s_3_rrrs + alpha_2_rrrs_o_y*c_3_rrrs - zeta_3_rrrs_y
-        alpha_3_rrrs_o_z = (
-        inv_rrrs_platform_joint_offset_x*(rel_rrrs_o_y + qdd_2_rrrs_o*r_2_rrrs_r0_x) -
-            qdd_2_rrrs_o
+        rrrs_acc_3_o_z = (
+        rrrs_u_1_tip_z - axis_z_rrrs_axes3_in_base_x*gravity_x -
+            axis_z_rrrs_axes3_in_base_y*gravity_y - axis_z_rrrs_axes3_in_base_z*gravity_z
         )
-        # (rrrs-A28) remainder of the acceleration tensor of link 3
-        B_3_rrrs_o_xy = W_3_rrrs_xy - alpha_3_rrrs_o_z
-        B_3_rrrs_o_xz = W_3_rrrs_xz + alpha_3_rrrs_o_y
-        B_3_rrrs_o_yx = W_3_rrrs_xy + alpha_3_rrrs_o_z
-        B_3_rrrs_o_yz = W_3_rrrs_yz - alpha_3_rrrs_o_x
-        B_3_rrrs_o_zx = W_3_rrrs_xz - alpha_3_rrrs_o_y
-        B_3_rrrs_o_zy = W_3_rrrs_yz + alpha_3_rrrs_o_x
-        # (rrrs-N30) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        mu_3_rrrs_o_x = (
-        B_3_rrrs_o_yx*J_3_rrrs_xz + B_3_rrrs_o_zy*Sigma_3_rrrs_yy + J_3_rrrs_yz*(W_3_rrrs_t_2 -
-            W_3_rrrs_t_3) + acc_3_rrrs_o_z*h_3_rrrs_y - B_3_rrrs_o_yz*Sigma_3_rrrs_zz -
-            B_3_rrrs_o_zx*J_3_rrrs_xy - acc_3_rrrs_o_y*h_3_rrrs_z
+        # (rrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        rrrs_mu_3_o_x = (
+        rrrs_B_3_o_yx*rrrs_J_3_xz + rrrs_B_3_o_zy*rrrs_Sigma_3_yy + rrrs_J_3_yz*(rrrs_W_3_t_2 -
+            rrrs_W_3_t_3) + rrrs_acc_3_o_z*rrrs_h_3_y - rrrs_B_3_o_yz*rrrs_Sigma_3_zz -
+            rrrs_B_3_o_zx*rrrs_J_3_xy - rrrs_acc_3_o_y*rrrs_h_3_z
         )
-        mu_3_rrrs_o_y = (
-        B_3_rrrs_o_xz*Sigma_3_rrrs_zz + B_3_rrrs_o_zy*J_3_rrrs_xy + acc_3_rrrs_o_x*h_3_rrrs_z -
-            B_3_rrrs_o_xy*J_3_rrrs_yz - B_3_rrrs_o_zx*Sigma_3_rrrs_xx - J_3_rrrs_xz*(W_3_rrrs_t -
-            W_3_rrrs_t_3) - acc_3_rrrs_o_z*h_3_rrrs_x
+        rrrs_mu_3_o_y = (
+        rrrs_B_3_o_xz*rrrs_Sigma_3_zz + rrrs_B_3_o_zy*rrrs_J_3_xy + rrrs_acc_3_o_x*rrrs_h_3_z -
+            rrrs_B_3_o_xy*rrrs_J_3_yz - rrrs_B_3_o_zx*rrrs_Sigma_3_xx - rrrs_J_3_xz*(rrrs_W_3_t -
+            rrrs_W_3_t_3) - rrrs_acc_3_o_z*rrrs_h_3_x
         )
-        mu_3_rrrs_o_z = (
-        B_3_rrrs_o_xz*J_3_rrrs_yz + B_3_rrrs_o_yx*Sigma_3_rrrs_xx + J_3_rrrs_xy*(W_3_rrrs_t -
-            W_3_rrrs_t_2) + acc_3_rrrs_o_y*h_3_rrrs_x - B_3_rrrs_o_xy*Sigma_3_rrrs_yy -
-            B_3_rrrs_o_yz*J_3_rrrs_xz - acc_3_rrrs_o_x*h_3_rrrs_y
+        rrrs_mu_3_o_z = (
+        rrrs_B_3_o_xz*rrrs_J_3_yz + rrrs_B_3_o_yx*rrrs_Sigma_3_xx + rrrs_J_3_xy*(rrrs_W_3_t -
+            rrrs_W_3_t_2) + rrrs_acc_3_o_y*rrrs_h_3_x - rrrs_B_3_o_xy*rrrs_Sigma_3_yy -
+            rrrs_B_3_o_yz*rrrs_J_3_xz - rrrs_acc_3_o_x*rrrs_h_3_y
         )
-        # (rrrs-N39) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_rrrs_o_x = mu_2_rrrs_o_x + c_3_rrrs*mu_3_rrrs_o_x + mu_3_rrrs_o_y*s_3_rrrs
-        N_2_rrrs_o_y = mu_2_rrrs_o_y + c_3_rrrs*mu_3_rrrs_o_y - mu_3_rrrs_o_x*s_3_rrrs
-        N_2_rrrs_o_z = mu_2_rrrs_o_z + mu_3_rrrs_o_z
-        # (rrrs-N46) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rrrs_o_z = J_1_rrrs_xx*qdd_1_rrrs_o - g_r1_x_2*h_1_rrrs_y - g_r1_y_2*h_1_rrrs_z
-        # (rrrs-N48) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_rrrs_o_z = mu_1_rrrs_o_z - N_2_rrrs_o_x*s_2_rrrs - N_2_rrrs_o_y*c_2_rrrs
-        # (rrrs-N54) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rrrs_o_t = inv_rrrs_platform_joint_offset_x*mu_3_rrrs_o_z
-        # (rrrs-N57) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_rrrs_o_x = (
-        h_3_rrrs_x*(W_3_rrrs_t_2 + W_3_rrrs_t_3) - B_3_rrrs_o_xy*h_3_rrrs_y -
-            B_3_rrrs_o_xz*h_3_rrrs_z - inv_r_2_rrrs_r0_y*(G_rrrs_o_t*r_2_rrrs_r0_x - N_2_rrrs_o_z)
+        # (rrrs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        rrrs_g_r1_x = rrrs_g_r0_y*rrrs_s_1 - rrrs_c_1*rrrs_g_r0_x
+        rrrs_g_r1_y = -rrrs_c_1*rrrs_g_r0_y - rrrs_g_r0_x*rrrs_s_1
+        rrrs_g_r3_x = -rrrs_c_2*rrrs_g_r1_y - rrrs_g_r0_z*rrrs_s_2
+        rrrs_g_r3_y = rrrs_g_r1_y*rrrs_s_2 - rrrs_c_2*rrrs_g_r0_z
+        # (rrrs-B_2_o) remainder of the acceleration tensor of link 2
+        rrrs_B_2_o_xy = rrrs_W_2_xy + rrrs_qdd_2_o
+        rrrs_B_2_o_yx = rrrs_W_2_xy - rrrs_qdd_2_o
+        rrrs_B_2_o_zx = rrrs_zeta_2_y - rrrs_alpha_2_o_y
+        rrrs_B_2_o_zy = rrrs_alpha_2_o_x + rrrs_zeta_2_x
+        # (rrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        rrrs_mu_2_o_x = (
+        rrrs_B_2_o_yx*rrrs_J_2_xz + rrrs_B_2_o_zy*rrrs_Sigma_2_yy + rrrs_J_2_yz*(rrrs_W_2_t_2 -
+            rrrs_W_2_t_3) + rrrs_g_r3_y*rrrs_h_2_z - rrrs_B_2_o_zx*rrrs_J_2_xy -
+            rrrs_Sigma_2_zz*rrrs_alpha_1_o_t - rrrs_g_r1_x*rrrs_h_2_y
         )
-        c_rrrs_o_y = (
-        h_3_rrrs_y*(W_3_rrrs_t + W_3_rrrs_t_3) - G_rrrs_o_t - B_3_rrrs_o_yx*h_3_rrrs_x -
-            B_3_rrrs_o_yz*h_3_rrrs_z
+        rrrs_mu_2_o_y = (
+        rrrs_B_2_o_zy*rrrs_J_2_xy + rrrs_g_r1_x*rrrs_h_2_x - rrrs_B_2_o_xy*rrrs_J_2_yz -
+            rrrs_B_2_o_zx*rrrs_Sigma_2_xx - rrrs_J_2_xz*(rrrs_W_2_t - rrrs_W_2_t_3) -
+            rrrs_Sigma_2_zz*rrrs_alpha_1_o_t_2 - rrrs_g_r3_x*rrrs_h_2_z
         )
-        c_rrrs_o_z = (
-        h_3_rrrs_z*(W_3_rrrs_t + W_3_rrrs_t_2) - B_3_rrrs_o_zx*h_3_rrrs_x -
-            B_3_rrrs_o_zy*h_3_rrrs_y - N_1_rrrs_o_z*inv_v_1_rrrs_z
+        rrrs_mu_2_o_z = (
+        rrrs_B_2_o_yx*rrrs_Sigma_2_xx + rrrs_J_2_xy*(rrrs_W_2_t - rrrs_W_2_t_2) +
+            rrrs_g_r3_x*rrrs_h_2_y - rrrs_B_2_o_xy*rrrs_Sigma_2_yy - rrrs_J_2_xz*rrrs_alpha_1_o_t
+            - rrrs_J_2_yz*rrrs_alpha_1_o_t_2 - rrrs_g_r3_y*rrrs_h_2_x
         )
-        # (rrrs-N59) velocity and gravity terms of the leg force
-        U_rrrs_in_base_x = (
-        -axis_x_rrrs_axes3_x*c_rrrs_o_x - axis_y_rrrs_axes3_in_base_x*c_rrrs_o_y -
-            axis_z_rrrs_axes3_in_base_x*c_rrrs_o_z
+        # (rrrs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        rrrs_N_2_o_x = rrrs_mu_2_o_x + rrrs_c_3*rrrs_mu_3_o_x + rrrs_mu_3_o_y*rrrs_s_3
+        rrrs_N_2_o_y = rrrs_mu_2_o_y + rrrs_c_3*rrrs_mu_3_o_y - rrrs_mu_3_o_x*rrrs_s_3
+        rrrs_N_2_o_z = rrrs_mu_2_o_z + rrrs_mu_3_o_z
+        # (rrrs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        rrrs_mu_1_o_z = rrrs_J_1_xx*rrrs_qdd_1_o - rrrs_g_r1_x*rrrs_h_1_y - rrrs_g_r1_y*rrrs_h_1_z
+        # (rrrs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrrs_N_1_o_z = rrrs_mu_1_o_z - rrrs_N_2_o_x*rrrs_s_2 - rrrs_N_2_o_y*rrrs_c_2
+        # (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrrs_G_o_t = inv_rrrs_platform_joint_offset_x*rrrs_mu_3_o_z
+        # (rrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrrs_c_o_x = (
+        rrrs_h_3_x*(rrrs_W_3_t_2 + rrrs_W_3_t_3) - inv_rrrs_r_2_r0_y*(rrrs_G_o_t*rrrs_r_2_r0_x -
+            rrrs_N_2_o_z) - rrrs_B_3_o_xy*rrrs_h_3_y - rrrs_B_3_o_xz*rrrs_h_3_z
         )
-        U_rrrs_in_base_y = (
-        -axis_x_rrrs_axes3_y*c_rrrs_o_x - axis_y_rrrs_axes3_in_base_y*c_rrrs_o_y -
-            axis_z_rrrs_axes3_in_base_y*c_rrrs_o_z
+        rrrs_c_o_y = (
+        rrrs_h_3_y*(rrrs_W_3_t + rrrs_W_3_t_3) - rrrs_G_o_t - rrrs_B_3_o_yx*rrrs_h_3_x -
+            rrrs_B_3_o_yz*rrrs_h_3_z
         )
-        U_rrrs_in_base_z = (
-        -axis_x_rrrs_axes3_z*c_rrrs_o_x - axis_y_rrrs_axes3_in_base_z*c_rrrs_o_y -
-            axis_z_rrrs_axes3_in_base_z*c_rrrs_o_z
+        rrrs_c_o_z = (
+        rrrs_h_3_z*(rrrs_W_3_t + rrrs_W_3_t_2) - inv_rrrs_v_1_z*rrrs_N_1_o_z -
+            rrrs_B_3_o_zx*rrrs_h_3_x - rrrs_B_3_o_zy*rrrs_h_3_y
         )
-        # (M7) rotational part of Z
-        Z_a_t_4 = U_rrrs_in_base_z*q_rrrs_in_base_y - U_rrrs_in_base_y*q_rrrs_in_base_z
-        Z_a_t_5 = U_rrrs_in_base_x*q_rrrs_in_base_z - U_rrrs_in_base_z*q_rrrs_in_base_x
-        Z_a_t_6 = U_rrrs_in_base_y*q_rrrs_in_base_x - U_rrrs_in_base_x*q_rrrs_in_base_y
+        # (rrrs-U) velocity and gravity terms of the leg force
+        rrrs_U_in_base_x = (
+        -axis_x_rrrs_axes3_x*rrrs_c_o_x - axis_y_rrrs_axes3_in_base_x*rrrs_c_o_y -
+            axis_z_rrrs_axes3_in_base_x*rrrs_c_o_z
+        )
+        rrrs_U_in_base_y = (
+        -axis_x_rrrs_axes3_y*rrrs_c_o_x - axis_y_rrrs_axes3_in_base_y*rrrs_c_o_y -
+            axis_z_rrrs_axes3_in_base_y*rrrs_c_o_z
+        )
+        rrrs_U_in_base_z = (
+        -axis_x_rrrs_axes3_z*rrrs_c_o_x - axis_y_rrrs_axes3_in_base_z*rrrs_c_o_y -
+            axis_z_rrrs_axes3_in_base_z*rrrs_c_o_z
+        )
+        # (Z_a) rotational part of Z
+        rrrs_Z_a_t = rrrs_U_in_base_z*rrrs_q_in_base_y - rrrs_U_in_base_y*rrrs_q_in_base_z
+        rrrs_Z_a_t_2 = rrrs_U_in_base_x*rrrs_q_in_base_z - rrrs_U_in_base_z*rrrs_q_in_base_x
+        rrrs_Z_a_t_3 = rrrs_U_in_base_y*rrrs_q_in_base_x - rrrs_U_in_base_x*rrrs_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
-            (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) &
-            (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE *
-            size_rrrs))
+        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
+            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
+            rrrs_size))
         )
         sums = m.added(sums, leg, (
-        U_rrrs_in_base_x, U_rrrs_in_base_y, U_rrrs_in_base_z, Z_a_t_4, Z_a_t_5, Z_a_t_6,
+        rrrs_U_in_base_x, rrrs_U_in_base_y, rrrs_U_in_base_z, rrrs_Z_a_t, rrrs_Z_a_t_2,
+            rrrs_Z_a_t_3,
         ))
     (
     total_rrrs_x, total_rrrs_y, total_rrrs_z, total_rrrs_x_2, total_rrrs_y_2, total_rrrs_z_2,
     ) = sums
-    # (M5) translational part of Z
+    # (Z_t) translational part of Z
     Z_t_x = Z_p_x + total_rrrrs_x + total_rrrs_x
     Z_t_y = Z_p_y + total_rrrrs_y + total_rrrs_y
     Z_t_z = Z_p_z + total_rrrrs_z + total_rrrs_z
-    # (M7) rotational part of Z
+    # (Z_a) rotational part of Z
     Z_a_x = Z_q_in_base_x + total_rrrrs_x_2 + total_rrrs_x_2
     Z_a_y = Z_q_in_base_y + total_rrrrs_y_2 + total_rrrs_y_2
     Z_a_z = Z_q_in_base_z + total_rrrrs_z_2 + total_rrrs_z_2
@@ -5207,345 +5323,344 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, branch_1_rrrrs, branch_3_rrrrs, inv_size_rrrrs_t_2,
-            inv_size_rrrrs_t_3, rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
-            rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
-            rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
-            rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
-            rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
-            rrrrs_platform_point_y, rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,
+        inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_base_frame_xx,
+            rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
+            rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
+            rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1,
+            rrrrs_branch_3, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
+            rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
+            rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,
         ) = k
-        y_2_extra_rrrrs = X[[7][leg]]
-        # (rrrrs-K1) from the base point to the connection point
-        q_rrrrs_in_base_x = (
+        rrrrs_y_2_extra = X[[7][leg]]
+        # (rrrrs-S) from the base point to the connection point
+        rrrrs_q_in_base_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
-        q_rrrrs_in_base_y = (
+        rrrrs_q_in_base_y = (
         R_yx*rrrrs_platform_point_x + R_yy*rrrrs_platform_point_y + R_yz*rrrrs_platform_point_z
         )
-        q_rrrrs_in_base_z = (
+        rrrrs_q_in_base_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        S_rrrrs_x = q_rrrrs_in_base_x + t_x - rrrrs_base_point_x
-        S_rrrrs_y = q_rrrrs_in_base_y + t_y - rrrrs_base_point_y
-        S_rrrrs_z = q_rrrrs_in_base_z + t_z - rrrrs_base_point_z
-        # (rrrrs-K4) component along the reference direction
-        px_1_rrrrs = (
-        S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy +
-            S_rrrrs_z*rrrrs_base_frame_zy
+        rrrrs_S_x = rrrrs_q_in_base_x + t_x - rrrrs_base_point_x
+        rrrrs_S_y = rrrrs_q_in_base_y + t_y - rrrrs_base_point_y
+        rrrrs_S_z = rrrrs_q_in_base_z + t_z - rrrrs_base_point_z
+        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrrs_c_2_t = sin(rrrrs_y_2_extra)
+        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrrs_s_2 = cos(rrrrs_y_2_extra)
+        # (rrrrs-px_1) component along the reference direction
+        rrrrs_px_1 = (
+        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
+            rrrrs_S_z*rrrrs_base_frame_zy
         )
-        # (rrrrs-K5) component across the reference direction
-        py_1_rrrrs = (
-        S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz +
-            S_rrrrs_z*rrrrs_base_frame_zz
+        # (rrrrs-py_1) component across the reference direction
+        rrrrs_py_1 = (
+        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
+            rrrrs_S_z*rrrrs_base_frame_zz
         )
-        # (rrrrs-K7) squared amplitude
-        rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs
-        # (rrrrs-K9) root, with the sign of the branch
-        root_1_rrrrs = branch_1_rrrrs*sqrt(rho2_1_rrrrs)
-        # (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_rrrrs_t = (
-        S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx +
-            S_rrrrs_z*rrrrs_base_frame_zx
+        # (rrrrs-rho2_1) squared amplitude
+        rrrrs_rho2_1 = rrrrs_px_1*rrrrs_px_1 + rrrrs_py_1*rrrrs_py_1
+        # (rrrrs-root_1) root, with the sign of the branch
+        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
+        # (rrrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrrs_xi_1_t = (
+        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
+            rrrrs_S_z*rrrrs_base_frame_zx
         )
-        # (rrrrs-K14) from the origin of joint 2 to the connection point
-        x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x
-        # (rrrrs-K2) cosine of the angle of joint 2 from its reference direction
-        c_2_rrrrs_t = sin(y_2_extra_rrrrs)
-        # (rrrrs-K3) sine of the angle of joint 2 from its reference direction
-        s_2_rrrrs = cos(y_2_extra_rrrrs)
-        # (rrrrs-K14) from the origin of joint 2 to the connection point
-        x_2_rrrrs_t = c_2_rrrrs_t*root_1_rrrrs
-        x_2_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*x_2_rrrrs_z
-        x_2_rrrrs_t_2 = root_1_rrrrs*s_2_rrrrs
-        x_2_rrrrs_r1_y = x_2_rrrrs_t_2 - c_2_rrrrs_t*x_2_rrrrs_z
-        # (rrrrs-K15) from the origin of joint 3 to the connection point
-        x_3_rrrrs_x = x_2_rrrrs_r1_x - rrrrs_joint3_offset_x
-        # (rrrrs-K16) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-        Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x
-        Kd_3_rrrrs = Kd_3_rrrrs_t + 0.5*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2
-        # (rrrrs-K20) factor of the cosine in the equation of joint 3
-        Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x
-        # (rrrrs-K21) factor of the sine in the equation of joint 3
-        Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y
-        # (rrrrs-K22) squared amplitude
-        rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs
-        # (rrrrs-K23) discriminant
-        disc_3_rrrrs = rho2_3_rrrrs - Kd_3_rrrrs*Kd_3_rrrrs
-        # (rrrrs-K24) root, with the sign of the branch
-        root_3_rrrrs = branch_3_rrrrs*sqrt(disc_3_rrrrs)
-        # (rrrrs-K30) from the origin of joint 4 to the connection point
-        x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
-        # (rrrrs-K32) cosine of the angle of joint 4 from its reference direction
-        c_4_rrrrs = inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x
-        # (rrrrs-K33) sine of the angle of joint 4 from its reference direction
-        s_4_rrrrs = (
-        inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        # (rrrrs-x_2) from the origin of joint 2 to the connection point
+        rrrrs_x_2_z = rrrrs_xi_1_t - rrrrs_joint2_offset_x
+        rrrrs_x_2_t = rrrrs_c_2_t*rrrrs_root_1
+        rrrrs_x_2_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_x_2_z
+        rrrrs_x_2_t_2 = rrrrs_root_1*rrrrs_s_2
+        rrrrs_x_2_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_x_2_z
+        # (rrrrs-x_3) from the origin of joint 3 to the connection point
+        rrrrs_x_3_x = rrrrs_x_2_r1_x - rrrrs_joint3_offset_x
+        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
+        rrrrs_Kd_3_t_3 = rrrrs_x_2_r1_y*rrrrs_x_2_r1_y + rrrrs_x_3_x*rrrrs_x_3_x
+        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
+        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
+        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_x
+        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
+        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_r1_y
+        # (rrrrs-rho2_3) squared amplitude
+        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
+        # (rrrrs-disc_3) discriminant
+        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
+        # (rrrrs-root_3) root, with the sign of the branch
+        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
+        # (rrrrs-x_4) from the origin of joint 4 to the connection point
+        rrrrs_x_4_x = inv_rrrrs_size_t_2*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
+        rrrrs_c_4 = inv_rrrrs_size_t_3*rrrrs_platform_joint_offset_x*rrrrs_x_4_x
+        # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
+        rrrrs_s_4 = (
+        inv_rrrrs_size_t_2*inv_rrrrs_size_t_3*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
         )
-        # (rrrrs-V2) from joint 3 to the connection point, along the links
-        r_3_rrrrs_x = rrrrs_joint4_offset_x + c_4_rrrrs*rrrrs_platform_joint_offset_x
-        # (rrrrs-K25) cosine of the angle of joint 3 from its reference direction
-        inv_rho2_3_rrrrs = 1.0/rho2_3_rrrrs
-        c_3_rrrrs = inv_rho2_3_rrrrs*(Kc_3_rrrrs*Kd_3_rrrrs - Ks_3_rrrrs*root_3_rrrrs)
-        # (rrrrs-K26) sine of the angle of joint 3 from its reference direction
-        s_3_rrrrs = inv_rho2_3_rrrrs*(Kc_3_rrrrs*root_3_rrrrs + Kd_3_rrrrs*Ks_3_rrrrs)
-        # (rrrrs-V5) velocity of the connection point per rate of joint 1
-        e_1_rrrrs_r2_x = c_3_rrrrs*s_2_rrrrs - c_2_rrrrs_t*s_3_rrrrs
-        e_1_rrrrs_r2_y = -c_2_rrrrs_t*c_3_rrrrs - s_2_rrrrs*s_3_rrrrs
-        # (rrrrs-V4) from joint 1 to the connection point, along the links
-        r_1_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*xi_1_rrrrs_t
-        r_1_rrrrs_r1_y = x_2_rrrrs_t_2 - c_2_rrrrs_t*xi_1_rrrrs_t
-        r_1_rrrrs_r2_x = c_3_rrrrs*r_1_rrrrs_r1_x + r_1_rrrrs_r1_y*s_3_rrrrs
-        r_1_rrrrs_r2_y = c_3_rrrrs*r_1_rrrrs_r1_y - r_1_rrrrs_r1_x*s_3_rrrrs
-        # (rrrrs-V5) velocity of the connection point per rate of joint 1
-        v_1_rrrrs_z = (
-        (c_4_rrrrs*e_1_rrrrs_r2_x - e_1_rrrrs_r2_y*s_4_rrrrs)*(c_4_rrrrs*r_1_rrrrs_r2_y +
-            r_1_rrrrs_r2_x*s_4_rrrrs) - (c_4_rrrrs*e_1_rrrrs_r2_y +
-            e_1_rrrrs_r2_x*s_4_rrrrs)*(c_4_rrrrs*r_1_rrrrs_r2_x - r_1_rrrrs_r2_y*s_4_rrrrs)
+        # (rrrrs-r_3) from joint 3 to the connection point, along the links
+        rrrrs_r_3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
+        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
+        rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
+        # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
+        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrrs_e_1_r2_x = rrrrs_c_3*rrrrs_s_2 - rrrrs_c_2_t*rrrrs_s_3
+        rrrrs_e_1_r2_y = -rrrrs_c_2_t*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
+        # (rrrrs-r_1) from joint 1 to the connection point, along the links
+        rrrrs_r_1_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_xi_1_t
+        rrrrs_r_1_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_xi_1_t
+        rrrrs_r_1_r2_x = rrrrs_c_3*rrrrs_r_1_r1_x + rrrrs_r_1_r1_y*rrrrs_s_3
+        rrrrs_r_1_r2_y = rrrrs_c_3*rrrrs_r_1_r1_y - rrrrs_r_1_r1_x*rrrrs_s_3
+        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrrs_v_1_z = (
+        (rrrrs_c_4*rrrrs_e_1_r2_x - rrrrs_e_1_r2_y*rrrrs_s_4)*(rrrrs_c_4*rrrrs_r_1_r2_y +
+            rrrrs_r_1_r2_x*rrrrs_s_4) - (rrrrs_c_4*rrrrs_e_1_r2_y +
+            rrrrs_e_1_r2_x*rrrrs_s_4)*(rrrrs_c_4*rrrrs_r_1_r2_x - rrrrs_r_1_r2_y*rrrrs_s_4)
         )
-        # (rrrrs-V2) from joint 3 to the connection point, along the links
-        r_3_rrrrs_r0_y = r_3_rrrrs_x*s_4_rrrrs - c_4_rrrrs*rrrrs_platform_joint_offset_x*s_4_rrrrs
-        # (rrrrs-K10) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrrrs = 1.0/rho2_1_rrrrs
-        c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs
-        # (rrrrs-K11) sine of the angle of joint 1 from its reference direction
-        s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs
-        # (rrrrs-V9) reciprocal vector 1
+        # (rrrrs-r_3) from joint 3 to the connection point, along the links
+        rrrrs_r_3_r0_y = rrrrs_r_3_x*rrrrs_s_4 - rrrrs_c_4*rrrrs_platform_joint_offset_x*rrrrs_s_4
+        # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
+        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_py_1*rrrrs_root_1
+        # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_px_1*rrrrs_root_1
+        # (rrrrs-w_1) reciprocal vector 1
         axis_z_rrrrs_axes4_in_base_x = (
-        rrrrs_base_frame_xz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_xy
+        rrrrs_base_frame_xz*rrrrs_s_1 - rrrrs_base_frame_xy*rrrrs_c_1
         )
         axis_z_rrrrs_axes4_in_base_y = (
-        rrrrs_base_frame_yz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_yy
+        rrrrs_base_frame_yz*rrrrs_s_1 - rrrrs_base_frame_yy*rrrrs_c_1
         )
         axis_z_rrrrs_axes4_in_base_z = (
-        rrrrs_base_frame_zz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_zy
+        rrrrs_base_frame_zz*rrrrs_s_1 - rrrrs_base_frame_zy*rrrrs_c_1
         )
-        axis_y_rrrrs_axes4_r1_x = c_3_rrrrs*s_4_rrrrs - c_4_rrrrs*s_3_rrrrs
-        axis_y_rrrrs_axes4_r1_y = c_3_rrrrs*c_4_rrrrs + s_3_rrrrs*s_4_rrrrs
+        axis_y_rrrrs_axes4_r1_x = rrrrs_c_3*rrrrs_s_4 - rrrrs_c_4*rrrrs_s_3
+        axis_y_rrrrs_axes4_r1_y = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4
         axis_y_rrrrs_axes4_r2_x = (
-        -axis_y_rrrrs_axes4_r1_x*c_2_rrrrs_t - axis_y_rrrrs_axes4_r1_y*s_2_rrrrs
+        -axis_y_rrrrs_axes4_r1_x*rrrrs_c_2_t - axis_y_rrrrs_axes4_r1_y*rrrrs_s_2
         )
         axis_y_rrrrs_axes4_r2_y = (
-        axis_y_rrrrs_axes4_r1_x*s_2_rrrrs - axis_y_rrrrs_axes4_r1_y*c_2_rrrrs_t
+        axis_y_rrrrs_axes4_r1_x*rrrrs_s_2 - axis_y_rrrrs_axes4_r1_y*rrrrs_c_2_t
         )
-        w_1_rrrrs_t = axis_y_rrrrs_axes4_r2_x*s_1_rrrrs
-        w_1_rrrrs_t_2 = axis_y_rrrrs_axes4_r2_x*c_1_rrrrs
+        rrrrs_w_1_t = axis_y_rrrrs_axes4_r2_x*rrrrs_s_1
+        rrrrs_w_1_t_2 = axis_y_rrrrs_axes4_r2_x*rrrrs_c_1
         axis_y_rrrrs_axes4_in_base_x = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_xx - rrrrs_base_frame_xy*w_1_rrrrs_t -
-            rrrrs_base_frame_xz*w_1_rrrrs_t_2
+        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_xx - rrrrs_base_frame_xy*rrrrs_w_1_t -
+            rrrrs_base_frame_xz*rrrrs_w_1_t_2
         )
         axis_y_rrrrs_axes4_in_base_y = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_yx - rrrrs_base_frame_yy*w_1_rrrrs_t -
-            rrrrs_base_frame_yz*w_1_rrrrs_t_2
+        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_yx - rrrrs_base_frame_yy*rrrrs_w_1_t -
+            rrrrs_base_frame_yz*rrrrs_w_1_t_2
         )
         axis_y_rrrrs_axes4_in_base_z = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_zx - rrrrs_base_frame_zy*w_1_rrrrs_t -
-            rrrrs_base_frame_zz*w_1_rrrrs_t_2
+        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_zx - rrrrs_base_frame_zy*rrrrs_w_1_t -
+            rrrrs_base_frame_zz*rrrrs_w_1_t_2
         )
-        inv_v_1_rrrrs_z = 1.0/v_1_rrrrs_z
-        # (rrrrs-V10) reciprocal vector 2
-        inv_r_3_rrrrs_r0_y = 1.0/r_3_rrrrs_r0_y
-        # (rrrrs-A14) coefficient of the acceleration in: acceleration of joint 1
-        d1_qdd_3_rrrrs = (
-        inv_r_3_rrrrs_r0_y*(c_4_rrrrs*(c_3_rrrrs*x_2_rrrrs_r1_y - s_3_rrrrs*x_2_rrrrs_r1_x) +
-            s_4_rrrrs*(c_3_rrrrs*x_2_rrrrs_r1_x + s_3_rrrrs*x_2_rrrrs_r1_y))
+        inv_rrrrs_v_1_z = 1.0/rrrrs_v_1_z
+        # (rrrrs-w_3) reciprocal vector 2
+        inv_rrrrs_r_3_r0_y = 1.0/rrrrs_r_3_r0_y
+        # (rrrrs-dy_2_qdd_1) coefficient of the acceleration in: acceleration of joint 1
+        rrrrs_dy_2_qdd_3 = (
+        inv_rrrrs_r_3_r0_y*(rrrrs_c_4*(rrrrs_c_3*rrrrs_x_2_r1_y - rrrrs_s_3*rrrrs_x_2_r1_x) +
+            rrrrs_s_4*(rrrrs_c_3*rrrrs_x_2_r1_x + rrrrs_s_3*rrrrs_x_2_r1_y))
         )
-        # (rrrrs-V9) reciprocal vector 1
-        w_1_rrrrs_t_3 = axis_z_rrrrs_axes4_in_base_x*inv_v_1_rrrrs_z
-        w_1_rrrrs_t_4 = axis_z_rrrrs_axes4_in_base_y*inv_v_1_rrrrs_z
-        w_1_rrrrs_t_5 = axis_z_rrrrs_axes4_in_base_z*inv_v_1_rrrrs_z
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_1_rrrrs_x = q_rrrrs_in_base_y*w_1_rrrrs_t_5 - q_rrrrs_in_base_z*w_1_rrrrs_t_4
-        H_a_1_rrrrs_y = q_rrrrs_in_base_z*w_1_rrrrs_t_3 - q_rrrrs_in_base_x*w_1_rrrrs_t_5
-        H_a_1_rrrrs_z = q_rrrrs_in_base_x*w_1_rrrrs_t_4 - q_rrrrs_in_base_y*w_1_rrrrs_t_3
-        # (rrrrs-V10) reciprocal vector 2
-        w_3_rrrrs_t = (
-        inv_r_3_rrrrs_r0_y*(axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_z -
+        # (rrrrs-w_1) reciprocal vector 1
+        rrrrs_w_1_t_3 = axis_z_rrrrs_axes4_in_base_x*inv_rrrrs_v_1_z
+        rrrrs_w_1_t_4 = axis_z_rrrrs_axes4_in_base_y*inv_rrrrs_v_1_z
+        rrrrs_w_1_t_5 = axis_z_rrrrs_axes4_in_base_z*inv_rrrrs_v_1_z
+        # (rrrrs-H_a_1) moment of the column's unit force about the platform origin
+        rrrrs_H_a_1_x = rrrrs_q_in_base_y*rrrrs_w_1_t_5 - rrrrs_q_in_base_z*rrrrs_w_1_t_4
+        rrrrs_H_a_1_y = rrrrs_q_in_base_z*rrrrs_w_1_t_3 - rrrrs_q_in_base_x*rrrrs_w_1_t_5
+        rrrrs_H_a_1_z = rrrrs_q_in_base_x*rrrrs_w_1_t_4 - rrrrs_q_in_base_y*rrrrs_w_1_t_3
+        # (rrrrs-w_3) reciprocal vector 2
+        rrrrs_w_3_t = (
+        inv_rrrrs_r_3_r0_y*(axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_z -
             axis_y_rrrrs_axes4_in_base_z*axis_z_rrrrs_axes4_in_base_y)
         )
-        w_3_rrrrs_t_2 = (
-        inv_r_3_rrrrs_r0_y*(axis_y_rrrrs_axes4_in_base_z*axis_z_rrrrs_axes4_in_base_x -
+        rrrrs_w_3_t_2 = (
+        inv_rrrrs_r_3_r0_y*(axis_y_rrrrs_axes4_in_base_z*axis_z_rrrrs_axes4_in_base_x -
             axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_z)
         )
-        w_3_rrrrs_t_3 = (
-        inv_r_3_rrrrs_r0_y*(axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_y -
+        rrrrs_w_3_t_3 = (
+        inv_rrrrs_r_3_r0_y*(axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_y -
             axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_x)
         )
-        # (M10) moment of the column's unit force about the platform origin
-        H_a_3_rrrrs_x = q_rrrrs_in_base_z*w_3_rrrrs_t_2 - q_rrrrs_in_base_y*w_3_rrrrs_t_3
-        H_a_3_rrrrs_y = q_rrrrs_in_base_x*w_3_rrrrs_t_3 - q_rrrrs_in_base_z*w_3_rrrrs_t
-        H_a_3_rrrrs_z = q_rrrrs_in_base_y*w_3_rrrrs_t - q_rrrrs_in_base_x*w_3_rrrrs_t_2
+        # (rrrrs-H_a_3) moment of the column's unit force about the platform origin
+        rrrrs_H_a_3_x = rrrrs_q_in_base_z*rrrrs_w_3_t_2 - rrrrs_q_in_base_y*rrrrs_w_3_t_3
+        rrrrs_H_a_3_y = rrrrs_q_in_base_x*rrrrs_w_3_t_3 - rrrrs_q_in_base_z*rrrrs_w_3_t
+        rrrrs_H_a_3_z = rrrrs_q_in_base_y*rrrrs_w_3_t - rrrrs_q_in_base_x*rrrrs_w_3_t_2
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
-            (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0)
-            & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE *
-            size_rrrrs))
+        ok & m.every(leg, (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
+            (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0)
+            & (abs(rrrrs_v_1_z) > _TOLERANCE * rrrrs_size) & (abs(-rrrrs_r_3_r0_y) > _TOLERANCE *
+            rrrrs_size))
         )
-        out_H[_H_rrrrs[0][leg]] = w_1_rrrrs_t_3
-        out_H[_H_rrrrs[1][leg]] = w_1_rrrrs_t_4
-        out_H[_H_rrrrs[2][leg]] = w_1_rrrrs_t_5
-        out_H[_H_rrrrs[3][leg]] = H_a_1_rrrrs_x
-        out_H[_H_rrrrs[4][leg]] = H_a_1_rrrrs_y
-        out_H[_H_rrrrs[5][leg]] = H_a_1_rrrrs_z
+        out_H[_H_rrrrs[0][leg]] = rrrrs_w_1_t_3
+        out_H[_H_rrrrs[1][leg]] = rrrrs_w_1_t_4
+        out_H[_H_rrrrs[2][leg]] = rrrrs_w_1_t_5
+        out_H[_H_rrrrs[3][leg]] = rrrrs_H_a_1_x
+        out_H[_H_rrrrs[4][leg]] = rrrrs_H_a_1_y
+        out_H[_H_rrrrs[5][leg]] = rrrrs_H_a_1_z
         out_H[_H_rrrrs[6][leg]] = 1.0
-        out_H[_H_rrrrs[7][leg]] = -w_3_rrrrs_t
-        out_H[_H_rrrrs[8][leg]] = -w_3_rrrrs_t_2
-        out_H[_H_rrrrs[9][leg]] = -w_3_rrrrs_t_3
-        out_H[_H_rrrrs[10][leg]] = H_a_3_rrrrs_x
-        out_H[_H_rrrrs[11][leg]] = H_a_3_rrrrs_y
-        out_H[_H_rrrrs[12][leg]] = H_a_3_rrrrs_z
-        out_H[_H_rrrrs[13][leg]] = -d1_qdd_3_rrrrs
+        out_H[_H_rrrrs[7][leg]] = -rrrrs_w_3_t
+        out_H[_H_rrrrs[8][leg]] = -rrrrs_w_3_t_2
+        out_H[_H_rrrrs[9][leg]] = -rrrrs_w_3_t_3
+        out_H[_H_rrrrs[10][leg]] = rrrrs_H_a_3_x
+        out_H[_H_rrrrs[11][leg]] = rrrrs_H_a_3_y
+        out_H[_H_rrrrs[12][leg]] = rrrrs_H_a_3_z
+        out_H[_H_rrrrs[13][leg]] = -rrrrs_dy_2_qdd_3
     for leg, k in legs[1]:
         (
-        Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs, inv_size_rrrs_t,
-            inv_size_rrrs_t_2, rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
-            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-            rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
-            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-            rrrs_platform_point_z, size_rrrs, size_rrrs_t_3,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
+            rrrs_size, rrrs_size_t_3,
         ) = k
-        # (rrrs-K1) from the base point to the connection point
-        q_rrrs_in_base_x = (
+        # (rrrs-S) from the base point to the connection point
+        rrrs_q_in_base_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        q_rrrs_in_base_y = (
+        rrrs_q_in_base_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        q_rrrs_in_base_z = (
+        rrrs_q_in_base_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        S_rrrs_x = q_rrrs_in_base_x + t_x - rrrs_base_point_x
-        S_rrrs_y = q_rrrs_in_base_y + t_y - rrrs_base_point_y
-        S_rrrs_z = q_rrrs_in_base_z + t_z - rrrs_base_point_z
-        # (rrrs-K2) component along the reference direction
-        px_1_rrrs = (
-        S_rrrs_x*rrrs_base_frame_xy + S_rrrs_y*rrrs_base_frame_yy + S_rrrs_z*rrrs_base_frame_zy
+        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        # (rrrs-px_1) component along the reference direction
+        rrrs_px_1 = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        # (rrrs-K3) component across the reference direction
-        py_1_rrrs = (
-        S_rrrs_x*rrrs_base_frame_xz + S_rrrs_y*rrrs_base_frame_yz + S_rrrs_z*rrrs_base_frame_zz
+        # (rrrs-py_1) component across the reference direction
+        rrrs_py_1 = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        # (rrrs-K5) squared amplitude
-        rho2_1_rrrs = px_1_rrrs*px_1_rrrs + py_1_rrrs*py_1_rrrs
-        # (rrrs-K7) root, with the sign of the branch
-        root_1_rrrs = branch_1_rrrs*sqrt(rho2_1_rrrs)
-        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_rrrs_t = (
-        S_rrrs_x*rrrs_base_frame_xx + S_rrrs_y*rrrs_base_frame_yx + S_rrrs_z*rrrs_base_frame_zx
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrs_xi_1_t = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        # (rrrs-K12) from the origin of joint 2 to the connection point
-        x_2_rrrs_z = xi_1_rrrs_t - rrrs_joint2_offset_x
-        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z
-        Kd_2_rrrs = Kd_2_rrrs_t + 0.5*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2
-        # (rrrs-K17) factor of the cosine in the equation of joint 2
-        Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x
-        # (rrrs-K18) factor of the sine in the equation of joint 2
-        Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z
-        # (rrrs-K19) squared amplitude
-        rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs
-        # (rrrs-K20) discriminant
-        disc_2_rrrs = rho2_2_rrrs - Kd_2_rrrs*Kd_2_rrrs
-        # (rrrs-K21) root, with the sign of the branch
-        root_2_rrrs = branch_2_rrrs*sqrt(disc_2_rrrs)
-        # (rrrs-K27) from the origin of joint 3 to the connection point
-        x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-        # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-        c_3_rrrs = inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x
-        # (rrrs-K30) sine of the angle of joint 3 from its reference direction
-        s_3_rrrs = (
-        inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-x_3) from the origin of joint 3 to the connection point
+        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrs_s_3 = (
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_rrrs_x = rrrs_joint3_offset_x + c_3_rrrs*rrrs_platform_joint_offset_x
-        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2_rrrs = 1.0/rho2_2_rrrs
-        c_2_rrrs = inv_rho2_2_rrrs*(Kc_2_rrrs*Kd_2_rrrs + Ks_2_rrrs*root_2_rrrs)
-        # (rrrs-K23) sine of the angle of joint 2 from its reference direction
-        s_2_rrrs = inv_rho2_2_rrrs*(Kc_2_rrrs*root_2_rrrs - Kd_2_rrrs*Ks_2_rrrs)
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        e_1_rrrs_r2_x = c_2_rrrs*s_3_rrrs - c_3_rrrs*s_2_rrrs
-        e_1_rrrs_r2_y = -c_2_rrrs*c_3_rrrs - s_2_rrrs*s_3_rrrs
-        # (rrrs-V3) from joint 1 to the connection point, along the links
-        r_1_rrrs_r1_x = c_2_rrrs*root_1_rrrs - s_2_rrrs*xi_1_rrrs_t
-        r_1_rrrs_r1_y = -c_2_rrrs*xi_1_rrrs_t - root_1_rrrs*s_2_rrrs
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        v_1_rrrs_z = (
-        e_1_rrrs_r2_x*(c_3_rrrs*r_1_rrrs_r1_y + r_1_rrrs_r1_x*s_3_rrrs) -
-            e_1_rrrs_r2_y*(c_3_rrrs*r_1_rrrs_r1_x - r_1_rrrs_r1_y*s_3_rrrs)
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
+        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
+        # (rrrs-r_1) from joint 1 to the connection point, along the links
+        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
+        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_z = (
+        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
+            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
         )
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_rrrs_r0_y = r_2_rrrs_x*s_3_rrrs - c_3_rrrs*rrrs_platform_joint_offset_x*s_3_rrrs
-        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrrs = 1.0/rho2_1_rrrs
-        c_1_rrrs = inv_rho2_1_rrrs*py_1_rrrs*root_1_rrrs
-        # (rrrs-K9) sine of the angle of joint 1 from its reference direction
-        s_1_rrrs = inv_rho2_1_rrrs*px_1_rrrs*root_1_rrrs
-        # (rrrs-V7) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1_rrrs - c_1_rrrs*rrrs_base_frame_xy
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1_rrrs - c_1_rrrs*rrrs_base_frame_yy
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1_rrrs - c_1_rrrs*rrrs_base_frame_zy
-        w_1_rrrs_t = e_1_rrrs_r2_x*s_1_rrrs
-        w_1_rrrs_t_2 = c_1_rrrs*e_1_rrrs_r2_x
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_platform_joint_offset_x*rrrs_s_3
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
+        # (rrrs-w_1) reciprocal vector 1
+        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
+        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
+        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
         axis_y_rrrs_axes3_in_base_x = (
-        e_1_rrrs_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_rrrs_t +
-            rrrs_base_frame_xz*w_1_rrrs_t_2
+        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
+            rrrs_base_frame_xz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_y = (
-        e_1_rrrs_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_rrrs_t +
-            rrrs_base_frame_yz*w_1_rrrs_t_2
+        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
+            rrrs_base_frame_yz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_z = (
-        e_1_rrrs_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_rrrs_t +
-            rrrs_base_frame_zz*w_1_rrrs_t_2
+        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
+            rrrs_base_frame_zz*rrrs_w_1_t_2
         )
-        inv_v_1_rrrs_z = 1.0/v_1_rrrs_z
-        # (rrrs-V8) reciprocal vector 2
-        inv_r_2_rrrs_r0_y = 1.0/r_2_rrrs_r0_y
-        # (rrrs-V7) reciprocal vector 1
-        w_1_rrrs_t_3 = axis_z_rrrs_axes3_in_base_x*inv_v_1_rrrs_z
-        w_1_rrrs_t_4 = axis_z_rrrs_axes3_in_base_y*inv_v_1_rrrs_z
-        w_1_rrrs_t_5 = axis_z_rrrs_axes3_in_base_z*inv_v_1_rrrs_z
-        # (M11) moment of the column's unit force about the platform origin
-        H_a_1_rrrs_x = q_rrrs_in_base_y*w_1_rrrs_t_5 - q_rrrs_in_base_z*w_1_rrrs_t_4
-        H_a_1_rrrs_y = q_rrrs_in_base_z*w_1_rrrs_t_3 - q_rrrs_in_base_x*w_1_rrrs_t_5
-        H_a_1_rrrs_z = q_rrrs_in_base_x*w_1_rrrs_t_4 - q_rrrs_in_base_y*w_1_rrrs_t_3
-        # (rrrs-V8) reciprocal vector 2
-        w_2_rrrs_t = (
-        inv_r_2_rrrs_r0_y*(axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
+        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
+        # (rrrs-w_2) reciprocal vector 2
+        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_rrrs_v_1_z
+        rrrs_w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_rrrs_v_1_z
+        rrrs_w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_rrrs_v_1_z
+        # (rrrs-H_a_1) moment of the column's unit force about the platform origin
+        rrrs_H_a_1_x = rrrs_q_in_base_y*rrrs_w_1_t_5 - rrrs_q_in_base_z*rrrs_w_1_t_4
+        rrrs_H_a_1_y = rrrs_q_in_base_z*rrrs_w_1_t_3 - rrrs_q_in_base_x*rrrs_w_1_t_5
+        rrrs_H_a_1_z = rrrs_q_in_base_x*rrrs_w_1_t_4 - rrrs_q_in_base_y*rrrs_w_1_t_3
+        # (rrrs-w_2) reciprocal vector 2
+        rrrs_w_2_t = (
+        inv_rrrs_r_2_r0_y*(axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
             axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y)
         )
-        w_2_rrrs_t_2 = (
-        inv_r_2_rrrs_r0_y*(axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
+        rrrs_w_2_t_2 = (
+        inv_rrrs_r_2_r0_y*(axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
             axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z)
         )
-        w_2_rrrs_t_3 = (
-        inv_r_2_rrrs_r0_y*(axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
+        rrrs_w_2_t_3 = (
+        inv_rrrs_r_2_r0_y*(axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
             axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x)
         )
-        # (M12) moment of the column's unit force about the platform origin
-        H_a_2_rrrs_x = q_rrrs_in_base_z*w_2_rrrs_t_2 - q_rrrs_in_base_y*w_2_rrrs_t_3
-        H_a_2_rrrs_y = q_rrrs_in_base_x*w_2_rrrs_t_3 - q_rrrs_in_base_z*w_2_rrrs_t
-        H_a_2_rrrs_z = q_rrrs_in_base_y*w_2_rrrs_t - q_rrrs_in_base_x*w_2_rrrs_t_2
+        # (rrrs-H_a_2) moment of the column's unit force about the platform origin
+        rrrs_H_a_2_x = rrrs_q_in_base_z*rrrs_w_2_t_2 - rrrs_q_in_base_y*rrrs_w_2_t_3
+        rrrs_H_a_2_y = rrrs_q_in_base_x*rrrs_w_2_t_3 - rrrs_q_in_base_z*rrrs_w_2_t
+        rrrs_H_a_2_z = rrrs_q_in_base_y*rrrs_w_2_t - rrrs_q_in_base_x*rrrs_w_2_t_2
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
-            (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) &
-            (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE *
-            size_rrrs))
+        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
+            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
+            rrrs_size))
         )
-        out_H[_H_rrrs[0][leg]] = w_1_rrrs_t_3
-        out_H[_H_rrrs[1][leg]] = w_1_rrrs_t_4
-        out_H[_H_rrrs[2][leg]] = w_1_rrrs_t_5
-        out_H[_H_rrrs[3][leg]] = H_a_1_rrrs_x
-        out_H[_H_rrrs[4][leg]] = H_a_1_rrrs_y
-        out_H[_H_rrrs[5][leg]] = H_a_1_rrrs_z
-        out_H[_H_rrrs[6][leg]] = -w_2_rrrs_t
-        out_H[_H_rrrs[7][leg]] = -w_2_rrrs_t_2
-        out_H[_H_rrrs[8][leg]] = -w_2_rrrs_t_3
-        out_H[_H_rrrs[9][leg]] = H_a_2_rrrs_x
-        out_H[_H_rrrs[10][leg]] = H_a_2_rrrs_y
-        out_H[_H_rrrs[11][leg]] = H_a_2_rrrs_z
+        out_H[_H_rrrs[0][leg]] = rrrs_w_1_t_3
+        out_H[_H_rrrs[1][leg]] = rrrs_w_1_t_4
+        out_H[_H_rrrs[2][leg]] = rrrs_w_1_t_5
+        out_H[_H_rrrs[3][leg]] = rrrs_H_a_1_x
+        out_H[_H_rrrs[4][leg]] = rrrs_H_a_1_y
+        out_H[_H_rrrs[5][leg]] = rrrs_H_a_1_z
+        out_H[_H_rrrs[6][leg]] = -rrrs_w_2_t
+        out_H[_H_rrrs[7][leg]] = -rrrs_w_2_t_2
+        out_H[_H_rrrs[8][leg]] = -rrrs_w_2_t_3
+        out_H[_H_rrrs[9][leg]] = rrrs_H_a_2_x
+        out_H[_H_rrrs[10][leg]] = rrrs_H_a_2_y
+        out_H[_H_rrrs[11][leg]] = rrrs_H_a_2_z
     return ok, (out_H,)
 
 
@@ -5623,29 +5738,29 @@ def _run_required(m, X, V, A):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (P1) centripetal tensor of the platform
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_x*omega_x
     W_p_t_2 = omega_y*omega_y
     W_p_t_3 = omega_z*omega_z
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
     W_p_yz = omega_y*omega_z
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
-    # (E2) inertia force of the platform less its weight
+    # (f_p) inertia force of the platform less its weight
     f_p_x = (
     a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) + h_star_in_base_z*(W_p_xz + alpha_y) -
         h_star_in_base_x*(W_p_t_2 + W_p_t_3)
@@ -5658,11 +5773,11 @@ def _run_required(m, X, V, A):
     a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) + h_star_in_base_y*(W_p_yz + alpha_x) -
         h_star_in_base_z*(W_p_t + W_p_t_2)
     )
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
     a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
     a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
-    # (E3) inertia moment of the platform less that of its weight
+    # (mu_p) inertia moment of the platform less that of its weight
     alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
     alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
     alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
@@ -5684,151 +5799,153 @@ def _run_required(m, X, V, A):
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_1_rrrrs_xx, J_2_rrrrs_xy, J_2_rrrrs_xz, J_2_rrrrs_yz, J_3_rrrrs_xy, J_3_rrrrs_xz,
-            J_3_rrrrs_yz, J_4_rrrrs_xy, J_4_rrrrs_xz, J_4_rrrrs_yz, Kd_3_rrrrs_t, Kd_3_rrrrs_t_2,
-            Sigma_2_rrrrs_xx, Sigma_2_rrrrs_yy, Sigma_2_rrrrs_zz, Sigma_3_rrrrs_xx,
-            Sigma_3_rrrrs_yy, Sigma_3_rrrrs_zz, Sigma_4_rrrrs_xx, Sigma_4_rrrrs_yy,
-            Sigma_4_rrrrs_zz, branch_1_rrrrs, branch_3_rrrrs, g_r0_x, g_r0_y, g_r0_z, h_1_rrrrs_y,
-            h_1_rrrrs_z, h_2_rrrrs_x, h_2_rrrrs_y, h_2_rrrrs_z, h_3_rrrrs_x, h_3_rrrrs_y,
-            h_3_rrrrs_z, h_4_rrrrs_x, h_4_rrrrs_y, h_4_rrrrs_z, inv_rrrrs_platform_joint_offset_x,
-            inv_size_rrrrs_t_2, inv_size_rrrrs_t_3, rho2_3_rrrrs_t, rrrrs_base_frame_xx,
-            rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
-            rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
-            rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_joint2_offset_x,
-            rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_link3_mass,
+        inv_rrrrs_platform_joint_offset_x, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_J_1_xx,
+            rrrrs_J_2_xy, rrrrs_J_2_xz, rrrrs_J_2_yz, rrrrs_J_3_xy, rrrrs_J_3_xz, rrrrs_J_3_yz,
+            rrrrs_J_4_xy, rrrrs_J_4_xz, rrrrs_J_4_yz, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2,
+            rrrrs_Sigma_2_xx, rrrrs_Sigma_2_yy, rrrrs_Sigma_2_zz, rrrrs_Sigma_3_xx,
+            rrrrs_Sigma_3_yy, rrrrs_Sigma_3_zz, rrrrs_Sigma_4_xx, rrrrs_Sigma_4_yy,
+            rrrrs_Sigma_4_zz, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
+            rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx,
+            rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
+            rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_g_r0_x, rrrrs_g_r0_y,
+            rrrrs_g_r0_z, rrrrs_h_1_y, rrrrs_h_1_z, rrrrs_h_2_x, rrrrs_h_2_y, rrrrs_h_2_z,
+            rrrrs_h_3_x, rrrrs_h_3_y, rrrrs_h_3_z, rrrrs_h_4_x, rrrrs_h_4_y, rrrrs_h_4_z,
+            rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_link3_mass,
             rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
-            rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,
+            rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,
         ) = k
-        y_2_extra_rrrrs = X[[7][leg]]
-        yd_2_rrrrs = V[[6][leg]]
-        ydd_2_rrrrs = A[[6][leg]]
-        # (rrrrs-K1) from the base point to the connection point
-        q_rrrrs_in_base_x = (
+        rrrrs_y_2_extra = X[[7][leg]]
+        rrrrs_yd_2 = V[[6][leg]]
+        rrrrs_ydd_2 = A[[6][leg]]
+        # (rrrrs-S) from the base point to the connection point
+        rrrrs_q_in_base_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
-        q_rrrrs_in_base_y = (
+        rrrrs_q_in_base_y = (
         R_yx*rrrrs_platform_point_x + R_yy*rrrrs_platform_point_y + R_yz*rrrrs_platform_point_z
         )
-        q_rrrrs_in_base_z = (
+        rrrrs_q_in_base_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        S_rrrrs_x = q_rrrrs_in_base_x + t_x - rrrrs_base_point_x
-        S_rrrrs_y = q_rrrrs_in_base_y + t_y - rrrrs_base_point_y
-        S_rrrrs_z = q_rrrrs_in_base_z + t_z - rrrrs_base_point_z
-        # (rrrrs-K4) component along the reference direction
-        px_1_rrrrs = (
-        S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy +
-            S_rrrrs_z*rrrrs_base_frame_zy
+        rrrrs_S_x = rrrrs_q_in_base_x + t_x - rrrrs_base_point_x
+        rrrrs_S_y = rrrrs_q_in_base_y + t_y - rrrrs_base_point_y
+        rrrrs_S_z = rrrrs_q_in_base_z + t_z - rrrrs_base_point_z
+        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrrs_c_2_t = sin(rrrrs_y_2_extra)
+        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrrs_s_2 = cos(rrrrs_y_2_extra)
+        # (rrrrs-Kr_1) right-hand side of the equation of joint 1
+        rrrrs_Kr_1_t = rrrrs_joint2_offset_x*rrrrs_s_2
+        rrrrs_Kr_1_t_2 = rrrrs_c_2_t*rrrrs_joint2_offset_x
+        # (rrrrs-px_1) component along the reference direction
+        rrrrs_px_1 = (
+        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
+            rrrrs_S_z*rrrrs_base_frame_zy
         )
-        # (rrrrs-K5) component across the reference direction
-        py_1_rrrrs = (
-        S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz +
-            S_rrrrs_z*rrrrs_base_frame_zz
+        # (rrrrs-py_1) component across the reference direction
+        rrrrs_py_1 = (
+        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
+            rrrrs_S_z*rrrrs_base_frame_zz
         )
-        # (rrrrs-K7) squared amplitude
-        rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs
-        # (rrrrs-K9) root, with the sign of the branch
-        root_1_rrrrs = branch_1_rrrrs*sqrt(rho2_1_rrrrs)
-        # (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_rrrrs_t = (
-        S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx +
-            S_rrrrs_z*rrrrs_base_frame_zx
+        # (rrrrs-rho2_1) squared amplitude
+        rrrrs_rho2_1 = rrrrs_px_1*rrrrs_px_1 + rrrrs_py_1*rrrrs_py_1
+        # (rrrrs-root_1) root, with the sign of the branch
+        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
+        # (rrrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrrs_xi_1_t = (
+        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
+            rrrrs_S_z*rrrrs_base_frame_zx
         )
-        # (rrrrs-K14) from the origin of joint 2 to the connection point
-        x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x
-        # (rrrrs-K2) cosine of the angle of joint 2 from its reference direction
-        c_2_rrrrs_t = sin(y_2_extra_rrrrs)
-        # (rrrrs-K3) sine of the angle of joint 2 from its reference direction
-        s_2_rrrrs = cos(y_2_extra_rrrrs)
-        # (rrrrs-K14) from the origin of joint 2 to the connection point
-        x_2_rrrrs_t = c_2_rrrrs_t*root_1_rrrrs
-        x_2_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*x_2_rrrrs_z
-        x_2_rrrrs_t_2 = root_1_rrrrs*s_2_rrrrs
-        x_2_rrrrs_r1_y = x_2_rrrrs_t_2 - c_2_rrrrs_t*x_2_rrrrs_z
-        # (rrrrs-K15) from the origin of joint 3 to the connection point
-        x_3_rrrrs_x = x_2_rrrrs_r1_x - rrrrs_joint3_offset_x
-        # (rrrrs-K16) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-        Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x
-        Kd_3_rrrrs = Kd_3_rrrrs_t + 0.5*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2
-        # (rrrrs-K20) factor of the cosine in the equation of joint 3
-        Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x
-        # (rrrrs-K21) factor of the sine in the equation of joint 3
-        Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y
-        # (rrrrs-K22) squared amplitude
-        rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs
-        # (rrrrs-K23) discriminant
-        disc_3_rrrrs = rho2_3_rrrrs - Kd_3_rrrrs*Kd_3_rrrrs
-        # (rrrrs-K24) root, with the sign of the branch
-        root_3_rrrrs = branch_3_rrrrs*sqrt(disc_3_rrrrs)
-        # (rrrrs-K30) from the origin of joint 4 to the connection point
-        x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
-        # (rrrrs-K32) cosine of the angle of joint 4 from its reference direction
-        c_4_rrrrs = inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x
-        # (rrrrs-K33) sine of the angle of joint 4 from its reference direction
-        s_4_rrrrs = (
-        inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        # (rrrrs-x_2) from the origin of joint 2 to the connection point
+        rrrrs_x_2_z = rrrrs_xi_1_t - rrrrs_joint2_offset_x
+        rrrrs_x_2_t = rrrrs_c_2_t*rrrrs_root_1
+        rrrrs_x_2_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_x_2_z
+        rrrrs_x_2_t_2 = rrrrs_root_1*rrrrs_s_2
+        rrrrs_x_2_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_x_2_z
+        # (rrrrs-x_3) from the origin of joint 3 to the connection point
+        rrrrs_x_3_x = rrrrs_x_2_r1_x - rrrrs_joint3_offset_x
+        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
+        rrrrs_Kd_3_t_3 = rrrrs_x_2_r1_y*rrrrs_x_2_r1_y + rrrrs_x_3_x*rrrrs_x_3_x
+        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
+        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
+        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_x
+        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
+        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_r1_y
+        # (rrrrs-rho2_3) squared amplitude
+        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
+        # (rrrrs-disc_3) discriminant
+        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
+        # (rrrrs-root_3) root, with the sign of the branch
+        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
+        # (rrrrs-x_4) from the origin of joint 4 to the connection point
+        rrrrs_x_4_x = inv_rrrrs_size_t_2*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
+        rrrrs_c_4 = inv_rrrrs_size_t_3*rrrrs_platform_joint_offset_x*rrrrs_x_4_x
+        # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
+        rrrrs_s_4 = (
+        inv_rrrrs_size_t_2*inv_rrrrs_size_t_3*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
         )
-        # (rrrrs-V2) from joint 3 to the connection point, along the links
-        r_3_rrrrs_t = rrrrs_platform_joint_offset_x*s_4_rrrrs
-        r_3_rrrrs_x = rrrrs_joint4_offset_x + c_4_rrrrs*rrrrs_platform_joint_offset_x
-        # (rrrrs-K25) cosine of the angle of joint 3 from its reference direction
-        inv_rho2_3_rrrrs = 1.0/rho2_3_rrrrs
-        c_3_rrrrs = inv_rho2_3_rrrrs*(Kc_3_rrrrs*Kd_3_rrrrs - Ks_3_rrrrs*root_3_rrrrs)
-        # (rrrrs-K26) sine of the angle of joint 3 from its reference direction
-        s_3_rrrrs = inv_rho2_3_rrrrs*(Kc_3_rrrrs*root_3_rrrrs + Kd_3_rrrrs*Ks_3_rrrrs)
-        # (rrrrs-V5) velocity of the connection point per rate of joint 1
-        e_1_rrrrs_r2_x = c_3_rrrrs*s_2_rrrrs - c_2_rrrrs_t*s_3_rrrrs
-        e_1_rrrrs_r2_y = -c_2_rrrrs_t*c_3_rrrrs - s_2_rrrrs*s_3_rrrrs
-        # (rrrrs-V4) from joint 1 to the connection point, along the links
-        r_1_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*xi_1_rrrrs_t
-        r_1_rrrrs_r1_y = x_2_rrrrs_t_2 - c_2_rrrrs_t*xi_1_rrrrs_t
-        r_1_rrrrs_r2_x = c_3_rrrrs*r_1_rrrrs_r1_x + r_1_rrrrs_r1_y*s_3_rrrrs
-        r_1_rrrrs_r2_y = c_3_rrrrs*r_1_rrrrs_r1_y - r_1_rrrrs_r1_x*s_3_rrrrs
-        # (rrrrs-V5) velocity of the connection point per rate of joint 1
-        v_1_rrrrs_z = (
-        (c_4_rrrrs*e_1_rrrrs_r2_x - e_1_rrrrs_r2_y*s_4_rrrrs)*(c_4_rrrrs*r_1_rrrrs_r2_y +
-            r_1_rrrrs_r2_x*s_4_rrrrs) - (c_4_rrrrs*e_1_rrrrs_r2_y +
-            e_1_rrrrs_r2_x*s_4_rrrrs)*(c_4_rrrrs*r_1_rrrrs_r2_x - r_1_rrrrs_r2_y*s_4_rrrrs)
+        # (rrrrs-r_3) from joint 3 to the connection point, along the links
+        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4
+        rrrrs_r_3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
+        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
+        rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
+        # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
+        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrrs_e_1_r2_x = rrrrs_c_3*rrrrs_s_2 - rrrrs_c_2_t*rrrrs_s_3
+        rrrrs_e_1_r2_y = -rrrrs_c_2_t*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
+        # (rrrrs-r_1) from joint 1 to the connection point, along the links
+        rrrrs_r_1_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_xi_1_t
+        rrrrs_r_1_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_xi_1_t
+        rrrrs_r_1_r2_x = rrrrs_c_3*rrrrs_r_1_r1_x + rrrrs_r_1_r1_y*rrrrs_s_3
+        rrrrs_r_1_r2_y = rrrrs_c_3*rrrrs_r_1_r1_y - rrrrs_r_1_r1_x*rrrrs_s_3
+        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrrs_v_1_z = (
+        (rrrrs_c_4*rrrrs_e_1_r2_x - rrrrs_e_1_r2_y*rrrrs_s_4)*(rrrrs_c_4*rrrrs_r_1_r2_y +
+            rrrrs_r_1_r2_x*rrrrs_s_4) - (rrrrs_c_4*rrrrs_e_1_r2_y +
+            rrrrs_e_1_r2_x*rrrrs_s_4)*(rrrrs_c_4*rrrrs_r_1_r2_x - rrrrs_r_1_r2_y*rrrrs_s_4)
         )
-        # (rrrrs-V2) from joint 3 to the connection point, along the links
-        r_3_rrrrs_r0_x = c_4_rrrrs*r_3_rrrrs_x + r_3_rrrrs_t*s_4_rrrrs
-        r_3_rrrrs_r0_y = r_3_rrrrs_x*s_4_rrrrs - c_4_rrrrs*r_3_rrrrs_t
-        # (rrrrs-K10) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrrrs = 1.0/rho2_1_rrrrs
-        c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs
-        # (rrrrs-K11) sine of the angle of joint 1 from its reference direction
-        s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs
-        # (rrrrs-V9) reciprocal vector 1
+        # (rrrrs-r_3) from joint 3 to the connection point, along the links
+        rrrrs_r_3_r0_x = rrrrs_c_4*rrrrs_r_3_x + rrrrs_r_3_t*rrrrs_s_4
+        rrrrs_r_3_r0_y = rrrrs_r_3_x*rrrrs_s_4 - rrrrs_c_4*rrrrs_r_3_t
+        # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
+        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_py_1*rrrrs_root_1
+        # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_px_1*rrrrs_root_1
+        # (rrrrs-w_1) reciprocal vector 1
         axis_z_rrrrs_axes4_in_base_x = (
-        rrrrs_base_frame_xz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_xy
+        rrrrs_base_frame_xz*rrrrs_s_1 - rrrrs_base_frame_xy*rrrrs_c_1
         )
         axis_z_rrrrs_axes4_in_base_y = (
-        rrrrs_base_frame_yz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_yy
+        rrrrs_base_frame_yz*rrrrs_s_1 - rrrrs_base_frame_yy*rrrrs_c_1
         )
         axis_z_rrrrs_axes4_in_base_z = (
-        rrrrs_base_frame_zz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_zy
+        rrrrs_base_frame_zz*rrrrs_s_1 - rrrrs_base_frame_zy*rrrrs_c_1
         )
-        axis_y_rrrrs_axes4_r1_x = c_3_rrrrs*s_4_rrrrs - c_4_rrrrs*s_3_rrrrs
-        axis_y_rrrrs_axes4_r1_y = c_3_rrrrs*c_4_rrrrs + s_3_rrrrs*s_4_rrrrs
+        axis_y_rrrrs_axes4_r1_x = rrrrs_c_3*rrrrs_s_4 - rrrrs_c_4*rrrrs_s_3
+        axis_y_rrrrs_axes4_r1_y = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4
         axis_y_rrrrs_axes4_r2_x = (
-        -axis_y_rrrrs_axes4_r1_x*c_2_rrrrs_t - axis_y_rrrrs_axes4_r1_y*s_2_rrrrs
+        -axis_y_rrrrs_axes4_r1_x*rrrrs_c_2_t - axis_y_rrrrs_axes4_r1_y*rrrrs_s_2
         )
         axis_y_rrrrs_axes4_r2_y = (
-        axis_y_rrrrs_axes4_r1_x*s_2_rrrrs - axis_y_rrrrs_axes4_r1_y*c_2_rrrrs_t
+        axis_y_rrrrs_axes4_r1_x*rrrrs_s_2 - axis_y_rrrrs_axes4_r1_y*rrrrs_c_2_t
         )
-        w_1_rrrrs_t = axis_y_rrrrs_axes4_r2_x*s_1_rrrrs
-        w_1_rrrrs_t_2 = axis_y_rrrrs_axes4_r2_x*c_1_rrrrs
+        rrrrs_w_1_t = axis_y_rrrrs_axes4_r2_x*rrrrs_s_1
+        rrrrs_w_1_t_2 = axis_y_rrrrs_axes4_r2_x*rrrrs_c_1
         axis_y_rrrrs_axes4_in_base_x = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_xx - rrrrs_base_frame_xy*w_1_rrrrs_t -
-            rrrrs_base_frame_xz*w_1_rrrrs_t_2
+        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_xx - rrrrs_base_frame_xy*rrrrs_w_1_t -
+            rrrrs_base_frame_xz*rrrrs_w_1_t_2
         )
         axis_y_rrrrs_axes4_in_base_y = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_yx - rrrrs_base_frame_yy*w_1_rrrrs_t -
-            rrrrs_base_frame_yz*w_1_rrrrs_t_2
+        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_yx - rrrrs_base_frame_yy*rrrrs_w_1_t -
+            rrrrs_base_frame_yz*rrrrs_w_1_t_2
         )
         axis_y_rrrrs_axes4_in_base_z = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_zx - rrrrs_base_frame_zy*w_1_rrrrs_t -
-            rrrrs_base_frame_zz*w_1_rrrrs_t_2
+        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_zx - rrrrs_base_frame_zy*rrrrs_w_1_t -
+            rrrrs_base_frame_zz*rrrrs_w_1_t_2
         )
         axis_x_rrrrs_axes4_x = (
         axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_z -
@@ -5842,379 +5959,382 @@ def _run_required(m, X, V, A):
         axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_y -
             axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_x
         )
-        inv_v_1_rrrrs_z = 1.0/v_1_rrrrs_z
-        # (rrrrs-V10) reciprocal vector 2
-        inv_r_3_rrrrs_r0_y = 1.0/r_3_rrrrs_r0_y
-        # (rrrrs-V1) velocity of the connection point
-        S_dot_rrrrs_t = omega_y*q_rrrrs_in_base_z - omega_z*q_rrrrs_in_base_y
-        S_dot_rrrrs_t_2 = omega_z*q_rrrrs_in_base_x - omega_x*q_rrrrs_in_base_z
-        S_dot_rrrrs_t_3 = omega_x*q_rrrrs_in_base_y - omega_y*q_rrrrs_in_base_x
-        S_dot_rrrrs_x = S_dot_rrrrs_t + t_dot_x
-        S_dot_rrrrs_y = S_dot_rrrrs_t_2 + t_dot_y
-        S_dot_rrrrs_z = S_dot_rrrrs_t_3 + t_dot_z
-        # (rrrrs-V3) from joint 2 to the connection point, along the links
-        r_2_rrrrs_r0_x = c_3_rrrrs*x_2_rrrrs_r1_x + s_3_rrrrs*x_2_rrrrs_r1_y
-        r_2_rrrrs_r0_y = c_3_rrrrs*x_2_rrrrs_r1_y - s_3_rrrrs*x_2_rrrrs_r1_x
-        r_2_rrrrs_r1_x = c_4_rrrrs*r_2_rrrrs_r0_x - r_2_rrrrs_r0_y*s_4_rrrrs
-        r_2_rrrrs_r1_y = c_4_rrrrs*r_2_rrrrs_r0_y + r_2_rrrrs_r0_x*s_4_rrrrs
-        # (rrrrs-V12) velocity of the connection point left to the joints that are not extra
-        S_dot_rest_rrrrs_x = (
-        S_dot_rrrrs_x - yd_2_rrrrs*(axis_y_rrrrs_axes4_in_base_x*r_2_rrrrs_r1_x -
-            axis_x_rrrrs_axes4_x*r_2_rrrrs_r1_y)
+        inv_rrrrs_v_1_z = 1.0/rrrrs_v_1_z
+        # (rrrrs-w_3) reciprocal vector 2
+        inv_rrrrs_r_3_r0_y = 1.0/rrrrs_r_3_r0_y
+        # (rrrrs-S_dot) velocity of the connection point
+        rrrrs_S_dot_t = omega_y*rrrrs_q_in_base_z - omega_z*rrrrs_q_in_base_y
+        rrrrs_S_dot_t_2 = omega_z*rrrrs_q_in_base_x - omega_x*rrrrs_q_in_base_z
+        rrrrs_S_dot_t_3 = omega_x*rrrrs_q_in_base_y - omega_y*rrrrs_q_in_base_x
+        rrrrs_S_dot_x = rrrrs_S_dot_t + t_dot_x
+        rrrrs_S_dot_y = rrrrs_S_dot_t_2 + t_dot_y
+        rrrrs_S_dot_z = rrrrs_S_dot_t_3 + t_dot_z
+        # (rrrrs-r_2) from joint 2 to the connection point, along the links
+        rrrrs_r_2_r0_x = rrrrs_c_3*rrrrs_x_2_r1_x + rrrrs_s_3*rrrrs_x_2_r1_y
+        rrrrs_r_2_r0_y = rrrrs_c_3*rrrrs_x_2_r1_y - rrrrs_s_3*rrrrs_x_2_r1_x
+        rrrrs_r_2_r1_x = rrrrs_c_4*rrrrs_r_2_r0_x - rrrrs_r_2_r0_y*rrrrs_s_4
+        rrrrs_r_2_r1_y = rrrrs_c_4*rrrrs_r_2_r0_y + rrrrs_r_2_r0_x*rrrrs_s_4
+        # (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra
+        rrrrs_S_dot_rest_x = (
+        rrrrs_S_dot_x - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_x*rrrrs_r_2_r1_x -
+            axis_x_rrrrs_axes4_x*rrrrs_r_2_r1_y)
         )
-        S_dot_rest_rrrrs_y = (
-        S_dot_rrrrs_y - yd_2_rrrrs*(axis_y_rrrrs_axes4_in_base_y*r_2_rrrrs_r1_x -
-            axis_x_rrrrs_axes4_y*r_2_rrrrs_r1_y)
+        rrrrs_S_dot_rest_y = (
+        rrrrs_S_dot_y - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_y*rrrrs_r_2_r1_x -
+            axis_x_rrrrs_axes4_y*rrrrs_r_2_r1_y)
         )
-        S_dot_rest_rrrrs_z = (
-        S_dot_rrrrs_z - yd_2_rrrrs*(axis_y_rrrrs_axes4_in_base_z*r_2_rrrrs_r1_x -
-            axis_x_rrrrs_axes4_z*r_2_rrrrs_r1_y)
+        rrrrs_S_dot_rest_z = (
+        rrrrs_S_dot_z - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_z*rrrrs_r_2_r1_x -
+            axis_x_rrrrs_axes4_z*rrrrs_r_2_r1_y)
         )
-        # (rrrrs-V13) rate of joint 1
-        qd_3_rrrrs = (
-        inv_r_3_rrrrs_r0_y*(S_dot_rest_rrrrs_x*axis_x_rrrrs_axes4_x +
-            S_dot_rest_rrrrs_y*axis_x_rrrrs_axes4_y + S_dot_rest_rrrrs_z*axis_x_rrrrs_axes4_z)
+        # (rrrrs-qd_4) rate of joint 4
+        rrrrs_qd_3 = (
+        inv_rrrrs_r_3_r0_y*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+            axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_x_rrrrs_axes4_z*rrrrs_S_dot_rest_z)
         )
-        qd_4_rrrrs = (
-        inv_rrrrs_platform_joint_offset_x*(S_dot_rest_rrrrs_x*axis_y_rrrrs_axes4_in_base_x +
-            S_dot_rest_rrrrs_y*axis_y_rrrrs_axes4_in_base_y +
-            S_dot_rest_rrrrs_z*axis_y_rrrrs_axes4_in_base_z + qd_3_rrrrs*r_3_rrrrs_r0_x)
+        rrrrs_qd_4 = (
+        inv_rrrrs_platform_joint_offset_x*(axis_y_rrrrs_axes4_in_base_x*rrrrs_S_dot_rest_x +
+            axis_y_rrrrs_axes4_in_base_y*rrrrs_S_dot_rest_y +
+            axis_y_rrrrs_axes4_in_base_z*rrrrs_S_dot_rest_z + rrrrs_qd_3*rrrrs_r_3_r0_x)
         )
-        qd_1_rrrrs = (
-        inv_v_1_rrrrs_z*(S_dot_rest_rrrrs_x*axis_z_rrrrs_axes4_in_base_x +
-            S_dot_rest_rrrrs_y*axis_z_rrrrs_axes4_in_base_y +
-            S_dot_rest_rrrrs_z*axis_z_rrrrs_axes4_in_base_z)
+        rrrrs_qd_1 = (
+        inv_rrrrs_v_1_z*(axis_z_rrrrs_axes4_in_base_x*rrrrs_S_dot_rest_x +
+            axis_z_rrrrs_axes4_in_base_y*rrrrs_S_dot_rest_y +
+            axis_z_rrrrs_axes4_in_base_z*rrrrs_S_dot_rest_z)
         )
-        # (rrrrs-V16) angular velocity of link 1
-        omega_1_rrrrs_t = qd_1_rrrrs*s_2_rrrrs
-        omega_1_rrrrs_t_2 = c_2_rrrrs_t*qd_1_rrrrs
-        # (rrrrs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_rrrrs_x = omega_1_rrrrs_t_2*yd_2_rrrrs
-        zeta_2_rrrrs_y = omega_1_rrrrs_t*yd_2_rrrrs
-        # (rrrrs-V18) angular velocity of link 2
-        omega_2_rrrrs_r0_x = c_3_rrrrs*omega_1_rrrrs_t - omega_1_rrrrs_t_2*s_3_rrrrs
-        omega_2_rrrrs_r0_y = -c_3_rrrrs*omega_1_rrrrs_t_2 - omega_1_rrrrs_t*s_3_rrrrs
-        # (rrrrs-A5) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_rrrrs_x = omega_2_rrrrs_r0_y*qd_3_rrrrs
-        zeta_3_rrrrs_y = omega_2_rrrrs_r0_x*qd_3_rrrrs
-        # (rrrrs-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_rrrrs_x = -zeta_3_rrrrs_x - c_3_rrrrs*zeta_2_rrrrs_x - s_3_rrrrs*zeta_2_rrrrs_y
-        beta_3_rrrrs_y = zeta_3_rrrrs_y + s_3_rrrrs*zeta_2_rrrrs_x - c_3_rrrrs*zeta_2_rrrrs_y
-        # (rrrrs-V20) angular velocity of link 3
-        omega_3_rrrrs_z = yd_2_rrrrs - qd_3_rrrrs
-        omega_3_rrrrs_r0_x = c_4_rrrrs*omega_2_rrrrs_r0_x - omega_2_rrrrs_r0_y*s_4_rrrrs
-        omega_3_rrrrs_r0_y = c_4_rrrrs*omega_2_rrrrs_r0_y + omega_2_rrrrs_r0_x*s_4_rrrrs
-        # (rrrrs-A7) angular acceleration of link 4 from the turning of axis 4
-        zeta_4_rrrrs_y = omega_3_rrrrs_r0_x*qd_4_rrrrs
-        # (rrrrs-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_rrrrs_r0_y = beta_3_rrrrs_x*s_4_rrrrs + beta_3_rrrrs_y*c_4_rrrrs
-        # (rrrrs-A8) angular acceleration of link 4 at zero joint accelerations
-        beta_4_rrrrs_y = beta_3_rrrrs_r0_y - zeta_4_rrrrs_y
-        # (rrrrs-V22) angular velocity of link 4
-        omega_4_rrrrs_z = omega_3_rrrrs_z + qd_4_rrrrs
-        # (rrrrs-V19) centripetal tensor of link 2
-        W_2_rrrrs_t = omega_1_rrrrs_t*omega_1_rrrrs_t
-        W_2_rrrrs_t_2 = omega_1_rrrrs_t_2*omega_1_rrrrs_t_2
-        W_2_rrrrs_t_3 = yd_2_rrrrs*yd_2_rrrrs
-        W_2_rrrrs_xy = omega_1_rrrrs_t*omega_1_rrrrs_t_2
-        # (rrrrs-V21) centripetal tensor of link 3
-        W_3_rrrrs_t = omega_2_rrrrs_r0_x*omega_2_rrrrs_r0_x
-        W_3_rrrrs_t_2 = omega_2_rrrrs_r0_y*omega_2_rrrrs_r0_y
-        W_3_rrrrs_t_3 = omega_3_rrrrs_z*omega_3_rrrrs_z
-        W_3_rrrrs_xy = omega_2_rrrrs_r0_x*omega_2_rrrrs_r0_y
-        W_3_rrrrs_xz = omega_2_rrrrs_r0_x*omega_3_rrrrs_z
-        W_3_rrrrs_yz = omega_2_rrrrs_r0_y*omega_3_rrrrs_z
-        # (rrrrs-V23) centripetal tensor of link 4
-        W_4_rrrrs_t = omega_3_rrrrs_r0_x*omega_3_rrrrs_r0_x
-        W_4_rrrrs_t_2 = omega_3_rrrrs_r0_y*omega_3_rrrrs_r0_y
-        W_4_rrrrs_t_3 = omega_4_rrrrs_z*omega_4_rrrrs_z
-        W_4_rrrrs_xx = W_4_rrrrs_t_2 + W_4_rrrrs_t_3
-        W_4_rrrrs_xy = omega_3_rrrrs_r0_x*omega_3_rrrrs_r0_y
-        W_4_rrrrs_xz = omega_3_rrrrs_r0_x*omega_4_rrrrs_z
-        W_4_rrrrs_yz = omega_3_rrrrs_r0_y*omega_4_rrrrs_z
-        # (rrrrs-A9) acceleration of the connection point at zero joint accelerations
-        bias_rrrrs_t = rrrrs_joint2_offset_x*s_2_rrrrs
-        bias_rrrrs_t_2 = c_2_rrrrs_t*rrrrs_joint2_offset_x
-        d_2_rrrrs_r2_x = bias_rrrrs_t*c_3_rrrrs - bias_rrrrs_t_2*s_3_rrrrs
-        d_2_rrrrs_r2_y = -bias_rrrrs_t*s_3_rrrrs - bias_rrrrs_t_2*c_3_rrrrs
-        d_2_rrrrs_r3_x = c_4_rrrrs*d_2_rrrrs_r2_x - d_2_rrrrs_r2_y*s_4_rrrrs
-        d_2_rrrrs_r3_y = c_4_rrrrs*d_2_rrrrs_r2_y + d_2_rrrrs_r2_x*s_4_rrrrs
-        bias_rrrrs_t_3 = c_3_rrrrs*rrrrs_joint3_offset_x
-        bias_rrrrs_t_4 = rrrrs_joint3_offset_x*s_3_rrrrs
-        d_3_rrrrs_r1_x = bias_rrrrs_t_3*c_4_rrrrs + bias_rrrrs_t_4*s_4_rrrrs
-        d_3_rrrrs_r1_y = bias_rrrrs_t_3*s_4_rrrrs - bias_rrrrs_t_4*c_4_rrrrs
-        bias_rrrrs_t_5 = c_4_rrrrs*rrrrs_joint4_offset_x
-        bias_rrrrs_t_6 = rrrrs_joint4_offset_x*s_4_rrrrs
-        bias_rrrrs_x = (
-        W_4_rrrrs_xy*bias_rrrrs_t_6 + W_4_rrrrs_xy*d_2_rrrrs_r3_y + W_4_rrrrs_xy*d_3_rrrrs_r1_y -
-            W_4_rrrrs_t_2*d_2_rrrrs_r3_x - W_4_rrrrs_xx*rrrrs_platform_joint_offset_x -
-            bias_rrrrs_t_5*(W_3_rrrrs_t_3 + W_4_rrrrs_t_2) - d_3_rrrrs_r1_x*(W_2_rrrrs_t_3 +
-            W_4_rrrrs_t_2)
+        # (rrrrs-omega_1) angular velocity of link 1
+        rrrrs_omega_1_t = rrrrs_qd_1*rrrrs_s_2
+        rrrrs_omega_1_t_2 = rrrrs_c_2_t*rrrrs_qd_1
+        # (rrrrs-omega_2) angular velocity of link 2
+        rrrrs_omega_2_r0_x = rrrrs_c_3*rrrrs_omega_1_t - rrrrs_omega_1_t_2*rrrrs_s_3
+        rrrrs_omega_2_r0_y = -rrrrs_c_3*rrrrs_omega_1_t_2 - rrrrs_omega_1_t*rrrrs_s_3
+        # (rrrrs-omega_3) angular velocity of link 3
+        rrrrs_omega_3_z = rrrrs_yd_2 - rrrrs_qd_3
+        rrrrs_omega_3_r0_x = rrrrs_c_4*rrrrs_omega_2_r0_x - rrrrs_omega_2_r0_y*rrrrs_s_4
+        rrrrs_omega_3_r0_y = rrrrs_c_4*rrrrs_omega_2_r0_y + rrrrs_omega_2_r0_x*rrrrs_s_4
+        # (rrrrs-omega_4) angular velocity of link 4
+        rrrrs_omega_4_z = rrrrs_omega_3_z + rrrrs_qd_4
+        # (rrrrs-zeta_4) angular acceleration of link 4 from the turning of axis 4
+        rrrrs_zeta_4_y = rrrrs_omega_3_r0_x*rrrrs_qd_4
+        # (rrrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        rrrrs_zeta_2_x = rrrrs_omega_1_t_2*rrrrs_yd_2
+        rrrrs_zeta_2_y = rrrrs_omega_1_t*rrrrs_yd_2
+        # (rrrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrrs_zeta_3_x = rrrrs_omega_2_r0_y*rrrrs_qd_3
+        rrrrs_zeta_3_y = rrrrs_omega_2_r0_x*rrrrs_qd_3
+        # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        rrrrs_beta_3_x = -rrrrs_zeta_3_x - rrrrs_c_3*rrrrs_zeta_2_x - rrrrs_s_3*rrrrs_zeta_2_y
+        rrrrs_beta_3_y = rrrrs_zeta_3_y + rrrrs_s_3*rrrrs_zeta_2_x - rrrrs_c_3*rrrrs_zeta_2_y
+        rrrrs_beta_3_r0_y = rrrrs_beta_3_x*rrrrs_s_4 + rrrrs_beta_3_y*rrrrs_c_4
+        # (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations
+        rrrrs_beta_4_y = rrrrs_beta_3_r0_y - rrrrs_zeta_4_y
+        # (rrrrs-W_2) centripetal tensor of link 2
+        rrrrs_W_2_t = rrrrs_omega_1_t*rrrrs_omega_1_t
+        rrrrs_W_2_t_2 = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2
+        rrrrs_W_2_t_3 = rrrrs_yd_2*rrrrs_yd_2
+        rrrrs_W_2_xy = rrrrs_omega_1_t*rrrrs_omega_1_t_2
+        # (rrrrs-W_3) centripetal tensor of link 3
+        rrrrs_W_3_t = rrrrs_omega_2_r0_x*rrrrs_omega_2_r0_x
+        rrrrs_W_3_t_2 = rrrrs_omega_2_r0_y*rrrrs_omega_2_r0_y
+        rrrrs_W_3_t_3 = rrrrs_omega_3_z*rrrrs_omega_3_z
+        rrrrs_W_3_xy = rrrrs_omega_2_r0_x*rrrrs_omega_2_r0_y
+        rrrrs_W_3_xz = rrrrs_omega_2_r0_x*rrrrs_omega_3_z
+        rrrrs_W_3_yz = rrrrs_omega_2_r0_y*rrrrs_omega_3_z
+        # (rrrrs-W_4) centripetal tensor of link 4
+        rrrrs_W_4_t = rrrrs_omega_3_r0_x*rrrrs_omega_3_r0_x
+        rrrrs_W_4_t_2 = rrrrs_omega_3_r0_y*rrrrs_omega_3_r0_y
+        rrrrs_W_4_t_3 = rrrrs_omega_4_z*rrrrs_omega_4_z
+        rrrrs_W_4_xx = rrrrs_W_4_t_2 + rrrrs_W_4_t_3
+        rrrrs_W_4_xy = rrrrs_omega_3_r0_x*rrrrs_omega_3_r0_y
+        rrrrs_W_4_xz = rrrrs_omega_3_r0_x*rrrrs_omega_4_z
+        rrrrs_W_4_yz = rrrrs_omega_3_r0_y*rrrrs_omega_4_z
+        # (rrrrs-bias) acceleration of the connection point at zero joint accelerations
+        rrrrs_d_2_r2_x = rrrrs_Kr_1_t*rrrrs_c_3 - rrrrs_Kr_1_t_2*rrrrs_s_3
+        rrrrs_d_2_r2_y = -rrrrs_Kr_1_t*rrrrs_s_3 - rrrrs_Kr_1_t_2*rrrrs_c_3
+        rrrrs_d_2_r3_x = rrrrs_c_4*rrrrs_d_2_r2_x - rrrrs_d_2_r2_y*rrrrs_s_4
+        rrrrs_d_2_r3_y = rrrrs_c_4*rrrrs_d_2_r2_y + rrrrs_d_2_r2_x*rrrrs_s_4
+        rrrrs_bias_t = rrrrs_c_3*rrrrs_joint3_offset_x
+        rrrrs_bias_t_2 = rrrrs_joint3_offset_x*rrrrs_s_3
+        rrrrs_d_3_r1_x = rrrrs_bias_t*rrrrs_c_4 + rrrrs_bias_t_2*rrrrs_s_4
+        rrrrs_d_3_r1_y = rrrrs_bias_t*rrrrs_s_4 - rrrrs_bias_t_2*rrrrs_c_4
+        rrrrs_bias_t_3 = rrrrs_c_4*rrrrs_joint4_offset_x
+        rrrrs_bias_t_4 = rrrrs_joint4_offset_x*rrrrs_s_4
+        rrrrs_bias_x = (
+        rrrrs_W_4_xy*rrrrs_bias_t_4 + rrrrs_W_4_xy*rrrrs_d_2_r3_y + rrrrs_W_4_xy*rrrrs_d_3_r1_y -
+            rrrrs_W_4_t_2*rrrrs_d_2_r3_x - rrrrs_W_4_xx*rrrrs_platform_joint_offset_x -
+            rrrrs_bias_t_3*(rrrrs_W_3_t_3 + rrrrs_W_4_t_2) - rrrrs_d_3_r1_x*(rrrrs_W_2_t_3 +
+            rrrrs_W_4_t_2)
         )
-        bias_rrrrs_y = (
-        W_4_rrrrs_xy*bias_rrrrs_t_5 + W_4_rrrrs_xy*d_2_rrrrs_r3_x + W_4_rrrrs_xy*d_3_rrrrs_r1_x +
-            W_4_rrrrs_xy*rrrrs_platform_joint_offset_x - W_4_rrrrs_t*d_2_rrrrs_r3_y -
-            bias_rrrrs_t_6*(W_3_rrrrs_t_3 + W_4_rrrrs_t) - d_3_rrrrs_r1_y*(W_2_rrrrs_t_3 +
-            W_4_rrrrs_t)
+        rrrrs_bias_y = (
+        rrrrs_W_4_xy*rrrrs_bias_t_3 + rrrrs_W_4_xy*rrrrs_d_2_r3_x + rrrrs_W_4_xy*rrrrs_d_3_r1_x +
+            rrrrs_W_4_xy*rrrrs_platform_joint_offset_x - rrrrs_W_4_t*rrrrs_d_2_r3_y -
+            rrrrs_bias_t_4*(rrrrs_W_3_t_3 + rrrrs_W_4_t) - rrrrs_d_3_r1_y*(rrrrs_W_2_t_3 +
+            rrrrs_W_4_t)
         )
-        bias_rrrrs_z = (
-        bias_rrrrs_t_5*(omega_3_rrrrs_r0_x*omega_3_rrrrs_z - beta_3_rrrrs_r0_y) +
-            bias_rrrrs_t_6*(beta_3_rrrrs_x*c_4_rrrrs + omega_3_rrrrs_r0_y*omega_3_rrrrs_z -
-            beta_3_rrrrs_y*s_4_rrrrs) + rrrrs_platform_joint_offset_x*(W_4_rrrrs_xz -
-            beta_4_rrrrs_y) + 2.0*d_3_rrrrs_r1_x*omega_3_rrrrs_r0_x*yd_2_rrrrs +
-            2.0*d_3_rrrrs_r1_y*omega_3_rrrrs_r0_y*yd_2_rrrrs
+        rrrrs_bias_z = (
+        rrrrs_bias_t_3*(rrrrs_omega_3_r0_x*rrrrs_omega_3_z - rrrrs_beta_3_r0_y) +
+            rrrrs_bias_t_4*(rrrrs_beta_3_x*rrrrs_c_4 + rrrrs_omega_3_r0_y*rrrrs_omega_3_z -
+            rrrrs_beta_3_y*rrrrs_s_4) + rrrrs_platform_joint_offset_x*(rrrrs_W_4_xz -
+            rrrrs_beta_4_y) + 2.0*rrrrs_d_3_r1_x*rrrrs_omega_3_r0_x*rrrrs_yd_2 +
+            2.0*rrrrs_d_3_r1_y*rrrrs_omega_3_r0_y*rrrrs_yd_2
         )
-        # (rrrrs-A42) remainder without the acceleration in: acceleration of the origin of joint 3
-        a_o3_rrrrs_o_t = rrrrs_joint3_offset_x*(W_2_rrrrs_t_2 + W_2_rrrrs_t_3)
-        # (rrrrs-N10) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        g_r1_x = g_r0_y*s_1_rrrrs - c_1_rrrrs*g_r0_x
-        g_r1_y = -c_1_rrrrs*g_r0_y - g_r0_x*s_1_rrrrs
-        g_r3_x = g_r0_z*s_2_rrrrs - c_2_rrrrs_t*g_r1_y
-        g_r3_y = -c_2_rrrrs_t*g_r0_z - g_r1_y*s_2_rrrrs
-        # (rrrrs-A14) coefficient of the acceleration in: acceleration of joint 1
-        d1_qdd_3_rrrrs = inv_r_3_rrrrs_r0_y*r_2_rrrrs_r1_y
-        # (rrrrs-V9) reciprocal vector 1
-        w_1_rrrrs_t_3 = axis_z_rrrrs_axes4_in_base_x*inv_v_1_rrrrs_z
-        w_1_rrrrs_t_4 = axis_z_rrrrs_axes4_in_base_y*inv_v_1_rrrrs_z
-        w_1_rrrrs_t_5 = axis_z_rrrrs_axes4_in_base_z*inv_v_1_rrrrs_z
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_1_rrrrs_x = q_rrrrs_in_base_y*w_1_rrrrs_t_5 - q_rrrrs_in_base_z*w_1_rrrrs_t_4
-        H_a_1_rrrrs_y = q_rrrrs_in_base_z*w_1_rrrrs_t_3 - q_rrrrs_in_base_x*w_1_rrrrs_t_5
-        H_a_1_rrrrs_z = q_rrrrs_in_base_x*w_1_rrrrs_t_4 - q_rrrrs_in_base_y*w_1_rrrrs_t_3
-        # (rrrrs-V10) reciprocal vector 2
-        w_3_rrrrs_t = axis_x_rrrrs_axes4_x*inv_r_3_rrrrs_r0_y
-        w_3_rrrrs_t_2 = axis_x_rrrrs_axes4_y*inv_r_3_rrrrs_r0_y
-        w_3_rrrrs_t_3 = axis_x_rrrrs_axes4_z*inv_r_3_rrrrs_r0_y
-        # (M10) moment of the column's unit force about the platform origin
-        H_a_3_rrrrs_x = q_rrrrs_in_base_z*w_3_rrrrs_t_2 - q_rrrrs_in_base_y*w_3_rrrrs_t_3
-        H_a_3_rrrrs_y = q_rrrrs_in_base_x*w_3_rrrrs_t_3 - q_rrrrs_in_base_z*w_3_rrrrs_t
-        H_a_3_rrrrs_z = q_rrrrs_in_base_y*w_3_rrrrs_t - q_rrrrs_in_base_x*w_3_rrrrs_t_2
-        # (rrrrs-A2) acceleration of the connection point without its centripetal part
-        a_p_rrrrs_x = t_ddot_x + alpha_y*q_rrrrs_in_base_z - alpha_z*q_rrrrs_in_base_y
-        a_p_rrrrs_y = t_ddot_y + alpha_z*q_rrrrs_in_base_x - alpha_x*q_rrrrs_in_base_z
-        a_p_rrrrs_z = t_ddot_z + alpha_x*q_rrrrs_in_base_y - alpha_y*q_rrrrs_in_base_x
-        # (rrrrs-A3) acceleration of the connection point
-        S_ddot_rrrrs_x = a_p_rrrrs_x + S_dot_rrrrs_t_3*omega_y - S_dot_rrrrs_t_2*omega_z
-        S_ddot_rrrrs_y = a_p_rrrrs_y + S_dot_rrrrs_t*omega_z - S_dot_rrrrs_t_3*omega_x
-        S_ddot_rrrrs_z = a_p_rrrrs_z + S_dot_rrrrs_t_2*omega_x - S_dot_rrrrs_t*omega_y
-        S_ddot_rrrrs_tip_x = (
-        S_ddot_rrrrs_x*axis_x_rrrrs_axes4_x + S_ddot_rrrrs_y*axis_x_rrrrs_axes4_y +
-            S_ddot_rrrrs_z*axis_x_rrrrs_axes4_z
+        # (rrrrs-a_o_3_o) remainder without the acceleration in: acceleration of the origin of joint 3
+        rrrrs_a_o_3_o_t = rrrrs_joint3_offset_x*(rrrrs_W_2_t_2 + rrrrs_W_2_t_3)
+        # (rrrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        rrrrs_g_r1_x = rrrrs_g_r0_y*rrrrs_s_1 - rrrrs_c_1*rrrrs_g_r0_x
+        rrrrs_g_r1_y = -rrrrs_c_1*rrrrs_g_r0_y - rrrrs_g_r0_x*rrrrs_s_1
+        rrrrs_g_r3_x = rrrrs_g_r0_z*rrrrs_s_2 - rrrrs_c_2_t*rrrrs_g_r1_y
+        rrrrs_g_r3_y = -rrrrs_c_2_t*rrrrs_g_r0_z - rrrrs_g_r1_y*rrrrs_s_2
+        # (rrrrs-dy_2_qdd_1) coefficient of the acceleration in: acceleration of joint 1
+        rrrrs_dy_2_qdd_3 = inv_rrrrs_r_3_r0_y*rrrrs_r_2_r1_y
+        # (rrrrs-w_1) reciprocal vector 1
+        rrrrs_w_1_t_3 = axis_z_rrrrs_axes4_in_base_x*inv_rrrrs_v_1_z
+        rrrrs_w_1_t_4 = axis_z_rrrrs_axes4_in_base_y*inv_rrrrs_v_1_z
+        rrrrs_w_1_t_5 = axis_z_rrrrs_axes4_in_base_z*inv_rrrrs_v_1_z
+        # (rrrrs-H_a_1) moment of the column's unit force about the platform origin
+        rrrrs_H_a_1_x = rrrrs_q_in_base_y*rrrrs_w_1_t_5 - rrrrs_q_in_base_z*rrrrs_w_1_t_4
+        rrrrs_H_a_1_y = rrrrs_q_in_base_z*rrrrs_w_1_t_3 - rrrrs_q_in_base_x*rrrrs_w_1_t_5
+        rrrrs_H_a_1_z = rrrrs_q_in_base_x*rrrrs_w_1_t_4 - rrrrs_q_in_base_y*rrrrs_w_1_t_3
+        # (rrrrs-w_3) reciprocal vector 2
+        rrrrs_w_3_t = axis_x_rrrrs_axes4_x*inv_rrrrs_r_3_r0_y
+        rrrrs_w_3_t_2 = axis_x_rrrrs_axes4_y*inv_rrrrs_r_3_r0_y
+        rrrrs_w_3_t_3 = axis_x_rrrrs_axes4_z*inv_rrrrs_r_3_r0_y
+        # (rrrrs-H_a_3) moment of the column's unit force about the platform origin
+        rrrrs_H_a_3_x = rrrrs_q_in_base_z*rrrrs_w_3_t_2 - rrrrs_q_in_base_y*rrrrs_w_3_t_3
+        rrrrs_H_a_3_y = rrrrs_q_in_base_x*rrrrs_w_3_t_3 - rrrrs_q_in_base_z*rrrrs_w_3_t
+        rrrrs_H_a_3_z = rrrrs_q_in_base_y*rrrrs_w_3_t - rrrrs_q_in_base_x*rrrrs_w_3_t_2
+        # (rrrrs-a_p) acceleration of the connection point without its centripetal part
+        rrrrs_a_p_x = t_ddot_x + alpha_y*rrrrs_q_in_base_z - alpha_z*rrrrs_q_in_base_y
+        rrrrs_a_p_y = t_ddot_y + alpha_z*rrrrs_q_in_base_x - alpha_x*rrrrs_q_in_base_z
+        rrrrs_a_p_z = t_ddot_z + alpha_x*rrrrs_q_in_base_y - alpha_y*rrrrs_q_in_base_x
+        # (rrrrs-S_ddot) acceleration of the connection point
+        rrrrs_S_ddot_x = rrrrs_a_p_x + omega_y*rrrrs_S_dot_t_3 - omega_z*rrrrs_S_dot_t_2
+        rrrrs_S_ddot_y = rrrrs_a_p_y + omega_z*rrrrs_S_dot_t - omega_x*rrrrs_S_dot_t_3
+        rrrrs_S_ddot_z = rrrrs_a_p_z + omega_x*rrrrs_S_dot_t_2 - omega_y*rrrrs_S_dot_t
+        rrrrs_S_ddot_tip_x = (
+        axis_x_rrrrs_axes4_x*rrrrs_S_ddot_x + axis_x_rrrrs_axes4_y*rrrrs_S_ddot_y +
+            axis_x_rrrrs_axes4_z*rrrrs_S_ddot_z
         )
-        S_ddot_rrrrs_tip_y = (
-        S_ddot_rrrrs_x*axis_y_rrrrs_axes4_in_base_x + S_ddot_rrrrs_y*axis_y_rrrrs_axes4_in_base_y
-            + S_ddot_rrrrs_z*axis_y_rrrrs_axes4_in_base_z
+        rrrrs_S_ddot_tip_y = (
+        axis_y_rrrrs_axes4_in_base_x*rrrrs_S_ddot_x + axis_y_rrrrs_axes4_in_base_y*rrrrs_S_ddot_y
+            + axis_y_rrrrs_axes4_in_base_z*rrrrs_S_ddot_z
         )
-        S_ddot_rrrrs_tip_z = (
-        S_ddot_rrrrs_x*axis_z_rrrrs_axes4_in_base_x + S_ddot_rrrrs_y*axis_z_rrrrs_axes4_in_base_y
-            + S_ddot_rrrrs_z*axis_z_rrrrs_axes4_in_base_z
+        rrrrs_S_ddot_tip_z = (
+        axis_z_rrrrs_axes4_in_base_x*rrrrs_S_ddot_x + axis_z_rrrrs_axes4_in_base_y*rrrrs_S_ddot_y
+            + axis_z_rrrrs_axes4_in_base_z*rrrrs_S_ddot_z
         )
-        # (rrrrs-A10) acceleration of the connection point left to the joint accelerations
-        rel_rrrrs_x = S_ddot_rrrrs_tip_x + r_2_rrrrs_r1_y*ydd_2_rrrrs - bias_rrrrs_x
-        rel_rrrrs_y = S_ddot_rrrrs_tip_y - bias_rrrrs_y - r_2_rrrrs_r1_x*ydd_2_rrrrs
-        rel_rrrrs_z = S_ddot_rrrrs_tip_z - bias_rrrrs_z
-        # (rrrrs-A13) acceleration of joint 1
-        qdd_3_rrrrs = inv_r_3_rrrrs_r0_y*rel_rrrrs_x
-        qdd_1_rrrrs = inv_v_1_rrrrs_z*rel_rrrrs_z
-        # (rrrrs-N15) acceleration of the reference point of link 4, less gravity
-        acc_4_rrrrs_x = (
-        S_ddot_rrrrs_tip_x - axis_x_rrrrs_axes4_x*gravity_x - axis_x_rrrrs_axes4_y*gravity_y -
+        # (rrrrs-rel) acceleration of the connection point left to the joint accelerations
+        rrrrs_rel_x = rrrrs_S_ddot_tip_x + rrrrs_r_2_r1_y*rrrrs_ydd_2 - rrrrs_bias_x
+        rrrrs_rel_y = rrrrs_S_ddot_tip_y - rrrrs_bias_y - rrrrs_r_2_r1_x*rrrrs_ydd_2
+        rrrrs_rel_z = rrrrs_S_ddot_tip_z - rrrrs_bias_z
+        # (rrrrs-qdd_1) acceleration of joint 1
+        rrrrs_qdd_3 = inv_rrrrs_r_3_r0_y*rrrrs_rel_x
+        rrrrs_qdd_1 = inv_rrrrs_v_1_z*rrrrs_rel_z
+        # (rrrrs-acc_4) acceleration of the reference point of link 4, less gravity
+        rrrrs_acc_4_x = (
+        rrrrs_S_ddot_tip_x - axis_x_rrrrs_axes4_x*gravity_x - axis_x_rrrrs_axes4_y*gravity_y -
             axis_x_rrrrs_axes4_z*gravity_z
         )
-        acc_4_rrrrs_y = (
-        S_ddot_rrrrs_tip_y - axis_y_rrrrs_axes4_in_base_x*gravity_x -
+        rrrrs_acc_4_y = (
+        rrrrs_S_ddot_tip_y - axis_y_rrrrs_axes4_in_base_x*gravity_x -
             axis_y_rrrrs_axes4_in_base_y*gravity_y - axis_y_rrrrs_axes4_in_base_z*gravity_z
         )
-        acc_4_rrrrs_z = (
-        S_ddot_rrrrs_tip_z - axis_z_rrrrs_axes4_in_base_x*gravity_x -
+        rrrrs_acc_4_z = (
+        rrrrs_S_ddot_tip_z - axis_z_rrrrs_axes4_in_base_x*gravity_x -
             axis_z_rrrrs_axes4_in_base_y*gravity_y - axis_z_rrrrs_axes4_in_base_z*gravity_z
         )
-        # (rrrrs-A22) angular acceleration of link 1
-        alpha_1_rrrrs_t = qdd_1_rrrrs*s_2_rrrrs
-        alpha_1_rrrrs_t_2 = c_2_rrrrs_t*qdd_1_rrrrs
-        # (rrrrs-A26) angular acceleration of link 2
-        alpha_2_rrrrs_x = alpha_1_rrrrs_t - zeta_2_rrrrs_x
-        alpha_2_rrrrs_y = -alpha_1_rrrrs_t_2 - zeta_2_rrrrs_y
-        # (rrrrs-A28) acceleration tensor of link 2
-        B_2_rrrrs_xy = -W_2_rrrrs_xy - ydd_2_rrrrs
-        B_2_rrrrs_yx = ydd_2_rrrrs - W_2_rrrrs_xy
-        B_2_rrrrs_zx = zeta_2_rrrrs_y - alpha_2_rrrrs_y
-        B_2_rrrrs_zy = alpha_2_rrrrs_x - zeta_2_rrrrs_x
-        # (rrrrs-A41) acceleration of the origin of joint 3
-        a_o3_rrrrs_t = B_2_rrrrs_yx*rrrrs_joint3_offset_x
-        # (rrrrs-N9) acceleration of the reference point of link 3, less gravity
-        acc_3_rrrrs_x = (
-        a_o3_rrrrs_t*s_3_rrrrs - a_o3_rrrrs_o_t*c_3_rrrrs - c_3_rrrrs*g_r3_x - g_r3_y*s_3_rrrrs
+        # (rrrrs-alpha_1) angular acceleration of link 1
+        rrrrs_alpha_1_t = rrrrs_qdd_1*rrrrs_s_2
+        rrrrs_alpha_1_t_2 = rrrrs_c_2_t*rrrrs_qdd_1
+        # (rrrrs-alpha_2) angular acceleration of link 2
+        rrrrs_alpha_2_x = rrrrs_alpha_1_t - rrrrs_zeta_2_x
+        rrrrs_alpha_2_y = -rrrrs_alpha_1_t_2 - rrrrs_zeta_2_y
+        # (rrrrs-alpha_3) angular acceleration of link 3
+        rrrrs_alpha_3_x = rrrrs_alpha_2_x*rrrrs_c_3 + rrrrs_alpha_2_y*rrrrs_s_3 - rrrrs_zeta_3_x
+        rrrrs_alpha_3_y = rrrrs_zeta_3_y + rrrrs_alpha_2_y*rrrrs_c_3 - rrrrs_alpha_2_x*rrrrs_s_3
+        rrrrs_alpha_3_z = rrrrs_ydd_2 - rrrrs_qdd_3
+        # (rrrrs-alpha_4) angular acceleration of link 4
+        rrrrs_alpha_4_x = (
+        rrrrs_alpha_3_x*rrrrs_c_4 + rrrrs_omega_3_r0_y*rrrrs_qd_4 - rrrrs_alpha_3_y*rrrrs_s_4
         )
-        acc_3_rrrrs_y = (
-        a_o3_rrrrs_o_t*s_3_rrrrs + a_o3_rrrrs_t*c_3_rrrrs + g_r3_x*s_3_rrrrs - c_3_rrrrs*g_r3_y
+        rrrrs_alpha_4_y = rrrrs_alpha_3_x*rrrrs_s_4 + rrrrs_alpha_3_y*rrrrs_c_4 - rrrrs_zeta_4_y
+        rrrrs_alpha_4_z = (
+        rrrrs_alpha_3_z + inv_rrrrs_platform_joint_offset_x*(rrrrs_rel_y +
+            rrrrs_qdd_3*rrrrs_r_3_r0_x)
         )
-        acc_3_rrrrs_z = B_2_rrrrs_zx*rrrrs_joint3_offset_x - g_r1_x
-        # (rrrrs-A30) angular acceleration of link 3
-        alpha_3_rrrrs_x = alpha_2_rrrrs_x*c_3_rrrrs + alpha_2_rrrrs_y*s_3_rrrrs - zeta_3_rrrrs_x
-        alpha_3_rrrrs_y = zeta_3_rrrrs_y + alpha_2_rrrrs_y*c_3_rrrrs - alpha_2_rrrrs_x*s_3_rrrrs
-        alpha_3_rrrrs_z = ydd_2_rrrrs - qdd_3_rrrrs
-        # (rrrrs-A32) acceleration tensor of link 3
-        B_3_rrrrs_xy = W_3_rrrrs_xy - alpha_3_rrrrs_z
-        B_3_rrrrs_xz = W_3_rrrrs_xz + alpha_3_rrrrs_y
-        B_3_rrrrs_yx = W_3_rrrrs_xy + alpha_3_rrrrs_z
-        B_3_rrrrs_yz = W_3_rrrrs_yz - alpha_3_rrrrs_x
-        B_3_rrrrs_zx = W_3_rrrrs_xz - alpha_3_rrrrs_y
-        B_3_rrrrs_zy = W_3_rrrrs_yz + alpha_3_rrrrs_x
-        # (rrrrs-N53) inertia moment of the links that turn with link 3, about their reference points
-        mu_3_rrrrs_x = (
-        B_3_rrrrs_yx*J_3_rrrrs_xz + B_3_rrrrs_zy*Sigma_3_rrrrs_yy + J_3_rrrrs_yz*(W_3_rrrrs_t_2 -
-            W_3_rrrrs_t_3) + acc_3_rrrrs_z*h_3_rrrrs_y - B_3_rrrrs_yz*Sigma_3_rrrrs_zz -
-            B_3_rrrrs_zx*J_3_rrrrs_xy - acc_3_rrrrs_y*h_3_rrrrs_z
+        # (rrrrs-B_4) acceleration tensor of link 4
+        rrrrs_B_4_xy = rrrrs_W_4_xy - rrrrs_alpha_4_z
+        rrrrs_B_4_xz = rrrrs_W_4_xz + rrrrs_alpha_4_y
+        rrrrs_B_4_yx = rrrrs_W_4_xy + rrrrs_alpha_4_z
+        rrrrs_B_4_yz = rrrrs_W_4_yz - rrrrs_alpha_4_x
+        rrrrs_B_4_zx = rrrrs_W_4_xz - rrrrs_alpha_4_y
+        rrrrs_B_4_zy = rrrrs_W_4_yz + rrrrs_alpha_4_x
+        # (rrrrs-mu_4) inertia moment of the links that turn with link 4, about their reference points
+        rrrrs_mu_4_x = (
+        rrrrs_B_4_yx*rrrrs_J_4_xz + rrrrs_B_4_zy*rrrrs_Sigma_4_yy + rrrrs_J_4_yz*(rrrrs_W_4_t_2 -
+            rrrrs_W_4_t_3) + rrrrs_acc_4_z*rrrrs_h_4_y - rrrrs_B_4_yz*rrrrs_Sigma_4_zz -
+            rrrrs_B_4_zx*rrrrs_J_4_xy - rrrrs_acc_4_y*rrrrs_h_4_z
         )
-        mu_3_rrrrs_y = (
-        B_3_rrrrs_xz*Sigma_3_rrrrs_zz + B_3_rrrrs_zy*J_3_rrrrs_xy + acc_3_rrrrs_x*h_3_rrrrs_z -
-            B_3_rrrrs_xy*J_3_rrrrs_yz - B_3_rrrrs_zx*Sigma_3_rrrrs_xx - J_3_rrrrs_xz*(W_3_rrrrs_t
-            - W_3_rrrrs_t_3) - acc_3_rrrrs_z*h_3_rrrrs_x
+        rrrrs_mu_4_y = (
+        rrrrs_B_4_xz*rrrrs_Sigma_4_zz + rrrrs_B_4_zy*rrrrs_J_4_xy + rrrrs_acc_4_x*rrrrs_h_4_z -
+            rrrrs_B_4_xy*rrrrs_J_4_yz - rrrrs_B_4_zx*rrrrs_Sigma_4_xx - rrrrs_J_4_xz*(rrrrs_W_4_t
+            - rrrrs_W_4_t_3) - rrrrs_acc_4_z*rrrrs_h_4_x
         )
-        mu_3_rrrrs_z = (
-        B_3_rrrrs_xz*J_3_rrrrs_yz + B_3_rrrrs_yx*Sigma_3_rrrrs_xx + J_3_rrrrs_xy*(W_3_rrrrs_t -
-            W_3_rrrrs_t_2) + acc_3_rrrrs_y*h_3_rrrrs_x - B_3_rrrrs_xy*Sigma_3_rrrrs_yy -
-            B_3_rrrrs_yz*J_3_rrrrs_xz - acc_3_rrrrs_x*h_3_rrrrs_y
+        rrrrs_mu_4_z = (
+        rrrrs_B_4_xz*rrrrs_J_4_yz + rrrrs_B_4_yx*rrrrs_Sigma_4_xx + rrrrs_J_4_xy*(rrrrs_W_4_t -
+            rrrrs_W_4_t_2) + rrrrs_acc_4_y*rrrrs_h_4_x - rrrrs_B_4_xy*rrrrs_Sigma_4_yy -
+            rrrrs_B_4_yz*rrrrs_J_4_xz - rrrrs_acc_4_x*rrrrs_h_4_y
         )
-        # (rrrrs-A34) angular acceleration of link 4
-        alpha_4_rrrrs_x = (
-        alpha_3_rrrrs_x*c_4_rrrrs + omega_3_rrrrs_r0_y*qd_4_rrrrs - alpha_3_rrrrs_y*s_4_rrrrs
+        # (rrrrs-B_2) acceleration tensor of link 2
+        rrrrs_B_2_xy = -rrrrs_W_2_xy - rrrrs_ydd_2
+        rrrrs_B_2_yx = rrrrs_ydd_2 - rrrrs_W_2_xy
+        rrrrs_B_2_zx = rrrrs_zeta_2_y - rrrrs_alpha_2_y
+        rrrrs_B_2_zy = rrrrs_alpha_2_x - rrrrs_zeta_2_x
+        # (rrrrs-a_o_3) acceleration of the origin of joint 3
+        rrrrs_a_o_3_t = rrrrs_B_2_yx*rrrrs_joint3_offset_x
+        # (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity
+        rrrrs_acc_3_x = (
+        rrrrs_a_o_3_t*rrrrs_s_3 - rrrrs_a_o_3_o_t*rrrrs_c_3 - rrrrs_c_3*rrrrs_g_r3_x -
+            rrrrs_g_r3_y*rrrrs_s_3
         )
-        alpha_4_rrrrs_y = alpha_3_rrrrs_x*s_4_rrrrs + alpha_3_rrrrs_y*c_4_rrrrs - zeta_4_rrrrs_y
-        alpha_4_rrrrs_z = (
-        alpha_3_rrrrs_z + inv_rrrrs_platform_joint_offset_x*(rel_rrrrs_y +
-            qdd_3_rrrrs*r_3_rrrrs_r0_x)
+        rrrrs_acc_3_y = (
+        rrrrs_a_o_3_o_t*rrrrs_s_3 + rrrrs_a_o_3_t*rrrrs_c_3 + rrrrs_g_r3_x*rrrrs_s_3 -
+            rrrrs_c_3*rrrrs_g_r3_y
         )
-        # (rrrrs-A37) acceleration tensor of link 4
-        B_4_rrrrs_xy = W_4_rrrrs_xy - alpha_4_rrrrs_z
-        B_4_rrrrs_xz = W_4_rrrrs_xz + alpha_4_rrrrs_y
-        B_4_rrrrs_yx = W_4_rrrrs_xy + alpha_4_rrrrs_z
-        B_4_rrrrs_yz = W_4_rrrrs_yz - alpha_4_rrrrs_x
-        B_4_rrrrs_zx = W_4_rrrrs_xz - alpha_4_rrrrs_y
-        B_4_rrrrs_zy = W_4_rrrrs_yz + alpha_4_rrrrs_x
-        # (rrrrs-N45) inertia moment of the links that turn with link 4, about their reference points
-        mu_4_rrrrs_x = (
-        B_4_rrrrs_yx*J_4_rrrrs_xz + B_4_rrrrs_zy*Sigma_4_rrrrs_yy + J_4_rrrrs_yz*(W_4_rrrrs_t_2 -
-            W_4_rrrrs_t_3) + acc_4_rrrrs_z*h_4_rrrrs_y - B_4_rrrrs_yz*Sigma_4_rrrrs_zz -
-            B_4_rrrrs_zx*J_4_rrrrs_xy - acc_4_rrrrs_y*h_4_rrrrs_z
+        rrrrs_acc_3_z = rrrrs_B_2_zx*rrrrs_joint3_offset_x - rrrrs_g_r1_x
+        # (rrrrs-B_3) acceleration tensor of link 3
+        rrrrs_B_3_xy = rrrrs_W_3_xy - rrrrs_alpha_3_z
+        rrrrs_B_3_xz = rrrrs_W_3_xz + rrrrs_alpha_3_y
+        rrrrs_B_3_yx = rrrrs_W_3_xy + rrrrs_alpha_3_z
+        rrrrs_B_3_yz = rrrrs_W_3_yz - rrrrs_alpha_3_x
+        rrrrs_B_3_zx = rrrrs_W_3_xz - rrrrs_alpha_3_y
+        rrrrs_B_3_zy = rrrrs_W_3_yz + rrrrs_alpha_3_x
+        # (rrrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        rrrrs_mu_3_x = (
+        rrrrs_B_3_yx*rrrrs_J_3_xz + rrrrs_B_3_zy*rrrrs_Sigma_3_yy + rrrrs_J_3_yz*(rrrrs_W_3_t_2 -
+            rrrrs_W_3_t_3) + rrrrs_acc_3_z*rrrrs_h_3_y - rrrrs_B_3_yz*rrrrs_Sigma_3_zz -
+            rrrrs_B_3_zx*rrrrs_J_3_xy - rrrrs_acc_3_y*rrrrs_h_3_z
         )
-        mu_4_rrrrs_y = (
-        B_4_rrrrs_xz*Sigma_4_rrrrs_zz + B_4_rrrrs_zy*J_4_rrrrs_xy + acc_4_rrrrs_x*h_4_rrrrs_z -
-            B_4_rrrrs_xy*J_4_rrrrs_yz - B_4_rrrrs_zx*Sigma_4_rrrrs_xx - J_4_rrrrs_xz*(W_4_rrrrs_t
-            - W_4_rrrrs_t_3) - acc_4_rrrrs_z*h_4_rrrrs_x
+        rrrrs_mu_3_y = (
+        rrrrs_B_3_xz*rrrrs_Sigma_3_zz + rrrrs_B_3_zy*rrrrs_J_3_xy + rrrrs_acc_3_x*rrrrs_h_3_z -
+            rrrrs_B_3_xy*rrrrs_J_3_yz - rrrrs_B_3_zx*rrrrs_Sigma_3_xx - rrrrs_J_3_xz*(rrrrs_W_3_t
+            - rrrrs_W_3_t_3) - rrrrs_acc_3_z*rrrrs_h_3_x
         )
-        mu_4_rrrrs_z = (
-        B_4_rrrrs_xz*J_4_rrrrs_yz + B_4_rrrrs_yx*Sigma_4_rrrrs_xx + J_4_rrrrs_xy*(W_4_rrrrs_t -
-            W_4_rrrrs_t_2) + acc_4_rrrrs_y*h_4_rrrrs_x - B_4_rrrrs_xy*Sigma_4_rrrrs_yy -
-            B_4_rrrrs_yz*J_4_rrrrs_xz - acc_4_rrrrs_x*h_4_rrrrs_y
+        rrrrs_mu_3_z = (
+        rrrrs_B_3_xz*rrrrs_J_3_yz + rrrrs_B_3_yx*rrrrs_Sigma_3_xx + rrrrs_J_3_xy*(rrrrs_W_3_t -
+            rrrrs_W_3_t_2) + rrrrs_acc_3_y*rrrrs_h_3_x - rrrrs_B_3_xy*rrrrs_Sigma_3_yy -
+            rrrrs_B_3_yz*rrrrs_J_3_xz - rrrrs_acc_3_x*rrrrs_h_3_y
         )
-        # (rrrrs-N55) moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-        N_3_rrrrs_x = mu_3_rrrrs_x + c_4_rrrrs*mu_4_rrrrs_x + mu_4_rrrrs_y*s_4_rrrrs
-        N_3_rrrrs_y = mu_3_rrrrs_y + c_4_rrrrs*mu_4_rrrrs_y - mu_4_rrrrs_x*s_4_rrrrs
-        N_3_rrrrs_z = mu_3_rrrrs_z + mu_4_rrrrs_z
-        # (rrrrs-N13) inertia force of link 3 less its weight
-        f_3_rrrrs_x = (
-        B_3_rrrrs_xy*h_3_rrrrs_y + B_3_rrrrs_xz*h_3_rrrrs_z + acc_3_rrrrs_x*rrrrs_link3_mass -
-            h_3_rrrrs_x*(W_3_rrrrs_t_2 + W_3_rrrrs_t_3)
+        # (rrrrs-N_3) moment about joint 3 of the links from 3 outwards, the force at the connection point left out
+        rrrrs_N_3_x = rrrrs_mu_3_x + rrrrs_c_4*rrrrs_mu_4_x + rrrrs_mu_4_y*rrrrs_s_4
+        rrrrs_N_3_y = rrrrs_mu_3_y + rrrrs_c_4*rrrrs_mu_4_y - rrrrs_mu_4_x*rrrrs_s_4
+        rrrrs_N_3_z = rrrrs_mu_3_z + rrrrs_mu_4_z
+        # (rrrrs-f_3) inertia force of link 3 less its weight
+        rrrrs_f_3_x = (
+        rrrrs_B_3_xy*rrrrs_h_3_y + rrrrs_B_3_xz*rrrrs_h_3_z + rrrrs_acc_3_x*rrrrs_link3_mass -
+            rrrrs_h_3_x*(rrrrs_W_3_t_2 + rrrrs_W_3_t_3)
         )
-        f_3_rrrrs_y = (
-        B_3_rrrrs_yx*h_3_rrrrs_x + B_3_rrrrs_yz*h_3_rrrrs_z + acc_3_rrrrs_y*rrrrs_link3_mass -
-            h_3_rrrrs_y*(W_3_rrrrs_t + W_3_rrrrs_t_3)
+        rrrrs_f_3_y = (
+        rrrrs_B_3_yx*rrrrs_h_3_x + rrrrs_B_3_yz*rrrrs_h_3_z + rrrrs_acc_3_y*rrrrs_link3_mass -
+            rrrrs_h_3_y*(rrrrs_W_3_t + rrrrs_W_3_t_3)
         )
-        f_3_rrrrs_z = (
-        B_3_rrrrs_zx*h_3_rrrrs_x + B_3_rrrrs_zy*h_3_rrrrs_y + acc_3_rrrrs_z*rrrrs_link3_mass -
-            h_3_rrrrs_z*(W_3_rrrrs_t + W_3_rrrrs_t_2)
+        rrrrs_f_3_z = (
+        rrrrs_B_3_zx*rrrrs_h_3_x + rrrrs_B_3_zy*rrrrs_h_3_y + rrrrs_acc_3_z*rrrrs_link3_mass -
+            rrrrs_h_3_z*(rrrrs_W_3_t + rrrrs_W_3_t_2)
         )
-        # (rrrrs-N63) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_rrrrs_x = (
-        B_2_rrrrs_yx*J_2_rrrrs_xz + B_2_rrrrs_zy*Sigma_2_rrrrs_yy + J_2_rrrrs_yz*(W_2_rrrrs_t_2 -
-            W_2_rrrrs_t_3) + Sigma_2_rrrrs_zz*alpha_1_rrrrs_t + g_r3_y*h_2_rrrrs_z -
-            B_2_rrrrs_zx*J_2_rrrrs_xy - g_r1_x*h_2_rrrrs_y
+        # (rrrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        rrrrs_mu_2_x = (
+        rrrrs_B_2_yx*rrrrs_J_2_xz + rrrrs_B_2_zy*rrrrs_Sigma_2_yy + rrrrs_J_2_yz*(rrrrs_W_2_t_2 -
+            rrrrs_W_2_t_3) + rrrrs_Sigma_2_zz*rrrrs_alpha_1_t + rrrrs_g_r3_y*rrrrs_h_2_z -
+            rrrrs_B_2_zx*rrrrs_J_2_xy - rrrrs_g_r1_x*rrrrs_h_2_y
         )
-        mu_2_rrrrs_y = (
-        B_2_rrrrs_zy*J_2_rrrrs_xy + g_r1_x*h_2_rrrrs_x - B_2_rrrrs_xy*J_2_rrrrs_yz -
-            B_2_rrrrs_zx*Sigma_2_rrrrs_xx - J_2_rrrrs_xz*(W_2_rrrrs_t - W_2_rrrrs_t_3) -
-            Sigma_2_rrrrs_zz*alpha_1_rrrrs_t_2 - g_r3_x*h_2_rrrrs_z
+        rrrrs_mu_2_y = (
+        rrrrs_B_2_zy*rrrrs_J_2_xy + rrrrs_g_r1_x*rrrrs_h_2_x - rrrrs_B_2_xy*rrrrs_J_2_yz -
+            rrrrs_B_2_zx*rrrrs_Sigma_2_xx - rrrrs_J_2_xz*(rrrrs_W_2_t - rrrrs_W_2_t_3) -
+            rrrrs_Sigma_2_zz*rrrrs_alpha_1_t_2 - rrrrs_g_r3_x*rrrrs_h_2_z
         )
-        mu_2_rrrrs_z = (
-        B_2_rrrrs_yx*Sigma_2_rrrrs_xx + J_2_rrrrs_xy*(W_2_rrrrs_t - W_2_rrrrs_t_2) +
-            J_2_rrrrs_xz*alpha_1_rrrrs_t + g_r3_x*h_2_rrrrs_y - B_2_rrrrs_xy*Sigma_2_rrrrs_yy -
-            J_2_rrrrs_yz*alpha_1_rrrrs_t_2 - g_r3_y*h_2_rrrrs_x
+        rrrrs_mu_2_z = (
+        rrrrs_B_2_yx*rrrrs_Sigma_2_xx + rrrrs_J_2_xy*(rrrrs_W_2_t - rrrrs_W_2_t_2) +
+            rrrrs_J_2_xz*rrrrs_alpha_1_t + rrrrs_g_r3_x*rrrrs_h_2_y -
+            rrrrs_B_2_xy*rrrrs_Sigma_2_yy - rrrrs_J_2_yz*rrrrs_alpha_1_t_2 -
+            rrrrs_g_r3_y*rrrrs_h_2_x
         )
-        # (rrrrs-N65) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_rrrrs_x = mu_2_rrrrs_x + N_3_rrrrs_x*c_3_rrrrs - N_3_rrrrs_y*s_3_rrrrs
-        N_2_rrrrs_y = (
-        mu_2_rrrrs_y + N_3_rrrrs_x*s_3_rrrrs + N_3_rrrrs_y*c_3_rrrrs -
-            f_3_rrrrs_z*rrrrs_joint3_offset_x
+        # (rrrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        rrrrs_N_2_x = rrrrs_mu_2_x + rrrrs_N_3_x*rrrrs_c_3 - rrrrs_N_3_y*rrrrs_s_3
+        rrrrs_N_2_y = (
+        rrrrs_mu_2_y + rrrrs_N_3_x*rrrrs_s_3 + rrrrs_N_3_y*rrrrs_c_3 -
+            rrrrs_f_3_z*rrrrs_joint3_offset_x
         )
-        N_2_rrrrs_z = (
-        N_3_rrrrs_z + mu_2_rrrrs_z + rrrrs_joint3_offset_x*(c_3_rrrrs*f_3_rrrrs_y +
-            f_3_rrrrs_x*s_3_rrrrs)
+        rrrrs_N_2_z = (
+        rrrrs_N_3_z + rrrrs_mu_2_z + rrrrs_joint3_offset_x*(rrrrs_c_3*rrrrs_f_3_y +
+            rrrrs_f_3_x*rrrrs_s_3)
         )
-        # (rrrrs-N75) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rrrrs_z = J_1_rrrrs_xx*qdd_1_rrrrs - g_r1_x*h_1_rrrrs_y - g_r1_y*h_1_rrrrs_z
-        # (rrrrs-N77) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_rrrrs_z = mu_1_rrrrs_z + N_2_rrrrs_x*s_2_rrrrs - N_2_rrrrs_y*c_2_rrrrs_t
-        # (rrrrs-N83) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rrrrs_t = inv_rrrrs_platform_joint_offset_x*mu_4_rrrrs_z
-        G_rrrrs_t_2 = inv_r_3_rrrrs_r0_y*(G_rrrrs_t*r_3_rrrrs_r0_x - N_3_rrrrs_z)
-        # (rrrrs-N87) leg force on the platform without actuation and without the mass at the connection point
-        c_rrrrs_x = (
-        W_4_rrrrs_xx*h_4_rrrrs_x - G_rrrrs_t_2 - B_4_rrrrs_xy*h_4_rrrrs_y -
-            B_4_rrrrs_xz*h_4_rrrrs_z
+        # (rrrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrrrs_mu_1_z = (
+        rrrrs_J_1_xx*rrrrs_qdd_1 - rrrrs_g_r1_x*rrrrs_h_1_y - rrrrs_g_r1_y*rrrrs_h_1_z
         )
-        c_rrrrs_y = (
-        h_4_rrrrs_y*(W_4_rrrrs_t + W_4_rrrrs_t_3) - G_rrrrs_t - B_4_rrrrs_yx*h_4_rrrrs_x -
-            B_4_rrrrs_yz*h_4_rrrrs_z
+        # (rrrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrrrs_N_1_z = rrrrs_mu_1_z + rrrrs_N_2_x*rrrrs_s_2 - rrrrs_N_2_y*rrrrs_c_2_t
+        # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrrrs_G_t = inv_rrrrs_platform_joint_offset_x*rrrrs_mu_4_z
+        rrrrs_G_t_2 = inv_rrrrs_r_3_r0_y*(rrrrs_G_t*rrrrs_r_3_r0_x - rrrrs_N_3_z)
+        # (rrrrs-c) leg force on the platform without actuation and without the mass at the connection point
+        rrrrs_c_x = (
+        rrrrs_W_4_xx*rrrrs_h_4_x - rrrrs_G_t_2 - rrrrs_B_4_xy*rrrrs_h_4_y -
+            rrrrs_B_4_xz*rrrrs_h_4_z
         )
-        c_rrrrs_z = (
-        h_4_rrrrs_z*(W_4_rrrrs_t + W_4_rrrrs_t_2) - B_4_rrrrs_zx*h_4_rrrrs_x -
-            B_4_rrrrs_zy*h_4_rrrrs_y - N_1_rrrrs_z*inv_v_1_rrrrs_z
+        rrrrs_c_y = (
+        rrrrs_h_4_y*(rrrrs_W_4_t + rrrrs_W_4_t_3) - rrrrs_G_t - rrrrs_B_4_yx*rrrrs_h_4_x -
+            rrrrs_B_4_yz*rrrrs_h_4_z
         )
-        c_rrrrs_in_base_x = (
-        axis_x_rrrrs_axes4_x*c_rrrrs_x + axis_y_rrrrs_axes4_in_base_x*c_rrrrs_y +
-            axis_z_rrrrs_axes4_in_base_x*c_rrrrs_z
+        rrrrs_c_z = (
+        rrrrs_h_4_z*(rrrrs_W_4_t + rrrrs_W_4_t_2) - inv_rrrrs_v_1_z*rrrrs_N_1_z -
+            rrrrs_B_4_zx*rrrrs_h_4_x - rrrrs_B_4_zy*rrrrs_h_4_y
         )
-        c_rrrrs_in_base_y = (
-        axis_x_rrrrs_axes4_y*c_rrrrs_x + axis_y_rrrrs_axes4_in_base_y*c_rrrrs_y +
-            axis_z_rrrrs_axes4_in_base_y*c_rrrrs_z
+        rrrrs_c_in_base_x = (
+        axis_x_rrrrs_axes4_x*rrrrs_c_x + axis_y_rrrrs_axes4_in_base_x*rrrrs_c_y +
+            axis_z_rrrrs_axes4_in_base_x*rrrrs_c_z
         )
-        c_rrrrs_in_base_z = (
-        axis_x_rrrrs_axes4_z*c_rrrrs_x + axis_y_rrrrs_axes4_in_base_z*c_rrrrs_y +
-            axis_z_rrrrs_axes4_in_base_z*c_rrrrs_z
+        rrrrs_c_in_base_y = (
+        axis_x_rrrrs_axes4_y*rrrrs_c_x + axis_y_rrrrs_axes4_in_base_y*rrrrs_c_y +
+            axis_z_rrrrs_axes4_in_base_y*rrrrs_c_z
         )
-        # (E5) moment that actuators and external wrench must give
-        R_a_t = c_rrrrs_in_base_z*q_rrrrs_in_base_y - c_rrrrs_in_base_y*q_rrrrs_in_base_z
-        R_a_t_2 = c_rrrrs_in_base_x*q_rrrrs_in_base_z - c_rrrrs_in_base_z*q_rrrrs_in_base_x
-        R_a_t_3 = c_rrrrs_in_base_y*q_rrrrs_in_base_x - c_rrrrs_in_base_x*q_rrrrs_in_base_y
-        # (rrrrs-N93) inertia and weight of the leg along the extra freedom of joint 2
-        P_2_rrrrs_t = G_rrrrs_t_2*r_2_rrrrs_r1_y - G_rrrrs_t*r_2_rrrrs_r1_x
-        P_2_rrrrs = N_2_rrrrs_z + P_2_rrrrs_t
+        rrrrs_c_in_base_z = (
+        axis_x_rrrrs_axes4_z*rrrrs_c_x + axis_y_rrrrs_axes4_in_base_z*rrrrs_c_y +
+            axis_z_rrrrs_axes4_in_base_z*rrrrs_c_z
+        )
+        # (R_a) moment that actuators and external wrench must give
+        rrrrs_R_a_t = rrrrs_c_in_base_z*rrrrs_q_in_base_y - rrrrs_c_in_base_y*rrrrs_q_in_base_z
+        rrrrs_R_a_t_2 = rrrrs_c_in_base_x*rrrrs_q_in_base_z - rrrrs_c_in_base_z*rrrrs_q_in_base_x
+        rrrrs_R_a_t_3 = rrrrs_c_in_base_y*rrrrs_q_in_base_x - rrrrs_c_in_base_x*rrrrs_q_in_base_y
+        # (rrrrs-P_2) inertia and weight of the leg along the extra freedom of joint 2
+        rrrrs_P_2_t = rrrrs_G_t_2*rrrrs_r_2_r1_y - rrrrs_G_t*rrrrs_r_2_r1_x
+        rrrrs_P_2 = rrrrs_N_2_z + rrrrs_P_2_t
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
-            (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0)
-            & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE *
-            size_rrrrs))
+        ok & m.every(leg, (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
+            (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0)
+            & (abs(rrrrs_v_1_z) > _TOLERANCE * rrrrs_size) & (abs(-rrrrs_r_3_r0_y) > _TOLERANCE *
+            rrrrs_size))
         )
         sums = m.added(sums, leg, (
-        c_rrrrs_in_base_x, c_rrrrs_in_base_y, c_rrrrs_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
+        rrrrs_c_in_base_x, rrrrs_c_in_base_y, rrrrs_c_in_base_z, rrrrs_R_a_t, rrrrs_R_a_t_2,
+            rrrrs_R_a_t_3,
         ))
-        out_required[_required_rrrrs[0][leg]] = P_2_rrrrs
-        out_H[_H_rrrrs[0][leg]] = w_1_rrrrs_t_3
-        out_H[_H_rrrrs[1][leg]] = w_1_rrrrs_t_4
-        out_H[_H_rrrrs[2][leg]] = w_1_rrrrs_t_5
-        out_H[_H_rrrrs[3][leg]] = H_a_1_rrrrs_x
-        out_H[_H_rrrrs[4][leg]] = H_a_1_rrrrs_y
-        out_H[_H_rrrrs[5][leg]] = H_a_1_rrrrs_z
+        out_required[_required_rrrrs[0][leg]] = rrrrs_P_2
+        out_H[_H_rrrrs[0][leg]] = rrrrs_w_1_t_3
+        out_H[_H_rrrrs[1][leg]] = rrrrs_w_1_t_4
+        out_H[_H_rrrrs[2][leg]] = rrrrs_w_1_t_5
+        out_H[_H_rrrrs[3][leg]] = rrrrs_H_a_1_x
+        out_H[_H_rrrrs[4][leg]] = rrrrs_H_a_1_y
+        out_H[_H_rrrrs[5][leg]] = rrrrs_H_a_1_z
         out_H[_H_rrrrs[6][leg]] = 1.0
-        out_H[_H_rrrrs[7][leg]] = -w_3_rrrrs_t
-        out_H[_H_rrrrs[8][leg]] = -w_3_rrrrs_t_2
-        out_H[_H_rrrrs[9][leg]] = -w_3_rrrrs_t_3
-        out_H[_H_rrrrs[10][leg]] = H_a_3_rrrrs_x
-        out_H[_H_rrrrs[11][leg]] = H_a_3_rrrrs_y
-        out_H[_H_rrrrs[12][leg]] = H_a_3_rrrrs_z
-        out_H[_H_rrrrs[13][leg]] = -d1_qdd_3_rrrrs
+        out_H[_H_rrrrs[7][leg]] = -rrrrs_w_3_t
+        out_H[_H_rrrrs[8][leg]] = -rrrrs_w_3_t_2
+        out_H[_H_rrrrs[9][leg]] = -rrrrs_w_3_t_3
+        out_H[_H_rrrrs[10][leg]] = rrrrs_H_a_3_x
+        out_H[_H_rrrrs[11][leg]] = rrrrs_H_a_3_y
+        out_H[_H_rrrrs[12][leg]] = rrrrs_H_a_3_z
+        out_H[_H_rrrrs[13][leg]] = -rrrrs_dy_2_qdd_3
     (
     total_rrrrs_x, total_rrrrs_y, total_rrrrs_z, total_rrrrs_x_2, total_rrrrs_y_2,
         total_rrrrs_z_2,
@@ -6222,114 +6342,114 @@ def _run_required(m, X, V, A):
     sums = [0.0] * 6
     for leg, k in legs[1]:
         (
-        J_1_rrrs_xx, J_2_rrrs_xy, J_2_rrrs_xz, J_2_rrrs_yz, J_3_rrrs_xy, J_3_rrrs_xz, J_3_rrrs_yz,
-            Kd_2_rrrs_t, Kd_2_rrrs_t_2, Sigma_2_rrrs_xx, Sigma_2_rrrs_yy, Sigma_2_rrrs_zz,
-            Sigma_3_rrrs_xx, Sigma_3_rrrs_yy, Sigma_3_rrrs_zz, branch_1_rrrs, branch_2_rrrs,
-            g_r0_x_2, g_r0_y_2, g_r0_z_2, h_1_rrrs_y, h_1_rrrs_z, h_2_rrrs_x, h_2_rrrs_y,
-            h_2_rrrs_z, h_3_rrrs_x, h_3_rrrs_y, h_3_rrrs_z, inv_rrrs_platform_joint_offset_x,
-            inv_size_rrrs_t, inv_size_rrrs_t_2, rho2_2_rrrs_t, rrrs_base_frame_xx,
+        inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
+            rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yz, rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yz,
+            rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
+            rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
             rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
             rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_g_r0_x, rrrs_g_r0_y, rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y,
+            rrrs_h_2_z, rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
             rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-            rrrs_platform_point_y, rrrs_platform_point_z, size_rrrs, size_rrrs_t_3,
+            rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
         ) = k
-        # (rrrs-K1) from the base point to the connection point
-        q_rrrs_in_base_x = (
+        # (rrrs-S) from the base point to the connection point
+        rrrs_q_in_base_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        q_rrrs_in_base_y = (
+        rrrs_q_in_base_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        q_rrrs_in_base_z = (
+        rrrs_q_in_base_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        S_rrrs_x = q_rrrs_in_base_x + t_x - rrrs_base_point_x
-        S_rrrs_y = q_rrrs_in_base_y + t_y - rrrs_base_point_y
-        S_rrrs_z = q_rrrs_in_base_z + t_z - rrrs_base_point_z
-        # (rrrs-K2) component along the reference direction
-        px_1_rrrs = (
-        S_rrrs_x*rrrs_base_frame_xy + S_rrrs_y*rrrs_base_frame_yy + S_rrrs_z*rrrs_base_frame_zy
+        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        # (rrrs-px_1) component along the reference direction
+        rrrs_px_1 = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        # (rrrs-K3) component across the reference direction
-        py_1_rrrs = (
-        S_rrrs_x*rrrs_base_frame_xz + S_rrrs_y*rrrs_base_frame_yz + S_rrrs_z*rrrs_base_frame_zz
+        # (rrrs-py_1) component across the reference direction
+        rrrs_py_1 = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        # (rrrs-K5) squared amplitude
-        rho2_1_rrrs = px_1_rrrs*px_1_rrrs + py_1_rrrs*py_1_rrrs
-        # (rrrs-K7) root, with the sign of the branch
-        root_1_rrrs = branch_1_rrrs*sqrt(rho2_1_rrrs)
-        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_rrrs_t = (
-        S_rrrs_x*rrrs_base_frame_xx + S_rrrs_y*rrrs_base_frame_yx + S_rrrs_z*rrrs_base_frame_zx
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrs_xi_1_t = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        # (rrrs-K12) from the origin of joint 2 to the connection point
-        x_2_rrrs_z = xi_1_rrrs_t - rrrs_joint2_offset_x
-        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z
-        Kd_2_rrrs = Kd_2_rrrs_t + 0.5*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2
-        # (rrrs-K17) factor of the cosine in the equation of joint 2
-        Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x
-        # (rrrs-K18) factor of the sine in the equation of joint 2
-        Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z
-        # (rrrs-K19) squared amplitude
-        rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs
-        # (rrrs-K20) discriminant
-        disc_2_rrrs = rho2_2_rrrs - Kd_2_rrrs*Kd_2_rrrs
-        # (rrrs-K21) root, with the sign of the branch
-        root_2_rrrs = branch_2_rrrs*sqrt(disc_2_rrrs)
-        # (rrrs-K27) from the origin of joint 3 to the connection point
-        x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-        # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-        c_3_rrrs = inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x
-        # (rrrs-K30) sine of the angle of joint 3 from its reference direction
-        s_3_rrrs = (
-        inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-x_3) from the origin of joint 3 to the connection point
+        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrs_s_3 = (
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_rrrs_t = rrrs_platform_joint_offset_x*s_3_rrrs
-        r_2_rrrs_x = rrrs_joint3_offset_x + c_3_rrrs*rrrs_platform_joint_offset_x
-        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2_rrrs = 1.0/rho2_2_rrrs
-        c_2_rrrs = inv_rho2_2_rrrs*(Kc_2_rrrs*Kd_2_rrrs + Ks_2_rrrs*root_2_rrrs)
-        # (rrrs-K23) sine of the angle of joint 2 from its reference direction
-        s_2_rrrs = inv_rho2_2_rrrs*(Kc_2_rrrs*root_2_rrrs - Kd_2_rrrs*Ks_2_rrrs)
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        e_1_rrrs_r2_x = c_2_rrrs*s_3_rrrs - c_3_rrrs*s_2_rrrs
-        e_1_rrrs_r2_y = -c_2_rrrs*c_3_rrrs - s_2_rrrs*s_3_rrrs
-        # (rrrs-V3) from joint 1 to the connection point, along the links
-        r_1_rrrs_r1_x = c_2_rrrs*root_1_rrrs - s_2_rrrs*xi_1_rrrs_t
-        r_1_rrrs_r1_y = -c_2_rrrs*xi_1_rrrs_t - root_1_rrrs*s_2_rrrs
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        v_1_rrrs_z = (
-        e_1_rrrs_r2_x*(c_3_rrrs*r_1_rrrs_r1_y + r_1_rrrs_r1_x*s_3_rrrs) -
-            e_1_rrrs_r2_y*(c_3_rrrs*r_1_rrrs_r1_x - r_1_rrrs_r1_y*s_3_rrrs)
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3
+        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
+        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
+        # (rrrs-r_1) from joint 1 to the connection point, along the links
+        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
+        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_z = (
+        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
+            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
         )
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_rrrs_r0_x = c_3_rrrs*r_2_rrrs_x + r_2_rrrs_t*s_3_rrrs
-        r_2_rrrs_r0_y = r_2_rrrs_x*s_3_rrrs - c_3_rrrs*r_2_rrrs_t
-        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrrs = 1.0/rho2_1_rrrs
-        c_1_rrrs = inv_rho2_1_rrrs*py_1_rrrs*root_1_rrrs
-        # (rrrs-K9) sine of the angle of joint 1 from its reference direction
-        s_1_rrrs = inv_rho2_1_rrrs*px_1_rrrs*root_1_rrrs
-        # (rrrs-V7) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1_rrrs - c_1_rrrs*rrrs_base_frame_xy
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1_rrrs - c_1_rrrs*rrrs_base_frame_yy
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1_rrrs - c_1_rrrs*rrrs_base_frame_zy
-        w_1_rrrs_t = e_1_rrrs_r2_x*s_1_rrrs
-        w_1_rrrs_t_2 = c_1_rrrs*e_1_rrrs_r2_x
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_r0_x = rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3
+        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
+        # (rrrs-w_1) reciprocal vector 1
+        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
+        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
+        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
         axis_y_rrrs_axes3_in_base_x = (
-        e_1_rrrs_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_rrrs_t +
-            rrrs_base_frame_xz*w_1_rrrs_t_2
+        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
+            rrrs_base_frame_xz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_y = (
-        e_1_rrrs_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_rrrs_t +
-            rrrs_base_frame_yz*w_1_rrrs_t_2
+        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
+            rrrs_base_frame_yz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_z = (
-        e_1_rrrs_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_rrrs_t +
-            rrrs_base_frame_zz*w_1_rrrs_t_2
+        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
+            rrrs_base_frame_zz*rrrs_w_1_t_2
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
@@ -6343,275 +6463,275 @@ def _run_required(m, X, V, A):
         axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
             axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
         )
-        inv_v_1_rrrs_z = 1.0/v_1_rrrs_z
-        # (rrrs-V8) reciprocal vector 2
-        inv_r_2_rrrs_r0_y = 1.0/r_2_rrrs_r0_y
-        # (rrrs-V1) velocity of the connection point
-        S_dot_rrrs_t = omega_y*q_rrrs_in_base_z - omega_z*q_rrrs_in_base_y
-        S_dot_rrrs_t_2 = omega_z*q_rrrs_in_base_x - omega_x*q_rrrs_in_base_z
-        S_dot_rrrs_t_3 = omega_x*q_rrrs_in_base_y - omega_y*q_rrrs_in_base_x
-        S_dot_rrrs_x = S_dot_rrrs_t + t_dot_x
-        S_dot_rrrs_y = S_dot_rrrs_t_2 + t_dot_y
-        S_dot_rrrs_z = S_dot_rrrs_t_3 + t_dot_z
-        # (rrrs-V10) rate of joint 1
-        qd_2_rrrs = (
-        inv_r_2_rrrs_r0_y*(S_dot_rrrs_x*axis_x_rrrs_axes3_x + S_dot_rrrs_y*axis_x_rrrs_axes3_y +
-            S_dot_rrrs_z*axis_x_rrrs_axes3_z)
+        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
+        # (rrrs-w_2) reciprocal vector 2
+        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
+        # (rrrs-S_dot) velocity of the connection point
+        rrrs_S_dot_t = omega_y*rrrs_q_in_base_z - omega_z*rrrs_q_in_base_y
+        rrrs_S_dot_t_2 = omega_z*rrrs_q_in_base_x - omega_x*rrrs_q_in_base_z
+        rrrs_S_dot_t_3 = omega_x*rrrs_q_in_base_y - omega_y*rrrs_q_in_base_x
+        rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
+        rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
+        rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
+        # (rrrs-qd_3) rate of joint 3
+        rrrs_qd_2 = (
+        inv_rrrs_r_2_r0_y*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_x_rrrs_axes3_z*rrrs_S_dot_z)
         )
-        qd_3_rrrs = (
-        inv_rrrs_platform_joint_offset_x*(S_dot_rrrs_x*axis_y_rrrs_axes3_in_base_x +
-            S_dot_rrrs_y*axis_y_rrrs_axes3_in_base_y + S_dot_rrrs_z*axis_y_rrrs_axes3_in_base_z +
-            qd_2_rrrs*r_2_rrrs_r0_x)
+        rrrs_qd_3 = (
+        inv_rrrs_platform_joint_offset_x*(axis_y_rrrs_axes3_in_base_x*rrrs_S_dot_x +
+            axis_y_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_dot_z +
+            rrrs_qd_2*rrrs_r_2_r0_x)
         )
-        qd_1_rrrs = (
-        inv_v_1_rrrs_z*(S_dot_rrrs_x*axis_z_rrrs_axes3_in_base_x +
-            S_dot_rrrs_y*axis_z_rrrs_axes3_in_base_y + S_dot_rrrs_z*axis_z_rrrs_axes3_in_base_z)
+        rrrs_qd_1 = (
+        inv_rrrs_v_1_z*(axis_z_rrrs_axes3_in_base_x*rrrs_S_dot_x +
+            axis_z_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_z_rrrs_axes3_in_base_z*rrrs_S_dot_z)
         )
-        # (rrrs-V13) angular velocity of link 1
-        omega_1_rrrs_t = qd_1_rrrs*s_2_rrrs
-        omega_1_rrrs_t_2 = c_2_rrrs*qd_1_rrrs
-        # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_rrrs_x = omega_1_rrrs_t_2*qd_2_rrrs
-        zeta_2_rrrs_y = omega_1_rrrs_t*qd_2_rrrs
-        # (rrrs-V15) angular velocity of link 2
-        omega_2_rrrs_r0_x = omega_1_rrrs_t_2*s_3_rrrs - c_3_rrrs*omega_1_rrrs_t
-        omega_2_rrrs_r0_y = -c_3_rrrs*omega_1_rrrs_t_2 - omega_1_rrrs_t*s_3_rrrs
-        # (rrrs-A5) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_rrrs_y = omega_2_rrrs_r0_x*qd_3_rrrs
-        # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_rrrs_r0_y = s_3_rrrs*zeta_2_rrrs_x - c_3_rrrs*zeta_2_rrrs_y
-        # (rrrs-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_rrrs_y = zeta_2_rrrs_r0_y - zeta_3_rrrs_y
-        # (rrrs-V17) angular velocity of link 3
-        omega_3_rrrs_z = qd_3_rrrs - qd_2_rrrs
-        # (rrrs-V16) centripetal tensor of link 2
-        W_2_rrrs_t = omega_1_rrrs_t*omega_1_rrrs_t
-        W_2_rrrs_t_2 = omega_1_rrrs_t_2*omega_1_rrrs_t_2
-        W_2_rrrs_t_3 = qd_2_rrrs*qd_2_rrrs
-        W_2_rrrs_xy = omega_1_rrrs_t*omega_1_rrrs_t_2
-        # (rrrs-V18) centripetal tensor of link 3
-        W_3_rrrs_t = omega_2_rrrs_r0_x*omega_2_rrrs_r0_x
-        W_3_rrrs_t_2 = omega_2_rrrs_r0_y*omega_2_rrrs_r0_y
-        W_3_rrrs_t_3 = omega_3_rrrs_z*omega_3_rrrs_z
-        W_3_rrrs_xy = omega_2_rrrs_r0_x*omega_2_rrrs_r0_y
-        W_3_rrrs_xz = omega_2_rrrs_r0_x*omega_3_rrrs_z
-        W_3_rrrs_yz = omega_2_rrrs_r0_y*omega_3_rrrs_z
-        # (rrrs-A7) acceleration of the connection point at zero joint accelerations
-        bias_rrrs_t = rrrs_joint2_offset_x*s_2_rrrs
-        bias_rrrs_t_2 = c_2_rrrs*rrrs_joint2_offset_x
-        bias_rrrs_t_3 = (
-        omega_2_rrrs_r0_x*(-bias_rrrs_t*s_3_rrrs - bias_rrrs_t_2*c_3_rrrs) -
-            omega_2_rrrs_r0_y*(bias_rrrs_t_2*s_3_rrrs - bias_rrrs_t*c_3_rrrs)
+        # (rrrs-omega_1) angular velocity of link 1
+        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_t_2 = rrrs_c_2*rrrs_qd_1
+        # (rrrs-omega_2) angular velocity of link 2
+        rrrs_omega_2_r0_x = rrrs_omega_1_t_2*rrrs_s_3 - rrrs_c_3*rrrs_omega_1_t
+        rrrs_omega_2_r0_y = -rrrs_c_3*rrrs_omega_1_t_2 - rrrs_omega_1_t*rrrs_s_3
+        # (rrrs-omega_3) angular velocity of link 3
+        rrrs_omega_3_z = rrrs_qd_3 - rrrs_qd_2
+        # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrs_zeta_3_y = rrrs_omega_2_r0_x*rrrs_qd_3
+        # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        rrrs_zeta_2_x = rrrs_omega_1_t_2*rrrs_qd_2
+        rrrs_zeta_2_y = rrrs_omega_1_t*rrrs_qd_2
+        rrrs_zeta_2_r0_y = rrrs_s_3*rrrs_zeta_2_x - rrrs_c_3*rrrs_zeta_2_y
+        # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        rrrs_beta_3_y = rrrs_zeta_2_r0_y - rrrs_zeta_3_y
+        # (rrrs-W_2) centripetal tensor of link 2
+        rrrs_W_2_t = rrrs_omega_1_t*rrrs_omega_1_t
+        rrrs_W_2_t_2 = rrrs_omega_1_t_2*rrrs_omega_1_t_2
+        rrrs_W_2_t_3 = rrrs_qd_2*rrrs_qd_2
+        rrrs_W_2_xy = rrrs_omega_1_t*rrrs_omega_1_t_2
+        # (rrrs-W_3) centripetal tensor of link 3
+        rrrs_W_3_t = rrrs_omega_2_r0_x*rrrs_omega_2_r0_x
+        rrrs_W_3_t_2 = rrrs_omega_2_r0_y*rrrs_omega_2_r0_y
+        rrrs_W_3_t_3 = rrrs_omega_3_z*rrrs_omega_3_z
+        rrrs_W_3_xy = rrrs_omega_2_r0_x*rrrs_omega_2_r0_y
+        rrrs_W_3_xz = rrrs_omega_2_r0_x*rrrs_omega_3_z
+        rrrs_W_3_yz = rrrs_omega_2_r0_y*rrrs_omega_3_z
+        # (rrrs-bias) acceleration of the connection point at zero joint accelerations
+        rrrs_bias_t = rrrs_joint2_offset_x*rrrs_s_2
+        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_3 = (
+        rrrs_omega_2_r0_x*(-rrrs_bias_t*rrrs_s_3 - rrrs_bias_t_2*rrrs_c_3) -
+            rrrs_omega_2_r0_y*(rrrs_bias_t_2*rrrs_s_3 - rrrs_bias_t*rrrs_c_3)
         )
-        bias_rrrs_t_4 = c_3_rrrs*rrrs_joint3_offset_x
-        bias_rrrs_t_5 = rrrs_joint3_offset_x*s_3_rrrs
-        bias_rrrs_t_6 = bias_rrrs_t_5*qd_2_rrrs
-        bias_rrrs_t_7 = bias_rrrs_t_4*qd_2_rrrs
-        bias_rrrs_t_8 = bias_rrrs_t_5*omega_2_rrrs_r0_x - bias_rrrs_t_4*omega_2_rrrs_r0_y
-        bias_rrrs_t_9 = omega_3_rrrs_z*rrrs_platform_joint_offset_x
-        bias_rrrs_t_10 = omega_2_rrrs_r0_y*rrrs_platform_joint_offset_x
-        bias_rrrs_x = (
-        bias_rrrs_t_3*omega_2_rrrs_r0_y + bias_rrrs_t_8*omega_2_rrrs_r0_y -
-            bias_rrrs_t_10*omega_2_rrrs_r0_y - bias_rrrs_t_7*qd_2_rrrs -
-            bias_rrrs_t_9*omega_3_rrrs_z
+        rrrs_bias_t_4 = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_bias_t_5 = rrrs_joint3_offset_x*rrrs_s_3
+        rrrs_bias_t_6 = rrrs_bias_t_5*rrrs_qd_2
+        rrrs_bias_t_7 = rrrs_bias_t_4*rrrs_qd_2
+        rrrs_bias_t_8 = rrrs_bias_t_5*rrrs_omega_2_r0_x - rrrs_bias_t_4*rrrs_omega_2_r0_y
+        rrrs_bias_t_9 = rrrs_omega_3_z*rrrs_platform_joint_offset_x
+        rrrs_bias_t_10 = rrrs_omega_2_r0_y*rrrs_platform_joint_offset_x
+        rrrs_bias_x = (
+        rrrs_bias_t_3*rrrs_omega_2_r0_y + rrrs_bias_t_8*rrrs_omega_2_r0_y -
+            rrrs_bias_t_10*rrrs_omega_2_r0_y - rrrs_bias_t_7*rrrs_qd_2 -
+            rrrs_bias_t_9*rrrs_omega_3_z
         )
-        bias_rrrs_y = (
-        bias_rrrs_t_10*omega_2_rrrs_r0_x - bias_rrrs_t_3*omega_2_rrrs_r0_x -
-            bias_rrrs_t_6*qd_2_rrrs - bias_rrrs_t_8*omega_2_rrrs_r0_x
+        rrrs_bias_y = (
+        rrrs_bias_t_10*rrrs_omega_2_r0_x - rrrs_bias_t_3*rrrs_omega_2_r0_x -
+            rrrs_bias_t_6*rrrs_qd_2 - rrrs_bias_t_8*rrrs_omega_2_r0_x
         )
-        bias_rrrs_z = (
-        bias_rrrs_t_5*(c_3_rrrs*zeta_2_rrrs_x + s_3_rrrs*zeta_2_rrrs_y) +
-            bias_rrrs_t_9*omega_2_rrrs_r0_x - beta_3_rrrs_y*rrrs_platform_joint_offset_x -
-            bias_rrrs_t_4*zeta_2_rrrs_r0_y - bias_rrrs_t_6*omega_2_rrrs_r0_y -
-            bias_rrrs_t_7*omega_2_rrrs_r0_x
+        rrrs_bias_z = (
+        rrrs_bias_t_5*(rrrs_c_3*rrrs_zeta_2_x + rrrs_s_3*rrrs_zeta_2_y) +
+            rrrs_bias_t_9*rrrs_omega_2_r0_x - rrrs_beta_3_y*rrrs_platform_joint_offset_x -
+            rrrs_bias_t_4*rrrs_zeta_2_r0_y - rrrs_bias_t_6*rrrs_omega_2_r0_y -
+            rrrs_bias_t_7*rrrs_omega_2_r0_x
         )
-        # (rrrs-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x_2 = g_r0_y_2*s_1_rrrs - c_1_rrrs*g_r0_x_2
-        g_r1_y_2 = -c_1_rrrs*g_r0_y_2 - g_r0_x_2*s_1_rrrs
-        g_r3_x_2 = -c_2_rrrs*g_r1_y_2 - g_r0_z_2*s_2_rrrs
-        g_r3_y_2 = g_r1_y_2*s_2_rrrs - c_2_rrrs*g_r0_z_2
-        # (rrrs-V7) reciprocal vector 1
-        w_1_rrrs_t_3 = axis_z_rrrs_axes3_in_base_x*inv_v_1_rrrs_z
-        w_1_rrrs_t_4 = axis_z_rrrs_axes3_in_base_y*inv_v_1_rrrs_z
-        w_1_rrrs_t_5 = axis_z_rrrs_axes3_in_base_z*inv_v_1_rrrs_z
-        # (M11) moment of the column's unit force about the platform origin
-        H_a_1_rrrs_x = q_rrrs_in_base_y*w_1_rrrs_t_5 - q_rrrs_in_base_z*w_1_rrrs_t_4
-        H_a_1_rrrs_y = q_rrrs_in_base_z*w_1_rrrs_t_3 - q_rrrs_in_base_x*w_1_rrrs_t_5
-        H_a_1_rrrs_z = q_rrrs_in_base_x*w_1_rrrs_t_4 - q_rrrs_in_base_y*w_1_rrrs_t_3
-        # (rrrs-V8) reciprocal vector 2
-        w_2_rrrs_t = axis_x_rrrs_axes3_x*inv_r_2_rrrs_r0_y
-        w_2_rrrs_t_2 = axis_x_rrrs_axes3_y*inv_r_2_rrrs_r0_y
-        w_2_rrrs_t_3 = axis_x_rrrs_axes3_z*inv_r_2_rrrs_r0_y
-        # (M12) moment of the column's unit force about the platform origin
-        H_a_2_rrrs_x = q_rrrs_in_base_z*w_2_rrrs_t_2 - q_rrrs_in_base_y*w_2_rrrs_t_3
-        H_a_2_rrrs_y = q_rrrs_in_base_x*w_2_rrrs_t_3 - q_rrrs_in_base_z*w_2_rrrs_t
-        H_a_2_rrrs_z = q_rrrs_in_base_y*w_2_rrrs_t - q_rrrs_in_base_x*w_2_rrrs_t_2
-        # (rrrs-A2) acceleration of the connection point without its centripetal part
-        a_p_rrrs_x = t_ddot_x + alpha_y*q_rrrs_in_base_z - alpha_z*q_rrrs_in_base_y
-        a_p_rrrs_y = t_ddot_y + alpha_z*q_rrrs_in_base_x - alpha_x*q_rrrs_in_base_z
-        a_p_rrrs_z = t_ddot_z + alpha_x*q_rrrs_in_base_y - alpha_y*q_rrrs_in_base_x
-        # (rrrs-A3) acceleration of the connection point
-        S_ddot_rrrs_x = a_p_rrrs_x + S_dot_rrrs_t_3*omega_y - S_dot_rrrs_t_2*omega_z
-        S_ddot_rrrs_y = a_p_rrrs_y + S_dot_rrrs_t*omega_z - S_dot_rrrs_t_3*omega_x
-        S_ddot_rrrs_z = a_p_rrrs_z + S_dot_rrrs_t_2*omega_x - S_dot_rrrs_t*omega_y
-        S_ddot_rrrs_tip_x = (
-        S_ddot_rrrs_x*axis_x_rrrs_axes3_x + S_ddot_rrrs_y*axis_x_rrrs_axes3_y +
-            S_ddot_rrrs_z*axis_x_rrrs_axes3_z
+        # (rrrs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        rrrs_g_r1_x = rrrs_g_r0_y*rrrs_s_1 - rrrs_c_1*rrrs_g_r0_x
+        rrrs_g_r1_y = -rrrs_c_1*rrrs_g_r0_y - rrrs_g_r0_x*rrrs_s_1
+        rrrs_g_r3_x = -rrrs_c_2*rrrs_g_r1_y - rrrs_g_r0_z*rrrs_s_2
+        rrrs_g_r3_y = rrrs_g_r1_y*rrrs_s_2 - rrrs_c_2*rrrs_g_r0_z
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_rrrs_v_1_z
+        rrrs_w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_rrrs_v_1_z
+        rrrs_w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_rrrs_v_1_z
+        # (rrrs-H_a_1) moment of the column's unit force about the platform origin
+        rrrs_H_a_1_x = rrrs_q_in_base_y*rrrs_w_1_t_5 - rrrs_q_in_base_z*rrrs_w_1_t_4
+        rrrs_H_a_1_y = rrrs_q_in_base_z*rrrs_w_1_t_3 - rrrs_q_in_base_x*rrrs_w_1_t_5
+        rrrs_H_a_1_z = rrrs_q_in_base_x*rrrs_w_1_t_4 - rrrs_q_in_base_y*rrrs_w_1_t_3
+        # (rrrs-w_2) reciprocal vector 2
+        rrrs_w_2_t = axis_x_rrrs_axes3_x*inv_rrrs_r_2_r0_y
+        rrrs_w_2_t_2 = axis_x_rrrs_axes3_y*inv_rrrs_r_2_r0_y
+        rrrs_w_2_t_3 = axis_x_rrrs_axes3_z*inv_rrrs_r_2_r0_y
+        # (rrrs-H_a_2) moment of the column's unit force about the platform origin
+        rrrs_H_a_2_x = rrrs_q_in_base_z*rrrs_w_2_t_2 - rrrs_q_in_base_y*rrrs_w_2_t_3
+        rrrs_H_a_2_y = rrrs_q_in_base_x*rrrs_w_2_t_3 - rrrs_q_in_base_z*rrrs_w_2_t
+        rrrs_H_a_2_z = rrrs_q_in_base_y*rrrs_w_2_t - rrrs_q_in_base_x*rrrs_w_2_t_2
+        # (rrrs-a_p) acceleration of the connection point without its centripetal part
+        rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_in_base_z - alpha_z*rrrs_q_in_base_y
+        rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_in_base_x - alpha_x*rrrs_q_in_base_z
+        rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_in_base_y - alpha_y*rrrs_q_in_base_x
+        # (rrrs-S_ddot) acceleration of the connection point
+        rrrs_S_ddot_x = rrrs_a_p_x + omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2
+        rrrs_S_ddot_y = rrrs_a_p_y + omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3
+        rrrs_S_ddot_z = rrrs_a_p_z + omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t
+        rrrs_S_ddot_tip_x = (
+        axis_x_rrrs_axes3_x*rrrs_S_ddot_x + axis_x_rrrs_axes3_y*rrrs_S_ddot_y +
+            axis_x_rrrs_axes3_z*rrrs_S_ddot_z
         )
-        S_ddot_rrrs_tip_y = (
-        S_ddot_rrrs_x*axis_y_rrrs_axes3_in_base_x + S_ddot_rrrs_y*axis_y_rrrs_axes3_in_base_y +
-            S_ddot_rrrs_z*axis_y_rrrs_axes3_in_base_z
+        rrrs_S_ddot_tip_y = (
+        axis_y_rrrs_axes3_in_base_x*rrrs_S_ddot_x + axis_y_rrrs_axes3_in_base_y*rrrs_S_ddot_y +
+            axis_y_rrrs_axes3_in_base_z*rrrs_S_ddot_z
         )
-        S_ddot_rrrs_tip_z = (
-        S_ddot_rrrs_x*axis_z_rrrs_axes3_in_base_x + S_ddot_rrrs_y*axis_z_rrrs_axes3_in_base_y +
-            S_ddot_rrrs_z*axis_z_rrrs_axes3_in_base_z
+        rrrs_S_ddot_tip_z = (
+        axis_z_rrrs_axes3_in_base_x*rrrs_S_ddot_x + axis_z_rrrs_axes3_in_base_y*rrrs_S_ddot_y +
+            axis_z_rrrs_axes3_in_base_z*rrrs_S_ddot_z
         )
-        # (rrrs-A8) acceleration of the connection point left to the joint accelerations
-        rel_rrrs_x = S_ddot_rrrs_tip_x - bias_rrrs_x
-        rel_rrrs_y = S_ddot_rrrs_tip_y - bias_rrrs_y
-        rel_rrrs_z = S_ddot_rrrs_tip_z - bias_rrrs_z
-        # (rrrs-A10) acceleration of joint 1
-        qdd_2_rrrs = inv_r_2_rrrs_r0_y*rel_rrrs_x
-        qdd_1_rrrs = inv_v_1_rrrs_z*rel_rrrs_z
-        # (rrrs-N9) acceleration of the reference point of link 3, less gravity
-        acc_3_rrrs_x = (
-        S_ddot_rrrs_tip_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
+        # (rrrs-rel) acceleration of the connection point left to the joint accelerations
+        rrrs_rel_x = rrrs_S_ddot_tip_x - rrrs_bias_x
+        rrrs_rel_y = rrrs_S_ddot_tip_y - rrrs_bias_y
+        rrrs_rel_z = rrrs_S_ddot_tip_z - rrrs_bias_z
+        # (rrrs-qdd_1) acceleration of joint 1
+        rrrs_qdd_2 = inv_rrrs_r_2_r0_y*rrrs_rel_x
+        rrrs_qdd_1 = inv_rrrs_v_1_z*rrrs_rel_z
+        # (rrrs-acc_3) acceleration of the reference point of link 3, less gravity
+        rrrs_acc_3_x = (
+        rrrs_S_ddot_tip_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
             axis_x_rrrs_axes3_z*gravity_z
         )
-        acc_3_rrrs_y = (
-        S_ddot_rrrs_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x -
+        rrrs_acc_3_y = (
+        rrrs_S_ddot_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x -
             axis_y_rrrs_axes3_in_base_y*gravity_y - axis_y_rrrs_axes3_in_base_z*gravity_z
         )
-        acc_3_rrrs_z = (
-        S_ddot_rrrs_tip_z - axis_z_rrrs_axes3_in_base_x*gravity_x -
+        rrrs_acc_3_z = (
+        rrrs_S_ddot_tip_z - axis_z_rrrs_axes3_in_base_x*gravity_x -
             axis_z_rrrs_axes3_in_base_y*gravity_y - axis_z_rrrs_axes3_in_base_z*gravity_z
         )
-        # (rrrs-A16) angular acceleration of link 1
-        alpha_1_rrrs_t = qdd_1_rrrs*s_2_rrrs
-        alpha_1_rrrs_t_2 = c_2_rrrs*qdd_1_rrrs
-        # (rrrs-A20) angular acceleration of link 2
-        alpha_2_rrrs_x = zeta_2_rrrs_x - alpha_1_rrrs_t
-        alpha_2_rrrs_y = -alpha_1_rrrs_t_2 - zeta_2_rrrs_y
-        # (rrrs-A22) acceleration tensor of link 2
-        B_2_rrrs_xy = W_2_rrrs_xy + qdd_2_rrrs
-        B_2_rrrs_yx = W_2_rrrs_xy - qdd_2_rrrs
-        B_2_rrrs_zx = zeta_2_rrrs_y - alpha_2_rrrs_y
-        B_2_rrrs_zy = alpha_2_rrrs_x + zeta_2_rrrs_x
-        # (rrrs-N36) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_rrrs_x = (
-        B_2_rrrs_yx*J_2_rrrs_xz + B_2_rrrs_zy*Sigma_2_rrrs_yy + J_2_rrrs_yz*(W_2_rrrs_t_2 -
-            W_2_rrrs_t_3) + g_r3_y_2*h_2_rrrs_z - B_2_rrrs_zx*J_2_rrrs_xy -
-            Sigma_2_rrrs_zz*alpha_1_rrrs_t - g_r1_x_2*h_2_rrrs_y
+        # (rrrs-alpha_1) angular acceleration of link 1
+        rrrs_alpha_1_t = rrrs_qdd_1*rrrs_s_2
+        rrrs_alpha_1_t_2 = rrrs_c_2*rrrs_qdd_1
+        # (rrrs-alpha_2) angular acceleration of link 2
+        rrrs_alpha_2_x = rrrs_zeta_2_x - rrrs_alpha_1_t
+        rrrs_alpha_2_y = -rrrs_alpha_1_t_2 - rrrs_zeta_2_y
+        # (rrrs-alpha_3) angular acceleration of link 3
+        rrrs_alpha_3_x = (
+        rrrs_alpha_2_x*rrrs_c_3 + rrrs_omega_2_r0_y*rrrs_qd_3 - rrrs_alpha_2_y*rrrs_s_3
         )
-        mu_2_rrrs_y = (
-        B_2_rrrs_zy*J_2_rrrs_xy + g_r1_x_2*h_2_rrrs_x - B_2_rrrs_xy*J_2_rrrs_yz -
-            B_2_rrrs_zx*Sigma_2_rrrs_xx - J_2_rrrs_xz*(W_2_rrrs_t - W_2_rrrs_t_3) -
-            Sigma_2_rrrs_zz*alpha_1_rrrs_t_2 - g_r3_x_2*h_2_rrrs_z
+        rrrs_alpha_3_y = rrrs_alpha_2_x*rrrs_s_3 + rrrs_alpha_2_y*rrrs_c_3 - rrrs_zeta_3_y
+        rrrs_alpha_3_z = (
+        inv_rrrs_platform_joint_offset_x*(rrrs_rel_y + rrrs_qdd_2*rrrs_r_2_r0_x) - rrrs_qdd_2
         )
-        mu_2_rrrs_z = (
-        B_2_rrrs_yx*Sigma_2_rrrs_xx + J_2_rrrs_xy*(W_2_rrrs_t - W_2_rrrs_t_2) +
-            g_r3_x_2*h_2_rrrs_y - B_2_rrrs_xy*Sigma_2_rrrs_yy - J_2_rrrs_xz*alpha_1_rrrs_t -
-            J_2_rrrs_yz*alpha_1_rrrs_t_2 - g_r3_y_2*h_2_rrrs_x
+        # (rrrs-B_3) acceleration tensor of link 3
+        rrrs_B_3_xy = rrrs_W_3_xy - rrrs_alpha_3_z
+        rrrs_B_3_xz = rrrs_W_3_xz + rrrs_alpha_3_y
+        rrrs_B_3_yx = rrrs_W_3_xy + rrrs_alpha_3_z
+        rrrs_B_3_yz = rrrs_W_3_yz - rrrs_alpha_3_x
+        rrrs_B_3_zx = rrrs_W_3_xz - rrrs_alpha_3_y
+        rrrs_B_3_zy = rrrs_W_3_yz + rrrs_alpha_3_x
+        # (rrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        rrrs_mu_3_x = (
+        rrrs_B_3_yx*rrrs_J_3_xz + rrrs_B_3_zy*rrrs_Sigma_3_yy + rrrs_J_3_yz*(rrrs_W_3_t_2 -
+            rrrs_W_3_t_3) + rrrs_acc_3_z*rrrs_h_3_y - rrrs_B_3_yz*rrrs_Sigma_3_zz -
+            rrrs_B_3_zx*rrrs_J_3_xy - rrrs_acc_3_y*rrrs_h_3_z
         )
-        # (rrrs-A24) angular acceleration of link 3
-        alpha_3_rrrs_x = (
-        alpha_2_rrrs_x*c_3_rrrs + omega_2_rrrs_r0_y*qd_3_rrrs - alpha_2_rrrs_y*s_3_rrrs
+        rrrs_mu_3_y = (
+        rrrs_B_3_xz*rrrs_Sigma_3_zz + rrrs_B_3_zy*rrrs_J_3_xy + rrrs_acc_3_x*rrrs_h_3_z -
+            rrrs_B_3_xy*rrrs_J_3_yz - rrrs_B_3_zx*rrrs_Sigma_3_xx - rrrs_J_3_xz*(rrrs_W_3_t -
+            rrrs_W_3_t_3) - rrrs_acc_3_z*rrrs_h_3_x
         )
-        alpha_3_rrrs_y = alpha_2_rrrs_x*s_3_rrrs + alpha_2_rrrs_y*c_3_rrrs - zeta_3_rrrs_y
-        alpha_3_rrrs_z = (
-        inv_rrrs_platform_joint_offset_x*(rel_rrrs_y + qdd_2_rrrs*r_2_rrrs_r0_x) - qdd_2_rrrs
+        rrrs_mu_3_z = (
+        rrrs_B_3_xz*rrrs_J_3_yz + rrrs_B_3_yx*rrrs_Sigma_3_xx + rrrs_J_3_xy*(rrrs_W_3_t -
+            rrrs_W_3_t_2) + rrrs_acc_3_y*rrrs_h_3_x - rrrs_B_3_xy*rrrs_Sigma_3_yy -
+            rrrs_B_3_yz*rrrs_J_3_xz - rrrs_acc_3_x*rrrs_h_3_y
         )
-        # (rrrs-A27) acceleration tensor of link 3
-        B_3_rrrs_xy = W_3_rrrs_xy - alpha_3_rrrs_z
-        B_3_rrrs_xz = W_3_rrrs_xz + alpha_3_rrrs_y
-        B_3_rrrs_yx = W_3_rrrs_xy + alpha_3_rrrs_z
-        B_3_rrrs_yz = W_3_rrrs_yz - alpha_3_rrrs_x
-        B_3_rrrs_zx = W_3_rrrs_xz - alpha_3_rrrs_y
-        B_3_rrrs_zy = W_3_rrrs_yz + alpha_3_rrrs_x
-        # (rrrs-N29) inertia moment of the links that turn with link 3, about their reference points
-        mu_3_rrrs_x = (
-        B_3_rrrs_yx*J_3_rrrs_xz + B_3_rrrs_zy*Sigma_3_rrrs_yy + J_3_rrrs_yz*(W_3_rrrs_t_2 -
-            W_3_rrrs_t_3) + acc_3_rrrs_z*h_3_rrrs_y - B_3_rrrs_yz*Sigma_3_rrrs_zz -
-            B_3_rrrs_zx*J_3_rrrs_xy - acc_3_rrrs_y*h_3_rrrs_z
+        # (rrrs-B_2) acceleration tensor of link 2
+        rrrs_B_2_xy = rrrs_W_2_xy + rrrs_qdd_2
+        rrrs_B_2_yx = rrrs_W_2_xy - rrrs_qdd_2
+        rrrs_B_2_zx = rrrs_zeta_2_y - rrrs_alpha_2_y
+        rrrs_B_2_zy = rrrs_alpha_2_x + rrrs_zeta_2_x
+        # (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        rrrs_mu_2_x = (
+        rrrs_B_2_yx*rrrs_J_2_xz + rrrs_B_2_zy*rrrs_Sigma_2_yy + rrrs_J_2_yz*(rrrs_W_2_t_2 -
+            rrrs_W_2_t_3) + rrrs_g_r3_y*rrrs_h_2_z - rrrs_B_2_zx*rrrs_J_2_xy -
+            rrrs_Sigma_2_zz*rrrs_alpha_1_t - rrrs_g_r1_x*rrrs_h_2_y
         )
-        mu_3_rrrs_y = (
-        B_3_rrrs_xz*Sigma_3_rrrs_zz + B_3_rrrs_zy*J_3_rrrs_xy + acc_3_rrrs_x*h_3_rrrs_z -
-            B_3_rrrs_xy*J_3_rrrs_yz - B_3_rrrs_zx*Sigma_3_rrrs_xx - J_3_rrrs_xz*(W_3_rrrs_t -
-            W_3_rrrs_t_3) - acc_3_rrrs_z*h_3_rrrs_x
+        rrrs_mu_2_y = (
+        rrrs_B_2_zy*rrrs_J_2_xy + rrrs_g_r1_x*rrrs_h_2_x - rrrs_B_2_xy*rrrs_J_2_yz -
+            rrrs_B_2_zx*rrrs_Sigma_2_xx - rrrs_J_2_xz*(rrrs_W_2_t - rrrs_W_2_t_3) -
+            rrrs_Sigma_2_zz*rrrs_alpha_1_t_2 - rrrs_g_r3_x*rrrs_h_2_z
         )
-        mu_3_rrrs_z = (
-        B_3_rrrs_xz*J_3_rrrs_yz + B_3_rrrs_yx*Sigma_3_rrrs_xx + J_3_rrrs_xy*(W_3_rrrs_t -
-            W_3_rrrs_t_2) + acc_3_rrrs_y*h_3_rrrs_x - B_3_rrrs_xy*Sigma_3_rrrs_yy -
-            B_3_rrrs_yz*J_3_rrrs_xz - acc_3_rrrs_x*h_3_rrrs_y
+        rrrs_mu_2_z = (
+        rrrs_B_2_yx*rrrs_Sigma_2_xx + rrrs_J_2_xy*(rrrs_W_2_t - rrrs_W_2_t_2) +
+            rrrs_g_r3_x*rrrs_h_2_y - rrrs_B_2_xy*rrrs_Sigma_2_yy - rrrs_J_2_xz*rrrs_alpha_1_t -
+            rrrs_J_2_yz*rrrs_alpha_1_t_2 - rrrs_g_r3_y*rrrs_h_2_x
         )
-        # (rrrs-N38) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_rrrs_x = mu_2_rrrs_x + c_3_rrrs*mu_3_rrrs_x + mu_3_rrrs_y*s_3_rrrs
-        N_2_rrrs_y = mu_2_rrrs_y + c_3_rrrs*mu_3_rrrs_y - mu_3_rrrs_x*s_3_rrrs
-        N_2_rrrs_z = mu_2_rrrs_z + mu_3_rrrs_z
-        # (rrrs-N45) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rrrs_z = J_1_rrrs_xx*qdd_1_rrrs - g_r1_x_2*h_1_rrrs_y - g_r1_y_2*h_1_rrrs_z
-        # (rrrs-N47) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_rrrs_z = mu_1_rrrs_z - N_2_rrrs_x*s_2_rrrs - N_2_rrrs_y*c_2_rrrs
-        # (rrrs-N52) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rrrs_t = inv_rrrs_platform_joint_offset_x*mu_3_rrrs_z
-        # (rrrs-N55) leg force on the platform without actuation and without the mass at the connection point
-        c_rrrs_x = (
-        h_3_rrrs_x*(W_3_rrrs_t_2 + W_3_rrrs_t_3) - B_3_rrrs_xy*h_3_rrrs_y - B_3_rrrs_xz*h_3_rrrs_z
-            - inv_r_2_rrrs_r0_y*(G_rrrs_t*r_2_rrrs_r0_x - N_2_rrrs_z)
+        # (rrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        rrrs_N_2_x = rrrs_mu_2_x + rrrs_c_3*rrrs_mu_3_x + rrrs_mu_3_y*rrrs_s_3
+        rrrs_N_2_y = rrrs_mu_2_y + rrrs_c_3*rrrs_mu_3_y - rrrs_mu_3_x*rrrs_s_3
+        rrrs_N_2_z = rrrs_mu_2_z + rrrs_mu_3_z
+        # (rrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrrs_mu_1_z = rrrs_J_1_xx*rrrs_qdd_1 - rrrs_g_r1_x*rrrs_h_1_y - rrrs_g_r1_y*rrrs_h_1_z
+        # (rrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrrs_N_1_z = rrrs_mu_1_z - rrrs_N_2_x*rrrs_s_2 - rrrs_N_2_y*rrrs_c_2
+        # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrrs_G_t = inv_rrrs_platform_joint_offset_x*rrrs_mu_3_z
+        # (rrrs-c) leg force on the platform without actuation and without the mass at the connection point
+        rrrs_c_x = (
+        rrrs_h_3_x*(rrrs_W_3_t_2 + rrrs_W_3_t_3) - inv_rrrs_r_2_r0_y*(rrrs_G_t*rrrs_r_2_r0_x -
+            rrrs_N_2_z) - rrrs_B_3_xy*rrrs_h_3_y - rrrs_B_3_xz*rrrs_h_3_z
         )
-        c_rrrs_y = (
-        h_3_rrrs_y*(W_3_rrrs_t + W_3_rrrs_t_3) - G_rrrs_t - B_3_rrrs_yx*h_3_rrrs_x -
-            B_3_rrrs_yz*h_3_rrrs_z
+        rrrs_c_y = (
+        rrrs_h_3_y*(rrrs_W_3_t + rrrs_W_3_t_3) - rrrs_G_t - rrrs_B_3_yx*rrrs_h_3_x -
+            rrrs_B_3_yz*rrrs_h_3_z
         )
-        c_rrrs_z = (
-        h_3_rrrs_z*(W_3_rrrs_t + W_3_rrrs_t_2) - B_3_rrrs_zx*h_3_rrrs_x - B_3_rrrs_zy*h_3_rrrs_y -
-            N_1_rrrs_z*inv_v_1_rrrs_z
+        rrrs_c_z = (
+        rrrs_h_3_z*(rrrs_W_3_t + rrrs_W_3_t_2) - inv_rrrs_v_1_z*rrrs_N_1_z -
+            rrrs_B_3_zx*rrrs_h_3_x - rrrs_B_3_zy*rrrs_h_3_y
         )
-        c_rrrs_in_base_x = (
-        axis_x_rrrs_axes3_x*c_rrrs_x + axis_y_rrrs_axes3_in_base_x*c_rrrs_y +
-            axis_z_rrrs_axes3_in_base_x*c_rrrs_z
+        rrrs_c_in_base_x = (
+        axis_x_rrrs_axes3_x*rrrs_c_x + axis_y_rrrs_axes3_in_base_x*rrrs_c_y +
+            axis_z_rrrs_axes3_in_base_x*rrrs_c_z
         )
-        c_rrrs_in_base_y = (
-        axis_x_rrrs_axes3_y*c_rrrs_x + axis_y_rrrs_axes3_in_base_y*c_rrrs_y +
-            axis_z_rrrs_axes3_in_base_y*c_rrrs_z
+        rrrs_c_in_base_y = (
+        axis_x_rrrs_axes3_y*rrrs_c_x + axis_y_rrrs_axes3_in_base_y*rrrs_c_y +
+            axis_z_rrrs_axes3_in_base_y*rrrs_c_z
         )
-        c_rrrs_in_base_z = (
-        axis_x_rrrs_axes3_z*c_rrrs_x + axis_y_rrrs_axes3_in_base_z*c_rrrs_y +
-            axis_z_rrrs_axes3_in_base_z*c_rrrs_z
+        rrrs_c_in_base_z = (
+        axis_x_rrrs_axes3_z*rrrs_c_x + axis_y_rrrs_axes3_in_base_z*rrrs_c_y +
+            axis_z_rrrs_axes3_in_base_z*rrrs_c_z
         )
-        # (E5) moment that actuators and external wrench must give
-        R_a_t_4 = c_rrrs_in_base_z*q_rrrs_in_base_y - c_rrrs_in_base_y*q_rrrs_in_base_z
-        R_a_t_5 = c_rrrs_in_base_x*q_rrrs_in_base_z - c_rrrs_in_base_z*q_rrrs_in_base_x
-        R_a_t_6 = c_rrrs_in_base_y*q_rrrs_in_base_x - c_rrrs_in_base_x*q_rrrs_in_base_y
+        # (R_a) moment that actuators and external wrench must give
+        rrrs_R_a_t = rrrs_c_in_base_z*rrrs_q_in_base_y - rrrs_c_in_base_y*rrrs_q_in_base_z
+        rrrs_R_a_t_2 = rrrs_c_in_base_x*rrrs_q_in_base_z - rrrs_c_in_base_z*rrrs_q_in_base_x
+        rrrs_R_a_t_3 = rrrs_c_in_base_y*rrrs_q_in_base_x - rrrs_c_in_base_x*rrrs_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
-            (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) &
-            (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE *
-            size_rrrs))
+        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
+            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
+            rrrs_size))
         )
         sums = m.added(sums, leg, (
-        c_rrrs_in_base_x, c_rrrs_in_base_y, c_rrrs_in_base_z, R_a_t_4, R_a_t_5, R_a_t_6,
+        rrrs_c_in_base_x, rrrs_c_in_base_y, rrrs_c_in_base_z, rrrs_R_a_t, rrrs_R_a_t_2,
+            rrrs_R_a_t_3,
         ))
-        out_H[_H_rrrs[0][leg]] = w_1_rrrs_t_3
-        out_H[_H_rrrs[1][leg]] = w_1_rrrs_t_4
-        out_H[_H_rrrs[2][leg]] = w_1_rrrs_t_5
-        out_H[_H_rrrs[3][leg]] = H_a_1_rrrs_x
-        out_H[_H_rrrs[4][leg]] = H_a_1_rrrs_y
-        out_H[_H_rrrs[5][leg]] = H_a_1_rrrs_z
-        out_H[_H_rrrs[6][leg]] = -w_2_rrrs_t
-        out_H[_H_rrrs[7][leg]] = -w_2_rrrs_t_2
-        out_H[_H_rrrs[8][leg]] = -w_2_rrrs_t_3
-        out_H[_H_rrrs[9][leg]] = H_a_2_rrrs_x
-        out_H[_H_rrrs[10][leg]] = H_a_2_rrrs_y
-        out_H[_H_rrrs[11][leg]] = H_a_2_rrrs_z
+        out_H[_H_rrrs[0][leg]] = rrrs_w_1_t_3
+        out_H[_H_rrrs[1][leg]] = rrrs_w_1_t_4
+        out_H[_H_rrrs[2][leg]] = rrrs_w_1_t_5
+        out_H[_H_rrrs[3][leg]] = rrrs_H_a_1_x
+        out_H[_H_rrrs[4][leg]] = rrrs_H_a_1_y
+        out_H[_H_rrrs[5][leg]] = rrrs_H_a_1_z
+        out_H[_H_rrrs[6][leg]] = -rrrs_w_2_t
+        out_H[_H_rrrs[7][leg]] = -rrrs_w_2_t_2
+        out_H[_H_rrrs[8][leg]] = -rrrs_w_2_t_3
+        out_H[_H_rrrs[9][leg]] = rrrs_H_a_2_x
+        out_H[_H_rrrs[10][leg]] = rrrs_H_a_2_y
+        out_H[_H_rrrs[11][leg]] = rrrs_H_a_2_z
     (
     total_rrrs_x, total_rrrs_y, total_rrrs_z, total_rrrs_x_2, total_rrrs_y_2, total_rrrs_z_2,
     ) = sums
-    # (E4) force that actuators and external wrench must give
+    # (R_t) force that actuators and external wrench must give
     R_t_x = f_p_x - total_rrrrs_x - total_rrrs_x
     R_t_y = f_p_y - total_rrrrs_y - total_rrrs_y
     R_t_z = f_p_z - total_rrrrs_z - total_rrrs_z
-    # (E5) moment that actuators and external wrench must give
+    # (R_a) moment that actuators and external wrench must give
     R_a_x = mu_p_in_base_x - total_rrrrs_x_2 - total_rrrs_x_2
     R_a_y = mu_p_in_base_y - total_rrrrs_y_2 - total_rrrs_y_2
     R_a_z = mu_p_in_base_z - total_rrrrs_z_2 - total_rrrs_z_2
@@ -6670,180 +6790,179 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, branch_1_rrrrs, branch_3_rrrrs, inv_size_rrrrs_t_2,
-            inv_size_rrrrs_t_3, rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
-            rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
-            rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
-            rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
-            rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
-            rrrrs_platform_point_y, rrrrs_platform_point_z, size_rrrrs_t_3,
+        inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_base_frame_xx,
+            rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
+            rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
+            rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1,
+            rrrrs_branch_3, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
+            rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
+            rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size_t_3,
         ) = k
-        y_2_extra_rrrrs = X[[7][leg]]
-        # (rrrrs-K1) from the base point to the connection point
-        S_rrrrs_x = (
+        rrrrs_y_2_extra = X[[7][leg]]
+        # (rrrrs-S) from the base point to the connection point
+        rrrrs_S_x = (
         t_x + R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y +
             R_xz*rrrrs_platform_point_z - rrrrs_base_point_x
         )
-        S_rrrrs_y = (
+        rrrrs_S_y = (
         t_y + R_yx*rrrrs_platform_point_x + R_yy*rrrrs_platform_point_y +
             R_yz*rrrrs_platform_point_z - rrrrs_base_point_y
         )
-        S_rrrrs_z = (
+        rrrrs_S_z = (
         t_z + R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y +
             R_zz*rrrrs_platform_point_z - rrrrs_base_point_z
         )
-        # (rrrrs-K4) component along the reference direction
-        px_1_rrrrs = (
-        S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy +
-            S_rrrrs_z*rrrrs_base_frame_zy
+        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrrs_c_2_t = sin(rrrrs_y_2_extra)
+        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrrs_s_2 = cos(rrrrs_y_2_extra)
+        # (rrrrs-px_1) component along the reference direction
+        rrrrs_px_1 = (
+        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
+            rrrrs_S_z*rrrrs_base_frame_zy
         )
-        # (rrrrs-K5) component across the reference direction
-        py_1_rrrrs = (
-        S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz +
-            S_rrrrs_z*rrrrs_base_frame_zz
+        # (rrrrs-py_1) component across the reference direction
+        rrrrs_py_1 = (
+        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
+            rrrrs_S_z*rrrrs_base_frame_zz
         )
-        # (rrrrs-K7) squared amplitude
-        rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs
-        # (rrrrs-K9) root, with the sign of the branch
-        root_1_rrrrs = branch_1_rrrrs*sqrt(rho2_1_rrrrs)
-        # (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_rrrrs_t = (
-        S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx +
-            S_rrrrs_z*rrrrs_base_frame_zx
+        # (rrrrs-rho2_1) squared amplitude
+        rrrrs_rho2_1 = rrrrs_px_1*rrrrs_px_1 + rrrrs_py_1*rrrrs_py_1
+        # (rrrrs-root_1) root, with the sign of the branch
+        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
+        # (rrrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrrs_xi_1_t = (
+        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
+            rrrrs_S_z*rrrrs_base_frame_zx
         )
-        # (rrrrs-K14) from the origin of joint 2 to the connection point
-        x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x
-        # (rrrrs-K2) cosine of the angle of joint 2 from its reference direction
-        c_2_rrrrs_t = sin(y_2_extra_rrrrs)
-        # (rrrrs-K3) sine of the angle of joint 2 from its reference direction
-        s_2_rrrrs = cos(y_2_extra_rrrrs)
-        # (rrrrs-K14) from the origin of joint 2 to the connection point
-        x_2_rrrrs_r1_y = root_1_rrrrs*s_2_rrrrs - c_2_rrrrs_t*x_2_rrrrs_z
-        # (rrrrs-K15) from the origin of joint 3 to the connection point
-        x_3_rrrrs_x = c_2_rrrrs_t*root_1_rrrrs + s_2_rrrrs*x_2_rrrrs_z - rrrrs_joint3_offset_x
-        # (rrrrs-K16) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-        Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x
-        Kd_3_rrrrs = Kd_3_rrrrs_t + 0.5*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2
-        # (rrrrs-K20) factor of the cosine in the equation of joint 3
-        Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x
-        # (rrrrs-K21) factor of the sine in the equation of joint 3
-        Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y
-        # (rrrrs-K22) squared amplitude
-        rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs
-        # (rrrrs-K23) discriminant
-        disc_3_rrrrs = rho2_3_rrrrs - Kd_3_rrrrs*Kd_3_rrrrs
-        # (rrrrs-K24) root, with the sign of the branch
-        root_3_rrrrs = branch_3_rrrrs*sqrt(disc_3_rrrrs)
-        # (rrrrs-K30) from the origin of joint 4 to the connection point
-        x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
-        # (rrrrs-K25) cosine of the angle of joint 3 from its reference direction
-        inv_rho2_3_rrrrs = 1.0/rho2_3_rrrrs
-        # (rrrrs-K10) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrrrs = 1.0/rho2_1_rrrrs
-        # (rrrrs-K12) displacement of joint 1
-        q_1_rrrrs = (
-        atan2(inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs, inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs)
+        # (rrrrs-x_2) from the origin of joint 2 to the connection point
+        rrrrs_x_2_z = rrrrs_xi_1_t - rrrrs_joint2_offset_x
+        rrrrs_x_2_r1_y = rrrrs_root_1*rrrrs_s_2 - rrrrs_c_2_t*rrrrs_x_2_z
+        # (rrrrs-x_3) from the origin of joint 3 to the connection point
+        rrrrs_x_3_x = rrrrs_c_2_t*rrrrs_root_1 + rrrrs_s_2*rrrrs_x_2_z - rrrrs_joint3_offset_x
+        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
+        rrrrs_Kd_3_t_3 = rrrrs_x_2_r1_y*rrrrs_x_2_r1_y + rrrrs_x_3_x*rrrrs_x_3_x
+        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
+        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
+        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_x
+        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
+        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_r1_y
+        # (rrrrs-rho2_3) squared amplitude
+        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
+        # (rrrrs-disc_3) discriminant
+        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
+        # (rrrrs-root_3) root, with the sign of the branch
+        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
+        # (rrrrs-x_4) from the origin of joint 4 to the connection point
+        rrrrs_x_4_x = inv_rrrrs_size_t_2*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
+        # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
+        # (rrrrs-q_1) displacement of joint 1
+        rrrrs_q_1 = (
+        atan2(inv_rrrrs_rho2_1*rrrrs_py_1*rrrrs_root_1, inv_rrrrs_rho2_1*rrrrs_px_1*rrrrs_root_1)
         )
-        # (rrrrs-K27) displacement of joint 3
-        q_3_rrrrs = (
-        atan2(inv_rho2_3_rrrrs*(Kc_3_rrrrs*root_3_rrrrs + Kd_3_rrrrs*Ks_3_rrrrs),
-            inv_rho2_3_rrrrs*(Kc_3_rrrrs*Kd_3_rrrrs - Ks_3_rrrrs*root_3_rrrrs))
+        # (rrrrs-q_3) displacement of joint 3
+        rrrrs_q_3 = (
+        atan2(inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3),
+            inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3))
         )
-        # (rrrrs-K34) displacement of joint 4
-        q_4_rrrrs = (
-        atan2(-inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x,
-            inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x)
+        # (rrrrs-q_4) displacement of joint 4
+        rrrrs_q_4 = (
+        atan2(-inv_rrrrs_size_t_2*inv_rrrrs_size_t_3*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3,
+            inv_rrrrs_size_t_3*rrrrs_platform_joint_offset_x*rrrrs_x_4_x)
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
-            (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >=
+        ok & m.every(leg, (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
+            (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >=
             0.0))
         )
-        out_q[_q_rrrrs[0][leg]] = q_1_rrrrs
-        out_q[_q_rrrrs[1][leg]] = y_2_extra_rrrrs
-        out_q[_q_rrrrs[2][leg]] = q_3_rrrrs
-        out_q[_q_rrrrs[3][leg]] = q_4_rrrrs
+        out_q[_q_rrrrs[0][leg]] = rrrrs_q_1
+        out_q[_q_rrrrs[1][leg]] = rrrrs_y_2_extra
+        out_q[_q_rrrrs[2][leg]] = rrrrs_q_3
+        out_q[_q_rrrrs[3][leg]] = rrrrs_q_4
     for leg, k in legs[1]:
         (
-        Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs, inv_size_rrrs_t,
-            inv_size_rrrs_t_2, rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
-            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-            rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
-            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-            rrrs_platform_point_z, size_rrrs_t_3,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
+            rrrs_size_t_3,
         ) = k
-        # (rrrs-K1) from the base point to the connection point
-        S_rrrs_x = (
+        # (rrrs-S) from the base point to the connection point
+        rrrs_S_x = (
         t_x + R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
             - rrrs_base_point_x
         )
-        S_rrrs_y = (
+        rrrs_S_y = (
         t_y + R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
             - rrrs_base_point_y
         )
-        S_rrrs_z = (
+        rrrs_S_z = (
         t_z + R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
             - rrrs_base_point_z
         )
-        # (rrrs-K2) component along the reference direction
-        px_1_rrrs = (
-        S_rrrs_x*rrrs_base_frame_xy + S_rrrs_y*rrrs_base_frame_yy + S_rrrs_z*rrrs_base_frame_zy
+        # (rrrs-px_1) component along the reference direction
+        rrrs_px_1 = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        # (rrrs-K3) component across the reference direction
-        py_1_rrrs = (
-        S_rrrs_x*rrrs_base_frame_xz + S_rrrs_y*rrrs_base_frame_yz + S_rrrs_z*rrrs_base_frame_zz
+        # (rrrs-py_1) component across the reference direction
+        rrrs_py_1 = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        # (rrrs-K5) squared amplitude
-        rho2_1_rrrs = px_1_rrrs*px_1_rrrs + py_1_rrrs*py_1_rrrs
-        # (rrrs-K7) root, with the sign of the branch
-        root_1_rrrs = branch_1_rrrs*sqrt(rho2_1_rrrs)
-        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_rrrs_t = (
-        S_rrrs_x*rrrs_base_frame_xx + S_rrrs_y*rrrs_base_frame_yx + S_rrrs_z*rrrs_base_frame_zx
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrs_xi_1_t = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        # (rrrs-K12) from the origin of joint 2 to the connection point
-        x_2_rrrs_z = xi_1_rrrs_t - rrrs_joint2_offset_x
-        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z
-        Kd_2_rrrs = Kd_2_rrrs_t + 0.5*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2
-        # (rrrs-K17) factor of the cosine in the equation of joint 2
-        Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x
-        # (rrrs-K18) factor of the sine in the equation of joint 2
-        Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z
-        # (rrrs-K19) squared amplitude
-        rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs
-        # (rrrs-K20) discriminant
-        disc_2_rrrs = rho2_2_rrrs - Kd_2_rrrs*Kd_2_rrrs
-        # (rrrs-K21) root, with the sign of the branch
-        root_2_rrrs = branch_2_rrrs*sqrt(disc_2_rrrs)
-        # (rrrs-K27) from the origin of joint 3 to the connection point
-        x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2_rrrs = 1.0/rho2_2_rrrs
-        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrrs = 1.0/rho2_1_rrrs
-        # (rrrs-K10) displacement of joint 1
-        q_1_rrrs = (
-        atan2(inv_rho2_1_rrrs*py_1_rrrs*root_1_rrrs, inv_rho2_1_rrrs*px_1_rrrs*root_1_rrrs)
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-x_3) from the origin of joint 3 to the connection point
+        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        # (rrrs-q_1) displacement of joint 1
+        rrrs_q_1 = (
+        atan2(inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1, inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1)
         )
-        # (rrrs-K24) displacement of joint 2
-        q_2_rrrs = (
-        atan2(inv_rho2_2_rrrs*(Kc_2_rrrs*Kd_2_rrrs + Ks_2_rrrs*root_2_rrrs),
-            -inv_rho2_2_rrrs*(Kc_2_rrrs*root_2_rrrs - Kd_2_rrrs*Ks_2_rrrs))
+        # (rrrs-q_2) displacement of joint 2
+        rrrs_q_2 = (
+        atan2(inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2),
+            -inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2))
         )
-        # (rrrs-K31) displacement of joint 3
-        q_3_rrrs = (
-        atan2(-inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x,
-            inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x)
+        # (rrrs-q_3) displacement of joint 3
+        rrrs_q_3 = (
+        atan2(-inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2,
+            inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x)
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
-            (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0))
+        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
+            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0))
         )
-        out_q[_q_rrrs[0][leg]] = q_1_rrrs
-        out_q[_q_rrrs[1][leg]] = q_2_rrrs
-        out_q[_q_rrrs[2][leg]] = q_3_rrrs
+        out_q[_q_rrrs[0][leg]] = rrrs_q_1
+        out_q[_q_rrrs[1][leg]] = rrrs_q_2
+        out_q[_q_rrrs[2][leg]] = rrrs_q_3
     return ok, (out_q,)
 
 
@@ -6905,143 +7024,142 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, branch_1_rrrrs, branch_3_rrrrs,
-            inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_2, inv_size_rrrrs_t_3,
-            rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
+        inv_rrrrs_platform_joint_offset_x, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_Kd_3_t,
+            rrrrs_Kd_3_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
             rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx,
             rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
-            rrrrs_base_point_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
-            rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
-            rrrrs_platform_point_y, rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,
+            rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_joint2_offset_x,
+            rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x,
+            rrrrs_platform_point_x, rrrrs_platform_point_y, rrrrs_platform_point_z,
+            rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,
         ) = k
-        y_2_extra_rrrrs = X[[7][leg]]
-        yd_2_rrrrs = V[[6][leg]]
-        # (rrrrs-K1) from the base point to the connection point
-        q_rrrrs_in_base_x = (
+        rrrrs_y_2_extra = X[[7][leg]]
+        rrrrs_yd_2 = V[[6][leg]]
+        # (rrrrs-S) from the base point to the connection point
+        rrrrs_q_in_base_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
-        q_rrrrs_in_base_y = (
+        rrrrs_q_in_base_y = (
         R_yx*rrrrs_platform_point_x + R_yy*rrrrs_platform_point_y + R_yz*rrrrs_platform_point_z
         )
-        q_rrrrs_in_base_z = (
+        rrrrs_q_in_base_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        S_rrrrs_x = q_rrrrs_in_base_x + t_x - rrrrs_base_point_x
-        S_rrrrs_y = q_rrrrs_in_base_y + t_y - rrrrs_base_point_y
-        S_rrrrs_z = q_rrrrs_in_base_z + t_z - rrrrs_base_point_z
-        # (rrrrs-K4) component along the reference direction
-        px_1_rrrrs = (
-        S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy +
-            S_rrrrs_z*rrrrs_base_frame_zy
+        rrrrs_S_x = rrrrs_q_in_base_x + t_x - rrrrs_base_point_x
+        rrrrs_S_y = rrrrs_q_in_base_y + t_y - rrrrs_base_point_y
+        rrrrs_S_z = rrrrs_q_in_base_z + t_z - rrrrs_base_point_z
+        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrrs_c_2_t = sin(rrrrs_y_2_extra)
+        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrrs_s_2 = cos(rrrrs_y_2_extra)
+        # (rrrrs-px_1) component along the reference direction
+        rrrrs_px_1 = (
+        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
+            rrrrs_S_z*rrrrs_base_frame_zy
         )
-        # (rrrrs-K5) component across the reference direction
-        py_1_rrrrs = (
-        S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz +
-            S_rrrrs_z*rrrrs_base_frame_zz
+        # (rrrrs-py_1) component across the reference direction
+        rrrrs_py_1 = (
+        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
+            rrrrs_S_z*rrrrs_base_frame_zz
         )
-        # (rrrrs-K7) squared amplitude
-        rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs
-        # (rrrrs-K9) root, with the sign of the branch
-        root_1_rrrrs = branch_1_rrrrs*sqrt(rho2_1_rrrrs)
-        # (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_rrrrs_t = (
-        S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx +
-            S_rrrrs_z*rrrrs_base_frame_zx
+        # (rrrrs-rho2_1) squared amplitude
+        rrrrs_rho2_1 = rrrrs_px_1*rrrrs_px_1 + rrrrs_py_1*rrrrs_py_1
+        # (rrrrs-root_1) root, with the sign of the branch
+        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
+        # (rrrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrrs_xi_1_t = (
+        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
+            rrrrs_S_z*rrrrs_base_frame_zx
         )
-        # (rrrrs-K14) from the origin of joint 2 to the connection point
-        x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x
-        # (rrrrs-K2) cosine of the angle of joint 2 from its reference direction
-        c_2_rrrrs_t = sin(y_2_extra_rrrrs)
-        # (rrrrs-K3) sine of the angle of joint 2 from its reference direction
-        s_2_rrrrs = cos(y_2_extra_rrrrs)
-        # (rrrrs-K14) from the origin of joint 2 to the connection point
-        x_2_rrrrs_t = c_2_rrrrs_t*root_1_rrrrs
-        x_2_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*x_2_rrrrs_z
-        x_2_rrrrs_t_2 = root_1_rrrrs*s_2_rrrrs
-        x_2_rrrrs_r1_y = x_2_rrrrs_t_2 - c_2_rrrrs_t*x_2_rrrrs_z
-        # (rrrrs-K15) from the origin of joint 3 to the connection point
-        x_3_rrrrs_x = x_2_rrrrs_r1_x - rrrrs_joint3_offset_x
-        # (rrrrs-K16) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-        Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x
-        Kd_3_rrrrs = Kd_3_rrrrs_t + 0.5*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2
-        # (rrrrs-K20) factor of the cosine in the equation of joint 3
-        Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x
-        # (rrrrs-K21) factor of the sine in the equation of joint 3
-        Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y
-        # (rrrrs-K22) squared amplitude
-        rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs
-        # (rrrrs-K23) discriminant
-        disc_3_rrrrs = rho2_3_rrrrs - Kd_3_rrrrs*Kd_3_rrrrs
-        # (rrrrs-K24) root, with the sign of the branch
-        root_3_rrrrs = branch_3_rrrrs*sqrt(disc_3_rrrrs)
-        # (rrrrs-K30) from the origin of joint 4 to the connection point
-        x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
-        # (rrrrs-K32) cosine of the angle of joint 4 from its reference direction
-        c_4_rrrrs = inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x
-        # (rrrrs-K33) sine of the angle of joint 4 from its reference direction
-        s_4_rrrrs = (
-        inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        # (rrrrs-x_2) from the origin of joint 2 to the connection point
+        rrrrs_x_2_z = rrrrs_xi_1_t - rrrrs_joint2_offset_x
+        rrrrs_x_2_t = rrrrs_c_2_t*rrrrs_root_1
+        rrrrs_x_2_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_x_2_z
+        rrrrs_x_2_t_2 = rrrrs_root_1*rrrrs_s_2
+        rrrrs_x_2_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_x_2_z
+        # (rrrrs-x_3) from the origin of joint 3 to the connection point
+        rrrrs_x_3_x = rrrrs_x_2_r1_x - rrrrs_joint3_offset_x
+        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
+        rrrrs_Kd_3_t_3 = rrrrs_x_2_r1_y*rrrrs_x_2_r1_y + rrrrs_x_3_x*rrrrs_x_3_x
+        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
+        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
+        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_x
+        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
+        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_r1_y
+        # (rrrrs-rho2_3) squared amplitude
+        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
+        # (rrrrs-disc_3) discriminant
+        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
+        # (rrrrs-root_3) root, with the sign of the branch
+        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
+        # (rrrrs-x_4) from the origin of joint 4 to the connection point
+        rrrrs_x_4_x = inv_rrrrs_size_t_2*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
+        rrrrs_c_4 = inv_rrrrs_size_t_3*rrrrs_platform_joint_offset_x*rrrrs_x_4_x
+        # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
+        rrrrs_s_4 = (
+        inv_rrrrs_size_t_2*inv_rrrrs_size_t_3*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
         )
-        # (rrrrs-V2) from joint 3 to the connection point, along the links
-        r_3_rrrrs_t = rrrrs_platform_joint_offset_x*s_4_rrrrs
-        r_3_rrrrs_x = rrrrs_joint4_offset_x + c_4_rrrrs*rrrrs_platform_joint_offset_x
-        # (rrrrs-K25) cosine of the angle of joint 3 from its reference direction
-        inv_rho2_3_rrrrs = 1.0/rho2_3_rrrrs
-        c_3_rrrrs = inv_rho2_3_rrrrs*(Kc_3_rrrrs*Kd_3_rrrrs - Ks_3_rrrrs*root_3_rrrrs)
-        # (rrrrs-K26) sine of the angle of joint 3 from its reference direction
-        s_3_rrrrs = inv_rho2_3_rrrrs*(Kc_3_rrrrs*root_3_rrrrs + Kd_3_rrrrs*Ks_3_rrrrs)
-        # (rrrrs-V5) velocity of the connection point per rate of joint 1
-        e_1_rrrrs_r2_x = c_3_rrrrs*s_2_rrrrs - c_2_rrrrs_t*s_3_rrrrs
-        e_1_rrrrs_r2_y = -c_2_rrrrs_t*c_3_rrrrs - s_2_rrrrs*s_3_rrrrs
-        # (rrrrs-V4) from joint 1 to the connection point, along the links
-        r_1_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*xi_1_rrrrs_t
-        r_1_rrrrs_r1_y = x_2_rrrrs_t_2 - c_2_rrrrs_t*xi_1_rrrrs_t
-        r_1_rrrrs_r2_x = c_3_rrrrs*r_1_rrrrs_r1_x + r_1_rrrrs_r1_y*s_3_rrrrs
-        r_1_rrrrs_r2_y = c_3_rrrrs*r_1_rrrrs_r1_y - r_1_rrrrs_r1_x*s_3_rrrrs
-        # (rrrrs-V5) velocity of the connection point per rate of joint 1
-        v_1_rrrrs_z = (
-        (c_4_rrrrs*e_1_rrrrs_r2_x - e_1_rrrrs_r2_y*s_4_rrrrs)*(c_4_rrrrs*r_1_rrrrs_r2_y +
-            r_1_rrrrs_r2_x*s_4_rrrrs) - (c_4_rrrrs*e_1_rrrrs_r2_y +
-            e_1_rrrrs_r2_x*s_4_rrrrs)*(c_4_rrrrs*r_1_rrrrs_r2_x - r_1_rrrrs_r2_y*s_4_rrrrs)
+        # (rrrrs-r_3) from joint 3 to the connection point, along the links
+        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4
+        rrrrs_r_3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
+        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
+        rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
+        # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
+        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrrs_e_1_r2_x = rrrrs_c_3*rrrrs_s_2 - rrrrs_c_2_t*rrrrs_s_3
+        rrrrs_e_1_r2_y = -rrrrs_c_2_t*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
+        # (rrrrs-r_1) from joint 1 to the connection point, along the links
+        rrrrs_r_1_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_xi_1_t
+        rrrrs_r_1_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_xi_1_t
+        rrrrs_r_1_r2_x = rrrrs_c_3*rrrrs_r_1_r1_x + rrrrs_r_1_r1_y*rrrrs_s_3
+        rrrrs_r_1_r2_y = rrrrs_c_3*rrrrs_r_1_r1_y - rrrrs_r_1_r1_x*rrrrs_s_3
+        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrrs_v_1_z = (
+        (rrrrs_c_4*rrrrs_e_1_r2_x - rrrrs_e_1_r2_y*rrrrs_s_4)*(rrrrs_c_4*rrrrs_r_1_r2_y +
+            rrrrs_r_1_r2_x*rrrrs_s_4) - (rrrrs_c_4*rrrrs_e_1_r2_y +
+            rrrrs_e_1_r2_x*rrrrs_s_4)*(rrrrs_c_4*rrrrs_r_1_r2_x - rrrrs_r_1_r2_y*rrrrs_s_4)
         )
-        # (rrrrs-V2) from joint 3 to the connection point, along the links
-        r_3_rrrrs_r0_y = r_3_rrrrs_x*s_4_rrrrs - c_4_rrrrs*r_3_rrrrs_t
-        # (rrrrs-K10) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrrrs = 1.0/rho2_1_rrrrs
-        c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs
-        # (rrrrs-K11) sine of the angle of joint 1 from its reference direction
-        s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs
-        # (rrrrs-V9) reciprocal vector 1
+        # (rrrrs-r_3) from joint 3 to the connection point, along the links
+        rrrrs_r_3_r0_y = rrrrs_r_3_x*rrrrs_s_4 - rrrrs_c_4*rrrrs_r_3_t
+        # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
+        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_py_1*rrrrs_root_1
+        # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_px_1*rrrrs_root_1
+        # (rrrrs-w_1) reciprocal vector 1
         axis_z_rrrrs_axes4_in_base_x = (
-        rrrrs_base_frame_xz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_xy
+        rrrrs_base_frame_xz*rrrrs_s_1 - rrrrs_base_frame_xy*rrrrs_c_1
         )
         axis_z_rrrrs_axes4_in_base_y = (
-        rrrrs_base_frame_yz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_yy
+        rrrrs_base_frame_yz*rrrrs_s_1 - rrrrs_base_frame_yy*rrrrs_c_1
         )
         axis_z_rrrrs_axes4_in_base_z = (
-        rrrrs_base_frame_zz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_zy
+        rrrrs_base_frame_zz*rrrrs_s_1 - rrrrs_base_frame_zy*rrrrs_c_1
         )
-        axis_y_rrrrs_axes4_r1_x = c_3_rrrrs*s_4_rrrrs - c_4_rrrrs*s_3_rrrrs
-        axis_y_rrrrs_axes4_r1_y = c_3_rrrrs*c_4_rrrrs + s_3_rrrrs*s_4_rrrrs
+        axis_y_rrrrs_axes4_r1_x = rrrrs_c_3*rrrrs_s_4 - rrrrs_c_4*rrrrs_s_3
+        axis_y_rrrrs_axes4_r1_y = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4
         axis_y_rrrrs_axes4_r2_x = (
-        -axis_y_rrrrs_axes4_r1_x*c_2_rrrrs_t - axis_y_rrrrs_axes4_r1_y*s_2_rrrrs
+        -axis_y_rrrrs_axes4_r1_x*rrrrs_c_2_t - axis_y_rrrrs_axes4_r1_y*rrrrs_s_2
         )
         axis_y_rrrrs_axes4_r2_y = (
-        axis_y_rrrrs_axes4_r1_x*s_2_rrrrs - axis_y_rrrrs_axes4_r1_y*c_2_rrrrs_t
+        axis_y_rrrrs_axes4_r1_x*rrrrs_s_2 - axis_y_rrrrs_axes4_r1_y*rrrrs_c_2_t
         )
-        w_1_rrrrs_t = axis_y_rrrrs_axes4_r2_x*s_1_rrrrs
-        w_1_rrrrs_t_2 = axis_y_rrrrs_axes4_r2_x*c_1_rrrrs
+        rrrrs_w_1_t = axis_y_rrrrs_axes4_r2_x*rrrrs_s_1
+        rrrrs_w_1_t_2 = axis_y_rrrrs_axes4_r2_x*rrrrs_c_1
         axis_y_rrrrs_axes4_in_base_x = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_xx - rrrrs_base_frame_xy*w_1_rrrrs_t -
-            rrrrs_base_frame_xz*w_1_rrrrs_t_2
+        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_xx - rrrrs_base_frame_xy*rrrrs_w_1_t -
+            rrrrs_base_frame_xz*rrrrs_w_1_t_2
         )
         axis_y_rrrrs_axes4_in_base_y = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_yx - rrrrs_base_frame_yy*w_1_rrrrs_t -
-            rrrrs_base_frame_yz*w_1_rrrrs_t_2
+        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_yx - rrrrs_base_frame_yy*rrrrs_w_1_t -
+            rrrrs_base_frame_yz*rrrrs_w_1_t_2
         )
         axis_y_rrrrs_axes4_in_base_z = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_zx - rrrrs_base_frame_zy*w_1_rrrrs_t -
-            rrrrs_base_frame_zz*w_1_rrrrs_t_2
+        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_zx - rrrrs_base_frame_zy*rrrrs_w_1_t -
+            rrrrs_base_frame_zz*rrrrs_w_1_t_2
         )
         axis_x_rrrrs_axes4_x = (
         axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_z -
@@ -7055,192 +7173,191 @@ def _run_joint_rates(m, X, V):
         axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_y -
             axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_x
         )
-        # (rrrrs-V1) velocity of the connection point
-        S_dot_rrrrs_x = t_dot_x + omega_y*q_rrrrs_in_base_z - omega_z*q_rrrrs_in_base_y
-        S_dot_rrrrs_y = t_dot_y + omega_z*q_rrrrs_in_base_x - omega_x*q_rrrrs_in_base_z
-        S_dot_rrrrs_z = t_dot_z + omega_x*q_rrrrs_in_base_y - omega_y*q_rrrrs_in_base_x
-        # (rrrrs-V3) from joint 2 to the connection point, along the links
-        r_2_rrrrs_r0_x = c_3_rrrrs*x_2_rrrrs_r1_x + s_3_rrrrs*x_2_rrrrs_r1_y
-        r_2_rrrrs_r0_y = c_3_rrrrs*x_2_rrrrs_r1_y - s_3_rrrrs*x_2_rrrrs_r1_x
-        r_2_rrrrs_r1_x = c_4_rrrrs*r_2_rrrrs_r0_x - r_2_rrrrs_r0_y*s_4_rrrrs
-        r_2_rrrrs_r1_y = c_4_rrrrs*r_2_rrrrs_r0_y + r_2_rrrrs_r0_x*s_4_rrrrs
-        # (rrrrs-V12) velocity of the connection point left to the joints that are not extra
-        S_dot_rest_rrrrs_x = (
-        S_dot_rrrrs_x - yd_2_rrrrs*(axis_y_rrrrs_axes4_in_base_x*r_2_rrrrs_r1_x -
-            axis_x_rrrrs_axes4_x*r_2_rrrrs_r1_y)
+        # (rrrrs-S_dot) velocity of the connection point
+        rrrrs_S_dot_x = t_dot_x + omega_y*rrrrs_q_in_base_z - omega_z*rrrrs_q_in_base_y
+        rrrrs_S_dot_y = t_dot_y + omega_z*rrrrs_q_in_base_x - omega_x*rrrrs_q_in_base_z
+        rrrrs_S_dot_z = t_dot_z + omega_x*rrrrs_q_in_base_y - omega_y*rrrrs_q_in_base_x
+        # (rrrrs-r_2) from joint 2 to the connection point, along the links
+        rrrrs_r_2_r0_x = rrrrs_c_3*rrrrs_x_2_r1_x + rrrrs_s_3*rrrrs_x_2_r1_y
+        rrrrs_r_2_r0_y = rrrrs_c_3*rrrrs_x_2_r1_y - rrrrs_s_3*rrrrs_x_2_r1_x
+        rrrrs_r_2_r1_x = rrrrs_c_4*rrrrs_r_2_r0_x - rrrrs_r_2_r0_y*rrrrs_s_4
+        rrrrs_r_2_r1_y = rrrrs_c_4*rrrrs_r_2_r0_y + rrrrs_r_2_r0_x*rrrrs_s_4
+        # (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra
+        rrrrs_S_dot_rest_x = (
+        rrrrs_S_dot_x - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_x*rrrrs_r_2_r1_x -
+            axis_x_rrrrs_axes4_x*rrrrs_r_2_r1_y)
         )
-        S_dot_rest_rrrrs_y = (
-        S_dot_rrrrs_y - yd_2_rrrrs*(axis_y_rrrrs_axes4_in_base_y*r_2_rrrrs_r1_x -
-            axis_x_rrrrs_axes4_y*r_2_rrrrs_r1_y)
+        rrrrs_S_dot_rest_y = (
+        rrrrs_S_dot_y - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_y*rrrrs_r_2_r1_x -
+            axis_x_rrrrs_axes4_y*rrrrs_r_2_r1_y)
         )
-        S_dot_rest_rrrrs_z = (
-        S_dot_rrrrs_z - yd_2_rrrrs*(axis_y_rrrrs_axes4_in_base_z*r_2_rrrrs_r1_x -
-            axis_x_rrrrs_axes4_z*r_2_rrrrs_r1_y)
+        rrrrs_S_dot_rest_z = (
+        rrrrs_S_dot_z - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_z*rrrrs_r_2_r1_x -
+            axis_x_rrrrs_axes4_z*rrrrs_r_2_r1_y)
         )
-        # (rrrrs-V13) rate of joint 1
-        qd_3_rrrrs = (
-        (S_dot_rest_rrrrs_x*axis_x_rrrrs_axes4_x + S_dot_rest_rrrrs_y*axis_x_rrrrs_axes4_y +
-            S_dot_rest_rrrrs_z*axis_x_rrrrs_axes4_z)/r_3_rrrrs_r0_y
+        # (rrrrs-qd_4) rate of joint 4
+        rrrrs_qd_3 = (
+        (axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x + axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y +
+            axis_x_rrrrs_axes4_z*rrrrs_S_dot_rest_z)/rrrrs_r_3_r0_y
         )
-        qd_4_rrrrs = (
-        inv_rrrrs_platform_joint_offset_x*(S_dot_rest_rrrrs_x*axis_y_rrrrs_axes4_in_base_x +
-            S_dot_rest_rrrrs_y*axis_y_rrrrs_axes4_in_base_y +
-            S_dot_rest_rrrrs_z*axis_y_rrrrs_axes4_in_base_z + qd_3_rrrrs*(c_4_rrrrs*r_3_rrrrs_x +
-            r_3_rrrrs_t*s_4_rrrrs))
+        rrrrs_qd_4 = (
+        inv_rrrrs_platform_joint_offset_x*(axis_y_rrrrs_axes4_in_base_x*rrrrs_S_dot_rest_x +
+            axis_y_rrrrs_axes4_in_base_y*rrrrs_S_dot_rest_y +
+            axis_y_rrrrs_axes4_in_base_z*rrrrs_S_dot_rest_z + rrrrs_qd_3*(rrrrs_c_4*rrrrs_r_3_x +
+            rrrrs_r_3_t*rrrrs_s_4))
         )
-        qd_1_rrrrs = (
-        (S_dot_rest_rrrrs_x*axis_z_rrrrs_axes4_in_base_x +
-            S_dot_rest_rrrrs_y*axis_z_rrrrs_axes4_in_base_y +
-            S_dot_rest_rrrrs_z*axis_z_rrrrs_axes4_in_base_z)/v_1_rrrrs_z
+        rrrrs_qd_1 = (
+        (axis_z_rrrrs_axes4_in_base_x*rrrrs_S_dot_rest_x +
+            axis_z_rrrrs_axes4_in_base_y*rrrrs_S_dot_rest_y +
+            axis_z_rrrrs_axes4_in_base_z*rrrrs_S_dot_rest_z)/rrrrs_v_1_z
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
-            (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0)
-            & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE *
-            size_rrrrs))
+        ok & m.every(leg, (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
+            (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0)
+            & (abs(rrrrs_v_1_z) > _TOLERANCE * rrrrs_size) & (abs(-rrrrs_r_3_r0_y) > _TOLERANCE *
+            rrrrs_size))
         )
-        out_qd[_qd_rrrrs[0][leg]] = qd_1_rrrrs
-        out_qd[_qd_rrrrs[1][leg]] = yd_2_rrrrs
-        out_qd[_qd_rrrrs[2][leg]] = -qd_3_rrrrs
-        out_qd[_qd_rrrrs[3][leg]] = qd_4_rrrrs
+        out_qd[_qd_rrrrs[0][leg]] = rrrrs_qd_1
+        out_qd[_qd_rrrrs[1][leg]] = rrrrs_yd_2
+        out_qd[_qd_rrrrs[2][leg]] = -rrrrs_qd_3
+        out_qd[_qd_rrrrs[3][leg]] = rrrrs_qd_4
     for leg, k in legs[1]:
         (
-        Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs,
-            inv_rrrs_platform_joint_offset_x, inv_size_rrrs_t, inv_size_rrrs_t_2, rho2_2_rrrs_t,
-            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size_rrrs,
-            size_rrrs_t_3,
+        inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t,
+            rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+            rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+            rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+            rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
+            rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
+            rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
         ) = k
-        # (rrrs-K1) from the base point to the connection point
-        q_rrrs_in_base_x = (
+        # (rrrs-S) from the base point to the connection point
+        rrrs_q_in_base_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        q_rrrs_in_base_y = (
+        rrrs_q_in_base_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        q_rrrs_in_base_z = (
+        rrrs_q_in_base_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        S_rrrs_x = q_rrrs_in_base_x + t_x - rrrs_base_point_x
-        S_rrrs_y = q_rrrs_in_base_y + t_y - rrrs_base_point_y
-        S_rrrs_z = q_rrrs_in_base_z + t_z - rrrs_base_point_z
-        # (rrrs-K2) component along the reference direction
-        px_1_rrrs = (
-        S_rrrs_x*rrrs_base_frame_xy + S_rrrs_y*rrrs_base_frame_yy + S_rrrs_z*rrrs_base_frame_zy
+        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        # (rrrs-px_1) component along the reference direction
+        rrrs_px_1 = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        # (rrrs-K3) component across the reference direction
-        py_1_rrrs = (
-        S_rrrs_x*rrrs_base_frame_xz + S_rrrs_y*rrrs_base_frame_yz + S_rrrs_z*rrrs_base_frame_zz
+        # (rrrs-py_1) component across the reference direction
+        rrrs_py_1 = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        # (rrrs-K5) squared amplitude
-        rho2_1_rrrs = px_1_rrrs*px_1_rrrs + py_1_rrrs*py_1_rrrs
-        # (rrrs-K7) root, with the sign of the branch
-        root_1_rrrs = branch_1_rrrs*sqrt(rho2_1_rrrs)
-        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_rrrs_t = (
-        S_rrrs_x*rrrs_base_frame_xx + S_rrrs_y*rrrs_base_frame_yx + S_rrrs_z*rrrs_base_frame_zx
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrs_xi_1_t = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        # (rrrs-K12) from the origin of joint 2 to the connection point
-        x_2_rrrs_z = xi_1_rrrs_t - rrrs_joint2_offset_x
-        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z
-        Kd_2_rrrs = Kd_2_rrrs_t + 0.5*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2
-        # (rrrs-K17) factor of the cosine in the equation of joint 2
-        Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x
-        # (rrrs-K18) factor of the sine in the equation of joint 2
-        Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z
-        # (rrrs-K19) squared amplitude
-        rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs
-        # (rrrs-K20) discriminant
-        disc_2_rrrs = rho2_2_rrrs - Kd_2_rrrs*Kd_2_rrrs
-        # (rrrs-K21) root, with the sign of the branch
-        root_2_rrrs = branch_2_rrrs*sqrt(disc_2_rrrs)
-        # (rrrs-K27) from the origin of joint 3 to the connection point
-        x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-        # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-        c_3_rrrs = inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x
-        # (rrrs-K30) sine of the angle of joint 3 from its reference direction
-        s_3_rrrs = (
-        inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-x_3) from the origin of joint 3 to the connection point
+        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrs_s_3 = (
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_rrrs_t = rrrs_platform_joint_offset_x*s_3_rrrs
-        r_2_rrrs_x = rrrs_joint3_offset_x + c_3_rrrs*rrrs_platform_joint_offset_x
-        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2_rrrs = 1.0/rho2_2_rrrs
-        c_2_rrrs = inv_rho2_2_rrrs*(Kc_2_rrrs*Kd_2_rrrs + Ks_2_rrrs*root_2_rrrs)
-        # (rrrs-K23) sine of the angle of joint 2 from its reference direction
-        s_2_rrrs = inv_rho2_2_rrrs*(Kc_2_rrrs*root_2_rrrs - Kd_2_rrrs*Ks_2_rrrs)
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        e_1_rrrs_r2_x = c_2_rrrs*s_3_rrrs - c_3_rrrs*s_2_rrrs
-        e_1_rrrs_r2_y = -c_2_rrrs*c_3_rrrs - s_2_rrrs*s_3_rrrs
-        # (rrrs-V3) from joint 1 to the connection point, along the links
-        r_1_rrrs_r1_x = c_2_rrrs*root_1_rrrs - s_2_rrrs*xi_1_rrrs_t
-        r_1_rrrs_r1_y = -c_2_rrrs*xi_1_rrrs_t - root_1_rrrs*s_2_rrrs
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        v_1_rrrs_z = (
-        e_1_rrrs_r2_x*(c_3_rrrs*r_1_rrrs_r1_y + r_1_rrrs_r1_x*s_3_rrrs) -
-            e_1_rrrs_r2_y*(c_3_rrrs*r_1_rrrs_r1_x - r_1_rrrs_r1_y*s_3_rrrs)
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3
+        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
+        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
+        # (rrrs-r_1) from joint 1 to the connection point, along the links
+        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
+        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_z = (
+        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
+            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
         )
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_rrrs_r0_y = r_2_rrrs_x*s_3_rrrs - c_3_rrrs*r_2_rrrs_t
-        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrrs = 1.0/rho2_1_rrrs
-        c_1_rrrs = inv_rho2_1_rrrs*py_1_rrrs*root_1_rrrs
-        # (rrrs-K9) sine of the angle of joint 1 from its reference direction
-        s_1_rrrs = inv_rho2_1_rrrs*px_1_rrrs*root_1_rrrs
-        # (rrrs-V7) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1_rrrs - c_1_rrrs*rrrs_base_frame_xy
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1_rrrs - c_1_rrrs*rrrs_base_frame_yy
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1_rrrs - c_1_rrrs*rrrs_base_frame_zy
-        w_1_rrrs_t = e_1_rrrs_r2_x*s_1_rrrs
-        w_1_rrrs_t_2 = c_1_rrrs*e_1_rrrs_r2_x
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
+        # (rrrs-w_1) reciprocal vector 1
+        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
+        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
+        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
         axis_y_rrrs_axes3_in_base_x = (
-        e_1_rrrs_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_rrrs_t +
-            rrrs_base_frame_xz*w_1_rrrs_t_2
+        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
+            rrrs_base_frame_xz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_y = (
-        e_1_rrrs_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_rrrs_t +
-            rrrs_base_frame_yz*w_1_rrrs_t_2
+        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
+            rrrs_base_frame_yz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_z = (
-        e_1_rrrs_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_rrrs_t +
-            rrrs_base_frame_zz*w_1_rrrs_t_2
+        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
+            rrrs_base_frame_zz*rrrs_w_1_t_2
         )
-        # (rrrs-V1) velocity of the connection point
-        S_dot_rrrs_x = t_dot_x + omega_y*q_rrrs_in_base_z - omega_z*q_rrrs_in_base_y
-        S_dot_rrrs_y = t_dot_y + omega_z*q_rrrs_in_base_x - omega_x*q_rrrs_in_base_z
-        S_dot_rrrs_z = t_dot_z + omega_x*q_rrrs_in_base_y - omega_y*q_rrrs_in_base_x
-        # (rrrs-V10) rate of joint 1
-        qd_2_rrrs = (
-        (S_dot_rrrs_x*(axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
+        # (rrrs-S_dot) velocity of the connection point
+        rrrs_S_dot_x = t_dot_x + omega_y*rrrs_q_in_base_z - omega_z*rrrs_q_in_base_y
+        rrrs_S_dot_y = t_dot_y + omega_z*rrrs_q_in_base_x - omega_x*rrrs_q_in_base_z
+        rrrs_S_dot_z = t_dot_z + omega_x*rrrs_q_in_base_y - omega_y*rrrs_q_in_base_x
+        # (rrrs-qd_3) rate of joint 3
+        rrrs_qd_2 = (
+        (rrrs_S_dot_x*(axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
             axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y) +
-            S_dot_rrrs_y*(axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
+            rrrs_S_dot_y*(axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
             axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z) +
-            S_dot_rrrs_z*(axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x))/r_2_rrrs_r0_y
+            rrrs_S_dot_z*(axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
+            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x))/rrrs_r_2_r0_y
         )
-        qd_3_rrrs = (
-        inv_rrrs_platform_joint_offset_x*(S_dot_rrrs_x*axis_y_rrrs_axes3_in_base_x +
-            S_dot_rrrs_y*axis_y_rrrs_axes3_in_base_y + S_dot_rrrs_z*axis_y_rrrs_axes3_in_base_z +
-            qd_2_rrrs*(c_3_rrrs*r_2_rrrs_x + r_2_rrrs_t*s_3_rrrs))
+        rrrs_qd_3 = (
+        inv_rrrs_platform_joint_offset_x*(axis_y_rrrs_axes3_in_base_x*rrrs_S_dot_x +
+            axis_y_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_dot_z +
+            rrrs_qd_2*(rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3))
         )
-        qd_1_rrrs = (
-        (S_dot_rrrs_x*axis_z_rrrs_axes3_in_base_x + S_dot_rrrs_y*axis_z_rrrs_axes3_in_base_y +
-            S_dot_rrrs_z*axis_z_rrrs_axes3_in_base_z)/v_1_rrrs_z
+        rrrs_qd_1 = (
+        (axis_z_rrrs_axes3_in_base_x*rrrs_S_dot_x + axis_z_rrrs_axes3_in_base_y*rrrs_S_dot_y +
+            axis_z_rrrs_axes3_in_base_z*rrrs_S_dot_z)/rrrs_v_1_z
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
-            (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) &
-            (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE *
-            size_rrrs))
+        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
+            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
+            rrrs_size))
         )
-        out_qd[_qd_rrrs[0][leg]] = qd_1_rrrs
-        out_qd[_qd_rrrs[1][leg]] = -qd_2_rrrs
-        out_qd[_qd_rrrs[2][leg]] = qd_3_rrrs
+        out_qd[_qd_rrrs[0][leg]] = rrrs_qd_1
+        out_qd[_qd_rrrs[1][leg]] = -rrrs_qd_2
+        out_qd[_qd_rrrs[2][leg]] = rrrs_qd_3
     return ok, (out_qd,)
 
 
@@ -7315,145 +7432,147 @@ def _run_joint_accelerations(m, X, V, A):
     out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
-        Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, branch_1_rrrrs, branch_3_rrrrs,
-            inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_2, inv_size_rrrrs_t_3,
-            rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
+        inv_rrrrs_platform_joint_offset_x, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_Kd_3_t,
+            rrrrs_Kd_3_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
             rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx,
             rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
-            rrrrs_base_point_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
-            rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
-            rrrrs_platform_point_y, rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,
+            rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_joint2_offset_x,
+            rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x,
+            rrrrs_platform_point_x, rrrrs_platform_point_y, rrrrs_platform_point_z,
+            rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,
         ) = k
-        y_2_extra_rrrrs = X[[7][leg]]
-        yd_2_rrrrs = V[[6][leg]]
-        ydd_2_rrrrs = A[[6][leg]]
-        # (rrrrs-K1) from the base point to the connection point
-        q_rrrrs_in_base_x = (
+        rrrrs_y_2_extra = X[[7][leg]]
+        rrrrs_yd_2 = V[[6][leg]]
+        rrrrs_ydd_2 = A[[6][leg]]
+        # (rrrrs-S) from the base point to the connection point
+        rrrrs_q_in_base_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
-        q_rrrrs_in_base_y = (
+        rrrrs_q_in_base_y = (
         R_yx*rrrrs_platform_point_x + R_yy*rrrrs_platform_point_y + R_yz*rrrrs_platform_point_z
         )
-        q_rrrrs_in_base_z = (
+        rrrrs_q_in_base_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        S_rrrrs_x = q_rrrrs_in_base_x + t_x - rrrrs_base_point_x
-        S_rrrrs_y = q_rrrrs_in_base_y + t_y - rrrrs_base_point_y
-        S_rrrrs_z = q_rrrrs_in_base_z + t_z - rrrrs_base_point_z
-        # (rrrrs-K4) component along the reference direction
-        px_1_rrrrs = (
-        S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy +
-            S_rrrrs_z*rrrrs_base_frame_zy
+        rrrrs_S_x = rrrrs_q_in_base_x + t_x - rrrrs_base_point_x
+        rrrrs_S_y = rrrrs_q_in_base_y + t_y - rrrrs_base_point_y
+        rrrrs_S_z = rrrrs_q_in_base_z + t_z - rrrrs_base_point_z
+        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrrs_c_2_t = sin(rrrrs_y_2_extra)
+        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrrs_s_2 = cos(rrrrs_y_2_extra)
+        # (rrrrs-Kr_1) right-hand side of the equation of joint 1
+        rrrrs_Kr_1_t = rrrrs_joint2_offset_x*rrrrs_s_2
+        rrrrs_Kr_1_t_2 = rrrrs_c_2_t*rrrrs_joint2_offset_x
+        # (rrrrs-px_1) component along the reference direction
+        rrrrs_px_1 = (
+        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
+            rrrrs_S_z*rrrrs_base_frame_zy
         )
-        # (rrrrs-K5) component across the reference direction
-        py_1_rrrrs = (
-        S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz +
-            S_rrrrs_z*rrrrs_base_frame_zz
+        # (rrrrs-py_1) component across the reference direction
+        rrrrs_py_1 = (
+        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
+            rrrrs_S_z*rrrrs_base_frame_zz
         )
-        # (rrrrs-K7) squared amplitude
-        rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs
-        # (rrrrs-K9) root, with the sign of the branch
-        root_1_rrrrs = branch_1_rrrrs*sqrt(rho2_1_rrrrs)
-        # (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_rrrrs_t = (
-        S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx +
-            S_rrrrs_z*rrrrs_base_frame_zx
+        # (rrrrs-rho2_1) squared amplitude
+        rrrrs_rho2_1 = rrrrs_px_1*rrrrs_px_1 + rrrrs_py_1*rrrrs_py_1
+        # (rrrrs-root_1) root, with the sign of the branch
+        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
+        # (rrrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrrs_xi_1_t = (
+        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
+            rrrrs_S_z*rrrrs_base_frame_zx
         )
-        # (rrrrs-K14) from the origin of joint 2 to the connection point
-        x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x
-        # (rrrrs-K2) cosine of the angle of joint 2 from its reference direction
-        c_2_rrrrs_t = sin(y_2_extra_rrrrs)
-        # (rrrrs-K3) sine of the angle of joint 2 from its reference direction
-        s_2_rrrrs = cos(y_2_extra_rrrrs)
-        # (rrrrs-K14) from the origin of joint 2 to the connection point
-        x_2_rrrrs_t = c_2_rrrrs_t*root_1_rrrrs
-        x_2_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*x_2_rrrrs_z
-        x_2_rrrrs_t_2 = root_1_rrrrs*s_2_rrrrs
-        x_2_rrrrs_r1_y = x_2_rrrrs_t_2 - c_2_rrrrs_t*x_2_rrrrs_z
-        # (rrrrs-K15) from the origin of joint 3 to the connection point
-        x_3_rrrrs_x = x_2_rrrrs_r1_x - rrrrs_joint3_offset_x
-        # (rrrrs-K16) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-        Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x
-        Kd_3_rrrrs = Kd_3_rrrrs_t + 0.5*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2
-        # (rrrrs-K20) factor of the cosine in the equation of joint 3
-        Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x
-        # (rrrrs-K21) factor of the sine in the equation of joint 3
-        Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y
-        # (rrrrs-K22) squared amplitude
-        rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs
-        # (rrrrs-K23) discriminant
-        disc_3_rrrrs = rho2_3_rrrrs - Kd_3_rrrrs*Kd_3_rrrrs
-        # (rrrrs-K24) root, with the sign of the branch
-        root_3_rrrrs = branch_3_rrrrs*sqrt(disc_3_rrrrs)
-        # (rrrrs-K30) from the origin of joint 4 to the connection point
-        x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
-        # (rrrrs-K32) cosine of the angle of joint 4 from its reference direction
-        c_4_rrrrs = inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x
-        # (rrrrs-K33) sine of the angle of joint 4 from its reference direction
-        s_4_rrrrs = (
-        inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        # (rrrrs-x_2) from the origin of joint 2 to the connection point
+        rrrrs_x_2_z = rrrrs_xi_1_t - rrrrs_joint2_offset_x
+        rrrrs_x_2_t = rrrrs_c_2_t*rrrrs_root_1
+        rrrrs_x_2_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_x_2_z
+        rrrrs_x_2_t_2 = rrrrs_root_1*rrrrs_s_2
+        rrrrs_x_2_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_x_2_z
+        # (rrrrs-x_3) from the origin of joint 3 to the connection point
+        rrrrs_x_3_x = rrrrs_x_2_r1_x - rrrrs_joint3_offset_x
+        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
+        rrrrs_Kd_3_t_3 = rrrrs_x_2_r1_y*rrrrs_x_2_r1_y + rrrrs_x_3_x*rrrrs_x_3_x
+        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
+        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
+        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_x
+        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
+        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_r1_y
+        # (rrrrs-rho2_3) squared amplitude
+        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
+        # (rrrrs-disc_3) discriminant
+        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
+        # (rrrrs-root_3) root, with the sign of the branch
+        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
+        # (rrrrs-x_4) from the origin of joint 4 to the connection point
+        rrrrs_x_4_x = inv_rrrrs_size_t_2*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
+        rrrrs_c_4 = inv_rrrrs_size_t_3*rrrrs_platform_joint_offset_x*rrrrs_x_4_x
+        # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
+        rrrrs_s_4 = (
+        inv_rrrrs_size_t_2*inv_rrrrs_size_t_3*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
         )
-        # (rrrrs-V2) from joint 3 to the connection point, along the links
-        r_3_rrrrs_t = rrrrs_platform_joint_offset_x*s_4_rrrrs
-        r_3_rrrrs_x = rrrrs_joint4_offset_x + c_4_rrrrs*rrrrs_platform_joint_offset_x
-        # (rrrrs-K25) cosine of the angle of joint 3 from its reference direction
-        inv_rho2_3_rrrrs = 1.0/rho2_3_rrrrs
-        c_3_rrrrs = inv_rho2_3_rrrrs*(Kc_3_rrrrs*Kd_3_rrrrs - Ks_3_rrrrs*root_3_rrrrs)
-        # (rrrrs-K26) sine of the angle of joint 3 from its reference direction
-        s_3_rrrrs = inv_rho2_3_rrrrs*(Kc_3_rrrrs*root_3_rrrrs + Kd_3_rrrrs*Ks_3_rrrrs)
-        # (rrrrs-V5) velocity of the connection point per rate of joint 1
-        e_1_rrrrs_r2_x = c_3_rrrrs*s_2_rrrrs - c_2_rrrrs_t*s_3_rrrrs
-        e_1_rrrrs_r2_y = -c_2_rrrrs_t*c_3_rrrrs - s_2_rrrrs*s_3_rrrrs
-        # (rrrrs-V4) from joint 1 to the connection point, along the links
-        r_1_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*xi_1_rrrrs_t
-        r_1_rrrrs_r1_y = x_2_rrrrs_t_2 - c_2_rrrrs_t*xi_1_rrrrs_t
-        r_1_rrrrs_r2_x = c_3_rrrrs*r_1_rrrrs_r1_x + r_1_rrrrs_r1_y*s_3_rrrrs
-        r_1_rrrrs_r2_y = c_3_rrrrs*r_1_rrrrs_r1_y - r_1_rrrrs_r1_x*s_3_rrrrs
-        # (rrrrs-V5) velocity of the connection point per rate of joint 1
-        v_1_rrrrs_z = (
-        (c_4_rrrrs*e_1_rrrrs_r2_x - e_1_rrrrs_r2_y*s_4_rrrrs)*(c_4_rrrrs*r_1_rrrrs_r2_y +
-            r_1_rrrrs_r2_x*s_4_rrrrs) - (c_4_rrrrs*e_1_rrrrs_r2_y +
-            e_1_rrrrs_r2_x*s_4_rrrrs)*(c_4_rrrrs*r_1_rrrrs_r2_x - r_1_rrrrs_r2_y*s_4_rrrrs)
+        # (rrrrs-r_3) from joint 3 to the connection point, along the links
+        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4
+        rrrrs_r_3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
+        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
+        rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
+        # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
+        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrrs_e_1_r2_x = rrrrs_c_3*rrrrs_s_2 - rrrrs_c_2_t*rrrrs_s_3
+        rrrrs_e_1_r2_y = -rrrrs_c_2_t*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
+        # (rrrrs-r_1) from joint 1 to the connection point, along the links
+        rrrrs_r_1_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_xi_1_t
+        rrrrs_r_1_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_xi_1_t
+        rrrrs_r_1_r2_x = rrrrs_c_3*rrrrs_r_1_r1_x + rrrrs_r_1_r1_y*rrrrs_s_3
+        rrrrs_r_1_r2_y = rrrrs_c_3*rrrrs_r_1_r1_y - rrrrs_r_1_r1_x*rrrrs_s_3
+        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrrs_v_1_z = (
+        (rrrrs_c_4*rrrrs_e_1_r2_x - rrrrs_e_1_r2_y*rrrrs_s_4)*(rrrrs_c_4*rrrrs_r_1_r2_y +
+            rrrrs_r_1_r2_x*rrrrs_s_4) - (rrrrs_c_4*rrrrs_e_1_r2_y +
+            rrrrs_e_1_r2_x*rrrrs_s_4)*(rrrrs_c_4*rrrrs_r_1_r2_x - rrrrs_r_1_r2_y*rrrrs_s_4)
         )
-        # (rrrrs-V2) from joint 3 to the connection point, along the links
-        r_3_rrrrs_r0_x = c_4_rrrrs*r_3_rrrrs_x + r_3_rrrrs_t*s_4_rrrrs
-        r_3_rrrrs_r0_y = r_3_rrrrs_x*s_4_rrrrs - c_4_rrrrs*r_3_rrrrs_t
-        # (rrrrs-K10) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrrrs = 1.0/rho2_1_rrrrs
-        c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs
-        # (rrrrs-K11) sine of the angle of joint 1 from its reference direction
-        s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs
-        # (rrrrs-V9) reciprocal vector 1
+        # (rrrrs-r_3) from joint 3 to the connection point, along the links
+        rrrrs_r_3_r0_x = rrrrs_c_4*rrrrs_r_3_x + rrrrs_r_3_t*rrrrs_s_4
+        rrrrs_r_3_r0_y = rrrrs_r_3_x*rrrrs_s_4 - rrrrs_c_4*rrrrs_r_3_t
+        # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
+        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_py_1*rrrrs_root_1
+        # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_px_1*rrrrs_root_1
+        # (rrrrs-w_1) reciprocal vector 1
         axis_z_rrrrs_axes4_in_base_x = (
-        rrrrs_base_frame_xz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_xy
+        rrrrs_base_frame_xz*rrrrs_s_1 - rrrrs_base_frame_xy*rrrrs_c_1
         )
         axis_z_rrrrs_axes4_in_base_y = (
-        rrrrs_base_frame_yz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_yy
+        rrrrs_base_frame_yz*rrrrs_s_1 - rrrrs_base_frame_yy*rrrrs_c_1
         )
         axis_z_rrrrs_axes4_in_base_z = (
-        rrrrs_base_frame_zz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_zy
+        rrrrs_base_frame_zz*rrrrs_s_1 - rrrrs_base_frame_zy*rrrrs_c_1
         )
-        axis_y_rrrrs_axes4_r1_x = c_3_rrrrs*s_4_rrrrs - c_4_rrrrs*s_3_rrrrs
-        axis_y_rrrrs_axes4_r1_y = c_3_rrrrs*c_4_rrrrs + s_3_rrrrs*s_4_rrrrs
+        axis_y_rrrrs_axes4_r1_x = rrrrs_c_3*rrrrs_s_4 - rrrrs_c_4*rrrrs_s_3
+        axis_y_rrrrs_axes4_r1_y = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4
         axis_y_rrrrs_axes4_r2_x = (
-        -axis_y_rrrrs_axes4_r1_x*c_2_rrrrs_t - axis_y_rrrrs_axes4_r1_y*s_2_rrrrs
+        -axis_y_rrrrs_axes4_r1_x*rrrrs_c_2_t - axis_y_rrrrs_axes4_r1_y*rrrrs_s_2
         )
         axis_y_rrrrs_axes4_r2_y = (
-        axis_y_rrrrs_axes4_r1_x*s_2_rrrrs - axis_y_rrrrs_axes4_r1_y*c_2_rrrrs_t
+        axis_y_rrrrs_axes4_r1_x*rrrrs_s_2 - axis_y_rrrrs_axes4_r1_y*rrrrs_c_2_t
         )
-        w_1_rrrrs_t = axis_y_rrrrs_axes4_r2_x*s_1_rrrrs
-        w_1_rrrrs_t_2 = axis_y_rrrrs_axes4_r2_x*c_1_rrrrs
+        rrrrs_w_1_t = axis_y_rrrrs_axes4_r2_x*rrrrs_s_1
+        rrrrs_w_1_t_2 = axis_y_rrrrs_axes4_r2_x*rrrrs_c_1
         axis_y_rrrrs_axes4_in_base_x = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_xx - rrrrs_base_frame_xy*w_1_rrrrs_t -
-            rrrrs_base_frame_xz*w_1_rrrrs_t_2
+        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_xx - rrrrs_base_frame_xy*rrrrs_w_1_t -
+            rrrrs_base_frame_xz*rrrrs_w_1_t_2
         )
         axis_y_rrrrs_axes4_in_base_y = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_yx - rrrrs_base_frame_yy*w_1_rrrrs_t -
-            rrrrs_base_frame_yz*w_1_rrrrs_t_2
+        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_yx - rrrrs_base_frame_yy*rrrrs_w_1_t -
+            rrrrs_base_frame_yz*rrrrs_w_1_t_2
         )
         axis_y_rrrrs_axes4_in_base_z = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_zx - rrrrs_base_frame_zy*w_1_rrrrs_t -
-            rrrrs_base_frame_zz*w_1_rrrrs_t_2
+        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_zx - rrrrs_base_frame_zy*rrrrs_w_1_t -
+            rrrrs_base_frame_zz*rrrrs_w_1_t_2
         )
         axis_x_rrrrs_axes4_x = (
         axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_z -
@@ -7467,259 +7586,255 @@ def _run_joint_accelerations(m, X, V, A):
         axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_y -
             axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_x
         )
-        inv_v_1_rrrrs_z = 1.0/v_1_rrrrs_z
-        # (rrrrs-V10) reciprocal vector 2
-        inv_r_3_rrrrs_r0_y = 1.0/r_3_rrrrs_r0_y
-        # (rrrrs-V1) velocity of the connection point
-        S_dot_rrrrs_t = omega_y*q_rrrrs_in_base_z - omega_z*q_rrrrs_in_base_y
-        S_dot_rrrrs_t_2 = omega_z*q_rrrrs_in_base_x - omega_x*q_rrrrs_in_base_z
-        S_dot_rrrrs_t_3 = omega_x*q_rrrrs_in_base_y - omega_y*q_rrrrs_in_base_x
-        S_dot_rrrrs_x = S_dot_rrrrs_t + t_dot_x
-        S_dot_rrrrs_y = S_dot_rrrrs_t_2 + t_dot_y
-        S_dot_rrrrs_z = S_dot_rrrrs_t_3 + t_dot_z
-        # (rrrrs-V3) from joint 2 to the connection point, along the links
-        r_2_rrrrs_r0_x = c_3_rrrrs*x_2_rrrrs_r1_x + s_3_rrrrs*x_2_rrrrs_r1_y
-        r_2_rrrrs_r0_y = c_3_rrrrs*x_2_rrrrs_r1_y - s_3_rrrrs*x_2_rrrrs_r1_x
-        r_2_rrrrs_r1_x = c_4_rrrrs*r_2_rrrrs_r0_x - r_2_rrrrs_r0_y*s_4_rrrrs
-        r_2_rrrrs_r1_y = c_4_rrrrs*r_2_rrrrs_r0_y + r_2_rrrrs_r0_x*s_4_rrrrs
-        # (rrrrs-V12) velocity of the connection point left to the joints that are not extra
-        S_dot_rest_rrrrs_x = (
-        S_dot_rrrrs_x - yd_2_rrrrs*(axis_y_rrrrs_axes4_in_base_x*r_2_rrrrs_r1_x -
-            axis_x_rrrrs_axes4_x*r_2_rrrrs_r1_y)
+        inv_rrrrs_v_1_z = 1.0/rrrrs_v_1_z
+        # (rrrrs-w_3) reciprocal vector 2
+        inv_rrrrs_r_3_r0_y = 1.0/rrrrs_r_3_r0_y
+        # (rrrrs-S_dot) velocity of the connection point
+        rrrrs_S_dot_t = omega_y*rrrrs_q_in_base_z - omega_z*rrrrs_q_in_base_y
+        rrrrs_S_dot_t_2 = omega_z*rrrrs_q_in_base_x - omega_x*rrrrs_q_in_base_z
+        rrrrs_S_dot_t_3 = omega_x*rrrrs_q_in_base_y - omega_y*rrrrs_q_in_base_x
+        rrrrs_S_dot_x = rrrrs_S_dot_t + t_dot_x
+        rrrrs_S_dot_y = rrrrs_S_dot_t_2 + t_dot_y
+        rrrrs_S_dot_z = rrrrs_S_dot_t_3 + t_dot_z
+        # (rrrrs-r_2) from joint 2 to the connection point, along the links
+        rrrrs_r_2_r0_x = rrrrs_c_3*rrrrs_x_2_r1_x + rrrrs_s_3*rrrrs_x_2_r1_y
+        rrrrs_r_2_r0_y = rrrrs_c_3*rrrrs_x_2_r1_y - rrrrs_s_3*rrrrs_x_2_r1_x
+        rrrrs_r_2_r1_x = rrrrs_c_4*rrrrs_r_2_r0_x - rrrrs_r_2_r0_y*rrrrs_s_4
+        rrrrs_r_2_r1_y = rrrrs_c_4*rrrrs_r_2_r0_y + rrrrs_r_2_r0_x*rrrrs_s_4
+        # (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra
+        rrrrs_S_dot_rest_x = (
+        rrrrs_S_dot_x - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_x*rrrrs_r_2_r1_x -
+            axis_x_rrrrs_axes4_x*rrrrs_r_2_r1_y)
         )
-        S_dot_rest_rrrrs_y = (
-        S_dot_rrrrs_y - yd_2_rrrrs*(axis_y_rrrrs_axes4_in_base_y*r_2_rrrrs_r1_x -
-            axis_x_rrrrs_axes4_y*r_2_rrrrs_r1_y)
+        rrrrs_S_dot_rest_y = (
+        rrrrs_S_dot_y - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_y*rrrrs_r_2_r1_x -
+            axis_x_rrrrs_axes4_y*rrrrs_r_2_r1_y)
         )
-        S_dot_rest_rrrrs_z = (
-        S_dot_rrrrs_z - yd_2_rrrrs*(axis_y_rrrrs_axes4_in_base_z*r_2_rrrrs_r1_x -
-            axis_x_rrrrs_axes4_z*r_2_rrrrs_r1_y)
+        rrrrs_S_dot_rest_z = (
+        rrrrs_S_dot_z - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_z*rrrrs_r_2_r1_x -
+            axis_x_rrrrs_axes4_z*rrrrs_r_2_r1_y)
         )
-        # (rrrrs-V13) rate of joint 1
-        qd_3_rrrrs = (
-        inv_r_3_rrrrs_r0_y*(S_dot_rest_rrrrs_x*axis_x_rrrrs_axes4_x +
-            S_dot_rest_rrrrs_y*axis_x_rrrrs_axes4_y + S_dot_rest_rrrrs_z*axis_x_rrrrs_axes4_z)
+        # (rrrrs-qd_4) rate of joint 4
+        rrrrs_qd_3 = (
+        inv_rrrrs_r_3_r0_y*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+            axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_x_rrrrs_axes4_z*rrrrs_S_dot_rest_z)
         )
-        qd_4_rrrrs = (
-        inv_rrrrs_platform_joint_offset_x*(S_dot_rest_rrrrs_x*axis_y_rrrrs_axes4_in_base_x +
-            S_dot_rest_rrrrs_y*axis_y_rrrrs_axes4_in_base_y +
-            S_dot_rest_rrrrs_z*axis_y_rrrrs_axes4_in_base_z + qd_3_rrrrs*r_3_rrrrs_r0_x)
+        rrrrs_qd_4 = (
+        inv_rrrrs_platform_joint_offset_x*(axis_y_rrrrs_axes4_in_base_x*rrrrs_S_dot_rest_x +
+            axis_y_rrrrs_axes4_in_base_y*rrrrs_S_dot_rest_y +
+            axis_y_rrrrs_axes4_in_base_z*rrrrs_S_dot_rest_z + rrrrs_qd_3*rrrrs_r_3_r0_x)
         )
-        qd_1_rrrrs = (
-        inv_v_1_rrrrs_z*(S_dot_rest_rrrrs_x*axis_z_rrrrs_axes4_in_base_x +
-            S_dot_rest_rrrrs_y*axis_z_rrrrs_axes4_in_base_y +
-            S_dot_rest_rrrrs_z*axis_z_rrrrs_axes4_in_base_z)
+        rrrrs_qd_1 = (
+        inv_rrrrs_v_1_z*(axis_z_rrrrs_axes4_in_base_x*rrrrs_S_dot_rest_x +
+            axis_z_rrrrs_axes4_in_base_y*rrrrs_S_dot_rest_y +
+            axis_z_rrrrs_axes4_in_base_z*rrrrs_S_dot_rest_z)
         )
-        # (rrrrs-V16) angular velocity of link 1
-        omega_1_rrrrs_t = qd_1_rrrrs*s_2_rrrrs
-        omega_1_rrrrs_t_2 = c_2_rrrrs_t*qd_1_rrrrs
-        # (rrrrs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_rrrrs_x = omega_1_rrrrs_t_2*yd_2_rrrrs
-        zeta_2_rrrrs_y = omega_1_rrrrs_t*yd_2_rrrrs
-        # (rrrrs-V18) angular velocity of link 2
-        omega_2_rrrrs_r0_x = c_3_rrrrs*omega_1_rrrrs_t - omega_1_rrrrs_t_2*s_3_rrrrs
-        omega_2_rrrrs_r0_y = -c_3_rrrrs*omega_1_rrrrs_t_2 - omega_1_rrrrs_t*s_3_rrrrs
-        # (rrrrs-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_rrrrs_x = (
-        -c_3_rrrrs*zeta_2_rrrrs_x - omega_2_rrrrs_r0_y*qd_3_rrrrs - s_3_rrrrs*zeta_2_rrrrs_y
+        # (rrrrs-omega_1) angular velocity of link 1
+        rrrrs_omega_1_t = rrrrs_qd_1*rrrrs_s_2
+        rrrrs_omega_1_t_2 = rrrrs_c_2_t*rrrrs_qd_1
+        # (rrrrs-omega_2) angular velocity of link 2
+        rrrrs_omega_2_r0_x = rrrrs_c_3*rrrrs_omega_1_t - rrrrs_omega_1_t_2*rrrrs_s_3
+        rrrrs_omega_2_r0_y = -rrrrs_c_3*rrrrs_omega_1_t_2 - rrrrs_omega_1_t*rrrrs_s_3
+        # (rrrrs-omega_3) angular velocity of link 3
+        rrrrs_omega_3_z = rrrrs_yd_2 - rrrrs_qd_3
+        rrrrs_omega_3_r0_x = rrrrs_c_4*rrrrs_omega_2_r0_x - rrrrs_omega_2_r0_y*rrrrs_s_4
+        rrrrs_omega_3_r0_y = rrrrs_c_4*rrrrs_omega_2_r0_y + rrrrs_omega_2_r0_x*rrrrs_s_4
+        # (rrrrs-omega_4) angular velocity of link 4
+        rrrrs_omega_4_z = rrrrs_omega_3_z + rrrrs_qd_4
+        # (rrrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        rrrrs_zeta_2_x = rrrrs_omega_1_t_2*rrrrs_yd_2
+        rrrrs_zeta_2_y = rrrrs_omega_1_t*rrrrs_yd_2
+        # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        rrrrs_beta_3_x = (
+        -rrrrs_c_3*rrrrs_zeta_2_x - rrrrs_omega_2_r0_y*rrrrs_qd_3 - rrrrs_s_3*rrrrs_zeta_2_y
         )
-        beta_3_rrrrs_y = (
-        omega_2_rrrrs_r0_x*qd_3_rrrrs + s_3_rrrrs*zeta_2_rrrrs_x - c_3_rrrrs*zeta_2_rrrrs_y
+        rrrrs_beta_3_y = (
+        rrrrs_omega_2_r0_x*rrrrs_qd_3 + rrrrs_s_3*rrrrs_zeta_2_x - rrrrs_c_3*rrrrs_zeta_2_y
         )
-        # (rrrrs-V20) angular velocity of link 3
-        omega_3_rrrrs_z = yd_2_rrrrs - qd_3_rrrrs
-        omega_3_rrrrs_r0_x = c_4_rrrrs*omega_2_rrrrs_r0_x - omega_2_rrrrs_r0_y*s_4_rrrrs
-        omega_3_rrrrs_r0_y = c_4_rrrrs*omega_2_rrrrs_r0_y + omega_2_rrrrs_r0_x*s_4_rrrrs
-        # (rrrrs-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_rrrrs_r0_y = beta_3_rrrrs_x*s_4_rrrrs + beta_3_rrrrs_y*c_4_rrrrs
-        # (rrrrs-A8) angular acceleration of link 4 at zero joint accelerations
-        beta_4_rrrrs_y = beta_3_rrrrs_r0_y - omega_3_rrrrs_r0_x*qd_4_rrrrs
-        # (rrrrs-V22) angular velocity of link 4
-        omega_4_rrrrs_z = omega_3_rrrrs_z + qd_4_rrrrs
-        # (rrrrs-V19) centripetal tensor of link 2
-        W_2_rrrrs_t = yd_2_rrrrs*yd_2_rrrrs
-        # (rrrrs-V21) centripetal tensor of link 3
-        W_3_rrrrs_t = omega_3_rrrrs_z*omega_3_rrrrs_z
-        # (rrrrs-V23) centripetal tensor of link 4
-        W_4_rrrrs_t = omega_3_rrrrs_r0_x*omega_3_rrrrs_r0_x
-        W_4_rrrrs_t_2 = omega_3_rrrrs_r0_y*omega_3_rrrrs_r0_y
-        W_4_rrrrs_xy = omega_3_rrrrs_r0_x*omega_3_rrrrs_r0_y
-        # (rrrrs-A9) acceleration of the connection point at zero joint accelerations
-        bias_rrrrs_t = rrrrs_joint2_offset_x*s_2_rrrrs
-        bias_rrrrs_t_2 = c_2_rrrrs_t*rrrrs_joint2_offset_x
-        d_2_rrrrs_r2_x = bias_rrrrs_t*c_3_rrrrs - bias_rrrrs_t_2*s_3_rrrrs
-        d_2_rrrrs_r2_y = -bias_rrrrs_t*s_3_rrrrs - bias_rrrrs_t_2*c_3_rrrrs
-        d_2_rrrrs_r3_x = c_4_rrrrs*d_2_rrrrs_r2_x - d_2_rrrrs_r2_y*s_4_rrrrs
-        d_2_rrrrs_r3_y = c_4_rrrrs*d_2_rrrrs_r2_y + d_2_rrrrs_r2_x*s_4_rrrrs
-        bias_rrrrs_t_3 = c_3_rrrrs*rrrrs_joint3_offset_x
-        bias_rrrrs_t_4 = rrrrs_joint3_offset_x*s_3_rrrrs
-        d_3_rrrrs_r1_x = bias_rrrrs_t_3*c_4_rrrrs + bias_rrrrs_t_4*s_4_rrrrs
-        d_3_rrrrs_r1_y = bias_rrrrs_t_3*s_4_rrrrs - bias_rrrrs_t_4*c_4_rrrrs
-        bias_rrrrs_t_5 = c_4_rrrrs*rrrrs_joint4_offset_x
-        bias_rrrrs_t_6 = rrrrs_joint4_offset_x*s_4_rrrrs
-        bias_rrrrs_x = (
-        W_4_rrrrs_xy*bias_rrrrs_t_6 + W_4_rrrrs_xy*d_2_rrrrs_r3_y + W_4_rrrrs_xy*d_3_rrrrs_r1_y -
-            W_4_rrrrs_t_2*d_2_rrrrs_r3_x - bias_rrrrs_t_5*(W_3_rrrrs_t + W_4_rrrrs_t_2) -
-            d_3_rrrrs_r1_x*(W_2_rrrrs_t + W_4_rrrrs_t_2) -
-            rrrrs_platform_joint_offset_x*(W_4_rrrrs_t_2 + omega_4_rrrrs_z*omega_4_rrrrs_z)
+        rrrrs_beta_3_r0_y = rrrrs_beta_3_x*rrrrs_s_4 + rrrrs_beta_3_y*rrrrs_c_4
+        # (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations
+        rrrrs_beta_4_y = rrrrs_beta_3_r0_y - rrrrs_omega_3_r0_x*rrrrs_qd_4
+        # (rrrrs-W_2) centripetal tensor of link 2
+        rrrrs_W_2_t = rrrrs_yd_2*rrrrs_yd_2
+        # (rrrrs-W_3) centripetal tensor of link 3
+        rrrrs_W_3_t = rrrrs_omega_3_z*rrrrs_omega_3_z
+        # (rrrrs-W_4) centripetal tensor of link 4
+        rrrrs_W_4_t = rrrrs_omega_3_r0_x*rrrrs_omega_3_r0_x
+        rrrrs_W_4_t_2 = rrrrs_omega_3_r0_y*rrrrs_omega_3_r0_y
+        rrrrs_W_4_xy = rrrrs_omega_3_r0_x*rrrrs_omega_3_r0_y
+        # (rrrrs-bias) acceleration of the connection point at zero joint accelerations
+        rrrrs_d_2_r2_x = rrrrs_Kr_1_t*rrrrs_c_3 - rrrrs_Kr_1_t_2*rrrrs_s_3
+        rrrrs_d_2_r2_y = -rrrrs_Kr_1_t*rrrrs_s_3 - rrrrs_Kr_1_t_2*rrrrs_c_3
+        rrrrs_d_2_r3_x = rrrrs_c_4*rrrrs_d_2_r2_x - rrrrs_d_2_r2_y*rrrrs_s_4
+        rrrrs_d_2_r3_y = rrrrs_c_4*rrrrs_d_2_r2_y + rrrrs_d_2_r2_x*rrrrs_s_4
+        rrrrs_bias_t = rrrrs_c_3*rrrrs_joint3_offset_x
+        rrrrs_bias_t_2 = rrrrs_joint3_offset_x*rrrrs_s_3
+        rrrrs_d_3_r1_x = rrrrs_bias_t*rrrrs_c_4 + rrrrs_bias_t_2*rrrrs_s_4
+        rrrrs_d_3_r1_y = rrrrs_bias_t*rrrrs_s_4 - rrrrs_bias_t_2*rrrrs_c_4
+        rrrrs_bias_t_3 = rrrrs_c_4*rrrrs_joint4_offset_x
+        rrrrs_bias_t_4 = rrrrs_joint4_offset_x*rrrrs_s_4
+        rrrrs_bias_x = (
+        rrrrs_W_4_xy*rrrrs_bias_t_4 + rrrrs_W_4_xy*rrrrs_d_2_r3_y + rrrrs_W_4_xy*rrrrs_d_3_r1_y -
+            rrrrs_W_4_t_2*rrrrs_d_2_r3_x - rrrrs_bias_t_3*(rrrrs_W_3_t + rrrrs_W_4_t_2) -
+            rrrrs_d_3_r1_x*(rrrrs_W_2_t + rrrrs_W_4_t_2) -
+            rrrrs_platform_joint_offset_x*(rrrrs_W_4_t_2 + rrrrs_omega_4_z*rrrrs_omega_4_z)
         )
-        bias_rrrrs_y = (
-        W_4_rrrrs_xy*bias_rrrrs_t_5 + W_4_rrrrs_xy*d_2_rrrrs_r3_x + W_4_rrrrs_xy*d_3_rrrrs_r1_x +
-            W_4_rrrrs_xy*rrrrs_platform_joint_offset_x - W_4_rrrrs_t*d_2_rrrrs_r3_y -
-            bias_rrrrs_t_6*(W_3_rrrrs_t + W_4_rrrrs_t) - d_3_rrrrs_r1_y*(W_2_rrrrs_t +
-            W_4_rrrrs_t)
+        rrrrs_bias_y = (
+        rrrrs_W_4_xy*rrrrs_bias_t_3 + rrrrs_W_4_xy*rrrrs_d_2_r3_x + rrrrs_W_4_xy*rrrrs_d_3_r1_x +
+            rrrrs_W_4_xy*rrrrs_platform_joint_offset_x - rrrrs_W_4_t*rrrrs_d_2_r3_y -
+            rrrrs_bias_t_4*(rrrrs_W_3_t + rrrrs_W_4_t) - rrrrs_d_3_r1_y*(rrrrs_W_2_t +
+            rrrrs_W_4_t)
         )
-        bias_rrrrs_z = (
-        bias_rrrrs_t_5*(omega_3_rrrrs_r0_x*omega_3_rrrrs_z - beta_3_rrrrs_r0_y) +
-            bias_rrrrs_t_6*(beta_3_rrrrs_x*c_4_rrrrs + omega_3_rrrrs_r0_y*omega_3_rrrrs_z -
-            beta_3_rrrrs_y*s_4_rrrrs) +
-            rrrrs_platform_joint_offset_x*(omega_3_rrrrs_r0_x*omega_4_rrrrs_z - beta_4_rrrrs_y) +
-            2.0*d_3_rrrrs_r1_x*omega_3_rrrrs_r0_x*yd_2_rrrrs +
-            2.0*d_3_rrrrs_r1_y*omega_3_rrrrs_r0_y*yd_2_rrrrs
+        rrrrs_bias_z = (
+        rrrrs_bias_t_3*(rrrrs_omega_3_r0_x*rrrrs_omega_3_z - rrrrs_beta_3_r0_y) +
+            rrrrs_bias_t_4*(rrrrs_beta_3_x*rrrrs_c_4 + rrrrs_omega_3_r0_y*rrrrs_omega_3_z -
+            rrrrs_beta_3_y*rrrrs_s_4) +
+            rrrrs_platform_joint_offset_x*(rrrrs_omega_3_r0_x*rrrrs_omega_4_z - rrrrs_beta_4_y) +
+            2.0*rrrrs_d_3_r1_x*rrrrs_omega_3_r0_x*rrrrs_yd_2 +
+            2.0*rrrrs_d_3_r1_y*rrrrs_omega_3_r0_y*rrrrs_yd_2
         )
-        # (rrrrs-A2) acceleration of the connection point without its centripetal part
-        a_p_rrrrs_x = t_ddot_x + alpha_y*q_rrrrs_in_base_z - alpha_z*q_rrrrs_in_base_y
-        a_p_rrrrs_y = t_ddot_y + alpha_z*q_rrrrs_in_base_x - alpha_x*q_rrrrs_in_base_z
-        a_p_rrrrs_z = t_ddot_z + alpha_x*q_rrrrs_in_base_y - alpha_y*q_rrrrs_in_base_x
-        # (rrrrs-A3) acceleration of the connection point
-        S_ddot_rrrrs_x = a_p_rrrrs_x + S_dot_rrrrs_t_3*omega_y - S_dot_rrrrs_t_2*omega_z
-        S_ddot_rrrrs_y = a_p_rrrrs_y + S_dot_rrrrs_t*omega_z - S_dot_rrrrs_t_3*omega_x
-        S_ddot_rrrrs_z = a_p_rrrrs_z + S_dot_rrrrs_t_2*omega_x - S_dot_rrrrs_t*omega_y
-        # (rrrrs-A10) acceleration of the connection point left to the joint accelerations
-        rel_rrrrs_x = (
-        S_ddot_rrrrs_x*axis_x_rrrrs_axes4_x + S_ddot_rrrrs_y*axis_x_rrrrs_axes4_y +
-            S_ddot_rrrrs_z*axis_x_rrrrs_axes4_z + r_2_rrrrs_r1_y*ydd_2_rrrrs - bias_rrrrs_x
+        # (rrrrs-a_p) acceleration of the connection point without its centripetal part
+        rrrrs_a_p_x = t_ddot_x + alpha_y*rrrrs_q_in_base_z - alpha_z*rrrrs_q_in_base_y
+        rrrrs_a_p_y = t_ddot_y + alpha_z*rrrrs_q_in_base_x - alpha_x*rrrrs_q_in_base_z
+        rrrrs_a_p_z = t_ddot_z + alpha_x*rrrrs_q_in_base_y - alpha_y*rrrrs_q_in_base_x
+        # (rrrrs-S_ddot) acceleration of the connection point
+        rrrrs_S_ddot_x = rrrrs_a_p_x + omega_y*rrrrs_S_dot_t_3 - omega_z*rrrrs_S_dot_t_2
+        rrrrs_S_ddot_y = rrrrs_a_p_y + omega_z*rrrrs_S_dot_t - omega_x*rrrrs_S_dot_t_3
+        rrrrs_S_ddot_z = rrrrs_a_p_z + omega_x*rrrrs_S_dot_t_2 - omega_y*rrrrs_S_dot_t
+        # (rrrrs-rel) acceleration of the connection point left to the joint accelerations
+        rrrrs_rel_x = (
+        axis_x_rrrrs_axes4_x*rrrrs_S_ddot_x + axis_x_rrrrs_axes4_y*rrrrs_S_ddot_y +
+            axis_x_rrrrs_axes4_z*rrrrs_S_ddot_z + rrrrs_r_2_r1_y*rrrrs_ydd_2 - rrrrs_bias_x
         )
-        rel_rrrrs_y = (
-        S_ddot_rrrrs_x*axis_y_rrrrs_axes4_in_base_x + S_ddot_rrrrs_y*axis_y_rrrrs_axes4_in_base_y
-            + S_ddot_rrrrs_z*axis_y_rrrrs_axes4_in_base_z - bias_rrrrs_y -
-            r_2_rrrrs_r1_x*ydd_2_rrrrs
+        rrrrs_rel_y = (
+        axis_y_rrrrs_axes4_in_base_x*rrrrs_S_ddot_x + axis_y_rrrrs_axes4_in_base_y*rrrrs_S_ddot_y
+            + axis_y_rrrrs_axes4_in_base_z*rrrrs_S_ddot_z - rrrrs_bias_y -
+            rrrrs_r_2_r1_x*rrrrs_ydd_2
         )
-        rel_rrrrs_z = (
-        S_ddot_rrrrs_x*axis_z_rrrrs_axes4_in_base_x + S_ddot_rrrrs_y*axis_z_rrrrs_axes4_in_base_y
-            + S_ddot_rrrrs_z*axis_z_rrrrs_axes4_in_base_z - bias_rrrrs_z
+        rrrrs_rel_z = (
+        axis_z_rrrrs_axes4_in_base_x*rrrrs_S_ddot_x + axis_z_rrrrs_axes4_in_base_y*rrrrs_S_ddot_y
+            + axis_z_rrrrs_axes4_in_base_z*rrrrs_S_ddot_z - rrrrs_bias_z
         )
-        # (rrrrs-A13) acceleration of joint 1
-        qdd_3_rrrrs = inv_r_3_rrrrs_r0_y*rel_rrrrs_x
-        qdd_4_rrrrs = inv_rrrrs_platform_joint_offset_x*(rel_rrrrs_y + qdd_3_rrrrs*r_3_rrrrs_r0_x)
-        qdd_1_rrrrs = inv_v_1_rrrrs_z*rel_rrrrs_z
+        # (rrrrs-qdd_1) acceleration of joint 1
+        rrrrs_qdd_3 = inv_rrrrs_r_3_r0_y*rrrrs_rel_x
+        rrrrs_qdd_4 = inv_rrrrs_platform_joint_offset_x*(rrrrs_rel_y + rrrrs_qdd_3*rrrrs_r_3_r0_x)
+        rrrrs_qdd_1 = inv_rrrrs_v_1_z*rrrrs_rel_z
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
-            (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0)
-            & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE *
-            size_rrrrs))
+        ok & m.every(leg, (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
+            (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0)
+            & (abs(rrrrs_v_1_z) > _TOLERANCE * rrrrs_size) & (abs(-rrrrs_r_3_r0_y) > _TOLERANCE *
+            rrrrs_size))
         )
-        out_qdd[_qdd_rrrrs[0][leg]] = qdd_1_rrrrs
-        out_qdd[_qdd_rrrrs[1][leg]] = ydd_2_rrrrs
-        out_qdd[_qdd_rrrrs[2][leg]] = -qdd_3_rrrrs
-        out_qdd[_qdd_rrrrs[3][leg]] = qdd_4_rrrrs
+        out_qdd[_qdd_rrrrs[0][leg]] = rrrrs_qdd_1
+        out_qdd[_qdd_rrrrs[1][leg]] = rrrrs_ydd_2
+        out_qdd[_qdd_rrrrs[2][leg]] = -rrrrs_qdd_3
+        out_qdd[_qdd_rrrrs[3][leg]] = rrrrs_qdd_4
     for leg, k in legs[1]:
         (
-        Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs,
-            inv_rrrs_platform_joint_offset_x, inv_size_rrrs_t, inv_size_rrrs_t_2, rho2_2_rrrs_t,
-            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size_rrrs,
-            size_rrrs_t_3,
+        inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t,
+            rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+            rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+            rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+            rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
+            rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
+            rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
         ) = k
-        # (rrrs-K1) from the base point to the connection point
-        q_rrrs_in_base_x = (
+        # (rrrs-S) from the base point to the connection point
+        rrrs_q_in_base_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        q_rrrs_in_base_y = (
+        rrrs_q_in_base_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        q_rrrs_in_base_z = (
+        rrrs_q_in_base_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        S_rrrs_x = q_rrrs_in_base_x + t_x - rrrs_base_point_x
-        S_rrrs_y = q_rrrs_in_base_y + t_y - rrrs_base_point_y
-        S_rrrs_z = q_rrrs_in_base_z + t_z - rrrs_base_point_z
-        # (rrrs-K2) component along the reference direction
-        px_1_rrrs = (
-        S_rrrs_x*rrrs_base_frame_xy + S_rrrs_y*rrrs_base_frame_yy + S_rrrs_z*rrrs_base_frame_zy
+        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        # (rrrs-px_1) component along the reference direction
+        rrrs_px_1 = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        # (rrrs-K3) component across the reference direction
-        py_1_rrrs = (
-        S_rrrs_x*rrrs_base_frame_xz + S_rrrs_y*rrrs_base_frame_yz + S_rrrs_z*rrrs_base_frame_zz
+        # (rrrs-py_1) component across the reference direction
+        rrrs_py_1 = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        # (rrrs-K5) squared amplitude
-        rho2_1_rrrs = px_1_rrrs*px_1_rrrs + py_1_rrrs*py_1_rrrs
-        # (rrrs-K7) root, with the sign of the branch
-        root_1_rrrs = branch_1_rrrs*sqrt(rho2_1_rrrs)
-        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_rrrs_t = (
-        S_rrrs_x*rrrs_base_frame_xx + S_rrrs_y*rrrs_base_frame_yx + S_rrrs_z*rrrs_base_frame_zx
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrs_xi_1_t = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        # (rrrs-K12) from the origin of joint 2 to the connection point
-        x_2_rrrs_z = xi_1_rrrs_t - rrrs_joint2_offset_x
-        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z
-        Kd_2_rrrs = Kd_2_rrrs_t + 0.5*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2
-        # (rrrs-K17) factor of the cosine in the equation of joint 2
-        Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x
-        # (rrrs-K18) factor of the sine in the equation of joint 2
-        Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z
-        # (rrrs-K19) squared amplitude
-        rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs
-        # (rrrs-K20) discriminant
-        disc_2_rrrs = rho2_2_rrrs - Kd_2_rrrs*Kd_2_rrrs
-        # (rrrs-K21) root, with the sign of the branch
-        root_2_rrrs = branch_2_rrrs*sqrt(disc_2_rrrs)
-        # (rrrs-K27) from the origin of joint 3 to the connection point
-        x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-        # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-        c_3_rrrs = inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x
-        # (rrrs-K30) sine of the angle of joint 3 from its reference direction
-        s_3_rrrs = (
-        inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-x_3) from the origin of joint 3 to the connection point
+        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrs_s_3 = (
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_rrrs_t = rrrs_platform_joint_offset_x*s_3_rrrs
-        r_2_rrrs_x = rrrs_joint3_offset_x + c_3_rrrs*rrrs_platform_joint_offset_x
-        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2_rrrs = 1.0/rho2_2_rrrs
-        c_2_rrrs = inv_rho2_2_rrrs*(Kc_2_rrrs*Kd_2_rrrs + Ks_2_rrrs*root_2_rrrs)
-        # (rrrs-K23) sine of the angle of joint 2 from its reference direction
-        s_2_rrrs = inv_rho2_2_rrrs*(Kc_2_rrrs*root_2_rrrs - Kd_2_rrrs*Ks_2_rrrs)
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        e_1_rrrs_r2_x = c_2_rrrs*s_3_rrrs - c_3_rrrs*s_2_rrrs
-        e_1_rrrs_r2_y = -c_2_rrrs*c_3_rrrs - s_2_rrrs*s_3_rrrs
-        # (rrrs-V3) from joint 1 to the connection point, along the links
-        r_1_rrrs_r1_x = c_2_rrrs*root_1_rrrs - s_2_rrrs*xi_1_rrrs_t
-        r_1_rrrs_r1_y = -c_2_rrrs*xi_1_rrrs_t - root_1_rrrs*s_2_rrrs
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        v_1_rrrs_z = (
-        e_1_rrrs_r2_x*(c_3_rrrs*r_1_rrrs_r1_y + r_1_rrrs_r1_x*s_3_rrrs) -
-            e_1_rrrs_r2_y*(c_3_rrrs*r_1_rrrs_r1_x - r_1_rrrs_r1_y*s_3_rrrs)
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3
+        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
+        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
+        # (rrrs-r_1) from joint 1 to the connection point, along the links
+        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
+        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_z = (
+        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
+            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
         )
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_rrrs_r0_x = c_3_rrrs*r_2_rrrs_x + r_2_rrrs_t*s_3_rrrs
-        r_2_rrrs_r0_y = r_2_rrrs_x*s_3_rrrs - c_3_rrrs*r_2_rrrs_t
-        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrrs = 1.0/rho2_1_rrrs
-        c_1_rrrs = inv_rho2_1_rrrs*py_1_rrrs*root_1_rrrs
-        # (rrrs-K9) sine of the angle of joint 1 from its reference direction
-        s_1_rrrs = inv_rho2_1_rrrs*px_1_rrrs*root_1_rrrs
-        # (rrrs-V7) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1_rrrs - c_1_rrrs*rrrs_base_frame_xy
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1_rrrs - c_1_rrrs*rrrs_base_frame_yy
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1_rrrs - c_1_rrrs*rrrs_base_frame_zy
-        w_1_rrrs_t = e_1_rrrs_r2_x*s_1_rrrs
-        w_1_rrrs_t_2 = c_1_rrrs*e_1_rrrs_r2_x
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_r0_x = rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3
+        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
+        # (rrrs-w_1) reciprocal vector 1
+        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
+        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
+        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
         axis_y_rrrs_axes3_in_base_x = (
-        e_1_rrrs_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_rrrs_t +
-            rrrs_base_frame_xz*w_1_rrrs_t_2
+        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
+            rrrs_base_frame_xz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_y = (
-        e_1_rrrs_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_rrrs_t +
-            rrrs_base_frame_yz*w_1_rrrs_t_2
+        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
+            rrrs_base_frame_yz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_z = (
-        e_1_rrrs_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_rrrs_t +
-            rrrs_base_frame_zz*w_1_rrrs_t_2
+        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
+            rrrs_base_frame_zz*rrrs_w_1_t_2
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
@@ -7733,108 +7848,107 @@ def _run_joint_accelerations(m, X, V, A):
         axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
             axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
         )
-        inv_v_1_rrrs_z = 1.0/v_1_rrrs_z
-        # (rrrs-V8) reciprocal vector 2
-        inv_r_2_rrrs_r0_y = 1.0/r_2_rrrs_r0_y
-        # (rrrs-V1) velocity of the connection point
-        S_dot_rrrs_t = omega_y*q_rrrs_in_base_z - omega_z*q_rrrs_in_base_y
-        S_dot_rrrs_t_2 = omega_z*q_rrrs_in_base_x - omega_x*q_rrrs_in_base_z
-        S_dot_rrrs_t_3 = omega_x*q_rrrs_in_base_y - omega_y*q_rrrs_in_base_x
-        S_dot_rrrs_x = S_dot_rrrs_t + t_dot_x
-        S_dot_rrrs_y = S_dot_rrrs_t_2 + t_dot_y
-        S_dot_rrrs_z = S_dot_rrrs_t_3 + t_dot_z
-        # (rrrs-V10) rate of joint 1
-        qd_2_rrrs = (
-        inv_r_2_rrrs_r0_y*(S_dot_rrrs_x*axis_x_rrrs_axes3_x + S_dot_rrrs_y*axis_x_rrrs_axes3_y +
-            S_dot_rrrs_z*axis_x_rrrs_axes3_z)
+        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
+        # (rrrs-w_2) reciprocal vector 2
+        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
+        # (rrrs-S_dot) velocity of the connection point
+        rrrs_S_dot_t = omega_y*rrrs_q_in_base_z - omega_z*rrrs_q_in_base_y
+        rrrs_S_dot_t_2 = omega_z*rrrs_q_in_base_x - omega_x*rrrs_q_in_base_z
+        rrrs_S_dot_t_3 = omega_x*rrrs_q_in_base_y - omega_y*rrrs_q_in_base_x
+        rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
+        rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
+        rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
+        # (rrrs-qd_3) rate of joint 3
+        rrrs_qd_2 = (
+        inv_rrrs_r_2_r0_y*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_x_rrrs_axes3_z*rrrs_S_dot_z)
         )
-        qd_3_rrrs = (
-        inv_rrrs_platform_joint_offset_x*(S_dot_rrrs_x*axis_y_rrrs_axes3_in_base_x +
-            S_dot_rrrs_y*axis_y_rrrs_axes3_in_base_y + S_dot_rrrs_z*axis_y_rrrs_axes3_in_base_z +
-            qd_2_rrrs*r_2_rrrs_r0_x)
+        rrrs_qd_3 = (
+        inv_rrrs_platform_joint_offset_x*(axis_y_rrrs_axes3_in_base_x*rrrs_S_dot_x +
+            axis_y_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_dot_z +
+            rrrs_qd_2*rrrs_r_2_r0_x)
         )
-        qd_1_rrrs = (
-        inv_v_1_rrrs_z*(S_dot_rrrs_x*axis_z_rrrs_axes3_in_base_x +
-            S_dot_rrrs_y*axis_z_rrrs_axes3_in_base_y + S_dot_rrrs_z*axis_z_rrrs_axes3_in_base_z)
+        rrrs_qd_1 = (
+        inv_rrrs_v_1_z*(axis_z_rrrs_axes3_in_base_x*rrrs_S_dot_x +
+            axis_z_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_z_rrrs_axes3_in_base_z*rrrs_S_dot_z)
         )
-        # (rrrs-V13) angular velocity of link 1
-        omega_1_rrrs_t = qd_1_rrrs*s_2_rrrs
-        omega_1_rrrs_t_2 = c_2_rrrs*qd_1_rrrs
-        # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_rrrs_x = omega_1_rrrs_t_2*qd_2_rrrs
-        zeta_2_rrrs_y = omega_1_rrrs_t*qd_2_rrrs
-        # (rrrs-V15) angular velocity of link 2
-        omega_2_rrrs_r0_x = omega_1_rrrs_t_2*s_3_rrrs - c_3_rrrs*omega_1_rrrs_t
-        omega_2_rrrs_r0_y = -c_3_rrrs*omega_1_rrrs_t_2 - omega_1_rrrs_t*s_3_rrrs
-        # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_rrrs_r0_y = s_3_rrrs*zeta_2_rrrs_x - c_3_rrrs*zeta_2_rrrs_y
-        # (rrrs-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_rrrs_y = zeta_2_rrrs_r0_y - omega_2_rrrs_r0_x*qd_3_rrrs
-        # (rrrs-V17) angular velocity of link 3
-        omega_3_rrrs_z = qd_3_rrrs - qd_2_rrrs
-        # (rrrs-A7) acceleration of the connection point at zero joint accelerations
-        bias_rrrs_t = rrrs_joint2_offset_x*s_2_rrrs
-        bias_rrrs_t_2 = c_2_rrrs*rrrs_joint2_offset_x
-        bias_rrrs_t_3 = (
-        omega_2_rrrs_r0_x*(-bias_rrrs_t*s_3_rrrs - bias_rrrs_t_2*c_3_rrrs) -
-            omega_2_rrrs_r0_y*(bias_rrrs_t_2*s_3_rrrs - bias_rrrs_t*c_3_rrrs)
+        # (rrrs-omega_1) angular velocity of link 1
+        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_t_2 = rrrs_c_2*rrrs_qd_1
+        # (rrrs-omega_2) angular velocity of link 2
+        rrrs_omega_2_r0_x = rrrs_omega_1_t_2*rrrs_s_3 - rrrs_c_3*rrrs_omega_1_t
+        rrrs_omega_2_r0_y = -rrrs_c_3*rrrs_omega_1_t_2 - rrrs_omega_1_t*rrrs_s_3
+        # (rrrs-omega_3) angular velocity of link 3
+        rrrs_omega_3_z = rrrs_qd_3 - rrrs_qd_2
+        # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        rrrs_zeta_2_x = rrrs_omega_1_t_2*rrrs_qd_2
+        rrrs_zeta_2_y = rrrs_omega_1_t*rrrs_qd_2
+        rrrs_zeta_2_r0_y = rrrs_s_3*rrrs_zeta_2_x - rrrs_c_3*rrrs_zeta_2_y
+        # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        rrrs_beta_3_y = rrrs_zeta_2_r0_y - rrrs_omega_2_r0_x*rrrs_qd_3
+        # (rrrs-bias) acceleration of the connection point at zero joint accelerations
+        rrrs_bias_t = rrrs_joint2_offset_x*rrrs_s_2
+        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_3 = (
+        rrrs_omega_2_r0_x*(-rrrs_bias_t*rrrs_s_3 - rrrs_bias_t_2*rrrs_c_3) -
+            rrrs_omega_2_r0_y*(rrrs_bias_t_2*rrrs_s_3 - rrrs_bias_t*rrrs_c_3)
         )
-        bias_rrrs_t_4 = c_3_rrrs*rrrs_joint3_offset_x
-        bias_rrrs_t_5 = rrrs_joint3_offset_x*s_3_rrrs
-        bias_rrrs_t_6 = bias_rrrs_t_5*qd_2_rrrs
-        bias_rrrs_t_7 = bias_rrrs_t_4*qd_2_rrrs
-        bias_rrrs_t_8 = bias_rrrs_t_5*omega_2_rrrs_r0_x - bias_rrrs_t_4*omega_2_rrrs_r0_y
-        bias_rrrs_t_9 = omega_3_rrrs_z*rrrs_platform_joint_offset_x
-        bias_rrrs_t_10 = omega_2_rrrs_r0_y*rrrs_platform_joint_offset_x
-        bias_rrrs_x = (
-        bias_rrrs_t_3*omega_2_rrrs_r0_y + bias_rrrs_t_8*omega_2_rrrs_r0_y -
-            bias_rrrs_t_10*omega_2_rrrs_r0_y - bias_rrrs_t_7*qd_2_rrrs -
-            bias_rrrs_t_9*omega_3_rrrs_z
+        rrrs_bias_t_4 = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_bias_t_5 = rrrs_joint3_offset_x*rrrs_s_3
+        rrrs_bias_t_6 = rrrs_bias_t_5*rrrs_qd_2
+        rrrs_bias_t_7 = rrrs_bias_t_4*rrrs_qd_2
+        rrrs_bias_t_8 = rrrs_bias_t_5*rrrs_omega_2_r0_x - rrrs_bias_t_4*rrrs_omega_2_r0_y
+        rrrs_bias_t_9 = rrrs_omega_3_z*rrrs_platform_joint_offset_x
+        rrrs_bias_t_10 = rrrs_omega_2_r0_y*rrrs_platform_joint_offset_x
+        rrrs_bias_x = (
+        rrrs_bias_t_3*rrrs_omega_2_r0_y + rrrs_bias_t_8*rrrs_omega_2_r0_y -
+            rrrs_bias_t_10*rrrs_omega_2_r0_y - rrrs_bias_t_7*rrrs_qd_2 -
+            rrrs_bias_t_9*rrrs_omega_3_z
         )
-        bias_rrrs_y = (
-        bias_rrrs_t_10*omega_2_rrrs_r0_x - bias_rrrs_t_3*omega_2_rrrs_r0_x -
-            bias_rrrs_t_6*qd_2_rrrs - bias_rrrs_t_8*omega_2_rrrs_r0_x
+        rrrs_bias_y = (
+        rrrs_bias_t_10*rrrs_omega_2_r0_x - rrrs_bias_t_3*rrrs_omega_2_r0_x -
+            rrrs_bias_t_6*rrrs_qd_2 - rrrs_bias_t_8*rrrs_omega_2_r0_x
         )
-        bias_rrrs_z = (
-        bias_rrrs_t_5*(c_3_rrrs*zeta_2_rrrs_x + s_3_rrrs*zeta_2_rrrs_y) +
-            bias_rrrs_t_9*omega_2_rrrs_r0_x - beta_3_rrrs_y*rrrs_platform_joint_offset_x -
-            bias_rrrs_t_4*zeta_2_rrrs_r0_y - bias_rrrs_t_6*omega_2_rrrs_r0_y -
-            bias_rrrs_t_7*omega_2_rrrs_r0_x
+        rrrs_bias_z = (
+        rrrs_bias_t_5*(rrrs_c_3*rrrs_zeta_2_x + rrrs_s_3*rrrs_zeta_2_y) +
+            rrrs_bias_t_9*rrrs_omega_2_r0_x - rrrs_beta_3_y*rrrs_platform_joint_offset_x -
+            rrrs_bias_t_4*rrrs_zeta_2_r0_y - rrrs_bias_t_6*rrrs_omega_2_r0_y -
+            rrrs_bias_t_7*rrrs_omega_2_r0_x
         )
-        # (rrrs-A2) acceleration of the connection point without its centripetal part
-        a_p_rrrs_x = t_ddot_x + alpha_y*q_rrrs_in_base_z - alpha_z*q_rrrs_in_base_y
-        a_p_rrrs_y = t_ddot_y + alpha_z*q_rrrs_in_base_x - alpha_x*q_rrrs_in_base_z
-        a_p_rrrs_z = t_ddot_z + alpha_x*q_rrrs_in_base_y - alpha_y*q_rrrs_in_base_x
-        # (rrrs-A3) acceleration of the connection point
-        S_ddot_rrrs_x = a_p_rrrs_x + S_dot_rrrs_t_3*omega_y - S_dot_rrrs_t_2*omega_z
-        S_ddot_rrrs_y = a_p_rrrs_y + S_dot_rrrs_t*omega_z - S_dot_rrrs_t_3*omega_x
-        S_ddot_rrrs_z = a_p_rrrs_z + S_dot_rrrs_t_2*omega_x - S_dot_rrrs_t*omega_y
-        # (rrrs-A8) acceleration of the connection point left to the joint accelerations
-        rel_rrrs_x = (
-        S_ddot_rrrs_x*axis_x_rrrs_axes3_x + S_ddot_rrrs_y*axis_x_rrrs_axes3_y +
-            S_ddot_rrrs_z*axis_x_rrrs_axes3_z - bias_rrrs_x
+        # (rrrs-a_p) acceleration of the connection point without its centripetal part
+        rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_in_base_z - alpha_z*rrrs_q_in_base_y
+        rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_in_base_x - alpha_x*rrrs_q_in_base_z
+        rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_in_base_y - alpha_y*rrrs_q_in_base_x
+        # (rrrs-S_ddot) acceleration of the connection point
+        rrrs_S_ddot_x = rrrs_a_p_x + omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2
+        rrrs_S_ddot_y = rrrs_a_p_y + omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3
+        rrrs_S_ddot_z = rrrs_a_p_z + omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t
+        # (rrrs-rel) acceleration of the connection point left to the joint accelerations
+        rrrs_rel_x = (
+        axis_x_rrrs_axes3_x*rrrs_S_ddot_x + axis_x_rrrs_axes3_y*rrrs_S_ddot_y +
+            axis_x_rrrs_axes3_z*rrrs_S_ddot_z - rrrs_bias_x
         )
-        rel_rrrs_y = (
-        S_ddot_rrrs_x*axis_y_rrrs_axes3_in_base_x + S_ddot_rrrs_y*axis_y_rrrs_axes3_in_base_y +
-            S_ddot_rrrs_z*axis_y_rrrs_axes3_in_base_z - bias_rrrs_y
+        rrrs_rel_y = (
+        axis_y_rrrs_axes3_in_base_x*rrrs_S_ddot_x + axis_y_rrrs_axes3_in_base_y*rrrs_S_ddot_y +
+            axis_y_rrrs_axes3_in_base_z*rrrs_S_ddot_z - rrrs_bias_y
         )
-        rel_rrrs_z = (
-        S_ddot_rrrs_x*axis_z_rrrs_axes3_in_base_x + S_ddot_rrrs_y*axis_z_rrrs_axes3_in_base_y +
-            S_ddot_rrrs_z*axis_z_rrrs_axes3_in_base_z - bias_rrrs_z
+        rrrs_rel_z = (
+        axis_z_rrrs_axes3_in_base_x*rrrs_S_ddot_x + axis_z_rrrs_axes3_in_base_y*rrrs_S_ddot_y +
+            axis_z_rrrs_axes3_in_base_z*rrrs_S_ddot_z - rrrs_bias_z
         )
-        # (rrrs-A10) acceleration of joint 1
-        qdd_2_rrrs = inv_r_2_rrrs_r0_y*rel_rrrs_x
-        qdd_3_rrrs = inv_rrrs_platform_joint_offset_x*(rel_rrrs_y + qdd_2_rrrs*r_2_rrrs_r0_x)
-        qdd_1_rrrs = inv_v_1_rrrs_z*rel_rrrs_z
+        # (rrrs-qdd_1) acceleration of joint 1
+        rrrs_qdd_2 = inv_rrrs_r_2_r0_y*rrrs_rel_x
+        rrrs_qdd_3 = inv_rrrs_platform_joint_offset_x*(rrrs_rel_y + rrrs_qdd_2*rrrs_r_2_r0_x)
+        rrrs_qdd_1 = inv_rrrs_v_1_z*rrrs_rel_z
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
-            (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) &
-            (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE *
-            size_rrrs))
+        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
+            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
+            rrrs_size))
         )
-        out_qdd[_qdd_rrrs[0][leg]] = qdd_1_rrrs
-        out_qdd[_qdd_rrrs[1][leg]] = -qdd_2_rrrs
-        out_qdd[_qdd_rrrs[2][leg]] = qdd_3_rrrs
+        out_qdd[_qdd_rrrs[0][leg]] = rrrs_qdd_1
+        out_qdd[_qdd_rrrs[1][leg]] = -rrrs_qdd_2
+        out_qdd[_qdd_rrrs[2][leg]] = rrrs_qdd_3
     return ok, (out_qdd,)
 
 
@@ -7911,151 +8025,154 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        J_1_rrrrs_xx, J_2_rrrrs_xy, J_2_rrrrs_xz, J_2_rrrrs_yz, J_3_rrrrs_xy, J_3_rrrrs_xz,
-            J_3_rrrrs_yz, J_4_rrrrs_xy, J_4_rrrrs_xz, J_4_rrrrs_yz, Kd_3_rrrrs_t, Kd_3_rrrrs_t_2,
-            Sigma_2_rrrrs_xx, Sigma_2_rrrrs_yy, Sigma_2_rrrrs_zz, Sigma_3_rrrrs_xx,
-            Sigma_3_rrrrs_yy, Sigma_3_rrrrs_zz, Sigma_4_rrrrs_xx, Sigma_4_rrrrs_yy,
-            Sigma_4_rrrrs_zz, branch_1_rrrrs, branch_3_rrrrs, g_r0_x, g_r0_y, g_r0_z, h_1_rrrrs_y,
-            h_1_rrrrs_z, h_2_rrrrs_x, h_2_rrrrs_y, h_2_rrrrs_z, h_3_rrrrs_x, h_3_rrrrs_y,
-            h_3_rrrrs_z, h_4_rrrrs_x, h_4_rrrrs_y, h_4_rrrrs_z, inv_rrrrs_platform_joint_offset_x,
-            inv_size_rrrrs_t_2, inv_size_rrrrs_t_3, rho2_3_rrrrs_t, rrrrs_base_frame_xx,
-            rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
-            rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
-            rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_joint2_offset_x,
-            rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_link3_mass, rrrrs_link4_mass,
-            rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
-            rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,
+        inv_rrrrs_platform_joint_offset_x, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_J_1_xx,
+            rrrrs_J_2_xy, rrrrs_J_2_xz, rrrrs_J_2_yz, rrrrs_J_3_xy, rrrrs_J_3_xz, rrrrs_J_3_yz,
+            rrrrs_J_4_xy, rrrrs_J_4_xz, rrrrs_J_4_yz, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2,
+            rrrrs_Sigma_2_xx, rrrrs_Sigma_2_yy, rrrrs_Sigma_2_zz, rrrrs_Sigma_3_xx,
+            rrrrs_Sigma_3_yy, rrrrs_Sigma_3_zz, rrrrs_Sigma_4_xx, rrrrs_Sigma_4_yy,
+            rrrrs_Sigma_4_zz, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
+            rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx,
+            rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
+            rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_g_r0_x, rrrrs_g_r0_y,
+            rrrrs_g_r0_z, rrrrs_h_1_y, rrrrs_h_1_z, rrrrs_h_2_x, rrrrs_h_2_y, rrrrs_h_2_z,
+            rrrrs_h_3_x, rrrrs_h_3_y, rrrrs_h_3_z, rrrrs_h_4_x, rrrrs_h_4_y, rrrrs_h_4_z,
+            rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_link3_mass,
+            rrrrs_link4_mass, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
+            rrrrs_platform_point_y, rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size,
+            rrrrs_size_t_3,
         ) = k
-        y_2_extra_rrrrs = X[[7][leg]]
-        yd_2_rrrrs = V[[6][leg]]
-        ydd_2_rrrrs = A[[6][leg]]
-        # (rrrrs-K1) from the base point to the connection point
-        q_rrrrs_in_base_x = (
+        rrrrs_y_2_extra = X[[7][leg]]
+        rrrrs_yd_2 = V[[6][leg]]
+        rrrrs_ydd_2 = A[[6][leg]]
+        # (rrrrs-S) from the base point to the connection point
+        rrrrs_q_in_base_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
-        q_rrrrs_in_base_y = (
+        rrrrs_q_in_base_y = (
         R_yx*rrrrs_platform_point_x + R_yy*rrrrs_platform_point_y + R_yz*rrrrs_platform_point_z
         )
-        q_rrrrs_in_base_z = (
+        rrrrs_q_in_base_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        S_rrrrs_x = q_rrrrs_in_base_x + t_x - rrrrs_base_point_x
-        S_rrrrs_y = q_rrrrs_in_base_y + t_y - rrrrs_base_point_y
-        S_rrrrs_z = q_rrrrs_in_base_z + t_z - rrrrs_base_point_z
-        # (rrrrs-K4) component along the reference direction
-        px_1_rrrrs = (
-        S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy +
-            S_rrrrs_z*rrrrs_base_frame_zy
+        rrrrs_S_x = rrrrs_q_in_base_x + t_x - rrrrs_base_point_x
+        rrrrs_S_y = rrrrs_q_in_base_y + t_y - rrrrs_base_point_y
+        rrrrs_S_z = rrrrs_q_in_base_z + t_z - rrrrs_base_point_z
+        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrrs_c_2_t = sin(rrrrs_y_2_extra)
+        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrrs_s_2 = cos(rrrrs_y_2_extra)
+        # (rrrrs-Kr_1) right-hand side of the equation of joint 1
+        rrrrs_Kr_1_t = rrrrs_joint2_offset_x*rrrrs_s_2
+        rrrrs_Kr_1_t_2 = rrrrs_c_2_t*rrrrs_joint2_offset_x
+        # (rrrrs-px_1) component along the reference direction
+        rrrrs_px_1 = (
+        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
+            rrrrs_S_z*rrrrs_base_frame_zy
         )
-        # (rrrrs-K5) component across the reference direction
-        py_1_rrrrs = (
-        S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz +
-            S_rrrrs_z*rrrrs_base_frame_zz
+        # (rrrrs-py_1) component across the reference direction
+        rrrrs_py_1 = (
+        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
+            rrrrs_S_z*rrrrs_base_frame_zz
         )
-        # (rrrrs-K7) squared amplitude
-        rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs
-        # (rrrrs-K9) root, with the sign of the branch
-        root_1_rrrrs = branch_1_rrrrs*sqrt(rho2_1_rrrrs)
-        # (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_rrrrs_t = (
-        S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx +
-            S_rrrrs_z*rrrrs_base_frame_zx
+        # (rrrrs-rho2_1) squared amplitude
+        rrrrs_rho2_1 = rrrrs_px_1*rrrrs_px_1 + rrrrs_py_1*rrrrs_py_1
+        # (rrrrs-root_1) root, with the sign of the branch
+        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
+        # (rrrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrrs_xi_1_t = (
+        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
+            rrrrs_S_z*rrrrs_base_frame_zx
         )
-        # (rrrrs-K14) from the origin of joint 2 to the connection point
-        x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x
-        # (rrrrs-K2) cosine of the angle of joint 2 from its reference direction
-        c_2_rrrrs_t = sin(y_2_extra_rrrrs)
-        # (rrrrs-K3) sine of the angle of joint 2 from its reference direction
-        s_2_rrrrs = cos(y_2_extra_rrrrs)
-        # (rrrrs-K14) from the origin of joint 2 to the connection point
-        x_2_rrrrs_t = c_2_rrrrs_t*root_1_rrrrs
-        x_2_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*x_2_rrrrs_z
-        x_2_rrrrs_t_2 = root_1_rrrrs*s_2_rrrrs
-        x_2_rrrrs_r1_y = x_2_rrrrs_t_2 - c_2_rrrrs_t*x_2_rrrrs_z
-        # (rrrrs-K15) from the origin of joint 3 to the connection point
-        x_3_rrrrs_x = x_2_rrrrs_r1_x - rrrrs_joint3_offset_x
-        # (rrrrs-K16) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-        Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x
-        Kd_3_rrrrs = Kd_3_rrrrs_t + 0.5*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2
-        # (rrrrs-K20) factor of the cosine in the equation of joint 3
-        Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x
-        # (rrrrs-K21) factor of the sine in the equation of joint 3
-        Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y
-        # (rrrrs-K22) squared amplitude
-        rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs
-        # (rrrrs-K23) discriminant
-        disc_3_rrrrs = rho2_3_rrrrs - Kd_3_rrrrs*Kd_3_rrrrs
-        # (rrrrs-K24) root, with the sign of the branch
-        root_3_rrrrs = branch_3_rrrrs*sqrt(disc_3_rrrrs)
-        # (rrrrs-K30) from the origin of joint 4 to the connection point
-        x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
-        # (rrrrs-K32) cosine of the angle of joint 4 from its reference direction
-        c_4_rrrrs = inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x
-        # (rrrrs-K33) sine of the angle of joint 4 from its reference direction
-        s_4_rrrrs = (
-        inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        # (rrrrs-x_2) from the origin of joint 2 to the connection point
+        rrrrs_x_2_z = rrrrs_xi_1_t - rrrrs_joint2_offset_x
+        rrrrs_x_2_t = rrrrs_c_2_t*rrrrs_root_1
+        rrrrs_x_2_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_x_2_z
+        rrrrs_x_2_t_2 = rrrrs_root_1*rrrrs_s_2
+        rrrrs_x_2_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_x_2_z
+        # (rrrrs-x_3) from the origin of joint 3 to the connection point
+        rrrrs_x_3_x = rrrrs_x_2_r1_x - rrrrs_joint3_offset_x
+        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
+        rrrrs_Kd_3_t_3 = rrrrs_x_2_r1_y*rrrrs_x_2_r1_y + rrrrs_x_3_x*rrrrs_x_3_x
+        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
+        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
+        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_x
+        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
+        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_r1_y
+        # (rrrrs-rho2_3) squared amplitude
+        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
+        # (rrrrs-disc_3) discriminant
+        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
+        # (rrrrs-root_3) root, with the sign of the branch
+        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
+        # (rrrrs-x_4) from the origin of joint 4 to the connection point
+        rrrrs_x_4_x = inv_rrrrs_size_t_2*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
+        rrrrs_c_4 = inv_rrrrs_size_t_3*rrrrs_platform_joint_offset_x*rrrrs_x_4_x
+        # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
+        rrrrs_s_4 = (
+        inv_rrrrs_size_t_2*inv_rrrrs_size_t_3*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
         )
-        # (rrrrs-V2) from joint 3 to the connection point, along the links
-        r_3_rrrrs_t = rrrrs_platform_joint_offset_x*s_4_rrrrs
-        r_3_rrrrs_x = rrrrs_joint4_offset_x + c_4_rrrrs*rrrrs_platform_joint_offset_x
-        # (rrrrs-K25) cosine of the angle of joint 3 from its reference direction
-        inv_rho2_3_rrrrs = 1.0/rho2_3_rrrrs
-        c_3_rrrrs = inv_rho2_3_rrrrs*(Kc_3_rrrrs*Kd_3_rrrrs - Ks_3_rrrrs*root_3_rrrrs)
-        # (rrrrs-K26) sine of the angle of joint 3 from its reference direction
-        s_3_rrrrs = inv_rho2_3_rrrrs*(Kc_3_rrrrs*root_3_rrrrs + Kd_3_rrrrs*Ks_3_rrrrs)
-        # (rrrrs-V5) velocity of the connection point per rate of joint 1
-        e_1_rrrrs_r2_x = c_3_rrrrs*s_2_rrrrs - c_2_rrrrs_t*s_3_rrrrs
-        e_1_rrrrs_r2_y = -c_2_rrrrs_t*c_3_rrrrs - s_2_rrrrs*s_3_rrrrs
-        # (rrrrs-V4) from joint 1 to the connection point, along the links
-        r_1_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*xi_1_rrrrs_t
-        r_1_rrrrs_r1_y = x_2_rrrrs_t_2 - c_2_rrrrs_t*xi_1_rrrrs_t
-        r_1_rrrrs_r2_x = c_3_rrrrs*r_1_rrrrs_r1_x + r_1_rrrrs_r1_y*s_3_rrrrs
-        r_1_rrrrs_r2_y = c_3_rrrrs*r_1_rrrrs_r1_y - r_1_rrrrs_r1_x*s_3_rrrrs
-        # (rrrrs-V5) velocity of the connection point per rate of joint 1
-        v_1_rrrrs_z = (
-        (c_4_rrrrs*e_1_rrrrs_r2_x - e_1_rrrrs_r2_y*s_4_rrrrs)*(c_4_rrrrs*r_1_rrrrs_r2_y +
-            r_1_rrrrs_r2_x*s_4_rrrrs) - (c_4_rrrrs*e_1_rrrrs_r2_y +
-            e_1_rrrrs_r2_x*s_4_rrrrs)*(c_4_rrrrs*r_1_rrrrs_r2_x - r_1_rrrrs_r2_y*s_4_rrrrs)
+        # (rrrrs-r_3) from joint 3 to the connection point, along the links
+        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4
+        rrrrs_r_3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
+        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
+        rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
+        # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
+        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrrs_e_1_r2_x = rrrrs_c_3*rrrrs_s_2 - rrrrs_c_2_t*rrrrs_s_3
+        rrrrs_e_1_r2_y = -rrrrs_c_2_t*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
+        # (rrrrs-r_1) from joint 1 to the connection point, along the links
+        rrrrs_r_1_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_xi_1_t
+        rrrrs_r_1_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_xi_1_t
+        rrrrs_r_1_r2_x = rrrrs_c_3*rrrrs_r_1_r1_x + rrrrs_r_1_r1_y*rrrrs_s_3
+        rrrrs_r_1_r2_y = rrrrs_c_3*rrrrs_r_1_r1_y - rrrrs_r_1_r1_x*rrrrs_s_3
+        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrrs_v_1_z = (
+        (rrrrs_c_4*rrrrs_e_1_r2_x - rrrrs_e_1_r2_y*rrrrs_s_4)*(rrrrs_c_4*rrrrs_r_1_r2_y +
+            rrrrs_r_1_r2_x*rrrrs_s_4) - (rrrrs_c_4*rrrrs_e_1_r2_y +
+            rrrrs_e_1_r2_x*rrrrs_s_4)*(rrrrs_c_4*rrrrs_r_1_r2_x - rrrrs_r_1_r2_y*rrrrs_s_4)
         )
-        # (rrrrs-V2) from joint 3 to the connection point, along the links
-        r_3_rrrrs_r0_x = c_4_rrrrs*r_3_rrrrs_x + r_3_rrrrs_t*s_4_rrrrs
-        r_3_rrrrs_r0_y = r_3_rrrrs_x*s_4_rrrrs - c_4_rrrrs*r_3_rrrrs_t
-        # (rrrrs-K10) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrrrs = 1.0/rho2_1_rrrrs
-        c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs
-        # (rrrrs-K11) sine of the angle of joint 1 from its reference direction
-        s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs
-        # (rrrrs-V9) reciprocal vector 1
+        # (rrrrs-r_3) from joint 3 to the connection point, along the links
+        rrrrs_r_3_r0_x = rrrrs_c_4*rrrrs_r_3_x + rrrrs_r_3_t*rrrrs_s_4
+        rrrrs_r_3_r0_y = rrrrs_r_3_x*rrrrs_s_4 - rrrrs_c_4*rrrrs_r_3_t
+        # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
+        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_py_1*rrrrs_root_1
+        # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_px_1*rrrrs_root_1
+        # (rrrrs-w_1) reciprocal vector 1
         axis_z_rrrrs_axes4_in_base_x = (
-        rrrrs_base_frame_xz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_xy
+        rrrrs_base_frame_xz*rrrrs_s_1 - rrrrs_base_frame_xy*rrrrs_c_1
         )
         axis_z_rrrrs_axes4_in_base_y = (
-        rrrrs_base_frame_yz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_yy
+        rrrrs_base_frame_yz*rrrrs_s_1 - rrrrs_base_frame_yy*rrrrs_c_1
         )
         axis_z_rrrrs_axes4_in_base_z = (
-        rrrrs_base_frame_zz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_zy
+        rrrrs_base_frame_zz*rrrrs_s_1 - rrrrs_base_frame_zy*rrrrs_c_1
         )
-        axis_y_rrrrs_axes4_r1_x = c_3_rrrrs*s_4_rrrrs - c_4_rrrrs*s_3_rrrrs
-        axis_y_rrrrs_axes4_r1_y = c_3_rrrrs*c_4_rrrrs + s_3_rrrrs*s_4_rrrrs
+        axis_y_rrrrs_axes4_r1_x = rrrrs_c_3*rrrrs_s_4 - rrrrs_c_4*rrrrs_s_3
+        axis_y_rrrrs_axes4_r1_y = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4
         axis_y_rrrrs_axes4_r2_x = (
-        -axis_y_rrrrs_axes4_r1_x*c_2_rrrrs_t - axis_y_rrrrs_axes4_r1_y*s_2_rrrrs
+        -axis_y_rrrrs_axes4_r1_x*rrrrs_c_2_t - axis_y_rrrrs_axes4_r1_y*rrrrs_s_2
         )
         axis_y_rrrrs_axes4_r2_y = (
-        axis_y_rrrrs_axes4_r1_x*s_2_rrrrs - axis_y_rrrrs_axes4_r1_y*c_2_rrrrs_t
+        axis_y_rrrrs_axes4_r1_x*rrrrs_s_2 - axis_y_rrrrs_axes4_r1_y*rrrrs_c_2_t
         )
-        w_1_rrrrs_t = axis_y_rrrrs_axes4_r2_x*s_1_rrrrs
-        w_1_rrrrs_t_2 = axis_y_rrrrs_axes4_r2_x*c_1_rrrrs
+        rrrrs_w_1_t = axis_y_rrrrs_axes4_r2_x*rrrrs_s_1
+        rrrrs_w_1_t_2 = axis_y_rrrrs_axes4_r2_x*rrrrs_c_1
         axis_y_rrrrs_axes4_in_base_x = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_xx - rrrrs_base_frame_xy*w_1_rrrrs_t -
-            rrrrs_base_frame_xz*w_1_rrrrs_t_2
+        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_xx - rrrrs_base_frame_xy*rrrrs_w_1_t -
+            rrrrs_base_frame_xz*rrrrs_w_1_t_2
         )
         axis_y_rrrrs_axes4_in_base_y = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_yx - rrrrs_base_frame_yy*w_1_rrrrs_t -
-            rrrrs_base_frame_yz*w_1_rrrrs_t_2
+        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_yx - rrrrs_base_frame_yy*rrrrs_w_1_t -
+            rrrrs_base_frame_yz*rrrrs_w_1_t_2
         )
         axis_y_rrrrs_axes4_in_base_z = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_zx - rrrrs_base_frame_zy*w_1_rrrrs_t -
-            rrrrs_base_frame_zz*w_1_rrrrs_t_2
+        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_zx - rrrrs_base_frame_zy*rrrrs_w_1_t -
+            rrrrs_base_frame_zz*rrrrs_w_1_t_2
         )
         axis_x_rrrrs_axes4_x = (
         axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_z -
@@ -8069,449 +8186,450 @@ def _run_legs(m, X, V, A):
         axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_y -
             axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_x
         )
-        inv_v_1_rrrrs_z = 1.0/v_1_rrrrs_z
-        # (rrrrs-V10) reciprocal vector 2
-        inv_r_3_rrrrs_r0_y = 1.0/r_3_rrrrs_r0_y
-        # (rrrrs-V1) velocity of the connection point
-        S_dot_rrrrs_t = omega_y*q_rrrrs_in_base_z - omega_z*q_rrrrs_in_base_y
-        S_dot_rrrrs_t_2 = omega_z*q_rrrrs_in_base_x - omega_x*q_rrrrs_in_base_z
-        S_dot_rrrrs_t_3 = omega_x*q_rrrrs_in_base_y - omega_y*q_rrrrs_in_base_x
-        S_dot_rrrrs_x = S_dot_rrrrs_t + t_dot_x
-        S_dot_rrrrs_y = S_dot_rrrrs_t_2 + t_dot_y
-        S_dot_rrrrs_z = S_dot_rrrrs_t_3 + t_dot_z
-        # (rrrrs-V3) from joint 2 to the connection point, along the links
-        r_2_rrrrs_r0_x = c_3_rrrrs*x_2_rrrrs_r1_x + s_3_rrrrs*x_2_rrrrs_r1_y
-        r_2_rrrrs_r0_y = c_3_rrrrs*x_2_rrrrs_r1_y - s_3_rrrrs*x_2_rrrrs_r1_x
-        r_2_rrrrs_r1_x = c_4_rrrrs*r_2_rrrrs_r0_x - r_2_rrrrs_r0_y*s_4_rrrrs
-        r_2_rrrrs_r1_y = c_4_rrrrs*r_2_rrrrs_r0_y + r_2_rrrrs_r0_x*s_4_rrrrs
-        # (rrrrs-V12) velocity of the connection point left to the joints that are not extra
-        S_dot_rest_rrrrs_x = (
-        S_dot_rrrrs_x - yd_2_rrrrs*(axis_y_rrrrs_axes4_in_base_x*r_2_rrrrs_r1_x -
-            axis_x_rrrrs_axes4_x*r_2_rrrrs_r1_y)
+        inv_rrrrs_v_1_z = 1.0/rrrrs_v_1_z
+        # (rrrrs-w_3) reciprocal vector 2
+        inv_rrrrs_r_3_r0_y = 1.0/rrrrs_r_3_r0_y
+        # (rrrrs-S_dot) velocity of the connection point
+        rrrrs_S_dot_t = omega_y*rrrrs_q_in_base_z - omega_z*rrrrs_q_in_base_y
+        rrrrs_S_dot_t_2 = omega_z*rrrrs_q_in_base_x - omega_x*rrrrs_q_in_base_z
+        rrrrs_S_dot_t_3 = omega_x*rrrrs_q_in_base_y - omega_y*rrrrs_q_in_base_x
+        rrrrs_S_dot_x = rrrrs_S_dot_t + t_dot_x
+        rrrrs_S_dot_y = rrrrs_S_dot_t_2 + t_dot_y
+        rrrrs_S_dot_z = rrrrs_S_dot_t_3 + t_dot_z
+        # (rrrrs-r_2) from joint 2 to the connection point, along the links
+        rrrrs_r_2_r0_x = rrrrs_c_3*rrrrs_x_2_r1_x + rrrrs_s_3*rrrrs_x_2_r1_y
+        rrrrs_r_2_r0_y = rrrrs_c_3*rrrrs_x_2_r1_y - rrrrs_s_3*rrrrs_x_2_r1_x
+        rrrrs_r_2_r1_x = rrrrs_c_4*rrrrs_r_2_r0_x - rrrrs_r_2_r0_y*rrrrs_s_4
+        rrrrs_r_2_r1_y = rrrrs_c_4*rrrrs_r_2_r0_y + rrrrs_r_2_r0_x*rrrrs_s_4
+        # (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra
+        rrrrs_S_dot_rest_x = (
+        rrrrs_S_dot_x - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_x*rrrrs_r_2_r1_x -
+            axis_x_rrrrs_axes4_x*rrrrs_r_2_r1_y)
         )
-        S_dot_rest_rrrrs_y = (
-        S_dot_rrrrs_y - yd_2_rrrrs*(axis_y_rrrrs_axes4_in_base_y*r_2_rrrrs_r1_x -
-            axis_x_rrrrs_axes4_y*r_2_rrrrs_r1_y)
+        rrrrs_S_dot_rest_y = (
+        rrrrs_S_dot_y - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_y*rrrrs_r_2_r1_x -
+            axis_x_rrrrs_axes4_y*rrrrs_r_2_r1_y)
         )
-        S_dot_rest_rrrrs_z = (
-        S_dot_rrrrs_z - yd_2_rrrrs*(axis_y_rrrrs_axes4_in_base_z*r_2_rrrrs_r1_x -
-            axis_x_rrrrs_axes4_z*r_2_rrrrs_r1_y)
+        rrrrs_S_dot_rest_z = (
+        rrrrs_S_dot_z - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_z*rrrrs_r_2_r1_x -
+            axis_x_rrrrs_axes4_z*rrrrs_r_2_r1_y)
         )
-        # (rrrrs-V13) rate of joint 1
-        qd_3_rrrrs = (
-        inv_r_3_rrrrs_r0_y*(S_dot_rest_rrrrs_x*axis_x_rrrrs_axes4_x +
-            S_dot_rest_rrrrs_y*axis_x_rrrrs_axes4_y + S_dot_rest_rrrrs_z*axis_x_rrrrs_axes4_z)
+        # (rrrrs-qd_4) rate of joint 4
+        rrrrs_qd_3 = (
+        inv_rrrrs_r_3_r0_y*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+            axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_x_rrrrs_axes4_z*rrrrs_S_dot_rest_z)
         )
-        qd_4_rrrrs = (
-        inv_rrrrs_platform_joint_offset_x*(S_dot_rest_rrrrs_x*axis_y_rrrrs_axes4_in_base_x +
-            S_dot_rest_rrrrs_y*axis_y_rrrrs_axes4_in_base_y +
-            S_dot_rest_rrrrs_z*axis_y_rrrrs_axes4_in_base_z + qd_3_rrrrs*r_3_rrrrs_r0_x)
+        rrrrs_qd_4 = (
+        inv_rrrrs_platform_joint_offset_x*(axis_y_rrrrs_axes4_in_base_x*rrrrs_S_dot_rest_x +
+            axis_y_rrrrs_axes4_in_base_y*rrrrs_S_dot_rest_y +
+            axis_y_rrrrs_axes4_in_base_z*rrrrs_S_dot_rest_z + rrrrs_qd_3*rrrrs_r_3_r0_x)
         )
-        qd_1_rrrrs = (
-        inv_v_1_rrrrs_z*(S_dot_rest_rrrrs_x*axis_z_rrrrs_axes4_in_base_x +
-            S_dot_rest_rrrrs_y*axis_z_rrrrs_axes4_in_base_y +
-            S_dot_rest_rrrrs_z*axis_z_rrrrs_axes4_in_base_z)
+        rrrrs_qd_1 = (
+        inv_rrrrs_v_1_z*(axis_z_rrrrs_axes4_in_base_x*rrrrs_S_dot_rest_x +
+            axis_z_rrrrs_axes4_in_base_y*rrrrs_S_dot_rest_y +
+            axis_z_rrrrs_axes4_in_base_z*rrrrs_S_dot_rest_z)
         )
-        # (rrrrs-V16) angular velocity of link 1
-        omega_1_rrrrs_t = qd_1_rrrrs*s_2_rrrrs
-        omega_1_rrrrs_t_2 = c_2_rrrrs_t*qd_1_rrrrs
-        # (rrrrs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_rrrrs_x = omega_1_rrrrs_t_2*yd_2_rrrrs
-        zeta_2_rrrrs_y = omega_1_rrrrs_t*yd_2_rrrrs
-        # (rrrrs-V18) angular velocity of link 2
-        omega_2_rrrrs_r0_x = c_3_rrrrs*omega_1_rrrrs_t - omega_1_rrrrs_t_2*s_3_rrrrs
-        omega_2_rrrrs_r0_y = -c_3_rrrrs*omega_1_rrrrs_t_2 - omega_1_rrrrs_t*s_3_rrrrs
-        # (rrrrs-A5) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_rrrrs_x = omega_2_rrrrs_r0_y*qd_3_rrrrs
-        zeta_3_rrrrs_y = omega_2_rrrrs_r0_x*qd_3_rrrrs
-        # (rrrrs-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_rrrrs_x = -zeta_3_rrrrs_x - c_3_rrrrs*zeta_2_rrrrs_x - s_3_rrrrs*zeta_2_rrrrs_y
-        beta_3_rrrrs_y = zeta_3_rrrrs_y + s_3_rrrrs*zeta_2_rrrrs_x - c_3_rrrrs*zeta_2_rrrrs_y
-        # (rrrrs-V20) angular velocity of link 3
-        omega_3_rrrrs_z = yd_2_rrrrs - qd_3_rrrrs
-        omega_3_rrrrs_r0_x = c_4_rrrrs*omega_2_rrrrs_r0_x - omega_2_rrrrs_r0_y*s_4_rrrrs
-        omega_3_rrrrs_r0_y = c_4_rrrrs*omega_2_rrrrs_r0_y + omega_2_rrrrs_r0_x*s_4_rrrrs
-        # (rrrrs-A7) angular acceleration of link 4 from the turning of axis 4
-        zeta_4_rrrrs_y = omega_3_rrrrs_r0_x*qd_4_rrrrs
-        # (rrrrs-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_rrrrs_r0_y = beta_3_rrrrs_x*s_4_rrrrs + beta_3_rrrrs_y*c_4_rrrrs
-        # (rrrrs-A8) angular acceleration of link 4 at zero joint accelerations
-        beta_4_rrrrs_y = beta_3_rrrrs_r0_y - zeta_4_rrrrs_y
-        # (rrrrs-V22) angular velocity of link 4
-        omega_4_rrrrs_z = omega_3_rrrrs_z + qd_4_rrrrs
-        # (rrrrs-V19) centripetal tensor of link 2
-        W_2_rrrrs_t = omega_1_rrrrs_t_2*omega_1_rrrrs_t_2
-        W_2_rrrrs_t_2 = yd_2_rrrrs*yd_2_rrrrs
-        W_2_rrrrs_xy = omega_1_rrrrs_t*omega_1_rrrrs_t_2
-        # (rrrrs-V21) centripetal tensor of link 3
-        W_3_rrrrs_t = omega_2_rrrrs_r0_x*omega_2_rrrrs_r0_x
-        W_3_rrrrs_t_2 = omega_2_rrrrs_r0_y*omega_2_rrrrs_r0_y
-        W_3_rrrrs_t_3 = omega_3_rrrrs_z*omega_3_rrrrs_z
-        W_3_rrrrs_xy = omega_2_rrrrs_r0_x*omega_2_rrrrs_r0_y
-        W_3_rrrrs_xz = omega_2_rrrrs_r0_x*omega_3_rrrrs_z
-        W_3_rrrrs_yz = omega_2_rrrrs_r0_y*omega_3_rrrrs_z
-        # (rrrrs-V23) centripetal tensor of link 4
-        W_4_rrrrs_t = omega_3_rrrrs_r0_x*omega_3_rrrrs_r0_x
-        W_4_rrrrs_t_2 = omega_3_rrrrs_r0_y*omega_3_rrrrs_r0_y
-        W_4_rrrrs_t_3 = omega_4_rrrrs_z*omega_4_rrrrs_z
-        W_4_rrrrs_xx = W_4_rrrrs_t_2 + W_4_rrrrs_t_3
-        W_4_rrrrs_xy = omega_3_rrrrs_r0_x*omega_3_rrrrs_r0_y
-        W_4_rrrrs_xz = omega_3_rrrrs_r0_x*omega_4_rrrrs_z
-        W_4_rrrrs_yz = omega_3_rrrrs_r0_y*omega_4_rrrrs_z
-        # (rrrrs-A9) acceleration of the connection point at zero joint accelerations
-        bias_rrrrs_t = rrrrs_joint2_offset_x*s_2_rrrrs
-        bias_rrrrs_t_2 = c_2_rrrrs_t*rrrrs_joint2_offset_x
-        d_2_rrrrs_r2_x = bias_rrrrs_t*c_3_rrrrs - bias_rrrrs_t_2*s_3_rrrrs
-        d_2_rrrrs_r2_y = -bias_rrrrs_t*s_3_rrrrs - bias_rrrrs_t_2*c_3_rrrrs
-        d_2_rrrrs_r3_x = c_4_rrrrs*d_2_rrrrs_r2_x - d_2_rrrrs_r2_y*s_4_rrrrs
-        d_2_rrrrs_r3_y = c_4_rrrrs*d_2_rrrrs_r2_y + d_2_rrrrs_r2_x*s_4_rrrrs
-        bias_rrrrs_t_3 = c_3_rrrrs*rrrrs_joint3_offset_x
-        bias_rrrrs_t_4 = rrrrs_joint3_offset_x*s_3_rrrrs
-        d_3_rrrrs_r1_x = bias_rrrrs_t_3*c_4_rrrrs + bias_rrrrs_t_4*s_4_rrrrs
-        d_3_rrrrs_r1_y = bias_rrrrs_t_3*s_4_rrrrs - bias_rrrrs_t_4*c_4_rrrrs
-        bias_rrrrs_t_5 = c_4_rrrrs*rrrrs_joint4_offset_x
-        bias_rrrrs_t_6 = rrrrs_joint4_offset_x*s_4_rrrrs
-        bias_rrrrs_x = (
-        W_4_rrrrs_xy*bias_rrrrs_t_6 + W_4_rrrrs_xy*d_2_rrrrs_r3_y + W_4_rrrrs_xy*d_3_rrrrs_r1_y -
-            W_4_rrrrs_t_2*d_2_rrrrs_r3_x - W_4_rrrrs_xx*rrrrs_platform_joint_offset_x -
-            bias_rrrrs_t_5*(W_3_rrrrs_t_3 + W_4_rrrrs_t_2) - d_3_rrrrs_r1_x*(W_2_rrrrs_t_2 +
-            W_4_rrrrs_t_2)
+        # (rrrrs-omega_1) angular velocity of link 1
+        rrrrs_omega_1_t = rrrrs_qd_1*rrrrs_s_2
+        rrrrs_omega_1_t_2 = rrrrs_c_2_t*rrrrs_qd_1
+        # (rrrrs-omega_2) angular velocity of link 2
+        rrrrs_omega_2_r0_x = rrrrs_c_3*rrrrs_omega_1_t - rrrrs_omega_1_t_2*rrrrs_s_3
+        rrrrs_omega_2_r0_y = -rrrrs_c_3*rrrrs_omega_1_t_2 - rrrrs_omega_1_t*rrrrs_s_3
+        # (rrrrs-omega_3) angular velocity of link 3
+        rrrrs_omega_3_z = rrrrs_yd_2 - rrrrs_qd_3
+        rrrrs_omega_3_r0_x = rrrrs_c_4*rrrrs_omega_2_r0_x - rrrrs_omega_2_r0_y*rrrrs_s_4
+        rrrrs_omega_3_r0_y = rrrrs_c_4*rrrrs_omega_2_r0_y + rrrrs_omega_2_r0_x*rrrrs_s_4
+        # (rrrrs-omega_4) angular velocity of link 4
+        rrrrs_omega_4_z = rrrrs_omega_3_z + rrrrs_qd_4
+        # (rrrrs-zeta_4) angular acceleration of link 4 from the turning of axis 4
+        rrrrs_zeta_4_y = rrrrs_omega_3_r0_x*rrrrs_qd_4
+        # (rrrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        rrrrs_zeta_2_x = rrrrs_omega_1_t_2*rrrrs_yd_2
+        rrrrs_zeta_2_y = rrrrs_omega_1_t*rrrrs_yd_2
+        # (rrrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrrs_zeta_3_x = rrrrs_omega_2_r0_y*rrrrs_qd_3
+        rrrrs_zeta_3_y = rrrrs_omega_2_r0_x*rrrrs_qd_3
+        # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        rrrrs_beta_3_x = -rrrrs_zeta_3_x - rrrrs_c_3*rrrrs_zeta_2_x - rrrrs_s_3*rrrrs_zeta_2_y
+        rrrrs_beta_3_y = rrrrs_zeta_3_y + rrrrs_s_3*rrrrs_zeta_2_x - rrrrs_c_3*rrrrs_zeta_2_y
+        rrrrs_beta_3_r0_y = rrrrs_beta_3_x*rrrrs_s_4 + rrrrs_beta_3_y*rrrrs_c_4
+        # (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations
+        rrrrs_beta_4_y = rrrrs_beta_3_r0_y - rrrrs_zeta_4_y
+        # (rrrrs-W_2) centripetal tensor of link 2
+        rrrrs_W_2_t = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2
+        rrrrs_W_2_t_2 = rrrrs_yd_2*rrrrs_yd_2
+        rrrrs_W_2_xy = rrrrs_omega_1_t*rrrrs_omega_1_t_2
+        # (rrrrs-W_3) centripetal tensor of link 3
+        rrrrs_W_3_t = rrrrs_omega_2_r0_x*rrrrs_omega_2_r0_x
+        rrrrs_W_3_t_2 = rrrrs_omega_2_r0_y*rrrrs_omega_2_r0_y
+        rrrrs_W_3_t_3 = rrrrs_omega_3_z*rrrrs_omega_3_z
+        rrrrs_W_3_xy = rrrrs_omega_2_r0_x*rrrrs_omega_2_r0_y
+        rrrrs_W_3_xz = rrrrs_omega_2_r0_x*rrrrs_omega_3_z
+        rrrrs_W_3_yz = rrrrs_omega_2_r0_y*rrrrs_omega_3_z
+        # (rrrrs-W_4) centripetal tensor of link 4
+        rrrrs_W_4_t = rrrrs_omega_3_r0_x*rrrrs_omega_3_r0_x
+        rrrrs_W_4_t_2 = rrrrs_omega_3_r0_y*rrrrs_omega_3_r0_y
+        rrrrs_W_4_t_3 = rrrrs_omega_4_z*rrrrs_omega_4_z
+        rrrrs_W_4_xx = rrrrs_W_4_t_2 + rrrrs_W_4_t_3
+        rrrrs_W_4_xy = rrrrs_omega_3_r0_x*rrrrs_omega_3_r0_y
+        rrrrs_W_4_xz = rrrrs_omega_3_r0_x*rrrrs_omega_4_z
+        rrrrs_W_4_yz = rrrrs_omega_3_r0_y*rrrrs_omega_4_z
+        # (rrrrs-bias) acceleration of the connection point at zero joint accelerations
+        rrrrs_d_2_r2_x = rrrrs_Kr_1_t*rrrrs_c_3 - rrrrs_Kr_1_t_2*rrrrs_s_3
+        rrrrs_d_2_r2_y = -rrrrs_Kr_1_t*rrrrs_s_3 - rrrrs_Kr_1_t_2*rrrrs_c_3
+        rrrrs_d_2_r3_x = rrrrs_c_4*rrrrs_d_2_r2_x - rrrrs_d_2_r2_y*rrrrs_s_4
+        rrrrs_d_2_r3_y = rrrrs_c_4*rrrrs_d_2_r2_y + rrrrs_d_2_r2_x*rrrrs_s_4
+        rrrrs_bias_t = rrrrs_c_3*rrrrs_joint3_offset_x
+        rrrrs_bias_t_2 = rrrrs_joint3_offset_x*rrrrs_s_3
+        rrrrs_d_3_r1_x = rrrrs_bias_t*rrrrs_c_4 + rrrrs_bias_t_2*rrrrs_s_4
+        rrrrs_d_3_r1_y = rrrrs_bias_t*rrrrs_s_4 - rrrrs_bias_t_2*rrrrs_c_4
+        rrrrs_bias_t_3 = rrrrs_c_4*rrrrs_joint4_offset_x
+        rrrrs_bias_t_4 = rrrrs_joint4_offset_x*rrrrs_s_4
+        rrrrs_bias_x = (
+        rrrrs_W_4_xy*rrrrs_bias_t_4 + rrrrs_W_4_xy*rrrrs_d_2_r3_y + rrrrs_W_4_xy*rrrrs_d_3_r1_y -
+            rrrrs_W_4_t_2*rrrrs_d_2_r3_x - rrrrs_W_4_xx*rrrrs_platform_joint_offset_x -
+            rrrrs_bias_t_3*(rrrrs_W_3_t_3 + rrrrs_W_4_t_2) - rrrrs_d_3_r1_x*(rrrrs_W_2_t_2 +
+            rrrrs_W_4_t_2)
         )
-        bias_rrrrs_y = (
-        W_4_rrrrs_xy*bias_rrrrs_t_5 + W_4_rrrrs_xy*d_2_rrrrs_r3_x + W_4_rrrrs_xy*d_3_rrrrs_r1_x +
-            W_4_rrrrs_xy*rrrrs_platform_joint_offset_x - W_4_rrrrs_t*d_2_rrrrs_r3_y -
-            bias_rrrrs_t_6*(W_3_rrrrs_t_3 + W_4_rrrrs_t) - d_3_rrrrs_r1_y*(W_2_rrrrs_t_2 +
-            W_4_rrrrs_t)
+        rrrrs_bias_y = (
+        rrrrs_W_4_xy*rrrrs_bias_t_3 + rrrrs_W_4_xy*rrrrs_d_2_r3_x + rrrrs_W_4_xy*rrrrs_d_3_r1_x +
+            rrrrs_W_4_xy*rrrrs_platform_joint_offset_x - rrrrs_W_4_t*rrrrs_d_2_r3_y -
+            rrrrs_bias_t_4*(rrrrs_W_3_t_3 + rrrrs_W_4_t) - rrrrs_d_3_r1_y*(rrrrs_W_2_t_2 +
+            rrrrs_W_4_t)
         )
-        bias_rrrrs_z = (
-        bias_rrrrs_t_5*(omega_3_rrrrs_r0_x*omega_3_rrrrs_z - beta_3_rrrrs_r0_y) +
-            bias_rrrrs_t_6*(beta_3_rrrrs_x*c_4_rrrrs + omega_3_rrrrs_r0_y*omega_3_rrrrs_z -
-            beta_3_rrrrs_y*s_4_rrrrs) + rrrrs_platform_joint_offset_x*(W_4_rrrrs_xz -
-            beta_4_rrrrs_y) + 2.0*d_3_rrrrs_r1_x*omega_3_rrrrs_r0_x*yd_2_rrrrs +
-            2.0*d_3_rrrrs_r1_y*omega_3_rrrrs_r0_y*yd_2_rrrrs
+        rrrrs_bias_z = (
+        rrrrs_bias_t_3*(rrrrs_omega_3_r0_x*rrrrs_omega_3_z - rrrrs_beta_3_r0_y) +
+            rrrrs_bias_t_4*(rrrrs_beta_3_x*rrrrs_c_4 + rrrrs_omega_3_r0_y*rrrrs_omega_3_z -
+            rrrrs_beta_3_y*rrrrs_s_4) + rrrrs_platform_joint_offset_x*(rrrrs_W_4_xz -
+            rrrrs_beta_4_y) + 2.0*rrrrs_d_3_r1_x*rrrrs_omega_3_r0_x*rrrrs_yd_2 +
+            2.0*rrrrs_d_3_r1_y*rrrrs_omega_3_r0_y*rrrrs_yd_2
         )
-        # (rrrrs-A42) remainder without the acceleration in: acceleration of the origin of joint 3
-        a_o3_rrrrs_o_t = rrrrs_joint3_offset_x*(W_2_rrrrs_t + W_2_rrrrs_t_2)
-        # (rrrrs-N10) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        g_r1_x = g_r0_y*s_1_rrrrs - c_1_rrrrs*g_r0_x
-        g_r1_y = -c_1_rrrrs*g_r0_y - g_r0_x*s_1_rrrrs
-        g_r3_x = g_r0_z*s_2_rrrrs - c_2_rrrrs_t*g_r1_y
-        g_r3_y = -c_2_rrrrs_t*g_r0_z - g_r1_y*s_2_rrrrs
-        # (rrrrs-V9) reciprocal vector 1
-        w_1_rrrrs_t_3 = axis_z_rrrrs_axes4_in_base_x*inv_v_1_rrrrs_z
-        w_1_rrrrs_t_4 = axis_z_rrrrs_axes4_in_base_y*inv_v_1_rrrrs_z
-        w_1_rrrrs_t_5 = axis_z_rrrrs_axes4_in_base_z*inv_v_1_rrrrs_z
-        # (rrrrs-V10) reciprocal vector 2
-        w_3_rrrrs_t = axis_x_rrrrs_axes4_x*inv_r_3_rrrrs_r0_y
-        w_3_rrrrs_t_2 = axis_x_rrrrs_axes4_y*inv_r_3_rrrrs_r0_y
-        w_3_rrrrs_t_3 = axis_x_rrrrs_axes4_z*inv_r_3_rrrrs_r0_y
-        # (rrrrs-A2) acceleration of the connection point without its centripetal part
-        a_p_rrrrs_x = t_ddot_x + alpha_y*q_rrrrs_in_base_z - alpha_z*q_rrrrs_in_base_y
-        a_p_rrrrs_y = t_ddot_y + alpha_z*q_rrrrs_in_base_x - alpha_x*q_rrrrs_in_base_z
-        a_p_rrrrs_z = t_ddot_z + alpha_x*q_rrrrs_in_base_y - alpha_y*q_rrrrs_in_base_x
-        # (rrrrs-A3) acceleration of the connection point
-        S_ddot_rrrrs_x = a_p_rrrrs_x + S_dot_rrrrs_t_3*omega_y - S_dot_rrrrs_t_2*omega_z
-        S_ddot_rrrrs_y = a_p_rrrrs_y + S_dot_rrrrs_t*omega_z - S_dot_rrrrs_t_3*omega_x
-        S_ddot_rrrrs_z = a_p_rrrrs_z + S_dot_rrrrs_t_2*omega_x - S_dot_rrrrs_t*omega_y
-        S_ddot_rrrrs_tip_x = (
-        S_ddot_rrrrs_x*axis_x_rrrrs_axes4_x + S_ddot_rrrrs_y*axis_x_rrrrs_axes4_y +
-            S_ddot_rrrrs_z*axis_x_rrrrs_axes4_z
+        # (rrrrs-a_o_3_o) remainder without the acceleration in: acceleration of the origin of joint 3
+        rrrrs_a_o_3_o_t = rrrrs_joint3_offset_x*(rrrrs_W_2_t + rrrrs_W_2_t_2)
+        # (rrrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        rrrrs_g_r1_x = rrrrs_g_r0_y*rrrrs_s_1 - rrrrs_c_1*rrrrs_g_r0_x
+        rrrrs_g_r1_y = -rrrrs_c_1*rrrrs_g_r0_y - rrrrs_g_r0_x*rrrrs_s_1
+        rrrrs_g_r3_x = rrrrs_g_r0_z*rrrrs_s_2 - rrrrs_c_2_t*rrrrs_g_r1_y
+        rrrrs_g_r3_y = -rrrrs_c_2_t*rrrrs_g_r0_z - rrrrs_g_r1_y*rrrrs_s_2
+        # (rrrrs-w_1) reciprocal vector 1
+        rrrrs_w_1_t_3 = axis_z_rrrrs_axes4_in_base_x*inv_rrrrs_v_1_z
+        rrrrs_w_1_t_4 = axis_z_rrrrs_axes4_in_base_y*inv_rrrrs_v_1_z
+        rrrrs_w_1_t_5 = axis_z_rrrrs_axes4_in_base_z*inv_rrrrs_v_1_z
+        # (rrrrs-w_3) reciprocal vector 2
+        rrrrs_w_3_t = axis_x_rrrrs_axes4_x*inv_rrrrs_r_3_r0_y
+        rrrrs_w_3_t_2 = axis_x_rrrrs_axes4_y*inv_rrrrs_r_3_r0_y
+        rrrrs_w_3_t_3 = axis_x_rrrrs_axes4_z*inv_rrrrs_r_3_r0_y
+        # (rrrrs-a_p) acceleration of the connection point without its centripetal part
+        rrrrs_a_p_x = t_ddot_x + alpha_y*rrrrs_q_in_base_z - alpha_z*rrrrs_q_in_base_y
+        rrrrs_a_p_y = t_ddot_y + alpha_z*rrrrs_q_in_base_x - alpha_x*rrrrs_q_in_base_z
+        rrrrs_a_p_z = t_ddot_z + alpha_x*rrrrs_q_in_base_y - alpha_y*rrrrs_q_in_base_x
+        # (rrrrs-S_ddot) acceleration of the connection point
+        rrrrs_S_ddot_x = rrrrs_a_p_x + omega_y*rrrrs_S_dot_t_3 - omega_z*rrrrs_S_dot_t_2
+        rrrrs_S_ddot_y = rrrrs_a_p_y + omega_z*rrrrs_S_dot_t - omega_x*rrrrs_S_dot_t_3
+        rrrrs_S_ddot_z = rrrrs_a_p_z + omega_x*rrrrs_S_dot_t_2 - omega_y*rrrrs_S_dot_t
+        rrrrs_S_ddot_tip_x = (
+        axis_x_rrrrs_axes4_x*rrrrs_S_ddot_x + axis_x_rrrrs_axes4_y*rrrrs_S_ddot_y +
+            axis_x_rrrrs_axes4_z*rrrrs_S_ddot_z
         )
-        S_ddot_rrrrs_tip_y = (
-        S_ddot_rrrrs_x*axis_y_rrrrs_axes4_in_base_x + S_ddot_rrrrs_y*axis_y_rrrrs_axes4_in_base_y
-            + S_ddot_rrrrs_z*axis_y_rrrrs_axes4_in_base_z
+        rrrrs_S_ddot_tip_y = (
+        axis_y_rrrrs_axes4_in_base_x*rrrrs_S_ddot_x + axis_y_rrrrs_axes4_in_base_y*rrrrs_S_ddot_y
+            + axis_y_rrrrs_axes4_in_base_z*rrrrs_S_ddot_z
         )
-        S_ddot_rrrrs_tip_z = (
-        S_ddot_rrrrs_x*axis_z_rrrrs_axes4_in_base_x + S_ddot_rrrrs_y*axis_z_rrrrs_axes4_in_base_y
-            + S_ddot_rrrrs_z*axis_z_rrrrs_axes4_in_base_z
+        rrrrs_S_ddot_tip_z = (
+        axis_z_rrrrs_axes4_in_base_x*rrrrs_S_ddot_x + axis_z_rrrrs_axes4_in_base_y*rrrrs_S_ddot_y
+            + axis_z_rrrrs_axes4_in_base_z*rrrrs_S_ddot_z
         )
-        # (rrrrs-A10) acceleration of the connection point left to the joint accelerations
-        rel_rrrrs_x = S_ddot_rrrrs_tip_x + r_2_rrrrs_r1_y*ydd_2_rrrrs - bias_rrrrs_x
-        rel_rrrrs_y = S_ddot_rrrrs_tip_y - bias_rrrrs_y - r_2_rrrrs_r1_x*ydd_2_rrrrs
-        rel_rrrrs_z = S_ddot_rrrrs_tip_z - bias_rrrrs_z
-        # (rrrrs-A13) acceleration of joint 1
-        qdd_3_rrrrs = inv_r_3_rrrrs_r0_y*rel_rrrrs_x
-        qdd_1_rrrrs = inv_v_1_rrrrs_z*rel_rrrrs_z
-        # (rrrrs-N15) acceleration of the reference point of link 4, less gravity
-        acc_4_rrrrs_x = (
-        S_ddot_rrrrs_tip_x - axis_x_rrrrs_axes4_x*gravity_x - axis_x_rrrrs_axes4_y*gravity_y -
+        # (rrrrs-rel) acceleration of the connection point left to the joint accelerations
+        rrrrs_rel_x = rrrrs_S_ddot_tip_x + rrrrs_r_2_r1_y*rrrrs_ydd_2 - rrrrs_bias_x
+        rrrrs_rel_y = rrrrs_S_ddot_tip_y - rrrrs_bias_y - rrrrs_r_2_r1_x*rrrrs_ydd_2
+        rrrrs_rel_z = rrrrs_S_ddot_tip_z - rrrrs_bias_z
+        # (rrrrs-qdd_1) acceleration of joint 1
+        rrrrs_qdd_3 = inv_rrrrs_r_3_r0_y*rrrrs_rel_x
+        rrrrs_qdd_1 = inv_rrrrs_v_1_z*rrrrs_rel_z
+        # (rrrrs-acc_4) acceleration of the reference point of link 4, less gravity
+        rrrrs_acc_4_x = (
+        rrrrs_S_ddot_tip_x - axis_x_rrrrs_axes4_x*gravity_x - axis_x_rrrrs_axes4_y*gravity_y -
             axis_x_rrrrs_axes4_z*gravity_z
         )
-        acc_4_rrrrs_y = (
-        S_ddot_rrrrs_tip_y - axis_y_rrrrs_axes4_in_base_x*gravity_x -
+        rrrrs_acc_4_y = (
+        rrrrs_S_ddot_tip_y - axis_y_rrrrs_axes4_in_base_x*gravity_x -
             axis_y_rrrrs_axes4_in_base_y*gravity_y - axis_y_rrrrs_axes4_in_base_z*gravity_z
         )
-        acc_4_rrrrs_z = (
-        S_ddot_rrrrs_tip_z - axis_z_rrrrs_axes4_in_base_x*gravity_x -
+        rrrrs_acc_4_z = (
+        rrrrs_S_ddot_tip_z - axis_z_rrrrs_axes4_in_base_x*gravity_x -
             axis_z_rrrrs_axes4_in_base_y*gravity_y - axis_z_rrrrs_axes4_in_base_z*gravity_z
         )
-        # (rrrrs-A22) angular acceleration of link 1
-        alpha_1_rrrrs_t = qdd_1_rrrrs*s_2_rrrrs
-        alpha_1_rrrrs_t_2 = c_2_rrrrs_t*qdd_1_rrrrs
-        # (rrrrs-A26) angular acceleration of link 2
-        alpha_2_rrrrs_x = alpha_1_rrrrs_t - zeta_2_rrrrs_x
-        alpha_2_rrrrs_y = -alpha_1_rrrrs_t_2 - zeta_2_rrrrs_y
-        # (rrrrs-A28) acceleration tensor of link 2
-        B_2_rrrrs_yx = ydd_2_rrrrs - W_2_rrrrs_xy
-        B_2_rrrrs_zx = zeta_2_rrrrs_y - alpha_2_rrrrs_y
-        B_2_rrrrs_zy = alpha_2_rrrrs_x - zeta_2_rrrrs_x
-        # (rrrrs-A41) acceleration of the origin of joint 3
-        a_o3_rrrrs_t = B_2_rrrrs_yx*rrrrs_joint3_offset_x
-        # (rrrrs-N9) acceleration of the reference point of link 3, less gravity
-        acc_3_rrrrs_x = (
-        a_o3_rrrrs_t*s_3_rrrrs - a_o3_rrrrs_o_t*c_3_rrrrs - c_3_rrrrs*g_r3_x - g_r3_y*s_3_rrrrs
+        # (rrrrs-alpha_1) angular acceleration of link 1
+        rrrrs_alpha_1_t = rrrrs_qdd_1*rrrrs_s_2
+        rrrrs_alpha_1_t_2 = rrrrs_c_2_t*rrrrs_qdd_1
+        # (rrrrs-alpha_2) angular acceleration of link 2
+        rrrrs_alpha_2_x = rrrrs_alpha_1_t - rrrrs_zeta_2_x
+        rrrrs_alpha_2_y = -rrrrs_alpha_1_t_2 - rrrrs_zeta_2_y
+        # (rrrrs-alpha_3) angular acceleration of link 3
+        rrrrs_alpha_3_x = rrrrs_alpha_2_x*rrrrs_c_3 + rrrrs_alpha_2_y*rrrrs_s_3 - rrrrs_zeta_3_x
+        rrrrs_alpha_3_y = rrrrs_zeta_3_y + rrrrs_alpha_2_y*rrrrs_c_3 - rrrrs_alpha_2_x*rrrrs_s_3
+        rrrrs_alpha_3_z = rrrrs_ydd_2 - rrrrs_qdd_3
+        # (rrrrs-alpha_4) angular acceleration of link 4
+        rrrrs_alpha_4_x = (
+        rrrrs_alpha_3_x*rrrrs_c_4 + rrrrs_omega_3_r0_y*rrrrs_qd_4 - rrrrs_alpha_3_y*rrrrs_s_4
         )
-        acc_3_rrrrs_y = (
-        a_o3_rrrrs_o_t*s_3_rrrrs + a_o3_rrrrs_t*c_3_rrrrs + g_r3_x*s_3_rrrrs - c_3_rrrrs*g_r3_y
+        rrrrs_alpha_4_y = rrrrs_alpha_3_x*rrrrs_s_4 + rrrrs_alpha_3_y*rrrrs_c_4 - rrrrs_zeta_4_y
+        rrrrs_alpha_4_z = (
+        rrrrs_alpha_3_z + inv_rrrrs_platform_joint_offset_x*(rrrrs_rel_y +
+            rrrrs_qdd_3*rrrrs_r_3_r0_x)
         )
-        acc_3_rrrrs_z = B_2_rrrrs_zx*rrrrs_joint3_offset_x - g_r1_x
-        # (rrrrs-A30) angular acceleration of link 3
-        alpha_3_rrrrs_x = alpha_2_rrrrs_x*c_3_rrrrs + alpha_2_rrrrs_y*s_3_rrrrs - zeta_3_rrrrs_x
-        alpha_3_rrrrs_y = zeta_3_rrrrs_y + alpha_2_rrrrs_y*c_3_rrrrs - alpha_2_rrrrs_x*s_3_rrrrs
-        alpha_3_rrrrs_z = ydd_2_rrrrs - qdd_3_rrrrs
-        # (rrrrs-A32) acceleration tensor of link 3
-        B_3_rrrrs_xy = W_3_rrrrs_xy - alpha_3_rrrrs_z
-        B_3_rrrrs_xz = W_3_rrrrs_xz + alpha_3_rrrrs_y
-        B_3_rrrrs_yx = W_3_rrrrs_xy + alpha_3_rrrrs_z
-        B_3_rrrrs_yz = W_3_rrrrs_yz - alpha_3_rrrrs_x
-        B_3_rrrrs_zx = W_3_rrrrs_xz - alpha_3_rrrrs_y
-        B_3_rrrrs_zy = W_3_rrrrs_yz + alpha_3_rrrrs_x
-        # (rrrrs-N53) inertia moment of the links that turn with link 3, about their reference points
-        mu_3_rrrrs_x = (
-        B_3_rrrrs_yx*J_3_rrrrs_xz + B_3_rrrrs_zy*Sigma_3_rrrrs_yy + J_3_rrrrs_yz*(W_3_rrrrs_t_2 -
-            W_3_rrrrs_t_3) + acc_3_rrrrs_z*h_3_rrrrs_y - B_3_rrrrs_yz*Sigma_3_rrrrs_zz -
-            B_3_rrrrs_zx*J_3_rrrrs_xy - acc_3_rrrrs_y*h_3_rrrrs_z
+        # (rrrrs-B_4) acceleration tensor of link 4
+        rrrrs_B_4_xy = rrrrs_W_4_xy - rrrrs_alpha_4_z
+        rrrrs_B_4_xz = rrrrs_W_4_xz + rrrrs_alpha_4_y
+        rrrrs_B_4_yx = rrrrs_W_4_xy + rrrrs_alpha_4_z
+        rrrrs_B_4_yz = rrrrs_W_4_yz - rrrrs_alpha_4_x
+        rrrrs_B_4_zx = rrrrs_W_4_xz - rrrrs_alpha_4_y
+        rrrrs_B_4_zy = rrrrs_W_4_yz + rrrrs_alpha_4_x
+        # (rrrrs-mu_4) inertia moment of the links that turn with link 4, about their reference points
+        rrrrs_mu_4_x = (
+        rrrrs_B_4_yx*rrrrs_J_4_xz + rrrrs_B_4_zy*rrrrs_Sigma_4_yy + rrrrs_J_4_yz*(rrrrs_W_4_t_2 -
+            rrrrs_W_4_t_3) + rrrrs_acc_4_z*rrrrs_h_4_y - rrrrs_B_4_yz*rrrrs_Sigma_4_zz -
+            rrrrs_B_4_zx*rrrrs_J_4_xy - rrrrs_acc_4_y*rrrrs_h_4_z
         )
-        mu_3_rrrrs_y = (
-        B_3_rrrrs_xz*Sigma_3_rrrrs_zz + B_3_rrrrs_zy*J_3_rrrrs_xy + acc_3_rrrrs_x*h_3_rrrrs_z -
-            B_3_rrrrs_xy*J_3_rrrrs_yz - B_3_rrrrs_zx*Sigma_3_rrrrs_xx - J_3_rrrrs_xz*(W_3_rrrrs_t
-            - W_3_rrrrs_t_3) - acc_3_rrrrs_z*h_3_rrrrs_x
+        rrrrs_mu_4_y = (
+        rrrrs_B_4_xz*rrrrs_Sigma_4_zz + rrrrs_B_4_zy*rrrrs_J_4_xy + rrrrs_acc_4_x*rrrrs_h_4_z -
+            rrrrs_B_4_xy*rrrrs_J_4_yz - rrrrs_B_4_zx*rrrrs_Sigma_4_xx - rrrrs_J_4_xz*(rrrrs_W_4_t
+            - rrrrs_W_4_t_3) - rrrrs_acc_4_z*rrrrs_h_4_x
         )
-        mu_3_rrrrs_z = (
-        B_3_rrrrs_xz*J_3_rrrrs_yz + B_3_rrrrs_yx*Sigma_3_rrrrs_xx + J_3_rrrrs_xy*(W_3_rrrrs_t -
-            W_3_rrrrs_t_2) + acc_3_rrrrs_y*h_3_rrrrs_x - B_3_rrrrs_xy*Sigma_3_rrrrs_yy -
-            B_3_rrrrs_yz*J_3_rrrrs_xz - acc_3_rrrrs_x*h_3_rrrrs_y
+        rrrrs_mu_4_z = (
+        rrrrs_B_4_xz*rrrrs_J_4_yz + rrrrs_B_4_yx*rrrrs_Sigma_4_xx + rrrrs_J_4_xy*(rrrrs_W_4_t -
+            rrrrs_W_4_t_2) + rrrrs_acc_4_y*rrrrs_h_4_x - rrrrs_B_4_xy*rrrrs_Sigma_4_yy -
+            rrrrs_B_4_yz*rrrrs_J_4_xz - rrrrs_acc_4_x*rrrrs_h_4_y
         )
-        # (rrrrs-A34) angular acceleration of link 4
-        alpha_4_rrrrs_x = (
-        alpha_3_rrrrs_x*c_4_rrrrs + omega_3_rrrrs_r0_y*qd_4_rrrrs - alpha_3_rrrrs_y*s_4_rrrrs
+        # (rrrrs-B_2) acceleration tensor of link 2
+        rrrrs_B_2_yx = rrrrs_ydd_2 - rrrrs_W_2_xy
+        rrrrs_B_2_zx = rrrrs_zeta_2_y - rrrrs_alpha_2_y
+        rrrrs_B_2_zy = rrrrs_alpha_2_x - rrrrs_zeta_2_x
+        # (rrrrs-a_o_3) acceleration of the origin of joint 3
+        rrrrs_a_o_3_t = rrrrs_B_2_yx*rrrrs_joint3_offset_x
+        # (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity
+        rrrrs_acc_3_x = (
+        rrrrs_a_o_3_t*rrrrs_s_3 - rrrrs_a_o_3_o_t*rrrrs_c_3 - rrrrs_c_3*rrrrs_g_r3_x -
+            rrrrs_g_r3_y*rrrrs_s_3
         )
-        alpha_4_rrrrs_y = alpha_3_rrrrs_x*s_4_rrrrs + alpha_3_rrrrs_y*c_4_rrrrs - zeta_4_rrrrs_y
-        alpha_4_rrrrs_z = (
-        alpha_3_rrrrs_z + inv_rrrrs_platform_joint_offset_x*(rel_rrrrs_y +
-            qdd_3_rrrrs*r_3_rrrrs_r0_x)
+        rrrrs_acc_3_y = (
+        rrrrs_a_o_3_o_t*rrrrs_s_3 + rrrrs_a_o_3_t*rrrrs_c_3 + rrrrs_g_r3_x*rrrrs_s_3 -
+            rrrrs_c_3*rrrrs_g_r3_y
         )
-        # (rrrrs-A37) acceleration tensor of link 4
-        B_4_rrrrs_xy = W_4_rrrrs_xy - alpha_4_rrrrs_z
-        B_4_rrrrs_xz = W_4_rrrrs_xz + alpha_4_rrrrs_y
-        B_4_rrrrs_yx = W_4_rrrrs_xy + alpha_4_rrrrs_z
-        B_4_rrrrs_yz = W_4_rrrrs_yz - alpha_4_rrrrs_x
-        B_4_rrrrs_zx = W_4_rrrrs_xz - alpha_4_rrrrs_y
-        B_4_rrrrs_zy = W_4_rrrrs_yz + alpha_4_rrrrs_x
-        # (rrrrs-N45) inertia moment of the links that turn with link 4, about their reference points
-        mu_4_rrrrs_x = (
-        B_4_rrrrs_yx*J_4_rrrrs_xz + B_4_rrrrs_zy*Sigma_4_rrrrs_yy + J_4_rrrrs_yz*(W_4_rrrrs_t_2 -
-            W_4_rrrrs_t_3) + acc_4_rrrrs_z*h_4_rrrrs_y - B_4_rrrrs_yz*Sigma_4_rrrrs_zz -
-            B_4_rrrrs_zx*J_4_rrrrs_xy - acc_4_rrrrs_y*h_4_rrrrs_z
+        rrrrs_acc_3_z = rrrrs_B_2_zx*rrrrs_joint3_offset_x - rrrrs_g_r1_x
+        # (rrrrs-B_3) acceleration tensor of link 3
+        rrrrs_B_3_xy = rrrrs_W_3_xy - rrrrs_alpha_3_z
+        rrrrs_B_3_xz = rrrrs_W_3_xz + rrrrs_alpha_3_y
+        rrrrs_B_3_yx = rrrrs_W_3_xy + rrrrs_alpha_3_z
+        rrrrs_B_3_yz = rrrrs_W_3_yz - rrrrs_alpha_3_x
+        rrrrs_B_3_zx = rrrrs_W_3_xz - rrrrs_alpha_3_y
+        rrrrs_B_3_zy = rrrrs_W_3_yz + rrrrs_alpha_3_x
+        # (rrrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        rrrrs_mu_3_x = (
+        rrrrs_B_3_yx*rrrrs_J_3_xz + rrrrs_B_3_zy*rrrrs_Sigma_3_yy + rrrrs_J_3_yz*(rrrrs_W_3_t_2 -
+            rrrrs_W_3_t_3) + rrrrs_acc_3_z*rrrrs_h_3_y - rrrrs_B_3_yz*rrrrs_Sigma_3_zz -
+            rrrrs_B_3_zx*rrrrs_J_3_xy - rrrrs_acc_3_y*rrrrs_h_3_z
         )
-        mu_4_rrrrs_y = (
-        B_4_rrrrs_xz*Sigma_4_rrrrs_zz + B_4_rrrrs_zy*J_4_rrrrs_xy + acc_4_rrrrs_x*h_4_rrrrs_z -
-            B_4_rrrrs_xy*J_4_rrrrs_yz - B_4_rrrrs_zx*Sigma_4_rrrrs_xx - J_4_rrrrs_xz*(W_4_rrrrs_t
-            - W_4_rrrrs_t_3) - acc_4_rrrrs_z*h_4_rrrrs_x
+        rrrrs_mu_3_y = (
+        rrrrs_B_3_xz*rrrrs_Sigma_3_zz + rrrrs_B_3_zy*rrrrs_J_3_xy + rrrrs_acc_3_x*rrrrs_h_3_z -
+            rrrrs_B_3_xy*rrrrs_J_3_yz - rrrrs_B_3_zx*rrrrs_Sigma_3_xx - rrrrs_J_3_xz*(rrrrs_W_3_t
+            - rrrrs_W_3_t_3) - rrrrs_acc_3_z*rrrrs_h_3_x
         )
-        mu_4_rrrrs_z = (
-        B_4_rrrrs_xz*J_4_rrrrs_yz + B_4_rrrrs_yx*Sigma_4_rrrrs_xx + J_4_rrrrs_xy*(W_4_rrrrs_t -
-            W_4_rrrrs_t_2) + acc_4_rrrrs_y*h_4_rrrrs_x - B_4_rrrrs_xy*Sigma_4_rrrrs_yy -
-            B_4_rrrrs_yz*J_4_rrrrs_xz - acc_4_rrrrs_x*h_4_rrrrs_y
+        rrrrs_mu_3_z = (
+        rrrrs_B_3_xz*rrrrs_J_3_yz + rrrrs_B_3_yx*rrrrs_Sigma_3_xx + rrrrs_J_3_xy*(rrrrs_W_3_t -
+            rrrrs_W_3_t_2) + rrrrs_acc_3_y*rrrrs_h_3_x - rrrrs_B_3_xy*rrrrs_Sigma_3_yy -
+            rrrrs_B_3_yz*rrrrs_J_3_xz - rrrrs_acc_3_x*rrrrs_h_3_y
         )
-        # (rrrrs-N55) moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-        N_3_rrrrs_x = mu_3_rrrrs_x + c_4_rrrrs*mu_4_rrrrs_x + mu_4_rrrrs_y*s_4_rrrrs
-        N_3_rrrrs_y = mu_3_rrrrs_y + c_4_rrrrs*mu_4_rrrrs_y - mu_4_rrrrs_x*s_4_rrrrs
-        N_3_rrrrs_z = mu_3_rrrrs_z + mu_4_rrrrs_z
-        # (rrrrs-N13) inertia force of link 3 less its weight
-        f_3_rrrrs_z = (
-        B_3_rrrrs_zx*h_3_rrrrs_x + B_3_rrrrs_zy*h_3_rrrrs_y + acc_3_rrrrs_z*rrrrs_link3_mass -
-            h_3_rrrrs_z*(W_3_rrrrs_t + W_3_rrrrs_t_2)
+        # (rrrrs-N_3) moment about joint 3 of the links from 3 outwards, the force at the connection point left out
+        rrrrs_N_3_x = rrrrs_mu_3_x + rrrrs_c_4*rrrrs_mu_4_x + rrrrs_mu_4_y*rrrrs_s_4
+        rrrrs_N_3_y = rrrrs_mu_3_y + rrrrs_c_4*rrrrs_mu_4_y - rrrrs_mu_4_x*rrrrs_s_4
+        rrrrs_N_3_z = rrrrs_mu_3_z + rrrrs_mu_4_z
+        # (rrrrs-f_3) inertia force of link 3 less its weight
+        rrrrs_f_3_z = (
+        rrrrs_B_3_zx*rrrrs_h_3_x + rrrrs_B_3_zy*rrrrs_h_3_y + rrrrs_acc_3_z*rrrrs_link3_mass -
+            rrrrs_h_3_z*(rrrrs_W_3_t + rrrrs_W_3_t_2)
         )
-        # (rrrrs-N63) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_rrrrs_x = (
-        B_2_rrrrs_yx*J_2_rrrrs_xz + B_2_rrrrs_zy*Sigma_2_rrrrs_yy + J_2_rrrrs_yz*(W_2_rrrrs_t -
-            W_2_rrrrs_t_2) + Sigma_2_rrrrs_zz*alpha_1_rrrrs_t + g_r3_y*h_2_rrrrs_z -
-            B_2_rrrrs_zx*J_2_rrrrs_xy - g_r1_x*h_2_rrrrs_y
+        # (rrrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        rrrrs_mu_2_x = (
+        rrrrs_B_2_yx*rrrrs_J_2_xz + rrrrs_B_2_zy*rrrrs_Sigma_2_yy + rrrrs_J_2_yz*(rrrrs_W_2_t -
+            rrrrs_W_2_t_2) + rrrrs_Sigma_2_zz*rrrrs_alpha_1_t + rrrrs_g_r3_y*rrrrs_h_2_z -
+            rrrrs_B_2_zx*rrrrs_J_2_xy - rrrrs_g_r1_x*rrrrs_h_2_y
         )
-        mu_2_rrrrs_y = (
-        B_2_rrrrs_zy*J_2_rrrrs_xy + g_r1_x*h_2_rrrrs_x - B_2_rrrrs_zx*Sigma_2_rrrrs_xx -
-            J_2_rrrrs_xz*(omega_1_rrrrs_t*omega_1_rrrrs_t - W_2_rrrrs_t_2) -
-            J_2_rrrrs_yz*(-W_2_rrrrs_xy - ydd_2_rrrrs) - Sigma_2_rrrrs_zz*alpha_1_rrrrs_t_2 -
-            g_r3_x*h_2_rrrrs_z
+        rrrrs_mu_2_y = (
+        rrrrs_B_2_zy*rrrrs_J_2_xy + rrrrs_g_r1_x*rrrrs_h_2_x - rrrrs_B_2_zx*rrrrs_Sigma_2_xx -
+            rrrrs_J_2_xz*(rrrrs_omega_1_t*rrrrs_omega_1_t - rrrrs_W_2_t_2) -
+            rrrrs_J_2_yz*(-rrrrs_W_2_xy - rrrrs_ydd_2) - rrrrs_Sigma_2_zz*rrrrs_alpha_1_t_2 -
+            rrrrs_g_r3_x*rrrrs_h_2_z
         )
-        # (rrrrs-N65) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_rrrrs_x = mu_2_rrrrs_x + N_3_rrrrs_x*c_3_rrrrs - N_3_rrrrs_y*s_3_rrrrs
-        N_2_rrrrs_y = (
-        mu_2_rrrrs_y + N_3_rrrrs_x*s_3_rrrrs + N_3_rrrrs_y*c_3_rrrrs -
-            f_3_rrrrs_z*rrrrs_joint3_offset_x
+        # (rrrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        rrrrs_N_2_x = rrrrs_mu_2_x + rrrrs_N_3_x*rrrrs_c_3 - rrrrs_N_3_y*rrrrs_s_3
+        rrrrs_N_2_y = (
+        rrrrs_mu_2_y + rrrrs_N_3_x*rrrrs_s_3 + rrrrs_N_3_y*rrrrs_c_3 -
+            rrrrs_f_3_z*rrrrs_joint3_offset_x
         )
-        # (rrrrs-N75) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rrrrs_z = J_1_rrrrs_xx*qdd_1_rrrrs - g_r1_x*h_1_rrrrs_y - g_r1_y*h_1_rrrrs_z
-        # (rrrrs-N77) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_rrrrs_z = mu_1_rrrrs_z + N_2_rrrrs_x*s_2_rrrrs - N_2_rrrrs_y*c_2_rrrrs_t
-        # (rrrrs-N83) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rrrrs_t = inv_rrrrs_platform_joint_offset_x*mu_4_rrrrs_z
-        # (rrrrs-N87) leg force on the platform without actuation and without the mass at the connection point
-        c_rrrrs_x = (
-        W_4_rrrrs_xx*h_4_rrrrs_x - B_4_rrrrs_xy*h_4_rrrrs_y - B_4_rrrrs_xz*h_4_rrrrs_z -
-            inv_r_3_rrrrs_r0_y*(G_rrrrs_t*r_3_rrrrs_r0_x - N_3_rrrrs_z)
+        # (rrrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrrrs_mu_1_z = (
+        rrrrs_J_1_xx*rrrrs_qdd_1 - rrrrs_g_r1_x*rrrrs_h_1_y - rrrrs_g_r1_y*rrrrs_h_1_z
         )
-        c_rrrrs_y = (
-        h_4_rrrrs_y*(W_4_rrrrs_t + W_4_rrrrs_t_3) - G_rrrrs_t - B_4_rrrrs_yx*h_4_rrrrs_x -
-            B_4_rrrrs_yz*h_4_rrrrs_z
+        # (rrrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrrrs_N_1_z = rrrrs_mu_1_z + rrrrs_N_2_x*rrrrs_s_2 - rrrrs_N_2_y*rrrrs_c_2_t
+        # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrrrs_G_t = inv_rrrrs_platform_joint_offset_x*rrrrs_mu_4_z
+        # (rrrrs-c) leg force on the platform without actuation and without the mass at the connection point
+        rrrrs_c_x = (
+        rrrrs_W_4_xx*rrrrs_h_4_x - inv_rrrrs_r_3_r0_y*(rrrrs_G_t*rrrrs_r_3_r0_x - rrrrs_N_3_z) -
+            rrrrs_B_4_xy*rrrrs_h_4_y - rrrrs_B_4_xz*rrrrs_h_4_z
         )
-        c_rrrrs_z = (
-        h_4_rrrrs_z*(W_4_rrrrs_t + W_4_rrrrs_t_2) - B_4_rrrrs_zx*h_4_rrrrs_x -
-            B_4_rrrrs_zy*h_4_rrrrs_y - N_1_rrrrs_z*inv_v_1_rrrrs_z
+        rrrrs_c_y = (
+        rrrrs_h_4_y*(rrrrs_W_4_t + rrrrs_W_4_t_3) - rrrrs_G_t - rrrrs_B_4_yx*rrrrs_h_4_x -
+            rrrrs_B_4_yz*rrrrs_h_4_z
         )
-        # (rrrrs-N92) leg force on the platform without actuation, the last link's mass included
-        c_true_rrrrs_x = c_rrrrs_x - acc_4_rrrrs_x*rrrrs_link4_mass
-        c_true_rrrrs_y = c_rrrrs_y - acc_4_rrrrs_y*rrrrs_link4_mass
-        c_true_rrrrs_z = c_rrrrs_z - acc_4_rrrrs_z*rrrrs_link4_mass
-        c_true_rrrrs_in_base_x = (
-        axis_x_rrrrs_axes4_x*c_true_rrrrs_x + axis_y_rrrrs_axes4_in_base_x*c_true_rrrrs_y +
-            axis_z_rrrrs_axes4_in_base_x*c_true_rrrrs_z
+        rrrrs_c_z = (
+        rrrrs_h_4_z*(rrrrs_W_4_t + rrrrs_W_4_t_2) - inv_rrrrs_v_1_z*rrrrs_N_1_z -
+            rrrrs_B_4_zx*rrrrs_h_4_x - rrrrs_B_4_zy*rrrrs_h_4_y
         )
-        c_true_rrrrs_in_base_y = (
-        axis_x_rrrrs_axes4_y*c_true_rrrrs_x + axis_y_rrrrs_axes4_in_base_y*c_true_rrrrs_y +
-            axis_z_rrrrs_axes4_in_base_y*c_true_rrrrs_z
+        # (rrrrs-c_true) leg force on the platform without actuation, the last link's mass included
+        rrrrs_c_true_x = rrrrs_c_x - rrrrs_acc_4_x*rrrrs_link4_mass
+        rrrrs_c_true_y = rrrrs_c_y - rrrrs_acc_4_y*rrrrs_link4_mass
+        rrrrs_c_true_z = rrrrs_c_z - rrrrs_acc_4_z*rrrrs_link4_mass
+        rrrrs_c_true_in_base_x = (
+        axis_x_rrrrs_axes4_x*rrrrs_c_true_x + axis_y_rrrrs_axes4_in_base_x*rrrrs_c_true_y +
+            axis_z_rrrrs_axes4_in_base_x*rrrrs_c_true_z
         )
-        c_true_rrrrs_in_base_z = (
-        axis_x_rrrrs_axes4_z*c_true_rrrrs_x + axis_y_rrrrs_axes4_in_base_z*c_true_rrrrs_y +
-            axis_z_rrrrs_axes4_in_base_z*c_true_rrrrs_z
+        rrrrs_c_true_in_base_y = (
+        axis_x_rrrrs_axes4_y*rrrrs_c_true_x + axis_y_rrrrs_axes4_in_base_y*rrrrs_c_true_y +
+            axis_z_rrrrs_axes4_in_base_y*rrrrs_c_true_z
+        )
+        rrrrs_c_true_in_base_z = (
+        axis_x_rrrrs_axes4_z*rrrrs_c_true_x + axis_y_rrrrs_axes4_in_base_z*rrrrs_c_true_y +
+            axis_z_rrrrs_axes4_in_base_z*rrrrs_c_true_z
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
-            (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0)
-            & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE *
-            size_rrrrs))
+        ok & m.every(leg, (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
+            (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0)
+            & (abs(rrrrs_v_1_z) > _TOLERANCE * rrrrs_size) & (abs(-rrrrs_r_3_r0_y) > _TOLERANCE *
+            rrrrs_size))
         )
-        out_leg_force[_leg_force_rrrrs[0][leg]] = c_true_rrrrs_in_base_x
-        out_leg_force[_leg_force_rrrrs[1][leg]] = c_true_rrrrs_in_base_y
-        out_leg_force[_leg_force_rrrrs[2][leg]] = c_true_rrrrs_in_base_z
-        out_drive[_drive_rrrrs[0][leg]] = w_1_rrrrs_t_3
-        out_drive[_drive_rrrrs[1][leg]] = w_1_rrrrs_t_4
-        out_drive[_drive_rrrrs[2][leg]] = w_1_rrrrs_t_5
-        out_drive[_drive_rrrrs[3][leg]] = -w_3_rrrrs_t
-        out_drive[_drive_rrrrs[4][leg]] = -w_3_rrrrs_t_2
-        out_drive[_drive_rrrrs[5][leg]] = -w_3_rrrrs_t_3
+        out_leg_force[_leg_force_rrrrs[0][leg]] = rrrrs_c_true_in_base_x
+        out_leg_force[_leg_force_rrrrs[1][leg]] = rrrrs_c_true_in_base_y
+        out_leg_force[_leg_force_rrrrs[2][leg]] = rrrrs_c_true_in_base_z
+        out_drive[_drive_rrrrs[0][leg]] = rrrrs_w_1_t_3
+        out_drive[_drive_rrrrs[1][leg]] = rrrrs_w_1_t_4
+        out_drive[_drive_rrrrs[2][leg]] = rrrrs_w_1_t_5
+        out_drive[_drive_rrrrs[3][leg]] = -rrrrs_w_3_t
+        out_drive[_drive_rrrrs[4][leg]] = -rrrrs_w_3_t_2
+        out_drive[_drive_rrrrs[5][leg]] = -rrrrs_w_3_t_3
     for leg, k in legs[1]:
         (
-        J_1_rrrs_xx, J_2_rrrs_xy, J_2_rrrs_xz, J_2_rrrs_yz, J_3_rrrs_xy, J_3_rrrs_xz, J_3_rrrs_yz,
-            Kd_2_rrrs_t, Kd_2_rrrs_t_2, Sigma_2_rrrs_xx, Sigma_2_rrrs_yy, Sigma_2_rrrs_zz,
-            Sigma_3_rrrs_xx, Sigma_3_rrrs_yy, Sigma_3_rrrs_zz, branch_1_rrrs, branch_2_rrrs,
-            g_r0_x_2, g_r0_y_2, g_r0_z_2, h_1_rrrs_y, h_1_rrrs_z, h_2_rrrs_x, h_2_rrrs_y,
-            h_2_rrrs_z, h_3_rrrs_x, h_3_rrrs_y, h_3_rrrs_z, inv_rrrs_platform_joint_offset_x,
-            inv_size_rrrs_t, inv_size_rrrs_t_2, rho2_2_rrrs_t, rrrs_base_frame_xx,
+        inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
+            rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yz, rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yz,
+            rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
+            rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
             rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
             rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_g_r0_x, rrrs_g_r0_y, rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y,
+            rrrs_h_2_z, rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
             rrrs_joint3_offset_x, rrrs_link3_mass, rrrs_platform_joint_offset_x,
-            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size_rrrs,
-            size_rrrs_t_3,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
+            rrrs_size, rrrs_size_t_3,
         ) = k
-        # (rrrs-K1) from the base point to the connection point
-        q_rrrs_in_base_x = (
+        # (rrrs-S) from the base point to the connection point
+        rrrs_q_in_base_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        q_rrrs_in_base_y = (
+        rrrs_q_in_base_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        q_rrrs_in_base_z = (
+        rrrs_q_in_base_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        S_rrrs_x = q_rrrs_in_base_x + t_x - rrrs_base_point_x
-        S_rrrs_y = q_rrrs_in_base_y + t_y - rrrs_base_point_y
-        S_rrrs_z = q_rrrs_in_base_z + t_z - rrrs_base_point_z
-        # (rrrs-K2) component along the reference direction
-        px_1_rrrs = (
-        S_rrrs_x*rrrs_base_frame_xy + S_rrrs_y*rrrs_base_frame_yy + S_rrrs_z*rrrs_base_frame_zy
+        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        # (rrrs-px_1) component along the reference direction
+        rrrs_px_1 = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        # (rrrs-K3) component across the reference direction
-        py_1_rrrs = (
-        S_rrrs_x*rrrs_base_frame_xz + S_rrrs_y*rrrs_base_frame_yz + S_rrrs_z*rrrs_base_frame_zz
+        # (rrrs-py_1) component across the reference direction
+        rrrs_py_1 = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        # (rrrs-K5) squared amplitude
-        rho2_1_rrrs = px_1_rrrs*px_1_rrrs + py_1_rrrs*py_1_rrrs
-        # (rrrs-K7) root, with the sign of the branch
-        root_1_rrrs = branch_1_rrrs*sqrt(rho2_1_rrrs)
-        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_rrrs_t = (
-        S_rrrs_x*rrrs_base_frame_xx + S_rrrs_y*rrrs_base_frame_yx + S_rrrs_z*rrrs_base_frame_zx
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrs_xi_1_t = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        # (rrrs-K12) from the origin of joint 2 to the connection point
-        x_2_rrrs_z = xi_1_rrrs_t - rrrs_joint2_offset_x
-        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z
-        Kd_2_rrrs = Kd_2_rrrs_t + 0.5*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2
-        # (rrrs-K17) factor of the cosine in the equation of joint 2
-        Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x
-        # (rrrs-K18) factor of the sine in the equation of joint 2
-        Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z
-        # (rrrs-K19) squared amplitude
-        rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs
-        # (rrrs-K20) discriminant
-        disc_2_rrrs = rho2_2_rrrs - Kd_2_rrrs*Kd_2_rrrs
-        # (rrrs-K21) root, with the sign of the branch
-        root_2_rrrs = branch_2_rrrs*sqrt(disc_2_rrrs)
-        # (rrrs-K27) from the origin of joint 3 to the connection point
-        x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-        # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-        c_3_rrrs = inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x
-        # (rrrs-K30) sine of the angle of joint 3 from its reference direction
-        s_3_rrrs = (
-        inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-x_3) from the origin of joint 3 to the connection point
+        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrs_s_3 = (
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_rrrs_t = rrrs_platform_joint_offset_x*s_3_rrrs
-        r_2_rrrs_x = rrrs_joint3_offset_x + c_3_rrrs*rrrs_platform_joint_offset_x
-        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2_rrrs = 1.0/rho2_2_rrrs
-        c_2_rrrs = inv_rho2_2_rrrs*(Kc_2_rrrs*Kd_2_rrrs + Ks_2_rrrs*root_2_rrrs)
-        # (rrrs-K23) sine of the angle of joint 2 from its reference direction
-        s_2_rrrs = inv_rho2_2_rrrs*(Kc_2_rrrs*root_2_rrrs - Kd_2_rrrs*Ks_2_rrrs)
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        e_1_rrrs_r2_x = c_2_rrrs*s_3_rrrs - c_3_rrrs*s_2_rrrs
-        e_1_rrrs_r2_y = -c_2_rrrs*c_3_rrrs - s_2_rrrs*s_3_rrrs
-        # (rrrs-V3) from joint 1 to the connection point, along the links
-        r_1_rrrs_r1_x = c_2_rrrs*root_1_rrrs - s_2_rrrs*xi_1_rrrs_t
-        r_1_rrrs_r1_y = -c_2_rrrs*xi_1_rrrs_t - root_1_rrrs*s_2_rrrs
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        v_1_rrrs_z = (
-        e_1_rrrs_r2_x*(c_3_rrrs*r_1_rrrs_r1_y + r_1_rrrs_r1_x*s_3_rrrs) -
-            e_1_rrrs_r2_y*(c_3_rrrs*r_1_rrrs_r1_x - r_1_rrrs_r1_y*s_3_rrrs)
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3
+        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
+        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
+        # (rrrs-r_1) from joint 1 to the connection point, along the links
+        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
+        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_z = (
+        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
+            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
         )
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_rrrs_r0_x = c_3_rrrs*r_2_rrrs_x + r_2_rrrs_t*s_3_rrrs
-        r_2_rrrs_r0_y = r_2_rrrs_x*s_3_rrrs - c_3_rrrs*r_2_rrrs_t
-        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrrs = 1.0/rho2_1_rrrs
-        c_1_rrrs = inv_rho2_1_rrrs*py_1_rrrs*root_1_rrrs
-        # (rrrs-K9) sine of the angle of joint 1 from its reference direction
-        s_1_rrrs = inv_rho2_1_rrrs*px_1_rrrs*root_1_rrrs
-        # (rrrs-V7) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1_rrrs - c_1_rrrs*rrrs_base_frame_xy
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1_rrrs - c_1_rrrs*rrrs_base_frame_yy
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1_rrrs - c_1_rrrs*rrrs_base_frame_zy
-        w_1_rrrs_t = e_1_rrrs_r2_x*s_1_rrrs
-        w_1_rrrs_t_2 = c_1_rrrs*e_1_rrrs_r2_x
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_r0_x = rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3
+        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
+        # (rrrs-w_1) reciprocal vector 1
+        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
+        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
+        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
         axis_y_rrrs_axes3_in_base_x = (
-        e_1_rrrs_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_rrrs_t +
-            rrrs_base_frame_xz*w_1_rrrs_t_2
+        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
+            rrrs_base_frame_xz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_y = (
-        e_1_rrrs_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_rrrs_t +
-            rrrs_base_frame_yz*w_1_rrrs_t_2
+        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
+            rrrs_base_frame_yz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_z = (
-        e_1_rrrs_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_rrrs_t +
-            rrrs_base_frame_zz*w_1_rrrs_t_2
+        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
+            rrrs_base_frame_zz*rrrs_w_1_t_2
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
@@ -8525,253 +8643,252 @@ def _run_legs(m, X, V, A):
         axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
             axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
         )
-        inv_v_1_rrrs_z = 1.0/v_1_rrrs_z
-        # (rrrs-V8) reciprocal vector 2
-        inv_r_2_rrrs_r0_y = 1.0/r_2_rrrs_r0_y
-        # (rrrs-V1) velocity of the connection point
-        S_dot_rrrs_t = omega_y*q_rrrs_in_base_z - omega_z*q_rrrs_in_base_y
-        S_dot_rrrs_t_2 = omega_z*q_rrrs_in_base_x - omega_x*q_rrrs_in_base_z
-        S_dot_rrrs_t_3 = omega_x*q_rrrs_in_base_y - omega_y*q_rrrs_in_base_x
-        S_dot_rrrs_x = S_dot_rrrs_t + t_dot_x
-        S_dot_rrrs_y = S_dot_rrrs_t_2 + t_dot_y
-        S_dot_rrrs_z = S_dot_rrrs_t_3 + t_dot_z
-        # (rrrs-V10) rate of joint 1
-        qd_2_rrrs = (
-        inv_r_2_rrrs_r0_y*(S_dot_rrrs_x*axis_x_rrrs_axes3_x + S_dot_rrrs_y*axis_x_rrrs_axes3_y +
-            S_dot_rrrs_z*axis_x_rrrs_axes3_z)
+        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
+        # (rrrs-w_2) reciprocal vector 2
+        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
+        # (rrrs-S_dot) velocity of the connection point
+        rrrs_S_dot_t = omega_y*rrrs_q_in_base_z - omega_z*rrrs_q_in_base_y
+        rrrs_S_dot_t_2 = omega_z*rrrs_q_in_base_x - omega_x*rrrs_q_in_base_z
+        rrrs_S_dot_t_3 = omega_x*rrrs_q_in_base_y - omega_y*rrrs_q_in_base_x
+        rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
+        rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
+        rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
+        # (rrrs-qd_3) rate of joint 3
+        rrrs_qd_2 = (
+        inv_rrrs_r_2_r0_y*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_x_rrrs_axes3_z*rrrs_S_dot_z)
         )
-        qd_3_rrrs = (
-        inv_rrrs_platform_joint_offset_x*(S_dot_rrrs_x*axis_y_rrrs_axes3_in_base_x +
-            S_dot_rrrs_y*axis_y_rrrs_axes3_in_base_y + S_dot_rrrs_z*axis_y_rrrs_axes3_in_base_z +
-            qd_2_rrrs*r_2_rrrs_r0_x)
+        rrrs_qd_3 = (
+        inv_rrrs_platform_joint_offset_x*(axis_y_rrrs_axes3_in_base_x*rrrs_S_dot_x +
+            axis_y_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_dot_z +
+            rrrs_qd_2*rrrs_r_2_r0_x)
         )
-        qd_1_rrrs = (
-        inv_v_1_rrrs_z*(S_dot_rrrs_x*axis_z_rrrs_axes3_in_base_x +
-            S_dot_rrrs_y*axis_z_rrrs_axes3_in_base_y + S_dot_rrrs_z*axis_z_rrrs_axes3_in_base_z)
+        rrrs_qd_1 = (
+        inv_rrrs_v_1_z*(axis_z_rrrs_axes3_in_base_x*rrrs_S_dot_x +
+            axis_z_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_z_rrrs_axes3_in_base_z*rrrs_S_dot_z)
         )
-        # (rrrs-V13) angular velocity of link 1
-        omega_1_rrrs_t = qd_1_rrrs*s_2_rrrs
-        omega_1_rrrs_t_2 = c_2_rrrs*qd_1_rrrs
-        # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_rrrs_x = omega_1_rrrs_t_2*qd_2_rrrs
-        zeta_2_rrrs_y = omega_1_rrrs_t*qd_2_rrrs
-        # (rrrs-V15) angular velocity of link 2
-        omega_2_rrrs_r0_x = omega_1_rrrs_t_2*s_3_rrrs - c_3_rrrs*omega_1_rrrs_t
-        omega_2_rrrs_r0_y = -c_3_rrrs*omega_1_rrrs_t_2 - omega_1_rrrs_t*s_3_rrrs
-        # (rrrs-A5) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_rrrs_y = omega_2_rrrs_r0_x*qd_3_rrrs
-        # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_rrrs_r0_y = s_3_rrrs*zeta_2_rrrs_x - c_3_rrrs*zeta_2_rrrs_y
-        # (rrrs-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_rrrs_y = zeta_2_rrrs_r0_y - zeta_3_rrrs_y
-        # (rrrs-V17) angular velocity of link 3
-        omega_3_rrrs_z = qd_3_rrrs - qd_2_rrrs
-        # (rrrs-V16) centripetal tensor of link 2
-        W_2_rrrs_t = omega_1_rrrs_t*omega_1_rrrs_t
-        W_2_rrrs_t_2 = omega_1_rrrs_t_2*omega_1_rrrs_t_2
-        W_2_rrrs_t_3 = qd_2_rrrs*qd_2_rrrs
-        W_2_rrrs_xy = omega_1_rrrs_t*omega_1_rrrs_t_2
-        # (rrrs-V18) centripetal tensor of link 3
-        W_3_rrrs_t = omega_2_rrrs_r0_x*omega_2_rrrs_r0_x
-        W_3_rrrs_t_2 = omega_2_rrrs_r0_y*omega_2_rrrs_r0_y
-        W_3_rrrs_t_3 = omega_3_rrrs_z*omega_3_rrrs_z
-        W_3_rrrs_xy = omega_2_rrrs_r0_x*omega_2_rrrs_r0_y
-        W_3_rrrs_xz = omega_2_rrrs_r0_x*omega_3_rrrs_z
-        W_3_rrrs_yz = omega_2_rrrs_r0_y*omega_3_rrrs_z
-        # (rrrs-A7) acceleration of the connection point at zero joint accelerations
-        bias_rrrs_t = rrrs_joint2_offset_x*s_2_rrrs
-        bias_rrrs_t_2 = c_2_rrrs*rrrs_joint2_offset_x
-        bias_rrrs_t_3 = (
-        omega_2_rrrs_r0_x*(-bias_rrrs_t*s_3_rrrs - bias_rrrs_t_2*c_3_rrrs) -
-            omega_2_rrrs_r0_y*(bias_rrrs_t_2*s_3_rrrs - bias_rrrs_t*c_3_rrrs)
+        # (rrrs-omega_1) angular velocity of link 1
+        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_t_2 = rrrs_c_2*rrrs_qd_1
+        # (rrrs-omega_2) angular velocity of link 2
+        rrrs_omega_2_r0_x = rrrs_omega_1_t_2*rrrs_s_3 - rrrs_c_3*rrrs_omega_1_t
+        rrrs_omega_2_r0_y = -rrrs_c_3*rrrs_omega_1_t_2 - rrrs_omega_1_t*rrrs_s_3
+        # (rrrs-omega_3) angular velocity of link 3
+        rrrs_omega_3_z = rrrs_qd_3 - rrrs_qd_2
+        # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrs_zeta_3_y = rrrs_omega_2_r0_x*rrrs_qd_3
+        # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        rrrs_zeta_2_x = rrrs_omega_1_t_2*rrrs_qd_2
+        rrrs_zeta_2_y = rrrs_omega_1_t*rrrs_qd_2
+        rrrs_zeta_2_r0_y = rrrs_s_3*rrrs_zeta_2_x - rrrs_c_3*rrrs_zeta_2_y
+        # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        rrrs_beta_3_y = rrrs_zeta_2_r0_y - rrrs_zeta_3_y
+        # (rrrs-W_2) centripetal tensor of link 2
+        rrrs_W_2_t = rrrs_omega_1_t*rrrs_omega_1_t
+        rrrs_W_2_t_2 = rrrs_omega_1_t_2*rrrs_omega_1_t_2
+        rrrs_W_2_t_3 = rrrs_qd_2*rrrs_qd_2
+        rrrs_W_2_xy = rrrs_omega_1_t*rrrs_omega_1_t_2
+        # (rrrs-W_3) centripetal tensor of link 3
+        rrrs_W_3_t = rrrs_omega_2_r0_x*rrrs_omega_2_r0_x
+        rrrs_W_3_t_2 = rrrs_omega_2_r0_y*rrrs_omega_2_r0_y
+        rrrs_W_3_t_3 = rrrs_omega_3_z*rrrs_omega_3_z
+        rrrs_W_3_xy = rrrs_omega_2_r0_x*rrrs_omega_2_r0_y
+        rrrs_W_3_xz = rrrs_omega_2_r0_x*rrrs_omega_3_z
+        rrrs_W_3_yz = rrrs_omega_2_r0_y*rrrs_omega_3_z
+        # (rrrs-bias) acceleration of the connection point at zero joint accelerations
+        rrrs_bias_t = rrrs_joint2_offset_x*rrrs_s_2
+        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_3 = (
+        rrrs_omega_2_r0_x*(-rrrs_bias_t*rrrs_s_3 - rrrs_bias_t_2*rrrs_c_3) -
+            rrrs_omega_2_r0_y*(rrrs_bias_t_2*rrrs_s_3 - rrrs_bias_t*rrrs_c_3)
         )
-        bias_rrrs_t_4 = c_3_rrrs*rrrs_joint3_offset_x
-        bias_rrrs_t_5 = rrrs_joint3_offset_x*s_3_rrrs
-        bias_rrrs_t_6 = bias_rrrs_t_5*qd_2_rrrs
-        bias_rrrs_t_7 = bias_rrrs_t_4*qd_2_rrrs
-        bias_rrrs_t_8 = bias_rrrs_t_5*omega_2_rrrs_r0_x - bias_rrrs_t_4*omega_2_rrrs_r0_y
-        bias_rrrs_t_9 = omega_3_rrrs_z*rrrs_platform_joint_offset_x
-        bias_rrrs_t_10 = omega_2_rrrs_r0_y*rrrs_platform_joint_offset_x
-        bias_rrrs_x = (
-        bias_rrrs_t_3*omega_2_rrrs_r0_y + bias_rrrs_t_8*omega_2_rrrs_r0_y -
-            bias_rrrs_t_10*omega_2_rrrs_r0_y - bias_rrrs_t_7*qd_2_rrrs -
-            bias_rrrs_t_9*omega_3_rrrs_z
+        rrrs_bias_t_4 = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_bias_t_5 = rrrs_joint3_offset_x*rrrs_s_3
+        rrrs_bias_t_6 = rrrs_bias_t_5*rrrs_qd_2
+        rrrs_bias_t_7 = rrrs_bias_t_4*rrrs_qd_2
+        rrrs_bias_t_8 = rrrs_bias_t_5*rrrs_omega_2_r0_x - rrrs_bias_t_4*rrrs_omega_2_r0_y
+        rrrs_bias_t_9 = rrrs_omega_3_z*rrrs_platform_joint_offset_x
+        rrrs_bias_t_10 = rrrs_omega_2_r0_y*rrrs_platform_joint_offset_x
+        rrrs_bias_x = (
+        rrrs_bias_t_3*rrrs_omega_2_r0_y + rrrs_bias_t_8*rrrs_omega_2_r0_y -
+            rrrs_bias_t_10*rrrs_omega_2_r0_y - rrrs_bias_t_7*rrrs_qd_2 -
+            rrrs_bias_t_9*rrrs_omega_3_z
         )
-        bias_rrrs_y = (
-        bias_rrrs_t_10*omega_2_rrrs_r0_x - bias_rrrs_t_3*omega_2_rrrs_r0_x -
-            bias_rrrs_t_6*qd_2_rrrs - bias_rrrs_t_8*omega_2_rrrs_r0_x
+        rrrs_bias_y = (
+        rrrs_bias_t_10*rrrs_omega_2_r0_x - rrrs_bias_t_3*rrrs_omega_2_r0_x -
+            rrrs_bias_t_6*rrrs_qd_2 - rrrs_bias_t_8*rrrs_omega_2_r0_x
         )
-        bias_rrrs_z = (
-        bias_rrrs_t_5*(c_3_rrrs*zeta_2_rrrs_x + s_3_rrrs*zeta_2_rrrs_y) +
-            bias_rrrs_t_9*omega_2_rrrs_r0_x - beta_3_rrrs_y*rrrs_platform_joint_offset_x -
-            bias_rrrs_t_4*zeta_2_rrrs_r0_y - bias_rrrs_t_6*omega_2_rrrs_r0_y -
-            bias_rrrs_t_7*omega_2_rrrs_r0_x
+        rrrs_bias_z = (
+        rrrs_bias_t_5*(rrrs_c_3*rrrs_zeta_2_x + rrrs_s_3*rrrs_zeta_2_y) +
+            rrrs_bias_t_9*rrrs_omega_2_r0_x - rrrs_beta_3_y*rrrs_platform_joint_offset_x -
+            rrrs_bias_t_4*rrrs_zeta_2_r0_y - rrrs_bias_t_6*rrrs_omega_2_r0_y -
+            rrrs_bias_t_7*rrrs_omega_2_r0_x
         )
-        # (rrrs-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x_2 = g_r0_y_2*s_1_rrrs - c_1_rrrs*g_r0_x_2
-        g_r1_y_2 = -c_1_rrrs*g_r0_y_2 - g_r0_x_2*s_1_rrrs
-        g_r3_x_2 = -c_2_rrrs*g_r1_y_2 - g_r0_z_2*s_2_rrrs
-        g_r3_y_2 = g_r1_y_2*s_2_rrrs - c_2_rrrs*g_r0_z_2
-        # (rrrs-V7) reciprocal vector 1
-        w_1_rrrs_t_3 = axis_z_rrrs_axes3_in_base_x*inv_v_1_rrrs_z
-        w_1_rrrs_t_4 = axis_z_rrrs_axes3_in_base_y*inv_v_1_rrrs_z
-        w_1_rrrs_t_5 = axis_z_rrrs_axes3_in_base_z*inv_v_1_rrrs_z
-        # (rrrs-V8) reciprocal vector 2
-        w_2_rrrs_t = axis_x_rrrs_axes3_x*inv_r_2_rrrs_r0_y
-        w_2_rrrs_t_2 = axis_x_rrrs_axes3_y*inv_r_2_rrrs_r0_y
-        w_2_rrrs_t_3 = axis_x_rrrs_axes3_z*inv_r_2_rrrs_r0_y
-        # (rrrs-A2) acceleration of the connection point without its centripetal part
-        a_p_rrrs_x = t_ddot_x + alpha_y*q_rrrs_in_base_z - alpha_z*q_rrrs_in_base_y
-        a_p_rrrs_y = t_ddot_y + alpha_z*q_rrrs_in_base_x - alpha_x*q_rrrs_in_base_z
-        a_p_rrrs_z = t_ddot_z + alpha_x*q_rrrs_in_base_y - alpha_y*q_rrrs_in_base_x
-        # (rrrs-A3) acceleration of the connection point
-        S_ddot_rrrs_x = a_p_rrrs_x + S_dot_rrrs_t_3*omega_y - S_dot_rrrs_t_2*omega_z
-        S_ddot_rrrs_y = a_p_rrrs_y + S_dot_rrrs_t*omega_z - S_dot_rrrs_t_3*omega_x
-        S_ddot_rrrs_z = a_p_rrrs_z + S_dot_rrrs_t_2*omega_x - S_dot_rrrs_t*omega_y
-        S_ddot_rrrs_tip_x = (
-        S_ddot_rrrs_x*axis_x_rrrs_axes3_x + S_ddot_rrrs_y*axis_x_rrrs_axes3_y +
-            S_ddot_rrrs_z*axis_x_rrrs_axes3_z
+        # (rrrs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        rrrs_g_r1_x = rrrs_g_r0_y*rrrs_s_1 - rrrs_c_1*rrrs_g_r0_x
+        rrrs_g_r1_y = -rrrs_c_1*rrrs_g_r0_y - rrrs_g_r0_x*rrrs_s_1
+        rrrs_g_r3_x = -rrrs_c_2*rrrs_g_r1_y - rrrs_g_r0_z*rrrs_s_2
+        rrrs_g_r3_y = rrrs_g_r1_y*rrrs_s_2 - rrrs_c_2*rrrs_g_r0_z
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_rrrs_v_1_z
+        rrrs_w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_rrrs_v_1_z
+        rrrs_w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_rrrs_v_1_z
+        # (rrrs-w_2) reciprocal vector 2
+        rrrs_w_2_t = axis_x_rrrs_axes3_x*inv_rrrs_r_2_r0_y
+        rrrs_w_2_t_2 = axis_x_rrrs_axes3_y*inv_rrrs_r_2_r0_y
+        rrrs_w_2_t_3 = axis_x_rrrs_axes3_z*inv_rrrs_r_2_r0_y
+        # (rrrs-a_p) acceleration of the connection point without its centripetal part
+        rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_in_base_z - alpha_z*rrrs_q_in_base_y
+        rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_in_base_x - alpha_x*rrrs_q_in_base_z
+        rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_in_base_y - alpha_y*rrrs_q_in_base_x
+        # (rrrs-S_ddot) acceleration of the connection point
+        rrrs_S_ddot_x = rrrs_a_p_x + omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2
+        rrrs_S_ddot_y = rrrs_a_p_y + omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3
+        rrrs_S_ddot_z = rrrs_a_p_z + omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t
+        rrrs_S_ddot_tip_x = (
+        axis_x_rrrs_axes3_x*rrrs_S_ddot_x + axis_x_rrrs_axes3_y*rrrs_S_ddot_y +
+            axis_x_rrrs_axes3_z*rrrs_S_ddot_z
         )
-        S_ddot_rrrs_tip_y = (
-        S_ddot_rrrs_x*axis_y_rrrs_axes3_in_base_x + S_ddot_rrrs_y*axis_y_rrrs_axes3_in_base_y +
-            S_ddot_rrrs_z*axis_y_rrrs_axes3_in_base_z
+        rrrs_S_ddot_tip_y = (
+        axis_y_rrrs_axes3_in_base_x*rrrs_S_ddot_x + axis_y_rrrs_axes3_in_base_y*rrrs_S_ddot_y +
+            axis_y_rrrs_axes3_in_base_z*rrrs_S_ddot_z
         )
-        S_ddot_rrrs_tip_z = (
-        S_ddot_rrrs_x*axis_z_rrrs_axes3_in_base_x + S_ddot_rrrs_y*axis_z_rrrs_axes3_in_base_y +
-            S_ddot_rrrs_z*axis_z_rrrs_axes3_in_base_z
+        rrrs_S_ddot_tip_z = (
+        axis_z_rrrs_axes3_in_base_x*rrrs_S_ddot_x + axis_z_rrrs_axes3_in_base_y*rrrs_S_ddot_y +
+            axis_z_rrrs_axes3_in_base_z*rrrs_S_ddot_z
         )
-        # (rrrs-A8) acceleration of the connection point left to the joint accelerations
-        rel_rrrs_x = S_ddot_rrrs_tip_x - bias_rrrs_x
-        rel_rrrs_y = S_ddot_rrrs_tip_y - bias_rrrs_y
-        rel_rrrs_z = S_ddot_rrrs_tip_z - bias_rrrs_z
-        # (rrrs-A10) acceleration of joint 1
-        qdd_2_rrrs = inv_r_2_rrrs_r0_y*rel_rrrs_x
-        qdd_1_rrrs = inv_v_1_rrrs_z*rel_rrrs_z
-        # (rrrs-N9) acceleration of the reference point of link 3, less gravity
-        acc_3_rrrs_x = (
-        S_ddot_rrrs_tip_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
+        # (rrrs-rel) acceleration of the connection point left to the joint accelerations
+        rrrs_rel_x = rrrs_S_ddot_tip_x - rrrs_bias_x
+        rrrs_rel_y = rrrs_S_ddot_tip_y - rrrs_bias_y
+        rrrs_rel_z = rrrs_S_ddot_tip_z - rrrs_bias_z
+        # (rrrs-qdd_1) acceleration of joint 1
+        rrrs_qdd_2 = inv_rrrs_r_2_r0_y*rrrs_rel_x
+        rrrs_qdd_1 = inv_rrrs_v_1_z*rrrs_rel_z
+        # (rrrs-acc_3) acceleration of the reference point of link 3, less gravity
+        rrrs_acc_3_x = (
+        rrrs_S_ddot_tip_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
             axis_x_rrrs_axes3_z*gravity_z
         )
-        acc_3_rrrs_y = (
-        S_ddot_rrrs_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x -
+        rrrs_acc_3_y = (
+        rrrs_S_ddot_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x -
             axis_y_rrrs_axes3_in_base_y*gravity_y - axis_y_rrrs_axes3_in_base_z*gravity_z
         )
-        acc_3_rrrs_z = (
-        S_ddot_rrrs_tip_z - axis_z_rrrs_axes3_in_base_x*gravity_x -
+        rrrs_acc_3_z = (
+        rrrs_S_ddot_tip_z - axis_z_rrrs_axes3_in_base_x*gravity_x -
             axis_z_rrrs_axes3_in_base_y*gravity_y - axis_z_rrrs_axes3_in_base_z*gravity_z
         )
-        # (rrrs-A16) angular acceleration of link 1
-        alpha_1_rrrs_t = qdd_1_rrrs*s_2_rrrs
-        alpha_1_rrrs_t_2 = c_2_rrrs*qdd_1_rrrs
-        # (rrrs-A20) angular acceleration of link 2
-        alpha_2_rrrs_x = zeta_2_rrrs_x - alpha_1_rrrs_t
-        alpha_2_rrrs_y = -alpha_1_rrrs_t_2 - zeta_2_rrrs_y
-        # (rrrs-A22) acceleration tensor of link 2
-        B_2_rrrs_xy = W_2_rrrs_xy + qdd_2_rrrs
-        B_2_rrrs_yx = W_2_rrrs_xy - qdd_2_rrrs
-        B_2_rrrs_zx = zeta_2_rrrs_y - alpha_2_rrrs_y
-        B_2_rrrs_zy = alpha_2_rrrs_x + zeta_2_rrrs_x
-        # (rrrs-N36) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_rrrs_x = (
-        B_2_rrrs_yx*J_2_rrrs_xz + B_2_rrrs_zy*Sigma_2_rrrs_yy + J_2_rrrs_yz*(W_2_rrrs_t_2 -
-            W_2_rrrs_t_3) + g_r3_y_2*h_2_rrrs_z - B_2_rrrs_zx*J_2_rrrs_xy -
-            Sigma_2_rrrs_zz*alpha_1_rrrs_t - g_r1_x_2*h_2_rrrs_y
+        # (rrrs-alpha_1) angular acceleration of link 1
+        rrrs_alpha_1_t = rrrs_qdd_1*rrrs_s_2
+        rrrs_alpha_1_t_2 = rrrs_c_2*rrrs_qdd_1
+        # (rrrs-alpha_2) angular acceleration of link 2
+        rrrs_alpha_2_x = rrrs_zeta_2_x - rrrs_alpha_1_t
+        rrrs_alpha_2_y = -rrrs_alpha_1_t_2 - rrrs_zeta_2_y
+        # (rrrs-alpha_3) angular acceleration of link 3
+        rrrs_alpha_3_x = (
+        rrrs_alpha_2_x*rrrs_c_3 + rrrs_omega_2_r0_y*rrrs_qd_3 - rrrs_alpha_2_y*rrrs_s_3
         )
-        mu_2_rrrs_y = (
-        B_2_rrrs_zy*J_2_rrrs_xy + g_r1_x_2*h_2_rrrs_x - B_2_rrrs_xy*J_2_rrrs_yz -
-            B_2_rrrs_zx*Sigma_2_rrrs_xx - J_2_rrrs_xz*(W_2_rrrs_t - W_2_rrrs_t_3) -
-            Sigma_2_rrrs_zz*alpha_1_rrrs_t_2 - g_r3_x_2*h_2_rrrs_z
+        rrrs_alpha_3_y = rrrs_alpha_2_x*rrrs_s_3 + rrrs_alpha_2_y*rrrs_c_3 - rrrs_zeta_3_y
+        rrrs_alpha_3_z = (
+        inv_rrrs_platform_joint_offset_x*(rrrs_rel_y + rrrs_qdd_2*rrrs_r_2_r0_x) - rrrs_qdd_2
         )
-        mu_2_rrrs_z = (
-        B_2_rrrs_yx*Sigma_2_rrrs_xx + J_2_rrrs_xy*(W_2_rrrs_t - W_2_rrrs_t_2) +
-            g_r3_x_2*h_2_rrrs_y - B_2_rrrs_xy*Sigma_2_rrrs_yy - J_2_rrrs_xz*alpha_1_rrrs_t -
-            J_2_rrrs_yz*alpha_1_rrrs_t_2 - g_r3_y_2*h_2_rrrs_x
+        # (rrrs-B_3) acceleration tensor of link 3
+        rrrs_B_3_xy = rrrs_W_3_xy - rrrs_alpha_3_z
+        rrrs_B_3_xz = rrrs_W_3_xz + rrrs_alpha_3_y
+        rrrs_B_3_yx = rrrs_W_3_xy + rrrs_alpha_3_z
+        rrrs_B_3_yz = rrrs_W_3_yz - rrrs_alpha_3_x
+        rrrs_B_3_zx = rrrs_W_3_xz - rrrs_alpha_3_y
+        rrrs_B_3_zy = rrrs_W_3_yz + rrrs_alpha_3_x
+        # (rrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        rrrs_mu_3_x = (
+        rrrs_B_3_yx*rrrs_J_3_xz + rrrs_B_3_zy*rrrs_Sigma_3_yy + rrrs_J_3_yz*(rrrs_W_3_t_2 -
+            rrrs_W_3_t_3) + rrrs_acc_3_z*rrrs_h_3_y - rrrs_B_3_yz*rrrs_Sigma_3_zz -
+            rrrs_B_3_zx*rrrs_J_3_xy - rrrs_acc_3_y*rrrs_h_3_z
         )
-        # (rrrs-A24) angular acceleration of link 3
-        alpha_3_rrrs_x = (
-        alpha_2_rrrs_x*c_3_rrrs + omega_2_rrrs_r0_y*qd_3_rrrs - alpha_2_rrrs_y*s_3_rrrs
+        rrrs_mu_3_y = (
+        rrrs_B_3_xz*rrrs_Sigma_3_zz + rrrs_B_3_zy*rrrs_J_3_xy + rrrs_acc_3_x*rrrs_h_3_z -
+            rrrs_B_3_xy*rrrs_J_3_yz - rrrs_B_3_zx*rrrs_Sigma_3_xx - rrrs_J_3_xz*(rrrs_W_3_t -
+            rrrs_W_3_t_3) - rrrs_acc_3_z*rrrs_h_3_x
         )
-        alpha_3_rrrs_y = alpha_2_rrrs_x*s_3_rrrs + alpha_2_rrrs_y*c_3_rrrs - zeta_3_rrrs_y
-        alpha_3_rrrs_z = (
-        inv_rrrs_platform_joint_offset_x*(rel_rrrs_y + qdd_2_rrrs*r_2_rrrs_r0_x) - qdd_2_rrrs
+        rrrs_mu_3_z = (
+        rrrs_B_3_xz*rrrs_J_3_yz + rrrs_B_3_yx*rrrs_Sigma_3_xx + rrrs_J_3_xy*(rrrs_W_3_t -
+            rrrs_W_3_t_2) + rrrs_acc_3_y*rrrs_h_3_x - rrrs_B_3_xy*rrrs_Sigma_3_yy -
+            rrrs_B_3_yz*rrrs_J_3_xz - rrrs_acc_3_x*rrrs_h_3_y
         )
-        # (rrrs-A27) acceleration tensor of link 3
-        B_3_rrrs_xy = W_3_rrrs_xy - alpha_3_rrrs_z
-        B_3_rrrs_xz = W_3_rrrs_xz + alpha_3_rrrs_y
-        B_3_rrrs_yx = W_3_rrrs_xy + alpha_3_rrrs_z
-        B_3_rrrs_yz = W_3_rrrs_yz - alpha_3_rrrs_x
-        B_3_rrrs_zx = W_3_rrrs_xz - alpha_3_rrrs_y
-        B_3_rrrs_zy = W_3_rrrs_yz + alpha_3_rrrs_x
-        # (rrrs-N29) inertia moment of the links that turn with link 3, about their reference points
-        mu_3_rrrs_x = (
-        B_3_rrrs_yx*J_3_rrrs_xz + B_3_rrrs_zy*Sigma_3_rrrs_yy + J_3_rrrs_yz*(W_3_rrrs_t_2 -
-            W_3_rrrs_t_3) + acc_3_rrrs_z*h_3_rrrs_y - B_3_rrrs_yz*Sigma_3_rrrs_zz -
-            B_3_rrrs_zx*J_3_rrrs_xy - acc_3_rrrs_y*h_3_rrrs_z
+        # (rrrs-B_2) acceleration tensor of link 2
+        rrrs_B_2_xy = rrrs_W_2_xy + rrrs_qdd_2
+        rrrs_B_2_yx = rrrs_W_2_xy - rrrs_qdd_2
+        rrrs_B_2_zx = rrrs_zeta_2_y - rrrs_alpha_2_y
+        rrrs_B_2_zy = rrrs_alpha_2_x + rrrs_zeta_2_x
+        # (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        rrrs_mu_2_x = (
+        rrrs_B_2_yx*rrrs_J_2_xz + rrrs_B_2_zy*rrrs_Sigma_2_yy + rrrs_J_2_yz*(rrrs_W_2_t_2 -
+            rrrs_W_2_t_3) + rrrs_g_r3_y*rrrs_h_2_z - rrrs_B_2_zx*rrrs_J_2_xy -
+            rrrs_Sigma_2_zz*rrrs_alpha_1_t - rrrs_g_r1_x*rrrs_h_2_y
         )
-        mu_3_rrrs_y = (
-        B_3_rrrs_xz*Sigma_3_rrrs_zz + B_3_rrrs_zy*J_3_rrrs_xy + acc_3_rrrs_x*h_3_rrrs_z -
-            B_3_rrrs_xy*J_3_rrrs_yz - B_3_rrrs_zx*Sigma_3_rrrs_xx - J_3_rrrs_xz*(W_3_rrrs_t -
-            W_3_rrrs_t_3) - acc_3_rrrs_z*h_3_rrrs_x
+        rrrs_mu_2_y = (
+        rrrs_B_2_zy*rrrs_J_2_xy + rrrs_g_r1_x*rrrs_h_2_x - rrrs_B_2_xy*rrrs_J_2_yz -
+            rrrs_B_2_zx*rrrs_Sigma_2_xx - rrrs_J_2_xz*(rrrs_W_2_t - rrrs_W_2_t_3) -
+            rrrs_Sigma_2_zz*rrrs_alpha_1_t_2 - rrrs_g_r3_x*rrrs_h_2_z
         )
-        mu_3_rrrs_z = (
-        B_3_rrrs_xz*J_3_rrrs_yz + B_3_rrrs_yx*Sigma_3_rrrs_xx + J_3_rrrs_xy*(W_3_rrrs_t -
-            W_3_rrrs_t_2) + acc_3_rrrs_y*h_3_rrrs_x - B_3_rrrs_xy*Sigma_3_rrrs_yy -
-            B_3_rrrs_yz*J_3_rrrs_xz - acc_3_rrrs_x*h_3_rrrs_y
+        rrrs_mu_2_z = (
+        rrrs_B_2_yx*rrrs_Sigma_2_xx + rrrs_J_2_xy*(rrrs_W_2_t - rrrs_W_2_t_2) +
+            rrrs_g_r3_x*rrrs_h_2_y - rrrs_B_2_xy*rrrs_Sigma_2_yy - rrrs_J_2_xz*rrrs_alpha_1_t -
+            rrrs_J_2_yz*rrrs_alpha_1_t_2 - rrrs_g_r3_y*rrrs_h_2_x
         )
-        # (rrrs-N38) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_rrrs_x = mu_2_rrrs_x + c_3_rrrs*mu_3_rrrs_x + mu_3_rrrs_y*s_3_rrrs
-        N_2_rrrs_y = mu_2_rrrs_y + c_3_rrrs*mu_3_rrrs_y - mu_3_rrrs_x*s_3_rrrs
-        N_2_rrrs_z = mu_2_rrrs_z + mu_3_rrrs_z
-        # (rrrs-N45) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rrrs_z = J_1_rrrs_xx*qdd_1_rrrs - g_r1_x_2*h_1_rrrs_y - g_r1_y_2*h_1_rrrs_z
-        # (rrrs-N47) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_rrrs_z = mu_1_rrrs_z - N_2_rrrs_x*s_2_rrrs - N_2_rrrs_y*c_2_rrrs
-        # (rrrs-N52) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rrrs_t = inv_rrrs_platform_joint_offset_x*mu_3_rrrs_z
-        # (rrrs-N55) leg force on the platform without actuation and without the mass at the connection point
-        c_rrrs_x = (
-        h_3_rrrs_x*(W_3_rrrs_t_2 + W_3_rrrs_t_3) - B_3_rrrs_xy*h_3_rrrs_y - B_3_rrrs_xz*h_3_rrrs_z
-            - inv_r_2_rrrs_r0_y*(G_rrrs_t*r_2_rrrs_r0_x - N_2_rrrs_z)
+        # (rrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        rrrs_N_2_x = rrrs_mu_2_x + rrrs_c_3*rrrs_mu_3_x + rrrs_mu_3_y*rrrs_s_3
+        rrrs_N_2_y = rrrs_mu_2_y + rrrs_c_3*rrrs_mu_3_y - rrrs_mu_3_x*rrrs_s_3
+        rrrs_N_2_z = rrrs_mu_2_z + rrrs_mu_3_z
+        # (rrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrrs_mu_1_z = rrrs_J_1_xx*rrrs_qdd_1 - rrrs_g_r1_x*rrrs_h_1_y - rrrs_g_r1_y*rrrs_h_1_z
+        # (rrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrrs_N_1_z = rrrs_mu_1_z - rrrs_N_2_x*rrrs_s_2 - rrrs_N_2_y*rrrs_c_2
+        # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrrs_G_t = inv_rrrs_platform_joint_offset_x*rrrs_mu_3_z
+        # (rrrs-c) leg force on the platform without actuation and without the mass at the connection point
+        rrrs_c_x = (
+        rrrs_h_3_x*(rrrs_W_3_t_2 + rrrs_W_3_t_3) - inv_rrrs_r_2_r0_y*(rrrs_G_t*rrrs_r_2_r0_x -
+            rrrs_N_2_z) - rrrs_B_3_xy*rrrs_h_3_y - rrrs_B_3_xz*rrrs_h_3_z
         )
-        c_rrrs_y = (
-        h_3_rrrs_y*(W_3_rrrs_t + W_3_rrrs_t_3) - G_rrrs_t - B_3_rrrs_yx*h_3_rrrs_x -
-            B_3_rrrs_yz*h_3_rrrs_z
+        rrrs_c_y = (
+        rrrs_h_3_y*(rrrs_W_3_t + rrrs_W_3_t_3) - rrrs_G_t - rrrs_B_3_yx*rrrs_h_3_x -
+            rrrs_B_3_yz*rrrs_h_3_z
         )
-        c_rrrs_z = (
-        h_3_rrrs_z*(W_3_rrrs_t + W_3_rrrs_t_2) - B_3_rrrs_zx*h_3_rrrs_x - B_3_rrrs_zy*h_3_rrrs_y -
-            N_1_rrrs_z*inv_v_1_rrrs_z
+        rrrs_c_z = (
+        rrrs_h_3_z*(rrrs_W_3_t + rrrs_W_3_t_2) - inv_rrrs_v_1_z*rrrs_N_1_z -
+            rrrs_B_3_zx*rrrs_h_3_x - rrrs_B_3_zy*rrrs_h_3_y
         )
-        # (rrrs-N60) leg force on the platform without actuation, the last link's mass included
-        c_true_rrrs_x = c_rrrs_x - acc_3_rrrs_x*rrrs_link3_mass
-        c_true_rrrs_y = c_rrrs_y - acc_3_rrrs_y*rrrs_link3_mass
-        c_true_rrrs_z = c_rrrs_z - acc_3_rrrs_z*rrrs_link3_mass
-        c_true_rrrs_in_base_x = (
-        axis_x_rrrs_axes3_x*c_true_rrrs_x + axis_y_rrrs_axes3_in_base_x*c_true_rrrs_y +
-            axis_z_rrrs_axes3_in_base_x*c_true_rrrs_z
+        # (rrrs-c_true) leg force on the platform without actuation, the last link's mass included
+        rrrs_c_true_x = rrrs_c_x - rrrs_acc_3_x*rrrs_link3_mass
+        rrrs_c_true_y = rrrs_c_y - rrrs_acc_3_y*rrrs_link3_mass
+        rrrs_c_true_z = rrrs_c_z - rrrs_acc_3_z*rrrs_link3_mass
+        rrrs_c_true_in_base_x = (
+        axis_x_rrrs_axes3_x*rrrs_c_true_x + axis_y_rrrs_axes3_in_base_x*rrrs_c_true_y +
+            axis_z_rrrs_axes3_in_base_x*rrrs_c_true_z
         )
-        c_true_rrrs_in_base_y = (
-        axis_x_rrrs_axes3_y*c_true_rrrs_x + axis_y_rrrs_axes3_in_base_y*c_true_rrrs_y +
-            axis_z_rrrs_axes3_in_base_y*c_true_rrrs_z
+        rrrs_c_true_in_base_y = (
+        axis_x_rrrs_axes3_y*rrrs_c_true_x + axis_y_rrrs_axes3_in_base_y*rrrs_c_true_y +
+            axis_z_rrrs_axes3_in_base_y*rrrs_c_true_z
         )
-        c_true_rrrs_in_base_z = (
-        axis_x_rrrs_axes3_z*c_true_rrrs_x + axis_y_rrrs_axes3_in_base_z*c_true_rrrs_y +
-            axis_z_rrrs_axes3_in_base_z*c_true_rrrs_z
+        rrrs_c_true_in_base_z = (
+        axis_x_rrrs_axes3_z*rrrs_c_true_x + axis_y_rrrs_axes3_in_base_z*rrrs_c_true_y +
+            axis_z_rrrs_axes3_in_base_z*rrrs_c_true_z
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
-            (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) &
-            (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE *
-            size_rrrs))
+        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
+            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
+            rrrs_size))
         )
-        out_leg_force[_leg_force_rrrs[0][leg]] = c_true_rrrs_in_base_x
-        out_leg_force[_leg_force_rrrs[1][leg]] = c_true_rrrs_in_base_y
-        out_leg_force[_leg_force_rrrs[2][leg]] = c_true_rrrs_in_base_z
-        out_drive[_drive_rrrs[0][leg]] = w_1_rrrs_t_3
-        out_drive[_drive_rrrs[1][leg]] = w_1_rrrs_t_4
-        out_drive[_drive_rrrs[2][leg]] = w_1_rrrs_t_5
-        out_drive[_drive_rrrs[3][leg]] = -w_2_rrrs_t
-        out_drive[_drive_rrrs[4][leg]] = -w_2_rrrs_t_2
-        out_drive[_drive_rrrs[5][leg]] = -w_2_rrrs_t_3
+        out_leg_force[_leg_force_rrrs[0][leg]] = rrrs_c_true_in_base_x
+        out_leg_force[_leg_force_rrrs[1][leg]] = rrrs_c_true_in_base_y
+        out_leg_force[_leg_force_rrrs[2][leg]] = rrrs_c_true_in_base_z
+        out_drive[_drive_rrrs[0][leg]] = rrrs_w_1_t_3
+        out_drive[_drive_rrrs[1][leg]] = rrrs_w_1_t_4
+        out_drive[_drive_rrrs[2][leg]] = rrrs_w_1_t_5
+        out_drive[_drive_rrrs[3][leg]] = -rrrs_w_2_t
+        out_drive[_drive_rrrs[4][leg]] = -rrrs_w_2_t_2
+        out_drive[_drive_rrrs[5][leg]] = -rrrs_w_2_t_3
     return ok, (out_leg_force, out_drive,)
 
 
@@ -8819,8 +8936,8 @@ def _run_potential(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_potential = m.zeros("potential")
-    # (V1) potential energy
-    potential_t_5 = (
+    # (potential) potential energy
+    potential_t = (
     gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
         gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
         gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z)
@@ -8828,234 +8945,237 @@ def _run_potential(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, b_rrrrs_r0_x, b_rrrrs_r0_y, b_rrrrs_r0_z, branch_1_rrrrs,
-            branch_3_rrrrs, g_r0_x, g_r0_y, g_r0_z, h_1_rrrrs_x, h_1_rrrrs_y, h_1_rrrrs_z,
-            h_2_rrrrs_x, h_2_rrrrs_y, h_2_rrrrs_z, h_3_rrrrs_x, h_3_rrrrs_y, h_3_rrrrs_z,
-            h_4_rrrrs_x, h_4_rrrrs_y, h_4_rrrrs_z, inv_size_rrrrs_t_2, inv_size_rrrrs_t_3,
-            potential_t_3, potential_t_4, rho2_3_rrrrs_t, rrrrs_base_frame_xx,
-            rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
-            rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
-            rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_joint2_offset_x,
-            rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_link1_mass, rrrrs_link2_mass,
-            rrrrs_link3_mass, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
-            rrrrs_platform_point_y, rrrrs_platform_point_z, size_rrrrs_t_3,
+        inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_b_r0_x,
+            rrrrs_b_r0_y, rrrrs_b_r0_z, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
+            rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
+            rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
+            rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_g_r0_x,
+            rrrrs_g_r0_y, rrrrs_g_r0_z, rrrrs_h_1_x, rrrrs_h_1_y, rrrrs_h_1_z, rrrrs_h_2_x,
+            rrrrs_h_2_y, rrrrs_h_2_z, rrrrs_h_3_x, rrrrs_h_3_y, rrrrs_h_3_z, rrrrs_h_4_x,
+            rrrrs_h_4_y, rrrrs_h_4_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
+            rrrrs_joint4_offset_x, rrrrs_link1_mass, rrrrs_link2_mass, rrrrs_link3_mass,
+            rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
+            rrrrs_platform_point_z, rrrrs_potential_t, rrrrs_potential_t_2, rrrrs_rho2_3_t,
+            rrrrs_size_t_3,
         ) = k
-        y_2_extra_rrrrs = X[[7][leg]]
-        # (rrrrs-K1) from the base point to the connection point
-        S_rrrrs_x = (
+        rrrrs_y_2_extra = X[[7][leg]]
+        # (rrrrs-S) from the base point to the connection point
+        rrrrs_S_x = (
         t_x + R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y +
             R_xz*rrrrs_platform_point_z - rrrrs_base_point_x
         )
-        S_rrrrs_y = (
+        rrrrs_S_y = (
         t_y + R_yx*rrrrs_platform_point_x + R_yy*rrrrs_platform_point_y +
             R_yz*rrrrs_platform_point_z - rrrrs_base_point_y
         )
-        S_rrrrs_z = (
+        rrrrs_S_z = (
         t_z + R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y +
             R_zz*rrrrs_platform_point_z - rrrrs_base_point_z
         )
-        # (rrrrs-K4) component along the reference direction
-        px_1_rrrrs = (
-        S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy +
-            S_rrrrs_z*rrrrs_base_frame_zy
+        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrrs_c_2_t = sin(rrrrs_y_2_extra)
+        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrrs_s_2 = cos(rrrrs_y_2_extra)
+        # (rrrrs-px_1) component along the reference direction
+        rrrrs_px_1 = (
+        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
+            rrrrs_S_z*rrrrs_base_frame_zy
         )
-        # (rrrrs-K5) component across the reference direction
-        py_1_rrrrs = (
-        S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz +
-            S_rrrrs_z*rrrrs_base_frame_zz
+        # (rrrrs-py_1) component across the reference direction
+        rrrrs_py_1 = (
+        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
+            rrrrs_S_z*rrrrs_base_frame_zz
         )
-        # (rrrrs-K7) squared amplitude
-        rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs
-        # (rrrrs-K9) root, with the sign of the branch
-        root_1_rrrrs = branch_1_rrrrs*sqrt(rho2_1_rrrrs)
-        # (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_rrrrs_t = (
-        S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx +
-            S_rrrrs_z*rrrrs_base_frame_zx
+        # (rrrrs-rho2_1) squared amplitude
+        rrrrs_rho2_1 = rrrrs_px_1*rrrrs_px_1 + rrrrs_py_1*rrrrs_py_1
+        # (rrrrs-root_1) root, with the sign of the branch
+        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
+        # (rrrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrrs_xi_1_t = (
+        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
+            rrrrs_S_z*rrrrs_base_frame_zx
         )
-        # (rrrrs-K14) from the origin of joint 2 to the connection point
-        x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x
-        # (rrrrs-K2) cosine of the angle of joint 2 from its reference direction
-        c_2_rrrrs_t = sin(y_2_extra_rrrrs)
-        # (rrrrs-K3) sine of the angle of joint 2 from its reference direction
-        s_2_rrrrs = cos(y_2_extra_rrrrs)
-        # (rrrrs-K14) from the origin of joint 2 to the connection point
-        x_2_rrrrs_r1_y = root_1_rrrrs*s_2_rrrrs - c_2_rrrrs_t*x_2_rrrrs_z
-        # (rrrrs-K15) from the origin of joint 3 to the connection point
-        x_3_rrrrs_x = c_2_rrrrs_t*root_1_rrrrs + s_2_rrrrs*x_2_rrrrs_z - rrrrs_joint3_offset_x
-        # (rrrrs-K16) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-        Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x
-        Kd_3_rrrrs = Kd_3_rrrrs_t + 0.5*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2
-        # (rrrrs-K20) factor of the cosine in the equation of joint 3
-        Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x
-        # (rrrrs-K21) factor of the sine in the equation of joint 3
-        Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y
-        # (rrrrs-K22) squared amplitude
-        rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs
-        # (rrrrs-K23) discriminant
-        disc_3_rrrrs = rho2_3_rrrrs - Kd_3_rrrrs*Kd_3_rrrrs
-        # (rrrrs-K24) root, with the sign of the branch
-        root_3_rrrrs = branch_3_rrrrs*sqrt(disc_3_rrrrs)
-        # (rrrrs-K30) from the origin of joint 4 to the connection point
-        x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
-        # (rrrrs-K32) cosine of the angle of joint 4 from its reference direction
-        c_4_rrrrs = inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x
-        # (rrrrs-K33) sine of the angle of joint 4 from its reference direction
-        s_4_rrrrs = (
-        inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        # (rrrrs-x_2) from the origin of joint 2 to the connection point
+        rrrrs_x_2_z = rrrrs_xi_1_t - rrrrs_joint2_offset_x
+        rrrrs_x_2_r1_y = rrrrs_root_1*rrrrs_s_2 - rrrrs_c_2_t*rrrrs_x_2_z
+        # (rrrrs-x_3) from the origin of joint 3 to the connection point
+        rrrrs_x_3_x = rrrrs_c_2_t*rrrrs_root_1 + rrrrs_s_2*rrrrs_x_2_z - rrrrs_joint3_offset_x
+        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
+        rrrrs_Kd_3_t_3 = rrrrs_x_2_r1_y*rrrrs_x_2_r1_y + rrrrs_x_3_x*rrrrs_x_3_x
+        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
+        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
+        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_x
+        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
+        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_r1_y
+        # (rrrrs-rho2_3) squared amplitude
+        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
+        # (rrrrs-disc_3) discriminant
+        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
+        # (rrrrs-root_3) root, with the sign of the branch
+        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
+        # (rrrrs-x_4) from the origin of joint 4 to the connection point
+        rrrrs_x_4_x = inv_rrrrs_size_t_2*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
+        rrrrs_c_4 = inv_rrrrs_size_t_3*rrrrs_platform_joint_offset_x*rrrrs_x_4_x
+        # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
+        rrrrs_s_4 = (
+        inv_rrrrs_size_t_2*inv_rrrrs_size_t_3*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
         )
-        # (rrrrs-K25) cosine of the angle of joint 3 from its reference direction
-        inv_rho2_3_rrrrs = 1.0/rho2_3_rrrrs
-        c_3_rrrrs = inv_rho2_3_rrrrs*(Kc_3_rrrrs*Kd_3_rrrrs - Ks_3_rrrrs*root_3_rrrrs)
-        # (rrrrs-K26) sine of the angle of joint 3 from its reference direction
-        s_3_rrrrs = inv_rho2_3_rrrrs*(Kc_3_rrrrs*root_3_rrrrs + Kd_3_rrrrs*Ks_3_rrrrs)
-        # (rrrrs-K10) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrrrs = 1.0/rho2_1_rrrrs
-        c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs
-        # (rrrrs-K11) sine of the angle of joint 1 from its reference direction
-        s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs
-        # (rrrrs-G7) first moment of link 3 about the origin of link 3
-        h_3_rrrrs_r0_x = c_3_rrrrs*h_3_rrrrs_x - h_3_rrrrs_y*s_3_rrrrs
-        h_3_rrrrs_r0_y = c_3_rrrrs*h_3_rrrrs_y + h_3_rrrrs_x*s_3_rrrrs
-        # (V1) potential energy
-        b_rrrrs_r1_x = b_rrrrs_r0_y*s_1_rrrrs - b_rrrrs_r0_x*c_1_rrrrs
-        b_rrrrs_r1_y = -b_rrrrs_r0_x*s_1_rrrrs - b_rrrrs_r0_y*c_1_rrrrs
-        # (rrrrs-G10) first moment of link 4 about the connection point
-        h_4_rrrrs_r0_x = c_4_rrrrs*h_4_rrrrs_x + h_4_rrrrs_y*s_4_rrrrs
-        h_4_rrrrs_r0_y = c_4_rrrrs*h_4_rrrrs_y - h_4_rrrrs_x*s_4_rrrrs
-        h_4_rrrrs_r1_x = c_3_rrrrs*h_4_rrrrs_r0_x - h_4_rrrrs_r0_y*s_3_rrrrs
-        h_4_rrrrs_r1_y = c_3_rrrrs*h_4_rrrrs_r0_y + h_4_rrrrs_r0_x*s_3_rrrrs
-        # (V1) potential energy
-        potential_t_8 = (
-        h_1_rrrrs_x + potential_t_3 + potential_t_4 + h_2_rrrrs_x*s_2_rrrrs +
-            h_3_rrrrs_r0_x*s_2_rrrrs + h_4_rrrrs_r1_x*s_2_rrrrs + rrrrs_link3_mass*(b_rrrrs_r0_z +
-            rrrrs_joint2_offset_x + rrrrs_joint3_offset_x*s_2_rrrrs) - c_2_rrrrs_t*h_2_rrrrs_y -
-            c_2_rrrrs_t*h_3_rrrrs_r0_y - c_2_rrrrs_t*h_4_rrrrs_r1_y
+        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
+        rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
+        # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
+        # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
+        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_py_1*rrrrs_root_1
+        # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_px_1*rrrrs_root_1
+        # (rrrrs-P_c_3) force that accelerates joint 3, per unit
+        rrrrs_P_c_3_r0_x = -rrrrs_c_3*rrrrs_h_3_y - rrrrs_h_3_x*rrrrs_s_3
+        rrrrs_P_c_3_r0_y = rrrrs_c_3*rrrrs_h_3_x - rrrrs_h_3_y*rrrrs_s_3
+        # (potential) potential energy
+        rrrrs_b_r1_x = rrrrs_b_r0_y*rrrrs_s_1 - rrrrs_b_r0_x*rrrrs_c_1
+        rrrrs_b_r1_y = -rrrrs_b_r0_x*rrrrs_s_1 - rrrrs_b_r0_y*rrrrs_c_1
+        # (rrrrs-h_4) first moment of link 4 about the connection point
+        rrrrs_h_4_r0_x = rrrrs_c_4*rrrrs_h_4_x + rrrrs_h_4_y*rrrrs_s_4
+        rrrrs_h_4_r0_y = rrrrs_c_4*rrrrs_h_4_y - rrrrs_h_4_x*rrrrs_s_4
+        rrrrs_h_4_r1_x = rrrrs_c_3*rrrrs_h_4_r0_x - rrrrs_h_4_r0_y*rrrrs_s_3
+        rrrrs_h_4_r1_y = rrrrs_c_3*rrrrs_h_4_r0_y + rrrrs_h_4_r0_x*rrrrs_s_3
+        # (potential) potential energy
+        rrrrs_potential_t_3 = (
+        rrrrs_h_1_x + rrrrs_potential_t + rrrrs_potential_t_2 + rrrrs_P_c_3_r0_x*rrrrs_c_2_t +
+            rrrrs_P_c_3_r0_y*rrrrs_s_2 + rrrrs_h_2_x*rrrrs_s_2 + rrrrs_h_4_r1_x*rrrrs_s_2 +
+            rrrrs_link3_mass*(rrrrs_b_r0_z + rrrrs_joint2_offset_x +
+            rrrrs_joint3_offset_x*rrrrs_s_2) - rrrrs_c_2_t*rrrrs_h_2_y -
+            rrrrs_c_2_t*rrrrs_h_4_r1_y
         )
-        potential_t_9 = (
-        b_rrrrs_r1_y*rrrrs_link1_mass + b_rrrrs_r1_y*rrrrs_link2_mass +
-            rrrrs_link3_mass*(b_rrrrs_r1_y - c_2_rrrrs_t*rrrrs_joint3_offset_x) - h_1_rrrrs_y -
-            c_2_rrrrs_t*h_2_rrrrs_x - c_2_rrrrs_t*h_3_rrrrs_r0_x - c_2_rrrrs_t*h_4_rrrrs_r1_x -
-            h_2_rrrrs_y*s_2_rrrrs - h_3_rrrrs_r0_y*s_2_rrrrs - h_4_rrrrs_r1_y*s_2_rrrrs
+        rrrrs_potential_t_4 = (
+        rrrrs_P_c_3_r0_x*rrrrs_s_2 + rrrrs_b_r1_y*rrrrs_link1_mass + rrrrs_b_r1_y*rrrrs_link2_mass
+            + rrrrs_link3_mass*(rrrrs_b_r1_y - rrrrs_c_2_t*rrrrs_joint3_offset_x) - rrrrs_h_1_y -
+            rrrrs_P_c_3_r0_y*rrrrs_c_2_t - rrrrs_c_2_t*rrrrs_h_2_x - rrrrs_c_2_t*rrrrs_h_4_r1_x -
+            rrrrs_h_2_y*rrrrs_s_2 - rrrrs_h_4_r1_y*rrrrs_s_2
         )
-        potential_t_10 = (
-        g_r0_z*potential_t_8 + potential_t_9*(-c_1_rrrrs*g_r0_y - g_r0_x*s_1_rrrrs) +
-            (g_r0_y*s_1_rrrrs - c_1_rrrrs*g_r0_x)*(h_1_rrrrs_z + h_2_rrrrs_z + h_3_rrrrs_z +
-            h_4_rrrrs_z + b_rrrrs_r1_x*rrrrs_link1_mass + b_rrrrs_r1_x*rrrrs_link2_mass +
-            b_rrrrs_r1_x*rrrrs_link3_mass)
+        rrrrs_potential_t_5 = (
+        rrrrs_g_r0_z*rrrrs_potential_t_3 + rrrrs_potential_t_4*(-rrrrs_c_1*rrrrs_g_r0_y -
+            rrrrs_g_r0_x*rrrrs_s_1) + (rrrrs_g_r0_y*rrrrs_s_1 -
+            rrrrs_c_1*rrrrs_g_r0_x)*(rrrrs_h_1_z + rrrrs_h_2_z + rrrrs_h_3_z + rrrrs_h_4_z +
+            rrrrs_b_r1_x*rrrrs_link1_mass + rrrrs_b_r1_x*rrrrs_link2_mass +
+            rrrrs_b_r1_x*rrrrs_link3_mass)
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
-            (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >=
+        ok & m.every(leg, (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
+            (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >=
             0.0))
         )
         sums = m.added(sums, leg, (
-        potential_t_10,
+        rrrrs_potential_t_5,
         ))
     total_rrrrs, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
         (
-        Kd_2_rrrs_t, Kd_2_rrrs_t_2, b_rrrs_r0_x, b_rrrs_r0_y, branch_1_rrrs, branch_2_rrrs,
-            g_r0_x_2, g_r0_y_2, g_r0_z_2, h_1_rrrs_x, h_1_rrrs_y, h_1_rrrs_z, h_2_rrrs_x,
-            h_2_rrrs_y, h_2_rrrs_z, h_3_rrrs_x, h_3_rrrs_y, h_3_rrrs_z, inv_size_rrrs_t,
-            inv_size_rrrs_t_2, potential_t, potential_t_2, rho2_2_rrrs_t, rrrs_base_frame_xx,
-            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x,
-            rrrs_joint3_offset_x, rrrs_link1_mass, rrrs_link2_mass, rrrs_platform_joint_offset_x,
-            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size_rrrs_t_3,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_b_r0_x, rrrs_b_r0_y,
+            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+            rrrs_branch_1, rrrs_branch_2, rrrs_g_r0_x, rrrs_g_r0_y, rrrs_g_r0_z, rrrs_h_1_x,
+            rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y, rrrs_h_2_z, rrrs_h_3_x, rrrs_h_3_y,
+            rrrs_h_3_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_link1_mass,
+            rrrs_link2_mass, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
+            rrrs_platform_point_y, rrrs_platform_point_z, rrrs_potential_t, rrrs_potential_t_2,
+            rrrs_rho2_2_t, rrrs_size_t_3,
         ) = k
-        # (rrrs-K1) from the base point to the connection point
-        S_rrrs_x = (
+        # (rrrs-S) from the base point to the connection point
+        rrrs_S_x = (
         t_x + R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
             - rrrs_base_point_x
         )
-        S_rrrs_y = (
+        rrrs_S_y = (
         t_y + R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
             - rrrs_base_point_y
         )
-        S_rrrs_z = (
+        rrrs_S_z = (
         t_z + R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
             - rrrs_base_point_z
         )
-        # (rrrs-K2) component along the reference direction
-        px_1_rrrs = (
-        S_rrrs_x*rrrs_base_frame_xy + S_rrrs_y*rrrs_base_frame_yy + S_rrrs_z*rrrs_base_frame_zy
+        # (rrrs-px_1) component along the reference direction
+        rrrs_px_1 = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        # (rrrs-K3) component across the reference direction
-        py_1_rrrs = (
-        S_rrrs_x*rrrs_base_frame_xz + S_rrrs_y*rrrs_base_frame_yz + S_rrrs_z*rrrs_base_frame_zz
+        # (rrrs-py_1) component across the reference direction
+        rrrs_py_1 = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        # (rrrs-K5) squared amplitude
-        rho2_1_rrrs = px_1_rrrs*px_1_rrrs + py_1_rrrs*py_1_rrrs
-        # (rrrs-K7) root, with the sign of the branch
-        root_1_rrrs = branch_1_rrrs*sqrt(rho2_1_rrrs)
-        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_rrrs_t = (
-        S_rrrs_x*rrrs_base_frame_xx + S_rrrs_y*rrrs_base_frame_yx + S_rrrs_z*rrrs_base_frame_zx
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrs_xi_1_t = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        # (rrrs-K12) from the origin of joint 2 to the connection point
-        x_2_rrrs_z = xi_1_rrrs_t - rrrs_joint2_offset_x
-        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z
-        Kd_2_rrrs = Kd_2_rrrs_t + 0.5*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2
-        # (rrrs-K17) factor of the cosine in the equation of joint 2
-        Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x
-        # (rrrs-K18) factor of the sine in the equation of joint 2
-        Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z
-        # (rrrs-K19) squared amplitude
-        rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs
-        # (rrrs-K20) discriminant
-        disc_2_rrrs = rho2_2_rrrs - Kd_2_rrrs*Kd_2_rrrs
-        # (rrrs-K21) root, with the sign of the branch
-        root_2_rrrs = branch_2_rrrs*sqrt(disc_2_rrrs)
-        # (rrrs-K27) from the origin of joint 3 to the connection point
-        x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-        # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-        c_3_rrrs = inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x
-        # (rrrs-K30) sine of the angle of joint 3 from its reference direction
-        s_3_rrrs = (
-        inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-x_3) from the origin of joint 3 to the connection point
+        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrs_s_3 = (
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
-        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2_rrrs = 1.0/rho2_2_rrrs
-        c_2_rrrs = inv_rho2_2_rrrs*(Kc_2_rrrs*Kd_2_rrrs + Ks_2_rrrs*root_2_rrrs)
-        # (rrrs-K23) sine of the angle of joint 2 from its reference direction
-        s_2_rrrs = inv_rho2_2_rrrs*(Kc_2_rrrs*root_2_rrrs - Kd_2_rrrs*Ks_2_rrrs)
-        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrrs = 1.0/rho2_1_rrrs
-        c_1_rrrs = inv_rho2_1_rrrs*py_1_rrrs*root_1_rrrs
-        # (rrrs-K9) sine of the angle of joint 1 from its reference direction
-        s_1_rrrs = inv_rho2_1_rrrs*px_1_rrrs*root_1_rrrs
-        # (V1) potential energy
-        b_rrrs_r1_x = b_rrrs_r0_y*s_1_rrrs - b_rrrs_r0_x*c_1_rrrs
-        b_rrrs_r1_y = -b_rrrs_r0_x*s_1_rrrs - b_rrrs_r0_y*c_1_rrrs
-        # (rrrs-G8) first moment of link 3 about the connection point
-        h_3_rrrs_r0_x = c_3_rrrs*h_3_rrrs_x + h_3_rrrs_y*s_3_rrrs
-        h_3_rrrs_r0_y = c_3_rrrs*h_3_rrrs_y - h_3_rrrs_x*s_3_rrrs
-        # (V1) potential energy
-        potential_t_6 = (
-        (-c_1_rrrs*g_r0_y_2 - g_r0_x_2*s_1_rrrs)*(b_rrrs_r1_y*rrrs_link1_mass +
-            b_rrrs_r1_y*rrrs_link2_mass + h_2_rrrs_y*s_2_rrrs + h_3_rrrs_r0_y*s_2_rrrs -
-            h_1_rrrs_y - c_2_rrrs*h_2_rrrs_x - c_2_rrrs*h_3_rrrs_r0_x)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
+        # (potential) potential energy
+        rrrs_b_r1_x = rrrs_b_r0_y*rrrs_s_1 - rrrs_b_r0_x*rrrs_c_1
+        rrrs_b_r1_y = -rrrs_b_r0_x*rrrs_s_1 - rrrs_b_r0_y*rrrs_c_1
+        # (rrrs-h_3) first moment of link 3 about the connection point
+        rrrs_h_3_r0_x = rrrs_c_3*rrrs_h_3_x + rrrs_h_3_y*rrrs_s_3
+        rrrs_h_3_r0_y = rrrs_c_3*rrrs_h_3_y - rrrs_h_3_x*rrrs_s_3
+        # (potential) potential energy
+        rrrs_potential_t_3 = (
+        (-rrrs_c_1*rrrs_g_r0_y - rrrs_g_r0_x*rrrs_s_1)*(rrrs_b_r1_y*rrrs_link1_mass +
+            rrrs_b_r1_y*rrrs_link2_mass + rrrs_h_2_y*rrrs_s_2 + rrrs_h_3_r0_y*rrrs_s_2 -
+            rrrs_h_1_y - rrrs_c_2*rrrs_h_2_x - rrrs_c_2*rrrs_h_3_r0_x)
         )
-        potential_t_7 = (
-        potential_t_6 + g_r0_z_2*(h_1_rrrs_x + potential_t + potential_t_2 - c_2_rrrs*h_2_rrrs_y -
-            c_2_rrrs*h_3_rrrs_r0_y - h_2_rrrs_x*s_2_rrrs - h_3_rrrs_r0_x*s_2_rrrs) +
-            (g_r0_y_2*s_1_rrrs - c_1_rrrs*g_r0_x_2)*(h_1_rrrs_z + h_2_rrrs_z + h_3_rrrs_z +
-            b_rrrs_r1_x*rrrs_link1_mass + b_rrrs_r1_x*rrrs_link2_mass)
+        rrrs_potential_t_4 = (
+        rrrs_potential_t_3 + rrrs_g_r0_z*(rrrs_h_1_x + rrrs_potential_t + rrrs_potential_t_2 -
+            rrrs_c_2*rrrs_h_2_y - rrrs_c_2*rrrs_h_3_r0_y - rrrs_h_2_x*rrrs_s_2 -
+            rrrs_h_3_r0_x*rrrs_s_2) + (rrrs_g_r0_y*rrrs_s_1 - rrrs_c_1*rrrs_g_r0_x)*(rrrs_h_1_z +
+            rrrs_h_2_z + rrrs_h_3_z + rrrs_b_r1_x*rrrs_link1_mass + rrrs_b_r1_x*rrrs_link2_mass)
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
-            (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0))
+        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
+            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0))
         )
         sums = m.added(sums, leg, (
-        potential_t_7,
+        rrrs_potential_t_4,
         ))
     total_rrrs, = sums
-    # (V1) potential energy
-    potential = -potential_t_5 - total_rrrrs - total_rrrs
+    # (potential) potential energy
+    potential = -potential_t - total_rrrrs - total_rrrs
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -9114,395 +9234,402 @@ def _run_condition(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, branch_1_rrrrs, branch_3_rrrrs, inv_rho2_3_rrrrs_t_4,
-            inv_size_rrrrs, inv_size_rrrrs_t_2, inv_size_rrrrs_t_3, inv_size_rrrrs_t_4,
-            rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
-            rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx,
-            rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
-            rrrrs_base_point_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
-            rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
-            rrrrs_platform_point_y, rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,
+        inv_rrrrs_rho2_3_t_4, inv_rrrrs_size, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3,
+            inv_rrrrs_size_t_4, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_base_frame_xx,
+            rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
+            rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
+            rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1,
+            rrrrs_branch_3, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
+            rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
+            rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,
         ) = k
-        y_2_extra_rrrrs = X[[7][leg]]
-        # (rrrrs-K1) from the base point to the connection point
-        q_rrrrs_in_base_x = (
+        rrrrs_y_2_extra = X[[7][leg]]
+        # (rrrrs-S) from the base point to the connection point
+        rrrrs_q_in_base_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
-        q_rrrrs_in_base_y = (
+        rrrrs_q_in_base_y = (
         R_yx*rrrrs_platform_point_x + R_yy*rrrrs_platform_point_y + R_yz*rrrrs_platform_point_z
         )
-        q_rrrrs_in_base_z = (
+        rrrrs_q_in_base_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        S_rrrrs_x = q_rrrrs_in_base_x + t_x - rrrrs_base_point_x
-        S_rrrrs_y = q_rrrrs_in_base_y + t_y - rrrrs_base_point_y
-        S_rrrrs_z = q_rrrrs_in_base_z + t_z - rrrrs_base_point_z
-        # (rrrrs-K4) component along the reference direction
-        px_1_rrrrs = (
-        S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy +
-            S_rrrrs_z*rrrrs_base_frame_zy
+        rrrrs_S_x = rrrrs_q_in_base_x + t_x - rrrrs_base_point_x
+        rrrrs_S_y = rrrrs_q_in_base_y + t_y - rrrrs_base_point_y
+        rrrrs_S_z = rrrrs_q_in_base_z + t_z - rrrrs_base_point_z
+        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrrs_c_2_t = sin(rrrrs_y_2_extra)
+        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrrs_s_2 = cos(rrrrs_y_2_extra)
+        # (rrrrs-px_1) component along the reference direction
+        rrrrs_px_1 = (
+        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
+            rrrrs_S_z*rrrrs_base_frame_zy
         )
-        # (rrrrs-K5) component across the reference direction
-        py_1_rrrrs = (
-        S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz +
-            S_rrrrs_z*rrrrs_base_frame_zz
+        # (rrrrs-py_1) component across the reference direction
+        rrrrs_py_1 = (
+        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
+            rrrrs_S_z*rrrrs_base_frame_zz
         )
-        # (rrrrs-K7) squared amplitude
-        rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs
-        # (rrrrs-K9) root, with the sign of the branch
-        root_1_rrrrs = branch_1_rrrrs*sqrt(rho2_1_rrrrs)
-        # (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_rrrrs_t = (
-        S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx +
-            S_rrrrs_z*rrrrs_base_frame_zx
+        # (rrrrs-rho2_1) squared amplitude
+        rrrrs_rho2_1 = rrrrs_px_1*rrrrs_px_1 + rrrrs_py_1*rrrrs_py_1
+        # (rrrrs-root_1) root, with the sign of the branch
+        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
+        # (rrrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrrs_xi_1_t = (
+        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
+            rrrrs_S_z*rrrrs_base_frame_zx
         )
-        # (rrrrs-K14) from the origin of joint 2 to the connection point
-        x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x
-        # (rrrrs-K2) cosine of the angle of joint 2 from its reference direction
-        c_2_rrrrs_t = sin(y_2_extra_rrrrs)
-        # (rrrrs-K3) sine of the angle of joint 2 from its reference direction
-        s_2_rrrrs = cos(y_2_extra_rrrrs)
-        # (rrrrs-K14) from the origin of joint 2 to the connection point
-        x_2_rrrrs_t = c_2_rrrrs_t*root_1_rrrrs
-        x_2_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*x_2_rrrrs_z
-        x_2_rrrrs_t_2 = root_1_rrrrs*s_2_rrrrs
-        x_2_rrrrs_r1_y = x_2_rrrrs_t_2 - c_2_rrrrs_t*x_2_rrrrs_z
-        # (rrrrs-K15) from the origin of joint 3 to the connection point
-        x_3_rrrrs_x = x_2_rrrrs_r1_x - rrrrs_joint3_offset_x
-        # (rrrrs-K16) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-        Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x
-        Kd_3_rrrrs = Kd_3_rrrrs_t + 0.5*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2
-        # (rrrrs-K20) factor of the cosine in the equation of joint 3
-        Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x
-        # (rrrrs-K21) factor of the sine in the equation of joint 3
-        Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y
-        # (rrrrs-K22) squared amplitude
-        rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs
-        # (rrrrs-K23) discriminant
-        disc_3_rrrrs = rho2_3_rrrrs - Kd_3_rrrrs*Kd_3_rrrrs
-        # (rrrrs-K24) root, with the sign of the branch
-        root_3_rrrrs = branch_3_rrrrs*sqrt(disc_3_rrrrs)
-        # (rrrrs-K30) from the origin of joint 4 to the connection point
-        x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
-        # (rrrrs-K32) cosine of the angle of joint 4 from its reference direction
-        c_4_rrrrs = inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x
-        # (rrrrs-K33) sine of the angle of joint 4 from its reference direction
-        s_4_rrrrs = (
-        inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        # (rrrrs-x_2) from the origin of joint 2 to the connection point
+        rrrrs_x_2_z = rrrrs_xi_1_t - rrrrs_joint2_offset_x
+        rrrrs_x_2_t = rrrrs_c_2_t*rrrrs_root_1
+        rrrrs_x_2_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_x_2_z
+        rrrrs_x_2_t_2 = rrrrs_root_1*rrrrs_s_2
+        rrrrs_x_2_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_x_2_z
+        # (rrrrs-x_3) from the origin of joint 3 to the connection point
+        rrrrs_x_3_x = rrrrs_x_2_r1_x - rrrrs_joint3_offset_x
+        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
+        rrrrs_Kd_3_t_3 = rrrrs_x_2_r1_y*rrrrs_x_2_r1_y + rrrrs_x_3_x*rrrrs_x_3_x
+        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
+        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
+        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_x
+        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
+        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_r1_y
+        # (rrrrs-rho2_3) squared amplitude
+        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
+        # (rrrrs-disc_3) discriminant
+        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
+        # (rrrrs-root_3) root, with the sign of the branch
+        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
+        # (rrrrs-x_4) from the origin of joint 4 to the connection point
+        rrrrs_x_4_x = inv_rrrrs_size_t_2*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
+        rrrrs_c_4 = inv_rrrrs_size_t_3*rrrrs_platform_joint_offset_x*rrrrs_x_4_x
+        # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
+        rrrrs_s_4 = (
+        inv_rrrrs_size_t_2*inv_rrrrs_size_t_3*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
         )
-        # (rrrrs-V2) from joint 3 to the connection point, along the links
-        r_3_rrrrs_x = rrrrs_joint4_offset_x + c_4_rrrrs*rrrrs_platform_joint_offset_x
-        # (rrrrs-K25) cosine of the angle of joint 3 from its reference direction
-        inv_rho2_3_rrrrs = 1.0/rho2_3_rrrrs
-        c_3_rrrrs = inv_rho2_3_rrrrs*(Kc_3_rrrrs*Kd_3_rrrrs - Ks_3_rrrrs*root_3_rrrrs)
-        # (rrrrs-K26) sine of the angle of joint 3 from its reference direction
-        s_3_rrrrs = inv_rho2_3_rrrrs*(Kc_3_rrrrs*root_3_rrrrs + Kd_3_rrrrs*Ks_3_rrrrs)
-        # (rrrrs-V5) velocity of the connection point per rate of joint 1
-        e_1_rrrrs_r2_x = c_3_rrrrs*s_2_rrrrs - c_2_rrrrs_t*s_3_rrrrs
-        e_1_rrrrs_r2_y = -c_2_rrrrs_t*c_3_rrrrs - s_2_rrrrs*s_3_rrrrs
-        # (rrrrs-V4) from joint 1 to the connection point, along the links
-        r_1_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*xi_1_rrrrs_t
-        r_1_rrrrs_r1_y = x_2_rrrrs_t_2 - c_2_rrrrs_t*xi_1_rrrrs_t
-        r_1_rrrrs_r2_x = c_3_rrrrs*r_1_rrrrs_r1_x + r_1_rrrrs_r1_y*s_3_rrrrs
-        r_1_rrrrs_r2_y = c_3_rrrrs*r_1_rrrrs_r1_y - r_1_rrrrs_r1_x*s_3_rrrrs
-        # (rrrrs-V5) velocity of the connection point per rate of joint 1
-        v_1_rrrrs_z = (
-        (c_4_rrrrs*e_1_rrrrs_r2_x - e_1_rrrrs_r2_y*s_4_rrrrs)*(c_4_rrrrs*r_1_rrrrs_r2_y +
-            r_1_rrrrs_r2_x*s_4_rrrrs) - (c_4_rrrrs*e_1_rrrrs_r2_y +
-            e_1_rrrrs_r2_x*s_4_rrrrs)*(c_4_rrrrs*r_1_rrrrs_r2_x - r_1_rrrrs_r2_y*s_4_rrrrs)
+        # (rrrrs-r_3) from joint 3 to the connection point, along the links
+        rrrrs_r_3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
+        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
+        rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
+        # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
+        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrrs_e_1_r2_x = rrrrs_c_3*rrrrs_s_2 - rrrrs_c_2_t*rrrrs_s_3
+        rrrrs_e_1_r2_y = -rrrrs_c_2_t*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
+        # (rrrrs-r_1) from joint 1 to the connection point, along the links
+        rrrrs_r_1_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_xi_1_t
+        rrrrs_r_1_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_xi_1_t
+        rrrrs_r_1_r2_x = rrrrs_c_3*rrrrs_r_1_r1_x + rrrrs_r_1_r1_y*rrrrs_s_3
+        rrrrs_r_1_r2_y = rrrrs_c_3*rrrrs_r_1_r1_y - rrrrs_r_1_r1_x*rrrrs_s_3
+        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrrs_v_1_z = (
+        (rrrrs_c_4*rrrrs_e_1_r2_x - rrrrs_e_1_r2_y*rrrrs_s_4)*(rrrrs_c_4*rrrrs_r_1_r2_y +
+            rrrrs_r_1_r2_x*rrrrs_s_4) - (rrrrs_c_4*rrrrs_e_1_r2_y +
+            rrrrs_e_1_r2_x*rrrrs_s_4)*(rrrrs_c_4*rrrrs_r_1_r2_x - rrrrs_r_1_r2_y*rrrrs_s_4)
         )
-        # (rrrrs-V2) from joint 3 to the connection point, along the links
-        r_3_rrrrs_r0_y = r_3_rrrrs_x*s_4_rrrrs - c_4_rrrrs*rrrrs_platform_joint_offset_x*s_4_rrrrs
-        # (rrrrs-K10) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrrrs = 1.0/rho2_1_rrrrs
-        c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs
-        # (rrrrs-K11) sine of the angle of joint 1 from its reference direction
-        s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs
-        # (rrrrs-V9) reciprocal vector 1
+        # (rrrrs-r_3) from joint 3 to the connection point, along the links
+        rrrrs_r_3_r0_y = rrrrs_r_3_x*rrrrs_s_4 - rrrrs_c_4*rrrrs_platform_joint_offset_x*rrrrs_s_4
+        # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
+        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_py_1*rrrrs_root_1
+        # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_px_1*rrrrs_root_1
+        # (rrrrs-w_1) reciprocal vector 1
         axis_z_rrrrs_axes4_in_base_x = (
-        rrrrs_base_frame_xz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_xy
+        rrrrs_base_frame_xz*rrrrs_s_1 - rrrrs_base_frame_xy*rrrrs_c_1
         )
         axis_z_rrrrs_axes4_in_base_y = (
-        rrrrs_base_frame_yz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_yy
+        rrrrs_base_frame_yz*rrrrs_s_1 - rrrrs_base_frame_yy*rrrrs_c_1
         )
         axis_z_rrrrs_axes4_in_base_z = (
-        rrrrs_base_frame_zz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_zy
+        rrrrs_base_frame_zz*rrrrs_s_1 - rrrrs_base_frame_zy*rrrrs_c_1
         )
-        axis_y_rrrrs_axes4_r1_x = c_3_rrrrs*s_4_rrrrs - c_4_rrrrs*s_3_rrrrs
-        axis_y_rrrrs_axes4_r1_y = c_3_rrrrs*c_4_rrrrs + s_3_rrrrs*s_4_rrrrs
+        axis_y_rrrrs_axes4_r1_x = rrrrs_c_3*rrrrs_s_4 - rrrrs_c_4*rrrrs_s_3
+        axis_y_rrrrs_axes4_r1_y = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4
         axis_y_rrrrs_axes4_r2_x = (
-        -axis_y_rrrrs_axes4_r1_x*c_2_rrrrs_t - axis_y_rrrrs_axes4_r1_y*s_2_rrrrs
+        -axis_y_rrrrs_axes4_r1_x*rrrrs_c_2_t - axis_y_rrrrs_axes4_r1_y*rrrrs_s_2
         )
         axis_y_rrrrs_axes4_r2_y = (
-        axis_y_rrrrs_axes4_r1_x*s_2_rrrrs - axis_y_rrrrs_axes4_r1_y*c_2_rrrrs_t
+        axis_y_rrrrs_axes4_r1_x*rrrrs_s_2 - axis_y_rrrrs_axes4_r1_y*rrrrs_c_2_t
         )
-        w_1_rrrrs_t = axis_y_rrrrs_axes4_r2_x*s_1_rrrrs
-        w_1_rrrrs_t_2 = axis_y_rrrrs_axes4_r2_x*c_1_rrrrs
+        rrrrs_w_1_t = axis_y_rrrrs_axes4_r2_x*rrrrs_s_1
+        rrrrs_w_1_t_2 = axis_y_rrrrs_axes4_r2_x*rrrrs_c_1
         axis_y_rrrrs_axes4_in_base_x = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_xx - rrrrs_base_frame_xy*w_1_rrrrs_t -
-            rrrrs_base_frame_xz*w_1_rrrrs_t_2
+        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_xx - rrrrs_base_frame_xy*rrrrs_w_1_t -
+            rrrrs_base_frame_xz*rrrrs_w_1_t_2
         )
         axis_y_rrrrs_axes4_in_base_y = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_yx - rrrrs_base_frame_yy*w_1_rrrrs_t -
-            rrrrs_base_frame_yz*w_1_rrrrs_t_2
+        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_yx - rrrrs_base_frame_yy*rrrrs_w_1_t -
+            rrrrs_base_frame_yz*rrrrs_w_1_t_2
         )
         axis_y_rrrrs_axes4_in_base_z = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_zx - rrrrs_base_frame_zy*w_1_rrrrs_t -
-            rrrrs_base_frame_zz*w_1_rrrrs_t_2
+        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_zx - rrrrs_base_frame_zy*rrrrs_w_1_t -
+            rrrrs_base_frame_zz*rrrrs_w_1_t_2
         )
-        inv_v_1_rrrrs_z = 1.0/v_1_rrrrs_z
-        # (rrrrs-V10) reciprocal vector 2
-        inv_r_3_rrrrs_r0_y = 1.0/r_3_rrrrs_r0_y
-        # (rrrrs-A14) coefficient of the acceleration in: acceleration of joint 1
-        d1_qdd_3_rrrrs = (
-        inv_r_3_rrrrs_r0_y*(c_4_rrrrs*(c_3_rrrrs*x_2_rrrrs_r1_y - s_3_rrrrs*x_2_rrrrs_r1_x) +
-            s_4_rrrrs*(c_3_rrrrs*x_2_rrrrs_r1_x + s_3_rrrrs*x_2_rrrrs_r1_y))
+        inv_rrrrs_v_1_z = 1.0/rrrrs_v_1_z
+        # (rrrrs-w_3) reciprocal vector 2
+        inv_rrrrs_r_3_r0_y = 1.0/rrrrs_r_3_r0_y
+        # (rrrrs-dy_2_qdd_1) coefficient of the acceleration in: acceleration of joint 1
+        rrrrs_dy_2_qdd_3 = (
+        inv_rrrrs_r_3_r0_y*(rrrrs_c_4*(rrrrs_c_3*rrrrs_x_2_r1_y - rrrrs_s_3*rrrrs_x_2_r1_x) +
+            rrrrs_s_4*(rrrrs_c_3*rrrrs_x_2_r1_x + rrrrs_s_3*rrrrs_x_2_r1_y))
         )
-        # (rrrrs-V9) reciprocal vector 1
-        w_1_rrrrs_t_3 = axis_z_rrrrs_axes4_in_base_x*inv_v_1_rrrrs_z
-        w_1_rrrrs_t_4 = axis_z_rrrrs_axes4_in_base_y*inv_v_1_rrrrs_z
-        w_1_rrrrs_t_5 = axis_z_rrrrs_axes4_in_base_z*inv_v_1_rrrrs_z
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_1_rrrrs_x = q_rrrrs_in_base_y*w_1_rrrrs_t_5 - q_rrrrs_in_base_z*w_1_rrrrs_t_4
-        H_a_1_rrrrs_y = q_rrrrs_in_base_z*w_1_rrrrs_t_3 - q_rrrrs_in_base_x*w_1_rrrrs_t_5
-        H_a_1_rrrrs_z = q_rrrrs_in_base_x*w_1_rrrrs_t_4 - q_rrrrs_in_base_y*w_1_rrrrs_t_3
-        # (rrrrs-V10) reciprocal vector 2
-        w_3_rrrrs_t = (
-        inv_r_3_rrrrs_r0_y*(axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_z -
+        # (rrrrs-w_1) reciprocal vector 1
+        rrrrs_w_1_t_3 = axis_z_rrrrs_axes4_in_base_x*inv_rrrrs_v_1_z
+        rrrrs_w_1_t_4 = axis_z_rrrrs_axes4_in_base_y*inv_rrrrs_v_1_z
+        rrrrs_w_1_t_5 = axis_z_rrrrs_axes4_in_base_z*inv_rrrrs_v_1_z
+        # (rrrrs-H_a_1) moment of the column's unit force about the platform origin
+        rrrrs_H_a_1_x = rrrrs_q_in_base_y*rrrrs_w_1_t_5 - rrrrs_q_in_base_z*rrrrs_w_1_t_4
+        rrrrs_H_a_1_y = rrrrs_q_in_base_z*rrrrs_w_1_t_3 - rrrrs_q_in_base_x*rrrrs_w_1_t_5
+        rrrrs_H_a_1_z = rrrrs_q_in_base_x*rrrrs_w_1_t_4 - rrrrs_q_in_base_y*rrrrs_w_1_t_3
+        # (rrrrs-w_3) reciprocal vector 2
+        rrrrs_w_3_t = (
+        inv_rrrrs_r_3_r0_y*(axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_z -
             axis_y_rrrrs_axes4_in_base_z*axis_z_rrrrs_axes4_in_base_y)
         )
-        w_3_rrrrs_t_2 = (
-        inv_r_3_rrrrs_r0_y*(axis_y_rrrrs_axes4_in_base_z*axis_z_rrrrs_axes4_in_base_x -
+        rrrrs_w_3_t_2 = (
+        inv_rrrrs_r_3_r0_y*(axis_y_rrrrs_axes4_in_base_z*axis_z_rrrrs_axes4_in_base_x -
             axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_z)
         )
-        w_3_rrrrs_t_3 = (
-        inv_r_3_rrrrs_r0_y*(axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_y -
+        rrrrs_w_3_t_3 = (
+        inv_rrrrs_r_3_r0_y*(axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_y -
             axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_x)
         )
-        # (M10) moment of the column's unit force about the platform origin
-        H_a_3_rrrrs_x = q_rrrrs_in_base_z*w_3_rrrrs_t_2 - q_rrrrs_in_base_y*w_3_rrrrs_t_3
-        H_a_3_rrrrs_y = q_rrrrs_in_base_x*w_3_rrrrs_t_3 - q_rrrrs_in_base_z*w_3_rrrrs_t
-        H_a_3_rrrrs_z = q_rrrrs_in_base_y*w_3_rrrrs_t - q_rrrrs_in_base_x*w_3_rrrrs_t_2
-        # (C2) rms distance of the platform points from their centroid
-        spread_t = b_c_x - rrrrs_platform_point_x
-        spread_t_2 = b_c_y - rrrrs_platform_point_y
-        spread_t_3 = b_c_z - rrrrs_platform_point_z
-        spread_t_4 = spread_t*spread_t + spread_t_2*spread_t_2 + spread_t_3*spread_t_3
-        # (rrrrs-K7) squared amplitude
-        pivot_size = abs(rho2_1_rrrrs)
-        # (rrrrs-K22) squared amplitude
-        pivot_size_2 = abs(rho2_3_rrrrs)
-        # (rrrrs-V9) reciprocal vector 1
-        pivot_size_3 = abs(v_1_rrrrs_z)
-        pivot_size_4 = abs(r_3_rrrrs_r0_y)
-        # (rrrrs-N83) force at the connection point that balances the leg's inertia and weight along all freedoms
-        least_pivots = (
-        least(least(least(sqrt(inv_rho2_3_rrrrs_t_4*pivot_size_2), inv_size_rrrrs*pivot_size_3),
-            inv_size_rrrrs*pivot_size_4), sqrt(inv_size_rrrrs_t_4*pivot_size))
+        # (rrrrs-H_a_3) moment of the column's unit force about the platform origin
+        rrrrs_H_a_3_x = rrrrs_q_in_base_z*rrrrs_w_3_t_2 - rrrrs_q_in_base_y*rrrrs_w_3_t_3
+        rrrrs_H_a_3_y = rrrrs_q_in_base_x*rrrrs_w_3_t_3 - rrrrs_q_in_base_z*rrrrs_w_3_t
+        rrrrs_H_a_3_z = rrrrs_q_in_base_y*rrrrs_w_3_t - rrrrs_q_in_base_x*rrrrs_w_3_t_2
+        # (spread) rms distance of the platform points from their centroid
+        rrrrs_spread_t = b_c_x - rrrrs_platform_point_x
+        rrrrs_spread_t_2 = b_c_y - rrrrs_platform_point_y
+        rrrrs_spread_t_3 = b_c_z - rrrrs_platform_point_z
+        rrrrs_spread_t_4 = (
+        rrrrs_spread_t*rrrrs_spread_t + rrrrs_spread_t_2*rrrrs_spread_t_2 +
+            rrrrs_spread_t_3*rrrrs_spread_t_3
+        )
+        # (rrrrs-rho2_1) squared amplitude
+        rrrrs_pivot_size = abs(rrrrs_rho2_1)
+        # (rrrrs-rho2_3) squared amplitude
+        rrrrs_pivot_size_2 = abs(rrrrs_rho2_3)
+        # (rrrrs-w_1) reciprocal vector 1
+        rrrrs_pivot_size_3 = abs(rrrrs_v_1_z)
+        rrrrs_pivot_size_4 = abs(rrrrs_r_3_r0_y)
+        # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrrrs_least_pivots = (
+        least(least(least(sqrt(inv_rrrrs_rho2_3_t_4*rrrrs_pivot_size_2),
+            inv_rrrrs_size*rrrrs_pivot_size_3), inv_rrrrs_size*rrrrs_pivot_size_4),
+            sqrt(inv_rrrrs_size_t_4*rrrrs_pivot_size))
         )
         clear = (
-        clear & m.every(leg, (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
-            (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (abs(v_1_rrrrs_z) >
-            _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE * size_rrrrs))
+        clear & m.every(leg, (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
+            (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (abs(rrrrs_v_1_z) >
+            _TOLERANCE * rrrrs_size) & (abs(-rrrrs_r_3_r0_y) > _TOLERANCE * rrrrs_size))
         )
-        reached = reached & m.every(leg, (disc_3_rrrrs >= 0.0))
+        reached = reached & m.every(leg, (rrrrs_disc_3 >= 0.0))
         sums = m.added(sums, leg, (
-        spread_t_4,
+        rrrrs_spread_t_4,
         ))
-        out_H[_H_rrrrs[0][leg]] = w_1_rrrrs_t_3
-        out_H[_H_rrrrs[1][leg]] = w_1_rrrrs_t_4
-        out_H[_H_rrrrs[2][leg]] = w_1_rrrrs_t_5
-        out_H[_H_rrrrs[3][leg]] = H_a_1_rrrrs_x
-        out_H[_H_rrrrs[4][leg]] = H_a_1_rrrrs_y
-        out_H[_H_rrrrs[5][leg]] = H_a_1_rrrrs_z
+        out_H[_H_rrrrs[0][leg]] = rrrrs_w_1_t_3
+        out_H[_H_rrrrs[1][leg]] = rrrrs_w_1_t_4
+        out_H[_H_rrrrs[2][leg]] = rrrrs_w_1_t_5
+        out_H[_H_rrrrs[3][leg]] = rrrrs_H_a_1_x
+        out_H[_H_rrrrs[4][leg]] = rrrrs_H_a_1_y
+        out_H[_H_rrrrs[5][leg]] = rrrrs_H_a_1_z
         out_H[_H_rrrrs[6][leg]] = 1.0
-        out_H[_H_rrrrs[7][leg]] = -w_3_rrrrs_t
-        out_H[_H_rrrrs[8][leg]] = -w_3_rrrrs_t_2
-        out_H[_H_rrrrs[9][leg]] = -w_3_rrrrs_t_3
-        out_H[_H_rrrrs[10][leg]] = H_a_3_rrrrs_x
-        out_H[_H_rrrrs[11][leg]] = H_a_3_rrrrs_y
-        out_H[_H_rrrrs[12][leg]] = H_a_3_rrrrs_z
-        out_H[_H_rrrrs[13][leg]] = -d1_qdd_3_rrrrs
-        out_pivots[_pivots_rrrrs[0][leg]] = least_pivots
-        out_reach[_reach_rrrrs[0][leg]] = disc_3_rrrrs
+        out_H[_H_rrrrs[7][leg]] = -rrrrs_w_3_t
+        out_H[_H_rrrrs[8][leg]] = -rrrrs_w_3_t_2
+        out_H[_H_rrrrs[9][leg]] = -rrrrs_w_3_t_3
+        out_H[_H_rrrrs[10][leg]] = rrrrs_H_a_3_x
+        out_H[_H_rrrrs[11][leg]] = rrrrs_H_a_3_y
+        out_H[_H_rrrrs[12][leg]] = rrrrs_H_a_3_z
+        out_H[_H_rrrrs[13][leg]] = -rrrrs_dy_2_qdd_3
+        out_pivots[_pivots_rrrrs[0][leg]] = rrrrs_least_pivots
+        out_reach[_reach_rrrrs[0][leg]] = rrrrs_disc_3
     total_rrrrs, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
         (
-        Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs, inv_rho2_2_rrrs_t_4,
-            inv_size_rrrs, inv_size_rrrs_t, inv_size_rrrs_t_2, inv_size_rrrs_t_3, rho2_2_rrrs_t,
-            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+        inv_rrrs_rho2_2_t_4, inv_rrrs_size, inv_rrrs_size_t, inv_rrrs_size_t_2, inv_rrrs_size_t_3,
+            rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
+            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
             rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size_rrrs,
-            size_rrrs_t_3,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
+            rrrs_size, rrrs_size_t_3,
         ) = k
-        # (rrrs-K1) from the base point to the connection point
-        q_rrrs_in_base_x = (
+        # (rrrs-S) from the base point to the connection point
+        rrrs_q_in_base_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        q_rrrs_in_base_y = (
+        rrrs_q_in_base_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        q_rrrs_in_base_z = (
+        rrrs_q_in_base_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        S_rrrs_x = q_rrrs_in_base_x + t_x - rrrs_base_point_x
-        S_rrrs_y = q_rrrs_in_base_y + t_y - rrrs_base_point_y
-        S_rrrs_z = q_rrrs_in_base_z + t_z - rrrs_base_point_z
-        # (rrrs-K2) component along the reference direction
-        px_1_rrrs = (
-        S_rrrs_x*rrrs_base_frame_xy + S_rrrs_y*rrrs_base_frame_yy + S_rrrs_z*rrrs_base_frame_zy
+        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        # (rrrs-px_1) component along the reference direction
+        rrrs_px_1 = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        # (rrrs-K3) component across the reference direction
-        py_1_rrrs = (
-        S_rrrs_x*rrrs_base_frame_xz + S_rrrs_y*rrrs_base_frame_yz + S_rrrs_z*rrrs_base_frame_zz
+        # (rrrs-py_1) component across the reference direction
+        rrrs_py_1 = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        # (rrrs-K5) squared amplitude
-        rho2_1_rrrs = px_1_rrrs*px_1_rrrs + py_1_rrrs*py_1_rrrs
-        # (rrrs-K7) root, with the sign of the branch
-        root_1_rrrs = branch_1_rrrs*sqrt(rho2_1_rrrs)
-        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_rrrs_t = (
-        S_rrrs_x*rrrs_base_frame_xx + S_rrrs_y*rrrs_base_frame_yx + S_rrrs_z*rrrs_base_frame_zx
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rrrs_xi_1_t = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        # (rrrs-K12) from the origin of joint 2 to the connection point
-        x_2_rrrs_z = xi_1_rrrs_t - rrrs_joint2_offset_x
-        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z
-        Kd_2_rrrs = Kd_2_rrrs_t + 0.5*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2
-        # (rrrs-K17) factor of the cosine in the equation of joint 2
-        Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x
-        # (rrrs-K18) factor of the sine in the equation of joint 2
-        Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z
-        # (rrrs-K19) squared amplitude
-        rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs
-        # (rrrs-K20) discriminant
-        disc_2_rrrs = rho2_2_rrrs - Kd_2_rrrs*Kd_2_rrrs
-        # (rrrs-K21) root, with the sign of the branch
-        root_2_rrrs = branch_2_rrrs*sqrt(disc_2_rrrs)
-        # (rrrs-K27) from the origin of joint 3 to the connection point
-        x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-        # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-        c_3_rrrs = inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x
-        # (rrrs-K30) sine of the angle of joint 3 from its reference direction
-        s_3_rrrs = (
-        inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-x_3) from the origin of joint 3 to the connection point
+        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrs_s_3 = (
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_rrrs_x = rrrs_joint3_offset_x + c_3_rrrs*rrrs_platform_joint_offset_x
-        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2_rrrs = 1.0/rho2_2_rrrs
-        c_2_rrrs = inv_rho2_2_rrrs*(Kc_2_rrrs*Kd_2_rrrs + Ks_2_rrrs*root_2_rrrs)
-        # (rrrs-K23) sine of the angle of joint 2 from its reference direction
-        s_2_rrrs = inv_rho2_2_rrrs*(Kc_2_rrrs*root_2_rrrs - Kd_2_rrrs*Ks_2_rrrs)
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        e_1_rrrs_r2_x = c_2_rrrs*s_3_rrrs - c_3_rrrs*s_2_rrrs
-        e_1_rrrs_r2_y = -c_2_rrrs*c_3_rrrs - s_2_rrrs*s_3_rrrs
-        # (rrrs-V3) from joint 1 to the connection point, along the links
-        r_1_rrrs_r1_x = c_2_rrrs*root_1_rrrs - s_2_rrrs*xi_1_rrrs_t
-        r_1_rrrs_r1_y = -c_2_rrrs*xi_1_rrrs_t - root_1_rrrs*s_2_rrrs
-        # (rrrs-V4) velocity of the connection point per rate of joint 1
-        v_1_rrrs_z = (
-        e_1_rrrs_r2_x*(c_3_rrrs*r_1_rrrs_r1_y + r_1_rrrs_r1_x*s_3_rrrs) -
-            e_1_rrrs_r2_y*(c_3_rrrs*r_1_rrrs_r1_x - r_1_rrrs_r1_y*s_3_rrrs)
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
+        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
+        # (rrrs-r_1) from joint 1 to the connection point, along the links
+        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
+        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_z = (
+        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
+            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
         )
-        # (rrrs-V2) from joint 2 to the connection point, along the links
-        r_2_rrrs_r0_y = r_2_rrrs_x*s_3_rrrs - c_3_rrrs*rrrs_platform_joint_offset_x*s_3_rrrs
-        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrrs = 1.0/rho2_1_rrrs
-        c_1_rrrs = inv_rho2_1_rrrs*py_1_rrrs*root_1_rrrs
-        # (rrrs-K9) sine of the angle of joint 1 from its reference direction
-        s_1_rrrs = inv_rho2_1_rrrs*px_1_rrrs*root_1_rrrs
-        # (rrrs-V7) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1_rrrs - c_1_rrrs*rrrs_base_frame_xy
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1_rrrs - c_1_rrrs*rrrs_base_frame_yy
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1_rrrs - c_1_rrrs*rrrs_base_frame_zy
-        w_1_rrrs_t = e_1_rrrs_r2_x*s_1_rrrs
-        w_1_rrrs_t_2 = c_1_rrrs*e_1_rrrs_r2_x
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_platform_joint_offset_x*rrrs_s_3
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
+        # (rrrs-w_1) reciprocal vector 1
+        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
+        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
+        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
+        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
         axis_y_rrrs_axes3_in_base_x = (
-        e_1_rrrs_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_rrrs_t +
-            rrrs_base_frame_xz*w_1_rrrs_t_2
+        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
+            rrrs_base_frame_xz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_y = (
-        e_1_rrrs_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_rrrs_t +
-            rrrs_base_frame_yz*w_1_rrrs_t_2
+        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
+            rrrs_base_frame_yz*rrrs_w_1_t_2
         )
         axis_y_rrrs_axes3_in_base_z = (
-        e_1_rrrs_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_rrrs_t +
-            rrrs_base_frame_zz*w_1_rrrs_t_2
+        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
+            rrrs_base_frame_zz*rrrs_w_1_t_2
         )
-        inv_v_1_rrrs_z = 1.0/v_1_rrrs_z
-        # (rrrs-V8) reciprocal vector 2
-        inv_r_2_rrrs_r0_y = 1.0/r_2_rrrs_r0_y
-        # (rrrs-V7) reciprocal vector 1
-        w_1_rrrs_t_3 = axis_z_rrrs_axes3_in_base_x*inv_v_1_rrrs_z
-        w_1_rrrs_t_4 = axis_z_rrrs_axes3_in_base_y*inv_v_1_rrrs_z
-        w_1_rrrs_t_5 = axis_z_rrrs_axes3_in_base_z*inv_v_1_rrrs_z
-        # (M11) moment of the column's unit force about the platform origin
-        H_a_1_rrrs_x = q_rrrs_in_base_y*w_1_rrrs_t_5 - q_rrrs_in_base_z*w_1_rrrs_t_4
-        H_a_1_rrrs_y = q_rrrs_in_base_z*w_1_rrrs_t_3 - q_rrrs_in_base_x*w_1_rrrs_t_5
-        H_a_1_rrrs_z = q_rrrs_in_base_x*w_1_rrrs_t_4 - q_rrrs_in_base_y*w_1_rrrs_t_3
-        # (rrrs-V8) reciprocal vector 2
-        w_2_rrrs_t = (
-        inv_r_2_rrrs_r0_y*(axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
+        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
+        # (rrrs-w_2) reciprocal vector 2
+        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_rrrs_v_1_z
+        rrrs_w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_rrrs_v_1_z
+        rrrs_w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_rrrs_v_1_z
+        # (rrrs-H_a_1) moment of the column's unit force about the platform origin
+        rrrs_H_a_1_x = rrrs_q_in_base_y*rrrs_w_1_t_5 - rrrs_q_in_base_z*rrrs_w_1_t_4
+        rrrs_H_a_1_y = rrrs_q_in_base_z*rrrs_w_1_t_3 - rrrs_q_in_base_x*rrrs_w_1_t_5
+        rrrs_H_a_1_z = rrrs_q_in_base_x*rrrs_w_1_t_4 - rrrs_q_in_base_y*rrrs_w_1_t_3
+        # (rrrs-w_2) reciprocal vector 2
+        rrrs_w_2_t = (
+        inv_rrrs_r_2_r0_y*(axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
             axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y)
         )
-        w_2_rrrs_t_2 = (
-        inv_r_2_rrrs_r0_y*(axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
+        rrrs_w_2_t_2 = (
+        inv_rrrs_r_2_r0_y*(axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
             axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z)
         )
-        w_2_rrrs_t_3 = (
-        inv_r_2_rrrs_r0_y*(axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
+        rrrs_w_2_t_3 = (
+        inv_rrrs_r_2_r0_y*(axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
             axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x)
         )
-        # (M12) moment of the column's unit force about the platform origin
-        H_a_2_rrrs_x = q_rrrs_in_base_z*w_2_rrrs_t_2 - q_rrrs_in_base_y*w_2_rrrs_t_3
-        H_a_2_rrrs_y = q_rrrs_in_base_x*w_2_rrrs_t_3 - q_rrrs_in_base_z*w_2_rrrs_t
-        H_a_2_rrrs_z = q_rrrs_in_base_y*w_2_rrrs_t - q_rrrs_in_base_x*w_2_rrrs_t_2
-        # (C2) rms distance of the platform points from their centroid
-        spread_t_5 = b_c_x - rrrs_platform_point_x
-        spread_t_6 = b_c_y - rrrs_platform_point_y
-        spread_t_7 = b_c_z - rrrs_platform_point_z
-        spread_t_8 = spread_t_5*spread_t_5 + spread_t_6*spread_t_6 + spread_t_7*spread_t_7
-        # (rrrs-K5) squared amplitude
-        pivot_size_5 = abs(rho2_1_rrrs)
-        # (rrrs-K19) squared amplitude
-        pivot_size_6 = abs(rho2_2_rrrs)
-        # (rrrs-V7) reciprocal vector 1
-        pivot_size_7 = abs(v_1_rrrs_z)
-        pivot_size_8 = abs(r_2_rrrs_r0_y)
-        # (rrrs-N52) force at the connection point that balances the leg's inertia and weight along all freedoms
-        least_pivots_2 = (
-        least(least(least(sqrt(inv_rho2_2_rrrs_t_4*pivot_size_6), inv_size_rrrs*pivot_size_7),
-            inv_size_rrrs*pivot_size_8), sqrt(inv_size_rrrs_t_3*pivot_size_5))
+        # (rrrs-H_a_2) moment of the column's unit force about the platform origin
+        rrrs_H_a_2_x = rrrs_q_in_base_z*rrrs_w_2_t_2 - rrrs_q_in_base_y*rrrs_w_2_t_3
+        rrrs_H_a_2_y = rrrs_q_in_base_x*rrrs_w_2_t_3 - rrrs_q_in_base_z*rrrs_w_2_t
+        rrrs_H_a_2_z = rrrs_q_in_base_y*rrrs_w_2_t - rrrs_q_in_base_x*rrrs_w_2_t_2
+        # (spread) rms distance of the platform points from their centroid
+        rrrs_spread_t = b_c_x - rrrs_platform_point_x
+        rrrs_spread_t_2 = b_c_y - rrrs_platform_point_y
+        rrrs_spread_t_3 = b_c_z - rrrs_platform_point_z
+        rrrs_spread_t_4 = (
+        rrrs_spread_t*rrrs_spread_t + rrrs_spread_t_2*rrrs_spread_t_2 +
+            rrrs_spread_t_3*rrrs_spread_t_3
+        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_pivot_size = abs(rrrs_rho2_1)
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_pivot_size_2 = abs(rrrs_rho2_2)
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_pivot_size_3 = abs(rrrs_v_1_z)
+        rrrs_pivot_size_4 = abs(rrrs_r_2_r0_y)
+        # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrrs_least_pivots = (
+        least(least(least(sqrt(inv_rrrs_rho2_2_t_4*rrrs_pivot_size_2),
+            inv_rrrs_size*rrrs_pivot_size_3), inv_rrrs_size*rrrs_pivot_size_4),
+            sqrt(inv_rrrs_size_t_3*rrrs_pivot_size))
         )
         clear = (
-        clear & m.every(leg, (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
-            (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (abs(v_1_rrrs_z) >
-            _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE * size_rrrs))
+        clear & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
+            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (abs(rrrs_v_1_z) >
+            _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE * rrrs_size))
         )
-        reached = reached & m.every(leg, (disc_2_rrrs >= 0.0))
+        reached = reached & m.every(leg, (rrrs_disc_2 >= 0.0))
         sums = m.added(sums, leg, (
-        spread_t_8,
+        rrrs_spread_t_4,
         ))
-        out_H[_H_rrrs[0][leg]] = w_1_rrrs_t_3
-        out_H[_H_rrrs[1][leg]] = w_1_rrrs_t_4
-        out_H[_H_rrrs[2][leg]] = w_1_rrrs_t_5
-        out_H[_H_rrrs[3][leg]] = H_a_1_rrrs_x
-        out_H[_H_rrrs[4][leg]] = H_a_1_rrrs_y
-        out_H[_H_rrrs[5][leg]] = H_a_1_rrrs_z
-        out_H[_H_rrrs[6][leg]] = -w_2_rrrs_t
-        out_H[_H_rrrs[7][leg]] = -w_2_rrrs_t_2
-        out_H[_H_rrrs[8][leg]] = -w_2_rrrs_t_3
-        out_H[_H_rrrs[9][leg]] = H_a_2_rrrs_x
-        out_H[_H_rrrs[10][leg]] = H_a_2_rrrs_y
-        out_H[_H_rrrs[11][leg]] = H_a_2_rrrs_z
-        out_pivots[_pivots_rrrs[0][leg]] = least_pivots_2
-        out_reach[_reach_rrrs[0][leg]] = disc_2_rrrs
+        out_H[_H_rrrs[0][leg]] = rrrs_w_1_t_3
+        out_H[_H_rrrs[1][leg]] = rrrs_w_1_t_4
+        out_H[_H_rrrs[2][leg]] = rrrs_w_1_t_5
+        out_H[_H_rrrs[3][leg]] = rrrs_H_a_1_x
+        out_H[_H_rrrs[4][leg]] = rrrs_H_a_1_y
+        out_H[_H_rrrs[5][leg]] = rrrs_H_a_1_z
+        out_H[_H_rrrs[6][leg]] = -rrrs_w_2_t
+        out_H[_H_rrrs[7][leg]] = -rrrs_w_2_t_2
+        out_H[_H_rrrs[8][leg]] = -rrrs_w_2_t_3
+        out_H[_H_rrrs[9][leg]] = rrrs_H_a_2_x
+        out_H[_H_rrrs[10][leg]] = rrrs_H_a_2_y
+        out_H[_H_rrrs[11][leg]] = rrrs_H_a_2_z
+        out_pivots[_pivots_rrrs[0][leg]] = rrrs_least_pivots
+        out_reach[_reach_rrrs[0][leg]] = rrrs_disc_2
     total_rrrs, = sums
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread = sqrt(0.3333333333333333*total_rrrrs + 0.3333333333333333*total_rrrs)
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
@@ -9630,6 +9757,19 @@ def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
     momentum = np.einsum("ijs,js->is", M, V)
     return (momentum,)
+
+
+def _steps_joint_margins(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    margins = _unlimited(q, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9])
+    return (margins,)
+
+
+def _steps_within_limits(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    subtract_1 = q - q
+    within = _not_negative(subtract_1)
+    return (within,)
 
 
 def _steps_actuator_positions(m, X):
@@ -10084,6 +10224,40 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+    )
+
+
+def joint_margins(X, p=None):
+    """How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+    where there is none.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        margins: distances, in the order of q [m or rad] (..., NJ).
+    """
+    return _call(
+        "joint_margins", _steps_joint_margins, p,
+        ("X", X, (NQ,)),
+        unbounded=True,
+    )
+
+
+def within_limits(X, p=None):
+    """Whether all joints are within their limits of displacement.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        within: 1 where no margin is negative, else 0; NaN is neither (...,).
+    """
+    return _call(
+        "within_limits", _steps_within_limits, p,
+        ("X", X, (NQ,)),
     )
 
 

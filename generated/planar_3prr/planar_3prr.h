@@ -48,6 +48,7 @@ typedef PLANAR_3PRR_REAL planar_3prr_real;
 #define PLANAR_3PRR_NC 0
 #define PLANAR_3PRR_NW 3
 #define PLANAR_3PRR_NJ 6
+#define PLANAR_3PRR_OVERCONSTRAINED 0
 
 enum {
     PLANAR_3PRR_OK = 0,
@@ -92,14 +93,15 @@ typedef struct {
 /* What depends on the parameters alone; set by planar_3prr_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
-    planar_3prr_real J_star_t_10, J_star_zz, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y,
-            h_star_x, h_star_y, legs_size, m_star, spread_t;
-    /* legs of type prr */
-    planar_3prr_real J_2_zz[3], b_r0_x[3], branch_1[3], g_r0_x[3], g_r0_y[3], h_1_x[3], h_1_y[3],
-            h_2_x[3], h_2_y[3], inv_size[3], inv_uu_2_t[3], potential_t[3], prr_base_frame_xx[3],
-            prr_base_frame_xy[3], prr_base_frame_yx[3], prr_base_frame_yy[3], prr_base_point_x[3],
-            prr_base_point_y[3], prr_link1_mass[3], prr_link2_mass[3], prr_platform_joint_offset_x[3],
-            prr_platform_point_x[3], prr_platform_point_y[3], size_[3], uu_2_t[3];
+    /* 3 legs of type prr; copies of the first fill up */
+    planar_3prr_real inv_prr_disc_1_t_5[4], inv_prr_size[4], prr_J_2_zz[4], prr_b_r0_x[4],
+            prr_base_frame_xx[4], prr_base_frame_xy[4], prr_base_frame_yx[4], prr_base_frame_yy[4],
+            prr_base_point_x[4], prr_base_point_y[4], prr_branch_1[4], prr_disc_1_t[4], prr_g_r0_x[4],
+            prr_g_r0_y[4], prr_h_1_x[4], prr_h_1_y[4], prr_h_2_x[4], prr_h_2_y[4], prr_link1_mass[4],
+            prr_link2_mass[4], prr_platform_joint_offset_x[4], prr_platform_point_x[4],
+            prr_platform_point_y[4], prr_potential_t[4], prr_size[4];
+    planar_3prr_real J_star_t_6, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y, h_star_x,
+            h_star_y, legs_size, m_star, spread_t;
 } planar_3prr_model;
 
 extern const planar_3prr_params planar_3prr_default_params;
@@ -121,7 +123,7 @@ int planar_3prr_M(const planar_3prr_model *model, const planar_3prr_real *X, pla
 size_t planar_3prr_M_batch(const planar_3prr_model *model, size_t n, const planar_3prr_real *X,
     planar_3prr_real *M, int *status);
 
-/* Velocity and gravity terms Z. 211 mul, 136 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 207 mul, 134 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int planar_3prr_Z(const planar_3prr_model *model, const planar_3prr_real *X, const
     planar_3prr_real *V, planar_3prr_real *Z);
@@ -156,7 +158,7 @@ size_t planar_3prr_joint_accelerations_batch(const planar_3prr_model *model, siz
     planar_3prr_real *X, const planar_3prr_real *V, const planar_3prr_real *A, planar_3prr_real
     *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 349 mul, 231 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 345 mul, 229 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int planar_3prr_dynamics(const planar_3prr_model *model, const planar_3prr_real *X, const
     planar_3prr_real *V, planar_3prr_real *M, planar_3prr_real *Z, planar_3prr_real *H);
@@ -164,7 +166,7 @@ size_t planar_3prr_dynamics_batch(const planar_3prr_model *model, size_t n, cons
     *X, const planar_3prr_real *V, planar_3prr_real *M, planar_3prr_real *Z, planar_3prr_real *H,
     int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 249 mul, 168 add, 3 div, 3 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 245 mul, 166 add, 3 div, 3 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
 int planar_3prr_inverse_dynamics(const planar_3prr_model *model, const planar_3prr_real *X, const
@@ -174,7 +176,7 @@ size_t planar_3prr_inverse_dynamics_batch(const planar_3prr_model *model, size_t
     planar_3prr_real *X, const planar_3prr_real *V, const planar_3prr_real *A, const
     planar_3prr_real *wrench, planar_3prr_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 349 mul, 231 add, 3 div, 3 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 345 mul, 229 add, 3 div, 3 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV). */
 int planar_3prr_forward_dynamics(const planar_3prr_model *model, const planar_3prr_real *X, const
@@ -243,6 +245,20 @@ int planar_3prr_momentum(const planar_3prr_model *model, const planar_3prr_real 
     planar_3prr_real *V, planar_3prr_real *momentum);
 size_t planar_3prr_momentum_batch(const planar_3prr_model *model, size_t n, const planar_3prr_real
     *X, const planar_3prr_real *V, planar_3prr_real *momentum, int *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 48 mul, 36 add, 0 div, 3 sqrt, 3 trig. In: X (NQ). Out: margins (NJ). */
+int planar_3prr_joint_margins(const planar_3prr_model *model, const planar_3prr_real *X,
+    planar_3prr_real *margins);
+size_t planar_3prr_joint_margins_batch(const planar_3prr_model *model, size_t n, const
+    planar_3prr_real *X, planar_3prr_real *margins, int *status);
+
+/* Whether all joints are within their limits of displacement. 48 mul, 36 add, 0 div, 3 sqrt, 3
+   trig. In: X (NQ). Out: within (1). */
+int planar_3prr_within_limits(const planar_3prr_model *model, const planar_3prr_real *X,
+    planar_3prr_real *within);
+size_t planar_3prr_within_limits_batch(const planar_3prr_model *model, size_t n, const
+    planar_3prr_real *X, planar_3prr_real *within, int *status);
 
 /* Displacements of the actuated joints, in the order of tau. 48 mul, 36 add, 0 div, 3 sqrt, 3
    trig. In: X (NQ). Out: q (NU). */

@@ -32,6 +32,7 @@ __all__ = [
     "NC",
     "NW",
     "NJ",
+    "OVERCONSTRAINED",
     "ACTUATED",
     "ACTUATOR_NAMES",
     "H",
@@ -56,6 +57,7 @@ __all__ = [
     "inverse_dynamics",
     "inverse_kinematics",
     "joint_accelerations",
+    "joint_margins",
     "joint_rates",
     "leg_reactions",
     "momentum",
@@ -64,6 +66,7 @@ __all__ = [
     "power",
     "retract",
     "rotation",
+    "within_limits",
 ]
 
 NQ = 3
@@ -72,6 +75,7 @@ NU = 3
 NC = 0
 NW = 3
 NJ = 6
+OVERCONSTRAINED = 0
 
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
@@ -322,7 +326,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return np.full(shape, default)
+        return _filled(shape, default) if isinstance(default, float) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -335,6 +339,16 @@ def _argument(function, name, value, shape, default=None, rule=""):
     elif rule == "positive" and not np.all((array > 0.0) & (array < np.inf)):
         raise ValueError(f"{function}: {name} must be positive and finite")
     return array
+
+
+_FILLED = {}
+
+
+def _filled(shape, value):
+    """An array of one value, made once."""
+    if (shape, value) not in _FILLED:
+        _FILLED[shape, value] = _frozen(np.full(shape, value))
+    return _FILLED[shape, value]
 
 
 def _lead(leads):
@@ -428,7 +442,7 @@ HOME_X = _frozen(np.array([0.03, -0.02, 0.09999999999999999]))
 HOME_Q = _frozen(np.array([0.15, -0.7, 0.15, -0.7, 0.15, -0.7]))
 
 _BRANCHES = {  # assembly branch of home, a sign per leg
-    "branch_1": np.array([-1.0, -1.0, -1.0]),
+    "prr_branch_1": np.array([-1.0, -1.0, -1.0]),
 }
 
 
@@ -458,99 +472,102 @@ def _prepare(p):
     prr_link2_centre_of_mass_x = p.prr_link2_centre_of_mass[:, 0]
     prr_link2_centre_of_mass_y = p.prr_link2_centre_of_mass[:, 1]
     prr_link2_inertia_zz = p.prr_link2_inertia[:, 2, 2]
-    branch_1 = _BRANCHES["branch_1"]
-    # (L2) first moment about the platform origin
+    prr_branch_1 = _BRANCHES["prr_branch_1"]
+    # (h_star) first moment about the platform origin
     h_star_t = platform_centre_of_mass_x*platform_mass
     h_star_t_2 = platform_centre_of_mass_y*platform_mass
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_t = platform_centre_of_mass_y*platform_centre_of_mass_y
     J_star_t_2 = J_star_t + platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_3 = J_star_t*platform_mass
     J_star_t_4 = J_star_t_2*platform_mass
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread_t = 0.3333333333333333*sqrt(3.0)
-    # (prr-K6) squared length, across the axis, of the direction fixed in link 2
-    uu_2_t = prr_platform_joint_offset_x*prr_platform_joint_offset_x
-    # (prr-K7) cosine of the angle of joint 2 from its reference direction
-    inv_uu_2_t = 1.0/uu_2_t
-    # (prr-G2) length of the leg's lever arms, the measure of what is near singular
-    size_t = 2.5e-07 + uu_2_t
-    size = sqrt(size_t)
-    # (prr-G4) connection point to the centre of mass of link 2
-    rho_tip_2_x = prr_link2_centre_of_mass_x - prr_platform_joint_offset_x
-    # (prr-G6) inertia tensor of link 2 about the connection point
-    J_2_t = prr_link2_centre_of_mass_y*prr_link2_centre_of_mass_y + rho_tip_2_x*rho_tip_2_x
-    J_2_zz = prr_link2_inertia_zz + J_2_t*prr_link2_mass
-    # (prr-G5) first moment of link 2 about the connection point
-    h_2_x = prr_link2_mass*rho_tip_2_x
-    h_2_y = prr_link2_centre_of_mass_y*prr_link2_mass
-    # (L2) first moment about the platform origin
-    h_star_t_3 = prr_link2_mass*prr_platform_point_x
-    h_star_t_4 = prr_link2_mass*prr_platform_point_y
-    # (L3) inertia tensor about the platform origin
-    J_star_t_5 = prr_platform_point_y*prr_platform_point_y
-    J_star_t_6 = J_star_t_5 + prr_platform_point_x*prr_platform_point_x
-    J_star_t_7 = J_star_t_5*prr_link2_mass
-    J_star_t_8 = J_star_t_6*prr_link2_mass
-    # (prr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-    g_r0_x = gravity_x*prr_base_frame_xx + gravity_y*prr_base_frame_yx
-    g_r0_y = gravity_x*prr_base_frame_xy + gravity_y*prr_base_frame_yy
-    # (prr-G3) first moment of link 1 about the origin of link 1
-    h_1_x = prr_link1_centre_of_mass_x*prr_link1_mass
-    h_1_y = prr_link1_centre_of_mass_y*prr_link1_mass
-    # (V1) potential energy
-    b_r0_x = prr_base_frame_xx*prr_base_point_x + prr_base_frame_yx*prr_base_point_y
-    potential_t = (
+    # (prr-disc_1) discriminant of the distance equation
+    prr_disc_1_t = prr_platform_joint_offset_x*prr_platform_joint_offset_x
+    # (prr-c_2) cosine of the angle of joint 2 from its reference direction
+    inv_prr_disc_1_t_5 = 1.0/prr_disc_1_t
+    # (prr-rho_tip_2) connection point to the centre of mass of link 2
+    prr_rho_tip_2_x = prr_link2_centre_of_mass_x - prr_platform_joint_offset_x
+    # (prr-h_2) first moment of link 2 about the connection point
+    prr_h_2_x = prr_link2_mass*prr_rho_tip_2_x
+    prr_h_2_y = prr_link2_centre_of_mass_y*prr_link2_mass
+    # (prr-size) length of the leg's lever arms, the measure of what is near singular
+    prr_size_t = 2.5e-07 + prr_disc_1_t
+    prr_size = sqrt(prr_size_t)
+    # (prr-J_2) inertia tensor of link 2 about the connection point
+    prr_J_2_t = (
+    prr_link2_centre_of_mass_y*prr_link2_centre_of_mass_y + prr_rho_tip_2_x*prr_rho_tip_2_x
+    )
+    prr_J_2_zz = prr_link2_inertia_zz + prr_J_2_t*prr_link2_mass
+    # (h_star) first moment about the platform origin
+    prr_h_star_t = prr_link2_mass*prr_platform_point_x
+    prr_h_star_t_2 = prr_link2_mass*prr_platform_point_y
+    # (J_star) inertia tensor about the platform origin
+    prr_J_star_t = prr_platform_point_y*prr_platform_point_y
+    prr_J_star_t_2 = prr_J_star_t + prr_platform_point_x*prr_platform_point_x
+    prr_J_star_t_3 = prr_J_star_t*prr_link2_mass
+    prr_J_star_t_4 = prr_J_star_t_2*prr_link2_mass
+    # (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+    prr_g_r0_x = gravity_x*prr_base_frame_xx + gravity_y*prr_base_frame_yx
+    prr_g_r0_y = gravity_x*prr_base_frame_xy + gravity_y*prr_base_frame_yy
+    # (prr-h_1) first moment of link 1 about the origin of link 1
+    prr_h_1_x = prr_link1_centre_of_mass_x*prr_link1_mass
+    prr_h_1_y = prr_link1_centre_of_mass_y*prr_link1_mass
+    # (potential) potential energy
+    prr_b_r0_x = prr_base_frame_xx*prr_base_point_x + prr_base_frame_yx*prr_base_point_y
+    prr_potential_t = (
     prr_link1_mass*(prr_base_frame_xy*prr_base_point_x + prr_base_frame_yy*prr_base_point_y)
     )
-    # (prr-V3) reciprocal vector 1
-    inv_size = 1.0/size
+    # (prr-w_2) reciprocal vector 2
+    inv_prr_size = 1.0/prr_size
     total_prr = np.sum(np.broadcast_to(prr_link2_mass, _prr))
-    total_prr_x = np.sum(np.broadcast_to(h_star_t_3, _prr))
-    total_prr_y = np.sum(np.broadcast_to(h_star_t_4, _prr))
-    total_prr_xx = np.sum(np.broadcast_to(J_star_t_7, _prr))
-    total_prr_zz = np.sum(np.broadcast_to(J_star_t_8, _prr))
+    total_prr_x = np.sum(np.broadcast_to(prr_h_star_t, _prr))
+    total_prr_y = np.sum(np.broadcast_to(prr_h_star_t_2, _prr))
+    total_prr_xx = np.sum(np.broadcast_to(prr_J_star_t_3, _prr))
+    total_prr_zz = np.sum(np.broadcast_to(prr_J_star_t_4, _prr))
     total_prr_x_2 = np.sum(np.broadcast_to(prr_platform_point_x, _prr))
     total_prr_y_2 = np.sum(np.broadcast_to(prr_platform_point_y, _prr))
-    total_prr_2 = np.sum(np.broadcast_to(size_t, _prr))
-    # (L1) mass of the platform with the gathered masses
+    total_prr_2 = np.sum(np.broadcast_to(prr_size_t, _prr))
+    # (m_star) mass of the platform with the gathered masses
     m_star = platform_mass + total_prr
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_x = h_star_t + total_prr_x
     h_star_y = h_star_t_2 + total_prr_y
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_xx = J_star_t_3 + total_prr_xx
-    J_star_zz = J_star_t_4 + platform_inertia_zz + total_prr_zz
-    J_star_t_9 = J_star_xx - J_star_zz
-    J_star_t_10 = J_star_t_9 - J_star_xx
-    # (M4) centripetal force and weight of the platform
+    J_star_t_5 = J_star_xx - J_star_t_4 - platform_inertia_zz - total_prr_zz
+    J_star_t_6 = J_star_t_5 - J_star_xx
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
-    # (C1) centroid of the platform points
+    # (b_c) centroid of the platform points
     b_c_x = 0.3333333333333333*total_prr_x_2
     b_c_y = 0.3333333333333333*total_prr_y_2
-    # (C3) rms size of the legs, taken where the platform points coincide
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     legs_size = spread_t*sqrt(total_prr_2)
     return {
         "dynamics": (
-        (J_star_t_10, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
+        (J_star_t_6, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
                 (_prr,
-        (J_2_zz, branch_1, g_r0_x, g_r0_y, h_2_x, h_2_y, inv_uu_2_t, prr_base_frame_xx,
-                    prr_base_frame_xy, prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x,
-                    prr_base_point_y, prr_link1_mass, prr_platform_joint_offset_x,
-                    prr_platform_point_x, prr_platform_point_y, size, uu_2_t,),
+        (inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
+                    prr_disc_1_t, prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
+                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
+                    prr_size,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_10, h_star_x, h_star_y, m_star,),
+        (J_star_t_6, h_star_x, h_star_y, m_star,),
             (
                 (_prr,
-        (J_2_zz, branch_1, h_2_x, h_2_y, inv_uu_2_t, prr_base_frame_xx, prr_base_frame_xy,
-                    prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
-                    prr_link1_mass, prr_platform_joint_offset_x, prr_platform_point_x,
-                    prr_platform_point_y, size, uu_2_t,),
+        (inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
+                    prr_disc_1_t, prr_h_2_x, prr_h_2_y, prr_link1_mass,
+                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
+                    prr_size,),
                 ),
             ),
         ),
@@ -558,10 +575,11 @@ def _prepare(p):
         (Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y,),
             (
                 (_prr,
-        (J_2_zz, branch_1, g_r0_x, g_r0_y, h_2_x, h_2_y, inv_uu_2_t, prr_base_frame_xx,
-                    prr_base_frame_xy, prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x,
-                    prr_base_point_y, prr_link1_mass, prr_platform_joint_offset_x,
-                    prr_platform_point_x, prr_platform_point_y, size, uu_2_t,),
+        (inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
+                    prr_disc_1_t, prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
+                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
+                    prr_size,),
                 ),
             ),
         ),
@@ -569,21 +587,22 @@ def _prepare(p):
         (),
             (
                 (_prr,
-        (branch_1, inv_uu_2_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
-                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, size,
-                    uu_2_t,),
+        (inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
+                    prr_disc_1_t, prr_platform_joint_offset_x, prr_platform_point_x,
+                    prr_platform_point_y, prr_size,),
                 ),
             ),
         ),
         "required": (
-        (J_star_zz, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
+        (J_star_t_6, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
                 (_prr,
-        (J_2_zz, branch_1, g_r0_x, g_r0_y, h_2_x, h_2_y, inv_uu_2_t, prr_base_frame_xx,
-                    prr_base_frame_xy, prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x,
-                    prr_base_point_y, prr_link1_mass, prr_platform_joint_offset_x,
-                    prr_platform_point_x, prr_platform_point_y, size, uu_2_t,),
+        (inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
+                    prr_disc_1_t, prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
+                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
+                    prr_size,),
                 ),
             ),
         ),
@@ -591,10 +610,10 @@ def _prepare(p):
         (),
             (
                 (_prr,
-        (branch_1, inv_uu_2_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
-                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
-                    uu_2_t,),
+        (inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
+                    prr_disc_1_t, prr_platform_joint_offset_x, prr_platform_point_x,
+                    prr_platform_point_y,),
                 ),
             ),
         ),
@@ -602,10 +621,10 @@ def _prepare(p):
         (),
             (
                 (_prr,
-        (branch_1, inv_uu_2_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
-                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, size,
-                    uu_2_t,),
+        (inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
+                    prr_disc_1_t, prr_platform_joint_offset_x, prr_platform_point_x,
+                    prr_platform_point_y, prr_size,),
                 ),
             ),
         ),
@@ -613,10 +632,10 @@ def _prepare(p):
         (),
             (
                 (_prr,
-        (branch_1, inv_uu_2_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
-                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, size,
-                    uu_2_t,),
+        (inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
+                    prr_disc_1_t, prr_platform_joint_offset_x, prr_platform_point_x,
+                    prr_platform_point_y, prr_size,),
                 ),
             ),
         ),
@@ -624,10 +643,11 @@ def _prepare(p):
         (),
             (
                 (_prr,
-        (J_2_zz, branch_1, g_r0_x, g_r0_y, h_2_x, h_2_y, inv_uu_2_t, prr_base_frame_xx,
-                    prr_base_frame_xy, prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x,
-                    prr_base_point_y, prr_link1_mass, prr_link2_mass, prr_platform_joint_offset_x,
-                    prr_platform_point_x, prr_platform_point_y, size, uu_2_t,),
+        (inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
+                    prr_disc_1_t, prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
+                    prr_link2_mass, prr_platform_joint_offset_x, prr_platform_point_x,
+                    prr_platform_point_y, prr_size,),
                 ),
             ),
         ),
@@ -635,11 +655,11 @@ def _prepare(p):
         (gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
                 (_prr,
-        (b_r0_x, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, inv_uu_2_t, potential_t,
-                    prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx, prr_base_frame_yy,
-                    prr_base_point_x, prr_base_point_y, prr_link1_mass,
-                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
-                    uu_2_t,),
+        (inv_prr_disc_1_t_5, prr_b_r0_x, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
+                    prr_disc_1_t, prr_g_r0_x, prr_g_r0_y, prr_h_1_x, prr_h_1_y, prr_h_2_x,
+                    prr_h_2_y, prr_link1_mass, prr_platform_joint_offset_x, prr_platform_point_x,
+                    prr_platform_point_y, prr_potential_t,),
                 ),
             ),
         ),
@@ -647,17 +667,18 @@ def _prepare(p):
         (b_c_x, b_c_y, legs_size, spread_t,),
             (
                 (_prr,
-        (branch_1, inv_size, inv_uu_2_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
-                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, size,
-                    uu_2_t,),
+        (inv_prr_disc_1_t_5, inv_prr_size, prr_base_frame_xx, prr_base_frame_xy,
+                    prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
+                    prr_branch_1, prr_disc_1_t, prr_platform_joint_offset_x, prr_platform_point_x,
+                    prr_platform_point_y, prr_size,),
                 ),
             ),
         ),
     }
 
 
-_FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
+_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
@@ -703,17 +724,19 @@ class _Floats:
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
-        for k in range(self.states):
-            try:
-                ok, arrays = function(self, *(row[k] for row in rows))
-            except (ZeroDivisionError, OverflowError):
-                continue
-            if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
-                for a, array in zip(found, arrays):
-                    a[k] = array
-        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
+        found = [self.state(function, names, [row[k] for row in rows]) for k in range(self.states)]
+        return [np.array(a).T.reshape(*_SHAPES[n], self.states) for a, n in zip(zip(*found), names)]
+
+    def state(self, function, names, given):
+        """Lists that a function gives at a state."""
+        try:
+            ok, arrays = function(self, *given)
+        except (ZeroDivisionError, OverflowError):
+            ok = False
+        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+            return arrays
+        return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
 
 
 class _Arrays:
@@ -781,35 +804,44 @@ def _mode(p, states):
     return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
 
 
-def _call(function, steps, p, *arguments, mode=_mode):
-    """What the steps give at arguments (name, value, shape of a state, default, rule)."""
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+    """What the steps give at arguments (name, value, shape of a state, default, rule).
+
+    Where that may be infinite only NaN makes a state impossible.
+    """
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
     lead, p = _lead(leads), _given(p)
     read = [a[4:] != ("unused",) for a in arguments]
     if lead or mode is _Judged:
-        results = _many(steps, p, lead, given, shapes, read, mode)
+        results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
-        results = _one(steps, p, given, shapes, read)
+        results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
 
 
-def _one(steps, p, given, shapes, read):
+def _one(steps, p, given, shapes, read, unbounded):
     """Results at a single state."""
     states = [v.reshape(*shape, 1) for v, shape in zip(given, shapes)]
     with np.errstate(all="ignore"):
-        results = [a[..., 0] for a in steps(_Floats(p, 1), *states)]
-    if all(all(map(math.isfinite, v.ravel().tolist())) for v in (*compress(given, read), *results)):
-        return [np.array(a)[()] for a in results]
+        results = [a[..., 0].copy() for a in steps(_Floats(p, 1), *states)]
+    looked_at = [np.minimum(a, 0.0) for a in results] if unbounded else results
+    entries = (v.ravel().tolist() for v in (*compress(given, read), *looked_at))
+    if all(all(map(math.isfinite, row)) for row in entries):
+        return [a[()] for a in results]
     return [np.full(a.shape, np.nan)[()] for a in results]
 
 
-def _many(steps, p, lead, given, shapes, read, mode):
+def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block."""
     count = math.prod(lead)
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
+    if count > _BLOCK:
+        # Never touched, freed at once: the C library, which learns from it, then keeps the memory
+        # of intermediate arrays from block to block instead of giving its pages back.
+        np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
         for first in range(0, max(count, 1), _BLOCK):
             block = slice(first, min(first + _BLOCK, count))
@@ -821,7 +853,7 @@ def _many(steps, p, lead, given, shapes, read, mode):
             _all_finite(compress(states, read), good)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite(found, good)
+            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -857,6 +889,18 @@ def _wrapped(a, places):
     result = np.array(a)
     result[places] = np.pi - np.remainder(np.pi - a[places], 2.0 * np.pi)
     return result
+
+
+def _unlimited(a, places):
+    """a, some entries infinite; what is not known stays so."""
+    result = np.array(a)
+    result[places] += np.inf
+    return result
+
+
+def _not_negative(a):
+    """1 where no entry is negative, else 0; NaN where one is not finite."""
+    return np.where(np.isfinite(a).all(axis=0), np.all(a >= 0.0, axis=0), np.nan)
 
 
 def _rows_divided(a, b, places):
@@ -918,8 +962,8 @@ def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
     n, states = b.shape
     if 0 < states <= _FEW:
-        matrices, rights = np.moveaxis(a, -1, 0).tolist(), b.T.tolist()
-        return np.array([_solve_one(*each) for each in zip(matrices, rights)]).T.reshape(n, states)
+        systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
+        return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
     good = np.all((size > 0.0) & np.isfinite(size), axis=0)
     rows = np.concatenate((a, b[:, None]), axis=1)
@@ -946,28 +990,32 @@ def _solve(a, b):
 
 
 def _solve_one(a, b):
-    """The same for one system of nested lists."""
-    n = len(b)
-    failure = [np.nan] * n
-    for i, row in enumerate(a):
-        size = max(map(abs, row), default=0.0)
-        if not 0.0 < size < np.inf:
-            return failure
-        a[i] = [v / size for v in row] + [b[i] / size]
-    for k in range(n):
-        best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
-            a[k], a[best] = a[best], a[k]
-        if not abs(a[k][k]) > _PIVOT:
-            return failure
-        head = a[k]
-        for i in range(k + 1, n):
-            factor = a[i][k] / head[k]
-            a[i] = [v - factor * h for v, h in zip(a[i], head)]
-    x = [0.0] * n
-    for k in reversed(range(n)):
-        x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
-    return x if all(map(math.isfinite, x)) else failure
+    """The same for one system of nested lists: the rows left lose an entry at every step."""
+    rows, heads = [], []
+    for row, right in zip(a, b):
+        size = max(map(abs, row))
+        if not 0.0 < size < math.inf:
+            return [math.nan] * len(b)
+        rows.append([v / size for v in (*row, right)])
+    while rows:
+        column = [abs(row[0]) for row in rows]
+        largest = max(column)
+        if largest > _CLEARLY * column[0]:
+            best = column.index(largest)
+            rows[0], rows[best] = rows[best], rows[0]
+        pivot, *head = rows[0]
+        if not abs(pivot) > _PIVOT:
+            return [math.nan] * len(b)
+        heads.append((pivot, head))
+        for i in range(1, len(rows)):
+            first, *row = rows[i]
+            factor = first / pivot
+            rows[i] = [v - factor * h for v, h in zip(row, head)]
+        del rows[0]
+    x = []
+    for pivot, (*head, right) in reversed(heads):
+        x.insert(0, (right - sum([h * v for h, v in zip(head, x)])) / pivot)
+    return x if all(map(math.isfinite, x)) else [math.nan] * len(b)
 
 
 def _matrices(a, *others):
@@ -1078,13 +1126,13 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 349 mul, 231 add, 3 div, 3 sqrt, 0 trig
+# dynamics: 345 mul, 229 add, 3 div, 3 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("dynamics")
-    J_star_t_10, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
+    J_star_t_6, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1104,144 +1152,168 @@ def _run_dynamics(m, X, V):
     out_M = m.zeros("M")
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
-    # (P1) centripetal tensor of the platform
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_z*omega_z
-    # (M4) centripetal force and weight of the platform
+    # (Z_p) centripetal force and weight of the platform
     Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x
     Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
-    Z_q_t = (
-    h_star_x*(R_xx*gravity_y - R_yx*gravity_x) - h_star_y*(R_xx*gravity_x + R_yx*gravity_y)
-    )
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y
     sums = [0.0] * 9
     for leg, k in legs[0]:
         (
-        J_2_zz, branch_1, g_r0_x, g_r0_y, h_2_x, h_2_y, inv_uu_2_t, prr_base_frame_xx,
-            prr_base_frame_xy, prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x,
-            prr_base_point_y, prr_link1_mass, prr_platform_joint_offset_x, prr_platform_point_x,
-            prr_platform_point_y, size, uu_2_t,
+        inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
+            prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
+            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
         ) = k
-        # (prr-K1) from the base point to the connection point
-        q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        S_x = q_in_base_x + t_x - prr_base_point_x
-        S_y = q_in_base_y + t_y - prr_base_point_y
-        # (prr-K2) component along axis 1
-        px_1 = S_x*prr_base_frame_xx + S_y*prr_base_frame_yx
-        # (prr-K3) discriminant of the distance equation
-        disc_1_t = S_x*S_x + S_y*S_y
-        disc_1 = px_1*px_1 + uu_2_t - disc_1_t
-        # (prr-K7) cosine of the angle of joint 2 from its reference direction
-        c_2 = branch_1*sqrt(disc_1)*inv_uu_2_t*prr_platform_joint_offset_x
-        # (prr-K8) sine of the angle of joint 2 from its reference direction
-        s_2 = (
-        inv_uu_2_t*prr_platform_joint_offset_x*(S_x*prr_base_frame_xy + S_y*prr_base_frame_yy)
+        # (prr-S) from the base point to the connection point
+        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
+        # (prr-px_1) component along axis 1
+        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        # (prr-disc_1) discriminant of the distance equation
+        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        # (prr-c_2) cosine of the angle of joint 2 from its reference direction
+        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        # (prr-s_2) sine of the angle of joint 2 from its reference direction
+        prr_s_2 = (
+        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+            prr_S_y*prr_base_frame_yy)
         )
-        # (prr-V3) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -c_2*prr_base_frame_xy - prr_base_frame_xx*s_2
-        axis_y_prr_axes2_in_base_y = -c_2*prr_base_frame_yy - prr_base_frame_yx*s_2
-        # (prr-V2) velocity of the connection point per rate of joint 2
-        v_2_t = prr_platform_joint_offset_x*s_2
-        v_2_t_2 = c_2*prr_platform_joint_offset_x
-        # (prr-V3) reciprocal vector 1
-        inv_v_2_t_2 = 1.0/v_2_t_2
-        w_1_t = inv_v_2_t_2*v_2_t
-        _r0_x = -c_2 - s_2*w_1_t
-        _r0_y = c_2*w_1_t - s_2
-        # (prr-N22) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
-        d_Gamma_1_t = inv_v_2_t_2*prr_link1_mass*v_2_t
-        _r0_y_2 = c_2*d_Gamma_1_t - prr_link1_mass*s_2
-        # (prr-V4) reciprocal vector 2
-        w_2_t = inv_v_2_t_2*s_2
-        w_2_t_2 = c_2*inv_v_2_t_2
-        # (prr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_t = J_2_zz*inv_v_2_t_2
-        d_Gamma_2_x = -h_2_y - d_Gamma_2_t*s_2
-        d_Gamma_2_y = h_2_x + c_2*d_Gamma_2_t
-        # (prr-N28) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_xx = d_Gamma_2_x*w_2_t - _r0_x*(-c_2*prr_link1_mass - d_Gamma_1_t*s_2) - h_2_y*w_2_t
-        d_c_xy = d_Gamma_2_y*w_2_t + h_2_y*w_2_t_2 - _r0_x*_r0_y_2
-        # (prr-N30) inertia of the leg at the connection point, without the mass gathered there
-        Q_t = d_c_xx + _r0_y*_r0_y_2 + d_Gamma_2_y*w_2_t_2 + h_2_x*w_2_t_2
-        Q_t_2 = 0.5*Q_t
-        Q_t_3 = Q_t_2*axis_y_prr_axes2_in_base_x - axis_y_prr_axes2_in_base_y*d_c_xy
-        Q_t_4 = Q_t_2*axis_y_prr_axes2_in_base_y + axis_y_prr_axes2_in_base_x*d_c_xy
-        Q_t_5 = 2.0*Q_t_3*axis_y_prr_axes2_in_base_x - d_c_xx
-        Q_t_6 = Q_t_3*axis_y_prr_axes2_in_base_y + Q_t_4*axis_y_prr_axes2_in_base_x
-        Q_t_7 = 2.0*Q_t_4*axis_y_prr_axes2_in_base_y - d_c_xx
-        # (M2) coupling block of M
-        M_ta_t = Q_t_5*q_in_base_y - Q_t_6*q_in_base_x
-        M_ta_t_2 = Q_t_6*q_in_base_y - Q_t_7*q_in_base_x
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t*q_in_base_y - M_ta_t_2*q_in_base_x
-        # (prr-V1) velocity of the connection point
-        S_dot_t = omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x
-        S_dot_x = t_dot_x - S_dot_t
-        S_dot_y = S_dot_t_2 + t_dot_y
-        # (prr-V6) rate of joint 2
-        qd_2 = inv_v_2_t_2*(S_dot_x*prr_base_frame_xy + S_dot_y*prr_base_frame_yy)
-        # (prr-V8) centripetal tensor of link 2
-        W_2_t = qd_2*qd_2
-        # (prr-A1) centripetal acceleration of the connection point
-        u_1_t = S_dot_t_2*omega_z
-        u_1_t_2 = S_dot_t*omega_z
-        u_1_tip_x = axis_y_prr_axes2_in_base_x*u_1_t_2 - axis_y_prr_axes2_in_base_y*u_1_t
-        u_1_tip_y = -axis_y_prr_axes2_in_base_x*u_1_t - axis_y_prr_axes2_in_base_y*u_1_t_2
-        # (prr-A6) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_x = u_1_tip_x + prr_platform_joint_offset_x*qd_2*qd_2
-        # (prr-A8) remainder without the acceleration in: acceleration of joint 1
-        qdd_2_o = inv_v_2_t_2*(rel_o_x*s_2 - c_2*u_1_tip_y)
-        # (prr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        acc_1_o_x = -g_r0_x - c_2*rel_o_x - qdd_2_o*v_2_t - s_2*u_1_tip_y
-        # (prr-N4) remainder without the acceleration in: inertia force of link 1 less its weight
-        f_1_o_x = acc_1_o_x*prr_link1_mass
-        # (prr-N6) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        acc_2_o_x = u_1_tip_x + c_2*g_r0_x - g_r0_y*s_2
-        acc_2_o_y = u_1_tip_y + c_2*g_r0_y + g_r0_x*s_2
-        # (prr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_o_z = acc_2_o_y*h_2_x - J_2_zz*qdd_2_o - acc_2_o_x*h_2_y
-        # (prr-N26) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_o_t = inv_v_2_t_2*(mu_2_o_z + f_1_o_x*v_2_t)
-        # (prr-N29) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_o_x = G_o_t*s_2 + W_2_t*h_2_x + c_2*f_1_o_x - h_2_y*qdd_2_o
-        c_o_y = W_2_t*h_2_y + f_1_o_x*s_2 + h_2_x*qdd_2_o - G_o_t*c_2
-        # (prr-N31) velocity and gravity terms of the leg force
-        U_in_base_x = -axis_y_prr_axes2_in_base_x*c_o_y - axis_y_prr_axes2_in_base_y*c_o_x
-        U_in_base_y = axis_y_prr_axes2_in_base_x*c_o_x - axis_y_prr_axes2_in_base_y*c_o_y
-        # (M7) rotational part of Z
-        Z_a_t = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
-        # (prr-V3) reciprocal vector 1
-        w_1_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y + _r0_y*axis_y_prr_axes2_in_base_x
-        w_1_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y - _r0_x*axis_y_prr_axes2_in_base_x
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_z = q_in_base_x*w_1_in_base_y - q_in_base_y*w_1_in_base_x
-        ok = ok & m.every(leg, (disc_1 >= 0.0) & (abs(-v_2_t_2) > _TOLERANCE * size))
+        # (prr-w_1) reciprocal vector 1
+        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
+        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
+        # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_t = prr_platform_joint_offset_x*prr_s_2
+        prr_v_2_t_2 = prr_c_2*prr_platform_joint_offset_x
+        # (prr-w_2) reciprocal vector 2
+        inv_prr_v_2_t_2 = 1.0/prr_v_2_t_2
+        prr_w_2_t = inv_prr_v_2_t_2*prr_s_2
+        prr_w_2_t_2 = inv_prr_v_2_t_2*prr_c_2
+        # (prr-w_1) reciprocal vector 1
+        prr_w_1_t = inv_prr_v_2_t_2*prr_v_2_t
+        prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t
+        prr__r0_y = prr_c_2*prr_w_1_t - prr_s_2
+        # (prr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        prr_d_Gamma_2_t = inv_prr_v_2_t_2*prr_J_2_zz
+        prr_d_Gamma_2_x = -prr_h_2_y - prr_d_Gamma_2_t*prr_s_2
+        prr_d_Gamma_2_y = prr_h_2_x + prr_c_2*prr_d_Gamma_2_t
+        # (prr-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
+        prr_d_Gamma_1_t = inv_prr_v_2_t_2*prr_link1_mass*prr_v_2_t
+        prr__r0_y_2 = prr_c_2*prr_d_Gamma_1_t - prr_link1_mass*prr_s_2
+        # (prr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        prr_d_c_xx = (
+        prr_d_Gamma_2_x*prr_w_2_t - prr__r0_x*(-prr_c_2*prr_link1_mass - prr_d_Gamma_1_t*prr_s_2)
+            - prr_h_2_y*prr_w_2_t
+        )
+        prr_d_c_xy = prr_d_Gamma_2_y*prr_w_2_t + prr_h_2_y*prr_w_2_t_2 - prr__r0_x*prr__r0_y_2
+        # (prr-Q) inertia of the leg at the connection point, without the mass gathered there
+        prr_Q_t = (
+        prr_d_c_xx + prr__r0_y*prr__r0_y_2 + prr_d_Gamma_2_y*prr_w_2_t_2 + prr_h_2_x*prr_w_2_t_2
+        )
+        prr_Q_t_2 = 0.5*prr_Q_t
+        prr_Q_t_3 = axis_y_prr_axes2_in_base_x*prr_Q_t_2 - axis_y_prr_axes2_in_base_y*prr_d_c_xy
+        prr_Q_t_4 = axis_y_prr_axes2_in_base_x*prr_d_c_xy + axis_y_prr_axes2_in_base_y*prr_Q_t_2
+        prr_Q_t_5 = 2.0*axis_y_prr_axes2_in_base_x*prr_Q_t_3 - prr_d_c_xx
+        prr_Q_t_6 = axis_y_prr_axes2_in_base_x*prr_Q_t_4 + axis_y_prr_axes2_in_base_y*prr_Q_t_3
+        prr_Q_t_7 = 2.0*axis_y_prr_axes2_in_base_y*prr_Q_t_4 - prr_d_c_xx
+        # (M_ta) coupling block of M
+        prr_M_ta_t = prr_Q_t_5*prr_q_in_base_y - prr_Q_t_6*prr_q_in_base_x
+        prr_M_ta_t_2 = prr_Q_t_6*prr_q_in_base_y - prr_Q_t_7*prr_q_in_base_x
+        # (M_aa) rotational block of M
+        prr_M_aa_t = prr_M_ta_t*prr_q_in_base_y - prr_M_ta_t_2*prr_q_in_base_x
+        # (prr-S_dot) velocity of the connection point
+        prr_S_dot_t = omega_z*prr_q_in_base_y
+        prr_S_dot_t_2 = omega_z*prr_q_in_base_x
+        prr_S_dot_x = t_dot_x - prr_S_dot_t
+        prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
+        # (prr-qd_2) rate of joint 2
+        prr_qd_2 = inv_prr_v_2_t_2*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
+        # (prr-u_1) centripetal acceleration of the connection point
+        prr_u_1_t = omega_z*prr_S_dot_t_2
+        prr_u_1_t_2 = omega_z*prr_S_dot_t
+        # (prr-W_2) centripetal tensor of link 2
+        prr_W_2_t = prr_qd_2*prr_qd_2
+        # (prr-u_1) centripetal acceleration of the connection point
+        prr_u_1_tip_x = (
+        axis_y_prr_axes2_in_base_x*prr_u_1_t_2 - axis_y_prr_axes2_in_base_y*prr_u_1_t
+        )
+        prr_u_1_tip_y = (
+        -axis_y_prr_axes2_in_base_x*prr_u_1_t - axis_y_prr_axes2_in_base_y*prr_u_1_t_2
+        )
+        # (prr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        prr_rel_o_x = prr_u_1_tip_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2
+        # (prr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        prr_qdd_2_o = inv_prr_v_2_t_2*(prr_rel_o_x*prr_s_2 - prr_c_2*prr_u_1_tip_y)
+        # (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        prr_acc_2_o_x = prr_u_1_tip_x + prr_c_2*prr_g_r0_x - prr_g_r0_y*prr_s_2
+        prr_acc_2_o_y = prr_u_1_tip_y + prr_c_2*prr_g_r0_y + prr_g_r0_x*prr_s_2
+        # (prr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        prr_mu_2_o_z = prr_acc_2_o_y*prr_h_2_x - prr_J_2_zz*prr_qdd_2_o - prr_acc_2_o_x*prr_h_2_y
+        # (prr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+        prr_acc_1_o_x = (
+        -prr_g_r0_x - prr_c_2*prr_rel_o_x - prr_qdd_2_o*prr_v_2_t - prr_s_2*prr_u_1_tip_y
+        )
+        # (prr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight
+        prr_f_1_o_x = prr_acc_1_o_x*prr_link1_mass
+        # (prr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        prr_G_o_t = inv_prr_v_2_t_2*(prr_mu_2_o_z + prr_f_1_o_x*prr_v_2_t)
+        # (prr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        prr_c_o_x = (
+        prr_G_o_t*prr_s_2 + prr_W_2_t*prr_h_2_x + prr_c_2*prr_f_1_o_x - prr_h_2_y*prr_qdd_2_o
+        )
+        prr_c_o_y = (
+        prr_W_2_t*prr_h_2_y + prr_f_1_o_x*prr_s_2 + prr_h_2_x*prr_qdd_2_o - prr_G_o_t*prr_c_2
+        )
+        # (prr-U) velocity and gravity terms of the leg force
+        prr_U_in_base_x = (
+        -axis_y_prr_axes2_in_base_x*prr_c_o_y - axis_y_prr_axes2_in_base_y*prr_c_o_x
+        )
+        prr_U_in_base_y = (
+        axis_y_prr_axes2_in_base_x*prr_c_o_x - axis_y_prr_axes2_in_base_y*prr_c_o_y
+        )
+        # (Z_a) rotational part of Z
+        prr_Z_a_t = prr_U_in_base_y*prr_q_in_base_x - prr_U_in_base_x*prr_q_in_base_y
+        # (prr-w_1) reciprocal vector 1
+        prr_w_1_in_base_x = (
+        axis_y_prr_axes2_in_base_x*prr__r0_y + axis_y_prr_axes2_in_base_y*prr__r0_x
+        )
+        prr_w_1_in_base_y = (
+        axis_y_prr_axes2_in_base_y*prr__r0_y - axis_y_prr_axes2_in_base_x*prr__r0_x
+        )
+        # (prr-H_a_1) moment of the column's unit force about the platform origin
+        prr_H_a_1_z = prr_q_in_base_x*prr_w_1_in_base_y - prr_q_in_base_y*prr_w_1_in_base_x
+        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t_2) > _TOLERANCE * prr_size))
         sums = m.added(sums, leg, (
-        Q_t_5, Q_t_6, Q_t_7, M_ta_t, M_ta_t_2, M_aa_t, U_in_base_x, U_in_base_y, Z_a_t,
+        prr_Q_t_5, prr_Q_t_6, prr_Q_t_7, prr_M_ta_t, prr_M_ta_t_2, prr_M_aa_t,
+            prr_U_in_base_x, prr_U_in_base_y, prr_Z_a_t,
         ))
-        out_H[_H_prr[0][leg]] = w_1_in_base_x
-        out_H[_H_prr[1][leg]] = w_1_in_base_y
-        out_H[_H_prr[2][leg]] = H_a_1_z
+        out_H[_H_prr[0][leg]] = prr_w_1_in_base_x
+        out_H[_H_prr[1][leg]] = prr_w_1_in_base_y
+        out_H[_H_prr[2][leg]] = prr_H_a_1_z
     (
     total_prr_xx, total_prr_xy, total_prr_yy, total_prr_xz, total_prr_yz, total_prr_zz,
         total_prr_x, total_prr_y, total_prr_z,
     ) = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = m_star + total_prr_xx
     M_tt_yy = m_star + total_prr_yy
-    # (M2) coupling block of M
+    # (M_ta) coupling block of M
     M_ta_xz = -h_star_in_base_y - total_prr_xz
     M_ta_yz = h_star_in_base_x - total_prr_yz
-    # (M3) rotational block of M
-    M_aa_zz = total_prr_zz - J_star_t_10
-    # (M5) translational part of Z
+    # (M_aa) rotational block of M
+    M_aa_zz = total_prr_zz - J_star_t_6
+    # (Z_t) translational part of Z
     Z_t_x = Z_p_x + total_prr_x
     Z_t_y = Z_p_y + total_prr_y
-    # (M7) rotational part of Z
+    # (Z_a) rotational part of Z
     Z_a_z = total_prr_z - Z_q_t
     out_M[0] = M_tt_xx
     out_M[1] = total_prr_xy
@@ -1264,7 +1336,7 @@ def _run_M(m, X):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("M")
-    J_star_t_10, h_star_x, h_star_y, m_star = shared
+    J_star_t_6, h_star_x, h_star_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1275,82 +1347,89 @@ def _run_M(m, X):
     R_yx = sin(X_2)
     ok = True
     out_M = m.zeros("M")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_2_zz, branch_1, h_2_x, h_2_y, inv_uu_2_t, prr_base_frame_xx, prr_base_frame_xy,
-            prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
-            prr_link1_mass, prr_platform_joint_offset_x, prr_platform_point_x,
-            prr_platform_point_y, size, uu_2_t,
+        inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
+            prr_h_2_x, prr_h_2_y, prr_link1_mass, prr_platform_joint_offset_x,
+            prr_platform_point_x, prr_platform_point_y, prr_size,
         ) = k
-        # (prr-K1) from the base point to the connection point
-        q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        S_x = q_in_base_x + t_x - prr_base_point_x
-        S_y = q_in_base_y + t_y - prr_base_point_y
-        # (prr-K2) component along axis 1
-        px_1 = S_x*prr_base_frame_xx + S_y*prr_base_frame_yx
-        # (prr-K3) discriminant of the distance equation
-        disc_1_t = S_x*S_x + S_y*S_y
-        disc_1 = px_1*px_1 + uu_2_t - disc_1_t
-        # (prr-K7) cosine of the angle of joint 2 from its reference direction
-        c_2 = branch_1*sqrt(disc_1)*inv_uu_2_t*prr_platform_joint_offset_x
-        # (prr-K8) sine of the angle of joint 2 from its reference direction
-        s_2 = (
-        inv_uu_2_t*prr_platform_joint_offset_x*(S_x*prr_base_frame_xy + S_y*prr_base_frame_yy)
+        # (prr-S) from the base point to the connection point
+        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
+        # (prr-px_1) component along axis 1
+        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        # (prr-disc_1) discriminant of the distance equation
+        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        # (prr-c_2) cosine of the angle of joint 2 from its reference direction
+        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        # (prr-s_2) sine of the angle of joint 2 from its reference direction
+        prr_s_2 = (
+        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+            prr_S_y*prr_base_frame_yy)
         )
-        # (prr-V3) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -c_2*prr_base_frame_xy - prr_base_frame_xx*s_2
-        axis_y_prr_axes2_in_base_y = -c_2*prr_base_frame_yy - prr_base_frame_yx*s_2
-        # (prr-V2) velocity of the connection point per rate of joint 2
-        v_2_t = prr_platform_joint_offset_x*s_2
-        v_2_t_2 = c_2*prr_platform_joint_offset_x
-        # (prr-V3) reciprocal vector 1
-        inv_v_2_t_2 = 1.0/v_2_t_2
-        w_1_t = inv_v_2_t_2*v_2_t
-        _r0_x = -c_2 - s_2*w_1_t
-        # (prr-N22) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
-        d_Gamma_1_t = inv_v_2_t_2*prr_link1_mass*v_2_t
-        _r0_y = c_2*d_Gamma_1_t - prr_link1_mass*s_2
-        # (prr-V4) reciprocal vector 2
-        w_2_t = inv_v_2_t_2*s_2
-        w_2_t_2 = c_2*inv_v_2_t_2
-        # (prr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_t = J_2_zz*inv_v_2_t_2
-        d_Gamma_2_x = -h_2_y - d_Gamma_2_t*s_2
-        d_Gamma_2_y = h_2_x + c_2*d_Gamma_2_t
-        # (prr-N28) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_xx = d_Gamma_2_x*w_2_t - _r0_x*(-c_2*prr_link1_mass - d_Gamma_1_t*s_2) - h_2_y*w_2_t
-        d_c_xy = d_Gamma_2_y*w_2_t + h_2_y*w_2_t_2 - _r0_x*_r0_y
-        # (prr-N30) inertia of the leg at the connection point, without the mass gathered there
-        Q_t = d_c_xx + _r0_y*(c_2*w_1_t - s_2) + d_Gamma_2_y*w_2_t_2 + h_2_x*w_2_t_2
-        Q_t_2 = 0.5*Q_t
-        Q_t_3 = Q_t_2*axis_y_prr_axes2_in_base_x - axis_y_prr_axes2_in_base_y*d_c_xy
-        Q_t_4 = Q_t_2*axis_y_prr_axes2_in_base_y + axis_y_prr_axes2_in_base_x*d_c_xy
-        Q_t_5 = 2.0*Q_t_3*axis_y_prr_axes2_in_base_x - d_c_xx
-        Q_t_6 = Q_t_3*axis_y_prr_axes2_in_base_y + Q_t_4*axis_y_prr_axes2_in_base_x
-        Q_t_7 = 2.0*Q_t_4*axis_y_prr_axes2_in_base_y - d_c_xx
-        # (M2) coupling block of M
-        M_ta_t = Q_t_5*q_in_base_y - Q_t_6*q_in_base_x
-        M_ta_t_2 = Q_t_6*q_in_base_y - Q_t_7*q_in_base_x
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t*q_in_base_y - M_ta_t_2*q_in_base_x
-        ok = ok & m.every(leg, (disc_1 >= 0.0) & (abs(-v_2_t_2) > _TOLERANCE * size))
+        # (prr-w_1) reciprocal vector 1
+        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
+        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
+        # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_t = prr_platform_joint_offset_x*prr_s_2
+        prr_v_2_t_2 = prr_c_2*prr_platform_joint_offset_x
+        # (prr-w_2) reciprocal vector 2
+        inv_prr_v_2_t_2 = 1.0/prr_v_2_t_2
+        prr_w_2_t = inv_prr_v_2_t_2*prr_s_2
+        prr_w_2_t_2 = inv_prr_v_2_t_2*prr_c_2
+        # (prr-w_1) reciprocal vector 1
+        prr_w_1_t = inv_prr_v_2_t_2*prr_v_2_t
+        prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t
+        # (prr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        prr_d_Gamma_2_t = inv_prr_v_2_t_2*prr_J_2_zz
+        prr_d_Gamma_2_x = -prr_h_2_y - prr_d_Gamma_2_t*prr_s_2
+        prr_d_Gamma_2_y = prr_h_2_x + prr_c_2*prr_d_Gamma_2_t
+        # (prr-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
+        prr_d_Gamma_1_t = inv_prr_v_2_t_2*prr_link1_mass*prr_v_2_t
+        prr__r0_y = prr_c_2*prr_d_Gamma_1_t - prr_link1_mass*prr_s_2
+        # (prr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        prr_d_c_xx = (
+        prr_d_Gamma_2_x*prr_w_2_t - prr__r0_x*(-prr_c_2*prr_link1_mass - prr_d_Gamma_1_t*prr_s_2)
+            - prr_h_2_y*prr_w_2_t
+        )
+        prr_d_c_xy = prr_d_Gamma_2_y*prr_w_2_t + prr_h_2_y*prr_w_2_t_2 - prr__r0_x*prr__r0_y
+        # (prr-Q) inertia of the leg at the connection point, without the mass gathered there
+        prr_Q_t = (
+        prr_d_c_xx + prr__r0_y*(prr_c_2*prr_w_1_t - prr_s_2) + prr_d_Gamma_2_y*prr_w_2_t_2 +
+            prr_h_2_x*prr_w_2_t_2
+        )
+        prr_Q_t_2 = 0.5*prr_Q_t
+        prr_Q_t_3 = axis_y_prr_axes2_in_base_x*prr_Q_t_2 - axis_y_prr_axes2_in_base_y*prr_d_c_xy
+        prr_Q_t_4 = axis_y_prr_axes2_in_base_x*prr_d_c_xy + axis_y_prr_axes2_in_base_y*prr_Q_t_2
+        prr_Q_t_5 = 2.0*axis_y_prr_axes2_in_base_x*prr_Q_t_3 - prr_d_c_xx
+        prr_Q_t_6 = axis_y_prr_axes2_in_base_x*prr_Q_t_4 + axis_y_prr_axes2_in_base_y*prr_Q_t_3
+        prr_Q_t_7 = 2.0*axis_y_prr_axes2_in_base_y*prr_Q_t_4 - prr_d_c_xx
+        # (M_ta) coupling block of M
+        prr_M_ta_t = prr_Q_t_5*prr_q_in_base_y - prr_Q_t_6*prr_q_in_base_x
+        prr_M_ta_t_2 = prr_Q_t_6*prr_q_in_base_y - prr_Q_t_7*prr_q_in_base_x
+        # (M_aa) rotational block of M
+        prr_M_aa_t = prr_M_ta_t*prr_q_in_base_y - prr_M_ta_t_2*prr_q_in_base_x
+        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t_2) > _TOLERANCE * prr_size))
         sums = m.added(sums, leg, (
-        Q_t_5, Q_t_6, Q_t_7, M_ta_t, M_ta_t_2, M_aa_t,
+        prr_Q_t_5, prr_Q_t_6, prr_Q_t_7, prr_M_ta_t, prr_M_ta_t_2, prr_M_aa_t,
         ))
     total_prr_xx, total_prr_xy, total_prr_yy, total_prr_xz, total_prr_yz, total_prr_zz = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = m_star + total_prr_xx
     M_tt_yy = m_star + total_prr_yy
-    # (M2) coupling block of M
+    # (M_ta) coupling block of M
     M_ta_xz = -h_star_in_base_y - total_prr_xz
     M_ta_yz = h_star_in_base_x - total_prr_yz
-    # (M3) rotational block of M
-    M_aa_zz = total_prr_zz - J_star_t_10
+    # (M_aa) rotational block of M
+    M_aa_zz = total_prr_zz - J_star_t_6
     out_M[0] = M_tt_xx
     out_M[1] = total_prr_xy
     out_M[3] = total_prr_xy
@@ -1363,7 +1442,7 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 211 mul, 136 add, 3 div, 3 sqrt, 0 trig
+# Z: 207 mul, 134 add, 3 div, 3 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -1387,93 +1466,110 @@ def _run_Z(m, X, V):
     omega_z = V_2
     ok = True
     out_Z = m.zeros("Z")
-    # (P1) centripetal tensor of the platform
+    # (h_star) first moment about the platform origin
+    h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
+    h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_z*omega_z
-    # (M4) centripetal force and weight of the platform
-    Z_p_x = -Z_p_t - W_p_t*(R_xx*h_star_x - R_yx*h_star_y)
-    Z_p_y = -Z_p_t_2 - W_p_t*(R_xx*h_star_y + R_yx*h_star_x)
-    # (M6) gyroscopic moment and moment of the weight of the platform
-    Z_q_t = (
-    h_star_x*(R_xx*gravity_y - R_yx*gravity_x) - h_star_y*(R_xx*gravity_x + R_yx*gravity_y)
-    )
+    # (Z_p) centripetal force and weight of the platform
+    Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x
+    Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
-        J_2_zz, branch_1, g_r0_x, g_r0_y, h_2_x, h_2_y, inv_uu_2_t, prr_base_frame_xx,
-            prr_base_frame_xy, prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x,
-            prr_base_point_y, prr_link1_mass, prr_platform_joint_offset_x, prr_platform_point_x,
-            prr_platform_point_y, size, uu_2_t,
+        inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
+            prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
+            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
         ) = k
-        # (prr-K1) from the base point to the connection point
-        q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        S_x = q_in_base_x + t_x - prr_base_point_x
-        S_y = q_in_base_y + t_y - prr_base_point_y
-        # (prr-K2) component along axis 1
-        px_1 = S_x*prr_base_frame_xx + S_y*prr_base_frame_yx
-        # (prr-K3) discriminant of the distance equation
-        disc_1_t = S_x*S_x + S_y*S_y
-        disc_1 = px_1*px_1 + uu_2_t - disc_1_t
-        # (prr-K7) cosine of the angle of joint 2 from its reference direction
-        c_2 = branch_1*sqrt(disc_1)*inv_uu_2_t*prr_platform_joint_offset_x
-        # (prr-K8) sine of the angle of joint 2 from its reference direction
-        s_2 = (
-        inv_uu_2_t*prr_platform_joint_offset_x*(S_x*prr_base_frame_xy + S_y*prr_base_frame_yy)
+        # (prr-S) from the base point to the connection point
+        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
+        # (prr-px_1) component along axis 1
+        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        # (prr-disc_1) discriminant of the distance equation
+        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        # (prr-c_2) cosine of the angle of joint 2 from its reference direction
+        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        # (prr-s_2) sine of the angle of joint 2 from its reference direction
+        prr_s_2 = (
+        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+            prr_S_y*prr_base_frame_yy)
         )
-        # (prr-V3) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -c_2*prr_base_frame_xy - prr_base_frame_xx*s_2
-        axis_y_prr_axes2_in_base_y = -c_2*prr_base_frame_yy - prr_base_frame_yx*s_2
-        # (prr-V2) velocity of the connection point per rate of joint 2
-        v_2_t = prr_platform_joint_offset_x*s_2
-        v_2_t_2 = c_2*prr_platform_joint_offset_x
-        # (prr-V3) reciprocal vector 1
-        inv_v_2_t_2 = 1.0/v_2_t_2
-        # (prr-V1) velocity of the connection point
-        S_dot_t = omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x
-        S_dot_x = t_dot_x - S_dot_t
-        S_dot_y = S_dot_t_2 + t_dot_y
-        # (prr-V6) rate of joint 2
-        qd_2 = inv_v_2_t_2*(S_dot_x*prr_base_frame_xy + S_dot_y*prr_base_frame_yy)
-        # (prr-V8) centripetal tensor of link 2
-        W_2_t = qd_2*qd_2
-        # (prr-A1) centripetal acceleration of the connection point
-        u_1_t = S_dot_t_2*omega_z
-        u_1_t_2 = S_dot_t*omega_z
-        u_1_tip_x = axis_y_prr_axes2_in_base_x*u_1_t_2 - axis_y_prr_axes2_in_base_y*u_1_t
-        u_1_tip_y = -axis_y_prr_axes2_in_base_x*u_1_t - axis_y_prr_axes2_in_base_y*u_1_t_2
-        # (prr-A6) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_x = u_1_tip_x + prr_platform_joint_offset_x*qd_2*qd_2
-        # (prr-A8) remainder without the acceleration in: acceleration of joint 1
-        qdd_2_o = inv_v_2_t_2*(rel_o_x*s_2 - c_2*u_1_tip_y)
-        # (prr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        acc_1_o_x = -g_r0_x - c_2*rel_o_x - qdd_2_o*v_2_t - s_2*u_1_tip_y
-        # (prr-N4) remainder without the acceleration in: inertia force of link 1 less its weight
-        f_1_o_x = acc_1_o_x*prr_link1_mass
-        # (prr-N6) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        acc_2_o_x = u_1_tip_x + c_2*g_r0_x - g_r0_y*s_2
-        acc_2_o_y = u_1_tip_y + c_2*g_r0_y + g_r0_x*s_2
-        # (prr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_o_z = acc_2_o_y*h_2_x - J_2_zz*qdd_2_o - acc_2_o_x*h_2_y
-        # (prr-N26) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_o_t = inv_v_2_t_2*(mu_2_o_z + f_1_o_x*v_2_t)
-        # (prr-N29) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_o_x = G_o_t*s_2 + W_2_t*h_2_x + c_2*f_1_o_x - h_2_y*qdd_2_o
-        c_o_y = W_2_t*h_2_y + f_1_o_x*s_2 + h_2_x*qdd_2_o - G_o_t*c_2
-        # (prr-N31) velocity and gravity terms of the leg force
-        U_in_base_x = -axis_y_prr_axes2_in_base_x*c_o_y - axis_y_prr_axes2_in_base_y*c_o_x
-        U_in_base_y = axis_y_prr_axes2_in_base_x*c_o_x - axis_y_prr_axes2_in_base_y*c_o_y
-        # (M7) rotational part of Z
-        Z_a_t = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
-        ok = ok & m.every(leg, (disc_1 >= 0.0) & (abs(-v_2_t_2) > _TOLERANCE * size))
+        # (prr-w_1) reciprocal vector 1
+        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
+        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
+        # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_t = prr_platform_joint_offset_x*prr_s_2
+        prr_v_2_t_2 = prr_c_2*prr_platform_joint_offset_x
+        # (prr-w_2) reciprocal vector 2
+        inv_prr_v_2_t_2 = 1.0/prr_v_2_t_2
+        # (prr-S_dot) velocity of the connection point
+        prr_S_dot_t = omega_z*prr_q_in_base_y
+        prr_S_dot_t_2 = omega_z*prr_q_in_base_x
+        prr_S_dot_x = t_dot_x - prr_S_dot_t
+        prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
+        # (prr-qd_2) rate of joint 2
+        prr_qd_2 = inv_prr_v_2_t_2*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
+        # (prr-u_1) centripetal acceleration of the connection point
+        prr_u_1_t = omega_z*prr_S_dot_t_2
+        prr_u_1_t_2 = omega_z*prr_S_dot_t
+        # (prr-W_2) centripetal tensor of link 2
+        prr_W_2_t = prr_qd_2*prr_qd_2
+        # (prr-u_1) centripetal acceleration of the connection point
+        prr_u_1_tip_x = (
+        axis_y_prr_axes2_in_base_x*prr_u_1_t_2 - axis_y_prr_axes2_in_base_y*prr_u_1_t
+        )
+        prr_u_1_tip_y = (
+        -axis_y_prr_axes2_in_base_x*prr_u_1_t - axis_y_prr_axes2_in_base_y*prr_u_1_t_2
+        )
+        # (prr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        prr_rel_o_x = prr_u_1_tip_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2
+        # (prr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        prr_qdd_2_o = inv_prr_v_2_t_2*(prr_rel_o_x*prr_s_2 - prr_c_2*prr_u_1_tip_y)
+        # (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        prr_acc_2_o_x = prr_u_1_tip_x + prr_c_2*prr_g_r0_x - prr_g_r0_y*prr_s_2
+        prr_acc_2_o_y = prr_u_1_tip_y + prr_c_2*prr_g_r0_y + prr_g_r0_x*prr_s_2
+        # (prr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        prr_mu_2_o_z = prr_acc_2_o_y*prr_h_2_x - prr_J_2_zz*prr_qdd_2_o - prr_acc_2_o_x*prr_h_2_y
+        # (prr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+        prr_acc_1_o_x = (
+        -prr_g_r0_x - prr_c_2*prr_rel_o_x - prr_qdd_2_o*prr_v_2_t - prr_s_2*prr_u_1_tip_y
+        )
+        # (prr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight
+        prr_f_1_o_x = prr_acc_1_o_x*prr_link1_mass
+        # (prr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        prr_G_o_t = inv_prr_v_2_t_2*(prr_mu_2_o_z + prr_f_1_o_x*prr_v_2_t)
+        # (prr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        prr_c_o_x = (
+        prr_G_o_t*prr_s_2 + prr_W_2_t*prr_h_2_x + prr_c_2*prr_f_1_o_x - prr_h_2_y*prr_qdd_2_o
+        )
+        prr_c_o_y = (
+        prr_W_2_t*prr_h_2_y + prr_f_1_o_x*prr_s_2 + prr_h_2_x*prr_qdd_2_o - prr_G_o_t*prr_c_2
+        )
+        # (prr-U) velocity and gravity terms of the leg force
+        prr_U_in_base_x = (
+        -axis_y_prr_axes2_in_base_x*prr_c_o_y - axis_y_prr_axes2_in_base_y*prr_c_o_x
+        )
+        prr_U_in_base_y = (
+        axis_y_prr_axes2_in_base_x*prr_c_o_x - axis_y_prr_axes2_in_base_y*prr_c_o_y
+        )
+        # (Z_a) rotational part of Z
+        prr_Z_a_t = prr_U_in_base_y*prr_q_in_base_x - prr_U_in_base_x*prr_q_in_base_y
+        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t_2) > _TOLERANCE * prr_size))
         sums = m.added(sums, leg, (
-        U_in_base_x, U_in_base_y, Z_a_t,
+        prr_U_in_base_x, prr_U_in_base_y, prr_Z_a_t,
         ))
     total_prr_x, total_prr_y, total_prr_z = sums
-    # (M5) translational part of Z
+    # (Z_t) translational part of Z
     Z_t_x = Z_p_x + total_prr_x
     Z_t_y = Z_p_y + total_prr_y
-    # (M7) rotational part of Z
+    # (Z_a) rotational part of Z
     Z_a_z = total_prr_z - Z_q_t
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
@@ -1499,53 +1595,58 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        branch_1, inv_uu_2_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_platform_joint_offset_x,
-            prr_platform_point_x, prr_platform_point_y, size, uu_2_t,
+        inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
+            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
         ) = k
-        # (prr-K1) from the base point to the connection point
-        q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        S_x = q_in_base_x + t_x - prr_base_point_x
-        S_y = q_in_base_y + t_y - prr_base_point_y
-        # (prr-K2) component along axis 1
-        px_1 = S_x*prr_base_frame_xx + S_y*prr_base_frame_yx
-        # (prr-K3) discriminant of the distance equation
-        disc_1_t = S_x*S_x + S_y*S_y
-        disc_1 = px_1*px_1 + uu_2_t - disc_1_t
-        # (prr-K7) cosine of the angle of joint 2 from its reference direction
-        c_2 = branch_1*sqrt(disc_1)*inv_uu_2_t*prr_platform_joint_offset_x
-        # (prr-K8) sine of the angle of joint 2 from its reference direction
-        s_2 = (
-        inv_uu_2_t*prr_platform_joint_offset_x*(S_x*prr_base_frame_xy + S_y*prr_base_frame_yy)
+        # (prr-S) from the base point to the connection point
+        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
+        # (prr-px_1) component along axis 1
+        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        # (prr-disc_1) discriminant of the distance equation
+        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        # (prr-c_2) cosine of the angle of joint 2 from its reference direction
+        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        # (prr-s_2) sine of the angle of joint 2 from its reference direction
+        prr_s_2 = (
+        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+            prr_S_y*prr_base_frame_yy)
         )
-        # (prr-V3) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -c_2*prr_base_frame_xy - prr_base_frame_xx*s_2
-        axis_y_prr_axes2_in_base_y = -c_2*prr_base_frame_yy - prr_base_frame_yx*s_2
-        # (prr-V2) velocity of the connection point per rate of joint 2
-        v_2_t = c_2*prr_platform_joint_offset_x
-        # (prr-V3) reciprocal vector 1
-        w_1_t = prr_platform_joint_offset_x*s_2/v_2_t
-        _r0_x = -c_2 - s_2*w_1_t
-        _r0_y = c_2*w_1_t - s_2
-        w_1_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y + _r0_y*axis_y_prr_axes2_in_base_x
-        w_1_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y - _r0_x*axis_y_prr_axes2_in_base_x
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_z = q_in_base_x*w_1_in_base_y - q_in_base_y*w_1_in_base_x
-        ok = ok & m.every(leg, (disc_1 >= 0.0) & (abs(-v_2_t) > _TOLERANCE * size))
-        out_H[_H_prr[0][leg]] = w_1_in_base_x
-        out_H[_H_prr[1][leg]] = w_1_in_base_y
-        out_H[_H_prr[2][leg]] = H_a_1_z
+        # (prr-w_1) reciprocal vector 1
+        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
+        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
+        # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_t = prr_c_2*prr_platform_joint_offset_x
+        # (prr-w_1) reciprocal vector 1
+        prr_w_1_t = prr_platform_joint_offset_x*prr_s_2/prr_v_2_t
+        prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t
+        prr__r0_y = prr_c_2*prr_w_1_t - prr_s_2
+        prr_w_1_in_base_x = (
+        axis_y_prr_axes2_in_base_x*prr__r0_y + axis_y_prr_axes2_in_base_y*prr__r0_x
+        )
+        prr_w_1_in_base_y = (
+        axis_y_prr_axes2_in_base_y*prr__r0_y - axis_y_prr_axes2_in_base_x*prr__r0_x
+        )
+        # (prr-H_a_1) moment of the column's unit force about the platform origin
+        prr_H_a_1_z = prr_q_in_base_x*prr_w_1_in_base_y - prr_q_in_base_y*prr_w_1_in_base_x
+        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t) > _TOLERANCE * prr_size))
+        out_H[_H_prr[0][leg]] = prr_w_1_in_base_x
+        out_H[_H_prr[1][leg]] = prr_w_1_in_base_y
+        out_H[_H_prr[2][leg]] = prr_H_a_1_z
     return ok, (out_H,)
 
 
-# required: 249 mul, 168 add, 3 div, 3 sqrt, 0 trig
+# required: 245 mul, 166 add, 3 div, 3 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("required")
-    J_star_zz, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
+    J_star_t_6, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1571,112 +1672,122 @@ def _run_required(m, X, V, A):
     ok = True
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
-    # (P1) centripetal tensor of the platform
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_z*omega_z
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
-    # (E2) inertia force of the platform less its weight
+    # (f_p) inertia force of the platform less its weight
     f_p_x = a_t_x*m_star - W_p_t*h_star_in_base_x - alpha_z*h_star_in_base_y
     f_p_y = a_t_y*m_star + alpha_z*h_star_in_base_x - W_p_t*h_star_in_base_y
-    # (E3) inertia moment of the platform less that of its weight
-    mu_p_z = (
-    J_star_zz*alpha_z + h_star_x*(R_xx*a_t_y - R_yx*a_t_x) - h_star_y*(R_xx*a_t_x + R_yx*a_t_y)
-    )
+    # (mu_p) inertia moment of the platform less that of its weight
+    mu_p_z = a_t_y*h_star_in_base_x - J_star_t_6*alpha_z - a_t_x*h_star_in_base_y
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
-        J_2_zz, branch_1, g_r0_x, g_r0_y, h_2_x, h_2_y, inv_uu_2_t, prr_base_frame_xx,
-            prr_base_frame_xy, prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x,
-            prr_base_point_y, prr_link1_mass, prr_platform_joint_offset_x, prr_platform_point_x,
-            prr_platform_point_y, size, uu_2_t,
+        inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
+            prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
+            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
         ) = k
-        # (prr-K1) from the base point to the connection point
-        q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        S_x = q_in_base_x + t_x - prr_base_point_x
-        S_y = q_in_base_y + t_y - prr_base_point_y
-        # (prr-K2) component along axis 1
-        px_1 = S_x*prr_base_frame_xx + S_y*prr_base_frame_yx
-        # (prr-K3) discriminant of the distance equation
-        disc_1_t = S_x*S_x + S_y*S_y
-        disc_1 = px_1*px_1 + uu_2_t - disc_1_t
-        # (prr-K7) cosine of the angle of joint 2 from its reference direction
-        c_2 = branch_1*sqrt(disc_1)*inv_uu_2_t*prr_platform_joint_offset_x
-        # (prr-K8) sine of the angle of joint 2 from its reference direction
-        s_2 = (
-        inv_uu_2_t*prr_platform_joint_offset_x*(S_x*prr_base_frame_xy + S_y*prr_base_frame_yy)
+        # (prr-S) from the base point to the connection point
+        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
+        # (prr-px_1) component along axis 1
+        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        # (prr-disc_1) discriminant of the distance equation
+        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        # (prr-c_2) cosine of the angle of joint 2 from its reference direction
+        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        # (prr-s_2) sine of the angle of joint 2 from its reference direction
+        prr_s_2 = (
+        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+            prr_S_y*prr_base_frame_yy)
         )
-        # (prr-V3) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -c_2*prr_base_frame_xy - prr_base_frame_xx*s_2
-        axis_y_prr_axes2_in_base_y = -c_2*prr_base_frame_yy - prr_base_frame_yx*s_2
-        # (prr-V2) velocity of the connection point per rate of joint 2
-        v_2_t = prr_platform_joint_offset_x*s_2
-        v_2_t_2 = c_2*prr_platform_joint_offset_x
-        # (prr-V3) reciprocal vector 1
-        inv_v_2_t_2 = 1.0/v_2_t_2
-        w_1_t = inv_v_2_t_2*v_2_t
-        _r0_x = -c_2 - s_2*w_1_t
-        _r0_y = c_2*w_1_t - s_2
-        # (prr-V1) velocity of the connection point
-        S_dot_t = omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x
-        S_dot_x = t_dot_x - S_dot_t
-        S_dot_y = S_dot_t_2 + t_dot_y
-        # (prr-V6) rate of joint 2
-        qd_2 = inv_v_2_t_2*(S_dot_x*prr_base_frame_xy + S_dot_y*prr_base_frame_yy)
-        # (prr-V8) centripetal tensor of link 2
-        W_2_t = qd_2*qd_2
-        # (prr-V3) reciprocal vector 1
-        w_1_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y + _r0_y*axis_y_prr_axes2_in_base_x
-        w_1_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y - _r0_x*axis_y_prr_axes2_in_base_x
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_z = q_in_base_x*w_1_in_base_y - q_in_base_y*w_1_in_base_x
-        # (prr-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x
-        # (prr-A3) acceleration of the connection point
-        S_ddot_x = a_p_x - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y - S_dot_t*omega_z
-        S_ddot_tip_x = S_ddot_x*axis_y_prr_axes2_in_base_y - S_ddot_y*axis_y_prr_axes2_in_base_x
-        S_ddot_tip_y = S_ddot_x*axis_y_prr_axes2_in_base_x + S_ddot_y*axis_y_prr_axes2_in_base_y
-        # (prr-A5) acceleration of the connection point left to the joint accelerations
-        rel_x = S_ddot_tip_x + prr_platform_joint_offset_x*qd_2*qd_2
-        # (prr-A7) acceleration of joint 1
-        qdd_2 = inv_v_2_t_2*(rel_x*s_2 - S_ddot_tip_y*c_2)
-        # (prr-N5) acceleration of the reference point of link 2, less gravity
-        acc_2_x = S_ddot_tip_x + c_2*g_r0_x - g_r0_y*s_2
-        acc_2_y = S_ddot_tip_y + c_2*g_r0_y + g_r0_x*s_2
-        # (prr-N1) acceleration of the reference point of link 1, less gravity
-        acc_1_x = -g_r0_x - S_ddot_tip_y*s_2 - c_2*rel_x - qdd_2*v_2_t
-        # (prr-N3) inertia force of link 1 less its weight
-        f_1_x = acc_1_x*prr_link1_mass
-        # (prr-N16) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_z = acc_2_y*h_2_x - J_2_zz*qdd_2 - acc_2_x*h_2_y
-        # (prr-N24) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_t = inv_v_2_t_2*(mu_2_z + f_1_x*v_2_t)
-        # (prr-N27) leg force on the platform without actuation and without the mass at the connection point
-        c_x = G_t*s_2 + W_2_t*h_2_x + c_2*f_1_x - h_2_y*qdd_2
-        c_y = W_2_t*h_2_y + f_1_x*s_2 + h_2_x*qdd_2 - G_t*c_2
-        c_in_base_x = axis_y_prr_axes2_in_base_x*c_y + axis_y_prr_axes2_in_base_y*c_x
-        c_in_base_y = axis_y_prr_axes2_in_base_y*c_y - axis_y_prr_axes2_in_base_x*c_x
-        # (E5) moment that actuators and external wrench must give
-        R_a_t = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y
-        ok = ok & m.every(leg, (disc_1 >= 0.0) & (abs(-v_2_t_2) > _TOLERANCE * size))
+        # (prr-w_1) reciprocal vector 1
+        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
+        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
+        # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_t = prr_platform_joint_offset_x*prr_s_2
+        prr_v_2_t_2 = prr_c_2*prr_platform_joint_offset_x
+        # (prr-w_2) reciprocal vector 2
+        inv_prr_v_2_t_2 = 1.0/prr_v_2_t_2
+        # (prr-w_1) reciprocal vector 1
+        prr_w_1_t = inv_prr_v_2_t_2*prr_v_2_t
+        prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t
+        prr__r0_y = prr_c_2*prr_w_1_t - prr_s_2
+        # (prr-S_dot) velocity of the connection point
+        prr_S_dot_t = omega_z*prr_q_in_base_y
+        prr_S_dot_t_2 = omega_z*prr_q_in_base_x
+        prr_S_dot_x = t_dot_x - prr_S_dot_t
+        prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
+        # (prr-qd_2) rate of joint 2
+        prr_qd_2 = inv_prr_v_2_t_2*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
+        # (prr-W_2) centripetal tensor of link 2
+        prr_W_2_t = prr_qd_2*prr_qd_2
+        # (prr-w_1) reciprocal vector 1
+        prr_w_1_in_base_x = (
+        axis_y_prr_axes2_in_base_x*prr__r0_y + axis_y_prr_axes2_in_base_y*prr__r0_x
+        )
+        prr_w_1_in_base_y = (
+        axis_y_prr_axes2_in_base_y*prr__r0_y - axis_y_prr_axes2_in_base_x*prr__r0_x
+        )
+        # (prr-H_a_1) moment of the column's unit force about the platform origin
+        prr_H_a_1_z = prr_q_in_base_x*prr_w_1_in_base_y - prr_q_in_base_y*prr_w_1_in_base_x
+        # (prr-a_p) acceleration of the connection point without its centripetal part
+        prr_a_p_x = t_ddot_x - alpha_z*prr_q_in_base_y
+        prr_a_p_y = t_ddot_y + alpha_z*prr_q_in_base_x
+        # (prr-S_ddot) acceleration of the connection point
+        prr_S_ddot_x = prr_a_p_x - omega_z*prr_S_dot_t_2
+        prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t
+        prr_S_ddot_tip_x = (
+        axis_y_prr_axes2_in_base_y*prr_S_ddot_x - axis_y_prr_axes2_in_base_x*prr_S_ddot_y
+        )
+        prr_S_ddot_tip_y = (
+        axis_y_prr_axes2_in_base_x*prr_S_ddot_x + axis_y_prr_axes2_in_base_y*prr_S_ddot_y
+        )
+        # (prr-rel) acceleration of the connection point left to the joint accelerations
+        prr_rel_x = prr_S_ddot_tip_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2
+        # (prr-qdd_1) acceleration of joint 1
+        prr_qdd_2 = inv_prr_v_2_t_2*(prr_rel_x*prr_s_2 - prr_S_ddot_tip_y*prr_c_2)
+        # (prr-acc_2) acceleration of the reference point of link 2, less gravity
+        prr_acc_2_x = prr_S_ddot_tip_x + prr_c_2*prr_g_r0_x - prr_g_r0_y*prr_s_2
+        prr_acc_2_y = prr_S_ddot_tip_y + prr_c_2*prr_g_r0_y + prr_g_r0_x*prr_s_2
+        # (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        prr_mu_2_z = prr_acc_2_y*prr_h_2_x - prr_J_2_zz*prr_qdd_2 - prr_acc_2_x*prr_h_2_y
+        # (prr-acc_1) acceleration of the reference point of link 1, less gravity
+        prr_acc_1_x = (
+        -prr_g_r0_x - prr_S_ddot_tip_y*prr_s_2 - prr_c_2*prr_rel_x - prr_qdd_2*prr_v_2_t
+        )
+        # (prr-f_1) inertia force of link 1 less its weight
+        prr_f_1_x = prr_acc_1_x*prr_link1_mass
+        # (prr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        prr_G_t = inv_prr_v_2_t_2*(prr_mu_2_z + prr_f_1_x*prr_v_2_t)
+        # (prr-c) leg force on the platform without actuation and without the mass at the connection point
+        prr_c_x = prr_G_t*prr_s_2 + prr_W_2_t*prr_h_2_x + prr_c_2*prr_f_1_x - prr_h_2_y*prr_qdd_2
+        prr_c_y = prr_W_2_t*prr_h_2_y + prr_f_1_x*prr_s_2 + prr_h_2_x*prr_qdd_2 - prr_G_t*prr_c_2
+        prr_c_in_base_x = axis_y_prr_axes2_in_base_x*prr_c_y + axis_y_prr_axes2_in_base_y*prr_c_x
+        prr_c_in_base_y = axis_y_prr_axes2_in_base_y*prr_c_y - axis_y_prr_axes2_in_base_x*prr_c_x
+        # (R_a) moment that actuators and external wrench must give
+        prr_R_a_t = prr_c_in_base_y*prr_q_in_base_x - prr_c_in_base_x*prr_q_in_base_y
+        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t_2) > _TOLERANCE * prr_size))
         sums = m.added(sums, leg, (
-        c_in_base_x, c_in_base_y, R_a_t,
+        prr_c_in_base_x, prr_c_in_base_y, prr_R_a_t,
         ))
-        out_H[_H_prr[0][leg]] = w_1_in_base_x
-        out_H[_H_prr[1][leg]] = w_1_in_base_y
-        out_H[_H_prr[2][leg]] = H_a_1_z
+        out_H[_H_prr[0][leg]] = prr_w_1_in_base_x
+        out_H[_H_prr[1][leg]] = prr_w_1_in_base_y
+        out_H[_H_prr[2][leg]] = prr_H_a_1_z
     total_prr_x, total_prr_y, total_prr_z = sums
-    # (E4) force that actuators and external wrench must give
+    # (R_t) force that actuators and external wrench must give
     R_t_x = f_p_x - total_prr_x
     R_t_y = f_p_y - total_prr_y
-    # (E5) moment that actuators and external wrench must give
+    # (R_a) moment that actuators and external wrench must give
     R_a_z = mu_p_z - total_prr_z
     out_required[0] = R_t_x
     out_required[1] = R_t_y
@@ -1703,29 +1814,29 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        branch_1, inv_uu_2_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_platform_joint_offset_x,
-            prr_platform_point_x, prr_platform_point_y, uu_2_t,
+        inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
+            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
         ) = k
-        # (prr-K1) from the base point to the connection point
-        S_x = t_x + R_xx*prr_platform_point_x - prr_base_point_x - R_yx*prr_platform_point_y
-        S_y = t_y + R_xx*prr_platform_point_y + R_yx*prr_platform_point_x - prr_base_point_y
-        # (prr-K2) component along axis 1
-        px_1 = S_x*prr_base_frame_xx + S_y*prr_base_frame_yx
-        # (prr-K3) discriminant of the distance equation
-        disc_1_t = S_x*S_x + S_y*S_y
-        disc_1 = px_1*px_1 + uu_2_t - disc_1_t
-        # (prr-K4) displacement of joint 1
-        q_1_t = branch_1*sqrt(disc_1)
-        q_1 = px_1 + q_1_t
-        # (prr-K9) displacement of joint 2
-        q_2 = (
-        atan2(inv_uu_2_t*prr_platform_joint_offset_x*(S_x*prr_base_frame_xy +
-            S_y*prr_base_frame_yy), -inv_uu_2_t*prr_platform_joint_offset_x*q_1_t)
+        # (prr-S) from the base point to the connection point
+        prr_S_x = t_x + R_xx*prr_platform_point_x - prr_base_point_x - R_yx*prr_platform_point_y
+        prr_S_y = t_y + R_xx*prr_platform_point_y + R_yx*prr_platform_point_x - prr_base_point_y
+        # (prr-px_1) component along axis 1
+        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        # (prr-disc_1) discriminant of the distance equation
+        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        # (prr-q_1) displacement of joint 1
+        prr_q_1_t = prr_branch_1*sqrt(prr_disc_1)
+        prr_q_1 = prr_px_1 + prr_q_1_t
+        # (prr-q_2) displacement of joint 2
+        prr_q_2 = (
+        atan2(inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+            prr_S_y*prr_base_frame_yy), -inv_prr_disc_1_t_5*prr_platform_joint_offset_x*prr_q_1_t)
         )
-        ok = ok & m.every(leg, (disc_1 >= 0.0))
-        out_q[_q_prr[0][leg]] = q_1
-        out_q[_q_prr[1][leg]] = q_2
+        ok = ok & m.every(leg, (prr_disc_1 >= 0.0))
+        out_q[_q_prr[0][leg]] = prr_q_1
+        out_q[_q_prr[1][leg]] = prr_q_2
     return ok, (out_q,)
 
 
@@ -1754,37 +1865,37 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        branch_1, inv_uu_2_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_platform_joint_offset_x,
-            prr_platform_point_x, prr_platform_point_y, size, uu_2_t,
+        inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
+            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
         ) = k
-        # (prr-K1) from the base point to the connection point
-        q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        S_x = q_in_base_x + t_x - prr_base_point_x
-        S_y = q_in_base_y + t_y - prr_base_point_y
-        # (prr-K2) component along axis 1
-        px_1 = S_x*prr_base_frame_xx + S_y*prr_base_frame_yx
-        # (prr-K3) discriminant of the distance equation
-        disc_1_t = S_x*S_x + S_y*S_y
-        disc_1 = px_1*px_1 + uu_2_t - disc_1_t
-        # (prr-V2) velocity of the connection point per rate of joint 2
-        v_2_t = (
-        branch_1*sqrt(disc_1)*inv_uu_2_t*prr_platform_joint_offset_x*prr_platform_joint_offset_x
+        # (prr-S) from the base point to the connection point
+        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
+        # (prr-px_1) component along axis 1
+        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        # (prr-disc_1) discriminant of the distance equation
+        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_t = (
+        inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x*prr_platform_joint_offset_x
         )
-        # (prr-V1) velocity of the connection point
-        S_dot_x = t_dot_x - omega_z*q_in_base_y
-        S_dot_y = t_dot_y + omega_z*q_in_base_x
-        # (prr-V6) rate of joint 2
-        qd_2 = (S_dot_x*prr_base_frame_xy + S_dot_y*prr_base_frame_yy)/v_2_t
-        qd_2_t = (
-        S_dot_x*prr_base_frame_xx + S_dot_y*prr_base_frame_yx -
-            inv_uu_2_t*prr_platform_joint_offset_x*prr_platform_joint_offset_x*qd_2*(S_x*prr_base_frame_xy
-            + S_y*prr_base_frame_yy)
+        # (prr-S_dot) velocity of the connection point
+        prr_S_dot_x = t_dot_x - omega_z*prr_q_in_base_y
+        prr_S_dot_y = t_dot_y + omega_z*prr_q_in_base_x
+        # (prr-qd_2) rate of joint 2
+        prr_qd_2 = (prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)/prr_v_2_t
+        prr_qd_2_t = (
+        prr_S_dot_x*prr_base_frame_xx + prr_S_dot_y*prr_base_frame_yx -
+            inv_prr_disc_1_t_5*prr_platform_joint_offset_x*prr_platform_joint_offset_x*prr_qd_2*(prr_S_x*prr_base_frame_xy
+            + prr_S_y*prr_base_frame_yy)
         )
-        ok = ok & m.every(leg, (disc_1 >= 0.0) & (abs(-v_2_t) > _TOLERANCE * size))
-        out_qd[_qd_prr[0][leg]] = qd_2_t
-        out_qd[_qd_prr[1][leg]] = -qd_2
+        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t) > _TOLERANCE * prr_size))
+        out_qd[_qd_prr[0][leg]] = prr_qd_2_t
+        out_qd[_qd_prr[1][leg]] = -prr_qd_2
     return ok, (out_qd,)
 
 
@@ -1820,58 +1931,64 @@ def _run_joint_accelerations(m, X, V, A):
     out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
-        branch_1, inv_uu_2_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_platform_joint_offset_x,
-            prr_platform_point_x, prr_platform_point_y, size, uu_2_t,
+        inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
+            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
         ) = k
-        # (prr-K1) from the base point to the connection point
-        q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        S_x = q_in_base_x + t_x - prr_base_point_x
-        S_y = q_in_base_y + t_y - prr_base_point_y
-        # (prr-K2) component along axis 1
-        px_1 = S_x*prr_base_frame_xx + S_y*prr_base_frame_yx
-        # (prr-K3) discriminant of the distance equation
-        disc_1_t = S_x*S_x + S_y*S_y
-        disc_1 = px_1*px_1 + uu_2_t - disc_1_t
-        # (prr-K7) cosine of the angle of joint 2 from its reference direction
-        c_2 = branch_1*sqrt(disc_1)*inv_uu_2_t*prr_platform_joint_offset_x
-        # (prr-K8) sine of the angle of joint 2 from its reference direction
-        s_2 = (
-        inv_uu_2_t*prr_platform_joint_offset_x*(S_x*prr_base_frame_xy + S_y*prr_base_frame_yy)
+        # (prr-S) from the base point to the connection point
+        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
+        # (prr-px_1) component along axis 1
+        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        # (prr-disc_1) discriminant of the distance equation
+        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        # (prr-c_2) cosine of the angle of joint 2 from its reference direction
+        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        # (prr-s_2) sine of the angle of joint 2 from its reference direction
+        prr_s_2 = (
+        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+            prr_S_y*prr_base_frame_yy)
         )
-        # (prr-V3) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -c_2*prr_base_frame_xy - prr_base_frame_xx*s_2
-        axis_y_prr_axes2_in_base_y = -c_2*prr_base_frame_yy - prr_base_frame_yx*s_2
-        # (prr-V2) velocity of the connection point per rate of joint 2
-        v_2_t = c_2*prr_platform_joint_offset_x
-        # (prr-V3) reciprocal vector 1
-        inv_v_2_t_2 = 1.0/v_2_t
-        # (prr-V1) velocity of the connection point
-        S_dot_t = omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x
-        S_dot_x = t_dot_x - S_dot_t
-        S_dot_y = S_dot_t_2 + t_dot_y
-        # (prr-V6) rate of joint 2
-        qd_2 = inv_v_2_t_2*(S_dot_x*prr_base_frame_xy + S_dot_y*prr_base_frame_yy)
-        # (prr-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x
-        # (prr-A3) acceleration of the connection point
-        S_ddot_x = a_p_x - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y - S_dot_t*omega_z
-        S_ddot_tip_y = S_ddot_x*axis_y_prr_axes2_in_base_x + S_ddot_y*axis_y_prr_axes2_in_base_y
-        # (prr-A5) acceleration of the connection point left to the joint accelerations
-        rel_x = (
-        S_ddot_x*axis_y_prr_axes2_in_base_y + prr_platform_joint_offset_x*qd_2*qd_2 -
-            S_ddot_y*axis_y_prr_axes2_in_base_x
+        # (prr-w_1) reciprocal vector 1
+        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
+        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
+        # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_t = prr_c_2*prr_platform_joint_offset_x
+        # (prr-w_2) reciprocal vector 2
+        inv_prr_v_2_t_2 = 1.0/prr_v_2_t
+        # (prr-S_dot) velocity of the connection point
+        prr_S_dot_t = omega_z*prr_q_in_base_y
+        prr_S_dot_t_2 = omega_z*prr_q_in_base_x
+        prr_S_dot_x = t_dot_x - prr_S_dot_t
+        prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
+        # (prr-qd_2) rate of joint 2
+        prr_qd_2 = inv_prr_v_2_t_2*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
+        # (prr-a_p) acceleration of the connection point without its centripetal part
+        prr_a_p_x = t_ddot_x - alpha_z*prr_q_in_base_y
+        prr_a_p_y = t_ddot_y + alpha_z*prr_q_in_base_x
+        # (prr-S_ddot) acceleration of the connection point
+        prr_S_ddot_x = prr_a_p_x - omega_z*prr_S_dot_t_2
+        prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t
+        prr_S_ddot_tip_y = (
+        axis_y_prr_axes2_in_base_x*prr_S_ddot_x + axis_y_prr_axes2_in_base_y*prr_S_ddot_y
         )
-        # (prr-A7) acceleration of joint 1
-        qdd_2 = inv_v_2_t_2*(rel_x*s_2 - S_ddot_tip_y*c_2)
-        qdd_1_t = S_ddot_tip_y*s_2 + c_2*rel_x + prr_platform_joint_offset_x*qdd_2*s_2
-        ok = ok & m.every(leg, (disc_1 >= 0.0) & (abs(-v_2_t) > _TOLERANCE * size))
-        out_qdd[_qdd_prr[0][leg]] = -qdd_1_t
-        out_qdd[_qdd_prr[1][leg]] = -qdd_2
+        # (prr-rel) acceleration of the connection point left to the joint accelerations
+        prr_rel_x = (
+        axis_y_prr_axes2_in_base_y*prr_S_ddot_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2 -
+            axis_y_prr_axes2_in_base_x*prr_S_ddot_y
+        )
+        # (prr-qdd_1) acceleration of joint 1
+        prr_qdd_2 = inv_prr_v_2_t_2*(prr_rel_x*prr_s_2 - prr_S_ddot_tip_y*prr_c_2)
+        prr_qdd_1_t = (
+        prr_S_ddot_tip_y*prr_s_2 + prr_c_2*prr_rel_x +
+            prr_platform_joint_offset_x*prr_qdd_2*prr_s_2
+        )
+        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t) > _TOLERANCE * prr_size))
+        out_qdd[_qdd_prr[0][leg]] = -prr_qdd_1_t
+        out_qdd[_qdd_prr[1][leg]] = -prr_qdd_2
     return ok, (out_qdd,)
 
 
@@ -1908,90 +2025,102 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        J_2_zz, branch_1, g_r0_x, g_r0_y, h_2_x, h_2_y, inv_uu_2_t, prr_base_frame_xx,
-            prr_base_frame_xy, prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x,
-            prr_base_point_y, prr_link1_mass, prr_link2_mass, prr_platform_joint_offset_x,
-            prr_platform_point_x, prr_platform_point_y, size, uu_2_t,
+        inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
+            prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass, prr_link2_mass,
+            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
         ) = k
-        # (prr-K1) from the base point to the connection point
-        q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        S_x = q_in_base_x + t_x - prr_base_point_x
-        S_y = q_in_base_y + t_y - prr_base_point_y
-        # (prr-K2) component along axis 1
-        px_1 = S_x*prr_base_frame_xx + S_y*prr_base_frame_yx
-        # (prr-K3) discriminant of the distance equation
-        disc_1_t = S_x*S_x + S_y*S_y
-        disc_1 = px_1*px_1 + uu_2_t - disc_1_t
-        # (prr-K7) cosine of the angle of joint 2 from its reference direction
-        c_2 = branch_1*sqrt(disc_1)*inv_uu_2_t*prr_platform_joint_offset_x
-        # (prr-K8) sine of the angle of joint 2 from its reference direction
-        s_2 = (
-        inv_uu_2_t*prr_platform_joint_offset_x*(S_x*prr_base_frame_xy + S_y*prr_base_frame_yy)
+        # (prr-S) from the base point to the connection point
+        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
+        # (prr-px_1) component along axis 1
+        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        # (prr-disc_1) discriminant of the distance equation
+        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        # (prr-c_2) cosine of the angle of joint 2 from its reference direction
+        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        # (prr-s_2) sine of the angle of joint 2 from its reference direction
+        prr_s_2 = (
+        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+            prr_S_y*prr_base_frame_yy)
         )
-        # (prr-V3) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -c_2*prr_base_frame_xy - prr_base_frame_xx*s_2
-        axis_y_prr_axes2_in_base_y = -c_2*prr_base_frame_yy - prr_base_frame_yx*s_2
-        # (prr-V2) velocity of the connection point per rate of joint 2
-        v_2_t = prr_platform_joint_offset_x*s_2
-        v_2_t_2 = c_2*prr_platform_joint_offset_x
-        # (prr-V3) reciprocal vector 1
-        inv_v_2_t_2 = 1.0/v_2_t_2
-        w_1_t = inv_v_2_t_2*v_2_t
-        _r0_x = -c_2 - s_2*w_1_t
-        _r0_y = c_2*w_1_t - s_2
-        # (prr-V1) velocity of the connection point
-        S_dot_t = omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x
-        S_dot_x = t_dot_x - S_dot_t
-        S_dot_y = S_dot_t_2 + t_dot_y
-        # (prr-V6) rate of joint 2
-        qd_2 = inv_v_2_t_2*(S_dot_x*prr_base_frame_xy + S_dot_y*prr_base_frame_yy)
-        # (prr-V8) centripetal tensor of link 2
-        W_2_t = qd_2*qd_2
-        # (prr-V3) reciprocal vector 1
-        w_1_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y + _r0_y*axis_y_prr_axes2_in_base_x
-        w_1_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y - _r0_x*axis_y_prr_axes2_in_base_x
-        # (prr-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x
-        # (prr-A3) acceleration of the connection point
-        S_ddot_x = a_p_x - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y - S_dot_t*omega_z
-        S_ddot_tip_x = S_ddot_x*axis_y_prr_axes2_in_base_y - S_ddot_y*axis_y_prr_axes2_in_base_x
-        S_ddot_tip_y = S_ddot_x*axis_y_prr_axes2_in_base_x + S_ddot_y*axis_y_prr_axes2_in_base_y
-        # (prr-A5) acceleration of the connection point left to the joint accelerations
-        rel_x = S_ddot_tip_x + prr_platform_joint_offset_x*qd_2*qd_2
-        # (prr-A7) acceleration of joint 1
-        qdd_2 = inv_v_2_t_2*(rel_x*s_2 - S_ddot_tip_y*c_2)
-        # (prr-N5) acceleration of the reference point of link 2, less gravity
-        acc_2_x = S_ddot_tip_x + c_2*g_r0_x - g_r0_y*s_2
-        acc_2_y = S_ddot_tip_y + c_2*g_r0_y + g_r0_x*s_2
-        # (prr-N1) acceleration of the reference point of link 1, less gravity
-        acc_1_x = -g_r0_x - S_ddot_tip_y*s_2 - c_2*rel_x - qdd_2*v_2_t
-        # (prr-N3) inertia force of link 1 less its weight
-        f_1_x = acc_1_x*prr_link1_mass
-        # (prr-N16) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_z = acc_2_y*h_2_x - J_2_zz*qdd_2 - acc_2_x*h_2_y
-        # (prr-N24) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_t = inv_v_2_t_2*(mu_2_z + f_1_x*v_2_t)
-        # (prr-N27) leg force on the platform without actuation and without the mass at the connection point
-        c_x = G_t*s_2 + W_2_t*h_2_x + c_2*f_1_x - h_2_y*qdd_2
-        c_y = W_2_t*h_2_y + f_1_x*s_2 + h_2_x*qdd_2 - G_t*c_2
-        # (prr-N32) leg force on the platform without actuation, the last link's mass included
-        c_true_x = c_x - acc_2_x*prr_link2_mass
-        c_true_y = c_y - acc_2_y*prr_link2_mass
-        c_true_in_base_x = (
-        axis_y_prr_axes2_in_base_x*c_true_y + axis_y_prr_axes2_in_base_y*c_true_x
+        # (prr-w_1) reciprocal vector 1
+        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
+        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
+        # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_t = prr_platform_joint_offset_x*prr_s_2
+        prr_v_2_t_2 = prr_c_2*prr_platform_joint_offset_x
+        # (prr-w_2) reciprocal vector 2
+        inv_prr_v_2_t_2 = 1.0/prr_v_2_t_2
+        # (prr-w_1) reciprocal vector 1
+        prr_w_1_t = inv_prr_v_2_t_2*prr_v_2_t
+        prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t
+        prr__r0_y = prr_c_2*prr_w_1_t - prr_s_2
+        # (prr-S_dot) velocity of the connection point
+        prr_S_dot_t = omega_z*prr_q_in_base_y
+        prr_S_dot_t_2 = omega_z*prr_q_in_base_x
+        prr_S_dot_x = t_dot_x - prr_S_dot_t
+        prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
+        # (prr-qd_2) rate of joint 2
+        prr_qd_2 = inv_prr_v_2_t_2*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
+        # (prr-W_2) centripetal tensor of link 2
+        prr_W_2_t = prr_qd_2*prr_qd_2
+        # (prr-w_1) reciprocal vector 1
+        prr_w_1_in_base_x = (
+        axis_y_prr_axes2_in_base_x*prr__r0_y + axis_y_prr_axes2_in_base_y*prr__r0_x
         )
-        c_true_in_base_y = (
-        axis_y_prr_axes2_in_base_y*c_true_y - axis_y_prr_axes2_in_base_x*c_true_x
+        prr_w_1_in_base_y = (
+        axis_y_prr_axes2_in_base_y*prr__r0_y - axis_y_prr_axes2_in_base_x*prr__r0_x
         )
-        ok = ok & m.every(leg, (disc_1 >= 0.0) & (abs(-v_2_t_2) > _TOLERANCE * size))
-        out_leg_force[_leg_force_prr[0][leg]] = c_true_in_base_x
-        out_leg_force[_leg_force_prr[1][leg]] = c_true_in_base_y
-        out_drive[_drive_prr[0][leg]] = w_1_in_base_x
-        out_drive[_drive_prr[1][leg]] = w_1_in_base_y
+        # (prr-a_p) acceleration of the connection point without its centripetal part
+        prr_a_p_x = t_ddot_x - alpha_z*prr_q_in_base_y
+        prr_a_p_y = t_ddot_y + alpha_z*prr_q_in_base_x
+        # (prr-S_ddot) acceleration of the connection point
+        prr_S_ddot_x = prr_a_p_x - omega_z*prr_S_dot_t_2
+        prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t
+        prr_S_ddot_tip_x = (
+        axis_y_prr_axes2_in_base_y*prr_S_ddot_x - axis_y_prr_axes2_in_base_x*prr_S_ddot_y
+        )
+        prr_S_ddot_tip_y = (
+        axis_y_prr_axes2_in_base_x*prr_S_ddot_x + axis_y_prr_axes2_in_base_y*prr_S_ddot_y
+        )
+        # (prr-rel) acceleration of the connection point left to the joint accelerations
+        prr_rel_x = prr_S_ddot_tip_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2
+        # (prr-qdd_1) acceleration of joint 1
+        prr_qdd_2 = inv_prr_v_2_t_2*(prr_rel_x*prr_s_2 - prr_S_ddot_tip_y*prr_c_2)
+        # (prr-acc_2) acceleration of the reference point of link 2, less gravity
+        prr_acc_2_x = prr_S_ddot_tip_x + prr_c_2*prr_g_r0_x - prr_g_r0_y*prr_s_2
+        prr_acc_2_y = prr_S_ddot_tip_y + prr_c_2*prr_g_r0_y + prr_g_r0_x*prr_s_2
+        # (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        prr_mu_2_z = prr_acc_2_y*prr_h_2_x - prr_J_2_zz*prr_qdd_2 - prr_acc_2_x*prr_h_2_y
+        # (prr-acc_1) acceleration of the reference point of link 1, less gravity
+        prr_acc_1_x = (
+        -prr_g_r0_x - prr_S_ddot_tip_y*prr_s_2 - prr_c_2*prr_rel_x - prr_qdd_2*prr_v_2_t
+        )
+        # (prr-f_1) inertia force of link 1 less its weight
+        prr_f_1_x = prr_acc_1_x*prr_link1_mass
+        # (prr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        prr_G_t = inv_prr_v_2_t_2*(prr_mu_2_z + prr_f_1_x*prr_v_2_t)
+        # (prr-c) leg force on the platform without actuation and without the mass at the connection point
+        prr_c_x = prr_G_t*prr_s_2 + prr_W_2_t*prr_h_2_x + prr_c_2*prr_f_1_x - prr_h_2_y*prr_qdd_2
+        prr_c_y = prr_W_2_t*prr_h_2_y + prr_f_1_x*prr_s_2 + prr_h_2_x*prr_qdd_2 - prr_G_t*prr_c_2
+        # (prr-c_true) leg force on the platform without actuation, the last link's mass included
+        prr_c_true_x = prr_c_x - prr_acc_2_x*prr_link2_mass
+        prr_c_true_y = prr_c_y - prr_acc_2_y*prr_link2_mass
+        prr_c_true_in_base_x = (
+        axis_y_prr_axes2_in_base_x*prr_c_true_y + axis_y_prr_axes2_in_base_y*prr_c_true_x
+        )
+        prr_c_true_in_base_y = (
+        axis_y_prr_axes2_in_base_y*prr_c_true_y - axis_y_prr_axes2_in_base_x*prr_c_true_x
+        )
+        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t_2) > _TOLERANCE * prr_size))
+        out_leg_force[_leg_force_prr[0][leg]] = prr_c_true_in_base_x
+        out_leg_force[_leg_force_prr[1][leg]] = prr_c_true_in_base_y
+        out_drive[_drive_prr[0][leg]] = prr_w_1_in_base_x
+        out_drive[_drive_prr[1][leg]] = prr_w_1_in_base_y
     return ok, (out_leg_force, out_drive,)
 
 
@@ -2012,48 +2141,51 @@ def _run_potential(m, X):
     R_yx = sin(X_2)
     ok = True
     out_potential = m.zeros("potential")
-    # (V1) potential energy
-    potential_t_2 = (
+    # (potential) potential energy
+    potential_t = (
     gravity_x*(R_xx*h_star_x + m_star*t_x - R_yx*h_star_y) + gravity_y*(R_xx*h_star_y +
         R_yx*h_star_x + m_star*t_y)
     )
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        b_r0_x, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, inv_uu_2_t, potential_t,
-            prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx, prr_base_frame_yy,
-            prr_base_point_x, prr_base_point_y, prr_link1_mass, prr_platform_joint_offset_x,
-            prr_platform_point_x, prr_platform_point_y, uu_2_t,
+        inv_prr_disc_1_t_5, prr_b_r0_x, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
+            prr_g_r0_x, prr_g_r0_y, prr_h_1_x, prr_h_1_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
+            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
+            prr_potential_t,
         ) = k
-        # (prr-K1) from the base point to the connection point
-        S_x = t_x + R_xx*prr_platform_point_x - prr_base_point_x - R_yx*prr_platform_point_y
-        S_y = t_y + R_xx*prr_platform_point_y + R_yx*prr_platform_point_x - prr_base_point_y
-        # (prr-K2) component along axis 1
-        px_1 = S_x*prr_base_frame_xx + S_y*prr_base_frame_yx
-        # (prr-K3) discriminant of the distance equation
-        disc_1_t = S_x*S_x + S_y*S_y
-        disc_1 = px_1*px_1 + uu_2_t - disc_1_t
-        # (prr-K4) displacement of joint 1
-        q_1_t = branch_1*sqrt(disc_1)
-        q_1 = px_1 + q_1_t
-        # (prr-K7) cosine of the angle of joint 2 from its reference direction
-        c_2 = inv_uu_2_t*prr_platform_joint_offset_x*q_1_t
-        # (prr-K8) sine of the angle of joint 2 from its reference direction
-        s_2 = (
-        inv_uu_2_t*prr_platform_joint_offset_x*(S_x*prr_base_frame_xy + S_y*prr_base_frame_yy)
+        # (prr-S) from the base point to the connection point
+        prr_S_x = t_x + R_xx*prr_platform_point_x - prr_base_point_x - R_yx*prr_platform_point_y
+        prr_S_y = t_y + R_xx*prr_platform_point_y + R_yx*prr_platform_point_x - prr_base_point_y
+        # (prr-px_1) component along axis 1
+        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        # (prr-disc_1) discriminant of the distance equation
+        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        # (prr-q_1) displacement of joint 1
+        prr_q_1_t = prr_branch_1*sqrt(prr_disc_1)
+        prr_q_1 = prr_px_1 + prr_q_1_t
+        # (prr-c_2) cosine of the angle of joint 2 from its reference direction
+        prr_c_2 = inv_prr_disc_1_t_5*prr_platform_joint_offset_x*prr_q_1_t
+        # (prr-s_2) sine of the angle of joint 2 from its reference direction
+        prr_s_2 = (
+        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+            prr_S_y*prr_base_frame_yy)
         )
-        # (V1) potential energy
-        potential_t_3 = (
-        g_r0_x*(h_1_x + prr_link1_mass*(b_r0_x + q_1) - c_2*h_2_x - h_2_y*s_2) + g_r0_y*(h_1_y +
-            potential_t + h_2_x*s_2 - c_2*h_2_y)
+        # (potential) potential energy
+        prr_potential_t_2 = (
+        prr_g_r0_x*(prr_h_1_x + prr_link1_mass*(prr_b_r0_x + prr_q_1) - prr_c_2*prr_h_2_x -
+            prr_h_2_y*prr_s_2) + prr_g_r0_y*(prr_h_1_y + prr_potential_t + prr_h_2_x*prr_s_2 -
+            prr_c_2*prr_h_2_y)
         )
-        ok = ok & m.every(leg, (disc_1 >= 0.0))
+        ok = ok & m.every(leg, (prr_disc_1 >= 0.0))
         sums = m.added(sums, leg, (
-        potential_t_3,
+        prr_potential_t_2,
         ))
     total_prr, = sums
-    # (V1) potential energy
-    potential = -potential_t_2 - total_prr
+    # (potential) potential energy
+    potential = -potential_t - total_prr
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -2084,58 +2216,63 @@ def _run_condition(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        branch_1, inv_size, inv_uu_2_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_platform_joint_offset_x,
-            prr_platform_point_x, prr_platform_point_y, size, uu_2_t,
+        inv_prr_disc_1_t_5, inv_prr_size, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
+            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
         ) = k
-        # (prr-K1) from the base point to the connection point
-        q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        S_x = q_in_base_x + t_x - prr_base_point_x
-        S_y = q_in_base_y + t_y - prr_base_point_y
-        # (prr-K2) component along axis 1
-        px_1 = S_x*prr_base_frame_xx + S_y*prr_base_frame_yx
-        # (prr-K3) discriminant of the distance equation
-        disc_1_t = S_x*S_x + S_y*S_y
-        disc_1 = px_1*px_1 + uu_2_t - disc_1_t
-        # (prr-K7) cosine of the angle of joint 2 from its reference direction
-        c_2 = branch_1*sqrt(disc_1)*inv_uu_2_t*prr_platform_joint_offset_x
-        # (prr-K8) sine of the angle of joint 2 from its reference direction
-        s_2 = (
-        inv_uu_2_t*prr_platform_joint_offset_x*(S_x*prr_base_frame_xy + S_y*prr_base_frame_yy)
+        # (prr-S) from the base point to the connection point
+        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
+        # (prr-px_1) component along axis 1
+        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        # (prr-disc_1) discriminant of the distance equation
+        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        # (prr-c_2) cosine of the angle of joint 2 from its reference direction
+        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        # (prr-s_2) sine of the angle of joint 2 from its reference direction
+        prr_s_2 = (
+        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+            prr_S_y*prr_base_frame_yy)
         )
-        # (prr-V3) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -c_2*prr_base_frame_xy - prr_base_frame_xx*s_2
-        axis_y_prr_axes2_in_base_y = -c_2*prr_base_frame_yy - prr_base_frame_yx*s_2
-        # (prr-V2) velocity of the connection point per rate of joint 2
-        v_2_t = c_2*prr_platform_joint_offset_x
-        # (prr-V3) reciprocal vector 1
-        w_1_t = prr_platform_joint_offset_x*s_2/v_2_t
-        _r0_x = -c_2 - s_2*w_1_t
-        _r0_y = c_2*w_1_t - s_2
-        w_1_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y + _r0_y*axis_y_prr_axes2_in_base_x
-        w_1_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y - _r0_x*axis_y_prr_axes2_in_base_x
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_z = q_in_base_x*w_1_in_base_y - q_in_base_y*w_1_in_base_x
-        # (C2) rms distance of the platform points from their centroid
-        spread_t_2 = b_c_x - prr_platform_point_x
-        spread_t_3 = b_c_y - prr_platform_point_y
-        spread_t_4 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3
-        # (prr-V3) reciprocal vector 1
-        pivot_size = abs(v_2_t)
-        pivot = inv_size*pivot_size
-        reached = reached & m.every(leg, (disc_1 >= 0.0))
-        clear = clear & m.every(leg, (abs(-v_2_t) > _TOLERANCE * size))
+        # (prr-w_1) reciprocal vector 1
+        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
+        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
+        # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_t = prr_c_2*prr_platform_joint_offset_x
+        # (prr-w_1) reciprocal vector 1
+        prr_w_1_t = prr_platform_joint_offset_x*prr_s_2/prr_v_2_t
+        prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t
+        prr__r0_y = prr_c_2*prr_w_1_t - prr_s_2
+        prr_w_1_in_base_x = (
+        axis_y_prr_axes2_in_base_x*prr__r0_y + axis_y_prr_axes2_in_base_y*prr__r0_x
+        )
+        prr_w_1_in_base_y = (
+        axis_y_prr_axes2_in_base_y*prr__r0_y - axis_y_prr_axes2_in_base_x*prr__r0_x
+        )
+        # (prr-H_a_1) moment of the column's unit force about the platform origin
+        prr_H_a_1_z = prr_q_in_base_x*prr_w_1_in_base_y - prr_q_in_base_y*prr_w_1_in_base_x
+        # (spread) rms distance of the platform points from their centroid
+        prr_spread_t = b_c_x - prr_platform_point_x
+        prr_spread_t_2 = b_c_y - prr_platform_point_y
+        prr_spread_t_3 = prr_spread_t*prr_spread_t + prr_spread_t_2*prr_spread_t_2
+        # (prr-w_2) reciprocal vector 2
+        prr_pivot_size = abs(prr_v_2_t)
+        prr_pivot = inv_prr_size*prr_pivot_size
+        reached = reached & m.every(leg, (prr_disc_1 >= 0.0))
+        clear = clear & m.every(leg, (abs(-prr_v_2_t) > _TOLERANCE * prr_size))
         sums = m.added(sums, leg, (
-        spread_t_4,
+        prr_spread_t_3,
         ))
-        out_H[_H_prr[0][leg]] = w_1_in_base_x
-        out_H[_H_prr[1][leg]] = w_1_in_base_y
-        out_H[_H_prr[2][leg]] = H_a_1_z
-        out_pivots[_pivots_prr[0][leg]] = pivot
-        out_reach[_reach_prr[0][leg]] = disc_1
+        out_H[_H_prr[0][leg]] = prr_w_1_in_base_x
+        out_H[_H_prr[1][leg]] = prr_w_1_in_base_y
+        out_H[_H_prr[2][leg]] = prr_H_a_1_z
+        out_pivots[_pivots_prr[0][leg]] = prr_pivot
+        out_reach[_reach_prr[0][leg]] = prr_disc_1
     total_prr, = sums
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(total_prr)
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
@@ -2262,6 +2399,19 @@ def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
     momentum = np.einsum("ijs,js->is", M, V)
     return (momentum,)
+
+
+def _steps_joint_margins(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    margins = _unlimited(q, [0, 1, 2, 3, 4, 5])
+    return (margins,)
+
+
+def _steps_within_limits(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    subtract_1 = q - q
+    within = _not_negative(subtract_1)
+    return (within,)
 
 
 def _steps_actuator_positions(m, X):
@@ -2665,6 +2815,40 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+    )
+
+
+def joint_margins(X, p=None):
+    """How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+    where there is none.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        margins: distances, in the order of q [m or rad] (..., NJ).
+    """
+    return _call(
+        "joint_margins", _steps_joint_margins, p,
+        ("X", X, (NQ,)),
+        unbounded=True,
+    )
+
+
+def within_limits(X, p=None):
+    """Whether all joints are within their limits of displacement.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        within: 1 where no margin is negative, else 0; NaN is neither (...,).
+    """
+    return _call(
+        "within_limits", _steps_within_limits, p,
+        ("X", X, (NQ,)),
     )
 
 

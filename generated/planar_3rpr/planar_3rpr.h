@@ -48,6 +48,7 @@ typedef PLANAR_3RPR_REAL planar_3rpr_real;
 #define PLANAR_3RPR_NC 0
 #define PLANAR_3RPR_NW 3
 #define PLANAR_3RPR_NJ 6
+#define PLANAR_3RPR_OVERCONSTRAINED 0
 
 enum {
     PLANAR_3RPR_OK = 0,
@@ -90,13 +91,14 @@ typedef struct {
 /* What depends on the parameters alone; set by planar_3rpr_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
-    planar_3rpr_real J_star_t_10, J_star_zz, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y,
-            h_star_x, h_star_y, legs_size, m_star, spread_t;
-    /* legs of type rpr */
-    planar_3rpr_real J_group_1_zz[3], b_r0_x[3], b_r0_y[3], branch_1[3], g_r0_x[3], g_r0_y[3],
-            h_1_x[3], h_1_y[3], h_2_x[3], h_2_y[3], rpr_base_frame_xx[3], rpr_base_frame_xy[3],
-            rpr_base_frame_yx[3], rpr_base_frame_yy[3], rpr_base_point_x[3], rpr_base_point_y[3],
-            rpr_link1_mass[3], rpr_link2_mass[3], rpr_platform_point_x[3], rpr_platform_point_y[3];
+    /* 3 legs of type rpr; copies of the first fill up */
+    planar_3rpr_real rpr_J_group_1_zz[4], rpr_b_r0_x[4], rpr_b_r0_y[4], rpr_base_frame_xx[4],
+            rpr_base_frame_xy[4], rpr_base_frame_yx[4], rpr_base_frame_yy[4], rpr_base_point_x[4],
+            rpr_base_point_y[4], rpr_branch_1[4], rpr_g_r0_x[4], rpr_g_r0_y[4], rpr_h_1_x[4],
+            rpr_h_1_y[4], rpr_h_2_x[4], rpr_h_2_y[4], rpr_link1_mass[4], rpr_link2_mass[4],
+            rpr_platform_point_x[4], rpr_platform_point_y[4];
+    planar_3rpr_real J_star_t_6, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y, h_star_x,
+            h_star_y, legs_size, m_star, spread_t;
 } planar_3rpr_model;
 
 extern const planar_3rpr_params planar_3rpr_default_params;
@@ -118,7 +120,7 @@ int planar_3rpr_M(const planar_3rpr_model *model, const planar_3rpr_real *X, pla
 size_t planar_3rpr_M_batch(const planar_3rpr_model *model, size_t n, const planar_3rpr_real *X,
     planar_3rpr_real *M, int *status);
 
-/* Velocity and gravity terms Z. 163 mul, 109 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 159 mul, 107 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int planar_3rpr_Z(const planar_3rpr_model *model, const planar_3rpr_real *X, const
     planar_3rpr_real *V, planar_3rpr_real *Z);
@@ -153,7 +155,7 @@ size_t planar_3rpr_joint_accelerations_batch(const planar_3rpr_model *model, siz
     planar_3rpr_real *X, const planar_3rpr_real *V, const planar_3rpr_real *A, planar_3rpr_real
     *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 232 mul, 159 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 228 mul, 157 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int planar_3rpr_dynamics(const planar_3rpr_model *model, const planar_3rpr_real *X, const
     planar_3rpr_real *V, planar_3rpr_real *M, planar_3rpr_real *Z, planar_3rpr_real *H);
@@ -161,7 +163,7 @@ size_t planar_3rpr_dynamics_batch(const planar_3rpr_model *model, size_t n, cons
     *X, const planar_3rpr_real *V, planar_3rpr_real *M, planar_3rpr_real *Z, planar_3rpr_real *H,
     int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 186 mul, 129 add, 3 div, 3 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 182 mul, 127 add, 3 div, 3 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
 int planar_3rpr_inverse_dynamics(const planar_3rpr_model *model, const planar_3rpr_real *X, const
@@ -171,7 +173,7 @@ size_t planar_3rpr_inverse_dynamics_batch(const planar_3rpr_model *model, size_t
     planar_3rpr_real *X, const planar_3rpr_real *V, const planar_3rpr_real *A, const
     planar_3rpr_real *wrench, planar_3rpr_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 232 mul, 159 add, 3 div, 3 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 228 mul, 157 add, 3 div, 3 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV). */
 int planar_3rpr_forward_dynamics(const planar_3rpr_model *model, const planar_3rpr_real *X, const
@@ -240,6 +242,20 @@ int planar_3rpr_momentum(const planar_3rpr_model *model, const planar_3rpr_real 
     planar_3rpr_real *V, planar_3rpr_real *momentum);
 size_t planar_3rpr_momentum_batch(const planar_3rpr_model *model, size_t n, const planar_3rpr_real
     *X, const planar_3rpr_real *V, planar_3rpr_real *momentum, int *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 39 mul, 27 add, 3 div, 3 sqrt, 3 trig. In: X (NQ). Out: margins (NJ). */
+int planar_3rpr_joint_margins(const planar_3rpr_model *model, const planar_3rpr_real *X,
+    planar_3rpr_real *margins);
+size_t planar_3rpr_joint_margins_batch(const planar_3rpr_model *model, size_t n, const
+    planar_3rpr_real *X, planar_3rpr_real *margins, int *status);
+
+/* Whether all joints are within their limits of displacement. 39 mul, 27 add, 3 div, 3 sqrt, 3
+   trig. In: X (NQ). Out: within (1). */
+int planar_3rpr_within_limits(const planar_3rpr_model *model, const planar_3rpr_real *X,
+    planar_3rpr_real *within);
+size_t planar_3rpr_within_limits_batch(const planar_3rpr_model *model, size_t n, const
+    planar_3rpr_real *X, planar_3rpr_real *within, int *status);
 
 /* Displacements of the actuated joints, in the order of tau. 39 mul, 27 add, 3 div, 3 sqrt, 3
    trig. In: X (NQ). Out: q (NU). */

@@ -32,6 +32,7 @@ __all__ = [
     "NC",
     "NW",
     "NJ",
+    "OVERCONSTRAINED",
     "ACTUATED",
     "ACTUATOR_NAMES",
     "H",
@@ -56,6 +57,7 @@ __all__ = [
     "inverse_dynamics",
     "inverse_kinematics",
     "joint_accelerations",
+    "joint_margins",
     "joint_rates",
     "leg_reactions",
     "momentum",
@@ -64,6 +66,7 @@ __all__ = [
     "power",
     "retract",
     "rotation",
+    "within_limits",
 ]
 
 NQ = 3
@@ -72,6 +75,7 @@ NU = 3
 NC = 0
 NW = 3
 NJ = 6
+OVERCONSTRAINED = 0
 
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
@@ -312,7 +316,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return np.full(shape, default)
+        return _filled(shape, default) if isinstance(default, float) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -325,6 +329,16 @@ def _argument(function, name, value, shape, default=None, rule=""):
     elif rule == "positive" and not np.all((array > 0.0) & (array < np.inf)):
         raise ValueError(f"{function}: {name} must be positive and finite")
     return array
+
+
+_FILLED = {}
+
+
+def _filled(shape, value):
+    """An array of one value, made once."""
+    if (shape, value) not in _FILLED:
+        _FILLED[shape, value] = _frozen(np.full(shape, value))
+    return _FILLED[shape, value]
 
 
 def _lead(leads):
@@ -418,7 +432,7 @@ HOME_X = _frozen(np.array([0.03, -0.02, 0.09999999999999999]))
 HOME_Q = _frozen(np.array([0.0, 0.62, 0.0, 0.62, 0.0, 0.62]))
 
 _BRANCHES = {  # assembly branch of home, a sign per leg
-    "branch_1": np.array([1.0, 1.0, 1.0]),
+    "rpr_branch_1": np.array([1.0, 1.0, 1.0]),
 }
 
 
@@ -448,94 +462,95 @@ def _prepare(p):
     rpr_link2_centre_of_mass_x = p.rpr_link2_centre_of_mass[:, 0]
     rpr_link2_centre_of_mass_y = p.rpr_link2_centre_of_mass[:, 1]
     rpr_link2_inertia_zz = p.rpr_link2_inertia[:, 2, 2]
-    branch_1 = _BRANCHES["branch_1"]
-    # (L2) first moment about the platform origin
+    rpr_branch_1 = _BRANCHES["rpr_branch_1"]
+    # (h_star) first moment about the platform origin
     h_star_t = platform_centre_of_mass_x*platform_mass
     h_star_t_2 = platform_centre_of_mass_y*platform_mass
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_t = platform_centre_of_mass_y*platform_centre_of_mass_y
     J_star_t_2 = J_star_t + platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_3 = J_star_t*platform_mass
     J_star_t_4 = J_star_t_2*platform_mass
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread_t = 0.3333333333333333*sqrt(3.0)
-    # (C3) rms size of the legs, taken where the platform points coincide
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     legs_size = 1.073871500692704*spread_t
-    # (rpr-G3) inertia tensor of link 1 about the origin of link 1
-    J_1_t = (
+    # (rpr-h_2) first moment of link 2 about the connection point
+    rpr_h_2_x = rpr_link2_centre_of_mass_x*rpr_link2_mass
+    rpr_h_2_y = rpr_link2_centre_of_mass_y*rpr_link2_mass
+    # (rpr-J_1) inertia tensor of link 1 about the origin of link 1
+    rpr_J_1_t = (
     rpr_link1_centre_of_mass_x*rpr_link1_centre_of_mass_x +
         rpr_link1_centre_of_mass_y*rpr_link1_centre_of_mass_y
     )
-    # (rpr-G5) inertia tensor of link 2 about the connection point
-    J_2_t = (
+    # (rpr-J_2) inertia tensor of link 2 about the connection point
+    rpr_J_2_t = (
     rpr_link2_centre_of_mass_x*rpr_link2_centre_of_mass_x +
         rpr_link2_centre_of_mass_y*rpr_link2_centre_of_mass_y
     )
-    # (rpr-N8) inertia of the links that turn with link 1, each about its reference point
-    J_group_1_zz = (
-    rpr_link1_inertia_zz + rpr_link2_inertia_zz + J_1_t*rpr_link1_mass + J_2_t*rpr_link2_mass
+    # (rpr-J_group_1) inertia of the links that turn with link 1, each about its reference point
+    rpr_J_group_1_zz = (
+    rpr_link1_inertia_zz + rpr_link2_inertia_zz + rpr_J_1_t*rpr_link1_mass +
+        rpr_J_2_t*rpr_link2_mass
     )
-    # (rpr-G4) first moment of link 2 about the connection point
-    h_2_x = rpr_link2_centre_of_mass_x*rpr_link2_mass
-    h_2_y = rpr_link2_centre_of_mass_y*rpr_link2_mass
-    # (L2) first moment about the platform origin
-    h_star_t_3 = rpr_link2_mass*rpr_platform_point_x
-    h_star_t_4 = rpr_link2_mass*rpr_platform_point_y
-    # (L3) inertia tensor about the platform origin
-    J_star_t_5 = rpr_platform_point_y*rpr_platform_point_y
-    J_star_t_6 = J_star_t_5 + rpr_platform_point_x*rpr_platform_point_x
-    J_star_t_7 = J_star_t_5*rpr_link2_mass
-    J_star_t_8 = J_star_t_6*rpr_link2_mass
-    # (rpr-G2) first moment of link 1 about the origin of link 1
-    h_1_x = rpr_link1_centre_of_mass_x*rpr_link1_mass
-    h_1_y = rpr_link1_centre_of_mass_y*rpr_link1_mass
-    # (rpr-N3) acceleration of the reference point of link 2, less gravity
-    g_r0_x = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx
-    g_r0_y = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy
-    # (V1) potential energy
-    b_r0_x = rpr_base_frame_xx*rpr_base_point_x + rpr_base_frame_yx*rpr_base_point_y
-    b_r0_y = rpr_base_frame_xy*rpr_base_point_x + rpr_base_frame_yy*rpr_base_point_y
+    # (h_star) first moment about the platform origin
+    rpr_h_star_t = rpr_link2_mass*rpr_platform_point_x
+    rpr_h_star_t_2 = rpr_link2_mass*rpr_platform_point_y
+    # (J_star) inertia tensor about the platform origin
+    rpr_J_star_t = rpr_platform_point_y*rpr_platform_point_y
+    rpr_J_star_t_2 = rpr_J_star_t + rpr_platform_point_x*rpr_platform_point_x
+    rpr_J_star_t_3 = rpr_J_star_t*rpr_link2_mass
+    rpr_J_star_t_4 = rpr_J_star_t_2*rpr_link2_mass
+    # (rpr-h_1) first moment of link 1 about the origin of link 1
+    rpr_h_1_x = rpr_link1_centre_of_mass_x*rpr_link1_mass
+    rpr_h_1_y = rpr_link1_centre_of_mass_y*rpr_link1_mass
+    # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
+    rpr_g_r0_x = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx
+    rpr_g_r0_y = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy
+    # (potential) potential energy
+    rpr_b_r0_x = rpr_base_frame_xx*rpr_base_point_x + rpr_base_frame_yx*rpr_base_point_y
+    rpr_b_r0_y = rpr_base_frame_xy*rpr_base_point_x + rpr_base_frame_yy*rpr_base_point_y
     total_rpr = np.sum(np.broadcast_to(rpr_link2_mass, _rpr))
-    total_rpr_x = np.sum(np.broadcast_to(h_star_t_3, _rpr))
-    total_rpr_y = np.sum(np.broadcast_to(h_star_t_4, _rpr))
-    total_rpr_xx = np.sum(np.broadcast_to(J_star_t_7, _rpr))
-    total_rpr_zz = np.sum(np.broadcast_to(J_star_t_8, _rpr))
+    total_rpr_x = np.sum(np.broadcast_to(rpr_h_star_t, _rpr))
+    total_rpr_y = np.sum(np.broadcast_to(rpr_h_star_t_2, _rpr))
+    total_rpr_xx = np.sum(np.broadcast_to(rpr_J_star_t_3, _rpr))
+    total_rpr_zz = np.sum(np.broadcast_to(rpr_J_star_t_4, _rpr))
     total_rpr_x_2 = np.sum(np.broadcast_to(rpr_platform_point_x, _rpr))
     total_rpr_y_2 = np.sum(np.broadcast_to(rpr_platform_point_y, _rpr))
-    # (L1) mass of the platform with the gathered masses
+    # (m_star) mass of the platform with the gathered masses
     m_star = platform_mass + total_rpr
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_x = h_star_t + total_rpr_x
     h_star_y = h_star_t_2 + total_rpr_y
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_xx = J_star_t_3 + total_rpr_xx
-    J_star_zz = J_star_t_4 + platform_inertia_zz + total_rpr_zz
-    J_star_t_9 = J_star_xx - J_star_zz
-    J_star_t_10 = J_star_t_9 - J_star_xx
-    # (M4) centripetal force and weight of the platform
+    J_star_t_5 = J_star_xx - J_star_t_4 - platform_inertia_zz - total_rpr_zz
+    J_star_t_6 = J_star_t_5 - J_star_xx
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
-    # (C1) centroid of the platform points
+    # (b_c) centroid of the platform points
     b_c_x = 0.3333333333333333*total_rpr_x_2
     b_c_y = 0.3333333333333333*total_rpr_y_2
     return {
         "dynamics": (
-        (J_star_t_10, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
+        (J_star_t_6, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
                 (_rpr,
-        (J_group_1_zz, branch_1, h_1_x, h_1_y, h_2_x, h_2_y, rpr_base_frame_xx, rpr_base_frame_xy,
-                    rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y,
-                    rpr_platform_point_x, rpr_platform_point_y,),
+        (rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+                    rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_platform_point_x,
+                    rpr_platform_point_y,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_10, h_star_x, h_star_y, m_star,),
+        (J_star_t_6, h_star_x, h_star_y, m_star,),
             (
                 (_rpr,
-        (J_group_1_zz, branch_1, h_2_x, h_2_y, rpr_base_frame_xx, rpr_base_frame_xy,
-                    rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y,
-                    rpr_platform_point_x, rpr_platform_point_y,),
+        (rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+                    rpr_h_2_x, rpr_h_2_y, rpr_platform_point_x, rpr_platform_point_y,),
                 ),
             ),
         ),
@@ -543,9 +558,10 @@ def _prepare(p):
         (Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y,),
             (
                 (_rpr,
-        (J_group_1_zz, branch_1, h_1_x, h_1_y, h_2_x, h_2_y, rpr_base_frame_xx, rpr_base_frame_xy,
-                    rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y,
-                    rpr_platform_point_x, rpr_platform_point_y,),
+        (rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+                    rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_platform_point_x,
+                    rpr_platform_point_y,),
                 ),
             ),
         ),
@@ -553,19 +569,20 @@ def _prepare(p):
         (),
             (
                 (_rpr,
-        (branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-                    rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
+        (rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+                    rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
             ),
         ),
         "required": (
-        (J_star_zz, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
+        (J_star_t_6, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
                 (_rpr,
-        (J_group_1_zz, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rpr_base_frame_xx,
-                    rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-                    rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,),
+        (rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+                    rpr_g_r0_x, rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y,
+                    rpr_platform_point_x, rpr_platform_point_y,),
                 ),
             ),
         ),
@@ -573,8 +590,8 @@ def _prepare(p):
         (),
             (
                 (_rpr,
-        (branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-                    rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
+        (rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+                    rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
             ),
@@ -583,8 +600,8 @@ def _prepare(p):
         (),
             (
                 (_rpr,
-        (branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-                    rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
+        (rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+                    rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
             ),
@@ -593,8 +610,8 @@ def _prepare(p):
         (),
             (
                 (_rpr,
-        (branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-                    rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
+        (rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+                    rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
             ),
@@ -603,10 +620,10 @@ def _prepare(p):
         (),
             (
                 (_rpr,
-        (J_group_1_zz, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rpr_base_frame_xx,
-                    rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-                    rpr_base_point_y, rpr_link2_mass, rpr_platform_point_x,
-                    rpr_platform_point_y,),
+        (rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+                    rpr_g_r0_x, rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y,
+                    rpr_link2_mass, rpr_platform_point_x, rpr_platform_point_y,),
                 ),
             ),
         ),
@@ -614,10 +631,10 @@ def _prepare(p):
         (gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
                 (_rpr,
-        (b_r0_x, b_r0_y, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rpr_base_frame_xx,
-                    rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-                    rpr_base_point_y, rpr_link1_mass, rpr_platform_point_x,
-                    rpr_platform_point_y,),
+        (rpr_b_r0_x, rpr_b_r0_y, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+                    rpr_g_r0_x, rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y,
+                    rpr_link1_mass, rpr_platform_point_x, rpr_platform_point_y,),
                 ),
             ),
         ),
@@ -625,8 +642,8 @@ def _prepare(p):
         (b_c_x, b_c_y, legs_size, spread_t,),
             (
                 (_rpr,
-        (branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-                    rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
+        (rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+                    rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
             ),
@@ -634,7 +651,8 @@ def _prepare(p):
     }
 
 
-_FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
+_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
@@ -680,17 +698,19 @@ class _Floats:
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
-        for k in range(self.states):
-            try:
-                ok, arrays = function(self, *(row[k] for row in rows))
-            except (ZeroDivisionError, OverflowError):
-                continue
-            if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
-                for a, array in zip(found, arrays):
-                    a[k] = array
-        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
+        found = [self.state(function, names, [row[k] for row in rows]) for k in range(self.states)]
+        return [np.array(a).T.reshape(*_SHAPES[n], self.states) for a, n in zip(zip(*found), names)]
+
+    def state(self, function, names, given):
+        """Lists that a function gives at a state."""
+        try:
+            ok, arrays = function(self, *given)
+        except (ZeroDivisionError, OverflowError):
+            ok = False
+        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+            return arrays
+        return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
 
 
 class _Arrays:
@@ -758,35 +778,44 @@ def _mode(p, states):
     return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
 
 
-def _call(function, steps, p, *arguments, mode=_mode):
-    """What the steps give at arguments (name, value, shape of a state, default, rule)."""
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+    """What the steps give at arguments (name, value, shape of a state, default, rule).
+
+    Where that may be infinite only NaN makes a state impossible.
+    """
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
     lead, p = _lead(leads), _given(p)
     read = [a[4:] != ("unused",) for a in arguments]
     if lead or mode is _Judged:
-        results = _many(steps, p, lead, given, shapes, read, mode)
+        results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
-        results = _one(steps, p, given, shapes, read)
+        results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
 
 
-def _one(steps, p, given, shapes, read):
+def _one(steps, p, given, shapes, read, unbounded):
     """Results at a single state."""
     states = [v.reshape(*shape, 1) for v, shape in zip(given, shapes)]
     with np.errstate(all="ignore"):
-        results = [a[..., 0] for a in steps(_Floats(p, 1), *states)]
-    if all(all(map(math.isfinite, v.ravel().tolist())) for v in (*compress(given, read), *results)):
-        return [np.array(a)[()] for a in results]
+        results = [a[..., 0].copy() for a in steps(_Floats(p, 1), *states)]
+    looked_at = [np.minimum(a, 0.0) for a in results] if unbounded else results
+    entries = (v.ravel().tolist() for v in (*compress(given, read), *looked_at))
+    if all(all(map(math.isfinite, row)) for row in entries):
+        return [a[()] for a in results]
     return [np.full(a.shape, np.nan)[()] for a in results]
 
 
-def _many(steps, p, lead, given, shapes, read, mode):
+def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block."""
     count = math.prod(lead)
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
+    if count > _BLOCK:
+        # Never touched, freed at once: the C library, which learns from it, then keeps the memory
+        # of intermediate arrays from block to block instead of giving its pages back.
+        np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
         for first in range(0, max(count, 1), _BLOCK):
             block = slice(first, min(first + _BLOCK, count))
@@ -798,7 +827,7 @@ def _many(steps, p, lead, given, shapes, read, mode):
             _all_finite(compress(states, read), good)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite(found, good)
+            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -834,6 +863,18 @@ def _wrapped(a, places):
     result = np.array(a)
     result[places] = np.pi - np.remainder(np.pi - a[places], 2.0 * np.pi)
     return result
+
+
+def _unlimited(a, places):
+    """a, some entries infinite; what is not known stays so."""
+    result = np.array(a)
+    result[places] += np.inf
+    return result
+
+
+def _not_negative(a):
+    """1 where no entry is negative, else 0; NaN where one is not finite."""
+    return np.where(np.isfinite(a).all(axis=0), np.all(a >= 0.0, axis=0), np.nan)
 
 
 def _rows_divided(a, b, places):
@@ -895,8 +936,8 @@ def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
     n, states = b.shape
     if 0 < states <= _FEW:
-        matrices, rights = np.moveaxis(a, -1, 0).tolist(), b.T.tolist()
-        return np.array([_solve_one(*each) for each in zip(matrices, rights)]).T.reshape(n, states)
+        systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
+        return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
     good = np.all((size > 0.0) & np.isfinite(size), axis=0)
     rows = np.concatenate((a, b[:, None]), axis=1)
@@ -923,28 +964,32 @@ def _solve(a, b):
 
 
 def _solve_one(a, b):
-    """The same for one system of nested lists."""
-    n = len(b)
-    failure = [np.nan] * n
-    for i, row in enumerate(a):
-        size = max(map(abs, row), default=0.0)
-        if not 0.0 < size < np.inf:
-            return failure
-        a[i] = [v / size for v in row] + [b[i] / size]
-    for k in range(n):
-        best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
-            a[k], a[best] = a[best], a[k]
-        if not abs(a[k][k]) > _PIVOT:
-            return failure
-        head = a[k]
-        for i in range(k + 1, n):
-            factor = a[i][k] / head[k]
-            a[i] = [v - factor * h for v, h in zip(a[i], head)]
-    x = [0.0] * n
-    for k in reversed(range(n)):
-        x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
-    return x if all(map(math.isfinite, x)) else failure
+    """The same for one system of nested lists: the rows left lose an entry at every step."""
+    rows, heads = [], []
+    for row, right in zip(a, b):
+        size = max(map(abs, row))
+        if not 0.0 < size < math.inf:
+            return [math.nan] * len(b)
+        rows.append([v / size for v in (*row, right)])
+    while rows:
+        column = [abs(row[0]) for row in rows]
+        largest = max(column)
+        if largest > _CLEARLY * column[0]:
+            best = column.index(largest)
+            rows[0], rows[best] = rows[best], rows[0]
+        pivot, *head = rows[0]
+        if not abs(pivot) > _PIVOT:
+            return [math.nan] * len(b)
+        heads.append((pivot, head))
+        for i in range(1, len(rows)):
+            first, *row = rows[i]
+            factor = first / pivot
+            rows[i] = [v - factor * h for v, h in zip(row, head)]
+        del rows[0]
+    x = []
+    for pivot, (*head, right) in reversed(heads):
+        x.insert(0, (right - sum([h * v for h, v in zip(head, x)])) / pivot)
+    return x if all(map(math.isfinite, x)) else [math.nan] * len(b)
 
 
 def _matrices(a, *others):
@@ -1055,13 +1100,13 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 232 mul, 159 add, 3 div, 3 sqrt, 0 trig
+# dynamics: 228 mul, 157 add, 3 div, 3 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("dynamics")
-    J_star_t_10, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
+    J_star_t_6, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1081,121 +1126,126 @@ def _run_dynamics(m, X, V):
     out_M = m.zeros("M")
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
-    # (P1) centripetal tensor of the platform
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_z*omega_z
-    # (M4) centripetal force and weight of the platform
+    # (Z_p) centripetal force and weight of the platform
     Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x
     Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
-    Z_q_t = (
-    h_star_x*(R_xx*gravity_y - R_yx*gravity_x) - h_star_y*(R_xx*gravity_x + R_yx*gravity_y)
-    )
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y
     sums = [0.0] * 9
     for leg, k in legs[0]:
         (
-        J_group_1_zz, branch_1, h_1_x, h_1_y, h_2_x, h_2_y, rpr_base_frame_xx, rpr_base_frame_xy,
-            rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y,
-            rpr_platform_point_x, rpr_platform_point_y,
+        rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_h_1_x,
+            rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_platform_point_x, rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        S_x = q_in_base_x + t_x - rpr_base_point_x
-        S_y = q_in_base_y + t_y - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1 = 1.0/root_1
-        axis_x_x = S_x*inv_root_1
-        axis_x_y = S_y*inv_root_1
-        # (rpr-N19) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_yx = h_2_y*inv_root_1
-        # (rpr-N22) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_yy = -h_2_x*inv_root_1 - inv_root_1*(h_2_x + J_group_1_zz*inv_root_1)
-        # (rpr-N24) inertia of the leg at the connection point, without the mass gathered there
-        Q_t = 0.5*d_c_yy
-        Q_t_2 = Q_t*axis_x_y - axis_x_x*d_G_yx
-        Q_t_3 = Q_t*axis_x_x + axis_x_y*d_G_yx
-        Q_t_4 = 2.0*Q_t_2*axis_x_y
-        Q_t_5 = Q_t_2*axis_x_x + Q_t_3*axis_x_y
-        Q_t_6 = 2.0*Q_t_3*axis_x_x
-        # (M2) coupling block of M
-        M_ta_t = Q_t_4*q_in_base_y + Q_t_5*q_in_base_x
-        M_ta_t_2 = Q_t_5*q_in_base_y + Q_t_6*q_in_base_x
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t*q_in_base_y + M_ta_t_2*q_in_base_x
-        # (rpr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        g_tip_x = axis_x_x*gravity_x + axis_x_y*gravity_y
-        g_tip_y = axis_x_x*gravity_y - axis_x_y*gravity_x
-        # (rpr-A1) centripetal acceleration of the connection point
-        u_1_t = W_p_t*q_in_base_x
-        u_1_t_2 = W_p_t*q_in_base_y
-        u_1_tip_y = axis_x_y*u_1_t - axis_x_x*u_1_t_2
-        # (rpr-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        acc_2_o_x = -g_tip_x - axis_x_x*u_1_t - axis_x_y*u_1_t_2
-        acc_2_o_y = u_1_tip_y - g_tip_y
-        # (rpr-V1) velocity of the connection point
-        S_dot_x = t_dot_x - omega_z*q_in_base_y
-        S_dot_y = t_dot_y + omega_z*q_in_base_x
-        S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y
-        # (rpr-V6) rate of joint 1
-        qd_1 = inv_root_1*(S_dot_y*axis_x_x - S_dot_x*axis_x_y)
-        # (rpr-V9) centripetal tensor of link 1
-        W_1_t = qd_1*qd_1
-        # (rpr-A6) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_y = u_1_tip_y - 2.0*S_dot_tip_x*qd_1
-        # (rpr-A8) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_o = inv_root_1*rel_o_y
-        # (rpr-N14) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_o_z = (
-        J_group_1_zz*qdd_1_o + acc_2_o_y*h_2_x + g_tip_x*h_1_y - acc_2_o_x*h_2_y - g_tip_y*h_1_x
+        # (rpr-S) from the base point to the connection point
+        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
+        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
+        # (rpr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
+        rpr_d_phi_2_t = inv_rpr_root_1*rpr_h_2_y
+        # (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rpr_d_c_yy = (
+        -inv_rpr_root_1*rpr_h_2_x - inv_rpr_root_1*(rpr_h_2_x + inv_rpr_root_1*rpr_J_group_1_zz)
         )
-        # (rpr-N7) remainder without the acceleration in: inertia force of link 2 from its turning about its reference point
-        phi_2_o_x = -W_1_t*h_2_x - h_2_y*qdd_1_o
-        # (rpr-N23) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_o_y = W_1_t*h_2_y - h_2_x*qdd_1_o - inv_root_1*mu_1_o_z
-        # (rpr-N25) velocity and gravity terms of the leg force
-        U_in_base_x = axis_x_x*phi_2_o_x + axis_x_y*c_o_y
-        U_in_base_y = axis_x_y*phi_2_o_x - axis_x_x*c_o_y
-        # (M7) rotational part of Z
-        Z_a_t = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_2_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y
+        # (rpr-Q) inertia of the leg at the connection point, without the mass gathered there
+        rpr_Q_t = 0.5*rpr_d_c_yy
+        rpr_Q_t_2 = rpr_Q_t*rpr_axis_x_y - rpr_axis_x_x*rpr_d_phi_2_t
+        rpr_Q_t_3 = rpr_Q_t*rpr_axis_x_x + rpr_axis_x_y*rpr_d_phi_2_t
+        rpr_Q_t_4 = 2.0*rpr_Q_t_2*rpr_axis_x_y
+        rpr_Q_t_5 = rpr_Q_t_2*rpr_axis_x_x + rpr_Q_t_3*rpr_axis_x_y
+        rpr_Q_t_6 = 2.0*rpr_Q_t_3*rpr_axis_x_x
+        # (M_ta) coupling block of M
+        rpr_M_ta_t = rpr_Q_t_4*rpr_q_in_base_y + rpr_Q_t_5*rpr_q_in_base_x
+        rpr_M_ta_t_2 = rpr_Q_t_5*rpr_q_in_base_y + rpr_Q_t_6*rpr_q_in_base_x
+        # (M_aa) rotational block of M
+        rpr_M_aa_t = rpr_M_ta_t*rpr_q_in_base_y + rpr_M_ta_t_2*rpr_q_in_base_x
+        # (rpr-S_dot) velocity of the connection point
+        rpr_S_dot_t = omega_z*rpr_q_in_base_y
+        rpr_S_dot_t_2 = omega_z*rpr_q_in_base_x
+        rpr_S_dot_x = t_dot_x - rpr_S_dot_t
+        rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y
+        rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y
+        # (rpr-qd_1) rate of joint 1
+        rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x - rpr_S_dot_x*rpr_axis_x_y)
+        # (rpr-u_1) centripetal acceleration of the connection point
+        rpr_u_1_t = omega_z*rpr_S_dot_t_2
+        rpr_u_1_t_2 = omega_z*rpr_S_dot_t
+        # (rpr-W_1) centripetal tensor of link 1
+        rpr_W_1_t = rpr_qd_1*rpr_qd_1
+        # (rpr-u_1) centripetal acceleration of the connection point
+        rpr_u_1_tip_y = rpr_axis_x_y*rpr_u_1_t - rpr_axis_x_x*rpr_u_1_t_2
+        # (rpr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        rpr_rel_o_y = rpr_u_1_tip_y - 2.0*rpr_S_dot_tip_x*rpr_qd_1
+        # (rpr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        rpr_qdd_1_o = inv_rpr_root_1*rpr_rel_o_y
+        # (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning about its reference point
+        rpr_phi_2_o_x = -rpr_W_1_t*rpr_h_2_x - rpr_h_2_y*rpr_qdd_1_o
+        # (rpr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+        rpr_g_tip_x = gravity_x*rpr_axis_x_x + gravity_y*rpr_axis_x_y
+        rpr_g_tip_y = gravity_y*rpr_axis_x_x - gravity_x*rpr_axis_x_y
+        # (rpr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        rpr_acc_2_o_x = -rpr_g_tip_x - rpr_axis_x_x*rpr_u_1_t - rpr_axis_x_y*rpr_u_1_t_2
+        rpr_acc_2_o_y = rpr_u_1_tip_y - rpr_g_tip_y
+        # (rpr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        rpr_mu_1_o_z = (
+        rpr_J_group_1_zz*rpr_qdd_1_o + rpr_acc_2_o_y*rpr_h_2_x + rpr_g_tip_x*rpr_h_1_y -
+            rpr_acc_2_o_x*rpr_h_2_y - rpr_g_tip_y*rpr_h_1_x
+        )
+        # (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rpr_c_o_y = rpr_W_1_t*rpr_h_2_y - inv_rpr_root_1*rpr_mu_1_o_z - rpr_h_2_x*rpr_qdd_1_o
+        # (rpr-U) velocity and gravity terms of the leg force
+        rpr_U_in_base_x = rpr_axis_x_x*rpr_phi_2_o_x + rpr_axis_x_y*rpr_c_o_y
+        rpr_U_in_base_y = rpr_axis_x_y*rpr_phi_2_o_x - rpr_axis_x_x*rpr_c_o_y
+        # (Z_a) rotational part of Z
+        rpr_Z_a_t = rpr_U_in_base_y*rpr_q_in_base_x - rpr_U_in_base_x*rpr_q_in_base_y
+        # (rpr-H_a_2) moment of the column's unit force about the platform origin
+        rpr_H_a_2_z = rpr_axis_x_y*rpr_q_in_base_x - rpr_axis_x_x*rpr_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1) >
-            _TOLERANCE * 0.62))
+        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
+            > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
-        Q_t_4, Q_t_5, Q_t_6, M_ta_t, M_ta_t_2, M_aa_t, U_in_base_x, U_in_base_y, Z_a_t,
+        rpr_Q_t_4, rpr_Q_t_5, rpr_Q_t_6, rpr_M_ta_t, rpr_M_ta_t_2, rpr_M_aa_t,
+            rpr_U_in_base_x, rpr_U_in_base_y, rpr_Z_a_t,
         ))
-        out_H[_H_rpr[0][leg]] = axis_x_x
-        out_H[_H_rpr[1][leg]] = axis_x_y
-        out_H[_H_rpr[2][leg]] = H_a_2_z
+        out_H[_H_rpr[0][leg]] = rpr_axis_x_x
+        out_H[_H_rpr[1][leg]] = rpr_axis_x_y
+        out_H[_H_rpr[2][leg]] = rpr_H_a_2_z
     (
     total_rpr_xx, total_rpr_xy, total_rpr_yy, total_rpr_xz, total_rpr_yz, total_rpr_zz,
         total_rpr_x, total_rpr_y, total_rpr_z,
     ) = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = m_star - total_rpr_xx
     M_tt_yy = m_star - total_rpr_yy
-    # (M2) coupling block of M
+    # (M_ta) coupling block of M
     M_ta_xz = total_rpr_xz - h_star_in_base_y
     M_ta_yz = h_star_in_base_x - total_rpr_yz
-    # (M3) rotational block of M
-    M_aa_zz = -J_star_t_10 - total_rpr_zz
-    # (M5) translational part of Z
+    # (M_aa) rotational block of M
+    M_aa_zz = -J_star_t_6 - total_rpr_zz
+    # (Z_t) translational part of Z
     Z_t_x = Z_p_x + total_rpr_x
     Z_t_y = Z_p_y + total_rpr_y
-    # (M7) rotational part of Z
+    # (Z_a) rotational part of Z
     Z_a_z = total_rpr_z - Z_q_t
     out_M[0] = M_tt_xx
     out_M[1] = total_rpr_xy
@@ -1218,7 +1268,7 @@ def _run_M(m, X):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("M")
-    J_star_t_10, h_star_x, h_star_y, m_star = shared
+    J_star_t_6, h_star_x, h_star_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1229,65 +1279,67 @@ def _run_M(m, X):
     R_yx = sin(X_2)
     ok = True
     out_M = m.zeros("M")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_group_1_zz, branch_1, h_2_x, h_2_y, rpr_base_frame_xx, rpr_base_frame_xy,
-            rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y,
-            rpr_platform_point_x, rpr_platform_point_y,
+        rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_h_2_x,
+            rpr_h_2_y, rpr_platform_point_x, rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        S_x = q_in_base_x + t_x - rpr_base_point_x
-        S_y = q_in_base_y + t_y - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1 = 1.0/root_1
-        axis_x_x = S_x*inv_root_1
-        axis_x_y = S_y*inv_root_1
-        # (rpr-N19) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_yx = h_2_y*inv_root_1
-        # (rpr-N22) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_yy = -h_2_x*inv_root_1 - inv_root_1*(h_2_x + J_group_1_zz*inv_root_1)
-        # (rpr-N24) inertia of the leg at the connection point, without the mass gathered there
-        Q_t = 0.5*d_c_yy
-        Q_t_2 = Q_t*axis_x_y - axis_x_x*d_G_yx
-        Q_t_3 = Q_t*axis_x_x + axis_x_y*d_G_yx
-        Q_t_4 = 2.0*Q_t_2*axis_x_y
-        Q_t_5 = Q_t_2*axis_x_x + Q_t_3*axis_x_y
-        Q_t_6 = 2.0*Q_t_3*axis_x_x
-        # (M2) coupling block of M
-        M_ta_t = Q_t_4*q_in_base_y + Q_t_5*q_in_base_x
-        M_ta_t_2 = Q_t_5*q_in_base_y + Q_t_6*q_in_base_x
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t*q_in_base_y + M_ta_t_2*q_in_base_x
+        # (rpr-S) from the base point to the connection point
+        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
+        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
+        # (rpr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
+        rpr_d_phi_2_t = inv_rpr_root_1*rpr_h_2_y
+        # (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rpr_d_c_yy = (
+        -inv_rpr_root_1*rpr_h_2_x - inv_rpr_root_1*(rpr_h_2_x + inv_rpr_root_1*rpr_J_group_1_zz)
+        )
+        # (rpr-Q) inertia of the leg at the connection point, without the mass gathered there
+        rpr_Q_t = 0.5*rpr_d_c_yy
+        rpr_Q_t_2 = rpr_Q_t*rpr_axis_x_y - rpr_axis_x_x*rpr_d_phi_2_t
+        rpr_Q_t_3 = rpr_Q_t*rpr_axis_x_x + rpr_axis_x_y*rpr_d_phi_2_t
+        rpr_Q_t_4 = 2.0*rpr_Q_t_2*rpr_axis_x_y
+        rpr_Q_t_5 = rpr_Q_t_2*rpr_axis_x_x + rpr_Q_t_3*rpr_axis_x_y
+        rpr_Q_t_6 = 2.0*rpr_Q_t_3*rpr_axis_x_x
+        # (M_ta) coupling block of M
+        rpr_M_ta_t = rpr_Q_t_4*rpr_q_in_base_y + rpr_Q_t_5*rpr_q_in_base_x
+        rpr_M_ta_t_2 = rpr_Q_t_5*rpr_q_in_base_y + rpr_Q_t_6*rpr_q_in_base_x
+        # (M_aa) rotational block of M
+        rpr_M_aa_t = rpr_M_ta_t*rpr_q_in_base_y + rpr_M_ta_t_2*rpr_q_in_base_x
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1) >
-            _TOLERANCE * 0.62))
+        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
+            > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
-        Q_t_4, Q_t_5, Q_t_6, M_ta_t, M_ta_t_2, M_aa_t,
+        rpr_Q_t_4, rpr_Q_t_5, rpr_Q_t_6, rpr_M_ta_t, rpr_M_ta_t_2, rpr_M_aa_t,
         ))
     total_rpr_xx, total_rpr_xy, total_rpr_yy, total_rpr_xz, total_rpr_yz, total_rpr_zz = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = m_star - total_rpr_xx
     M_tt_yy = m_star - total_rpr_yy
-    # (M2) coupling block of M
+    # (M_ta) coupling block of M
     M_ta_xz = total_rpr_xz - h_star_in_base_y
     M_ta_yz = h_star_in_base_x - total_rpr_yz
-    # (M3) rotational block of M
-    M_aa_zz = -J_star_t_10 - total_rpr_zz
+    # (M_aa) rotational block of M
+    M_aa_zz = -J_star_t_6 - total_rpr_zz
     out_M[0] = M_tt_xx
     out_M[1] = total_rpr_xy
     out_M[3] = total_rpr_xy
@@ -1300,7 +1352,7 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 163 mul, 109 add, 3 div, 3 sqrt, 0 trig
+# Z: 159 mul, 107 add, 3 div, 3 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -1324,86 +1376,91 @@ def _run_Z(m, X, V):
     omega_z = V_2
     ok = True
     out_Z = m.zeros("Z")
-    # (P1) centripetal tensor of the platform
+    # (h_star) first moment about the platform origin
+    h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
+    h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_z*omega_z
-    # (M4) centripetal force and weight of the platform
-    Z_p_x = -Z_p_t - W_p_t*(R_xx*h_star_x - R_yx*h_star_y)
-    Z_p_y = -Z_p_t_2 - W_p_t*(R_xx*h_star_y + R_yx*h_star_x)
-    # (M6) gyroscopic moment and moment of the weight of the platform
-    Z_q_t = (
-    h_star_x*(R_xx*gravity_y - R_yx*gravity_x) - h_star_y*(R_xx*gravity_x + R_yx*gravity_y)
-    )
+    # (Z_p) centripetal force and weight of the platform
+    Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x
+    Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
-        J_group_1_zz, branch_1, h_1_x, h_1_y, h_2_x, h_2_y, rpr_base_frame_xx, rpr_base_frame_xy,
-            rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y,
-            rpr_platform_point_x, rpr_platform_point_y,
+        rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_h_1_x,
+            rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_platform_point_x, rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        S_x = q_in_base_x + t_x - rpr_base_point_x
-        S_y = q_in_base_y + t_y - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1 = 1.0/root_1
-        axis_x_x = S_x*inv_root_1
-        axis_x_y = S_y*inv_root_1
-        # (rpr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        g_tip_x = axis_x_x*gravity_x + axis_x_y*gravity_y
-        g_tip_y = axis_x_x*gravity_y - axis_x_y*gravity_x
-        # (rpr-A1) centripetal acceleration of the connection point
-        u_1_t = W_p_t*q_in_base_x
-        u_1_t_2 = W_p_t*q_in_base_y
-        u_1_tip_y = axis_x_y*u_1_t - axis_x_x*u_1_t_2
-        # (rpr-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        acc_2_o_x = -g_tip_x - axis_x_x*u_1_t - axis_x_y*u_1_t_2
-        acc_2_o_y = u_1_tip_y - g_tip_y
-        # (rpr-V1) velocity of the connection point
-        S_dot_x = t_dot_x - omega_z*q_in_base_y
-        S_dot_y = t_dot_y + omega_z*q_in_base_x
-        S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y
-        # (rpr-V6) rate of joint 1
-        qd_1 = inv_root_1*(S_dot_y*axis_x_x - S_dot_x*axis_x_y)
-        # (rpr-V9) centripetal tensor of link 1
-        W_1_t = qd_1*qd_1
-        # (rpr-A6) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_y = u_1_tip_y - 2.0*S_dot_tip_x*qd_1
-        # (rpr-A8) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_o = inv_root_1*rel_o_y
-        # (rpr-N14) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_o_z = (
-        J_group_1_zz*qdd_1_o + acc_2_o_y*h_2_x + g_tip_x*h_1_y - acc_2_o_x*h_2_y - g_tip_y*h_1_x
+        # (rpr-S) from the base point to the connection point
+        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
+        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
+        # (rpr-S_dot) velocity of the connection point
+        rpr_S_dot_t = omega_z*rpr_q_in_base_y
+        rpr_S_dot_t_2 = omega_z*rpr_q_in_base_x
+        rpr_S_dot_x = t_dot_x - rpr_S_dot_t
+        rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y
+        rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y
+        # (rpr-qd_1) rate of joint 1
+        rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x - rpr_S_dot_x*rpr_axis_x_y)
+        # (rpr-u_1) centripetal acceleration of the connection point
+        rpr_u_1_t = omega_z*rpr_S_dot_t_2
+        rpr_u_1_t_2 = omega_z*rpr_S_dot_t
+        # (rpr-W_1) centripetal tensor of link 1
+        rpr_W_1_t = rpr_qd_1*rpr_qd_1
+        # (rpr-u_1) centripetal acceleration of the connection point
+        rpr_u_1_tip_y = rpr_axis_x_y*rpr_u_1_t - rpr_axis_x_x*rpr_u_1_t_2
+        # (rpr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        rpr_rel_o_y = rpr_u_1_tip_y - 2.0*rpr_S_dot_tip_x*rpr_qd_1
+        # (rpr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        rpr_qdd_1_o = inv_rpr_root_1*rpr_rel_o_y
+        # (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning about its reference point
+        rpr_phi_2_o_x = -rpr_W_1_t*rpr_h_2_x - rpr_h_2_y*rpr_qdd_1_o
+        # (rpr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+        rpr_g_tip_x = gravity_x*rpr_axis_x_x + gravity_y*rpr_axis_x_y
+        rpr_g_tip_y = gravity_y*rpr_axis_x_x - gravity_x*rpr_axis_x_y
+        # (rpr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        rpr_acc_2_o_x = -rpr_g_tip_x - rpr_axis_x_x*rpr_u_1_t - rpr_axis_x_y*rpr_u_1_t_2
+        rpr_acc_2_o_y = rpr_u_1_tip_y - rpr_g_tip_y
+        # (rpr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        rpr_mu_1_o_z = (
+        rpr_J_group_1_zz*rpr_qdd_1_o + rpr_acc_2_o_y*rpr_h_2_x + rpr_g_tip_x*rpr_h_1_y -
+            rpr_acc_2_o_x*rpr_h_2_y - rpr_g_tip_y*rpr_h_1_x
         )
-        # (rpr-N7) remainder without the acceleration in: inertia force of link 2 from its turning about its reference point
-        phi_2_o_x = -W_1_t*h_2_x - h_2_y*qdd_1_o
-        # (rpr-N23) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_o_y = W_1_t*h_2_y - h_2_x*qdd_1_o - inv_root_1*mu_1_o_z
-        # (rpr-N25) velocity and gravity terms of the leg force
-        U_in_base_x = axis_x_x*phi_2_o_x + axis_x_y*c_o_y
-        U_in_base_y = axis_x_y*phi_2_o_x - axis_x_x*c_o_y
-        # (M7) rotational part of Z
-        Z_a_t = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
+        # (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rpr_c_o_y = rpr_W_1_t*rpr_h_2_y - inv_rpr_root_1*rpr_mu_1_o_z - rpr_h_2_x*rpr_qdd_1_o
+        # (rpr-U) velocity and gravity terms of the leg force
+        rpr_U_in_base_x = rpr_axis_x_x*rpr_phi_2_o_x + rpr_axis_x_y*rpr_c_o_y
+        rpr_U_in_base_y = rpr_axis_x_y*rpr_phi_2_o_x - rpr_axis_x_x*rpr_c_o_y
+        # (Z_a) rotational part of Z
+        rpr_Z_a_t = rpr_U_in_base_y*rpr_q_in_base_x - rpr_U_in_base_x*rpr_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1) >
-            _TOLERANCE * 0.62))
+        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
+            > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
-        U_in_base_x, U_in_base_y, Z_a_t,
+        rpr_U_in_base_x, rpr_U_in_base_y, rpr_Z_a_t,
         ))
     total_rpr_x, total_rpr_y, total_rpr_z = sums
-    # (M5) translational part of Z
+    # (Z_t) translational part of Z
     Z_t_x = Z_p_x + total_rpr_x
     Z_t_y = Z_p_y + total_rpr_y
-    # (M7) rotational part of Z
+    # (Z_a) rotational part of Z
     Z_a_z = total_rpr_z - Z_q_t
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
@@ -1429,45 +1486,46 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-            rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+            rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_platform_point_x,
+            rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        S_x = q_in_base_x + t_x - rpr_base_point_x
-        S_y = q_in_base_y + t_y - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1 = 1.0/root_1
-        axis_x_x = S_x*inv_root_1
-        axis_x_y = S_y*inv_root_1
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_2_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y
+        # (rpr-S) from the base point to the connection point
+        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
+        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
+        # (rpr-H_a_2) moment of the column's unit force about the platform origin
+        rpr_H_a_2_z = rpr_axis_x_y*rpr_q_in_base_x - rpr_axis_x_x*rpr_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1) >
-            _TOLERANCE * 0.62))
+        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
+            > _TOLERANCE * 0.62))
         )
-        out_H[_H_rpr[0][leg]] = axis_x_x
-        out_H[_H_rpr[1][leg]] = axis_x_y
-        out_H[_H_rpr[2][leg]] = H_a_2_z
+        out_H[_H_rpr[0][leg]] = rpr_axis_x_x
+        out_H[_H_rpr[1][leg]] = rpr_axis_x_y
+        out_H[_H_rpr[2][leg]] = rpr_H_a_2_z
     return ok, (out_H,)
 
 
-# required: 186 mul, 129 add, 3 div, 3 sqrt, 0 trig
+# required: 182 mul, 127 add, 3 div, 3 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("required")
-    J_star_zz, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
+    J_star_t_6, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1493,102 +1551,104 @@ def _run_required(m, X, V, A):
     ok = True
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
-    # (P1) centripetal tensor of the platform
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_z*omega_z
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
-    # (E2) inertia force of the platform less its weight
+    # (f_p) inertia force of the platform less its weight
     f_p_x = a_t_x*m_star - W_p_t*h_star_in_base_x - alpha_z*h_star_in_base_y
     f_p_y = a_t_y*m_star + alpha_z*h_star_in_base_x - W_p_t*h_star_in_base_y
-    # (E3) inertia moment of the platform less that of its weight
-    mu_p_z = (
-    J_star_zz*alpha_z + h_star_x*(R_xx*a_t_y - R_yx*a_t_x) - h_star_y*(R_xx*a_t_x + R_yx*a_t_y)
-    )
+    # (mu_p) inertia moment of the platform less that of its weight
+    mu_p_z = a_t_y*h_star_in_base_x - J_star_t_6*alpha_z - a_t_x*h_star_in_base_y
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
-        J_group_1_zz, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rpr_base_frame_xx,
-            rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-            rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_g_r0_x,
+            rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_platform_point_x,
+            rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        S_x = q_in_base_x + t_x - rpr_base_point_x
-        S_y = q_in_base_y + t_y - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1 = 1.0/root_1
-        axis_x_x = S_x*inv_root_1
-        axis_x_y = S_y*inv_root_1
-        # (rpr-V1) velocity of the connection point
-        S_dot_t = omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x
-        S_dot_x = t_dot_x - S_dot_t
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y
-        # (rpr-V6) rate of joint 1
-        qd_1 = inv_root_1*(S_dot_y*axis_x_x - S_dot_x*axis_x_y)
-        # (rpr-V9) centripetal tensor of link 1
-        W_1_t = qd_1*qd_1
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_2_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y
-        # (rpr-K7) cosine of the angle of joint 1 from its reference direction
-        c_1 = inv_root_1*px_1
-        # (rpr-K8) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*py_1
-        # (rpr-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x
-        # (rpr-A3) acceleration of the connection point
-        S_ddot_x = a_p_x - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y - S_dot_t*omega_z
-        S_ddot_tip_y = S_ddot_y*axis_x_x - S_ddot_x*axis_x_y
-        # (rpr-A5) acceleration of the connection point left to the joint accelerations
-        rel_y = S_ddot_tip_y - 2.0*S_dot_tip_x*qd_1
-        # (rpr-A7) acceleration of joint 1
-        qdd_1 = inv_root_1*rel_y
-        # (rpr-N3) acceleration of the reference point of link 2, less gravity
-        g_r1_x = c_1*g_r0_x + g_r0_y*s_1
-        g_r1_y = c_1*g_r0_y - g_r0_x*s_1
-        acc_2_x = S_ddot_x*axis_x_x + S_ddot_y*axis_x_y - g_r1_x
-        acc_2_y = S_ddot_tip_y - g_r1_y
-        # (rpr-N12) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_z = J_group_1_zz*qdd_1 + acc_2_y*h_2_x + g_r1_x*h_1_y - acc_2_x*h_2_y - g_r1_y*h_1_x
-        # (rpr-N5) inertia force of link 2 from its turning about its reference point
-        phi_2_x = -W_1_t*h_2_x - h_2_y*qdd_1
-        # (rpr-N21) leg force on the platform without actuation and without the mass at the connection point
-        c_y = W_1_t*h_2_y - h_2_x*qdd_1 - inv_root_1*mu_1_z
-        c_in_base_x = -axis_x_x*phi_2_x - axis_x_y*c_y
-        c_in_base_y = axis_x_x*c_y - axis_x_y*phi_2_x
-        # (E5) moment that actuators and external wrench must give
-        R_a_t = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y
+        # (rpr-S) from the base point to the connection point
+        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
+        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
+        # (rpr-S_dot) velocity of the connection point
+        rpr_S_dot_t = omega_z*rpr_q_in_base_y
+        rpr_S_dot_t_2 = omega_z*rpr_q_in_base_x
+        rpr_S_dot_x = t_dot_x - rpr_S_dot_t
+        rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y
+        rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y
+        # (rpr-qd_1) rate of joint 1
+        rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x - rpr_S_dot_x*rpr_axis_x_y)
+        # (rpr-W_1) centripetal tensor of link 1
+        rpr_W_1_t = rpr_qd_1*rpr_qd_1
+        # (rpr-H_a_2) moment of the column's unit force about the platform origin
+        rpr_H_a_2_z = rpr_axis_x_y*rpr_q_in_base_x - rpr_axis_x_x*rpr_q_in_base_y
+        # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
+        rpr_c_1 = inv_rpr_root_1*rpr_px_1
+        # (rpr-s_1) sine of the angle of joint 1 from its reference direction
+        rpr_s_1 = inv_rpr_root_1*rpr_py_1
+        # (rpr-a_p) acceleration of the connection point without its centripetal part
+        rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_in_base_y
+        rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_in_base_x
+        # (rpr-S_ddot) acceleration of the connection point
+        rpr_S_ddot_x = rpr_a_p_x - omega_z*rpr_S_dot_t_2
+        rpr_S_ddot_y = rpr_a_p_y - omega_z*rpr_S_dot_t
+        rpr_S_ddot_tip_y = rpr_S_ddot_y*rpr_axis_x_x - rpr_S_ddot_x*rpr_axis_x_y
+        # (rpr-rel) acceleration of the connection point left to the joint accelerations
+        rpr_rel_y = rpr_S_ddot_tip_y - 2.0*rpr_S_dot_tip_x*rpr_qd_1
+        # (rpr-qdd_1) acceleration of joint 1
+        rpr_qdd_1 = inv_rpr_root_1*rpr_rel_y
+        # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
+        rpr_g_r1_x = rpr_c_1*rpr_g_r0_x + rpr_g_r0_y*rpr_s_1
+        rpr_g_r1_y = rpr_c_1*rpr_g_r0_y - rpr_g_r0_x*rpr_s_1
+        rpr_acc_2_x = rpr_S_ddot_x*rpr_axis_x_x + rpr_S_ddot_y*rpr_axis_x_y - rpr_g_r1_x
+        rpr_acc_2_y = rpr_S_ddot_tip_y - rpr_g_r1_y
+        # (rpr-phi_2) inertia force of link 2 from its turning about its reference point
+        rpr_phi_2_x = -rpr_W_1_t*rpr_h_2_x - rpr_h_2_y*rpr_qdd_1
+        # (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rpr_mu_1_z = (
+        rpr_J_group_1_zz*rpr_qdd_1 + rpr_acc_2_y*rpr_h_2_x + rpr_g_r1_x*rpr_h_1_y -
+            rpr_acc_2_x*rpr_h_2_y - rpr_g_r1_y*rpr_h_1_x
+        )
+        # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
+        rpr_c_y = rpr_W_1_t*rpr_h_2_y - inv_rpr_root_1*rpr_mu_1_z - rpr_h_2_x*rpr_qdd_1
+        rpr_c_in_base_x = -rpr_axis_x_x*rpr_phi_2_x - rpr_axis_x_y*rpr_c_y
+        rpr_c_in_base_y = rpr_axis_x_x*rpr_c_y - rpr_axis_x_y*rpr_phi_2_x
+        # (R_a) moment that actuators and external wrench must give
+        rpr_R_a_t = rpr_c_in_base_y*rpr_q_in_base_x - rpr_c_in_base_x*rpr_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1) >
-            _TOLERANCE * 0.62))
+        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
+            > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
-        c_in_base_x, c_in_base_y, R_a_t,
+        rpr_c_in_base_x, rpr_c_in_base_y, rpr_R_a_t,
         ))
-        out_H[_H_rpr[0][leg]] = axis_x_x
-        out_H[_H_rpr[1][leg]] = axis_x_y
-        out_H[_H_rpr[2][leg]] = H_a_2_z
+        out_H[_H_rpr[0][leg]] = rpr_axis_x_x
+        out_H[_H_rpr[1][leg]] = rpr_axis_x_y
+        out_H[_H_rpr[2][leg]] = rpr_H_a_2_z
     total_rpr_x, total_rpr_y, total_rpr_z = sums
-    # (E4) force that actuators and external wrench must give
+    # (R_t) force that actuators and external wrench must give
     R_t_x = f_p_x - total_rpr_x
     R_t_y = f_p_y - total_rpr_y
-    # (E5) moment that actuators and external wrench must give
+    # (R_a) moment that actuators and external wrench must give
     R_a_z = mu_p_z - total_rpr_z
     out_required[0] = R_t_x
     out_required[1] = R_t_y
@@ -1615,30 +1675,31 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-            rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+            rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_platform_point_x,
+            rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        S_x = t_x + R_xx*rpr_platform_point_x - rpr_base_point_x - R_yx*rpr_platform_point_y
-        S_y = t_y + R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1 = 1.0/root_1
-        # (rpr-K9) displacement of joint 1
-        q_1 = atan2(inv_root_1*py_1, inv_root_1*px_1)
+        # (rpr-S) from the base point to the connection point
+        rpr_S_x = t_x + R_xx*rpr_platform_point_x - rpr_base_point_x - R_yx*rpr_platform_point_y
+        rpr_S_y = t_y + R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        # (rpr-q_1) displacement of joint 1
+        rpr_q_1 = atan2(inv_rpr_root_1*rpr_py_1, inv_rpr_root_1*rpr_px_1)
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1) >
-            _TOLERANCE * 0.62))
+        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
+            > _TOLERANCE * 0.62))
         )
-        out_q[_q_rpr[0][leg]] = q_1
-        out_q[_q_rpr[1][leg]] = root_1
+        out_q[_q_rpr[0][leg]] = rpr_q_1
+        out_q[_q_rpr[1][leg]] = rpr_root_1
     return ok, (out_q,)
 
 
@@ -1667,38 +1728,39 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-            rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+            rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_platform_point_x,
+            rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        S_x = q_in_base_x + t_x - rpr_base_point_x
-        S_y = q_in_base_y + t_y - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1 = 1.0/root_1
-        axis_x_x = S_x*inv_root_1
-        axis_x_y = S_y*inv_root_1
-        # (rpr-V1) velocity of the connection point
-        S_dot_x = t_dot_x - omega_z*q_in_base_y
-        S_dot_y = t_dot_y + omega_z*q_in_base_x
-        S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y
-        # (rpr-V6) rate of joint 1
-        qd_1 = inv_root_1*(S_dot_y*axis_x_x - S_dot_x*axis_x_y)
+        # (rpr-S) from the base point to the connection point
+        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
+        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
+        # (rpr-S_dot) velocity of the connection point
+        rpr_S_dot_x = t_dot_x - omega_z*rpr_q_in_base_y
+        rpr_S_dot_y = t_dot_y + omega_z*rpr_q_in_base_x
+        rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y
+        # (rpr-qd_1) rate of joint 1
+        rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x - rpr_S_dot_x*rpr_axis_x_y)
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1) >
-            _TOLERANCE * 0.62))
+        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
+            > _TOLERANCE * 0.62))
         )
-        out_qd[_qd_rpr[0][leg]] = qd_1
-        out_qd[_qd_rpr[1][leg]] = S_dot_tip_x
+        out_qd[_qd_rpr[0][leg]] = rpr_qd_1
+        out_qd[_qd_rpr[1][leg]] = rpr_S_dot_tip_x
     return ok, (out_qd,)
 
 
@@ -1734,51 +1796,56 @@ def _run_joint_accelerations(m, X, V, A):
     out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
-        branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-            rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+            rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_platform_point_x,
+            rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        S_x = q_in_base_x + t_x - rpr_base_point_x
-        S_y = q_in_base_y + t_y - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1 = 1.0/root_1
-        axis_x_x = S_x*inv_root_1
-        axis_x_y = S_y*inv_root_1
-        # (rpr-V1) velocity of the connection point
-        S_dot_t = omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x
-        S_dot_x = t_dot_x - S_dot_t
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y
-        # (rpr-V6) rate of joint 1
-        qd_1 = inv_root_1*(S_dot_y*axis_x_x - S_dot_x*axis_x_y)
-        # (rpr-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x
-        # (rpr-A3) acceleration of the connection point
-        S_ddot_x = a_p_x - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y - S_dot_t*omega_z
-        # (rpr-A5) acceleration of the connection point left to the joint accelerations
-        rel_x = S_ddot_x*axis_x_x + S_ddot_y*axis_x_y + qd_1*qd_1*root_1
-        rel_y = S_ddot_y*axis_x_x - S_ddot_x*axis_x_y - 2.0*S_dot_tip_x*qd_1
-        # (rpr-A7) acceleration of joint 1
-        qdd_1 = inv_root_1*rel_y
-        ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1) >
-            _TOLERANCE * 0.62))
+        # (rpr-S) from the base point to the connection point
+        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
+        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
+        # (rpr-S_dot) velocity of the connection point
+        rpr_S_dot_t = omega_z*rpr_q_in_base_y
+        rpr_S_dot_t_2 = omega_z*rpr_q_in_base_x
+        rpr_S_dot_x = t_dot_x - rpr_S_dot_t
+        rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y
+        rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y
+        # (rpr-qd_1) rate of joint 1
+        rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x - rpr_S_dot_x*rpr_axis_x_y)
+        # (rpr-a_p) acceleration of the connection point without its centripetal part
+        rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_in_base_y
+        rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_in_base_x
+        # (rpr-S_ddot) acceleration of the connection point
+        rpr_S_ddot_x = rpr_a_p_x - omega_z*rpr_S_dot_t_2
+        rpr_S_ddot_y = rpr_a_p_y - omega_z*rpr_S_dot_t
+        # (rpr-rel) acceleration of the connection point left to the joint accelerations
+        rpr_rel_x = (
+        rpr_S_ddot_x*rpr_axis_x_x + rpr_S_ddot_y*rpr_axis_x_y + rpr_qd_1*rpr_qd_1*rpr_root_1
         )
-        out_qdd[_qdd_rpr[0][leg]] = qdd_1
-        out_qdd[_qdd_rpr[1][leg]] = rel_x
+        rpr_rel_y = (
+        rpr_S_ddot_y*rpr_axis_x_x - rpr_S_ddot_x*rpr_axis_x_y - 2.0*rpr_S_dot_tip_x*rpr_qd_1
+        )
+        # (rpr-qdd_1) acceleration of joint 1
+        rpr_qdd_1 = inv_rpr_root_1*rpr_rel_y
+        ok = (
+        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
+            > _TOLERANCE * 0.62))
+        )
+        out_qdd[_qdd_rpr[0][leg]] = rpr_qdd_1
+        out_qdd[_qdd_rpr[1][leg]] = rpr_rel_x
     return ok, (out_qdd,)
 
 
@@ -1815,74 +1882,78 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        J_group_1_zz, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rpr_base_frame_xx,
-            rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-            rpr_base_point_y, rpr_link2_mass, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_g_r0_x,
+            rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_link2_mass,
+            rpr_platform_point_x, rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        S_x = q_in_base_x + t_x - rpr_base_point_x
-        S_y = q_in_base_y + t_y - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1 = 1.0/root_1
-        axis_x_x = S_x*inv_root_1
-        axis_x_y = S_y*inv_root_1
-        # (rpr-V1) velocity of the connection point
-        S_dot_t = omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x
-        S_dot_x = t_dot_x - S_dot_t
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y
-        # (rpr-V6) rate of joint 1
-        qd_1 = inv_root_1*(S_dot_y*axis_x_x - S_dot_x*axis_x_y)
-        # (rpr-V9) centripetal tensor of link 1
-        W_1_t = qd_1*qd_1
-        # (rpr-K7) cosine of the angle of joint 1 from its reference direction
-        c_1 = inv_root_1*px_1
-        # (rpr-K8) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*py_1
-        # (rpr-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x
-        # (rpr-A3) acceleration of the connection point
-        S_ddot_x = a_p_x - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y - S_dot_t*omega_z
-        S_ddot_tip_y = S_ddot_y*axis_x_x - S_ddot_x*axis_x_y
-        # (rpr-A5) acceleration of the connection point left to the joint accelerations
-        rel_y = S_ddot_tip_y - 2.0*S_dot_tip_x*qd_1
-        # (rpr-A7) acceleration of joint 1
-        qdd_1 = inv_root_1*rel_y
-        # (rpr-N3) acceleration of the reference point of link 2, less gravity
-        g_r1_x = c_1*g_r0_x + g_r0_y*s_1
-        g_r1_y = c_1*g_r0_y - g_r0_x*s_1
-        acc_2_x = S_ddot_x*axis_x_x + S_ddot_y*axis_x_y - g_r1_x
-        acc_2_y = S_ddot_tip_y - g_r1_y
-        # (rpr-N12) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_z = J_group_1_zz*qdd_1 + acc_2_y*h_2_x + g_r1_x*h_1_y - acc_2_x*h_2_y - g_r1_y*h_1_x
-        # (rpr-N21) leg force on the platform without actuation and without the mass at the connection point
-        c_y = W_1_t*h_2_y - h_2_x*qdd_1 - inv_root_1*mu_1_z
-        # (rpr-N26) leg force on the platform without actuation, the last link's mass included
-        c_true_x = W_1_t*h_2_x + h_2_y*qdd_1 - acc_2_x*rpr_link2_mass
-        c_true_y = c_y - acc_2_y*rpr_link2_mass
-        c_true_in_base_x = axis_x_x*c_true_x - axis_x_y*c_true_y
-        c_true_in_base_y = axis_x_x*c_true_y + axis_x_y*c_true_x
-        ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1) >
-            _TOLERANCE * 0.62))
+        # (rpr-S) from the base point to the connection point
+        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
+        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
+        # (rpr-S_dot) velocity of the connection point
+        rpr_S_dot_t = omega_z*rpr_q_in_base_y
+        rpr_S_dot_t_2 = omega_z*rpr_q_in_base_x
+        rpr_S_dot_x = t_dot_x - rpr_S_dot_t
+        rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y
+        rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y
+        # (rpr-qd_1) rate of joint 1
+        rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x - rpr_S_dot_x*rpr_axis_x_y)
+        # (rpr-W_1) centripetal tensor of link 1
+        rpr_W_1_t = rpr_qd_1*rpr_qd_1
+        # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
+        rpr_c_1 = inv_rpr_root_1*rpr_px_1
+        # (rpr-s_1) sine of the angle of joint 1 from its reference direction
+        rpr_s_1 = inv_rpr_root_1*rpr_py_1
+        # (rpr-a_p) acceleration of the connection point without its centripetal part
+        rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_in_base_y
+        rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_in_base_x
+        # (rpr-S_ddot) acceleration of the connection point
+        rpr_S_ddot_x = rpr_a_p_x - omega_z*rpr_S_dot_t_2
+        rpr_S_ddot_y = rpr_a_p_y - omega_z*rpr_S_dot_t
+        rpr_S_ddot_tip_y = rpr_S_ddot_y*rpr_axis_x_x - rpr_S_ddot_x*rpr_axis_x_y
+        # (rpr-rel) acceleration of the connection point left to the joint accelerations
+        rpr_rel_y = rpr_S_ddot_tip_y - 2.0*rpr_S_dot_tip_x*rpr_qd_1
+        # (rpr-qdd_1) acceleration of joint 1
+        rpr_qdd_1 = inv_rpr_root_1*rpr_rel_y
+        # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
+        rpr_g_r1_x = rpr_c_1*rpr_g_r0_x + rpr_g_r0_y*rpr_s_1
+        rpr_g_r1_y = rpr_c_1*rpr_g_r0_y - rpr_g_r0_x*rpr_s_1
+        rpr_acc_2_x = rpr_S_ddot_x*rpr_axis_x_x + rpr_S_ddot_y*rpr_axis_x_y - rpr_g_r1_x
+        rpr_acc_2_y = rpr_S_ddot_tip_y - rpr_g_r1_y
+        # (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rpr_mu_1_z = (
+        rpr_J_group_1_zz*rpr_qdd_1 + rpr_acc_2_y*rpr_h_2_x + rpr_g_r1_x*rpr_h_1_y -
+            rpr_acc_2_x*rpr_h_2_y - rpr_g_r1_y*rpr_h_1_x
         )
-        out_leg_force[_leg_force_rpr[0][leg]] = c_true_in_base_x
-        out_leg_force[_leg_force_rpr[1][leg]] = c_true_in_base_y
-        out_drive[_drive_rpr[0][leg]] = axis_x_x
-        out_drive[_drive_rpr[1][leg]] = axis_x_y
+        # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
+        rpr_c_y = rpr_W_1_t*rpr_h_2_y - inv_rpr_root_1*rpr_mu_1_z - rpr_h_2_x*rpr_qdd_1
+        # (rpr-c_true) leg force on the platform without actuation, the last link's mass included
+        rpr_c_true_x = rpr_W_1_t*rpr_h_2_x + rpr_h_2_y*rpr_qdd_1 - rpr_acc_2_x*rpr_link2_mass
+        rpr_c_true_y = rpr_c_y - rpr_acc_2_y*rpr_link2_mass
+        rpr_c_true_in_base_x = rpr_axis_x_x*rpr_c_true_x - rpr_axis_x_y*rpr_c_true_y
+        rpr_c_true_in_base_y = rpr_axis_x_x*rpr_c_true_y + rpr_axis_x_y*rpr_c_true_x
+        ok = (
+        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
+            > _TOLERANCE * 0.62))
+        )
+        out_leg_force[_leg_force_rpr[0][leg]] = rpr_c_true_in_base_x
+        out_leg_force[_leg_force_rpr[1][leg]] = rpr_c_true_in_base_y
+        out_drive[_drive_rpr[0][leg]] = rpr_axis_x_x
+        out_drive[_drive_rpr[1][leg]] = rpr_axis_x_y
     return ok, (out_leg_force, out_drive,)
 
 
@@ -1903,7 +1974,7 @@ def _run_potential(m, X):
     R_yx = sin(X_2)
     ok = True
     out_potential = m.zeros("potential")
-    # (V1) potential energy
+    # (potential) potential energy
     potential_t = (
     gravity_x*(R_xx*h_star_x + m_star*t_x - R_yx*h_star_y) + gravity_y*(R_xx*h_star_y +
         R_yx*h_star_x + m_star*t_y)
@@ -1911,41 +1982,44 @@ def _run_potential(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        b_r0_x, b_r0_y, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rpr_base_frame_xx,
-            rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-            rpr_base_point_y, rpr_link1_mass, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_b_r0_x, rpr_b_r0_y, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_g_r0_x,
+            rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_link1_mass,
+            rpr_platform_point_x, rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        S_x = t_x + R_xx*rpr_platform_point_x - rpr_base_point_x - R_yx*rpr_platform_point_y
-        S_y = t_y + R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1 = 1.0/root_1
-        # (rpr-K7) cosine of the angle of joint 1 from its reference direction
-        c_1 = inv_root_1*px_1
-        # (rpr-K8) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*py_1
-        # (V1) potential energy
-        potential_t_2 = (
-        (c_1*g_r0_x + g_r0_y*s_1)*(h_1_x + h_2_x + rpr_link1_mass*(b_r0_x*c_1 + b_r0_y*s_1)) +
-            (c_1*g_r0_y - g_r0_x*s_1)*(h_1_y + h_2_y + rpr_link1_mass*(b_r0_y*c_1 - b_r0_x*s_1))
+        # (rpr-S) from the base point to the connection point
+        rpr_S_x = t_x + R_xx*rpr_platform_point_x - rpr_base_point_x - R_yx*rpr_platform_point_y
+        rpr_S_y = t_y + R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
+        rpr_c_1 = inv_rpr_root_1*rpr_px_1
+        # (rpr-s_1) sine of the angle of joint 1 from its reference direction
+        rpr_s_1 = inv_rpr_root_1*rpr_py_1
+        # (potential) potential energy
+        rpr_potential_t = (
+        (rpr_c_1*rpr_g_r0_x + rpr_g_r0_y*rpr_s_1)*(rpr_h_1_x + rpr_h_2_x +
+            rpr_link1_mass*(rpr_b_r0_x*rpr_c_1 + rpr_b_r0_y*rpr_s_1)) + (rpr_c_1*rpr_g_r0_y -
+            rpr_g_r0_x*rpr_s_1)*(rpr_h_1_y + rpr_h_2_y + rpr_link1_mass*(rpr_b_r0_y*rpr_c_1 -
+            rpr_b_r0_x*rpr_s_1))
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1) >
-            _TOLERANCE * 0.62))
+        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
+            > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
-        potential_t_2,
+        rpr_potential_t,
         ))
     total_rpr, = sums
-    # (V1) potential energy
+    # (potential) potential energy
     potential = -potential_t - total_rpr
     out_potential[0] = potential
     return ok, (out_potential,)
@@ -1978,51 +2052,54 @@ def _run_condition(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-            rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+            rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_platform_point_x,
+            rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        S_x = q_in_base_x + t_x - rpr_base_point_x
-        S_y = q_in_base_y + t_y - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1 = 1.0/root_1
-        axis_x_x = S_x*inv_root_1
-        axis_x_y = S_y*inv_root_1
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_2_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y
-        # (C2) rms distance of the platform points from their centroid
-        spread_t_2 = b_c_x - rpr_platform_point_x
-        spread_t_3 = b_c_y - rpr_platform_point_y
-        spread_t_4 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3
-        # (rpr-K5) squared amplitude
-        pivot_size = abs(rho2_1)
-        # (rpr-V4) reciprocal vector 1
-        pivot_size_2 = abs(root_1)
-        # (rpr-N18) force at the connection point that balances the leg's inertia and weight along all freedoms
-        least_pivots = least(1.6129032258064515*sqrt(pivot_size), 1.6129032258064517*pivot_size_2)
+        # (rpr-S) from the base point to the connection point
+        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
+        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
+        # (rpr-H_a_2) moment of the column's unit force about the platform origin
+        rpr_H_a_2_z = rpr_axis_x_y*rpr_q_in_base_x - rpr_axis_x_x*rpr_q_in_base_y
+        # (spread) rms distance of the platform points from their centroid
+        rpr_spread_t = b_c_x - rpr_platform_point_x
+        rpr_spread_t_2 = b_c_y - rpr_platform_point_y
+        rpr_spread_t_3 = rpr_spread_t*rpr_spread_t + rpr_spread_t_2*rpr_spread_t_2
+        # (rpr-rho2_1) squared amplitude
+        rpr_pivot_size = abs(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        rpr_pivot_size_2 = abs(rpr_root_1)
+        # (rpr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rpr_least_pivots = (
+        least(1.6129032258064515*sqrt(rpr_pivot_size), 1.6129032258064517*rpr_pivot_size_2)
+        )
         clear = (
-        clear & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1) >
-            _TOLERANCE * 0.62))
+        clear & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) &
+            (abs(rpr_root_1) > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
-        spread_t_4,
+        rpr_spread_t_3,
         ))
-        out_H[_H_rpr[0][leg]] = axis_x_x
-        out_H[_H_rpr[1][leg]] = axis_x_y
-        out_H[_H_rpr[2][leg]] = H_a_2_z
-        out_pivots[_pivots_rpr[0][leg]] = least_pivots
+        out_H[_H_rpr[0][leg]] = rpr_axis_x_x
+        out_H[_H_rpr[1][leg]] = rpr_axis_x_y
+        out_H[_H_rpr[2][leg]] = rpr_H_a_2_z
+        out_pivots[_pivots_rpr[0][leg]] = rpr_least_pivots
     total_rpr, = sums
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(total_rpr)
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
@@ -2149,6 +2226,19 @@ def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
     momentum = np.einsum("ijs,js->is", M, V)
     return (momentum,)
+
+
+def _steps_joint_margins(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    margins = _unlimited(q, [0, 1, 2, 3, 4, 5])
+    return (margins,)
+
+
+def _steps_within_limits(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    subtract_1 = q - q
+    within = _not_negative(subtract_1)
+    return (within,)
 
 
 def _steps_actuator_positions(m, X):
@@ -2552,6 +2642,40 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+    )
+
+
+def joint_margins(X, p=None):
+    """How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+    where there is none.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        margins: distances, in the order of q [m or rad] (..., NJ).
+    """
+    return _call(
+        "joint_margins", _steps_joint_margins, p,
+        ("X", X, (NQ,)),
+        unbounded=True,
+    )
+
+
+def within_limits(X, p=None):
+    """Whether all joints are within their limits of displacement.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        within: 1 where no margin is negative, else 0; NaN is neither (...,).
+    """
+    return _call(
+        "within_limits", _steps_within_limits, p,
+        ("X", X, (NQ,)),
     )
 
 

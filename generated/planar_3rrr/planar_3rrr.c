@@ -26,7 +26,10 @@ enum {
 
 #define R(x) ((real)(x))
 #define UNLESS(condition) ((condition) ? R(0) : R(1))  /* flag of what must hold */
-#define LANES 8  /* states that a batch runs side by side */
+#ifndef PLANAR_3RRR_LANES
+#define PLANAR_3RRR_LANES 8  /* 1 where there are no vectors: less memory, shorter code */
+#endif
+#define LANES ((size_t)PLANAR_3RRR_LANES)  /* states that a batch runs side by side */
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
@@ -36,6 +39,20 @@ enum {
 #define INLINE static inline
 #define APART static
 #endif
+
+/* Bytes of a vector. */
+#if defined(__AVX__)
+#define VECTOR 32
+#elif defined(__SSE2__) || defined(__ARM_NEON)
+#define VECTOR 16
+#else
+#define VECTOR 1
+#endif
+/* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
+#define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
+#define LEGS(n) \
+    ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
+        : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
@@ -104,63 +121,122 @@ INLINE int is_finite(real x)
     return x - x == 0;
 }
 
-/* Why states are impossible, by state: more than 0 where a cause holds. */
+/* Why states are impossible, by state: more than 0 where a cause holds.  total: the sum of all
+   results, and side by side of all inputs, which is finite only where they are. */
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
+    real total[LANES];
 } verdict;
 
 INLINE void start(size_t w, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
+        t->total[k] = 0;
     }
 }
 
-/* x - x is 0 for every number and NaN for the rest; sums side by side add up fast. */
+/* x - x is 0 for every number and NaN for the rest. */
 INLINE int all_finite(const real *x, size_t n)
 {
+    real sum = 0;
+    for (size_t i = 0; i < n; ++i) {
+        sum += x[i] - x[i];
+    }
+    return sum == 0;
+}
+
+/* Whether all are finite: then so is their sum, but for numbers so large that they need a closer
+   look.  Many add up fast as sums side by side. */
+INLINE int sum_is_finite(const real *x, size_t n)
+{
+    if (n < 2*LANES) {
+        return is_finite(total(x, n));
+    }
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
         for (size_t k = 0; k < LANES; ++k) {
-            sum[k] += x[i + k] - x[i + k];
+            sum[k] += x[i + k];
         }
     }
     for (size_t i = most; i < n; ++i) {
-        sum[0] += x[i] - x[i];
+        sum[i - most] += x[i];
     }
-    return total(sum, LANES) == 0;
+    return is_finite(total(sum, LANES));
 }
 
 /* Flag the states with entries that are not finite; the states stand side by side. */
 INLINE void check(size_t size, size_t w, const real *x, real *flags)
 {
-    if (!all_finite(x, size*w)) {
+    if (!sum_is_finite(x, size*w)) {
         for (size_t i = 0; i < size*w; ++i) {
             flags[i%w] += UNLESS(is_finite(x[i]));
         }
     }
 }
 
-/* Input, given state by state, with its states side by side: entry e of state k at e*w + k. */
-INLINE const real *side_by_side(size_t size, size_t w, const real *x, real *lanes, real *flags)
+/* Add up the entries of every state. */
+INLINE void add_up(size_t size, const real *x, real *total)
 {
-    for (size_t e = 0; e < size && w > 1; ++e) {
-        for (size_t k = 0; k < w; ++k) {
-            lanes[e*w + k] = x[size*k + e];
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            total[k] += x[e*LANES + k];
         }
     }
-    check(size, w, w > 1 ? lanes : x, flags);
-    return w > 1 ? lanes : x;
 }
 
-/* The same for input that may be NULL: then all its entries are `none`. */
-INLINE const real *optional(size_t size, size_t w, const real *x, real none, real *lanes, real *flags)
+/* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
+INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
 {
-    for (size_t e = 0; e < size*w && !x; ++e) {
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            lanes[e*LANES + k] = x[size*k + e];
+        }
+    }
+    add_up(size, lanes, total);
+    return lanes;
+}
+
+/* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
+INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+{
+    for (size_t e = 0; e < size && !x; ++e) {
+        own[e] = none;
+    }
+    if (x) {
+        check(size, 1, x, flags);
+    }
+    return x ? x : own;
+}
+
+INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
+    real *total)
+{
+    for (size_t e = 0; e < size*LANES && !x; ++e) {
         lanes[e] = none;
     }
-    return x ? side_by_side(size, w, x, lanes, flags) : lanes;
+    return x ? side_by_side(size, x, lanes, total) : lanes;
+}
+
+/* Motion of the base, or NULL: at rest, its axes those of the world. */
+INLINE const real *motion_of_base(const real *x, real *own, real *flags)
+{
+    for (size_t e = 0; e < 18 && !x; ++e) {
+        own[e] = R(e < 9 && e%4 == 0);
+    }
+    if (x) {
+        check(18, 1, x, flags);
+    }
+    return x ? x : own;
+}
+
+INLINE const real *motion_of_base_side_by_side(const real *x, real *lanes, real *total)
+{
+    for (size_t i = 0; i < 18*LANES && !x; ++i) {
+        lanes[i] = R(i/LANES < 9 && i/LANES%4 == 0);
+    }
+    return x ? side_by_side(18, x, lanes, total) : lanes;
 }
 
 /* Flag the states of an input, NULL or given state by state, with entries that are not positive. */
@@ -171,14 +247,25 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE void judge(const verdict *t, size_t w, int *code)
+INLINE void judge(const verdict *t, int *code)
 {
-    for (size_t k = 0; k < w; ++k) {
-        code[k] = t->invalid[k] > 0 ? INVALID
-            : t->diverged[k] > 0 ? NOT_CONVERGED
-            : t->unreachable[k] > 0 ? UNREACHABLE
-            : t->singular[k] > 0 ? SINGULAR
-            : t->overflow[k] > 0 ? INVALID : OK;
+    *code = t->invalid[0] > 0 ? INVALID
+        : t->diverged[0] > 0 ? NOT_CONVERGED
+        : t->unreachable[0] > 0 ? UNREACHABLE
+        : t->singular[0] > 0 ? SINGULAR
+        : t->overflow[0] > 0 ? INVALID : OK;
+}
+
+/* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
+INLINE void suspect(const verdict *t, int *code)
+{
+    real flags[LANES];
+    for (size_t k = 0; k < LANES; ++k) {
+        flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
+            + (t->total[k] - t->total[k]);
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        code[k] = flags[k] == 0 ? OK : INVALID;
     }
 }
 
@@ -199,17 +286,19 @@ INLINE void refuse(size_t size, real *out)
     }
 }
 
-/* Outputs state by state; NaN where a state is impossible. */
-INLINE void deliver(const real *x, size_t size, size_t w, const int *code, real *out)
+/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < w; ++k) {
-            out[size*k + e] = x[e*w + k];
-        }
+        out[e] = x[e];
     }
-    for (size_t k = 0; k < w; ++k) {
-        if (code[k] != OK) {
-            refuse(size, out + size*k);
+}
+
+INLINE void deliver(size_t size, const real *x, real *out)
+{
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            out[size*k + e] = x[e*LANES + k];
         }
     }
 }
@@ -425,174 +514,173 @@ int planar_3rrr_prepare(const planar_3rrr_params *params, planar_3rrr_model *mod
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
     const real platform_inertia_zz = params->platform_inertia[2][2];
-    /* (L2) first moment about the platform origin */
+    /* (h_star) first moment about the platform origin */
     const real h_star_t = platform_centre_of_mass_x*platform_mass;
     const real h_star_t_2 = platform_centre_of_mass_y*platform_mass;
-    /* (L3) inertia tensor about the platform origin */
+    /* (J_star) inertia tensor about the platform origin */
     const real J_star_t = platform_centre_of_mass_y*platform_centre_of_mass_y;
     const real J_star_t_2 = J_star_t + platform_centre_of_mass_x*platform_centre_of_mass_x;
     const real J_star_t_3 = J_star_t*platform_mass;
     const real J_star_t_4 = J_star_t_2*platform_mass;
-    /* (C2) rms distance of the platform points from their centroid */
+    /* (spread) rms distance of the platform points from their centroid */
     const real spread_t = R(0.3333333333333333)*root(3);
     model->gravity_x = gravity_x;
     model->gravity_y = gravity_y;
     model->spread_t = spread_t;
-    for (size_t leg = 0; leg < 3; ++leg) {
-        const real rrr_base_point_x = params->rrr_base_point[leg][0];
-        const real rrr_base_point_y = params->rrr_base_point[leg][1];
-        const real rrr_base_frame_xx = params->rrr_base_frame[leg][0][0];
-        const real rrr_base_frame_xy = params->rrr_base_frame[leg][0][1];
-        const real rrr_base_frame_yx = params->rrr_base_frame[leg][1][0];
-        const real rrr_base_frame_yy = params->rrr_base_frame[leg][1][1];
-        const real rrr_platform_point_x = params->rrr_platform_point[leg][0];
-        const real rrr_platform_point_y = params->rrr_platform_point[leg][1];
-        const real rrr_joint2_offset_x = params->rrr_joint2_offset[leg][0];
-        const real rrr_platform_joint_offset_x = params->rrr_platform_joint_offset[leg][0];
-        const real rrr_link1_mass = params->rrr_link1_mass[leg];
-        const real rrr_link1_centre_of_mass_x = params->rrr_link1_centre_of_mass[leg][0];
-        const real rrr_link1_centre_of_mass_y = params->rrr_link1_centre_of_mass[leg][1];
-        const real rrr_link1_inertia_zz = params->rrr_link1_inertia[leg][2][2];
-        const real rrr_link2_mass = params->rrr_link2_mass[leg];
-        const real rrr_link2_centre_of_mass_x = params->rrr_link2_centre_of_mass[leg][0];
-        const real rrr_link2_centre_of_mass_y = params->rrr_link2_centre_of_mass[leg][1];
-        const real rrr_link2_inertia_zz = params->rrr_link2_inertia[leg][2][2];
-        static const signed char signs_branch_1[] = {1, 1, 1};
-        const real branch_1 = signs_branch_1[leg];
-        /* (rrr-K17) squared length, across the axis, of the direction fixed in link 2 */
-        const real uu_2_t = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+    for (size_t leg = 0; leg < 4; ++leg) {
+        const size_t own = leg < 3 ? leg : 0;
+        const real rrr_base_point_x = params->rrr_base_point[own][0];
+        const real rrr_base_point_y = params->rrr_base_point[own][1];
+        const real rrr_base_frame_xx = params->rrr_base_frame[own][0][0];
+        const real rrr_base_frame_xy = params->rrr_base_frame[own][0][1];
+        const real rrr_base_frame_yx = params->rrr_base_frame[own][1][0];
+        const real rrr_base_frame_yy = params->rrr_base_frame[own][1][1];
+        const real rrr_platform_point_x = params->rrr_platform_point[own][0];
+        const real rrr_platform_point_y = params->rrr_platform_point[own][1];
+        const real rrr_joint2_offset_x = params->rrr_joint2_offset[own][0];
+        const real rrr_platform_joint_offset_x = params->rrr_platform_joint_offset[own][0];
+        const real rrr_link1_mass = params->rrr_link1_mass[own];
+        const real rrr_link1_centre_of_mass_x = params->rrr_link1_centre_of_mass[own][0];
+        const real rrr_link1_centre_of_mass_y = params->rrr_link1_centre_of_mass[own][1];
+        const real rrr_link1_inertia_zz = params->rrr_link1_inertia[own][2][2];
+        const real rrr_link2_mass = params->rrr_link2_mass[own];
+        const real rrr_link2_centre_of_mass_x = params->rrr_link2_centre_of_mass[own][0];
+        const real rrr_link2_centre_of_mass_y = params->rrr_link2_centre_of_mass[own][1];
+        const real rrr_link2_inertia_zz = params->rrr_link2_inertia[own][2][2];
+        static const signed char signs_rrr_branch_1[] = {1, 1, 1};
+        const real rrr_branch_1 = signs_rrr_branch_1[own];
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_t = rrr_joint2_offset_x*rrr_joint2_offset_x;
-        const real Kd_1_t_2 = R(0.5)*Kd_1_t;
-        const real Kd_1_t_3 = R(0.5)*uu_2_t;
-        /* (rrr-G2) length of the leg's lever arms, the measure of what is near singular */
-        const real size_t_ = R(4.58151643161e-07) + Kd_1_t + uu_2_t;
-        const real size_ = root(size_t_);
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_t = size_*size_*size_t_;
-        /* (rrr-K15) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_Kd_1_t_5 = 1/Kd_1_t;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real inv_uu_2_t = 1/uu_2_t;
-        /* (rrr-G4) inertia tensor of link 1 about the origin of link 1 */
-        const real J_1_t = rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
-            rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y;
-        const real J_1_zz = rrr_link1_inertia_zz + J_1_t*rrr_link1_mass;
-        /* (rrr-G5) connection point to the centre of mass of link 2 */
-        const real rho_tip_2_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x;
-        /* (rrr-G7) inertia tensor of link 2 about the connection point */
-        const real J_2_t = rho_tip_2_x*rho_tip_2_x +
-            rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y;
-        const real J_2_zz = rrr_link2_inertia_zz + J_2_t*rrr_link2_mass;
-        /* (rrr-N11) inertia tensor of the links from 1 outwards about joint 1 */
-        const real Jc_1_zz = J_1_zz + J_2_zz;
-        /* (rrr-G6) first moment of link 2 about the connection point */
-        const real h_2_x = rho_tip_2_x*rrr_link2_mass;
-        const real h_2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
-        /* (rrr-V6) reciprocal vector 2 */
+        const real rrr_Kd_1_t = rrr_joint2_offset_x*rrr_joint2_offset_x;
+        const real rrr_Kd_1_t_2 = R(0.5)*rrr_Kd_1_t;
+        const real rrr_Kd_1_t_3 = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x;
+        const real rrr_Kd_1_t_4 = R(0.5)*rrr_Kd_1_t_3;
+        /* (rrr-size) length of the leg's lever arms, the measure of what is near singular */
+        const real rrr_size_t = R(4.58151643161e-07) + rrr_Kd_1_t + rrr_Kd_1_t_3;
+        const real rrr_size = root(rrr_size_t);
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1_t = rrr_size*rrr_size*rrr_size_t;
+        /* (rrr-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real inv_rrr_Kd_1_t_5 = 1/rrr_Kd_1_t;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = 1/rrr_Kd_1_t_3;
+        /* (rrr-rho_tip_2) connection point to the centre of mass of link 2 */
+        const real rrr_rho_tip_2_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x;
+        /* (rrr-h_2) first moment of link 2 about the connection point */
+        const real rrr_h_2_x = rrr_link2_mass*rrr_rho_tip_2_x;
+        const real rrr_h_2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
+        /* (rrr-w_2) reciprocal vector 2 */
         const real inv_rrr_platform_joint_offset_x = 1/rrr_platform_joint_offset_x;
-        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_t = J_2_zz*inv_rrr_platform_joint_offset_x;
-        const real d_Gamma_1_y = d_Gamma_1_t + h_2_x;
-        /* (rrr-N6) coefficient of the acceleration in: inertia force of link 2 from its turning about its
-           reference point */
-        const real d_phi_2_t = h_2_y*inv_rrr_platform_joint_offset_x;
-        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
+        /* (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
+           about its reference point */
+        const real rrr_d_phi_2_t = inv_rrr_platform_joint_offset_x*rrr_h_2_y;
+        /* (rrr-J_2) inertia tensor of link 2 about the connection point */
+        const real rrr_J_2_t = rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y +
+            rrr_rho_tip_2_x*rrr_rho_tip_2_x;
+        const real rrr_J_2_zz = rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass;
+        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real rrr_d_Gamma_2_t = inv_rrr_platform_joint_offset_x*rrr_J_2_zz;
+        const real rrr_d_Gamma_2_y = rrr_d_Gamma_2_t + rrr_h_2_x;
+        /* (rrr-J_1) inertia tensor of link 1 about the origin of link 1 */
+        const real rrr_J_1_t = rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
+            rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y;
+        const real rrr_J_1_zz = rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass;
+        /* (rrr-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link
+           about the connection point */
+        const real rrr_Jc_1_zz = rrr_J_1_zz + rrr_J_2_zz;
+        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_yy = -d_Gamma_1_y*inv_rrr_platform_joint_offset_x -
-            h_2_x*inv_rrr_platform_joint_offset_x;
-        /* (L2) first moment about the platform origin */
-        const real h_star_t_3 = rrr_link2_mass*rrr_platform_point_x;
-        const real h_star_t_4 = rrr_link2_mass*rrr_platform_point_y;
-        /* (L3) inertia tensor about the platform origin */
-        const real J_star_t_5 = rrr_platform_point_y*rrr_platform_point_y;
-        const real J_star_t_6 = J_star_t_5 + rrr_platform_point_x*rrr_platform_point_x;
-        const real J_star_t_7 = J_star_t_5*rrr_link2_mass;
-        const real J_star_t_8 = J_star_t_6*rrr_link2_mass;
-        /* (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
-           less gravity */
-        const real g_r0_x = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx;
-        const real g_r0_y = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy;
-        /* (rrr-G3) first moment of link 1 about the origin of link 1 */
-        const real h_1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass;
-        const real h_1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass;
-        /* (V1) potential energy */
-        const real b_r0_x = rrr_base_frame_xx*rrr_base_point_x +
+        const real rrr_d_c_yy = -inv_rrr_platform_joint_offset_x*rrr_d_Gamma_2_y -
+            inv_rrr_platform_joint_offset_x*rrr_h_2_x;
+        /* (h_star) first moment about the platform origin */
+        const real rrr_h_star_t = rrr_link2_mass*rrr_platform_point_x;
+        const real rrr_h_star_t_2 = rrr_link2_mass*rrr_platform_point_y;
+        /* (J_star) inertia tensor about the platform origin */
+        const real rrr_J_star_t = rrr_platform_point_y*rrr_platform_point_y;
+        const real rrr_J_star_t_2 = rrr_J_star_t + rrr_platform_point_x*rrr_platform_point_x;
+        const real rrr_J_star_t_3 = rrr_J_star_t*rrr_link2_mass;
+        const real rrr_J_star_t_4 = rrr_J_star_t_2*rrr_link2_mass;
+        /* (rrr-h_1) first moment of link 1 about the origin of link 1 */
+        const real rrr_h_1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass;
+        const real rrr_h_1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass;
+        /* (rrr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
+           link 1, less gravity */
+        const real rrr_g_r0_x = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx;
+        const real rrr_g_r0_y = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy;
+        /* (potential) potential energy */
+        const real rrr_b_r0_x = rrr_base_frame_xx*rrr_base_point_x +
             rrr_base_frame_yx*rrr_base_point_y;
-        const real b_r0_y = rrr_base_frame_xy*rrr_base_point_x +
+        const real rrr_b_r0_y = rrr_base_frame_xy*rrr_base_point_x +
             rrr_base_frame_yy*rrr_base_point_y;
-        /* (rrr-K8) squared amplitude */
-        const real inv_rho2_1_t_4 = 1/rho2_1_t;
-        /* (rrr-V5) reciprocal vector 1 */
-        const real inv_size = 1/size_;
-        model->J_1_zz[leg] = J_1_zz;
-        model->J_2_zz[leg] = J_2_zz;
-        model->Jc_1_zz[leg] = Jc_1_zz;
-        model->Kd_1_t_2[leg] = Kd_1_t_2;
-        model->Kd_1_t_3[leg] = Kd_1_t_3;
-        model->b_r0_x[leg] = b_r0_x;
-        model->b_r0_y[leg] = b_r0_y;
-        model->branch_1[leg] = branch_1;
-        model->d_Gamma_1_t[leg] = d_Gamma_1_t;
-        model->d_Gamma_1_y[leg] = d_Gamma_1_y;
-        model->d_c_yy[leg] = d_c_yy;
-        model->d_phi_2_t[leg] = d_phi_2_t;
-        model->g_r0_x[leg] = g_r0_x;
-        model->g_r0_y[leg] = g_r0_y;
-        model->h_1_x[leg] = h_1_x;
-        model->h_1_y[leg] = h_1_y;
-        model->h_2_x[leg] = h_2_x;
-        model->h_2_y[leg] = h_2_y;
-        model->inv_Kd_1_t_5[leg] = inv_Kd_1_t_5;
-        model->inv_rho2_1_t_4[leg] = inv_rho2_1_t_4;
+        /* (rrr-rho2_1) squared amplitude */
+        const real inv_rrr_rho2_1_t_4 = 1/rrr_rho2_1_t;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real inv_rrr_size = 1/rrr_size;
+        model->inv_rrr_Kd_1_t_5[leg] = inv_rrr_Kd_1_t_5;
+        model->inv_rrr_Kd_1_t_7[leg] = inv_rrr_Kd_1_t_7;
         model->inv_rrr_platform_joint_offset_x[leg] = inv_rrr_platform_joint_offset_x;
-        model->inv_size[leg] = inv_size;
-        model->inv_uu_2_t[leg] = inv_uu_2_t;
-        model->rho2_1_t[leg] = rho2_1_t;
+        model->inv_rrr_rho2_1_t_4[leg] = inv_rrr_rho2_1_t_4;
+        model->inv_rrr_size[leg] = inv_rrr_size;
+        model->rrr_J_1_zz[leg] = rrr_J_1_zz;
+        model->rrr_J_2_zz[leg] = rrr_J_2_zz;
+        model->rrr_Jc_1_zz[leg] = rrr_Jc_1_zz;
+        model->rrr_Kd_1_t_2[leg] = rrr_Kd_1_t_2;
+        model->rrr_Kd_1_t_4[leg] = rrr_Kd_1_t_4;
+        model->rrr_b_r0_x[leg] = rrr_b_r0_x;
+        model->rrr_b_r0_y[leg] = rrr_b_r0_y;
         model->rrr_base_frame_xx[leg] = rrr_base_frame_xx;
         model->rrr_base_frame_xy[leg] = rrr_base_frame_xy;
         model->rrr_base_frame_yx[leg] = rrr_base_frame_yx;
         model->rrr_base_frame_yy[leg] = rrr_base_frame_yy;
         model->rrr_base_point_x[leg] = rrr_base_point_x;
         model->rrr_base_point_y[leg] = rrr_base_point_y;
+        model->rrr_branch_1[leg] = rrr_branch_1;
+        model->rrr_d_Gamma_2_t[leg] = rrr_d_Gamma_2_t;
+        model->rrr_d_Gamma_2_y[leg] = rrr_d_Gamma_2_y;
+        model->rrr_d_c_yy[leg] = rrr_d_c_yy;
+        model->rrr_d_phi_2_t[leg] = rrr_d_phi_2_t;
+        model->rrr_g_r0_x[leg] = rrr_g_r0_x;
+        model->rrr_g_r0_y[leg] = rrr_g_r0_y;
+        model->rrr_h_1_x[leg] = rrr_h_1_x;
+        model->rrr_h_1_y[leg] = rrr_h_1_y;
+        model->rrr_h_2_x[leg] = rrr_h_2_x;
+        model->rrr_h_2_y[leg] = rrr_h_2_y;
         model->rrr_joint2_offset_x[leg] = rrr_joint2_offset_x;
         model->rrr_link1_mass[leg] = rrr_link1_mass;
         model->rrr_link2_mass[leg] = rrr_link2_mass;
         model->rrr_platform_joint_offset_x[leg] = rrr_platform_joint_offset_x;
         model->rrr_platform_point_x[leg] = rrr_platform_point_x;
         model->rrr_platform_point_y[leg] = rrr_platform_point_y;
-        model->size_[leg] = size_;
-        total_rrr += rrr_link2_mass;
-        total_rrr_x += h_star_t_3;
-        total_rrr_y += h_star_t_4;
-        total_rrr_xx += J_star_t_7;
-        total_rrr_zz += J_star_t_8;
-        total_rrr_x_2 += rrr_platform_point_x;
-        total_rrr_y_2 += rrr_platform_point_y;
-        total_rrr_2 += size_t_;
+        model->rrr_rho2_1_t[leg] = rrr_rho2_1_t;
+        model->rrr_size[leg] = rrr_size;
+        total_rrr += leg < 3 ? rrr_link2_mass : 0;
+        total_rrr_x += leg < 3 ? rrr_h_star_t : 0;
+        total_rrr_y += leg < 3 ? rrr_h_star_t_2 : 0;
+        total_rrr_xx += leg < 3 ? rrr_J_star_t_3 : 0;
+        total_rrr_zz += leg < 3 ? rrr_J_star_t_4 : 0;
+        total_rrr_x_2 += leg < 3 ? rrr_platform_point_x : 0;
+        total_rrr_y_2 += leg < 3 ? rrr_platform_point_y : 0;
+        total_rrr_2 += leg < 3 ? rrr_size_t : 0;
     }
-    /* (L1) mass of the platform with the gathered masses */
+    /* (m_star) mass of the platform with the gathered masses */
     const real m_star = platform_mass + total_rrr;
-    /* (L2) first moment about the platform origin */
+    /* (h_star) first moment about the platform origin */
     const real h_star_x = h_star_t + total_rrr_x;
     const real h_star_y = h_star_t_2 + total_rrr_y;
-    /* (L3) inertia tensor about the platform origin */
+    /* (J_star) inertia tensor about the platform origin */
     const real J_star_xx = J_star_t_3 + total_rrr_xx;
-    const real J_star_zz = J_star_t_4 + platform_inertia_zz + total_rrr_zz;
-    const real J_star_t_9 = J_star_xx - J_star_zz;
-    const real J_star_t_10 = J_star_t_9 - J_star_xx;
-    /* (M4) centripetal force and weight of the platform */
+    const real J_star_t_5 = J_star_xx - J_star_t_4 - platform_inertia_zz - total_rrr_zz;
+    const real J_star_t_6 = J_star_t_5 - J_star_xx;
+    /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
-    /* (C1) centroid of the platform points */
+    /* (b_c) centroid of the platform points */
     const real b_c_x = R(0.3333333333333333)*total_rrr_x_2;
     const real b_c_y = R(0.3333333333333333)*total_rrr_y_2;
-    /* (C3) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = spread_t*root(total_rrr_2);
-    model->J_star_t_10 = J_star_t_10;
-    model->J_star_zz = J_star_zz;
+    model->J_star_t_6 = J_star_t_6;
     model->Z_p_t = Z_p_t;
     model->Z_p_t_2 = Z_p_t_2;
     model->b_c_x = b_c_x;
@@ -671,98 +759,6 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
     }
 }
 
-/* Swap a row with the pivot's in those states in which it is the chosen one.  What is chosen are
-   whole entries: unlike products with 0 and 1, these keep what is not finite where it belongs. */
-APART void swap_lanes(size_t n, size_t p, real i, const real *restrict best, real *restrict pivot,
-        real *restrict other)
-{
-    for (size_t j = p; j <= n; ++j) {
-        for (size_t k = 0; k < LANES; ++k) {
-            const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = best[k] == i ? up : down;
-            other[j*LANES + k] = best[k] == i ? down : up;
-        }
-    }
-}
-
-/* The choice of choose_one in every state. */
-INLINE void choose_lanes(size_t n, size_t p, real *a)
-{
-    const size_t row = (n + 1)*LANES;
-    real most[LANES], best[LANES], any = 0;
-    for (size_t k = 0; k < LANES; ++k) {
-        most[k] = CLEARLY*magnitude(a[p*row + p*LANES + k]);
-        best[k] = 0;
-    }
-    for (size_t i = p + 1; i < n; ++i) {
-        for (size_t k = 0; k < LANES; ++k) {
-            const real size = magnitude(a[i*row + p*LANES + k]);
-            best[k] = size > most[k] ? (real)i : best[k];
-            most[k] = larger(size, most[k]);
-        }
-    }
-    for (size_t k = 0; k < LANES; ++k) {
-        any += best[k];
-    }
-    for (size_t i = p + 1; i < n && any > 0; ++i) {
-        swap_lanes(n, p, (real)i, best, a + p*row, a + i*row);
-    }
-}
-
-/* The same for LANES systems side by side, without padding.  What comes NEARLY to the threshold
-   counts as singular here: the batch then settles it as for a single state. */
-INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
-{
-    const size_t row = (n + 1)*LANES;
-    memset(x, 0, n*LANES*sizeof *x);
-    for (size_t i = 0; i < n; ++i) {
-        real size[LANES] = {0};
-        for (size_t j = 0; j < n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                size[k] = larger(size[k], magnitude(a[i*row + j*LANES + k]));
-            }
-        }
-        for (size_t k = 0; k < LANES; ++k) {
-            size[k] = 1/size[k];
-        }
-        for (size_t j = 0; j <= n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + j*LANES + k] *= size[k];
-            }
-        }
-    }
-    for (size_t p = 0; p < n; ++p) {
-        const real *const pivot = a + p*row;
-        choose_lanes(n, p, a);
-        for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > NEARLY*PIVOT);
-            x[p*LANES + k] = 1/pivot[p*LANES + k];
-        }
-        for (size_t i = p + 1; i < n; ++i) {
-            real *const other = a + i*row;
-            real factor[LANES];
-            for (size_t k = 0; k < LANES; ++k) {
-                factor[k] = other[p*LANES + k]*x[p*LANES + k];
-            }
-            for (size_t j = p + 1; j <= n; ++j) {
-                for (size_t k = 0; k < LANES; ++k) {
-                    other[j*LANES + k] -= factor[k]*pivot[j*LANES + k];
-                }
-            }
-        }
-    }
-    for (size_t p = n; p-- > 0;) {
-        for (size_t k = 0; k < LANES; ++k) {
-            x[p*LANES + k] *= a[p*row + n*LANES + k];
-        }
-        for (size_t i = 0; i < p; ++i) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + n*LANES + k] -= a[i*row + p*LANES + k]*x[p*LANES + k];
-            }
-        }
-    }
-}
-
 /* Length of the rows of a system of n equations, whose right side stands in column n. */
 INLINE size_t stride_of(size_t n, size_t w)
 {
@@ -795,14 +791,10 @@ INLINE void solve_state(size_t n, const real *b, real *rows, real *x, real *sing
     solve_one(n, stride_of(n, 1), rows, x, singular);
 }
 
-INLINE void solve(size_t n, size_t w, const real *b, real *rows, real *x, real *singular)
+/* The same where it is rare: apart, for the sake of what is done otherwise. */
+APART void solve_apart(size_t n, const real *b, real *rows, real *x, real *singular)
 {
-    if (w == 1) {
-        solve_state(n, b, rows, x, singular);
-    } else {
-        set_right_side(n, LANES, b, rows);
-        solve_lanes(n, rows, x, singular);
-    }
+    solve_state(n, b, rows, x, singular);
 }
 
 #define BIG 3  /* most rows or columns of a matrix that is not square, or not solved */
@@ -1024,6 +1016,29 @@ INLINE void take(size_t rows, size_t n, const size_t *places, const real *a, rea
     }
 }
 
+/* Rows as `places` tells made infinite, where all entries are finite before. */
+INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, real *x, real *flags)
+{
+    check(size, w, x, flags);
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t k = 0; k < w; ++k) {
+            x[places[i]*w + k] = R(INFINITY);
+        }
+    }
+}
+
+/* 1 where no entry is negative, else 0. */
+INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
+{
+    check(size, w, a, flags);
+    for (size_t k = 0; k < w; ++k) {
+        x[k] = 1;
+        for (size_t e = 0; e < size; ++e) {
+            x[k] = a[e*w + k] < 0 ? 0 : x[k];
+        }
+    }
+}
+
 INLINE void divide_rows(size_t rows, size_t n, size_t w, const size_t *places, const real *b, real *x)
 {
     for (size_t i = 0; i < rows; ++i) {
@@ -1103,319 +1118,322 @@ static void moved(const real *X, const real *step, real part, real *to)
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 397 mul, 264 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
-        omega_z[LANES], h_star_in_base_x[LANES], h_star_in_base_y[LANES], Z_p_x[LANES], Z_p_y[LANES],
-        Z_q_t[LANES], sum[9][LANES];
-} dynamics_values;
-typedef struct {
-    real sum[9][8], entry[3][8], unreachable[8], singular[8];
-} dynamics_results_rrr;
-
-INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V,
-    dynamics_values *s)
+/* ---- dynamics: 393 mul, 262 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
+INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real omega_z = V_2;
-        /* (L2) first moment about the platform origin */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
         const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
         const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
-        /* (P1) centripetal tensor of the platform */
+        /* (W_p) centripetal tensor of the platform */
         const real W_p_t = omega_z*omega_z;
-        /* (M4) centripetal force and weight of the platform */
+        /* (Z_p) centripetal force and weight of the platform */
+        const real Z_p_t = m->Z_p_t;
         const real Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x;
+        const real Z_p_t_2 = m->Z_p_t_2;
         const real Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y;
-        /* (M6) gyroscopic moment and moment of the weight of the platform */
-        const real Z_q_t = h_star_x*(R_xx*gravity_y - R_yx*gravity_x) - h_star_y*(R_xx*gravity_x +
-            R_yx*gravity_y);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->omega_z[k] = omega_z;
-        s->h_star_in_base_x[k] = h_star_in_base_x;
-        s->h_star_in_base_y[k] = h_star_in_base_y;
-        s->Z_p_x[k] = Z_p_x;
-        s->Z_p_y[k] = Z_p_y;
-        s->Z_q_t[k] = Z_q_t;
+        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
+        s[4*w + k] = t_dot_x;
+        s[5*w + k] = t_dot_y;
+        s[6*w + k] = omega_z;
+        s[7*w + k] = h_star_in_base_x;
+        s[8*w + k] = h_star_in_base_y;
+        s[9*w + k] = Z_p_x;
+        s[10*w + k] = Z_p_y;
+        s[11*w + k] = Z_q_t;
     }
 }
 
-INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const dynamics_values
-    *s, size_t states, size_t count, int add, dynamics_results_rrr *o)
+INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real J_1_zz = m->J_1_zz[i];
-        const real J_2_zz = m->J_2_zz[i];
-        const real Jc_1_zz = m->Jc_1_zz[i];
-        const real Kd_1_t_2 = m->Kd_1_t_2[i];
-        const real Kd_1_t_3 = m->Kd_1_t_3[i];
-        const real branch_1 = m->branch_1[i];
-        const real d_Gamma_1_t = m->d_Gamma_1_t[i];
-        const real d_Gamma_1_y = m->d_Gamma_1_y[i];
-        const real d_c_yy = m->d_c_yy[i];
-        const real d_phi_2_t = m->d_phi_2_t[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_1_x = m->h_1_x[i];
-        const real h_1_y = m->h_1_y[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real inv_Kd_1_t_5 = m->inv_Kd_1_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_t = m->inv_uu_2_t[i];
-        const real rho2_1_t = m->rho2_1_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_ = m->size_[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real S_x = q_in_base_x + t_x - rrr_base_point_x;
-        const real S_y = q_in_base_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_t = S_x*S_x + S_y*S_y;
-        const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1 = px_1*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1 = py_1*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
-        /* (rrr-K9) discriminant */
-        const real disc_1 = rho2_1 - Kd_1*Kd_1;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1 = branch_1*root(disc_1);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2 = inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2 =
-            inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_t = rrr_platform_joint_offset_x*s_2;
-        const real r_1_x = rrr_joint2_offset_x + c_2*rrr_platform_joint_offset_x;
-        const real r_1_r0_x = c_2*r_1_x + r_1_t*s_2;
-        const real r_1_r0_y = r_1_x*s_2 - c_2*r_1_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1 = 1/rho2_1;
-        const real c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1*s_2 - c_2*s_1;
-        const real axis_y_rrr_axes2_r1_y = c_1*c_2 + s_1*s_2;
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_r0_y = 1/r_1_r0_y;
-        /* (rrr-V6) reciprocal vector 2 */
-        const real w_2_t = inv_r_1_r0_y*inv_rrr_platform_joint_offset_x*r_1_r0_x;
-        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_t_2 = d_Gamma_1_t*r_1_r0_x;
-        const real d_Gamma_1_x = -h_2_y - inv_r_1_r0_y*(Jc_1_zz - d_Gamma_1_t_2);
-        /* (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
-           and weight */
-        const real d_Gamma_2_x = -h_2_y - inv_r_1_r0_y*(J_2_zz - d_Gamma_1_t_2);
-        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-w_2) reciprocal vector 2 */
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x;
+        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
+        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x;
+        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
+        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz -
+            rrr_d_Gamma_2_t_2);
+        /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real rrr_Jc_1_zz = m->rrr_Jc_1_zz[i];
+        const real rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz -
+            rrr_d_Gamma_2_t_2);
+        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_xy = d_phi_2_t + d_Gamma_1_y*inv_r_1_r0_y - d_Gamma_1_y*w_2_t;
-        /* (rrr-N36) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = d_Gamma_1_x*inv_r_1_r0_y + h_2_y*(w_2_t - inv_r_1_r0_y) - d_c_yy -
-            d_Gamma_2_x*w_2_t;
-        const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = Q_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_xy;
-        const real Q_t_4 = Q_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_xy;
-        const real Q_t_5 = d_c_yy + 2*Q_t_3*axis_y_rrr_axes2_in_base_y;
-        const real Q_t_6 = Q_t_3*axis_y_rrr_axes2_in_base_x + Q_t_4*axis_y_rrr_axes2_in_base_y;
-        const real Q_t_7 = d_c_yy + 2*Q_t_4*axis_y_rrr_axes2_in_base_x;
-        /* (M2) coupling block of M */
-        const real M_ta_t = Q_t_5*q_in_base_y + Q_t_6*q_in_base_x;
-        const real M_ta_t_2 = Q_t_6*q_in_base_y + Q_t_7*q_in_base_x;
-        /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t*q_in_base_y + M_ta_t_2*q_in_base_x;
-        /* (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
-           less gravity */
-        const real g_r1_x = c_1*g_r0_x + g_r0_y*s_1;
-        const real g_r1_y = c_1*g_r0_y - g_r0_x*s_1;
-        /* (rrr-V1) velocity of the connection point */
-        const real S_dot_t = omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x;
-        const real S_dot_x = t_dot_x - S_dot_t;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        /* (rrr-V7) rate of joint 1 */
-        const real qd_1 = inv_r_1_r0_y*(S_dot_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_y*axis_y_rrr_axes2_in_base_x);
-        /* (rrr-V11) angular velocity of link 2 */
-        const real omega_2_z = inv_rrr_platform_joint_offset_x*(S_dot_x*axis_y_rrr_axes2_in_base_x
-            + S_dot_y*axis_y_rrr_axes2_in_base_y + qd_1*r_1_r0_x) - qd_1;
-        /* (rrr-V10) centripetal tensor of link 1 */
-        const real W_1_t = qd_1*qd_1;
-        /* (rrr-V12) centripetal tensor of link 2 */
-        const real W_2_t = omega_2_z*omega_2_z;
-        /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_x = -W_2_t*rrr_platform_joint_offset_x - W_1_t*c_2*rrr_joint2_offset_x;
-        /* (rrr-A1) centripetal acceleration of the connection point */
-        const real u_1_t = S_dot_t_2*omega_z;
-        const real u_1_t_2 = S_dot_t*omega_z;
-        const real u_1_tip_x = axis_y_rrr_axes2_in_base_x*u_1_t_2 -
-            axis_y_rrr_axes2_in_base_y*u_1_t;
-        const real u_1_tip_y = -axis_y_rrr_axes2_in_base_x*u_1_t -
-            axis_y_rrr_axes2_in_base_y*u_1_t_2;
-        /* (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to
+        const real rrr_d_Gamma_2_y = m->rrr_d_Gamma_2_y[i];
+        const real rrr_d_phi_2_t = m->rrr_d_phi_2_t[i];
+        const real rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y -
+            rrr_d_Gamma_2_y*rrr_w_2_t;
+        /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real rrr_d_c_yy = m->rrr_d_c_yy[i];
+        const real rrr_Q_t = inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t -
+            inv_rrr_r_1_r0_y) - rrr_d_c_yy - rrr_d_Gamma_2_x*rrr_w_2_t;
+        const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
+        const real rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy +
+            axis_y_rrr_axes2_in_base_y*rrr_Q_t_2;
+        const real rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 -
+            axis_y_rrr_axes2_in_base_y*rrr_d_c_xy;
+        const real rrr_Q_t_5 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3;
+        const real rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 +
+            axis_y_rrr_axes2_in_base_y*rrr_Q_t_4;
+        const real rrr_Q_t_7 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4;
+        /* (M_ta) coupling block of M */
+        const real rrr_M_ta_t = rrr_Q_t_5*rrr_q_in_base_y + rrr_Q_t_6*rrr_q_in_base_x;
+        const real rrr_M_ta_t_2 = rrr_Q_t_6*rrr_q_in_base_y + rrr_Q_t_7*rrr_q_in_base_x;
+        /* (M_aa) rotational block of M */
+        const real rrr_M_aa_t = rrr_M_ta_t*rrr_q_in_base_y + rrr_M_ta_t_2*rrr_q_in_base_x;
+        /* (rrr-S_dot) velocity of the connection point */
+        const real omega_z = s[6*w + j];
+        const real rrr_S_dot_t = omega_z*rrr_q_in_base_y;
+        const real rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x;
+        const real t_dot_x = s[4*w + j];
+        const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
+        const real t_dot_y = s[5*w + j];
+        const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
+        /* (rrr-qd_2) rate of joint 2 */
+        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y);
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real rrr_omega_2_z =
+            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-u_1) centripetal acceleration of the connection point */
+        const real rrr_u_1_t = omega_z*rrr_S_dot_t_2;
+        const real rrr_u_1_t_2 = omega_z*rrr_S_dot_t;
+        /* (rrr-W_1) centripetal tensor of link 1 */
+        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-W_2) centripetal tensor of link 2 */
+        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        /* (rrr-u_1) centripetal acceleration of the connection point */
+        const real rrr_u_1_tip_x = axis_y_rrr_axes2_in_base_x*rrr_u_1_t_2 -
+            axis_y_rrr_axes2_in_base_y*rrr_u_1_t;
+        const real rrr_u_1_tip_y = -axis_y_rrr_axes2_in_base_x*rrr_u_1_t -
+            axis_y_rrr_axes2_in_base_y*rrr_u_1_t_2;
+        /* (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rel_o_x = u_1_tip_x - bias_x;
-        const real rel_o_y = u_1_tip_y + W_1_t*rrr_joint2_offset_x*s_2;
-        /* (rrr-A9) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_o = inv_r_1_r0_y*rel_o_x;
-        /* (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
-        const real mu_1_o_z = g_r1_x*h_1_y - J_1_zz*qdd_1_o - g_r1_y*h_1_x;
-        /* (rrr-N4) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real acc_2_o_x = u_1_tip_x + g_r1_y*s_2 - c_2*g_r1_x;
-        const real acc_2_o_y = u_1_tip_y - c_2*g_r1_y - g_r1_x*s_2;
-        /* (rrr-A18) remainder without the acceleration in: angular acceleration of link 2 */
-        const real alpha_2_o_z = inv_rrr_platform_joint_offset_x*(rel_o_y + qdd_1_o*r_1_r0_x) -
-            qdd_1_o;
-        /* (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with
+        const real rrr_rel_o_x = rrr_u_1_tip_x - rrr_bias_x;
+        const real rrr_rel_o_y = rrr_u_1_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        const real rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_rel_o_x;
+        /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        const real rrr_alpha_2_o_z = inv_rrr_platform_joint_offset_x*(rrr_rel_o_y +
+            rrr_qdd_1_o*rrr_r_1_r0_x) - rrr_qdd_1_o;
+        /* (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real rrr_acc_2_o_x = rrr_u_1_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+            axis_y_rrr_axes2_in_base_y*gravity_x;
+        const real rrr_acc_2_o_y = rrr_u_1_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+            axis_y_rrr_axes2_in_base_y*gravity_y;
+        /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real mu_2_o_z = J_2_zz*alpha_2_o_z + acc_2_o_y*h_2_x - acc_2_o_x*h_2_y;
-        /* (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
+        const real rrr_h_2_x = m->rrr_h_2_x[i];
+        const real rrr_mu_2_o_z = rrr_J_2_zz*rrr_alpha_2_o_z + rrr_acc_2_o_y*rrr_h_2_x -
+            rrr_acc_2_o_x*rrr_h_2_y;
+        /* (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 1, about their reference points */
+        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
+        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
+        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
+        const real rrr_h_1_x = m->rrr_h_1_x[i];
+        const real rrr_h_1_y = m->rrr_h_1_y[i];
+        const real rrr_mu_1_o_z = rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
+            rrr_J_1_zz*rrr_qdd_1_o - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
-        const real N_1_o_z = mu_1_o_z + mu_2_o_z;
-        /* (rrr-N32) remainder without the acceleration in: force at the connection point that balances
+        const real rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z;
+        /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real G_o_t = inv_rrr_platform_joint_offset_x*mu_2_o_z;
-        /* (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation
+        const real rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z;
+        /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real c_o_x = W_2_t*h_2_x + alpha_2_o_z*h_2_y - inv_r_1_r0_y*(G_o_t*r_1_r0_x -
-            N_1_o_z);
-        const real c_o_y = W_2_t*h_2_y - G_o_t - alpha_2_o_z*h_2_x;
-        /* (rrr-N37) velocity and gravity terms of the leg force */
-        const real U_in_base_x = -axis_y_rrr_axes2_in_base_x*c_o_y -
-            axis_y_rrr_axes2_in_base_y*c_o_x;
-        const real U_in_base_y = axis_y_rrr_axes2_in_base_x*c_o_x -
-            axis_y_rrr_axes2_in_base_y*c_o_y;
-        /* (M7) rotational part of Z */
-        const real Z_a_t = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y;
-        /* (rrr-V5) reciprocal vector 1 */
-        const real w_1_t = axis_y_rrr_axes2_in_base_y*inv_r_1_r0_y;
-        const real w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_r0_y;
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_1_z = q_in_base_x*w_1_t_2 + q_in_base_y*w_1_t;
-        o->sum[0][k] = add ? o->sum[0][k] + Q_t_5 : Q_t_5;  /* total_rrr_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + Q_t_6 : Q_t_6;  /* total_rrr_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + Q_t_7 : Q_t_7;  /* total_rrr_yy */
-        o->sum[3][k] = add ? o->sum[3][k] + M_ta_t : M_ta_t;  /* total_rrr_xz */
-        o->sum[4][k] = add ? o->sum[4][k] + M_ta_t_2 : M_ta_t_2;  /* total_rrr_yz */
-        o->sum[5][k] = add ? o->sum[5][k] + M_aa_t : M_aa_t;  /* total_rrr_zz */
-        o->sum[6][k] = add ? o->sum[6][k] + U_in_base_x : U_in_base_x;  /* total_rrr_x */
-        o->sum[7][k] = add ? o->sum[7][k] + U_in_base_y : U_in_base_y;  /* total_rrr_y */
-        o->sum[8][k] = add ? o->sum[8][k] + Z_a_t : Z_a_t;  /* total_rrr_z */
-        o->entry[0][k] = -w_1_t;
-        o->entry[1][k] = w_1_t_2;
-        o->entry[2][k] = H_a_1_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
-            UNLESS(magnitude(-r_1_r0_y) > TOLERANCE*size_);
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
+        const real rrr_c_o_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y -
+            inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x - rrr_N_1_o_z);
+        const real rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x;
+        /* (rrr-U) velocity and gravity terms of the leg force */
+        const real rrr_U_in_base_x = -axis_y_rrr_axes2_in_base_x*rrr_c_o_y -
+            axis_y_rrr_axes2_in_base_y*rrr_c_o_x;
+        const real rrr_U_in_base_y = axis_y_rrr_axes2_in_base_x*rrr_c_o_x -
+            axis_y_rrr_axes2_in_base_y*rrr_c_o_y;
+        /* (Z_a) rotational part of Z */
+        const real rrr_Z_a_t = rrr_U_in_base_y*rrr_q_in_base_x - rrr_U_in_base_x*rrr_q_in_base_y;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y;
+        const real rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y;
+        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+        const real rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t;
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_Q_t_5 : rrr_Q_t_5;  /* total_rrr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_Q_t_6 : rrr_Q_t_6;  /* total_rrr_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_Q_t_7 : rrr_Q_t_7;  /* total_rrr_yy */
+        terms[3*count + k] = add ? terms[3*count + k] + rrr_M_ta_t : rrr_M_ta_t;  /* total_rrr_xz */
+        terms[4*count + k] = add ? terms[4*count + k] + rrr_M_ta_t_2 : rrr_M_ta_t_2;  /* total_rrr_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + rrr_M_aa_t : rrr_M_aa_t;  /* total_rrr_zz */
+        terms[6*count + k] = add ? terms[6*count + k] + rrr_U_in_base_x : rrr_U_in_base_x;  /* total_rrr_x */
+        terms[7*count + k] = add ? terms[7*count + k] + rrr_U_in_base_y : rrr_U_in_base_y;  /* total_rrr_y */
+        terms[8*count + k] = add ? terms[8*count + k] + rrr_Z_a_t : rrr_Z_a_t;  /* total_rrr_z */
+        o[0*count + k] = -rrr_w_1_t;
+        o[1*count + k] = rrr_w_1_t_2;
+        o[2*count + k] = rrr_H_a_1_z;
+        o[5*count + k] = rrr_w_1_t + (rrr_w_1_t_2 + rrr_H_a_1_z);
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[4*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[3*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void dynamics_place_rrr(size_t w, const dynamics_results_rrr *o, size_t leg, size_t first,
+INLINE void dynamics_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_t first,
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(3 + leg)*w + k] = o->entry[1][first + k];
-        H[(6 + leg)*w + k] = o->entry[2][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(3 + leg)*w + k] = o[1*count + first + k];
+        H[(6 + leg)*w + k] = o[2*count + first + k];
+        t->unreachable[k] += o[3*count + first + k];
+        t->singular[k] += o[4*count + first + k];
+        t->total[k] += o[5*count + first + k];
     }
 }
 
-INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s, real *M, real
-    *Z)
+INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const real *sums, real *M,
+    real *Z, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real h_star_in_base_x = s->h_star_in_base_x[k];
-        const real h_star_in_base_y = s->h_star_in_base_y[k];
-        const real Z_p_x = s->Z_p_x[k];
-        const real Z_p_y = s->Z_p_y[k];
-        const real Z_q_t = s->Z_q_t[k];
-        const real total_rrr_xx = s->sum[0][k];
-        const real total_rrr_xy = s->sum[1][k];
-        const real total_rrr_yy = s->sum[2][k];
-        const real total_rrr_xz = s->sum[3][k];
-        const real total_rrr_yz = s->sum[4][k];
-        const real total_rrr_zz = s->sum[5][k];
-        const real total_rrr_x = s->sum[6][k];
-        const real total_rrr_y = s->sum[7][k];
-        const real total_rrr_z = s->sum[8][k];
-        const real J_star_t_10 = m->J_star_t_10;
+        /* (M_tt) translational block of M */
         const real m_star = m->m_star;
-        /* (M1) translational block of M */
+        const real total_rrr_xx = sums[0*w + k];
         const real M_tt_xx = m_star - total_rrr_xx;
+        const real total_rrr_yy = sums[2*w + k];
         const real M_tt_yy = m_star - total_rrr_yy;
-        /* (M2) coupling block of M */
+        /* (M_ta) coupling block of M */
+        const real h_star_in_base_y = s[8*w + k];
+        const real total_rrr_xz = sums[3*w + k];
         const real M_ta_xz = total_rrr_xz - h_star_in_base_y;
+        const real h_star_in_base_x = s[7*w + k];
+        const real total_rrr_yz = sums[4*w + k];
         const real M_ta_yz = h_star_in_base_x - total_rrr_yz;
-        /* (M3) rotational block of M */
-        const real M_aa_zz = -J_star_t_10 - total_rrr_zz;
-        /* (M5) translational part of Z */
+        /* (M_aa) rotational block of M */
+        const real J_star_t_6 = m->J_star_t_6;
+        const real total_rrr_zz = sums[5*w + k];
+        const real M_aa_zz = -J_star_t_6 - total_rrr_zz;
+        /* (Z_t) translational part of Z */
+        const real Z_p_x = s[9*w + k];
+        const real total_rrr_x = sums[6*w + k];
         const real Z_t_x = Z_p_x + total_rrr_x;
+        const real Z_p_y = s[10*w + k];
+        const real total_rrr_y = sums[7*w + k];
         const real Z_t_y = Z_p_y + total_rrr_y;
-        /* (M7) rotational part of Z */
+        /* (Z_a) rotational part of Z */
+        const real Z_q_t = s[11*w + k];
+        const real total_rrr_z = sums[8*w + k];
         const real Z_a_z = total_rrr_z - Z_q_t;
         M[0*w + k] = M_tt_xx;
+        const real total_rrr_xy = sums[1*w + k];
         M[1*w + k] = total_rrr_xy;
         M[3*w + k] = total_rrr_xy;
         M[4*w + k] = M_tt_yy;
@@ -1427,225 +1445,224 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_a_z;
+        t->total[k] += ((M_tt_xx + total_rrr_xy) + (M_tt_yy + M_ta_xz)) + ((M_ta_yz + M_aa_zz) +
+            (Z_t_x + (Z_t_y + Z_a_z)));
     }
 }
 
-INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real *V, real *M, real
-    *Z, real *H, verdict *t)
+INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
+    *H, verdict *t)
 {
-    dynamics_values values, *const s = &values;
-    dynamics_results_rrr results_rrr;
-    dynamics_before(m, w, X, V, s);
-    if (w == 1) {  /* the legs side by side */
-        dynamics_legs_rrr(m, 0, 1, s, 0, 3, 0, &results_rrr);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            dynamics_place_rrr(w, &results_rrr, leg, leg, H, t);
-        }
-        for (size_t n = 0; n < 9; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_rrr.sum[n], 3);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            dynamics_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
-            dynamics_place_rrr(w, &results_rrr, leg, 0, H, t);
-        }
-        for (size_t n = 0; n < 9; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_rrr.sum[n][k];
-            }
-        }
+    real s[12] = {0}, sums[9] = {0}, terms_rrr[9*LEGS(3)] = {0}, o_rrr[6*LEGS(3)] = {0};
+    dynamics_before(m, 1, X, V, s);
+    dynamics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        dynamics_place_rrr(1, LEGS(3), o_rrr, leg, leg, H, t);
     }
-    dynamics_after(m, w, s, M, Z);
+    for (size_t n = 0; n < 9; ++n) {
+        sums[n] = total(terms_rrr + n*LEGS(3), 3);
+    }
+    dynamics_after(m, 1, s, sums, M, Z, t);
+}
+
+INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, verdict *t)
+{
+    real s[12*LANES], sums[9*LANES], o_rrr[6*LANES];
+    dynamics_before(m, LANES, X, V, s);
+    clear(sums, 9*LANES);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        dynamics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
+        dynamics_place_rrr(LANES, LANES, o_rrr, leg, 0, H, t);
+    }
+    dynamics_after(m, LANES, s, sums, M, Z, t);
 }
 
 /* ---- M: 220 mul, 148 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], h_star_in_base_x[LANES],
-        h_star_in_base_y[LANES], sum[6][LANES];
-} M_values;
-typedef struct {
-    real sum[6][8], unreachable[8], singular[8];
-} M_results_rrr;
-
-INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s)
+INLINE void M_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
-        /* (L2) first moment about the platform origin */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
         const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
         const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->h_star_in_base_x[k] = h_star_in_base_x;
-        s->h_star_in_base_y[k] = h_star_in_base_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
+        s[4*w + k] = h_star_in_base_x;
+        s[5*w + k] = h_star_in_base_y;
     }
 }
 
-INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
-    states, size_t count, int add, M_results_rrr *o)
+INLINE void M_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real J_2_zz = m->J_2_zz[i];
-        const real Jc_1_zz = m->Jc_1_zz[i];
-        const real Kd_1_t_2 = m->Kd_1_t_2[i];
-        const real Kd_1_t_3 = m->Kd_1_t_3[i];
-        const real branch_1 = m->branch_1[i];
-        const real d_Gamma_1_t = m->d_Gamma_1_t[i];
-        const real d_Gamma_1_y = m->d_Gamma_1_y[i];
-        const real d_c_yy = m->d_c_yy[i];
-        const real d_phi_2_t = m->d_phi_2_t[i];
-        const real h_2_y = m->h_2_y[i];
-        const real inv_Kd_1_t_5 = m->inv_Kd_1_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_t = m->inv_uu_2_t[i];
-        const real rho2_1_t = m->rho2_1_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_ = m->size_[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real S_x = q_in_base_x + t_x - rrr_base_point_x;
-        const real S_y = q_in_base_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_t = S_x*S_x + S_y*S_y;
-        const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1 = px_1*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1 = py_1*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
-        /* (rrr-K9) discriminant */
-        const real disc_1 = rho2_1 - Kd_1*Kd_1;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1 = branch_1*root(disc_1);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2 = inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2 =
-            inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_t = rrr_platform_joint_offset_x*s_2;
-        const real r_1_x = rrr_joint2_offset_x + c_2*rrr_platform_joint_offset_x;
-        const real r_1_r0_x = c_2*r_1_x + r_1_t*s_2;
-        const real r_1_r0_y = r_1_x*s_2 - c_2*r_1_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1 = 1/rho2_1;
-        const real c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1*s_2 - c_2*s_1;
-        const real axis_y_rrr_axes2_r1_y = c_1*c_2 + s_1*s_2;
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_r0_y = 1/r_1_r0_y;
-        /* (rrr-V6) reciprocal vector 2 */
-        const real w_2_t = inv_r_1_r0_y*inv_rrr_platform_joint_offset_x*r_1_r0_x;
-        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_t_2 = d_Gamma_1_t*r_1_r0_x;
-        const real d_Gamma_1_x = -h_2_y - inv_r_1_r0_y*(Jc_1_zz - d_Gamma_1_t_2);
-        /* (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
-           and weight */
-        const real d_Gamma_2_x = -h_2_y - inv_r_1_r0_y*(J_2_zz - d_Gamma_1_t_2);
-        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-w_2) reciprocal vector 2 */
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x;
+        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
+        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x;
+        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
+        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz -
+            rrr_d_Gamma_2_t_2);
+        /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real rrr_Jc_1_zz = m->rrr_Jc_1_zz[i];
+        const real rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz -
+            rrr_d_Gamma_2_t_2);
+        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_xy = d_phi_2_t + d_Gamma_1_y*inv_r_1_r0_y - d_Gamma_1_y*w_2_t;
-        /* (rrr-N36) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = d_Gamma_1_x*inv_r_1_r0_y + h_2_y*(w_2_t - inv_r_1_r0_y) - d_c_yy -
-            d_Gamma_2_x*w_2_t;
-        const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = Q_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_xy;
-        const real Q_t_4 = Q_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_xy;
-        const real Q_t_5 = d_c_yy + 2*Q_t_3*axis_y_rrr_axes2_in_base_y;
-        const real Q_t_6 = Q_t_3*axis_y_rrr_axes2_in_base_x + Q_t_4*axis_y_rrr_axes2_in_base_y;
-        const real Q_t_7 = d_c_yy + 2*Q_t_4*axis_y_rrr_axes2_in_base_x;
-        /* (M2) coupling block of M */
-        const real M_ta_t = Q_t_5*q_in_base_y + Q_t_6*q_in_base_x;
-        const real M_ta_t_2 = Q_t_6*q_in_base_y + Q_t_7*q_in_base_x;
-        /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t*q_in_base_y + M_ta_t_2*q_in_base_x;
-        o->sum[0][k] = add ? o->sum[0][k] + Q_t_5 : Q_t_5;  /* total_rrr_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + Q_t_6 : Q_t_6;  /* total_rrr_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + Q_t_7 : Q_t_7;  /* total_rrr_yy */
-        o->sum[3][k] = add ? o->sum[3][k] + M_ta_t : M_ta_t;  /* total_rrr_xz */
-        o->sum[4][k] = add ? o->sum[4][k] + M_ta_t_2 : M_ta_t_2;  /* total_rrr_yz */
-        o->sum[5][k] = add ? o->sum[5][k] + M_aa_t : M_aa_t;  /* total_rrr_zz */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
-            UNLESS(magnitude(-r_1_r0_y) > TOLERANCE*size_);
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
+        const real rrr_d_Gamma_2_y = m->rrr_d_Gamma_2_y[i];
+        const real rrr_d_phi_2_t = m->rrr_d_phi_2_t[i];
+        const real rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y -
+            rrr_d_Gamma_2_y*rrr_w_2_t;
+        /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real rrr_d_c_yy = m->rrr_d_c_yy[i];
+        const real rrr_Q_t = inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t -
+            inv_rrr_r_1_r0_y) - rrr_d_c_yy - rrr_d_Gamma_2_x*rrr_w_2_t;
+        const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
+        const real rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy +
+            axis_y_rrr_axes2_in_base_y*rrr_Q_t_2;
+        const real rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 -
+            axis_y_rrr_axes2_in_base_y*rrr_d_c_xy;
+        const real rrr_Q_t_5 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3;
+        const real rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 +
+            axis_y_rrr_axes2_in_base_y*rrr_Q_t_4;
+        const real rrr_Q_t_7 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4;
+        /* (M_ta) coupling block of M */
+        const real rrr_M_ta_t = rrr_Q_t_5*rrr_q_in_base_y + rrr_Q_t_6*rrr_q_in_base_x;
+        const real rrr_M_ta_t_2 = rrr_Q_t_6*rrr_q_in_base_y + rrr_Q_t_7*rrr_q_in_base_x;
+        /* (M_aa) rotational block of M */
+        const real rrr_M_aa_t = rrr_M_ta_t*rrr_q_in_base_y + rrr_M_ta_t_2*rrr_q_in_base_x;
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_Q_t_5 : rrr_Q_t_5;  /* total_rrr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_Q_t_6 : rrr_Q_t_6;  /* total_rrr_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_Q_t_7 : rrr_Q_t_7;  /* total_rrr_yy */
+        terms[3*count + k] = add ? terms[3*count + k] + rrr_M_ta_t : rrr_M_ta_t;  /* total_rrr_xz */
+        terms[4*count + k] = add ? terms[4*count + k] + rrr_M_ta_t_2 : rrr_M_ta_t_2;  /* total_rrr_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + rrr_M_aa_t : rrr_M_aa_t;  /* total_rrr_zz */
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void M_place_rrr(size_t w, const M_results_rrr *o, size_t first, verdict *t)
+INLINE void M_place_rrr(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        t->unreachable[k] += o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
     }
 }
 
-INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
+INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums, real *M, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real h_star_in_base_x = s->h_star_in_base_x[k];
-        const real h_star_in_base_y = s->h_star_in_base_y[k];
-        const real total_rrr_xx = s->sum[0][k];
-        const real total_rrr_xy = s->sum[1][k];
-        const real total_rrr_yy = s->sum[2][k];
-        const real total_rrr_xz = s->sum[3][k];
-        const real total_rrr_yz = s->sum[4][k];
-        const real total_rrr_zz = s->sum[5][k];
-        const real J_star_t_10 = m->J_star_t_10;
+        /* (M_tt) translational block of M */
         const real m_star = m->m_star;
-        /* (M1) translational block of M */
+        const real total_rrr_xx = sums[0*w + k];
         const real M_tt_xx = m_star - total_rrr_xx;
+        const real total_rrr_yy = sums[2*w + k];
         const real M_tt_yy = m_star - total_rrr_yy;
-        /* (M2) coupling block of M */
+        /* (M_ta) coupling block of M */
+        const real h_star_in_base_y = s[5*w + k];
+        const real total_rrr_xz = sums[3*w + k];
         const real M_ta_xz = total_rrr_xz - h_star_in_base_y;
+        const real h_star_in_base_x = s[4*w + k];
+        const real total_rrr_yz = sums[4*w + k];
         const real M_ta_yz = h_star_in_base_x - total_rrr_yz;
-        /* (M3) rotational block of M */
-        const real M_aa_zz = -J_star_t_10 - total_rrr_zz;
+        /* (M_aa) rotational block of M */
+        const real J_star_t_6 = m->J_star_t_6;
+        const real total_rrr_zz = sums[5*w + k];
+        const real M_aa_zz = -J_star_t_6 - total_rrr_zz;
         M[0*w + k] = M_tt_xx;
+        const real total_rrr_xy = sums[1*w + k];
         M[1*w + k] = total_rrr_xy;
         M[3*w + k] = total_rrr_xy;
         M[4*w + k] = M_tt_yy;
@@ -1654,716 +1671,706 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         M[5*w + k] = M_ta_yz;
         M[7*w + k] = M_ta_yz;
         M[8*w + k] = M_aa_zz;
+        t->total[k] += (M_tt_xx + (total_rrr_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
     }
 }
 
-INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *t)
+INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    M_values values, *const s = &values;
-    M_results_rrr results_rrr;
-    M_before(m, w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        M_legs_rrr(m, 0, 1, s, 0, 3, 0, &results_rrr);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            M_place_rrr(w, &results_rrr, leg, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_rrr.sum[n], 3);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            M_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
-            M_place_rrr(w, &results_rrr, 0, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_rrr.sum[n][k];
-            }
-        }
+    real s[6] = {0}, sums[6] = {0}, terms_rrr[6*LEGS(3)] = {0}, o_rrr[2*LEGS(3)] = {0};
+    M_before(m, 1, X, s);
+    M_legs_rrr(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        M_place_rrr(1, LEGS(3), o_rrr, leg, t);
     }
-    M_after(m, w, s, M);
+    for (size_t n = 0; n < 6; ++n) {
+        sums[n] = total(terms_rrr + n*LEGS(3), 3);
+    }
+    M_after(m, 1, s, sums, M, t);
 }
 
-/* ---- Z: 304 mul, 184 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
-        omega_z[LANES], Z_p_x[LANES], Z_p_y[LANES], Z_q_t[LANES], sum[3][LANES];
-} Z_values;
-typedef struct {
-    real sum[3][8], unreachable[8], singular[8];
-} Z_results_rrr;
+INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
+{
+    real s[6*LANES], sums[6*LANES], o_rrr[2*LANES];
+    M_before(m, LANES, X, s);
+    clear(sums, 6*LANES);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        M_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
+        M_place_rrr(LANES, LANES, o_rrr, 0, t);
+    }
+    M_after(m, LANES, s, sums, M, t);
+}
 
-INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, Z_values *s)
+/* ---- Z: 300 mul, 182 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
+INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real omega_z = V_2;
-        /* (P1) centripetal tensor of the platform */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
+        const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
+        /* (W_p) centripetal tensor of the platform */
         const real W_p_t = omega_z*omega_z;
-        /* (M4) centripetal force and weight of the platform */
-        const real Z_p_x = -Z_p_t - W_p_t*(R_xx*h_star_x - R_yx*h_star_y);
-        const real Z_p_y = -Z_p_t_2 - W_p_t*(R_xx*h_star_y + R_yx*h_star_x);
-        /* (M6) gyroscopic moment and moment of the weight of the platform */
-        const real Z_q_t = h_star_x*(R_xx*gravity_y - R_yx*gravity_x) - h_star_y*(R_xx*gravity_x +
-            R_yx*gravity_y);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->omega_z[k] = omega_z;
-        s->Z_p_x[k] = Z_p_x;
-        s->Z_p_y[k] = Z_p_y;
-        s->Z_q_t[k] = Z_q_t;
+        /* (Z_p) centripetal force and weight of the platform */
+        const real Z_p_t = m->Z_p_t;
+        const real Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x;
+        const real Z_p_t_2 = m->Z_p_t_2;
+        const real Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y;
+        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
+        s[4*w + k] = t_dot_x;
+        s[5*w + k] = t_dot_y;
+        s[6*w + k] = omega_z;
+        s[7*w + k] = Z_p_x;
+        s[8*w + k] = Z_p_y;
+        s[9*w + k] = Z_q_t;
     }
 }
 
-INLINE void Z_legs_rrr(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
-    states, size_t count, int add, Z_results_rrr *o)
+INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real J_1_zz = m->J_1_zz[i];
-        const real J_2_zz = m->J_2_zz[i];
-        const real Kd_1_t_2 = m->Kd_1_t_2[i];
-        const real Kd_1_t_3 = m->Kd_1_t_3[i];
-        const real branch_1 = m->branch_1[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_1_x = m->h_1_x[i];
-        const real h_1_y = m->h_1_y[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real inv_Kd_1_t_5 = m->inv_Kd_1_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_t = m->inv_uu_2_t[i];
-        const real rho2_1_t = m->rho2_1_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_ = m->size_[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real S_x = q_in_base_x + t_x - rrr_base_point_x;
-        const real S_y = q_in_base_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_t = S_x*S_x + S_y*S_y;
-        const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1 = px_1*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1 = py_1*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
-        /* (rrr-K9) discriminant */
-        const real disc_1 = rho2_1 - Kd_1*Kd_1;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1 = branch_1*root(disc_1);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2 = inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2 =
-            inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_t = rrr_platform_joint_offset_x*s_2;
-        const real r_1_x = rrr_joint2_offset_x + c_2*rrr_platform_joint_offset_x;
-        const real r_1_r0_x = c_2*r_1_x + r_1_t*s_2;
-        const real r_1_r0_y = r_1_x*s_2 - c_2*r_1_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1 = 1/rho2_1;
-        const real c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1*s_2 - c_2*s_1;
-        const real axis_y_rrr_axes2_r1_y = c_1*c_2 + s_1*s_2;
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_r0_y = 1/r_1_r0_y;
-        /* (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
-           less gravity */
-        const real g_r1_x = c_1*g_r0_x + g_r0_y*s_1;
-        const real g_r1_y = c_1*g_r0_y - g_r0_x*s_1;
-        /* (rrr-V1) velocity of the connection point */
-        const real S_dot_t = omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x;
-        const real S_dot_x = t_dot_x - S_dot_t;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        /* (rrr-V7) rate of joint 1 */
-        const real qd_1 = inv_r_1_r0_y*(S_dot_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_y*axis_y_rrr_axes2_in_base_x);
-        /* (rrr-V11) angular velocity of link 2 */
-        const real omega_2_z = inv_rrr_platform_joint_offset_x*(S_dot_x*axis_y_rrr_axes2_in_base_x
-            + S_dot_y*axis_y_rrr_axes2_in_base_y + qd_1*r_1_r0_x) - qd_1;
-        /* (rrr-V10) centripetal tensor of link 1 */
-        const real W_1_t = qd_1*qd_1;
-        /* (rrr-V12) centripetal tensor of link 2 */
-        const real W_2_t = omega_2_z*omega_2_z;
-        /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_x = -W_2_t*rrr_platform_joint_offset_x - W_1_t*c_2*rrr_joint2_offset_x;
-        /* (rrr-A1) centripetal acceleration of the connection point */
-        const real u_1_t = S_dot_t_2*omega_z;
-        const real u_1_t_2 = S_dot_t*omega_z;
-        const real u_1_tip_x = axis_y_rrr_axes2_in_base_x*u_1_t_2 -
-            axis_y_rrr_axes2_in_base_y*u_1_t;
-        const real u_1_tip_y = -axis_y_rrr_axes2_in_base_x*u_1_t -
-            axis_y_rrr_axes2_in_base_y*u_1_t_2;
-        /* (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-S_dot) velocity of the connection point */
+        const real omega_z = s[6*w + j];
+        const real rrr_S_dot_t = omega_z*rrr_q_in_base_y;
+        const real rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x;
+        const real t_dot_x = s[4*w + j];
+        const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
+        const real t_dot_y = s[5*w + j];
+        const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
+        /* (rrr-qd_2) rate of joint 2 */
+        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y);
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_omega_2_z =
+            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-u_1) centripetal acceleration of the connection point */
+        const real rrr_u_1_t = omega_z*rrr_S_dot_t_2;
+        const real rrr_u_1_t_2 = omega_z*rrr_S_dot_t;
+        /* (rrr-W_1) centripetal tensor of link 1 */
+        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-W_2) centripetal tensor of link 2 */
+        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        /* (rrr-u_1) centripetal acceleration of the connection point */
+        const real rrr_u_1_tip_x = axis_y_rrr_axes2_in_base_x*rrr_u_1_t_2 -
+            axis_y_rrr_axes2_in_base_y*rrr_u_1_t;
+        const real rrr_u_1_tip_y = -axis_y_rrr_axes2_in_base_x*rrr_u_1_t -
+            axis_y_rrr_axes2_in_base_y*rrr_u_1_t_2;
+        /* (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rel_o_x = u_1_tip_x - bias_x;
-        const real rel_o_y = u_1_tip_y + W_1_t*rrr_joint2_offset_x*s_2;
-        /* (rrr-A9) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_o = inv_r_1_r0_y*rel_o_x;
-        /* (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
-        const real mu_1_o_z = g_r1_x*h_1_y - J_1_zz*qdd_1_o - g_r1_y*h_1_x;
-        /* (rrr-N4) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real acc_2_o_x = u_1_tip_x + g_r1_y*s_2 - c_2*g_r1_x;
-        const real acc_2_o_y = u_1_tip_y - c_2*g_r1_y - g_r1_x*s_2;
-        /* (rrr-A18) remainder without the acceleration in: angular acceleration of link 2 */
-        const real alpha_2_o_z = inv_rrr_platform_joint_offset_x*(rel_o_y + qdd_1_o*r_1_r0_x) -
-            qdd_1_o;
-        /* (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with
+        const real rrr_rel_o_x = rrr_u_1_tip_x - rrr_bias_x;
+        const real rrr_rel_o_y = rrr_u_1_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        const real rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_rel_o_x;
+        /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        const real rrr_alpha_2_o_z = inv_rrr_platform_joint_offset_x*(rrr_rel_o_y +
+            rrr_qdd_1_o*rrr_r_1_r0_x) - rrr_qdd_1_o;
+        /* (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real rrr_acc_2_o_x = rrr_u_1_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+            axis_y_rrr_axes2_in_base_y*gravity_x;
+        const real rrr_acc_2_o_y = rrr_u_1_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+            axis_y_rrr_axes2_in_base_y*gravity_y;
+        /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real mu_2_o_z = J_2_zz*alpha_2_o_z + acc_2_o_y*h_2_x - acc_2_o_x*h_2_y;
-        /* (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
+        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
+        const real rrr_h_2_x = m->rrr_h_2_x[i];
+        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_mu_2_o_z = rrr_J_2_zz*rrr_alpha_2_o_z + rrr_acc_2_o_y*rrr_h_2_x -
+            rrr_acc_2_o_x*rrr_h_2_y;
+        /* (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 1, about their reference points */
+        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
+        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
+        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
+        const real rrr_h_1_x = m->rrr_h_1_x[i];
+        const real rrr_h_1_y = m->rrr_h_1_y[i];
+        const real rrr_mu_1_o_z = rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
+            rrr_J_1_zz*rrr_qdd_1_o - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
-        const real N_1_o_z = mu_1_o_z + mu_2_o_z;
-        /* (rrr-N32) remainder without the acceleration in: force at the connection point that balances
+        const real rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z;
+        /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real G_o_t = inv_rrr_platform_joint_offset_x*mu_2_o_z;
-        /* (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation
+        const real rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z;
+        /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real c_o_x = W_2_t*h_2_x + alpha_2_o_z*h_2_y - inv_r_1_r0_y*(G_o_t*r_1_r0_x -
-            N_1_o_z);
-        const real c_o_y = W_2_t*h_2_y - G_o_t - alpha_2_o_z*h_2_x;
-        /* (rrr-N37) velocity and gravity terms of the leg force */
-        const real U_in_base_x = -axis_y_rrr_axes2_in_base_x*c_o_y -
-            axis_y_rrr_axes2_in_base_y*c_o_x;
-        const real U_in_base_y = axis_y_rrr_axes2_in_base_x*c_o_x -
-            axis_y_rrr_axes2_in_base_y*c_o_y;
-        /* (M7) rotational part of Z */
-        const real Z_a_t = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y;
-        o->sum[0][k] = add ? o->sum[0][k] + U_in_base_x : U_in_base_x;  /* total_rrr_x */
-        o->sum[1][k] = add ? o->sum[1][k] + U_in_base_y : U_in_base_y;  /* total_rrr_y */
-        o->sum[2][k] = add ? o->sum[2][k] + Z_a_t : Z_a_t;  /* total_rrr_z */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
-            UNLESS(magnitude(-r_1_r0_y) > TOLERANCE*size_);
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
+        const real rrr_c_o_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y -
+            inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x - rrr_N_1_o_z);
+        const real rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x;
+        /* (rrr-U) velocity and gravity terms of the leg force */
+        const real rrr_U_in_base_x = -axis_y_rrr_axes2_in_base_x*rrr_c_o_y -
+            axis_y_rrr_axes2_in_base_y*rrr_c_o_x;
+        const real rrr_U_in_base_y = axis_y_rrr_axes2_in_base_x*rrr_c_o_x -
+            axis_y_rrr_axes2_in_base_y*rrr_c_o_y;
+        /* (Z_a) rotational part of Z */
+        const real rrr_Z_a_t = rrr_U_in_base_y*rrr_q_in_base_x - rrr_U_in_base_x*rrr_q_in_base_y;
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_U_in_base_x : rrr_U_in_base_x;  /* total_rrr_x */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_U_in_base_y : rrr_U_in_base_y;  /* total_rrr_y */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_Z_a_t : rrr_Z_a_t;  /* total_rrr_z */
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void Z_place_rrr(size_t w, const Z_results_rrr *o, size_t first, verdict *t)
+INLINE void Z_place_rrr(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        t->unreachable[k] += o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
     }
 }
 
-INLINE void Z_after(size_t w, const Z_values *s, real *Z)
+INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real Z_p_x = s->Z_p_x[k];
-        const real Z_p_y = s->Z_p_y[k];
-        const real Z_q_t = s->Z_q_t[k];
-        const real total_rrr_x = s->sum[0][k];
-        const real total_rrr_y = s->sum[1][k];
-        const real total_rrr_z = s->sum[2][k];
-        /* (M5) translational part of Z */
+        /* (Z_t) translational part of Z */
+        const real Z_p_x = s[7*w + k];
+        const real total_rrr_x = sums[0*w + k];
         const real Z_t_x = Z_p_x + total_rrr_x;
+        const real Z_p_y = s[8*w + k];
+        const real total_rrr_y = sums[1*w + k];
         const real Z_t_y = Z_p_y + total_rrr_y;
-        /* (M7) rotational part of Z */
+        /* (Z_a) rotational part of Z */
+        const real Z_q_t = s[9*w + k];
+        const real total_rrr_z = sums[2*w + k];
         const real Z_a_z = total_rrr_z - Z_q_t;
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_a_z;
+        t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
     }
 }
 
-INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    Z_values values, *const s = &values;
-    Z_results_rrr results_rrr;
-    Z_before(m, w, X, V, s);
-    if (w == 1) {  /* the legs side by side */
-        Z_legs_rrr(m, 0, 1, s, 0, 3, 0, &results_rrr);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            Z_place_rrr(w, &results_rrr, leg, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_rrr.sum[n], 3);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            Z_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
-            Z_place_rrr(w, &results_rrr, 0, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_rrr.sum[n][k];
-            }
-        }
+    real s[10] = {0}, sums[3] = {0}, terms_rrr[3*LEGS(3)] = {0}, o_rrr[2*LEGS(3)] = {0};
+    Z_before(m, 1, X, V, s);
+    Z_legs_rrr(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        Z_place_rrr(1, LEGS(3), o_rrr, leg, t);
     }
-    Z_after(w, s, Z);
+    for (size_t n = 0; n < 3; ++n) {
+        sums[n] = total(terms_rrr + n*LEGS(3), 3);
+    }
+    Z_after(1, s, sums, Z, t);
+}
+
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+{
+    real s[10*LANES], sums[3*LANES], o_rrr[2*LANES];
+    Z_before(m, LANES, X, V, s);
+    clear(sums, 3*LANES);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        Z_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
+        Z_place_rrr(LANES, LANES, o_rrr, 0, t);
+    }
+    Z_after(LANES, s, sums, Z, t);
 }
 
 /* ---- H: 141 mul, 69 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES];
-} H_values;
-typedef struct {
-    real entry[3][8], unreachable[8], singular[8];
-} H_results_rrr;
-
-INLINE void H_before(size_t w, const real *X, H_values *s)
+INLINE void H_before(size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
     }
 }
 
-INLINE void H_legs_rrr(const prepared *m, size_t leg, size_t legs, const H_values *s, size_t
-    states, size_t count, H_results_rrr *o)
+INLINE void H_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real Kd_1_t_2 = m->Kd_1_t_2[i];
-        const real Kd_1_t_3 = m->Kd_1_t_3[i];
-        const real branch_1 = m->branch_1[i];
-        const real inv_Kd_1_t_5 = m->inv_Kd_1_t_5[i];
-        const real inv_uu_2_t = m->inv_uu_2_t[i];
-        const real rho2_1_t = m->rho2_1_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_ = m->size_[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real S_x = q_in_base_x + t_x - rrr_base_point_x;
-        const real S_y = q_in_base_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_t = S_x*S_x + S_y*S_y;
-        const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1 = px_1*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1 = py_1*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
-        /* (rrr-K9) discriminant */
-        const real disc_1 = rho2_1 - Kd_1*Kd_1;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1 = branch_1*root(disc_1);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2 = inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2 =
-            inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_x = rrr_joint2_offset_x + c_2*rrr_platform_joint_offset_x;
-        const real r_1_r0_y = r_1_x*s_2 - c_2*rrr_platform_joint_offset_x*s_2;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1 = 1/rho2_1;
-        const real c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1*s_2 - c_2*s_1;
-        const real axis_y_rrr_axes2_r1_y = c_1*c_2 + s_1*s_2;
-        const real inv_r_1_r0_y = 1/r_1_r0_y;
-        const real w_1_t = inv_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        const real rrr_w_1_t = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy);
-        const real w_1_t_2 = inv_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
+        const real rrr_w_1_t_2 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy);
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_1_z = q_in_base_x*w_1_t_2 + q_in_base_y*w_1_t;
-        o->entry[0][k] = -w_1_t;
-        o->entry[1][k] = w_1_t_2;
-        o->entry[2][k] = H_a_1_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
-            UNLESS(magnitude(-r_1_r0_y) > TOLERANCE*size_);
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
+        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+        const real rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t;
+        o[0*count + k] = -rrr_w_1_t;
+        o[1*count + k] = rrr_w_1_t_2;
+        o[2*count + k] = rrr_H_a_1_z;
+        o[5*count + k] = rrr_w_1_t + (rrr_w_1_t_2 + rrr_H_a_1_z);
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[4*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[3*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void H_place_rrr(size_t w, const H_results_rrr *o, size_t leg, size_t first, real *H,
+INLINE void H_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_t first, real *H,
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(3 + leg)*w + k] = o->entry[1][first + k];
-        H[(6 + leg)*w + k] = o->entry[2][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(3 + leg)*w + k] = o[1*count + first + k];
+        H[(6 + leg)*w + k] = o[2*count + first + k];
+        t->unreachable[k] += o[3*count + first + k];
+        t->singular[k] += o[4*count + first + k];
+        t->total[k] += o[5*count + first + k];
     }
 }
 
-INLINE void H_run(const prepared *m, size_t w, const real *X, real *H, verdict *t)
+INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    H_values values, *const s = &values;
-    H_results_rrr results_rrr;
-    H_before(w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        H_legs_rrr(m, 0, 1, s, 0, 3, &results_rrr);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            H_place_rrr(w, &results_rrr, leg, leg, H, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            H_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
-            H_place_rrr(w, &results_rrr, leg, 0, H, t);
-        }
+    real s[4] = {0}, o_rrr[6*LEGS(3)] = {0};
+    H_before(1, X, s);
+    H_legs_rrr(m, 1, 0, 1, s, 0, LEGS(3), o_rrr);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        H_place_rrr(1, LEGS(3), o_rrr, leg, leg, H, t);
     }
 }
 
-/* ---- required: 327 mul, 204 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
-        omega_z[LANES], t_ddot_x[LANES], t_ddot_y[LANES], alpha_z[LANES], f_p_x[LANES], f_p_y[LANES],
-        mu_p_z[LANES], sum[3][LANES];
-} required_values;
-typedef struct {
-    real sum[3][8], entry[3][8], unreachable[8], singular[8];
-} required_results_rrr;
+INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
+{
+    real s[4*LANES], o_rrr[6*LANES];
+    H_before(LANES, X, s);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        H_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        H_place_rrr(LANES, LANES, o_rrr, leg, 0, H, t);
+    }
+}
 
+/* ---- required: 323 mul, 202 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
 INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, required_values *s)
+    *A, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real A_2 = A[2*w + k];
-        const real J_star_zz = m->J_star_zz;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real m_star = m->m_star;
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real omega_z = V_2;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
+        const real A_2 = A[2*w + k];
         const real alpha_z = A_2;
-        /* (L2) first moment about the platform origin */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
         const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
         const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
-        /* (P1) centripetal tensor of the platform */
+        /* (W_p) centripetal tensor of the platform */
         const real W_p_t = omega_z*omega_z;
-        /* (E1) acceleration of the platform origin, less gravity */
+        /* (a_t) acceleration of the platform origin, less gravity */
+        const real gravity_x = m->gravity_x;
         const real a_t_x = t_ddot_x - gravity_x;
+        const real gravity_y = m->gravity_y;
         const real a_t_y = t_ddot_y - gravity_y;
-        /* (E2) inertia force of the platform less its weight */
+        /* (f_p) inertia force of the platform less its weight */
+        const real m_star = m->m_star;
         const real f_p_x = a_t_x*m_star - W_p_t*h_star_in_base_x - alpha_z*h_star_in_base_y;
         const real f_p_y = a_t_y*m_star + alpha_z*h_star_in_base_x - W_p_t*h_star_in_base_y;
-        /* (E3) inertia moment of the platform less that of its weight */
-        const real mu_p_z = J_star_zz*alpha_z + h_star_x*(R_xx*a_t_y - R_yx*a_t_x) -
-            h_star_y*(R_xx*a_t_x + R_yx*a_t_y);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->alpha_z[k] = alpha_z;
-        s->f_p_x[k] = f_p_x;
-        s->f_p_y[k] = f_p_y;
-        s->mu_p_z[k] = mu_p_z;
+        /* (mu_p) inertia moment of the platform less that of its weight */
+        const real J_star_t_6 = m->J_star_t_6;
+        const real mu_p_z = a_t_y*h_star_in_base_x - J_star_t_6*alpha_z - a_t_x*h_star_in_base_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
+        s[4*w + k] = t_dot_x;
+        s[5*w + k] = t_dot_y;
+        s[6*w + k] = omega_z;
+        s[7*w + k] = t_ddot_x;
+        s[8*w + k] = t_ddot_y;
+        s[9*w + k] = alpha_z;
+        s[10*w + k] = f_p_x;
+        s[11*w + k] = f_p_y;
+        s[12*w + k] = mu_p_z;
     }
 }
 
-INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const required_values
-    *s, size_t states, size_t count, int add, required_results_rrr *o)
+INLINE void required_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real J_1_zz = m->J_1_zz[i];
-        const real J_2_zz = m->J_2_zz[i];
-        const real Kd_1_t_2 = m->Kd_1_t_2[i];
-        const real Kd_1_t_3 = m->Kd_1_t_3[i];
-        const real branch_1 = m->branch_1[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_1_x = m->h_1_x[i];
-        const real h_1_y = m->h_1_y[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real inv_Kd_1_t_5 = m->inv_Kd_1_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_t = m->inv_uu_2_t[i];
-        const real rho2_1_t = m->rho2_1_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_ = m->size_[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real S_x = q_in_base_x + t_x - rrr_base_point_x;
-        const real S_y = q_in_base_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_t = S_x*S_x + S_y*S_y;
-        const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1 = px_1*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1 = py_1*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
-        /* (rrr-K9) discriminant */
-        const real disc_1 = rho2_1 - Kd_1*Kd_1;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1 = branch_1*root(disc_1);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2 = inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2 =
-            inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_t = rrr_platform_joint_offset_x*s_2;
-        const real r_1_x = rrr_joint2_offset_x + c_2*rrr_platform_joint_offset_x;
-        const real r_1_r0_x = c_2*r_1_x + r_1_t*s_2;
-        const real r_1_r0_y = r_1_x*s_2 - c_2*r_1_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1 = 1/rho2_1;
-        const real c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1*s_2 - c_2*s_1;
-        const real axis_y_rrr_axes2_r1_y = c_1*c_2 + s_1*s_2;
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_r0_y = 1/r_1_r0_y;
-        /* (rrr-V1) velocity of the connection point */
-        const real S_dot_t = omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x;
-        const real S_dot_x = t_dot_x - S_dot_t;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        /* (rrr-V7) rate of joint 1 */
-        const real qd_1 = inv_r_1_r0_y*(S_dot_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_y*axis_y_rrr_axes2_in_base_x);
-        /* (rrr-V11) angular velocity of link 2 */
-        const real omega_2_z = inv_rrr_platform_joint_offset_x*(S_dot_x*axis_y_rrr_axes2_in_base_x
-            + S_dot_y*axis_y_rrr_axes2_in_base_y + qd_1*r_1_r0_x) - qd_1;
-        /* (rrr-V10) centripetal tensor of link 1 */
-        const real W_1_t = qd_1*qd_1;
-        /* (rrr-V12) centripetal tensor of link 2 */
-        const real W_2_t = omega_2_z*omega_2_z;
-        /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_x = -W_2_t*rrr_platform_joint_offset_x - W_1_t*c_2*rrr_joint2_offset_x;
-        /* (rrr-V5) reciprocal vector 1 */
-        const real w_1_t = axis_y_rrr_axes2_in_base_y*inv_r_1_r0_y;
-        const real w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_r0_y;
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_1_z = q_in_base_x*w_1_t_2 + q_in_base_y*w_1_t;
-        /* (rrr-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_x = t_ddot_x - alpha_z*q_in_base_y;
-        const real a_p_y = t_ddot_y + alpha_z*q_in_base_x;
-        /* (rrr-A3) acceleration of the connection point */
-        const real S_ddot_x = a_p_x - S_dot_t_2*omega_z;
-        const real S_ddot_y = a_p_y - S_dot_t*omega_z;
-        const real S_ddot_tip_x = S_ddot_x*axis_y_rrr_axes2_in_base_y -
-            S_ddot_y*axis_y_rrr_axes2_in_base_x;
-        const real S_ddot_tip_y = S_ddot_x*axis_y_rrr_axes2_in_base_x +
-            S_ddot_y*axis_y_rrr_axes2_in_base_y;
-        /* (rrr-A6) acceleration of the connection point left to the joint accelerations */
-        const real rel_x = S_ddot_tip_x - bias_x;
-        const real rel_y = S_ddot_tip_y + W_1_t*rrr_joint2_offset_x*s_2;
-        /* (rrr-A8) acceleration of joint 1 */
-        const real qdd_1 = inv_r_1_r0_y*rel_x;
-        /* (rrr-N3) acceleration of the reference point of link 2, less gravity */
-        const real acc_2_x = S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-S_dot) velocity of the connection point */
+        const real omega_z = s[6*w + j];
+        const real rrr_S_dot_t = omega_z*rrr_q_in_base_y;
+        const real rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x;
+        const real t_dot_x = s[4*w + j];
+        const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
+        const real t_dot_y = s[5*w + j];
+        const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
+        /* (rrr-qd_2) rate of joint 2 */
+        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y);
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_omega_2_z =
+            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-W_1) centripetal tensor of link 1 */
+        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-W_2) centripetal tensor of link 2 */
+        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y;
+        const real rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y;
+        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+        const real rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t;
+        /* (rrr-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_z = s[9*w + j];
+        const real t_ddot_x = s[7*w + j];
+        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y;
+        const real t_ddot_y = s[8*w + j];
+        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x;
+        /* (rrr-S_ddot) acceleration of the connection point */
+        const real rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2;
+        const real rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t;
+        const real rrr_S_ddot_tip_x = axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y;
+        const real rrr_S_ddot_tip_y = axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y;
+        /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
+        const real rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x;
+        const real rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-qdd_1) acceleration of joint 1 */
+        const real rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x;
+        /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real rrr_acc_2_x = rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
             axis_y_rrr_axes2_in_base_y*gravity_x;
-        const real acc_2_y = S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+        const real rrr_acc_2_y = rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
             axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-N23) inertia moment of the links that turn with link 1, about their reference points */
-        const real mu_1_z = h_1_y*(c_1*g_r0_x + g_r0_y*s_1) - J_1_zz*qdd_1 - h_1_x*(c_1*g_r0_y -
-            g_r0_x*s_1);
-        /* (rrr-A16) angular acceleration of link 2 */
-        const real alpha_2_z = inv_rrr_platform_joint_offset_x*(rel_y + qdd_1*r_1_r0_x) - qdd_1;
-        /* (rrr-N16) inertia moment of the links that turn with link 2, about their reference points */
-        const real mu_2_z = J_2_zz*alpha_2_z + acc_2_y*h_2_x - acc_2_x*h_2_y;
-        /* (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rrr-alpha_2) angular acceleration of link 2 */
+        const real rrr_alpha_2_z = inv_rrr_platform_joint_offset_x*(rrr_rel_y +
+            rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1;
+        /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
+        const real rrr_h_2_x = m->rrr_h_2_x[i];
+        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x -
+            rrr_acc_2_x*rrr_h_2_y;
+        /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
+        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
+        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
+        const real rrr_h_1_x = m->rrr_h_1_x[i];
+        const real rrr_h_1_y = m->rrr_h_1_y[i];
+        const real rrr_mu_1_z = rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
+            rrr_J_1_zz*rrr_qdd_1 - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
-        const real N_1_z = mu_1_z + mu_2_z;
-        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
+        const real rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z;
+        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real G_t = inv_rrr_platform_joint_offset_x*mu_2_z;
-        /* (rrr-N33) leg force on the platform without actuation and without the mass at the connection
+        const real rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z;
+        /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_x = W_2_t*h_2_x + alpha_2_z*h_2_y - inv_r_1_r0_y*(G_t*r_1_r0_x - N_1_z);
-        const real c_y = W_2_t*h_2_y - G_t - alpha_2_z*h_2_x;
-        const real c_in_base_x = axis_y_rrr_axes2_in_base_x*c_y + axis_y_rrr_axes2_in_base_y*c_x;
-        const real c_in_base_y = axis_y_rrr_axes2_in_base_y*c_y - axis_y_rrr_axes2_in_base_x*c_x;
-        /* (E5) moment that actuators and external wrench must give */
-        const real R_a_t = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y;
-        o->sum[0][k] = add ? o->sum[0][k] + c_in_base_x : c_in_base_x;  /* total_rrr_x */
-        o->sum[1][k] = add ? o->sum[1][k] + c_in_base_y : c_in_base_y;  /* total_rrr_y */
-        o->sum[2][k] = add ? o->sum[2][k] + R_a_t : R_a_t;  /* total_rrr_z */
-        o->entry[0][k] = -w_1_t;
-        o->entry[1][k] = w_1_t_2;
-        o->entry[2][k] = H_a_1_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
-            UNLESS(magnitude(-r_1_r0_y) > TOLERANCE*size_);
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
+        const real rrr_c_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y -
+            inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x - rrr_N_1_z);
+        const real rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x;
+        const real rrr_c_in_base_x = axis_y_rrr_axes2_in_base_x*rrr_c_y +
+            axis_y_rrr_axes2_in_base_y*rrr_c_x;
+        const real rrr_c_in_base_y = axis_y_rrr_axes2_in_base_y*rrr_c_y -
+            axis_y_rrr_axes2_in_base_x*rrr_c_x;
+        /* (R_a) moment that actuators and external wrench must give */
+        const real rrr_R_a_t = rrr_c_in_base_y*rrr_q_in_base_x - rrr_c_in_base_x*rrr_q_in_base_y;
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_c_in_base_x : rrr_c_in_base_x;  /* total_rrr_x */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_c_in_base_y : rrr_c_in_base_y;  /* total_rrr_y */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_R_a_t : rrr_R_a_t;  /* total_rrr_z */
+        o[0*count + k] = -rrr_w_1_t;
+        o[1*count + k] = rrr_w_1_t_2;
+        o[2*count + k] = rrr_H_a_1_z;
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[4*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[3*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void required_place_rrr(size_t w, const required_results_rrr *o, size_t leg, size_t first,
+INLINE void required_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_t first,
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(3 + leg)*w + k] = o->entry[1][first + k];
-        H[(6 + leg)*w + k] = o->entry[2][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(3 + leg)*w + k] = o[1*count + first + k];
+        H[(6 + leg)*w + k] = o[2*count + first + k];
+        t->unreachable[k] += o[3*count + first + k];
+        t->singular[k] += o[4*count + first + k];
     }
 }
 
-INLINE void required_after(size_t w, const required_values *s, real *required)
+INLINE void required_after(size_t w, const real *s, const real *sums, real *required)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real f_p_x = s->f_p_x[k];
-        const real f_p_y = s->f_p_y[k];
-        const real mu_p_z = s->mu_p_z[k];
-        const real total_rrr_x = s->sum[0][k];
-        const real total_rrr_y = s->sum[1][k];
-        const real total_rrr_z = s->sum[2][k];
-        /* (E4) force that actuators and external wrench must give */
+        /* (R_t) force that actuators and external wrench must give */
+        const real f_p_x = s[10*w + k];
+        const real total_rrr_x = sums[0*w + k];
         const real R_t_x = f_p_x - total_rrr_x;
+        const real f_p_y = s[11*w + k];
+        const real total_rrr_y = sums[1*w + k];
         const real R_t_y = f_p_y - total_rrr_y;
-        /* (E5) moment that actuators and external wrench must give */
+        /* (R_a) moment that actuators and external wrench must give */
+        const real mu_p_z = s[12*w + k];
+        const real total_rrr_z = sums[2*w + k];
         const real R_a_z = mu_p_z - total_rrr_z;
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
@@ -2371,1332 +2378,1573 @@ INLINE void required_after(size_t w, const required_values *s, real *required)
     }
 }
 
-INLINE void required_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+    *required, real *H, verdict *t)
+{
+    real s[13] = {0}, sums[3] = {0}, terms_rrr[3*LEGS(3)] = {0}, o_rrr[5*LEGS(3)] = {0};
+    required_before(m, 1, X, V, A, s);
+    required_legs_rrr(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        required_place_rrr(1, LEGS(3), o_rrr, leg, leg, H, t);
+    }
+    for (size_t n = 0; n < 3; ++n) {
+        sums[n] = total(terms_rrr + n*LEGS(3), 3);
+    }
+    required_after(1, s, sums, required);
+}
+
+INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, verdict *t)
 {
-    required_values values, *const s = &values;
-    required_results_rrr results_rrr;
-    required_before(m, w, X, V, A, s);
-    if (w == 1) {  /* the legs side by side */
-        required_legs_rrr(m, 0, 1, s, 0, 3, 0, &results_rrr);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            required_place_rrr(w, &results_rrr, leg, leg, H, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_rrr.sum[n], 3);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            required_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
-            required_place_rrr(w, &results_rrr, leg, 0, H, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_rrr.sum[n][k];
-            }
-        }
+    real s[13*LANES], sums[3*LANES], o_rrr[5*LANES];
+    required_before(m, LANES, X, V, A, s);
+    clear(sums, 3*LANES);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        required_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
+        required_place_rrr(LANES, LANES, o_rrr, leg, 0, H, t);
     }
-    required_after(w, s, required);
+    required_after(LANES, s, sums, required);
 }
 
 /* ---- inverse_kinematics: 93 mul, 48 add, 3 div, 3 sqrt, 6 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES];
-} inverse_kinematics_values;
-typedef struct {
-    real entry[2][8], unreachable[8], singular[8];
-} inverse_kinematics_results_rrr;
-
-INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematics_values *s)
+INLINE void inverse_kinematics_before(size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
     }
 }
 
-INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t leg, size_t legs, const
-    inverse_kinematics_values *s, size_t states, size_t count, inverse_kinematics_results_rrr *o)
+INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs,
+    const real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real Kd_1_t_2 = m->Kd_1_t_2[i];
-        const real Kd_1_t_3 = m->Kd_1_t_3[i];
-        const real branch_1 = m->branch_1[i];
-        const real inv_Kd_1_t_5 = m->inv_Kd_1_t_5[i];
-        const real inv_uu_2_t = m->inv_uu_2_t[i];
-        const real rho2_1_t = m->rho2_1_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x -
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x -
             R_yx*rrr_platform_point_y;
-        const real S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x -
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x -
             rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_t = S_x*S_x + S_y*S_y;
-        const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1 = px_1*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1 = py_1*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
-        /* (rrr-K9) discriminant */
-        const real disc_1 = rho2_1 - Kd_1*Kd_1;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1 = branch_1*root(disc_1);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1 = 1/rho2_1;
-        /* (rrr-K13) displacement of joint 1 */
-        const real q_1 = angle(inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1), inv_rho2_1*(Kc_1*Kd_1 -
-            Ks_1*root_1));
-        /* (rrr-K20) displacement of joint 2 */
-        const real q_2 =
-            angle(-inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x,
-            inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x);
-        o->entry[0][k] = q_1;
-        o->entry[1][k] = q_2;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t);
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        /* (rrr-q_1) displacement of joint 1 */
+        const real rrr_q_1 = angle(inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1),
+            inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1));
+        /* (rrr-q_2) displacement of joint 2 */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_q_2 =
+            angle(-inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
+            inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x);
+        o[0*count + k] = rrr_q_1;
+        o[1*count + k] = rrr_q_2;
+        o[4*count + k] = rrr_q_1 + rrr_q_2;
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
+        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void inverse_kinematics_place_rrr(size_t w, const inverse_kinematics_results_rrr *o, size_t
-    leg, size_t first, real *q, verdict *t)
+INLINE void inverse_kinematics_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_t
+    first, real *q, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        q[(2*leg)*w + k] = o->entry[0][first + k];
-        q[(1 + 2*leg)*w + k] = o->entry[1][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        q[(2*leg)*w + k] = o[0*count + first + k];
+        q[(1 + 2*leg)*w + k] = o[1*count + first + k];
+        t->unreachable[k] += o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
 }
 
-INLINE void inverse_kinematics_run(const prepared *m, size_t w, const real *X, real *q, verdict
-    *t)
+INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    inverse_kinematics_values values, *const s = &values;
-    inverse_kinematics_results_rrr results_rrr;
-    inverse_kinematics_before(w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        inverse_kinematics_legs_rrr(m, 0, 1, s, 0, 3, &results_rrr);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            inverse_kinematics_place_rrr(w, &results_rrr, leg, leg, q, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            inverse_kinematics_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
-            inverse_kinematics_place_rrr(w, &results_rrr, leg, 0, q, t);
-        }
+    real s[4] = {0}, o_rrr[5*LEGS(3)] = {0};
+    inverse_kinematics_before(1, X, s);
+    inverse_kinematics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(3), o_rrr);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        inverse_kinematics_place_rrr(1, LEGS(3), o_rrr, leg, leg, q, t);
+    }
+}
+
+INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
+{
+    real s[4*LANES], o_rrr[5*LANES];
+    inverse_kinematics_before(LANES, X, s);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        inverse_kinematics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        inverse_kinematics_place_rrr(LANES, LANES, o_rrr, leg, 0, q, t);
     }
 }
 
 /* ---- joint_rates: 159 mul, 84 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
-        omega_z[LANES];
-} joint_rates_values;
-typedef struct {
-    real entry[2][8], unreachable[8], singular[8];
-} joint_rates_results_rrr;
-
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rates_values *s)
+INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real omega_z = V_2;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->omega_z[k] = omega_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
+        s[4*w + k] = t_dot_x;
+        s[5*w + k] = t_dot_y;
+        s[6*w + k] = omega_z;
     }
 }
 
-INLINE void joint_rates_legs_rrr(const prepared *m, size_t leg, size_t legs, const
-    joint_rates_values *s, size_t states, size_t count, joint_rates_results_rrr *o)
+INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real Kd_1_t_2 = m->Kd_1_t_2[i];
-        const real Kd_1_t_3 = m->Kd_1_t_3[i];
-        const real branch_1 = m->branch_1[i];
-        const real inv_Kd_1_t_5 = m->inv_Kd_1_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_t = m->inv_uu_2_t[i];
-        const real rho2_1_t = m->rho2_1_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_ = m->size_[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real S_x = q_in_base_x + t_x - rrr_base_point_x;
-        const real S_y = q_in_base_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_t = S_x*S_x + S_y*S_y;
-        const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1 = px_1*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1 = py_1*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
-        /* (rrr-K9) discriminant */
-        const real disc_1 = rho2_1 - Kd_1*Kd_1;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1 = branch_1*root(disc_1);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2 = inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2 =
-            inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_t = rrr_platform_joint_offset_x*s_2;
-        const real r_1_x = rrr_joint2_offset_x + c_2*rrr_platform_joint_offset_x;
-        const real r_1_r0_y = r_1_x*s_2 - c_2*r_1_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1 = 1/rho2_1;
-        const real c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1*s_2 - c_2*s_1;
-        const real axis_y_rrr_axes2_r1_y = c_1*c_2 + s_1*s_2;
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        /* (rrr-V1) velocity of the connection point */
-        const real S_dot_x = t_dot_x - omega_z*q_in_base_y;
-        const real S_dot_y = t_dot_y + omega_z*q_in_base_x;
-        /* (rrr-V7) rate of joint 1 */
-        const real qd_1 = (S_dot_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_y*axis_y_rrr_axes2_in_base_x)/r_1_r0_y;
-        const real qd_2 = inv_rrr_platform_joint_offset_x*(S_dot_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_y*axis_y_rrr_axes2_in_base_y + qd_1*(c_2*r_1_x + r_1_t*s_2));
-        o->entry[0][k] = -qd_1;
-        o->entry[1][k] = qd_2;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
-            UNLESS(magnitude(-r_1_r0_y) > TOLERANCE*size_);
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
+        /* (rrr-S_dot) velocity of the connection point */
+        const real omega_z = s[6*w + j];
+        const real t_dot_x = s[4*w + j];
+        const real rrr_S_dot_x = t_dot_x - omega_z*rrr_q_in_base_y;
+        const real t_dot_y = s[5*w + j];
+        const real rrr_S_dot_y = t_dot_y + omega_z*rrr_q_in_base_x;
+        /* (rrr-qd_2) rate of joint 2 */
+        const real rrr_qd_1 = (axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)/rrr_r_1_r0_y;
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_qd_2 =
+            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*(rrr_c_2*rrr_r_1_x +
+            rrr_r_1_t*rrr_s_2));
+        o[0*count + k] = -rrr_qd_1;
+        o[1*count + k] = rrr_qd_2;
+        o[4*count + k] = rrr_qd_1 + rrr_qd_2;
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void joint_rates_place_rrr(size_t w, const joint_rates_results_rrr *o, size_t leg, size_t
-    first, real *qd, verdict *t)
+INLINE void joint_rates_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_t first,
+    real *qd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qd[(2*leg)*w + k] = o->entry[0][first + k];
-        qd[(1 + 2*leg)*w + k] = o->entry[1][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        qd[(2*leg)*w + k] = o[0*count + first + k];
+        qd[(1 + 2*leg)*w + k] = o[1*count + first + k];
+        t->unreachable[k] += o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
 }
 
-INLINE void joint_rates_run(const prepared *m, size_t w, const real *X, const real *V, real *qd,
+INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+{
+    real s[7] = {0}, o_rrr[5*LEGS(3)] = {0};
+    joint_rates_before(1, X, V, s);
+    joint_rates_legs_rrr(m, 1, 0, 1, s, 0, LEGS(3), o_rrr);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        joint_rates_place_rrr(1, LEGS(3), o_rrr, leg, leg, qd, t);
+    }
+}
+
+INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    joint_rates_values values, *const s = &values;
-    joint_rates_results_rrr results_rrr;
-    joint_rates_before(w, X, V, s);
-    if (w == 1) {  /* the legs side by side */
-        joint_rates_legs_rrr(m, 0, 1, s, 0, 3, &results_rrr);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            joint_rates_place_rrr(w, &results_rrr, leg, leg, qd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            joint_rates_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
-            joint_rates_place_rrr(w, &results_rrr, leg, 0, qd, t);
-        }
+    real s[7*LANES], o_rrr[5*LANES];
+    joint_rates_before(LANES, X, V, s);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        joint_rates_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        joint_rates_place_rrr(LANES, LANES, o_rrr, leg, 0, qd, t);
     }
 }
 
 /* ---- joint_accelerations: 216 mul, 117 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
-        omega_z[LANES], t_ddot_x[LANES], t_ddot_y[LANES], alpha_z[LANES];
-} joint_accelerations_values;
-typedef struct {
-    real entry[2][8], unreachable[8], singular[8];
-} joint_accelerations_results_rrr;
-
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A,
-    joint_accelerations_values *s)
+INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
+    *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real A_2 = A[2*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real omega_z = V_2;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
+        const real A_2 = A[2*w + k];
         const real alpha_z = A_2;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->alpha_z[k] = alpha_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
+        s[4*w + k] = t_dot_x;
+        s[5*w + k] = t_dot_y;
+        s[6*w + k] = omega_z;
+        s[7*w + k] = t_ddot_x;
+        s[8*w + k] = t_ddot_y;
+        s[9*w + k] = alpha_z;
     }
 }
 
-INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t leg, size_t legs, const
-    joint_accelerations_values *s, size_t states, size_t count, joint_accelerations_results_rrr
-    *o)
+INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs,
+    const real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real Kd_1_t_2 = m->Kd_1_t_2[i];
-        const real Kd_1_t_3 = m->Kd_1_t_3[i];
-        const real branch_1 = m->branch_1[i];
-        const real inv_Kd_1_t_5 = m->inv_Kd_1_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_t = m->inv_uu_2_t[i];
-        const real rho2_1_t = m->rho2_1_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_ = m->size_[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real S_x = q_in_base_x + t_x - rrr_base_point_x;
-        const real S_y = q_in_base_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_t = S_x*S_x + S_y*S_y;
-        const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1 = px_1*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1 = py_1*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
-        /* (rrr-K9) discriminant */
-        const real disc_1 = rho2_1 - Kd_1*Kd_1;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1 = branch_1*root(disc_1);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2 = inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2 =
-            inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_t = rrr_platform_joint_offset_x*s_2;
-        const real r_1_x = rrr_joint2_offset_x + c_2*rrr_platform_joint_offset_x;
-        const real r_1_r0_x = c_2*r_1_x + r_1_t*s_2;
-        const real r_1_r0_y = r_1_x*s_2 - c_2*r_1_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1 = 1/rho2_1;
-        const real c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1*s_2 - c_2*s_1;
-        const real axis_y_rrr_axes2_r1_y = c_1*c_2 + s_1*s_2;
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_r0_y = 1/r_1_r0_y;
-        /* (rrr-V1) velocity of the connection point */
-        const real S_dot_t = omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x;
-        const real S_dot_x = t_dot_x - S_dot_t;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        /* (rrr-V7) rate of joint 1 */
-        const real qd_1 = inv_r_1_r0_y*(S_dot_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_y*axis_y_rrr_axes2_in_base_x);
-        /* (rrr-V11) angular velocity of link 2 */
-        const real omega_2_z = inv_rrr_platform_joint_offset_x*(S_dot_x*axis_y_rrr_axes2_in_base_x
-            + S_dot_y*axis_y_rrr_axes2_in_base_y + qd_1*r_1_r0_x) - qd_1;
-        /* (rrr-V10) centripetal tensor of link 1 */
-        const real W_1_t = qd_1*qd_1;
-        /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_x = -omega_2_z*omega_2_z*rrr_platform_joint_offset_x -
-            W_1_t*c_2*rrr_joint2_offset_x;
-        /* (rrr-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_x = t_ddot_x - alpha_z*q_in_base_y;
-        const real a_p_y = t_ddot_y + alpha_z*q_in_base_x;
-        /* (rrr-A3) acceleration of the connection point */
-        const real S_ddot_x = a_p_x - S_dot_t_2*omega_z;
-        const real S_ddot_y = a_p_y - S_dot_t*omega_z;
-        /* (rrr-A6) acceleration of the connection point left to the joint accelerations */
-        const real rel_x = S_ddot_x*axis_y_rrr_axes2_in_base_y - bias_x -
-            S_ddot_y*axis_y_rrr_axes2_in_base_x;
-        const real rel_y = S_ddot_x*axis_y_rrr_axes2_in_base_x +
-            S_ddot_y*axis_y_rrr_axes2_in_base_y + W_1_t*rrr_joint2_offset_x*s_2;
-        /* (rrr-A8) acceleration of joint 1 */
-        const real qdd_1 = inv_r_1_r0_y*rel_x;
-        const real qdd_2 = inv_rrr_platform_joint_offset_x*(rel_y + qdd_1*r_1_r0_x);
-        o->entry[0][k] = -qdd_1;
-        o->entry[1][k] = qdd_2;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
-            UNLESS(magnitude(-r_1_r0_y) > TOLERANCE*size_);
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-S_dot) velocity of the connection point */
+        const real omega_z = s[6*w + j];
+        const real rrr_S_dot_t = omega_z*rrr_q_in_base_y;
+        const real rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x;
+        const real t_dot_x = s[4*w + j];
+        const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
+        const real t_dot_y = s[5*w + j];
+        const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
+        /* (rrr-qd_2) rate of joint 2 */
+        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y);
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_omega_2_z =
+            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-W_1) centripetal tensor of link 1 */
+        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_x = -rrr_omega_2_z*rrr_omega_2_z*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        /* (rrr-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_z = s[9*w + j];
+        const real t_ddot_x = s[7*w + j];
+        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y;
+        const real t_ddot_y = s[8*w + j];
+        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x;
+        /* (rrr-S_ddot) acceleration of the connection point */
+        const real rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2;
+        const real rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t;
+        /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
+        const real rrr_rel_x = axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x - rrr_bias_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y;
+        const real rrr_rel_y = axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-qdd_1) acceleration of joint 1 */
+        const real rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x;
+        const real rrr_qdd_2 = inv_rrr_platform_joint_offset_x*(rrr_rel_y +
+            rrr_qdd_1*rrr_r_1_r0_x);
+        o[0*count + k] = -rrr_qdd_1;
+        o[1*count + k] = rrr_qdd_2;
+        o[4*count + k] = rrr_qdd_1 + rrr_qdd_2;
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void joint_accelerations_place_rrr(size_t w, const joint_accelerations_results_rrr *o,
-    size_t leg, size_t first, real *qdd, verdict *t)
+INLINE void joint_accelerations_place_rrr(size_t w, size_t count, const real *o, size_t leg,
+    size_t first, real *qdd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qdd[(2*leg)*w + k] = o->entry[0][first + k];
-        qdd[(1 + 2*leg)*w + k] = o->entry[1][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        qdd[(2*leg)*w + k] = o[0*count + first + k];
+        qdd[(1 + 2*leg)*w + k] = o[1*count + first + k];
+        t->unreachable[k] += o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
 }
 
-INLINE void joint_accelerations_run(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd, verdict *t)
+INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd, verdict *t)
 {
-    joint_accelerations_values values, *const s = &values;
-    joint_accelerations_results_rrr results_rrr;
-    joint_accelerations_before(w, X, V, A, s);
-    if (w == 1) {  /* the legs side by side */
-        joint_accelerations_legs_rrr(m, 0, 1, s, 0, 3, &results_rrr);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            joint_accelerations_place_rrr(w, &results_rrr, leg, leg, qdd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            joint_accelerations_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
-            joint_accelerations_place_rrr(w, &results_rrr, leg, 0, qdd, t);
-        }
+    real s[10] = {0}, o_rrr[5*LEGS(3)] = {0};
+    joint_accelerations_before(1, X, V, A, s);
+    joint_accelerations_legs_rrr(m, 1, 0, 1, s, 0, LEGS(3), o_rrr);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        joint_accelerations_place_rrr(1, LEGS(3), o_rrr, leg, leg, qdd, t);
+    }
+}
+
+INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, verdict *t)
+{
+    real s[10*LANES], o_rrr[5*LANES];
+    joint_accelerations_before(LANES, X, V, A, s);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        joint_accelerations_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        joint_accelerations_place_rrr(LANES, LANES, o_rrr, leg, 0, qdd, t);
     }
 }
 
 /* ---- legs: 303 mul, 180 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
-        omega_z[LANES], t_ddot_x[LANES], t_ddot_y[LANES], alpha_z[LANES];
-} legs_values;
-typedef struct {
-    real entry[4][8], unreachable[8], singular[8];
-} legs_results_rrr;
-
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, legs_values *s)
+INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real A_2 = A[2*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real omega_z = V_2;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
+        const real A_2 = A[2*w + k];
         const real alpha_z = A_2;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->alpha_z[k] = alpha_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
+        s[4*w + k] = t_dot_x;
+        s[5*w + k] = t_dot_y;
+        s[6*w + k] = omega_z;
+        s[7*w + k] = t_ddot_x;
+        s[8*w + k] = t_ddot_y;
+        s[9*w + k] = alpha_z;
     }
 }
 
-INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs_values *s, size_t
-    states, size_t count, legs_results_rrr *o)
+INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real J_1_zz = m->J_1_zz[i];
-        const real J_2_zz = m->J_2_zz[i];
-        const real Kd_1_t_2 = m->Kd_1_t_2[i];
-        const real Kd_1_t_3 = m->Kd_1_t_3[i];
-        const real branch_1 = m->branch_1[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_1_x = m->h_1_x[i];
-        const real h_1_y = m->h_1_y[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real inv_Kd_1_t_5 = m->inv_Kd_1_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_t = m->inv_uu_2_t[i];
-        const real rho2_1_t = m->rho2_1_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_link2_mass = m->rrr_link2_mass[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_ = m->size_[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real S_x = q_in_base_x + t_x - rrr_base_point_x;
-        const real S_y = q_in_base_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_t = S_x*S_x + S_y*S_y;
-        const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1 = px_1*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1 = py_1*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
-        /* (rrr-K9) discriminant */
-        const real disc_1 = rho2_1 - Kd_1*Kd_1;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1 = branch_1*root(disc_1);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2 = inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2 =
-            inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_t = rrr_platform_joint_offset_x*s_2;
-        const real r_1_x = rrr_joint2_offset_x + c_2*rrr_platform_joint_offset_x;
-        const real r_1_r0_x = c_2*r_1_x + r_1_t*s_2;
-        const real r_1_r0_y = r_1_x*s_2 - c_2*r_1_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1 = 1/rho2_1;
-        const real c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1*s_2 - c_2*s_1;
-        const real axis_y_rrr_axes2_r1_y = c_1*c_2 + s_1*s_2;
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_r0_y = 1/r_1_r0_y;
-        /* (rrr-V1) velocity of the connection point */
-        const real S_dot_t = omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x;
-        const real S_dot_x = t_dot_x - S_dot_t;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        /* (rrr-V7) rate of joint 1 */
-        const real qd_1 = inv_r_1_r0_y*(S_dot_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_y*axis_y_rrr_axes2_in_base_x);
-        /* (rrr-V11) angular velocity of link 2 */
-        const real omega_2_z = inv_rrr_platform_joint_offset_x*(S_dot_x*axis_y_rrr_axes2_in_base_x
-            + S_dot_y*axis_y_rrr_axes2_in_base_y + qd_1*r_1_r0_x) - qd_1;
-        /* (rrr-V10) centripetal tensor of link 1 */
-        const real W_1_t = qd_1*qd_1;
-        /* (rrr-V12) centripetal tensor of link 2 */
-        const real W_2_t = omega_2_z*omega_2_z;
-        /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_x = -W_2_t*rrr_platform_joint_offset_x - W_1_t*c_2*rrr_joint2_offset_x;
-        /* (rrr-V5) reciprocal vector 1 */
-        const real w_1_t = axis_y_rrr_axes2_in_base_y*inv_r_1_r0_y;
-        const real w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_r0_y;
-        /* (rrr-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_x = t_ddot_x - alpha_z*q_in_base_y;
-        const real a_p_y = t_ddot_y + alpha_z*q_in_base_x;
-        /* (rrr-A3) acceleration of the connection point */
-        const real S_ddot_x = a_p_x - S_dot_t_2*omega_z;
-        const real S_ddot_y = a_p_y - S_dot_t*omega_z;
-        const real S_ddot_tip_x = S_ddot_x*axis_y_rrr_axes2_in_base_y -
-            S_ddot_y*axis_y_rrr_axes2_in_base_x;
-        const real S_ddot_tip_y = S_ddot_x*axis_y_rrr_axes2_in_base_x +
-            S_ddot_y*axis_y_rrr_axes2_in_base_y;
-        /* (rrr-A6) acceleration of the connection point left to the joint accelerations */
-        const real rel_x = S_ddot_tip_x - bias_x;
-        const real rel_y = S_ddot_tip_y + W_1_t*rrr_joint2_offset_x*s_2;
-        /* (rrr-A8) acceleration of joint 1 */
-        const real qdd_1 = inv_r_1_r0_y*rel_x;
-        /* (rrr-N3) acceleration of the reference point of link 2, less gravity */
-        const real acc_2_x = S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-S_dot) velocity of the connection point */
+        const real omega_z = s[6*w + j];
+        const real rrr_S_dot_t = omega_z*rrr_q_in_base_y;
+        const real rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x;
+        const real t_dot_x = s[4*w + j];
+        const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
+        const real t_dot_y = s[5*w + j];
+        const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
+        /* (rrr-qd_2) rate of joint 2 */
+        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y);
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_omega_2_z =
+            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-W_1) centripetal tensor of link 1 */
+        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-W_2) centripetal tensor of link 2 */
+        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y;
+        const real rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y;
+        /* (rrr-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_z = s[9*w + j];
+        const real t_ddot_x = s[7*w + j];
+        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y;
+        const real t_ddot_y = s[8*w + j];
+        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x;
+        /* (rrr-S_ddot) acceleration of the connection point */
+        const real rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2;
+        const real rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t;
+        const real rrr_S_ddot_tip_x = axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y;
+        const real rrr_S_ddot_tip_y = axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y;
+        /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
+        const real rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x;
+        const real rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-qdd_1) acceleration of joint 1 */
+        const real rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x;
+        /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real rrr_acc_2_x = rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
             axis_y_rrr_axes2_in_base_y*gravity_x;
-        const real acc_2_y = S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+        const real rrr_acc_2_y = rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
             axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-N23) inertia moment of the links that turn with link 1, about their reference points */
-        const real mu_1_z = h_1_y*(c_1*g_r0_x + g_r0_y*s_1) - J_1_zz*qdd_1 - h_1_x*(c_1*g_r0_y -
-            g_r0_x*s_1);
-        /* (rrr-A16) angular acceleration of link 2 */
-        const real alpha_2_z = inv_rrr_platform_joint_offset_x*(rel_y + qdd_1*r_1_r0_x) - qdd_1;
-        /* (rrr-N16) inertia moment of the links that turn with link 2, about their reference points */
-        const real mu_2_z = J_2_zz*alpha_2_z + acc_2_y*h_2_x - acc_2_x*h_2_y;
-        /* (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rrr-alpha_2) angular acceleration of link 2 */
+        const real rrr_alpha_2_z = inv_rrr_platform_joint_offset_x*(rrr_rel_y +
+            rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1;
+        /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
+        const real rrr_h_2_x = m->rrr_h_2_x[i];
+        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x -
+            rrr_acc_2_x*rrr_h_2_y;
+        /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
+        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
+        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
+        const real rrr_h_1_x = m->rrr_h_1_x[i];
+        const real rrr_h_1_y = m->rrr_h_1_y[i];
+        const real rrr_mu_1_z = rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
+            rrr_J_1_zz*rrr_qdd_1 - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
-        const real N_1_z = mu_1_z + mu_2_z;
-        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
+        const real rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z;
+        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real G_t = inv_rrr_platform_joint_offset_x*mu_2_z;
-        /* (rrr-N33) leg force on the platform without actuation and without the mass at the connection
+        const real rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z;
+        /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_x = W_2_t*h_2_x + alpha_2_z*h_2_y - inv_r_1_r0_y*(G_t*r_1_r0_x - N_1_z);
-        const real c_y = W_2_t*h_2_y - G_t - alpha_2_z*h_2_x;
-        /* (rrr-N38) leg force on the platform without actuation, the last link's mass included */
-        const real c_true_x = c_x - acc_2_x*rrr_link2_mass;
-        const real c_true_y = c_y - acc_2_y*rrr_link2_mass;
-        const real c_true_in_base_x = axis_y_rrr_axes2_in_base_x*c_true_y +
-            axis_y_rrr_axes2_in_base_y*c_true_x;
-        const real c_true_in_base_y = axis_y_rrr_axes2_in_base_y*c_true_y -
-            axis_y_rrr_axes2_in_base_x*c_true_x;
-        o->entry[0][k] = c_true_in_base_x;
-        o->entry[1][k] = c_true_in_base_y;
-        o->entry[2][k] = -w_1_t;
-        o->entry[3][k] = w_1_t_2;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
-            UNLESS(magnitude(-r_1_r0_y) > TOLERANCE*size_);
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
+        const real rrr_c_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y -
+            inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x - rrr_N_1_z);
+        const real rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x;
+        /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
+        const real rrr_link2_mass = m->rrr_link2_mass[i];
+        const real rrr_c_true_x = rrr_c_x - rrr_acc_2_x*rrr_link2_mass;
+        const real rrr_c_true_y = rrr_c_y - rrr_acc_2_y*rrr_link2_mass;
+        const real rrr_c_true_in_base_x = axis_y_rrr_axes2_in_base_x*rrr_c_true_y +
+            axis_y_rrr_axes2_in_base_y*rrr_c_true_x;
+        const real rrr_c_true_in_base_y = axis_y_rrr_axes2_in_base_y*rrr_c_true_y -
+            axis_y_rrr_axes2_in_base_x*rrr_c_true_x;
+        o[0*count + k] = rrr_c_true_in_base_x;
+        o[1*count + k] = rrr_c_true_in_base_y;
+        o[2*count + k] = -rrr_w_1_t;
+        o[3*count + k] = rrr_w_1_t_2;
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[5*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[4*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void legs_place_rrr(size_t w, const legs_results_rrr *o, size_t leg, size_t first, real
+INLINE void legs_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_t first, real
     *leg_force, real *drive, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        leg_force[(3*leg)*w + k] = o->entry[0][first + k];
-        leg_force[(1 + 3*leg)*w + k] = o->entry[1][first + k];
-        drive[(3*leg)*w + k] = o->entry[2][first + k];
-        drive[(1 + 3*leg)*w + k] = o->entry[3][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        leg_force[(3*leg)*w + k] = o[0*count + first + k];
+        leg_force[(1 + 3*leg)*w + k] = o[1*count + first + k];
+        drive[(3*leg)*w + k] = o[2*count + first + k];
+        drive[(1 + 3*leg)*w + k] = o[3*count + first + k];
+        t->unreachable[k] += o[4*count + first + k];
+        t->singular[k] += o[5*count + first + k];
     }
 }
 
-INLINE void legs_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
-    real *leg_force, real *drive, verdict *t)
+INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
+    *leg_force, real *drive, verdict *t)
 {
-    legs_values values, *const s = &values;
-    legs_results_rrr results_rrr;
-    clear(leg_force, 9*w);
-    clear(drive, 9*w);
-    legs_before(w, X, V, A, s);
-    if (w == 1) {  /* the legs side by side */
-        legs_legs_rrr(m, 0, 1, s, 0, 3, &results_rrr);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            legs_place_rrr(w, &results_rrr, leg, leg, leg_force, drive, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            legs_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
-            legs_place_rrr(w, &results_rrr, leg, 0, leg_force, drive, t);
-        }
+    real s[10] = {0}, o_rrr[6*LEGS(3)] = {0};
+    clear(leg_force, 9);
+    clear(drive, 9);
+    legs_before(1, X, V, A, s);
+    legs_legs_rrr(m, 1, 0, 1, s, 0, LEGS(3), o_rrr);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        legs_place_rrr(1, LEGS(3), o_rrr, leg, leg, leg_force, drive, t);
     }
 }
 
 /* ---- potential: 149 mul, 90 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], potential_t[LANES], sum[1][LANES];
-} potential_values;
-typedef struct {
-    real sum[1][8], unreachable[8], singular[8];
-} potential_results_rrr;
-
-INLINE void potential_before(const prepared *m, size_t w, const real *X, potential_values *s)
+INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real R_xx = cosine(X_2);
+        const real R_yx = sine(X_2);
+        /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real h_star_x = m->h_star_x;
         const real h_star_y = m->h_star_y;
         const real m_star = m->m_star;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* (V1) potential energy */
         const real potential_t = gravity_x*(R_xx*h_star_x + m_star*t_x - R_yx*h_star_y) +
             gravity_y*(R_xx*h_star_y + R_yx*h_star_x + m_star*t_y);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->potential_t[k] = potential_t;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
+        s[4*w + k] = potential_t;
     }
 }
 
-INLINE void potential_legs_rrr(const prepared *m, size_t leg, size_t legs, const potential_values
-    *s, size_t states, size_t count, int add, potential_results_rrr *o)
+INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real Kd_1_t_2 = m->Kd_1_t_2[i];
-        const real Kd_1_t_3 = m->Kd_1_t_3[i];
-        const real b_r0_x = m->b_r0_x[i];
-        const real b_r0_y = m->b_r0_y[i];
-        const real branch_1 = m->branch_1[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_1_x = m->h_1_x[i];
-        const real h_1_y = m->h_1_y[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real inv_Kd_1_t_5 = m->inv_Kd_1_t_5[i];
-        const real inv_uu_2_t = m->inv_uu_2_t[i];
-        const real rho2_1_t = m->rho2_1_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_link1_mass = m->rrr_link1_mass[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x -
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x -
             R_yx*rrr_platform_point_y;
-        const real S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x -
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x -
             rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_t = S_x*S_x + S_y*S_y;
-        const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1 = px_1*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1 = py_1*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
-        /* (rrr-K9) discriminant */
-        const real disc_1 = rho2_1 - Kd_1*Kd_1;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1 = branch_1*root(disc_1);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2 = inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2 =
-            inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1 = 1/rho2_1;
-        const real c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1);
-        /* (V1) potential energy */
-        const real potential_t_2 = (c_1*g_r0_x + g_r0_y*s_1)*(h_1_x + c_2*h_2_x + h_2_y*s_2 +
-            rrr_link1_mass*(b_r0_x*c_1 + b_r0_y*s_1)) + (c_1*g_r0_y - g_r0_x*s_1)*(h_1_y +
-            c_2*h_2_y + rrr_link1_mass*(b_r0_y*c_1 - b_r0_x*s_1) - h_2_x*s_2);
-        o->sum[0][k] = add ? o->sum[0][k] + potential_t_2 : potential_t_2;  /* total_rrr */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t);
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (potential) potential energy */
+        const real rrr_b_r0_x = m->rrr_b_r0_x[i];
+        const real rrr_b_r0_y = m->rrr_b_r0_y[i];
+        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
+        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
+        const real rrr_h_1_x = m->rrr_h_1_x[i];
+        const real rrr_h_1_y = m->rrr_h_1_y[i];
+        const real rrr_h_2_x = m->rrr_h_2_x[i];
+        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_link1_mass = m->rrr_link1_mass[i];
+        const real rrr_potential_t = (rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1)*(rrr_h_1_x +
+            rrr_c_2*rrr_h_2_x + rrr_h_2_y*rrr_s_2 + rrr_link1_mass*(rrr_b_r0_x*rrr_c_1 +
+            rrr_b_r0_y*rrr_s_1)) + (rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)*(rrr_h_1_y +
+            rrr_c_2*rrr_h_2_y + rrr_link1_mass*(rrr_b_r0_y*rrr_c_1 - rrr_b_r0_x*rrr_s_1) -
+            rrr_h_2_x*rrr_s_2);
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_potential_t : rrr_potential_t;  /* total_rrr */
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
+        o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void potential_place_rrr(size_t w, const potential_results_rrr *o, size_t first, verdict
-    *t)
+INLINE void potential_place_rrr(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        t->unreachable[k] += o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
     }
 }
 
-INLINE void potential_after(size_t w, const potential_values *s, real *potential)
+INLINE void potential_after(size_t w, const real *s, const real *sums, real *potential)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real potential_t = s->potential_t[k];
-        const real total_rrr = s->sum[0][k];
-        /* (V1) potential energy */
+        /* (potential) potential energy */
+        const real potential_t = s[4*w + k];
+        const real total_rrr = sums[0*w + k];
         const real potential_ = -potential_t - total_rrr;
         potential[0*w + k] = potential_;
     }
 }
 
-INLINE void potential_run(const prepared *m, size_t w, const real *X, real *potential, verdict *t)
+INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    potential_values values, *const s = &values;
-    potential_results_rrr results_rrr;
-    potential_before(m, w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        potential_legs_rrr(m, 0, 1, s, 0, 3, 0, &results_rrr);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            potential_place_rrr(w, &results_rrr, leg, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_rrr.sum[n], 3);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            potential_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
-            potential_place_rrr(w, &results_rrr, 0, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_rrr.sum[n][k];
-            }
-        }
+    real s[5] = {0}, sums[1] = {0}, terms_rrr[1*LEGS(3)] = {0}, o_rrr[2*LEGS(3)] = {0};
+    potential_before(m, 1, X, s);
+    potential_legs_rrr(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        potential_place_rrr(1, LEGS(3), o_rrr, leg, t);
     }
-    potential_after(w, s, potential);
+    for (size_t n = 0; n < 1; ++n) {
+        sums[n] = total(terms_rrr + n*LEGS(3), 3);
+    }
+    potential_after(1, s, sums, potential);
 }
 
 /* ---- condition: 154 mul, 84 add, 6 div, 7 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], sum[1][LANES];
-} condition_values;
-typedef struct {
-    real sum[1][8], entry[5][8], unreachable[8], singular[8];
-} condition_results_rrr;
-
-INLINE void condition_before(const prepared *m, size_t w, const real *X, condition_values *s, real
-    *lengths)
+INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real legs_size = m->legs_size;
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
+        const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
+        t->total[k] += legs_size;
     }
 }
 
-INLINE void condition_legs_rrr(const prepared *m, size_t leg, size_t legs, const condition_values
-    *s, size_t states, size_t count, int add, condition_results_rrr *o)
+INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real b_c_x = m->b_c_x;
-        const real b_c_y = m->b_c_y;
-        const real Kd_1_t_2 = m->Kd_1_t_2[i];
-        const real Kd_1_t_3 = m->Kd_1_t_3[i];
-        const real branch_1 = m->branch_1[i];
-        const real inv_Kd_1_t_5 = m->inv_Kd_1_t_5[i];
-        const real inv_rho2_1_t_4 = m->inv_rho2_1_t_4[i];
-        const real inv_size = m->inv_size[i];
-        const real inv_uu_2_t = m->inv_uu_2_t[i];
-        const real rho2_1_t = m->rho2_1_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_ = m->size_[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real S_x = q_in_base_x + t_x - rrr_base_point_x;
-        const real S_y = q_in_base_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_t = S_x*S_x + S_y*S_y;
-        const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1 = px_1*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1 = py_1*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
-        /* (rrr-K9) discriminant */
-        const real disc_1 = rho2_1 - Kd_1*Kd_1;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1 = branch_1*root(disc_1);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2 = inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2 =
-            inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_x = rrr_joint2_offset_x + c_2*rrr_platform_joint_offset_x;
-        const real r_1_r0_y = r_1_x*s_2 - c_2*rrr_platform_joint_offset_x*s_2;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1 = 1/rho2_1;
-        const real c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1*s_2 - c_2*s_1;
-        const real axis_y_rrr_axes2_r1_y = c_1*c_2 + s_1*s_2;
-        const real inv_r_1_r0_y = 1/r_1_r0_y;
-        const real w_1_t = inv_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        const real rrr_w_1_t = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy);
-        const real w_1_t_2 = inv_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
+        const real rrr_w_1_t_2 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy);
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_1_z = q_in_base_x*w_1_t_2 + q_in_base_y*w_1_t;
-        /* (C2) rms distance of the platform points from their centroid */
-        const real spread_t_2 = b_c_x - rrr_platform_point_x;
-        const real spread_t_3 = b_c_y - rrr_platform_point_y;
-        const real spread_t_4 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3;
-        /* (rrr-K8) squared amplitude */
-        const real pivot_size = magnitude(rho2_1);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real pivot_size_2 = magnitude(r_1_r0_y);
-        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
+        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+        const real rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_x = m->b_c_x;
+        const real rrr_spread_t = b_c_x - rrr_platform_point_x;
+        const real b_c_y = m->b_c_y;
+        const real rrr_spread_t_2 = b_c_y - rrr_platform_point_y;
+        const real rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_pivot_size = magnitude(rrr_rho2_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real rrr_pivot_size_2 = magnitude(rrr_r_1_r0_y);
+        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real least_pivots = lesser(root(inv_rho2_1_t_4*pivot_size), inv_size*pivot_size_2);
-        o->sum[0][k] = add ? o->sum[0][k] + spread_t_4 : spread_t_4;  /* total_rrr */
-        o->entry[0][k] = -w_1_t;
-        o->entry[1][k] = w_1_t_2;
-        o->entry[2][k] = H_a_1_z;
-        o->entry[3][k] = least_pivots;
-        o->entry[4][k] = disc_1;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
-            UNLESS(magnitude(-r_1_r0_y) > TOLERANCE*size_);
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
+        const real inv_rrr_rho2_1_t_4 = m->inv_rrr_rho2_1_t_4[i];
+        const real inv_rrr_size = m->inv_rrr_size[i];
+        const real rrr_least_pivots = lesser(root(inv_rrr_rho2_1_t_4*rrr_pivot_size),
+            inv_rrr_size*rrr_pivot_size_2);
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_spread_t_3 : rrr_spread_t_3;  /* total_rrr */
+        o[0*count + k] = -rrr_w_1_t;
+        o[1*count + k] = rrr_w_1_t_2;
+        o[2*count + k] = rrr_H_a_1_z;
+        o[3*count + k] = rrr_least_pivots;
+        o[4*count + k] = rrr_disc_1;
+        o[7*count + k] = (rrr_w_1_t + rrr_w_1_t_2) + (rrr_H_a_1_z + (rrr_least_pivots +
+            rrr_disc_1));
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[6*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[5*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void condition_place_rrr(size_t w, const condition_results_rrr *o, size_t leg, size_t
-    first, real *H, real *pivots, real *reach, verdict *t)
+INLINE void condition_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_t first,
+    real *H, real *pivots, real *reach, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(3 + leg)*w + k] = o->entry[1][first + k];
-        H[(6 + leg)*w + k] = o->entry[2][first + k];
-        pivots[(leg)*w + k] = o->entry[3][first + k];
-        reach[(leg)*w + k] = o->entry[4][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(3 + leg)*w + k] = o[1*count + first + k];
+        H[(6 + leg)*w + k] = o[2*count + first + k];
+        pivots[(leg)*w + k] = o[3*count + first + k];
+        reach[(leg)*w + k] = o[4*count + first + k];
+        t->unreachable[k] += o[5*count + first + k];
+        t->singular[k] += o[6*count + first + k];
+        t->total[k] += o[7*count + first + k];
     }
 }
 
-INLINE void condition_after(const prepared *m, size_t w, const condition_values *s, real *lengths)
+INLINE void condition_after(const prepared *m, size_t w, const real *sums, real *lengths, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real total_rrr = s->sum[0][k];
+        /* (spread) rms distance of the platform points from their centroid */
         const real spread_t = m->spread_t;
-        /* (C2) rms distance of the platform points from their centroid */
+        const real total_rrr = sums[0*w + k];
         const real spread_ = spread_t*root(total_rrr);
         lengths[0*w + k] = spread_;
+        t->total[k] += spread_;
     }
 }
 
-INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, real *lengths, real
-    *pivots, real *reach, verdict *t)
+INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
+    real *reach, verdict *t)
 {
-    condition_values values, *const s = &values;
-    condition_results_rrr results_rrr;
-    condition_before(m, w, X, s, lengths);
-    if (w == 1) {  /* the legs side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        condition_legs_rrr(m, 0, 1, s, 0, 3, 0, &results_rrr);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            condition_place_rrr(w, &results_rrr, leg, leg, H, pivots, reach, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_rrr.sum[n], 3);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            condition_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
-            condition_place_rrr(w, &results_rrr, leg, 0, H, pivots, reach, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_rrr.sum[n][k];
-            }
-        }
+    real s[4] = {0}, sums[1] = {0}, terms_rrr[1*LEGS(3)] = {0}, o_rrr[8*LEGS(3)] = {0};
+    condition_before(m, 1, X, s, lengths, t);
+    condition_legs_rrr(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        condition_place_rrr(1, LEGS(3), o_rrr, leg, leg, H, pivots, reach, t);
     }
-    condition_after(m, w, s, lengths);
+    for (size_t n = 0; n < 1; ++n) {
+        sums[n] = total(terms_rrr + n*LEGS(3), 3);
+    }
+    condition_after(m, 1, sums, lengths, t);
 }
 
 /* ---- what users call, as steps over these ---- */
 
-INLINE void M_any(const prepared *m, size_t w, const real *X, real *M_out, int *code)
+INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(3, 1, X, why.invalid);
+    M_run(m, X, M_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(9, 1, M_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(9, M_out);
+    }
+}
+
+INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
     real X_in[3*LANES], M[9*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    M_run(m, w, X, M, &why);
-    check(9, w, M, why.overflow);
-    judge(&why, w, code);
-    deliver(M, 9, w, code, M_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    M_run_lanes(m, X, M, &why);
+    suspect(&why, code);
+    deliver(9, M, M_out);
 }
 
-INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, real *Z_out, int
-    *code)
+INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 3) + total(V, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+    }
+    Z_run(m, X, V, Z_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(3, 1, Z_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(3, Z_out);
+    }
+}
+
+INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     real X_in[3*LANES], V_in[3*LANES], Z[3*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    V = side_by_side(3, w, V, V_in, why.invalid);
-    Z_run(m, w, X, V, Z, &why);
-    check(3, w, Z, why.overflow);
-    judge(&why, w, code);
-    deliver(Z, 3, w, code, Z_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    V = side_by_side(3, V, V_in, why.total);
+    Z_run_lanes(m, X, V, Z, &why);
+    suspect(&why, code);
+    deliver(3, Z, Z_out);
 }
 
-INLINE void H_any(const prepared *m, size_t w, const real *X, real *H_out, int *code)
+INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(3, 1, X, why.invalid);
+    H_run(m, X, H_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(9, 1, H_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(9, H_out);
+    }
+}
+
+INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
     real X_in[3*LANES], H[9*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    H_run(m, w, X, H, &why);
-    check(9, w, H, why.overflow);
-    judge(&why, w, code);
-    deliver(H, 9, w, code, H_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    H_run_lanes(m, X, H, &why);
+    suspect(&why, code);
+    deliver(9, H, H_out);
 }
 
-INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, real *q_out, int
-    *code)
+INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(3, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(6, 1, q_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(6, q_out);
+    }
+}
+
+INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     real X_in[3*LANES], q[6*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    inverse_kinematics_run(m, w, X, q, &why);
-    check(6, w, q, why.overflow);
-    judge(&why, w, code);
-    deliver(q, 6, w, code, q_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    suspect(&why, code);
+    deliver(6, q, q_out);
 }
 
-INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *qd_out, int *code)
+INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 3) + total(V, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+    }
+    joint_rates_run(m, X, V, qd_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(6, 1, qd_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(6, qd_out);
+    }
+}
+
+INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
 {
     real X_in[3*LANES], V_in[3*LANES], qd[6*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    V = side_by_side(3, w, V, V_in, why.invalid);
-    joint_rates_run(m, w, X, V, qd, &why);
-    check(6, w, qd, why.overflow);
-    judge(&why, w, code);
-    deliver(qd, 6, w, code, qd_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    V = side_by_side(3, V, V_in, why.total);
+    joint_rates_run_lanes(m, X, V, qd, &why);
+    suspect(&why, code);
+    deliver(6, qd, qd_out);
 }
 
-INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd_out, int *code)
+INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 3) + total(V, 3) + total(A, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+        check(3, 1, A, why.invalid);
+    }
+    joint_accelerations_run(m, X, V, A, qdd_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(6, 1, qdd_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(6, qdd_out);
+    }
+}
+
+INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
 {
     real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], qdd[6*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    V = side_by_side(3, w, V, V_in, why.invalid);
-    A = side_by_side(3, w, A, A_in, why.invalid);
-    joint_accelerations_run(m, w, X, V, A, qdd, &why);
-    check(6, w, qdd, why.overflow);
-    judge(&why, w, code);
-    deliver(qdd, 6, w, code, qdd_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    V = side_by_side(3, V, V_in, why.total);
+    A = side_by_side(3, A, A_in, why.total);
+    joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
+    suspect(&why, code);
+    deliver(6, qdd, qdd_out);
 }
 
-INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *V, real *M_out,
-    real *Z_out, real *H_out, int *code)
+INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 3) + total(V, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+    }
+    dynamics_run(m, X, V, M_out, Z_out, H_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(9, 1, M_out, why.overflow);
+        check(3, 1, Z_out, why.overflow);
+        check(9, 1, H_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(9, M_out);
+        refuse(3, Z_out);
+        refuse(9, H_out);
+    }
+}
+
+INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out, int *code)
 {
     real X_in[3*LANES], V_in[3*LANES], M[9*LANES], Z[3*LANES], H[9*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    V = side_by_side(3, w, V, V_in, why.invalid);
-    dynamics_run(m, w, X, V, M, Z, H, &why);
-    check(9, w, M, why.overflow);
-    check(3, w, Z, why.overflow);
-    check(9, w, H, why.overflow);
-    judge(&why, w, code);
-    deliver(M, 9, w, code, M_out);
-    deliver(Z, 3, w, code, Z_out);
-    deliver(H, 9, w, code, H_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    V = side_by_side(3, V, V_in, why.total);
+    dynamics_run_lanes(m, X, V, M, Z, H, &why);
+    suspect(&why, code);
+    deliver(9, M, M_out);
+    deliver(3, Z, Z_out);
+    deliver(9, H, H_out);
 }
 
-INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, const real *V, const
-    real *A, const real *wrench, real *tau_out, int *code)
+INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, real *x, real
+    *unsure, real *total)
 {
-    real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], wrench_in[3*LANES], required[3*LANES],
-        H[9*LANES], subtract_2[3*LANES], tau[3*LANES], work[12*LANES];
+    for (size_t k = 0; k < w; ++k) {
+        real a00 = a[(1*stride + 0)*w + k];
+        real a01 = a[(1*stride + 1)*w + k];
+        real a02 = a[(1*stride + 2)*w + k];
+        real b0 = b[1*w + k];
+        real a10 = a[(0)*w + k];
+        real a11 = a[(1)*w + k];
+        real a12 = a[(2)*w + k];
+        real b1 = b[0*w + k];
+        real a20 = a[(2*stride + 0)*w + k];
+        real a21 = a[(2*stride + 1)*w + k];
+        real a22 = a[(2*stride + 2)*w + k];
+        real b2 = b[2*w + k];
+        const real f0 = 1/a00;
+        const real d1 = a00*a11 - a10*a01;
+        const real f1 = a00/d1;
+        const real g10 = a10*f0;
+        a12 -= g10*a02;
+        b1 -= g10*b0;
+        const real g20 = a20*f0;
+        a21 -= g20*a01;
+        a22 -= g20*a02;
+        b2 -= g20*b0;
+        const real g21 = a21*f1;
+        a22 -= g21*a12;
+        b2 -= g21*b1;
+        const real f2 = 1/a22;
+        const real x2 = (b2)*f2;
+        const real x1 = (b1)*f1 - a12*f1*x2;
+        const real x0 = (b0 - a02*x2)*f0 - a01*f0*x1;
+        x[0*w + k] = x0;
+        x[1*w + k] = x1;
+        x[2*w + k] = x2;
+        total[k] += x0 + (x1 + x2);
+        const real most0 = larger(magnitude(g20), magnitude(g21));
+        const real most1 = magnitude(g10);
+        const real most2 = larger(magnitude(f0), magnitude(f1));
+        const real most3 = magnitude(f2);
+        unsure[k] += UNLESS(most0 <= R(0.625)) + UNLESS(most1 <= R(10)) + UNLESS(most2 <= R(250))
+            + UNLESS(most3 <= R(4000)) + UNLESS(is_finite(a00 + d1 + a22));
+    }
+}
+
+INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau_out, int *code)
+{
+    real wrench_in[3], required[3] = {0}, H[9] = {0}, subtract_2[3] = {0}, unsure_4[1] = {0},
+        work[12];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    V = side_by_side(3, w, V, V_in, why.invalid);
-    A = side_by_side(3, w, A, A_in, why.invalid);
-    wrench = optional(3, w, wrench, 0, wrench_in, why.invalid);
-    required_run(m, w, X, V, A, required, H, &why);
+    start(1, &why);
+    const real total_in = total(X, 3) + total(V, 3) + total(A, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+        check(3, 1, A, why.invalid);
+    }
+    wrench = optional(3, wrench, 0, wrench_in, why.invalid);
+    required_run(m, X, V, A, required, H, &why);
     const real *const extend_1 = wrench;
-    for (size_t i = 0; i < 3*w; ++i) {
+    for (size_t i = 0; i < 3; ++i) {
         subtract_2[i] = required[i] - extend_1[i];
     }
-    set_matrix(3, w, H, work);
-    solve(3, w, subtract_2, work, tau, why.singular);
-    check(3, w, tau, why.overflow);
-    judge(&why, w, code);
-    deliver(tau, 3, w, code, tau_out);
+    eliminate_0(1, 3, H, subtract_2, tau_out, unsure_4, why.total);
+    if (unsure_4[0] > 0) {
+        set_matrix(3, 1, H, work);
+        solve_apart(3, subtract_2, work, tau_out, why.singular);
+        check(3, 1, tau_out, why.overflow);
+    }
+    if (!is_finite(why.total[0])) {
+        check(3, 1, tau_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(3, tau_out);
+    }
 }
 
-INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, const real *V, const
-    real *tau, const real *wrench, real *A_out, int *code)
+INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau_out, int *code)
 {
-    real X_in[3*LANES], V_in[3*LANES], tau_in[3*LANES], wrench_in[3*LANES], M[9*LANES], Z[3*LANES],
-        H[9*LANES], times_1[3*LANES] = {0}, add_3[3*LANES], subtract_4[3*LANES], A[3*LANES],
-        work[12*LANES];
+    real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], wrench_in[3*LANES], required[3*LANES],
+        H[9*LANES], subtract_2[3*LANES], tau[3*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    V = side_by_side(3, w, V, V_in, why.invalid);
-    tau = side_by_side(3, w, tau, tau_in, why.invalid);
-    wrench = optional(3, w, wrench, 0, wrench_in, why.invalid);
-    dynamics_run(m, w, X, V, M, Z, H, &why);
-    product(3, 3, 1, w, H, tau, times_1);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    V = side_by_side(3, V, V_in, why.total);
+    A = side_by_side(3, A, A_in, why.total);
+    wrench = optional_side_by_side(3, wrench, 0, wrench_in, why.total);
+    required_run_lanes(m, X, V, A, required, H, &why);
+    const real *const extend_1 = wrench;
+    for (size_t i = 0; i < 3*LANES; ++i) {
+        subtract_2[i] = required[i] - extend_1[i];
+    }
+    eliminate_0(LANES, 3, H, subtract_2, tau, why.singular, why.total);
+    suspect(&why, code);
+    deliver(3, tau, tau_out);
+}
+
+INLINE void eliminate_1(size_t w, size_t stride, const real *a, const real *b, real *x, real
+    *unsure, real *total)
+{
+    for (size_t k = 0; k < w; ++k) {
+        real a00 = a[(0)*w + k];
+        real a01 = a[(1)*w + k];
+        real a02 = a[(2)*w + k];
+        real b0 = b[0*w + k];
+        real a10 = a[(1*stride + 0)*w + k];
+        real a11 = a[(1*stride + 1)*w + k];
+        real a12 = a[(1*stride + 2)*w + k];
+        real b1 = b[1*w + k];
+        real a20 = a[(2*stride + 0)*w + k];
+        real a21 = a[(2*stride + 1)*w + k];
+        real a22 = a[(2*stride + 2)*w + k];
+        real b2 = b[2*w + k];
+        const real f0 = 1/a00;
+        const real d1 = a00*a11 - a10*a01;
+        const real f1 = a00/d1;
+        const real g10 = a10*f0;
+        a12 -= g10*a02;
+        b1 -= g10*b0;
+        const real g20 = a20*f0;
+        a21 -= g20*a01;
+        a22 -= g20*a02;
+        b2 -= g20*b0;
+        const real g21 = a21*f1;
+        a22 -= g21*a12;
+        b2 -= g21*b1;
+        const real f2 = 1/a22;
+        const real x2 = (b2)*f2;
+        const real x1 = (b1)*f1 - a12*f1*x2;
+        const real x0 = (b0 - a02*x2)*f0 - a01*f0*x1;
+        x[0*w + k] = x0;
+        x[1*w + k] = x1;
+        x[2*w + k] = x2;
+        total[k] += x0 + (x1 + x2);
+        const real most0 = larger(magnitude(g20), magnitude(g21));
+        const real most1 = magnitude(g10);
+        const real most2 = larger(magnitude(f0), magnitude(f1));
+        const real most3 = magnitude(f2);
+        unsure[k] += UNLESS(most0 <= R(0.625)) + UNLESS(most1 <= R(10)) + UNLESS(most2 <= R(250))
+            + UNLESS(most3 <= R(4000)) + UNLESS(is_finite(a00 + d1 + a22));
+    }
+}
+
+INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
+    const real *wrench, real *A_out, int *code)
+{
+    real wrench_in[3], M[9] = {0}, Z[3] = {0}, H[9] = {0}, times_1[3] = {0}, add_3[3] = {0},
+        subtract_4[3] = {0}, unsure_7[1] = {0}, work[12];
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 3) + total(V, 3) + total(tau, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+        check(3, 1, tau, why.invalid);
+    }
+    wrench = optional(3, wrench, 0, wrench_in, why.invalid);
+    dynamics_run(m, X, V, M, Z, H, &why);
+    product(3, 3, 1, 1, H, tau, times_1);
     const real *const extend_2 = wrench;
-    for (size_t i = 0; i < 3*w; ++i) {
+    for (size_t i = 0; i < 3; ++i) {
         add_3[i] = times_1[i] + extend_2[i];
     }
-    for (size_t i = 0; i < 3*w; ++i) {
+    for (size_t i = 0; i < 3; ++i) {
         subtract_4[i] = add_3[i] - Z[i];
     }
-    set_matrix(3, w, M, work);
-    solve(3, w, subtract_4, work, A, why.singular);
-    check(3, w, A, why.overflow);
-    judge(&why, w, code);
-    deliver(A, 3, w, code, A_out);
+    eliminate_1(1, 3, M, subtract_4, A_out, unsure_7, why.total);
+    if (unsure_7[0] > 0) {
+        set_matrix(3, 1, M, work);
+        solve_apart(3, subtract_4, work, A_out, why.singular);
+        check(3, 1, A_out, why.overflow);
+    }
+    if (!is_finite(why.total[0])) {
+        check(3, 1, A_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(3, A_out);
+    }
 }
 
-INLINE void complete_acceleration_any(const real *A, real *completed_out, int *code)
+INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
+    *tau, const real *wrench, real *A_out, int *code)
+{
+    real X_in[3*LANES], V_in[3*LANES], tau_in[3*LANES], wrench_in[3*LANES], M[9*LANES], Z[3*LANES],
+        H[9*LANES], times_1[3*LANES] = {0}, add_3[3*LANES], subtract_4[3*LANES], A[3*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    V = side_by_side(3, V, V_in, why.total);
+    tau = side_by_side(3, tau, tau_in, why.total);
+    wrench = optional_side_by_side(3, wrench, 0, wrench_in, why.total);
+    dynamics_run_lanes(m, X, V, M, Z, H, &why);
+    product(3, 3, 1, LANES, H, tau, times_1);
+    const real *const extend_2 = wrench;
+    for (size_t i = 0; i < 3*LANES; ++i) {
+        add_3[i] = times_1[i] + extend_2[i];
+    }
+    for (size_t i = 0; i < 3*LANES; ++i) {
+        subtract_4[i] = add_3[i] - Z[i];
+    }
+    eliminate_1(LANES, 3, M, subtract_4, A, why.singular, why.total);
+    suspect(&why, code);
+    deliver(3, A, A_out);
+}
+
+INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
 {
     verdict why;
     start(1, &why);
     check(3, 1, A, why.invalid);
     const real *const completed = A;
     check(3, 1, completed, why.overflow);
-    judge(&why, 1, code);
-    deliver(completed, 3, 1, code, completed_out);
+    judge(&why, code);
+    copy(3, completed, completed_out);
+    if (*code != OK) {
+        refuse(3, completed_out);
+    }
 }
 
-INLINE void leg_reactions_any(const prepared *m, const real *X, const real *V, const real *A,
+INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out, int *code)
 {
     static const size_t places_0[] = {0, 1, 2};
     real wrench_in[3], required[3] = {0}, H[9] = {0}, subtract_2[3] = {0}, solve_3[3] = {0},
-        leg_force[9] = {0}, drive[9] = {0}, forces[9] = {0}, work[12];
+        unsure_5[1] = {0}, leg_force[9] = {0}, drive[9] = {0}, forces[9] = {0}, work[12];
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
-    check(3, 1, V, why.invalid);
-    check(3, 1, A, why.invalid);
-    wrench = optional(3, 1, wrench, 0, wrench_in, why.invalid);
-    required_run(m, 1, X, V, A, required, H, &why);
+    const real total_in = total(X, 3) + total(V, 3) + total(A, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+        check(3, 1, A, why.invalid);
+    }
+    wrench = optional(3, wrench, 0, wrench_in, why.invalid);
+    required_run(m, X, V, A, required, H, &why);
     const real *const extend_1 = wrench;
     for (size_t i = 0; i < 3; ++i) {
         subtract_2[i] = required[i] - extend_1[i];
     }
-    set_matrix(3, 1, H, work);
-    solve_state(3, subtract_2, work, solve_3, why.singular);
-    legs_run(m, 1, X, V, A, leg_force, drive, &why);
+    eliminate_0(1, 3, H, subtract_2, solve_3, unsure_5, why.total);
+    if (unsure_5[0] > 0) {
+        set_matrix(3, 1, H, work);
+        solve_apart(3, subtract_2, work, solve_3, why.singular);
+        check(3, 1, solve_3, why.overflow);
+    }
+    legs_run(m, X, V, A, leg_force, drive, &why);
     for (size_t i = 0; i < 9; ++i) {
         forces[i] = leg_force[i];
     }
     add_forces(3, 3, 1, places_0, solve_3, drive, forces);
     check(9, 1, forces, why.overflow);
-    judge(&why, 1, code);
-    deliver(forces, 9, 1, code, forces_out);
+    judge(&why, code);
+    copy(9, forces, forces_out);
+    if (*code != OK) {
+        refuse(9, forces_out);
+    }
 }
 
-INLINE void energy_any(const prepared *m, const real *X, const real *V, real *kinetic_out, real
+INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out, int *code)
 {
     real M[9] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
-    check(3, 1, V, why.invalid);
-    M_run(m, 1, X, M, &why);
-    potential_run(m, 1, X, potential_of_potential, &why);
+    const real total_in = total(X, 3) + total(V, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+    }
+    M_run(m, X, M, &why);
+    potential_run(m, X, potential_of_potential, &why);
     half_form(3, 1, V, M, kinetic);
     const real *const potential = potential_of_potential;
     check(1, 1, kinetic, why.overflow);
     check(1, 1, potential, why.overflow);
-    judge(&why, 1, code);
-    deliver(kinetic, 1, 1, code, kinetic_out);
-    deliver(potential, 1, 1, code, potential_out);
+    judge(&why, code);
+    copy(1, kinetic, kinetic_out);
+    copy(1, potential, potential_out);
+    if (*code != OK) {
+        refuse(1, kinetic_out);
+        refuse(1, potential_out);
+    }
 }
 
-INLINE void condition_any(const prepared *m, const real *X, const real *length, real *sigma_out,
+INLINE void condition_one(const prepared *m, const real *X, const real *length, real *sigma_out,
     real *legs_out, int *code)
 {
     static const size_t places_0[] = {2};
@@ -3706,8 +3954,8 @@ INLINE void condition_any(const prepared *m, const real *X, const real *length, 
     start(1, &why);
     check(3, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, 1, length, 0, length_in, why.invalid);
-    condition_run(m, 1, X, H, lengths, legs, reach, &why);
+    length = optional(1, length, 0, length_in, why.invalid);
+    condition_run(m, X, H, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
             lengths[i] : lengths[1 + i];
@@ -3717,14 +3965,20 @@ INLINE void condition_any(const prepared *m, const real *X, const real *length, 
     }
     divide_rows(1, 3, 1, places_0, choose_length_1, divide_rows_2);
     singular_values(3, 3, divide_rows_2, sigma);
+    if (!is_finite(why.total[0])) {
+        check(3, 1, legs, why.overflow);
+    }
     check(3, 1, sigma, why.overflow);
-    check(3, 1, legs, why.overflow);
-    judge(&why, 1, code);
-    deliver(sigma, 3, 1, code, sigma_out);
-    deliver(legs, 3, 1, code, legs_out);
+    judge(&why, code);
+    copy(3, sigma, sigma_out);
+    copy(3, legs, legs_out);
+    if (*code != OK) {
+        refuse(3, sigma_out);
+        refuse(3, legs_out);
+    }
 }
 
-static void mismatch_any(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
+static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
     static const size_t places_0[] = {0, 2, 4};
@@ -3732,9 +3986,12 @@ static void mismatch_any(const prepared *m, const real *X, const real *q_actuate
     real q[6] = {0}, take_1[3] = {0}, subtract_2[3] = {0}, gap[3] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
-    check(3, 1, q_actuated, why.invalid);
-    inverse_kinematics_run(m, 1, X, q, &why);
+    const real total_in = total(X, 3) + total(q_actuated, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, q_actuated, why.invalid);
+    }
+    inverse_kinematics_run(m, X, q, &why);
     take(3, 1, places_0, q, take_1);
     for (size_t i = 0; i < 3; ++i) {
         subtract_2[i] = q_actuated[i] - take_1[i];
@@ -3744,20 +4001,26 @@ static void mismatch_any(const prepared *m, const real *X, const real *q_actuate
     }
     wrap_turns(3, 1, places_1, gap);
     check(3, 1, gap, why.overflow);
-    judge(&why, 1, code);
-    deliver(gap, 3, 1, code, gap_out);
+    judge(&why, code);
+    copy(3, gap, gap_out);
+    if (*code != OK) {
+        refuse(3, gap_out);
+    }
 }
 
-static void slope_any(const prepared *m, const real *X, real *slope_out, int *code)
+static void slope_one(const prepared *m, const real *X, real *slope_out, int *code)
 {
-    real slope[9] = {0};
     verdict why;
     start(1, &why);
     check(3, 1, X, why.invalid);
-    H_run(m, 1, X, slope, &why);
-    check(9, 1, slope, why.overflow);
-    judge(&why, 1, code);
-    deliver(slope, 9, 1, code, slope_out);
+    H_run(m, X, slope_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(9, 1, slope_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(9, slope_out);
+    }
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -3768,12 +4031,12 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
     real trial[3] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    mismatch_any(m, found, q_actuated, gap, &code);
+    mismatch_one(m, found, q_actuated, gap, &code);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        slope_any(m, found, slope, &code);
+        slope_one(m, found, slope, &code);
         if (code != OK) {
             break;
         }
@@ -3787,7 +4050,7 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            mismatch_any(m, trial, q_actuated, next, &tried);
+            mismatch_one(m, trial, q_actuated, next, &tried);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -3805,21 +4068,27 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 }
 
 
-INLINE void forward_kinematics_any(const prepared *m, const real *q_actuated, const real *X0, real
+INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
     *X_out, int *code)
 {
     real X[3] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, q_actuated, why.invalid);
-    check(3, 1, X0, why.invalid);
+    const real total_in = total(q_actuated, 3) + total(X0, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, q_actuated, why.invalid);
+        check(3, 1, X0, why.invalid);
+    }
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(3, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 3, 1, code, X_out);
+    judge(&why, code);
+    copy(3, X, X_out);
+    if (*code != OK) {
+        refuse(3, X_out);
+    }
 }
 
-INLINE void dissipation_any(const real *V, real *dissipation_out, int *code)
+INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 {
     real subtract_1[3] = {0};
     verdict why;
@@ -3830,93 +4099,271 @@ INLINE void dissipation_any(const real *V, real *dissipation_out, int *code)
     }
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
-    judge(&why, 1, code);
-    deliver(dissipation, 1, 1, code, dissipation_out);
+    judge(&why, code);
+    copy(1, dissipation, dissipation_out);
+    if (*code != OK) {
+        refuse(1, dissipation_out);
+    }
 }
 
-INLINE void momentum_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *momentum_out, int *code)
+INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
+    *code)
+{
+    real M[9] = {0}, momentum[3] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 3) + total(V, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+    }
+    M_run(m, X, M, &why);
+    product(3, 3, 1, 1, M, V, momentum);
+    check(3, 1, momentum, why.overflow);
+    judge(&why, code);
+    copy(3, momentum, momentum_out);
+    if (*code != OK) {
+        refuse(3, momentum_out);
+    }
+}
+
+INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
+    int *code)
 {
     real X_in[3*LANES], V_in[3*LANES], M[9*LANES], momentum[3*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    V = side_by_side(3, w, V, V_in, why.invalid);
-    M_run(m, w, X, M, &why);
-    product(3, 3, 1, w, M, V, momentum);
-    check(3, w, momentum, why.overflow);
-    judge(&why, w, code);
-    deliver(momentum, 3, w, code, momentum_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    V = side_by_side(3, V, V_in, why.total);
+    M_run_lanes(m, X, M, &why);
+    product(3, 3, 1, LANES, M, V, momentum);
+    add_up(3, momentum, why.total);
+    suspect(&why, code);
+    deliver(3, momentum, momentum_out);
 }
 
-INLINE void actuator_positions_any(const prepared *m, size_t w, const real *X, real *q_out, int
-    *code)
+INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
+{
+    static const size_t places_0[] = {0, 1, 2, 3, 4, 5};
+    real q[6] = {0}, margins[6] = {0};
+    verdict why;
+    start(1, &why);
+    check(3, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q, &why);
+    for (size_t i = 0; i < 6; ++i) {
+        margins[i] = q[i];
+    }
+    unlimited(6, 6, 1, places_0, margins, why.overflow);
+    judge(&why, code);
+    copy(6, margins, margins_out);
+    if (*code != OK) {
+        refuse(6, margins_out);
+    }
+}
+
+INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
+{
+    static const size_t places_0[] = {0, 1, 2, 3, 4, 5};
+    real X_in[3*LANES], q[6*LANES], margins[6*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    for (size_t i = 0; i < 6*LANES; ++i) {
+        margins[i] = q[i];
+    }
+    unlimited(6, 6, LANES, places_0, margins, why.invalid);
+    suspect(&why, code);
+    deliver(6, margins, margins_out);
+}
+
+INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
+{
+    real q[6] = {0}, subtract_1[6] = {0}, within[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(3, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q, &why);
+    for (size_t i = 0; i < 6; ++i) {
+        subtract_1[i] = q[i] - q[i];
+    }
+    not_negative(6, 1, subtract_1, within, why.overflow);
+    check(1, 1, within, why.overflow);
+    judge(&why, code);
+    copy(1, within, within_out);
+    if (*code != OK) {
+        refuse(1, within_out);
+    }
+}
+
+INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
+{
+    real X_in[3*LANES], q[6*LANES], subtract_1[6*LANES], within[1*LANES] = {0};
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    for (size_t i = 0; i < 6*LANES; ++i) {
+        subtract_1[i] = q[i] - q[i];
+    }
+    not_negative(6, LANES, subtract_1, within, why.invalid);
+    add_up(1, within, why.total);
+    suspect(&why, code);
+    deliver(1, within, within_out);
+}
+
+INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
+{
+    static const size_t places_0[] = {0, 2, 4};
+    real q_of_inverse_kinematics[6] = {0}, q[3] = {0};
+    verdict why;
+    start(1, &why);
+    check(3, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
+    take(3, 1, places_0, q_of_inverse_kinematics, q);
+    check(3, 1, q, why.overflow);
+    judge(&why, code);
+    copy(3, q, q_out);
+    if (*code != OK) {
+        refuse(3, q_out);
+    }
+}
+
+INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     static const size_t places_0[] = {0, 2, 4};
     real X_in[3*LANES], q_of_inverse_kinematics[6*LANES], q[3*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    inverse_kinematics_run(m, w, X, q_of_inverse_kinematics, &why);
-    take(3, 1*w, places_0, q_of_inverse_kinematics, q);
-    check(3, w, q, why.overflow);
-    judge(&why, w, code);
-    deliver(q, 3, w, code, q_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
+    take(3, 1*LANES, places_0, q_of_inverse_kinematics, q);
+    add_up(3, q, why.total);
+    suspect(&why, code);
+    deliver(3, q, q_out);
 }
 
-INLINE void actuator_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *qd_out, int *code)
+INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
+{
+    static const size_t places_0[] = {0, 2, 4};
+    real qd_of_joint_rates[6] = {0}, qd[3] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 3) + total(V, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+    }
+    joint_rates_run(m, X, V, qd_of_joint_rates, &why);
+    take(3, 1, places_0, qd_of_joint_rates, qd);
+    check(3, 1, qd, why.overflow);
+    judge(&why, code);
+    copy(3, qd, qd_out);
+    if (*code != OK) {
+        refuse(3, qd_out);
+    }
+}
+
+INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
+    int *code)
 {
     static const size_t places_0[] = {0, 2, 4};
     real X_in[3*LANES], V_in[3*LANES], qd_of_joint_rates[6*LANES], qd[3*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    V = side_by_side(3, w, V, V_in, why.invalid);
-    joint_rates_run(m, w, X, V, qd_of_joint_rates, &why);
-    take(3, 1*w, places_0, qd_of_joint_rates, qd);
-    check(3, w, qd, why.overflow);
-    judge(&why, w, code);
-    deliver(qd, 3, w, code, qd_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    V = side_by_side(3, V, V_in, why.total);
+    joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
+    take(3, 1*LANES, places_0, qd_of_joint_rates, qd);
+    add_up(3, qd, why.total);
+    suspect(&why, code);
+    deliver(3, qd, qd_out);
 }
 
-INLINE void actuator_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd_out, int *code)
+INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
+{
+    static const size_t places_0[] = {0, 2, 4};
+    real qdd_of_joint_accelerations[6] = {0}, qdd[3] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 3) + total(V, 3) + total(A, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+        check(3, 1, A, why.invalid);
+    }
+    joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
+    take(3, 1, places_0, qdd_of_joint_accelerations, qdd);
+    check(3, 1, qdd, why.overflow);
+    judge(&why, code);
+    copy(3, qdd, qdd_out);
+    if (*code != OK) {
+        refuse(3, qdd_out);
+    }
+}
+
+INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out, int *code)
 {
     static const size_t places_0[] = {0, 2, 4};
     real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], qdd_of_joint_accelerations[6*LANES],
         qdd[3*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    V = side_by_side(3, w, V, V_in, why.invalid);
-    A = side_by_side(3, w, A, A_in, why.invalid);
-    joint_accelerations_run(m, w, X, V, A, qdd_of_joint_accelerations, &why);
-    take(3, 1*w, places_0, qdd_of_joint_accelerations, qdd);
-    check(3, w, qdd, why.overflow);
-    judge(&why, w, code);
-    deliver(qdd, 3, w, code, qdd_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    V = side_by_side(3, V, V_in, why.total);
+    A = side_by_side(3, A, A_in, why.total);
+    joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
+    take(3, 1*LANES, places_0, qdd_of_joint_accelerations, qdd);
+    add_up(3, qdd, why.total);
+    suspect(&why, code);
+    deliver(3, qdd, qdd_out);
 }
 
-INLINE void power_any(const prepared *m, size_t w, const real *X, const real *V, const real *tau,
-    real *power_out, int *code)
+INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out, int *code)
+{
+    real H[9] = {0}, times_1[3] = {0}, power[1] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 3) + total(V, 3) + total(tau, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+        check(3, 1, tau, why.invalid);
+    }
+    H_run(m, X, H, &why);
+    product(3, 3, 1, 1, H, tau, times_1);
+    inner(3, 1, times_1, V, power);
+    check(1, 1, power, why.overflow);
+    judge(&why, code);
+    copy(1, power, power_out);
+    if (*code != OK) {
+        refuse(1, power_out);
+    }
+}
+
+INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out, int *code)
 {
     real X_in[3*LANES], V_in[3*LANES], tau_in[3*LANES], H[9*LANES], times_1[3*LANES] = {0},
         power[1*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    V = side_by_side(3, w, V, V_in, why.invalid);
-    tau = side_by_side(3, w, tau, tau_in, why.invalid);
-    H_run(m, w, X, H, &why);
-    product(3, 3, 1, w, H, tau, times_1);
-    inner(3, w, times_1, V, power);
-    check(1, w, power, why.overflow);
-    judge(&why, w, code);
-    deliver(power, 1, w, code, power_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    V = side_by_side(3, V, V_in, why.total);
+    tau = side_by_side(3, tau, tau_in, why.total);
+    H_run_lanes(m, X, H, &why);
+    product(3, 3, 1, LANES, H, tau, times_1);
+    inner(3, LANES, times_1, V, power);
+    add_up(1, power, why.total);
+    suspect(&why, code);
+    deliver(1, power, power_out);
 }
 
-INLINE void rotation_any(const real *X, real *R_out, int *code)
+INLINE void rotation_one(const real *X, real *R_out, int *code)
 {
     real R[4] = {0};
     verdict why;
@@ -3925,60 +4372,84 @@ INLINE void rotation_any(const real *X, real *R_out, int *code)
     const real *const take_1 = X + 2;
     rotation_of_angle(take_1, R);
     check(4, 1, R, why.overflow);
-    judge(&why, 1, code);
-    deliver(R, 4, 1, code, R_out);
+    judge(&why, code);
+    copy(4, R, R_out);
+    if (*code != OK) {
+        refuse(4, R_out);
+    }
 }
 
-INLINE void pose_any(const real *t, const real *R, real *X_out, int *code)
+INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
 {
     real angle_of_rotation_1[1] = {0}, join_2[3] = {0};
     verdict why;
     start(1, &why);
-    check(2, 1, t, why.invalid);
-    check(4, 1, R, why.invalid);
+    const real total_in = total(t, 2) + total(R, 4);
+    if (!is_finite(total_in)) {
+        check(2, 1, t, why.invalid);
+        check(4, 1, R, why.invalid);
+    }
     angle_of_rotation(R, angle_of_rotation_1);
     beside(1, 2, 1, t, angle_of_rotation_1, join_2);
     const real *const X = join_2;
     check(3, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 3, 1, code, X_out);
+    judge(&why, code);
+    copy(3, X, X_out);
+    if (*code != OK) {
+        refuse(3, X_out);
+    }
 }
 
-INLINE void X_dot_any(const real *X, const real *V, real *X_dot_out, int *code)
+INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
-    check(3, 1, V, why.invalid);
+    const real total_in = total(X, 3) + total(V, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+    }
     const real *const X_dot = V;
     check(3, 1, X_dot, why.overflow);
-    judge(&why, 1, code);
-    deliver(X_dot, 3, 1, code, X_dot_out);
+    judge(&why, code);
+    copy(3, X_dot, X_dot_out);
+    if (*code != OK) {
+        refuse(3, X_dot_out);
+    }
 }
 
-INLINE void retract_any(const real *X, const real *step, real *X_moved_out, int *code)
+INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
 {
     real X_moved[3] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
-    check(3, 1, step, why.invalid);
+    const real total_in = total(X, 3) + total(step, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, step, why.invalid);
+    }
     for (size_t i = 0; i < 3; ++i) {
         X_moved[i] = X[i] + step[i];
     }
     check(3, 1, X_moved, why.overflow);
-    judge(&why, 1, code);
-    deliver(X_moved, 3, 1, code, X_moved_out);
+    judge(&why, code);
+    copy(3, X_moved, X_moved_out);
+    if (*code != OK) {
+        refuse(3, X_moved_out);
+    }
 }
 
-INLINE void difference_any(const real *X0, const real *X1, real *step_out, int *code)
+INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
 {
     static const size_t places_0[] = {2};
     real subtract_1[3] = {0}, step[3] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X0, why.invalid);
-    check(3, 1, X1, why.invalid);
+    const real total_in = total(X0, 3) + total(X1, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X0, why.invalid);
+        check(3, 1, X1, why.invalid);
+    }
     for (size_t i = 0; i < 3; ++i) {
         subtract_1[i] = X1[i] - X0[i];
     }
@@ -3987,19 +4458,25 @@ INLINE void difference_any(const real *X0, const real *X1, real *step_out, int *
     }
     wrap_turns(1, 1, places_0, step);
     check(3, 1, step, why.overflow);
-    judge(&why, 1, code);
-    deliver(step, 3, 1, code, step_out);
+    judge(&why, code);
+    copy(3, step, step_out);
+    if (*code != OK) {
+        refuse(3, step_out);
+    }
 }
 
-INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real *X_out, int *code)
+INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
 {
     static const size_t places_0[] = {2};
     real subtract_1[3] = {0}, wrap_turns_2[3] = {0}, scale_3[3] = {0}, X[3] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X0, why.invalid);
-    check(3, 1, X1, why.invalid);
-    check(1, 1, s, why.invalid);
+    const real total_in = total(X0, 3) + total(X1, 3) + total(s, 1);
+    if (!is_finite(total_in)) {
+        check(3, 1, X0, why.invalid);
+        check(3, 1, X1, why.invalid);
+        check(1, 1, s, why.invalid);
+    }
     for (size_t i = 0; i < 3; ++i) {
         subtract_1[i] = X1[i] - X0[i];
     }
@@ -4014,8 +4491,11 @@ INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real 
         X[i] = X0[i] + scale_3[i];
     }
     check(3, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 3, 1, code, X_out);
+    judge(&why, code);
+    copy(3, X, X_out);
+    if (*code != OK) {
+        refuse(3, X_out);
+    }
 }
 
 /* ---- one state, and batches ---- */
@@ -4023,7 +4503,7 @@ INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real 
 int planar_3rrr_M(const planar_3rrr_model *model, const planar_3rrr_real *X, planar_3rrr_real *M)
 {
     int code;
-    M_any(model, 1, X, M, &code);
+    M_one(model, X, M, &code);
     return code;
 }
 
@@ -4031,9 +4511,9 @@ size_t planar_3rrr_M_batch(const planar_3rrr_model *model, size_t n, const plana
     planar_3rrr_real *M, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        M_any(model, LANES, X + 3*i, M + 9*i, codes);
+        M_lanes(model, X + 3*i, M + 9*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_3rrr_M(model, X + 3*(i + k), M + 9*(i + k));
@@ -4052,7 +4532,7 @@ int planar_3rrr_Z(const planar_3rrr_model *model, const planar_3rrr_real *X, con
     planar_3rrr_real *V, planar_3rrr_real *Z)
 {
     int code;
-    Z_any(model, 1, X, V, Z, &code);
+    Z_one(model, X, V, Z, &code);
     return code;
 }
 
@@ -4060,9 +4540,9 @@ size_t planar_3rrr_Z_batch(const planar_3rrr_model *model, size_t n, const plana
     const planar_3rrr_real *V, planar_3rrr_real *Z, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        Z_any(model, LANES, X + 3*i, V + 3*i, Z + 3*i, codes);
+        Z_lanes(model, X + 3*i, V + 3*i, Z + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_3rrr_Z(model, X + 3*(i + k), V + 3*(i + k), Z + 3*(i + k));
@@ -4080,7 +4560,7 @@ size_t planar_3rrr_Z_batch(const planar_3rrr_model *model, size_t n, const plana
 int planar_3rrr_H(const planar_3rrr_model *model, const planar_3rrr_real *X, planar_3rrr_real *H)
 {
     int code;
-    H_any(model, 1, X, H, &code);
+    H_one(model, X, H, &code);
     return code;
 }
 
@@ -4088,9 +4568,9 @@ size_t planar_3rrr_H_batch(const planar_3rrr_model *model, size_t n, const plana
     planar_3rrr_real *H, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        H_any(model, LANES, X + 3*i, H + 9*i, codes);
+        H_lanes(model, X + 3*i, H + 9*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_3rrr_H(model, X + 3*(i + k), H + 9*(i + k));
@@ -4109,7 +4589,7 @@ int planar_3rrr_inverse_kinematics(const planar_3rrr_model *model, const planar_
     planar_3rrr_real *q)
 {
     int code;
-    inverse_kinematics_any(model, 1, X, q, &code);
+    inverse_kinematics_one(model, X, q, &code);
     return code;
 }
 
@@ -4117,9 +4597,9 @@ size_t planar_3rrr_inverse_kinematics_batch(const planar_3rrr_model *model, size
     planar_3rrr_real *X, planar_3rrr_real *q, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_kinematics_any(model, LANES, X + 3*i, q + 6*i, codes);
+        inverse_kinematics_lanes(model, X + 3*i, q + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_3rrr_inverse_kinematics(model, X + 3*(i + k), q + 6*(i + k));
@@ -4138,7 +4618,7 @@ int planar_3rrr_joint_rates(const planar_3rrr_model *model, const planar_3rrr_re
     planar_3rrr_real *V, planar_3rrr_real *rates)
 {
     int code;
-    joint_rates_any(model, 1, X, V, rates, &code);
+    joint_rates_one(model, X, V, rates, &code);
     return code;
 }
 
@@ -4146,9 +4626,9 @@ size_t planar_3rrr_joint_rates_batch(const planar_3rrr_model *model, size_t n, c
     planar_3rrr_real *X, const planar_3rrr_real *V, planar_3rrr_real *rates, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_rates_any(model, LANES, X + 3*i, V + 3*i, rates + 6*i, codes);
+        joint_rates_lanes(model, X + 3*i, V + 3*i, rates + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_3rrr_joint_rates(model, X + 3*(i + k), V + 3*(i + k), rates + 6*(i + k));
@@ -4167,7 +4647,7 @@ int planar_3rrr_joint_accelerations(const planar_3rrr_model *model, const planar
     const planar_3rrr_real *V, const planar_3rrr_real *A, planar_3rrr_real *accelerations)
 {
     int code;
-    joint_accelerations_any(model, 1, X, V, A, accelerations, &code);
+    joint_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
@@ -4176,9 +4656,9 @@ size_t planar_3rrr_joint_accelerations_batch(const planar_3rrr_model *model, siz
     *accelerations, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_accelerations_any(model, LANES, X + 3*i, V + 3*i, A + 3*i, accelerations + 6*i, codes);
+        joint_accelerations_lanes(model, X + 3*i, V + 3*i, A + 3*i, accelerations + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_3rrr_joint_accelerations(model, X + 3*(i + k), V + 3*(i + k), A + 3*(i + k),
@@ -4199,7 +4679,7 @@ int planar_3rrr_dynamics(const planar_3rrr_model *model, const planar_3rrr_real 
     planar_3rrr_real *V, planar_3rrr_real *M, planar_3rrr_real *Z, planar_3rrr_real *H)
 {
     int code;
-    dynamics_any(model, 1, X, V, M, Z, H, &code);
+    dynamics_one(model, X, V, M, Z, H, &code);
     return code;
 }
 
@@ -4208,9 +4688,9 @@ size_t planar_3rrr_dynamics_batch(const planar_3rrr_model *model, size_t n, cons
     int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        dynamics_any(model, LANES, X + 3*i, V + 3*i, M + 9*i, Z + 3*i, H + 9*i, codes);
+        dynamics_lanes(model, X + 3*i, V + 3*i, M + 9*i, Z + 3*i, H + 9*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_3rrr_dynamics(model, X + 3*(i + k), V + 3*(i + k), M + 9*(i + k), Z + 3*(i + k),
@@ -4231,7 +4711,7 @@ int planar_3rrr_inverse_dynamics(const planar_3rrr_model *model, const planar_3r
     planar_3rrr_real *tau)
 {
     int code;
-    inverse_dynamics_any(model, 1, X, V, A, wrench, tau, &code);
+    inverse_dynamics_one(model, X, V, A, wrench, tau, &code);
     return code;
 }
 
@@ -4240,10 +4720,10 @@ size_t planar_3rrr_inverse_dynamics_batch(const planar_3rrr_model *model, size_t
     planar_3rrr_real *wrench, planar_3rrr_real *tau, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_dynamics_any(model, LANES, X + 3*i, V + 3*i, A + 3*i, wrench ? wrench + 3*i : NULL, tau +
-            3*i, codes);
+        inverse_dynamics_lanes(model, X + 3*i, V + 3*i, A + 3*i, wrench ? wrench + 3*i : NULL, tau + 3*i,
+            codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_3rrr_inverse_dynamics(model, X + 3*(i + k), V + 3*(i + k), A + 3*(i + k), wrench
@@ -4265,7 +4745,7 @@ int planar_3rrr_forward_dynamics(const planar_3rrr_model *model, const planar_3r
     planar_3rrr_real *A)
 {
     int code;
-    forward_dynamics_any(model, 1, X, V, tau, wrench, A, &code);
+    forward_dynamics_one(model, X, V, tau, wrench, A, &code);
     return code;
 }
 
@@ -4274,10 +4754,10 @@ size_t planar_3rrr_forward_dynamics_batch(const planar_3rrr_model *model, size_t
     planar_3rrr_real *wrench, planar_3rrr_real *A, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        forward_dynamics_any(model, LANES, X + 3*i, V + 3*i, tau + 3*i, wrench ? wrench + 3*i : NULL, A +
-            3*i, codes);
+        forward_dynamics_lanes(model, X + 3*i, V + 3*i, tau + 3*i, wrench ? wrench + 3*i : NULL, A + 3*i,
+            codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_3rrr_forward_dynamics(model, X + 3*(i + k), V + 3*(i + k), tau + 3*(i + k),
@@ -4303,7 +4783,7 @@ int planar_3rrr_complete_acceleration(const planar_3rrr_model *model, const plan
     (void)X;
     (void)V;
     (void)wrench;
-    complete_acceleration_any(A, completed, &code);
+    complete_acceleration_one(A, completed, &code);
     return code;
 }
 
@@ -4325,7 +4805,7 @@ int planar_3rrr_leg_reactions(const planar_3rrr_model *model, const planar_3rrr_
     planar_3rrr_real *forces)
 {
     int code;
-    leg_reactions_any(model, X, V, A, wrench, forces, &code);
+    leg_reactions_one(model, X, V, A, wrench, forces, &code);
     return code;
 }
 
@@ -4346,7 +4826,7 @@ int planar_3rrr_energy(const planar_3rrr_model *model, const planar_3rrr_real *X
     planar_3rrr_real *V, planar_3rrr_real *kinetic, planar_3rrr_real *potential)
 {
     int code;
-    energy_any(model, X, V, kinetic, potential, &code);
+    energy_one(model, X, V, kinetic, potential, &code);
     return code;
 }
 
@@ -4366,7 +4846,7 @@ int planar_3rrr_condition(const planar_3rrr_model *model, const planar_3rrr_real
     planar_3rrr_real *sigma, planar_3rrr_real *legs)
 {
     int code;
-    condition_any(model, X, NULL, sigma, legs, &code);
+    condition_one(model, X, NULL, sigma, legs, &code);
     return code;
 }
 
@@ -4385,7 +4865,7 @@ int planar_3rrr_forward_kinematics(const planar_3rrr_model *model, const planar_
     *q_actuated, const planar_3rrr_real *X0, planar_3rrr_real *X)
 {
     int code;
-    forward_kinematics_any(model, q_actuated, X0, X, &code);
+    forward_kinematics_one(model, q_actuated, X0, X, &code);
     return code;
 }
 
@@ -4406,7 +4886,7 @@ int planar_3rrr_dissipation(const planar_3rrr_model *model, const planar_3rrr_re
     int code;
     (void)model;
     (void)X;
-    dissipation_any(V, dissipation, &code);
+    dissipation_one(V, dissipation, &code);
     return code;
 }
 
@@ -4425,7 +4905,7 @@ int planar_3rrr_momentum(const planar_3rrr_model *model, const planar_3rrr_real 
     planar_3rrr_real *V, planar_3rrr_real *momentum)
 {
     int code;
-    momentum_any(model, 1, X, V, momentum, &code);
+    momentum_one(model, X, V, momentum, &code);
     return code;
 }
 
@@ -4433,9 +4913,9 @@ size_t planar_3rrr_momentum_batch(const planar_3rrr_model *model, size_t n, cons
     *X, const planar_3rrr_real *V, planar_3rrr_real *momentum, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        momentum_any(model, LANES, X + 3*i, V + 3*i, momentum + 3*i, codes);
+        momentum_lanes(model, X + 3*i, V + 3*i, momentum + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_3rrr_momentum(model, X + 3*(i + k), V + 3*(i + k), momentum + 3*(i + k));
@@ -4450,11 +4930,69 @@ size_t planar_3rrr_momentum_batch(const planar_3rrr_model *model, size_t n, cons
     return failed;
 }
 
+int planar_3rrr_joint_margins(const planar_3rrr_model *model, const planar_3rrr_real *X,
+    planar_3rrr_real *margins)
+{
+    int code;
+    joint_margins_one(model, X, margins, &code);
+    return code;
+}
+
+size_t planar_3rrr_joint_margins_batch(const planar_3rrr_model *model, size_t n, const
+    planar_3rrr_real *X, planar_3rrr_real *margins, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        joint_margins_lanes(model, X + 3*i, margins + 6*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = planar_3rrr_joint_margins(model, X + 3*(i + k), margins + 6*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = planar_3rrr_joint_margins(model, X + 3*i, margins + 6*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int planar_3rrr_within_limits(const planar_3rrr_model *model, const planar_3rrr_real *X,
+    planar_3rrr_real *within)
+{
+    int code;
+    within_limits_one(model, X, within, &code);
+    return code;
+}
+
+size_t planar_3rrr_within_limits_batch(const planar_3rrr_model *model, size_t n, const
+    planar_3rrr_real *X, planar_3rrr_real *within, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        within_limits_lanes(model, X + 3*i, within + 1*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = planar_3rrr_within_limits(model, X + 3*(i + k), within + 1*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = planar_3rrr_within_limits(model, X + 3*i, within + 1*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
 int planar_3rrr_actuator_positions(const planar_3rrr_model *model, const planar_3rrr_real *X,
     planar_3rrr_real *q)
 {
     int code;
-    actuator_positions_any(model, 1, X, q, &code);
+    actuator_positions_one(model, X, q, &code);
     return code;
 }
 
@@ -4462,9 +5000,9 @@ size_t planar_3rrr_actuator_positions_batch(const planar_3rrr_model *model, size
     planar_3rrr_real *X, planar_3rrr_real *q, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_positions_any(model, LANES, X + 3*i, q + 3*i, codes);
+        actuator_positions_lanes(model, X + 3*i, q + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_3rrr_actuator_positions(model, X + 3*(i + k), q + 3*(i + k));
@@ -4483,7 +5021,7 @@ int planar_3rrr_actuator_rates(const planar_3rrr_model *model, const planar_3rrr
     planar_3rrr_real *V, planar_3rrr_real *rates)
 {
     int code;
-    actuator_rates_any(model, 1, X, V, rates, &code);
+    actuator_rates_one(model, X, V, rates, &code);
     return code;
 }
 
@@ -4491,9 +5029,9 @@ size_t planar_3rrr_actuator_rates_batch(const planar_3rrr_model *model, size_t n
     planar_3rrr_real *X, const planar_3rrr_real *V, planar_3rrr_real *rates, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_rates_any(model, LANES, X + 3*i, V + 3*i, rates + 3*i, codes);
+        actuator_rates_lanes(model, X + 3*i, V + 3*i, rates + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_3rrr_actuator_rates(model, X + 3*(i + k), V + 3*(i + k), rates + 3*(i + k));
@@ -4512,7 +5050,7 @@ int planar_3rrr_actuator_accelerations(const planar_3rrr_model *model, const pla
     const planar_3rrr_real *V, const planar_3rrr_real *A, planar_3rrr_real *accelerations)
 {
     int code;
-    actuator_accelerations_any(model, 1, X, V, A, accelerations, &code);
+    actuator_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
@@ -4521,9 +5059,9 @@ size_t planar_3rrr_actuator_accelerations_batch(const planar_3rrr_model *model, 
     *accelerations, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_accelerations_any(model, LANES, X + 3*i, V + 3*i, A + 3*i, accelerations + 3*i, codes);
+        actuator_accelerations_lanes(model, X + 3*i, V + 3*i, A + 3*i, accelerations + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_3rrr_actuator_accelerations(model, X + 3*(i + k), V + 3*(i + k), A + 3*(i + k),
@@ -4544,7 +5082,7 @@ int planar_3rrr_power(const planar_3rrr_model *model, const planar_3rrr_real *X,
     planar_3rrr_real *V, const planar_3rrr_real *tau, planar_3rrr_real *power)
 {
     int code;
-    power_any(model, 1, X, V, tau, power, &code);
+    power_one(model, X, V, tau, power, &code);
     return code;
 }
 
@@ -4553,9 +5091,9 @@ size_t planar_3rrr_power_batch(const planar_3rrr_model *model, size_t n, const p
     *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        power_any(model, LANES, X + 3*i, V + 3*i, tau + 3*i, power + 1*i, codes);
+        power_lanes(model, X + 3*i, V + 3*i, tau + 3*i, power + 1*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_3rrr_power(model, X + 3*(i + k), V + 3*(i + k), tau + 3*(i + k), power + 1*(i +
@@ -4574,7 +5112,7 @@ size_t planar_3rrr_power_batch(const planar_3rrr_model *model, size_t n, const p
 int planar_3rrr_rotation(const planar_3rrr_real *X, planar_3rrr_real *R)
 {
     int code;
-    rotation_any(X, R, &code);
+    rotation_one(X, R, &code);
     return code;
 }
 
@@ -4592,7 +5130,7 @@ size_t planar_3rrr_rotation_batch(size_t n, const planar_3rrr_real *X, planar_3r
 int planar_3rrr_pose(const planar_3rrr_real *t, const planar_3rrr_real *R, planar_3rrr_real *X)
 {
     int code;
-    pose_any(t, R, X, &code);
+    pose_one(t, R, X, &code);
     return code;
 }
 
@@ -4611,7 +5149,7 @@ int planar_3rrr_X_dot(const planar_3rrr_real *X, const planar_3rrr_real *V, plan
     *X_dot)
 {
     int code;
-    X_dot_any(X, V, X_dot, &code);
+    X_dot_one(X, V, X_dot, &code);
     return code;
 }
 
@@ -4630,7 +5168,7 @@ int planar_3rrr_retract(const planar_3rrr_real *X, const planar_3rrr_real *step,
     *X_moved)
 {
     int code;
-    retract_any(X, step, X_moved, &code);
+    retract_one(X, step, X_moved, &code);
     return code;
 }
 
@@ -4649,7 +5187,7 @@ int planar_3rrr_difference(const planar_3rrr_real *X0, const planar_3rrr_real *X
     planar_3rrr_real *step)
 {
     int code;
-    difference_any(X0, X1, step, &code);
+    difference_one(X0, X1, step, &code);
     return code;
 }
 
@@ -4668,7 +5206,7 @@ int planar_3rrr_interpolate(const planar_3rrr_real *X0, const planar_3rrr_real *
     planar_3rrr_real *s, planar_3rrr_real *X)
 {
     int code;
-    interpolate_any(X0, X1, s, X, &code);
+    interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 

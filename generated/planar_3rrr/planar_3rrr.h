@@ -48,6 +48,7 @@ typedef PLANAR_3RRR_REAL planar_3rrr_real;
 #define PLANAR_3RRR_NC 0
 #define PLANAR_3RRR_NW 3
 #define PLANAR_3RRR_NJ 6
+#define PLANAR_3RRR_OVERCONSTRAINED 0
 
 enum {
     PLANAR_3RRR_OK = 0,
@@ -94,17 +95,18 @@ typedef struct {
 /* What depends on the parameters alone; set by planar_3rrr_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
-    planar_3rrr_real J_star_t_10, J_star_zz, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y,
-            h_star_x, h_star_y, legs_size, m_star, spread_t;
-    /* legs of type rrr */
-    planar_3rrr_real J_1_zz[3], J_2_zz[3], Jc_1_zz[3], Kd_1_t_2[3], Kd_1_t_3[3], b_r0_x[3], b_r0_y[3],
-            branch_1[3], d_Gamma_1_t[3], d_Gamma_1_y[3], d_c_yy[3], d_phi_2_t[3], g_r0_x[3],
-            g_r0_y[3], h_1_x[3], h_1_y[3], h_2_x[3], h_2_y[3], inv_Kd_1_t_5[3], inv_rho2_1_t_4[3],
-            inv_rrr_platform_joint_offset_x[3], inv_size[3], inv_uu_2_t[3], rho2_1_t[3],
-            rrr_base_frame_xx[3], rrr_base_frame_xy[3], rrr_base_frame_yx[3], rrr_base_frame_yy[3],
-            rrr_base_point_x[3], rrr_base_point_y[3], rrr_joint2_offset_x[3], rrr_link1_mass[3],
-            rrr_link2_mass[3], rrr_platform_joint_offset_x[3], rrr_platform_point_x[3],
-            rrr_platform_point_y[3], size_[3];
+    /* 3 legs of type rrr; copies of the first fill up */
+    planar_3rrr_real inv_rrr_Kd_1_t_5[4], inv_rrr_Kd_1_t_7[4], inv_rrr_platform_joint_offset_x[4],
+            inv_rrr_rho2_1_t_4[4], inv_rrr_size[4], rrr_J_1_zz[4], rrr_J_2_zz[4], rrr_Jc_1_zz[4],
+            rrr_Kd_1_t_2[4], rrr_Kd_1_t_4[4], rrr_b_r0_x[4], rrr_b_r0_y[4], rrr_base_frame_xx[4],
+            rrr_base_frame_xy[4], rrr_base_frame_yx[4], rrr_base_frame_yy[4], rrr_base_point_x[4],
+            rrr_base_point_y[4], rrr_branch_1[4], rrr_d_Gamma_2_t[4], rrr_d_Gamma_2_y[4],
+            rrr_d_c_yy[4], rrr_d_phi_2_t[4], rrr_g_r0_x[4], rrr_g_r0_y[4], rrr_h_1_x[4], rrr_h_1_y[4],
+            rrr_h_2_x[4], rrr_h_2_y[4], rrr_joint2_offset_x[4], rrr_link1_mass[4], rrr_link2_mass[4],
+            rrr_platform_joint_offset_x[4], rrr_platform_point_x[4], rrr_platform_point_y[4],
+            rrr_rho2_1_t[4], rrr_size[4];
+    planar_3rrr_real J_star_t_6, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y, h_star_x,
+            h_star_y, legs_size, m_star, spread_t;
 } planar_3rrr_model;
 
 extern const planar_3rrr_params planar_3rrr_default_params;
@@ -126,7 +128,7 @@ int planar_3rrr_M(const planar_3rrr_model *model, const planar_3rrr_real *X, pla
 size_t planar_3rrr_M_batch(const planar_3rrr_model *model, size_t n, const planar_3rrr_real *X,
     planar_3rrr_real *M, int *status);
 
-/* Velocity and gravity terms Z. 304 mul, 184 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 300 mul, 182 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int planar_3rrr_Z(const planar_3rrr_model *model, const planar_3rrr_real *X, const
     planar_3rrr_real *V, planar_3rrr_real *Z);
@@ -161,7 +163,7 @@ size_t planar_3rrr_joint_accelerations_batch(const planar_3rrr_model *model, siz
     planar_3rrr_real *X, const planar_3rrr_real *V, const planar_3rrr_real *A, planar_3rrr_real
     *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 397 mul, 264 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 393 mul, 262 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int planar_3rrr_dynamics(const planar_3rrr_model *model, const planar_3rrr_real *X, const
     planar_3rrr_real *V, planar_3rrr_real *M, planar_3rrr_real *Z, planar_3rrr_real *H);
@@ -169,7 +171,7 @@ size_t planar_3rrr_dynamics_batch(const planar_3rrr_model *model, size_t n, cons
     *X, const planar_3rrr_real *V, planar_3rrr_real *M, planar_3rrr_real *Z, planar_3rrr_real *H,
     int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 327 mul, 204 add, 6 div, 3 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 323 mul, 202 add, 6 div, 3 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
 int planar_3rrr_inverse_dynamics(const planar_3rrr_model *model, const planar_3rrr_real *X, const
@@ -179,7 +181,7 @@ size_t planar_3rrr_inverse_dynamics_batch(const planar_3rrr_model *model, size_t
     planar_3rrr_real *X, const planar_3rrr_real *V, const planar_3rrr_real *A, const
     planar_3rrr_real *wrench, planar_3rrr_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 397 mul, 264 add, 6 div, 3 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 393 mul, 262 add, 6 div, 3 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV). */
 int planar_3rrr_forward_dynamics(const planar_3rrr_model *model, const planar_3rrr_real *X, const
@@ -248,6 +250,20 @@ int planar_3rrr_momentum(const planar_3rrr_model *model, const planar_3rrr_real 
     planar_3rrr_real *V, planar_3rrr_real *momentum);
 size_t planar_3rrr_momentum_batch(const planar_3rrr_model *model, size_t n, const planar_3rrr_real
     *X, const planar_3rrr_real *V, planar_3rrr_real *momentum, int *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 93 mul, 48 add, 3 div, 3 sqrt, 6 trig. In: X (NQ). Out: margins (NJ). */
+int planar_3rrr_joint_margins(const planar_3rrr_model *model, const planar_3rrr_real *X,
+    planar_3rrr_real *margins);
+size_t planar_3rrr_joint_margins_batch(const planar_3rrr_model *model, size_t n, const
+    planar_3rrr_real *X, planar_3rrr_real *margins, int *status);
+
+/* Whether all joints are within their limits of displacement. 93 mul, 48 add, 3 div, 3 sqrt, 6
+   trig. In: X (NQ). Out: within (1). */
+int planar_3rrr_within_limits(const planar_3rrr_model *model, const planar_3rrr_real *X,
+    planar_3rrr_real *within);
+size_t planar_3rrr_within_limits_batch(const planar_3rrr_model *model, size_t n, const
+    planar_3rrr_real *X, planar_3rrr_real *within, int *status);
 
 /* Displacements of the actuated joints, in the order of tau. 93 mul, 48 add, 3 div, 3 sqrt, 6
    trig. In: X (NQ). Out: q (NU). */

@@ -32,6 +32,7 @@ __all__ = [
     "NC",
     "NW",
     "NJ",
+    "OVERCONSTRAINED",
     "ACTUATED",
     "ACTUATOR_NAMES",
     "H",
@@ -56,6 +57,7 @@ __all__ = [
     "inverse_dynamics",
     "inverse_kinematics",
     "joint_accelerations",
+    "joint_margins",
     "joint_rates",
     "leg_reactions",
     "momentum",
@@ -64,6 +66,7 @@ __all__ = [
     "power",
     "retract",
     "rotation",
+    "within_limits",
 ]
 
 NQ = 3
@@ -72,6 +75,7 @@ NU = 3
 NC = 0
 NW = 3
 NJ = 6
+OVERCONSTRAINED = 0
 
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
@@ -329,7 +333,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return np.full(shape, default)
+        return _filled(shape, default) if isinstance(default, float) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -342,6 +346,16 @@ def _argument(function, name, value, shape, default=None, rule=""):
     elif rule == "positive" and not np.all((array > 0.0) & (array < np.inf)):
         raise ValueError(f"{function}: {name} must be positive and finite")
     return array
+
+
+_FILLED = {}
+
+
+def _filled(shape, value):
+    """An array of one value, made once."""
+    if (shape, value) not in _FILLED:
+        _FILLED[shape, value] = _frozen(np.full(shape, value))
+    return _FILLED[shape, value]
 
 
 def _lead(leads):
@@ -435,7 +449,7 @@ HOME_X = _frozen(np.array([0.03, -0.02, 0.09999999999999999]))
 HOME_Q = _frozen(np.array([0.7000000000000003, -1.2000000000000002, 0.7, -1.2, 0.7000000000000001, -1.2000000000000004]))
 
 _BRANCHES = {  # assembly branch of home, a sign per leg
-    "branch_1": np.array([1.0, 1.0, 1.0]),
+    "rrr_branch_1": np.array([1.0, 1.0, 1.0]),
 }
 
 
@@ -467,128 +481,131 @@ def _prepare(p):
     rrr_link2_centre_of_mass_x = p.rrr_link2_centre_of_mass[:, 0]
     rrr_link2_centre_of_mass_y = p.rrr_link2_centre_of_mass[:, 1]
     rrr_link2_inertia_zz = p.rrr_link2_inertia[:, 2, 2]
-    branch_1 = _BRANCHES["branch_1"]
-    # (L2) first moment about the platform origin
+    rrr_branch_1 = _BRANCHES["rrr_branch_1"]
+    # (h_star) first moment about the platform origin
     h_star_t = platform_centre_of_mass_x*platform_mass
     h_star_t_2 = platform_centre_of_mass_y*platform_mass
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_t = platform_centre_of_mass_y*platform_centre_of_mass_y
     J_star_t_2 = J_star_t + platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_3 = J_star_t*platform_mass
     J_star_t_4 = J_star_t_2*platform_mass
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread_t = 0.3333333333333333*sqrt(3.0)
-    # (rrr-K17) squared length, across the axis, of the direction fixed in link 2
-    uu_2_t = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x
-    # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    Kd_1_t = rrr_joint2_offset_x*rrr_joint2_offset_x
-    Kd_1_t_2 = 0.5*Kd_1_t
-    Kd_1_t_3 = 0.5*uu_2_t
-    # (rrr-G2) length of the leg's lever arms, the measure of what is near singular
-    size_t = 4.58151643161e-07 + Kd_1_t + uu_2_t
-    size = sqrt(size_t)
-    # (rrr-K8) squared amplitude
-    rho2_1_t = size*size*size_t
-    # (rrr-K15) the vector from joint 1 to the connection point, resolved along link 1
-    inv_Kd_1_t_5 = 1.0/Kd_1_t
-    # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-    inv_uu_2_t = 1.0/uu_2_t
-    # (rrr-G4) inertia tensor of link 1 about the origin of link 1
-    J_1_t = (
+    # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+    rrr_Kd_1_t = rrr_joint2_offset_x*rrr_joint2_offset_x
+    rrr_Kd_1_t_2 = 0.5*rrr_Kd_1_t
+    rrr_Kd_1_t_3 = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x
+    rrr_Kd_1_t_4 = 0.5*rrr_Kd_1_t_3
+    # (rrr-size) length of the leg's lever arms, the measure of what is near singular
+    rrr_size_t = 4.58151643161e-07 + rrr_Kd_1_t + rrr_Kd_1_t_3
+    rrr_size = sqrt(rrr_size_t)
+    # (rrr-rho2_1) squared amplitude
+    rrr_rho2_1_t = rrr_size*rrr_size*rrr_size_t
+    # (rrr-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+    inv_rrr_Kd_1_t_5 = 1.0/rrr_Kd_1_t
+    # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+    inv_rrr_Kd_1_t_7 = 1.0/rrr_Kd_1_t_3
+    # (rrr-rho_tip_2) connection point to the centre of mass of link 2
+    rrr_rho_tip_2_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x
+    # (rrr-h_2) first moment of link 2 about the connection point
+    rrr_h_2_x = rrr_link2_mass*rrr_rho_tip_2_x
+    rrr_h_2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass
+    # (rrr-w_2) reciprocal vector 2
+    inv_rrr_platform_joint_offset_x = 1.0/rrr_platform_joint_offset_x
+    # (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
+    rrr_d_phi_2_t = inv_rrr_platform_joint_offset_x*rrr_h_2_y
+    # (rrr-J_2) inertia tensor of link 2 about the connection point
+    rrr_J_2_t = (
+    rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y + rrr_rho_tip_2_x*rrr_rho_tip_2_x
+    )
+    rrr_J_2_zz = rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass
+    # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    rrr_d_Gamma_2_t = inv_rrr_platform_joint_offset_x*rrr_J_2_zz
+    rrr_d_Gamma_2_y = rrr_d_Gamma_2_t + rrr_h_2_x
+    # (rrr-J_1) inertia tensor of link 1 about the origin of link 1
+    rrr_J_1_t = (
     rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
         rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y
     )
-    J_1_zz = rrr_link1_inertia_zz + J_1_t*rrr_link1_mass
-    # (rrr-G5) connection point to the centre of mass of link 2
-    rho_tip_2_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x
-    # (rrr-G7) inertia tensor of link 2 about the connection point
-    J_2_t = rho_tip_2_x*rho_tip_2_x + rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y
-    J_2_zz = rrr_link2_inertia_zz + J_2_t*rrr_link2_mass
-    # (rrr-N11) inertia tensor of the links from 1 outwards about joint 1
-    Jc_1_zz = J_1_zz + J_2_zz
-    # (rrr-G6) first moment of link 2 about the connection point
-    h_2_x = rho_tip_2_x*rrr_link2_mass
-    h_2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass
-    # (rrr-V6) reciprocal vector 2
-    inv_rrr_platform_joint_offset_x = 1.0/rrr_platform_joint_offset_x
-    # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-    d_Gamma_1_t = J_2_zz*inv_rrr_platform_joint_offset_x
-    d_Gamma_1_y = d_Gamma_1_t + h_2_x
-    # (rrr-N6) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
-    d_phi_2_t = h_2_y*inv_rrr_platform_joint_offset_x
-    # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_yy = -d_Gamma_1_y*inv_rrr_platform_joint_offset_x - h_2_x*inv_rrr_platform_joint_offset_x
-    # (L2) first moment about the platform origin
-    h_star_t_3 = rrr_link2_mass*rrr_platform_point_x
-    h_star_t_4 = rrr_link2_mass*rrr_platform_point_y
-    # (L3) inertia tensor about the platform origin
-    J_star_t_5 = rrr_platform_point_y*rrr_platform_point_y
-    J_star_t_6 = J_star_t_5 + rrr_platform_point_x*rrr_platform_point_x
-    J_star_t_7 = J_star_t_5*rrr_link2_mass
-    J_star_t_8 = J_star_t_6*rrr_link2_mass
-    # (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-    g_r0_x = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx
-    g_r0_y = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy
-    # (rrr-G3) first moment of link 1 about the origin of link 1
-    h_1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass
-    h_1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass
-    # (V1) potential energy
-    b_r0_x = rrr_base_frame_xx*rrr_base_point_x + rrr_base_frame_yx*rrr_base_point_y
-    b_r0_y = rrr_base_frame_xy*rrr_base_point_x + rrr_base_frame_yy*rrr_base_point_y
-    # (rrr-K8) squared amplitude
-    inv_rho2_1_t_4 = 1.0/rho2_1_t
-    # (rrr-V5) reciprocal vector 1
-    inv_size = 1.0/size
+    rrr_J_1_zz = rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass
+    # (rrr-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link about the connection point
+    rrr_Jc_1_zz = rrr_J_1_zz + rrr_J_2_zz
+    # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    rrr_d_c_yy = (
+    -inv_rrr_platform_joint_offset_x*rrr_d_Gamma_2_y - inv_rrr_platform_joint_offset_x*rrr_h_2_x
+    )
+    # (h_star) first moment about the platform origin
+    rrr_h_star_t = rrr_link2_mass*rrr_platform_point_x
+    rrr_h_star_t_2 = rrr_link2_mass*rrr_platform_point_y
+    # (J_star) inertia tensor about the platform origin
+    rrr_J_star_t = rrr_platform_point_y*rrr_platform_point_y
+    rrr_J_star_t_2 = rrr_J_star_t + rrr_platform_point_x*rrr_platform_point_x
+    rrr_J_star_t_3 = rrr_J_star_t*rrr_link2_mass
+    rrr_J_star_t_4 = rrr_J_star_t_2*rrr_link2_mass
+    # (rrr-h_1) first moment of link 1 about the origin of link 1
+    rrr_h_1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass
+    rrr_h_1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass
+    # (rrr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+    rrr_g_r0_x = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx
+    rrr_g_r0_y = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy
+    # (potential) potential energy
+    rrr_b_r0_x = rrr_base_frame_xx*rrr_base_point_x + rrr_base_frame_yx*rrr_base_point_y
+    rrr_b_r0_y = rrr_base_frame_xy*rrr_base_point_x + rrr_base_frame_yy*rrr_base_point_y
+    # (rrr-rho2_1) squared amplitude
+    inv_rrr_rho2_1_t_4 = 1.0/rrr_rho2_1_t
+    # (rrr-w_1) reciprocal vector 1
+    inv_rrr_size = 1.0/rrr_size
     total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, _rrr))
-    total_rrr_x = np.sum(np.broadcast_to(h_star_t_3, _rrr))
-    total_rrr_y = np.sum(np.broadcast_to(h_star_t_4, _rrr))
-    total_rrr_xx = np.sum(np.broadcast_to(J_star_t_7, _rrr))
-    total_rrr_zz = np.sum(np.broadcast_to(J_star_t_8, _rrr))
+    total_rrr_x = np.sum(np.broadcast_to(rrr_h_star_t, _rrr))
+    total_rrr_y = np.sum(np.broadcast_to(rrr_h_star_t_2, _rrr))
+    total_rrr_xx = np.sum(np.broadcast_to(rrr_J_star_t_3, _rrr))
+    total_rrr_zz = np.sum(np.broadcast_to(rrr_J_star_t_4, _rrr))
     total_rrr_x_2 = np.sum(np.broadcast_to(rrr_platform_point_x, _rrr))
     total_rrr_y_2 = np.sum(np.broadcast_to(rrr_platform_point_y, _rrr))
-    total_rrr_2 = np.sum(np.broadcast_to(size_t, _rrr))
-    # (L1) mass of the platform with the gathered masses
+    total_rrr_2 = np.sum(np.broadcast_to(rrr_size_t, _rrr))
+    # (m_star) mass of the platform with the gathered masses
     m_star = platform_mass + total_rrr
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_x = h_star_t + total_rrr_x
     h_star_y = h_star_t_2 + total_rrr_y
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_xx = J_star_t_3 + total_rrr_xx
-    J_star_zz = J_star_t_4 + platform_inertia_zz + total_rrr_zz
-    J_star_t_9 = J_star_xx - J_star_zz
-    J_star_t_10 = J_star_t_9 - J_star_xx
-    # (M4) centripetal force and weight of the platform
+    J_star_t_5 = J_star_xx - J_star_t_4 - platform_inertia_zz - total_rrr_zz
+    J_star_t_6 = J_star_t_5 - J_star_xx
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
-    # (C1) centroid of the platform points
+    # (b_c) centroid of the platform points
     b_c_x = 0.3333333333333333*total_rrr_x_2
     b_c_y = 0.3333333333333333*total_rrr_y_2
-    # (C3) rms size of the legs, taken where the platform points coincide
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     legs_size = spread_t*sqrt(total_rrr_2)
     return {
         "dynamics": (
-        (J_star_t_10, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
+        (J_star_t_6, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
                 (_rrr,
-        (J_1_zz, J_2_zz, Jc_1_zz, Kd_1_t_2, Kd_1_t_3, branch_1, d_Gamma_1_t, d_Gamma_1_y, d_c_yy,
-                    d_phi_2_t, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, inv_Kd_1_t_5,
-                    inv_rrr_platform_joint_offset_x, inv_uu_2_t, rho2_1_t, rrr_base_frame_xx,
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+                    rrr_J_2_zz, rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
                     rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-                    rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-                    rrr_platform_point_x, rrr_platform_point_y, size,),
+                    rrr_base_point_y, rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy,
+                    rrr_d_phi_2_t, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
+                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_10, h_star_x, h_star_y, m_star,),
+        (J_star_t_6, h_star_x, h_star_y, m_star,),
             (
                 (_rrr,
-        (J_2_zz, Jc_1_zz, Kd_1_t_2, Kd_1_t_3, branch_1, d_Gamma_1_t, d_Gamma_1_y, d_c_yy,
-                    d_phi_2_t, h_2_y, inv_Kd_1_t_5, inv_rrr_platform_joint_offset_x, inv_uu_2_t,
-                    rho2_1_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_2_zz,
+                    rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+                    rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy, rrr_d_phi_2_t,
+                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
@@ -596,12 +613,12 @@ def _prepare(p):
         (Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y,),
             (
                 (_rrr,
-        (J_1_zz, J_2_zz, Kd_1_t_2, Kd_1_t_3, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y,
-                    inv_Kd_1_t_5, inv_rrr_platform_joint_offset_x, inv_uu_2_t, rho2_1_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+                    rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+                    rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
+                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
@@ -609,23 +626,24 @@ def _prepare(p):
         (),
             (
                 (_rrr,
-        (Kd_1_t_2, Kd_1_t_3, branch_1, inv_Kd_1_t_5, inv_uu_2_t, rho2_1_t, rrr_base_frame_xx,
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
                     rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-                    rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-                    rrr_platform_point_x, rrr_platform_point_y, size,),
+                    rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
         "required": (
-        (J_star_zz, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
+        (J_star_t_6, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
                 (_rrr,
-        (J_1_zz, J_2_zz, Kd_1_t_2, Kd_1_t_3, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y,
-                    inv_Kd_1_t_5, inv_rrr_platform_joint_offset_x, inv_uu_2_t, rho2_1_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+                    rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+                    rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
+                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
@@ -633,10 +651,11 @@ def _prepare(p):
         (),
             (
                 (_rrr,
-        (Kd_1_t_2, Kd_1_t_3, branch_1, inv_Kd_1_t_5, inv_uu_2_t, rho2_1_t, rrr_base_frame_xx,
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
                     rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-                    rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-                    rrr_platform_point_x, rrr_platform_point_y,),
+                    rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    rrr_rho2_1_t,),
                 ),
             ),
         ),
@@ -644,11 +663,11 @@ def _prepare(p):
         (),
             (
                 (_rrr,
-        (Kd_1_t_2, Kd_1_t_3, branch_1, inv_Kd_1_t_5, inv_rrr_platform_joint_offset_x, inv_uu_2_t,
-                    rho2_1_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
+                    rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+                    rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+                    rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
@@ -656,11 +675,11 @@ def _prepare(p):
         (),
             (
                 (_rrr,
-        (Kd_1_t_2, Kd_1_t_3, branch_1, inv_Kd_1_t_5, inv_rrr_platform_joint_offset_x, inv_uu_2_t,
-                    rho2_1_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
+                    rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+                    rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+                    rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
@@ -668,12 +687,12 @@ def _prepare(p):
         (gravity_x, gravity_y,),
             (
                 (_rrr,
-        (J_1_zz, J_2_zz, Kd_1_t_2, Kd_1_t_3, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y,
-                    inv_Kd_1_t_5, inv_rrr_platform_joint_offset_x, inv_uu_2_t, rho2_1_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_link2_mass,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+                    rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+                    rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
+                    rrr_h_2_y, rrr_joint2_offset_x, rrr_link2_mass, rrr_platform_joint_offset_x,
+                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
@@ -681,11 +700,12 @@ def _prepare(p):
         (gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
                 (_rrr,
-        (Kd_1_t_2, Kd_1_t_3, b_r0_x, b_r0_y, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y,
-                    inv_Kd_1_t_5, inv_uu_2_t, rho2_1_t, rrr_base_frame_xx, rrr_base_frame_xy,
-                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-                    rrr_joint2_offset_x, rrr_link1_mass, rrr_platform_joint_offset_x,
-                    rrr_platform_point_x, rrr_platform_point_y,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_b_r0_x, rrr_b_r0_y,
+                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
+                    rrr_base_point_x, rrr_base_point_y, rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y,
+                    rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y, rrr_joint2_offset_x,
+                    rrr_link1_mass, rrr_platform_joint_offset_x, rrr_platform_point_x,
+                    rrr_platform_point_y, rrr_rho2_1_t,),
                 ),
             ),
         ),
@@ -693,18 +713,19 @@ def _prepare(p):
         (b_c_x, b_c_y, legs_size, spread_t,),
             (
                 (_rrr,
-        (Kd_1_t_2, Kd_1_t_3, branch_1, inv_Kd_1_t_5, inv_rho2_1_t_4, inv_size, inv_uu_2_t,
-                    rho2_1_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_rho2_1_t_4, inv_rrr_size, rrr_Kd_1_t_2,
+                    rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+                    rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+                    rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
     }
 
 
-_FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
+_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
@@ -750,17 +771,19 @@ class _Floats:
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
-        for k in range(self.states):
-            try:
-                ok, arrays = function(self, *(row[k] for row in rows))
-            except (ZeroDivisionError, OverflowError):
-                continue
-            if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
-                for a, array in zip(found, arrays):
-                    a[k] = array
-        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
+        found = [self.state(function, names, [row[k] for row in rows]) for k in range(self.states)]
+        return [np.array(a).T.reshape(*_SHAPES[n], self.states) for a, n in zip(zip(*found), names)]
+
+    def state(self, function, names, given):
+        """Lists that a function gives at a state."""
+        try:
+            ok, arrays = function(self, *given)
+        except (ZeroDivisionError, OverflowError):
+            ok = False
+        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+            return arrays
+        return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
 
 
 class _Arrays:
@@ -828,35 +851,44 @@ def _mode(p, states):
     return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
 
 
-def _call(function, steps, p, *arguments, mode=_mode):
-    """What the steps give at arguments (name, value, shape of a state, default, rule)."""
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+    """What the steps give at arguments (name, value, shape of a state, default, rule).
+
+    Where that may be infinite only NaN makes a state impossible.
+    """
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
     lead, p = _lead(leads), _given(p)
     read = [a[4:] != ("unused",) for a in arguments]
     if lead or mode is _Judged:
-        results = _many(steps, p, lead, given, shapes, read, mode)
+        results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
-        results = _one(steps, p, given, shapes, read)
+        results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
 
 
-def _one(steps, p, given, shapes, read):
+def _one(steps, p, given, shapes, read, unbounded):
     """Results at a single state."""
     states = [v.reshape(*shape, 1) for v, shape in zip(given, shapes)]
     with np.errstate(all="ignore"):
-        results = [a[..., 0] for a in steps(_Floats(p, 1), *states)]
-    if all(all(map(math.isfinite, v.ravel().tolist())) for v in (*compress(given, read), *results)):
-        return [np.array(a)[()] for a in results]
+        results = [a[..., 0].copy() for a in steps(_Floats(p, 1), *states)]
+    looked_at = [np.minimum(a, 0.0) for a in results] if unbounded else results
+    entries = (v.ravel().tolist() for v in (*compress(given, read), *looked_at))
+    if all(all(map(math.isfinite, row)) for row in entries):
+        return [a[()] for a in results]
     return [np.full(a.shape, np.nan)[()] for a in results]
 
 
-def _many(steps, p, lead, given, shapes, read, mode):
+def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block."""
     count = math.prod(lead)
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
+    if count > _BLOCK:
+        # Never touched, freed at once: the C library, which learns from it, then keeps the memory
+        # of intermediate arrays from block to block instead of giving its pages back.
+        np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
         for first in range(0, max(count, 1), _BLOCK):
             block = slice(first, min(first + _BLOCK, count))
@@ -868,7 +900,7 @@ def _many(steps, p, lead, given, shapes, read, mode):
             _all_finite(compress(states, read), good)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite(found, good)
+            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -904,6 +936,18 @@ def _wrapped(a, places):
     result = np.array(a)
     result[places] = np.pi - np.remainder(np.pi - a[places], 2.0 * np.pi)
     return result
+
+
+def _unlimited(a, places):
+    """a, some entries infinite; what is not known stays so."""
+    result = np.array(a)
+    result[places] += np.inf
+    return result
+
+
+def _not_negative(a):
+    """1 where no entry is negative, else 0; NaN where one is not finite."""
+    return np.where(np.isfinite(a).all(axis=0), np.all(a >= 0.0, axis=0), np.nan)
 
 
 def _rows_divided(a, b, places):
@@ -965,8 +1009,8 @@ def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
     n, states = b.shape
     if 0 < states <= _FEW:
-        matrices, rights = np.moveaxis(a, -1, 0).tolist(), b.T.tolist()
-        return np.array([_solve_one(*each) for each in zip(matrices, rights)]).T.reshape(n, states)
+        systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
+        return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
     good = np.all((size > 0.0) & np.isfinite(size), axis=0)
     rows = np.concatenate((a, b[:, None]), axis=1)
@@ -993,28 +1037,32 @@ def _solve(a, b):
 
 
 def _solve_one(a, b):
-    """The same for one system of nested lists."""
-    n = len(b)
-    failure = [np.nan] * n
-    for i, row in enumerate(a):
-        size = max(map(abs, row), default=0.0)
-        if not 0.0 < size < np.inf:
-            return failure
-        a[i] = [v / size for v in row] + [b[i] / size]
-    for k in range(n):
-        best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
-            a[k], a[best] = a[best], a[k]
-        if not abs(a[k][k]) > _PIVOT:
-            return failure
-        head = a[k]
-        for i in range(k + 1, n):
-            factor = a[i][k] / head[k]
-            a[i] = [v - factor * h for v, h in zip(a[i], head)]
-    x = [0.0] * n
-    for k in reversed(range(n)):
-        x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
-    return x if all(map(math.isfinite, x)) else failure
+    """The same for one system of nested lists: the rows left lose an entry at every step."""
+    rows, heads = [], []
+    for row, right in zip(a, b):
+        size = max(map(abs, row))
+        if not 0.0 < size < math.inf:
+            return [math.nan] * len(b)
+        rows.append([v / size for v in (*row, right)])
+    while rows:
+        column = [abs(row[0]) for row in rows]
+        largest = max(column)
+        if largest > _CLEARLY * column[0]:
+            best = column.index(largest)
+            rows[0], rows[best] = rows[best], rows[0]
+        pivot, *head = rows[0]
+        if not abs(pivot) > _PIVOT:
+            return [math.nan] * len(b)
+        heads.append((pivot, head))
+        for i in range(1, len(rows)):
+            first, *row = rows[i]
+            factor = first / pivot
+            rows[i] = [v - factor * h for v, h in zip(row, head)]
+        del rows[0]
+    x = []
+    for pivot, (*head, right) in reversed(heads):
+        x.insert(0, (right - sum([h * v for h, v in zip(head, x)])) / pivot)
+    return x if all(map(math.isfinite, x)) else [math.nan] * len(b)
 
 
 def _matrices(a, *others):
@@ -1125,13 +1173,13 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 397 mul, 264 add, 6 div, 3 sqrt, 0 trig
+# dynamics: 393 mul, 262 add, 6 div, 3 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("dynamics")
-    J_star_t_10, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
+    J_star_t_6, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1151,183 +1199,213 @@ def _run_dynamics(m, X, V):
     out_M = m.zeros("M")
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
-    # (P1) centripetal tensor of the platform
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_z*omega_z
-    # (M4) centripetal force and weight of the platform
+    # (Z_p) centripetal force and weight of the platform
     Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x
     Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
-    Z_q_t = (
-    h_star_x*(R_xx*gravity_y - R_yx*gravity_x) - h_star_y*(R_xx*gravity_x + R_yx*gravity_y)
-    )
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y
     sums = [0.0] * 9
     for leg, k in legs[0]:
         (
-        J_1_zz, J_2_zz, Jc_1_zz, Kd_1_t_2, Kd_1_t_3, branch_1, d_Gamma_1_t, d_Gamma_1_y, d_c_yy,
-            d_phi_2_t, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, inv_Kd_1_t_5,
-            inv_rrr_platform_joint_offset_x, inv_uu_2_t, rho2_1_t, rrr_base_frame_xx,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+            rrr_J_2_zz, rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
             rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size,
+            rrr_base_point_y, rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy,
+            rrr_d_phi_2_t, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_x = q_in_base_x + t_x - rrr_base_point_x
-        S_y = q_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_t = S_x*S_x + S_y*S_y
-        Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
-        # (rrr-K3) component along the reference direction
-        px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1 = px_1*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1 = py_1*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
-        # (rrr-K9) discriminant
-        disc_1 = rho2_1 - Kd_1*Kd_1
-        # (rrr-K10) root, with the sign of the branch
-        root_1 = branch_1*sqrt(disc_1)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2 = inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_t = rrr_platform_joint_offset_x*s_2
-        r_1_x = rrr_joint2_offset_x + c_2*rrr_platform_joint_offset_x
-        r_1_r0_x = c_2*r_1_x + r_1_t*s_2
-        r_1_r0_y = r_1_x*s_2 - c_2*r_1_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1*s_2 - c_2*s_1
-        axis_y_rrr_axes2_r1_y = c_1*c_2 + s_1*s_2
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        )
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        inv_r_1_r0_y = 1.0/r_1_r0_y
-        # (rrr-V6) reciprocal vector 2
-        w_2_t = inv_r_1_r0_y*inv_rrr_platform_joint_offset_x*r_1_r0_x
-        # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_t_2 = d_Gamma_1_t*r_1_r0_x
-        d_Gamma_1_x = -h_2_y - inv_r_1_r0_y*(Jc_1_zz - d_Gamma_1_t_2)
-        # (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_x = -h_2_y - inv_r_1_r0_y*(J_2_zz - d_Gamma_1_t_2)
-        # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_xy = d_phi_2_t + d_Gamma_1_y*inv_r_1_r0_y - d_Gamma_1_y*w_2_t
-        # (rrr-N36) inertia of the leg at the connection point, without the mass gathered there
-        Q_t = d_Gamma_1_x*inv_r_1_r0_y + h_2_y*(w_2_t - inv_r_1_r0_y) - d_c_yy - d_Gamma_2_x*w_2_t
-        Q_t_2 = 0.5*Q_t
-        Q_t_3 = Q_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_xy
-        Q_t_4 = Q_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_xy
-        Q_t_5 = d_c_yy + 2.0*Q_t_3*axis_y_rrr_axes2_in_base_y
-        Q_t_6 = Q_t_3*axis_y_rrr_axes2_in_base_x + Q_t_4*axis_y_rrr_axes2_in_base_y
-        Q_t_7 = d_c_yy + 2.0*Q_t_4*axis_y_rrr_axes2_in_base_x
-        # (M2) coupling block of M
-        M_ta_t = Q_t_5*q_in_base_y + Q_t_6*q_in_base_x
-        M_ta_t_2 = Q_t_6*q_in_base_y + Q_t_7*q_in_base_x
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t*q_in_base_y + M_ta_t_2*q_in_base_x
-        # (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        g_r1_x = c_1*g_r0_x + g_r0_y*s_1
-        g_r1_y = c_1*g_r0_y - g_r0_x*s_1
-        # (rrr-V1) velocity of the connection point
-        S_dot_t = omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x
-        S_dot_x = t_dot_x - S_dot_t
-        S_dot_y = S_dot_t_2 + t_dot_y
-        # (rrr-V7) rate of joint 1
-        qd_1 = (
-        inv_r_1_r0_y*(S_dot_x*axis_y_rrr_axes2_in_base_y - S_dot_y*axis_y_rrr_axes2_in_base_x)
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        # (rrr-w_2) reciprocal vector 2
+        rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x
+        # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x
+        rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz - rrr_d_Gamma_2_t_2)
+        # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz - rrr_d_Gamma_2_t_2)
+        # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y - rrr_d_Gamma_2_y*rrr_w_2_t
+        # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
+        rrr_Q_t = (
+        inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t - inv_rrr_r_1_r0_y) - rrr_d_c_yy -
+            rrr_d_Gamma_2_x*rrr_w_2_t
         )
-        # (rrr-V11) angular velocity of link 2
-        omega_2_z = (
-        inv_rrr_platform_joint_offset_x*(S_dot_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_y*axis_y_rrr_axes2_in_base_y + qd_1*r_1_r0_x) - qd_1
+        rrr_Q_t_2 = 0.5*rrr_Q_t
+        rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy + axis_y_rrr_axes2_in_base_y*rrr_Q_t_2
+        rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 - axis_y_rrr_axes2_in_base_y*rrr_d_c_xy
+        rrr_Q_t_5 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3
+        rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 + axis_y_rrr_axes2_in_base_y*rrr_Q_t_4
+        rrr_Q_t_7 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4
+        # (M_ta) coupling block of M
+        rrr_M_ta_t = rrr_Q_t_5*rrr_q_in_base_y + rrr_Q_t_6*rrr_q_in_base_x
+        rrr_M_ta_t_2 = rrr_Q_t_6*rrr_q_in_base_y + rrr_Q_t_7*rrr_q_in_base_x
+        # (M_aa) rotational block of M
+        rrr_M_aa_t = rrr_M_ta_t*rrr_q_in_base_y + rrr_M_ta_t_2*rrr_q_in_base_x
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = omega_z*rrr_q_in_base_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
+        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_1 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
         )
-        # (rrr-V10) centripetal tensor of link 1
-        W_1_t = qd_1*qd_1
-        # (rrr-V12) centripetal tensor of link 2
-        W_2_t = omega_2_z*omega_2_z
-        # (rrr-A5) acceleration of the connection point at zero joint accelerations
-        bias_x = -W_2_t*rrr_platform_joint_offset_x - W_1_t*c_2*rrr_joint2_offset_x
-        # (rrr-A1) centripetal acceleration of the connection point
-        u_1_t = S_dot_t_2*omega_z
-        u_1_t_2 = S_dot_t*omega_z
-        u_1_tip_x = axis_y_rrr_axes2_in_base_x*u_1_t_2 - axis_y_rrr_axes2_in_base_y*u_1_t
-        u_1_tip_y = -axis_y_rrr_axes2_in_base_x*u_1_t - axis_y_rrr_axes2_in_base_y*u_1_t_2
-        # (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_x = u_1_tip_x - bias_x
-        rel_o_y = u_1_tip_y + W_1_t*rrr_joint2_offset_x*s_2
-        # (rrr-A9) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_o = inv_r_1_r0_y*rel_o_x
-        # (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_o_z = g_r1_x*h_1_y - J_1_zz*qdd_1_o - g_r1_y*h_1_x
-        # (rrr-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        acc_2_o_x = u_1_tip_x + g_r1_y*s_2 - c_2*g_r1_x
-        acc_2_o_y = u_1_tip_y - c_2*g_r1_y - g_r1_x*s_2
-        # (rrr-A18) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_o_z = inv_rrr_platform_joint_offset_x*(rel_o_y + qdd_1_o*r_1_r0_x) - qdd_1_o
-        # (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_o_z = J_2_zz*alpha_2_o_z + acc_2_o_y*h_2_x - acc_2_o_x*h_2_y
-        # (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_o_z = mu_1_o_z + mu_2_o_z
-        # (rrr-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_o_t = inv_rrr_platform_joint_offset_x*mu_2_o_z
-        # (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_o_x = W_2_t*h_2_x + alpha_2_o_z*h_2_y - inv_r_1_r0_y*(G_o_t*r_1_r0_x - N_1_o_z)
-        c_o_y = W_2_t*h_2_y - G_o_t - alpha_2_o_z*h_2_x
-        # (rrr-N37) velocity and gravity terms of the leg force
-        U_in_base_x = -axis_y_rrr_axes2_in_base_x*c_o_y - axis_y_rrr_axes2_in_base_y*c_o_x
-        U_in_base_y = axis_y_rrr_axes2_in_base_x*c_o_x - axis_y_rrr_axes2_in_base_y*c_o_y
-        # (M7) rotational part of Z
-        Z_a_t = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
-        # (rrr-V5) reciprocal vector 1
-        w_1_t = axis_y_rrr_axes2_in_base_y*inv_r_1_r0_y
-        w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_r0_y
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_z = q_in_base_x*w_1_t_2 + q_in_base_y*w_1_t
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_z = (
+        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
+        )
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_t = omega_z*rrr_S_dot_t_2
+        rrr_u_1_t_2 = omega_z*rrr_S_dot_t
+        # (rrr-W_1) centripetal tensor of link 1
+        rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_x = (
+        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        )
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_tip_x = (
+        axis_y_rrr_axes2_in_base_x*rrr_u_1_t_2 - axis_y_rrr_axes2_in_base_y*rrr_u_1_t
+        )
+        rrr_u_1_tip_y = (
+        -axis_y_rrr_axes2_in_base_x*rrr_u_1_t - axis_y_rrr_axes2_in_base_y*rrr_u_1_t_2
+        )
+        # (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        rrr_rel_o_x = rrr_u_1_tip_x - rrr_bias_x
+        rrr_rel_o_y = rrr_u_1_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        # (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_rel_o_x
+        # (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        rrr_alpha_2_o_z = (
+        inv_rrr_platform_joint_offset_x*(rrr_rel_o_y + rrr_qdd_1_o*rrr_r_1_r0_x) - rrr_qdd_1_o
+        )
+        # (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        rrr_acc_2_o_x = (
+        rrr_u_1_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+            axis_y_rrr_axes2_in_base_y*gravity_x
+        )
+        rrr_acc_2_o_y = (
+        rrr_u_1_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+            axis_y_rrr_axes2_in_base_y*gravity_y
+        )
+        # (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        rrr_mu_2_o_z = (
+        rrr_J_2_zz*rrr_alpha_2_o_z + rrr_acc_2_o_y*rrr_h_2_x - rrr_acc_2_o_x*rrr_h_2_y
+        )
+        # (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        rrr_mu_1_o_z = (
+        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1_o -
+            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
+        )
+        # (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z
+        # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z
+        # (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_o_x = (
+        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x
+            - rrr_N_1_o_z)
+        )
+        rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x
+        # (rrr-U) velocity and gravity terms of the leg force
+        rrr_U_in_base_x = (
+        -axis_y_rrr_axes2_in_base_x*rrr_c_o_y - axis_y_rrr_axes2_in_base_y*rrr_c_o_x
+        )
+        rrr_U_in_base_y = (
+        axis_y_rrr_axes2_in_base_x*rrr_c_o_x - axis_y_rrr_axes2_in_base_y*rrr_c_o_y
+        )
+        # (Z_a) rotational part of Z
+        rrr_Z_a_t = rrr_U_in_base_y*rrr_q_in_base_x - rrr_U_in_base_x*rrr_q_in_base_y
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y
+        rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y
+        # (rrr-H_a_1) moment of the column's unit force about the platform origin
+        rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
-            (abs(-r_1_r0_y) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        Q_t_5, Q_t_6, Q_t_7, M_ta_t, M_ta_t_2, M_aa_t, U_in_base_x, U_in_base_y, Z_a_t,
+        rrr_Q_t_5, rrr_Q_t_6, rrr_Q_t_7, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t,
+            rrr_U_in_base_x, rrr_U_in_base_y, rrr_Z_a_t,
         ))
-        out_H[_H_rrr[0][leg]] = -w_1_t
-        out_H[_H_rrr[1][leg]] = w_1_t_2
-        out_H[_H_rrr[2][leg]] = H_a_1_z
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
+        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
+        out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
     (
     total_rrr_xx, total_rrr_xy, total_rrr_yy, total_rrr_xz, total_rrr_yz, total_rrr_zz,
         total_rrr_x, total_rrr_y, total_rrr_z,
     ) = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = m_star - total_rrr_xx
     M_tt_yy = m_star - total_rrr_yy
-    # (M2) coupling block of M
+    # (M_ta) coupling block of M
     M_ta_xz = total_rrr_xz - h_star_in_base_y
     M_ta_yz = h_star_in_base_x - total_rrr_yz
-    # (M3) rotational block of M
-    M_aa_zz = -J_star_t_10 - total_rrr_zz
-    # (M5) translational part of Z
+    # (M_aa) rotational block of M
+    M_aa_zz = -J_star_t_6 - total_rrr_zz
+    # (Z_t) translational part of Z
     Z_t_x = Z_p_x + total_rrr_x
     Z_t_y = Z_p_y + total_rrr_y
-    # (M7) rotational part of Z
+    # (Z_a) rotational part of Z
     Z_a_z = total_rrr_z - Z_q_t
     out_M[0] = M_tt_xx
     out_M[1] = total_rrr_xy
@@ -1350,7 +1428,7 @@ def _run_M(m, X):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("M")
-    J_star_t_10, h_star_x, h_star_y, m_star = shared
+    J_star_t_6, h_star_x, h_star_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1361,104 +1439,110 @@ def _run_M(m, X):
     R_yx = sin(X_2)
     ok = True
     out_M = m.zeros("M")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_2_zz, Jc_1_zz, Kd_1_t_2, Kd_1_t_3, branch_1, d_Gamma_1_t, d_Gamma_1_y, d_c_yy,
-            d_phi_2_t, h_2_y, inv_Kd_1_t_5, inv_rrr_platform_joint_offset_x, inv_uu_2_t, rho2_1_t,
-            rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-            rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_2_zz,
+            rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+            rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy, rrr_d_phi_2_t, rrr_h_2_y,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_x = q_in_base_x + t_x - rrr_base_point_x
-        S_y = q_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_t = S_x*S_x + S_y*S_y
-        Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
-        # (rrr-K3) component along the reference direction
-        px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1 = px_1*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1 = py_1*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
-        # (rrr-K9) discriminant
-        disc_1 = rho2_1 - Kd_1*Kd_1
-        # (rrr-K10) root, with the sign of the branch
-        root_1 = branch_1*sqrt(disc_1)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2 = inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_t = rrr_platform_joint_offset_x*s_2
-        r_1_x = rrr_joint2_offset_x + c_2*rrr_platform_joint_offset_x
-        r_1_r0_x = c_2*r_1_x + r_1_t*s_2
-        r_1_r0_y = r_1_x*s_2 - c_2*r_1_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1*s_2 - c_2*s_1
-        axis_y_rrr_axes2_r1_y = c_1*c_2 + s_1*s_2
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        )
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        inv_r_1_r0_y = 1.0/r_1_r0_y
-        # (rrr-V6) reciprocal vector 2
-        w_2_t = inv_r_1_r0_y*inv_rrr_platform_joint_offset_x*r_1_r0_x
-        # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_t_2 = d_Gamma_1_t*r_1_r0_x
-        d_Gamma_1_x = -h_2_y - inv_r_1_r0_y*(Jc_1_zz - d_Gamma_1_t_2)
-        # (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_x = -h_2_y - inv_r_1_r0_y*(J_2_zz - d_Gamma_1_t_2)
-        # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_xy = d_phi_2_t + d_Gamma_1_y*inv_r_1_r0_y - d_Gamma_1_y*w_2_t
-        # (rrr-N36) inertia of the leg at the connection point, without the mass gathered there
-        Q_t = d_Gamma_1_x*inv_r_1_r0_y + h_2_y*(w_2_t - inv_r_1_r0_y) - d_c_yy - d_Gamma_2_x*w_2_t
-        Q_t_2 = 0.5*Q_t
-        Q_t_3 = Q_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_xy
-        Q_t_4 = Q_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_xy
-        Q_t_5 = d_c_yy + 2.0*Q_t_3*axis_y_rrr_axes2_in_base_y
-        Q_t_6 = Q_t_3*axis_y_rrr_axes2_in_base_x + Q_t_4*axis_y_rrr_axes2_in_base_y
-        Q_t_7 = d_c_yy + 2.0*Q_t_4*axis_y_rrr_axes2_in_base_x
-        # (M2) coupling block of M
-        M_ta_t = Q_t_5*q_in_base_y + Q_t_6*q_in_base_x
-        M_ta_t_2 = Q_t_6*q_in_base_y + Q_t_7*q_in_base_x
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t*q_in_base_y + M_ta_t_2*q_in_base_x
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        # (rrr-w_2) reciprocal vector 2
+        rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x
+        # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x
+        rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz - rrr_d_Gamma_2_t_2)
+        # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz - rrr_d_Gamma_2_t_2)
+        # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y - rrr_d_Gamma_2_y*rrr_w_2_t
+        # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
+        rrr_Q_t = (
+        inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t - inv_rrr_r_1_r0_y) - rrr_d_c_yy -
+            rrr_d_Gamma_2_x*rrr_w_2_t
+        )
+        rrr_Q_t_2 = 0.5*rrr_Q_t
+        rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy + axis_y_rrr_axes2_in_base_y*rrr_Q_t_2
+        rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 - axis_y_rrr_axes2_in_base_y*rrr_d_c_xy
+        rrr_Q_t_5 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3
+        rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 + axis_y_rrr_axes2_in_base_y*rrr_Q_t_4
+        rrr_Q_t_7 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4
+        # (M_ta) coupling block of M
+        rrr_M_ta_t = rrr_Q_t_5*rrr_q_in_base_y + rrr_Q_t_6*rrr_q_in_base_x
+        rrr_M_ta_t_2 = rrr_Q_t_6*rrr_q_in_base_y + rrr_Q_t_7*rrr_q_in_base_x
+        # (M_aa) rotational block of M
+        rrr_M_aa_t = rrr_M_ta_t*rrr_q_in_base_y + rrr_M_ta_t_2*rrr_q_in_base_x
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
-            (abs(-r_1_r0_y) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        Q_t_5, Q_t_6, Q_t_7, M_ta_t, M_ta_t_2, M_aa_t,
+        rrr_Q_t_5, rrr_Q_t_6, rrr_Q_t_7, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t,
         ))
     total_rrr_xx, total_rrr_xy, total_rrr_yy, total_rrr_xz, total_rrr_yz, total_rrr_zz = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = m_star - total_rrr_xx
     M_tt_yy = m_star - total_rrr_yy
-    # (M2) coupling block of M
+    # (M_ta) coupling block of M
     M_ta_xz = total_rrr_xz - h_star_in_base_y
     M_ta_yz = h_star_in_base_x - total_rrr_yz
-    # (M3) rotational block of M
-    M_aa_zz = -J_star_t_10 - total_rrr_zz
+    # (M_aa) rotational block of M
+    M_aa_zz = -J_star_t_6 - total_rrr_zz
     out_M[0] = M_tt_xx
     out_M[1] = total_rrr_xy
     out_M[3] = total_rrr_xy
@@ -1471,7 +1555,7 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 304 mul, 184 add, 6 div, 3 sqrt, 0 trig
+# Z: 300 mul, 182 add, 6 div, 3 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -1495,138 +1579,167 @@ def _run_Z(m, X, V):
     omega_z = V_2
     ok = True
     out_Z = m.zeros("Z")
-    # (P1) centripetal tensor of the platform
+    # (h_star) first moment about the platform origin
+    h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
+    h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_z*omega_z
-    # (M4) centripetal force and weight of the platform
-    Z_p_x = -Z_p_t - W_p_t*(R_xx*h_star_x - R_yx*h_star_y)
-    Z_p_y = -Z_p_t_2 - W_p_t*(R_xx*h_star_y + R_yx*h_star_x)
-    # (M6) gyroscopic moment and moment of the weight of the platform
-    Z_q_t = (
-    h_star_x*(R_xx*gravity_y - R_yx*gravity_x) - h_star_y*(R_xx*gravity_x + R_yx*gravity_y)
-    )
+    # (Z_p) centripetal force and weight of the platform
+    Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x
+    Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
-        J_1_zz, J_2_zz, Kd_1_t_2, Kd_1_t_3, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y,
-            inv_Kd_1_t_5, inv_rrr_platform_joint_offset_x, inv_uu_2_t, rho2_1_t,
-            rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-            rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+            rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+            rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_x = q_in_base_x + t_x - rrr_base_point_x
-        S_y = q_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_t = S_x*S_x + S_y*S_y
-        Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
-        # (rrr-K3) component along the reference direction
-        px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1 = px_1*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1 = py_1*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
-        # (rrr-K9) discriminant
-        disc_1 = rho2_1 - Kd_1*Kd_1
-        # (rrr-K10) root, with the sign of the branch
-        root_1 = branch_1*sqrt(disc_1)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2 = inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_t = rrr_platform_joint_offset_x*s_2
-        r_1_x = rrr_joint2_offset_x + c_2*rrr_platform_joint_offset_x
-        r_1_r0_x = c_2*r_1_x + r_1_t*s_2
-        r_1_r0_y = r_1_x*s_2 - c_2*r_1_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1*s_2 - c_2*s_1
-        axis_y_rrr_axes2_r1_y = c_1*c_2 + s_1*s_2
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        )
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        inv_r_1_r0_y = 1.0/r_1_r0_y
-        # (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        g_r1_x = c_1*g_r0_x + g_r0_y*s_1
-        g_r1_y = c_1*g_r0_y - g_r0_x*s_1
-        # (rrr-V1) velocity of the connection point
-        S_dot_t = omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x
-        S_dot_x = t_dot_x - S_dot_t
-        S_dot_y = S_dot_t_2 + t_dot_y
-        # (rrr-V7) rate of joint 1
-        qd_1 = (
-        inv_r_1_r0_y*(S_dot_x*axis_y_rrr_axes2_in_base_y - S_dot_y*axis_y_rrr_axes2_in_base_x)
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = omega_z*rrr_q_in_base_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
+        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_1 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
         )
-        # (rrr-V11) angular velocity of link 2
-        omega_2_z = (
-        inv_rrr_platform_joint_offset_x*(S_dot_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_y*axis_y_rrr_axes2_in_base_y + qd_1*r_1_r0_x) - qd_1
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_z = (
+        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
         )
-        # (rrr-V10) centripetal tensor of link 1
-        W_1_t = qd_1*qd_1
-        # (rrr-V12) centripetal tensor of link 2
-        W_2_t = omega_2_z*omega_2_z
-        # (rrr-A5) acceleration of the connection point at zero joint accelerations
-        bias_x = -W_2_t*rrr_platform_joint_offset_x - W_1_t*c_2*rrr_joint2_offset_x
-        # (rrr-A1) centripetal acceleration of the connection point
-        u_1_t = S_dot_t_2*omega_z
-        u_1_t_2 = S_dot_t*omega_z
-        u_1_tip_x = axis_y_rrr_axes2_in_base_x*u_1_t_2 - axis_y_rrr_axes2_in_base_y*u_1_t
-        u_1_tip_y = -axis_y_rrr_axes2_in_base_x*u_1_t - axis_y_rrr_axes2_in_base_y*u_1_t_2
-        # (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_x = u_1_tip_x - bias_x
-        rel_o_y = u_1_tip_y + W_1_t*rrr_joint2_offset_x*s_2
-        # (rrr-A9) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_o = inv_r_1_r0_y*rel_o_x
-        # (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_o_z = g_r1_x*h_1_y - J_1_zz*qdd_1_o - g_r1_y*h_1_x
-        # (rrr-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        acc_2_o_x = u_1_tip_x + g_r1_y*s_2 - c_2*g_r1_x
-        acc_2_o_y = u_1_tip_y - c_2*g_r1_y - g_r1_x*s_2
-        # (rrr-A18) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_o_z = inv_rrr_platform_joint_offset_x*(rel_o_y + qdd_1_o*r_1_r0_x) - qdd_1_o
-        # (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_o_z = J_2_zz*alpha_2_o_z + acc_2_o_y*h_2_x - acc_2_o_x*h_2_y
-        # (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_o_z = mu_1_o_z + mu_2_o_z
-        # (rrr-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_o_t = inv_rrr_platform_joint_offset_x*mu_2_o_z
-        # (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_o_x = W_2_t*h_2_x + alpha_2_o_z*h_2_y - inv_r_1_r0_y*(G_o_t*r_1_r0_x - N_1_o_z)
-        c_o_y = W_2_t*h_2_y - G_o_t - alpha_2_o_z*h_2_x
-        # (rrr-N37) velocity and gravity terms of the leg force
-        U_in_base_x = -axis_y_rrr_axes2_in_base_x*c_o_y - axis_y_rrr_axes2_in_base_y*c_o_x
-        U_in_base_y = axis_y_rrr_axes2_in_base_x*c_o_x - axis_y_rrr_axes2_in_base_y*c_o_y
-        # (M7) rotational part of Z
-        Z_a_t = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_t = omega_z*rrr_S_dot_t_2
+        rrr_u_1_t_2 = omega_z*rrr_S_dot_t
+        # (rrr-W_1) centripetal tensor of link 1
+        rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_x = (
+        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        )
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_tip_x = (
+        axis_y_rrr_axes2_in_base_x*rrr_u_1_t_2 - axis_y_rrr_axes2_in_base_y*rrr_u_1_t
+        )
+        rrr_u_1_tip_y = (
+        -axis_y_rrr_axes2_in_base_x*rrr_u_1_t - axis_y_rrr_axes2_in_base_y*rrr_u_1_t_2
+        )
+        # (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        rrr_rel_o_x = rrr_u_1_tip_x - rrr_bias_x
+        rrr_rel_o_y = rrr_u_1_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        # (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_rel_o_x
+        # (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        rrr_alpha_2_o_z = (
+        inv_rrr_platform_joint_offset_x*(rrr_rel_o_y + rrr_qdd_1_o*rrr_r_1_r0_x) - rrr_qdd_1_o
+        )
+        # (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        rrr_acc_2_o_x = (
+        rrr_u_1_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+            axis_y_rrr_axes2_in_base_y*gravity_x
+        )
+        rrr_acc_2_o_y = (
+        rrr_u_1_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+            axis_y_rrr_axes2_in_base_y*gravity_y
+        )
+        # (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        rrr_mu_2_o_z = (
+        rrr_J_2_zz*rrr_alpha_2_o_z + rrr_acc_2_o_y*rrr_h_2_x - rrr_acc_2_o_x*rrr_h_2_y
+        )
+        # (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        rrr_mu_1_o_z = (
+        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1_o -
+            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
+        )
+        # (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z
+        # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z
+        # (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_o_x = (
+        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x
+            - rrr_N_1_o_z)
+        )
+        rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x
+        # (rrr-U) velocity and gravity terms of the leg force
+        rrr_U_in_base_x = (
+        -axis_y_rrr_axes2_in_base_x*rrr_c_o_y - axis_y_rrr_axes2_in_base_y*rrr_c_o_x
+        )
+        rrr_U_in_base_y = (
+        axis_y_rrr_axes2_in_base_x*rrr_c_o_x - axis_y_rrr_axes2_in_base_y*rrr_c_o_y
+        )
+        # (Z_a) rotational part of Z
+        rrr_Z_a_t = rrr_U_in_base_y*rrr_q_in_base_x - rrr_U_in_base_x*rrr_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
-            (abs(-r_1_r0_y) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        U_in_base_x, U_in_base_y, Z_a_t,
+        rrr_U_in_base_x, rrr_U_in_base_y, rrr_Z_a_t,
         ))
     total_rrr_x, total_rrr_y, total_rrr_z = sums
-    # (M5) translational part of Z
+    # (Z_t) translational part of Z
     Z_t_x = Z_p_x + total_rrr_x
     Z_t_y = Z_p_y + total_rrr_y
-    # (M7) rotational part of Z
+    # (Z_a) rotational part of Z
     Z_a_z = total_rrr_z - Z_q_t
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
@@ -1652,78 +1765,80 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        Kd_1_t_2, Kd_1_t_3, branch_1, inv_Kd_1_t_5, inv_uu_2_t, rho2_1_t, rrr_base_frame_xx,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
             rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size,
+            rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_x = q_in_base_x + t_x - rrr_base_point_x
-        S_y = q_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_t = S_x*S_x + S_y*S_y
-        Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
-        # (rrr-K3) component along the reference direction
-        px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1 = px_1*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1 = py_1*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
-        # (rrr-K9) discriminant
-        disc_1 = rho2_1 - Kd_1*Kd_1
-        # (rrr-K10) root, with the sign of the branch
-        root_1 = branch_1*sqrt(disc_1)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2 = inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_x = rrr_joint2_offset_x + c_2*rrr_platform_joint_offset_x
-        r_1_r0_y = r_1_x*s_2 - c_2*rrr_platform_joint_offset_x*s_2
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1*s_2 - c_2*s_1
-        axis_y_rrr_axes2_r1_y = c_1*c_2 + s_1*s_2
-        inv_r_1_r0_y = 1.0/r_1_r0_y
-        w_1_t = (
-        inv_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        )
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        rrr_w_1_t = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy)
         )
-        w_1_t_2 = (
-        inv_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
+        rrr_w_1_t_2 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy)
         )
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_z = q_in_base_x*w_1_t_2 + q_in_base_y*w_1_t
+        # (rrr-H_a_1) moment of the column's unit force about the platform origin
+        rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
-            (abs(-r_1_r0_y) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
-        out_H[_H_rrr[0][leg]] = -w_1_t
-        out_H[_H_rrr[1][leg]] = w_1_t_2
-        out_H[_H_rrr[2][leg]] = H_a_1_z
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
+        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
+        out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
     return ok, (out_H,)
 
 
-# required: 327 mul, 204 add, 6 div, 3 sqrt, 0 trig
+# required: 323 mul, 202 add, 6 div, 3 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("required")
-    J_star_zz, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
+    J_star_t_6, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1749,155 +1864,173 @@ def _run_required(m, X, V, A):
     ok = True
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
-    # (P1) centripetal tensor of the platform
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_z*omega_z
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
-    # (E2) inertia force of the platform less its weight
+    # (f_p) inertia force of the platform less its weight
     f_p_x = a_t_x*m_star - W_p_t*h_star_in_base_x - alpha_z*h_star_in_base_y
     f_p_y = a_t_y*m_star + alpha_z*h_star_in_base_x - W_p_t*h_star_in_base_y
-    # (E3) inertia moment of the platform less that of its weight
-    mu_p_z = (
-    J_star_zz*alpha_z + h_star_x*(R_xx*a_t_y - R_yx*a_t_x) - h_star_y*(R_xx*a_t_x + R_yx*a_t_y)
-    )
+    # (mu_p) inertia moment of the platform less that of its weight
+    mu_p_z = a_t_y*h_star_in_base_x - J_star_t_6*alpha_z - a_t_x*h_star_in_base_y
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
-        J_1_zz, J_2_zz, Kd_1_t_2, Kd_1_t_3, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y,
-            inv_Kd_1_t_5, inv_rrr_platform_joint_offset_x, inv_uu_2_t, rho2_1_t,
-            rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-            rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+            rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+            rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_x = q_in_base_x + t_x - rrr_base_point_x
-        S_y = q_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_t = S_x*S_x + S_y*S_y
-        Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
-        # (rrr-K3) component along the reference direction
-        px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1 = px_1*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1 = py_1*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
-        # (rrr-K9) discriminant
-        disc_1 = rho2_1 - Kd_1*Kd_1
-        # (rrr-K10) root, with the sign of the branch
-        root_1 = branch_1*sqrt(disc_1)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2 = inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_t = rrr_platform_joint_offset_x*s_2
-        r_1_x = rrr_joint2_offset_x + c_2*rrr_platform_joint_offset_x
-        r_1_r0_x = c_2*r_1_x + r_1_t*s_2
-        r_1_r0_y = r_1_x*s_2 - c_2*r_1_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1*s_2 - c_2*s_1
-        axis_y_rrr_axes2_r1_y = c_1*c_2 + s_1*s_2
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        )
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        inv_r_1_r0_y = 1.0/r_1_r0_y
-        # (rrr-V1) velocity of the connection point
-        S_dot_t = omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x
-        S_dot_x = t_dot_x - S_dot_t
-        S_dot_y = S_dot_t_2 + t_dot_y
-        # (rrr-V7) rate of joint 1
-        qd_1 = (
-        inv_r_1_r0_y*(S_dot_x*axis_y_rrr_axes2_in_base_y - S_dot_y*axis_y_rrr_axes2_in_base_x)
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = omega_z*rrr_q_in_base_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
+        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_1 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
         )
-        # (rrr-V11) angular velocity of link 2
-        omega_2_z = (
-        inv_rrr_platform_joint_offset_x*(S_dot_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_y*axis_y_rrr_axes2_in_base_y + qd_1*r_1_r0_x) - qd_1
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_z = (
+        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
         )
-        # (rrr-V10) centripetal tensor of link 1
-        W_1_t = qd_1*qd_1
-        # (rrr-V12) centripetal tensor of link 2
-        W_2_t = omega_2_z*omega_2_z
-        # (rrr-A5) acceleration of the connection point at zero joint accelerations
-        bias_x = -W_2_t*rrr_platform_joint_offset_x - W_1_t*c_2*rrr_joint2_offset_x
-        # (rrr-V5) reciprocal vector 1
-        w_1_t = axis_y_rrr_axes2_in_base_y*inv_r_1_r0_y
-        w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_r0_y
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_z = q_in_base_x*w_1_t_2 + q_in_base_y*w_1_t
-        # (rrr-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x
-        # (rrr-A3) acceleration of the connection point
-        S_ddot_x = a_p_x - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y - S_dot_t*omega_z
-        S_ddot_tip_x = S_ddot_x*axis_y_rrr_axes2_in_base_y - S_ddot_y*axis_y_rrr_axes2_in_base_x
-        S_ddot_tip_y = S_ddot_x*axis_y_rrr_axes2_in_base_x + S_ddot_y*axis_y_rrr_axes2_in_base_y
-        # (rrr-A6) acceleration of the connection point left to the joint accelerations
-        rel_x = S_ddot_tip_x - bias_x
-        rel_y = S_ddot_tip_y + W_1_t*rrr_joint2_offset_x*s_2
-        # (rrr-A8) acceleration of joint 1
-        qdd_1 = inv_r_1_r0_y*rel_x
-        # (rrr-N3) acceleration of the reference point of link 2, less gravity
-        acc_2_x = (
-        S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y - axis_y_rrr_axes2_in_base_y*gravity_x
+        # (rrr-W_1) centripetal tensor of link 1
+        rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_x = (
+        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        acc_2_y = (
-        S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x - axis_y_rrr_axes2_in_base_y*gravity_y
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y
+        rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y
+        # (rrr-H_a_1) moment of the column's unit force about the platform origin
+        rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t
+        # (rrr-a_p) acceleration of the connection point without its centripetal part
+        rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y
+        rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x
+        # (rrr-S_ddot) acceleration of the connection point
+        rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
+        rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
+        rrr_S_ddot_tip_x = (
+        axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x - axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y
         )
-        # (rrr-N23) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_z = h_1_y*(c_1*g_r0_x + g_r0_y*s_1) - J_1_zz*qdd_1 - h_1_x*(c_1*g_r0_y - g_r0_x*s_1)
-        # (rrr-A16) angular acceleration of link 2
-        alpha_2_z = inv_rrr_platform_joint_offset_x*(rel_y + qdd_1*r_1_r0_x) - qdd_1
-        # (rrr-N16) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_z = J_2_zz*alpha_2_z + acc_2_y*h_2_x - acc_2_x*h_2_y
-        # (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_z = mu_1_z + mu_2_z
-        # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_t = inv_rrr_platform_joint_offset_x*mu_2_z
-        # (rrr-N33) leg force on the platform without actuation and without the mass at the connection point
-        c_x = W_2_t*h_2_x + alpha_2_z*h_2_y - inv_r_1_r0_y*(G_t*r_1_r0_x - N_1_z)
-        c_y = W_2_t*h_2_y - G_t - alpha_2_z*h_2_x
-        c_in_base_x = axis_y_rrr_axes2_in_base_x*c_y + axis_y_rrr_axes2_in_base_y*c_x
-        c_in_base_y = axis_y_rrr_axes2_in_base_y*c_y - axis_y_rrr_axes2_in_base_x*c_x
-        # (E5) moment that actuators and external wrench must give
-        R_a_t = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y
+        rrr_S_ddot_tip_y = (
+        axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x + axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y
+        )
+        # (rrr-rel) acceleration of the connection point left to the joint accelerations
+        rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x
+        rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        # (rrr-qdd_1) acceleration of joint 1
+        rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_acc_2_x = (
+        rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+            axis_y_rrr_axes2_in_base_y*gravity_x
+        )
+        rrr_acc_2_y = (
+        rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+            axis_y_rrr_axes2_in_base_y*gravity_y
+        )
+        # (rrr-alpha_2) angular acceleration of link 2
+        rrr_alpha_2_z = (
+        inv_rrr_platform_joint_offset_x*(rrr_rel_y + rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1
+        )
+        # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x - rrr_acc_2_x*rrr_h_2_y
+        # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_mu_1_z = (
+        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1 -
+            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
+        )
+        # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z
+        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z
+        # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_x = (
+        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x -
+            rrr_N_1_z)
+        )
+        rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x
+        rrr_c_in_base_x = axis_y_rrr_axes2_in_base_x*rrr_c_y + axis_y_rrr_axes2_in_base_y*rrr_c_x
+        rrr_c_in_base_y = axis_y_rrr_axes2_in_base_y*rrr_c_y - axis_y_rrr_axes2_in_base_x*rrr_c_x
+        # (R_a) moment that actuators and external wrench must give
+        rrr_R_a_t = rrr_c_in_base_y*rrr_q_in_base_x - rrr_c_in_base_x*rrr_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
-            (abs(-r_1_r0_y) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        c_in_base_x, c_in_base_y, R_a_t,
+        rrr_c_in_base_x, rrr_c_in_base_y, rrr_R_a_t,
         ))
-        out_H[_H_rrr[0][leg]] = -w_1_t
-        out_H[_H_rrr[1][leg]] = w_1_t_2
-        out_H[_H_rrr[2][leg]] = H_a_1_z
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
+        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
+        out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
     total_rrr_x, total_rrr_y, total_rrr_z = sums
-    # (E4) force that actuators and external wrench must give
+    # (R_t) force that actuators and external wrench must give
     R_t_x = f_p_x - total_rrr_x
     R_t_y = f_p_y - total_rrr_y
-    # (E5) moment that actuators and external wrench must give
+    # (R_a) moment that actuators and external wrench must give
     R_a_z = mu_p_z - total_rrr_z
     out_required[0] = R_t_x
     out_required[1] = R_t_y
@@ -1924,47 +2057,51 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        Kd_1_t_2, Kd_1_t_3, branch_1, inv_Kd_1_t_5, inv_uu_2_t, rho2_1_t, rrr_base_frame_xx,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
             rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y,
+            rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
-        S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_t = S_x*S_x + S_y*S_y
-        Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
-        # (rrr-K3) component along the reference direction
-        px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1 = px_1*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1 = py_1*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
-        # (rrr-K9) discriminant
-        disc_1 = rho2_1 - Kd_1*Kd_1
-        # (rrr-K10) root, with the sign of the branch
-        root_1 = branch_1*sqrt(disc_1)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        # (rrr-K13) displacement of joint 1
-        q_1 = atan2(inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1), inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1))
-        # (rrr-K20) displacement of joint 2
-        q_2 = (
-        atan2(-inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x,
-            inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x)
+        # (rrr-S) from the base point to the connection point
+        rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
+        rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        # (rrr-q_1) displacement of joint 1
+        rrr_q_1 = (
+        atan2(inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1),
+            inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1))
+        )
+        # (rrr-q_2) displacement of joint 2
+        rrr_q_2 = (
+        atan2(-inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
+            inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x)
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0))
         )
-        out_q[_q_rrr[0][leg]] = q_1
-        out_q[_q_rrr[1][leg]] = q_2
+        out_q[_q_rrr[0][leg]] = rrr_q_1
+        out_q[_q_rrr[1][leg]] = rrr_q_2
     return ok, (out_q,)
 
 
@@ -1993,72 +2130,79 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        Kd_1_t_2, Kd_1_t_3, branch_1, inv_Kd_1_t_5, inv_rrr_platform_joint_offset_x, inv_uu_2_t,
-            rho2_1_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-            rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
+            rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_x = q_in_base_x + t_x - rrr_base_point_x
-        S_y = q_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_t = S_x*S_x + S_y*S_y
-        Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
-        # (rrr-K3) component along the reference direction
-        px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1 = px_1*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1 = py_1*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
-        # (rrr-K9) discriminant
-        disc_1 = rho2_1 - Kd_1*Kd_1
-        # (rrr-K10) root, with the sign of the branch
-        root_1 = branch_1*sqrt(disc_1)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2 = inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_t = rrr_platform_joint_offset_x*s_2
-        r_1_x = rrr_joint2_offset_x + c_2*rrr_platform_joint_offset_x
-        r_1_r0_y = r_1_x*s_2 - c_2*r_1_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1*s_2 - c_2*s_1
-        axis_y_rrr_axes2_r1_y = c_1*c_2 + s_1*s_2
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        )
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        # (rrr-V1) velocity of the connection point
-        S_dot_x = t_dot_x - omega_z*q_in_base_y
-        S_dot_y = t_dot_y + omega_z*q_in_base_x
-        # (rrr-V7) rate of joint 1
-        qd_1 = (S_dot_x*axis_y_rrr_axes2_in_base_y - S_dot_y*axis_y_rrr_axes2_in_base_x)/r_1_r0_y
-        qd_2 = (
-        inv_rrr_platform_joint_offset_x*(S_dot_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_y*axis_y_rrr_axes2_in_base_y + qd_1*(c_2*r_1_x + r_1_t*s_2))
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_x = t_dot_x - omega_z*rrr_q_in_base_y
+        rrr_S_dot_y = t_dot_y + omega_z*rrr_q_in_base_x
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_1 = (
+        (axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)/rrr_r_1_r0_y
+        )
+        rrr_qd_2 = (
+        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*(rrr_c_2*rrr_r_1_x +
+            rrr_r_1_t*rrr_s_2))
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
-            (abs(-r_1_r0_y) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
-        out_qd[_qd_rrr[0][leg]] = -qd_1
-        out_qd[_qd_rrr[1][leg]] = qd_2
+        out_qd[_qd_rrr[0][leg]] = -rrr_qd_1
+        out_qd[_qd_rrr[1][leg]] = rrr_qd_2
     return ok, (out_qd,)
 
 
@@ -2094,98 +2238,108 @@ def _run_joint_accelerations(m, X, V, A):
     out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
-        Kd_1_t_2, Kd_1_t_3, branch_1, inv_Kd_1_t_5, inv_rrr_platform_joint_offset_x, inv_uu_2_t,
-            rho2_1_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-            rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
+            rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_x = q_in_base_x + t_x - rrr_base_point_x
-        S_y = q_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_t = S_x*S_x + S_y*S_y
-        Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
-        # (rrr-K3) component along the reference direction
-        px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1 = px_1*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1 = py_1*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
-        # (rrr-K9) discriminant
-        disc_1 = rho2_1 - Kd_1*Kd_1
-        # (rrr-K10) root, with the sign of the branch
-        root_1 = branch_1*sqrt(disc_1)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2 = inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_t = rrr_platform_joint_offset_x*s_2
-        r_1_x = rrr_joint2_offset_x + c_2*rrr_platform_joint_offset_x
-        r_1_r0_x = c_2*r_1_x + r_1_t*s_2
-        r_1_r0_y = r_1_x*s_2 - c_2*r_1_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1*s_2 - c_2*s_1
-        axis_y_rrr_axes2_r1_y = c_1*c_2 + s_1*s_2
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        )
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        inv_r_1_r0_y = 1.0/r_1_r0_y
-        # (rrr-V1) velocity of the connection point
-        S_dot_t = omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x
-        S_dot_x = t_dot_x - S_dot_t
-        S_dot_y = S_dot_t_2 + t_dot_y
-        # (rrr-V7) rate of joint 1
-        qd_1 = (
-        inv_r_1_r0_y*(S_dot_x*axis_y_rrr_axes2_in_base_y - S_dot_y*axis_y_rrr_axes2_in_base_x)
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = omega_z*rrr_q_in_base_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
+        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_1 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
         )
-        # (rrr-V11) angular velocity of link 2
-        omega_2_z = (
-        inv_rrr_platform_joint_offset_x*(S_dot_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_y*axis_y_rrr_axes2_in_base_y + qd_1*r_1_r0_x) - qd_1
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_z = (
+        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
         )
-        # (rrr-V10) centripetal tensor of link 1
-        W_1_t = qd_1*qd_1
-        # (rrr-A5) acceleration of the connection point at zero joint accelerations
-        bias_x = -omega_2_z*omega_2_z*rrr_platform_joint_offset_x - W_1_t*c_2*rrr_joint2_offset_x
-        # (rrr-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x
-        # (rrr-A3) acceleration of the connection point
-        S_ddot_x = a_p_x - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y - S_dot_t*omega_z
-        # (rrr-A6) acceleration of the connection point left to the joint accelerations
-        rel_x = S_ddot_x*axis_y_rrr_axes2_in_base_y - bias_x - S_ddot_y*axis_y_rrr_axes2_in_base_x
-        rel_y = (
-        S_ddot_x*axis_y_rrr_axes2_in_base_x + S_ddot_y*axis_y_rrr_axes2_in_base_y +
-            W_1_t*rrr_joint2_offset_x*s_2
+        # (rrr-W_1) centripetal tensor of link 1
+        rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_x = (
+        -rrr_omega_2_z*rrr_omega_2_z*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        # (rrr-A8) acceleration of joint 1
-        qdd_1 = inv_r_1_r0_y*rel_x
-        qdd_2 = inv_rrr_platform_joint_offset_x*(rel_y + qdd_1*r_1_r0_x)
+        # (rrr-a_p) acceleration of the connection point without its centripetal part
+        rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y
+        rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x
+        # (rrr-S_ddot) acceleration of the connection point
+        rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
+        rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
+        # (rrr-rel) acceleration of the connection point left to the joint accelerations
+        rrr_rel_x = (
+        axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x - rrr_bias_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y
+        )
+        rrr_rel_y = (
+        axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x + axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y +
+            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        )
+        # (rrr-qdd_1) acceleration of joint 1
+        rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x
+        rrr_qdd_2 = inv_rrr_platform_joint_offset_x*(rrr_rel_y + rrr_qdd_1*rrr_r_1_r0_x)
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
-            (abs(-r_1_r0_y) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
-        out_qdd[_qdd_rrr[0][leg]] = -qdd_1
-        out_qdd[_qdd_rrr[1][leg]] = qdd_2
+        out_qdd[_qdd_rrr[0][leg]] = -rrr_qdd_1
+        out_qdd[_qdd_rrr[1][leg]] = rrr_qdd_2
     return ok, (out_qdd,)
 
 
@@ -2223,133 +2377,153 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        J_1_zz, J_2_zz, Kd_1_t_2, Kd_1_t_3, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y,
-            inv_Kd_1_t_5, inv_rrr_platform_joint_offset_x, inv_uu_2_t, rho2_1_t,
-            rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-            rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_link2_mass,
-            rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y, size,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+            rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+            rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
+            rrr_joint2_offset_x, rrr_link2_mass, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_x = q_in_base_x + t_x - rrr_base_point_x
-        S_y = q_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_t = S_x*S_x + S_y*S_y
-        Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
-        # (rrr-K3) component along the reference direction
-        px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1 = px_1*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1 = py_1*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
-        # (rrr-K9) discriminant
-        disc_1 = rho2_1 - Kd_1*Kd_1
-        # (rrr-K10) root, with the sign of the branch
-        root_1 = branch_1*sqrt(disc_1)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2 = inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_t = rrr_platform_joint_offset_x*s_2
-        r_1_x = rrr_joint2_offset_x + c_2*rrr_platform_joint_offset_x
-        r_1_r0_x = c_2*r_1_x + r_1_t*s_2
-        r_1_r0_y = r_1_x*s_2 - c_2*r_1_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1*s_2 - c_2*s_1
-        axis_y_rrr_axes2_r1_y = c_1*c_2 + s_1*s_2
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        )
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        inv_r_1_r0_y = 1.0/r_1_r0_y
-        # (rrr-V1) velocity of the connection point
-        S_dot_t = omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x
-        S_dot_x = t_dot_x - S_dot_t
-        S_dot_y = S_dot_t_2 + t_dot_y
-        # (rrr-V7) rate of joint 1
-        qd_1 = (
-        inv_r_1_r0_y*(S_dot_x*axis_y_rrr_axes2_in_base_y - S_dot_y*axis_y_rrr_axes2_in_base_x)
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = omega_z*rrr_q_in_base_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
+        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_1 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
         )
-        # (rrr-V11) angular velocity of link 2
-        omega_2_z = (
-        inv_rrr_platform_joint_offset_x*(S_dot_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_y*axis_y_rrr_axes2_in_base_y + qd_1*r_1_r0_x) - qd_1
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_z = (
+        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
         )
-        # (rrr-V10) centripetal tensor of link 1
-        W_1_t = qd_1*qd_1
-        # (rrr-V12) centripetal tensor of link 2
-        W_2_t = omega_2_z*omega_2_z
-        # (rrr-A5) acceleration of the connection point at zero joint accelerations
-        bias_x = -W_2_t*rrr_platform_joint_offset_x - W_1_t*c_2*rrr_joint2_offset_x
-        # (rrr-V5) reciprocal vector 1
-        w_1_t = axis_y_rrr_axes2_in_base_y*inv_r_1_r0_y
-        w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_r0_y
-        # (rrr-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x
-        # (rrr-A3) acceleration of the connection point
-        S_ddot_x = a_p_x - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y - S_dot_t*omega_z
-        S_ddot_tip_x = S_ddot_x*axis_y_rrr_axes2_in_base_y - S_ddot_y*axis_y_rrr_axes2_in_base_x
-        S_ddot_tip_y = S_ddot_x*axis_y_rrr_axes2_in_base_x + S_ddot_y*axis_y_rrr_axes2_in_base_y
-        # (rrr-A6) acceleration of the connection point left to the joint accelerations
-        rel_x = S_ddot_tip_x - bias_x
-        rel_y = S_ddot_tip_y + W_1_t*rrr_joint2_offset_x*s_2
-        # (rrr-A8) acceleration of joint 1
-        qdd_1 = inv_r_1_r0_y*rel_x
-        # (rrr-N3) acceleration of the reference point of link 2, less gravity
-        acc_2_x = (
-        S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y - axis_y_rrr_axes2_in_base_y*gravity_x
+        # (rrr-W_1) centripetal tensor of link 1
+        rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_x = (
+        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        acc_2_y = (
-        S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x - axis_y_rrr_axes2_in_base_y*gravity_y
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y
+        rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y
+        # (rrr-a_p) acceleration of the connection point without its centripetal part
+        rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y
+        rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x
+        # (rrr-S_ddot) acceleration of the connection point
+        rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
+        rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
+        rrr_S_ddot_tip_x = (
+        axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x - axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y
         )
-        # (rrr-N23) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_z = h_1_y*(c_1*g_r0_x + g_r0_y*s_1) - J_1_zz*qdd_1 - h_1_x*(c_1*g_r0_y - g_r0_x*s_1)
-        # (rrr-A16) angular acceleration of link 2
-        alpha_2_z = inv_rrr_platform_joint_offset_x*(rel_y + qdd_1*r_1_r0_x) - qdd_1
-        # (rrr-N16) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_z = J_2_zz*alpha_2_z + acc_2_y*h_2_x - acc_2_x*h_2_y
-        # (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_z = mu_1_z + mu_2_z
-        # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_t = inv_rrr_platform_joint_offset_x*mu_2_z
-        # (rrr-N33) leg force on the platform without actuation and without the mass at the connection point
-        c_x = W_2_t*h_2_x + alpha_2_z*h_2_y - inv_r_1_r0_y*(G_t*r_1_r0_x - N_1_z)
-        c_y = W_2_t*h_2_y - G_t - alpha_2_z*h_2_x
-        # (rrr-N38) leg force on the platform without actuation, the last link's mass included
-        c_true_x = c_x - acc_2_x*rrr_link2_mass
-        c_true_y = c_y - acc_2_y*rrr_link2_mass
-        c_true_in_base_x = (
-        axis_y_rrr_axes2_in_base_x*c_true_y + axis_y_rrr_axes2_in_base_y*c_true_x
+        rrr_S_ddot_tip_y = (
+        axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x + axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y
         )
-        c_true_in_base_y = (
-        axis_y_rrr_axes2_in_base_y*c_true_y - axis_y_rrr_axes2_in_base_x*c_true_x
+        # (rrr-rel) acceleration of the connection point left to the joint accelerations
+        rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x
+        rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        # (rrr-qdd_1) acceleration of joint 1
+        rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_acc_2_x = (
+        rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+            axis_y_rrr_axes2_in_base_y*gravity_x
+        )
+        rrr_acc_2_y = (
+        rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+            axis_y_rrr_axes2_in_base_y*gravity_y
+        )
+        # (rrr-alpha_2) angular acceleration of link 2
+        rrr_alpha_2_z = (
+        inv_rrr_platform_joint_offset_x*(rrr_rel_y + rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1
+        )
+        # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x - rrr_acc_2_x*rrr_h_2_y
+        # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_mu_1_z = (
+        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1 -
+            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
+        )
+        # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z
+        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z
+        # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_x = (
+        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x -
+            rrr_N_1_z)
+        )
+        rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x
+        # (rrr-c_true) leg force on the platform without actuation, the last link's mass included
+        rrr_c_true_x = rrr_c_x - rrr_acc_2_x*rrr_link2_mass
+        rrr_c_true_y = rrr_c_y - rrr_acc_2_y*rrr_link2_mass
+        rrr_c_true_in_base_x = (
+        axis_y_rrr_axes2_in_base_x*rrr_c_true_y + axis_y_rrr_axes2_in_base_y*rrr_c_true_x
+        )
+        rrr_c_true_in_base_y = (
+        axis_y_rrr_axes2_in_base_y*rrr_c_true_y - axis_y_rrr_axes2_in_base_x*rrr_c_true_x
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
-            (abs(-r_1_r0_y) > _TOLERANCE * size))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
-        out_leg_force[_leg_force_rrr[0][leg]] = c_true_in_base_x
-        out_leg_force[_leg_force_rrr[1][leg]] = c_true_in_base_y
-        out_drive[_drive_rrr[0][leg]] = -w_1_t
-        out_drive[_drive_rrr[1][leg]] = w_1_t_2
+        out_leg_force[_leg_force_rrr[0][leg]] = rrr_c_true_in_base_x
+        out_leg_force[_leg_force_rrr[1][leg]] = rrr_c_true_in_base_y
+        out_drive[_drive_rrr[0][leg]] = -rrr_w_1_t
+        out_drive[_drive_rrr[1][leg]] = rrr_w_1_t_2
     return ok, (out_leg_force, out_drive,)
 
 
@@ -2370,7 +2544,7 @@ def _run_potential(m, X):
     R_yx = sin(X_2)
     ok = True
     out_potential = m.zeros("potential")
-    # (V1) potential energy
+    # (potential) potential energy
     potential_t = (
     gravity_x*(R_xx*h_star_x + m_star*t_x - R_yx*h_star_y) + gravity_y*(R_xx*h_star_y +
         R_yx*h_star_x + m_star*t_y)
@@ -2378,57 +2552,61 @@ def _run_potential(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        Kd_1_t_2, Kd_1_t_3, b_r0_x, b_r0_y, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y,
-            inv_Kd_1_t_5, inv_uu_2_t, rho2_1_t, rrr_base_frame_xx, rrr_base_frame_xy,
-            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-            rrr_joint2_offset_x, rrr_link1_mass, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_b_r0_x, rrr_b_r0_y,
+            rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
+            rrr_base_point_x, rrr_base_point_y, rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x,
+            rrr_h_1_y, rrr_h_2_x, rrr_h_2_y, rrr_joint2_offset_x, rrr_link1_mass,
+            rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
-        S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_t = S_x*S_x + S_y*S_y
-        Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
-        # (rrr-K3) component along the reference direction
-        px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1 = px_1*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1 = py_1*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
-        # (rrr-K9) discriminant
-        disc_1 = rho2_1 - Kd_1*Kd_1
-        # (rrr-K10) root, with the sign of the branch
-        root_1 = branch_1*sqrt(disc_1)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2 = inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1)
-        # (V1) potential energy
-        potential_t_2 = (
-        (c_1*g_r0_x + g_r0_y*s_1)*(h_1_x + c_2*h_2_x + h_2_y*s_2 + rrr_link1_mass*(b_r0_x*c_1 +
-            b_r0_y*s_1)) + (c_1*g_r0_y - g_r0_x*s_1)*(h_1_y + c_2*h_2_y +
-            rrr_link1_mass*(b_r0_y*c_1 - b_r0_x*s_1) - h_2_x*s_2)
+        # (rrr-S) from the base point to the connection point
+        rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
+        rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        )
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (potential) potential energy
+        rrr_potential_t = (
+        (rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1)*(rrr_h_1_x + rrr_c_2*rrr_h_2_x +
+            rrr_h_2_y*rrr_s_2 + rrr_link1_mass*(rrr_b_r0_x*rrr_c_1 + rrr_b_r0_y*rrr_s_1)) +
+            (rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)*(rrr_h_1_y + rrr_c_2*rrr_h_2_y +
+            rrr_link1_mass*(rrr_b_r0_y*rrr_c_1 - rrr_b_r0_x*rrr_s_1) - rrr_h_2_x*rrr_s_2)
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0))
         )
         sums = m.added(sums, leg, (
-        potential_t_2,
+        rrr_potential_t,
         ))
     total_rrr, = sums
-    # (V1) potential energy
+    # (potential) potential energy
     potential = -potential_t - total_rrr
     out_potential[0] = potential
     return ok, (out_potential,)
@@ -2461,86 +2639,91 @@ def _run_condition(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        Kd_1_t_2, Kd_1_t_3, branch_1, inv_Kd_1_t_5, inv_rho2_1_t_4, inv_size, inv_uu_2_t,
-            rho2_1_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-            rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_rho2_1_t_4, inv_rrr_size, rrr_Kd_1_t_2,
+            rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_x = q_in_base_x + t_x - rrr_base_point_x
-        S_y = q_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_t = S_x*S_x + S_y*S_y
-        Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
-        # (rrr-K3) component along the reference direction
-        px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1 = px_1*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1 = py_1*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
-        # (rrr-K9) discriminant
-        disc_1 = rho2_1 - Kd_1*Kd_1
-        # (rrr-K10) root, with the sign of the branch
-        root_1 = branch_1*sqrt(disc_1)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2 = inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_x = rrr_joint2_offset_x + c_2*rrr_platform_joint_offset_x
-        r_1_r0_y = r_1_x*s_2 - c_2*rrr_platform_joint_offset_x*s_2
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1 = 1.0/rho2_1
-        c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1*s_2 - c_2*s_1
-        axis_y_rrr_axes2_r1_y = c_1*c_2 + s_1*s_2
-        inv_r_1_r0_y = 1.0/r_1_r0_y
-        w_1_t = (
-        inv_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        )
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        rrr_w_1_t = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy)
         )
-        w_1_t_2 = (
-        inv_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
+        rrr_w_1_t_2 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy)
         )
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_z = q_in_base_x*w_1_t_2 + q_in_base_y*w_1_t
-        # (C2) rms distance of the platform points from their centroid
-        spread_t_2 = b_c_x - rrr_platform_point_x
-        spread_t_3 = b_c_y - rrr_platform_point_y
-        spread_t_4 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3
-        # (rrr-K8) squared amplitude
-        pivot_size = abs(rho2_1)
-        # (rrr-V5) reciprocal vector 1
-        pivot_size_2 = abs(r_1_r0_y)
-        # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
-        least_pivots = least(sqrt(inv_rho2_1_t_4*pivot_size), inv_size*pivot_size_2)
-        clear = (
-        clear & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (abs(-r_1_r0_y)
-            > _TOLERANCE * size))
+        # (rrr-H_a_1) moment of the column's unit force about the platform origin
+        rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t
+        # (spread) rms distance of the platform points from their centroid
+        rrr_spread_t = b_c_x - rrr_platform_point_x
+        rrr_spread_t_2 = b_c_y - rrr_platform_point_y
+        rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2
+        # (rrr-rho2_1) squared amplitude
+        rrr_pivot_size = abs(rrr_rho2_1)
+        # (rrr-w_1) reciprocal vector 1
+        rrr_pivot_size_2 = abs(rrr_r_1_r0_y)
+        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_least_pivots = (
+        least(sqrt(inv_rrr_rho2_1_t_4*rrr_pivot_size), inv_rrr_size*rrr_pivot_size_2)
         )
-        reached = reached & m.every(leg, (disc_1 >= 0.0))
+        clear = (
+        clear & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) &
+            (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+        )
+        reached = reached & m.every(leg, (rrr_disc_1 >= 0.0))
         sums = m.added(sums, leg, (
-        spread_t_4,
+        rrr_spread_t_3,
         ))
-        out_H[_H_rrr[0][leg]] = -w_1_t
-        out_H[_H_rrr[1][leg]] = w_1_t_2
-        out_H[_H_rrr[2][leg]] = H_a_1_z
-        out_pivots[_pivots_rrr[0][leg]] = least_pivots
-        out_reach[_reach_rrr[0][leg]] = disc_1
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
+        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
+        out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
+        out_pivots[_pivots_rrr[0][leg]] = rrr_least_pivots
+        out_reach[_reach_rrr[0][leg]] = rrr_disc_1
     total_rrr, = sums
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(total_rrr)
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
@@ -2668,6 +2851,19 @@ def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
     momentum = np.einsum("ijs,js->is", M, V)
     return (momentum,)
+
+
+def _steps_joint_margins(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    margins = _unlimited(q, [0, 1, 2, 3, 4, 5])
+    return (margins,)
+
+
+def _steps_within_limits(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    subtract_1 = q - q
+    within = _not_negative(subtract_1)
+    return (within,)
 
 
 def _steps_actuator_positions(m, X):
@@ -3071,6 +3267,40 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+    )
+
+
+def joint_margins(X, p=None):
+    """How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+    where there is none.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        margins: distances, in the order of q [m or rad] (..., NJ).
+    """
+    return _call(
+        "joint_margins", _steps_joint_margins, p,
+        ("X", X, (NQ,)),
+        unbounded=True,
+    )
+
+
+def within_limits(X, p=None):
+    """Whether all joints are within their limits of displacement.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        within: 1 where no margin is negative, else 0; NaN is neither (...,).
+    """
+    return _call(
+        "within_limits", _steps_within_limits, p,
+        ("X", X, (NQ,)),
     )
 
 

@@ -48,6 +48,7 @@ typedef PLANAR_4RPR_REAL planar_4rpr_real;
 #define PLANAR_4RPR_NC 0
 #define PLANAR_4RPR_NW 3
 #define PLANAR_4RPR_NJ 8
+#define PLANAR_4RPR_OVERCONSTRAINED 0
 
 enum {
     PLANAR_4RPR_OK = 0,
@@ -90,13 +91,14 @@ typedef struct {
 /* What depends on the parameters alone; set by planar_4rpr_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
-    planar_4rpr_real J_star_t_10, J_star_zz, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y,
-            h_star_x, h_star_y, m_star;
-    /* legs of type rpr */
-    planar_4rpr_real J_group_1_zz[4], b_r0_x[4], b_r0_y[4], branch_1[4], g_r0_x[4], g_r0_y[4],
-            h_1_x[4], h_1_y[4], h_2_x[4], h_2_y[4], rpr_base_frame_xx[4], rpr_base_frame_xy[4],
-            rpr_base_frame_yx[4], rpr_base_frame_yy[4], rpr_base_point_x[4], rpr_base_point_y[4],
-            rpr_link1_mass[4], rpr_link2_mass[4], rpr_platform_point_x[4], rpr_platform_point_y[4];
+    /* 4 legs of type rpr */
+    planar_4rpr_real rpr_J_group_1_zz[4], rpr_b_r0_x[4], rpr_b_r0_y[4], rpr_base_frame_xx[4],
+            rpr_base_frame_xy[4], rpr_base_frame_yx[4], rpr_base_frame_yy[4], rpr_base_point_x[4],
+            rpr_base_point_y[4], rpr_branch_1[4], rpr_g_r0_x[4], rpr_g_r0_y[4], rpr_h_1_x[4],
+            rpr_h_1_y[4], rpr_h_2_x[4], rpr_h_2_y[4], rpr_link1_mass[4], rpr_link2_mass[4],
+            rpr_platform_point_x[4], rpr_platform_point_y[4];
+    planar_4rpr_real J_star_t_6, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y, h_star_x,
+            h_star_y, m_star;
 } planar_4rpr_model;
 
 extern const planar_4rpr_params planar_4rpr_default_params;
@@ -118,7 +120,7 @@ int planar_4rpr_M(const planar_4rpr_model *model, const planar_4rpr_real *X, pla
 size_t planar_4rpr_M_batch(const planar_4rpr_model *model, size_t n, const planar_4rpr_real *X,
     planar_4rpr_real *M, int *status);
 
-/* Velocity and gravity terms Z. 213 mul, 142 add, 4 div, 4 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 209 mul, 140 add, 4 div, 4 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int planar_4rpr_Z(const planar_4rpr_model *model, const planar_4rpr_real *X, const
     planar_4rpr_real *V, planar_4rpr_real *Z);
@@ -153,7 +155,7 @@ size_t planar_4rpr_joint_accelerations_batch(const planar_4rpr_model *model, siz
     planar_4rpr_real *X, const planar_4rpr_real *V, const planar_4rpr_real *A, planar_4rpr_real
     *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 305 mul, 207 add, 4 div, 4 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 301 mul, 205 add, 4 div, 4 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int planar_4rpr_dynamics(const planar_4rpr_model *model, const planar_4rpr_real *X, const
     planar_4rpr_real *V, planar_4rpr_real *M, planar_4rpr_real *Z, planar_4rpr_real *H);
@@ -161,7 +163,7 @@ size_t planar_4rpr_dynamics_batch(const planar_4rpr_model *model, size_t n, cons
     *X, const planar_4rpr_real *V, planar_4rpr_real *M, planar_4rpr_real *Z, planar_4rpr_real *H,
     int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least norm. 242 mul, 167 add,
+/* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least norm. 238 mul, 165 add,
    4 div, 4 sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV),
    wrench (NW, or NULL). Out: tau (NU). */
 int planar_4rpr_inverse_dynamics(const planar_4rpr_model *model, const planar_4rpr_real *X, const
@@ -172,7 +174,7 @@ size_t planar_4rpr_inverse_dynamics_batch(const planar_4rpr_model *model, size_t
     planar_4rpr_real *wrench, planar_4rpr_real *tau, int *status);
 
 /* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least sum of weights tau^2.
-   242 mul, 167 add, 4 div, 4 sqrt, 0 trig; the solution of the linear equations apart. In: X
+   238 mul, 165 add, 4 div, 4 sqrt, 0 trig; the solution of the linear equations apart. In: X
    (NQ), V (NV), A (NV), wrench (NW, or NULL), weights (NU, positive). Out: tau (NU). */
 int planar_4rpr_inverse_dynamics_weighted(const planar_4rpr_model *model, const planar_4rpr_real
     *X, const planar_4rpr_real *V, const planar_4rpr_real *A, const planar_4rpr_real *wrench,
@@ -181,7 +183,7 @@ size_t planar_4rpr_inverse_dynamics_weighted_batch(const planar_4rpr_model *mode
     planar_4rpr_real *X, const planar_4rpr_real *V, const planar_4rpr_real *A, const
     planar_4rpr_real *wrench, const planar_4rpr_real *weights, planar_4rpr_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 305 mul, 207 add, 4 div, 4 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 301 mul, 205 add, 4 div, 4 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV). */
 int planar_4rpr_forward_dynamics(const planar_4rpr_model *model, const planar_4rpr_real *X, const
@@ -256,6 +258,20 @@ int planar_4rpr_momentum(const planar_4rpr_model *model, const planar_4rpr_real 
     planar_4rpr_real *V, planar_4rpr_real *momentum);
 size_t planar_4rpr_momentum_batch(const planar_4rpr_model *model, size_t n, const planar_4rpr_real
     *X, const planar_4rpr_real *V, planar_4rpr_real *momentum, int *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 52 mul, 36 add, 4 div, 4 sqrt, 4 trig. In: X (NQ). Out: margins (NJ). */
+int planar_4rpr_joint_margins(const planar_4rpr_model *model, const planar_4rpr_real *X,
+    planar_4rpr_real *margins);
+size_t planar_4rpr_joint_margins_batch(const planar_4rpr_model *model, size_t n, const
+    planar_4rpr_real *X, planar_4rpr_real *margins, int *status);
+
+/* Whether all joints are within their limits of displacement. 52 mul, 36 add, 4 div, 4 sqrt, 4
+   trig. In: X (NQ). Out: within (1). */
+int planar_4rpr_within_limits(const planar_4rpr_model *model, const planar_4rpr_real *X,
+    planar_4rpr_real *within);
+size_t planar_4rpr_within_limits_batch(const planar_4rpr_model *model, size_t n, const
+    planar_4rpr_real *X, planar_4rpr_real *within, int *status);
 
 /* Displacements of the actuated joints, in the order of tau. 52 mul, 36 add, 4 div, 4 sqrt, 4
    trig. In: X (NQ). Out: q (NU). */

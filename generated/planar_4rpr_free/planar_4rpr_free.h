@@ -48,6 +48,7 @@ typedef PLANAR_4RPR_FREE_REAL planar_4rpr_free_real;
 #define PLANAR_4RPR_FREE_NC 0
 #define PLANAR_4RPR_FREE_NW 3
 #define PLANAR_4RPR_FREE_NJ 8
+#define PLANAR_4RPR_FREE_OVERCONSTRAINED 0
 
 enum {
     PLANAR_4RPR_FREE_OK = 0,
@@ -86,42 +87,43 @@ typedef struct {
     /* inertia tensor of link 2 about its centre of mass, link axes [kg m^2] */
     planar_4rpr_free_real rpr_link2_inertia[3][3][3];
     /* base point, base frame [m] */
-    planar_4rpr_free_real rpr2_base_point[1][3];
+    planar_4rpr_free_real rpr_leg4_base_point[1][3];
     /* rotation from leg axes to base axes [-] */
-    planar_4rpr_free_real rpr2_base_frame[1][3][3];
+    planar_4rpr_free_real rpr_leg4_base_frame[1][3][3];
     /* platform joint, platform frame [m] */
-    planar_4rpr_free_real rpr2_platform_point[1][3];
+    planar_4rpr_free_real rpr_leg4_platform_point[1][3];
     /* mass of link 1 [kg] */
-    planar_4rpr_free_real rpr2_link1_mass[1];
+    planar_4rpr_free_real rpr_leg4_link1_mass[1];
     /* centre of mass of link 1, link frame [m] */
-    planar_4rpr_free_real rpr2_link1_centre_of_mass[1][3];
+    planar_4rpr_free_real rpr_leg4_link1_centre_of_mass[1][3];
     /* inertia tensor of link 1 about its centre of mass, link axes [kg m^2] */
-    planar_4rpr_free_real rpr2_link1_inertia[1][3][3];
+    planar_4rpr_free_real rpr_leg4_link1_inertia[1][3][3];
     /* mass of link 2 [kg] */
-    planar_4rpr_free_real rpr2_link2_mass[1];
+    planar_4rpr_free_real rpr_leg4_link2_mass[1];
     /* centre of mass of link 2, link frame [m] */
-    planar_4rpr_free_real rpr2_link2_centre_of_mass[1][3];
+    planar_4rpr_free_real rpr_leg4_link2_centre_of_mass[1][3];
     /* inertia tensor of link 2 about its centre of mass, link axes [kg m^2] */
-    planar_4rpr_free_real rpr2_link2_inertia[1][3][3];
+    planar_4rpr_free_real rpr_leg4_link2_inertia[1][3][3];
 } planar_4rpr_free_params;
 
 /* What depends on the parameters alone; set by planar_4rpr_free_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
-    planar_4rpr_free_real J_star_t_14, J_star_zz, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y,
-            h_star_x, h_star_y, m_star;
-    /* legs of type rpr */
-    planar_4rpr_free_real J_group_1_rpr_zz[3], b_rpr_r0_x[3], b_rpr_r0_y[3], branch_1_rpr[3],
-            g_r0_x[3], g_r0_y[3], h_1_rpr_x[3], h_1_rpr_y[3], h_2_rpr_x[3], h_2_rpr_y[3],
-            rpr_base_frame_xx[3], rpr_base_frame_xy[3], rpr_base_frame_yx[3], rpr_base_frame_yy[3],
-            rpr_base_point_x[3], rpr_base_point_y[3], rpr_link1_mass[3], rpr_link2_mass[3],
-            rpr_platform_point_x[3], rpr_platform_point_y[3];
-    /* legs of type rpr2 */
-    planar_4rpr_free_real J_group_1_rpr2_zz[1], b_rpr2_r0_x[1], b_rpr2_r0_y[1], branch_1_rpr2[1],
-            g_r0_x_2[1], g_r0_y_2[1], h_1_rpr2_x[1], h_1_rpr2_y[1], h_2_rpr2_x[1], h_2_rpr2_y[1],
-            rpr2_base_frame_xx[1], rpr2_base_frame_xy[1], rpr2_base_frame_yx[1],
-            rpr2_base_frame_yy[1], rpr2_base_point_x[1], rpr2_base_point_y[1], rpr2_link1_mass[1],
-            rpr2_link2_mass[1], rpr2_platform_point_x[1], rpr2_platform_point_y[1];
+    /* 3 legs of type rpr; copies of the first fill up */
+    planar_4rpr_free_real rpr_J_group_1_zz[4], rpr_b_r0_x[4], rpr_b_r0_y[4], rpr_base_frame_xx[4],
+            rpr_base_frame_xy[4], rpr_base_frame_yx[4], rpr_base_frame_yy[4], rpr_base_point_x[4],
+            rpr_base_point_y[4], rpr_branch_1[4], rpr_g_r0_x[4], rpr_g_r0_y[4], rpr_h_1_x[4],
+            rpr_h_1_y[4], rpr_h_2_x[4], rpr_h_2_y[4], rpr_link1_mass[4], rpr_link2_mass[4],
+            rpr_platform_point_x[4], rpr_platform_point_y[4];
+    /* 1 legs of type rpr_leg4 */
+    planar_4rpr_free_real rpr_leg4_J_group_1_zz[1], rpr_leg4_b_r0_x[1], rpr_leg4_b_r0_y[1],
+            rpr_leg4_base_frame_xx[1], rpr_leg4_base_frame_xy[1], rpr_leg4_base_frame_yx[1],
+            rpr_leg4_base_frame_yy[1], rpr_leg4_base_point_x[1], rpr_leg4_base_point_y[1],
+            rpr_leg4_branch_1[1], rpr_leg4_g_r0_x[1], rpr_leg4_g_r0_y[1], rpr_leg4_h_1_x[1],
+            rpr_leg4_h_1_y[1], rpr_leg4_h_2_x[1], rpr_leg4_h_2_y[1], rpr_leg4_link1_mass[1],
+            rpr_leg4_link2_mass[1], rpr_leg4_platform_point_x[1], rpr_leg4_platform_point_y[1];
+    planar_4rpr_free_real J_star_t_6, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y, h_star_x,
+            h_star_y, m_star;
 } planar_4rpr_free_model;
 
 extern const planar_4rpr_free_params planar_4rpr_free_default_params;
@@ -144,7 +146,7 @@ int planar_4rpr_free_M(const planar_4rpr_free_model *model, const planar_4rpr_fr
 size_t planar_4rpr_free_M_batch(const planar_4rpr_free_model *model, size_t n, const
     planar_4rpr_free_real *X, planar_4rpr_free_real *M, int *status);
 
-/* Velocity and gravity terms Z. 213 mul, 145 add, 4 div, 4 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 209 mul, 143 add, 4 div, 4 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int planar_4rpr_free_Z(const planar_4rpr_free_model *model, const planar_4rpr_free_real *X, const
     planar_4rpr_free_real *V, planar_4rpr_free_real *Z);
@@ -183,7 +185,7 @@ size_t planar_4rpr_free_joint_accelerations_batch(const planar_4rpr_free_model *
     const planar_4rpr_free_real *X, const planar_4rpr_free_real *V, const planar_4rpr_free_real
     *A, planar_4rpr_free_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 303 mul, 215 add, 4 div, 4 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 299 mul, 213 add, 4 div, 4 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int planar_4rpr_free_dynamics(const planar_4rpr_free_model *model, const planar_4rpr_free_real *X,
     const planar_4rpr_free_real *V, planar_4rpr_free_real *M, planar_4rpr_free_real *Z,
@@ -192,7 +194,7 @@ size_t planar_4rpr_free_dynamics_batch(const planar_4rpr_free_model *model, size
     planar_4rpr_free_real *X, const planar_4rpr_free_real *V, planar_4rpr_free_real *M,
     planar_4rpr_free_real *Z, planar_4rpr_free_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 240 mul, 169 add, 4 div, 4 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 236 mul, 167 add, 4 div, 4 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
 int planar_4rpr_free_inverse_dynamics(const planar_4rpr_free_model *model, const
@@ -202,7 +204,7 @@ size_t planar_4rpr_free_inverse_dynamics_batch(const planar_4rpr_free_model *mod
     const planar_4rpr_free_real *X, const planar_4rpr_free_real *V, const planar_4rpr_free_real
     *A, const planar_4rpr_free_real *wrench, planar_4rpr_free_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 303 mul, 215 add, 4 div, 4 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 299 mul, 213 add, 4 div, 4 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV). */
 int planar_4rpr_free_forward_dynamics(const planar_4rpr_free_model *model, const
@@ -276,6 +278,20 @@ int planar_4rpr_free_momentum(const planar_4rpr_free_model *model, const planar_
 size_t planar_4rpr_free_momentum_batch(const planar_4rpr_free_model *model, size_t n, const
     planar_4rpr_free_real *X, const planar_4rpr_free_real *V, planar_4rpr_free_real *momentum, int
     *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 52 mul, 36 add, 4 div, 4 sqrt, 4 trig. In: X (NQ). Out: margins (NJ). */
+int planar_4rpr_free_joint_margins(const planar_4rpr_free_model *model, const
+    planar_4rpr_free_real *X, planar_4rpr_free_real *margins);
+size_t planar_4rpr_free_joint_margins_batch(const planar_4rpr_free_model *model, size_t n, const
+    planar_4rpr_free_real *X, planar_4rpr_free_real *margins, int *status);
+
+/* Whether all joints are within their limits of displacement. 52 mul, 36 add, 4 div, 4 sqrt, 4
+   trig. In: X (NQ). Out: within (1). */
+int planar_4rpr_free_within_limits(const planar_4rpr_free_model *model, const
+    planar_4rpr_free_real *X, planar_4rpr_free_real *within);
+size_t planar_4rpr_free_within_limits_batch(const planar_4rpr_free_model *model, size_t n, const
+    planar_4rpr_free_real *X, planar_4rpr_free_real *within, int *status);
 
 /* Displacements of the actuated joints, in the order of tau. 52 mul, 36 add, 4 div, 4 sqrt, 4
    trig. In: X (NQ). Out: q (NU). */

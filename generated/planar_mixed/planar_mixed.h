@@ -48,6 +48,7 @@ typedef PLANAR_MIXED_REAL planar_mixed_real;
 #define PLANAR_MIXED_NC 0
 #define PLANAR_MIXED_NW 3
 #define PLANAR_MIXED_NJ 6
+#define PLANAR_MIXED_OVERCONSTRAINED 0
 
 enum {
     PLANAR_MIXED_OK = 0,
@@ -132,31 +133,31 @@ typedef struct {
 /* What depends on the parameters alone; set by planar_mixed_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
-    planar_mixed_real J_star_t_18, J_star_zz, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y,
-            h_star_x, h_star_y, legs_size, m_star;
-    /* legs of type rpr */
-    planar_mixed_real J_group_1_rpr_zz[1], b_rpr_r0_x[1], b_rpr_r0_y[1], branch_1_rpr[1], g_r0_x_3[1],
-            g_r0_y_3[1], h_1_rpr_x[1], h_1_rpr_y[1], h_2_rpr_x[1], h_2_rpr_y[1], rpr_base_frame_xx[1],
+    /* 1 legs of type rpr */
+    planar_mixed_real rpr_J_group_1_zz[1], rpr_b_r0_x[1], rpr_b_r0_y[1], rpr_base_frame_xx[1],
             rpr_base_frame_xy[1], rpr_base_frame_yx[1], rpr_base_frame_yy[1], rpr_base_point_x[1],
-            rpr_base_point_y[1], rpr_link1_mass[1], rpr_link2_mass[1], rpr_platform_point_x[1],
-            rpr_platform_point_y[1];
-    /* legs of type rrr */
-    planar_mixed_real J_1_rrr_zz[1], J_2_rrr_zz[1], Jc_1_rrr_zz[1], Kd_1_rrr_t_2[1], Kd_1_rrr_t_3[1],
-            b_rrr_r0_x[1], b_rrr_r0_y[1], branch_1_rrr[1], d_Gamma_1_rrr_t[1], d_Gamma_1_rrr_y[1],
-            d_c_rrr_yy[1], d_phi_2_rrr_t[1], g_r0_x_2[1], g_r0_y_2[1], h_1_rrr_x[1], h_1_rrr_y[1],
-            h_2_rrr_x[1], h_2_rrr_y[1], inv_Kd_1_rrr_t_5[1], inv_rho2_1_rrr_t_4[1],
-            inv_rrr_platform_joint_offset_x[1], inv_size_rrr[1], inv_uu_2_rrr_t[1], rho2_1_rrr_t[1],
-            rrr_base_frame_xx[1], rrr_base_frame_xy[1], rrr_base_frame_yx[1], rrr_base_frame_yy[1],
-            rrr_base_point_x[1], rrr_base_point_y[1], rrr_joint2_offset_x[1], rrr_link1_mass[1],
-            rrr_link2_mass[1], rrr_platform_joint_offset_x[1], rrr_platform_point_x[1],
-            rrr_platform_point_y[1], size_rrr[1];
-    /* legs of type prr */
-    planar_mixed_real J_2_prr_zz[1], b_prr_r0_x[1], branch_1_prr[1], g_r0_x[1], g_r0_y[1],
-            h_1_prr_x[1], h_1_prr_y[1], h_2_prr_x[1], h_2_prr_y[1], inv_size_prr[1],
-            inv_uu_2_prr_t[1], potential_t[1], prr_base_frame_xx[1], prr_base_frame_xy[1],
-            prr_base_frame_yx[1], prr_base_frame_yy[1], prr_base_point_x[1], prr_base_point_y[1],
-            prr_link1_mass[1], prr_link2_mass[1], prr_platform_joint_offset_x[1],
-            prr_platform_point_x[1], prr_platform_point_y[1], size_prr[1], uu_2_prr_t[1];
+            rpr_base_point_y[1], rpr_branch_1[1], rpr_g_r0_x[1], rpr_g_r0_y[1], rpr_h_1_x[1],
+            rpr_h_1_y[1], rpr_h_2_x[1], rpr_h_2_y[1], rpr_link1_mass[1], rpr_link2_mass[1],
+            rpr_platform_point_x[1], rpr_platform_point_y[1];
+    /* 1 legs of type rrr */
+    planar_mixed_real inv_rrr_Kd_1_t_5[1], inv_rrr_Kd_1_t_7[1], inv_rrr_platform_joint_offset_x[1],
+            inv_rrr_rho2_1_t_4[1], inv_rrr_size[1], rrr_J_1_zz[1], rrr_J_2_zz[1], rrr_Jc_1_zz[1],
+            rrr_Kd_1_t_2[1], rrr_Kd_1_t_4[1], rrr_b_r0_x[1], rrr_b_r0_y[1], rrr_base_frame_xx[1],
+            rrr_base_frame_xy[1], rrr_base_frame_yx[1], rrr_base_frame_yy[1], rrr_base_point_x[1],
+            rrr_base_point_y[1], rrr_branch_1[1], rrr_d_Gamma_2_t[1], rrr_d_Gamma_2_y[1],
+            rrr_d_c_yy[1], rrr_d_phi_2_t[1], rrr_g_r0_x[1], rrr_g_r0_y[1], rrr_h_1_x[1], rrr_h_1_y[1],
+            rrr_h_2_x[1], rrr_h_2_y[1], rrr_joint2_offset_x[1], rrr_link1_mass[1], rrr_link2_mass[1],
+            rrr_platform_joint_offset_x[1], rrr_platform_point_x[1], rrr_platform_point_y[1],
+            rrr_rho2_1_t[1], rrr_size[1];
+    /* 1 legs of type prr */
+    planar_mixed_real inv_prr_disc_1_t_5[1], inv_prr_size[1], prr_J_2_zz[1], prr_b_r0_x[1],
+            prr_base_frame_xx[1], prr_base_frame_xy[1], prr_base_frame_yx[1], prr_base_frame_yy[1],
+            prr_base_point_x[1], prr_base_point_y[1], prr_branch_1[1], prr_disc_1_t[1], prr_g_r0_x[1],
+            prr_g_r0_y[1], prr_h_1_x[1], prr_h_1_y[1], prr_h_2_x[1], prr_h_2_y[1], prr_link1_mass[1],
+            prr_link2_mass[1], prr_platform_joint_offset_x[1], prr_platform_point_x[1],
+            prr_platform_point_y[1], prr_potential_t[1], prr_size[1];
+    planar_mixed_real J_star_t_6, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y, h_star_x,
+            h_star_y, legs_size, m_star;
 } planar_mixed_model;
 
 extern const planar_mixed_params planar_mixed_default_params;
@@ -179,7 +180,7 @@ int planar_mixed_M(const planar_mixed_model *model, const planar_mixed_real *X, 
 size_t planar_mixed_M_batch(const planar_mixed_model *model, size_t n, const planar_mixed_real *X,
     planar_mixed_real *M, int *status);
 
-/* Velocity and gravity terms Z. 226 mul, 149 add, 4 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 222 mul, 147 add, 4 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int planar_mixed_Z(const planar_mixed_model *model, const planar_mixed_real *X, const
     planar_mixed_real *V, planar_mixed_real *Z);
@@ -215,7 +216,7 @@ size_t planar_mixed_joint_accelerations_batch(const planar_mixed_model *model, s
     planar_mixed_real *X, const planar_mixed_real *V, const planar_mixed_real *A,
     planar_mixed_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 326 mul, 236 add, 4 div, 3 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 322 mul, 234 add, 4 div, 3 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int planar_mixed_dynamics(const planar_mixed_model *model, const planar_mixed_real *X, const
     planar_mixed_real *V, planar_mixed_real *M, planar_mixed_real *Z, planar_mixed_real *H);
@@ -223,7 +224,7 @@ size_t planar_mixed_dynamics_batch(const planar_mixed_model *model, size_t n, co
     planar_mixed_real *X, const planar_mixed_real *V, planar_mixed_real *M, planar_mixed_real *Z,
     planar_mixed_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 254 mul, 173 add, 4 div, 3 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 250 mul, 171 add, 4 div, 3 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
 int planar_mixed_inverse_dynamics(const planar_mixed_model *model, const planar_mixed_real *X,
@@ -233,7 +234,7 @@ size_t planar_mixed_inverse_dynamics_batch(const planar_mixed_model *model, size
     planar_mixed_real *X, const planar_mixed_real *V, const planar_mixed_real *A, const
     planar_mixed_real *wrench, planar_mixed_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 326 mul, 236 add, 4 div, 3 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 322 mul, 234 add, 4 div, 3 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV). */
 int planar_mixed_forward_dynamics(const planar_mixed_model *model, const planar_mixed_real *X,
@@ -302,6 +303,20 @@ int planar_mixed_momentum(const planar_mixed_model *model, const planar_mixed_re
     planar_mixed_real *V, planar_mixed_real *momentum);
 size_t planar_mixed_momentum_batch(const planar_mixed_model *model, size_t n, const
     planar_mixed_real *X, const planar_mixed_real *V, planar_mixed_real *momentum, int *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 60 mul, 37 add, 2 div, 3 sqrt, 4 trig. In: X (NQ). Out: margins (NJ). */
+int planar_mixed_joint_margins(const planar_mixed_model *model, const planar_mixed_real *X,
+    planar_mixed_real *margins);
+size_t planar_mixed_joint_margins_batch(const planar_mixed_model *model, size_t n, const
+    planar_mixed_real *X, planar_mixed_real *margins, int *status);
+
+/* Whether all joints are within their limits of displacement. 60 mul, 37 add, 2 div, 3 sqrt, 4
+   trig. In: X (NQ). Out: within (1). */
+int planar_mixed_within_limits(const planar_mixed_model *model, const planar_mixed_real *X,
+    planar_mixed_real *within);
+size_t planar_mixed_within_limits_batch(const planar_mixed_model *model, size_t n, const
+    planar_mixed_real *X, planar_mixed_real *within, int *status);
 
 /* Displacements of the actuated joints, in the order of tau. 60 mul, 37 add, 2 div, 3 sqrt, 4
    trig. In: X (NQ). Out: q (NU). */

@@ -32,6 +32,7 @@ __all__ = [
     "NC",
     "NW",
     "NJ",
+    "OVERCONSTRAINED",
     "ACTUATED",
     "ACTUATOR_NAMES",
     "H",
@@ -56,6 +57,7 @@ __all__ = [
     "inverse_dynamics",
     "inverse_kinematics",
     "joint_accelerations",
+    "joint_margins",
     "joint_rates",
     "leg_reactions",
     "momentum",
@@ -64,6 +66,7 @@ __all__ = [
     "power",
     "retract",
     "rotation",
+    "within_limits",
 ]
 
 NQ = 3
@@ -72,6 +75,7 @@ NU = 3
 NC = 0
 NW = 3
 NJ = 6
+OVERCONSTRAINED = 0
 
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
@@ -461,7 +465,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return np.full(shape, default)
+        return _filled(shape, default) if isinstance(default, float) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -474,6 +478,16 @@ def _argument(function, name, value, shape, default=None, rule=""):
     elif rule == "positive" and not np.all((array > 0.0) & (array < np.inf)):
         raise ValueError(f"{function}: {name} must be positive and finite")
     return array
+
+
+_FILLED = {}
+
+
+def _filled(shape, value):
+    """An array of one value, made once."""
+    if (shape, value) not in _FILLED:
+        _FILLED[shape, value] = _frozen(np.full(shape, value))
+    return _FILLED[shape, value]
 
 
 def _lead(leads):
@@ -567,9 +581,9 @@ HOME_X = _frozen(np.array([0.03, -0.02, 0.09999999999999999]))
 HOME_Q = _frozen(np.array([1.947212705196237e-17, 0.62, 0.6999999999999998, -1.1999999999999997, 0.14999999999999997, -0.6999999999999998]))
 
 _BRANCHES = {  # assembly branch of home, a sign per leg
-    "branch_1_rpr": np.array([1.0]),
-    "branch_1_rrr": np.array([1.0]),
-    "branch_1_prr": np.array([-1.0]),
+    "rpr_branch_1": np.array([1.0]),
+    "rrr_branch_1": np.array([1.0]),
+    "prr_branch_1": np.array([-1.0]),
 }
 
 
@@ -635,192 +649,192 @@ def _prepare(p):
     prr_link2_centre_of_mass_x = p.prr_link2_centre_of_mass[:, 0]
     prr_link2_centre_of_mass_y = p.prr_link2_centre_of_mass[:, 1]
     prr_link2_inertia_zz = p.prr_link2_inertia[:, 2, 2]
-    branch_1_rpr = _BRANCHES["branch_1_rpr"]
-    branch_1_rrr = _BRANCHES["branch_1_rrr"]
-    branch_1_prr = _BRANCHES["branch_1_prr"]
-    # (L2) first moment about the platform origin
+    rpr_branch_1 = _BRANCHES["rpr_branch_1"]
+    rrr_branch_1 = _BRANCHES["rrr_branch_1"]
+    prr_branch_1 = _BRANCHES["prr_branch_1"]
+    # (h_star) first moment about the platform origin
     h_star_t = platform_centre_of_mass_x*platform_mass
     h_star_t_2 = platform_centre_of_mass_y*platform_mass
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_t = platform_centre_of_mass_y*platform_centre_of_mass_y
     J_star_t_2 = J_star_t + platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_3 = J_star_t*platform_mass
     J_star_t_4 = J_star_t_2*platform_mass
-    # (rpr-G3) inertia tensor of link 1 about the origin of link 1
-    J_1_rpr_t = (
+    # (rpr-h_2) first moment of link 2 about the connection point
+    rpr_h_2_x = rpr_link2_centre_of_mass_x*rpr_link2_mass
+    rpr_h_2_y = rpr_link2_centre_of_mass_y*rpr_link2_mass
+    # (rpr-J_1) inertia tensor of link 1 about the origin of link 1
+    rpr_J_1_t = (
     rpr_link1_centre_of_mass_x*rpr_link1_centre_of_mass_x +
         rpr_link1_centre_of_mass_y*rpr_link1_centre_of_mass_y
     )
-    # (rpr-G5) inertia tensor of link 2 about the connection point
-    J_2_rpr_t = (
+    # (rpr-J_2) inertia tensor of link 2 about the connection point
+    rpr_J_2_t = (
     rpr_link2_centre_of_mass_x*rpr_link2_centre_of_mass_x +
         rpr_link2_centre_of_mass_y*rpr_link2_centre_of_mass_y
     )
-    # (rpr-N8) inertia of the links that turn with link 1, each about its reference point
-    J_group_1_rpr_zz = (
-    rpr_link1_inertia_zz + rpr_link2_inertia_zz + J_1_rpr_t*rpr_link1_mass +
-        J_2_rpr_t*rpr_link2_mass
+    # (rpr-J_group_1) inertia of the links that turn with link 1, each about its reference point
+    rpr_J_group_1_zz = (
+    rpr_link1_inertia_zz + rpr_link2_inertia_zz + rpr_J_1_t*rpr_link1_mass +
+        rpr_J_2_t*rpr_link2_mass
     )
-    # (rpr-G4) first moment of link 2 about the connection point
-    h_2_rpr_x = rpr_link2_centre_of_mass_x*rpr_link2_mass
-    h_2_rpr_y = rpr_link2_centre_of_mass_y*rpr_link2_mass
-    # (L2) first moment about the platform origin
-    h_star_t_3 = rpr_link2_mass*rpr_platform_point_x
-    h_star_t_4 = rpr_link2_mass*rpr_platform_point_y
-    # (L3) inertia tensor about the platform origin
-    J_star_t_5 = rpr_platform_point_y*rpr_platform_point_y
-    J_star_t_6 = J_star_t_5 + rpr_platform_point_x*rpr_platform_point_x
-    J_star_t_7 = J_star_t_5*rpr_link2_mass
-    J_star_t_8 = J_star_t_6*rpr_link2_mass
-    # (rpr-G2) first moment of link 1 about the origin of link 1
-    h_1_rpr_x = rpr_link1_centre_of_mass_x*rpr_link1_mass
-    h_1_rpr_y = rpr_link1_centre_of_mass_y*rpr_link1_mass
-    # (rpr-N3) acceleration of the reference point of link 2, less gravity
-    g_r0_x_3 = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx
-    g_r0_y_3 = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy
-    # (V1) potential energy
-    b_rpr_r0_x = rpr_base_frame_xx*rpr_base_point_x + rpr_base_frame_yx*rpr_base_point_y
-    b_rpr_r0_y = rpr_base_frame_xy*rpr_base_point_x + rpr_base_frame_yy*rpr_base_point_y
+    # (h_star) first moment about the platform origin
+    rpr_h_star_t = rpr_link2_mass*rpr_platform_point_x
+    rpr_h_star_t_2 = rpr_link2_mass*rpr_platform_point_y
+    # (J_star) inertia tensor about the platform origin
+    rpr_J_star_t = rpr_platform_point_y*rpr_platform_point_y
+    rpr_J_star_t_2 = rpr_J_star_t + rpr_platform_point_x*rpr_platform_point_x
+    rpr_J_star_t_3 = rpr_J_star_t*rpr_link2_mass
+    rpr_J_star_t_4 = rpr_J_star_t_2*rpr_link2_mass
+    # (rpr-h_1) first moment of link 1 about the origin of link 1
+    rpr_h_1_x = rpr_link1_centre_of_mass_x*rpr_link1_mass
+    rpr_h_1_y = rpr_link1_centre_of_mass_y*rpr_link1_mass
+    # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
+    rpr_g_r0_x = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx
+    rpr_g_r0_y = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy
+    # (potential) potential energy
+    rpr_b_r0_x = rpr_base_frame_xx*rpr_base_point_x + rpr_base_frame_yx*rpr_base_point_y
+    rpr_b_r0_y = rpr_base_frame_xy*rpr_base_point_x + rpr_base_frame_yy*rpr_base_point_y
     total_rpr = np.sum(np.broadcast_to(rpr_link2_mass, _rpr))
-    total_rpr_x = np.sum(np.broadcast_to(h_star_t_3, _rpr))
-    total_rpr_y = np.sum(np.broadcast_to(h_star_t_4, _rpr))
-    total_rpr_xx = np.sum(np.broadcast_to(J_star_t_7, _rpr))
-    total_rpr_zz = np.sum(np.broadcast_to(J_star_t_8, _rpr))
+    total_rpr_x = np.sum(np.broadcast_to(rpr_h_star_t, _rpr))
+    total_rpr_y = np.sum(np.broadcast_to(rpr_h_star_t_2, _rpr))
+    total_rpr_xx = np.sum(np.broadcast_to(rpr_J_star_t_3, _rpr))
+    total_rpr_zz = np.sum(np.broadcast_to(rpr_J_star_t_4, _rpr))
     total_rpr_x_2 = np.sum(np.broadcast_to(rpr_platform_point_x, _rpr))
     total_rpr_y_2 = np.sum(np.broadcast_to(rpr_platform_point_y, _rpr))
-    # (rrr-K17) squared length, across the axis, of the direction fixed in link 2
-    uu_2_rrr_t = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x
-    # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    Kd_1_rrr_t = rrr_joint2_offset_x*rrr_joint2_offset_x
-    Kd_1_rrr_t_2 = 0.5*Kd_1_rrr_t
-    Kd_1_rrr_t_3 = 0.5*uu_2_rrr_t
-    # (rrr-G2) length of the leg's lever arms, the measure of what is near singular
-    size_rrr_t = 4.58151643161e-07 + Kd_1_rrr_t + uu_2_rrr_t
-    size_rrr = sqrt(size_rrr_t)
-    # (rrr-K8) squared amplitude
-    rho2_1_rrr_t = size_rrr*size_rrr*size_rrr_t
-    # (rrr-K15) the vector from joint 1 to the connection point, resolved along link 1
-    inv_Kd_1_rrr_t_5 = 1.0/Kd_1_rrr_t
-    # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-    inv_uu_2_rrr_t = 1.0/uu_2_rrr_t
-    # (rrr-G4) inertia tensor of link 1 about the origin of link 1
-    J_1_rrr_t = (
+    # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+    rrr_Kd_1_t = rrr_joint2_offset_x*rrr_joint2_offset_x
+    rrr_Kd_1_t_2 = 0.5*rrr_Kd_1_t
+    rrr_Kd_1_t_3 = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x
+    rrr_Kd_1_t_4 = 0.5*rrr_Kd_1_t_3
+    # (rrr-size) length of the leg's lever arms, the measure of what is near singular
+    rrr_size_t = 4.58151643161e-07 + rrr_Kd_1_t + rrr_Kd_1_t_3
+    rrr_size = sqrt(rrr_size_t)
+    # (rrr-rho2_1) squared amplitude
+    rrr_rho2_1_t = rrr_size*rrr_size*rrr_size_t
+    # (rrr-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+    inv_rrr_Kd_1_t_5 = 1.0/rrr_Kd_1_t
+    # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+    inv_rrr_Kd_1_t_7 = 1.0/rrr_Kd_1_t_3
+    # (rrr-rho_tip_2) connection point to the centre of mass of link 2
+    rrr_rho_tip_2_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x
+    # (rrr-h_2) first moment of link 2 about the connection point
+    rrr_h_2_x = rrr_link2_mass*rrr_rho_tip_2_x
+    rrr_h_2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass
+    # (rrr-w_2) reciprocal vector 2
+    inv_rrr_platform_joint_offset_x = 1.0/rrr_platform_joint_offset_x
+    # (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
+    rrr_d_phi_2_t = inv_rrr_platform_joint_offset_x*rrr_h_2_y
+    # (rrr-J_2) inertia tensor of link 2 about the connection point
+    rrr_J_2_t = (
+    rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y + rrr_rho_tip_2_x*rrr_rho_tip_2_x
+    )
+    rrr_J_2_zz = rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass
+    # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    rrr_d_Gamma_2_t = inv_rrr_platform_joint_offset_x*rrr_J_2_zz
+    rrr_d_Gamma_2_y = rrr_d_Gamma_2_t + rrr_h_2_x
+    # (rrr-J_1) inertia tensor of link 1 about the origin of link 1
+    rrr_J_1_t = (
     rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
         rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y
     )
-    J_1_rrr_zz = rrr_link1_inertia_zz + J_1_rrr_t*rrr_link1_mass
-    # (rrr-G5) connection point to the centre of mass of link 2
-    rho_tip_2_rrr_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x
-    # (rrr-G7) inertia tensor of link 2 about the connection point
-    J_2_rrr_t = (
-    rho_tip_2_rrr_x*rho_tip_2_rrr_x + rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y
+    rrr_J_1_zz = rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass
+    # (rrr-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link about the connection point
+    rrr_Jc_1_zz = rrr_J_1_zz + rrr_J_2_zz
+    # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    rrr_d_c_yy = (
+    -inv_rrr_platform_joint_offset_x*rrr_d_Gamma_2_y - inv_rrr_platform_joint_offset_x*rrr_h_2_x
     )
-    J_2_rrr_zz = rrr_link2_inertia_zz + J_2_rrr_t*rrr_link2_mass
-    # (rrr-N11) inertia tensor of the links from 1 outwards about joint 1
-    Jc_1_rrr_zz = J_1_rrr_zz + J_2_rrr_zz
-    # (rrr-G6) first moment of link 2 about the connection point
-    h_2_rrr_x = rho_tip_2_rrr_x*rrr_link2_mass
-    h_2_rrr_y = rrr_link2_centre_of_mass_y*rrr_link2_mass
-    # (rrr-V6) reciprocal vector 2
-    inv_rrr_platform_joint_offset_x = 1.0/rrr_platform_joint_offset_x
-    # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-    d_Gamma_1_rrr_t = J_2_rrr_zz*inv_rrr_platform_joint_offset_x
-    d_Gamma_1_rrr_y = d_Gamma_1_rrr_t + h_2_rrr_x
-    # (rrr-N6) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
-    d_phi_2_rrr_t = h_2_rrr_y*inv_rrr_platform_joint_offset_x
-    # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_rrr_yy = (
-    -d_Gamma_1_rrr_y*inv_rrr_platform_joint_offset_x - h_2_rrr_x*inv_rrr_platform_joint_offset_x
-    )
-    # (L2) first moment about the platform origin
-    h_star_t_5 = rrr_link2_mass*rrr_platform_point_x
-    h_star_t_6 = rrr_link2_mass*rrr_platform_point_y
-    # (L3) inertia tensor about the platform origin
-    J_star_t_9 = rrr_platform_point_y*rrr_platform_point_y
-    J_star_t_10 = J_star_t_9 + rrr_platform_point_x*rrr_platform_point_x
-    J_star_t_11 = J_star_t_9*rrr_link2_mass
-    J_star_t_12 = J_star_t_10*rrr_link2_mass
-    # (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-    g_r0_x_2 = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx
-    g_r0_y_2 = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy
-    # (rrr-G3) first moment of link 1 about the origin of link 1
-    h_1_rrr_x = rrr_link1_centre_of_mass_x*rrr_link1_mass
-    h_1_rrr_y = rrr_link1_centre_of_mass_y*rrr_link1_mass
-    # (V1) potential energy
-    b_rrr_r0_x = rrr_base_frame_xx*rrr_base_point_x + rrr_base_frame_yx*rrr_base_point_y
-    b_rrr_r0_y = rrr_base_frame_xy*rrr_base_point_x + rrr_base_frame_yy*rrr_base_point_y
-    # (rrr-K8) squared amplitude
-    inv_rho2_1_rrr_t_4 = 1.0/rho2_1_rrr_t
-    # (rrr-V5) reciprocal vector 1
-    inv_size_rrr = 1.0/size_rrr
+    # (h_star) first moment about the platform origin
+    rrr_h_star_t = rrr_link2_mass*rrr_platform_point_x
+    rrr_h_star_t_2 = rrr_link2_mass*rrr_platform_point_y
+    # (J_star) inertia tensor about the platform origin
+    rrr_J_star_t = rrr_platform_point_y*rrr_platform_point_y
+    rrr_J_star_t_2 = rrr_J_star_t + rrr_platform_point_x*rrr_platform_point_x
+    rrr_J_star_t_3 = rrr_J_star_t*rrr_link2_mass
+    rrr_J_star_t_4 = rrr_J_star_t_2*rrr_link2_mass
+    # (rrr-h_1) first moment of link 1 about the origin of link 1
+    rrr_h_1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass
+    rrr_h_1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass
+    # (rrr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+    rrr_g_r0_x = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx
+    rrr_g_r0_y = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy
+    # (potential) potential energy
+    rrr_b_r0_x = rrr_base_frame_xx*rrr_base_point_x + rrr_base_frame_yx*rrr_base_point_y
+    rrr_b_r0_y = rrr_base_frame_xy*rrr_base_point_x + rrr_base_frame_yy*rrr_base_point_y
+    # (rrr-rho2_1) squared amplitude
+    inv_rrr_rho2_1_t_4 = 1.0/rrr_rho2_1_t
+    # (rrr-w_1) reciprocal vector 1
+    inv_rrr_size = 1.0/rrr_size
     total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, _rrr))
-    total_rrr_x = np.sum(np.broadcast_to(h_star_t_5, _rrr))
-    total_rrr_y = np.sum(np.broadcast_to(h_star_t_6, _rrr))
-    total_rrr_xx = np.sum(np.broadcast_to(J_star_t_11, _rrr))
-    total_rrr_zz = np.sum(np.broadcast_to(J_star_t_12, _rrr))
+    total_rrr_x = np.sum(np.broadcast_to(rrr_h_star_t, _rrr))
+    total_rrr_y = np.sum(np.broadcast_to(rrr_h_star_t_2, _rrr))
+    total_rrr_xx = np.sum(np.broadcast_to(rrr_J_star_t_3, _rrr))
+    total_rrr_zz = np.sum(np.broadcast_to(rrr_J_star_t_4, _rrr))
     total_rrr_x_2 = np.sum(np.broadcast_to(rrr_platform_point_x, _rrr))
     total_rrr_y_2 = np.sum(np.broadcast_to(rrr_platform_point_y, _rrr))
-    total_rrr_2 = np.sum(np.broadcast_to(size_rrr_t, _rrr))
-    # (prr-K6) squared length, across the axis, of the direction fixed in link 2
-    uu_2_prr_t = prr_platform_joint_offset_x*prr_platform_joint_offset_x
-    # (prr-K7) cosine of the angle of joint 2 from its reference direction
-    inv_uu_2_prr_t = 1.0/uu_2_prr_t
-    # (prr-G2) length of the leg's lever arms, the measure of what is near singular
-    size_prr_t = 4.58151643161e-07 + uu_2_prr_t
-    size_prr = sqrt(size_prr_t)
-    # (prr-G4) connection point to the centre of mass of link 2
-    rho_tip_2_prr_x = prr_link2_centre_of_mass_x - prr_platform_joint_offset_x
-    # (prr-G6) inertia tensor of link 2 about the connection point
-    J_2_prr_t = (
-    prr_link2_centre_of_mass_y*prr_link2_centre_of_mass_y + rho_tip_2_prr_x*rho_tip_2_prr_x
+    total_rrr_2 = np.sum(np.broadcast_to(rrr_size_t, _rrr))
+    # (prr-disc_1) discriminant of the distance equation
+    prr_disc_1_t = prr_platform_joint_offset_x*prr_platform_joint_offset_x
+    # (prr-c_2) cosine of the angle of joint 2 from its reference direction
+    inv_prr_disc_1_t_5 = 1.0/prr_disc_1_t
+    # (prr-rho_tip_2) connection point to the centre of mass of link 2
+    prr_rho_tip_2_x = prr_link2_centre_of_mass_x - prr_platform_joint_offset_x
+    # (prr-h_2) first moment of link 2 about the connection point
+    prr_h_2_x = prr_link2_mass*prr_rho_tip_2_x
+    prr_h_2_y = prr_link2_centre_of_mass_y*prr_link2_mass
+    # (prr-size) length of the leg's lever arms, the measure of what is near singular
+    prr_size_t = 4.58151643161e-07 + prr_disc_1_t
+    prr_size = sqrt(prr_size_t)
+    # (prr-J_2) inertia tensor of link 2 about the connection point
+    prr_J_2_t = (
+    prr_link2_centre_of_mass_y*prr_link2_centre_of_mass_y + prr_rho_tip_2_x*prr_rho_tip_2_x
     )
-    J_2_prr_zz = prr_link2_inertia_zz + J_2_prr_t*prr_link2_mass
-    # (prr-G5) first moment of link 2 about the connection point
-    h_2_prr_x = prr_link2_mass*rho_tip_2_prr_x
-    h_2_prr_y = prr_link2_centre_of_mass_y*prr_link2_mass
-    # (L2) first moment about the platform origin
-    h_star_t_7 = prr_link2_mass*prr_platform_point_x
-    h_star_t_8 = prr_link2_mass*prr_platform_point_y
-    # (L3) inertia tensor about the platform origin
-    J_star_t_13 = prr_platform_point_y*prr_platform_point_y
-    J_star_t_14 = J_star_t_13 + prr_platform_point_x*prr_platform_point_x
-    J_star_t_15 = J_star_t_13*prr_link2_mass
-    J_star_t_16 = J_star_t_14*prr_link2_mass
-    # (prr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-    g_r0_x = gravity_x*prr_base_frame_xx + gravity_y*prr_base_frame_yx
-    g_r0_y = gravity_x*prr_base_frame_xy + gravity_y*prr_base_frame_yy
-    # (prr-G3) first moment of link 1 about the origin of link 1
-    h_1_prr_x = prr_link1_centre_of_mass_x*prr_link1_mass
-    h_1_prr_y = prr_link1_centre_of_mass_y*prr_link1_mass
-    # (V1) potential energy
-    b_prr_r0_x = prr_base_frame_xx*prr_base_point_x + prr_base_frame_yx*prr_base_point_y
-    potential_t = (
+    prr_J_2_zz = prr_link2_inertia_zz + prr_J_2_t*prr_link2_mass
+    # (h_star) first moment about the platform origin
+    prr_h_star_t = prr_link2_mass*prr_platform_point_x
+    prr_h_star_t_2 = prr_link2_mass*prr_platform_point_y
+    # (J_star) inertia tensor about the platform origin
+    prr_J_star_t = prr_platform_point_y*prr_platform_point_y
+    prr_J_star_t_2 = prr_J_star_t + prr_platform_point_x*prr_platform_point_x
+    prr_J_star_t_3 = prr_J_star_t*prr_link2_mass
+    prr_J_star_t_4 = prr_J_star_t_2*prr_link2_mass
+    # (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+    prr_g_r0_x = gravity_x*prr_base_frame_xx + gravity_y*prr_base_frame_yx
+    prr_g_r0_y = gravity_x*prr_base_frame_xy + gravity_y*prr_base_frame_yy
+    # (prr-h_1) first moment of link 1 about the origin of link 1
+    prr_h_1_x = prr_link1_centre_of_mass_x*prr_link1_mass
+    prr_h_1_y = prr_link1_centre_of_mass_y*prr_link1_mass
+    # (potential) potential energy
+    prr_b_r0_x = prr_base_frame_xx*prr_base_point_x + prr_base_frame_yx*prr_base_point_y
+    prr_potential_t = (
     prr_link1_mass*(prr_base_frame_xy*prr_base_point_x + prr_base_frame_yy*prr_base_point_y)
     )
-    # (prr-V3) reciprocal vector 1
-    inv_size_prr = 1.0/size_prr
+    # (prr-w_2) reciprocal vector 2
+    inv_prr_size = 1.0/prr_size
     total_prr = np.sum(np.broadcast_to(prr_link2_mass, _prr))
-    total_prr_x = np.sum(np.broadcast_to(h_star_t_7, _prr))
-    total_prr_y = np.sum(np.broadcast_to(h_star_t_8, _prr))
-    total_prr_xx = np.sum(np.broadcast_to(J_star_t_15, _prr))
-    total_prr_zz = np.sum(np.broadcast_to(J_star_t_16, _prr))
+    total_prr_x = np.sum(np.broadcast_to(prr_h_star_t, _prr))
+    total_prr_y = np.sum(np.broadcast_to(prr_h_star_t_2, _prr))
+    total_prr_xx = np.sum(np.broadcast_to(prr_J_star_t_3, _prr))
+    total_prr_zz = np.sum(np.broadcast_to(prr_J_star_t_4, _prr))
     total_prr_x_2 = np.sum(np.broadcast_to(prr_platform_point_x, _prr))
     total_prr_y_2 = np.sum(np.broadcast_to(prr_platform_point_y, _prr))
-    total_prr_2 = np.sum(np.broadcast_to(size_prr_t, _prr))
-    # (L1) mass of the platform with the gathered masses
+    total_prr_2 = np.sum(np.broadcast_to(prr_size_t, _prr))
+    # (m_star) mass of the platform with the gathered masses
     m_star = platform_mass + total_prr + total_rpr + total_rrr
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_x = h_star_t + total_prr_x + total_rpr_x + total_rrr_x
     h_star_y = h_star_t_2 + total_prr_y + total_rpr_y + total_rrr_y
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_xx = J_star_t_3 + total_prr_xx + total_rpr_xx + total_rrr_xx
-    J_star_zz = J_star_t_4 + platform_inertia_zz + total_prr_zz + total_rpr_zz + total_rrr_zz
-    J_star_t_17 = J_star_xx - J_star_zz
-    J_star_t_18 = J_star_t_17 - J_star_xx
-    # (M4) centripetal force and weight of the platform
+    J_star_t_5 = (
+    J_star_xx - J_star_t_4 - platform_inertia_zz - total_prr_zz - total_rpr_zz - total_rrr_zz
+    )
+    J_star_t_6 = J_star_t_5 - J_star_xx
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
-    # (C1) centroid of the platform points
+    # (b_c) centroid of the platform points
     b_c_x = (
     0.3333333333333333*total_prr_x_2 + 0.3333333333333333*total_rpr_x_2 +
         0.3333333333333333*total_rrr_x_2
@@ -829,61 +843,60 @@ def _prepare(p):
     0.3333333333333333*total_prr_y_2 + 0.3333333333333333*total_rpr_y_2 +
         0.3333333333333333*total_rrr_y_2
     )
-    # (C3) rms size of the legs, taken where the platform points coincide
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     legs_size = (
     sqrt(0.12813333333333332 + 0.3333333333333333*total_prr_2 + 0.3333333333333333*total_rrr_2)
     )
     return {
         "dynamics": (
-        (J_star_t_18, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
+        (J_star_t_6, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
                 (_rpr,
-        (J_group_1_rpr_zz, branch_1_rpr, h_1_rpr_x, h_1_rpr_y, h_2_rpr_x, h_2_rpr_y,
-                    rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-                    rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
+        (rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+                    rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
                 (_rrr,
-        (J_1_rrr_zz, J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr,
-                    d_Gamma_1_rrr_t, d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, g_r0_x_2,
-                    g_r0_y_2, h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+                    rrr_J_2_zz, rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+                    rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+                    rrr_base_point_y, rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy,
+                    rrr_d_phi_2_t, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
+                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
                 (_prr,
-        (J_2_prr_zz, branch_1_prr, g_r0_x, g_r0_y, h_2_prr_x, h_2_prr_y, inv_uu_2_prr_t,
-                    prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx, prr_base_frame_yy,
-                    prr_base_point_x, prr_base_point_y, prr_link1_mass,
+        (inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
+                    prr_disc_1_t, prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
                     prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
-                    size_prr, uu_2_prr_t,),
+                    prr_size,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_18, h_star_x, h_star_y, m_star,),
+        (J_star_t_6, h_star_x, h_star_y, m_star,),
             (
                 (_rpr,
-        (J_group_1_rpr_zz, branch_1_rpr, h_2_rpr_x, h_2_rpr_y, rpr_base_frame_xx,
-                    rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-                    rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,),
+        (rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+                    rpr_h_2_x, rpr_h_2_y, rpr_platform_point_x, rpr_platform_point_y,),
                 ),
                 (_rrr,
-        (J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, d_Gamma_1_rrr_t,
-                    d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_2_zz,
+                    rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+                    rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy, rrr_d_phi_2_t,
+                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
                 (_prr,
-        (J_2_prr_zz, branch_1_prr, h_2_prr_x, h_2_prr_y, inv_uu_2_prr_t, prr_base_frame_xx,
-                    prr_base_frame_xy, prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x,
-                    prr_base_point_y, prr_link1_mass, prr_platform_joint_offset_x,
-                    prr_platform_point_x, prr_platform_point_y, size_prr, uu_2_prr_t,),
+        (inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
+                    prr_disc_1_t, prr_h_2_x, prr_h_2_y, prr_link1_mass,
+                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
+                    prr_size,),
                 ),
             ),
         ),
@@ -891,26 +904,25 @@ def _prepare(p):
         (Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y,),
             (
                 (_rpr,
-        (J_group_1_rpr_zz, branch_1_rpr, h_1_rpr_x, h_1_rpr_y, h_2_rpr_x, h_2_rpr_y,
-                    rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-                    rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
+        (rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+                    rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
                 (_rrr,
-        (J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
-                    h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+                    rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+                    rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
+                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
                 (_prr,
-        (J_2_prr_zz, branch_1_prr, g_r0_x, g_r0_y, h_2_prr_x, h_2_prr_y, inv_uu_2_prr_t,
-                    prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx, prr_base_frame_yy,
-                    prr_base_point_x, prr_base_point_y, prr_link1_mass,
+        (inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
+                    prr_disc_1_t, prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
                     prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
-                    size_prr, uu_2_prr_t,),
+                    prr_size,),
                 ),
             ),
         ),
@@ -918,49 +930,48 @@ def _prepare(p):
         (),
             (
                 (_rpr,
-        (branch_1_rpr, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-                    rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
+        (rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+                    rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
                 (_rrr,
-        (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+                    rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+                    rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x,
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+                    rrr_rho2_1_t, rrr_size,),
                 ),
                 (_prr,
-        (branch_1_prr, inv_uu_2_prr_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
-                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
-                    size_prr, uu_2_prr_t,),
+        (inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
+                    prr_disc_1_t, prr_platform_joint_offset_x, prr_platform_point_x,
+                    prr_platform_point_y, prr_size,),
                 ),
             ),
         ),
         "required": (
-        (J_star_zz, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
+        (J_star_t_6, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
                 (_rpr,
-        (J_group_1_rpr_zz, branch_1_rpr, g_r0_x_3, g_r0_y_3, h_1_rpr_x, h_1_rpr_y, h_2_rpr_x,
-                    h_2_rpr_y, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
-                    rpr_platform_point_y,),
+        (rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+                    rpr_g_r0_x, rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y,
+                    rpr_platform_point_x, rpr_platform_point_y,),
                 ),
                 (_rrr,
-        (J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
-                    h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+                    rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+                    rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
+                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
                 (_prr,
-        (J_2_prr_zz, branch_1_prr, g_r0_x, g_r0_y, h_2_prr_x, h_2_prr_y, inv_uu_2_prr_t,
-                    prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx, prr_base_frame_yy,
-                    prr_base_point_x, prr_base_point_y, prr_link1_mass,
+        (inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
+                    prr_disc_1_t, prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
                     prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
-                    size_prr, uu_2_prr_t,),
+                    prr_size,),
                 ),
             ),
         ),
@@ -968,21 +979,22 @@ def _prepare(p):
         (),
             (
                 (_rpr,
-        (branch_1_rpr, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-                    rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
+        (rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+                    rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
                 (_rrr,
-        (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+                    rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+                    rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    rrr_rho2_1_t,),
                 ),
                 (_prr,
-        (branch_1_prr, inv_uu_2_prr_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
-                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
-                    uu_2_prr_t,),
+        (inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
+                    prr_disc_1_t, prr_platform_joint_offset_x, prr_platform_point_x,
+                    prr_platform_point_y,),
                 ),
             ),
         ),
@@ -990,23 +1002,22 @@ def _prepare(p):
         (),
             (
                 (_rpr,
-        (branch_1_rpr, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-                    rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
+        (rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+                    rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
                 (_rrr,
-        (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
-                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
+                    rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+                    rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+                    rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
                 (_prr,
-        (branch_1_prr, inv_uu_2_prr_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
-                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
-                    size_prr, uu_2_prr_t,),
+        (inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
+                    prr_disc_1_t, prr_platform_joint_offset_x, prr_platform_point_x,
+                    prr_platform_point_y, prr_size,),
                 ),
             ),
         ),
@@ -1014,23 +1025,22 @@ def _prepare(p):
         (),
             (
                 (_rpr,
-        (branch_1_rpr, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-                    rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
+        (rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+                    rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
                 (_rrr,
-        (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
-                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
+                    rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+                    rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+                    rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
                 (_prr,
-        (branch_1_prr, inv_uu_2_prr_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
-                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
-                    size_prr, uu_2_prr_t,),
+        (inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
+                    prr_disc_1_t, prr_platform_joint_offset_x, prr_platform_point_x,
+                    prr_platform_point_y, prr_size,),
                 ),
             ),
         ),
@@ -1038,26 +1048,25 @@ def _prepare(p):
         (gravity_x, gravity_y,),
             (
                 (_rpr,
-        (J_group_1_rpr_zz, branch_1_rpr, g_r0_x_3, g_r0_y_3, h_1_rpr_x, h_1_rpr_y, h_2_rpr_x,
-                    h_2_rpr_y, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_link2_mass,
-                    rpr_platform_point_x, rpr_platform_point_y,),
+        (rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+                    rpr_g_r0_x, rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y,
+                    rpr_link2_mass, rpr_platform_point_x, rpr_platform_point_y,),
                 ),
                 (_rrr,
-        (J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
-                    h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_link2_mass,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+                    rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+                    rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
+                    rrr_h_2_y, rrr_joint2_offset_x, rrr_link2_mass, rrr_platform_joint_offset_x,
+                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
                 (_prr,
-        (J_2_prr_zz, branch_1_prr, g_r0_x, g_r0_y, h_2_prr_x, h_2_prr_y, inv_uu_2_prr_t,
-                    prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx, prr_base_frame_yy,
-                    prr_base_point_x, prr_base_point_y, prr_link1_mass, prr_link2_mass,
-                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
-                    size_prr, uu_2_prr_t,),
+        (inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
+                    prr_disc_1_t, prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
+                    prr_link2_mass, prr_platform_joint_offset_x, prr_platform_point_x,
+                    prr_platform_point_y, prr_size,),
                 ),
             ),
         ),
@@ -1065,25 +1074,25 @@ def _prepare(p):
         (gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
                 (_rpr,
-        (b_rpr_r0_x, b_rpr_r0_y, branch_1_rpr, g_r0_x_3, g_r0_y_3, h_1_rpr_x, h_1_rpr_y,
-                    h_2_rpr_x, h_2_rpr_y, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_link1_mass,
-                    rpr_platform_point_x, rpr_platform_point_y,),
+        (rpr_b_r0_x, rpr_b_r0_y, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+                    rpr_g_r0_x, rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y,
+                    rpr_link1_mass, rpr_platform_point_x, rpr_platform_point_y,),
                 ),
                 (_rrr,
-        (Kd_1_rrr_t_2, Kd_1_rrr_t_3, b_rrr_r0_x, b_rrr_r0_y, branch_1_rrr, g_r0_x_2, g_r0_y_2,
-                    h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t,
-                    rho2_1_rrr_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_b_r0_x, rrr_b_r0_y,
+                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
+                    rrr_base_point_x, rrr_base_point_y, rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y,
+                    rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y, rrr_joint2_offset_x,
                     rrr_link1_mass, rrr_platform_joint_offset_x, rrr_platform_point_x,
-                    rrr_platform_point_y,),
+                    rrr_platform_point_y, rrr_rho2_1_t,),
                 ),
                 (_prr,
-        (b_prr_r0_x, branch_1_prr, g_r0_x, g_r0_y, h_1_prr_x, h_1_prr_y, h_2_prr_x, h_2_prr_y,
-                    inv_uu_2_prr_t, potential_t, prr_base_frame_xx, prr_base_frame_xy,
-                    prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
-                    prr_link1_mass, prr_platform_joint_offset_x, prr_platform_point_x,
-                    prr_platform_point_y, uu_2_prr_t,),
+        (inv_prr_disc_1_t_5, prr_b_r0_x, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
+                    prr_disc_1_t, prr_g_r0_x, prr_g_r0_y, prr_h_1_x, prr_h_1_y, prr_h_2_x,
+                    prr_h_2_y, prr_link1_mass, prr_platform_joint_offset_x, prr_platform_point_x,
+                    prr_platform_point_y, prr_potential_t,),
                 ),
             ),
         ),
@@ -1091,29 +1100,30 @@ def _prepare(p):
         (b_c_x, b_c_y, legs_size,),
             (
                 (_rpr,
-        (branch_1_rpr, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-                    rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
+        (rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+                    rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
                 (_rrr,
-        (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_rho2_1_rrr_t_4,
-                    inv_size_rrr, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
-                    rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-                    rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-                    rrr_platform_point_x, rrr_platform_point_y, size_rrr,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_rho2_1_t_4, inv_rrr_size, rrr_Kd_1_t_2,
+                    rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+                    rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+                    rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
                 (_prr,
-        (branch_1_prr, inv_size_prr, inv_uu_2_prr_t, prr_base_frame_xx, prr_base_frame_xy,
+        (inv_prr_disc_1_t_5, inv_prr_size, prr_base_frame_xx, prr_base_frame_xy,
                     prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
-                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
-                    size_prr, uu_2_prr_t,),
+                    prr_branch_1, prr_disc_1_t, prr_platform_joint_offset_x, prr_platform_point_x,
+                    prr_platform_point_y, prr_size,),
                 ),
             ),
         ),
     }
 
 
-_FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
+_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
@@ -1159,17 +1169,19 @@ class _Floats:
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
-        for k in range(self.states):
-            try:
-                ok, arrays = function(self, *(row[k] for row in rows))
-            except (ZeroDivisionError, OverflowError):
-                continue
-            if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
-                for a, array in zip(found, arrays):
-                    a[k] = array
-        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
+        found = [self.state(function, names, [row[k] for row in rows]) for k in range(self.states)]
+        return [np.array(a).T.reshape(*_SHAPES[n], self.states) for a, n in zip(zip(*found), names)]
+
+    def state(self, function, names, given):
+        """Lists that a function gives at a state."""
+        try:
+            ok, arrays = function(self, *given)
+        except (ZeroDivisionError, OverflowError):
+            ok = False
+        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+            return arrays
+        return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
 
 
 class _Arrays:
@@ -1237,35 +1249,44 @@ def _mode(p, states):
     return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
 
 
-def _call(function, steps, p, *arguments, mode=_mode):
-    """What the steps give at arguments (name, value, shape of a state, default, rule)."""
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+    """What the steps give at arguments (name, value, shape of a state, default, rule).
+
+    Where that may be infinite only NaN makes a state impossible.
+    """
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
     lead, p = _lead(leads), _given(p)
     read = [a[4:] != ("unused",) for a in arguments]
     if lead or mode is _Judged:
-        results = _many(steps, p, lead, given, shapes, read, mode)
+        results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
-        results = _one(steps, p, given, shapes, read)
+        results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
 
 
-def _one(steps, p, given, shapes, read):
+def _one(steps, p, given, shapes, read, unbounded):
     """Results at a single state."""
     states = [v.reshape(*shape, 1) for v, shape in zip(given, shapes)]
     with np.errstate(all="ignore"):
-        results = [a[..., 0] for a in steps(_Floats(p, 1), *states)]
-    if all(all(map(math.isfinite, v.ravel().tolist())) for v in (*compress(given, read), *results)):
-        return [np.array(a)[()] for a in results]
+        results = [a[..., 0].copy() for a in steps(_Floats(p, 1), *states)]
+    looked_at = [np.minimum(a, 0.0) for a in results] if unbounded else results
+    entries = (v.ravel().tolist() for v in (*compress(given, read), *looked_at))
+    if all(all(map(math.isfinite, row)) for row in entries):
+        return [a[()] for a in results]
     return [np.full(a.shape, np.nan)[()] for a in results]
 
 
-def _many(steps, p, lead, given, shapes, read, mode):
+def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block."""
     count = math.prod(lead)
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
+    if count > _BLOCK:
+        # Never touched, freed at once: the C library, which learns from it, then keeps the memory
+        # of intermediate arrays from block to block instead of giving its pages back.
+        np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
         for first in range(0, max(count, 1), _BLOCK):
             block = slice(first, min(first + _BLOCK, count))
@@ -1277,7 +1298,7 @@ def _many(steps, p, lead, given, shapes, read, mode):
             _all_finite(compress(states, read), good)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite(found, good)
+            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -1313,6 +1334,18 @@ def _wrapped(a, places):
     result = np.array(a)
     result[places] = np.pi - np.remainder(np.pi - a[places], 2.0 * np.pi)
     return result
+
+
+def _unlimited(a, places):
+    """a, some entries infinite; what is not known stays so."""
+    result = np.array(a)
+    result[places] += np.inf
+    return result
+
+
+def _not_negative(a):
+    """1 where no entry is negative, else 0; NaN where one is not finite."""
+    return np.where(np.isfinite(a).all(axis=0), np.all(a >= 0.0, axis=0), np.nan)
 
 
 def _rows_divided(a, b, places):
@@ -1374,8 +1407,8 @@ def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
     n, states = b.shape
     if 0 < states <= _FEW:
-        matrices, rights = np.moveaxis(a, -1, 0).tolist(), b.T.tolist()
-        return np.array([_solve_one(*each) for each in zip(matrices, rights)]).T.reshape(n, states)
+        systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
+        return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
     good = np.all((size > 0.0) & np.isfinite(size), axis=0)
     rows = np.concatenate((a, b[:, None]), axis=1)
@@ -1402,28 +1435,32 @@ def _solve(a, b):
 
 
 def _solve_one(a, b):
-    """The same for one system of nested lists."""
-    n = len(b)
-    failure = [np.nan] * n
-    for i, row in enumerate(a):
-        size = max(map(abs, row), default=0.0)
-        if not 0.0 < size < np.inf:
-            return failure
-        a[i] = [v / size for v in row] + [b[i] / size]
-    for k in range(n):
-        best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
-            a[k], a[best] = a[best], a[k]
-        if not abs(a[k][k]) > _PIVOT:
-            return failure
-        head = a[k]
-        for i in range(k + 1, n):
-            factor = a[i][k] / head[k]
-            a[i] = [v - factor * h for v, h in zip(a[i], head)]
-    x = [0.0] * n
-    for k in reversed(range(n)):
-        x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
-    return x if all(map(math.isfinite, x)) else failure
+    """The same for one system of nested lists: the rows left lose an entry at every step."""
+    rows, heads = [], []
+    for row, right in zip(a, b):
+        size = max(map(abs, row))
+        if not 0.0 < size < math.inf:
+            return [math.nan] * len(b)
+        rows.append([v / size for v in (*row, right)])
+    while rows:
+        column = [abs(row[0]) for row in rows]
+        largest = max(column)
+        if largest > _CLEARLY * column[0]:
+            best = column.index(largest)
+            rows[0], rows[best] = rows[best], rows[0]
+        pivot, *head = rows[0]
+        if not abs(pivot) > _PIVOT:
+            return [math.nan] * len(b)
+        heads.append((pivot, head))
+        for i in range(1, len(rows)):
+            first, *row = rows[i]
+            factor = first / pivot
+            rows[i] = [v - factor * h for v, h in zip(row, head)]
+        del rows[0]
+    x = []
+    for pivot, (*head, right) in reversed(heads):
+        x.insert(0, (right - sum([h * v for h, v in zip(head, x)])) / pivot)
+    return x if all(map(math.isfinite, x)) else [math.nan] * len(b)
 
 
 def _matrices(a, *others):
@@ -1534,13 +1571,13 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 326 mul, 236 add, 4 div, 3 sqrt, 0 trig
+# dynamics: 322 mul, 234 add, 4 div, 3 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("dynamics")
-    J_star_t_18, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
+    J_star_t_6, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1560,109 +1597,110 @@ def _run_dynamics(m, X, V):
     out_M = m.zeros("M")
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
-    # (P1) centripetal tensor of the platform
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_z*omega_z
-    # (M4) centripetal force and weight of the platform
+    # (Z_p) centripetal force and weight of the platform
     Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x
     Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
-    Z_q_t = (
-    h_star_x*(R_xx*gravity_y - R_yx*gravity_x) - h_star_y*(R_xx*gravity_x + R_yx*gravity_y)
-    )
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y
     sums = [0.0] * 9
     for leg, k in legs[0]:
         (
-        J_group_1_rpr_zz, branch_1_rpr, h_1_rpr_x, h_1_rpr_y, h_2_rpr_x, h_2_rpr_y,
-            rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-            rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_h_1_x,
+            rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_platform_point_x, rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        S_rpr_x = q_rpr_in_base_x + t_x - rpr_base_point_x
-        S_rpr_y = q_rpr_in_base_y + t_y - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1_rpr = branch_1_rpr*sqrt(rho2_1_rpr)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1_rpr = 1.0/root_1_rpr
-        axis_x_x = S_rpr_x*inv_root_1_rpr
-        axis_x_y = S_rpr_y*inv_root_1_rpr
-        # (rpr-N19) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_rpr_yx = h_2_rpr_y*inv_root_1_rpr
-        # (rpr-N22) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_rpr_yy = (
-        -h_2_rpr_x*inv_root_1_rpr - inv_root_1_rpr*(h_2_rpr_x + J_group_1_rpr_zz*inv_root_1_rpr)
+        # (rpr-S) from the base point to the connection point
+        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
+        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
+        # (rpr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
+        rpr_d_phi_2_t = inv_rpr_root_1*rpr_h_2_y
+        # (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rpr_d_c_yy = (
+        -inv_rpr_root_1*rpr_h_2_x - inv_rpr_root_1*(rpr_h_2_x + inv_rpr_root_1*rpr_J_group_1_zz)
         )
-        # (rpr-N24) inertia of the leg at the connection point, without the mass gathered there
-        Q_rpr_t = 0.5*d_c_rpr_yy
-        Q_rpr_t_2 = Q_rpr_t*axis_x_y - axis_x_x*d_G_rpr_yx
-        Q_rpr_t_3 = Q_rpr_t*axis_x_x + axis_x_y*d_G_rpr_yx
-        Q_rpr_t_4 = 2.0*Q_rpr_t_2*axis_x_y
-        Q_rpr_t_5 = Q_rpr_t_2*axis_x_x + Q_rpr_t_3*axis_x_y
-        Q_rpr_t_6 = 2.0*Q_rpr_t_3*axis_x_x
-        # (M2) coupling block of M
-        M_ta_t = Q_rpr_t_4*q_rpr_in_base_y + Q_rpr_t_5*q_rpr_in_base_x
-        M_ta_t_2 = Q_rpr_t_5*q_rpr_in_base_y + Q_rpr_t_6*q_rpr_in_base_x
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t*q_rpr_in_base_y + M_ta_t_2*q_rpr_in_base_x
-        # (rpr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        g_tip_x = axis_x_x*gravity_x + axis_x_y*gravity_y
-        g_tip_y = axis_x_x*gravity_y - axis_x_y*gravity_x
-        # (rpr-A1) centripetal acceleration of the connection point
-        u_1_rpr_t = W_p_t*q_rpr_in_base_x
-        u_1_rpr_t_2 = W_p_t*q_rpr_in_base_y
-        u_1_rpr_tip_y = axis_x_y*u_1_rpr_t - axis_x_x*u_1_rpr_t_2
-        # (rpr-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        acc_2_rpr_o_x = -g_tip_x - axis_x_x*u_1_rpr_t - axis_x_y*u_1_rpr_t_2
-        acc_2_rpr_o_y = u_1_rpr_tip_y - g_tip_y
-        # (rpr-V1) velocity of the connection point
-        S_dot_rpr_x = t_dot_x - omega_z*q_rpr_in_base_y
-        S_dot_rpr_y = t_dot_y + omega_z*q_rpr_in_base_x
-        S_dot_rpr_tip_x = S_dot_rpr_x*axis_x_x + S_dot_rpr_y*axis_x_y
-        # (rpr-V6) rate of joint 1
-        qd_1_rpr = inv_root_1_rpr*(S_dot_rpr_y*axis_x_x - S_dot_rpr_x*axis_x_y)
-        # (rpr-V9) centripetal tensor of link 1
-        W_1_rpr_t = qd_1_rpr*qd_1_rpr
-        # (rpr-A6) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_rpr_o_y = u_1_rpr_tip_y - 2.0*S_dot_rpr_tip_x*qd_1_rpr
-        # (rpr-A8) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_rpr_o = inv_root_1_rpr*rel_rpr_o_y
-        # (rpr-N14) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rpr_o_z = (
-        J_group_1_rpr_zz*qdd_1_rpr_o + acc_2_rpr_o_y*h_2_rpr_x + g_tip_x*h_1_rpr_y -
-            acc_2_rpr_o_x*h_2_rpr_y - g_tip_y*h_1_rpr_x
+        # (rpr-Q) inertia of the leg at the connection point, without the mass gathered there
+        rpr_Q_t = 0.5*rpr_d_c_yy
+        rpr_Q_t_2 = rpr_Q_t*rpr_axis_x_y - rpr_axis_x_x*rpr_d_phi_2_t
+        rpr_Q_t_3 = rpr_Q_t*rpr_axis_x_x + rpr_axis_x_y*rpr_d_phi_2_t
+        rpr_Q_t_4 = 2.0*rpr_Q_t_2*rpr_axis_x_y
+        rpr_Q_t_5 = rpr_Q_t_2*rpr_axis_x_x + rpr_Q_t_3*rpr_axis_x_y
+        rpr_Q_t_6 = 2.0*rpr_Q_t_3*rpr_axis_x_x
+        # (M_ta) coupling block of M
+        rpr_M_ta_t = rpr_Q_t_4*rpr_q_in_base_y + rpr_Q_t_5*rpr_q_in_base_x
+        rpr_M_ta_t_2 = rpr_Q_t_5*rpr_q_in_base_y + rpr_Q_t_6*rpr_q_in_base_x
+        # (M_aa) rotational block of M
+        rpr_M_aa_t = rpr_M_ta_t*rpr_q_in_base_y + rpr_M_ta_t_2*rpr_q_in_base_x
+        # (rpr-S_dot) velocity of the connection point
+        rpr_S_dot_t = omega_z*rpr_q_in_base_y
+        rpr_S_dot_t_2 = omega_z*rpr_q_in_base_x
+        rpr_S_dot_x = t_dot_x - rpr_S_dot_t
+        rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y
+        rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y
+        # (rpr-qd_1) rate of joint 1
+        rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x - rpr_S_dot_x*rpr_axis_x_y)
+        # (rpr-u_1) centripetal acceleration of the connection point
+        rpr_u_1_t = omega_z*rpr_S_dot_t_2
+        rpr_u_1_t_2 = omega_z*rpr_S_dot_t
+        # (rpr-W_1) centripetal tensor of link 1
+        rpr_W_1_t = rpr_qd_1*rpr_qd_1
+        # (rpr-u_1) centripetal acceleration of the connection point
+        rpr_u_1_tip_y = rpr_axis_x_y*rpr_u_1_t - rpr_axis_x_x*rpr_u_1_t_2
+        # (rpr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        rpr_rel_o_y = rpr_u_1_tip_y - 2.0*rpr_S_dot_tip_x*rpr_qd_1
+        # (rpr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        rpr_qdd_1_o = inv_rpr_root_1*rpr_rel_o_y
+        # (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning about its reference point
+        rpr_phi_2_o_x = -rpr_W_1_t*rpr_h_2_x - rpr_h_2_y*rpr_qdd_1_o
+        # (rpr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+        rpr_g_tip_x = gravity_x*rpr_axis_x_x + gravity_y*rpr_axis_x_y
+        rpr_g_tip_y = gravity_y*rpr_axis_x_x - gravity_x*rpr_axis_x_y
+        # (rpr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        rpr_acc_2_o_x = -rpr_g_tip_x - rpr_axis_x_x*rpr_u_1_t - rpr_axis_x_y*rpr_u_1_t_2
+        rpr_acc_2_o_y = rpr_u_1_tip_y - rpr_g_tip_y
+        # (rpr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        rpr_mu_1_o_z = (
+        rpr_J_group_1_zz*rpr_qdd_1_o + rpr_acc_2_o_y*rpr_h_2_x + rpr_g_tip_x*rpr_h_1_y -
+            rpr_acc_2_o_x*rpr_h_2_y - rpr_g_tip_y*rpr_h_1_x
         )
-        # (rpr-N7) remainder without the acceleration in: inertia force of link 2 from its turning about its reference point
-        phi_2_rpr_o_x = -W_1_rpr_t*h_2_rpr_x - h_2_rpr_y*qdd_1_rpr_o
-        # (rpr-N23) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_rpr_o_y = W_1_rpr_t*h_2_rpr_y - h_2_rpr_x*qdd_1_rpr_o - inv_root_1_rpr*mu_1_rpr_o_z
-        # (rpr-N25) velocity and gravity terms of the leg force
-        U_rpr_in_base_x = axis_x_x*phi_2_rpr_o_x + axis_x_y*c_rpr_o_y
-        U_rpr_in_base_y = axis_x_y*phi_2_rpr_o_x - axis_x_x*c_rpr_o_y
-        # (M7) rotational part of Z
-        Z_a_t = U_rpr_in_base_y*q_rpr_in_base_x - U_rpr_in_base_x*q_rpr_in_base_y
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_2_rpr_z = axis_x_y*q_rpr_in_base_x - axis_x_x*q_rpr_in_base_y
+        # (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rpr_c_o_y = rpr_W_1_t*rpr_h_2_y - inv_rpr_root_1*rpr_mu_1_o_z - rpr_h_2_x*rpr_qdd_1_o
+        # (rpr-U) velocity and gravity terms of the leg force
+        rpr_U_in_base_x = rpr_axis_x_x*rpr_phi_2_o_x + rpr_axis_x_y*rpr_c_o_y
+        rpr_U_in_base_y = rpr_axis_x_y*rpr_phi_2_o_x - rpr_axis_x_x*rpr_c_o_y
+        # (Z_a) rotational part of Z
+        rpr_Z_a_t = rpr_U_in_base_y*rpr_q_in_base_x - rpr_U_in_base_x*rpr_q_in_base_y
+        # (rpr-H_a_2) moment of the column's unit force about the platform origin
+        rpr_H_a_2_z = rpr_axis_x_y*rpr_q_in_base_x - rpr_axis_x_x*rpr_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr)
+        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
             > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
-        Q_rpr_t_4, Q_rpr_t_5, Q_rpr_t_6, M_ta_t, M_ta_t_2, M_aa_t, U_rpr_in_base_x,
-            U_rpr_in_base_y, Z_a_t,
+        rpr_Q_t_4, rpr_Q_t_5, rpr_Q_t_6, rpr_M_ta_t, rpr_M_ta_t_2, rpr_M_aa_t,
+            rpr_U_in_base_x, rpr_U_in_base_y, rpr_Z_a_t,
         ))
-        out_H[_H_rpr[0][leg]] = axis_x_x
-        out_H[_H_rpr[1][leg]] = axis_x_y
-        out_H[_H_rpr[2][leg]] = H_a_2_rpr_z
+        out_H[_H_rpr[0][leg]] = rpr_axis_x_x
+        out_H[_H_rpr[1][leg]] = rpr_axis_x_y
+        out_H[_H_rpr[2][leg]] = rpr_H_a_2_z
     (
     total_rpr_xx, total_rpr_xy, total_rpr_yy, total_rpr_xz, total_rpr_yz, total_rpr_zz,
         total_rpr_x, total_rpr_y, total_rpr_z,
@@ -1670,177 +1708,184 @@ def _run_dynamics(m, X, V):
     sums = [0.0] * 9
     for leg, k in legs[1]:
         (
-        J_1_rrr_zz, J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr,
-            d_Gamma_1_rrr_t, d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, g_r0_x_2, g_r0_y_2,
-            h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+            rrr_J_2_zz, rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
             rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+            rrr_base_point_y, rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy,
+            rrr_d_phi_2_t, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x
-        S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        # (rrr-V6) reciprocal vector 2
-        w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x
-        # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x
-        d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz - d_Gamma_1_rrr_t_2)
-        # (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz - d_Gamma_1_rrr_t_2)
-        # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y - d_Gamma_1_rrr_y*w_2_rrr_t
-        # (rrr-N36) inertia of the leg at the connection point, without the mass gathered there
-        Q_rrr_t = (
-        d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t - inv_r_1_rrr_r0_y) - d_c_rrr_yy -
-            d_Gamma_2_rrr_x*w_2_rrr_t
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        # (rrr-w_2) reciprocal vector 2
+        rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x
+        # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x
+        rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz - rrr_d_Gamma_2_t_2)
+        # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz - rrr_d_Gamma_2_t_2)
+        # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y - rrr_d_Gamma_2_y*rrr_w_2_t
+        # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
+        rrr_Q_t = (
+        inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t - inv_rrr_r_1_r0_y) - rrr_d_c_yy -
+            rrr_d_Gamma_2_x*rrr_w_2_t
         )
-        Q_rrr_t_2 = 0.5*Q_rrr_t
-        Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
-        Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
-        Q_rrr_t_5 = d_c_rrr_yy + 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y
-        Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x + Q_rrr_t_4*axis_y_rrr_axes2_in_base_y
-        Q_rrr_t_7 = d_c_rrr_yy + 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
-        # (M2) coupling block of M
-        M_ta_t_3 = Q_rrr_t_5*q_rrr_in_base_y + Q_rrr_t_6*q_rrr_in_base_x
-        M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y + Q_rrr_t_7*q_rrr_in_base_x
-        # (M3) rotational block of M
-        M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y + M_ta_t_4*q_rrr_in_base_x
-        # (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        g_r1_x = c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr
-        g_r1_y = c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr
-        # (rrr-V1) velocity of the connection point
-        S_dot_rrr_t = omega_z*q_rrr_in_base_y
-        S_dot_rrr_t_2 = omega_z*q_rrr_in_base_x
-        S_dot_rrr_x = t_dot_x - S_dot_rrr_t
-        S_dot_rrr_y = S_dot_rrr_t_2 + t_dot_y
-        # (rrr-V7) rate of joint 1
-        qd_1_rrr = (
-        inv_r_1_rrr_r0_y*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_x)
+        rrr_Q_t_2 = 0.5*rrr_Q_t
+        rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy + axis_y_rrr_axes2_in_base_y*rrr_Q_t_2
+        rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 - axis_y_rrr_axes2_in_base_y*rrr_d_c_xy
+        rrr_Q_t_5 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3
+        rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 + axis_y_rrr_axes2_in_base_y*rrr_Q_t_4
+        rrr_Q_t_7 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4
+        # (M_ta) coupling block of M
+        rrr_M_ta_t = rrr_Q_t_5*rrr_q_in_base_y + rrr_Q_t_6*rrr_q_in_base_x
+        rrr_M_ta_t_2 = rrr_Q_t_6*rrr_q_in_base_y + rrr_Q_t_7*rrr_q_in_base_x
+        # (M_aa) rotational block of M
+        rrr_M_aa_t = rrr_M_ta_t*rrr_q_in_base_y + rrr_M_ta_t_2*rrr_q_in_base_x
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = omega_z*rrr_q_in_base_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
+        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_1 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
         )
-        # (rrr-V11) angular velocity of link 2
-        omega_2_rrr_z = (
-        inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_z = (
+        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
         )
-        # (rrr-V10) centripetal tensor of link 1
-        W_1_rrr_t = qd_1_rrr*qd_1_rrr
-        # (rrr-V12) centripetal tensor of link 2
-        W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
-        # (rrr-A5) acceleration of the connection point at zero joint accelerations
-        bias_rrr_x = (
-        -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_t = omega_z*rrr_S_dot_t_2
+        rrr_u_1_t_2 = omega_z*rrr_S_dot_t
+        # (rrr-W_1) centripetal tensor of link 1
+        rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_x = (
+        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        # (rrr-A1) centripetal acceleration of the connection point
-        u_1_rrr_t = S_dot_rrr_t_2*omega_z
-        u_1_rrr_t_2 = S_dot_rrr_t*omega_z
-        u_1_rrr_tip_x = (
-        axis_y_rrr_axes2_in_base_x*u_1_rrr_t_2 - axis_y_rrr_axes2_in_base_y*u_1_rrr_t
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_tip_x = (
+        axis_y_rrr_axes2_in_base_x*rrr_u_1_t_2 - axis_y_rrr_axes2_in_base_y*rrr_u_1_t
         )
-        u_1_rrr_tip_y = (
-        -axis_y_rrr_axes2_in_base_x*u_1_rrr_t - axis_y_rrr_axes2_in_base_y*u_1_rrr_t_2
+        rrr_u_1_tip_y = (
+        -axis_y_rrr_axes2_in_base_x*rrr_u_1_t - axis_y_rrr_axes2_in_base_y*rrr_u_1_t_2
         )
-        # (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_rrr_o_x = u_1_rrr_tip_x - bias_rrr_x
-        rel_rrr_o_y = u_1_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
-        # (rrr-A9) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_rrr_o = inv_r_1_rrr_r0_y*rel_rrr_o_x
-        # (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rrr_o_z = g_r1_x*h_1_rrr_y - J_1_rrr_zz*qdd_1_rrr_o - g_r1_y*h_1_rrr_x
-        # (rrr-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        acc_2_rrr_o_x = u_1_rrr_tip_x + g_r1_y*s_2_rrr - c_2_rrr*g_r1_x
-        acc_2_rrr_o_y = u_1_rrr_tip_y - c_2_rrr*g_r1_y - g_r1_x*s_2_rrr
-        # (rrr-A18) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_rrr_o_z = (
-        inv_rrr_platform_joint_offset_x*(rel_rrr_o_y + qdd_1_rrr_o*r_1_rrr_r0_x) - qdd_1_rrr_o
+        # (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        rrr_rel_o_x = rrr_u_1_tip_x - rrr_bias_x
+        rrr_rel_o_y = rrr_u_1_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        # (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_rel_o_x
+        # (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        rrr_alpha_2_o_z = (
+        inv_rrr_platform_joint_offset_x*(rrr_rel_o_y + rrr_qdd_1_o*rrr_r_1_r0_x) - rrr_qdd_1_o
         )
-        # (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_rrr_o_z = (
-        J_2_rrr_zz*alpha_2_rrr_o_z + acc_2_rrr_o_y*h_2_rrr_x - acc_2_rrr_o_x*h_2_rrr_y
+        # (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        rrr_acc_2_o_x = (
+        rrr_u_1_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+            axis_y_rrr_axes2_in_base_y*gravity_x
         )
-        # (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z
-        # (rrr-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z
-        # (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_rrr_o_x = (
-        W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x
-            - N_1_rrr_o_z)
+        rrr_acc_2_o_y = (
+        rrr_u_1_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+            axis_y_rrr_axes2_in_base_y*gravity_y
         )
-        c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x
-        # (rrr-N37) velocity and gravity terms of the leg force
-        U_rrr_in_base_x = (
-        -axis_y_rrr_axes2_in_base_x*c_rrr_o_y - axis_y_rrr_axes2_in_base_y*c_rrr_o_x
+        # (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        rrr_mu_2_o_z = (
+        rrr_J_2_zz*rrr_alpha_2_o_z + rrr_acc_2_o_y*rrr_h_2_x - rrr_acc_2_o_x*rrr_h_2_y
         )
-        U_rrr_in_base_y = (
-        axis_y_rrr_axes2_in_base_x*c_rrr_o_x - axis_y_rrr_axes2_in_base_y*c_rrr_o_y
+        # (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        rrr_mu_1_o_z = (
+        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1_o -
+            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
         )
-        # (M7) rotational part of Z
-        Z_a_t_2 = U_rrr_in_base_y*q_rrr_in_base_x - U_rrr_in_base_x*q_rrr_in_base_y
-        # (rrr-V5) reciprocal vector 1
-        w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
-        w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t
+        # (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z
+        # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z
+        # (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_o_x = (
+        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x
+            - rrr_N_1_o_z)
+        )
+        rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x
+        # (rrr-U) velocity and gravity terms of the leg force
+        rrr_U_in_base_x = (
+        -axis_y_rrr_axes2_in_base_x*rrr_c_o_y - axis_y_rrr_axes2_in_base_y*rrr_c_o_x
+        )
+        rrr_U_in_base_y = (
+        axis_y_rrr_axes2_in_base_x*rrr_c_o_x - axis_y_rrr_axes2_in_base_y*rrr_c_o_y
+        )
+        # (Z_a) rotational part of Z
+        rrr_Z_a_t = rrr_U_in_base_y*rrr_q_in_base_x - rrr_U_in_base_x*rrr_q_in_base_y
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y
+        rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y
+        # (rrr-H_a_1) moment of the column's unit force about the platform origin
+        rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7, M_ta_t_3, M_ta_t_4, M_aa_t_2, U_rrr_in_base_x,
-            U_rrr_in_base_y, Z_a_t_2,
+        rrr_Q_t_5, rrr_Q_t_6, rrr_Q_t_7, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t,
+            rrr_U_in_base_x, rrr_U_in_base_y, rrr_Z_a_t,
         ))
-        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
-        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
-        out_H[_H_rrr[2][leg]] = H_a_1_rrr_z
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
+        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
+        out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
     (
     total_rrr_xx, total_rrr_xy, total_rrr_yy, total_rrr_xz, total_rrr_yz, total_rrr_zz,
         total_rrr_x, total_rrr_y, total_rrr_z,
@@ -1848,149 +1893,156 @@ def _run_dynamics(m, X, V):
     sums = [0.0] * 9
     for leg, k in legs[2]:
         (
-        J_2_prr_zz, branch_1_prr, g_r0_x, g_r0_y, h_2_prr_x, h_2_prr_y, inv_uu_2_prr_t,
-            prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx, prr_base_frame_yy,
-            prr_base_point_x, prr_base_point_y, prr_link1_mass, prr_platform_joint_offset_x,
-            prr_platform_point_x, prr_platform_point_y, size_prr, uu_2_prr_t,
+        inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
+            prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
+            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
         ) = k
-        # (prr-K1) from the base point to the connection point
-        q_prr_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        q_prr_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        S_prr_x = q_prr_in_base_x + t_x - prr_base_point_x
-        S_prr_y = q_prr_in_base_y + t_y - prr_base_point_y
-        # (prr-K2) component along axis 1
-        px_1_prr = S_prr_x*prr_base_frame_xx + S_prr_y*prr_base_frame_yx
-        # (prr-K3) discriminant of the distance equation
-        disc_1_prr_t = S_prr_x*S_prr_x + S_prr_y*S_prr_y
-        disc_1_prr = px_1_prr*px_1_prr + uu_2_prr_t - disc_1_prr_t
-        # (prr-K7) cosine of the angle of joint 2 from its reference direction
-        c_2_prr = branch_1_prr*sqrt(disc_1_prr)*inv_uu_2_prr_t*prr_platform_joint_offset_x
-        # (prr-K8) sine of the angle of joint 2 from its reference direction
-        s_2_prr = (
-        inv_uu_2_prr_t*prr_platform_joint_offset_x*(S_prr_x*prr_base_frame_xy +
-            S_prr_y*prr_base_frame_yy)
+        # (prr-S) from the base point to the connection point
+        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
+        # (prr-px_1) component along axis 1
+        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        # (prr-disc_1) discriminant of the distance equation
+        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        # (prr-c_2) cosine of the angle of joint 2 from its reference direction
+        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        # (prr-s_2) sine of the angle of joint 2 from its reference direction
+        prr_s_2 = (
+        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+            prr_S_y*prr_base_frame_yy)
         )
-        # (prr-V3) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -c_2_prr*prr_base_frame_xy - prr_base_frame_xx*s_2_prr
-        axis_y_prr_axes2_in_base_y = -c_2_prr*prr_base_frame_yy - prr_base_frame_yx*s_2_prr
-        # (prr-V2) velocity of the connection point per rate of joint 2
-        v_2_prr_t = prr_platform_joint_offset_x*s_2_prr
-        v_2_prr_t_2 = c_2_prr*prr_platform_joint_offset_x
-        # (prr-V3) reciprocal vector 1
-        inv_v_2_prr_t_2 = 1.0/v_2_prr_t_2
-        w_1_prr_t = inv_v_2_prr_t_2*v_2_prr_t
-        _r0_x = -c_2_prr - s_2_prr*w_1_prr_t
-        _r0_y = c_2_prr*w_1_prr_t - s_2_prr
-        # (prr-N22) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
-        d_Gamma_1_prr_t = inv_v_2_prr_t_2*prr_link1_mass*v_2_prr_t
-        _r0_y_2 = c_2_prr*d_Gamma_1_prr_t - prr_link1_mass*s_2_prr
-        # (prr-V4) reciprocal vector 2
-        w_2_prr_t = inv_v_2_prr_t_2*s_2_prr
-        w_2_prr_t_2 = c_2_prr*inv_v_2_prr_t_2
-        # (prr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_prr_t = J_2_prr_zz*inv_v_2_prr_t_2
-        d_Gamma_2_prr_x = -h_2_prr_y - d_Gamma_2_prr_t*s_2_prr
-        d_Gamma_2_prr_y = h_2_prr_x + c_2_prr*d_Gamma_2_prr_t
-        # (prr-N28) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_prr_xx = (
-        d_Gamma_2_prr_x*w_2_prr_t - _r0_x*(-c_2_prr*prr_link1_mass - d_Gamma_1_prr_t*s_2_prr) -
-            h_2_prr_y*w_2_prr_t
+        # (prr-w_1) reciprocal vector 1
+        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
+        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
+        # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_t = prr_platform_joint_offset_x*prr_s_2
+        prr_v_2_t_2 = prr_c_2*prr_platform_joint_offset_x
+        # (prr-w_2) reciprocal vector 2
+        inv_prr_v_2_t_2 = 1.0/prr_v_2_t_2
+        prr_w_2_t = inv_prr_v_2_t_2*prr_s_2
+        prr_w_2_t_2 = inv_prr_v_2_t_2*prr_c_2
+        # (prr-w_1) reciprocal vector 1
+        prr_w_1_t = inv_prr_v_2_t_2*prr_v_2_t
+        prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t
+        prr__r0_y = prr_c_2*prr_w_1_t - prr_s_2
+        # (prr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        prr_d_Gamma_2_t = inv_prr_v_2_t_2*prr_J_2_zz
+        prr_d_Gamma_2_x = -prr_h_2_y - prr_d_Gamma_2_t*prr_s_2
+        prr_d_Gamma_2_y = prr_h_2_x + prr_c_2*prr_d_Gamma_2_t
+        # (prr-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
+        prr_d_Gamma_1_t = inv_prr_v_2_t_2*prr_link1_mass*prr_v_2_t
+        prr__r0_y_2 = prr_c_2*prr_d_Gamma_1_t - prr_link1_mass*prr_s_2
+        # (prr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        prr_d_c_xx = (
+        prr_d_Gamma_2_x*prr_w_2_t - prr__r0_x*(-prr_c_2*prr_link1_mass - prr_d_Gamma_1_t*prr_s_2)
+            - prr_h_2_y*prr_w_2_t
         )
-        d_c_prr_xy = d_Gamma_2_prr_y*w_2_prr_t + h_2_prr_y*w_2_prr_t_2 - _r0_x*_r0_y_2
-        # (prr-N30) inertia of the leg at the connection point, without the mass gathered there
-        Q_prr_t = d_c_prr_xx + _r0_y*_r0_y_2 + d_Gamma_2_prr_y*w_2_prr_t_2 + h_2_prr_x*w_2_prr_t_2
-        Q_prr_t_2 = 0.5*Q_prr_t
-        Q_prr_t_3 = Q_prr_t_2*axis_y_prr_axes2_in_base_x - axis_y_prr_axes2_in_base_y*d_c_prr_xy
-        Q_prr_t_4 = Q_prr_t_2*axis_y_prr_axes2_in_base_y + axis_y_prr_axes2_in_base_x*d_c_prr_xy
-        Q_prr_t_5 = 2.0*Q_prr_t_3*axis_y_prr_axes2_in_base_x - d_c_prr_xx
-        Q_prr_t_6 = Q_prr_t_3*axis_y_prr_axes2_in_base_y + Q_prr_t_4*axis_y_prr_axes2_in_base_x
-        Q_prr_t_7 = 2.0*Q_prr_t_4*axis_y_prr_axes2_in_base_y - d_c_prr_xx
-        # (M2) coupling block of M
-        M_ta_t_5 = Q_prr_t_5*q_prr_in_base_y - Q_prr_t_6*q_prr_in_base_x
-        M_ta_t_6 = Q_prr_t_6*q_prr_in_base_y - Q_prr_t_7*q_prr_in_base_x
-        # (M3) rotational block of M
-        M_aa_t_3 = M_ta_t_5*q_prr_in_base_y - M_ta_t_6*q_prr_in_base_x
-        # (prr-V1) velocity of the connection point
-        S_dot_prr_t = omega_z*q_prr_in_base_y
-        S_dot_prr_t_2 = omega_z*q_prr_in_base_x
-        S_dot_prr_x = t_dot_x - S_dot_prr_t
-        S_dot_prr_y = S_dot_prr_t_2 + t_dot_y
-        # (prr-V6) rate of joint 2
-        qd_2_prr = inv_v_2_prr_t_2*(S_dot_prr_x*prr_base_frame_xy + S_dot_prr_y*prr_base_frame_yy)
-        # (prr-V8) centripetal tensor of link 2
-        W_2_prr_t = qd_2_prr*qd_2_prr
-        # (prr-A1) centripetal acceleration of the connection point
-        u_1_prr_t = S_dot_prr_t_2*omega_z
-        u_1_prr_t_2 = S_dot_prr_t*omega_z
-        u_1_prr_tip_x = (
-        axis_y_prr_axes2_in_base_x*u_1_prr_t_2 - axis_y_prr_axes2_in_base_y*u_1_prr_t
+        prr_d_c_xy = prr_d_Gamma_2_y*prr_w_2_t + prr_h_2_y*prr_w_2_t_2 - prr__r0_x*prr__r0_y_2
+        # (prr-Q) inertia of the leg at the connection point, without the mass gathered there
+        prr_Q_t = (
+        prr_d_c_xx + prr__r0_y*prr__r0_y_2 + prr_d_Gamma_2_y*prr_w_2_t_2 + prr_h_2_x*prr_w_2_t_2
         )
-        u_1_prr_tip_y = (
-        -axis_y_prr_axes2_in_base_x*u_1_prr_t - axis_y_prr_axes2_in_base_y*u_1_prr_t_2
+        prr_Q_t_2 = 0.5*prr_Q_t
+        prr_Q_t_3 = axis_y_prr_axes2_in_base_x*prr_Q_t_2 - axis_y_prr_axes2_in_base_y*prr_d_c_xy
+        prr_Q_t_4 = axis_y_prr_axes2_in_base_x*prr_d_c_xy + axis_y_prr_axes2_in_base_y*prr_Q_t_2
+        prr_Q_t_5 = 2.0*axis_y_prr_axes2_in_base_x*prr_Q_t_3 - prr_d_c_xx
+        prr_Q_t_6 = axis_y_prr_axes2_in_base_x*prr_Q_t_4 + axis_y_prr_axes2_in_base_y*prr_Q_t_3
+        prr_Q_t_7 = 2.0*axis_y_prr_axes2_in_base_y*prr_Q_t_4 - prr_d_c_xx
+        # (M_ta) coupling block of M
+        prr_M_ta_t = prr_Q_t_5*prr_q_in_base_y - prr_Q_t_6*prr_q_in_base_x
+        prr_M_ta_t_2 = prr_Q_t_6*prr_q_in_base_y - prr_Q_t_7*prr_q_in_base_x
+        # (M_aa) rotational block of M
+        prr_M_aa_t = prr_M_ta_t*prr_q_in_base_y - prr_M_ta_t_2*prr_q_in_base_x
+        # (prr-S_dot) velocity of the connection point
+        prr_S_dot_t = omega_z*prr_q_in_base_y
+        prr_S_dot_t_2 = omega_z*prr_q_in_base_x
+        prr_S_dot_x = t_dot_x - prr_S_dot_t
+        prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
+        # (prr-qd_2) rate of joint 2
+        prr_qd_2 = inv_prr_v_2_t_2*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
+        # (prr-u_1) centripetal acceleration of the connection point
+        prr_u_1_t = omega_z*prr_S_dot_t_2
+        prr_u_1_t_2 = omega_z*prr_S_dot_t
+        # (prr-W_2) centripetal tensor of link 2
+        prr_W_2_t = prr_qd_2*prr_qd_2
+        # (prr-u_1) centripetal acceleration of the connection point
+        prr_u_1_tip_x = (
+        axis_y_prr_axes2_in_base_x*prr_u_1_t_2 - axis_y_prr_axes2_in_base_y*prr_u_1_t
         )
-        # (prr-A6) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_prr_o_x = u_1_prr_tip_x + prr_platform_joint_offset_x*qd_2_prr*qd_2_prr
-        # (prr-A8) remainder without the acceleration in: acceleration of joint 1
-        qdd_2_prr_o = inv_v_2_prr_t_2*(rel_prr_o_x*s_2_prr - c_2_prr*u_1_prr_tip_y)
-        # (prr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        acc_1_prr_o_x = (
-        -g_r0_x - c_2_prr*rel_prr_o_x - qdd_2_prr_o*v_2_prr_t - s_2_prr*u_1_prr_tip_y
+        prr_u_1_tip_y = (
+        -axis_y_prr_axes2_in_base_x*prr_u_1_t - axis_y_prr_axes2_in_base_y*prr_u_1_t_2
         )
-        # (prr-N4) remainder without the acceleration in: inertia force of link 1 less its weight
-        f_1_prr_o_x = acc_1_prr_o_x*prr_link1_mass
-        # (prr-N6) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        acc_2_prr_o_x = u_1_prr_tip_x + c_2_prr*g_r0_x - g_r0_y*s_2_prr
-        acc_2_prr_o_y = u_1_prr_tip_y + c_2_prr*g_r0_y + g_r0_x*s_2_prr
-        # (prr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_prr_o_z = acc_2_prr_o_y*h_2_prr_x - J_2_prr_zz*qdd_2_prr_o - acc_2_prr_o_x*h_2_prr_y
-        # (prr-N26) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_prr_o_t = inv_v_2_prr_t_2*(mu_2_prr_o_z + f_1_prr_o_x*v_2_prr_t)
-        # (prr-N29) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_prr_o_x = (
-        G_prr_o_t*s_2_prr + W_2_prr_t*h_2_prr_x + c_2_prr*f_1_prr_o_x - h_2_prr_y*qdd_2_prr_o
+        # (prr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        prr_rel_o_x = prr_u_1_tip_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2
+        # (prr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        prr_qdd_2_o = inv_prr_v_2_t_2*(prr_rel_o_x*prr_s_2 - prr_c_2*prr_u_1_tip_y)
+        # (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        prr_acc_2_o_x = prr_u_1_tip_x + prr_c_2*prr_g_r0_x - prr_g_r0_y*prr_s_2
+        prr_acc_2_o_y = prr_u_1_tip_y + prr_c_2*prr_g_r0_y + prr_g_r0_x*prr_s_2
+        # (prr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        prr_mu_2_o_z = prr_acc_2_o_y*prr_h_2_x - prr_J_2_zz*prr_qdd_2_o - prr_acc_2_o_x*prr_h_2_y
+        # (prr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+        prr_acc_1_o_x = (
+        -prr_g_r0_x - prr_c_2*prr_rel_o_x - prr_qdd_2_o*prr_v_2_t - prr_s_2*prr_u_1_tip_y
         )
-        c_prr_o_y = (
-        W_2_prr_t*h_2_prr_y + f_1_prr_o_x*s_2_prr + h_2_prr_x*qdd_2_prr_o - G_prr_o_t*c_2_prr
+        # (prr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight
+        prr_f_1_o_x = prr_acc_1_o_x*prr_link1_mass
+        # (prr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        prr_G_o_t = inv_prr_v_2_t_2*(prr_mu_2_o_z + prr_f_1_o_x*prr_v_2_t)
+        # (prr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        prr_c_o_x = (
+        prr_G_o_t*prr_s_2 + prr_W_2_t*prr_h_2_x + prr_c_2*prr_f_1_o_x - prr_h_2_y*prr_qdd_2_o
         )
-        # (prr-N31) velocity and gravity terms of the leg force
-        U_prr_in_base_x = (
-        -axis_y_prr_axes2_in_base_x*c_prr_o_y - axis_y_prr_axes2_in_base_y*c_prr_o_x
+        prr_c_o_y = (
+        prr_W_2_t*prr_h_2_y + prr_f_1_o_x*prr_s_2 + prr_h_2_x*prr_qdd_2_o - prr_G_o_t*prr_c_2
         )
-        U_prr_in_base_y = (
-        axis_y_prr_axes2_in_base_x*c_prr_o_x - axis_y_prr_axes2_in_base_y*c_prr_o_y
+        # (prr-U) velocity and gravity terms of the leg force
+        prr_U_in_base_x = (
+        -axis_y_prr_axes2_in_base_x*prr_c_o_y - axis_y_prr_axes2_in_base_y*prr_c_o_x
         )
-        # (M7) rotational part of Z
-        Z_a_t_3 = U_prr_in_base_y*q_prr_in_base_x - U_prr_in_base_x*q_prr_in_base_y
-        # (prr-V3) reciprocal vector 1
-        w_1_prr_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y + _r0_y*axis_y_prr_axes2_in_base_x
-        w_1_prr_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y - _r0_x*axis_y_prr_axes2_in_base_x
-        # (M10) moment of the column's unit force about the platform origin
-        H_a_1_prr_z = q_prr_in_base_x*w_1_prr_in_base_y - q_prr_in_base_y*w_1_prr_in_base_x
-        ok = ok & m.every(leg, (disc_1_prr >= 0.0) & (abs(-v_2_prr_t_2) > _TOLERANCE * size_prr))
+        prr_U_in_base_y = (
+        axis_y_prr_axes2_in_base_x*prr_c_o_x - axis_y_prr_axes2_in_base_y*prr_c_o_y
+        )
+        # (Z_a) rotational part of Z
+        prr_Z_a_t = prr_U_in_base_y*prr_q_in_base_x - prr_U_in_base_x*prr_q_in_base_y
+        # (prr-w_1) reciprocal vector 1
+        prr_w_1_in_base_x = (
+        axis_y_prr_axes2_in_base_x*prr__r0_y + axis_y_prr_axes2_in_base_y*prr__r0_x
+        )
+        prr_w_1_in_base_y = (
+        axis_y_prr_axes2_in_base_y*prr__r0_y - axis_y_prr_axes2_in_base_x*prr__r0_x
+        )
+        # (prr-H_a_1) moment of the column's unit force about the platform origin
+        prr_H_a_1_z = prr_q_in_base_x*prr_w_1_in_base_y - prr_q_in_base_y*prr_w_1_in_base_x
+        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t_2) > _TOLERANCE * prr_size))
         sums = m.added(sums, leg, (
-        Q_prr_t_5, Q_prr_t_6, Q_prr_t_7, M_ta_t_5, M_ta_t_6, M_aa_t_3, U_prr_in_base_x,
-            U_prr_in_base_y, Z_a_t_3,
+        prr_Q_t_5, prr_Q_t_6, prr_Q_t_7, prr_M_ta_t, prr_M_ta_t_2, prr_M_aa_t,
+            prr_U_in_base_x, prr_U_in_base_y, prr_Z_a_t,
         ))
-        out_H[_H_prr[0][leg]] = w_1_prr_in_base_x
-        out_H[_H_prr[1][leg]] = w_1_prr_in_base_y
-        out_H[_H_prr[2][leg]] = H_a_1_prr_z
+        out_H[_H_prr[0][leg]] = prr_w_1_in_base_x
+        out_H[_H_prr[1][leg]] = prr_w_1_in_base_y
+        out_H[_H_prr[2][leg]] = prr_H_a_1_z
     (
     total_prr_xx, total_prr_xy, total_prr_yy, total_prr_xz, total_prr_yz, total_prr_zz,
         total_prr_x, total_prr_y, total_prr_z,
     ) = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = m_star + total_prr_xx - total_rpr_xx - total_rrr_xx
     M_tt_xy = total_prr_xy + total_rpr_xy + total_rrr_xy
     M_tt_yy = m_star + total_prr_yy - total_rpr_yy - total_rrr_yy
-    # (M2) coupling block of M
+    # (M_ta) coupling block of M
     M_ta_xz = total_rpr_xz + total_rrr_xz - h_star_in_base_y - total_prr_xz
     M_ta_yz = h_star_in_base_x - total_prr_yz - total_rpr_yz - total_rrr_yz
-    # (M3) rotational block of M
-    M_aa_zz = total_prr_zz - J_star_t_18 - total_rpr_zz - total_rrr_zz
-    # (M5) translational part of Z
+    # (M_aa) rotational block of M
+    M_aa_zz = total_prr_zz - J_star_t_6 - total_rpr_zz - total_rrr_zz
+    # (Z_t) translational part of Z
     Z_t_x = Z_p_x + total_prr_x + total_rpr_x + total_rrr_x
     Z_t_y = Z_p_y + total_prr_y + total_rpr_y + total_rrr_y
-    # (M7) rotational part of Z
+    # (Z_a) rotational part of Z
     Z_a_z = total_prr_z + total_rpr_z + total_rrr_z - Z_q_t
     out_M[0] = M_tt_xx
     out_M[1] = M_tt_xy
@@ -2013,7 +2065,7 @@ def _run_M(m, X):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("M")
-    J_star_t_18, h_star_x, h_star_y, m_star = shared
+    J_star_t_6, h_star_x, h_star_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -2024,233 +2076,233 @@ def _run_M(m, X):
     R_yx = sin(X_2)
     ok = True
     out_M = m.zeros("M")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_group_1_rpr_zz, branch_1_rpr, h_2_rpr_x, h_2_rpr_y, rpr_base_frame_xx,
-            rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-            rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_h_2_x,
+            rpr_h_2_y, rpr_platform_point_x, rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        S_rpr_x = q_rpr_in_base_x + t_x - rpr_base_point_x
-        S_rpr_y = q_rpr_in_base_y + t_y - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1_rpr = branch_1_rpr*sqrt(rho2_1_rpr)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1_rpr = 1.0/root_1_rpr
-        axis_x_x = S_rpr_x*inv_root_1_rpr
-        axis_x_y = S_rpr_y*inv_root_1_rpr
-        # (rpr-N19) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_rpr_yx = h_2_rpr_y*inv_root_1_rpr
-        # (rpr-N22) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_rpr_yy = (
-        -h_2_rpr_x*inv_root_1_rpr - inv_root_1_rpr*(h_2_rpr_x + J_group_1_rpr_zz*inv_root_1_rpr)
+        # (rpr-S) from the base point to the connection point
+        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
+        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
+        # (rpr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
+        rpr_d_phi_2_t = inv_rpr_root_1*rpr_h_2_y
+        # (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rpr_d_c_yy = (
+        -inv_rpr_root_1*rpr_h_2_x - inv_rpr_root_1*(rpr_h_2_x + inv_rpr_root_1*rpr_J_group_1_zz)
         )
-        # (rpr-N24) inertia of the leg at the connection point, without the mass gathered there
-        Q_rpr_t = 0.5*d_c_rpr_yy
-        Q_rpr_t_2 = Q_rpr_t*axis_x_y - axis_x_x*d_G_rpr_yx
-        Q_rpr_t_3 = Q_rpr_t*axis_x_x + axis_x_y*d_G_rpr_yx
-        Q_rpr_t_4 = 2.0*Q_rpr_t_2*axis_x_y
-        Q_rpr_t_5 = Q_rpr_t_2*axis_x_x + Q_rpr_t_3*axis_x_y
-        Q_rpr_t_6 = 2.0*Q_rpr_t_3*axis_x_x
-        # (M2) coupling block of M
-        M_ta_t = Q_rpr_t_4*q_rpr_in_base_y + Q_rpr_t_5*q_rpr_in_base_x
-        M_ta_t_2 = Q_rpr_t_5*q_rpr_in_base_y + Q_rpr_t_6*q_rpr_in_base_x
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t*q_rpr_in_base_y + M_ta_t_2*q_rpr_in_base_x
+        # (rpr-Q) inertia of the leg at the connection point, without the mass gathered there
+        rpr_Q_t = 0.5*rpr_d_c_yy
+        rpr_Q_t_2 = rpr_Q_t*rpr_axis_x_y - rpr_axis_x_x*rpr_d_phi_2_t
+        rpr_Q_t_3 = rpr_Q_t*rpr_axis_x_x + rpr_axis_x_y*rpr_d_phi_2_t
+        rpr_Q_t_4 = 2.0*rpr_Q_t_2*rpr_axis_x_y
+        rpr_Q_t_5 = rpr_Q_t_2*rpr_axis_x_x + rpr_Q_t_3*rpr_axis_x_y
+        rpr_Q_t_6 = 2.0*rpr_Q_t_3*rpr_axis_x_x
+        # (M_ta) coupling block of M
+        rpr_M_ta_t = rpr_Q_t_4*rpr_q_in_base_y + rpr_Q_t_5*rpr_q_in_base_x
+        rpr_M_ta_t_2 = rpr_Q_t_5*rpr_q_in_base_y + rpr_Q_t_6*rpr_q_in_base_x
+        # (M_aa) rotational block of M
+        rpr_M_aa_t = rpr_M_ta_t*rpr_q_in_base_y + rpr_M_ta_t_2*rpr_q_in_base_x
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr)
+        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
             > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
-        Q_rpr_t_4, Q_rpr_t_5, Q_rpr_t_6, M_ta_t, M_ta_t_2, M_aa_t,
+        rpr_Q_t_4, rpr_Q_t_5, rpr_Q_t_6, rpr_M_ta_t, rpr_M_ta_t_2, rpr_M_aa_t,
         ))
     total_rpr_xx, total_rpr_xy, total_rpr_yy, total_rpr_xz, total_rpr_yz, total_rpr_zz = sums
     sums = [0.0] * 6
     for leg, k in legs[1]:
         (
-        J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, d_Gamma_1_rrr_t,
-            d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
-            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_2_zz,
+            rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+            rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy, rrr_d_phi_2_t, rrr_h_2_y,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x
-        S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        # (rrr-V6) reciprocal vector 2
-        w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x
-        # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x
-        d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz - d_Gamma_1_rrr_t_2)
-        # (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz - d_Gamma_1_rrr_t_2)
-        # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y - d_Gamma_1_rrr_y*w_2_rrr_t
-        # (rrr-N36) inertia of the leg at the connection point, without the mass gathered there
-        Q_rrr_t = (
-        d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t - inv_r_1_rrr_r0_y) - d_c_rrr_yy -
-            d_Gamma_2_rrr_x*w_2_rrr_t
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        # (rrr-w_2) reciprocal vector 2
+        rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x
+        # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x
+        rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz - rrr_d_Gamma_2_t_2)
+        # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz - rrr_d_Gamma_2_t_2)
+        # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y - rrr_d_Gamma_2_y*rrr_w_2_t
+        # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
+        rrr_Q_t = (
+        inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t - inv_rrr_r_1_r0_y) - rrr_d_c_yy -
+            rrr_d_Gamma_2_x*rrr_w_2_t
         )
-        Q_rrr_t_2 = 0.5*Q_rrr_t
-        Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
-        Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
-        Q_rrr_t_5 = d_c_rrr_yy + 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y
-        Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x + Q_rrr_t_4*axis_y_rrr_axes2_in_base_y
-        Q_rrr_t_7 = d_c_rrr_yy + 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
-        # (M2) coupling block of M
-        M_ta_t_3 = Q_rrr_t_5*q_rrr_in_base_y + Q_rrr_t_6*q_rrr_in_base_x
-        M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y + Q_rrr_t_7*q_rrr_in_base_x
-        # (M3) rotational block of M
-        M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y + M_ta_t_4*q_rrr_in_base_x
+        rrr_Q_t_2 = 0.5*rrr_Q_t
+        rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy + axis_y_rrr_axes2_in_base_y*rrr_Q_t_2
+        rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 - axis_y_rrr_axes2_in_base_y*rrr_d_c_xy
+        rrr_Q_t_5 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3
+        rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 + axis_y_rrr_axes2_in_base_y*rrr_Q_t_4
+        rrr_Q_t_7 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4
+        # (M_ta) coupling block of M
+        rrr_M_ta_t = rrr_Q_t_5*rrr_q_in_base_y + rrr_Q_t_6*rrr_q_in_base_x
+        rrr_M_ta_t_2 = rrr_Q_t_6*rrr_q_in_base_y + rrr_Q_t_7*rrr_q_in_base_x
+        # (M_aa) rotational block of M
+        rrr_M_aa_t = rrr_M_ta_t*rrr_q_in_base_y + rrr_M_ta_t_2*rrr_q_in_base_x
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7, M_ta_t_3, M_ta_t_4, M_aa_t_2,
+        rrr_Q_t_5, rrr_Q_t_6, rrr_Q_t_7, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t,
         ))
     total_rrr_xx, total_rrr_xy, total_rrr_yy, total_rrr_xz, total_rrr_yz, total_rrr_zz = sums
     sums = [0.0] * 6
     for leg, k in legs[2]:
         (
-        J_2_prr_zz, branch_1_prr, h_2_prr_x, h_2_prr_y, inv_uu_2_prr_t, prr_base_frame_xx,
-            prr_base_frame_xy, prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x,
-            prr_base_point_y, prr_link1_mass, prr_platform_joint_offset_x, prr_platform_point_x,
-            prr_platform_point_y, size_prr, uu_2_prr_t,
+        inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
+            prr_h_2_x, prr_h_2_y, prr_link1_mass, prr_platform_joint_offset_x,
+            prr_platform_point_x, prr_platform_point_y, prr_size,
         ) = k
-        # (prr-K1) from the base point to the connection point
-        q_prr_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        q_prr_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        S_prr_x = q_prr_in_base_x + t_x - prr_base_point_x
-        S_prr_y = q_prr_in_base_y + t_y - prr_base_point_y
-        # (prr-K2) component along axis 1
-        px_1_prr = S_prr_x*prr_base_frame_xx + S_prr_y*prr_base_frame_yx
-        # (prr-K3) discriminant of the distance equation
-        disc_1_prr_t = S_prr_x*S_prr_x + S_prr_y*S_prr_y
-        disc_1_prr = px_1_prr*px_1_prr + uu_2_prr_t - disc_1_prr_t
-        # (prr-K7) cosine of the angle of joint 2 from its reference direction
-        c_2_prr = branch_1_prr*sqrt(disc_1_prr)*inv_uu_2_prr_t*prr_platform_joint_offset_x
-        # (prr-K8) sine of the angle of joint 2 from its reference direction
-        s_2_prr = (
-        inv_uu_2_prr_t*prr_platform_joint_offset_x*(S_prr_x*prr_base_frame_xy +
-            S_prr_y*prr_base_frame_yy)
+        # (prr-S) from the base point to the connection point
+        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
+        # (prr-px_1) component along axis 1
+        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        # (prr-disc_1) discriminant of the distance equation
+        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        # (prr-c_2) cosine of the angle of joint 2 from its reference direction
+        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        # (prr-s_2) sine of the angle of joint 2 from its reference direction
+        prr_s_2 = (
+        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+            prr_S_y*prr_base_frame_yy)
         )
-        # (prr-V3) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -c_2_prr*prr_base_frame_xy - prr_base_frame_xx*s_2_prr
-        axis_y_prr_axes2_in_base_y = -c_2_prr*prr_base_frame_yy - prr_base_frame_yx*s_2_prr
-        # (prr-V2) velocity of the connection point per rate of joint 2
-        v_2_prr_t = prr_platform_joint_offset_x*s_2_prr
-        v_2_prr_t_2 = c_2_prr*prr_platform_joint_offset_x
-        # (prr-V3) reciprocal vector 1
-        inv_v_2_prr_t_2 = 1.0/v_2_prr_t_2
-        w_1_prr_t = inv_v_2_prr_t_2*v_2_prr_t
-        _r0_x = -c_2_prr - s_2_prr*w_1_prr_t
-        # (prr-N22) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
-        d_Gamma_1_prr_t = inv_v_2_prr_t_2*prr_link1_mass*v_2_prr_t
-        _r0_y = c_2_prr*d_Gamma_1_prr_t - prr_link1_mass*s_2_prr
-        # (prr-V4) reciprocal vector 2
-        w_2_prr_t = inv_v_2_prr_t_2*s_2_prr
-        w_2_prr_t_2 = c_2_prr*inv_v_2_prr_t_2
-        # (prr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_prr_t = J_2_prr_zz*inv_v_2_prr_t_2
-        d_Gamma_2_prr_x = -h_2_prr_y - d_Gamma_2_prr_t*s_2_prr
-        d_Gamma_2_prr_y = h_2_prr_x + c_2_prr*d_Gamma_2_prr_t
-        # (prr-N28) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_prr_xx = (
-        d_Gamma_2_prr_x*w_2_prr_t - _r0_x*(-c_2_prr*prr_link1_mass - d_Gamma_1_prr_t*s_2_prr) -
-            h_2_prr_y*w_2_prr_t
+        # (prr-w_1) reciprocal vector 1
+        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
+        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
+        # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_t = prr_platform_joint_offset_x*prr_s_2
+        prr_v_2_t_2 = prr_c_2*prr_platform_joint_offset_x
+        # (prr-w_2) reciprocal vector 2
+        inv_prr_v_2_t_2 = 1.0/prr_v_2_t_2
+        prr_w_2_t = inv_prr_v_2_t_2*prr_s_2
+        prr_w_2_t_2 = inv_prr_v_2_t_2*prr_c_2
+        # (prr-w_1) reciprocal vector 1
+        prr_w_1_t = inv_prr_v_2_t_2*prr_v_2_t
+        prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t
+        # (prr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        prr_d_Gamma_2_t = inv_prr_v_2_t_2*prr_J_2_zz
+        prr_d_Gamma_2_x = -prr_h_2_y - prr_d_Gamma_2_t*prr_s_2
+        prr_d_Gamma_2_y = prr_h_2_x + prr_c_2*prr_d_Gamma_2_t
+        # (prr-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
+        prr_d_Gamma_1_t = inv_prr_v_2_t_2*prr_link1_mass*prr_v_2_t
+        prr__r0_y = prr_c_2*prr_d_Gamma_1_t - prr_link1_mass*prr_s_2
+        # (prr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        prr_d_c_xx = (
+        prr_d_Gamma_2_x*prr_w_2_t - prr__r0_x*(-prr_c_2*prr_link1_mass - prr_d_Gamma_1_t*prr_s_2)
+            - prr_h_2_y*prr_w_2_t
         )
-        d_c_prr_xy = d_Gamma_2_prr_y*w_2_prr_t + h_2_prr_y*w_2_prr_t_2 - _r0_x*_r0_y
-        # (prr-N30) inertia of the leg at the connection point, without the mass gathered there
-        Q_prr_t = (
-        d_c_prr_xx + _r0_y*(c_2_prr*w_1_prr_t - s_2_prr) + d_Gamma_2_prr_y*w_2_prr_t_2 +
-            h_2_prr_x*w_2_prr_t_2
+        prr_d_c_xy = prr_d_Gamma_2_y*prr_w_2_t + prr_h_2_y*prr_w_2_t_2 - prr__r0_x*prr__r0_y
+        # (prr-Q) inertia of the leg at the connection point, without the mass gathered there
+        prr_Q_t = (
+        prr_d_c_xx + prr__r0_y*(prr_c_2*prr_w_1_t - prr_s_2) + prr_d_Gamma_2_y*prr_w_2_t_2 +
+            prr_h_2_x*prr_w_2_t_2
         )
-        Q_prr_t_2 = 0.5*Q_prr_t
-        Q_prr_t_3 = Q_prr_t_2*axis_y_prr_axes2_in_base_x - axis_y_prr_axes2_in_base_y*d_c_prr_xy
-        Q_prr_t_4 = Q_prr_t_2*axis_y_prr_axes2_in_base_y + axis_y_prr_axes2_in_base_x*d_c_prr_xy
-        Q_prr_t_5 = 2.0*Q_prr_t_3*axis_y_prr_axes2_in_base_x - d_c_prr_xx
-        Q_prr_t_6 = Q_prr_t_3*axis_y_prr_axes2_in_base_y + Q_prr_t_4*axis_y_prr_axes2_in_base_x
-        Q_prr_t_7 = 2.0*Q_prr_t_4*axis_y_prr_axes2_in_base_y - d_c_prr_xx
-        # (M2) coupling block of M
-        M_ta_t_5 = Q_prr_t_5*q_prr_in_base_y - Q_prr_t_6*q_prr_in_base_x
-        M_ta_t_6 = Q_prr_t_6*q_prr_in_base_y - Q_prr_t_7*q_prr_in_base_x
-        # (M3) rotational block of M
-        M_aa_t_3 = M_ta_t_5*q_prr_in_base_y - M_ta_t_6*q_prr_in_base_x
-        ok = ok & m.every(leg, (disc_1_prr >= 0.0) & (abs(-v_2_prr_t_2) > _TOLERANCE * size_prr))
+        prr_Q_t_2 = 0.5*prr_Q_t
+        prr_Q_t_3 = axis_y_prr_axes2_in_base_x*prr_Q_t_2 - axis_y_prr_axes2_in_base_y*prr_d_c_xy
+        prr_Q_t_4 = axis_y_prr_axes2_in_base_x*prr_d_c_xy + axis_y_prr_axes2_in_base_y*prr_Q_t_2
+        prr_Q_t_5 = 2.0*axis_y_prr_axes2_in_base_x*prr_Q_t_3 - prr_d_c_xx
+        prr_Q_t_6 = axis_y_prr_axes2_in_base_x*prr_Q_t_4 + axis_y_prr_axes2_in_base_y*prr_Q_t_3
+        prr_Q_t_7 = 2.0*axis_y_prr_axes2_in_base_y*prr_Q_t_4 - prr_d_c_xx
+        # (M_ta) coupling block of M
+        prr_M_ta_t = prr_Q_t_5*prr_q_in_base_y - prr_Q_t_6*prr_q_in_base_x
+        prr_M_ta_t_2 = prr_Q_t_6*prr_q_in_base_y - prr_Q_t_7*prr_q_in_base_x
+        # (M_aa) rotational block of M
+        prr_M_aa_t = prr_M_ta_t*prr_q_in_base_y - prr_M_ta_t_2*prr_q_in_base_x
+        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t_2) > _TOLERANCE * prr_size))
         sums = m.added(sums, leg, (
-        Q_prr_t_5, Q_prr_t_6, Q_prr_t_7, M_ta_t_5, M_ta_t_6, M_aa_t_3,
+        prr_Q_t_5, prr_Q_t_6, prr_Q_t_7, prr_M_ta_t, prr_M_ta_t_2, prr_M_aa_t,
         ))
     total_prr_xx, total_prr_xy, total_prr_yy, total_prr_xz, total_prr_yz, total_prr_zz = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = m_star + total_prr_xx - total_rpr_xx - total_rrr_xx
     M_tt_xy = total_prr_xy + total_rpr_xy + total_rrr_xy
     M_tt_yy = m_star + total_prr_yy - total_rpr_yy - total_rrr_yy
-    # (M2) coupling block of M
+    # (M_ta) coupling block of M
     M_ta_xz = total_rpr_xz + total_rrr_xz - h_star_in_base_y - total_prr_xz
     M_ta_yz = h_star_in_base_x - total_prr_yz - total_rpr_yz - total_rrr_yz
-    # (M3) rotational block of M
-    M_aa_zz = total_prr_zz - J_star_t_18 - total_rpr_zz - total_rrr_zz
+    # (M_aa) rotational block of M
+    M_aa_zz = total_prr_zz - J_star_t_6 - total_rpr_zz - total_rrr_zz
     out_M[0] = M_tt_xx
     out_M[1] = M_tt_xy
     out_M[3] = M_tt_xy
@@ -2263,7 +2315,7 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 226 mul, 149 add, 4 div, 3 sqrt, 0 trig
+# Z: 222 mul, 147 add, 4 div, 3 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -2287,316 +2339,328 @@ def _run_Z(m, X, V):
     omega_z = V_2
     ok = True
     out_Z = m.zeros("Z")
-    # (P1) centripetal tensor of the platform
+    # (h_star) first moment about the platform origin
+    h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
+    h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_z*omega_z
-    # (M4) centripetal force and weight of the platform
-    Z_p_x = -Z_p_t - W_p_t*(R_xx*h_star_x - R_yx*h_star_y)
-    Z_p_y = -Z_p_t_2 - W_p_t*(R_xx*h_star_y + R_yx*h_star_x)
-    # (M6) gyroscopic moment and moment of the weight of the platform
-    Z_q_t = (
-    h_star_x*(R_xx*gravity_y - R_yx*gravity_x) - h_star_y*(R_xx*gravity_x + R_yx*gravity_y)
-    )
+    # (Z_p) centripetal force and weight of the platform
+    Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x
+    Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
-        J_group_1_rpr_zz, branch_1_rpr, h_1_rpr_x, h_1_rpr_y, h_2_rpr_x, h_2_rpr_y,
-            rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-            rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_h_1_x,
+            rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_platform_point_x, rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        S_rpr_x = q_rpr_in_base_x + t_x - rpr_base_point_x
-        S_rpr_y = q_rpr_in_base_y + t_y - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1_rpr = branch_1_rpr*sqrt(rho2_1_rpr)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1_rpr = 1.0/root_1_rpr
-        axis_x_x = S_rpr_x*inv_root_1_rpr
-        axis_x_y = S_rpr_y*inv_root_1_rpr
-        # (rpr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        g_tip_x = axis_x_x*gravity_x + axis_x_y*gravity_y
-        g_tip_y = axis_x_x*gravity_y - axis_x_y*gravity_x
-        # (rpr-A1) centripetal acceleration of the connection point
-        u_1_rpr_t = W_p_t*q_rpr_in_base_x
-        u_1_rpr_t_2 = W_p_t*q_rpr_in_base_y
-        u_1_rpr_tip_y = axis_x_y*u_1_rpr_t - axis_x_x*u_1_rpr_t_2
-        # (rpr-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        acc_2_rpr_o_x = -g_tip_x - axis_x_x*u_1_rpr_t - axis_x_y*u_1_rpr_t_2
-        acc_2_rpr_o_y = u_1_rpr_tip_y - g_tip_y
-        # (rpr-V1) velocity of the connection point
-        S_dot_rpr_x = t_dot_x - omega_z*q_rpr_in_base_y
-        S_dot_rpr_y = t_dot_y + omega_z*q_rpr_in_base_x
-        S_dot_rpr_tip_x = S_dot_rpr_x*axis_x_x + S_dot_rpr_y*axis_x_y
-        # (rpr-V6) rate of joint 1
-        qd_1_rpr = inv_root_1_rpr*(S_dot_rpr_y*axis_x_x - S_dot_rpr_x*axis_x_y)
-        # (rpr-V9) centripetal tensor of link 1
-        W_1_rpr_t = qd_1_rpr*qd_1_rpr
-        # (rpr-A6) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_rpr_o_y = u_1_rpr_tip_y - 2.0*S_dot_rpr_tip_x*qd_1_rpr
-        # (rpr-A8) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_rpr_o = inv_root_1_rpr*rel_rpr_o_y
-        # (rpr-N14) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rpr_o_z = (
-        J_group_1_rpr_zz*qdd_1_rpr_o + acc_2_rpr_o_y*h_2_rpr_x + g_tip_x*h_1_rpr_y -
-            acc_2_rpr_o_x*h_2_rpr_y - g_tip_y*h_1_rpr_x
+        # (rpr-S) from the base point to the connection point
+        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
+        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
+        # (rpr-S_dot) velocity of the connection point
+        rpr_S_dot_t = omega_z*rpr_q_in_base_y
+        rpr_S_dot_t_2 = omega_z*rpr_q_in_base_x
+        rpr_S_dot_x = t_dot_x - rpr_S_dot_t
+        rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y
+        rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y
+        # (rpr-qd_1) rate of joint 1
+        rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x - rpr_S_dot_x*rpr_axis_x_y)
+        # (rpr-u_1) centripetal acceleration of the connection point
+        rpr_u_1_t = omega_z*rpr_S_dot_t_2
+        rpr_u_1_t_2 = omega_z*rpr_S_dot_t
+        # (rpr-W_1) centripetal tensor of link 1
+        rpr_W_1_t = rpr_qd_1*rpr_qd_1
+        # (rpr-u_1) centripetal acceleration of the connection point
+        rpr_u_1_tip_y = rpr_axis_x_y*rpr_u_1_t - rpr_axis_x_x*rpr_u_1_t_2
+        # (rpr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        rpr_rel_o_y = rpr_u_1_tip_y - 2.0*rpr_S_dot_tip_x*rpr_qd_1
+        # (rpr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        rpr_qdd_1_o = inv_rpr_root_1*rpr_rel_o_y
+        # (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning about its reference point
+        rpr_phi_2_o_x = -rpr_W_1_t*rpr_h_2_x - rpr_h_2_y*rpr_qdd_1_o
+        # (rpr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+        rpr_g_tip_x = gravity_x*rpr_axis_x_x + gravity_y*rpr_axis_x_y
+        rpr_g_tip_y = gravity_y*rpr_axis_x_x - gravity_x*rpr_axis_x_y
+        # (rpr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        rpr_acc_2_o_x = -rpr_g_tip_x - rpr_axis_x_x*rpr_u_1_t - rpr_axis_x_y*rpr_u_1_t_2
+        rpr_acc_2_o_y = rpr_u_1_tip_y - rpr_g_tip_y
+        # (rpr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        rpr_mu_1_o_z = (
+        rpr_J_group_1_zz*rpr_qdd_1_o + rpr_acc_2_o_y*rpr_h_2_x + rpr_g_tip_x*rpr_h_1_y -
+            rpr_acc_2_o_x*rpr_h_2_y - rpr_g_tip_y*rpr_h_1_x
         )
-        # (rpr-N7) remainder without the acceleration in: inertia force of link 2 from its turning about its reference point
-        phi_2_rpr_o_x = -W_1_rpr_t*h_2_rpr_x - h_2_rpr_y*qdd_1_rpr_o
-        # (rpr-N23) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_rpr_o_y = W_1_rpr_t*h_2_rpr_y - h_2_rpr_x*qdd_1_rpr_o - inv_root_1_rpr*mu_1_rpr_o_z
-        # (rpr-N25) velocity and gravity terms of the leg force
-        U_rpr_in_base_x = axis_x_x*phi_2_rpr_o_x + axis_x_y*c_rpr_o_y
-        U_rpr_in_base_y = axis_x_y*phi_2_rpr_o_x - axis_x_x*c_rpr_o_y
-        # (M7) rotational part of Z
-        Z_a_t = U_rpr_in_base_y*q_rpr_in_base_x - U_rpr_in_base_x*q_rpr_in_base_y
+        # (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rpr_c_o_y = rpr_W_1_t*rpr_h_2_y - inv_rpr_root_1*rpr_mu_1_o_z - rpr_h_2_x*rpr_qdd_1_o
+        # (rpr-U) velocity and gravity terms of the leg force
+        rpr_U_in_base_x = rpr_axis_x_x*rpr_phi_2_o_x + rpr_axis_x_y*rpr_c_o_y
+        rpr_U_in_base_y = rpr_axis_x_y*rpr_phi_2_o_x - rpr_axis_x_x*rpr_c_o_y
+        # (Z_a) rotational part of Z
+        rpr_Z_a_t = rpr_U_in_base_y*rpr_q_in_base_x - rpr_U_in_base_x*rpr_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr)
+        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
             > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
-        U_rpr_in_base_x, U_rpr_in_base_y, Z_a_t,
+        rpr_U_in_base_x, rpr_U_in_base_y, rpr_Z_a_t,
         ))
     total_rpr_x, total_rpr_y, total_rpr_z = sums
     sums = [0.0] * 3
     for leg, k in legs[1]:
         (
-        J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
-            h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
-            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+            rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+            rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x
-        S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        # (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        g_r1_x = c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr
-        g_r1_y = c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr
-        # (rrr-V1) velocity of the connection point
-        S_dot_rrr_t = omega_z*q_rrr_in_base_y
-        S_dot_rrr_t_2 = omega_z*q_rrr_in_base_x
-        S_dot_rrr_x = t_dot_x - S_dot_rrr_t
-        S_dot_rrr_y = S_dot_rrr_t_2 + t_dot_y
-        # (rrr-V7) rate of joint 1
-        qd_1_rrr = (
-        inv_r_1_rrr_r0_y*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_x)
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = omega_z*rrr_q_in_base_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
+        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_1 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
         )
-        # (rrr-V11) angular velocity of link 2
-        omega_2_rrr_z = (
-        inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_z = (
+        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
         )
-        # (rrr-V10) centripetal tensor of link 1
-        W_1_rrr_t = qd_1_rrr*qd_1_rrr
-        # (rrr-V12) centripetal tensor of link 2
-        W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
-        # (rrr-A5) acceleration of the connection point at zero joint accelerations
-        bias_rrr_x = (
-        -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_t = omega_z*rrr_S_dot_t_2
+        rrr_u_1_t_2 = omega_z*rrr_S_dot_t
+        # (rrr-W_1) centripetal tensor of link 1
+        rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_x = (
+        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        # (rrr-A1) centripetal acceleration of the connection point
-        u_1_rrr_t = S_dot_rrr_t_2*omega_z
-        u_1_rrr_t_2 = S_dot_rrr_t*omega_z
-        u_1_rrr_tip_x = (
-        axis_y_rrr_axes2_in_base_x*u_1_rrr_t_2 - axis_y_rrr_axes2_in_base_y*u_1_rrr_t
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_tip_x = (
+        axis_y_rrr_axes2_in_base_x*rrr_u_1_t_2 - axis_y_rrr_axes2_in_base_y*rrr_u_1_t
         )
-        u_1_rrr_tip_y = (
-        -axis_y_rrr_axes2_in_base_x*u_1_rrr_t - axis_y_rrr_axes2_in_base_y*u_1_rrr_t_2
+        rrr_u_1_tip_y = (
+        -axis_y_rrr_axes2_in_base_x*rrr_u_1_t - axis_y_rrr_axes2_in_base_y*rrr_u_1_t_2
         )
-        # (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_rrr_o_x = u_1_rrr_tip_x - bias_rrr_x
-        rel_rrr_o_y = u_1_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
-        # (rrr-A9) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_rrr_o = inv_r_1_rrr_r0_y*rel_rrr_o_x
-        # (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rrr_o_z = g_r1_x*h_1_rrr_y - J_1_rrr_zz*qdd_1_rrr_o - g_r1_y*h_1_rrr_x
-        # (rrr-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        acc_2_rrr_o_x = u_1_rrr_tip_x + g_r1_y*s_2_rrr - c_2_rrr*g_r1_x
-        acc_2_rrr_o_y = u_1_rrr_tip_y - c_2_rrr*g_r1_y - g_r1_x*s_2_rrr
-        # (rrr-A18) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_rrr_o_z = (
-        inv_rrr_platform_joint_offset_x*(rel_rrr_o_y + qdd_1_rrr_o*r_1_rrr_r0_x) - qdd_1_rrr_o
+        # (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        rrr_rel_o_x = rrr_u_1_tip_x - rrr_bias_x
+        rrr_rel_o_y = rrr_u_1_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        # (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_rel_o_x
+        # (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        rrr_alpha_2_o_z = (
+        inv_rrr_platform_joint_offset_x*(rrr_rel_o_y + rrr_qdd_1_o*rrr_r_1_r0_x) - rrr_qdd_1_o
         )
-        # (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_rrr_o_z = (
-        J_2_rrr_zz*alpha_2_rrr_o_z + acc_2_rrr_o_y*h_2_rrr_x - acc_2_rrr_o_x*h_2_rrr_y
+        # (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        rrr_acc_2_o_x = (
+        rrr_u_1_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+            axis_y_rrr_axes2_in_base_y*gravity_x
         )
-        # (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z
-        # (rrr-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z
-        # (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_rrr_o_x = (
-        W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x
-            - N_1_rrr_o_z)
+        rrr_acc_2_o_y = (
+        rrr_u_1_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+            axis_y_rrr_axes2_in_base_y*gravity_y
         )
-        c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x
-        # (rrr-N37) velocity and gravity terms of the leg force
-        U_rrr_in_base_x = (
-        -axis_y_rrr_axes2_in_base_x*c_rrr_o_y - axis_y_rrr_axes2_in_base_y*c_rrr_o_x
+        # (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        rrr_mu_2_o_z = (
+        rrr_J_2_zz*rrr_alpha_2_o_z + rrr_acc_2_o_y*rrr_h_2_x - rrr_acc_2_o_x*rrr_h_2_y
         )
-        U_rrr_in_base_y = (
-        axis_y_rrr_axes2_in_base_x*c_rrr_o_x - axis_y_rrr_axes2_in_base_y*c_rrr_o_y
+        # (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        rrr_mu_1_o_z = (
+        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1_o -
+            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
         )
-        # (M7) rotational part of Z
-        Z_a_t_2 = U_rrr_in_base_y*q_rrr_in_base_x - U_rrr_in_base_x*q_rrr_in_base_y
+        # (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z
+        # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z
+        # (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_o_x = (
+        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x
+            - rrr_N_1_o_z)
+        )
+        rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x
+        # (rrr-U) velocity and gravity terms of the leg force
+        rrr_U_in_base_x = (
+        -axis_y_rrr_axes2_in_base_x*rrr_c_o_y - axis_y_rrr_axes2_in_base_y*rrr_c_o_x
+        )
+        rrr_U_in_base_y = (
+        axis_y_rrr_axes2_in_base_x*rrr_c_o_x - axis_y_rrr_axes2_in_base_y*rrr_c_o_y
+        )
+        # (Z_a) rotational part of Z
+        rrr_Z_a_t = rrr_U_in_base_y*rrr_q_in_base_x - rrr_U_in_base_x*rrr_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        U_rrr_in_base_x, U_rrr_in_base_y, Z_a_t_2,
+        rrr_U_in_base_x, rrr_U_in_base_y, rrr_Z_a_t,
         ))
     total_rrr_x, total_rrr_y, total_rrr_z = sums
     sums = [0.0] * 3
     for leg, k in legs[2]:
         (
-        J_2_prr_zz, branch_1_prr, g_r0_x, g_r0_y, h_2_prr_x, h_2_prr_y, inv_uu_2_prr_t,
-            prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx, prr_base_frame_yy,
-            prr_base_point_x, prr_base_point_y, prr_link1_mass, prr_platform_joint_offset_x,
-            prr_platform_point_x, prr_platform_point_y, size_prr, uu_2_prr_t,
+        inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
+            prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
+            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
         ) = k
-        # (prr-K1) from the base point to the connection point
-        q_prr_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        q_prr_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        S_prr_x = q_prr_in_base_x + t_x - prr_base_point_x
-        S_prr_y = q_prr_in_base_y + t_y - prr_base_point_y
-        # (prr-K2) component along axis 1
-        px_1_prr = S_prr_x*prr_base_frame_xx + S_prr_y*prr_base_frame_yx
-        # (prr-K3) discriminant of the distance equation
-        disc_1_prr_t = S_prr_x*S_prr_x + S_prr_y*S_prr_y
-        disc_1_prr = px_1_prr*px_1_prr + uu_2_prr_t - disc_1_prr_t
-        # (prr-K7) cosine of the angle of joint 2 from its reference direction
-        c_2_prr = branch_1_prr*sqrt(disc_1_prr)*inv_uu_2_prr_t*prr_platform_joint_offset_x
-        # (prr-K8) sine of the angle of joint 2 from its reference direction
-        s_2_prr = (
-        inv_uu_2_prr_t*prr_platform_joint_offset_x*(S_prr_x*prr_base_frame_xy +
-            S_prr_y*prr_base_frame_yy)
+        # (prr-S) from the base point to the connection point
+        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
+        # (prr-px_1) component along axis 1
+        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        # (prr-disc_1) discriminant of the distance equation
+        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        # (prr-c_2) cosine of the angle of joint 2 from its reference direction
+        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        # (prr-s_2) sine of the angle of joint 2 from its reference direction
+        prr_s_2 = (
+        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+            prr_S_y*prr_base_frame_yy)
         )
-        # (prr-V3) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -c_2_prr*prr_base_frame_xy - prr_base_frame_xx*s_2_prr
-        axis_y_prr_axes2_in_base_y = -c_2_prr*prr_base_frame_yy - prr_base_frame_yx*s_2_prr
-        # (prr-V2) velocity of the connection point per rate of joint 2
-        v_2_prr_t = prr_platform_joint_offset_x*s_2_prr
-        v_2_prr_t_2 = c_2_prr*prr_platform_joint_offset_x
-        # (prr-V3) reciprocal vector 1
-        inv_v_2_prr_t_2 = 1.0/v_2_prr_t_2
-        # (prr-V1) velocity of the connection point
-        S_dot_prr_t = omega_z*q_prr_in_base_y
-        S_dot_prr_t_2 = omega_z*q_prr_in_base_x
-        S_dot_prr_x = t_dot_x - S_dot_prr_t
-        S_dot_prr_y = S_dot_prr_t_2 + t_dot_y
-        # (prr-V6) rate of joint 2
-        qd_2_prr = inv_v_2_prr_t_2*(S_dot_prr_x*prr_base_frame_xy + S_dot_prr_y*prr_base_frame_yy)
-        # (prr-V8) centripetal tensor of link 2
-        W_2_prr_t = qd_2_prr*qd_2_prr
-        # (prr-A1) centripetal acceleration of the connection point
-        u_1_prr_t = S_dot_prr_t_2*omega_z
-        u_1_prr_t_2 = S_dot_prr_t*omega_z
-        u_1_prr_tip_x = (
-        axis_y_prr_axes2_in_base_x*u_1_prr_t_2 - axis_y_prr_axes2_in_base_y*u_1_prr_t
+        # (prr-w_1) reciprocal vector 1
+        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
+        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
+        # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_t = prr_platform_joint_offset_x*prr_s_2
+        prr_v_2_t_2 = prr_c_2*prr_platform_joint_offset_x
+        # (prr-w_2) reciprocal vector 2
+        inv_prr_v_2_t_2 = 1.0/prr_v_2_t_2
+        # (prr-S_dot) velocity of the connection point
+        prr_S_dot_t = omega_z*prr_q_in_base_y
+        prr_S_dot_t_2 = omega_z*prr_q_in_base_x
+        prr_S_dot_x = t_dot_x - prr_S_dot_t
+        prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
+        # (prr-qd_2) rate of joint 2
+        prr_qd_2 = inv_prr_v_2_t_2*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
+        # (prr-u_1) centripetal acceleration of the connection point
+        prr_u_1_t = omega_z*prr_S_dot_t_2
+        prr_u_1_t_2 = omega_z*prr_S_dot_t
+        # (prr-W_2) centripetal tensor of link 2
+        prr_W_2_t = prr_qd_2*prr_qd_2
+        # (prr-u_1) centripetal acceleration of the connection point
+        prr_u_1_tip_x = (
+        axis_y_prr_axes2_in_base_x*prr_u_1_t_2 - axis_y_prr_axes2_in_base_y*prr_u_1_t
         )
-        u_1_prr_tip_y = (
-        -axis_y_prr_axes2_in_base_x*u_1_prr_t - axis_y_prr_axes2_in_base_y*u_1_prr_t_2
+        prr_u_1_tip_y = (
+        -axis_y_prr_axes2_in_base_x*prr_u_1_t - axis_y_prr_axes2_in_base_y*prr_u_1_t_2
         )
-        # (prr-A6) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_prr_o_x = u_1_prr_tip_x + prr_platform_joint_offset_x*qd_2_prr*qd_2_prr
-        # (prr-A8) remainder without the acceleration in: acceleration of joint 1
-        qdd_2_prr_o = inv_v_2_prr_t_2*(rel_prr_o_x*s_2_prr - c_2_prr*u_1_prr_tip_y)
-        # (prr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        acc_1_prr_o_x = (
-        -g_r0_x - c_2_prr*rel_prr_o_x - qdd_2_prr_o*v_2_prr_t - s_2_prr*u_1_prr_tip_y
+        # (prr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        prr_rel_o_x = prr_u_1_tip_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2
+        # (prr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        prr_qdd_2_o = inv_prr_v_2_t_2*(prr_rel_o_x*prr_s_2 - prr_c_2*prr_u_1_tip_y)
+        # (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        prr_acc_2_o_x = prr_u_1_tip_x + prr_c_2*prr_g_r0_x - prr_g_r0_y*prr_s_2
+        prr_acc_2_o_y = prr_u_1_tip_y + prr_c_2*prr_g_r0_y + prr_g_r0_x*prr_s_2
+        # (prr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        prr_mu_2_o_z = prr_acc_2_o_y*prr_h_2_x - prr_J_2_zz*prr_qdd_2_o - prr_acc_2_o_x*prr_h_2_y
+        # (prr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+        prr_acc_1_o_x = (
+        -prr_g_r0_x - prr_c_2*prr_rel_o_x - prr_qdd_2_o*prr_v_2_t - prr_s_2*prr_u_1_tip_y
         )
-        # (prr-N4) remainder without the acceleration in: inertia force of link 1 less its weight
-        f_1_prr_o_x = acc_1_prr_o_x*prr_link1_mass
-        # (prr-N6) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        acc_2_prr_o_x = u_1_prr_tip_x + c_2_prr*g_r0_x - g_r0_y*s_2_prr
-        acc_2_prr_o_y = u_1_prr_tip_y + c_2_prr*g_r0_y + g_r0_x*s_2_prr
-        # (prr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_prr_o_z = acc_2_prr_o_y*h_2_prr_x - J_2_prr_zz*qdd_2_prr_o - acc_2_prr_o_x*h_2_prr_y
-        # (prr-N26) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_prr_o_t = inv_v_2_prr_t_2*(mu_2_prr_o_z + f_1_prr_o_x*v_2_prr_t)
-        # (prr-N29) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_prr_o_x = (
-        G_prr_o_t*s_2_prr + W_2_prr_t*h_2_prr_x + c_2_prr*f_1_prr_o_x - h_2_prr_y*qdd_2_prr_o
+        # (prr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight
+        prr_f_1_o_x = prr_acc_1_o_x*prr_link1_mass
+        # (prr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        prr_G_o_t = inv_prr_v_2_t_2*(prr_mu_2_o_z + prr_f_1_o_x*prr_v_2_t)
+        # (prr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        prr_c_o_x = (
+        prr_G_o_t*prr_s_2 + prr_W_2_t*prr_h_2_x + prr_c_2*prr_f_1_o_x - prr_h_2_y*prr_qdd_2_o
         )
-        c_prr_o_y = (
-        W_2_prr_t*h_2_prr_y + f_1_prr_o_x*s_2_prr + h_2_prr_x*qdd_2_prr_o - G_prr_o_t*c_2_prr
+        prr_c_o_y = (
+        prr_W_2_t*prr_h_2_y + prr_f_1_o_x*prr_s_2 + prr_h_2_x*prr_qdd_2_o - prr_G_o_t*prr_c_2
         )
-        # (prr-N31) velocity and gravity terms of the leg force
-        U_prr_in_base_x = (
-        -axis_y_prr_axes2_in_base_x*c_prr_o_y - axis_y_prr_axes2_in_base_y*c_prr_o_x
+        # (prr-U) velocity and gravity terms of the leg force
+        prr_U_in_base_x = (
+        -axis_y_prr_axes2_in_base_x*prr_c_o_y - axis_y_prr_axes2_in_base_y*prr_c_o_x
         )
-        U_prr_in_base_y = (
-        axis_y_prr_axes2_in_base_x*c_prr_o_x - axis_y_prr_axes2_in_base_y*c_prr_o_y
+        prr_U_in_base_y = (
+        axis_y_prr_axes2_in_base_x*prr_c_o_x - axis_y_prr_axes2_in_base_y*prr_c_o_y
         )
-        # (M7) rotational part of Z
-        Z_a_t_3 = U_prr_in_base_y*q_prr_in_base_x - U_prr_in_base_x*q_prr_in_base_y
-        ok = ok & m.every(leg, (disc_1_prr >= 0.0) & (abs(-v_2_prr_t_2) > _TOLERANCE * size_prr))
+        # (Z_a) rotational part of Z
+        prr_Z_a_t = prr_U_in_base_y*prr_q_in_base_x - prr_U_in_base_x*prr_q_in_base_y
+        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t_2) > _TOLERANCE * prr_size))
         sums = m.added(sums, leg, (
-        U_prr_in_base_x, U_prr_in_base_y, Z_a_t_3,
+        prr_U_in_base_x, prr_U_in_base_y, prr_Z_a_t,
         ))
     total_prr_x, total_prr_y, total_prr_z = sums
-    # (M5) translational part of Z
+    # (Z_t) translational part of Z
     Z_t_x = Z_p_x + total_prr_x + total_rpr_x + total_rrr_x
     Z_t_y = Z_p_y + total_prr_y + total_rpr_y + total_rrr_y
-    # (M7) rotational part of Z
+    # (Z_a) rotational part of Z
     Z_a_z = total_prr_z + total_rpr_z + total_rrr_z - Z_q_t
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
@@ -2622,151 +2686,156 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        branch_1_rpr, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-            rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+            rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_platform_point_x,
+            rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        S_rpr_x = q_rpr_in_base_x + t_x - rpr_base_point_x
-        S_rpr_y = q_rpr_in_base_y + t_y - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1_rpr = branch_1_rpr*sqrt(rho2_1_rpr)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1_rpr = 1.0/root_1_rpr
-        axis_x_x = S_rpr_x*inv_root_1_rpr
-        axis_x_y = S_rpr_y*inv_root_1_rpr
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_2_rpr_z = axis_x_y*q_rpr_in_base_x - axis_x_x*q_rpr_in_base_y
+        # (rpr-S) from the base point to the connection point
+        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
+        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
+        # (rpr-H_a_2) moment of the column's unit force about the platform origin
+        rpr_H_a_2_z = rpr_axis_x_y*rpr_q_in_base_x - rpr_axis_x_x*rpr_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr)
+        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
             > _TOLERANCE * 0.62))
         )
-        out_H[_H_rpr[0][leg]] = axis_x_x
-        out_H[_H_rpr[1][leg]] = axis_x_y
-        out_H[_H_rpr[2][leg]] = H_a_2_rpr_z
+        out_H[_H_rpr[0][leg]] = rpr_axis_x_x
+        out_H[_H_rpr[1][leg]] = rpr_axis_x_y
+        out_H[_H_rpr[2][leg]] = rpr_H_a_2_z
     for leg, k in legs[1]:
         (
-        Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
-            rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-            rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+            rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x
-        S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*rrr_platform_joint_offset_x*s_2_rrr
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        w_1_rrr_t = (
-        inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        rrr_w_1_t = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy)
         )
-        w_1_rrr_t_2 = (
-        inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
+        rrr_w_1_t_2 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy)
         )
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t
+        # (rrr-H_a_1) moment of the column's unit force about the platform origin
+        rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
-        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
-        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
-        out_H[_H_rrr[2][leg]] = H_a_1_rrr_z
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
+        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
+        out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
     for leg, k in legs[2]:
         (
-        branch_1_prr, inv_uu_2_prr_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_platform_joint_offset_x,
-            prr_platform_point_x, prr_platform_point_y, size_prr, uu_2_prr_t,
+        inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
+            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
         ) = k
-        # (prr-K1) from the base point to the connection point
-        q_prr_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        q_prr_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        S_prr_x = q_prr_in_base_x + t_x - prr_base_point_x
-        S_prr_y = q_prr_in_base_y + t_y - prr_base_point_y
-        # (prr-K2) component along axis 1
-        px_1_prr = S_prr_x*prr_base_frame_xx + S_prr_y*prr_base_frame_yx
-        # (prr-K3) discriminant of the distance equation
-        disc_1_prr_t = S_prr_x*S_prr_x + S_prr_y*S_prr_y
-        disc_1_prr = px_1_prr*px_1_prr + uu_2_prr_t - disc_1_prr_t
-        # (prr-K7) cosine of the angle of joint 2 from its reference direction
-        c_2_prr = branch_1_prr*sqrt(disc_1_prr)*inv_uu_2_prr_t*prr_platform_joint_offset_x
-        # (prr-K8) sine of the angle of joint 2 from its reference direction
-        s_2_prr = (
-        inv_uu_2_prr_t*prr_platform_joint_offset_x*(S_prr_x*prr_base_frame_xy +
-            S_prr_y*prr_base_frame_yy)
+        # (prr-S) from the base point to the connection point
+        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
+        # (prr-px_1) component along axis 1
+        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        # (prr-disc_1) discriminant of the distance equation
+        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        # (prr-c_2) cosine of the angle of joint 2 from its reference direction
+        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        # (prr-s_2) sine of the angle of joint 2 from its reference direction
+        prr_s_2 = (
+        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+            prr_S_y*prr_base_frame_yy)
         )
-        # (prr-V3) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -c_2_prr*prr_base_frame_xy - prr_base_frame_xx*s_2_prr
-        axis_y_prr_axes2_in_base_y = -c_2_prr*prr_base_frame_yy - prr_base_frame_yx*s_2_prr
-        # (prr-V2) velocity of the connection point per rate of joint 2
-        v_2_prr_t = c_2_prr*prr_platform_joint_offset_x
-        # (prr-V3) reciprocal vector 1
-        w_1_prr_t = prr_platform_joint_offset_x*s_2_prr/v_2_prr_t
-        _r0_x = -c_2_prr - s_2_prr*w_1_prr_t
-        _r0_y = c_2_prr*w_1_prr_t - s_2_prr
-        w_1_prr_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y + _r0_y*axis_y_prr_axes2_in_base_x
-        w_1_prr_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y - _r0_x*axis_y_prr_axes2_in_base_x
-        # (M10) moment of the column's unit force about the platform origin
-        H_a_1_prr_z = q_prr_in_base_x*w_1_prr_in_base_y - q_prr_in_base_y*w_1_prr_in_base_x
-        ok = ok & m.every(leg, (disc_1_prr >= 0.0) & (abs(-v_2_prr_t) > _TOLERANCE * size_prr))
-        out_H[_H_prr[0][leg]] = w_1_prr_in_base_x
-        out_H[_H_prr[1][leg]] = w_1_prr_in_base_y
-        out_H[_H_prr[2][leg]] = H_a_1_prr_z
+        # (prr-w_1) reciprocal vector 1
+        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
+        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
+        # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_t = prr_c_2*prr_platform_joint_offset_x
+        # (prr-w_1) reciprocal vector 1
+        prr_w_1_t = prr_platform_joint_offset_x*prr_s_2/prr_v_2_t
+        prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t
+        prr__r0_y = prr_c_2*prr_w_1_t - prr_s_2
+        prr_w_1_in_base_x = (
+        axis_y_prr_axes2_in_base_x*prr__r0_y + axis_y_prr_axes2_in_base_y*prr__r0_x
+        )
+        prr_w_1_in_base_y = (
+        axis_y_prr_axes2_in_base_y*prr__r0_y - axis_y_prr_axes2_in_base_x*prr__r0_x
+        )
+        # (prr-H_a_1) moment of the column's unit force about the platform origin
+        prr_H_a_1_z = prr_q_in_base_x*prr_w_1_in_base_y - prr_q_in_base_y*prr_w_1_in_base_x
+        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t) > _TOLERANCE * prr_size))
+        out_H[_H_prr[0][leg]] = prr_w_1_in_base_x
+        out_H[_H_prr[1][leg]] = prr_w_1_in_base_y
+        out_H[_H_prr[2][leg]] = prr_H_a_1_z
     return ok, (out_H,)
 
 
-# required: 254 mul, 173 add, 4 div, 3 sqrt, 0 trig
+# required: 250 mul, 171 add, 4 div, 3 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("required")
-    J_star_zz, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
+    J_star_t_6, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -2792,347 +2861,353 @@ def _run_required(m, X, V, A):
     ok = True
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
-    # (P1) centripetal tensor of the platform
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_z*omega_z
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
-    # (E2) inertia force of the platform less its weight
+    # (f_p) inertia force of the platform less its weight
     f_p_x = a_t_x*m_star - W_p_t*h_star_in_base_x - alpha_z*h_star_in_base_y
     f_p_y = a_t_y*m_star + alpha_z*h_star_in_base_x - W_p_t*h_star_in_base_y
-    # (E3) inertia moment of the platform less that of its weight
-    mu_p_z = (
-    J_star_zz*alpha_z + h_star_x*(R_xx*a_t_y - R_yx*a_t_x) - h_star_y*(R_xx*a_t_x + R_yx*a_t_y)
-    )
+    # (mu_p) inertia moment of the platform less that of its weight
+    mu_p_z = a_t_y*h_star_in_base_x - J_star_t_6*alpha_z - a_t_x*h_star_in_base_y
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
-        J_group_1_rpr_zz, branch_1_rpr, g_r0_x_3, g_r0_y_3, h_1_rpr_x, h_1_rpr_y, h_2_rpr_x,
-            h_2_rpr_y, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-            rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_g_r0_x,
+            rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_platform_point_x,
+            rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        S_rpr_x = q_rpr_in_base_x + t_x - rpr_base_point_x
-        S_rpr_y = q_rpr_in_base_y + t_y - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1_rpr = branch_1_rpr*sqrt(rho2_1_rpr)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1_rpr = 1.0/root_1_rpr
-        axis_x_x = S_rpr_x*inv_root_1_rpr
-        axis_x_y = S_rpr_y*inv_root_1_rpr
-        # (rpr-V1) velocity of the connection point
-        S_dot_rpr_t = omega_z*q_rpr_in_base_y
-        S_dot_rpr_t_2 = omega_z*q_rpr_in_base_x
-        S_dot_rpr_x = t_dot_x - S_dot_rpr_t
-        S_dot_rpr_y = S_dot_rpr_t_2 + t_dot_y
-        S_dot_rpr_tip_x = S_dot_rpr_x*axis_x_x + S_dot_rpr_y*axis_x_y
-        # (rpr-V6) rate of joint 1
-        qd_1_rpr = inv_root_1_rpr*(S_dot_rpr_y*axis_x_x - S_dot_rpr_x*axis_x_y)
-        # (rpr-V9) centripetal tensor of link 1
-        W_1_rpr_t = qd_1_rpr*qd_1_rpr
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_2_rpr_z = axis_x_y*q_rpr_in_base_x - axis_x_x*q_rpr_in_base_y
-        # (rpr-K7) cosine of the angle of joint 1 from its reference direction
-        c_1_rpr = inv_root_1_rpr*px_1_rpr
-        # (rpr-K8) sine of the angle of joint 1 from its reference direction
-        s_1_rpr = inv_root_1_rpr*py_1_rpr
-        # (rpr-A2) acceleration of the connection point without its centripetal part
-        a_p_rpr_x = t_ddot_x - alpha_z*q_rpr_in_base_y
-        a_p_rpr_y = t_ddot_y + alpha_z*q_rpr_in_base_x
-        # (rpr-A3) acceleration of the connection point
-        S_ddot_rpr_x = a_p_rpr_x - S_dot_rpr_t_2*omega_z
-        S_ddot_rpr_y = a_p_rpr_y - S_dot_rpr_t*omega_z
-        S_ddot_rpr_tip_y = S_ddot_rpr_y*axis_x_x - S_ddot_rpr_x*axis_x_y
-        # (rpr-A5) acceleration of the connection point left to the joint accelerations
-        rel_rpr_y = S_ddot_rpr_tip_y - 2.0*S_dot_rpr_tip_x*qd_1_rpr
-        # (rpr-A7) acceleration of joint 1
-        qdd_1_rpr = inv_root_1_rpr*rel_rpr_y
-        # (rpr-N3) acceleration of the reference point of link 2, less gravity
-        g_r1_x = c_1_rpr*g_r0_x_3 + g_r0_y_3*s_1_rpr
-        g_r1_y = c_1_rpr*g_r0_y_3 - g_r0_x_3*s_1_rpr
-        acc_2_rpr_x = S_ddot_rpr_x*axis_x_x + S_ddot_rpr_y*axis_x_y - g_r1_x
-        acc_2_rpr_y = S_ddot_rpr_tip_y - g_r1_y
-        # (rpr-N12) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rpr_z = (
-        J_group_1_rpr_zz*qdd_1_rpr + acc_2_rpr_y*h_2_rpr_x + g_r1_x*h_1_rpr_y -
-            acc_2_rpr_x*h_2_rpr_y - g_r1_y*h_1_rpr_x
+        # (rpr-S) from the base point to the connection point
+        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
+        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
+        # (rpr-S_dot) velocity of the connection point
+        rpr_S_dot_t = omega_z*rpr_q_in_base_y
+        rpr_S_dot_t_2 = omega_z*rpr_q_in_base_x
+        rpr_S_dot_x = t_dot_x - rpr_S_dot_t
+        rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y
+        rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y
+        # (rpr-qd_1) rate of joint 1
+        rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x - rpr_S_dot_x*rpr_axis_x_y)
+        # (rpr-W_1) centripetal tensor of link 1
+        rpr_W_1_t = rpr_qd_1*rpr_qd_1
+        # (rpr-H_a_2) moment of the column's unit force about the platform origin
+        rpr_H_a_2_z = rpr_axis_x_y*rpr_q_in_base_x - rpr_axis_x_x*rpr_q_in_base_y
+        # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
+        rpr_c_1 = inv_rpr_root_1*rpr_px_1
+        # (rpr-s_1) sine of the angle of joint 1 from its reference direction
+        rpr_s_1 = inv_rpr_root_1*rpr_py_1
+        # (rpr-a_p) acceleration of the connection point without its centripetal part
+        rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_in_base_y
+        rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_in_base_x
+        # (rpr-S_ddot) acceleration of the connection point
+        rpr_S_ddot_x = rpr_a_p_x - omega_z*rpr_S_dot_t_2
+        rpr_S_ddot_y = rpr_a_p_y - omega_z*rpr_S_dot_t
+        rpr_S_ddot_tip_y = rpr_S_ddot_y*rpr_axis_x_x - rpr_S_ddot_x*rpr_axis_x_y
+        # (rpr-rel) acceleration of the connection point left to the joint accelerations
+        rpr_rel_y = rpr_S_ddot_tip_y - 2.0*rpr_S_dot_tip_x*rpr_qd_1
+        # (rpr-qdd_1) acceleration of joint 1
+        rpr_qdd_1 = inv_rpr_root_1*rpr_rel_y
+        # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
+        rpr_g_r1_x = rpr_c_1*rpr_g_r0_x + rpr_g_r0_y*rpr_s_1
+        rpr_g_r1_y = rpr_c_1*rpr_g_r0_y - rpr_g_r0_x*rpr_s_1
+        rpr_acc_2_x = rpr_S_ddot_x*rpr_axis_x_x + rpr_S_ddot_y*rpr_axis_x_y - rpr_g_r1_x
+        rpr_acc_2_y = rpr_S_ddot_tip_y - rpr_g_r1_y
+        # (rpr-phi_2) inertia force of link 2 from its turning about its reference point
+        rpr_phi_2_x = -rpr_W_1_t*rpr_h_2_x - rpr_h_2_y*rpr_qdd_1
+        # (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rpr_mu_1_z = (
+        rpr_J_group_1_zz*rpr_qdd_1 + rpr_acc_2_y*rpr_h_2_x + rpr_g_r1_x*rpr_h_1_y -
+            rpr_acc_2_x*rpr_h_2_y - rpr_g_r1_y*rpr_h_1_x
         )
-        # (rpr-N5) inertia force of link 2 from its turning about its reference point
-        phi_2_rpr_x = -W_1_rpr_t*h_2_rpr_x - h_2_rpr_y*qdd_1_rpr
-        # (rpr-N21) leg force on the platform without actuation and without the mass at the connection point
-        c_rpr_y = W_1_rpr_t*h_2_rpr_y - h_2_rpr_x*qdd_1_rpr - inv_root_1_rpr*mu_1_rpr_z
-        c_rpr_in_base_x = -axis_x_x*phi_2_rpr_x - axis_x_y*c_rpr_y
-        c_rpr_in_base_y = axis_x_x*c_rpr_y - axis_x_y*phi_2_rpr_x
-        # (E5) moment that actuators and external wrench must give
-        R_a_t = c_rpr_in_base_y*q_rpr_in_base_x - c_rpr_in_base_x*q_rpr_in_base_y
+        # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
+        rpr_c_y = rpr_W_1_t*rpr_h_2_y - inv_rpr_root_1*rpr_mu_1_z - rpr_h_2_x*rpr_qdd_1
+        rpr_c_in_base_x = -rpr_axis_x_x*rpr_phi_2_x - rpr_axis_x_y*rpr_c_y
+        rpr_c_in_base_y = rpr_axis_x_x*rpr_c_y - rpr_axis_x_y*rpr_phi_2_x
+        # (R_a) moment that actuators and external wrench must give
+        rpr_R_a_t = rpr_c_in_base_y*rpr_q_in_base_x - rpr_c_in_base_x*rpr_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr)
+        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
             > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
-        c_rpr_in_base_x, c_rpr_in_base_y, R_a_t,
+        rpr_c_in_base_x, rpr_c_in_base_y, rpr_R_a_t,
         ))
-        out_H[_H_rpr[0][leg]] = axis_x_x
-        out_H[_H_rpr[1][leg]] = axis_x_y
-        out_H[_H_rpr[2][leg]] = H_a_2_rpr_z
+        out_H[_H_rpr[0][leg]] = rpr_axis_x_x
+        out_H[_H_rpr[1][leg]] = rpr_axis_x_y
+        out_H[_H_rpr[2][leg]] = rpr_H_a_2_z
     total_rpr_x, total_rpr_y, total_rpr_z = sums
     sums = [0.0] * 3
     for leg, k in legs[1]:
         (
-        J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
-            h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
-            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+            rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+            rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x
-        S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        # (rrr-V1) velocity of the connection point
-        S_dot_rrr_t = omega_z*q_rrr_in_base_y
-        S_dot_rrr_t_2 = omega_z*q_rrr_in_base_x
-        S_dot_rrr_x = t_dot_x - S_dot_rrr_t
-        S_dot_rrr_y = S_dot_rrr_t_2 + t_dot_y
-        # (rrr-V7) rate of joint 1
-        qd_1_rrr = (
-        inv_r_1_rrr_r0_y*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_x)
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = omega_z*rrr_q_in_base_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
+        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_1 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
         )
-        # (rrr-V11) angular velocity of link 2
-        omega_2_rrr_z = (
-        inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_z = (
+        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
         )
-        # (rrr-V10) centripetal tensor of link 1
-        W_1_rrr_t = qd_1_rrr*qd_1_rrr
-        # (rrr-V12) centripetal tensor of link 2
-        W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
-        # (rrr-A5) acceleration of the connection point at zero joint accelerations
-        bias_rrr_x = (
-        -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
+        # (rrr-W_1) centripetal tensor of link 1
+        rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_x = (
+        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        # (rrr-V5) reciprocal vector 1
-        w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
-        w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t
-        # (rrr-A2) acceleration of the connection point without its centripetal part
-        a_p_rrr_x = t_ddot_x - alpha_z*q_rrr_in_base_y
-        a_p_rrr_y = t_ddot_y + alpha_z*q_rrr_in_base_x
-        # (rrr-A3) acceleration of the connection point
-        S_ddot_rrr_x = a_p_rrr_x - S_dot_rrr_t_2*omega_z
-        S_ddot_rrr_y = a_p_rrr_y - S_dot_rrr_t*omega_z
-        S_ddot_rrr_tip_x = (
-        S_ddot_rrr_x*axis_y_rrr_axes2_in_base_y - S_ddot_rrr_y*axis_y_rrr_axes2_in_base_x
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y
+        rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y
+        # (rrr-H_a_1) moment of the column's unit force about the platform origin
+        rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t
+        # (rrr-a_p) acceleration of the connection point without its centripetal part
+        rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y
+        rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x
+        # (rrr-S_ddot) acceleration of the connection point
+        rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
+        rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
+        rrr_S_ddot_tip_x = (
+        axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x - axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y
         )
-        S_ddot_rrr_tip_y = (
-        S_ddot_rrr_x*axis_y_rrr_axes2_in_base_x + S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y
+        rrr_S_ddot_tip_y = (
+        axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x + axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y
         )
-        # (rrr-A6) acceleration of the connection point left to the joint accelerations
-        rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x
-        rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
-        # (rrr-A8) acceleration of joint 1
-        qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
-        # (rrr-N3) acceleration of the reference point of link 2, less gravity
-        acc_2_rrr_x = (
-        S_ddot_rrr_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+        # (rrr-rel) acceleration of the connection point left to the joint accelerations
+        rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x
+        rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        # (rrr-qdd_1) acceleration of joint 1
+        rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_acc_2_x = (
+        rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
             axis_y_rrr_axes2_in_base_y*gravity_x
         )
-        acc_2_rrr_y = (
-        S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+        rrr_acc_2_y = (
+        rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
             axis_y_rrr_axes2_in_base_y*gravity_y
         )
-        # (rrr-N23) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rrr_z = (
-        h_1_rrr_y*(c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr) - J_1_rrr_zz*qdd_1_rrr -
-            h_1_rrr_x*(c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr)
+        # (rrr-alpha_2) angular acceleration of link 2
+        rrr_alpha_2_z = (
+        inv_rrr_platform_joint_offset_x*(rrr_rel_y + rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1
         )
-        # (rrr-A16) angular acceleration of link 2
-        alpha_2_rrr_z = (
-        inv_rrr_platform_joint_offset_x*(rel_rrr_y + qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr
+        # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x - rrr_acc_2_x*rrr_h_2_y
+        # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_mu_1_z = (
+        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1 -
+            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
         )
-        # (rrr-N16) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x - acc_2_rrr_x*h_2_rrr_y
-        # (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z
-        # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z
-        # (rrr-N33) leg force on the platform without actuation and without the mass at the connection point
-        c_rrr_x = (
-        W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x -
-            N_1_rrr_z)
+        # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z
+        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z
+        # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_x = (
+        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x -
+            rrr_N_1_z)
         )
-        c_rrr_y = W_2_rrr_t*h_2_rrr_y - G_rrr_t - alpha_2_rrr_z*h_2_rrr_x
-        c_rrr_in_base_x = axis_y_rrr_axes2_in_base_x*c_rrr_y + axis_y_rrr_axes2_in_base_y*c_rrr_x
-        c_rrr_in_base_y = axis_y_rrr_axes2_in_base_y*c_rrr_y - axis_y_rrr_axes2_in_base_x*c_rrr_x
-        # (E5) moment that actuators and external wrench must give
-        R_a_t_2 = c_rrr_in_base_y*q_rrr_in_base_x - c_rrr_in_base_x*q_rrr_in_base_y
+        rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x
+        rrr_c_in_base_x = axis_y_rrr_axes2_in_base_x*rrr_c_y + axis_y_rrr_axes2_in_base_y*rrr_c_x
+        rrr_c_in_base_y = axis_y_rrr_axes2_in_base_y*rrr_c_y - axis_y_rrr_axes2_in_base_x*rrr_c_x
+        # (R_a) moment that actuators and external wrench must give
+        rrr_R_a_t = rrr_c_in_base_y*rrr_q_in_base_x - rrr_c_in_base_x*rrr_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        c_rrr_in_base_x, c_rrr_in_base_y, R_a_t_2,
+        rrr_c_in_base_x, rrr_c_in_base_y, rrr_R_a_t,
         ))
-        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
-        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
-        out_H[_H_rrr[2][leg]] = H_a_1_rrr_z
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
+        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
+        out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
     total_rrr_x, total_rrr_y, total_rrr_z = sums
     sums = [0.0] * 3
     for leg, k in legs[2]:
         (
-        J_2_prr_zz, branch_1_prr, g_r0_x, g_r0_y, h_2_prr_x, h_2_prr_y, inv_uu_2_prr_t,
-            prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx, prr_base_frame_yy,
-            prr_base_point_x, prr_base_point_y, prr_link1_mass, prr_platform_joint_offset_x,
-            prr_platform_point_x, prr_platform_point_y, size_prr, uu_2_prr_t,
+        inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
+            prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
+            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
         ) = k
-        # (prr-K1) from the base point to the connection point
-        q_prr_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        q_prr_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        S_prr_x = q_prr_in_base_x + t_x - prr_base_point_x
-        S_prr_y = q_prr_in_base_y + t_y - prr_base_point_y
-        # (prr-K2) component along axis 1
-        px_1_prr = S_prr_x*prr_base_frame_xx + S_prr_y*prr_base_frame_yx
-        # (prr-K3) discriminant of the distance equation
-        disc_1_prr_t = S_prr_x*S_prr_x + S_prr_y*S_prr_y
-        disc_1_prr = px_1_prr*px_1_prr + uu_2_prr_t - disc_1_prr_t
-        # (prr-K7) cosine of the angle of joint 2 from its reference direction
-        c_2_prr = branch_1_prr*sqrt(disc_1_prr)*inv_uu_2_prr_t*prr_platform_joint_offset_x
-        # (prr-K8) sine of the angle of joint 2 from its reference direction
-        s_2_prr = (
-        inv_uu_2_prr_t*prr_platform_joint_offset_x*(S_prr_x*prr_base_frame_xy +
-            S_prr_y*prr_base_frame_yy)
+        # (prr-S) from the base point to the connection point
+        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
+        # (prr-px_1) component along axis 1
+        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        # (prr-disc_1) discriminant of the distance equation
+        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        # (prr-c_2) cosine of the angle of joint 2 from its reference direction
+        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        # (prr-s_2) sine of the angle of joint 2 from its reference direction
+        prr_s_2 = (
+        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+            prr_S_y*prr_base_frame_yy)
         )
-        # (prr-V3) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -c_2_prr*prr_base_frame_xy - prr_base_frame_xx*s_2_prr
-        axis_y_prr_axes2_in_base_y = -c_2_prr*prr_base_frame_yy - prr_base_frame_yx*s_2_prr
-        # (prr-V2) velocity of the connection point per rate of joint 2
-        v_2_prr_t = prr_platform_joint_offset_x*s_2_prr
-        v_2_prr_t_2 = c_2_prr*prr_platform_joint_offset_x
-        # (prr-V3) reciprocal vector 1
-        inv_v_2_prr_t_2 = 1.0/v_2_prr_t_2
-        w_1_prr_t = inv_v_2_prr_t_2*v_2_prr_t
-        _r0_x = -c_2_prr - s_2_prr*w_1_prr_t
-        _r0_y = c_2_prr*w_1_prr_t - s_2_prr
-        # (prr-V1) velocity of the connection point
-        S_dot_prr_t = omega_z*q_prr_in_base_y
-        S_dot_prr_t_2 = omega_z*q_prr_in_base_x
-        S_dot_prr_x = t_dot_x - S_dot_prr_t
-        S_dot_prr_y = S_dot_prr_t_2 + t_dot_y
-        # (prr-V6) rate of joint 2
-        qd_2_prr = inv_v_2_prr_t_2*(S_dot_prr_x*prr_base_frame_xy + S_dot_prr_y*prr_base_frame_yy)
-        # (prr-V8) centripetal tensor of link 2
-        W_2_prr_t = qd_2_prr*qd_2_prr
-        # (prr-V3) reciprocal vector 1
-        w_1_prr_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y + _r0_y*axis_y_prr_axes2_in_base_x
-        w_1_prr_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y - _r0_x*axis_y_prr_axes2_in_base_x
-        # (M10) moment of the column's unit force about the platform origin
-        H_a_1_prr_z = q_prr_in_base_x*w_1_prr_in_base_y - q_prr_in_base_y*w_1_prr_in_base_x
-        # (prr-A2) acceleration of the connection point without its centripetal part
-        a_p_prr_x = t_ddot_x - alpha_z*q_prr_in_base_y
-        a_p_prr_y = t_ddot_y + alpha_z*q_prr_in_base_x
-        # (prr-A3) acceleration of the connection point
-        S_ddot_prr_x = a_p_prr_x - S_dot_prr_t_2*omega_z
-        S_ddot_prr_y = a_p_prr_y - S_dot_prr_t*omega_z
-        S_ddot_prr_tip_x = (
-        S_ddot_prr_x*axis_y_prr_axes2_in_base_y - S_ddot_prr_y*axis_y_prr_axes2_in_base_x
+        # (prr-w_1) reciprocal vector 1
+        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
+        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
+        # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_t = prr_platform_joint_offset_x*prr_s_2
+        prr_v_2_t_2 = prr_c_2*prr_platform_joint_offset_x
+        # (prr-w_2) reciprocal vector 2
+        inv_prr_v_2_t_2 = 1.0/prr_v_2_t_2
+        # (prr-w_1) reciprocal vector 1
+        prr_w_1_t = inv_prr_v_2_t_2*prr_v_2_t
+        prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t
+        prr__r0_y = prr_c_2*prr_w_1_t - prr_s_2
+        # (prr-S_dot) velocity of the connection point
+        prr_S_dot_t = omega_z*prr_q_in_base_y
+        prr_S_dot_t_2 = omega_z*prr_q_in_base_x
+        prr_S_dot_x = t_dot_x - prr_S_dot_t
+        prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
+        # (prr-qd_2) rate of joint 2
+        prr_qd_2 = inv_prr_v_2_t_2*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
+        # (prr-W_2) centripetal tensor of link 2
+        prr_W_2_t = prr_qd_2*prr_qd_2
+        # (prr-w_1) reciprocal vector 1
+        prr_w_1_in_base_x = (
+        axis_y_prr_axes2_in_base_x*prr__r0_y + axis_y_prr_axes2_in_base_y*prr__r0_x
         )
-        S_ddot_prr_tip_y = (
-        S_ddot_prr_x*axis_y_prr_axes2_in_base_x + S_ddot_prr_y*axis_y_prr_axes2_in_base_y
+        prr_w_1_in_base_y = (
+        axis_y_prr_axes2_in_base_y*prr__r0_y - axis_y_prr_axes2_in_base_x*prr__r0_x
         )
-        # (prr-A5) acceleration of the connection point left to the joint accelerations
-        rel_prr_x = S_ddot_prr_tip_x + prr_platform_joint_offset_x*qd_2_prr*qd_2_prr
-        # (prr-A7) acceleration of joint 1
-        qdd_2_prr = inv_v_2_prr_t_2*(rel_prr_x*s_2_prr - S_ddot_prr_tip_y*c_2_prr)
-        # (prr-N5) acceleration of the reference point of link 2, less gravity
-        acc_2_prr_x = S_ddot_prr_tip_x + c_2_prr*g_r0_x - g_r0_y*s_2_prr
-        acc_2_prr_y = S_ddot_prr_tip_y + c_2_prr*g_r0_y + g_r0_x*s_2_prr
-        # (prr-N1) acceleration of the reference point of link 1, less gravity
-        acc_1_prr_x = -g_r0_x - S_ddot_prr_tip_y*s_2_prr - c_2_prr*rel_prr_x - qdd_2_prr*v_2_prr_t
-        # (prr-N3) inertia force of link 1 less its weight
-        f_1_prr_x = acc_1_prr_x*prr_link1_mass
-        # (prr-N16) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_prr_z = acc_2_prr_y*h_2_prr_x - J_2_prr_zz*qdd_2_prr - acc_2_prr_x*h_2_prr_y
-        # (prr-N24) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_prr_t = inv_v_2_prr_t_2*(mu_2_prr_z + f_1_prr_x*v_2_prr_t)
-        # (prr-N27) leg force on the platform without actuation and without the mass at the connection point
-        c_prr_x = G_prr_t*s_2_prr + W_2_prr_t*h_2_prr_x + c_2_prr*f_1_prr_x - h_2_prr_y*qdd_2_prr
-        c_prr_y = W_2_prr_t*h_2_prr_y + f_1_prr_x*s_2_prr + h_2_prr_x*qdd_2_prr - G_prr_t*c_2_prr
-        c_prr_in_base_x = axis_y_prr_axes2_in_base_x*c_prr_y + axis_y_prr_axes2_in_base_y*c_prr_x
-        c_prr_in_base_y = axis_y_prr_axes2_in_base_y*c_prr_y - axis_y_prr_axes2_in_base_x*c_prr_x
-        # (E5) moment that actuators and external wrench must give
-        R_a_t_3 = c_prr_in_base_y*q_prr_in_base_x - c_prr_in_base_x*q_prr_in_base_y
-        ok = ok & m.every(leg, (disc_1_prr >= 0.0) & (abs(-v_2_prr_t_2) > _TOLERANCE * size_prr))
+        # (prr-H_a_1) moment of the column's unit force about the platform origin
+        prr_H_a_1_z = prr_q_in_base_x*prr_w_1_in_base_y - prr_q_in_base_y*prr_w_1_in_base_x
+        # (prr-a_p) acceleration of the connection point without its centripetal part
+        prr_a_p_x = t_ddot_x - alpha_z*prr_q_in_base_y
+        prr_a_p_y = t_ddot_y + alpha_z*prr_q_in_base_x
+        # (prr-S_ddot) acceleration of the connection point
+        prr_S_ddot_x = prr_a_p_x - omega_z*prr_S_dot_t_2
+        prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t
+        prr_S_ddot_tip_x = (
+        axis_y_prr_axes2_in_base_y*prr_S_ddot_x - axis_y_prr_axes2_in_base_x*prr_S_ddot_y
+        )
+        prr_S_ddot_tip_y = (
+        axis_y_prr_axes2_in_base_x*prr_S_ddot_x + axis_y_prr_axes2_in_base_y*prr_S_ddot_y
+        )
+        # (prr-rel) acceleration of the connection point left to the joint accelerations
+        prr_rel_x = prr_S_ddot_tip_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2
+        # (prr-qdd_1) acceleration of joint 1
+        prr_qdd_2 = inv_prr_v_2_t_2*(prr_rel_x*prr_s_2 - prr_S_ddot_tip_y*prr_c_2)
+        # (prr-acc_2) acceleration of the reference point of link 2, less gravity
+        prr_acc_2_x = prr_S_ddot_tip_x + prr_c_2*prr_g_r0_x - prr_g_r0_y*prr_s_2
+        prr_acc_2_y = prr_S_ddot_tip_y + prr_c_2*prr_g_r0_y + prr_g_r0_x*prr_s_2
+        # (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        prr_mu_2_z = prr_acc_2_y*prr_h_2_x - prr_J_2_zz*prr_qdd_2 - prr_acc_2_x*prr_h_2_y
+        # (prr-acc_1) acceleration of the reference point of link 1, less gravity
+        prr_acc_1_x = (
+        -prr_g_r0_x - prr_S_ddot_tip_y*prr_s_2 - prr_c_2*prr_rel_x - prr_qdd_2*prr_v_2_t
+        )
+        # (prr-f_1) inertia force of link 1 less its weight
+        prr_f_1_x = prr_acc_1_x*prr_link1_mass
+        # (prr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        prr_G_t = inv_prr_v_2_t_2*(prr_mu_2_z + prr_f_1_x*prr_v_2_t)
+        # (prr-c) leg force on the platform without actuation and without the mass at the connection point
+        prr_c_x = prr_G_t*prr_s_2 + prr_W_2_t*prr_h_2_x + prr_c_2*prr_f_1_x - prr_h_2_y*prr_qdd_2
+        prr_c_y = prr_W_2_t*prr_h_2_y + prr_f_1_x*prr_s_2 + prr_h_2_x*prr_qdd_2 - prr_G_t*prr_c_2
+        prr_c_in_base_x = axis_y_prr_axes2_in_base_x*prr_c_y + axis_y_prr_axes2_in_base_y*prr_c_x
+        prr_c_in_base_y = axis_y_prr_axes2_in_base_y*prr_c_y - axis_y_prr_axes2_in_base_x*prr_c_x
+        # (R_a) moment that actuators and external wrench must give
+        prr_R_a_t = prr_c_in_base_y*prr_q_in_base_x - prr_c_in_base_x*prr_q_in_base_y
+        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t_2) > _TOLERANCE * prr_size))
         sums = m.added(sums, leg, (
-        c_prr_in_base_x, c_prr_in_base_y, R_a_t_3,
+        prr_c_in_base_x, prr_c_in_base_y, prr_R_a_t,
         ))
-        out_H[_H_prr[0][leg]] = w_1_prr_in_base_x
-        out_H[_H_prr[1][leg]] = w_1_prr_in_base_y
-        out_H[_H_prr[2][leg]] = H_a_1_prr_z
+        out_H[_H_prr[0][leg]] = prr_w_1_in_base_x
+        out_H[_H_prr[1][leg]] = prr_w_1_in_base_y
+        out_H[_H_prr[2][leg]] = prr_H_a_1_z
     total_prr_x, total_prr_y, total_prr_z = sums
-    # (E4) force that actuators and external wrench must give
+    # (R_t) force that actuators and external wrench must give
     R_t_x = f_p_x - total_prr_x - total_rpr_x - total_rrr_x
     R_t_y = f_p_y - total_prr_y - total_rpr_y - total_rrr_y
-    # (E5) moment that actuators and external wrench must give
+    # (R_a) moment that actuators and external wrench must give
     R_a_z = mu_p_z - total_prr_z - total_rpr_z - total_rrr_z
     out_required[0] = R_t_x
     out_required[1] = R_t_y
@@ -3159,102 +3234,103 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        branch_1_rpr, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-            rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+            rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_platform_point_x,
+            rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        S_rpr_x = t_x + R_xx*rpr_platform_point_x - rpr_base_point_x - R_yx*rpr_platform_point_y
-        S_rpr_y = t_y + R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1_rpr = branch_1_rpr*sqrt(rho2_1_rpr)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1_rpr = 1.0/root_1_rpr
-        # (rpr-K9) displacement of joint 1
-        q_1_rpr = atan2(inv_root_1_rpr*py_1_rpr, inv_root_1_rpr*px_1_rpr)
+        # (rpr-S) from the base point to the connection point
+        rpr_S_x = t_x + R_xx*rpr_platform_point_x - rpr_base_point_x - R_yx*rpr_platform_point_y
+        rpr_S_y = t_y + R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        # (rpr-q_1) displacement of joint 1
+        rpr_q_1 = atan2(inv_rpr_root_1*rpr_py_1, inv_rpr_root_1*rpr_px_1)
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr)
+        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
             > _TOLERANCE * 0.62))
         )
-        out_q[_q_rpr[0][leg]] = q_1_rpr
-        out_q[_q_rpr[1][leg]] = root_1_rpr
+        out_q[_q_rpr[0][leg]] = rpr_q_1
+        out_q[_q_rpr[1][leg]] = rpr_root_1
     for leg, k in legs[1]:
         (
-        Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
-            rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-            rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+            rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        S_rrr_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
-        S_rrr_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        # (rrr-K13) displacement of joint 1
-        q_1_rrr = (
-        atan2(inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr),
-            inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr))
+        # (rrr-S) from the base point to the connection point
+        rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
+        rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        # (rrr-q_1) displacement of joint 1
+        rrr_q_1 = (
+        atan2(inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1),
+            inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1))
         )
-        # (rrr-K20) displacement of joint 2
-        q_2_rrr = (
-        atan2(-inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x,
-            inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x)
+        # (rrr-q_2) displacement of joint 2
+        rrr_q_2 = (
+        atan2(-inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
+            inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x)
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
             >= 0.0))
         )
-        out_q[_q_rrr[0][leg]] = q_1_rrr
-        out_q[_q_rrr[1][leg]] = q_2_rrr
+        out_q[_q_rrr[0][leg]] = rrr_q_1
+        out_q[_q_rrr[1][leg]] = rrr_q_2
     for leg, k in legs[2]:
         (
-        branch_1_prr, inv_uu_2_prr_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_platform_joint_offset_x,
-            prr_platform_point_x, prr_platform_point_y, uu_2_prr_t,
+        inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
+            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
         ) = k
-        # (prr-K1) from the base point to the connection point
-        S_prr_x = t_x + R_xx*prr_platform_point_x - prr_base_point_x - R_yx*prr_platform_point_y
-        S_prr_y = t_y + R_xx*prr_platform_point_y + R_yx*prr_platform_point_x - prr_base_point_y
-        # (prr-K2) component along axis 1
-        px_1_prr = S_prr_x*prr_base_frame_xx + S_prr_y*prr_base_frame_yx
-        # (prr-K3) discriminant of the distance equation
-        disc_1_prr_t = S_prr_x*S_prr_x + S_prr_y*S_prr_y
-        disc_1_prr = px_1_prr*px_1_prr + uu_2_prr_t - disc_1_prr_t
-        # (prr-K4) displacement of joint 1
-        q_1_prr_t = branch_1_prr*sqrt(disc_1_prr)
-        q_1_prr = px_1_prr + q_1_prr_t
-        # (prr-K9) displacement of joint 2
-        q_2_prr = (
-        atan2(inv_uu_2_prr_t*prr_platform_joint_offset_x*(S_prr_x*prr_base_frame_xy +
-            S_prr_y*prr_base_frame_yy), -inv_uu_2_prr_t*prr_platform_joint_offset_x*q_1_prr_t)
+        # (prr-S) from the base point to the connection point
+        prr_S_x = t_x + R_xx*prr_platform_point_x - prr_base_point_x - R_yx*prr_platform_point_y
+        prr_S_y = t_y + R_xx*prr_platform_point_y + R_yx*prr_platform_point_x - prr_base_point_y
+        # (prr-px_1) component along axis 1
+        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        # (prr-disc_1) discriminant of the distance equation
+        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        # (prr-q_1) displacement of joint 1
+        prr_q_1_t = prr_branch_1*sqrt(prr_disc_1)
+        prr_q_1 = prr_px_1 + prr_q_1_t
+        # (prr-q_2) displacement of joint 2
+        prr_q_2 = (
+        atan2(inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+            prr_S_y*prr_base_frame_yy), -inv_prr_disc_1_t_5*prr_platform_joint_offset_x*prr_q_1_t)
         )
-        ok = ok & m.every(leg, (disc_1_prr >= 0.0))
-        out_q[_q_prr[0][leg]] = q_1_prr
-        out_q[_q_prr[1][leg]] = q_2_prr
+        ok = ok & m.every(leg, (prr_disc_1 >= 0.0))
+        out_q[_q_prr[0][leg]] = prr_q_1
+        out_q[_q_prr[1][leg]] = prr_q_2
     return ok, (out_q,)
 
 
@@ -3283,146 +3359,147 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        branch_1_rpr, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-            rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+            rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_platform_point_x,
+            rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        S_rpr_x = q_rpr_in_base_x + t_x - rpr_base_point_x
-        S_rpr_y = q_rpr_in_base_y + t_y - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1_rpr = branch_1_rpr*sqrt(rho2_1_rpr)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1_rpr = 1.0/root_1_rpr
-        axis_x_x = S_rpr_x*inv_root_1_rpr
-        axis_x_y = S_rpr_y*inv_root_1_rpr
-        # (rpr-V1) velocity of the connection point
-        S_dot_rpr_x = t_dot_x - omega_z*q_rpr_in_base_y
-        S_dot_rpr_y = t_dot_y + omega_z*q_rpr_in_base_x
-        S_dot_rpr_tip_x = S_dot_rpr_x*axis_x_x + S_dot_rpr_y*axis_x_y
-        # (rpr-V6) rate of joint 1
-        qd_1_rpr = inv_root_1_rpr*(S_dot_rpr_y*axis_x_x - S_dot_rpr_x*axis_x_y)
+        # (rpr-S) from the base point to the connection point
+        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
+        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
+        # (rpr-S_dot) velocity of the connection point
+        rpr_S_dot_x = t_dot_x - omega_z*rpr_q_in_base_y
+        rpr_S_dot_y = t_dot_y + omega_z*rpr_q_in_base_x
+        rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y
+        # (rpr-qd_1) rate of joint 1
+        rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x - rpr_S_dot_x*rpr_axis_x_y)
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr)
+        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
             > _TOLERANCE * 0.62))
         )
-        out_qd[_qd_rpr[0][leg]] = qd_1_rpr
-        out_qd[_qd_rpr[1][leg]] = S_dot_rpr_tip_x
+        out_qd[_qd_rpr[0][leg]] = rpr_qd_1
+        out_qd[_qd_rpr[1][leg]] = rpr_S_dot_tip_x
     for leg, k in legs[1]:
         (
-        Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
-            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
-            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
+            rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x
-        S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        # (rrr-V1) velocity of the connection point
-        S_dot_rrr_x = t_dot_x - omega_z*q_rrr_in_base_y
-        S_dot_rrr_y = t_dot_y + omega_z*q_rrr_in_base_x
-        # (rrr-V7) rate of joint 1
-        qd_1_rrr = (
-        (S_dot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_x)/r_1_rrr_r0_y
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_x = t_dot_x - omega_z*rrr_q_in_base_y
+        rrr_S_dot_y = t_dot_y + omega_z*rrr_q_in_base_x
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_1 = (
+        (axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)/rrr_r_1_r0_y
         )
-        qd_2_rrr = (
-        inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*(c_2_rrr*r_1_rrr_x +
-            r_1_rrr_t*s_2_rrr))
+        rrr_qd_2 = (
+        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*(rrr_c_2*rrr_r_1_x +
+            rrr_r_1_t*rrr_s_2))
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
-        out_qd[_qd_rrr[0][leg]] = -qd_1_rrr
-        out_qd[_qd_rrr[1][leg]] = qd_2_rrr
+        out_qd[_qd_rrr[0][leg]] = -rrr_qd_1
+        out_qd[_qd_rrr[1][leg]] = rrr_qd_2
     for leg, k in legs[2]:
         (
-        branch_1_prr, inv_uu_2_prr_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_platform_joint_offset_x,
-            prr_platform_point_x, prr_platform_point_y, size_prr, uu_2_prr_t,
+        inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
+            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
         ) = k
-        # (prr-K1) from the base point to the connection point
-        q_prr_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        q_prr_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        S_prr_x = q_prr_in_base_x + t_x - prr_base_point_x
-        S_prr_y = q_prr_in_base_y + t_y - prr_base_point_y
-        # (prr-K2) component along axis 1
-        px_1_prr = S_prr_x*prr_base_frame_xx + S_prr_y*prr_base_frame_yx
-        # (prr-K3) discriminant of the distance equation
-        disc_1_prr_t = S_prr_x*S_prr_x + S_prr_y*S_prr_y
-        disc_1_prr = px_1_prr*px_1_prr + uu_2_prr_t - disc_1_prr_t
-        # (prr-V2) velocity of the connection point per rate of joint 2
-        v_2_prr_t = (
-        branch_1_prr*sqrt(disc_1_prr)*inv_uu_2_prr_t*prr_platform_joint_offset_x*prr_platform_joint_offset_x
+        # (prr-S) from the base point to the connection point
+        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
+        # (prr-px_1) component along axis 1
+        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        # (prr-disc_1) discriminant of the distance equation
+        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_t = (
+        inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x*prr_platform_joint_offset_x
         )
-        # (prr-V1) velocity of the connection point
-        S_dot_prr_x = t_dot_x - omega_z*q_prr_in_base_y
-        S_dot_prr_y = t_dot_y + omega_z*q_prr_in_base_x
-        # (prr-V6) rate of joint 2
-        qd_2_prr = (S_dot_prr_x*prr_base_frame_xy + S_dot_prr_y*prr_base_frame_yy)/v_2_prr_t
-        qd_2_prr_t = (
-        S_dot_prr_x*prr_base_frame_xx + S_dot_prr_y*prr_base_frame_yx -
-            inv_uu_2_prr_t*prr_platform_joint_offset_x*prr_platform_joint_offset_x*qd_2_prr*(S_prr_x*prr_base_frame_xy
-            + S_prr_y*prr_base_frame_yy)
+        # (prr-S_dot) velocity of the connection point
+        prr_S_dot_x = t_dot_x - omega_z*prr_q_in_base_y
+        prr_S_dot_y = t_dot_y + omega_z*prr_q_in_base_x
+        # (prr-qd_2) rate of joint 2
+        prr_qd_2 = (prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)/prr_v_2_t
+        prr_qd_2_t = (
+        prr_S_dot_x*prr_base_frame_xx + prr_S_dot_y*prr_base_frame_yx -
+            inv_prr_disc_1_t_5*prr_platform_joint_offset_x*prr_platform_joint_offset_x*prr_qd_2*(prr_S_x*prr_base_frame_xy
+            + prr_S_y*prr_base_frame_yy)
         )
-        ok = ok & m.every(leg, (disc_1_prr >= 0.0) & (abs(-v_2_prr_t) > _TOLERANCE * size_prr))
-        out_qd[_qd_prr[0][leg]] = qd_2_prr_t
-        out_qd[_qd_prr[1][leg]] = -qd_2_prr
+        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t) > _TOLERANCE * prr_size))
+        out_qd[_qd_prr[0][leg]] = prr_qd_2_t
+        out_qd[_qd_prr[1][leg]] = -prr_qd_2
     return ok, (out_qd,)
 
 
@@ -3458,215 +3535,220 @@ def _run_joint_accelerations(m, X, V, A):
     out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
-        branch_1_rpr, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-            rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+            rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_platform_point_x,
+            rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        S_rpr_x = q_rpr_in_base_x + t_x - rpr_base_point_x
-        S_rpr_y = q_rpr_in_base_y + t_y - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1_rpr = branch_1_rpr*sqrt(rho2_1_rpr)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1_rpr = 1.0/root_1_rpr
-        axis_x_x = S_rpr_x*inv_root_1_rpr
-        axis_x_y = S_rpr_y*inv_root_1_rpr
-        # (rpr-V1) velocity of the connection point
-        S_dot_rpr_t = omega_z*q_rpr_in_base_y
-        S_dot_rpr_t_2 = omega_z*q_rpr_in_base_x
-        S_dot_rpr_x = t_dot_x - S_dot_rpr_t
-        S_dot_rpr_y = S_dot_rpr_t_2 + t_dot_y
-        S_dot_rpr_tip_x = S_dot_rpr_x*axis_x_x + S_dot_rpr_y*axis_x_y
-        # (rpr-V6) rate of joint 1
-        qd_1_rpr = inv_root_1_rpr*(S_dot_rpr_y*axis_x_x - S_dot_rpr_x*axis_x_y)
-        # (rpr-A2) acceleration of the connection point without its centripetal part
-        a_p_rpr_x = t_ddot_x - alpha_z*q_rpr_in_base_y
-        a_p_rpr_y = t_ddot_y + alpha_z*q_rpr_in_base_x
-        # (rpr-A3) acceleration of the connection point
-        S_ddot_rpr_x = a_p_rpr_x - S_dot_rpr_t_2*omega_z
-        S_ddot_rpr_y = a_p_rpr_y - S_dot_rpr_t*omega_z
-        # (rpr-A5) acceleration of the connection point left to the joint accelerations
-        rel_rpr_x = S_ddot_rpr_x*axis_x_x + S_ddot_rpr_y*axis_x_y + qd_1_rpr*qd_1_rpr*root_1_rpr
-        rel_rpr_y = S_ddot_rpr_y*axis_x_x - S_ddot_rpr_x*axis_x_y - 2.0*S_dot_rpr_tip_x*qd_1_rpr
-        # (rpr-A7) acceleration of joint 1
-        qdd_1_rpr = inv_root_1_rpr*rel_rpr_y
+        # (rpr-S) from the base point to the connection point
+        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
+        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
+        # (rpr-S_dot) velocity of the connection point
+        rpr_S_dot_t = omega_z*rpr_q_in_base_y
+        rpr_S_dot_t_2 = omega_z*rpr_q_in_base_x
+        rpr_S_dot_x = t_dot_x - rpr_S_dot_t
+        rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y
+        rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y
+        # (rpr-qd_1) rate of joint 1
+        rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x - rpr_S_dot_x*rpr_axis_x_y)
+        # (rpr-a_p) acceleration of the connection point without its centripetal part
+        rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_in_base_y
+        rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_in_base_x
+        # (rpr-S_ddot) acceleration of the connection point
+        rpr_S_ddot_x = rpr_a_p_x - omega_z*rpr_S_dot_t_2
+        rpr_S_ddot_y = rpr_a_p_y - omega_z*rpr_S_dot_t
+        # (rpr-rel) acceleration of the connection point left to the joint accelerations
+        rpr_rel_x = (
+        rpr_S_ddot_x*rpr_axis_x_x + rpr_S_ddot_y*rpr_axis_x_y + rpr_qd_1*rpr_qd_1*rpr_root_1
+        )
+        rpr_rel_y = (
+        rpr_S_ddot_y*rpr_axis_x_x - rpr_S_ddot_x*rpr_axis_x_y - 2.0*rpr_S_dot_tip_x*rpr_qd_1
+        )
+        # (rpr-qdd_1) acceleration of joint 1
+        rpr_qdd_1 = inv_rpr_root_1*rpr_rel_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr)
+        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
             > _TOLERANCE * 0.62))
         )
-        out_qdd[_qdd_rpr[0][leg]] = qdd_1_rpr
-        out_qdd[_qdd_rpr[1][leg]] = rel_rpr_x
+        out_qdd[_qdd_rpr[0][leg]] = rpr_qdd_1
+        out_qdd[_qdd_rpr[1][leg]] = rpr_rel_x
     for leg, k in legs[1]:
         (
-        Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
-            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
-            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
+            rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x
-        S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        # (rrr-V1) velocity of the connection point
-        S_dot_rrr_t = omega_z*q_rrr_in_base_y
-        S_dot_rrr_t_2 = omega_z*q_rrr_in_base_x
-        S_dot_rrr_x = t_dot_x - S_dot_rrr_t
-        S_dot_rrr_y = S_dot_rrr_t_2 + t_dot_y
-        # (rrr-V7) rate of joint 1
-        qd_1_rrr = (
-        inv_r_1_rrr_r0_y*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_x)
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = omega_z*rrr_q_in_base_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
+        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_1 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
         )
-        # (rrr-V11) angular velocity of link 2
-        omega_2_rrr_z = (
-        inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_z = (
+        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
         )
-        # (rrr-V10) centripetal tensor of link 1
-        W_1_rrr_t = qd_1_rrr*qd_1_rrr
-        # (rrr-A5) acceleration of the connection point at zero joint accelerations
-        bias_rrr_x = (
-        -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
+        # (rrr-W_1) centripetal tensor of link 1
+        rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_x = (
+        -rrr_omega_2_z*rrr_omega_2_z*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        # (rrr-A2) acceleration of the connection point without its centripetal part
-        a_p_rrr_x = t_ddot_x - alpha_z*q_rrr_in_base_y
-        a_p_rrr_y = t_ddot_y + alpha_z*q_rrr_in_base_x
-        # (rrr-A3) acceleration of the connection point
-        S_ddot_rrr_x = a_p_rrr_x - S_dot_rrr_t_2*omega_z
-        S_ddot_rrr_y = a_p_rrr_y - S_dot_rrr_t*omega_z
-        # (rrr-A6) acceleration of the connection point left to the joint accelerations
-        rel_rrr_x = (
-        S_ddot_rrr_x*axis_y_rrr_axes2_in_base_y - bias_rrr_x -
-            S_ddot_rrr_y*axis_y_rrr_axes2_in_base_x
+        # (rrr-a_p) acceleration of the connection point without its centripetal part
+        rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y
+        rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x
+        # (rrr-S_ddot) acceleration of the connection point
+        rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
+        rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
+        # (rrr-rel) acceleration of the connection point left to the joint accelerations
+        rrr_rel_x = (
+        axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x - rrr_bias_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y
         )
-        rel_rrr_y = (
-        S_ddot_rrr_x*axis_y_rrr_axes2_in_base_x + S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y +
-            W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
+        rrr_rel_y = (
+        axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x + axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y +
+            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         )
-        # (rrr-A8) acceleration of joint 1
-        qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
-        qdd_2_rrr = inv_rrr_platform_joint_offset_x*(rel_rrr_y + qdd_1_rrr*r_1_rrr_r0_x)
+        # (rrr-qdd_1) acceleration of joint 1
+        rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x
+        rrr_qdd_2 = inv_rrr_platform_joint_offset_x*(rrr_rel_y + rrr_qdd_1*rrr_r_1_r0_x)
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
-        out_qdd[_qdd_rrr[0][leg]] = -qdd_1_rrr
-        out_qdd[_qdd_rrr[1][leg]] = qdd_2_rrr
+        out_qdd[_qdd_rrr[0][leg]] = -rrr_qdd_1
+        out_qdd[_qdd_rrr[1][leg]] = rrr_qdd_2
     for leg, k in legs[2]:
         (
-        branch_1_prr, inv_uu_2_prr_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_platform_joint_offset_x,
-            prr_platform_point_x, prr_platform_point_y, size_prr, uu_2_prr_t,
+        inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
+            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
         ) = k
-        # (prr-K1) from the base point to the connection point
-        q_prr_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        q_prr_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        S_prr_x = q_prr_in_base_x + t_x - prr_base_point_x
-        S_prr_y = q_prr_in_base_y + t_y - prr_base_point_y
-        # (prr-K2) component along axis 1
-        px_1_prr = S_prr_x*prr_base_frame_xx + S_prr_y*prr_base_frame_yx
-        # (prr-K3) discriminant of the distance equation
-        disc_1_prr_t = S_prr_x*S_prr_x + S_prr_y*S_prr_y
-        disc_1_prr = px_1_prr*px_1_prr + uu_2_prr_t - disc_1_prr_t
-        # (prr-K7) cosine of the angle of joint 2 from its reference direction
-        c_2_prr = branch_1_prr*sqrt(disc_1_prr)*inv_uu_2_prr_t*prr_platform_joint_offset_x
-        # (prr-K8) sine of the angle of joint 2 from its reference direction
-        s_2_prr = (
-        inv_uu_2_prr_t*prr_platform_joint_offset_x*(S_prr_x*prr_base_frame_xy +
-            S_prr_y*prr_base_frame_yy)
+        # (prr-S) from the base point to the connection point
+        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
+        # (prr-px_1) component along axis 1
+        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        # (prr-disc_1) discriminant of the distance equation
+        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        # (prr-c_2) cosine of the angle of joint 2 from its reference direction
+        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        # (prr-s_2) sine of the angle of joint 2 from its reference direction
+        prr_s_2 = (
+        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+            prr_S_y*prr_base_frame_yy)
         )
-        # (prr-V3) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -c_2_prr*prr_base_frame_xy - prr_base_frame_xx*s_2_prr
-        axis_y_prr_axes2_in_base_y = -c_2_prr*prr_base_frame_yy - prr_base_frame_yx*s_2_prr
-        # (prr-V2) velocity of the connection point per rate of joint 2
-        v_2_prr_t = c_2_prr*prr_platform_joint_offset_x
-        # (prr-V3) reciprocal vector 1
-        inv_v_2_prr_t_2 = 1.0/v_2_prr_t
-        # (prr-V1) velocity of the connection point
-        S_dot_prr_t = omega_z*q_prr_in_base_y
-        S_dot_prr_t_2 = omega_z*q_prr_in_base_x
-        S_dot_prr_x = t_dot_x - S_dot_prr_t
-        S_dot_prr_y = S_dot_prr_t_2 + t_dot_y
-        # (prr-V6) rate of joint 2
-        qd_2_prr = inv_v_2_prr_t_2*(S_dot_prr_x*prr_base_frame_xy + S_dot_prr_y*prr_base_frame_yy)
-        # (prr-A2) acceleration of the connection point without its centripetal part
-        a_p_prr_x = t_ddot_x - alpha_z*q_prr_in_base_y
-        a_p_prr_y = t_ddot_y + alpha_z*q_prr_in_base_x
-        # (prr-A3) acceleration of the connection point
-        S_ddot_prr_x = a_p_prr_x - S_dot_prr_t_2*omega_z
-        S_ddot_prr_y = a_p_prr_y - S_dot_prr_t*omega_z
-        S_ddot_prr_tip_y = (
-        S_ddot_prr_x*axis_y_prr_axes2_in_base_x + S_ddot_prr_y*axis_y_prr_axes2_in_base_y
+        # (prr-w_1) reciprocal vector 1
+        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
+        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
+        # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_t = prr_c_2*prr_platform_joint_offset_x
+        # (prr-w_2) reciprocal vector 2
+        inv_prr_v_2_t_2 = 1.0/prr_v_2_t
+        # (prr-S_dot) velocity of the connection point
+        prr_S_dot_t = omega_z*prr_q_in_base_y
+        prr_S_dot_t_2 = omega_z*prr_q_in_base_x
+        prr_S_dot_x = t_dot_x - prr_S_dot_t
+        prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
+        # (prr-qd_2) rate of joint 2
+        prr_qd_2 = inv_prr_v_2_t_2*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
+        # (prr-a_p) acceleration of the connection point without its centripetal part
+        prr_a_p_x = t_ddot_x - alpha_z*prr_q_in_base_y
+        prr_a_p_y = t_ddot_y + alpha_z*prr_q_in_base_x
+        # (prr-S_ddot) acceleration of the connection point
+        prr_S_ddot_x = prr_a_p_x - omega_z*prr_S_dot_t_2
+        prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t
+        prr_S_ddot_tip_y = (
+        axis_y_prr_axes2_in_base_x*prr_S_ddot_x + axis_y_prr_axes2_in_base_y*prr_S_ddot_y
         )
-        # (prr-A5) acceleration of the connection point left to the joint accelerations
-        rel_prr_x = (
-        S_ddot_prr_x*axis_y_prr_axes2_in_base_y + prr_platform_joint_offset_x*qd_2_prr*qd_2_prr -
-            S_ddot_prr_y*axis_y_prr_axes2_in_base_x
+        # (prr-rel) acceleration of the connection point left to the joint accelerations
+        prr_rel_x = (
+        axis_y_prr_axes2_in_base_y*prr_S_ddot_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2 -
+            axis_y_prr_axes2_in_base_x*prr_S_ddot_y
         )
-        # (prr-A7) acceleration of joint 1
-        qdd_2_prr = inv_v_2_prr_t_2*(rel_prr_x*s_2_prr - S_ddot_prr_tip_y*c_2_prr)
-        qdd_1_prr_t = (
-        S_ddot_prr_tip_y*s_2_prr + c_2_prr*rel_prr_x +
-            prr_platform_joint_offset_x*qdd_2_prr*s_2_prr
+        # (prr-qdd_1) acceleration of joint 1
+        prr_qdd_2 = inv_prr_v_2_t_2*(prr_rel_x*prr_s_2 - prr_S_ddot_tip_y*prr_c_2)
+        prr_qdd_1_t = (
+        prr_S_ddot_tip_y*prr_s_2 + prr_c_2*prr_rel_x +
+            prr_platform_joint_offset_x*prr_qdd_2*prr_s_2
         )
-        ok = ok & m.every(leg, (disc_1_prr >= 0.0) & (abs(-v_2_prr_t) > _TOLERANCE * size_prr))
-        out_qdd[_qdd_prr[0][leg]] = -qdd_1_prr_t
-        out_qdd[_qdd_prr[1][leg]] = -qdd_2_prr
+        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t) > _TOLERANCE * prr_size))
+        out_qdd[_qdd_prr[0][leg]] = -prr_qdd_1_t
+        out_qdd[_qdd_prr[1][leg]] = -prr_qdd_2
     return ok, (out_qdd,)
 
 
@@ -3704,319 +3786,325 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        J_group_1_rpr_zz, branch_1_rpr, g_r0_x_3, g_r0_y_3, h_1_rpr_x, h_1_rpr_y, h_2_rpr_x,
-            h_2_rpr_y, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-            rpr_base_point_x, rpr_base_point_y, rpr_link2_mass, rpr_platform_point_x,
-            rpr_platform_point_y,
+        rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_g_r0_x,
+            rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_link2_mass,
+            rpr_platform_point_x, rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        S_rpr_x = q_rpr_in_base_x + t_x - rpr_base_point_x
-        S_rpr_y = q_rpr_in_base_y + t_y - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1_rpr = branch_1_rpr*sqrt(rho2_1_rpr)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1_rpr = 1.0/root_1_rpr
-        axis_x_x = S_rpr_x*inv_root_1_rpr
-        axis_x_y = S_rpr_y*inv_root_1_rpr
-        # (rpr-V1) velocity of the connection point
-        S_dot_rpr_t = omega_z*q_rpr_in_base_y
-        S_dot_rpr_t_2 = omega_z*q_rpr_in_base_x
-        S_dot_rpr_x = t_dot_x - S_dot_rpr_t
-        S_dot_rpr_y = S_dot_rpr_t_2 + t_dot_y
-        S_dot_rpr_tip_x = S_dot_rpr_x*axis_x_x + S_dot_rpr_y*axis_x_y
-        # (rpr-V6) rate of joint 1
-        qd_1_rpr = inv_root_1_rpr*(S_dot_rpr_y*axis_x_x - S_dot_rpr_x*axis_x_y)
-        # (rpr-V9) centripetal tensor of link 1
-        W_1_rpr_t = qd_1_rpr*qd_1_rpr
-        # (rpr-K7) cosine of the angle of joint 1 from its reference direction
-        c_1_rpr = inv_root_1_rpr*px_1_rpr
-        # (rpr-K8) sine of the angle of joint 1 from its reference direction
-        s_1_rpr = inv_root_1_rpr*py_1_rpr
-        # (rpr-A2) acceleration of the connection point without its centripetal part
-        a_p_rpr_x = t_ddot_x - alpha_z*q_rpr_in_base_y
-        a_p_rpr_y = t_ddot_y + alpha_z*q_rpr_in_base_x
-        # (rpr-A3) acceleration of the connection point
-        S_ddot_rpr_x = a_p_rpr_x - S_dot_rpr_t_2*omega_z
-        S_ddot_rpr_y = a_p_rpr_y - S_dot_rpr_t*omega_z
-        S_ddot_rpr_tip_y = S_ddot_rpr_y*axis_x_x - S_ddot_rpr_x*axis_x_y
-        # (rpr-A5) acceleration of the connection point left to the joint accelerations
-        rel_rpr_y = S_ddot_rpr_tip_y - 2.0*S_dot_rpr_tip_x*qd_1_rpr
-        # (rpr-A7) acceleration of joint 1
-        qdd_1_rpr = inv_root_1_rpr*rel_rpr_y
-        # (rpr-N3) acceleration of the reference point of link 2, less gravity
-        g_r1_x = c_1_rpr*g_r0_x_3 + g_r0_y_3*s_1_rpr
-        g_r1_y = c_1_rpr*g_r0_y_3 - g_r0_x_3*s_1_rpr
-        acc_2_rpr_x = S_ddot_rpr_x*axis_x_x + S_ddot_rpr_y*axis_x_y - g_r1_x
-        acc_2_rpr_y = S_ddot_rpr_tip_y - g_r1_y
-        # (rpr-N12) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rpr_z = (
-        J_group_1_rpr_zz*qdd_1_rpr + acc_2_rpr_y*h_2_rpr_x + g_r1_x*h_1_rpr_y -
-            acc_2_rpr_x*h_2_rpr_y - g_r1_y*h_1_rpr_x
+        # (rpr-S) from the base point to the connection point
+        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
+        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
+        # (rpr-S_dot) velocity of the connection point
+        rpr_S_dot_t = omega_z*rpr_q_in_base_y
+        rpr_S_dot_t_2 = omega_z*rpr_q_in_base_x
+        rpr_S_dot_x = t_dot_x - rpr_S_dot_t
+        rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y
+        rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y
+        # (rpr-qd_1) rate of joint 1
+        rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x - rpr_S_dot_x*rpr_axis_x_y)
+        # (rpr-W_1) centripetal tensor of link 1
+        rpr_W_1_t = rpr_qd_1*rpr_qd_1
+        # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
+        rpr_c_1 = inv_rpr_root_1*rpr_px_1
+        # (rpr-s_1) sine of the angle of joint 1 from its reference direction
+        rpr_s_1 = inv_rpr_root_1*rpr_py_1
+        # (rpr-a_p) acceleration of the connection point without its centripetal part
+        rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_in_base_y
+        rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_in_base_x
+        # (rpr-S_ddot) acceleration of the connection point
+        rpr_S_ddot_x = rpr_a_p_x - omega_z*rpr_S_dot_t_2
+        rpr_S_ddot_y = rpr_a_p_y - omega_z*rpr_S_dot_t
+        rpr_S_ddot_tip_y = rpr_S_ddot_y*rpr_axis_x_x - rpr_S_ddot_x*rpr_axis_x_y
+        # (rpr-rel) acceleration of the connection point left to the joint accelerations
+        rpr_rel_y = rpr_S_ddot_tip_y - 2.0*rpr_S_dot_tip_x*rpr_qd_1
+        # (rpr-qdd_1) acceleration of joint 1
+        rpr_qdd_1 = inv_rpr_root_1*rpr_rel_y
+        # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
+        rpr_g_r1_x = rpr_c_1*rpr_g_r0_x + rpr_g_r0_y*rpr_s_1
+        rpr_g_r1_y = rpr_c_1*rpr_g_r0_y - rpr_g_r0_x*rpr_s_1
+        rpr_acc_2_x = rpr_S_ddot_x*rpr_axis_x_x + rpr_S_ddot_y*rpr_axis_x_y - rpr_g_r1_x
+        rpr_acc_2_y = rpr_S_ddot_tip_y - rpr_g_r1_y
+        # (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rpr_mu_1_z = (
+        rpr_J_group_1_zz*rpr_qdd_1 + rpr_acc_2_y*rpr_h_2_x + rpr_g_r1_x*rpr_h_1_y -
+            rpr_acc_2_x*rpr_h_2_y - rpr_g_r1_y*rpr_h_1_x
         )
-        # (rpr-N21) leg force on the platform without actuation and without the mass at the connection point
-        c_rpr_y = W_1_rpr_t*h_2_rpr_y - h_2_rpr_x*qdd_1_rpr - inv_root_1_rpr*mu_1_rpr_z
-        # (rpr-N26) leg force on the platform without actuation, the last link's mass included
-        c_true_rpr_x = W_1_rpr_t*h_2_rpr_x + h_2_rpr_y*qdd_1_rpr - acc_2_rpr_x*rpr_link2_mass
-        c_true_rpr_y = c_rpr_y - acc_2_rpr_y*rpr_link2_mass
-        c_true_rpr_in_base_x = axis_x_x*c_true_rpr_x - axis_x_y*c_true_rpr_y
-        c_true_rpr_in_base_y = axis_x_x*c_true_rpr_y + axis_x_y*c_true_rpr_x
+        # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
+        rpr_c_y = rpr_W_1_t*rpr_h_2_y - inv_rpr_root_1*rpr_mu_1_z - rpr_h_2_x*rpr_qdd_1
+        # (rpr-c_true) leg force on the platform without actuation, the last link's mass included
+        rpr_c_true_x = rpr_W_1_t*rpr_h_2_x + rpr_h_2_y*rpr_qdd_1 - rpr_acc_2_x*rpr_link2_mass
+        rpr_c_true_y = rpr_c_y - rpr_acc_2_y*rpr_link2_mass
+        rpr_c_true_in_base_x = rpr_axis_x_x*rpr_c_true_x - rpr_axis_x_y*rpr_c_true_y
+        rpr_c_true_in_base_y = rpr_axis_x_x*rpr_c_true_y + rpr_axis_x_y*rpr_c_true_x
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr)
+        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
             > _TOLERANCE * 0.62))
         )
-        out_leg_force[_leg_force_rpr[0][leg]] = c_true_rpr_in_base_x
-        out_leg_force[_leg_force_rpr[1][leg]] = c_true_rpr_in_base_y
-        out_drive[_drive_rpr[0][leg]] = axis_x_x
-        out_drive[_drive_rpr[1][leg]] = axis_x_y
+        out_leg_force[_leg_force_rpr[0][leg]] = rpr_c_true_in_base_x
+        out_leg_force[_leg_force_rpr[1][leg]] = rpr_c_true_in_base_y
+        out_drive[_drive_rpr[0][leg]] = rpr_axis_x_x
+        out_drive[_drive_rpr[1][leg]] = rpr_axis_x_y
     for leg, k in legs[1]:
         (
-        J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
-            h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
-            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_link2_mass, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+            rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+            rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
+            rrr_joint2_offset_x, rrr_link2_mass, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x
-        S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        # (rrr-V1) velocity of the connection point
-        S_dot_rrr_t = omega_z*q_rrr_in_base_y
-        S_dot_rrr_t_2 = omega_z*q_rrr_in_base_x
-        S_dot_rrr_x = t_dot_x - S_dot_rrr_t
-        S_dot_rrr_y = S_dot_rrr_t_2 + t_dot_y
-        # (rrr-V7) rate of joint 1
-        qd_1_rrr = (
-        inv_r_1_rrr_r0_y*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_x)
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = omega_z*rrr_q_in_base_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
+        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_1 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
         )
-        # (rrr-V11) angular velocity of link 2
-        omega_2_rrr_z = (
-        inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_z = (
+        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
         )
-        # (rrr-V10) centripetal tensor of link 1
-        W_1_rrr_t = qd_1_rrr*qd_1_rrr
-        # (rrr-V12) centripetal tensor of link 2
-        W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
-        # (rrr-A5) acceleration of the connection point at zero joint accelerations
-        bias_rrr_x = (
-        -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
+        # (rrr-W_1) centripetal tensor of link 1
+        rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_x = (
+        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        # (rrr-V5) reciprocal vector 1
-        w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
-        w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
-        # (rrr-A2) acceleration of the connection point without its centripetal part
-        a_p_rrr_x = t_ddot_x - alpha_z*q_rrr_in_base_y
-        a_p_rrr_y = t_ddot_y + alpha_z*q_rrr_in_base_x
-        # (rrr-A3) acceleration of the connection point
-        S_ddot_rrr_x = a_p_rrr_x - S_dot_rrr_t_2*omega_z
-        S_ddot_rrr_y = a_p_rrr_y - S_dot_rrr_t*omega_z
-        S_ddot_rrr_tip_x = (
-        S_ddot_rrr_x*axis_y_rrr_axes2_in_base_y - S_ddot_rrr_y*axis_y_rrr_axes2_in_base_x
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y
+        rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y
+        # (rrr-a_p) acceleration of the connection point without its centripetal part
+        rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y
+        rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x
+        # (rrr-S_ddot) acceleration of the connection point
+        rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
+        rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
+        rrr_S_ddot_tip_x = (
+        axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x - axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y
         )
-        S_ddot_rrr_tip_y = (
-        S_ddot_rrr_x*axis_y_rrr_axes2_in_base_x + S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y
+        rrr_S_ddot_tip_y = (
+        axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x + axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y
         )
-        # (rrr-A6) acceleration of the connection point left to the joint accelerations
-        rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x
-        rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
-        # (rrr-A8) acceleration of joint 1
-        qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
-        # (rrr-N3) acceleration of the reference point of link 2, less gravity
-        acc_2_rrr_x = (
-        S_ddot_rrr_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+        # (rrr-rel) acceleration of the connection point left to the joint accelerations
+        rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x
+        rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        # (rrr-qdd_1) acceleration of joint 1
+        rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_acc_2_x = (
+        rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
             axis_y_rrr_axes2_in_base_y*gravity_x
         )
-        acc_2_rrr_y = (
-        S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+        rrr_acc_2_y = (
+        rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
             axis_y_rrr_axes2_in_base_y*gravity_y
         )
-        # (rrr-N23) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rrr_z = (
-        h_1_rrr_y*(c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr) - J_1_rrr_zz*qdd_1_rrr -
-            h_1_rrr_x*(c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr)
+        # (rrr-alpha_2) angular acceleration of link 2
+        rrr_alpha_2_z = (
+        inv_rrr_platform_joint_offset_x*(rrr_rel_y + rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1
         )
-        # (rrr-A16) angular acceleration of link 2
-        alpha_2_rrr_z = (
-        inv_rrr_platform_joint_offset_x*(rel_rrr_y + qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr
+        # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x - rrr_acc_2_x*rrr_h_2_y
+        # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_mu_1_z = (
+        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1 -
+            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
         )
-        # (rrr-N16) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x - acc_2_rrr_x*h_2_rrr_y
-        # (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z
-        # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z
-        # (rrr-N33) leg force on the platform without actuation and without the mass at the connection point
-        c_rrr_x = (
-        W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x -
-            N_1_rrr_z)
+        # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z
+        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z
+        # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_x = (
+        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x -
+            rrr_N_1_z)
         )
-        c_rrr_y = W_2_rrr_t*h_2_rrr_y - G_rrr_t - alpha_2_rrr_z*h_2_rrr_x
-        # (rrr-N38) leg force on the platform without actuation, the last link's mass included
-        c_true_rrr_x = c_rrr_x - acc_2_rrr_x*rrr_link2_mass
-        c_true_rrr_y = c_rrr_y - acc_2_rrr_y*rrr_link2_mass
-        c_true_rrr_in_base_x = (
-        axis_y_rrr_axes2_in_base_x*c_true_rrr_y + axis_y_rrr_axes2_in_base_y*c_true_rrr_x
+        rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x
+        # (rrr-c_true) leg force on the platform without actuation, the last link's mass included
+        rrr_c_true_x = rrr_c_x - rrr_acc_2_x*rrr_link2_mass
+        rrr_c_true_y = rrr_c_y - rrr_acc_2_y*rrr_link2_mass
+        rrr_c_true_in_base_x = (
+        axis_y_rrr_axes2_in_base_x*rrr_c_true_y + axis_y_rrr_axes2_in_base_y*rrr_c_true_x
         )
-        c_true_rrr_in_base_y = (
-        axis_y_rrr_axes2_in_base_y*c_true_rrr_y - axis_y_rrr_axes2_in_base_x*c_true_rrr_x
+        rrr_c_true_in_base_y = (
+        axis_y_rrr_axes2_in_base_y*rrr_c_true_y - axis_y_rrr_axes2_in_base_x*rrr_c_true_x
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
-        out_leg_force[_leg_force_rrr[0][leg]] = c_true_rrr_in_base_x
-        out_leg_force[_leg_force_rrr[1][leg]] = c_true_rrr_in_base_y
-        out_drive[_drive_rrr[0][leg]] = -w_1_rrr_t
-        out_drive[_drive_rrr[1][leg]] = w_1_rrr_t_2
+        out_leg_force[_leg_force_rrr[0][leg]] = rrr_c_true_in_base_x
+        out_leg_force[_leg_force_rrr[1][leg]] = rrr_c_true_in_base_y
+        out_drive[_drive_rrr[0][leg]] = -rrr_w_1_t
+        out_drive[_drive_rrr[1][leg]] = rrr_w_1_t_2
     for leg, k in legs[2]:
         (
-        J_2_prr_zz, branch_1_prr, g_r0_x, g_r0_y, h_2_prr_x, h_2_prr_y, inv_uu_2_prr_t,
-            prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx, prr_base_frame_yy,
-            prr_base_point_x, prr_base_point_y, prr_link1_mass, prr_link2_mass,
-            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, size_prr,
-            uu_2_prr_t,
+        inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
+            prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass, prr_link2_mass,
+            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
         ) = k
-        # (prr-K1) from the base point to the connection point
-        q_prr_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        q_prr_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        S_prr_x = q_prr_in_base_x + t_x - prr_base_point_x
-        S_prr_y = q_prr_in_base_y + t_y - prr_base_point_y
-        # (prr-K2) component along axis 1
-        px_1_prr = S_prr_x*prr_base_frame_xx + S_prr_y*prr_base_frame_yx
-        # (prr-K3) discriminant of the distance equation
-        disc_1_prr_t = S_prr_x*S_prr_x + S_prr_y*S_prr_y
-        disc_1_prr = px_1_prr*px_1_prr + uu_2_prr_t - disc_1_prr_t
-        # (prr-K7) cosine of the angle of joint 2 from its reference direction
-        c_2_prr = branch_1_prr*sqrt(disc_1_prr)*inv_uu_2_prr_t*prr_platform_joint_offset_x
-        # (prr-K8) sine of the angle of joint 2 from its reference direction
-        s_2_prr = (
-        inv_uu_2_prr_t*prr_platform_joint_offset_x*(S_prr_x*prr_base_frame_xy +
-            S_prr_y*prr_base_frame_yy)
+        # (prr-S) from the base point to the connection point
+        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
+        # (prr-px_1) component along axis 1
+        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        # (prr-disc_1) discriminant of the distance equation
+        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        # (prr-c_2) cosine of the angle of joint 2 from its reference direction
+        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        # (prr-s_2) sine of the angle of joint 2 from its reference direction
+        prr_s_2 = (
+        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+            prr_S_y*prr_base_frame_yy)
         )
-        # (prr-V3) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -c_2_prr*prr_base_frame_xy - prr_base_frame_xx*s_2_prr
-        axis_y_prr_axes2_in_base_y = -c_2_prr*prr_base_frame_yy - prr_base_frame_yx*s_2_prr
-        # (prr-V2) velocity of the connection point per rate of joint 2
-        v_2_prr_t = prr_platform_joint_offset_x*s_2_prr
-        v_2_prr_t_2 = c_2_prr*prr_platform_joint_offset_x
-        # (prr-V3) reciprocal vector 1
-        inv_v_2_prr_t_2 = 1.0/v_2_prr_t_2
-        w_1_prr_t = inv_v_2_prr_t_2*v_2_prr_t
-        _r0_x = -c_2_prr - s_2_prr*w_1_prr_t
-        _r0_y = c_2_prr*w_1_prr_t - s_2_prr
-        # (prr-V1) velocity of the connection point
-        S_dot_prr_t = omega_z*q_prr_in_base_y
-        S_dot_prr_t_2 = omega_z*q_prr_in_base_x
-        S_dot_prr_x = t_dot_x - S_dot_prr_t
-        S_dot_prr_y = S_dot_prr_t_2 + t_dot_y
-        # (prr-V6) rate of joint 2
-        qd_2_prr = inv_v_2_prr_t_2*(S_dot_prr_x*prr_base_frame_xy + S_dot_prr_y*prr_base_frame_yy)
-        # (prr-V8) centripetal tensor of link 2
-        W_2_prr_t = qd_2_prr*qd_2_prr
-        # (prr-V3) reciprocal vector 1
-        w_1_prr_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y + _r0_y*axis_y_prr_axes2_in_base_x
-        w_1_prr_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y - _r0_x*axis_y_prr_axes2_in_base_x
-        # (prr-A2) acceleration of the connection point without its centripetal part
-        a_p_prr_x = t_ddot_x - alpha_z*q_prr_in_base_y
-        a_p_prr_y = t_ddot_y + alpha_z*q_prr_in_base_x
-        # (prr-A3) acceleration of the connection point
-        S_ddot_prr_x = a_p_prr_x - S_dot_prr_t_2*omega_z
-        S_ddot_prr_y = a_p_prr_y - S_dot_prr_t*omega_z
-        S_ddot_prr_tip_x = (
-        S_ddot_prr_x*axis_y_prr_axes2_in_base_y - S_ddot_prr_y*axis_y_prr_axes2_in_base_x
+        # (prr-w_1) reciprocal vector 1
+        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
+        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
+        # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_t = prr_platform_joint_offset_x*prr_s_2
+        prr_v_2_t_2 = prr_c_2*prr_platform_joint_offset_x
+        # (prr-w_2) reciprocal vector 2
+        inv_prr_v_2_t_2 = 1.0/prr_v_2_t_2
+        # (prr-w_1) reciprocal vector 1
+        prr_w_1_t = inv_prr_v_2_t_2*prr_v_2_t
+        prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t
+        prr__r0_y = prr_c_2*prr_w_1_t - prr_s_2
+        # (prr-S_dot) velocity of the connection point
+        prr_S_dot_t = omega_z*prr_q_in_base_y
+        prr_S_dot_t_2 = omega_z*prr_q_in_base_x
+        prr_S_dot_x = t_dot_x - prr_S_dot_t
+        prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
+        # (prr-qd_2) rate of joint 2
+        prr_qd_2 = inv_prr_v_2_t_2*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
+        # (prr-W_2) centripetal tensor of link 2
+        prr_W_2_t = prr_qd_2*prr_qd_2
+        # (prr-w_1) reciprocal vector 1
+        prr_w_1_in_base_x = (
+        axis_y_prr_axes2_in_base_x*prr__r0_y + axis_y_prr_axes2_in_base_y*prr__r0_x
         )
-        S_ddot_prr_tip_y = (
-        S_ddot_prr_x*axis_y_prr_axes2_in_base_x + S_ddot_prr_y*axis_y_prr_axes2_in_base_y
+        prr_w_1_in_base_y = (
+        axis_y_prr_axes2_in_base_y*prr__r0_y - axis_y_prr_axes2_in_base_x*prr__r0_x
         )
-        # (prr-A5) acceleration of the connection point left to the joint accelerations
-        rel_prr_x = S_ddot_prr_tip_x + prr_platform_joint_offset_x*qd_2_prr*qd_2_prr
-        # (prr-A7) acceleration of joint 1
-        qdd_2_prr = inv_v_2_prr_t_2*(rel_prr_x*s_2_prr - S_ddot_prr_tip_y*c_2_prr)
-        # (prr-N5) acceleration of the reference point of link 2, less gravity
-        acc_2_prr_x = S_ddot_prr_tip_x + c_2_prr*g_r0_x - g_r0_y*s_2_prr
-        acc_2_prr_y = S_ddot_prr_tip_y + c_2_prr*g_r0_y + g_r0_x*s_2_prr
-        # (prr-N1) acceleration of the reference point of link 1, less gravity
-        acc_1_prr_x = -g_r0_x - S_ddot_prr_tip_y*s_2_prr - c_2_prr*rel_prr_x - qdd_2_prr*v_2_prr_t
-        # (prr-N3) inertia force of link 1 less its weight
-        f_1_prr_x = acc_1_prr_x*prr_link1_mass
-        # (prr-N16) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_prr_z = acc_2_prr_y*h_2_prr_x - J_2_prr_zz*qdd_2_prr - acc_2_prr_x*h_2_prr_y
-        # (prr-N24) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_prr_t = inv_v_2_prr_t_2*(mu_2_prr_z + f_1_prr_x*v_2_prr_t)
-        # (prr-N27) leg force on the platform without actuation and without the mass at the connection point
-        c_prr_x = G_prr_t*s_2_prr + W_2_prr_t*h_2_prr_x + c_2_prr*f_1_prr_x - h_2_prr_y*qdd_2_prr
-        c_prr_y = W_2_prr_t*h_2_prr_y + f_1_prr_x*s_2_prr + h_2_prr_x*qdd_2_prr - G_prr_t*c_2_prr
-        # (prr-N32) leg force on the platform without actuation, the last link's mass included
-        c_true_prr_x = c_prr_x - acc_2_prr_x*prr_link2_mass
-        c_true_prr_y = c_prr_y - acc_2_prr_y*prr_link2_mass
-        c_true_prr_in_base_x = (
-        axis_y_prr_axes2_in_base_x*c_true_prr_y + axis_y_prr_axes2_in_base_y*c_true_prr_x
+        # (prr-a_p) acceleration of the connection point without its centripetal part
+        prr_a_p_x = t_ddot_x - alpha_z*prr_q_in_base_y
+        prr_a_p_y = t_ddot_y + alpha_z*prr_q_in_base_x
+        # (prr-S_ddot) acceleration of the connection point
+        prr_S_ddot_x = prr_a_p_x - omega_z*prr_S_dot_t_2
+        prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t
+        prr_S_ddot_tip_x = (
+        axis_y_prr_axes2_in_base_y*prr_S_ddot_x - axis_y_prr_axes2_in_base_x*prr_S_ddot_y
         )
-        c_true_prr_in_base_y = (
-        axis_y_prr_axes2_in_base_y*c_true_prr_y - axis_y_prr_axes2_in_base_x*c_true_prr_x
+        prr_S_ddot_tip_y = (
+        axis_y_prr_axes2_in_base_x*prr_S_ddot_x + axis_y_prr_axes2_in_base_y*prr_S_ddot_y
         )
-        ok = ok & m.every(leg, (disc_1_prr >= 0.0) & (abs(-v_2_prr_t_2) > _TOLERANCE * size_prr))
-        out_leg_force[_leg_force_prr[0][leg]] = c_true_prr_in_base_x
-        out_leg_force[_leg_force_prr[1][leg]] = c_true_prr_in_base_y
-        out_drive[_drive_prr[0][leg]] = w_1_prr_in_base_x
-        out_drive[_drive_prr[1][leg]] = w_1_prr_in_base_y
+        # (prr-rel) acceleration of the connection point left to the joint accelerations
+        prr_rel_x = prr_S_ddot_tip_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2
+        # (prr-qdd_1) acceleration of joint 1
+        prr_qdd_2 = inv_prr_v_2_t_2*(prr_rel_x*prr_s_2 - prr_S_ddot_tip_y*prr_c_2)
+        # (prr-acc_2) acceleration of the reference point of link 2, less gravity
+        prr_acc_2_x = prr_S_ddot_tip_x + prr_c_2*prr_g_r0_x - prr_g_r0_y*prr_s_2
+        prr_acc_2_y = prr_S_ddot_tip_y + prr_c_2*prr_g_r0_y + prr_g_r0_x*prr_s_2
+        # (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        prr_mu_2_z = prr_acc_2_y*prr_h_2_x - prr_J_2_zz*prr_qdd_2 - prr_acc_2_x*prr_h_2_y
+        # (prr-acc_1) acceleration of the reference point of link 1, less gravity
+        prr_acc_1_x = (
+        -prr_g_r0_x - prr_S_ddot_tip_y*prr_s_2 - prr_c_2*prr_rel_x - prr_qdd_2*prr_v_2_t
+        )
+        # (prr-f_1) inertia force of link 1 less its weight
+        prr_f_1_x = prr_acc_1_x*prr_link1_mass
+        # (prr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        prr_G_t = inv_prr_v_2_t_2*(prr_mu_2_z + prr_f_1_x*prr_v_2_t)
+        # (prr-c) leg force on the platform without actuation and without the mass at the connection point
+        prr_c_x = prr_G_t*prr_s_2 + prr_W_2_t*prr_h_2_x + prr_c_2*prr_f_1_x - prr_h_2_y*prr_qdd_2
+        prr_c_y = prr_W_2_t*prr_h_2_y + prr_f_1_x*prr_s_2 + prr_h_2_x*prr_qdd_2 - prr_G_t*prr_c_2
+        # (prr-c_true) leg force on the platform without actuation, the last link's mass included
+        prr_c_true_x = prr_c_x - prr_acc_2_x*prr_link2_mass
+        prr_c_true_y = prr_c_y - prr_acc_2_y*prr_link2_mass
+        prr_c_true_in_base_x = (
+        axis_y_prr_axes2_in_base_x*prr_c_true_y + axis_y_prr_axes2_in_base_y*prr_c_true_x
+        )
+        prr_c_true_in_base_y = (
+        axis_y_prr_axes2_in_base_y*prr_c_true_y - axis_y_prr_axes2_in_base_x*prr_c_true_x
+        )
+        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t_2) > _TOLERANCE * prr_size))
+        out_leg_force[_leg_force_prr[0][leg]] = prr_c_true_in_base_x
+        out_leg_force[_leg_force_prr[1][leg]] = prr_c_true_in_base_y
+        out_drive[_drive_prr[0][leg]] = prr_w_1_in_base_x
+        out_drive[_drive_prr[1][leg]] = prr_w_1_in_base_y
     return ok, (out_leg_force, out_drive,)
 
 
@@ -4037,148 +4125,148 @@ def _run_potential(m, X):
     R_yx = sin(X_2)
     ok = True
     out_potential = m.zeros("potential")
-    # (V1) potential energy
-    potential_t_2 = (
+    # (potential) potential energy
+    potential_t = (
     gravity_x*(R_xx*h_star_x + m_star*t_x - R_yx*h_star_y) + gravity_y*(R_xx*h_star_y +
         R_yx*h_star_x + m_star*t_y)
     )
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        b_rpr_r0_x, b_rpr_r0_y, branch_1_rpr, g_r0_x_3, g_r0_y_3, h_1_rpr_x, h_1_rpr_y, h_2_rpr_x,
-            h_2_rpr_y, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-            rpr_base_point_x, rpr_base_point_y, rpr_link1_mass, rpr_platform_point_x,
-            rpr_platform_point_y,
+        rpr_b_r0_x, rpr_b_r0_y, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_g_r0_x,
+            rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_link1_mass,
+            rpr_platform_point_x, rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        S_rpr_x = t_x + R_xx*rpr_platform_point_x - rpr_base_point_x - R_yx*rpr_platform_point_y
-        S_rpr_y = t_y + R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1_rpr = branch_1_rpr*sqrt(rho2_1_rpr)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1_rpr = 1.0/root_1_rpr
-        # (rpr-K7) cosine of the angle of joint 1 from its reference direction
-        c_1_rpr = inv_root_1_rpr*px_1_rpr
-        # (rpr-K8) sine of the angle of joint 1 from its reference direction
-        s_1_rpr = inv_root_1_rpr*py_1_rpr
-        # (V1) potential energy
-        potential_t_4 = (
-        (c_1_rpr*g_r0_x_3 + g_r0_y_3*s_1_rpr)*(h_1_rpr_x + h_2_rpr_x +
-            rpr_link1_mass*(b_rpr_r0_x*c_1_rpr + b_rpr_r0_y*s_1_rpr)) + (c_1_rpr*g_r0_y_3 -
-            g_r0_x_3*s_1_rpr)*(h_1_rpr_y + h_2_rpr_y + rpr_link1_mass*(b_rpr_r0_y*c_1_rpr -
-            b_rpr_r0_x*s_1_rpr))
+        # (rpr-S) from the base point to the connection point
+        rpr_S_x = t_x + R_xx*rpr_platform_point_x - rpr_base_point_x - R_yx*rpr_platform_point_y
+        rpr_S_y = t_y + R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
+        rpr_c_1 = inv_rpr_root_1*rpr_px_1
+        # (rpr-s_1) sine of the angle of joint 1 from its reference direction
+        rpr_s_1 = inv_rpr_root_1*rpr_py_1
+        # (potential) potential energy
+        rpr_potential_t = (
+        (rpr_c_1*rpr_g_r0_x + rpr_g_r0_y*rpr_s_1)*(rpr_h_1_x + rpr_h_2_x +
+            rpr_link1_mass*(rpr_b_r0_x*rpr_c_1 + rpr_b_r0_y*rpr_s_1)) + (rpr_c_1*rpr_g_r0_y -
+            rpr_g_r0_x*rpr_s_1)*(rpr_h_1_y + rpr_h_2_y + rpr_link1_mass*(rpr_b_r0_y*rpr_c_1 -
+            rpr_b_r0_x*rpr_s_1))
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr)
+        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
             > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
-        potential_t_4,
+        rpr_potential_t,
         ))
     total_rpr, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
         (
-        Kd_1_rrr_t_2, Kd_1_rrr_t_3, b_rrr_r0_x, b_rrr_r0_y, branch_1_rrr, g_r0_x_2, g_r0_y_2,
-            h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t,
-            rho2_1_rrr_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-            rrr_link1_mass, rrr_platform_joint_offset_x, rrr_platform_point_x,
-            rrr_platform_point_y,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_b_r0_x, rrr_b_r0_y,
+            rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
+            rrr_base_point_x, rrr_base_point_y, rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x,
+            rrr_h_1_y, rrr_h_2_x, rrr_h_2_y, rrr_joint2_offset_x, rrr_link1_mass,
+            rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        S_rrr_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
-        S_rrr_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
+        rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (V1) potential energy
-        potential_t_5 = (
-        (c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr)*(h_1_rrr_x + c_2_rrr*h_2_rrr_x + h_2_rrr_y*s_2_rrr +
-            rrr_link1_mass*(b_rrr_r0_x*c_1_rrr + b_rrr_r0_y*s_1_rrr)) + (c_1_rrr*g_r0_y_2 -
-            g_r0_x_2*s_1_rrr)*(h_1_rrr_y + c_2_rrr*h_2_rrr_y + rrr_link1_mass*(b_rrr_r0_y*c_1_rrr
-            - b_rrr_r0_x*s_1_rrr) - h_2_rrr_x*s_2_rrr)
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (potential) potential energy
+        rrr_potential_t = (
+        (rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1)*(rrr_h_1_x + rrr_c_2*rrr_h_2_x +
+            rrr_h_2_y*rrr_s_2 + rrr_link1_mass*(rrr_b_r0_x*rrr_c_1 + rrr_b_r0_y*rrr_s_1)) +
+            (rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)*(rrr_h_1_y + rrr_c_2*rrr_h_2_y +
+            rrr_link1_mass*(rrr_b_r0_y*rrr_c_1 - rrr_b_r0_x*rrr_s_1) - rrr_h_2_x*rrr_s_2)
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
             >= 0.0))
         )
         sums = m.added(sums, leg, (
-        potential_t_5,
+        rrr_potential_t,
         ))
     total_rrr, = sums
     sums = [0.0] * 1
     for leg, k in legs[2]:
         (
-        b_prr_r0_x, branch_1_prr, g_r0_x, g_r0_y, h_1_prr_x, h_1_prr_y, h_2_prr_x, h_2_prr_y,
-            inv_uu_2_prr_t, potential_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_link1_mass,
-            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, uu_2_prr_t,
+        inv_prr_disc_1_t_5, prr_b_r0_x, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
+            prr_g_r0_x, prr_g_r0_y, prr_h_1_x, prr_h_1_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
+            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
+            prr_potential_t,
         ) = k
-        # (prr-K1) from the base point to the connection point
-        S_prr_x = t_x + R_xx*prr_platform_point_x - prr_base_point_x - R_yx*prr_platform_point_y
-        S_prr_y = t_y + R_xx*prr_platform_point_y + R_yx*prr_platform_point_x - prr_base_point_y
-        # (prr-K2) component along axis 1
-        px_1_prr = S_prr_x*prr_base_frame_xx + S_prr_y*prr_base_frame_yx
-        # (prr-K3) discriminant of the distance equation
-        disc_1_prr_t = S_prr_x*S_prr_x + S_prr_y*S_prr_y
-        disc_1_prr = px_1_prr*px_1_prr + uu_2_prr_t - disc_1_prr_t
-        # (prr-K4) displacement of joint 1
-        q_1_prr_t = branch_1_prr*sqrt(disc_1_prr)
-        q_1_prr = px_1_prr + q_1_prr_t
-        # (prr-K7) cosine of the angle of joint 2 from its reference direction
-        c_2_prr = inv_uu_2_prr_t*prr_platform_joint_offset_x*q_1_prr_t
-        # (prr-K8) sine of the angle of joint 2 from its reference direction
-        s_2_prr = (
-        inv_uu_2_prr_t*prr_platform_joint_offset_x*(S_prr_x*prr_base_frame_xy +
-            S_prr_y*prr_base_frame_yy)
+        # (prr-S) from the base point to the connection point
+        prr_S_x = t_x + R_xx*prr_platform_point_x - prr_base_point_x - R_yx*prr_platform_point_y
+        prr_S_y = t_y + R_xx*prr_platform_point_y + R_yx*prr_platform_point_x - prr_base_point_y
+        # (prr-px_1) component along axis 1
+        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        # (prr-disc_1) discriminant of the distance equation
+        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        # (prr-q_1) displacement of joint 1
+        prr_q_1_t = prr_branch_1*sqrt(prr_disc_1)
+        prr_q_1 = prr_px_1 + prr_q_1_t
+        # (prr-c_2) cosine of the angle of joint 2 from its reference direction
+        prr_c_2 = inv_prr_disc_1_t_5*prr_platform_joint_offset_x*prr_q_1_t
+        # (prr-s_2) sine of the angle of joint 2 from its reference direction
+        prr_s_2 = (
+        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+            prr_S_y*prr_base_frame_yy)
         )
-        # (V1) potential energy
-        potential_t_3 = (
-        g_r0_x*(h_1_prr_x + prr_link1_mass*(b_prr_r0_x + q_1_prr) - c_2_prr*h_2_prr_x -
-            h_2_prr_y*s_2_prr) + g_r0_y*(h_1_prr_y + potential_t + h_2_prr_x*s_2_prr -
-            c_2_prr*h_2_prr_y)
+        # (potential) potential energy
+        prr_potential_t_2 = (
+        prr_g_r0_x*(prr_h_1_x + prr_link1_mass*(prr_b_r0_x + prr_q_1) - prr_c_2*prr_h_2_x -
+            prr_h_2_y*prr_s_2) + prr_g_r0_y*(prr_h_1_y + prr_potential_t + prr_h_2_x*prr_s_2 -
+            prr_c_2*prr_h_2_y)
         )
-        ok = ok & m.every(leg, (disc_1_prr >= 0.0))
+        ok = ok & m.every(leg, (prr_disc_1 >= 0.0))
         sums = m.added(sums, leg, (
-        potential_t_3,
+        prr_potential_t_2,
         ))
     total_prr, = sums
-    # (V1) potential energy
-    potential = -potential_t_2 - total_prr - total_rpr - total_rrr
+    # (potential) potential energy
+    potential = -potential_t - total_prr - total_rpr - total_rrr
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -4210,192 +4298,200 @@ def _run_condition(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        branch_1_rpr, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-            rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+            rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_platform_point_x,
+            rpr_platform_point_y,
         ) = k
-        # (rpr-K1) from the base point to the connection point
-        q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        S_rpr_x = q_rpr_in_base_x + t_x - rpr_base_point_x
-        S_rpr_y = q_rpr_in_base_y + t_y - rpr_base_point_y
-        # (rpr-K2) component along the reference direction
-        px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx
-        # (rpr-K3) component across the reference direction
-        py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy
-        # (rpr-K5) squared amplitude
-        rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr
-        # (rpr-K6) amplitude, with the sign of the branch
-        root_1_rpr = branch_1_rpr*sqrt(rho2_1_rpr)
-        # (rpr-V4) reciprocal vector 1
-        inv_root_1_rpr = 1.0/root_1_rpr
-        axis_x_x = S_rpr_x*inv_root_1_rpr
-        axis_x_y = S_rpr_y*inv_root_1_rpr
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_2_rpr_z = axis_x_y*q_rpr_in_base_x - axis_x_x*q_rpr_in_base_y
-        # (C2) rms distance of the platform points from their centroid
-        spread_t_4 = b_c_x - rpr_platform_point_x
-        spread_t_5 = b_c_y - rpr_platform_point_y
-        spread_t_6 = spread_t_4*spread_t_4 + spread_t_5*spread_t_5
-        # (rpr-K5) squared amplitude
-        pivot_size = abs(rho2_1_rpr)
-        # (rpr-V4) reciprocal vector 1
-        pivot_size_2 = abs(root_1_rpr)
-        # (rpr-N18) force at the connection point that balances the leg's inertia and weight along all freedoms
-        least_pivots = least(1.6129032258064515*sqrt(pivot_size), 1.6129032258064517*pivot_size_2)
+        # (rpr-S) from the base point to the connection point
+        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-px_1) component along the reference direction
+        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-rho2_1) squared amplitude
+        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
+        # (rpr-root_1) amplitude, with the sign of the branch
+        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
+        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
+        # (rpr-H_a_2) moment of the column's unit force about the platform origin
+        rpr_H_a_2_z = rpr_axis_x_y*rpr_q_in_base_x - rpr_axis_x_x*rpr_q_in_base_y
+        # (spread) rms distance of the platform points from their centroid
+        rpr_spread_t = b_c_x - rpr_platform_point_x
+        rpr_spread_t_2 = b_c_y - rpr_platform_point_y
+        rpr_spread_t_3 = rpr_spread_t*rpr_spread_t + rpr_spread_t_2*rpr_spread_t_2
+        # (rpr-rho2_1) squared amplitude
+        rpr_pivot_size = abs(rpr_rho2_1)
+        # (rpr-w_1) reciprocal vector 1
+        rpr_pivot_size_2 = abs(rpr_root_1)
+        # (rpr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rpr_least_pivots = (
+        least(1.6129032258064515*sqrt(rpr_pivot_size), 1.6129032258064517*rpr_pivot_size_2)
+        )
         clear = (
-        clear & m.every(leg, (abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) &
-            (abs(root_1_rpr) > _TOLERANCE * 0.62))
+        clear & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) &
+            (abs(rpr_root_1) > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
-        spread_t_6,
+        rpr_spread_t_3,
         ))
-        out_H[_H_rpr[0][leg]] = axis_x_x
-        out_H[_H_rpr[1][leg]] = axis_x_y
-        out_H[_H_rpr[2][leg]] = H_a_2_rpr_z
-        out_pivots[_pivots_rpr[0][leg]] = least_pivots
+        out_H[_H_rpr[0][leg]] = rpr_axis_x_x
+        out_H[_H_rpr[1][leg]] = rpr_axis_x_y
+        out_H[_H_rpr[2][leg]] = rpr_H_a_2_z
+        out_pivots[_pivots_rpr[0][leg]] = rpr_least_pivots
     total_rpr, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
         (
-        Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_rho2_1_rrr_t_4,
-            inv_size_rrr, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx, rrr_base_frame_xy,
-            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_rho2_1_t_4, inv_rrr_size, rrr_Kd_1_t_2,
+            rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
             rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-            rrr_platform_point_y, size_rrr,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x
-        S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*rrr_platform_joint_offset_x*s_2_rrr
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        w_1_rrr_t = (
-        inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        rrr_w_1_t = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy)
         )
-        w_1_rrr_t_2 = (
-        inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
+        rrr_w_1_t_2 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy)
         )
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t
-        # (C2) rms distance of the platform points from their centroid
-        spread_t_7 = b_c_x - rrr_platform_point_x
-        spread_t_8 = b_c_y - rrr_platform_point_y
-        spread_t_9 = spread_t_7*spread_t_7 + spread_t_8*spread_t_8
-        # (rrr-K8) squared amplitude
-        pivot_size_3 = abs(rho2_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        pivot_size_4 = abs(r_1_rrr_r0_y)
-        # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
-        least_pivots_2 = least(sqrt(inv_rho2_1_rrr_t_4*pivot_size_3), inv_size_rrr*pivot_size_4)
-        clear = (
-        clear & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) &
-            (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        # (rrr-H_a_1) moment of the column's unit force about the platform origin
+        rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t
+        # (spread) rms distance of the platform points from their centroid
+        rrr_spread_t = b_c_x - rrr_platform_point_x
+        rrr_spread_t_2 = b_c_y - rrr_platform_point_y
+        rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2
+        # (rrr-rho2_1) squared amplitude
+        rrr_pivot_size = abs(rrr_rho2_1)
+        # (rrr-w_1) reciprocal vector 1
+        rrr_pivot_size_2 = abs(rrr_r_1_r0_y)
+        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_least_pivots = (
+        least(sqrt(inv_rrr_rho2_1_t_4*rrr_pivot_size), inv_rrr_size*rrr_pivot_size_2)
         )
-        reached = reached & m.every(leg, (disc_1_rrr >= 0.0))
+        clear = (
+        clear & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) &
+            (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+        )
+        reached = reached & m.every(leg, (rrr_disc_1 >= 0.0))
         sums = m.added(sums, leg, (
-        spread_t_9,
+        rrr_spread_t_3,
         ))
-        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
-        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
-        out_H[_H_rrr[2][leg]] = H_a_1_rrr_z
-        out_pivots[_pivots_rrr[0][leg]] = least_pivots_2
-        out_reach[_reach_rrr[0][leg]] = disc_1_rrr
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
+        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
+        out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
+        out_pivots[_pivots_rrr[0][leg]] = rrr_least_pivots
+        out_reach[_reach_rrr[0][leg]] = rrr_disc_1
     total_rrr, = sums
     sums = [0.0] * 1
     for leg, k in legs[2]:
         (
-        branch_1_prr, inv_size_prr, inv_uu_2_prr_t, prr_base_frame_xx, prr_base_frame_xy,
-            prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
-            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, size_prr,
-            uu_2_prr_t,
+        inv_prr_disc_1_t_5, inv_prr_size, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
+            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
         ) = k
-        # (prr-K1) from the base point to the connection point
-        q_prr_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        q_prr_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        S_prr_x = q_prr_in_base_x + t_x - prr_base_point_x
-        S_prr_y = q_prr_in_base_y + t_y - prr_base_point_y
-        # (prr-K2) component along axis 1
-        px_1_prr = S_prr_x*prr_base_frame_xx + S_prr_y*prr_base_frame_yx
-        # (prr-K3) discriminant of the distance equation
-        disc_1_prr_t = S_prr_x*S_prr_x + S_prr_y*S_prr_y
-        disc_1_prr = px_1_prr*px_1_prr + uu_2_prr_t - disc_1_prr_t
-        # (prr-K7) cosine of the angle of joint 2 from its reference direction
-        c_2_prr = branch_1_prr*sqrt(disc_1_prr)*inv_uu_2_prr_t*prr_platform_joint_offset_x
-        # (prr-K8) sine of the angle of joint 2 from its reference direction
-        s_2_prr = (
-        inv_uu_2_prr_t*prr_platform_joint_offset_x*(S_prr_x*prr_base_frame_xy +
-            S_prr_y*prr_base_frame_yy)
+        # (prr-S) from the base point to the connection point
+        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
+        # (prr-px_1) component along axis 1
+        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        # (prr-disc_1) discriminant of the distance equation
+        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        # (prr-c_2) cosine of the angle of joint 2 from its reference direction
+        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        # (prr-s_2) sine of the angle of joint 2 from its reference direction
+        prr_s_2 = (
+        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+            prr_S_y*prr_base_frame_yy)
         )
-        # (prr-V3) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -c_2_prr*prr_base_frame_xy - prr_base_frame_xx*s_2_prr
-        axis_y_prr_axes2_in_base_y = -c_2_prr*prr_base_frame_yy - prr_base_frame_yx*s_2_prr
-        # (prr-V2) velocity of the connection point per rate of joint 2
-        v_2_prr_t = c_2_prr*prr_platform_joint_offset_x
-        # (prr-V3) reciprocal vector 1
-        w_1_prr_t = prr_platform_joint_offset_x*s_2_prr/v_2_prr_t
-        _r0_x = -c_2_prr - s_2_prr*w_1_prr_t
-        _r0_y = c_2_prr*w_1_prr_t - s_2_prr
-        w_1_prr_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y + _r0_y*axis_y_prr_axes2_in_base_x
-        w_1_prr_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y - _r0_x*axis_y_prr_axes2_in_base_x
-        # (M10) moment of the column's unit force about the platform origin
-        H_a_1_prr_z = q_prr_in_base_x*w_1_prr_in_base_y - q_prr_in_base_y*w_1_prr_in_base_x
-        # (C2) rms distance of the platform points from their centroid
-        spread_t = b_c_x - prr_platform_point_x
-        spread_t_2 = b_c_y - prr_platform_point_y
-        spread_t_3 = spread_t*spread_t + spread_t_2*spread_t_2
-        # (prr-V3) reciprocal vector 1
-        pivot_size_5 = abs(v_2_prr_t)
-        pivot = inv_size_prr*pivot_size_5
-        reached = reached & m.every(leg, (disc_1_prr >= 0.0))
-        clear = clear & m.every(leg, (abs(-v_2_prr_t) > _TOLERANCE * size_prr))
+        # (prr-w_1) reciprocal vector 1
+        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
+        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
+        # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_t = prr_c_2*prr_platform_joint_offset_x
+        # (prr-w_1) reciprocal vector 1
+        prr_w_1_t = prr_platform_joint_offset_x*prr_s_2/prr_v_2_t
+        prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t
+        prr__r0_y = prr_c_2*prr_w_1_t - prr_s_2
+        prr_w_1_in_base_x = (
+        axis_y_prr_axes2_in_base_x*prr__r0_y + axis_y_prr_axes2_in_base_y*prr__r0_x
+        )
+        prr_w_1_in_base_y = (
+        axis_y_prr_axes2_in_base_y*prr__r0_y - axis_y_prr_axes2_in_base_x*prr__r0_x
+        )
+        # (prr-H_a_1) moment of the column's unit force about the platform origin
+        prr_H_a_1_z = prr_q_in_base_x*prr_w_1_in_base_y - prr_q_in_base_y*prr_w_1_in_base_x
+        # (spread) rms distance of the platform points from their centroid
+        prr_spread_t = b_c_x - prr_platform_point_x
+        prr_spread_t_2 = b_c_y - prr_platform_point_y
+        prr_spread_t_3 = prr_spread_t*prr_spread_t + prr_spread_t_2*prr_spread_t_2
+        # (prr-w_2) reciprocal vector 2
+        prr_pivot_size = abs(prr_v_2_t)
+        prr_pivot = inv_prr_size*prr_pivot_size
+        reached = reached & m.every(leg, (prr_disc_1 >= 0.0))
+        clear = clear & m.every(leg, (abs(-prr_v_2_t) > _TOLERANCE * prr_size))
         sums = m.added(sums, leg, (
-        spread_t_3,
+        prr_spread_t_3,
         ))
-        out_H[_H_prr[0][leg]] = w_1_prr_in_base_x
-        out_H[_H_prr[1][leg]] = w_1_prr_in_base_y
-        out_H[_H_prr[2][leg]] = H_a_1_prr_z
-        out_pivots[_pivots_prr[0][leg]] = pivot
-        out_reach[_reach_prr[0][leg]] = disc_1_prr
+        out_H[_H_prr[0][leg]] = prr_w_1_in_base_x
+        out_H[_H_prr[1][leg]] = prr_w_1_in_base_y
+        out_H[_H_prr[2][leg]] = prr_H_a_1_z
+        out_pivots[_pivots_prr[0][leg]] = prr_pivot
+        out_reach[_reach_prr[0][leg]] = prr_disc_1
     total_prr, = sums
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread = (
     sqrt(0.3333333333333333*total_prr + 0.3333333333333333*total_rpr +
         0.3333333333333333*total_rrr)
@@ -4526,6 +4622,19 @@ def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
     momentum = np.einsum("ijs,js->is", M, V)
     return (momentum,)
+
+
+def _steps_joint_margins(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    margins = _unlimited(q, [0, 1, 2, 3, 4, 5])
+    return (margins,)
+
+
+def _steps_within_limits(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    subtract_1 = q - q
+    within = _not_negative(subtract_1)
+    return (within,)
 
 
 def _steps_actuator_positions(m, X):
@@ -4929,6 +5038,40 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+    )
+
+
+def joint_margins(X, p=None):
+    """How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+    where there is none.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        margins: distances, in the order of q [m or rad] (..., NJ).
+    """
+    return _call(
+        "joint_margins", _steps_joint_margins, p,
+        ("X", X, (NQ,)),
+        unbounded=True,
+    )
+
+
+def within_limits(X, p=None):
+    """Whether all joints are within their limits of displacement.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        within: 1 where no margin is negative, else 0; NaN is neither (...,).
+    """
+    return _call(
+        "within_limits", _steps_within_limits, p,
+        ("X", X, (NQ,)),
     )
 
 

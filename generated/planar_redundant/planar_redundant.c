@@ -26,7 +26,10 @@ enum {
 
 #define R(x) ((real)(x))
 #define UNLESS(condition) ((condition) ? R(0) : R(1))  /* flag of what must hold */
-#define LANES 8  /* states that a batch runs side by side */
+#ifndef PLANAR_REDUNDANT_LANES
+#define PLANAR_REDUNDANT_LANES 8  /* 1 where there are no vectors: less memory, shorter code */
+#endif
+#define LANES ((size_t)PLANAR_REDUNDANT_LANES)  /* states that a batch runs side by side */
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
@@ -36,6 +39,20 @@ enum {
 #define INLINE static inline
 #define APART static
 #endif
+
+/* Bytes of a vector. */
+#if defined(__AVX__)
+#define VECTOR 32
+#elif defined(__SSE2__) || defined(__ARM_NEON)
+#define VECTOR 16
+#else
+#define VECTOR 1
+#endif
+/* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
+#define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
+#define LEGS(n) \
+    ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
+        : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
@@ -104,63 +121,122 @@ INLINE int is_finite(real x)
     return x - x == 0;
 }
 
-/* Why states are impossible, by state: more than 0 where a cause holds. */
+/* Why states are impossible, by state: more than 0 where a cause holds.  total: the sum of all
+   results, and side by side of all inputs, which is finite only where they are. */
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
+    real total[LANES];
 } verdict;
 
 INLINE void start(size_t w, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
+        t->total[k] = 0;
     }
 }
 
-/* x - x is 0 for every number and NaN for the rest; sums side by side add up fast. */
+/* x - x is 0 for every number and NaN for the rest. */
 INLINE int all_finite(const real *x, size_t n)
 {
+    real sum = 0;
+    for (size_t i = 0; i < n; ++i) {
+        sum += x[i] - x[i];
+    }
+    return sum == 0;
+}
+
+/* Whether all are finite: then so is their sum, but for numbers so large that they need a closer
+   look.  Many add up fast as sums side by side. */
+INLINE int sum_is_finite(const real *x, size_t n)
+{
+    if (n < 2*LANES) {
+        return is_finite(total(x, n));
+    }
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
         for (size_t k = 0; k < LANES; ++k) {
-            sum[k] += x[i + k] - x[i + k];
+            sum[k] += x[i + k];
         }
     }
     for (size_t i = most; i < n; ++i) {
-        sum[0] += x[i] - x[i];
+        sum[i - most] += x[i];
     }
-    return total(sum, LANES) == 0;
+    return is_finite(total(sum, LANES));
 }
 
 /* Flag the states with entries that are not finite; the states stand side by side. */
 INLINE void check(size_t size, size_t w, const real *x, real *flags)
 {
-    if (!all_finite(x, size*w)) {
+    if (!sum_is_finite(x, size*w)) {
         for (size_t i = 0; i < size*w; ++i) {
             flags[i%w] += UNLESS(is_finite(x[i]));
         }
     }
 }
 
-/* Input, given state by state, with its states side by side: entry e of state k at e*w + k. */
-INLINE const real *side_by_side(size_t size, size_t w, const real *x, real *lanes, real *flags)
+/* Add up the entries of every state. */
+INLINE void add_up(size_t size, const real *x, real *total)
 {
-    for (size_t e = 0; e < size && w > 1; ++e) {
-        for (size_t k = 0; k < w; ++k) {
-            lanes[e*w + k] = x[size*k + e];
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            total[k] += x[e*LANES + k];
         }
     }
-    check(size, w, w > 1 ? lanes : x, flags);
-    return w > 1 ? lanes : x;
 }
 
-/* The same for input that may be NULL: then all its entries are `none`. */
-INLINE const real *optional(size_t size, size_t w, const real *x, real none, real *lanes, real *flags)
+/* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
+INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
 {
-    for (size_t e = 0; e < size*w && !x; ++e) {
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            lanes[e*LANES + k] = x[size*k + e];
+        }
+    }
+    add_up(size, lanes, total);
+    return lanes;
+}
+
+/* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
+INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+{
+    for (size_t e = 0; e < size && !x; ++e) {
+        own[e] = none;
+    }
+    if (x) {
+        check(size, 1, x, flags);
+    }
+    return x ? x : own;
+}
+
+INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
+    real *total)
+{
+    for (size_t e = 0; e < size*LANES && !x; ++e) {
         lanes[e] = none;
     }
-    return x ? side_by_side(size, w, x, lanes, flags) : lanes;
+    return x ? side_by_side(size, x, lanes, total) : lanes;
+}
+
+/* Motion of the base, or NULL: at rest, its axes those of the world. */
+INLINE const real *motion_of_base(const real *x, real *own, real *flags)
+{
+    for (size_t e = 0; e < 18 && !x; ++e) {
+        own[e] = R(e < 9 && e%4 == 0);
+    }
+    if (x) {
+        check(18, 1, x, flags);
+    }
+    return x ? x : own;
+}
+
+INLINE const real *motion_of_base_side_by_side(const real *x, real *lanes, real *total)
+{
+    for (size_t i = 0; i < 18*LANES && !x; ++i) {
+        lanes[i] = R(i/LANES < 9 && i/LANES%4 == 0);
+    }
+    return x ? side_by_side(18, x, lanes, total) : lanes;
 }
 
 /* Flag the states of an input, NULL or given state by state, with entries that are not positive. */
@@ -171,14 +247,25 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE void judge(const verdict *t, size_t w, int *code)
+INLINE void judge(const verdict *t, int *code)
 {
-    for (size_t k = 0; k < w; ++k) {
-        code[k] = t->invalid[k] > 0 ? INVALID
-            : t->diverged[k] > 0 ? NOT_CONVERGED
-            : t->unreachable[k] > 0 ? UNREACHABLE
-            : t->singular[k] > 0 ? SINGULAR
-            : t->overflow[k] > 0 ? INVALID : OK;
+    *code = t->invalid[0] > 0 ? INVALID
+        : t->diverged[0] > 0 ? NOT_CONVERGED
+        : t->unreachable[0] > 0 ? UNREACHABLE
+        : t->singular[0] > 0 ? SINGULAR
+        : t->overflow[0] > 0 ? INVALID : OK;
+}
+
+/* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
+INLINE void suspect(const verdict *t, int *code)
+{
+    real flags[LANES];
+    for (size_t k = 0; k < LANES; ++k) {
+        flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
+            + (t->total[k] - t->total[k]);
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        code[k] = flags[k] == 0 ? OK : INVALID;
     }
 }
 
@@ -199,17 +286,19 @@ INLINE void refuse(size_t size, real *out)
     }
 }
 
-/* Outputs state by state; NaN where a state is impossible. */
-INLINE void deliver(const real *x, size_t size, size_t w, const int *code, real *out)
+/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < w; ++k) {
-            out[size*k + e] = x[e*w + k];
-        }
+        out[e] = x[e];
     }
-    for (size_t k = 0; k < w; ++k) {
-        if (code[k] != OK) {
-            refuse(size, out + size*k);
+}
+
+INLINE void deliver(size_t size, const real *x, real *out)
+{
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            out[size*k + e] = x[e*LANES + k];
         }
     }
 }
@@ -496,10 +585,10 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
     const real platform_inertia_zz = params->platform_inertia[2][2];
-    /* (L2) first moment about the platform origin */
+    /* (h_star) first moment about the platform origin */
     const real h_star_t = platform_centre_of_mass_x*platform_mass;
     const real h_star_t_2 = platform_centre_of_mass_y*platform_mass;
-    /* (L3) inertia tensor about the platform origin */
+    /* (J_star) inertia tensor about the platform origin */
     const real J_star_t = platform_centre_of_mass_y*platform_centre_of_mass_y;
     const real J_star_t_2 = J_star_t + platform_centre_of_mass_x*platform_centre_of_mass_x;
     const real J_star_t_3 = J_star_t*platform_mass;
@@ -507,143 +596,142 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
     model->gravity_x = gravity_x;
     model->gravity_y = gravity_y;
     for (size_t leg = 0; leg < 1; ++leg) {
-        const real prrr_base_point_x = params->prrr_base_point[leg][0];
-        const real prrr_base_point_y = params->prrr_base_point[leg][1];
-        const real prrr_base_frame_xx = params->prrr_base_frame[leg][0][0];
-        const real prrr_base_frame_xy = params->prrr_base_frame[leg][0][1];
-        const real prrr_base_frame_yx = params->prrr_base_frame[leg][1][0];
-        const real prrr_base_frame_yy = params->prrr_base_frame[leg][1][1];
-        const real prrr_platform_point_x = params->prrr_platform_point[leg][0];
-        const real prrr_platform_point_y = params->prrr_platform_point[leg][1];
-        const real prrr_joint3_offset_x = params->prrr_joint3_offset[leg][0];
-        const real prrr_platform_joint_offset_x = params->prrr_platform_joint_offset[leg][0];
-        const real prrr_link1_mass = params->prrr_link1_mass[leg];
-        const real prrr_link1_centre_of_mass_x = params->prrr_link1_centre_of_mass[leg][0];
-        const real prrr_link1_centre_of_mass_y = params->prrr_link1_centre_of_mass[leg][1];
-        const real prrr_link2_mass = params->prrr_link2_mass[leg];
-        const real prrr_link2_centre_of_mass_x = params->prrr_link2_centre_of_mass[leg][0];
-        const real prrr_link2_centre_of_mass_y = params->prrr_link2_centre_of_mass[leg][1];
-        const real prrr_link2_inertia_zz = params->prrr_link2_inertia[leg][2][2];
-        const real prrr_link3_mass = params->prrr_link3_mass[leg];
-        const real prrr_link3_centre_of_mass_x = params->prrr_link3_centre_of_mass[leg][0];
-        const real prrr_link3_centre_of_mass_y = params->prrr_link3_centre_of_mass[leg][1];
-        const real prrr_link3_inertia_zz = params->prrr_link3_inertia[leg][2][2];
-        static const signed char signs_branch_2_prrr[] = {1};
-        const real branch_2_prrr = signs_branch_2_prrr[leg];
-        /* (prrr-K18) squared length, across the axis, of the direction fixed in link 3 */
-        const real uu_3_prrr_t = prrr_platform_joint_offset_x*prrr_platform_joint_offset_x;
-        /* (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond
+        const size_t own = leg;
+        const real prrr_base_point_x = params->prrr_base_point[own][0];
+        const real prrr_base_point_y = params->prrr_base_point[own][1];
+        const real prrr_base_frame_xx = params->prrr_base_frame[own][0][0];
+        const real prrr_base_frame_xy = params->prrr_base_frame[own][0][1];
+        const real prrr_base_frame_yx = params->prrr_base_frame[own][1][0];
+        const real prrr_base_frame_yy = params->prrr_base_frame[own][1][1];
+        const real prrr_platform_point_x = params->prrr_platform_point[own][0];
+        const real prrr_platform_point_y = params->prrr_platform_point[own][1];
+        const real prrr_joint3_offset_x = params->prrr_joint3_offset[own][0];
+        const real prrr_platform_joint_offset_x = params->prrr_platform_joint_offset[own][0];
+        const real prrr_link1_mass = params->prrr_link1_mass[own];
+        const real prrr_link1_centre_of_mass_x = params->prrr_link1_centre_of_mass[own][0];
+        const real prrr_link1_centre_of_mass_y = params->prrr_link1_centre_of_mass[own][1];
+        const real prrr_link2_mass = params->prrr_link2_mass[own];
+        const real prrr_link2_centre_of_mass_x = params->prrr_link2_centre_of_mass[own][0];
+        const real prrr_link2_centre_of_mass_y = params->prrr_link2_centre_of_mass[own][1];
+        const real prrr_link2_inertia_zz = params->prrr_link2_inertia[own][2][2];
+        const real prrr_link3_mass = params->prrr_link3_mass[own];
+        const real prrr_link3_centre_of_mass_x = params->prrr_link3_centre_of_mass[own][0];
+        const real prrr_link3_centre_of_mass_y = params->prrr_link3_centre_of_mass[own][1];
+        const real prrr_link3_inertia_zz = params->prrr_link3_inertia[own][2][2];
+        static const signed char signs_prrr_branch_2[] = {1};
+        const real prrr_branch_2 = signs_prrr_branch_2[own];
+        /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real Kd_2_prrr_t = prrr_joint3_offset_x*prrr_joint3_offset_x;
-        const real Kd_2_prrr_t_2 = R(0.5)*Kd_2_prrr_t;
-        const real Kd_2_prrr_t_3 = R(0.5)*uu_3_prrr_t;
-        /* (prrr-G2) length of the leg's lever arms, the measure of what is near singular */
-        const real size_prrr_t = R(4.58151643161e-07) + Kd_2_prrr_t + uu_3_prrr_t;
-        const real size_prrr = root(size_prrr_t);
-        /* (prrr-K9) squared amplitude */
-        const real rho2_2_prrr_t = size_prrr*size_prrr*size_prrr_t;
-        /* (prrr-K16) the vector from joint 2 to the connection point, resolved along link 2 */
-        const real inv_Kd_2_prrr_t = 1/Kd_2_prrr_t;
-        /* (prrr-K19) cosine of the angle of joint 3 from its reference direction */
-        const real inv_uu_3_prrr_t = 1/uu_3_prrr_t;
-        /* (prrr-G5) inertia tensor of link 2 about the origin of link 2 */
-        const real J_2_prrr_t = prrr_link2_centre_of_mass_x*prrr_link2_centre_of_mass_x +
-            prrr_link2_centre_of_mass_y*prrr_link2_centre_of_mass_y;
-        const real J_2_prrr_zz = prrr_link2_inertia_zz + J_2_prrr_t*prrr_link2_mass;
-        /* (prrr-G6) connection point to the centre of mass of link 3 */
-        const real rho_tip_3_prrr_x = prrr_link3_centre_of_mass_x - prrr_platform_joint_offset_x;
-        /* (prrr-G8) inertia tensor of link 3 about the connection point */
-        const real J_3_prrr_t = prrr_link3_centre_of_mass_y*prrr_link3_centre_of_mass_y +
-            rho_tip_3_prrr_x*rho_tip_3_prrr_x;
-        const real J_3_prrr_zz = prrr_link3_inertia_zz + J_3_prrr_t*prrr_link3_mass;
-        /* (prrr-N19) inertia tensor of the links from 2 outwards about joint 2 */
-        const real Jc_2_prrr_zz = J_2_prrr_zz + J_3_prrr_zz;
-        /* (prrr-G7) first moment of link 3 about the connection point */
-        const real h_3_prrr_x = prrr_link3_mass*rho_tip_3_prrr_x;
-        const real h_3_prrr_y = prrr_link3_centre_of_mass_y*prrr_link3_mass;
-        /* (prrr-V6) reciprocal vector 2 */
+        const real prrr_Kd_2_t = prrr_joint3_offset_x*prrr_joint3_offset_x;
+        const real prrr_Kd_2_t_2 = R(0.5)*prrr_Kd_2_t;
+        const real prrr_Kd_2_t_3 = prrr_platform_joint_offset_x*prrr_platform_joint_offset_x;
+        const real prrr_Kd_2_t_4 = R(0.5)*prrr_Kd_2_t_3;
+        /* (prrr-size) length of the leg's lever arms, the measure of what is near singular */
+        const real prrr_size_t = R(4.58151643161e-07) + prrr_Kd_2_t + prrr_Kd_2_t_3;
+        const real prrr_size = root(prrr_size_t);
+        /* (prrr-rho2_2) squared amplitude */
+        const real prrr_rho2_2_t = prrr_size*prrr_size*prrr_size_t;
+        /* (prrr-xi_2) the vector from joint 2 to the connection point, resolved along link 2 */
+        const real inv_prrr_Kd_2_t = 1/prrr_Kd_2_t;
+        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_prrr_Kd_2_t_7 = 1/prrr_Kd_2_t_3;
+        /* (prrr-rho_tip_3) connection point to the centre of mass of link 3 */
+        const real prrr_rho_tip_3_x = prrr_link3_centre_of_mass_x - prrr_platform_joint_offset_x;
+        /* (prrr-h_3) first moment of link 3 about the connection point */
+        const real prrr_h_3_x = prrr_link3_mass*prrr_rho_tip_3_x;
+        const real prrr_h_3_y = prrr_link3_centre_of_mass_y*prrr_link3_mass;
+        /* (prrr-w_3) reciprocal vector 2 */
         const real inv_prrr_platform_joint_offset_x = 1/prrr_platform_joint_offset_x;
-        /* (prrr-N42) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
-           and weight */
-        const real d_Gamma_2_prrr_t = J_3_prrr_zz*inv_prrr_platform_joint_offset_x;
-        const real d_Gamma_2_prrr_y = d_Gamma_2_prrr_t + h_3_prrr_x;
-        /* (prrr-N52) coefficient of the acceleration in: force at the connection point that balances the
+        /* (prrr-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
+           about its reference point */
+        const real prrr_d_phi_3_t = inv_prrr_platform_joint_offset_x*prrr_h_3_y;
+        /* (prrr-J_3) inertia tensor of link 3 about the connection point */
+        const real prrr_J_3_t = prrr_link3_centre_of_mass_y*prrr_link3_centre_of_mass_y +
+            prrr_rho_tip_3_x*prrr_rho_tip_3_x;
+        const real prrr_J_3_zz = prrr_link3_inertia_zz + prrr_J_3_t*prrr_link3_mass;
+        /* (prrr-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
+           inertia and weight */
+        const real prrr_d_Gamma_3_t = inv_prrr_platform_joint_offset_x*prrr_J_3_zz;
+        const real prrr_d_Gamma_3_y = prrr_d_Gamma_3_t + prrr_h_3_x;
+        /* (prrr-J_2) inertia tensor of link 2 about the origin of link 2 */
+        const real prrr_J_2_t = prrr_link2_centre_of_mass_x*prrr_link2_centre_of_mass_x +
+            prrr_link2_centre_of_mass_y*prrr_link2_centre_of_mass_y;
+        const real prrr_J_2_zz = prrr_link2_inertia_zz + prrr_J_2_t*prrr_link2_mass;
+        /* (prrr-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
+           about the connection point */
+        const real prrr_Jc_2_zz = prrr_J_2_zz + prrr_J_3_zz;
+        /* (prrr-d_G) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
-        const real d_G_prrr_t = d_Gamma_2_prrr_y*inv_prrr_platform_joint_offset_x;
-        /* (prrr-N14) coefficient of the acceleration in: inertia force of link 3 from its turning about
-           its reference point */
-        const real d_phi_3_prrr_t = h_3_prrr_y*inv_prrr_platform_joint_offset_x;
-        /* (prrr-N55) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real prrr_d_G_t = inv_prrr_platform_joint_offset_x*prrr_d_Gamma_3_y;
+        /* (prrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_prrr_yy = -d_G_prrr_t - h_3_prrr_x*inv_prrr_platform_joint_offset_x;
-        /* (L2) first moment about the platform origin */
-        const real h_star_t_3 = prrr_link3_mass*prrr_platform_point_x;
-        const real h_star_t_4 = prrr_link3_mass*prrr_platform_point_y;
-        /* (L3) inertia tensor about the platform origin */
-        const real J_star_t_5 = prrr_platform_point_y*prrr_platform_point_y;
-        const real J_star_t_6 = J_star_t_5 + prrr_platform_point_x*prrr_platform_point_x;
-        const real J_star_t_7 = J_star_t_5*prrr_link3_mass;
-        const real J_star_t_8 = J_star_t_6*prrr_link3_mass;
-        /* (prrr-N6) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real g_r0_x = gravity_x*prrr_base_frame_xy + gravity_y*prrr_base_frame_yy;
-        const real g_r0_y = -gravity_x*prrr_base_frame_xx - gravity_y*prrr_base_frame_yx;
-        /* (prrr-G4) first moment of link 2 about the origin of link 2 */
-        const real h_2_prrr_x = prrr_link2_centre_of_mass_x*prrr_link2_mass;
-        const real h_2_prrr_y = prrr_link2_centre_of_mass_y*prrr_link2_mass;
-        /* (prrr-N4) remainder without the acceleration in: inertia force of link 1 less its weight */
-        const real f_1_prrr_o_x = g_r0_x*prrr_link1_mass;
-        /* (prrr-N24) force that accelerates joint 1, per unit */
-        const real P_c1_prrr_t = prrr_link1_mass + prrr_link2_mass;
-        /* (prrr-G3) first moment of link 1 about the origin of link 1 */
-        const real h_1_prrr_x = prrr_link1_centre_of_mass_x*prrr_link1_mass;
-        const real h_1_prrr_y = prrr_link1_centre_of_mass_y*prrr_link1_mass;
-        /* (V1) potential energy */
-        const real b_prrr_r0_x = prrr_base_frame_xy*prrr_base_point_x +
+        const real prrr_d_c_yy = -prrr_d_G_t - inv_prrr_platform_joint_offset_x*prrr_h_3_x;
+        /* (h_star) first moment about the platform origin */
+        const real prrr_h_star_t = prrr_link3_mass*prrr_platform_point_x;
+        const real prrr_h_star_t_2 = prrr_link3_mass*prrr_platform_point_y;
+        /* (J_star) inertia tensor about the platform origin */
+        const real prrr_J_star_t = prrr_platform_point_y*prrr_platform_point_y;
+        const real prrr_J_star_t_2 = prrr_J_star_t + prrr_platform_point_x*prrr_platform_point_x;
+        const real prrr_J_star_t_3 = prrr_J_star_t*prrr_link3_mass;
+        const real prrr_J_star_t_4 = prrr_J_star_t_2*prrr_link3_mass;
+        /* (prrr-h_2) first moment of link 2 about the origin of link 2 */
+        const real prrr_h_2_x = prrr_link2_centre_of_mass_x*prrr_link2_mass;
+        const real prrr_h_2_y = prrr_link2_centre_of_mass_y*prrr_link2_mass;
+        /* (prrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real prrr_g_r0_x = gravity_x*prrr_base_frame_xy + gravity_y*prrr_base_frame_yy;
+        const real prrr_g_r0_y = -gravity_x*prrr_base_frame_xx - gravity_y*prrr_base_frame_yx;
+        /* (prrr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight */
+        const real prrr_f_1_o_x = prrr_g_r0_x*prrr_link1_mass;
+        /* (prrr-P_c_1) force that accelerates joint 1, per unit */
+        const real prrr_P_c_1_t = prrr_link1_mass + prrr_link2_mass;
+        /* (prrr-h_1) first moment of link 1 about the origin of link 1 */
+        const real prrr_h_1_x = prrr_link1_centre_of_mass_x*prrr_link1_mass;
+        const real prrr_h_1_y = prrr_link1_centre_of_mass_y*prrr_link1_mass;
+        /* (potential) potential energy */
+        const real prrr_b_r0_x = prrr_base_frame_xy*prrr_base_point_x +
             prrr_base_frame_yy*prrr_base_point_y;
-        const real b_prrr_r0_y = -prrr_base_frame_xx*prrr_base_point_x -
+        const real prrr_b_r0_y = -prrr_base_frame_xx*prrr_base_point_x -
             prrr_base_frame_yx*prrr_base_point_y;
-        const real potential_t = b_prrr_r0_y*prrr_link1_mass;
-        const real potential_t_2 = b_prrr_r0_y*prrr_link2_mass;
-        /* (prrr-K9) squared amplitude */
-        const real inv_rho2_2_prrr_t_4 = 1/rho2_2_prrr_t;
-        /* (prrr-V5) reciprocal vector 1 */
-        const real inv_size_prrr = 1/size_prrr;
-        model->J_2_prrr_zz[leg] = J_2_prrr_zz;
-        model->J_3_prrr_zz[leg] = J_3_prrr_zz;
-        model->Jc_2_prrr_zz[leg] = Jc_2_prrr_zz;
-        model->Kd_2_prrr_t_2[leg] = Kd_2_prrr_t_2;
-        model->Kd_2_prrr_t_3[leg] = Kd_2_prrr_t_3;
-        model->P_c1_prrr_t[leg] = P_c1_prrr_t;
-        model->b_prrr_r0_x[leg] = b_prrr_r0_x;
-        model->branch_2_prrr[leg] = branch_2_prrr;
-        model->d_G_prrr_t[leg] = d_G_prrr_t;
-        model->d_Gamma_2_prrr_t[leg] = d_Gamma_2_prrr_t;
-        model->d_Gamma_2_prrr_y[leg] = d_Gamma_2_prrr_y;
-        model->d_c_prrr_yy[leg] = d_c_prrr_yy;
-        model->d_phi_3_prrr_t[leg] = d_phi_3_prrr_t;
-        model->f_1_prrr_o_x[leg] = f_1_prrr_o_x;
-        model->g_r0_x[leg] = g_r0_x;
-        model->g_r0_y[leg] = g_r0_y;
-        model->h_1_prrr_x[leg] = h_1_prrr_x;
-        model->h_1_prrr_y[leg] = h_1_prrr_y;
-        model->h_2_prrr_x[leg] = h_2_prrr_x;
-        model->h_2_prrr_y[leg] = h_2_prrr_y;
-        model->h_3_prrr_x[leg] = h_3_prrr_x;
-        model->h_3_prrr_y[leg] = h_3_prrr_y;
-        model->inv_Kd_2_prrr_t[leg] = inv_Kd_2_prrr_t;
+        const real prrr_potential_t = prrr_b_r0_y*prrr_link1_mass;
+        const real prrr_potential_t_2 = prrr_b_r0_y*prrr_link2_mass;
+        /* (prrr-rho2_2) squared amplitude */
+        const real inv_prrr_rho2_2_t_4 = 1/prrr_rho2_2_t;
+        /* (prrr-w_2) reciprocal vector 1 */
+        const real inv_prrr_size = 1/prrr_size;
+        model->inv_prrr_Kd_2_t[leg] = inv_prrr_Kd_2_t;
+        model->inv_prrr_Kd_2_t_7[leg] = inv_prrr_Kd_2_t_7;
         model->inv_prrr_platform_joint_offset_x[leg] = inv_prrr_platform_joint_offset_x;
-        model->inv_rho2_2_prrr_t_4[leg] = inv_rho2_2_prrr_t_4;
-        model->inv_size_prrr[leg] = inv_size_prrr;
-        model->inv_uu_3_prrr_t[leg] = inv_uu_3_prrr_t;
-        model->potential_t[leg] = potential_t;
-        model->potential_t_2[leg] = potential_t_2;
+        model->inv_prrr_rho2_2_t_4[leg] = inv_prrr_rho2_2_t_4;
+        model->inv_prrr_size[leg] = inv_prrr_size;
+        model->prrr_J_2_zz[leg] = prrr_J_2_zz;
+        model->prrr_J_3_zz[leg] = prrr_J_3_zz;
+        model->prrr_Jc_2_zz[leg] = prrr_Jc_2_zz;
+        model->prrr_Kd_2_t_2[leg] = prrr_Kd_2_t_2;
+        model->prrr_Kd_2_t_4[leg] = prrr_Kd_2_t_4;
+        model->prrr_P_c_1_t[leg] = prrr_P_c_1_t;
+        model->prrr_b_r0_x[leg] = prrr_b_r0_x;
         model->prrr_base_frame_xx[leg] = prrr_base_frame_xx;
         model->prrr_base_frame_xy[leg] = prrr_base_frame_xy;
         model->prrr_base_frame_yx[leg] = prrr_base_frame_yx;
         model->prrr_base_frame_yy[leg] = prrr_base_frame_yy;
         model->prrr_base_point_x[leg] = prrr_base_point_x;
         model->prrr_base_point_y[leg] = prrr_base_point_y;
+        model->prrr_branch_2[leg] = prrr_branch_2;
+        model->prrr_d_G_t[leg] = prrr_d_G_t;
+        model->prrr_d_Gamma_3_t[leg] = prrr_d_Gamma_3_t;
+        model->prrr_d_Gamma_3_y[leg] = prrr_d_Gamma_3_y;
+        model->prrr_d_c_yy[leg] = prrr_d_c_yy;
+        model->prrr_d_phi_3_t[leg] = prrr_d_phi_3_t;
+        model->prrr_f_1_o_x[leg] = prrr_f_1_o_x;
+        model->prrr_g_r0_x[leg] = prrr_g_r0_x;
+        model->prrr_g_r0_y[leg] = prrr_g_r0_y;
+        model->prrr_h_1_x[leg] = prrr_h_1_x;
+        model->prrr_h_1_y[leg] = prrr_h_1_y;
+        model->prrr_h_2_x[leg] = prrr_h_2_x;
+        model->prrr_h_2_y[leg] = prrr_h_2_y;
+        model->prrr_h_3_x[leg] = prrr_h_3_x;
+        model->prrr_h_3_y[leg] = prrr_h_3_y;
         model->prrr_joint3_offset_x[leg] = prrr_joint3_offset_x;
         model->prrr_link1_mass[leg] = prrr_link1_mass;
         model->prrr_link2_mass[leg] = prrr_link2_mass;
@@ -651,175 +739,177 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
         model->prrr_platform_joint_offset_x[leg] = prrr_platform_joint_offset_x;
         model->prrr_platform_point_x[leg] = prrr_platform_point_x;
         model->prrr_platform_point_y[leg] = prrr_platform_point_y;
-        model->rho2_2_prrr_t[leg] = rho2_2_prrr_t;
-        model->size_prrr[leg] = size_prrr;
+        model->prrr_potential_t[leg] = prrr_potential_t;
+        model->prrr_potential_t_2[leg] = prrr_potential_t_2;
+        model->prrr_rho2_2_t[leg] = prrr_rho2_2_t;
+        model->prrr_size[leg] = prrr_size;
         total_prrr += prrr_link3_mass;
-        total_prrr_x += h_star_t_3;
-        total_prrr_y += h_star_t_4;
-        total_prrr_xx += J_star_t_7;
-        total_prrr_zz += J_star_t_8;
+        total_prrr_x += prrr_h_star_t;
+        total_prrr_y += prrr_h_star_t_2;
+        total_prrr_xx += prrr_J_star_t_3;
+        total_prrr_zz += prrr_J_star_t_4;
         total_prrr_x_2 += prrr_platform_point_x;
         total_prrr_y_2 += prrr_platform_point_y;
-        total_prrr_2 += size_prrr_t;
+        total_prrr_2 += prrr_size_t;
     }
     for (size_t leg = 0; leg < 2; ++leg) {
-        const real rrr_base_point_x = params->rrr_base_point[leg][0];
-        const real rrr_base_point_y = params->rrr_base_point[leg][1];
-        const real rrr_base_frame_xx = params->rrr_base_frame[leg][0][0];
-        const real rrr_base_frame_xy = params->rrr_base_frame[leg][0][1];
-        const real rrr_base_frame_yx = params->rrr_base_frame[leg][1][0];
-        const real rrr_base_frame_yy = params->rrr_base_frame[leg][1][1];
-        const real rrr_platform_point_x = params->rrr_platform_point[leg][0];
-        const real rrr_platform_point_y = params->rrr_platform_point[leg][1];
-        const real rrr_joint2_offset_x = params->rrr_joint2_offset[leg][0];
-        const real rrr_platform_joint_offset_x = params->rrr_platform_joint_offset[leg][0];
-        const real rrr_link1_mass = params->rrr_link1_mass[leg];
-        const real rrr_link1_centre_of_mass_x = params->rrr_link1_centre_of_mass[leg][0];
-        const real rrr_link1_centre_of_mass_y = params->rrr_link1_centre_of_mass[leg][1];
-        const real rrr_link1_inertia_zz = params->rrr_link1_inertia[leg][2][2];
-        const real rrr_link2_mass = params->rrr_link2_mass[leg];
-        const real rrr_link2_centre_of_mass_x = params->rrr_link2_centre_of_mass[leg][0];
-        const real rrr_link2_centre_of_mass_y = params->rrr_link2_centre_of_mass[leg][1];
-        const real rrr_link2_inertia_zz = params->rrr_link2_inertia[leg][2][2];
-        static const signed char signs_branch_1_rrr[] = {1, 1};
-        const real branch_1_rrr = signs_branch_1_rrr[leg];
-        /* (rrr-K17) squared length, across the axis, of the direction fixed in link 2 */
-        const real uu_2_rrr_t = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const size_t own = leg;
+        const real rrr_base_point_x = params->rrr_base_point[own][0];
+        const real rrr_base_point_y = params->rrr_base_point[own][1];
+        const real rrr_base_frame_xx = params->rrr_base_frame[own][0][0];
+        const real rrr_base_frame_xy = params->rrr_base_frame[own][0][1];
+        const real rrr_base_frame_yx = params->rrr_base_frame[own][1][0];
+        const real rrr_base_frame_yy = params->rrr_base_frame[own][1][1];
+        const real rrr_platform_point_x = params->rrr_platform_point[own][0];
+        const real rrr_platform_point_y = params->rrr_platform_point[own][1];
+        const real rrr_joint2_offset_x = params->rrr_joint2_offset[own][0];
+        const real rrr_platform_joint_offset_x = params->rrr_platform_joint_offset[own][0];
+        const real rrr_link1_mass = params->rrr_link1_mass[own];
+        const real rrr_link1_centre_of_mass_x = params->rrr_link1_centre_of_mass[own][0];
+        const real rrr_link1_centre_of_mass_y = params->rrr_link1_centre_of_mass[own][1];
+        const real rrr_link1_inertia_zz = params->rrr_link1_inertia[own][2][2];
+        const real rrr_link2_mass = params->rrr_link2_mass[own];
+        const real rrr_link2_centre_of_mass_x = params->rrr_link2_centre_of_mass[own][0];
+        const real rrr_link2_centre_of_mass_y = params->rrr_link2_centre_of_mass[own][1];
+        const real rrr_link2_inertia_zz = params->rrr_link2_inertia[own][2][2];
+        static const signed char signs_rrr_branch_1[] = {1, 1};
+        const real rrr_branch_1 = signs_rrr_branch_1[own];
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = rrr_joint2_offset_x*rrr_joint2_offset_x;
-        const real Kd_1_rrr_t_2 = R(0.5)*Kd_1_rrr_t;
-        const real Kd_1_rrr_t_3 = R(0.5)*uu_2_rrr_t;
-        /* (rrr-G2) length of the leg's lever arms, the measure of what is near singular */
-        const real size_rrr_t = R(4.58151643161e-07) + Kd_1_rrr_t + uu_2_rrr_t;
-        const real size_rrr = root(size_rrr_t);
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr_t = size_rrr*size_rrr*size_rrr_t;
-        /* (rrr-K15) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_Kd_1_rrr_t_5 = 1/Kd_1_rrr_t;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real inv_uu_2_rrr_t = 1/uu_2_rrr_t;
-        /* (rrr-G4) inertia tensor of link 1 about the origin of link 1 */
-        const real J_1_rrr_t = rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
-            rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y;
-        const real J_1_rrr_zz = rrr_link1_inertia_zz + J_1_rrr_t*rrr_link1_mass;
-        /* (rrr-G5) connection point to the centre of mass of link 2 */
-        const real rho_tip_2_rrr_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x;
-        /* (rrr-G7) inertia tensor of link 2 about the connection point */
-        const real J_2_rrr_t = rho_tip_2_rrr_x*rho_tip_2_rrr_x +
-            rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y;
-        const real J_2_rrr_zz = rrr_link2_inertia_zz + J_2_rrr_t*rrr_link2_mass;
-        /* (rrr-N11) inertia tensor of the links from 1 outwards about joint 1 */
-        const real Jc_1_rrr_zz = J_1_rrr_zz + J_2_rrr_zz;
-        /* (rrr-G6) first moment of link 2 about the connection point */
-        const real h_2_rrr_x = rho_tip_2_rrr_x*rrr_link2_mass;
-        const real h_2_rrr_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
-        /* (rrr-V6) reciprocal vector 2 */
+        const real rrr_Kd_1_t = rrr_joint2_offset_x*rrr_joint2_offset_x;
+        const real rrr_Kd_1_t_2 = R(0.5)*rrr_Kd_1_t;
+        const real rrr_Kd_1_t_3 = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x;
+        const real rrr_Kd_1_t_4 = R(0.5)*rrr_Kd_1_t_3;
+        /* (rrr-size) length of the leg's lever arms, the measure of what is near singular */
+        const real rrr_size_t = R(4.58151643161e-07) + rrr_Kd_1_t + rrr_Kd_1_t_3;
+        const real rrr_size = root(rrr_size_t);
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1_t = rrr_size*rrr_size*rrr_size_t;
+        /* (rrr-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real inv_rrr_Kd_1_t_5 = 1/rrr_Kd_1_t;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = 1/rrr_Kd_1_t_3;
+        /* (rrr-rho_tip_2) connection point to the centre of mass of link 2 */
+        const real rrr_rho_tip_2_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x;
+        /* (rrr-h_2) first moment of link 2 about the connection point */
+        const real rrr_h_2_x = rrr_link2_mass*rrr_rho_tip_2_x;
+        const real rrr_h_2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
+        /* (rrr-w_2) reciprocal vector 2 */
         const real inv_rrr_platform_joint_offset_x = 1/rrr_platform_joint_offset_x;
-        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_rrr_t = J_2_rrr_zz*inv_rrr_platform_joint_offset_x;
-        const real d_Gamma_1_rrr_y = d_Gamma_1_rrr_t + h_2_rrr_x;
-        /* (rrr-N6) coefficient of the acceleration in: inertia force of link 2 from its turning about its
-           reference point */
-        const real d_phi_2_rrr_t = h_2_rrr_y*inv_rrr_platform_joint_offset_x;
-        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
+        /* (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
+           about its reference point */
+        const real rrr_d_phi_2_t = inv_rrr_platform_joint_offset_x*rrr_h_2_y;
+        /* (rrr-J_2) inertia tensor of link 2 about the connection point */
+        const real rrr_J_2_t = rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y +
+            rrr_rho_tip_2_x*rrr_rho_tip_2_x;
+        const real rrr_J_2_zz = rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass;
+        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real rrr_d_Gamma_2_t = inv_rrr_platform_joint_offset_x*rrr_J_2_zz;
+        const real rrr_d_Gamma_2_y = rrr_d_Gamma_2_t + rrr_h_2_x;
+        /* (rrr-J_1) inertia tensor of link 1 about the origin of link 1 */
+        const real rrr_J_1_t = rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
+            rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y;
+        const real rrr_J_1_zz = rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass;
+        /* (rrr-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link
+           about the connection point */
+        const real rrr_Jc_1_zz = rrr_J_1_zz + rrr_J_2_zz;
+        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_rrr_yy = -d_Gamma_1_rrr_y*inv_rrr_platform_joint_offset_x -
-            h_2_rrr_x*inv_rrr_platform_joint_offset_x;
-        /* (L2) first moment about the platform origin */
-        const real h_star_t_5 = rrr_link2_mass*rrr_platform_point_x;
-        const real h_star_t_6 = rrr_link2_mass*rrr_platform_point_y;
-        /* (L3) inertia tensor about the platform origin */
-        const real J_star_t_9 = rrr_platform_point_y*rrr_platform_point_y;
-        const real J_star_t_10 = J_star_t_9 + rrr_platform_point_x*rrr_platform_point_x;
-        const real J_star_t_11 = J_star_t_9*rrr_link2_mass;
-        const real J_star_t_12 = J_star_t_10*rrr_link2_mass;
-        /* (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
-           less gravity */
-        const real g_r0_x_2 = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx;
-        const real g_r0_y_2 = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy;
-        /* (rrr-G3) first moment of link 1 about the origin of link 1 */
-        const real h_1_rrr_x = rrr_link1_centre_of_mass_x*rrr_link1_mass;
-        const real h_1_rrr_y = rrr_link1_centre_of_mass_y*rrr_link1_mass;
-        /* (V1) potential energy */
-        const real b_rrr_r0_x = rrr_base_frame_xx*rrr_base_point_x +
+        const real rrr_d_c_yy = -inv_rrr_platform_joint_offset_x*rrr_d_Gamma_2_y -
+            inv_rrr_platform_joint_offset_x*rrr_h_2_x;
+        /* (h_star) first moment about the platform origin */
+        const real rrr_h_star_t = rrr_link2_mass*rrr_platform_point_x;
+        const real rrr_h_star_t_2 = rrr_link2_mass*rrr_platform_point_y;
+        /* (J_star) inertia tensor about the platform origin */
+        const real rrr_J_star_t = rrr_platform_point_y*rrr_platform_point_y;
+        const real rrr_J_star_t_2 = rrr_J_star_t + rrr_platform_point_x*rrr_platform_point_x;
+        const real rrr_J_star_t_3 = rrr_J_star_t*rrr_link2_mass;
+        const real rrr_J_star_t_4 = rrr_J_star_t_2*rrr_link2_mass;
+        /* (rrr-h_1) first moment of link 1 about the origin of link 1 */
+        const real rrr_h_1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass;
+        const real rrr_h_1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass;
+        /* (rrr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
+           link 1, less gravity */
+        const real rrr_g_r0_x = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx;
+        const real rrr_g_r0_y = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy;
+        /* (potential) potential energy */
+        const real rrr_b_r0_x = rrr_base_frame_xx*rrr_base_point_x +
             rrr_base_frame_yx*rrr_base_point_y;
-        const real b_rrr_r0_y = rrr_base_frame_xy*rrr_base_point_x +
+        const real rrr_b_r0_y = rrr_base_frame_xy*rrr_base_point_x +
             rrr_base_frame_yy*rrr_base_point_y;
-        /* (rrr-K8) squared amplitude */
-        const real inv_rho2_1_rrr_t_4 = 1/rho2_1_rrr_t;
-        /* (rrr-V5) reciprocal vector 1 */
-        const real inv_size_rrr = 1/size_rrr;
-        model->J_1_rrr_zz[leg] = J_1_rrr_zz;
-        model->J_2_rrr_zz[leg] = J_2_rrr_zz;
-        model->Jc_1_rrr_zz[leg] = Jc_1_rrr_zz;
-        model->Kd_1_rrr_t_2[leg] = Kd_1_rrr_t_2;
-        model->Kd_1_rrr_t_3[leg] = Kd_1_rrr_t_3;
-        model->b_rrr_r0_x[leg] = b_rrr_r0_x;
-        model->b_rrr_r0_y[leg] = b_rrr_r0_y;
-        model->branch_1_rrr[leg] = branch_1_rrr;
-        model->d_Gamma_1_rrr_t[leg] = d_Gamma_1_rrr_t;
-        model->d_Gamma_1_rrr_y[leg] = d_Gamma_1_rrr_y;
-        model->d_c_rrr_yy[leg] = d_c_rrr_yy;
-        model->d_phi_2_rrr_t[leg] = d_phi_2_rrr_t;
-        model->g_r0_x_2[leg] = g_r0_x_2;
-        model->g_r0_y_2[leg] = g_r0_y_2;
-        model->h_1_rrr_x[leg] = h_1_rrr_x;
-        model->h_1_rrr_y[leg] = h_1_rrr_y;
-        model->h_2_rrr_x[leg] = h_2_rrr_x;
-        model->h_2_rrr_y[leg] = h_2_rrr_y;
-        model->inv_Kd_1_rrr_t_5[leg] = inv_Kd_1_rrr_t_5;
-        model->inv_rho2_1_rrr_t_4[leg] = inv_rho2_1_rrr_t_4;
+        /* (rrr-rho2_1) squared amplitude */
+        const real inv_rrr_rho2_1_t_4 = 1/rrr_rho2_1_t;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real inv_rrr_size = 1/rrr_size;
+        model->inv_rrr_Kd_1_t_5[leg] = inv_rrr_Kd_1_t_5;
+        model->inv_rrr_Kd_1_t_7[leg] = inv_rrr_Kd_1_t_7;
         model->inv_rrr_platform_joint_offset_x[leg] = inv_rrr_platform_joint_offset_x;
-        model->inv_size_rrr[leg] = inv_size_rrr;
-        model->inv_uu_2_rrr_t[leg] = inv_uu_2_rrr_t;
-        model->rho2_1_rrr_t[leg] = rho2_1_rrr_t;
+        model->inv_rrr_rho2_1_t_4[leg] = inv_rrr_rho2_1_t_4;
+        model->inv_rrr_size[leg] = inv_rrr_size;
+        model->rrr_J_1_zz[leg] = rrr_J_1_zz;
+        model->rrr_J_2_zz[leg] = rrr_J_2_zz;
+        model->rrr_Jc_1_zz[leg] = rrr_Jc_1_zz;
+        model->rrr_Kd_1_t_2[leg] = rrr_Kd_1_t_2;
+        model->rrr_Kd_1_t_4[leg] = rrr_Kd_1_t_4;
+        model->rrr_b_r0_x[leg] = rrr_b_r0_x;
+        model->rrr_b_r0_y[leg] = rrr_b_r0_y;
         model->rrr_base_frame_xx[leg] = rrr_base_frame_xx;
         model->rrr_base_frame_xy[leg] = rrr_base_frame_xy;
         model->rrr_base_frame_yx[leg] = rrr_base_frame_yx;
         model->rrr_base_frame_yy[leg] = rrr_base_frame_yy;
         model->rrr_base_point_x[leg] = rrr_base_point_x;
         model->rrr_base_point_y[leg] = rrr_base_point_y;
+        model->rrr_branch_1[leg] = rrr_branch_1;
+        model->rrr_d_Gamma_2_t[leg] = rrr_d_Gamma_2_t;
+        model->rrr_d_Gamma_2_y[leg] = rrr_d_Gamma_2_y;
+        model->rrr_d_c_yy[leg] = rrr_d_c_yy;
+        model->rrr_d_phi_2_t[leg] = rrr_d_phi_2_t;
+        model->rrr_g_r0_x[leg] = rrr_g_r0_x;
+        model->rrr_g_r0_y[leg] = rrr_g_r0_y;
+        model->rrr_h_1_x[leg] = rrr_h_1_x;
+        model->rrr_h_1_y[leg] = rrr_h_1_y;
+        model->rrr_h_2_x[leg] = rrr_h_2_x;
+        model->rrr_h_2_y[leg] = rrr_h_2_y;
         model->rrr_joint2_offset_x[leg] = rrr_joint2_offset_x;
         model->rrr_link1_mass[leg] = rrr_link1_mass;
         model->rrr_link2_mass[leg] = rrr_link2_mass;
         model->rrr_platform_joint_offset_x[leg] = rrr_platform_joint_offset_x;
         model->rrr_platform_point_x[leg] = rrr_platform_point_x;
         model->rrr_platform_point_y[leg] = rrr_platform_point_y;
-        model->size_rrr[leg] = size_rrr;
+        model->rrr_rho2_1_t[leg] = rrr_rho2_1_t;
+        model->rrr_size[leg] = rrr_size;
         total_rrr += rrr_link2_mass;
-        total_rrr_x += h_star_t_5;
-        total_rrr_y += h_star_t_6;
-        total_rrr_xx += J_star_t_11;
-        total_rrr_zz += J_star_t_12;
+        total_rrr_x += rrr_h_star_t;
+        total_rrr_y += rrr_h_star_t_2;
+        total_rrr_xx += rrr_J_star_t_3;
+        total_rrr_zz += rrr_J_star_t_4;
         total_rrr_x_2 += rrr_platform_point_x;
         total_rrr_y_2 += rrr_platform_point_y;
-        total_rrr_2 += size_rrr_t;
+        total_rrr_2 += rrr_size_t;
     }
-    /* (L1) mass of the platform with the gathered masses */
+    /* (m_star) mass of the platform with the gathered masses */
     const real m_star = platform_mass + total_prrr + total_rrr;
-    /* (L2) first moment about the platform origin */
+    /* (h_star) first moment about the platform origin */
     const real h_star_x = h_star_t + total_prrr_x + total_rrr_x;
     const real h_star_y = h_star_t_2 + total_prrr_y + total_rrr_y;
-    /* (L3) inertia tensor about the platform origin */
+    /* (J_star) inertia tensor about the platform origin */
     const real J_star_xx = J_star_t_3 + total_prrr_xx + total_rrr_xx;
-    const real J_star_zz = J_star_t_4 + platform_inertia_zz + total_prrr_zz + total_rrr_zz;
-    const real J_star_t_13 = J_star_xx - J_star_zz;
-    const real J_star_t_14 = J_star_t_13 - J_star_xx;
-    /* (M4) centripetal force and weight of the platform */
+    const real J_star_t_5 = J_star_xx - J_star_t_4 - platform_inertia_zz - total_prrr_zz -
+        total_rrr_zz;
+    const real J_star_t_6 = J_star_t_5 - J_star_xx;
+    /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
-    /* (C1) centroid of the platform points */
+    /* (b_c) centroid of the platform points */
     const real b_c_x = R(0.3333333333333333)*total_prrr_x_2 +
         R(0.3333333333333333)*total_rrr_x_2;
     const real b_c_y = R(0.3333333333333333)*total_prrr_y_2 +
         R(0.3333333333333333)*total_rrr_y_2;
-    /* (C3) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = root(R(0.3333333333333333)*total_prrr_2 +
         R(0.3333333333333333)*total_rrr_2);
-    model->J_star_t_14 = J_star_t_14;
-    model->J_star_zz = J_star_zz;
+    model->J_star_t_6 = J_star_t_6;
     model->Z_p_t = Z_p_t;
     model->Z_p_t_2 = Z_p_t_2;
     model->b_c_x = b_c_x;
@@ -898,98 +988,6 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
     }
 }
 
-/* Swap a row with the pivot's in those states in which it is the chosen one.  What is chosen are
-   whole entries: unlike products with 0 and 1, these keep what is not finite where it belongs. */
-APART void swap_lanes(size_t n, size_t p, real i, const real *restrict best, real *restrict pivot,
-        real *restrict other)
-{
-    for (size_t j = p; j <= n; ++j) {
-        for (size_t k = 0; k < LANES; ++k) {
-            const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = best[k] == i ? up : down;
-            other[j*LANES + k] = best[k] == i ? down : up;
-        }
-    }
-}
-
-/* The choice of choose_one in every state. */
-INLINE void choose_lanes(size_t n, size_t p, real *a)
-{
-    const size_t row = (n + 1)*LANES;
-    real most[LANES], best[LANES], any = 0;
-    for (size_t k = 0; k < LANES; ++k) {
-        most[k] = CLEARLY*magnitude(a[p*row + p*LANES + k]);
-        best[k] = 0;
-    }
-    for (size_t i = p + 1; i < n; ++i) {
-        for (size_t k = 0; k < LANES; ++k) {
-            const real size = magnitude(a[i*row + p*LANES + k]);
-            best[k] = size > most[k] ? (real)i : best[k];
-            most[k] = larger(size, most[k]);
-        }
-    }
-    for (size_t k = 0; k < LANES; ++k) {
-        any += best[k];
-    }
-    for (size_t i = p + 1; i < n && any > 0; ++i) {
-        swap_lanes(n, p, (real)i, best, a + p*row, a + i*row);
-    }
-}
-
-/* The same for LANES systems side by side, without padding.  What comes NEARLY to the threshold
-   counts as singular here: the batch then settles it as for a single state. */
-INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
-{
-    const size_t row = (n + 1)*LANES;
-    memset(x, 0, n*LANES*sizeof *x);
-    for (size_t i = 0; i < n; ++i) {
-        real size[LANES] = {0};
-        for (size_t j = 0; j < n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                size[k] = larger(size[k], magnitude(a[i*row + j*LANES + k]));
-            }
-        }
-        for (size_t k = 0; k < LANES; ++k) {
-            size[k] = 1/size[k];
-        }
-        for (size_t j = 0; j <= n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + j*LANES + k] *= size[k];
-            }
-        }
-    }
-    for (size_t p = 0; p < n; ++p) {
-        const real *const pivot = a + p*row;
-        choose_lanes(n, p, a);
-        for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > NEARLY*PIVOT);
-            x[p*LANES + k] = 1/pivot[p*LANES + k];
-        }
-        for (size_t i = p + 1; i < n; ++i) {
-            real *const other = a + i*row;
-            real factor[LANES];
-            for (size_t k = 0; k < LANES; ++k) {
-                factor[k] = other[p*LANES + k]*x[p*LANES + k];
-            }
-            for (size_t j = p + 1; j <= n; ++j) {
-                for (size_t k = 0; k < LANES; ++k) {
-                    other[j*LANES + k] -= factor[k]*pivot[j*LANES + k];
-                }
-            }
-        }
-    }
-    for (size_t p = n; p-- > 0;) {
-        for (size_t k = 0; k < LANES; ++k) {
-            x[p*LANES + k] *= a[p*row + n*LANES + k];
-        }
-        for (size_t i = 0; i < p; ++i) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + n*LANES + k] -= a[i*row + p*LANES + k]*x[p*LANES + k];
-            }
-        }
-    }
-}
-
 /* Length of the rows of a system of n equations, whose right side stands in column n. */
 INLINE size_t stride_of(size_t n, size_t w)
 {
@@ -1022,14 +1020,10 @@ INLINE void solve_state(size_t n, const real *b, real *rows, real *x, real *sing
     solve_one(n, stride_of(n, 1), rows, x, singular);
 }
 
-INLINE void solve(size_t n, size_t w, const real *b, real *rows, real *x, real *singular)
+/* The same where it is rare: apart, for the sake of what is done otherwise. */
+APART void solve_apart(size_t n, const real *b, real *rows, real *x, real *singular)
 {
-    if (w == 1) {
-        solve_state(n, b, rows, x, singular);
-    } else {
-        set_right_side(n, LANES, b, rows);
-        solve_lanes(n, rows, x, singular);
-    }
+    solve_state(n, b, rows, x, singular);
 }
 
 #define BIG 4  /* most rows or columns of a matrix that is not square, or not solved */
@@ -1251,6 +1245,29 @@ INLINE void take(size_t rows, size_t n, const size_t *places, const real *a, rea
     }
 }
 
+/* Rows as `places` tells made infinite, where all entries are finite before. */
+INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, real *x, real *flags)
+{
+    check(size, w, x, flags);
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t k = 0; k < w; ++k) {
+            x[places[i]*w + k] = R(INFINITY);
+        }
+    }
+}
+
+/* 1 where no entry is negative, else 0. */
+INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
+{
+    check(size, w, a, flags);
+    for (size_t k = 0; k < w; ++k) {
+        x[k] = 1;
+        for (size_t e = 0; e < size; ++e) {
+            x[k] = a[e*w + k] < 0 ? 0 : x[k];
+        }
+    }
+}
+
 INLINE void divide_rows(size_t rows, size_t n, size_t w, const size_t *places, const real *b, real *x)
 {
     for (size_t i = 0; i < rows; ++i) {
@@ -1330,657 +1347,655 @@ static void moved(const real *X, const real *step, real part, real *to)
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 435 mul, 299 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
-        omega_z[LANES], h_star_in_base_x[LANES], h_star_in_base_y[LANES], Z_p_x[LANES], Z_p_y[LANES],
-        Z_q_t[LANES], sum[18][LANES];
-} dynamics_values;
-typedef struct {
-    real sum[9][8], entry[13][8], unreachable[8], singular[8];
-} dynamics_results_prrr;
-typedef struct {
-    real sum[9][8], entry[3][8], unreachable[8], singular[8];
-} dynamics_results_rrr;
-
-INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V,
-    dynamics_values *s)
+/* ---- dynamics: 431 mul, 297 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
+INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real omega_z = V_2;
-        /* (L2) first moment about the platform origin */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
         const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
         const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
-        /* (P1) centripetal tensor of the platform */
+        /* (W_p) centripetal tensor of the platform */
         const real W_p_t = omega_z*omega_z;
-        /* (M4) centripetal force and weight of the platform */
+        /* (Z_p) centripetal force and weight of the platform */
+        const real Z_p_t = m->Z_p_t;
         const real Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x;
+        const real Z_p_t_2 = m->Z_p_t_2;
         const real Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y;
-        /* (M6) gyroscopic moment and moment of the weight of the platform */
-        const real Z_q_t = h_star_x*(R_xx*gravity_y - R_yx*gravity_x) - h_star_y*(R_xx*gravity_x +
-            R_yx*gravity_y);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->omega_z[k] = omega_z;
-        s->h_star_in_base_x[k] = h_star_in_base_x;
-        s->h_star_in_base_y[k] = h_star_in_base_y;
-        s->Z_p_x[k] = Z_p_x;
-        s->Z_p_y[k] = Z_p_y;
-        s->Z_q_t[k] = Z_q_t;
+        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
+        s[4*w + k] = t_dot_x;
+        s[5*w + k] = t_dot_y;
+        s[6*w + k] = omega_z;
+        s[7*w + k] = h_star_in_base_x;
+        s[8*w + k] = h_star_in_base_y;
+        s[9*w + k] = Z_p_x;
+        s[10*w + k] = Z_p_y;
+        s[11*w + k] = Z_q_t;
     }
 }
 
-INLINE void dynamics_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const
-    dynamics_values *s, size_t states, size_t count, int add, const real *X, const real *V,
-    dynamics_results_prrr *o)
+INLINE void dynamics_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real J_2_prrr_zz = m->J_2_prrr_zz[i];
-        const real J_3_prrr_zz = m->J_3_prrr_zz[i];
-        const real Jc_2_prrr_zz = m->Jc_2_prrr_zz[i];
-        const real Kd_2_prrr_t_2 = m->Kd_2_prrr_t_2[i];
-        const real Kd_2_prrr_t_3 = m->Kd_2_prrr_t_3[i];
-        const real P_c1_prrr_t = m->P_c1_prrr_t[i];
-        const real branch_2_prrr = m->branch_2_prrr[i];
-        const real d_G_prrr_t = m->d_G_prrr_t[i];
-        const real d_Gamma_2_prrr_t = m->d_Gamma_2_prrr_t[i];
-        const real d_Gamma_2_prrr_y = m->d_Gamma_2_prrr_y[i];
-        const real d_c_prrr_yy = m->d_c_prrr_yy[i];
-        const real d_phi_3_prrr_t = m->d_phi_3_prrr_t[i];
-        const real f_1_prrr_o_x = m->f_1_prrr_o_x[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_2_prrr_x = m->h_2_prrr_x[i];
-        const real h_2_prrr_y = m->h_2_prrr_y[i];
-        const real h_3_prrr_x = m->h_3_prrr_x[i];
-        const real h_3_prrr_y = m->h_3_prrr_y[i];
-        const real inv_Kd_2_prrr_t = m->inv_Kd_2_prrr_t[i];
-        const real inv_prrr_platform_joint_offset_x = m->inv_prrr_platform_joint_offset_x[i];
-        const real inv_uu_3_prrr_t = m->inv_uu_3_prrr_t[i];
-        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
-        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
-        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_base_point_x = m->prrr_base_point_x[i];
-        const real prrr_base_point_y = m->prrr_base_point_y[i];
-        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_link2_mass = m->prrr_link2_mass[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        /* (prrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real prrr_platform_point_x = m->prrr_platform_point_x[i];
         const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real rho2_2_prrr_t = m->rho2_2_prrr_t[i];
-        const real size_prrr = m->size_prrr[i];
-        const real y_1_extra_prrr = X[(3)*w + j];
-        const real yd_1_prrr = V[(3)*w + j];
-        /* (prrr-K1) from the base point to the connection point */
-        const real q_prrr_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
-        const real q_prrr_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
-        const real S_prrr_x = q_prrr_in_base_x + t_x - prrr_base_point_x;
-        const real S_prrr_y = q_prrr_in_base_y + t_y - prrr_base_point_y;
-        const real S_prrr_r0_y = -S_prrr_x*prrr_base_frame_xx - S_prrr_y*prrr_base_frame_yx;
-        /* (prrr-K2) from the origin of joint 2 to the connection point */
-        const real x_2_prrr_x = S_prrr_x*prrr_base_frame_xy + S_prrr_y*prrr_base_frame_yy -
-            y_1_extra_prrr;
-        /* (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
+        const real prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
+        const real prrr_base_point_x = m->prrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x;
+        const real prrr_base_point_y = m->prrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y;
+        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
+        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
+        const real prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
+        /* (prrr-x_2) from the origin of joint 2 to the connection point */
+        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
+        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
+        const real prrr_y_1_extra = X[(3)*w + j];
+        const real prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy -
+            prrr_y_1_extra;
+        /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x;
-        const real Kd_2_prrr = R(0.5)*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3;
-        /* (prrr-K7) factor of the cosine in the equation of joint 2 */
-        const real Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x;
-        /* (prrr-K8) factor of the sine in the equation of joint 2 */
-        const real Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x;
-        /* (prrr-K9) squared amplitude */
-        const real rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr;
-        /* (prrr-K10) discriminant */
-        const real disc_2_prrr = rho2_2_prrr - Kd_2_prrr*Kd_2_prrr;
-        /* (prrr-K11) root, with the sign of the branch */
-        const real root_2_prrr = branch_2_prrr*root(disc_2_prrr);
-        /* (prrr-K17) from the origin of joint 3 to the connection point */
-        const real x_3_prrr_x = Kd_2_prrr*inv_Kd_2_prrr_t*prrr_joint3_offset_x -
+        const real prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x;
+        const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
+        const real prrr_Kd_2_t_4 = m->prrr_Kd_2_t_4[i];
+        const real prrr_Kd_2 = R(0.5)*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4;
+        /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
+        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
+        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x;
+        /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
+        const real prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x;
+        /* (prrr-rho2_2) squared amplitude */
+        const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
+        /* (prrr-disc_2) discriminant */
+        const real prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2;
+        /* (prrr-root_2) root, with the sign of the branch */
+        const real prrr_branch_2 = m->prrr_branch_2[i];
+        const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
+        /* (prrr-x_3) from the origin of joint 3 to the connection point */
+        const real inv_prrr_Kd_2_t = m->inv_prrr_Kd_2_t[i];
+        const real prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x -
             prrr_joint3_offset_x;
-        /* (prrr-K19) cosine of the angle of joint 3 from its reference direction */
-        const real c_3_prrr = inv_uu_3_prrr_t*prrr_platform_joint_offset_x*x_3_prrr_x;
-        /* (prrr-K20) sine of the angle of joint 3 from its reference direction */
-        const real s_3_prrr =
-            inv_Kd_2_prrr_t*inv_uu_3_prrr_t*prrr_joint3_offset_x*prrr_platform_joint_offset_x*root_2_prrr;
-        /* (prrr-V2) from joint 2 to the connection point, along the links */
-        const real r_2_prrr_t = prrr_platform_joint_offset_x*s_3_prrr;
-        const real r_2_prrr_x = prrr_joint3_offset_x + c_3_prrr*prrr_platform_joint_offset_x;
-        const real r_2_prrr_r0_x = c_3_prrr*r_2_prrr_x + r_2_prrr_t*s_3_prrr;
-        const real r_2_prrr_r0_y = r_2_prrr_x*s_3_prrr - c_3_prrr*r_2_prrr_t;
-        /* (prrr-K12) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rho2_2_prrr = 1/rho2_2_prrr;
-        const real c_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*Kd_2_prrr - Ks_2_prrr*root_2_prrr);
-        /* (prrr-K13) sine of the angle of joint 2 from its reference direction */
-        const real s_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*root_2_prrr + Kd_2_prrr*Ks_2_prrr);
-        /* (prrr-V5) reciprocal vector 1 */
-        const real axis_y_prrr_axes3_r1_x = c_2_prrr*s_3_prrr - c_3_prrr*s_2_prrr;
-        const real axis_y_prrr_axes3_r1_y = c_2_prrr*c_3_prrr + s_2_prrr*s_3_prrr;
+        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_prrr_Kd_2_t_7 = m->inv_prrr_Kd_2_t_7[i];
+        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        const real prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x;
+        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
+        const real prrr_s_3 =
+            inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
+        /* (prrr-r_2) from joint 2 to the connection point, along the links */
+        const real prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3;
+        const real prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x;
+        const real prrr_r_2_r0_x = prrr_c_3*prrr_r_2_x + prrr_r_2_t*prrr_s_3;
+        const real prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_r_2_t;
+        /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
+        const real prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2);
+        /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2);
+        /* (prrr-w_2) reciprocal vector 1 */
+        const real axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2;
+        const real axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3;
         const real axis_y_prrr_axes3_in_base_x = axis_y_prrr_axes3_r1_x*prrr_base_frame_xy -
             axis_y_prrr_axes3_r1_y*prrr_base_frame_xx;
         const real axis_y_prrr_axes3_in_base_y = axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
             axis_y_prrr_axes3_r1_y*prrr_base_frame_yx;
-        const real inv_r_2_prrr_r0_y = 1/r_2_prrr_r0_y;
-        /* (prrr-V6) reciprocal vector 2 */
-        const real w_3_prrr_t = inv_prrr_platform_joint_offset_x*inv_r_2_prrr_r0_y*r_2_prrr_r0_x;
-        /* (prrr-N42) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
-           and weight */
-        const real d_Gamma_2_prrr_t_2 = d_Gamma_2_prrr_t*r_2_prrr_r0_x;
-        const real d_Gamma_2_prrr_x = -h_3_prrr_y - inv_r_2_prrr_r0_y*(Jc_2_prrr_zz -
-            d_Gamma_2_prrr_t_2);
-        /* (prrr-N31) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia
-           and weight */
-        const real d_Gamma_3_prrr_x = -h_3_prrr_y - inv_r_2_prrr_r0_y*(J_3_prrr_zz -
-            d_Gamma_2_prrr_t_2);
-        /* (prrr-N52) coefficient of the acceleration in: force at the connection point that balances the
+        const real inv_prrr_r_2_r0_y = 1/prrr_r_2_r0_y;
+        /* (prrr-w_3) reciprocal vector 2 */
+        const real inv_prrr_platform_joint_offset_x = m->inv_prrr_platform_joint_offset_x[i];
+        const real prrr_w_3_t = inv_prrr_platform_joint_offset_x*inv_prrr_r_2_r0_y*prrr_r_2_r0_x;
+        /* (prrr-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
+           inertia and weight */
+        const real prrr_d_Gamma_3_t = m->prrr_d_Gamma_3_t[i];
+        const real prrr_d_Gamma_3_t_2 = prrr_d_Gamma_3_t*prrr_r_2_r0_x;
+        const real prrr_J_3_zz = m->prrr_J_3_zz[i];
+        const real prrr_h_3_y = m->prrr_h_3_y[i];
+        const real prrr_d_Gamma_3_x = -prrr_h_3_y - inv_prrr_r_2_r0_y*(prrr_J_3_zz -
+            prrr_d_Gamma_3_t_2);
+        /* (prrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real prrr_Jc_2_zz = m->prrr_Jc_2_zz[i];
+        const real prrr_d_Gamma_2_x = -prrr_h_3_y - inv_prrr_r_2_r0_y*(prrr_Jc_2_zz -
+            prrr_d_Gamma_3_t_2);
+        /* (prrr-d_G) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
-        const real d_G_prrr_xx = d_Gamma_3_prrr_x*w_3_prrr_t - d_Gamma_2_prrr_x*inv_r_2_prrr_r0_y;
-        const real d_G_prrr_xy = d_Gamma_2_prrr_y*w_3_prrr_t - d_Gamma_2_prrr_y*inv_r_2_prrr_r0_y;
-        /* (prrr-N55) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real prrr_d_G_xx = prrr_d_Gamma_3_x*prrr_w_3_t - inv_prrr_r_2_r0_y*prrr_d_Gamma_2_x;
+        const real prrr_d_Gamma_3_y = m->prrr_d_Gamma_3_y[i];
+        const real prrr_d_G_xy = prrr_d_Gamma_3_y*prrr_w_3_t - inv_prrr_r_2_r0_y*prrr_d_Gamma_3_y;
+        /* (prrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_prrr_xy = d_phi_3_prrr_t - d_G_prrr_xy;
-        /* (prrr-N57) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_prrr_t = h_3_prrr_y*(w_3_prrr_t - inv_r_2_prrr_r0_y) - d_G_prrr_xx -
-            d_c_prrr_yy;
-        const real Q_prrr_t_2 = R(0.5)*Q_prrr_t;
-        const real Q_prrr_t_3 = Q_prrr_t_2*axis_y_prrr_axes3_in_base_y +
-            axis_y_prrr_axes3_in_base_x*d_c_prrr_xy;
-        const real Q_prrr_t_4 = Q_prrr_t_2*axis_y_prrr_axes3_in_base_x -
-            axis_y_prrr_axes3_in_base_y*d_c_prrr_xy;
-        const real Q_prrr_t_5 = d_c_prrr_yy + 2*Q_prrr_t_3*axis_y_prrr_axes3_in_base_y;
-        const real Q_prrr_t_6 = Q_prrr_t_3*axis_y_prrr_axes3_in_base_x +
-            Q_prrr_t_4*axis_y_prrr_axes3_in_base_y;
-        const real Q_prrr_t_7 = d_c_prrr_yy + 2*Q_prrr_t_4*axis_y_prrr_axes3_in_base_x;
-        /* (M2) coupling block of M */
-        const real M_ta_t = Q_prrr_t_5*q_prrr_in_base_y + Q_prrr_t_6*q_prrr_in_base_x;
-        const real M_ta_t_2 = Q_prrr_t_6*q_prrr_in_base_y + Q_prrr_t_7*q_prrr_in_base_x;
-        /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t*q_prrr_in_base_y + M_ta_t_2*q_prrr_in_base_x;
-        /* (prrr-N6) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real g_r1_x = c_2_prrr*g_r0_x + g_r0_y*s_2_prrr;
-        const real g_r1_y = c_2_prrr*g_r0_y - g_r0_x*s_2_prrr;
-        /* (prrr-V1) velocity of the connection point */
-        const real S_dot_prrr_t = omega_z*q_prrr_in_base_y;
-        const real S_dot_prrr_t_2 = omega_z*q_prrr_in_base_x;
-        const real S_dot_prrr_x = t_dot_x - S_dot_prrr_t;
-        const real S_dot_prrr_y = S_dot_prrr_t_2 + t_dot_y;
-        /* (prrr-V7) velocity of the connection point left to the joints that are not extra */
-        const real S_dot_rest_prrr_x = S_dot_prrr_x - prrr_base_frame_xy*yd_1_prrr;
-        const real S_dot_rest_prrr_y = S_dot_prrr_y - prrr_base_frame_yy*yd_1_prrr;
-        /* (prrr-V8) rate of joint 2 */
-        const real qd_2_prrr = inv_r_2_prrr_r0_y*(S_dot_rest_prrr_x*axis_y_prrr_axes3_in_base_y -
-            S_dot_rest_prrr_y*axis_y_prrr_axes3_in_base_x);
-        /* (prrr-V12) angular velocity of link 3 */
-        const real omega_3_prrr_z =
-            inv_prrr_platform_joint_offset_x*(S_dot_rest_prrr_x*axis_y_prrr_axes3_in_base_x +
-            S_dot_rest_prrr_y*axis_y_prrr_axes3_in_base_y + qd_2_prrr*r_2_prrr_r0_x) - qd_2_prrr;
-        /* (prrr-V11) centripetal tensor of link 2 */
-        const real W_2_prrr_t = qd_2_prrr*qd_2_prrr;
-        /* (prrr-V13) centripetal tensor of link 3 */
-        const real W_3_prrr_t = omega_3_prrr_z*omega_3_prrr_z;
-        /* (prrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_prrr_x = -W_3_prrr_t*prrr_platform_joint_offset_x -
-            W_2_prrr_t*c_3_prrr*prrr_joint3_offset_x;
-        /* (prrr-A1) centripetal acceleration of the connection point */
-        const real u_1_prrr_t = S_dot_prrr_t_2*omega_z;
-        const real u_1_prrr_t_2 = S_dot_prrr_t*omega_z;
-        const real u_1_prrr_tip_x = axis_y_prrr_axes3_in_base_x*u_1_prrr_t_2 -
-            axis_y_prrr_axes3_in_base_y*u_1_prrr_t;
-        const real u_1_prrr_tip_y = -axis_y_prrr_axes3_in_base_x*u_1_prrr_t -
-            axis_y_prrr_axes3_in_base_y*u_1_prrr_t_2;
-        /* (prrr-A8) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
-        const real rel_prrr_o_x = u_1_prrr_tip_x - bias_prrr_x;
-        const real rel_prrr_o_y = u_1_prrr_tip_y + W_2_prrr_t*prrr_joint3_offset_x*s_3_prrr;
-        /* (prrr-A11) remainder without the acceleration in: acceleration of joint 2 */
-        const real qdd_2_prrr_o = inv_r_2_prrr_r0_y*rel_prrr_o_x;
-        /* (prrr-N37) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
-        const real mu_2_prrr_o_z = g_r1_x*h_2_prrr_y - J_2_prrr_zz*qdd_2_prrr_o -
-            g_r1_y*h_2_prrr_x;
-        /* (prrr-N12) remainder without the acceleration in: acceleration of the reference point of link
-           3, less gravity */
-        const real acc_3_prrr_o_x = u_1_prrr_tip_x + g_r1_y*s_3_prrr - c_3_prrr*g_r1_x;
-        const real acc_3_prrr_o_y = u_1_prrr_tip_y - c_3_prrr*g_r1_y - g_r1_x*s_3_prrr;
-        /* (prrr-A21) remainder without the acceleration in: angular acceleration of link 3 */
-        const real alpha_3_prrr_o_z = inv_prrr_platform_joint_offset_x*(rel_prrr_o_y +
-            qdd_2_prrr_o*r_2_prrr_r0_x) - qdd_2_prrr_o;
-        /* (prrr-N29) remainder without the acceleration in: inertia moment of the links that turn with
+        const real prrr_d_phi_3_t = m->prrr_d_phi_3_t[i];
+        const real prrr_d_c_xy = prrr_d_phi_3_t - prrr_d_G_xy;
+        /* (prrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real prrr_d_c_yy = m->prrr_d_c_yy[i];
+        const real prrr_Q_t = prrr_h_3_y*(prrr_w_3_t - inv_prrr_r_2_r0_y) - prrr_d_G_xx -
+            prrr_d_c_yy;
+        const real prrr_Q_t_2 = R(0.5)*prrr_Q_t;
+        const real prrr_Q_t_3 = axis_y_prrr_axes3_in_base_x*prrr_d_c_xy +
+            axis_y_prrr_axes3_in_base_y*prrr_Q_t_2;
+        const real prrr_Q_t_4 = axis_y_prrr_axes3_in_base_x*prrr_Q_t_2 -
+            axis_y_prrr_axes3_in_base_y*prrr_d_c_xy;
+        const real prrr_Q_t_5 = prrr_d_c_yy + 2*axis_y_prrr_axes3_in_base_y*prrr_Q_t_3;
+        const real prrr_Q_t_6 = axis_y_prrr_axes3_in_base_x*prrr_Q_t_3 +
+            axis_y_prrr_axes3_in_base_y*prrr_Q_t_4;
+        const real prrr_Q_t_7 = prrr_d_c_yy + 2*axis_y_prrr_axes3_in_base_x*prrr_Q_t_4;
+        /* (M_ta) coupling block of M */
+        const real prrr_M_ta_t = prrr_Q_t_5*prrr_q_in_base_y + prrr_Q_t_6*prrr_q_in_base_x;
+        const real prrr_M_ta_t_2 = prrr_Q_t_6*prrr_q_in_base_y + prrr_Q_t_7*prrr_q_in_base_x;
+        /* (M_aa) rotational block of M */
+        const real prrr_M_aa_t = prrr_M_ta_t*prrr_q_in_base_y + prrr_M_ta_t_2*prrr_q_in_base_x;
+        /* (prrr-S_dot) velocity of the connection point */
+        const real omega_z = s[6*w + j];
+        const real prrr_S_dot_t = omega_z*prrr_q_in_base_y;
+        const real prrr_S_dot_t_2 = omega_z*prrr_q_in_base_x;
+        const real t_dot_x = s[4*w + j];
+        const real prrr_S_dot_x = t_dot_x - prrr_S_dot_t;
+        const real t_dot_y = s[5*w + j];
+        const real prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y;
+        /* (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra */
+        const real prrr_yd_1 = V[(3)*w + j];
+        const real prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1;
+        const real prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1;
+        /* (prrr-qd_3) rate of joint 3 */
+        const real prrr_qd_2 = inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_x -
+            axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_y);
+        /* (prrr-omega_3) angular velocity of link 3 */
+        const real prrr_omega_3_z =
+            inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_x +
+            axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_y + prrr_qd_2*prrr_r_2_r0_x) - prrr_qd_2;
+        /* (prrr-u_1) centripetal acceleration of the connection point */
+        const real prrr_u_1_t = omega_z*prrr_S_dot_t_2;
+        const real prrr_u_1_t_2 = omega_z*prrr_S_dot_t;
+        /* (prrr-W_2) centripetal tensor of link 2 */
+        const real prrr_W_2_t = prrr_qd_2*prrr_qd_2;
+        /* (prrr-W_3) centripetal tensor of link 3 */
+        const real prrr_W_3_t = prrr_omega_3_z*prrr_omega_3_z;
+        /* (prrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real prrr_bias_x = -prrr_W_3_t*prrr_platform_joint_offset_x -
+            prrr_W_2_t*prrr_c_3*prrr_joint3_offset_x;
+        /* (prrr-u_1) centripetal acceleration of the connection point */
+        const real prrr_u_1_tip_x = axis_y_prrr_axes3_in_base_x*prrr_u_1_t_2 -
+            axis_y_prrr_axes3_in_base_y*prrr_u_1_t;
+        const real prrr_u_1_tip_y = -axis_y_prrr_axes3_in_base_x*prrr_u_1_t -
+            axis_y_prrr_axes3_in_base_y*prrr_u_1_t_2;
+        /* (prrr-rel_o) remainder without the acceleration in: acceleration of the connection point left
+           to the joint accelerations */
+        const real prrr_rel_o_x = prrr_u_1_tip_x - prrr_bias_x;
+        const real prrr_rel_o_y = prrr_u_1_tip_y + prrr_W_2_t*prrr_joint3_offset_x*prrr_s_3;
+        /* (prrr-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
+        const real prrr_qdd_2_o = inv_prrr_r_2_r0_y*prrr_rel_o_x;
+        /* (prrr-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
+        const real prrr_alpha_3_o_z = inv_prrr_platform_joint_offset_x*(prrr_rel_o_y +
+            prrr_qdd_2_o*prrr_r_2_r0_x) - prrr_qdd_2_o;
+        /* (prrr-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+           link 3, less gravity */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real prrr_acc_3_o_x = prrr_u_1_tip_x + axis_y_prrr_axes3_in_base_x*gravity_y -
+            axis_y_prrr_axes3_in_base_y*gravity_x;
+        const real prrr_acc_3_o_y = prrr_u_1_tip_y - axis_y_prrr_axes3_in_base_x*gravity_x -
+            axis_y_prrr_axes3_in_base_y*gravity_y;
+        /* (prrr-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
-        const real mu_3_prrr_o_z = J_3_prrr_zz*alpha_3_prrr_o_z + acc_3_prrr_o_y*h_3_prrr_x -
-            acc_3_prrr_o_x*h_3_prrr_y;
-        /* (prrr-N39) remainder without the acceleration in: moment about joint 2 of the links from 2
+        const real prrr_h_3_x = m->prrr_h_3_x[i];
+        const real prrr_mu_3_o_z = prrr_J_3_zz*prrr_alpha_3_o_z + prrr_acc_3_o_y*prrr_h_3_x -
+            prrr_acc_3_o_x*prrr_h_3_y;
+        /* (prrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real prrr_g_r0_x = m->prrr_g_r0_x[i];
+        const real prrr_g_r0_y = m->prrr_g_r0_y[i];
+        const real prrr_g_r1_x = prrr_c_2*prrr_g_r0_x + prrr_g_r0_y*prrr_s_2;
+        const real prrr_g_r1_y = prrr_c_2*prrr_g_r0_y - prrr_g_r0_x*prrr_s_2;
+        /* (prrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 2, about their reference points */
+        const real prrr_J_2_zz = m->prrr_J_2_zz[i];
+        const real prrr_h_2_x = m->prrr_h_2_x[i];
+        const real prrr_h_2_y = m->prrr_h_2_y[i];
+        const real prrr_mu_2_o_z = prrr_g_r1_x*prrr_h_2_y - prrr_J_2_zz*prrr_qdd_2_o -
+            prrr_g_r1_y*prrr_h_2_x;
+        /* (prrr-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
-        const real N_2_prrr_o_z = mu_2_prrr_o_z + mu_3_prrr_o_z;
-        /* (prrr-N53) remainder without the acceleration in: force at the connection point that balances
+        const real prrr_N_2_o_z = prrr_mu_2_o_z + prrr_mu_3_o_z;
+        /* (prrr-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real G_prrr_o_t = inv_prrr_platform_joint_offset_x*mu_3_prrr_o_z;
-        const real G_prrr_o_t_2 = inv_r_2_prrr_r0_y*(G_prrr_o_t*r_2_prrr_r0_x - N_2_prrr_o_z);
-        /* (prrr-N56) remainder without the acceleration in: leg force on the platform without actuation
+        const real prrr_G_o_t = inv_prrr_platform_joint_offset_x*prrr_mu_3_o_z;
+        const real prrr_G_o_t_2 = inv_prrr_r_2_r0_y*(prrr_G_o_t*prrr_r_2_r0_x - prrr_N_2_o_z);
+        /* (prrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real c_prrr_o_x = W_3_prrr_t*h_3_prrr_x + alpha_3_prrr_o_z*h_3_prrr_y -
-            G_prrr_o_t_2;
-        const real c_prrr_o_y = W_3_prrr_t*h_3_prrr_y - G_prrr_o_t - alpha_3_prrr_o_z*h_3_prrr_x;
-        /* (prrr-N58) velocity and gravity terms of the leg force */
-        const real U_prrr_in_base_x = -axis_y_prrr_axes3_in_base_x*c_prrr_o_y -
-            axis_y_prrr_axes3_in_base_y*c_prrr_o_x;
-        const real U_prrr_in_base_y = axis_y_prrr_axes3_in_base_x*c_prrr_o_x -
-            axis_y_prrr_axes3_in_base_y*c_prrr_o_y;
-        /* (M7) rotational part of Z */
-        const real Z_a_t = U_prrr_in_base_y*q_prrr_in_base_x - U_prrr_in_base_x*q_prrr_in_base_y;
-        /* (prrr-N10) remainder without the acceleration in: inertia force of link 2 less its weight */
-        const real f_2_prrr_o_x = h_2_prrr_y*qdd_2_prrr_o - W_2_prrr_t*h_2_prrr_x -
-            g_r1_x*prrr_link2_mass;
-        const real f_2_prrr_o_y = -W_2_prrr_t*h_2_prrr_y - g_r1_y*prrr_link2_mass -
-            h_2_prrr_x*qdd_2_prrr_o;
-        /* (prrr-N45) remainder without the acceleration in: inertia force of the links from 1 outwards,
+        const real prrr_c_o_x = prrr_W_3_t*prrr_h_3_x + prrr_alpha_3_o_z*prrr_h_3_y -
+            prrr_G_o_t_2;
+        const real prrr_c_o_y = prrr_W_3_t*prrr_h_3_y - prrr_G_o_t - prrr_alpha_3_o_z*prrr_h_3_x;
+        /* (prrr-U) velocity and gravity terms of the leg force */
+        const real prrr_U_in_base_x = -axis_y_prrr_axes3_in_base_x*prrr_c_o_y -
+            axis_y_prrr_axes3_in_base_y*prrr_c_o_x;
+        const real prrr_U_in_base_y = axis_y_prrr_axes3_in_base_x*prrr_c_o_x -
+            axis_y_prrr_axes3_in_base_y*prrr_c_o_y;
+        /* (Z_a) rotational part of Z */
+        const real prrr_Z_a_t = prrr_U_in_base_y*prrr_q_in_base_x -
+            prrr_U_in_base_x*prrr_q_in_base_y;
+        /* (prrr-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
+        const real prrr_link2_mass = m->prrr_link2_mass[i];
+        const real prrr_f_2_o_x = prrr_h_2_y*prrr_qdd_2_o - prrr_W_2_t*prrr_h_2_x -
+            prrr_g_r1_x*prrr_link2_mass;
+        const real prrr_f_2_o_y = -prrr_W_2_t*prrr_h_2_y - prrr_g_r1_y*prrr_link2_mass -
+            prrr_h_2_x*prrr_qdd_2_o;
+        /* (prrr-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards,
            the last link left out */
-        const real T_1_prrr_o_x = c_2_prrr*f_2_prrr_o_x - f_1_prrr_o_x - f_2_prrr_o_y*s_2_prrr;
-        /* (prrr-N63) remainder without the acceleration in: inertia and weight of the leg along the extra
+        const real prrr_f_1_o_x = m->prrr_f_1_o_x[i];
+        const real prrr_T_1_o_x = prrr_c_2*prrr_f_2_o_x - prrr_f_1_o_x - prrr_f_2_o_y*prrr_s_2;
+        /* (prrr-P_1_o) remainder without the acceleration in: inertia and weight of the leg along the
+           extra freedom of joint 1 */
+        const real prrr_P_1_o_t = axis_y_prrr_axes3_r1_x*prrr_G_o_t +
+            axis_y_prrr_axes3_r1_y*prrr_G_o_t_2;
+        const real prrr_P_1_o = prrr_T_1_o_x - prrr_P_1_o_t;
+        /* (prrr-P_c_2) force that accelerates joint 2, per unit */
+        const real prrr_P_c_2_r0_x = -prrr_c_2*prrr_h_2_y - prrr_h_2_x*prrr_s_2;
+        /* (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra
            freedom of joint 1 */
-        const real P_1_prrr_o_t = G_prrr_o_t*axis_y_prrr_axes3_r1_x +
-            G_prrr_o_t_2*axis_y_prrr_axes3_r1_y;
-        const real P_1_prrr_o = T_1_prrr_o_x - P_1_prrr_o_t;
-        /* (prrr-N20) force that accelerates joint 2, per unit */
-        const real P_c2_prrr_r0_x = -c_2_prrr*h_2_prrr_y - h_2_prrr_x*s_2_prrr;
-        /* (prrr-N62) coefficient of the acceleration in: inertia and weight of the leg along the extra
-           freedom of joint 1 */
-        const real d_P_1_prrr_t = axis_y_prrr_axes3_r1_x*d_G_prrr_t +
-            axis_y_prrr_axes3_r1_y*d_G_prrr_xy;
-        const real d_P_1_prrr_x = -P_c2_prrr_r0_x*inv_r_2_prrr_r0_y -
-            axis_y_prrr_axes3_r1_y*d_G_prrr_xx -
-            axis_y_prrr_axes3_r1_x*d_Gamma_3_prrr_x*inv_prrr_platform_joint_offset_x;
-        const real d_P_1_prrr_in_base_x = axis_y_prrr_axes3_in_base_y*d_P_1_prrr_x -
-            axis_y_prrr_axes3_in_base_x*d_P_1_prrr_t;
-        const real d_P_1_prrr_in_base_y = -axis_y_prrr_axes3_in_base_x*d_P_1_prrr_x -
-            axis_y_prrr_axes3_in_base_y*d_P_1_prrr_t;
-        /* (M8) coupling of extra joint 1 with the rotation of the platform */
-        const real M_ya_1_prrr_z = d_P_1_prrr_in_base_y*q_prrr_in_base_x -
-            d_P_1_prrr_in_base_x*q_prrr_in_base_y;
-        /* (prrr-A10) coefficient of the acceleration in: acceleration of joint 2 */
-        const real d1_qdd_2_prrr = axis_y_prrr_axes3_r1_y*inv_r_2_prrr_r0_y;
-        /* (prrr-N41) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
-           and weight */
-        const real d0_Gamma_2_prrr_t =
-            J_3_prrr_zz*inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_r1_x +
-            d1_qdd_2_prrr*r_2_prrr_r0_x);
-        const real d0_Gamma_2_prrr = P_c2_prrr_r0_x + Jc_2_prrr_zz*d1_qdd_2_prrr -
-            d0_Gamma_2_prrr_t;
-        /* (prrr-N32) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia
-           and weight */
-        const real d1_Gamma_3_prrr = J_3_prrr_zz*d1_qdd_2_prrr - d0_Gamma_2_prrr_t;
-        /* (prrr-N51) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d0_G_prrr_t = d1_Gamma_3_prrr*inv_prrr_platform_joint_offset_x;
-        /* (prrr-N47) coefficient of the acceleration in: force along axis 1 of the distal links' inertia
-           and weight */
-        const real d0_Gamma_1_prrr = P_c1_prrr_t + P_c2_prrr_r0_x*d1_qdd_2_prrr;
-        /* (prrr-N61) coefficient of the acceleration in: inertia and weight of the leg along the extra
-           freedom of joint 1 */
-        const real d0_P_1_prrr_t = axis_y_prrr_axes3_r1_x*d0_G_prrr_t +
-            axis_y_prrr_axes3_r1_y*inv_r_2_prrr_r0_y*(d0_G_prrr_t*r_2_prrr_r0_x -
-            d0_Gamma_2_prrr);
-        const real d0_P_1_prrr = d0_Gamma_1_prrr - d0_P_1_prrr_t;
-        /* (prrr-V5) reciprocal vector 1 */
-        const real w_2_prrr_t = axis_y_prrr_axes3_in_base_y*inv_r_2_prrr_r0_y;
-        const real w_2_prrr_t_2 = axis_y_prrr_axes3_in_base_x*inv_r_2_prrr_r0_y;
-        /* (M9) moment of the column's unit force about the platform origin */
-        const real H_a_2_prrr_z = q_prrr_in_base_x*w_2_prrr_t_2 + q_prrr_in_base_y*w_2_prrr_t;
-        o->sum[0][k] = add ? o->sum[0][k] + Q_prrr_t_5 : Q_prrr_t_5;  /* total_prrr_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + Q_prrr_t_6 : Q_prrr_t_6;  /* total_prrr_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + Q_prrr_t_7 : Q_prrr_t_7;  /* total_prrr_yy */
-        o->sum[3][k] = add ? o->sum[3][k] + M_ta_t : M_ta_t;  /* total_prrr_xz */
-        o->sum[4][k] = add ? o->sum[4][k] + M_ta_t_2 : M_ta_t_2;  /* total_prrr_yz */
-        o->sum[5][k] = add ? o->sum[5][k] + M_aa_t : M_aa_t;  /* total_prrr_zz */
-        o->sum[6][k] = add ? o->sum[6][k] + U_prrr_in_base_x : U_prrr_in_base_x;  /* total_prrr_x */
-        o->sum[7][k] = add ? o->sum[7][k] + U_prrr_in_base_y : U_prrr_in_base_y;  /* total_prrr_y */
-        o->sum[8][k] = add ? o->sum[8][k] + Z_a_t : Z_a_t;  /* total_prrr_z */
-        o->entry[0][k] = P_1_prrr_o;
-        o->entry[1][k] = d_P_1_prrr_in_base_x;
-        o->entry[2][k] = d_P_1_prrr_in_base_x;
-        o->entry[3][k] = d_P_1_prrr_in_base_y;
-        o->entry[4][k] = d_P_1_prrr_in_base_y;
-        o->entry[5][k] = M_ya_1_prrr_z;
-        o->entry[6][k] = M_ya_1_prrr_z;
-        o->entry[7][k] = d0_P_1_prrr;
-        o->entry[8][k] = 1;
-        o->entry[9][k] = -w_2_prrr_t;
-        o->entry[10][k] = w_2_prrr_t_2;
-        o->entry[11][k] = H_a_2_prrr_z;
-        o->entry[12][k] = d1_qdd_2_prrr;
-        o->singular[k] = UNLESS(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t) +
-            UNLESS(magnitude(-r_2_prrr_r0_y) > TOLERANCE*size_prrr);
-        o->unreachable[k] = UNLESS(disc_2_prrr >= 0);
+        const real prrr_d_G_t = m->prrr_d_G_t[i];
+        const real prrr_d_P_1_t = axis_y_prrr_axes3_r1_x*prrr_d_G_t +
+            axis_y_prrr_axes3_r1_y*prrr_d_G_xy;
+        const real prrr_d_P_1_x = -axis_y_prrr_axes3_r1_y*prrr_d_G_xx -
+            inv_prrr_r_2_r0_y*prrr_P_c_2_r0_x -
+            axis_y_prrr_axes3_r1_x*inv_prrr_platform_joint_offset_x*prrr_d_Gamma_3_x;
+        const real prrr_d_P_1_in_base_x = axis_y_prrr_axes3_in_base_y*prrr_d_P_1_x -
+            axis_y_prrr_axes3_in_base_x*prrr_d_P_1_t;
+        const real prrr_d_P_1_in_base_y = -axis_y_prrr_axes3_in_base_x*prrr_d_P_1_x -
+            axis_y_prrr_axes3_in_base_y*prrr_d_P_1_t;
+        /* (prrr-M_ya_1) coupling of extra joint 1 with the rotation of the platform */
+        const real prrr_M_ya_1_z = prrr_d_P_1_in_base_y*prrr_q_in_base_x -
+            prrr_d_P_1_in_base_x*prrr_q_in_base_y;
+        /* (prrr-dy_1_qdd_2) coefficient of the acceleration in: acceleration of joint 2 */
+        const real prrr_dy_1_qdd_2 = axis_y_prrr_axes3_r1_y*inv_prrr_r_2_r0_y;
+        /* (prrr-dy_1_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
+           inertia and weight */
+        const real prrr_P_c_1_t = m->prrr_P_c_1_t[i];
+        const real prrr_dy_1_Gamma_1 = prrr_P_c_1_t + prrr_P_c_2_r0_x*prrr_dy_1_qdd_2;
+        /* (prrr-dy_1_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
+           links' inertia and weight */
+        const real prrr_dy_1_Gamma_3_t =
+            inv_prrr_platform_joint_offset_x*prrr_J_3_zz*(axis_y_prrr_axes3_r1_x +
+            prrr_dy_1_qdd_2*prrr_r_2_r0_x);
+        const real prrr_dy_1_Gamma_3 = prrr_J_3_zz*prrr_dy_1_qdd_2 - prrr_dy_1_Gamma_3_t;
+        /* (prrr-dy_1_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
+           links' inertia and weight */
+        const real prrr_dy_1_Gamma_2 = prrr_P_c_2_r0_x + prrr_Jc_2_zz*prrr_dy_1_qdd_2 -
+            prrr_dy_1_Gamma_3_t;
+        /* (prrr-dy_1_G) coefficient of the acceleration in: force at the connection point that balances
+           the leg's inertia and weight along all freedoms */
+        const real prrr_dy_1_G_t = inv_prrr_platform_joint_offset_x*prrr_dy_1_Gamma_3;
+        /* (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the
+           extra freedom of joint 1 */
+        const real prrr_dy_1_P_1_t = axis_y_prrr_axes3_r1_x*prrr_dy_1_G_t +
+            axis_y_prrr_axes3_r1_y*inv_prrr_r_2_r0_y*(prrr_dy_1_G_t*prrr_r_2_r0_x -
+            prrr_dy_1_Gamma_2);
+        const real prrr_dy_1_P_1 = prrr_dy_1_Gamma_1 - prrr_dy_1_P_1_t;
+        /* (prrr-w_2) reciprocal vector 1 */
+        const real prrr_w_2_t = axis_y_prrr_axes3_in_base_y*inv_prrr_r_2_r0_y;
+        const real prrr_w_2_t_2 = axis_y_prrr_axes3_in_base_x*inv_prrr_r_2_r0_y;
+        /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
+        const real prrr_H_a_2_z = prrr_q_in_base_x*prrr_w_2_t_2 + prrr_q_in_base_y*prrr_w_2_t;
+        terms[0*count + k] = add ? terms[0*count + k] + prrr_Q_t_5 : prrr_Q_t_5;  /* total_prrr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + prrr_Q_t_6 : prrr_Q_t_6;  /* total_prrr_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + prrr_Q_t_7 : prrr_Q_t_7;  /* total_prrr_yy */
+        terms[3*count + k] = add ? terms[3*count + k] + prrr_M_ta_t : prrr_M_ta_t;  /* total_prrr_xz */
+        terms[4*count + k] = add ? terms[4*count + k] + prrr_M_ta_t_2 : prrr_M_ta_t_2;  /* total_prrr_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + prrr_M_aa_t : prrr_M_aa_t;  /* total_prrr_zz */
+        terms[6*count + k] = add ? terms[6*count + k] + prrr_U_in_base_x : prrr_U_in_base_x;  /* total_prrr_x */
+        terms[7*count + k] = add ? terms[7*count + k] + prrr_U_in_base_y : prrr_U_in_base_y;  /* total_prrr_y */
+        terms[8*count + k] = add ? terms[8*count + k] + prrr_Z_a_t : prrr_Z_a_t;  /* total_prrr_z */
+        o[0*count + k] = prrr_P_1_o;
+        o[1*count + k] = prrr_d_P_1_in_base_x;
+        o[2*count + k] = prrr_d_P_1_in_base_x;
+        o[3*count + k] = prrr_d_P_1_in_base_y;
+        o[4*count + k] = prrr_d_P_1_in_base_y;
+        o[5*count + k] = prrr_M_ya_1_z;
+        o[6*count + k] = prrr_M_ya_1_z;
+        o[7*count + k] = prrr_dy_1_P_1;
+        o[8*count + k] = 1;
+        o[9*count + k] = -prrr_w_2_t;
+        o[10*count + k] = prrr_w_2_t_2;
+        o[11*count + k] = prrr_H_a_2_z;
+        o[12*count + k] = prrr_dy_1_qdd_2;
+        o[15*count + k] = ((prrr_P_1_o + prrr_d_P_1_in_base_x) + (prrr_d_P_1_in_base_y +
+            prrr_M_ya_1_z)) + ((prrr_dy_1_P_1 + prrr_w_2_t) + (prrr_w_2_t_2 + (prrr_H_a_2_z +
+            prrr_dy_1_qdd_2)));
+        const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
+        const real prrr_size = m->prrr_size[i];
+        o[14*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
+            UNLESS(magnitude(-prrr_r_2_r0_y) > TOLERANCE*prrr_size);
+        o[13*count + k] = UNLESS(prrr_disc_2 >= 0);
     }
 }
 
-INLINE void dynamics_place_prrr(size_t w, const dynamics_results_prrr *o, size_t first, real *M,
-    real *Z, real *H, verdict *t)
+INLINE void dynamics_place_prrr(size_t w, size_t count, const real *o, size_t first, real *M, real
+    *Z, real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        Z[(3)*w + k] = o->entry[0][first + k];
-        M[(12)*w + k] = o->entry[1][first + k];
-        M[(3)*w + k] = o->entry[2][first + k];
-        M[(13)*w + k] = o->entry[3][first + k];
-        M[(7)*w + k] = o->entry[4][first + k];
-        M[(14)*w + k] = o->entry[5][first + k];
-        M[(11)*w + k] = o->entry[6][first + k];
-        M[(15)*w + k] = o->entry[7][first + k];
-        H[(12)*w + k] = o->entry[8][first + k];
-        H[(1)*w + k] = o->entry[9][first + k];
-        H[(5)*w + k] = o->entry[10][first + k];
-        H[(9)*w + k] = o->entry[11][first + k];
-        H[(13)*w + k] = o->entry[12][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        Z[(3)*w + k] = o[0*count + first + k];
+        M[(12)*w + k] = o[1*count + first + k];
+        M[(3)*w + k] = o[2*count + first + k];
+        M[(13)*w + k] = o[3*count + first + k];
+        M[(7)*w + k] = o[4*count + first + k];
+        M[(14)*w + k] = o[5*count + first + k];
+        M[(11)*w + k] = o[6*count + first + k];
+        M[(15)*w + k] = o[7*count + first + k];
+        H[(12)*w + k] = o[8*count + first + k];
+        H[(1)*w + k] = o[9*count + first + k];
+        H[(5)*w + k] = o[10*count + first + k];
+        H[(9)*w + k] = o[11*count + first + k];
+        H[(13)*w + k] = o[12*count + first + k];
+        t->unreachable[k] += o[13*count + first + k];
+        t->singular[k] += o[14*count + first + k];
+        t->total[k] += o[15*count + first + k];
     }
 }
 
-INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const dynamics_values
-    *s, size_t states, size_t count, int add, dynamics_results_rrr *o)
+INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real J_1_rrr_zz = m->J_1_rrr_zz[i];
-        const real J_2_rrr_zz = m->J_2_rrr_zz[i];
-        const real Jc_1_rrr_zz = m->Jc_1_rrr_zz[i];
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real d_Gamma_1_rrr_t = m->d_Gamma_1_rrr_t[i];
-        const real d_Gamma_1_rrr_y = m->d_Gamma_1_rrr_y[i];
-        const real d_c_rrr_yy = m->d_c_rrr_yy[i];
-        const real d_phi_2_rrr_t = m->d_phi_2_rrr_t[i];
-        const real g_r0_x_2 = m->g_r0_x_2[i];
-        const real g_r0_y_2 = m->g_r0_y_2[i];
-        const real h_1_rrr_x = m->h_1_rrr_x[i];
-        const real h_1_rrr_y = m->h_1_rrr_y[i];
-        const real h_2_rrr_x = m->h_2_rrr_x[i];
-        const real h_2_rrr_y = m->h_2_rrr_y[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_rrr = m->size_rrr[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x;
-        const real S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr =
-            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr;
-        const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
-        const real r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr;
-        const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr;
-        const real axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        /* (rrr-V6) reciprocal vector 2 */
-        const real w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x;
-        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x;
-        const real d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz -
-            d_Gamma_1_rrr_t_2);
-        /* (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
-           and weight */
-        const real d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz -
-            d_Gamma_1_rrr_t_2);
-        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-w_2) reciprocal vector 2 */
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x;
+        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
+        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x;
+        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
+        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz -
+            rrr_d_Gamma_2_t_2);
+        /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real rrr_Jc_1_zz = m->rrr_Jc_1_zz[i];
+        const real rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz -
+            rrr_d_Gamma_2_t_2);
+        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y -
-            d_Gamma_1_rrr_y*w_2_rrr_t;
-        /* (rrr-N36) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rrr_t = d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t -
-            inv_r_1_rrr_r0_y) - d_c_rrr_yy - d_Gamma_2_rrr_x*w_2_rrr_t;
-        const real Q_rrr_t_2 = R(0.5)*Q_rrr_t;
-        const real Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y +
-            axis_y_rrr_axes2_in_base_x*d_c_rrr_xy;
-        const real Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x -
-            axis_y_rrr_axes2_in_base_y*d_c_rrr_xy;
-        const real Q_rrr_t_5 = d_c_rrr_yy + 2*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y;
-        const real Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x +
-            Q_rrr_t_4*axis_y_rrr_axes2_in_base_y;
-        const real Q_rrr_t_7 = d_c_rrr_yy + 2*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x;
-        /* (M2) coupling block of M */
-        const real M_ta_t_3 = Q_rrr_t_5*q_rrr_in_base_y + Q_rrr_t_6*q_rrr_in_base_x;
-        const real M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y + Q_rrr_t_7*q_rrr_in_base_x;
-        /* (M3) rotational block of M */
-        const real M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y + M_ta_t_4*q_rrr_in_base_x;
-        /* (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
-           less gravity */
-        const real g_r1_x_2 = c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr;
-        const real g_r1_y_2 = c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr;
-        /* (rrr-V1) velocity of the connection point */
-        const real S_dot_rrr_t = omega_z*q_rrr_in_base_y;
-        const real S_dot_rrr_t_2 = omega_z*q_rrr_in_base_x;
-        const real S_dot_rrr_x = t_dot_x - S_dot_rrr_t;
-        const real S_dot_rrr_y = S_dot_rrr_t_2 + t_dot_y;
-        /* (rrr-V7) rate of joint 1 */
-        const real qd_1_rrr = inv_r_1_rrr_r0_y*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_x);
-        /* (rrr-V11) angular velocity of link 2 */
-        const real omega_2_rrr_z =
-            inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
-        /* (rrr-V10) centripetal tensor of link 1 */
-        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
-        /* (rrr-V12) centripetal tensor of link 2 */
-        const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
-        /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
-            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
-        /* (rrr-A1) centripetal acceleration of the connection point */
-        const real u_1_rrr_t = S_dot_rrr_t_2*omega_z;
-        const real u_1_rrr_t_2 = S_dot_rrr_t*omega_z;
-        const real u_1_rrr_tip_x = axis_y_rrr_axes2_in_base_x*u_1_rrr_t_2 -
-            axis_y_rrr_axes2_in_base_y*u_1_rrr_t;
-        const real u_1_rrr_tip_y = -axis_y_rrr_axes2_in_base_x*u_1_rrr_t -
-            axis_y_rrr_axes2_in_base_y*u_1_rrr_t_2;
-        /* (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to
+        const real rrr_d_Gamma_2_y = m->rrr_d_Gamma_2_y[i];
+        const real rrr_d_phi_2_t = m->rrr_d_phi_2_t[i];
+        const real rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y -
+            rrr_d_Gamma_2_y*rrr_w_2_t;
+        /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real rrr_d_c_yy = m->rrr_d_c_yy[i];
+        const real rrr_Q_t = inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t -
+            inv_rrr_r_1_r0_y) - rrr_d_c_yy - rrr_d_Gamma_2_x*rrr_w_2_t;
+        const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
+        const real rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy +
+            axis_y_rrr_axes2_in_base_y*rrr_Q_t_2;
+        const real rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 -
+            axis_y_rrr_axes2_in_base_y*rrr_d_c_xy;
+        const real rrr_Q_t_5 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3;
+        const real rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 +
+            axis_y_rrr_axes2_in_base_y*rrr_Q_t_4;
+        const real rrr_Q_t_7 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4;
+        /* (M_ta) coupling block of M */
+        const real rrr_M_ta_t = rrr_Q_t_5*rrr_q_in_base_y + rrr_Q_t_6*rrr_q_in_base_x;
+        const real rrr_M_ta_t_2 = rrr_Q_t_6*rrr_q_in_base_y + rrr_Q_t_7*rrr_q_in_base_x;
+        /* (M_aa) rotational block of M */
+        const real rrr_M_aa_t = rrr_M_ta_t*rrr_q_in_base_y + rrr_M_ta_t_2*rrr_q_in_base_x;
+        /* (rrr-S_dot) velocity of the connection point */
+        const real omega_z = s[6*w + j];
+        const real rrr_S_dot_t = omega_z*rrr_q_in_base_y;
+        const real rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x;
+        const real t_dot_x = s[4*w + j];
+        const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
+        const real t_dot_y = s[5*w + j];
+        const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
+        /* (rrr-qd_2) rate of joint 2 */
+        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y);
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real rrr_omega_2_z =
+            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-u_1) centripetal acceleration of the connection point */
+        const real rrr_u_1_t = omega_z*rrr_S_dot_t_2;
+        const real rrr_u_1_t_2 = omega_z*rrr_S_dot_t;
+        /* (rrr-W_1) centripetal tensor of link 1 */
+        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-W_2) centripetal tensor of link 2 */
+        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        /* (rrr-u_1) centripetal acceleration of the connection point */
+        const real rrr_u_1_tip_x = axis_y_rrr_axes2_in_base_x*rrr_u_1_t_2 -
+            axis_y_rrr_axes2_in_base_y*rrr_u_1_t;
+        const real rrr_u_1_tip_y = -axis_y_rrr_axes2_in_base_x*rrr_u_1_t -
+            axis_y_rrr_axes2_in_base_y*rrr_u_1_t_2;
+        /* (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rel_rrr_o_x = u_1_rrr_tip_x - bias_rrr_x;
-        const real rel_rrr_o_y = u_1_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
-        /* (rrr-A9) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_rrr_o = inv_r_1_rrr_r0_y*rel_rrr_o_x;
-        /* (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
-        const real mu_1_rrr_o_z = g_r1_x_2*h_1_rrr_y - J_1_rrr_zz*qdd_1_rrr_o -
-            g_r1_y_2*h_1_rrr_x;
-        /* (rrr-N4) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real acc_2_rrr_o_x = u_1_rrr_tip_x + g_r1_y_2*s_2_rrr - c_2_rrr*g_r1_x_2;
-        const real acc_2_rrr_o_y = u_1_rrr_tip_y - c_2_rrr*g_r1_y_2 - g_r1_x_2*s_2_rrr;
-        /* (rrr-A18) remainder without the acceleration in: angular acceleration of link 2 */
-        const real alpha_2_rrr_o_z = inv_rrr_platform_joint_offset_x*(rel_rrr_o_y +
-            qdd_1_rrr_o*r_1_rrr_r0_x) - qdd_1_rrr_o;
-        /* (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with
+        const real rrr_rel_o_x = rrr_u_1_tip_x - rrr_bias_x;
+        const real rrr_rel_o_y = rrr_u_1_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        const real rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_rel_o_x;
+        /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        const real rrr_alpha_2_o_z = inv_rrr_platform_joint_offset_x*(rrr_rel_o_y +
+            rrr_qdd_1_o*rrr_r_1_r0_x) - rrr_qdd_1_o;
+        /* (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real rrr_acc_2_o_x = rrr_u_1_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+            axis_y_rrr_axes2_in_base_y*gravity_x;
+        const real rrr_acc_2_o_y = rrr_u_1_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+            axis_y_rrr_axes2_in_base_y*gravity_y;
+        /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real mu_2_rrr_o_z = J_2_rrr_zz*alpha_2_rrr_o_z + acc_2_rrr_o_y*h_2_rrr_x -
-            acc_2_rrr_o_x*h_2_rrr_y;
-        /* (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
+        const real rrr_h_2_x = m->rrr_h_2_x[i];
+        const real rrr_mu_2_o_z = rrr_J_2_zz*rrr_alpha_2_o_z + rrr_acc_2_o_y*rrr_h_2_x -
+            rrr_acc_2_o_x*rrr_h_2_y;
+        /* (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 1, about their reference points */
+        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
+        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
+        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
+        const real rrr_h_1_x = m->rrr_h_1_x[i];
+        const real rrr_h_1_y = m->rrr_h_1_y[i];
+        const real rrr_mu_1_o_z = rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
+            rrr_J_1_zz*rrr_qdd_1_o - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
-        const real N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z;
-        /* (rrr-N32) remainder without the acceleration in: force at the connection point that balances
+        const real rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z;
+        /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z;
-        /* (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation
+        const real rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z;
+        /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real c_rrr_o_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y -
-            inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x - N_1_rrr_o_z);
-        const real c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x;
-        /* (rrr-N37) velocity and gravity terms of the leg force */
-        const real U_rrr_in_base_x = -axis_y_rrr_axes2_in_base_x*c_rrr_o_y -
-            axis_y_rrr_axes2_in_base_y*c_rrr_o_x;
-        const real U_rrr_in_base_y = axis_y_rrr_axes2_in_base_x*c_rrr_o_x -
-            axis_y_rrr_axes2_in_base_y*c_rrr_o_y;
-        /* (M7) rotational part of Z */
-        const real Z_a_t_2 = U_rrr_in_base_y*q_rrr_in_base_x - U_rrr_in_base_x*q_rrr_in_base_y;
-        /* (rrr-V5) reciprocal vector 1 */
-        const real w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y;
-        const real w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
-        /* (M10) moment of the column's unit force about the platform origin */
-        const real H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t;
-        o->sum[0][k] = add ? o->sum[0][k] + Q_rrr_t_5 : Q_rrr_t_5;  /* total_rrr_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + Q_rrr_t_6 : Q_rrr_t_6;  /* total_rrr_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + Q_rrr_t_7 : Q_rrr_t_7;  /* total_rrr_yy */
-        o->sum[3][k] = add ? o->sum[3][k] + M_ta_t_3 : M_ta_t_3;  /* total_rrr_xz */
-        o->sum[4][k] = add ? o->sum[4][k] + M_ta_t_4 : M_ta_t_4;  /* total_rrr_yz */
-        o->sum[5][k] = add ? o->sum[5][k] + M_aa_t_2 : M_aa_t_2;  /* total_rrr_zz */
-        o->sum[6][k] = add ? o->sum[6][k] + U_rrr_in_base_x : U_rrr_in_base_x;  /* total_rrr_x */
-        o->sum[7][k] = add ? o->sum[7][k] + U_rrr_in_base_y : U_rrr_in_base_y;  /* total_rrr_y */
-        o->sum[8][k] = add ? o->sum[8][k] + Z_a_t_2 : Z_a_t_2;  /* total_rrr_z */
-        o->entry[0][k] = -w_1_rrr_t;
-        o->entry[1][k] = w_1_rrr_t_2;
-        o->entry[2][k] = H_a_1_rrr_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
+        const real rrr_c_o_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y -
+            inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x - rrr_N_1_o_z);
+        const real rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x;
+        /* (rrr-U) velocity and gravity terms of the leg force */
+        const real rrr_U_in_base_x = -axis_y_rrr_axes2_in_base_x*rrr_c_o_y -
+            axis_y_rrr_axes2_in_base_y*rrr_c_o_x;
+        const real rrr_U_in_base_y = axis_y_rrr_axes2_in_base_x*rrr_c_o_x -
+            axis_y_rrr_axes2_in_base_y*rrr_c_o_y;
+        /* (Z_a) rotational part of Z */
+        const real rrr_Z_a_t = rrr_U_in_base_y*rrr_q_in_base_x - rrr_U_in_base_x*rrr_q_in_base_y;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y;
+        const real rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y;
+        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+        const real rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t;
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_Q_t_5 : rrr_Q_t_5;  /* total_rrr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_Q_t_6 : rrr_Q_t_6;  /* total_rrr_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_Q_t_7 : rrr_Q_t_7;  /* total_rrr_yy */
+        terms[3*count + k] = add ? terms[3*count + k] + rrr_M_ta_t : rrr_M_ta_t;  /* total_rrr_xz */
+        terms[4*count + k] = add ? terms[4*count + k] + rrr_M_ta_t_2 : rrr_M_ta_t_2;  /* total_rrr_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + rrr_M_aa_t : rrr_M_aa_t;  /* total_rrr_zz */
+        terms[6*count + k] = add ? terms[6*count + k] + rrr_U_in_base_x : rrr_U_in_base_x;  /* total_rrr_x */
+        terms[7*count + k] = add ? terms[7*count + k] + rrr_U_in_base_y : rrr_U_in_base_y;  /* total_rrr_y */
+        terms[8*count + k] = add ? terms[8*count + k] + rrr_Z_a_t : rrr_Z_a_t;  /* total_rrr_z */
+        o[0*count + k] = -rrr_w_1_t;
+        o[1*count + k] = rrr_w_1_t_2;
+        o[2*count + k] = rrr_H_a_1_z;
+        o[5*count + k] = rrr_w_1_t + (rrr_w_1_t_2 + rrr_H_a_1_z);
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[4*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[3*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void dynamics_place_rrr(size_t w, const dynamics_results_rrr *o, size_t leg, size_t first,
+INLINE void dynamics_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_t first,
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(2 + leg)*w + k] = o->entry[0][first + k];
-        H[(6 + leg)*w + k] = o->entry[1][first + k];
-        H[(10 + leg)*w + k] = o->entry[2][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(2 + leg)*w + k] = o[0*count + first + k];
+        H[(6 + leg)*w + k] = o[1*count + first + k];
+        H[(10 + leg)*w + k] = o[2*count + first + k];
+        t->unreachable[k] += o[3*count + first + k];
+        t->singular[k] += o[4*count + first + k];
+        t->total[k] += o[5*count + first + k];
     }
 }
 
-INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s, real *M, real
-    *Z)
+INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const real *sums, real *M,
+    real *Z, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real h_star_in_base_x = s->h_star_in_base_x[k];
-        const real h_star_in_base_y = s->h_star_in_base_y[k];
-        const real Z_p_x = s->Z_p_x[k];
-        const real Z_p_y = s->Z_p_y[k];
-        const real Z_q_t = s->Z_q_t[k];
-        const real total_prrr_xx = s->sum[0][k];
-        const real total_prrr_xy = s->sum[1][k];
-        const real total_prrr_yy = s->sum[2][k];
-        const real total_prrr_xz = s->sum[3][k];
-        const real total_prrr_yz = s->sum[4][k];
-        const real total_prrr_zz = s->sum[5][k];
-        const real total_prrr_x = s->sum[6][k];
-        const real total_prrr_y = s->sum[7][k];
-        const real total_prrr_z = s->sum[8][k];
-        const real total_rrr_xx = s->sum[9][k];
-        const real total_rrr_xy = s->sum[10][k];
-        const real total_rrr_yy = s->sum[11][k];
-        const real total_rrr_xz = s->sum[12][k];
-        const real total_rrr_yz = s->sum[13][k];
-        const real total_rrr_zz = s->sum[14][k];
-        const real total_rrr_x = s->sum[15][k];
-        const real total_rrr_y = s->sum[16][k];
-        const real total_rrr_z = s->sum[17][k];
-        const real J_star_t_14 = m->J_star_t_14;
+        /* (M_tt) translational block of M */
         const real m_star = m->m_star;
-        /* (M1) translational block of M */
+        const real total_prrr_xx = sums[0*w + k];
+        const real total_rrr_xx = sums[9*w + k];
         const real M_tt_xx = m_star - total_prrr_xx - total_rrr_xx;
+        const real total_prrr_xy = sums[1*w + k];
+        const real total_rrr_xy = sums[10*w + k];
         const real M_tt_xy = total_prrr_xy + total_rrr_xy;
+        const real total_prrr_yy = sums[2*w + k];
+        const real total_rrr_yy = sums[11*w + k];
         const real M_tt_yy = m_star - total_prrr_yy - total_rrr_yy;
-        /* (M2) coupling block of M */
+        /* (M_ta) coupling block of M */
+        const real h_star_in_base_y = s[8*w + k];
+        const real total_prrr_xz = sums[3*w + k];
+        const real total_rrr_xz = sums[12*w + k];
         const real M_ta_xz = total_prrr_xz + total_rrr_xz - h_star_in_base_y;
+        const real h_star_in_base_x = s[7*w + k];
+        const real total_prrr_yz = sums[4*w + k];
+        const real total_rrr_yz = sums[13*w + k];
         const real M_ta_yz = h_star_in_base_x - total_prrr_yz - total_rrr_yz;
-        /* (M3) rotational block of M */
-        const real M_aa_zz = -J_star_t_14 - total_prrr_zz - total_rrr_zz;
-        /* (M5) translational part of Z */
+        /* (M_aa) rotational block of M */
+        const real J_star_t_6 = m->J_star_t_6;
+        const real total_prrr_zz = sums[5*w + k];
+        const real total_rrr_zz = sums[14*w + k];
+        const real M_aa_zz = -J_star_t_6 - total_prrr_zz - total_rrr_zz;
+        /* (Z_t) translational part of Z */
+        const real Z_p_x = s[9*w + k];
+        const real total_prrr_x = sums[6*w + k];
+        const real total_rrr_x = sums[15*w + k];
         const real Z_t_x = Z_p_x + total_prrr_x + total_rrr_x;
+        const real Z_p_y = s[10*w + k];
+        const real total_prrr_y = sums[7*w + k];
+        const real total_rrr_y = sums[16*w + k];
         const real Z_t_y = Z_p_y + total_prrr_y + total_rrr_y;
-        /* (M7) rotational part of Z */
+        /* (Z_a) rotational part of Z */
+        const real Z_q_t = s[11*w + k];
+        const real total_prrr_z = sums[8*w + k];
+        const real total_rrr_z = sums[17*w + k];
         const real Z_a_z = total_prrr_z + total_rrr_z - Z_q_t;
         M[0*w + k] = M_tt_xx;
         M[1*w + k] = M_tt_xy;
@@ -1994,463 +2009,446 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_a_z;
+        t->total[k] += ((M_tt_xx + M_tt_xy) + (M_tt_yy + M_ta_xz)) + ((M_ta_yz + M_aa_zz) + (Z_t_x
+            + (Z_t_y + Z_a_z)));
     }
 }
 
-INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real *V, real *M, real
-    *Z, real *H, verdict *t)
+INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
+    *H, verdict *t)
 {
-    dynamics_values values, *const s = &values;
-    dynamics_results_prrr results_prrr;
-    dynamics_results_rrr results_rrr;
-    clear(H, 16*w);
-    dynamics_before(m, w, X, V, s);
-    if (w == 1) {  /* the legs side by side */
-        dynamics_legs_prrr(m, w, 0, 1, s, 0, 1, 0, X, V, &results_prrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            dynamics_place_prrr(w, &results_prrr, leg, M, Z, H, t);
-        }
-        for (size_t n = 0; n < 9; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_prrr.sum[n], 1);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_prrr.sum, 0, sizeof results_prrr.sum);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            dynamics_legs_prrr(m, w, leg, 0, s, 1, w, 1, X, V, &results_prrr);
-            dynamics_place_prrr(w, &results_prrr, 0, M, Z, H, t);
-        }
-        for (size_t n = 0; n < 9; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_prrr.sum[n][k];
-            }
-        }
+    real s[12] = {0}, sums[18] = {0}, terms_prrr[9*LEGS(1)] = {0}, o_prrr[16*LEGS(1)] = {0},
+        terms_rrr[9*LEGS(2)] = {0}, o_rrr[6*LEGS(2)] = {0};
+    clear(H, 16);
+    dynamics_before(m, 1, X, V, s);
+    dynamics_legs_prrr(m, 1, 0, 1, s, 0, LEGS(1), 0, X, V, terms_prrr, o_prrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        dynamics_place_prrr(1, LEGS(1), o_prrr, leg, M, Z, H, t);
     }
-    if (w == 1) {  /* the legs side by side */
-        dynamics_legs_rrr(m, 0, 1, s, 0, 2, 0, &results_rrr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            dynamics_place_rrr(w, &results_rrr, leg, leg, H, t);
-        }
-        for (size_t n = 0; n < 9; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[9 + n][k] = total(results_rrr.sum[n], 2);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            dynamics_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
-            dynamics_place_rrr(w, &results_rrr, leg, 0, H, t);
-        }
-        for (size_t n = 0; n < 9; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[9 + n][k] = results_rrr.sum[n][k];
-            }
-        }
+    for (size_t n = 0; n < 9; ++n) {
+        sums[n] = total(terms_prrr + n*LEGS(1), 1);
     }
-    dynamics_after(m, w, s, M, Z);
+    dynamics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        dynamics_place_rrr(1, LEGS(2), o_rrr, leg, leg, H, t);
+    }
+    for (size_t n = 0; n < 9; ++n) {
+        sums[9 + n] = total(terms_rrr + n*LEGS(2), 2);
+    }
+    dynamics_after(m, 1, s, sums, M, Z, t);
+}
+
+INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, verdict *t)
+{
+    real s[12*LANES], sums[18*LANES], o_prrr[16*LANES], o_rrr[6*LANES];
+    clear(H, 16*LANES);
+    dynamics_before(m, LANES, X, V, s);
+    clear(sums, 9*LANES);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        dynamics_legs_prrr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_prrr);
+        dynamics_place_prrr(LANES, LANES, o_prrr, 0, M, Z, H, t);
+    }
+    clear(sums + 9*LANES, 9*LANES);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        dynamics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums + 9*LANES, o_rrr);
+        dynamics_place_rrr(LANES, LANES, o_rrr, leg, 0, H, t);
+    }
+    dynamics_after(m, LANES, s, sums, M, Z, t);
 }
 
 /* ---- M: 246 mul, 170 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], h_star_in_base_x[LANES],
-        h_star_in_base_y[LANES], sum[12][LANES];
-} M_values;
-typedef struct {
-    real sum[6][8], entry[7][8], unreachable[8], singular[8];
-} M_results_prrr;
-typedef struct {
-    real sum[6][8], unreachable[8], singular[8];
-} M_results_rrr;
-
-INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s)
+INLINE void M_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
-        /* (L2) first moment about the platform origin */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
         const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
         const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->h_star_in_base_x[k] = h_star_in_base_x;
-        s->h_star_in_base_y[k] = h_star_in_base_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
+        s[4*w + k] = h_star_in_base_x;
+        s[5*w + k] = h_star_in_base_y;
     }
 }
 
-INLINE void M_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const M_values *s,
-    size_t states, size_t count, int add, const real *X, M_results_prrr *o)
+INLINE void M_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real J_3_prrr_zz = m->J_3_prrr_zz[i];
-        const real Jc_2_prrr_zz = m->Jc_2_prrr_zz[i];
-        const real Kd_2_prrr_t_2 = m->Kd_2_prrr_t_2[i];
-        const real Kd_2_prrr_t_3 = m->Kd_2_prrr_t_3[i];
-        const real P_c1_prrr_t = m->P_c1_prrr_t[i];
-        const real branch_2_prrr = m->branch_2_prrr[i];
-        const real d_G_prrr_t = m->d_G_prrr_t[i];
-        const real d_Gamma_2_prrr_t = m->d_Gamma_2_prrr_t[i];
-        const real d_Gamma_2_prrr_y = m->d_Gamma_2_prrr_y[i];
-        const real d_c_prrr_yy = m->d_c_prrr_yy[i];
-        const real d_phi_3_prrr_t = m->d_phi_3_prrr_t[i];
-        const real h_2_prrr_x = m->h_2_prrr_x[i];
-        const real h_2_prrr_y = m->h_2_prrr_y[i];
-        const real h_3_prrr_y = m->h_3_prrr_y[i];
-        const real inv_Kd_2_prrr_t = m->inv_Kd_2_prrr_t[i];
-        const real inv_prrr_platform_joint_offset_x = m->inv_prrr_platform_joint_offset_x[i];
-        const real inv_uu_3_prrr_t = m->inv_uu_3_prrr_t[i];
-        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
-        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
-        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_base_point_x = m->prrr_base_point_x[i];
-        const real prrr_base_point_y = m->prrr_base_point_y[i];
-        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        /* (prrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real prrr_platform_point_x = m->prrr_platform_point_x[i];
         const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real rho2_2_prrr_t = m->rho2_2_prrr_t[i];
-        const real size_prrr = m->size_prrr[i];
-        const real y_1_extra_prrr = X[(3)*w + j];
-        /* (prrr-K1) from the base point to the connection point */
-        const real q_prrr_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
-        const real q_prrr_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
-        const real S_prrr_x = q_prrr_in_base_x + t_x - prrr_base_point_x;
-        const real S_prrr_y = q_prrr_in_base_y + t_y - prrr_base_point_y;
-        const real S_prrr_r0_y = -S_prrr_x*prrr_base_frame_xx - S_prrr_y*prrr_base_frame_yx;
-        /* (prrr-K2) from the origin of joint 2 to the connection point */
-        const real x_2_prrr_x = S_prrr_x*prrr_base_frame_xy + S_prrr_y*prrr_base_frame_yy -
-            y_1_extra_prrr;
-        /* (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
+        const real prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
+        const real prrr_base_point_x = m->prrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x;
+        const real prrr_base_point_y = m->prrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y;
+        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
+        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
+        const real prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
+        /* (prrr-x_2) from the origin of joint 2 to the connection point */
+        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
+        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
+        const real prrr_y_1_extra = X[(3)*w + j];
+        const real prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy -
+            prrr_y_1_extra;
+        /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x;
-        const real Kd_2_prrr = R(0.5)*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3;
-        /* (prrr-K7) factor of the cosine in the equation of joint 2 */
-        const real Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x;
-        /* (prrr-K8) factor of the sine in the equation of joint 2 */
-        const real Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x;
-        /* (prrr-K9) squared amplitude */
-        const real rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr;
-        /* (prrr-K10) discriminant */
-        const real disc_2_prrr = rho2_2_prrr - Kd_2_prrr*Kd_2_prrr;
-        /* (prrr-K11) root, with the sign of the branch */
-        const real root_2_prrr = branch_2_prrr*root(disc_2_prrr);
-        /* (prrr-K17) from the origin of joint 3 to the connection point */
-        const real x_3_prrr_x = Kd_2_prrr*inv_Kd_2_prrr_t*prrr_joint3_offset_x -
+        const real prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x;
+        const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
+        const real prrr_Kd_2_t_4 = m->prrr_Kd_2_t_4[i];
+        const real prrr_Kd_2 = R(0.5)*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4;
+        /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
+        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
+        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x;
+        /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
+        const real prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x;
+        /* (prrr-rho2_2) squared amplitude */
+        const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
+        /* (prrr-disc_2) discriminant */
+        const real prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2;
+        /* (prrr-root_2) root, with the sign of the branch */
+        const real prrr_branch_2 = m->prrr_branch_2[i];
+        const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
+        /* (prrr-x_3) from the origin of joint 3 to the connection point */
+        const real inv_prrr_Kd_2_t = m->inv_prrr_Kd_2_t[i];
+        const real prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x -
             prrr_joint3_offset_x;
-        /* (prrr-K19) cosine of the angle of joint 3 from its reference direction */
-        const real c_3_prrr = inv_uu_3_prrr_t*prrr_platform_joint_offset_x*x_3_prrr_x;
-        /* (prrr-K20) sine of the angle of joint 3 from its reference direction */
-        const real s_3_prrr =
-            inv_Kd_2_prrr_t*inv_uu_3_prrr_t*prrr_joint3_offset_x*prrr_platform_joint_offset_x*root_2_prrr;
-        /* (prrr-V2) from joint 2 to the connection point, along the links */
-        const real r_2_prrr_t = prrr_platform_joint_offset_x*s_3_prrr;
-        const real r_2_prrr_x = prrr_joint3_offset_x + c_3_prrr*prrr_platform_joint_offset_x;
-        const real r_2_prrr_r0_x = c_3_prrr*r_2_prrr_x + r_2_prrr_t*s_3_prrr;
-        const real r_2_prrr_r0_y = r_2_prrr_x*s_3_prrr - c_3_prrr*r_2_prrr_t;
-        /* (prrr-K12) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rho2_2_prrr = 1/rho2_2_prrr;
-        const real c_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*Kd_2_prrr - Ks_2_prrr*root_2_prrr);
-        /* (prrr-K13) sine of the angle of joint 2 from its reference direction */
-        const real s_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*root_2_prrr + Kd_2_prrr*Ks_2_prrr);
-        /* (prrr-V5) reciprocal vector 1 */
-        const real axis_y_prrr_axes3_r1_x = c_2_prrr*s_3_prrr - c_3_prrr*s_2_prrr;
-        const real axis_y_prrr_axes3_r1_y = c_2_prrr*c_3_prrr + s_2_prrr*s_3_prrr;
+        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_prrr_Kd_2_t_7 = m->inv_prrr_Kd_2_t_7[i];
+        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        const real prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x;
+        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
+        const real prrr_s_3 =
+            inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
+        /* (prrr-r_2) from joint 2 to the connection point, along the links */
+        const real prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3;
+        const real prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x;
+        const real prrr_r_2_r0_x = prrr_c_3*prrr_r_2_x + prrr_r_2_t*prrr_s_3;
+        const real prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_r_2_t;
+        /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
+        const real prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2);
+        /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2);
+        /* (prrr-w_2) reciprocal vector 1 */
+        const real axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2;
+        const real axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3;
         const real axis_y_prrr_axes3_in_base_x = axis_y_prrr_axes3_r1_x*prrr_base_frame_xy -
             axis_y_prrr_axes3_r1_y*prrr_base_frame_xx;
         const real axis_y_prrr_axes3_in_base_y = axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
             axis_y_prrr_axes3_r1_y*prrr_base_frame_yx;
-        const real inv_r_2_prrr_r0_y = 1/r_2_prrr_r0_y;
-        /* (prrr-V6) reciprocal vector 2 */
-        const real w_3_prrr_t = inv_prrr_platform_joint_offset_x*inv_r_2_prrr_r0_y*r_2_prrr_r0_x;
-        /* (prrr-N42) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
-           and weight */
-        const real d_Gamma_2_prrr_t_2 = d_Gamma_2_prrr_t*r_2_prrr_r0_x;
-        const real d_Gamma_2_prrr_x = -h_3_prrr_y - inv_r_2_prrr_r0_y*(Jc_2_prrr_zz -
-            d_Gamma_2_prrr_t_2);
-        /* (prrr-N31) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia
-           and weight */
-        const real d_Gamma_3_prrr_x = -h_3_prrr_y - inv_r_2_prrr_r0_y*(J_3_prrr_zz -
-            d_Gamma_2_prrr_t_2);
-        /* (prrr-N52) coefficient of the acceleration in: force at the connection point that balances the
+        const real inv_prrr_r_2_r0_y = 1/prrr_r_2_r0_y;
+        /* (prrr-w_3) reciprocal vector 2 */
+        const real inv_prrr_platform_joint_offset_x = m->inv_prrr_platform_joint_offset_x[i];
+        const real prrr_w_3_t = inv_prrr_platform_joint_offset_x*inv_prrr_r_2_r0_y*prrr_r_2_r0_x;
+        /* (prrr-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
+           inertia and weight */
+        const real prrr_d_Gamma_3_t = m->prrr_d_Gamma_3_t[i];
+        const real prrr_d_Gamma_3_t_2 = prrr_d_Gamma_3_t*prrr_r_2_r0_x;
+        const real prrr_J_3_zz = m->prrr_J_3_zz[i];
+        const real prrr_h_3_y = m->prrr_h_3_y[i];
+        const real prrr_d_Gamma_3_x = -prrr_h_3_y - inv_prrr_r_2_r0_y*(prrr_J_3_zz -
+            prrr_d_Gamma_3_t_2);
+        /* (prrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real prrr_Jc_2_zz = m->prrr_Jc_2_zz[i];
+        const real prrr_d_Gamma_2_x = -prrr_h_3_y - inv_prrr_r_2_r0_y*(prrr_Jc_2_zz -
+            prrr_d_Gamma_3_t_2);
+        /* (prrr-d_G) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
-        const real d_G_prrr_xx = d_Gamma_3_prrr_x*w_3_prrr_t - d_Gamma_2_prrr_x*inv_r_2_prrr_r0_y;
-        const real d_G_prrr_xy = d_Gamma_2_prrr_y*w_3_prrr_t - d_Gamma_2_prrr_y*inv_r_2_prrr_r0_y;
-        /* (prrr-N55) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real prrr_d_G_xx = prrr_d_Gamma_3_x*prrr_w_3_t - inv_prrr_r_2_r0_y*prrr_d_Gamma_2_x;
+        const real prrr_d_Gamma_3_y = m->prrr_d_Gamma_3_y[i];
+        const real prrr_d_G_xy = prrr_d_Gamma_3_y*prrr_w_3_t - inv_prrr_r_2_r0_y*prrr_d_Gamma_3_y;
+        /* (prrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_prrr_xy = d_phi_3_prrr_t - d_G_prrr_xy;
-        /* (prrr-N57) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_prrr_t = h_3_prrr_y*(w_3_prrr_t - inv_r_2_prrr_r0_y) - d_G_prrr_xx -
-            d_c_prrr_yy;
-        const real Q_prrr_t_2 = R(0.5)*Q_prrr_t;
-        const real Q_prrr_t_3 = Q_prrr_t_2*axis_y_prrr_axes3_in_base_y +
-            axis_y_prrr_axes3_in_base_x*d_c_prrr_xy;
-        const real Q_prrr_t_4 = Q_prrr_t_2*axis_y_prrr_axes3_in_base_x -
-            axis_y_prrr_axes3_in_base_y*d_c_prrr_xy;
-        const real Q_prrr_t_5 = d_c_prrr_yy + 2*Q_prrr_t_3*axis_y_prrr_axes3_in_base_y;
-        const real Q_prrr_t_6 = Q_prrr_t_3*axis_y_prrr_axes3_in_base_x +
-            Q_prrr_t_4*axis_y_prrr_axes3_in_base_y;
-        const real Q_prrr_t_7 = d_c_prrr_yy + 2*Q_prrr_t_4*axis_y_prrr_axes3_in_base_x;
-        /* (M2) coupling block of M */
-        const real M_ta_t = Q_prrr_t_5*q_prrr_in_base_y + Q_prrr_t_6*q_prrr_in_base_x;
-        const real M_ta_t_2 = Q_prrr_t_6*q_prrr_in_base_y + Q_prrr_t_7*q_prrr_in_base_x;
-        /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t*q_prrr_in_base_y + M_ta_t_2*q_prrr_in_base_x;
-        /* (prrr-N20) force that accelerates joint 2, per unit */
-        const real P_c2_prrr_r0_x = -c_2_prrr*h_2_prrr_y - h_2_prrr_x*s_2_prrr;
-        /* (prrr-N62) coefficient of the acceleration in: inertia and weight of the leg along the extra
+        const real prrr_d_phi_3_t = m->prrr_d_phi_3_t[i];
+        const real prrr_d_c_xy = prrr_d_phi_3_t - prrr_d_G_xy;
+        /* (prrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real prrr_d_c_yy = m->prrr_d_c_yy[i];
+        const real prrr_Q_t = prrr_h_3_y*(prrr_w_3_t - inv_prrr_r_2_r0_y) - prrr_d_G_xx -
+            prrr_d_c_yy;
+        const real prrr_Q_t_2 = R(0.5)*prrr_Q_t;
+        const real prrr_Q_t_3 = axis_y_prrr_axes3_in_base_x*prrr_d_c_xy +
+            axis_y_prrr_axes3_in_base_y*prrr_Q_t_2;
+        const real prrr_Q_t_4 = axis_y_prrr_axes3_in_base_x*prrr_Q_t_2 -
+            axis_y_prrr_axes3_in_base_y*prrr_d_c_xy;
+        const real prrr_Q_t_5 = prrr_d_c_yy + 2*axis_y_prrr_axes3_in_base_y*prrr_Q_t_3;
+        const real prrr_Q_t_6 = axis_y_prrr_axes3_in_base_x*prrr_Q_t_3 +
+            axis_y_prrr_axes3_in_base_y*prrr_Q_t_4;
+        const real prrr_Q_t_7 = prrr_d_c_yy + 2*axis_y_prrr_axes3_in_base_x*prrr_Q_t_4;
+        /* (M_ta) coupling block of M */
+        const real prrr_M_ta_t = prrr_Q_t_5*prrr_q_in_base_y + prrr_Q_t_6*prrr_q_in_base_x;
+        const real prrr_M_ta_t_2 = prrr_Q_t_6*prrr_q_in_base_y + prrr_Q_t_7*prrr_q_in_base_x;
+        /* (M_aa) rotational block of M */
+        const real prrr_M_aa_t = prrr_M_ta_t*prrr_q_in_base_y + prrr_M_ta_t_2*prrr_q_in_base_x;
+        /* (prrr-P_c_2) force that accelerates joint 2, per unit */
+        const real prrr_h_2_x = m->prrr_h_2_x[i];
+        const real prrr_h_2_y = m->prrr_h_2_y[i];
+        const real prrr_P_c_2_r0_x = -prrr_c_2*prrr_h_2_y - prrr_h_2_x*prrr_s_2;
+        /* (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra
            freedom of joint 1 */
-        const real d_P_1_prrr_t = axis_y_prrr_axes3_r1_x*d_G_prrr_t +
-            axis_y_prrr_axes3_r1_y*d_G_prrr_xy;
-        const real d_P_1_prrr_x = -P_c2_prrr_r0_x*inv_r_2_prrr_r0_y -
-            axis_y_prrr_axes3_r1_y*d_G_prrr_xx -
-            axis_y_prrr_axes3_r1_x*d_Gamma_3_prrr_x*inv_prrr_platform_joint_offset_x;
-        const real d_P_1_prrr_in_base_x = axis_y_prrr_axes3_in_base_y*d_P_1_prrr_x -
-            axis_y_prrr_axes3_in_base_x*d_P_1_prrr_t;
-        const real d_P_1_prrr_in_base_y = -axis_y_prrr_axes3_in_base_x*d_P_1_prrr_x -
-            axis_y_prrr_axes3_in_base_y*d_P_1_prrr_t;
-        /* (M8) coupling of extra joint 1 with the rotation of the platform */
-        const real M_ya_1_prrr_z = d_P_1_prrr_in_base_y*q_prrr_in_base_x -
-            d_P_1_prrr_in_base_x*q_prrr_in_base_y;
-        /* (prrr-A10) coefficient of the acceleration in: acceleration of joint 2 */
-        const real d1_qdd_2_prrr = axis_y_prrr_axes3_r1_y*inv_r_2_prrr_r0_y;
-        /* (prrr-N41) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
-           and weight */
-        const real d0_Gamma_2_prrr_t =
-            J_3_prrr_zz*inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_r1_x +
-            d1_qdd_2_prrr*r_2_prrr_r0_x);
-        const real d0_Gamma_2_prrr = P_c2_prrr_r0_x + Jc_2_prrr_zz*d1_qdd_2_prrr -
-            d0_Gamma_2_prrr_t;
-        /* (prrr-N32) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia
-           and weight */
-        const real d1_Gamma_3_prrr = J_3_prrr_zz*d1_qdd_2_prrr - d0_Gamma_2_prrr_t;
-        /* (prrr-N51) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d0_G_prrr_t = d1_Gamma_3_prrr*inv_prrr_platform_joint_offset_x;
-        /* (prrr-N47) coefficient of the acceleration in: force along axis 1 of the distal links' inertia
-           and weight */
-        const real d0_Gamma_1_prrr = P_c1_prrr_t + P_c2_prrr_r0_x*d1_qdd_2_prrr;
-        /* (prrr-N61) coefficient of the acceleration in: inertia and weight of the leg along the extra
-           freedom of joint 1 */
-        const real d0_P_1_prrr_t = axis_y_prrr_axes3_r1_x*d0_G_prrr_t +
-            axis_y_prrr_axes3_r1_y*inv_r_2_prrr_r0_y*(d0_G_prrr_t*r_2_prrr_r0_x -
-            d0_Gamma_2_prrr);
-        const real d0_P_1_prrr = d0_Gamma_1_prrr - d0_P_1_prrr_t;
-        o->sum[0][k] = add ? o->sum[0][k] + Q_prrr_t_5 : Q_prrr_t_5;  /* total_prrr_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + Q_prrr_t_6 : Q_prrr_t_6;  /* total_prrr_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + Q_prrr_t_7 : Q_prrr_t_7;  /* total_prrr_yy */
-        o->sum[3][k] = add ? o->sum[3][k] + M_ta_t : M_ta_t;  /* total_prrr_xz */
-        o->sum[4][k] = add ? o->sum[4][k] + M_ta_t_2 : M_ta_t_2;  /* total_prrr_yz */
-        o->sum[5][k] = add ? o->sum[5][k] + M_aa_t : M_aa_t;  /* total_prrr_zz */
-        o->entry[0][k] = d_P_1_prrr_in_base_x;
-        o->entry[1][k] = d_P_1_prrr_in_base_x;
-        o->entry[2][k] = d_P_1_prrr_in_base_y;
-        o->entry[3][k] = d_P_1_prrr_in_base_y;
-        o->entry[4][k] = M_ya_1_prrr_z;
-        o->entry[5][k] = M_ya_1_prrr_z;
-        o->entry[6][k] = d0_P_1_prrr;
-        o->singular[k] = UNLESS(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t) +
-            UNLESS(magnitude(-r_2_prrr_r0_y) > TOLERANCE*size_prrr);
-        o->unreachable[k] = UNLESS(disc_2_prrr >= 0);
+        const real prrr_d_G_t = m->prrr_d_G_t[i];
+        const real prrr_d_P_1_t = axis_y_prrr_axes3_r1_x*prrr_d_G_t +
+            axis_y_prrr_axes3_r1_y*prrr_d_G_xy;
+        const real prrr_d_P_1_x = -axis_y_prrr_axes3_r1_y*prrr_d_G_xx -
+            inv_prrr_r_2_r0_y*prrr_P_c_2_r0_x -
+            axis_y_prrr_axes3_r1_x*inv_prrr_platform_joint_offset_x*prrr_d_Gamma_3_x;
+        const real prrr_d_P_1_in_base_x = axis_y_prrr_axes3_in_base_y*prrr_d_P_1_x -
+            axis_y_prrr_axes3_in_base_x*prrr_d_P_1_t;
+        const real prrr_d_P_1_in_base_y = -axis_y_prrr_axes3_in_base_x*prrr_d_P_1_x -
+            axis_y_prrr_axes3_in_base_y*prrr_d_P_1_t;
+        /* (prrr-M_ya_1) coupling of extra joint 1 with the rotation of the platform */
+        const real prrr_M_ya_1_z = prrr_d_P_1_in_base_y*prrr_q_in_base_x -
+            prrr_d_P_1_in_base_x*prrr_q_in_base_y;
+        /* (prrr-dy_1_qdd_2) coefficient of the acceleration in: acceleration of joint 2 */
+        const real prrr_dy_1_qdd_2 = axis_y_prrr_axes3_r1_y*inv_prrr_r_2_r0_y;
+        /* (prrr-dy_1_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
+           inertia and weight */
+        const real prrr_P_c_1_t = m->prrr_P_c_1_t[i];
+        const real prrr_dy_1_Gamma_1 = prrr_P_c_1_t + prrr_P_c_2_r0_x*prrr_dy_1_qdd_2;
+        /* (prrr-dy_1_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
+           links' inertia and weight */
+        const real prrr_dy_1_Gamma_3_t =
+            inv_prrr_platform_joint_offset_x*prrr_J_3_zz*(axis_y_prrr_axes3_r1_x +
+            prrr_dy_1_qdd_2*prrr_r_2_r0_x);
+        const real prrr_dy_1_Gamma_3 = prrr_J_3_zz*prrr_dy_1_qdd_2 - prrr_dy_1_Gamma_3_t;
+        /* (prrr-dy_1_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
+           links' inertia and weight */
+        const real prrr_dy_1_Gamma_2 = prrr_P_c_2_r0_x + prrr_Jc_2_zz*prrr_dy_1_qdd_2 -
+            prrr_dy_1_Gamma_3_t;
+        /* (prrr-dy_1_G) coefficient of the acceleration in: force at the connection point that balances
+           the leg's inertia and weight along all freedoms */
+        const real prrr_dy_1_G_t = inv_prrr_platform_joint_offset_x*prrr_dy_1_Gamma_3;
+        /* (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the
+           extra freedom of joint 1 */
+        const real prrr_dy_1_P_1_t = axis_y_prrr_axes3_r1_x*prrr_dy_1_G_t +
+            axis_y_prrr_axes3_r1_y*inv_prrr_r_2_r0_y*(prrr_dy_1_G_t*prrr_r_2_r0_x -
+            prrr_dy_1_Gamma_2);
+        const real prrr_dy_1_P_1 = prrr_dy_1_Gamma_1 - prrr_dy_1_P_1_t;
+        terms[0*count + k] = add ? terms[0*count + k] + prrr_Q_t_5 : prrr_Q_t_5;  /* total_prrr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + prrr_Q_t_6 : prrr_Q_t_6;  /* total_prrr_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + prrr_Q_t_7 : prrr_Q_t_7;  /* total_prrr_yy */
+        terms[3*count + k] = add ? terms[3*count + k] + prrr_M_ta_t : prrr_M_ta_t;  /* total_prrr_xz */
+        terms[4*count + k] = add ? terms[4*count + k] + prrr_M_ta_t_2 : prrr_M_ta_t_2;  /* total_prrr_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + prrr_M_aa_t : prrr_M_aa_t;  /* total_prrr_zz */
+        o[0*count + k] = prrr_d_P_1_in_base_x;
+        o[1*count + k] = prrr_d_P_1_in_base_x;
+        o[2*count + k] = prrr_d_P_1_in_base_y;
+        o[3*count + k] = prrr_d_P_1_in_base_y;
+        o[4*count + k] = prrr_M_ya_1_z;
+        o[5*count + k] = prrr_M_ya_1_z;
+        o[6*count + k] = prrr_dy_1_P_1;
+        o[9*count + k] = (prrr_d_P_1_in_base_x + prrr_d_P_1_in_base_y) + (prrr_M_ya_1_z +
+            prrr_dy_1_P_1);
+        const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
+        const real prrr_size = m->prrr_size[i];
+        o[8*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
+            UNLESS(magnitude(-prrr_r_2_r0_y) > TOLERANCE*prrr_size);
+        o[7*count + k] = UNLESS(prrr_disc_2 >= 0);
     }
 }
 
-INLINE void M_place_prrr(size_t w, const M_results_prrr *o, size_t first, real *M, verdict *t)
+INLINE void M_place_prrr(size_t w, size_t count, const real *o, size_t first, real *M, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        M[(12)*w + k] = o->entry[0][first + k];
-        M[(3)*w + k] = o->entry[1][first + k];
-        M[(13)*w + k] = o->entry[2][first + k];
-        M[(7)*w + k] = o->entry[3][first + k];
-        M[(14)*w + k] = o->entry[4][first + k];
-        M[(11)*w + k] = o->entry[5][first + k];
-        M[(15)*w + k] = o->entry[6][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        M[(12)*w + k] = o[0*count + first + k];
+        M[(3)*w + k] = o[1*count + first + k];
+        M[(13)*w + k] = o[2*count + first + k];
+        M[(7)*w + k] = o[3*count + first + k];
+        M[(14)*w + k] = o[4*count + first + k];
+        M[(11)*w + k] = o[5*count + first + k];
+        M[(15)*w + k] = o[6*count + first + k];
+        t->unreachable[k] += o[7*count + first + k];
+        t->singular[k] += o[8*count + first + k];
+        t->total[k] += o[9*count + first + k];
     }
 }
 
-INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
-    states, size_t count, int add, M_results_rrr *o)
+INLINE void M_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real J_2_rrr_zz = m->J_2_rrr_zz[i];
-        const real Jc_1_rrr_zz = m->Jc_1_rrr_zz[i];
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real d_Gamma_1_rrr_t = m->d_Gamma_1_rrr_t[i];
-        const real d_Gamma_1_rrr_y = m->d_Gamma_1_rrr_y[i];
-        const real d_c_rrr_yy = m->d_c_rrr_yy[i];
-        const real d_phi_2_rrr_t = m->d_phi_2_rrr_t[i];
-        const real h_2_rrr_y = m->h_2_rrr_y[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_rrr = m->size_rrr[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x;
-        const real S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr =
-            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr;
-        const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
-        const real r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr;
-        const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr;
-        const real axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        /* (rrr-V6) reciprocal vector 2 */
-        const real w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x;
-        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x;
-        const real d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz -
-            d_Gamma_1_rrr_t_2);
-        /* (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
-           and weight */
-        const real d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz -
-            d_Gamma_1_rrr_t_2);
-        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-w_2) reciprocal vector 2 */
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x;
+        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
+        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x;
+        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
+        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz -
+            rrr_d_Gamma_2_t_2);
+        /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real rrr_Jc_1_zz = m->rrr_Jc_1_zz[i];
+        const real rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz -
+            rrr_d_Gamma_2_t_2);
+        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y -
-            d_Gamma_1_rrr_y*w_2_rrr_t;
-        /* (rrr-N36) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rrr_t = d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t -
-            inv_r_1_rrr_r0_y) - d_c_rrr_yy - d_Gamma_2_rrr_x*w_2_rrr_t;
-        const real Q_rrr_t_2 = R(0.5)*Q_rrr_t;
-        const real Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y +
-            axis_y_rrr_axes2_in_base_x*d_c_rrr_xy;
-        const real Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x -
-            axis_y_rrr_axes2_in_base_y*d_c_rrr_xy;
-        const real Q_rrr_t_5 = d_c_rrr_yy + 2*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y;
-        const real Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x +
-            Q_rrr_t_4*axis_y_rrr_axes2_in_base_y;
-        const real Q_rrr_t_7 = d_c_rrr_yy + 2*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x;
-        /* (M2) coupling block of M */
-        const real M_ta_t_3 = Q_rrr_t_5*q_rrr_in_base_y + Q_rrr_t_6*q_rrr_in_base_x;
-        const real M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y + Q_rrr_t_7*q_rrr_in_base_x;
-        /* (M3) rotational block of M */
-        const real M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y + M_ta_t_4*q_rrr_in_base_x;
-        o->sum[0][k] = add ? o->sum[0][k] + Q_rrr_t_5 : Q_rrr_t_5;  /* total_rrr_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + Q_rrr_t_6 : Q_rrr_t_6;  /* total_rrr_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + Q_rrr_t_7 : Q_rrr_t_7;  /* total_rrr_yy */
-        o->sum[3][k] = add ? o->sum[3][k] + M_ta_t_3 : M_ta_t_3;  /* total_rrr_xz */
-        o->sum[4][k] = add ? o->sum[4][k] + M_ta_t_4 : M_ta_t_4;  /* total_rrr_yz */
-        o->sum[5][k] = add ? o->sum[5][k] + M_aa_t_2 : M_aa_t_2;  /* total_rrr_zz */
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
+        const real rrr_d_Gamma_2_y = m->rrr_d_Gamma_2_y[i];
+        const real rrr_d_phi_2_t = m->rrr_d_phi_2_t[i];
+        const real rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y -
+            rrr_d_Gamma_2_y*rrr_w_2_t;
+        /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real rrr_d_c_yy = m->rrr_d_c_yy[i];
+        const real rrr_Q_t = inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t -
+            inv_rrr_r_1_r0_y) - rrr_d_c_yy - rrr_d_Gamma_2_x*rrr_w_2_t;
+        const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
+        const real rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy +
+            axis_y_rrr_axes2_in_base_y*rrr_Q_t_2;
+        const real rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 -
+            axis_y_rrr_axes2_in_base_y*rrr_d_c_xy;
+        const real rrr_Q_t_5 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3;
+        const real rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 +
+            axis_y_rrr_axes2_in_base_y*rrr_Q_t_4;
+        const real rrr_Q_t_7 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4;
+        /* (M_ta) coupling block of M */
+        const real rrr_M_ta_t = rrr_Q_t_5*rrr_q_in_base_y + rrr_Q_t_6*rrr_q_in_base_x;
+        const real rrr_M_ta_t_2 = rrr_Q_t_6*rrr_q_in_base_y + rrr_Q_t_7*rrr_q_in_base_x;
+        /* (M_aa) rotational block of M */
+        const real rrr_M_aa_t = rrr_M_ta_t*rrr_q_in_base_y + rrr_M_ta_t_2*rrr_q_in_base_x;
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_Q_t_5 : rrr_Q_t_5;  /* total_rrr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_Q_t_6 : rrr_Q_t_6;  /* total_rrr_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_Q_t_7 : rrr_Q_t_7;  /* total_rrr_yy */
+        terms[3*count + k] = add ? terms[3*count + k] + rrr_M_ta_t : rrr_M_ta_t;  /* total_rrr_xz */
+        terms[4*count + k] = add ? terms[4*count + k] + rrr_M_ta_t_2 : rrr_M_ta_t_2;  /* total_rrr_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + rrr_M_aa_t : rrr_M_aa_t;  /* total_rrr_zz */
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void M_place_rrr(size_t w, const M_results_rrr *o, size_t first, verdict *t)
+INLINE void M_place_rrr(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        t->unreachable[k] += o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
     }
 }
 
-INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
+INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums, real *M, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real h_star_in_base_x = s->h_star_in_base_x[k];
-        const real h_star_in_base_y = s->h_star_in_base_y[k];
-        const real total_prrr_xx = s->sum[0][k];
-        const real total_prrr_xy = s->sum[1][k];
-        const real total_prrr_yy = s->sum[2][k];
-        const real total_prrr_xz = s->sum[3][k];
-        const real total_prrr_yz = s->sum[4][k];
-        const real total_prrr_zz = s->sum[5][k];
-        const real total_rrr_xx = s->sum[6][k];
-        const real total_rrr_xy = s->sum[7][k];
-        const real total_rrr_yy = s->sum[8][k];
-        const real total_rrr_xz = s->sum[9][k];
-        const real total_rrr_yz = s->sum[10][k];
-        const real total_rrr_zz = s->sum[11][k];
-        const real J_star_t_14 = m->J_star_t_14;
+        /* (M_tt) translational block of M */
         const real m_star = m->m_star;
-        /* (M1) translational block of M */
+        const real total_prrr_xx = sums[0*w + k];
+        const real total_rrr_xx = sums[6*w + k];
         const real M_tt_xx = m_star - total_prrr_xx - total_rrr_xx;
+        const real total_prrr_xy = sums[1*w + k];
+        const real total_rrr_xy = sums[7*w + k];
         const real M_tt_xy = total_prrr_xy + total_rrr_xy;
+        const real total_prrr_yy = sums[2*w + k];
+        const real total_rrr_yy = sums[8*w + k];
         const real M_tt_yy = m_star - total_prrr_yy - total_rrr_yy;
-        /* (M2) coupling block of M */
+        /* (M_ta) coupling block of M */
+        const real h_star_in_base_y = s[5*w + k];
+        const real total_prrr_xz = sums[3*w + k];
+        const real total_rrr_xz = sums[9*w + k];
         const real M_ta_xz = total_prrr_xz + total_rrr_xz - h_star_in_base_y;
+        const real h_star_in_base_x = s[4*w + k];
+        const real total_prrr_yz = sums[4*w + k];
+        const real total_rrr_yz = sums[10*w + k];
         const real M_ta_yz = h_star_in_base_x - total_prrr_yz - total_rrr_yz;
-        /* (M3) rotational block of M */
-        const real M_aa_zz = -J_star_t_14 - total_prrr_zz - total_rrr_zz;
+        /* (M_aa) rotational block of M */
+        const real J_star_t_6 = m->J_star_t_6;
+        const real total_prrr_zz = sums[5*w + k];
+        const real total_rrr_zz = sums[11*w + k];
+        const real M_aa_zz = -J_star_t_6 - total_prrr_zz - total_rrr_zz;
         M[0*w + k] = M_tt_xx;
         M[1*w + k] = M_tt_xy;
         M[4*w + k] = M_tt_xy;
@@ -2460,1329 +2458,1286 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         M[6*w + k] = M_ta_yz;
         M[9*w + k] = M_ta_yz;
         M[10*w + k] = M_aa_zz;
+        t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
     }
 }
 
-INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *t)
+INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    M_values values, *const s = &values;
-    M_results_prrr results_prrr;
-    M_results_rrr results_rrr;
-    M_before(m, w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        M_legs_prrr(m, w, 0, 1, s, 0, 1, 0, X, &results_prrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            M_place_prrr(w, &results_prrr, leg, M, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_prrr.sum[n], 1);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_prrr.sum, 0, sizeof results_prrr.sum);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            M_legs_prrr(m, w, leg, 0, s, 1, w, 1, X, &results_prrr);
-            M_place_prrr(w, &results_prrr, 0, M, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_prrr.sum[n][k];
-            }
-        }
+    real s[6] = {0}, sums[12] = {0}, terms_prrr[6*LEGS(1)] = {0}, o_prrr[10*LEGS(1)] = {0},
+        terms_rrr[6*LEGS(2)] = {0}, o_rrr[2*LEGS(2)] = {0};
+    M_before(m, 1, X, s);
+    M_legs_prrr(m, 1, 0, 1, s, 0, LEGS(1), 0, X, terms_prrr, o_prrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        M_place_prrr(1, LEGS(1), o_prrr, leg, M, t);
     }
-    if (w == 1) {  /* the legs side by side */
-        M_legs_rrr(m, 0, 1, s, 0, 2, 0, &results_rrr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            M_place_rrr(w, &results_rrr, leg, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[6 + n][k] = total(results_rrr.sum[n], 2);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            M_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
-            M_place_rrr(w, &results_rrr, 0, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[6 + n][k] = results_rrr.sum[n][k];
-            }
-        }
+    for (size_t n = 0; n < 6; ++n) {
+        sums[n] = total(terms_prrr + n*LEGS(1), 1);
     }
-    M_after(m, w, s, M);
+    M_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        M_place_rrr(1, LEGS(2), o_rrr, leg, t);
+    }
+    for (size_t n = 0; n < 6; ++n) {
+        sums[6 + n] = total(terms_rrr + n*LEGS(2), 2);
+    }
+    M_after(m, 1, s, sums, M, t);
 }
 
-/* ---- Z: 316 mul, 198 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
-        omega_z[LANES], Z_p_x[LANES], Z_p_y[LANES], Z_q_t[LANES], sum[6][LANES];
-} Z_values;
-typedef struct {
-    real sum[3][8], entry[1][8], unreachable[8], singular[8];
-} Z_results_prrr;
-typedef struct {
-    real sum[3][8], unreachable[8], singular[8];
-} Z_results_rrr;
+INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
+{
+    real s[6*LANES], sums[12*LANES], o_prrr[10*LANES], o_rrr[2*LANES];
+    M_before(m, LANES, X, s);
+    clear(sums, 6*LANES);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        M_legs_prrr(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_prrr);
+        M_place_prrr(LANES, LANES, o_prrr, 0, M, t);
+    }
+    clear(sums + 6*LANES, 6*LANES);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        M_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums + 6*LANES, o_rrr);
+        M_place_rrr(LANES, LANES, o_rrr, 0, t);
+    }
+    M_after(m, LANES, s, sums, M, t);
+}
 
-INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, Z_values *s)
+/* ---- Z: 312 mul, 196 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
+INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real omega_z = V_2;
-        /* (P1) centripetal tensor of the platform */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
+        const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
+        /* (W_p) centripetal tensor of the platform */
         const real W_p_t = omega_z*omega_z;
-        /* (M4) centripetal force and weight of the platform */
-        const real Z_p_x = -Z_p_t - W_p_t*(R_xx*h_star_x - R_yx*h_star_y);
-        const real Z_p_y = -Z_p_t_2 - W_p_t*(R_xx*h_star_y + R_yx*h_star_x);
-        /* (M6) gyroscopic moment and moment of the weight of the platform */
-        const real Z_q_t = h_star_x*(R_xx*gravity_y - R_yx*gravity_x) - h_star_y*(R_xx*gravity_x +
-            R_yx*gravity_y);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->omega_z[k] = omega_z;
-        s->Z_p_x[k] = Z_p_x;
-        s->Z_p_y[k] = Z_p_y;
-        s->Z_q_t[k] = Z_q_t;
+        /* (Z_p) centripetal force and weight of the platform */
+        const real Z_p_t = m->Z_p_t;
+        const real Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x;
+        const real Z_p_t_2 = m->Z_p_t_2;
+        const real Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y;
+        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
+        s[4*w + k] = t_dot_x;
+        s[5*w + k] = t_dot_y;
+        s[6*w + k] = omega_z;
+        s[7*w + k] = Z_p_x;
+        s[8*w + k] = Z_p_y;
+        s[9*w + k] = Z_q_t;
     }
 }
 
-INLINE void Z_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const Z_values *s,
-    size_t states, size_t count, int add, const real *X, const real *V, Z_results_prrr *o)
+INLINE void Z_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real J_2_prrr_zz = m->J_2_prrr_zz[i];
-        const real J_3_prrr_zz = m->J_3_prrr_zz[i];
-        const real Kd_2_prrr_t_2 = m->Kd_2_prrr_t_2[i];
-        const real Kd_2_prrr_t_3 = m->Kd_2_prrr_t_3[i];
-        const real branch_2_prrr = m->branch_2_prrr[i];
-        const real f_1_prrr_o_x = m->f_1_prrr_o_x[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_2_prrr_x = m->h_2_prrr_x[i];
-        const real h_2_prrr_y = m->h_2_prrr_y[i];
-        const real h_3_prrr_x = m->h_3_prrr_x[i];
-        const real h_3_prrr_y = m->h_3_prrr_y[i];
-        const real inv_Kd_2_prrr_t = m->inv_Kd_2_prrr_t[i];
-        const real inv_prrr_platform_joint_offset_x = m->inv_prrr_platform_joint_offset_x[i];
-        const real inv_uu_3_prrr_t = m->inv_uu_3_prrr_t[i];
-        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
-        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
-        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_base_point_x = m->prrr_base_point_x[i];
-        const real prrr_base_point_y = m->prrr_base_point_y[i];
-        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_link2_mass = m->prrr_link2_mass[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        /* (prrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real prrr_platform_point_x = m->prrr_platform_point_x[i];
         const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real rho2_2_prrr_t = m->rho2_2_prrr_t[i];
-        const real size_prrr = m->size_prrr[i];
-        const real y_1_extra_prrr = X[(3)*w + j];
-        const real yd_1_prrr = V[(3)*w + j];
-        /* (prrr-K1) from the base point to the connection point */
-        const real q_prrr_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
-        const real q_prrr_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
-        const real S_prrr_x = q_prrr_in_base_x + t_x - prrr_base_point_x;
-        const real S_prrr_y = q_prrr_in_base_y + t_y - prrr_base_point_y;
-        const real S_prrr_r0_y = -S_prrr_x*prrr_base_frame_xx - S_prrr_y*prrr_base_frame_yx;
-        /* (prrr-K2) from the origin of joint 2 to the connection point */
-        const real x_2_prrr_x = S_prrr_x*prrr_base_frame_xy + S_prrr_y*prrr_base_frame_yy -
-            y_1_extra_prrr;
-        /* (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
+        const real prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
+        const real prrr_base_point_x = m->prrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x;
+        const real prrr_base_point_y = m->prrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y;
+        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
+        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
+        const real prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
+        /* (prrr-x_2) from the origin of joint 2 to the connection point */
+        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
+        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
+        const real prrr_y_1_extra = X[(3)*w + j];
+        const real prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy -
+            prrr_y_1_extra;
+        /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x;
-        const real Kd_2_prrr = R(0.5)*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3;
-        /* (prrr-K7) factor of the cosine in the equation of joint 2 */
-        const real Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x;
-        /* (prrr-K8) factor of the sine in the equation of joint 2 */
-        const real Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x;
-        /* (prrr-K9) squared amplitude */
-        const real rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr;
-        /* (prrr-K10) discriminant */
-        const real disc_2_prrr = rho2_2_prrr - Kd_2_prrr*Kd_2_prrr;
-        /* (prrr-K11) root, with the sign of the branch */
-        const real root_2_prrr = branch_2_prrr*root(disc_2_prrr);
-        /* (prrr-K17) from the origin of joint 3 to the connection point */
-        const real x_3_prrr_x = Kd_2_prrr*inv_Kd_2_prrr_t*prrr_joint3_offset_x -
+        const real prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x;
+        const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
+        const real prrr_Kd_2_t_4 = m->prrr_Kd_2_t_4[i];
+        const real prrr_Kd_2 = R(0.5)*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4;
+        /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
+        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
+        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x;
+        /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
+        const real prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x;
+        /* (prrr-rho2_2) squared amplitude */
+        const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
+        /* (prrr-disc_2) discriminant */
+        const real prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2;
+        /* (prrr-root_2) root, with the sign of the branch */
+        const real prrr_branch_2 = m->prrr_branch_2[i];
+        const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
+        /* (prrr-x_3) from the origin of joint 3 to the connection point */
+        const real inv_prrr_Kd_2_t = m->inv_prrr_Kd_2_t[i];
+        const real prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x -
             prrr_joint3_offset_x;
-        /* (prrr-K19) cosine of the angle of joint 3 from its reference direction */
-        const real c_3_prrr = inv_uu_3_prrr_t*prrr_platform_joint_offset_x*x_3_prrr_x;
-        /* (prrr-K20) sine of the angle of joint 3 from its reference direction */
-        const real s_3_prrr =
-            inv_Kd_2_prrr_t*inv_uu_3_prrr_t*prrr_joint3_offset_x*prrr_platform_joint_offset_x*root_2_prrr;
-        /* (prrr-V2) from joint 2 to the connection point, along the links */
-        const real r_2_prrr_t = prrr_platform_joint_offset_x*s_3_prrr;
-        const real r_2_prrr_x = prrr_joint3_offset_x + c_3_prrr*prrr_platform_joint_offset_x;
-        const real r_2_prrr_r0_x = c_3_prrr*r_2_prrr_x + r_2_prrr_t*s_3_prrr;
-        const real r_2_prrr_r0_y = r_2_prrr_x*s_3_prrr - c_3_prrr*r_2_prrr_t;
-        /* (prrr-K12) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rho2_2_prrr = 1/rho2_2_prrr;
-        const real c_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*Kd_2_prrr - Ks_2_prrr*root_2_prrr);
-        /* (prrr-K13) sine of the angle of joint 2 from its reference direction */
-        const real s_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*root_2_prrr + Kd_2_prrr*Ks_2_prrr);
-        /* (prrr-V5) reciprocal vector 1 */
-        const real axis_y_prrr_axes3_r1_x = c_2_prrr*s_3_prrr - c_3_prrr*s_2_prrr;
-        const real axis_y_prrr_axes3_r1_y = c_2_prrr*c_3_prrr + s_2_prrr*s_3_prrr;
+        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_prrr_Kd_2_t_7 = m->inv_prrr_Kd_2_t_7[i];
+        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        const real prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x;
+        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
+        const real prrr_s_3 =
+            inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
+        /* (prrr-r_2) from joint 2 to the connection point, along the links */
+        const real prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3;
+        const real prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x;
+        const real prrr_r_2_r0_x = prrr_c_3*prrr_r_2_x + prrr_r_2_t*prrr_s_3;
+        const real prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_r_2_t;
+        /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
+        const real prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2);
+        /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2);
+        /* (prrr-w_2) reciprocal vector 1 */
+        const real axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2;
+        const real axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3;
         const real axis_y_prrr_axes3_in_base_x = axis_y_prrr_axes3_r1_x*prrr_base_frame_xy -
             axis_y_prrr_axes3_r1_y*prrr_base_frame_xx;
         const real axis_y_prrr_axes3_in_base_y = axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
             axis_y_prrr_axes3_r1_y*prrr_base_frame_yx;
-        const real inv_r_2_prrr_r0_y = 1/r_2_prrr_r0_y;
-        /* (prrr-N6) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real g_r1_x = c_2_prrr*g_r0_x + g_r0_y*s_2_prrr;
-        const real g_r1_y = c_2_prrr*g_r0_y - g_r0_x*s_2_prrr;
-        /* (prrr-V1) velocity of the connection point */
-        const real S_dot_prrr_t = omega_z*q_prrr_in_base_y;
-        const real S_dot_prrr_t_2 = omega_z*q_prrr_in_base_x;
-        const real S_dot_prrr_x = t_dot_x - S_dot_prrr_t;
-        const real S_dot_prrr_y = S_dot_prrr_t_2 + t_dot_y;
-        /* (prrr-V7) velocity of the connection point left to the joints that are not extra */
-        const real S_dot_rest_prrr_x = S_dot_prrr_x - prrr_base_frame_xy*yd_1_prrr;
-        const real S_dot_rest_prrr_y = S_dot_prrr_y - prrr_base_frame_yy*yd_1_prrr;
-        /* (prrr-V8) rate of joint 2 */
-        const real qd_2_prrr = inv_r_2_prrr_r0_y*(S_dot_rest_prrr_x*axis_y_prrr_axes3_in_base_y -
-            S_dot_rest_prrr_y*axis_y_prrr_axes3_in_base_x);
-        /* (prrr-V12) angular velocity of link 3 */
-        const real omega_3_prrr_z =
-            inv_prrr_platform_joint_offset_x*(S_dot_rest_prrr_x*axis_y_prrr_axes3_in_base_x +
-            S_dot_rest_prrr_y*axis_y_prrr_axes3_in_base_y + qd_2_prrr*r_2_prrr_r0_x) - qd_2_prrr;
-        /* (prrr-V11) centripetal tensor of link 2 */
-        const real W_2_prrr_t = qd_2_prrr*qd_2_prrr;
-        /* (prrr-V13) centripetal tensor of link 3 */
-        const real W_3_prrr_t = omega_3_prrr_z*omega_3_prrr_z;
-        /* (prrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_prrr_x = -W_3_prrr_t*prrr_platform_joint_offset_x -
-            W_2_prrr_t*c_3_prrr*prrr_joint3_offset_x;
-        /* (prrr-A1) centripetal acceleration of the connection point */
-        const real u_1_prrr_t = S_dot_prrr_t_2*omega_z;
-        const real u_1_prrr_t_2 = S_dot_prrr_t*omega_z;
-        const real u_1_prrr_tip_x = axis_y_prrr_axes3_in_base_x*u_1_prrr_t_2 -
-            axis_y_prrr_axes3_in_base_y*u_1_prrr_t;
-        const real u_1_prrr_tip_y = -axis_y_prrr_axes3_in_base_x*u_1_prrr_t -
-            axis_y_prrr_axes3_in_base_y*u_1_prrr_t_2;
-        /* (prrr-A8) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
-        const real rel_prrr_o_x = u_1_prrr_tip_x - bias_prrr_x;
-        const real rel_prrr_o_y = u_1_prrr_tip_y + W_2_prrr_t*prrr_joint3_offset_x*s_3_prrr;
-        /* (prrr-A11) remainder without the acceleration in: acceleration of joint 2 */
-        const real qdd_2_prrr_o = inv_r_2_prrr_r0_y*rel_prrr_o_x;
-        /* (prrr-N37) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
-        const real mu_2_prrr_o_z = g_r1_x*h_2_prrr_y - J_2_prrr_zz*qdd_2_prrr_o -
-            g_r1_y*h_2_prrr_x;
-        /* (prrr-N12) remainder without the acceleration in: acceleration of the reference point of link
-           3, less gravity */
-        const real acc_3_prrr_o_x = u_1_prrr_tip_x + g_r1_y*s_3_prrr - c_3_prrr*g_r1_x;
-        const real acc_3_prrr_o_y = u_1_prrr_tip_y - c_3_prrr*g_r1_y - g_r1_x*s_3_prrr;
-        /* (prrr-A21) remainder without the acceleration in: angular acceleration of link 3 */
-        const real alpha_3_prrr_o_z = inv_prrr_platform_joint_offset_x*(rel_prrr_o_y +
-            qdd_2_prrr_o*r_2_prrr_r0_x) - qdd_2_prrr_o;
-        /* (prrr-N29) remainder without the acceleration in: inertia moment of the links that turn with
+        const real inv_prrr_r_2_r0_y = 1/prrr_r_2_r0_y;
+        /* (prrr-S_dot) velocity of the connection point */
+        const real omega_z = s[6*w + j];
+        const real prrr_S_dot_t = omega_z*prrr_q_in_base_y;
+        const real prrr_S_dot_t_2 = omega_z*prrr_q_in_base_x;
+        const real t_dot_x = s[4*w + j];
+        const real prrr_S_dot_x = t_dot_x - prrr_S_dot_t;
+        const real t_dot_y = s[5*w + j];
+        const real prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y;
+        /* (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra */
+        const real prrr_yd_1 = V[(3)*w + j];
+        const real prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1;
+        const real prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1;
+        /* (prrr-qd_3) rate of joint 3 */
+        const real prrr_qd_2 = inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_x -
+            axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_y);
+        /* (prrr-omega_3) angular velocity of link 3 */
+        const real inv_prrr_platform_joint_offset_x = m->inv_prrr_platform_joint_offset_x[i];
+        const real prrr_omega_3_z =
+            inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_x +
+            axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_y + prrr_qd_2*prrr_r_2_r0_x) - prrr_qd_2;
+        /* (prrr-u_1) centripetal acceleration of the connection point */
+        const real prrr_u_1_t = omega_z*prrr_S_dot_t_2;
+        const real prrr_u_1_t_2 = omega_z*prrr_S_dot_t;
+        /* (prrr-W_2) centripetal tensor of link 2 */
+        const real prrr_W_2_t = prrr_qd_2*prrr_qd_2;
+        /* (prrr-W_3) centripetal tensor of link 3 */
+        const real prrr_W_3_t = prrr_omega_3_z*prrr_omega_3_z;
+        /* (prrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real prrr_bias_x = -prrr_W_3_t*prrr_platform_joint_offset_x -
+            prrr_W_2_t*prrr_c_3*prrr_joint3_offset_x;
+        /* (prrr-u_1) centripetal acceleration of the connection point */
+        const real prrr_u_1_tip_x = axis_y_prrr_axes3_in_base_x*prrr_u_1_t_2 -
+            axis_y_prrr_axes3_in_base_y*prrr_u_1_t;
+        const real prrr_u_1_tip_y = -axis_y_prrr_axes3_in_base_x*prrr_u_1_t -
+            axis_y_prrr_axes3_in_base_y*prrr_u_1_t_2;
+        /* (prrr-rel_o) remainder without the acceleration in: acceleration of the connection point left
+           to the joint accelerations */
+        const real prrr_rel_o_x = prrr_u_1_tip_x - prrr_bias_x;
+        const real prrr_rel_o_y = prrr_u_1_tip_y + prrr_W_2_t*prrr_joint3_offset_x*prrr_s_3;
+        /* (prrr-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
+        const real prrr_qdd_2_o = inv_prrr_r_2_r0_y*prrr_rel_o_x;
+        /* (prrr-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
+        const real prrr_alpha_3_o_z = inv_prrr_platform_joint_offset_x*(prrr_rel_o_y +
+            prrr_qdd_2_o*prrr_r_2_r0_x) - prrr_qdd_2_o;
+        /* (prrr-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+           link 3, less gravity */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real prrr_acc_3_o_x = prrr_u_1_tip_x + axis_y_prrr_axes3_in_base_x*gravity_y -
+            axis_y_prrr_axes3_in_base_y*gravity_x;
+        const real prrr_acc_3_o_y = prrr_u_1_tip_y - axis_y_prrr_axes3_in_base_x*gravity_x -
+            axis_y_prrr_axes3_in_base_y*gravity_y;
+        /* (prrr-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
-        const real mu_3_prrr_o_z = J_3_prrr_zz*alpha_3_prrr_o_z + acc_3_prrr_o_y*h_3_prrr_x -
-            acc_3_prrr_o_x*h_3_prrr_y;
-        /* (prrr-N39) remainder without the acceleration in: moment about joint 2 of the links from 2
+        const real prrr_J_3_zz = m->prrr_J_3_zz[i];
+        const real prrr_h_3_x = m->prrr_h_3_x[i];
+        const real prrr_h_3_y = m->prrr_h_3_y[i];
+        const real prrr_mu_3_o_z = prrr_J_3_zz*prrr_alpha_3_o_z + prrr_acc_3_o_y*prrr_h_3_x -
+            prrr_acc_3_o_x*prrr_h_3_y;
+        /* (prrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real prrr_g_r0_x = m->prrr_g_r0_x[i];
+        const real prrr_g_r0_y = m->prrr_g_r0_y[i];
+        const real prrr_g_r1_x = prrr_c_2*prrr_g_r0_x + prrr_g_r0_y*prrr_s_2;
+        const real prrr_g_r1_y = prrr_c_2*prrr_g_r0_y - prrr_g_r0_x*prrr_s_2;
+        /* (prrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 2, about their reference points */
+        const real prrr_J_2_zz = m->prrr_J_2_zz[i];
+        const real prrr_h_2_x = m->prrr_h_2_x[i];
+        const real prrr_h_2_y = m->prrr_h_2_y[i];
+        const real prrr_mu_2_o_z = prrr_g_r1_x*prrr_h_2_y - prrr_J_2_zz*prrr_qdd_2_o -
+            prrr_g_r1_y*prrr_h_2_x;
+        /* (prrr-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
-        const real N_2_prrr_o_z = mu_2_prrr_o_z + mu_3_prrr_o_z;
-        /* (prrr-N53) remainder without the acceleration in: force at the connection point that balances
+        const real prrr_N_2_o_z = prrr_mu_2_o_z + prrr_mu_3_o_z;
+        /* (prrr-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real G_prrr_o_t = inv_prrr_platform_joint_offset_x*mu_3_prrr_o_z;
-        const real G_prrr_o_t_2 = inv_r_2_prrr_r0_y*(G_prrr_o_t*r_2_prrr_r0_x - N_2_prrr_o_z);
-        /* (prrr-N56) remainder without the acceleration in: leg force on the platform without actuation
+        const real prrr_G_o_t = inv_prrr_platform_joint_offset_x*prrr_mu_3_o_z;
+        const real prrr_G_o_t_2 = inv_prrr_r_2_r0_y*(prrr_G_o_t*prrr_r_2_r0_x - prrr_N_2_o_z);
+        /* (prrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real c_prrr_o_x = W_3_prrr_t*h_3_prrr_x + alpha_3_prrr_o_z*h_3_prrr_y -
-            G_prrr_o_t_2;
-        const real c_prrr_o_y = W_3_prrr_t*h_3_prrr_y - G_prrr_o_t - alpha_3_prrr_o_z*h_3_prrr_x;
-        /* (prrr-N58) velocity and gravity terms of the leg force */
-        const real U_prrr_in_base_x = -axis_y_prrr_axes3_in_base_x*c_prrr_o_y -
-            axis_y_prrr_axes3_in_base_y*c_prrr_o_x;
-        const real U_prrr_in_base_y = axis_y_prrr_axes3_in_base_x*c_prrr_o_x -
-            axis_y_prrr_axes3_in_base_y*c_prrr_o_y;
-        /* (M7) rotational part of Z */
-        const real Z_a_t = U_prrr_in_base_y*q_prrr_in_base_x - U_prrr_in_base_x*q_prrr_in_base_y;
-        /* (prrr-N10) remainder without the acceleration in: inertia force of link 2 less its weight */
-        const real f_2_prrr_o_x = h_2_prrr_y*qdd_2_prrr_o - W_2_prrr_t*h_2_prrr_x -
-            g_r1_x*prrr_link2_mass;
-        const real f_2_prrr_o_y = -W_2_prrr_t*h_2_prrr_y - g_r1_y*prrr_link2_mass -
-            h_2_prrr_x*qdd_2_prrr_o;
-        /* (prrr-N45) remainder without the acceleration in: inertia force of the links from 1 outwards,
+        const real prrr_c_o_x = prrr_W_3_t*prrr_h_3_x + prrr_alpha_3_o_z*prrr_h_3_y -
+            prrr_G_o_t_2;
+        const real prrr_c_o_y = prrr_W_3_t*prrr_h_3_y - prrr_G_o_t - prrr_alpha_3_o_z*prrr_h_3_x;
+        /* (prrr-U) velocity and gravity terms of the leg force */
+        const real prrr_U_in_base_x = -axis_y_prrr_axes3_in_base_x*prrr_c_o_y -
+            axis_y_prrr_axes3_in_base_y*prrr_c_o_x;
+        const real prrr_U_in_base_y = axis_y_prrr_axes3_in_base_x*prrr_c_o_x -
+            axis_y_prrr_axes3_in_base_y*prrr_c_o_y;
+        /* (Z_a) rotational part of Z */
+        const real prrr_Z_a_t = prrr_U_in_base_y*prrr_q_in_base_x -
+            prrr_U_in_base_x*prrr_q_in_base_y;
+        /* (prrr-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
+        const real prrr_link2_mass = m->prrr_link2_mass[i];
+        const real prrr_f_2_o_x = prrr_h_2_y*prrr_qdd_2_o - prrr_W_2_t*prrr_h_2_x -
+            prrr_g_r1_x*prrr_link2_mass;
+        const real prrr_f_2_o_y = -prrr_W_2_t*prrr_h_2_y - prrr_g_r1_y*prrr_link2_mass -
+            prrr_h_2_x*prrr_qdd_2_o;
+        /* (prrr-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards,
            the last link left out */
-        const real T_1_prrr_o_x = c_2_prrr*f_2_prrr_o_x - f_1_prrr_o_x - f_2_prrr_o_y*s_2_prrr;
-        /* (prrr-N63) remainder without the acceleration in: inertia and weight of the leg along the extra
-           freedom of joint 1 */
-        const real P_1_prrr_o_t = G_prrr_o_t*axis_y_prrr_axes3_r1_x +
-            G_prrr_o_t_2*axis_y_prrr_axes3_r1_y;
-        const real P_1_prrr_o = T_1_prrr_o_x - P_1_prrr_o_t;
-        o->sum[0][k] = add ? o->sum[0][k] + U_prrr_in_base_x : U_prrr_in_base_x;  /* total_prrr_x */
-        o->sum[1][k] = add ? o->sum[1][k] + U_prrr_in_base_y : U_prrr_in_base_y;  /* total_prrr_y */
-        o->sum[2][k] = add ? o->sum[2][k] + Z_a_t : Z_a_t;  /* total_prrr_z */
-        o->entry[0][k] = P_1_prrr_o;
-        o->singular[k] = UNLESS(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t) +
-            UNLESS(magnitude(-r_2_prrr_r0_y) > TOLERANCE*size_prrr);
-        o->unreachable[k] = UNLESS(disc_2_prrr >= 0);
+        const real prrr_f_1_o_x = m->prrr_f_1_o_x[i];
+        const real prrr_T_1_o_x = prrr_c_2*prrr_f_2_o_x - prrr_f_1_o_x - prrr_f_2_o_y*prrr_s_2;
+        /* (prrr-P_1_o) remainder without the acceleration in: inertia and weight of the leg along the
+           extra freedom of joint 1 */
+        const real prrr_P_1_o_t = axis_y_prrr_axes3_r1_x*prrr_G_o_t +
+            axis_y_prrr_axes3_r1_y*prrr_G_o_t_2;
+        const real prrr_P_1_o = prrr_T_1_o_x - prrr_P_1_o_t;
+        terms[0*count + k] = add ? terms[0*count + k] + prrr_U_in_base_x : prrr_U_in_base_x;  /* total_prrr_x */
+        terms[1*count + k] = add ? terms[1*count + k] + prrr_U_in_base_y : prrr_U_in_base_y;  /* total_prrr_y */
+        terms[2*count + k] = add ? terms[2*count + k] + prrr_Z_a_t : prrr_Z_a_t;  /* total_prrr_z */
+        o[0*count + k] = prrr_P_1_o;
+        o[3*count + k] = prrr_P_1_o;
+        const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
+        const real prrr_size = m->prrr_size[i];
+        o[2*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
+            UNLESS(magnitude(-prrr_r_2_r0_y) > TOLERANCE*prrr_size);
+        o[1*count + k] = UNLESS(prrr_disc_2 >= 0);
     }
 }
 
-INLINE void Z_place_prrr(size_t w, const Z_results_prrr *o, size_t first, real *Z, verdict *t)
+INLINE void Z_place_prrr(size_t w, size_t count, const real *o, size_t first, real *Z, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        Z[(3)*w + k] = o->entry[0][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        Z[(3)*w + k] = o[0*count + first + k];
+        t->unreachable[k] += o[1*count + first + k];
+        t->singular[k] += o[2*count + first + k];
+        t->total[k] += o[3*count + first + k];
     }
 }
 
-INLINE void Z_legs_rrr(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
-    states, size_t count, int add, Z_results_rrr *o)
+INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real J_1_rrr_zz = m->J_1_rrr_zz[i];
-        const real J_2_rrr_zz = m->J_2_rrr_zz[i];
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real g_r0_x_2 = m->g_r0_x_2[i];
-        const real g_r0_y_2 = m->g_r0_y_2[i];
-        const real h_1_rrr_x = m->h_1_rrr_x[i];
-        const real h_1_rrr_y = m->h_1_rrr_y[i];
-        const real h_2_rrr_x = m->h_2_rrr_x[i];
-        const real h_2_rrr_y = m->h_2_rrr_y[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_rrr = m->size_rrr[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x;
-        const real S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr =
-            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr;
-        const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
-        const real r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr;
-        const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr;
-        const real axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        /* (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
-           less gravity */
-        const real g_r1_x_2 = c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr;
-        const real g_r1_y_2 = c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr;
-        /* (rrr-V1) velocity of the connection point */
-        const real S_dot_rrr_t = omega_z*q_rrr_in_base_y;
-        const real S_dot_rrr_t_2 = omega_z*q_rrr_in_base_x;
-        const real S_dot_rrr_x = t_dot_x - S_dot_rrr_t;
-        const real S_dot_rrr_y = S_dot_rrr_t_2 + t_dot_y;
-        /* (rrr-V7) rate of joint 1 */
-        const real qd_1_rrr = inv_r_1_rrr_r0_y*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_x);
-        /* (rrr-V11) angular velocity of link 2 */
-        const real omega_2_rrr_z =
-            inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
-        /* (rrr-V10) centripetal tensor of link 1 */
-        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
-        /* (rrr-V12) centripetal tensor of link 2 */
-        const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
-        /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
-            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
-        /* (rrr-A1) centripetal acceleration of the connection point */
-        const real u_1_rrr_t = S_dot_rrr_t_2*omega_z;
-        const real u_1_rrr_t_2 = S_dot_rrr_t*omega_z;
-        const real u_1_rrr_tip_x = axis_y_rrr_axes2_in_base_x*u_1_rrr_t_2 -
-            axis_y_rrr_axes2_in_base_y*u_1_rrr_t;
-        const real u_1_rrr_tip_y = -axis_y_rrr_axes2_in_base_x*u_1_rrr_t -
-            axis_y_rrr_axes2_in_base_y*u_1_rrr_t_2;
-        /* (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-S_dot) velocity of the connection point */
+        const real omega_z = s[6*w + j];
+        const real rrr_S_dot_t = omega_z*rrr_q_in_base_y;
+        const real rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x;
+        const real t_dot_x = s[4*w + j];
+        const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
+        const real t_dot_y = s[5*w + j];
+        const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
+        /* (rrr-qd_2) rate of joint 2 */
+        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y);
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_omega_2_z =
+            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-u_1) centripetal acceleration of the connection point */
+        const real rrr_u_1_t = omega_z*rrr_S_dot_t_2;
+        const real rrr_u_1_t_2 = omega_z*rrr_S_dot_t;
+        /* (rrr-W_1) centripetal tensor of link 1 */
+        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-W_2) centripetal tensor of link 2 */
+        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        /* (rrr-u_1) centripetal acceleration of the connection point */
+        const real rrr_u_1_tip_x = axis_y_rrr_axes2_in_base_x*rrr_u_1_t_2 -
+            axis_y_rrr_axes2_in_base_y*rrr_u_1_t;
+        const real rrr_u_1_tip_y = -axis_y_rrr_axes2_in_base_x*rrr_u_1_t -
+            axis_y_rrr_axes2_in_base_y*rrr_u_1_t_2;
+        /* (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rel_rrr_o_x = u_1_rrr_tip_x - bias_rrr_x;
-        const real rel_rrr_o_y = u_1_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
-        /* (rrr-A9) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_rrr_o = inv_r_1_rrr_r0_y*rel_rrr_o_x;
-        /* (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
-        const real mu_1_rrr_o_z = g_r1_x_2*h_1_rrr_y - J_1_rrr_zz*qdd_1_rrr_o -
-            g_r1_y_2*h_1_rrr_x;
-        /* (rrr-N4) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real acc_2_rrr_o_x = u_1_rrr_tip_x + g_r1_y_2*s_2_rrr - c_2_rrr*g_r1_x_2;
-        const real acc_2_rrr_o_y = u_1_rrr_tip_y - c_2_rrr*g_r1_y_2 - g_r1_x_2*s_2_rrr;
-        /* (rrr-A18) remainder without the acceleration in: angular acceleration of link 2 */
-        const real alpha_2_rrr_o_z = inv_rrr_platform_joint_offset_x*(rel_rrr_o_y +
-            qdd_1_rrr_o*r_1_rrr_r0_x) - qdd_1_rrr_o;
-        /* (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with
+        const real rrr_rel_o_x = rrr_u_1_tip_x - rrr_bias_x;
+        const real rrr_rel_o_y = rrr_u_1_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        const real rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_rel_o_x;
+        /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        const real rrr_alpha_2_o_z = inv_rrr_platform_joint_offset_x*(rrr_rel_o_y +
+            rrr_qdd_1_o*rrr_r_1_r0_x) - rrr_qdd_1_o;
+        /* (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real rrr_acc_2_o_x = rrr_u_1_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+            axis_y_rrr_axes2_in_base_y*gravity_x;
+        const real rrr_acc_2_o_y = rrr_u_1_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+            axis_y_rrr_axes2_in_base_y*gravity_y;
+        /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real mu_2_rrr_o_z = J_2_rrr_zz*alpha_2_rrr_o_z + acc_2_rrr_o_y*h_2_rrr_x -
-            acc_2_rrr_o_x*h_2_rrr_y;
-        /* (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
+        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
+        const real rrr_h_2_x = m->rrr_h_2_x[i];
+        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_mu_2_o_z = rrr_J_2_zz*rrr_alpha_2_o_z + rrr_acc_2_o_y*rrr_h_2_x -
+            rrr_acc_2_o_x*rrr_h_2_y;
+        /* (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 1, about their reference points */
+        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
+        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
+        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
+        const real rrr_h_1_x = m->rrr_h_1_x[i];
+        const real rrr_h_1_y = m->rrr_h_1_y[i];
+        const real rrr_mu_1_o_z = rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
+            rrr_J_1_zz*rrr_qdd_1_o - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
-        const real N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z;
-        /* (rrr-N32) remainder without the acceleration in: force at the connection point that balances
+        const real rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z;
+        /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z;
-        /* (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation
+        const real rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z;
+        /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real c_rrr_o_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y -
-            inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x - N_1_rrr_o_z);
-        const real c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x;
-        /* (rrr-N37) velocity and gravity terms of the leg force */
-        const real U_rrr_in_base_x = -axis_y_rrr_axes2_in_base_x*c_rrr_o_y -
-            axis_y_rrr_axes2_in_base_y*c_rrr_o_x;
-        const real U_rrr_in_base_y = axis_y_rrr_axes2_in_base_x*c_rrr_o_x -
-            axis_y_rrr_axes2_in_base_y*c_rrr_o_y;
-        /* (M7) rotational part of Z */
-        const real Z_a_t_2 = U_rrr_in_base_y*q_rrr_in_base_x - U_rrr_in_base_x*q_rrr_in_base_y;
-        o->sum[0][k] = add ? o->sum[0][k] + U_rrr_in_base_x : U_rrr_in_base_x;  /* total_rrr_x */
-        o->sum[1][k] = add ? o->sum[1][k] + U_rrr_in_base_y : U_rrr_in_base_y;  /* total_rrr_y */
-        o->sum[2][k] = add ? o->sum[2][k] + Z_a_t_2 : Z_a_t_2;  /* total_rrr_z */
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
+        const real rrr_c_o_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y -
+            inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x - rrr_N_1_o_z);
+        const real rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x;
+        /* (rrr-U) velocity and gravity terms of the leg force */
+        const real rrr_U_in_base_x = -axis_y_rrr_axes2_in_base_x*rrr_c_o_y -
+            axis_y_rrr_axes2_in_base_y*rrr_c_o_x;
+        const real rrr_U_in_base_y = axis_y_rrr_axes2_in_base_x*rrr_c_o_x -
+            axis_y_rrr_axes2_in_base_y*rrr_c_o_y;
+        /* (Z_a) rotational part of Z */
+        const real rrr_Z_a_t = rrr_U_in_base_y*rrr_q_in_base_x - rrr_U_in_base_x*rrr_q_in_base_y;
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_U_in_base_x : rrr_U_in_base_x;  /* total_rrr_x */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_U_in_base_y : rrr_U_in_base_y;  /* total_rrr_y */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_Z_a_t : rrr_Z_a_t;  /* total_rrr_z */
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void Z_place_rrr(size_t w, const Z_results_rrr *o, size_t first, verdict *t)
+INLINE void Z_place_rrr(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        t->unreachable[k] += o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
     }
 }
 
-INLINE void Z_after(size_t w, const Z_values *s, real *Z)
+INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real Z_p_x = s->Z_p_x[k];
-        const real Z_p_y = s->Z_p_y[k];
-        const real Z_q_t = s->Z_q_t[k];
-        const real total_prrr_x = s->sum[0][k];
-        const real total_prrr_y = s->sum[1][k];
-        const real total_prrr_z = s->sum[2][k];
-        const real total_rrr_x = s->sum[3][k];
-        const real total_rrr_y = s->sum[4][k];
-        const real total_rrr_z = s->sum[5][k];
-        /* (M5) translational part of Z */
+        /* (Z_t) translational part of Z */
+        const real Z_p_x = s[7*w + k];
+        const real total_prrr_x = sums[0*w + k];
+        const real total_rrr_x = sums[3*w + k];
         const real Z_t_x = Z_p_x + total_prrr_x + total_rrr_x;
+        const real Z_p_y = s[8*w + k];
+        const real total_prrr_y = sums[1*w + k];
+        const real total_rrr_y = sums[4*w + k];
         const real Z_t_y = Z_p_y + total_prrr_y + total_rrr_y;
-        /* (M7) rotational part of Z */
+        /* (Z_a) rotational part of Z */
+        const real Z_q_t = s[9*w + k];
+        const real total_prrr_z = sums[2*w + k];
+        const real total_rrr_z = sums[5*w + k];
         const real Z_a_z = total_prrr_z + total_rrr_z - Z_q_t;
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_a_z;
+        t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
     }
 }
 
-INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    Z_values values, *const s = &values;
-    Z_results_prrr results_prrr;
-    Z_results_rrr results_rrr;
-    Z_before(m, w, X, V, s);
-    if (w == 1) {  /* the legs side by side */
-        Z_legs_prrr(m, w, 0, 1, s, 0, 1, 0, X, V, &results_prrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            Z_place_prrr(w, &results_prrr, leg, Z, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_prrr.sum[n], 1);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_prrr.sum, 0, sizeof results_prrr.sum);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            Z_legs_prrr(m, w, leg, 0, s, 1, w, 1, X, V, &results_prrr);
-            Z_place_prrr(w, &results_prrr, 0, Z, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_prrr.sum[n][k];
-            }
-        }
+    real s[10] = {0}, sums[6] = {0}, terms_prrr[3*LEGS(1)] = {0}, o_prrr[4*LEGS(1)] = {0},
+        terms_rrr[3*LEGS(2)] = {0}, o_rrr[2*LEGS(2)] = {0};
+    Z_before(m, 1, X, V, s);
+    Z_legs_prrr(m, 1, 0, 1, s, 0, LEGS(1), 0, X, V, terms_prrr, o_prrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        Z_place_prrr(1, LEGS(1), o_prrr, leg, Z, t);
     }
-    if (w == 1) {  /* the legs side by side */
-        Z_legs_rrr(m, 0, 1, s, 0, 2, 0, &results_rrr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            Z_place_rrr(w, &results_rrr, leg, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[3 + n][k] = total(results_rrr.sum[n], 2);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            Z_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
-            Z_place_rrr(w, &results_rrr, 0, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[3 + n][k] = results_rrr.sum[n][k];
-            }
-        }
+    for (size_t n = 0; n < 3; ++n) {
+        sums[n] = total(terms_prrr + n*LEGS(1), 1);
     }
-    Z_after(w, s, Z);
+    Z_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        Z_place_rrr(1, LEGS(2), o_rrr, leg, t);
+    }
+    for (size_t n = 0; n < 3; ++n) {
+        sums[3 + n] = total(terms_rrr + n*LEGS(2), 2);
+    }
+    Z_after(1, s, sums, Z, t);
+}
+
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+{
+    real s[10*LANES], sums[6*LANES], o_prrr[4*LANES], o_rrr[2*LANES];
+    Z_before(m, LANES, X, V, s);
+    clear(sums, 3*LANES);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        Z_legs_prrr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_prrr);
+        Z_place_prrr(LANES, LANES, o_prrr, 0, Z, t);
+    }
+    clear(sums + 3*LANES, 3*LANES);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        Z_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums + 3*LANES, o_rrr);
+        Z_place_rrr(LANES, LANES, o_rrr, 0, t);
+    }
+    Z_after(LANES, s, sums, Z, t);
 }
 
 /* ---- H: 142 mul, 70 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES];
-} H_values;
-typedef struct {
-    real entry[5][8], unreachable[8], singular[8];
-} H_results_prrr;
-typedef struct {
-    real entry[3][8], unreachable[8], singular[8];
-} H_results_rrr;
-
-INLINE void H_before(size_t w, const real *X, H_values *s)
+INLINE void H_before(size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
     }
 }
 
-INLINE void H_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const H_values *s,
-    size_t states, size_t count, const real *X, H_results_prrr *o)
+INLINE void H_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real Kd_2_prrr_t_2 = m->Kd_2_prrr_t_2[i];
-        const real Kd_2_prrr_t_3 = m->Kd_2_prrr_t_3[i];
-        const real branch_2_prrr = m->branch_2_prrr[i];
-        const real inv_Kd_2_prrr_t = m->inv_Kd_2_prrr_t[i];
-        const real inv_uu_3_prrr_t = m->inv_uu_3_prrr_t[i];
-        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
-        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
-        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_base_point_x = m->prrr_base_point_x[i];
-        const real prrr_base_point_y = m->prrr_base_point_y[i];
-        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        /* (prrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real prrr_platform_point_x = m->prrr_platform_point_x[i];
         const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real rho2_2_prrr_t = m->rho2_2_prrr_t[i];
-        const real size_prrr = m->size_prrr[i];
-        const real y_1_extra_prrr = X[(3)*w + j];
-        /* (prrr-K1) from the base point to the connection point */
-        const real q_prrr_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
-        const real q_prrr_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
-        const real S_prrr_x = q_prrr_in_base_x + t_x - prrr_base_point_x;
-        const real S_prrr_y = q_prrr_in_base_y + t_y - prrr_base_point_y;
-        const real S_prrr_r0_y = -S_prrr_x*prrr_base_frame_xx - S_prrr_y*prrr_base_frame_yx;
-        /* (prrr-K2) from the origin of joint 2 to the connection point */
-        const real x_2_prrr_x = S_prrr_x*prrr_base_frame_xy + S_prrr_y*prrr_base_frame_yy -
-            y_1_extra_prrr;
-        /* (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
+        const real prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
+        const real prrr_base_point_x = m->prrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x;
+        const real prrr_base_point_y = m->prrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y;
+        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
+        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
+        const real prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
+        /* (prrr-x_2) from the origin of joint 2 to the connection point */
+        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
+        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
+        const real prrr_y_1_extra = X[(3)*w + j];
+        const real prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy -
+            prrr_y_1_extra;
+        /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x;
-        const real Kd_2_prrr = R(0.5)*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3;
-        /* (prrr-K7) factor of the cosine in the equation of joint 2 */
-        const real Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x;
-        /* (prrr-K8) factor of the sine in the equation of joint 2 */
-        const real Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x;
-        /* (prrr-K9) squared amplitude */
-        const real rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr;
-        /* (prrr-K10) discriminant */
-        const real disc_2_prrr = rho2_2_prrr - Kd_2_prrr*Kd_2_prrr;
-        /* (prrr-K11) root, with the sign of the branch */
-        const real root_2_prrr = branch_2_prrr*root(disc_2_prrr);
-        /* (prrr-K17) from the origin of joint 3 to the connection point */
-        const real x_3_prrr_x = Kd_2_prrr*inv_Kd_2_prrr_t*prrr_joint3_offset_x -
+        const real prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x;
+        const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
+        const real prrr_Kd_2_t_4 = m->prrr_Kd_2_t_4[i];
+        const real prrr_Kd_2 = R(0.5)*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4;
+        /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
+        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
+        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x;
+        /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
+        const real prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x;
+        /* (prrr-rho2_2) squared amplitude */
+        const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
+        /* (prrr-disc_2) discriminant */
+        const real prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2;
+        /* (prrr-root_2) root, with the sign of the branch */
+        const real prrr_branch_2 = m->prrr_branch_2[i];
+        const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
+        /* (prrr-x_3) from the origin of joint 3 to the connection point */
+        const real inv_prrr_Kd_2_t = m->inv_prrr_Kd_2_t[i];
+        const real prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x -
             prrr_joint3_offset_x;
-        /* (prrr-K19) cosine of the angle of joint 3 from its reference direction */
-        const real c_3_prrr = inv_uu_3_prrr_t*prrr_platform_joint_offset_x*x_3_prrr_x;
-        /* (prrr-K20) sine of the angle of joint 3 from its reference direction */
-        const real s_3_prrr =
-            inv_Kd_2_prrr_t*inv_uu_3_prrr_t*prrr_joint3_offset_x*prrr_platform_joint_offset_x*root_2_prrr;
-        /* (prrr-V2) from joint 2 to the connection point, along the links */
-        const real r_2_prrr_x = prrr_joint3_offset_x + c_3_prrr*prrr_platform_joint_offset_x;
-        const real r_2_prrr_r0_y = r_2_prrr_x*s_3_prrr -
-            c_3_prrr*prrr_platform_joint_offset_x*s_3_prrr;
-        /* (prrr-K12) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rho2_2_prrr = 1/rho2_2_prrr;
-        const real c_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*Kd_2_prrr - Ks_2_prrr*root_2_prrr);
-        /* (prrr-K13) sine of the angle of joint 2 from its reference direction */
-        const real s_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*root_2_prrr + Kd_2_prrr*Ks_2_prrr);
-        /* (prrr-V5) reciprocal vector 1 */
-        const real axis_y_prrr_axes3_r1_x = c_2_prrr*s_3_prrr - c_3_prrr*s_2_prrr;
-        const real axis_y_prrr_axes3_r1_y = c_2_prrr*c_3_prrr + s_2_prrr*s_3_prrr;
-        const real inv_r_2_prrr_r0_y = 1/r_2_prrr_r0_y;
-        /* (prrr-A10) coefficient of the acceleration in: acceleration of joint 2 */
-        const real d1_qdd_2_prrr = axis_y_prrr_axes3_r1_y*inv_r_2_prrr_r0_y;
-        /* (prrr-V5) reciprocal vector 1 */
-        const real w_2_prrr_t = inv_r_2_prrr_r0_y*(axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
+        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_prrr_Kd_2_t_7 = m->inv_prrr_Kd_2_t_7[i];
+        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        const real prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x;
+        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
+        const real prrr_s_3 =
+            inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
+        /* (prrr-r_2) from joint 2 to the connection point, along the links */
+        const real prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x;
+        const real prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 -
+            prrr_c_3*prrr_platform_joint_offset_x*prrr_s_3;
+        /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
+        const real prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2);
+        /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2);
+        /* (prrr-w_2) reciprocal vector 1 */
+        const real axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2;
+        const real axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3;
+        const real inv_prrr_r_2_r0_y = 1/prrr_r_2_r0_y;
+        /* (prrr-dy_1_qdd_2) coefficient of the acceleration in: acceleration of joint 2 */
+        const real prrr_dy_1_qdd_2 = axis_y_prrr_axes3_r1_y*inv_prrr_r_2_r0_y;
+        /* (prrr-w_2) reciprocal vector 1 */
+        const real prrr_w_2_t = inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
             axis_y_prrr_axes3_r1_y*prrr_base_frame_yx);
-        const real w_2_prrr_t_2 = inv_r_2_prrr_r0_y*(axis_y_prrr_axes3_r1_x*prrr_base_frame_xy -
+        const real prrr_w_2_t_2 = inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_r1_x*prrr_base_frame_xy -
             axis_y_prrr_axes3_r1_y*prrr_base_frame_xx);
-        /* (M9) moment of the column's unit force about the platform origin */
-        const real H_a_2_prrr_z = q_prrr_in_base_x*w_2_prrr_t_2 + q_prrr_in_base_y*w_2_prrr_t;
-        o->entry[0][k] = 1;
-        o->entry[1][k] = -w_2_prrr_t;
-        o->entry[2][k] = w_2_prrr_t_2;
-        o->entry[3][k] = H_a_2_prrr_z;
-        o->entry[4][k] = d1_qdd_2_prrr;
-        o->singular[k] = UNLESS(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t) +
-            UNLESS(magnitude(-r_2_prrr_r0_y) > TOLERANCE*size_prrr);
-        o->unreachable[k] = UNLESS(disc_2_prrr >= 0);
+        /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
+        const real prrr_H_a_2_z = prrr_q_in_base_x*prrr_w_2_t_2 + prrr_q_in_base_y*prrr_w_2_t;
+        o[0*count + k] = 1;
+        o[1*count + k] = -prrr_w_2_t;
+        o[2*count + k] = prrr_w_2_t_2;
+        o[3*count + k] = prrr_H_a_2_z;
+        o[4*count + k] = prrr_dy_1_qdd_2;
+        o[7*count + k] = (prrr_w_2_t + prrr_w_2_t_2) + (prrr_H_a_2_z + prrr_dy_1_qdd_2);
+        const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
+        const real prrr_size = m->prrr_size[i];
+        o[6*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
+            UNLESS(magnitude(-prrr_r_2_r0_y) > TOLERANCE*prrr_size);
+        o[5*count + k] = UNLESS(prrr_disc_2 >= 0);
     }
 }
 
-INLINE void H_place_prrr(size_t w, const H_results_prrr *o, size_t first, real *H, verdict *t)
+INLINE void H_place_prrr(size_t w, size_t count, const real *o, size_t first, real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(12)*w + k] = o->entry[0][first + k];
-        H[(1)*w + k] = o->entry[1][first + k];
-        H[(5)*w + k] = o->entry[2][first + k];
-        H[(9)*w + k] = o->entry[3][first + k];
-        H[(13)*w + k] = o->entry[4][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(12)*w + k] = o[0*count + first + k];
+        H[(1)*w + k] = o[1*count + first + k];
+        H[(5)*w + k] = o[2*count + first + k];
+        H[(9)*w + k] = o[3*count + first + k];
+        H[(13)*w + k] = o[4*count + first + k];
+        t->unreachable[k] += o[5*count + first + k];
+        t->singular[k] += o[6*count + first + k];
+        t->total[k] += o[7*count + first + k];
     }
 }
 
-INLINE void H_legs_rrr(const prepared *m, size_t leg, size_t legs, const H_values *s, size_t
-    states, size_t count, H_results_rrr *o)
+INLINE void H_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_rrr = m->size_rrr[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x;
-        const real S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr =
-            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
-        const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*rrr_platform_joint_offset_x*s_2_rrr;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr;
-        const real axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr;
-        const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        const real w_1_rrr_t = inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        const real rrr_w_1_t = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy);
-        const real w_1_rrr_t_2 = inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
+        const real rrr_w_1_t_2 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy);
-        /* (M10) moment of the column's unit force about the platform origin */
-        const real H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t;
-        o->entry[0][k] = -w_1_rrr_t;
-        o->entry[1][k] = w_1_rrr_t_2;
-        o->entry[2][k] = H_a_1_rrr_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
+        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+        const real rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t;
+        o[0*count + k] = -rrr_w_1_t;
+        o[1*count + k] = rrr_w_1_t_2;
+        o[2*count + k] = rrr_H_a_1_z;
+        o[5*count + k] = rrr_w_1_t + (rrr_w_1_t_2 + rrr_H_a_1_z);
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[4*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[3*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void H_place_rrr(size_t w, const H_results_rrr *o, size_t leg, size_t first, real *H,
+INLINE void H_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_t first, real *H,
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(2 + leg)*w + k] = o->entry[0][first + k];
-        H[(6 + leg)*w + k] = o->entry[1][first + k];
-        H[(10 + leg)*w + k] = o->entry[2][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(2 + leg)*w + k] = o[0*count + first + k];
+        H[(6 + leg)*w + k] = o[1*count + first + k];
+        H[(10 + leg)*w + k] = o[2*count + first + k];
+        t->unreachable[k] += o[3*count + first + k];
+        t->singular[k] += o[4*count + first + k];
+        t->total[k] += o[5*count + first + k];
     }
 }
 
-INLINE void H_run(const prepared *m, size_t w, const real *X, real *H, verdict *t)
+INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    H_values values, *const s = &values;
-    H_results_prrr results_prrr;
-    H_results_rrr results_rrr;
-    clear(H, 16*w);
-    H_before(w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        H_legs_prrr(m, w, 0, 1, s, 0, 1, X, &results_prrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            H_place_prrr(w, &results_prrr, leg, H, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            H_legs_prrr(m, w, leg, 0, s, 1, w, X, &results_prrr);
-            H_place_prrr(w, &results_prrr, 0, H, t);
-        }
+    real s[4] = {0}, o_prrr[8*LEGS(1)] = {0}, o_rrr[6*LEGS(2)] = {0};
+    clear(H, 16);
+    H_before(1, X, s);
+    H_legs_prrr(m, 1, 0, 1, s, 0, LEGS(1), X, o_prrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        H_place_prrr(1, LEGS(1), o_prrr, leg, H, t);
     }
-    if (w == 1) {  /* the legs side by side */
-        H_legs_rrr(m, 0, 1, s, 0, 2, &results_rrr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            H_place_rrr(w, &results_rrr, leg, leg, H, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 2; ++leg) {
-            H_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
-            H_place_rrr(w, &results_rrr, leg, 0, H, t);
-        }
+    H_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), o_rrr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        H_place_rrr(1, LEGS(2), o_rrr, leg, leg, H, t);
     }
 }
 
-/* ---- required: 345 mul, 223 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
-        omega_z[LANES], t_ddot_x[LANES], t_ddot_y[LANES], alpha_z[LANES], f_p_x[LANES], f_p_y[LANES],
-        mu_p_z[LANES], sum[6][LANES];
-} required_values;
-typedef struct {
-    real sum[3][8], entry[6][8], unreachable[8], singular[8];
-} required_results_prrr;
-typedef struct {
-    real sum[3][8], entry[3][8], unreachable[8], singular[8];
-} required_results_rrr;
+INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
+{
+    real s[4*LANES], o_prrr[8*LANES], o_rrr[6*LANES];
+    clear(H, 16*LANES);
+    H_before(LANES, X, s);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        H_legs_prrr(m, LANES, leg, 0, s, 1, LANES, X, o_prrr);
+        H_place_prrr(LANES, LANES, o_prrr, 0, H, t);
+    }
+    for (size_t leg = 0; leg < 2; ++leg) {
+        H_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        H_place_rrr(LANES, LANES, o_rrr, leg, 0, H, t);
+    }
+}
 
+/* ---- required: 341 mul, 221 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
 INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, required_values *s)
+    *A, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real A_2 = A[2*w + k];
-        const real J_star_zz = m->J_star_zz;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real m_star = m->m_star;
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real omega_z = V_2;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
+        const real A_2 = A[2*w + k];
         const real alpha_z = A_2;
-        /* (L2) first moment about the platform origin */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
         const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
         const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
-        /* (P1) centripetal tensor of the platform */
+        /* (W_p) centripetal tensor of the platform */
         const real W_p_t = omega_z*omega_z;
-        /* (E1) acceleration of the platform origin, less gravity */
+        /* (a_t) acceleration of the platform origin, less gravity */
+        const real gravity_x = m->gravity_x;
         const real a_t_x = t_ddot_x - gravity_x;
+        const real gravity_y = m->gravity_y;
         const real a_t_y = t_ddot_y - gravity_y;
-        /* (E2) inertia force of the platform less its weight */
+        /* (f_p) inertia force of the platform less its weight */
+        const real m_star = m->m_star;
         const real f_p_x = a_t_x*m_star - W_p_t*h_star_in_base_x - alpha_z*h_star_in_base_y;
         const real f_p_y = a_t_y*m_star + alpha_z*h_star_in_base_x - W_p_t*h_star_in_base_y;
-        /* (E3) inertia moment of the platform less that of its weight */
-        const real mu_p_z = J_star_zz*alpha_z + h_star_x*(R_xx*a_t_y - R_yx*a_t_x) -
-            h_star_y*(R_xx*a_t_x + R_yx*a_t_y);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->alpha_z[k] = alpha_z;
-        s->f_p_x[k] = f_p_x;
-        s->f_p_y[k] = f_p_y;
-        s->mu_p_z[k] = mu_p_z;
+        /* (mu_p) inertia moment of the platform less that of its weight */
+        const real J_star_t_6 = m->J_star_t_6;
+        const real mu_p_z = a_t_y*h_star_in_base_x - J_star_t_6*alpha_z - a_t_x*h_star_in_base_y;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
+        s[4*w + k] = t_dot_x;
+        s[5*w + k] = t_dot_y;
+        s[6*w + k] = omega_z;
+        s[7*w + k] = t_ddot_x;
+        s[8*w + k] = t_ddot_y;
+        s[9*w + k] = alpha_z;
+        s[10*w + k] = f_p_x;
+        s[11*w + k] = f_p_y;
+        s[12*w + k] = mu_p_z;
     }
 }
 
-INLINE void required_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const
-    required_values *s, size_t states, size_t count, int add, const real *X, const real *V, const
-    real *A, required_results_prrr *o)
+INLINE void required_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
+    *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real J_2_prrr_zz = m->J_2_prrr_zz[i];
-        const real J_3_prrr_zz = m->J_3_prrr_zz[i];
-        const real Kd_2_prrr_t_2 = m->Kd_2_prrr_t_2[i];
-        const real Kd_2_prrr_t_3 = m->Kd_2_prrr_t_3[i];
-        const real branch_2_prrr = m->branch_2_prrr[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_2_prrr_x = m->h_2_prrr_x[i];
-        const real h_2_prrr_y = m->h_2_prrr_y[i];
-        const real h_3_prrr_x = m->h_3_prrr_x[i];
-        const real h_3_prrr_y = m->h_3_prrr_y[i];
-        const real inv_Kd_2_prrr_t = m->inv_Kd_2_prrr_t[i];
-        const real inv_prrr_platform_joint_offset_x = m->inv_prrr_platform_joint_offset_x[i];
-        const real inv_uu_3_prrr_t = m->inv_uu_3_prrr_t[i];
-        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
-        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
-        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_base_point_x = m->prrr_base_point_x[i];
-        const real prrr_base_point_y = m->prrr_base_point_y[i];
-        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_link1_mass = m->prrr_link1_mass[i];
-        const real prrr_link2_mass = m->prrr_link2_mass[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        /* (prrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real prrr_platform_point_x = m->prrr_platform_point_x[i];
         const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real rho2_2_prrr_t = m->rho2_2_prrr_t[i];
-        const real size_prrr = m->size_prrr[i];
-        const real y_1_extra_prrr = X[(3)*w + j];
-        const real yd_1_prrr = V[(3)*w + j];
-        const real ydd_1_prrr = A[(3)*w + j];
-        /* (prrr-K1) from the base point to the connection point */
-        const real q_prrr_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
-        const real q_prrr_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
-        const real S_prrr_x = q_prrr_in_base_x + t_x - prrr_base_point_x;
-        const real S_prrr_y = q_prrr_in_base_y + t_y - prrr_base_point_y;
-        const real S_prrr_r0_y = -S_prrr_x*prrr_base_frame_xx - S_prrr_y*prrr_base_frame_yx;
-        /* (prrr-K2) from the origin of joint 2 to the connection point */
-        const real x_2_prrr_x = S_prrr_x*prrr_base_frame_xy + S_prrr_y*prrr_base_frame_yy -
-            y_1_extra_prrr;
-        /* (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
+        const real prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
+        const real prrr_base_point_x = m->prrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x;
+        const real prrr_base_point_y = m->prrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y;
+        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
+        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
+        const real prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
+        /* (prrr-x_2) from the origin of joint 2 to the connection point */
+        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
+        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
+        const real prrr_y_1_extra = X[(3)*w + j];
+        const real prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy -
+            prrr_y_1_extra;
+        /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x;
-        const real Kd_2_prrr = R(0.5)*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3;
-        /* (prrr-K7) factor of the cosine in the equation of joint 2 */
-        const real Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x;
-        /* (prrr-K8) factor of the sine in the equation of joint 2 */
-        const real Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x;
-        /* (prrr-K9) squared amplitude */
-        const real rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr;
-        /* (prrr-K10) discriminant */
-        const real disc_2_prrr = rho2_2_prrr - Kd_2_prrr*Kd_2_prrr;
-        /* (prrr-K11) root, with the sign of the branch */
-        const real root_2_prrr = branch_2_prrr*root(disc_2_prrr);
-        /* (prrr-K17) from the origin of joint 3 to the connection point */
-        const real x_3_prrr_x = Kd_2_prrr*inv_Kd_2_prrr_t*prrr_joint3_offset_x -
+        const real prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x;
+        const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
+        const real prrr_Kd_2_t_4 = m->prrr_Kd_2_t_4[i];
+        const real prrr_Kd_2 = R(0.5)*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4;
+        /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
+        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
+        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x;
+        /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
+        const real prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x;
+        /* (prrr-rho2_2) squared amplitude */
+        const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
+        /* (prrr-disc_2) discriminant */
+        const real prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2;
+        /* (prrr-root_2) root, with the sign of the branch */
+        const real prrr_branch_2 = m->prrr_branch_2[i];
+        const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
+        /* (prrr-x_3) from the origin of joint 3 to the connection point */
+        const real inv_prrr_Kd_2_t = m->inv_prrr_Kd_2_t[i];
+        const real prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x -
             prrr_joint3_offset_x;
-        /* (prrr-K19) cosine of the angle of joint 3 from its reference direction */
-        const real c_3_prrr = inv_uu_3_prrr_t*prrr_platform_joint_offset_x*x_3_prrr_x;
-        /* (prrr-K20) sine of the angle of joint 3 from its reference direction */
-        const real s_3_prrr =
-            inv_Kd_2_prrr_t*inv_uu_3_prrr_t*prrr_joint3_offset_x*prrr_platform_joint_offset_x*root_2_prrr;
-        /* (prrr-V2) from joint 2 to the connection point, along the links */
-        const real r_2_prrr_t = prrr_platform_joint_offset_x*s_3_prrr;
-        const real r_2_prrr_x = prrr_joint3_offset_x + c_3_prrr*prrr_platform_joint_offset_x;
-        const real r_2_prrr_r0_x = c_3_prrr*r_2_prrr_x + r_2_prrr_t*s_3_prrr;
-        const real r_2_prrr_r0_y = r_2_prrr_x*s_3_prrr - c_3_prrr*r_2_prrr_t;
-        /* (prrr-K12) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rho2_2_prrr = 1/rho2_2_prrr;
-        const real c_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*Kd_2_prrr - Ks_2_prrr*root_2_prrr);
-        /* (prrr-K13) sine of the angle of joint 2 from its reference direction */
-        const real s_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*root_2_prrr + Kd_2_prrr*Ks_2_prrr);
-        /* (prrr-V5) reciprocal vector 1 */
-        const real axis_y_prrr_axes3_r1_x = c_2_prrr*s_3_prrr - c_3_prrr*s_2_prrr;
-        const real axis_y_prrr_axes3_r1_y = c_2_prrr*c_3_prrr + s_2_prrr*s_3_prrr;
+        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_prrr_Kd_2_t_7 = m->inv_prrr_Kd_2_t_7[i];
+        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        const real prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x;
+        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
+        const real prrr_s_3 =
+            inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
+        /* (prrr-r_2) from joint 2 to the connection point, along the links */
+        const real prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3;
+        const real prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x;
+        const real prrr_r_2_r0_x = prrr_c_3*prrr_r_2_x + prrr_r_2_t*prrr_s_3;
+        const real prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_r_2_t;
+        /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
+        const real prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2);
+        /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2);
+        /* (prrr-w_2) reciprocal vector 1 */
+        const real axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2;
+        const real axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3;
         const real axis_y_prrr_axes3_in_base_x = axis_y_prrr_axes3_r1_x*prrr_base_frame_xy -
             axis_y_prrr_axes3_r1_y*prrr_base_frame_xx;
         const real axis_y_prrr_axes3_in_base_y = axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
             axis_y_prrr_axes3_r1_y*prrr_base_frame_yx;
-        const real inv_r_2_prrr_r0_y = 1/r_2_prrr_r0_y;
-        /* (prrr-V1) velocity of the connection point */
-        const real S_dot_prrr_t = omega_z*q_prrr_in_base_y;
-        const real S_dot_prrr_t_2 = omega_z*q_prrr_in_base_x;
-        const real S_dot_prrr_x = t_dot_x - S_dot_prrr_t;
-        const real S_dot_prrr_y = S_dot_prrr_t_2 + t_dot_y;
-        /* (prrr-V7) velocity of the connection point left to the joints that are not extra */
-        const real S_dot_rest_prrr_x = S_dot_prrr_x - prrr_base_frame_xy*yd_1_prrr;
-        const real S_dot_rest_prrr_y = S_dot_prrr_y - prrr_base_frame_yy*yd_1_prrr;
-        /* (prrr-V8) rate of joint 2 */
-        const real qd_2_prrr = inv_r_2_prrr_r0_y*(S_dot_rest_prrr_x*axis_y_prrr_axes3_in_base_y -
-            S_dot_rest_prrr_y*axis_y_prrr_axes3_in_base_x);
-        /* (prrr-V12) angular velocity of link 3 */
-        const real omega_3_prrr_z =
-            inv_prrr_platform_joint_offset_x*(S_dot_rest_prrr_x*axis_y_prrr_axes3_in_base_x +
-            S_dot_rest_prrr_y*axis_y_prrr_axes3_in_base_y + qd_2_prrr*r_2_prrr_r0_x) - qd_2_prrr;
-        /* (prrr-V11) centripetal tensor of link 2 */
-        const real W_2_prrr_t = qd_2_prrr*qd_2_prrr;
-        /* (prrr-V13) centripetal tensor of link 3 */
-        const real W_3_prrr_t = omega_3_prrr_z*omega_3_prrr_z;
-        /* (prrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_prrr_x = -W_3_prrr_t*prrr_platform_joint_offset_x -
-            W_2_prrr_t*c_3_prrr*prrr_joint3_offset_x;
-        /* (prrr-A10) coefficient of the acceleration in: acceleration of joint 2 */
-        const real d1_qdd_2_prrr = axis_y_prrr_axes3_r1_y*inv_r_2_prrr_r0_y;
-        /* (prrr-V5) reciprocal vector 1 */
-        const real w_2_prrr_t = axis_y_prrr_axes3_in_base_y*inv_r_2_prrr_r0_y;
-        const real w_2_prrr_t_2 = axis_y_prrr_axes3_in_base_x*inv_r_2_prrr_r0_y;
-        /* (M9) moment of the column's unit force about the platform origin */
-        const real H_a_2_prrr_z = q_prrr_in_base_x*w_2_prrr_t_2 + q_prrr_in_base_y*w_2_prrr_t;
-        /* (prrr-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_prrr_x = t_ddot_x - alpha_z*q_prrr_in_base_y;
-        const real a_p_prrr_y = t_ddot_y + alpha_z*q_prrr_in_base_x;
-        /* (prrr-A3) acceleration of the connection point */
-        const real S_ddot_prrr_x = a_p_prrr_x - S_dot_prrr_t_2*omega_z;
-        const real S_ddot_prrr_y = a_p_prrr_y - S_dot_prrr_t*omega_z;
-        const real S_ddot_prrr_tip_x = S_ddot_prrr_x*axis_y_prrr_axes3_in_base_y -
-            S_ddot_prrr_y*axis_y_prrr_axes3_in_base_x;
-        const real S_ddot_prrr_tip_y = S_ddot_prrr_x*axis_y_prrr_axes3_in_base_x +
-            S_ddot_prrr_y*axis_y_prrr_axes3_in_base_y;
-        /* (prrr-A6) acceleration of the connection point left to the joint accelerations */
-        const real rel_prrr_x = S_ddot_prrr_tip_x - bias_prrr_x -
-            axis_y_prrr_axes3_r1_y*ydd_1_prrr;
-        const real rel_prrr_y = S_ddot_prrr_tip_y + W_2_prrr_t*prrr_joint3_offset_x*s_3_prrr -
-            axis_y_prrr_axes3_r1_x*ydd_1_prrr;
-        /* (prrr-A9) acceleration of joint 2 */
-        const real qdd_2_prrr = inv_r_2_prrr_r0_y*rel_prrr_x;
-        /* (prrr-N11) acceleration of the reference point of link 3, less gravity */
-        const real acc_3_prrr_x = S_ddot_prrr_tip_x + axis_y_prrr_axes3_in_base_x*gravity_y -
+        const real inv_prrr_r_2_r0_y = 1/prrr_r_2_r0_y;
+        /* (prrr-S_dot) velocity of the connection point */
+        const real omega_z = s[6*w + j];
+        const real prrr_S_dot_t = omega_z*prrr_q_in_base_y;
+        const real prrr_S_dot_t_2 = omega_z*prrr_q_in_base_x;
+        const real t_dot_x = s[4*w + j];
+        const real prrr_S_dot_x = t_dot_x - prrr_S_dot_t;
+        const real t_dot_y = s[5*w + j];
+        const real prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y;
+        /* (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra */
+        const real prrr_yd_1 = V[(3)*w + j];
+        const real prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1;
+        const real prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1;
+        /* (prrr-qd_3) rate of joint 3 */
+        const real prrr_qd_2 = inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_x -
+            axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_y);
+        /* (prrr-omega_3) angular velocity of link 3 */
+        const real inv_prrr_platform_joint_offset_x = m->inv_prrr_platform_joint_offset_x[i];
+        const real prrr_omega_3_z =
+            inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_x +
+            axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_y + prrr_qd_2*prrr_r_2_r0_x) - prrr_qd_2;
+        /* (prrr-W_2) centripetal tensor of link 2 */
+        const real prrr_W_2_t = prrr_qd_2*prrr_qd_2;
+        /* (prrr-W_3) centripetal tensor of link 3 */
+        const real prrr_W_3_t = prrr_omega_3_z*prrr_omega_3_z;
+        /* (prrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real prrr_bias_x = -prrr_W_3_t*prrr_platform_joint_offset_x -
+            prrr_W_2_t*prrr_c_3*prrr_joint3_offset_x;
+        /* (prrr-dy_1_qdd_2) coefficient of the acceleration in: acceleration of joint 2 */
+        const real prrr_dy_1_qdd_2 = axis_y_prrr_axes3_r1_y*inv_prrr_r_2_r0_y;
+        /* (prrr-w_2) reciprocal vector 1 */
+        const real prrr_w_2_t = axis_y_prrr_axes3_in_base_y*inv_prrr_r_2_r0_y;
+        const real prrr_w_2_t_2 = axis_y_prrr_axes3_in_base_x*inv_prrr_r_2_r0_y;
+        /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
+        const real prrr_H_a_2_z = prrr_q_in_base_x*prrr_w_2_t_2 + prrr_q_in_base_y*prrr_w_2_t;
+        /* (prrr-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_z = s[9*w + j];
+        const real t_ddot_x = s[7*w + j];
+        const real prrr_a_p_x = t_ddot_x - alpha_z*prrr_q_in_base_y;
+        const real t_ddot_y = s[8*w + j];
+        const real prrr_a_p_y = t_ddot_y + alpha_z*prrr_q_in_base_x;
+        /* (prrr-S_ddot) acceleration of the connection point */
+        const real prrr_S_ddot_x = prrr_a_p_x - omega_z*prrr_S_dot_t_2;
+        const real prrr_S_ddot_y = prrr_a_p_y - omega_z*prrr_S_dot_t;
+        const real prrr_S_ddot_tip_x = axis_y_prrr_axes3_in_base_y*prrr_S_ddot_x -
+            axis_y_prrr_axes3_in_base_x*prrr_S_ddot_y;
+        const real prrr_S_ddot_tip_y = axis_y_prrr_axes3_in_base_x*prrr_S_ddot_x +
+            axis_y_prrr_axes3_in_base_y*prrr_S_ddot_y;
+        /* (prrr-rel) acceleration of the connection point left to the joint accelerations */
+        const real prrr_ydd_1 = A[(3)*w + j];
+        const real prrr_rel_x = prrr_S_ddot_tip_x - prrr_bias_x -
+            axis_y_prrr_axes3_r1_y*prrr_ydd_1;
+        const real prrr_rel_y = prrr_S_ddot_tip_y + prrr_W_2_t*prrr_joint3_offset_x*prrr_s_3 -
+            axis_y_prrr_axes3_r1_x*prrr_ydd_1;
+        /* (prrr-qdd_2) acceleration of joint 2 */
+        const real prrr_qdd_2 = inv_prrr_r_2_r0_y*prrr_rel_x;
+        /* (prrr-acc_3) acceleration of the reference point of link 3, less gravity */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real prrr_acc_3_x = prrr_S_ddot_tip_x + axis_y_prrr_axes3_in_base_x*gravity_y -
             axis_y_prrr_axes3_in_base_y*gravity_x;
-        const real acc_3_prrr_y = S_ddot_prrr_tip_y - axis_y_prrr_axes3_in_base_x*gravity_x -
+        const real prrr_acc_3_y = prrr_S_ddot_tip_y - axis_y_prrr_axes3_in_base_x*gravity_x -
             axis_y_prrr_axes3_in_base_y*gravity_y;
-        /* (prrr-N5) acceleration of the reference point of link 2, less gravity */
-        const real acc_2_prrr_x = c_2_prrr*ydd_1_prrr - c_2_prrr*g_r0_x - g_r0_y*s_2_prrr;
-        const real acc_2_prrr_y = g_r0_x*s_2_prrr - c_2_prrr*g_r0_y - s_2_prrr*ydd_1_prrr;
-        /* (prrr-N36) inertia moment of the links that turn with link 2, about their reference points */
-        const real mu_2_prrr_z = acc_2_prrr_y*h_2_prrr_x - J_2_prrr_zz*qdd_2_prrr -
-            acc_2_prrr_x*h_2_prrr_y;
-        /* (prrr-A19) angular acceleration of link 3 */
-        const real alpha_3_prrr_z = inv_prrr_platform_joint_offset_x*(rel_prrr_y +
-            qdd_2_prrr*r_2_prrr_r0_x) - qdd_2_prrr;
-        /* (prrr-N28) inertia moment of the links that turn with link 3, about their reference points */
-        const real mu_3_prrr_z = J_3_prrr_zz*alpha_3_prrr_z + acc_3_prrr_y*h_3_prrr_x -
-            acc_3_prrr_x*h_3_prrr_y;
-        /* (prrr-N38) moment about joint 2 of the links from 2 outwards, the force at the connection point
+        /* (prrr-alpha_3) angular acceleration of link 3 */
+        const real prrr_alpha_3_z = inv_prrr_platform_joint_offset_x*(prrr_rel_y +
+            prrr_qdd_2*prrr_r_2_r0_x) - prrr_qdd_2;
+        /* (prrr-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+        const real prrr_J_3_zz = m->prrr_J_3_zz[i];
+        const real prrr_h_3_x = m->prrr_h_3_x[i];
+        const real prrr_h_3_y = m->prrr_h_3_y[i];
+        const real prrr_mu_3_z = prrr_J_3_zz*prrr_alpha_3_z + prrr_acc_3_y*prrr_h_3_x -
+            prrr_acc_3_x*prrr_h_3_y;
+        /* (prrr-acc_2) acceleration of the reference point of link 2, less gravity */
+        const real prrr_g_r0_x = m->prrr_g_r0_x[i];
+        const real prrr_g_r0_y = m->prrr_g_r0_y[i];
+        const real prrr_acc_2_x = prrr_c_2*prrr_ydd_1 - prrr_c_2*prrr_g_r0_x -
+            prrr_g_r0_y*prrr_s_2;
+        const real prrr_acc_2_y = prrr_g_r0_x*prrr_s_2 - prrr_c_2*prrr_g_r0_y -
+            prrr_s_2*prrr_ydd_1;
+        /* (prrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+        const real prrr_J_2_zz = m->prrr_J_2_zz[i];
+        const real prrr_h_2_x = m->prrr_h_2_x[i];
+        const real prrr_h_2_y = m->prrr_h_2_y[i];
+        const real prrr_mu_2_z = prrr_acc_2_y*prrr_h_2_x - prrr_J_2_zz*prrr_qdd_2 -
+            prrr_acc_2_x*prrr_h_2_y;
+        /* (prrr-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
            left out */
-        const real N_2_prrr_z = mu_2_prrr_z + mu_3_prrr_z;
-        /* (prrr-N50) force at the connection point that balances the leg's inertia and weight along all
+        const real prrr_N_2_z = prrr_mu_2_z + prrr_mu_3_z;
+        /* (prrr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real G_prrr_t = inv_prrr_platform_joint_offset_x*mu_3_prrr_z;
-        const real G_prrr_t_2 = inv_r_2_prrr_r0_y*(G_prrr_t*r_2_prrr_r0_x - N_2_prrr_z);
-        /* (prrr-N54) leg force on the platform without actuation and without the mass at the connection
+        const real prrr_G_t = inv_prrr_platform_joint_offset_x*prrr_mu_3_z;
+        const real prrr_G_t_2 = inv_prrr_r_2_r0_y*(prrr_G_t*prrr_r_2_r0_x - prrr_N_2_z);
+        /* (prrr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_prrr_x = W_3_prrr_t*h_3_prrr_x + alpha_3_prrr_z*h_3_prrr_y - G_prrr_t_2;
-        const real c_prrr_y = W_3_prrr_t*h_3_prrr_y - G_prrr_t - alpha_3_prrr_z*h_3_prrr_x;
-        const real c_prrr_in_base_x = axis_y_prrr_axes3_in_base_x*c_prrr_y +
-            axis_y_prrr_axes3_in_base_y*c_prrr_x;
-        const real c_prrr_in_base_y = axis_y_prrr_axes3_in_base_y*c_prrr_y -
-            axis_y_prrr_axes3_in_base_x*c_prrr_x;
-        /* (E5) moment that actuators and external wrench must give */
-        const real R_a_t = c_prrr_in_base_y*q_prrr_in_base_x - c_prrr_in_base_x*q_prrr_in_base_y;
-        /* (prrr-N1) acceleration of the reference point of link 1, less gravity */
-        const real acc_1_prrr_x = ydd_1_prrr - g_r0_x;
-        /* (prrr-N9) inertia force of link 2 less its weight */
-        const real f_2_prrr_x = acc_2_prrr_x*prrr_link2_mass + h_2_prrr_y*qdd_2_prrr -
-            W_2_prrr_t*h_2_prrr_x;
-        const real f_2_prrr_y = acc_2_prrr_y*prrr_link2_mass - W_2_prrr_t*h_2_prrr_y -
-            h_2_prrr_x*qdd_2_prrr;
-        /* (prrr-N44) inertia force of the links from 1 outwards, the last link left out */
-        const real T_1_prrr_x = acc_1_prrr_x*prrr_link1_mass + c_2_prrr*f_2_prrr_x -
-            f_2_prrr_y*s_2_prrr;
-        /* (prrr-N60) inertia and weight of the leg along the extra freedom of joint 1 */
-        const real P_1_prrr_t = G_prrr_t*axis_y_prrr_axes3_r1_x +
-            G_prrr_t_2*axis_y_prrr_axes3_r1_y;
-        const real P_1_prrr = T_1_prrr_x - P_1_prrr_t;
-        o->sum[0][k] = add ? o->sum[0][k] + c_prrr_in_base_x : c_prrr_in_base_x;  /* total_prrr_x */
-        o->sum[1][k] = add ? o->sum[1][k] + c_prrr_in_base_y : c_prrr_in_base_y;  /* total_prrr_y */
-        o->sum[2][k] = add ? o->sum[2][k] + R_a_t : R_a_t;  /* total_prrr_z */
-        o->entry[0][k] = P_1_prrr;
-        o->entry[1][k] = 1;
-        o->entry[2][k] = -w_2_prrr_t;
-        o->entry[3][k] = w_2_prrr_t_2;
-        o->entry[4][k] = H_a_2_prrr_z;
-        o->entry[5][k] = d1_qdd_2_prrr;
-        o->singular[k] = UNLESS(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t) +
-            UNLESS(magnitude(-r_2_prrr_r0_y) > TOLERANCE*size_prrr);
-        o->unreachable[k] = UNLESS(disc_2_prrr >= 0);
+        const real prrr_c_x = prrr_W_3_t*prrr_h_3_x + prrr_alpha_3_z*prrr_h_3_y - prrr_G_t_2;
+        const real prrr_c_y = prrr_W_3_t*prrr_h_3_y - prrr_G_t - prrr_alpha_3_z*prrr_h_3_x;
+        const real prrr_c_in_base_x = axis_y_prrr_axes3_in_base_x*prrr_c_y +
+            axis_y_prrr_axes3_in_base_y*prrr_c_x;
+        const real prrr_c_in_base_y = axis_y_prrr_axes3_in_base_y*prrr_c_y -
+            axis_y_prrr_axes3_in_base_x*prrr_c_x;
+        /* (R_a) moment that actuators and external wrench must give */
+        const real prrr_R_a_t = prrr_c_in_base_y*prrr_q_in_base_x -
+            prrr_c_in_base_x*prrr_q_in_base_y;
+        /* (prrr-acc_1) acceleration of the reference point of link 1, less gravity */
+        const real prrr_acc_1_x = prrr_ydd_1 - prrr_g_r0_x;
+        /* (prrr-f_2) inertia force of link 2 less its weight */
+        const real prrr_link2_mass = m->prrr_link2_mass[i];
+        const real prrr_f_2_x = prrr_acc_2_x*prrr_link2_mass + prrr_h_2_y*prrr_qdd_2 -
+            prrr_W_2_t*prrr_h_2_x;
+        const real prrr_f_2_y = prrr_acc_2_y*prrr_link2_mass - prrr_W_2_t*prrr_h_2_y -
+            prrr_h_2_x*prrr_qdd_2;
+        /* (prrr-T_1) inertia force of the links from 1 outwards, the last link left out */
+        const real prrr_link1_mass = m->prrr_link1_mass[i];
+        const real prrr_T_1_x = prrr_acc_1_x*prrr_link1_mass + prrr_c_2*prrr_f_2_x -
+            prrr_f_2_y*prrr_s_2;
+        /* (prrr-P_1) inertia and weight of the leg along the extra freedom of joint 1 */
+        const real prrr_P_1_t = axis_y_prrr_axes3_r1_x*prrr_G_t +
+            axis_y_prrr_axes3_r1_y*prrr_G_t_2;
+        const real prrr_P_1 = prrr_T_1_x - prrr_P_1_t;
+        terms[0*count + k] = add ? terms[0*count + k] + prrr_c_in_base_x : prrr_c_in_base_x;  /* total_prrr_x */
+        terms[1*count + k] = add ? terms[1*count + k] + prrr_c_in_base_y : prrr_c_in_base_y;  /* total_prrr_y */
+        terms[2*count + k] = add ? terms[2*count + k] + prrr_R_a_t : prrr_R_a_t;  /* total_prrr_z */
+        o[0*count + k] = prrr_P_1;
+        o[1*count + k] = 1;
+        o[2*count + k] = -prrr_w_2_t;
+        o[3*count + k] = prrr_w_2_t_2;
+        o[4*count + k] = prrr_H_a_2_z;
+        o[5*count + k] = prrr_dy_1_qdd_2;
+        const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
+        const real prrr_size = m->prrr_size[i];
+        o[7*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
+            UNLESS(magnitude(-prrr_r_2_r0_y) > TOLERANCE*prrr_size);
+        o[6*count + k] = UNLESS(prrr_disc_2 >= 0);
     }
 }
 
-INLINE void required_place_prrr(size_t w, const required_results_prrr *o, size_t first, real
+INLINE void required_place_prrr(size_t w, size_t count, const real *o, size_t first, real
     *required, real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        required[(3)*w + k] = o->entry[0][first + k];
-        H[(12)*w + k] = o->entry[1][first + k];
-        H[(1)*w + k] = o->entry[2][first + k];
-        H[(5)*w + k] = o->entry[3][first + k];
-        H[(9)*w + k] = o->entry[4][first + k];
-        H[(13)*w + k] = o->entry[5][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        required[(3)*w + k] = o[0*count + first + k];
+        H[(12)*w + k] = o[1*count + first + k];
+        H[(1)*w + k] = o[2*count + first + k];
+        H[(5)*w + k] = o[3*count + first + k];
+        H[(9)*w + k] = o[4*count + first + k];
+        H[(13)*w + k] = o[5*count + first + k];
+        t->unreachable[k] += o[6*count + first + k];
+        t->singular[k] += o[7*count + first + k];
     }
 }
 
-INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const required_values
-    *s, size_t states, size_t count, int add, required_results_rrr *o)
+INLINE void required_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real J_1_rrr_zz = m->J_1_rrr_zz[i];
-        const real J_2_rrr_zz = m->J_2_rrr_zz[i];
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real g_r0_x_2 = m->g_r0_x_2[i];
-        const real g_r0_y_2 = m->g_r0_y_2[i];
-        const real h_1_rrr_x = m->h_1_rrr_x[i];
-        const real h_1_rrr_y = m->h_1_rrr_y[i];
-        const real h_2_rrr_x = m->h_2_rrr_x[i];
-        const real h_2_rrr_y = m->h_2_rrr_y[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_rrr = m->size_rrr[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x;
-        const real S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr =
-            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr;
-        const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
-        const real r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr;
-        const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr;
-        const real axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        /* (rrr-V1) velocity of the connection point */
-        const real S_dot_rrr_t = omega_z*q_rrr_in_base_y;
-        const real S_dot_rrr_t_2 = omega_z*q_rrr_in_base_x;
-        const real S_dot_rrr_x = t_dot_x - S_dot_rrr_t;
-        const real S_dot_rrr_y = S_dot_rrr_t_2 + t_dot_y;
-        /* (rrr-V7) rate of joint 1 */
-        const real qd_1_rrr = inv_r_1_rrr_r0_y*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_x);
-        /* (rrr-V11) angular velocity of link 2 */
-        const real omega_2_rrr_z =
-            inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
-        /* (rrr-V10) centripetal tensor of link 1 */
-        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
-        /* (rrr-V12) centripetal tensor of link 2 */
-        const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
-        /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
-            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
-        /* (rrr-V5) reciprocal vector 1 */
-        const real w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y;
-        const real w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
-        /* (M10) moment of the column's unit force about the platform origin */
-        const real H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t;
-        /* (rrr-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_rrr_x = t_ddot_x - alpha_z*q_rrr_in_base_y;
-        const real a_p_rrr_y = t_ddot_y + alpha_z*q_rrr_in_base_x;
-        /* (rrr-A3) acceleration of the connection point */
-        const real S_ddot_rrr_x = a_p_rrr_x - S_dot_rrr_t_2*omega_z;
-        const real S_ddot_rrr_y = a_p_rrr_y - S_dot_rrr_t*omega_z;
-        const real S_ddot_rrr_tip_x = S_ddot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_ddot_rrr_y*axis_y_rrr_axes2_in_base_x;
-        const real S_ddot_rrr_tip_y = S_ddot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y;
-        /* (rrr-A6) acceleration of the connection point left to the joint accelerations */
-        const real rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x;
-        const real rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
-        /* (rrr-A8) acceleration of joint 1 */
-        const real qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x;
-        /* (rrr-N3) acceleration of the reference point of link 2, less gravity */
-        const real acc_2_rrr_x = S_ddot_rrr_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-S_dot) velocity of the connection point */
+        const real omega_z = s[6*w + j];
+        const real rrr_S_dot_t = omega_z*rrr_q_in_base_y;
+        const real rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x;
+        const real t_dot_x = s[4*w + j];
+        const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
+        const real t_dot_y = s[5*w + j];
+        const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
+        /* (rrr-qd_2) rate of joint 2 */
+        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y);
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_omega_2_z =
+            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-W_1) centripetal tensor of link 1 */
+        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-W_2) centripetal tensor of link 2 */
+        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y;
+        const real rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y;
+        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+        const real rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t;
+        /* (rrr-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_z = s[9*w + j];
+        const real t_ddot_x = s[7*w + j];
+        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y;
+        const real t_ddot_y = s[8*w + j];
+        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x;
+        /* (rrr-S_ddot) acceleration of the connection point */
+        const real rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2;
+        const real rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t;
+        const real rrr_S_ddot_tip_x = axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y;
+        const real rrr_S_ddot_tip_y = axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y;
+        /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
+        const real rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x;
+        const real rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-qdd_1) acceleration of joint 1 */
+        const real rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x;
+        /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real rrr_acc_2_x = rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
             axis_y_rrr_axes2_in_base_y*gravity_x;
-        const real acc_2_rrr_y = S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+        const real rrr_acc_2_y = rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
             axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-N23) inertia moment of the links that turn with link 1, about their reference points */
-        const real mu_1_rrr_z = h_1_rrr_y*(c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr) -
-            J_1_rrr_zz*qdd_1_rrr - h_1_rrr_x*(c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr);
-        /* (rrr-A16) angular acceleration of link 2 */
-        const real alpha_2_rrr_z = inv_rrr_platform_joint_offset_x*(rel_rrr_y +
-            qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr;
-        /* (rrr-N16) inertia moment of the links that turn with link 2, about their reference points */
-        const real mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x -
-            acc_2_rrr_x*h_2_rrr_y;
-        /* (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rrr-alpha_2) angular acceleration of link 2 */
+        const real rrr_alpha_2_z = inv_rrr_platform_joint_offset_x*(rrr_rel_y +
+            rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1;
+        /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
+        const real rrr_h_2_x = m->rrr_h_2_x[i];
+        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x -
+            rrr_acc_2_x*rrr_h_2_y;
+        /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
+        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
+        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
+        const real rrr_h_1_x = m->rrr_h_1_x[i];
+        const real rrr_h_1_y = m->rrr_h_1_y[i];
+        const real rrr_mu_1_z = rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
+            rrr_J_1_zz*rrr_qdd_1 - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
-        const real N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z;
-        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
+        const real rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z;
+        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z;
-        /* (rrr-N33) leg force on the platform without actuation and without the mass at the connection
+        const real rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z;
+        /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_rrr_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y -
-            inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x - N_1_rrr_z);
-        const real c_rrr_y = W_2_rrr_t*h_2_rrr_y - G_rrr_t - alpha_2_rrr_z*h_2_rrr_x;
-        const real c_rrr_in_base_x = axis_y_rrr_axes2_in_base_x*c_rrr_y +
-            axis_y_rrr_axes2_in_base_y*c_rrr_x;
-        const real c_rrr_in_base_y = axis_y_rrr_axes2_in_base_y*c_rrr_y -
-            axis_y_rrr_axes2_in_base_x*c_rrr_x;
-        /* (E5) moment that actuators and external wrench must give */
-        const real R_a_t_2 = c_rrr_in_base_y*q_rrr_in_base_x - c_rrr_in_base_x*q_rrr_in_base_y;
-        o->sum[0][k] = add ? o->sum[0][k] + c_rrr_in_base_x : c_rrr_in_base_x;  /* total_rrr_x */
-        o->sum[1][k] = add ? o->sum[1][k] + c_rrr_in_base_y : c_rrr_in_base_y;  /* total_rrr_y */
-        o->sum[2][k] = add ? o->sum[2][k] + R_a_t_2 : R_a_t_2;  /* total_rrr_z */
-        o->entry[0][k] = -w_1_rrr_t;
-        o->entry[1][k] = w_1_rrr_t_2;
-        o->entry[2][k] = H_a_1_rrr_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
+        const real rrr_c_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y -
+            inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x - rrr_N_1_z);
+        const real rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x;
+        const real rrr_c_in_base_x = axis_y_rrr_axes2_in_base_x*rrr_c_y +
+            axis_y_rrr_axes2_in_base_y*rrr_c_x;
+        const real rrr_c_in_base_y = axis_y_rrr_axes2_in_base_y*rrr_c_y -
+            axis_y_rrr_axes2_in_base_x*rrr_c_x;
+        /* (R_a) moment that actuators and external wrench must give */
+        const real rrr_R_a_t = rrr_c_in_base_y*rrr_q_in_base_x - rrr_c_in_base_x*rrr_q_in_base_y;
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_c_in_base_x : rrr_c_in_base_x;  /* total_rrr_x */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_c_in_base_y : rrr_c_in_base_y;  /* total_rrr_y */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_R_a_t : rrr_R_a_t;  /* total_rrr_z */
+        o[0*count + k] = -rrr_w_1_t;
+        o[1*count + k] = rrr_w_1_t_2;
+        o[2*count + k] = rrr_H_a_1_z;
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[4*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[3*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void required_place_rrr(size_t w, const required_results_rrr *o, size_t leg, size_t first,
+INLINE void required_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_t first,
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(2 + leg)*w + k] = o->entry[0][first + k];
-        H[(6 + leg)*w + k] = o->entry[1][first + k];
-        H[(10 + leg)*w + k] = o->entry[2][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(2 + leg)*w + k] = o[0*count + first + k];
+        H[(6 + leg)*w + k] = o[1*count + first + k];
+        H[(10 + leg)*w + k] = o[2*count + first + k];
+        t->unreachable[k] += o[3*count + first + k];
+        t->singular[k] += o[4*count + first + k];
     }
 }
 
-INLINE void required_after(size_t w, const required_values *s, real *required)
+INLINE void required_after(size_t w, const real *s, const real *sums, real *required)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real f_p_x = s->f_p_x[k];
-        const real f_p_y = s->f_p_y[k];
-        const real mu_p_z = s->mu_p_z[k];
-        const real total_prrr_x = s->sum[0][k];
-        const real total_prrr_y = s->sum[1][k];
-        const real total_prrr_z = s->sum[2][k];
-        const real total_rrr_x = s->sum[3][k];
-        const real total_rrr_y = s->sum[4][k];
-        const real total_rrr_z = s->sum[5][k];
-        /* (E4) force that actuators and external wrench must give */
+        /* (R_t) force that actuators and external wrench must give */
+        const real f_p_x = s[10*w + k];
+        const real total_prrr_x = sums[0*w + k];
+        const real total_rrr_x = sums[3*w + k];
         const real R_t_x = f_p_x - total_prrr_x - total_rrr_x;
+        const real f_p_y = s[11*w + k];
+        const real total_prrr_y = sums[1*w + k];
+        const real total_rrr_y = sums[4*w + k];
         const real R_t_y = f_p_y - total_prrr_y - total_rrr_y;
-        /* (E5) moment that actuators and external wrench must give */
+        /* (R_a) moment that actuators and external wrench must give */
+        const real mu_p_z = s[12*w + k];
+        const real total_prrr_z = sums[2*w + k];
+        const real total_rrr_z = sums[5*w + k];
         const real R_a_z = mu_p_z - total_prrr_z - total_rrr_z;
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
@@ -3790,2268 +3745,2499 @@ INLINE void required_after(size_t w, const required_values *s, real *required)
     }
 }
 
-INLINE void required_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+    *required, real *H, verdict *t)
+{
+    real s[13] = {0}, sums[6] = {0}, terms_prrr[3*LEGS(1)] = {0}, o_prrr[8*LEGS(1)] = {0},
+        terms_rrr[3*LEGS(2)] = {0}, o_rrr[5*LEGS(2)] = {0};
+    clear(H, 16);
+    required_before(m, 1, X, V, A, s);
+    required_legs_prrr(m, 1, 0, 1, s, 0, LEGS(1), 0, X, V, A, terms_prrr, o_prrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        required_place_prrr(1, LEGS(1), o_prrr, leg, required, H, t);
+    }
+    for (size_t n = 0; n < 3; ++n) {
+        sums[n] = total(terms_prrr + n*LEGS(1), 1);
+    }
+    required_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        required_place_rrr(1, LEGS(2), o_rrr, leg, leg, H, t);
+    }
+    for (size_t n = 0; n < 3; ++n) {
+        sums[3 + n] = total(terms_rrr + n*LEGS(2), 2);
+    }
+    required_after(1, s, sums, required);
+}
+
+INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, verdict *t)
 {
-    required_values values, *const s = &values;
-    required_results_prrr results_prrr;
-    required_results_rrr results_rrr;
-    clear(H, 16*w);
-    required_before(m, w, X, V, A, s);
-    if (w == 1) {  /* the legs side by side */
-        required_legs_prrr(m, w, 0, 1, s, 0, 1, 0, X, V, A, &results_prrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            required_place_prrr(w, &results_prrr, leg, required, H, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_prrr.sum[n], 1);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_prrr.sum, 0, sizeof results_prrr.sum);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            required_legs_prrr(m, w, leg, 0, s, 1, w, 1, X, V, A, &results_prrr);
-            required_place_prrr(w, &results_prrr, 0, required, H, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_prrr.sum[n][k];
-            }
-        }
+    real s[13*LANES], sums[6*LANES], o_prrr[8*LANES], o_rrr[5*LANES];
+    clear(H, 16*LANES);
+    required_before(m, LANES, X, V, A, s);
+    clear(sums, 3*LANES);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        required_legs_prrr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, A, sums, o_prrr);
+        required_place_prrr(LANES, LANES, o_prrr, 0, required, H, t);
     }
-    if (w == 1) {  /* the legs side by side */
-        required_legs_rrr(m, 0, 1, s, 0, 2, 0, &results_rrr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            required_place_rrr(w, &results_rrr, leg, leg, H, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[3 + n][k] = total(results_rrr.sum[n], 2);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            required_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
-            required_place_rrr(w, &results_rrr, leg, 0, H, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[3 + n][k] = results_rrr.sum[n][k];
-            }
-        }
+    clear(sums + 3*LANES, 3*LANES);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        required_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums + 3*LANES, o_rrr);
+        required_place_rrr(LANES, LANES, o_rrr, leg, 0, H, t);
     }
-    required_after(w, s, required);
+    required_after(LANES, s, sums, required);
 }
 
 /* ---- inverse_kinematics: 93 mul, 49 add, 3 div, 3 sqrt, 6 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES];
-} inverse_kinematics_values;
-typedef struct {
-    real entry[3][8], unreachable[8], singular[8];
-} inverse_kinematics_results_prrr;
-typedef struct {
-    real entry[2][8], unreachable[8], singular[8];
-} inverse_kinematics_results_rrr;
-
-INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematics_values *s)
+INLINE void inverse_kinematics_before(size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
     }
 }
 
 INLINE void inverse_kinematics_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs,
-    const inverse_kinematics_values *s, size_t states, size_t count, const real *X,
-    inverse_kinematics_results_prrr *o)
+    const real *s, size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real Kd_2_prrr_t_2 = m->Kd_2_prrr_t_2[i];
-        const real Kd_2_prrr_t_3 = m->Kd_2_prrr_t_3[i];
-        const real branch_2_prrr = m->branch_2_prrr[i];
-        const real inv_Kd_2_prrr_t = m->inv_Kd_2_prrr_t[i];
-        const real inv_uu_3_prrr_t = m->inv_uu_3_prrr_t[i];
-        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
-        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
-        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
+        /* (prrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real prrr_base_point_x = m->prrr_base_point_x[i];
-        const real prrr_base_point_y = m->prrr_base_point_y[i];
-        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
         const real prrr_platform_point_x = m->prrr_platform_point_x[i];
         const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real rho2_2_prrr_t = m->rho2_2_prrr_t[i];
-        const real y_1_extra_prrr = X[(3)*w + j];
-        /* (prrr-K1) from the base point to the connection point */
-        const real S_prrr_x = t_x + R_xx*prrr_platform_point_x - prrr_base_point_x -
+        const real t_x = s[0*w + j];
+        const real prrr_S_x = t_x + R_xx*prrr_platform_point_x - prrr_base_point_x -
             R_yx*prrr_platform_point_y;
-        const real S_prrr_y = t_y + R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x -
+        const real prrr_base_point_y = m->prrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real prrr_S_y = t_y + R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x -
             prrr_base_point_y;
-        const real S_prrr_r0_y = -S_prrr_x*prrr_base_frame_xx - S_prrr_y*prrr_base_frame_yx;
-        /* (prrr-K2) from the origin of joint 2 to the connection point */
-        const real x_2_prrr_x = S_prrr_x*prrr_base_frame_xy + S_prrr_y*prrr_base_frame_yy -
-            y_1_extra_prrr;
-        /* (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
+        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
+        const real prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
+        /* (prrr-x_2) from the origin of joint 2 to the connection point */
+        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
+        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
+        const real prrr_y_1_extra = X[(3)*w + j];
+        const real prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy -
+            prrr_y_1_extra;
+        /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x;
-        const real Kd_2_prrr = R(0.5)*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3;
-        /* (prrr-K7) factor of the cosine in the equation of joint 2 */
-        const real Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x;
-        /* (prrr-K8) factor of the sine in the equation of joint 2 */
-        const real Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x;
-        /* (prrr-K9) squared amplitude */
-        const real rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr;
-        /* (prrr-K10) discriminant */
-        const real disc_2_prrr = rho2_2_prrr - Kd_2_prrr*Kd_2_prrr;
-        /* (prrr-K11) root, with the sign of the branch */
-        const real root_2_prrr = branch_2_prrr*root(disc_2_prrr);
-        /* (prrr-K17) from the origin of joint 3 to the connection point */
-        const real x_3_prrr_x = Kd_2_prrr*inv_Kd_2_prrr_t*prrr_joint3_offset_x -
+        const real prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x;
+        const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
+        const real prrr_Kd_2_t_4 = m->prrr_Kd_2_t_4[i];
+        const real prrr_Kd_2 = R(0.5)*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4;
+        /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
+        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
+        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x;
+        /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
+        const real prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x;
+        /* (prrr-rho2_2) squared amplitude */
+        const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
+        /* (prrr-disc_2) discriminant */
+        const real prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2;
+        /* (prrr-root_2) root, with the sign of the branch */
+        const real prrr_branch_2 = m->prrr_branch_2[i];
+        const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
+        /* (prrr-x_3) from the origin of joint 3 to the connection point */
+        const real inv_prrr_Kd_2_t = m->inv_prrr_Kd_2_t[i];
+        const real prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x -
             prrr_joint3_offset_x;
-        /* (prrr-K12) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rho2_2_prrr = 1/rho2_2_prrr;
-        /* (prrr-K14) displacement of joint 2 */
-        const real q_2_prrr = angle(inv_rho2_2_prrr*(Kc_2_prrr*Kd_2_prrr - Ks_2_prrr*root_2_prrr),
-            -inv_rho2_2_prrr*(Kc_2_prrr*root_2_prrr + Kd_2_prrr*Ks_2_prrr));
-        /* (prrr-K21) displacement of joint 3 */
-        const real q_3_prrr =
-            angle(-inv_Kd_2_prrr_t*inv_uu_3_prrr_t*prrr_joint3_offset_x*prrr_platform_joint_offset_x*root_2_prrr,
-            inv_uu_3_prrr_t*prrr_platform_joint_offset_x*x_3_prrr_x);
-        o->entry[0][k] = y_1_extra_prrr;
-        o->entry[1][k] = q_2_prrr;
-        o->entry[2][k] = q_3_prrr;
-        o->singular[k] = UNLESS(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t);
-        o->unreachable[k] = UNLESS(disc_2_prrr >= 0);
+        /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
+        /* (prrr-q_2) displacement of joint 2 */
+        const real prrr_q_2 = angle(inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2),
+            -inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2));
+        /* (prrr-q_3) displacement of joint 3 */
+        const real inv_prrr_Kd_2_t_7 = m->inv_prrr_Kd_2_t_7[i];
+        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        const real prrr_q_3 =
+            angle(-inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2,
+            inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x);
+        o[0*count + k] = prrr_y_1_extra;
+        o[1*count + k] = prrr_q_2;
+        o[2*count + k] = prrr_q_3;
+        o[5*count + k] = prrr_y_1_extra + (prrr_q_2 + prrr_q_3);
+        const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
+        o[4*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t);
+        o[3*count + k] = UNLESS(prrr_disc_2 >= 0);
     }
 }
 
-INLINE void inverse_kinematics_place_prrr(size_t w, const inverse_kinematics_results_prrr *o,
-    size_t first, real *q, verdict *t)
+INLINE void inverse_kinematics_place_prrr(size_t w, size_t count, const real *o, size_t first,
+    real *q, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        q[(0)*w + k] = o->entry[0][first + k];
-        q[(1)*w + k] = o->entry[1][first + k];
-        q[(2)*w + k] = o->entry[2][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        q[(0)*w + k] = o[0*count + first + k];
+        q[(1)*w + k] = o[1*count + first + k];
+        q[(2)*w + k] = o[2*count + first + k];
+        t->unreachable[k] += o[3*count + first + k];
+        t->singular[k] += o[4*count + first + k];
+        t->total[k] += o[5*count + first + k];
     }
 }
 
-INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t leg, size_t legs, const
-    inverse_kinematics_values *s, size_t states, size_t count, inverse_kinematics_results_rrr *o)
+INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs,
+    const real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real S_rrr_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x -
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x -
             R_yx*rrr_platform_point_y;
-        const real S_rrr_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x -
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x -
             rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        /* (rrr-K13) displacement of joint 1 */
-        const real q_1_rrr = angle(inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr),
-            inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr));
-        /* (rrr-K20) displacement of joint 2 */
-        const real q_2_rrr =
-            angle(-inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x,
-            inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x);
-        o->entry[0][k] = q_1_rrr;
-        o->entry[1][k] = q_2_rrr;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        /* (rrr-q_1) displacement of joint 1 */
+        const real rrr_q_1 = angle(inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1),
+            inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1));
+        /* (rrr-q_2) displacement of joint 2 */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_q_2 =
+            angle(-inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
+            inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x);
+        o[0*count + k] = rrr_q_1;
+        o[1*count + k] = rrr_q_2;
+        o[4*count + k] = rrr_q_1 + rrr_q_2;
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
+        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void inverse_kinematics_place_rrr(size_t w, const inverse_kinematics_results_rrr *o, size_t
-    leg, size_t first, real *q, verdict *t)
+INLINE void inverse_kinematics_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_t
+    first, real *q, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        q[(3 + 2*leg)*w + k] = o->entry[0][first + k];
-        q[(4 + 2*leg)*w + k] = o->entry[1][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        q[(3 + 2*leg)*w + k] = o[0*count + first + k];
+        q[(4 + 2*leg)*w + k] = o[1*count + first + k];
+        t->unreachable[k] += o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
 }
 
-INLINE void inverse_kinematics_run(const prepared *m, size_t w, const real *X, real *q, verdict
-    *t)
+INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    inverse_kinematics_values values, *const s = &values;
-    inverse_kinematics_results_prrr results_prrr;
-    inverse_kinematics_results_rrr results_rrr;
-    inverse_kinematics_before(w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        inverse_kinematics_legs_prrr(m, w, 0, 1, s, 0, 1, X, &results_prrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            inverse_kinematics_place_prrr(w, &results_prrr, leg, q, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            inverse_kinematics_legs_prrr(m, w, leg, 0, s, 1, w, X, &results_prrr);
-            inverse_kinematics_place_prrr(w, &results_prrr, 0, q, t);
-        }
+    real s[4] = {0}, o_prrr[6*LEGS(1)] = {0}, o_rrr[5*LEGS(2)] = {0};
+    inverse_kinematics_before(1, X, s);
+    inverse_kinematics_legs_prrr(m, 1, 0, 1, s, 0, LEGS(1), X, o_prrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        inverse_kinematics_place_prrr(1, LEGS(1), o_prrr, leg, q, t);
     }
-    if (w == 1) {  /* the legs side by side */
-        inverse_kinematics_legs_rrr(m, 0, 1, s, 0, 2, &results_rrr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            inverse_kinematics_place_rrr(w, &results_rrr, leg, leg, q, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 2; ++leg) {
-            inverse_kinematics_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
-            inverse_kinematics_place_rrr(w, &results_rrr, leg, 0, q, t);
-        }
+    inverse_kinematics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), o_rrr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        inverse_kinematics_place_rrr(1, LEGS(2), o_rrr, leg, leg, q, t);
+    }
+}
+
+INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
+{
+    real s[4*LANES], o_prrr[6*LANES], o_rrr[5*LANES];
+    inverse_kinematics_before(LANES, X, s);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        inverse_kinematics_legs_prrr(m, LANES, leg, 0, s, 1, LANES, X, o_prrr);
+        inverse_kinematics_place_prrr(LANES, LANES, o_prrr, 0, q, t);
+    }
+    for (size_t leg = 0; leg < 2; ++leg) {
+        inverse_kinematics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        inverse_kinematics_place_rrr(LANES, LANES, o_rrr, leg, 0, q, t);
     }
 }
 
 /* ---- joint_rates: 161 mul, 87 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
-        omega_z[LANES];
-} joint_rates_values;
-typedef struct {
-    real entry[3][8], unreachable[8], singular[8];
-} joint_rates_results_prrr;
-typedef struct {
-    real entry[2][8], unreachable[8], singular[8];
-} joint_rates_results_rrr;
-
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rates_values *s)
+INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real omega_z = V_2;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->omega_z[k] = omega_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
+        s[4*w + k] = t_dot_x;
+        s[5*w + k] = t_dot_y;
+        s[6*w + k] = omega_z;
     }
 }
 
-INLINE void joint_rates_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const
-    joint_rates_values *s, size_t states, size_t count, const real *X, const real *V,
-    joint_rates_results_prrr *o)
+INLINE void joint_rates_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, const real *X, const real *V, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real Kd_2_prrr_t_2 = m->Kd_2_prrr_t_2[i];
-        const real Kd_2_prrr_t_3 = m->Kd_2_prrr_t_3[i];
-        const real branch_2_prrr = m->branch_2_prrr[i];
-        const real inv_Kd_2_prrr_t = m->inv_Kd_2_prrr_t[i];
-        const real inv_prrr_platform_joint_offset_x = m->inv_prrr_platform_joint_offset_x[i];
-        const real inv_uu_3_prrr_t = m->inv_uu_3_prrr_t[i];
-        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
-        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
-        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_base_point_x = m->prrr_base_point_x[i];
-        const real prrr_base_point_y = m->prrr_base_point_y[i];
-        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        /* (prrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real prrr_platform_point_x = m->prrr_platform_point_x[i];
         const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real rho2_2_prrr_t = m->rho2_2_prrr_t[i];
-        const real size_prrr = m->size_prrr[i];
-        const real y_1_extra_prrr = X[(3)*w + j];
-        const real yd_1_prrr = V[(3)*w + j];
-        /* (prrr-K1) from the base point to the connection point */
-        const real q_prrr_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
-        const real q_prrr_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
-        const real S_prrr_x = q_prrr_in_base_x + t_x - prrr_base_point_x;
-        const real S_prrr_y = q_prrr_in_base_y + t_y - prrr_base_point_y;
-        const real S_prrr_r0_y = -S_prrr_x*prrr_base_frame_xx - S_prrr_y*prrr_base_frame_yx;
-        /* (prrr-K2) from the origin of joint 2 to the connection point */
-        const real x_2_prrr_x = S_prrr_x*prrr_base_frame_xy + S_prrr_y*prrr_base_frame_yy -
-            y_1_extra_prrr;
-        /* (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
+        const real prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
+        const real prrr_base_point_x = m->prrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x;
+        const real prrr_base_point_y = m->prrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y;
+        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
+        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
+        const real prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
+        /* (prrr-x_2) from the origin of joint 2 to the connection point */
+        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
+        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
+        const real prrr_y_1_extra = X[(3)*w + j];
+        const real prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy -
+            prrr_y_1_extra;
+        /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x;
-        const real Kd_2_prrr = R(0.5)*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3;
-        /* (prrr-K7) factor of the cosine in the equation of joint 2 */
-        const real Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x;
-        /* (prrr-K8) factor of the sine in the equation of joint 2 */
-        const real Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x;
-        /* (prrr-K9) squared amplitude */
-        const real rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr;
-        /* (prrr-K10) discriminant */
-        const real disc_2_prrr = rho2_2_prrr - Kd_2_prrr*Kd_2_prrr;
-        /* (prrr-K11) root, with the sign of the branch */
-        const real root_2_prrr = branch_2_prrr*root(disc_2_prrr);
-        /* (prrr-K17) from the origin of joint 3 to the connection point */
-        const real x_3_prrr_x = Kd_2_prrr*inv_Kd_2_prrr_t*prrr_joint3_offset_x -
+        const real prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x;
+        const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
+        const real prrr_Kd_2_t_4 = m->prrr_Kd_2_t_4[i];
+        const real prrr_Kd_2 = R(0.5)*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4;
+        /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
+        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
+        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x;
+        /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
+        const real prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x;
+        /* (prrr-rho2_2) squared amplitude */
+        const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
+        /* (prrr-disc_2) discriminant */
+        const real prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2;
+        /* (prrr-root_2) root, with the sign of the branch */
+        const real prrr_branch_2 = m->prrr_branch_2[i];
+        const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
+        /* (prrr-x_3) from the origin of joint 3 to the connection point */
+        const real inv_prrr_Kd_2_t = m->inv_prrr_Kd_2_t[i];
+        const real prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x -
             prrr_joint3_offset_x;
-        /* (prrr-K19) cosine of the angle of joint 3 from its reference direction */
-        const real c_3_prrr = inv_uu_3_prrr_t*prrr_platform_joint_offset_x*x_3_prrr_x;
-        /* (prrr-K20) sine of the angle of joint 3 from its reference direction */
-        const real s_3_prrr =
-            inv_Kd_2_prrr_t*inv_uu_3_prrr_t*prrr_joint3_offset_x*prrr_platform_joint_offset_x*root_2_prrr;
-        /* (prrr-V2) from joint 2 to the connection point, along the links */
-        const real r_2_prrr_t = prrr_platform_joint_offset_x*s_3_prrr;
-        const real r_2_prrr_x = prrr_joint3_offset_x + c_3_prrr*prrr_platform_joint_offset_x;
-        const real r_2_prrr_r0_y = r_2_prrr_x*s_3_prrr - c_3_prrr*r_2_prrr_t;
-        /* (prrr-K12) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rho2_2_prrr = 1/rho2_2_prrr;
-        const real c_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*Kd_2_prrr - Ks_2_prrr*root_2_prrr);
-        /* (prrr-K13) sine of the angle of joint 2 from its reference direction */
-        const real s_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*root_2_prrr + Kd_2_prrr*Ks_2_prrr);
-        /* (prrr-V5) reciprocal vector 1 */
-        const real axis_y_prrr_axes3_r1_x = c_2_prrr*s_3_prrr - c_3_prrr*s_2_prrr;
-        const real axis_y_prrr_axes3_r1_y = c_2_prrr*c_3_prrr + s_2_prrr*s_3_prrr;
+        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_prrr_Kd_2_t_7 = m->inv_prrr_Kd_2_t_7[i];
+        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        const real prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x;
+        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
+        const real prrr_s_3 =
+            inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
+        /* (prrr-r_2) from joint 2 to the connection point, along the links */
+        const real prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3;
+        const real prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x;
+        const real prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_r_2_t;
+        /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
+        const real prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2);
+        /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2);
+        /* (prrr-w_2) reciprocal vector 1 */
+        const real axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2;
+        const real axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3;
         const real axis_y_prrr_axes3_in_base_x = axis_y_prrr_axes3_r1_x*prrr_base_frame_xy -
             axis_y_prrr_axes3_r1_y*prrr_base_frame_xx;
         const real axis_y_prrr_axes3_in_base_y = axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
             axis_y_prrr_axes3_r1_y*prrr_base_frame_yx;
-        /* (prrr-V1) velocity of the connection point */
-        const real S_dot_prrr_x = t_dot_x - omega_z*q_prrr_in_base_y;
-        const real S_dot_prrr_y = t_dot_y + omega_z*q_prrr_in_base_x;
-        /* (prrr-V7) velocity of the connection point left to the joints that are not extra */
-        const real S_dot_rest_prrr_x = S_dot_prrr_x - prrr_base_frame_xy*yd_1_prrr;
-        const real S_dot_rest_prrr_y = S_dot_prrr_y - prrr_base_frame_yy*yd_1_prrr;
-        /* (prrr-V8) rate of joint 2 */
-        const real qd_2_prrr = (S_dot_rest_prrr_x*axis_y_prrr_axes3_in_base_y -
-            S_dot_rest_prrr_y*axis_y_prrr_axes3_in_base_x)/r_2_prrr_r0_y;
-        const real qd_3_prrr =
-            inv_prrr_platform_joint_offset_x*(S_dot_rest_prrr_x*axis_y_prrr_axes3_in_base_x +
-            S_dot_rest_prrr_y*axis_y_prrr_axes3_in_base_y + qd_2_prrr*(c_3_prrr*r_2_prrr_x +
-            r_2_prrr_t*s_3_prrr));
-        o->entry[0][k] = yd_1_prrr;
-        o->entry[1][k] = -qd_2_prrr;
-        o->entry[2][k] = qd_3_prrr;
-        o->singular[k] = UNLESS(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t) +
-            UNLESS(magnitude(-r_2_prrr_r0_y) > TOLERANCE*size_prrr);
-        o->unreachable[k] = UNLESS(disc_2_prrr >= 0);
+        /* (prrr-S_dot) velocity of the connection point */
+        const real omega_z = s[6*w + j];
+        const real t_dot_x = s[4*w + j];
+        const real prrr_S_dot_x = t_dot_x - omega_z*prrr_q_in_base_y;
+        const real t_dot_y = s[5*w + j];
+        const real prrr_S_dot_y = t_dot_y + omega_z*prrr_q_in_base_x;
+        /* (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra */
+        const real prrr_yd_1 = V[(3)*w + j];
+        const real prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1;
+        const real prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1;
+        /* (prrr-qd_3) rate of joint 3 */
+        const real prrr_qd_2 = (axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_x -
+            axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_y)/prrr_r_2_r0_y;
+        const real inv_prrr_platform_joint_offset_x = m->inv_prrr_platform_joint_offset_x[i];
+        const real prrr_qd_3 =
+            inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_x +
+            axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_y + prrr_qd_2*(prrr_c_3*prrr_r_2_x +
+            prrr_r_2_t*prrr_s_3));
+        o[0*count + k] = prrr_yd_1;
+        o[1*count + k] = -prrr_qd_2;
+        o[2*count + k] = prrr_qd_3;
+        o[5*count + k] = prrr_yd_1 + (prrr_qd_2 + prrr_qd_3);
+        const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
+        const real prrr_size = m->prrr_size[i];
+        o[4*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
+            UNLESS(magnitude(-prrr_r_2_r0_y) > TOLERANCE*prrr_size);
+        o[3*count + k] = UNLESS(prrr_disc_2 >= 0);
     }
 }
 
-INLINE void joint_rates_place_prrr(size_t w, const joint_rates_results_prrr *o, size_t first, real
-    *qd, verdict *t)
+INLINE void joint_rates_place_prrr(size_t w, size_t count, const real *o, size_t first, real *qd,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qd[(0)*w + k] = o->entry[0][first + k];
-        qd[(1)*w + k] = o->entry[1][first + k];
-        qd[(2)*w + k] = o->entry[2][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        qd[(0)*w + k] = o[0*count + first + k];
+        qd[(1)*w + k] = o[1*count + first + k];
+        qd[(2)*w + k] = o[2*count + first + k];
+        t->unreachable[k] += o[3*count + first + k];
+        t->singular[k] += o[4*count + first + k];
+        t->total[k] += o[5*count + first + k];
     }
 }
 
-INLINE void joint_rates_legs_rrr(const prepared *m, size_t leg, size_t legs, const
-    joint_rates_values *s, size_t states, size_t count, joint_rates_results_rrr *o)
+INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_rrr = m->size_rrr[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x;
-        const real S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr =
-            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr;
-        const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
-        const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr;
-        const real axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        /* (rrr-V1) velocity of the connection point */
-        const real S_dot_rrr_x = t_dot_x - omega_z*q_rrr_in_base_y;
-        const real S_dot_rrr_y = t_dot_y + omega_z*q_rrr_in_base_x;
-        /* (rrr-V7) rate of joint 1 */
-        const real qd_1_rrr = (S_dot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_x)/r_1_rrr_r0_y;
-        const real qd_2_rrr =
-            inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*(c_2_rrr*r_1_rrr_x +
-            r_1_rrr_t*s_2_rrr));
-        o->entry[0][k] = -qd_1_rrr;
-        o->entry[1][k] = qd_2_rrr;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
+        /* (rrr-S_dot) velocity of the connection point */
+        const real omega_z = s[6*w + j];
+        const real t_dot_x = s[4*w + j];
+        const real rrr_S_dot_x = t_dot_x - omega_z*rrr_q_in_base_y;
+        const real t_dot_y = s[5*w + j];
+        const real rrr_S_dot_y = t_dot_y + omega_z*rrr_q_in_base_x;
+        /* (rrr-qd_2) rate of joint 2 */
+        const real rrr_qd_1 = (axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)/rrr_r_1_r0_y;
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_qd_2 =
+            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*(rrr_c_2*rrr_r_1_x +
+            rrr_r_1_t*rrr_s_2));
+        o[0*count + k] = -rrr_qd_1;
+        o[1*count + k] = rrr_qd_2;
+        o[4*count + k] = rrr_qd_1 + rrr_qd_2;
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void joint_rates_place_rrr(size_t w, const joint_rates_results_rrr *o, size_t leg, size_t
-    first, real *qd, verdict *t)
+INLINE void joint_rates_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_t first,
+    real *qd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qd[(3 + 2*leg)*w + k] = o->entry[0][first + k];
-        qd[(4 + 2*leg)*w + k] = o->entry[1][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        qd[(3 + 2*leg)*w + k] = o[0*count + first + k];
+        qd[(4 + 2*leg)*w + k] = o[1*count + first + k];
+        t->unreachable[k] += o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
 }
 
-INLINE void joint_rates_run(const prepared *m, size_t w, const real *X, const real *V, real *qd,
+INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+{
+    real s[7] = {0}, o_prrr[6*LEGS(1)] = {0}, o_rrr[5*LEGS(2)] = {0};
+    joint_rates_before(1, X, V, s);
+    joint_rates_legs_prrr(m, 1, 0, 1, s, 0, LEGS(1), X, V, o_prrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        joint_rates_place_prrr(1, LEGS(1), o_prrr, leg, qd, t);
+    }
+    joint_rates_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), o_rrr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        joint_rates_place_rrr(1, LEGS(2), o_rrr, leg, leg, qd, t);
+    }
+}
+
+INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    joint_rates_values values, *const s = &values;
-    joint_rates_results_prrr results_prrr;
-    joint_rates_results_rrr results_rrr;
-    joint_rates_before(w, X, V, s);
-    if (w == 1) {  /* the legs side by side */
-        joint_rates_legs_prrr(m, w, 0, 1, s, 0, 1, X, V, &results_prrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            joint_rates_place_prrr(w, &results_prrr, leg, qd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            joint_rates_legs_prrr(m, w, leg, 0, s, 1, w, X, V, &results_prrr);
-            joint_rates_place_prrr(w, &results_prrr, 0, qd, t);
-        }
+    real s[7*LANES], o_prrr[6*LANES], o_rrr[5*LANES];
+    joint_rates_before(LANES, X, V, s);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        joint_rates_legs_prrr(m, LANES, leg, 0, s, 1, LANES, X, V, o_prrr);
+        joint_rates_place_prrr(LANES, LANES, o_prrr, 0, qd, t);
     }
-    if (w == 1) {  /* the legs side by side */
-        joint_rates_legs_rrr(m, 0, 1, s, 0, 2, &results_rrr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            joint_rates_place_rrr(w, &results_rrr, leg, leg, qd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 2; ++leg) {
-            joint_rates_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
-            joint_rates_place_rrr(w, &results_rrr, leg, 0, qd, t);
-        }
+    for (size_t leg = 0; leg < 2; ++leg) {
+        joint_rates_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        joint_rates_place_rrr(LANES, LANES, o_rrr, leg, 0, qd, t);
     }
 }
 
 /* ---- joint_accelerations: 220 mul, 122 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
-        omega_z[LANES], t_ddot_x[LANES], t_ddot_y[LANES], alpha_z[LANES];
-} joint_accelerations_values;
-typedef struct {
-    real entry[3][8], unreachable[8], singular[8];
-} joint_accelerations_results_prrr;
-typedef struct {
-    real entry[2][8], unreachable[8], singular[8];
-} joint_accelerations_results_rrr;
-
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A,
-    joint_accelerations_values *s)
+INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
+    *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real A_2 = A[2*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real omega_z = V_2;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
+        const real A_2 = A[2*w + k];
         const real alpha_z = A_2;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->alpha_z[k] = alpha_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
+        s[4*w + k] = t_dot_x;
+        s[5*w + k] = t_dot_y;
+        s[6*w + k] = omega_z;
+        s[7*w + k] = t_ddot_x;
+        s[8*w + k] = t_ddot_y;
+        s[9*w + k] = alpha_z;
     }
 }
 
 INLINE void joint_accelerations_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs,
-    const joint_accelerations_values *s, size_t states, size_t count, const real *X, const real
-    *V, const real *A, joint_accelerations_results_prrr *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real Kd_2_prrr_t_2 = m->Kd_2_prrr_t_2[i];
-        const real Kd_2_prrr_t_3 = m->Kd_2_prrr_t_3[i];
-        const real branch_2_prrr = m->branch_2_prrr[i];
-        const real inv_Kd_2_prrr_t = m->inv_Kd_2_prrr_t[i];
-        const real inv_prrr_platform_joint_offset_x = m->inv_prrr_platform_joint_offset_x[i];
-        const real inv_uu_3_prrr_t = m->inv_uu_3_prrr_t[i];
-        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
-        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
-        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_base_point_x = m->prrr_base_point_x[i];
-        const real prrr_base_point_y = m->prrr_base_point_y[i];
-        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
-        const real prrr_platform_point_x = m->prrr_platform_point_x[i];
-        const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real rho2_2_prrr_t = m->rho2_2_prrr_t[i];
-        const real size_prrr = m->size_prrr[i];
-        const real y_1_extra_prrr = X[(3)*w + j];
-        const real yd_1_prrr = V[(3)*w + j];
-        const real ydd_1_prrr = A[(3)*w + j];
-        /* (prrr-K1) from the base point to the connection point */
-        const real q_prrr_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
-        const real q_prrr_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
-        const real S_prrr_x = q_prrr_in_base_x + t_x - prrr_base_point_x;
-        const real S_prrr_y = q_prrr_in_base_y + t_y - prrr_base_point_y;
-        const real S_prrr_r0_y = -S_prrr_x*prrr_base_frame_xx - S_prrr_y*prrr_base_frame_yx;
-        /* (prrr-K2) from the origin of joint 2 to the connection point */
-        const real x_2_prrr_x = S_prrr_x*prrr_base_frame_xy + S_prrr_y*prrr_base_frame_yy -
-            y_1_extra_prrr;
-        /* (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 2 */
-        const real Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x;
-        const real Kd_2_prrr = R(0.5)*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3;
-        /* (prrr-K7) factor of the cosine in the equation of joint 2 */
-        const real Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x;
-        /* (prrr-K8) factor of the sine in the equation of joint 2 */
-        const real Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x;
-        /* (prrr-K9) squared amplitude */
-        const real rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr;
-        /* (prrr-K10) discriminant */
-        const real disc_2_prrr = rho2_2_prrr - Kd_2_prrr*Kd_2_prrr;
-        /* (prrr-K11) root, with the sign of the branch */
-        const real root_2_prrr = branch_2_prrr*root(disc_2_prrr);
-        /* (prrr-K17) from the origin of joint 3 to the connection point */
-        const real x_3_prrr_x = Kd_2_prrr*inv_Kd_2_prrr_t*prrr_joint3_offset_x -
-            prrr_joint3_offset_x;
-        /* (prrr-K19) cosine of the angle of joint 3 from its reference direction */
-        const real c_3_prrr = inv_uu_3_prrr_t*prrr_platform_joint_offset_x*x_3_prrr_x;
-        /* (prrr-K20) sine of the angle of joint 3 from its reference direction */
-        const real s_3_prrr =
-            inv_Kd_2_prrr_t*inv_uu_3_prrr_t*prrr_joint3_offset_x*prrr_platform_joint_offset_x*root_2_prrr;
-        /* (prrr-V2) from joint 2 to the connection point, along the links */
-        const real r_2_prrr_t = prrr_platform_joint_offset_x*s_3_prrr;
-        const real r_2_prrr_x = prrr_joint3_offset_x + c_3_prrr*prrr_platform_joint_offset_x;
-        const real r_2_prrr_r0_x = c_3_prrr*r_2_prrr_x + r_2_prrr_t*s_3_prrr;
-        const real r_2_prrr_r0_y = r_2_prrr_x*s_3_prrr - c_3_prrr*r_2_prrr_t;
-        /* (prrr-K12) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rho2_2_prrr = 1/rho2_2_prrr;
-        const real c_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*Kd_2_prrr - Ks_2_prrr*root_2_prrr);
-        /* (prrr-K13) sine of the angle of joint 2 from its reference direction */
-        const real s_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*root_2_prrr + Kd_2_prrr*Ks_2_prrr);
-        /* (prrr-V5) reciprocal vector 1 */
-        const real axis_y_prrr_axes3_r1_x = c_2_prrr*s_3_prrr - c_3_prrr*s_2_prrr;
-        const real axis_y_prrr_axes3_r1_y = c_2_prrr*c_3_prrr + s_2_prrr*s_3_prrr;
-        const real axis_y_prrr_axes3_in_base_x = axis_y_prrr_axes3_r1_x*prrr_base_frame_xy -
-            axis_y_prrr_axes3_r1_y*prrr_base_frame_xx;
-        const real axis_y_prrr_axes3_in_base_y = axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
-            axis_y_prrr_axes3_r1_y*prrr_base_frame_yx;
-        const real inv_r_2_prrr_r0_y = 1/r_2_prrr_r0_y;
-        /* (prrr-V1) velocity of the connection point */
-        const real S_dot_prrr_t = omega_z*q_prrr_in_base_y;
-        const real S_dot_prrr_t_2 = omega_z*q_prrr_in_base_x;
-        const real S_dot_prrr_x = t_dot_x - S_dot_prrr_t;
-        const real S_dot_prrr_y = S_dot_prrr_t_2 + t_dot_y;
-        /* (prrr-V7) velocity of the connection point left to the joints that are not extra */
-        const real S_dot_rest_prrr_x = S_dot_prrr_x - prrr_base_frame_xy*yd_1_prrr;
-        const real S_dot_rest_prrr_y = S_dot_prrr_y - prrr_base_frame_yy*yd_1_prrr;
-        /* (prrr-V8) rate of joint 2 */
-        const real qd_2_prrr = inv_r_2_prrr_r0_y*(S_dot_rest_prrr_x*axis_y_prrr_axes3_in_base_y -
-            S_dot_rest_prrr_y*axis_y_prrr_axes3_in_base_x);
-        /* (prrr-V12) angular velocity of link 3 */
-        const real omega_3_prrr_z =
-            inv_prrr_platform_joint_offset_x*(S_dot_rest_prrr_x*axis_y_prrr_axes3_in_base_x +
-            S_dot_rest_prrr_y*axis_y_prrr_axes3_in_base_y + qd_2_prrr*r_2_prrr_r0_x) - qd_2_prrr;
-        /* (prrr-V11) centripetal tensor of link 2 */
-        const real W_2_prrr_t = qd_2_prrr*qd_2_prrr;
-        /* (prrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_prrr_x = -omega_3_prrr_z*omega_3_prrr_z*prrr_platform_joint_offset_x -
-            W_2_prrr_t*c_3_prrr*prrr_joint3_offset_x;
-        /* (prrr-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_prrr_x = t_ddot_x - alpha_z*q_prrr_in_base_y;
-        const real a_p_prrr_y = t_ddot_y + alpha_z*q_prrr_in_base_x;
-        /* (prrr-A3) acceleration of the connection point */
-        const real S_ddot_prrr_x = a_p_prrr_x - S_dot_prrr_t_2*omega_z;
-        const real S_ddot_prrr_y = a_p_prrr_y - S_dot_prrr_t*omega_z;
-        /* (prrr-A6) acceleration of the connection point left to the joint accelerations */
-        const real rel_prrr_x = S_ddot_prrr_x*axis_y_prrr_axes3_in_base_y - bias_prrr_x -
-            S_ddot_prrr_y*axis_y_prrr_axes3_in_base_x - axis_y_prrr_axes3_r1_y*ydd_1_prrr;
-        const real rel_prrr_y = S_ddot_prrr_x*axis_y_prrr_axes3_in_base_x +
-            S_ddot_prrr_y*axis_y_prrr_axes3_in_base_y + W_2_prrr_t*prrr_joint3_offset_x*s_3_prrr -
-            axis_y_prrr_axes3_r1_x*ydd_1_prrr;
-        /* (prrr-A9) acceleration of joint 2 */
-        const real qdd_2_prrr = inv_r_2_prrr_r0_y*rel_prrr_x;
-        const real qdd_3_prrr = inv_prrr_platform_joint_offset_x*(rel_prrr_y +
-            qdd_2_prrr*r_2_prrr_r0_x);
-        o->entry[0][k] = ydd_1_prrr;
-        o->entry[1][k] = -qdd_2_prrr;
-        o->entry[2][k] = qdd_3_prrr;
-        o->singular[k] = UNLESS(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t) +
-            UNLESS(magnitude(-r_2_prrr_r0_y) > TOLERANCE*size_prrr);
-        o->unreachable[k] = UNLESS(disc_2_prrr >= 0);
-    }
-}
-
-INLINE void joint_accelerations_place_prrr(size_t w, const joint_accelerations_results_prrr *o,
-    size_t first, real *qdd, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        qdd[(0)*w + k] = o->entry[0][first + k];
-        qdd[(1)*w + k] = o->entry[1][first + k];
-        qdd[(2)*w + k] = o->entry[2][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t leg, size_t legs, const
-    joint_accelerations_values *s, size_t states, size_t count, joint_accelerations_results_rrr
+    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
     *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_rrr = m->size_rrr[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x;
-        const real S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr =
-            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr;
-        const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
-        const real r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr;
-        const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr;
-        const real axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        /* (rrr-V1) velocity of the connection point */
-        const real S_dot_rrr_t = omega_z*q_rrr_in_base_y;
-        const real S_dot_rrr_t_2 = omega_z*q_rrr_in_base_x;
-        const real S_dot_rrr_x = t_dot_x - S_dot_rrr_t;
-        const real S_dot_rrr_y = S_dot_rrr_t_2 + t_dot_y;
-        /* (rrr-V7) rate of joint 1 */
-        const real qd_1_rrr = inv_r_1_rrr_r0_y*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_x);
-        /* (rrr-V11) angular velocity of link 2 */
-        const real omega_2_rrr_z =
-            inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
-        /* (rrr-V10) centripetal tensor of link 1 */
-        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
-        /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
-        /* (rrr-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_rrr_x = t_ddot_x - alpha_z*q_rrr_in_base_y;
-        const real a_p_rrr_y = t_ddot_y + alpha_z*q_rrr_in_base_x;
-        /* (rrr-A3) acceleration of the connection point */
-        const real S_ddot_rrr_x = a_p_rrr_x - S_dot_rrr_t_2*omega_z;
-        const real S_ddot_rrr_y = a_p_rrr_y - S_dot_rrr_t*omega_z;
-        /* (rrr-A6) acceleration of the connection point left to the joint accelerations */
-        const real rel_rrr_x = S_ddot_rrr_x*axis_y_rrr_axes2_in_base_y - bias_rrr_x -
-            S_ddot_rrr_y*axis_y_rrr_axes2_in_base_x;
-        const real rel_rrr_y = S_ddot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
-        /* (rrr-A8) acceleration of joint 1 */
-        const real qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x;
-        const real qdd_2_rrr = inv_rrr_platform_joint_offset_x*(rel_rrr_y +
-            qdd_1_rrr*r_1_rrr_r0_x);
-        o->entry[0][k] = -qdd_1_rrr;
-        o->entry[1][k] = qdd_2_rrr;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
-    }
-}
-
-INLINE void joint_accelerations_place_rrr(size_t w, const joint_accelerations_results_rrr *o,
-    size_t leg, size_t first, real *qdd, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        qdd[(3 + 2*leg)*w + k] = o->entry[0][first + k];
-        qdd[(4 + 2*leg)*w + k] = o->entry[1][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void joint_accelerations_run(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd, verdict *t)
-{
-    joint_accelerations_values values, *const s = &values;
-    joint_accelerations_results_prrr results_prrr;
-    joint_accelerations_results_rrr results_rrr;
-    joint_accelerations_before(w, X, V, A, s);
-    if (w == 1) {  /* the legs side by side */
-        joint_accelerations_legs_prrr(m, w, 0, 1, s, 0, 1, X, V, A, &results_prrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            joint_accelerations_place_prrr(w, &results_prrr, leg, qdd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            joint_accelerations_legs_prrr(m, w, leg, 0, s, 1, w, X, V, A, &results_prrr);
-            joint_accelerations_place_prrr(w, &results_prrr, 0, qdd, t);
-        }
-    }
-    if (w == 1) {  /* the legs side by side */
-        joint_accelerations_legs_rrr(m, 0, 1, s, 0, 2, &results_rrr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            joint_accelerations_place_rrr(w, &results_rrr, leg, leg, qdd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 2; ++leg) {
-            joint_accelerations_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
-            joint_accelerations_place_rrr(w, &results_rrr, leg, 0, qdd, t);
-        }
-    }
-}
-
-/* ---- legs: 309 mul, 187 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
-        omega_z[LANES], t_ddot_x[LANES], t_ddot_y[LANES], alpha_z[LANES];
-} legs_values;
-typedef struct {
-    real entry[4][8], unreachable[8], singular[8];
-} legs_results_prrr;
-typedef struct {
-    real entry[4][8], unreachable[8], singular[8];
-} legs_results_rrr;
-
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, legs_values *s)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real A_2 = A[2*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* V: named entries */
-        const real t_dot_x = V_0;
-        const real t_dot_y = V_1;
-        const real omega_z = V_2;
-        /* A: named entries */
-        const real t_ddot_x = A_0;
-        const real t_ddot_y = A_1;
-        const real alpha_z = A_2;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->alpha_z[k] = alpha_z;
-    }
-}
-
-INLINE void legs_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const legs_values
-    *s, size_t states, size_t count, const real *X, const real *V, const real *A,
-    legs_results_prrr *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real J_2_prrr_zz = m->J_2_prrr_zz[i];
-        const real J_3_prrr_zz = m->J_3_prrr_zz[i];
-        const real Kd_2_prrr_t_2 = m->Kd_2_prrr_t_2[i];
-        const real Kd_2_prrr_t_3 = m->Kd_2_prrr_t_3[i];
-        const real branch_2_prrr = m->branch_2_prrr[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_2_prrr_x = m->h_2_prrr_x[i];
-        const real h_2_prrr_y = m->h_2_prrr_y[i];
-        const real h_3_prrr_x = m->h_3_prrr_x[i];
-        const real h_3_prrr_y = m->h_3_prrr_y[i];
-        const real inv_Kd_2_prrr_t = m->inv_Kd_2_prrr_t[i];
-        const real inv_prrr_platform_joint_offset_x = m->inv_prrr_platform_joint_offset_x[i];
-        const real inv_uu_3_prrr_t = m->inv_uu_3_prrr_t[i];
-        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
-        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
-        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_base_point_x = m->prrr_base_point_x[i];
-        const real prrr_base_point_y = m->prrr_base_point_y[i];
-        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_link3_mass = m->prrr_link3_mass[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        /* (prrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real prrr_platform_point_x = m->prrr_platform_point_x[i];
         const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real rho2_2_prrr_t = m->rho2_2_prrr_t[i];
-        const real size_prrr = m->size_prrr[i];
-        const real y_1_extra_prrr = X[(3)*w + j];
-        const real yd_1_prrr = V[(3)*w + j];
-        const real ydd_1_prrr = A[(3)*w + j];
-        /* (prrr-K1) from the base point to the connection point */
-        const real q_prrr_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
-        const real q_prrr_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
-        const real S_prrr_x = q_prrr_in_base_x + t_x - prrr_base_point_x;
-        const real S_prrr_y = q_prrr_in_base_y + t_y - prrr_base_point_y;
-        const real S_prrr_r0_y = -S_prrr_x*prrr_base_frame_xx - S_prrr_y*prrr_base_frame_yx;
-        /* (prrr-K2) from the origin of joint 2 to the connection point */
-        const real x_2_prrr_x = S_prrr_x*prrr_base_frame_xy + S_prrr_y*prrr_base_frame_yy -
-            y_1_extra_prrr;
-        /* (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
+        const real prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
+        const real prrr_base_point_x = m->prrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x;
+        const real prrr_base_point_y = m->prrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y;
+        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
+        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
+        const real prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
+        /* (prrr-x_2) from the origin of joint 2 to the connection point */
+        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
+        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
+        const real prrr_y_1_extra = X[(3)*w + j];
+        const real prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy -
+            prrr_y_1_extra;
+        /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x;
-        const real Kd_2_prrr = R(0.5)*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3;
-        /* (prrr-K7) factor of the cosine in the equation of joint 2 */
-        const real Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x;
-        /* (prrr-K8) factor of the sine in the equation of joint 2 */
-        const real Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x;
-        /* (prrr-K9) squared amplitude */
-        const real rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr;
-        /* (prrr-K10) discriminant */
-        const real disc_2_prrr = rho2_2_prrr - Kd_2_prrr*Kd_2_prrr;
-        /* (prrr-K11) root, with the sign of the branch */
-        const real root_2_prrr = branch_2_prrr*root(disc_2_prrr);
-        /* (prrr-K17) from the origin of joint 3 to the connection point */
-        const real x_3_prrr_x = Kd_2_prrr*inv_Kd_2_prrr_t*prrr_joint3_offset_x -
+        const real prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x;
+        const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
+        const real prrr_Kd_2_t_4 = m->prrr_Kd_2_t_4[i];
+        const real prrr_Kd_2 = R(0.5)*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4;
+        /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
+        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
+        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x;
+        /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
+        const real prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x;
+        /* (prrr-rho2_2) squared amplitude */
+        const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
+        /* (prrr-disc_2) discriminant */
+        const real prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2;
+        /* (prrr-root_2) root, with the sign of the branch */
+        const real prrr_branch_2 = m->prrr_branch_2[i];
+        const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
+        /* (prrr-x_3) from the origin of joint 3 to the connection point */
+        const real inv_prrr_Kd_2_t = m->inv_prrr_Kd_2_t[i];
+        const real prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x -
             prrr_joint3_offset_x;
-        /* (prrr-K19) cosine of the angle of joint 3 from its reference direction */
-        const real c_3_prrr = inv_uu_3_prrr_t*prrr_platform_joint_offset_x*x_3_prrr_x;
-        /* (prrr-K20) sine of the angle of joint 3 from its reference direction */
-        const real s_3_prrr =
-            inv_Kd_2_prrr_t*inv_uu_3_prrr_t*prrr_joint3_offset_x*prrr_platform_joint_offset_x*root_2_prrr;
-        /* (prrr-V2) from joint 2 to the connection point, along the links */
-        const real r_2_prrr_t = prrr_platform_joint_offset_x*s_3_prrr;
-        const real r_2_prrr_x = prrr_joint3_offset_x + c_3_prrr*prrr_platform_joint_offset_x;
-        const real r_2_prrr_r0_x = c_3_prrr*r_2_prrr_x + r_2_prrr_t*s_3_prrr;
-        const real r_2_prrr_r0_y = r_2_prrr_x*s_3_prrr - c_3_prrr*r_2_prrr_t;
-        /* (prrr-K12) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rho2_2_prrr = 1/rho2_2_prrr;
-        const real c_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*Kd_2_prrr - Ks_2_prrr*root_2_prrr);
-        /* (prrr-K13) sine of the angle of joint 2 from its reference direction */
-        const real s_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*root_2_prrr + Kd_2_prrr*Ks_2_prrr);
-        /* (prrr-V5) reciprocal vector 1 */
-        const real axis_y_prrr_axes3_r1_x = c_2_prrr*s_3_prrr - c_3_prrr*s_2_prrr;
-        const real axis_y_prrr_axes3_r1_y = c_2_prrr*c_3_prrr + s_2_prrr*s_3_prrr;
+        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_prrr_Kd_2_t_7 = m->inv_prrr_Kd_2_t_7[i];
+        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        const real prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x;
+        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
+        const real prrr_s_3 =
+            inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
+        /* (prrr-r_2) from joint 2 to the connection point, along the links */
+        const real prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3;
+        const real prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x;
+        const real prrr_r_2_r0_x = prrr_c_3*prrr_r_2_x + prrr_r_2_t*prrr_s_3;
+        const real prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_r_2_t;
+        /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
+        const real prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2);
+        /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2);
+        /* (prrr-w_2) reciprocal vector 1 */
+        const real axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2;
+        const real axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3;
         const real axis_y_prrr_axes3_in_base_x = axis_y_prrr_axes3_r1_x*prrr_base_frame_xy -
             axis_y_prrr_axes3_r1_y*prrr_base_frame_xx;
         const real axis_y_prrr_axes3_in_base_y = axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
             axis_y_prrr_axes3_r1_y*prrr_base_frame_yx;
-        const real inv_r_2_prrr_r0_y = 1/r_2_prrr_r0_y;
-        /* (prrr-V1) velocity of the connection point */
-        const real S_dot_prrr_t = omega_z*q_prrr_in_base_y;
-        const real S_dot_prrr_t_2 = omega_z*q_prrr_in_base_x;
-        const real S_dot_prrr_x = t_dot_x - S_dot_prrr_t;
-        const real S_dot_prrr_y = S_dot_prrr_t_2 + t_dot_y;
-        /* (prrr-V7) velocity of the connection point left to the joints that are not extra */
-        const real S_dot_rest_prrr_x = S_dot_prrr_x - prrr_base_frame_xy*yd_1_prrr;
-        const real S_dot_rest_prrr_y = S_dot_prrr_y - prrr_base_frame_yy*yd_1_prrr;
-        /* (prrr-V8) rate of joint 2 */
-        const real qd_2_prrr = inv_r_2_prrr_r0_y*(S_dot_rest_prrr_x*axis_y_prrr_axes3_in_base_y -
-            S_dot_rest_prrr_y*axis_y_prrr_axes3_in_base_x);
-        /* (prrr-V12) angular velocity of link 3 */
-        const real omega_3_prrr_z =
-            inv_prrr_platform_joint_offset_x*(S_dot_rest_prrr_x*axis_y_prrr_axes3_in_base_x +
-            S_dot_rest_prrr_y*axis_y_prrr_axes3_in_base_y + qd_2_prrr*r_2_prrr_r0_x) - qd_2_prrr;
-        /* (prrr-V11) centripetal tensor of link 2 */
-        const real W_2_prrr_t = qd_2_prrr*qd_2_prrr;
-        /* (prrr-V13) centripetal tensor of link 3 */
-        const real W_3_prrr_t = omega_3_prrr_z*omega_3_prrr_z;
-        /* (prrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_prrr_x = -W_3_prrr_t*prrr_platform_joint_offset_x -
-            W_2_prrr_t*c_3_prrr*prrr_joint3_offset_x;
-        /* (prrr-V5) reciprocal vector 1 */
-        const real w_2_prrr_t = axis_y_prrr_axes3_in_base_y*inv_r_2_prrr_r0_y;
-        const real w_2_prrr_t_2 = axis_y_prrr_axes3_in_base_x*inv_r_2_prrr_r0_y;
-        /* (prrr-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_prrr_x = t_ddot_x - alpha_z*q_prrr_in_base_y;
-        const real a_p_prrr_y = t_ddot_y + alpha_z*q_prrr_in_base_x;
-        /* (prrr-A3) acceleration of the connection point */
-        const real S_ddot_prrr_x = a_p_prrr_x - S_dot_prrr_t_2*omega_z;
-        const real S_ddot_prrr_y = a_p_prrr_y - S_dot_prrr_t*omega_z;
-        const real S_ddot_prrr_tip_x = S_ddot_prrr_x*axis_y_prrr_axes3_in_base_y -
-            S_ddot_prrr_y*axis_y_prrr_axes3_in_base_x;
-        const real S_ddot_prrr_tip_y = S_ddot_prrr_x*axis_y_prrr_axes3_in_base_x +
-            S_ddot_prrr_y*axis_y_prrr_axes3_in_base_y;
-        /* (prrr-A6) acceleration of the connection point left to the joint accelerations */
-        const real rel_prrr_x = S_ddot_prrr_tip_x - bias_prrr_x -
-            axis_y_prrr_axes3_r1_y*ydd_1_prrr;
-        const real rel_prrr_y = S_ddot_prrr_tip_y + W_2_prrr_t*prrr_joint3_offset_x*s_3_prrr -
-            axis_y_prrr_axes3_r1_x*ydd_1_prrr;
-        /* (prrr-A9) acceleration of joint 2 */
-        const real qdd_2_prrr = inv_r_2_prrr_r0_y*rel_prrr_x;
-        /* (prrr-N11) acceleration of the reference point of link 3, less gravity */
-        const real acc_3_prrr_x = S_ddot_prrr_tip_x + axis_y_prrr_axes3_in_base_x*gravity_y -
-            axis_y_prrr_axes3_in_base_y*gravity_x;
-        const real acc_3_prrr_y = S_ddot_prrr_tip_y - axis_y_prrr_axes3_in_base_x*gravity_x -
-            axis_y_prrr_axes3_in_base_y*gravity_y;
-        /* (prrr-N5) acceleration of the reference point of link 2, less gravity */
-        const real acc_2_prrr_x = c_2_prrr*ydd_1_prrr - c_2_prrr*g_r0_x - g_r0_y*s_2_prrr;
-        const real acc_2_prrr_y = g_r0_x*s_2_prrr - c_2_prrr*g_r0_y - s_2_prrr*ydd_1_prrr;
-        /* (prrr-N36) inertia moment of the links that turn with link 2, about their reference points */
-        const real mu_2_prrr_z = acc_2_prrr_y*h_2_prrr_x - J_2_prrr_zz*qdd_2_prrr -
-            acc_2_prrr_x*h_2_prrr_y;
-        /* (prrr-A19) angular acceleration of link 3 */
-        const real alpha_3_prrr_z = inv_prrr_platform_joint_offset_x*(rel_prrr_y +
-            qdd_2_prrr*r_2_prrr_r0_x) - qdd_2_prrr;
-        /* (prrr-N28) inertia moment of the links that turn with link 3, about their reference points */
-        const real mu_3_prrr_z = J_3_prrr_zz*alpha_3_prrr_z + acc_3_prrr_y*h_3_prrr_x -
-            acc_3_prrr_x*h_3_prrr_y;
-        /* (prrr-N38) moment about joint 2 of the links from 2 outwards, the force at the connection point
-           left out */
-        const real N_2_prrr_z = mu_2_prrr_z + mu_3_prrr_z;
-        /* (prrr-N50) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
-        const real G_prrr_t = inv_prrr_platform_joint_offset_x*mu_3_prrr_z;
-        /* (prrr-N54) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real c_prrr_x = W_3_prrr_t*h_3_prrr_x + alpha_3_prrr_z*h_3_prrr_y -
-            inv_r_2_prrr_r0_y*(G_prrr_t*r_2_prrr_r0_x - N_2_prrr_z);
-        const real c_prrr_y = W_3_prrr_t*h_3_prrr_y - G_prrr_t - alpha_3_prrr_z*h_3_prrr_x;
-        /* (prrr-N59) leg force on the platform without actuation, the last link's mass included */
-        const real c_true_prrr_x = c_prrr_x - acc_3_prrr_x*prrr_link3_mass;
-        const real c_true_prrr_y = c_prrr_y - acc_3_prrr_y*prrr_link3_mass;
-        const real c_true_prrr_in_base_x = axis_y_prrr_axes3_in_base_x*c_true_prrr_y +
-            axis_y_prrr_axes3_in_base_y*c_true_prrr_x;
-        const real c_true_prrr_in_base_y = axis_y_prrr_axes3_in_base_y*c_true_prrr_y -
-            axis_y_prrr_axes3_in_base_x*c_true_prrr_x;
-        o->entry[0][k] = c_true_prrr_in_base_x;
-        o->entry[1][k] = c_true_prrr_in_base_y;
-        o->entry[2][k] = -w_2_prrr_t;
-        o->entry[3][k] = w_2_prrr_t_2;
-        o->singular[k] = UNLESS(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t) +
-            UNLESS(magnitude(-r_2_prrr_r0_y) > TOLERANCE*size_prrr);
-        o->unreachable[k] = UNLESS(disc_2_prrr >= 0);
+        const real inv_prrr_r_2_r0_y = 1/prrr_r_2_r0_y;
+        /* (prrr-S_dot) velocity of the connection point */
+        const real omega_z = s[6*w + j];
+        const real prrr_S_dot_t = omega_z*prrr_q_in_base_y;
+        const real prrr_S_dot_t_2 = omega_z*prrr_q_in_base_x;
+        const real t_dot_x = s[4*w + j];
+        const real prrr_S_dot_x = t_dot_x - prrr_S_dot_t;
+        const real t_dot_y = s[5*w + j];
+        const real prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y;
+        /* (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra */
+        const real prrr_yd_1 = V[(3)*w + j];
+        const real prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1;
+        const real prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1;
+        /* (prrr-qd_3) rate of joint 3 */
+        const real prrr_qd_2 = inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_x -
+            axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_y);
+        /* (prrr-omega_3) angular velocity of link 3 */
+        const real inv_prrr_platform_joint_offset_x = m->inv_prrr_platform_joint_offset_x[i];
+        const real prrr_omega_3_z =
+            inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_x +
+            axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_y + prrr_qd_2*prrr_r_2_r0_x) - prrr_qd_2;
+        /* (prrr-W_2) centripetal tensor of link 2 */
+        const real prrr_W_2_t = prrr_qd_2*prrr_qd_2;
+        /* (prrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real prrr_bias_x = -prrr_omega_3_z*prrr_omega_3_z*prrr_platform_joint_offset_x -
+            prrr_W_2_t*prrr_c_3*prrr_joint3_offset_x;
+        /* (prrr-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_z = s[9*w + j];
+        const real t_ddot_x = s[7*w + j];
+        const real prrr_a_p_x = t_ddot_x - alpha_z*prrr_q_in_base_y;
+        const real t_ddot_y = s[8*w + j];
+        const real prrr_a_p_y = t_ddot_y + alpha_z*prrr_q_in_base_x;
+        /* (prrr-S_ddot) acceleration of the connection point */
+        const real prrr_S_ddot_x = prrr_a_p_x - omega_z*prrr_S_dot_t_2;
+        const real prrr_S_ddot_y = prrr_a_p_y - omega_z*prrr_S_dot_t;
+        /* (prrr-rel) acceleration of the connection point left to the joint accelerations */
+        const real prrr_ydd_1 = A[(3)*w + j];
+        const real prrr_rel_x = axis_y_prrr_axes3_in_base_y*prrr_S_ddot_x - prrr_bias_x -
+            axis_y_prrr_axes3_in_base_x*prrr_S_ddot_y - axis_y_prrr_axes3_r1_y*prrr_ydd_1;
+        const real prrr_rel_y = axis_y_prrr_axes3_in_base_x*prrr_S_ddot_x +
+            axis_y_prrr_axes3_in_base_y*prrr_S_ddot_y + prrr_W_2_t*prrr_joint3_offset_x*prrr_s_3 -
+            axis_y_prrr_axes3_r1_x*prrr_ydd_1;
+        /* (prrr-qdd_2) acceleration of joint 2 */
+        const real prrr_qdd_2 = inv_prrr_r_2_r0_y*prrr_rel_x;
+        const real prrr_qdd_3 = inv_prrr_platform_joint_offset_x*(prrr_rel_y +
+            prrr_qdd_2*prrr_r_2_r0_x);
+        o[0*count + k] = prrr_ydd_1;
+        o[1*count + k] = -prrr_qdd_2;
+        o[2*count + k] = prrr_qdd_3;
+        o[5*count + k] = prrr_ydd_1 + (prrr_qdd_2 + prrr_qdd_3);
+        const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
+        const real prrr_size = m->prrr_size[i];
+        o[4*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
+            UNLESS(magnitude(-prrr_r_2_r0_y) > TOLERANCE*prrr_size);
+        o[3*count + k] = UNLESS(prrr_disc_2 >= 0);
     }
 }
 
-INLINE void legs_place_prrr(size_t w, const legs_results_prrr *o, size_t first, real *leg_force,
-    real *drive, verdict *t)
+INLINE void joint_accelerations_place_prrr(size_t w, size_t count, const real *o, size_t first,
+    real *qdd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        leg_force[(0)*w + k] = o->entry[0][first + k];
-        leg_force[(1)*w + k] = o->entry[1][first + k];
-        drive[(3)*w + k] = o->entry[2][first + k];
-        drive[(4)*w + k] = o->entry[3][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        qdd[(0)*w + k] = o[0*count + first + k];
+        qdd[(1)*w + k] = o[1*count + first + k];
+        qdd[(2)*w + k] = o[2*count + first + k];
+        t->unreachable[k] += o[3*count + first + k];
+        t->singular[k] += o[4*count + first + k];
+        t->total[k] += o[5*count + first + k];
     }
 }
 
-INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs_values *s, size_t
-    states, size_t count, legs_results_rrr *o)
+INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs,
+    const real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real J_1_rrr_zz = m->J_1_rrr_zz[i];
-        const real J_2_rrr_zz = m->J_2_rrr_zz[i];
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real g_r0_x_2 = m->g_r0_x_2[i];
-        const real g_r0_y_2 = m->g_r0_y_2[i];
-        const real h_1_rrr_x = m->h_1_rrr_x[i];
-        const real h_1_rrr_y = m->h_1_rrr_y[i];
-        const real h_2_rrr_x = m->h_2_rrr_x[i];
-        const real h_2_rrr_y = m->h_2_rrr_y[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_link2_mass = m->rrr_link2_mass[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_rrr = m->size_rrr[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x;
-        const real S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr =
-            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr;
-        const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
-        const real r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr;
-        const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr;
-        const real axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
         const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        /* (rrr-V1) velocity of the connection point */
-        const real S_dot_rrr_t = omega_z*q_rrr_in_base_y;
-        const real S_dot_rrr_t_2 = omega_z*q_rrr_in_base_x;
-        const real S_dot_rrr_x = t_dot_x - S_dot_rrr_t;
-        const real S_dot_rrr_y = S_dot_rrr_t_2 + t_dot_y;
-        /* (rrr-V7) rate of joint 1 */
-        const real qd_1_rrr = inv_r_1_rrr_r0_y*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_x);
-        /* (rrr-V11) angular velocity of link 2 */
-        const real omega_2_rrr_z =
-            inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
-        /* (rrr-V10) centripetal tensor of link 1 */
-        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
-        /* (rrr-V12) centripetal tensor of link 2 */
-        const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
-        /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
-            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
-        /* (rrr-V5) reciprocal vector 1 */
-        const real w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y;
-        const real w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
-        /* (rrr-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_rrr_x = t_ddot_x - alpha_z*q_rrr_in_base_y;
-        const real a_p_rrr_y = t_ddot_y + alpha_z*q_rrr_in_base_x;
-        /* (rrr-A3) acceleration of the connection point */
-        const real S_ddot_rrr_x = a_p_rrr_x - S_dot_rrr_t_2*omega_z;
-        const real S_ddot_rrr_y = a_p_rrr_y - S_dot_rrr_t*omega_z;
-        const real S_ddot_rrr_tip_x = S_ddot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_ddot_rrr_y*axis_y_rrr_axes2_in_base_x;
-        const real S_ddot_rrr_tip_y = S_ddot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y;
-        /* (rrr-A6) acceleration of the connection point left to the joint accelerations */
-        const real rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x;
-        const real rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
-        /* (rrr-A8) acceleration of joint 1 */
-        const real qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x;
-        /* (rrr-N3) acceleration of the reference point of link 2, less gravity */
-        const real acc_2_rrr_x = S_ddot_rrr_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
-            axis_y_rrr_axes2_in_base_y*gravity_x;
-        const real acc_2_rrr_y = S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
-            axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-N23) inertia moment of the links that turn with link 1, about their reference points */
-        const real mu_1_rrr_z = h_1_rrr_y*(c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr) -
-            J_1_rrr_zz*qdd_1_rrr - h_1_rrr_x*(c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr);
-        /* (rrr-A16) angular acceleration of link 2 */
-        const real alpha_2_rrr_z = inv_rrr_platform_joint_offset_x*(rel_rrr_y +
-            qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr;
-        /* (rrr-N16) inertia moment of the links that turn with link 2, about their reference points */
-        const real mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x -
-            acc_2_rrr_x*h_2_rrr_y;
-        /* (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point
-           left out */
-        const real N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z;
-        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
-        const real G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z;
-        /* (rrr-N33) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real c_rrr_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y -
-            inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x - N_1_rrr_z);
-        const real c_rrr_y = W_2_rrr_t*h_2_rrr_y - G_rrr_t - alpha_2_rrr_z*h_2_rrr_x;
-        /* (rrr-N38) leg force on the platform without actuation, the last link's mass included */
-        const real c_true_rrr_x = c_rrr_x - acc_2_rrr_x*rrr_link2_mass;
-        const real c_true_rrr_y = c_rrr_y - acc_2_rrr_y*rrr_link2_mass;
-        const real c_true_rrr_in_base_x = axis_y_rrr_axes2_in_base_x*c_true_rrr_y +
-            axis_y_rrr_axes2_in_base_y*c_true_rrr_x;
-        const real c_true_rrr_in_base_y = axis_y_rrr_axes2_in_base_y*c_true_rrr_y -
-            axis_y_rrr_axes2_in_base_x*c_true_rrr_x;
-        o->entry[0][k] = c_true_rrr_in_base_x;
-        o->entry[1][k] = c_true_rrr_in_base_y;
-        o->entry[2][k] = -w_1_rrr_t;
-        o->entry[3][k] = w_1_rrr_t_2;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-S_dot) velocity of the connection point */
+        const real omega_z = s[6*w + j];
+        const real rrr_S_dot_t = omega_z*rrr_q_in_base_y;
+        const real rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x;
+        const real t_dot_x = s[4*w + j];
+        const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
+        const real t_dot_y = s[5*w + j];
+        const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
+        /* (rrr-qd_2) rate of joint 2 */
+        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y);
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_omega_2_z =
+            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-W_1) centripetal tensor of link 1 */
+        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_x = -rrr_omega_2_z*rrr_omega_2_z*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        /* (rrr-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_z = s[9*w + j];
+        const real t_ddot_x = s[7*w + j];
+        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y;
+        const real t_ddot_y = s[8*w + j];
+        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x;
+        /* (rrr-S_ddot) acceleration of the connection point */
+        const real rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2;
+        const real rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t;
+        /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
+        const real rrr_rel_x = axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x - rrr_bias_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y;
+        const real rrr_rel_y = axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-qdd_1) acceleration of joint 1 */
+        const real rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x;
+        const real rrr_qdd_2 = inv_rrr_platform_joint_offset_x*(rrr_rel_y +
+            rrr_qdd_1*rrr_r_1_r0_x);
+        o[0*count + k] = -rrr_qdd_1;
+        o[1*count + k] = rrr_qdd_2;
+        o[4*count + k] = rrr_qdd_1 + rrr_qdd_2;
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void legs_place_rrr(size_t w, const legs_results_rrr *o, size_t leg, size_t first, real
+INLINE void joint_accelerations_place_rrr(size_t w, size_t count, const real *o, size_t leg,
+    size_t first, real *qdd, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        qdd[(3 + 2*leg)*w + k] = o[0*count + first + k];
+        qdd[(4 + 2*leg)*w + k] = o[1*count + first + k];
+        t->unreachable[k] += o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
+    }
+}
+
+INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd, verdict *t)
+{
+    real s[10] = {0}, o_prrr[6*LEGS(1)] = {0}, o_rrr[5*LEGS(2)] = {0};
+    joint_accelerations_before(1, X, V, A, s);
+    joint_accelerations_legs_prrr(m, 1, 0, 1, s, 0, LEGS(1), X, V, A, o_prrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        joint_accelerations_place_prrr(1, LEGS(1), o_prrr, leg, qdd, t);
+    }
+    joint_accelerations_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), o_rrr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        joint_accelerations_place_rrr(1, LEGS(2), o_rrr, leg, leg, qdd, t);
+    }
+}
+
+INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, verdict *t)
+{
+    real s[10*LANES], o_prrr[6*LANES], o_rrr[5*LANES];
+    joint_accelerations_before(LANES, X, V, A, s);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        joint_accelerations_legs_prrr(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_prrr);
+        joint_accelerations_place_prrr(LANES, LANES, o_prrr, 0, qdd, t);
+    }
+    for (size_t leg = 0; leg < 2; ++leg) {
+        joint_accelerations_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        joint_accelerations_place_rrr(LANES, LANES, o_rrr, leg, 0, qdd, t);
+    }
+}
+
+/* ---- legs: 309 mul, 187 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
+INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s)
+{
+    for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
+        const real X_0 = X[0*w + k];
+        const real t_x = X_0;
+        const real X_1 = X[1*w + k];
+        const real t_y = X_1;
+        const real X_2 = X[2*w + k];
+        const real R_xx = cosine(X_2);
+        const real R_yx = sine(X_2);
+        /* V: named entries */
+        const real V_0 = V[0*w + k];
+        const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
+        const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
+        const real omega_z = V_2;
+        /* A: named entries */
+        const real A_0 = A[0*w + k];
+        const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
+        const real t_ddot_y = A_1;
+        const real A_2 = A[2*w + k];
+        const real alpha_z = A_2;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
+        s[4*w + k] = t_dot_x;
+        s[5*w + k] = t_dot_y;
+        s[6*w + k] = omega_z;
+        s[7*w + k] = t_ddot_x;
+        s[8*w + k] = t_ddot_y;
+        s[9*w + k] = alpha_z;
+    }
+}
+
+INLINE void legs_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        /* (prrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
+        const real prrr_platform_point_x = m->prrr_platform_point_x[i];
+        const real prrr_platform_point_y = m->prrr_platform_point_y[i];
+        const real prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
+        const real prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
+        const real prrr_base_point_x = m->prrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x;
+        const real prrr_base_point_y = m->prrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y;
+        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
+        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
+        const real prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
+        /* (prrr-x_2) from the origin of joint 2 to the connection point */
+        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
+        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
+        const real prrr_y_1_extra = X[(3)*w + j];
+        const real prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy -
+            prrr_y_1_extra;
+        /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
+           joint 2 */
+        const real prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x;
+        const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
+        const real prrr_Kd_2_t_4 = m->prrr_Kd_2_t_4[i];
+        const real prrr_Kd_2 = R(0.5)*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4;
+        /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
+        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
+        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x;
+        /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
+        const real prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x;
+        /* (prrr-rho2_2) squared amplitude */
+        const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
+        /* (prrr-disc_2) discriminant */
+        const real prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2;
+        /* (prrr-root_2) root, with the sign of the branch */
+        const real prrr_branch_2 = m->prrr_branch_2[i];
+        const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
+        /* (prrr-x_3) from the origin of joint 3 to the connection point */
+        const real inv_prrr_Kd_2_t = m->inv_prrr_Kd_2_t[i];
+        const real prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x -
+            prrr_joint3_offset_x;
+        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_prrr_Kd_2_t_7 = m->inv_prrr_Kd_2_t_7[i];
+        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        const real prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x;
+        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
+        const real prrr_s_3 =
+            inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
+        /* (prrr-r_2) from joint 2 to the connection point, along the links */
+        const real prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3;
+        const real prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x;
+        const real prrr_r_2_r0_x = prrr_c_3*prrr_r_2_x + prrr_r_2_t*prrr_s_3;
+        const real prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_r_2_t;
+        /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
+        const real prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2);
+        /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2);
+        /* (prrr-w_2) reciprocal vector 1 */
+        const real axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2;
+        const real axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3;
+        const real axis_y_prrr_axes3_in_base_x = axis_y_prrr_axes3_r1_x*prrr_base_frame_xy -
+            axis_y_prrr_axes3_r1_y*prrr_base_frame_xx;
+        const real axis_y_prrr_axes3_in_base_y = axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
+            axis_y_prrr_axes3_r1_y*prrr_base_frame_yx;
+        const real inv_prrr_r_2_r0_y = 1/prrr_r_2_r0_y;
+        /* (prrr-S_dot) velocity of the connection point */
+        const real omega_z = s[6*w + j];
+        const real prrr_S_dot_t = omega_z*prrr_q_in_base_y;
+        const real prrr_S_dot_t_2 = omega_z*prrr_q_in_base_x;
+        const real t_dot_x = s[4*w + j];
+        const real prrr_S_dot_x = t_dot_x - prrr_S_dot_t;
+        const real t_dot_y = s[5*w + j];
+        const real prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y;
+        /* (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra */
+        const real prrr_yd_1 = V[(3)*w + j];
+        const real prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1;
+        const real prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1;
+        /* (prrr-qd_3) rate of joint 3 */
+        const real prrr_qd_2 = inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_x -
+            axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_y);
+        /* (prrr-omega_3) angular velocity of link 3 */
+        const real inv_prrr_platform_joint_offset_x = m->inv_prrr_platform_joint_offset_x[i];
+        const real prrr_omega_3_z =
+            inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_x +
+            axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_y + prrr_qd_2*prrr_r_2_r0_x) - prrr_qd_2;
+        /* (prrr-W_2) centripetal tensor of link 2 */
+        const real prrr_W_2_t = prrr_qd_2*prrr_qd_2;
+        /* (prrr-W_3) centripetal tensor of link 3 */
+        const real prrr_W_3_t = prrr_omega_3_z*prrr_omega_3_z;
+        /* (prrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real prrr_bias_x = -prrr_W_3_t*prrr_platform_joint_offset_x -
+            prrr_W_2_t*prrr_c_3*prrr_joint3_offset_x;
+        /* (prrr-w_2) reciprocal vector 1 */
+        const real prrr_w_2_t = axis_y_prrr_axes3_in_base_y*inv_prrr_r_2_r0_y;
+        const real prrr_w_2_t_2 = axis_y_prrr_axes3_in_base_x*inv_prrr_r_2_r0_y;
+        /* (prrr-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_z = s[9*w + j];
+        const real t_ddot_x = s[7*w + j];
+        const real prrr_a_p_x = t_ddot_x - alpha_z*prrr_q_in_base_y;
+        const real t_ddot_y = s[8*w + j];
+        const real prrr_a_p_y = t_ddot_y + alpha_z*prrr_q_in_base_x;
+        /* (prrr-S_ddot) acceleration of the connection point */
+        const real prrr_S_ddot_x = prrr_a_p_x - omega_z*prrr_S_dot_t_2;
+        const real prrr_S_ddot_y = prrr_a_p_y - omega_z*prrr_S_dot_t;
+        const real prrr_S_ddot_tip_x = axis_y_prrr_axes3_in_base_y*prrr_S_ddot_x -
+            axis_y_prrr_axes3_in_base_x*prrr_S_ddot_y;
+        const real prrr_S_ddot_tip_y = axis_y_prrr_axes3_in_base_x*prrr_S_ddot_x +
+            axis_y_prrr_axes3_in_base_y*prrr_S_ddot_y;
+        /* (prrr-rel) acceleration of the connection point left to the joint accelerations */
+        const real prrr_ydd_1 = A[(3)*w + j];
+        const real prrr_rel_x = prrr_S_ddot_tip_x - prrr_bias_x -
+            axis_y_prrr_axes3_r1_y*prrr_ydd_1;
+        const real prrr_rel_y = prrr_S_ddot_tip_y + prrr_W_2_t*prrr_joint3_offset_x*prrr_s_3 -
+            axis_y_prrr_axes3_r1_x*prrr_ydd_1;
+        /* (prrr-qdd_2) acceleration of joint 2 */
+        const real prrr_qdd_2 = inv_prrr_r_2_r0_y*prrr_rel_x;
+        /* (prrr-acc_3) acceleration of the reference point of link 3, less gravity */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real prrr_acc_3_x = prrr_S_ddot_tip_x + axis_y_prrr_axes3_in_base_x*gravity_y -
+            axis_y_prrr_axes3_in_base_y*gravity_x;
+        const real prrr_acc_3_y = prrr_S_ddot_tip_y - axis_y_prrr_axes3_in_base_x*gravity_x -
+            axis_y_prrr_axes3_in_base_y*gravity_y;
+        /* (prrr-alpha_3) angular acceleration of link 3 */
+        const real prrr_alpha_3_z = inv_prrr_platform_joint_offset_x*(prrr_rel_y +
+            prrr_qdd_2*prrr_r_2_r0_x) - prrr_qdd_2;
+        /* (prrr-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+        const real prrr_J_3_zz = m->prrr_J_3_zz[i];
+        const real prrr_h_3_x = m->prrr_h_3_x[i];
+        const real prrr_h_3_y = m->prrr_h_3_y[i];
+        const real prrr_mu_3_z = prrr_J_3_zz*prrr_alpha_3_z + prrr_acc_3_y*prrr_h_3_x -
+            prrr_acc_3_x*prrr_h_3_y;
+        /* (prrr-acc_2) acceleration of the reference point of link 2, less gravity */
+        const real prrr_g_r0_x = m->prrr_g_r0_x[i];
+        const real prrr_g_r0_y = m->prrr_g_r0_y[i];
+        const real prrr_acc_2_x = prrr_c_2*prrr_ydd_1 - prrr_c_2*prrr_g_r0_x -
+            prrr_g_r0_y*prrr_s_2;
+        const real prrr_acc_2_y = prrr_g_r0_x*prrr_s_2 - prrr_c_2*prrr_g_r0_y -
+            prrr_s_2*prrr_ydd_1;
+        /* (prrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+        const real prrr_J_2_zz = m->prrr_J_2_zz[i];
+        const real prrr_h_2_x = m->prrr_h_2_x[i];
+        const real prrr_h_2_y = m->prrr_h_2_y[i];
+        const real prrr_mu_2_z = prrr_acc_2_y*prrr_h_2_x - prrr_J_2_zz*prrr_qdd_2 -
+            prrr_acc_2_x*prrr_h_2_y;
+        /* (prrr-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
+           left out */
+        const real prrr_N_2_z = prrr_mu_2_z + prrr_mu_3_z;
+        /* (prrr-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real prrr_G_t = inv_prrr_platform_joint_offset_x*prrr_mu_3_z;
+        /* (prrr-c) leg force on the platform without actuation and without the mass at the connection
+           point */
+        const real prrr_c_x = prrr_W_3_t*prrr_h_3_x + prrr_alpha_3_z*prrr_h_3_y -
+            inv_prrr_r_2_r0_y*(prrr_G_t*prrr_r_2_r0_x - prrr_N_2_z);
+        const real prrr_c_y = prrr_W_3_t*prrr_h_3_y - prrr_G_t - prrr_alpha_3_z*prrr_h_3_x;
+        /* (prrr-c_true) leg force on the platform without actuation, the last link's mass included */
+        const real prrr_link3_mass = m->prrr_link3_mass[i];
+        const real prrr_c_true_x = prrr_c_x - prrr_acc_3_x*prrr_link3_mass;
+        const real prrr_c_true_y = prrr_c_y - prrr_acc_3_y*prrr_link3_mass;
+        const real prrr_c_true_in_base_x = axis_y_prrr_axes3_in_base_x*prrr_c_true_y +
+            axis_y_prrr_axes3_in_base_y*prrr_c_true_x;
+        const real prrr_c_true_in_base_y = axis_y_prrr_axes3_in_base_y*prrr_c_true_y -
+            axis_y_prrr_axes3_in_base_x*prrr_c_true_x;
+        o[0*count + k] = prrr_c_true_in_base_x;
+        o[1*count + k] = prrr_c_true_in_base_y;
+        o[2*count + k] = -prrr_w_2_t;
+        o[3*count + k] = prrr_w_2_t_2;
+        const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
+        const real prrr_size = m->prrr_size[i];
+        o[5*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
+            UNLESS(magnitude(-prrr_r_2_r0_y) > TOLERANCE*prrr_size);
+        o[4*count + k] = UNLESS(prrr_disc_2 >= 0);
+    }
+}
+
+INLINE void legs_place_prrr(size_t w, size_t count, const real *o, size_t first, real *leg_force,
+    real *drive, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        leg_force[(0)*w + k] = o[0*count + first + k];
+        leg_force[(1)*w + k] = o[1*count + first + k];
+        drive[(3)*w + k] = o[2*count + first + k];
+        drive[(4)*w + k] = o[3*count + first + k];
+        t->unreachable[k] += o[4*count + first + k];
+        t->singular[k] += o[5*count + first + k];
+    }
+}
+
+INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, real *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
+        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
+        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
+           joint 1 */
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
+        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
+            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
+        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
+            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-S_dot) velocity of the connection point */
+        const real omega_z = s[6*w + j];
+        const real rrr_S_dot_t = omega_z*rrr_q_in_base_y;
+        const real rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x;
+        const real t_dot_x = s[4*w + j];
+        const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
+        const real t_dot_y = s[5*w + j];
+        const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
+        /* (rrr-qd_2) rate of joint 2 */
+        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y);
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
+        const real rrr_omega_2_z =
+            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-W_1) centripetal tensor of link 1 */
+        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-W_2) centripetal tensor of link 2 */
+        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y;
+        const real rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y;
+        /* (rrr-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_z = s[9*w + j];
+        const real t_ddot_x = s[7*w + j];
+        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y;
+        const real t_ddot_y = s[8*w + j];
+        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x;
+        /* (rrr-S_ddot) acceleration of the connection point */
+        const real rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2;
+        const real rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t;
+        const real rrr_S_ddot_tip_x = axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y;
+        const real rrr_S_ddot_tip_y = axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y;
+        /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
+        const real rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x;
+        const real rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-qdd_1) acceleration of joint 1 */
+        const real rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x;
+        /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real rrr_acc_2_x = rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+            axis_y_rrr_axes2_in_base_y*gravity_x;
+        const real rrr_acc_2_y = rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+            axis_y_rrr_axes2_in_base_y*gravity_y;
+        /* (rrr-alpha_2) angular acceleration of link 2 */
+        const real rrr_alpha_2_z = inv_rrr_platform_joint_offset_x*(rrr_rel_y +
+            rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1;
+        /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
+        const real rrr_h_2_x = m->rrr_h_2_x[i];
+        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x -
+            rrr_acc_2_x*rrr_h_2_y;
+        /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
+        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
+        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
+        const real rrr_h_1_x = m->rrr_h_1_x[i];
+        const real rrr_h_1_y = m->rrr_h_1_y[i];
+        const real rrr_mu_1_z = rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
+            rrr_J_1_zz*rrr_qdd_1 - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
+           left out */
+        const real rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z;
+        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z;
+        /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
+           point */
+        const real rrr_c_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y -
+            inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x - rrr_N_1_z);
+        const real rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x;
+        /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
+        const real rrr_link2_mass = m->rrr_link2_mass[i];
+        const real rrr_c_true_x = rrr_c_x - rrr_acc_2_x*rrr_link2_mass;
+        const real rrr_c_true_y = rrr_c_y - rrr_acc_2_y*rrr_link2_mass;
+        const real rrr_c_true_in_base_x = axis_y_rrr_axes2_in_base_x*rrr_c_true_y +
+            axis_y_rrr_axes2_in_base_y*rrr_c_true_x;
+        const real rrr_c_true_in_base_y = axis_y_rrr_axes2_in_base_y*rrr_c_true_y -
+            axis_y_rrr_axes2_in_base_x*rrr_c_true_x;
+        o[0*count + k] = rrr_c_true_in_base_x;
+        o[1*count + k] = rrr_c_true_in_base_y;
+        o[2*count + k] = -rrr_w_1_t;
+        o[3*count + k] = rrr_w_1_t_2;
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[5*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[4*count + k] = UNLESS(rrr_disc_1 >= 0);
+    }
+}
+
+INLINE void legs_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_t first, real
     *leg_force, real *drive, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        leg_force[(3 + 3*leg)*w + k] = o->entry[0][first + k];
-        leg_force[(4 + 3*leg)*w + k] = o->entry[1][first + k];
-        drive[(6 + 3*leg)*w + k] = o->entry[2][first + k];
-        drive[(7 + 3*leg)*w + k] = o->entry[3][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        leg_force[(3 + 3*leg)*w + k] = o[0*count + first + k];
+        leg_force[(4 + 3*leg)*w + k] = o[1*count + first + k];
+        drive[(6 + 3*leg)*w + k] = o[2*count + first + k];
+        drive[(7 + 3*leg)*w + k] = o[3*count + first + k];
+        t->unreachable[k] += o[4*count + first + k];
+        t->singular[k] += o[5*count + first + k];
     }
 }
 
-INLINE void legs_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
-    real *leg_force, real *drive, verdict *t)
+INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
+    *leg_force, real *drive, verdict *t)
 {
-    legs_values values, *const s = &values;
-    legs_results_prrr results_prrr;
-    legs_results_rrr results_rrr;
-    clear(leg_force, 9*w);
-    clear(drive, 12*w);
-    legs_before(w, X, V, A, s);
-    if (w == 1) {  /* the legs side by side */
-        legs_legs_prrr(m, w, 0, 1, s, 0, 1, X, V, A, &results_prrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            legs_place_prrr(w, &results_prrr, leg, leg_force, drive, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            legs_legs_prrr(m, w, leg, 0, s, 1, w, X, V, A, &results_prrr);
-            legs_place_prrr(w, &results_prrr, 0, leg_force, drive, t);
-        }
+    real s[10] = {0}, o_prrr[6*LEGS(1)] = {0}, o_rrr[6*LEGS(2)] = {0};
+    clear(leg_force, 9);
+    clear(drive, 12);
+    legs_before(1, X, V, A, s);
+    legs_legs_prrr(m, 1, 0, 1, s, 0, LEGS(1), X, V, A, o_prrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        legs_place_prrr(1, LEGS(1), o_prrr, leg, leg_force, drive, t);
     }
-    if (w == 1) {  /* the legs side by side */
-        legs_legs_rrr(m, 0, 1, s, 0, 2, &results_rrr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            legs_place_rrr(w, &results_rrr, leg, leg, leg_force, drive, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 2; ++leg) {
-            legs_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
-            legs_place_rrr(w, &results_rrr, leg, 0, leg_force, drive, t);
-        }
+    legs_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), o_rrr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        legs_place_rrr(1, LEGS(2), o_rrr, leg, leg, leg_force, drive, t);
     }
 }
 
 /* ---- potential: 149 mul, 97 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], potential_t_3[LANES], sum[2][LANES];
-} potential_values;
-typedef struct {
-    real sum[1][8], unreachable[8], singular[8];
-} potential_results_prrr;
-typedef struct {
-    real sum[1][8], unreachable[8], singular[8];
-} potential_results_rrr;
-
-INLINE void potential_before(const prepared *m, size_t w, const real *X, potential_values *s)
+INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real R_xx = cosine(X_2);
+        const real R_yx = sine(X_2);
+        /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real h_star_x = m->h_star_x;
         const real h_star_y = m->h_star_y;
         const real m_star = m->m_star;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* (V1) potential energy */
-        const real potential_t_3 = gravity_x*(R_xx*h_star_x + m_star*t_x - R_yx*h_star_y) +
+        const real potential_t = gravity_x*(R_xx*h_star_x + m_star*t_x - R_yx*h_star_y) +
             gravity_y*(R_xx*h_star_y + R_yx*h_star_x + m_star*t_y);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->potential_t_3[k] = potential_t_3;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
+        s[4*w + k] = potential_t;
     }
 }
 
-INLINE void potential_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const
-    potential_values *s, size_t states, size_t count, int add, const real *X,
-    potential_results_prrr *o)
+INLINE void potential_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real Kd_2_prrr_t_2 = m->Kd_2_prrr_t_2[i];
-        const real Kd_2_prrr_t_3 = m->Kd_2_prrr_t_3[i];
-        const real b_prrr_r0_x = m->b_prrr_r0_x[i];
-        const real branch_2_prrr = m->branch_2_prrr[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_1_prrr_x = m->h_1_prrr_x[i];
-        const real h_1_prrr_y = m->h_1_prrr_y[i];
-        const real h_2_prrr_x = m->h_2_prrr_x[i];
-        const real h_2_prrr_y = m->h_2_prrr_y[i];
-        const real h_3_prrr_x = m->h_3_prrr_x[i];
-        const real h_3_prrr_y = m->h_3_prrr_y[i];
-        const real inv_Kd_2_prrr_t = m->inv_Kd_2_prrr_t[i];
-        const real inv_uu_3_prrr_t = m->inv_uu_3_prrr_t[i];
-        const real potential_t = m->potential_t[i];
-        const real potential_t_2 = m->potential_t_2[i];
-        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
-        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
-        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
+        /* (prrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real prrr_base_point_x = m->prrr_base_point_x[i];
-        const real prrr_base_point_y = m->prrr_base_point_y[i];
-        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_link1_mass = m->prrr_link1_mass[i];
-        const real prrr_link2_mass = m->prrr_link2_mass[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
         const real prrr_platform_point_x = m->prrr_platform_point_x[i];
         const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real rho2_2_prrr_t = m->rho2_2_prrr_t[i];
-        const real y_1_extra_prrr = X[(3)*w + j];
-        /* (prrr-K1) from the base point to the connection point */
-        const real S_prrr_x = t_x + R_xx*prrr_platform_point_x - prrr_base_point_x -
+        const real t_x = s[0*w + j];
+        const real prrr_S_x = t_x + R_xx*prrr_platform_point_x - prrr_base_point_x -
             R_yx*prrr_platform_point_y;
-        const real S_prrr_y = t_y + R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x -
+        const real prrr_base_point_y = m->prrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real prrr_S_y = t_y + R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x -
             prrr_base_point_y;
-        const real S_prrr_r0_y = -S_prrr_x*prrr_base_frame_xx - S_prrr_y*prrr_base_frame_yx;
-        /* (prrr-K2) from the origin of joint 2 to the connection point */
-        const real x_2_prrr_x = S_prrr_x*prrr_base_frame_xy + S_prrr_y*prrr_base_frame_yy -
-            y_1_extra_prrr;
-        /* (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
+        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
+        const real prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
+        /* (prrr-x_2) from the origin of joint 2 to the connection point */
+        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
+        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
+        const real prrr_y_1_extra = X[(3)*w + j];
+        const real prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy -
+            prrr_y_1_extra;
+        /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x;
-        const real Kd_2_prrr = R(0.5)*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3;
-        /* (prrr-K7) factor of the cosine in the equation of joint 2 */
-        const real Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x;
-        /* (prrr-K8) factor of the sine in the equation of joint 2 */
-        const real Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x;
-        /* (prrr-K9) squared amplitude */
-        const real rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr;
-        /* (prrr-K10) discriminant */
-        const real disc_2_prrr = rho2_2_prrr - Kd_2_prrr*Kd_2_prrr;
-        /* (prrr-K11) root, with the sign of the branch */
-        const real root_2_prrr = branch_2_prrr*root(disc_2_prrr);
-        /* (prrr-K17) from the origin of joint 3 to the connection point */
-        const real x_3_prrr_x = Kd_2_prrr*inv_Kd_2_prrr_t*prrr_joint3_offset_x -
+        const real prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x;
+        const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
+        const real prrr_Kd_2_t_4 = m->prrr_Kd_2_t_4[i];
+        const real prrr_Kd_2 = R(0.5)*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4;
+        /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
+        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
+        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x;
+        /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
+        const real prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x;
+        /* (prrr-rho2_2) squared amplitude */
+        const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
+        /* (prrr-disc_2) discriminant */
+        const real prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2;
+        /* (prrr-root_2) root, with the sign of the branch */
+        const real prrr_branch_2 = m->prrr_branch_2[i];
+        const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
+        /* (prrr-x_3) from the origin of joint 3 to the connection point */
+        const real inv_prrr_Kd_2_t = m->inv_prrr_Kd_2_t[i];
+        const real prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x -
             prrr_joint3_offset_x;
-        /* (prrr-K19) cosine of the angle of joint 3 from its reference direction */
-        const real c_3_prrr = inv_uu_3_prrr_t*prrr_platform_joint_offset_x*x_3_prrr_x;
-        /* (prrr-K20) sine of the angle of joint 3 from its reference direction */
-        const real s_3_prrr =
-            inv_Kd_2_prrr_t*inv_uu_3_prrr_t*prrr_joint3_offset_x*prrr_platform_joint_offset_x*root_2_prrr;
-        /* (prrr-K12) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rho2_2_prrr = 1/rho2_2_prrr;
-        const real c_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*Kd_2_prrr - Ks_2_prrr*root_2_prrr);
-        /* (prrr-K13) sine of the angle of joint 2 from its reference direction */
-        const real s_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*root_2_prrr + Kd_2_prrr*Ks_2_prrr);
-        /* (V1) potential energy */
-        const real potential_t_5 = b_prrr_r0_x + y_1_extra_prrr;
-        /* (prrr-G7) first moment of link 3 about the connection point */
-        const real h_3_prrr_r0_x = c_3_prrr*h_3_prrr_x + h_3_prrr_y*s_3_prrr;
-        const real h_3_prrr_r0_y = c_3_prrr*h_3_prrr_y - h_3_prrr_x*s_3_prrr;
-        /* (V1) potential energy */
-        const real potential_t_6 = g_r0_x*(h_1_prrr_y + c_2_prrr*h_2_prrr_x +
-            c_2_prrr*h_3_prrr_r0_x + potential_t_5*prrr_link1_mass + potential_t_5*prrr_link2_mass
-            - h_2_prrr_y*s_2_prrr - h_3_prrr_r0_y*s_2_prrr) + g_r0_y*(potential_t + potential_t_2
-            + c_2_prrr*h_2_prrr_y + c_2_prrr*h_3_prrr_r0_y + h_2_prrr_x*s_2_prrr +
-            h_3_prrr_r0_x*s_2_prrr - h_1_prrr_x);
-        o->sum[0][k] = add ? o->sum[0][k] + potential_t_6 : potential_t_6;  /* total_prrr */
-        o->singular[k] = UNLESS(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t);
-        o->unreachable[k] = UNLESS(disc_2_prrr >= 0);
+        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_prrr_Kd_2_t_7 = m->inv_prrr_Kd_2_t_7[i];
+        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        const real prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x;
+        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
+        const real prrr_s_3 =
+            inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
+        /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
+        const real prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2);
+        /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2);
+        /* (potential) potential energy */
+        const real prrr_b_r0_x = m->prrr_b_r0_x[i];
+        const real prrr_potential_t_3 = prrr_b_r0_x + prrr_y_1_extra;
+        /* (prrr-h_3) first moment of link 3 about the connection point */
+        const real prrr_h_3_x = m->prrr_h_3_x[i];
+        const real prrr_h_3_y = m->prrr_h_3_y[i];
+        const real prrr_h_3_r0_x = prrr_c_3*prrr_h_3_x + prrr_h_3_y*prrr_s_3;
+        const real prrr_h_3_r0_y = prrr_c_3*prrr_h_3_y - prrr_h_3_x*prrr_s_3;
+        /* (potential) potential energy */
+        const real prrr_g_r0_x = m->prrr_g_r0_x[i];
+        const real prrr_g_r0_y = m->prrr_g_r0_y[i];
+        const real prrr_h_1_x = m->prrr_h_1_x[i];
+        const real prrr_h_1_y = m->prrr_h_1_y[i];
+        const real prrr_h_2_x = m->prrr_h_2_x[i];
+        const real prrr_h_2_y = m->prrr_h_2_y[i];
+        const real prrr_link1_mass = m->prrr_link1_mass[i];
+        const real prrr_link2_mass = m->prrr_link2_mass[i];
+        const real prrr_potential_t = m->prrr_potential_t[i];
+        const real prrr_potential_t_2 = m->prrr_potential_t_2[i];
+        const real prrr_potential_t_4 = prrr_g_r0_x*(prrr_h_1_y + prrr_c_2*prrr_h_2_x +
+            prrr_c_2*prrr_h_3_r0_x + prrr_link1_mass*prrr_potential_t_3 +
+            prrr_link2_mass*prrr_potential_t_3 - prrr_h_2_y*prrr_s_2 - prrr_h_3_r0_y*prrr_s_2) +
+            prrr_g_r0_y*(prrr_potential_t + prrr_potential_t_2 + prrr_c_2*prrr_h_2_y +
+            prrr_c_2*prrr_h_3_r0_y + prrr_h_2_x*prrr_s_2 + prrr_h_3_r0_x*prrr_s_2 - prrr_h_1_x);
+        terms[0*count + k] = add ? terms[0*count + k] + prrr_potential_t_4 : prrr_potential_t_4;  /* total_prrr */
+        const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
+        o[1*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t);
+        o[0*count + k] = UNLESS(prrr_disc_2 >= 0);
     }
 }
 
-INLINE void potential_place_prrr(size_t w, const potential_results_prrr *o, size_t first, verdict
-    *t)
+INLINE void potential_place_prrr(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        t->unreachable[k] += o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
     }
 }
 
-INLINE void potential_legs_rrr(const prepared *m, size_t leg, size_t legs, const potential_values
-    *s, size_t states, size_t count, int add, potential_results_rrr *o)
+INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real b_rrr_r0_x = m->b_rrr_r0_x[i];
-        const real b_rrr_r0_y = m->b_rrr_r0_y[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real g_r0_x_2 = m->g_r0_x_2[i];
-        const real g_r0_y_2 = m->g_r0_y_2[i];
-        const real h_1_rrr_x = m->h_1_rrr_x[i];
-        const real h_1_rrr_y = m->h_1_rrr_y[i];
-        const real h_2_rrr_x = m->h_2_rrr_x[i];
-        const real h_2_rrr_y = m->h_2_rrr_y[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_link1_mass = m->rrr_link1_mass[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real S_rrr_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x -
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x -
             R_yx*rrr_platform_point_y;
-        const real S_rrr_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x -
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x -
             rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr =
-            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
-        /* (V1) potential energy */
-        const real potential_t_4 = (c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr)*(h_1_rrr_x +
-            c_2_rrr*h_2_rrr_x + h_2_rrr_y*s_2_rrr + rrr_link1_mass*(b_rrr_r0_x*c_1_rrr +
-            b_rrr_r0_y*s_1_rrr)) + (c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr)*(h_1_rrr_y +
-            c_2_rrr*h_2_rrr_y + rrr_link1_mass*(b_rrr_r0_y*c_1_rrr - b_rrr_r0_x*s_1_rrr) -
-            h_2_rrr_x*s_2_rrr);
-        o->sum[0][k] = add ? o->sum[0][k] + potential_t_4 : potential_t_4;  /* total_rrr */
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (potential) potential energy */
+        const real rrr_b_r0_x = m->rrr_b_r0_x[i];
+        const real rrr_b_r0_y = m->rrr_b_r0_y[i];
+        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
+        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
+        const real rrr_h_1_x = m->rrr_h_1_x[i];
+        const real rrr_h_1_y = m->rrr_h_1_y[i];
+        const real rrr_h_2_x = m->rrr_h_2_x[i];
+        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_link1_mass = m->rrr_link1_mass[i];
+        const real rrr_potential_t = (rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1)*(rrr_h_1_x +
+            rrr_c_2*rrr_h_2_x + rrr_h_2_y*rrr_s_2 + rrr_link1_mass*(rrr_b_r0_x*rrr_c_1 +
+            rrr_b_r0_y*rrr_s_1)) + (rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)*(rrr_h_1_y +
+            rrr_c_2*rrr_h_2_y + rrr_link1_mass*(rrr_b_r0_y*rrr_c_1 - rrr_b_r0_x*rrr_s_1) -
+            rrr_h_2_x*rrr_s_2);
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_potential_t : rrr_potential_t;  /* total_rrr */
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
+        o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void potential_place_rrr(size_t w, const potential_results_rrr *o, size_t first, verdict
-    *t)
+INLINE void potential_place_rrr(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        t->unreachable[k] += o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
     }
 }
 
-INLINE void potential_after(size_t w, const potential_values *s, real *potential)
+INLINE void potential_after(size_t w, const real *s, const real *sums, real *potential)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real potential_t_3 = s->potential_t_3[k];
-        const real total_prrr = s->sum[0][k];
-        const real total_rrr = s->sum[1][k];
-        /* (V1) potential energy */
-        const real potential_ = -potential_t_3 - total_prrr - total_rrr;
+        /* (potential) potential energy */
+        const real potential_t = s[4*w + k];
+        const real total_prrr = sums[0*w + k];
+        const real total_rrr = sums[1*w + k];
+        const real potential_ = -potential_t - total_prrr - total_rrr;
         potential[0*w + k] = potential_;
     }
 }
 
-INLINE void potential_run(const prepared *m, size_t w, const real *X, real *potential, verdict *t)
+INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    potential_values values, *const s = &values;
-    potential_results_prrr results_prrr;
-    potential_results_rrr results_rrr;
-    potential_before(m, w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        memset(results_prrr.sum, 0, sizeof results_prrr.sum);
-        potential_legs_prrr(m, w, 0, 1, s, 0, 1, 0, X, &results_prrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            potential_place_prrr(w, &results_prrr, leg, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_prrr.sum[n], 1);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_prrr.sum, 0, sizeof results_prrr.sum);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            potential_legs_prrr(m, w, leg, 0, s, 1, w, 1, X, &results_prrr);
-            potential_place_prrr(w, &results_prrr, 0, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_prrr.sum[n][k];
-            }
-        }
+    real s[5] = {0}, sums[2] = {0}, terms_prrr[1*LEGS(1)] = {0}, o_prrr[2*LEGS(1)] = {0},
+        terms_rrr[1*LEGS(2)] = {0}, o_rrr[2*LEGS(2)] = {0};
+    potential_before(m, 1, X, s);
+    potential_legs_prrr(m, 1, 0, 1, s, 0, LEGS(1), 0, X, terms_prrr, o_prrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        potential_place_prrr(1, LEGS(1), o_prrr, leg, t);
     }
-    if (w == 1) {  /* the legs side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        potential_legs_rrr(m, 0, 1, s, 0, 2, 0, &results_rrr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            potential_place_rrr(w, &results_rrr, leg, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[1 + n][k] = total(results_rrr.sum[n], 2);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            potential_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
-            potential_place_rrr(w, &results_rrr, 0, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[1 + n][k] = results_rrr.sum[n][k];
-            }
-        }
+    for (size_t n = 0; n < 1; ++n) {
+        sums[n] = total(terms_prrr + n*LEGS(1), 1);
     }
-    potential_after(w, s, potential);
+    potential_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        potential_place_rrr(1, LEGS(2), o_rrr, leg, t);
+    }
+    for (size_t n = 0; n < 1; ++n) {
+        sums[1 + n] = total(terms_rrr + n*LEGS(2), 2);
+    }
+    potential_after(1, s, sums, potential);
 }
 
 /* ---- condition: 156 mul, 86 add, 6 div, 7 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], sum[2][LANES];
-} condition_values;
-typedef struct {
-    real sum[1][8], entry[7][8], unreachable[8], singular[8];
-} condition_results_prrr;
-typedef struct {
-    real sum[1][8], entry[5][8], unreachable[8], singular[8];
-} condition_results_rrr;
-
-INLINE void condition_before(const prepared *m, size_t w, const real *X, condition_values *s, real
-    *lengths)
+INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real legs_size = m->legs_size;
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = R_xx;
+        s[3*w + k] = R_yx;
+        const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
+        t->total[k] += legs_size;
     }
 }
 
-INLINE void condition_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const
-    condition_values *s, size_t states, size_t count, int add, const real *X,
-    condition_results_prrr *o)
+INLINE void condition_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real b_c_x = m->b_c_x;
-        const real b_c_y = m->b_c_y;
-        const real Kd_2_prrr_t_2 = m->Kd_2_prrr_t_2[i];
-        const real Kd_2_prrr_t_3 = m->Kd_2_prrr_t_3[i];
-        const real branch_2_prrr = m->branch_2_prrr[i];
-        const real inv_Kd_2_prrr_t = m->inv_Kd_2_prrr_t[i];
-        const real inv_rho2_2_prrr_t_4 = m->inv_rho2_2_prrr_t_4[i];
-        const real inv_size_prrr = m->inv_size_prrr[i];
-        const real inv_uu_3_prrr_t = m->inv_uu_3_prrr_t[i];
-        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
-        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
-        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_base_point_x = m->prrr_base_point_x[i];
-        const real prrr_base_point_y = m->prrr_base_point_y[i];
-        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        /* (prrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real prrr_platform_point_x = m->prrr_platform_point_x[i];
         const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real rho2_2_prrr_t = m->rho2_2_prrr_t[i];
-        const real size_prrr = m->size_prrr[i];
-        const real y_1_extra_prrr = X[(3)*w + j];
-        /* (prrr-K1) from the base point to the connection point */
-        const real q_prrr_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
-        const real q_prrr_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
-        const real S_prrr_x = q_prrr_in_base_x + t_x - prrr_base_point_x;
-        const real S_prrr_y = q_prrr_in_base_y + t_y - prrr_base_point_y;
-        const real S_prrr_r0_y = -S_prrr_x*prrr_base_frame_xx - S_prrr_y*prrr_base_frame_yx;
-        /* (prrr-K2) from the origin of joint 2 to the connection point */
-        const real x_2_prrr_x = S_prrr_x*prrr_base_frame_xy + S_prrr_y*prrr_base_frame_yy -
-            y_1_extra_prrr;
-        /* (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
+        const real prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
+        const real prrr_base_point_x = m->prrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x;
+        const real prrr_base_point_y = m->prrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y;
+        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
+        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
+        const real prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
+        /* (prrr-x_2) from the origin of joint 2 to the connection point */
+        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
+        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
+        const real prrr_y_1_extra = X[(3)*w + j];
+        const real prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy -
+            prrr_y_1_extra;
+        /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x;
-        const real Kd_2_prrr = R(0.5)*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3;
-        /* (prrr-K7) factor of the cosine in the equation of joint 2 */
-        const real Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x;
-        /* (prrr-K8) factor of the sine in the equation of joint 2 */
-        const real Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x;
-        /* (prrr-K9) squared amplitude */
-        const real rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr;
-        /* (prrr-K10) discriminant */
-        const real disc_2_prrr = rho2_2_prrr - Kd_2_prrr*Kd_2_prrr;
-        /* (prrr-K11) root, with the sign of the branch */
-        const real root_2_prrr = branch_2_prrr*root(disc_2_prrr);
-        /* (prrr-K17) from the origin of joint 3 to the connection point */
-        const real x_3_prrr_x = Kd_2_prrr*inv_Kd_2_prrr_t*prrr_joint3_offset_x -
+        const real prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x;
+        const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
+        const real prrr_Kd_2_t_4 = m->prrr_Kd_2_t_4[i];
+        const real prrr_Kd_2 = R(0.5)*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4;
+        /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
+        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
+        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x;
+        /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
+        const real prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x;
+        /* (prrr-rho2_2) squared amplitude */
+        const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
+        /* (prrr-disc_2) discriminant */
+        const real prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2;
+        /* (prrr-root_2) root, with the sign of the branch */
+        const real prrr_branch_2 = m->prrr_branch_2[i];
+        const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
+        /* (prrr-x_3) from the origin of joint 3 to the connection point */
+        const real inv_prrr_Kd_2_t = m->inv_prrr_Kd_2_t[i];
+        const real prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x -
             prrr_joint3_offset_x;
-        /* (prrr-K19) cosine of the angle of joint 3 from its reference direction */
-        const real c_3_prrr = inv_uu_3_prrr_t*prrr_platform_joint_offset_x*x_3_prrr_x;
-        /* (prrr-K20) sine of the angle of joint 3 from its reference direction */
-        const real s_3_prrr =
-            inv_Kd_2_prrr_t*inv_uu_3_prrr_t*prrr_joint3_offset_x*prrr_platform_joint_offset_x*root_2_prrr;
-        /* (prrr-V2) from joint 2 to the connection point, along the links */
-        const real r_2_prrr_x = prrr_joint3_offset_x + c_3_prrr*prrr_platform_joint_offset_x;
-        const real r_2_prrr_r0_y = r_2_prrr_x*s_3_prrr -
-            c_3_prrr*prrr_platform_joint_offset_x*s_3_prrr;
-        /* (prrr-K12) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rho2_2_prrr = 1/rho2_2_prrr;
-        const real c_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*Kd_2_prrr - Ks_2_prrr*root_2_prrr);
-        /* (prrr-K13) sine of the angle of joint 2 from its reference direction */
-        const real s_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*root_2_prrr + Kd_2_prrr*Ks_2_prrr);
-        /* (prrr-V5) reciprocal vector 1 */
-        const real axis_y_prrr_axes3_r1_x = c_2_prrr*s_3_prrr - c_3_prrr*s_2_prrr;
-        const real axis_y_prrr_axes3_r1_y = c_2_prrr*c_3_prrr + s_2_prrr*s_3_prrr;
-        const real inv_r_2_prrr_r0_y = 1/r_2_prrr_r0_y;
-        /* (prrr-A10) coefficient of the acceleration in: acceleration of joint 2 */
-        const real d1_qdd_2_prrr = axis_y_prrr_axes3_r1_y*inv_r_2_prrr_r0_y;
-        /* (prrr-V5) reciprocal vector 1 */
-        const real w_2_prrr_t = inv_r_2_prrr_r0_y*(axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
+        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_prrr_Kd_2_t_7 = m->inv_prrr_Kd_2_t_7[i];
+        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        const real prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x;
+        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
+        const real prrr_s_3 =
+            inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
+        /* (prrr-r_2) from joint 2 to the connection point, along the links */
+        const real prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x;
+        const real prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 -
+            prrr_c_3*prrr_platform_joint_offset_x*prrr_s_3;
+        /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
+        const real prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2);
+        /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2);
+        /* (prrr-w_2) reciprocal vector 1 */
+        const real axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2;
+        const real axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3;
+        const real inv_prrr_r_2_r0_y = 1/prrr_r_2_r0_y;
+        /* (prrr-dy_1_qdd_2) coefficient of the acceleration in: acceleration of joint 2 */
+        const real prrr_dy_1_qdd_2 = axis_y_prrr_axes3_r1_y*inv_prrr_r_2_r0_y;
+        /* (prrr-w_2) reciprocal vector 1 */
+        const real prrr_w_2_t = inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
             axis_y_prrr_axes3_r1_y*prrr_base_frame_yx);
-        const real w_2_prrr_t_2 = inv_r_2_prrr_r0_y*(axis_y_prrr_axes3_r1_x*prrr_base_frame_xy -
+        const real prrr_w_2_t_2 = inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_r1_x*prrr_base_frame_xy -
             axis_y_prrr_axes3_r1_y*prrr_base_frame_xx);
-        /* (M9) moment of the column's unit force about the platform origin */
-        const real H_a_2_prrr_z = q_prrr_in_base_x*w_2_prrr_t_2 + q_prrr_in_base_y*w_2_prrr_t;
-        /* (C2) rms distance of the platform points from their centroid */
-        const real spread_t = b_c_x - prrr_platform_point_x;
-        const real spread_t_2 = b_c_y - prrr_platform_point_y;
-        const real spread_t_3 = spread_t*spread_t + spread_t_2*spread_t_2;
-        /* (prrr-K9) squared amplitude */
-        const real pivot_size = magnitude(rho2_2_prrr);
-        /* (prrr-V5) reciprocal vector 1 */
-        const real pivot_size_2 = magnitude(r_2_prrr_r0_y);
-        /* (prrr-N50) force at the connection point that balances the leg's inertia and weight along all
+        /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
+        const real prrr_H_a_2_z = prrr_q_in_base_x*prrr_w_2_t_2 + prrr_q_in_base_y*prrr_w_2_t;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_x = m->b_c_x;
+        const real prrr_spread_t = b_c_x - prrr_platform_point_x;
+        const real b_c_y = m->b_c_y;
+        const real prrr_spread_t_2 = b_c_y - prrr_platform_point_y;
+        const real prrr_spread_t_3 = prrr_spread_t*prrr_spread_t +
+            prrr_spread_t_2*prrr_spread_t_2;
+        /* (prrr-rho2_2) squared amplitude */
+        const real prrr_pivot_size = magnitude(prrr_rho2_2);
+        /* (prrr-w_2) reciprocal vector 1 */
+        const real prrr_pivot_size_2 = magnitude(prrr_r_2_r0_y);
+        /* (prrr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real least_pivots = lesser(root(inv_rho2_2_prrr_t_4*pivot_size),
-            inv_size_prrr*pivot_size_2);
-        o->sum[0][k] = add ? o->sum[0][k] + spread_t_3 : spread_t_3;  /* total_prrr */
-        o->entry[0][k] = 1;
-        o->entry[1][k] = -w_2_prrr_t;
-        o->entry[2][k] = w_2_prrr_t_2;
-        o->entry[3][k] = H_a_2_prrr_z;
-        o->entry[4][k] = d1_qdd_2_prrr;
-        o->entry[5][k] = least_pivots;
-        o->entry[6][k] = disc_2_prrr;
-        o->singular[k] = UNLESS(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t) +
-            UNLESS(magnitude(-r_2_prrr_r0_y) > TOLERANCE*size_prrr);
-        o->unreachable[k] = UNLESS(disc_2_prrr >= 0);
+        const real inv_prrr_rho2_2_t_4 = m->inv_prrr_rho2_2_t_4[i];
+        const real inv_prrr_size = m->inv_prrr_size[i];
+        const real prrr_least_pivots = lesser(root(inv_prrr_rho2_2_t_4*prrr_pivot_size),
+            inv_prrr_size*prrr_pivot_size_2);
+        terms[0*count + k] = add ? terms[0*count + k] + prrr_spread_t_3 : prrr_spread_t_3;  /* total_prrr */
+        o[0*count + k] = 1;
+        o[1*count + k] = -prrr_w_2_t;
+        o[2*count + k] = prrr_w_2_t_2;
+        o[3*count + k] = prrr_H_a_2_z;
+        o[4*count + k] = prrr_dy_1_qdd_2;
+        o[5*count + k] = prrr_least_pivots;
+        o[6*count + k] = prrr_disc_2;
+        o[9*count + k] = (prrr_w_2_t + (prrr_w_2_t_2 + prrr_H_a_2_z)) + (prrr_dy_1_qdd_2 +
+            (prrr_least_pivots + prrr_disc_2));
+        const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
+        const real prrr_size = m->prrr_size[i];
+        o[8*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
+            UNLESS(magnitude(-prrr_r_2_r0_y) > TOLERANCE*prrr_size);
+        o[7*count + k] = UNLESS(prrr_disc_2 >= 0);
     }
 }
 
-INLINE void condition_place_prrr(size_t w, const condition_results_prrr *o, size_t first, real *H,
+INLINE void condition_place_prrr(size_t w, size_t count, const real *o, size_t first, real *H,
     real *pivots, real *reach, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(12)*w + k] = o->entry[0][first + k];
-        H[(1)*w + k] = o->entry[1][first + k];
-        H[(5)*w + k] = o->entry[2][first + k];
-        H[(9)*w + k] = o->entry[3][first + k];
-        H[(13)*w + k] = o->entry[4][first + k];
-        pivots[(0)*w + k] = o->entry[5][first + k];
-        reach[(0)*w + k] = o->entry[6][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(12)*w + k] = o[0*count + first + k];
+        H[(1)*w + k] = o[1*count + first + k];
+        H[(5)*w + k] = o[2*count + first + k];
+        H[(9)*w + k] = o[3*count + first + k];
+        H[(13)*w + k] = o[4*count + first + k];
+        pivots[(0)*w + k] = o[5*count + first + k];
+        reach[(0)*w + k] = o[6*count + first + k];
+        t->unreachable[k] += o[7*count + first + k];
+        t->singular[k] += o[8*count + first + k];
+        t->total[k] += o[9*count + first + k];
     }
 }
 
-INLINE void condition_legs_rrr(const prepared *m, size_t leg, size_t legs, const condition_values
-    *s, size_t states, size_t count, int add, condition_results_rrr *o)
+INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real b_c_x = m->b_c_x;
-        const real b_c_y = m->b_c_y;
-        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
-        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
-        const real branch_1_rrr = m->branch_1_rrr[i];
-        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
-        const real inv_rho2_1_rrr_t_4 = m->inv_rho2_1_rrr_t_4[i];
-        const real inv_size_rrr = m->inv_size_rrr[i];
-        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
-        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        /* (rrr-S) from the base point to the connection point */
+        const real R_xx = s[2*w + j];
+        const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real size_rrr = m->size_rrr[i];
-        /* (rrr-K1) from the base point to the connection point */
-        const real q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x;
-        const real S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y;
-        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
-        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
-        /* (rrr-K3) component along the reference direction */
-        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
-        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K4) component across the reference direction */
-        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of the sine in the equation of joint 1 */
-        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
-        /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
-        /* (rrr-K9) discriminant */
-        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
-        /* (rrr-K10) root, with the sign of the branch */
-        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
-        /* (rrr-K16) from the origin of joint 2 to the connection point */
-        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
+        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        /* (rrr-px_1) component along the reference direction */
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
+        /* (rrr-py_1) component across the reference direction */
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+        /* (rrr-disc_1) discriminant */
+        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+        /* (rrr-root_1) root, with the sign of the branch */
+        const real rrr_branch_1 = m->rrr_branch_1[i];
+        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
+        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
             rrr_joint2_offset_x;
-        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
-        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
-        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
-        const real s_2_rrr =
-            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
-        /* (rrr-V2) from joint 1 to the connection point, along the links */
-        const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
-        const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*rrr_platform_joint_offset_x*s_2_rrr;
-        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
-        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
-        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr;
-        const real axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr;
-        const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        const real w_1_rrr_t = inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2;
+        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
+        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
+        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        const real rrr_w_1_t = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy);
-        const real w_1_rrr_t_2 = inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
+        const real rrr_w_1_t_2 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy);
-        /* (M10) moment of the column's unit force about the platform origin */
-        const real H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t;
-        /* (C2) rms distance of the platform points from their centroid */
-        const real spread_t_4 = b_c_x - rrr_platform_point_x;
-        const real spread_t_5 = b_c_y - rrr_platform_point_y;
-        const real spread_t_6 = spread_t_4*spread_t_4 + spread_t_5*spread_t_5;
-        /* (rrr-K8) squared amplitude */
-        const real pivot_size_3 = magnitude(rho2_1_rrr);
-        /* (rrr-V5) reciprocal vector 1 */
-        const real pivot_size_4 = magnitude(r_1_rrr_r0_y);
-        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
+        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+        const real rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_x = m->b_c_x;
+        const real rrr_spread_t = b_c_x - rrr_platform_point_x;
+        const real b_c_y = m->b_c_y;
+        const real rrr_spread_t_2 = b_c_y - rrr_platform_point_y;
+        const real rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_pivot_size = magnitude(rrr_rho2_1);
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real rrr_pivot_size_2 = magnitude(rrr_r_1_r0_y);
+        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real least_pivots_2 = lesser(root(inv_rho2_1_rrr_t_4*pivot_size_3),
-            inv_size_rrr*pivot_size_4);
-        o->sum[0][k] = add ? o->sum[0][k] + spread_t_6 : spread_t_6;  /* total_rrr */
-        o->entry[0][k] = -w_1_rrr_t;
-        o->entry[1][k] = w_1_rrr_t_2;
-        o->entry[2][k] = H_a_1_rrr_z;
-        o->entry[3][k] = least_pivots_2;
-        o->entry[4][k] = disc_1_rrr;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
+        const real inv_rrr_rho2_1_t_4 = m->inv_rrr_rho2_1_t_4[i];
+        const real inv_rrr_size = m->inv_rrr_size[i];
+        const real rrr_least_pivots = lesser(root(inv_rrr_rho2_1_t_4*rrr_pivot_size),
+            inv_rrr_size*rrr_pivot_size_2);
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_spread_t_3 : rrr_spread_t_3;  /* total_rrr */
+        o[0*count + k] = -rrr_w_1_t;
+        o[1*count + k] = rrr_w_1_t_2;
+        o[2*count + k] = rrr_H_a_1_z;
+        o[3*count + k] = rrr_least_pivots;
+        o[4*count + k] = rrr_disc_1;
+        o[7*count + k] = (rrr_w_1_t + rrr_w_1_t_2) + (rrr_H_a_1_z + (rrr_least_pivots +
+            rrr_disc_1));
+        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
+        const real rrr_size = m->rrr_size[i];
+        o[6*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+        o[5*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
 
-INLINE void condition_place_rrr(size_t w, const condition_results_rrr *o, size_t leg, size_t
-    first, real *H, real *pivots, real *reach, verdict *t)
+INLINE void condition_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_t first,
+    real *H, real *pivots, real *reach, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(2 + leg)*w + k] = o->entry[0][first + k];
-        H[(6 + leg)*w + k] = o->entry[1][first + k];
-        H[(10 + leg)*w + k] = o->entry[2][first + k];
-        pivots[(1 + leg)*w + k] = o->entry[3][first + k];
-        reach[(1 + leg)*w + k] = o->entry[4][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(2 + leg)*w + k] = o[0*count + first + k];
+        H[(6 + leg)*w + k] = o[1*count + first + k];
+        H[(10 + leg)*w + k] = o[2*count + first + k];
+        pivots[(1 + leg)*w + k] = o[3*count + first + k];
+        reach[(1 + leg)*w + k] = o[4*count + first + k];
+        t->unreachable[k] += o[5*count + first + k];
+        t->singular[k] += o[6*count + first + k];
+        t->total[k] += o[7*count + first + k];
     }
 }
 
-INLINE void condition_after(size_t w, const condition_values *s, real *lengths)
+INLINE void condition_after(size_t w, const real *sums, real *lengths, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real total_prrr = s->sum[0][k];
-        const real total_rrr = s->sum[1][k];
-        /* (C2) rms distance of the platform points from their centroid */
+        /* (spread) rms distance of the platform points from their centroid */
+        const real total_prrr = sums[0*w + k];
+        const real total_rrr = sums[1*w + k];
         const real spread_ = root(R(0.3333333333333333)*total_prrr +
             R(0.3333333333333333)*total_rrr);
         lengths[0*w + k] = spread_;
+        t->total[k] += spread_;
     }
 }
 
-INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, real *lengths, real
-    *pivots, real *reach, verdict *t)
+INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
+    real *reach, verdict *t)
 {
-    condition_values values, *const s = &values;
-    condition_results_prrr results_prrr;
-    condition_results_rrr results_rrr;
-    clear(H, 16*w);
-    condition_before(m, w, X, s, lengths);
-    if (w == 1) {  /* the legs side by side */
-        memset(results_prrr.sum, 0, sizeof results_prrr.sum);
-        condition_legs_prrr(m, w, 0, 1, s, 0, 1, 0, X, &results_prrr);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            condition_place_prrr(w, &results_prrr, leg, H, pivots, reach, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_prrr.sum[n], 1);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_prrr.sum, 0, sizeof results_prrr.sum);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            condition_legs_prrr(m, w, leg, 0, s, 1, w, 1, X, &results_prrr);
-            condition_place_prrr(w, &results_prrr, 0, H, pivots, reach, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_prrr.sum[n][k];
-            }
-        }
+    real s[4] = {0}, sums[2] = {0}, terms_prrr[1*LEGS(1)] = {0}, o_prrr[10*LEGS(1)] = {0},
+        terms_rrr[1*LEGS(2)] = {0}, o_rrr[8*LEGS(2)] = {0};
+    clear(H, 16);
+    condition_before(m, 1, X, s, lengths, t);
+    condition_legs_prrr(m, 1, 0, 1, s, 0, LEGS(1), 0, X, terms_prrr, o_prrr);
+    for (size_t leg = 0; leg < 1; ++leg) {
+        condition_place_prrr(1, LEGS(1), o_prrr, leg, H, pivots, reach, t);
     }
-    if (w == 1) {  /* the legs side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        condition_legs_rrr(m, 0, 1, s, 0, 2, 0, &results_rrr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            condition_place_rrr(w, &results_rrr, leg, leg, H, pivots, reach, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[1 + n][k] = total(results_rrr.sum[n], 2);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            condition_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
-            condition_place_rrr(w, &results_rrr, leg, 0, H, pivots, reach, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[1 + n][k] = results_rrr.sum[n][k];
-            }
-        }
+    for (size_t n = 0; n < 1; ++n) {
+        sums[n] = total(terms_prrr + n*LEGS(1), 1);
     }
-    condition_after(w, s, lengths);
+    condition_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < 2; ++leg) {
+        condition_place_rrr(1, LEGS(2), o_rrr, leg, leg, H, pivots, reach, t);
+    }
+    for (size_t n = 0; n < 1; ++n) {
+        sums[1 + n] = total(terms_rrr + n*LEGS(2), 2);
+    }
+    condition_after(1, sums, lengths, t);
 }
 
 /* ---- what users call, as steps over these ---- */
 
-INLINE void M_any(const prepared *m, size_t w, const real *X, real *M_out, int *code)
+INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real X_in[4*LANES], M[16*LANES];
-    verdict why;
-    start(w, &why);
-    X = side_by_side(4, w, X, X_in, why.invalid);
-    M_run(m, w, X, M, &why);
-    check(16, w, M, why.overflow);
-    judge(&why, w, code);
-    deliver(M, 16, w, code, M_out);
-}
-
-INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, real *Z_out, int
-    *code)
-{
-    real X_in[4*LANES], V_in[4*LANES], Z[4*LANES];
-    verdict why;
-    start(w, &why);
-    X = side_by_side(4, w, X, X_in, why.invalid);
-    V = side_by_side(4, w, V, V_in, why.invalid);
-    Z_run(m, w, X, V, Z, &why);
-    check(4, w, Z, why.overflow);
-    judge(&why, w, code);
-    deliver(Z, 4, w, code, Z_out);
-}
-
-INLINE void H_any(const prepared *m, size_t w, const real *X, real *H_out, int *code)
-{
-    real X_in[4*LANES], H[16*LANES];
-    verdict why;
-    start(w, &why);
-    X = side_by_side(4, w, X, X_in, why.invalid);
-    H_run(m, w, X, H, &why);
-    check(16, w, H, why.overflow);
-    judge(&why, w, code);
-    deliver(H, 16, w, code, H_out);
-}
-
-INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, real *q_out, int
-    *code)
-{
-    real X_in[4*LANES], q[7*LANES];
-    verdict why;
-    start(w, &why);
-    X = side_by_side(4, w, X, X_in, why.invalid);
-    inverse_kinematics_run(m, w, X, q, &why);
-    check(7, w, q, why.overflow);
-    judge(&why, w, code);
-    deliver(q, 7, w, code, q_out);
-}
-
-INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *qd_out, int *code)
-{
-    real X_in[4*LANES], V_in[4*LANES], qd[7*LANES];
-    verdict why;
-    start(w, &why);
-    X = side_by_side(4, w, X, X_in, why.invalid);
-    V = side_by_side(4, w, V, V_in, why.invalid);
-    joint_rates_run(m, w, X, V, qd, &why);
-    check(7, w, qd, why.overflow);
-    judge(&why, w, code);
-    deliver(qd, 7, w, code, qd_out);
-}
-
-INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd_out, int *code)
-{
-    real X_in[4*LANES], V_in[4*LANES], A_in[4*LANES], qdd[7*LANES];
-    verdict why;
-    start(w, &why);
-    X = side_by_side(4, w, X, X_in, why.invalid);
-    V = side_by_side(4, w, V, V_in, why.invalid);
-    A = side_by_side(4, w, A, A_in, why.invalid);
-    joint_accelerations_run(m, w, X, V, A, qdd, &why);
-    check(7, w, qdd, why.overflow);
-    judge(&why, w, code);
-    deliver(qdd, 7, w, code, qdd_out);
-}
-
-INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *V, real *M_out,
-    real *Z_out, real *H_out, int *code)
-{
-    real X_in[4*LANES], V_in[4*LANES], M[16*LANES], Z[4*LANES], H[16*LANES];
-    verdict why;
-    start(w, &why);
-    X = side_by_side(4, w, X, X_in, why.invalid);
-    V = side_by_side(4, w, V, V_in, why.invalid);
-    dynamics_run(m, w, X, V, M, Z, H, &why);
-    check(16, w, M, why.overflow);
-    check(4, w, Z, why.overflow);
-    check(16, w, H, why.overflow);
-    judge(&why, w, code);
-    deliver(M, 16, w, code, M_out);
-    deliver(Z, 4, w, code, Z_out);
-    deliver(H, 16, w, code, H_out);
-}
-
-INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, const real *V, const
-    real *A, const real *wrench, real *tau_out, int *code)
-{
-    real X_in[4*LANES], V_in[4*LANES], A_in[4*LANES], wrench_in[3*LANES], required[4*LANES],
-        H[16*LANES], extend_1[4*LANES], subtract_2[4*LANES], tau[4*LANES], work[32*LANES];
-    verdict why;
-    start(w, &why);
-    X = side_by_side(4, w, X, X_in, why.invalid);
-    V = side_by_side(4, w, V, V_in, why.invalid);
-    A = side_by_side(4, w, A, A_in, why.invalid);
-    wrench = optional(3, w, wrench, 0, wrench_in, why.invalid);
-    required_run(m, w, X, V, A, required, H, &why);
-    for (size_t i = 0; i < 4*w; ++i) {
-        extend_1[i] = i < 3*w ? wrench[i] : 0;
-    }
-    for (size_t i = 0; i < 4*w; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
-    }
-    set_matrix(4, w, H, work);
-    solve(4, w, subtract_2, work, tau, why.singular);
-    check(4, w, tau, why.overflow);
-    judge(&why, w, code);
-    deliver(tau, 4, w, code, tau_out);
-}
-
-INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, const real *V, const
-    real *tau, const real *wrench, real *A_out, int *code)
-{
-    real X_in[4*LANES], V_in[4*LANES], tau_in[4*LANES], wrench_in[3*LANES], M[16*LANES], Z[4*LANES],
-        H[16*LANES], times_1[4*LANES] = {0}, extend_2[4*LANES], add_3[4*LANES], subtract_4[4*LANES],
-        A[4*LANES], work[32*LANES];
-    verdict why;
-    start(w, &why);
-    X = side_by_side(4, w, X, X_in, why.invalid);
-    V = side_by_side(4, w, V, V_in, why.invalid);
-    tau = side_by_side(4, w, tau, tau_in, why.invalid);
-    wrench = optional(3, w, wrench, 0, wrench_in, why.invalid);
-    dynamics_run(m, w, X, V, M, Z, H, &why);
-    product(4, 4, 1, w, H, tau, times_1);
-    for (size_t i = 0; i < 4*w; ++i) {
-        extend_2[i] = i < 3*w ? wrench[i] : 0;
-    }
-    for (size_t i = 0; i < 4*w; ++i) {
-        add_3[i] = times_1[i] + extend_2[i];
-    }
-    for (size_t i = 0; i < 4*w; ++i) {
-        subtract_4[i] = add_3[i] - Z[i];
-    }
-    set_matrix(4, w, M, work);
-    solve(4, w, subtract_4, work, A, why.singular);
-    check(4, w, A, why.overflow);
-    judge(&why, w, code);
-    deliver(A, 4, w, code, A_out);
-}
-
-INLINE void complete_acceleration_any(const real *A, real *completed_out, int *code)
-{
-    verdict why;
-    start(1, &why);
-    check(4, 1, A, why.invalid);
-    const real *const completed = A;
-    check(4, 1, completed, why.overflow);
-    judge(&why, 1, code);
-    deliver(completed, 4, 1, code, completed_out);
-}
-
-INLINE void leg_reactions_any(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces_out, int *code)
-{
-    static const size_t places_0[] = {0, 0, 1, 2};
-    real wrench_in[3], required[4] = {0}, H[16] = {0}, extend_1[4] = {0}, subtract_2[4] = {0},
-        solve_3[4] = {0}, leg_force[9] = {0}, drive[12] = {0}, forces[9] = {0}, work[32];
+    real M[16] = {0};
     verdict why;
     start(1, &why);
     check(4, 1, X, why.invalid);
-    check(4, 1, V, why.invalid);
-    check(4, 1, A, why.invalid);
-    wrench = optional(3, 1, wrench, 0, wrench_in, why.invalid);
-    required_run(m, 1, X, V, A, required, H, &why);
+    M_run(m, X, M, &why);
+    if (!is_finite(why.total[0])) {
+        check(16, 1, M, why.overflow);
+    }
+    judge(&why, code);
+    copy(16, M, M_out);
+    if (*code != OK) {
+        refuse(16, M_out);
+    }
+}
+
+INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
+{
+    real X_in[4*LANES], M[16*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(4, X, X_in, why.total);
+    M_run_lanes(m, X, M, &why);
+    suspect(&why, code);
+    deliver(16, M, M_out);
+}
+
+INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
+{
+    real Z[4] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 4) + total(V, 4);
+    if (!is_finite(total_in)) {
+        check(4, 1, X, why.invalid);
+        check(4, 1, V, why.invalid);
+    }
+    Z_run(m, X, V, Z, &why);
+    if (!is_finite(why.total[0])) {
+        check(4, 1, Z, why.overflow);
+    }
+    judge(&why, code);
+    copy(4, Z, Z_out);
+    if (*code != OK) {
+        refuse(4, Z_out);
+    }
+}
+
+INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
+{
+    real X_in[4*LANES], V_in[4*LANES], Z[4*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(4, X, X_in, why.total);
+    V = side_by_side(4, V, V_in, why.total);
+    Z_run_lanes(m, X, V, Z, &why);
+    suspect(&why, code);
+    deliver(4, Z, Z_out);
+}
+
+INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
+{
+    real H[16] = {0};
+    verdict why;
+    start(1, &why);
+    check(4, 1, X, why.invalid);
+    H_run(m, X, H, &why);
+    if (!is_finite(why.total[0])) {
+        check(16, 1, H, why.overflow);
+    }
+    judge(&why, code);
+    copy(16, H, H_out);
+    if (*code != OK) {
+        refuse(16, H_out);
+    }
+}
+
+INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
+{
+    real X_in[4*LANES], H[16*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(4, X, X_in, why.total);
+    H_run_lanes(m, X, H, &why);
+    suspect(&why, code);
+    deliver(16, H, H_out);
+}
+
+INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out, int *code)
+{
+    real q[7] = {0};
+    verdict why;
+    start(1, &why);
+    check(4, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q, &why);
+    if (!is_finite(why.total[0])) {
+        check(7, 1, q, why.overflow);
+    }
+    judge(&why, code);
+    copy(7, q, q_out);
+    if (*code != OK) {
+        refuse(7, q_out);
+    }
+}
+
+INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
+{
+    real X_in[4*LANES], q[7*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(4, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    suspect(&why, code);
+    deliver(7, q, q_out);
+}
+
+INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
+{
+    real qd[7] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 4) + total(V, 4);
+    if (!is_finite(total_in)) {
+        check(4, 1, X, why.invalid);
+        check(4, 1, V, why.invalid);
+    }
+    joint_rates_run(m, X, V, qd, &why);
+    if (!is_finite(why.total[0])) {
+        check(7, 1, qd, why.overflow);
+    }
+    judge(&why, code);
+    copy(7, qd, qd_out);
+    if (*code != OK) {
+        refuse(7, qd_out);
+    }
+}
+
+INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
+{
+    real X_in[4*LANES], V_in[4*LANES], qd[7*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(4, X, X_in, why.total);
+    V = side_by_side(4, V, V_in, why.total);
+    joint_rates_run_lanes(m, X, V, qd, &why);
+    suspect(&why, code);
+    deliver(7, qd, qd_out);
+}
+
+INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
+{
+    real qdd[7] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 4) + total(V, 4) + total(A, 4);
+    if (!is_finite(total_in)) {
+        check(4, 1, X, why.invalid);
+        check(4, 1, V, why.invalid);
+        check(4, 1, A, why.invalid);
+    }
+    joint_accelerations_run(m, X, V, A, qdd, &why);
+    if (!is_finite(why.total[0])) {
+        check(7, 1, qdd, why.overflow);
+    }
+    judge(&why, code);
+    copy(7, qdd, qdd_out);
+    if (*code != OK) {
+        refuse(7, qdd_out);
+    }
+}
+
+INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
+{
+    real X_in[4*LANES], V_in[4*LANES], A_in[4*LANES], qdd[7*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(4, X, X_in, why.total);
+    V = side_by_side(4, V, V_in, why.total);
+    A = side_by_side(4, A, A_in, why.total);
+    joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
+    suspect(&why, code);
+    deliver(7, qdd, qdd_out);
+}
+
+INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out, int *code)
+{
+    real M[16] = {0}, Z[4] = {0}, H[16] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 4) + total(V, 4);
+    if (!is_finite(total_in)) {
+        check(4, 1, X, why.invalid);
+        check(4, 1, V, why.invalid);
+    }
+    dynamics_run(m, X, V, M, Z, H, &why);
+    if (!is_finite(why.total[0])) {
+        check(16, 1, M, why.overflow);
+        check(4, 1, Z, why.overflow);
+        check(16, 1, H, why.overflow);
+    }
+    judge(&why, code);
+    copy(16, M, M_out);
+    copy(4, Z, Z_out);
+    copy(16, H, H_out);
+    if (*code != OK) {
+        refuse(16, M_out);
+        refuse(4, Z_out);
+        refuse(16, H_out);
+    }
+}
+
+INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out, int *code)
+{
+    real X_in[4*LANES], V_in[4*LANES], M[16*LANES], Z[4*LANES], H[16*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(4, X, X_in, why.total);
+    V = side_by_side(4, V, V_in, why.total);
+    dynamics_run_lanes(m, X, V, M, Z, H, &why);
+    suspect(&why, code);
+    deliver(16, M, M_out);
+    deliver(4, Z, Z_out);
+    deliver(16, H, H_out);
+}
+
+INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, real *x, real
+    *unsure, real *total)
+{
+    for (size_t k = 0; k < w; ++k) {
+        real a00 = a[(3*stride + 0)*w + k];
+        real a01 = a[(3*stride + 1)*w + k];
+        real a02 = a[(3*stride + 2)*w + k];
+        real a03 = a[(3*stride + 3)*w + k];
+        real b0 = b[3*w + k];
+        real a10 = a[(1*stride + 0)*w + k];
+        real a11 = a[(1*stride + 1)*w + k];
+        real a12 = a[(1*stride + 2)*w + k];
+        real a13 = a[(1*stride + 3)*w + k];
+        real b1 = b[1*w + k];
+        real a20 = a[(2*stride + 0)*w + k];
+        real a21 = a[(2*stride + 1)*w + k];
+        real a22 = a[(2*stride + 2)*w + k];
+        real a23 = a[(2*stride + 3)*w + k];
+        real b2 = b[2*w + k];
+        real a30 = a[(0)*w + k];
+        real a31 = a[(1)*w + k];
+        real a32 = a[(2)*w + k];
+        real a33 = a[(3)*w + k];
+        real b3 = b[0*w + k];
+        const real f0 = 1/a00;
+        const real d1 = a00*a11 - a10*a01;
+        const real f1 = a00/d1;
+        const real g10 = a10*f0;
+        a12 -= g10*a02;
+        a13 -= g10*a03;
+        b1 -= g10*b0;
+        const real g20 = a20*f0;
+        a21 -= g20*a01;
+        a22 -= g20*a02;
+        a23 -= g20*a03;
+        b2 -= g20*b0;
+        const real g30 = a30*f0;
+        a31 -= g30*a01;
+        a32 -= g30*a02;
+        a33 -= g30*a03;
+        b3 -= g30*b0;
+        const real g21 = a21*f1;
+        a22 -= g21*a12;
+        a23 -= g21*a13;
+        b2 -= g21*b1;
+        const real g31 = a31*f1;
+        a32 -= g31*a12;
+        a33 -= g31*a13;
+        b3 -= g31*b1;
+        const real f2 = 1/a22;
+        const real d3 = a22*a33 - a32*a23;
+        const real f3 = a22/d3;
+        const real g32 = a32*f2;
+        b3 -= g32*b2;
+        const real x3 = (b3)*f3;
+        const real x2 = (b2)*f2 - a23*f2*x3;
+        const real x1 = (b1 - a13*x3)*f1 - a12*f1*x2;
+        const real x0 = (b0 - a03*x3 - a02*x2)*f0 - a01*f0*x1;
+        x[0*w + k] = x0;
+        x[1*w + k] = x1;
+        x[2*w + k] = x2;
+        x[3*w + k] = x3;
+        total[k] += (x0 + x1) + (x2 + x3);
+        const real most0 = magnitude(g21);
+        const real most1 = magnitude(g20);
+        const real most2 = magnitude(g31);
+        const real most3 = larger(magnitude(g10), magnitude(g30));
+        const real most4 = magnitude(g32);
+        const real most5 = larger(magnitude(f1), magnitude(f3));
+        const real most6 = magnitude(f0);
+        const real most7 = magnitude(f2);
+        unsure[k] += UNLESS(most0 <= R(0.625)) + UNLESS(most1 <= R(2.5)) + UNLESS(most2 <= R(10))
+            + UNLESS(most3 <= R(40)) + UNLESS(most4 <= R(160)) + UNLESS(most5 <= R(250)) +
+            UNLESS(most6 <= R(1000)) + UNLESS(most7 <= R(4000)) + UNLESS(is_finite(a00 + d1 + a22
+            + d3));
+    }
+}
+
+INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau_out, int *code)
+{
+    real wrench_in[3], required[4] = {0}, H[16] = {0}, extend_1[4] = {0}, subtract_2[4] = {0},
+        unsure_5[1] = {0}, work[32];
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 4) + total(V, 4) + total(A, 4);
+    if (!is_finite(total_in)) {
+        check(4, 1, X, why.invalid);
+        check(4, 1, V, why.invalid);
+        check(4, 1, A, why.invalid);
+    }
+    wrench = optional(3, wrench, 0, wrench_in, why.invalid);
+    required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < 4; ++i) {
         extend_1[i] = i < 3 ? wrench[i] : 0;
     }
     for (size_t i = 0; i < 4; ++i) {
         subtract_2[i] = required[i] - extend_1[i];
     }
-    set_matrix(4, 1, H, work);
-    solve_state(4, subtract_2, work, solve_3, why.singular);
-    legs_run(m, 1, X, V, A, leg_force, drive, &why);
+    eliminate_0(1, 4, H, subtract_2, tau_out, unsure_5, why.total);
+    if (unsure_5[0] > 0) {
+        set_matrix(4, 1, H, work);
+        solve_apart(4, subtract_2, work, tau_out, why.singular);
+        check(4, 1, tau_out, why.overflow);
+    }
+    if (!is_finite(why.total[0])) {
+        check(4, 1, tau_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(4, tau_out);
+    }
+}
+
+INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau_out, int *code)
+{
+    real X_in[4*LANES], V_in[4*LANES], A_in[4*LANES], wrench_in[3*LANES], required[4*LANES],
+        H[16*LANES], extend_1[4*LANES], subtract_2[4*LANES], tau[4*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(4, X, X_in, why.total);
+    V = side_by_side(4, V, V_in, why.total);
+    A = side_by_side(4, A, A_in, why.total);
+    wrench = optional_side_by_side(3, wrench, 0, wrench_in, why.total);
+    required_run_lanes(m, X, V, A, required, H, &why);
+    for (size_t i = 0; i < 4*LANES; ++i) {
+        extend_1[i] = i < 3*LANES ? wrench[i] : 0;
+    }
+    for (size_t i = 0; i < 4*LANES; ++i) {
+        subtract_2[i] = required[i] - extend_1[i];
+    }
+    eliminate_0(LANES, 4, H, subtract_2, tau, why.singular, why.total);
+    suspect(&why, code);
+    deliver(4, tau, tau_out);
+}
+
+INLINE void eliminate_1(size_t w, size_t stride, const real *a, const real *b, real *x, real
+    *unsure, real *total)
+{
+    for (size_t k = 0; k < w; ++k) {
+        real a00 = a[(0)*w + k];
+        real a01 = a[(1)*w + k];
+        real a02 = a[(2)*w + k];
+        real a03 = a[(3)*w + k];
+        real b0 = b[0*w + k];
+        real a10 = a[(1*stride + 0)*w + k];
+        real a11 = a[(1*stride + 1)*w + k];
+        real a12 = a[(1*stride + 2)*w + k];
+        real a13 = a[(1*stride + 3)*w + k];
+        real b1 = b[1*w + k];
+        real a20 = a[(2*stride + 0)*w + k];
+        real a21 = a[(2*stride + 1)*w + k];
+        real a22 = a[(2*stride + 2)*w + k];
+        real a23 = a[(2*stride + 3)*w + k];
+        real b2 = b[2*w + k];
+        real a30 = a[(3*stride + 0)*w + k];
+        real a31 = a[(3*stride + 1)*w + k];
+        real a32 = a[(3*stride + 2)*w + k];
+        real a33 = a[(3*stride + 3)*w + k];
+        real b3 = b[3*w + k];
+        const real f0 = 1/a00;
+        const real d1 = a00*a11 - a10*a01;
+        const real f1 = a00/d1;
+        const real g10 = a10*f0;
+        a12 -= g10*a02;
+        a13 -= g10*a03;
+        b1 -= g10*b0;
+        const real g20 = a20*f0;
+        a21 -= g20*a01;
+        a22 -= g20*a02;
+        a23 -= g20*a03;
+        b2 -= g20*b0;
+        const real g30 = a30*f0;
+        a31 -= g30*a01;
+        a32 -= g30*a02;
+        a33 -= g30*a03;
+        b3 -= g30*b0;
+        const real g21 = a21*f1;
+        a22 -= g21*a12;
+        a23 -= g21*a13;
+        b2 -= g21*b1;
+        const real g31 = a31*f1;
+        a32 -= g31*a12;
+        a33 -= g31*a13;
+        b3 -= g31*b1;
+        const real f2 = 1/a22;
+        const real d3 = a22*a33 - a32*a23;
+        const real f3 = a22/d3;
+        const real g32 = a32*f2;
+        b3 -= g32*b2;
+        const real x3 = (b3)*f3;
+        const real x2 = (b2)*f2 - a23*f2*x3;
+        const real x1 = (b1 - a13*x3)*f1 - a12*f1*x2;
+        const real x0 = (b0 - a03*x3 - a02*x2)*f0 - a01*f0*x1;
+        x[0*w + k] = x0;
+        x[1*w + k] = x1;
+        x[2*w + k] = x2;
+        x[3*w + k] = x3;
+        total[k] += (x0 + x1) + (x2 + x3);
+        const real most0 = larger(magnitude(g20), magnitude(g21));
+        const real most1 = larger(magnitude(g10), larger(magnitude(g30), magnitude(g31)));
+        const real most2 = magnitude(g32);
+        const real most3 = larger(magnitude(f0), larger(magnitude(f1), magnitude(f3)));
+        const real most4 = magnitude(f2);
+        unsure[k] += UNLESS(most0 <= R(0.625)) + UNLESS(most1 <= R(10)) + UNLESS(most2 <= R(160))
+            + UNLESS(most3 <= R(250)) + UNLESS(most4 <= R(4000)) + UNLESS(is_finite(a00 + d1 + a22
+            + d3));
+    }
+}
+
+INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
+    const real *wrench, real *A_out, int *code)
+{
+    real wrench_in[3], M[16] = {0}, Z[4] = {0}, H[16] = {0}, times_1[4] = {0}, extend_2[4] = {0},
+        add_3[4] = {0}, subtract_4[4] = {0}, unsure_8[1] = {0}, work[32];
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 4) + total(V, 4) + total(tau, 4);
+    if (!is_finite(total_in)) {
+        check(4, 1, X, why.invalid);
+        check(4, 1, V, why.invalid);
+        check(4, 1, tau, why.invalid);
+    }
+    wrench = optional(3, wrench, 0, wrench_in, why.invalid);
+    dynamics_run(m, X, V, M, Z, H, &why);
+    product(4, 4, 1, 1, H, tau, times_1);
+    for (size_t i = 0; i < 4; ++i) {
+        extend_2[i] = i < 3 ? wrench[i] : 0;
+    }
+    for (size_t i = 0; i < 4; ++i) {
+        add_3[i] = times_1[i] + extend_2[i];
+    }
+    for (size_t i = 0; i < 4; ++i) {
+        subtract_4[i] = add_3[i] - Z[i];
+    }
+    eliminate_1(1, 4, M, subtract_4, A_out, unsure_8, why.total);
+    if (unsure_8[0] > 0) {
+        set_matrix(4, 1, M, work);
+        solve_apart(4, subtract_4, work, A_out, why.singular);
+        check(4, 1, A_out, why.overflow);
+    }
+    if (!is_finite(why.total[0])) {
+        check(4, 1, A_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(4, A_out);
+    }
+}
+
+INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
+    *tau, const real *wrench, real *A_out, int *code)
+{
+    real X_in[4*LANES], V_in[4*LANES], tau_in[4*LANES], wrench_in[3*LANES], M[16*LANES], Z[4*LANES],
+        H[16*LANES], times_1[4*LANES] = {0}, extend_2[4*LANES], add_3[4*LANES], subtract_4[4*LANES],
+        A[4*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(4, X, X_in, why.total);
+    V = side_by_side(4, V, V_in, why.total);
+    tau = side_by_side(4, tau, tau_in, why.total);
+    wrench = optional_side_by_side(3, wrench, 0, wrench_in, why.total);
+    dynamics_run_lanes(m, X, V, M, Z, H, &why);
+    product(4, 4, 1, LANES, H, tau, times_1);
+    for (size_t i = 0; i < 4*LANES; ++i) {
+        extend_2[i] = i < 3*LANES ? wrench[i] : 0;
+    }
+    for (size_t i = 0; i < 4*LANES; ++i) {
+        add_3[i] = times_1[i] + extend_2[i];
+    }
+    for (size_t i = 0; i < 4*LANES; ++i) {
+        subtract_4[i] = add_3[i] - Z[i];
+    }
+    eliminate_1(LANES, 4, M, subtract_4, A, why.singular, why.total);
+    suspect(&why, code);
+    deliver(4, A, A_out);
+}
+
+INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(4, 1, A, why.invalid);
+    const real *const completed = A;
+    check(4, 1, completed, why.overflow);
+    judge(&why, code);
+    copy(4, completed, completed_out);
+    if (*code != OK) {
+        refuse(4, completed_out);
+    }
+}
+
+INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *forces_out, int *code)
+{
+    static const size_t places_0[] = {0, 0, 1, 2};
+    real wrench_in[3], required[4] = {0}, H[16] = {0}, extend_1[4] = {0}, subtract_2[4] = {0},
+        solve_3[4] = {0}, unsure_6[1] = {0}, leg_force[9] = {0}, drive[12] = {0}, forces[9] = {0},
+        work[32];
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 4) + total(V, 4) + total(A, 4);
+    if (!is_finite(total_in)) {
+        check(4, 1, X, why.invalid);
+        check(4, 1, V, why.invalid);
+        check(4, 1, A, why.invalid);
+    }
+    wrench = optional(3, wrench, 0, wrench_in, why.invalid);
+    required_run(m, X, V, A, required, H, &why);
+    for (size_t i = 0; i < 4; ++i) {
+        extend_1[i] = i < 3 ? wrench[i] : 0;
+    }
+    for (size_t i = 0; i < 4; ++i) {
+        subtract_2[i] = required[i] - extend_1[i];
+    }
+    eliminate_0(1, 4, H, subtract_2, solve_3, unsure_6, why.total);
+    if (unsure_6[0] > 0) {
+        set_matrix(4, 1, H, work);
+        solve_apart(4, subtract_2, work, solve_3, why.singular);
+        check(4, 1, solve_3, why.overflow);
+    }
+    legs_run(m, X, V, A, leg_force, drive, &why);
     for (size_t i = 0; i < 9; ++i) {
         forces[i] = leg_force[i];
     }
     add_forces(4, 3, 1, places_0, solve_3, drive, forces);
     check(9, 1, forces, why.overflow);
-    judge(&why, 1, code);
-    deliver(forces, 9, 1, code, forces_out);
+    judge(&why, code);
+    copy(9, forces, forces_out);
+    if (*code != OK) {
+        refuse(9, forces_out);
+    }
 }
 
-INLINE void energy_any(const prepared *m, const real *X, const real *V, real *kinetic_out, real
+INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out, int *code)
 {
     real M[16] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
     start(1, &why);
-    check(4, 1, X, why.invalid);
-    check(4, 1, V, why.invalid);
-    M_run(m, 1, X, M, &why);
-    potential_run(m, 1, X, potential_of_potential, &why);
+    const real total_in = total(X, 4) + total(V, 4);
+    if (!is_finite(total_in)) {
+        check(4, 1, X, why.invalid);
+        check(4, 1, V, why.invalid);
+    }
+    M_run(m, X, M, &why);
+    potential_run(m, X, potential_of_potential, &why);
     half_form(4, 1, V, M, kinetic);
     const real *const potential = potential_of_potential;
     check(1, 1, kinetic, why.overflow);
     check(1, 1, potential, why.overflow);
-    judge(&why, 1, code);
-    deliver(kinetic, 1, 1, code, kinetic_out);
-    deliver(potential, 1, 1, code, potential_out);
+    judge(&why, code);
+    copy(1, kinetic, kinetic_out);
+    copy(1, potential, potential_out);
+    if (*code != OK) {
+        refuse(1, kinetic_out);
+        refuse(1, potential_out);
+    }
 }
 
-INLINE void condition_any(const prepared *m, const real *X, const real *length, real *sigma_out,
+INLINE void condition_one(const prepared *m, const real *X, const real *length, real *sigma_out,
     real *legs_out, int *code)
 {
     static const size_t places_0[] = {2};
@@ -6061,8 +6247,8 @@ INLINE void condition_any(const prepared *m, const real *X, const real *length, 
     start(1, &why);
     check(4, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, 1, length, 0, length_in, why.invalid);
-    condition_run(m, 1, X, H, lengths, legs, reach, &why);
+    length = optional(1, length, 0, length_in, why.invalid);
+    condition_run(m, X, H, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
             lengths[i] : lengths[1 + i];
@@ -6072,14 +6258,20 @@ INLINE void condition_any(const prepared *m, const real *X, const real *length, 
     }
     divide_rows(1, 4, 1, places_0, choose_length_1, divide_rows_2);
     singular_values(4, 4, divide_rows_2, sigma);
+    if (!is_finite(why.total[0])) {
+        check(3, 1, legs, why.overflow);
+    }
     check(4, 1, sigma, why.overflow);
-    check(3, 1, legs, why.overflow);
-    judge(&why, 1, code);
-    deliver(sigma, 4, 1, code, sigma_out);
-    deliver(legs, 3, 1, code, legs_out);
+    judge(&why, code);
+    copy(4, sigma, sigma_out);
+    copy(3, legs, legs_out);
+    if (*code != OK) {
+        refuse(4, sigma_out);
+        refuse(3, legs_out);
+    }
 }
 
-static void mismatch_any(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
+static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
     static const size_t places_0[] = {0, 1, 3, 5};
@@ -6087,9 +6279,12 @@ static void mismatch_any(const prepared *m, const real *X, const real *q_actuate
     real q[7] = {0}, take_1[4] = {0}, subtract_2[4] = {0}, gap[4] = {0};
     verdict why;
     start(1, &why);
-    check(4, 1, X, why.invalid);
-    check(4, 1, q_actuated, why.invalid);
-    inverse_kinematics_run(m, 1, X, q, &why);
+    const real total_in = total(X, 4) + total(q_actuated, 4);
+    if (!is_finite(total_in)) {
+        check(4, 1, X, why.invalid);
+        check(4, 1, q_actuated, why.invalid);
+    }
+    inverse_kinematics_run(m, X, q, &why);
     take(4, 1, places_0, q, take_1);
     for (size_t i = 0; i < 4; ++i) {
         subtract_2[i] = q_actuated[i] - take_1[i];
@@ -6099,20 +6294,28 @@ static void mismatch_any(const prepared *m, const real *X, const real *q_actuate
     }
     wrap_turns(3, 1, places_1, gap);
     check(4, 1, gap, why.overflow);
-    judge(&why, 1, code);
-    deliver(gap, 4, 1, code, gap_out);
+    judge(&why, code);
+    copy(4, gap, gap_out);
+    if (*code != OK) {
+        refuse(4, gap_out);
+    }
 }
 
-static void slope_any(const prepared *m, const real *X, real *slope_out, int *code)
+static void slope_one(const prepared *m, const real *X, real *slope_out, int *code)
 {
     real slope[16] = {0};
     verdict why;
     start(1, &why);
     check(4, 1, X, why.invalid);
-    H_run(m, 1, X, slope, &why);
-    check(16, 1, slope, why.overflow);
-    judge(&why, 1, code);
-    deliver(slope, 16, 1, code, slope_out);
+    H_run(m, X, slope, &why);
+    if (!is_finite(why.total[0])) {
+        check(16, 1, slope, why.overflow);
+    }
+    judge(&why, code);
+    copy(16, slope, slope_out);
+    if (*code != OK) {
+        refuse(16, slope_out);
+    }
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -6123,12 +6326,12 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
     real trial[4] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    mismatch_any(m, found, q_actuated, gap, &code);
+    mismatch_one(m, found, q_actuated, gap, &code);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        slope_any(m, found, slope, &code);
+        slope_one(m, found, slope, &code);
         if (code != OK) {
             break;
         }
@@ -6142,7 +6345,7 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            mismatch_any(m, trial, q_actuated, next, &tried);
+            mismatch_one(m, trial, q_actuated, next, &tried);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -6160,21 +6363,27 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 }
 
 
-INLINE void forward_kinematics_any(const prepared *m, const real *q_actuated, const real *X0, real
+INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
     *X_out, int *code)
 {
     real X[4] = {0};
     verdict why;
     start(1, &why);
-    check(4, 1, q_actuated, why.invalid);
-    check(4, 1, X0, why.invalid);
+    const real total_in = total(q_actuated, 4) + total(X0, 4);
+    if (!is_finite(total_in)) {
+        check(4, 1, q_actuated, why.invalid);
+        check(4, 1, X0, why.invalid);
+    }
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(4, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 4, 1, code, X_out);
+    judge(&why, code);
+    copy(4, X, X_out);
+    if (*code != OK) {
+        refuse(4, X_out);
+    }
 }
 
-INLINE void dissipation_any(const real *V, real *dissipation_out, int *code)
+INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 {
     real subtract_1[4] = {0};
     verdict why;
@@ -6185,93 +6394,271 @@ INLINE void dissipation_any(const real *V, real *dissipation_out, int *code)
     }
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
-    judge(&why, 1, code);
-    deliver(dissipation, 1, 1, code, dissipation_out);
+    judge(&why, code);
+    copy(1, dissipation, dissipation_out);
+    if (*code != OK) {
+        refuse(1, dissipation_out);
+    }
 }
 
-INLINE void momentum_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *momentum_out, int *code)
+INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
+    *code)
+{
+    real M[16] = {0}, momentum[4] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 4) + total(V, 4);
+    if (!is_finite(total_in)) {
+        check(4, 1, X, why.invalid);
+        check(4, 1, V, why.invalid);
+    }
+    M_run(m, X, M, &why);
+    product(4, 4, 1, 1, M, V, momentum);
+    check(4, 1, momentum, why.overflow);
+    judge(&why, code);
+    copy(4, momentum, momentum_out);
+    if (*code != OK) {
+        refuse(4, momentum_out);
+    }
+}
+
+INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
+    int *code)
 {
     real X_in[4*LANES], V_in[4*LANES], M[16*LANES], momentum[4*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(4, w, X, X_in, why.invalid);
-    V = side_by_side(4, w, V, V_in, why.invalid);
-    M_run(m, w, X, M, &why);
-    product(4, 4, 1, w, M, V, momentum);
-    check(4, w, momentum, why.overflow);
-    judge(&why, w, code);
-    deliver(momentum, 4, w, code, momentum_out);
+    start(LANES, &why);
+    X = side_by_side(4, X, X_in, why.total);
+    V = side_by_side(4, V, V_in, why.total);
+    M_run_lanes(m, X, M, &why);
+    product(4, 4, 1, LANES, M, V, momentum);
+    add_up(4, momentum, why.total);
+    suspect(&why, code);
+    deliver(4, momentum, momentum_out);
 }
 
-INLINE void actuator_positions_any(const prepared *m, size_t w, const real *X, real *q_out, int
-    *code)
+INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
+{
+    static const size_t places_0[] = {0, 1, 2, 3, 4, 5, 6};
+    real q[7] = {0}, margins[7] = {0};
+    verdict why;
+    start(1, &why);
+    check(4, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q, &why);
+    for (size_t i = 0; i < 7; ++i) {
+        margins[i] = q[i];
+    }
+    unlimited(7, 7, 1, places_0, margins, why.overflow);
+    judge(&why, code);
+    copy(7, margins, margins_out);
+    if (*code != OK) {
+        refuse(7, margins_out);
+    }
+}
+
+INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
+{
+    static const size_t places_0[] = {0, 1, 2, 3, 4, 5, 6};
+    real X_in[4*LANES], q[7*LANES], margins[7*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(4, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    for (size_t i = 0; i < 7*LANES; ++i) {
+        margins[i] = q[i];
+    }
+    unlimited(7, 7, LANES, places_0, margins, why.invalid);
+    suspect(&why, code);
+    deliver(7, margins, margins_out);
+}
+
+INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
+{
+    real q[7] = {0}, subtract_1[7] = {0}, within[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(4, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q, &why);
+    for (size_t i = 0; i < 7; ++i) {
+        subtract_1[i] = q[i] - q[i];
+    }
+    not_negative(7, 1, subtract_1, within, why.overflow);
+    check(1, 1, within, why.overflow);
+    judge(&why, code);
+    copy(1, within, within_out);
+    if (*code != OK) {
+        refuse(1, within_out);
+    }
+}
+
+INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
+{
+    real X_in[4*LANES], q[7*LANES], subtract_1[7*LANES], within[1*LANES] = {0};
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(4, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    for (size_t i = 0; i < 7*LANES; ++i) {
+        subtract_1[i] = q[i] - q[i];
+    }
+    not_negative(7, LANES, subtract_1, within, why.invalid);
+    add_up(1, within, why.total);
+    suspect(&why, code);
+    deliver(1, within, within_out);
+}
+
+INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
+{
+    static const size_t places_0[] = {0, 1, 3, 5};
+    real q_of_inverse_kinematics[7] = {0}, q[4] = {0};
+    verdict why;
+    start(1, &why);
+    check(4, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
+    take(4, 1, places_0, q_of_inverse_kinematics, q);
+    check(4, 1, q, why.overflow);
+    judge(&why, code);
+    copy(4, q, q_out);
+    if (*code != OK) {
+        refuse(4, q_out);
+    }
+}
+
+INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     static const size_t places_0[] = {0, 1, 3, 5};
     real X_in[4*LANES], q_of_inverse_kinematics[7*LANES], q[4*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(4, w, X, X_in, why.invalid);
-    inverse_kinematics_run(m, w, X, q_of_inverse_kinematics, &why);
-    take(4, 1*w, places_0, q_of_inverse_kinematics, q);
-    check(4, w, q, why.overflow);
-    judge(&why, w, code);
-    deliver(q, 4, w, code, q_out);
+    start(LANES, &why);
+    X = side_by_side(4, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
+    take(4, 1*LANES, places_0, q_of_inverse_kinematics, q);
+    add_up(4, q, why.total);
+    suspect(&why, code);
+    deliver(4, q, q_out);
 }
 
-INLINE void actuator_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *qd_out, int *code)
+INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
+{
+    static const size_t places_0[] = {0, 1, 3, 5};
+    real qd_of_joint_rates[7] = {0}, qd[4] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 4) + total(V, 4);
+    if (!is_finite(total_in)) {
+        check(4, 1, X, why.invalid);
+        check(4, 1, V, why.invalid);
+    }
+    joint_rates_run(m, X, V, qd_of_joint_rates, &why);
+    take(4, 1, places_0, qd_of_joint_rates, qd);
+    check(4, 1, qd, why.overflow);
+    judge(&why, code);
+    copy(4, qd, qd_out);
+    if (*code != OK) {
+        refuse(4, qd_out);
+    }
+}
+
+INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
+    int *code)
 {
     static const size_t places_0[] = {0, 1, 3, 5};
     real X_in[4*LANES], V_in[4*LANES], qd_of_joint_rates[7*LANES], qd[4*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(4, w, X, X_in, why.invalid);
-    V = side_by_side(4, w, V, V_in, why.invalid);
-    joint_rates_run(m, w, X, V, qd_of_joint_rates, &why);
-    take(4, 1*w, places_0, qd_of_joint_rates, qd);
-    check(4, w, qd, why.overflow);
-    judge(&why, w, code);
-    deliver(qd, 4, w, code, qd_out);
+    start(LANES, &why);
+    X = side_by_side(4, X, X_in, why.total);
+    V = side_by_side(4, V, V_in, why.total);
+    joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
+    take(4, 1*LANES, places_0, qd_of_joint_rates, qd);
+    add_up(4, qd, why.total);
+    suspect(&why, code);
+    deliver(4, qd, qd_out);
 }
 
-INLINE void actuator_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd_out, int *code)
+INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
+{
+    static const size_t places_0[] = {0, 1, 3, 5};
+    real qdd_of_joint_accelerations[7] = {0}, qdd[4] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 4) + total(V, 4) + total(A, 4);
+    if (!is_finite(total_in)) {
+        check(4, 1, X, why.invalid);
+        check(4, 1, V, why.invalid);
+        check(4, 1, A, why.invalid);
+    }
+    joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
+    take(4, 1, places_0, qdd_of_joint_accelerations, qdd);
+    check(4, 1, qdd, why.overflow);
+    judge(&why, code);
+    copy(4, qdd, qdd_out);
+    if (*code != OK) {
+        refuse(4, qdd_out);
+    }
+}
+
+INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out, int *code)
 {
     static const size_t places_0[] = {0, 1, 3, 5};
     real X_in[4*LANES], V_in[4*LANES], A_in[4*LANES], qdd_of_joint_accelerations[7*LANES],
         qdd[4*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(4, w, X, X_in, why.invalid);
-    V = side_by_side(4, w, V, V_in, why.invalid);
-    A = side_by_side(4, w, A, A_in, why.invalid);
-    joint_accelerations_run(m, w, X, V, A, qdd_of_joint_accelerations, &why);
-    take(4, 1*w, places_0, qdd_of_joint_accelerations, qdd);
-    check(4, w, qdd, why.overflow);
-    judge(&why, w, code);
-    deliver(qdd, 4, w, code, qdd_out);
+    start(LANES, &why);
+    X = side_by_side(4, X, X_in, why.total);
+    V = side_by_side(4, V, V_in, why.total);
+    A = side_by_side(4, A, A_in, why.total);
+    joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
+    take(4, 1*LANES, places_0, qdd_of_joint_accelerations, qdd);
+    add_up(4, qdd, why.total);
+    suspect(&why, code);
+    deliver(4, qdd, qdd_out);
 }
 
-INLINE void power_any(const prepared *m, size_t w, const real *X, const real *V, const real *tau,
-    real *power_out, int *code)
+INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out, int *code)
+{
+    real H[16] = {0}, times_1[4] = {0}, power[1] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 4) + total(V, 4) + total(tau, 4);
+    if (!is_finite(total_in)) {
+        check(4, 1, X, why.invalid);
+        check(4, 1, V, why.invalid);
+        check(4, 1, tau, why.invalid);
+    }
+    H_run(m, X, H, &why);
+    product(4, 4, 1, 1, H, tau, times_1);
+    inner(4, 1, times_1, V, power);
+    check(1, 1, power, why.overflow);
+    judge(&why, code);
+    copy(1, power, power_out);
+    if (*code != OK) {
+        refuse(1, power_out);
+    }
+}
+
+INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out, int *code)
 {
     real X_in[4*LANES], V_in[4*LANES], tau_in[4*LANES], H[16*LANES], times_1[4*LANES] = {0},
         power[1*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(4, w, X, X_in, why.invalid);
-    V = side_by_side(4, w, V, V_in, why.invalid);
-    tau = side_by_side(4, w, tau, tau_in, why.invalid);
-    H_run(m, w, X, H, &why);
-    product(4, 4, 1, w, H, tau, times_1);
-    inner(4, w, times_1, V, power);
-    check(1, w, power, why.overflow);
-    judge(&why, w, code);
-    deliver(power, 1, w, code, power_out);
+    start(LANES, &why);
+    X = side_by_side(4, X, X_in, why.total);
+    V = side_by_side(4, V, V_in, why.total);
+    tau = side_by_side(4, tau, tau_in, why.total);
+    H_run_lanes(m, X, H, &why);
+    product(4, 4, 1, LANES, H, tau, times_1);
+    inner(4, LANES, times_1, V, power);
+    add_up(1, power, why.total);
+    suspect(&why, code);
+    deliver(1, power, power_out);
 }
 
-INLINE void rotation_any(const real *X, real *R_out, int *code)
+INLINE void rotation_one(const real *X, real *R_out, int *code)
 {
     real R[4] = {0};
     verdict why;
@@ -6280,62 +6667,86 @@ INLINE void rotation_any(const real *X, real *R_out, int *code)
     const real *const take_1 = X + 2;
     rotation_of_angle(take_1, R);
     check(4, 1, R, why.overflow);
-    judge(&why, 1, code);
-    deliver(R, 4, 1, code, R_out);
+    judge(&why, code);
+    copy(4, R, R_out);
+    if (*code != OK) {
+        refuse(4, R_out);
+    }
 }
 
-INLINE void pose_any(const real *t, const real *R, real *X_out, int *code)
+INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
 {
     real angle_of_rotation_1[1] = {0}, join_2[3] = {0}, X[4] = {0};
     verdict why;
     start(1, &why);
-    check(2, 1, t, why.invalid);
-    check(4, 1, R, why.invalid);
+    const real total_in = total(t, 2) + total(R, 4);
+    if (!is_finite(total_in)) {
+        check(2, 1, t, why.invalid);
+        check(4, 1, R, why.invalid);
+    }
     angle_of_rotation(R, angle_of_rotation_1);
     beside(1, 2, 1, t, angle_of_rotation_1, join_2);
     for (size_t i = 0; i < 4; ++i) {
         X[i] = i < 3 ? join_2[i] : 0;
     }
     check(4, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 4, 1, code, X_out);
+    judge(&why, code);
+    copy(4, X, X_out);
+    if (*code != OK) {
+        refuse(4, X_out);
+    }
 }
 
-INLINE void X_dot_any(const real *X, const real *V, real *X_dot_out, int *code)
+INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(4, 1, X, why.invalid);
-    check(4, 1, V, why.invalid);
+    const real total_in = total(X, 4) + total(V, 4);
+    if (!is_finite(total_in)) {
+        check(4, 1, X, why.invalid);
+        check(4, 1, V, why.invalid);
+    }
     const real *const X_dot = V;
     check(4, 1, X_dot, why.overflow);
-    judge(&why, 1, code);
-    deliver(X_dot, 4, 1, code, X_dot_out);
+    judge(&why, code);
+    copy(4, X_dot, X_dot_out);
+    if (*code != OK) {
+        refuse(4, X_dot_out);
+    }
 }
 
-INLINE void retract_any(const real *X, const real *step, real *X_moved_out, int *code)
+INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
 {
     real X_moved[4] = {0};
     verdict why;
     start(1, &why);
-    check(4, 1, X, why.invalid);
-    check(4, 1, step, why.invalid);
+    const real total_in = total(X, 4) + total(step, 4);
+    if (!is_finite(total_in)) {
+        check(4, 1, X, why.invalid);
+        check(4, 1, step, why.invalid);
+    }
     for (size_t i = 0; i < 4; ++i) {
         X_moved[i] = X[i] + step[i];
     }
     check(4, 1, X_moved, why.overflow);
-    judge(&why, 1, code);
-    deliver(X_moved, 4, 1, code, X_moved_out);
+    judge(&why, code);
+    copy(4, X_moved, X_moved_out);
+    if (*code != OK) {
+        refuse(4, X_moved_out);
+    }
 }
 
-INLINE void difference_any(const real *X0, const real *X1, real *step_out, int *code)
+INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
 {
     static const size_t places_0[] = {2};
     real subtract_1[4] = {0}, step[4] = {0};
     verdict why;
     start(1, &why);
-    check(4, 1, X0, why.invalid);
-    check(4, 1, X1, why.invalid);
+    const real total_in = total(X0, 4) + total(X1, 4);
+    if (!is_finite(total_in)) {
+        check(4, 1, X0, why.invalid);
+        check(4, 1, X1, why.invalid);
+    }
     for (size_t i = 0; i < 4; ++i) {
         subtract_1[i] = X1[i] - X0[i];
     }
@@ -6344,19 +6755,25 @@ INLINE void difference_any(const real *X0, const real *X1, real *step_out, int *
     }
     wrap_turns(1, 1, places_0, step);
     check(4, 1, step, why.overflow);
-    judge(&why, 1, code);
-    deliver(step, 4, 1, code, step_out);
+    judge(&why, code);
+    copy(4, step, step_out);
+    if (*code != OK) {
+        refuse(4, step_out);
+    }
 }
 
-INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real *X_out, int *code)
+INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
 {
     static const size_t places_0[] = {2};
     real subtract_1[4] = {0}, wrap_turns_2[4] = {0}, scale_3[4] = {0}, X[4] = {0};
     verdict why;
     start(1, &why);
-    check(4, 1, X0, why.invalid);
-    check(4, 1, X1, why.invalid);
-    check(1, 1, s, why.invalid);
+    const real total_in = total(X0, 4) + total(X1, 4) + total(s, 1);
+    if (!is_finite(total_in)) {
+        check(4, 1, X0, why.invalid);
+        check(4, 1, X1, why.invalid);
+        check(1, 1, s, why.invalid);
+    }
     for (size_t i = 0; i < 4; ++i) {
         subtract_1[i] = X1[i] - X0[i];
     }
@@ -6371,8 +6788,11 @@ INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real 
         X[i] = X0[i] + scale_3[i];
     }
     check(4, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 4, 1, code, X_out);
+    judge(&why, code);
+    copy(4, X, X_out);
+    if (*code != OK) {
+        refuse(4, X_out);
+    }
 }
 
 /* ---- one state, and batches ---- */
@@ -6381,7 +6801,7 @@ int planar_redundant_M(const planar_redundant_model *model, const planar_redunda
     planar_redundant_real *M)
 {
     int code;
-    M_any(model, 1, X, M, &code);
+    M_one(model, X, M, &code);
     return code;
 }
 
@@ -6389,9 +6809,9 @@ size_t planar_redundant_M_batch(const planar_redundant_model *model, size_t n, c
     planar_redundant_real *X, planar_redundant_real *M, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        M_any(model, LANES, X + 4*i, M + 16*i, codes);
+        M_lanes(model, X + 4*i, M + 16*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_redundant_M(model, X + 4*(i + k), M + 16*(i + k));
@@ -6410,7 +6830,7 @@ int planar_redundant_Z(const planar_redundant_model *model, const planar_redunda
     planar_redundant_real *V, planar_redundant_real *Z)
 {
     int code;
-    Z_any(model, 1, X, V, Z, &code);
+    Z_one(model, X, V, Z, &code);
     return code;
 }
 
@@ -6419,9 +6839,9 @@ size_t planar_redundant_Z_batch(const planar_redundant_model *model, size_t n, c
     *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        Z_any(model, LANES, X + 4*i, V + 4*i, Z + 4*i, codes);
+        Z_lanes(model, X + 4*i, V + 4*i, Z + 4*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_redundant_Z(model, X + 4*(i + k), V + 4*(i + k), Z + 4*(i + k));
@@ -6440,7 +6860,7 @@ int planar_redundant_H(const planar_redundant_model *model, const planar_redunda
     planar_redundant_real *H)
 {
     int code;
-    H_any(model, 1, X, H, &code);
+    H_one(model, X, H, &code);
     return code;
 }
 
@@ -6448,9 +6868,9 @@ size_t planar_redundant_H_batch(const planar_redundant_model *model, size_t n, c
     planar_redundant_real *X, planar_redundant_real *H, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        H_any(model, LANES, X + 4*i, H + 16*i, codes);
+        H_lanes(model, X + 4*i, H + 16*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_redundant_H(model, X + 4*(i + k), H + 16*(i + k));
@@ -6469,7 +6889,7 @@ int planar_redundant_inverse_kinematics(const planar_redundant_model *model, con
     planar_redundant_real *X, planar_redundant_real *q)
 {
     int code;
-    inverse_kinematics_any(model, 1, X, q, &code);
+    inverse_kinematics_one(model, X, q, &code);
     return code;
 }
 
@@ -6477,9 +6897,9 @@ size_t planar_redundant_inverse_kinematics_batch(const planar_redundant_model *m
     const planar_redundant_real *X, planar_redundant_real *q, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_kinematics_any(model, LANES, X + 4*i, q + 7*i, codes);
+        inverse_kinematics_lanes(model, X + 4*i, q + 7*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_redundant_inverse_kinematics(model, X + 4*(i + k), q + 7*(i + k));
@@ -6498,7 +6918,7 @@ int planar_redundant_joint_rates(const planar_redundant_model *model, const plan
     *X, const planar_redundant_real *V, planar_redundant_real *rates)
 {
     int code;
-    joint_rates_any(model, 1, X, V, rates, &code);
+    joint_rates_one(model, X, V, rates, &code);
     return code;
 }
 
@@ -6507,9 +6927,9 @@ size_t planar_redundant_joint_rates_batch(const planar_redundant_model *model, s
     *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_rates_any(model, LANES, X + 4*i, V + 4*i, rates + 7*i, codes);
+        joint_rates_lanes(model, X + 4*i, V + 4*i, rates + 7*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_redundant_joint_rates(model, X + 4*(i + k), V + 4*(i + k), rates + 7*(i + k));
@@ -6529,7 +6949,7 @@ int planar_redundant_joint_accelerations(const planar_redundant_model *model, co
     planar_redundant_real *accelerations)
 {
     int code;
-    joint_accelerations_any(model, 1, X, V, A, accelerations, &code);
+    joint_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
@@ -6538,9 +6958,9 @@ size_t planar_redundant_joint_accelerations_batch(const planar_redundant_model *
     *A, planar_redundant_real *accelerations, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_accelerations_any(model, LANES, X + 4*i, V + 4*i, A + 4*i, accelerations + 7*i, codes);
+        joint_accelerations_lanes(model, X + 4*i, V + 4*i, A + 4*i, accelerations + 7*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_redundant_joint_accelerations(model, X + 4*(i + k), V + 4*(i + k), A + 4*(i +
@@ -6562,7 +6982,7 @@ int planar_redundant_dynamics(const planar_redundant_model *model, const planar_
     planar_redundant_real *H)
 {
     int code;
-    dynamics_any(model, 1, X, V, M, Z, H, &code);
+    dynamics_one(model, X, V, M, Z, H, &code);
     return code;
 }
 
@@ -6571,9 +6991,9 @@ size_t planar_redundant_dynamics_batch(const planar_redundant_model *model, size
     planar_redundant_real *Z, planar_redundant_real *H, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        dynamics_any(model, LANES, X + 4*i, V + 4*i, M + 16*i, Z + 4*i, H + 16*i, codes);
+        dynamics_lanes(model, X + 4*i, V + 4*i, M + 16*i, Z + 4*i, H + 16*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_redundant_dynamics(model, X + 4*(i + k), V + 4*(i + k), M + 16*(i + k), Z + 4*(i
@@ -6594,7 +7014,7 @@ int planar_redundant_inverse_dynamics(const planar_redundant_model *model, const
     const planar_redundant_real *wrench, planar_redundant_real *tau)
 {
     int code;
-    inverse_dynamics_any(model, 1, X, V, A, wrench, tau, &code);
+    inverse_dynamics_one(model, X, V, A, wrench, tau, &code);
     return code;
 }
 
@@ -6603,10 +7023,10 @@ size_t planar_redundant_inverse_dynamics_batch(const planar_redundant_model *mod
     *A, const planar_redundant_real *wrench, planar_redundant_real *tau, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_dynamics_any(model, LANES, X + 4*i, V + 4*i, A + 4*i, wrench ? wrench + 3*i : NULL, tau +
-            4*i, codes);
+        inverse_dynamics_lanes(model, X + 4*i, V + 4*i, A + 4*i, wrench ? wrench + 3*i : NULL, tau + 4*i,
+            codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_redundant_inverse_dynamics(model, X + 4*(i + k), V + 4*(i + k), A + 4*(i + k),
@@ -6628,7 +7048,7 @@ int planar_redundant_forward_dynamics(const planar_redundant_model *model, const
     const planar_redundant_real *wrench, planar_redundant_real *A)
 {
     int code;
-    forward_dynamics_any(model, 1, X, V, tau, wrench, A, &code);
+    forward_dynamics_one(model, X, V, tau, wrench, A, &code);
     return code;
 }
 
@@ -6637,10 +7057,10 @@ size_t planar_redundant_forward_dynamics_batch(const planar_redundant_model *mod
     *tau, const planar_redundant_real *wrench, planar_redundant_real *A, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        forward_dynamics_any(model, LANES, X + 4*i, V + 4*i, tau + 4*i, wrench ? wrench + 3*i : NULL, A +
-            4*i, codes);
+        forward_dynamics_lanes(model, X + 4*i, V + 4*i, tau + 4*i, wrench ? wrench + 3*i : NULL, A + 4*i,
+            codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_redundant_forward_dynamics(model, X + 4*(i + k), V + 4*(i + k), tau + 4*(i + k),
@@ -6666,7 +7086,7 @@ int planar_redundant_complete_acceleration(const planar_redundant_model *model, 
     (void)X;
     (void)V;
     (void)wrench;
-    complete_acceleration_any(A, completed, &code);
+    complete_acceleration_one(A, completed, &code);
     return code;
 }
 
@@ -6688,7 +7108,7 @@ int planar_redundant_leg_reactions(const planar_redundant_model *model, const
     const planar_redundant_real *wrench, planar_redundant_real *forces)
 {
     int code;
-    leg_reactions_any(model, X, V, A, wrench, forces, &code);
+    leg_reactions_one(model, X, V, A, wrench, forces, &code);
     return code;
 }
 
@@ -6710,7 +7130,7 @@ int planar_redundant_energy(const planar_redundant_model *model, const planar_re
     *potential)
 {
     int code;
-    energy_any(model, X, V, kinetic, potential, &code);
+    energy_one(model, X, V, kinetic, potential, &code);
     return code;
 }
 
@@ -6730,7 +7150,7 @@ int planar_redundant_condition(const planar_redundant_model *model, const planar
     *X, planar_redundant_real *sigma, planar_redundant_real *legs)
 {
     int code;
-    condition_any(model, X, NULL, sigma, legs, &code);
+    condition_one(model, X, NULL, sigma, legs, &code);
     return code;
 }
 
@@ -6750,7 +7170,7 @@ int planar_redundant_forward_kinematics(const planar_redundant_model *model, con
     planar_redundant_real *q_actuated, const planar_redundant_real *X0, planar_redundant_real *X)
 {
     int code;
-    forward_kinematics_any(model, q_actuated, X0, X, &code);
+    forward_kinematics_one(model, q_actuated, X0, X, &code);
     return code;
 }
 
@@ -6772,7 +7192,7 @@ int planar_redundant_dissipation(const planar_redundant_model *model, const plan
     int code;
     (void)model;
     (void)X;
-    dissipation_any(V, dissipation, &code);
+    dissipation_one(V, dissipation, &code);
     return code;
 }
 
@@ -6792,7 +7212,7 @@ int planar_redundant_momentum(const planar_redundant_model *model, const planar_
     const planar_redundant_real *V, planar_redundant_real *momentum)
 {
     int code;
-    momentum_any(model, 1, X, V, momentum, &code);
+    momentum_one(model, X, V, momentum, &code);
     return code;
 }
 
@@ -6801,9 +7221,9 @@ size_t planar_redundant_momentum_batch(const planar_redundant_model *model, size
     *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        momentum_any(model, LANES, X + 4*i, V + 4*i, momentum + 4*i, codes);
+        momentum_lanes(model, X + 4*i, V + 4*i, momentum + 4*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_redundant_momentum(model, X + 4*(i + k), V + 4*(i + k), momentum + 4*(i + k));
@@ -6818,11 +7238,69 @@ size_t planar_redundant_momentum_batch(const planar_redundant_model *model, size
     return failed;
 }
 
+int planar_redundant_joint_margins(const planar_redundant_model *model, const
+    planar_redundant_real *X, planar_redundant_real *margins)
+{
+    int code;
+    joint_margins_one(model, X, margins, &code);
+    return code;
+}
+
+size_t planar_redundant_joint_margins_batch(const planar_redundant_model *model, size_t n, const
+    planar_redundant_real *X, planar_redundant_real *margins, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        joint_margins_lanes(model, X + 4*i, margins + 7*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = planar_redundant_joint_margins(model, X + 4*(i + k), margins + 7*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = planar_redundant_joint_margins(model, X + 4*i, margins + 7*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int planar_redundant_within_limits(const planar_redundant_model *model, const
+    planar_redundant_real *X, planar_redundant_real *within)
+{
+    int code;
+    within_limits_one(model, X, within, &code);
+    return code;
+}
+
+size_t planar_redundant_within_limits_batch(const planar_redundant_model *model, size_t n, const
+    planar_redundant_real *X, planar_redundant_real *within, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        within_limits_lanes(model, X + 4*i, within + 1*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = planar_redundant_within_limits(model, X + 4*(i + k), within + 1*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = planar_redundant_within_limits(model, X + 4*i, within + 1*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
 int planar_redundant_actuator_positions(const planar_redundant_model *model, const
     planar_redundant_real *X, planar_redundant_real *q)
 {
     int code;
-    actuator_positions_any(model, 1, X, q, &code);
+    actuator_positions_one(model, X, q, &code);
     return code;
 }
 
@@ -6830,9 +7308,9 @@ size_t planar_redundant_actuator_positions_batch(const planar_redundant_model *m
     const planar_redundant_real *X, planar_redundant_real *q, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_positions_any(model, LANES, X + 4*i, q + 4*i, codes);
+        actuator_positions_lanes(model, X + 4*i, q + 4*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_redundant_actuator_positions(model, X + 4*(i + k), q + 4*(i + k));
@@ -6851,7 +7329,7 @@ int planar_redundant_actuator_rates(const planar_redundant_model *model, const
     planar_redundant_real *X, const planar_redundant_real *V, planar_redundant_real *rates)
 {
     int code;
-    actuator_rates_any(model, 1, X, V, rates, &code);
+    actuator_rates_one(model, X, V, rates, &code);
     return code;
 }
 
@@ -6860,9 +7338,9 @@ size_t planar_redundant_actuator_rates_batch(const planar_redundant_model *model
     *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_rates_any(model, LANES, X + 4*i, V + 4*i, rates + 4*i, codes);
+        actuator_rates_lanes(model, X + 4*i, V + 4*i, rates + 4*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_redundant_actuator_rates(model, X + 4*(i + k), V + 4*(i + k), rates + 4*(i +
@@ -6883,7 +7361,7 @@ int planar_redundant_actuator_accelerations(const planar_redundant_model *model,
     planar_redundant_real *accelerations)
 {
     int code;
-    actuator_accelerations_any(model, 1, X, V, A, accelerations, &code);
+    actuator_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
@@ -6892,9 +7370,9 @@ size_t planar_redundant_actuator_accelerations_batch(const planar_redundant_mode
     *A, planar_redundant_real *accelerations, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_accelerations_any(model, LANES, X + 4*i, V + 4*i, A + 4*i, accelerations + 4*i, codes);
+        actuator_accelerations_lanes(model, X + 4*i, V + 4*i, A + 4*i, accelerations + 4*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_redundant_actuator_accelerations(model, X + 4*(i + k), V + 4*(i + k), A + 4*(i +
@@ -6916,7 +7394,7 @@ int planar_redundant_power(const planar_redundant_model *model, const planar_red
     *power)
 {
     int code;
-    power_any(model, 1, X, V, tau, power, &code);
+    power_one(model, X, V, tau, power, &code);
     return code;
 }
 
@@ -6925,9 +7403,9 @@ size_t planar_redundant_power_batch(const planar_redundant_model *model, size_t 
     planar_redundant_real *power, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        power_any(model, LANES, X + 4*i, V + 4*i, tau + 4*i, power + 1*i, codes);
+        power_lanes(model, X + 4*i, V + 4*i, tau + 4*i, power + 1*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_redundant_power(model, X + 4*(i + k), V + 4*(i + k), tau + 4*(i + k), power +
@@ -6946,7 +7424,7 @@ size_t planar_redundant_power_batch(const planar_redundant_model *model, size_t 
 int planar_redundant_rotation(const planar_redundant_real *X, planar_redundant_real *R)
 {
     int code;
-    rotation_any(X, R, &code);
+    rotation_one(X, R, &code);
     return code;
 }
 
@@ -6965,7 +7443,7 @@ int planar_redundant_pose(const planar_redundant_real *t, const planar_redundant
     planar_redundant_real *X)
 {
     int code;
-    pose_any(t, R, X, &code);
+    pose_one(t, R, X, &code);
     return code;
 }
 
@@ -6984,7 +7462,7 @@ int planar_redundant_X_dot(const planar_redundant_real *X, const planar_redundan
     planar_redundant_real *X_dot)
 {
     int code;
-    X_dot_any(X, V, X_dot, &code);
+    X_dot_one(X, V, X_dot, &code);
     return code;
 }
 
@@ -7003,7 +7481,7 @@ int planar_redundant_retract(const planar_redundant_real *X, const planar_redund
     planar_redundant_real *X_moved)
 {
     int code;
-    retract_any(X, step, X_moved, &code);
+    retract_one(X, step, X_moved, &code);
     return code;
 }
 
@@ -7022,7 +7500,7 @@ int planar_redundant_difference(const planar_redundant_real *X0, const planar_re
     planar_redundant_real *step)
 {
     int code;
-    difference_any(X0, X1, step, &code);
+    difference_one(X0, X1, step, &code);
     return code;
 }
 
@@ -7041,7 +7519,7 @@ int planar_redundant_interpolate(const planar_redundant_real *X0, const planar_r
     const planar_redundant_real *s, planar_redundant_real *X)
 {
     int code;
-    interpolate_any(X0, X1, s, X, &code);
+    interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 

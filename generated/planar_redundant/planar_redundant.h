@@ -48,6 +48,7 @@ typedef PLANAR_REDUNDANT_REAL planar_redundant_real;
 #define PLANAR_REDUNDANT_NC 0
 #define PLANAR_REDUNDANT_NW 3
 #define PLANAR_REDUNDANT_NJ 7
+#define PLANAR_REDUNDANT_OVERCONSTRAINED 0
 
 enum {
     PLANAR_REDUNDANT_OK = 0,
@@ -122,31 +123,31 @@ typedef struct {
 /* What depends on the parameters alone; set by planar_redundant_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
-    planar_redundant_real J_star_t_14, J_star_zz, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y,
-            h_star_x, h_star_y, legs_size, m_star;
-    /* legs of type prrr */
-    planar_redundant_real J_2_prrr_zz[1], J_3_prrr_zz[1], Jc_2_prrr_zz[1], Kd_2_prrr_t_2[1],
-            Kd_2_prrr_t_3[1], P_c1_prrr_t[1], b_prrr_r0_x[1], branch_2_prrr[1], d_G_prrr_t[1],
-            d_Gamma_2_prrr_t[1], d_Gamma_2_prrr_y[1], d_c_prrr_yy[1], d_phi_3_prrr_t[1],
-            f_1_prrr_o_x[1], g_r0_x[1], g_r0_y[1], h_1_prrr_x[1], h_1_prrr_y[1], h_2_prrr_x[1],
-            h_2_prrr_y[1], h_3_prrr_x[1], h_3_prrr_y[1], inv_Kd_2_prrr_t[1],
-            inv_prrr_platform_joint_offset_x[1], inv_rho2_2_prrr_t_4[1], inv_size_prrr[1],
-            inv_uu_3_prrr_t[1], potential_t[1], potential_t_2[1], prrr_base_frame_xx[1],
-            prrr_base_frame_xy[1], prrr_base_frame_yx[1], prrr_base_frame_yy[1], prrr_base_point_x[1],
-            prrr_base_point_y[1], prrr_joint3_offset_x[1], prrr_link1_mass[1], prrr_link2_mass[1],
-            prrr_link3_mass[1], prrr_platform_joint_offset_x[1], prrr_platform_point_x[1],
-            prrr_platform_point_y[1], rho2_2_prrr_t[1], size_prrr[1];
-    /* legs of type rrr */
-    planar_redundant_real J_1_rrr_zz[2], J_2_rrr_zz[2], Jc_1_rrr_zz[2], Kd_1_rrr_t_2[2],
-            Kd_1_rrr_t_3[2], b_rrr_r0_x[2], b_rrr_r0_y[2], branch_1_rrr[2], d_Gamma_1_rrr_t[2],
-            d_Gamma_1_rrr_y[2], d_c_rrr_yy[2], d_phi_2_rrr_t[2], g_r0_x_2[2], g_r0_y_2[2],
-            h_1_rrr_x[2], h_1_rrr_y[2], h_2_rrr_x[2], h_2_rrr_y[2], inv_Kd_1_rrr_t_5[2],
-            inv_rho2_1_rrr_t_4[2], inv_rrr_platform_joint_offset_x[2], inv_size_rrr[2],
-            inv_uu_2_rrr_t[2], rho2_1_rrr_t[2], rrr_base_frame_xx[2], rrr_base_frame_xy[2],
-            rrr_base_frame_yx[2], rrr_base_frame_yy[2], rrr_base_point_x[2], rrr_base_point_y[2],
+    /* 1 legs of type prrr */
+    planar_redundant_real inv_prrr_Kd_2_t[1], inv_prrr_Kd_2_t_7[1],
+            inv_prrr_platform_joint_offset_x[1], inv_prrr_rho2_2_t_4[1], inv_prrr_size[1],
+            prrr_J_2_zz[1], prrr_J_3_zz[1], prrr_Jc_2_zz[1], prrr_Kd_2_t_2[1], prrr_Kd_2_t_4[1],
+            prrr_P_c_1_t[1], prrr_b_r0_x[1], prrr_base_frame_xx[1], prrr_base_frame_xy[1],
+            prrr_base_frame_yx[1], prrr_base_frame_yy[1], prrr_base_point_x[1], prrr_base_point_y[1],
+            prrr_branch_2[1], prrr_d_G_t[1], prrr_d_Gamma_3_t[1], prrr_d_Gamma_3_y[1], prrr_d_c_yy[1],
+            prrr_d_phi_3_t[1], prrr_f_1_o_x[1], prrr_g_r0_x[1], prrr_g_r0_y[1], prrr_h_1_x[1],
+            prrr_h_1_y[1], prrr_h_2_x[1], prrr_h_2_y[1], prrr_h_3_x[1], prrr_h_3_y[1],
+            prrr_joint3_offset_x[1], prrr_link1_mass[1], prrr_link2_mass[1], prrr_link3_mass[1],
+            prrr_platform_joint_offset_x[1], prrr_platform_point_x[1], prrr_platform_point_y[1],
+            prrr_potential_t[1], prrr_potential_t_2[1], prrr_rho2_2_t[1], prrr_size[1];
+    /* 2 legs of type rrr */
+    planar_redundant_real inv_rrr_Kd_1_t_5[2], inv_rrr_Kd_1_t_7[2],
+            inv_rrr_platform_joint_offset_x[2], inv_rrr_rho2_1_t_4[2], inv_rrr_size[2], rrr_J_1_zz[2],
+            rrr_J_2_zz[2], rrr_Jc_1_zz[2], rrr_Kd_1_t_2[2], rrr_Kd_1_t_4[2], rrr_b_r0_x[2],
+            rrr_b_r0_y[2], rrr_base_frame_xx[2], rrr_base_frame_xy[2], rrr_base_frame_yx[2],
+            rrr_base_frame_yy[2], rrr_base_point_x[2], rrr_base_point_y[2], rrr_branch_1[2],
+            rrr_d_Gamma_2_t[2], rrr_d_Gamma_2_y[2], rrr_d_c_yy[2], rrr_d_phi_2_t[2], rrr_g_r0_x[2],
+            rrr_g_r0_y[2], rrr_h_1_x[2], rrr_h_1_y[2], rrr_h_2_x[2], rrr_h_2_y[2],
             rrr_joint2_offset_x[2], rrr_link1_mass[2], rrr_link2_mass[2],
             rrr_platform_joint_offset_x[2], rrr_platform_point_x[2], rrr_platform_point_y[2],
-            size_rrr[2];
+            rrr_rho2_1_t[2], rrr_size[2];
+    planar_redundant_real J_star_t_6, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y, h_star_x,
+            h_star_y, legs_size, m_star;
 } planar_redundant_model;
 
 extern const planar_redundant_params planar_redundant_default_params;
@@ -169,7 +170,7 @@ int planar_redundant_M(const planar_redundant_model *model, const planar_redunda
 size_t planar_redundant_M_batch(const planar_redundant_model *model, size_t n, const
     planar_redundant_real *X, planar_redundant_real *M, int *status);
 
-/* Velocity and gravity terms Z. 316 mul, 198 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 312 mul, 196 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int planar_redundant_Z(const planar_redundant_model *model, const planar_redundant_real *X, const
     planar_redundant_real *V, planar_redundant_real *Z);
@@ -208,7 +209,7 @@ size_t planar_redundant_joint_accelerations_batch(const planar_redundant_model *
     const planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real
     *A, planar_redundant_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 435 mul, 299 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 431 mul, 297 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int planar_redundant_dynamics(const planar_redundant_model *model, const planar_redundant_real *X,
     const planar_redundant_real *V, planar_redundant_real *M, planar_redundant_real *Z,
@@ -217,7 +218,7 @@ size_t planar_redundant_dynamics_batch(const planar_redundant_model *model, size
     planar_redundant_real *X, const planar_redundant_real *V, planar_redundant_real *M,
     planar_redundant_real *Z, planar_redundant_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 345 mul, 223 add, 6 div, 3 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 341 mul, 221 add, 6 div, 3 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
 int planar_redundant_inverse_dynamics(const planar_redundant_model *model, const
@@ -227,7 +228,7 @@ size_t planar_redundant_inverse_dynamics_batch(const planar_redundant_model *mod
     const planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real
     *A, const planar_redundant_real *wrench, planar_redundant_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 435 mul, 299 add, 6 div, 3 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 431 mul, 297 add, 6 div, 3 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV). */
 int planar_redundant_forward_dynamics(const planar_redundant_model *model, const
@@ -301,6 +302,20 @@ int planar_redundant_momentum(const planar_redundant_model *model, const planar_
 size_t planar_redundant_momentum_batch(const planar_redundant_model *model, size_t n, const
     planar_redundant_real *X, const planar_redundant_real *V, planar_redundant_real *momentum, int
     *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 93 mul, 49 add, 3 div, 3 sqrt, 6 trig. In: X (NQ). Out: margins (NJ). */
+int planar_redundant_joint_margins(const planar_redundant_model *model, const
+    planar_redundant_real *X, planar_redundant_real *margins);
+size_t planar_redundant_joint_margins_batch(const planar_redundant_model *model, size_t n, const
+    planar_redundant_real *X, planar_redundant_real *margins, int *status);
+
+/* Whether all joints are within their limits of displacement. 93 mul, 49 add, 3 div, 3 sqrt, 6
+   trig. In: X (NQ). Out: within (1). */
+int planar_redundant_within_limits(const planar_redundant_model *model, const
+    planar_redundant_real *X, planar_redundant_real *within);
+size_t planar_redundant_within_limits_batch(const planar_redundant_model *model, size_t n, const
+    planar_redundant_real *X, planar_redundant_real *within, int *status);
 
 /* Displacements of the actuated joints, in the order of tau. 93 mul, 49 add, 3 div, 3 sqrt, 6
    trig. In: X (NQ). Out: q (NU). */

@@ -32,6 +32,7 @@ __all__ = [
     "NC",
     "NW",
     "NJ",
+    "OVERCONSTRAINED",
     "ACTUATED",
     "ACTUATOR_NAMES",
     "H",
@@ -56,6 +57,7 @@ __all__ = [
     "inverse_dynamics",
     "inverse_kinematics",
     "joint_accelerations",
+    "joint_margins",
     "joint_rates",
     "leg_reactions",
     "momentum",
@@ -64,6 +66,7 @@ __all__ = [
     "power",
     "retract",
     "rotation",
+    "within_limits",
 ]
 
 NQ = 4
@@ -72,6 +75,7 @@ NU = 4
 NC = 0
 NW = 3
 NJ = 7
+OVERCONSTRAINED = 0
 
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
@@ -439,7 +443,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return np.full(shape, default)
+        return _filled(shape, default) if isinstance(default, float) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -452,6 +456,16 @@ def _argument(function, name, value, shape, default=None, rule=""):
     elif rule == "positive" and not np.all((array > 0.0) & (array < np.inf)):
         raise ValueError(f"{function}: {name} must be positive and finite")
     return array
+
+
+_FILLED = {}
+
+
+def _filled(shape, value):
+    """An array of one value, made once."""
+    if (shape, value) not in _FILLED:
+        _FILLED[shape, value] = _frozen(np.full(shape, value))
+    return _FILLED[shape, value]
 
 
 def _lead(leads):
@@ -545,8 +559,8 @@ HOME_X = _frozen(np.array([0.03, -0.02, 0.09999999999999999, 0.1]))
 HOME_Q = _frozen(np.array([0.1, 0.7, -1.2, 0.7, -1.2, 0.7, -1.2]))
 
 _BRANCHES = {  # assembly branch of home, a sign per leg
-    "branch_2_prrr": np.array([1.0]),
-    "branch_1_rrr": np.array([1.0, 1.0]),
+    "prrr_branch_2": np.array([1.0]),
+    "rrr_branch_1": np.array([1.0, 1.0]),
 }
 
 
@@ -600,235 +614,231 @@ def _prepare(p):
     rrr_link2_centre_of_mass_x = p.rrr_link2_centre_of_mass[:, 0]
     rrr_link2_centre_of_mass_y = p.rrr_link2_centre_of_mass[:, 1]
     rrr_link2_inertia_zz = p.rrr_link2_inertia[:, 2, 2]
-    branch_2_prrr = _BRANCHES["branch_2_prrr"]
-    branch_1_rrr = _BRANCHES["branch_1_rrr"]
-    # (L2) first moment about the platform origin
+    prrr_branch_2 = _BRANCHES["prrr_branch_2"]
+    rrr_branch_1 = _BRANCHES["rrr_branch_1"]
+    # (h_star) first moment about the platform origin
     h_star_t = platform_centre_of_mass_x*platform_mass
     h_star_t_2 = platform_centre_of_mass_y*platform_mass
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_t = platform_centre_of_mass_y*platform_centre_of_mass_y
     J_star_t_2 = J_star_t + platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_3 = J_star_t*platform_mass
     J_star_t_4 = J_star_t_2*platform_mass
-    # (prrr-K18) squared length, across the axis, of the direction fixed in link 3
-    uu_3_prrr_t = prrr_platform_joint_offset_x*prrr_platform_joint_offset_x
-    # (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-    Kd_2_prrr_t = prrr_joint3_offset_x*prrr_joint3_offset_x
-    Kd_2_prrr_t_2 = 0.5*Kd_2_prrr_t
-    Kd_2_prrr_t_3 = 0.5*uu_3_prrr_t
-    # (prrr-G2) length of the leg's lever arms, the measure of what is near singular
-    size_prrr_t = 4.58151643161e-07 + Kd_2_prrr_t + uu_3_prrr_t
-    size_prrr = sqrt(size_prrr_t)
-    # (prrr-K9) squared amplitude
-    rho2_2_prrr_t = size_prrr*size_prrr*size_prrr_t
-    # (prrr-K16) the vector from joint 2 to the connection point, resolved along link 2
-    inv_Kd_2_prrr_t = 1.0/Kd_2_prrr_t
-    # (prrr-K19) cosine of the angle of joint 3 from its reference direction
-    inv_uu_3_prrr_t = 1.0/uu_3_prrr_t
-    # (prrr-G5) inertia tensor of link 2 about the origin of link 2
-    J_2_prrr_t = (
+    # (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+    prrr_Kd_2_t = prrr_joint3_offset_x*prrr_joint3_offset_x
+    prrr_Kd_2_t_2 = 0.5*prrr_Kd_2_t
+    prrr_Kd_2_t_3 = prrr_platform_joint_offset_x*prrr_platform_joint_offset_x
+    prrr_Kd_2_t_4 = 0.5*prrr_Kd_2_t_3
+    # (prrr-size) length of the leg's lever arms, the measure of what is near singular
+    prrr_size_t = 4.58151643161e-07 + prrr_Kd_2_t + prrr_Kd_2_t_3
+    prrr_size = sqrt(prrr_size_t)
+    # (prrr-rho2_2) squared amplitude
+    prrr_rho2_2_t = prrr_size*prrr_size*prrr_size_t
+    # (prrr-xi_2) the vector from joint 2 to the connection point, resolved along link 2
+    inv_prrr_Kd_2_t = 1.0/prrr_Kd_2_t
+    # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
+    inv_prrr_Kd_2_t_7 = 1.0/prrr_Kd_2_t_3
+    # (prrr-rho_tip_3) connection point to the centre of mass of link 3
+    prrr_rho_tip_3_x = prrr_link3_centre_of_mass_x - prrr_platform_joint_offset_x
+    # (prrr-h_3) first moment of link 3 about the connection point
+    prrr_h_3_x = prrr_link3_mass*prrr_rho_tip_3_x
+    prrr_h_3_y = prrr_link3_centre_of_mass_y*prrr_link3_mass
+    # (prrr-w_3) reciprocal vector 2
+    inv_prrr_platform_joint_offset_x = 1.0/prrr_platform_joint_offset_x
+    # (prrr-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+    prrr_d_phi_3_t = inv_prrr_platform_joint_offset_x*prrr_h_3_y
+    # (prrr-J_3) inertia tensor of link 3 about the connection point
+    prrr_J_3_t = (
+    prrr_link3_centre_of_mass_y*prrr_link3_centre_of_mass_y + prrr_rho_tip_3_x*prrr_rho_tip_3_x
+    )
+    prrr_J_3_zz = prrr_link3_inertia_zz + prrr_J_3_t*prrr_link3_mass
+    # (prrr-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    prrr_d_Gamma_3_t = inv_prrr_platform_joint_offset_x*prrr_J_3_zz
+    prrr_d_Gamma_3_y = prrr_d_Gamma_3_t + prrr_h_3_x
+    # (prrr-J_2) inertia tensor of link 2 about the origin of link 2
+    prrr_J_2_t = (
     prrr_link2_centre_of_mass_x*prrr_link2_centre_of_mass_x +
         prrr_link2_centre_of_mass_y*prrr_link2_centre_of_mass_y
     )
-    J_2_prrr_zz = prrr_link2_inertia_zz + J_2_prrr_t*prrr_link2_mass
-    # (prrr-G6) connection point to the centre of mass of link 3
-    rho_tip_3_prrr_x = prrr_link3_centre_of_mass_x - prrr_platform_joint_offset_x
-    # (prrr-G8) inertia tensor of link 3 about the connection point
-    J_3_prrr_t = (
-    prrr_link3_centre_of_mass_y*prrr_link3_centre_of_mass_y + rho_tip_3_prrr_x*rho_tip_3_prrr_x
-    )
-    J_3_prrr_zz = prrr_link3_inertia_zz + J_3_prrr_t*prrr_link3_mass
-    # (prrr-N19) inertia tensor of the links from 2 outwards about joint 2
-    Jc_2_prrr_zz = J_2_prrr_zz + J_3_prrr_zz
-    # (prrr-G7) first moment of link 3 about the connection point
-    h_3_prrr_x = prrr_link3_mass*rho_tip_3_prrr_x
-    h_3_prrr_y = prrr_link3_centre_of_mass_y*prrr_link3_mass
-    # (prrr-V6) reciprocal vector 2
-    inv_prrr_platform_joint_offset_x = 1.0/prrr_platform_joint_offset_x
-    # (prrr-N42) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-    d_Gamma_2_prrr_t = J_3_prrr_zz*inv_prrr_platform_joint_offset_x
-    d_Gamma_2_prrr_y = d_Gamma_2_prrr_t + h_3_prrr_x
-    # (prrr-N52) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    d_G_prrr_t = d_Gamma_2_prrr_y*inv_prrr_platform_joint_offset_x
-    # (prrr-N14) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-    d_phi_3_prrr_t = h_3_prrr_y*inv_prrr_platform_joint_offset_x
-    # (prrr-N55) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_prrr_yy = -d_G_prrr_t - h_3_prrr_x*inv_prrr_platform_joint_offset_x
-    # (L2) first moment about the platform origin
-    h_star_t_3 = prrr_link3_mass*prrr_platform_point_x
-    h_star_t_4 = prrr_link3_mass*prrr_platform_point_y
-    # (L3) inertia tensor about the platform origin
-    J_star_t_5 = prrr_platform_point_y*prrr_platform_point_y
-    J_star_t_6 = J_star_t_5 + prrr_platform_point_x*prrr_platform_point_x
-    J_star_t_7 = J_star_t_5*prrr_link3_mass
-    J_star_t_8 = J_star_t_6*prrr_link3_mass
-    # (prrr-N6) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-    g_r0_x = gravity_x*prrr_base_frame_xy + gravity_y*prrr_base_frame_yy
-    g_r0_y = -gravity_x*prrr_base_frame_xx - gravity_y*prrr_base_frame_yx
-    # (prrr-G4) first moment of link 2 about the origin of link 2
-    h_2_prrr_x = prrr_link2_centre_of_mass_x*prrr_link2_mass
-    h_2_prrr_y = prrr_link2_centre_of_mass_y*prrr_link2_mass
-    # (prrr-N4) remainder without the acceleration in: inertia force of link 1 less its weight
-    f_1_prrr_o_x = g_r0_x*prrr_link1_mass
-    # (prrr-N24) force that accelerates joint 1, per unit
-    P_c1_prrr_t = prrr_link1_mass + prrr_link2_mass
-    # (prrr-G3) first moment of link 1 about the origin of link 1
-    h_1_prrr_x = prrr_link1_centre_of_mass_x*prrr_link1_mass
-    h_1_prrr_y = prrr_link1_centre_of_mass_y*prrr_link1_mass
-    # (V1) potential energy
-    b_prrr_r0_x = prrr_base_frame_xy*prrr_base_point_x + prrr_base_frame_yy*prrr_base_point_y
-    b_prrr_r0_y = -prrr_base_frame_xx*prrr_base_point_x - prrr_base_frame_yx*prrr_base_point_y
-    potential_t = b_prrr_r0_y*prrr_link1_mass
-    potential_t_2 = b_prrr_r0_y*prrr_link2_mass
-    # (prrr-K9) squared amplitude
-    inv_rho2_2_prrr_t_4 = 1.0/rho2_2_prrr_t
-    # (prrr-V5) reciprocal vector 1
-    inv_size_prrr = 1.0/size_prrr
+    prrr_J_2_zz = prrr_link2_inertia_zz + prrr_J_2_t*prrr_link2_mass
+    # (prrr-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+    prrr_Jc_2_zz = prrr_J_2_zz + prrr_J_3_zz
+    # (prrr-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    prrr_d_G_t = inv_prrr_platform_joint_offset_x*prrr_d_Gamma_3_y
+    # (prrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    prrr_d_c_yy = -prrr_d_G_t - inv_prrr_platform_joint_offset_x*prrr_h_3_x
+    # (h_star) first moment about the platform origin
+    prrr_h_star_t = prrr_link3_mass*prrr_platform_point_x
+    prrr_h_star_t_2 = prrr_link3_mass*prrr_platform_point_y
+    # (J_star) inertia tensor about the platform origin
+    prrr_J_star_t = prrr_platform_point_y*prrr_platform_point_y
+    prrr_J_star_t_2 = prrr_J_star_t + prrr_platform_point_x*prrr_platform_point_x
+    prrr_J_star_t_3 = prrr_J_star_t*prrr_link3_mass
+    prrr_J_star_t_4 = prrr_J_star_t_2*prrr_link3_mass
+    # (prrr-h_2) first moment of link 2 about the origin of link 2
+    prrr_h_2_x = prrr_link2_centre_of_mass_x*prrr_link2_mass
+    prrr_h_2_y = prrr_link2_centre_of_mass_y*prrr_link2_mass
+    # (prrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+    prrr_g_r0_x = gravity_x*prrr_base_frame_xy + gravity_y*prrr_base_frame_yy
+    prrr_g_r0_y = -gravity_x*prrr_base_frame_xx - gravity_y*prrr_base_frame_yx
+    # (prrr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight
+    prrr_f_1_o_x = prrr_g_r0_x*prrr_link1_mass
+    # (prrr-P_c_1) force that accelerates joint 1, per unit
+    prrr_P_c_1_t = prrr_link1_mass + prrr_link2_mass
+    # (prrr-h_1) first moment of link 1 about the origin of link 1
+    prrr_h_1_x = prrr_link1_centre_of_mass_x*prrr_link1_mass
+    prrr_h_1_y = prrr_link1_centre_of_mass_y*prrr_link1_mass
+    # (potential) potential energy
+    prrr_b_r0_x = prrr_base_frame_xy*prrr_base_point_x + prrr_base_frame_yy*prrr_base_point_y
+    prrr_b_r0_y = -prrr_base_frame_xx*prrr_base_point_x - prrr_base_frame_yx*prrr_base_point_y
+    prrr_potential_t = prrr_b_r0_y*prrr_link1_mass
+    prrr_potential_t_2 = prrr_b_r0_y*prrr_link2_mass
+    # (prrr-rho2_2) squared amplitude
+    inv_prrr_rho2_2_t_4 = 1.0/prrr_rho2_2_t
+    # (prrr-w_2) reciprocal vector 1
+    inv_prrr_size = 1.0/prrr_size
     total_prrr = np.sum(np.broadcast_to(prrr_link3_mass, _prrr))
-    total_prrr_x = np.sum(np.broadcast_to(h_star_t_3, _prrr))
-    total_prrr_y = np.sum(np.broadcast_to(h_star_t_4, _prrr))
-    total_prrr_xx = np.sum(np.broadcast_to(J_star_t_7, _prrr))
-    total_prrr_zz = np.sum(np.broadcast_to(J_star_t_8, _prrr))
+    total_prrr_x = np.sum(np.broadcast_to(prrr_h_star_t, _prrr))
+    total_prrr_y = np.sum(np.broadcast_to(prrr_h_star_t_2, _prrr))
+    total_prrr_xx = np.sum(np.broadcast_to(prrr_J_star_t_3, _prrr))
+    total_prrr_zz = np.sum(np.broadcast_to(prrr_J_star_t_4, _prrr))
     total_prrr_x_2 = np.sum(np.broadcast_to(prrr_platform_point_x, _prrr))
     total_prrr_y_2 = np.sum(np.broadcast_to(prrr_platform_point_y, _prrr))
-    total_prrr_2 = np.sum(np.broadcast_to(size_prrr_t, _prrr))
-    # (rrr-K17) squared length, across the axis, of the direction fixed in link 2
-    uu_2_rrr_t = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x
-    # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    Kd_1_rrr_t = rrr_joint2_offset_x*rrr_joint2_offset_x
-    Kd_1_rrr_t_2 = 0.5*Kd_1_rrr_t
-    Kd_1_rrr_t_3 = 0.5*uu_2_rrr_t
-    # (rrr-G2) length of the leg's lever arms, the measure of what is near singular
-    size_rrr_t = 4.58151643161e-07 + Kd_1_rrr_t + uu_2_rrr_t
-    size_rrr = sqrt(size_rrr_t)
-    # (rrr-K8) squared amplitude
-    rho2_1_rrr_t = size_rrr*size_rrr*size_rrr_t
-    # (rrr-K15) the vector from joint 1 to the connection point, resolved along link 1
-    inv_Kd_1_rrr_t_5 = 1.0/Kd_1_rrr_t
-    # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-    inv_uu_2_rrr_t = 1.0/uu_2_rrr_t
-    # (rrr-G4) inertia tensor of link 1 about the origin of link 1
-    J_1_rrr_t = (
+    total_prrr_2 = np.sum(np.broadcast_to(prrr_size_t, _prrr))
+    # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+    rrr_Kd_1_t = rrr_joint2_offset_x*rrr_joint2_offset_x
+    rrr_Kd_1_t_2 = 0.5*rrr_Kd_1_t
+    rrr_Kd_1_t_3 = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x
+    rrr_Kd_1_t_4 = 0.5*rrr_Kd_1_t_3
+    # (rrr-size) length of the leg's lever arms, the measure of what is near singular
+    rrr_size_t = 4.58151643161e-07 + rrr_Kd_1_t + rrr_Kd_1_t_3
+    rrr_size = sqrt(rrr_size_t)
+    # (rrr-rho2_1) squared amplitude
+    rrr_rho2_1_t = rrr_size*rrr_size*rrr_size_t
+    # (rrr-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+    inv_rrr_Kd_1_t_5 = 1.0/rrr_Kd_1_t
+    # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+    inv_rrr_Kd_1_t_7 = 1.0/rrr_Kd_1_t_3
+    # (rrr-rho_tip_2) connection point to the centre of mass of link 2
+    rrr_rho_tip_2_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x
+    # (rrr-h_2) first moment of link 2 about the connection point
+    rrr_h_2_x = rrr_link2_mass*rrr_rho_tip_2_x
+    rrr_h_2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass
+    # (rrr-w_2) reciprocal vector 2
+    inv_rrr_platform_joint_offset_x = 1.0/rrr_platform_joint_offset_x
+    # (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
+    rrr_d_phi_2_t = inv_rrr_platform_joint_offset_x*rrr_h_2_y
+    # (rrr-J_2) inertia tensor of link 2 about the connection point
+    rrr_J_2_t = (
+    rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y + rrr_rho_tip_2_x*rrr_rho_tip_2_x
+    )
+    rrr_J_2_zz = rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass
+    # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    rrr_d_Gamma_2_t = inv_rrr_platform_joint_offset_x*rrr_J_2_zz
+    rrr_d_Gamma_2_y = rrr_d_Gamma_2_t + rrr_h_2_x
+    # (rrr-J_1) inertia tensor of link 1 about the origin of link 1
+    rrr_J_1_t = (
     rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
         rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y
     )
-    J_1_rrr_zz = rrr_link1_inertia_zz + J_1_rrr_t*rrr_link1_mass
-    # (rrr-G5) connection point to the centre of mass of link 2
-    rho_tip_2_rrr_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x
-    # (rrr-G7) inertia tensor of link 2 about the connection point
-    J_2_rrr_t = (
-    rho_tip_2_rrr_x*rho_tip_2_rrr_x + rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y
+    rrr_J_1_zz = rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass
+    # (rrr-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link about the connection point
+    rrr_Jc_1_zz = rrr_J_1_zz + rrr_J_2_zz
+    # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    rrr_d_c_yy = (
+    -inv_rrr_platform_joint_offset_x*rrr_d_Gamma_2_y - inv_rrr_platform_joint_offset_x*rrr_h_2_x
     )
-    J_2_rrr_zz = rrr_link2_inertia_zz + J_2_rrr_t*rrr_link2_mass
-    # (rrr-N11) inertia tensor of the links from 1 outwards about joint 1
-    Jc_1_rrr_zz = J_1_rrr_zz + J_2_rrr_zz
-    # (rrr-G6) first moment of link 2 about the connection point
-    h_2_rrr_x = rho_tip_2_rrr_x*rrr_link2_mass
-    h_2_rrr_y = rrr_link2_centre_of_mass_y*rrr_link2_mass
-    # (rrr-V6) reciprocal vector 2
-    inv_rrr_platform_joint_offset_x = 1.0/rrr_platform_joint_offset_x
-    # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-    d_Gamma_1_rrr_t = J_2_rrr_zz*inv_rrr_platform_joint_offset_x
-    d_Gamma_1_rrr_y = d_Gamma_1_rrr_t + h_2_rrr_x
-    # (rrr-N6) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
-    d_phi_2_rrr_t = h_2_rrr_y*inv_rrr_platform_joint_offset_x
-    # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_rrr_yy = (
-    -d_Gamma_1_rrr_y*inv_rrr_platform_joint_offset_x - h_2_rrr_x*inv_rrr_platform_joint_offset_x
-    )
-    # (L2) first moment about the platform origin
-    h_star_t_5 = rrr_link2_mass*rrr_platform_point_x
-    h_star_t_6 = rrr_link2_mass*rrr_platform_point_y
-    # (L3) inertia tensor about the platform origin
-    J_star_t_9 = rrr_platform_point_y*rrr_platform_point_y
-    J_star_t_10 = J_star_t_9 + rrr_platform_point_x*rrr_platform_point_x
-    J_star_t_11 = J_star_t_9*rrr_link2_mass
-    J_star_t_12 = J_star_t_10*rrr_link2_mass
-    # (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-    g_r0_x_2 = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx
-    g_r0_y_2 = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy
-    # (rrr-G3) first moment of link 1 about the origin of link 1
-    h_1_rrr_x = rrr_link1_centre_of_mass_x*rrr_link1_mass
-    h_1_rrr_y = rrr_link1_centre_of_mass_y*rrr_link1_mass
-    # (V1) potential energy
-    b_rrr_r0_x = rrr_base_frame_xx*rrr_base_point_x + rrr_base_frame_yx*rrr_base_point_y
-    b_rrr_r0_y = rrr_base_frame_xy*rrr_base_point_x + rrr_base_frame_yy*rrr_base_point_y
-    # (rrr-K8) squared amplitude
-    inv_rho2_1_rrr_t_4 = 1.0/rho2_1_rrr_t
-    # (rrr-V5) reciprocal vector 1
-    inv_size_rrr = 1.0/size_rrr
+    # (h_star) first moment about the platform origin
+    rrr_h_star_t = rrr_link2_mass*rrr_platform_point_x
+    rrr_h_star_t_2 = rrr_link2_mass*rrr_platform_point_y
+    # (J_star) inertia tensor about the platform origin
+    rrr_J_star_t = rrr_platform_point_y*rrr_platform_point_y
+    rrr_J_star_t_2 = rrr_J_star_t + rrr_platform_point_x*rrr_platform_point_x
+    rrr_J_star_t_3 = rrr_J_star_t*rrr_link2_mass
+    rrr_J_star_t_4 = rrr_J_star_t_2*rrr_link2_mass
+    # (rrr-h_1) first moment of link 1 about the origin of link 1
+    rrr_h_1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass
+    rrr_h_1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass
+    # (rrr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+    rrr_g_r0_x = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx
+    rrr_g_r0_y = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy
+    # (potential) potential energy
+    rrr_b_r0_x = rrr_base_frame_xx*rrr_base_point_x + rrr_base_frame_yx*rrr_base_point_y
+    rrr_b_r0_y = rrr_base_frame_xy*rrr_base_point_x + rrr_base_frame_yy*rrr_base_point_y
+    # (rrr-rho2_1) squared amplitude
+    inv_rrr_rho2_1_t_4 = 1.0/rrr_rho2_1_t
+    # (rrr-w_1) reciprocal vector 1
+    inv_rrr_size = 1.0/rrr_size
     total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, _rrr))
-    total_rrr_x = np.sum(np.broadcast_to(h_star_t_5, _rrr))
-    total_rrr_y = np.sum(np.broadcast_to(h_star_t_6, _rrr))
-    total_rrr_xx = np.sum(np.broadcast_to(J_star_t_11, _rrr))
-    total_rrr_zz = np.sum(np.broadcast_to(J_star_t_12, _rrr))
+    total_rrr_x = np.sum(np.broadcast_to(rrr_h_star_t, _rrr))
+    total_rrr_y = np.sum(np.broadcast_to(rrr_h_star_t_2, _rrr))
+    total_rrr_xx = np.sum(np.broadcast_to(rrr_J_star_t_3, _rrr))
+    total_rrr_zz = np.sum(np.broadcast_to(rrr_J_star_t_4, _rrr))
     total_rrr_x_2 = np.sum(np.broadcast_to(rrr_platform_point_x, _rrr))
     total_rrr_y_2 = np.sum(np.broadcast_to(rrr_platform_point_y, _rrr))
-    total_rrr_2 = np.sum(np.broadcast_to(size_rrr_t, _rrr))
-    # (L1) mass of the platform with the gathered masses
+    total_rrr_2 = np.sum(np.broadcast_to(rrr_size_t, _rrr))
+    # (m_star) mass of the platform with the gathered masses
     m_star = platform_mass + total_prrr + total_rrr
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_x = h_star_t + total_prrr_x + total_rrr_x
     h_star_y = h_star_t_2 + total_prrr_y + total_rrr_y
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_xx = J_star_t_3 + total_prrr_xx + total_rrr_xx
-    J_star_zz = J_star_t_4 + platform_inertia_zz + total_prrr_zz + total_rrr_zz
-    J_star_t_13 = J_star_xx - J_star_zz
-    J_star_t_14 = J_star_t_13 - J_star_xx
-    # (M4) centripetal force and weight of the platform
+    J_star_t_5 = J_star_xx - J_star_t_4 - platform_inertia_zz - total_prrr_zz - total_rrr_zz
+    J_star_t_6 = J_star_t_5 - J_star_xx
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
-    # (C1) centroid of the platform points
+    # (b_c) centroid of the platform points
     b_c_x = 0.3333333333333333*total_prrr_x_2 + 0.3333333333333333*total_rrr_x_2
     b_c_y = 0.3333333333333333*total_prrr_y_2 + 0.3333333333333333*total_rrr_y_2
-    # (C3) rms size of the legs, taken where the platform points coincide
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     legs_size = sqrt(0.3333333333333333*total_prrr_2 + 0.3333333333333333*total_rrr_2)
     return {
         "dynamics": (
-        (J_star_t_14, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
+        (J_star_t_6, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
                 (_prrr,
-        (J_2_prrr_zz, J_3_prrr_zz, Jc_2_prrr_zz, Kd_2_prrr_t_2, Kd_2_prrr_t_3, P_c1_prrr_t,
-                    branch_2_prrr, d_G_prrr_t, d_Gamma_2_prrr_t, d_Gamma_2_prrr_y, d_c_prrr_yy,
-                    d_phi_3_prrr_t, f_1_prrr_o_x, g_r0_x, g_r0_y, h_2_prrr_x, h_2_prrr_y,
-                    h_3_prrr_x, h_3_prrr_y, inv_Kd_2_prrr_t, inv_prrr_platform_joint_offset_x,
-                    inv_uu_3_prrr_t, prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx,
-                    prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y,
-                    prrr_joint3_offset_x, prrr_link2_mass, prrr_platform_joint_offset_x,
-                    prrr_platform_point_x, prrr_platform_point_y, rho2_2_prrr_t, size_prrr,),
+        (inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_platform_joint_offset_x, prrr_J_2_zz,
+                    prrr_J_3_zz, prrr_Jc_2_zz, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_P_c_1_t,
+                    prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx,
+                    prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y, prrr_branch_2,
+                    prrr_d_G_t, prrr_d_Gamma_3_t, prrr_d_Gamma_3_y, prrr_d_c_yy, prrr_d_phi_3_t,
+                    prrr_f_1_o_x, prrr_g_r0_x, prrr_g_r0_y, prrr_h_2_x, prrr_h_2_y, prrr_h_3_x,
+                    prrr_h_3_y, prrr_joint3_offset_x, prrr_link2_mass,
+                    prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y,
+                    prrr_rho2_2_t, prrr_size,),
                 ),
                 (_rrr,
-        (J_1_rrr_zz, J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr,
-                    d_Gamma_1_rrr_t, d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, g_r0_x_2,
-                    g_r0_y_2, h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+                    rrr_J_2_zz, rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+                    rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+                    rrr_base_point_y, rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy,
+                    rrr_d_phi_2_t, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
+                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_14, h_star_x, h_star_y, m_star,),
+        (J_star_t_6, h_star_x, h_star_y, m_star,),
             (
                 (_prrr,
-        (J_3_prrr_zz, Jc_2_prrr_zz, Kd_2_prrr_t_2, Kd_2_prrr_t_3, P_c1_prrr_t, branch_2_prrr,
-                    d_G_prrr_t, d_Gamma_2_prrr_t, d_Gamma_2_prrr_y, d_c_prrr_yy, d_phi_3_prrr_t,
-                    h_2_prrr_x, h_2_prrr_y, h_3_prrr_y, inv_Kd_2_prrr_t,
-                    inv_prrr_platform_joint_offset_x, inv_uu_3_prrr_t, prrr_base_frame_xx,
+        (inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_platform_joint_offset_x, prrr_J_3_zz,
+                    prrr_Jc_2_zz, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_P_c_1_t, prrr_base_frame_xx,
                     prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
-                    prrr_base_point_y, prrr_joint3_offset_x, prrr_platform_joint_offset_x,
-                    prrr_platform_point_x, prrr_platform_point_y, rho2_2_prrr_t, size_prrr,),
+                    prrr_base_point_y, prrr_branch_2, prrr_d_G_t, prrr_d_Gamma_3_t,
+                    prrr_d_Gamma_3_y, prrr_d_c_yy, prrr_d_phi_3_t, prrr_h_2_x, prrr_h_2_y,
+                    prrr_h_3_y, prrr_joint3_offset_x, prrr_platform_joint_offset_x,
+                    prrr_platform_point_x, prrr_platform_point_y, prrr_rho2_2_t, prrr_size,),
                 ),
                 (_rrr,
-        (J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, d_Gamma_1_rrr_t,
-                    d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_2_zz,
+                    rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+                    rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy, rrr_d_phi_2_t,
+                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
@@ -836,22 +846,21 @@ def _prepare(p):
         (Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y,),
             (
                 (_prrr,
-        (J_2_prrr_zz, J_3_prrr_zz, Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, f_1_prrr_o_x,
-                    g_r0_x, g_r0_y, h_2_prrr_x, h_2_prrr_y, h_3_prrr_x, h_3_prrr_y,
-                    inv_Kd_2_prrr_t, inv_prrr_platform_joint_offset_x, inv_uu_3_prrr_t,
-                    prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx,
-                    prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y,
-                    prrr_joint3_offset_x, prrr_link2_mass, prrr_platform_joint_offset_x,
-                    prrr_platform_point_x, prrr_platform_point_y, rho2_2_prrr_t, size_prrr,),
+        (inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_platform_joint_offset_x, prrr_J_2_zz,
+                    prrr_J_3_zz, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_base_frame_xx,
+                    prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
+                    prrr_base_point_y, prrr_branch_2, prrr_f_1_o_x, prrr_g_r0_x, prrr_g_r0_y,
+                    prrr_h_2_x, prrr_h_2_y, prrr_h_3_x, prrr_h_3_y, prrr_joint3_offset_x,
+                    prrr_link2_mass, prrr_platform_joint_offset_x, prrr_platform_point_x,
+                    prrr_platform_point_y, prrr_rho2_2_t, prrr_size,),
                 ),
                 (_rrr,
-        (J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
-                    h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+                    rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+                    rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
+                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
@@ -859,41 +868,40 @@ def _prepare(p):
         (),
             (
                 (_prrr,
-        (Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, inv_Kd_2_prrr_t, inv_uu_3_prrr_t,
-                    prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx,
-                    prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y,
-                    prrr_joint3_offset_x, prrr_platform_joint_offset_x, prrr_platform_point_x,
-                    prrr_platform_point_y, rho2_2_prrr_t, size_prrr,),
+        (inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_base_frame_xx,
+                    prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
+                    prrr_base_point_y, prrr_branch_2, prrr_joint3_offset_x,
+                    prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y,
+                    prrr_rho2_2_t, prrr_size,),
                 ),
                 (_rrr,
-        (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+                    rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+                    rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x,
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+                    rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
         "required": (
-        (J_star_zz, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
+        (J_star_t_6, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
                 (_prrr,
-        (J_2_prrr_zz, J_3_prrr_zz, Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, g_r0_x, g_r0_y,
-                    h_2_prrr_x, h_2_prrr_y, h_3_prrr_x, h_3_prrr_y, inv_Kd_2_prrr_t,
-                    inv_prrr_platform_joint_offset_x, inv_uu_3_prrr_t, prrr_base_frame_xx,
+        (inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_platform_joint_offset_x, prrr_J_2_zz,
+                    prrr_J_3_zz, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_base_frame_xx,
                     prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
-                    prrr_base_point_y, prrr_joint3_offset_x, prrr_link1_mass, prrr_link2_mass,
-                    prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y,
-                    rho2_2_prrr_t, size_prrr,),
+                    prrr_base_point_y, prrr_branch_2, prrr_g_r0_x, prrr_g_r0_y, prrr_h_2_x,
+                    prrr_h_2_y, prrr_h_3_x, prrr_h_3_y, prrr_joint3_offset_x, prrr_link1_mass,
+                    prrr_link2_mass, prrr_platform_joint_offset_x, prrr_platform_point_x,
+                    prrr_platform_point_y, prrr_rho2_2_t, prrr_size,),
                 ),
                 (_rrr,
-        (J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
-                    h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+                    rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+                    rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
+                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
@@ -901,17 +909,18 @@ def _prepare(p):
         (),
             (
                 (_prrr,
-        (Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, inv_Kd_2_prrr_t, inv_uu_3_prrr_t,
-                    prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx,
-                    prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y,
-                    prrr_joint3_offset_x, prrr_platform_joint_offset_x, prrr_platform_point_x,
-                    prrr_platform_point_y, rho2_2_prrr_t,),
+        (inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_base_frame_xx,
+                    prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
+                    prrr_base_point_y, prrr_branch_2, prrr_joint3_offset_x,
+                    prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y,
+                    prrr_rho2_2_t,),
                 ),
                 (_rrr,
-        (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+                    rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+                    rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    rrr_rho2_1_t,),
                 ),
             ),
         ),
@@ -919,19 +928,18 @@ def _prepare(p):
         (),
             (
                 (_prrr,
-        (Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, inv_Kd_2_prrr_t,
-                    inv_prrr_platform_joint_offset_x, inv_uu_3_prrr_t, prrr_base_frame_xx,
-                    prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
-                    prrr_base_point_y, prrr_joint3_offset_x, prrr_platform_joint_offset_x,
-                    prrr_platform_point_x, prrr_platform_point_y, rho2_2_prrr_t, size_prrr,),
+        (inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_platform_joint_offset_x, prrr_Kd_2_t_2,
+                    prrr_Kd_2_t_4, prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx,
+                    prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y, prrr_branch_2,
+                    prrr_joint3_offset_x, prrr_platform_joint_offset_x, prrr_platform_point_x,
+                    prrr_platform_point_y, prrr_rho2_2_t, prrr_size,),
                 ),
                 (_rrr,
-        (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
-                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
+                    rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+                    rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+                    rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
@@ -939,19 +947,18 @@ def _prepare(p):
         (),
             (
                 (_prrr,
-        (Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, inv_Kd_2_prrr_t,
-                    inv_prrr_platform_joint_offset_x, inv_uu_3_prrr_t, prrr_base_frame_xx,
-                    prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
-                    prrr_base_point_y, prrr_joint3_offset_x, prrr_platform_joint_offset_x,
-                    prrr_platform_point_x, prrr_platform_point_y, rho2_2_prrr_t, size_prrr,),
+        (inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_platform_joint_offset_x, prrr_Kd_2_t_2,
+                    prrr_Kd_2_t_4, prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx,
+                    prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y, prrr_branch_2,
+                    prrr_joint3_offset_x, prrr_platform_joint_offset_x, prrr_platform_point_x,
+                    prrr_platform_point_y, prrr_rho2_2_t, prrr_size,),
                 ),
                 (_rrr,
-        (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
-                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
+                    rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+                    rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+                    rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
@@ -959,22 +966,21 @@ def _prepare(p):
         (gravity_x, gravity_y,),
             (
                 (_prrr,
-        (J_2_prrr_zz, J_3_prrr_zz, Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, g_r0_x, g_r0_y,
-                    h_2_prrr_x, h_2_prrr_y, h_3_prrr_x, h_3_prrr_y, inv_Kd_2_prrr_t,
-                    inv_prrr_platform_joint_offset_x, inv_uu_3_prrr_t, prrr_base_frame_xx,
+        (inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_platform_joint_offset_x, prrr_J_2_zz,
+                    prrr_J_3_zz, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_base_frame_xx,
                     prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
-                    prrr_base_point_y, prrr_joint3_offset_x, prrr_link3_mass,
+                    prrr_base_point_y, prrr_branch_2, prrr_g_r0_x, prrr_g_r0_y, prrr_h_2_x,
+                    prrr_h_2_y, prrr_h_3_x, prrr_h_3_y, prrr_joint3_offset_x, prrr_link3_mass,
                     prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y,
-                    rho2_2_prrr_t, size_prrr,),
+                    prrr_rho2_2_t, prrr_size,),
                 ),
                 (_rrr,
-        (J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
-                    h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_link2_mass,
-                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-                    size_rrr,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+                    rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+                    rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
+                    rrr_h_2_y, rrr_joint2_offset_x, rrr_link2_mass, rrr_platform_joint_offset_x,
+                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
@@ -982,21 +988,21 @@ def _prepare(p):
         (gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
                 (_prrr,
-        (Kd_2_prrr_t_2, Kd_2_prrr_t_3, b_prrr_r0_x, branch_2_prrr, g_r0_x, g_r0_y, h_1_prrr_x,
-                    h_1_prrr_y, h_2_prrr_x, h_2_prrr_y, h_3_prrr_x, h_3_prrr_y, inv_Kd_2_prrr_t,
-                    inv_uu_3_prrr_t, potential_t, potential_t_2, prrr_base_frame_xx,
-                    prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
-                    prrr_base_point_y, prrr_joint3_offset_x, prrr_link1_mass, prrr_link2_mass,
-                    prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y,
-                    rho2_2_prrr_t,),
+        (inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_b_r0_x,
+                    prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx,
+                    prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y, prrr_branch_2,
+                    prrr_g_r0_x, prrr_g_r0_y, prrr_h_1_x, prrr_h_1_y, prrr_h_2_x, prrr_h_2_y,
+                    prrr_h_3_x, prrr_h_3_y, prrr_joint3_offset_x, prrr_link1_mass,
+                    prrr_link2_mass, prrr_platform_joint_offset_x, prrr_platform_point_x,
+                    prrr_platform_point_y, prrr_potential_t, prrr_potential_t_2, prrr_rho2_2_t,),
                 ),
                 (_rrr,
-        (Kd_1_rrr_t_2, Kd_1_rrr_t_3, b_rrr_r0_x, b_rrr_r0_y, branch_1_rrr, g_r0_x_2, g_r0_y_2,
-                    h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t,
-                    rho2_1_rrr_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_b_r0_x, rrr_b_r0_y,
+                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
+                    rrr_base_point_x, rrr_base_point_y, rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y,
+                    rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y, rrr_joint2_offset_x,
                     rrr_link1_mass, rrr_platform_joint_offset_x, rrr_platform_point_x,
-                    rrr_platform_point_y,),
+                    rrr_platform_point_y, rrr_rho2_1_t,),
                 ),
             ),
         ),
@@ -1004,25 +1010,26 @@ def _prepare(p):
         (b_c_x, b_c_y, legs_size,),
             (
                 (_prrr,
-        (Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, inv_Kd_2_prrr_t, inv_rho2_2_prrr_t_4,
-                    inv_size_prrr, inv_uu_3_prrr_t, prrr_base_frame_xx, prrr_base_frame_xy,
-                    prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y,
+        (inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_rho2_2_t_4, inv_prrr_size, prrr_Kd_2_t_2,
+                    prrr_Kd_2_t_4, prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx,
+                    prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y, prrr_branch_2,
                     prrr_joint3_offset_x, prrr_platform_joint_offset_x, prrr_platform_point_x,
-                    prrr_platform_point_y, rho2_2_prrr_t, size_prrr,),
+                    prrr_platform_point_y, prrr_rho2_2_t, prrr_size,),
                 ),
                 (_rrr,
-        (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_rho2_1_rrr_t_4,
-                    inv_size_rrr, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
-                    rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-                    rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-                    rrr_platform_point_x, rrr_platform_point_y, size_rrr,),
+        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_rho2_1_t_4, inv_rrr_size, rrr_Kd_1_t_2,
+                    rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+                    rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+                    rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
             ),
         ),
     }
 
 
-_FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
+_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
@@ -1068,17 +1075,19 @@ class _Floats:
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
-        for k in range(self.states):
-            try:
-                ok, arrays = function(self, *(row[k] for row in rows))
-            except (ZeroDivisionError, OverflowError):
-                continue
-            if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
-                for a, array in zip(found, arrays):
-                    a[k] = array
-        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
+        found = [self.state(function, names, [row[k] for row in rows]) for k in range(self.states)]
+        return [np.array(a).T.reshape(*_SHAPES[n], self.states) for a, n in zip(zip(*found), names)]
+
+    def state(self, function, names, given):
+        """Lists that a function gives at a state."""
+        try:
+            ok, arrays = function(self, *given)
+        except (ZeroDivisionError, OverflowError):
+            ok = False
+        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+            return arrays
+        return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
 
 
 class _Arrays:
@@ -1146,35 +1155,44 @@ def _mode(p, states):
     return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
 
 
-def _call(function, steps, p, *arguments, mode=_mode):
-    """What the steps give at arguments (name, value, shape of a state, default, rule)."""
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+    """What the steps give at arguments (name, value, shape of a state, default, rule).
+
+    Where that may be infinite only NaN makes a state impossible.
+    """
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
     lead, p = _lead(leads), _given(p)
     read = [a[4:] != ("unused",) for a in arguments]
     if lead or mode is _Judged:
-        results = _many(steps, p, lead, given, shapes, read, mode)
+        results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
-        results = _one(steps, p, given, shapes, read)
+        results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
 
 
-def _one(steps, p, given, shapes, read):
+def _one(steps, p, given, shapes, read, unbounded):
     """Results at a single state."""
     states = [v.reshape(*shape, 1) for v, shape in zip(given, shapes)]
     with np.errstate(all="ignore"):
-        results = [a[..., 0] for a in steps(_Floats(p, 1), *states)]
-    if all(all(map(math.isfinite, v.ravel().tolist())) for v in (*compress(given, read), *results)):
-        return [np.array(a)[()] for a in results]
+        results = [a[..., 0].copy() for a in steps(_Floats(p, 1), *states)]
+    looked_at = [np.minimum(a, 0.0) for a in results] if unbounded else results
+    entries = (v.ravel().tolist() for v in (*compress(given, read), *looked_at))
+    if all(all(map(math.isfinite, row)) for row in entries):
+        return [a[()] for a in results]
     return [np.full(a.shape, np.nan)[()] for a in results]
 
 
-def _many(steps, p, lead, given, shapes, read, mode):
+def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block."""
     count = math.prod(lead)
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
+    if count > _BLOCK:
+        # Never touched, freed at once: the C library, which learns from it, then keeps the memory
+        # of intermediate arrays from block to block instead of giving its pages back.
+        np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
         for first in range(0, max(count, 1), _BLOCK):
             block = slice(first, min(first + _BLOCK, count))
@@ -1186,7 +1204,7 @@ def _many(steps, p, lead, given, shapes, read, mode):
             _all_finite(compress(states, read), good)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite(found, good)
+            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -1227,6 +1245,18 @@ def _wrapped(a, places):
     result = np.array(a)
     result[places] = np.pi - np.remainder(np.pi - a[places], 2.0 * np.pi)
     return result
+
+
+def _unlimited(a, places):
+    """a, some entries infinite; what is not known stays so."""
+    result = np.array(a)
+    result[places] += np.inf
+    return result
+
+
+def _not_negative(a):
+    """1 where no entry is negative, else 0; NaN where one is not finite."""
+    return np.where(np.isfinite(a).all(axis=0), np.all(a >= 0.0, axis=0), np.nan)
 
 
 def _rows_divided(a, b, places):
@@ -1288,8 +1318,8 @@ def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
     n, states = b.shape
     if 0 < states <= _FEW:
-        matrices, rights = np.moveaxis(a, -1, 0).tolist(), b.T.tolist()
-        return np.array([_solve_one(*each) for each in zip(matrices, rights)]).T.reshape(n, states)
+        systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
+        return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
     good = np.all((size > 0.0) & np.isfinite(size), axis=0)
     rows = np.concatenate((a, b[:, None]), axis=1)
@@ -1316,28 +1346,32 @@ def _solve(a, b):
 
 
 def _solve_one(a, b):
-    """The same for one system of nested lists."""
-    n = len(b)
-    failure = [np.nan] * n
-    for i, row in enumerate(a):
-        size = max(map(abs, row), default=0.0)
-        if not 0.0 < size < np.inf:
-            return failure
-        a[i] = [v / size for v in row] + [b[i] / size]
-    for k in range(n):
-        best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
-            a[k], a[best] = a[best], a[k]
-        if not abs(a[k][k]) > _PIVOT:
-            return failure
-        head = a[k]
-        for i in range(k + 1, n):
-            factor = a[i][k] / head[k]
-            a[i] = [v - factor * h for v, h in zip(a[i], head)]
-    x = [0.0] * n
-    for k in reversed(range(n)):
-        x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
-    return x if all(map(math.isfinite, x)) else failure
+    """The same for one system of nested lists: the rows left lose an entry at every step."""
+    rows, heads = [], []
+    for row, right in zip(a, b):
+        size = max(map(abs, row))
+        if not 0.0 < size < math.inf:
+            return [math.nan] * len(b)
+        rows.append([v / size for v in (*row, right)])
+    while rows:
+        column = [abs(row[0]) for row in rows]
+        largest = max(column)
+        if largest > _CLEARLY * column[0]:
+            best = column.index(largest)
+            rows[0], rows[best] = rows[best], rows[0]
+        pivot, *head = rows[0]
+        if not abs(pivot) > _PIVOT:
+            return [math.nan] * len(b)
+        heads.append((pivot, head))
+        for i in range(1, len(rows)):
+            first, *row = rows[i]
+            factor = first / pivot
+            rows[i] = [v - factor * h for v, h in zip(row, head)]
+        del rows[0]
+    x = []
+    for pivot, (*head, right) in reversed(heads):
+        x.insert(0, (right - sum([h * v for h, v in zip(head, x)])) / pivot)
+    return x if all(map(math.isfinite, x)) else [math.nan] * len(b)
 
 
 def _matrices(a, *others):
@@ -1448,13 +1482,13 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 435 mul, 299 add, 6 div, 3 sqrt, 0 trig
+# dynamics: 431 mul, 297 add, 6 div, 3 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("dynamics")
-    J_star_t_14, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
+    J_star_t_6, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1474,258 +1508,268 @@ def _run_dynamics(m, X, V):
     out_M = m.zeros("M")
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
-    # (P1) centripetal tensor of the platform
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_z*omega_z
-    # (M4) centripetal force and weight of the platform
+    # (Z_p) centripetal force and weight of the platform
     Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x
     Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
-    Z_q_t = (
-    h_star_x*(R_xx*gravity_y - R_yx*gravity_x) - h_star_y*(R_xx*gravity_x + R_yx*gravity_y)
-    )
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y
     sums = [0.0] * 9
     for leg, k in legs[0]:
         (
-        J_2_prrr_zz, J_3_prrr_zz, Jc_2_prrr_zz, Kd_2_prrr_t_2, Kd_2_prrr_t_3, P_c1_prrr_t,
-            branch_2_prrr, d_G_prrr_t, d_Gamma_2_prrr_t, d_Gamma_2_prrr_y, d_c_prrr_yy,
-            d_phi_3_prrr_t, f_1_prrr_o_x, g_r0_x, g_r0_y, h_2_prrr_x, h_2_prrr_y, h_3_prrr_x,
-            h_3_prrr_y, inv_Kd_2_prrr_t, inv_prrr_platform_joint_offset_x, inv_uu_3_prrr_t,
+        inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_platform_joint_offset_x, prrr_J_2_zz,
+            prrr_J_3_zz, prrr_Jc_2_zz, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_P_c_1_t,
             prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy,
-            prrr_base_point_x, prrr_base_point_y, prrr_joint3_offset_x, prrr_link2_mass,
+            prrr_base_point_x, prrr_base_point_y, prrr_branch_2, prrr_d_G_t, prrr_d_Gamma_3_t,
+            prrr_d_Gamma_3_y, prrr_d_c_yy, prrr_d_phi_3_t, prrr_f_1_o_x, prrr_g_r0_x, prrr_g_r0_y,
+            prrr_h_2_x, prrr_h_2_y, prrr_h_3_x, prrr_h_3_y, prrr_joint3_offset_x, prrr_link2_mass,
             prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y,
-            rho2_2_prrr_t, size_prrr,
+            prrr_rho2_2_t, prrr_size,
         ) = k
-        y_1_extra_prrr = X[[3][leg]]
-        yd_1_prrr = V[[3][leg]]
-        # (prrr-K1) from the base point to the connection point
-        q_prrr_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
-        q_prrr_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
-        S_prrr_x = q_prrr_in_base_x + t_x - prrr_base_point_x
-        S_prrr_y = q_prrr_in_base_y + t_y - prrr_base_point_y
-        S_prrr_r0_y = -S_prrr_x*prrr_base_frame_xx - S_prrr_y*prrr_base_frame_yx
-        # (prrr-K2) from the origin of joint 2 to the connection point
-        x_2_prrr_x = S_prrr_x*prrr_base_frame_xy + S_prrr_y*prrr_base_frame_yy - y_1_extra_prrr
-        # (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x
-        Kd_2_prrr = 0.5*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3
-        # (prrr-K7) factor of the cosine in the equation of joint 2
-        Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x
-        # (prrr-K8) factor of the sine in the equation of joint 2
-        Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x
-        # (prrr-K9) squared amplitude
-        rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr
-        # (prrr-K10) discriminant
-        disc_2_prrr = rho2_2_prrr - Kd_2_prrr*Kd_2_prrr
-        # (prrr-K11) root, with the sign of the branch
-        root_2_prrr = branch_2_prrr*sqrt(disc_2_prrr)
-        # (prrr-K17) from the origin of joint 3 to the connection point
-        x_3_prrr_x = Kd_2_prrr*inv_Kd_2_prrr_t*prrr_joint3_offset_x - prrr_joint3_offset_x
-        # (prrr-K19) cosine of the angle of joint 3 from its reference direction
-        c_3_prrr = inv_uu_3_prrr_t*prrr_platform_joint_offset_x*x_3_prrr_x
-        # (prrr-K20) sine of the angle of joint 3 from its reference direction
-        s_3_prrr = (
-        inv_Kd_2_prrr_t*inv_uu_3_prrr_t*prrr_joint3_offset_x*prrr_platform_joint_offset_x*root_2_prrr
+        prrr_y_1_extra = X[[3][leg]]
+        prrr_yd_1 = V[[3][leg]]
+        # (prrr-S) from the base point to the connection point
+        prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
+        prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
+        prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x
+        prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y
+        prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
+        # (prrr-x_2) from the origin of joint 2 to the connection point
+        prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        # (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x
+        prrr_Kd_2 = 0.5*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4
+        # (prrr-Kc_2) factor of the cosine in the equation of joint 2
+        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x
+        # (prrr-Ks_2) factor of the sine in the equation of joint 2
+        prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x
+        # (prrr-rho2_2) squared amplitude
+        prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
+        # (prrr-disc_2) discriminant
+        prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2
+        # (prrr-root_2) root, with the sign of the branch
+        prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
+        # (prrr-x_3) from the origin of joint 3 to the connection point
+        prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
+        # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
+        prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x
+        # (prrr-s_3) sine of the angle of joint 3 from its reference direction
+        prrr_s_3 = (
+        inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
         )
-        # (prrr-V2) from joint 2 to the connection point, along the links
-        r_2_prrr_t = prrr_platform_joint_offset_x*s_3_prrr
-        r_2_prrr_x = prrr_joint3_offset_x + c_3_prrr*prrr_platform_joint_offset_x
-        r_2_prrr_r0_x = c_3_prrr*r_2_prrr_x + r_2_prrr_t*s_3_prrr
-        r_2_prrr_r0_y = r_2_prrr_x*s_3_prrr - c_3_prrr*r_2_prrr_t
-        # (prrr-K12) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2_prrr = 1.0/rho2_2_prrr
-        c_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*Kd_2_prrr - Ks_2_prrr*root_2_prrr)
-        # (prrr-K13) sine of the angle of joint 2 from its reference direction
-        s_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*root_2_prrr + Kd_2_prrr*Ks_2_prrr)
-        # (prrr-V5) reciprocal vector 1
-        axis_y_prrr_axes3_r1_x = c_2_prrr*s_3_prrr - c_3_prrr*s_2_prrr
-        axis_y_prrr_axes3_r1_y = c_2_prrr*c_3_prrr + s_2_prrr*s_3_prrr
+        # (prrr-r_2) from joint 2 to the connection point, along the links
+        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3
+        prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
+        prrr_r_2_r0_x = prrr_c_3*prrr_r_2_x + prrr_r_2_t*prrr_s_3
+        prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_r_2_t
+        # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_prrr_rho2_2 = 1.0/prrr_rho2_2
+        prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2)
+        # (prrr-s_2) sine of the angle of joint 2 from its reference direction
+        prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2)
+        # (prrr-w_2) reciprocal vector 1
+        axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2
+        axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3
         axis_y_prrr_axes3_in_base_x = (
         axis_y_prrr_axes3_r1_x*prrr_base_frame_xy - axis_y_prrr_axes3_r1_y*prrr_base_frame_xx
         )
         axis_y_prrr_axes3_in_base_y = (
         axis_y_prrr_axes3_r1_x*prrr_base_frame_yy - axis_y_prrr_axes3_r1_y*prrr_base_frame_yx
         )
-        inv_r_2_prrr_r0_y = 1.0/r_2_prrr_r0_y
-        # (prrr-V6) reciprocal vector 2
-        w_3_prrr_t = inv_prrr_platform_joint_offset_x*inv_r_2_prrr_r0_y*r_2_prrr_r0_x
-        # (prrr-N42) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_prrr_t_2 = d_Gamma_2_prrr_t*r_2_prrr_r0_x
-        d_Gamma_2_prrr_x = -h_3_prrr_y - inv_r_2_prrr_r0_y*(Jc_2_prrr_zz - d_Gamma_2_prrr_t_2)
-        # (prrr-N31) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        d_Gamma_3_prrr_x = -h_3_prrr_y - inv_r_2_prrr_r0_y*(J_3_prrr_zz - d_Gamma_2_prrr_t_2)
-        # (prrr-N52) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_prrr_xx = d_Gamma_3_prrr_x*w_3_prrr_t - d_Gamma_2_prrr_x*inv_r_2_prrr_r0_y
-        d_G_prrr_xy = d_Gamma_2_prrr_y*w_3_prrr_t - d_Gamma_2_prrr_y*inv_r_2_prrr_r0_y
-        # (prrr-N55) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_prrr_xy = d_phi_3_prrr_t - d_G_prrr_xy
-        # (prrr-N57) inertia of the leg at the connection point, without the mass gathered there
-        Q_prrr_t = h_3_prrr_y*(w_3_prrr_t - inv_r_2_prrr_r0_y) - d_G_prrr_xx - d_c_prrr_yy
-        Q_prrr_t_2 = 0.5*Q_prrr_t
-        Q_prrr_t_3 = (
-        Q_prrr_t_2*axis_y_prrr_axes3_in_base_y + axis_y_prrr_axes3_in_base_x*d_c_prrr_xy
+        inv_prrr_r_2_r0_y = 1.0/prrr_r_2_r0_y
+        # (prrr-w_3) reciprocal vector 2
+        prrr_w_3_t = inv_prrr_platform_joint_offset_x*inv_prrr_r_2_r0_y*prrr_r_2_r0_x
+        # (prrr-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        prrr_d_Gamma_3_t_2 = prrr_d_Gamma_3_t*prrr_r_2_r0_x
+        prrr_d_Gamma_3_x = -prrr_h_3_y - inv_prrr_r_2_r0_y*(prrr_J_3_zz - prrr_d_Gamma_3_t_2)
+        # (prrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        prrr_d_Gamma_2_x = -prrr_h_3_y - inv_prrr_r_2_r0_y*(prrr_Jc_2_zz - prrr_d_Gamma_3_t_2)
+        # (prrr-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        prrr_d_G_xx = prrr_d_Gamma_3_x*prrr_w_3_t - inv_prrr_r_2_r0_y*prrr_d_Gamma_2_x
+        prrr_d_G_xy = prrr_d_Gamma_3_y*prrr_w_3_t - inv_prrr_r_2_r0_y*prrr_d_Gamma_3_y
+        # (prrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        prrr_d_c_xy = prrr_d_phi_3_t - prrr_d_G_xy
+        # (prrr-Q) inertia of the leg at the connection point, without the mass gathered there
+        prrr_Q_t = prrr_h_3_y*(prrr_w_3_t - inv_prrr_r_2_r0_y) - prrr_d_G_xx - prrr_d_c_yy
+        prrr_Q_t_2 = 0.5*prrr_Q_t
+        prrr_Q_t_3 = (
+        axis_y_prrr_axes3_in_base_x*prrr_d_c_xy + axis_y_prrr_axes3_in_base_y*prrr_Q_t_2
         )
-        Q_prrr_t_4 = (
-        Q_prrr_t_2*axis_y_prrr_axes3_in_base_x - axis_y_prrr_axes3_in_base_y*d_c_prrr_xy
+        prrr_Q_t_4 = (
+        axis_y_prrr_axes3_in_base_x*prrr_Q_t_2 - axis_y_prrr_axes3_in_base_y*prrr_d_c_xy
         )
-        Q_prrr_t_5 = d_c_prrr_yy + 2.0*Q_prrr_t_3*axis_y_prrr_axes3_in_base_y
-        Q_prrr_t_6 = (
-        Q_prrr_t_3*axis_y_prrr_axes3_in_base_x + Q_prrr_t_4*axis_y_prrr_axes3_in_base_y
+        prrr_Q_t_5 = prrr_d_c_yy + 2.0*axis_y_prrr_axes3_in_base_y*prrr_Q_t_3
+        prrr_Q_t_6 = (
+        axis_y_prrr_axes3_in_base_x*prrr_Q_t_3 + axis_y_prrr_axes3_in_base_y*prrr_Q_t_4
         )
-        Q_prrr_t_7 = d_c_prrr_yy + 2.0*Q_prrr_t_4*axis_y_prrr_axes3_in_base_x
-        # (M2) coupling block of M
-        M_ta_t = Q_prrr_t_5*q_prrr_in_base_y + Q_prrr_t_6*q_prrr_in_base_x
-        M_ta_t_2 = Q_prrr_t_6*q_prrr_in_base_y + Q_prrr_t_7*q_prrr_in_base_x
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t*q_prrr_in_base_y + M_ta_t_2*q_prrr_in_base_x
-        # (prrr-N6) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x = c_2_prrr*g_r0_x + g_r0_y*s_2_prrr
-        g_r1_y = c_2_prrr*g_r0_y - g_r0_x*s_2_prrr
-        # (prrr-V1) velocity of the connection point
-        S_dot_prrr_t = omega_z*q_prrr_in_base_y
-        S_dot_prrr_t_2 = omega_z*q_prrr_in_base_x
-        S_dot_prrr_x = t_dot_x - S_dot_prrr_t
-        S_dot_prrr_y = S_dot_prrr_t_2 + t_dot_y
-        # (prrr-V7) velocity of the connection point left to the joints that are not extra
-        S_dot_rest_prrr_x = S_dot_prrr_x - prrr_base_frame_xy*yd_1_prrr
-        S_dot_rest_prrr_y = S_dot_prrr_y - prrr_base_frame_yy*yd_1_prrr
-        # (prrr-V8) rate of joint 2
-        qd_2_prrr = (
-        inv_r_2_prrr_r0_y*(S_dot_rest_prrr_x*axis_y_prrr_axes3_in_base_y -
-            S_dot_rest_prrr_y*axis_y_prrr_axes3_in_base_x)
+        prrr_Q_t_7 = prrr_d_c_yy + 2.0*axis_y_prrr_axes3_in_base_x*prrr_Q_t_4
+        # (M_ta) coupling block of M
+        prrr_M_ta_t = prrr_Q_t_5*prrr_q_in_base_y + prrr_Q_t_6*prrr_q_in_base_x
+        prrr_M_ta_t_2 = prrr_Q_t_6*prrr_q_in_base_y + prrr_Q_t_7*prrr_q_in_base_x
+        # (M_aa) rotational block of M
+        prrr_M_aa_t = prrr_M_ta_t*prrr_q_in_base_y + prrr_M_ta_t_2*prrr_q_in_base_x
+        # (prrr-S_dot) velocity of the connection point
+        prrr_S_dot_t = omega_z*prrr_q_in_base_y
+        prrr_S_dot_t_2 = omega_z*prrr_q_in_base_x
+        prrr_S_dot_x = t_dot_x - prrr_S_dot_t
+        prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y
+        # (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra
+        prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1
+        prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1
+        # (prrr-qd_3) rate of joint 3
+        prrr_qd_2 = (
+        inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_x -
+            axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_y)
         )
-        # (prrr-V12) angular velocity of link 3
-        omega_3_prrr_z = (
-        inv_prrr_platform_joint_offset_x*(S_dot_rest_prrr_x*axis_y_prrr_axes3_in_base_x +
-            S_dot_rest_prrr_y*axis_y_prrr_axes3_in_base_y + qd_2_prrr*r_2_prrr_r0_x) - qd_2_prrr
+        # (prrr-omega_3) angular velocity of link 3
+        prrr_omega_3_z = (
+        inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_x +
+            axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_y + prrr_qd_2*prrr_r_2_r0_x) - prrr_qd_2
         )
-        # (prrr-V11) centripetal tensor of link 2
-        W_2_prrr_t = qd_2_prrr*qd_2_prrr
-        # (prrr-V13) centripetal tensor of link 3
-        W_3_prrr_t = omega_3_prrr_z*omega_3_prrr_z
-        # (prrr-A5) acceleration of the connection point at zero joint accelerations
-        bias_prrr_x = (
-        -W_3_prrr_t*prrr_platform_joint_offset_x - W_2_prrr_t*c_3_prrr*prrr_joint3_offset_x
+        # (prrr-u_1) centripetal acceleration of the connection point
+        prrr_u_1_t = omega_z*prrr_S_dot_t_2
+        prrr_u_1_t_2 = omega_z*prrr_S_dot_t
+        # (prrr-W_2) centripetal tensor of link 2
+        prrr_W_2_t = prrr_qd_2*prrr_qd_2
+        # (prrr-W_3) centripetal tensor of link 3
+        prrr_W_3_t = prrr_omega_3_z*prrr_omega_3_z
+        # (prrr-bias) acceleration of the connection point at zero joint accelerations
+        prrr_bias_x = (
+        -prrr_W_3_t*prrr_platform_joint_offset_x - prrr_W_2_t*prrr_c_3*prrr_joint3_offset_x
         )
-        # (prrr-A1) centripetal acceleration of the connection point
-        u_1_prrr_t = S_dot_prrr_t_2*omega_z
-        u_1_prrr_t_2 = S_dot_prrr_t*omega_z
-        u_1_prrr_tip_x = (
-        axis_y_prrr_axes3_in_base_x*u_1_prrr_t_2 - axis_y_prrr_axes3_in_base_y*u_1_prrr_t
+        # (prrr-u_1) centripetal acceleration of the connection point
+        prrr_u_1_tip_x = (
+        axis_y_prrr_axes3_in_base_x*prrr_u_1_t_2 - axis_y_prrr_axes3_in_base_y*prrr_u_1_t
         )
-        u_1_prrr_tip_y = (
-        -axis_y_prrr_axes3_in_base_x*u_1_prrr_t - axis_y_prrr_axes3_in_base_y*u_1_prrr_t_2
+        prrr_u_1_tip_y = (
+        -axis_y_prrr_axes3_in_base_x*prrr_u_1_t - axis_y_prrr_axes3_in_base_y*prrr_u_1_t_2
         )
-        # (prrr-A8) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_prrr_o_x = u_1_prrr_tip_x - bias_prrr_x
-        rel_prrr_o_y = u_1_prrr_tip_y + W_2_prrr_t*prrr_joint3_offset_x*s_3_prrr
-        # (prrr-A11) remainder without the acceleration in: acceleration of joint 2
-        qdd_2_prrr_o = inv_r_2_prrr_r0_y*rel_prrr_o_x
-        # (prrr-N37) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_prrr_o_z = g_r1_x*h_2_prrr_y - J_2_prrr_zz*qdd_2_prrr_o - g_r1_y*h_2_prrr_x
-        # (prrr-N12) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        acc_3_prrr_o_x = u_1_prrr_tip_x + g_r1_y*s_3_prrr - c_3_prrr*g_r1_x
-        acc_3_prrr_o_y = u_1_prrr_tip_y - c_3_prrr*g_r1_y - g_r1_x*s_3_prrr
-        # (prrr-A21) remainder without the acceleration in: angular acceleration of link 3
-        alpha_3_prrr_o_z = (
-        inv_prrr_platform_joint_offset_x*(rel_prrr_o_y + qdd_2_prrr_o*r_2_prrr_r0_x) -
-            qdd_2_prrr_o
+        # (prrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        prrr_rel_o_x = prrr_u_1_tip_x - prrr_bias_x
+        prrr_rel_o_y = prrr_u_1_tip_y + prrr_W_2_t*prrr_joint3_offset_x*prrr_s_3
+        # (prrr-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
+        prrr_qdd_2_o = inv_prrr_r_2_r0_y*prrr_rel_o_x
+        # (prrr-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        prrr_alpha_3_o_z = (
+        inv_prrr_platform_joint_offset_x*(prrr_rel_o_y + prrr_qdd_2_o*prrr_r_2_r0_x) -
+            prrr_qdd_2_o
         )
-        # (prrr-N29) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        mu_3_prrr_o_z = (
-        J_3_prrr_zz*alpha_3_prrr_o_z + acc_3_prrr_o_y*h_3_prrr_x - acc_3_prrr_o_x*h_3_prrr_y
+        # (prrr-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        prrr_acc_3_o_x = (
+        prrr_u_1_tip_x + axis_y_prrr_axes3_in_base_x*gravity_y -
+            axis_y_prrr_axes3_in_base_y*gravity_x
         )
-        # (prrr-N39) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_prrr_o_z = mu_2_prrr_o_z + mu_3_prrr_o_z
-        # (prrr-N53) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_prrr_o_t = inv_prrr_platform_joint_offset_x*mu_3_prrr_o_z
-        G_prrr_o_t_2 = inv_r_2_prrr_r0_y*(G_prrr_o_t*r_2_prrr_r0_x - N_2_prrr_o_z)
-        # (prrr-N56) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_prrr_o_x = W_3_prrr_t*h_3_prrr_x + alpha_3_prrr_o_z*h_3_prrr_y - G_prrr_o_t_2
-        c_prrr_o_y = W_3_prrr_t*h_3_prrr_y - G_prrr_o_t - alpha_3_prrr_o_z*h_3_prrr_x
-        # (prrr-N58) velocity and gravity terms of the leg force
-        U_prrr_in_base_x = (
-        -axis_y_prrr_axes3_in_base_x*c_prrr_o_y - axis_y_prrr_axes3_in_base_y*c_prrr_o_x
+        prrr_acc_3_o_y = (
+        prrr_u_1_tip_y - axis_y_prrr_axes3_in_base_x*gravity_x -
+            axis_y_prrr_axes3_in_base_y*gravity_y
         )
-        U_prrr_in_base_y = (
-        axis_y_prrr_axes3_in_base_x*c_prrr_o_x - axis_y_prrr_axes3_in_base_y*c_prrr_o_y
+        # (prrr-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        prrr_mu_3_o_z = (
+        prrr_J_3_zz*prrr_alpha_3_o_z + prrr_acc_3_o_y*prrr_h_3_x - prrr_acc_3_o_x*prrr_h_3_y
         )
-        # (M7) rotational part of Z
-        Z_a_t = U_prrr_in_base_y*q_prrr_in_base_x - U_prrr_in_base_x*q_prrr_in_base_y
-        # (prrr-N10) remainder without the acceleration in: inertia force of link 2 less its weight
-        f_2_prrr_o_x = h_2_prrr_y*qdd_2_prrr_o - W_2_prrr_t*h_2_prrr_x - g_r1_x*prrr_link2_mass
-        f_2_prrr_o_y = -W_2_prrr_t*h_2_prrr_y - g_r1_y*prrr_link2_mass - h_2_prrr_x*qdd_2_prrr_o
-        # (prrr-N45) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
-        T_1_prrr_o_x = c_2_prrr*f_2_prrr_o_x - f_1_prrr_o_x - f_2_prrr_o_y*s_2_prrr
-        # (prrr-N63) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
-        P_1_prrr_o_t = G_prrr_o_t*axis_y_prrr_axes3_r1_x + G_prrr_o_t_2*axis_y_prrr_axes3_r1_y
-        P_1_prrr_o = T_1_prrr_o_x - P_1_prrr_o_t
-        # (prrr-N20) force that accelerates joint 2, per unit
-        P_c2_prrr_r0_x = -c_2_prrr*h_2_prrr_y - h_2_prrr_x*s_2_prrr
-        # (prrr-N62) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
-        d_P_1_prrr_t = axis_y_prrr_axes3_r1_x*d_G_prrr_t + axis_y_prrr_axes3_r1_y*d_G_prrr_xy
-        d_P_1_prrr_x = (
-        -P_c2_prrr_r0_x*inv_r_2_prrr_r0_y - axis_y_prrr_axes3_r1_y*d_G_prrr_xx -
-            axis_y_prrr_axes3_r1_x*d_Gamma_3_prrr_x*inv_prrr_platform_joint_offset_x
+        # (prrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        prrr_g_r1_x = prrr_c_2*prrr_g_r0_x + prrr_g_r0_y*prrr_s_2
+        prrr_g_r1_y = prrr_c_2*prrr_g_r0_y - prrr_g_r0_x*prrr_s_2
+        # (prrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        prrr_mu_2_o_z = prrr_g_r1_x*prrr_h_2_y - prrr_J_2_zz*prrr_qdd_2_o - prrr_g_r1_y*prrr_h_2_x
+        # (prrr-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        prrr_N_2_o_z = prrr_mu_2_o_z + prrr_mu_3_o_z
+        # (prrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        prrr_G_o_t = inv_prrr_platform_joint_offset_x*prrr_mu_3_o_z
+        prrr_G_o_t_2 = inv_prrr_r_2_r0_y*(prrr_G_o_t*prrr_r_2_r0_x - prrr_N_2_o_z)
+        # (prrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        prrr_c_o_x = prrr_W_3_t*prrr_h_3_x + prrr_alpha_3_o_z*prrr_h_3_y - prrr_G_o_t_2
+        prrr_c_o_y = prrr_W_3_t*prrr_h_3_y - prrr_G_o_t - prrr_alpha_3_o_z*prrr_h_3_x
+        # (prrr-U) velocity and gravity terms of the leg force
+        prrr_U_in_base_x = (
+        -axis_y_prrr_axes3_in_base_x*prrr_c_o_y - axis_y_prrr_axes3_in_base_y*prrr_c_o_x
         )
-        d_P_1_prrr_in_base_x = (
-        axis_y_prrr_axes3_in_base_y*d_P_1_prrr_x - axis_y_prrr_axes3_in_base_x*d_P_1_prrr_t
+        prrr_U_in_base_y = (
+        axis_y_prrr_axes3_in_base_x*prrr_c_o_x - axis_y_prrr_axes3_in_base_y*prrr_c_o_y
         )
-        d_P_1_prrr_in_base_y = (
-        -axis_y_prrr_axes3_in_base_x*d_P_1_prrr_x - axis_y_prrr_axes3_in_base_y*d_P_1_prrr_t
+        # (Z_a) rotational part of Z
+        prrr_Z_a_t = prrr_U_in_base_y*prrr_q_in_base_x - prrr_U_in_base_x*prrr_q_in_base_y
+        # (prrr-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight
+        prrr_f_2_o_x = (
+        prrr_h_2_y*prrr_qdd_2_o - prrr_W_2_t*prrr_h_2_x - prrr_g_r1_x*prrr_link2_mass
         )
-        # (M8) coupling of extra joint 1 with the rotation of the platform
-        M_ya_1_prrr_z = (
-        d_P_1_prrr_in_base_y*q_prrr_in_base_x - d_P_1_prrr_in_base_x*q_prrr_in_base_y
+        prrr_f_2_o_y = (
+        -prrr_W_2_t*prrr_h_2_y - prrr_g_r1_y*prrr_link2_mass - prrr_h_2_x*prrr_qdd_2_o
         )
-        # (prrr-A10) coefficient of the acceleration in: acceleration of joint 2
-        d1_qdd_2_prrr = axis_y_prrr_axes3_r1_y*inv_r_2_prrr_r0_y
-        # (prrr-N41) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d0_Gamma_2_prrr_t = (
-        J_3_prrr_zz*inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_r1_x +
-            d1_qdd_2_prrr*r_2_prrr_r0_x)
+        # (prrr-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
+        prrr_T_1_o_x = prrr_c_2*prrr_f_2_o_x - prrr_f_1_o_x - prrr_f_2_o_y*prrr_s_2
+        # (prrr-P_1_o) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
+        prrr_P_1_o_t = axis_y_prrr_axes3_r1_x*prrr_G_o_t + axis_y_prrr_axes3_r1_y*prrr_G_o_t_2
+        prrr_P_1_o = prrr_T_1_o_x - prrr_P_1_o_t
+        # (prrr-P_c_2) force that accelerates joint 2, per unit
+        prrr_P_c_2_r0_x = -prrr_c_2*prrr_h_2_y - prrr_h_2_x*prrr_s_2
+        # (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
+        prrr_d_P_1_t = axis_y_prrr_axes3_r1_x*prrr_d_G_t + axis_y_prrr_axes3_r1_y*prrr_d_G_xy
+        prrr_d_P_1_x = (
+        -axis_y_prrr_axes3_r1_y*prrr_d_G_xx - inv_prrr_r_2_r0_y*prrr_P_c_2_r0_x -
+            axis_y_prrr_axes3_r1_x*inv_prrr_platform_joint_offset_x*prrr_d_Gamma_3_x
         )
-        d0_Gamma_2_prrr = P_c2_prrr_r0_x + Jc_2_prrr_zz*d1_qdd_2_prrr - d0_Gamma_2_prrr_t
-        # (prrr-N32) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        d1_Gamma_3_prrr = J_3_prrr_zz*d1_qdd_2_prrr - d0_Gamma_2_prrr_t
-        # (prrr-N51) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d0_G_prrr_t = d1_Gamma_3_prrr*inv_prrr_platform_joint_offset_x
-        # (prrr-N47) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
-        d0_Gamma_1_prrr = P_c1_prrr_t + P_c2_prrr_r0_x*d1_qdd_2_prrr
-        # (prrr-N61) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
-        d0_P_1_prrr_t = (
-        axis_y_prrr_axes3_r1_x*d0_G_prrr_t +
-            axis_y_prrr_axes3_r1_y*inv_r_2_prrr_r0_y*(d0_G_prrr_t*r_2_prrr_r0_x - d0_Gamma_2_prrr)
+        prrr_d_P_1_in_base_x = (
+        axis_y_prrr_axes3_in_base_y*prrr_d_P_1_x - axis_y_prrr_axes3_in_base_x*prrr_d_P_1_t
         )
-        d0_P_1_prrr = d0_Gamma_1_prrr - d0_P_1_prrr_t
-        # (prrr-V5) reciprocal vector 1
-        w_2_prrr_t = axis_y_prrr_axes3_in_base_y*inv_r_2_prrr_r0_y
-        w_2_prrr_t_2 = axis_y_prrr_axes3_in_base_x*inv_r_2_prrr_r0_y
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_2_prrr_z = q_prrr_in_base_x*w_2_prrr_t_2 + q_prrr_in_base_y*w_2_prrr_t
+        prrr_d_P_1_in_base_y = (
+        -axis_y_prrr_axes3_in_base_x*prrr_d_P_1_x - axis_y_prrr_axes3_in_base_y*prrr_d_P_1_t
+        )
+        # (prrr-M_ya_1) coupling of extra joint 1 with the rotation of the platform
+        prrr_M_ya_1_z = (
+        prrr_d_P_1_in_base_y*prrr_q_in_base_x - prrr_d_P_1_in_base_x*prrr_q_in_base_y
+        )
+        # (prrr-dy_1_qdd_2) coefficient of the acceleration in: acceleration of joint 2
+        prrr_dy_1_qdd_2 = axis_y_prrr_axes3_r1_y*inv_prrr_r_2_r0_y
+        # (prrr-dy_1_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
+        prrr_dy_1_Gamma_1 = prrr_P_c_1_t + prrr_P_c_2_r0_x*prrr_dy_1_qdd_2
+        # (prrr-dy_1_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        prrr_dy_1_Gamma_3_t = (
+        inv_prrr_platform_joint_offset_x*prrr_J_3_zz*(axis_y_prrr_axes3_r1_x +
+            prrr_dy_1_qdd_2*prrr_r_2_r0_x)
+        )
+        prrr_dy_1_Gamma_3 = prrr_J_3_zz*prrr_dy_1_qdd_2 - prrr_dy_1_Gamma_3_t
+        # (prrr-dy_1_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        prrr_dy_1_Gamma_2 = prrr_P_c_2_r0_x + prrr_Jc_2_zz*prrr_dy_1_qdd_2 - prrr_dy_1_Gamma_3_t
+        # (prrr-dy_1_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        prrr_dy_1_G_t = inv_prrr_platform_joint_offset_x*prrr_dy_1_Gamma_3
+        # (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
+        prrr_dy_1_P_1_t = (
+        axis_y_prrr_axes3_r1_x*prrr_dy_1_G_t +
+            axis_y_prrr_axes3_r1_y*inv_prrr_r_2_r0_y*(prrr_dy_1_G_t*prrr_r_2_r0_x -
+            prrr_dy_1_Gamma_2)
+        )
+        prrr_dy_1_P_1 = prrr_dy_1_Gamma_1 - prrr_dy_1_P_1_t
+        # (prrr-w_2) reciprocal vector 1
+        prrr_w_2_t = axis_y_prrr_axes3_in_base_y*inv_prrr_r_2_r0_y
+        prrr_w_2_t_2 = axis_y_prrr_axes3_in_base_x*inv_prrr_r_2_r0_y
+        # (prrr-H_a_2) moment of the column's unit force about the platform origin
+        prrr_H_a_2_z = prrr_q_in_base_x*prrr_w_2_t_2 + prrr_q_in_base_y*prrr_w_2_t
         ok = (
-        ok & m.every(leg, (abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) &
-            (disc_2_prrr >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr))
+        ok & m.every(leg, (abs(prrr_rho2_2) > _TOLERANCE * _TOLERANCE * prrr_rho2_2_t) &
+            (prrr_disc_2 >= 0.0) & (abs(-prrr_r_2_r0_y) > _TOLERANCE * prrr_size))
         )
         sums = m.added(sums, leg, (
-        Q_prrr_t_5, Q_prrr_t_6, Q_prrr_t_7, M_ta_t, M_ta_t_2, M_aa_t, U_prrr_in_base_x,
-            U_prrr_in_base_y, Z_a_t,
+        prrr_Q_t_5, prrr_Q_t_6, prrr_Q_t_7, prrr_M_ta_t, prrr_M_ta_t_2, prrr_M_aa_t,
+            prrr_U_in_base_x, prrr_U_in_base_y, prrr_Z_a_t,
         ))
-        out_Z[_Z_prrr[0][leg]] = P_1_prrr_o
-        out_M[_M_prrr[0][leg]] = d_P_1_prrr_in_base_x
-        out_M[_M_prrr[1][leg]] = d_P_1_prrr_in_base_x
-        out_M[_M_prrr[2][leg]] = d_P_1_prrr_in_base_y
-        out_M[_M_prrr[3][leg]] = d_P_1_prrr_in_base_y
-        out_M[_M_prrr[4][leg]] = M_ya_1_prrr_z
-        out_M[_M_prrr[5][leg]] = M_ya_1_prrr_z
-        out_M[_M_prrr[6][leg]] = d0_P_1_prrr
+        out_Z[_Z_prrr[0][leg]] = prrr_P_1_o
+        out_M[_M_prrr[0][leg]] = prrr_d_P_1_in_base_x
+        out_M[_M_prrr[1][leg]] = prrr_d_P_1_in_base_x
+        out_M[_M_prrr[2][leg]] = prrr_d_P_1_in_base_y
+        out_M[_M_prrr[3][leg]] = prrr_d_P_1_in_base_y
+        out_M[_M_prrr[4][leg]] = prrr_M_ya_1_z
+        out_M[_M_prrr[5][leg]] = prrr_M_ya_1_z
+        out_M[_M_prrr[6][leg]] = prrr_dy_1_P_1
         out_H[_H_prrr[0][leg]] = 1.0
-        out_H[_H_prrr[1][leg]] = -w_2_prrr_t
-        out_H[_H_prrr[2][leg]] = w_2_prrr_t_2
-        out_H[_H_prrr[3][leg]] = H_a_2_prrr_z
-        out_H[_H_prrr[4][leg]] = d1_qdd_2_prrr
+        out_H[_H_prrr[1][leg]] = -prrr_w_2_t
+        out_H[_H_prrr[2][leg]] = prrr_w_2_t_2
+        out_H[_H_prrr[3][leg]] = prrr_H_a_2_z
+        out_H[_H_prrr[4][leg]] = prrr_dy_1_qdd_2
     (
     total_prrr_xx, total_prrr_xy, total_prrr_yy, total_prrr_xz, total_prrr_yz, total_prrr_zz,
         total_prrr_x, total_prrr_y, total_prrr_z,
@@ -1733,194 +1777,201 @@ def _run_dynamics(m, X, V):
     sums = [0.0] * 9
     for leg, k in legs[1]:
         (
-        J_1_rrr_zz, J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr,
-            d_Gamma_1_rrr_t, d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, g_r0_x_2, g_r0_y_2,
-            h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+            rrr_J_2_zz, rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
             rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+            rrr_base_point_y, rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy,
+            rrr_d_phi_2_t, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x
-        S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        # (rrr-V6) reciprocal vector 2
-        w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x
-        # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x
-        d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz - d_Gamma_1_rrr_t_2)
-        # (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz - d_Gamma_1_rrr_t_2)
-        # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y - d_Gamma_1_rrr_y*w_2_rrr_t
-        # (rrr-N36) inertia of the leg at the connection point, without the mass gathered there
-        Q_rrr_t = (
-        d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t - inv_r_1_rrr_r0_y) - d_c_rrr_yy -
-            d_Gamma_2_rrr_x*w_2_rrr_t
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        # (rrr-w_2) reciprocal vector 2
+        rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x
+        # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x
+        rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz - rrr_d_Gamma_2_t_2)
+        # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz - rrr_d_Gamma_2_t_2)
+        # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y - rrr_d_Gamma_2_y*rrr_w_2_t
+        # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
+        rrr_Q_t = (
+        inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t - inv_rrr_r_1_r0_y) - rrr_d_c_yy -
+            rrr_d_Gamma_2_x*rrr_w_2_t
         )
-        Q_rrr_t_2 = 0.5*Q_rrr_t
-        Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
-        Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
-        Q_rrr_t_5 = d_c_rrr_yy + 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y
-        Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x + Q_rrr_t_4*axis_y_rrr_axes2_in_base_y
-        Q_rrr_t_7 = d_c_rrr_yy + 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
-        # (M2) coupling block of M
-        M_ta_t_3 = Q_rrr_t_5*q_rrr_in_base_y + Q_rrr_t_6*q_rrr_in_base_x
-        M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y + Q_rrr_t_7*q_rrr_in_base_x
-        # (M3) rotational block of M
-        M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y + M_ta_t_4*q_rrr_in_base_x
-        # (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        g_r1_x_2 = c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr
-        g_r1_y_2 = c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr
-        # (rrr-V1) velocity of the connection point
-        S_dot_rrr_t = omega_z*q_rrr_in_base_y
-        S_dot_rrr_t_2 = omega_z*q_rrr_in_base_x
-        S_dot_rrr_x = t_dot_x - S_dot_rrr_t
-        S_dot_rrr_y = S_dot_rrr_t_2 + t_dot_y
-        # (rrr-V7) rate of joint 1
-        qd_1_rrr = (
-        inv_r_1_rrr_r0_y*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_x)
+        rrr_Q_t_2 = 0.5*rrr_Q_t
+        rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy + axis_y_rrr_axes2_in_base_y*rrr_Q_t_2
+        rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 - axis_y_rrr_axes2_in_base_y*rrr_d_c_xy
+        rrr_Q_t_5 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3
+        rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 + axis_y_rrr_axes2_in_base_y*rrr_Q_t_4
+        rrr_Q_t_7 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4
+        # (M_ta) coupling block of M
+        rrr_M_ta_t = rrr_Q_t_5*rrr_q_in_base_y + rrr_Q_t_6*rrr_q_in_base_x
+        rrr_M_ta_t_2 = rrr_Q_t_6*rrr_q_in_base_y + rrr_Q_t_7*rrr_q_in_base_x
+        # (M_aa) rotational block of M
+        rrr_M_aa_t = rrr_M_ta_t*rrr_q_in_base_y + rrr_M_ta_t_2*rrr_q_in_base_x
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = omega_z*rrr_q_in_base_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
+        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_1 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
         )
-        # (rrr-V11) angular velocity of link 2
-        omega_2_rrr_z = (
-        inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_z = (
+        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
         )
-        # (rrr-V10) centripetal tensor of link 1
-        W_1_rrr_t = qd_1_rrr*qd_1_rrr
-        # (rrr-V12) centripetal tensor of link 2
-        W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
-        # (rrr-A5) acceleration of the connection point at zero joint accelerations
-        bias_rrr_x = (
-        -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_t = omega_z*rrr_S_dot_t_2
+        rrr_u_1_t_2 = omega_z*rrr_S_dot_t
+        # (rrr-W_1) centripetal tensor of link 1
+        rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_x = (
+        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        # (rrr-A1) centripetal acceleration of the connection point
-        u_1_rrr_t = S_dot_rrr_t_2*omega_z
-        u_1_rrr_t_2 = S_dot_rrr_t*omega_z
-        u_1_rrr_tip_x = (
-        axis_y_rrr_axes2_in_base_x*u_1_rrr_t_2 - axis_y_rrr_axes2_in_base_y*u_1_rrr_t
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_tip_x = (
+        axis_y_rrr_axes2_in_base_x*rrr_u_1_t_2 - axis_y_rrr_axes2_in_base_y*rrr_u_1_t
         )
-        u_1_rrr_tip_y = (
-        -axis_y_rrr_axes2_in_base_x*u_1_rrr_t - axis_y_rrr_axes2_in_base_y*u_1_rrr_t_2
+        rrr_u_1_tip_y = (
+        -axis_y_rrr_axes2_in_base_x*rrr_u_1_t - axis_y_rrr_axes2_in_base_y*rrr_u_1_t_2
         )
-        # (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_rrr_o_x = u_1_rrr_tip_x - bias_rrr_x
-        rel_rrr_o_y = u_1_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
-        # (rrr-A9) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_rrr_o = inv_r_1_rrr_r0_y*rel_rrr_o_x
-        # (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rrr_o_z = g_r1_x_2*h_1_rrr_y - J_1_rrr_zz*qdd_1_rrr_o - g_r1_y_2*h_1_rrr_x
-        # (rrr-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        acc_2_rrr_o_x = u_1_rrr_tip_x + g_r1_y_2*s_2_rrr - c_2_rrr*g_r1_x_2
-        acc_2_rrr_o_y = u_1_rrr_tip_y - c_2_rrr*g_r1_y_2 - g_r1_x_2*s_2_rrr
-        # (rrr-A18) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_rrr_o_z = (
-        inv_rrr_platform_joint_offset_x*(rel_rrr_o_y + qdd_1_rrr_o*r_1_rrr_r0_x) - qdd_1_rrr_o
+        # (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        rrr_rel_o_x = rrr_u_1_tip_x - rrr_bias_x
+        rrr_rel_o_y = rrr_u_1_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        # (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_rel_o_x
+        # (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        rrr_alpha_2_o_z = (
+        inv_rrr_platform_joint_offset_x*(rrr_rel_o_y + rrr_qdd_1_o*rrr_r_1_r0_x) - rrr_qdd_1_o
         )
-        # (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_rrr_o_z = (
-        J_2_rrr_zz*alpha_2_rrr_o_z + acc_2_rrr_o_y*h_2_rrr_x - acc_2_rrr_o_x*h_2_rrr_y
+        # (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        rrr_acc_2_o_x = (
+        rrr_u_1_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+            axis_y_rrr_axes2_in_base_y*gravity_x
         )
-        # (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z
-        # (rrr-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z
-        # (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_rrr_o_x = (
-        W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x
-            - N_1_rrr_o_z)
+        rrr_acc_2_o_y = (
+        rrr_u_1_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+            axis_y_rrr_axes2_in_base_y*gravity_y
         )
-        c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x
-        # (rrr-N37) velocity and gravity terms of the leg force
-        U_rrr_in_base_x = (
-        -axis_y_rrr_axes2_in_base_x*c_rrr_o_y - axis_y_rrr_axes2_in_base_y*c_rrr_o_x
+        # (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        rrr_mu_2_o_z = (
+        rrr_J_2_zz*rrr_alpha_2_o_z + rrr_acc_2_o_y*rrr_h_2_x - rrr_acc_2_o_x*rrr_h_2_y
         )
-        U_rrr_in_base_y = (
-        axis_y_rrr_axes2_in_base_x*c_rrr_o_x - axis_y_rrr_axes2_in_base_y*c_rrr_o_y
+        # (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        rrr_mu_1_o_z = (
+        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1_o -
+            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
         )
-        # (M7) rotational part of Z
-        Z_a_t_2 = U_rrr_in_base_y*q_rrr_in_base_x - U_rrr_in_base_x*q_rrr_in_base_y
-        # (rrr-V5) reciprocal vector 1
-        w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
-        w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
-        # (M10) moment of the column's unit force about the platform origin
-        H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t
+        # (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z
+        # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z
+        # (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_o_x = (
+        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x
+            - rrr_N_1_o_z)
+        )
+        rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x
+        # (rrr-U) velocity and gravity terms of the leg force
+        rrr_U_in_base_x = (
+        -axis_y_rrr_axes2_in_base_x*rrr_c_o_y - axis_y_rrr_axes2_in_base_y*rrr_c_o_x
+        )
+        rrr_U_in_base_y = (
+        axis_y_rrr_axes2_in_base_x*rrr_c_o_x - axis_y_rrr_axes2_in_base_y*rrr_c_o_y
+        )
+        # (Z_a) rotational part of Z
+        rrr_Z_a_t = rrr_U_in_base_y*rrr_q_in_base_x - rrr_U_in_base_x*rrr_q_in_base_y
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y
+        rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y
+        # (rrr-H_a_1) moment of the column's unit force about the platform origin
+        rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7, M_ta_t_3, M_ta_t_4, M_aa_t_2, U_rrr_in_base_x,
-            U_rrr_in_base_y, Z_a_t_2,
+        rrr_Q_t_5, rrr_Q_t_6, rrr_Q_t_7, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t,
+            rrr_U_in_base_x, rrr_U_in_base_y, rrr_Z_a_t,
         ))
-        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
-        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
-        out_H[_H_rrr[2][leg]] = H_a_1_rrr_z
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
+        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
+        out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
     (
     total_rrr_xx, total_rrr_xy, total_rrr_yy, total_rrr_xz, total_rrr_yz, total_rrr_zz,
         total_rrr_x, total_rrr_y, total_rrr_z,
     ) = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = m_star - total_prrr_xx - total_rrr_xx
     M_tt_xy = total_prrr_xy + total_rrr_xy
     M_tt_yy = m_star - total_prrr_yy - total_rrr_yy
-    # (M2) coupling block of M
+    # (M_ta) coupling block of M
     M_ta_xz = total_prrr_xz + total_rrr_xz - h_star_in_base_y
     M_ta_yz = h_star_in_base_x - total_prrr_yz - total_rrr_yz
-    # (M3) rotational block of M
-    M_aa_zz = -J_star_t_14 - total_prrr_zz - total_rrr_zz
-    # (M5) translational part of Z
+    # (M_aa) rotational block of M
+    M_aa_zz = -J_star_t_6 - total_prrr_zz - total_rrr_zz
+    # (Z_t) translational part of Z
     Z_t_x = Z_p_x + total_prrr_x + total_rrr_x
     Z_t_y = Z_p_y + total_prrr_y + total_rrr_y
-    # (M7) rotational part of Z
+    # (Z_a) rotational part of Z
     Z_a_z = total_prrr_z + total_rrr_z - Z_q_t
     out_M[0] = M_tt_xx
     out_M[1] = M_tt_xy
@@ -1943,7 +1994,7 @@ def _run_M(m, X):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("M")
-    J_star_t_14, h_star_x, h_star_y, m_star = shared
+    J_star_t_6, h_star_x, h_star_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1954,258 +2005,259 @@ def _run_M(m, X):
     R_yx = sin(X_2)
     ok = True
     out_M = m.zeros("M")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_3_prrr_zz, Jc_2_prrr_zz, Kd_2_prrr_t_2, Kd_2_prrr_t_3, P_c1_prrr_t, branch_2_prrr,
-            d_G_prrr_t, d_Gamma_2_prrr_t, d_Gamma_2_prrr_y, d_c_prrr_yy, d_phi_3_prrr_t,
-            h_2_prrr_x, h_2_prrr_y, h_3_prrr_y, inv_Kd_2_prrr_t, inv_prrr_platform_joint_offset_x,
-            inv_uu_3_prrr_t, prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx,
-            prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y, prrr_joint3_offset_x,
+        inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_platform_joint_offset_x, prrr_J_3_zz,
+            prrr_Jc_2_zz, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_P_c_1_t, prrr_base_frame_xx,
+            prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
+            prrr_base_point_y, prrr_branch_2, prrr_d_G_t, prrr_d_Gamma_3_t, prrr_d_Gamma_3_y,
+            prrr_d_c_yy, prrr_d_phi_3_t, prrr_h_2_x, prrr_h_2_y, prrr_h_3_y, prrr_joint3_offset_x,
             prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y,
-            rho2_2_prrr_t, size_prrr,
+            prrr_rho2_2_t, prrr_size,
         ) = k
-        y_1_extra_prrr = X[[3][leg]]
-        # (prrr-K1) from the base point to the connection point
-        q_prrr_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
-        q_prrr_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
-        S_prrr_x = q_prrr_in_base_x + t_x - prrr_base_point_x
-        S_prrr_y = q_prrr_in_base_y + t_y - prrr_base_point_y
-        S_prrr_r0_y = -S_prrr_x*prrr_base_frame_xx - S_prrr_y*prrr_base_frame_yx
-        # (prrr-K2) from the origin of joint 2 to the connection point
-        x_2_prrr_x = S_prrr_x*prrr_base_frame_xy + S_prrr_y*prrr_base_frame_yy - y_1_extra_prrr
-        # (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x
-        Kd_2_prrr = 0.5*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3
-        # (prrr-K7) factor of the cosine in the equation of joint 2
-        Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x
-        # (prrr-K8) factor of the sine in the equation of joint 2
-        Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x
-        # (prrr-K9) squared amplitude
-        rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr
-        # (prrr-K10) discriminant
-        disc_2_prrr = rho2_2_prrr - Kd_2_prrr*Kd_2_prrr
-        # (prrr-K11) root, with the sign of the branch
-        root_2_prrr = branch_2_prrr*sqrt(disc_2_prrr)
-        # (prrr-K17) from the origin of joint 3 to the connection point
-        x_3_prrr_x = Kd_2_prrr*inv_Kd_2_prrr_t*prrr_joint3_offset_x - prrr_joint3_offset_x
-        # (prrr-K19) cosine of the angle of joint 3 from its reference direction
-        c_3_prrr = inv_uu_3_prrr_t*prrr_platform_joint_offset_x*x_3_prrr_x
-        # (prrr-K20) sine of the angle of joint 3 from its reference direction
-        s_3_prrr = (
-        inv_Kd_2_prrr_t*inv_uu_3_prrr_t*prrr_joint3_offset_x*prrr_platform_joint_offset_x*root_2_prrr
+        prrr_y_1_extra = X[[3][leg]]
+        # (prrr-S) from the base point to the connection point
+        prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
+        prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
+        prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x
+        prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y
+        prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
+        # (prrr-x_2) from the origin of joint 2 to the connection point
+        prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        # (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x
+        prrr_Kd_2 = 0.5*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4
+        # (prrr-Kc_2) factor of the cosine in the equation of joint 2
+        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x
+        # (prrr-Ks_2) factor of the sine in the equation of joint 2
+        prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x
+        # (prrr-rho2_2) squared amplitude
+        prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
+        # (prrr-disc_2) discriminant
+        prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2
+        # (prrr-root_2) root, with the sign of the branch
+        prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
+        # (prrr-x_3) from the origin of joint 3 to the connection point
+        prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
+        # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
+        prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x
+        # (prrr-s_3) sine of the angle of joint 3 from its reference direction
+        prrr_s_3 = (
+        inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
         )
-        # (prrr-V2) from joint 2 to the connection point, along the links
-        r_2_prrr_t = prrr_platform_joint_offset_x*s_3_prrr
-        r_2_prrr_x = prrr_joint3_offset_x + c_3_prrr*prrr_platform_joint_offset_x
-        r_2_prrr_r0_x = c_3_prrr*r_2_prrr_x + r_2_prrr_t*s_3_prrr
-        r_2_prrr_r0_y = r_2_prrr_x*s_3_prrr - c_3_prrr*r_2_prrr_t
-        # (prrr-K12) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2_prrr = 1.0/rho2_2_prrr
-        c_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*Kd_2_prrr - Ks_2_prrr*root_2_prrr)
-        # (prrr-K13) sine of the angle of joint 2 from its reference direction
-        s_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*root_2_prrr + Kd_2_prrr*Ks_2_prrr)
-        # (prrr-V5) reciprocal vector 1
-        axis_y_prrr_axes3_r1_x = c_2_prrr*s_3_prrr - c_3_prrr*s_2_prrr
-        axis_y_prrr_axes3_r1_y = c_2_prrr*c_3_prrr + s_2_prrr*s_3_prrr
+        # (prrr-r_2) from joint 2 to the connection point, along the links
+        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3
+        prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
+        prrr_r_2_r0_x = prrr_c_3*prrr_r_2_x + prrr_r_2_t*prrr_s_3
+        prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_r_2_t
+        # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_prrr_rho2_2 = 1.0/prrr_rho2_2
+        prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2)
+        # (prrr-s_2) sine of the angle of joint 2 from its reference direction
+        prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2)
+        # (prrr-w_2) reciprocal vector 1
+        axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2
+        axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3
         axis_y_prrr_axes3_in_base_x = (
         axis_y_prrr_axes3_r1_x*prrr_base_frame_xy - axis_y_prrr_axes3_r1_y*prrr_base_frame_xx
         )
         axis_y_prrr_axes3_in_base_y = (
         axis_y_prrr_axes3_r1_x*prrr_base_frame_yy - axis_y_prrr_axes3_r1_y*prrr_base_frame_yx
         )
-        inv_r_2_prrr_r0_y = 1.0/r_2_prrr_r0_y
-        # (prrr-V6) reciprocal vector 2
-        w_3_prrr_t = inv_prrr_platform_joint_offset_x*inv_r_2_prrr_r0_y*r_2_prrr_r0_x
-        # (prrr-N42) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_prrr_t_2 = d_Gamma_2_prrr_t*r_2_prrr_r0_x
-        d_Gamma_2_prrr_x = -h_3_prrr_y - inv_r_2_prrr_r0_y*(Jc_2_prrr_zz - d_Gamma_2_prrr_t_2)
-        # (prrr-N31) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        d_Gamma_3_prrr_x = -h_3_prrr_y - inv_r_2_prrr_r0_y*(J_3_prrr_zz - d_Gamma_2_prrr_t_2)
-        # (prrr-N52) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_prrr_xx = d_Gamma_3_prrr_x*w_3_prrr_t - d_Gamma_2_prrr_x*inv_r_2_prrr_r0_y
-        d_G_prrr_xy = d_Gamma_2_prrr_y*w_3_prrr_t - d_Gamma_2_prrr_y*inv_r_2_prrr_r0_y
-        # (prrr-N55) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_prrr_xy = d_phi_3_prrr_t - d_G_prrr_xy
-        # (prrr-N57) inertia of the leg at the connection point, without the mass gathered there
-        Q_prrr_t = h_3_prrr_y*(w_3_prrr_t - inv_r_2_prrr_r0_y) - d_G_prrr_xx - d_c_prrr_yy
-        Q_prrr_t_2 = 0.5*Q_prrr_t
-        Q_prrr_t_3 = (
-        Q_prrr_t_2*axis_y_prrr_axes3_in_base_y + axis_y_prrr_axes3_in_base_x*d_c_prrr_xy
+        inv_prrr_r_2_r0_y = 1.0/prrr_r_2_r0_y
+        # (prrr-w_3) reciprocal vector 2
+        prrr_w_3_t = inv_prrr_platform_joint_offset_x*inv_prrr_r_2_r0_y*prrr_r_2_r0_x
+        # (prrr-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        prrr_d_Gamma_3_t_2 = prrr_d_Gamma_3_t*prrr_r_2_r0_x
+        prrr_d_Gamma_3_x = -prrr_h_3_y - inv_prrr_r_2_r0_y*(prrr_J_3_zz - prrr_d_Gamma_3_t_2)
+        # (prrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        prrr_d_Gamma_2_x = -prrr_h_3_y - inv_prrr_r_2_r0_y*(prrr_Jc_2_zz - prrr_d_Gamma_3_t_2)
+        # (prrr-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        prrr_d_G_xx = prrr_d_Gamma_3_x*prrr_w_3_t - inv_prrr_r_2_r0_y*prrr_d_Gamma_2_x
+        prrr_d_G_xy = prrr_d_Gamma_3_y*prrr_w_3_t - inv_prrr_r_2_r0_y*prrr_d_Gamma_3_y
+        # (prrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        prrr_d_c_xy = prrr_d_phi_3_t - prrr_d_G_xy
+        # (prrr-Q) inertia of the leg at the connection point, without the mass gathered there
+        prrr_Q_t = prrr_h_3_y*(prrr_w_3_t - inv_prrr_r_2_r0_y) - prrr_d_G_xx - prrr_d_c_yy
+        prrr_Q_t_2 = 0.5*prrr_Q_t
+        prrr_Q_t_3 = (
+        axis_y_prrr_axes3_in_base_x*prrr_d_c_xy + axis_y_prrr_axes3_in_base_y*prrr_Q_t_2
         )
-        Q_prrr_t_4 = (
-        Q_prrr_t_2*axis_y_prrr_axes3_in_base_x - axis_y_prrr_axes3_in_base_y*d_c_prrr_xy
+        prrr_Q_t_4 = (
+        axis_y_prrr_axes3_in_base_x*prrr_Q_t_2 - axis_y_prrr_axes3_in_base_y*prrr_d_c_xy
         )
-        Q_prrr_t_5 = d_c_prrr_yy + 2.0*Q_prrr_t_3*axis_y_prrr_axes3_in_base_y
-        Q_prrr_t_6 = (
-        Q_prrr_t_3*axis_y_prrr_axes3_in_base_x + Q_prrr_t_4*axis_y_prrr_axes3_in_base_y
+        prrr_Q_t_5 = prrr_d_c_yy + 2.0*axis_y_prrr_axes3_in_base_y*prrr_Q_t_3
+        prrr_Q_t_6 = (
+        axis_y_prrr_axes3_in_base_x*prrr_Q_t_3 + axis_y_prrr_axes3_in_base_y*prrr_Q_t_4
         )
-        Q_prrr_t_7 = d_c_prrr_yy + 2.0*Q_prrr_t_4*axis_y_prrr_axes3_in_base_x
-        # (M2) coupling block of M
-        M_ta_t = Q_prrr_t_5*q_prrr_in_base_y + Q_prrr_t_6*q_prrr_in_base_x
-        M_ta_t_2 = Q_prrr_t_6*q_prrr_in_base_y + Q_prrr_t_7*q_prrr_in_base_x
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t*q_prrr_in_base_y + M_ta_t_2*q_prrr_in_base_x
-        # (prrr-N20) force that accelerates joint 2, per unit
-        P_c2_prrr_r0_x = -c_2_prrr*h_2_prrr_y - h_2_prrr_x*s_2_prrr
-        # (prrr-N62) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
-        d_P_1_prrr_t = axis_y_prrr_axes3_r1_x*d_G_prrr_t + axis_y_prrr_axes3_r1_y*d_G_prrr_xy
-        d_P_1_prrr_x = (
-        -P_c2_prrr_r0_x*inv_r_2_prrr_r0_y - axis_y_prrr_axes3_r1_y*d_G_prrr_xx -
-            axis_y_prrr_axes3_r1_x*d_Gamma_3_prrr_x*inv_prrr_platform_joint_offset_x
+        prrr_Q_t_7 = prrr_d_c_yy + 2.0*axis_y_prrr_axes3_in_base_x*prrr_Q_t_4
+        # (M_ta) coupling block of M
+        prrr_M_ta_t = prrr_Q_t_5*prrr_q_in_base_y + prrr_Q_t_6*prrr_q_in_base_x
+        prrr_M_ta_t_2 = prrr_Q_t_6*prrr_q_in_base_y + prrr_Q_t_7*prrr_q_in_base_x
+        # (M_aa) rotational block of M
+        prrr_M_aa_t = prrr_M_ta_t*prrr_q_in_base_y + prrr_M_ta_t_2*prrr_q_in_base_x
+        # (prrr-P_c_2) force that accelerates joint 2, per unit
+        prrr_P_c_2_r0_x = -prrr_c_2*prrr_h_2_y - prrr_h_2_x*prrr_s_2
+        # (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
+        prrr_d_P_1_t = axis_y_prrr_axes3_r1_x*prrr_d_G_t + axis_y_prrr_axes3_r1_y*prrr_d_G_xy
+        prrr_d_P_1_x = (
+        -axis_y_prrr_axes3_r1_y*prrr_d_G_xx - inv_prrr_r_2_r0_y*prrr_P_c_2_r0_x -
+            axis_y_prrr_axes3_r1_x*inv_prrr_platform_joint_offset_x*prrr_d_Gamma_3_x
         )
-        d_P_1_prrr_in_base_x = (
-        axis_y_prrr_axes3_in_base_y*d_P_1_prrr_x - axis_y_prrr_axes3_in_base_x*d_P_1_prrr_t
+        prrr_d_P_1_in_base_x = (
+        axis_y_prrr_axes3_in_base_y*prrr_d_P_1_x - axis_y_prrr_axes3_in_base_x*prrr_d_P_1_t
         )
-        d_P_1_prrr_in_base_y = (
-        -axis_y_prrr_axes3_in_base_x*d_P_1_prrr_x - axis_y_prrr_axes3_in_base_y*d_P_1_prrr_t
+        prrr_d_P_1_in_base_y = (
+        -axis_y_prrr_axes3_in_base_x*prrr_d_P_1_x - axis_y_prrr_axes3_in_base_y*prrr_d_P_1_t
         )
-        # (M8) coupling of extra joint 1 with the rotation of the platform
-        M_ya_1_prrr_z = (
-        d_P_1_prrr_in_base_y*q_prrr_in_base_x - d_P_1_prrr_in_base_x*q_prrr_in_base_y
+        # (prrr-M_ya_1) coupling of extra joint 1 with the rotation of the platform
+        prrr_M_ya_1_z = (
+        prrr_d_P_1_in_base_y*prrr_q_in_base_x - prrr_d_P_1_in_base_x*prrr_q_in_base_y
         )
-        # (prrr-A10) coefficient of the acceleration in: acceleration of joint 2
-        d1_qdd_2_prrr = axis_y_prrr_axes3_r1_y*inv_r_2_prrr_r0_y
-        # (prrr-N41) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d0_Gamma_2_prrr_t = (
-        J_3_prrr_zz*inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_r1_x +
-            d1_qdd_2_prrr*r_2_prrr_r0_x)
+        # (prrr-dy_1_qdd_2) coefficient of the acceleration in: acceleration of joint 2
+        prrr_dy_1_qdd_2 = axis_y_prrr_axes3_r1_y*inv_prrr_r_2_r0_y
+        # (prrr-dy_1_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
+        prrr_dy_1_Gamma_1 = prrr_P_c_1_t + prrr_P_c_2_r0_x*prrr_dy_1_qdd_2
+        # (prrr-dy_1_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        prrr_dy_1_Gamma_3_t = (
+        inv_prrr_platform_joint_offset_x*prrr_J_3_zz*(axis_y_prrr_axes3_r1_x +
+            prrr_dy_1_qdd_2*prrr_r_2_r0_x)
         )
-        d0_Gamma_2_prrr = P_c2_prrr_r0_x + Jc_2_prrr_zz*d1_qdd_2_prrr - d0_Gamma_2_prrr_t
-        # (prrr-N32) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        d1_Gamma_3_prrr = J_3_prrr_zz*d1_qdd_2_prrr - d0_Gamma_2_prrr_t
-        # (prrr-N51) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d0_G_prrr_t = d1_Gamma_3_prrr*inv_prrr_platform_joint_offset_x
-        # (prrr-N47) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
-        d0_Gamma_1_prrr = P_c1_prrr_t + P_c2_prrr_r0_x*d1_qdd_2_prrr
-        # (prrr-N61) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
-        d0_P_1_prrr_t = (
-        axis_y_prrr_axes3_r1_x*d0_G_prrr_t +
-            axis_y_prrr_axes3_r1_y*inv_r_2_prrr_r0_y*(d0_G_prrr_t*r_2_prrr_r0_x - d0_Gamma_2_prrr)
+        prrr_dy_1_Gamma_3 = prrr_J_3_zz*prrr_dy_1_qdd_2 - prrr_dy_1_Gamma_3_t
+        # (prrr-dy_1_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        prrr_dy_1_Gamma_2 = prrr_P_c_2_r0_x + prrr_Jc_2_zz*prrr_dy_1_qdd_2 - prrr_dy_1_Gamma_3_t
+        # (prrr-dy_1_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        prrr_dy_1_G_t = inv_prrr_platform_joint_offset_x*prrr_dy_1_Gamma_3
+        # (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
+        prrr_dy_1_P_1_t = (
+        axis_y_prrr_axes3_r1_x*prrr_dy_1_G_t +
+            axis_y_prrr_axes3_r1_y*inv_prrr_r_2_r0_y*(prrr_dy_1_G_t*prrr_r_2_r0_x -
+            prrr_dy_1_Gamma_2)
         )
-        d0_P_1_prrr = d0_Gamma_1_prrr - d0_P_1_prrr_t
+        prrr_dy_1_P_1 = prrr_dy_1_Gamma_1 - prrr_dy_1_P_1_t
         ok = (
-        ok & m.every(leg, (abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) &
-            (disc_2_prrr >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr))
+        ok & m.every(leg, (abs(prrr_rho2_2) > _TOLERANCE * _TOLERANCE * prrr_rho2_2_t) &
+            (prrr_disc_2 >= 0.0) & (abs(-prrr_r_2_r0_y) > _TOLERANCE * prrr_size))
         )
         sums = m.added(sums, leg, (
-        Q_prrr_t_5, Q_prrr_t_6, Q_prrr_t_7, M_ta_t, M_ta_t_2, M_aa_t,
+        prrr_Q_t_5, prrr_Q_t_6, prrr_Q_t_7, prrr_M_ta_t, prrr_M_ta_t_2, prrr_M_aa_t,
         ))
-        out_M[_M_prrr[0][leg]] = d_P_1_prrr_in_base_x
-        out_M[_M_prrr[1][leg]] = d_P_1_prrr_in_base_x
-        out_M[_M_prrr[2][leg]] = d_P_1_prrr_in_base_y
-        out_M[_M_prrr[3][leg]] = d_P_1_prrr_in_base_y
-        out_M[_M_prrr[4][leg]] = M_ya_1_prrr_z
-        out_M[_M_prrr[5][leg]] = M_ya_1_prrr_z
-        out_M[_M_prrr[6][leg]] = d0_P_1_prrr
+        out_M[_M_prrr[0][leg]] = prrr_d_P_1_in_base_x
+        out_M[_M_prrr[1][leg]] = prrr_d_P_1_in_base_x
+        out_M[_M_prrr[2][leg]] = prrr_d_P_1_in_base_y
+        out_M[_M_prrr[3][leg]] = prrr_d_P_1_in_base_y
+        out_M[_M_prrr[4][leg]] = prrr_M_ya_1_z
+        out_M[_M_prrr[5][leg]] = prrr_M_ya_1_z
+        out_M[_M_prrr[6][leg]] = prrr_dy_1_P_1
     (
     total_prrr_xx, total_prrr_xy, total_prrr_yy, total_prrr_xz, total_prrr_yz, total_prrr_zz,
     ) = sums
     sums = [0.0] * 6
     for leg, k in legs[1]:
         (
-        J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, d_Gamma_1_rrr_t,
-            d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
-            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_2_zz,
+            rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+            rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy, rrr_d_phi_2_t, rrr_h_2_y,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x
-        S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        # (rrr-V6) reciprocal vector 2
-        w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x
-        # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x
-        d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz - d_Gamma_1_rrr_t_2)
-        # (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz - d_Gamma_1_rrr_t_2)
-        # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y - d_Gamma_1_rrr_y*w_2_rrr_t
-        # (rrr-N36) inertia of the leg at the connection point, without the mass gathered there
-        Q_rrr_t = (
-        d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t - inv_r_1_rrr_r0_y) - d_c_rrr_yy -
-            d_Gamma_2_rrr_x*w_2_rrr_t
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        # (rrr-w_2) reciprocal vector 2
+        rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x
+        # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x
+        rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz - rrr_d_Gamma_2_t_2)
+        # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz - rrr_d_Gamma_2_t_2)
+        # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y - rrr_d_Gamma_2_y*rrr_w_2_t
+        # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
+        rrr_Q_t = (
+        inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t - inv_rrr_r_1_r0_y) - rrr_d_c_yy -
+            rrr_d_Gamma_2_x*rrr_w_2_t
         )
-        Q_rrr_t_2 = 0.5*Q_rrr_t
-        Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
-        Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
-        Q_rrr_t_5 = d_c_rrr_yy + 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y
-        Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x + Q_rrr_t_4*axis_y_rrr_axes2_in_base_y
-        Q_rrr_t_7 = d_c_rrr_yy + 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
-        # (M2) coupling block of M
-        M_ta_t_3 = Q_rrr_t_5*q_rrr_in_base_y + Q_rrr_t_6*q_rrr_in_base_x
-        M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y + Q_rrr_t_7*q_rrr_in_base_x
-        # (M3) rotational block of M
-        M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y + M_ta_t_4*q_rrr_in_base_x
+        rrr_Q_t_2 = 0.5*rrr_Q_t
+        rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy + axis_y_rrr_axes2_in_base_y*rrr_Q_t_2
+        rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 - axis_y_rrr_axes2_in_base_y*rrr_d_c_xy
+        rrr_Q_t_5 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3
+        rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 + axis_y_rrr_axes2_in_base_y*rrr_Q_t_4
+        rrr_Q_t_7 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4
+        # (M_ta) coupling block of M
+        rrr_M_ta_t = rrr_Q_t_5*rrr_q_in_base_y + rrr_Q_t_6*rrr_q_in_base_x
+        rrr_M_ta_t_2 = rrr_Q_t_6*rrr_q_in_base_y + rrr_Q_t_7*rrr_q_in_base_x
+        # (M_aa) rotational block of M
+        rrr_M_aa_t = rrr_M_ta_t*rrr_q_in_base_y + rrr_M_ta_t_2*rrr_q_in_base_x
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7, M_ta_t_3, M_ta_t_4, M_aa_t_2,
+        rrr_Q_t_5, rrr_Q_t_6, rrr_Q_t_7, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t,
         ))
     total_rrr_xx, total_rrr_xy, total_rrr_yy, total_rrr_xz, total_rrr_yz, total_rrr_zz = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = m_star - total_prrr_xx - total_rrr_xx
     M_tt_xy = total_prrr_xy + total_rrr_xy
     M_tt_yy = m_star - total_prrr_yy - total_rrr_yy
-    # (M2) coupling block of M
+    # (M_ta) coupling block of M
     M_ta_xz = total_prrr_xz + total_rrr_xz - h_star_in_base_y
     M_ta_yz = h_star_in_base_x - total_prrr_yz - total_rrr_yz
-    # (M3) rotational block of M
-    M_aa_zz = -J_star_t_14 - total_prrr_zz - total_rrr_zz
+    # (M_aa) rotational block of M
+    M_aa_zz = -J_star_t_6 - total_prrr_zz - total_rrr_zz
     out_M[0] = M_tt_xx
     out_M[1] = M_tt_xy
     out_M[4] = M_tt_xy
@@ -2218,7 +2270,7 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 316 mul, 198 add, 6 div, 3 sqrt, 0 trig
+# Z: 312 mul, 196 add, 6 div, 3 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -2242,312 +2294,331 @@ def _run_Z(m, X, V):
     omega_z = V_2
     ok = True
     out_Z = m.zeros("Z")
-    # (P1) centripetal tensor of the platform
+    # (h_star) first moment about the platform origin
+    h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
+    h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_z*omega_z
-    # (M4) centripetal force and weight of the platform
-    Z_p_x = -Z_p_t - W_p_t*(R_xx*h_star_x - R_yx*h_star_y)
-    Z_p_y = -Z_p_t_2 - W_p_t*(R_xx*h_star_y + R_yx*h_star_x)
-    # (M6) gyroscopic moment and moment of the weight of the platform
-    Z_q_t = (
-    h_star_x*(R_xx*gravity_y - R_yx*gravity_x) - h_star_y*(R_xx*gravity_x + R_yx*gravity_y)
-    )
+    # (Z_p) centripetal force and weight of the platform
+    Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x
+    Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
-        J_2_prrr_zz, J_3_prrr_zz, Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, f_1_prrr_o_x,
-            g_r0_x, g_r0_y, h_2_prrr_x, h_2_prrr_y, h_3_prrr_x, h_3_prrr_y, inv_Kd_2_prrr_t,
-            inv_prrr_platform_joint_offset_x, inv_uu_3_prrr_t, prrr_base_frame_xx,
-            prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
-            prrr_base_point_y, prrr_joint3_offset_x, prrr_link2_mass,
+        inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_platform_joint_offset_x, prrr_J_2_zz,
+            prrr_J_3_zz, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_base_frame_xx, prrr_base_frame_xy,
+            prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y,
+            prrr_branch_2, prrr_f_1_o_x, prrr_g_r0_x, prrr_g_r0_y, prrr_h_2_x, prrr_h_2_y,
+            prrr_h_3_x, prrr_h_3_y, prrr_joint3_offset_x, prrr_link2_mass,
             prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y,
-            rho2_2_prrr_t, size_prrr,
+            prrr_rho2_2_t, prrr_size,
         ) = k
-        y_1_extra_prrr = X[[3][leg]]
-        yd_1_prrr = V[[3][leg]]
-        # (prrr-K1) from the base point to the connection point
-        q_prrr_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
-        q_prrr_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
-        S_prrr_x = q_prrr_in_base_x + t_x - prrr_base_point_x
-        S_prrr_y = q_prrr_in_base_y + t_y - prrr_base_point_y
-        S_prrr_r0_y = -S_prrr_x*prrr_base_frame_xx - S_prrr_y*prrr_base_frame_yx
-        # (prrr-K2) from the origin of joint 2 to the connection point
-        x_2_prrr_x = S_prrr_x*prrr_base_frame_xy + S_prrr_y*prrr_base_frame_yy - y_1_extra_prrr
-        # (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x
-        Kd_2_prrr = 0.5*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3
-        # (prrr-K7) factor of the cosine in the equation of joint 2
-        Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x
-        # (prrr-K8) factor of the sine in the equation of joint 2
-        Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x
-        # (prrr-K9) squared amplitude
-        rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr
-        # (prrr-K10) discriminant
-        disc_2_prrr = rho2_2_prrr - Kd_2_prrr*Kd_2_prrr
-        # (prrr-K11) root, with the sign of the branch
-        root_2_prrr = branch_2_prrr*sqrt(disc_2_prrr)
-        # (prrr-K17) from the origin of joint 3 to the connection point
-        x_3_prrr_x = Kd_2_prrr*inv_Kd_2_prrr_t*prrr_joint3_offset_x - prrr_joint3_offset_x
-        # (prrr-K19) cosine of the angle of joint 3 from its reference direction
-        c_3_prrr = inv_uu_3_prrr_t*prrr_platform_joint_offset_x*x_3_prrr_x
-        # (prrr-K20) sine of the angle of joint 3 from its reference direction
-        s_3_prrr = (
-        inv_Kd_2_prrr_t*inv_uu_3_prrr_t*prrr_joint3_offset_x*prrr_platform_joint_offset_x*root_2_prrr
+        prrr_y_1_extra = X[[3][leg]]
+        prrr_yd_1 = V[[3][leg]]
+        # (prrr-S) from the base point to the connection point
+        prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
+        prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
+        prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x
+        prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y
+        prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
+        # (prrr-x_2) from the origin of joint 2 to the connection point
+        prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        # (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x
+        prrr_Kd_2 = 0.5*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4
+        # (prrr-Kc_2) factor of the cosine in the equation of joint 2
+        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x
+        # (prrr-Ks_2) factor of the sine in the equation of joint 2
+        prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x
+        # (prrr-rho2_2) squared amplitude
+        prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
+        # (prrr-disc_2) discriminant
+        prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2
+        # (prrr-root_2) root, with the sign of the branch
+        prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
+        # (prrr-x_3) from the origin of joint 3 to the connection point
+        prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
+        # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
+        prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x
+        # (prrr-s_3) sine of the angle of joint 3 from its reference direction
+        prrr_s_3 = (
+        inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
         )
-        # (prrr-V2) from joint 2 to the connection point, along the links
-        r_2_prrr_t = prrr_platform_joint_offset_x*s_3_prrr
-        r_2_prrr_x = prrr_joint3_offset_x + c_3_prrr*prrr_platform_joint_offset_x
-        r_2_prrr_r0_x = c_3_prrr*r_2_prrr_x + r_2_prrr_t*s_3_prrr
-        r_2_prrr_r0_y = r_2_prrr_x*s_3_prrr - c_3_prrr*r_2_prrr_t
-        # (prrr-K12) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2_prrr = 1.0/rho2_2_prrr
-        c_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*Kd_2_prrr - Ks_2_prrr*root_2_prrr)
-        # (prrr-K13) sine of the angle of joint 2 from its reference direction
-        s_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*root_2_prrr + Kd_2_prrr*Ks_2_prrr)
-        # (prrr-V5) reciprocal vector 1
-        axis_y_prrr_axes3_r1_x = c_2_prrr*s_3_prrr - c_3_prrr*s_2_prrr
-        axis_y_prrr_axes3_r1_y = c_2_prrr*c_3_prrr + s_2_prrr*s_3_prrr
+        # (prrr-r_2) from joint 2 to the connection point, along the links
+        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3
+        prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
+        prrr_r_2_r0_x = prrr_c_3*prrr_r_2_x + prrr_r_2_t*prrr_s_3
+        prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_r_2_t
+        # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_prrr_rho2_2 = 1.0/prrr_rho2_2
+        prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2)
+        # (prrr-s_2) sine of the angle of joint 2 from its reference direction
+        prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2)
+        # (prrr-w_2) reciprocal vector 1
+        axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2
+        axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3
         axis_y_prrr_axes3_in_base_x = (
         axis_y_prrr_axes3_r1_x*prrr_base_frame_xy - axis_y_prrr_axes3_r1_y*prrr_base_frame_xx
         )
         axis_y_prrr_axes3_in_base_y = (
         axis_y_prrr_axes3_r1_x*prrr_base_frame_yy - axis_y_prrr_axes3_r1_y*prrr_base_frame_yx
         )
-        inv_r_2_prrr_r0_y = 1.0/r_2_prrr_r0_y
-        # (prrr-N6) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x = c_2_prrr*g_r0_x + g_r0_y*s_2_prrr
-        g_r1_y = c_2_prrr*g_r0_y - g_r0_x*s_2_prrr
-        # (prrr-V1) velocity of the connection point
-        S_dot_prrr_t = omega_z*q_prrr_in_base_y
-        S_dot_prrr_t_2 = omega_z*q_prrr_in_base_x
-        S_dot_prrr_x = t_dot_x - S_dot_prrr_t
-        S_dot_prrr_y = S_dot_prrr_t_2 + t_dot_y
-        # (prrr-V7) velocity of the connection point left to the joints that are not extra
-        S_dot_rest_prrr_x = S_dot_prrr_x - prrr_base_frame_xy*yd_1_prrr
-        S_dot_rest_prrr_y = S_dot_prrr_y - prrr_base_frame_yy*yd_1_prrr
-        # (prrr-V8) rate of joint 2
-        qd_2_prrr = (
-        inv_r_2_prrr_r0_y*(S_dot_rest_prrr_x*axis_y_prrr_axes3_in_base_y -
-            S_dot_rest_prrr_y*axis_y_prrr_axes3_in_base_x)
+        inv_prrr_r_2_r0_y = 1.0/prrr_r_2_r0_y
+        # (prrr-S_dot) velocity of the connection point
+        prrr_S_dot_t = omega_z*prrr_q_in_base_y
+        prrr_S_dot_t_2 = omega_z*prrr_q_in_base_x
+        prrr_S_dot_x = t_dot_x - prrr_S_dot_t
+        prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y
+        # (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra
+        prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1
+        prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1
+        # (prrr-qd_3) rate of joint 3
+        prrr_qd_2 = (
+        inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_x -
+            axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_y)
         )
-        # (prrr-V12) angular velocity of link 3
-        omega_3_prrr_z = (
-        inv_prrr_platform_joint_offset_x*(S_dot_rest_prrr_x*axis_y_prrr_axes3_in_base_x +
-            S_dot_rest_prrr_y*axis_y_prrr_axes3_in_base_y + qd_2_prrr*r_2_prrr_r0_x) - qd_2_prrr
+        # (prrr-omega_3) angular velocity of link 3
+        prrr_omega_3_z = (
+        inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_x +
+            axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_y + prrr_qd_2*prrr_r_2_r0_x) - prrr_qd_2
         )
-        # (prrr-V11) centripetal tensor of link 2
-        W_2_prrr_t = qd_2_prrr*qd_2_prrr
-        # (prrr-V13) centripetal tensor of link 3
-        W_3_prrr_t = omega_3_prrr_z*omega_3_prrr_z
-        # (prrr-A5) acceleration of the connection point at zero joint accelerations
-        bias_prrr_x = (
-        -W_3_prrr_t*prrr_platform_joint_offset_x - W_2_prrr_t*c_3_prrr*prrr_joint3_offset_x
+        # (prrr-u_1) centripetal acceleration of the connection point
+        prrr_u_1_t = omega_z*prrr_S_dot_t_2
+        prrr_u_1_t_2 = omega_z*prrr_S_dot_t
+        # (prrr-W_2) centripetal tensor of link 2
+        prrr_W_2_t = prrr_qd_2*prrr_qd_2
+        # (prrr-W_3) centripetal tensor of link 3
+        prrr_W_3_t = prrr_omega_3_z*prrr_omega_3_z
+        # (prrr-bias) acceleration of the connection point at zero joint accelerations
+        prrr_bias_x = (
+        -prrr_W_3_t*prrr_platform_joint_offset_x - prrr_W_2_t*prrr_c_3*prrr_joint3_offset_x
         )
-        # (prrr-A1) centripetal acceleration of the connection point
-        u_1_prrr_t = S_dot_prrr_t_2*omega_z
-        u_1_prrr_t_2 = S_dot_prrr_t*omega_z
-        u_1_prrr_tip_x = (
-        axis_y_prrr_axes3_in_base_x*u_1_prrr_t_2 - axis_y_prrr_axes3_in_base_y*u_1_prrr_t
+        # (prrr-u_1) centripetal acceleration of the connection point
+        prrr_u_1_tip_x = (
+        axis_y_prrr_axes3_in_base_x*prrr_u_1_t_2 - axis_y_prrr_axes3_in_base_y*prrr_u_1_t
         )
-        u_1_prrr_tip_y = (
-        -axis_y_prrr_axes3_in_base_x*u_1_prrr_t - axis_y_prrr_axes3_in_base_y*u_1_prrr_t_2
+        prrr_u_1_tip_y = (
+        -axis_y_prrr_axes3_in_base_x*prrr_u_1_t - axis_y_prrr_axes3_in_base_y*prrr_u_1_t_2
         )
-        # (prrr-A8) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_prrr_o_x = u_1_prrr_tip_x - bias_prrr_x
-        rel_prrr_o_y = u_1_prrr_tip_y + W_2_prrr_t*prrr_joint3_offset_x*s_3_prrr
-        # (prrr-A11) remainder without the acceleration in: acceleration of joint 2
-        qdd_2_prrr_o = inv_r_2_prrr_r0_y*rel_prrr_o_x
-        # (prrr-N37) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_prrr_o_z = g_r1_x*h_2_prrr_y - J_2_prrr_zz*qdd_2_prrr_o - g_r1_y*h_2_prrr_x
-        # (prrr-N12) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        acc_3_prrr_o_x = u_1_prrr_tip_x + g_r1_y*s_3_prrr - c_3_prrr*g_r1_x
-        acc_3_prrr_o_y = u_1_prrr_tip_y - c_3_prrr*g_r1_y - g_r1_x*s_3_prrr
-        # (prrr-A21) remainder without the acceleration in: angular acceleration of link 3
-        alpha_3_prrr_o_z = (
-        inv_prrr_platform_joint_offset_x*(rel_prrr_o_y + qdd_2_prrr_o*r_2_prrr_r0_x) -
-            qdd_2_prrr_o
+        # (prrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        prrr_rel_o_x = prrr_u_1_tip_x - prrr_bias_x
+        prrr_rel_o_y = prrr_u_1_tip_y + prrr_W_2_t*prrr_joint3_offset_x*prrr_s_3
+        # (prrr-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
+        prrr_qdd_2_o = inv_prrr_r_2_r0_y*prrr_rel_o_x
+        # (prrr-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        prrr_alpha_3_o_z = (
+        inv_prrr_platform_joint_offset_x*(prrr_rel_o_y + prrr_qdd_2_o*prrr_r_2_r0_x) -
+            prrr_qdd_2_o
         )
-        # (prrr-N29) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        mu_3_prrr_o_z = (
-        J_3_prrr_zz*alpha_3_prrr_o_z + acc_3_prrr_o_y*h_3_prrr_x - acc_3_prrr_o_x*h_3_prrr_y
+        # (prrr-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        prrr_acc_3_o_x = (
+        prrr_u_1_tip_x + axis_y_prrr_axes3_in_base_x*gravity_y -
+            axis_y_prrr_axes3_in_base_y*gravity_x
         )
-        # (prrr-N39) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_prrr_o_z = mu_2_prrr_o_z + mu_3_prrr_o_z
-        # (prrr-N53) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_prrr_o_t = inv_prrr_platform_joint_offset_x*mu_3_prrr_o_z
-        G_prrr_o_t_2 = inv_r_2_prrr_r0_y*(G_prrr_o_t*r_2_prrr_r0_x - N_2_prrr_o_z)
-        # (prrr-N56) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_prrr_o_x = W_3_prrr_t*h_3_prrr_x + alpha_3_prrr_o_z*h_3_prrr_y - G_prrr_o_t_2
-        c_prrr_o_y = W_3_prrr_t*h_3_prrr_y - G_prrr_o_t - alpha_3_prrr_o_z*h_3_prrr_x
-        # (prrr-N58) velocity and gravity terms of the leg force
-        U_prrr_in_base_x = (
-        -axis_y_prrr_axes3_in_base_x*c_prrr_o_y - axis_y_prrr_axes3_in_base_y*c_prrr_o_x
+        prrr_acc_3_o_y = (
+        prrr_u_1_tip_y - axis_y_prrr_axes3_in_base_x*gravity_x -
+            axis_y_prrr_axes3_in_base_y*gravity_y
         )
-        U_prrr_in_base_y = (
-        axis_y_prrr_axes3_in_base_x*c_prrr_o_x - axis_y_prrr_axes3_in_base_y*c_prrr_o_y
+        # (prrr-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        prrr_mu_3_o_z = (
+        prrr_J_3_zz*prrr_alpha_3_o_z + prrr_acc_3_o_y*prrr_h_3_x - prrr_acc_3_o_x*prrr_h_3_y
         )
-        # (M7) rotational part of Z
-        Z_a_t = U_prrr_in_base_y*q_prrr_in_base_x - U_prrr_in_base_x*q_prrr_in_base_y
-        # (prrr-N10) remainder without the acceleration in: inertia force of link 2 less its weight
-        f_2_prrr_o_x = h_2_prrr_y*qdd_2_prrr_o - W_2_prrr_t*h_2_prrr_x - g_r1_x*prrr_link2_mass
-        f_2_prrr_o_y = -W_2_prrr_t*h_2_prrr_y - g_r1_y*prrr_link2_mass - h_2_prrr_x*qdd_2_prrr_o
-        # (prrr-N45) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
-        T_1_prrr_o_x = c_2_prrr*f_2_prrr_o_x - f_1_prrr_o_x - f_2_prrr_o_y*s_2_prrr
-        # (prrr-N63) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
-        P_1_prrr_o_t = G_prrr_o_t*axis_y_prrr_axes3_r1_x + G_prrr_o_t_2*axis_y_prrr_axes3_r1_y
-        P_1_prrr_o = T_1_prrr_o_x - P_1_prrr_o_t
+        # (prrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        prrr_g_r1_x = prrr_c_2*prrr_g_r0_x + prrr_g_r0_y*prrr_s_2
+        prrr_g_r1_y = prrr_c_2*prrr_g_r0_y - prrr_g_r0_x*prrr_s_2
+        # (prrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        prrr_mu_2_o_z = prrr_g_r1_x*prrr_h_2_y - prrr_J_2_zz*prrr_qdd_2_o - prrr_g_r1_y*prrr_h_2_x
+        # (prrr-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        prrr_N_2_o_z = prrr_mu_2_o_z + prrr_mu_3_o_z
+        # (prrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        prrr_G_o_t = inv_prrr_platform_joint_offset_x*prrr_mu_3_o_z
+        prrr_G_o_t_2 = inv_prrr_r_2_r0_y*(prrr_G_o_t*prrr_r_2_r0_x - prrr_N_2_o_z)
+        # (prrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        prrr_c_o_x = prrr_W_3_t*prrr_h_3_x + prrr_alpha_3_o_z*prrr_h_3_y - prrr_G_o_t_2
+        prrr_c_o_y = prrr_W_3_t*prrr_h_3_y - prrr_G_o_t - prrr_alpha_3_o_z*prrr_h_3_x
+        # (prrr-U) velocity and gravity terms of the leg force
+        prrr_U_in_base_x = (
+        -axis_y_prrr_axes3_in_base_x*prrr_c_o_y - axis_y_prrr_axes3_in_base_y*prrr_c_o_x
+        )
+        prrr_U_in_base_y = (
+        axis_y_prrr_axes3_in_base_x*prrr_c_o_x - axis_y_prrr_axes3_in_base_y*prrr_c_o_y
+        )
+        # (Z_a) rotational part of Z
+        prrr_Z_a_t = prrr_U_in_base_y*prrr_q_in_base_x - prrr_U_in_base_x*prrr_q_in_base_y
+        # (prrr-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight
+        prrr_f_2_o_x = (
+        prrr_h_2_y*prrr_qdd_2_o - prrr_W_2_t*prrr_h_2_x - prrr_g_r1_x*prrr_link2_mass
+        )
+        prrr_f_2_o_y = (
+        -prrr_W_2_t*prrr_h_2_y - prrr_g_r1_y*prrr_link2_mass - prrr_h_2_x*prrr_qdd_2_o
+        )
+        # (prrr-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
+        prrr_T_1_o_x = prrr_c_2*prrr_f_2_o_x - prrr_f_1_o_x - prrr_f_2_o_y*prrr_s_2
+        # (prrr-P_1_o) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
+        prrr_P_1_o_t = axis_y_prrr_axes3_r1_x*prrr_G_o_t + axis_y_prrr_axes3_r1_y*prrr_G_o_t_2
+        prrr_P_1_o = prrr_T_1_o_x - prrr_P_1_o_t
         ok = (
-        ok & m.every(leg, (abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) &
-            (disc_2_prrr >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr))
+        ok & m.every(leg, (abs(prrr_rho2_2) > _TOLERANCE * _TOLERANCE * prrr_rho2_2_t) &
+            (prrr_disc_2 >= 0.0) & (abs(-prrr_r_2_r0_y) > _TOLERANCE * prrr_size))
         )
         sums = m.added(sums, leg, (
-        U_prrr_in_base_x, U_prrr_in_base_y, Z_a_t,
+        prrr_U_in_base_x, prrr_U_in_base_y, prrr_Z_a_t,
         ))
-        out_Z[_Z_prrr[0][leg]] = P_1_prrr_o
+        out_Z[_Z_prrr[0][leg]] = prrr_P_1_o
     total_prrr_x, total_prrr_y, total_prrr_z = sums
     sums = [0.0] * 3
     for leg, k in legs[1]:
         (
-        J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
-            h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
-            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+            rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+            rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x
-        S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        # (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        g_r1_x_2 = c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr
-        g_r1_y_2 = c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr
-        # (rrr-V1) velocity of the connection point
-        S_dot_rrr_t = omega_z*q_rrr_in_base_y
-        S_dot_rrr_t_2 = omega_z*q_rrr_in_base_x
-        S_dot_rrr_x = t_dot_x - S_dot_rrr_t
-        S_dot_rrr_y = S_dot_rrr_t_2 + t_dot_y
-        # (rrr-V7) rate of joint 1
-        qd_1_rrr = (
-        inv_r_1_rrr_r0_y*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_x)
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = omega_z*rrr_q_in_base_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
+        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_1 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
         )
-        # (rrr-V11) angular velocity of link 2
-        omega_2_rrr_z = (
-        inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_z = (
+        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
         )
-        # (rrr-V10) centripetal tensor of link 1
-        W_1_rrr_t = qd_1_rrr*qd_1_rrr
-        # (rrr-V12) centripetal tensor of link 2
-        W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
-        # (rrr-A5) acceleration of the connection point at zero joint accelerations
-        bias_rrr_x = (
-        -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_t = omega_z*rrr_S_dot_t_2
+        rrr_u_1_t_2 = omega_z*rrr_S_dot_t
+        # (rrr-W_1) centripetal tensor of link 1
+        rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_x = (
+        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        # (rrr-A1) centripetal acceleration of the connection point
-        u_1_rrr_t = S_dot_rrr_t_2*omega_z
-        u_1_rrr_t_2 = S_dot_rrr_t*omega_z
-        u_1_rrr_tip_x = (
-        axis_y_rrr_axes2_in_base_x*u_1_rrr_t_2 - axis_y_rrr_axes2_in_base_y*u_1_rrr_t
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_tip_x = (
+        axis_y_rrr_axes2_in_base_x*rrr_u_1_t_2 - axis_y_rrr_axes2_in_base_y*rrr_u_1_t
         )
-        u_1_rrr_tip_y = (
-        -axis_y_rrr_axes2_in_base_x*u_1_rrr_t - axis_y_rrr_axes2_in_base_y*u_1_rrr_t_2
+        rrr_u_1_tip_y = (
+        -axis_y_rrr_axes2_in_base_x*rrr_u_1_t - axis_y_rrr_axes2_in_base_y*rrr_u_1_t_2
         )
-        # (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_rrr_o_x = u_1_rrr_tip_x - bias_rrr_x
-        rel_rrr_o_y = u_1_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
-        # (rrr-A9) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_rrr_o = inv_r_1_rrr_r0_y*rel_rrr_o_x
-        # (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rrr_o_z = g_r1_x_2*h_1_rrr_y - J_1_rrr_zz*qdd_1_rrr_o - g_r1_y_2*h_1_rrr_x
-        # (rrr-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        acc_2_rrr_o_x = u_1_rrr_tip_x + g_r1_y_2*s_2_rrr - c_2_rrr*g_r1_x_2
-        acc_2_rrr_o_y = u_1_rrr_tip_y - c_2_rrr*g_r1_y_2 - g_r1_x_2*s_2_rrr
-        # (rrr-A18) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_rrr_o_z = (
-        inv_rrr_platform_joint_offset_x*(rel_rrr_o_y + qdd_1_rrr_o*r_1_rrr_r0_x) - qdd_1_rrr_o
+        # (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        rrr_rel_o_x = rrr_u_1_tip_x - rrr_bias_x
+        rrr_rel_o_y = rrr_u_1_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        # (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_rel_o_x
+        # (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        rrr_alpha_2_o_z = (
+        inv_rrr_platform_joint_offset_x*(rrr_rel_o_y + rrr_qdd_1_o*rrr_r_1_r0_x) - rrr_qdd_1_o
         )
-        # (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_rrr_o_z = (
-        J_2_rrr_zz*alpha_2_rrr_o_z + acc_2_rrr_o_y*h_2_rrr_x - acc_2_rrr_o_x*h_2_rrr_y
+        # (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        rrr_acc_2_o_x = (
+        rrr_u_1_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+            axis_y_rrr_axes2_in_base_y*gravity_x
         )
-        # (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z
-        # (rrr-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z
-        # (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_rrr_o_x = (
-        W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x
-            - N_1_rrr_o_z)
+        rrr_acc_2_o_y = (
+        rrr_u_1_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+            axis_y_rrr_axes2_in_base_y*gravity_y
         )
-        c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x
-        # (rrr-N37) velocity and gravity terms of the leg force
-        U_rrr_in_base_x = (
-        -axis_y_rrr_axes2_in_base_x*c_rrr_o_y - axis_y_rrr_axes2_in_base_y*c_rrr_o_x
+        # (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        rrr_mu_2_o_z = (
+        rrr_J_2_zz*rrr_alpha_2_o_z + rrr_acc_2_o_y*rrr_h_2_x - rrr_acc_2_o_x*rrr_h_2_y
         )
-        U_rrr_in_base_y = (
-        axis_y_rrr_axes2_in_base_x*c_rrr_o_x - axis_y_rrr_axes2_in_base_y*c_rrr_o_y
+        # (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        rrr_mu_1_o_z = (
+        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1_o -
+            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
         )
-        # (M7) rotational part of Z
-        Z_a_t_2 = U_rrr_in_base_y*q_rrr_in_base_x - U_rrr_in_base_x*q_rrr_in_base_y
+        # (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z
+        # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z
+        # (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_o_x = (
+        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x
+            - rrr_N_1_o_z)
+        )
+        rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x
+        # (rrr-U) velocity and gravity terms of the leg force
+        rrr_U_in_base_x = (
+        -axis_y_rrr_axes2_in_base_x*rrr_c_o_y - axis_y_rrr_axes2_in_base_y*rrr_c_o_x
+        )
+        rrr_U_in_base_y = (
+        axis_y_rrr_axes2_in_base_x*rrr_c_o_x - axis_y_rrr_axes2_in_base_y*rrr_c_o_y
+        )
+        # (Z_a) rotational part of Z
+        rrr_Z_a_t = rrr_U_in_base_y*rrr_q_in_base_x - rrr_U_in_base_x*rrr_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        U_rrr_in_base_x, U_rrr_in_base_y, Z_a_t_2,
+        rrr_U_in_base_x, rrr_U_in_base_y, rrr_Z_a_t,
         ))
     total_rrr_x, total_rrr_y, total_rrr_z = sums
-    # (M5) translational part of Z
+    # (Z_t) translational part of Z
     Z_t_x = Z_p_x + total_prrr_x + total_rrr_x
     Z_t_y = Z_p_y + total_prrr_y + total_rrr_y
-    # (M7) rotational part of Z
+    # (Z_a) rotational part of Z
     Z_a_z = total_prrr_z + total_rrr_z - Z_q_t
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
@@ -2573,152 +2644,151 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, inv_Kd_2_prrr_t, inv_uu_3_prrr_t,
-            prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy,
-            prrr_base_point_x, prrr_base_point_y, prrr_joint3_offset_x,
-            prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y,
-            rho2_2_prrr_t, size_prrr,
+        inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_base_frame_xx,
+            prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
+            prrr_base_point_y, prrr_branch_2, prrr_joint3_offset_x, prrr_platform_joint_offset_x,
+            prrr_platform_point_x, prrr_platform_point_y, prrr_rho2_2_t, prrr_size,
         ) = k
-        y_1_extra_prrr = X[[3][leg]]
-        # (prrr-K1) from the base point to the connection point
-        q_prrr_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
-        q_prrr_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
-        S_prrr_x = q_prrr_in_base_x + t_x - prrr_base_point_x
-        S_prrr_y = q_prrr_in_base_y + t_y - prrr_base_point_y
-        S_prrr_r0_y = -S_prrr_x*prrr_base_frame_xx - S_prrr_y*prrr_base_frame_yx
-        # (prrr-K2) from the origin of joint 2 to the connection point
-        x_2_prrr_x = S_prrr_x*prrr_base_frame_xy + S_prrr_y*prrr_base_frame_yy - y_1_extra_prrr
-        # (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x
-        Kd_2_prrr = 0.5*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3
-        # (prrr-K7) factor of the cosine in the equation of joint 2
-        Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x
-        # (prrr-K8) factor of the sine in the equation of joint 2
-        Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x
-        # (prrr-K9) squared amplitude
-        rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr
-        # (prrr-K10) discriminant
-        disc_2_prrr = rho2_2_prrr - Kd_2_prrr*Kd_2_prrr
-        # (prrr-K11) root, with the sign of the branch
-        root_2_prrr = branch_2_prrr*sqrt(disc_2_prrr)
-        # (prrr-K17) from the origin of joint 3 to the connection point
-        x_3_prrr_x = Kd_2_prrr*inv_Kd_2_prrr_t*prrr_joint3_offset_x - prrr_joint3_offset_x
-        # (prrr-K19) cosine of the angle of joint 3 from its reference direction
-        c_3_prrr = inv_uu_3_prrr_t*prrr_platform_joint_offset_x*x_3_prrr_x
-        # (prrr-K20) sine of the angle of joint 3 from its reference direction
-        s_3_prrr = (
-        inv_Kd_2_prrr_t*inv_uu_3_prrr_t*prrr_joint3_offset_x*prrr_platform_joint_offset_x*root_2_prrr
+        prrr_y_1_extra = X[[3][leg]]
+        # (prrr-S) from the base point to the connection point
+        prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
+        prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
+        prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x
+        prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y
+        prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
+        # (prrr-x_2) from the origin of joint 2 to the connection point
+        prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        # (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x
+        prrr_Kd_2 = 0.5*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4
+        # (prrr-Kc_2) factor of the cosine in the equation of joint 2
+        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x
+        # (prrr-Ks_2) factor of the sine in the equation of joint 2
+        prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x
+        # (prrr-rho2_2) squared amplitude
+        prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
+        # (prrr-disc_2) discriminant
+        prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2
+        # (prrr-root_2) root, with the sign of the branch
+        prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
+        # (prrr-x_3) from the origin of joint 3 to the connection point
+        prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
+        # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
+        prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x
+        # (prrr-s_3) sine of the angle of joint 3 from its reference direction
+        prrr_s_3 = (
+        inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
         )
-        # (prrr-V2) from joint 2 to the connection point, along the links
-        r_2_prrr_x = prrr_joint3_offset_x + c_3_prrr*prrr_platform_joint_offset_x
-        r_2_prrr_r0_y = r_2_prrr_x*s_3_prrr - c_3_prrr*prrr_platform_joint_offset_x*s_3_prrr
-        # (prrr-K12) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2_prrr = 1.0/rho2_2_prrr
-        c_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*Kd_2_prrr - Ks_2_prrr*root_2_prrr)
-        # (prrr-K13) sine of the angle of joint 2 from its reference direction
-        s_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*root_2_prrr + Kd_2_prrr*Ks_2_prrr)
-        # (prrr-V5) reciprocal vector 1
-        axis_y_prrr_axes3_r1_x = c_2_prrr*s_3_prrr - c_3_prrr*s_2_prrr
-        axis_y_prrr_axes3_r1_y = c_2_prrr*c_3_prrr + s_2_prrr*s_3_prrr
-        inv_r_2_prrr_r0_y = 1.0/r_2_prrr_r0_y
-        # (prrr-A10) coefficient of the acceleration in: acceleration of joint 2
-        d1_qdd_2_prrr = axis_y_prrr_axes3_r1_y*inv_r_2_prrr_r0_y
-        # (prrr-V5) reciprocal vector 1
-        w_2_prrr_t = (
-        inv_r_2_prrr_r0_y*(axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
+        # (prrr-r_2) from joint 2 to the connection point, along the links
+        prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
+        prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_platform_joint_offset_x*prrr_s_3
+        # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_prrr_rho2_2 = 1.0/prrr_rho2_2
+        prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2)
+        # (prrr-s_2) sine of the angle of joint 2 from its reference direction
+        prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2)
+        # (prrr-w_2) reciprocal vector 1
+        axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2
+        axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3
+        inv_prrr_r_2_r0_y = 1.0/prrr_r_2_r0_y
+        # (prrr-dy_1_qdd_2) coefficient of the acceleration in: acceleration of joint 2
+        prrr_dy_1_qdd_2 = axis_y_prrr_axes3_r1_y*inv_prrr_r_2_r0_y
+        # (prrr-w_2) reciprocal vector 1
+        prrr_w_2_t = (
+        inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
             axis_y_prrr_axes3_r1_y*prrr_base_frame_yx)
         )
-        w_2_prrr_t_2 = (
-        inv_r_2_prrr_r0_y*(axis_y_prrr_axes3_r1_x*prrr_base_frame_xy -
+        prrr_w_2_t_2 = (
+        inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_r1_x*prrr_base_frame_xy -
             axis_y_prrr_axes3_r1_y*prrr_base_frame_xx)
         )
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_2_prrr_z = q_prrr_in_base_x*w_2_prrr_t_2 + q_prrr_in_base_y*w_2_prrr_t
+        # (prrr-H_a_2) moment of the column's unit force about the platform origin
+        prrr_H_a_2_z = prrr_q_in_base_x*prrr_w_2_t_2 + prrr_q_in_base_y*prrr_w_2_t
         ok = (
-        ok & m.every(leg, (abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) &
-            (disc_2_prrr >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr))
+        ok & m.every(leg, (abs(prrr_rho2_2) > _TOLERANCE * _TOLERANCE * prrr_rho2_2_t) &
+            (prrr_disc_2 >= 0.0) & (abs(-prrr_r_2_r0_y) > _TOLERANCE * prrr_size))
         )
         out_H[_H_prrr[0][leg]] = 1.0
-        out_H[_H_prrr[1][leg]] = -w_2_prrr_t
-        out_H[_H_prrr[2][leg]] = w_2_prrr_t_2
-        out_H[_H_prrr[3][leg]] = H_a_2_prrr_z
-        out_H[_H_prrr[4][leg]] = d1_qdd_2_prrr
+        out_H[_H_prrr[1][leg]] = -prrr_w_2_t
+        out_H[_H_prrr[2][leg]] = prrr_w_2_t_2
+        out_H[_H_prrr[3][leg]] = prrr_H_a_2_z
+        out_H[_H_prrr[4][leg]] = prrr_dy_1_qdd_2
     for leg, k in legs[1]:
         (
-        Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
-            rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-            rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+            rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x
-        S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*rrr_platform_joint_offset_x*s_2_rrr
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        w_1_rrr_t = (
-        inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        rrr_w_1_t = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy)
         )
-        w_1_rrr_t_2 = (
-        inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
+        rrr_w_1_t_2 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy)
         )
-        # (M10) moment of the column's unit force about the platform origin
-        H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t
+        # (rrr-H_a_1) moment of the column's unit force about the platform origin
+        rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
-        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
-        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
-        out_H[_H_rrr[2][leg]] = H_a_1_rrr_z
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
+        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
+        out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
     return ok, (out_H,)
 
 
-# required: 345 mul, 223 add, 6 div, 3 sqrt, 0 trig
+# required: 341 mul, 221 add, 6 div, 3 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("required")
-    J_star_zz, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
+    J_star_t_6, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -2744,353 +2814,351 @@ def _run_required(m, X, V, A):
     ok = True
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
-    # (P1) centripetal tensor of the platform
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_z*omega_z
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
-    # (E2) inertia force of the platform less its weight
+    # (f_p) inertia force of the platform less its weight
     f_p_x = a_t_x*m_star - W_p_t*h_star_in_base_x - alpha_z*h_star_in_base_y
     f_p_y = a_t_y*m_star + alpha_z*h_star_in_base_x - W_p_t*h_star_in_base_y
-    # (E3) inertia moment of the platform less that of its weight
-    mu_p_z = (
-    J_star_zz*alpha_z + h_star_x*(R_xx*a_t_y - R_yx*a_t_x) - h_star_y*(R_xx*a_t_x + R_yx*a_t_y)
-    )
+    # (mu_p) inertia moment of the platform less that of its weight
+    mu_p_z = a_t_y*h_star_in_base_x - J_star_t_6*alpha_z - a_t_x*h_star_in_base_y
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
-        J_2_prrr_zz, J_3_prrr_zz, Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, g_r0_x, g_r0_y,
-            h_2_prrr_x, h_2_prrr_y, h_3_prrr_x, h_3_prrr_y, inv_Kd_2_prrr_t,
-            inv_prrr_platform_joint_offset_x, inv_uu_3_prrr_t, prrr_base_frame_xx,
-            prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
-            prrr_base_point_y, prrr_joint3_offset_x, prrr_link1_mass, prrr_link2_mass,
+        inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_platform_joint_offset_x, prrr_J_2_zz,
+            prrr_J_3_zz, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_base_frame_xx, prrr_base_frame_xy,
+            prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y,
+            prrr_branch_2, prrr_g_r0_x, prrr_g_r0_y, prrr_h_2_x, prrr_h_2_y, prrr_h_3_x,
+            prrr_h_3_y, prrr_joint3_offset_x, prrr_link1_mass, prrr_link2_mass,
             prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y,
-            rho2_2_prrr_t, size_prrr,
+            prrr_rho2_2_t, prrr_size,
         ) = k
-        y_1_extra_prrr = X[[3][leg]]
-        yd_1_prrr = V[[3][leg]]
-        ydd_1_prrr = A[[3][leg]]
-        # (prrr-K1) from the base point to the connection point
-        q_prrr_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
-        q_prrr_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
-        S_prrr_x = q_prrr_in_base_x + t_x - prrr_base_point_x
-        S_prrr_y = q_prrr_in_base_y + t_y - prrr_base_point_y
-        S_prrr_r0_y = -S_prrr_x*prrr_base_frame_xx - S_prrr_y*prrr_base_frame_yx
-        # (prrr-K2) from the origin of joint 2 to the connection point
-        x_2_prrr_x = S_prrr_x*prrr_base_frame_xy + S_prrr_y*prrr_base_frame_yy - y_1_extra_prrr
-        # (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x
-        Kd_2_prrr = 0.5*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3
-        # (prrr-K7) factor of the cosine in the equation of joint 2
-        Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x
-        # (prrr-K8) factor of the sine in the equation of joint 2
-        Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x
-        # (prrr-K9) squared amplitude
-        rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr
-        # (prrr-K10) discriminant
-        disc_2_prrr = rho2_2_prrr - Kd_2_prrr*Kd_2_prrr
-        # (prrr-K11) root, with the sign of the branch
-        root_2_prrr = branch_2_prrr*sqrt(disc_2_prrr)
-        # (prrr-K17) from the origin of joint 3 to the connection point
-        x_3_prrr_x = Kd_2_prrr*inv_Kd_2_prrr_t*prrr_joint3_offset_x - prrr_joint3_offset_x
-        # (prrr-K19) cosine of the angle of joint 3 from its reference direction
-        c_3_prrr = inv_uu_3_prrr_t*prrr_platform_joint_offset_x*x_3_prrr_x
-        # (prrr-K20) sine of the angle of joint 3 from its reference direction
-        s_3_prrr = (
-        inv_Kd_2_prrr_t*inv_uu_3_prrr_t*prrr_joint3_offset_x*prrr_platform_joint_offset_x*root_2_prrr
+        prrr_y_1_extra = X[[3][leg]]
+        prrr_yd_1 = V[[3][leg]]
+        prrr_ydd_1 = A[[3][leg]]
+        # (prrr-S) from the base point to the connection point
+        prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
+        prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
+        prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x
+        prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y
+        prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
+        # (prrr-x_2) from the origin of joint 2 to the connection point
+        prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        # (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x
+        prrr_Kd_2 = 0.5*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4
+        # (prrr-Kc_2) factor of the cosine in the equation of joint 2
+        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x
+        # (prrr-Ks_2) factor of the sine in the equation of joint 2
+        prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x
+        # (prrr-rho2_2) squared amplitude
+        prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
+        # (prrr-disc_2) discriminant
+        prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2
+        # (prrr-root_2) root, with the sign of the branch
+        prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
+        # (prrr-x_3) from the origin of joint 3 to the connection point
+        prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
+        # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
+        prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x
+        # (prrr-s_3) sine of the angle of joint 3 from its reference direction
+        prrr_s_3 = (
+        inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
         )
-        # (prrr-V2) from joint 2 to the connection point, along the links
-        r_2_prrr_t = prrr_platform_joint_offset_x*s_3_prrr
-        r_2_prrr_x = prrr_joint3_offset_x + c_3_prrr*prrr_platform_joint_offset_x
-        r_2_prrr_r0_x = c_3_prrr*r_2_prrr_x + r_2_prrr_t*s_3_prrr
-        r_2_prrr_r0_y = r_2_prrr_x*s_3_prrr - c_3_prrr*r_2_prrr_t
-        # (prrr-K12) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2_prrr = 1.0/rho2_2_prrr
-        c_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*Kd_2_prrr - Ks_2_prrr*root_2_prrr)
-        # (prrr-K13) sine of the angle of joint 2 from its reference direction
-        s_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*root_2_prrr + Kd_2_prrr*Ks_2_prrr)
-        # (prrr-V5) reciprocal vector 1
-        axis_y_prrr_axes3_r1_x = c_2_prrr*s_3_prrr - c_3_prrr*s_2_prrr
-        axis_y_prrr_axes3_r1_y = c_2_prrr*c_3_prrr + s_2_prrr*s_3_prrr
+        # (prrr-r_2) from joint 2 to the connection point, along the links
+        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3
+        prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
+        prrr_r_2_r0_x = prrr_c_3*prrr_r_2_x + prrr_r_2_t*prrr_s_3
+        prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_r_2_t
+        # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_prrr_rho2_2 = 1.0/prrr_rho2_2
+        prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2)
+        # (prrr-s_2) sine of the angle of joint 2 from its reference direction
+        prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2)
+        # (prrr-w_2) reciprocal vector 1
+        axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2
+        axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3
         axis_y_prrr_axes3_in_base_x = (
         axis_y_prrr_axes3_r1_x*prrr_base_frame_xy - axis_y_prrr_axes3_r1_y*prrr_base_frame_xx
         )
         axis_y_prrr_axes3_in_base_y = (
         axis_y_prrr_axes3_r1_x*prrr_base_frame_yy - axis_y_prrr_axes3_r1_y*prrr_base_frame_yx
         )
-        inv_r_2_prrr_r0_y = 1.0/r_2_prrr_r0_y
-        # (prrr-V1) velocity of the connection point
-        S_dot_prrr_t = omega_z*q_prrr_in_base_y
-        S_dot_prrr_t_2 = omega_z*q_prrr_in_base_x
-        S_dot_prrr_x = t_dot_x - S_dot_prrr_t
-        S_dot_prrr_y = S_dot_prrr_t_2 + t_dot_y
-        # (prrr-V7) velocity of the connection point left to the joints that are not extra
-        S_dot_rest_prrr_x = S_dot_prrr_x - prrr_base_frame_xy*yd_1_prrr
-        S_dot_rest_prrr_y = S_dot_prrr_y - prrr_base_frame_yy*yd_1_prrr
-        # (prrr-V8) rate of joint 2
-        qd_2_prrr = (
-        inv_r_2_prrr_r0_y*(S_dot_rest_prrr_x*axis_y_prrr_axes3_in_base_y -
-            S_dot_rest_prrr_y*axis_y_prrr_axes3_in_base_x)
+        inv_prrr_r_2_r0_y = 1.0/prrr_r_2_r0_y
+        # (prrr-S_dot) velocity of the connection point
+        prrr_S_dot_t = omega_z*prrr_q_in_base_y
+        prrr_S_dot_t_2 = omega_z*prrr_q_in_base_x
+        prrr_S_dot_x = t_dot_x - prrr_S_dot_t
+        prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y
+        # (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra
+        prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1
+        prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1
+        # (prrr-qd_3) rate of joint 3
+        prrr_qd_2 = (
+        inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_x -
+            axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_y)
         )
-        # (prrr-V12) angular velocity of link 3
-        omega_3_prrr_z = (
-        inv_prrr_platform_joint_offset_x*(S_dot_rest_prrr_x*axis_y_prrr_axes3_in_base_x +
-            S_dot_rest_prrr_y*axis_y_prrr_axes3_in_base_y + qd_2_prrr*r_2_prrr_r0_x) - qd_2_prrr
+        # (prrr-omega_3) angular velocity of link 3
+        prrr_omega_3_z = (
+        inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_x +
+            axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_y + prrr_qd_2*prrr_r_2_r0_x) - prrr_qd_2
         )
-        # (prrr-V11) centripetal tensor of link 2
-        W_2_prrr_t = qd_2_prrr*qd_2_prrr
-        # (prrr-V13) centripetal tensor of link 3
-        W_3_prrr_t = omega_3_prrr_z*omega_3_prrr_z
-        # (prrr-A5) acceleration of the connection point at zero joint accelerations
-        bias_prrr_x = (
-        -W_3_prrr_t*prrr_platform_joint_offset_x - W_2_prrr_t*c_3_prrr*prrr_joint3_offset_x
+        # (prrr-W_2) centripetal tensor of link 2
+        prrr_W_2_t = prrr_qd_2*prrr_qd_2
+        # (prrr-W_3) centripetal tensor of link 3
+        prrr_W_3_t = prrr_omega_3_z*prrr_omega_3_z
+        # (prrr-bias) acceleration of the connection point at zero joint accelerations
+        prrr_bias_x = (
+        -prrr_W_3_t*prrr_platform_joint_offset_x - prrr_W_2_t*prrr_c_3*prrr_joint3_offset_x
         )
-        # (prrr-A10) coefficient of the acceleration in: acceleration of joint 2
-        d1_qdd_2_prrr = axis_y_prrr_axes3_r1_y*inv_r_2_prrr_r0_y
-        # (prrr-V5) reciprocal vector 1
-        w_2_prrr_t = axis_y_prrr_axes3_in_base_y*inv_r_2_prrr_r0_y
-        w_2_prrr_t_2 = axis_y_prrr_axes3_in_base_x*inv_r_2_prrr_r0_y
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_2_prrr_z = q_prrr_in_base_x*w_2_prrr_t_2 + q_prrr_in_base_y*w_2_prrr_t
-        # (prrr-A2) acceleration of the connection point without its centripetal part
-        a_p_prrr_x = t_ddot_x - alpha_z*q_prrr_in_base_y
-        a_p_prrr_y = t_ddot_y + alpha_z*q_prrr_in_base_x
-        # (prrr-A3) acceleration of the connection point
-        S_ddot_prrr_x = a_p_prrr_x - S_dot_prrr_t_2*omega_z
-        S_ddot_prrr_y = a_p_prrr_y - S_dot_prrr_t*omega_z
-        S_ddot_prrr_tip_x = (
-        S_ddot_prrr_x*axis_y_prrr_axes3_in_base_y - S_ddot_prrr_y*axis_y_prrr_axes3_in_base_x
+        # (prrr-dy_1_qdd_2) coefficient of the acceleration in: acceleration of joint 2
+        prrr_dy_1_qdd_2 = axis_y_prrr_axes3_r1_y*inv_prrr_r_2_r0_y
+        # (prrr-w_2) reciprocal vector 1
+        prrr_w_2_t = axis_y_prrr_axes3_in_base_y*inv_prrr_r_2_r0_y
+        prrr_w_2_t_2 = axis_y_prrr_axes3_in_base_x*inv_prrr_r_2_r0_y
+        # (prrr-H_a_2) moment of the column's unit force about the platform origin
+        prrr_H_a_2_z = prrr_q_in_base_x*prrr_w_2_t_2 + prrr_q_in_base_y*prrr_w_2_t
+        # (prrr-a_p) acceleration of the connection point without its centripetal part
+        prrr_a_p_x = t_ddot_x - alpha_z*prrr_q_in_base_y
+        prrr_a_p_y = t_ddot_y + alpha_z*prrr_q_in_base_x
+        # (prrr-S_ddot) acceleration of the connection point
+        prrr_S_ddot_x = prrr_a_p_x - omega_z*prrr_S_dot_t_2
+        prrr_S_ddot_y = prrr_a_p_y - omega_z*prrr_S_dot_t
+        prrr_S_ddot_tip_x = (
+        axis_y_prrr_axes3_in_base_y*prrr_S_ddot_x - axis_y_prrr_axes3_in_base_x*prrr_S_ddot_y
         )
-        S_ddot_prrr_tip_y = (
-        S_ddot_prrr_x*axis_y_prrr_axes3_in_base_x + S_ddot_prrr_y*axis_y_prrr_axes3_in_base_y
+        prrr_S_ddot_tip_y = (
+        axis_y_prrr_axes3_in_base_x*prrr_S_ddot_x + axis_y_prrr_axes3_in_base_y*prrr_S_ddot_y
         )
-        # (prrr-A6) acceleration of the connection point left to the joint accelerations
-        rel_prrr_x = S_ddot_prrr_tip_x - bias_prrr_x - axis_y_prrr_axes3_r1_y*ydd_1_prrr
-        rel_prrr_y = (
-        S_ddot_prrr_tip_y + W_2_prrr_t*prrr_joint3_offset_x*s_3_prrr -
-            axis_y_prrr_axes3_r1_x*ydd_1_prrr
+        # (prrr-rel) acceleration of the connection point left to the joint accelerations
+        prrr_rel_x = prrr_S_ddot_tip_x - prrr_bias_x - axis_y_prrr_axes3_r1_y*prrr_ydd_1
+        prrr_rel_y = (
+        prrr_S_ddot_tip_y + prrr_W_2_t*prrr_joint3_offset_x*prrr_s_3 -
+            axis_y_prrr_axes3_r1_x*prrr_ydd_1
         )
-        # (prrr-A9) acceleration of joint 2
-        qdd_2_prrr = inv_r_2_prrr_r0_y*rel_prrr_x
-        # (prrr-N11) acceleration of the reference point of link 3, less gravity
-        acc_3_prrr_x = (
-        S_ddot_prrr_tip_x + axis_y_prrr_axes3_in_base_x*gravity_y -
+        # (prrr-qdd_2) acceleration of joint 2
+        prrr_qdd_2 = inv_prrr_r_2_r0_y*prrr_rel_x
+        # (prrr-acc_3) acceleration of the reference point of link 3, less gravity
+        prrr_acc_3_x = (
+        prrr_S_ddot_tip_x + axis_y_prrr_axes3_in_base_x*gravity_y -
             axis_y_prrr_axes3_in_base_y*gravity_x
         )
-        acc_3_prrr_y = (
-        S_ddot_prrr_tip_y - axis_y_prrr_axes3_in_base_x*gravity_x -
+        prrr_acc_3_y = (
+        prrr_S_ddot_tip_y - axis_y_prrr_axes3_in_base_x*gravity_x -
             axis_y_prrr_axes3_in_base_y*gravity_y
         )
-        # (prrr-N5) acceleration of the reference point of link 2, less gravity
-        acc_2_prrr_x = c_2_prrr*ydd_1_prrr - c_2_prrr*g_r0_x - g_r0_y*s_2_prrr
-        acc_2_prrr_y = g_r0_x*s_2_prrr - c_2_prrr*g_r0_y - s_2_prrr*ydd_1_prrr
-        # (prrr-N36) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_prrr_z = acc_2_prrr_y*h_2_prrr_x - J_2_prrr_zz*qdd_2_prrr - acc_2_prrr_x*h_2_prrr_y
-        # (prrr-A19) angular acceleration of link 3
-        alpha_3_prrr_z = (
-        inv_prrr_platform_joint_offset_x*(rel_prrr_y + qdd_2_prrr*r_2_prrr_r0_x) - qdd_2_prrr
+        # (prrr-alpha_3) angular acceleration of link 3
+        prrr_alpha_3_z = (
+        inv_prrr_platform_joint_offset_x*(prrr_rel_y + prrr_qdd_2*prrr_r_2_r0_x) - prrr_qdd_2
         )
-        # (prrr-N28) inertia moment of the links that turn with link 3, about their reference points
-        mu_3_prrr_z = (
-        J_3_prrr_zz*alpha_3_prrr_z + acc_3_prrr_y*h_3_prrr_x - acc_3_prrr_x*h_3_prrr_y
+        # (prrr-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        prrr_mu_3_z = (
+        prrr_J_3_zz*prrr_alpha_3_z + prrr_acc_3_y*prrr_h_3_x - prrr_acc_3_x*prrr_h_3_y
         )
-        # (prrr-N38) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_prrr_z = mu_2_prrr_z + mu_3_prrr_z
-        # (prrr-N50) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_prrr_t = inv_prrr_platform_joint_offset_x*mu_3_prrr_z
-        G_prrr_t_2 = inv_r_2_prrr_r0_y*(G_prrr_t*r_2_prrr_r0_x - N_2_prrr_z)
-        # (prrr-N54) leg force on the platform without actuation and without the mass at the connection point
-        c_prrr_x = W_3_prrr_t*h_3_prrr_x + alpha_3_prrr_z*h_3_prrr_y - G_prrr_t_2
-        c_prrr_y = W_3_prrr_t*h_3_prrr_y - G_prrr_t - alpha_3_prrr_z*h_3_prrr_x
-        c_prrr_in_base_x = (
-        axis_y_prrr_axes3_in_base_x*c_prrr_y + axis_y_prrr_axes3_in_base_y*c_prrr_x
+        # (prrr-acc_2) acceleration of the reference point of link 2, less gravity
+        prrr_acc_2_x = prrr_c_2*prrr_ydd_1 - prrr_c_2*prrr_g_r0_x - prrr_g_r0_y*prrr_s_2
+        prrr_acc_2_y = prrr_g_r0_x*prrr_s_2 - prrr_c_2*prrr_g_r0_y - prrr_s_2*prrr_ydd_1
+        # (prrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        prrr_mu_2_z = prrr_acc_2_y*prrr_h_2_x - prrr_J_2_zz*prrr_qdd_2 - prrr_acc_2_x*prrr_h_2_y
+        # (prrr-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        prrr_N_2_z = prrr_mu_2_z + prrr_mu_3_z
+        # (prrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        prrr_G_t = inv_prrr_platform_joint_offset_x*prrr_mu_3_z
+        prrr_G_t_2 = inv_prrr_r_2_r0_y*(prrr_G_t*prrr_r_2_r0_x - prrr_N_2_z)
+        # (prrr-c) leg force on the platform without actuation and without the mass at the connection point
+        prrr_c_x = prrr_W_3_t*prrr_h_3_x + prrr_alpha_3_z*prrr_h_3_y - prrr_G_t_2
+        prrr_c_y = prrr_W_3_t*prrr_h_3_y - prrr_G_t - prrr_alpha_3_z*prrr_h_3_x
+        prrr_c_in_base_x = (
+        axis_y_prrr_axes3_in_base_x*prrr_c_y + axis_y_prrr_axes3_in_base_y*prrr_c_x
         )
-        c_prrr_in_base_y = (
-        axis_y_prrr_axes3_in_base_y*c_prrr_y - axis_y_prrr_axes3_in_base_x*c_prrr_x
+        prrr_c_in_base_y = (
+        axis_y_prrr_axes3_in_base_y*prrr_c_y - axis_y_prrr_axes3_in_base_x*prrr_c_x
         )
-        # (E5) moment that actuators and external wrench must give
-        R_a_t = c_prrr_in_base_y*q_prrr_in_base_x - c_prrr_in_base_x*q_prrr_in_base_y
-        # (prrr-N1) acceleration of the reference point of link 1, less gravity
-        acc_1_prrr_x = ydd_1_prrr - g_r0_x
-        # (prrr-N9) inertia force of link 2 less its weight
-        f_2_prrr_x = acc_2_prrr_x*prrr_link2_mass + h_2_prrr_y*qdd_2_prrr - W_2_prrr_t*h_2_prrr_x
-        f_2_prrr_y = acc_2_prrr_y*prrr_link2_mass - W_2_prrr_t*h_2_prrr_y - h_2_prrr_x*qdd_2_prrr
-        # (prrr-N44) inertia force of the links from 1 outwards, the last link left out
-        T_1_prrr_x = acc_1_prrr_x*prrr_link1_mass + c_2_prrr*f_2_prrr_x - f_2_prrr_y*s_2_prrr
-        # (prrr-N60) inertia and weight of the leg along the extra freedom of joint 1
-        P_1_prrr_t = G_prrr_t*axis_y_prrr_axes3_r1_x + G_prrr_t_2*axis_y_prrr_axes3_r1_y
-        P_1_prrr = T_1_prrr_x - P_1_prrr_t
+        # (R_a) moment that actuators and external wrench must give
+        prrr_R_a_t = prrr_c_in_base_y*prrr_q_in_base_x - prrr_c_in_base_x*prrr_q_in_base_y
+        # (prrr-acc_1) acceleration of the reference point of link 1, less gravity
+        prrr_acc_1_x = prrr_ydd_1 - prrr_g_r0_x
+        # (prrr-f_2) inertia force of link 2 less its weight
+        prrr_f_2_x = prrr_acc_2_x*prrr_link2_mass + prrr_h_2_y*prrr_qdd_2 - prrr_W_2_t*prrr_h_2_x
+        prrr_f_2_y = prrr_acc_2_y*prrr_link2_mass - prrr_W_2_t*prrr_h_2_y - prrr_h_2_x*prrr_qdd_2
+        # (prrr-T_1) inertia force of the links from 1 outwards, the last link left out
+        prrr_T_1_x = prrr_acc_1_x*prrr_link1_mass + prrr_c_2*prrr_f_2_x - prrr_f_2_y*prrr_s_2
+        # (prrr-P_1) inertia and weight of the leg along the extra freedom of joint 1
+        prrr_P_1_t = axis_y_prrr_axes3_r1_x*prrr_G_t + axis_y_prrr_axes3_r1_y*prrr_G_t_2
+        prrr_P_1 = prrr_T_1_x - prrr_P_1_t
         ok = (
-        ok & m.every(leg, (abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) &
-            (disc_2_prrr >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr))
+        ok & m.every(leg, (abs(prrr_rho2_2) > _TOLERANCE * _TOLERANCE * prrr_rho2_2_t) &
+            (prrr_disc_2 >= 0.0) & (abs(-prrr_r_2_r0_y) > _TOLERANCE * prrr_size))
         )
         sums = m.added(sums, leg, (
-        c_prrr_in_base_x, c_prrr_in_base_y, R_a_t,
+        prrr_c_in_base_x, prrr_c_in_base_y, prrr_R_a_t,
         ))
-        out_required[_required_prrr[0][leg]] = P_1_prrr
+        out_required[_required_prrr[0][leg]] = prrr_P_1
         out_H[_H_prrr[0][leg]] = 1.0
-        out_H[_H_prrr[1][leg]] = -w_2_prrr_t
-        out_H[_H_prrr[2][leg]] = w_2_prrr_t_2
-        out_H[_H_prrr[3][leg]] = H_a_2_prrr_z
-        out_H[_H_prrr[4][leg]] = d1_qdd_2_prrr
+        out_H[_H_prrr[1][leg]] = -prrr_w_2_t
+        out_H[_H_prrr[2][leg]] = prrr_w_2_t_2
+        out_H[_H_prrr[3][leg]] = prrr_H_a_2_z
+        out_H[_H_prrr[4][leg]] = prrr_dy_1_qdd_2
     total_prrr_x, total_prrr_y, total_prrr_z = sums
     sums = [0.0] * 3
     for leg, k in legs[1]:
         (
-        J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
-            h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
-            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+            rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+            rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x
-        S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        # (rrr-V1) velocity of the connection point
-        S_dot_rrr_t = omega_z*q_rrr_in_base_y
-        S_dot_rrr_t_2 = omega_z*q_rrr_in_base_x
-        S_dot_rrr_x = t_dot_x - S_dot_rrr_t
-        S_dot_rrr_y = S_dot_rrr_t_2 + t_dot_y
-        # (rrr-V7) rate of joint 1
-        qd_1_rrr = (
-        inv_r_1_rrr_r0_y*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_x)
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = omega_z*rrr_q_in_base_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
+        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_1 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
         )
-        # (rrr-V11) angular velocity of link 2
-        omega_2_rrr_z = (
-        inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_z = (
+        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
         )
-        # (rrr-V10) centripetal tensor of link 1
-        W_1_rrr_t = qd_1_rrr*qd_1_rrr
-        # (rrr-V12) centripetal tensor of link 2
-        W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
-        # (rrr-A5) acceleration of the connection point at zero joint accelerations
-        bias_rrr_x = (
-        -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
+        # (rrr-W_1) centripetal tensor of link 1
+        rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_x = (
+        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        # (rrr-V5) reciprocal vector 1
-        w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
-        w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
-        # (M10) moment of the column's unit force about the platform origin
-        H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t
-        # (rrr-A2) acceleration of the connection point without its centripetal part
-        a_p_rrr_x = t_ddot_x - alpha_z*q_rrr_in_base_y
-        a_p_rrr_y = t_ddot_y + alpha_z*q_rrr_in_base_x
-        # (rrr-A3) acceleration of the connection point
-        S_ddot_rrr_x = a_p_rrr_x - S_dot_rrr_t_2*omega_z
-        S_ddot_rrr_y = a_p_rrr_y - S_dot_rrr_t*omega_z
-        S_ddot_rrr_tip_x = (
-        S_ddot_rrr_x*axis_y_rrr_axes2_in_base_y - S_ddot_rrr_y*axis_y_rrr_axes2_in_base_x
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y
+        rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y
+        # (rrr-H_a_1) moment of the column's unit force about the platform origin
+        rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t
+        # (rrr-a_p) acceleration of the connection point without its centripetal part
+        rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y
+        rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x
+        # (rrr-S_ddot) acceleration of the connection point
+        rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
+        rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
+        rrr_S_ddot_tip_x = (
+        axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x - axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y
         )
-        S_ddot_rrr_tip_y = (
-        S_ddot_rrr_x*axis_y_rrr_axes2_in_base_x + S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y
+        rrr_S_ddot_tip_y = (
+        axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x + axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y
         )
-        # (rrr-A6) acceleration of the connection point left to the joint accelerations
-        rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x
-        rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
-        # (rrr-A8) acceleration of joint 1
-        qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
-        # (rrr-N3) acceleration of the reference point of link 2, less gravity
-        acc_2_rrr_x = (
-        S_ddot_rrr_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+        # (rrr-rel) acceleration of the connection point left to the joint accelerations
+        rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x
+        rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        # (rrr-qdd_1) acceleration of joint 1
+        rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_acc_2_x = (
+        rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
             axis_y_rrr_axes2_in_base_y*gravity_x
         )
-        acc_2_rrr_y = (
-        S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+        rrr_acc_2_y = (
+        rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
             axis_y_rrr_axes2_in_base_y*gravity_y
         )
-        # (rrr-N23) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rrr_z = (
-        h_1_rrr_y*(c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr) - J_1_rrr_zz*qdd_1_rrr -
-            h_1_rrr_x*(c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr)
+        # (rrr-alpha_2) angular acceleration of link 2
+        rrr_alpha_2_z = (
+        inv_rrr_platform_joint_offset_x*(rrr_rel_y + rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1
         )
-        # (rrr-A16) angular acceleration of link 2
-        alpha_2_rrr_z = (
-        inv_rrr_platform_joint_offset_x*(rel_rrr_y + qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr
+        # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x - rrr_acc_2_x*rrr_h_2_y
+        # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_mu_1_z = (
+        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1 -
+            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
         )
-        # (rrr-N16) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x - acc_2_rrr_x*h_2_rrr_y
-        # (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z
-        # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z
-        # (rrr-N33) leg force on the platform without actuation and without the mass at the connection point
-        c_rrr_x = (
-        W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x -
-            N_1_rrr_z)
+        # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z
+        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z
+        # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_x = (
+        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x -
+            rrr_N_1_z)
         )
-        c_rrr_y = W_2_rrr_t*h_2_rrr_y - G_rrr_t - alpha_2_rrr_z*h_2_rrr_x
-        c_rrr_in_base_x = axis_y_rrr_axes2_in_base_x*c_rrr_y + axis_y_rrr_axes2_in_base_y*c_rrr_x
-        c_rrr_in_base_y = axis_y_rrr_axes2_in_base_y*c_rrr_y - axis_y_rrr_axes2_in_base_x*c_rrr_x
-        # (E5) moment that actuators and external wrench must give
-        R_a_t_2 = c_rrr_in_base_y*q_rrr_in_base_x - c_rrr_in_base_x*q_rrr_in_base_y
+        rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x
+        rrr_c_in_base_x = axis_y_rrr_axes2_in_base_x*rrr_c_y + axis_y_rrr_axes2_in_base_y*rrr_c_x
+        rrr_c_in_base_y = axis_y_rrr_axes2_in_base_y*rrr_c_y - axis_y_rrr_axes2_in_base_x*rrr_c_x
+        # (R_a) moment that actuators and external wrench must give
+        rrr_R_a_t = rrr_c_in_base_y*rrr_q_in_base_x - rrr_c_in_base_x*rrr_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        c_rrr_in_base_x, c_rrr_in_base_y, R_a_t_2,
+        rrr_c_in_base_x, rrr_c_in_base_y, rrr_R_a_t,
         ))
-        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
-        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
-        out_H[_H_rrr[2][leg]] = H_a_1_rrr_z
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
+        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
+        out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
     total_rrr_x, total_rrr_y, total_rrr_z = sums
-    # (E4) force that actuators and external wrench must give
+    # (R_t) force that actuators and external wrench must give
     R_t_x = f_p_x - total_prrr_x - total_rrr_x
     R_t_y = f_p_y - total_prrr_y - total_rrr_y
-    # (E5) moment that actuators and external wrench must give
+    # (R_a) moment that actuators and external wrench must give
     R_a_z = mu_p_z - total_prrr_z - total_rrr_z
     out_required[0] = R_t_x
     out_required[1] = R_t_y
@@ -3117,104 +3185,103 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, inv_Kd_2_prrr_t, inv_uu_3_prrr_t,
-            prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy,
-            prrr_base_point_x, prrr_base_point_y, prrr_joint3_offset_x,
-            prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y,
-            rho2_2_prrr_t,
+        inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_base_frame_xx,
+            prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
+            prrr_base_point_y, prrr_branch_2, prrr_joint3_offset_x, prrr_platform_joint_offset_x,
+            prrr_platform_point_x, prrr_platform_point_y, prrr_rho2_2_t,
         ) = k
-        y_1_extra_prrr = X[[3][leg]]
-        # (prrr-K1) from the base point to the connection point
-        S_prrr_x = (
+        prrr_y_1_extra = X[[3][leg]]
+        # (prrr-S) from the base point to the connection point
+        prrr_S_x = (
         t_x + R_xx*prrr_platform_point_x - prrr_base_point_x - R_yx*prrr_platform_point_y
         )
-        S_prrr_y = (
+        prrr_S_y = (
         t_y + R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x - prrr_base_point_y
         )
-        S_prrr_r0_y = -S_prrr_x*prrr_base_frame_xx - S_prrr_y*prrr_base_frame_yx
-        # (prrr-K2) from the origin of joint 2 to the connection point
-        x_2_prrr_x = S_prrr_x*prrr_base_frame_xy + S_prrr_y*prrr_base_frame_yy - y_1_extra_prrr
-        # (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x
-        Kd_2_prrr = 0.5*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3
-        # (prrr-K7) factor of the cosine in the equation of joint 2
-        Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x
-        # (prrr-K8) factor of the sine in the equation of joint 2
-        Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x
-        # (prrr-K9) squared amplitude
-        rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr
-        # (prrr-K10) discriminant
-        disc_2_prrr = rho2_2_prrr - Kd_2_prrr*Kd_2_prrr
-        # (prrr-K11) root, with the sign of the branch
-        root_2_prrr = branch_2_prrr*sqrt(disc_2_prrr)
-        # (prrr-K17) from the origin of joint 3 to the connection point
-        x_3_prrr_x = Kd_2_prrr*inv_Kd_2_prrr_t*prrr_joint3_offset_x - prrr_joint3_offset_x
-        # (prrr-K12) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2_prrr = 1.0/rho2_2_prrr
-        # (prrr-K14) displacement of joint 2
-        q_2_prrr = (
-        atan2(inv_rho2_2_prrr*(Kc_2_prrr*Kd_2_prrr - Ks_2_prrr*root_2_prrr),
-            -inv_rho2_2_prrr*(Kc_2_prrr*root_2_prrr + Kd_2_prrr*Ks_2_prrr))
+        prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
+        # (prrr-x_2) from the origin of joint 2 to the connection point
+        prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        # (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x
+        prrr_Kd_2 = 0.5*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4
+        # (prrr-Kc_2) factor of the cosine in the equation of joint 2
+        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x
+        # (prrr-Ks_2) factor of the sine in the equation of joint 2
+        prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x
+        # (prrr-rho2_2) squared amplitude
+        prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
+        # (prrr-disc_2) discriminant
+        prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2
+        # (prrr-root_2) root, with the sign of the branch
+        prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
+        # (prrr-x_3) from the origin of joint 3 to the connection point
+        prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
+        # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_prrr_rho2_2 = 1.0/prrr_rho2_2
+        # (prrr-q_2) displacement of joint 2
+        prrr_q_2 = (
+        atan2(inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2),
+            -inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2))
         )
-        # (prrr-K21) displacement of joint 3
-        q_3_prrr = (
-        atan2(-inv_Kd_2_prrr_t*inv_uu_3_prrr_t*prrr_joint3_offset_x*prrr_platform_joint_offset_x*root_2_prrr,
-            inv_uu_3_prrr_t*prrr_platform_joint_offset_x*x_3_prrr_x)
+        # (prrr-q_3) displacement of joint 3
+        prrr_q_3 = (
+        atan2(-inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2,
+            inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x)
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) &
-            (disc_2_prrr >= 0.0))
+        ok & m.every(leg, (abs(prrr_rho2_2) > _TOLERANCE * _TOLERANCE * prrr_rho2_2_t) &
+            (prrr_disc_2 >= 0.0))
         )
-        out_q[_q_prrr[0][leg]] = y_1_extra_prrr
-        out_q[_q_prrr[1][leg]] = q_2_prrr
-        out_q[_q_prrr[2][leg]] = q_3_prrr
+        out_q[_q_prrr[0][leg]] = prrr_y_1_extra
+        out_q[_q_prrr[1][leg]] = prrr_q_2
+        out_q[_q_prrr[2][leg]] = prrr_q_3
     for leg, k in legs[1]:
         (
-        Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
-            rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-            rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+            rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        S_rrr_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
-        S_rrr_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        # (rrr-K13) displacement of joint 1
-        q_1_rrr = (
-        atan2(inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr),
-            inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr))
+        # (rrr-S) from the base point to the connection point
+        rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
+        rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        # (rrr-q_1) displacement of joint 1
+        rrr_q_1 = (
+        atan2(inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1),
+            inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1))
         )
-        # (rrr-K20) displacement of joint 2
-        q_2_rrr = (
-        atan2(-inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x,
-            inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x)
+        # (rrr-q_2) displacement of joint 2
+        rrr_q_2 = (
+        atan2(-inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
+            inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x)
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
             >= 0.0))
         )
-        out_q[_q_rrr[0][leg]] = q_1_rrr
-        out_q[_q_rrr[1][leg]] = q_2_rrr
+        out_q[_q_rrr[0][leg]] = rrr_q_1
+        out_q[_q_rrr[1][leg]] = rrr_q_2
     return ok, (out_q,)
 
 
@@ -3243,159 +3310,159 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, inv_Kd_2_prrr_t,
-            inv_prrr_platform_joint_offset_x, inv_uu_3_prrr_t, prrr_base_frame_xx,
-            prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
-            prrr_base_point_y, prrr_joint3_offset_x, prrr_platform_joint_offset_x,
-            prrr_platform_point_x, prrr_platform_point_y, rho2_2_prrr_t, size_prrr,
+        inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_platform_joint_offset_x, prrr_Kd_2_t_2,
+            prrr_Kd_2_t_4, prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx,
+            prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y, prrr_branch_2,
+            prrr_joint3_offset_x, prrr_platform_joint_offset_x, prrr_platform_point_x,
+            prrr_platform_point_y, prrr_rho2_2_t, prrr_size,
         ) = k
-        y_1_extra_prrr = X[[3][leg]]
-        yd_1_prrr = V[[3][leg]]
-        # (prrr-K1) from the base point to the connection point
-        q_prrr_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
-        q_prrr_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
-        S_prrr_x = q_prrr_in_base_x + t_x - prrr_base_point_x
-        S_prrr_y = q_prrr_in_base_y + t_y - prrr_base_point_y
-        S_prrr_r0_y = -S_prrr_x*prrr_base_frame_xx - S_prrr_y*prrr_base_frame_yx
-        # (prrr-K2) from the origin of joint 2 to the connection point
-        x_2_prrr_x = S_prrr_x*prrr_base_frame_xy + S_prrr_y*prrr_base_frame_yy - y_1_extra_prrr
-        # (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x
-        Kd_2_prrr = 0.5*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3
-        # (prrr-K7) factor of the cosine in the equation of joint 2
-        Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x
-        # (prrr-K8) factor of the sine in the equation of joint 2
-        Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x
-        # (prrr-K9) squared amplitude
-        rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr
-        # (prrr-K10) discriminant
-        disc_2_prrr = rho2_2_prrr - Kd_2_prrr*Kd_2_prrr
-        # (prrr-K11) root, with the sign of the branch
-        root_2_prrr = branch_2_prrr*sqrt(disc_2_prrr)
-        # (prrr-K17) from the origin of joint 3 to the connection point
-        x_3_prrr_x = Kd_2_prrr*inv_Kd_2_prrr_t*prrr_joint3_offset_x - prrr_joint3_offset_x
-        # (prrr-K19) cosine of the angle of joint 3 from its reference direction
-        c_3_prrr = inv_uu_3_prrr_t*prrr_platform_joint_offset_x*x_3_prrr_x
-        # (prrr-K20) sine of the angle of joint 3 from its reference direction
-        s_3_prrr = (
-        inv_Kd_2_prrr_t*inv_uu_3_prrr_t*prrr_joint3_offset_x*prrr_platform_joint_offset_x*root_2_prrr
+        prrr_y_1_extra = X[[3][leg]]
+        prrr_yd_1 = V[[3][leg]]
+        # (prrr-S) from the base point to the connection point
+        prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
+        prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
+        prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x
+        prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y
+        prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
+        # (prrr-x_2) from the origin of joint 2 to the connection point
+        prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        # (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x
+        prrr_Kd_2 = 0.5*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4
+        # (prrr-Kc_2) factor of the cosine in the equation of joint 2
+        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x
+        # (prrr-Ks_2) factor of the sine in the equation of joint 2
+        prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x
+        # (prrr-rho2_2) squared amplitude
+        prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
+        # (prrr-disc_2) discriminant
+        prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2
+        # (prrr-root_2) root, with the sign of the branch
+        prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
+        # (prrr-x_3) from the origin of joint 3 to the connection point
+        prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
+        # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
+        prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x
+        # (prrr-s_3) sine of the angle of joint 3 from its reference direction
+        prrr_s_3 = (
+        inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
         )
-        # (prrr-V2) from joint 2 to the connection point, along the links
-        r_2_prrr_t = prrr_platform_joint_offset_x*s_3_prrr
-        r_2_prrr_x = prrr_joint3_offset_x + c_3_prrr*prrr_platform_joint_offset_x
-        r_2_prrr_r0_y = r_2_prrr_x*s_3_prrr - c_3_prrr*r_2_prrr_t
-        # (prrr-K12) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2_prrr = 1.0/rho2_2_prrr
-        c_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*Kd_2_prrr - Ks_2_prrr*root_2_prrr)
-        # (prrr-K13) sine of the angle of joint 2 from its reference direction
-        s_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*root_2_prrr + Kd_2_prrr*Ks_2_prrr)
-        # (prrr-V5) reciprocal vector 1
-        axis_y_prrr_axes3_r1_x = c_2_prrr*s_3_prrr - c_3_prrr*s_2_prrr
-        axis_y_prrr_axes3_r1_y = c_2_prrr*c_3_prrr + s_2_prrr*s_3_prrr
+        # (prrr-r_2) from joint 2 to the connection point, along the links
+        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3
+        prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
+        prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_r_2_t
+        # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_prrr_rho2_2 = 1.0/prrr_rho2_2
+        prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2)
+        # (prrr-s_2) sine of the angle of joint 2 from its reference direction
+        prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2)
+        # (prrr-w_2) reciprocal vector 1
+        axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2
+        axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3
         axis_y_prrr_axes3_in_base_x = (
         axis_y_prrr_axes3_r1_x*prrr_base_frame_xy - axis_y_prrr_axes3_r1_y*prrr_base_frame_xx
         )
         axis_y_prrr_axes3_in_base_y = (
         axis_y_prrr_axes3_r1_x*prrr_base_frame_yy - axis_y_prrr_axes3_r1_y*prrr_base_frame_yx
         )
-        # (prrr-V1) velocity of the connection point
-        S_dot_prrr_x = t_dot_x - omega_z*q_prrr_in_base_y
-        S_dot_prrr_y = t_dot_y + omega_z*q_prrr_in_base_x
-        # (prrr-V7) velocity of the connection point left to the joints that are not extra
-        S_dot_rest_prrr_x = S_dot_prrr_x - prrr_base_frame_xy*yd_1_prrr
-        S_dot_rest_prrr_y = S_dot_prrr_y - prrr_base_frame_yy*yd_1_prrr
-        # (prrr-V8) rate of joint 2
-        qd_2_prrr = (
-        (S_dot_rest_prrr_x*axis_y_prrr_axes3_in_base_y -
-            S_dot_rest_prrr_y*axis_y_prrr_axes3_in_base_x)/r_2_prrr_r0_y
+        # (prrr-S_dot) velocity of the connection point
+        prrr_S_dot_x = t_dot_x - omega_z*prrr_q_in_base_y
+        prrr_S_dot_y = t_dot_y + omega_z*prrr_q_in_base_x
+        # (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra
+        prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1
+        prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1
+        # (prrr-qd_3) rate of joint 3
+        prrr_qd_2 = (
+        (axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_x -
+            axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_y)/prrr_r_2_r0_y
         )
-        qd_3_prrr = (
-        inv_prrr_platform_joint_offset_x*(S_dot_rest_prrr_x*axis_y_prrr_axes3_in_base_x +
-            S_dot_rest_prrr_y*axis_y_prrr_axes3_in_base_y + qd_2_prrr*(c_3_prrr*r_2_prrr_x +
-            r_2_prrr_t*s_3_prrr))
+        prrr_qd_3 = (
+        inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_x +
+            axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_y + prrr_qd_2*(prrr_c_3*prrr_r_2_x +
+            prrr_r_2_t*prrr_s_3))
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) &
-            (disc_2_prrr >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr))
+        ok & m.every(leg, (abs(prrr_rho2_2) > _TOLERANCE * _TOLERANCE * prrr_rho2_2_t) &
+            (prrr_disc_2 >= 0.0) & (abs(-prrr_r_2_r0_y) > _TOLERANCE * prrr_size))
         )
-        out_qd[_qd_prrr[0][leg]] = yd_1_prrr
-        out_qd[_qd_prrr[1][leg]] = -qd_2_prrr
-        out_qd[_qd_prrr[2][leg]] = qd_3_prrr
+        out_qd[_qd_prrr[0][leg]] = prrr_yd_1
+        out_qd[_qd_prrr[1][leg]] = -prrr_qd_2
+        out_qd[_qd_prrr[2][leg]] = prrr_qd_3
     for leg, k in legs[1]:
         (
-        Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
-            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
-            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
+            rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x
-        S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        # (rrr-V1) velocity of the connection point
-        S_dot_rrr_x = t_dot_x - omega_z*q_rrr_in_base_y
-        S_dot_rrr_y = t_dot_y + omega_z*q_rrr_in_base_x
-        # (rrr-V7) rate of joint 1
-        qd_1_rrr = (
-        (S_dot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_x)/r_1_rrr_r0_y
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_x = t_dot_x - omega_z*rrr_q_in_base_y
+        rrr_S_dot_y = t_dot_y + omega_z*rrr_q_in_base_x
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_1 = (
+        (axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)/rrr_r_1_r0_y
         )
-        qd_2_rrr = (
-        inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*(c_2_rrr*r_1_rrr_x +
-            r_1_rrr_t*s_2_rrr))
+        rrr_qd_2 = (
+        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*(rrr_c_2*rrr_r_1_x +
+            rrr_r_1_t*rrr_s_2))
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
-        out_qd[_qd_rrr[0][leg]] = -qd_1_rrr
-        out_qd[_qd_rrr[1][leg]] = qd_2_rrr
+        out_qd[_qd_rrr[0][leg]] = -rrr_qd_1
+        out_qd[_qd_rrr[1][leg]] = rrr_qd_2
     return ok, (out_qd,)
 
 
@@ -3431,218 +3498,218 @@ def _run_joint_accelerations(m, X, V, A):
     out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
-        Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, inv_Kd_2_prrr_t,
-            inv_prrr_platform_joint_offset_x, inv_uu_3_prrr_t, prrr_base_frame_xx,
-            prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
-            prrr_base_point_y, prrr_joint3_offset_x, prrr_platform_joint_offset_x,
-            prrr_platform_point_x, prrr_platform_point_y, rho2_2_prrr_t, size_prrr,
+        inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_platform_joint_offset_x, prrr_Kd_2_t_2,
+            prrr_Kd_2_t_4, prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx,
+            prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y, prrr_branch_2,
+            prrr_joint3_offset_x, prrr_platform_joint_offset_x, prrr_platform_point_x,
+            prrr_platform_point_y, prrr_rho2_2_t, prrr_size,
         ) = k
-        y_1_extra_prrr = X[[3][leg]]
-        yd_1_prrr = V[[3][leg]]
-        ydd_1_prrr = A[[3][leg]]
-        # (prrr-K1) from the base point to the connection point
-        q_prrr_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
-        q_prrr_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
-        S_prrr_x = q_prrr_in_base_x + t_x - prrr_base_point_x
-        S_prrr_y = q_prrr_in_base_y + t_y - prrr_base_point_y
-        S_prrr_r0_y = -S_prrr_x*prrr_base_frame_xx - S_prrr_y*prrr_base_frame_yx
-        # (prrr-K2) from the origin of joint 2 to the connection point
-        x_2_prrr_x = S_prrr_x*prrr_base_frame_xy + S_prrr_y*prrr_base_frame_yy - y_1_extra_prrr
-        # (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x
-        Kd_2_prrr = 0.5*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3
-        # (prrr-K7) factor of the cosine in the equation of joint 2
-        Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x
-        # (prrr-K8) factor of the sine in the equation of joint 2
-        Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x
-        # (prrr-K9) squared amplitude
-        rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr
-        # (prrr-K10) discriminant
-        disc_2_prrr = rho2_2_prrr - Kd_2_prrr*Kd_2_prrr
-        # (prrr-K11) root, with the sign of the branch
-        root_2_prrr = branch_2_prrr*sqrt(disc_2_prrr)
-        # (prrr-K17) from the origin of joint 3 to the connection point
-        x_3_prrr_x = Kd_2_prrr*inv_Kd_2_prrr_t*prrr_joint3_offset_x - prrr_joint3_offset_x
-        # (prrr-K19) cosine of the angle of joint 3 from its reference direction
-        c_3_prrr = inv_uu_3_prrr_t*prrr_platform_joint_offset_x*x_3_prrr_x
-        # (prrr-K20) sine of the angle of joint 3 from its reference direction
-        s_3_prrr = (
-        inv_Kd_2_prrr_t*inv_uu_3_prrr_t*prrr_joint3_offset_x*prrr_platform_joint_offset_x*root_2_prrr
+        prrr_y_1_extra = X[[3][leg]]
+        prrr_yd_1 = V[[3][leg]]
+        prrr_ydd_1 = A[[3][leg]]
+        # (prrr-S) from the base point to the connection point
+        prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
+        prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
+        prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x
+        prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y
+        prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
+        # (prrr-x_2) from the origin of joint 2 to the connection point
+        prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        # (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x
+        prrr_Kd_2 = 0.5*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4
+        # (prrr-Kc_2) factor of the cosine in the equation of joint 2
+        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x
+        # (prrr-Ks_2) factor of the sine in the equation of joint 2
+        prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x
+        # (prrr-rho2_2) squared amplitude
+        prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
+        # (prrr-disc_2) discriminant
+        prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2
+        # (prrr-root_2) root, with the sign of the branch
+        prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
+        # (prrr-x_3) from the origin of joint 3 to the connection point
+        prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
+        # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
+        prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x
+        # (prrr-s_3) sine of the angle of joint 3 from its reference direction
+        prrr_s_3 = (
+        inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
         )
-        # (prrr-V2) from joint 2 to the connection point, along the links
-        r_2_prrr_t = prrr_platform_joint_offset_x*s_3_prrr
-        r_2_prrr_x = prrr_joint3_offset_x + c_3_prrr*prrr_platform_joint_offset_x
-        r_2_prrr_r0_x = c_3_prrr*r_2_prrr_x + r_2_prrr_t*s_3_prrr
-        r_2_prrr_r0_y = r_2_prrr_x*s_3_prrr - c_3_prrr*r_2_prrr_t
-        # (prrr-K12) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2_prrr = 1.0/rho2_2_prrr
-        c_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*Kd_2_prrr - Ks_2_prrr*root_2_prrr)
-        # (prrr-K13) sine of the angle of joint 2 from its reference direction
-        s_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*root_2_prrr + Kd_2_prrr*Ks_2_prrr)
-        # (prrr-V5) reciprocal vector 1
-        axis_y_prrr_axes3_r1_x = c_2_prrr*s_3_prrr - c_3_prrr*s_2_prrr
-        axis_y_prrr_axes3_r1_y = c_2_prrr*c_3_prrr + s_2_prrr*s_3_prrr
+        # (prrr-r_2) from joint 2 to the connection point, along the links
+        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3
+        prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
+        prrr_r_2_r0_x = prrr_c_3*prrr_r_2_x + prrr_r_2_t*prrr_s_3
+        prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_r_2_t
+        # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_prrr_rho2_2 = 1.0/prrr_rho2_2
+        prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2)
+        # (prrr-s_2) sine of the angle of joint 2 from its reference direction
+        prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2)
+        # (prrr-w_2) reciprocal vector 1
+        axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2
+        axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3
         axis_y_prrr_axes3_in_base_x = (
         axis_y_prrr_axes3_r1_x*prrr_base_frame_xy - axis_y_prrr_axes3_r1_y*prrr_base_frame_xx
         )
         axis_y_prrr_axes3_in_base_y = (
         axis_y_prrr_axes3_r1_x*prrr_base_frame_yy - axis_y_prrr_axes3_r1_y*prrr_base_frame_yx
         )
-        inv_r_2_prrr_r0_y = 1.0/r_2_prrr_r0_y
-        # (prrr-V1) velocity of the connection point
-        S_dot_prrr_t = omega_z*q_prrr_in_base_y
-        S_dot_prrr_t_2 = omega_z*q_prrr_in_base_x
-        S_dot_prrr_x = t_dot_x - S_dot_prrr_t
-        S_dot_prrr_y = S_dot_prrr_t_2 + t_dot_y
-        # (prrr-V7) velocity of the connection point left to the joints that are not extra
-        S_dot_rest_prrr_x = S_dot_prrr_x - prrr_base_frame_xy*yd_1_prrr
-        S_dot_rest_prrr_y = S_dot_prrr_y - prrr_base_frame_yy*yd_1_prrr
-        # (prrr-V8) rate of joint 2
-        qd_2_prrr = (
-        inv_r_2_prrr_r0_y*(S_dot_rest_prrr_x*axis_y_prrr_axes3_in_base_y -
-            S_dot_rest_prrr_y*axis_y_prrr_axes3_in_base_x)
+        inv_prrr_r_2_r0_y = 1.0/prrr_r_2_r0_y
+        # (prrr-S_dot) velocity of the connection point
+        prrr_S_dot_t = omega_z*prrr_q_in_base_y
+        prrr_S_dot_t_2 = omega_z*prrr_q_in_base_x
+        prrr_S_dot_x = t_dot_x - prrr_S_dot_t
+        prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y
+        # (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra
+        prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1
+        prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1
+        # (prrr-qd_3) rate of joint 3
+        prrr_qd_2 = (
+        inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_x -
+            axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_y)
         )
-        # (prrr-V12) angular velocity of link 3
-        omega_3_prrr_z = (
-        inv_prrr_platform_joint_offset_x*(S_dot_rest_prrr_x*axis_y_prrr_axes3_in_base_x +
-            S_dot_rest_prrr_y*axis_y_prrr_axes3_in_base_y + qd_2_prrr*r_2_prrr_r0_x) - qd_2_prrr
+        # (prrr-omega_3) angular velocity of link 3
+        prrr_omega_3_z = (
+        inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_x +
+            axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_y + prrr_qd_2*prrr_r_2_r0_x) - prrr_qd_2
         )
-        # (prrr-V11) centripetal tensor of link 2
-        W_2_prrr_t = qd_2_prrr*qd_2_prrr
-        # (prrr-A5) acceleration of the connection point at zero joint accelerations
-        bias_prrr_x = (
-        -omega_3_prrr_z*omega_3_prrr_z*prrr_platform_joint_offset_x -
-            W_2_prrr_t*c_3_prrr*prrr_joint3_offset_x
+        # (prrr-W_2) centripetal tensor of link 2
+        prrr_W_2_t = prrr_qd_2*prrr_qd_2
+        # (prrr-bias) acceleration of the connection point at zero joint accelerations
+        prrr_bias_x = (
+        -prrr_omega_3_z*prrr_omega_3_z*prrr_platform_joint_offset_x -
+            prrr_W_2_t*prrr_c_3*prrr_joint3_offset_x
         )
-        # (prrr-A2) acceleration of the connection point without its centripetal part
-        a_p_prrr_x = t_ddot_x - alpha_z*q_prrr_in_base_y
-        a_p_prrr_y = t_ddot_y + alpha_z*q_prrr_in_base_x
-        # (prrr-A3) acceleration of the connection point
-        S_ddot_prrr_x = a_p_prrr_x - S_dot_prrr_t_2*omega_z
-        S_ddot_prrr_y = a_p_prrr_y - S_dot_prrr_t*omega_z
-        # (prrr-A6) acceleration of the connection point left to the joint accelerations
-        rel_prrr_x = (
-        S_ddot_prrr_x*axis_y_prrr_axes3_in_base_y - bias_prrr_x -
-            S_ddot_prrr_y*axis_y_prrr_axes3_in_base_x - axis_y_prrr_axes3_r1_y*ydd_1_prrr
+        # (prrr-a_p) acceleration of the connection point without its centripetal part
+        prrr_a_p_x = t_ddot_x - alpha_z*prrr_q_in_base_y
+        prrr_a_p_y = t_ddot_y + alpha_z*prrr_q_in_base_x
+        # (prrr-S_ddot) acceleration of the connection point
+        prrr_S_ddot_x = prrr_a_p_x - omega_z*prrr_S_dot_t_2
+        prrr_S_ddot_y = prrr_a_p_y - omega_z*prrr_S_dot_t
+        # (prrr-rel) acceleration of the connection point left to the joint accelerations
+        prrr_rel_x = (
+        axis_y_prrr_axes3_in_base_y*prrr_S_ddot_x - prrr_bias_x -
+            axis_y_prrr_axes3_in_base_x*prrr_S_ddot_y - axis_y_prrr_axes3_r1_y*prrr_ydd_1
         )
-        rel_prrr_y = (
-        S_ddot_prrr_x*axis_y_prrr_axes3_in_base_x + S_ddot_prrr_y*axis_y_prrr_axes3_in_base_y +
-            W_2_prrr_t*prrr_joint3_offset_x*s_3_prrr - axis_y_prrr_axes3_r1_x*ydd_1_prrr
+        prrr_rel_y = (
+        axis_y_prrr_axes3_in_base_x*prrr_S_ddot_x + axis_y_prrr_axes3_in_base_y*prrr_S_ddot_y +
+            prrr_W_2_t*prrr_joint3_offset_x*prrr_s_3 - axis_y_prrr_axes3_r1_x*prrr_ydd_1
         )
-        # (prrr-A9) acceleration of joint 2
-        qdd_2_prrr = inv_r_2_prrr_r0_y*rel_prrr_x
-        qdd_3_prrr = inv_prrr_platform_joint_offset_x*(rel_prrr_y + qdd_2_prrr*r_2_prrr_r0_x)
+        # (prrr-qdd_2) acceleration of joint 2
+        prrr_qdd_2 = inv_prrr_r_2_r0_y*prrr_rel_x
+        prrr_qdd_3 = inv_prrr_platform_joint_offset_x*(prrr_rel_y + prrr_qdd_2*prrr_r_2_r0_x)
         ok = (
-        ok & m.every(leg, (abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) &
-            (disc_2_prrr >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr))
+        ok & m.every(leg, (abs(prrr_rho2_2) > _TOLERANCE * _TOLERANCE * prrr_rho2_2_t) &
+            (prrr_disc_2 >= 0.0) & (abs(-prrr_r_2_r0_y) > _TOLERANCE * prrr_size))
         )
-        out_qdd[_qdd_prrr[0][leg]] = ydd_1_prrr
-        out_qdd[_qdd_prrr[1][leg]] = -qdd_2_prrr
-        out_qdd[_qdd_prrr[2][leg]] = qdd_3_prrr
+        out_qdd[_qdd_prrr[0][leg]] = prrr_ydd_1
+        out_qdd[_qdd_prrr[1][leg]] = -prrr_qdd_2
+        out_qdd[_qdd_prrr[2][leg]] = prrr_qdd_3
     for leg, k in legs[1]:
         (
-        Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
-            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
-            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
+            rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x
-        S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        # (rrr-V1) velocity of the connection point
-        S_dot_rrr_t = omega_z*q_rrr_in_base_y
-        S_dot_rrr_t_2 = omega_z*q_rrr_in_base_x
-        S_dot_rrr_x = t_dot_x - S_dot_rrr_t
-        S_dot_rrr_y = S_dot_rrr_t_2 + t_dot_y
-        # (rrr-V7) rate of joint 1
-        qd_1_rrr = (
-        inv_r_1_rrr_r0_y*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_x)
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = omega_z*rrr_q_in_base_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
+        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_1 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
         )
-        # (rrr-V11) angular velocity of link 2
-        omega_2_rrr_z = (
-        inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_z = (
+        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
         )
-        # (rrr-V10) centripetal tensor of link 1
-        W_1_rrr_t = qd_1_rrr*qd_1_rrr
-        # (rrr-A5) acceleration of the connection point at zero joint accelerations
-        bias_rrr_x = (
-        -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
+        # (rrr-W_1) centripetal tensor of link 1
+        rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_x = (
+        -rrr_omega_2_z*rrr_omega_2_z*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        # (rrr-A2) acceleration of the connection point without its centripetal part
-        a_p_rrr_x = t_ddot_x - alpha_z*q_rrr_in_base_y
-        a_p_rrr_y = t_ddot_y + alpha_z*q_rrr_in_base_x
-        # (rrr-A3) acceleration of the connection point
-        S_ddot_rrr_x = a_p_rrr_x - S_dot_rrr_t_2*omega_z
-        S_ddot_rrr_y = a_p_rrr_y - S_dot_rrr_t*omega_z
-        # (rrr-A6) acceleration of the connection point left to the joint accelerations
-        rel_rrr_x = (
-        S_ddot_rrr_x*axis_y_rrr_axes2_in_base_y - bias_rrr_x -
-            S_ddot_rrr_y*axis_y_rrr_axes2_in_base_x
+        # (rrr-a_p) acceleration of the connection point without its centripetal part
+        rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y
+        rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x
+        # (rrr-S_ddot) acceleration of the connection point
+        rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
+        rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
+        # (rrr-rel) acceleration of the connection point left to the joint accelerations
+        rrr_rel_x = (
+        axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x - rrr_bias_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y
         )
-        rel_rrr_y = (
-        S_ddot_rrr_x*axis_y_rrr_axes2_in_base_x + S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y +
-            W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
+        rrr_rel_y = (
+        axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x + axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y +
+            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         )
-        # (rrr-A8) acceleration of joint 1
-        qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
-        qdd_2_rrr = inv_rrr_platform_joint_offset_x*(rel_rrr_y + qdd_1_rrr*r_1_rrr_r0_x)
+        # (rrr-qdd_1) acceleration of joint 1
+        rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x
+        rrr_qdd_2 = inv_rrr_platform_joint_offset_x*(rrr_rel_y + rrr_qdd_1*rrr_r_1_r0_x)
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
-        out_qdd[_qdd_rrr[0][leg]] = -qdd_1_rrr
-        out_qdd[_qdd_rrr[1][leg]] = qdd_2_rrr
+        out_qdd[_qdd_rrr[0][leg]] = -rrr_qdd_1
+        out_qdd[_qdd_rrr[1][leg]] = rrr_qdd_2
     return ok, (out_qdd,)
 
 
@@ -3680,313 +3747,312 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        J_2_prrr_zz, J_3_prrr_zz, Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, g_r0_x, g_r0_y,
-            h_2_prrr_x, h_2_prrr_y, h_3_prrr_x, h_3_prrr_y, inv_Kd_2_prrr_t,
-            inv_prrr_platform_joint_offset_x, inv_uu_3_prrr_t, prrr_base_frame_xx,
-            prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
-            prrr_base_point_y, prrr_joint3_offset_x, prrr_link3_mass,
-            prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y,
-            rho2_2_prrr_t, size_prrr,
+        inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_platform_joint_offset_x, prrr_J_2_zz,
+            prrr_J_3_zz, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_base_frame_xx, prrr_base_frame_xy,
+            prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y,
+            prrr_branch_2, prrr_g_r0_x, prrr_g_r0_y, prrr_h_2_x, prrr_h_2_y, prrr_h_3_x,
+            prrr_h_3_y, prrr_joint3_offset_x, prrr_link3_mass, prrr_platform_joint_offset_x,
+            prrr_platform_point_x, prrr_platform_point_y, prrr_rho2_2_t, prrr_size,
         ) = k
-        y_1_extra_prrr = X[[3][leg]]
-        yd_1_prrr = V[[3][leg]]
-        ydd_1_prrr = A[[3][leg]]
-        # (prrr-K1) from the base point to the connection point
-        q_prrr_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
-        q_prrr_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
-        S_prrr_x = q_prrr_in_base_x + t_x - prrr_base_point_x
-        S_prrr_y = q_prrr_in_base_y + t_y - prrr_base_point_y
-        S_prrr_r0_y = -S_prrr_x*prrr_base_frame_xx - S_prrr_y*prrr_base_frame_yx
-        # (prrr-K2) from the origin of joint 2 to the connection point
-        x_2_prrr_x = S_prrr_x*prrr_base_frame_xy + S_prrr_y*prrr_base_frame_yy - y_1_extra_prrr
-        # (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x
-        Kd_2_prrr = 0.5*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3
-        # (prrr-K7) factor of the cosine in the equation of joint 2
-        Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x
-        # (prrr-K8) factor of the sine in the equation of joint 2
-        Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x
-        # (prrr-K9) squared amplitude
-        rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr
-        # (prrr-K10) discriminant
-        disc_2_prrr = rho2_2_prrr - Kd_2_prrr*Kd_2_prrr
-        # (prrr-K11) root, with the sign of the branch
-        root_2_prrr = branch_2_prrr*sqrt(disc_2_prrr)
-        # (prrr-K17) from the origin of joint 3 to the connection point
-        x_3_prrr_x = Kd_2_prrr*inv_Kd_2_prrr_t*prrr_joint3_offset_x - prrr_joint3_offset_x
-        # (prrr-K19) cosine of the angle of joint 3 from its reference direction
-        c_3_prrr = inv_uu_3_prrr_t*prrr_platform_joint_offset_x*x_3_prrr_x
-        # (prrr-K20) sine of the angle of joint 3 from its reference direction
-        s_3_prrr = (
-        inv_Kd_2_prrr_t*inv_uu_3_prrr_t*prrr_joint3_offset_x*prrr_platform_joint_offset_x*root_2_prrr
+        prrr_y_1_extra = X[[3][leg]]
+        prrr_yd_1 = V[[3][leg]]
+        prrr_ydd_1 = A[[3][leg]]
+        # (prrr-S) from the base point to the connection point
+        prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
+        prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
+        prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x
+        prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y
+        prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
+        # (prrr-x_2) from the origin of joint 2 to the connection point
+        prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        # (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x
+        prrr_Kd_2 = 0.5*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4
+        # (prrr-Kc_2) factor of the cosine in the equation of joint 2
+        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x
+        # (prrr-Ks_2) factor of the sine in the equation of joint 2
+        prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x
+        # (prrr-rho2_2) squared amplitude
+        prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
+        # (prrr-disc_2) discriminant
+        prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2
+        # (prrr-root_2) root, with the sign of the branch
+        prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
+        # (prrr-x_3) from the origin of joint 3 to the connection point
+        prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
+        # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
+        prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x
+        # (prrr-s_3) sine of the angle of joint 3 from its reference direction
+        prrr_s_3 = (
+        inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
         )
-        # (prrr-V2) from joint 2 to the connection point, along the links
-        r_2_prrr_t = prrr_platform_joint_offset_x*s_3_prrr
-        r_2_prrr_x = prrr_joint3_offset_x + c_3_prrr*prrr_platform_joint_offset_x
-        r_2_prrr_r0_x = c_3_prrr*r_2_prrr_x + r_2_prrr_t*s_3_prrr
-        r_2_prrr_r0_y = r_2_prrr_x*s_3_prrr - c_3_prrr*r_2_prrr_t
-        # (prrr-K12) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2_prrr = 1.0/rho2_2_prrr
-        c_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*Kd_2_prrr - Ks_2_prrr*root_2_prrr)
-        # (prrr-K13) sine of the angle of joint 2 from its reference direction
-        s_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*root_2_prrr + Kd_2_prrr*Ks_2_prrr)
-        # (prrr-V5) reciprocal vector 1
-        axis_y_prrr_axes3_r1_x = c_2_prrr*s_3_prrr - c_3_prrr*s_2_prrr
-        axis_y_prrr_axes3_r1_y = c_2_prrr*c_3_prrr + s_2_prrr*s_3_prrr
+        # (prrr-r_2) from joint 2 to the connection point, along the links
+        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3
+        prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
+        prrr_r_2_r0_x = prrr_c_3*prrr_r_2_x + prrr_r_2_t*prrr_s_3
+        prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_r_2_t
+        # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_prrr_rho2_2 = 1.0/prrr_rho2_2
+        prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2)
+        # (prrr-s_2) sine of the angle of joint 2 from its reference direction
+        prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2)
+        # (prrr-w_2) reciprocal vector 1
+        axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2
+        axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3
         axis_y_prrr_axes3_in_base_x = (
         axis_y_prrr_axes3_r1_x*prrr_base_frame_xy - axis_y_prrr_axes3_r1_y*prrr_base_frame_xx
         )
         axis_y_prrr_axes3_in_base_y = (
         axis_y_prrr_axes3_r1_x*prrr_base_frame_yy - axis_y_prrr_axes3_r1_y*prrr_base_frame_yx
         )
-        inv_r_2_prrr_r0_y = 1.0/r_2_prrr_r0_y
-        # (prrr-V1) velocity of the connection point
-        S_dot_prrr_t = omega_z*q_prrr_in_base_y
-        S_dot_prrr_t_2 = omega_z*q_prrr_in_base_x
-        S_dot_prrr_x = t_dot_x - S_dot_prrr_t
-        S_dot_prrr_y = S_dot_prrr_t_2 + t_dot_y
-        # (prrr-V7) velocity of the connection point left to the joints that are not extra
-        S_dot_rest_prrr_x = S_dot_prrr_x - prrr_base_frame_xy*yd_1_prrr
-        S_dot_rest_prrr_y = S_dot_prrr_y - prrr_base_frame_yy*yd_1_prrr
-        # (prrr-V8) rate of joint 2
-        qd_2_prrr = (
-        inv_r_2_prrr_r0_y*(S_dot_rest_prrr_x*axis_y_prrr_axes3_in_base_y -
-            S_dot_rest_prrr_y*axis_y_prrr_axes3_in_base_x)
+        inv_prrr_r_2_r0_y = 1.0/prrr_r_2_r0_y
+        # (prrr-S_dot) velocity of the connection point
+        prrr_S_dot_t = omega_z*prrr_q_in_base_y
+        prrr_S_dot_t_2 = omega_z*prrr_q_in_base_x
+        prrr_S_dot_x = t_dot_x - prrr_S_dot_t
+        prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y
+        # (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra
+        prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1
+        prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1
+        # (prrr-qd_3) rate of joint 3
+        prrr_qd_2 = (
+        inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_x -
+            axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_y)
         )
-        # (prrr-V12) angular velocity of link 3
-        omega_3_prrr_z = (
-        inv_prrr_platform_joint_offset_x*(S_dot_rest_prrr_x*axis_y_prrr_axes3_in_base_x +
-            S_dot_rest_prrr_y*axis_y_prrr_axes3_in_base_y + qd_2_prrr*r_2_prrr_r0_x) - qd_2_prrr
+        # (prrr-omega_3) angular velocity of link 3
+        prrr_omega_3_z = (
+        inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_x +
+            axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_y + prrr_qd_2*prrr_r_2_r0_x) - prrr_qd_2
         )
-        # (prrr-V11) centripetal tensor of link 2
-        W_2_prrr_t = qd_2_prrr*qd_2_prrr
-        # (prrr-V13) centripetal tensor of link 3
-        W_3_prrr_t = omega_3_prrr_z*omega_3_prrr_z
-        # (prrr-A5) acceleration of the connection point at zero joint accelerations
-        bias_prrr_x = (
-        -W_3_prrr_t*prrr_platform_joint_offset_x - W_2_prrr_t*c_3_prrr*prrr_joint3_offset_x
+        # (prrr-W_2) centripetal tensor of link 2
+        prrr_W_2_t = prrr_qd_2*prrr_qd_2
+        # (prrr-W_3) centripetal tensor of link 3
+        prrr_W_3_t = prrr_omega_3_z*prrr_omega_3_z
+        # (prrr-bias) acceleration of the connection point at zero joint accelerations
+        prrr_bias_x = (
+        -prrr_W_3_t*prrr_platform_joint_offset_x - prrr_W_2_t*prrr_c_3*prrr_joint3_offset_x
         )
-        # (prrr-V5) reciprocal vector 1
-        w_2_prrr_t = axis_y_prrr_axes3_in_base_y*inv_r_2_prrr_r0_y
-        w_2_prrr_t_2 = axis_y_prrr_axes3_in_base_x*inv_r_2_prrr_r0_y
-        # (prrr-A2) acceleration of the connection point without its centripetal part
-        a_p_prrr_x = t_ddot_x - alpha_z*q_prrr_in_base_y
-        a_p_prrr_y = t_ddot_y + alpha_z*q_prrr_in_base_x
-        # (prrr-A3) acceleration of the connection point
-        S_ddot_prrr_x = a_p_prrr_x - S_dot_prrr_t_2*omega_z
-        S_ddot_prrr_y = a_p_prrr_y - S_dot_prrr_t*omega_z
-        S_ddot_prrr_tip_x = (
-        S_ddot_prrr_x*axis_y_prrr_axes3_in_base_y - S_ddot_prrr_y*axis_y_prrr_axes3_in_base_x
+        # (prrr-w_2) reciprocal vector 1
+        prrr_w_2_t = axis_y_prrr_axes3_in_base_y*inv_prrr_r_2_r0_y
+        prrr_w_2_t_2 = axis_y_prrr_axes3_in_base_x*inv_prrr_r_2_r0_y
+        # (prrr-a_p) acceleration of the connection point without its centripetal part
+        prrr_a_p_x = t_ddot_x - alpha_z*prrr_q_in_base_y
+        prrr_a_p_y = t_ddot_y + alpha_z*prrr_q_in_base_x
+        # (prrr-S_ddot) acceleration of the connection point
+        prrr_S_ddot_x = prrr_a_p_x - omega_z*prrr_S_dot_t_2
+        prrr_S_ddot_y = prrr_a_p_y - omega_z*prrr_S_dot_t
+        prrr_S_ddot_tip_x = (
+        axis_y_prrr_axes3_in_base_y*prrr_S_ddot_x - axis_y_prrr_axes3_in_base_x*prrr_S_ddot_y
         )
-        S_ddot_prrr_tip_y = (
-        S_ddot_prrr_x*axis_y_prrr_axes3_in_base_x + S_ddot_prrr_y*axis_y_prrr_axes3_in_base_y
+        prrr_S_ddot_tip_y = (
+        axis_y_prrr_axes3_in_base_x*prrr_S_ddot_x + axis_y_prrr_axes3_in_base_y*prrr_S_ddot_y
         )
-        # (prrr-A6) acceleration of the connection point left to the joint accelerations
-        rel_prrr_x = S_ddot_prrr_tip_x - bias_prrr_x - axis_y_prrr_axes3_r1_y*ydd_1_prrr
-        rel_prrr_y = (
-        S_ddot_prrr_tip_y + W_2_prrr_t*prrr_joint3_offset_x*s_3_prrr -
-            axis_y_prrr_axes3_r1_x*ydd_1_prrr
+        # (prrr-rel) acceleration of the connection point left to the joint accelerations
+        prrr_rel_x = prrr_S_ddot_tip_x - prrr_bias_x - axis_y_prrr_axes3_r1_y*prrr_ydd_1
+        prrr_rel_y = (
+        prrr_S_ddot_tip_y + prrr_W_2_t*prrr_joint3_offset_x*prrr_s_3 -
+            axis_y_prrr_axes3_r1_x*prrr_ydd_1
         )
-        # (prrr-A9) acceleration of joint 2
-        qdd_2_prrr = inv_r_2_prrr_r0_y*rel_prrr_x
-        # (prrr-N11) acceleration of the reference point of link 3, less gravity
-        acc_3_prrr_x = (
-        S_ddot_prrr_tip_x + axis_y_prrr_axes3_in_base_x*gravity_y -
+        # (prrr-qdd_2) acceleration of joint 2
+        prrr_qdd_2 = inv_prrr_r_2_r0_y*prrr_rel_x
+        # (prrr-acc_3) acceleration of the reference point of link 3, less gravity
+        prrr_acc_3_x = (
+        prrr_S_ddot_tip_x + axis_y_prrr_axes3_in_base_x*gravity_y -
             axis_y_prrr_axes3_in_base_y*gravity_x
         )
-        acc_3_prrr_y = (
-        S_ddot_prrr_tip_y - axis_y_prrr_axes3_in_base_x*gravity_x -
+        prrr_acc_3_y = (
+        prrr_S_ddot_tip_y - axis_y_prrr_axes3_in_base_x*gravity_x -
             axis_y_prrr_axes3_in_base_y*gravity_y
         )
-        # (prrr-N5) acceleration of the reference point of link 2, less gravity
-        acc_2_prrr_x = c_2_prrr*ydd_1_prrr - c_2_prrr*g_r0_x - g_r0_y*s_2_prrr
-        acc_2_prrr_y = g_r0_x*s_2_prrr - c_2_prrr*g_r0_y - s_2_prrr*ydd_1_prrr
-        # (prrr-N36) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_prrr_z = acc_2_prrr_y*h_2_prrr_x - J_2_prrr_zz*qdd_2_prrr - acc_2_prrr_x*h_2_prrr_y
-        # (prrr-A19) angular acceleration of link 3
-        alpha_3_prrr_z = (
-        inv_prrr_platform_joint_offset_x*(rel_prrr_y + qdd_2_prrr*r_2_prrr_r0_x) - qdd_2_prrr
+        # (prrr-alpha_3) angular acceleration of link 3
+        prrr_alpha_3_z = (
+        inv_prrr_platform_joint_offset_x*(prrr_rel_y + prrr_qdd_2*prrr_r_2_r0_x) - prrr_qdd_2
         )
-        # (prrr-N28) inertia moment of the links that turn with link 3, about their reference points
-        mu_3_prrr_z = (
-        J_3_prrr_zz*alpha_3_prrr_z + acc_3_prrr_y*h_3_prrr_x - acc_3_prrr_x*h_3_prrr_y
+        # (prrr-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        prrr_mu_3_z = (
+        prrr_J_3_zz*prrr_alpha_3_z + prrr_acc_3_y*prrr_h_3_x - prrr_acc_3_x*prrr_h_3_y
         )
-        # (prrr-N38) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_prrr_z = mu_2_prrr_z + mu_3_prrr_z
-        # (prrr-N50) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_prrr_t = inv_prrr_platform_joint_offset_x*mu_3_prrr_z
-        # (prrr-N54) leg force on the platform without actuation and without the mass at the connection point
-        c_prrr_x = (
-        W_3_prrr_t*h_3_prrr_x + alpha_3_prrr_z*h_3_prrr_y -
-            inv_r_2_prrr_r0_y*(G_prrr_t*r_2_prrr_r0_x - N_2_prrr_z)
+        # (prrr-acc_2) acceleration of the reference point of link 2, less gravity
+        prrr_acc_2_x = prrr_c_2*prrr_ydd_1 - prrr_c_2*prrr_g_r0_x - prrr_g_r0_y*prrr_s_2
+        prrr_acc_2_y = prrr_g_r0_x*prrr_s_2 - prrr_c_2*prrr_g_r0_y - prrr_s_2*prrr_ydd_1
+        # (prrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        prrr_mu_2_z = prrr_acc_2_y*prrr_h_2_x - prrr_J_2_zz*prrr_qdd_2 - prrr_acc_2_x*prrr_h_2_y
+        # (prrr-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        prrr_N_2_z = prrr_mu_2_z + prrr_mu_3_z
+        # (prrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        prrr_G_t = inv_prrr_platform_joint_offset_x*prrr_mu_3_z
+        # (prrr-c) leg force on the platform without actuation and without the mass at the connection point
+        prrr_c_x = (
+        prrr_W_3_t*prrr_h_3_x + prrr_alpha_3_z*prrr_h_3_y -
+            inv_prrr_r_2_r0_y*(prrr_G_t*prrr_r_2_r0_x - prrr_N_2_z)
         )
-        c_prrr_y = W_3_prrr_t*h_3_prrr_y - G_prrr_t - alpha_3_prrr_z*h_3_prrr_x
-        # (prrr-N59) leg force on the platform without actuation, the last link's mass included
-        c_true_prrr_x = c_prrr_x - acc_3_prrr_x*prrr_link3_mass
-        c_true_prrr_y = c_prrr_y - acc_3_prrr_y*prrr_link3_mass
-        c_true_prrr_in_base_x = (
-        axis_y_prrr_axes3_in_base_x*c_true_prrr_y + axis_y_prrr_axes3_in_base_y*c_true_prrr_x
+        prrr_c_y = prrr_W_3_t*prrr_h_3_y - prrr_G_t - prrr_alpha_3_z*prrr_h_3_x
+        # (prrr-c_true) leg force on the platform without actuation, the last link's mass included
+        prrr_c_true_x = prrr_c_x - prrr_acc_3_x*prrr_link3_mass
+        prrr_c_true_y = prrr_c_y - prrr_acc_3_y*prrr_link3_mass
+        prrr_c_true_in_base_x = (
+        axis_y_prrr_axes3_in_base_x*prrr_c_true_y + axis_y_prrr_axes3_in_base_y*prrr_c_true_x
         )
-        c_true_prrr_in_base_y = (
-        axis_y_prrr_axes3_in_base_y*c_true_prrr_y - axis_y_prrr_axes3_in_base_x*c_true_prrr_x
+        prrr_c_true_in_base_y = (
+        axis_y_prrr_axes3_in_base_y*prrr_c_true_y - axis_y_prrr_axes3_in_base_x*prrr_c_true_x
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) &
-            (disc_2_prrr >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr))
+        ok & m.every(leg, (abs(prrr_rho2_2) > _TOLERANCE * _TOLERANCE * prrr_rho2_2_t) &
+            (prrr_disc_2 >= 0.0) & (abs(-prrr_r_2_r0_y) > _TOLERANCE * prrr_size))
         )
-        out_leg_force[_leg_force_prrr[0][leg]] = c_true_prrr_in_base_x
-        out_leg_force[_leg_force_prrr[1][leg]] = c_true_prrr_in_base_y
-        out_drive[_drive_prrr[0][leg]] = -w_2_prrr_t
-        out_drive[_drive_prrr[1][leg]] = w_2_prrr_t_2
+        out_leg_force[_leg_force_prrr[0][leg]] = prrr_c_true_in_base_x
+        out_leg_force[_leg_force_prrr[1][leg]] = prrr_c_true_in_base_y
+        out_drive[_drive_prrr[0][leg]] = -prrr_w_2_t
+        out_drive[_drive_prrr[1][leg]] = prrr_w_2_t_2
     for leg, k in legs[1]:
         (
-        J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
-            h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
-            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_joint2_offset_x, rrr_link2_mass, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
+            rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
+            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+            rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
+            rrr_joint2_offset_x, rrr_link2_mass, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x
-        S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
         axis_y_rrr_axes2_in_base_x = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
         )
         axis_y_rrr_axes2_in_base_y = (
         axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
         )
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        # (rrr-V1) velocity of the connection point
-        S_dot_rrr_t = omega_z*q_rrr_in_base_y
-        S_dot_rrr_t_2 = omega_z*q_rrr_in_base_x
-        S_dot_rrr_x = t_dot_x - S_dot_rrr_t
-        S_dot_rrr_y = S_dot_rrr_t_2 + t_dot_y
-        # (rrr-V7) rate of joint 1
-        qd_1_rrr = (
-        inv_r_1_rrr_r0_y*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_y -
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_x)
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = omega_z*rrr_q_in_base_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
+        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_1 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
+            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
         )
-        # (rrr-V11) angular velocity of link 2
-        omega_2_rrr_z = (
-        inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_z = (
+        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
+            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
         )
-        # (rrr-V10) centripetal tensor of link 1
-        W_1_rrr_t = qd_1_rrr*qd_1_rrr
-        # (rrr-V12) centripetal tensor of link 2
-        W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
-        # (rrr-A5) acceleration of the connection point at zero joint accelerations
-        bias_rrr_x = (
-        -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
+        # (rrr-W_1) centripetal tensor of link 1
+        rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_x = (
+        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        # (rrr-V5) reciprocal vector 1
-        w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
-        w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
-        # (rrr-A2) acceleration of the connection point without its centripetal part
-        a_p_rrr_x = t_ddot_x - alpha_z*q_rrr_in_base_y
-        a_p_rrr_y = t_ddot_y + alpha_z*q_rrr_in_base_x
-        # (rrr-A3) acceleration of the connection point
-        S_ddot_rrr_x = a_p_rrr_x - S_dot_rrr_t_2*omega_z
-        S_ddot_rrr_y = a_p_rrr_y - S_dot_rrr_t*omega_z
-        S_ddot_rrr_tip_x = (
-        S_ddot_rrr_x*axis_y_rrr_axes2_in_base_y - S_ddot_rrr_y*axis_y_rrr_axes2_in_base_x
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y
+        rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y
+        # (rrr-a_p) acceleration of the connection point without its centripetal part
+        rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y
+        rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x
+        # (rrr-S_ddot) acceleration of the connection point
+        rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
+        rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
+        rrr_S_ddot_tip_x = (
+        axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x - axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y
         )
-        S_ddot_rrr_tip_y = (
-        S_ddot_rrr_x*axis_y_rrr_axes2_in_base_x + S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y
+        rrr_S_ddot_tip_y = (
+        axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x + axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y
         )
-        # (rrr-A6) acceleration of the connection point left to the joint accelerations
-        rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x
-        rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
-        # (rrr-A8) acceleration of joint 1
-        qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
-        # (rrr-N3) acceleration of the reference point of link 2, less gravity
-        acc_2_rrr_x = (
-        S_ddot_rrr_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+        # (rrr-rel) acceleration of the connection point left to the joint accelerations
+        rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x
+        rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        # (rrr-qdd_1) acceleration of joint 1
+        rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_acc_2_x = (
+        rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
             axis_y_rrr_axes2_in_base_y*gravity_x
         )
-        acc_2_rrr_y = (
-        S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+        rrr_acc_2_y = (
+        rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
             axis_y_rrr_axes2_in_base_y*gravity_y
         )
-        # (rrr-N23) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_rrr_z = (
-        h_1_rrr_y*(c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr) - J_1_rrr_zz*qdd_1_rrr -
-            h_1_rrr_x*(c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr)
+        # (rrr-alpha_2) angular acceleration of link 2
+        rrr_alpha_2_z = (
+        inv_rrr_platform_joint_offset_x*(rrr_rel_y + rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1
         )
-        # (rrr-A16) angular acceleration of link 2
-        alpha_2_rrr_z = (
-        inv_rrr_platform_joint_offset_x*(rel_rrr_y + qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr
+        # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x - rrr_acc_2_x*rrr_h_2_y
+        # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_mu_1_z = (
+        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1 -
+            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
         )
-        # (rrr-N16) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x - acc_2_rrr_x*h_2_rrr_y
-        # (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z
-        # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z
-        # (rrr-N33) leg force on the platform without actuation and without the mass at the connection point
-        c_rrr_x = (
-        W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x -
-            N_1_rrr_z)
+        # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z
+        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z
+        # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_x = (
+        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x -
+            rrr_N_1_z)
         )
-        c_rrr_y = W_2_rrr_t*h_2_rrr_y - G_rrr_t - alpha_2_rrr_z*h_2_rrr_x
-        # (rrr-N38) leg force on the platform without actuation, the last link's mass included
-        c_true_rrr_x = c_rrr_x - acc_2_rrr_x*rrr_link2_mass
-        c_true_rrr_y = c_rrr_y - acc_2_rrr_y*rrr_link2_mass
-        c_true_rrr_in_base_x = (
-        axis_y_rrr_axes2_in_base_x*c_true_rrr_y + axis_y_rrr_axes2_in_base_y*c_true_rrr_x
+        rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x
+        # (rrr-c_true) leg force on the platform without actuation, the last link's mass included
+        rrr_c_true_x = rrr_c_x - rrr_acc_2_x*rrr_link2_mass
+        rrr_c_true_y = rrr_c_y - rrr_acc_2_y*rrr_link2_mass
+        rrr_c_true_in_base_x = (
+        axis_y_rrr_axes2_in_base_x*rrr_c_true_y + axis_y_rrr_axes2_in_base_y*rrr_c_true_x
         )
-        c_true_rrr_in_base_y = (
-        axis_y_rrr_axes2_in_base_y*c_true_rrr_y - axis_y_rrr_axes2_in_base_x*c_true_rrr_x
+        rrr_c_true_in_base_y = (
+        axis_y_rrr_axes2_in_base_y*rrr_c_true_y - axis_y_rrr_axes2_in_base_x*rrr_c_true_x
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
-            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
+            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
         )
-        out_leg_force[_leg_force_rrr[0][leg]] = c_true_rrr_in_base_x
-        out_leg_force[_leg_force_rrr[1][leg]] = c_true_rrr_in_base_y
-        out_drive[_drive_rrr[0][leg]] = -w_1_rrr_t
-        out_drive[_drive_rrr[1][leg]] = w_1_rrr_t_2
+        out_leg_force[_leg_force_rrr[0][leg]] = rrr_c_true_in_base_x
+        out_leg_force[_leg_force_rrr[1][leg]] = rrr_c_true_in_base_y
+        out_drive[_drive_rrr[0][leg]] = -rrr_w_1_t
+        out_drive[_drive_rrr[1][leg]] = rrr_w_1_t_2
     return ok, (out_leg_force, out_drive,)
 
 
@@ -4007,138 +4073,139 @@ def _run_potential(m, X):
     R_yx = sin(X_2)
     ok = True
     out_potential = m.zeros("potential")
-    # (V1) potential energy
-    potential_t_3 = (
+    # (potential) potential energy
+    potential_t = (
     gravity_x*(R_xx*h_star_x + m_star*t_x - R_yx*h_star_y) + gravity_y*(R_xx*h_star_y +
         R_yx*h_star_x + m_star*t_y)
     )
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        Kd_2_prrr_t_2, Kd_2_prrr_t_3, b_prrr_r0_x, branch_2_prrr, g_r0_x, g_r0_y, h_1_prrr_x,
-            h_1_prrr_y, h_2_prrr_x, h_2_prrr_y, h_3_prrr_x, h_3_prrr_y, inv_Kd_2_prrr_t,
-            inv_uu_3_prrr_t, potential_t, potential_t_2, prrr_base_frame_xx, prrr_base_frame_xy,
-            prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y,
+        inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_b_r0_x,
+            prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy,
+            prrr_base_point_x, prrr_base_point_y, prrr_branch_2, prrr_g_r0_x, prrr_g_r0_y,
+            prrr_h_1_x, prrr_h_1_y, prrr_h_2_x, prrr_h_2_y, prrr_h_3_x, prrr_h_3_y,
             prrr_joint3_offset_x, prrr_link1_mass, prrr_link2_mass, prrr_platform_joint_offset_x,
-            prrr_platform_point_x, prrr_platform_point_y, rho2_2_prrr_t,
+            prrr_platform_point_x, prrr_platform_point_y, prrr_potential_t, prrr_potential_t_2,
+            prrr_rho2_2_t,
         ) = k
-        y_1_extra_prrr = X[[3][leg]]
-        # (prrr-K1) from the base point to the connection point
-        S_prrr_x = (
+        prrr_y_1_extra = X[[3][leg]]
+        # (prrr-S) from the base point to the connection point
+        prrr_S_x = (
         t_x + R_xx*prrr_platform_point_x - prrr_base_point_x - R_yx*prrr_platform_point_y
         )
-        S_prrr_y = (
+        prrr_S_y = (
         t_y + R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x - prrr_base_point_y
         )
-        S_prrr_r0_y = -S_prrr_x*prrr_base_frame_xx - S_prrr_y*prrr_base_frame_yx
-        # (prrr-K2) from the origin of joint 2 to the connection point
-        x_2_prrr_x = S_prrr_x*prrr_base_frame_xy + S_prrr_y*prrr_base_frame_yy - y_1_extra_prrr
-        # (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x
-        Kd_2_prrr = 0.5*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3
-        # (prrr-K7) factor of the cosine in the equation of joint 2
-        Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x
-        # (prrr-K8) factor of the sine in the equation of joint 2
-        Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x
-        # (prrr-K9) squared amplitude
-        rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr
-        # (prrr-K10) discriminant
-        disc_2_prrr = rho2_2_prrr - Kd_2_prrr*Kd_2_prrr
-        # (prrr-K11) root, with the sign of the branch
-        root_2_prrr = branch_2_prrr*sqrt(disc_2_prrr)
-        # (prrr-K17) from the origin of joint 3 to the connection point
-        x_3_prrr_x = Kd_2_prrr*inv_Kd_2_prrr_t*prrr_joint3_offset_x - prrr_joint3_offset_x
-        # (prrr-K19) cosine of the angle of joint 3 from its reference direction
-        c_3_prrr = inv_uu_3_prrr_t*prrr_platform_joint_offset_x*x_3_prrr_x
-        # (prrr-K20) sine of the angle of joint 3 from its reference direction
-        s_3_prrr = (
-        inv_Kd_2_prrr_t*inv_uu_3_prrr_t*prrr_joint3_offset_x*prrr_platform_joint_offset_x*root_2_prrr
+        prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
+        # (prrr-x_2) from the origin of joint 2 to the connection point
+        prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        # (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x
+        prrr_Kd_2 = 0.5*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4
+        # (prrr-Kc_2) factor of the cosine in the equation of joint 2
+        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x
+        # (prrr-Ks_2) factor of the sine in the equation of joint 2
+        prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x
+        # (prrr-rho2_2) squared amplitude
+        prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
+        # (prrr-disc_2) discriminant
+        prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2
+        # (prrr-root_2) root, with the sign of the branch
+        prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
+        # (prrr-x_3) from the origin of joint 3 to the connection point
+        prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
+        # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
+        prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x
+        # (prrr-s_3) sine of the angle of joint 3 from its reference direction
+        prrr_s_3 = (
+        inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
         )
-        # (prrr-K12) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2_prrr = 1.0/rho2_2_prrr
-        c_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*Kd_2_prrr - Ks_2_prrr*root_2_prrr)
-        # (prrr-K13) sine of the angle of joint 2 from its reference direction
-        s_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*root_2_prrr + Kd_2_prrr*Ks_2_prrr)
-        # (V1) potential energy
-        potential_t_5 = b_prrr_r0_x + y_1_extra_prrr
-        # (prrr-G7) first moment of link 3 about the connection point
-        h_3_prrr_r0_x = c_3_prrr*h_3_prrr_x + h_3_prrr_y*s_3_prrr
-        h_3_prrr_r0_y = c_3_prrr*h_3_prrr_y - h_3_prrr_x*s_3_prrr
-        # (V1) potential energy
-        potential_t_6 = (
-        g_r0_x*(h_1_prrr_y + c_2_prrr*h_2_prrr_x + c_2_prrr*h_3_prrr_r0_x +
-            potential_t_5*prrr_link1_mass + potential_t_5*prrr_link2_mass - h_2_prrr_y*s_2_prrr -
-            h_3_prrr_r0_y*s_2_prrr) + g_r0_y*(potential_t + potential_t_2 + c_2_prrr*h_2_prrr_y +
-            c_2_prrr*h_3_prrr_r0_y + h_2_prrr_x*s_2_prrr + h_3_prrr_r0_x*s_2_prrr - h_1_prrr_x)
+        # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_prrr_rho2_2 = 1.0/prrr_rho2_2
+        prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2)
+        # (prrr-s_2) sine of the angle of joint 2 from its reference direction
+        prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2)
+        # (potential) potential energy
+        prrr_potential_t_3 = prrr_b_r0_x + prrr_y_1_extra
+        # (prrr-h_3) first moment of link 3 about the connection point
+        prrr_h_3_r0_x = prrr_c_3*prrr_h_3_x + prrr_h_3_y*prrr_s_3
+        prrr_h_3_r0_y = prrr_c_3*prrr_h_3_y - prrr_h_3_x*prrr_s_3
+        # (potential) potential energy
+        prrr_potential_t_4 = (
+        prrr_g_r0_x*(prrr_h_1_y + prrr_c_2*prrr_h_2_x + prrr_c_2*prrr_h_3_r0_x +
+            prrr_link1_mass*prrr_potential_t_3 + prrr_link2_mass*prrr_potential_t_3 -
+            prrr_h_2_y*prrr_s_2 - prrr_h_3_r0_y*prrr_s_2) + prrr_g_r0_y*(prrr_potential_t +
+            prrr_potential_t_2 + prrr_c_2*prrr_h_2_y + prrr_c_2*prrr_h_3_r0_y +
+            prrr_h_2_x*prrr_s_2 + prrr_h_3_r0_x*prrr_s_2 - prrr_h_1_x)
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) &
-            (disc_2_prrr >= 0.0))
+        ok & m.every(leg, (abs(prrr_rho2_2) > _TOLERANCE * _TOLERANCE * prrr_rho2_2_t) &
+            (prrr_disc_2 >= 0.0))
         )
         sums = m.added(sums, leg, (
-        potential_t_6,
+        prrr_potential_t_4,
         ))
     total_prrr, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
         (
-        Kd_1_rrr_t_2, Kd_1_rrr_t_3, b_rrr_r0_x, b_rrr_r0_y, branch_1_rrr, g_r0_x_2, g_r0_y_2,
-            h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t,
-            rho2_1_rrr_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-            rrr_link1_mass, rrr_platform_joint_offset_x, rrr_platform_point_x,
-            rrr_platform_point_y,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_b_r0_x, rrr_b_r0_y,
+            rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
+            rrr_base_point_x, rrr_base_point_y, rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x,
+            rrr_h_1_y, rrr_h_2_x, rrr_h_2_y, rrr_joint2_offset_x, rrr_link1_mass,
+            rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        S_rrr_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
-        S_rrr_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
+        rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (V1) potential energy
-        potential_t_4 = (
-        (c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr)*(h_1_rrr_x + c_2_rrr*h_2_rrr_x + h_2_rrr_y*s_2_rrr +
-            rrr_link1_mass*(b_rrr_r0_x*c_1_rrr + b_rrr_r0_y*s_1_rrr)) + (c_1_rrr*g_r0_y_2 -
-            g_r0_x_2*s_1_rrr)*(h_1_rrr_y + c_2_rrr*h_2_rrr_y + rrr_link1_mass*(b_rrr_r0_y*c_1_rrr
-            - b_rrr_r0_x*s_1_rrr) - h_2_rrr_x*s_2_rrr)
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (potential) potential energy
+        rrr_potential_t = (
+        (rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1)*(rrr_h_1_x + rrr_c_2*rrr_h_2_x +
+            rrr_h_2_y*rrr_s_2 + rrr_link1_mass*(rrr_b_r0_x*rrr_c_1 + rrr_b_r0_y*rrr_s_1)) +
+            (rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)*(rrr_h_1_y + rrr_c_2*rrr_h_2_y +
+            rrr_link1_mass*(rrr_b_r0_y*rrr_c_1 - rrr_b_r0_x*rrr_s_1) - rrr_h_2_x*rrr_s_2)
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
             >= 0.0))
         )
         sums = m.added(sums, leg, (
-        potential_t_4,
+        rrr_potential_t,
         ))
     total_rrr, = sums
-    # (V1) potential energy
-    potential = -potential_t_3 - total_prrr - total_rrr
+    # (potential) potential energy
+    potential = -potential_t - total_prrr - total_rrr
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -4170,179 +4237,183 @@ def _run_condition(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, inv_Kd_2_prrr_t, inv_rho2_2_prrr_t_4,
-            inv_size_prrr, inv_uu_3_prrr_t, prrr_base_frame_xx, prrr_base_frame_xy,
-            prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y,
+        inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_rho2_2_t_4, inv_prrr_size, prrr_Kd_2_t_2,
+            prrr_Kd_2_t_4, prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx,
+            prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y, prrr_branch_2,
             prrr_joint3_offset_x, prrr_platform_joint_offset_x, prrr_platform_point_x,
-            prrr_platform_point_y, rho2_2_prrr_t, size_prrr,
+            prrr_platform_point_y, prrr_rho2_2_t, prrr_size,
         ) = k
-        y_1_extra_prrr = X[[3][leg]]
-        # (prrr-K1) from the base point to the connection point
-        q_prrr_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
-        q_prrr_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
-        S_prrr_x = q_prrr_in_base_x + t_x - prrr_base_point_x
-        S_prrr_y = q_prrr_in_base_y + t_y - prrr_base_point_y
-        S_prrr_r0_y = -S_prrr_x*prrr_base_frame_xx - S_prrr_y*prrr_base_frame_yx
-        # (prrr-K2) from the origin of joint 2 to the connection point
-        x_2_prrr_x = S_prrr_x*prrr_base_frame_xy + S_prrr_y*prrr_base_frame_yy - y_1_extra_prrr
-        # (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x
-        Kd_2_prrr = 0.5*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3
-        # (prrr-K7) factor of the cosine in the equation of joint 2
-        Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x
-        # (prrr-K8) factor of the sine in the equation of joint 2
-        Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x
-        # (prrr-K9) squared amplitude
-        rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr
-        # (prrr-K10) discriminant
-        disc_2_prrr = rho2_2_prrr - Kd_2_prrr*Kd_2_prrr
-        # (prrr-K11) root, with the sign of the branch
-        root_2_prrr = branch_2_prrr*sqrt(disc_2_prrr)
-        # (prrr-K17) from the origin of joint 3 to the connection point
-        x_3_prrr_x = Kd_2_prrr*inv_Kd_2_prrr_t*prrr_joint3_offset_x - prrr_joint3_offset_x
-        # (prrr-K19) cosine of the angle of joint 3 from its reference direction
-        c_3_prrr = inv_uu_3_prrr_t*prrr_platform_joint_offset_x*x_3_prrr_x
-        # (prrr-K20) sine of the angle of joint 3 from its reference direction
-        s_3_prrr = (
-        inv_Kd_2_prrr_t*inv_uu_3_prrr_t*prrr_joint3_offset_x*prrr_platform_joint_offset_x*root_2_prrr
+        prrr_y_1_extra = X[[3][leg]]
+        # (prrr-S) from the base point to the connection point
+        prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
+        prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
+        prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x
+        prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y
+        prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
+        # (prrr-x_2) from the origin of joint 2 to the connection point
+        prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        # (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x
+        prrr_Kd_2 = 0.5*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4
+        # (prrr-Kc_2) factor of the cosine in the equation of joint 2
+        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x
+        # (prrr-Ks_2) factor of the sine in the equation of joint 2
+        prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x
+        # (prrr-rho2_2) squared amplitude
+        prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
+        # (prrr-disc_2) discriminant
+        prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2
+        # (prrr-root_2) root, with the sign of the branch
+        prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
+        # (prrr-x_3) from the origin of joint 3 to the connection point
+        prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
+        # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
+        prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x
+        # (prrr-s_3) sine of the angle of joint 3 from its reference direction
+        prrr_s_3 = (
+        inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
         )
-        # (prrr-V2) from joint 2 to the connection point, along the links
-        r_2_prrr_x = prrr_joint3_offset_x + c_3_prrr*prrr_platform_joint_offset_x
-        r_2_prrr_r0_y = r_2_prrr_x*s_3_prrr - c_3_prrr*prrr_platform_joint_offset_x*s_3_prrr
-        # (prrr-K12) cosine of the angle of joint 2 from its reference direction
-        inv_rho2_2_prrr = 1.0/rho2_2_prrr
-        c_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*Kd_2_prrr - Ks_2_prrr*root_2_prrr)
-        # (prrr-K13) sine of the angle of joint 2 from its reference direction
-        s_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*root_2_prrr + Kd_2_prrr*Ks_2_prrr)
-        # (prrr-V5) reciprocal vector 1
-        axis_y_prrr_axes3_r1_x = c_2_prrr*s_3_prrr - c_3_prrr*s_2_prrr
-        axis_y_prrr_axes3_r1_y = c_2_prrr*c_3_prrr + s_2_prrr*s_3_prrr
-        inv_r_2_prrr_r0_y = 1.0/r_2_prrr_r0_y
-        # (prrr-A10) coefficient of the acceleration in: acceleration of joint 2
-        d1_qdd_2_prrr = axis_y_prrr_axes3_r1_y*inv_r_2_prrr_r0_y
-        # (prrr-V5) reciprocal vector 1
-        w_2_prrr_t = (
-        inv_r_2_prrr_r0_y*(axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
+        # (prrr-r_2) from joint 2 to the connection point, along the links
+        prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
+        prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_platform_joint_offset_x*prrr_s_3
+        # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_prrr_rho2_2 = 1.0/prrr_rho2_2
+        prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2)
+        # (prrr-s_2) sine of the angle of joint 2 from its reference direction
+        prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2)
+        # (prrr-w_2) reciprocal vector 1
+        axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2
+        axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3
+        inv_prrr_r_2_r0_y = 1.0/prrr_r_2_r0_y
+        # (prrr-dy_1_qdd_2) coefficient of the acceleration in: acceleration of joint 2
+        prrr_dy_1_qdd_2 = axis_y_prrr_axes3_r1_y*inv_prrr_r_2_r0_y
+        # (prrr-w_2) reciprocal vector 1
+        prrr_w_2_t = (
+        inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
             axis_y_prrr_axes3_r1_y*prrr_base_frame_yx)
         )
-        w_2_prrr_t_2 = (
-        inv_r_2_prrr_r0_y*(axis_y_prrr_axes3_r1_x*prrr_base_frame_xy -
+        prrr_w_2_t_2 = (
+        inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_r1_x*prrr_base_frame_xy -
             axis_y_prrr_axes3_r1_y*prrr_base_frame_xx)
         )
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_2_prrr_z = q_prrr_in_base_x*w_2_prrr_t_2 + q_prrr_in_base_y*w_2_prrr_t
-        # (C2) rms distance of the platform points from their centroid
-        spread_t = b_c_x - prrr_platform_point_x
-        spread_t_2 = b_c_y - prrr_platform_point_y
-        spread_t_3 = spread_t*spread_t + spread_t_2*spread_t_2
-        # (prrr-K9) squared amplitude
-        pivot_size = abs(rho2_2_prrr)
-        # (prrr-V5) reciprocal vector 1
-        pivot_size_2 = abs(r_2_prrr_r0_y)
-        # (prrr-N50) force at the connection point that balances the leg's inertia and weight along all freedoms
-        least_pivots = least(sqrt(inv_rho2_2_prrr_t_4*pivot_size), inv_size_prrr*pivot_size_2)
-        clear = (
-        clear & m.every(leg, (abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) &
-            (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr))
+        # (prrr-H_a_2) moment of the column's unit force about the platform origin
+        prrr_H_a_2_z = prrr_q_in_base_x*prrr_w_2_t_2 + prrr_q_in_base_y*prrr_w_2_t
+        # (spread) rms distance of the platform points from their centroid
+        prrr_spread_t = b_c_x - prrr_platform_point_x
+        prrr_spread_t_2 = b_c_y - prrr_platform_point_y
+        prrr_spread_t_3 = prrr_spread_t*prrr_spread_t + prrr_spread_t_2*prrr_spread_t_2
+        # (prrr-rho2_2) squared amplitude
+        prrr_pivot_size = abs(prrr_rho2_2)
+        # (prrr-w_2) reciprocal vector 1
+        prrr_pivot_size_2 = abs(prrr_r_2_r0_y)
+        # (prrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        prrr_least_pivots = (
+        least(sqrt(inv_prrr_rho2_2_t_4*prrr_pivot_size), inv_prrr_size*prrr_pivot_size_2)
         )
-        reached = reached & m.every(leg, (disc_2_prrr >= 0.0))
+        clear = (
+        clear & m.every(leg, (abs(prrr_rho2_2) > _TOLERANCE * _TOLERANCE * prrr_rho2_2_t) &
+            (abs(-prrr_r_2_r0_y) > _TOLERANCE * prrr_size))
+        )
+        reached = reached & m.every(leg, (prrr_disc_2 >= 0.0))
         sums = m.added(sums, leg, (
-        spread_t_3,
+        prrr_spread_t_3,
         ))
         out_H[_H_prrr[0][leg]] = 1.0
-        out_H[_H_prrr[1][leg]] = -w_2_prrr_t
-        out_H[_H_prrr[2][leg]] = w_2_prrr_t_2
-        out_H[_H_prrr[3][leg]] = H_a_2_prrr_z
-        out_H[_H_prrr[4][leg]] = d1_qdd_2_prrr
-        out_pivots[_pivots_prrr[0][leg]] = least_pivots
-        out_reach[_reach_prrr[0][leg]] = disc_2_prrr
+        out_H[_H_prrr[1][leg]] = -prrr_w_2_t
+        out_H[_H_prrr[2][leg]] = prrr_w_2_t_2
+        out_H[_H_prrr[3][leg]] = prrr_H_a_2_z
+        out_H[_H_prrr[4][leg]] = prrr_dy_1_qdd_2
+        out_pivots[_pivots_prrr[0][leg]] = prrr_least_pivots
+        out_reach[_reach_prrr[0][leg]] = prrr_disc_2
     total_prrr, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
         (
-        Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_rho2_1_rrr_t_4,
-            inv_size_rrr, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx, rrr_base_frame_xy,
-            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_rho2_1_t_4, inv_rrr_size, rrr_Kd_1_t_2,
+            rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
             rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-            rrr_platform_point_y, size_rrr,
+            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
-        # (rrr-K1) from the base point to the connection point
-        q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x
-        S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y
-        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-        # (rrr-K3) component along the reference direction
-        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-        # (rrr-K6) factor of the cosine in the equation of joint 1
-        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-        # (rrr-K4) component across the reference direction
-        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-        # (rrr-K7) factor of the sine in the equation of joint 1
-        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-        # (rrr-K8) squared amplitude
-        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-        # (rrr-K9) discriminant
-        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-        # (rrr-K10) root, with the sign of the branch
-        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-        # (rrr-K16) from the origin of joint 2 to the connection point
-        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-        # (rrr-K19) sine of the angle of joint 2 from its reference direction
-        s_2_rrr = (
-        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        # (rrr-S) from the base point to the connection point
+        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        # (rrr-px_1) component along the reference direction
+        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        # (rrr-py_1) component across the reference direction
+        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Ks_1) factor of the sine in the equation of joint 1
+        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        # (rrr-rho2_1) squared amplitude
+        rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
+        # (rrr-disc_1) discriminant
+        rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
+        # (rrr-root_1) root, with the sign of the branch
+        rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        # (rrr-V2) from joint 1 to the connection point, along the links
-        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*rrr_platform_joint_offset_x*s_2_rrr
-        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-        inv_rho2_1_rrr = 1.0/rho2_1_rrr
-        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-        # (rrr-K12) sine of the angle of joint 1 from its reference direction
-        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
-        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-        w_1_rrr_t = (
-        inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-w_1) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
+        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
+        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        rrr_w_1_t = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy)
         )
-        w_1_rrr_t_2 = (
-        inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
+        rrr_w_1_t_2 = (
+        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy)
         )
-        # (M10) moment of the column's unit force about the platform origin
-        H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t
-        # (C2) rms distance of the platform points from their centroid
-        spread_t_4 = b_c_x - rrr_platform_point_x
-        spread_t_5 = b_c_y - rrr_platform_point_y
-        spread_t_6 = spread_t_4*spread_t_4 + spread_t_5*spread_t_5
-        # (rrr-K8) squared amplitude
-        pivot_size_3 = abs(rho2_1_rrr)
-        # (rrr-V5) reciprocal vector 1
-        pivot_size_4 = abs(r_1_rrr_r0_y)
-        # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
-        least_pivots_2 = least(sqrt(inv_rho2_1_rrr_t_4*pivot_size_3), inv_size_rrr*pivot_size_4)
-        clear = (
-        clear & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) &
-            (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        # (rrr-H_a_1) moment of the column's unit force about the platform origin
+        rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t
+        # (spread) rms distance of the platform points from their centroid
+        rrr_spread_t = b_c_x - rrr_platform_point_x
+        rrr_spread_t_2 = b_c_y - rrr_platform_point_y
+        rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2
+        # (rrr-rho2_1) squared amplitude
+        rrr_pivot_size = abs(rrr_rho2_1)
+        # (rrr-w_1) reciprocal vector 1
+        rrr_pivot_size_2 = abs(rrr_r_1_r0_y)
+        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_least_pivots = (
+        least(sqrt(inv_rrr_rho2_1_t_4*rrr_pivot_size), inv_rrr_size*rrr_pivot_size_2)
         )
-        reached = reached & m.every(leg, (disc_1_rrr >= 0.0))
+        clear = (
+        clear & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) &
+            (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+        )
+        reached = reached & m.every(leg, (rrr_disc_1 >= 0.0))
         sums = m.added(sums, leg, (
-        spread_t_6,
+        rrr_spread_t_3,
         ))
-        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
-        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
-        out_H[_H_rrr[2][leg]] = H_a_1_rrr_z
-        out_pivots[_pivots_rrr[0][leg]] = least_pivots_2
-        out_reach[_reach_rrr[0][leg]] = disc_1_rrr
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
+        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
+        out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
+        out_pivots[_pivots_rrr[0][leg]] = rrr_least_pivots
+        out_reach[_reach_rrr[0][leg]] = rrr_disc_1
     total_rrr, = sums
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread = sqrt(0.3333333333333333*total_prrr + 0.3333333333333333*total_rrr)
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
@@ -4470,6 +4541,19 @@ def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
     momentum = np.einsum("ijs,js->is", M, V)
     return (momentum,)
+
+
+def _steps_joint_margins(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    margins = _unlimited(q, [0, 1, 2, 3, 4, 5, 6])
+    return (margins,)
+
+
+def _steps_within_limits(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    subtract_1 = q - q
+    within = _not_negative(subtract_1)
+    return (within,)
 
 
 def _steps_actuator_positions(m, X):
@@ -4873,6 +4957,40 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+    )
+
+
+def joint_margins(X, p=None):
+    """How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+    where there is none.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        margins: distances, in the order of q [m or rad] (..., NJ).
+    """
+    return _call(
+        "joint_margins", _steps_joint_margins, p,
+        ("X", X, (NQ,)),
+        unbounded=True,
+    )
+
+
+def within_limits(X, p=None):
+    """Whether all joints are within their limits of displacement.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        within: 1 where no margin is negative, else 0; NaN is neither (...,).
+    """
+    return _call(
+        "within_limits", _steps_within_limits, p,
+        ("X", X, (NQ,)),
     )
 
 

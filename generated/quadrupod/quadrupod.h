@@ -51,6 +51,7 @@ typedef QUADRUPOD_REAL quadrupod_real;
 #define QUADRUPOD_NC 3
 #define QUADRUPOD_NW 6
 #define QUADRUPOD_NJ 15
+#define QUADRUPOD_OVERCONSTRAINED 0
 
 enum {
     QUADRUPOD_OK = 0,
@@ -89,59 +90,60 @@ typedef struct {
     /* inertia tensor of link 3 about its centre of mass, link axes [kg m^2] */
     quadrupod_real ups_link3_inertia[4][3][3];
     /* base point, base frame [m] */
-    quadrupod_real up_base_point[1][3];
+    quadrupod_real tube_base_point[1][3];
     /* rotation from leg axes to base axes [-] */
-    quadrupod_real up_base_frame[1][3][3];
+    quadrupod_real tube_base_frame[1][3][3];
     /* platform joint, platform frame [m] */
-    quadrupod_real up_platform_point[1][3];
+    quadrupod_real tube_platform_point[1][3];
     /* platform axes in the last link's frame [-] */
-    quadrupod_real up_platform_joint_rotation[1][3][3];
+    quadrupod_real tube_platform_joint_rotation[1][3][3];
     /* mass of link 2 [kg] */
-    quadrupod_real up_link2_mass[1];
+    quadrupod_real tube_link2_mass[1];
     /* centre of mass of link 2, link frame [m] */
-    quadrupod_real up_link2_centre_of_mass[1][3];
+    quadrupod_real tube_link2_centre_of_mass[1][3];
     /* inertia tensor of link 2 about its centre of mass, link axes [kg m^2] */
-    quadrupod_real up_link2_inertia[1][3][3];
+    quadrupod_real tube_link2_inertia[1][3][3];
     /* mass of link 3 [kg] */
-    quadrupod_real up_link3_mass[1];
+    quadrupod_real tube_link3_mass[1];
     /* centre of mass of link 3, link frame [m] */
-    quadrupod_real up_link3_centre_of_mass[1][3];
+    quadrupod_real tube_link3_centre_of_mass[1][3];
     /* inertia tensor of link 3 about its centre of mass, link axes [kg m^2] */
-    quadrupod_real up_link3_inertia[1][3][3];
+    quadrupod_real tube_link3_inertia[1][3][3];
 } quadrupod_params;
 
 /* What depends on the parameters alone; set by quadrupod_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
-    quadrupod_real J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
-            J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
-            h_star_x, h_star_y, h_star_z, m_star;
-    /* legs of type ups */
-    quadrupod_real J_group_2_ups_xx[4], J_group_2_ups_xy[4], J_group_2_ups_xz[4], J_group_2_ups_yy[4],
-            J_group_2_ups_yz[4], J_group_2_ups_zz[4], Sigma_2_ups_xx[4], Sigma_2_ups_yy[4],
-            Sigma_2_ups_zz[4], b_ups_r0_x[4], b_ups_r0_y[4], b_ups_r0_z[4], branch_1_ups[4],
-            branch_2_ups[4], g_r0_x_2[4], g_r0_y_2[4], g_r0_z_2[4], h_2_ups_x[4], h_2_ups_y[4],
-            h_2_ups_z[4], h_3_ups_x[4], h_3_ups_y[4], h_3_ups_z[4], ups_base_frame_xx[4],
+    /* 4 legs of type ups */
+    quadrupod_real ups_J_group_2_xx[4], ups_J_group_2_xy[4], ups_J_group_2_xz[4], ups_J_group_2_yy[4],
+            ups_J_group_2_yz[4], ups_J_group_2_zz[4], ups_Sigma_2_xx[4], ups_Sigma_2_yy[4],
+            ups_Sigma_2_zz[4], ups_b_r0_x[4], ups_b_r0_y[4], ups_b_r0_z[4], ups_base_frame_xx[4],
             ups_base_frame_xy[4], ups_base_frame_xz[4], ups_base_frame_yx[4], ups_base_frame_yy[4],
             ups_base_frame_yz[4], ups_base_frame_zx[4], ups_base_frame_zy[4], ups_base_frame_zz[4],
-            ups_base_point_x[4], ups_base_point_y[4], ups_base_point_z[4], ups_link2_mass[4],
+            ups_base_point_x[4], ups_base_point_y[4], ups_base_point_z[4], ups_branch_1[4],
+            ups_branch_2[4], ups_g_r0_x[4], ups_g_r0_y[4], ups_g_r0_z[4], ups_h_2_x[4], ups_h_2_y[4],
+            ups_h_2_z[4], ups_h_3_x[4], ups_h_3_y[4], ups_h_3_z[4], ups_link2_mass[4],
             ups_link3_mass[4], ups_platform_point_x[4], ups_platform_point_y[4],
             ups_platform_point_z[4];
-    /* legs of type up */
-    quadrupod_real J_group_2_up_xx[1], J_group_2_up_xy[1], J_group_2_up_xz[1], J_group_2_up_yy[1],
-            J_group_2_up_yz[1], J_group_2_up_zz[1], Sigma_2_up_xx[1], Sigma_2_up_yy[1],
-            Sigma_2_up_zz[1], b_up_r0_x[1], b_up_r0_y[1], b_up_r0_z[1], branch_1_up[1],
-            branch_2_up[1], g_r0_x[1], g_r0_y[1], g_r0_z[1], h_2_up_x[1], h_2_up_y[1], h_2_up_z[1],
-            h_3_up_x[1], h_3_up_y[1], h_3_up_z[1], up_base_frame_xx[1], up_base_frame_xy[1],
-            up_base_frame_xz[1], up_base_frame_yx[1], up_base_frame_yy[1], up_base_frame_yz[1],
-            up_base_frame_zx[1], up_base_frame_zy[1], up_base_frame_zz[1], up_base_point_x[1],
-            up_base_point_y[1], up_base_point_z[1], up_link2_mass[1], up_link3_mass[1],
-            up_platform_joint_rotation_xx[1], up_platform_joint_rotation_xy[1],
-            up_platform_joint_rotation_xz[1], up_platform_joint_rotation_yx[1],
-            up_platform_joint_rotation_yy[1], up_platform_joint_rotation_yz[1],
-            up_platform_joint_rotation_zx[1], up_platform_joint_rotation_zy[1],
-            up_platform_joint_rotation_zz[1], up_platform_point_x[1], up_platform_point_y[1],
-            up_platform_point_z[1];
+    /* 1 legs of type tube */
+    quadrupod_real tube_J_group_2_xx[1], tube_J_group_2_xy[1], tube_J_group_2_xz[1],
+            tube_J_group_2_yy[1], tube_J_group_2_yz[1], tube_J_group_2_zz[1], tube_Sigma_2_xx[1],
+            tube_Sigma_2_yy[1], tube_Sigma_2_zz[1], tube_b_r0_x[1], tube_b_r0_y[1], tube_b_r0_z[1],
+            tube_base_frame_xx[1], tube_base_frame_xy[1], tube_base_frame_xz[1],
+            tube_base_frame_yx[1], tube_base_frame_yy[1], tube_base_frame_yz[1],
+            tube_base_frame_zx[1], tube_base_frame_zy[1], tube_base_frame_zz[1], tube_base_point_x[1],
+            tube_base_point_y[1], tube_base_point_z[1], tube_branch_1[1], tube_branch_2[1],
+            tube_g_r0_x[1], tube_g_r0_y[1], tube_g_r0_z[1], tube_h_2_x[1], tube_h_2_y[1],
+            tube_h_2_z[1], tube_h_3_x[1], tube_h_3_y[1], tube_h_3_z[1], tube_link2_mass[1],
+            tube_link3_mass[1], tube_platform_joint_rotation_xx[1],
+            tube_platform_joint_rotation_xy[1], tube_platform_joint_rotation_xz[1],
+            tube_platform_joint_rotation_yx[1], tube_platform_joint_rotation_yy[1],
+            tube_platform_joint_rotation_yz[1], tube_platform_joint_rotation_zx[1],
+            tube_platform_joint_rotation_zy[1], tube_platform_joint_rotation_zz[1],
+            tube_platform_point_x[1], tube_platform_point_y[1], tube_platform_point_z[1];
+    quadrupod_real J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+            J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
+            h_star_x, h_star_y, h_star_z, m_star;
 } quadrupod_model;
 
 extern const quadrupod_params quadrupod_default_params;
@@ -158,12 +160,12 @@ extern const char *const quadrupod_ACTUATOR_NAMES[QUADRUPOD_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int quadrupod_prepare(const quadrupod_params *params, quadrupod_model *model);
 
-/* Inertia matrix M. 1333 mul, 951 add, 17 div, 16 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 1321 mul, 939 add, 17 div, 16 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int quadrupod_M(const quadrupod_model *model, const quadrupod_real *X, quadrupod_real *M);
 size_t quadrupod_M_batch(const quadrupod_model *model, size_t n, const quadrupod_real *X,
     quadrupod_real *M, int *status);
 
-/* Velocity and gravity terms Z. 1261 mul, 916 add, 17 div, 16 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 1246 mul, 901 add, 17 div, 16 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int quadrupod_Z(const quadrupod_model *model, const quadrupod_real *X, const quadrupod_real *V,
     quadrupod_real *Z);
@@ -218,7 +220,7 @@ size_t quadrupod_joint_accelerations_batch(const quadrupod_model *model, size_t 
     quadrupod_real *X, const quadrupod_real *V, const quadrupod_real *A, quadrupod_real
     *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 2245 mul, 1664 add, 17 div, 16 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 2218 mul, 1637 add, 17 div, 16 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int quadrupod_dynamics(const quadrupod_model *model, const quadrupod_real *X, const quadrupod_real
     *V, quadrupod_real *M, quadrupod_real *Z, quadrupod_real *H);
@@ -247,7 +249,7 @@ size_t quadrupod_inverse_dynamics_weighted_batch(const quadrupod_model *model, s
     *wrench, const quadrupod_real *weights, quadrupod_real *tau, quadrupod_real *lambda, int
     *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 2245 mul, 1664 add, 17 div, 16
+/* Acceleration A under the actuator forces tau and the wrench. 2218 mul, 1637 add, 17 div, 16
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV), lambda (NC). */
 int quadrupod_forward_dynamics(const quadrupod_model *model, const quadrupod_real *X, const
@@ -325,12 +327,27 @@ int quadrupod_dissipation(const quadrupod_model *model, const quadrupod_real *X,
 size_t quadrupod_dissipation_batch(const quadrupod_model *model, size_t n, const quadrupod_real
     *X, const quadrupod_real *V, quadrupod_real *dissipation, int *status);
 
-/* Generalised momentum M V. 1333 mul, 951 add, 17 div, 16 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 1321 mul, 939 add, 17 div, 16 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int quadrupod_momentum(const quadrupod_model *model, const quadrupod_real *X, const quadrupod_real
     *V, quadrupod_real *momentum);
 size_t quadrupod_momentum_batch(const quadrupod_model *model, size_t n, const quadrupod_real *X,
     const quadrupod_real *V, quadrupod_real *momentum, int *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 135 mul, 100 add, 10 div, 10 sqrt, 10 trig. In: X (NQ). Out: margins (NJ).
+   */
+int quadrupod_joint_margins(const quadrupod_model *model, const quadrupod_real *X, quadrupod_real
+    *margins);
+size_t quadrupod_joint_margins_batch(const quadrupod_model *model, size_t n, const quadrupod_real
+    *X, quadrupod_real *margins, int *status);
+
+/* Whether all joints are within their limits of displacement. 135 mul, 100 add, 10 div, 10 sqrt,
+   10 trig. In: X (NQ). Out: within (1). */
+int quadrupod_within_limits(const quadrupod_model *model, const quadrupod_real *X, quadrupod_real
+    *within);
+size_t quadrupod_within_limits_batch(const quadrupod_model *model, size_t n, const quadrupod_real
+    *X, quadrupod_real *within, int *status);
 
 /* Displacements of the actuated joints, in the order of tau. 135 mul, 100 add, 10 div, 10 sqrt,
    10 trig. In: X (NQ). Out: q (NU). */

@@ -48,6 +48,7 @@ typedef SIXBAR_REAL sixbar_real;
 #define SIXBAR_NC 0
 #define SIXBAR_NW 3
 #define SIXBAR_NJ 4
+#define SIXBAR_OVERCONSTRAINED 0
 
 enum {
     SIXBAR_OK = 0,
@@ -67,6 +68,28 @@ typedef struct {
     sixbar_real platform_centre_of_mass[3];
     /* inertia tensor about the centre of mass, platform axes [kg m^2] */
     sixbar_real platform_inertia[3][3];
+    /* base point, base frame [m] */
+    sixbar_real rrr_leg1_base_point[1][3];
+    /* rotation from leg axes to base axes [-] */
+    sixbar_real rrr_leg1_base_frame[1][3][3];
+    /* platform joint, platform frame [m] */
+    sixbar_real rrr_leg1_platform_point[1][3];
+    /* offset of joint 2, preceding link's frame [m] */
+    sixbar_real rrr_leg1_joint2_offset[1][3];
+    /* offset of platform joint, preceding link's frame [m] */
+    sixbar_real rrr_leg1_platform_joint_offset[1][3];
+    /* mass of link 1 [kg] */
+    sixbar_real rrr_leg1_link1_mass[1];
+    /* centre of mass of link 1, link frame [m] */
+    sixbar_real rrr_leg1_link1_centre_of_mass[1][3];
+    /* inertia tensor of link 1 about its centre of mass, link axes [kg m^2] */
+    sixbar_real rrr_leg1_link1_inertia[1][3][3];
+    /* mass of link 2 [kg] */
+    sixbar_real rrr_leg1_link2_mass[1];
+    /* centre of mass of link 2, link frame [m] */
+    sixbar_real rrr_leg1_link2_centre_of_mass[1][3];
+    /* inertia tensor of link 2 about its centre of mass, link axes [kg m^2] */
+    sixbar_real rrr_leg1_link2_inertia[1][3][3];
     /* base point, base frame [m] */
     sixbar_real rrr_base_point[1][3];
     /* rotation from leg axes to base axes [-] */
@@ -89,56 +112,36 @@ typedef struct {
     sixbar_real rrr_link2_centre_of_mass[1][3];
     /* inertia tensor of link 2 about its centre of mass, link axes [kg m^2] */
     sixbar_real rrr_link2_inertia[1][3][3];
-    /* base point, base frame [m] */
-    sixbar_real rrr2_base_point[1][3];
-    /* rotation from leg axes to base axes [-] */
-    sixbar_real rrr2_base_frame[1][3][3];
-    /* platform joint, platform frame [m] */
-    sixbar_real rrr2_platform_point[1][3];
-    /* offset of joint 2, preceding link's frame [m] */
-    sixbar_real rrr2_joint2_offset[1][3];
-    /* offset of platform joint, preceding link's frame [m] */
-    sixbar_real rrr2_platform_joint_offset[1][3];
-    /* mass of link 1 [kg] */
-    sixbar_real rrr2_link1_mass[1];
-    /* centre of mass of link 1, link frame [m] */
-    sixbar_real rrr2_link1_centre_of_mass[1][3];
-    /* inertia tensor of link 1 about its centre of mass, link axes [kg m^2] */
-    sixbar_real rrr2_link1_inertia[1][3][3];
-    /* mass of link 2 [kg] */
-    sixbar_real rrr2_link2_mass[1];
-    /* centre of mass of link 2, link frame [m] */
-    sixbar_real rrr2_link2_centre_of_mass[1][3];
-    /* inertia tensor of link 2 about its centre of mass, link axes [kg m^2] */
-    sixbar_real rrr2_link2_inertia[1][3][3];
 } sixbar_params;
 
 /* What depends on the parameters alone; set by sixbar_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
-    sixbar_real J_star_t_14, J_star_zz, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y, h_star_x,
-            h_star_y, legs_size, m_star;
-    /* legs of type rrr */
-    sixbar_real J_1_rrr_zz[1], J_2_rrr_zz[1], Jc_1_rrr_zz[1], Kd_1_rrr_t_2[1], Kd_1_rrr_t_3[1],
-            b_rrr_r0_x[1], b_rrr_r0_y[1], branch_1_rrr[1], d_Gamma_1_rrr_t[1], d_Gamma_1_rrr_y[1],
-            d_c_rrr_yy[1], d_phi_2_rrr_t[1], g_r0_x[1], g_r0_y[1], h_1_rrr_x[1], h_1_rrr_y[1],
-            h_2_rrr_x[1], h_2_rrr_y[1], inv_Kd_1_rrr_t_5[1], inv_rho2_1_rrr_t_4[1],
-            inv_rrr_platform_joint_offset_x[1], inv_size_rrr[1], inv_uu_2_rrr_t[1], rho2_1_rrr_t[1],
-            rrr_base_frame_xx[1], rrr_base_frame_xy[1], rrr_base_frame_yx[1], rrr_base_frame_yy[1],
-            rrr_base_point_x[1], rrr_base_point_y[1], rrr_joint2_offset_x[1], rrr_link1_mass[1],
-            rrr_link2_mass[1], rrr_platform_joint_offset_x[1], rrr_platform_point_x[1],
-            rrr_platform_point_y[1], size_rrr[1];
-    /* legs of type rrr2 */
-    sixbar_real J_1_rrr2_zz[1], J_2_rrr2_zz[1], Jc_1_rrr2_zz[1], Kd_1_rrr2_t_2[1], Kd_1_rrr2_t_3[1],
-            b_rrr2_r0_x[1], b_rrr2_r0_y[1], branch_1_rrr2[1], d_Gamma_1_rrr2_t[1],
-            d_Gamma_1_rrr2_y[1], d_c_rrr2_yy[1], d_phi_2_rrr2_t[1], g_r0_x_2[1], g_r0_y_2[1],
-            h_1_rrr2_x[1], h_1_rrr2_y[1], h_2_rrr2_x[1], h_2_rrr2_y[1], inv_Kd_1_rrr2_t_5[1],
-            inv_rho2_1_rrr2_t_4[1], inv_rrr2_platform_joint_offset_x[1], inv_size_rrr2[1],
-            inv_uu_2_rrr2_t[1], rho2_1_rrr2_t[1], rrr2_base_frame_xx[1], rrr2_base_frame_xy[1],
-            rrr2_base_frame_yx[1], rrr2_base_frame_yy[1], rrr2_base_point_x[1], rrr2_base_point_y[1],
-            rrr2_joint2_offset_x[1], rrr2_link1_mass[1], rrr2_link2_mass[1],
-            rrr2_platform_joint_offset_x[1], rrr2_platform_point_x[1], rrr2_platform_point_y[1],
-            size_rrr2[1];
+    /* 1 legs of type rrr_leg1 */
+    sixbar_real inv_rrr_leg1_Kd_1_t_5[1], inv_rrr_leg1_Kd_1_t_7[1],
+            inv_rrr_leg1_platform_joint_offset_x[1], inv_rrr_leg1_rho2_1_t_4[1], inv_rrr_leg1_size[1],
+            rrr_leg1_J_1_zz[1], rrr_leg1_J_2_zz[1], rrr_leg1_Jc_1_zz[1], rrr_leg1_Kd_1_t_2[1],
+            rrr_leg1_Kd_1_t_4[1], rrr_leg1_b_r0_x[1], rrr_leg1_b_r0_y[1], rrr_leg1_base_frame_xx[1],
+            rrr_leg1_base_frame_xy[1], rrr_leg1_base_frame_yx[1], rrr_leg1_base_frame_yy[1],
+            rrr_leg1_base_point_x[1], rrr_leg1_base_point_y[1], rrr_leg1_branch_1[1],
+            rrr_leg1_d_Gamma_2_t[1], rrr_leg1_d_Gamma_2_y[1], rrr_leg1_d_c_yy[1],
+            rrr_leg1_d_phi_2_t[1], rrr_leg1_g_r0_x[1], rrr_leg1_g_r0_y[1], rrr_leg1_h_1_x[1],
+            rrr_leg1_h_1_y[1], rrr_leg1_h_2_x[1], rrr_leg1_h_2_y[1], rrr_leg1_joint2_offset_x[1],
+            rrr_leg1_link1_mass[1], rrr_leg1_link2_mass[1], rrr_leg1_platform_joint_offset_x[1],
+            rrr_leg1_platform_point_x[1], rrr_leg1_platform_point_y[1], rrr_leg1_rho2_1_t[1],
+            rrr_leg1_size[1];
+    /* 1 legs of type rrr */
+    sixbar_real inv_rrr_Kd_1_t_5[1], inv_rrr_Kd_1_t_7[1], inv_rrr_platform_joint_offset_x[1],
+            inv_rrr_rho2_1_t_4[1], inv_rrr_size[1], rrr_J_1_zz[1], rrr_J_2_zz[1], rrr_Jc_1_zz[1],
+            rrr_Kd_1_t_2[1], rrr_Kd_1_t_4[1], rrr_b_r0_x[1], rrr_b_r0_y[1], rrr_base_frame_xx[1],
+            rrr_base_frame_xy[1], rrr_base_frame_yx[1], rrr_base_frame_yy[1], rrr_base_point_x[1],
+            rrr_base_point_y[1], rrr_branch_1[1], rrr_d_Gamma_2_t[1], rrr_d_Gamma_2_y[1],
+            rrr_d_c_yy[1], rrr_d_phi_2_t[1], rrr_g_r0_x[1], rrr_g_r0_y[1], rrr_h_1_x[1], rrr_h_1_y[1],
+            rrr_h_2_x[1], rrr_h_2_y[1], rrr_joint2_offset_x[1], rrr_link1_mass[1], rrr_link2_mass[1],
+            rrr_platform_joint_offset_x[1], rrr_platform_point_x[1], rrr_platform_point_y[1],
+            rrr_rho2_1_t[1], rrr_size[1];
+    sixbar_real J_star_t_6, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y, h_star_x, h_star_y,
+            legs_size, m_star;
 } sixbar_model;
 
 extern const sixbar_params sixbar_default_params;
@@ -160,7 +163,7 @@ int sixbar_M(const sixbar_model *model, const sixbar_real *X, sixbar_real *M);
 size_t sixbar_M_batch(const sixbar_model *model, size_t n, const sixbar_real *X, sixbar_real *M,
     int *status);
 
-/* Velocity and gravity terms Z. 207 mul, 129 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 203 mul, 127 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int sixbar_Z(const sixbar_model *model, const sixbar_real *X, const sixbar_real *V, sixbar_real
     *Z);
@@ -193,14 +196,14 @@ int sixbar_joint_accelerations(const sixbar_model *model, const sixbar_real *X, 
 size_t sixbar_joint_accelerations_batch(const sixbar_model *model, size_t n, const sixbar_real *X,
     const sixbar_real *V, const sixbar_real *A, sixbar_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 275 mul, 193 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 271 mul, 191 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int sixbar_dynamics(const sixbar_model *model, const sixbar_real *X, const sixbar_real *V,
     sixbar_real *M, sixbar_real *Z, sixbar_real *H);
 size_t sixbar_dynamics_batch(const sixbar_model *model, size_t n, const sixbar_real *X, const
     sixbar_real *V, sixbar_real *M, sixbar_real *Z, sixbar_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 232 mul, 147 add, 4 div, 2 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 228 mul, 145 add, 4 div, 2 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
 int sixbar_inverse_dynamics(const sixbar_model *model, const sixbar_real *X, const sixbar_real *V,
@@ -209,7 +212,7 @@ size_t sixbar_inverse_dynamics_batch(const sixbar_model *model, size_t n, const 
     const sixbar_real *V, const sixbar_real *A, const sixbar_real *wrench, sixbar_real *tau, int
     *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 275 mul, 193 add, 4 div, 2 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 271 mul, 191 add, 4 div, 2 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV). */
 int sixbar_forward_dynamics(const sixbar_model *model, const sixbar_real *X, const sixbar_real *V,
@@ -274,6 +277,18 @@ int sixbar_momentum(const sixbar_model *model, const sixbar_real *X, const sixba
     sixbar_real *momentum);
 size_t sixbar_momentum_batch(const sixbar_model *model, size_t n, const sixbar_real *X, const
     sixbar_real *V, sixbar_real *momentum, int *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 62 mul, 32 add, 2 div, 2 sqrt, 4 trig. In: X (NQ). Out: margins (NJ). */
+int sixbar_joint_margins(const sixbar_model *model, const sixbar_real *X, sixbar_real *margins);
+size_t sixbar_joint_margins_batch(const sixbar_model *model, size_t n, const sixbar_real *X,
+    sixbar_real *margins, int *status);
+
+/* Whether all joints are within their limits of displacement. 62 mul, 32 add, 2 div, 2 sqrt, 4
+   trig. In: X (NQ). Out: within (1). */
+int sixbar_within_limits(const sixbar_model *model, const sixbar_real *X, sixbar_real *within);
+size_t sixbar_within_limits_batch(const sixbar_model *model, size_t n, const sixbar_real *X,
+    sixbar_real *within, int *status);
 
 /* Displacements of the actuated joints, in the order of tau. 62 mul, 32 add, 2 div, 2 sqrt, 4
    trig. In: X (NQ). Out: q (NU). */

@@ -51,6 +51,7 @@ typedef SPHERICAL_3UPS_REAL spherical_3ups_real;
 #define SPHERICAL_3UPS_NC 0
 #define SPHERICAL_3UPS_NW 3
 #define SPHERICAL_3UPS_NJ 9
+#define SPHERICAL_3UPS_OVERCONSTRAINED 0
 
 enum {
     SPHERICAL_3UPS_OK = 0,
@@ -95,20 +96,21 @@ typedef struct {
 /* What depends on the parameters alone; set by spherical_3ups_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
-    spherical_3ups_real J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy,
+    /* 3 legs of type ups; copies of the first fill up */
+    spherical_3ups_real ups_J_group_2_xx[4], ups_J_group_2_xy[4], ups_J_group_2_xz[4],
+            ups_J_group_2_yy[4], ups_J_group_2_yz[4], ups_J_group_2_zz[4], ups_Sigma_2_xx[4],
+            ups_Sigma_2_yy[4], ups_Sigma_2_zz[4], ups_b_r0_x[4], ups_b_r0_y[4], ups_b_r0_z[4],
+            ups_base_frame_xx[4], ups_base_frame_xy[4], ups_base_frame_xz[4], ups_base_frame_yx[4],
+            ups_base_frame_yy[4], ups_base_frame_yz[4], ups_base_frame_zx[4], ups_base_frame_zy[4],
+            ups_base_frame_zz[4], ups_base_point_x[4], ups_base_point_y[4], ups_base_point_z[4],
+            ups_branch_1[4], ups_branch_2[4], ups_g_r0_x[4], ups_g_r0_y[4], ups_g_r0_z[4],
+            ups_h_2_x[4], ups_h_2_y[4], ups_h_2_z[4], ups_h_3_x[4], ups_h_3_y[4], ups_h_3_z[4],
+            ups_link2_mass[4], ups_link3_mass[4], ups_platform_point_x[4], ups_platform_point_y[4],
+            ups_platform_point_z[4];
+    spherical_3ups_real J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy,
             J_star_yz, J_star_zz, b_c_x, b_c_y, b_c_z, fixed_centre_x, fixed_centre_y, fixed_centre_z,
             gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, legs_size, potential_t,
             potential_t_2, potential_t_3, spread_t;
-    /* legs of type ups */
-    spherical_3ups_real J_group_2_xx[3], J_group_2_xy[3], J_group_2_xz[3], J_group_2_yy[3],
-            J_group_2_yz[3], J_group_2_zz[3], Sigma_2_xx[3], Sigma_2_yy[3], Sigma_2_zz[3], b_r0_x[3],
-            b_r0_y[3], b_r0_z[3], branch_1[3], branch_2[3], g_r0_x[3], g_r0_y[3], g_r0_z[3], h_2_x[3],
-            h_2_y[3], h_2_z[3], h_3_x[3], h_3_y[3], h_3_z[3], ups_base_frame_xx[3],
-            ups_base_frame_xy[3], ups_base_frame_xz[3], ups_base_frame_yx[3], ups_base_frame_yy[3],
-            ups_base_frame_yz[3], ups_base_frame_zx[3], ups_base_frame_zy[3], ups_base_frame_zz[3],
-            ups_base_point_x[3], ups_base_point_y[3], ups_base_point_z[3], ups_link2_mass[3],
-            ups_link3_mass[3], ups_platform_point_x[3], ups_platform_point_y[3],
-            ups_platform_point_z[3];
 } spherical_3ups_model;
 
 extern const spherical_3ups_params spherical_3ups_default_params;
@@ -259,6 +261,20 @@ int spherical_3ups_momentum(const spherical_3ups_model *model, const spherical_3
 size_t spherical_3ups_momentum_batch(const spherical_3ups_model *model, size_t n, const
     spherical_3ups_real *X, const spherical_3ups_real *V, spherical_3ups_real *momentum, int
     *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 81 mul, 60 add, 6 div, 6 sqrt, 6 trig. In: X (NQ). Out: margins (NJ). */
+int spherical_3ups_joint_margins(const spherical_3ups_model *model, const spherical_3ups_real *X,
+    spherical_3ups_real *margins);
+size_t spherical_3ups_joint_margins_batch(const spherical_3ups_model *model, size_t n, const
+    spherical_3ups_real *X, spherical_3ups_real *margins, int *status);
+
+/* Whether all joints are within their limits of displacement. 81 mul, 60 add, 6 div, 6 sqrt, 6
+   trig. In: X (NQ). Out: within (1). */
+int spherical_3ups_within_limits(const spherical_3ups_model *model, const spherical_3ups_real *X,
+    spherical_3ups_real *within);
+size_t spherical_3ups_within_limits_batch(const spherical_3ups_model *model, size_t n, const
+    spherical_3ups_real *X, spherical_3ups_real *within, int *status);
 
 /* Displacements of the actuated joints, in the order of tau. 81 mul, 60 add, 6 div, 6 sqrt, 6
    trig. In: X (NQ). Out: q (NU). */

@@ -51,6 +51,7 @@ typedef STEWART_REAL stewart_real;
 #define STEWART_NC 0
 #define STEWART_NW 6
 #define STEWART_NJ 18
+#define STEWART_OVERCONSTRAINED 0
 
 enum {
     STEWART_OK = 0,
@@ -93,18 +94,20 @@ typedef struct {
 /* What depends on the parameters alone; set by stewart_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
-    stewart_real J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+    /* 6 legs of type ups; copies of the first fill up */
+    stewart_real ups_J_group_2_xx[8], ups_J_group_2_xy[8], ups_J_group_2_xz[8], ups_J_group_2_yy[8],
+            ups_J_group_2_yz[8], ups_J_group_2_zz[8], ups_Sigma_2_xx[8], ups_Sigma_2_yy[8],
+            ups_Sigma_2_zz[8], ups_b_r0_x[8], ups_b_r0_y[8], ups_b_r0_z[8], ups_base_frame_xx[8],
+            ups_base_frame_xy[8], ups_base_frame_xz[8], ups_base_frame_yx[8], ups_base_frame_yy[8],
+            ups_base_frame_yz[8], ups_base_frame_zx[8], ups_base_frame_zy[8], ups_base_frame_zz[8],
+            ups_base_point_x[8], ups_base_point_y[8], ups_base_point_z[8], ups_branch_1[8],
+            ups_branch_2[8], ups_g_r0_x[8], ups_g_r0_y[8], ups_g_r0_z[8], ups_h_2_x[8], ups_h_2_y[8],
+            ups_h_2_z[8], ups_h_3_x[8], ups_h_3_y[8], ups_h_3_z[8], ups_link2_mass[8],
+            ups_link3_mass[8], ups_platform_point_x[8], ups_platform_point_y[8],
+            ups_platform_point_z[8];
+    stewart_real J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
             J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
             h_star_x, h_star_y, h_star_z, legs_size, m_star, spread_t;
-    /* legs of type ups */
-    stewart_real J_group_2_xx[6], J_group_2_xy[6], J_group_2_xz[6], J_group_2_yy[6], J_group_2_yz[6],
-            J_group_2_zz[6], Sigma_2_xx[6], Sigma_2_yy[6], Sigma_2_zz[6], b_r0_x[6], b_r0_y[6],
-            b_r0_z[6], branch_1[6], branch_2[6], g_r0_x[6], g_r0_y[6], g_r0_z[6], h_2_x[6], h_2_y[6],
-            h_2_z[6], h_3_x[6], h_3_y[6], h_3_z[6], ups_base_frame_xx[6], ups_base_frame_xy[6],
-            ups_base_frame_xz[6], ups_base_frame_yx[6], ups_base_frame_yy[6], ups_base_frame_yz[6],
-            ups_base_frame_zx[6], ups_base_frame_zy[6], ups_base_frame_zz[6], ups_base_point_x[6],
-            ups_base_point_y[6], ups_base_point_z[6], ups_link2_mass[6], ups_link3_mass[6],
-            ups_platform_point_x[6], ups_platform_point_y[6], ups_platform_point_z[6];
 } stewart_model;
 
 extern const stewart_params stewart_default_params;
@@ -126,7 +129,7 @@ int stewart_M(const stewart_model *model, const stewart_real *X, stewart_real *M
 size_t stewart_M_batch(const stewart_model *model, size_t n, const stewart_real *X, stewart_real
     *M, int *status);
 
-/* Velocity and gravity terms Z. 1020 mul, 783 add, 12 div, 12 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 999 mul, 762 add, 12 div, 12 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int stewart_Z(const stewart_model *model, const stewart_real *X, const stewart_real *V,
     stewart_real *Z);
@@ -159,7 +162,7 @@ int stewart_joint_accelerations(const stewart_model *model, const stewart_real *
 size_t stewart_joint_accelerations_batch(const stewart_model *model, size_t n, const stewart_real
     *X, const stewart_real *V, const stewart_real *A, stewart_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1590 mul, 1248 add, 12 div, 12 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1569 mul, 1227 add, 12 div, 12 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int stewart_dynamics(const stewart_model *model, const stewart_real *X, const stewart_real *V,
     stewart_real *M, stewart_real *Z, stewart_real *H);
@@ -175,7 +178,7 @@ size_t stewart_inverse_dynamics_batch(const stewart_model *model, size_t n, cons
     const stewart_real *V, const stewart_real *A, const stewart_real *wrench, stewart_real *tau,
     int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1590 mul, 1248 add, 12 div, 12
+/* Acceleration A under the actuator forces tau and the wrench. 1569 mul, 1227 add, 12 div, 12
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int stewart_forward_dynamics(const stewart_model *model, const stewart_real *X, const stewart_real
@@ -240,6 +243,20 @@ int stewart_momentum(const stewart_model *model, const stewart_real *X, const st
     stewart_real *momentum);
 size_t stewart_momentum_batch(const stewart_model *model, size_t n, const stewart_real *X, const
     stewart_real *V, stewart_real *momentum, int *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 162 mul, 120 add, 12 div, 12 sqrt, 12 trig. In: X (NQ). Out: margins (NJ).
+   */
+int stewart_joint_margins(const stewart_model *model, const stewart_real *X, stewart_real
+    *margins);
+size_t stewart_joint_margins_batch(const stewart_model *model, size_t n, const stewart_real *X,
+    stewart_real *margins, int *status);
+
+/* Whether all joints are within their limits of displacement. 162 mul, 120 add, 12 div, 12 sqrt,
+   12 trig. In: X (NQ). Out: within (1). */
+int stewart_within_limits(const stewart_model *model, const stewart_real *X, stewart_real *within);
+size_t stewart_within_limits_batch(const stewart_model *model, size_t n, const stewart_real *X,
+    stewart_real *within, int *status);
 
 /* Displacements of the actuated joints, in the order of tau. 162 mul, 120 add, 12 div, 12 sqrt,
    12 trig. In: X (NQ). Out: q (NU). */

@@ -26,7 +26,10 @@ enum {
 
 #define R(x) ((real)(x))
 #define UNLESS(condition) ((condition) ? R(0) : R(1))  /* flag of what must hold */
-#define LANES 8  /* states that a batch runs side by side */
+#ifndef STEWART_7UPS_LANES
+#define STEWART_7UPS_LANES 8  /* 1 where there are no vectors: less memory, shorter code */
+#endif
+#define LANES ((size_t)STEWART_7UPS_LANES)  /* states that a batch runs side by side */
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
@@ -36,6 +39,20 @@ enum {
 #define INLINE static inline
 #define APART static
 #endif
+
+/* Bytes of a vector. */
+#if defined(__AVX__)
+#define VECTOR 32
+#elif defined(__SSE2__) || defined(__ARM_NEON)
+#define VECTOR 16
+#else
+#define VECTOR 1
+#endif
+/* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
+#define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
+#define LEGS(n) \
+    ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
+        : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
@@ -104,63 +121,122 @@ INLINE int is_finite(real x)
     return x - x == 0;
 }
 
-/* Why states are impossible, by state: more than 0 where a cause holds. */
+/* Why states are impossible, by state: more than 0 where a cause holds.  total: the sum of all
+   results, and side by side of all inputs, which is finite only where they are. */
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
+    real total[LANES];
 } verdict;
 
 INLINE void start(size_t w, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
+        t->total[k] = 0;
     }
 }
 
-/* x - x is 0 for every number and NaN for the rest; sums side by side add up fast. */
+/* x - x is 0 for every number and NaN for the rest. */
 INLINE int all_finite(const real *x, size_t n)
 {
+    real sum = 0;
+    for (size_t i = 0; i < n; ++i) {
+        sum += x[i] - x[i];
+    }
+    return sum == 0;
+}
+
+/* Whether all are finite: then so is their sum, but for numbers so large that they need a closer
+   look.  Many add up fast as sums side by side. */
+INLINE int sum_is_finite(const real *x, size_t n)
+{
+    if (n < 2*LANES) {
+        return is_finite(total(x, n));
+    }
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
         for (size_t k = 0; k < LANES; ++k) {
-            sum[k] += x[i + k] - x[i + k];
+            sum[k] += x[i + k];
         }
     }
     for (size_t i = most; i < n; ++i) {
-        sum[0] += x[i] - x[i];
+        sum[i - most] += x[i];
     }
-    return total(sum, LANES) == 0;
+    return is_finite(total(sum, LANES));
 }
 
 /* Flag the states with entries that are not finite; the states stand side by side. */
 INLINE void check(size_t size, size_t w, const real *x, real *flags)
 {
-    if (!all_finite(x, size*w)) {
+    if (!sum_is_finite(x, size*w)) {
         for (size_t i = 0; i < size*w; ++i) {
             flags[i%w] += UNLESS(is_finite(x[i]));
         }
     }
 }
 
-/* Input, given state by state, with its states side by side: entry e of state k at e*w + k. */
-INLINE const real *side_by_side(size_t size, size_t w, const real *x, real *lanes, real *flags)
+/* Add up the entries of every state. */
+INLINE void add_up(size_t size, const real *x, real *total)
 {
-    for (size_t e = 0; e < size && w > 1; ++e) {
-        for (size_t k = 0; k < w; ++k) {
-            lanes[e*w + k] = x[size*k + e];
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            total[k] += x[e*LANES + k];
         }
     }
-    check(size, w, w > 1 ? lanes : x, flags);
-    return w > 1 ? lanes : x;
 }
 
-/* The same for input that may be NULL: then all its entries are `none`. */
-INLINE const real *optional(size_t size, size_t w, const real *x, real none, real *lanes, real *flags)
+/* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
+INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
 {
-    for (size_t e = 0; e < size*w && !x; ++e) {
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            lanes[e*LANES + k] = x[size*k + e];
+        }
+    }
+    add_up(size, lanes, total);
+    return lanes;
+}
+
+/* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
+INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+{
+    for (size_t e = 0; e < size && !x; ++e) {
+        own[e] = none;
+    }
+    if (x) {
+        check(size, 1, x, flags);
+    }
+    return x ? x : own;
+}
+
+INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
+    real *total)
+{
+    for (size_t e = 0; e < size*LANES && !x; ++e) {
         lanes[e] = none;
     }
-    return x ? side_by_side(size, w, x, lanes, flags) : lanes;
+    return x ? side_by_side(size, x, lanes, total) : lanes;
+}
+
+/* Motion of the base, or NULL: at rest, its axes those of the world. */
+INLINE const real *motion_of_base(const real *x, real *own, real *flags)
+{
+    for (size_t e = 0; e < 18 && !x; ++e) {
+        own[e] = R(e < 9 && e%4 == 0);
+    }
+    if (x) {
+        check(18, 1, x, flags);
+    }
+    return x ? x : own;
+}
+
+INLINE const real *motion_of_base_side_by_side(const real *x, real *lanes, real *total)
+{
+    for (size_t i = 0; i < 18*LANES && !x; ++i) {
+        lanes[i] = R(i/LANES < 9 && i/LANES%4 == 0);
+    }
+    return x ? side_by_side(18, x, lanes, total) : lanes;
 }
 
 /* Flag the states of an input, NULL or given state by state, with entries that are not positive. */
@@ -171,14 +247,25 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE void judge(const verdict *t, size_t w, int *code)
+INLINE void judge(const verdict *t, int *code)
 {
-    for (size_t k = 0; k < w; ++k) {
-        code[k] = t->invalid[k] > 0 ? INVALID
-            : t->diverged[k] > 0 ? NOT_CONVERGED
-            : t->unreachable[k] > 0 ? UNREACHABLE
-            : t->singular[k] > 0 ? SINGULAR
-            : t->overflow[k] > 0 ? INVALID : OK;
+    *code = t->invalid[0] > 0 ? INVALID
+        : t->diverged[0] > 0 ? NOT_CONVERGED
+        : t->unreachable[0] > 0 ? UNREACHABLE
+        : t->singular[0] > 0 ? SINGULAR
+        : t->overflow[0] > 0 ? INVALID : OK;
+}
+
+/* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
+INLINE void suspect(const verdict *t, int *code)
+{
+    real flags[LANES];
+    for (size_t k = 0; k < LANES; ++k) {
+        flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
+            + (t->total[k] - t->total[k]);
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        code[k] = flags[k] == 0 ? OK : INVALID;
     }
 }
 
@@ -199,17 +286,19 @@ INLINE void refuse(size_t size, real *out)
     }
 }
 
-/* Outputs state by state; NaN where a state is impossible. */
-INLINE void deliver(const real *x, size_t size, size_t w, const int *code, real *out)
+/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < w; ++k) {
-            out[size*k + e] = x[e*w + k];
-        }
+        out[e] = x[e];
     }
-    for (size_t k = 0; k < w; ++k) {
-        if (code[k] != OK) {
-            refuse(size, out + size*k);
+}
+
+INLINE void deliver(size_t size, const real *x, real *out)
+{
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            out[size*k + e] = x[e*LANES + k];
         }
     }
 }
@@ -447,11 +536,11 @@ int stewart_7ups_prepare(const stewart_7ups_params *params, stewart_7ups_model *
     const real platform_inertia_yy = params->platform_inertia[1][1];
     const real platform_inertia_yz = params->platform_inertia[1][2];
     const real platform_inertia_zz = params->platform_inertia[2][2];
-    /* (L2) first moment about the platform origin */
+    /* (h_star) first moment about the platform origin */
     const real h_star_t = platform_centre_of_mass_x*platform_mass;
     const real h_star_t_2 = platform_centre_of_mass_y*platform_mass;
     const real h_star_t_3 = platform_centre_of_mass_z*platform_mass;
-    /* (L3) inertia tensor about the platform origin */
+    /* (J_star) inertia tensor about the platform origin */
     const real J_star_t = platform_centre_of_mass_x*platform_centre_of_mass_x;
     const real J_star_t_2 = platform_centre_of_mass_y*platform_centre_of_mass_y;
     const real J_star_t_3 = platform_centre_of_mass_z*platform_centre_of_mass_z;
@@ -462,151 +551,143 @@ int stewart_7ups_prepare(const stewart_7ups_params *params, stewart_7ups_model *
     const real J_star_t_8 = platform_mass*(J_star_t_2 - J_star_t_4);
     const real J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass;
     const real J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4);
-    /* (C2) rms distance of the platform points from their centroid */
+    /* (spread) rms distance of the platform points from their centroid */
     const real spread_t = R(0.14285714285714285)*root(7);
-    /* (C3) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = R(2.1166010488516727)*spread_t;
     model->gravity_x = gravity_x;
     model->gravity_y = gravity_y;
     model->gravity_z = gravity_z;
     model->legs_size = legs_size;
     model->spread_t = spread_t;
-    for (size_t leg = 0; leg < 7; ++leg) {
-        const real ups_base_point_x = params->ups_base_point[leg][0];
-        const real ups_base_point_y = params->ups_base_point[leg][1];
-        const real ups_base_point_z = params->ups_base_point[leg][2];
-        const real ups_base_frame_xx = params->ups_base_frame[leg][0][0];
-        const real ups_base_frame_xy = params->ups_base_frame[leg][0][1];
-        const real ups_base_frame_xz = params->ups_base_frame[leg][0][2];
-        const real ups_base_frame_yx = params->ups_base_frame[leg][1][0];
-        const real ups_base_frame_yy = params->ups_base_frame[leg][1][1];
-        const real ups_base_frame_yz = params->ups_base_frame[leg][1][2];
-        const real ups_base_frame_zx = params->ups_base_frame[leg][2][0];
-        const real ups_base_frame_zy = params->ups_base_frame[leg][2][1];
-        const real ups_base_frame_zz = params->ups_base_frame[leg][2][2];
-        const real ups_platform_point_x = params->ups_platform_point[leg][0];
-        const real ups_platform_point_y = params->ups_platform_point[leg][1];
-        const real ups_platform_point_z = params->ups_platform_point[leg][2];
-        const real ups_link2_mass = params->ups_link2_mass[leg];
-        const real ups_link2_centre_of_mass_x = params->ups_link2_centre_of_mass[leg][0];
-        const real ups_link2_centre_of_mass_y = params->ups_link2_centre_of_mass[leg][1];
-        const real ups_link2_centre_of_mass_z = params->ups_link2_centre_of_mass[leg][2];
-        const real ups_link2_inertia_xx = params->ups_link2_inertia[leg][0][0];
-        const real ups_link2_inertia_xy = params->ups_link2_inertia[leg][0][1];
-        const real ups_link2_inertia_xz = params->ups_link2_inertia[leg][0][2];
-        const real ups_link2_inertia_yy = params->ups_link2_inertia[leg][1][1];
-        const real ups_link2_inertia_yz = params->ups_link2_inertia[leg][1][2];
-        const real ups_link2_inertia_zz = params->ups_link2_inertia[leg][2][2];
-        const real ups_link3_mass = params->ups_link3_mass[leg];
-        const real ups_link3_centre_of_mass_x = params->ups_link3_centre_of_mass[leg][0];
-        const real ups_link3_centre_of_mass_y = params->ups_link3_centre_of_mass[leg][1];
-        const real ups_link3_centre_of_mass_z = params->ups_link3_centre_of_mass[leg][2];
-        const real ups_link3_inertia_xx = params->ups_link3_inertia[leg][0][0];
-        const real ups_link3_inertia_xy = params->ups_link3_inertia[leg][0][1];
-        const real ups_link3_inertia_xz = params->ups_link3_inertia[leg][0][2];
-        const real ups_link3_inertia_yy = params->ups_link3_inertia[leg][1][1];
-        const real ups_link3_inertia_yz = params->ups_link3_inertia[leg][1][2];
-        const real ups_link3_inertia_zz = params->ups_link3_inertia[leg][2][2];
-        static const signed char signs_branch_1[] = {1, 1, 1, 1, 1, 1, 1};
-        const real branch_1 = signs_branch_1[leg];
-        static const signed char signs_branch_2[] = {1, 1, 1, 1, 1, 1, 1};
-        const real branch_2 = signs_branch_2[leg];
-        /* (ups-G3) inertia tensor of link 2 about the origin of link 2 */
-        const real J_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x;
-        const real J_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y;
-        const real J_2_t_3 = ups_link2_centre_of_mass_z*ups_link2_centre_of_mass_z;
-        const real J_2_t_4 = J_2_t + J_2_t_2 + J_2_t_3;
-        /* (ups-G5) inertia tensor of link 3 about the connection point */
-        const real J_3_t = ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_x;
-        const real J_3_t_2 = ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_y;
-        const real J_3_t_3 = ups_link3_centre_of_mass_z*ups_link3_centre_of_mass_z;
-        const real J_3_t_4 = J_3_t + J_3_t_2 + J_3_t_3;
-        /* (ups-N8) inertia of the links that turn with link 2, each about its reference point */
-        const real J_group_2_xx = ups_link2_inertia_xx + ups_link3_inertia_xx -
-            ups_link2_mass*(J_2_t - J_2_t_4) - ups_link3_mass*(J_3_t - J_3_t_4);
-        const real J_group_2_xy =
+    for (size_t leg = 0; leg < 8; ++leg) {
+        const size_t own = leg < 7 ? leg : 0;
+        const real ups_base_point_x = params->ups_base_point[own][0];
+        const real ups_base_point_y = params->ups_base_point[own][1];
+        const real ups_base_point_z = params->ups_base_point[own][2];
+        const real ups_base_frame_xx = params->ups_base_frame[own][0][0];
+        const real ups_base_frame_xy = params->ups_base_frame[own][0][1];
+        const real ups_base_frame_xz = params->ups_base_frame[own][0][2];
+        const real ups_base_frame_yx = params->ups_base_frame[own][1][0];
+        const real ups_base_frame_yy = params->ups_base_frame[own][1][1];
+        const real ups_base_frame_yz = params->ups_base_frame[own][1][2];
+        const real ups_base_frame_zx = params->ups_base_frame[own][2][0];
+        const real ups_base_frame_zy = params->ups_base_frame[own][2][1];
+        const real ups_base_frame_zz = params->ups_base_frame[own][2][2];
+        const real ups_platform_point_x = params->ups_platform_point[own][0];
+        const real ups_platform_point_y = params->ups_platform_point[own][1];
+        const real ups_platform_point_z = params->ups_platform_point[own][2];
+        const real ups_link2_mass = params->ups_link2_mass[own];
+        const real ups_link2_centre_of_mass_x = params->ups_link2_centre_of_mass[own][0];
+        const real ups_link2_centre_of_mass_y = params->ups_link2_centre_of_mass[own][1];
+        const real ups_link2_centre_of_mass_z = params->ups_link2_centre_of_mass[own][2];
+        const real ups_link2_inertia_xx = params->ups_link2_inertia[own][0][0];
+        const real ups_link2_inertia_xy = params->ups_link2_inertia[own][0][1];
+        const real ups_link2_inertia_xz = params->ups_link2_inertia[own][0][2];
+        const real ups_link2_inertia_yy = params->ups_link2_inertia[own][1][1];
+        const real ups_link2_inertia_yz = params->ups_link2_inertia[own][1][2];
+        const real ups_link2_inertia_zz = params->ups_link2_inertia[own][2][2];
+        const real ups_link3_mass = params->ups_link3_mass[own];
+        const real ups_link3_centre_of_mass_x = params->ups_link3_centre_of_mass[own][0];
+        const real ups_link3_centre_of_mass_y = params->ups_link3_centre_of_mass[own][1];
+        const real ups_link3_centre_of_mass_z = params->ups_link3_centre_of_mass[own][2];
+        const real ups_link3_inertia_xx = params->ups_link3_inertia[own][0][0];
+        const real ups_link3_inertia_xy = params->ups_link3_inertia[own][0][1];
+        const real ups_link3_inertia_xz = params->ups_link3_inertia[own][0][2];
+        const real ups_link3_inertia_yy = params->ups_link3_inertia[own][1][1];
+        const real ups_link3_inertia_yz = params->ups_link3_inertia[own][1][2];
+        const real ups_link3_inertia_zz = params->ups_link3_inertia[own][2][2];
+        static const signed char signs_ups_branch_1[] = {1, 1, 1, 1, 1, 1, 1};
+        const real ups_branch_1 = signs_ups_branch_1[own];
+        static const signed char signs_ups_branch_2[] = {1, 1, 1, 1, 1, 1, 1};
+        const real ups_branch_2 = signs_ups_branch_2[own];
+        /* (ups-h_3) first moment of link 3 about the connection point */
+        const real ups_h_3_x = ups_link3_centre_of_mass_x*ups_link3_mass;
+        const real ups_h_3_y = ups_link3_centre_of_mass_y*ups_link3_mass;
+        const real ups_h_3_z = ups_link3_centre_of_mass_z*ups_link3_mass;
+        /* (ups-J_2) inertia tensor of link 2 about the origin of link 2 */
+        const real ups_J_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x;
+        const real ups_J_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y;
+        const real ups_J_2_t_3 = ups_link2_centre_of_mass_z*ups_link2_centre_of_mass_z;
+        const real ups_J_2_t_4 = ups_J_2_t + ups_J_2_t_2 + ups_J_2_t_3;
+        /* (ups-J_3) inertia tensor of link 3 about the connection point */
+        const real ups_J_3_t = ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_x;
+        const real ups_J_3_t_2 = ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_y;
+        const real ups_J_3_t_3 = ups_link3_centre_of_mass_z*ups_link3_centre_of_mass_z;
+        const real ups_J_3_t_4 = ups_J_3_t + ups_J_3_t_2 + ups_J_3_t_3;
+        /* (ups-J_group_2) inertia of the links that turn with link 2, each about its reference point */
+        const real ups_J_group_2_xx = ups_link2_inertia_xx + ups_link3_inertia_xx -
+            ups_link2_mass*(ups_J_2_t - ups_J_2_t_4) - ups_link3_mass*(ups_J_3_t - ups_J_3_t_4);
+        const real ups_J_group_2_xy =
             ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_z*ups_link2_mass +
             ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_z*ups_link3_mass -
             ups_link2_inertia_xz - ups_link3_inertia_xz;
-        const real J_group_2_xz = ups_link2_inertia_xy + ups_link3_inertia_xy -
+        const real ups_J_group_2_xz = ups_link2_inertia_xy + ups_link3_inertia_xy -
             ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_y*ups_link2_mass -
             ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_y*ups_link3_mass;
-        const real J_group_2_yy = ups_link2_inertia_zz + ups_link3_inertia_zz -
-            ups_link2_mass*(J_2_t_3 - J_2_t_4) - ups_link3_mass*(J_3_t_3 - J_3_t_4);
-        const real J_group_2_yz =
+        const real ups_J_group_2_yy = ups_link2_inertia_zz + ups_link3_inertia_zz -
+            ups_link2_mass*(ups_J_2_t_3 - ups_J_2_t_4) - ups_link3_mass*(ups_J_3_t_3 -
+            ups_J_3_t_4);
+        const real ups_J_group_2_yz =
             ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_z*ups_link2_mass +
             ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_z*ups_link3_mass -
             ups_link2_inertia_yz - ups_link3_inertia_yz;
-        const real J_group_2_zz = ups_link2_inertia_yy + ups_link3_inertia_yy -
-            ups_link2_mass*(J_2_t_2 - J_2_t_4) - ups_link3_mass*(J_3_t_2 - J_3_t_4);
-        /* (ups-G4) first moment of link 3 about the connection point */
-        const real h_3_x = ups_link3_centre_of_mass_x*ups_link3_mass;
-        const real h_3_y = ups_link3_centre_of_mass_y*ups_link3_mass;
-        const real h_3_z = ups_link3_centre_of_mass_z*ups_link3_mass;
-        /* (L2) first moment about the platform origin */
-        const real h_star_t_4 = ups_link3_mass*ups_platform_point_x;
-        const real h_star_t_5 = ups_link3_mass*ups_platform_point_y;
-        const real h_star_t_6 = ups_link3_mass*ups_platform_point_z;
-        /* (L3) inertia tensor about the platform origin */
-        const real J_star_t_11 = ups_platform_point_x*ups_platform_point_x;
-        const real J_star_t_12 = ups_platform_point_y*ups_platform_point_y;
-        const real J_star_t_13 = ups_platform_point_z*ups_platform_point_z;
-        const real J_star_t_14 = J_star_t_11 + J_star_t_12 + J_star_t_13;
-        const real J_star_t_15 = ups_link3_mass*(J_star_t_11 - J_star_t_14);
-        const real J_star_t_16 = ups_link3_mass*ups_platform_point_x*ups_platform_point_y;
-        const real J_star_t_17 = ups_link3_mass*ups_platform_point_x*ups_platform_point_z;
-        const real J_star_t_18 = ups_link3_mass*(J_star_t_12 - J_star_t_14);
-        const real J_star_t_19 = ups_link3_mass*ups_platform_point_y*ups_platform_point_z;
-        const real J_star_t_20 = ups_link3_mass*(J_star_t_13 - J_star_t_14);
-        /* (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real g_r0_x = gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx +
+        const real ups_J_group_2_zz = ups_link2_inertia_yy + ups_link3_inertia_yy -
+            ups_link2_mass*(ups_J_2_t_2 - ups_J_2_t_4) - ups_link3_mass*(ups_J_3_t_2 -
+            ups_J_3_t_4);
+        /* (h_star) first moment about the platform origin */
+        const real ups_h_star_t = ups_link3_mass*ups_platform_point_x;
+        const real ups_h_star_t_2 = ups_link3_mass*ups_platform_point_y;
+        const real ups_h_star_t_3 = ups_link3_mass*ups_platform_point_z;
+        /* (J_star) inertia tensor about the platform origin */
+        const real ups_J_star_t = ups_platform_point_x*ups_platform_point_x;
+        const real ups_J_star_t_2 = ups_platform_point_y*ups_platform_point_y;
+        const real ups_J_star_t_3 = ups_platform_point_z*ups_platform_point_z;
+        const real ups_J_star_t_4 = ups_J_star_t + ups_J_star_t_2 + ups_J_star_t_3;
+        const real ups_J_star_t_5 = ups_link3_mass*(ups_J_star_t - ups_J_star_t_4);
+        const real ups_J_star_t_6 = ups_link3_mass*ups_platform_point_x*ups_platform_point_y;
+        const real ups_J_star_t_7 = ups_link3_mass*ups_platform_point_x*ups_platform_point_z;
+        const real ups_J_star_t_8 = ups_link3_mass*(ups_J_star_t_2 - ups_J_star_t_4);
+        const real ups_J_star_t_9 = ups_link3_mass*ups_platform_point_y*ups_platform_point_z;
+        const real ups_J_star_t_10 = ups_link3_mass*(ups_J_star_t_3 - ups_J_star_t_4);
+        /* (ups-h_2) first moment of link 2 about the origin of link 2 */
+        const real ups_h_2_x = ups_link2_centre_of_mass_x*ups_link2_mass;
+        const real ups_h_2_y = ups_link2_centre_of_mass_y*ups_link2_mass;
+        const real ups_h_2_z = ups_link2_centre_of_mass_z*ups_link2_mass;
+        /* (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real ups_g_r0_x = gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx +
             gravity_z*ups_base_frame_zx;
-        const real g_r0_y = gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy +
+        const real ups_g_r0_y = gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy +
             gravity_z*ups_base_frame_zy;
-        const real g_r0_z = gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz +
+        const real ups_g_r0_z = gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz +
             gravity_z*ups_base_frame_zz;
-        /* (ups-G2) first moment of link 2 about the origin of link 2 */
-        const real h_2_x = ups_link2_centre_of_mass_x*ups_link2_mass;
-        const real h_2_y = ups_link2_centre_of_mass_y*ups_link2_mass;
-        const real h_2_z = ups_link2_centre_of_mass_z*ups_link2_mass;
-        /* (ups-N9) half the trace of that inertia tensor */
-        const real trace_J_group_2 = R(0.5)*J_group_2_xx + R(0.5)*J_group_2_yy +
-            R(0.5)*J_group_2_zz;
-        /* (ups-N10) second moment of mass of the links that turn with link 2 */
-        const real Sigma_2_xx = trace_J_group_2 - J_group_2_xx;
-        const real Sigma_2_yy = trace_J_group_2 - J_group_2_yy;
-        const real Sigma_2_zz = trace_J_group_2 - J_group_2_zz;
-        /* (V1) potential energy */
-        const real b_r0_x = ups_base_frame_xx*ups_base_point_x +
+        /* (ups-trace_J_2) half the trace of that inertia tensor */
+        const real ups_trace_J_2 = R(0.5)*ups_J_group_2_xx + R(0.5)*ups_J_group_2_yy +
+            R(0.5)*ups_J_group_2_zz;
+        /* (ups-Sigma_2) second moment of mass of the links that turn with link 2 */
+        const real ups_Sigma_2_xx = ups_trace_J_2 - ups_J_group_2_xx;
+        const real ups_Sigma_2_yy = ups_trace_J_2 - ups_J_group_2_yy;
+        const real ups_Sigma_2_zz = ups_trace_J_2 - ups_J_group_2_zz;
+        /* (potential) potential energy */
+        const real ups_b_r0_x = ups_base_frame_xx*ups_base_point_x +
             ups_base_frame_yx*ups_base_point_y + ups_base_frame_zx*ups_base_point_z;
-        const real b_r0_y = ups_base_frame_xy*ups_base_point_x +
+        const real ups_b_r0_y = ups_base_frame_xy*ups_base_point_x +
             ups_base_frame_yy*ups_base_point_y + ups_base_frame_zy*ups_base_point_z;
-        const real b_r0_z = ups_base_frame_xz*ups_base_point_x +
+        const real ups_b_r0_z = ups_base_frame_xz*ups_base_point_x +
             ups_base_frame_yz*ups_base_point_y + ups_base_frame_zz*ups_base_point_z;
-        model->J_group_2_xx[leg] = J_group_2_xx;
-        model->J_group_2_xy[leg] = J_group_2_xy;
-        model->J_group_2_xz[leg] = J_group_2_xz;
-        model->J_group_2_yy[leg] = J_group_2_yy;
-        model->J_group_2_yz[leg] = J_group_2_yz;
-        model->J_group_2_zz[leg] = J_group_2_zz;
-        model->Sigma_2_xx[leg] = Sigma_2_xx;
-        model->Sigma_2_yy[leg] = Sigma_2_yy;
-        model->Sigma_2_zz[leg] = Sigma_2_zz;
-        model->b_r0_x[leg] = b_r0_x;
-        model->b_r0_y[leg] = b_r0_y;
-        model->b_r0_z[leg] = b_r0_z;
-        model->branch_1[leg] = branch_1;
-        model->branch_2[leg] = branch_2;
-        model->g_r0_x[leg] = g_r0_x;
-        model->g_r0_y[leg] = g_r0_y;
-        model->g_r0_z[leg] = g_r0_z;
-        model->h_2_x[leg] = h_2_x;
-        model->h_2_y[leg] = h_2_y;
-        model->h_2_z[leg] = h_2_z;
-        model->h_3_x[leg] = h_3_x;
-        model->h_3_y[leg] = h_3_y;
-        model->h_3_z[leg] = h_3_z;
+        model->ups_J_group_2_xx[leg] = ups_J_group_2_xx;
+        model->ups_J_group_2_xy[leg] = ups_J_group_2_xy;
+        model->ups_J_group_2_xz[leg] = ups_J_group_2_xz;
+        model->ups_J_group_2_yy[leg] = ups_J_group_2_yy;
+        model->ups_J_group_2_yz[leg] = ups_J_group_2_yz;
+        model->ups_J_group_2_zz[leg] = ups_J_group_2_zz;
+        model->ups_Sigma_2_xx[leg] = ups_Sigma_2_xx;
+        model->ups_Sigma_2_yy[leg] = ups_Sigma_2_yy;
+        model->ups_Sigma_2_zz[leg] = ups_Sigma_2_zz;
+        model->ups_b_r0_x[leg] = ups_b_r0_x;
+        model->ups_b_r0_y[leg] = ups_b_r0_y;
+        model->ups_b_r0_z[leg] = ups_b_r0_z;
         model->ups_base_frame_xx[leg] = ups_base_frame_xx;
         model->ups_base_frame_xy[leg] = ups_base_frame_xy;
         model->ups_base_frame_xz[leg] = ups_base_frame_xz;
@@ -619,52 +700,63 @@ int stewart_7ups_prepare(const stewart_7ups_params *params, stewart_7ups_model *
         model->ups_base_point_x[leg] = ups_base_point_x;
         model->ups_base_point_y[leg] = ups_base_point_y;
         model->ups_base_point_z[leg] = ups_base_point_z;
+        model->ups_branch_1[leg] = ups_branch_1;
+        model->ups_branch_2[leg] = ups_branch_2;
+        model->ups_g_r0_x[leg] = ups_g_r0_x;
+        model->ups_g_r0_y[leg] = ups_g_r0_y;
+        model->ups_g_r0_z[leg] = ups_g_r0_z;
+        model->ups_h_2_x[leg] = ups_h_2_x;
+        model->ups_h_2_y[leg] = ups_h_2_y;
+        model->ups_h_2_z[leg] = ups_h_2_z;
+        model->ups_h_3_x[leg] = ups_h_3_x;
+        model->ups_h_3_y[leg] = ups_h_3_y;
+        model->ups_h_3_z[leg] = ups_h_3_z;
         model->ups_link2_mass[leg] = ups_link2_mass;
         model->ups_link3_mass[leg] = ups_link3_mass;
         model->ups_platform_point_x[leg] = ups_platform_point_x;
         model->ups_platform_point_y[leg] = ups_platform_point_y;
         model->ups_platform_point_z[leg] = ups_platform_point_z;
-        total_ups += ups_link3_mass;
-        total_ups_x += h_star_t_4;
-        total_ups_y += h_star_t_5;
-        total_ups_z += h_star_t_6;
-        total_ups_xx += J_star_t_15;
-        total_ups_xy += J_star_t_16;
-        total_ups_xz += J_star_t_17;
-        total_ups_yy += J_star_t_18;
-        total_ups_yz += J_star_t_19;
-        total_ups_zz += J_star_t_20;
-        total_ups_x_2 += ups_platform_point_x;
-        total_ups_y_2 += ups_platform_point_y;
-        total_ups_z_2 += ups_platform_point_z;
+        total_ups += leg < 7 ? ups_link3_mass : 0;
+        total_ups_x += leg < 7 ? ups_h_star_t : 0;
+        total_ups_y += leg < 7 ? ups_h_star_t_2 : 0;
+        total_ups_z += leg < 7 ? ups_h_star_t_3 : 0;
+        total_ups_xx += leg < 7 ? ups_J_star_t_5 : 0;
+        total_ups_xy += leg < 7 ? ups_J_star_t_6 : 0;
+        total_ups_xz += leg < 7 ? ups_J_star_t_7 : 0;
+        total_ups_yy += leg < 7 ? ups_J_star_t_8 : 0;
+        total_ups_yz += leg < 7 ? ups_J_star_t_9 : 0;
+        total_ups_zz += leg < 7 ? ups_J_star_t_10 : 0;
+        total_ups_x_2 += leg < 7 ? ups_platform_point_x : 0;
+        total_ups_y_2 += leg < 7 ? ups_platform_point_y : 0;
+        total_ups_z_2 += leg < 7 ? ups_platform_point_z : 0;
     }
-    /* (L1) mass of the platform with the gathered masses */
+    /* (m_star) mass of the platform with the gathered masses */
     const real m_star = platform_mass + total_ups;
-    /* (L2) first moment about the platform origin */
+    /* (h_star) first moment about the platform origin */
     const real h_star_x = h_star_t + total_ups_x;
     const real h_star_y = h_star_t_2 + total_ups_y;
     const real h_star_z = h_star_t_3 + total_ups_z;
-    /* (L3) inertia tensor about the platform origin */
+    /* (J_star) inertia tensor about the platform origin */
     const real J_star_xx = platform_inertia_xx - J_star_t_5 - total_ups_xx;
     const real J_star_xy = platform_inertia_xy - J_star_t_6 - total_ups_xy;
     const real J_star_xz = platform_inertia_xz - J_star_t_7 - total_ups_xz;
     const real J_star_yy = platform_inertia_yy - J_star_t_8 - total_ups_yy;
     const real J_star_yz = platform_inertia_yz - J_star_t_9 - total_ups_yz;
     const real J_star_zz = platform_inertia_zz - J_star_t_10 - total_ups_zz;
-    const real J_star_t_21 = J_star_xx - J_star_yy;
-    const real J_star_t_22 = R(0.5)*J_star_t_21;
-    const real J_star_t_23 = J_star_xx - J_star_zz;
-    const real J_star_t_24 = R(0.5)*J_star_t_23;
-    /* (M4) centripetal force and weight of the platform */
+    const real J_star_t_11 = J_star_xx - J_star_yy;
+    const real J_star_t_12 = R(0.5)*J_star_t_11;
+    const real J_star_t_13 = J_star_xx - J_star_zz;
+    const real J_star_t_14 = R(0.5)*J_star_t_13;
+    /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
     const real Z_p_t_3 = gravity_z*m_star;
-    /* (C1) centroid of the platform points */
+    /* (b_c) centroid of the platform points */
     const real b_c_x = R(0.14285714285714285)*total_ups_x_2;
     const real b_c_y = R(0.14285714285714285)*total_ups_y_2;
     const real b_c_z = R(0.14285714285714285)*total_ups_z_2;
-    model->J_star_t_22 = J_star_t_22;
-    model->J_star_t_24 = J_star_t_24;
+    model->J_star_t_12 = J_star_t_12;
+    model->J_star_t_14 = J_star_t_14;
     model->J_star_xx = J_star_xx;
     model->J_star_xy = J_star_xy;
     model->J_star_xz = J_star_xz;
@@ -751,98 +843,6 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
     }
 }
 
-/* Swap a row with the pivot's in those states in which it is the chosen one.  What is chosen are
-   whole entries: unlike products with 0 and 1, these keep what is not finite where it belongs. */
-APART void swap_lanes(size_t n, size_t p, real i, const real *restrict best, real *restrict pivot,
-        real *restrict other)
-{
-    for (size_t j = p; j <= n; ++j) {
-        for (size_t k = 0; k < LANES; ++k) {
-            const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = best[k] == i ? up : down;
-            other[j*LANES + k] = best[k] == i ? down : up;
-        }
-    }
-}
-
-/* The choice of choose_one in every state. */
-INLINE void choose_lanes(size_t n, size_t p, real *a)
-{
-    const size_t row = (n + 1)*LANES;
-    real most[LANES], best[LANES], any = 0;
-    for (size_t k = 0; k < LANES; ++k) {
-        most[k] = CLEARLY*magnitude(a[p*row + p*LANES + k]);
-        best[k] = 0;
-    }
-    for (size_t i = p + 1; i < n; ++i) {
-        for (size_t k = 0; k < LANES; ++k) {
-            const real size = magnitude(a[i*row + p*LANES + k]);
-            best[k] = size > most[k] ? (real)i : best[k];
-            most[k] = larger(size, most[k]);
-        }
-    }
-    for (size_t k = 0; k < LANES; ++k) {
-        any += best[k];
-    }
-    for (size_t i = p + 1; i < n && any > 0; ++i) {
-        swap_lanes(n, p, (real)i, best, a + p*row, a + i*row);
-    }
-}
-
-/* The same for LANES systems side by side, without padding.  What comes NEARLY to the threshold
-   counts as singular here: the batch then settles it as for a single state. */
-INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
-{
-    const size_t row = (n + 1)*LANES;
-    memset(x, 0, n*LANES*sizeof *x);
-    for (size_t i = 0; i < n; ++i) {
-        real size[LANES] = {0};
-        for (size_t j = 0; j < n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                size[k] = larger(size[k], magnitude(a[i*row + j*LANES + k]));
-            }
-        }
-        for (size_t k = 0; k < LANES; ++k) {
-            size[k] = 1/size[k];
-        }
-        for (size_t j = 0; j <= n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + j*LANES + k] *= size[k];
-            }
-        }
-    }
-    for (size_t p = 0; p < n; ++p) {
-        const real *const pivot = a + p*row;
-        choose_lanes(n, p, a);
-        for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > NEARLY*PIVOT);
-            x[p*LANES + k] = 1/pivot[p*LANES + k];
-        }
-        for (size_t i = p + 1; i < n; ++i) {
-            real *const other = a + i*row;
-            real factor[LANES];
-            for (size_t k = 0; k < LANES; ++k) {
-                factor[k] = other[p*LANES + k]*x[p*LANES + k];
-            }
-            for (size_t j = p + 1; j <= n; ++j) {
-                for (size_t k = 0; k < LANES; ++k) {
-                    other[j*LANES + k] -= factor[k]*pivot[j*LANES + k];
-                }
-            }
-        }
-    }
-    for (size_t p = n; p-- > 0;) {
-        for (size_t k = 0; k < LANES; ++k) {
-            x[p*LANES + k] *= a[p*row + n*LANES + k];
-        }
-        for (size_t i = 0; i < p; ++i) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + n*LANES + k] -= a[i*row + p*LANES + k]*x[p*LANES + k];
-            }
-        }
-    }
-}
-
 /* Length of the rows of a system of n equations, whose right side stands in column n. */
 INLINE size_t stride_of(size_t n, size_t w)
 {
@@ -875,14 +875,10 @@ INLINE void solve_state(size_t n, const real *b, real *rows, real *x, real *sing
     solve_one(n, stride_of(n, 1), rows, x, singular);
 }
 
-INLINE void solve(size_t n, size_t w, const real *b, real *rows, real *x, real *singular)
+/* The same where it is rare: apart, for the sake of what is done otherwise. */
+APART void solve_apart(size_t n, const real *b, real *rows, real *x, real *singular)
 {
-    if (w == 1) {
-        solve_state(n, b, rows, x, singular);
-    } else {
-        set_right_side(n, LANES, b, rows);
-        solve_lanes(n, rows, x, singular);
-    }
+    solve_state(n, b, rows, x, singular);
 }
 
 #define BIG 7  /* most rows or columns of a matrix that is not square, or not solved */
@@ -1173,6 +1169,29 @@ INLINE void take(size_t rows, size_t n, const size_t *places, const real *a, rea
     }
 }
 
+/* Rows as `places` tells made infinite, where all entries are finite before. */
+INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, real *x, real *flags)
+{
+    check(size, w, x, flags);
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t k = 0; k < w; ++k) {
+            x[places[i]*w + k] = R(INFINITY);
+        }
+    }
+}
+
+/* 1 where no entry is negative, else 0. */
+INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
+{
+    check(size, w, a, flags);
+    for (size_t k = 0; k < w; ++k) {
+        x[k] = 1;
+        for (size_t e = 0; e < size; ++e) {
+            x[k] = a[e*w + k] < 0 ? 0 : x[k];
+        }
+    }
+}
+
 INLINE void divide_rows(size_t rows, size_t n, size_t w, const size_t *places, const real *b, real *x)
 {
     for (size_t i = 0; i < rows; ++i) {
@@ -1337,59 +1356,22 @@ static void moved(const real *X, const real *step, real part, real *to)
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 1837 mul, 1440 add, 14 div, 14 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
-        h_star_in_base_x[LANES], h_star_in_base_y[LANES], h_star_in_base_z[LANES], J_star_t_8[LANES],
-        J_star_t_9[LANES], J_star_t_10[LANES], J_star_t_12[LANES], J_star_t_13[LANES],
-        J_star_t_15[LANES], W_p_xx[LANES], W_p_xy[LANES], W_p_xz[LANES], W_p_yy[LANES], W_p_yz[LANES],
-        W_p_zz[LANES], Z_p_x[LANES], Z_p_y[LANES], Z_p_z[LANES], Z_q_in_base_x[LANES],
-        Z_q_in_base_y[LANES], Z_q_in_base_z[LANES], sum[27][LANES];
-} dynamics_values;
-typedef struct {
-    real sum[27][8], entry[6][8], singular[8];
-} dynamics_results_ups;
-
-INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V,
-    dynamics_values *s, verdict *t)
+/* ---- dynamics: 1813 mul, 1416 add, 14 div, 14 sqrt, 0 trig, every leg counted ---- */
+INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        const real J_star_t_22 = m->J_star_t_22;
-        const real J_star_t_24 = m->J_star_t_24;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -1414,519 +1396,546 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
-        /* (L2) first moment about the platform origin */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_z = m->h_star_z;
         const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
         const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
         const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
-        /* (L3) inertia tensor about the platform origin */
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy;
-        const real J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx;
+        /* (J_star) inertia tensor about the platform origin */
+        const real J_star_t_12 = m->J_star_t_12;
+        const real J_star_xy = m->J_star_xy;
+        const real J_star_yz = m->J_star_yz;
+        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy;
+        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy;
+        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy;
+        const real J_star_t_14 = m->J_star_t_14;
+        const real J_star_xz = m->J_star_xz;
+        const real J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx;
+        const real J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx;
+        const real J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
+        const real J_star_xx = m->J_star_xx;
         const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
         const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
         const real J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_6*R_xz;
         const real J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_12 = 2*J_star_t_11 + J_star_xx;
-        const real J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_13 = 2*J_star_t_11 + J_star_xx;
+        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_6*R_yz;
-        const real J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_t_15 = 2*J_star_t_14 + J_star_xx;
-        /* (P1) centripetal tensor of the platform */
-        const real W_p_t = omega_x*omega_x;
-        const real W_p_t_2 = omega_y*omega_y;
-        const real W_p_t_3 = omega_z*omega_z;
-        const real W_p_xx = W_p_t_2 + W_p_t_3;
-        const real W_p_xy = omega_x*omega_y;
-        const real W_p_xz = omega_x*omega_z;
-        const real W_p_yy = W_p_t + W_p_t_3;
-        const real W_p_yz = omega_y*omega_z;
-        const real W_p_zz = W_p_t + W_p_t_2;
-        /* (M4) centripetal force and weight of the platform */
-        const real Z_p_x = W_p_xy*h_star_in_base_y + W_p_xz*h_star_in_base_z - Z_p_t -
-            W_p_xx*h_star_in_base_x;
-        const real Z_p_y = W_p_xy*h_star_in_base_x + W_p_yz*h_star_in_base_z - Z_p_t_2 -
-            W_p_yy*h_star_in_base_y;
-        const real Z_p_z = W_p_xz*h_star_in_base_x + W_p_yz*h_star_in_base_y - Z_p_t_3 -
-            W_p_zz*h_star_in_base_z;
-        /* (M6) gyroscopic moment and moment of the weight of the platform */
+        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz;
+        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        /* (Z_p) centripetal force and weight of the platform */
+        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
+        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
+        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t = m->Z_p_t;
+        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
+        const real Z_p_t_2 = m->Z_p_t_2;
+        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
+        const real Z_p_t_3 = m->Z_p_t_3;
+        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
+        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real gravity_z = m->gravity_z;
+        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
         const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
         const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
         const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
         const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
+        const real J_star_yy = m->J_star_yy;
         const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
+        const real J_star_zz = m->J_star_zz;
         const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z_2*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x_2*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y_2*h_star_x;
+        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
+            g_r0_z*h_star_y;
+        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
+            g_r0_x*h_star_z;
+        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
+            g_r0_y*h_star_x;
         const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
         const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
         const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->h_star_in_base_x[k] = h_star_in_base_x;
-        s->h_star_in_base_y[k] = h_star_in_base_y;
-        s->h_star_in_base_z[k] = h_star_in_base_z;
-        s->J_star_t_8[k] = J_star_t_8;
-        s->J_star_t_9[k] = J_star_t_9;
-        s->J_star_t_10[k] = J_star_t_10;
-        s->J_star_t_12[k] = J_star_t_12;
-        s->J_star_t_13[k] = J_star_t_13;
-        s->J_star_t_15[k] = J_star_t_15;
-        s->W_p_xx[k] = W_p_xx;
-        s->W_p_xy[k] = W_p_xy;
-        s->W_p_xz[k] = W_p_xz;
-        s->W_p_yy[k] = W_p_yy;
-        s->W_p_yz[k] = W_p_yz;
-        s->W_p_zz[k] = W_p_zz;
-        s->Z_p_x[k] = Z_p_x;
-        s->Z_p_y[k] = Z_p_y;
-        s->Z_p_z[k] = Z_p_z;
-        s->Z_q_in_base_x[k] = Z_q_in_base_x;
-        s->Z_q_in_base_y[k] = Z_q_in_base_y;
-        s->Z_q_in_base_z[k] = Z_q_in_base_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
+        s[18*w + k] = h_star_in_base_x;
+        s[19*w + k] = h_star_in_base_y;
+        s[20*w + k] = h_star_in_base_z;
+        s[21*w + k] = J_star_t_8;
+        s[22*w + k] = J_star_t_9;
+        s[23*w + k] = J_star_t_10;
+        s[24*w + k] = J_star_t_13;
+        s[25*w + k] = J_star_t_15;
+        s[26*w + k] = J_star_t_17;
+        s[27*w + k] = Z_p_x;
+        s[28*w + k] = Z_p_y;
+        s[29*w + k] = Z_p_z;
+        s[30*w + k] = Z_q_in_base_x;
+        s[31*w + k] = Z_q_in_base_y;
+        s[32*w + k] = Z_q_in_base_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void dynamics_legs_ups(const prepared *m, size_t leg, size_t legs, const dynamics_values
-    *s, size_t states, size_t count, int add, dynamics_results_ups *o)
+INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real W_p_xx = s->W_p_xx[j];
-        const real W_p_xy = s->W_p_xy[j];
-        const real W_p_xz = s->W_p_xz[j];
-        const real W_p_yy = s->W_p_yy[j];
-        const real W_p_yz = s->W_p_yz[j];
-        const real W_p_zz = s->W_p_zz[j];
-        const real J_group_2_xx = m->J_group_2_xx[i];
-        const real J_group_2_xy = m->J_group_2_xy[i];
-        const real J_group_2_xz = m->J_group_2_xz[i];
-        const real J_group_2_yy = m->J_group_2_yy[i];
-        const real J_group_2_yz = m->J_group_2_yz[i];
-        const real J_group_2_zz = m->J_group_2_zz[i];
-        const real Sigma_2_xx = m->Sigma_2_xx[i];
-        const real Sigma_2_yy = m->Sigma_2_yy[i];
-        const real Sigma_2_zz = m->Sigma_2_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real g_r0_z = m->g_r0_z[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real h_2_z = m->h_2_z[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_base_point_z = m->ups_base_point_z[i];
+        /* (ups-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        /* (ups-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        const real ups_q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
             R_xz*ups_platform_point_z;
-        const real q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real ups_q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
             R_yz*ups_platform_point_z;
-        const real q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real ups_q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
             R_zz*ups_platform_point_z;
-        const real S_x = q_in_base_x + t_x - ups_base_point_x;
-        const real S_y = q_in_base_y + t_y - ups_base_point_y;
-        const real S_z = q_in_base_z + t_z - ups_base_point_z;
-        /* (ups-K2) component along the reference direction */
-        const real px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx;
-        /* (ups-K3) component across the reference direction */
-        const real py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy;
-        /* (ups-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (ups-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (ups-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz;
-        /* (ups-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (ups-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (ups-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (ups-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_x_x = S_x*inv_root_2;
-        const real axis_x_y = S_y*inv_root_2;
-        const real axis_x_z = S_z*inv_root_2;
-        /* (ups-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (ups-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx;
-        const real axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx;
-        const real axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx;
-        const real axis_y_ups_axes2_x = axis_x_z*axis_z_ups_axes2_in_base_y -
-            axis_x_y*axis_z_ups_axes2_in_base_z;
-        const real axis_y_ups_axes2_y = axis_x_x*axis_z_ups_axes2_in_base_z -
-            axis_x_z*axis_z_ups_axes2_in_base_x;
-        const real axis_y_ups_axes2_z = axis_x_y*axis_z_ups_axes2_in_base_x -
-            axis_x_x*axis_z_ups_axes2_in_base_y;
-        /* (ups-A14) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d_alpha_1_t = inv_root_1*s_2;
-        /* (ups-N22) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_t = h_3_z*inv_root_2;
-        /* (ups-N6) coefficient of the acceleration in: inertia force of link 3 from its turning about its
-           reference point */
-        const real d_phi_3_t = h_3_y*inv_root_2;
-        const real d_phi_3_t_2 = h_3_x*inv_root_2;
-        /* (ups-N25) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real t_x = s[0*w + j];
+        const real ups_base_point_x = m->ups_base_point_x[i];
+        const real ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x;
+        const real t_y = s[1*w + j];
+        const real ups_base_point_y = m->ups_base_point_y[i];
+        const real ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y;
+        const real t_z = s[2*w + j];
+        const real ups_base_point_z = m->ups_base_point_z[i];
+        const real ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z;
+        /* (ups-px_1) component along the reference direction */
+        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
+        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
+        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
+        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
+            ups_S_z*ups_base_frame_zx;
+        /* (ups-py_1) component across the reference direction */
+        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
+        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
+        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
+        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
+            ups_S_z*ups_base_frame_zy;
+        /* (ups-rho2_1) squared amplitude */
+        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
+        /* (ups-root_1) amplitude, with the sign of the branch */
+        const real ups_branch_1 = m->ups_branch_1[i];
+        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
+        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
+        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+            ups_S_z*ups_base_frame_zz;
+        /* (ups-rho2_2) squared amplitude */
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        /* (ups-root_2) amplitude, with the sign of the branch */
+        const real ups_branch_2 = m->ups_branch_2[i];
+        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
+        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ups_root_2 = 1/ups_root_2;
+        const real ups_c_2 = inv_ups_root_2*ups_root_1;
+        /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
+        const real ups_s_2 = inv_ups_root_2*ups_xi_1_t;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
+        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
+        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
+            ups_base_frame_xx*ups_c_1;
+        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
+            ups_base_frame_yx*ups_c_1;
+        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
+            ups_base_frame_zx*ups_c_1;
+        const real axis_y_ups_axes2_x = axis_z_ups_axes2_in_base_y*ups_axis_x_z -
+            axis_z_ups_axes2_in_base_z*ups_axis_x_y;
+        const real axis_y_ups_axes2_y = axis_z_ups_axes2_in_base_z*ups_axis_x_x -
+            axis_z_ups_axes2_in_base_x*ups_axis_x_z;
+        const real axis_y_ups_axes2_z = axis_z_ups_axes2_in_base_x*ups_axis_x_y -
+            axis_z_ups_axes2_in_base_y*ups_axis_x_x;
+        /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+        const real ups_d_alpha_1_t = inv_ups_root_1*ups_s_2;
+        /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
+           about its reference point */
+        const real ups_h_3_z = m->ups_h_3_z[i];
+        const real ups_d_phi_3_t = inv_ups_root_2*ups_h_3_z;
+        const real ups_h_3_y = m->ups_h_3_y[i];
+        const real ups_d_phi_3_t_2 = inv_ups_root_2*ups_h_3_y;
+        const real ups_h_3_x = m->ups_h_3_x[i];
+        const real ups_d_phi_3_t_3 = inv_ups_root_2*ups_h_3_x;
+        /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_yy = -d_phi_3_t_2 - inv_root_2*(h_3_x + J_group_2_zz*inv_root_2);
-        const real d_c_yz = d_alpha_1_t*h_3_y - inv_root_2*(J_group_2_xz*d_alpha_1_t -
-            J_group_2_yz*inv_root_2);
-        const real d_c_zz = d_alpha_1_t*h_3_z - d_phi_3_t_2 -
-            inv_root_1*(s_2*(J_group_2_xx*d_alpha_1_t - h_3_z - J_group_2_xy*inv_root_2) -
-            c_2*(J_group_2_xy*d_alpha_1_t - h_3_x - J_group_2_yy*inv_root_2));
-        /* (ups-N27) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = R(0.5)*d_c_yy;
-        const real Q_t_2 = R(0.5)*d_c_zz;
-        const real Q_t_3 = Q_t*axis_y_ups_axes2_x + axis_z_ups_axes2_in_base_x*d_c_yz -
-            axis_x_x*d_G_t;
-        const real Q_t_4 = Q_t*axis_y_ups_axes2_y + axis_z_ups_axes2_in_base_y*d_c_yz -
-            axis_x_y*d_G_t;
-        const real Q_t_5 = Q_t*axis_y_ups_axes2_z + axis_z_ups_axes2_in_base_z*d_c_yz -
-            axis_x_z*d_G_t;
-        const real Q_t_6 = Q_t_2*axis_z_ups_axes2_in_base_x + axis_x_x*d_phi_3_t;
-        const real Q_t_7 = Q_t_2*axis_z_ups_axes2_in_base_y + axis_x_y*d_phi_3_t;
-        const real Q_t_8 = Q_t_2*axis_z_ups_axes2_in_base_z + axis_x_z*d_phi_3_t;
-        const real Q_t_9 = Q_t_3*axis_y_ups_axes2_x + Q_t_6*axis_z_ups_axes2_in_base_x;
-        const real Q_t_10 = 2*Q_t_9;
-        const real Q_t_11 = Q_t_3*axis_y_ups_axes2_y + Q_t_4*axis_y_ups_axes2_x +
-            Q_t_6*axis_z_ups_axes2_in_base_y + Q_t_7*axis_z_ups_axes2_in_base_x;
-        const real Q_t_12 = Q_t_3*axis_y_ups_axes2_z + Q_t_5*axis_y_ups_axes2_x +
-            Q_t_6*axis_z_ups_axes2_in_base_z + Q_t_8*axis_z_ups_axes2_in_base_x;
-        const real Q_t_13 = Q_t_4*axis_y_ups_axes2_y + Q_t_7*axis_z_ups_axes2_in_base_y;
-        const real Q_t_14 = 2*Q_t_13;
-        const real Q_t_15 = Q_t_4*axis_y_ups_axes2_z + Q_t_5*axis_y_ups_axes2_y +
-            Q_t_7*axis_z_ups_axes2_in_base_z + Q_t_8*axis_z_ups_axes2_in_base_y;
-        const real Q_t_16 = Q_t_5*axis_y_ups_axes2_z + Q_t_8*axis_z_ups_axes2_in_base_z;
-        const real Q_t_17 = 2*Q_t_16;
-        /* (M2) coupling block of M */
-        const real M_ta_t = Q_t_11*q_in_base_z;
-        const real M_ta_t_2 = Q_t_12*q_in_base_y;
-        const real M_ta_t_3 = M_ta_t - M_ta_t_2;
-        const real M_ta_t_4 = Q_t_10*q_in_base_z - Q_t_12*q_in_base_x;
-        const real M_ta_t_5 = Q_t_10*q_in_base_y - Q_t_11*q_in_base_x;
-        const real M_ta_t_6 = Q_t_14*q_in_base_z - Q_t_15*q_in_base_y;
-        const real M_ta_t_7 = Q_t_15*q_in_base_x;
-        const real M_ta_t_8 = M_ta_t - M_ta_t_7;
-        const real M_ta_t_9 = Q_t_11*q_in_base_y - Q_t_14*q_in_base_x;
-        const real M_ta_t_10 = Q_t_15*q_in_base_z - Q_t_17*q_in_base_y;
-        const real M_ta_t_11 = Q_t_12*q_in_base_z - Q_t_17*q_in_base_x;
-        const real M_ta_t_12 = M_ta_t_7 - M_ta_t_2;
-        /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y;
-        const real M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y;
-        const real M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z;
-        const real M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x;
-        const real M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z;
-        const real M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x;
-        /* (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
-        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
-        const real g_r3_x = g_r0_z*s_2 - c_2*g_r1_y;
-        const real g_r3_y = -c_2*g_r0_z - g_r1_y*s_2;
-        /* (ups-A1) centripetal acceleration of the connection point */
-        const real u_1_x = W_p_xy*q_in_base_y + W_p_xz*q_in_base_z - W_p_xx*q_in_base_x;
-        const real u_1_y = W_p_xy*q_in_base_x + W_p_yz*q_in_base_z - W_p_yy*q_in_base_y;
-        const real u_1_z = W_p_xz*q_in_base_x + W_p_yz*q_in_base_y - W_p_zz*q_in_base_z;
-        const real u_1_t = axis_y_ups_axes2_x*u_1_x;
-        const real u_1_t_2 = axis_y_ups_axes2_y*u_1_y;
-        const real u_1_t_3 = axis_y_ups_axes2_z*u_1_z;
-        const real u_1_tip_z = axis_z_ups_axes2_in_base_x*u_1_x + axis_z_ups_axes2_in_base_y*u_1_y
-            + axis_z_ups_axes2_in_base_z*u_1_z;
-        /* (ups-N4) remainder without the acceleration in: acceleration of the reference point of link 3,
-           less gravity */
-        const real acc_3_o_x = axis_x_x*u_1_x + axis_x_y*u_1_y + axis_x_z*u_1_z - g_r3_x;
-        const real acc_3_o_y = u_1_t + u_1_t_2 + u_1_t_3 - g_r3_y;
-        const real acc_3_o_z = u_1_tip_z - g_r1_x;
-        /* (ups-V1) velocity of the connection point */
-        const real S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z;
-        /* (ups-V8) rate of joint 1 */
-        const real qd_2 = inv_root_2*(S_dot_x*axis_y_ups_axes2_x + S_dot_y*axis_y_ups_axes2_y +
-            S_dot_z*axis_y_ups_axes2_z);
-        const real qd_1 = inv_root_1*(S_dot_x*axis_z_ups_axes2_in_base_x +
-            S_dot_y*axis_z_ups_axes2_in_base_y + S_dot_z*axis_z_ups_axes2_in_base_z);
-        /* (ups-V11) angular velocity of link 1 */
-        const real omega_1_t = qd_1*s_2;
-        const real omega_1_t_2 = c_2*qd_1;
-        /* (ups-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_x = omega_1_t_2*qd_2;
-        const real zeta_2_y = omega_1_t*qd_2;
-        /* (ups-V13) centripetal tensor of link 2 */
-        const real W_2_t = omega_1_t*omega_1_t;
-        const real W_2_t_2 = omega_1_t_2*omega_1_t_2;
-        const real W_2_t_3 = qd_2*qd_2;
-        const real W_2_xy = omega_1_t*omega_1_t_2;
-        /* (ups-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_tip_x;
-        const real bias_z = bias_t*omega_1_t_2 + 2*root_2*zeta_2_y;
-        /* (ups-A7) remainder without the acceleration in: acceleration of the connection point left to
+        const real ups_J_group_2_zz = m->ups_J_group_2_zz[i];
+        const real ups_d_c_yy = -ups_d_phi_3_t_3 - inv_ups_root_2*(ups_h_3_x +
+            inv_ups_root_2*ups_J_group_2_zz);
+        const real ups_J_group_2_xz = m->ups_J_group_2_xz[i];
+        const real ups_J_group_2_yz = m->ups_J_group_2_yz[i];
+        const real ups_d_c_yz = ups_d_alpha_1_t*ups_h_3_y -
+            inv_ups_root_2*(ups_J_group_2_xz*ups_d_alpha_1_t - inv_ups_root_2*ups_J_group_2_yz);
+        const real ups_J_group_2_xx = m->ups_J_group_2_xx[i];
+        const real ups_J_group_2_xy = m->ups_J_group_2_xy[i];
+        const real ups_J_group_2_yy = m->ups_J_group_2_yy[i];
+        const real ups_d_c_zz = ups_d_alpha_1_t*ups_h_3_z - ups_d_phi_3_t_3 -
+            inv_ups_root_1*(ups_s_2*(ups_J_group_2_xx*ups_d_alpha_1_t - ups_h_3_z -
+            inv_ups_root_2*ups_J_group_2_xy) - ups_c_2*(ups_J_group_2_xy*ups_d_alpha_1_t -
+            ups_h_3_x - inv_ups_root_2*ups_J_group_2_yy));
+        /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real ups_Q_t = R(0.5)*ups_d_c_yy;
+        const real ups_Q_t_2 = R(0.5)*ups_d_c_zz;
+        const real ups_Q_t_3 = axis_y_ups_axes2_x*ups_Q_t + axis_z_ups_axes2_in_base_x*ups_d_c_yz
+            - ups_axis_x_x*ups_d_phi_3_t;
+        const real ups_Q_t_4 = axis_y_ups_axes2_y*ups_Q_t + axis_z_ups_axes2_in_base_y*ups_d_c_yz
+            - ups_axis_x_y*ups_d_phi_3_t;
+        const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_in_base_z*ups_d_c_yz
+            - ups_axis_x_z*ups_d_phi_3_t;
+        const real ups_Q_t_6 = axis_z_ups_axes2_in_base_x*ups_Q_t_2 +
+            ups_axis_x_x*ups_d_phi_3_t_2;
+        const real ups_Q_t_7 = axis_z_ups_axes2_in_base_y*ups_Q_t_2 +
+            ups_axis_x_y*ups_d_phi_3_t_2;
+        const real ups_Q_t_8 = axis_z_ups_axes2_in_base_z*ups_Q_t_2 +
+            ups_axis_x_z*ups_d_phi_3_t_2;
+        const real ups_Q_t_9 = axis_y_ups_axes2_x*ups_Q_t_3 +
+            axis_z_ups_axes2_in_base_x*ups_Q_t_6;
+        const real ups_Q_t_10 = 2*ups_Q_t_9;
+        const real ups_Q_t_11 = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 +
+            axis_z_ups_axes2_in_base_x*ups_Q_t_7 + axis_z_ups_axes2_in_base_y*ups_Q_t_6;
+        const real ups_Q_t_12 = axis_y_ups_axes2_x*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_3 +
+            axis_z_ups_axes2_in_base_x*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_6;
+        const real ups_Q_t_13 = axis_y_ups_axes2_y*ups_Q_t_4 +
+            axis_z_ups_axes2_in_base_y*ups_Q_t_7;
+        const real ups_Q_t_14 = 2*ups_Q_t_13;
+        const real ups_Q_t_15 = axis_y_ups_axes2_y*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_4 +
+            axis_z_ups_axes2_in_base_y*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_7;
+        const real ups_Q_t_16 = axis_y_ups_axes2_z*ups_Q_t_5 +
+            axis_z_ups_axes2_in_base_z*ups_Q_t_8;
+        const real ups_Q_t_17 = 2*ups_Q_t_16;
+        /* (M_ta) coupling block of M */
+        const real ups_M_ta_t = ups_Q_t_11*ups_q_in_base_z;
+        const real ups_M_ta_t_2 = ups_Q_t_12*ups_q_in_base_y;
+        const real ups_M_ta_t_3 = ups_M_ta_t - ups_M_ta_t_2;
+        const real ups_M_ta_t_4 = ups_Q_t_10*ups_q_in_base_z - ups_Q_t_12*ups_q_in_base_x;
+        const real ups_M_ta_t_5 = ups_Q_t_10*ups_q_in_base_y - ups_Q_t_11*ups_q_in_base_x;
+        const real ups_M_ta_t_6 = ups_Q_t_14*ups_q_in_base_z - ups_Q_t_15*ups_q_in_base_y;
+        const real ups_M_ta_t_7 = ups_Q_t_15*ups_q_in_base_x;
+        const real ups_M_ta_t_8 = ups_M_ta_t - ups_M_ta_t_7;
+        const real ups_M_ta_t_9 = ups_Q_t_11*ups_q_in_base_y - ups_Q_t_14*ups_q_in_base_x;
+        const real ups_M_ta_t_10 = ups_Q_t_15*ups_q_in_base_z - ups_Q_t_17*ups_q_in_base_y;
+        const real ups_M_ta_t_11 = ups_Q_t_12*ups_q_in_base_z - ups_Q_t_17*ups_q_in_base_x;
+        const real ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2;
+        /* (M_aa) rotational block of M */
+        const real ups_M_aa_t = ups_M_ta_t_6*ups_q_in_base_z - ups_M_ta_t_10*ups_q_in_base_y;
+        const real ups_M_aa_t_2 = ups_M_ta_t_8*ups_q_in_base_z - ups_M_ta_t_11*ups_q_in_base_y;
+        const real ups_M_aa_t_3 = ups_M_ta_t_12*ups_q_in_base_y + ups_M_ta_t_9*ups_q_in_base_z;
+        const real ups_M_aa_t_4 = ups_M_ta_t_4*ups_q_in_base_z - ups_M_ta_t_11*ups_q_in_base_x;
+        const real ups_M_aa_t_5 = ups_M_ta_t_12*ups_q_in_base_x + ups_M_ta_t_5*ups_q_in_base_z;
+        const real ups_M_aa_t_6 = ups_M_ta_t_5*ups_q_in_base_y - ups_M_ta_t_9*ups_q_in_base_x;
+        /* (ups-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z;
+        const real ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x;
+        const real t_dot_x = s[12*w + j];
+        const real ups_S_dot_x = t_dot_x + ups_S_dot_t;
+        const real t_dot_y = s[13*w + j];
+        const real ups_S_dot_y = t_dot_y + ups_S_dot_t_2;
+        const real t_dot_z = s[14*w + j];
+        const real ups_S_dot_z = t_dot_z + ups_S_dot_t_3;
+        const real ups_S_dot_tip_x = ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y +
+            ups_S_dot_z*ups_axis_x_z;
+        /* (ups-qd_2) rate of joint 2 */
+        const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x +
+            axis_y_ups_axes2_y*ups_S_dot_y + axis_y_ups_axes2_z*ups_S_dot_z);
+        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
+            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z);
+        /* (ups-omega_1) angular velocity of link 1 */
+        const real ups_omega_1_t = ups_qd_1*ups_s_2;
+        const real ups_omega_1_t_2 = ups_c_2*ups_qd_1;
+        /* (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2;
+        const real ups_zeta_2_y = ups_omega_1_t*ups_qd_2;
+        /* (ups-u_1) centripetal acceleration of the connection point */
+        const real ups_u_1_x = omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2;
+        const real ups_u_1_y = omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3;
+        const real ups_u_1_z = omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t;
+        /* (ups-W_2) centripetal tensor of link 2 */
+        const real ups_W_2_t = ups_omega_1_t*ups_omega_1_t;
+        const real ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2;
+        const real ups_W_2_t_3 = ups_qd_2*ups_qd_2;
+        const real ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2;
+        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
+        const real ups_bias_t = 2*ups_S_dot_tip_x;
+        const real ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2*ups_root_2*ups_zeta_2_y;
+        /* (ups-u_1) centripetal acceleration of the connection point */
+        const real ups_u_1_t = axis_y_ups_axes2_x*ups_u_1_x;
+        const real ups_u_1_t_2 = axis_y_ups_axes2_y*ups_u_1_y;
+        const real ups_u_1_t_3 = axis_y_ups_axes2_z*ups_u_1_z;
+        const real ups_u_1_tip_z = axis_z_ups_axes2_in_base_x*ups_u_1_x +
+            axis_z_ups_axes2_in_base_y*ups_u_1_y + axis_z_ups_axes2_in_base_z*ups_u_1_z;
+        /* (ups-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rel_o_z = u_1_tip_z - bias_z;
-        /* (ups-A9) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_o_t = inv_root_2*(u_1_t + u_1_t_2 + u_1_t_3 - bias_t*qd_2);
-        const real qdd_1_o = inv_root_1*rel_o_z;
-        /* (ups-A15) remainder without the acceleration in: angular acceleration of link 1 */
-        const real alpha_1_o_t = qdd_1_o*s_2;
-        const real alpha_1_o_t_2 = c_2*qdd_1_o;
-        /* (ups-A18) remainder without the acceleration in: angular acceleration of link 2 */
-        const real alpha_2_o_x = alpha_1_o_t - zeta_2_x;
-        const real alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y;
-        /* (ups-A20) remainder of the acceleration tensor of link 2 */
-        const real B_2_o_xy = -2*W_2_xy - qdd_1_o_t;
-        const real B_2_o_zx = zeta_2_y - alpha_2_o_y;
-        const real B_2_o_zy = alpha_2_o_x - zeta_2_x;
-        /* (ups-N14) remainder without the acceleration in: inertia moment of the links that turn with
+        const real ups_rel_o_z = ups_u_1_tip_z - ups_bias_z;
+        /* (ups-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        const real ups_qdd_2_o_t = inv_ups_root_2*(ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 -
+            ups_bias_t*ups_qd_2);
+        const real ups_qdd_1_o = inv_ups_root_1*ups_rel_o_z;
+        /* (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+        const real ups_alpha_1_o_t = ups_qdd_1_o*ups_s_2;
+        const real ups_alpha_1_o_t_2 = ups_c_2*ups_qdd_1_o;
+        /* (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        const real ups_alpha_2_o_x = ups_alpha_1_o_t - ups_zeta_2_x;
+        const real ups_alpha_2_o_y = -ups_alpha_1_o_t_2 - ups_zeta_2_y;
+        /* (ups-B_2_o) remainder of the acceleration tensor of link 2 */
+        const real ups_B_2_o_xy = -2*ups_W_2_xy - ups_qdd_2_o_t;
+        const real ups_B_2_o_zx = ups_zeta_2_y - ups_alpha_2_o_y;
+        const real ups_B_2_o_zy = ups_alpha_2_o_x - ups_zeta_2_x;
+        /* (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
+           about its reference point */
+        const real ups_phi_3_o_x = -ups_B_2_o_xy*ups_h_3_z - ups_alpha_1_o_t_2*ups_h_3_y -
+            ups_h_3_x*(ups_W_2_t_2 + ups_W_2_t_3);
+        /* (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real ups_g_r0_x = m->ups_g_r0_x[i];
+        const real ups_g_r0_y = m->ups_g_r0_y[i];
+        const real ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x;
+        const real ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1;
+        const real ups_g_r0_z = m->ups_g_r0_z[i];
+        const real ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y;
+        const real ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2;
+        /* (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+           link 3, less gravity */
+        const real ups_acc_3_o_x = ups_axis_x_x*ups_u_1_x + ups_axis_x_y*ups_u_1_y +
+            ups_axis_x_z*ups_u_1_z - ups_g_r3_x;
+        const real ups_acc_3_o_y = ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 - ups_g_r3_y;
+        const real ups_acc_3_o_z = ups_u_1_tip_z - ups_g_r1_x;
+        /* (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real mu_2_o_x = B_2_o_zy*Sigma_2_yy + J_group_2_xz*qdd_1_o_t + J_group_2_yz*(W_2_t_2
-            - W_2_t_3) + Sigma_2_zz*alpha_1_o_t + g_r1_x*h_2_z + g_r3_y*h_2_y -
-            B_2_o_zx*J_group_2_xy - acc_3_o_y*h_3_y - acc_3_o_z*h_3_z;
-        const real mu_2_o_y = B_2_o_zy*J_group_2_xy + acc_3_o_x*h_3_y + g_r1_x*h_2_x -
-            B_2_o_xy*J_group_2_yz - B_2_o_zx*Sigma_2_xx - J_group_2_xz*(W_2_t - W_2_t_3) -
-            Sigma_2_zz*alpha_1_o_t_2 - acc_3_o_z*h_3_x - g_r3_x*h_2_y;
-        const real mu_2_o_z = J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_xz*alpha_1_o_t +
-            Sigma_2_xx*qdd_1_o_t + acc_3_o_x*h_3_z + acc_3_o_y*h_3_x - B_2_o_xy*Sigma_2_yy -
-            J_group_2_yz*alpha_1_o_t_2 - g_r3_x*h_2_z - g_r3_y*h_2_x;
-        /* (ups-N7) remainder without the acceleration in: inertia force of link 3 from its turning about
-           its reference point */
-        const real phi_3_o_x = -B_2_o_xy*h_3_z - alpha_1_o_t_2*h_3_y - h_3_x*(W_2_t_2 + W_2_t_3);
-        /* (ups-N26) remainder without the acceleration in: leg force on the platform without actuation
+        const real ups_Sigma_2_yy = m->ups_Sigma_2_yy[i];
+        const real ups_Sigma_2_zz = m->ups_Sigma_2_zz[i];
+        const real ups_h_2_y = m->ups_h_2_y[i];
+        const real ups_h_2_z = m->ups_h_2_z[i];
+        const real ups_mu_2_o_x = ups_B_2_o_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_2_o_t +
+            ups_J_group_2_yz*(ups_W_2_t_2 - ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_o_t +
+            ups_g_r1_x*ups_h_2_z + ups_g_r3_y*ups_h_2_y - ups_B_2_o_zx*ups_J_group_2_xy -
+            ups_acc_3_o_y*ups_h_3_y - ups_acc_3_o_z*ups_h_3_z;
+        const real ups_Sigma_2_xx = m->ups_Sigma_2_xx[i];
+        const real ups_h_2_x = m->ups_h_2_x[i];
+        const real ups_mu_2_o_y = ups_B_2_o_zy*ups_J_group_2_xy + ups_acc_3_o_x*ups_h_3_y +
+            ups_g_r1_x*ups_h_2_x - ups_B_2_o_xy*ups_J_group_2_yz - ups_B_2_o_zx*ups_Sigma_2_xx -
+            ups_J_group_2_xz*(ups_W_2_t - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_o_t_2 -
+            ups_acc_3_o_z*ups_h_3_x - ups_g_r3_x*ups_h_2_y;
+        const real ups_mu_2_o_z = ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) +
+            ups_J_group_2_xz*ups_alpha_1_o_t + ups_Sigma_2_xx*ups_qdd_2_o_t +
+            ups_acc_3_o_x*ups_h_3_z + ups_acc_3_o_y*ups_h_3_x - ups_B_2_o_xy*ups_Sigma_2_yy -
+            ups_J_group_2_yz*ups_alpha_1_o_t_2 - ups_g_r3_x*ups_h_2_z - ups_g_r3_y*ups_h_2_x;
+        /* (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real c_o_y = alpha_1_o_t*h_3_y - h_3_x*qdd_1_o_t - h_3_z*(W_2_t + W_2_t_3) -
-            inv_root_2*mu_2_o_z;
-        const real c_o_z = B_2_o_zy*h_3_z + h_3_y*(W_2_t + W_2_t_2) - B_2_o_zx*h_3_x -
-            inv_root_1*(mu_2_o_x*s_2 - c_2*mu_2_o_y);
-        /* (ups-N28) velocity and gravity terms of the leg force */
-        const real U_in_base_x = axis_x_x*phi_3_o_x - axis_y_ups_axes2_x*c_o_y -
-            axis_z_ups_axes2_in_base_x*c_o_z;
-        const real U_in_base_y = axis_x_y*phi_3_o_x - axis_y_ups_axes2_y*c_o_y -
-            axis_z_ups_axes2_in_base_y*c_o_z;
-        const real U_in_base_z = axis_x_z*phi_3_o_x - axis_y_ups_axes2_z*c_o_y -
-            axis_z_ups_axes2_in_base_z*c_o_z;
-        /* (M7) rotational part of Z */
-        const real Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z;
-        const real Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x;
-        const real Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y;
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_3_x = axis_x_z*q_in_base_y - axis_x_y*q_in_base_z;
-        const real H_a_3_y = axis_x_x*q_in_base_z - axis_x_z*q_in_base_x;
-        const real H_a_3_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y;
-        o->sum[0][k] = add ? o->sum[0][k] + Q_t_10 : Q_t_10;  /* total_ups_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + Q_t_11 : Q_t_11;  /* total_ups_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + Q_t_12 : Q_t_12;  /* total_ups_xz */
-        o->sum[3][k] = add ? o->sum[3][k] + Q_t_14 : Q_t_14;  /* total_ups_yy */
-        o->sum[4][k] = add ? o->sum[4][k] + Q_t_15 : Q_t_15;  /* total_ups_yz */
-        o->sum[5][k] = add ? o->sum[5][k] + Q_t_17 : Q_t_17;  /* total_ups_zz */
-        o->sum[6][k] = add ? o->sum[6][k] + M_ta_t_3 : M_ta_t_3;  /* total_ups_xx_2 */
-        o->sum[7][k] = add ? o->sum[7][k] + M_ta_t_4 : M_ta_t_4;  /* total_ups_xy_2 */
-        o->sum[8][k] = add ? o->sum[8][k] + M_ta_t_5 : M_ta_t_5;  /* total_ups_xz_2 */
-        o->sum[9][k] = add ? o->sum[9][k] + M_ta_t_6 : M_ta_t_6;  /* total_ups_yx */
-        o->sum[10][k] = add ? o->sum[10][k] + M_ta_t_8 : M_ta_t_8;  /* total_ups_yy_2 */
-        o->sum[11][k] = add ? o->sum[11][k] + M_ta_t_9 : M_ta_t_9;  /* total_ups_yz_2 */
-        o->sum[12][k] = add ? o->sum[12][k] + M_ta_t_10 : M_ta_t_10;  /* total_ups_zx */
-        o->sum[13][k] = add ? o->sum[13][k] + M_ta_t_11 : M_ta_t_11;  /* total_ups_zy */
-        o->sum[14][k] = add ? o->sum[14][k] + M_ta_t_12 : M_ta_t_12;  /* total_ups_zz_2 */
-        o->sum[15][k] = add ? o->sum[15][k] + M_aa_t : M_aa_t;  /* total_ups_xx_3 */
-        o->sum[16][k] = add ? o->sum[16][k] + M_aa_t_2 : M_aa_t_2;  /* total_ups_xy_3 */
-        o->sum[17][k] = add ? o->sum[17][k] + M_aa_t_3 : M_aa_t_3;  /* total_ups_xz_3 */
-        o->sum[18][k] = add ? o->sum[18][k] + M_aa_t_4 : M_aa_t_4;  /* total_ups_yy_3 */
-        o->sum[19][k] = add ? o->sum[19][k] + M_aa_t_5 : M_aa_t_5;  /* total_ups_yz_3 */
-        o->sum[20][k] = add ? o->sum[20][k] + M_aa_t_6 : M_aa_t_6;  /* total_ups_zz_3 */
-        o->sum[21][k] = add ? o->sum[21][k] + U_in_base_x : U_in_base_x;  /* total_ups_x */
-        o->sum[22][k] = add ? o->sum[22][k] + U_in_base_y : U_in_base_y;  /* total_ups_y */
-        o->sum[23][k] = add ? o->sum[23][k] + U_in_base_z : U_in_base_z;  /* total_ups_z */
-        o->sum[24][k] = add ? o->sum[24][k] + Z_a_t : Z_a_t;  /* total_ups_x_2 */
-        o->sum[25][k] = add ? o->sum[25][k] + Z_a_t_2 : Z_a_t_2;  /* total_ups_y_2 */
-        o->sum[26][k] = add ? o->sum[26][k] + Z_a_t_3 : Z_a_t_3;  /* total_ups_z_2 */
-        o->entry[0][k] = axis_x_x;
-        o->entry[1][k] = axis_x_y;
-        o->entry[2][k] = axis_x_z;
-        o->entry[3][k] = H_a_3_x;
-        o->entry[4][k] = H_a_3_y;
-        o->entry[5][k] = H_a_3_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
+        const real ups_c_o_y = ups_alpha_1_o_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_o_z -
+            ups_h_3_x*ups_qdd_2_o_t - ups_h_3_z*(ups_W_2_t + ups_W_2_t_3);
+        const real ups_c_o_z = ups_B_2_o_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
+            inv_ups_root_1*(ups_mu_2_o_x*ups_s_2 - ups_c_2*ups_mu_2_o_y) - ups_B_2_o_zx*ups_h_3_x;
+        /* (ups-U) velocity and gravity terms of the leg force */
+        const real ups_U_in_base_x = ups_axis_x_x*ups_phi_3_o_x - axis_y_ups_axes2_x*ups_c_o_y -
+            axis_z_ups_axes2_in_base_x*ups_c_o_z;
+        const real ups_U_in_base_y = ups_axis_x_y*ups_phi_3_o_x - axis_y_ups_axes2_y*ups_c_o_y -
+            axis_z_ups_axes2_in_base_y*ups_c_o_z;
+        const real ups_U_in_base_z = ups_axis_x_z*ups_phi_3_o_x - axis_y_ups_axes2_z*ups_c_o_y -
+            axis_z_ups_axes2_in_base_z*ups_c_o_z;
+        /* (Z_a) rotational part of Z */
+        const real ups_Z_a_t = ups_U_in_base_z*ups_q_in_base_y - ups_U_in_base_y*ups_q_in_base_z;
+        const real ups_Z_a_t_2 = ups_U_in_base_x*ups_q_in_base_z -
+            ups_U_in_base_z*ups_q_in_base_x;
+        const real ups_Z_a_t_3 = ups_U_in_base_y*ups_q_in_base_x -
+            ups_U_in_base_x*ups_q_in_base_y;
+        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
+        const real ups_H_a_3_x = ups_axis_x_z*ups_q_in_base_y - ups_axis_x_y*ups_q_in_base_z;
+        const real ups_H_a_3_y = ups_axis_x_x*ups_q_in_base_z - ups_axis_x_z*ups_q_in_base_x;
+        const real ups_H_a_3_z = ups_axis_x_y*ups_q_in_base_x - ups_axis_x_x*ups_q_in_base_y;
+        terms[0*count + k] = add ? terms[0*count + k] + ups_Q_t_10 : ups_Q_t_10;  /* total_ups_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + ups_Q_t_11 : ups_Q_t_11;  /* total_ups_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + ups_Q_t_12 : ups_Q_t_12;  /* total_ups_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + ups_Q_t_14 : ups_Q_t_14;  /* total_ups_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + ups_Q_t_15 : ups_Q_t_15;  /* total_ups_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + ups_Q_t_17 : ups_Q_t_17;  /* total_ups_zz */
+        terms[6*count + k] = add ? terms[6*count + k] + ups_M_ta_t_3 : ups_M_ta_t_3;  /* total_ups_xx_2 */
+        terms[7*count + k] = add ? terms[7*count + k] + ups_M_ta_t_4 : ups_M_ta_t_4;  /* total_ups_xy_2 */
+        terms[8*count + k] = add ? terms[8*count + k] + ups_M_ta_t_5 : ups_M_ta_t_5;  /* total_ups_xz_2 */
+        terms[9*count + k] = add ? terms[9*count + k] + ups_M_ta_t_6 : ups_M_ta_t_6;  /* total_ups_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + ups_M_ta_t_8 : ups_M_ta_t_8;  /* total_ups_yy_2 */
+        terms[11*count + k] = add ? terms[11*count + k] + ups_M_ta_t_9 : ups_M_ta_t_9;  /* total_ups_yz_2 */
+        terms[12*count + k] = add ? terms[12*count + k] + ups_M_ta_t_10 : ups_M_ta_t_10;  /* total_ups_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + ups_M_ta_t_11 : ups_M_ta_t_11;  /* total_ups_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + ups_M_ta_t_12 : ups_M_ta_t_12;  /* total_ups_zz_2 */
+        terms[15*count + k] = add ? terms[15*count + k] + ups_M_aa_t : ups_M_aa_t;  /* total_ups_xx_3 */
+        terms[16*count + k] = add ? terms[16*count + k] + ups_M_aa_t_2 : ups_M_aa_t_2;  /* total_ups_xy_3 */
+        terms[17*count + k] = add ? terms[17*count + k] + ups_M_aa_t_3 : ups_M_aa_t_3;  /* total_ups_xz_3 */
+        terms[18*count + k] = add ? terms[18*count + k] + ups_M_aa_t_4 : ups_M_aa_t_4;  /* total_ups_yy_3 */
+        terms[19*count + k] = add ? terms[19*count + k] + ups_M_aa_t_5 : ups_M_aa_t_5;  /* total_ups_yz_3 */
+        terms[20*count + k] = add ? terms[20*count + k] + ups_M_aa_t_6 : ups_M_aa_t_6;  /* total_ups_zz_3 */
+        terms[21*count + k] = add ? terms[21*count + k] + ups_U_in_base_x : ups_U_in_base_x;  /* total_ups_x */
+        terms[22*count + k] = add ? terms[22*count + k] + ups_U_in_base_y : ups_U_in_base_y;  /* total_ups_y */
+        terms[23*count + k] = add ? terms[23*count + k] + ups_U_in_base_z : ups_U_in_base_z;  /* total_ups_z */
+        terms[24*count + k] = add ? terms[24*count + k] + ups_Z_a_t : ups_Z_a_t;  /* total_ups_x_2 */
+        terms[25*count + k] = add ? terms[25*count + k] + ups_Z_a_t_2 : ups_Z_a_t_2;  /* total_ups_y_2 */
+        terms[26*count + k] = add ? terms[26*count + k] + ups_Z_a_t_3 : ups_Z_a_t_3;  /* total_ups_z_2 */
+        o[0*count + k] = ups_axis_x_x;
+        o[1*count + k] = ups_axis_x_y;
+        o[2*count + k] = ups_axis_x_z;
+        o[3*count + k] = ups_H_a_3_x;
+        o[4*count + k] = ups_H_a_3_y;
+        o[5*count + k] = ups_H_a_3_z;
+        o[7*count + k] = (ups_axis_x_x + (ups_axis_x_y + ups_axis_x_z)) + (ups_H_a_3_x +
+            (ups_H_a_3_y + ups_H_a_3_z));
+        o[6*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
             TOLERANCE*R(0.8));
     }
 }
 
-INLINE void dynamics_place_ups(size_t w, const dynamics_results_ups *o, size_t leg, size_t first,
+INLINE void dynamics_place_ups(size_t w, size_t count, const real *o, size_t leg, size_t first,
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(7 + leg)*w + k] = o->entry[1][first + k];
-        H[(14 + leg)*w + k] = o->entry[2][first + k];
-        H[(21 + leg)*w + k] = o->entry[3][first + k];
-        H[(28 + leg)*w + k] = o->entry[4][first + k];
-        H[(35 + leg)*w + k] = o->entry[5][first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(7 + leg)*w + k] = o[1*count + first + k];
+        H[(14 + leg)*w + k] = o[2*count + first + k];
+        H[(21 + leg)*w + k] = o[3*count + first + k];
+        H[(28 + leg)*w + k] = o[4*count + first + k];
+        H[(35 + leg)*w + k] = o[5*count + first + k];
+        t->singular[k] += o[6*count + first + k];
+        t->total[k] += o[7*count + first + k];
     }
 }
 
-INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s, real *M, real
-    *Z)
+INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const real *sums, real *M,
+    real *Z, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real h_star_in_base_x = s->h_star_in_base_x[k];
-        const real h_star_in_base_y = s->h_star_in_base_y[k];
-        const real h_star_in_base_z = s->h_star_in_base_z[k];
-        const real J_star_t_8 = s->J_star_t_8[k];
-        const real J_star_t_9 = s->J_star_t_9[k];
-        const real J_star_t_10 = s->J_star_t_10[k];
-        const real J_star_t_12 = s->J_star_t_12[k];
-        const real J_star_t_13 = s->J_star_t_13[k];
-        const real J_star_t_15 = s->J_star_t_15[k];
-        const real Z_p_x = s->Z_p_x[k];
-        const real Z_p_y = s->Z_p_y[k];
-        const real Z_p_z = s->Z_p_z[k];
-        const real Z_q_in_base_x = s->Z_q_in_base_x[k];
-        const real Z_q_in_base_y = s->Z_q_in_base_y[k];
-        const real Z_q_in_base_z = s->Z_q_in_base_z[k];
-        const real total_ups_xx = s->sum[0][k];
-        const real total_ups_xy = s->sum[1][k];
-        const real total_ups_xz = s->sum[2][k];
-        const real total_ups_yy = s->sum[3][k];
-        const real total_ups_yz = s->sum[4][k];
-        const real total_ups_zz = s->sum[5][k];
-        const real total_ups_xx_2 = s->sum[6][k];
-        const real total_ups_xy_2 = s->sum[7][k];
-        const real total_ups_xz_2 = s->sum[8][k];
-        const real total_ups_yx = s->sum[9][k];
-        const real total_ups_yy_2 = s->sum[10][k];
-        const real total_ups_yz_2 = s->sum[11][k];
-        const real total_ups_zx = s->sum[12][k];
-        const real total_ups_zy = s->sum[13][k];
-        const real total_ups_zz_2 = s->sum[14][k];
-        const real total_ups_xx_3 = s->sum[15][k];
-        const real total_ups_xy_3 = s->sum[16][k];
-        const real total_ups_xz_3 = s->sum[17][k];
-        const real total_ups_yy_3 = s->sum[18][k];
-        const real total_ups_yz_3 = s->sum[19][k];
-        const real total_ups_zz_3 = s->sum[20][k];
-        const real total_ups_x = s->sum[21][k];
-        const real total_ups_y = s->sum[22][k];
-        const real total_ups_z = s->sum[23][k];
-        const real total_ups_x_2 = s->sum[24][k];
-        const real total_ups_y_2 = s->sum[25][k];
-        const real total_ups_z_2 = s->sum[26][k];
+        /* (M_tt) translational block of M */
         const real m_star = m->m_star;
-        /* (M1) translational block of M */
+        const real total_ups_xx = sums[0*w + k];
         const real M_tt_xx = m_star - total_ups_xx;
+        const real total_ups_yy = sums[3*w + k];
         const real M_tt_yy = m_star - total_ups_yy;
+        const real total_ups_zz = sums[5*w + k];
         const real M_tt_zz = m_star - total_ups_zz;
-        /* (M2) coupling block of M */
+        /* (M_ta) coupling block of M */
+        const real h_star_in_base_z = s[20*w + k];
+        const real total_ups_xy_2 = sums[7*w + k];
         const real M_ta_xy = h_star_in_base_z - total_ups_xy_2;
+        const real h_star_in_base_y = s[19*w + k];
+        const real total_ups_xz_2 = sums[8*w + k];
         const real M_ta_xz = total_ups_xz_2 - h_star_in_base_y;
+        const real total_ups_yx = sums[9*w + k];
         const real M_ta_yx = total_ups_yx - h_star_in_base_z;
+        const real h_star_in_base_x = s[18*w + k];
+        const real total_ups_yz_2 = sums[11*w + k];
         const real M_ta_yz = h_star_in_base_x + total_ups_yz_2;
+        const real total_ups_zx = sums[12*w + k];
         const real M_ta_zx = h_star_in_base_y + total_ups_zx;
+        const real total_ups_zy = sums[13*w + k];
         const real M_ta_zy = -h_star_in_base_x - total_ups_zy;
-        /* (M3) rotational block of M */
+        /* (M_aa) rotational block of M */
+        const real J_star_t_8 = s[21*w + k];
+        const real total_ups_xx_3 = sums[15*w + k];
         const real M_aa_xx = J_star_t_8 - total_ups_xx_3;
+        const real J_star_t_9 = s[22*w + k];
+        const real total_ups_xy_3 = sums[16*w + k];
         const real M_aa_xy = J_star_t_9 + total_ups_xy_3;
+        const real J_star_t_10 = s[23*w + k];
+        const real total_ups_xz_3 = sums[17*w + k];
         const real M_aa_xz = J_star_t_10 - total_ups_xz_3;
-        const real M_aa_yy = J_star_t_12 - total_ups_yy_3;
-        const real M_aa_yz = J_star_t_13 + total_ups_yz_3;
-        const real M_aa_zz = J_star_t_15 - total_ups_zz_3;
-        /* (M5) translational part of Z */
+        const real J_star_t_13 = s[24*w + k];
+        const real total_ups_yy_3 = sums[18*w + k];
+        const real M_aa_yy = J_star_t_13 - total_ups_yy_3;
+        const real J_star_t_15 = s[25*w + k];
+        const real total_ups_yz_3 = sums[19*w + k];
+        const real M_aa_yz = J_star_t_15 + total_ups_yz_3;
+        const real J_star_t_17 = s[26*w + k];
+        const real total_ups_zz_3 = sums[20*w + k];
+        const real M_aa_zz = J_star_t_17 - total_ups_zz_3;
+        /* (Z_t) translational part of Z */
+        const real Z_p_x = s[27*w + k];
+        const real total_ups_x = sums[21*w + k];
         const real Z_t_x = Z_p_x + total_ups_x;
+        const real Z_p_y = s[28*w + k];
+        const real total_ups_y = sums[22*w + k];
         const real Z_t_y = Z_p_y + total_ups_y;
+        const real Z_p_z = s[29*w + k];
+        const real total_ups_z = sums[23*w + k];
         const real Z_t_z = Z_p_z + total_ups_z;
-        /* (M7) rotational part of Z */
+        /* (Z_a) rotational part of Z */
+        const real Z_q_in_base_x = s[30*w + k];
+        const real total_ups_x_2 = sums[24*w + k];
         const real Z_a_x = Z_q_in_base_x + total_ups_x_2;
+        const real Z_q_in_base_y = s[31*w + k];
+        const real total_ups_y_2 = sums[25*w + k];
         const real Z_a_y = Z_q_in_base_y + total_ups_y_2;
+        const real Z_q_in_base_z = s[32*w + k];
+        const real total_ups_z_2 = sums[26*w + k];
         const real Z_a_z = Z_q_in_base_z + total_ups_z_2;
         M[0*w + k] = M_tt_xx;
+        const real total_ups_xy = sums[1*w + k];
         M[1*w + k] = -total_ups_xy;
         M[6*w + k] = -total_ups_xy;
+        const real total_ups_xz = sums[2*w + k];
         M[2*w + k] = -total_ups_xz;
         M[12*w + k] = -total_ups_xz;
         M[7*w + k] = M_tt_yy;
+        const real total_ups_yz = sums[4*w + k];
         M[8*w + k] = -total_ups_yz;
         M[13*w + k] = -total_ups_yz;
         M[14*w + k] = M_tt_zz;
+        const real total_ups_xx_2 = sums[6*w + k];
         M[3*w + k] = total_ups_xx_2;
         M[18*w + k] = total_ups_xx_2;
         M[4*w + k] = M_ta_xy;
@@ -1935,6 +1944,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
+        const real total_ups_yy_2 = sums[10*w + k];
         M[10*w + k] = -total_ups_yy_2;
         M[25*w + k] = -total_ups_yy_2;
         M[11*w + k] = M_ta_yz;
@@ -1943,6 +1953,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
+        const real total_ups_zz_2 = sums[14*w + k];
         M[17*w + k] = -total_ups_zz_2;
         M[32*w + k] = -total_ups_zz_2;
         M[21*w + k] = M_aa_xx;
@@ -1960,75 +1971,57 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
+        t->total[k] += (((M_tt_xx + (total_ups_xy + total_ups_xz)) + (M_tt_yy + (total_ups_yz +
+            M_tt_zz))) + ((total_ups_xx_2 + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + total_ups_yy_2) +
+            (M_ta_yz + M_ta_zx)))) + (((M_ta_zy + (total_ups_zz_2 + M_aa_xx)) + ((M_aa_xy +
+            M_aa_xz) + (M_aa_yy + M_aa_yz))) + ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) +
+            (Z_a_y + Z_a_z))));
     }
 }
 
-INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real *V, real *M, real
-    *Z, real *H, verdict *t)
+INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
+    *H, verdict *t)
 {
-    dynamics_values values, *const s = &values;
-    dynamics_results_ups results_ups;
-    dynamics_before(m, w, X, V, s, t);
-    if (w == 1) {  /* the legs side by side */
-        dynamics_legs_ups(m, 0, 1, s, 0, 7, 0, &results_ups);
-        for (size_t leg = 0; leg < 7; ++leg) {
-            dynamics_place_ups(w, &results_ups, leg, leg, H, t);
-        }
-        for (size_t n = 0; n < 27; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_ups.sum[n], 7);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_ups.sum, 0, sizeof results_ups.sum);
-        for (size_t leg = 0; leg < 7; ++leg) {
-            dynamics_legs_ups(m, leg, 0, s, 1, w, 1, &results_ups);
-            dynamics_place_ups(w, &results_ups, leg, 0, H, t);
-        }
-        for (size_t n = 0; n < 27; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_ups.sum[n][k];
-            }
-        }
+    real s[33] = {0}, sums[27] = {0}, terms_ups[27*LEGS(7)] = {0}, o_ups[8*LEGS(7)] = {0};
+    dynamics_before(m, 1, X, V, s, t);
+    dynamics_legs_ups(m, 1, 0, 1, s, 0, LEGS(7), 0, terms_ups, o_ups);
+    for (size_t leg = 0; leg < 7; ++leg) {
+        dynamics_place_ups(1, LEGS(7), o_ups, leg, leg, H, t);
     }
-    dynamics_after(m, w, s, M, Z);
+    for (size_t n = 0; n < 27; ++n) {
+        sums[n] = total(terms_ups + n*LEGS(7), 7);
+    }
+    dynamics_after(m, 1, s, sums, M, Z, t);
+}
+
+INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, verdict *t)
+{
+    real s[33*LANES], sums[27*LANES], o_ups[8*LANES];
+    dynamics_before(m, LANES, X, V, s, t);
+    clear(sums, 27*LANES);
+    for (size_t leg = 0; leg < 7; ++leg) {
+        dynamics_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ups);
+        dynamics_place_ups(LANES, LANES, o_ups, leg, 0, H, t);
+    }
+    dynamics_after(m, LANES, s, sums, M, Z, t);
 }
 
 /* ---- M: 920 mul, 703 add, 14 div, 14 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], h_star_in_base_x[LANES],
-        h_star_in_base_y[LANES], h_star_in_base_z[LANES], J_star_t_8[LANES], J_star_t_9[LANES],
-        J_star_t_10[LANES], J_star_t_12[LANES], J_star_t_13[LANES], J_star_t_15[LANES],
-        sum[21][LANES];
-} M_values;
-typedef struct {
-    real sum[21][8], singular[8];
-} M_results_ups;
-
-INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, verdict *t)
+INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real J_star_t_22 = m->J_star_t_22;
-        const real J_star_t_24 = m->J_star_t_24;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_yz = m->J_star_yz;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -2052,302 +2045,323 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, ve
         const real R_zx = quaternion_xz - quaternion_wy;
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* (L2) first moment about the platform origin */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_z = m->h_star_z;
         const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
         const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
         const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
-        /* (L3) inertia tensor about the platform origin */
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy;
-        const real J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx;
+        /* (J_star) inertia tensor about the platform origin */
+        const real J_star_t_12 = m->J_star_t_12;
+        const real J_star_xy = m->J_star_xy;
+        const real J_star_yz = m->J_star_yz;
+        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy;
+        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy;
+        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy;
+        const real J_star_t_14 = m->J_star_t_14;
+        const real J_star_xz = m->J_star_xz;
+        const real J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx;
+        const real J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx;
+        const real J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
+        const real J_star_xx = m->J_star_xx;
         const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
         const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
         const real J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_6*R_xz;
         const real J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_12 = 2*J_star_t_11 + J_star_xx;
-        const real J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_13 = 2*J_star_t_11 + J_star_xx;
+        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_6*R_yz;
-        const real J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_t_15 = 2*J_star_t_14 + J_star_xx;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->h_star_in_base_x[k] = h_star_in_base_x;
-        s->h_star_in_base_y[k] = h_star_in_base_y;
-        s->h_star_in_base_z[k] = h_star_in_base_z;
-        s->J_star_t_8[k] = J_star_t_8;
-        s->J_star_t_9[k] = J_star_t_9;
-        s->J_star_t_10[k] = J_star_t_10;
-        s->J_star_t_12[k] = J_star_t_12;
-        s->J_star_t_13[k] = J_star_t_13;
-        s->J_star_t_15[k] = J_star_t_15;
+        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz;
+        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = h_star_in_base_x;
+        s[13*w + k] = h_star_in_base_y;
+        s[14*w + k] = h_star_in_base_z;
+        s[15*w + k] = J_star_t_8;
+        s[16*w + k] = J_star_t_9;
+        s[17*w + k] = J_star_t_10;
+        s[18*w + k] = J_star_t_13;
+        s[19*w + k] = J_star_t_15;
+        s[20*w + k] = J_star_t_17;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void M_legs_ups(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
-    states, size_t count, int add, M_results_ups *o)
+INLINE void M_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real J_group_2_xx = m->J_group_2_xx[i];
-        const real J_group_2_xy = m->J_group_2_xy[i];
-        const real J_group_2_xz = m->J_group_2_xz[i];
-        const real J_group_2_yy = m->J_group_2_yy[i];
-        const real J_group_2_yz = m->J_group_2_yz[i];
-        const real J_group_2_zz = m->J_group_2_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_base_point_z = m->ups_base_point_z[i];
+        /* (ups-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        /* (ups-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        const real ups_q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
             R_xz*ups_platform_point_z;
-        const real q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real ups_q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
             R_yz*ups_platform_point_z;
-        const real q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real ups_q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
             R_zz*ups_platform_point_z;
-        const real S_x = q_in_base_x + t_x - ups_base_point_x;
-        const real S_y = q_in_base_y + t_y - ups_base_point_y;
-        const real S_z = q_in_base_z + t_z - ups_base_point_z;
-        /* (ups-K2) component along the reference direction */
-        const real px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx;
-        /* (ups-K3) component across the reference direction */
-        const real py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy;
-        /* (ups-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (ups-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (ups-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz;
-        /* (ups-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (ups-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (ups-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        /* (ups-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_x_x = S_x*inv_root_2;
-        const real axis_x_y = S_y*inv_root_2;
-        const real axis_x_z = S_z*inv_root_2;
-        /* (ups-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (ups-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx;
-        const real axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx;
-        const real axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx;
-        const real axis_y_ups_axes2_x = axis_x_z*axis_z_ups_axes2_in_base_y -
-            axis_x_y*axis_z_ups_axes2_in_base_z;
-        const real axis_y_ups_axes2_y = axis_x_x*axis_z_ups_axes2_in_base_z -
-            axis_x_z*axis_z_ups_axes2_in_base_x;
-        const real axis_y_ups_axes2_z = axis_x_y*axis_z_ups_axes2_in_base_x -
-            axis_x_x*axis_z_ups_axes2_in_base_y;
-        /* (ups-A14) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d_alpha_1_t = inv_root_1*s_2;
-        /* (ups-N22) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_t = h_3_z*inv_root_2;
-        /* (ups-N6) coefficient of the acceleration in: inertia force of link 3 from its turning about its
-           reference point */
-        const real d_phi_3_t = h_3_y*inv_root_2;
-        const real d_phi_3_t_2 = h_3_x*inv_root_2;
-        /* (ups-N25) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real t_x = s[0*w + j];
+        const real ups_base_point_x = m->ups_base_point_x[i];
+        const real ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x;
+        const real t_y = s[1*w + j];
+        const real ups_base_point_y = m->ups_base_point_y[i];
+        const real ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y;
+        const real t_z = s[2*w + j];
+        const real ups_base_point_z = m->ups_base_point_z[i];
+        const real ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z;
+        /* (ups-px_1) component along the reference direction */
+        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
+        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
+        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
+        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
+            ups_S_z*ups_base_frame_zx;
+        /* (ups-py_1) component across the reference direction */
+        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
+        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
+        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
+        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
+            ups_S_z*ups_base_frame_zy;
+        /* (ups-rho2_1) squared amplitude */
+        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
+        /* (ups-root_1) amplitude, with the sign of the branch */
+        const real ups_branch_1 = m->ups_branch_1[i];
+        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
+        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
+        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+            ups_S_z*ups_base_frame_zz;
+        /* (ups-rho2_2) squared amplitude */
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        /* (ups-root_2) amplitude, with the sign of the branch */
+        const real ups_branch_2 = m->ups_branch_2[i];
+        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
+        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ups_root_2 = 1/ups_root_2;
+        /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
+        const real ups_s_2 = inv_ups_root_2*ups_xi_1_t;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
+        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
+        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
+            ups_base_frame_xx*ups_c_1;
+        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
+            ups_base_frame_yx*ups_c_1;
+        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
+            ups_base_frame_zx*ups_c_1;
+        const real axis_y_ups_axes2_x = axis_z_ups_axes2_in_base_y*ups_axis_x_z -
+            axis_z_ups_axes2_in_base_z*ups_axis_x_y;
+        const real axis_y_ups_axes2_y = axis_z_ups_axes2_in_base_z*ups_axis_x_x -
+            axis_z_ups_axes2_in_base_x*ups_axis_x_z;
+        const real axis_y_ups_axes2_z = axis_z_ups_axes2_in_base_x*ups_axis_x_y -
+            axis_z_ups_axes2_in_base_y*ups_axis_x_x;
+        /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+        const real ups_d_alpha_1_t = inv_ups_root_1*ups_s_2;
+        /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
+           about its reference point */
+        const real ups_h_3_z = m->ups_h_3_z[i];
+        const real ups_d_phi_3_t = inv_ups_root_2*ups_h_3_z;
+        const real ups_h_3_y = m->ups_h_3_y[i];
+        const real ups_d_phi_3_t_2 = inv_ups_root_2*ups_h_3_y;
+        const real ups_h_3_x = m->ups_h_3_x[i];
+        const real ups_d_phi_3_t_3 = inv_ups_root_2*ups_h_3_x;
+        /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_yy = -d_phi_3_t_2 - inv_root_2*(h_3_x + J_group_2_zz*inv_root_2);
-        const real d_c_yz = d_alpha_1_t*h_3_y - inv_root_2*(J_group_2_xz*d_alpha_1_t -
-            J_group_2_yz*inv_root_2);
-        const real d_c_zz = d_alpha_1_t*h_3_z - d_phi_3_t_2 -
-            inv_root_1*(s_2*(J_group_2_xx*d_alpha_1_t - h_3_z - J_group_2_xy*inv_root_2) -
-            inv_root_2*root_1*(J_group_2_xy*d_alpha_1_t - h_3_x - J_group_2_yy*inv_root_2));
-        /* (ups-N27) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = R(0.5)*d_c_yy;
-        const real Q_t_2 = R(0.5)*d_c_zz;
-        const real Q_t_3 = Q_t*axis_y_ups_axes2_x + axis_z_ups_axes2_in_base_x*d_c_yz -
-            axis_x_x*d_G_t;
-        const real Q_t_4 = Q_t*axis_y_ups_axes2_y + axis_z_ups_axes2_in_base_y*d_c_yz -
-            axis_x_y*d_G_t;
-        const real Q_t_5 = Q_t*axis_y_ups_axes2_z + axis_z_ups_axes2_in_base_z*d_c_yz -
-            axis_x_z*d_G_t;
-        const real Q_t_6 = Q_t_2*axis_z_ups_axes2_in_base_x + axis_x_x*d_phi_3_t;
-        const real Q_t_7 = Q_t_2*axis_z_ups_axes2_in_base_y + axis_x_y*d_phi_3_t;
-        const real Q_t_8 = Q_t_2*axis_z_ups_axes2_in_base_z + axis_x_z*d_phi_3_t;
-        const real Q_t_9 = Q_t_3*axis_y_ups_axes2_x + Q_t_6*axis_z_ups_axes2_in_base_x;
-        const real Q_t_10 = 2*Q_t_9;
-        const real Q_t_11 = Q_t_3*axis_y_ups_axes2_y + Q_t_4*axis_y_ups_axes2_x +
-            Q_t_6*axis_z_ups_axes2_in_base_y + Q_t_7*axis_z_ups_axes2_in_base_x;
-        const real Q_t_12 = Q_t_3*axis_y_ups_axes2_z + Q_t_5*axis_y_ups_axes2_x +
-            Q_t_6*axis_z_ups_axes2_in_base_z + Q_t_8*axis_z_ups_axes2_in_base_x;
-        const real Q_t_13 = Q_t_4*axis_y_ups_axes2_y + Q_t_7*axis_z_ups_axes2_in_base_y;
-        const real Q_t_14 = 2*Q_t_13;
-        const real Q_t_15 = Q_t_4*axis_y_ups_axes2_z + Q_t_5*axis_y_ups_axes2_y +
-            Q_t_7*axis_z_ups_axes2_in_base_z + Q_t_8*axis_z_ups_axes2_in_base_y;
-        const real Q_t_16 = Q_t_5*axis_y_ups_axes2_z + Q_t_8*axis_z_ups_axes2_in_base_z;
-        const real Q_t_17 = 2*Q_t_16;
-        /* (M2) coupling block of M */
-        const real M_ta_t = Q_t_11*q_in_base_z;
-        const real M_ta_t_2 = Q_t_12*q_in_base_y;
-        const real M_ta_t_3 = M_ta_t - M_ta_t_2;
-        const real M_ta_t_4 = Q_t_10*q_in_base_z - Q_t_12*q_in_base_x;
-        const real M_ta_t_5 = Q_t_10*q_in_base_y - Q_t_11*q_in_base_x;
-        const real M_ta_t_6 = Q_t_14*q_in_base_z - Q_t_15*q_in_base_y;
-        const real M_ta_t_7 = Q_t_15*q_in_base_x;
-        const real M_ta_t_8 = M_ta_t - M_ta_t_7;
-        const real M_ta_t_9 = Q_t_11*q_in_base_y - Q_t_14*q_in_base_x;
-        const real M_ta_t_10 = Q_t_15*q_in_base_z - Q_t_17*q_in_base_y;
-        const real M_ta_t_11 = Q_t_12*q_in_base_z - Q_t_17*q_in_base_x;
-        const real M_ta_t_12 = M_ta_t_7 - M_ta_t_2;
-        /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y;
-        const real M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y;
-        const real M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z;
-        const real M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x;
-        const real M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z;
-        const real M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x;
-        o->sum[0][k] = add ? o->sum[0][k] + Q_t_10 : Q_t_10;  /* total_ups_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + Q_t_11 : Q_t_11;  /* total_ups_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + Q_t_12 : Q_t_12;  /* total_ups_xz */
-        o->sum[3][k] = add ? o->sum[3][k] + Q_t_14 : Q_t_14;  /* total_ups_yy */
-        o->sum[4][k] = add ? o->sum[4][k] + Q_t_15 : Q_t_15;  /* total_ups_yz */
-        o->sum[5][k] = add ? o->sum[5][k] + Q_t_17 : Q_t_17;  /* total_ups_zz */
-        o->sum[6][k] = add ? o->sum[6][k] + M_ta_t_3 : M_ta_t_3;  /* total_ups_xx_2 */
-        o->sum[7][k] = add ? o->sum[7][k] + M_ta_t_4 : M_ta_t_4;  /* total_ups_xy_2 */
-        o->sum[8][k] = add ? o->sum[8][k] + M_ta_t_5 : M_ta_t_5;  /* total_ups_xz_2 */
-        o->sum[9][k] = add ? o->sum[9][k] + M_ta_t_6 : M_ta_t_6;  /* total_ups_yx */
-        o->sum[10][k] = add ? o->sum[10][k] + M_ta_t_8 : M_ta_t_8;  /* total_ups_yy_2 */
-        o->sum[11][k] = add ? o->sum[11][k] + M_ta_t_9 : M_ta_t_9;  /* total_ups_yz_2 */
-        o->sum[12][k] = add ? o->sum[12][k] + M_ta_t_10 : M_ta_t_10;  /* total_ups_zx */
-        o->sum[13][k] = add ? o->sum[13][k] + M_ta_t_11 : M_ta_t_11;  /* total_ups_zy */
-        o->sum[14][k] = add ? o->sum[14][k] + M_ta_t_12 : M_ta_t_12;  /* total_ups_zz_2 */
-        o->sum[15][k] = add ? o->sum[15][k] + M_aa_t : M_aa_t;  /* total_ups_xx_3 */
-        o->sum[16][k] = add ? o->sum[16][k] + M_aa_t_2 : M_aa_t_2;  /* total_ups_xy_3 */
-        o->sum[17][k] = add ? o->sum[17][k] + M_aa_t_3 : M_aa_t_3;  /* total_ups_xz_3 */
-        o->sum[18][k] = add ? o->sum[18][k] + M_aa_t_4 : M_aa_t_4;  /* total_ups_yy_3 */
-        o->sum[19][k] = add ? o->sum[19][k] + M_aa_t_5 : M_aa_t_5;  /* total_ups_yz_3 */
-        o->sum[20][k] = add ? o->sum[20][k] + M_aa_t_6 : M_aa_t_6;  /* total_ups_zz_3 */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
+        const real ups_J_group_2_zz = m->ups_J_group_2_zz[i];
+        const real ups_d_c_yy = -ups_d_phi_3_t_3 - inv_ups_root_2*(ups_h_3_x +
+            inv_ups_root_2*ups_J_group_2_zz);
+        const real ups_J_group_2_xz = m->ups_J_group_2_xz[i];
+        const real ups_J_group_2_yz = m->ups_J_group_2_yz[i];
+        const real ups_d_c_yz = ups_d_alpha_1_t*ups_h_3_y -
+            inv_ups_root_2*(ups_J_group_2_xz*ups_d_alpha_1_t - inv_ups_root_2*ups_J_group_2_yz);
+        const real ups_J_group_2_xx = m->ups_J_group_2_xx[i];
+        const real ups_J_group_2_xy = m->ups_J_group_2_xy[i];
+        const real ups_J_group_2_yy = m->ups_J_group_2_yy[i];
+        const real ups_d_c_zz = ups_d_alpha_1_t*ups_h_3_z - ups_d_phi_3_t_3 -
+            inv_ups_root_1*(ups_s_2*(ups_J_group_2_xx*ups_d_alpha_1_t - ups_h_3_z -
+            inv_ups_root_2*ups_J_group_2_xy) -
+            inv_ups_root_2*ups_root_1*(ups_J_group_2_xy*ups_d_alpha_1_t - ups_h_3_x -
+            inv_ups_root_2*ups_J_group_2_yy));
+        /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real ups_Q_t = R(0.5)*ups_d_c_yy;
+        const real ups_Q_t_2 = R(0.5)*ups_d_c_zz;
+        const real ups_Q_t_3 = axis_y_ups_axes2_x*ups_Q_t + axis_z_ups_axes2_in_base_x*ups_d_c_yz
+            - ups_axis_x_x*ups_d_phi_3_t;
+        const real ups_Q_t_4 = axis_y_ups_axes2_y*ups_Q_t + axis_z_ups_axes2_in_base_y*ups_d_c_yz
+            - ups_axis_x_y*ups_d_phi_3_t;
+        const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_in_base_z*ups_d_c_yz
+            - ups_axis_x_z*ups_d_phi_3_t;
+        const real ups_Q_t_6 = axis_z_ups_axes2_in_base_x*ups_Q_t_2 +
+            ups_axis_x_x*ups_d_phi_3_t_2;
+        const real ups_Q_t_7 = axis_z_ups_axes2_in_base_y*ups_Q_t_2 +
+            ups_axis_x_y*ups_d_phi_3_t_2;
+        const real ups_Q_t_8 = axis_z_ups_axes2_in_base_z*ups_Q_t_2 +
+            ups_axis_x_z*ups_d_phi_3_t_2;
+        const real ups_Q_t_9 = axis_y_ups_axes2_x*ups_Q_t_3 +
+            axis_z_ups_axes2_in_base_x*ups_Q_t_6;
+        const real ups_Q_t_10 = 2*ups_Q_t_9;
+        const real ups_Q_t_11 = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 +
+            axis_z_ups_axes2_in_base_x*ups_Q_t_7 + axis_z_ups_axes2_in_base_y*ups_Q_t_6;
+        const real ups_Q_t_12 = axis_y_ups_axes2_x*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_3 +
+            axis_z_ups_axes2_in_base_x*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_6;
+        const real ups_Q_t_13 = axis_y_ups_axes2_y*ups_Q_t_4 +
+            axis_z_ups_axes2_in_base_y*ups_Q_t_7;
+        const real ups_Q_t_14 = 2*ups_Q_t_13;
+        const real ups_Q_t_15 = axis_y_ups_axes2_y*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_4 +
+            axis_z_ups_axes2_in_base_y*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_7;
+        const real ups_Q_t_16 = axis_y_ups_axes2_z*ups_Q_t_5 +
+            axis_z_ups_axes2_in_base_z*ups_Q_t_8;
+        const real ups_Q_t_17 = 2*ups_Q_t_16;
+        /* (M_ta) coupling block of M */
+        const real ups_M_ta_t = ups_Q_t_11*ups_q_in_base_z;
+        const real ups_M_ta_t_2 = ups_Q_t_12*ups_q_in_base_y;
+        const real ups_M_ta_t_3 = ups_M_ta_t - ups_M_ta_t_2;
+        const real ups_M_ta_t_4 = ups_Q_t_10*ups_q_in_base_z - ups_Q_t_12*ups_q_in_base_x;
+        const real ups_M_ta_t_5 = ups_Q_t_10*ups_q_in_base_y - ups_Q_t_11*ups_q_in_base_x;
+        const real ups_M_ta_t_6 = ups_Q_t_14*ups_q_in_base_z - ups_Q_t_15*ups_q_in_base_y;
+        const real ups_M_ta_t_7 = ups_Q_t_15*ups_q_in_base_x;
+        const real ups_M_ta_t_8 = ups_M_ta_t - ups_M_ta_t_7;
+        const real ups_M_ta_t_9 = ups_Q_t_11*ups_q_in_base_y - ups_Q_t_14*ups_q_in_base_x;
+        const real ups_M_ta_t_10 = ups_Q_t_15*ups_q_in_base_z - ups_Q_t_17*ups_q_in_base_y;
+        const real ups_M_ta_t_11 = ups_Q_t_12*ups_q_in_base_z - ups_Q_t_17*ups_q_in_base_x;
+        const real ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2;
+        /* (M_aa) rotational block of M */
+        const real ups_M_aa_t = ups_M_ta_t_6*ups_q_in_base_z - ups_M_ta_t_10*ups_q_in_base_y;
+        const real ups_M_aa_t_2 = ups_M_ta_t_8*ups_q_in_base_z - ups_M_ta_t_11*ups_q_in_base_y;
+        const real ups_M_aa_t_3 = ups_M_ta_t_12*ups_q_in_base_y + ups_M_ta_t_9*ups_q_in_base_z;
+        const real ups_M_aa_t_4 = ups_M_ta_t_4*ups_q_in_base_z - ups_M_ta_t_11*ups_q_in_base_x;
+        const real ups_M_aa_t_5 = ups_M_ta_t_12*ups_q_in_base_x + ups_M_ta_t_5*ups_q_in_base_z;
+        const real ups_M_aa_t_6 = ups_M_ta_t_5*ups_q_in_base_y - ups_M_ta_t_9*ups_q_in_base_x;
+        terms[0*count + k] = add ? terms[0*count + k] + ups_Q_t_10 : ups_Q_t_10;  /* total_ups_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + ups_Q_t_11 : ups_Q_t_11;  /* total_ups_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + ups_Q_t_12 : ups_Q_t_12;  /* total_ups_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + ups_Q_t_14 : ups_Q_t_14;  /* total_ups_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + ups_Q_t_15 : ups_Q_t_15;  /* total_ups_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + ups_Q_t_17 : ups_Q_t_17;  /* total_ups_zz */
+        terms[6*count + k] = add ? terms[6*count + k] + ups_M_ta_t_3 : ups_M_ta_t_3;  /* total_ups_xx_2 */
+        terms[7*count + k] = add ? terms[7*count + k] + ups_M_ta_t_4 : ups_M_ta_t_4;  /* total_ups_xy_2 */
+        terms[8*count + k] = add ? terms[8*count + k] + ups_M_ta_t_5 : ups_M_ta_t_5;  /* total_ups_xz_2 */
+        terms[9*count + k] = add ? terms[9*count + k] + ups_M_ta_t_6 : ups_M_ta_t_6;  /* total_ups_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + ups_M_ta_t_8 : ups_M_ta_t_8;  /* total_ups_yy_2 */
+        terms[11*count + k] = add ? terms[11*count + k] + ups_M_ta_t_9 : ups_M_ta_t_9;  /* total_ups_yz_2 */
+        terms[12*count + k] = add ? terms[12*count + k] + ups_M_ta_t_10 : ups_M_ta_t_10;  /* total_ups_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + ups_M_ta_t_11 : ups_M_ta_t_11;  /* total_ups_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + ups_M_ta_t_12 : ups_M_ta_t_12;  /* total_ups_zz_2 */
+        terms[15*count + k] = add ? terms[15*count + k] + ups_M_aa_t : ups_M_aa_t;  /* total_ups_xx_3 */
+        terms[16*count + k] = add ? terms[16*count + k] + ups_M_aa_t_2 : ups_M_aa_t_2;  /* total_ups_xy_3 */
+        terms[17*count + k] = add ? terms[17*count + k] + ups_M_aa_t_3 : ups_M_aa_t_3;  /* total_ups_xz_3 */
+        terms[18*count + k] = add ? terms[18*count + k] + ups_M_aa_t_4 : ups_M_aa_t_4;  /* total_ups_yy_3 */
+        terms[19*count + k] = add ? terms[19*count + k] + ups_M_aa_t_5 : ups_M_aa_t_5;  /* total_ups_yz_3 */
+        terms[20*count + k] = add ? terms[20*count + k] + ups_M_aa_t_6 : ups_M_aa_t_6;  /* total_ups_zz_3 */
+        o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
             TOLERANCE*R(0.8));
     }
 }
 
-INLINE void M_place_ups(size_t w, const M_results_ups *o, size_t first, verdict *t)
+INLINE void M_place_ups(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
+        t->singular[k] += o[0*count + first + k];
     }
 }
 
-INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
+INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums, real *M, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real h_star_in_base_x = s->h_star_in_base_x[k];
-        const real h_star_in_base_y = s->h_star_in_base_y[k];
-        const real h_star_in_base_z = s->h_star_in_base_z[k];
-        const real J_star_t_8 = s->J_star_t_8[k];
-        const real J_star_t_9 = s->J_star_t_9[k];
-        const real J_star_t_10 = s->J_star_t_10[k];
-        const real J_star_t_12 = s->J_star_t_12[k];
-        const real J_star_t_13 = s->J_star_t_13[k];
-        const real J_star_t_15 = s->J_star_t_15[k];
-        const real total_ups_xx = s->sum[0][k];
-        const real total_ups_xy = s->sum[1][k];
-        const real total_ups_xz = s->sum[2][k];
-        const real total_ups_yy = s->sum[3][k];
-        const real total_ups_yz = s->sum[4][k];
-        const real total_ups_zz = s->sum[5][k];
-        const real total_ups_xx_2 = s->sum[6][k];
-        const real total_ups_xy_2 = s->sum[7][k];
-        const real total_ups_xz_2 = s->sum[8][k];
-        const real total_ups_yx = s->sum[9][k];
-        const real total_ups_yy_2 = s->sum[10][k];
-        const real total_ups_yz_2 = s->sum[11][k];
-        const real total_ups_zx = s->sum[12][k];
-        const real total_ups_zy = s->sum[13][k];
-        const real total_ups_zz_2 = s->sum[14][k];
-        const real total_ups_xx_3 = s->sum[15][k];
-        const real total_ups_xy_3 = s->sum[16][k];
-        const real total_ups_xz_3 = s->sum[17][k];
-        const real total_ups_yy_3 = s->sum[18][k];
-        const real total_ups_yz_3 = s->sum[19][k];
-        const real total_ups_zz_3 = s->sum[20][k];
+        /* (M_tt) translational block of M */
         const real m_star = m->m_star;
-        /* (M1) translational block of M */
+        const real total_ups_xx = sums[0*w + k];
         const real M_tt_xx = m_star - total_ups_xx;
+        const real total_ups_yy = sums[3*w + k];
         const real M_tt_yy = m_star - total_ups_yy;
+        const real total_ups_zz = sums[5*w + k];
         const real M_tt_zz = m_star - total_ups_zz;
-        /* (M2) coupling block of M */
+        /* (M_ta) coupling block of M */
+        const real h_star_in_base_z = s[14*w + k];
+        const real total_ups_xy_2 = sums[7*w + k];
         const real M_ta_xy = h_star_in_base_z - total_ups_xy_2;
+        const real h_star_in_base_y = s[13*w + k];
+        const real total_ups_xz_2 = sums[8*w + k];
         const real M_ta_xz = total_ups_xz_2 - h_star_in_base_y;
+        const real total_ups_yx = sums[9*w + k];
         const real M_ta_yx = total_ups_yx - h_star_in_base_z;
+        const real h_star_in_base_x = s[12*w + k];
+        const real total_ups_yz_2 = sums[11*w + k];
         const real M_ta_yz = h_star_in_base_x + total_ups_yz_2;
+        const real total_ups_zx = sums[12*w + k];
         const real M_ta_zx = h_star_in_base_y + total_ups_zx;
+        const real total_ups_zy = sums[13*w + k];
         const real M_ta_zy = -h_star_in_base_x - total_ups_zy;
-        /* (M3) rotational block of M */
+        /* (M_aa) rotational block of M */
+        const real J_star_t_8 = s[15*w + k];
+        const real total_ups_xx_3 = sums[15*w + k];
         const real M_aa_xx = J_star_t_8 - total_ups_xx_3;
+        const real J_star_t_9 = s[16*w + k];
+        const real total_ups_xy_3 = sums[16*w + k];
         const real M_aa_xy = J_star_t_9 + total_ups_xy_3;
+        const real J_star_t_10 = s[17*w + k];
+        const real total_ups_xz_3 = sums[17*w + k];
         const real M_aa_xz = J_star_t_10 - total_ups_xz_3;
-        const real M_aa_yy = J_star_t_12 - total_ups_yy_3;
-        const real M_aa_yz = J_star_t_13 + total_ups_yz_3;
-        const real M_aa_zz = J_star_t_15 - total_ups_zz_3;
+        const real J_star_t_13 = s[18*w + k];
+        const real total_ups_yy_3 = sums[18*w + k];
+        const real M_aa_yy = J_star_t_13 - total_ups_yy_3;
+        const real J_star_t_15 = s[19*w + k];
+        const real total_ups_yz_3 = sums[19*w + k];
+        const real M_aa_yz = J_star_t_15 + total_ups_yz_3;
+        const real J_star_t_17 = s[20*w + k];
+        const real total_ups_zz_3 = sums[20*w + k];
+        const real M_aa_zz = J_star_t_17 - total_ups_zz_3;
         M[0*w + k] = M_tt_xx;
+        const real total_ups_xy = sums[1*w + k];
         M[1*w + k] = -total_ups_xy;
         M[6*w + k] = -total_ups_xy;
+        const real total_ups_xz = sums[2*w + k];
         M[2*w + k] = -total_ups_xz;
         M[12*w + k] = -total_ups_xz;
         M[7*w + k] = M_tt_yy;
+        const real total_ups_yz = sums[4*w + k];
         M[8*w + k] = -total_ups_yz;
         M[13*w + k] = -total_ups_yz;
         M[14*w + k] = M_tt_zz;
+        const real total_ups_xx_2 = sums[6*w + k];
         M[3*w + k] = total_ups_xx_2;
         M[18*w + k] = total_ups_xx_2;
         M[4*w + k] = M_ta_xy;
@@ -2356,6 +2370,7 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
+        const real total_ups_yy_2 = sums[10*w + k];
         M[10*w + k] = -total_ups_yy_2;
         M[25*w + k] = -total_ups_yy_2;
         M[11*w + k] = M_ta_yz;
@@ -2364,6 +2379,7 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
+        const real total_ups_zz_2 = sums[14*w + k];
         M[17*w + k] = -total_ups_zz_2;
         M[32*w + k] = -total_ups_zz_2;
         M[21*w + k] = M_aa_xx;
@@ -2375,88 +2391,55 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         M[29*w + k] = M_aa_yz;
         M[34*w + k] = M_aa_yz;
         M[35*w + k] = M_aa_zz;
+        t->total[k] += (((M_tt_xx + total_ups_xy) + (total_ups_xz + (M_tt_yy + total_ups_yz))) +
+            ((M_tt_zz + total_ups_xx_2) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((total_ups_yy_2 +
+            M_ta_yz) + (M_ta_zx + (M_ta_zy + total_ups_zz_2))) + ((M_aa_xx + (M_aa_xy + M_aa_xz))
+            + (M_aa_yy + (M_aa_yz + M_aa_zz))));
     }
 }
 
-INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *t)
+INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    M_values values, *const s = &values;
-    M_results_ups results_ups;
-    M_before(m, w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        M_legs_ups(m, 0, 1, s, 0, 7, 0, &results_ups);
-        for (size_t leg = 0; leg < 7; ++leg) {
-            M_place_ups(w, &results_ups, leg, t);
-        }
-        for (size_t n = 0; n < 21; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_ups.sum[n], 7);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_ups.sum, 0, sizeof results_ups.sum);
-        for (size_t leg = 0; leg < 7; ++leg) {
-            M_legs_ups(m, leg, 0, s, 1, w, 1, &results_ups);
-            M_place_ups(w, &results_ups, 0, t);
-        }
-        for (size_t n = 0; n < 21; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_ups.sum[n][k];
-            }
-        }
+    real s[21] = {0}, sums[21] = {0}, terms_ups[21*LEGS(7)] = {0}, o_ups[1*LEGS(7)] = {0};
+    M_before(m, 1, X, s, t);
+    M_legs_ups(m, 1, 0, 1, s, 0, LEGS(7), 0, terms_ups, o_ups);
+    for (size_t leg = 0; leg < 7; ++leg) {
+        M_place_ups(1, LEGS(7), o_ups, leg, t);
     }
-    M_after(m, w, s, M);
+    for (size_t n = 0; n < 21; ++n) {
+        sums[n] = total(terms_ups + n*LEGS(7), 7);
+    }
+    M_after(m, 1, s, sums, M, t);
 }
 
-/* ---- Z: 1178 mul, 904 add, 14 div, 14 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES], W_p_xx[LANES],
-        W_p_xy[LANES], W_p_xz[LANES], W_p_yy[LANES], W_p_yz[LANES], W_p_zz[LANES], Z_p_x[LANES],
-        Z_p_y[LANES], Z_p_z[LANES], Z_q_in_base_x[LANES], Z_q_in_base_y[LANES], Z_q_in_base_z[LANES],
-        sum[6][LANES];
-} Z_values;
-typedef struct {
-    real sum[6][8], singular[8];
-} Z_results_ups;
+INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
+{
+    real s[21*LANES], sums[21*LANES], o_ups[1*LANES];
+    M_before(m, LANES, X, s, t);
+    clear(sums, 21*LANES);
+    for (size_t leg = 0; leg < 7; ++leg) {
+        M_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ups);
+        M_place_ups(LANES, LANES, o_ups, 0, t);
+    }
+    M_after(m, LANES, s, sums, M, t);
+}
 
-INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, Z_values *s,
-    verdict *t)
+/* ---- Z: 1154 mul, 880 add, 14 div, 14 sqrt, 0 trig, every leg counted ---- */
+INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -2481,329 +2464,347 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
-        /* (L2) first moment about the platform origin */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_z = m->h_star_z;
         const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
         const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
         const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
-        /* (P1) centripetal tensor of the platform */
-        const real W_p_t = omega_x*omega_x;
-        const real W_p_t_2 = omega_y*omega_y;
-        const real W_p_t_3 = omega_z*omega_z;
-        const real W_p_xx = W_p_t_2 + W_p_t_3;
-        const real W_p_xy = omega_x*omega_y;
-        const real W_p_xz = omega_x*omega_z;
-        const real W_p_yy = W_p_t + W_p_t_3;
-        const real W_p_yz = omega_y*omega_z;
-        const real W_p_zz = W_p_t + W_p_t_2;
-        /* (M4) centripetal force and weight of the platform */
-        const real Z_p_x = W_p_xy*h_star_in_base_y + W_p_xz*h_star_in_base_z - Z_p_t -
-            W_p_xx*h_star_in_base_x;
-        const real Z_p_y = W_p_xy*h_star_in_base_x + W_p_yz*h_star_in_base_z - Z_p_t_2 -
-            W_p_yy*h_star_in_base_y;
-        const real Z_p_z = W_p_xz*h_star_in_base_x + W_p_yz*h_star_in_base_y - Z_p_t_3 -
-            W_p_zz*h_star_in_base_z;
-        /* (M6) gyroscopic moment and moment of the weight of the platform */
+        /* (Z_p) centripetal force and weight of the platform */
+        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
+        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
+        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t = m->Z_p_t;
+        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
+        const real Z_p_t_2 = m->Z_p_t_2;
+        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
+        const real Z_p_t_3 = m->Z_p_t_3;
+        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
+        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real gravity_z = m->gravity_z;
+        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
         const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
         const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
         const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_xx = m->J_star_xx;
+        const real J_star_xy = m->J_star_xy;
+        const real J_star_xz = m->J_star_xz;
         const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
+        const real J_star_yy = m->J_star_yy;
+        const real J_star_yz = m->J_star_yz;
         const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
+        const real J_star_zz = m->J_star_zz;
         const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z_2*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x_2*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y_2*h_star_x;
+        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
+            g_r0_z*h_star_y;
+        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
+            g_r0_x*h_star_z;
+        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
+            g_r0_y*h_star_x;
         const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
         const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
         const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->W_p_xx[k] = W_p_xx;
-        s->W_p_xy[k] = W_p_xy;
-        s->W_p_xz[k] = W_p_xz;
-        s->W_p_yy[k] = W_p_yy;
-        s->W_p_yz[k] = W_p_yz;
-        s->W_p_zz[k] = W_p_zz;
-        s->Z_p_x[k] = Z_p_x;
-        s->Z_p_y[k] = Z_p_y;
-        s->Z_p_z[k] = Z_p_z;
-        s->Z_q_in_base_x[k] = Z_q_in_base_x;
-        s->Z_q_in_base_y[k] = Z_q_in_base_y;
-        s->Z_q_in_base_z[k] = Z_q_in_base_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
+        s[18*w + k] = Z_p_x;
+        s[19*w + k] = Z_p_y;
+        s[20*w + k] = Z_p_z;
+        s[21*w + k] = Z_q_in_base_x;
+        s[22*w + k] = Z_q_in_base_y;
+        s[23*w + k] = Z_q_in_base_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void Z_legs_ups(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
-    states, size_t count, int add, Z_results_ups *o)
+INLINE void Z_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real W_p_xx = s->W_p_xx[j];
-        const real W_p_xy = s->W_p_xy[j];
-        const real W_p_xz = s->W_p_xz[j];
-        const real W_p_yy = s->W_p_yy[j];
-        const real W_p_yz = s->W_p_yz[j];
-        const real W_p_zz = s->W_p_zz[j];
-        const real J_group_2_xy = m->J_group_2_xy[i];
-        const real J_group_2_xz = m->J_group_2_xz[i];
-        const real J_group_2_yz = m->J_group_2_yz[i];
-        const real Sigma_2_xx = m->Sigma_2_xx[i];
-        const real Sigma_2_yy = m->Sigma_2_yy[i];
-        const real Sigma_2_zz = m->Sigma_2_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real g_r0_z = m->g_r0_z[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real h_2_z = m->h_2_z[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_base_point_z = m->ups_base_point_z[i];
+        /* (ups-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        /* (ups-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        const real ups_q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
             R_xz*ups_platform_point_z;
-        const real q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real ups_q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
             R_yz*ups_platform_point_z;
-        const real q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real ups_q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
             R_zz*ups_platform_point_z;
-        const real S_x = q_in_base_x + t_x - ups_base_point_x;
-        const real S_y = q_in_base_y + t_y - ups_base_point_y;
-        const real S_z = q_in_base_z + t_z - ups_base_point_z;
-        /* (ups-K2) component along the reference direction */
-        const real px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx;
-        /* (ups-K3) component across the reference direction */
-        const real py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy;
-        /* (ups-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (ups-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (ups-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz;
-        /* (ups-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (ups-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (ups-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (ups-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_x_x = S_x*inv_root_2;
-        const real axis_x_y = S_y*inv_root_2;
-        const real axis_x_z = S_z*inv_root_2;
-        /* (ups-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (ups-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx;
-        const real axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx;
-        const real axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx;
-        const real axis_y_ups_axes2_x = axis_x_z*axis_z_ups_axes2_in_base_y -
-            axis_x_y*axis_z_ups_axes2_in_base_z;
-        const real axis_y_ups_axes2_y = axis_x_x*axis_z_ups_axes2_in_base_z -
-            axis_x_z*axis_z_ups_axes2_in_base_x;
-        const real axis_y_ups_axes2_z = axis_x_y*axis_z_ups_axes2_in_base_x -
-            axis_x_x*axis_z_ups_axes2_in_base_y;
-        /* (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
-        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
-        const real g_r3_x = g_r0_z*s_2 - c_2*g_r1_y;
-        const real g_r3_y = -c_2*g_r0_z - g_r1_y*s_2;
-        /* (ups-A1) centripetal acceleration of the connection point */
-        const real u_1_x = W_p_xy*q_in_base_y + W_p_xz*q_in_base_z - W_p_xx*q_in_base_x;
-        const real u_1_y = W_p_xy*q_in_base_x + W_p_yz*q_in_base_z - W_p_yy*q_in_base_y;
-        const real u_1_z = W_p_xz*q_in_base_x + W_p_yz*q_in_base_y - W_p_zz*q_in_base_z;
-        const real u_1_t = axis_y_ups_axes2_x*u_1_x;
-        const real u_1_t_2 = axis_y_ups_axes2_y*u_1_y;
-        const real u_1_t_3 = axis_y_ups_axes2_z*u_1_z;
-        const real u_1_tip_z = axis_z_ups_axes2_in_base_x*u_1_x + axis_z_ups_axes2_in_base_y*u_1_y
-            + axis_z_ups_axes2_in_base_z*u_1_z;
-        /* (ups-N4) remainder without the acceleration in: acceleration of the reference point of link 3,
-           less gravity */
-        const real acc_3_o_x = axis_x_x*u_1_x + axis_x_y*u_1_y + axis_x_z*u_1_z - g_r3_x;
-        const real acc_3_o_y = u_1_t + u_1_t_2 + u_1_t_3 - g_r3_y;
-        const real acc_3_o_z = u_1_tip_z - g_r1_x;
-        /* (ups-V1) velocity of the connection point */
-        const real S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z;
-        /* (ups-V8) rate of joint 1 */
-        const real qd_2 = inv_root_2*(S_dot_x*axis_y_ups_axes2_x + S_dot_y*axis_y_ups_axes2_y +
-            S_dot_z*axis_y_ups_axes2_z);
-        const real qd_1 = inv_root_1*(S_dot_x*axis_z_ups_axes2_in_base_x +
-            S_dot_y*axis_z_ups_axes2_in_base_y + S_dot_z*axis_z_ups_axes2_in_base_z);
-        /* (ups-V11) angular velocity of link 1 */
-        const real omega_1_t = qd_1*s_2;
-        const real omega_1_t_2 = c_2*qd_1;
-        /* (ups-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_x = omega_1_t_2*qd_2;
-        const real zeta_2_y = omega_1_t*qd_2;
-        /* (ups-V13) centripetal tensor of link 2 */
-        const real W_2_t = omega_1_t*omega_1_t;
-        const real W_2_t_2 = omega_1_t_2*omega_1_t_2;
-        const real W_2_t_3 = qd_2*qd_2;
-        const real W_2_xy = omega_1_t*omega_1_t_2;
-        /* (ups-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_tip_x;
-        const real bias_z = bias_t*omega_1_t_2 + 2*root_2*zeta_2_y;
-        /* (ups-A7) remainder without the acceleration in: acceleration of the connection point left to
+        const real t_x = s[0*w + j];
+        const real ups_base_point_x = m->ups_base_point_x[i];
+        const real ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x;
+        const real t_y = s[1*w + j];
+        const real ups_base_point_y = m->ups_base_point_y[i];
+        const real ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y;
+        const real t_z = s[2*w + j];
+        const real ups_base_point_z = m->ups_base_point_z[i];
+        const real ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z;
+        /* (ups-px_1) component along the reference direction */
+        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
+        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
+        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
+        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
+            ups_S_z*ups_base_frame_zx;
+        /* (ups-py_1) component across the reference direction */
+        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
+        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
+        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
+        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
+            ups_S_z*ups_base_frame_zy;
+        /* (ups-rho2_1) squared amplitude */
+        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
+        /* (ups-root_1) amplitude, with the sign of the branch */
+        const real ups_branch_1 = m->ups_branch_1[i];
+        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
+        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
+        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+            ups_S_z*ups_base_frame_zz;
+        /* (ups-rho2_2) squared amplitude */
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        /* (ups-root_2) amplitude, with the sign of the branch */
+        const real ups_branch_2 = m->ups_branch_2[i];
+        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
+        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ups_root_2 = 1/ups_root_2;
+        const real ups_c_2 = inv_ups_root_2*ups_root_1;
+        /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
+        const real ups_s_2 = inv_ups_root_2*ups_xi_1_t;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
+        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
+        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
+            ups_base_frame_xx*ups_c_1;
+        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
+            ups_base_frame_yx*ups_c_1;
+        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
+            ups_base_frame_zx*ups_c_1;
+        const real axis_y_ups_axes2_x = axis_z_ups_axes2_in_base_y*ups_axis_x_z -
+            axis_z_ups_axes2_in_base_z*ups_axis_x_y;
+        const real axis_y_ups_axes2_y = axis_z_ups_axes2_in_base_z*ups_axis_x_x -
+            axis_z_ups_axes2_in_base_x*ups_axis_x_z;
+        const real axis_y_ups_axes2_z = axis_z_ups_axes2_in_base_x*ups_axis_x_y -
+            axis_z_ups_axes2_in_base_y*ups_axis_x_x;
+        /* (ups-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z;
+        const real ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x;
+        const real t_dot_x = s[12*w + j];
+        const real ups_S_dot_x = t_dot_x + ups_S_dot_t;
+        const real t_dot_y = s[13*w + j];
+        const real ups_S_dot_y = t_dot_y + ups_S_dot_t_2;
+        const real t_dot_z = s[14*w + j];
+        const real ups_S_dot_z = t_dot_z + ups_S_dot_t_3;
+        const real ups_S_dot_tip_x = ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y +
+            ups_S_dot_z*ups_axis_x_z;
+        /* (ups-qd_2) rate of joint 2 */
+        const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x +
+            axis_y_ups_axes2_y*ups_S_dot_y + axis_y_ups_axes2_z*ups_S_dot_z);
+        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
+            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z);
+        /* (ups-omega_1) angular velocity of link 1 */
+        const real ups_omega_1_t = ups_qd_1*ups_s_2;
+        const real ups_omega_1_t_2 = ups_c_2*ups_qd_1;
+        /* (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2;
+        const real ups_zeta_2_y = ups_omega_1_t*ups_qd_2;
+        /* (ups-u_1) centripetal acceleration of the connection point */
+        const real ups_u_1_x = omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2;
+        const real ups_u_1_y = omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3;
+        const real ups_u_1_z = omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t;
+        /* (ups-W_2) centripetal tensor of link 2 */
+        const real ups_W_2_t = ups_omega_1_t*ups_omega_1_t;
+        const real ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2;
+        const real ups_W_2_t_3 = ups_qd_2*ups_qd_2;
+        const real ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2;
+        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
+        const real ups_bias_t = 2*ups_S_dot_tip_x;
+        const real ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2*ups_root_2*ups_zeta_2_y;
+        /* (ups-u_1) centripetal acceleration of the connection point */
+        const real ups_u_1_t = axis_y_ups_axes2_x*ups_u_1_x;
+        const real ups_u_1_t_2 = axis_y_ups_axes2_y*ups_u_1_y;
+        const real ups_u_1_t_3 = axis_y_ups_axes2_z*ups_u_1_z;
+        const real ups_u_1_tip_z = axis_z_ups_axes2_in_base_x*ups_u_1_x +
+            axis_z_ups_axes2_in_base_y*ups_u_1_y + axis_z_ups_axes2_in_base_z*ups_u_1_z;
+        /* (ups-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rel_o_z = u_1_tip_z - bias_z;
-        /* (ups-A9) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_o_t = inv_root_2*(u_1_t + u_1_t_2 + u_1_t_3 - bias_t*qd_2);
-        const real qdd_1_o = inv_root_1*rel_o_z;
-        /* (ups-A15) remainder without the acceleration in: angular acceleration of link 1 */
-        const real alpha_1_o_t = qdd_1_o*s_2;
-        const real alpha_1_o_t_2 = c_2*qdd_1_o;
-        /* (ups-A18) remainder without the acceleration in: angular acceleration of link 2 */
-        const real alpha_2_o_x = alpha_1_o_t - zeta_2_x;
-        const real alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y;
-        /* (ups-A20) remainder of the acceleration tensor of link 2 */
-        const real B_2_o_xy = -2*W_2_xy - qdd_1_o_t;
-        const real B_2_o_zx = zeta_2_y - alpha_2_o_y;
-        const real B_2_o_zy = alpha_2_o_x - zeta_2_x;
-        /* (ups-N14) remainder without the acceleration in: inertia moment of the links that turn with
+        const real ups_rel_o_z = ups_u_1_tip_z - ups_bias_z;
+        /* (ups-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        const real ups_qdd_2_o_t = inv_ups_root_2*(ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 -
+            ups_bias_t*ups_qd_2);
+        const real ups_qdd_1_o = inv_ups_root_1*ups_rel_o_z;
+        /* (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+        const real ups_alpha_1_o_t = ups_qdd_1_o*ups_s_2;
+        const real ups_alpha_1_o_t_2 = ups_c_2*ups_qdd_1_o;
+        /* (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        const real ups_alpha_2_o_x = ups_alpha_1_o_t - ups_zeta_2_x;
+        const real ups_alpha_2_o_y = -ups_alpha_1_o_t_2 - ups_zeta_2_y;
+        /* (ups-B_2_o) remainder of the acceleration tensor of link 2 */
+        const real ups_B_2_o_xy = -2*ups_W_2_xy - ups_qdd_2_o_t;
+        const real ups_B_2_o_zx = ups_zeta_2_y - ups_alpha_2_o_y;
+        const real ups_B_2_o_zy = ups_alpha_2_o_x - ups_zeta_2_x;
+        /* (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
+           about its reference point */
+        const real ups_h_3_x = m->ups_h_3_x[i];
+        const real ups_h_3_y = m->ups_h_3_y[i];
+        const real ups_h_3_z = m->ups_h_3_z[i];
+        const real ups_phi_3_o_x = -ups_B_2_o_xy*ups_h_3_z - ups_alpha_1_o_t_2*ups_h_3_y -
+            ups_h_3_x*(ups_W_2_t_2 + ups_W_2_t_3);
+        /* (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real ups_g_r0_x = m->ups_g_r0_x[i];
+        const real ups_g_r0_y = m->ups_g_r0_y[i];
+        const real ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x;
+        const real ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1;
+        const real ups_g_r0_z = m->ups_g_r0_z[i];
+        const real ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y;
+        const real ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2;
+        /* (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+           link 3, less gravity */
+        const real ups_acc_3_o_x = ups_axis_x_x*ups_u_1_x + ups_axis_x_y*ups_u_1_y +
+            ups_axis_x_z*ups_u_1_z - ups_g_r3_x;
+        const real ups_acc_3_o_y = ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 - ups_g_r3_y;
+        const real ups_acc_3_o_z = ups_u_1_tip_z - ups_g_r1_x;
+        /* (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real mu_2_o_x = B_2_o_zy*Sigma_2_yy + J_group_2_xz*qdd_1_o_t + J_group_2_yz*(W_2_t_2
-            - W_2_t_3) + Sigma_2_zz*alpha_1_o_t + g_r1_x*h_2_z + g_r3_y*h_2_y -
-            B_2_o_zx*J_group_2_xy - acc_3_o_y*h_3_y - acc_3_o_z*h_3_z;
-        const real mu_2_o_y = B_2_o_zy*J_group_2_xy + acc_3_o_x*h_3_y + g_r1_x*h_2_x -
-            B_2_o_xy*J_group_2_yz - B_2_o_zx*Sigma_2_xx - J_group_2_xz*(W_2_t - W_2_t_3) -
-            Sigma_2_zz*alpha_1_o_t_2 - acc_3_o_z*h_3_x - g_r3_x*h_2_y;
-        const real mu_2_o_z = J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_xz*alpha_1_o_t +
-            Sigma_2_xx*qdd_1_o_t + acc_3_o_x*h_3_z + acc_3_o_y*h_3_x - B_2_o_xy*Sigma_2_yy -
-            J_group_2_yz*alpha_1_o_t_2 - g_r3_x*h_2_z - g_r3_y*h_2_x;
-        /* (ups-N7) remainder without the acceleration in: inertia force of link 3 from its turning about
-           its reference point */
-        const real phi_3_o_x = -B_2_o_xy*h_3_z - alpha_1_o_t_2*h_3_y - h_3_x*(W_2_t_2 + W_2_t_3);
-        /* (ups-N26) remainder without the acceleration in: leg force on the platform without actuation
+        const real ups_J_group_2_xy = m->ups_J_group_2_xy[i];
+        const real ups_J_group_2_xz = m->ups_J_group_2_xz[i];
+        const real ups_J_group_2_yz = m->ups_J_group_2_yz[i];
+        const real ups_Sigma_2_yy = m->ups_Sigma_2_yy[i];
+        const real ups_Sigma_2_zz = m->ups_Sigma_2_zz[i];
+        const real ups_h_2_y = m->ups_h_2_y[i];
+        const real ups_h_2_z = m->ups_h_2_z[i];
+        const real ups_mu_2_o_x = ups_B_2_o_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_2_o_t +
+            ups_J_group_2_yz*(ups_W_2_t_2 - ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_o_t +
+            ups_g_r1_x*ups_h_2_z + ups_g_r3_y*ups_h_2_y - ups_B_2_o_zx*ups_J_group_2_xy -
+            ups_acc_3_o_y*ups_h_3_y - ups_acc_3_o_z*ups_h_3_z;
+        const real ups_Sigma_2_xx = m->ups_Sigma_2_xx[i];
+        const real ups_h_2_x = m->ups_h_2_x[i];
+        const real ups_mu_2_o_y = ups_B_2_o_zy*ups_J_group_2_xy + ups_acc_3_o_x*ups_h_3_y +
+            ups_g_r1_x*ups_h_2_x - ups_B_2_o_xy*ups_J_group_2_yz - ups_B_2_o_zx*ups_Sigma_2_xx -
+            ups_J_group_2_xz*(ups_W_2_t - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_o_t_2 -
+            ups_acc_3_o_z*ups_h_3_x - ups_g_r3_x*ups_h_2_y;
+        const real ups_mu_2_o_z = ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) +
+            ups_J_group_2_xz*ups_alpha_1_o_t + ups_Sigma_2_xx*ups_qdd_2_o_t +
+            ups_acc_3_o_x*ups_h_3_z + ups_acc_3_o_y*ups_h_3_x - ups_B_2_o_xy*ups_Sigma_2_yy -
+            ups_J_group_2_yz*ups_alpha_1_o_t_2 - ups_g_r3_x*ups_h_2_z - ups_g_r3_y*ups_h_2_x;
+        /* (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real c_o_y = alpha_1_o_t*h_3_y - h_3_x*qdd_1_o_t - h_3_z*(W_2_t + W_2_t_3) -
-            inv_root_2*mu_2_o_z;
-        const real c_o_z = B_2_o_zy*h_3_z + h_3_y*(W_2_t + W_2_t_2) - B_2_o_zx*h_3_x -
-            inv_root_1*(mu_2_o_x*s_2 - c_2*mu_2_o_y);
-        /* (ups-N28) velocity and gravity terms of the leg force */
-        const real U_in_base_x = axis_x_x*phi_3_o_x - axis_y_ups_axes2_x*c_o_y -
-            axis_z_ups_axes2_in_base_x*c_o_z;
-        const real U_in_base_y = axis_x_y*phi_3_o_x - axis_y_ups_axes2_y*c_o_y -
-            axis_z_ups_axes2_in_base_y*c_o_z;
-        const real U_in_base_z = axis_x_z*phi_3_o_x - axis_y_ups_axes2_z*c_o_y -
-            axis_z_ups_axes2_in_base_z*c_o_z;
-        /* (M7) rotational part of Z */
-        const real Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z;
-        const real Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x;
-        const real Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y;
-        o->sum[0][k] = add ? o->sum[0][k] + U_in_base_x : U_in_base_x;  /* total_ups_x */
-        o->sum[1][k] = add ? o->sum[1][k] + U_in_base_y : U_in_base_y;  /* total_ups_y */
-        o->sum[2][k] = add ? o->sum[2][k] + U_in_base_z : U_in_base_z;  /* total_ups_z */
-        o->sum[3][k] = add ? o->sum[3][k] + Z_a_t : Z_a_t;  /* total_ups_x_2 */
-        o->sum[4][k] = add ? o->sum[4][k] + Z_a_t_2 : Z_a_t_2;  /* total_ups_y_2 */
-        o->sum[5][k] = add ? o->sum[5][k] + Z_a_t_3 : Z_a_t_3;  /* total_ups_z_2 */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
+        const real ups_c_o_y = ups_alpha_1_o_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_o_z -
+            ups_h_3_x*ups_qdd_2_o_t - ups_h_3_z*(ups_W_2_t + ups_W_2_t_3);
+        const real ups_c_o_z = ups_B_2_o_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
+            inv_ups_root_1*(ups_mu_2_o_x*ups_s_2 - ups_c_2*ups_mu_2_o_y) - ups_B_2_o_zx*ups_h_3_x;
+        /* (ups-U) velocity and gravity terms of the leg force */
+        const real ups_U_in_base_x = ups_axis_x_x*ups_phi_3_o_x - axis_y_ups_axes2_x*ups_c_o_y -
+            axis_z_ups_axes2_in_base_x*ups_c_o_z;
+        const real ups_U_in_base_y = ups_axis_x_y*ups_phi_3_o_x - axis_y_ups_axes2_y*ups_c_o_y -
+            axis_z_ups_axes2_in_base_y*ups_c_o_z;
+        const real ups_U_in_base_z = ups_axis_x_z*ups_phi_3_o_x - axis_y_ups_axes2_z*ups_c_o_y -
+            axis_z_ups_axes2_in_base_z*ups_c_o_z;
+        /* (Z_a) rotational part of Z */
+        const real ups_Z_a_t = ups_U_in_base_z*ups_q_in_base_y - ups_U_in_base_y*ups_q_in_base_z;
+        const real ups_Z_a_t_2 = ups_U_in_base_x*ups_q_in_base_z -
+            ups_U_in_base_z*ups_q_in_base_x;
+        const real ups_Z_a_t_3 = ups_U_in_base_y*ups_q_in_base_x -
+            ups_U_in_base_x*ups_q_in_base_y;
+        terms[0*count + k] = add ? terms[0*count + k] + ups_U_in_base_x : ups_U_in_base_x;  /* total_ups_x */
+        terms[1*count + k] = add ? terms[1*count + k] + ups_U_in_base_y : ups_U_in_base_y;  /* total_ups_y */
+        terms[2*count + k] = add ? terms[2*count + k] + ups_U_in_base_z : ups_U_in_base_z;  /* total_ups_z */
+        terms[3*count + k] = add ? terms[3*count + k] + ups_Z_a_t : ups_Z_a_t;  /* total_ups_x_2 */
+        terms[4*count + k] = add ? terms[4*count + k] + ups_Z_a_t_2 : ups_Z_a_t_2;  /* total_ups_y_2 */
+        terms[5*count + k] = add ? terms[5*count + k] + ups_Z_a_t_3 : ups_Z_a_t_3;  /* total_ups_z_2 */
+        o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
             TOLERANCE*R(0.8));
     }
 }
 
-INLINE void Z_place_ups(size_t w, const Z_results_ups *o, size_t first, verdict *t)
+INLINE void Z_place_ups(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
+        t->singular[k] += o[0*count + first + k];
     }
 }
 
-INLINE void Z_after(size_t w, const Z_values *s, real *Z)
+INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real Z_p_x = s->Z_p_x[k];
-        const real Z_p_y = s->Z_p_y[k];
-        const real Z_p_z = s->Z_p_z[k];
-        const real Z_q_in_base_x = s->Z_q_in_base_x[k];
-        const real Z_q_in_base_y = s->Z_q_in_base_y[k];
-        const real Z_q_in_base_z = s->Z_q_in_base_z[k];
-        const real total_ups_x = s->sum[0][k];
-        const real total_ups_y = s->sum[1][k];
-        const real total_ups_z = s->sum[2][k];
-        const real total_ups_x_2 = s->sum[3][k];
-        const real total_ups_y_2 = s->sum[4][k];
-        const real total_ups_z_2 = s->sum[5][k];
-        /* (M5) translational part of Z */
+        /* (Z_t) translational part of Z */
+        const real Z_p_x = s[18*w + k];
+        const real total_ups_x = sums[0*w + k];
         const real Z_t_x = Z_p_x + total_ups_x;
+        const real Z_p_y = s[19*w + k];
+        const real total_ups_y = sums[1*w + k];
         const real Z_t_y = Z_p_y + total_ups_y;
+        const real Z_p_z = s[20*w + k];
+        const real total_ups_z = sums[2*w + k];
         const real Z_t_z = Z_p_z + total_ups_z;
-        /* (M7) rotational part of Z */
+        /* (Z_a) rotational part of Z */
+        const real Z_q_in_base_x = s[21*w + k];
+        const real total_ups_x_2 = sums[3*w + k];
         const real Z_a_x = Z_q_in_base_x + total_ups_x_2;
+        const real Z_q_in_base_y = s[22*w + k];
+        const real total_ups_y_2 = sums[4*w + k];
         const real Z_a_y = Z_q_in_base_y + total_ups_y_2;
+        const real Z_q_in_base_z = s[23*w + k];
+        const real total_ups_z_2 = sums[5*w + k];
         const real Z_a_z = Z_q_in_base_z + total_ups_z_2;
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
@@ -2811,62 +2812,51 @@ INLINE void Z_after(size_t w, const Z_values *s, real *Z)
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
+        t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
     }
 }
 
-INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    Z_values values, *const s = &values;
-    Z_results_ups results_ups;
-    Z_before(m, w, X, V, s, t);
-    if (w == 1) {  /* the legs side by side */
-        Z_legs_ups(m, 0, 1, s, 0, 7, 0, &results_ups);
-        for (size_t leg = 0; leg < 7; ++leg) {
-            Z_place_ups(w, &results_ups, leg, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_ups.sum[n], 7);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_ups.sum, 0, sizeof results_ups.sum);
-        for (size_t leg = 0; leg < 7; ++leg) {
-            Z_legs_ups(m, leg, 0, s, 1, w, 1, &results_ups);
-            Z_place_ups(w, &results_ups, 0, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_ups.sum[n][k];
-            }
-        }
+    real s[24] = {0}, sums[6] = {0}, terms_ups[6*LEGS(7)] = {0}, o_ups[1*LEGS(7)] = {0};
+    Z_before(m, 1, X, V, s, t);
+    Z_legs_ups(m, 1, 0, 1, s, 0, LEGS(7), 0, terms_ups, o_ups);
+    for (size_t leg = 0; leg < 7; ++leg) {
+        Z_place_ups(1, LEGS(7), o_ups, leg, t);
     }
-    Z_after(w, s, Z);
+    for (size_t n = 0; n < 6; ++n) {
+        sums[n] = total(terms_ups + n*LEGS(7), 7);
+    }
+    Z_after(1, s, sums, Z, t);
+}
+
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+{
+    real s[24*LANES], sums[6*LANES], o_ups[1*LANES];
+    Z_before(m, LANES, X, V, s, t);
+    clear(sums, 6*LANES);
+    for (size_t leg = 0; leg < 7; ++leg) {
+        Z_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ups);
+        Z_place_ups(LANES, LANES, o_ups, 0, t);
+    }
+    Z_after(LANES, s, sums, Z, t);
 }
 
 /* ---- H: 217 mul, 161 add, 7 div, 7 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES];
-} H_values;
-typedef struct {
-    real entry[6][8], singular[8];
-} H_results_ups;
-
-INLINE void H_before(size_t w, const real *X, H_values *s, verdict *t)
+INLINE void H_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -2890,185 +2880,156 @@ INLINE void H_before(size_t w, const real *X, H_values *s, verdict *t)
         const real R_zx = quaternion_xz - quaternion_wy;
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void H_legs_ups(const prepared *m, size_t leg, size_t legs, const H_values *s, size_t
-    states, size_t count, H_results_ups *o)
+INLINE void H_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real branch_2 = m->branch_2[i];
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_base_point_z = m->ups_base_point_z[i];
+        /* (ups-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        /* (ups-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        const real ups_q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
             R_xz*ups_platform_point_z;
-        const real q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real ups_q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
             R_yz*ups_platform_point_z;
-        const real q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real ups_q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
             R_zz*ups_platform_point_z;
-        const real S_x = q_in_base_x + t_x - ups_base_point_x;
-        const real S_y = q_in_base_y + t_y - ups_base_point_y;
-        const real S_z = q_in_base_z + t_z - ups_base_point_z;
-        /* (ups-K2) component along the reference direction */
-        const real px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx;
-        /* (ups-K3) component across the reference direction */
-        const real py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy;
-        /* (ups-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (ups-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz;
-        /* (ups-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (ups-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (ups-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_x_x = S_x*inv_root_2;
-        const real axis_x_y = S_y*inv_root_2;
-        const real axis_x_z = S_z*inv_root_2;
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_3_x = axis_x_z*q_in_base_y - axis_x_y*q_in_base_z;
-        const real H_a_3_y = axis_x_x*q_in_base_z - axis_x_z*q_in_base_x;
-        const real H_a_3_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y;
-        o->entry[0][k] = axis_x_x;
-        o->entry[1][k] = axis_x_y;
-        o->entry[2][k] = axis_x_z;
-        o->entry[3][k] = H_a_3_x;
-        o->entry[4][k] = H_a_3_y;
-        o->entry[5][k] = H_a_3_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(root_2) > TOLERANCE*R(0.8));
+        const real t_x = s[0*w + j];
+        const real ups_base_point_x = m->ups_base_point_x[i];
+        const real ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x;
+        const real t_y = s[1*w + j];
+        const real ups_base_point_y = m->ups_base_point_y[i];
+        const real ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y;
+        const real t_z = s[2*w + j];
+        const real ups_base_point_z = m->ups_base_point_z[i];
+        const real ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z;
+        /* (ups-px_1) component along the reference direction */
+        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
+        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
+        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
+        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
+            ups_S_z*ups_base_frame_zx;
+        /* (ups-py_1) component across the reference direction */
+        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
+        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
+        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
+        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
+            ups_S_z*ups_base_frame_zy;
+        /* (ups-rho2_1) squared amplitude */
+        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
+        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
+        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
+        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+            ups_S_z*ups_base_frame_zz;
+        /* (ups-rho2_2) squared amplitude */
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        /* (ups-root_2) amplitude, with the sign of the branch */
+        const real ups_branch_2 = m->ups_branch_2[i];
+        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
+        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ups_root_2 = 1/ups_root_2;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
+        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
+        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
+        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
+        const real ups_H_a_3_x = ups_axis_x_z*ups_q_in_base_y - ups_axis_x_y*ups_q_in_base_z;
+        const real ups_H_a_3_y = ups_axis_x_x*ups_q_in_base_z - ups_axis_x_z*ups_q_in_base_x;
+        const real ups_H_a_3_z = ups_axis_x_y*ups_q_in_base_x - ups_axis_x_x*ups_q_in_base_y;
+        o[0*count + k] = ups_axis_x_x;
+        o[1*count + k] = ups_axis_x_y;
+        o[2*count + k] = ups_axis_x_z;
+        o[3*count + k] = ups_H_a_3_x;
+        o[4*count + k] = ups_H_a_3_y;
+        o[5*count + k] = ups_H_a_3_z;
+        o[7*count + k] = (ups_axis_x_x + (ups_axis_x_y + ups_axis_x_z)) + (ups_H_a_3_x +
+            (ups_H_a_3_y + ups_H_a_3_z));
+        o[6*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(ups_root_2) > TOLERANCE*R(0.8));
     }
 }
 
-INLINE void H_place_ups(size_t w, const H_results_ups *o, size_t leg, size_t first, real *H,
+INLINE void H_place_ups(size_t w, size_t count, const real *o, size_t leg, size_t first, real *H,
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(7 + leg)*w + k] = o->entry[1][first + k];
-        H[(14 + leg)*w + k] = o->entry[2][first + k];
-        H[(21 + leg)*w + k] = o->entry[3][first + k];
-        H[(28 + leg)*w + k] = o->entry[4][first + k];
-        H[(35 + leg)*w + k] = o->entry[5][first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(7 + leg)*w + k] = o[1*count + first + k];
+        H[(14 + leg)*w + k] = o[2*count + first + k];
+        H[(21 + leg)*w + k] = o[3*count + first + k];
+        H[(28 + leg)*w + k] = o[4*count + first + k];
+        H[(35 + leg)*w + k] = o[5*count + first + k];
+        t->singular[k] += o[6*count + first + k];
+        t->total[k] += o[7*count + first + k];
     }
 }
 
-INLINE void H_run(const prepared *m, size_t w, const real *X, real *H, verdict *t)
+INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    H_values values, *const s = &values;
-    H_results_ups results_ups;
-    H_before(w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        H_legs_ups(m, 0, 1, s, 0, 7, &results_ups);
-        for (size_t leg = 0; leg < 7; ++leg) {
-            H_place_ups(w, &results_ups, leg, leg, H, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 7; ++leg) {
-            H_legs_ups(m, leg, 0, s, 1, w, &results_ups);
-            H_place_ups(w, &results_ups, leg, 0, H, t);
-        }
+    real s[12] = {0}, o_ups[8*LEGS(7)] = {0};
+    H_before(1, X, s, t);
+    H_legs_ups(m, 1, 0, 1, s, 0, LEGS(7), o_ups);
+    for (size_t leg = 0; leg < 7; ++leg) {
+        H_place_ups(1, LEGS(7), o_ups, leg, leg, H, t);
+    }
+}
+
+INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
+{
+    real s[12*LANES], o_ups[8*LANES];
+    H_before(LANES, X, s, t);
+    for (size_t leg = 0; leg < 7; ++leg) {
+        H_legs_ups(m, LANES, leg, 0, s, 1, LANES, o_ups);
+        H_place_ups(LANES, LANES, o_ups, leg, 0, H, t);
     }
 }
 
 /* ---- required: 1262 mul, 991 add, 14 div, 14 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
-        t_ddot_x[LANES], t_ddot_y[LANES], t_ddot_z[LANES], alpha_x[LANES], alpha_y[LANES],
-        alpha_z[LANES], f_p_x[LANES], f_p_y[LANES], f_p_z[LANES], mu_p_in_base_x[LANES],
-        mu_p_in_base_y[LANES], mu_p_in_base_z[LANES], sum[6][LANES];
-} required_values;
-typedef struct {
-    real sum[6][8], entry[6][8], singular[8];
-} required_results_ups;
-
 INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, required_values *s, verdict *t)
+    *A, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real A_2 = A[2*w + k];
-        const real A_3 = A[3*w + k];
-        const real A_4 = A[4*w + k];
-        const real A_5 = A[5*w + k];
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_zz = m->J_star_zz;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real m_star = m->m_star;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -3093,53 +3054,78 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
+        const real A_2 = A[2*w + k];
         const real t_ddot_z = A_2;
+        const real A_3 = A[3*w + k];
         const real alpha_x = A_3;
+        const real A_4 = A[4*w + k];
         const real alpha_y = A_4;
+        const real A_5 = A[5*w + k];
         const real alpha_z = A_5;
-        /* (L2) first moment about the platform origin */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_z = m->h_star_z;
         const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
         const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
         const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
-        /* (P1) centripetal tensor of the platform */
+        /* (W_p) centripetal tensor of the platform */
         const real W_p_t = omega_x*omega_x;
         const real W_p_t_2 = omega_y*omega_y;
         const real W_p_t_3 = omega_z*omega_z;
         const real W_p_xy = omega_x*omega_y;
         const real W_p_xz = omega_x*omega_z;
         const real W_p_yz = omega_y*omega_z;
-        /* (M6) gyroscopic moment and moment of the weight of the platform */
+        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
         const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
         const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
         const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_xx = m->J_star_xx;
+        const real J_star_xy = m->J_star_xy;
+        const real J_star_xz = m->J_star_xz;
         const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
+        const real J_star_yy = m->J_star_yy;
+        const real J_star_yz = m->J_star_yz;
         const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
+        const real J_star_zz = m->J_star_zz;
         const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        /* (E1) acceleration of the platform origin, less gravity */
+        /* (a_t) acceleration of the platform origin, less gravity */
+        const real gravity_x = m->gravity_x;
         const real a_t_x = t_ddot_x - gravity_x;
+        const real gravity_y = m->gravity_y;
         const real a_t_y = t_ddot_y - gravity_y;
+        const real gravity_z = m->gravity_z;
         const real a_t_z = t_ddot_z - gravity_z;
-        /* (E2) inertia force of the platform less its weight */
+        /* (f_p) inertia force of the platform less its weight */
+        const real m_star = m->m_star;
         const real f_p_x = a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) +
             h_star_in_base_z*(W_p_xz + alpha_y) - h_star_in_base_x*(W_p_t_2 + W_p_t_3);
         const real f_p_y = a_t_y*m_star + h_star_in_base_x*(W_p_xy + alpha_z) +
             h_star_in_base_z*(W_p_yz - alpha_x) - h_star_in_base_y*(W_p_t + W_p_t_3);
         const real f_p_z = a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) +
             h_star_in_base_y*(W_p_yz + alpha_x) - h_star_in_base_z*(W_p_t + W_p_t_2);
-        /* (E1) acceleration of the platform origin, less gravity */
+        /* (a_t) acceleration of the platform origin, less gravity */
         const real a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
         const real a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
         const real a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
-        /* (E3) inertia moment of the platform less that of its weight */
+        /* (mu_p) inertia moment of the platform less that of its weight */
         const real alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
         const real alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
         const real alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
@@ -3152,302 +3138,317 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z;
         const real mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z;
         const real mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->t_ddot_z[k] = t_ddot_z;
-        s->alpha_x[k] = alpha_x;
-        s->alpha_y[k] = alpha_y;
-        s->alpha_z[k] = alpha_z;
-        s->f_p_x[k] = f_p_x;
-        s->f_p_y[k] = f_p_y;
-        s->f_p_z[k] = f_p_z;
-        s->mu_p_in_base_x[k] = mu_p_in_base_x;
-        s->mu_p_in_base_y[k] = mu_p_in_base_y;
-        s->mu_p_in_base_z[k] = mu_p_in_base_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
+        s[18*w + k] = t_ddot_x;
+        s[19*w + k] = t_ddot_y;
+        s[20*w + k] = t_ddot_z;
+        s[21*w + k] = alpha_x;
+        s[22*w + k] = alpha_y;
+        s[23*w + k] = alpha_z;
+        s[24*w + k] = f_p_x;
+        s[25*w + k] = f_p_y;
+        s[26*w + k] = f_p_z;
+        s[27*w + k] = mu_p_in_base_x;
+        s[28*w + k] = mu_p_in_base_y;
+        s[29*w + k] = mu_p_in_base_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void required_legs_ups(const prepared *m, size_t leg, size_t legs, const required_values
-    *s, size_t states, size_t count, int add, required_results_ups *o)
+INLINE void required_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real t_ddot_z = s->t_ddot_z[j];
-        const real alpha_x = s->alpha_x[j];
-        const real alpha_y = s->alpha_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real J_group_2_xy = m->J_group_2_xy[i];
-        const real J_group_2_xz = m->J_group_2_xz[i];
-        const real J_group_2_yz = m->J_group_2_yz[i];
-        const real Sigma_2_xx = m->Sigma_2_xx[i];
-        const real Sigma_2_yy = m->Sigma_2_yy[i];
-        const real Sigma_2_zz = m->Sigma_2_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real g_r0_z = m->g_r0_z[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real h_2_z = m->h_2_z[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_base_point_z = m->ups_base_point_z[i];
+        /* (ups-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        /* (ups-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        const real ups_q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
             R_xz*ups_platform_point_z;
-        const real q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real ups_q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
             R_yz*ups_platform_point_z;
-        const real q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real ups_q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
             R_zz*ups_platform_point_z;
-        const real S_x = q_in_base_x + t_x - ups_base_point_x;
-        const real S_y = q_in_base_y + t_y - ups_base_point_y;
-        const real S_z = q_in_base_z + t_z - ups_base_point_z;
-        /* (ups-K2) component along the reference direction */
-        const real px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx;
-        /* (ups-K3) component across the reference direction */
-        const real py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy;
-        /* (ups-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (ups-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (ups-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz;
-        /* (ups-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (ups-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (ups-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (ups-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_x_x = S_x*inv_root_2;
-        const real axis_x_y = S_y*inv_root_2;
-        const real axis_x_z = S_z*inv_root_2;
-        /* (ups-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (ups-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx;
-        const real axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx;
-        const real axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx;
-        const real axis_y_ups_axes2_x = axis_x_z*axis_z_ups_axes2_in_base_y -
-            axis_x_y*axis_z_ups_axes2_in_base_z;
-        const real axis_y_ups_axes2_y = axis_x_x*axis_z_ups_axes2_in_base_z -
-            axis_x_z*axis_z_ups_axes2_in_base_x;
-        const real axis_y_ups_axes2_z = axis_x_y*axis_z_ups_axes2_in_base_x -
-            axis_x_x*axis_z_ups_axes2_in_base_y;
-        /* (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
-        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
-        const real g_r3_x = g_r0_z*s_2 - c_2*g_r1_y;
-        const real g_r3_y = -c_2*g_r0_z - g_r1_y*s_2;
-        /* (ups-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        const real S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z;
-        /* (ups-V8) rate of joint 1 */
-        const real qd_2 = inv_root_2*(S_dot_x*axis_y_ups_axes2_x + S_dot_y*axis_y_ups_axes2_y +
-            S_dot_z*axis_y_ups_axes2_z);
-        const real qd_1 = inv_root_1*(S_dot_x*axis_z_ups_axes2_in_base_x +
-            S_dot_y*axis_z_ups_axes2_in_base_y + S_dot_z*axis_z_ups_axes2_in_base_z);
-        /* (ups-V11) angular velocity of link 1 */
-        const real omega_1_t = qd_1*s_2;
-        const real omega_1_t_2 = c_2*qd_1;
-        /* (ups-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_x = omega_1_t_2*qd_2;
-        const real zeta_2_y = omega_1_t*qd_2;
-        /* (ups-V13) centripetal tensor of link 2 */
-        const real W_2_t = omega_1_t*omega_1_t;
-        const real W_2_t_2 = omega_1_t_2*omega_1_t_2;
-        const real W_2_t_3 = qd_2*qd_2;
-        const real W_2_xy = omega_1_t*omega_1_t_2;
-        /* (ups-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_tip_x;
-        const real bias_z = bias_t*omega_1_t_2 + 2*root_2*zeta_2_y;
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_3_x = axis_x_z*q_in_base_y - axis_x_y*q_in_base_z;
-        const real H_a_3_y = axis_x_x*q_in_base_z - axis_x_z*q_in_base_x;
-        const real H_a_3_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y;
-        /* (ups-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
-        const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
-        const real a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x;
-        /* (ups-A3) acceleration of the connection point */
-        const real S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z;
-        const real S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x;
-        const real S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y;
-        const real S_ddot_t = S_ddot_x*axis_y_ups_axes2_x;
-        const real S_ddot_t_2 = S_ddot_y*axis_y_ups_axes2_y;
-        const real S_ddot_t_3 = S_ddot_z*axis_y_ups_axes2_z;
-        const real S_ddot_tip_z = S_ddot_x*axis_z_ups_axes2_in_base_x +
-            S_ddot_y*axis_z_ups_axes2_in_base_y + S_ddot_z*axis_z_ups_axes2_in_base_z;
-        /* (ups-A6) acceleration of the connection point left to the joint accelerations */
-        const real rel_z = S_ddot_tip_z - bias_z;
-        /* (ups-A8) acceleration of joint 1 */
-        const real qdd_1_t = inv_root_2*(S_ddot_t + S_ddot_t_2 + S_ddot_t_3 - bias_t*qd_2);
-        const real qdd_1 = inv_root_1*rel_z;
-        /* (ups-N3) acceleration of the reference point of link 3, less gravity */
-        const real acc_3_x = S_ddot_x*axis_x_x + S_ddot_y*axis_x_y + S_ddot_z*axis_x_z - g_r3_x;
-        const real acc_3_y = S_ddot_t + S_ddot_t_2 + S_ddot_t_3 - g_r3_y;
-        const real acc_3_z = S_ddot_tip_z - g_r1_x;
-        /* (ups-A13) angular acceleration of link 1 */
-        const real alpha_1_t = qdd_1*s_2;
-        const real alpha_1_t_2 = c_2*qdd_1;
-        /* (ups-A16) angular acceleration of link 2 */
-        const real alpha_2_x = alpha_1_t - zeta_2_x;
-        const real alpha_2_y = -alpha_1_t_2 - zeta_2_y;
-        /* (ups-A19) acceleration tensor of link 2 */
-        const real B_2_xy = -2*W_2_xy - qdd_1_t;
-        const real B_2_zx = zeta_2_y - alpha_2_y;
-        const real B_2_zy = alpha_2_x - zeta_2_x;
-        /* (ups-N12) inertia moment of the links that turn with link 2, about their reference points */
-        const real mu_2_x = B_2_zy*Sigma_2_yy + J_group_2_xz*qdd_1_t + J_group_2_yz*(W_2_t_2 -
-            W_2_t_3) + Sigma_2_zz*alpha_1_t + g_r1_x*h_2_z + g_r3_y*h_2_y - B_2_zx*J_group_2_xy -
-            acc_3_y*h_3_y - acc_3_z*h_3_z;
-        const real mu_2_y = B_2_zy*J_group_2_xy + acc_3_x*h_3_y + g_r1_x*h_2_x -
-            B_2_xy*J_group_2_yz - B_2_zx*Sigma_2_xx - J_group_2_xz*(W_2_t - W_2_t_3) -
-            Sigma_2_zz*alpha_1_t_2 - acc_3_z*h_3_x - g_r3_x*h_2_y;
-        const real mu_2_z = J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_xz*alpha_1_t +
-            Sigma_2_xx*qdd_1_t + acc_3_x*h_3_z + acc_3_y*h_3_x - B_2_xy*Sigma_2_yy -
-            J_group_2_yz*alpha_1_t_2 - g_r3_x*h_2_z - g_r3_y*h_2_x;
-        /* (ups-N5) inertia force of link 3 from its turning about its reference point */
-        const real phi_3_x = -B_2_xy*h_3_z - alpha_1_t_2*h_3_y - h_3_x*(W_2_t_2 + W_2_t_3);
-        /* (ups-N24) leg force on the platform without actuation and without the mass at the connection
+        const real t_x = s[0*w + j];
+        const real ups_base_point_x = m->ups_base_point_x[i];
+        const real ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x;
+        const real t_y = s[1*w + j];
+        const real ups_base_point_y = m->ups_base_point_y[i];
+        const real ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y;
+        const real t_z = s[2*w + j];
+        const real ups_base_point_z = m->ups_base_point_z[i];
+        const real ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z;
+        /* (ups-px_1) component along the reference direction */
+        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
+        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
+        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
+        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
+            ups_S_z*ups_base_frame_zx;
+        /* (ups-py_1) component across the reference direction */
+        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
+        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
+        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
+        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
+            ups_S_z*ups_base_frame_zy;
+        /* (ups-rho2_1) squared amplitude */
+        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
+        /* (ups-root_1) amplitude, with the sign of the branch */
+        const real ups_branch_1 = m->ups_branch_1[i];
+        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
+        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
+        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+            ups_S_z*ups_base_frame_zz;
+        /* (ups-rho2_2) squared amplitude */
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        /* (ups-root_2) amplitude, with the sign of the branch */
+        const real ups_branch_2 = m->ups_branch_2[i];
+        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
+        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ups_root_2 = 1/ups_root_2;
+        const real ups_c_2 = inv_ups_root_2*ups_root_1;
+        /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
+        const real ups_s_2 = inv_ups_root_2*ups_xi_1_t;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
+        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
+        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
+            ups_base_frame_xx*ups_c_1;
+        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
+            ups_base_frame_yx*ups_c_1;
+        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
+            ups_base_frame_zx*ups_c_1;
+        const real axis_y_ups_axes2_x = axis_z_ups_axes2_in_base_y*ups_axis_x_z -
+            axis_z_ups_axes2_in_base_z*ups_axis_x_y;
+        const real axis_y_ups_axes2_y = axis_z_ups_axes2_in_base_z*ups_axis_x_x -
+            axis_z_ups_axes2_in_base_x*ups_axis_x_z;
+        const real axis_y_ups_axes2_z = axis_z_ups_axes2_in_base_x*ups_axis_x_y -
+            axis_z_ups_axes2_in_base_y*ups_axis_x_x;
+        /* (ups-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z;
+        const real ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x;
+        const real t_dot_x = s[12*w + j];
+        const real ups_S_dot_x = t_dot_x + ups_S_dot_t;
+        const real t_dot_y = s[13*w + j];
+        const real ups_S_dot_y = t_dot_y + ups_S_dot_t_2;
+        const real t_dot_z = s[14*w + j];
+        const real ups_S_dot_z = t_dot_z + ups_S_dot_t_3;
+        const real ups_S_dot_tip_x = ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y +
+            ups_S_dot_z*ups_axis_x_z;
+        /* (ups-qd_2) rate of joint 2 */
+        const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x +
+            axis_y_ups_axes2_y*ups_S_dot_y + axis_y_ups_axes2_z*ups_S_dot_z);
+        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
+            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z);
+        /* (ups-omega_1) angular velocity of link 1 */
+        const real ups_omega_1_t = ups_qd_1*ups_s_2;
+        const real ups_omega_1_t_2 = ups_c_2*ups_qd_1;
+        /* (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2;
+        const real ups_zeta_2_y = ups_omega_1_t*ups_qd_2;
+        /* (ups-W_2) centripetal tensor of link 2 */
+        const real ups_W_2_t = ups_omega_1_t*ups_omega_1_t;
+        const real ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2;
+        const real ups_W_2_t_3 = ups_qd_2*ups_qd_2;
+        const real ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2;
+        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
+        const real ups_bias_t = 2*ups_S_dot_tip_x;
+        const real ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2*ups_root_2*ups_zeta_2_y;
+        /* (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real ups_g_r0_x = m->ups_g_r0_x[i];
+        const real ups_g_r0_y = m->ups_g_r0_y[i];
+        const real ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x;
+        const real ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1;
+        const real ups_g_r0_z = m->ups_g_r0_z[i];
+        const real ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y;
+        const real ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2;
+        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
+        const real ups_H_a_3_x = ups_axis_x_z*ups_q_in_base_y - ups_axis_x_y*ups_q_in_base_z;
+        const real ups_H_a_3_y = ups_axis_x_x*ups_q_in_base_z - ups_axis_x_z*ups_q_in_base_x;
+        const real ups_H_a_3_z = ups_axis_x_y*ups_q_in_base_x - ups_axis_x_x*ups_q_in_base_y;
+        /* (ups-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_y = s[22*w + j];
+        const real alpha_z = s[23*w + j];
+        const real t_ddot_x = s[18*w + j];
+        const real ups_a_p_x = t_ddot_x + alpha_y*ups_q_in_base_z - alpha_z*ups_q_in_base_y;
+        const real alpha_x = s[21*w + j];
+        const real t_ddot_y = s[19*w + j];
+        const real ups_a_p_y = t_ddot_y + alpha_z*ups_q_in_base_x - alpha_x*ups_q_in_base_z;
+        const real t_ddot_z = s[20*w + j];
+        const real ups_a_p_z = t_ddot_z + alpha_x*ups_q_in_base_y - alpha_y*ups_q_in_base_x;
+        /* (ups-S_ddot) acceleration of the connection point */
+        const real ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2;
+        const real ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3;
+        const real ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t;
+        const real ups_S_ddot_t = axis_y_ups_axes2_x*ups_S_ddot_x;
+        const real ups_S_ddot_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y;
+        const real ups_S_ddot_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z;
+        const real ups_S_ddot_tip_z = axis_z_ups_axes2_in_base_x*ups_S_ddot_x +
+            axis_z_ups_axes2_in_base_y*ups_S_ddot_y + axis_z_ups_axes2_in_base_z*ups_S_ddot_z;
+        /* (ups-rel) acceleration of the connection point left to the joint accelerations */
+        const real ups_rel_z = ups_S_ddot_tip_z - ups_bias_z;
+        /* (ups-qdd_1) acceleration of joint 1 */
+        const real ups_qdd_1_t = inv_ups_root_2*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 -
+            ups_bias_t*ups_qd_2);
+        const real ups_qdd_1 = inv_ups_root_1*ups_rel_z;
+        /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
+        const real ups_acc_3_x = ups_S_ddot_x*ups_axis_x_x + ups_S_ddot_y*ups_axis_x_y +
+            ups_S_ddot_z*ups_axis_x_z - ups_g_r3_x;
+        const real ups_acc_3_y = ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_g_r3_y;
+        const real ups_acc_3_z = ups_S_ddot_tip_z - ups_g_r1_x;
+        /* (ups-alpha_1) angular acceleration of link 1 */
+        const real ups_alpha_1_t = ups_qdd_1*ups_s_2;
+        const real ups_alpha_1_t_2 = ups_c_2*ups_qdd_1;
+        /* (ups-alpha_2) angular acceleration of link 2 */
+        const real ups_alpha_2_x = ups_alpha_1_t - ups_zeta_2_x;
+        const real ups_alpha_2_y = -ups_alpha_1_t_2 - ups_zeta_2_y;
+        /* (ups-B_2) acceleration tensor of link 2 */
+        const real ups_B_2_xy = -2*ups_W_2_xy - ups_qdd_1_t;
+        const real ups_B_2_zx = ups_zeta_2_y - ups_alpha_2_y;
+        const real ups_B_2_zy = ups_alpha_2_x - ups_zeta_2_x;
+        /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
+        const real ups_h_3_x = m->ups_h_3_x[i];
+        const real ups_h_3_y = m->ups_h_3_y[i];
+        const real ups_h_3_z = m->ups_h_3_z[i];
+        const real ups_phi_3_x = -ups_B_2_xy*ups_h_3_z - ups_alpha_1_t_2*ups_h_3_y -
+            ups_h_3_x*(ups_W_2_t_2 + ups_W_2_t_3);
+        /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+        const real ups_J_group_2_xy = m->ups_J_group_2_xy[i];
+        const real ups_J_group_2_xz = m->ups_J_group_2_xz[i];
+        const real ups_J_group_2_yz = m->ups_J_group_2_yz[i];
+        const real ups_Sigma_2_yy = m->ups_Sigma_2_yy[i];
+        const real ups_Sigma_2_zz = m->ups_Sigma_2_zz[i];
+        const real ups_h_2_y = m->ups_h_2_y[i];
+        const real ups_h_2_z = m->ups_h_2_z[i];
+        const real ups_mu_2_x = ups_B_2_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_1_t +
+            ups_J_group_2_yz*(ups_W_2_t_2 - ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_t +
+            ups_g_r1_x*ups_h_2_z + ups_g_r3_y*ups_h_2_y - ups_B_2_zx*ups_J_group_2_xy -
+            ups_acc_3_y*ups_h_3_y - ups_acc_3_z*ups_h_3_z;
+        const real ups_Sigma_2_xx = m->ups_Sigma_2_xx[i];
+        const real ups_h_2_x = m->ups_h_2_x[i];
+        const real ups_mu_2_y = ups_B_2_zy*ups_J_group_2_xy + ups_acc_3_x*ups_h_3_y +
+            ups_g_r1_x*ups_h_2_x - ups_B_2_xy*ups_J_group_2_yz - ups_B_2_zx*ups_Sigma_2_xx -
+            ups_J_group_2_xz*(ups_W_2_t - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_t_2 -
+            ups_acc_3_z*ups_h_3_x - ups_g_r3_x*ups_h_2_y;
+        const real ups_mu_2_z = ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) +
+            ups_J_group_2_xz*ups_alpha_1_t + ups_Sigma_2_xx*ups_qdd_1_t + ups_acc_3_x*ups_h_3_z +
+            ups_acc_3_y*ups_h_3_x - ups_B_2_xy*ups_Sigma_2_yy - ups_J_group_2_yz*ups_alpha_1_t_2 -
+            ups_g_r3_x*ups_h_2_z - ups_g_r3_y*ups_h_2_x;
+        /* (ups-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_y = alpha_1_t*h_3_y - h_3_x*qdd_1_t - h_3_z*(W_2_t + W_2_t_3) -
-            inv_root_2*mu_2_z;
-        const real c_z = B_2_zy*h_3_z + h_3_y*(W_2_t + W_2_t_2) - B_2_zx*h_3_x -
-            inv_root_1*(mu_2_x*s_2 - c_2*mu_2_y);
-        const real c_in_base_x = axis_y_ups_axes2_x*c_y + axis_z_ups_axes2_in_base_x*c_z -
-            axis_x_x*phi_3_x;
-        const real c_in_base_y = axis_y_ups_axes2_y*c_y + axis_z_ups_axes2_in_base_y*c_z -
-            axis_x_y*phi_3_x;
-        const real c_in_base_z = axis_y_ups_axes2_z*c_y + axis_z_ups_axes2_in_base_z*c_z -
-            axis_x_z*phi_3_x;
-        /* (E5) moment that actuators and external wrench must give */
-        const real R_a_t = c_in_base_z*q_in_base_y - c_in_base_y*q_in_base_z;
-        const real R_a_t_2 = c_in_base_x*q_in_base_z - c_in_base_z*q_in_base_x;
-        const real R_a_t_3 = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y;
-        o->sum[0][k] = add ? o->sum[0][k] + c_in_base_x : c_in_base_x;  /* total_ups_x */
-        o->sum[1][k] = add ? o->sum[1][k] + c_in_base_y : c_in_base_y;  /* total_ups_y */
-        o->sum[2][k] = add ? o->sum[2][k] + c_in_base_z : c_in_base_z;  /* total_ups_z */
-        o->sum[3][k] = add ? o->sum[3][k] + R_a_t : R_a_t;  /* total_ups_x_2 */
-        o->sum[4][k] = add ? o->sum[4][k] + R_a_t_2 : R_a_t_2;  /* total_ups_y_2 */
-        o->sum[5][k] = add ? o->sum[5][k] + R_a_t_3 : R_a_t_3;  /* total_ups_z_2 */
-        o->entry[0][k] = axis_x_x;
-        o->entry[1][k] = axis_x_y;
-        o->entry[2][k] = axis_x_z;
-        o->entry[3][k] = H_a_3_x;
-        o->entry[4][k] = H_a_3_y;
-        o->entry[5][k] = H_a_3_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
+        const real ups_c_y = ups_alpha_1_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_z -
+            ups_h_3_x*ups_qdd_1_t - ups_h_3_z*(ups_W_2_t + ups_W_2_t_3);
+        const real ups_c_z = ups_B_2_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
+            inv_ups_root_1*(ups_mu_2_x*ups_s_2 - ups_c_2*ups_mu_2_y) - ups_B_2_zx*ups_h_3_x;
+        const real ups_c_in_base_x = axis_y_ups_axes2_x*ups_c_y +
+            axis_z_ups_axes2_in_base_x*ups_c_z - ups_axis_x_x*ups_phi_3_x;
+        const real ups_c_in_base_y = axis_y_ups_axes2_y*ups_c_y +
+            axis_z_ups_axes2_in_base_y*ups_c_z - ups_axis_x_y*ups_phi_3_x;
+        const real ups_c_in_base_z = axis_y_ups_axes2_z*ups_c_y +
+            axis_z_ups_axes2_in_base_z*ups_c_z - ups_axis_x_z*ups_phi_3_x;
+        /* (R_a) moment that actuators and external wrench must give */
+        const real ups_R_a_t = ups_c_in_base_z*ups_q_in_base_y - ups_c_in_base_y*ups_q_in_base_z;
+        const real ups_R_a_t_2 = ups_c_in_base_x*ups_q_in_base_z -
+            ups_c_in_base_z*ups_q_in_base_x;
+        const real ups_R_a_t_3 = ups_c_in_base_y*ups_q_in_base_x -
+            ups_c_in_base_x*ups_q_in_base_y;
+        terms[0*count + k] = add ? terms[0*count + k] + ups_c_in_base_x : ups_c_in_base_x;  /* total_ups_x */
+        terms[1*count + k] = add ? terms[1*count + k] + ups_c_in_base_y : ups_c_in_base_y;  /* total_ups_y */
+        terms[2*count + k] = add ? terms[2*count + k] + ups_c_in_base_z : ups_c_in_base_z;  /* total_ups_z */
+        terms[3*count + k] = add ? terms[3*count + k] + ups_R_a_t : ups_R_a_t;  /* total_ups_x_2 */
+        terms[4*count + k] = add ? terms[4*count + k] + ups_R_a_t_2 : ups_R_a_t_2;  /* total_ups_y_2 */
+        terms[5*count + k] = add ? terms[5*count + k] + ups_R_a_t_3 : ups_R_a_t_3;  /* total_ups_z_2 */
+        o[0*count + k] = ups_axis_x_x;
+        o[1*count + k] = ups_axis_x_y;
+        o[2*count + k] = ups_axis_x_z;
+        o[3*count + k] = ups_H_a_3_x;
+        o[4*count + k] = ups_H_a_3_y;
+        o[5*count + k] = ups_H_a_3_z;
+        o[6*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
             TOLERANCE*R(0.8));
     }
 }
 
-INLINE void required_place_ups(size_t w, const required_results_ups *o, size_t leg, size_t first,
+INLINE void required_place_ups(size_t w, size_t count, const real *o, size_t leg, size_t first,
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(7 + leg)*w + k] = o->entry[1][first + k];
-        H[(14 + leg)*w + k] = o->entry[2][first + k];
-        H[(21 + leg)*w + k] = o->entry[3][first + k];
-        H[(28 + leg)*w + k] = o->entry[4][first + k];
-        H[(35 + leg)*w + k] = o->entry[5][first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(7 + leg)*w + k] = o[1*count + first + k];
+        H[(14 + leg)*w + k] = o[2*count + first + k];
+        H[(21 + leg)*w + k] = o[3*count + first + k];
+        H[(28 + leg)*w + k] = o[4*count + first + k];
+        H[(35 + leg)*w + k] = o[5*count + first + k];
+        t->singular[k] += o[6*count + first + k];
     }
 }
 
-INLINE void required_after(size_t w, const required_values *s, real *required)
+INLINE void required_after(size_t w, const real *s, const real *sums, real *required)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real f_p_x = s->f_p_x[k];
-        const real f_p_y = s->f_p_y[k];
-        const real f_p_z = s->f_p_z[k];
-        const real mu_p_in_base_x = s->mu_p_in_base_x[k];
-        const real mu_p_in_base_y = s->mu_p_in_base_y[k];
-        const real mu_p_in_base_z = s->mu_p_in_base_z[k];
-        const real total_ups_x = s->sum[0][k];
-        const real total_ups_y = s->sum[1][k];
-        const real total_ups_z = s->sum[2][k];
-        const real total_ups_x_2 = s->sum[3][k];
-        const real total_ups_y_2 = s->sum[4][k];
-        const real total_ups_z_2 = s->sum[5][k];
-        /* (E4) force that actuators and external wrench must give */
+        /* (R_t) force that actuators and external wrench must give */
+        const real f_p_x = s[24*w + k];
+        const real total_ups_x = sums[0*w + k];
         const real R_t_x = f_p_x - total_ups_x;
+        const real f_p_y = s[25*w + k];
+        const real total_ups_y = sums[1*w + k];
         const real R_t_y = f_p_y - total_ups_y;
+        const real f_p_z = s[26*w + k];
+        const real total_ups_z = sums[2*w + k];
         const real R_t_z = f_p_z - total_ups_z;
-        /* (E5) moment that actuators and external wrench must give */
+        /* (R_a) moment that actuators and external wrench must give */
+        const real mu_p_in_base_x = s[27*w + k];
+        const real total_ups_x_2 = sums[3*w + k];
         const real R_a_x = mu_p_in_base_x - total_ups_x_2;
+        const real mu_p_in_base_y = s[28*w + k];
+        const real total_ups_y_2 = sums[4*w + k];
         const real R_a_y = mu_p_in_base_y - total_ups_y_2;
+        const real mu_p_in_base_z = s[29*w + k];
+        const real total_ups_z_2 = sums[5*w + k];
         const real R_a_z = mu_p_in_base_z - total_ups_z_2;
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
@@ -3458,61 +3459,36 @@ INLINE void required_after(size_t w, const required_values *s, real *required)
     }
 }
 
-INLINE void required_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
-    real *required, real *H, verdict *t)
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+    *required, real *H, verdict *t)
 {
-    required_values values, *const s = &values;
-    required_results_ups results_ups;
-    required_before(m, w, X, V, A, s, t);
-    if (w == 1) {  /* the legs side by side */
-        required_legs_ups(m, 0, 1, s, 0, 7, 0, &results_ups);
-        for (size_t leg = 0; leg < 7; ++leg) {
-            required_place_ups(w, &results_ups, leg, leg, H, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_ups.sum[n], 7);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_ups.sum, 0, sizeof results_ups.sum);
-        for (size_t leg = 0; leg < 7; ++leg) {
-            required_legs_ups(m, leg, 0, s, 1, w, 1, &results_ups);
-            required_place_ups(w, &results_ups, leg, 0, H, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_ups.sum[n][k];
-            }
-        }
+    real s[30] = {0}, sums[6] = {0}, terms_ups[6*LEGS(7)] = {0}, o_ups[7*LEGS(7)] = {0};
+    required_before(m, 1, X, V, A, s, t);
+    required_legs_ups(m, 1, 0, 1, s, 0, LEGS(7), 0, terms_ups, o_ups);
+    for (size_t leg = 0; leg < 7; ++leg) {
+        required_place_ups(1, LEGS(7), o_ups, leg, leg, H, t);
     }
-    required_after(w, s, required);
+    for (size_t n = 0; n < 6; ++n) {
+        sums[n] = total(terms_ups + n*LEGS(7), 7);
+    }
+    required_after(1, s, sums, required);
 }
 
 /* ---- inverse_kinematics: 189 mul, 140 add, 14 div, 14 sqrt, 14 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES];
-} inverse_kinematics_values;
-typedef struct {
-    real entry[3][8], singular[8];
-} inverse_kinematics_results_ups;
-
-INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematics_values *s,
-    verdict *t)
+INLINE void inverse_kinematics_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -3536,155 +3512,145 @@ INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematic
         const real R_zx = quaternion_xz - quaternion_wy;
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t leg, size_t legs, const
-    inverse_kinematics_values *s, size_t states, size_t count, inverse_kinematics_results_ups *o)
+INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs,
+    const real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        /* (ups-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
+        const real t_x = s[0*w + j];
         const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_base_point_z = m->ups_base_point_z[i];
         const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        /* (ups-K1) from the base point to the connection point */
-        const real S_x = t_x + R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        const real ups_S_x = t_x + R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
             R_xz*ups_platform_point_z - ups_base_point_x;
-        const real S_y = t_y + R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real t_y = s[1*w + j];
+        const real ups_base_point_y = m->ups_base_point_y[i];
+        const real ups_S_y = t_y + R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
             R_yz*ups_platform_point_z - ups_base_point_y;
-        const real S_z = t_z + R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real t_z = s[2*w + j];
+        const real ups_base_point_z = m->ups_base_point_z[i];
+        const real ups_S_z = t_z + R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
             R_zz*ups_platform_point_z - ups_base_point_z;
-        /* (ups-K2) component along the reference direction */
-        const real px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx;
-        /* (ups-K3) component across the reference direction */
-        const real py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy;
-        /* (ups-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (ups-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (ups-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz;
-        /* (ups-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (ups-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (ups-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        /* (ups-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        /* (ups-K8) displacement of joint 1 */
-        const real q_1 = angle(inv_root_1*py_1, inv_root_1*px_1);
-        /* (ups-K17) displacement of joint 2 */
-        const real q_2 = angle(-inv_root_2*xi_1_t, inv_root_2*root_1);
-        o->entry[0][k] = q_1;
-        o->entry[1][k] = q_2;
-        o->entry[2][k] = root_2;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
+        /* (ups-px_1) component along the reference direction */
+        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
+        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
+        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
+        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
+            ups_S_z*ups_base_frame_zx;
+        /* (ups-py_1) component across the reference direction */
+        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
+        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
+        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
+        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
+            ups_S_z*ups_base_frame_zy;
+        /* (ups-rho2_1) squared amplitude */
+        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
+        /* (ups-root_1) amplitude, with the sign of the branch */
+        const real ups_branch_1 = m->ups_branch_1[i];
+        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
+        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
+        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+            ups_S_z*ups_base_frame_zz;
+        /* (ups-rho2_2) squared amplitude */
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        /* (ups-root_2) amplitude, with the sign of the branch */
+        const real ups_branch_2 = m->ups_branch_2[i];
+        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
+        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ups_root_2 = 1/ups_root_2;
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        /* (ups-q_1) displacement of joint 1 */
+        const real ups_q_1 = angle(inv_ups_root_1*ups_py_1, inv_ups_root_1*ups_px_1);
+        /* (ups-q_2) displacement of joint 2 */
+        const real ups_q_2 = angle(-inv_ups_root_2*ups_xi_1_t, inv_ups_root_2*ups_root_1);
+        o[0*count + k] = ups_q_1;
+        o[1*count + k] = ups_q_2;
+        o[2*count + k] = ups_root_2;
+        o[4*count + k] = ups_q_1 + (ups_q_2 + ups_root_2);
+        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
     }
 }
 
-INLINE void inverse_kinematics_place_ups(size_t w, const inverse_kinematics_results_ups *o, size_t
-    leg, size_t first, real *q, verdict *t)
+INLINE void inverse_kinematics_place_ups(size_t w, size_t count, const real *o, size_t leg, size_t
+    first, real *q, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        q[(3*leg)*w + k] = o->entry[0][first + k];
-        q[(1 + 3*leg)*w + k] = o->entry[1][first + k];
-        q[(2 + 3*leg)*w + k] = o->entry[2][first + k];
-        t->singular[k] += o->singular[first + k];
+        q[(3*leg)*w + k] = o[0*count + first + k];
+        q[(1 + 3*leg)*w + k] = o[1*count + first + k];
+        q[(2 + 3*leg)*w + k] = o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
 }
 
-INLINE void inverse_kinematics_run(const prepared *m, size_t w, const real *X, real *q, verdict
-    *t)
+INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    inverse_kinematics_values values, *const s = &values;
-    inverse_kinematics_results_ups results_ups;
-    inverse_kinematics_before(w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        inverse_kinematics_legs_ups(m, 0, 1, s, 0, 7, &results_ups);
-        for (size_t leg = 0; leg < 7; ++leg) {
-            inverse_kinematics_place_ups(w, &results_ups, leg, leg, q, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 7; ++leg) {
-            inverse_kinematics_legs_ups(m, leg, 0, s, 1, w, &results_ups);
-            inverse_kinematics_place_ups(w, &results_ups, leg, 0, q, t);
-        }
+    real s[12] = {0}, o_ups[5*LEGS(7)] = {0};
+    inverse_kinematics_before(1, X, s, t);
+    inverse_kinematics_legs_ups(m, 1, 0, 1, s, 0, LEGS(7), o_ups);
+    for (size_t leg = 0; leg < 7; ++leg) {
+        inverse_kinematics_place_ups(1, LEGS(7), o_ups, leg, leg, q, t);
+    }
+}
+
+INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
+{
+    real s[12*LANES], o_ups[5*LANES];
+    inverse_kinematics_before(LANES, X, s, t);
+    for (size_t leg = 0; leg < 7; ++leg) {
+        inverse_kinematics_legs_ups(m, LANES, leg, 0, s, 1, LANES, o_ups);
+        inverse_kinematics_place_ups(LANES, LANES, o_ups, leg, 0, q, t);
     }
 }
 
 /* ---- joint_rates: 399 mul, 266 add, 14 div, 14 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES];
-} joint_rates_values;
-typedef struct {
-    real entry[3][8], singular[8];
-} joint_rates_results_ups;
-
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rates_values *s,
-    verdict *t)
+INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -3709,205 +3675,201 @@ INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rat
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void joint_rates_legs_ups(const prepared *m, size_t leg, size_t legs, const
-    joint_rates_values *s, size_t states, size_t count, joint_rates_results_ups *o)
+INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_base_point_z = m->ups_base_point_z[i];
+        /* (ups-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        /* (ups-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        const real ups_q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
             R_xz*ups_platform_point_z;
-        const real q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real ups_q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
             R_yz*ups_platform_point_z;
-        const real q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real ups_q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
             R_zz*ups_platform_point_z;
-        const real S_x = q_in_base_x + t_x - ups_base_point_x;
-        const real S_y = q_in_base_y + t_y - ups_base_point_y;
-        const real S_z = q_in_base_z + t_z - ups_base_point_z;
-        /* (ups-K2) component along the reference direction */
-        const real px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx;
-        /* (ups-K3) component across the reference direction */
-        const real py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy;
-        /* (ups-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (ups-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (ups-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz;
-        /* (ups-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (ups-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (ups-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_x_x = S_x*inv_root_2;
-        const real axis_x_y = S_y*inv_root_2;
-        const real axis_x_z = S_z*inv_root_2;
-        /* (ups-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (ups-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx;
-        const real axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx;
-        const real axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx;
-        /* (ups-V1) velocity of the connection point */
-        const real S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z;
-        /* (ups-V8) rate of joint 1 */
-        const real qd_2 = inv_root_2*(S_dot_x*(axis_x_z*axis_z_ups_axes2_in_base_y -
-            axis_x_y*axis_z_ups_axes2_in_base_z) + S_dot_y*(axis_x_x*axis_z_ups_axes2_in_base_z -
-            axis_x_z*axis_z_ups_axes2_in_base_x) + S_dot_z*(axis_x_y*axis_z_ups_axes2_in_base_x -
-            axis_x_x*axis_z_ups_axes2_in_base_y));
-        const real qd_1 = inv_root_1*(S_dot_x*axis_z_ups_axes2_in_base_x +
-            S_dot_y*axis_z_ups_axes2_in_base_y + S_dot_z*axis_z_ups_axes2_in_base_z);
-        o->entry[0][k] = qd_1;
-        o->entry[1][k] = qd_2;
-        o->entry[2][k] = S_dot_tip_x;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
+        const real t_x = s[0*w + j];
+        const real ups_base_point_x = m->ups_base_point_x[i];
+        const real ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x;
+        const real t_y = s[1*w + j];
+        const real ups_base_point_y = m->ups_base_point_y[i];
+        const real ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y;
+        const real t_z = s[2*w + j];
+        const real ups_base_point_z = m->ups_base_point_z[i];
+        const real ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z;
+        /* (ups-px_1) component along the reference direction */
+        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
+        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
+        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
+        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
+            ups_S_z*ups_base_frame_zx;
+        /* (ups-py_1) component across the reference direction */
+        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
+        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
+        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
+        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
+            ups_S_z*ups_base_frame_zy;
+        /* (ups-rho2_1) squared amplitude */
+        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
+        /* (ups-root_1) amplitude, with the sign of the branch */
+        const real ups_branch_1 = m->ups_branch_1[i];
+        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
+        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
+        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+            ups_S_z*ups_base_frame_zz;
+        /* (ups-rho2_2) squared amplitude */
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        /* (ups-root_2) amplitude, with the sign of the branch */
+        const real ups_branch_2 = m->ups_branch_2[i];
+        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
+        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ups_root_2 = 1/ups_root_2;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
+        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
+        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
+            ups_base_frame_xx*ups_c_1;
+        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
+            ups_base_frame_yx*ups_c_1;
+        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
+            ups_base_frame_zx*ups_c_1;
+        /* (ups-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real t_dot_x = s[12*w + j];
+        const real ups_S_dot_x = t_dot_x + omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real t_dot_y = s[13*w + j];
+        const real ups_S_dot_y = t_dot_y + omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z;
+        const real t_dot_z = s[14*w + j];
+        const real ups_S_dot_z = t_dot_z + omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x;
+        const real ups_S_dot_tip_x = ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y +
+            ups_S_dot_z*ups_axis_x_z;
+        /* (ups-qd_2) rate of joint 2 */
+        const real ups_qd_2 = inv_ups_root_2*(ups_S_dot_x*(axis_z_ups_axes2_in_base_y*ups_axis_x_z
+            - axis_z_ups_axes2_in_base_z*ups_axis_x_y) +
+            ups_S_dot_y*(axis_z_ups_axes2_in_base_z*ups_axis_x_x -
+            axis_z_ups_axes2_in_base_x*ups_axis_x_z) +
+            ups_S_dot_z*(axis_z_ups_axes2_in_base_x*ups_axis_x_y -
+            axis_z_ups_axes2_in_base_y*ups_axis_x_x));
+        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
+            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z);
+        o[0*count + k] = ups_qd_1;
+        o[1*count + k] = ups_qd_2;
+        o[2*count + k] = ups_S_dot_tip_x;
+        o[4*count + k] = ups_qd_1 + (ups_qd_2 + ups_S_dot_tip_x);
+        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
             TOLERANCE*R(0.8));
     }
 }
 
-INLINE void joint_rates_place_ups(size_t w, const joint_rates_results_ups *o, size_t leg, size_t
-    first, real *qd, verdict *t)
+INLINE void joint_rates_place_ups(size_t w, size_t count, const real *o, size_t leg, size_t first,
+    real *qd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qd[(3*leg)*w + k] = o->entry[0][first + k];
-        qd[(1 + 3*leg)*w + k] = o->entry[1][first + k];
-        qd[(2 + 3*leg)*w + k] = o->entry[2][first + k];
-        t->singular[k] += o->singular[first + k];
+        qd[(3*leg)*w + k] = o[0*count + first + k];
+        qd[(1 + 3*leg)*w + k] = o[1*count + first + k];
+        qd[(2 + 3*leg)*w + k] = o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
 }
 
-INLINE void joint_rates_run(const prepared *m, size_t w, const real *X, const real *V, real *qd,
+INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+{
+    real s[18] = {0}, o_ups[5*LEGS(7)] = {0};
+    joint_rates_before(1, X, V, s, t);
+    joint_rates_legs_ups(m, 1, 0, 1, s, 0, LEGS(7), o_ups);
+    for (size_t leg = 0; leg < 7; ++leg) {
+        joint_rates_place_ups(1, LEGS(7), o_ups, leg, leg, qd, t);
+    }
+}
+
+INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    joint_rates_values values, *const s = &values;
-    joint_rates_results_ups results_ups;
-    joint_rates_before(w, X, V, s, t);
-    if (w == 1) {  /* the legs side by side */
-        joint_rates_legs_ups(m, 0, 1, s, 0, 7, &results_ups);
-        for (size_t leg = 0; leg < 7; ++leg) {
-            joint_rates_place_ups(w, &results_ups, leg, leg, qd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 7; ++leg) {
-            joint_rates_legs_ups(m, leg, 0, s, 1, w, &results_ups);
-            joint_rates_place_ups(w, &results_ups, leg, 0, qd, t);
-        }
+    real s[18*LANES], o_ups[5*LANES];
+    joint_rates_before(LANES, X, V, s, t);
+    for (size_t leg = 0; leg < 7; ++leg) {
+        joint_rates_legs_ups(m, LANES, leg, 0, s, 1, LANES, o_ups);
+        joint_rates_place_ups(LANES, LANES, o_ups, leg, 0, qd, t);
     }
 }
 
 /* ---- joint_accelerations: 658 mul, 434 add, 14 div, 14 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
-        t_ddot_x[LANES], t_ddot_y[LANES], t_ddot_z[LANES], alpha_x[LANES], alpha_y[LANES],
-        alpha_z[LANES];
-} joint_accelerations_values;
-typedef struct {
-    real entry[3][8], singular[8];
-} joint_accelerations_results_ups;
-
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A,
-    joint_accelerations_values *s, verdict *t)
+INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
+    *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real A_2 = A[2*w + k];
-        const real A_3 = A[3*w + k];
-        const real A_4 = A[4*w + k];
-        const real A_5 = A[5*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -3932,255 +3894,258 @@ INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, c
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
+        const real A_2 = A[2*w + k];
         const real t_ddot_z = A_2;
+        const real A_3 = A[3*w + k];
         const real alpha_x = A_3;
+        const real A_4 = A[4*w + k];
         const real alpha_y = A_4;
+        const real A_5 = A[5*w + k];
         const real alpha_z = A_5;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->t_ddot_z[k] = t_ddot_z;
-        s->alpha_x[k] = alpha_x;
-        s->alpha_y[k] = alpha_y;
-        s->alpha_z[k] = alpha_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
+        s[18*w + k] = t_ddot_x;
+        s[19*w + k] = t_ddot_y;
+        s[20*w + k] = t_ddot_z;
+        s[21*w + k] = alpha_x;
+        s[22*w + k] = alpha_y;
+        s[23*w + k] = alpha_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void joint_accelerations_legs_ups(const prepared *m, size_t leg, size_t legs, const
-    joint_accelerations_values *s, size_t states, size_t count, joint_accelerations_results_ups
-    *o)
+INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs,
+    const real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real t_ddot_z = s->t_ddot_z[j];
-        const real alpha_x = s->alpha_x[j];
-        const real alpha_y = s->alpha_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_base_point_z = m->ups_base_point_z[i];
+        /* (ups-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        /* (ups-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        const real ups_q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
             R_xz*ups_platform_point_z;
-        const real q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real ups_q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
             R_yz*ups_platform_point_z;
-        const real q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real ups_q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
             R_zz*ups_platform_point_z;
-        const real S_x = q_in_base_x + t_x - ups_base_point_x;
-        const real S_y = q_in_base_y + t_y - ups_base_point_y;
-        const real S_z = q_in_base_z + t_z - ups_base_point_z;
-        /* (ups-K2) component along the reference direction */
-        const real px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx;
-        /* (ups-K3) component across the reference direction */
-        const real py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy;
-        /* (ups-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (ups-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (ups-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz;
-        /* (ups-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (ups-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (ups-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_x_x = S_x*inv_root_2;
-        const real axis_x_y = S_y*inv_root_2;
-        const real axis_x_z = S_z*inv_root_2;
-        /* (ups-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (ups-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx;
-        const real axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx;
-        const real axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx;
-        const real axis_y_ups_axes2_x = axis_x_z*axis_z_ups_axes2_in_base_y -
-            axis_x_y*axis_z_ups_axes2_in_base_z;
-        const real axis_y_ups_axes2_y = axis_x_x*axis_z_ups_axes2_in_base_z -
-            axis_x_z*axis_z_ups_axes2_in_base_x;
-        const real axis_y_ups_axes2_z = axis_x_y*axis_z_ups_axes2_in_base_x -
-            axis_x_x*axis_z_ups_axes2_in_base_y;
-        /* (ups-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        const real S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z;
-        /* (ups-V8) rate of joint 1 */
-        const real qd_2 = inv_root_2*(S_dot_x*axis_y_ups_axes2_x + S_dot_y*axis_y_ups_axes2_y +
-            S_dot_z*axis_y_ups_axes2_z);
-        const real qd_1 = inv_root_1*(S_dot_x*axis_z_ups_axes2_in_base_x +
-            S_dot_y*axis_z_ups_axes2_in_base_y + S_dot_z*axis_z_ups_axes2_in_base_z);
-        /* (ups-V11) angular velocity of link 1 */
-        const real omega_1_t = inv_root_2*qd_1*xi_1_t;
-        const real omega_1_t_2 = inv_root_2*qd_1*root_1;
-        /* (ups-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_tip_x;
-        const real bias_z = bias_t*omega_1_t_2 + 2*omega_1_t*qd_2*root_2;
-        /* (ups-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
-        const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
-        const real a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x;
-        /* (ups-A3) acceleration of the connection point */
-        const real S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z;
-        const real S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x;
-        const real S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y;
-        /* (ups-A6) acceleration of the connection point left to the joint accelerations */
-        const real rel_x = S_ddot_x*axis_x_x + S_ddot_y*axis_x_y + S_ddot_z*axis_x_z +
-            root_2*(omega_1_t_2*omega_1_t_2 + qd_2*qd_2);
-        const real rel_z = S_ddot_x*axis_z_ups_axes2_in_base_x +
-            S_ddot_y*axis_z_ups_axes2_in_base_y + S_ddot_z*axis_z_ups_axes2_in_base_z - bias_z;
-        /* (ups-A8) acceleration of joint 1 */
-        const real qdd_2 = inv_root_2*(S_ddot_x*axis_y_ups_axes2_x + S_ddot_y*axis_y_ups_axes2_y +
-            S_ddot_z*axis_y_ups_axes2_z - bias_t*qd_2) + omega_1_t*omega_1_t_2;
-        const real qdd_1 = inv_root_1*rel_z;
-        o->entry[0][k] = qdd_1;
-        o->entry[1][k] = qdd_2;
-        o->entry[2][k] = rel_x;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
+        const real t_x = s[0*w + j];
+        const real ups_base_point_x = m->ups_base_point_x[i];
+        const real ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x;
+        const real t_y = s[1*w + j];
+        const real ups_base_point_y = m->ups_base_point_y[i];
+        const real ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y;
+        const real t_z = s[2*w + j];
+        const real ups_base_point_z = m->ups_base_point_z[i];
+        const real ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z;
+        /* (ups-px_1) component along the reference direction */
+        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
+        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
+        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
+        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
+            ups_S_z*ups_base_frame_zx;
+        /* (ups-py_1) component across the reference direction */
+        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
+        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
+        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
+        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
+            ups_S_z*ups_base_frame_zy;
+        /* (ups-rho2_1) squared amplitude */
+        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
+        /* (ups-root_1) amplitude, with the sign of the branch */
+        const real ups_branch_1 = m->ups_branch_1[i];
+        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
+        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
+        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+            ups_S_z*ups_base_frame_zz;
+        /* (ups-rho2_2) squared amplitude */
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        /* (ups-root_2) amplitude, with the sign of the branch */
+        const real ups_branch_2 = m->ups_branch_2[i];
+        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
+        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ups_root_2 = 1/ups_root_2;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
+        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
+        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
+            ups_base_frame_xx*ups_c_1;
+        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
+            ups_base_frame_yx*ups_c_1;
+        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
+            ups_base_frame_zx*ups_c_1;
+        const real axis_y_ups_axes2_x = axis_z_ups_axes2_in_base_y*ups_axis_x_z -
+            axis_z_ups_axes2_in_base_z*ups_axis_x_y;
+        const real axis_y_ups_axes2_y = axis_z_ups_axes2_in_base_z*ups_axis_x_x -
+            axis_z_ups_axes2_in_base_x*ups_axis_x_z;
+        const real axis_y_ups_axes2_z = axis_z_ups_axes2_in_base_x*ups_axis_x_y -
+            axis_z_ups_axes2_in_base_y*ups_axis_x_x;
+        /* (ups-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z;
+        const real ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x;
+        const real t_dot_x = s[12*w + j];
+        const real ups_S_dot_x = t_dot_x + ups_S_dot_t;
+        const real t_dot_y = s[13*w + j];
+        const real ups_S_dot_y = t_dot_y + ups_S_dot_t_2;
+        const real t_dot_z = s[14*w + j];
+        const real ups_S_dot_z = t_dot_z + ups_S_dot_t_3;
+        const real ups_S_dot_tip_x = ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y +
+            ups_S_dot_z*ups_axis_x_z;
+        /* (ups-qd_2) rate of joint 2 */
+        const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x +
+            axis_y_ups_axes2_y*ups_S_dot_y + axis_y_ups_axes2_z*ups_S_dot_z);
+        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
+            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z);
+        /* (ups-omega_1) angular velocity of link 1 */
+        const real ups_omega_1_t = inv_ups_root_2*ups_qd_1*ups_xi_1_t;
+        const real ups_omega_1_t_2 = inv_ups_root_2*ups_qd_1*ups_root_1;
+        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
+        const real ups_bias_t = 2*ups_S_dot_tip_x;
+        const real ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2*ups_omega_1_t*ups_qd_2*ups_root_2;
+        /* (ups-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_y = s[22*w + j];
+        const real alpha_z = s[23*w + j];
+        const real t_ddot_x = s[18*w + j];
+        const real ups_a_p_x = t_ddot_x + alpha_y*ups_q_in_base_z - alpha_z*ups_q_in_base_y;
+        const real alpha_x = s[21*w + j];
+        const real t_ddot_y = s[19*w + j];
+        const real ups_a_p_y = t_ddot_y + alpha_z*ups_q_in_base_x - alpha_x*ups_q_in_base_z;
+        const real t_ddot_z = s[20*w + j];
+        const real ups_a_p_z = t_ddot_z + alpha_x*ups_q_in_base_y - alpha_y*ups_q_in_base_x;
+        /* (ups-S_ddot) acceleration of the connection point */
+        const real ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2;
+        const real ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3;
+        const real ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t;
+        /* (ups-rel) acceleration of the connection point left to the joint accelerations */
+        const real ups_rel_x = ups_S_ddot_x*ups_axis_x_x + ups_S_ddot_y*ups_axis_x_y +
+            ups_S_ddot_z*ups_axis_x_z + ups_root_2*(ups_omega_1_t_2*ups_omega_1_t_2 +
+            ups_qd_2*ups_qd_2);
+        const real ups_rel_z = axis_z_ups_axes2_in_base_x*ups_S_ddot_x +
+            axis_z_ups_axes2_in_base_y*ups_S_ddot_y + axis_z_ups_axes2_in_base_z*ups_S_ddot_z -
+            ups_bias_z;
+        /* (ups-qdd_1) acceleration of joint 1 */
+        const real ups_qdd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_ddot_x +
+            axis_y_ups_axes2_y*ups_S_ddot_y + axis_y_ups_axes2_z*ups_S_ddot_z -
+            ups_bias_t*ups_qd_2) + ups_omega_1_t*ups_omega_1_t_2;
+        const real ups_qdd_1 = inv_ups_root_1*ups_rel_z;
+        o[0*count + k] = ups_qdd_1;
+        o[1*count + k] = ups_qdd_2;
+        o[2*count + k] = ups_rel_x;
+        o[4*count + k] = ups_qdd_1 + (ups_qdd_2 + ups_rel_x);
+        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
             TOLERANCE*R(0.8));
     }
 }
 
-INLINE void joint_accelerations_place_ups(size_t w, const joint_accelerations_results_ups *o,
-    size_t leg, size_t first, real *qdd, verdict *t)
+INLINE void joint_accelerations_place_ups(size_t w, size_t count, const real *o, size_t leg,
+    size_t first, real *qdd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qdd[(3*leg)*w + k] = o->entry[0][first + k];
-        qdd[(1 + 3*leg)*w + k] = o->entry[1][first + k];
-        qdd[(2 + 3*leg)*w + k] = o->entry[2][first + k];
-        t->singular[k] += o->singular[first + k];
+        qdd[(3*leg)*w + k] = o[0*count + first + k];
+        qdd[(1 + 3*leg)*w + k] = o[1*count + first + k];
+        qdd[(2 + 3*leg)*w + k] = o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
 }
 
-INLINE void joint_accelerations_run(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd, verdict *t)
+INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd, verdict *t)
 {
-    joint_accelerations_values values, *const s = &values;
-    joint_accelerations_results_ups results_ups;
-    joint_accelerations_before(w, X, V, A, s, t);
-    if (w == 1) {  /* the legs side by side */
-        joint_accelerations_legs_ups(m, 0, 1, s, 0, 7, &results_ups);
-        for (size_t leg = 0; leg < 7; ++leg) {
-            joint_accelerations_place_ups(w, &results_ups, leg, leg, qdd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 7; ++leg) {
-            joint_accelerations_legs_ups(m, leg, 0, s, 1, w, &results_ups);
-            joint_accelerations_place_ups(w, &results_ups, leg, 0, qdd, t);
-        }
+    real s[24] = {0}, o_ups[5*LEGS(7)] = {0};
+    joint_accelerations_before(1, X, V, A, s, t);
+    joint_accelerations_legs_ups(m, 1, 0, 1, s, 0, LEGS(7), o_ups);
+    for (size_t leg = 0; leg < 7; ++leg) {
+        joint_accelerations_place_ups(1, LEGS(7), o_ups, leg, leg, qdd, t);
+    }
+}
+
+INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, verdict *t)
+{
+    real s[24*LANES], o_ups[5*LANES];
+    joint_accelerations_before(LANES, X, V, A, s, t);
+    for (size_t leg = 0; leg < 7; ++leg) {
+        joint_accelerations_legs_ups(m, LANES, leg, 0, s, 1, LANES, o_ups);
+        joint_accelerations_place_ups(LANES, LANES, o_ups, leg, 0, qdd, t);
     }
 }
 
 /* ---- legs: 1106 mul, 847 add, 14 div, 14 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
-        t_ddot_x[LANES], t_ddot_y[LANES], t_ddot_z[LANES], alpha_x[LANES], alpha_y[LANES],
-        alpha_z[LANES];
-} legs_values;
-typedef struct {
-    real entry[6][8], singular[8];
-} legs_results_ups;
-
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, legs_values *s,
-    verdict *t)
+INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real A_2 = A[2*w + k];
-        const real A_3 = A[3*w + k];
-        const real A_4 = A[4*w + k];
-        const real A_5 = A[5*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -4205,317 +4170,351 @@ INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, l
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
+        const real A_2 = A[2*w + k];
         const real t_ddot_z = A_2;
+        const real A_3 = A[3*w + k];
         const real alpha_x = A_3;
+        const real A_4 = A[4*w + k];
         const real alpha_y = A_4;
+        const real A_5 = A[5*w + k];
         const real alpha_z = A_5;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->t_ddot_z[k] = t_ddot_z;
-        s->alpha_x[k] = alpha_x;
-        s->alpha_y[k] = alpha_y;
-        s->alpha_z[k] = alpha_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
+        s[18*w + k] = t_ddot_x;
+        s[19*w + k] = t_ddot_y;
+        s[20*w + k] = t_ddot_z;
+        s[21*w + k] = alpha_x;
+        s[22*w + k] = alpha_y;
+        s[23*w + k] = alpha_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void legs_legs_ups(const prepared *m, size_t leg, size_t legs, const legs_values *s, size_t
-    states, size_t count, legs_results_ups *o)
+INLINE void legs_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real t_ddot_z = s->t_ddot_z[j];
-        const real alpha_x = s->alpha_x[j];
-        const real alpha_y = s->alpha_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real J_group_2_xy = m->J_group_2_xy[i];
-        const real J_group_2_xz = m->J_group_2_xz[i];
-        const real J_group_2_yz = m->J_group_2_yz[i];
-        const real Sigma_2_xx = m->Sigma_2_xx[i];
-        const real Sigma_2_yy = m->Sigma_2_yy[i];
-        const real Sigma_2_zz = m->Sigma_2_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real g_r0_z = m->g_r0_z[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real h_2_z = m->h_2_z[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_link3_mass = m->ups_link3_mass[i];
+        /* (ups-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        /* (ups-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        const real ups_q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
             R_xz*ups_platform_point_z;
-        const real q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real ups_q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
             R_yz*ups_platform_point_z;
-        const real q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real ups_q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
             R_zz*ups_platform_point_z;
-        const real S_x = q_in_base_x + t_x - ups_base_point_x;
-        const real S_y = q_in_base_y + t_y - ups_base_point_y;
-        const real S_z = q_in_base_z + t_z - ups_base_point_z;
-        /* (ups-K2) component along the reference direction */
-        const real px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx;
-        /* (ups-K3) component across the reference direction */
-        const real py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy;
-        /* (ups-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (ups-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (ups-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz;
-        /* (ups-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (ups-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (ups-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (ups-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_x_x = S_x*inv_root_2;
-        const real axis_x_y = S_y*inv_root_2;
-        const real axis_x_z = S_z*inv_root_2;
-        /* (ups-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (ups-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx;
-        const real axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx;
-        const real axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx;
-        const real axis_y_ups_axes2_x = axis_x_z*axis_z_ups_axes2_in_base_y -
-            axis_x_y*axis_z_ups_axes2_in_base_z;
-        const real axis_y_ups_axes2_y = axis_x_x*axis_z_ups_axes2_in_base_z -
-            axis_x_z*axis_z_ups_axes2_in_base_x;
-        const real axis_y_ups_axes2_z = axis_x_y*axis_z_ups_axes2_in_base_x -
-            axis_x_x*axis_z_ups_axes2_in_base_y;
-        /* (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
-        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
-        const real g_r3_x = g_r0_z*s_2 - c_2*g_r1_y;
-        const real g_r3_y = -c_2*g_r0_z - g_r1_y*s_2;
-        /* (ups-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        const real S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z;
-        /* (ups-V8) rate of joint 1 */
-        const real qd_2 = inv_root_2*(S_dot_x*axis_y_ups_axes2_x + S_dot_y*axis_y_ups_axes2_y +
-            S_dot_z*axis_y_ups_axes2_z);
-        const real qd_1 = inv_root_1*(S_dot_x*axis_z_ups_axes2_in_base_x +
-            S_dot_y*axis_z_ups_axes2_in_base_y + S_dot_z*axis_z_ups_axes2_in_base_z);
-        /* (ups-V11) angular velocity of link 1 */
-        const real omega_1_t = qd_1*s_2;
-        const real omega_1_t_2 = c_2*qd_1;
-        /* (ups-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_x = omega_1_t_2*qd_2;
-        const real zeta_2_y = omega_1_t*qd_2;
-        /* (ups-V13) centripetal tensor of link 2 */
-        const real W_2_t = omega_1_t*omega_1_t;
-        const real W_2_t_2 = omega_1_t_2*omega_1_t_2;
-        const real W_2_t_3 = qd_2*qd_2;
-        const real W_2_xy = omega_1_t*omega_1_t_2;
-        /* (ups-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_tip_x;
-        const real bias_z = bias_t*omega_1_t_2 + 2*root_2*zeta_2_y;
-        /* (ups-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
-        const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
-        const real a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x;
-        /* (ups-A3) acceleration of the connection point */
-        const real S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z;
-        const real S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x;
-        const real S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y;
-        const real S_ddot_t = S_ddot_x*axis_y_ups_axes2_x;
-        const real S_ddot_t_2 = S_ddot_y*axis_y_ups_axes2_y;
-        const real S_ddot_t_3 = S_ddot_z*axis_y_ups_axes2_z;
-        const real S_ddot_tip_z = S_ddot_x*axis_z_ups_axes2_in_base_x +
-            S_ddot_y*axis_z_ups_axes2_in_base_y + S_ddot_z*axis_z_ups_axes2_in_base_z;
-        /* (ups-A6) acceleration of the connection point left to the joint accelerations */
-        const real rel_z = S_ddot_tip_z - bias_z;
-        /* (ups-A8) acceleration of joint 1 */
-        const real qdd_1_t = inv_root_2*(S_ddot_t + S_ddot_t_2 + S_ddot_t_3 - bias_t*qd_2);
-        const real qdd_1 = inv_root_1*rel_z;
-        /* (ups-N3) acceleration of the reference point of link 3, less gravity */
-        const real acc_3_x = S_ddot_x*axis_x_x + S_ddot_y*axis_x_y + S_ddot_z*axis_x_z - g_r3_x;
-        const real acc_3_y = S_ddot_t + S_ddot_t_2 + S_ddot_t_3 - g_r3_y;
-        const real acc_3_z = S_ddot_tip_z - g_r1_x;
-        /* (ups-A13) angular acceleration of link 1 */
-        const real alpha_1_t = qdd_1*s_2;
-        const real alpha_1_t_2 = c_2*qdd_1;
-        /* (ups-A16) angular acceleration of link 2 */
-        const real alpha_2_x = alpha_1_t - zeta_2_x;
-        const real alpha_2_y = -alpha_1_t_2 - zeta_2_y;
-        /* (ups-A19) acceleration tensor of link 2 */
-        const real B_2_xy = -2*W_2_xy - qdd_1_t;
-        const real B_2_zx = zeta_2_y - alpha_2_y;
-        const real B_2_zy = alpha_2_x - zeta_2_x;
-        /* (ups-N12) inertia moment of the links that turn with link 2, about their reference points */
-        const real mu_2_x = B_2_zy*Sigma_2_yy + J_group_2_xz*qdd_1_t + J_group_2_yz*(W_2_t_2 -
-            W_2_t_3) + Sigma_2_zz*alpha_1_t + g_r1_x*h_2_z + g_r3_y*h_2_y - B_2_zx*J_group_2_xy -
-            acc_3_y*h_3_y - acc_3_z*h_3_z;
-        const real mu_2_y = B_2_zy*J_group_2_xy + acc_3_x*h_3_y + g_r1_x*h_2_x -
-            B_2_xy*J_group_2_yz - B_2_zx*Sigma_2_xx - J_group_2_xz*(W_2_t - W_2_t_3) -
-            Sigma_2_zz*alpha_1_t_2 - acc_3_z*h_3_x - g_r3_x*h_2_y;
-        const real mu_2_z = J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_xz*alpha_1_t +
-            Sigma_2_xx*qdd_1_t + acc_3_x*h_3_z + acc_3_y*h_3_x - B_2_xy*Sigma_2_yy -
-            J_group_2_yz*alpha_1_t_2 - g_r3_x*h_2_z - g_r3_y*h_2_x;
-        /* (ups-N24) leg force on the platform without actuation and without the mass at the connection
+        const real t_x = s[0*w + j];
+        const real ups_base_point_x = m->ups_base_point_x[i];
+        const real ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x;
+        const real t_y = s[1*w + j];
+        const real ups_base_point_y = m->ups_base_point_y[i];
+        const real ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y;
+        const real t_z = s[2*w + j];
+        const real ups_base_point_z = m->ups_base_point_z[i];
+        const real ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z;
+        /* (ups-px_1) component along the reference direction */
+        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
+        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
+        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
+        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
+            ups_S_z*ups_base_frame_zx;
+        /* (ups-py_1) component across the reference direction */
+        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
+        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
+        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
+        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
+            ups_S_z*ups_base_frame_zy;
+        /* (ups-rho2_1) squared amplitude */
+        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
+        /* (ups-root_1) amplitude, with the sign of the branch */
+        const real ups_branch_1 = m->ups_branch_1[i];
+        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
+        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
+        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+            ups_S_z*ups_base_frame_zz;
+        /* (ups-rho2_2) squared amplitude */
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        /* (ups-root_2) amplitude, with the sign of the branch */
+        const real ups_branch_2 = m->ups_branch_2[i];
+        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
+        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ups_root_2 = 1/ups_root_2;
+        const real ups_c_2 = inv_ups_root_2*ups_root_1;
+        /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
+        const real ups_s_2 = inv_ups_root_2*ups_xi_1_t;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
+        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
+        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
+            ups_base_frame_xx*ups_c_1;
+        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
+            ups_base_frame_yx*ups_c_1;
+        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
+            ups_base_frame_zx*ups_c_1;
+        const real axis_y_ups_axes2_x = axis_z_ups_axes2_in_base_y*ups_axis_x_z -
+            axis_z_ups_axes2_in_base_z*ups_axis_x_y;
+        const real axis_y_ups_axes2_y = axis_z_ups_axes2_in_base_z*ups_axis_x_x -
+            axis_z_ups_axes2_in_base_x*ups_axis_x_z;
+        const real axis_y_ups_axes2_z = axis_z_ups_axes2_in_base_x*ups_axis_x_y -
+            axis_z_ups_axes2_in_base_y*ups_axis_x_x;
+        /* (ups-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z;
+        const real ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x;
+        const real t_dot_x = s[12*w + j];
+        const real ups_S_dot_x = t_dot_x + ups_S_dot_t;
+        const real t_dot_y = s[13*w + j];
+        const real ups_S_dot_y = t_dot_y + ups_S_dot_t_2;
+        const real t_dot_z = s[14*w + j];
+        const real ups_S_dot_z = t_dot_z + ups_S_dot_t_3;
+        const real ups_S_dot_tip_x = ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y +
+            ups_S_dot_z*ups_axis_x_z;
+        /* (ups-qd_2) rate of joint 2 */
+        const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x +
+            axis_y_ups_axes2_y*ups_S_dot_y + axis_y_ups_axes2_z*ups_S_dot_z);
+        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
+            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z);
+        /* (ups-omega_1) angular velocity of link 1 */
+        const real ups_omega_1_t = ups_qd_1*ups_s_2;
+        const real ups_omega_1_t_2 = ups_c_2*ups_qd_1;
+        /* (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2;
+        const real ups_zeta_2_y = ups_omega_1_t*ups_qd_2;
+        /* (ups-W_2) centripetal tensor of link 2 */
+        const real ups_W_2_t = ups_omega_1_t*ups_omega_1_t;
+        const real ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2;
+        const real ups_W_2_t_3 = ups_qd_2*ups_qd_2;
+        const real ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2;
+        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
+        const real ups_bias_t = 2*ups_S_dot_tip_x;
+        const real ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2*ups_root_2*ups_zeta_2_y;
+        /* (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real ups_g_r0_x = m->ups_g_r0_x[i];
+        const real ups_g_r0_y = m->ups_g_r0_y[i];
+        const real ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x;
+        const real ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1;
+        const real ups_g_r0_z = m->ups_g_r0_z[i];
+        const real ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y;
+        const real ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2;
+        /* (ups-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_y = s[22*w + j];
+        const real alpha_z = s[23*w + j];
+        const real t_ddot_x = s[18*w + j];
+        const real ups_a_p_x = t_ddot_x + alpha_y*ups_q_in_base_z - alpha_z*ups_q_in_base_y;
+        const real alpha_x = s[21*w + j];
+        const real t_ddot_y = s[19*w + j];
+        const real ups_a_p_y = t_ddot_y + alpha_z*ups_q_in_base_x - alpha_x*ups_q_in_base_z;
+        const real t_ddot_z = s[20*w + j];
+        const real ups_a_p_z = t_ddot_z + alpha_x*ups_q_in_base_y - alpha_y*ups_q_in_base_x;
+        /* (ups-S_ddot) acceleration of the connection point */
+        const real ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2;
+        const real ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3;
+        const real ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t;
+        const real ups_S_ddot_t = axis_y_ups_axes2_x*ups_S_ddot_x;
+        const real ups_S_ddot_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y;
+        const real ups_S_ddot_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z;
+        const real ups_S_ddot_tip_z = axis_z_ups_axes2_in_base_x*ups_S_ddot_x +
+            axis_z_ups_axes2_in_base_y*ups_S_ddot_y + axis_z_ups_axes2_in_base_z*ups_S_ddot_z;
+        /* (ups-rel) acceleration of the connection point left to the joint accelerations */
+        const real ups_rel_z = ups_S_ddot_tip_z - ups_bias_z;
+        /* (ups-qdd_1) acceleration of joint 1 */
+        const real ups_qdd_1_t = inv_ups_root_2*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 -
+            ups_bias_t*ups_qd_2);
+        const real ups_qdd_1 = inv_ups_root_1*ups_rel_z;
+        /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
+        const real ups_acc_3_x = ups_S_ddot_x*ups_axis_x_x + ups_S_ddot_y*ups_axis_x_y +
+            ups_S_ddot_z*ups_axis_x_z - ups_g_r3_x;
+        const real ups_acc_3_y = ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_g_r3_y;
+        const real ups_acc_3_z = ups_S_ddot_tip_z - ups_g_r1_x;
+        /* (ups-alpha_1) angular acceleration of link 1 */
+        const real ups_alpha_1_t = ups_qdd_1*ups_s_2;
+        const real ups_alpha_1_t_2 = ups_c_2*ups_qdd_1;
+        /* (ups-alpha_2) angular acceleration of link 2 */
+        const real ups_alpha_2_x = ups_alpha_1_t - ups_zeta_2_x;
+        const real ups_alpha_2_y = -ups_alpha_1_t_2 - ups_zeta_2_y;
+        /* (ups-B_2) acceleration tensor of link 2 */
+        const real ups_B_2_xy = -2*ups_W_2_xy - ups_qdd_1_t;
+        const real ups_B_2_zx = ups_zeta_2_y - ups_alpha_2_y;
+        const real ups_B_2_zy = ups_alpha_2_x - ups_zeta_2_x;
+        /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+        const real ups_J_group_2_xy = m->ups_J_group_2_xy[i];
+        const real ups_J_group_2_xz = m->ups_J_group_2_xz[i];
+        const real ups_J_group_2_yz = m->ups_J_group_2_yz[i];
+        const real ups_Sigma_2_yy = m->ups_Sigma_2_yy[i];
+        const real ups_Sigma_2_zz = m->ups_Sigma_2_zz[i];
+        const real ups_h_2_y = m->ups_h_2_y[i];
+        const real ups_h_2_z = m->ups_h_2_z[i];
+        const real ups_h_3_y = m->ups_h_3_y[i];
+        const real ups_h_3_z = m->ups_h_3_z[i];
+        const real ups_mu_2_x = ups_B_2_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_1_t +
+            ups_J_group_2_yz*(ups_W_2_t_2 - ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_t +
+            ups_g_r1_x*ups_h_2_z + ups_g_r3_y*ups_h_2_y - ups_B_2_zx*ups_J_group_2_xy -
+            ups_acc_3_y*ups_h_3_y - ups_acc_3_z*ups_h_3_z;
+        const real ups_Sigma_2_xx = m->ups_Sigma_2_xx[i];
+        const real ups_h_2_x = m->ups_h_2_x[i];
+        const real ups_h_3_x = m->ups_h_3_x[i];
+        const real ups_mu_2_y = ups_B_2_zy*ups_J_group_2_xy + ups_acc_3_x*ups_h_3_y +
+            ups_g_r1_x*ups_h_2_x - ups_B_2_xy*ups_J_group_2_yz - ups_B_2_zx*ups_Sigma_2_xx -
+            ups_J_group_2_xz*(ups_W_2_t - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_t_2 -
+            ups_acc_3_z*ups_h_3_x - ups_g_r3_x*ups_h_2_y;
+        const real ups_mu_2_z = ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) +
+            ups_J_group_2_xz*ups_alpha_1_t + ups_Sigma_2_xx*ups_qdd_1_t + ups_acc_3_x*ups_h_3_z +
+            ups_acc_3_y*ups_h_3_x - ups_B_2_xy*ups_Sigma_2_yy - ups_J_group_2_yz*ups_alpha_1_t_2 -
+            ups_g_r3_x*ups_h_2_z - ups_g_r3_y*ups_h_2_x;
+        /* (ups-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_y = alpha_1_t*h_3_y - h_3_x*qdd_1_t - h_3_z*(W_2_t + W_2_t_3) -
-            inv_root_2*mu_2_z;
-        const real c_z = B_2_zy*h_3_z + h_3_y*(W_2_t + W_2_t_2) - B_2_zx*h_3_x -
-            inv_root_1*(mu_2_x*s_2 - c_2*mu_2_y);
-        /* (ups-N29) leg force on the platform without actuation, the last link's mass included */
-        const real c_true_x = B_2_xy*h_3_z + alpha_1_t_2*h_3_y + h_3_x*(W_2_t_2 + W_2_t_3) -
-            acc_3_x*ups_link3_mass;
-        const real c_true_y = c_y - acc_3_y*ups_link3_mass;
-        const real c_true_z = c_z - acc_3_z*ups_link3_mass;
-        const real c_true_in_base_x = axis_x_x*c_true_x + axis_y_ups_axes2_x*c_true_y +
-            axis_z_ups_axes2_in_base_x*c_true_z;
-        const real c_true_in_base_y = axis_x_y*c_true_x + axis_y_ups_axes2_y*c_true_y +
-            axis_z_ups_axes2_in_base_y*c_true_z;
-        const real c_true_in_base_z = axis_x_z*c_true_x + axis_y_ups_axes2_z*c_true_y +
-            axis_z_ups_axes2_in_base_z*c_true_z;
-        o->entry[0][k] = c_true_in_base_x;
-        o->entry[1][k] = c_true_in_base_y;
-        o->entry[2][k] = c_true_in_base_z;
-        o->entry[3][k] = axis_x_x;
-        o->entry[4][k] = axis_x_y;
-        o->entry[5][k] = axis_x_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
+        const real ups_c_y = ups_alpha_1_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_z -
+            ups_h_3_x*ups_qdd_1_t - ups_h_3_z*(ups_W_2_t + ups_W_2_t_3);
+        const real ups_c_z = ups_B_2_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
+            inv_ups_root_1*(ups_mu_2_x*ups_s_2 - ups_c_2*ups_mu_2_y) - ups_B_2_zx*ups_h_3_x;
+        /* (ups-c_true) leg force on the platform without actuation, the last link's mass included */
+        const real ups_link3_mass = m->ups_link3_mass[i];
+        const real ups_c_true_x = ups_B_2_xy*ups_h_3_z + ups_alpha_1_t_2*ups_h_3_y +
+            ups_h_3_x*(ups_W_2_t_2 + ups_W_2_t_3) - ups_acc_3_x*ups_link3_mass;
+        const real ups_c_true_y = ups_c_y - ups_acc_3_y*ups_link3_mass;
+        const real ups_c_true_z = ups_c_z - ups_acc_3_z*ups_link3_mass;
+        const real ups_c_true_in_base_x = axis_y_ups_axes2_x*ups_c_true_y +
+            axis_z_ups_axes2_in_base_x*ups_c_true_z + ups_axis_x_x*ups_c_true_x;
+        const real ups_c_true_in_base_y = axis_y_ups_axes2_y*ups_c_true_y +
+            axis_z_ups_axes2_in_base_y*ups_c_true_z + ups_axis_x_y*ups_c_true_x;
+        const real ups_c_true_in_base_z = axis_y_ups_axes2_z*ups_c_true_y +
+            axis_z_ups_axes2_in_base_z*ups_c_true_z + ups_axis_x_z*ups_c_true_x;
+        o[0*count + k] = ups_c_true_in_base_x;
+        o[1*count + k] = ups_c_true_in_base_y;
+        o[2*count + k] = ups_c_true_in_base_z;
+        o[3*count + k] = ups_axis_x_x;
+        o[4*count + k] = ups_axis_x_y;
+        o[5*count + k] = ups_axis_x_z;
+        o[6*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
             TOLERANCE*R(0.8));
     }
 }
 
-INLINE void legs_place_ups(size_t w, const legs_results_ups *o, size_t leg, size_t first, real
+INLINE void legs_place_ups(size_t w, size_t count, const real *o, size_t leg, size_t first, real
     *leg_force, real *drive, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        leg_force[(3*leg)*w + k] = o->entry[0][first + k];
-        leg_force[(1 + 3*leg)*w + k] = o->entry[1][first + k];
-        leg_force[(2 + 3*leg)*w + k] = o->entry[2][first + k];
-        drive[(3*leg)*w + k] = o->entry[3][first + k];
-        drive[(1 + 3*leg)*w + k] = o->entry[4][first + k];
-        drive[(2 + 3*leg)*w + k] = o->entry[5][first + k];
-        t->singular[k] += o->singular[first + k];
+        leg_force[(3*leg)*w + k] = o[0*count + first + k];
+        leg_force[(1 + 3*leg)*w + k] = o[1*count + first + k];
+        leg_force[(2 + 3*leg)*w + k] = o[2*count + first + k];
+        drive[(3*leg)*w + k] = o[3*count + first + k];
+        drive[(1 + 3*leg)*w + k] = o[4*count + first + k];
+        drive[(2 + 3*leg)*w + k] = o[5*count + first + k];
+        t->singular[k] += o[6*count + first + k];
     }
 }
 
-INLINE void legs_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
-    real *leg_force, real *drive, verdict *t)
+INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
+    *leg_force, real *drive, verdict *t)
 {
-    legs_values values, *const s = &values;
-    legs_results_ups results_ups;
-    legs_before(w, X, V, A, s, t);
-    if (w == 1) {  /* the legs side by side */
-        legs_legs_ups(m, 0, 1, s, 0, 7, &results_ups);
-        for (size_t leg = 0; leg < 7; ++leg) {
-            legs_place_ups(w, &results_ups, leg, leg, leg_force, drive, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 7; ++leg) {
-            legs_legs_ups(m, leg, 0, s, 1, w, &results_ups);
-            legs_place_ups(w, &results_ups, leg, 0, leg_force, drive, t);
-        }
+    real s[24] = {0}, o_ups[7*LEGS(7)] = {0};
+    legs_before(1, X, V, A, s, t);
+    legs_legs_ups(m, 1, 0, 1, s, 0, LEGS(7), o_ups);
+    for (size_t leg = 0; leg < 7; ++leg) {
+        legs_place_ups(1, LEGS(7), o_ups, leg, leg, leg_force, drive, t);
     }
 }
 
 /* ---- potential: 358 mul, 271 add, 14 div, 14 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], potential_t[LANES],
-        sum[1][LANES];
-} potential_values;
-typedef struct {
-    real sum[1][8], singular[8];
-} potential_results_ups;
-
-INLINE void potential_before(const prepared *m, size_t w, const real *X, potential_values *s,
-    verdict *t)
+INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
+        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+        const real quaternion_scale = 2/quaternion_norm2;
+        const real quaternion_sx = X_3*quaternion_scale;
+        const real quaternion_sy = X_4*quaternion_scale;
+        const real quaternion_sz = X_5*quaternion_scale;
+        const real quaternion_wx = X_6*quaternion_sx;
+        const real quaternion_wy = X_6*quaternion_sy;
+        const real quaternion_wz = X_6*quaternion_sz;
+        const real quaternion_xx = X_3*quaternion_sx;
+        const real quaternion_xy = X_3*quaternion_sy;
+        const real quaternion_xz = X_3*quaternion_sz;
+        const real quaternion_yy = X_4*quaternion_sy;
+        const real quaternion_yz = X_4*quaternion_sz;
+        const real quaternion_zz = X_5*quaternion_sz;
+        const real R_xx = 1 - quaternion_yy - quaternion_zz;
+        const real R_xy = quaternion_xy - quaternion_wz;
+        const real R_xz = quaternion_wy + quaternion_xz;
+        const real R_yx = quaternion_wz + quaternion_xy;
+        const real R_yy = 1 - quaternion_xx - quaternion_zz;
+        const real R_yz = quaternion_yz - quaternion_wx;
+        const real R_zx = quaternion_xz - quaternion_wy;
+        const real R_zy = quaternion_wx + quaternion_yz;
+        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
@@ -4523,223 +4522,173 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, potenti
         const real h_star_y = m->h_star_y;
         const real h_star_z = m->h_star_z;
         const real m_star = m->m_star;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* (V1) potential energy */
         const real potential_t = gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z +
             m_star*t_x) + gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
             gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->potential_t[k] = potential_t;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = potential_t;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void potential_legs_ups(const prepared *m, size_t leg, size_t legs, const potential_values
-    *s, size_t states, size_t count, int add, potential_results_ups *o)
+INLINE void potential_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real b_r0_x = m->b_r0_x[i];
-        const real b_r0_y = m->b_r0_y[i];
-        const real b_r0_z = m->b_r0_z[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real g_r0_z = m->g_r0_z[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real h_2_z = m->h_2_z[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        /* (ups-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
+        const real t_x = s[0*w + j];
         const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_link2_mass = m->ups_link2_mass[i];
         const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        /* (ups-K1) from the base point to the connection point */
-        const real S_x = t_x + R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        const real ups_S_x = t_x + R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
             R_xz*ups_platform_point_z - ups_base_point_x;
-        const real S_y = t_y + R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real t_y = s[1*w + j];
+        const real ups_base_point_y = m->ups_base_point_y[i];
+        const real ups_S_y = t_y + R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
             R_yz*ups_platform_point_z - ups_base_point_y;
-        const real S_z = t_z + R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real t_z = s[2*w + j];
+        const real ups_base_point_z = m->ups_base_point_z[i];
+        const real ups_S_z = t_z + R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
             R_zz*ups_platform_point_z - ups_base_point_z;
-        /* (ups-K2) component along the reference direction */
-        const real px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx;
-        /* (ups-K3) component across the reference direction */
-        const real py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy;
-        /* (ups-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (ups-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (ups-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz;
-        /* (ups-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (ups-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (ups-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (ups-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (ups-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (ups-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
-        /* (V1) potential energy */
-        const real b_r1_y = -b_r0_x*s_1 - b_r0_y*c_1;
-        const real potential_t_2 = (g_r0_y*s_1 - c_1*g_r0_x)*(h_2_y + h_3_y +
-            ups_link2_mass*(b_r0_y*s_1 - b_r0_x*c_1)) + (g_r0_z*s_2 - c_2*g_r1_y)*(h_2_x + h_3_x +
-            ups_link2_mass*(b_r0_z*s_2 - b_r1_y*c_2)) - (-c_2*g_r0_z - g_r1_y*s_2)*(h_2_z + h_3_z
-            - ups_link2_mass*(-b_r0_z*c_2 - b_r1_y*s_2));
-        o->sum[0][k] = add ? o->sum[0][k] + potential_t_2 : potential_t_2;  /* total_ups */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
+        /* (ups-px_1) component along the reference direction */
+        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
+        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
+        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
+        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
+            ups_S_z*ups_base_frame_zx;
+        /* (ups-py_1) component across the reference direction */
+        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
+        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
+        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
+        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
+            ups_S_z*ups_base_frame_zy;
+        /* (ups-rho2_1) squared amplitude */
+        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
+        /* (ups-root_1) amplitude, with the sign of the branch */
+        const real ups_branch_1 = m->ups_branch_1[i];
+        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
+        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
+        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+            ups_S_z*ups_base_frame_zz;
+        /* (ups-rho2_2) squared amplitude */
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        /* (ups-root_2) amplitude, with the sign of the branch */
+        const real ups_branch_2 = m->ups_branch_2[i];
+        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
+        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ups_root_2 = 1/ups_root_2;
+        const real ups_c_2 = inv_ups_root_2*ups_root_1;
+        /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
+        const real ups_s_2 = inv_ups_root_2*ups_xi_1_t;
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
+        /* (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real ups_g_r0_x = m->ups_g_r0_x[i];
+        const real ups_g_r0_y = m->ups_g_r0_y[i];
+        const real ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1;
+        /* (potential) potential energy */
+        const real ups_b_r0_x = m->ups_b_r0_x[i];
+        const real ups_b_r0_y = m->ups_b_r0_y[i];
+        const real ups_b_r1_y = -ups_b_r0_x*ups_s_1 - ups_b_r0_y*ups_c_1;
+        const real ups_b_r0_z = m->ups_b_r0_z[i];
+        const real ups_g_r0_z = m->ups_g_r0_z[i];
+        const real ups_h_2_x = m->ups_h_2_x[i];
+        const real ups_h_2_y = m->ups_h_2_y[i];
+        const real ups_h_2_z = m->ups_h_2_z[i];
+        const real ups_h_3_x = m->ups_h_3_x[i];
+        const real ups_h_3_y = m->ups_h_3_y[i];
+        const real ups_h_3_z = m->ups_h_3_z[i];
+        const real ups_link2_mass = m->ups_link2_mass[i];
+        const real ups_potential_t = (ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x)*(ups_h_2_y +
+            ups_h_3_y + ups_link2_mass*(ups_b_r0_y*ups_s_1 - ups_b_r0_x*ups_c_1)) +
+            (ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y)*(ups_h_2_x + ups_h_3_x +
+            ups_link2_mass*(ups_b_r0_z*ups_s_2 - ups_b_r1_y*ups_c_2)) - (-ups_c_2*ups_g_r0_z -
+            ups_g_r1_y*ups_s_2)*(ups_h_2_z + ups_h_3_z - ups_link2_mass*(-ups_b_r0_z*ups_c_2 -
+            ups_b_r1_y*ups_s_2));
+        terms[0*count + k] = add ? terms[0*count + k] + ups_potential_t : ups_potential_t;  /* total_ups */
+        o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
     }
 }
 
-INLINE void potential_place_ups(size_t w, const potential_results_ups *o, size_t first, verdict
-    *t)
+INLINE void potential_place_ups(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
+        t->singular[k] += o[0*count + first + k];
     }
 }
 
-INLINE void potential_after(size_t w, const potential_values *s, real *potential)
+INLINE void potential_after(size_t w, const real *s, const real *sums, real *potential)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real potential_t = s->potential_t[k];
-        const real total_ups = s->sum[0][k];
-        /* (V1) potential energy */
+        /* (potential) potential energy */
+        const real potential_t = s[12*w + k];
+        const real total_ups = sums[0*w + k];
         const real potential_ = -potential_t - total_ups;
         potential[0*w + k] = potential_;
     }
 }
 
-INLINE void potential_run(const prepared *m, size_t w, const real *X, real *potential, verdict *t)
+INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    potential_values values, *const s = &values;
-    potential_results_ups results_ups;
-    potential_before(m, w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        memset(results_ups.sum, 0, sizeof results_ups.sum);
-        potential_legs_ups(m, 0, 1, s, 0, 7, 0, &results_ups);
-        for (size_t leg = 0; leg < 7; ++leg) {
-            potential_place_ups(w, &results_ups, leg, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_ups.sum[n], 7);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_ups.sum, 0, sizeof results_ups.sum);
-        for (size_t leg = 0; leg < 7; ++leg) {
-            potential_legs_ups(m, leg, 0, s, 1, w, 1, &results_ups);
-            potential_place_ups(w, &results_ups, 0, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_ups.sum[n][k];
-            }
-        }
+    real s[13] = {0}, sums[1] = {0}, terms_ups[1*LEGS(7)] = {0}, o_ups[1*LEGS(7)] = {0};
+    potential_before(m, 1, X, s, t);
+    potential_legs_ups(m, 1, 0, 1, s, 0, LEGS(7), 0, terms_ups, o_ups);
+    for (size_t leg = 0; leg < 7; ++leg) {
+        potential_place_ups(1, LEGS(7), o_ups, leg, t);
     }
-    potential_after(w, s, potential);
+    for (size_t n = 0; n < 1; ++n) {
+        sums[n] = total(terms_ups + n*LEGS(7), 7);
+    }
+    potential_after(1, s, sums, potential);
 }
 
 /* ---- condition: 274 mul, 224 add, 7 div, 29 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], sum[1][LANES];
-} condition_values;
-typedef struct {
-    real sum[1][8], entry[7][8], singular[8];
-} condition_results_ups;
-
-INLINE void condition_before(const prepared *m, size_t w, const real *X, condition_values *s, real
-    *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real legs_size = m->legs_size;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -4763,300 +4712,414 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, conditi
         const real R_zx = quaternion_xz - quaternion_wy;
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
+        t->total[k] += legs_size;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void condition_legs_ups(const prepared *m, size_t leg, size_t legs, const condition_values
-    *s, size_t states, size_t count, int add, condition_results_ups *o)
+INLINE void condition_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real b_c_x = m->b_c_x;
-        const real b_c_y = m->b_c_y;
-        const real b_c_z = m->b_c_z;
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_base_point_z = m->ups_base_point_z[i];
+        /* (ups-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        /* (ups-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        const real ups_q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
             R_xz*ups_platform_point_z;
-        const real q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real ups_q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
             R_yz*ups_platform_point_z;
-        const real q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real ups_q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
             R_zz*ups_platform_point_z;
-        const real S_x = q_in_base_x + t_x - ups_base_point_x;
-        const real S_y = q_in_base_y + t_y - ups_base_point_y;
-        const real S_z = q_in_base_z + t_z - ups_base_point_z;
-        /* (ups-K2) component along the reference direction */
-        const real px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx;
-        /* (ups-K3) component across the reference direction */
-        const real py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy;
-        /* (ups-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (ups-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (ups-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz;
-        /* (ups-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (ups-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (ups-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_x_x = S_x*inv_root_2;
-        const real axis_x_y = S_y*inv_root_2;
-        const real axis_x_z = S_z*inv_root_2;
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_3_x = axis_x_z*q_in_base_y - axis_x_y*q_in_base_z;
-        const real H_a_3_y = axis_x_x*q_in_base_z - axis_x_z*q_in_base_x;
-        const real H_a_3_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y;
-        /* (C2) rms distance of the platform points from their centroid */
-        const real spread_t_2 = b_c_x - ups_platform_point_x;
-        const real spread_t_3 = b_c_y - ups_platform_point_y;
-        const real spread_t_4 = b_c_z - ups_platform_point_z;
-        const real spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 +
-            spread_t_4*spread_t_4;
-        /* (ups-K4) squared amplitude */
-        const real pivot_size = magnitude(rho2_1);
-        /* (ups-K13) squared amplitude */
-        const real pivot_size_2 = magnitude(rho2_2);
-        /* (ups-V5) reciprocal vector 1 */
-        const real pivot_size_3 = magnitude(root_1);
-        const real pivot_size_4 = magnitude(root_2);
-        /* (ups-N21) force at the connection point that balances the leg's inertia and weight along all
+        const real t_x = s[0*w + j];
+        const real ups_base_point_x = m->ups_base_point_x[i];
+        const real ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x;
+        const real t_y = s[1*w + j];
+        const real ups_base_point_y = m->ups_base_point_y[i];
+        const real ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y;
+        const real t_z = s[2*w + j];
+        const real ups_base_point_z = m->ups_base_point_z[i];
+        const real ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z;
+        /* (ups-px_1) component along the reference direction */
+        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
+        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
+        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
+        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
+            ups_S_z*ups_base_frame_zx;
+        /* (ups-py_1) component across the reference direction */
+        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
+        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
+        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
+        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
+            ups_S_z*ups_base_frame_zy;
+        /* (ups-rho2_1) squared amplitude */
+        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
+        /* (ups-root_1) amplitude, with the sign of the branch */
+        const real ups_branch_1 = m->ups_branch_1[i];
+        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
+        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
+        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+            ups_S_z*ups_base_frame_zz;
+        /* (ups-rho2_2) squared amplitude */
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        /* (ups-root_2) amplitude, with the sign of the branch */
+        const real ups_branch_2 = m->ups_branch_2[i];
+        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
+        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ups_root_2 = 1/ups_root_2;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
+        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
+        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
+        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
+        const real ups_H_a_3_x = ups_axis_x_z*ups_q_in_base_y - ups_axis_x_y*ups_q_in_base_z;
+        const real ups_H_a_3_y = ups_axis_x_x*ups_q_in_base_z - ups_axis_x_z*ups_q_in_base_x;
+        const real ups_H_a_3_z = ups_axis_x_y*ups_q_in_base_x - ups_axis_x_x*ups_q_in_base_y;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_x = m->b_c_x;
+        const real ups_spread_t = b_c_x - ups_platform_point_x;
+        const real b_c_y = m->b_c_y;
+        const real ups_spread_t_2 = b_c_y - ups_platform_point_y;
+        const real b_c_z = m->b_c_z;
+        const real ups_spread_t_3 = b_c_z - ups_platform_point_z;
+        const real ups_spread_t_4 = ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 +
+            ups_spread_t_3*ups_spread_t_3;
+        /* (ups-rho2_1) squared amplitude */
+        const real ups_pivot_size = magnitude(ups_rho2_1);
+        /* (ups-rho2_2) squared amplitude */
+        const real ups_pivot_size_2 = magnitude(ups_rho2_2);
+        /* (ups-w_1) reciprocal vector 1 */
+        const real ups_pivot_size_3 = magnitude(ups_root_1);
+        const real ups_pivot_size_4 = magnitude(ups_root_2);
+        /* (ups-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real least_pivots = lesser(lesser(lesser(R(1.25)*root(pivot_size),
-            R(1.25)*root(pivot_size_2)), R(1.25)*pivot_size_3), R(1.25)*pivot_size_4);
-        o->sum[0][k] = add ? o->sum[0][k] + spread_t_5 : spread_t_5;  /* total_ups */
-        o->entry[0][k] = axis_x_x;
-        o->entry[1][k] = axis_x_y;
-        o->entry[2][k] = axis_x_z;
-        o->entry[3][k] = H_a_3_x;
-        o->entry[4][k] = H_a_3_y;
-        o->entry[5][k] = H_a_3_z;
-        o->entry[6][k] = least_pivots;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
+        const real ups_least_pivots = lesser(lesser(lesser(R(1.25)*root(ups_pivot_size),
+            R(1.25)*root(ups_pivot_size_2)), R(1.25)*ups_pivot_size_3), R(1.25)*ups_pivot_size_4);
+        terms[0*count + k] = add ? terms[0*count + k] + ups_spread_t_4 : ups_spread_t_4;  /* total_ups */
+        o[0*count + k] = ups_axis_x_x;
+        o[1*count + k] = ups_axis_x_y;
+        o[2*count + k] = ups_axis_x_z;
+        o[3*count + k] = ups_H_a_3_x;
+        o[4*count + k] = ups_H_a_3_y;
+        o[5*count + k] = ups_H_a_3_z;
+        o[6*count + k] = ups_least_pivots;
+        o[8*count + k] = (ups_axis_x_x + (ups_axis_x_y + ups_axis_x_z)) + ((ups_H_a_3_x +
+            ups_H_a_3_y) + (ups_H_a_3_z + ups_least_pivots));
+        o[7*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
             TOLERANCE*R(0.8));
     }
 }
 
-INLINE void condition_place_ups(size_t w, const condition_results_ups *o, size_t leg, size_t
-    first, real *H, real *pivots, verdict *t)
+INLINE void condition_place_ups(size_t w, size_t count, const real *o, size_t leg, size_t first,
+    real *H, real *pivots, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(7 + leg)*w + k] = o->entry[1][first + k];
-        H[(14 + leg)*w + k] = o->entry[2][first + k];
-        H[(21 + leg)*w + k] = o->entry[3][first + k];
-        H[(28 + leg)*w + k] = o->entry[4][first + k];
-        H[(35 + leg)*w + k] = o->entry[5][first + k];
-        pivots[(leg)*w + k] = o->entry[6][first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(7 + leg)*w + k] = o[1*count + first + k];
+        H[(14 + leg)*w + k] = o[2*count + first + k];
+        H[(21 + leg)*w + k] = o[3*count + first + k];
+        H[(28 + leg)*w + k] = o[4*count + first + k];
+        H[(35 + leg)*w + k] = o[5*count + first + k];
+        pivots[(leg)*w + k] = o[6*count + first + k];
+        t->singular[k] += o[7*count + first + k];
+        t->total[k] += o[8*count + first + k];
     }
 }
 
-INLINE void condition_after(const prepared *m, size_t w, const condition_values *s, real *lengths)
+INLINE void condition_after(const prepared *m, size_t w, const real *sums, real *lengths, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real total_ups = s->sum[0][k];
+        /* (spread) rms distance of the platform points from their centroid */
         const real spread_t = m->spread_t;
-        /* (C2) rms distance of the platform points from their centroid */
+        const real total_ups = sums[0*w + k];
         const real spread_ = spread_t*root(total_ups);
         lengths[0*w + k] = spread_;
+        t->total[k] += spread_;
     }
 }
 
-INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, real *lengths, real
-    *pivots, real *reach, verdict *t)
+INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
+    real *reach, verdict *t)
 {
-    condition_values values, *const s = &values;
-    condition_results_ups results_ups;
-    clear(reach, 7*w);
-    condition_before(m, w, X, s, lengths, t);
-    if (w == 1) {  /* the legs side by side */
-        memset(results_ups.sum, 0, sizeof results_ups.sum);
-        condition_legs_ups(m, 0, 1, s, 0, 7, 0, &results_ups);
-        for (size_t leg = 0; leg < 7; ++leg) {
-            condition_place_ups(w, &results_ups, leg, leg, H, pivots, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_ups.sum[n], 7);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_ups.sum, 0, sizeof results_ups.sum);
-        for (size_t leg = 0; leg < 7; ++leg) {
-            condition_legs_ups(m, leg, 0, s, 1, w, 1, &results_ups);
-            condition_place_ups(w, &results_ups, leg, 0, H, pivots, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_ups.sum[n][k];
-            }
-        }
+    real s[12] = {0}, sums[1] = {0}, terms_ups[1*LEGS(7)] = {0}, o_ups[9*LEGS(7)] = {0};
+    clear(reach, 7);
+    condition_before(m, 1, X, s, lengths, t);
+    condition_legs_ups(m, 1, 0, 1, s, 0, LEGS(7), 0, terms_ups, o_ups);
+    for (size_t leg = 0; leg < 7; ++leg) {
+        condition_place_ups(1, LEGS(7), o_ups, leg, leg, H, pivots, t);
     }
-    condition_after(m, w, s, lengths);
+    for (size_t n = 0; n < 1; ++n) {
+        sums[n] = total(terms_ups + n*LEGS(7), 7);
+    }
+    condition_after(m, 1, sums, lengths, t);
 }
 
 /* ---- what users call, as steps over these ---- */
 
-INLINE void M_any(const prepared *m, size_t w, const real *X, real *M_out, int *code)
+INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    M_run(m, X, M_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(36, 1, M_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(36, M_out);
+    }
+}
+
+INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
     real X_in[7*LANES], M[36*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    M_run(m, w, X, M, &why);
-    check(36, w, M, why.overflow);
-    judge(&why, w, code);
-    deliver(M, 36, w, code, M_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    M_run_lanes(m, X, M, &why);
+    suspect(&why, code);
+    deliver(36, M, M_out);
 }
 
-INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, real *Z_out, int
-    *code)
+INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    Z_run(m, X, V, Z_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(6, 1, Z_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(6, Z_out);
+    }
+}
+
+INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     real X_in[7*LANES], V_in[6*LANES], Z[6*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    Z_run(m, w, X, V, Z, &why);
-    check(6, w, Z, why.overflow);
-    judge(&why, w, code);
-    deliver(Z, 6, w, code, Z_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    Z_run_lanes(m, X, V, Z, &why);
+    suspect(&why, code);
+    deliver(6, Z, Z_out);
 }
 
-INLINE void H_any(const prepared *m, size_t w, const real *X, real *H_out, int *code)
+INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    H_run(m, X, H_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(42, 1, H_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(42, H_out);
+    }
+}
+
+INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
     real X_in[7*LANES], H[42*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    H_run(m, w, X, H, &why);
-    check(42, w, H, why.overflow);
-    judge(&why, w, code);
-    deliver(H, 42, w, code, H_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    H_run_lanes(m, X, H, &why);
+    suspect(&why, code);
+    deliver(42, H, H_out);
 }
 
-INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, real *q_out, int
-    *code)
+INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(21, 1, q_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(21, q_out);
+    }
+}
+
+INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     real X_in[7*LANES], q[21*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    inverse_kinematics_run(m, w, X, q, &why);
-    check(21, w, q, why.overflow);
-    judge(&why, w, code);
-    deliver(q, 21, w, code, q_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    suspect(&why, code);
+    deliver(21, q, q_out);
 }
 
-INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *qd_out, int *code)
+INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    joint_rates_run(m, X, V, qd_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(21, 1, qd_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(21, qd_out);
+    }
+}
+
+INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
 {
     real X_in[7*LANES], V_in[6*LANES], qd[21*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    joint_rates_run(m, w, X, V, qd, &why);
-    check(21, w, qd, why.overflow);
-    judge(&why, w, code);
-    deliver(qd, 21, w, code, qd_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    joint_rates_run_lanes(m, X, V, qd, &why);
+    suspect(&why, code);
+    deliver(21, qd, qd_out);
 }
 
-INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd_out, int *code)
+INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+        check(6, 1, A, why.invalid);
+    }
+    joint_accelerations_run(m, X, V, A, qdd_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(21, 1, qdd_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(21, qdd_out);
+    }
+}
+
+INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
 {
     real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], qdd[21*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    A = side_by_side(6, w, A, A_in, why.invalid);
-    joint_accelerations_run(m, w, X, V, A, qdd, &why);
-    check(21, w, qdd, why.overflow);
-    judge(&why, w, code);
-    deliver(qdd, 21, w, code, qdd_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    A = side_by_side(6, A, A_in, why.total);
+    joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
+    suspect(&why, code);
+    deliver(21, qdd, qdd_out);
 }
 
-INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *V, real *M_out,
-    real *Z_out, real *H_out, int *code)
+INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    dynamics_run(m, X, V, M_out, Z_out, H_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(36, 1, M_out, why.overflow);
+        check(6, 1, Z_out, why.overflow);
+        check(42, 1, H_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(36, M_out);
+        refuse(6, Z_out);
+        refuse(42, H_out);
+    }
+}
+
+INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out, int *code)
 {
     real X_in[7*LANES], V_in[6*LANES], M[36*LANES], Z[6*LANES], H[42*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    dynamics_run(m, w, X, V, M, Z, H, &why);
-    check(36, w, M, why.overflow);
-    check(6, w, Z, why.overflow);
-    check(42, w, H, why.overflow);
-    judge(&why, w, code);
-    deliver(M, 36, w, code, M_out);
-    deliver(Z, 6, w, code, Z_out);
-    deliver(H, 42, w, code, H_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    dynamics_run_lanes(m, X, V, M, Z, H, &why);
+    suspect(&why, code);
+    deliver(36, M, M_out);
+    deliver(6, Z, Z_out);
+    deliver(42, H, H_out);
 }
 
-static void inverse_dynamics_any(const prepared *m, const real *X, const real *V, const real *A,
+static void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, const real *weights, real *tau_out, int *code)
 {
     real wrench_in[6], weights_in[7], required[6] = {0}, H[42] = {0}, subtract_2[6] = {0},
         inverse_root_3[7] = {0}, scale_columns_4[42] = {0}, least_norm_5[7] = {0}, tau[7] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
-    check(6, 1, V, why.invalid);
-    check(6, 1, A, why.invalid);
-    wrench = optional(6, 1, wrench, 0, wrench_in, why.invalid);
+    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+        check(6, 1, A, why.invalid);
+    }
+    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
     require_positive(7, 1, weights, why.invalid);
-    weights = optional(7, 1, weights, 1, weights_in, why.invalid);
-    required_run(m, 1, X, V, A, required, H, &why);
+    weights = optional(7, weights, 1, weights_in, why.invalid);
+    required_run(m, X, V, A, required, H, &why);
     const real *const extend_1 = wrench;
     for (size_t i = 0; i < 6; ++i) {
         subtract_2[i] = required[i] - extend_1[i];
@@ -5072,50 +5135,253 @@ static void inverse_dynamics_any(const prepared *m, const real *X, const real *V
         tau[i] = inverse_root_3[i]*least_norm_5[i];
     }
     check(7, 1, tau, why.overflow);
-    judge(&why, 1, code);
-    deliver(tau, 7, 1, code, tau_out);
+    judge(&why, code);
+    copy(7, tau, tau_out);
+    if (*code != OK) {
+        refuse(7, tau_out);
+    }
 }
 
-INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, const real *V, const
-    real *tau, const real *wrench, real *A_out, int *code)
+INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, real *x, real
+    *unsure, real *total)
 {
-    real X_in[7*LANES], V_in[6*LANES], tau_in[7*LANES], wrench_in[6*LANES], M[36*LANES], Z[6*LANES],
-        H[42*LANES], times_1[6*LANES] = {0}, add_3[6*LANES], subtract_4[6*LANES], A[6*LANES],
-        work[48*LANES];
+    for (size_t k = 0; k < w; ++k) {
+        real a00 = a[(0)*w + k];
+        real a01 = a[(1)*w + k];
+        real a02 = a[(2)*w + k];
+        real a03 = a[(3)*w + k];
+        real a04 = a[(4)*w + k];
+        real a05 = a[(5)*w + k];
+        real b0 = b[0*w + k];
+        real a10 = a[(1*stride + 0)*w + k];
+        real a11 = a[(1*stride + 1)*w + k];
+        real a12 = a[(1*stride + 2)*w + k];
+        real a13 = a[(1*stride + 3)*w + k];
+        real a14 = a[(1*stride + 4)*w + k];
+        real a15 = a[(1*stride + 5)*w + k];
+        real b1 = b[1*w + k];
+        real a20 = a[(2*stride + 0)*w + k];
+        real a21 = a[(2*stride + 1)*w + k];
+        real a22 = a[(2*stride + 2)*w + k];
+        real a23 = a[(2*stride + 3)*w + k];
+        real a24 = a[(2*stride + 4)*w + k];
+        real a25 = a[(2*stride + 5)*w + k];
+        real b2 = b[2*w + k];
+        real a30 = a[(3*stride + 0)*w + k];
+        real a31 = a[(3*stride + 1)*w + k];
+        real a32 = a[(3*stride + 2)*w + k];
+        real a33 = a[(3*stride + 3)*w + k];
+        real a34 = a[(3*stride + 4)*w + k];
+        real a35 = a[(3*stride + 5)*w + k];
+        real b3 = b[3*w + k];
+        real a40 = a[(4*stride + 0)*w + k];
+        real a41 = a[(4*stride + 1)*w + k];
+        real a42 = a[(4*stride + 2)*w + k];
+        real a43 = a[(4*stride + 3)*w + k];
+        real a44 = a[(4*stride + 4)*w + k];
+        real a45 = a[(4*stride + 5)*w + k];
+        real b4 = b[4*w + k];
+        real a50 = a[(5*stride + 0)*w + k];
+        real a51 = a[(5*stride + 1)*w + k];
+        real a52 = a[(5*stride + 2)*w + k];
+        real a53 = a[(5*stride + 3)*w + k];
+        real a54 = a[(5*stride + 4)*w + k];
+        real a55 = a[(5*stride + 5)*w + k];
+        real b5 = b[5*w + k];
+        const real f0 = 1/a00;
+        const real d1 = a00*a11 - a10*a01;
+        const real f1 = a00/d1;
+        const real g10 = a10*f0;
+        a12 -= g10*a02;
+        a13 -= g10*a03;
+        a14 -= g10*a04;
+        a15 -= g10*a05;
+        b1 -= g10*b0;
+        const real g20 = a20*f0;
+        a21 -= g20*a01;
+        a22 -= g20*a02;
+        a23 -= g20*a03;
+        a24 -= g20*a04;
+        a25 -= g20*a05;
+        b2 -= g20*b0;
+        const real g30 = a30*f0;
+        a31 -= g30*a01;
+        a32 -= g30*a02;
+        a33 -= g30*a03;
+        a34 -= g30*a04;
+        a35 -= g30*a05;
+        b3 -= g30*b0;
+        const real g40 = a40*f0;
+        a41 -= g40*a01;
+        a42 -= g40*a02;
+        a43 -= g40*a03;
+        a44 -= g40*a04;
+        a45 -= g40*a05;
+        b4 -= g40*b0;
+        const real g50 = a50*f0;
+        a51 -= g50*a01;
+        a52 -= g50*a02;
+        a53 -= g50*a03;
+        a54 -= g50*a04;
+        a55 -= g50*a05;
+        b5 -= g50*b0;
+        const real g21 = a21*f1;
+        a22 -= g21*a12;
+        a23 -= g21*a13;
+        a24 -= g21*a14;
+        a25 -= g21*a15;
+        b2 -= g21*b1;
+        const real g31 = a31*f1;
+        a32 -= g31*a12;
+        a33 -= g31*a13;
+        a34 -= g31*a14;
+        a35 -= g31*a15;
+        b3 -= g31*b1;
+        const real g41 = a41*f1;
+        a42 -= g41*a12;
+        a43 -= g41*a13;
+        a44 -= g41*a14;
+        a45 -= g41*a15;
+        b4 -= g41*b1;
+        const real g51 = a51*f1;
+        a52 -= g51*a12;
+        a53 -= g51*a13;
+        a54 -= g51*a14;
+        a55 -= g51*a15;
+        b5 -= g51*b1;
+        const real f2 = 1/a22;
+        const real d3 = a22*a33 - a32*a23;
+        const real f3 = a22/d3;
+        const real g32 = a32*f2;
+        a34 -= g32*a24;
+        a35 -= g32*a25;
+        b3 -= g32*b2;
+        const real g42 = a42*f2;
+        a43 -= g42*a23;
+        a44 -= g42*a24;
+        a45 -= g42*a25;
+        b4 -= g42*b2;
+        const real g52 = a52*f2;
+        a53 -= g52*a23;
+        a54 -= g52*a24;
+        a55 -= g52*a25;
+        b5 -= g52*b2;
+        const real g43 = a43*f3;
+        a44 -= g43*a34;
+        a45 -= g43*a35;
+        b4 -= g43*b3;
+        const real g53 = a53*f3;
+        a54 -= g53*a34;
+        a55 -= g53*a35;
+        b5 -= g53*b3;
+        const real f4 = 1/a44;
+        const real d5 = a44*a55 - a54*a45;
+        const real f5 = a44/d5;
+        const real g54 = a54*f4;
+        b5 -= g54*b4;
+        const real x5 = (b5)*f5;
+        const real x4 = (b4)*f4 - a45*f4*x5;
+        const real x3 = (b3 - a35*x5)*f3 - a34*f3*x4;
+        const real x2 = (b2 - a25*x5 - a24*x4)*f2 - a23*f2*x3;
+        const real x1 = (b1 - a15*x5 - a14*x4 - a13*x3)*f1 - a12*f1*x2;
+        const real x0 = (b0 - a05*x5 - a04*x4 - a03*x3 - a02*x2)*f0 - a01*f0*x1;
+        x[0*w + k] = x0;
+        x[1*w + k] = x1;
+        x[2*w + k] = x2;
+        x[3*w + k] = x3;
+        x[4*w + k] = x4;
+        x[5*w + k] = x5;
+        total[k] += (x0 + (x1 + x2)) + (x3 + (x4 + x5));
+        const real most0 = larger(larger(larger(magnitude(g30), magnitude(g40)),
+            larger(magnitude(g50), magnitude(g31))), larger(larger(magnitude(g41),
+            magnitude(g51)), larger(magnitude(g32), larger(magnitude(g42), magnitude(g52)))));
+        const real most1 = larger(larger(magnitude(g10), larger(magnitude(g20), magnitude(g21))),
+            larger(magnitude(g43), larger(magnitude(g53), magnitude(g54))));
+        const real most2 = larger(magnitude(f0), larger(magnitude(f1), magnitude(f2)));
+        const real most3 = larger(magnitude(f3), larger(magnitude(f4), magnitude(f5)));
+        unsure[k] += UNLESS(most0 <= R(0.625)) + UNLESS(most1 <= R(10)) + UNLESS(most2 <= R(62.5))
+            + UNLESS(most3 <= R(1000)) + UNLESS(is_finite(a00 + d1 + a22 + d3 + a44 + d5));
+    }
+}
+
+INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
+    const real *wrench, real *A_out, int *code)
+{
+    real wrench_in[6], M[36] = {0}, Z[6] = {0}, H[42] = {0}, times_1[6] = {0}, add_3[6] = {0},
+        subtract_4[6] = {0}, unsure_7[1] = {0}, work[48];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    tau = side_by_side(7, w, tau, tau_in, why.invalid);
-    wrench = optional(6, w, wrench, 0, wrench_in, why.invalid);
-    dynamics_run(m, w, X, V, M, Z, H, &why);
-    product(6, 7, 1, w, H, tau, times_1);
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6) + total(tau, 7);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+        check(7, 1, tau, why.invalid);
+    }
+    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    dynamics_run(m, X, V, M, Z, H, &why);
+    product(6, 7, 1, 1, H, tau, times_1);
     const real *const extend_2 = wrench;
-    for (size_t i = 0; i < 6*w; ++i) {
+    for (size_t i = 0; i < 6; ++i) {
         add_3[i] = times_1[i] + extend_2[i];
     }
-    for (size_t i = 0; i < 6*w; ++i) {
+    for (size_t i = 0; i < 6; ++i) {
         subtract_4[i] = add_3[i] - Z[i];
     }
-    set_matrix(6, w, M, work);
-    solve(6, w, subtract_4, work, A, why.singular);
-    check(6, w, A, why.overflow);
-    judge(&why, w, code);
-    deliver(A, 6, w, code, A_out);
+    eliminate_0(1, 6, M, subtract_4, A_out, unsure_7, why.total);
+    if (unsure_7[0] > 0) {
+        set_matrix(6, 1, M, work);
+        solve_apart(6, subtract_4, work, A_out, why.singular);
+        check(6, 1, A_out, why.overflow);
+    }
+    if (!is_finite(why.total[0])) {
+        check(6, 1, A_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(6, A_out);
+    }
 }
 
-INLINE void complete_acceleration_any(const real *A, real *completed_out, int *code)
+INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
+    *tau, const real *wrench, real *A_out, int *code)
+{
+    real X_in[7*LANES], V_in[6*LANES], tau_in[7*LANES], wrench_in[6*LANES], M[36*LANES], Z[6*LANES],
+        H[42*LANES], times_1[6*LANES] = {0}, add_3[6*LANES], subtract_4[6*LANES], A[6*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    tau = side_by_side(7, tau, tau_in, why.total);
+    wrench = optional_side_by_side(6, wrench, 0, wrench_in, why.total);
+    dynamics_run_lanes(m, X, V, M, Z, H, &why);
+    product(6, 7, 1, LANES, H, tau, times_1);
+    const real *const extend_2 = wrench;
+    for (size_t i = 0; i < 6*LANES; ++i) {
+        add_3[i] = times_1[i] + extend_2[i];
+    }
+    for (size_t i = 0; i < 6*LANES; ++i) {
+        subtract_4[i] = add_3[i] - Z[i];
+    }
+    eliminate_0(LANES, 6, M, subtract_4, A, why.singular, why.total);
+    suspect(&why, code);
+    deliver(6, A, A_out);
+}
+
+INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
 {
     verdict why;
     start(1, &why);
     check(6, 1, A, why.invalid);
     const real *const completed = A;
     check(6, 1, completed, why.overflow);
-    judge(&why, 1, code);
-    deliver(completed, 6, 1, code, completed_out);
+    judge(&why, code);
+    copy(6, completed, completed_out);
+    if (*code != OK) {
+        refuse(6, completed_out);
+    }
 }
 
-INLINE void leg_reactions_any(const prepared *m, const real *X, const real *V, const real *A,
+INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out, int *code)
 {
     static const size_t places_0[] = {0, 1, 2, 3, 4, 5, 6};
@@ -5123,59 +5389,75 @@ INLINE void leg_reactions_any(const prepared *m, const real *X, const real *V, c
         leg_force[21] = {0}, drive[21] = {0}, forces[21] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
-    check(6, 1, V, why.invalid);
-    check(6, 1, A, why.invalid);
-    wrench = optional(6, 1, wrench, 0, wrench_in, why.invalid);
-    required_run(m, 1, X, V, A, required, H, &why);
+    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+        check(6, 1, A, why.invalid);
+    }
+    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    required_run(m, X, V, A, required, H, &why);
     const real *const extend_1 = wrench;
     for (size_t i = 0; i < 6; ++i) {
         subtract_2[i] = required[i] - extend_1[i];
     }
     least_norm(6, 7, H, subtract_2, least_norm_3, why.singular);
-    legs_run(m, 1, X, V, A, leg_force, drive, &why);
+    legs_run(m, X, V, A, leg_force, drive, &why);
     for (size_t i = 0; i < 21; ++i) {
         forces[i] = leg_force[i];
     }
     add_forces(7, 3, 1, places_0, least_norm_3, drive, forces);
     check(21, 1, forces, why.overflow);
-    judge(&why, 1, code);
-    deliver(forces, 21, 1, code, forces_out);
+    judge(&why, code);
+    copy(21, forces, forces_out);
+    if (*code != OK) {
+        refuse(21, forces_out);
+    }
 }
 
-INLINE void energy_any(const prepared *m, const real *X, const real *V, real *kinetic_out, real
+INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out, int *code)
 {
     real M[36] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
-    check(6, 1, V, why.invalid);
-    M_run(m, 1, X, M, &why);
-    potential_run(m, 1, X, potential_of_potential, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    M_run(m, X, M, &why);
+    potential_run(m, X, potential_of_potential, &why);
     half_form(6, 1, V, M, kinetic);
     const real *const potential = potential_of_potential;
     check(1, 1, kinetic, why.overflow);
     check(1, 1, potential, why.overflow);
-    judge(&why, 1, code);
-    deliver(kinetic, 1, 1, code, kinetic_out);
-    deliver(potential, 1, 1, code, potential_out);
+    judge(&why, code);
+    copy(1, kinetic, kinetic_out);
+    copy(1, potential, potential_out);
+    if (*code != OK) {
+        refuse(1, kinetic_out);
+        refuse(1, potential_out);
+    }
 }
 
-INLINE void null_space_any(const prepared *m, const real *X, real *basis_out, int *code)
+INLINE void null_space_one(const prepared *m, const real *X, real *basis_out, int *code)
 {
     real H[42] = {0}, basis[7] = {0};
     verdict why;
     start(1, &why);
     check(7, 1, X, why.invalid);
-    H_run(m, 1, X, H, &why);
+    H_run(m, X, H, &why);
     null_basis(6, 7, 6, H, basis);
     check(7, 1, basis, why.overflow);
-    judge(&why, 1, code);
-    deliver(basis, 7, 1, code, basis_out);
+    judge(&why, code);
+    copy(7, basis, basis_out);
+    if (*code != OK) {
+        refuse(7, basis_out);
+    }
 }
 
-INLINE void condition_any(const prepared *m, const real *X, const real *length, real *sigma_out,
+INLINE void condition_one(const prepared *m, const real *X, const real *length, real *sigma_out,
     real *legs_out, int *code)
 {
     static const size_t places_0[] = {3, 4, 5};
@@ -5185,8 +5467,8 @@ INLINE void condition_any(const prepared *m, const real *X, const real *length, 
     start(1, &why);
     check(7, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, 1, length, 0, length_in, why.invalid);
-    condition_run(m, 1, X, H, lengths, legs, reach, &why);
+    length = optional(1, length, 0, length_in, why.invalid);
+    condition_run(m, X, H, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
             lengths[i] : lengths[1 + i];
@@ -5196,42 +5478,57 @@ INLINE void condition_any(const prepared *m, const real *X, const real *length, 
     }
     divide_rows(3, 7, 1, places_0, choose_length_1, divide_rows_2);
     singular_values(6, 7, divide_rows_2, sigma);
+    if (!is_finite(why.total[0])) {
+        check(7, 1, legs, why.overflow);
+    }
     check(6, 1, sigma, why.overflow);
-    check(7, 1, legs, why.overflow);
-    judge(&why, 1, code);
-    deliver(sigma, 6, 1, code, sigma_out);
-    deliver(legs, 7, 1, code, legs_out);
+    judge(&why, code);
+    copy(6, sigma, sigma_out);
+    copy(7, legs, legs_out);
+    if (*code != OK) {
+        refuse(6, sigma_out);
+        refuse(7, legs_out);
+    }
 }
 
-static void mismatch_any(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
+static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
     static const size_t places_0[] = {2, 5, 8, 11, 14, 17, 20};
     real q[21] = {0}, take_1[7] = {0}, gap[7] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
-    check(7, 1, q_actuated, why.invalid);
-    inverse_kinematics_run(m, 1, X, q, &why);
+    const real total_in = total(X, 7) + total(q_actuated, 7);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(7, 1, q_actuated, why.invalid);
+    }
+    inverse_kinematics_run(m, X, q, &why);
     take(7, 1, places_0, q, take_1);
     for (size_t i = 0; i < 7; ++i) {
         gap[i] = q_actuated[i] - take_1[i];
     }
     check(7, 1, gap, why.overflow);
-    judge(&why, 1, code);
-    deliver(gap, 7, 1, code, gap_out);
+    judge(&why, code);
+    copy(7, gap, gap_out);
+    if (*code != OK) {
+        refuse(7, gap_out);
+    }
 }
 
-static void slope_any(const prepared *m, const real *X, real *slope_out, int *code)
+static void slope_one(const prepared *m, const real *X, real *slope_out, int *code)
 {
-    real slope[42] = {0};
     verdict why;
     start(1, &why);
     check(7, 1, X, why.invalid);
-    H_run(m, 1, X, slope, &why);
-    check(42, 1, slope, why.overflow);
-    judge(&why, 1, code);
-    deliver(slope, 42, 1, code, slope_out);
+    H_run(m, X, slope_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(42, 1, slope_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(42, slope_out);
+    }
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -5242,12 +5539,12 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
     real trial[7] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    mismatch_any(m, found, q_actuated, gap, &code);
+    mismatch_one(m, found, q_actuated, gap, &code);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        slope_any(m, found, slope, &code);
+        slope_one(m, found, slope, &code);
         if (code != OK) {
             break;
         }
@@ -5261,7 +5558,7 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            mismatch_any(m, trial, q_actuated, next, &tried);
+            mismatch_one(m, trial, q_actuated, next, &tried);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -5279,21 +5576,27 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 }
 
 
-INLINE void forward_kinematics_any(const prepared *m, const real *q_actuated, const real *X0, real
+INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
     *X_out, int *code)
 {
     real X[7] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, q_actuated, why.invalid);
-    check(7, 1, X0, why.invalid);
+    const real total_in = total(q_actuated, 7) + total(X0, 7);
+    if (!is_finite(total_in)) {
+        check(7, 1, q_actuated, why.invalid);
+        check(7, 1, X0, why.invalid);
+    }
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(7, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 7, 1, code, X_out);
+    judge(&why, code);
+    copy(7, X, X_out);
+    if (*code != OK) {
+        refuse(7, X_out);
+    }
 }
 
-INLINE void dissipation_any(const real *V, real *dissipation_out, int *code)
+INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 {
     real subtract_1[6] = {0};
     verdict why;
@@ -5304,93 +5607,271 @@ INLINE void dissipation_any(const real *V, real *dissipation_out, int *code)
     }
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
-    judge(&why, 1, code);
-    deliver(dissipation, 1, 1, code, dissipation_out);
+    judge(&why, code);
+    copy(1, dissipation, dissipation_out);
+    if (*code != OK) {
+        refuse(1, dissipation_out);
+    }
 }
 
-INLINE void momentum_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *momentum_out, int *code)
+INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
+    *code)
+{
+    real M[36] = {0}, momentum[6] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    M_run(m, X, M, &why);
+    product(6, 6, 1, 1, M, V, momentum);
+    check(6, 1, momentum, why.overflow);
+    judge(&why, code);
+    copy(6, momentum, momentum_out);
+    if (*code != OK) {
+        refuse(6, momentum_out);
+    }
+}
+
+INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
+    int *code)
 {
     real X_in[7*LANES], V_in[6*LANES], M[36*LANES], momentum[6*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    M_run(m, w, X, M, &why);
-    product(6, 6, 1, w, M, V, momentum);
-    check(6, w, momentum, why.overflow);
-    judge(&why, w, code);
-    deliver(momentum, 6, w, code, momentum_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    M_run_lanes(m, X, M, &why);
+    product(6, 6, 1, LANES, M, V, momentum);
+    add_up(6, momentum, why.total);
+    suspect(&why, code);
+    deliver(6, momentum, momentum_out);
 }
 
-INLINE void actuator_positions_any(const prepared *m, size_t w, const real *X, real *q_out, int
-    *code)
+INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
+{
+    static const size_t places_0[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20};
+    real q[21] = {0}, margins[21] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q, &why);
+    for (size_t i = 0; i < 21; ++i) {
+        margins[i] = q[i];
+    }
+    unlimited(21, 21, 1, places_0, margins, why.overflow);
+    judge(&why, code);
+    copy(21, margins, margins_out);
+    if (*code != OK) {
+        refuse(21, margins_out);
+    }
+}
+
+INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
+{
+    static const size_t places_0[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20};
+    real X_in[7*LANES], q[21*LANES], margins[21*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    for (size_t i = 0; i < 21*LANES; ++i) {
+        margins[i] = q[i];
+    }
+    unlimited(21, 21, LANES, places_0, margins, why.invalid);
+    suspect(&why, code);
+    deliver(21, margins, margins_out);
+}
+
+INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
+{
+    real q[21] = {0}, subtract_1[21] = {0}, within[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q, &why);
+    for (size_t i = 0; i < 21; ++i) {
+        subtract_1[i] = q[i] - q[i];
+    }
+    not_negative(21, 1, subtract_1, within, why.overflow);
+    check(1, 1, within, why.overflow);
+    judge(&why, code);
+    copy(1, within, within_out);
+    if (*code != OK) {
+        refuse(1, within_out);
+    }
+}
+
+INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
+{
+    real X_in[7*LANES], q[21*LANES], subtract_1[21*LANES], within[1*LANES] = {0};
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    for (size_t i = 0; i < 21*LANES; ++i) {
+        subtract_1[i] = q[i] - q[i];
+    }
+    not_negative(21, LANES, subtract_1, within, why.invalid);
+    add_up(1, within, why.total);
+    suspect(&why, code);
+    deliver(1, within, within_out);
+}
+
+INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
+{
+    static const size_t places_0[] = {2, 5, 8, 11, 14, 17, 20};
+    real q_of_inverse_kinematics[21] = {0}, q[7] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
+    take(7, 1, places_0, q_of_inverse_kinematics, q);
+    check(7, 1, q, why.overflow);
+    judge(&why, code);
+    copy(7, q, q_out);
+    if (*code != OK) {
+        refuse(7, q_out);
+    }
+}
+
+INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     static const size_t places_0[] = {2, 5, 8, 11, 14, 17, 20};
     real X_in[7*LANES], q_of_inverse_kinematics[21*LANES], q[7*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    inverse_kinematics_run(m, w, X, q_of_inverse_kinematics, &why);
-    take(7, 1*w, places_0, q_of_inverse_kinematics, q);
-    check(7, w, q, why.overflow);
-    judge(&why, w, code);
-    deliver(q, 7, w, code, q_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
+    take(7, 1*LANES, places_0, q_of_inverse_kinematics, q);
+    add_up(7, q, why.total);
+    suspect(&why, code);
+    deliver(7, q, q_out);
 }
 
-INLINE void actuator_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *qd_out, int *code)
+INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
+{
+    static const size_t places_0[] = {2, 5, 8, 11, 14, 17, 20};
+    real qd_of_joint_rates[21] = {0}, qd[7] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    joint_rates_run(m, X, V, qd_of_joint_rates, &why);
+    take(7, 1, places_0, qd_of_joint_rates, qd);
+    check(7, 1, qd, why.overflow);
+    judge(&why, code);
+    copy(7, qd, qd_out);
+    if (*code != OK) {
+        refuse(7, qd_out);
+    }
+}
+
+INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
+    int *code)
 {
     static const size_t places_0[] = {2, 5, 8, 11, 14, 17, 20};
     real X_in[7*LANES], V_in[6*LANES], qd_of_joint_rates[21*LANES], qd[7*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    joint_rates_run(m, w, X, V, qd_of_joint_rates, &why);
-    take(7, 1*w, places_0, qd_of_joint_rates, qd);
-    check(7, w, qd, why.overflow);
-    judge(&why, w, code);
-    deliver(qd, 7, w, code, qd_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
+    take(7, 1*LANES, places_0, qd_of_joint_rates, qd);
+    add_up(7, qd, why.total);
+    suspect(&why, code);
+    deliver(7, qd, qd_out);
 }
 
-INLINE void actuator_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd_out, int *code)
+INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
+{
+    static const size_t places_0[] = {2, 5, 8, 11, 14, 17, 20};
+    real qdd_of_joint_accelerations[21] = {0}, qdd[7] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+        check(6, 1, A, why.invalid);
+    }
+    joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
+    take(7, 1, places_0, qdd_of_joint_accelerations, qdd);
+    check(7, 1, qdd, why.overflow);
+    judge(&why, code);
+    copy(7, qdd, qdd_out);
+    if (*code != OK) {
+        refuse(7, qdd_out);
+    }
+}
+
+INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out, int *code)
 {
     static const size_t places_0[] = {2, 5, 8, 11, 14, 17, 20};
     real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], qdd_of_joint_accelerations[21*LANES],
         qdd[7*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    A = side_by_side(6, w, A, A_in, why.invalid);
-    joint_accelerations_run(m, w, X, V, A, qdd_of_joint_accelerations, &why);
-    take(7, 1*w, places_0, qdd_of_joint_accelerations, qdd);
-    check(7, w, qdd, why.overflow);
-    judge(&why, w, code);
-    deliver(qdd, 7, w, code, qdd_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    A = side_by_side(6, A, A_in, why.total);
+    joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
+    take(7, 1*LANES, places_0, qdd_of_joint_accelerations, qdd);
+    add_up(7, qdd, why.total);
+    suspect(&why, code);
+    deliver(7, qdd, qdd_out);
 }
 
-INLINE void power_any(const prepared *m, size_t w, const real *X, const real *V, const real *tau,
-    real *power_out, int *code)
+INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out, int *code)
+{
+    real H[42] = {0}, times_1[6] = {0}, power[1] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6) + total(tau, 7);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+        check(7, 1, tau, why.invalid);
+    }
+    H_run(m, X, H, &why);
+    product(6, 7, 1, 1, H, tau, times_1);
+    inner(6, 1, times_1, V, power);
+    check(1, 1, power, why.overflow);
+    judge(&why, code);
+    copy(1, power, power_out);
+    if (*code != OK) {
+        refuse(1, power_out);
+    }
+}
+
+INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out, int *code)
 {
     real X_in[7*LANES], V_in[6*LANES], tau_in[7*LANES], H[42*LANES], times_1[6*LANES] = {0},
         power[1*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    tau = side_by_side(7, w, tau, tau_in, why.invalid);
-    H_run(m, w, X, H, &why);
-    product(6, 7, 1, w, H, tau, times_1);
-    inner(6, w, times_1, V, power);
-    check(1, w, power, why.overflow);
-    judge(&why, w, code);
-    deliver(power, 1, w, code, power_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    tau = side_by_side(7, tau, tau_in, why.total);
+    H_run_lanes(m, X, H, &why);
+    product(6, 7, 1, LANES, H, tau, times_1);
+    inner(6, LANES, times_1, V, power);
+    add_up(1, power, why.total);
+    suspect(&why, code);
+    deliver(1, power, power_out);
 }
 
-INLINE void rotation_any(const real *X, real *R_out, int *code)
+INLINE void rotation_one(const real *X, real *R_out, int *code)
 {
     real R[9] = {0};
     verdict why;
@@ -5399,64 +5880,88 @@ INLINE void rotation_any(const real *X, real *R_out, int *code)
     const real *const take_1 = X + 3;
     rotation_of_quaternion(take_1, R);
     check(9, 1, R, why.overflow);
-    judge(&why, 1, code);
-    deliver(R, 9, 1, code, R_out);
+    judge(&why, code);
+    copy(9, R, R_out);
+    if (*code != OK) {
+        refuse(9, R_out);
+    }
 }
 
-INLINE void pose_any(const real *t, const real *R, real *X_out, int *code)
+INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
 {
     real quaternion_of_rotation_1[4] = {0}, join_2[7] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, t, why.invalid);
-    check(9, 1, R, why.invalid);
+    const real total_in = total(t, 3) + total(R, 9);
+    if (!is_finite(total_in)) {
+        check(3, 1, t, why.invalid);
+        check(9, 1, R, why.invalid);
+    }
     quaternion_of_rotation(R, quaternion_of_rotation_1);
     beside(1, 3, 4, t, quaternion_of_rotation_1, join_2);
     const real *const X = join_2;
     check(7, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 7, 1, code, X_out);
+    judge(&why, code);
+    copy(7, X, X_out);
+    if (*code != OK) {
+        refuse(7, X_out);
+    }
 }
 
-INLINE void X_dot_any(const real *X, const real *V, real *X_dot_out, int *code)
+INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
 {
     real quaternion_rate_3[4] = {0}, X_dot[7] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
-    check(6, 1, V, why.invalid);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
     const real *const take_1 = V + 3;
     const real *const take_2 = X + 3;
     quaternion_rate(take_2, take_1, quaternion_rate_3);
     const real *const take_4 = V;
     beside(1, 3, 4, take_4, quaternion_rate_3, X_dot);
     check(7, 1, X_dot, why.overflow);
-    judge(&why, 1, code);
-    deliver(X_dot, 7, 1, code, X_dot_out);
+    judge(&why, code);
+    copy(7, X_dot, X_dot_out);
+    if (*code != OK) {
+        refuse(7, X_dot_out);
+    }
 }
 
-INLINE void pose_from_rpy_any(const real *t, const real *rpy, real *X_out, int *code)
+INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *code)
 {
     real quaternion_of_rpy_1[4] = {0}, join_2[7] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, t, why.invalid);
-    check(3, 1, rpy, why.invalid);
+    const real total_in = total(t, 3) + total(rpy, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, t, why.invalid);
+        check(3, 1, rpy, why.invalid);
+    }
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
     beside(1, 3, 4, t, quaternion_of_rpy_1, join_2);
     const real *const X = join_2;
     check(7, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 7, 1, code, X_out);
+    judge(&why, code);
+    copy(7, X, X_out);
+    if (*code != OK) {
+        refuse(7, X_out);
+    }
 }
 
-INLINE void retract_any(const real *X, const real *step, real *X_moved_out, int *code)
+INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
 {
     real turn_quaternion_5[4] = {0}, add_6[3] = {0}, X_moved[7] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
-    check(6, 1, step, why.invalid);
+    const real total_in = total(X, 7) + total(step, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, step, why.invalid);
+    }
     const real *const take_1 = X;
     const real *const take_2 = X + 3;
     const real *const take_3 = step;
@@ -5467,17 +5972,23 @@ INLINE void retract_any(const real *X, const real *step, real *X_moved_out, int 
     }
     beside(1, 3, 4, add_6, turn_quaternion_5, X_moved);
     check(7, 1, X_moved, why.overflow);
-    judge(&why, 1, code);
-    deliver(X_moved, 7, 1, code, X_moved_out);
+    judge(&why, code);
+    copy(7, X_moved, X_moved_out);
+    if (*code != OK) {
+        refuse(7, X_moved_out);
+    }
 }
 
-INLINE void difference_any(const real *X0, const real *X1, real *step_out, int *code)
+INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
 {
     real turn_between_5[3] = {0}, subtract_6[3] = {0}, step[6] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X0, why.invalid);
-    check(7, 1, X1, why.invalid);
+    const real total_in = total(X0, 7) + total(X1, 7);
+    if (!is_finite(total_in)) {
+        check(7, 1, X0, why.invalid);
+        check(7, 1, X1, why.invalid);
+    }
     const real *const take_1 = X0;
     const real *const take_2 = X0 + 3;
     const real *const take_3 = X1;
@@ -5488,19 +5999,25 @@ INLINE void difference_any(const real *X0, const real *X1, real *step_out, int *
     }
     beside(1, 3, 3, subtract_6, turn_between_5, step);
     check(6, 1, step, why.overflow);
-    judge(&why, 1, code);
-    deliver(step, 6, 1, code, step_out);
+    judge(&why, code);
+    copy(6, step, step_out);
+    if (*code != OK) {
+        refuse(6, step_out);
+    }
 }
 
-INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real *X_out, int *code)
+INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
 {
     real turn_between_5[3] = {0}, subtract_6[3] = {0}, join_7[6] = {0}, scale_8[6] = {0},
         turn_quaternion_13[4] = {0}, add_14[3] = {0}, X[7] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X0, why.invalid);
-    check(7, 1, X1, why.invalid);
-    check(1, 1, s, why.invalid);
+    const real total_in = total(X0, 7) + total(X1, 7) + total(s, 1);
+    if (!is_finite(total_in)) {
+        check(7, 1, X0, why.invalid);
+        check(7, 1, X1, why.invalid);
+        check(1, 1, s, why.invalid);
+    }
     const real *const take_1 = X0;
     const real *const take_2 = X0 + 3;
     const real *const take_3 = X1;
@@ -5523,8 +6040,11 @@ INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real 
     }
     beside(1, 3, 4, add_14, turn_quaternion_13, X);
     check(7, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 7, 1, code, X_out);
+    judge(&why, code);
+    copy(7, X, X_out);
+    if (*code != OK) {
+        refuse(7, X_out);
+    }
 }
 
 /* ---- one state, and batches ---- */
@@ -5533,7 +6053,7 @@ int stewart_7ups_M(const stewart_7ups_model *model, const stewart_7ups_real *X, 
     *M)
 {
     int code;
-    M_any(model, 1, X, M, &code);
+    M_one(model, X, M, &code);
     return code;
 }
 
@@ -5541,9 +6061,9 @@ size_t stewart_7ups_M_batch(const stewart_7ups_model *model, size_t n, const ste
     stewart_7ups_real *M, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        M_any(model, LANES, X + 7*i, M + 36*i, codes);
+        M_lanes(model, X + 7*i, M + 36*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_7ups_M(model, X + 7*(i + k), M + 36*(i + k));
@@ -5562,7 +6082,7 @@ int stewart_7ups_Z(const stewart_7ups_model *model, const stewart_7ups_real *X, 
     stewart_7ups_real *V, stewart_7ups_real *Z)
 {
     int code;
-    Z_any(model, 1, X, V, Z, &code);
+    Z_one(model, X, V, Z, &code);
     return code;
 }
 
@@ -5570,9 +6090,9 @@ size_t stewart_7ups_Z_batch(const stewart_7ups_model *model, size_t n, const ste
     const stewart_7ups_real *V, stewart_7ups_real *Z, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        Z_any(model, LANES, X + 7*i, V + 6*i, Z + 6*i, codes);
+        Z_lanes(model, X + 7*i, V + 6*i, Z + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_7ups_Z(model, X + 7*(i + k), V + 6*(i + k), Z + 6*(i + k));
@@ -5591,7 +6111,7 @@ int stewart_7ups_H(const stewart_7ups_model *model, const stewart_7ups_real *X, 
     *H)
 {
     int code;
-    H_any(model, 1, X, H, &code);
+    H_one(model, X, H, &code);
     return code;
 }
 
@@ -5599,9 +6119,9 @@ size_t stewart_7ups_H_batch(const stewart_7ups_model *model, size_t n, const ste
     stewart_7ups_real *H, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        H_any(model, LANES, X + 7*i, H + 42*i, codes);
+        H_lanes(model, X + 7*i, H + 42*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_7ups_H(model, X + 7*(i + k), H + 42*(i + k));
@@ -5620,7 +6140,7 @@ int stewart_7ups_inverse_kinematics(const stewart_7ups_model *model, const stewa
     stewart_7ups_real *q)
 {
     int code;
-    inverse_kinematics_any(model, 1, X, q, &code);
+    inverse_kinematics_one(model, X, q, &code);
     return code;
 }
 
@@ -5628,9 +6148,9 @@ size_t stewart_7ups_inverse_kinematics_batch(const stewart_7ups_model *model, si
     stewart_7ups_real *X, stewart_7ups_real *q, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_kinematics_any(model, LANES, X + 7*i, q + 21*i, codes);
+        inverse_kinematics_lanes(model, X + 7*i, q + 21*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_7ups_inverse_kinematics(model, X + 7*(i + k), q + 21*(i + k));
@@ -5649,7 +6169,7 @@ int stewart_7ups_joint_rates(const stewart_7ups_model *model, const stewart_7ups
     stewart_7ups_real *V, stewart_7ups_real *rates)
 {
     int code;
-    joint_rates_any(model, 1, X, V, rates, &code);
+    joint_rates_one(model, X, V, rates, &code);
     return code;
 }
 
@@ -5657,9 +6177,9 @@ size_t stewart_7ups_joint_rates_batch(const stewart_7ups_model *model, size_t n,
     stewart_7ups_real *X, const stewart_7ups_real *V, stewart_7ups_real *rates, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_rates_any(model, LANES, X + 7*i, V + 6*i, rates + 21*i, codes);
+        joint_rates_lanes(model, X + 7*i, V + 6*i, rates + 21*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_7ups_joint_rates(model, X + 7*(i + k), V + 6*(i + k), rates + 21*(i + k));
@@ -5678,7 +6198,7 @@ int stewart_7ups_joint_accelerations(const stewart_7ups_model *model, const stew
     const stewart_7ups_real *V, const stewart_7ups_real *A, stewart_7ups_real *accelerations)
 {
     int code;
-    joint_accelerations_any(model, 1, X, V, A, accelerations, &code);
+    joint_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
@@ -5687,9 +6207,9 @@ size_t stewart_7ups_joint_accelerations_batch(const stewart_7ups_model *model, s
     stewart_7ups_real *accelerations, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_accelerations_any(model, LANES, X + 7*i, V + 6*i, A + 6*i, accelerations + 21*i, codes);
+        joint_accelerations_lanes(model, X + 7*i, V + 6*i, A + 6*i, accelerations + 21*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_7ups_joint_accelerations(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k),
@@ -5710,7 +6230,7 @@ int stewart_7ups_dynamics(const stewart_7ups_model *model, const stewart_7ups_re
     stewart_7ups_real *V, stewart_7ups_real *M, stewart_7ups_real *Z, stewart_7ups_real *H)
 {
     int code;
-    dynamics_any(model, 1, X, V, M, Z, H, &code);
+    dynamics_one(model, X, V, M, Z, H, &code);
     return code;
 }
 
@@ -5719,9 +6239,9 @@ size_t stewart_7ups_dynamics_batch(const stewart_7ups_model *model, size_t n, co
     stewart_7ups_real *H, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        dynamics_any(model, LANES, X + 7*i, V + 6*i, M + 36*i, Z + 6*i, H + 42*i, codes);
+        dynamics_lanes(model, X + 7*i, V + 6*i, M + 36*i, Z + 6*i, H + 42*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_7ups_dynamics(model, X + 7*(i + k), V + 6*(i + k), M + 36*(i + k), Z + 6*(i +
@@ -5742,7 +6262,7 @@ int stewart_7ups_inverse_dynamics(const stewart_7ups_model *model, const stewart
     stewart_7ups_real *tau)
 {
     int code;
-    inverse_dynamics_any(model, X, V, A, wrench, NULL, tau, &code);
+    inverse_dynamics_one(model, X, V, A, wrench, NULL, tau, &code);
     return code;
 }
 
@@ -5764,7 +6284,7 @@ int stewart_7ups_inverse_dynamics_weighted(const stewart_7ups_model *model, cons
     stewart_7ups_real *wrench, const stewart_7ups_real *weights, stewart_7ups_real *tau)
 {
     int code;
-    inverse_dynamics_any(model, X, V, A, wrench, weights, tau, &code);
+    inverse_dynamics_one(model, X, V, A, wrench, weights, tau, &code);
     return code;
 }
 
@@ -5787,7 +6307,7 @@ int stewart_7ups_forward_dynamics(const stewart_7ups_model *model, const stewart
     stewart_7ups_real *A)
 {
     int code;
-    forward_dynamics_any(model, 1, X, V, tau, wrench, A, &code);
+    forward_dynamics_one(model, X, V, tau, wrench, A, &code);
     return code;
 }
 
@@ -5796,10 +6316,10 @@ size_t stewart_7ups_forward_dynamics_batch(const stewart_7ups_model *model, size
     stewart_7ups_real *wrench, stewart_7ups_real *A, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        forward_dynamics_any(model, LANES, X + 7*i, V + 6*i, tau + 7*i, wrench ? wrench + 6*i : NULL, A +
-            6*i, codes);
+        forward_dynamics_lanes(model, X + 7*i, V + 6*i, tau + 7*i, wrench ? wrench + 6*i : NULL, A + 6*i,
+            codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_7ups_forward_dynamics(model, X + 7*(i + k), V + 6*(i + k), tau + 7*(i + k),
@@ -5825,7 +6345,7 @@ int stewart_7ups_complete_acceleration(const stewart_7ups_model *model, const st
     (void)X;
     (void)V;
     (void)wrench;
-    complete_acceleration_any(A, completed, &code);
+    complete_acceleration_one(A, completed, &code);
     return code;
 }
 
@@ -5847,7 +6367,7 @@ int stewart_7ups_leg_reactions(const stewart_7ups_model *model, const stewart_7u
     stewart_7ups_real *forces)
 {
     int code;
-    leg_reactions_any(model, X, V, A, wrench, forces, &code);
+    leg_reactions_one(model, X, V, A, wrench, forces, &code);
     return code;
 }
 
@@ -5868,7 +6388,7 @@ int stewart_7ups_energy(const stewart_7ups_model *model, const stewart_7ups_real
     stewart_7ups_real *V, stewart_7ups_real *kinetic, stewart_7ups_real *potential)
 {
     int code;
-    energy_any(model, X, V, kinetic, potential, &code);
+    energy_one(model, X, V, kinetic, potential, &code);
     return code;
 }
 
@@ -5888,7 +6408,7 @@ int stewart_7ups_null_space(const stewart_7ups_model *model, const stewart_7ups_
     stewart_7ups_real *basis)
 {
     int code;
-    null_space_any(model, X, basis, &code);
+    null_space_one(model, X, basis, &code);
     return code;
 }
 
@@ -5907,7 +6427,7 @@ int stewart_7ups_condition(const stewart_7ups_model *model, const stewart_7ups_r
     stewart_7ups_real *sigma, stewart_7ups_real *legs)
 {
     int code;
-    condition_any(model, X, NULL, sigma, legs, &code);
+    condition_one(model, X, NULL, sigma, legs, &code);
     return code;
 }
 
@@ -5926,7 +6446,7 @@ int stewart_7ups_forward_kinematics(const stewart_7ups_model *model, const stewa
     *q_actuated, const stewart_7ups_real *X0, stewart_7ups_real *X)
 {
     int code;
-    forward_kinematics_any(model, q_actuated, X0, X, &code);
+    forward_kinematics_one(model, q_actuated, X0, X, &code);
     return code;
 }
 
@@ -5947,7 +6467,7 @@ int stewart_7ups_dissipation(const stewart_7ups_model *model, const stewart_7ups
     int code;
     (void)model;
     (void)X;
-    dissipation_any(V, dissipation, &code);
+    dissipation_one(V, dissipation, &code);
     return code;
 }
 
@@ -5966,7 +6486,7 @@ int stewart_7ups_momentum(const stewart_7ups_model *model, const stewart_7ups_re
     stewart_7ups_real *V, stewart_7ups_real *momentum)
 {
     int code;
-    momentum_any(model, 1, X, V, momentum, &code);
+    momentum_one(model, X, V, momentum, &code);
     return code;
 }
 
@@ -5974,9 +6494,9 @@ size_t stewart_7ups_momentum_batch(const stewart_7ups_model *model, size_t n, co
     stewart_7ups_real *X, const stewart_7ups_real *V, stewart_7ups_real *momentum, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        momentum_any(model, LANES, X + 7*i, V + 6*i, momentum + 6*i, codes);
+        momentum_lanes(model, X + 7*i, V + 6*i, momentum + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_7ups_momentum(model, X + 7*(i + k), V + 6*(i + k), momentum + 6*(i + k));
@@ -5991,11 +6511,69 @@ size_t stewart_7ups_momentum_batch(const stewart_7ups_model *model, size_t n, co
     return failed;
 }
 
+int stewart_7ups_joint_margins(const stewart_7ups_model *model, const stewart_7ups_real *X,
+    stewart_7ups_real *margins)
+{
+    int code;
+    joint_margins_one(model, X, margins, &code);
+    return code;
+}
+
+size_t stewart_7ups_joint_margins_batch(const stewart_7ups_model *model, size_t n, const
+    stewart_7ups_real *X, stewart_7ups_real *margins, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        joint_margins_lanes(model, X + 7*i, margins + 21*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = stewart_7ups_joint_margins(model, X + 7*(i + k), margins + 21*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = stewart_7ups_joint_margins(model, X + 7*i, margins + 21*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int stewart_7ups_within_limits(const stewart_7ups_model *model, const stewart_7ups_real *X,
+    stewart_7ups_real *within)
+{
+    int code;
+    within_limits_one(model, X, within, &code);
+    return code;
+}
+
+size_t stewart_7ups_within_limits_batch(const stewart_7ups_model *model, size_t n, const
+    stewart_7ups_real *X, stewart_7ups_real *within, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        within_limits_lanes(model, X + 7*i, within + 1*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = stewart_7ups_within_limits(model, X + 7*(i + k), within + 1*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = stewart_7ups_within_limits(model, X + 7*i, within + 1*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
 int stewart_7ups_actuator_positions(const stewart_7ups_model *model, const stewart_7ups_real *X,
     stewart_7ups_real *q)
 {
     int code;
-    actuator_positions_any(model, 1, X, q, &code);
+    actuator_positions_one(model, X, q, &code);
     return code;
 }
 
@@ -6003,9 +6581,9 @@ size_t stewart_7ups_actuator_positions_batch(const stewart_7ups_model *model, si
     stewart_7ups_real *X, stewart_7ups_real *q, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_positions_any(model, LANES, X + 7*i, q + 7*i, codes);
+        actuator_positions_lanes(model, X + 7*i, q + 7*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_7ups_actuator_positions(model, X + 7*(i + k), q + 7*(i + k));
@@ -6024,7 +6602,7 @@ int stewart_7ups_actuator_rates(const stewart_7ups_model *model, const stewart_7
     stewart_7ups_real *V, stewart_7ups_real *rates)
 {
     int code;
-    actuator_rates_any(model, 1, X, V, rates, &code);
+    actuator_rates_one(model, X, V, rates, &code);
     return code;
 }
 
@@ -6032,9 +6610,9 @@ size_t stewart_7ups_actuator_rates_batch(const stewart_7ups_model *model, size_t
     stewart_7ups_real *X, const stewart_7ups_real *V, stewart_7ups_real *rates, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_rates_any(model, LANES, X + 7*i, V + 6*i, rates + 7*i, codes);
+        actuator_rates_lanes(model, X + 7*i, V + 6*i, rates + 7*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_7ups_actuator_rates(model, X + 7*(i + k), V + 6*(i + k), rates + 7*(i + k));
@@ -6053,7 +6631,7 @@ int stewart_7ups_actuator_accelerations(const stewart_7ups_model *model, const s
     *X, const stewart_7ups_real *V, const stewart_7ups_real *A, stewart_7ups_real *accelerations)
 {
     int code;
-    actuator_accelerations_any(model, 1, X, V, A, accelerations, &code);
+    actuator_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
@@ -6062,9 +6640,9 @@ size_t stewart_7ups_actuator_accelerations_batch(const stewart_7ups_model *model
     stewart_7ups_real *accelerations, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_accelerations_any(model, LANES, X + 7*i, V + 6*i, A + 6*i, accelerations + 7*i, codes);
+        actuator_accelerations_lanes(model, X + 7*i, V + 6*i, A + 6*i, accelerations + 7*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_7ups_actuator_accelerations(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k),
@@ -6085,7 +6663,7 @@ int stewart_7ups_power(const stewart_7ups_model *model, const stewart_7ups_real 
     stewart_7ups_real *V, const stewart_7ups_real *tau, stewart_7ups_real *power)
 {
     int code;
-    power_any(model, 1, X, V, tau, power, &code);
+    power_one(model, X, V, tau, power, &code);
     return code;
 }
 
@@ -6094,9 +6672,9 @@ size_t stewart_7ups_power_batch(const stewart_7ups_model *model, size_t n, const
     *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        power_any(model, LANES, X + 7*i, V + 6*i, tau + 7*i, power + 1*i, codes);
+        power_lanes(model, X + 7*i, V + 6*i, tau + 7*i, power + 1*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_7ups_power(model, X + 7*(i + k), V + 6*(i + k), tau + 7*(i + k), power + 1*(i +
@@ -6115,7 +6693,7 @@ size_t stewart_7ups_power_batch(const stewart_7ups_model *model, size_t n, const
 int stewart_7ups_rotation(const stewart_7ups_real *X, stewart_7ups_real *R)
 {
     int code;
-    rotation_any(X, R, &code);
+    rotation_one(X, R, &code);
     return code;
 }
 
@@ -6134,7 +6712,7 @@ int stewart_7ups_pose(const stewart_7ups_real *t, const stewart_7ups_real *R, st
     *X)
 {
     int code;
-    pose_any(t, R, X, &code);
+    pose_one(t, R, X, &code);
     return code;
 }
 
@@ -6153,7 +6731,7 @@ int stewart_7ups_X_dot(const stewart_7ups_real *X, const stewart_7ups_real *V, s
     *X_dot)
 {
     int code;
-    X_dot_any(X, V, X_dot, &code);
+    X_dot_one(X, V, X_dot, &code);
     return code;
 }
 
@@ -6172,7 +6750,7 @@ int stewart_7ups_pose_from_rpy(const stewart_7ups_real *t, const stewart_7ups_re
     stewart_7ups_real *X)
 {
     int code;
-    pose_from_rpy_any(t, rpy, X, &code);
+    pose_from_rpy_one(t, rpy, X, &code);
     return code;
 }
 
@@ -6191,7 +6769,7 @@ int stewart_7ups_retract(const stewart_7ups_real *X, const stewart_7ups_real *st
     stewart_7ups_real *X_moved)
 {
     int code;
-    retract_any(X, step, X_moved, &code);
+    retract_one(X, step, X_moved, &code);
     return code;
 }
 
@@ -6210,7 +6788,7 @@ int stewart_7ups_difference(const stewart_7ups_real *X0, const stewart_7ups_real
     stewart_7ups_real *step)
 {
     int code;
-    difference_any(X0, X1, step, &code);
+    difference_one(X0, X1, step, &code);
     return code;
 }
 
@@ -6229,7 +6807,7 @@ int stewart_7ups_interpolate(const stewart_7ups_real *X0, const stewart_7ups_rea
     stewart_7ups_real *s, stewart_7ups_real *X)
 {
     int code;
-    interpolate_any(X0, X1, s, X, &code);
+    interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 

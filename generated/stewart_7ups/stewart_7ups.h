@@ -52,6 +52,7 @@ typedef STEWART_7UPS_REAL stewart_7ups_real;
 #define STEWART_7UPS_NC 0
 #define STEWART_7UPS_NW 6
 #define STEWART_7UPS_NJ 21
+#define STEWART_7UPS_OVERCONSTRAINED 0
 
 enum {
     STEWART_7UPS_OK = 0,
@@ -94,19 +95,20 @@ typedef struct {
 /* What depends on the parameters alone; set by stewart_7ups_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
-    stewart_7ups_real J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+    /* 7 legs of type ups; copies of the first fill up */
+    stewart_7ups_real ups_J_group_2_xx[8], ups_J_group_2_xy[8], ups_J_group_2_xz[8],
+            ups_J_group_2_yy[8], ups_J_group_2_yz[8], ups_J_group_2_zz[8], ups_Sigma_2_xx[8],
+            ups_Sigma_2_yy[8], ups_Sigma_2_zz[8], ups_b_r0_x[8], ups_b_r0_y[8], ups_b_r0_z[8],
+            ups_base_frame_xx[8], ups_base_frame_xy[8], ups_base_frame_xz[8], ups_base_frame_yx[8],
+            ups_base_frame_yy[8], ups_base_frame_yz[8], ups_base_frame_zx[8], ups_base_frame_zy[8],
+            ups_base_frame_zz[8], ups_base_point_x[8], ups_base_point_y[8], ups_base_point_z[8],
+            ups_branch_1[8], ups_branch_2[8], ups_g_r0_x[8], ups_g_r0_y[8], ups_g_r0_z[8],
+            ups_h_2_x[8], ups_h_2_y[8], ups_h_2_z[8], ups_h_3_x[8], ups_h_3_y[8], ups_h_3_z[8],
+            ups_link2_mass[8], ups_link3_mass[8], ups_platform_point_x[8], ups_platform_point_y[8],
+            ups_platform_point_z[8];
+    stewart_7ups_real J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
             J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
             h_star_x, h_star_y, h_star_z, legs_size, m_star, spread_t;
-    /* legs of type ups */
-    stewart_7ups_real J_group_2_xx[7], J_group_2_xy[7], J_group_2_xz[7], J_group_2_yy[7],
-            J_group_2_yz[7], J_group_2_zz[7], Sigma_2_xx[7], Sigma_2_yy[7], Sigma_2_zz[7], b_r0_x[7],
-            b_r0_y[7], b_r0_z[7], branch_1[7], branch_2[7], g_r0_x[7], g_r0_y[7], g_r0_z[7], h_2_x[7],
-            h_2_y[7], h_2_z[7], h_3_x[7], h_3_y[7], h_3_z[7], ups_base_frame_xx[7],
-            ups_base_frame_xy[7], ups_base_frame_xz[7], ups_base_frame_yx[7], ups_base_frame_yy[7],
-            ups_base_frame_yz[7], ups_base_frame_zx[7], ups_base_frame_zy[7], ups_base_frame_zz[7],
-            ups_base_point_x[7], ups_base_point_y[7], ups_base_point_z[7], ups_link2_mass[7],
-            ups_link3_mass[7], ups_platform_point_x[7], ups_platform_point_y[7],
-            ups_platform_point_z[7];
 } stewart_7ups_model;
 
 extern const stewart_7ups_params stewart_7ups_default_params;
@@ -129,7 +131,7 @@ int stewart_7ups_M(const stewart_7ups_model *model, const stewart_7ups_real *X, 
 size_t stewart_7ups_M_batch(const stewart_7ups_model *model, size_t n, const stewart_7ups_real *X,
     stewart_7ups_real *M, int *status);
 
-/* Velocity and gravity terms Z. 1178 mul, 904 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 1154 mul, 880 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int stewart_7ups_Z(const stewart_7ups_model *model, const stewart_7ups_real *X, const
     stewart_7ups_real *V, stewart_7ups_real *Z);
@@ -165,7 +167,7 @@ size_t stewart_7ups_joint_accelerations_batch(const stewart_7ups_model *model, s
     stewart_7ups_real *X, const stewart_7ups_real *V, const stewart_7ups_real *A,
     stewart_7ups_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1837 mul, 1440 add, 14 div, 14 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1813 mul, 1416 add, 14 div, 14 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int stewart_7ups_dynamics(const stewart_7ups_model *model, const stewart_7ups_real *X, const
     stewart_7ups_real *V, stewart_7ups_real *M, stewart_7ups_real *Z, stewart_7ups_real *H);
@@ -194,7 +196,7 @@ size_t stewart_7ups_inverse_dynamics_weighted_batch(const stewart_7ups_model *mo
     stewart_7ups_real *wrench, const stewart_7ups_real *weights, stewart_7ups_real *tau, int
     *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1837 mul, 1440 add, 14 div, 14
+/* Acceleration A under the actuator forces tau and the wrench. 1813 mul, 1416 add, 14 div, 14
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int stewart_7ups_forward_dynamics(const stewart_7ups_model *model, const stewart_7ups_real *X,
@@ -269,6 +271,21 @@ int stewart_7ups_momentum(const stewart_7ups_model *model, const stewart_7ups_re
     stewart_7ups_real *V, stewart_7ups_real *momentum);
 size_t stewart_7ups_momentum_batch(const stewart_7ups_model *model, size_t n, const
     stewart_7ups_real *X, const stewart_7ups_real *V, stewart_7ups_real *momentum, int *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 189 mul, 140 add, 14 div, 14 sqrt, 14 trig. In: X (NQ). Out: margins (NJ).
+   */
+int stewart_7ups_joint_margins(const stewart_7ups_model *model, const stewart_7ups_real *X,
+    stewart_7ups_real *margins);
+size_t stewart_7ups_joint_margins_batch(const stewart_7ups_model *model, size_t n, const
+    stewart_7ups_real *X, stewart_7ups_real *margins, int *status);
+
+/* Whether all joints are within their limits of displacement. 189 mul, 140 add, 14 div, 14 sqrt,
+   14 trig. In: X (NQ). Out: within (1). */
+int stewart_7ups_within_limits(const stewart_7ups_model *model, const stewart_7ups_real *X,
+    stewart_7ups_real *within);
+size_t stewart_7ups_within_limits_batch(const stewart_7ups_model *model, size_t n, const
+    stewart_7ups_real *X, stewart_7ups_real *within, int *status);
 
 /* Displacements of the actuated joints, in the order of tau. 189 mul, 140 add, 14 div, 14 sqrt,
    14 trig. In: X (NQ). Out: q (NU). */

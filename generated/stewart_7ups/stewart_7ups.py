@@ -33,6 +33,7 @@ __all__ = [
     "NC",
     "NW",
     "NJ",
+    "OVERCONSTRAINED",
     "ACTUATED",
     "ACTUATOR_NAMES",
     "H",
@@ -57,6 +58,7 @@ __all__ = [
     "inverse_dynamics",
     "inverse_kinematics",
     "joint_accelerations",
+    "joint_margins",
     "joint_rates",
     "leg_reactions",
     "momentum",
@@ -66,6 +68,7 @@ __all__ = [
     "power",
     "retract",
     "rotation",
+    "within_limits",
 ]
 
 NQ = 7
@@ -74,6 +77,7 @@ NU = 7
 NC = 0
 NW = 6
 NJ = 21
+OVERCONSTRAINED = 0
 
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
@@ -358,7 +362,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return np.full(shape, default)
+        return _filled(shape, default) if isinstance(default, float) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -371,6 +375,16 @@ def _argument(function, name, value, shape, default=None, rule=""):
     elif rule == "positive" and not np.all((array > 0.0) & (array < np.inf)):
         raise ValueError(f"{function}: {name} must be positive and finite")
     return array
+
+
+_FILLED = {}
+
+
+def _filled(shape, value):
+    """An array of one value, made once."""
+    if (shape, value) not in _FILLED:
+        _FILLED[shape, value] = _frozen(np.full(shape, value))
+    return _FILLED[shape, value]
 
 
 def _lead(leads):
@@ -464,8 +478,8 @@ HOME_X = _frozen(np.array([0.0, 0.0, 0.75, 0.0, 0.0, 0.0, 1.0]))
 HOME_Q = _frozen(np.array([0.15, 0.45, 0.8, 0.15, -0.45, 0.8, 0.15, 0.45, 0.8, 0.15, -0.45, 0.8, 0.15, 0.45, 0.8, 0.15, -0.45, 0.8, 0.15, 0.45, 0.8]))
 
 _BRANCHES = {  # assembly branch of home, a sign per leg
-    "branch_1": np.array([1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]),
-    "branch_2": np.array([1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]),
+    "ups_branch_1": np.array([1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]),
+    "ups_branch_2": np.array([1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]),
 }
 
 
@@ -521,13 +535,13 @@ def _prepare(p):
     ups_link3_inertia_yy = p.ups_link3_inertia[:, 1, 1]
     ups_link3_inertia_yz = p.ups_link3_inertia[:, 1, 2]
     ups_link3_inertia_zz = p.ups_link3_inertia[:, 2, 2]
-    branch_1 = _BRANCHES["branch_1"]
-    branch_2 = _BRANCHES["branch_2"]
-    # (L2) first moment about the platform origin
+    ups_branch_1 = _BRANCHES["ups_branch_1"]
+    ups_branch_2 = _BRANCHES["ups_branch_2"]
+    # (h_star) first moment about the platform origin
     h_star_t = platform_centre_of_mass_x*platform_mass
     h_star_t_2 = platform_centre_of_mass_y*platform_mass
     h_star_t_3 = platform_centre_of_mass_z*platform_mass
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_t = platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_2 = platform_centre_of_mass_y*platform_centre_of_mass_y
     J_star_t_3 = platform_centre_of_mass_z*platform_centre_of_mass_z
@@ -538,166 +552,167 @@ def _prepare(p):
     J_star_t_8 = platform_mass*(J_star_t_2 - J_star_t_4)
     J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass
     J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4)
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread_t = 0.14285714285714285*sqrt(7.0)
-    # (C3) rms size of the legs, taken where the platform points coincide
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     legs_size = 2.1166010488516727*spread_t
-    # (ups-G3) inertia tensor of link 2 about the origin of link 2
-    J_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x
-    J_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y
-    J_2_t_3 = ups_link2_centre_of_mass_z*ups_link2_centre_of_mass_z
-    J_2_t_4 = J_2_t + J_2_t_2 + J_2_t_3
-    # (ups-G5) inertia tensor of link 3 about the connection point
-    J_3_t = ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_x
-    J_3_t_2 = ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_y
-    J_3_t_3 = ups_link3_centre_of_mass_z*ups_link3_centre_of_mass_z
-    J_3_t_4 = J_3_t + J_3_t_2 + J_3_t_3
-    # (ups-N8) inertia of the links that turn with link 2, each about its reference point
-    J_group_2_xx = (
-    ups_link2_inertia_xx + ups_link3_inertia_xx - ups_link2_mass*(J_2_t - J_2_t_4) -
-        ups_link3_mass*(J_3_t - J_3_t_4)
+    # (ups-h_3) first moment of link 3 about the connection point
+    ups_h_3_x = ups_link3_centre_of_mass_x*ups_link3_mass
+    ups_h_3_y = ups_link3_centre_of_mass_y*ups_link3_mass
+    ups_h_3_z = ups_link3_centre_of_mass_z*ups_link3_mass
+    # (ups-J_2) inertia tensor of link 2 about the origin of link 2
+    ups_J_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x
+    ups_J_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y
+    ups_J_2_t_3 = ups_link2_centre_of_mass_z*ups_link2_centre_of_mass_z
+    ups_J_2_t_4 = ups_J_2_t + ups_J_2_t_2 + ups_J_2_t_3
+    # (ups-J_3) inertia tensor of link 3 about the connection point
+    ups_J_3_t = ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_x
+    ups_J_3_t_2 = ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_y
+    ups_J_3_t_3 = ups_link3_centre_of_mass_z*ups_link3_centre_of_mass_z
+    ups_J_3_t_4 = ups_J_3_t + ups_J_3_t_2 + ups_J_3_t_3
+    # (ups-J_group_2) inertia of the links that turn with link 2, each about its reference point
+    ups_J_group_2_xx = (
+    ups_link2_inertia_xx + ups_link3_inertia_xx - ups_link2_mass*(ups_J_2_t - ups_J_2_t_4) -
+        ups_link3_mass*(ups_J_3_t - ups_J_3_t_4)
     )
-    J_group_2_xy = (
+    ups_J_group_2_xy = (
     ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_z*ups_link2_mass +
         ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_z*ups_link3_mass -
         ups_link2_inertia_xz - ups_link3_inertia_xz
     )
-    J_group_2_xz = (
+    ups_J_group_2_xz = (
     ups_link2_inertia_xy + ups_link3_inertia_xy -
         ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_y*ups_link2_mass -
         ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_y*ups_link3_mass
     )
-    J_group_2_yy = (
-    ups_link2_inertia_zz + ups_link3_inertia_zz - ups_link2_mass*(J_2_t_3 - J_2_t_4) -
-        ups_link3_mass*(J_3_t_3 - J_3_t_4)
+    ups_J_group_2_yy = (
+    ups_link2_inertia_zz + ups_link3_inertia_zz - ups_link2_mass*(ups_J_2_t_3 - ups_J_2_t_4) -
+        ups_link3_mass*(ups_J_3_t_3 - ups_J_3_t_4)
     )
-    J_group_2_yz = (
+    ups_J_group_2_yz = (
     ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_z*ups_link2_mass +
         ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_z*ups_link3_mass -
         ups_link2_inertia_yz - ups_link3_inertia_yz
     )
-    J_group_2_zz = (
-    ups_link2_inertia_yy + ups_link3_inertia_yy - ups_link2_mass*(J_2_t_2 - J_2_t_4) -
-        ups_link3_mass*(J_3_t_2 - J_3_t_4)
+    ups_J_group_2_zz = (
+    ups_link2_inertia_yy + ups_link3_inertia_yy - ups_link2_mass*(ups_J_2_t_2 - ups_J_2_t_4) -
+        ups_link3_mass*(ups_J_3_t_2 - ups_J_3_t_4)
     )
-    # (ups-G4) first moment of link 3 about the connection point
-    h_3_x = ups_link3_centre_of_mass_x*ups_link3_mass
-    h_3_y = ups_link3_centre_of_mass_y*ups_link3_mass
-    h_3_z = ups_link3_centre_of_mass_z*ups_link3_mass
-    # (L2) first moment about the platform origin
-    h_star_t_4 = ups_link3_mass*ups_platform_point_x
-    h_star_t_5 = ups_link3_mass*ups_platform_point_y
-    h_star_t_6 = ups_link3_mass*ups_platform_point_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t_11 = ups_platform_point_x*ups_platform_point_x
-    J_star_t_12 = ups_platform_point_y*ups_platform_point_y
-    J_star_t_13 = ups_platform_point_z*ups_platform_point_z
-    J_star_t_14 = J_star_t_11 + J_star_t_12 + J_star_t_13
-    J_star_t_15 = ups_link3_mass*(J_star_t_11 - J_star_t_14)
-    J_star_t_16 = ups_link3_mass*ups_platform_point_x*ups_platform_point_y
-    J_star_t_17 = ups_link3_mass*ups_platform_point_x*ups_platform_point_z
-    J_star_t_18 = ups_link3_mass*(J_star_t_12 - J_star_t_14)
-    J_star_t_19 = ups_link3_mass*ups_platform_point_y*ups_platform_point_z
-    J_star_t_20 = ups_link3_mass*(J_star_t_13 - J_star_t_14)
-    # (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-    g_r0_x = (
+    # (h_star) first moment about the platform origin
+    ups_h_star_t = ups_link3_mass*ups_platform_point_x
+    ups_h_star_t_2 = ups_link3_mass*ups_platform_point_y
+    ups_h_star_t_3 = ups_link3_mass*ups_platform_point_z
+    # (J_star) inertia tensor about the platform origin
+    ups_J_star_t = ups_platform_point_x*ups_platform_point_x
+    ups_J_star_t_2 = ups_platform_point_y*ups_platform_point_y
+    ups_J_star_t_3 = ups_platform_point_z*ups_platform_point_z
+    ups_J_star_t_4 = ups_J_star_t + ups_J_star_t_2 + ups_J_star_t_3
+    ups_J_star_t_5 = ups_link3_mass*(ups_J_star_t - ups_J_star_t_4)
+    ups_J_star_t_6 = ups_link3_mass*ups_platform_point_x*ups_platform_point_y
+    ups_J_star_t_7 = ups_link3_mass*ups_platform_point_x*ups_platform_point_z
+    ups_J_star_t_8 = ups_link3_mass*(ups_J_star_t_2 - ups_J_star_t_4)
+    ups_J_star_t_9 = ups_link3_mass*ups_platform_point_y*ups_platform_point_z
+    ups_J_star_t_10 = ups_link3_mass*(ups_J_star_t_3 - ups_J_star_t_4)
+    # (ups-h_2) first moment of link 2 about the origin of link 2
+    ups_h_2_x = ups_link2_centre_of_mass_x*ups_link2_mass
+    ups_h_2_y = ups_link2_centre_of_mass_y*ups_link2_mass
+    ups_h_2_z = ups_link2_centre_of_mass_z*ups_link2_mass
+    # (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+    ups_g_r0_x = (
     gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx + gravity_z*ups_base_frame_zx
     )
-    g_r0_y = (
+    ups_g_r0_y = (
     gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy + gravity_z*ups_base_frame_zy
     )
-    g_r0_z = (
+    ups_g_r0_z = (
     gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz + gravity_z*ups_base_frame_zz
     )
-    # (ups-G2) first moment of link 2 about the origin of link 2
-    h_2_x = ups_link2_centre_of_mass_x*ups_link2_mass
-    h_2_y = ups_link2_centre_of_mass_y*ups_link2_mass
-    h_2_z = ups_link2_centre_of_mass_z*ups_link2_mass
-    # (ups-N9) half the trace of that inertia tensor
-    trace_J_group_2 = 0.5*J_group_2_xx + 0.5*J_group_2_yy + 0.5*J_group_2_zz
-    # (ups-N10) second moment of mass of the links that turn with link 2
-    Sigma_2_xx = trace_J_group_2 - J_group_2_xx
-    Sigma_2_yy = trace_J_group_2 - J_group_2_yy
-    Sigma_2_zz = trace_J_group_2 - J_group_2_zz
-    # (V1) potential energy
-    b_r0_x = (
+    # (ups-trace_J_2) half the trace of that inertia tensor
+    ups_trace_J_2 = 0.5*ups_J_group_2_xx + 0.5*ups_J_group_2_yy + 0.5*ups_J_group_2_zz
+    # (ups-Sigma_2) second moment of mass of the links that turn with link 2
+    ups_Sigma_2_xx = ups_trace_J_2 - ups_J_group_2_xx
+    ups_Sigma_2_yy = ups_trace_J_2 - ups_J_group_2_yy
+    ups_Sigma_2_zz = ups_trace_J_2 - ups_J_group_2_zz
+    # (potential) potential energy
+    ups_b_r0_x = (
     ups_base_frame_xx*ups_base_point_x + ups_base_frame_yx*ups_base_point_y +
         ups_base_frame_zx*ups_base_point_z
     )
-    b_r0_y = (
+    ups_b_r0_y = (
     ups_base_frame_xy*ups_base_point_x + ups_base_frame_yy*ups_base_point_y +
         ups_base_frame_zy*ups_base_point_z
     )
-    b_r0_z = (
+    ups_b_r0_z = (
     ups_base_frame_xz*ups_base_point_x + ups_base_frame_yz*ups_base_point_y +
         ups_base_frame_zz*ups_base_point_z
     )
     total_ups = np.sum(np.broadcast_to(ups_link3_mass, _ups))
-    total_ups_x = np.sum(np.broadcast_to(h_star_t_4, _ups))
-    total_ups_y = np.sum(np.broadcast_to(h_star_t_5, _ups))
-    total_ups_z = np.sum(np.broadcast_to(h_star_t_6, _ups))
-    total_ups_xx = np.sum(np.broadcast_to(J_star_t_15, _ups))
-    total_ups_xy = np.sum(np.broadcast_to(J_star_t_16, _ups))
-    total_ups_xz = np.sum(np.broadcast_to(J_star_t_17, _ups))
-    total_ups_yy = np.sum(np.broadcast_to(J_star_t_18, _ups))
-    total_ups_yz = np.sum(np.broadcast_to(J_star_t_19, _ups))
-    total_ups_zz = np.sum(np.broadcast_to(J_star_t_20, _ups))
+    total_ups_x = np.sum(np.broadcast_to(ups_h_star_t, _ups))
+    total_ups_y = np.sum(np.broadcast_to(ups_h_star_t_2, _ups))
+    total_ups_z = np.sum(np.broadcast_to(ups_h_star_t_3, _ups))
+    total_ups_xx = np.sum(np.broadcast_to(ups_J_star_t_5, _ups))
+    total_ups_xy = np.sum(np.broadcast_to(ups_J_star_t_6, _ups))
+    total_ups_xz = np.sum(np.broadcast_to(ups_J_star_t_7, _ups))
+    total_ups_yy = np.sum(np.broadcast_to(ups_J_star_t_8, _ups))
+    total_ups_yz = np.sum(np.broadcast_to(ups_J_star_t_9, _ups))
+    total_ups_zz = np.sum(np.broadcast_to(ups_J_star_t_10, _ups))
     total_ups_x_2 = np.sum(np.broadcast_to(ups_platform_point_x, _ups))
     total_ups_y_2 = np.sum(np.broadcast_to(ups_platform_point_y, _ups))
     total_ups_z_2 = np.sum(np.broadcast_to(ups_platform_point_z, _ups))
-    # (L1) mass of the platform with the gathered masses
+    # (m_star) mass of the platform with the gathered masses
     m_star = platform_mass + total_ups
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_x = h_star_t + total_ups_x
     h_star_y = h_star_t_2 + total_ups_y
     h_star_z = h_star_t_3 + total_ups_z
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_xx = platform_inertia_xx - J_star_t_5 - total_ups_xx
     J_star_xy = platform_inertia_xy - J_star_t_6 - total_ups_xy
     J_star_xz = platform_inertia_xz - J_star_t_7 - total_ups_xz
     J_star_yy = platform_inertia_yy - J_star_t_8 - total_ups_yy
     J_star_yz = platform_inertia_yz - J_star_t_9 - total_ups_yz
     J_star_zz = platform_inertia_zz - J_star_t_10 - total_ups_zz
-    J_star_t_21 = J_star_xx - J_star_yy
-    J_star_t_22 = 0.5*J_star_t_21
-    J_star_t_23 = J_star_xx - J_star_zz
-    J_star_t_24 = 0.5*J_star_t_23
-    # (M4) centripetal force and weight of the platform
+    J_star_t_11 = J_star_xx - J_star_yy
+    J_star_t_12 = 0.5*J_star_t_11
+    J_star_t_13 = J_star_xx - J_star_zz
+    J_star_t_14 = 0.5*J_star_t_13
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
     Z_p_t_3 = gravity_z*m_star
-    # (C1) centroid of the platform points
+    # (b_c) centroid of the platform points
     b_c_x = 0.14285714285714285*total_ups_x_2
     b_c_y = 0.14285714285714285*total_ups_y_2
     b_c_z = 0.14285714285714285*total_ups_z_2
     return {
         "dynamics": (
-        (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
                 J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
                 h_star_y, h_star_z, m_star,),
             (
                 (_ups,
-        (J_group_2_xx, J_group_2_xy, J_group_2_xz, J_group_2_yy, J_group_2_yz, J_group_2_zz,
-                    Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1, branch_2, g_r0_x, g_r0_y,
-                    g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, ups_base_frame_xx,
-                    ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
-                    ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
-                    ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_platform_point_x,
+        (ups_J_group_2_xx, ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yy, ups_J_group_2_yz,
+                    ups_J_group_2_zz, ups_Sigma_2_xx, ups_Sigma_2_yy, ups_Sigma_2_zz,
+                    ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+                    ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y, ups_g_r0_z, ups_h_2_x,
+                    ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z, ups_platform_point_x,
                     ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
+        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
                 h_star_z, m_star,),
             (
                 (_ups,
-        (J_group_2_xx, J_group_2_xy, J_group_2_xz, J_group_2_yy, J_group_2_yz, J_group_2_zz,
-                    branch_1, branch_2, h_3_x, h_3_y, h_3_z, ups_base_frame_xx, ups_base_frame_xy,
-                    ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-                    ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-                    ups_base_point_y, ups_base_point_z, ups_platform_point_x,
-                    ups_platform_point_y, ups_platform_point_z,),
+        (ups_J_group_2_xx, ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yy, ups_J_group_2_yz,
+                    ups_J_group_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
+                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
+                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
+                    ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_x, ups_h_3_y, ups_h_3_z,
+                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
         ),
@@ -706,11 +721,12 @@ def _prepare(p):
                 Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
             (
                 (_ups,
-        (J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
-                    branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
-                    ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+        (ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yz, ups_Sigma_2_xx, ups_Sigma_2_yy,
+                    ups_Sigma_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
+                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
+                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
+                    ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y,
+                    ups_g_r0_z, ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
@@ -719,10 +735,11 @@ def _prepare(p):
         (),
             (
                 (_ups,
-        (branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
                     ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
                     ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
+                    ups_branch_2, ups_platform_point_x, ups_platform_point_y,
+                    ups_platform_point_z,),
                 ),
             ),
         ),
@@ -731,11 +748,12 @@ def _prepare(p):
                 gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
                 (_ups,
-        (J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
-                    branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
-                    ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+        (ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yz, ups_Sigma_2_xx, ups_Sigma_2_yy,
+                    ups_Sigma_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
+                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
+                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
+                    ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y,
+                    ups_g_r0_z, ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
@@ -744,10 +762,10 @@ def _prepare(p):
         (),
             (
                 (_ups,
-        (branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-                    ups_base_point_z, ups_platform_point_x, ups_platform_point_y,
+        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+                    ups_branch_1, ups_branch_2, ups_platform_point_x, ups_platform_point_y,
                     ups_platform_point_z,),
                 ),
             ),
@@ -756,10 +774,10 @@ def _prepare(p):
         (),
             (
                 (_ups,
-        (branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-                    ups_base_point_z, ups_platform_point_x, ups_platform_point_y,
+        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+                    ups_branch_1, ups_branch_2, ups_platform_point_x, ups_platform_point_y,
                     ups_platform_point_z,),
                 ),
             ),
@@ -768,10 +786,10 @@ def _prepare(p):
         (),
             (
                 (_ups,
-        (branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-                    ups_base_point_z, ups_platform_point_x, ups_platform_point_y,
+        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+                    ups_branch_1, ups_branch_2, ups_platform_point_x, ups_platform_point_y,
                     ups_platform_point_z,),
                 ),
             ),
@@ -780,11 +798,12 @@ def _prepare(p):
         (),
             (
                 (_ups,
-        (J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
-                    branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
-                    ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+        (ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yz, ups_Sigma_2_xx, ups_Sigma_2_yy,
+                    ups_Sigma_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
+                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
+                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
+                    ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y,
+                    ups_g_r0_z, ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z,
                     ups_link3_mass, ups_platform_point_x, ups_platform_point_y,
                     ups_platform_point_z,),
                 ),
@@ -794,11 +813,12 @@ def _prepare(p):
         (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
                 (_ups,
-        (b_r0_x, b_r0_y, b_r0_z, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z,
-                    h_3_x, h_3_y, h_3_z, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-                    ups_base_point_z, ups_link2_mass, ups_platform_point_x, ups_platform_point_y,
+        (ups_b_r0_x, ups_b_r0_y, ups_b_r0_z, ups_base_frame_xx, ups_base_frame_xy,
+                    ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
+                    ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x,
+                    ups_g_r0_y, ups_g_r0_z, ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y,
+                    ups_h_3_z, ups_link2_mass, ups_platform_point_x, ups_platform_point_y,
                     ups_platform_point_z,),
                 ),
             ),
@@ -807,10 +827,10 @@ def _prepare(p):
         (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
             (
                 (_ups,
-        (branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-                    ups_base_point_z, ups_platform_point_x, ups_platform_point_y,
+        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+                    ups_branch_1, ups_branch_2, ups_platform_point_x, ups_platform_point_y,
                     ups_platform_point_z,),
                 ),
             ),
@@ -818,7 +838,8 @@ def _prepare(p):
     }
 
 
-_FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
+_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
@@ -864,17 +885,19 @@ class _Floats:
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
-        for k in range(self.states):
-            try:
-                ok, arrays = function(self, *(row[k] for row in rows))
-            except (ZeroDivisionError, OverflowError):
-                continue
-            if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
-                for a, array in zip(found, arrays):
-                    a[k] = array
-        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
+        found = [self.state(function, names, [row[k] for row in rows]) for k in range(self.states)]
+        return [np.array(a).T.reshape(*_SHAPES[n], self.states) for a, n in zip(zip(*found), names)]
+
+    def state(self, function, names, given):
+        """Lists that a function gives at a state."""
+        try:
+            ok, arrays = function(self, *given)
+        except (ZeroDivisionError, OverflowError):
+            ok = False
+        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+            return arrays
+        return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
 
 
 class _Arrays:
@@ -942,35 +965,44 @@ def _mode(p, states):
     return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
 
 
-def _call(function, steps, p, *arguments, mode=_mode):
-    """What the steps give at arguments (name, value, shape of a state, default, rule)."""
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+    """What the steps give at arguments (name, value, shape of a state, default, rule).
+
+    Where that may be infinite only NaN makes a state impossible.
+    """
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
     lead, p = _lead(leads), _given(p)
     read = [a[4:] != ("unused",) for a in arguments]
     if lead or mode is _Judged:
-        results = _many(steps, p, lead, given, shapes, read, mode)
+        results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
-        results = _one(steps, p, given, shapes, read)
+        results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
 
 
-def _one(steps, p, given, shapes, read):
+def _one(steps, p, given, shapes, read, unbounded):
     """Results at a single state."""
     states = [v.reshape(*shape, 1) for v, shape in zip(given, shapes)]
     with np.errstate(all="ignore"):
-        results = [a[..., 0] for a in steps(_Floats(p, 1), *states)]
-    if all(all(map(math.isfinite, v.ravel().tolist())) for v in (*compress(given, read), *results)):
-        return [np.array(a)[()] for a in results]
+        results = [a[..., 0].copy() for a in steps(_Floats(p, 1), *states)]
+    looked_at = [np.minimum(a, 0.0) for a in results] if unbounded else results
+    entries = (v.ravel().tolist() for v in (*compress(given, read), *looked_at))
+    if all(all(map(math.isfinite, row)) for row in entries):
+        return [a[()] for a in results]
     return [np.full(a.shape, np.nan)[()] for a in results]
 
 
-def _many(steps, p, lead, given, shapes, read, mode):
+def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block."""
     count = math.prod(lead)
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
+    if count > _BLOCK:
+        # Never touched, freed at once: the C library, which learns from it, then keeps the memory
+        # of intermediate arrays from block to block instead of giving its pages back.
+        np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
         for first in range(0, max(count, 1), _BLOCK):
             block = slice(first, min(first + _BLOCK, count))
@@ -982,7 +1014,7 @@ def _many(steps, p, lead, given, shapes, read, mode):
             _all_finite(compress(states, read), good)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite(found, good)
+            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -1011,6 +1043,18 @@ def _with_forces(a, amounts, directions, legs):
     for k, leg in enumerate(legs):
         result[leg] += amounts[k] * directions[k]
     return result
+
+
+def _unlimited(a, places):
+    """a, some entries infinite; what is not known stays so."""
+    result = np.array(a)
+    result[places] += np.inf
+    return result
+
+
+def _not_negative(a):
+    """1 where no entry is negative, else 0; NaN where one is not finite."""
+    return np.where(np.isfinite(a).all(axis=0), np.all(a >= 0.0, axis=0), np.nan)
 
 
 def _rows_divided(a, b, places):
@@ -1113,8 +1157,8 @@ def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
     n, states = b.shape
     if 0 < states <= _FEW:
-        matrices, rights = np.moveaxis(a, -1, 0).tolist(), b.T.tolist()
-        return np.array([_solve_one(*each) for each in zip(matrices, rights)]).T.reshape(n, states)
+        systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
+        return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
     good = np.all((size > 0.0) & np.isfinite(size), axis=0)
     rows = np.concatenate((a, b[:, None]), axis=1)
@@ -1141,28 +1185,32 @@ def _solve(a, b):
 
 
 def _solve_one(a, b):
-    """The same for one system of nested lists."""
-    n = len(b)
-    failure = [np.nan] * n
-    for i, row in enumerate(a):
-        size = max(map(abs, row), default=0.0)
-        if not 0.0 < size < np.inf:
-            return failure
-        a[i] = [v / size for v in row] + [b[i] / size]
-    for k in range(n):
-        best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
-            a[k], a[best] = a[best], a[k]
-        if not abs(a[k][k]) > _PIVOT:
-            return failure
-        head = a[k]
-        for i in range(k + 1, n):
-            factor = a[i][k] / head[k]
-            a[i] = [v - factor * h for v, h in zip(a[i], head)]
-    x = [0.0] * n
-    for k in reversed(range(n)):
-        x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
-    return x if all(map(math.isfinite, x)) else failure
+    """The same for one system of nested lists: the rows left lose an entry at every step."""
+    rows, heads = [], []
+    for row, right in zip(a, b):
+        size = max(map(abs, row))
+        if not 0.0 < size < math.inf:
+            return [math.nan] * len(b)
+        rows.append([v / size for v in (*row, right)])
+    while rows:
+        column = [abs(row[0]) for row in rows]
+        largest = max(column)
+        if largest > _CLEARLY * column[0]:
+            best = column.index(largest)
+            rows[0], rows[best] = rows[best], rows[0]
+        pivot, *head = rows[0]
+        if not abs(pivot) > _PIVOT:
+            return [math.nan] * len(b)
+        heads.append((pivot, head))
+        for i in range(1, len(rows)):
+            first, *row = rows[i]
+            factor = first / pivot
+            rows[i] = [v - factor * h for v, h in zip(row, head)]
+        del rows[0]
+    x = []
+    for pivot, (*head, right) in reversed(heads):
+        x.insert(0, (right - sum([h * v for h, v in zip(head, x)])) / pivot)
+    return x if all(map(math.isfinite, x)) else [math.nan] * len(b)
 
 
 def _matrices(a, *others):
@@ -1290,12 +1338,12 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 1837 mul, 1440 add, 14 div, 14 sqrt, 0 trig
+# dynamics: 1813 mul, 1416 add, 14 div, 14 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
-    J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
+    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
         Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
         m_star,
     ) = shared
@@ -1351,309 +1399,342 @@ def _run_dynamics(m, X, V):
     out_M = m.zeros("M")
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy
-    J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
     J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_12 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_15 = 2.0*J_star_t_14 + J_star_xx
-    # (P1) centripetal tensor of the platform
-    W_p_t = omega_x*omega_x
-    W_p_t_2 = omega_y*omega_y
-    W_p_t_3 = omega_z*omega_z
-    W_p_xx = W_p_t_2 + W_p_t_3
-    W_p_xy = omega_x*omega_y
-    W_p_xz = omega_x*omega_z
-    W_p_yy = W_p_t + W_p_t_3
-    W_p_yz = omega_y*omega_z
-    W_p_zz = W_p_t + W_p_t_2
-    # (M4) centripetal force and weight of the platform
-    Z_p_x = W_p_xy*h_star_in_base_y + W_p_xz*h_star_in_base_z - Z_p_t - W_p_xx*h_star_in_base_x
-    Z_p_y = W_p_xy*h_star_in_base_x + W_p_yz*h_star_in_base_z - Z_p_t_2 - W_p_yy*h_star_in_base_y
-    Z_p_z = W_p_xz*h_star_in_base_x + W_p_yz*h_star_in_base_y - Z_p_t_3 - W_p_zz*h_star_in_base_z
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
+    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    # (Z_p) centripetal force and weight of the platform
+    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
+    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
+    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
+    Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
+    Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z_2*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x_2*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y - g_r0_y_2*h_star_x
+    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
+    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
     sums = [0.0] * 27
     for leg, k in legs[0]:
         (
-        J_group_2_xx, J_group_2_xy, J_group_2_xz, J_group_2_yy, J_group_2_yz, J_group_2_zz,
-            Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x,
-            h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, ups_base_frame_xx, ups_base_frame_xy,
-            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-            ups_base_point_y, ups_base_point_z, ups_platform_point_x, ups_platform_point_y,
+        ups_J_group_2_xx, ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yy, ups_J_group_2_yz,
+            ups_J_group_2_zz, ups_Sigma_2_xx, ups_Sigma_2_yy, ups_Sigma_2_zz, ups_base_frame_xx,
+            ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
+            ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
+            ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+            ups_g_r0_x, ups_g_r0_y, ups_g_r0_z, ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x,
+            ups_h_3_y, ups_h_3_z, ups_platform_point_x, ups_platform_point_y,
             ups_platform_point_z,
         ) = k
-        # (ups-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (ups-S) from the base point to the connection point
+        ups_q_in_base_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        q_in_base_y = (
+        ups_q_in_base_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        q_in_base_z = (
+        ups_q_in_base_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        S_x = q_in_base_x + t_x - ups_base_point_x
-        S_y = q_in_base_y + t_y - ups_base_point_y
-        S_z = q_in_base_z + t_z - ups_base_point_z
-        # (ups-K2) component along the reference direction
-        px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
-        # (ups-K3) component across the reference direction
-        py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
-        # (ups-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (ups-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
-        # (ups-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (ups-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (ups-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (ups-K16) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (ups-V5) reciprocal vector 1
-        axis_x_x = S_x*inv_root_2
-        axis_x_y = S_y*inv_root_2
-        axis_x_z = S_z*inv_root_2
-        # (ups-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (ups-K7) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (ups-V5) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx
-        axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx
-        axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx
+        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        # (ups-px_1) component along the reference direction
+        ups_px_1 = (
+        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
+        )
+        # (ups-py_1) component across the reference direction
+        ups_py_1 = (
+        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
+        )
+        # (ups-rho2_1) squared amplitude
+        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
+        # (ups-root_1) amplitude, with the sign of the branch
+        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ups_xi_1_t = (
+        ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
+        )
+        # (ups-rho2_2) squared amplitude
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        # (ups-root_2) amplitude, with the sign of the branch
+        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_root_2 = 1.0/ups_root_2
+        ups_c_2 = inv_ups_root_2*ups_root_1
+        # (ups-s_2) sine of the angle of joint 2 from its reference direction
+        ups_s_2 = inv_ups_root_2*ups_xi_1_t
+        # (ups-w_1) reciprocal vector 1
+        ups_axis_x_x = inv_ups_root_2*ups_S_x
+        ups_axis_x_y = inv_ups_root_2*ups_S_y
+        ups_axis_x_z = inv_ups_root_2*ups_S_z
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
+        # (ups-w_1) reciprocal vector 1
+        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
+        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
+        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
         axis_y_ups_axes2_x = (
-        axis_x_z*axis_z_ups_axes2_in_base_y - axis_x_y*axis_z_ups_axes2_in_base_z
+        axis_z_ups_axes2_in_base_y*ups_axis_x_z - axis_z_ups_axes2_in_base_z*ups_axis_x_y
         )
         axis_y_ups_axes2_y = (
-        axis_x_x*axis_z_ups_axes2_in_base_z - axis_x_z*axis_z_ups_axes2_in_base_x
+        axis_z_ups_axes2_in_base_z*ups_axis_x_x - axis_z_ups_axes2_in_base_x*ups_axis_x_z
         )
         axis_y_ups_axes2_z = (
-        axis_x_y*axis_z_ups_axes2_in_base_x - axis_x_x*axis_z_ups_axes2_in_base_y
+        axis_z_ups_axes2_in_base_x*ups_axis_x_y - axis_z_ups_axes2_in_base_y*ups_axis_x_x
         )
-        # (ups-A14) coefficient of the acceleration in: angular acceleration of link 1
-        d_alpha_1_t = inv_root_1*s_2
-        # (ups-N22) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_t = h_3_z*inv_root_2
-        # (ups-N6) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        d_phi_3_t = h_3_y*inv_root_2
-        d_phi_3_t_2 = h_3_x*inv_root_2
-        # (ups-N25) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_yy = -d_phi_3_t_2 - inv_root_2*(h_3_x + J_group_2_zz*inv_root_2)
-        d_c_yz = (
-        d_alpha_1_t*h_3_y - inv_root_2*(J_group_2_xz*d_alpha_1_t - J_group_2_yz*inv_root_2)
+        # (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
+        ups_d_alpha_1_t = inv_ups_root_1*ups_s_2
+        # (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+        ups_d_phi_3_t = inv_ups_root_2*ups_h_3_z
+        ups_d_phi_3_t_2 = inv_ups_root_2*ups_h_3_y
+        ups_d_phi_3_t_3 = inv_ups_root_2*ups_h_3_x
+        # (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        ups_d_c_yy = (
+        -ups_d_phi_3_t_3 - inv_ups_root_2*(ups_h_3_x + inv_ups_root_2*ups_J_group_2_zz)
         )
-        d_c_zz = (
-        d_alpha_1_t*h_3_z - d_phi_3_t_2 - inv_root_1*(s_2*(J_group_2_xx*d_alpha_1_t - h_3_z -
-            J_group_2_xy*inv_root_2) - c_2*(J_group_2_xy*d_alpha_1_t - h_3_x -
-            J_group_2_yy*inv_root_2))
+        ups_d_c_yz = (
+        ups_d_alpha_1_t*ups_h_3_y - inv_ups_root_2*(ups_J_group_2_xz*ups_d_alpha_1_t -
+            inv_ups_root_2*ups_J_group_2_yz)
         )
-        # (ups-N27) inertia of the leg at the connection point, without the mass gathered there
-        Q_t = 0.5*d_c_yy
-        Q_t_2 = 0.5*d_c_zz
-        Q_t_3 = Q_t*axis_y_ups_axes2_x + axis_z_ups_axes2_in_base_x*d_c_yz - axis_x_x*d_G_t
-        Q_t_4 = Q_t*axis_y_ups_axes2_y + axis_z_ups_axes2_in_base_y*d_c_yz - axis_x_y*d_G_t
-        Q_t_5 = Q_t*axis_y_ups_axes2_z + axis_z_ups_axes2_in_base_z*d_c_yz - axis_x_z*d_G_t
-        Q_t_6 = Q_t_2*axis_z_ups_axes2_in_base_x + axis_x_x*d_phi_3_t
-        Q_t_7 = Q_t_2*axis_z_ups_axes2_in_base_y + axis_x_y*d_phi_3_t
-        Q_t_8 = Q_t_2*axis_z_ups_axes2_in_base_z + axis_x_z*d_phi_3_t
-        Q_t_9 = Q_t_3*axis_y_ups_axes2_x + Q_t_6*axis_z_ups_axes2_in_base_x
-        Q_t_10 = 2.0*Q_t_9
-        Q_t_11 = (
-        Q_t_3*axis_y_ups_axes2_y + Q_t_4*axis_y_ups_axes2_x + Q_t_6*axis_z_ups_axes2_in_base_y +
-            Q_t_7*axis_z_ups_axes2_in_base_x
+        ups_d_c_zz = (
+        ups_d_alpha_1_t*ups_h_3_z - ups_d_phi_3_t_3 -
+            inv_ups_root_1*(ups_s_2*(ups_J_group_2_xx*ups_d_alpha_1_t - ups_h_3_z -
+            inv_ups_root_2*ups_J_group_2_xy) - ups_c_2*(ups_J_group_2_xy*ups_d_alpha_1_t -
+            ups_h_3_x - inv_ups_root_2*ups_J_group_2_yy))
         )
-        Q_t_12 = (
-        Q_t_3*axis_y_ups_axes2_z + Q_t_5*axis_y_ups_axes2_x + Q_t_6*axis_z_ups_axes2_in_base_z +
-            Q_t_8*axis_z_ups_axes2_in_base_x
+        # (ups-Q) inertia of the leg at the connection point, without the mass gathered there
+        ups_Q_t = 0.5*ups_d_c_yy
+        ups_Q_t_2 = 0.5*ups_d_c_zz
+        ups_Q_t_3 = (
+        axis_y_ups_axes2_x*ups_Q_t + axis_z_ups_axes2_in_base_x*ups_d_c_yz -
+            ups_axis_x_x*ups_d_phi_3_t
         )
-        Q_t_13 = Q_t_4*axis_y_ups_axes2_y + Q_t_7*axis_z_ups_axes2_in_base_y
-        Q_t_14 = 2.0*Q_t_13
-        Q_t_15 = (
-        Q_t_4*axis_y_ups_axes2_z + Q_t_5*axis_y_ups_axes2_y + Q_t_7*axis_z_ups_axes2_in_base_z +
-            Q_t_8*axis_z_ups_axes2_in_base_y
+        ups_Q_t_4 = (
+        axis_y_ups_axes2_y*ups_Q_t + axis_z_ups_axes2_in_base_y*ups_d_c_yz -
+            ups_axis_x_y*ups_d_phi_3_t
         )
-        Q_t_16 = Q_t_5*axis_y_ups_axes2_z + Q_t_8*axis_z_ups_axes2_in_base_z
-        Q_t_17 = 2.0*Q_t_16
-        # (M2) coupling block of M
-        M_ta_t = Q_t_11*q_in_base_z
-        M_ta_t_2 = Q_t_12*q_in_base_y
-        M_ta_t_3 = M_ta_t - M_ta_t_2
-        M_ta_t_4 = Q_t_10*q_in_base_z - Q_t_12*q_in_base_x
-        M_ta_t_5 = Q_t_10*q_in_base_y - Q_t_11*q_in_base_x
-        M_ta_t_6 = Q_t_14*q_in_base_z - Q_t_15*q_in_base_y
-        M_ta_t_7 = Q_t_15*q_in_base_x
-        M_ta_t_8 = M_ta_t - M_ta_t_7
-        M_ta_t_9 = Q_t_11*q_in_base_y - Q_t_14*q_in_base_x
-        M_ta_t_10 = Q_t_15*q_in_base_z - Q_t_17*q_in_base_y
-        M_ta_t_11 = Q_t_12*q_in_base_z - Q_t_17*q_in_base_x
-        M_ta_t_12 = M_ta_t_7 - M_ta_t_2
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
-        M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y
-        M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z
-        M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x
-        M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z
-        M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
-        # (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-        g_r3_x = g_r0_z*s_2 - c_2*g_r1_y
-        g_r3_y = -c_2*g_r0_z - g_r1_y*s_2
-        # (ups-A1) centripetal acceleration of the connection point
-        u_1_x = W_p_xy*q_in_base_y + W_p_xz*q_in_base_z - W_p_xx*q_in_base_x
-        u_1_y = W_p_xy*q_in_base_x + W_p_yz*q_in_base_z - W_p_yy*q_in_base_y
-        u_1_z = W_p_xz*q_in_base_x + W_p_yz*q_in_base_y - W_p_zz*q_in_base_z
-        u_1_t = axis_y_ups_axes2_x*u_1_x
-        u_1_t_2 = axis_y_ups_axes2_y*u_1_y
-        u_1_t_3 = axis_y_ups_axes2_z*u_1_z
-        u_1_tip_z = (
-        axis_z_ups_axes2_in_base_x*u_1_x + axis_z_ups_axes2_in_base_y*u_1_y +
-            axis_z_ups_axes2_in_base_z*u_1_z
+        ups_Q_t_5 = (
+        axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_in_base_z*ups_d_c_yz -
+            ups_axis_x_z*ups_d_phi_3_t
         )
-        # (ups-N4) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        acc_3_o_x = axis_x_x*u_1_x + axis_x_y*u_1_y + axis_x_z*u_1_z - g_r3_x
-        acc_3_o_y = u_1_t + u_1_t_2 + u_1_t_3 - g_r3_y
-        acc_3_o_z = u_1_tip_z - g_r1_x
-        # (ups-V1) velocity of the connection point
-        S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z
-        # (ups-V8) rate of joint 1
-        qd_2 = (
-        inv_root_2*(S_dot_x*axis_y_ups_axes2_x + S_dot_y*axis_y_ups_axes2_y +
-            S_dot_z*axis_y_ups_axes2_z)
+        ups_Q_t_6 = axis_z_ups_axes2_in_base_x*ups_Q_t_2 + ups_axis_x_x*ups_d_phi_3_t_2
+        ups_Q_t_7 = axis_z_ups_axes2_in_base_y*ups_Q_t_2 + ups_axis_x_y*ups_d_phi_3_t_2
+        ups_Q_t_8 = axis_z_ups_axes2_in_base_z*ups_Q_t_2 + ups_axis_x_z*ups_d_phi_3_t_2
+        ups_Q_t_9 = axis_y_ups_axes2_x*ups_Q_t_3 + axis_z_ups_axes2_in_base_x*ups_Q_t_6
+        ups_Q_t_10 = 2.0*ups_Q_t_9
+        ups_Q_t_11 = (
+        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 +
+            axis_z_ups_axes2_in_base_x*ups_Q_t_7 + axis_z_ups_axes2_in_base_y*ups_Q_t_6
         )
-        qd_1 = (
-        inv_root_1*(S_dot_x*axis_z_ups_axes2_in_base_x + S_dot_y*axis_z_ups_axes2_in_base_y +
-            S_dot_z*axis_z_ups_axes2_in_base_z)
+        ups_Q_t_12 = (
+        axis_y_ups_axes2_x*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_3 +
+            axis_z_ups_axes2_in_base_x*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_6
         )
-        # (ups-V11) angular velocity of link 1
-        omega_1_t = qd_1*s_2
-        omega_1_t_2 = c_2*qd_1
-        # (ups-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_x = omega_1_t_2*qd_2
-        zeta_2_y = omega_1_t*qd_2
-        # (ups-V13) centripetal tensor of link 2
-        W_2_t = omega_1_t*omega_1_t
-        W_2_t_2 = omega_1_t_2*omega_1_t_2
-        W_2_t_3 = qd_2*qd_2
-        W_2_xy = omega_1_t*omega_1_t_2
-        # (ups-A5) acceleration of the connection point at zero joint accelerations
-        bias_t = 2.0*S_dot_tip_x
-        bias_z = bias_t*omega_1_t_2 + 2.0*root_2*zeta_2_y
-        # (ups-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_z = u_1_tip_z - bias_z
-        # (ups-A9) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_o_t = inv_root_2*(u_1_t + u_1_t_2 + u_1_t_3 - bias_t*qd_2)
-        qdd_1_o = inv_root_1*rel_o_z
-        # (ups-A15) remainder without the acceleration in: angular acceleration of link 1
-        alpha_1_o_t = qdd_1_o*s_2
-        alpha_1_o_t_2 = c_2*qdd_1_o
-        # (ups-A18) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_o_x = alpha_1_o_t - zeta_2_x
-        alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-        # (ups-A20) remainder of the acceleration tensor of link 2
-        B_2_o_xy = -2.0*W_2_xy - qdd_1_o_t
-        B_2_o_zx = zeta_2_y - alpha_2_o_y
-        B_2_o_zy = alpha_2_o_x - zeta_2_x
-        # (ups-N14) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_o_x = (
-        B_2_o_zy*Sigma_2_yy + J_group_2_xz*qdd_1_o_t + J_group_2_yz*(W_2_t_2 - W_2_t_3) +
-            Sigma_2_zz*alpha_1_o_t + g_r1_x*h_2_z + g_r3_y*h_2_y - B_2_o_zx*J_group_2_xy -
-            acc_3_o_y*h_3_y - acc_3_o_z*h_3_z
+        ups_Q_t_13 = axis_y_ups_axes2_y*ups_Q_t_4 + axis_z_ups_axes2_in_base_y*ups_Q_t_7
+        ups_Q_t_14 = 2.0*ups_Q_t_13
+        ups_Q_t_15 = (
+        axis_y_ups_axes2_y*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_4 +
+            axis_z_ups_axes2_in_base_y*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_7
         )
-        mu_2_o_y = (
-        B_2_o_zy*J_group_2_xy + acc_3_o_x*h_3_y + g_r1_x*h_2_x - B_2_o_xy*J_group_2_yz -
-            B_2_o_zx*Sigma_2_xx - J_group_2_xz*(W_2_t - W_2_t_3) - Sigma_2_zz*alpha_1_o_t_2 -
-            acc_3_o_z*h_3_x - g_r3_x*h_2_y
+        ups_Q_t_16 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_in_base_z*ups_Q_t_8
+        ups_Q_t_17 = 2.0*ups_Q_t_16
+        # (M_ta) coupling block of M
+        ups_M_ta_t = ups_Q_t_11*ups_q_in_base_z
+        ups_M_ta_t_2 = ups_Q_t_12*ups_q_in_base_y
+        ups_M_ta_t_3 = ups_M_ta_t - ups_M_ta_t_2
+        ups_M_ta_t_4 = ups_Q_t_10*ups_q_in_base_z - ups_Q_t_12*ups_q_in_base_x
+        ups_M_ta_t_5 = ups_Q_t_10*ups_q_in_base_y - ups_Q_t_11*ups_q_in_base_x
+        ups_M_ta_t_6 = ups_Q_t_14*ups_q_in_base_z - ups_Q_t_15*ups_q_in_base_y
+        ups_M_ta_t_7 = ups_Q_t_15*ups_q_in_base_x
+        ups_M_ta_t_8 = ups_M_ta_t - ups_M_ta_t_7
+        ups_M_ta_t_9 = ups_Q_t_11*ups_q_in_base_y - ups_Q_t_14*ups_q_in_base_x
+        ups_M_ta_t_10 = ups_Q_t_15*ups_q_in_base_z - ups_Q_t_17*ups_q_in_base_y
+        ups_M_ta_t_11 = ups_Q_t_12*ups_q_in_base_z - ups_Q_t_17*ups_q_in_base_x
+        ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2
+        # (M_aa) rotational block of M
+        ups_M_aa_t = ups_M_ta_t_6*ups_q_in_base_z - ups_M_ta_t_10*ups_q_in_base_y
+        ups_M_aa_t_2 = ups_M_ta_t_8*ups_q_in_base_z - ups_M_ta_t_11*ups_q_in_base_y
+        ups_M_aa_t_3 = ups_M_ta_t_12*ups_q_in_base_y + ups_M_ta_t_9*ups_q_in_base_z
+        ups_M_aa_t_4 = ups_M_ta_t_4*ups_q_in_base_z - ups_M_ta_t_11*ups_q_in_base_x
+        ups_M_aa_t_5 = ups_M_ta_t_12*ups_q_in_base_x + ups_M_ta_t_5*ups_q_in_base_z
+        ups_M_aa_t_6 = ups_M_ta_t_5*ups_q_in_base_y - ups_M_ta_t_9*ups_q_in_base_x
+        # (ups-S_dot) velocity of the connection point
+        ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y
+        ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z
+        ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x
+        ups_S_dot_x = t_dot_x + ups_S_dot_t
+        ups_S_dot_y = t_dot_y + ups_S_dot_t_2
+        ups_S_dot_z = t_dot_z + ups_S_dot_t_3
+        ups_S_dot_tip_x = (
+        ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y + ups_S_dot_z*ups_axis_x_z
         )
-        mu_2_o_z = (
-        J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_xz*alpha_1_o_t + Sigma_2_xx*qdd_1_o_t +
-            acc_3_o_x*h_3_z + acc_3_o_y*h_3_x - B_2_o_xy*Sigma_2_yy - J_group_2_yz*alpha_1_o_t_2 -
-            g_r3_x*h_2_z - g_r3_y*h_2_x
+        # (ups-qd_2) rate of joint 2
+        ups_qd_2 = (
+        inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
+            axis_y_ups_axes2_z*ups_S_dot_z)
         )
-        # (ups-N7) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
-        phi_3_o_x = -B_2_o_xy*h_3_z - alpha_1_o_t_2*h_3_y - h_3_x*(W_2_t_2 + W_2_t_3)
-        # (ups-N26) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_o_y = (
-        alpha_1_o_t*h_3_y - h_3_x*qdd_1_o_t - h_3_z*(W_2_t + W_2_t_3) - inv_root_2*mu_2_o_z
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
+            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z)
         )
-        c_o_z = (
-        B_2_o_zy*h_3_z + h_3_y*(W_2_t + W_2_t_2) - B_2_o_zx*h_3_x - inv_root_1*(mu_2_o_x*s_2 -
-            c_2*mu_2_o_y)
+        # (ups-omega_1) angular velocity of link 1
+        ups_omega_1_t = ups_qd_1*ups_s_2
+        ups_omega_1_t_2 = ups_c_2*ups_qd_1
+        # (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2
+        ups_zeta_2_y = ups_omega_1_t*ups_qd_2
+        # (ups-u_1) centripetal acceleration of the connection point
+        ups_u_1_x = omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2
+        ups_u_1_y = omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3
+        ups_u_1_z = omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t
+        # (ups-W_2) centripetal tensor of link 2
+        ups_W_2_t = ups_omega_1_t*ups_omega_1_t
+        ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2
+        ups_W_2_t_3 = ups_qd_2*ups_qd_2
+        ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2
+        # (ups-bias) acceleration of the connection point at zero joint accelerations
+        ups_bias_t = 2.0*ups_S_dot_tip_x
+        ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2.0*ups_root_2*ups_zeta_2_y
+        # (ups-u_1) centripetal acceleration of the connection point
+        ups_u_1_t = axis_y_ups_axes2_x*ups_u_1_x
+        ups_u_1_t_2 = axis_y_ups_axes2_y*ups_u_1_y
+        ups_u_1_t_3 = axis_y_ups_axes2_z*ups_u_1_z
+        ups_u_1_tip_z = (
+        axis_z_ups_axes2_in_base_x*ups_u_1_x + axis_z_ups_axes2_in_base_y*ups_u_1_y +
+            axis_z_ups_axes2_in_base_z*ups_u_1_z
         )
-        # (ups-N28) velocity and gravity terms of the leg force
-        U_in_base_x = (
-        axis_x_x*phi_3_o_x - axis_y_ups_axes2_x*c_o_y - axis_z_ups_axes2_in_base_x*c_o_z
+        # (ups-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        ups_rel_o_z = ups_u_1_tip_z - ups_bias_z
+        # (ups-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        ups_qdd_2_o_t = (
+        inv_ups_root_2*(ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 - ups_bias_t*ups_qd_2)
         )
-        U_in_base_y = (
-        axis_x_y*phi_3_o_x - axis_y_ups_axes2_y*c_o_y - axis_z_ups_axes2_in_base_y*c_o_z
+        ups_qdd_1_o = inv_ups_root_1*ups_rel_o_z
+        # (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        ups_alpha_1_o_t = ups_qdd_1_o*ups_s_2
+        ups_alpha_1_o_t_2 = ups_c_2*ups_qdd_1_o
+        # (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        ups_alpha_2_o_x = ups_alpha_1_o_t - ups_zeta_2_x
+        ups_alpha_2_o_y = -ups_alpha_1_o_t_2 - ups_zeta_2_y
+        # (ups-B_2_o) remainder of the acceleration tensor of link 2
+        ups_B_2_o_xy = -2.0*ups_W_2_xy - ups_qdd_2_o_t
+        ups_B_2_o_zx = ups_zeta_2_y - ups_alpha_2_o_y
+        ups_B_2_o_zy = ups_alpha_2_o_x - ups_zeta_2_x
+        # (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
+        ups_phi_3_o_x = (
+        -ups_B_2_o_xy*ups_h_3_z - ups_alpha_1_o_t_2*ups_h_3_y - ups_h_3_x*(ups_W_2_t_2 +
+            ups_W_2_t_3)
         )
-        U_in_base_z = (
-        axis_x_z*phi_3_o_x - axis_y_ups_axes2_z*c_o_y - axis_z_ups_axes2_in_base_z*c_o_z
+        # (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x
+        ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1
+        ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y
+        ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2
+        # (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        ups_acc_3_o_x = (
+        ups_axis_x_x*ups_u_1_x + ups_axis_x_y*ups_u_1_y + ups_axis_x_z*ups_u_1_z - ups_g_r3_x
         )
-        # (M7) rotational part of Z
-        Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
-        Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
-        Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_3_x = axis_x_z*q_in_base_y - axis_x_y*q_in_base_z
-        H_a_3_y = axis_x_x*q_in_base_z - axis_x_z*q_in_base_x
-        H_a_3_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y
+        ups_acc_3_o_y = ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 - ups_g_r3_y
+        ups_acc_3_o_z = ups_u_1_tip_z - ups_g_r1_x
+        # (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        ups_mu_2_o_x = (
+        ups_B_2_o_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_2_o_t +
+            ups_J_group_2_yz*(ups_W_2_t_2 - ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_o_t +
+            ups_g_r1_x*ups_h_2_z + ups_g_r3_y*ups_h_2_y - ups_B_2_o_zx*ups_J_group_2_xy -
+            ups_acc_3_o_y*ups_h_3_y - ups_acc_3_o_z*ups_h_3_z
+        )
+        ups_mu_2_o_y = (
+        ups_B_2_o_zy*ups_J_group_2_xy + ups_acc_3_o_x*ups_h_3_y + ups_g_r1_x*ups_h_2_x -
+            ups_B_2_o_xy*ups_J_group_2_yz - ups_B_2_o_zx*ups_Sigma_2_xx -
+            ups_J_group_2_xz*(ups_W_2_t - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_o_t_2 -
+            ups_acc_3_o_z*ups_h_3_x - ups_g_r3_x*ups_h_2_y
+        )
+        ups_mu_2_o_z = (
+        ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) + ups_J_group_2_xz*ups_alpha_1_o_t +
+            ups_Sigma_2_xx*ups_qdd_2_o_t + ups_acc_3_o_x*ups_h_3_z + ups_acc_3_o_y*ups_h_3_x -
+            ups_B_2_o_xy*ups_Sigma_2_yy - ups_J_group_2_yz*ups_alpha_1_o_t_2 -
+            ups_g_r3_x*ups_h_2_z - ups_g_r3_y*ups_h_2_x
+        )
+        # (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        ups_c_o_y = (
+        ups_alpha_1_o_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_o_z - ups_h_3_x*ups_qdd_2_o_t -
+            ups_h_3_z*(ups_W_2_t + ups_W_2_t_3)
+        )
+        ups_c_o_z = (
+        ups_B_2_o_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
+            inv_ups_root_1*(ups_mu_2_o_x*ups_s_2 - ups_c_2*ups_mu_2_o_y) - ups_B_2_o_zx*ups_h_3_x
+        )
+        # (ups-U) velocity and gravity terms of the leg force
+        ups_U_in_base_x = (
+        ups_axis_x_x*ups_phi_3_o_x - axis_y_ups_axes2_x*ups_c_o_y -
+            axis_z_ups_axes2_in_base_x*ups_c_o_z
+        )
+        ups_U_in_base_y = (
+        ups_axis_x_y*ups_phi_3_o_x - axis_y_ups_axes2_y*ups_c_o_y -
+            axis_z_ups_axes2_in_base_y*ups_c_o_z
+        )
+        ups_U_in_base_z = (
+        ups_axis_x_z*ups_phi_3_o_x - axis_y_ups_axes2_z*ups_c_o_y -
+            axis_z_ups_axes2_in_base_z*ups_c_o_z
+        )
+        # (Z_a) rotational part of Z
+        ups_Z_a_t = ups_U_in_base_z*ups_q_in_base_y - ups_U_in_base_y*ups_q_in_base_z
+        ups_Z_a_t_2 = ups_U_in_base_x*ups_q_in_base_z - ups_U_in_base_z*ups_q_in_base_x
+        ups_Z_a_t_3 = ups_U_in_base_y*ups_q_in_base_x - ups_U_in_base_x*ups_q_in_base_y
+        # (ups-H_a_3) moment of the column's unit force about the platform origin
+        ups_H_a_3_x = ups_axis_x_z*ups_q_in_base_y - ups_axis_x_y*ups_q_in_base_z
+        ups_H_a_3_y = ups_axis_x_x*ups_q_in_base_z - ups_axis_x_z*ups_q_in_base_x
+        ups_H_a_3_z = ups_axis_x_y*ups_q_in_base_x - ups_axis_x_x*ups_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) >
-            _TOLERANCE * 0.8) & (abs(root_2) > _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
-        Q_t_10, Q_t_11, Q_t_12, Q_t_14, Q_t_15, Q_t_17, M_ta_t_3, M_ta_t_4, M_ta_t_5,
-            M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2,
-            M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y, U_in_base_z,
-            Z_a_t, Z_a_t_2, Z_a_t_3,
+        ups_Q_t_10, ups_Q_t_11, ups_Q_t_12, ups_Q_t_14, ups_Q_t_15, ups_Q_t_17, ups_M_ta_t_3,
+            ups_M_ta_t_4, ups_M_ta_t_5, ups_M_ta_t_6, ups_M_ta_t_8, ups_M_ta_t_9,
+            ups_M_ta_t_10, ups_M_ta_t_11, ups_M_ta_t_12, ups_M_aa_t, ups_M_aa_t_2,
+            ups_M_aa_t_3, ups_M_aa_t_4, ups_M_aa_t_5, ups_M_aa_t_6, ups_U_in_base_x,
+            ups_U_in_base_y, ups_U_in_base_z, ups_Z_a_t, ups_Z_a_t_2, ups_Z_a_t_3,
         ))
-        out_H[_H_ups[0][leg]] = axis_x_x
-        out_H[_H_ups[1][leg]] = axis_x_y
-        out_H[_H_ups[2][leg]] = axis_x_z
-        out_H[_H_ups[3][leg]] = H_a_3_x
-        out_H[_H_ups[4][leg]] = H_a_3_y
-        out_H[_H_ups[5][leg]] = H_a_3_z
+        out_H[_H_ups[0][leg]] = ups_axis_x_x
+        out_H[_H_ups[1][leg]] = ups_axis_x_y
+        out_H[_H_ups[2][leg]] = ups_axis_x_z
+        out_H[_H_ups[3][leg]] = ups_H_a_3_x
+        out_H[_H_ups[4][leg]] = ups_H_a_3_y
+        out_H[_H_ups[5][leg]] = ups_H_a_3_z
     (
     total_ups_xx, total_ups_xy, total_ups_xz, total_ups_yy, total_ups_yz, total_ups_zz,
         total_ups_xx_2, total_ups_xy_2, total_ups_xz_2, total_ups_yx, total_ups_yy_2,
@@ -1661,29 +1742,29 @@ def _run_dynamics(m, X, V):
         total_ups_xy_3, total_ups_xz_3, total_ups_yy_3, total_ups_yz_3, total_ups_zz_3,
         total_ups_x, total_ups_y, total_ups_z, total_ups_x_2, total_ups_y_2, total_ups_z_2,
     ) = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = m_star - total_ups_xx
     M_tt_yy = m_star - total_ups_yy
     M_tt_zz = m_star - total_ups_zz
-    # (M2) coupling block of M
+    # (M_ta) coupling block of M
     M_ta_xy = h_star_in_base_z - total_ups_xy_2
     M_ta_xz = total_ups_xz_2 - h_star_in_base_y
     M_ta_yx = total_ups_yx - h_star_in_base_z
     M_ta_yz = h_star_in_base_x + total_ups_yz_2
     M_ta_zx = h_star_in_base_y + total_ups_zx
     M_ta_zy = -h_star_in_base_x - total_ups_zy
-    # (M3) rotational block of M
+    # (M_aa) rotational block of M
     M_aa_xx = J_star_t_8 - total_ups_xx_3
     M_aa_xy = J_star_t_9 + total_ups_xy_3
     M_aa_xz = J_star_t_10 - total_ups_xz_3
-    M_aa_yy = J_star_t_12 - total_ups_yy_3
-    M_aa_yz = J_star_t_13 + total_ups_yz_3
-    M_aa_zz = J_star_t_15 - total_ups_zz_3
-    # (M5) translational part of Z
+    M_aa_yy = J_star_t_13 - total_ups_yy_3
+    M_aa_yz = J_star_t_15 + total_ups_yz_3
+    M_aa_zz = J_star_t_17 - total_ups_zz_3
+    # (Z_t) translational part of Z
     Z_t_x = Z_p_x + total_ups_x
     Z_t_y = Z_p_y + total_ups_y
     Z_t_z = Z_p_z + total_ups_z
-    # (M7) rotational part of Z
+    # (Z_a) rotational part of Z
     Z_a_x = Z_q_in_base_x + total_ups_x_2
     Z_a_y = Z_q_in_base_y + total_ups_y_2
     Z_a_z = Z_q_in_base_z + total_ups_z_2
@@ -1737,7 +1818,7 @@ def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
     (
-    J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
+    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
         h_star_z, m_star,
     ) = shared
     X_0 = X[0]
@@ -1777,162 +1858,182 @@ def _run_M(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_M = m.zeros("M")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy
-    J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
     J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_12 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_15 = 2.0*J_star_t_14 + J_star_xx
+    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
+    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
     sums = [0.0] * 21
     for leg, k in legs[0]:
         (
-        J_group_2_xx, J_group_2_xy, J_group_2_xz, J_group_2_yy, J_group_2_yz, J_group_2_zz,
-            branch_1, branch_2, h_3_x, h_3_y, h_3_z, ups_base_frame_xx, ups_base_frame_xy,
-            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-            ups_base_point_y, ups_base_point_z, ups_platform_point_x, ups_platform_point_y,
-            ups_platform_point_z,
+        ups_J_group_2_xx, ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yy, ups_J_group_2_yz,
+            ups_J_group_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
+            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
+            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
+            ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_x, ups_h_3_y, ups_h_3_z,
+            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
-        # (ups-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (ups-S) from the base point to the connection point
+        ups_q_in_base_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        q_in_base_y = (
+        ups_q_in_base_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        q_in_base_z = (
+        ups_q_in_base_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        S_x = q_in_base_x + t_x - ups_base_point_x
-        S_y = q_in_base_y + t_y - ups_base_point_y
-        S_z = q_in_base_z + t_z - ups_base_point_z
-        # (ups-K2) component along the reference direction
-        px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
-        # (ups-K3) component across the reference direction
-        py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
-        # (ups-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (ups-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
-        # (ups-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (ups-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (ups-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        # (ups-K16) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (ups-V5) reciprocal vector 1
-        axis_x_x = S_x*inv_root_2
-        axis_x_y = S_y*inv_root_2
-        axis_x_z = S_z*inv_root_2
-        # (ups-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (ups-K7) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (ups-V5) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx
-        axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx
-        axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx
+        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        # (ups-px_1) component along the reference direction
+        ups_px_1 = (
+        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
+        )
+        # (ups-py_1) component across the reference direction
+        ups_py_1 = (
+        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
+        )
+        # (ups-rho2_1) squared amplitude
+        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
+        # (ups-root_1) amplitude, with the sign of the branch
+        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ups_xi_1_t = (
+        ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
+        )
+        # (ups-rho2_2) squared amplitude
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        # (ups-root_2) amplitude, with the sign of the branch
+        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_root_2 = 1.0/ups_root_2
+        # (ups-s_2) sine of the angle of joint 2 from its reference direction
+        ups_s_2 = inv_ups_root_2*ups_xi_1_t
+        # (ups-w_1) reciprocal vector 1
+        ups_axis_x_x = inv_ups_root_2*ups_S_x
+        ups_axis_x_y = inv_ups_root_2*ups_S_y
+        ups_axis_x_z = inv_ups_root_2*ups_S_z
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
+        # (ups-w_1) reciprocal vector 1
+        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
+        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
+        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
         axis_y_ups_axes2_x = (
-        axis_x_z*axis_z_ups_axes2_in_base_y - axis_x_y*axis_z_ups_axes2_in_base_z
+        axis_z_ups_axes2_in_base_y*ups_axis_x_z - axis_z_ups_axes2_in_base_z*ups_axis_x_y
         )
         axis_y_ups_axes2_y = (
-        axis_x_x*axis_z_ups_axes2_in_base_z - axis_x_z*axis_z_ups_axes2_in_base_x
+        axis_z_ups_axes2_in_base_z*ups_axis_x_x - axis_z_ups_axes2_in_base_x*ups_axis_x_z
         )
         axis_y_ups_axes2_z = (
-        axis_x_y*axis_z_ups_axes2_in_base_x - axis_x_x*axis_z_ups_axes2_in_base_y
+        axis_z_ups_axes2_in_base_x*ups_axis_x_y - axis_z_ups_axes2_in_base_y*ups_axis_x_x
         )
-        # (ups-A14) coefficient of the acceleration in: angular acceleration of link 1
-        d_alpha_1_t = inv_root_1*s_2
-        # (ups-N22) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_t = h_3_z*inv_root_2
-        # (ups-N6) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        d_phi_3_t = h_3_y*inv_root_2
-        d_phi_3_t_2 = h_3_x*inv_root_2
-        # (ups-N25) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_yy = -d_phi_3_t_2 - inv_root_2*(h_3_x + J_group_2_zz*inv_root_2)
-        d_c_yz = (
-        d_alpha_1_t*h_3_y - inv_root_2*(J_group_2_xz*d_alpha_1_t - J_group_2_yz*inv_root_2)
+        # (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
+        ups_d_alpha_1_t = inv_ups_root_1*ups_s_2
+        # (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+        ups_d_phi_3_t = inv_ups_root_2*ups_h_3_z
+        ups_d_phi_3_t_2 = inv_ups_root_2*ups_h_3_y
+        ups_d_phi_3_t_3 = inv_ups_root_2*ups_h_3_x
+        # (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        ups_d_c_yy = (
+        -ups_d_phi_3_t_3 - inv_ups_root_2*(ups_h_3_x + inv_ups_root_2*ups_J_group_2_zz)
         )
-        d_c_zz = (
-        d_alpha_1_t*h_3_z - d_phi_3_t_2 - inv_root_1*(s_2*(J_group_2_xx*d_alpha_1_t - h_3_z -
-            J_group_2_xy*inv_root_2) - inv_root_2*root_1*(J_group_2_xy*d_alpha_1_t - h_3_x -
-            J_group_2_yy*inv_root_2))
+        ups_d_c_yz = (
+        ups_d_alpha_1_t*ups_h_3_y - inv_ups_root_2*(ups_J_group_2_xz*ups_d_alpha_1_t -
+            inv_ups_root_2*ups_J_group_2_yz)
         )
-        # (ups-N27) inertia of the leg at the connection point, without the mass gathered there
-        Q_t = 0.5*d_c_yy
-        Q_t_2 = 0.5*d_c_zz
-        Q_t_3 = Q_t*axis_y_ups_axes2_x + axis_z_ups_axes2_in_base_x*d_c_yz - axis_x_x*d_G_t
-        Q_t_4 = Q_t*axis_y_ups_axes2_y + axis_z_ups_axes2_in_base_y*d_c_yz - axis_x_y*d_G_t
-        Q_t_5 = Q_t*axis_y_ups_axes2_z + axis_z_ups_axes2_in_base_z*d_c_yz - axis_x_z*d_G_t
-        Q_t_6 = Q_t_2*axis_z_ups_axes2_in_base_x + axis_x_x*d_phi_3_t
-        Q_t_7 = Q_t_2*axis_z_ups_axes2_in_base_y + axis_x_y*d_phi_3_t
-        Q_t_8 = Q_t_2*axis_z_ups_axes2_in_base_z + axis_x_z*d_phi_3_t
-        Q_t_9 = Q_t_3*axis_y_ups_axes2_x + Q_t_6*axis_z_ups_axes2_in_base_x
-        Q_t_10 = 2.0*Q_t_9
-        Q_t_11 = (
-        Q_t_3*axis_y_ups_axes2_y + Q_t_4*axis_y_ups_axes2_x + Q_t_6*axis_z_ups_axes2_in_base_y +
-            Q_t_7*axis_z_ups_axes2_in_base_x
+        ups_d_c_zz = (
+        ups_d_alpha_1_t*ups_h_3_z - ups_d_phi_3_t_3 -
+            inv_ups_root_1*(ups_s_2*(ups_J_group_2_xx*ups_d_alpha_1_t - ups_h_3_z -
+            inv_ups_root_2*ups_J_group_2_xy) -
+            inv_ups_root_2*ups_root_1*(ups_J_group_2_xy*ups_d_alpha_1_t - ups_h_3_x -
+            inv_ups_root_2*ups_J_group_2_yy))
         )
-        Q_t_12 = (
-        Q_t_3*axis_y_ups_axes2_z + Q_t_5*axis_y_ups_axes2_x + Q_t_6*axis_z_ups_axes2_in_base_z +
-            Q_t_8*axis_z_ups_axes2_in_base_x
+        # (ups-Q) inertia of the leg at the connection point, without the mass gathered there
+        ups_Q_t = 0.5*ups_d_c_yy
+        ups_Q_t_2 = 0.5*ups_d_c_zz
+        ups_Q_t_3 = (
+        axis_y_ups_axes2_x*ups_Q_t + axis_z_ups_axes2_in_base_x*ups_d_c_yz -
+            ups_axis_x_x*ups_d_phi_3_t
         )
-        Q_t_13 = Q_t_4*axis_y_ups_axes2_y + Q_t_7*axis_z_ups_axes2_in_base_y
-        Q_t_14 = 2.0*Q_t_13
-        Q_t_15 = (
-        Q_t_4*axis_y_ups_axes2_z + Q_t_5*axis_y_ups_axes2_y + Q_t_7*axis_z_ups_axes2_in_base_z +
-            Q_t_8*axis_z_ups_axes2_in_base_y
+        ups_Q_t_4 = (
+        axis_y_ups_axes2_y*ups_Q_t + axis_z_ups_axes2_in_base_y*ups_d_c_yz -
+            ups_axis_x_y*ups_d_phi_3_t
         )
-        Q_t_16 = Q_t_5*axis_y_ups_axes2_z + Q_t_8*axis_z_ups_axes2_in_base_z
-        Q_t_17 = 2.0*Q_t_16
-        # (M2) coupling block of M
-        M_ta_t = Q_t_11*q_in_base_z
-        M_ta_t_2 = Q_t_12*q_in_base_y
-        M_ta_t_3 = M_ta_t - M_ta_t_2
-        M_ta_t_4 = Q_t_10*q_in_base_z - Q_t_12*q_in_base_x
-        M_ta_t_5 = Q_t_10*q_in_base_y - Q_t_11*q_in_base_x
-        M_ta_t_6 = Q_t_14*q_in_base_z - Q_t_15*q_in_base_y
-        M_ta_t_7 = Q_t_15*q_in_base_x
-        M_ta_t_8 = M_ta_t - M_ta_t_7
-        M_ta_t_9 = Q_t_11*q_in_base_y - Q_t_14*q_in_base_x
-        M_ta_t_10 = Q_t_15*q_in_base_z - Q_t_17*q_in_base_y
-        M_ta_t_11 = Q_t_12*q_in_base_z - Q_t_17*q_in_base_x
-        M_ta_t_12 = M_ta_t_7 - M_ta_t_2
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
-        M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y
-        M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z
-        M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x
-        M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z
-        M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
+        ups_Q_t_5 = (
+        axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_in_base_z*ups_d_c_yz -
+            ups_axis_x_z*ups_d_phi_3_t
+        )
+        ups_Q_t_6 = axis_z_ups_axes2_in_base_x*ups_Q_t_2 + ups_axis_x_x*ups_d_phi_3_t_2
+        ups_Q_t_7 = axis_z_ups_axes2_in_base_y*ups_Q_t_2 + ups_axis_x_y*ups_d_phi_3_t_2
+        ups_Q_t_8 = axis_z_ups_axes2_in_base_z*ups_Q_t_2 + ups_axis_x_z*ups_d_phi_3_t_2
+        ups_Q_t_9 = axis_y_ups_axes2_x*ups_Q_t_3 + axis_z_ups_axes2_in_base_x*ups_Q_t_6
+        ups_Q_t_10 = 2.0*ups_Q_t_9
+        ups_Q_t_11 = (
+        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 +
+            axis_z_ups_axes2_in_base_x*ups_Q_t_7 + axis_z_ups_axes2_in_base_y*ups_Q_t_6
+        )
+        ups_Q_t_12 = (
+        axis_y_ups_axes2_x*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_3 +
+            axis_z_ups_axes2_in_base_x*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_6
+        )
+        ups_Q_t_13 = axis_y_ups_axes2_y*ups_Q_t_4 + axis_z_ups_axes2_in_base_y*ups_Q_t_7
+        ups_Q_t_14 = 2.0*ups_Q_t_13
+        ups_Q_t_15 = (
+        axis_y_ups_axes2_y*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_4 +
+            axis_z_ups_axes2_in_base_y*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_7
+        )
+        ups_Q_t_16 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_in_base_z*ups_Q_t_8
+        ups_Q_t_17 = 2.0*ups_Q_t_16
+        # (M_ta) coupling block of M
+        ups_M_ta_t = ups_Q_t_11*ups_q_in_base_z
+        ups_M_ta_t_2 = ups_Q_t_12*ups_q_in_base_y
+        ups_M_ta_t_3 = ups_M_ta_t - ups_M_ta_t_2
+        ups_M_ta_t_4 = ups_Q_t_10*ups_q_in_base_z - ups_Q_t_12*ups_q_in_base_x
+        ups_M_ta_t_5 = ups_Q_t_10*ups_q_in_base_y - ups_Q_t_11*ups_q_in_base_x
+        ups_M_ta_t_6 = ups_Q_t_14*ups_q_in_base_z - ups_Q_t_15*ups_q_in_base_y
+        ups_M_ta_t_7 = ups_Q_t_15*ups_q_in_base_x
+        ups_M_ta_t_8 = ups_M_ta_t - ups_M_ta_t_7
+        ups_M_ta_t_9 = ups_Q_t_11*ups_q_in_base_y - ups_Q_t_14*ups_q_in_base_x
+        ups_M_ta_t_10 = ups_Q_t_15*ups_q_in_base_z - ups_Q_t_17*ups_q_in_base_y
+        ups_M_ta_t_11 = ups_Q_t_12*ups_q_in_base_z - ups_Q_t_17*ups_q_in_base_x
+        ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2
+        # (M_aa) rotational block of M
+        ups_M_aa_t = ups_M_ta_t_6*ups_q_in_base_z - ups_M_ta_t_10*ups_q_in_base_y
+        ups_M_aa_t_2 = ups_M_ta_t_8*ups_q_in_base_z - ups_M_ta_t_11*ups_q_in_base_y
+        ups_M_aa_t_3 = ups_M_ta_t_12*ups_q_in_base_y + ups_M_ta_t_9*ups_q_in_base_z
+        ups_M_aa_t_4 = ups_M_ta_t_4*ups_q_in_base_z - ups_M_ta_t_11*ups_q_in_base_x
+        ups_M_aa_t_5 = ups_M_ta_t_12*ups_q_in_base_x + ups_M_ta_t_5*ups_q_in_base_z
+        ups_M_aa_t_6 = ups_M_ta_t_5*ups_q_in_base_y - ups_M_ta_t_9*ups_q_in_base_x
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) >
-            _TOLERANCE * 0.8) & (abs(root_2) > _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
-        Q_t_10, Q_t_11, Q_t_12, Q_t_14, Q_t_15, Q_t_17, M_ta_t_3, M_ta_t_4, M_ta_t_5,
-            M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2,
-            M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6,
+        ups_Q_t_10, ups_Q_t_11, ups_Q_t_12, ups_Q_t_14, ups_Q_t_15, ups_Q_t_17, ups_M_ta_t_3,
+            ups_M_ta_t_4, ups_M_ta_t_5, ups_M_ta_t_6, ups_M_ta_t_8, ups_M_ta_t_9,
+            ups_M_ta_t_10, ups_M_ta_t_11, ups_M_ta_t_12, ups_M_aa_t, ups_M_aa_t_2,
+            ups_M_aa_t_3, ups_M_aa_t_4, ups_M_aa_t_5, ups_M_aa_t_6,
         ))
     (
     total_ups_xx, total_ups_xy, total_ups_xz, total_ups_yy, total_ups_yz, total_ups_zz,
@@ -1940,24 +2041,24 @@ def _run_M(m, X):
         total_ups_yz_2, total_ups_zx, total_ups_zy, total_ups_zz_2, total_ups_xx_3,
         total_ups_xy_3, total_ups_xz_3, total_ups_yy_3, total_ups_yz_3, total_ups_zz_3,
     ) = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = m_star - total_ups_xx
     M_tt_yy = m_star - total_ups_yy
     M_tt_zz = m_star - total_ups_zz
-    # (M2) coupling block of M
+    # (M_ta) coupling block of M
     M_ta_xy = h_star_in_base_z - total_ups_xy_2
     M_ta_xz = total_ups_xz_2 - h_star_in_base_y
     M_ta_yx = total_ups_yx - h_star_in_base_z
     M_ta_yz = h_star_in_base_x + total_ups_yz_2
     M_ta_zx = h_star_in_base_y + total_ups_zx
     M_ta_zy = -h_star_in_base_x - total_ups_zy
-    # (M3) rotational block of M
+    # (M_aa) rotational block of M
     M_aa_xx = J_star_t_8 - total_ups_xx_3
     M_aa_xy = J_star_t_9 + total_ups_xy_3
     M_aa_xz = J_star_t_10 - total_ups_xz_3
-    M_aa_yy = J_star_t_12 - total_ups_yy_3
-    M_aa_yz = J_star_t_13 + total_ups_yz_3
-    M_aa_zz = J_star_t_15 - total_ups_zz_3
+    M_aa_yy = J_star_t_13 - total_ups_yy_3
+    M_aa_yz = J_star_t_15 + total_ups_yz_3
+    M_aa_zz = J_star_t_17 - total_ups_zz_3
     out_M[0] = M_tt_xx
     out_M[1] = -total_ups_xy
     out_M[6] = -total_ups_xy
@@ -1997,7 +2098,7 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 1178 mul, 904 add, 14 div, 14 sqrt, 0 trig
+# Z: 1154 mul, 880 add, 14 div, 14 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
@@ -2055,221 +2156,242 @@ def _run_Z(m, X, V):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_Z = m.zeros("Z")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (P1) centripetal tensor of the platform
-    W_p_t = omega_x*omega_x
-    W_p_t_2 = omega_y*omega_y
-    W_p_t_3 = omega_z*omega_z
-    W_p_xx = W_p_t_2 + W_p_t_3
-    W_p_xy = omega_x*omega_y
-    W_p_xz = omega_x*omega_z
-    W_p_yy = W_p_t + W_p_t_3
-    W_p_yz = omega_y*omega_z
-    W_p_zz = W_p_t + W_p_t_2
-    # (M4) centripetal force and weight of the platform
-    Z_p_x = W_p_xy*h_star_in_base_y + W_p_xz*h_star_in_base_z - Z_p_t - W_p_xx*h_star_in_base_x
-    Z_p_y = W_p_xy*h_star_in_base_x + W_p_yz*h_star_in_base_z - Z_p_t_2 - W_p_yy*h_star_in_base_y
-    Z_p_z = W_p_xz*h_star_in_base_x + W_p_yz*h_star_in_base_y - Z_p_t_3 - W_p_zz*h_star_in_base_z
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_p) centripetal force and weight of the platform
+    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
+    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
+    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
+    Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
+    Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z_2*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x_2*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y - g_r0_y_2*h_star_x
+    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
+    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
-            branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
-            ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+        ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yz, ups_Sigma_2_xx, ups_Sigma_2_yy,
+            ups_Sigma_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
+            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
+            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
+            ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y, ups_g_r0_z,
+            ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z,
             ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
-        # (ups-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (ups-S) from the base point to the connection point
+        ups_q_in_base_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        q_in_base_y = (
+        ups_q_in_base_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        q_in_base_z = (
+        ups_q_in_base_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        S_x = q_in_base_x + t_x - ups_base_point_x
-        S_y = q_in_base_y + t_y - ups_base_point_y
-        S_z = q_in_base_z + t_z - ups_base_point_z
-        # (ups-K2) component along the reference direction
-        px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
-        # (ups-K3) component across the reference direction
-        py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
-        # (ups-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (ups-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
-        # (ups-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (ups-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (ups-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (ups-K16) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (ups-V5) reciprocal vector 1
-        axis_x_x = S_x*inv_root_2
-        axis_x_y = S_y*inv_root_2
-        axis_x_z = S_z*inv_root_2
-        # (ups-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (ups-K7) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (ups-V5) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx
-        axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx
-        axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx
+        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        # (ups-px_1) component along the reference direction
+        ups_px_1 = (
+        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
+        )
+        # (ups-py_1) component across the reference direction
+        ups_py_1 = (
+        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
+        )
+        # (ups-rho2_1) squared amplitude
+        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
+        # (ups-root_1) amplitude, with the sign of the branch
+        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ups_xi_1_t = (
+        ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
+        )
+        # (ups-rho2_2) squared amplitude
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        # (ups-root_2) amplitude, with the sign of the branch
+        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_root_2 = 1.0/ups_root_2
+        ups_c_2 = inv_ups_root_2*ups_root_1
+        # (ups-s_2) sine of the angle of joint 2 from its reference direction
+        ups_s_2 = inv_ups_root_2*ups_xi_1_t
+        # (ups-w_1) reciprocal vector 1
+        ups_axis_x_x = inv_ups_root_2*ups_S_x
+        ups_axis_x_y = inv_ups_root_2*ups_S_y
+        ups_axis_x_z = inv_ups_root_2*ups_S_z
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
+        # (ups-w_1) reciprocal vector 1
+        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
+        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
+        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
         axis_y_ups_axes2_x = (
-        axis_x_z*axis_z_ups_axes2_in_base_y - axis_x_y*axis_z_ups_axes2_in_base_z
+        axis_z_ups_axes2_in_base_y*ups_axis_x_z - axis_z_ups_axes2_in_base_z*ups_axis_x_y
         )
         axis_y_ups_axes2_y = (
-        axis_x_x*axis_z_ups_axes2_in_base_z - axis_x_z*axis_z_ups_axes2_in_base_x
+        axis_z_ups_axes2_in_base_z*ups_axis_x_x - axis_z_ups_axes2_in_base_x*ups_axis_x_z
         )
         axis_y_ups_axes2_z = (
-        axis_x_y*axis_z_ups_axes2_in_base_x - axis_x_x*axis_z_ups_axes2_in_base_y
+        axis_z_ups_axes2_in_base_x*ups_axis_x_y - axis_z_ups_axes2_in_base_y*ups_axis_x_x
         )
-        # (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-        g_r3_x = g_r0_z*s_2 - c_2*g_r1_y
-        g_r3_y = -c_2*g_r0_z - g_r1_y*s_2
-        # (ups-A1) centripetal acceleration of the connection point
-        u_1_x = W_p_xy*q_in_base_y + W_p_xz*q_in_base_z - W_p_xx*q_in_base_x
-        u_1_y = W_p_xy*q_in_base_x + W_p_yz*q_in_base_z - W_p_yy*q_in_base_y
-        u_1_z = W_p_xz*q_in_base_x + W_p_yz*q_in_base_y - W_p_zz*q_in_base_z
-        u_1_t = axis_y_ups_axes2_x*u_1_x
-        u_1_t_2 = axis_y_ups_axes2_y*u_1_y
-        u_1_t_3 = axis_y_ups_axes2_z*u_1_z
-        u_1_tip_z = (
-        axis_z_ups_axes2_in_base_x*u_1_x + axis_z_ups_axes2_in_base_y*u_1_y +
-            axis_z_ups_axes2_in_base_z*u_1_z
+        # (ups-S_dot) velocity of the connection point
+        ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y
+        ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z
+        ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x
+        ups_S_dot_x = t_dot_x + ups_S_dot_t
+        ups_S_dot_y = t_dot_y + ups_S_dot_t_2
+        ups_S_dot_z = t_dot_z + ups_S_dot_t_3
+        ups_S_dot_tip_x = (
+        ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y + ups_S_dot_z*ups_axis_x_z
         )
-        # (ups-N4) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        acc_3_o_x = axis_x_x*u_1_x + axis_x_y*u_1_y + axis_x_z*u_1_z - g_r3_x
-        acc_3_o_y = u_1_t + u_1_t_2 + u_1_t_3 - g_r3_y
-        acc_3_o_z = u_1_tip_z - g_r1_x
-        # (ups-V1) velocity of the connection point
-        S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z
-        # (ups-V8) rate of joint 1
-        qd_2 = (
-        inv_root_2*(S_dot_x*axis_y_ups_axes2_x + S_dot_y*axis_y_ups_axes2_y +
-            S_dot_z*axis_y_ups_axes2_z)
+        # (ups-qd_2) rate of joint 2
+        ups_qd_2 = (
+        inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
+            axis_y_ups_axes2_z*ups_S_dot_z)
         )
-        qd_1 = (
-        inv_root_1*(S_dot_x*axis_z_ups_axes2_in_base_x + S_dot_y*axis_z_ups_axes2_in_base_y +
-            S_dot_z*axis_z_ups_axes2_in_base_z)
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
+            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z)
         )
-        # (ups-V11) angular velocity of link 1
-        omega_1_t = qd_1*s_2
-        omega_1_t_2 = c_2*qd_1
-        # (ups-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_x = omega_1_t_2*qd_2
-        zeta_2_y = omega_1_t*qd_2
-        # (ups-V13) centripetal tensor of link 2
-        W_2_t = omega_1_t*omega_1_t
-        W_2_t_2 = omega_1_t_2*omega_1_t_2
-        W_2_t_3 = qd_2*qd_2
-        W_2_xy = omega_1_t*omega_1_t_2
-        # (ups-A5) acceleration of the connection point at zero joint accelerations
-        bias_t = 2.0*S_dot_tip_x
-        bias_z = bias_t*omega_1_t_2 + 2.0*root_2*zeta_2_y
-        # (ups-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_z = u_1_tip_z - bias_z
-        # (ups-A9) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_o_t = inv_root_2*(u_1_t + u_1_t_2 + u_1_t_3 - bias_t*qd_2)
-        qdd_1_o = inv_root_1*rel_o_z
-        # (ups-A15) remainder without the acceleration in: angular acceleration of link 1
-        alpha_1_o_t = qdd_1_o*s_2
-        alpha_1_o_t_2 = c_2*qdd_1_o
-        # (ups-A18) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_o_x = alpha_1_o_t - zeta_2_x
-        alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-        # (ups-A20) remainder of the acceleration tensor of link 2
-        B_2_o_xy = -2.0*W_2_xy - qdd_1_o_t
-        B_2_o_zx = zeta_2_y - alpha_2_o_y
-        B_2_o_zy = alpha_2_o_x - zeta_2_x
-        # (ups-N14) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_o_x = (
-        B_2_o_zy*Sigma_2_yy + J_group_2_xz*qdd_1_o_t + J_group_2_yz*(W_2_t_2 - W_2_t_3) +
-            Sigma_2_zz*alpha_1_o_t + g_r1_x*h_2_z + g_r3_y*h_2_y - B_2_o_zx*J_group_2_xy -
-            acc_3_o_y*h_3_y - acc_3_o_z*h_3_z
+        # (ups-omega_1) angular velocity of link 1
+        ups_omega_1_t = ups_qd_1*ups_s_2
+        ups_omega_1_t_2 = ups_c_2*ups_qd_1
+        # (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2
+        ups_zeta_2_y = ups_omega_1_t*ups_qd_2
+        # (ups-u_1) centripetal acceleration of the connection point
+        ups_u_1_x = omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2
+        ups_u_1_y = omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3
+        ups_u_1_z = omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t
+        # (ups-W_2) centripetal tensor of link 2
+        ups_W_2_t = ups_omega_1_t*ups_omega_1_t
+        ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2
+        ups_W_2_t_3 = ups_qd_2*ups_qd_2
+        ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2
+        # (ups-bias) acceleration of the connection point at zero joint accelerations
+        ups_bias_t = 2.0*ups_S_dot_tip_x
+        ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2.0*ups_root_2*ups_zeta_2_y
+        # (ups-u_1) centripetal acceleration of the connection point
+        ups_u_1_t = axis_y_ups_axes2_x*ups_u_1_x
+        ups_u_1_t_2 = axis_y_ups_axes2_y*ups_u_1_y
+        ups_u_1_t_3 = axis_y_ups_axes2_z*ups_u_1_z
+        ups_u_1_tip_z = (
+        axis_z_ups_axes2_in_base_x*ups_u_1_x + axis_z_ups_axes2_in_base_y*ups_u_1_y +
+            axis_z_ups_axes2_in_base_z*ups_u_1_z
         )
-        mu_2_o_y = (
-        B_2_o_zy*J_group_2_xy + acc_3_o_x*h_3_y + g_r1_x*h_2_x - B_2_o_xy*J_group_2_yz -
-            B_2_o_zx*Sigma_2_xx - J_group_2_xz*(W_2_t - W_2_t_3) - Sigma_2_zz*alpha_1_o_t_2 -
-            acc_3_o_z*h_3_x - g_r3_x*h_2_y
+        # (ups-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        ups_rel_o_z = ups_u_1_tip_z - ups_bias_z
+        # (ups-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        ups_qdd_2_o_t = (
+        inv_ups_root_2*(ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 - ups_bias_t*ups_qd_2)
         )
-        mu_2_o_z = (
-        J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_xz*alpha_1_o_t + Sigma_2_xx*qdd_1_o_t +
-            acc_3_o_x*h_3_z + acc_3_o_y*h_3_x - B_2_o_xy*Sigma_2_yy - J_group_2_yz*alpha_1_o_t_2 -
-            g_r3_x*h_2_z - g_r3_y*h_2_x
+        ups_qdd_1_o = inv_ups_root_1*ups_rel_o_z
+        # (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        ups_alpha_1_o_t = ups_qdd_1_o*ups_s_2
+        ups_alpha_1_o_t_2 = ups_c_2*ups_qdd_1_o
+        # (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        ups_alpha_2_o_x = ups_alpha_1_o_t - ups_zeta_2_x
+        ups_alpha_2_o_y = -ups_alpha_1_o_t_2 - ups_zeta_2_y
+        # (ups-B_2_o) remainder of the acceleration tensor of link 2
+        ups_B_2_o_xy = -2.0*ups_W_2_xy - ups_qdd_2_o_t
+        ups_B_2_o_zx = ups_zeta_2_y - ups_alpha_2_o_y
+        ups_B_2_o_zy = ups_alpha_2_o_x - ups_zeta_2_x
+        # (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
+        ups_phi_3_o_x = (
+        -ups_B_2_o_xy*ups_h_3_z - ups_alpha_1_o_t_2*ups_h_3_y - ups_h_3_x*(ups_W_2_t_2 +
+            ups_W_2_t_3)
         )
-        # (ups-N7) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
-        phi_3_o_x = -B_2_o_xy*h_3_z - alpha_1_o_t_2*h_3_y - h_3_x*(W_2_t_2 + W_2_t_3)
-        # (ups-N26) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_o_y = (
-        alpha_1_o_t*h_3_y - h_3_x*qdd_1_o_t - h_3_z*(W_2_t + W_2_t_3) - inv_root_2*mu_2_o_z
+        # (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x
+        ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1
+        ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y
+        ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2
+        # (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        ups_acc_3_o_x = (
+        ups_axis_x_x*ups_u_1_x + ups_axis_x_y*ups_u_1_y + ups_axis_x_z*ups_u_1_z - ups_g_r3_x
         )
-        c_o_z = (
-        B_2_o_zy*h_3_z + h_3_y*(W_2_t + W_2_t_2) - B_2_o_zx*h_3_x - inv_root_1*(mu_2_o_x*s_2 -
-            c_2*mu_2_o_y)
+        ups_acc_3_o_y = ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 - ups_g_r3_y
+        ups_acc_3_o_z = ups_u_1_tip_z - ups_g_r1_x
+        # (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        ups_mu_2_o_x = (
+        ups_B_2_o_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_2_o_t +
+            ups_J_group_2_yz*(ups_W_2_t_2 - ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_o_t +
+            ups_g_r1_x*ups_h_2_z + ups_g_r3_y*ups_h_2_y - ups_B_2_o_zx*ups_J_group_2_xy -
+            ups_acc_3_o_y*ups_h_3_y - ups_acc_3_o_z*ups_h_3_z
         )
-        # (ups-N28) velocity and gravity terms of the leg force
-        U_in_base_x = (
-        axis_x_x*phi_3_o_x - axis_y_ups_axes2_x*c_o_y - axis_z_ups_axes2_in_base_x*c_o_z
+        ups_mu_2_o_y = (
+        ups_B_2_o_zy*ups_J_group_2_xy + ups_acc_3_o_x*ups_h_3_y + ups_g_r1_x*ups_h_2_x -
+            ups_B_2_o_xy*ups_J_group_2_yz - ups_B_2_o_zx*ups_Sigma_2_xx -
+            ups_J_group_2_xz*(ups_W_2_t - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_o_t_2 -
+            ups_acc_3_o_z*ups_h_3_x - ups_g_r3_x*ups_h_2_y
         )
-        U_in_base_y = (
-        axis_x_y*phi_3_o_x - axis_y_ups_axes2_y*c_o_y - axis_z_ups_axes2_in_base_y*c_o_z
+        ups_mu_2_o_z = (
+        ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) + ups_J_group_2_xz*ups_alpha_1_o_t +
+            ups_Sigma_2_xx*ups_qdd_2_o_t + ups_acc_3_o_x*ups_h_3_z + ups_acc_3_o_y*ups_h_3_x -
+            ups_B_2_o_xy*ups_Sigma_2_yy - ups_J_group_2_yz*ups_alpha_1_o_t_2 -
+            ups_g_r3_x*ups_h_2_z - ups_g_r3_y*ups_h_2_x
         )
-        U_in_base_z = (
-        axis_x_z*phi_3_o_x - axis_y_ups_axes2_z*c_o_y - axis_z_ups_axes2_in_base_z*c_o_z
+        # (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        ups_c_o_y = (
+        ups_alpha_1_o_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_o_z - ups_h_3_x*ups_qdd_2_o_t -
+            ups_h_3_z*(ups_W_2_t + ups_W_2_t_3)
         )
-        # (M7) rotational part of Z
-        Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
-        Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
-        Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
+        ups_c_o_z = (
+        ups_B_2_o_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
+            inv_ups_root_1*(ups_mu_2_o_x*ups_s_2 - ups_c_2*ups_mu_2_o_y) - ups_B_2_o_zx*ups_h_3_x
+        )
+        # (ups-U) velocity and gravity terms of the leg force
+        ups_U_in_base_x = (
+        ups_axis_x_x*ups_phi_3_o_x - axis_y_ups_axes2_x*ups_c_o_y -
+            axis_z_ups_axes2_in_base_x*ups_c_o_z
+        )
+        ups_U_in_base_y = (
+        ups_axis_x_y*ups_phi_3_o_x - axis_y_ups_axes2_y*ups_c_o_y -
+            axis_z_ups_axes2_in_base_y*ups_c_o_z
+        )
+        ups_U_in_base_z = (
+        ups_axis_x_z*ups_phi_3_o_x - axis_y_ups_axes2_z*ups_c_o_y -
+            axis_z_ups_axes2_in_base_z*ups_c_o_z
+        )
+        # (Z_a) rotational part of Z
+        ups_Z_a_t = ups_U_in_base_z*ups_q_in_base_y - ups_U_in_base_y*ups_q_in_base_z
+        ups_Z_a_t_2 = ups_U_in_base_x*ups_q_in_base_z - ups_U_in_base_z*ups_q_in_base_x
+        ups_Z_a_t_3 = ups_U_in_base_y*ups_q_in_base_x - ups_U_in_base_x*ups_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) >
-            _TOLERANCE * 0.8) & (abs(root_2) > _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
-        U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
+        ups_U_in_base_x, ups_U_in_base_y, ups_U_in_base_z, ups_Z_a_t, ups_Z_a_t_2,
+            ups_Z_a_t_3,
         ))
     total_ups_x, total_ups_y, total_ups_z, total_ups_x_2, total_ups_y_2, total_ups_z_2 = sums
-    # (M5) translational part of Z
+    # (Z_t) translational part of Z
     Z_t_x = Z_p_x + total_ups_x
     Z_t_y = Z_p_y + total_ups_y
     Z_t_z = Z_p_z + total_ups_z
-    # (M7) rotational part of Z
+    # (Z_a) rotational part of Z
     Z_a_x = Z_q_in_base_x + total_ups_x_2
     Z_a_y = Z_q_in_base_y + total_ups_y_2
     Z_a_z = Z_q_in_base_z + total_ups_z_2
@@ -2325,57 +2447,63 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
             ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_2,
             ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
-        # (ups-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (ups-S) from the base point to the connection point
+        ups_q_in_base_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        q_in_base_y = (
+        ups_q_in_base_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        q_in_base_z = (
+        ups_q_in_base_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        S_x = q_in_base_x + t_x - ups_base_point_x
-        S_y = q_in_base_y + t_y - ups_base_point_y
-        S_z = q_in_base_z + t_z - ups_base_point_z
-        # (ups-K2) component along the reference direction
-        px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
-        # (ups-K3) component across the reference direction
-        py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
-        # (ups-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
-        # (ups-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (ups-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (ups-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        # (ups-V5) reciprocal vector 1
-        axis_x_x = S_x*inv_root_2
-        axis_x_y = S_y*inv_root_2
-        axis_x_z = S_z*inv_root_2
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_3_x = axis_x_z*q_in_base_y - axis_x_y*q_in_base_z
-        H_a_3_y = axis_x_x*q_in_base_z - axis_x_z*q_in_base_x
-        H_a_3_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y
+        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        # (ups-px_1) component along the reference direction
+        ups_px_1 = (
+        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
+        )
+        # (ups-py_1) component across the reference direction
+        ups_py_1 = (
+        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
+        )
+        # (ups-rho2_1) squared amplitude
+        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
+        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ups_xi_1_t = (
+        ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
+        )
+        # (ups-rho2_2) squared amplitude
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        # (ups-root_2) amplitude, with the sign of the branch
+        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_root_2 = 1.0/ups_root_2
+        # (ups-w_1) reciprocal vector 1
+        ups_axis_x_x = inv_ups_root_2*ups_S_x
+        ups_axis_x_y = inv_ups_root_2*ups_S_y
+        ups_axis_x_z = inv_ups_root_2*ups_S_z
+        # (ups-H_a_3) moment of the column's unit force about the platform origin
+        ups_H_a_3_x = ups_axis_x_z*ups_q_in_base_y - ups_axis_x_y*ups_q_in_base_z
+        ups_H_a_3_y = ups_axis_x_x*ups_q_in_base_z - ups_axis_x_z*ups_q_in_base_x
+        ups_H_a_3_z = ups_axis_x_y*ups_q_in_base_x - ups_axis_x_x*ups_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_2) >
+        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_2) >
             _TOLERANCE * 0.8))
         )
-        out_H[_H_ups[0][leg]] = axis_x_x
-        out_H[_H_ups[1][leg]] = axis_x_y
-        out_H[_H_ups[2][leg]] = axis_x_z
-        out_H[_H_ups[3][leg]] = H_a_3_x
-        out_H[_H_ups[4][leg]] = H_a_3_y
-        out_H[_H_ups[5][leg]] = H_a_3_z
+        out_H[_H_ups[0][leg]] = ups_axis_x_x
+        out_H[_H_ups[1][leg]] = ups_axis_x_y
+        out_H[_H_ups[2][leg]] = ups_axis_x_z
+        out_H[_H_ups[3][leg]] = ups_H_a_3_x
+        out_H[_H_ups[4][leg]] = ups_H_a_3_y
+        out_H[_H_ups[5][leg]] = ups_H_a_3_z
     return ok, (out_H,)
 
 
@@ -2451,29 +2579,29 @@ def _run_required(m, X, V, A):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (P1) centripetal tensor of the platform
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_x*omega_x
     W_p_t_2 = omega_y*omega_y
     W_p_t_3 = omega_z*omega_z
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
     W_p_yz = omega_y*omega_z
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
-    # (E2) inertia force of the platform less its weight
+    # (f_p) inertia force of the platform less its weight
     f_p_x = (
     a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) + h_star_in_base_z*(W_p_xz + alpha_y) -
         h_star_in_base_x*(W_p_t_2 + W_p_t_3)
@@ -2486,11 +2614,11 @@ def _run_required(m, X, V, A):
     a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) + h_star_in_base_y*(W_p_yz + alpha_x) -
         h_star_in_base_z*(W_p_t + W_p_t_2)
     )
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
     a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
     a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
-    # (E3) inertia moment of the platform less that of its weight
+    # (mu_p) inertia moment of the platform less that of its weight
     alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
     alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
     alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
@@ -2512,192 +2640,221 @@ def _run_required(m, X, V, A):
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
-            branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
-            ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+        ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yz, ups_Sigma_2_xx, ups_Sigma_2_yy,
+            ups_Sigma_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
+            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
+            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
+            ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y, ups_g_r0_z,
+            ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z,
             ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
-        # (ups-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (ups-S) from the base point to the connection point
+        ups_q_in_base_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        q_in_base_y = (
+        ups_q_in_base_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        q_in_base_z = (
+        ups_q_in_base_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        S_x = q_in_base_x + t_x - ups_base_point_x
-        S_y = q_in_base_y + t_y - ups_base_point_y
-        S_z = q_in_base_z + t_z - ups_base_point_z
-        # (ups-K2) component along the reference direction
-        px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
-        # (ups-K3) component across the reference direction
-        py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
-        # (ups-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (ups-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
-        # (ups-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (ups-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (ups-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (ups-K16) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (ups-V5) reciprocal vector 1
-        axis_x_x = S_x*inv_root_2
-        axis_x_y = S_y*inv_root_2
-        axis_x_z = S_z*inv_root_2
-        # (ups-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (ups-K7) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (ups-V5) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx
-        axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx
-        axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx
+        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        # (ups-px_1) component along the reference direction
+        ups_px_1 = (
+        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
+        )
+        # (ups-py_1) component across the reference direction
+        ups_py_1 = (
+        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
+        )
+        # (ups-rho2_1) squared amplitude
+        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
+        # (ups-root_1) amplitude, with the sign of the branch
+        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ups_xi_1_t = (
+        ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
+        )
+        # (ups-rho2_2) squared amplitude
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        # (ups-root_2) amplitude, with the sign of the branch
+        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_root_2 = 1.0/ups_root_2
+        ups_c_2 = inv_ups_root_2*ups_root_1
+        # (ups-s_2) sine of the angle of joint 2 from its reference direction
+        ups_s_2 = inv_ups_root_2*ups_xi_1_t
+        # (ups-w_1) reciprocal vector 1
+        ups_axis_x_x = inv_ups_root_2*ups_S_x
+        ups_axis_x_y = inv_ups_root_2*ups_S_y
+        ups_axis_x_z = inv_ups_root_2*ups_S_z
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
+        # (ups-w_1) reciprocal vector 1
+        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
+        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
+        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
         axis_y_ups_axes2_x = (
-        axis_x_z*axis_z_ups_axes2_in_base_y - axis_x_y*axis_z_ups_axes2_in_base_z
+        axis_z_ups_axes2_in_base_y*ups_axis_x_z - axis_z_ups_axes2_in_base_z*ups_axis_x_y
         )
         axis_y_ups_axes2_y = (
-        axis_x_x*axis_z_ups_axes2_in_base_z - axis_x_z*axis_z_ups_axes2_in_base_x
+        axis_z_ups_axes2_in_base_z*ups_axis_x_x - axis_z_ups_axes2_in_base_x*ups_axis_x_z
         )
         axis_y_ups_axes2_z = (
-        axis_x_y*axis_z_ups_axes2_in_base_x - axis_x_x*axis_z_ups_axes2_in_base_y
+        axis_z_ups_axes2_in_base_x*ups_axis_x_y - axis_z_ups_axes2_in_base_y*ups_axis_x_x
         )
-        # (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-        g_r3_x = g_r0_z*s_2 - c_2*g_r1_y
-        g_r3_y = -c_2*g_r0_z - g_r1_y*s_2
-        # (ups-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z
-        # (ups-V8) rate of joint 1
-        qd_2 = (
-        inv_root_2*(S_dot_x*axis_y_ups_axes2_x + S_dot_y*axis_y_ups_axes2_y +
-            S_dot_z*axis_y_ups_axes2_z)
+        # (ups-S_dot) velocity of the connection point
+        ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y
+        ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z
+        ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x
+        ups_S_dot_x = t_dot_x + ups_S_dot_t
+        ups_S_dot_y = t_dot_y + ups_S_dot_t_2
+        ups_S_dot_z = t_dot_z + ups_S_dot_t_3
+        ups_S_dot_tip_x = (
+        ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y + ups_S_dot_z*ups_axis_x_z
         )
-        qd_1 = (
-        inv_root_1*(S_dot_x*axis_z_ups_axes2_in_base_x + S_dot_y*axis_z_ups_axes2_in_base_y +
-            S_dot_z*axis_z_ups_axes2_in_base_z)
+        # (ups-qd_2) rate of joint 2
+        ups_qd_2 = (
+        inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
+            axis_y_ups_axes2_z*ups_S_dot_z)
         )
-        # (ups-V11) angular velocity of link 1
-        omega_1_t = qd_1*s_2
-        omega_1_t_2 = c_2*qd_1
-        # (ups-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_x = omega_1_t_2*qd_2
-        zeta_2_y = omega_1_t*qd_2
-        # (ups-V13) centripetal tensor of link 2
-        W_2_t = omega_1_t*omega_1_t
-        W_2_t_2 = omega_1_t_2*omega_1_t_2
-        W_2_t_3 = qd_2*qd_2
-        W_2_xy = omega_1_t*omega_1_t_2
-        # (ups-A5) acceleration of the connection point at zero joint accelerations
-        bias_t = 2.0*S_dot_tip_x
-        bias_z = bias_t*omega_1_t_2 + 2.0*root_2*zeta_2_y
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_3_x = axis_x_z*q_in_base_y - axis_x_y*q_in_base_z
-        H_a_3_y = axis_x_x*q_in_base_z - axis_x_z*q_in_base_x
-        H_a_3_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y
-        # (ups-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (ups-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        S_ddot_t = S_ddot_x*axis_y_ups_axes2_x
-        S_ddot_t_2 = S_ddot_y*axis_y_ups_axes2_y
-        S_ddot_t_3 = S_ddot_z*axis_y_ups_axes2_z
-        S_ddot_tip_z = (
-        S_ddot_x*axis_z_ups_axes2_in_base_x + S_ddot_y*axis_z_ups_axes2_in_base_y +
-            S_ddot_z*axis_z_ups_axes2_in_base_z
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
+            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z)
         )
-        # (ups-A6) acceleration of the connection point left to the joint accelerations
-        rel_z = S_ddot_tip_z - bias_z
-        # (ups-A8) acceleration of joint 1
-        qdd_1_t = inv_root_2*(S_ddot_t + S_ddot_t_2 + S_ddot_t_3 - bias_t*qd_2)
-        qdd_1 = inv_root_1*rel_z
-        # (ups-N3) acceleration of the reference point of link 3, less gravity
-        acc_3_x = S_ddot_x*axis_x_x + S_ddot_y*axis_x_y + S_ddot_z*axis_x_z - g_r3_x
-        acc_3_y = S_ddot_t + S_ddot_t_2 + S_ddot_t_3 - g_r3_y
-        acc_3_z = S_ddot_tip_z - g_r1_x
-        # (ups-A13) angular acceleration of link 1
-        alpha_1_t = qdd_1*s_2
-        alpha_1_t_2 = c_2*qdd_1
-        # (ups-A16) angular acceleration of link 2
-        alpha_2_x = alpha_1_t - zeta_2_x
-        alpha_2_y = -alpha_1_t_2 - zeta_2_y
-        # (ups-A19) acceleration tensor of link 2
-        B_2_xy = -2.0*W_2_xy - qdd_1_t
-        B_2_zx = zeta_2_y - alpha_2_y
-        B_2_zy = alpha_2_x - zeta_2_x
-        # (ups-N12) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_x = (
-        B_2_zy*Sigma_2_yy + J_group_2_xz*qdd_1_t + J_group_2_yz*(W_2_t_2 - W_2_t_3) +
-            Sigma_2_zz*alpha_1_t + g_r1_x*h_2_z + g_r3_y*h_2_y - B_2_zx*J_group_2_xy -
-            acc_3_y*h_3_y - acc_3_z*h_3_z
+        # (ups-omega_1) angular velocity of link 1
+        ups_omega_1_t = ups_qd_1*ups_s_2
+        ups_omega_1_t_2 = ups_c_2*ups_qd_1
+        # (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2
+        ups_zeta_2_y = ups_omega_1_t*ups_qd_2
+        # (ups-W_2) centripetal tensor of link 2
+        ups_W_2_t = ups_omega_1_t*ups_omega_1_t
+        ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2
+        ups_W_2_t_3 = ups_qd_2*ups_qd_2
+        ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2
+        # (ups-bias) acceleration of the connection point at zero joint accelerations
+        ups_bias_t = 2.0*ups_S_dot_tip_x
+        ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2.0*ups_root_2*ups_zeta_2_y
+        # (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x
+        ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1
+        ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y
+        ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2
+        # (ups-H_a_3) moment of the column's unit force about the platform origin
+        ups_H_a_3_x = ups_axis_x_z*ups_q_in_base_y - ups_axis_x_y*ups_q_in_base_z
+        ups_H_a_3_y = ups_axis_x_x*ups_q_in_base_z - ups_axis_x_z*ups_q_in_base_x
+        ups_H_a_3_z = ups_axis_x_y*ups_q_in_base_x - ups_axis_x_x*ups_q_in_base_y
+        # (ups-a_p) acceleration of the connection point without its centripetal part
+        ups_a_p_x = t_ddot_x + alpha_y*ups_q_in_base_z - alpha_z*ups_q_in_base_y
+        ups_a_p_y = t_ddot_y + alpha_z*ups_q_in_base_x - alpha_x*ups_q_in_base_z
+        ups_a_p_z = t_ddot_z + alpha_x*ups_q_in_base_y - alpha_y*ups_q_in_base_x
+        # (ups-S_ddot) acceleration of the connection point
+        ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2
+        ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3
+        ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t
+        ups_S_ddot_t = axis_y_ups_axes2_x*ups_S_ddot_x
+        ups_S_ddot_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y
+        ups_S_ddot_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z
+        ups_S_ddot_tip_z = (
+        axis_z_ups_axes2_in_base_x*ups_S_ddot_x + axis_z_ups_axes2_in_base_y*ups_S_ddot_y +
+            axis_z_ups_axes2_in_base_z*ups_S_ddot_z
         )
-        mu_2_y = (
-        B_2_zy*J_group_2_xy + acc_3_x*h_3_y + g_r1_x*h_2_x - B_2_xy*J_group_2_yz -
-            B_2_zx*Sigma_2_xx - J_group_2_xz*(W_2_t - W_2_t_3) - Sigma_2_zz*alpha_1_t_2 -
-            acc_3_z*h_3_x - g_r3_x*h_2_y
+        # (ups-rel) acceleration of the connection point left to the joint accelerations
+        ups_rel_z = ups_S_ddot_tip_z - ups_bias_z
+        # (ups-qdd_1) acceleration of joint 1
+        ups_qdd_1_t = (
+        inv_ups_root_2*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_bias_t*ups_qd_2)
         )
-        mu_2_z = (
-        J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_xz*alpha_1_t + Sigma_2_xx*qdd_1_t +
-            acc_3_x*h_3_z + acc_3_y*h_3_x - B_2_xy*Sigma_2_yy - J_group_2_yz*alpha_1_t_2 -
-            g_r3_x*h_2_z - g_r3_y*h_2_x
+        ups_qdd_1 = inv_ups_root_1*ups_rel_z
+        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
+        ups_acc_3_x = (
+        ups_S_ddot_x*ups_axis_x_x + ups_S_ddot_y*ups_axis_x_y + ups_S_ddot_z*ups_axis_x_z -
+            ups_g_r3_x
         )
-        # (ups-N5) inertia force of link 3 from its turning about its reference point
-        phi_3_x = -B_2_xy*h_3_z - alpha_1_t_2*h_3_y - h_3_x*(W_2_t_2 + W_2_t_3)
-        # (ups-N24) leg force on the platform without actuation and without the mass at the connection point
-        c_y = alpha_1_t*h_3_y - h_3_x*qdd_1_t - h_3_z*(W_2_t + W_2_t_3) - inv_root_2*mu_2_z
-        c_z = (
-        B_2_zy*h_3_z + h_3_y*(W_2_t + W_2_t_2) - B_2_zx*h_3_x - inv_root_1*(mu_2_x*s_2 -
-            c_2*mu_2_y)
+        ups_acc_3_y = ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_g_r3_y
+        ups_acc_3_z = ups_S_ddot_tip_z - ups_g_r1_x
+        # (ups-alpha_1) angular acceleration of link 1
+        ups_alpha_1_t = ups_qdd_1*ups_s_2
+        ups_alpha_1_t_2 = ups_c_2*ups_qdd_1
+        # (ups-alpha_2) angular acceleration of link 2
+        ups_alpha_2_x = ups_alpha_1_t - ups_zeta_2_x
+        ups_alpha_2_y = -ups_alpha_1_t_2 - ups_zeta_2_y
+        # (ups-B_2) acceleration tensor of link 2
+        ups_B_2_xy = -2.0*ups_W_2_xy - ups_qdd_1_t
+        ups_B_2_zx = ups_zeta_2_y - ups_alpha_2_y
+        ups_B_2_zy = ups_alpha_2_x - ups_zeta_2_x
+        # (ups-phi_3) inertia force of link 3 from its turning about its reference point
+        ups_phi_3_x = (
+        -ups_B_2_xy*ups_h_3_z - ups_alpha_1_t_2*ups_h_3_y - ups_h_3_x*(ups_W_2_t_2 + ups_W_2_t_3)
         )
-        c_in_base_x = axis_y_ups_axes2_x*c_y + axis_z_ups_axes2_in_base_x*c_z - axis_x_x*phi_3_x
-        c_in_base_y = axis_y_ups_axes2_y*c_y + axis_z_ups_axes2_in_base_y*c_z - axis_x_y*phi_3_x
-        c_in_base_z = axis_y_ups_axes2_z*c_y + axis_z_ups_axes2_in_base_z*c_z - axis_x_z*phi_3_x
-        # (E5) moment that actuators and external wrench must give
-        R_a_t = c_in_base_z*q_in_base_y - c_in_base_y*q_in_base_z
-        R_a_t_2 = c_in_base_x*q_in_base_z - c_in_base_z*q_in_base_x
-        R_a_t_3 = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y
+        # (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        ups_mu_2_x = (
+        ups_B_2_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_1_t + ups_J_group_2_yz*(ups_W_2_t_2 -
+            ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_t + ups_g_r1_x*ups_h_2_z +
+            ups_g_r3_y*ups_h_2_y - ups_B_2_zx*ups_J_group_2_xy - ups_acc_3_y*ups_h_3_y -
+            ups_acc_3_z*ups_h_3_z
+        )
+        ups_mu_2_y = (
+        ups_B_2_zy*ups_J_group_2_xy + ups_acc_3_x*ups_h_3_y + ups_g_r1_x*ups_h_2_x -
+            ups_B_2_xy*ups_J_group_2_yz - ups_B_2_zx*ups_Sigma_2_xx - ups_J_group_2_xz*(ups_W_2_t
+            - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_t_2 - ups_acc_3_z*ups_h_3_x -
+            ups_g_r3_x*ups_h_2_y
+        )
+        ups_mu_2_z = (
+        ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) + ups_J_group_2_xz*ups_alpha_1_t +
+            ups_Sigma_2_xx*ups_qdd_1_t + ups_acc_3_x*ups_h_3_z + ups_acc_3_y*ups_h_3_x -
+            ups_B_2_xy*ups_Sigma_2_yy - ups_J_group_2_yz*ups_alpha_1_t_2 - ups_g_r3_x*ups_h_2_z -
+            ups_g_r3_y*ups_h_2_x
+        )
+        # (ups-c) leg force on the platform without actuation and without the mass at the connection point
+        ups_c_y = (
+        ups_alpha_1_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_z - ups_h_3_x*ups_qdd_1_t -
+            ups_h_3_z*(ups_W_2_t + ups_W_2_t_3)
+        )
+        ups_c_z = (
+        ups_B_2_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
+            inv_ups_root_1*(ups_mu_2_x*ups_s_2 - ups_c_2*ups_mu_2_y) - ups_B_2_zx*ups_h_3_x
+        )
+        ups_c_in_base_x = (
+        axis_y_ups_axes2_x*ups_c_y + axis_z_ups_axes2_in_base_x*ups_c_z - ups_axis_x_x*ups_phi_3_x
+        )
+        ups_c_in_base_y = (
+        axis_y_ups_axes2_y*ups_c_y + axis_z_ups_axes2_in_base_y*ups_c_z - ups_axis_x_y*ups_phi_3_x
+        )
+        ups_c_in_base_z = (
+        axis_y_ups_axes2_z*ups_c_y + axis_z_ups_axes2_in_base_z*ups_c_z - ups_axis_x_z*ups_phi_3_x
+        )
+        # (R_a) moment that actuators and external wrench must give
+        ups_R_a_t = ups_c_in_base_z*ups_q_in_base_y - ups_c_in_base_y*ups_q_in_base_z
+        ups_R_a_t_2 = ups_c_in_base_x*ups_q_in_base_z - ups_c_in_base_z*ups_q_in_base_x
+        ups_R_a_t_3 = ups_c_in_base_y*ups_q_in_base_x - ups_c_in_base_x*ups_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) >
-            _TOLERANCE * 0.8) & (abs(root_2) > _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
-        c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
+        ups_c_in_base_x, ups_c_in_base_y, ups_c_in_base_z, ups_R_a_t, ups_R_a_t_2,
+            ups_R_a_t_3,
         ))
-        out_H[_H_ups[0][leg]] = axis_x_x
-        out_H[_H_ups[1][leg]] = axis_x_y
-        out_H[_H_ups[2][leg]] = axis_x_z
-        out_H[_H_ups[3][leg]] = H_a_3_x
-        out_H[_H_ups[4][leg]] = H_a_3_y
-        out_H[_H_ups[5][leg]] = H_a_3_z
+        out_H[_H_ups[0][leg]] = ups_axis_x_x
+        out_H[_H_ups[1][leg]] = ups_axis_x_y
+        out_H[_H_ups[2][leg]] = ups_axis_x_z
+        out_H[_H_ups[3][leg]] = ups_H_a_3_x
+        out_H[_H_ups[4][leg]] = ups_H_a_3_y
+        out_H[_H_ups[5][leg]] = ups_H_a_3_z
     total_ups_x, total_ups_y, total_ups_z, total_ups_x_2, total_ups_y_2, total_ups_z_2 = sums
-    # (E4) force that actuators and external wrench must give
+    # (R_t) force that actuators and external wrench must give
     R_t_x = f_p_x - total_ups_x
     R_t_y = f_p_y - total_ups_y
     R_t_z = f_p_z - total_ups_z
-    # (E5) moment that actuators and external wrench must give
+    # (R_a) moment that actuators and external wrench must give
     R_a_x = mu_p_in_base_x - total_ups_x_2
     R_a_y = mu_p_in_base_y - total_ups_y_2
     R_a_z = mu_p_in_base_z - total_ups_z_2
@@ -2754,53 +2911,59 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-            ups_base_point_z, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
+            ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
-        # (ups-K1) from the base point to the connection point
-        S_x = (
+        # (ups-S) from the base point to the connection point
+        ups_S_x = (
         t_x + R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z -
             ups_base_point_x
         )
-        S_y = (
+        ups_S_y = (
         t_y + R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z -
             ups_base_point_y
         )
-        S_z = (
+        ups_S_z = (
         t_z + R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z -
             ups_base_point_z
         )
-        # (ups-K2) component along the reference direction
-        px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
-        # (ups-K3) component across the reference direction
-        py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
-        # (ups-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (ups-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
-        # (ups-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (ups-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (ups-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        # (ups-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        # (ups-K8) displacement of joint 1
-        q_1 = atan2(inv_root_1*py_1, inv_root_1*px_1)
-        # (ups-K17) displacement of joint 2
-        q_2 = atan2(-inv_root_2*xi_1_t, inv_root_2*root_1)
-        ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
+        # (ups-px_1) component along the reference direction
+        ups_px_1 = (
+        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        out_q[_q_ups[0][leg]] = q_1
-        out_q[_q_ups[1][leg]] = q_2
-        out_q[_q_ups[2][leg]] = root_2
+        # (ups-py_1) component across the reference direction
+        ups_py_1 = (
+        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
+        )
+        # (ups-rho2_1) squared amplitude
+        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
+        # (ups-root_1) amplitude, with the sign of the branch
+        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ups_xi_1_t = (
+        ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
+        )
+        # (ups-rho2_2) squared amplitude
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        # (ups-root_2) amplitude, with the sign of the branch
+        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_root_2 = 1.0/ups_root_2
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        # (ups-q_1) displacement of joint 1
+        ups_q_1 = atan2(inv_ups_root_1*ups_py_1, inv_ups_root_1*ups_px_1)
+        # (ups-q_2) displacement of joint 2
+        ups_q_2 = atan2(-inv_ups_root_2*ups_xi_1_t, inv_ups_root_2*ups_root_1)
+        ok = (
+        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
+        )
+        out_q[_q_ups[0][leg]] = ups_q_1
+        out_q[_q_ups[1][leg]] = ups_q_2
+        out_q[_q_ups[2][leg]] = ups_root_2
     return ok, (out_q,)
 
 
@@ -2860,77 +3023,87 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-            ups_base_point_z, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
+            ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
-        # (ups-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (ups-S) from the base point to the connection point
+        ups_q_in_base_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        q_in_base_y = (
+        ups_q_in_base_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        q_in_base_z = (
+        ups_q_in_base_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        S_x = q_in_base_x + t_x - ups_base_point_x
-        S_y = q_in_base_y + t_y - ups_base_point_y
-        S_z = q_in_base_z + t_z - ups_base_point_z
-        # (ups-K2) component along the reference direction
-        px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
-        # (ups-K3) component across the reference direction
-        py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
-        # (ups-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (ups-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
-        # (ups-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (ups-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (ups-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        # (ups-V5) reciprocal vector 1
-        axis_x_x = S_x*inv_root_2
-        axis_x_y = S_y*inv_root_2
-        axis_x_z = S_z*inv_root_2
-        # (ups-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (ups-K7) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (ups-V5) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx
-        axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx
-        axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx
-        # (ups-V1) velocity of the connection point
-        S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z
-        # (ups-V8) rate of joint 1
-        qd_2 = (
-        inv_root_2*(S_dot_x*(axis_x_z*axis_z_ups_axes2_in_base_y -
-            axis_x_y*axis_z_ups_axes2_in_base_z) + S_dot_y*(axis_x_x*axis_z_ups_axes2_in_base_z -
-            axis_x_z*axis_z_ups_axes2_in_base_x) + S_dot_z*(axis_x_y*axis_z_ups_axes2_in_base_x -
-            axis_x_x*axis_z_ups_axes2_in_base_y))
+        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        # (ups-px_1) component along the reference direction
+        ups_px_1 = (
+        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        qd_1 = (
-        inv_root_1*(S_dot_x*axis_z_ups_axes2_in_base_x + S_dot_y*axis_z_ups_axes2_in_base_y +
-            S_dot_z*axis_z_ups_axes2_in_base_z)
+        # (ups-py_1) component across the reference direction
+        ups_py_1 = (
+        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
+        )
+        # (ups-rho2_1) squared amplitude
+        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
+        # (ups-root_1) amplitude, with the sign of the branch
+        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ups_xi_1_t = (
+        ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
+        )
+        # (ups-rho2_2) squared amplitude
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        # (ups-root_2) amplitude, with the sign of the branch
+        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_root_2 = 1.0/ups_root_2
+        # (ups-w_1) reciprocal vector 1
+        ups_axis_x_x = inv_ups_root_2*ups_S_x
+        ups_axis_x_y = inv_ups_root_2*ups_S_y
+        ups_axis_x_z = inv_ups_root_2*ups_S_z
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
+        # (ups-w_1) reciprocal vector 1
+        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
+        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
+        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
+        # (ups-S_dot) velocity of the connection point
+        ups_S_dot_x = t_dot_x + omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y
+        ups_S_dot_y = t_dot_y + omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z
+        ups_S_dot_z = t_dot_z + omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x
+        ups_S_dot_tip_x = (
+        ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y + ups_S_dot_z*ups_axis_x_z
+        )
+        # (ups-qd_2) rate of joint 2
+        ups_qd_2 = (
+        inv_ups_root_2*(ups_S_dot_x*(axis_z_ups_axes2_in_base_y*ups_axis_x_z -
+            axis_z_ups_axes2_in_base_z*ups_axis_x_y) +
+            ups_S_dot_y*(axis_z_ups_axes2_in_base_z*ups_axis_x_x -
+            axis_z_ups_axes2_in_base_x*ups_axis_x_z) +
+            ups_S_dot_z*(axis_z_ups_axes2_in_base_x*ups_axis_x_y -
+            axis_z_ups_axes2_in_base_y*ups_axis_x_x))
+        )
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
+            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z)
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) >
-            _TOLERANCE * 0.8) & (abs(root_2) > _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8))
         )
-        out_qd[_qd_ups[0][leg]] = qd_1
-        out_qd[_qd_ups[1][leg]] = qd_2
-        out_qd[_qd_ups[2][leg]] = S_dot_tip_x
+        out_qd[_qd_ups[0][leg]] = ups_qd_1
+        out_qd[_qd_ups[1][leg]] = ups_qd_2
+        out_qd[_qd_ups[2][leg]] = ups_S_dot_tip_x
     return ok, (out_qd,)
 
 
@@ -3003,116 +3176,124 @@ def _run_joint_accelerations(m, X, V, A):
     out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-            ups_base_point_z, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
+            ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
-        # (ups-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (ups-S) from the base point to the connection point
+        ups_q_in_base_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        q_in_base_y = (
+        ups_q_in_base_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        q_in_base_z = (
+        ups_q_in_base_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        S_x = q_in_base_x + t_x - ups_base_point_x
-        S_y = q_in_base_y + t_y - ups_base_point_y
-        S_z = q_in_base_z + t_z - ups_base_point_z
-        # (ups-K2) component along the reference direction
-        px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
-        # (ups-K3) component across the reference direction
-        py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
-        # (ups-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (ups-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
-        # (ups-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (ups-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (ups-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        # (ups-V5) reciprocal vector 1
-        axis_x_x = S_x*inv_root_2
-        axis_x_y = S_y*inv_root_2
-        axis_x_z = S_z*inv_root_2
-        # (ups-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (ups-K7) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (ups-V5) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx
-        axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx
-        axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx
+        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        # (ups-px_1) component along the reference direction
+        ups_px_1 = (
+        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
+        )
+        # (ups-py_1) component across the reference direction
+        ups_py_1 = (
+        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
+        )
+        # (ups-rho2_1) squared amplitude
+        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
+        # (ups-root_1) amplitude, with the sign of the branch
+        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ups_xi_1_t = (
+        ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
+        )
+        # (ups-rho2_2) squared amplitude
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        # (ups-root_2) amplitude, with the sign of the branch
+        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_root_2 = 1.0/ups_root_2
+        # (ups-w_1) reciprocal vector 1
+        ups_axis_x_x = inv_ups_root_2*ups_S_x
+        ups_axis_x_y = inv_ups_root_2*ups_S_y
+        ups_axis_x_z = inv_ups_root_2*ups_S_z
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
+        # (ups-w_1) reciprocal vector 1
+        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
+        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
+        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
         axis_y_ups_axes2_x = (
-        axis_x_z*axis_z_ups_axes2_in_base_y - axis_x_y*axis_z_ups_axes2_in_base_z
+        axis_z_ups_axes2_in_base_y*ups_axis_x_z - axis_z_ups_axes2_in_base_z*ups_axis_x_y
         )
         axis_y_ups_axes2_y = (
-        axis_x_x*axis_z_ups_axes2_in_base_z - axis_x_z*axis_z_ups_axes2_in_base_x
+        axis_z_ups_axes2_in_base_z*ups_axis_x_x - axis_z_ups_axes2_in_base_x*ups_axis_x_z
         )
         axis_y_ups_axes2_z = (
-        axis_x_y*axis_z_ups_axes2_in_base_x - axis_x_x*axis_z_ups_axes2_in_base_y
+        axis_z_ups_axes2_in_base_x*ups_axis_x_y - axis_z_ups_axes2_in_base_y*ups_axis_x_x
         )
-        # (ups-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z
-        # (ups-V8) rate of joint 1
-        qd_2 = (
-        inv_root_2*(S_dot_x*axis_y_ups_axes2_x + S_dot_y*axis_y_ups_axes2_y +
-            S_dot_z*axis_y_ups_axes2_z)
+        # (ups-S_dot) velocity of the connection point
+        ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y
+        ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z
+        ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x
+        ups_S_dot_x = t_dot_x + ups_S_dot_t
+        ups_S_dot_y = t_dot_y + ups_S_dot_t_2
+        ups_S_dot_z = t_dot_z + ups_S_dot_t_3
+        ups_S_dot_tip_x = (
+        ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y + ups_S_dot_z*ups_axis_x_z
         )
-        qd_1 = (
-        inv_root_1*(S_dot_x*axis_z_ups_axes2_in_base_x + S_dot_y*axis_z_ups_axes2_in_base_y +
-            S_dot_z*axis_z_ups_axes2_in_base_z)
+        # (ups-qd_2) rate of joint 2
+        ups_qd_2 = (
+        inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
+            axis_y_ups_axes2_z*ups_S_dot_z)
         )
-        # (ups-V11) angular velocity of link 1
-        omega_1_t = inv_root_2*qd_1*xi_1_t
-        omega_1_t_2 = inv_root_2*qd_1*root_1
-        # (ups-A5) acceleration of the connection point at zero joint accelerations
-        bias_t = 2.0*S_dot_tip_x
-        bias_z = bias_t*omega_1_t_2 + 2.0*omega_1_t*qd_2*root_2
-        # (ups-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (ups-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        # (ups-A6) acceleration of the connection point left to the joint accelerations
-        rel_x = (
-        S_ddot_x*axis_x_x + S_ddot_y*axis_x_y + S_ddot_z*axis_x_z +
-            root_2*(omega_1_t_2*omega_1_t_2 + qd_2*qd_2)
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
+            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z)
         )
-        rel_z = (
-        S_ddot_x*axis_z_ups_axes2_in_base_x + S_ddot_y*axis_z_ups_axes2_in_base_y +
-            S_ddot_z*axis_z_ups_axes2_in_base_z - bias_z
+        # (ups-omega_1) angular velocity of link 1
+        ups_omega_1_t = inv_ups_root_2*ups_qd_1*ups_xi_1_t
+        ups_omega_1_t_2 = inv_ups_root_2*ups_qd_1*ups_root_1
+        # (ups-bias) acceleration of the connection point at zero joint accelerations
+        ups_bias_t = 2.0*ups_S_dot_tip_x
+        ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2.0*ups_omega_1_t*ups_qd_2*ups_root_2
+        # (ups-a_p) acceleration of the connection point without its centripetal part
+        ups_a_p_x = t_ddot_x + alpha_y*ups_q_in_base_z - alpha_z*ups_q_in_base_y
+        ups_a_p_y = t_ddot_y + alpha_z*ups_q_in_base_x - alpha_x*ups_q_in_base_z
+        ups_a_p_z = t_ddot_z + alpha_x*ups_q_in_base_y - alpha_y*ups_q_in_base_x
+        # (ups-S_ddot) acceleration of the connection point
+        ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2
+        ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3
+        ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t
+        # (ups-rel) acceleration of the connection point left to the joint accelerations
+        ups_rel_x = (
+        ups_S_ddot_x*ups_axis_x_x + ups_S_ddot_y*ups_axis_x_y + ups_S_ddot_z*ups_axis_x_z +
+            ups_root_2*(ups_omega_1_t_2*ups_omega_1_t_2 + ups_qd_2*ups_qd_2)
         )
-        # (ups-A8) acceleration of joint 1
-        qdd_2 = (
-        inv_root_2*(S_ddot_x*axis_y_ups_axes2_x + S_ddot_y*axis_y_ups_axes2_y +
-            S_ddot_z*axis_y_ups_axes2_z - bias_t*qd_2) + omega_1_t*omega_1_t_2
+        ups_rel_z = (
+        axis_z_ups_axes2_in_base_x*ups_S_ddot_x + axis_z_ups_axes2_in_base_y*ups_S_ddot_y +
+            axis_z_ups_axes2_in_base_z*ups_S_ddot_z - ups_bias_z
         )
-        qdd_1 = inv_root_1*rel_z
+        # (ups-qdd_1) acceleration of joint 1
+        ups_qdd_2 = (
+        inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_ddot_x + axis_y_ups_axes2_y*ups_S_ddot_y +
+            axis_y_ups_axes2_z*ups_S_ddot_z - ups_bias_t*ups_qd_2) + ups_omega_1_t*ups_omega_1_t_2
+        )
+        ups_qdd_1 = inv_ups_root_1*ups_rel_z
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) >
-            _TOLERANCE * 0.8) & (abs(root_2) > _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8))
         )
-        out_qdd[_qdd_ups[0][leg]] = qdd_1
-        out_qdd[_qdd_ups[1][leg]] = qdd_2
-        out_qdd[_qdd_ups[2][leg]] = rel_x
+        out_qdd[_qdd_ups[0][leg]] = ups_qdd_1
+        out_qdd[_qdd_ups[1][leg]] = ups_qdd_2
+        out_qdd[_qdd_ups[2][leg]] = ups_rel_x
     return ok, (out_qdd,)
 
 
@@ -3186,185 +3367,209 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
-            branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
-            ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-            ups_link3_mass, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yz, ups_Sigma_2_xx, ups_Sigma_2_yy,
+            ups_Sigma_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
+            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
+            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
+            ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y, ups_g_r0_z,
+            ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z, ups_link3_mass,
+            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
-        # (ups-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (ups-S) from the base point to the connection point
+        ups_q_in_base_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        q_in_base_y = (
+        ups_q_in_base_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        q_in_base_z = (
+        ups_q_in_base_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        S_x = q_in_base_x + t_x - ups_base_point_x
-        S_y = q_in_base_y + t_y - ups_base_point_y
-        S_z = q_in_base_z + t_z - ups_base_point_z
-        # (ups-K2) component along the reference direction
-        px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
-        # (ups-K3) component across the reference direction
-        py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
-        # (ups-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (ups-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
-        # (ups-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (ups-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (ups-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (ups-K16) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (ups-V5) reciprocal vector 1
-        axis_x_x = S_x*inv_root_2
-        axis_x_y = S_y*inv_root_2
-        axis_x_z = S_z*inv_root_2
-        # (ups-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (ups-K7) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (ups-V5) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx
-        axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx
-        axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx
+        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        # (ups-px_1) component along the reference direction
+        ups_px_1 = (
+        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
+        )
+        # (ups-py_1) component across the reference direction
+        ups_py_1 = (
+        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
+        )
+        # (ups-rho2_1) squared amplitude
+        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
+        # (ups-root_1) amplitude, with the sign of the branch
+        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ups_xi_1_t = (
+        ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
+        )
+        # (ups-rho2_2) squared amplitude
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        # (ups-root_2) amplitude, with the sign of the branch
+        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_root_2 = 1.0/ups_root_2
+        ups_c_2 = inv_ups_root_2*ups_root_1
+        # (ups-s_2) sine of the angle of joint 2 from its reference direction
+        ups_s_2 = inv_ups_root_2*ups_xi_1_t
+        # (ups-w_1) reciprocal vector 1
+        ups_axis_x_x = inv_ups_root_2*ups_S_x
+        ups_axis_x_y = inv_ups_root_2*ups_S_y
+        ups_axis_x_z = inv_ups_root_2*ups_S_z
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
+        # (ups-w_1) reciprocal vector 1
+        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
+        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
+        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
         axis_y_ups_axes2_x = (
-        axis_x_z*axis_z_ups_axes2_in_base_y - axis_x_y*axis_z_ups_axes2_in_base_z
+        axis_z_ups_axes2_in_base_y*ups_axis_x_z - axis_z_ups_axes2_in_base_z*ups_axis_x_y
         )
         axis_y_ups_axes2_y = (
-        axis_x_x*axis_z_ups_axes2_in_base_z - axis_x_z*axis_z_ups_axes2_in_base_x
+        axis_z_ups_axes2_in_base_z*ups_axis_x_x - axis_z_ups_axes2_in_base_x*ups_axis_x_z
         )
         axis_y_ups_axes2_z = (
-        axis_x_y*axis_z_ups_axes2_in_base_x - axis_x_x*axis_z_ups_axes2_in_base_y
+        axis_z_ups_axes2_in_base_x*ups_axis_x_y - axis_z_ups_axes2_in_base_y*ups_axis_x_x
         )
-        # (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-        g_r3_x = g_r0_z*s_2 - c_2*g_r1_y
-        g_r3_y = -c_2*g_r0_z - g_r1_y*s_2
-        # (ups-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z
-        # (ups-V8) rate of joint 1
-        qd_2 = (
-        inv_root_2*(S_dot_x*axis_y_ups_axes2_x + S_dot_y*axis_y_ups_axes2_y +
-            S_dot_z*axis_y_ups_axes2_z)
+        # (ups-S_dot) velocity of the connection point
+        ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y
+        ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z
+        ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x
+        ups_S_dot_x = t_dot_x + ups_S_dot_t
+        ups_S_dot_y = t_dot_y + ups_S_dot_t_2
+        ups_S_dot_z = t_dot_z + ups_S_dot_t_3
+        ups_S_dot_tip_x = (
+        ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y + ups_S_dot_z*ups_axis_x_z
         )
-        qd_1 = (
-        inv_root_1*(S_dot_x*axis_z_ups_axes2_in_base_x + S_dot_y*axis_z_ups_axes2_in_base_y +
-            S_dot_z*axis_z_ups_axes2_in_base_z)
+        # (ups-qd_2) rate of joint 2
+        ups_qd_2 = (
+        inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
+            axis_y_ups_axes2_z*ups_S_dot_z)
         )
-        # (ups-V11) angular velocity of link 1
-        omega_1_t = qd_1*s_2
-        omega_1_t_2 = c_2*qd_1
-        # (ups-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_x = omega_1_t_2*qd_2
-        zeta_2_y = omega_1_t*qd_2
-        # (ups-V13) centripetal tensor of link 2
-        W_2_t = omega_1_t*omega_1_t
-        W_2_t_2 = omega_1_t_2*omega_1_t_2
-        W_2_t_3 = qd_2*qd_2
-        W_2_xy = omega_1_t*omega_1_t_2
-        # (ups-A5) acceleration of the connection point at zero joint accelerations
-        bias_t = 2.0*S_dot_tip_x
-        bias_z = bias_t*omega_1_t_2 + 2.0*root_2*zeta_2_y
-        # (ups-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (ups-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        S_ddot_t = S_ddot_x*axis_y_ups_axes2_x
-        S_ddot_t_2 = S_ddot_y*axis_y_ups_axes2_y
-        S_ddot_t_3 = S_ddot_z*axis_y_ups_axes2_z
-        S_ddot_tip_z = (
-        S_ddot_x*axis_z_ups_axes2_in_base_x + S_ddot_y*axis_z_ups_axes2_in_base_y +
-            S_ddot_z*axis_z_ups_axes2_in_base_z
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
+            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z)
         )
-        # (ups-A6) acceleration of the connection point left to the joint accelerations
-        rel_z = S_ddot_tip_z - bias_z
-        # (ups-A8) acceleration of joint 1
-        qdd_1_t = inv_root_2*(S_ddot_t + S_ddot_t_2 + S_ddot_t_3 - bias_t*qd_2)
-        qdd_1 = inv_root_1*rel_z
-        # (ups-N3) acceleration of the reference point of link 3, less gravity
-        acc_3_x = S_ddot_x*axis_x_x + S_ddot_y*axis_x_y + S_ddot_z*axis_x_z - g_r3_x
-        acc_3_y = S_ddot_t + S_ddot_t_2 + S_ddot_t_3 - g_r3_y
-        acc_3_z = S_ddot_tip_z - g_r1_x
-        # (ups-A13) angular acceleration of link 1
-        alpha_1_t = qdd_1*s_2
-        alpha_1_t_2 = c_2*qdd_1
-        # (ups-A16) angular acceleration of link 2
-        alpha_2_x = alpha_1_t - zeta_2_x
-        alpha_2_y = -alpha_1_t_2 - zeta_2_y
-        # (ups-A19) acceleration tensor of link 2
-        B_2_xy = -2.0*W_2_xy - qdd_1_t
-        B_2_zx = zeta_2_y - alpha_2_y
-        B_2_zy = alpha_2_x - zeta_2_x
-        # (ups-N12) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_x = (
-        B_2_zy*Sigma_2_yy + J_group_2_xz*qdd_1_t + J_group_2_yz*(W_2_t_2 - W_2_t_3) +
-            Sigma_2_zz*alpha_1_t + g_r1_x*h_2_z + g_r3_y*h_2_y - B_2_zx*J_group_2_xy -
-            acc_3_y*h_3_y - acc_3_z*h_3_z
+        # (ups-omega_1) angular velocity of link 1
+        ups_omega_1_t = ups_qd_1*ups_s_2
+        ups_omega_1_t_2 = ups_c_2*ups_qd_1
+        # (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2
+        ups_zeta_2_y = ups_omega_1_t*ups_qd_2
+        # (ups-W_2) centripetal tensor of link 2
+        ups_W_2_t = ups_omega_1_t*ups_omega_1_t
+        ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2
+        ups_W_2_t_3 = ups_qd_2*ups_qd_2
+        ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2
+        # (ups-bias) acceleration of the connection point at zero joint accelerations
+        ups_bias_t = 2.0*ups_S_dot_tip_x
+        ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2.0*ups_root_2*ups_zeta_2_y
+        # (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x
+        ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1
+        ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y
+        ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2
+        # (ups-a_p) acceleration of the connection point without its centripetal part
+        ups_a_p_x = t_ddot_x + alpha_y*ups_q_in_base_z - alpha_z*ups_q_in_base_y
+        ups_a_p_y = t_ddot_y + alpha_z*ups_q_in_base_x - alpha_x*ups_q_in_base_z
+        ups_a_p_z = t_ddot_z + alpha_x*ups_q_in_base_y - alpha_y*ups_q_in_base_x
+        # (ups-S_ddot) acceleration of the connection point
+        ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2
+        ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3
+        ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t
+        ups_S_ddot_t = axis_y_ups_axes2_x*ups_S_ddot_x
+        ups_S_ddot_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y
+        ups_S_ddot_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z
+        ups_S_ddot_tip_z = (
+        axis_z_ups_axes2_in_base_x*ups_S_ddot_x + axis_z_ups_axes2_in_base_y*ups_S_ddot_y +
+            axis_z_ups_axes2_in_base_z*ups_S_ddot_z
         )
-        mu_2_y = (
-        B_2_zy*J_group_2_xy + acc_3_x*h_3_y + g_r1_x*h_2_x - B_2_xy*J_group_2_yz -
-            B_2_zx*Sigma_2_xx - J_group_2_xz*(W_2_t - W_2_t_3) - Sigma_2_zz*alpha_1_t_2 -
-            acc_3_z*h_3_x - g_r3_x*h_2_y
+        # (ups-rel) acceleration of the connection point left to the joint accelerations
+        ups_rel_z = ups_S_ddot_tip_z - ups_bias_z
+        # (ups-qdd_1) acceleration of joint 1
+        ups_qdd_1_t = (
+        inv_ups_root_2*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_bias_t*ups_qd_2)
         )
-        mu_2_z = (
-        J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_xz*alpha_1_t + Sigma_2_xx*qdd_1_t +
-            acc_3_x*h_3_z + acc_3_y*h_3_x - B_2_xy*Sigma_2_yy - J_group_2_yz*alpha_1_t_2 -
-            g_r3_x*h_2_z - g_r3_y*h_2_x
+        ups_qdd_1 = inv_ups_root_1*ups_rel_z
+        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
+        ups_acc_3_x = (
+        ups_S_ddot_x*ups_axis_x_x + ups_S_ddot_y*ups_axis_x_y + ups_S_ddot_z*ups_axis_x_z -
+            ups_g_r3_x
         )
-        # (ups-N24) leg force on the platform without actuation and without the mass at the connection point
-        c_y = alpha_1_t*h_3_y - h_3_x*qdd_1_t - h_3_z*(W_2_t + W_2_t_3) - inv_root_2*mu_2_z
-        c_z = (
-        B_2_zy*h_3_z + h_3_y*(W_2_t + W_2_t_2) - B_2_zx*h_3_x - inv_root_1*(mu_2_x*s_2 -
-            c_2*mu_2_y)
+        ups_acc_3_y = ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_g_r3_y
+        ups_acc_3_z = ups_S_ddot_tip_z - ups_g_r1_x
+        # (ups-alpha_1) angular acceleration of link 1
+        ups_alpha_1_t = ups_qdd_1*ups_s_2
+        ups_alpha_1_t_2 = ups_c_2*ups_qdd_1
+        # (ups-alpha_2) angular acceleration of link 2
+        ups_alpha_2_x = ups_alpha_1_t - ups_zeta_2_x
+        ups_alpha_2_y = -ups_alpha_1_t_2 - ups_zeta_2_y
+        # (ups-B_2) acceleration tensor of link 2
+        ups_B_2_xy = -2.0*ups_W_2_xy - ups_qdd_1_t
+        ups_B_2_zx = ups_zeta_2_y - ups_alpha_2_y
+        ups_B_2_zy = ups_alpha_2_x - ups_zeta_2_x
+        # (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        ups_mu_2_x = (
+        ups_B_2_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_1_t + ups_J_group_2_yz*(ups_W_2_t_2 -
+            ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_t + ups_g_r1_x*ups_h_2_z +
+            ups_g_r3_y*ups_h_2_y - ups_B_2_zx*ups_J_group_2_xy - ups_acc_3_y*ups_h_3_y -
+            ups_acc_3_z*ups_h_3_z
         )
-        # (ups-N29) leg force on the platform without actuation, the last link's mass included
-        c_true_x = (
-        B_2_xy*h_3_z + alpha_1_t_2*h_3_y + h_3_x*(W_2_t_2 + W_2_t_3) - acc_3_x*ups_link3_mass
+        ups_mu_2_y = (
+        ups_B_2_zy*ups_J_group_2_xy + ups_acc_3_x*ups_h_3_y + ups_g_r1_x*ups_h_2_x -
+            ups_B_2_xy*ups_J_group_2_yz - ups_B_2_zx*ups_Sigma_2_xx - ups_J_group_2_xz*(ups_W_2_t
+            - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_t_2 - ups_acc_3_z*ups_h_3_x -
+            ups_g_r3_x*ups_h_2_y
         )
-        c_true_y = c_y - acc_3_y*ups_link3_mass
-        c_true_z = c_z - acc_3_z*ups_link3_mass
-        c_true_in_base_x = (
-        axis_x_x*c_true_x + axis_y_ups_axes2_x*c_true_y + axis_z_ups_axes2_in_base_x*c_true_z
+        ups_mu_2_z = (
+        ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) + ups_J_group_2_xz*ups_alpha_1_t +
+            ups_Sigma_2_xx*ups_qdd_1_t + ups_acc_3_x*ups_h_3_z + ups_acc_3_y*ups_h_3_x -
+            ups_B_2_xy*ups_Sigma_2_yy - ups_J_group_2_yz*ups_alpha_1_t_2 - ups_g_r3_x*ups_h_2_z -
+            ups_g_r3_y*ups_h_2_x
         )
-        c_true_in_base_y = (
-        axis_x_y*c_true_x + axis_y_ups_axes2_y*c_true_y + axis_z_ups_axes2_in_base_y*c_true_z
+        # (ups-c) leg force on the platform without actuation and without the mass at the connection point
+        ups_c_y = (
+        ups_alpha_1_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_z - ups_h_3_x*ups_qdd_1_t -
+            ups_h_3_z*(ups_W_2_t + ups_W_2_t_3)
         )
-        c_true_in_base_z = (
-        axis_x_z*c_true_x + axis_y_ups_axes2_z*c_true_y + axis_z_ups_axes2_in_base_z*c_true_z
+        ups_c_z = (
+        ups_B_2_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
+            inv_ups_root_1*(ups_mu_2_x*ups_s_2 - ups_c_2*ups_mu_2_y) - ups_B_2_zx*ups_h_3_x
+        )
+        # (ups-c_true) leg force on the platform without actuation, the last link's mass included
+        ups_c_true_x = (
+        ups_B_2_xy*ups_h_3_z + ups_alpha_1_t_2*ups_h_3_y + ups_h_3_x*(ups_W_2_t_2 + ups_W_2_t_3) -
+            ups_acc_3_x*ups_link3_mass
+        )
+        ups_c_true_y = ups_c_y - ups_acc_3_y*ups_link3_mass
+        ups_c_true_z = ups_c_z - ups_acc_3_z*ups_link3_mass
+        ups_c_true_in_base_x = (
+        axis_y_ups_axes2_x*ups_c_true_y + axis_z_ups_axes2_in_base_x*ups_c_true_z +
+            ups_axis_x_x*ups_c_true_x
+        )
+        ups_c_true_in_base_y = (
+        axis_y_ups_axes2_y*ups_c_true_y + axis_z_ups_axes2_in_base_y*ups_c_true_z +
+            ups_axis_x_y*ups_c_true_x
+        )
+        ups_c_true_in_base_z = (
+        axis_y_ups_axes2_z*ups_c_true_y + axis_z_ups_axes2_in_base_z*ups_c_true_z +
+            ups_axis_x_z*ups_c_true_x
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) >
-            _TOLERANCE * 0.8) & (abs(root_2) > _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8))
         )
-        out_leg_force[_leg_force_ups[0][leg]] = c_true_in_base_x
-        out_leg_force[_leg_force_ups[1][leg]] = c_true_in_base_y
-        out_leg_force[_leg_force_ups[2][leg]] = c_true_in_base_z
-        out_drive[_drive_ups[0][leg]] = axis_x_x
-        out_drive[_drive_ups[1][leg]] = axis_x_y
-        out_drive[_drive_ups[2][leg]] = axis_x_z
+        out_leg_force[_leg_force_ups[0][leg]] = ups_c_true_in_base_x
+        out_leg_force[_leg_force_ups[1][leg]] = ups_c_true_in_base_y
+        out_leg_force[_leg_force_ups[2][leg]] = ups_c_true_in_base_z
+        out_drive[_drive_ups[0][leg]] = ups_axis_x_x
+        out_drive[_drive_ups[1][leg]] = ups_axis_x_y
+        out_drive[_drive_ups[2][leg]] = ups_axis_x_z
     return ok, (out_leg_force, out_drive,)
 
 
@@ -3410,7 +3615,7 @@ def _run_potential(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_potential = m.zeros("potential")
-    # (V1) potential energy
+    # (potential) potential energy
     potential_t = (
     gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
         gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
@@ -3419,68 +3624,77 @@ def _run_potential(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        b_r0_x, b_r0_y, b_r0_z, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z,
-            h_3_x, h_3_y, h_3_z, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-            ups_base_point_z, ups_link2_mass, ups_platform_point_x, ups_platform_point_y,
+        ups_b_r0_x, ups_b_r0_y, ups_b_r0_z, ups_base_frame_xx, ups_base_frame_xy,
+            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
+            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x,
+            ups_g_r0_y, ups_g_r0_z, ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y,
+            ups_h_3_z, ups_link2_mass, ups_platform_point_x, ups_platform_point_y,
             ups_platform_point_z,
         ) = k
-        # (ups-K1) from the base point to the connection point
-        S_x = (
+        # (ups-S) from the base point to the connection point
+        ups_S_x = (
         t_x + R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z -
             ups_base_point_x
         )
-        S_y = (
+        ups_S_y = (
         t_y + R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z -
             ups_base_point_y
         )
-        S_z = (
+        ups_S_z = (
         t_z + R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z -
             ups_base_point_z
         )
-        # (ups-K2) component along the reference direction
-        px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
-        # (ups-K3) component across the reference direction
-        py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
-        # (ups-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (ups-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
-        # (ups-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (ups-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (ups-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (ups-K16) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (ups-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (ups-K7) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-        # (V1) potential energy
-        b_r1_y = -b_r0_x*s_1 - b_r0_y*c_1
-        potential_t_2 = (
-        (g_r0_y*s_1 - c_1*g_r0_x)*(h_2_y + h_3_y + ups_link2_mass*(b_r0_y*s_1 - b_r0_x*c_1)) +
-            (g_r0_z*s_2 - c_2*g_r1_y)*(h_2_x + h_3_x + ups_link2_mass*(b_r0_z*s_2 - b_r1_y*c_2)) -
-            (-c_2*g_r0_z - g_r1_y*s_2)*(h_2_z + h_3_z - ups_link2_mass*(-b_r0_z*c_2 - b_r1_y*s_2))
+        # (ups-px_1) component along the reference direction
+        ups_px_1 = (
+        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
+        )
+        # (ups-py_1) component across the reference direction
+        ups_py_1 = (
+        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
+        )
+        # (ups-rho2_1) squared amplitude
+        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
+        # (ups-root_1) amplitude, with the sign of the branch
+        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ups_xi_1_t = (
+        ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
+        )
+        # (ups-rho2_2) squared amplitude
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        # (ups-root_2) amplitude, with the sign of the branch
+        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_root_2 = 1.0/ups_root_2
+        ups_c_2 = inv_ups_root_2*ups_root_1
+        # (ups-s_2) sine of the angle of joint 2 from its reference direction
+        ups_s_2 = inv_ups_root_2*ups_xi_1_t
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
+        # (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1
+        # (potential) potential energy
+        ups_b_r1_y = -ups_b_r0_x*ups_s_1 - ups_b_r0_y*ups_c_1
+        ups_potential_t = (
+        (ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x)*(ups_h_2_y + ups_h_3_y +
+            ups_link2_mass*(ups_b_r0_y*ups_s_1 - ups_b_r0_x*ups_c_1)) + (ups_g_r0_z*ups_s_2 -
+            ups_c_2*ups_g_r1_y)*(ups_h_2_x + ups_h_3_x + ups_link2_mass*(ups_b_r0_z*ups_s_2 -
+            ups_b_r1_y*ups_c_2)) - (-ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2)*(ups_h_2_z +
+            ups_h_3_z - ups_link2_mass*(-ups_b_r0_z*ups_c_2 - ups_b_r1_y*ups_s_2))
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
+        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
         )
         sums = m.added(sums, leg, (
-        potential_t_2,
+        ups_potential_t,
         ))
     total_ups, = sums
-    # (V1) potential energy
+    # (potential) potential energy
     potential = -potential_t - total_ups
     out_potential[0] = potential
     return ok, (out_potential,)
@@ -3538,82 +3752,90 @@ def _run_condition(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-            ups_base_point_z, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
+            ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
-        # (ups-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (ups-S) from the base point to the connection point
+        ups_q_in_base_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        q_in_base_y = (
+        ups_q_in_base_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        q_in_base_z = (
+        ups_q_in_base_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        S_x = q_in_base_x + t_x - ups_base_point_x
-        S_y = q_in_base_y + t_y - ups_base_point_y
-        S_z = q_in_base_z + t_z - ups_base_point_z
-        # (ups-K2) component along the reference direction
-        px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
-        # (ups-K3) component across the reference direction
-        py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
-        # (ups-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (ups-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
-        # (ups-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (ups-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (ups-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        # (ups-V5) reciprocal vector 1
-        axis_x_x = S_x*inv_root_2
-        axis_x_y = S_y*inv_root_2
-        axis_x_z = S_z*inv_root_2
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_3_x = axis_x_z*q_in_base_y - axis_x_y*q_in_base_z
-        H_a_3_y = axis_x_x*q_in_base_z - axis_x_z*q_in_base_x
-        H_a_3_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y
-        # (C2) rms distance of the platform points from their centroid
-        spread_t_2 = b_c_x - ups_platform_point_x
-        spread_t_3 = b_c_y - ups_platform_point_y
-        spread_t_4 = b_c_z - ups_platform_point_z
-        spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 + spread_t_4*spread_t_4
-        # (ups-K4) squared amplitude
-        pivot_size = abs(rho2_1)
-        # (ups-K13) squared amplitude
-        pivot_size_2 = abs(rho2_2)
-        # (ups-V5) reciprocal vector 1
-        pivot_size_3 = abs(root_1)
-        pivot_size_4 = abs(root_2)
-        # (ups-N21) force at the connection point that balances the leg's inertia and weight along all freedoms
-        least_pivots = (
-        least(least(least(1.25*sqrt(pivot_size), 1.25*sqrt(pivot_size_2)), 1.25*pivot_size_3),
-            1.25*pivot_size_4)
+        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        # (ups-px_1) component along the reference direction
+        ups_px_1 = (
+        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
+        )
+        # (ups-py_1) component across the reference direction
+        ups_py_1 = (
+        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
+        )
+        # (ups-rho2_1) squared amplitude
+        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
+        # (ups-root_1) amplitude, with the sign of the branch
+        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ups_xi_1_t = (
+        ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
+        )
+        # (ups-rho2_2) squared amplitude
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        # (ups-root_2) amplitude, with the sign of the branch
+        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_root_2 = 1.0/ups_root_2
+        # (ups-w_1) reciprocal vector 1
+        ups_axis_x_x = inv_ups_root_2*ups_S_x
+        ups_axis_x_y = inv_ups_root_2*ups_S_y
+        ups_axis_x_z = inv_ups_root_2*ups_S_z
+        # (ups-H_a_3) moment of the column's unit force about the platform origin
+        ups_H_a_3_x = ups_axis_x_z*ups_q_in_base_y - ups_axis_x_y*ups_q_in_base_z
+        ups_H_a_3_y = ups_axis_x_x*ups_q_in_base_z - ups_axis_x_z*ups_q_in_base_x
+        ups_H_a_3_z = ups_axis_x_y*ups_q_in_base_x - ups_axis_x_x*ups_q_in_base_y
+        # (spread) rms distance of the platform points from their centroid
+        ups_spread_t = b_c_x - ups_platform_point_x
+        ups_spread_t_2 = b_c_y - ups_platform_point_y
+        ups_spread_t_3 = b_c_z - ups_platform_point_z
+        ups_spread_t_4 = (
+        ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 + ups_spread_t_3*ups_spread_t_3
+        )
+        # (ups-rho2_1) squared amplitude
+        ups_pivot_size = abs(ups_rho2_1)
+        # (ups-rho2_2) squared amplitude
+        ups_pivot_size_2 = abs(ups_rho2_2)
+        # (ups-w_1) reciprocal vector 1
+        ups_pivot_size_3 = abs(ups_root_1)
+        ups_pivot_size_4 = abs(ups_root_2)
+        # (ups-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        ups_least_pivots = (
+        least(least(least(1.25*sqrt(ups_pivot_size), 1.25*sqrt(ups_pivot_size_2)),
+            1.25*ups_pivot_size_3), 1.25*ups_pivot_size_4)
         )
         clear = (
-        clear & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) >
-            _TOLERANCE * 0.8) & (abs(root_2) > _TOLERANCE * 0.8))
+        clear & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
-        spread_t_5,
+        ups_spread_t_4,
         ))
-        out_H[_H_ups[0][leg]] = axis_x_x
-        out_H[_H_ups[1][leg]] = axis_x_y
-        out_H[_H_ups[2][leg]] = axis_x_z
-        out_H[_H_ups[3][leg]] = H_a_3_x
-        out_H[_H_ups[4][leg]] = H_a_3_y
-        out_H[_H_ups[5][leg]] = H_a_3_z
-        out_pivots[_pivots_ups[0][leg]] = least_pivots
+        out_H[_H_ups[0][leg]] = ups_axis_x_x
+        out_H[_H_ups[1][leg]] = ups_axis_x_y
+        out_H[_H_ups[2][leg]] = ups_axis_x_z
+        out_H[_H_ups[3][leg]] = ups_H_a_3_x
+        out_H[_H_ups[4][leg]] = ups_H_a_3_y
+        out_H[_H_ups[5][leg]] = ups_H_a_3_z
+        out_pivots[_pivots_ups[0][leg]] = ups_least_pivots
     total_ups, = sums
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(total_ups)
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
@@ -3743,6 +3965,20 @@ def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
     momentum = np.einsum("ijs,js->is", M, V)
     return (momentum,)
+
+
+def _steps_joint_margins(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    margins = _unlimited(q, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19,
+        20])
+    return (margins,)
+
+
+def _steps_within_limits(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    subtract_1 = q - q
+    within = _not_negative(subtract_1)
+    return (within,)
 
 
 def _steps_actuator_positions(m, X):
@@ -4175,6 +4411,40 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+    )
+
+
+def joint_margins(X, p=None):
+    """How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+    where there is none.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        margins: distances, in the order of q [m or rad] (..., NJ).
+    """
+    return _call(
+        "joint_margins", _steps_joint_margins, p,
+        ("X", X, (NQ,)),
+        unbounded=True,
+    )
+
+
+def within_limits(X, p=None):
+    """Whether all joints are within their limits of displacement.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        within: 1 where no margin is negative, else 0; NaN is neither (...,).
+    """
+    return _call(
+        "within_limits", _steps_within_limits, p,
+        ("X", X, (NQ,)),
     )
 
 

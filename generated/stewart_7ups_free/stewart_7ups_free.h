@@ -51,6 +51,7 @@ typedef STEWART_7UPS_FREE_REAL stewart_7ups_free_real;
 #define STEWART_7UPS_FREE_NC 0
 #define STEWART_7UPS_FREE_NW 6
 #define STEWART_7UPS_FREE_NJ 21
+#define STEWART_7UPS_FREE_OVERCONSTRAINED 0
 
 enum {
     STEWART_7UPS_FREE_OK = 0,
@@ -89,53 +90,56 @@ typedef struct {
     /* inertia tensor of link 3 about its centre of mass, link axes [kg m^2] */
     stewart_7ups_free_real ups_link3_inertia[6][3][3];
     /* base point, base frame [m] */
-    stewart_7ups_free_real ups2_base_point[1][3];
+    stewart_7ups_free_real ups_leg7_base_point[1][3];
     /* rotation from leg axes to base axes [-] */
-    stewart_7ups_free_real ups2_base_frame[1][3][3];
+    stewart_7ups_free_real ups_leg7_base_frame[1][3][3];
     /* platform joint, platform frame [m] */
-    stewart_7ups_free_real ups2_platform_point[1][3];
+    stewart_7ups_free_real ups_leg7_platform_point[1][3];
     /* mass of link 2 [kg] */
-    stewart_7ups_free_real ups2_link2_mass[1];
+    stewart_7ups_free_real ups_leg7_link2_mass[1];
     /* centre of mass of link 2, link frame [m] */
-    stewart_7ups_free_real ups2_link2_centre_of_mass[1][3];
+    stewart_7ups_free_real ups_leg7_link2_centre_of_mass[1][3];
     /* inertia tensor of link 2 about its centre of mass, link axes [kg m^2] */
-    stewart_7ups_free_real ups2_link2_inertia[1][3][3];
+    stewart_7ups_free_real ups_leg7_link2_inertia[1][3][3];
     /* mass of link 3 [kg] */
-    stewart_7ups_free_real ups2_link3_mass[1];
+    stewart_7ups_free_real ups_leg7_link3_mass[1];
     /* centre of mass of link 3, link frame [m] */
-    stewart_7ups_free_real ups2_link3_centre_of_mass[1][3];
+    stewart_7ups_free_real ups_leg7_link3_centre_of_mass[1][3];
     /* inertia tensor of link 3 about its centre of mass, link axes [kg m^2] */
-    stewart_7ups_free_real ups2_link3_inertia[1][3][3];
+    stewart_7ups_free_real ups_leg7_link3_inertia[1][3][3];
 } stewart_7ups_free_params;
 
 /* What depends on the parameters alone; set by stewart_7ups_free_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
-    stewart_7ups_free_real J_star_t_32, J_star_t_34, J_star_xx, J_star_xy, J_star_xz, J_star_yy,
+    /* 6 legs of type ups; copies of the first fill up */
+    stewart_7ups_free_real ups_J_group_2_xx[8], ups_J_group_2_xy[8], ups_J_group_2_xz[8],
+            ups_J_group_2_yy[8], ups_J_group_2_yz[8], ups_J_group_2_zz[8], ups_Sigma_2_xx[8],
+            ups_Sigma_2_yy[8], ups_Sigma_2_zz[8], ups_b_r0_x[8], ups_b_r0_y[8], ups_b_r0_z[8],
+            ups_base_frame_xx[8], ups_base_frame_xy[8], ups_base_frame_xz[8], ups_base_frame_yx[8],
+            ups_base_frame_yy[8], ups_base_frame_yz[8], ups_base_frame_zx[8], ups_base_frame_zy[8],
+            ups_base_frame_zz[8], ups_base_point_x[8], ups_base_point_y[8], ups_base_point_z[8],
+            ups_branch_1[8], ups_branch_2[8], ups_g_r0_x[8], ups_g_r0_y[8], ups_g_r0_z[8],
+            ups_h_2_x[8], ups_h_2_y[8], ups_h_2_z[8], ups_h_3_x[8], ups_h_3_y[8], ups_h_3_z[8],
+            ups_link2_mass[8], ups_link3_mass[8], ups_platform_point_x[8], ups_platform_point_y[8],
+            ups_platform_point_z[8];
+    /* 1 legs of type ups_leg7 */
+    stewart_7ups_free_real ups_leg7_J_group_2_xx[1], ups_leg7_J_group_2_xy[1],
+            ups_leg7_J_group_2_xz[1], ups_leg7_J_group_2_yy[1], ups_leg7_J_group_2_yz[1],
+            ups_leg7_J_group_2_zz[1], ups_leg7_Sigma_2_xx[1], ups_leg7_Sigma_2_yy[1],
+            ups_leg7_Sigma_2_zz[1], ups_leg7_b_r0_x[1], ups_leg7_b_r0_y[1], ups_leg7_b_r0_z[1],
+            ups_leg7_base_frame_xx[1], ups_leg7_base_frame_xy[1], ups_leg7_base_frame_xz[1],
+            ups_leg7_base_frame_yx[1], ups_leg7_base_frame_yy[1], ups_leg7_base_frame_yz[1],
+            ups_leg7_base_frame_zx[1], ups_leg7_base_frame_zy[1], ups_leg7_base_frame_zz[1],
+            ups_leg7_base_point_x[1], ups_leg7_base_point_y[1], ups_leg7_base_point_z[1],
+            ups_leg7_branch_1[1], ups_leg7_branch_2[1], ups_leg7_g_r0_x[1], ups_leg7_g_r0_y[1],
+            ups_leg7_g_r0_z[1], ups_leg7_h_2_x[1], ups_leg7_h_2_y[1], ups_leg7_h_2_z[1],
+            ups_leg7_h_3_x[1], ups_leg7_h_3_y[1], ups_leg7_h_3_z[1], ups_leg7_link2_mass[1],
+            ups_leg7_link3_mass[1], ups_leg7_platform_point_x[1], ups_leg7_platform_point_y[1],
+            ups_leg7_platform_point_z[1];
+    stewart_7ups_free_real J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy,
             J_star_yz, J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y,
             gravity_z, h_star_x, h_star_y, h_star_z, m_star;
-    /* legs of type ups */
-    stewart_7ups_free_real J_group_2_ups_xx[6], J_group_2_ups_xy[6], J_group_2_ups_xz[6],
-            J_group_2_ups_yy[6], J_group_2_ups_yz[6], J_group_2_ups_zz[6], Sigma_2_ups_xx[6],
-            Sigma_2_ups_yy[6], Sigma_2_ups_zz[6], b_ups_r0_x[6], b_ups_r0_y[6], b_ups_r0_z[6],
-            branch_1_ups[6], branch_2_ups[6], g_r0_x[6], g_r0_y[6], g_r0_z[6], h_2_ups_x[6],
-            h_2_ups_y[6], h_2_ups_z[6], h_3_ups_x[6], h_3_ups_y[6], h_3_ups_z[6],
-            ups_base_frame_xx[6], ups_base_frame_xy[6], ups_base_frame_xz[6], ups_base_frame_yx[6],
-            ups_base_frame_yy[6], ups_base_frame_yz[6], ups_base_frame_zx[6], ups_base_frame_zy[6],
-            ups_base_frame_zz[6], ups_base_point_x[6], ups_base_point_y[6], ups_base_point_z[6],
-            ups_link2_mass[6], ups_link3_mass[6], ups_platform_point_x[6], ups_platform_point_y[6],
-            ups_platform_point_z[6];
-    /* legs of type ups2 */
-    stewart_7ups_free_real J_group_2_ups2_xx[1], J_group_2_ups2_xy[1], J_group_2_ups2_xz[1],
-            J_group_2_ups2_yy[1], J_group_2_ups2_yz[1], J_group_2_ups2_zz[1], Sigma_2_ups2_xx[1],
-            Sigma_2_ups2_yy[1], Sigma_2_ups2_zz[1], b_ups2_r0_x[1], b_ups2_r0_y[1], b_ups2_r0_z[1],
-            branch_1_ups2[1], branch_2_ups2[1], g_r0_x_2[1], g_r0_y_2[1], g_r0_z_2[1], h_2_ups2_x[1],
-            h_2_ups2_y[1], h_2_ups2_z[1], h_3_ups2_x[1], h_3_ups2_y[1], h_3_ups2_z[1],
-            ups2_base_frame_xx[1], ups2_base_frame_xy[1], ups2_base_frame_xz[1],
-            ups2_base_frame_yx[1], ups2_base_frame_yy[1], ups2_base_frame_yz[1],
-            ups2_base_frame_zx[1], ups2_base_frame_zy[1], ups2_base_frame_zz[1], ups2_base_point_x[1],
-            ups2_base_point_y[1], ups2_base_point_z[1], ups2_link2_mass[1], ups2_link3_mass[1],
-            ups2_platform_point_x[1], ups2_platform_point_y[1], ups2_platform_point_z[1];
 } stewart_7ups_free_model;
 
 extern const stewart_7ups_free_params stewart_7ups_free_default_params;
@@ -158,7 +162,7 @@ int stewart_7ups_free_M(const stewart_7ups_free_model *model, const stewart_7ups
 size_t stewart_7ups_free_M_batch(const stewart_7ups_free_model *model, size_t n, const
     stewart_7ups_free_real *X, stewart_7ups_free_real *M, int *status);
 
-/* Velocity and gravity terms Z. 1178 mul, 910 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 1154 mul, 886 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int stewart_7ups_free_Z(const stewart_7ups_free_model *model, const stewart_7ups_free_real *X,
     const stewart_7ups_free_real *V, stewart_7ups_free_real *Z);
@@ -197,7 +201,7 @@ size_t stewart_7ups_free_joint_accelerations_batch(const stewart_7ups_free_model
     const stewart_7ups_free_real *X, const stewart_7ups_free_real *V, const stewart_7ups_free_real
     *A, stewart_7ups_free_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1831 mul, 1464 add, 14 div, 14 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1807 mul, 1440 add, 14 div, 14 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int stewart_7ups_free_dynamics(const stewart_7ups_free_model *model, const stewart_7ups_free_real
     *X, const stewart_7ups_free_real *V, stewart_7ups_free_real *M, stewart_7ups_free_real *Z,
@@ -216,7 +220,7 @@ size_t stewart_7ups_free_inverse_dynamics_batch(const stewart_7ups_free_model *m
     const stewart_7ups_free_real *X, const stewart_7ups_free_real *V, const stewart_7ups_free_real
     *A, const stewart_7ups_free_real *wrench, stewart_7ups_free_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1831 mul, 1464 add, 14 div, 14
+/* Acceleration A under the actuator forces tau and the wrench. 1807 mul, 1440 add, 14 div, 14
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int stewart_7ups_free_forward_dynamics(const stewart_7ups_free_model *model, const
@@ -293,6 +297,21 @@ int stewart_7ups_free_momentum(const stewart_7ups_free_model *model, const stewa
 size_t stewart_7ups_free_momentum_batch(const stewart_7ups_free_model *model, size_t n, const
     stewart_7ups_free_real *X, const stewart_7ups_free_real *V, stewart_7ups_free_real *momentum,
     int *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 189 mul, 140 add, 14 div, 14 sqrt, 14 trig. In: X (NQ). Out: margins (NJ).
+   */
+int stewart_7ups_free_joint_margins(const stewart_7ups_free_model *model, const
+    stewart_7ups_free_real *X, stewart_7ups_free_real *margins);
+size_t stewart_7ups_free_joint_margins_batch(const stewart_7ups_free_model *model, size_t n, const
+    stewart_7ups_free_real *X, stewart_7ups_free_real *margins, int *status);
+
+/* Whether all joints are within their limits of displacement. 189 mul, 140 add, 14 div, 14 sqrt,
+   14 trig. In: X (NQ). Out: within (1). */
+int stewart_7ups_free_within_limits(const stewart_7ups_free_model *model, const
+    stewart_7ups_free_real *X, stewart_7ups_free_real *within);
+size_t stewart_7ups_free_within_limits_batch(const stewart_7ups_free_model *model, size_t n, const
+    stewart_7ups_free_real *X, stewart_7ups_free_real *within, int *status);
 
 /* Displacements of the actuated joints, in the order of tau. 189 mul, 140 add, 14 div, 14 sqrt,
    14 trig. In: X (NQ). Out: q (NU). */

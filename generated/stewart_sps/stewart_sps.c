@@ -26,7 +26,10 @@ enum {
 
 #define R(x) ((real)(x))
 #define UNLESS(condition) ((condition) ? R(0) : R(1))  /* flag of what must hold */
-#define LANES 8  /* states that a batch runs side by side */
+#ifndef STEWART_SPS_LANES
+#define STEWART_SPS_LANES 8  /* 1 where there are no vectors: less memory, shorter code */
+#endif
+#define LANES ((size_t)STEWART_SPS_LANES)  /* states that a batch runs side by side */
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
@@ -36,6 +39,20 @@ enum {
 #define INLINE static inline
 #define APART static
 #endif
+
+/* Bytes of a vector. */
+#if defined(__AVX__)
+#define VECTOR 32
+#elif defined(__SSE2__) || defined(__ARM_NEON)
+#define VECTOR 16
+#else
+#define VECTOR 1
+#endif
+/* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
+#define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
+#define LEGS(n) \
+    ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
+        : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
@@ -104,63 +121,122 @@ INLINE int is_finite(real x)
     return x - x == 0;
 }
 
-/* Why states are impossible, by state: more than 0 where a cause holds. */
+/* Why states are impossible, by state: more than 0 where a cause holds.  total: the sum of all
+   results, and side by side of all inputs, which is finite only where they are. */
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
+    real total[LANES];
 } verdict;
 
 INLINE void start(size_t w, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
+        t->total[k] = 0;
     }
 }
 
-/* x - x is 0 for every number and NaN for the rest; sums side by side add up fast. */
+/* x - x is 0 for every number and NaN for the rest. */
 INLINE int all_finite(const real *x, size_t n)
 {
+    real sum = 0;
+    for (size_t i = 0; i < n; ++i) {
+        sum += x[i] - x[i];
+    }
+    return sum == 0;
+}
+
+/* Whether all are finite: then so is their sum, but for numbers so large that they need a closer
+   look.  Many add up fast as sums side by side. */
+INLINE int sum_is_finite(const real *x, size_t n)
+{
+    if (n < 2*LANES) {
+        return is_finite(total(x, n));
+    }
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
         for (size_t k = 0; k < LANES; ++k) {
-            sum[k] += x[i + k] - x[i + k];
+            sum[k] += x[i + k];
         }
     }
     for (size_t i = most; i < n; ++i) {
-        sum[0] += x[i] - x[i];
+        sum[i - most] += x[i];
     }
-    return total(sum, LANES) == 0;
+    return is_finite(total(sum, LANES));
 }
 
 /* Flag the states with entries that are not finite; the states stand side by side. */
 INLINE void check(size_t size, size_t w, const real *x, real *flags)
 {
-    if (!all_finite(x, size*w)) {
+    if (!sum_is_finite(x, size*w)) {
         for (size_t i = 0; i < size*w; ++i) {
             flags[i%w] += UNLESS(is_finite(x[i]));
         }
     }
 }
 
-/* Input, given state by state, with its states side by side: entry e of state k at e*w + k. */
-INLINE const real *side_by_side(size_t size, size_t w, const real *x, real *lanes, real *flags)
+/* Add up the entries of every state. */
+INLINE void add_up(size_t size, const real *x, real *total)
 {
-    for (size_t e = 0; e < size && w > 1; ++e) {
-        for (size_t k = 0; k < w; ++k) {
-            lanes[e*w + k] = x[size*k + e];
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            total[k] += x[e*LANES + k];
         }
     }
-    check(size, w, w > 1 ? lanes : x, flags);
-    return w > 1 ? lanes : x;
 }
 
-/* The same for input that may be NULL: then all its entries are `none`. */
-INLINE const real *optional(size_t size, size_t w, const real *x, real none, real *lanes, real *flags)
+/* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
+INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
 {
-    for (size_t e = 0; e < size*w && !x; ++e) {
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            lanes[e*LANES + k] = x[size*k + e];
+        }
+    }
+    add_up(size, lanes, total);
+    return lanes;
+}
+
+/* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
+INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+{
+    for (size_t e = 0; e < size && !x; ++e) {
+        own[e] = none;
+    }
+    if (x) {
+        check(size, 1, x, flags);
+    }
+    return x ? x : own;
+}
+
+INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
+    real *total)
+{
+    for (size_t e = 0; e < size*LANES && !x; ++e) {
         lanes[e] = none;
     }
-    return x ? side_by_side(size, w, x, lanes, flags) : lanes;
+    return x ? side_by_side(size, x, lanes, total) : lanes;
+}
+
+/* Motion of the base, or NULL: at rest, its axes those of the world. */
+INLINE const real *motion_of_base(const real *x, real *own, real *flags)
+{
+    for (size_t e = 0; e < 18 && !x; ++e) {
+        own[e] = R(e < 9 && e%4 == 0);
+    }
+    if (x) {
+        check(18, 1, x, flags);
+    }
+    return x ? x : own;
+}
+
+INLINE const real *motion_of_base_side_by_side(const real *x, real *lanes, real *total)
+{
+    for (size_t i = 0; i < 18*LANES && !x; ++i) {
+        lanes[i] = R(i/LANES < 9 && i/LANES%4 == 0);
+    }
+    return x ? side_by_side(18, x, lanes, total) : lanes;
 }
 
 /* Flag the states of an input, NULL or given state by state, with entries that are not positive. */
@@ -171,14 +247,25 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE void judge(const verdict *t, size_t w, int *code)
+INLINE void judge(const verdict *t, int *code)
 {
-    for (size_t k = 0; k < w; ++k) {
-        code[k] = t->invalid[k] > 0 ? INVALID
-            : t->diverged[k] > 0 ? NOT_CONVERGED
-            : t->unreachable[k] > 0 ? UNREACHABLE
-            : t->singular[k] > 0 ? SINGULAR
-            : t->overflow[k] > 0 ? INVALID : OK;
+    *code = t->invalid[0] > 0 ? INVALID
+        : t->diverged[0] > 0 ? NOT_CONVERGED
+        : t->unreachable[0] > 0 ? UNREACHABLE
+        : t->singular[0] > 0 ? SINGULAR
+        : t->overflow[0] > 0 ? INVALID : OK;
+}
+
+/* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
+INLINE void suspect(const verdict *t, int *code)
+{
+    real flags[LANES];
+    for (size_t k = 0; k < LANES; ++k) {
+        flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
+            + (t->total[k] - t->total[k]);
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        code[k] = flags[k] == 0 ? OK : INVALID;
     }
 }
 
@@ -199,17 +286,19 @@ INLINE void refuse(size_t size, real *out)
     }
 }
 
-/* Outputs state by state; NaN where a state is impossible. */
-INLINE void deliver(const real *x, size_t size, size_t w, const int *code, real *out)
+/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < w; ++k) {
-            out[size*k + e] = x[e*w + k];
-        }
+        out[e] = x[e];
     }
-    for (size_t k = 0; k < w; ++k) {
-        if (code[k] != OK) {
-            refuse(size, out + size*k);
+}
+
+INLINE void deliver(size_t size, const real *x, real *out)
+{
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            out[size*k + e] = x[e*LANES + k];
         }
     }
 }
@@ -293,7 +382,7 @@ const stewart_sps_params stewart_sps_default_params = {
     R(12.0),  /* platform_mass */
     {R(0.0), R(0.0), R(0.04)},  /* platform_centre_of_mass */
     {{R(0.35), R(0.0), R(0.0)}, {R(0.0), R(0.35), R(0.0)}, {R(0.0), R(0.0), R(0.6)}},  /* platform_inertia */
-    {  /* urps_base_point */
+    {  /* sps_base_point */
         {R(-0.07595833716604927), R(0.3902743704941056), R(0.017731158385886236)},
         {R(0.3759666878769001), R(0.12935533563203033), R(0.017731158385886236)},
         {R(-0.3000083507108508), R(-0.2609190348620751), R(0.017731158385886236)},
@@ -301,7 +390,7 @@ const stewart_sps_params stewart_sps_default_params = {
         {R(0.37596668787689996), R(-0.12935533563203055), R(0.017731158385886236)},
         {R(-0.07595833716604977), R(-0.39027437049410546), R(0.017731158385886236)},
     },
-    {  /* urps_base_frame */
+    {  /* sps_base_frame */
         {{R(0.0), R(0.7666445685820955), R(-0.6420717292200091)}, {R(0.0), R(0.6420717292200091), R(0.7666445685820955)}, {R(1.0), R(0.0), R(0.0)}},
         {{R(0.0), R(0.17272814426528374), R(-0.9849695366754605)}, {R(0.0), R(0.9849695366754605), R(0.17272814426528374)}, {R(1.0), R(0.0), R(0.0)}},
         {{R(0.0), R(-0.9393727128473789), R(-0.34289780745545156)}, {R(0.0), R(0.34289780745545156), R(-0.9393727128473789)}, {R(1.0), R(0.0), R(0.0)}},
@@ -309,7 +398,7 @@ const stewart_sps_params stewart_sps_default_params = {
         {{R(0.0), R(0.17272814426528307), R(0.9849695366754606)}, {R(0.0), R(-0.9849695366754606), R(0.17272814426528307)}, {R(1.0), R(0.0), R(0.0)}},
         {{R(0.0), R(0.7666445685820946), R(0.6420717292200101)}, {R(0.0), R(-0.6420717292200101), R(0.7666445685820946)}, {R(1.0), R(0.0), R(0.0)}},
     },
-    {  /* urps_platform_point */
+    {  /* sps_platform_point */
         {R(0.22999337057462865), R(0.19262151876600273), R(-0.02)},
         {R(0.05181844327958512), R(0.29549086100263816), R(-0.02)},
         {R(-0.28181181385421367), R(0.10286934223663546), R(-0.02)},
@@ -317,7 +406,7 @@ const stewart_sps_params stewart_sps_default_params = {
         {R(0.05181844327958492), R(-0.29549086100263816), R(-0.02)},
         {R(0.22999337057462838), R(-0.19262151876600303), R(-0.02)},
     },
-    {  /* urps_link3_mass */
+    {  /* sps_link3_mass */
         R(2.4),
         R(2.4),
         R(2.4),
@@ -325,7 +414,7 @@ const stewart_sps_params stewart_sps_default_params = {
         R(2.4),
         R(2.4),
     },
-    {  /* urps_link3_centre_of_mass */
+    {  /* sps_link3_centre_of_mass */
         {R(0.18), R(0.0), R(0.0)},
         {R(0.18), R(0.0), R(0.0)},
         {R(0.18), R(0.0), R(0.0)},
@@ -333,7 +422,7 @@ const stewart_sps_params stewart_sps_default_params = {
         {R(0.18), R(0.0), R(0.0)},
         {R(0.18), R(0.0), R(0.0)},
     },
-    {  /* urps_link3_inertia */
+    {  /* sps_link3_inertia */
         {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
         {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
         {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
@@ -341,7 +430,7 @@ const stewart_sps_params stewart_sps_default_params = {
         {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
         {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
     },
-    {  /* urps_link4_mass */
+    {  /* sps_link4_mass */
         R(1.1),
         R(1.1),
         R(1.1),
@@ -349,7 +438,7 @@ const stewart_sps_params stewart_sps_default_params = {
         R(1.1),
         R(1.1),
     },
-    {  /* urps_link4_centre_of_mass */
+    {  /* sps_link4_centre_of_mass */
         {R(-0.22), R(0.0), R(0.0)},
         {R(-0.22), R(0.0), R(0.0)},
         {R(-0.22), R(0.0), R(0.0)},
@@ -357,7 +446,7 @@ const stewart_sps_params stewart_sps_default_params = {
         {R(-0.22), R(0.0), R(0.0)},
         {R(-0.22), R(0.0), R(0.0)},
     },
-    {  /* urps_link4_inertia */
+    {  /* sps_link4_inertia */
         {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
         {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
         {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
@@ -388,20 +477,20 @@ static int acceptable(const stewart_sps_params *p)
     ok &= all_within(&p->platform_centre_of_mass[0], 3);
     ok &= all_within(&p->platform_inertia[0][0], 9);
     ok &= all_inertias(&p->platform_inertia[0][0], 1);
-    ok &= all_within(&p->urps_base_point[0][0], 18);
-    ok &= all_within(&p->urps_base_frame[0][0][0], 54);
-    ok &= all_rotations(&p->urps_base_frame[0][0][0], 6);
-    ok &= all_within(&p->urps_platform_point[0][0], 18);
-    ok &= all_within(&p->urps_link3_mass[0], 6);
-    ok &= none_negative(&p->urps_link3_mass[0], 6);
-    ok &= all_within(&p->urps_link3_centre_of_mass[0][0], 18);
-    ok &= all_within(&p->urps_link3_inertia[0][0][0], 54);
-    ok &= all_inertias(&p->urps_link3_inertia[0][0][0], 6);
-    ok &= all_within(&p->urps_link4_mass[0], 6);
-    ok &= none_negative(&p->urps_link4_mass[0], 6);
-    ok &= all_within(&p->urps_link4_centre_of_mass[0][0], 18);
-    ok &= all_within(&p->urps_link4_inertia[0][0][0], 54);
-    ok &= all_inertias(&p->urps_link4_inertia[0][0][0], 6);
+    ok &= all_within(&p->sps_base_point[0][0], 18);
+    ok &= all_within(&p->sps_base_frame[0][0][0], 54);
+    ok &= all_rotations(&p->sps_base_frame[0][0][0], 6);
+    ok &= all_within(&p->sps_platform_point[0][0], 18);
+    ok &= all_within(&p->sps_link3_mass[0], 6);
+    ok &= none_negative(&p->sps_link3_mass[0], 6);
+    ok &= all_within(&p->sps_link3_centre_of_mass[0][0], 18);
+    ok &= all_within(&p->sps_link3_inertia[0][0][0], 54);
+    ok &= all_inertias(&p->sps_link3_inertia[0][0][0], 6);
+    ok &= all_within(&p->sps_link4_mass[0], 6);
+    ok &= none_negative(&p->sps_link4_mass[0], 6);
+    ok &= all_within(&p->sps_link4_centre_of_mass[0][0], 18);
+    ok &= all_within(&p->sps_link4_inertia[0][0][0], 54);
+    ok &= all_inertias(&p->sps_link4_inertia[0][0][0], 6);
     return ok;
 }
 
@@ -411,19 +500,19 @@ int stewart_sps_prepare(const stewart_sps_params *params, stewart_sps_model *mod
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real total_urps = 0;
-    real total_urps_x = 0;
-    real total_urps_y = 0;
-    real total_urps_z = 0;
-    real total_urps_xx = 0;
-    real total_urps_xy = 0;
-    real total_urps_xz = 0;
-    real total_urps_yy = 0;
-    real total_urps_yz = 0;
-    real total_urps_zz = 0;
-    real total_urps_x_2 = 0;
-    real total_urps_y_2 = 0;
-    real total_urps_z_2 = 0;
+    real total_sps = 0;
+    real total_sps_x = 0;
+    real total_sps_y = 0;
+    real total_sps_z = 0;
+    real total_sps_xx = 0;
+    real total_sps_xy = 0;
+    real total_sps_xz = 0;
+    real total_sps_yy = 0;
+    real total_sps_yz = 0;
+    real total_sps_zz = 0;
+    real total_sps_x_2 = 0;
+    real total_sps_y_2 = 0;
+    real total_sps_z_2 = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real gravity_z = params->gravity[2];
@@ -437,11 +526,11 @@ int stewart_sps_prepare(const stewart_sps_params *params, stewart_sps_model *mod
     const real platform_inertia_yy = params->platform_inertia[1][1];
     const real platform_inertia_yz = params->platform_inertia[1][2];
     const real platform_inertia_zz = params->platform_inertia[2][2];
-    /* (L2) first moment about the platform origin */
+    /* (h_star) first moment about the platform origin */
     const real h_star_t = platform_centre_of_mass_x*platform_mass;
     const real h_star_t_2 = platform_centre_of_mass_y*platform_mass;
     const real h_star_t_3 = platform_centre_of_mass_z*platform_mass;
-    /* (L3) inertia tensor about the platform origin */
+    /* (J_star) inertia tensor about the platform origin */
     const real J_star_t = platform_centre_of_mass_x*platform_centre_of_mass_x;
     const real J_star_t_2 = platform_centre_of_mass_y*platform_centre_of_mass_y;
     const real J_star_t_3 = platform_centre_of_mass_z*platform_centre_of_mass_z;
@@ -452,205 +541,208 @@ int stewart_sps_prepare(const stewart_sps_params *params, stewart_sps_model *mod
     const real J_star_t_8 = platform_mass*(J_star_t_2 - J_star_t_4);
     const real J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass;
     const real J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4);
-    /* (C2) rms distance of the platform points from their centroid */
+    /* (spread) rms distance of the platform points from their centroid */
     const real spread_t = R(0.16666666666666666)*root(6);
-    /* (C3) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = R(1.9595917942265426)*spread_t;
     model->gravity_x = gravity_x;
     model->gravity_y = gravity_y;
     model->gravity_z = gravity_z;
     model->legs_size = legs_size;
     model->spread_t = spread_t;
-    for (size_t leg = 0; leg < 6; ++leg) {
-        const real urps_base_point_x = params->urps_base_point[leg][0];
-        const real urps_base_point_y = params->urps_base_point[leg][1];
-        const real urps_base_point_z = params->urps_base_point[leg][2];
-        const real urps_base_frame_xx = params->urps_base_frame[leg][0][0];
-        const real urps_base_frame_xy = params->urps_base_frame[leg][0][1];
-        const real urps_base_frame_xz = params->urps_base_frame[leg][0][2];
-        const real urps_base_frame_yx = params->urps_base_frame[leg][1][0];
-        const real urps_base_frame_yy = params->urps_base_frame[leg][1][1];
-        const real urps_base_frame_yz = params->urps_base_frame[leg][1][2];
-        const real urps_base_frame_zx = params->urps_base_frame[leg][2][0];
-        const real urps_base_frame_zy = params->urps_base_frame[leg][2][1];
-        const real urps_base_frame_zz = params->urps_base_frame[leg][2][2];
-        const real urps_platform_point_x = params->urps_platform_point[leg][0];
-        const real urps_platform_point_y = params->urps_platform_point[leg][1];
-        const real urps_platform_point_z = params->urps_platform_point[leg][2];
-        const real urps_link3_mass = params->urps_link3_mass[leg];
-        const real urps_link3_centre_of_mass_x = params->urps_link3_centre_of_mass[leg][0];
-        const real urps_link3_centre_of_mass_y = params->urps_link3_centre_of_mass[leg][1];
-        const real urps_link3_centre_of_mass_z = params->urps_link3_centre_of_mass[leg][2];
-        const real urps_link3_inertia_xx = params->urps_link3_inertia[leg][0][0];
-        const real urps_link3_inertia_xy = params->urps_link3_inertia[leg][0][1];
-        const real urps_link3_inertia_xz = params->urps_link3_inertia[leg][0][2];
-        const real urps_link3_inertia_yy = params->urps_link3_inertia[leg][1][1];
-        const real urps_link3_inertia_yz = params->urps_link3_inertia[leg][1][2];
-        const real urps_link3_inertia_zz = params->urps_link3_inertia[leg][2][2];
-        const real urps_link4_mass = params->urps_link4_mass[leg];
-        const real urps_link4_centre_of_mass_x = params->urps_link4_centre_of_mass[leg][0];
-        const real urps_link4_centre_of_mass_y = params->urps_link4_centre_of_mass[leg][1];
-        const real urps_link4_centre_of_mass_z = params->urps_link4_centre_of_mass[leg][2];
-        const real urps_link4_inertia_xx = params->urps_link4_inertia[leg][0][0];
-        const real urps_link4_inertia_xy = params->urps_link4_inertia[leg][0][1];
-        const real urps_link4_inertia_xz = params->urps_link4_inertia[leg][0][2];
-        const real urps_link4_inertia_yy = params->urps_link4_inertia[leg][1][1];
-        const real urps_link4_inertia_yz = params->urps_link4_inertia[leg][1][2];
-        const real urps_link4_inertia_zz = params->urps_link4_inertia[leg][2][2];
-        static const signed char signs_branch_1[] = {1, 1, 1, 1, 1, 1};
-        const real branch_1 = signs_branch_1[leg];
-        static const signed char signs_branch_2[] = {1, 1, 1, 1, 1, 1};
-        const real branch_2 = signs_branch_2[leg];
-        /* (urps-G3) inertia tensor of link 3 about the origin of link 3 */
-        const real J_3_t = urps_link3_centre_of_mass_x*urps_link3_centre_of_mass_x;
-        const real J_3_t_2 = urps_link3_centre_of_mass_y*urps_link3_centre_of_mass_y;
-        const real J_3_t_3 = urps_link3_centre_of_mass_z*urps_link3_centre_of_mass_z;
-        const real J_3_t_4 = J_3_t + J_3_t_2 + J_3_t_3;
-        /* (urps-G5) inertia tensor of link 4 about the connection point */
-        const real J_4_t = urps_link4_centre_of_mass_x*urps_link4_centre_of_mass_x;
-        const real J_4_t_2 = urps_link4_centre_of_mass_y*urps_link4_centre_of_mass_y;
-        const real J_4_t_3 = urps_link4_centre_of_mass_z*urps_link4_centre_of_mass_z;
-        const real J_4_t_4 = J_4_t + J_4_t_2 + J_4_t_3;
-        /* (urps-N8) inertia of the links that turn with link 3, each about its reference point */
-        const real J_group_3_xx = urps_link3_inertia_yy + urps_link4_inertia_yy -
-            urps_link3_mass*(J_3_t_2 - J_3_t_4) - urps_link4_mass*(J_4_t_2 - J_4_t_4);
-        const real J_group_3_xy = urps_link3_inertia_yz + urps_link4_inertia_yz -
-            urps_link3_centre_of_mass_y*urps_link3_centre_of_mass_z*urps_link3_mass -
-            urps_link4_centre_of_mass_y*urps_link4_centre_of_mass_z*urps_link4_mass;
-        const real J_group_3_xz = urps_link3_inertia_xy + urps_link4_inertia_xy -
-            urps_link3_centre_of_mass_x*urps_link3_centre_of_mass_y*urps_link3_mass -
-            urps_link4_centre_of_mass_x*urps_link4_centre_of_mass_y*urps_link4_mass;
-        const real J_group_3_yy = urps_link3_inertia_zz + urps_link4_inertia_zz -
-            urps_link3_mass*(J_3_t_3 - J_3_t_4) - urps_link4_mass*(J_4_t_3 - J_4_t_4);
-        const real J_group_3_yz = urps_link3_inertia_xz + urps_link4_inertia_xz -
-            urps_link3_centre_of_mass_x*urps_link3_centre_of_mass_z*urps_link3_mass -
-            urps_link4_centre_of_mass_x*urps_link4_centre_of_mass_z*urps_link4_mass;
-        const real J_group_3_zz = urps_link3_inertia_xx + urps_link4_inertia_xx -
-            urps_link3_mass*(J_3_t - J_3_t_4) - urps_link4_mass*(J_4_t - J_4_t_4);
-        /* (urps-G4) first moment of link 4 about the connection point */
-        const real h_4_x = urps_link4_centre_of_mass_x*urps_link4_mass;
-        const real h_4_y = urps_link4_centre_of_mass_y*urps_link4_mass;
-        const real h_4_z = urps_link4_centre_of_mass_z*urps_link4_mass;
-        /* (L2) first moment about the platform origin */
-        const real h_star_t_4 = urps_link4_mass*urps_platform_point_x;
-        const real h_star_t_5 = urps_link4_mass*urps_platform_point_y;
-        const real h_star_t_6 = urps_link4_mass*urps_platform_point_z;
-        /* (L3) inertia tensor about the platform origin */
-        const real J_star_t_11 = urps_platform_point_x*urps_platform_point_x;
-        const real J_star_t_12 = urps_platform_point_y*urps_platform_point_y;
-        const real J_star_t_13 = urps_platform_point_z*urps_platform_point_z;
-        const real J_star_t_14 = J_star_t_11 + J_star_t_12 + J_star_t_13;
-        const real J_star_t_15 = urps_link4_mass*(J_star_t_11 - J_star_t_14);
-        const real J_star_t_16 = urps_link4_mass*urps_platform_point_x*urps_platform_point_y;
-        const real J_star_t_17 = urps_link4_mass*urps_platform_point_x*urps_platform_point_z;
-        const real J_star_t_18 = urps_link4_mass*(J_star_t_12 - J_star_t_14);
-        const real J_star_t_19 = urps_link4_mass*urps_platform_point_y*urps_platform_point_z;
-        const real J_star_t_20 = urps_link4_mass*(J_star_t_13 - J_star_t_14);
-        /* (urps-G2) first moment of link 3 about the origin of link 3 */
-        const real h_3_x = urps_link3_centre_of_mass_x*urps_link3_mass;
-        const real h_3_y = urps_link3_centre_of_mass_y*urps_link3_mass;
-        const real h_3_z = urps_link3_centre_of_mass_z*urps_link3_mass;
-        /* (urps-N9) half the trace of that inertia tensor */
-        const real trace_J_group_3 = R(0.5)*J_group_3_xx + R(0.5)*J_group_3_yy +
-            R(0.5)*J_group_3_zz;
-        /* (urps-N10) second moment of mass of the links that turn with link 3 */
-        const real Sigma_3_xx = trace_J_group_3 - J_group_3_xx;
-        const real Sigma_3_yy = trace_J_group_3 - J_group_3_yy;
-        const real Sigma_3_zz = trace_J_group_3 - J_group_3_zz;
-        /* (V1) potential energy */
-        const real g_r0_x = gravity_x*urps_base_frame_xx + gravity_y*urps_base_frame_yx +
-            gravity_z*urps_base_frame_zx;
-        const real g_r0_y = gravity_x*urps_base_frame_xy + gravity_y*urps_base_frame_yy +
-            gravity_z*urps_base_frame_zy;
-        const real g_r0_z = gravity_x*urps_base_frame_xz + gravity_y*urps_base_frame_yz +
-            gravity_z*urps_base_frame_zz;
-        const real b_r0_x = urps_base_frame_xx*urps_base_point_x +
-            urps_base_frame_yx*urps_base_point_y + urps_base_frame_zx*urps_base_point_z;
-        const real b_r0_y = urps_base_frame_xy*urps_base_point_x +
-            urps_base_frame_yy*urps_base_point_y + urps_base_frame_zy*urps_base_point_z;
-        const real b_r0_z = urps_base_frame_xz*urps_base_point_x +
-            urps_base_frame_yz*urps_base_point_y + urps_base_frame_zz*urps_base_point_z;
-        model->J_group_3_xx[leg] = J_group_3_xx;
-        model->J_group_3_xy[leg] = J_group_3_xy;
-        model->J_group_3_xz[leg] = J_group_3_xz;
-        model->J_group_3_yy[leg] = J_group_3_yy;
-        model->J_group_3_yz[leg] = J_group_3_yz;
-        model->J_group_3_zz[leg] = J_group_3_zz;
-        model->Sigma_3_xx[leg] = Sigma_3_xx;
-        model->Sigma_3_yy[leg] = Sigma_3_yy;
-        model->Sigma_3_zz[leg] = Sigma_3_zz;
-        model->b_r0_x[leg] = b_r0_x;
-        model->b_r0_y[leg] = b_r0_y;
-        model->b_r0_z[leg] = b_r0_z;
-        model->branch_1[leg] = branch_1;
-        model->branch_2[leg] = branch_2;
-        model->g_r0_x[leg] = g_r0_x;
-        model->g_r0_y[leg] = g_r0_y;
-        model->g_r0_z[leg] = g_r0_z;
-        model->h_3_x[leg] = h_3_x;
-        model->h_3_y[leg] = h_3_y;
-        model->h_3_z[leg] = h_3_z;
-        model->h_4_x[leg] = h_4_x;
-        model->h_4_y[leg] = h_4_y;
-        model->h_4_z[leg] = h_4_z;
-        model->urps_base_frame_xx[leg] = urps_base_frame_xx;
-        model->urps_base_frame_xy[leg] = urps_base_frame_xy;
-        model->urps_base_frame_xz[leg] = urps_base_frame_xz;
-        model->urps_base_frame_yx[leg] = urps_base_frame_yx;
-        model->urps_base_frame_yy[leg] = urps_base_frame_yy;
-        model->urps_base_frame_yz[leg] = urps_base_frame_yz;
-        model->urps_base_frame_zx[leg] = urps_base_frame_zx;
-        model->urps_base_frame_zy[leg] = urps_base_frame_zy;
-        model->urps_base_frame_zz[leg] = urps_base_frame_zz;
-        model->urps_base_point_x[leg] = urps_base_point_x;
-        model->urps_base_point_y[leg] = urps_base_point_y;
-        model->urps_base_point_z[leg] = urps_base_point_z;
-        model->urps_link3_mass[leg] = urps_link3_mass;
-        model->urps_link4_mass[leg] = urps_link4_mass;
-        model->urps_platform_point_x[leg] = urps_platform_point_x;
-        model->urps_platform_point_y[leg] = urps_platform_point_y;
-        model->urps_platform_point_z[leg] = urps_platform_point_z;
-        total_urps += urps_link4_mass;
-        total_urps_x += h_star_t_4;
-        total_urps_y += h_star_t_5;
-        total_urps_z += h_star_t_6;
-        total_urps_xx += J_star_t_15;
-        total_urps_xy += J_star_t_16;
-        total_urps_xz += J_star_t_17;
-        total_urps_yy += J_star_t_18;
-        total_urps_yz += J_star_t_19;
-        total_urps_zz += J_star_t_20;
-        total_urps_x_2 += urps_platform_point_x;
-        total_urps_y_2 += urps_platform_point_y;
-        total_urps_z_2 += urps_platform_point_z;
+    for (size_t leg = 0; leg < 8; ++leg) {
+        const size_t own = leg < 6 ? leg : 0;
+        const real sps_base_point_x = params->sps_base_point[own][0];
+        const real sps_base_point_y = params->sps_base_point[own][1];
+        const real sps_base_point_z = params->sps_base_point[own][2];
+        const real sps_base_frame_xx = params->sps_base_frame[own][0][0];
+        const real sps_base_frame_xy = params->sps_base_frame[own][0][1];
+        const real sps_base_frame_xz = params->sps_base_frame[own][0][2];
+        const real sps_base_frame_yx = params->sps_base_frame[own][1][0];
+        const real sps_base_frame_yy = params->sps_base_frame[own][1][1];
+        const real sps_base_frame_yz = params->sps_base_frame[own][1][2];
+        const real sps_base_frame_zx = params->sps_base_frame[own][2][0];
+        const real sps_base_frame_zy = params->sps_base_frame[own][2][1];
+        const real sps_base_frame_zz = params->sps_base_frame[own][2][2];
+        const real sps_platform_point_x = params->sps_platform_point[own][0];
+        const real sps_platform_point_y = params->sps_platform_point[own][1];
+        const real sps_platform_point_z = params->sps_platform_point[own][2];
+        const real sps_link3_mass = params->sps_link3_mass[own];
+        const real sps_link3_centre_of_mass_x = params->sps_link3_centre_of_mass[own][0];
+        const real sps_link3_centre_of_mass_y = params->sps_link3_centre_of_mass[own][1];
+        const real sps_link3_centre_of_mass_z = params->sps_link3_centre_of_mass[own][2];
+        const real sps_link3_inertia_xx = params->sps_link3_inertia[own][0][0];
+        const real sps_link3_inertia_xy = params->sps_link3_inertia[own][0][1];
+        const real sps_link3_inertia_xz = params->sps_link3_inertia[own][0][2];
+        const real sps_link3_inertia_yy = params->sps_link3_inertia[own][1][1];
+        const real sps_link3_inertia_yz = params->sps_link3_inertia[own][1][2];
+        const real sps_link3_inertia_zz = params->sps_link3_inertia[own][2][2];
+        const real sps_link4_mass = params->sps_link4_mass[own];
+        const real sps_link4_centre_of_mass_x = params->sps_link4_centre_of_mass[own][0];
+        const real sps_link4_centre_of_mass_y = params->sps_link4_centre_of_mass[own][1];
+        const real sps_link4_centre_of_mass_z = params->sps_link4_centre_of_mass[own][2];
+        const real sps_link4_inertia_xx = params->sps_link4_inertia[own][0][0];
+        const real sps_link4_inertia_xy = params->sps_link4_inertia[own][0][1];
+        const real sps_link4_inertia_xz = params->sps_link4_inertia[own][0][2];
+        const real sps_link4_inertia_yy = params->sps_link4_inertia[own][1][1];
+        const real sps_link4_inertia_yz = params->sps_link4_inertia[own][1][2];
+        const real sps_link4_inertia_zz = params->sps_link4_inertia[own][2][2];
+        static const signed char signs_sps_branch_1[] = {1, 1, 1, 1, 1, 1};
+        const real sps_branch_1 = signs_sps_branch_1[own];
+        static const signed char signs_sps_branch_2[] = {1, 1, 1, 1, 1, 1};
+        const real sps_branch_2 = signs_sps_branch_2[own];
+        /* (sps-h_4) first moment of link 4 about the connection point */
+        const real sps_h_4_x = sps_link4_centre_of_mass_x*sps_link4_mass;
+        const real sps_h_4_y = sps_link4_centre_of_mass_y*sps_link4_mass;
+        const real sps_h_4_z = sps_link4_centre_of_mass_z*sps_link4_mass;
+        /* (sps-J_3) inertia tensor of link 3 about the origin of link 3 */
+        const real sps_J_3_t = sps_link3_centre_of_mass_x*sps_link3_centre_of_mass_x;
+        const real sps_J_3_t_2 = sps_link3_centre_of_mass_y*sps_link3_centre_of_mass_y;
+        const real sps_J_3_t_3 = sps_link3_centre_of_mass_z*sps_link3_centre_of_mass_z;
+        const real sps_J_3_t_4 = sps_J_3_t + sps_J_3_t_2 + sps_J_3_t_3;
+        /* (sps-J_4) inertia tensor of link 4 about the connection point */
+        const real sps_J_4_t = sps_link4_centre_of_mass_x*sps_link4_centre_of_mass_x;
+        const real sps_J_4_t_2 = sps_link4_centre_of_mass_y*sps_link4_centre_of_mass_y;
+        const real sps_J_4_t_3 = sps_link4_centre_of_mass_z*sps_link4_centre_of_mass_z;
+        const real sps_J_4_t_4 = sps_J_4_t + sps_J_4_t_2 + sps_J_4_t_3;
+        /* (sps-J_group_3) inertia of the links that turn with link 3, each about its reference point */
+        const real sps_J_group_3_xx = sps_link3_inertia_yy + sps_link4_inertia_yy -
+            sps_link3_mass*(sps_J_3_t_2 - sps_J_3_t_4) - sps_link4_mass*(sps_J_4_t_2 -
+            sps_J_4_t_4);
+        const real sps_J_group_3_xy = sps_link3_inertia_yz + sps_link4_inertia_yz -
+            sps_link3_centre_of_mass_y*sps_link3_centre_of_mass_z*sps_link3_mass -
+            sps_link4_centre_of_mass_y*sps_link4_centre_of_mass_z*sps_link4_mass;
+        const real sps_J_group_3_xz = sps_link3_inertia_xy + sps_link4_inertia_xy -
+            sps_link3_centre_of_mass_x*sps_link3_centre_of_mass_y*sps_link3_mass -
+            sps_link4_centre_of_mass_x*sps_link4_centre_of_mass_y*sps_link4_mass;
+        const real sps_J_group_3_yy = sps_link3_inertia_zz + sps_link4_inertia_zz -
+            sps_link3_mass*(sps_J_3_t_3 - sps_J_3_t_4) - sps_link4_mass*(sps_J_4_t_3 -
+            sps_J_4_t_4);
+        const real sps_J_group_3_yz = sps_link3_inertia_xz + sps_link4_inertia_xz -
+            sps_link3_centre_of_mass_x*sps_link3_centre_of_mass_z*sps_link3_mass -
+            sps_link4_centre_of_mass_x*sps_link4_centre_of_mass_z*sps_link4_mass;
+        const real sps_J_group_3_zz = sps_link3_inertia_xx + sps_link4_inertia_xx -
+            sps_link3_mass*(sps_J_3_t - sps_J_3_t_4) - sps_link4_mass*(sps_J_4_t - sps_J_4_t_4);
+        /* (h_star) first moment about the platform origin */
+        const real sps_h_star_t = sps_link4_mass*sps_platform_point_x;
+        const real sps_h_star_t_2 = sps_link4_mass*sps_platform_point_y;
+        const real sps_h_star_t_3 = sps_link4_mass*sps_platform_point_z;
+        /* (J_star) inertia tensor about the platform origin */
+        const real sps_J_star_t = sps_platform_point_x*sps_platform_point_x;
+        const real sps_J_star_t_2 = sps_platform_point_y*sps_platform_point_y;
+        const real sps_J_star_t_3 = sps_platform_point_z*sps_platform_point_z;
+        const real sps_J_star_t_4 = sps_J_star_t + sps_J_star_t_2 + sps_J_star_t_3;
+        const real sps_J_star_t_5 = sps_link4_mass*(sps_J_star_t - sps_J_star_t_4);
+        const real sps_J_star_t_6 = sps_link4_mass*sps_platform_point_x*sps_platform_point_y;
+        const real sps_J_star_t_7 = sps_link4_mass*sps_platform_point_x*sps_platform_point_z;
+        const real sps_J_star_t_8 = sps_link4_mass*(sps_J_star_t_2 - sps_J_star_t_4);
+        const real sps_J_star_t_9 = sps_link4_mass*sps_platform_point_y*sps_platform_point_z;
+        const real sps_J_star_t_10 = sps_link4_mass*(sps_J_star_t_3 - sps_J_star_t_4);
+        /* (sps-h_3) first moment of link 3 about the origin of link 3 */
+        const real sps_h_3_x = sps_link3_centre_of_mass_x*sps_link3_mass;
+        const real sps_h_3_y = sps_link3_centre_of_mass_y*sps_link3_mass;
+        const real sps_h_3_z = sps_link3_centre_of_mass_z*sps_link3_mass;
+        /* (sps-trace_J_3) half the trace of that inertia tensor */
+        const real sps_trace_J_3 = R(0.5)*sps_J_group_3_xx + R(0.5)*sps_J_group_3_yy +
+            R(0.5)*sps_J_group_3_zz;
+        /* (sps-Sigma_3) second moment of mass of the links that turn with link 3 */
+        const real sps_Sigma_3_xx = sps_trace_J_3 - sps_J_group_3_xx;
+        const real sps_Sigma_3_yy = sps_trace_J_3 - sps_J_group_3_yy;
+        const real sps_Sigma_3_zz = sps_trace_J_3 - sps_J_group_3_zz;
+        /* (potential) potential energy */
+        const real sps_g_r0_x = gravity_x*sps_base_frame_xx + gravity_y*sps_base_frame_yx +
+            gravity_z*sps_base_frame_zx;
+        const real sps_g_r0_y = gravity_x*sps_base_frame_xy + gravity_y*sps_base_frame_yy +
+            gravity_z*sps_base_frame_zy;
+        const real sps_g_r0_z = gravity_x*sps_base_frame_xz + gravity_y*sps_base_frame_yz +
+            gravity_z*sps_base_frame_zz;
+        const real sps_b_r0_x = sps_base_frame_xx*sps_base_point_x +
+            sps_base_frame_yx*sps_base_point_y + sps_base_frame_zx*sps_base_point_z;
+        const real sps_b_r0_y = sps_base_frame_xy*sps_base_point_x +
+            sps_base_frame_yy*sps_base_point_y + sps_base_frame_zy*sps_base_point_z;
+        const real sps_b_r0_z = sps_base_frame_xz*sps_base_point_x +
+            sps_base_frame_yz*sps_base_point_y + sps_base_frame_zz*sps_base_point_z;
+        model->sps_J_group_3_xx[leg] = sps_J_group_3_xx;
+        model->sps_J_group_3_xy[leg] = sps_J_group_3_xy;
+        model->sps_J_group_3_xz[leg] = sps_J_group_3_xz;
+        model->sps_J_group_3_yy[leg] = sps_J_group_3_yy;
+        model->sps_J_group_3_yz[leg] = sps_J_group_3_yz;
+        model->sps_J_group_3_zz[leg] = sps_J_group_3_zz;
+        model->sps_Sigma_3_xx[leg] = sps_Sigma_3_xx;
+        model->sps_Sigma_3_yy[leg] = sps_Sigma_3_yy;
+        model->sps_Sigma_3_zz[leg] = sps_Sigma_3_zz;
+        model->sps_b_r0_x[leg] = sps_b_r0_x;
+        model->sps_b_r0_y[leg] = sps_b_r0_y;
+        model->sps_b_r0_z[leg] = sps_b_r0_z;
+        model->sps_base_frame_xx[leg] = sps_base_frame_xx;
+        model->sps_base_frame_xy[leg] = sps_base_frame_xy;
+        model->sps_base_frame_xz[leg] = sps_base_frame_xz;
+        model->sps_base_frame_yx[leg] = sps_base_frame_yx;
+        model->sps_base_frame_yy[leg] = sps_base_frame_yy;
+        model->sps_base_frame_yz[leg] = sps_base_frame_yz;
+        model->sps_base_frame_zx[leg] = sps_base_frame_zx;
+        model->sps_base_frame_zy[leg] = sps_base_frame_zy;
+        model->sps_base_frame_zz[leg] = sps_base_frame_zz;
+        model->sps_base_point_x[leg] = sps_base_point_x;
+        model->sps_base_point_y[leg] = sps_base_point_y;
+        model->sps_base_point_z[leg] = sps_base_point_z;
+        model->sps_branch_1[leg] = sps_branch_1;
+        model->sps_branch_2[leg] = sps_branch_2;
+        model->sps_g_r0_x[leg] = sps_g_r0_x;
+        model->sps_g_r0_y[leg] = sps_g_r0_y;
+        model->sps_g_r0_z[leg] = sps_g_r0_z;
+        model->sps_h_3_x[leg] = sps_h_3_x;
+        model->sps_h_3_y[leg] = sps_h_3_y;
+        model->sps_h_3_z[leg] = sps_h_3_z;
+        model->sps_h_4_x[leg] = sps_h_4_x;
+        model->sps_h_4_y[leg] = sps_h_4_y;
+        model->sps_h_4_z[leg] = sps_h_4_z;
+        model->sps_link3_mass[leg] = sps_link3_mass;
+        model->sps_link4_mass[leg] = sps_link4_mass;
+        model->sps_platform_point_x[leg] = sps_platform_point_x;
+        model->sps_platform_point_y[leg] = sps_platform_point_y;
+        model->sps_platform_point_z[leg] = sps_platform_point_z;
+        total_sps += leg < 6 ? sps_link4_mass : 0;
+        total_sps_x += leg < 6 ? sps_h_star_t : 0;
+        total_sps_y += leg < 6 ? sps_h_star_t_2 : 0;
+        total_sps_z += leg < 6 ? sps_h_star_t_3 : 0;
+        total_sps_xx += leg < 6 ? sps_J_star_t_5 : 0;
+        total_sps_xy += leg < 6 ? sps_J_star_t_6 : 0;
+        total_sps_xz += leg < 6 ? sps_J_star_t_7 : 0;
+        total_sps_yy += leg < 6 ? sps_J_star_t_8 : 0;
+        total_sps_yz += leg < 6 ? sps_J_star_t_9 : 0;
+        total_sps_zz += leg < 6 ? sps_J_star_t_10 : 0;
+        total_sps_x_2 += leg < 6 ? sps_platform_point_x : 0;
+        total_sps_y_2 += leg < 6 ? sps_platform_point_y : 0;
+        total_sps_z_2 += leg < 6 ? sps_platform_point_z : 0;
     }
-    /* (L1) mass of the platform with the gathered masses */
-    const real m_star = platform_mass + total_urps;
-    /* (L2) first moment about the platform origin */
-    const real h_star_x = h_star_t + total_urps_x;
-    const real h_star_y = h_star_t_2 + total_urps_y;
-    const real h_star_z = h_star_t_3 + total_urps_z;
-    /* (L3) inertia tensor about the platform origin */
-    const real J_star_xx = platform_inertia_xx - J_star_t_5 - total_urps_xx;
-    const real J_star_xy = platform_inertia_xy - J_star_t_6 - total_urps_xy;
-    const real J_star_xz = platform_inertia_xz - J_star_t_7 - total_urps_xz;
-    const real J_star_yy = platform_inertia_yy - J_star_t_8 - total_urps_yy;
-    const real J_star_yz = platform_inertia_yz - J_star_t_9 - total_urps_yz;
-    const real J_star_zz = platform_inertia_zz - J_star_t_10 - total_urps_zz;
-    const real J_star_t_21 = J_star_xx - J_star_yy;
-    const real J_star_t_22 = R(0.5)*J_star_t_21;
-    const real J_star_t_23 = J_star_xx - J_star_zz;
-    const real J_star_t_24 = R(0.5)*J_star_t_23;
-    /* (M4) centripetal force and weight of the platform */
+    /* (m_star) mass of the platform with the gathered masses */
+    const real m_star = platform_mass + total_sps;
+    /* (h_star) first moment about the platform origin */
+    const real h_star_x = h_star_t + total_sps_x;
+    const real h_star_y = h_star_t_2 + total_sps_y;
+    const real h_star_z = h_star_t_3 + total_sps_z;
+    /* (J_star) inertia tensor about the platform origin */
+    const real J_star_xx = platform_inertia_xx - J_star_t_5 - total_sps_xx;
+    const real J_star_xy = platform_inertia_xy - J_star_t_6 - total_sps_xy;
+    const real J_star_xz = platform_inertia_xz - J_star_t_7 - total_sps_xz;
+    const real J_star_yy = platform_inertia_yy - J_star_t_8 - total_sps_yy;
+    const real J_star_yz = platform_inertia_yz - J_star_t_9 - total_sps_yz;
+    const real J_star_zz = platform_inertia_zz - J_star_t_10 - total_sps_zz;
+    const real J_star_t_11 = J_star_xx - J_star_yy;
+    const real J_star_t_12 = R(0.5)*J_star_t_11;
+    const real J_star_t_13 = J_star_xx - J_star_zz;
+    const real J_star_t_14 = R(0.5)*J_star_t_13;
+    /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
     const real Z_p_t_3 = gravity_z*m_star;
-    /* (C1) centroid of the platform points */
-    const real b_c_x = R(0.16666666666666666)*total_urps_x_2;
-    const real b_c_y = R(0.16666666666666666)*total_urps_y_2;
-    const real b_c_z = R(0.16666666666666666)*total_urps_z_2;
-    model->J_star_t_22 = J_star_t_22;
-    model->J_star_t_24 = J_star_t_24;
+    /* (b_c) centroid of the platform points */
+    const real b_c_x = R(0.16666666666666666)*total_sps_x_2;
+    const real b_c_y = R(0.16666666666666666)*total_sps_y_2;
+    const real b_c_z = R(0.16666666666666666)*total_sps_z_2;
+    model->J_star_t_12 = J_star_t_12;
+    model->J_star_t_14 = J_star_t_14;
     model->J_star_xx = J_star_xx;
     model->J_star_xy = J_star_xy;
     model->J_star_xz = J_star_xz;
@@ -859,6 +951,12 @@ INLINE void solve_state(size_t n, const real *b, real *rows, real *x, real *sing
 {
     set_right_side(n, 1, b, rows);
     solve_one(n, stride_of(n, 1), rows, x, singular);
+}
+
+/* The same where it is rare: apart, for the sake of what is done otherwise. */
+APART void solve_apart(size_t n, const real *b, real *rows, real *x, real *singular)
+{
+    solve_state(n, b, rows, x, singular);
 }
 
 INLINE void solve(size_t n, size_t w, const real *b, real *rows, real *x, real *singular)
@@ -1114,6 +1212,29 @@ INLINE void clear_at(size_t rows, size_t n, const size_t *places, real *x)
     }
 }
 
+/* Rows as `places` tells made infinite, where all entries are finite before. */
+INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, real *x, real *flags)
+{
+    check(size, w, x, flags);
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t k = 0; k < w; ++k) {
+            x[places[i]*w + k] = R(INFINITY);
+        }
+    }
+}
+
+/* 1 where no entry is negative, else 0. */
+INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
+{
+    check(size, w, a, flags);
+    for (size_t k = 0; k < w; ++k) {
+        x[k] = 1;
+        for (size_t e = 0; e < size; ++e) {
+            x[k] = a[e*w + k] < 0 ? 0 : x[k];
+        }
+    }
+}
+
 INLINE void divide_rows(size_t rows, size_t n, size_t w, const size_t *places, const real *b, real *x)
 {
     for (size_t i = 0; i < rows; ++i) {
@@ -1278,59 +1399,22 @@ static void moved(const real *X, const real *step, real part, real *to)
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 2196 mul, 1626 add, 18 div, 12 sqrt, 12 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
-        h_star_in_base_x[LANES], h_star_in_base_y[LANES], h_star_in_base_z[LANES], J_star_t_8[LANES],
-        J_star_t_9[LANES], J_star_t_10[LANES], J_star_t_12[LANES], J_star_t_13[LANES],
-        J_star_t_15[LANES], W_p_xx[LANES], W_p_xy[LANES], W_p_xz[LANES], W_p_yy[LANES], W_p_yz[LANES],
-        W_p_zz[LANES], Z_p_x[LANES], Z_p_y[LANES], Z_p_z[LANES], Z_q_in_base_x[LANES],
-        Z_q_in_base_y[LANES], Z_q_in_base_z[LANES], sum[27][LANES];
-} dynamics_values;
-typedef struct {
-    real sum[27][8], entry[20][8], singular[8];
-} dynamics_results_urps;
-
-INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V,
-    dynamics_values *s, verdict *t)
+/* ---- dynamics: 2175 mul, 1605 add, 18 div, 12 sqrt, 12 trig, every leg counted ---- */
+INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        const real J_star_t_22 = m->J_star_t_22;
-        const real J_star_t_24 = m->J_star_t_24;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -1355,658 +1439,698 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
-        /* (L2) first moment about the platform origin */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_z = m->h_star_z;
         const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
         const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
         const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
-        /* (L3) inertia tensor about the platform origin */
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy;
-        const real J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx;
+        /* (J_star) inertia tensor about the platform origin */
+        const real J_star_t_12 = m->J_star_t_12;
+        const real J_star_xy = m->J_star_xy;
+        const real J_star_yz = m->J_star_yz;
+        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy;
+        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy;
+        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy;
+        const real J_star_t_14 = m->J_star_t_14;
+        const real J_star_xz = m->J_star_xz;
+        const real J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx;
+        const real J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx;
+        const real J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
+        const real J_star_xx = m->J_star_xx;
         const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
         const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
         const real J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_6*R_xz;
         const real J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_12 = 2*J_star_t_11 + J_star_xx;
-        const real J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_13 = 2*J_star_t_11 + J_star_xx;
+        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_6*R_yz;
-        const real J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_t_15 = 2*J_star_t_14 + J_star_xx;
-        /* (P1) centripetal tensor of the platform */
-        const real W_p_t = omega_x*omega_x;
-        const real W_p_t_2 = omega_y*omega_y;
-        const real W_p_t_3 = omega_z*omega_z;
-        const real W_p_xx = W_p_t_2 + W_p_t_3;
-        const real W_p_xy = omega_x*omega_y;
-        const real W_p_xz = omega_x*omega_z;
-        const real W_p_yy = W_p_t + W_p_t_3;
-        const real W_p_yz = omega_y*omega_z;
-        const real W_p_zz = W_p_t + W_p_t_2;
-        /* (M4) centripetal force and weight of the platform */
-        const real Z_p_x = W_p_xy*h_star_in_base_y + W_p_xz*h_star_in_base_z - Z_p_t -
-            W_p_xx*h_star_in_base_x;
-        const real Z_p_y = W_p_xy*h_star_in_base_x + W_p_yz*h_star_in_base_z - Z_p_t_2 -
-            W_p_yy*h_star_in_base_y;
-        const real Z_p_z = W_p_xz*h_star_in_base_x + W_p_yz*h_star_in_base_y - Z_p_t_3 -
-            W_p_zz*h_star_in_base_z;
-        /* (M6) gyroscopic moment and moment of the weight of the platform */
+        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz;
+        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        /* (Z_p) centripetal force and weight of the platform */
+        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
+        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
+        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t = m->Z_p_t;
+        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
+        const real Z_p_t_2 = m->Z_p_t_2;
+        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
+        const real Z_p_t_3 = m->Z_p_t_3;
+        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
+        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real gravity_z = m->gravity_z;
+        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
         const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
         const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
         const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
         const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
+        const real J_star_yy = m->J_star_yy;
         const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
+        const real J_star_zz = m->J_star_zz;
         const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z_2*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x_2*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y_2*h_star_x;
+        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
+            g_r0_z*h_star_y;
+        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
+            g_r0_x*h_star_z;
+        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
+            g_r0_y*h_star_x;
         const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
         const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
         const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->h_star_in_base_x[k] = h_star_in_base_x;
-        s->h_star_in_base_y[k] = h_star_in_base_y;
-        s->h_star_in_base_z[k] = h_star_in_base_z;
-        s->J_star_t_8[k] = J_star_t_8;
-        s->J_star_t_9[k] = J_star_t_9;
-        s->J_star_t_10[k] = J_star_t_10;
-        s->J_star_t_12[k] = J_star_t_12;
-        s->J_star_t_13[k] = J_star_t_13;
-        s->J_star_t_15[k] = J_star_t_15;
-        s->W_p_xx[k] = W_p_xx;
-        s->W_p_xy[k] = W_p_xy;
-        s->W_p_xz[k] = W_p_xz;
-        s->W_p_yy[k] = W_p_yy;
-        s->W_p_yz[k] = W_p_yz;
-        s->W_p_zz[k] = W_p_zz;
-        s->Z_p_x[k] = Z_p_x;
-        s->Z_p_y[k] = Z_p_y;
-        s->Z_p_z[k] = Z_p_z;
-        s->Z_q_in_base_x[k] = Z_q_in_base_x;
-        s->Z_q_in_base_y[k] = Z_q_in_base_y;
-        s->Z_q_in_base_z[k] = Z_q_in_base_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
+        s[18*w + k] = h_star_in_base_x;
+        s[19*w + k] = h_star_in_base_y;
+        s[20*w + k] = h_star_in_base_z;
+        s[21*w + k] = J_star_t_8;
+        s[22*w + k] = J_star_t_9;
+        s[23*w + k] = J_star_t_10;
+        s[24*w + k] = J_star_t_13;
+        s[25*w + k] = J_star_t_15;
+        s[26*w + k] = J_star_t_17;
+        s[27*w + k] = Z_p_x;
+        s[28*w + k] = Z_p_y;
+        s[29*w + k] = Z_p_z;
+        s[30*w + k] = Z_q_in_base_x;
+        s[31*w + k] = Z_q_in_base_y;
+        s[32*w + k] = Z_q_in_base_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void dynamics_legs_urps(const prepared *m, size_t w, size_t leg, size_t legs, const
-    dynamics_values *s, size_t states, size_t count, int add, const real *X, const real *V,
-    dynamics_results_urps *o)
+INLINE void dynamics_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
+    static const size_t place_sps_y_3_extra[] = {7, 8, 9, 10, 11, 12, 7, 7};
+    static const size_t place_sps_yd_3[] = {6, 7, 8, 9, 10, 11, 6, 6};
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real W_p_xx = s->W_p_xx[j];
-        const real W_p_xy = s->W_p_xy[j];
-        const real W_p_xz = s->W_p_xz[j];
-        const real W_p_yy = s->W_p_yy[j];
-        const real W_p_yz = s->W_p_yz[j];
-        const real W_p_zz = s->W_p_zz[j];
+        /* (sps-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
+        const real sps_platform_point_x = m->sps_platform_point_x[i];
+        const real sps_platform_point_y = m->sps_platform_point_y[i];
+        const real sps_platform_point_z = m->sps_platform_point_z[i];
+        const real sps_q_in_base_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
+            R_xz*sps_platform_point_z;
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real sps_q_in_base_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
+            R_yz*sps_platform_point_z;
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real sps_q_in_base_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
+            R_zz*sps_platform_point_z;
+        const real sps_base_point_x = m->sps_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x;
+        const real sps_base_point_y = m->sps_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y;
+        const real sps_base_point_z = m->sps_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z;
+        /* (sps-px_1) component along the reference direction */
+        const real sps_base_frame_xx = m->sps_base_frame_xx[i];
+        const real sps_base_frame_yx = m->sps_base_frame_yx[i];
+        const real sps_base_frame_zx = m->sps_base_frame_zx[i];
+        const real sps_px_1 = sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx +
+            sps_S_z*sps_base_frame_zx;
+        /* (sps-py_1) component across the reference direction */
+        const real sps_base_frame_xy = m->sps_base_frame_xy[i];
+        const real sps_base_frame_yy = m->sps_base_frame_yy[i];
+        const real sps_base_frame_zy = m->sps_base_frame_zy[i];
+        const real sps_py_1 = sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy +
+            sps_S_z*sps_base_frame_zy;
+        /* (sps-rho2_1) squared amplitude */
+        const real sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1;
+        /* (sps-root_1) amplitude, with the sign of the branch */
+        const real sps_branch_1 = m->sps_branch_1[i];
+        const real sps_root_1 = sps_branch_1*root(sps_rho2_1);
+        /* (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real sps_base_frame_xz = m->sps_base_frame_xz[i];
+        const real sps_base_frame_yz = m->sps_base_frame_yz[i];
+        const real sps_base_frame_zz = m->sps_base_frame_zz[i];
+        const real sps_xi_1_t = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
+            sps_S_z*sps_base_frame_zz;
+        /* (sps-rho2_2) squared amplitude */
+        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t;
+        /* (sps-root_2) amplitude, with the sign of the branch */
+        const real sps_branch_2 = m->sps_branch_2[i];
+        const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
+        /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_sps_root_2 = 1/sps_root_2;
+        const real sps_c_2 = inv_sps_root_2*sps_root_1;
+        /* (sps-s_2) sine of the angle of joint 2 from its reference direction */
+        const real sps_s_2 = inv_sps_root_2*sps_xi_1_t;
+        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
+        const real sps_c_3_t = sine(sps_y_3_extra);
+        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
+        const real sps_s_3 = cosine(sps_y_3_extra);
+        /* (sps-v_1) velocity of the connection point per rate of joint 1 */
+        const real sps_v_1_t = sps_c_2*sps_c_3_t;
+        const real sps_v_1_t_2 = sps_c_2*sps_s_3;
+        const real sps_v_1_t_3 = sps_root_2*sps_v_1_t_2;
+        const real sps_v_1_t_4 = sps_root_2*sps_v_1_t;
+        /* (sps-v_2) velocity of the connection point per rate of joint 2 */
+        const real sps_v_2_t = sps_c_3_t*sps_root_2;
+        const real sps_v_2_t_2 = sps_root_2*sps_s_3;
+        /* (sps-w_1) reciprocal vector 1 */
+        const real sps_axis_z_x = inv_sps_root_2*sps_S_x;
+        const real sps_axis_z_y = inv_sps_root_2*sps_S_y;
+        const real sps_axis_z_z = inv_sps_root_2*sps_S_z;
+        const real sps_w_1_t = sps_s_2*sps_s_3;
+        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_sps_root_1 = 1/sps_root_1;
+        const real sps_c_1 = inv_sps_root_1*sps_py_1;
+        /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
+        const real sps_s_1 = inv_sps_root_1*sps_px_1;
+        /* (sps-w_1) reciprocal vector 1 */
+        const real axis_y_sps_axes3_r4_x = sps_c_1*sps_c_3_t - sps_s_1*sps_w_1_t;
+        const real axis_y_sps_axes3_r4_y = -sps_c_1*sps_w_1_t - sps_c_3_t*sps_s_1;
+        const real axis_y_sps_axes3_in_base_x = axis_y_sps_axes3_r4_x*sps_base_frame_xx +
+            axis_y_sps_axes3_r4_y*sps_base_frame_xy + sps_base_frame_xz*sps_v_1_t_2;
+        const real axis_y_sps_axes3_in_base_y = axis_y_sps_axes3_r4_x*sps_base_frame_yx +
+            axis_y_sps_axes3_r4_y*sps_base_frame_yy + sps_base_frame_yz*sps_v_1_t_2;
+        const real axis_y_sps_axes3_in_base_z = axis_y_sps_axes3_r4_x*sps_base_frame_zx +
+            axis_y_sps_axes3_r4_y*sps_base_frame_zy + sps_base_frame_zz*sps_v_1_t_2;
+        const real axis_x_sps_axes3_x = axis_y_sps_axes3_in_base_y*sps_axis_z_z -
+            axis_y_sps_axes3_in_base_z*sps_axis_z_y;
+        const real axis_x_sps_axes3_y = axis_y_sps_axes3_in_base_z*sps_axis_z_x -
+            axis_y_sps_axes3_in_base_x*sps_axis_z_z;
+        const real axis_x_sps_axes3_z = axis_y_sps_axes3_in_base_x*sps_axis_z_y -
+            axis_y_sps_axes3_in_base_y*sps_axis_z_x;
+        /* (sps-w_2) reciprocal vector 2 */
+        const real sps_w_2_t = sps_v_1_t_3*sps_v_2_t_2 + sps_v_1_t_4*sps_v_2_t;
+        const real inv_sps_w_2_t_3 = 1/sps_w_2_t;
+        const real sps_w_2_t_2 = inv_sps_w_2_t_3*sps_v_1_t_4;
+        const real sps_w_2_t_3 = inv_sps_w_2_t_3*sps_v_1_t_3;
+        /* (sps-w_1) reciprocal vector 1 */
+        const real sps_w_1_t_2 = inv_sps_w_2_t_3*sps_v_2_t_2;
+        const real sps_w_1_t_3 = inv_sps_w_2_t_3*sps_v_2_t;
+        /* (sps-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+        const real sps_d_alpha_1_zx = sps_s_2*sps_w_1_t_2;
+        const real sps_d_alpha_1_zy = sps_s_2*sps_w_1_t_3;
+        /* (sps-d_alpha_2) coefficient of the acceleration in: angular acceleration of link 2 */
+        const real sps_d_alpha_2_xx = sps_v_1_t*sps_w_1_t_2 - sps_s_3*sps_w_2_t_2;
+        const real sps_d_alpha_2_xy = -sps_s_3*sps_w_2_t_3 - sps_v_1_t*sps_w_1_t_3;
+        const real sps_d_alpha_2_yx = sps_c_3_t*sps_w_2_t_2 + sps_v_1_t_2*sps_w_1_t_2;
+        const real sps_d_alpha_2_yy = sps_c_3_t*sps_w_2_t_3 - sps_v_1_t_2*sps_w_1_t_3;
+        /* (sps-d_mu_3) coefficient of the acceleration in: inertia moment of the links that turn with
+           link 3, about their reference points */
+        const real sps_J_group_3_xx = m->sps_J_group_3_xx[i];
+        const real sps_J_group_3_xy = m->sps_J_group_3_xy[i];
+        const real sps_J_group_3_xz = m->sps_J_group_3_xz[i];
+        const real sps_d_mu_3_t = sps_J_group_3_xx*sps_d_alpha_2_xx +
+            sps_J_group_3_xy*sps_d_alpha_2_yx + sps_J_group_3_xz*sps_d_alpha_1_zx;
+        const real sps_J_group_3_yy = m->sps_J_group_3_yy[i];
+        const real sps_J_group_3_yz = m->sps_J_group_3_yz[i];
+        const real sps_d_mu_3_t_2 = sps_J_group_3_xy*sps_d_alpha_2_xy +
+            sps_J_group_3_yy*sps_d_alpha_2_yy - sps_J_group_3_yz*sps_d_alpha_1_zy;
+        const real sps_h_4_x = m->sps_h_4_x[i];
+        const real sps_d_mu_3_xy = sps_J_group_3_xx*sps_d_alpha_2_xy +
+            sps_J_group_3_xy*sps_d_alpha_2_yy - sps_h_4_x - sps_J_group_3_xz*sps_d_alpha_1_zy;
+        const real sps_d_mu_3_yx = sps_h_4_x + sps_J_group_3_xy*sps_d_alpha_2_xx +
+            sps_J_group_3_yy*sps_d_alpha_2_yx + sps_J_group_3_yz*sps_d_alpha_1_zx;
+        const real sps_J_group_3_zz = m->sps_J_group_3_zz[i];
+        const real sps_h_4_z = m->sps_h_4_z[i];
+        const real sps_d_mu_3_zx = sps_J_group_3_xz*sps_d_alpha_2_xx +
+            sps_J_group_3_yz*sps_d_alpha_2_yx + sps_J_group_3_zz*sps_d_alpha_1_zx - sps_h_4_z;
+        const real sps_h_4_y = m->sps_h_4_y[i];
+        const real sps_d_mu_3_zy = sps_h_4_y + sps_J_group_3_xz*sps_d_alpha_2_xy +
+            sps_J_group_3_yz*sps_d_alpha_2_yy - sps_J_group_3_zz*sps_d_alpha_1_zy;
+        /* (sps-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real sps_d_Gamma_2_y = sps_d_mu_3_xy*sps_s_3 - sps_c_3_t*sps_d_mu_3_t_2;
+        const real sps_d_Gamma_2_z = sps_c_3_t*sps_h_4_y + sps_h_4_z*sps_s_3;
+        /* (sps-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real sps_d_Gamma_1_y = sps_d_mu_3_t_2*sps_v_1_t_2 + sps_d_mu_3_xy*sps_v_1_t +
+            sps_d_mu_3_zy*sps_s_2;
+        const real sps_d_Gamma_1_z = sps_h_4_z*sps_v_1_t - sps_h_4_y*sps_v_1_t_2;
+        /* (sps-d_G) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real sps_d_G_xz = sps_d_Gamma_1_z*sps_w_1_t_2 - sps_d_Gamma_2_z*sps_w_2_t_2;
+        const real sps_d_G_yz = -sps_d_Gamma_1_z*sps_w_1_t_3 - sps_d_Gamma_2_z*sps_w_2_t_3;
+        /* (sps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real sps_d_c_xx = sps_d_alpha_1_zx*sps_h_4_z + sps_w_2_t_2*(sps_d_mu_3_t*sps_s_3 -
+            sps_c_3_t*sps_d_mu_3_yx) - sps_d_alpha_2_yx*sps_h_4_x -
+            sps_w_1_t_2*(sps_d_mu_3_t*sps_v_1_t + sps_d_mu_3_yx*sps_v_1_t_2 +
+            sps_d_mu_3_zx*sps_s_2);
+        const real sps_d_c_xy = sps_d_Gamma_2_y*sps_w_2_t_2 - sps_d_Gamma_1_y*sps_w_1_t_2 -
+            sps_d_alpha_1_zy*sps_h_4_z - sps_d_alpha_2_yy*sps_h_4_x;
+        const real sps_d_c_yy = sps_d_Gamma_1_y*sps_w_1_t_3 + sps_d_Gamma_2_y*sps_w_2_t_3 +
+            sps_d_alpha_1_zy*sps_h_4_y + sps_d_alpha_2_xy*sps_h_4_x;
+        /* (sps-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real sps_Q_t = R(0.5)*sps_d_c_xx;
+        const real sps_Q_t_2 = R(0.5)*sps_d_c_yy;
+        const real sps_Q_t_3 = axis_x_sps_axes3_x*sps_Q_t + axis_y_sps_axes3_in_base_x*sps_d_c_xy
+            - sps_axis_z_x*sps_d_G_xz;
+        const real sps_Q_t_4 = axis_x_sps_axes3_y*sps_Q_t + axis_y_sps_axes3_in_base_y*sps_d_c_xy
+            - sps_axis_z_y*sps_d_G_xz;
+        const real sps_Q_t_5 = axis_x_sps_axes3_z*sps_Q_t + axis_y_sps_axes3_in_base_z*sps_d_c_xy
+            - sps_axis_z_z*sps_d_G_xz;
+        const real sps_Q_t_6 = axis_y_sps_axes3_in_base_x*sps_Q_t_2 - sps_axis_z_x*sps_d_G_yz;
+        const real sps_Q_t_7 = axis_y_sps_axes3_in_base_y*sps_Q_t_2 - sps_axis_z_y*sps_d_G_yz;
+        const real sps_Q_t_8 = axis_y_sps_axes3_in_base_z*sps_Q_t_2 - sps_axis_z_z*sps_d_G_yz;
+        const real sps_Q_t_9 = axis_x_sps_axes3_x*sps_Q_t_3 +
+            axis_y_sps_axes3_in_base_x*sps_Q_t_6;
+        const real sps_Q_t_10 = 2*sps_Q_t_9;
+        const real sps_Q_t_11 = axis_x_sps_axes3_x*sps_Q_t_4 + axis_x_sps_axes3_y*sps_Q_t_3 +
+            axis_y_sps_axes3_in_base_x*sps_Q_t_7 + axis_y_sps_axes3_in_base_y*sps_Q_t_6;
+        const real sps_Q_t_12 = axis_x_sps_axes3_x*sps_Q_t_5 + axis_x_sps_axes3_z*sps_Q_t_3 +
+            axis_y_sps_axes3_in_base_x*sps_Q_t_8 + axis_y_sps_axes3_in_base_z*sps_Q_t_6;
+        const real sps_Q_t_13 = axis_x_sps_axes3_y*sps_Q_t_4 +
+            axis_y_sps_axes3_in_base_y*sps_Q_t_7;
+        const real sps_Q_t_14 = 2*sps_Q_t_13;
+        const real sps_Q_t_15 = axis_x_sps_axes3_y*sps_Q_t_5 + axis_x_sps_axes3_z*sps_Q_t_4 +
+            axis_y_sps_axes3_in_base_y*sps_Q_t_8 + axis_y_sps_axes3_in_base_z*sps_Q_t_7;
+        const real sps_Q_t_16 = axis_x_sps_axes3_z*sps_Q_t_5 +
+            axis_y_sps_axes3_in_base_z*sps_Q_t_8;
+        const real sps_Q_t_17 = 2*sps_Q_t_16;
+        /* (M_ta) coupling block of M */
+        const real sps_M_ta_t = sps_Q_t_11*sps_q_in_base_z;
+        const real sps_M_ta_t_2 = sps_Q_t_12*sps_q_in_base_y;
+        const real sps_M_ta_t_3 = sps_M_ta_t - sps_M_ta_t_2;
+        const real sps_M_ta_t_4 = sps_Q_t_10*sps_q_in_base_z - sps_Q_t_12*sps_q_in_base_x;
+        const real sps_M_ta_t_5 = sps_Q_t_10*sps_q_in_base_y - sps_Q_t_11*sps_q_in_base_x;
+        const real sps_M_ta_t_6 = sps_Q_t_14*sps_q_in_base_z - sps_Q_t_15*sps_q_in_base_y;
+        const real sps_M_ta_t_7 = sps_Q_t_15*sps_q_in_base_x;
+        const real sps_M_ta_t_8 = sps_M_ta_t - sps_M_ta_t_7;
+        const real sps_M_ta_t_9 = sps_Q_t_11*sps_q_in_base_y - sps_Q_t_14*sps_q_in_base_x;
+        const real sps_M_ta_t_10 = sps_Q_t_15*sps_q_in_base_z - sps_Q_t_17*sps_q_in_base_y;
+        const real sps_M_ta_t_11 = sps_Q_t_12*sps_q_in_base_z - sps_Q_t_17*sps_q_in_base_x;
+        const real sps_M_ta_t_12 = sps_M_ta_t_7 - sps_M_ta_t_2;
+        /* (M_aa) rotational block of M */
+        const real sps_M_aa_t = sps_M_ta_t_6*sps_q_in_base_z - sps_M_ta_t_10*sps_q_in_base_y;
+        const real sps_M_aa_t_2 = sps_M_ta_t_8*sps_q_in_base_z - sps_M_ta_t_11*sps_q_in_base_y;
+        const real sps_M_aa_t_3 = sps_M_ta_t_12*sps_q_in_base_y + sps_M_ta_t_9*sps_q_in_base_z;
+        const real sps_M_aa_t_4 = sps_M_ta_t_4*sps_q_in_base_z - sps_M_ta_t_11*sps_q_in_base_x;
+        const real sps_M_aa_t_5 = sps_M_ta_t_12*sps_q_in_base_x + sps_M_ta_t_5*sps_q_in_base_z;
+        const real sps_M_aa_t_6 = sps_M_ta_t_5*sps_q_in_base_y - sps_M_ta_t_9*sps_q_in_base_x;
+        /* (sps-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real sps_S_dot_t = omega_y*sps_q_in_base_z - omega_z*sps_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real sps_S_dot_t_2 = omega_z*sps_q_in_base_x - omega_x*sps_q_in_base_z;
+        const real sps_S_dot_t_3 = omega_x*sps_q_in_base_y - omega_y*sps_q_in_base_x;
+        const real t_dot_x = s[12*w + j];
+        const real sps_S_dot_x = sps_S_dot_t + t_dot_x;
+        const real t_dot_y = s[13*w + j];
+        const real sps_S_dot_y = sps_S_dot_t_2 + t_dot_y;
+        const real t_dot_z = s[14*w + j];
+        const real sps_S_dot_z = sps_S_dot_t_3 + t_dot_z;
+        /* (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra */
+        const real sps_S_dot_rest_tip_x = axis_x_sps_axes3_x*sps_S_dot_x +
+            axis_x_sps_axes3_y*sps_S_dot_y + axis_x_sps_axes3_z*sps_S_dot_z;
+        const real sps_S_dot_rest_tip_y = axis_y_sps_axes3_in_base_x*sps_S_dot_x +
+            axis_y_sps_axes3_in_base_y*sps_S_dot_y + axis_y_sps_axes3_in_base_z*sps_S_dot_z;
+        const real sps_S_dot_rest_tip_z = sps_S_dot_x*sps_axis_z_x + sps_S_dot_y*sps_axis_z_y +
+            sps_S_dot_z*sps_axis_z_z;
+        /* (sps-qd_2) rate of joint 2 */
+        const real sps_qd_1 = inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_2_t_2 -
+            sps_S_dot_rest_tip_y*sps_v_2_t);
+        const real sps_qd_2 = inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_1_t_4 +
+            sps_S_dot_rest_tip_y*sps_v_1_t_3);
+        /* (sps-omega_1) angular velocity of link 1 */
+        const real sps_omega_1_t = sps_qd_1*sps_s_2;
+        const real sps_omega_1_t_2 = sps_c_2*sps_qd_1;
+        /* (sps-omega_2) angular velocity of link 2 */
+        const real sps_omega_2_r1_x = sps_c_3_t*sps_omega_1_t_2 - sps_qd_2*sps_s_3;
+        const real sps_omega_2_r1_y = sps_c_3_t*sps_qd_2 + sps_omega_1_t_2*sps_s_3;
+        /* (sps-omega_3) angular velocity of link 3 */
+        const real sps_yd_3 = V[(place_sps_yd_3[i])*w + j];
+        const real sps_omega_3_z = sps_omega_1_t + sps_yd_3;
+        /* (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+        const real sps_zeta_3_x = sps_omega_2_r1_y*sps_yd_3;
+        const real sps_zeta_3_y = sps_omega_2_r1_x*sps_yd_3;
+        /* (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real sps_zeta_2_y = sps_omega_1_t*sps_qd_2;
+        /* (sps-u_1) centripetal acceleration of the connection point */
+        const real sps_u_1_x = omega_y*sps_S_dot_t_3 - omega_z*sps_S_dot_t_2;
+        const real sps_u_1_y = omega_z*sps_S_dot_t - omega_x*sps_S_dot_t_3;
+        const real sps_u_1_z = omega_x*sps_S_dot_t_2 - omega_y*sps_S_dot_t;
+        /* (sps-beta_3) angular acceleration of link 3 at zero joint accelerations */
+        const real sps_beta_3_x = sps_zeta_3_x - sps_c_3_t*sps_zeta_2_y;
+        const real sps_beta_3_y = -sps_zeta_3_y - sps_s_3*sps_zeta_2_y;
+        /* (sps-W_3) centripetal tensor of link 3 */
+        const real sps_W_3_t = sps_omega_2_r1_x*sps_omega_2_r1_x;
+        const real sps_W_3_t_2 = sps_omega_2_r1_y*sps_omega_2_r1_y;
+        const real sps_W_3_t_3 = sps_omega_3_z*sps_omega_3_z;
+        const real sps_W_3_xy = sps_omega_2_r1_x*sps_omega_2_r1_y;
+        const real sps_W_3_xz = sps_omega_2_r1_x*sps_omega_3_z;
+        const real sps_W_3_yz = sps_omega_2_r1_y*sps_omega_3_z;
+        /* (sps-bias) acceleration of the connection point at zero joint accelerations */
+        const real sps_bias_t = 2*sps_S_dot_rest_tip_z;
+        const real sps_bias_x = sps_bias_t*sps_omega_2_r1_y + sps_root_2*(sps_W_3_xz +
+            sps_beta_3_y);
+        const real sps_bias_y = sps_root_2*(sps_W_3_yz - sps_beta_3_x) -
+            sps_bias_t*sps_omega_2_r1_x;
+        /* (sps-u_1) centripetal acceleration of the connection point */
+        const real sps_u_1_tip_x = axis_x_sps_axes3_x*sps_u_1_x + axis_x_sps_axes3_y*sps_u_1_y +
+            axis_x_sps_axes3_z*sps_u_1_z;
+        const real sps_u_1_tip_y = axis_y_sps_axes3_in_base_x*sps_u_1_x +
+            axis_y_sps_axes3_in_base_y*sps_u_1_y + axis_y_sps_axes3_in_base_z*sps_u_1_z;
+        /* (sps-rel_o) remainder without the acceleration in: acceleration of the connection point left to
+           the joint accelerations */
+        const real sps_rel_o_x = sps_u_1_tip_x - sps_bias_x;
+        const real sps_rel_o_y = sps_u_1_tip_y - sps_bias_y;
+        /* (sps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        const real sps_qdd_1_o = inv_sps_w_2_t_3*(sps_rel_o_x*sps_v_2_t_2 -
+            sps_rel_o_y*sps_v_2_t);
+        const real sps_qdd_2_o = inv_sps_w_2_t_3*(sps_rel_o_x*sps_v_1_t_4 +
+            sps_rel_o_y*sps_v_1_t_3);
+        /* (sps-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        const real sps_alpha_2_o_x = sps_omega_1_t_2*sps_qd_2 + sps_qdd_1_o*sps_s_2;
+        const real sps_alpha_2_o_y = sps_zeta_2_y - sps_c_2*sps_qdd_1_o;
+        /* (sps-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
+        const real sps_alpha_3_o_x = sps_zeta_3_x - sps_alpha_2_o_y*sps_c_3_t -
+            sps_qdd_2_o*sps_s_3;
+        const real sps_alpha_3_o_y = sps_c_3_t*sps_qdd_2_o - sps_zeta_3_y -
+            sps_alpha_2_o_y*sps_s_3;
+        /* (sps-B_3_o) remainder of the acceleration tensor of link 3 */
+        const real sps_B_3_o_xy = sps_W_3_xy - sps_alpha_2_o_x;
+        const real sps_B_3_o_xz = sps_W_3_xz + sps_alpha_3_o_y;
+        const real sps_B_3_o_yx = sps_W_3_xy + sps_alpha_2_o_x;
+        const real sps_B_3_o_yz = sps_W_3_yz - sps_alpha_3_o_x;
+        const real sps_B_3_o_zx = sps_W_3_xz - sps_alpha_3_o_y;
+        const real sps_B_3_o_zy = sps_W_3_yz + sps_alpha_3_o_x;
+        /* (sps-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning
+           about its reference point */
+        const real sps_phi_4_o_z = sps_B_3_o_zx*sps_h_4_y + sps_B_3_o_zy*sps_h_4_z -
+            sps_h_4_x*(sps_W_3_t + sps_W_3_t_2);
+        /* (sps-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+           link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real J_group_3_xx = m->J_group_3_xx[i];
-        const real J_group_3_xy = m->J_group_3_xy[i];
-        const real J_group_3_xz = m->J_group_3_xz[i];
-        const real J_group_3_yy = m->J_group_3_yy[i];
-        const real J_group_3_yz = m->J_group_3_yz[i];
-        const real J_group_3_zz = m->J_group_3_zz[i];
-        const real Sigma_3_xx = m->Sigma_3_xx[i];
-        const real Sigma_3_yy = m->Sigma_3_yy[i];
-        const real Sigma_3_zz = m->Sigma_3_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real h_4_x = m->h_4_x[i];
-        const real h_4_y = m->h_4_y[i];
-        const real h_4_z = m->h_4_z[i];
-        const real urps_base_frame_xx = m->urps_base_frame_xx[i];
-        const real urps_base_frame_xy = m->urps_base_frame_xy[i];
-        const real urps_base_frame_xz = m->urps_base_frame_xz[i];
-        const real urps_base_frame_yx = m->urps_base_frame_yx[i];
-        const real urps_base_frame_yy = m->urps_base_frame_yy[i];
-        const real urps_base_frame_yz = m->urps_base_frame_yz[i];
-        const real urps_base_frame_zx = m->urps_base_frame_zx[i];
-        const real urps_base_frame_zy = m->urps_base_frame_zy[i];
-        const real urps_base_frame_zz = m->urps_base_frame_zz[i];
-        const real urps_base_point_x = m->urps_base_point_x[i];
-        const real urps_base_point_y = m->urps_base_point_y[i];
-        const real urps_base_point_z = m->urps_base_point_z[i];
-        const real urps_platform_point_x = m->urps_platform_point_x[i];
-        const real urps_platform_point_y = m->urps_platform_point_y[i];
-        const real urps_platform_point_z = m->urps_platform_point_z[i];
-        const real y_3_extra = X[(7 + i)*w + j];
-        const real yd_3 = V[(6 + i)*w + j];
-        /* (urps-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*urps_platform_point_x + R_xy*urps_platform_point_y +
-            R_xz*urps_platform_point_z;
-        const real q_in_base_y = R_yx*urps_platform_point_x + R_yy*urps_platform_point_y +
-            R_yz*urps_platform_point_z;
-        const real q_in_base_z = R_zx*urps_platform_point_x + R_zy*urps_platform_point_y +
-            R_zz*urps_platform_point_z;
-        const real S_x = q_in_base_x + t_x - urps_base_point_x;
-        const real S_y = q_in_base_y + t_y - urps_base_point_y;
-        const real S_z = q_in_base_z + t_z - urps_base_point_z;
-        /* (urps-K4) component along the reference direction */
-        const real px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx +
-            S_z*urps_base_frame_zx;
-        /* (urps-K5) component across the reference direction */
-        const real py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy +
-            S_z*urps_base_frame_zy;
-        /* (urps-K6) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (urps-K7) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (urps-K11) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz +
-            S_z*urps_base_frame_zz;
-        /* (urps-K15) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (urps-K16) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (urps-K17) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (urps-K18) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (urps-K2) cosine of the angle of joint 3 from its reference direction */
-        const real c_3_t = sine(y_3_extra);
-        /* (urps-K3) sine of the angle of joint 3 from its reference direction */
-        const real s_3 = cosine(y_3_extra);
-        /* (urps-V3) velocity of the connection point per rate of joint 1 */
-        const real v_1_t = c_2*c_3_t;
-        const real v_1_t_2 = c_2*s_3;
-        const real v_1_t_3 = root_2*v_1_t_2;
-        const real v_1_t_4 = root_2*v_1_t;
-        /* (urps-V4) velocity of the connection point per rate of joint 2 */
-        const real v_2_t = c_3_t*root_2;
-        const real v_2_t_2 = root_2*s_3;
-        /* (urps-V6) reciprocal vector 1 */
-        const real axis_z_x = S_x*inv_root_2;
-        const real axis_z_y = S_y*inv_root_2;
-        const real axis_z_z = S_z*inv_root_2;
-        const real w_1_t = s_2*s_3;
-        /* (urps-K8) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (urps-K9) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (urps-V6) reciprocal vector 1 */
-        const real axis_y_urps_axes3_r4_x = c_1*c_3_t - s_1*w_1_t;
-        const real axis_y_urps_axes3_r4_y = -c_1*w_1_t - c_3_t*s_1;
-        const real axis_y_urps_axes3_in_base_x = axis_y_urps_axes3_r4_x*urps_base_frame_xx +
-            axis_y_urps_axes3_r4_y*urps_base_frame_xy + urps_base_frame_xz*v_1_t_2;
-        const real axis_y_urps_axes3_in_base_y = axis_y_urps_axes3_r4_x*urps_base_frame_yx +
-            axis_y_urps_axes3_r4_y*urps_base_frame_yy + urps_base_frame_yz*v_1_t_2;
-        const real axis_y_urps_axes3_in_base_z = axis_y_urps_axes3_r4_x*urps_base_frame_zx +
-            axis_y_urps_axes3_r4_y*urps_base_frame_zy + urps_base_frame_zz*v_1_t_2;
-        const real axis_x_urps_axes3_x = axis_y_urps_axes3_in_base_y*axis_z_z -
-            axis_y_urps_axes3_in_base_z*axis_z_y;
-        const real axis_x_urps_axes3_y = axis_y_urps_axes3_in_base_z*axis_z_x -
-            axis_y_urps_axes3_in_base_x*axis_z_z;
-        const real axis_x_urps_axes3_z = axis_y_urps_axes3_in_base_x*axis_z_y -
-            axis_y_urps_axes3_in_base_y*axis_z_x;
-        const real w_1_t_2 = v_1_t_3*v_2_t_2 + v_1_t_4*v_2_t;
-        const real inv_w_1_t_23 = 1/w_1_t_2;
-        const real w_1_t_3 = inv_w_1_t_23*v_2_t_2;
-        const real w_1_t_4 = inv_w_1_t_23*v_2_t;
-        /* (urps-V7) reciprocal vector 2 */
-        const real w_2_t = inv_w_1_t_23*v_1_t_4;
-        const real w_2_t_2 = inv_w_1_t_23*v_1_t_3;
-        /* (urps-A19) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d_alpha_1_zx = s_2*w_1_t_3;
-        const real d_alpha_1_zy = s_2*w_1_t_4;
-        /* (urps-A23) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real d_alpha_2_xx = v_1_t*w_1_t_3 - s_3*w_2_t;
-        const real d_alpha_2_xy = -s_3*w_2_t_2 - v_1_t*w_1_t_4;
-        const real d_alpha_2_yx = c_3_t*w_2_t + v_1_t_2*w_1_t_3;
-        const real d_alpha_2_yy = c_3_t*w_2_t_2 - v_1_t_2*w_1_t_4;
-        /* (urps-N13) coefficient of the acceleration in: inertia moment of the links that turn with link
-           3, about their reference points */
-        const real d_mu_3_t = J_group_3_xx*d_alpha_2_xx + J_group_3_xy*d_alpha_2_yx +
-            J_group_3_xz*d_alpha_1_zx;
-        const real d_mu_3_t_2 = J_group_3_xy*d_alpha_2_xy + J_group_3_yy*d_alpha_2_yy -
-            J_group_3_yz*d_alpha_1_zy;
-        const real d_mu_3_xy = J_group_3_xx*d_alpha_2_xy + J_group_3_xy*d_alpha_2_yy - h_4_x -
-            J_group_3_xz*d_alpha_1_zy;
-        const real d_mu_3_yx = h_4_x + J_group_3_xy*d_alpha_2_xx + J_group_3_yy*d_alpha_2_yx +
-            J_group_3_yz*d_alpha_1_zx;
-        const real d_mu_3_zx = J_group_3_xz*d_alpha_2_xx + J_group_3_yz*d_alpha_2_yx +
-            J_group_3_zz*d_alpha_1_zx - h_4_z;
-        const real d_mu_3_zy = h_4_y + J_group_3_xz*d_alpha_2_xy + J_group_3_yz*d_alpha_2_yy -
-            J_group_3_zz*d_alpha_1_zy;
-        /* (urps-N25) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_y = d_mu_3_t_2*v_1_t_2 + d_mu_3_xy*v_1_t + d_mu_3_zy*s_2;
-        const real d_Gamma_1_z = h_4_z*v_1_t - h_4_y*v_1_t_2;
-        /* (urps-N21) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
-           and weight */
-        const real d_Gamma_2_y = d_mu_3_xy*s_3 - c_3_t*d_mu_3_t_2;
-        const real d_Gamma_2_z = c_3_t*h_4_y + h_4_z*s_3;
-        /* (urps-N29) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_xz = d_Gamma_1_z*w_1_t_3 - d_Gamma_2_z*w_2_t;
-        const real d_G_yz = -d_Gamma_1_z*w_1_t_4 - d_Gamma_2_z*w_2_t_2;
-        /* (urps-N33) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real d_c_xx = d_alpha_1_zx*h_4_z + w_2_t*(d_mu_3_t*s_3 - c_3_t*d_mu_3_yx) -
-            d_alpha_2_yx*h_4_x - w_1_t_3*(d_mu_3_t*v_1_t + d_mu_3_yx*v_1_t_2 + d_mu_3_zx*s_2);
-        const real d_c_xy = d_Gamma_2_y*w_2_t - d_Gamma_1_y*w_1_t_3 - d_alpha_1_zy*h_4_z -
-            d_alpha_2_yy*h_4_x;
-        const real d_c_yy = d_Gamma_1_y*w_1_t_4 + d_Gamma_2_y*w_2_t_2 + d_alpha_1_zy*h_4_y +
-            d_alpha_2_xy*h_4_x;
-        /* (urps-N35) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = R(0.5)*d_c_xx;
-        const real Q_t_2 = R(0.5)*d_c_yy;
-        const real Q_t_3 = Q_t*axis_x_urps_axes3_x + axis_y_urps_axes3_in_base_x*d_c_xy -
-            axis_z_x*d_G_xz;
-        const real Q_t_4 = Q_t*axis_x_urps_axes3_y + axis_y_urps_axes3_in_base_y*d_c_xy -
-            axis_z_y*d_G_xz;
-        const real Q_t_5 = Q_t*axis_x_urps_axes3_z + axis_y_urps_axes3_in_base_z*d_c_xy -
-            axis_z_z*d_G_xz;
-        const real Q_t_6 = Q_t_2*axis_y_urps_axes3_in_base_x - axis_z_x*d_G_yz;
-        const real Q_t_7 = Q_t_2*axis_y_urps_axes3_in_base_y - axis_z_y*d_G_yz;
-        const real Q_t_8 = Q_t_2*axis_y_urps_axes3_in_base_z - axis_z_z*d_G_yz;
-        const real Q_t_9 = Q_t_3*axis_x_urps_axes3_x + Q_t_6*axis_y_urps_axes3_in_base_x;
-        const real Q_t_10 = 2*Q_t_9;
-        const real Q_t_11 = Q_t_3*axis_x_urps_axes3_y + Q_t_4*axis_x_urps_axes3_x +
-            Q_t_6*axis_y_urps_axes3_in_base_y + Q_t_7*axis_y_urps_axes3_in_base_x;
-        const real Q_t_12 = Q_t_3*axis_x_urps_axes3_z + Q_t_5*axis_x_urps_axes3_x +
-            Q_t_6*axis_y_urps_axes3_in_base_z + Q_t_8*axis_y_urps_axes3_in_base_x;
-        const real Q_t_13 = Q_t_4*axis_x_urps_axes3_y + Q_t_7*axis_y_urps_axes3_in_base_y;
-        const real Q_t_14 = 2*Q_t_13;
-        const real Q_t_15 = Q_t_4*axis_x_urps_axes3_z + Q_t_5*axis_x_urps_axes3_y +
-            Q_t_7*axis_y_urps_axes3_in_base_z + Q_t_8*axis_y_urps_axes3_in_base_y;
-        const real Q_t_16 = Q_t_5*axis_x_urps_axes3_z + Q_t_8*axis_y_urps_axes3_in_base_z;
-        const real Q_t_17 = 2*Q_t_16;
-        /* (M2) coupling block of M */
-        const real M_ta_t = Q_t_11*q_in_base_z;
-        const real M_ta_t_2 = Q_t_12*q_in_base_y;
-        const real M_ta_t_3 = M_ta_t - M_ta_t_2;
-        const real M_ta_t_4 = Q_t_10*q_in_base_z - Q_t_12*q_in_base_x;
-        const real M_ta_t_5 = Q_t_10*q_in_base_y - Q_t_11*q_in_base_x;
-        const real M_ta_t_6 = Q_t_14*q_in_base_z - Q_t_15*q_in_base_y;
-        const real M_ta_t_7 = Q_t_15*q_in_base_x;
-        const real M_ta_t_8 = M_ta_t - M_ta_t_7;
-        const real M_ta_t_9 = Q_t_11*q_in_base_y - Q_t_14*q_in_base_x;
-        const real M_ta_t_10 = Q_t_15*q_in_base_z - Q_t_17*q_in_base_y;
-        const real M_ta_t_11 = Q_t_12*q_in_base_z - Q_t_17*q_in_base_x;
-        const real M_ta_t_12 = M_ta_t_7 - M_ta_t_2;
-        /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y;
-        const real M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y;
-        const real M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z;
-        const real M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x;
-        const real M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z;
-        const real M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x;
-        /* (urps-N2) remainder without the acceleration in: acceleration of the reference point of link 3,
-           less gravity */
-        const real g_tip_x = axis_x_urps_axes3_x*gravity_x + axis_x_urps_axes3_y*gravity_y +
-            axis_x_urps_axes3_z*gravity_z;
-        const real g_tip_y = axis_y_urps_axes3_in_base_x*gravity_x +
-            axis_y_urps_axes3_in_base_y*gravity_y + axis_y_urps_axes3_in_base_z*gravity_z;
-        const real g_tip_z = axis_z_x*gravity_x + axis_z_y*gravity_y + axis_z_z*gravity_z;
-        /* (urps-A1) centripetal acceleration of the connection point */
-        const real u_1_x = W_p_xy*q_in_base_y + W_p_xz*q_in_base_z - W_p_xx*q_in_base_x;
-        const real u_1_y = W_p_xy*q_in_base_x + W_p_yz*q_in_base_z - W_p_yy*q_in_base_y;
-        const real u_1_z = W_p_xz*q_in_base_x + W_p_yz*q_in_base_y - W_p_zz*q_in_base_z;
-        const real u_1_tip_x = axis_x_urps_axes3_x*u_1_x + axis_x_urps_axes3_y*u_1_y +
-            axis_x_urps_axes3_z*u_1_z;
-        const real u_1_tip_y = axis_y_urps_axes3_in_base_x*u_1_x +
-            axis_y_urps_axes3_in_base_y*u_1_y + axis_y_urps_axes3_in_base_z*u_1_z;
-        /* (urps-N4) remainder without the acceleration in: acceleration of the reference point of link 4,
-           less gravity */
-        const real acc_4_o_x = u_1_tip_x - g_tip_x;
-        const real acc_4_o_y = u_1_tip_y - g_tip_y;
-        const real acc_4_o_z = axis_z_x*u_1_x + axis_z_y*u_1_y + axis_z_z*u_1_z - g_tip_z;
-        /* (urps-V1) velocity of the connection point */
-        const real S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x;
-        /* (urps-V9) velocity of the connection point left to the joints that are not extra */
-        const real S_dot_rest_tip_x = S_dot_x*axis_x_urps_axes3_x + S_dot_y*axis_x_urps_axes3_y +
-            S_dot_z*axis_x_urps_axes3_z;
-        const real S_dot_rest_tip_y = S_dot_x*axis_y_urps_axes3_in_base_x +
-            S_dot_y*axis_y_urps_axes3_in_base_y + S_dot_z*axis_y_urps_axes3_in_base_z;
-        const real S_dot_rest_tip_z = S_dot_x*axis_z_x + S_dot_y*axis_z_y + S_dot_z*axis_z_z;
-        /* (urps-V10) rate of joint 1 */
-        const real qd_1 = inv_w_1_t_23*(S_dot_rest_tip_x*v_2_t_2 - S_dot_rest_tip_y*v_2_t);
-        const real qd_2 = inv_w_1_t_23*(S_dot_rest_tip_x*v_1_t_4 + S_dot_rest_tip_y*v_1_t_3);
-        /* (urps-V13) angular velocity of link 1 */
-        const real omega_1_t = qd_1*s_2;
-        const real omega_1_t_2 = c_2*qd_1;
-        /* (urps-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_y = omega_1_t*qd_2;
-        /* (urps-V14) angular velocity of link 2 */
-        const real omega_2_r1_x = c_3_t*omega_1_t_2 - qd_2*s_3;
-        const real omega_2_r1_y = c_3_t*qd_2 + omega_1_t_2*s_3;
-        /* (urps-A5) angular acceleration of link 3 from the turning of axis 3 */
-        const real zeta_3_x = omega_2_r1_y*yd_3;
-        const real zeta_3_y = omega_2_r1_x*yd_3;
-        /* (urps-A6) angular acceleration of link 3 at zero joint accelerations */
-        const real beta_3_x = zeta_3_x - c_3_t*zeta_2_y;
-        const real beta_3_y = -zeta_3_y - s_3*zeta_2_y;
-        /* (urps-V15) angular velocity of link 3 */
-        const real omega_3_z = omega_1_t + yd_3;
-        /* (urps-V16) centripetal tensor of link 3 */
-        const real W_3_t = omega_2_r1_x*omega_2_r1_x;
-        const real W_3_t_2 = omega_2_r1_y*omega_2_r1_y;
-        const real W_3_t_3 = omega_3_z*omega_3_z;
-        const real W_3_xy = omega_2_r1_x*omega_2_r1_y;
-        const real W_3_xz = omega_2_r1_x*omega_3_z;
-        const real W_3_yz = omega_2_r1_y*omega_3_z;
-        /* (urps-A7) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_rest_tip_z;
-        const real bias_x = bias_t*omega_2_r1_y + root_2*(W_3_xz + beta_3_y);
-        const real bias_y = root_2*(W_3_yz - beta_3_x) - bias_t*omega_2_r1_x;
-        /* (urps-A10) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
-        const real rel_o_x = u_1_tip_x - bias_x;
-        const real rel_o_y = u_1_tip_y - bias_y;
-        /* (urps-A13) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_o = inv_w_1_t_23*(rel_o_x*v_2_t_2 - rel_o_y*v_2_t);
-        const real qdd_2_o = inv_w_1_t_23*(rel_o_x*v_1_t_4 + rel_o_y*v_1_t_3);
-        /* (urps-A25) remainder without the acceleration in: angular acceleration of link 2 */
-        const real alpha_2_o_x = omega_1_t_2*qd_2 + qdd_1_o*s_2;
-        const real alpha_2_o_y = zeta_2_y - c_2*qdd_1_o;
-        /* (urps-A28) remainder without the acceleration in: angular acceleration of link 3 */
-        const real alpha_3_o_x = zeta_3_x - alpha_2_o_y*c_3_t - qdd_2_o*s_3;
-        const real alpha_3_o_y = c_3_t*qdd_2_o - zeta_3_y - alpha_2_o_y*s_3;
-        /* (urps-A30) remainder of the acceleration tensor of link 3 */
-        const real B_3_o_xy = W_3_xy - alpha_2_o_x;
-        const real B_3_o_xz = W_3_xz + alpha_3_o_y;
-        const real B_3_o_yx = W_3_xy + alpha_2_o_x;
-        const real B_3_o_yz = W_3_yz - alpha_3_o_x;
-        const real B_3_o_zx = W_3_xz - alpha_3_o_y;
-        const real B_3_o_zy = W_3_yz + alpha_3_o_x;
-        /* (urps-N15) remainder without the acceleration in: inertia moment of the links that turn with
+        const real sps_g_tip_x = axis_x_sps_axes3_x*gravity_x + axis_x_sps_axes3_y*gravity_y +
+            axis_x_sps_axes3_z*gravity_z;
+        const real sps_g_tip_y = axis_y_sps_axes3_in_base_x*gravity_x +
+            axis_y_sps_axes3_in_base_y*gravity_y + axis_y_sps_axes3_in_base_z*gravity_z;
+        const real sps_g_tip_z = gravity_x*sps_axis_z_x + gravity_y*sps_axis_z_y +
+            gravity_z*sps_axis_z_z;
+        /* (sps-acc_4_o) remainder without the acceleration in: acceleration of the reference point of
+           link 4, less gravity */
+        const real sps_acc_4_o_x = sps_u_1_tip_x - sps_g_tip_x;
+        const real sps_acc_4_o_y = sps_u_1_tip_y - sps_g_tip_y;
+        const real sps_acc_4_o_z = sps_axis_z_x*sps_u_1_x + sps_axis_z_y*sps_u_1_y +
+            sps_axis_z_z*sps_u_1_z - sps_g_tip_z;
+        /* (sps-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
-        const real mu_3_o_x = B_3_o_yx*J_group_3_xz + B_3_o_zy*Sigma_3_yy + J_group_3_yz*(W_3_t_2
-            - W_3_t_3) + acc_4_o_z*h_4_z + g_tip_y*h_3_x - B_3_o_yz*Sigma_3_zz -
-            B_3_o_zx*J_group_3_xy - acc_4_o_y*h_4_x - g_tip_z*h_3_z;
-        const real mu_3_o_y = B_3_o_xz*Sigma_3_zz + B_3_o_zy*J_group_3_xy + acc_4_o_x*h_4_x +
-            g_tip_z*h_3_y - B_3_o_xy*J_group_3_yz - B_3_o_zx*Sigma_3_xx - J_group_3_xz*(W_3_t -
-            W_3_t_3) - acc_4_o_z*h_4_y - g_tip_x*h_3_x;
-        const real mu_3_o_z = B_3_o_xz*J_group_3_yz + B_3_o_yx*Sigma_3_xx + J_group_3_xy*(W_3_t -
-            W_3_t_2) + acc_4_o_y*h_4_y + g_tip_x*h_3_z - B_3_o_xy*Sigma_3_yy -
-            B_3_o_yz*J_group_3_xz - acc_4_o_x*h_4_z - g_tip_y*h_3_y;
-        /* (urps-N27) remainder without the acceleration in: moment about axis 1 of the distal links'
+        const real sps_Sigma_3_yy = m->sps_Sigma_3_yy[i];
+        const real sps_Sigma_3_zz = m->sps_Sigma_3_zz[i];
+        const real sps_h_3_x = m->sps_h_3_x[i];
+        const real sps_h_3_z = m->sps_h_3_z[i];
+        const real sps_mu_3_o_x = sps_B_3_o_yx*sps_J_group_3_xz + sps_B_3_o_zy*sps_Sigma_3_yy +
+            sps_J_group_3_yz*(sps_W_3_t_2 - sps_W_3_t_3) + sps_acc_4_o_z*sps_h_4_z +
+            sps_g_tip_y*sps_h_3_x - sps_B_3_o_yz*sps_Sigma_3_zz - sps_B_3_o_zx*sps_J_group_3_xy -
+            sps_acc_4_o_y*sps_h_4_x - sps_g_tip_z*sps_h_3_z;
+        const real sps_Sigma_3_xx = m->sps_Sigma_3_xx[i];
+        const real sps_h_3_y = m->sps_h_3_y[i];
+        const real sps_mu_3_o_y = sps_B_3_o_xz*sps_Sigma_3_zz + sps_B_3_o_zy*sps_J_group_3_xy +
+            sps_acc_4_o_x*sps_h_4_x + sps_g_tip_z*sps_h_3_y - sps_B_3_o_xy*sps_J_group_3_yz -
+            sps_B_3_o_zx*sps_Sigma_3_xx - sps_J_group_3_xz*(sps_W_3_t - sps_W_3_t_3) -
+            sps_acc_4_o_z*sps_h_4_y - sps_g_tip_x*sps_h_3_x;
+        const real sps_mu_3_o_z = sps_B_3_o_xz*sps_J_group_3_yz + sps_B_3_o_yx*sps_Sigma_3_xx +
+            sps_J_group_3_xy*(sps_W_3_t - sps_W_3_t_2) + sps_acc_4_o_y*sps_h_4_y +
+            sps_g_tip_x*sps_h_3_z - sps_B_3_o_xy*sps_Sigma_3_yy - sps_B_3_o_yz*sps_J_group_3_xz -
+            sps_acc_4_o_x*sps_h_4_z - sps_g_tip_y*sps_h_3_y;
+        const real sps_mu_3_o_r0_y = sps_mu_3_o_x*sps_s_3 - sps_c_3_t*sps_mu_3_o_y;
+        /* (sps-Gamma_1_o) remainder without the acceleration in: moment about axis 1 of the distal links'
            inertia and weight */
-        const real Gamma_1_o = mu_3_o_x*v_1_t + mu_3_o_y*v_1_t_2 + mu_3_o_z*s_2;
-        /* (urps-N15) remainder without the acceleration in: inertia moment of the links that turn with
-           link 3, about their reference points */
-        const real mu_3_o_r0_y = mu_3_o_x*s_3 - c_3_t*mu_3_o_y;
-        /* (urps-N7) remainder without the acceleration in: inertia force of link 4 from its turning about
-           its reference point */
-        const real phi_4_o_z = B_3_o_zx*h_4_y + B_3_o_zy*h_4_z - h_4_x*(W_3_t + W_3_t_2);
-        /* (urps-N34) remainder without the acceleration in: leg force on the platform without actuation
+        const real sps_Gamma_1_o = sps_mu_3_o_x*sps_v_1_t + sps_mu_3_o_y*sps_v_1_t_2 +
+            sps_mu_3_o_z*sps_s_2;
+        /* (sps-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real c_o_x = h_4_y*(W_3_t_2 + W_3_t_3) - B_3_o_xy*h_4_z - B_3_o_xz*h_4_x -
-            inv_w_1_t_23*(Gamma_1_o*v_2_t_2 - mu_3_o_r0_y*v_1_t_4);
-        const real c_o_y = h_4_z*(W_3_t + W_3_t_3) + inv_w_1_t_23*(Gamma_1_o*v_2_t +
-            mu_3_o_r0_y*v_1_t_3) - B_3_o_yx*h_4_y - B_3_o_yz*h_4_x;
-        /* (urps-N36) velocity and gravity terms of the leg force */
-        const real U_in_base_x = axis_z_x*phi_4_o_z - axis_x_urps_axes3_x*c_o_x -
-            axis_y_urps_axes3_in_base_x*c_o_y;
-        const real U_in_base_y = axis_z_y*phi_4_o_z - axis_x_urps_axes3_y*c_o_x -
-            axis_y_urps_axes3_in_base_y*c_o_y;
-        const real U_in_base_z = axis_z_z*phi_4_o_z - axis_x_urps_axes3_z*c_o_x -
-            axis_y_urps_axes3_in_base_z*c_o_y;
-        /* (M7) rotational part of Z */
-        const real Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z;
-        const real Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x;
-        const real Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y;
-        /* (urps-N39) coefficient of the acceleration in: inertia and weight of the leg along the extra
+        const real sps_c_o_x = sps_h_4_y*(sps_W_3_t_2 + sps_W_3_t_3) -
+            inv_sps_w_2_t_3*(sps_Gamma_1_o*sps_v_2_t_2 - sps_mu_3_o_r0_y*sps_v_1_t_4) -
+            sps_B_3_o_xy*sps_h_4_z - sps_B_3_o_xz*sps_h_4_x;
+        const real sps_c_o_y = inv_sps_w_2_t_3*(sps_Gamma_1_o*sps_v_2_t +
+            sps_mu_3_o_r0_y*sps_v_1_t_3) + sps_h_4_z*(sps_W_3_t + sps_W_3_t_3) -
+            sps_B_3_o_yx*sps_h_4_y - sps_B_3_o_yz*sps_h_4_x;
+        /* (sps-U) velocity and gravity terms of the leg force */
+        const real sps_U_in_base_x = sps_axis_z_x*sps_phi_4_o_z - axis_x_sps_axes3_x*sps_c_o_x -
+            axis_y_sps_axes3_in_base_x*sps_c_o_y;
+        const real sps_U_in_base_y = sps_axis_z_y*sps_phi_4_o_z - axis_x_sps_axes3_y*sps_c_o_x -
+            axis_y_sps_axes3_in_base_y*sps_c_o_y;
+        const real sps_U_in_base_z = sps_axis_z_z*sps_phi_4_o_z - axis_x_sps_axes3_z*sps_c_o_x -
+            axis_y_sps_axes3_in_base_z*sps_c_o_y;
+        /* (Z_a) rotational part of Z */
+        const real sps_Z_a_t = sps_U_in_base_z*sps_q_in_base_y - sps_U_in_base_y*sps_q_in_base_z;
+        const real sps_Z_a_t_2 = sps_U_in_base_x*sps_q_in_base_z -
+            sps_U_in_base_z*sps_q_in_base_x;
+        const real sps_Z_a_t_3 = sps_U_in_base_y*sps_q_in_base_x -
+            sps_U_in_base_x*sps_q_in_base_y;
+        /* (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra
            freedom of joint 3 */
-        const real d_P_3_in_base_x = axis_x_urps_axes3_x*d_mu_3_zx +
-            axis_y_urps_axes3_in_base_x*d_mu_3_zy;
-        const real d_P_3_in_base_y = axis_x_urps_axes3_y*d_mu_3_zx +
-            axis_y_urps_axes3_in_base_y*d_mu_3_zy;
-        const real d_P_3_in_base_z = axis_x_urps_axes3_z*d_mu_3_zx +
-            axis_y_urps_axes3_in_base_z*d_mu_3_zy;
-        /* (M8) coupling of extra joint 3 with the rotation of the platform */
-        const real M_ya_3_x = d_P_3_in_base_z*q_in_base_y - d_P_3_in_base_y*q_in_base_z;
-        const real M_ya_3_y = d_P_3_in_base_x*q_in_base_z - d_P_3_in_base_z*q_in_base_x;
-        const real M_ya_3_z = d_P_3_in_base_y*q_in_base_x - d_P_3_in_base_x*q_in_base_y;
-        /* (M9) moment of the column's unit force about the platform origin */
-        const real H_a_4_x = axis_z_z*q_in_base_y - axis_z_y*q_in_base_z;
-        const real H_a_4_y = axis_z_x*q_in_base_z - axis_z_z*q_in_base_x;
-        const real H_a_4_z = axis_z_y*q_in_base_x - axis_z_x*q_in_base_y;
-        o->sum[0][k] = add ? o->sum[0][k] + Q_t_10 : Q_t_10;  /* total_urps_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + Q_t_11 : Q_t_11;  /* total_urps_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + Q_t_12 : Q_t_12;  /* total_urps_xz */
-        o->sum[3][k] = add ? o->sum[3][k] + Q_t_14 : Q_t_14;  /* total_urps_yy */
-        o->sum[4][k] = add ? o->sum[4][k] + Q_t_15 : Q_t_15;  /* total_urps_yz */
-        o->sum[5][k] = add ? o->sum[5][k] + Q_t_17 : Q_t_17;  /* total_urps_zz */
-        o->sum[6][k] = add ? o->sum[6][k] + M_ta_t_3 : M_ta_t_3;  /* total_urps_xx_2 */
-        o->sum[7][k] = add ? o->sum[7][k] + M_ta_t_4 : M_ta_t_4;  /* total_urps_xy_2 */
-        o->sum[8][k] = add ? o->sum[8][k] + M_ta_t_5 : M_ta_t_5;  /* total_urps_xz_2 */
-        o->sum[9][k] = add ? o->sum[9][k] + M_ta_t_6 : M_ta_t_6;  /* total_urps_yx */
-        o->sum[10][k] = add ? o->sum[10][k] + M_ta_t_8 : M_ta_t_8;  /* total_urps_yy_2 */
-        o->sum[11][k] = add ? o->sum[11][k] + M_ta_t_9 : M_ta_t_9;  /* total_urps_yz_2 */
-        o->sum[12][k] = add ? o->sum[12][k] + M_ta_t_10 : M_ta_t_10;  /* total_urps_zx */
-        o->sum[13][k] = add ? o->sum[13][k] + M_ta_t_11 : M_ta_t_11;  /* total_urps_zy */
-        o->sum[14][k] = add ? o->sum[14][k] + M_ta_t_12 : M_ta_t_12;  /* total_urps_zz_2 */
-        o->sum[15][k] = add ? o->sum[15][k] + M_aa_t : M_aa_t;  /* total_urps_xx_3 */
-        o->sum[16][k] = add ? o->sum[16][k] + M_aa_t_2 : M_aa_t_2;  /* total_urps_xy_3 */
-        o->sum[17][k] = add ? o->sum[17][k] + M_aa_t_3 : M_aa_t_3;  /* total_urps_xz_3 */
-        o->sum[18][k] = add ? o->sum[18][k] + M_aa_t_4 : M_aa_t_4;  /* total_urps_yy_3 */
-        o->sum[19][k] = add ? o->sum[19][k] + M_aa_t_5 : M_aa_t_5;  /* total_urps_yz_3 */
-        o->sum[20][k] = add ? o->sum[20][k] + M_aa_t_6 : M_aa_t_6;  /* total_urps_zz_3 */
-        o->sum[21][k] = add ? o->sum[21][k] + U_in_base_x : U_in_base_x;  /* total_urps_x */
-        o->sum[22][k] = add ? o->sum[22][k] + U_in_base_y : U_in_base_y;  /* total_urps_y */
-        o->sum[23][k] = add ? o->sum[23][k] + U_in_base_z : U_in_base_z;  /* total_urps_z */
-        o->sum[24][k] = add ? o->sum[24][k] + Z_a_t : Z_a_t;  /* total_urps_x_2 */
-        o->sum[25][k] = add ? o->sum[25][k] + Z_a_t_2 : Z_a_t_2;  /* total_urps_y_2 */
-        o->sum[26][k] = add ? o->sum[26][k] + Z_a_t_3 : Z_a_t_3;  /* total_urps_z_2 */
-        o->entry[0][k] = mu_3_o_z;
-        o->entry[1][k] = d_P_3_in_base_x;
-        o->entry[2][k] = d_P_3_in_base_x;
-        o->entry[3][k] = d_P_3_in_base_y;
-        o->entry[4][k] = d_P_3_in_base_y;
-        o->entry[5][k] = d_P_3_in_base_z;
-        o->entry[6][k] = d_P_3_in_base_z;
-        o->entry[7][k] = M_ya_3_x;
-        o->entry[8][k] = M_ya_3_x;
-        o->entry[9][k] = M_ya_3_y;
-        o->entry[10][k] = M_ya_3_y;
-        o->entry[11][k] = M_ya_3_z;
-        o->entry[12][k] = M_ya_3_z;
-        o->entry[13][k] = J_group_3_zz;
-        o->entry[14][k] = axis_z_x;
-        o->entry[15][k] = axis_z_y;
-        o->entry[16][k] = axis_z_z;
-        o->entry[17][k] = H_a_4_x;
-        o->entry[18][k] = H_a_4_y;
-        o->entry[19][k] = H_a_4_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(-w_1_t_2) > TOLERANCE*R(0.6400000000000001));
+        const real sps_d_P_3_in_base_x = axis_x_sps_axes3_x*sps_d_mu_3_zx +
+            axis_y_sps_axes3_in_base_x*sps_d_mu_3_zy;
+        const real sps_d_P_3_in_base_y = axis_x_sps_axes3_y*sps_d_mu_3_zx +
+            axis_y_sps_axes3_in_base_y*sps_d_mu_3_zy;
+        const real sps_d_P_3_in_base_z = axis_x_sps_axes3_z*sps_d_mu_3_zx +
+            axis_y_sps_axes3_in_base_z*sps_d_mu_3_zy;
+        /* (sps-M_ya_3) coupling of extra joint 3 with the rotation of the platform */
+        const real sps_M_ya_3_x = sps_d_P_3_in_base_z*sps_q_in_base_y -
+            sps_d_P_3_in_base_y*sps_q_in_base_z;
+        const real sps_M_ya_3_y = sps_d_P_3_in_base_x*sps_q_in_base_z -
+            sps_d_P_3_in_base_z*sps_q_in_base_x;
+        const real sps_M_ya_3_z = sps_d_P_3_in_base_y*sps_q_in_base_x -
+            sps_d_P_3_in_base_x*sps_q_in_base_y;
+        /* (sps-H_a_4) moment of the column's unit force about the platform origin */
+        const real sps_H_a_4_x = sps_axis_z_z*sps_q_in_base_y - sps_axis_z_y*sps_q_in_base_z;
+        const real sps_H_a_4_y = sps_axis_z_x*sps_q_in_base_z - sps_axis_z_z*sps_q_in_base_x;
+        const real sps_H_a_4_z = sps_axis_z_y*sps_q_in_base_x - sps_axis_z_x*sps_q_in_base_y;
+        terms[0*count + k] = add ? terms[0*count + k] + sps_Q_t_10 : sps_Q_t_10;  /* total_sps_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + sps_Q_t_11 : sps_Q_t_11;  /* total_sps_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + sps_Q_t_12 : sps_Q_t_12;  /* total_sps_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + sps_Q_t_14 : sps_Q_t_14;  /* total_sps_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + sps_Q_t_15 : sps_Q_t_15;  /* total_sps_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + sps_Q_t_17 : sps_Q_t_17;  /* total_sps_zz */
+        terms[6*count + k] = add ? terms[6*count + k] + sps_M_ta_t_3 : sps_M_ta_t_3;  /* total_sps_xx_2 */
+        terms[7*count + k] = add ? terms[7*count + k] + sps_M_ta_t_4 : sps_M_ta_t_4;  /* total_sps_xy_2 */
+        terms[8*count + k] = add ? terms[8*count + k] + sps_M_ta_t_5 : sps_M_ta_t_5;  /* total_sps_xz_2 */
+        terms[9*count + k] = add ? terms[9*count + k] + sps_M_ta_t_6 : sps_M_ta_t_6;  /* total_sps_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + sps_M_ta_t_8 : sps_M_ta_t_8;  /* total_sps_yy_2 */
+        terms[11*count + k] = add ? terms[11*count + k] + sps_M_ta_t_9 : sps_M_ta_t_9;  /* total_sps_yz_2 */
+        terms[12*count + k] = add ? terms[12*count + k] + sps_M_ta_t_10 : sps_M_ta_t_10;  /* total_sps_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + sps_M_ta_t_11 : sps_M_ta_t_11;  /* total_sps_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + sps_M_ta_t_12 : sps_M_ta_t_12;  /* total_sps_zz_2 */
+        terms[15*count + k] = add ? terms[15*count + k] + sps_M_aa_t : sps_M_aa_t;  /* total_sps_xx_3 */
+        terms[16*count + k] = add ? terms[16*count + k] + sps_M_aa_t_2 : sps_M_aa_t_2;  /* total_sps_xy_3 */
+        terms[17*count + k] = add ? terms[17*count + k] + sps_M_aa_t_3 : sps_M_aa_t_3;  /* total_sps_xz_3 */
+        terms[18*count + k] = add ? terms[18*count + k] + sps_M_aa_t_4 : sps_M_aa_t_4;  /* total_sps_yy_3 */
+        terms[19*count + k] = add ? terms[19*count + k] + sps_M_aa_t_5 : sps_M_aa_t_5;  /* total_sps_yz_3 */
+        terms[20*count + k] = add ? terms[20*count + k] + sps_M_aa_t_6 : sps_M_aa_t_6;  /* total_sps_zz_3 */
+        terms[21*count + k] = add ? terms[21*count + k] + sps_U_in_base_x : sps_U_in_base_x;  /* total_sps_x */
+        terms[22*count + k] = add ? terms[22*count + k] + sps_U_in_base_y : sps_U_in_base_y;  /* total_sps_y */
+        terms[23*count + k] = add ? terms[23*count + k] + sps_U_in_base_z : sps_U_in_base_z;  /* total_sps_z */
+        terms[24*count + k] = add ? terms[24*count + k] + sps_Z_a_t : sps_Z_a_t;  /* total_sps_x_2 */
+        terms[25*count + k] = add ? terms[25*count + k] + sps_Z_a_t_2 : sps_Z_a_t_2;  /* total_sps_y_2 */
+        terms[26*count + k] = add ? terms[26*count + k] + sps_Z_a_t_3 : sps_Z_a_t_3;  /* total_sps_z_2 */
+        o[0*count + k] = sps_mu_3_o_z;
+        o[1*count + k] = sps_d_P_3_in_base_x;
+        o[2*count + k] = sps_d_P_3_in_base_x;
+        o[3*count + k] = sps_d_P_3_in_base_y;
+        o[4*count + k] = sps_d_P_3_in_base_y;
+        o[5*count + k] = sps_d_P_3_in_base_z;
+        o[6*count + k] = sps_d_P_3_in_base_z;
+        o[7*count + k] = sps_M_ya_3_x;
+        o[8*count + k] = sps_M_ya_3_x;
+        o[9*count + k] = sps_M_ya_3_y;
+        o[10*count + k] = sps_M_ya_3_y;
+        o[11*count + k] = sps_M_ya_3_z;
+        o[12*count + k] = sps_M_ya_3_z;
+        o[13*count + k] = sps_J_group_3_zz;
+        o[14*count + k] = sps_axis_z_x;
+        o[15*count + k] = sps_axis_z_y;
+        o[16*count + k] = sps_axis_z_z;
+        o[17*count + k] = sps_H_a_4_x;
+        o[18*count + k] = sps_H_a_4_y;
+        o[19*count + k] = sps_H_a_4_z;
+        o[21*count + k] = ((sps_mu_3_o_z + (sps_d_P_3_in_base_x + sps_d_P_3_in_base_y)) +
+            ((sps_d_P_3_in_base_z + sps_M_ya_3_x) + (sps_M_ya_3_y + sps_M_ya_3_z))) +
+            ((sps_J_group_3_zz + (sps_axis_z_x + sps_axis_z_y)) + ((sps_axis_z_z + sps_H_a_4_x) +
+            (sps_H_a_4_y + sps_H_a_4_z)));
+        o[20*count + k] = UNLESS(magnitude(sps_rho2_1) >
+            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(sps_rho2_2) >
+            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(-sps_w_2_t) >
+            TOLERANCE*R(0.6400000000000001));
     }
 }
 
-INLINE void dynamics_place_urps(size_t w, const dynamics_results_urps *o, size_t leg, size_t
-    first, real *M, real *Z, real *H, verdict *t)
+INLINE void dynamics_place_sps(size_t w, size_t count, const real *o, size_t leg, size_t first,
+    real *M, real *Z, real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        Z[(6 + leg)*w + k] = o->entry[0][first + k];
-        M[(72 + 12*leg)*w + k] = o->entry[1][first + k];
-        M[(6 + leg)*w + k] = o->entry[2][first + k];
-        M[(73 + 12*leg)*w + k] = o->entry[3][first + k];
-        M[(18 + leg)*w + k] = o->entry[4][first + k];
-        M[(74 + 12*leg)*w + k] = o->entry[5][first + k];
-        M[(30 + leg)*w + k] = o->entry[6][first + k];
-        M[(75 + 12*leg)*w + k] = o->entry[7][first + k];
-        M[(42 + leg)*w + k] = o->entry[8][first + k];
-        M[(76 + 12*leg)*w + k] = o->entry[9][first + k];
-        M[(54 + leg)*w + k] = o->entry[10][first + k];
-        M[(77 + 12*leg)*w + k] = o->entry[11][first + k];
-        M[(66 + leg)*w + k] = o->entry[12][first + k];
-        M[(78 + 13*leg)*w + k] = o->entry[13][first + k];
-        H[(leg)*w + k] = o->entry[14][first + k];
-        H[(6 + leg)*w + k] = o->entry[15][first + k];
-        H[(12 + leg)*w + k] = o->entry[16][first + k];
-        H[(18 + leg)*w + k] = o->entry[17][first + k];
-        H[(24 + leg)*w + k] = o->entry[18][first + k];
-        H[(30 + leg)*w + k] = o->entry[19][first + k];
-        t->singular[k] += o->singular[first + k];
+        Z[(6 + leg)*w + k] = o[0*count + first + k];
+        M[(72 + 12*leg)*w + k] = o[1*count + first + k];
+        M[(6 + leg)*w + k] = o[2*count + first + k];
+        M[(73 + 12*leg)*w + k] = o[3*count + first + k];
+        M[(18 + leg)*w + k] = o[4*count + first + k];
+        M[(74 + 12*leg)*w + k] = o[5*count + first + k];
+        M[(30 + leg)*w + k] = o[6*count + first + k];
+        M[(75 + 12*leg)*w + k] = o[7*count + first + k];
+        M[(42 + leg)*w + k] = o[8*count + first + k];
+        M[(76 + 12*leg)*w + k] = o[9*count + first + k];
+        M[(54 + leg)*w + k] = o[10*count + first + k];
+        M[(77 + 12*leg)*w + k] = o[11*count + first + k];
+        M[(66 + leg)*w + k] = o[12*count + first + k];
+        M[(78 + 13*leg)*w + k] = o[13*count + first + k];
+        H[(leg)*w + k] = o[14*count + first + k];
+        H[(6 + leg)*w + k] = o[15*count + first + k];
+        H[(12 + leg)*w + k] = o[16*count + first + k];
+        H[(18 + leg)*w + k] = o[17*count + first + k];
+        H[(24 + leg)*w + k] = o[18*count + first + k];
+        H[(30 + leg)*w + k] = o[19*count + first + k];
+        t->singular[k] += o[20*count + first + k];
+        t->total[k] += o[21*count + first + k];
     }
 }
 
-INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s, real *M, real
-    *Z)
+INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const real *sums, real *M,
+    real *Z, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real h_star_in_base_x = s->h_star_in_base_x[k];
-        const real h_star_in_base_y = s->h_star_in_base_y[k];
-        const real h_star_in_base_z = s->h_star_in_base_z[k];
-        const real J_star_t_8 = s->J_star_t_8[k];
-        const real J_star_t_9 = s->J_star_t_9[k];
-        const real J_star_t_10 = s->J_star_t_10[k];
-        const real J_star_t_12 = s->J_star_t_12[k];
-        const real J_star_t_13 = s->J_star_t_13[k];
-        const real J_star_t_15 = s->J_star_t_15[k];
-        const real Z_p_x = s->Z_p_x[k];
-        const real Z_p_y = s->Z_p_y[k];
-        const real Z_p_z = s->Z_p_z[k];
-        const real Z_q_in_base_x = s->Z_q_in_base_x[k];
-        const real Z_q_in_base_y = s->Z_q_in_base_y[k];
-        const real Z_q_in_base_z = s->Z_q_in_base_z[k];
-        const real total_urps_xx = s->sum[0][k];
-        const real total_urps_xy = s->sum[1][k];
-        const real total_urps_xz = s->sum[2][k];
-        const real total_urps_yy = s->sum[3][k];
-        const real total_urps_yz = s->sum[4][k];
-        const real total_urps_zz = s->sum[5][k];
-        const real total_urps_xx_2 = s->sum[6][k];
-        const real total_urps_xy_2 = s->sum[7][k];
-        const real total_urps_xz_2 = s->sum[8][k];
-        const real total_urps_yx = s->sum[9][k];
-        const real total_urps_yy_2 = s->sum[10][k];
-        const real total_urps_yz_2 = s->sum[11][k];
-        const real total_urps_zx = s->sum[12][k];
-        const real total_urps_zy = s->sum[13][k];
-        const real total_urps_zz_2 = s->sum[14][k];
-        const real total_urps_xx_3 = s->sum[15][k];
-        const real total_urps_xy_3 = s->sum[16][k];
-        const real total_urps_xz_3 = s->sum[17][k];
-        const real total_urps_yy_3 = s->sum[18][k];
-        const real total_urps_yz_3 = s->sum[19][k];
-        const real total_urps_zz_3 = s->sum[20][k];
-        const real total_urps_x = s->sum[21][k];
-        const real total_urps_y = s->sum[22][k];
-        const real total_urps_z = s->sum[23][k];
-        const real total_urps_x_2 = s->sum[24][k];
-        const real total_urps_y_2 = s->sum[25][k];
-        const real total_urps_z_2 = s->sum[26][k];
+        /* (M_tt) translational block of M */
         const real m_star = m->m_star;
-        /* (M1) translational block of M */
-        const real M_tt_xx = m_star - total_urps_xx;
-        const real M_tt_yy = m_star - total_urps_yy;
-        const real M_tt_zz = m_star - total_urps_zz;
-        /* (M2) coupling block of M */
-        const real M_ta_xy = h_star_in_base_z - total_urps_xy_2;
-        const real M_ta_xz = total_urps_xz_2 - h_star_in_base_y;
-        const real M_ta_yx = total_urps_yx - h_star_in_base_z;
-        const real M_ta_yz = h_star_in_base_x + total_urps_yz_2;
-        const real M_ta_zx = h_star_in_base_y + total_urps_zx;
-        const real M_ta_zy = -h_star_in_base_x - total_urps_zy;
-        /* (M3) rotational block of M */
-        const real M_aa_xx = J_star_t_8 - total_urps_xx_3;
-        const real M_aa_xy = J_star_t_9 + total_urps_xy_3;
-        const real M_aa_xz = J_star_t_10 - total_urps_xz_3;
-        const real M_aa_yy = J_star_t_12 - total_urps_yy_3;
-        const real M_aa_yz = J_star_t_13 + total_urps_yz_3;
-        const real M_aa_zz = J_star_t_15 - total_urps_zz_3;
-        /* (M5) translational part of Z */
-        const real Z_t_x = Z_p_x + total_urps_x;
-        const real Z_t_y = Z_p_y + total_urps_y;
-        const real Z_t_z = Z_p_z + total_urps_z;
-        /* (M7) rotational part of Z */
-        const real Z_a_x = Z_q_in_base_x + total_urps_x_2;
-        const real Z_a_y = Z_q_in_base_y + total_urps_y_2;
-        const real Z_a_z = Z_q_in_base_z + total_urps_z_2;
+        const real total_sps_xx = sums[0*w + k];
+        const real M_tt_xx = m_star - total_sps_xx;
+        const real total_sps_yy = sums[3*w + k];
+        const real M_tt_yy = m_star - total_sps_yy;
+        const real total_sps_zz = sums[5*w + k];
+        const real M_tt_zz = m_star - total_sps_zz;
+        /* (M_ta) coupling block of M */
+        const real h_star_in_base_z = s[20*w + k];
+        const real total_sps_xy_2 = sums[7*w + k];
+        const real M_ta_xy = h_star_in_base_z - total_sps_xy_2;
+        const real h_star_in_base_y = s[19*w + k];
+        const real total_sps_xz_2 = sums[8*w + k];
+        const real M_ta_xz = total_sps_xz_2 - h_star_in_base_y;
+        const real total_sps_yx = sums[9*w + k];
+        const real M_ta_yx = total_sps_yx - h_star_in_base_z;
+        const real h_star_in_base_x = s[18*w + k];
+        const real total_sps_yz_2 = sums[11*w + k];
+        const real M_ta_yz = h_star_in_base_x + total_sps_yz_2;
+        const real total_sps_zx = sums[12*w + k];
+        const real M_ta_zx = h_star_in_base_y + total_sps_zx;
+        const real total_sps_zy = sums[13*w + k];
+        const real M_ta_zy = -h_star_in_base_x - total_sps_zy;
+        /* (M_aa) rotational block of M */
+        const real J_star_t_8 = s[21*w + k];
+        const real total_sps_xx_3 = sums[15*w + k];
+        const real M_aa_xx = J_star_t_8 - total_sps_xx_3;
+        const real J_star_t_9 = s[22*w + k];
+        const real total_sps_xy_3 = sums[16*w + k];
+        const real M_aa_xy = J_star_t_9 + total_sps_xy_3;
+        const real J_star_t_10 = s[23*w + k];
+        const real total_sps_xz_3 = sums[17*w + k];
+        const real M_aa_xz = J_star_t_10 - total_sps_xz_3;
+        const real J_star_t_13 = s[24*w + k];
+        const real total_sps_yy_3 = sums[18*w + k];
+        const real M_aa_yy = J_star_t_13 - total_sps_yy_3;
+        const real J_star_t_15 = s[25*w + k];
+        const real total_sps_yz_3 = sums[19*w + k];
+        const real M_aa_yz = J_star_t_15 + total_sps_yz_3;
+        const real J_star_t_17 = s[26*w + k];
+        const real total_sps_zz_3 = sums[20*w + k];
+        const real M_aa_zz = J_star_t_17 - total_sps_zz_3;
+        /* (Z_t) translational part of Z */
+        const real Z_p_x = s[27*w + k];
+        const real total_sps_x = sums[21*w + k];
+        const real Z_t_x = Z_p_x + total_sps_x;
+        const real Z_p_y = s[28*w + k];
+        const real total_sps_y = sums[22*w + k];
+        const real Z_t_y = Z_p_y + total_sps_y;
+        const real Z_p_z = s[29*w + k];
+        const real total_sps_z = sums[23*w + k];
+        const real Z_t_z = Z_p_z + total_sps_z;
+        /* (Z_a) rotational part of Z */
+        const real Z_q_in_base_x = s[30*w + k];
+        const real total_sps_x_2 = sums[24*w + k];
+        const real Z_a_x = Z_q_in_base_x + total_sps_x_2;
+        const real Z_q_in_base_y = s[31*w + k];
+        const real total_sps_y_2 = sums[25*w + k];
+        const real Z_a_y = Z_q_in_base_y + total_sps_y_2;
+        const real Z_q_in_base_z = s[32*w + k];
+        const real total_sps_z_2 = sums[26*w + k];
+        const real Z_a_z = Z_q_in_base_z + total_sps_z_2;
         M[0*w + k] = M_tt_xx;
-        M[1*w + k] = -total_urps_xy;
-        M[12*w + k] = -total_urps_xy;
-        M[2*w + k] = -total_urps_xz;
-        M[24*w + k] = -total_urps_xz;
+        const real total_sps_xy = sums[1*w + k];
+        M[1*w + k] = -total_sps_xy;
+        M[12*w + k] = -total_sps_xy;
+        const real total_sps_xz = sums[2*w + k];
+        M[2*w + k] = -total_sps_xz;
+        M[24*w + k] = -total_sps_xz;
         M[13*w + k] = M_tt_yy;
-        M[14*w + k] = -total_urps_yz;
-        M[25*w + k] = -total_urps_yz;
+        const real total_sps_yz = sums[4*w + k];
+        M[14*w + k] = -total_sps_yz;
+        M[25*w + k] = -total_sps_yz;
         M[26*w + k] = M_tt_zz;
-        M[3*w + k] = total_urps_xx_2;
-        M[36*w + k] = total_urps_xx_2;
+        const real total_sps_xx_2 = sums[6*w + k];
+        M[3*w + k] = total_sps_xx_2;
+        M[36*w + k] = total_sps_xx_2;
         M[4*w + k] = M_ta_xy;
         M[48*w + k] = M_ta_xy;
         M[5*w + k] = M_ta_xz;
         M[60*w + k] = M_ta_xz;
         M[15*w + k] = M_ta_yx;
         M[37*w + k] = M_ta_yx;
-        M[16*w + k] = -total_urps_yy_2;
-        M[49*w + k] = -total_urps_yy_2;
+        const real total_sps_yy_2 = sums[10*w + k];
+        M[16*w + k] = -total_sps_yy_2;
+        M[49*w + k] = -total_sps_yy_2;
         M[17*w + k] = M_ta_yz;
         M[61*w + k] = M_ta_yz;
         M[27*w + k] = M_ta_zx;
         M[38*w + k] = M_ta_zx;
         M[28*w + k] = M_ta_zy;
         M[50*w + k] = M_ta_zy;
-        M[29*w + k] = -total_urps_zz_2;
-        M[62*w + k] = -total_urps_zz_2;
+        const real total_sps_zz_2 = sums[14*w + k];
+        M[29*w + k] = -total_sps_zz_2;
+        M[62*w + k] = -total_sps_zz_2;
         M[39*w + k] = M_aa_xx;
         M[40*w + k] = M_aa_xy;
         M[51*w + k] = M_aa_xy;
@@ -2022,77 +2146,61 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
+        t->total[k] += (((M_tt_xx + (total_sps_xy + total_sps_xz)) + (M_tt_yy + (total_sps_yz +
+            M_tt_zz))) + ((total_sps_xx_2 + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + total_sps_yy_2) +
+            (M_ta_yz + M_ta_zx)))) + (((M_ta_zy + (total_sps_zz_2 + M_aa_xx)) + ((M_aa_xy +
+            M_aa_xz) + (M_aa_yy + M_aa_yz))) + ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) +
+            (Z_a_y + Z_a_z))));
     }
 }
 
-INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real *V, real *M, real
-    *Z, real *H, verdict *t)
+INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
+    *H, verdict *t)
 {
-    dynamics_values values, *const s = &values;
-    dynamics_results_urps results_urps;
-    clear(M, 144*w);
-    clear(H, 72*w);
-    dynamics_before(m, w, X, V, s, t);
-    if (w == 1) {  /* the legs side by side */
-        dynamics_legs_urps(m, w, 0, 1, s, 0, 6, 0, X, V, &results_urps);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            dynamics_place_urps(w, &results_urps, leg, leg, M, Z, H, t);
-        }
-        for (size_t n = 0; n < 27; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_urps.sum[n], 6);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_urps.sum, 0, sizeof results_urps.sum);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            dynamics_legs_urps(m, w, leg, 0, s, 1, w, 1, X, V, &results_urps);
-            dynamics_place_urps(w, &results_urps, leg, 0, M, Z, H, t);
-        }
-        for (size_t n = 0; n < 27; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_urps.sum[n][k];
-            }
-        }
+    real s[33] = {0}, sums[27] = {0}, terms_sps[27*LEGS(6)] = {0}, o_sps[22*LEGS(6)] = {0};
+    clear(M, 144);
+    clear(H, 72);
+    dynamics_before(m, 1, X, V, s, t);
+    dynamics_legs_sps(m, 1, 0, 1, s, 0, LEGS(6), 0, X, V, terms_sps, o_sps);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        dynamics_place_sps(1, LEGS(6), o_sps, leg, leg, M, Z, H, t);
     }
-    dynamics_after(m, w, s, M, Z);
+    for (size_t n = 0; n < 27; ++n) {
+        sums[n] = total(terms_sps + n*LEGS(6), 6);
+    }
+    dynamics_after(m, 1, s, sums, M, Z, t);
+}
+
+INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, verdict *t)
+{
+    real s[33*LANES], sums[27*LANES], o_sps[22*LANES];
+    clear(M, 144*LANES);
+    clear(H, 72*LANES);
+    dynamics_before(m, LANES, X, V, s, t);
+    clear(sums, 27*LANES);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        dynamics_legs_sps(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_sps);
+        dynamics_place_sps(LANES, LANES, o_sps, leg, 0, M, Z, H, t);
+    }
+    dynamics_after(m, LANES, s, sums, M, Z, t);
 }
 
 /* ---- M: 1227 mul, 849 add, 18 div, 12 sqrt, 12 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], h_star_in_base_x[LANES],
-        h_star_in_base_y[LANES], h_star_in_base_z[LANES], J_star_t_8[LANES], J_star_t_9[LANES],
-        J_star_t_10[LANES], J_star_t_12[LANES], J_star_t_13[LANES], J_star_t_15[LANES],
-        sum[21][LANES];
-} M_values;
-typedef struct {
-    real sum[21][8], entry[13][8], singular[8];
-} M_results_urps;
-
-INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, verdict *t)
+INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real J_star_t_22 = m->J_star_t_22;
-        const real J_star_t_24 = m->J_star_t_24;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_yz = m->J_star_yz;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -2116,413 +2224,438 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, ve
         const real R_zx = quaternion_xz - quaternion_wy;
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* (L2) first moment about the platform origin */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_z = m->h_star_z;
         const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
         const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
         const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
-        /* (L3) inertia tensor about the platform origin */
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy;
-        const real J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx;
+        /* (J_star) inertia tensor about the platform origin */
+        const real J_star_t_12 = m->J_star_t_12;
+        const real J_star_xy = m->J_star_xy;
+        const real J_star_yz = m->J_star_yz;
+        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy;
+        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy;
+        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy;
+        const real J_star_t_14 = m->J_star_t_14;
+        const real J_star_xz = m->J_star_xz;
+        const real J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx;
+        const real J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx;
+        const real J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
+        const real J_star_xx = m->J_star_xx;
         const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
         const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
         const real J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_6*R_xz;
         const real J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_12 = 2*J_star_t_11 + J_star_xx;
-        const real J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_13 = 2*J_star_t_11 + J_star_xx;
+        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_6*R_yz;
-        const real J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_t_15 = 2*J_star_t_14 + J_star_xx;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->h_star_in_base_x[k] = h_star_in_base_x;
-        s->h_star_in_base_y[k] = h_star_in_base_y;
-        s->h_star_in_base_z[k] = h_star_in_base_z;
-        s->J_star_t_8[k] = J_star_t_8;
-        s->J_star_t_9[k] = J_star_t_9;
-        s->J_star_t_10[k] = J_star_t_10;
-        s->J_star_t_12[k] = J_star_t_12;
-        s->J_star_t_13[k] = J_star_t_13;
-        s->J_star_t_15[k] = J_star_t_15;
+        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz;
+        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = h_star_in_base_x;
+        s[13*w + k] = h_star_in_base_y;
+        s[14*w + k] = h_star_in_base_z;
+        s[15*w + k] = J_star_t_8;
+        s[16*w + k] = J_star_t_9;
+        s[17*w + k] = J_star_t_10;
+        s[18*w + k] = J_star_t_13;
+        s[19*w + k] = J_star_t_15;
+        s[20*w + k] = J_star_t_17;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void M_legs_urps(const prepared *m, size_t w, size_t leg, size_t legs, const M_values *s,
-    size_t states, size_t count, int add, const real *X, M_results_urps *o)
+INLINE void M_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, int add, const real *X, real *terms, real *o)
 {
+    static const size_t place_sps_y_3_extra[] = {7, 8, 9, 10, 11, 12, 7, 7};
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real J_group_3_xx = m->J_group_3_xx[i];
-        const real J_group_3_xy = m->J_group_3_xy[i];
-        const real J_group_3_xz = m->J_group_3_xz[i];
-        const real J_group_3_yy = m->J_group_3_yy[i];
-        const real J_group_3_yz = m->J_group_3_yz[i];
-        const real J_group_3_zz = m->J_group_3_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real h_4_x = m->h_4_x[i];
-        const real h_4_y = m->h_4_y[i];
-        const real h_4_z = m->h_4_z[i];
-        const real urps_base_frame_xx = m->urps_base_frame_xx[i];
-        const real urps_base_frame_xy = m->urps_base_frame_xy[i];
-        const real urps_base_frame_xz = m->urps_base_frame_xz[i];
-        const real urps_base_frame_yx = m->urps_base_frame_yx[i];
-        const real urps_base_frame_yy = m->urps_base_frame_yy[i];
-        const real urps_base_frame_yz = m->urps_base_frame_yz[i];
-        const real urps_base_frame_zx = m->urps_base_frame_zx[i];
-        const real urps_base_frame_zy = m->urps_base_frame_zy[i];
-        const real urps_base_frame_zz = m->urps_base_frame_zz[i];
-        const real urps_base_point_x = m->urps_base_point_x[i];
-        const real urps_base_point_y = m->urps_base_point_y[i];
-        const real urps_base_point_z = m->urps_base_point_z[i];
-        const real urps_platform_point_x = m->urps_platform_point_x[i];
-        const real urps_platform_point_y = m->urps_platform_point_y[i];
-        const real urps_platform_point_z = m->urps_platform_point_z[i];
-        const real y_3_extra = X[(7 + i)*w + j];
-        /* (urps-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*urps_platform_point_x + R_xy*urps_platform_point_y +
-            R_xz*urps_platform_point_z;
-        const real q_in_base_y = R_yx*urps_platform_point_x + R_yy*urps_platform_point_y +
-            R_yz*urps_platform_point_z;
-        const real q_in_base_z = R_zx*urps_platform_point_x + R_zy*urps_platform_point_y +
-            R_zz*urps_platform_point_z;
-        const real S_x = q_in_base_x + t_x - urps_base_point_x;
-        const real S_y = q_in_base_y + t_y - urps_base_point_y;
-        const real S_z = q_in_base_z + t_z - urps_base_point_z;
-        /* (urps-K4) component along the reference direction */
-        const real px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx +
-            S_z*urps_base_frame_zx;
-        /* (urps-K5) component across the reference direction */
-        const real py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy +
-            S_z*urps_base_frame_zy;
-        /* (urps-K6) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (urps-K7) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (urps-K11) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz +
-            S_z*urps_base_frame_zz;
-        /* (urps-K15) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (urps-K16) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (urps-K17) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (urps-K18) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (urps-K2) cosine of the angle of joint 3 from its reference direction */
-        const real c_3_t = sine(y_3_extra);
-        /* (urps-K3) sine of the angle of joint 3 from its reference direction */
-        const real s_3 = cosine(y_3_extra);
-        /* (urps-V3) velocity of the connection point per rate of joint 1 */
-        const real v_1_t = c_2*c_3_t;
-        const real v_1_t_2 = c_2*s_3;
-        const real v_1_t_3 = root_2*v_1_t_2;
-        const real v_1_t_4 = root_2*v_1_t;
-        /* (urps-V4) velocity of the connection point per rate of joint 2 */
-        const real v_2_t = c_3_t*root_2;
-        const real v_2_t_2 = root_2*s_3;
-        /* (urps-V6) reciprocal vector 1 */
-        const real axis_z_x = S_x*inv_root_2;
-        const real axis_z_y = S_y*inv_root_2;
-        const real axis_z_z = S_z*inv_root_2;
-        const real w_1_t = s_2*s_3;
-        /* (urps-K8) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (urps-K9) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (urps-V6) reciprocal vector 1 */
-        const real axis_y_urps_axes3_r4_x = c_1*c_3_t - s_1*w_1_t;
-        const real axis_y_urps_axes3_r4_y = -c_1*w_1_t - c_3_t*s_1;
-        const real axis_y_urps_axes3_in_base_x = axis_y_urps_axes3_r4_x*urps_base_frame_xx +
-            axis_y_urps_axes3_r4_y*urps_base_frame_xy + urps_base_frame_xz*v_1_t_2;
-        const real axis_y_urps_axes3_in_base_y = axis_y_urps_axes3_r4_x*urps_base_frame_yx +
-            axis_y_urps_axes3_r4_y*urps_base_frame_yy + urps_base_frame_yz*v_1_t_2;
-        const real axis_y_urps_axes3_in_base_z = axis_y_urps_axes3_r4_x*urps_base_frame_zx +
-            axis_y_urps_axes3_r4_y*urps_base_frame_zy + urps_base_frame_zz*v_1_t_2;
-        const real axis_x_urps_axes3_x = axis_y_urps_axes3_in_base_y*axis_z_z -
-            axis_y_urps_axes3_in_base_z*axis_z_y;
-        const real axis_x_urps_axes3_y = axis_y_urps_axes3_in_base_z*axis_z_x -
-            axis_y_urps_axes3_in_base_x*axis_z_z;
-        const real axis_x_urps_axes3_z = axis_y_urps_axes3_in_base_x*axis_z_y -
-            axis_y_urps_axes3_in_base_y*axis_z_x;
-        const real w_1_t_2 = v_1_t_3*v_2_t_2 + v_1_t_4*v_2_t;
-        const real inv_w_1_t_23 = 1/w_1_t_2;
-        const real w_1_t_3 = inv_w_1_t_23*v_2_t_2;
-        const real w_1_t_4 = inv_w_1_t_23*v_2_t;
-        /* (urps-V7) reciprocal vector 2 */
-        const real w_2_t = inv_w_1_t_23*v_1_t_4;
-        const real w_2_t_2 = inv_w_1_t_23*v_1_t_3;
-        /* (urps-A19) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d_alpha_1_zx = s_2*w_1_t_3;
-        const real d_alpha_1_zy = s_2*w_1_t_4;
-        /* (urps-A23) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real d_alpha_2_xx = v_1_t*w_1_t_3 - s_3*w_2_t;
-        const real d_alpha_2_xy = -s_3*w_2_t_2 - v_1_t*w_1_t_4;
-        const real d_alpha_2_yx = c_3_t*w_2_t + v_1_t_2*w_1_t_3;
-        const real d_alpha_2_yy = c_3_t*w_2_t_2 - v_1_t_2*w_1_t_4;
-        /* (urps-N13) coefficient of the acceleration in: inertia moment of the links that turn with link
-           3, about their reference points */
-        const real d_mu_3_t = J_group_3_xx*d_alpha_2_xx + J_group_3_xy*d_alpha_2_yx +
-            J_group_3_xz*d_alpha_1_zx;
-        const real d_mu_3_t_2 = J_group_3_xy*d_alpha_2_xy + J_group_3_yy*d_alpha_2_yy -
-            J_group_3_yz*d_alpha_1_zy;
-        const real d_mu_3_xy = J_group_3_xx*d_alpha_2_xy + J_group_3_xy*d_alpha_2_yy - h_4_x -
-            J_group_3_xz*d_alpha_1_zy;
-        const real d_mu_3_yx = h_4_x + J_group_3_xy*d_alpha_2_xx + J_group_3_yy*d_alpha_2_yx +
-            J_group_3_yz*d_alpha_1_zx;
-        const real d_mu_3_zx = J_group_3_xz*d_alpha_2_xx + J_group_3_yz*d_alpha_2_yx +
-            J_group_3_zz*d_alpha_1_zx - h_4_z;
-        const real d_mu_3_zy = h_4_y + J_group_3_xz*d_alpha_2_xy + J_group_3_yz*d_alpha_2_yy -
-            J_group_3_zz*d_alpha_1_zy;
-        /* (urps-N25) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_y = d_mu_3_t_2*v_1_t_2 + d_mu_3_xy*v_1_t + d_mu_3_zy*s_2;
-        const real d_Gamma_1_z = h_4_z*v_1_t - h_4_y*v_1_t_2;
-        /* (urps-N21) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
-           and weight */
-        const real d_Gamma_2_y = d_mu_3_xy*s_3 - c_3_t*d_mu_3_t_2;
-        const real d_Gamma_2_z = c_3_t*h_4_y + h_4_z*s_3;
-        /* (urps-N29) coefficient of the acceleration in: force at the connection point that balances the
+        /* (sps-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
+        const real sps_platform_point_x = m->sps_platform_point_x[i];
+        const real sps_platform_point_y = m->sps_platform_point_y[i];
+        const real sps_platform_point_z = m->sps_platform_point_z[i];
+        const real sps_q_in_base_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
+            R_xz*sps_platform_point_z;
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real sps_q_in_base_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
+            R_yz*sps_platform_point_z;
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real sps_q_in_base_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
+            R_zz*sps_platform_point_z;
+        const real sps_base_point_x = m->sps_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x;
+        const real sps_base_point_y = m->sps_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y;
+        const real sps_base_point_z = m->sps_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z;
+        /* (sps-px_1) component along the reference direction */
+        const real sps_base_frame_xx = m->sps_base_frame_xx[i];
+        const real sps_base_frame_yx = m->sps_base_frame_yx[i];
+        const real sps_base_frame_zx = m->sps_base_frame_zx[i];
+        const real sps_px_1 = sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx +
+            sps_S_z*sps_base_frame_zx;
+        /* (sps-py_1) component across the reference direction */
+        const real sps_base_frame_xy = m->sps_base_frame_xy[i];
+        const real sps_base_frame_yy = m->sps_base_frame_yy[i];
+        const real sps_base_frame_zy = m->sps_base_frame_zy[i];
+        const real sps_py_1 = sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy +
+            sps_S_z*sps_base_frame_zy;
+        /* (sps-rho2_1) squared amplitude */
+        const real sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1;
+        /* (sps-root_1) amplitude, with the sign of the branch */
+        const real sps_branch_1 = m->sps_branch_1[i];
+        const real sps_root_1 = sps_branch_1*root(sps_rho2_1);
+        /* (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real sps_base_frame_xz = m->sps_base_frame_xz[i];
+        const real sps_base_frame_yz = m->sps_base_frame_yz[i];
+        const real sps_base_frame_zz = m->sps_base_frame_zz[i];
+        const real sps_xi_1_t = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
+            sps_S_z*sps_base_frame_zz;
+        /* (sps-rho2_2) squared amplitude */
+        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t;
+        /* (sps-root_2) amplitude, with the sign of the branch */
+        const real sps_branch_2 = m->sps_branch_2[i];
+        const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
+        /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_sps_root_2 = 1/sps_root_2;
+        const real sps_c_2 = inv_sps_root_2*sps_root_1;
+        /* (sps-s_2) sine of the angle of joint 2 from its reference direction */
+        const real sps_s_2 = inv_sps_root_2*sps_xi_1_t;
+        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
+        const real sps_c_3_t = sine(sps_y_3_extra);
+        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
+        const real sps_s_3 = cosine(sps_y_3_extra);
+        /* (sps-v_1) velocity of the connection point per rate of joint 1 */
+        const real sps_v_1_t = sps_c_2*sps_c_3_t;
+        const real sps_v_1_t_2 = sps_c_2*sps_s_3;
+        const real sps_v_1_t_3 = sps_root_2*sps_v_1_t_2;
+        const real sps_v_1_t_4 = sps_root_2*sps_v_1_t;
+        /* (sps-v_2) velocity of the connection point per rate of joint 2 */
+        const real sps_v_2_t = sps_c_3_t*sps_root_2;
+        const real sps_v_2_t_2 = sps_root_2*sps_s_3;
+        /* (sps-w_1) reciprocal vector 1 */
+        const real sps_axis_z_x = inv_sps_root_2*sps_S_x;
+        const real sps_axis_z_y = inv_sps_root_2*sps_S_y;
+        const real sps_axis_z_z = inv_sps_root_2*sps_S_z;
+        const real sps_w_1_t = sps_s_2*sps_s_3;
+        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_sps_root_1 = 1/sps_root_1;
+        const real sps_c_1 = inv_sps_root_1*sps_py_1;
+        /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
+        const real sps_s_1 = inv_sps_root_1*sps_px_1;
+        /* (sps-w_1) reciprocal vector 1 */
+        const real axis_y_sps_axes3_r4_x = sps_c_1*sps_c_3_t - sps_s_1*sps_w_1_t;
+        const real axis_y_sps_axes3_r4_y = -sps_c_1*sps_w_1_t - sps_c_3_t*sps_s_1;
+        const real axis_y_sps_axes3_in_base_x = axis_y_sps_axes3_r4_x*sps_base_frame_xx +
+            axis_y_sps_axes3_r4_y*sps_base_frame_xy + sps_base_frame_xz*sps_v_1_t_2;
+        const real axis_y_sps_axes3_in_base_y = axis_y_sps_axes3_r4_x*sps_base_frame_yx +
+            axis_y_sps_axes3_r4_y*sps_base_frame_yy + sps_base_frame_yz*sps_v_1_t_2;
+        const real axis_y_sps_axes3_in_base_z = axis_y_sps_axes3_r4_x*sps_base_frame_zx +
+            axis_y_sps_axes3_r4_y*sps_base_frame_zy + sps_base_frame_zz*sps_v_1_t_2;
+        const real axis_x_sps_axes3_x = axis_y_sps_axes3_in_base_y*sps_axis_z_z -
+            axis_y_sps_axes3_in_base_z*sps_axis_z_y;
+        const real axis_x_sps_axes3_y = axis_y_sps_axes3_in_base_z*sps_axis_z_x -
+            axis_y_sps_axes3_in_base_x*sps_axis_z_z;
+        const real axis_x_sps_axes3_z = axis_y_sps_axes3_in_base_x*sps_axis_z_y -
+            axis_y_sps_axes3_in_base_y*sps_axis_z_x;
+        /* (sps-w_2) reciprocal vector 2 */
+        const real sps_w_2_t = sps_v_1_t_3*sps_v_2_t_2 + sps_v_1_t_4*sps_v_2_t;
+        const real inv_sps_w_2_t_3 = 1/sps_w_2_t;
+        const real sps_w_2_t_2 = inv_sps_w_2_t_3*sps_v_1_t_4;
+        const real sps_w_2_t_3 = inv_sps_w_2_t_3*sps_v_1_t_3;
+        /* (sps-w_1) reciprocal vector 1 */
+        const real sps_w_1_t_2 = inv_sps_w_2_t_3*sps_v_2_t_2;
+        const real sps_w_1_t_3 = inv_sps_w_2_t_3*sps_v_2_t;
+        /* (sps-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+        const real sps_d_alpha_1_zx = sps_s_2*sps_w_1_t_2;
+        const real sps_d_alpha_1_zy = sps_s_2*sps_w_1_t_3;
+        /* (sps-d_alpha_2) coefficient of the acceleration in: angular acceleration of link 2 */
+        const real sps_d_alpha_2_xx = sps_v_1_t*sps_w_1_t_2 - sps_s_3*sps_w_2_t_2;
+        const real sps_d_alpha_2_xy = -sps_s_3*sps_w_2_t_3 - sps_v_1_t*sps_w_1_t_3;
+        const real sps_d_alpha_2_yx = sps_c_3_t*sps_w_2_t_2 + sps_v_1_t_2*sps_w_1_t_2;
+        const real sps_d_alpha_2_yy = sps_c_3_t*sps_w_2_t_3 - sps_v_1_t_2*sps_w_1_t_3;
+        /* (sps-d_mu_3) coefficient of the acceleration in: inertia moment of the links that turn with
+           link 3, about their reference points */
+        const real sps_J_group_3_xx = m->sps_J_group_3_xx[i];
+        const real sps_J_group_3_xy = m->sps_J_group_3_xy[i];
+        const real sps_J_group_3_xz = m->sps_J_group_3_xz[i];
+        const real sps_d_mu_3_t = sps_J_group_3_xx*sps_d_alpha_2_xx +
+            sps_J_group_3_xy*sps_d_alpha_2_yx + sps_J_group_3_xz*sps_d_alpha_1_zx;
+        const real sps_J_group_3_yy = m->sps_J_group_3_yy[i];
+        const real sps_J_group_3_yz = m->sps_J_group_3_yz[i];
+        const real sps_d_mu_3_t_2 = sps_J_group_3_xy*sps_d_alpha_2_xy +
+            sps_J_group_3_yy*sps_d_alpha_2_yy - sps_J_group_3_yz*sps_d_alpha_1_zy;
+        const real sps_h_4_x = m->sps_h_4_x[i];
+        const real sps_d_mu_3_xy = sps_J_group_3_xx*sps_d_alpha_2_xy +
+            sps_J_group_3_xy*sps_d_alpha_2_yy - sps_h_4_x - sps_J_group_3_xz*sps_d_alpha_1_zy;
+        const real sps_d_mu_3_yx = sps_h_4_x + sps_J_group_3_xy*sps_d_alpha_2_xx +
+            sps_J_group_3_yy*sps_d_alpha_2_yx + sps_J_group_3_yz*sps_d_alpha_1_zx;
+        const real sps_J_group_3_zz = m->sps_J_group_3_zz[i];
+        const real sps_h_4_z = m->sps_h_4_z[i];
+        const real sps_d_mu_3_zx = sps_J_group_3_xz*sps_d_alpha_2_xx +
+            sps_J_group_3_yz*sps_d_alpha_2_yx + sps_J_group_3_zz*sps_d_alpha_1_zx - sps_h_4_z;
+        const real sps_h_4_y = m->sps_h_4_y[i];
+        const real sps_d_mu_3_zy = sps_h_4_y + sps_J_group_3_xz*sps_d_alpha_2_xy +
+            sps_J_group_3_yz*sps_d_alpha_2_yy - sps_J_group_3_zz*sps_d_alpha_1_zy;
+        /* (sps-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real sps_d_Gamma_2_y = sps_d_mu_3_xy*sps_s_3 - sps_c_3_t*sps_d_mu_3_t_2;
+        const real sps_d_Gamma_2_z = sps_c_3_t*sps_h_4_y + sps_h_4_z*sps_s_3;
+        /* (sps-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real sps_d_Gamma_1_y = sps_d_mu_3_t_2*sps_v_1_t_2 + sps_d_mu_3_xy*sps_v_1_t +
+            sps_d_mu_3_zy*sps_s_2;
+        const real sps_d_Gamma_1_z = sps_h_4_z*sps_v_1_t - sps_h_4_y*sps_v_1_t_2;
+        /* (sps-d_G) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
-        const real d_G_xz = d_Gamma_1_z*w_1_t_3 - d_Gamma_2_z*w_2_t;
-        const real d_G_yz = -d_Gamma_1_z*w_1_t_4 - d_Gamma_2_z*w_2_t_2;
-        /* (urps-N33) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real sps_d_G_xz = sps_d_Gamma_1_z*sps_w_1_t_2 - sps_d_Gamma_2_z*sps_w_2_t_2;
+        const real sps_d_G_yz = -sps_d_Gamma_1_z*sps_w_1_t_3 - sps_d_Gamma_2_z*sps_w_2_t_3;
+        /* (sps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_xx = d_alpha_1_zx*h_4_z + w_2_t*(d_mu_3_t*s_3 - c_3_t*d_mu_3_yx) -
-            d_alpha_2_yx*h_4_x - w_1_t_3*(d_mu_3_t*v_1_t + d_mu_3_yx*v_1_t_2 + d_mu_3_zx*s_2);
-        const real d_c_xy = d_Gamma_2_y*w_2_t - d_Gamma_1_y*w_1_t_3 - d_alpha_1_zy*h_4_z -
-            d_alpha_2_yy*h_4_x;
-        const real d_c_yy = d_Gamma_1_y*w_1_t_4 + d_Gamma_2_y*w_2_t_2 + d_alpha_1_zy*h_4_y +
-            d_alpha_2_xy*h_4_x;
-        /* (urps-N35) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = R(0.5)*d_c_xx;
-        const real Q_t_2 = R(0.5)*d_c_yy;
-        const real Q_t_3 = Q_t*axis_x_urps_axes3_x + axis_y_urps_axes3_in_base_x*d_c_xy -
-            axis_z_x*d_G_xz;
-        const real Q_t_4 = Q_t*axis_x_urps_axes3_y + axis_y_urps_axes3_in_base_y*d_c_xy -
-            axis_z_y*d_G_xz;
-        const real Q_t_5 = Q_t*axis_x_urps_axes3_z + axis_y_urps_axes3_in_base_z*d_c_xy -
-            axis_z_z*d_G_xz;
-        const real Q_t_6 = Q_t_2*axis_y_urps_axes3_in_base_x - axis_z_x*d_G_yz;
-        const real Q_t_7 = Q_t_2*axis_y_urps_axes3_in_base_y - axis_z_y*d_G_yz;
-        const real Q_t_8 = Q_t_2*axis_y_urps_axes3_in_base_z - axis_z_z*d_G_yz;
-        const real Q_t_9 = Q_t_3*axis_x_urps_axes3_x + Q_t_6*axis_y_urps_axes3_in_base_x;
-        const real Q_t_10 = 2*Q_t_9;
-        const real Q_t_11 = Q_t_3*axis_x_urps_axes3_y + Q_t_4*axis_x_urps_axes3_x +
-            Q_t_6*axis_y_urps_axes3_in_base_y + Q_t_7*axis_y_urps_axes3_in_base_x;
-        const real Q_t_12 = Q_t_3*axis_x_urps_axes3_z + Q_t_5*axis_x_urps_axes3_x +
-            Q_t_6*axis_y_urps_axes3_in_base_z + Q_t_8*axis_y_urps_axes3_in_base_x;
-        const real Q_t_13 = Q_t_4*axis_x_urps_axes3_y + Q_t_7*axis_y_urps_axes3_in_base_y;
-        const real Q_t_14 = 2*Q_t_13;
-        const real Q_t_15 = Q_t_4*axis_x_urps_axes3_z + Q_t_5*axis_x_urps_axes3_y +
-            Q_t_7*axis_y_urps_axes3_in_base_z + Q_t_8*axis_y_urps_axes3_in_base_y;
-        const real Q_t_16 = Q_t_5*axis_x_urps_axes3_z + Q_t_8*axis_y_urps_axes3_in_base_z;
-        const real Q_t_17 = 2*Q_t_16;
-        /* (M2) coupling block of M */
-        const real M_ta_t = Q_t_11*q_in_base_z;
-        const real M_ta_t_2 = Q_t_12*q_in_base_y;
-        const real M_ta_t_3 = M_ta_t - M_ta_t_2;
-        const real M_ta_t_4 = Q_t_10*q_in_base_z - Q_t_12*q_in_base_x;
-        const real M_ta_t_5 = Q_t_10*q_in_base_y - Q_t_11*q_in_base_x;
-        const real M_ta_t_6 = Q_t_14*q_in_base_z - Q_t_15*q_in_base_y;
-        const real M_ta_t_7 = Q_t_15*q_in_base_x;
-        const real M_ta_t_8 = M_ta_t - M_ta_t_7;
-        const real M_ta_t_9 = Q_t_11*q_in_base_y - Q_t_14*q_in_base_x;
-        const real M_ta_t_10 = Q_t_15*q_in_base_z - Q_t_17*q_in_base_y;
-        const real M_ta_t_11 = Q_t_12*q_in_base_z - Q_t_17*q_in_base_x;
-        const real M_ta_t_12 = M_ta_t_7 - M_ta_t_2;
-        /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y;
-        const real M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y;
-        const real M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z;
-        const real M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x;
-        const real M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z;
-        const real M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x;
-        /* (urps-N39) coefficient of the acceleration in: inertia and weight of the leg along the extra
+        const real sps_d_c_xx = sps_d_alpha_1_zx*sps_h_4_z + sps_w_2_t_2*(sps_d_mu_3_t*sps_s_3 -
+            sps_c_3_t*sps_d_mu_3_yx) - sps_d_alpha_2_yx*sps_h_4_x -
+            sps_w_1_t_2*(sps_d_mu_3_t*sps_v_1_t + sps_d_mu_3_yx*sps_v_1_t_2 +
+            sps_d_mu_3_zx*sps_s_2);
+        const real sps_d_c_xy = sps_d_Gamma_2_y*sps_w_2_t_2 - sps_d_Gamma_1_y*sps_w_1_t_2 -
+            sps_d_alpha_1_zy*sps_h_4_z - sps_d_alpha_2_yy*sps_h_4_x;
+        const real sps_d_c_yy = sps_d_Gamma_1_y*sps_w_1_t_3 + sps_d_Gamma_2_y*sps_w_2_t_3 +
+            sps_d_alpha_1_zy*sps_h_4_y + sps_d_alpha_2_xy*sps_h_4_x;
+        /* (sps-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real sps_Q_t = R(0.5)*sps_d_c_xx;
+        const real sps_Q_t_2 = R(0.5)*sps_d_c_yy;
+        const real sps_Q_t_3 = axis_x_sps_axes3_x*sps_Q_t + axis_y_sps_axes3_in_base_x*sps_d_c_xy
+            - sps_axis_z_x*sps_d_G_xz;
+        const real sps_Q_t_4 = axis_x_sps_axes3_y*sps_Q_t + axis_y_sps_axes3_in_base_y*sps_d_c_xy
+            - sps_axis_z_y*sps_d_G_xz;
+        const real sps_Q_t_5 = axis_x_sps_axes3_z*sps_Q_t + axis_y_sps_axes3_in_base_z*sps_d_c_xy
+            - sps_axis_z_z*sps_d_G_xz;
+        const real sps_Q_t_6 = axis_y_sps_axes3_in_base_x*sps_Q_t_2 - sps_axis_z_x*sps_d_G_yz;
+        const real sps_Q_t_7 = axis_y_sps_axes3_in_base_y*sps_Q_t_2 - sps_axis_z_y*sps_d_G_yz;
+        const real sps_Q_t_8 = axis_y_sps_axes3_in_base_z*sps_Q_t_2 - sps_axis_z_z*sps_d_G_yz;
+        const real sps_Q_t_9 = axis_x_sps_axes3_x*sps_Q_t_3 +
+            axis_y_sps_axes3_in_base_x*sps_Q_t_6;
+        const real sps_Q_t_10 = 2*sps_Q_t_9;
+        const real sps_Q_t_11 = axis_x_sps_axes3_x*sps_Q_t_4 + axis_x_sps_axes3_y*sps_Q_t_3 +
+            axis_y_sps_axes3_in_base_x*sps_Q_t_7 + axis_y_sps_axes3_in_base_y*sps_Q_t_6;
+        const real sps_Q_t_12 = axis_x_sps_axes3_x*sps_Q_t_5 + axis_x_sps_axes3_z*sps_Q_t_3 +
+            axis_y_sps_axes3_in_base_x*sps_Q_t_8 + axis_y_sps_axes3_in_base_z*sps_Q_t_6;
+        const real sps_Q_t_13 = axis_x_sps_axes3_y*sps_Q_t_4 +
+            axis_y_sps_axes3_in_base_y*sps_Q_t_7;
+        const real sps_Q_t_14 = 2*sps_Q_t_13;
+        const real sps_Q_t_15 = axis_x_sps_axes3_y*sps_Q_t_5 + axis_x_sps_axes3_z*sps_Q_t_4 +
+            axis_y_sps_axes3_in_base_y*sps_Q_t_8 + axis_y_sps_axes3_in_base_z*sps_Q_t_7;
+        const real sps_Q_t_16 = axis_x_sps_axes3_z*sps_Q_t_5 +
+            axis_y_sps_axes3_in_base_z*sps_Q_t_8;
+        const real sps_Q_t_17 = 2*sps_Q_t_16;
+        /* (M_ta) coupling block of M */
+        const real sps_M_ta_t = sps_Q_t_11*sps_q_in_base_z;
+        const real sps_M_ta_t_2 = sps_Q_t_12*sps_q_in_base_y;
+        const real sps_M_ta_t_3 = sps_M_ta_t - sps_M_ta_t_2;
+        const real sps_M_ta_t_4 = sps_Q_t_10*sps_q_in_base_z - sps_Q_t_12*sps_q_in_base_x;
+        const real sps_M_ta_t_5 = sps_Q_t_10*sps_q_in_base_y - sps_Q_t_11*sps_q_in_base_x;
+        const real sps_M_ta_t_6 = sps_Q_t_14*sps_q_in_base_z - sps_Q_t_15*sps_q_in_base_y;
+        const real sps_M_ta_t_7 = sps_Q_t_15*sps_q_in_base_x;
+        const real sps_M_ta_t_8 = sps_M_ta_t - sps_M_ta_t_7;
+        const real sps_M_ta_t_9 = sps_Q_t_11*sps_q_in_base_y - sps_Q_t_14*sps_q_in_base_x;
+        const real sps_M_ta_t_10 = sps_Q_t_15*sps_q_in_base_z - sps_Q_t_17*sps_q_in_base_y;
+        const real sps_M_ta_t_11 = sps_Q_t_12*sps_q_in_base_z - sps_Q_t_17*sps_q_in_base_x;
+        const real sps_M_ta_t_12 = sps_M_ta_t_7 - sps_M_ta_t_2;
+        /* (M_aa) rotational block of M */
+        const real sps_M_aa_t = sps_M_ta_t_6*sps_q_in_base_z - sps_M_ta_t_10*sps_q_in_base_y;
+        const real sps_M_aa_t_2 = sps_M_ta_t_8*sps_q_in_base_z - sps_M_ta_t_11*sps_q_in_base_y;
+        const real sps_M_aa_t_3 = sps_M_ta_t_12*sps_q_in_base_y + sps_M_ta_t_9*sps_q_in_base_z;
+        const real sps_M_aa_t_4 = sps_M_ta_t_4*sps_q_in_base_z - sps_M_ta_t_11*sps_q_in_base_x;
+        const real sps_M_aa_t_5 = sps_M_ta_t_12*sps_q_in_base_x + sps_M_ta_t_5*sps_q_in_base_z;
+        const real sps_M_aa_t_6 = sps_M_ta_t_5*sps_q_in_base_y - sps_M_ta_t_9*sps_q_in_base_x;
+        /* (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra
            freedom of joint 3 */
-        const real d_P_3_in_base_x = axis_x_urps_axes3_x*d_mu_3_zx +
-            axis_y_urps_axes3_in_base_x*d_mu_3_zy;
-        const real d_P_3_in_base_y = axis_x_urps_axes3_y*d_mu_3_zx +
-            axis_y_urps_axes3_in_base_y*d_mu_3_zy;
-        const real d_P_3_in_base_z = axis_x_urps_axes3_z*d_mu_3_zx +
-            axis_y_urps_axes3_in_base_z*d_mu_3_zy;
-        /* (M8) coupling of extra joint 3 with the rotation of the platform */
-        const real M_ya_3_x = d_P_3_in_base_z*q_in_base_y - d_P_3_in_base_y*q_in_base_z;
-        const real M_ya_3_y = d_P_3_in_base_x*q_in_base_z - d_P_3_in_base_z*q_in_base_x;
-        const real M_ya_3_z = d_P_3_in_base_y*q_in_base_x - d_P_3_in_base_x*q_in_base_y;
-        o->sum[0][k] = add ? o->sum[0][k] + Q_t_10 : Q_t_10;  /* total_urps_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + Q_t_11 : Q_t_11;  /* total_urps_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + Q_t_12 : Q_t_12;  /* total_urps_xz */
-        o->sum[3][k] = add ? o->sum[3][k] + Q_t_14 : Q_t_14;  /* total_urps_yy */
-        o->sum[4][k] = add ? o->sum[4][k] + Q_t_15 : Q_t_15;  /* total_urps_yz */
-        o->sum[5][k] = add ? o->sum[5][k] + Q_t_17 : Q_t_17;  /* total_urps_zz */
-        o->sum[6][k] = add ? o->sum[6][k] + M_ta_t_3 : M_ta_t_3;  /* total_urps_xx_2 */
-        o->sum[7][k] = add ? o->sum[7][k] + M_ta_t_4 : M_ta_t_4;  /* total_urps_xy_2 */
-        o->sum[8][k] = add ? o->sum[8][k] + M_ta_t_5 : M_ta_t_5;  /* total_urps_xz_2 */
-        o->sum[9][k] = add ? o->sum[9][k] + M_ta_t_6 : M_ta_t_6;  /* total_urps_yx */
-        o->sum[10][k] = add ? o->sum[10][k] + M_ta_t_8 : M_ta_t_8;  /* total_urps_yy_2 */
-        o->sum[11][k] = add ? o->sum[11][k] + M_ta_t_9 : M_ta_t_9;  /* total_urps_yz_2 */
-        o->sum[12][k] = add ? o->sum[12][k] + M_ta_t_10 : M_ta_t_10;  /* total_urps_zx */
-        o->sum[13][k] = add ? o->sum[13][k] + M_ta_t_11 : M_ta_t_11;  /* total_urps_zy */
-        o->sum[14][k] = add ? o->sum[14][k] + M_ta_t_12 : M_ta_t_12;  /* total_urps_zz_2 */
-        o->sum[15][k] = add ? o->sum[15][k] + M_aa_t : M_aa_t;  /* total_urps_xx_3 */
-        o->sum[16][k] = add ? o->sum[16][k] + M_aa_t_2 : M_aa_t_2;  /* total_urps_xy_3 */
-        o->sum[17][k] = add ? o->sum[17][k] + M_aa_t_3 : M_aa_t_3;  /* total_urps_xz_3 */
-        o->sum[18][k] = add ? o->sum[18][k] + M_aa_t_4 : M_aa_t_4;  /* total_urps_yy_3 */
-        o->sum[19][k] = add ? o->sum[19][k] + M_aa_t_5 : M_aa_t_5;  /* total_urps_yz_3 */
-        o->sum[20][k] = add ? o->sum[20][k] + M_aa_t_6 : M_aa_t_6;  /* total_urps_zz_3 */
-        o->entry[0][k] = d_P_3_in_base_x;
-        o->entry[1][k] = d_P_3_in_base_x;
-        o->entry[2][k] = d_P_3_in_base_y;
-        o->entry[3][k] = d_P_3_in_base_y;
-        o->entry[4][k] = d_P_3_in_base_z;
-        o->entry[5][k] = d_P_3_in_base_z;
-        o->entry[6][k] = M_ya_3_x;
-        o->entry[7][k] = M_ya_3_x;
-        o->entry[8][k] = M_ya_3_y;
-        o->entry[9][k] = M_ya_3_y;
-        o->entry[10][k] = M_ya_3_z;
-        o->entry[11][k] = M_ya_3_z;
-        o->entry[12][k] = J_group_3_zz;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(-w_1_t_2) > TOLERANCE*R(0.6400000000000001));
+        const real sps_d_P_3_in_base_x = axis_x_sps_axes3_x*sps_d_mu_3_zx +
+            axis_y_sps_axes3_in_base_x*sps_d_mu_3_zy;
+        const real sps_d_P_3_in_base_y = axis_x_sps_axes3_y*sps_d_mu_3_zx +
+            axis_y_sps_axes3_in_base_y*sps_d_mu_3_zy;
+        const real sps_d_P_3_in_base_z = axis_x_sps_axes3_z*sps_d_mu_3_zx +
+            axis_y_sps_axes3_in_base_z*sps_d_mu_3_zy;
+        /* (sps-M_ya_3) coupling of extra joint 3 with the rotation of the platform */
+        const real sps_M_ya_3_x = sps_d_P_3_in_base_z*sps_q_in_base_y -
+            sps_d_P_3_in_base_y*sps_q_in_base_z;
+        const real sps_M_ya_3_y = sps_d_P_3_in_base_x*sps_q_in_base_z -
+            sps_d_P_3_in_base_z*sps_q_in_base_x;
+        const real sps_M_ya_3_z = sps_d_P_3_in_base_y*sps_q_in_base_x -
+            sps_d_P_3_in_base_x*sps_q_in_base_y;
+        terms[0*count + k] = add ? terms[0*count + k] + sps_Q_t_10 : sps_Q_t_10;  /* total_sps_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + sps_Q_t_11 : sps_Q_t_11;  /* total_sps_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + sps_Q_t_12 : sps_Q_t_12;  /* total_sps_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + sps_Q_t_14 : sps_Q_t_14;  /* total_sps_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + sps_Q_t_15 : sps_Q_t_15;  /* total_sps_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + sps_Q_t_17 : sps_Q_t_17;  /* total_sps_zz */
+        terms[6*count + k] = add ? terms[6*count + k] + sps_M_ta_t_3 : sps_M_ta_t_3;  /* total_sps_xx_2 */
+        terms[7*count + k] = add ? terms[7*count + k] + sps_M_ta_t_4 : sps_M_ta_t_4;  /* total_sps_xy_2 */
+        terms[8*count + k] = add ? terms[8*count + k] + sps_M_ta_t_5 : sps_M_ta_t_5;  /* total_sps_xz_2 */
+        terms[9*count + k] = add ? terms[9*count + k] + sps_M_ta_t_6 : sps_M_ta_t_6;  /* total_sps_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + sps_M_ta_t_8 : sps_M_ta_t_8;  /* total_sps_yy_2 */
+        terms[11*count + k] = add ? terms[11*count + k] + sps_M_ta_t_9 : sps_M_ta_t_9;  /* total_sps_yz_2 */
+        terms[12*count + k] = add ? terms[12*count + k] + sps_M_ta_t_10 : sps_M_ta_t_10;  /* total_sps_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + sps_M_ta_t_11 : sps_M_ta_t_11;  /* total_sps_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + sps_M_ta_t_12 : sps_M_ta_t_12;  /* total_sps_zz_2 */
+        terms[15*count + k] = add ? terms[15*count + k] + sps_M_aa_t : sps_M_aa_t;  /* total_sps_xx_3 */
+        terms[16*count + k] = add ? terms[16*count + k] + sps_M_aa_t_2 : sps_M_aa_t_2;  /* total_sps_xy_3 */
+        terms[17*count + k] = add ? terms[17*count + k] + sps_M_aa_t_3 : sps_M_aa_t_3;  /* total_sps_xz_3 */
+        terms[18*count + k] = add ? terms[18*count + k] + sps_M_aa_t_4 : sps_M_aa_t_4;  /* total_sps_yy_3 */
+        terms[19*count + k] = add ? terms[19*count + k] + sps_M_aa_t_5 : sps_M_aa_t_5;  /* total_sps_yz_3 */
+        terms[20*count + k] = add ? terms[20*count + k] + sps_M_aa_t_6 : sps_M_aa_t_6;  /* total_sps_zz_3 */
+        o[0*count + k] = sps_d_P_3_in_base_x;
+        o[1*count + k] = sps_d_P_3_in_base_x;
+        o[2*count + k] = sps_d_P_3_in_base_y;
+        o[3*count + k] = sps_d_P_3_in_base_y;
+        o[4*count + k] = sps_d_P_3_in_base_z;
+        o[5*count + k] = sps_d_P_3_in_base_z;
+        o[6*count + k] = sps_M_ya_3_x;
+        o[7*count + k] = sps_M_ya_3_x;
+        o[8*count + k] = sps_M_ya_3_y;
+        o[9*count + k] = sps_M_ya_3_y;
+        o[10*count + k] = sps_M_ya_3_z;
+        o[11*count + k] = sps_M_ya_3_z;
+        o[12*count + k] = sps_J_group_3_zz;
+        o[14*count + k] = (sps_d_P_3_in_base_x + (sps_d_P_3_in_base_y + sps_d_P_3_in_base_z)) +
+            ((sps_M_ya_3_x + sps_M_ya_3_y) + (sps_M_ya_3_z + sps_J_group_3_zz));
+        o[13*count + k] = UNLESS(magnitude(sps_rho2_1) >
+            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(sps_rho2_2) >
+            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(-sps_w_2_t) >
+            TOLERANCE*R(0.6400000000000001));
     }
 }
 
-INLINE void M_place_urps(size_t w, const M_results_urps *o, size_t leg, size_t first, real *M,
+INLINE void M_place_sps(size_t w, size_t count, const real *o, size_t leg, size_t first, real *M,
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        M[(72 + 12*leg)*w + k] = o->entry[0][first + k];
-        M[(6 + leg)*w + k] = o->entry[1][first + k];
-        M[(73 + 12*leg)*w + k] = o->entry[2][first + k];
-        M[(18 + leg)*w + k] = o->entry[3][first + k];
-        M[(74 + 12*leg)*w + k] = o->entry[4][first + k];
-        M[(30 + leg)*w + k] = o->entry[5][first + k];
-        M[(75 + 12*leg)*w + k] = o->entry[6][first + k];
-        M[(42 + leg)*w + k] = o->entry[7][first + k];
-        M[(76 + 12*leg)*w + k] = o->entry[8][first + k];
-        M[(54 + leg)*w + k] = o->entry[9][first + k];
-        M[(77 + 12*leg)*w + k] = o->entry[10][first + k];
-        M[(66 + leg)*w + k] = o->entry[11][first + k];
-        M[(78 + 13*leg)*w + k] = o->entry[12][first + k];
-        t->singular[k] += o->singular[first + k];
+        M[(72 + 12*leg)*w + k] = o[0*count + first + k];
+        M[(6 + leg)*w + k] = o[1*count + first + k];
+        M[(73 + 12*leg)*w + k] = o[2*count + first + k];
+        M[(18 + leg)*w + k] = o[3*count + first + k];
+        M[(74 + 12*leg)*w + k] = o[4*count + first + k];
+        M[(30 + leg)*w + k] = o[5*count + first + k];
+        M[(75 + 12*leg)*w + k] = o[6*count + first + k];
+        M[(42 + leg)*w + k] = o[7*count + first + k];
+        M[(76 + 12*leg)*w + k] = o[8*count + first + k];
+        M[(54 + leg)*w + k] = o[9*count + first + k];
+        M[(77 + 12*leg)*w + k] = o[10*count + first + k];
+        M[(66 + leg)*w + k] = o[11*count + first + k];
+        M[(78 + 13*leg)*w + k] = o[12*count + first + k];
+        t->singular[k] += o[13*count + first + k];
+        t->total[k] += o[14*count + first + k];
     }
 }
 
-INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
+INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums, real *M, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real h_star_in_base_x = s->h_star_in_base_x[k];
-        const real h_star_in_base_y = s->h_star_in_base_y[k];
-        const real h_star_in_base_z = s->h_star_in_base_z[k];
-        const real J_star_t_8 = s->J_star_t_8[k];
-        const real J_star_t_9 = s->J_star_t_9[k];
-        const real J_star_t_10 = s->J_star_t_10[k];
-        const real J_star_t_12 = s->J_star_t_12[k];
-        const real J_star_t_13 = s->J_star_t_13[k];
-        const real J_star_t_15 = s->J_star_t_15[k];
-        const real total_urps_xx = s->sum[0][k];
-        const real total_urps_xy = s->sum[1][k];
-        const real total_urps_xz = s->sum[2][k];
-        const real total_urps_yy = s->sum[3][k];
-        const real total_urps_yz = s->sum[4][k];
-        const real total_urps_zz = s->sum[5][k];
-        const real total_urps_xx_2 = s->sum[6][k];
-        const real total_urps_xy_2 = s->sum[7][k];
-        const real total_urps_xz_2 = s->sum[8][k];
-        const real total_urps_yx = s->sum[9][k];
-        const real total_urps_yy_2 = s->sum[10][k];
-        const real total_urps_yz_2 = s->sum[11][k];
-        const real total_urps_zx = s->sum[12][k];
-        const real total_urps_zy = s->sum[13][k];
-        const real total_urps_zz_2 = s->sum[14][k];
-        const real total_urps_xx_3 = s->sum[15][k];
-        const real total_urps_xy_3 = s->sum[16][k];
-        const real total_urps_xz_3 = s->sum[17][k];
-        const real total_urps_yy_3 = s->sum[18][k];
-        const real total_urps_yz_3 = s->sum[19][k];
-        const real total_urps_zz_3 = s->sum[20][k];
+        /* (M_tt) translational block of M */
         const real m_star = m->m_star;
-        /* (M1) translational block of M */
-        const real M_tt_xx = m_star - total_urps_xx;
-        const real M_tt_yy = m_star - total_urps_yy;
-        const real M_tt_zz = m_star - total_urps_zz;
-        /* (M2) coupling block of M */
-        const real M_ta_xy = h_star_in_base_z - total_urps_xy_2;
-        const real M_ta_xz = total_urps_xz_2 - h_star_in_base_y;
-        const real M_ta_yx = total_urps_yx - h_star_in_base_z;
-        const real M_ta_yz = h_star_in_base_x + total_urps_yz_2;
-        const real M_ta_zx = h_star_in_base_y + total_urps_zx;
-        const real M_ta_zy = -h_star_in_base_x - total_urps_zy;
-        /* (M3) rotational block of M */
-        const real M_aa_xx = J_star_t_8 - total_urps_xx_3;
-        const real M_aa_xy = J_star_t_9 + total_urps_xy_3;
-        const real M_aa_xz = J_star_t_10 - total_urps_xz_3;
-        const real M_aa_yy = J_star_t_12 - total_urps_yy_3;
-        const real M_aa_yz = J_star_t_13 + total_urps_yz_3;
-        const real M_aa_zz = J_star_t_15 - total_urps_zz_3;
+        const real total_sps_xx = sums[0*w + k];
+        const real M_tt_xx = m_star - total_sps_xx;
+        const real total_sps_yy = sums[3*w + k];
+        const real M_tt_yy = m_star - total_sps_yy;
+        const real total_sps_zz = sums[5*w + k];
+        const real M_tt_zz = m_star - total_sps_zz;
+        /* (M_ta) coupling block of M */
+        const real h_star_in_base_z = s[14*w + k];
+        const real total_sps_xy_2 = sums[7*w + k];
+        const real M_ta_xy = h_star_in_base_z - total_sps_xy_2;
+        const real h_star_in_base_y = s[13*w + k];
+        const real total_sps_xz_2 = sums[8*w + k];
+        const real M_ta_xz = total_sps_xz_2 - h_star_in_base_y;
+        const real total_sps_yx = sums[9*w + k];
+        const real M_ta_yx = total_sps_yx - h_star_in_base_z;
+        const real h_star_in_base_x = s[12*w + k];
+        const real total_sps_yz_2 = sums[11*w + k];
+        const real M_ta_yz = h_star_in_base_x + total_sps_yz_2;
+        const real total_sps_zx = sums[12*w + k];
+        const real M_ta_zx = h_star_in_base_y + total_sps_zx;
+        const real total_sps_zy = sums[13*w + k];
+        const real M_ta_zy = -h_star_in_base_x - total_sps_zy;
+        /* (M_aa) rotational block of M */
+        const real J_star_t_8 = s[15*w + k];
+        const real total_sps_xx_3 = sums[15*w + k];
+        const real M_aa_xx = J_star_t_8 - total_sps_xx_3;
+        const real J_star_t_9 = s[16*w + k];
+        const real total_sps_xy_3 = sums[16*w + k];
+        const real M_aa_xy = J_star_t_9 + total_sps_xy_3;
+        const real J_star_t_10 = s[17*w + k];
+        const real total_sps_xz_3 = sums[17*w + k];
+        const real M_aa_xz = J_star_t_10 - total_sps_xz_3;
+        const real J_star_t_13 = s[18*w + k];
+        const real total_sps_yy_3 = sums[18*w + k];
+        const real M_aa_yy = J_star_t_13 - total_sps_yy_3;
+        const real J_star_t_15 = s[19*w + k];
+        const real total_sps_yz_3 = sums[19*w + k];
+        const real M_aa_yz = J_star_t_15 + total_sps_yz_3;
+        const real J_star_t_17 = s[20*w + k];
+        const real total_sps_zz_3 = sums[20*w + k];
+        const real M_aa_zz = J_star_t_17 - total_sps_zz_3;
         M[0*w + k] = M_tt_xx;
-        M[1*w + k] = -total_urps_xy;
-        M[12*w + k] = -total_urps_xy;
-        M[2*w + k] = -total_urps_xz;
-        M[24*w + k] = -total_urps_xz;
+        const real total_sps_xy = sums[1*w + k];
+        M[1*w + k] = -total_sps_xy;
+        M[12*w + k] = -total_sps_xy;
+        const real total_sps_xz = sums[2*w + k];
+        M[2*w + k] = -total_sps_xz;
+        M[24*w + k] = -total_sps_xz;
         M[13*w + k] = M_tt_yy;
-        M[14*w + k] = -total_urps_yz;
-        M[25*w + k] = -total_urps_yz;
+        const real total_sps_yz = sums[4*w + k];
+        M[14*w + k] = -total_sps_yz;
+        M[25*w + k] = -total_sps_yz;
         M[26*w + k] = M_tt_zz;
-        M[3*w + k] = total_urps_xx_2;
-        M[36*w + k] = total_urps_xx_2;
+        const real total_sps_xx_2 = sums[6*w + k];
+        M[3*w + k] = total_sps_xx_2;
+        M[36*w + k] = total_sps_xx_2;
         M[4*w + k] = M_ta_xy;
         M[48*w + k] = M_ta_xy;
         M[5*w + k] = M_ta_xz;
         M[60*w + k] = M_ta_xz;
         M[15*w + k] = M_ta_yx;
         M[37*w + k] = M_ta_yx;
-        M[16*w + k] = -total_urps_yy_2;
-        M[49*w + k] = -total_urps_yy_2;
+        const real total_sps_yy_2 = sums[10*w + k];
+        M[16*w + k] = -total_sps_yy_2;
+        M[49*w + k] = -total_sps_yy_2;
         M[17*w + k] = M_ta_yz;
         M[61*w + k] = M_ta_yz;
         M[27*w + k] = M_ta_zx;
         M[38*w + k] = M_ta_zx;
         M[28*w + k] = M_ta_zy;
         M[50*w + k] = M_ta_zy;
-        M[29*w + k] = -total_urps_zz_2;
-        M[62*w + k] = -total_urps_zz_2;
+        const real total_sps_zz_2 = sums[14*w + k];
+        M[29*w + k] = -total_sps_zz_2;
+        M[62*w + k] = -total_sps_zz_2;
         M[39*w + k] = M_aa_xx;
         M[40*w + k] = M_aa_xy;
         M[51*w + k] = M_aa_xy;
@@ -2532,89 +2665,57 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         M[53*w + k] = M_aa_yz;
         M[64*w + k] = M_aa_yz;
         M[65*w + k] = M_aa_zz;
+        t->total[k] += (((M_tt_xx + total_sps_xy) + (total_sps_xz + (M_tt_yy + total_sps_yz))) +
+            ((M_tt_zz + total_sps_xx_2) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((total_sps_yy_2 +
+            M_ta_yz) + (M_ta_zx + (M_ta_zy + total_sps_zz_2))) + ((M_aa_xx + (M_aa_xy + M_aa_xz))
+            + (M_aa_yy + (M_aa_yz + M_aa_zz))));
     }
 }
 
-INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *t)
+INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    M_values values, *const s = &values;
-    M_results_urps results_urps;
-    clear(M, 144*w);
-    M_before(m, w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        M_legs_urps(m, w, 0, 1, s, 0, 6, 0, X, &results_urps);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            M_place_urps(w, &results_urps, leg, leg, M, t);
-        }
-        for (size_t n = 0; n < 21; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_urps.sum[n], 6);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_urps.sum, 0, sizeof results_urps.sum);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            M_legs_urps(m, w, leg, 0, s, 1, w, 1, X, &results_urps);
-            M_place_urps(w, &results_urps, leg, 0, M, t);
-        }
-        for (size_t n = 0; n < 21; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_urps.sum[n][k];
-            }
-        }
+    real s[21] = {0}, sums[21] = {0}, terms_sps[21*LEGS(6)] = {0}, o_sps[15*LEGS(6)] = {0};
+    clear(M, 144);
+    M_before(m, 1, X, s, t);
+    M_legs_sps(m, 1, 0, 1, s, 0, LEGS(6), 0, X, terms_sps, o_sps);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        M_place_sps(1, LEGS(6), o_sps, leg, leg, M, t);
     }
-    M_after(m, w, s, M);
+    for (size_t n = 0; n < 21; ++n) {
+        sums[n] = total(terms_sps + n*LEGS(6), 6);
+    }
+    M_after(m, 1, s, sums, M, t);
 }
 
-/* ---- Z: 1290 mul, 957 add, 18 div, 12 sqrt, 12 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES], W_p_xx[LANES],
-        W_p_xy[LANES], W_p_xz[LANES], W_p_yy[LANES], W_p_yz[LANES], W_p_zz[LANES], Z_p_x[LANES],
-        Z_p_y[LANES], Z_p_z[LANES], Z_q_in_base_x[LANES], Z_q_in_base_y[LANES], Z_q_in_base_z[LANES],
-        sum[6][LANES];
-} Z_values;
-typedef struct {
-    real sum[6][8], entry[1][8], singular[8];
-} Z_results_urps;
+INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
+{
+    real s[21*LANES], sums[21*LANES], o_sps[15*LANES];
+    clear(M, 144*LANES);
+    M_before(m, LANES, X, s, t);
+    clear(sums, 21*LANES);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        M_legs_sps(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_sps);
+        M_place_sps(LANES, LANES, o_sps, leg, 0, M, t);
+    }
+    M_after(m, LANES, s, sums, M, t);
+}
 
-INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, Z_values *s,
-    verdict *t)
+/* ---- Z: 1269 mul, 936 add, 18 div, 12 sqrt, 12 trig, every leg counted ---- */
+INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -2639,445 +2740,460 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
-        /* (L2) first moment about the platform origin */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_z = m->h_star_z;
         const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
         const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
         const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
-        /* (P1) centripetal tensor of the platform */
-        const real W_p_t = omega_x*omega_x;
-        const real W_p_t_2 = omega_y*omega_y;
-        const real W_p_t_3 = omega_z*omega_z;
-        const real W_p_xx = W_p_t_2 + W_p_t_3;
-        const real W_p_xy = omega_x*omega_y;
-        const real W_p_xz = omega_x*omega_z;
-        const real W_p_yy = W_p_t + W_p_t_3;
-        const real W_p_yz = omega_y*omega_z;
-        const real W_p_zz = W_p_t + W_p_t_2;
-        /* (M4) centripetal force and weight of the platform */
-        const real Z_p_x = W_p_xy*h_star_in_base_y + W_p_xz*h_star_in_base_z - Z_p_t -
-            W_p_xx*h_star_in_base_x;
-        const real Z_p_y = W_p_xy*h_star_in_base_x + W_p_yz*h_star_in_base_z - Z_p_t_2 -
-            W_p_yy*h_star_in_base_y;
-        const real Z_p_z = W_p_xz*h_star_in_base_x + W_p_yz*h_star_in_base_y - Z_p_t_3 -
-            W_p_zz*h_star_in_base_z;
-        /* (M6) gyroscopic moment and moment of the weight of the platform */
+        /* (Z_p) centripetal force and weight of the platform */
+        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
+        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
+        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t = m->Z_p_t;
+        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
+        const real Z_p_t_2 = m->Z_p_t_2;
+        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
+        const real Z_p_t_3 = m->Z_p_t_3;
+        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
+        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real gravity_z = m->gravity_z;
+        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
         const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
         const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
         const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_xx = m->J_star_xx;
+        const real J_star_xy = m->J_star_xy;
+        const real J_star_xz = m->J_star_xz;
         const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
+        const real J_star_yy = m->J_star_yy;
+        const real J_star_yz = m->J_star_yz;
         const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
+        const real J_star_zz = m->J_star_zz;
         const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z_2*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x_2*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y_2*h_star_x;
+        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
+            g_r0_z*h_star_y;
+        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
+            g_r0_x*h_star_z;
+        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
+            g_r0_y*h_star_x;
         const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
         const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
         const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->W_p_xx[k] = W_p_xx;
-        s->W_p_xy[k] = W_p_xy;
-        s->W_p_xz[k] = W_p_xz;
-        s->W_p_yy[k] = W_p_yy;
-        s->W_p_yz[k] = W_p_yz;
-        s->W_p_zz[k] = W_p_zz;
-        s->Z_p_x[k] = Z_p_x;
-        s->Z_p_y[k] = Z_p_y;
-        s->Z_p_z[k] = Z_p_z;
-        s->Z_q_in_base_x[k] = Z_q_in_base_x;
-        s->Z_q_in_base_y[k] = Z_q_in_base_y;
-        s->Z_q_in_base_z[k] = Z_q_in_base_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
+        s[18*w + k] = Z_p_x;
+        s[19*w + k] = Z_p_y;
+        s[20*w + k] = Z_p_z;
+        s[21*w + k] = Z_q_in_base_x;
+        s[22*w + k] = Z_q_in_base_y;
+        s[23*w + k] = Z_q_in_base_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void Z_legs_urps(const prepared *m, size_t w, size_t leg, size_t legs, const Z_values *s,
-    size_t states, size_t count, int add, const real *X, const real *V, Z_results_urps *o)
+INLINE void Z_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
+    static const size_t place_sps_y_3_extra[] = {7, 8, 9, 10, 11, 12, 7, 7};
+    static const size_t place_sps_yd_3[] = {6, 7, 8, 9, 10, 11, 6, 6};
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real W_p_xx = s->W_p_xx[j];
-        const real W_p_xy = s->W_p_xy[j];
-        const real W_p_xz = s->W_p_xz[j];
-        const real W_p_yy = s->W_p_yy[j];
-        const real W_p_yz = s->W_p_yz[j];
-        const real W_p_zz = s->W_p_zz[j];
+        /* (sps-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
+        const real sps_platform_point_x = m->sps_platform_point_x[i];
+        const real sps_platform_point_y = m->sps_platform_point_y[i];
+        const real sps_platform_point_z = m->sps_platform_point_z[i];
+        const real sps_q_in_base_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
+            R_xz*sps_platform_point_z;
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real sps_q_in_base_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
+            R_yz*sps_platform_point_z;
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real sps_q_in_base_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
+            R_zz*sps_platform_point_z;
+        const real sps_base_point_x = m->sps_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x;
+        const real sps_base_point_y = m->sps_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y;
+        const real sps_base_point_z = m->sps_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z;
+        /* (sps-px_1) component along the reference direction */
+        const real sps_base_frame_xx = m->sps_base_frame_xx[i];
+        const real sps_base_frame_yx = m->sps_base_frame_yx[i];
+        const real sps_base_frame_zx = m->sps_base_frame_zx[i];
+        const real sps_px_1 = sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx +
+            sps_S_z*sps_base_frame_zx;
+        /* (sps-py_1) component across the reference direction */
+        const real sps_base_frame_xy = m->sps_base_frame_xy[i];
+        const real sps_base_frame_yy = m->sps_base_frame_yy[i];
+        const real sps_base_frame_zy = m->sps_base_frame_zy[i];
+        const real sps_py_1 = sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy +
+            sps_S_z*sps_base_frame_zy;
+        /* (sps-rho2_1) squared amplitude */
+        const real sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1;
+        /* (sps-root_1) amplitude, with the sign of the branch */
+        const real sps_branch_1 = m->sps_branch_1[i];
+        const real sps_root_1 = sps_branch_1*root(sps_rho2_1);
+        /* (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real sps_base_frame_xz = m->sps_base_frame_xz[i];
+        const real sps_base_frame_yz = m->sps_base_frame_yz[i];
+        const real sps_base_frame_zz = m->sps_base_frame_zz[i];
+        const real sps_xi_1_t = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
+            sps_S_z*sps_base_frame_zz;
+        /* (sps-rho2_2) squared amplitude */
+        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t;
+        /* (sps-root_2) amplitude, with the sign of the branch */
+        const real sps_branch_2 = m->sps_branch_2[i];
+        const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
+        /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_sps_root_2 = 1/sps_root_2;
+        const real sps_c_2 = inv_sps_root_2*sps_root_1;
+        /* (sps-s_2) sine of the angle of joint 2 from its reference direction */
+        const real sps_s_2 = inv_sps_root_2*sps_xi_1_t;
+        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
+        const real sps_c_3_t = sine(sps_y_3_extra);
+        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
+        const real sps_s_3 = cosine(sps_y_3_extra);
+        /* (sps-v_1) velocity of the connection point per rate of joint 1 */
+        const real sps_v_1_t = sps_c_2*sps_c_3_t;
+        const real sps_v_1_t_2 = sps_c_2*sps_s_3;
+        const real sps_v_1_t_3 = sps_root_2*sps_v_1_t_2;
+        const real sps_v_1_t_4 = sps_root_2*sps_v_1_t;
+        /* (sps-v_2) velocity of the connection point per rate of joint 2 */
+        const real sps_v_2_t = sps_c_3_t*sps_root_2;
+        const real sps_v_2_t_2 = sps_root_2*sps_s_3;
+        /* (sps-w_1) reciprocal vector 1 */
+        const real sps_axis_z_x = inv_sps_root_2*sps_S_x;
+        const real sps_axis_z_y = inv_sps_root_2*sps_S_y;
+        const real sps_axis_z_z = inv_sps_root_2*sps_S_z;
+        const real sps_w_1_t = sps_s_2*sps_s_3;
+        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_sps_root_1 = 1/sps_root_1;
+        const real sps_c_1 = inv_sps_root_1*sps_py_1;
+        /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
+        const real sps_s_1 = inv_sps_root_1*sps_px_1;
+        /* (sps-w_1) reciprocal vector 1 */
+        const real axis_y_sps_axes3_r4_x = sps_c_1*sps_c_3_t - sps_s_1*sps_w_1_t;
+        const real axis_y_sps_axes3_r4_y = -sps_c_1*sps_w_1_t - sps_c_3_t*sps_s_1;
+        const real axis_y_sps_axes3_in_base_x = axis_y_sps_axes3_r4_x*sps_base_frame_xx +
+            axis_y_sps_axes3_r4_y*sps_base_frame_xy + sps_base_frame_xz*sps_v_1_t_2;
+        const real axis_y_sps_axes3_in_base_y = axis_y_sps_axes3_r4_x*sps_base_frame_yx +
+            axis_y_sps_axes3_r4_y*sps_base_frame_yy + sps_base_frame_yz*sps_v_1_t_2;
+        const real axis_y_sps_axes3_in_base_z = axis_y_sps_axes3_r4_x*sps_base_frame_zx +
+            axis_y_sps_axes3_r4_y*sps_base_frame_zy + sps_base_frame_zz*sps_v_1_t_2;
+        const real axis_x_sps_axes3_x = axis_y_sps_axes3_in_base_y*sps_axis_z_z -
+            axis_y_sps_axes3_in_base_z*sps_axis_z_y;
+        const real axis_x_sps_axes3_y = axis_y_sps_axes3_in_base_z*sps_axis_z_x -
+            axis_y_sps_axes3_in_base_x*sps_axis_z_z;
+        const real axis_x_sps_axes3_z = axis_y_sps_axes3_in_base_x*sps_axis_z_y -
+            axis_y_sps_axes3_in_base_y*sps_axis_z_x;
+        /* (sps-w_2) reciprocal vector 2 */
+        const real sps_w_2_t = sps_v_1_t_3*sps_v_2_t_2 + sps_v_1_t_4*sps_v_2_t;
+        const real inv_sps_w_2_t_3 = 1/sps_w_2_t;
+        /* (sps-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real sps_S_dot_t = omega_y*sps_q_in_base_z - omega_z*sps_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real sps_S_dot_t_2 = omega_z*sps_q_in_base_x - omega_x*sps_q_in_base_z;
+        const real sps_S_dot_t_3 = omega_x*sps_q_in_base_y - omega_y*sps_q_in_base_x;
+        const real t_dot_x = s[12*w + j];
+        const real sps_S_dot_x = sps_S_dot_t + t_dot_x;
+        const real t_dot_y = s[13*w + j];
+        const real sps_S_dot_y = sps_S_dot_t_2 + t_dot_y;
+        const real t_dot_z = s[14*w + j];
+        const real sps_S_dot_z = sps_S_dot_t_3 + t_dot_z;
+        /* (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra */
+        const real sps_S_dot_rest_tip_x = axis_x_sps_axes3_x*sps_S_dot_x +
+            axis_x_sps_axes3_y*sps_S_dot_y + axis_x_sps_axes3_z*sps_S_dot_z;
+        const real sps_S_dot_rest_tip_y = axis_y_sps_axes3_in_base_x*sps_S_dot_x +
+            axis_y_sps_axes3_in_base_y*sps_S_dot_y + axis_y_sps_axes3_in_base_z*sps_S_dot_z;
+        const real sps_S_dot_rest_tip_z = sps_S_dot_x*sps_axis_z_x + sps_S_dot_y*sps_axis_z_y +
+            sps_S_dot_z*sps_axis_z_z;
+        /* (sps-qd_2) rate of joint 2 */
+        const real sps_qd_1 = inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_2_t_2 -
+            sps_S_dot_rest_tip_y*sps_v_2_t);
+        const real sps_qd_2 = inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_1_t_4 +
+            sps_S_dot_rest_tip_y*sps_v_1_t_3);
+        /* (sps-omega_1) angular velocity of link 1 */
+        const real sps_omega_1_t = sps_qd_1*sps_s_2;
+        const real sps_omega_1_t_2 = sps_c_2*sps_qd_1;
+        /* (sps-omega_2) angular velocity of link 2 */
+        const real sps_omega_2_r1_x = sps_c_3_t*sps_omega_1_t_2 - sps_qd_2*sps_s_3;
+        const real sps_omega_2_r1_y = sps_c_3_t*sps_qd_2 + sps_omega_1_t_2*sps_s_3;
+        /* (sps-omega_3) angular velocity of link 3 */
+        const real sps_yd_3 = V[(place_sps_yd_3[i])*w + j];
+        const real sps_omega_3_z = sps_omega_1_t + sps_yd_3;
+        /* (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+        const real sps_zeta_3_x = sps_omega_2_r1_y*sps_yd_3;
+        const real sps_zeta_3_y = sps_omega_2_r1_x*sps_yd_3;
+        /* (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real sps_zeta_2_y = sps_omega_1_t*sps_qd_2;
+        /* (sps-u_1) centripetal acceleration of the connection point */
+        const real sps_u_1_x = omega_y*sps_S_dot_t_3 - omega_z*sps_S_dot_t_2;
+        const real sps_u_1_y = omega_z*sps_S_dot_t - omega_x*sps_S_dot_t_3;
+        const real sps_u_1_z = omega_x*sps_S_dot_t_2 - omega_y*sps_S_dot_t;
+        /* (sps-beta_3) angular acceleration of link 3 at zero joint accelerations */
+        const real sps_beta_3_x = sps_zeta_3_x - sps_c_3_t*sps_zeta_2_y;
+        const real sps_beta_3_y = -sps_zeta_3_y - sps_s_3*sps_zeta_2_y;
+        /* (sps-W_3) centripetal tensor of link 3 */
+        const real sps_W_3_t = sps_omega_2_r1_x*sps_omega_2_r1_x;
+        const real sps_W_3_t_2 = sps_omega_2_r1_y*sps_omega_2_r1_y;
+        const real sps_W_3_t_3 = sps_omega_3_z*sps_omega_3_z;
+        const real sps_W_3_xy = sps_omega_2_r1_x*sps_omega_2_r1_y;
+        const real sps_W_3_xz = sps_omega_2_r1_x*sps_omega_3_z;
+        const real sps_W_3_yz = sps_omega_2_r1_y*sps_omega_3_z;
+        /* (sps-bias) acceleration of the connection point at zero joint accelerations */
+        const real sps_bias_t = 2*sps_S_dot_rest_tip_z;
+        const real sps_bias_x = sps_bias_t*sps_omega_2_r1_y + sps_root_2*(sps_W_3_xz +
+            sps_beta_3_y);
+        const real sps_bias_y = sps_root_2*(sps_W_3_yz - sps_beta_3_x) -
+            sps_bias_t*sps_omega_2_r1_x;
+        /* (sps-u_1) centripetal acceleration of the connection point */
+        const real sps_u_1_tip_x = axis_x_sps_axes3_x*sps_u_1_x + axis_x_sps_axes3_y*sps_u_1_y +
+            axis_x_sps_axes3_z*sps_u_1_z;
+        const real sps_u_1_tip_y = axis_y_sps_axes3_in_base_x*sps_u_1_x +
+            axis_y_sps_axes3_in_base_y*sps_u_1_y + axis_y_sps_axes3_in_base_z*sps_u_1_z;
+        /* (sps-rel_o) remainder without the acceleration in: acceleration of the connection point left to
+           the joint accelerations */
+        const real sps_rel_o_x = sps_u_1_tip_x - sps_bias_x;
+        const real sps_rel_o_y = sps_u_1_tip_y - sps_bias_y;
+        /* (sps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        const real sps_qdd_1_o = inv_sps_w_2_t_3*(sps_rel_o_x*sps_v_2_t_2 -
+            sps_rel_o_y*sps_v_2_t);
+        const real sps_qdd_2_o = inv_sps_w_2_t_3*(sps_rel_o_x*sps_v_1_t_4 +
+            sps_rel_o_y*sps_v_1_t_3);
+        /* (sps-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        const real sps_alpha_2_o_x = sps_omega_1_t_2*sps_qd_2 + sps_qdd_1_o*sps_s_2;
+        const real sps_alpha_2_o_y = sps_zeta_2_y - sps_c_2*sps_qdd_1_o;
+        /* (sps-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
+        const real sps_alpha_3_o_x = sps_zeta_3_x - sps_alpha_2_o_y*sps_c_3_t -
+            sps_qdd_2_o*sps_s_3;
+        const real sps_alpha_3_o_y = sps_c_3_t*sps_qdd_2_o - sps_zeta_3_y -
+            sps_alpha_2_o_y*sps_s_3;
+        /* (sps-B_3_o) remainder of the acceleration tensor of link 3 */
+        const real sps_B_3_o_xy = sps_W_3_xy - sps_alpha_2_o_x;
+        const real sps_B_3_o_xz = sps_W_3_xz + sps_alpha_3_o_y;
+        const real sps_B_3_o_yx = sps_W_3_xy + sps_alpha_2_o_x;
+        const real sps_B_3_o_yz = sps_W_3_yz - sps_alpha_3_o_x;
+        const real sps_B_3_o_zx = sps_W_3_xz - sps_alpha_3_o_y;
+        const real sps_B_3_o_zy = sps_W_3_yz + sps_alpha_3_o_x;
+        /* (sps-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning
+           about its reference point */
+        const real sps_h_4_x = m->sps_h_4_x[i];
+        const real sps_h_4_y = m->sps_h_4_y[i];
+        const real sps_h_4_z = m->sps_h_4_z[i];
+        const real sps_phi_4_o_z = sps_B_3_o_zx*sps_h_4_y + sps_B_3_o_zy*sps_h_4_z -
+            sps_h_4_x*(sps_W_3_t + sps_W_3_t_2);
+        /* (sps-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+           link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real J_group_3_xy = m->J_group_3_xy[i];
-        const real J_group_3_xz = m->J_group_3_xz[i];
-        const real J_group_3_yz = m->J_group_3_yz[i];
-        const real Sigma_3_xx = m->Sigma_3_xx[i];
-        const real Sigma_3_yy = m->Sigma_3_yy[i];
-        const real Sigma_3_zz = m->Sigma_3_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real h_4_x = m->h_4_x[i];
-        const real h_4_y = m->h_4_y[i];
-        const real h_4_z = m->h_4_z[i];
-        const real urps_base_frame_xx = m->urps_base_frame_xx[i];
-        const real urps_base_frame_xy = m->urps_base_frame_xy[i];
-        const real urps_base_frame_xz = m->urps_base_frame_xz[i];
-        const real urps_base_frame_yx = m->urps_base_frame_yx[i];
-        const real urps_base_frame_yy = m->urps_base_frame_yy[i];
-        const real urps_base_frame_yz = m->urps_base_frame_yz[i];
-        const real urps_base_frame_zx = m->urps_base_frame_zx[i];
-        const real urps_base_frame_zy = m->urps_base_frame_zy[i];
-        const real urps_base_frame_zz = m->urps_base_frame_zz[i];
-        const real urps_base_point_x = m->urps_base_point_x[i];
-        const real urps_base_point_y = m->urps_base_point_y[i];
-        const real urps_base_point_z = m->urps_base_point_z[i];
-        const real urps_platform_point_x = m->urps_platform_point_x[i];
-        const real urps_platform_point_y = m->urps_platform_point_y[i];
-        const real urps_platform_point_z = m->urps_platform_point_z[i];
-        const real y_3_extra = X[(7 + i)*w + j];
-        const real yd_3 = V[(6 + i)*w + j];
-        /* (urps-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*urps_platform_point_x + R_xy*urps_platform_point_y +
-            R_xz*urps_platform_point_z;
-        const real q_in_base_y = R_yx*urps_platform_point_x + R_yy*urps_platform_point_y +
-            R_yz*urps_platform_point_z;
-        const real q_in_base_z = R_zx*urps_platform_point_x + R_zy*urps_platform_point_y +
-            R_zz*urps_platform_point_z;
-        const real S_x = q_in_base_x + t_x - urps_base_point_x;
-        const real S_y = q_in_base_y + t_y - urps_base_point_y;
-        const real S_z = q_in_base_z + t_z - urps_base_point_z;
-        /* (urps-K4) component along the reference direction */
-        const real px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx +
-            S_z*urps_base_frame_zx;
-        /* (urps-K5) component across the reference direction */
-        const real py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy +
-            S_z*urps_base_frame_zy;
-        /* (urps-K6) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (urps-K7) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (urps-K11) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz +
-            S_z*urps_base_frame_zz;
-        /* (urps-K15) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (urps-K16) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (urps-K17) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (urps-K18) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (urps-K2) cosine of the angle of joint 3 from its reference direction */
-        const real c_3_t = sine(y_3_extra);
-        /* (urps-K3) sine of the angle of joint 3 from its reference direction */
-        const real s_3 = cosine(y_3_extra);
-        /* (urps-V3) velocity of the connection point per rate of joint 1 */
-        const real v_1_t = c_2*c_3_t;
-        const real v_1_t_2 = c_2*s_3;
-        const real v_1_t_3 = root_2*v_1_t_2;
-        const real v_1_t_4 = root_2*v_1_t;
-        /* (urps-V4) velocity of the connection point per rate of joint 2 */
-        const real v_2_t = c_3_t*root_2;
-        const real v_2_t_2 = root_2*s_3;
-        /* (urps-V6) reciprocal vector 1 */
-        const real axis_z_x = S_x*inv_root_2;
-        const real axis_z_y = S_y*inv_root_2;
-        const real axis_z_z = S_z*inv_root_2;
-        const real w_1_t = s_2*s_3;
-        /* (urps-K8) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (urps-K9) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (urps-V6) reciprocal vector 1 */
-        const real axis_y_urps_axes3_r4_x = c_1*c_3_t - s_1*w_1_t;
-        const real axis_y_urps_axes3_r4_y = -c_1*w_1_t - c_3_t*s_1;
-        const real axis_y_urps_axes3_in_base_x = axis_y_urps_axes3_r4_x*urps_base_frame_xx +
-            axis_y_urps_axes3_r4_y*urps_base_frame_xy + urps_base_frame_xz*v_1_t_2;
-        const real axis_y_urps_axes3_in_base_y = axis_y_urps_axes3_r4_x*urps_base_frame_yx +
-            axis_y_urps_axes3_r4_y*urps_base_frame_yy + urps_base_frame_yz*v_1_t_2;
-        const real axis_y_urps_axes3_in_base_z = axis_y_urps_axes3_r4_x*urps_base_frame_zx +
-            axis_y_urps_axes3_r4_y*urps_base_frame_zy + urps_base_frame_zz*v_1_t_2;
-        const real axis_x_urps_axes3_x = axis_y_urps_axes3_in_base_y*axis_z_z -
-            axis_y_urps_axes3_in_base_z*axis_z_y;
-        const real axis_x_urps_axes3_y = axis_y_urps_axes3_in_base_z*axis_z_x -
-            axis_y_urps_axes3_in_base_x*axis_z_z;
-        const real axis_x_urps_axes3_z = axis_y_urps_axes3_in_base_x*axis_z_y -
-            axis_y_urps_axes3_in_base_y*axis_z_x;
-        const real w_1_t_2 = v_1_t_3*v_2_t_2 + v_1_t_4*v_2_t;
-        const real inv_w_1_t_23 = 1/w_1_t_2;
-        /* (urps-N2) remainder without the acceleration in: acceleration of the reference point of link 3,
-           less gravity */
-        const real g_tip_x = axis_x_urps_axes3_x*gravity_x + axis_x_urps_axes3_y*gravity_y +
-            axis_x_urps_axes3_z*gravity_z;
-        const real g_tip_y = axis_y_urps_axes3_in_base_x*gravity_x +
-            axis_y_urps_axes3_in_base_y*gravity_y + axis_y_urps_axes3_in_base_z*gravity_z;
-        const real g_tip_z = axis_z_x*gravity_x + axis_z_y*gravity_y + axis_z_z*gravity_z;
-        /* (urps-A1) centripetal acceleration of the connection point */
-        const real u_1_x = W_p_xy*q_in_base_y + W_p_xz*q_in_base_z - W_p_xx*q_in_base_x;
-        const real u_1_y = W_p_xy*q_in_base_x + W_p_yz*q_in_base_z - W_p_yy*q_in_base_y;
-        const real u_1_z = W_p_xz*q_in_base_x + W_p_yz*q_in_base_y - W_p_zz*q_in_base_z;
-        const real u_1_tip_x = axis_x_urps_axes3_x*u_1_x + axis_x_urps_axes3_y*u_1_y +
-            axis_x_urps_axes3_z*u_1_z;
-        const real u_1_tip_y = axis_y_urps_axes3_in_base_x*u_1_x +
-            axis_y_urps_axes3_in_base_y*u_1_y + axis_y_urps_axes3_in_base_z*u_1_z;
-        /* (urps-N4) remainder without the acceleration in: acceleration of the reference point of link 4,
-           less gravity */
-        const real acc_4_o_x = u_1_tip_x - g_tip_x;
-        const real acc_4_o_y = u_1_tip_y - g_tip_y;
-        const real acc_4_o_z = axis_z_x*u_1_x + axis_z_y*u_1_y + axis_z_z*u_1_z - g_tip_z;
-        /* (urps-V1) velocity of the connection point */
-        const real S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x;
-        /* (urps-V9) velocity of the connection point left to the joints that are not extra */
-        const real S_dot_rest_tip_x = S_dot_x*axis_x_urps_axes3_x + S_dot_y*axis_x_urps_axes3_y +
-            S_dot_z*axis_x_urps_axes3_z;
-        const real S_dot_rest_tip_y = S_dot_x*axis_y_urps_axes3_in_base_x +
-            S_dot_y*axis_y_urps_axes3_in_base_y + S_dot_z*axis_y_urps_axes3_in_base_z;
-        const real S_dot_rest_tip_z = S_dot_x*axis_z_x + S_dot_y*axis_z_y + S_dot_z*axis_z_z;
-        /* (urps-V10) rate of joint 1 */
-        const real qd_1 = inv_w_1_t_23*(S_dot_rest_tip_x*v_2_t_2 - S_dot_rest_tip_y*v_2_t);
-        const real qd_2 = inv_w_1_t_23*(S_dot_rest_tip_x*v_1_t_4 + S_dot_rest_tip_y*v_1_t_3);
-        /* (urps-V13) angular velocity of link 1 */
-        const real omega_1_t = qd_1*s_2;
-        const real omega_1_t_2 = c_2*qd_1;
-        /* (urps-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_y = omega_1_t*qd_2;
-        /* (urps-V14) angular velocity of link 2 */
-        const real omega_2_r1_x = c_3_t*omega_1_t_2 - qd_2*s_3;
-        const real omega_2_r1_y = c_3_t*qd_2 + omega_1_t_2*s_3;
-        /* (urps-A5) angular acceleration of link 3 from the turning of axis 3 */
-        const real zeta_3_x = omega_2_r1_y*yd_3;
-        const real zeta_3_y = omega_2_r1_x*yd_3;
-        /* (urps-A6) angular acceleration of link 3 at zero joint accelerations */
-        const real beta_3_x = zeta_3_x - c_3_t*zeta_2_y;
-        const real beta_3_y = -zeta_3_y - s_3*zeta_2_y;
-        /* (urps-V15) angular velocity of link 3 */
-        const real omega_3_z = omega_1_t + yd_3;
-        /* (urps-V16) centripetal tensor of link 3 */
-        const real W_3_t = omega_2_r1_x*omega_2_r1_x;
-        const real W_3_t_2 = omega_2_r1_y*omega_2_r1_y;
-        const real W_3_t_3 = omega_3_z*omega_3_z;
-        const real W_3_xy = omega_2_r1_x*omega_2_r1_y;
-        const real W_3_xz = omega_2_r1_x*omega_3_z;
-        const real W_3_yz = omega_2_r1_y*omega_3_z;
-        /* (urps-A7) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_rest_tip_z;
-        const real bias_x = bias_t*omega_2_r1_y + root_2*(W_3_xz + beta_3_y);
-        const real bias_y = root_2*(W_3_yz - beta_3_x) - bias_t*omega_2_r1_x;
-        /* (urps-A10) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
-        const real rel_o_x = u_1_tip_x - bias_x;
-        const real rel_o_y = u_1_tip_y - bias_y;
-        /* (urps-A13) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_o = inv_w_1_t_23*(rel_o_x*v_2_t_2 - rel_o_y*v_2_t);
-        const real qdd_2_o = inv_w_1_t_23*(rel_o_x*v_1_t_4 + rel_o_y*v_1_t_3);
-        /* (urps-A25) remainder without the acceleration in: angular acceleration of link 2 */
-        const real alpha_2_o_x = omega_1_t_2*qd_2 + qdd_1_o*s_2;
-        const real alpha_2_o_y = zeta_2_y - c_2*qdd_1_o;
-        /* (urps-A28) remainder without the acceleration in: angular acceleration of link 3 */
-        const real alpha_3_o_x = zeta_3_x - alpha_2_o_y*c_3_t - qdd_2_o*s_3;
-        const real alpha_3_o_y = c_3_t*qdd_2_o - zeta_3_y - alpha_2_o_y*s_3;
-        /* (urps-A30) remainder of the acceleration tensor of link 3 */
-        const real B_3_o_xy = W_3_xy - alpha_2_o_x;
-        const real B_3_o_xz = W_3_xz + alpha_3_o_y;
-        const real B_3_o_yx = W_3_xy + alpha_2_o_x;
-        const real B_3_o_yz = W_3_yz - alpha_3_o_x;
-        const real B_3_o_zx = W_3_xz - alpha_3_o_y;
-        const real B_3_o_zy = W_3_yz + alpha_3_o_x;
-        /* (urps-N15) remainder without the acceleration in: inertia moment of the links that turn with
+        const real sps_g_tip_x = axis_x_sps_axes3_x*gravity_x + axis_x_sps_axes3_y*gravity_y +
+            axis_x_sps_axes3_z*gravity_z;
+        const real sps_g_tip_y = axis_y_sps_axes3_in_base_x*gravity_x +
+            axis_y_sps_axes3_in_base_y*gravity_y + axis_y_sps_axes3_in_base_z*gravity_z;
+        const real sps_g_tip_z = gravity_x*sps_axis_z_x + gravity_y*sps_axis_z_y +
+            gravity_z*sps_axis_z_z;
+        /* (sps-acc_4_o) remainder without the acceleration in: acceleration of the reference point of
+           link 4, less gravity */
+        const real sps_acc_4_o_x = sps_u_1_tip_x - sps_g_tip_x;
+        const real sps_acc_4_o_y = sps_u_1_tip_y - sps_g_tip_y;
+        const real sps_acc_4_o_z = sps_axis_z_x*sps_u_1_x + sps_axis_z_y*sps_u_1_y +
+            sps_axis_z_z*sps_u_1_z - sps_g_tip_z;
+        /* (sps-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
-        const real mu_3_o_x = B_3_o_yx*J_group_3_xz + B_3_o_zy*Sigma_3_yy + J_group_3_yz*(W_3_t_2
-            - W_3_t_3) + acc_4_o_z*h_4_z + g_tip_y*h_3_x - B_3_o_yz*Sigma_3_zz -
-            B_3_o_zx*J_group_3_xy - acc_4_o_y*h_4_x - g_tip_z*h_3_z;
-        const real mu_3_o_y = B_3_o_xz*Sigma_3_zz + B_3_o_zy*J_group_3_xy + acc_4_o_x*h_4_x +
-            g_tip_z*h_3_y - B_3_o_xy*J_group_3_yz - B_3_o_zx*Sigma_3_xx - J_group_3_xz*(W_3_t -
-            W_3_t_3) - acc_4_o_z*h_4_y - g_tip_x*h_3_x;
-        const real mu_3_o_z = B_3_o_xz*J_group_3_yz + B_3_o_yx*Sigma_3_xx + J_group_3_xy*(W_3_t -
-            W_3_t_2) + acc_4_o_y*h_4_y + g_tip_x*h_3_z - B_3_o_xy*Sigma_3_yy -
-            B_3_o_yz*J_group_3_xz - acc_4_o_x*h_4_z - g_tip_y*h_3_y;
-        /* (urps-N27) remainder without the acceleration in: moment about axis 1 of the distal links'
+        const real sps_J_group_3_xy = m->sps_J_group_3_xy[i];
+        const real sps_J_group_3_xz = m->sps_J_group_3_xz[i];
+        const real sps_J_group_3_yz = m->sps_J_group_3_yz[i];
+        const real sps_Sigma_3_yy = m->sps_Sigma_3_yy[i];
+        const real sps_Sigma_3_zz = m->sps_Sigma_3_zz[i];
+        const real sps_h_3_x = m->sps_h_3_x[i];
+        const real sps_h_3_z = m->sps_h_3_z[i];
+        const real sps_mu_3_o_x = sps_B_3_o_yx*sps_J_group_3_xz + sps_B_3_o_zy*sps_Sigma_3_yy +
+            sps_J_group_3_yz*(sps_W_3_t_2 - sps_W_3_t_3) + sps_acc_4_o_z*sps_h_4_z +
+            sps_g_tip_y*sps_h_3_x - sps_B_3_o_yz*sps_Sigma_3_zz - sps_B_3_o_zx*sps_J_group_3_xy -
+            sps_acc_4_o_y*sps_h_4_x - sps_g_tip_z*sps_h_3_z;
+        const real sps_Sigma_3_xx = m->sps_Sigma_3_xx[i];
+        const real sps_h_3_y = m->sps_h_3_y[i];
+        const real sps_mu_3_o_y = sps_B_3_o_xz*sps_Sigma_3_zz + sps_B_3_o_zy*sps_J_group_3_xy +
+            sps_acc_4_o_x*sps_h_4_x + sps_g_tip_z*sps_h_3_y - sps_B_3_o_xy*sps_J_group_3_yz -
+            sps_B_3_o_zx*sps_Sigma_3_xx - sps_J_group_3_xz*(sps_W_3_t - sps_W_3_t_3) -
+            sps_acc_4_o_z*sps_h_4_y - sps_g_tip_x*sps_h_3_x;
+        const real sps_mu_3_o_z = sps_B_3_o_xz*sps_J_group_3_yz + sps_B_3_o_yx*sps_Sigma_3_xx +
+            sps_J_group_3_xy*(sps_W_3_t - sps_W_3_t_2) + sps_acc_4_o_y*sps_h_4_y +
+            sps_g_tip_x*sps_h_3_z - sps_B_3_o_xy*sps_Sigma_3_yy - sps_B_3_o_yz*sps_J_group_3_xz -
+            sps_acc_4_o_x*sps_h_4_z - sps_g_tip_y*sps_h_3_y;
+        const real sps_mu_3_o_r0_y = sps_mu_3_o_x*sps_s_3 - sps_c_3_t*sps_mu_3_o_y;
+        /* (sps-Gamma_1_o) remainder without the acceleration in: moment about axis 1 of the distal links'
            inertia and weight */
-        const real Gamma_1_o = mu_3_o_x*v_1_t + mu_3_o_y*v_1_t_2 + mu_3_o_z*s_2;
-        /* (urps-N15) remainder without the acceleration in: inertia moment of the links that turn with
-           link 3, about their reference points */
-        const real mu_3_o_r0_y = mu_3_o_x*s_3 - c_3_t*mu_3_o_y;
-        /* (urps-N7) remainder without the acceleration in: inertia force of link 4 from its turning about
-           its reference point */
-        const real phi_4_o_z = B_3_o_zx*h_4_y + B_3_o_zy*h_4_z - h_4_x*(W_3_t + W_3_t_2);
-        /* (urps-N34) remainder without the acceleration in: leg force on the platform without actuation
+        const real sps_Gamma_1_o = sps_mu_3_o_x*sps_v_1_t + sps_mu_3_o_y*sps_v_1_t_2 +
+            sps_mu_3_o_z*sps_s_2;
+        /* (sps-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real c_o_x = h_4_y*(W_3_t_2 + W_3_t_3) - B_3_o_xy*h_4_z - B_3_o_xz*h_4_x -
-            inv_w_1_t_23*(Gamma_1_o*v_2_t_2 - mu_3_o_r0_y*v_1_t_4);
-        const real c_o_y = h_4_z*(W_3_t + W_3_t_3) + inv_w_1_t_23*(Gamma_1_o*v_2_t +
-            mu_3_o_r0_y*v_1_t_3) - B_3_o_yx*h_4_y - B_3_o_yz*h_4_x;
-        /* (urps-N36) velocity and gravity terms of the leg force */
-        const real U_in_base_x = axis_z_x*phi_4_o_z - axis_x_urps_axes3_x*c_o_x -
-            axis_y_urps_axes3_in_base_x*c_o_y;
-        const real U_in_base_y = axis_z_y*phi_4_o_z - axis_x_urps_axes3_y*c_o_x -
-            axis_y_urps_axes3_in_base_y*c_o_y;
-        const real U_in_base_z = axis_z_z*phi_4_o_z - axis_x_urps_axes3_z*c_o_x -
-            axis_y_urps_axes3_in_base_z*c_o_y;
-        /* (M7) rotational part of Z */
-        const real Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z;
-        const real Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x;
-        const real Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y;
-        o->sum[0][k] = add ? o->sum[0][k] + U_in_base_x : U_in_base_x;  /* total_urps_x */
-        o->sum[1][k] = add ? o->sum[1][k] + U_in_base_y : U_in_base_y;  /* total_urps_y */
-        o->sum[2][k] = add ? o->sum[2][k] + U_in_base_z : U_in_base_z;  /* total_urps_z */
-        o->sum[3][k] = add ? o->sum[3][k] + Z_a_t : Z_a_t;  /* total_urps_x_2 */
-        o->sum[4][k] = add ? o->sum[4][k] + Z_a_t_2 : Z_a_t_2;  /* total_urps_y_2 */
-        o->sum[5][k] = add ? o->sum[5][k] + Z_a_t_3 : Z_a_t_3;  /* total_urps_z_2 */
-        o->entry[0][k] = mu_3_o_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(-w_1_t_2) > TOLERANCE*R(0.6400000000000001));
+        const real sps_c_o_x = sps_h_4_y*(sps_W_3_t_2 + sps_W_3_t_3) -
+            inv_sps_w_2_t_3*(sps_Gamma_1_o*sps_v_2_t_2 - sps_mu_3_o_r0_y*sps_v_1_t_4) -
+            sps_B_3_o_xy*sps_h_4_z - sps_B_3_o_xz*sps_h_4_x;
+        const real sps_c_o_y = inv_sps_w_2_t_3*(sps_Gamma_1_o*sps_v_2_t +
+            sps_mu_3_o_r0_y*sps_v_1_t_3) + sps_h_4_z*(sps_W_3_t + sps_W_3_t_3) -
+            sps_B_3_o_yx*sps_h_4_y - sps_B_3_o_yz*sps_h_4_x;
+        /* (sps-U) velocity and gravity terms of the leg force */
+        const real sps_U_in_base_x = sps_axis_z_x*sps_phi_4_o_z - axis_x_sps_axes3_x*sps_c_o_x -
+            axis_y_sps_axes3_in_base_x*sps_c_o_y;
+        const real sps_U_in_base_y = sps_axis_z_y*sps_phi_4_o_z - axis_x_sps_axes3_y*sps_c_o_x -
+            axis_y_sps_axes3_in_base_y*sps_c_o_y;
+        const real sps_U_in_base_z = sps_axis_z_z*sps_phi_4_o_z - axis_x_sps_axes3_z*sps_c_o_x -
+            axis_y_sps_axes3_in_base_z*sps_c_o_y;
+        /* (Z_a) rotational part of Z */
+        const real sps_Z_a_t = sps_U_in_base_z*sps_q_in_base_y - sps_U_in_base_y*sps_q_in_base_z;
+        const real sps_Z_a_t_2 = sps_U_in_base_x*sps_q_in_base_z -
+            sps_U_in_base_z*sps_q_in_base_x;
+        const real sps_Z_a_t_3 = sps_U_in_base_y*sps_q_in_base_x -
+            sps_U_in_base_x*sps_q_in_base_y;
+        terms[0*count + k] = add ? terms[0*count + k] + sps_U_in_base_x : sps_U_in_base_x;  /* total_sps_x */
+        terms[1*count + k] = add ? terms[1*count + k] + sps_U_in_base_y : sps_U_in_base_y;  /* total_sps_y */
+        terms[2*count + k] = add ? terms[2*count + k] + sps_U_in_base_z : sps_U_in_base_z;  /* total_sps_z */
+        terms[3*count + k] = add ? terms[3*count + k] + sps_Z_a_t : sps_Z_a_t;  /* total_sps_x_2 */
+        terms[4*count + k] = add ? terms[4*count + k] + sps_Z_a_t_2 : sps_Z_a_t_2;  /* total_sps_y_2 */
+        terms[5*count + k] = add ? terms[5*count + k] + sps_Z_a_t_3 : sps_Z_a_t_3;  /* total_sps_z_2 */
+        o[0*count + k] = sps_mu_3_o_z;
+        o[2*count + k] = sps_mu_3_o_z;
+        o[1*count + k] = UNLESS(magnitude(sps_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(sps_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(-sps_w_2_t) > TOLERANCE*R(0.6400000000000001));
     }
 }
 
-INLINE void Z_place_urps(size_t w, const Z_results_urps *o, size_t leg, size_t first, real *Z,
+INLINE void Z_place_sps(size_t w, size_t count, const real *o, size_t leg, size_t first, real *Z,
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        Z[(6 + leg)*w + k] = o->entry[0][first + k];
-        t->singular[k] += o->singular[first + k];
+        Z[(6 + leg)*w + k] = o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
+        t->total[k] += o[2*count + first + k];
     }
 }
 
-INLINE void Z_after(size_t w, const Z_values *s, real *Z)
+INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real Z_p_x = s->Z_p_x[k];
-        const real Z_p_y = s->Z_p_y[k];
-        const real Z_p_z = s->Z_p_z[k];
-        const real Z_q_in_base_x = s->Z_q_in_base_x[k];
-        const real Z_q_in_base_y = s->Z_q_in_base_y[k];
-        const real Z_q_in_base_z = s->Z_q_in_base_z[k];
-        const real total_urps_x = s->sum[0][k];
-        const real total_urps_y = s->sum[1][k];
-        const real total_urps_z = s->sum[2][k];
-        const real total_urps_x_2 = s->sum[3][k];
-        const real total_urps_y_2 = s->sum[4][k];
-        const real total_urps_z_2 = s->sum[5][k];
-        /* (M5) translational part of Z */
-        const real Z_t_x = Z_p_x + total_urps_x;
-        const real Z_t_y = Z_p_y + total_urps_y;
-        const real Z_t_z = Z_p_z + total_urps_z;
-        /* (M7) rotational part of Z */
-        const real Z_a_x = Z_q_in_base_x + total_urps_x_2;
-        const real Z_a_y = Z_q_in_base_y + total_urps_y_2;
-        const real Z_a_z = Z_q_in_base_z + total_urps_z_2;
+        /* (Z_t) translational part of Z */
+        const real Z_p_x = s[18*w + k];
+        const real total_sps_x = sums[0*w + k];
+        const real Z_t_x = Z_p_x + total_sps_x;
+        const real Z_p_y = s[19*w + k];
+        const real total_sps_y = sums[1*w + k];
+        const real Z_t_y = Z_p_y + total_sps_y;
+        const real Z_p_z = s[20*w + k];
+        const real total_sps_z = sums[2*w + k];
+        const real Z_t_z = Z_p_z + total_sps_z;
+        /* (Z_a) rotational part of Z */
+        const real Z_q_in_base_x = s[21*w + k];
+        const real total_sps_x_2 = sums[3*w + k];
+        const real Z_a_x = Z_q_in_base_x + total_sps_x_2;
+        const real Z_q_in_base_y = s[22*w + k];
+        const real total_sps_y_2 = sums[4*w + k];
+        const real Z_a_y = Z_q_in_base_y + total_sps_y_2;
+        const real Z_q_in_base_z = s[23*w + k];
+        const real total_sps_z_2 = sums[5*w + k];
+        const real Z_a_z = Z_q_in_base_z + total_sps_z_2;
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
+        t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
     }
 }
 
-INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    Z_values values, *const s = &values;
-    Z_results_urps results_urps;
-    Z_before(m, w, X, V, s, t);
-    if (w == 1) {  /* the legs side by side */
-        Z_legs_urps(m, w, 0, 1, s, 0, 6, 0, X, V, &results_urps);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            Z_place_urps(w, &results_urps, leg, leg, Z, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_urps.sum[n], 6);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_urps.sum, 0, sizeof results_urps.sum);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            Z_legs_urps(m, w, leg, 0, s, 1, w, 1, X, V, &results_urps);
-            Z_place_urps(w, &results_urps, leg, 0, Z, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_urps.sum[n][k];
-            }
-        }
+    real s[24] = {0}, sums[6] = {0}, terms_sps[6*LEGS(6)] = {0}, o_sps[3*LEGS(6)] = {0};
+    Z_before(m, 1, X, V, s, t);
+    Z_legs_sps(m, 1, 0, 1, s, 0, LEGS(6), 0, X, V, terms_sps, o_sps);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        Z_place_sps(1, LEGS(6), o_sps, leg, leg, Z, t);
     }
-    Z_after(w, s, Z);
+    for (size_t n = 0; n < 6; ++n) {
+        sums[n] = total(terms_sps + n*LEGS(6), 6);
+    }
+    Z_after(1, s, sums, Z, t);
+}
+
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+{
+    real s[24*LANES], sums[6*LANES], o_sps[3*LANES];
+    Z_before(m, LANES, X, V, s, t);
+    clear(sums, 6*LANES);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        Z_legs_sps(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_sps);
+        Z_place_sps(LANES, LANES, o_sps, leg, 0, Z, t);
+    }
+    Z_after(LANES, s, sums, Z, t);
 }
 
 /* ---- H: 186 mul, 138 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES];
-} H_values;
-typedef struct {
-    real entry[6][8], singular[8];
-} H_results_urps;
-
-INLINE void H_before(size_t w, const real *X, H_values *s, verdict *t)
+INLINE void H_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -3101,188 +3217,157 @@ INLINE void H_before(size_t w, const real *X, H_values *s, verdict *t)
         const real R_zx = quaternion_xz - quaternion_wy;
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void H_legs_urps(const prepared *m, size_t leg, size_t legs, const H_values *s, size_t
-    states, size_t count, H_results_urps *o)
+INLINE void H_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real branch_2 = m->branch_2[i];
-        const real urps_base_frame_xx = m->urps_base_frame_xx[i];
-        const real urps_base_frame_xy = m->urps_base_frame_xy[i];
-        const real urps_base_frame_xz = m->urps_base_frame_xz[i];
-        const real urps_base_frame_yx = m->urps_base_frame_yx[i];
-        const real urps_base_frame_yy = m->urps_base_frame_yy[i];
-        const real urps_base_frame_yz = m->urps_base_frame_yz[i];
-        const real urps_base_frame_zx = m->urps_base_frame_zx[i];
-        const real urps_base_frame_zy = m->urps_base_frame_zy[i];
-        const real urps_base_frame_zz = m->urps_base_frame_zz[i];
-        const real urps_base_point_x = m->urps_base_point_x[i];
-        const real urps_base_point_y = m->urps_base_point_y[i];
-        const real urps_base_point_z = m->urps_base_point_z[i];
-        const real urps_platform_point_x = m->urps_platform_point_x[i];
-        const real urps_platform_point_y = m->urps_platform_point_y[i];
-        const real urps_platform_point_z = m->urps_platform_point_z[i];
-        /* (urps-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*urps_platform_point_x + R_xy*urps_platform_point_y +
-            R_xz*urps_platform_point_z;
-        const real q_in_base_y = R_yx*urps_platform_point_x + R_yy*urps_platform_point_y +
-            R_yz*urps_platform_point_z;
-        const real q_in_base_z = R_zx*urps_platform_point_x + R_zy*urps_platform_point_y +
-            R_zz*urps_platform_point_z;
-        const real S_x = q_in_base_x + t_x - urps_base_point_x;
-        const real S_y = q_in_base_y + t_y - urps_base_point_y;
-        const real S_z = q_in_base_z + t_z - urps_base_point_z;
-        /* (urps-K4) component along the reference direction */
-        const real px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx +
-            S_z*urps_base_frame_zx;
-        /* (urps-K5) component across the reference direction */
-        const real py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy +
-            S_z*urps_base_frame_zy;
-        /* (urps-K6) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (urps-K11) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz +
-            S_z*urps_base_frame_zz;
-        /* (urps-K15) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (urps-K16) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (urps-K17) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        /* (urps-V6) reciprocal vector 1 */
-        const real axis_z_x = S_x*inv_root_2;
-        const real axis_z_y = S_y*inv_root_2;
-        const real axis_z_z = S_z*inv_root_2;
-        /* (M9) moment of the column's unit force about the platform origin */
-        const real H_a_4_x = axis_z_z*q_in_base_y - axis_z_y*q_in_base_z;
-        const real H_a_4_y = axis_z_x*q_in_base_z - axis_z_z*q_in_base_x;
-        const real H_a_4_z = axis_z_y*q_in_base_x - axis_z_x*q_in_base_y;
-        o->entry[0][k] = axis_z_x;
-        o->entry[1][k] = axis_z_y;
-        o->entry[2][k] = axis_z_z;
-        o->entry[3][k] = H_a_4_x;
-        o->entry[4][k] = H_a_4_y;
-        o->entry[5][k] = H_a_4_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
+        /* (sps-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
+        const real sps_platform_point_x = m->sps_platform_point_x[i];
+        const real sps_platform_point_y = m->sps_platform_point_y[i];
+        const real sps_platform_point_z = m->sps_platform_point_z[i];
+        const real sps_q_in_base_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
+            R_xz*sps_platform_point_z;
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real sps_q_in_base_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
+            R_yz*sps_platform_point_z;
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real sps_q_in_base_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
+            R_zz*sps_platform_point_z;
+        const real sps_base_point_x = m->sps_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x;
+        const real sps_base_point_y = m->sps_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y;
+        const real sps_base_point_z = m->sps_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z;
+        /* (sps-px_1) component along the reference direction */
+        const real sps_base_frame_xx = m->sps_base_frame_xx[i];
+        const real sps_base_frame_yx = m->sps_base_frame_yx[i];
+        const real sps_base_frame_zx = m->sps_base_frame_zx[i];
+        const real sps_px_1 = sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx +
+            sps_S_z*sps_base_frame_zx;
+        /* (sps-py_1) component across the reference direction */
+        const real sps_base_frame_xy = m->sps_base_frame_xy[i];
+        const real sps_base_frame_yy = m->sps_base_frame_yy[i];
+        const real sps_base_frame_zy = m->sps_base_frame_zy[i];
+        const real sps_py_1 = sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy +
+            sps_S_z*sps_base_frame_zy;
+        /* (sps-rho2_1) squared amplitude */
+        const real sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1;
+        /* (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real sps_base_frame_xz = m->sps_base_frame_xz[i];
+        const real sps_base_frame_yz = m->sps_base_frame_yz[i];
+        const real sps_base_frame_zz = m->sps_base_frame_zz[i];
+        const real sps_xi_1_t = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
+            sps_S_z*sps_base_frame_zz;
+        /* (sps-rho2_2) squared amplitude */
+        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t;
+        /* (sps-root_2) amplitude, with the sign of the branch */
+        const real sps_branch_2 = m->sps_branch_2[i];
+        const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
+        /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_sps_root_2 = 1/sps_root_2;
+        /* (sps-w_1) reciprocal vector 1 */
+        const real sps_axis_z_x = inv_sps_root_2*sps_S_x;
+        const real sps_axis_z_y = inv_sps_root_2*sps_S_y;
+        const real sps_axis_z_z = inv_sps_root_2*sps_S_z;
+        /* (sps-H_a_4) moment of the column's unit force about the platform origin */
+        const real sps_H_a_4_x = sps_axis_z_z*sps_q_in_base_y - sps_axis_z_y*sps_q_in_base_z;
+        const real sps_H_a_4_y = sps_axis_z_x*sps_q_in_base_z - sps_axis_z_z*sps_q_in_base_x;
+        const real sps_H_a_4_z = sps_axis_z_y*sps_q_in_base_x - sps_axis_z_x*sps_q_in_base_y;
+        o[0*count + k] = sps_axis_z_x;
+        o[1*count + k] = sps_axis_z_y;
+        o[2*count + k] = sps_axis_z_z;
+        o[3*count + k] = sps_H_a_4_x;
+        o[4*count + k] = sps_H_a_4_y;
+        o[5*count + k] = sps_H_a_4_z;
+        o[7*count + k] = (sps_axis_z_x + (sps_axis_z_y + sps_axis_z_z)) + (sps_H_a_4_x +
+            (sps_H_a_4_y + sps_H_a_4_z));
+        o[6*count + k] = UNLESS(magnitude(sps_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(sps_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
     }
 }
 
-INLINE void H_place_urps(size_t w, const H_results_urps *o, size_t leg, size_t first, real *H,
+INLINE void H_place_sps(size_t w, size_t count, const real *o, size_t leg, size_t first, real *H,
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(6 + leg)*w + k] = o->entry[1][first + k];
-        H[(12 + leg)*w + k] = o->entry[2][first + k];
-        H[(18 + leg)*w + k] = o->entry[3][first + k];
-        H[(24 + leg)*w + k] = o->entry[4][first + k];
-        H[(30 + leg)*w + k] = o->entry[5][first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(6 + leg)*w + k] = o[1*count + first + k];
+        H[(12 + leg)*w + k] = o[2*count + first + k];
+        H[(18 + leg)*w + k] = o[3*count + first + k];
+        H[(24 + leg)*w + k] = o[4*count + first + k];
+        H[(30 + leg)*w + k] = o[5*count + first + k];
+        t->singular[k] += o[6*count + first + k];
+        t->total[k] += o[7*count + first + k];
     }
 }
 
-INLINE void H_run(const prepared *m, size_t w, const real *X, real *H, verdict *t)
+INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    H_values values, *const s = &values;
-    H_results_urps results_urps;
-    clear(H, 72*w);
-    H_before(w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        H_legs_urps(m, 0, 1, s, 0, 6, &results_urps);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            H_place_urps(w, &results_urps, leg, leg, H, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 6; ++leg) {
-            H_legs_urps(m, leg, 0, s, 1, w, &results_urps);
-            H_place_urps(w, &results_urps, leg, 0, H, t);
-        }
+    real s[12] = {0}, o_sps[8*LEGS(6)] = {0};
+    clear(H, 72);
+    H_before(1, X, s, t);
+    H_legs_sps(m, 1, 0, 1, s, 0, LEGS(6), o_sps);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        H_place_sps(1, LEGS(6), o_sps, leg, leg, H, t);
+    }
+}
+
+INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
+{
+    real s[12*LANES], o_sps[8*LANES];
+    clear(H, 72*LANES);
+    H_before(LANES, X, s, t);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        H_legs_sps(m, LANES, leg, 0, s, 1, LANES, o_sps);
+        H_place_sps(LANES, LANES, o_sps, leg, 0, H, t);
     }
 }
 
 /* ---- required: 1365 mul, 1041 add, 18 div, 12 sqrt, 12 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
-        t_ddot_x[LANES], t_ddot_y[LANES], t_ddot_z[LANES], alpha_x[LANES], alpha_y[LANES],
-        alpha_z[LANES], f_p_x[LANES], f_p_y[LANES], f_p_z[LANES], mu_p_in_base_x[LANES],
-        mu_p_in_base_y[LANES], mu_p_in_base_z[LANES], sum[6][LANES];
-} required_values;
-typedef struct {
-    real sum[6][8], entry[7][8], singular[8];
-} required_results_urps;
-
 INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, required_values *s, verdict *t)
+    *A, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real A_2 = A[2*w + k];
-        const real A_3 = A[3*w + k];
-        const real A_4 = A[4*w + k];
-        const real A_5 = A[5*w + k];
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_zz = m->J_star_zz;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real m_star = m->m_star;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -3307,53 +3392,78 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
+        const real A_2 = A[2*w + k];
         const real t_ddot_z = A_2;
+        const real A_3 = A[3*w + k];
         const real alpha_x = A_3;
+        const real A_4 = A[4*w + k];
         const real alpha_y = A_4;
+        const real A_5 = A[5*w + k];
         const real alpha_z = A_5;
-        /* (L2) first moment about the platform origin */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_z = m->h_star_z;
         const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
         const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
         const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
-        /* (P1) centripetal tensor of the platform */
+        /* (W_p) centripetal tensor of the platform */
         const real W_p_t = omega_x*omega_x;
         const real W_p_t_2 = omega_y*omega_y;
         const real W_p_t_3 = omega_z*omega_z;
         const real W_p_xy = omega_x*omega_y;
         const real W_p_xz = omega_x*omega_z;
         const real W_p_yz = omega_y*omega_z;
-        /* (M6) gyroscopic moment and moment of the weight of the platform */
+        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
         const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
         const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
         const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_xx = m->J_star_xx;
+        const real J_star_xy = m->J_star_xy;
+        const real J_star_xz = m->J_star_xz;
         const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
+        const real J_star_yy = m->J_star_yy;
+        const real J_star_yz = m->J_star_yz;
         const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
+        const real J_star_zz = m->J_star_zz;
         const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        /* (E1) acceleration of the platform origin, less gravity */
+        /* (a_t) acceleration of the platform origin, less gravity */
+        const real gravity_x = m->gravity_x;
         const real a_t_x = t_ddot_x - gravity_x;
+        const real gravity_y = m->gravity_y;
         const real a_t_y = t_ddot_y - gravity_y;
+        const real gravity_z = m->gravity_z;
         const real a_t_z = t_ddot_z - gravity_z;
-        /* (E2) inertia force of the platform less its weight */
+        /* (f_p) inertia force of the platform less its weight */
+        const real m_star = m->m_star;
         const real f_p_x = a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) +
             h_star_in_base_z*(W_p_xz + alpha_y) - h_star_in_base_x*(W_p_t_2 + W_p_t_3);
         const real f_p_y = a_t_y*m_star + h_star_in_base_x*(W_p_xy + alpha_z) +
             h_star_in_base_z*(W_p_yz - alpha_x) - h_star_in_base_y*(W_p_t + W_p_t_3);
         const real f_p_z = a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) +
             h_star_in_base_y*(W_p_yz + alpha_x) - h_star_in_base_z*(W_p_t + W_p_t_2);
-        /* (E1) acceleration of the platform origin, less gravity */
+        /* (a_t) acceleration of the platform origin, less gravity */
         const real a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
         const real a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
         const real a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
-        /* (E3) inertia moment of the platform less that of its weight */
+        /* (mu_p) inertia moment of the platform less that of its weight */
         const real alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
         const real alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
         const real alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
@@ -3366,356 +3476,374 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z;
         const real mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z;
         const real mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->t_ddot_z[k] = t_ddot_z;
-        s->alpha_x[k] = alpha_x;
-        s->alpha_y[k] = alpha_y;
-        s->alpha_z[k] = alpha_z;
-        s->f_p_x[k] = f_p_x;
-        s->f_p_y[k] = f_p_y;
-        s->f_p_z[k] = f_p_z;
-        s->mu_p_in_base_x[k] = mu_p_in_base_x;
-        s->mu_p_in_base_y[k] = mu_p_in_base_y;
-        s->mu_p_in_base_z[k] = mu_p_in_base_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
+        s[18*w + k] = t_ddot_x;
+        s[19*w + k] = t_ddot_y;
+        s[20*w + k] = t_ddot_z;
+        s[21*w + k] = alpha_x;
+        s[22*w + k] = alpha_y;
+        s[23*w + k] = alpha_z;
+        s[24*w + k] = f_p_x;
+        s[25*w + k] = f_p_y;
+        s[26*w + k] = f_p_z;
+        s[27*w + k] = mu_p_in_base_x;
+        s[28*w + k] = mu_p_in_base_y;
+        s[29*w + k] = mu_p_in_base_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void required_legs_urps(const prepared *m, size_t w, size_t leg, size_t legs, const
-    required_values *s, size_t states, size_t count, int add, const real *X, const real *V, const
-    real *A, required_results_urps *o)
+INLINE void required_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
+    *terms, real *o)
 {
+    static const size_t place_sps_y_3_extra[] = {7, 8, 9, 10, 11, 12, 7, 7};
+    static const size_t place_sps_yd_3[] = {6, 7, 8, 9, 10, 11, 6, 6};
+    static const size_t place_sps_ydd_3[] = {6, 7, 8, 9, 10, 11, 6, 6};
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real t_ddot_z = s->t_ddot_z[j];
-        const real alpha_x = s->alpha_x[j];
-        const real alpha_y = s->alpha_y[j];
-        const real alpha_z = s->alpha_z[j];
+        /* (sps-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
+        const real sps_platform_point_x = m->sps_platform_point_x[i];
+        const real sps_platform_point_y = m->sps_platform_point_y[i];
+        const real sps_platform_point_z = m->sps_platform_point_z[i];
+        const real sps_q_in_base_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
+            R_xz*sps_platform_point_z;
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real sps_q_in_base_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
+            R_yz*sps_platform_point_z;
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real sps_q_in_base_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
+            R_zz*sps_platform_point_z;
+        const real sps_base_point_x = m->sps_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x;
+        const real sps_base_point_y = m->sps_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y;
+        const real sps_base_point_z = m->sps_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z;
+        /* (sps-px_1) component along the reference direction */
+        const real sps_base_frame_xx = m->sps_base_frame_xx[i];
+        const real sps_base_frame_yx = m->sps_base_frame_yx[i];
+        const real sps_base_frame_zx = m->sps_base_frame_zx[i];
+        const real sps_px_1 = sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx +
+            sps_S_z*sps_base_frame_zx;
+        /* (sps-py_1) component across the reference direction */
+        const real sps_base_frame_xy = m->sps_base_frame_xy[i];
+        const real sps_base_frame_yy = m->sps_base_frame_yy[i];
+        const real sps_base_frame_zy = m->sps_base_frame_zy[i];
+        const real sps_py_1 = sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy +
+            sps_S_z*sps_base_frame_zy;
+        /* (sps-rho2_1) squared amplitude */
+        const real sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1;
+        /* (sps-root_1) amplitude, with the sign of the branch */
+        const real sps_branch_1 = m->sps_branch_1[i];
+        const real sps_root_1 = sps_branch_1*root(sps_rho2_1);
+        /* (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real sps_base_frame_xz = m->sps_base_frame_xz[i];
+        const real sps_base_frame_yz = m->sps_base_frame_yz[i];
+        const real sps_base_frame_zz = m->sps_base_frame_zz[i];
+        const real sps_xi_1_t = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
+            sps_S_z*sps_base_frame_zz;
+        /* (sps-rho2_2) squared amplitude */
+        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t;
+        /* (sps-root_2) amplitude, with the sign of the branch */
+        const real sps_branch_2 = m->sps_branch_2[i];
+        const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
+        /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_sps_root_2 = 1/sps_root_2;
+        const real sps_c_2 = inv_sps_root_2*sps_root_1;
+        /* (sps-s_2) sine of the angle of joint 2 from its reference direction */
+        const real sps_s_2 = inv_sps_root_2*sps_xi_1_t;
+        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
+        const real sps_c_3_t = sine(sps_y_3_extra);
+        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
+        const real sps_s_3 = cosine(sps_y_3_extra);
+        /* (sps-v_1) velocity of the connection point per rate of joint 1 */
+        const real sps_v_1_t = sps_c_2*sps_c_3_t;
+        const real sps_v_1_t_2 = sps_c_2*sps_s_3;
+        const real sps_v_1_t_3 = sps_root_2*sps_v_1_t_2;
+        const real sps_v_1_t_4 = sps_root_2*sps_v_1_t;
+        /* (sps-v_2) velocity of the connection point per rate of joint 2 */
+        const real sps_v_2_t = sps_c_3_t*sps_root_2;
+        const real sps_v_2_t_2 = sps_root_2*sps_s_3;
+        /* (sps-w_1) reciprocal vector 1 */
+        const real sps_axis_z_x = inv_sps_root_2*sps_S_x;
+        const real sps_axis_z_y = inv_sps_root_2*sps_S_y;
+        const real sps_axis_z_z = inv_sps_root_2*sps_S_z;
+        const real sps_w_1_t = sps_s_2*sps_s_3;
+        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_sps_root_1 = 1/sps_root_1;
+        const real sps_c_1 = inv_sps_root_1*sps_py_1;
+        /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
+        const real sps_s_1 = inv_sps_root_1*sps_px_1;
+        /* (sps-w_1) reciprocal vector 1 */
+        const real axis_y_sps_axes3_r4_x = sps_c_1*sps_c_3_t - sps_s_1*sps_w_1_t;
+        const real axis_y_sps_axes3_r4_y = -sps_c_1*sps_w_1_t - sps_c_3_t*sps_s_1;
+        const real axis_y_sps_axes3_in_base_x = axis_y_sps_axes3_r4_x*sps_base_frame_xx +
+            axis_y_sps_axes3_r4_y*sps_base_frame_xy + sps_base_frame_xz*sps_v_1_t_2;
+        const real axis_y_sps_axes3_in_base_y = axis_y_sps_axes3_r4_x*sps_base_frame_yx +
+            axis_y_sps_axes3_r4_y*sps_base_frame_yy + sps_base_frame_yz*sps_v_1_t_2;
+        const real axis_y_sps_axes3_in_base_z = axis_y_sps_axes3_r4_x*sps_base_frame_zx +
+            axis_y_sps_axes3_r4_y*sps_base_frame_zy + sps_base_frame_zz*sps_v_1_t_2;
+        const real axis_x_sps_axes3_x = axis_y_sps_axes3_in_base_y*sps_axis_z_z -
+            axis_y_sps_axes3_in_base_z*sps_axis_z_y;
+        const real axis_x_sps_axes3_y = axis_y_sps_axes3_in_base_z*sps_axis_z_x -
+            axis_y_sps_axes3_in_base_x*sps_axis_z_z;
+        const real axis_x_sps_axes3_z = axis_y_sps_axes3_in_base_x*sps_axis_z_y -
+            axis_y_sps_axes3_in_base_y*sps_axis_z_x;
+        /* (sps-w_2) reciprocal vector 2 */
+        const real sps_w_2_t = sps_v_1_t_3*sps_v_2_t_2 + sps_v_1_t_4*sps_v_2_t;
+        const real inv_sps_w_2_t_3 = 1/sps_w_2_t;
+        /* (sps-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real sps_S_dot_t = omega_y*sps_q_in_base_z - omega_z*sps_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real sps_S_dot_t_2 = omega_z*sps_q_in_base_x - omega_x*sps_q_in_base_z;
+        const real sps_S_dot_t_3 = omega_x*sps_q_in_base_y - omega_y*sps_q_in_base_x;
+        const real t_dot_x = s[12*w + j];
+        const real sps_S_dot_x = sps_S_dot_t + t_dot_x;
+        const real t_dot_y = s[13*w + j];
+        const real sps_S_dot_y = sps_S_dot_t_2 + t_dot_y;
+        const real t_dot_z = s[14*w + j];
+        const real sps_S_dot_z = sps_S_dot_t_3 + t_dot_z;
+        /* (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra */
+        const real sps_S_dot_rest_tip_x = axis_x_sps_axes3_x*sps_S_dot_x +
+            axis_x_sps_axes3_y*sps_S_dot_y + axis_x_sps_axes3_z*sps_S_dot_z;
+        const real sps_S_dot_rest_tip_y = axis_y_sps_axes3_in_base_x*sps_S_dot_x +
+            axis_y_sps_axes3_in_base_y*sps_S_dot_y + axis_y_sps_axes3_in_base_z*sps_S_dot_z;
+        const real sps_S_dot_rest_tip_z = sps_S_dot_x*sps_axis_z_x + sps_S_dot_y*sps_axis_z_y +
+            sps_S_dot_z*sps_axis_z_z;
+        /* (sps-qd_2) rate of joint 2 */
+        const real sps_qd_1 = inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_2_t_2 -
+            sps_S_dot_rest_tip_y*sps_v_2_t);
+        const real sps_qd_2 = inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_1_t_4 +
+            sps_S_dot_rest_tip_y*sps_v_1_t_3);
+        /* (sps-omega_1) angular velocity of link 1 */
+        const real sps_omega_1_t = sps_qd_1*sps_s_2;
+        const real sps_omega_1_t_2 = sps_c_2*sps_qd_1;
+        /* (sps-omega_2) angular velocity of link 2 */
+        const real sps_omega_2_r1_x = sps_c_3_t*sps_omega_1_t_2 - sps_qd_2*sps_s_3;
+        const real sps_omega_2_r1_y = sps_c_3_t*sps_qd_2 + sps_omega_1_t_2*sps_s_3;
+        /* (sps-omega_3) angular velocity of link 3 */
+        const real sps_yd_3 = V[(place_sps_yd_3[i])*w + j];
+        const real sps_omega_3_z = sps_omega_1_t + sps_yd_3;
+        /* (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+        const real sps_zeta_3_x = sps_omega_2_r1_y*sps_yd_3;
+        const real sps_zeta_3_y = sps_omega_2_r1_x*sps_yd_3;
+        /* (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real sps_zeta_2_y = sps_omega_1_t*sps_qd_2;
+        /* (sps-beta_3) angular acceleration of link 3 at zero joint accelerations */
+        const real sps_beta_3_x = sps_zeta_3_x - sps_c_3_t*sps_zeta_2_y;
+        const real sps_beta_3_y = -sps_zeta_3_y - sps_s_3*sps_zeta_2_y;
+        /* (sps-W_3) centripetal tensor of link 3 */
+        const real sps_W_3_t = sps_omega_2_r1_x*sps_omega_2_r1_x;
+        const real sps_W_3_t_2 = sps_omega_2_r1_y*sps_omega_2_r1_y;
+        const real sps_W_3_t_3 = sps_omega_3_z*sps_omega_3_z;
+        const real sps_W_3_xy = sps_omega_2_r1_x*sps_omega_2_r1_y;
+        const real sps_W_3_xz = sps_omega_2_r1_x*sps_omega_3_z;
+        const real sps_W_3_yz = sps_omega_2_r1_y*sps_omega_3_z;
+        /* (sps-bias) acceleration of the connection point at zero joint accelerations */
+        const real sps_bias_t = 2*sps_S_dot_rest_tip_z;
+        const real sps_bias_x = sps_bias_t*sps_omega_2_r1_y + sps_root_2*(sps_W_3_xz +
+            sps_beta_3_y);
+        const real sps_bias_y = sps_root_2*(sps_W_3_yz - sps_beta_3_x) -
+            sps_bias_t*sps_omega_2_r1_x;
+        /* (sps-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+           link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real J_group_3_xy = m->J_group_3_xy[i];
-        const real J_group_3_xz = m->J_group_3_xz[i];
-        const real J_group_3_yz = m->J_group_3_yz[i];
-        const real Sigma_3_xx = m->Sigma_3_xx[i];
-        const real Sigma_3_yy = m->Sigma_3_yy[i];
-        const real Sigma_3_zz = m->Sigma_3_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real h_4_x = m->h_4_x[i];
-        const real h_4_y = m->h_4_y[i];
-        const real h_4_z = m->h_4_z[i];
-        const real urps_base_frame_xx = m->urps_base_frame_xx[i];
-        const real urps_base_frame_xy = m->urps_base_frame_xy[i];
-        const real urps_base_frame_xz = m->urps_base_frame_xz[i];
-        const real urps_base_frame_yx = m->urps_base_frame_yx[i];
-        const real urps_base_frame_yy = m->urps_base_frame_yy[i];
-        const real urps_base_frame_yz = m->urps_base_frame_yz[i];
-        const real urps_base_frame_zx = m->urps_base_frame_zx[i];
-        const real urps_base_frame_zy = m->urps_base_frame_zy[i];
-        const real urps_base_frame_zz = m->urps_base_frame_zz[i];
-        const real urps_base_point_x = m->urps_base_point_x[i];
-        const real urps_base_point_y = m->urps_base_point_y[i];
-        const real urps_base_point_z = m->urps_base_point_z[i];
-        const real urps_platform_point_x = m->urps_platform_point_x[i];
-        const real urps_platform_point_y = m->urps_platform_point_y[i];
-        const real urps_platform_point_z = m->urps_platform_point_z[i];
-        const real y_3_extra = X[(7 + i)*w + j];
-        const real yd_3 = V[(6 + i)*w + j];
-        const real ydd_3 = A[(6 + i)*w + j];
-        /* (urps-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*urps_platform_point_x + R_xy*urps_platform_point_y +
-            R_xz*urps_platform_point_z;
-        const real q_in_base_y = R_yx*urps_platform_point_x + R_yy*urps_platform_point_y +
-            R_yz*urps_platform_point_z;
-        const real q_in_base_z = R_zx*urps_platform_point_x + R_zy*urps_platform_point_y +
-            R_zz*urps_platform_point_z;
-        const real S_x = q_in_base_x + t_x - urps_base_point_x;
-        const real S_y = q_in_base_y + t_y - urps_base_point_y;
-        const real S_z = q_in_base_z + t_z - urps_base_point_z;
-        /* (urps-K4) component along the reference direction */
-        const real px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx +
-            S_z*urps_base_frame_zx;
-        /* (urps-K5) component across the reference direction */
-        const real py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy +
-            S_z*urps_base_frame_zy;
-        /* (urps-K6) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (urps-K7) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (urps-K11) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz +
-            S_z*urps_base_frame_zz;
-        /* (urps-K15) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (urps-K16) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (urps-K17) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (urps-K18) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (urps-K2) cosine of the angle of joint 3 from its reference direction */
-        const real c_3_t = sine(y_3_extra);
-        /* (urps-K3) sine of the angle of joint 3 from its reference direction */
-        const real s_3 = cosine(y_3_extra);
-        /* (urps-V3) velocity of the connection point per rate of joint 1 */
-        const real v_1_t = c_2*c_3_t;
-        const real v_1_t_2 = c_2*s_3;
-        const real v_1_t_3 = root_2*v_1_t_2;
-        const real v_1_t_4 = root_2*v_1_t;
-        /* (urps-V4) velocity of the connection point per rate of joint 2 */
-        const real v_2_t = c_3_t*root_2;
-        const real v_2_t_2 = root_2*s_3;
-        /* (urps-V6) reciprocal vector 1 */
-        const real axis_z_x = S_x*inv_root_2;
-        const real axis_z_y = S_y*inv_root_2;
-        const real axis_z_z = S_z*inv_root_2;
-        const real w_1_t = s_2*s_3;
-        /* (urps-K8) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (urps-K9) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (urps-V6) reciprocal vector 1 */
-        const real axis_y_urps_axes3_r4_x = c_1*c_3_t - s_1*w_1_t;
-        const real axis_y_urps_axes3_r4_y = -c_1*w_1_t - c_3_t*s_1;
-        const real axis_y_urps_axes3_in_base_x = axis_y_urps_axes3_r4_x*urps_base_frame_xx +
-            axis_y_urps_axes3_r4_y*urps_base_frame_xy + urps_base_frame_xz*v_1_t_2;
-        const real axis_y_urps_axes3_in_base_y = axis_y_urps_axes3_r4_x*urps_base_frame_yx +
-            axis_y_urps_axes3_r4_y*urps_base_frame_yy + urps_base_frame_yz*v_1_t_2;
-        const real axis_y_urps_axes3_in_base_z = axis_y_urps_axes3_r4_x*urps_base_frame_zx +
-            axis_y_urps_axes3_r4_y*urps_base_frame_zy + urps_base_frame_zz*v_1_t_2;
-        const real axis_x_urps_axes3_x = axis_y_urps_axes3_in_base_y*axis_z_z -
-            axis_y_urps_axes3_in_base_z*axis_z_y;
-        const real axis_x_urps_axes3_y = axis_y_urps_axes3_in_base_z*axis_z_x -
-            axis_y_urps_axes3_in_base_x*axis_z_z;
-        const real axis_x_urps_axes3_z = axis_y_urps_axes3_in_base_x*axis_z_y -
-            axis_y_urps_axes3_in_base_y*axis_z_x;
-        const real w_1_t_2 = v_1_t_3*v_2_t_2 + v_1_t_4*v_2_t;
-        const real inv_w_1_t_23 = 1/w_1_t_2;
-        /* (urps-N2) remainder without the acceleration in: acceleration of the reference point of link 3,
-           less gravity */
-        const real g_tip_x = axis_x_urps_axes3_x*gravity_x + axis_x_urps_axes3_y*gravity_y +
-            axis_x_urps_axes3_z*gravity_z;
-        const real g_tip_y = axis_y_urps_axes3_in_base_x*gravity_x +
-            axis_y_urps_axes3_in_base_y*gravity_y + axis_y_urps_axes3_in_base_z*gravity_z;
-        const real g_tip_z = axis_z_x*gravity_x + axis_z_y*gravity_y + axis_z_z*gravity_z;
-        /* (urps-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        /* (urps-V9) velocity of the connection point left to the joints that are not extra */
-        const real S_dot_rest_tip_x = S_dot_x*axis_x_urps_axes3_x + S_dot_y*axis_x_urps_axes3_y +
-            S_dot_z*axis_x_urps_axes3_z;
-        const real S_dot_rest_tip_y = S_dot_x*axis_y_urps_axes3_in_base_x +
-            S_dot_y*axis_y_urps_axes3_in_base_y + S_dot_z*axis_y_urps_axes3_in_base_z;
-        const real S_dot_rest_tip_z = S_dot_x*axis_z_x + S_dot_y*axis_z_y + S_dot_z*axis_z_z;
-        /* (urps-V10) rate of joint 1 */
-        const real qd_1 = inv_w_1_t_23*(S_dot_rest_tip_x*v_2_t_2 - S_dot_rest_tip_y*v_2_t);
-        const real qd_2 = inv_w_1_t_23*(S_dot_rest_tip_x*v_1_t_4 + S_dot_rest_tip_y*v_1_t_3);
-        /* (urps-V13) angular velocity of link 1 */
-        const real omega_1_t = qd_1*s_2;
-        const real omega_1_t_2 = c_2*qd_1;
-        /* (urps-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_y = omega_1_t*qd_2;
-        /* (urps-V14) angular velocity of link 2 */
-        const real omega_2_r1_x = c_3_t*omega_1_t_2 - qd_2*s_3;
-        const real omega_2_r1_y = c_3_t*qd_2 + omega_1_t_2*s_3;
-        /* (urps-A5) angular acceleration of link 3 from the turning of axis 3 */
-        const real zeta_3_x = omega_2_r1_y*yd_3;
-        const real zeta_3_y = omega_2_r1_x*yd_3;
-        /* (urps-A6) angular acceleration of link 3 at zero joint accelerations */
-        const real beta_3_x = zeta_3_x - c_3_t*zeta_2_y;
-        const real beta_3_y = -zeta_3_y - s_3*zeta_2_y;
-        /* (urps-V15) angular velocity of link 3 */
-        const real omega_3_z = omega_1_t + yd_3;
-        /* (urps-V16) centripetal tensor of link 3 */
-        const real W_3_t = omega_2_r1_x*omega_2_r1_x;
-        const real W_3_t_2 = omega_2_r1_y*omega_2_r1_y;
-        const real W_3_t_3 = omega_3_z*omega_3_z;
-        const real W_3_xy = omega_2_r1_x*omega_2_r1_y;
-        const real W_3_xz = omega_2_r1_x*omega_3_z;
-        const real W_3_yz = omega_2_r1_y*omega_3_z;
-        /* (urps-A7) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_rest_tip_z;
-        const real bias_x = bias_t*omega_2_r1_y + root_2*(W_3_xz + beta_3_y);
-        const real bias_y = root_2*(W_3_yz - beta_3_x) - bias_t*omega_2_r1_x;
-        /* (M9) moment of the column's unit force about the platform origin */
-        const real H_a_4_x = axis_z_z*q_in_base_y - axis_z_y*q_in_base_z;
-        const real H_a_4_y = axis_z_x*q_in_base_z - axis_z_z*q_in_base_x;
-        const real H_a_4_z = axis_z_y*q_in_base_x - axis_z_x*q_in_base_y;
-        /* (urps-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
-        const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
-        const real a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x;
-        /* (urps-A3) acceleration of the connection point */
-        const real S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z;
-        const real S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x;
-        const real S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y;
-        const real S_ddot_tip_x = S_ddot_x*axis_x_urps_axes3_x + S_ddot_y*axis_x_urps_axes3_y +
-            S_ddot_z*axis_x_urps_axes3_z;
-        const real S_ddot_tip_y = S_ddot_x*axis_y_urps_axes3_in_base_x +
-            S_ddot_y*axis_y_urps_axes3_in_base_y + S_ddot_z*axis_y_urps_axes3_in_base_z;
-        /* (urps-A8) acceleration of the connection point left to the joint accelerations */
-        const real rel_x = S_ddot_tip_x - bias_x;
-        const real rel_y = S_ddot_tip_y - bias_y;
-        /* (urps-A11) acceleration of joint 1 */
-        const real qdd_1 = inv_w_1_t_23*(rel_x*v_2_t_2 - rel_y*v_2_t);
-        const real qdd_2 = inv_w_1_t_23*(rel_x*v_1_t_4 + rel_y*v_1_t_3);
-        /* (urps-N3) acceleration of the reference point of link 4, less gravity */
-        const real acc_4_x = S_ddot_tip_x - g_tip_x;
-        const real acc_4_y = S_ddot_tip_y - g_tip_y;
-        const real acc_4_z = S_ddot_x*axis_z_x + S_ddot_y*axis_z_y + S_ddot_z*axis_z_z - g_tip_z;
-        /* (urps-A22) angular acceleration of link 2 */
-        const real alpha_2_x = omega_1_t_2*qd_2 + qdd_1*s_2;
-        const real alpha_2_y = zeta_2_y - c_2*qdd_1;
-        /* (urps-A26) angular acceleration of link 3 */
-        const real alpha_3_x = zeta_3_x - alpha_2_y*c_3_t - qdd_2*s_3;
-        const real alpha_3_y = c_3_t*qdd_2 - zeta_3_y - alpha_2_y*s_3;
-        const real alpha_3_z = alpha_2_x + ydd_3;
-        /* (urps-A29) acceleration tensor of link 3 */
-        const real B_3_xy = W_3_xy - alpha_3_z;
-        const real B_3_xz = W_3_xz + alpha_3_y;
-        const real B_3_yx = W_3_xy + alpha_3_z;
-        const real B_3_yz = W_3_yz - alpha_3_x;
-        const real B_3_zx = W_3_xz - alpha_3_y;
-        const real B_3_zy = W_3_yz + alpha_3_x;
-        /* (urps-N12) inertia moment of the links that turn with link 3, about their reference points */
-        const real mu_3_x = B_3_yx*J_group_3_xz + B_3_zy*Sigma_3_yy + J_group_3_yz*(W_3_t_2 -
-            W_3_t_3) + acc_4_z*h_4_z + g_tip_y*h_3_x - B_3_yz*Sigma_3_zz - B_3_zx*J_group_3_xy -
-            acc_4_y*h_4_x - g_tip_z*h_3_z;
-        const real mu_3_y = B_3_xz*Sigma_3_zz + B_3_zy*J_group_3_xy + acc_4_x*h_4_x +
-            g_tip_z*h_3_y - B_3_xy*J_group_3_yz - B_3_zx*Sigma_3_xx - J_group_3_xz*(W_3_t -
-            W_3_t_3) - acc_4_z*h_4_y - g_tip_x*h_3_x;
-        const real mu_3_z = B_3_xz*J_group_3_yz + B_3_yx*Sigma_3_xx + J_group_3_xy*(W_3_t -
-            W_3_t_2) + acc_4_y*h_4_y + g_tip_x*h_3_z - B_3_xy*Sigma_3_yy - B_3_yz*J_group_3_xz -
-            acc_4_x*h_4_z - g_tip_y*h_3_y;
-        /* (urps-N24) moment about axis 1 of the distal links' inertia and weight */
-        const real Gamma_1 = mu_3_x*v_1_t + mu_3_y*v_1_t_2 + mu_3_z*s_2;
-        /* (urps-N12) inertia moment of the links that turn with link 3, about their reference points */
-        const real mu_3_r0_y = mu_3_x*s_3 - c_3_t*mu_3_y;
-        /* (urps-N5) inertia force of link 4 from its turning about its reference point */
-        const real phi_4_z = B_3_zx*h_4_y + B_3_zy*h_4_z - h_4_x*(W_3_t + W_3_t_2);
-        /* (urps-N32) leg force on the platform without actuation and without the mass at the connection
+        const real sps_g_tip_x = axis_x_sps_axes3_x*gravity_x + axis_x_sps_axes3_y*gravity_y +
+            axis_x_sps_axes3_z*gravity_z;
+        const real sps_g_tip_y = axis_y_sps_axes3_in_base_x*gravity_x +
+            axis_y_sps_axes3_in_base_y*gravity_y + axis_y_sps_axes3_in_base_z*gravity_z;
+        const real sps_g_tip_z = gravity_x*sps_axis_z_x + gravity_y*sps_axis_z_y +
+            gravity_z*sps_axis_z_z;
+        /* (sps-H_a_4) moment of the column's unit force about the platform origin */
+        const real sps_H_a_4_x = sps_axis_z_z*sps_q_in_base_y - sps_axis_z_y*sps_q_in_base_z;
+        const real sps_H_a_4_y = sps_axis_z_x*sps_q_in_base_z - sps_axis_z_z*sps_q_in_base_x;
+        const real sps_H_a_4_z = sps_axis_z_y*sps_q_in_base_x - sps_axis_z_x*sps_q_in_base_y;
+        /* (sps-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_y = s[22*w + j];
+        const real alpha_z = s[23*w + j];
+        const real t_ddot_x = s[18*w + j];
+        const real sps_a_p_x = t_ddot_x + alpha_y*sps_q_in_base_z - alpha_z*sps_q_in_base_y;
+        const real alpha_x = s[21*w + j];
+        const real t_ddot_y = s[19*w + j];
+        const real sps_a_p_y = t_ddot_y + alpha_z*sps_q_in_base_x - alpha_x*sps_q_in_base_z;
+        const real t_ddot_z = s[20*w + j];
+        const real sps_a_p_z = t_ddot_z + alpha_x*sps_q_in_base_y - alpha_y*sps_q_in_base_x;
+        /* (sps-S_ddot) acceleration of the connection point */
+        const real sps_S_ddot_x = sps_a_p_x + omega_y*sps_S_dot_t_3 - omega_z*sps_S_dot_t_2;
+        const real sps_S_ddot_y = sps_a_p_y + omega_z*sps_S_dot_t - omega_x*sps_S_dot_t_3;
+        const real sps_S_ddot_z = sps_a_p_z + omega_x*sps_S_dot_t_2 - omega_y*sps_S_dot_t;
+        const real sps_S_ddot_tip_x = axis_x_sps_axes3_x*sps_S_ddot_x +
+            axis_x_sps_axes3_y*sps_S_ddot_y + axis_x_sps_axes3_z*sps_S_ddot_z;
+        const real sps_S_ddot_tip_y = axis_y_sps_axes3_in_base_x*sps_S_ddot_x +
+            axis_y_sps_axes3_in_base_y*sps_S_ddot_y + axis_y_sps_axes3_in_base_z*sps_S_ddot_z;
+        /* (sps-rel) acceleration of the connection point left to the joint accelerations */
+        const real sps_rel_x = sps_S_ddot_tip_x - sps_bias_x;
+        const real sps_rel_y = sps_S_ddot_tip_y - sps_bias_y;
+        /* (sps-qdd_1) acceleration of joint 1 */
+        const real sps_qdd_1 = inv_sps_w_2_t_3*(sps_rel_x*sps_v_2_t_2 - sps_rel_y*sps_v_2_t);
+        const real sps_qdd_2 = inv_sps_w_2_t_3*(sps_rel_x*sps_v_1_t_4 + sps_rel_y*sps_v_1_t_3);
+        /* (sps-acc_4) acceleration of the reference point of link 4, less gravity */
+        const real sps_acc_4_x = sps_S_ddot_tip_x - sps_g_tip_x;
+        const real sps_acc_4_y = sps_S_ddot_tip_y - sps_g_tip_y;
+        const real sps_acc_4_z = sps_S_ddot_x*sps_axis_z_x + sps_S_ddot_y*sps_axis_z_y +
+            sps_S_ddot_z*sps_axis_z_z - sps_g_tip_z;
+        /* (sps-alpha_2) angular acceleration of link 2 */
+        const real sps_alpha_2_x = sps_omega_1_t_2*sps_qd_2 + sps_qdd_1*sps_s_2;
+        const real sps_alpha_2_y = sps_zeta_2_y - sps_c_2*sps_qdd_1;
+        /* (sps-alpha_3) angular acceleration of link 3 */
+        const real sps_alpha_3_x = sps_zeta_3_x - sps_alpha_2_y*sps_c_3_t - sps_qdd_2*sps_s_3;
+        const real sps_alpha_3_y = sps_c_3_t*sps_qdd_2 - sps_zeta_3_y - sps_alpha_2_y*sps_s_3;
+        const real sps_ydd_3 = A[(place_sps_ydd_3[i])*w + j];
+        const real sps_alpha_3_z = sps_alpha_2_x + sps_ydd_3;
+        /* (sps-B_3) acceleration tensor of link 3 */
+        const real sps_B_3_xy = sps_W_3_xy - sps_alpha_3_z;
+        const real sps_B_3_xz = sps_W_3_xz + sps_alpha_3_y;
+        const real sps_B_3_yx = sps_W_3_xy + sps_alpha_3_z;
+        const real sps_B_3_yz = sps_W_3_yz - sps_alpha_3_x;
+        const real sps_B_3_zx = sps_W_3_xz - sps_alpha_3_y;
+        const real sps_B_3_zy = sps_W_3_yz + sps_alpha_3_x;
+        /* (sps-phi_4) inertia force of link 4 from its turning about its reference point */
+        const real sps_h_4_x = m->sps_h_4_x[i];
+        const real sps_h_4_y = m->sps_h_4_y[i];
+        const real sps_h_4_z = m->sps_h_4_z[i];
+        const real sps_phi_4_z = sps_B_3_zx*sps_h_4_y + sps_B_3_zy*sps_h_4_z -
+            sps_h_4_x*(sps_W_3_t + sps_W_3_t_2);
+        /* (sps-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+        const real sps_J_group_3_xy = m->sps_J_group_3_xy[i];
+        const real sps_J_group_3_xz = m->sps_J_group_3_xz[i];
+        const real sps_J_group_3_yz = m->sps_J_group_3_yz[i];
+        const real sps_Sigma_3_yy = m->sps_Sigma_3_yy[i];
+        const real sps_Sigma_3_zz = m->sps_Sigma_3_zz[i];
+        const real sps_h_3_x = m->sps_h_3_x[i];
+        const real sps_h_3_z = m->sps_h_3_z[i];
+        const real sps_mu_3_x = sps_B_3_yx*sps_J_group_3_xz + sps_B_3_zy*sps_Sigma_3_yy +
+            sps_J_group_3_yz*(sps_W_3_t_2 - sps_W_3_t_3) + sps_acc_4_z*sps_h_4_z +
+            sps_g_tip_y*sps_h_3_x - sps_B_3_yz*sps_Sigma_3_zz - sps_B_3_zx*sps_J_group_3_xy -
+            sps_acc_4_y*sps_h_4_x - sps_g_tip_z*sps_h_3_z;
+        const real sps_Sigma_3_xx = m->sps_Sigma_3_xx[i];
+        const real sps_h_3_y = m->sps_h_3_y[i];
+        const real sps_mu_3_y = sps_B_3_xz*sps_Sigma_3_zz + sps_B_3_zy*sps_J_group_3_xy +
+            sps_acc_4_x*sps_h_4_x + sps_g_tip_z*sps_h_3_y - sps_B_3_xy*sps_J_group_3_yz -
+            sps_B_3_zx*sps_Sigma_3_xx - sps_J_group_3_xz*(sps_W_3_t - sps_W_3_t_3) -
+            sps_acc_4_z*sps_h_4_y - sps_g_tip_x*sps_h_3_x;
+        const real sps_mu_3_z = sps_B_3_xz*sps_J_group_3_yz + sps_B_3_yx*sps_Sigma_3_xx +
+            sps_J_group_3_xy*(sps_W_3_t - sps_W_3_t_2) + sps_acc_4_y*sps_h_4_y +
+            sps_g_tip_x*sps_h_3_z - sps_B_3_xy*sps_Sigma_3_yy - sps_B_3_yz*sps_J_group_3_xz -
+            sps_acc_4_x*sps_h_4_z - sps_g_tip_y*sps_h_3_y;
+        const real sps_mu_3_r0_y = sps_mu_3_x*sps_s_3 - sps_c_3_t*sps_mu_3_y;
+        /* (sps-Gamma_1) moment about axis 1 of the distal links' inertia and weight */
+        const real sps_Gamma_1 = sps_mu_3_x*sps_v_1_t + sps_mu_3_y*sps_v_1_t_2 +
+            sps_mu_3_z*sps_s_2;
+        /* (sps-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_x = h_4_y*(W_3_t_2 + W_3_t_3) - B_3_xy*h_4_z - B_3_xz*h_4_x -
-            inv_w_1_t_23*(Gamma_1*v_2_t_2 - mu_3_r0_y*v_1_t_4);
-        const real c_y = h_4_z*(W_3_t + W_3_t_3) + inv_w_1_t_23*(Gamma_1*v_2_t +
-            mu_3_r0_y*v_1_t_3) - B_3_yx*h_4_y - B_3_yz*h_4_x;
-        const real c_in_base_x = axis_x_urps_axes3_x*c_x + axis_y_urps_axes3_in_base_x*c_y -
-            axis_z_x*phi_4_z;
-        const real c_in_base_y = axis_x_urps_axes3_y*c_x + axis_y_urps_axes3_in_base_y*c_y -
-            axis_z_y*phi_4_z;
-        const real c_in_base_z = axis_x_urps_axes3_z*c_x + axis_y_urps_axes3_in_base_z*c_y -
-            axis_z_z*phi_4_z;
-        /* (E5) moment that actuators and external wrench must give */
-        const real R_a_t = c_in_base_z*q_in_base_y - c_in_base_y*q_in_base_z;
-        const real R_a_t_2 = c_in_base_x*q_in_base_z - c_in_base_z*q_in_base_x;
-        const real R_a_t_3 = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y;
-        o->sum[0][k] = add ? o->sum[0][k] + c_in_base_x : c_in_base_x;  /* total_urps_x */
-        o->sum[1][k] = add ? o->sum[1][k] + c_in_base_y : c_in_base_y;  /* total_urps_y */
-        o->sum[2][k] = add ? o->sum[2][k] + c_in_base_z : c_in_base_z;  /* total_urps_z */
-        o->sum[3][k] = add ? o->sum[3][k] + R_a_t : R_a_t;  /* total_urps_x_2 */
-        o->sum[4][k] = add ? o->sum[4][k] + R_a_t_2 : R_a_t_2;  /* total_urps_y_2 */
-        o->sum[5][k] = add ? o->sum[5][k] + R_a_t_3 : R_a_t_3;  /* total_urps_z_2 */
-        o->entry[0][k] = mu_3_z;
-        o->entry[1][k] = axis_z_x;
-        o->entry[2][k] = axis_z_y;
-        o->entry[3][k] = axis_z_z;
-        o->entry[4][k] = H_a_4_x;
-        o->entry[5][k] = H_a_4_y;
-        o->entry[6][k] = H_a_4_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(-w_1_t_2) > TOLERANCE*R(0.6400000000000001));
+        const real sps_c_x = sps_h_4_y*(sps_W_3_t_2 + sps_W_3_t_3) -
+            inv_sps_w_2_t_3*(sps_Gamma_1*sps_v_2_t_2 - sps_mu_3_r0_y*sps_v_1_t_4) -
+            sps_B_3_xy*sps_h_4_z - sps_B_3_xz*sps_h_4_x;
+        const real sps_c_y = inv_sps_w_2_t_3*(sps_Gamma_1*sps_v_2_t + sps_mu_3_r0_y*sps_v_1_t_3) +
+            sps_h_4_z*(sps_W_3_t + sps_W_3_t_3) - sps_B_3_yx*sps_h_4_y - sps_B_3_yz*sps_h_4_x;
+        const real sps_c_in_base_x = axis_x_sps_axes3_x*sps_c_x +
+            axis_y_sps_axes3_in_base_x*sps_c_y - sps_axis_z_x*sps_phi_4_z;
+        const real sps_c_in_base_y = axis_x_sps_axes3_y*sps_c_x +
+            axis_y_sps_axes3_in_base_y*sps_c_y - sps_axis_z_y*sps_phi_4_z;
+        const real sps_c_in_base_z = axis_x_sps_axes3_z*sps_c_x +
+            axis_y_sps_axes3_in_base_z*sps_c_y - sps_axis_z_z*sps_phi_4_z;
+        /* (R_a) moment that actuators and external wrench must give */
+        const real sps_R_a_t = sps_c_in_base_z*sps_q_in_base_y - sps_c_in_base_y*sps_q_in_base_z;
+        const real sps_R_a_t_2 = sps_c_in_base_x*sps_q_in_base_z -
+            sps_c_in_base_z*sps_q_in_base_x;
+        const real sps_R_a_t_3 = sps_c_in_base_y*sps_q_in_base_x -
+            sps_c_in_base_x*sps_q_in_base_y;
+        terms[0*count + k] = add ? terms[0*count + k] + sps_c_in_base_x : sps_c_in_base_x;  /* total_sps_x */
+        terms[1*count + k] = add ? terms[1*count + k] + sps_c_in_base_y : sps_c_in_base_y;  /* total_sps_y */
+        terms[2*count + k] = add ? terms[2*count + k] + sps_c_in_base_z : sps_c_in_base_z;  /* total_sps_z */
+        terms[3*count + k] = add ? terms[3*count + k] + sps_R_a_t : sps_R_a_t;  /* total_sps_x_2 */
+        terms[4*count + k] = add ? terms[4*count + k] + sps_R_a_t_2 : sps_R_a_t_2;  /* total_sps_y_2 */
+        terms[5*count + k] = add ? terms[5*count + k] + sps_R_a_t_3 : sps_R_a_t_3;  /* total_sps_z_2 */
+        o[0*count + k] = sps_mu_3_z;
+        o[1*count + k] = sps_axis_z_x;
+        o[2*count + k] = sps_axis_z_y;
+        o[3*count + k] = sps_axis_z_z;
+        o[4*count + k] = sps_H_a_4_x;
+        o[5*count + k] = sps_H_a_4_y;
+        o[6*count + k] = sps_H_a_4_z;
+        o[7*count + k] = UNLESS(magnitude(sps_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(sps_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(-sps_w_2_t) > TOLERANCE*R(0.6400000000000001));
     }
 }
 
-INLINE void required_place_urps(size_t w, const required_results_urps *o, size_t leg, size_t
-    first, real *required, real *H, verdict *t)
+INLINE void required_place_sps(size_t w, size_t count, const real *o, size_t leg, size_t first,
+    real *required, real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        required[(6 + leg)*w + k] = o->entry[0][first + k];
-        H[(leg)*w + k] = o->entry[1][first + k];
-        H[(6 + leg)*w + k] = o->entry[2][first + k];
-        H[(12 + leg)*w + k] = o->entry[3][first + k];
-        H[(18 + leg)*w + k] = o->entry[4][first + k];
-        H[(24 + leg)*w + k] = o->entry[5][first + k];
-        H[(30 + leg)*w + k] = o->entry[6][first + k];
-        t->singular[k] += o->singular[first + k];
+        required[(6 + leg)*w + k] = o[0*count + first + k];
+        H[(leg)*w + k] = o[1*count + first + k];
+        H[(6 + leg)*w + k] = o[2*count + first + k];
+        H[(12 + leg)*w + k] = o[3*count + first + k];
+        H[(18 + leg)*w + k] = o[4*count + first + k];
+        H[(24 + leg)*w + k] = o[5*count + first + k];
+        H[(30 + leg)*w + k] = o[6*count + first + k];
+        t->singular[k] += o[7*count + first + k];
     }
 }
 
-INLINE void required_after(size_t w, const required_values *s, real *required)
+INLINE void required_after(size_t w, const real *s, const real *sums, real *required)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real f_p_x = s->f_p_x[k];
-        const real f_p_y = s->f_p_y[k];
-        const real f_p_z = s->f_p_z[k];
-        const real mu_p_in_base_x = s->mu_p_in_base_x[k];
-        const real mu_p_in_base_y = s->mu_p_in_base_y[k];
-        const real mu_p_in_base_z = s->mu_p_in_base_z[k];
-        const real total_urps_x = s->sum[0][k];
-        const real total_urps_y = s->sum[1][k];
-        const real total_urps_z = s->sum[2][k];
-        const real total_urps_x_2 = s->sum[3][k];
-        const real total_urps_y_2 = s->sum[4][k];
-        const real total_urps_z_2 = s->sum[5][k];
-        /* (E4) force that actuators and external wrench must give */
-        const real R_t_x = f_p_x - total_urps_x;
-        const real R_t_y = f_p_y - total_urps_y;
-        const real R_t_z = f_p_z - total_urps_z;
-        /* (E5) moment that actuators and external wrench must give */
-        const real R_a_x = mu_p_in_base_x - total_urps_x_2;
-        const real R_a_y = mu_p_in_base_y - total_urps_y_2;
-        const real R_a_z = mu_p_in_base_z - total_urps_z_2;
+        /* (R_t) force that actuators and external wrench must give */
+        const real f_p_x = s[24*w + k];
+        const real total_sps_x = sums[0*w + k];
+        const real R_t_x = f_p_x - total_sps_x;
+        const real f_p_y = s[25*w + k];
+        const real total_sps_y = sums[1*w + k];
+        const real R_t_y = f_p_y - total_sps_y;
+        const real f_p_z = s[26*w + k];
+        const real total_sps_z = sums[2*w + k];
+        const real R_t_z = f_p_z - total_sps_z;
+        /* (R_a) moment that actuators and external wrench must give */
+        const real mu_p_in_base_x = s[27*w + k];
+        const real total_sps_x_2 = sums[3*w + k];
+        const real R_a_x = mu_p_in_base_x - total_sps_x_2;
+        const real mu_p_in_base_y = s[28*w + k];
+        const real total_sps_y_2 = sums[4*w + k];
+        const real R_a_y = mu_p_in_base_y - total_sps_y_2;
+        const real mu_p_in_base_z = s[29*w + k];
+        const real total_sps_z_2 = sums[5*w + k];
+        const real R_a_z = mu_p_in_base_z - total_sps_z_2;
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
         required[2*w + k] = R_t_z;
@@ -3725,62 +3853,51 @@ INLINE void required_after(size_t w, const required_values *s, real *required)
     }
 }
 
-INLINE void required_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+    *required, real *H, verdict *t)
+{
+    real s[30] = {0}, sums[6] = {0}, terms_sps[6*LEGS(6)] = {0}, o_sps[8*LEGS(6)] = {0};
+    clear(H, 72);
+    required_before(m, 1, X, V, A, s, t);
+    required_legs_sps(m, 1, 0, 1, s, 0, LEGS(6), 0, X, V, A, terms_sps, o_sps);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        required_place_sps(1, LEGS(6), o_sps, leg, leg, required, H, t);
+    }
+    for (size_t n = 0; n < 6; ++n) {
+        sums[n] = total(terms_sps + n*LEGS(6), 6);
+    }
+    required_after(1, s, sums, required);
+}
+
+INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, verdict *t)
 {
-    required_values values, *const s = &values;
-    required_results_urps results_urps;
-    clear(H, 72*w);
-    required_before(m, w, X, V, A, s, t);
-    if (w == 1) {  /* the legs side by side */
-        required_legs_urps(m, w, 0, 1, s, 0, 6, 0, X, V, A, &results_urps);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            required_place_urps(w, &results_urps, leg, leg, required, H, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_urps.sum[n], 6);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_urps.sum, 0, sizeof results_urps.sum);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            required_legs_urps(m, w, leg, 0, s, 1, w, 1, X, V, A, &results_urps);
-            required_place_urps(w, &results_urps, leg, 0, required, H, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_urps.sum[n][k];
-            }
-        }
+    real s[30*LANES], sums[6*LANES], o_sps[8*LANES];
+    clear(H, 72*LANES);
+    required_before(m, LANES, X, V, A, s, t);
+    clear(sums, 6*LANES);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        required_legs_sps(m, LANES, leg, 0, s, 1, LANES, 1, X, V, A, sums, o_sps);
+        required_place_sps(LANES, LANES, o_sps, leg, 0, required, H, t);
     }
-    required_after(w, s, required);
+    required_after(LANES, s, sums, required);
 }
 
 /* ---- inverse_kinematics: 162 mul, 120 add, 12 div, 12 sqrt, 12 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES];
-} inverse_kinematics_values;
-typedef struct {
-    real entry[4][8], singular[8];
-} inverse_kinematics_results_urps;
-
-INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematics_values *s,
-    verdict *t)
+INLINE void inverse_kinematics_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -3804,162 +3921,149 @@ INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematic
         const real R_zx = quaternion_xz - quaternion_wy;
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void inverse_kinematics_legs_urps(const prepared *m, size_t w, size_t leg, size_t legs,
-    const inverse_kinematics_values *s, size_t states, size_t count, const real *X,
-    inverse_kinematics_results_urps *o)
+INLINE void inverse_kinematics_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs,
+    const real *s, size_t states, size_t count, const real *X, real *o)
 {
+    static const size_t place_sps_y_3_extra[] = {7, 8, 9, 10, 11, 12, 7, 7};
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real urps_base_frame_xx = m->urps_base_frame_xx[i];
-        const real urps_base_frame_xy = m->urps_base_frame_xy[i];
-        const real urps_base_frame_xz = m->urps_base_frame_xz[i];
-        const real urps_base_frame_yx = m->urps_base_frame_yx[i];
-        const real urps_base_frame_yy = m->urps_base_frame_yy[i];
-        const real urps_base_frame_yz = m->urps_base_frame_yz[i];
-        const real urps_base_frame_zx = m->urps_base_frame_zx[i];
-        const real urps_base_frame_zy = m->urps_base_frame_zy[i];
-        const real urps_base_frame_zz = m->urps_base_frame_zz[i];
-        const real urps_base_point_x = m->urps_base_point_x[i];
-        const real urps_base_point_y = m->urps_base_point_y[i];
-        const real urps_base_point_z = m->urps_base_point_z[i];
-        const real urps_platform_point_x = m->urps_platform_point_x[i];
-        const real urps_platform_point_y = m->urps_platform_point_y[i];
-        const real urps_platform_point_z = m->urps_platform_point_z[i];
-        const real y_3_extra = X[(7 + i)*w + j];
-        /* (urps-K1) from the base point to the connection point */
-        const real S_x = t_x + R_xx*urps_platform_point_x + R_xy*urps_platform_point_y +
-            R_xz*urps_platform_point_z - urps_base_point_x;
-        const real S_y = t_y + R_yx*urps_platform_point_x + R_yy*urps_platform_point_y +
-            R_yz*urps_platform_point_z - urps_base_point_y;
-        const real S_z = t_z + R_zx*urps_platform_point_x + R_zy*urps_platform_point_y +
-            R_zz*urps_platform_point_z - urps_base_point_z;
-        /* (urps-K4) component along the reference direction */
-        const real px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx +
-            S_z*urps_base_frame_zx;
-        /* (urps-K5) component across the reference direction */
-        const real py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy +
-            S_z*urps_base_frame_zy;
-        /* (urps-K6) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (urps-K7) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (urps-K11) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz +
-            S_z*urps_base_frame_zz;
-        /* (urps-K15) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (urps-K16) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (urps-K17) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        /* (urps-K8) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        /* (urps-K10) displacement of joint 1 */
-        const real q_1 = angle(inv_root_1*py_1, inv_root_1*px_1);
-        /* (urps-K19) displacement of joint 2 */
-        const real q_2 = angle(-inv_root_2*xi_1_t, inv_root_2*root_1);
-        o->entry[0][k] = q_1;
-        o->entry[1][k] = q_2;
-        o->entry[2][k] = y_3_extra;
-        o->entry[3][k] = root_2;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
+        /* (sps-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
+        const real sps_base_point_x = m->sps_base_point_x[i];
+        const real sps_platform_point_x = m->sps_platform_point_x[i];
+        const real sps_platform_point_y = m->sps_platform_point_y[i];
+        const real sps_platform_point_z = m->sps_platform_point_z[i];
+        const real t_x = s[0*w + j];
+        const real sps_S_x = t_x + R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
+            R_xz*sps_platform_point_z - sps_base_point_x;
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real sps_base_point_y = m->sps_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real sps_S_y = t_y + R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
+            R_yz*sps_platform_point_z - sps_base_point_y;
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real sps_base_point_z = m->sps_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real sps_S_z = t_z + R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
+            R_zz*sps_platform_point_z - sps_base_point_z;
+        /* (sps-px_1) component along the reference direction */
+        const real sps_base_frame_xx = m->sps_base_frame_xx[i];
+        const real sps_base_frame_yx = m->sps_base_frame_yx[i];
+        const real sps_base_frame_zx = m->sps_base_frame_zx[i];
+        const real sps_px_1 = sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx +
+            sps_S_z*sps_base_frame_zx;
+        /* (sps-py_1) component across the reference direction */
+        const real sps_base_frame_xy = m->sps_base_frame_xy[i];
+        const real sps_base_frame_yy = m->sps_base_frame_yy[i];
+        const real sps_base_frame_zy = m->sps_base_frame_zy[i];
+        const real sps_py_1 = sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy +
+            sps_S_z*sps_base_frame_zy;
+        /* (sps-rho2_1) squared amplitude */
+        const real sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1;
+        /* (sps-root_1) amplitude, with the sign of the branch */
+        const real sps_branch_1 = m->sps_branch_1[i];
+        const real sps_root_1 = sps_branch_1*root(sps_rho2_1);
+        /* (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real sps_base_frame_xz = m->sps_base_frame_xz[i];
+        const real sps_base_frame_yz = m->sps_base_frame_yz[i];
+        const real sps_base_frame_zz = m->sps_base_frame_zz[i];
+        const real sps_xi_1_t = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
+            sps_S_z*sps_base_frame_zz;
+        /* (sps-rho2_2) squared amplitude */
+        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t;
+        /* (sps-root_2) amplitude, with the sign of the branch */
+        const real sps_branch_2 = m->sps_branch_2[i];
+        const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
+        /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_sps_root_2 = 1/sps_root_2;
+        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_sps_root_1 = 1/sps_root_1;
+        /* (sps-q_1) displacement of joint 1 */
+        const real sps_q_1 = angle(inv_sps_root_1*sps_py_1, inv_sps_root_1*sps_px_1);
+        /* (sps-q_2) displacement of joint 2 */
+        const real sps_q_2 = angle(-inv_sps_root_2*sps_xi_1_t, inv_sps_root_2*sps_root_1);
+        o[0*count + k] = sps_q_1;
+        o[1*count + k] = sps_q_2;
+        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
+        o[2*count + k] = sps_y_3_extra;
+        o[3*count + k] = sps_root_2;
+        o[5*count + k] = (sps_q_1 + sps_q_2) + (sps_y_3_extra + sps_root_2);
+        o[4*count + k] = UNLESS(magnitude(sps_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(sps_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
     }
 }
 
-INLINE void inverse_kinematics_place_urps(size_t w, const inverse_kinematics_results_urps *o,
-    size_t leg, size_t first, real *q, verdict *t)
+INLINE void inverse_kinematics_place_sps(size_t w, size_t count, const real *o, size_t leg, size_t
+    first, real *q, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        q[(4*leg)*w + k] = o->entry[0][first + k];
-        q[(1 + 4*leg)*w + k] = o->entry[1][first + k];
-        q[(2 + 4*leg)*w + k] = o->entry[2][first + k];
-        q[(3 + 4*leg)*w + k] = o->entry[3][first + k];
-        t->singular[k] += o->singular[first + k];
+        q[(4*leg)*w + k] = o[0*count + first + k];
+        q[(1 + 4*leg)*w + k] = o[1*count + first + k];
+        q[(2 + 4*leg)*w + k] = o[2*count + first + k];
+        q[(3 + 4*leg)*w + k] = o[3*count + first + k];
+        t->singular[k] += o[4*count + first + k];
+        t->total[k] += o[5*count + first + k];
     }
 }
 
-INLINE void inverse_kinematics_run(const prepared *m, size_t w, const real *X, real *q, verdict
-    *t)
+INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    inverse_kinematics_values values, *const s = &values;
-    inverse_kinematics_results_urps results_urps;
-    inverse_kinematics_before(w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        inverse_kinematics_legs_urps(m, w, 0, 1, s, 0, 6, X, &results_urps);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            inverse_kinematics_place_urps(w, &results_urps, leg, leg, q, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 6; ++leg) {
-            inverse_kinematics_legs_urps(m, w, leg, 0, s, 1, w, X, &results_urps);
-            inverse_kinematics_place_urps(w, &results_urps, leg, 0, q, t);
-        }
+    real s[12] = {0}, o_sps[6*LEGS(6)] = {0};
+    inverse_kinematics_before(1, X, s, t);
+    inverse_kinematics_legs_sps(m, 1, 0, 1, s, 0, LEGS(6), X, o_sps);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        inverse_kinematics_place_sps(1, LEGS(6), o_sps, leg, leg, q, t);
+    }
+}
+
+INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
+{
+    real s[12*LANES], o_sps[6*LANES];
+    inverse_kinematics_before(LANES, X, s, t);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        inverse_kinematics_legs_sps(m, LANES, leg, 0, s, 1, LANES, X, o_sps);
+        inverse_kinematics_place_sps(LANES, LANES, o_sps, leg, 0, q, t);
     }
 }
 
 /* ---- joint_rates: 474 mul, 276 add, 18 div, 12 sqrt, 12 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES];
-} joint_rates_values;
-typedef struct {
-    real entry[4][8], singular[8];
-} joint_rates_results_urps;
-
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rates_values *s,
-    verdict *t)
+INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -3984,235 +4088,229 @@ INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rat
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void joint_rates_legs_urps(const prepared *m, size_t w, size_t leg, size_t legs, const
-    joint_rates_values *s, size_t states, size_t count, const real *X, const real *V,
-    joint_rates_results_urps *o)
+INLINE void joint_rates_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, const real *X, const real *V, real *o)
 {
+    static const size_t place_sps_y_3_extra[] = {7, 8, 9, 10, 11, 12, 7, 7};
+    static const size_t place_sps_yd_3[] = {6, 7, 8, 9, 10, 11, 6, 6};
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real urps_base_frame_xx = m->urps_base_frame_xx[i];
-        const real urps_base_frame_xy = m->urps_base_frame_xy[i];
-        const real urps_base_frame_xz = m->urps_base_frame_xz[i];
-        const real urps_base_frame_yx = m->urps_base_frame_yx[i];
-        const real urps_base_frame_yy = m->urps_base_frame_yy[i];
-        const real urps_base_frame_yz = m->urps_base_frame_yz[i];
-        const real urps_base_frame_zx = m->urps_base_frame_zx[i];
-        const real urps_base_frame_zy = m->urps_base_frame_zy[i];
-        const real urps_base_frame_zz = m->urps_base_frame_zz[i];
-        const real urps_base_point_x = m->urps_base_point_x[i];
-        const real urps_base_point_y = m->urps_base_point_y[i];
-        const real urps_base_point_z = m->urps_base_point_z[i];
-        const real urps_platform_point_x = m->urps_platform_point_x[i];
-        const real urps_platform_point_y = m->urps_platform_point_y[i];
-        const real urps_platform_point_z = m->urps_platform_point_z[i];
-        const real y_3_extra = X[(7 + i)*w + j];
-        const real yd_3 = V[(6 + i)*w + j];
-        /* (urps-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*urps_platform_point_x + R_xy*urps_platform_point_y +
-            R_xz*urps_platform_point_z;
-        const real q_in_base_y = R_yx*urps_platform_point_x + R_yy*urps_platform_point_y +
-            R_yz*urps_platform_point_z;
-        const real q_in_base_z = R_zx*urps_platform_point_x + R_zy*urps_platform_point_y +
-            R_zz*urps_platform_point_z;
-        const real S_x = q_in_base_x + t_x - urps_base_point_x;
-        const real S_y = q_in_base_y + t_y - urps_base_point_y;
-        const real S_z = q_in_base_z + t_z - urps_base_point_z;
-        /* (urps-K4) component along the reference direction */
-        const real px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx +
-            S_z*urps_base_frame_zx;
-        /* (urps-K5) component across the reference direction */
-        const real py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy +
-            S_z*urps_base_frame_zy;
-        /* (urps-K6) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (urps-K7) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (urps-K11) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz +
-            S_z*urps_base_frame_zz;
-        /* (urps-K15) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (urps-K16) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (urps-K17) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (urps-K2) cosine of the angle of joint 3 from its reference direction */
-        const real c_3_t = sine(y_3_extra);
-        /* (urps-K3) sine of the angle of joint 3 from its reference direction */
-        const real s_3 = cosine(y_3_extra);
-        /* (urps-V3) velocity of the connection point per rate of joint 1 */
-        const real v_1_t = c_2*s_3;
-        const real v_1_t_2 = root_2*v_1_t;
-        const real v_1_t_3 = c_2*c_3_t*root_2;
-        /* (urps-V4) velocity of the connection point per rate of joint 2 */
-        const real v_2_t = c_3_t*root_2;
-        const real v_2_t_2 = root_2*s_3;
-        /* (urps-V6) reciprocal vector 1 */
-        const real axis_z_x = S_x*inv_root_2;
-        const real axis_z_y = S_y*inv_root_2;
-        const real axis_z_z = S_z*inv_root_2;
-        const real w_1_t = inv_root_2*s_3*xi_1_t;
-        /* (urps-K8) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (urps-K9) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (urps-V6) reciprocal vector 1 */
-        const real axis_y_urps_axes3_r4_x = c_1*c_3_t - s_1*w_1_t;
-        const real axis_y_urps_axes3_r4_y = -c_1*w_1_t - c_3_t*s_1;
-        const real axis_y_urps_axes3_in_base_x = axis_y_urps_axes3_r4_x*urps_base_frame_xx +
-            axis_y_urps_axes3_r4_y*urps_base_frame_xy + urps_base_frame_xz*v_1_t;
-        const real axis_y_urps_axes3_in_base_y = axis_y_urps_axes3_r4_x*urps_base_frame_yx +
-            axis_y_urps_axes3_r4_y*urps_base_frame_yy + urps_base_frame_yz*v_1_t;
-        const real axis_y_urps_axes3_in_base_z = axis_y_urps_axes3_r4_x*urps_base_frame_zx +
-            axis_y_urps_axes3_r4_y*urps_base_frame_zy + urps_base_frame_zz*v_1_t;
-        const real w_1_t_2 = v_1_t_2*v_2_t_2 + v_1_t_3*v_2_t;
-        const real inv_w_1_t_23 = 1/w_1_t_2;
-        /* (urps-V1) velocity of the connection point */
-        const real S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x;
-        /* (urps-V9) velocity of the connection point left to the joints that are not extra */
-        const real S_dot_rest_tip_x = S_dot_x*(axis_y_urps_axes3_in_base_y*axis_z_z -
-            axis_y_urps_axes3_in_base_z*axis_z_y) + S_dot_y*(axis_y_urps_axes3_in_base_z*axis_z_x
-            - axis_y_urps_axes3_in_base_x*axis_z_z) +
-            S_dot_z*(axis_y_urps_axes3_in_base_x*axis_z_y - axis_y_urps_axes3_in_base_y*axis_z_x);
-        const real S_dot_rest_tip_y = S_dot_x*axis_y_urps_axes3_in_base_x +
-            S_dot_y*axis_y_urps_axes3_in_base_y + S_dot_z*axis_y_urps_axes3_in_base_z;
-        const real S_dot_rest_tip_z = S_dot_x*axis_z_x + S_dot_y*axis_z_y + S_dot_z*axis_z_z;
-        /* (urps-V10) rate of joint 1 */
-        const real qd_1 = inv_w_1_t_23*(S_dot_rest_tip_x*v_2_t_2 - S_dot_rest_tip_y*v_2_t);
-        const real qd_2 = inv_w_1_t_23*(S_dot_rest_tip_x*v_1_t_3 + S_dot_rest_tip_y*v_1_t_2);
-        o->entry[0][k] = qd_1;
-        o->entry[1][k] = -qd_2;
-        o->entry[2][k] = yd_3;
-        o->entry[3][k] = S_dot_rest_tip_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(-w_1_t_2) > TOLERANCE*R(0.6400000000000001));
+        /* (sps-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
+        const real sps_platform_point_x = m->sps_platform_point_x[i];
+        const real sps_platform_point_y = m->sps_platform_point_y[i];
+        const real sps_platform_point_z = m->sps_platform_point_z[i];
+        const real sps_q_in_base_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
+            R_xz*sps_platform_point_z;
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real sps_q_in_base_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
+            R_yz*sps_platform_point_z;
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real sps_q_in_base_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
+            R_zz*sps_platform_point_z;
+        const real sps_base_point_x = m->sps_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x;
+        const real sps_base_point_y = m->sps_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y;
+        const real sps_base_point_z = m->sps_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z;
+        /* (sps-px_1) component along the reference direction */
+        const real sps_base_frame_xx = m->sps_base_frame_xx[i];
+        const real sps_base_frame_yx = m->sps_base_frame_yx[i];
+        const real sps_base_frame_zx = m->sps_base_frame_zx[i];
+        const real sps_px_1 = sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx +
+            sps_S_z*sps_base_frame_zx;
+        /* (sps-py_1) component across the reference direction */
+        const real sps_base_frame_xy = m->sps_base_frame_xy[i];
+        const real sps_base_frame_yy = m->sps_base_frame_yy[i];
+        const real sps_base_frame_zy = m->sps_base_frame_zy[i];
+        const real sps_py_1 = sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy +
+            sps_S_z*sps_base_frame_zy;
+        /* (sps-rho2_1) squared amplitude */
+        const real sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1;
+        /* (sps-root_1) amplitude, with the sign of the branch */
+        const real sps_branch_1 = m->sps_branch_1[i];
+        const real sps_root_1 = sps_branch_1*root(sps_rho2_1);
+        /* (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real sps_base_frame_xz = m->sps_base_frame_xz[i];
+        const real sps_base_frame_yz = m->sps_base_frame_yz[i];
+        const real sps_base_frame_zz = m->sps_base_frame_zz[i];
+        const real sps_xi_1_t = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
+            sps_S_z*sps_base_frame_zz;
+        /* (sps-rho2_2) squared amplitude */
+        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t;
+        /* (sps-root_2) amplitude, with the sign of the branch */
+        const real sps_branch_2 = m->sps_branch_2[i];
+        const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
+        /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_sps_root_2 = 1/sps_root_2;
+        const real sps_c_2 = inv_sps_root_2*sps_root_1;
+        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
+        const real sps_c_3_t = sine(sps_y_3_extra);
+        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
+        const real sps_s_3 = cosine(sps_y_3_extra);
+        /* (sps-v_1) velocity of the connection point per rate of joint 1 */
+        const real sps_v_1_t = sps_c_2*sps_s_3;
+        const real sps_v_1_t_2 = sps_root_2*sps_v_1_t;
+        const real sps_v_1_t_3 = sps_c_2*sps_c_3_t*sps_root_2;
+        /* (sps-v_2) velocity of the connection point per rate of joint 2 */
+        const real sps_v_2_t = sps_c_3_t*sps_root_2;
+        const real sps_v_2_t_2 = sps_root_2*sps_s_3;
+        /* (sps-w_1) reciprocal vector 1 */
+        const real sps_axis_z_x = inv_sps_root_2*sps_S_x;
+        const real sps_axis_z_y = inv_sps_root_2*sps_S_y;
+        const real sps_axis_z_z = inv_sps_root_2*sps_S_z;
+        const real sps_w_1_t = inv_sps_root_2*sps_s_3*sps_xi_1_t;
+        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_sps_root_1 = 1/sps_root_1;
+        const real sps_c_1 = inv_sps_root_1*sps_py_1;
+        /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
+        const real sps_s_1 = inv_sps_root_1*sps_px_1;
+        /* (sps-w_1) reciprocal vector 1 */
+        const real axis_y_sps_axes3_r4_x = sps_c_1*sps_c_3_t - sps_s_1*sps_w_1_t;
+        const real axis_y_sps_axes3_r4_y = -sps_c_1*sps_w_1_t - sps_c_3_t*sps_s_1;
+        const real axis_y_sps_axes3_in_base_x = axis_y_sps_axes3_r4_x*sps_base_frame_xx +
+            axis_y_sps_axes3_r4_y*sps_base_frame_xy + sps_base_frame_xz*sps_v_1_t;
+        const real axis_y_sps_axes3_in_base_y = axis_y_sps_axes3_r4_x*sps_base_frame_yx +
+            axis_y_sps_axes3_r4_y*sps_base_frame_yy + sps_base_frame_yz*sps_v_1_t;
+        const real axis_y_sps_axes3_in_base_z = axis_y_sps_axes3_r4_x*sps_base_frame_zx +
+            axis_y_sps_axes3_r4_y*sps_base_frame_zy + sps_base_frame_zz*sps_v_1_t;
+        /* (sps-w_2) reciprocal vector 2 */
+        const real sps_w_2_t = sps_v_1_t_2*sps_v_2_t_2 + sps_v_1_t_3*sps_v_2_t;
+        const real inv_sps_w_2_t_3 = 1/sps_w_2_t;
+        /* (sps-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real t_dot_x = s[12*w + j];
+        const real sps_S_dot_x = t_dot_x + omega_y*sps_q_in_base_z - omega_z*sps_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real t_dot_y = s[13*w + j];
+        const real sps_S_dot_y = t_dot_y + omega_z*sps_q_in_base_x - omega_x*sps_q_in_base_z;
+        const real t_dot_z = s[14*w + j];
+        const real sps_S_dot_z = t_dot_z + omega_x*sps_q_in_base_y - omega_y*sps_q_in_base_x;
+        /* (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra */
+        const real sps_S_dot_rest_tip_x = sps_S_dot_x*(axis_y_sps_axes3_in_base_y*sps_axis_z_z -
+            axis_y_sps_axes3_in_base_z*sps_axis_z_y) +
+            sps_S_dot_y*(axis_y_sps_axes3_in_base_z*sps_axis_z_x -
+            axis_y_sps_axes3_in_base_x*sps_axis_z_z) +
+            sps_S_dot_z*(axis_y_sps_axes3_in_base_x*sps_axis_z_y -
+            axis_y_sps_axes3_in_base_y*sps_axis_z_x);
+        const real sps_S_dot_rest_tip_y = axis_y_sps_axes3_in_base_x*sps_S_dot_x +
+            axis_y_sps_axes3_in_base_y*sps_S_dot_y + axis_y_sps_axes3_in_base_z*sps_S_dot_z;
+        const real sps_S_dot_rest_tip_z = sps_S_dot_x*sps_axis_z_x + sps_S_dot_y*sps_axis_z_y +
+            sps_S_dot_z*sps_axis_z_z;
+        /* (sps-qd_2) rate of joint 2 */
+        const real sps_qd_1 = inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_2_t_2 -
+            sps_S_dot_rest_tip_y*sps_v_2_t);
+        const real sps_qd_2 = inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_1_t_3 +
+            sps_S_dot_rest_tip_y*sps_v_1_t_2);
+        o[0*count + k] = sps_qd_1;
+        o[1*count + k] = -sps_qd_2;
+        const real sps_yd_3 = V[(place_sps_yd_3[i])*w + j];
+        o[2*count + k] = sps_yd_3;
+        o[3*count + k] = sps_S_dot_rest_tip_z;
+        o[5*count + k] = (sps_qd_1 + sps_qd_2) + (sps_yd_3 + sps_S_dot_rest_tip_z);
+        o[4*count + k] = UNLESS(magnitude(sps_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(sps_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(-sps_w_2_t) > TOLERANCE*R(0.6400000000000001));
     }
 }
 
-INLINE void joint_rates_place_urps(size_t w, const joint_rates_results_urps *o, size_t leg, size_t
-    first, real *qd, verdict *t)
+INLINE void joint_rates_place_sps(size_t w, size_t count, const real *o, size_t leg, size_t first,
+    real *qd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qd[(4*leg)*w + k] = o->entry[0][first + k];
-        qd[(1 + 4*leg)*w + k] = o->entry[1][first + k];
-        qd[(2 + 4*leg)*w + k] = o->entry[2][first + k];
-        qd[(3 + 4*leg)*w + k] = o->entry[3][first + k];
-        t->singular[k] += o->singular[first + k];
+        qd[(4*leg)*w + k] = o[0*count + first + k];
+        qd[(1 + 4*leg)*w + k] = o[1*count + first + k];
+        qd[(2 + 4*leg)*w + k] = o[2*count + first + k];
+        qd[(3 + 4*leg)*w + k] = o[3*count + first + k];
+        t->singular[k] += o[4*count + first + k];
+        t->total[k] += o[5*count + first + k];
     }
 }
 
-INLINE void joint_rates_run(const prepared *m, size_t w, const real *X, const real *V, real *qd,
+INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+{
+    real s[18] = {0}, o_sps[6*LEGS(6)] = {0};
+    joint_rates_before(1, X, V, s, t);
+    joint_rates_legs_sps(m, 1, 0, 1, s, 0, LEGS(6), X, V, o_sps);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        joint_rates_place_sps(1, LEGS(6), o_sps, leg, leg, qd, t);
+    }
+}
+
+INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    joint_rates_values values, *const s = &values;
-    joint_rates_results_urps results_urps;
-    joint_rates_before(w, X, V, s, t);
-    if (w == 1) {  /* the legs side by side */
-        joint_rates_legs_urps(m, w, 0, 1, s, 0, 6, X, V, &results_urps);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            joint_rates_place_urps(w, &results_urps, leg, leg, qd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 6; ++leg) {
-            joint_rates_legs_urps(m, w, leg, 0, s, 1, w, X, V, &results_urps);
-            joint_rates_place_urps(w, &results_urps, leg, 0, qd, t);
-        }
+    real s[18*LANES], o_sps[6*LANES];
+    joint_rates_before(LANES, X, V, s, t);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        joint_rates_legs_sps(m, LANES, leg, 0, s, 1, LANES, X, V, o_sps);
+        joint_rates_place_sps(LANES, LANES, o_sps, leg, 0, qd, t);
     }
 }
 
 /* ---- joint_accelerations: 762 mul, 474 add, 18 div, 12 sqrt, 12 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
-        t_ddot_x[LANES], t_ddot_y[LANES], t_ddot_z[LANES], alpha_x[LANES], alpha_y[LANES],
-        alpha_z[LANES];
-} joint_accelerations_values;
-typedef struct {
-    real entry[4][8], singular[8];
-} joint_accelerations_results_urps;
-
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A,
-    joint_accelerations_values *s, verdict *t)
+INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
+    *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real A_2 = A[2*w + k];
-        const real A_3 = A[3*w + k];
-        const real A_4 = A[4*w + k];
-        const real A_5 = A[5*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -4237,299 +4335,304 @@ INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, c
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
+        const real A_2 = A[2*w + k];
         const real t_ddot_z = A_2;
+        const real A_3 = A[3*w + k];
         const real alpha_x = A_3;
+        const real A_4 = A[4*w + k];
         const real alpha_y = A_4;
+        const real A_5 = A[5*w + k];
         const real alpha_z = A_5;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->t_ddot_z[k] = t_ddot_z;
-        s->alpha_x[k] = alpha_x;
-        s->alpha_y[k] = alpha_y;
-        s->alpha_z[k] = alpha_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
+        s[18*w + k] = t_ddot_x;
+        s[19*w + k] = t_ddot_y;
+        s[20*w + k] = t_ddot_z;
+        s[21*w + k] = alpha_x;
+        s[22*w + k] = alpha_y;
+        s[23*w + k] = alpha_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void joint_accelerations_legs_urps(const prepared *m, size_t w, size_t leg, size_t legs,
-    const joint_accelerations_values *s, size_t states, size_t count, const real *X, const real
-    *V, const real *A, joint_accelerations_results_urps *o)
+INLINE void joint_accelerations_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs,
+    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
+    *o)
 {
+    static const size_t place_sps_y_3_extra[] = {7, 8, 9, 10, 11, 12, 7, 7};
+    static const size_t place_sps_yd_3[] = {6, 7, 8, 9, 10, 11, 6, 6};
+    static const size_t place_sps_ydd_3[] = {6, 7, 8, 9, 10, 11, 6, 6};
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real t_ddot_z = s->t_ddot_z[j];
-        const real alpha_x = s->alpha_x[j];
-        const real alpha_y = s->alpha_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real urps_base_frame_xx = m->urps_base_frame_xx[i];
-        const real urps_base_frame_xy = m->urps_base_frame_xy[i];
-        const real urps_base_frame_xz = m->urps_base_frame_xz[i];
-        const real urps_base_frame_yx = m->urps_base_frame_yx[i];
-        const real urps_base_frame_yy = m->urps_base_frame_yy[i];
-        const real urps_base_frame_yz = m->urps_base_frame_yz[i];
-        const real urps_base_frame_zx = m->urps_base_frame_zx[i];
-        const real urps_base_frame_zy = m->urps_base_frame_zy[i];
-        const real urps_base_frame_zz = m->urps_base_frame_zz[i];
-        const real urps_base_point_x = m->urps_base_point_x[i];
-        const real urps_base_point_y = m->urps_base_point_y[i];
-        const real urps_base_point_z = m->urps_base_point_z[i];
-        const real urps_platform_point_x = m->urps_platform_point_x[i];
-        const real urps_platform_point_y = m->urps_platform_point_y[i];
-        const real urps_platform_point_z = m->urps_platform_point_z[i];
-        const real y_3_extra = X[(7 + i)*w + j];
-        const real yd_3 = V[(6 + i)*w + j];
-        const real ydd_3 = A[(6 + i)*w + j];
-        /* (urps-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*urps_platform_point_x + R_xy*urps_platform_point_y +
-            R_xz*urps_platform_point_z;
-        const real q_in_base_y = R_yx*urps_platform_point_x + R_yy*urps_platform_point_y +
-            R_yz*urps_platform_point_z;
-        const real q_in_base_z = R_zx*urps_platform_point_x + R_zy*urps_platform_point_y +
-            R_zz*urps_platform_point_z;
-        const real S_x = q_in_base_x + t_x - urps_base_point_x;
-        const real S_y = q_in_base_y + t_y - urps_base_point_y;
-        const real S_z = q_in_base_z + t_z - urps_base_point_z;
-        /* (urps-K4) component along the reference direction */
-        const real px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx +
-            S_z*urps_base_frame_zx;
-        /* (urps-K5) component across the reference direction */
-        const real py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy +
-            S_z*urps_base_frame_zy;
-        /* (urps-K6) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (urps-K7) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (urps-K11) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz +
-            S_z*urps_base_frame_zz;
-        /* (urps-K15) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (urps-K16) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (urps-K17) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (urps-K18) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (urps-K2) cosine of the angle of joint 3 from its reference direction */
-        const real c_3_t = sine(y_3_extra);
-        /* (urps-K3) sine of the angle of joint 3 from its reference direction */
-        const real s_3 = cosine(y_3_extra);
-        /* (urps-V3) velocity of the connection point per rate of joint 1 */
-        const real v_1_t = c_2*s_3;
-        const real v_1_t_2 = root_2*v_1_t;
-        const real v_1_t_3 = c_2*c_3_t*root_2;
-        /* (urps-V4) velocity of the connection point per rate of joint 2 */
-        const real v_2_t = c_3_t*root_2;
-        const real v_2_t_2 = root_2*s_3;
-        /* (urps-V6) reciprocal vector 1 */
-        const real axis_z_x = S_x*inv_root_2;
-        const real axis_z_y = S_y*inv_root_2;
-        const real axis_z_z = S_z*inv_root_2;
-        const real w_1_t = s_2*s_3;
-        /* (urps-K8) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (urps-K9) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (urps-V6) reciprocal vector 1 */
-        const real axis_y_urps_axes3_r4_x = c_1*c_3_t - s_1*w_1_t;
-        const real axis_y_urps_axes3_r4_y = -c_1*w_1_t - c_3_t*s_1;
-        const real axis_y_urps_axes3_in_base_x = axis_y_urps_axes3_r4_x*urps_base_frame_xx +
-            axis_y_urps_axes3_r4_y*urps_base_frame_xy + urps_base_frame_xz*v_1_t;
-        const real axis_y_urps_axes3_in_base_y = axis_y_urps_axes3_r4_x*urps_base_frame_yx +
-            axis_y_urps_axes3_r4_y*urps_base_frame_yy + urps_base_frame_yz*v_1_t;
-        const real axis_y_urps_axes3_in_base_z = axis_y_urps_axes3_r4_x*urps_base_frame_zx +
-            axis_y_urps_axes3_r4_y*urps_base_frame_zy + urps_base_frame_zz*v_1_t;
-        const real axis_x_urps_axes3_x = axis_y_urps_axes3_in_base_y*axis_z_z -
-            axis_y_urps_axes3_in_base_z*axis_z_y;
-        const real axis_x_urps_axes3_y = axis_y_urps_axes3_in_base_z*axis_z_x -
-            axis_y_urps_axes3_in_base_x*axis_z_z;
-        const real axis_x_urps_axes3_z = axis_y_urps_axes3_in_base_x*axis_z_y -
-            axis_y_urps_axes3_in_base_y*axis_z_x;
-        const real w_1_t_2 = v_1_t_2*v_2_t_2 + v_1_t_3*v_2_t;
-        const real inv_w_1_t_23 = 1/w_1_t_2;
-        /* (urps-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        /* (urps-V9) velocity of the connection point left to the joints that are not extra */
-        const real S_dot_rest_tip_x = S_dot_x*axis_x_urps_axes3_x + S_dot_y*axis_x_urps_axes3_y +
-            S_dot_z*axis_x_urps_axes3_z;
-        const real S_dot_rest_tip_y = S_dot_x*axis_y_urps_axes3_in_base_x +
-            S_dot_y*axis_y_urps_axes3_in_base_y + S_dot_z*axis_y_urps_axes3_in_base_z;
-        const real S_dot_rest_tip_z = S_dot_x*axis_z_x + S_dot_y*axis_z_y + S_dot_z*axis_z_z;
-        /* (urps-V10) rate of joint 1 */
-        const real qd_1 = inv_w_1_t_23*(S_dot_rest_tip_x*v_2_t_2 - S_dot_rest_tip_y*v_2_t);
-        const real qd_2 = inv_w_1_t_23*(S_dot_rest_tip_x*v_1_t_3 + S_dot_rest_tip_y*v_1_t_2);
-        /* (urps-V13) angular velocity of link 1 */
-        const real omega_1_t = qd_1*s_2;
-        const real omega_1_t_2 = c_2*qd_1;
-        /* (urps-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_y = omega_1_t*qd_2;
-        /* (urps-V14) angular velocity of link 2 */
-        const real omega_2_r1_x = c_3_t*omega_1_t_2 - qd_2*s_3;
-        const real omega_2_r1_y = c_3_t*qd_2 + omega_1_t_2*s_3;
-        /* (urps-A6) angular acceleration of link 3 at zero joint accelerations */
-        const real beta_3_x = omega_2_r1_y*yd_3 - c_3_t*zeta_2_y;
-        const real beta_3_y = -omega_2_r1_x*yd_3 - s_3*zeta_2_y;
-        /* (urps-V15) angular velocity of link 3 */
-        const real omega_3_z = omega_1_t + yd_3;
-        /* (urps-A7) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_rest_tip_z;
-        const real bias_x = bias_t*omega_2_r1_y + root_2*(beta_3_y + omega_2_r1_x*omega_3_z);
-        const real bias_y = root_2*(omega_2_r1_y*omega_3_z - beta_3_x) - bias_t*omega_2_r1_x;
-        /* (urps-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
-        const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
-        const real a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x;
-        /* (urps-A3) acceleration of the connection point */
-        const real S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z;
-        const real S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x;
-        const real S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y;
-        /* (urps-A8) acceleration of the connection point left to the joint accelerations */
-        const real rel_x = S_ddot_x*axis_x_urps_axes3_x + S_ddot_y*axis_x_urps_axes3_y +
-            S_ddot_z*axis_x_urps_axes3_z - bias_x;
-        const real rel_y = S_ddot_x*axis_y_urps_axes3_in_base_x +
-            S_ddot_y*axis_y_urps_axes3_in_base_y + S_ddot_z*axis_y_urps_axes3_in_base_z - bias_y;
-        const real rel_z = S_ddot_x*axis_z_x + S_ddot_y*axis_z_y + S_ddot_z*axis_z_z +
-            root_2*(omega_2_r1_x*omega_2_r1_x + omega_2_r1_y*omega_2_r1_y);
-        /* (urps-A11) acceleration of joint 1 */
-        const real qdd_1 = inv_w_1_t_23*(rel_x*v_2_t_2 - rel_y*v_2_t);
-        const real qdd_2 = inv_w_1_t_23*(rel_x*v_1_t_3 + rel_y*v_1_t_2);
-        o->entry[0][k] = qdd_1;
-        o->entry[1][k] = -qdd_2;
-        o->entry[2][k] = ydd_3;
-        o->entry[3][k] = rel_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(-w_1_t_2) > TOLERANCE*R(0.6400000000000001));
+        /* (sps-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
+        const real sps_platform_point_x = m->sps_platform_point_x[i];
+        const real sps_platform_point_y = m->sps_platform_point_y[i];
+        const real sps_platform_point_z = m->sps_platform_point_z[i];
+        const real sps_q_in_base_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
+            R_xz*sps_platform_point_z;
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real sps_q_in_base_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
+            R_yz*sps_platform_point_z;
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real sps_q_in_base_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
+            R_zz*sps_platform_point_z;
+        const real sps_base_point_x = m->sps_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x;
+        const real sps_base_point_y = m->sps_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y;
+        const real sps_base_point_z = m->sps_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z;
+        /* (sps-px_1) component along the reference direction */
+        const real sps_base_frame_xx = m->sps_base_frame_xx[i];
+        const real sps_base_frame_yx = m->sps_base_frame_yx[i];
+        const real sps_base_frame_zx = m->sps_base_frame_zx[i];
+        const real sps_px_1 = sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx +
+            sps_S_z*sps_base_frame_zx;
+        /* (sps-py_1) component across the reference direction */
+        const real sps_base_frame_xy = m->sps_base_frame_xy[i];
+        const real sps_base_frame_yy = m->sps_base_frame_yy[i];
+        const real sps_base_frame_zy = m->sps_base_frame_zy[i];
+        const real sps_py_1 = sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy +
+            sps_S_z*sps_base_frame_zy;
+        /* (sps-rho2_1) squared amplitude */
+        const real sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1;
+        /* (sps-root_1) amplitude, with the sign of the branch */
+        const real sps_branch_1 = m->sps_branch_1[i];
+        const real sps_root_1 = sps_branch_1*root(sps_rho2_1);
+        /* (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real sps_base_frame_xz = m->sps_base_frame_xz[i];
+        const real sps_base_frame_yz = m->sps_base_frame_yz[i];
+        const real sps_base_frame_zz = m->sps_base_frame_zz[i];
+        const real sps_xi_1_t = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
+            sps_S_z*sps_base_frame_zz;
+        /* (sps-rho2_2) squared amplitude */
+        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t;
+        /* (sps-root_2) amplitude, with the sign of the branch */
+        const real sps_branch_2 = m->sps_branch_2[i];
+        const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
+        /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_sps_root_2 = 1/sps_root_2;
+        const real sps_c_2 = inv_sps_root_2*sps_root_1;
+        /* (sps-s_2) sine of the angle of joint 2 from its reference direction */
+        const real sps_s_2 = inv_sps_root_2*sps_xi_1_t;
+        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
+        const real sps_c_3_t = sine(sps_y_3_extra);
+        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
+        const real sps_s_3 = cosine(sps_y_3_extra);
+        /* (sps-v_1) velocity of the connection point per rate of joint 1 */
+        const real sps_v_1_t = sps_c_2*sps_s_3;
+        const real sps_v_1_t_2 = sps_root_2*sps_v_1_t;
+        const real sps_v_1_t_3 = sps_c_2*sps_c_3_t*sps_root_2;
+        /* (sps-v_2) velocity of the connection point per rate of joint 2 */
+        const real sps_v_2_t = sps_c_3_t*sps_root_2;
+        const real sps_v_2_t_2 = sps_root_2*sps_s_3;
+        /* (sps-w_1) reciprocal vector 1 */
+        const real sps_axis_z_x = inv_sps_root_2*sps_S_x;
+        const real sps_axis_z_y = inv_sps_root_2*sps_S_y;
+        const real sps_axis_z_z = inv_sps_root_2*sps_S_z;
+        const real sps_w_1_t = sps_s_2*sps_s_3;
+        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_sps_root_1 = 1/sps_root_1;
+        const real sps_c_1 = inv_sps_root_1*sps_py_1;
+        /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
+        const real sps_s_1 = inv_sps_root_1*sps_px_1;
+        /* (sps-w_1) reciprocal vector 1 */
+        const real axis_y_sps_axes3_r4_x = sps_c_1*sps_c_3_t - sps_s_1*sps_w_1_t;
+        const real axis_y_sps_axes3_r4_y = -sps_c_1*sps_w_1_t - sps_c_3_t*sps_s_1;
+        const real axis_y_sps_axes3_in_base_x = axis_y_sps_axes3_r4_x*sps_base_frame_xx +
+            axis_y_sps_axes3_r4_y*sps_base_frame_xy + sps_base_frame_xz*sps_v_1_t;
+        const real axis_y_sps_axes3_in_base_y = axis_y_sps_axes3_r4_x*sps_base_frame_yx +
+            axis_y_sps_axes3_r4_y*sps_base_frame_yy + sps_base_frame_yz*sps_v_1_t;
+        const real axis_y_sps_axes3_in_base_z = axis_y_sps_axes3_r4_x*sps_base_frame_zx +
+            axis_y_sps_axes3_r4_y*sps_base_frame_zy + sps_base_frame_zz*sps_v_1_t;
+        const real axis_x_sps_axes3_x = axis_y_sps_axes3_in_base_y*sps_axis_z_z -
+            axis_y_sps_axes3_in_base_z*sps_axis_z_y;
+        const real axis_x_sps_axes3_y = axis_y_sps_axes3_in_base_z*sps_axis_z_x -
+            axis_y_sps_axes3_in_base_x*sps_axis_z_z;
+        const real axis_x_sps_axes3_z = axis_y_sps_axes3_in_base_x*sps_axis_z_y -
+            axis_y_sps_axes3_in_base_y*sps_axis_z_x;
+        /* (sps-w_2) reciprocal vector 2 */
+        const real sps_w_2_t = sps_v_1_t_2*sps_v_2_t_2 + sps_v_1_t_3*sps_v_2_t;
+        const real inv_sps_w_2_t_3 = 1/sps_w_2_t;
+        /* (sps-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real sps_S_dot_t = omega_y*sps_q_in_base_z - omega_z*sps_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real sps_S_dot_t_2 = omega_z*sps_q_in_base_x - omega_x*sps_q_in_base_z;
+        const real sps_S_dot_t_3 = omega_x*sps_q_in_base_y - omega_y*sps_q_in_base_x;
+        const real t_dot_x = s[12*w + j];
+        const real sps_S_dot_x = sps_S_dot_t + t_dot_x;
+        const real t_dot_y = s[13*w + j];
+        const real sps_S_dot_y = sps_S_dot_t_2 + t_dot_y;
+        const real t_dot_z = s[14*w + j];
+        const real sps_S_dot_z = sps_S_dot_t_3 + t_dot_z;
+        /* (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra */
+        const real sps_S_dot_rest_tip_x = axis_x_sps_axes3_x*sps_S_dot_x +
+            axis_x_sps_axes3_y*sps_S_dot_y + axis_x_sps_axes3_z*sps_S_dot_z;
+        const real sps_S_dot_rest_tip_y = axis_y_sps_axes3_in_base_x*sps_S_dot_x +
+            axis_y_sps_axes3_in_base_y*sps_S_dot_y + axis_y_sps_axes3_in_base_z*sps_S_dot_z;
+        const real sps_S_dot_rest_tip_z = sps_S_dot_x*sps_axis_z_x + sps_S_dot_y*sps_axis_z_y +
+            sps_S_dot_z*sps_axis_z_z;
+        /* (sps-qd_2) rate of joint 2 */
+        const real sps_qd_1 = inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_2_t_2 -
+            sps_S_dot_rest_tip_y*sps_v_2_t);
+        const real sps_qd_2 = inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_1_t_3 +
+            sps_S_dot_rest_tip_y*sps_v_1_t_2);
+        /* (sps-omega_1) angular velocity of link 1 */
+        const real sps_omega_1_t = sps_qd_1*sps_s_2;
+        const real sps_omega_1_t_2 = sps_c_2*sps_qd_1;
+        /* (sps-omega_2) angular velocity of link 2 */
+        const real sps_omega_2_r1_x = sps_c_3_t*sps_omega_1_t_2 - sps_qd_2*sps_s_3;
+        const real sps_omega_2_r1_y = sps_c_3_t*sps_qd_2 + sps_omega_1_t_2*sps_s_3;
+        /* (sps-omega_3) angular velocity of link 3 */
+        const real sps_yd_3 = V[(place_sps_yd_3[i])*w + j];
+        const real sps_omega_3_z = sps_omega_1_t + sps_yd_3;
+        /* (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real sps_zeta_2_y = sps_omega_1_t*sps_qd_2;
+        /* (sps-beta_3) angular acceleration of link 3 at zero joint accelerations */
+        const real sps_beta_3_x = sps_omega_2_r1_y*sps_yd_3 - sps_c_3_t*sps_zeta_2_y;
+        const real sps_beta_3_y = -sps_omega_2_r1_x*sps_yd_3 - sps_s_3*sps_zeta_2_y;
+        /* (sps-bias) acceleration of the connection point at zero joint accelerations */
+        const real sps_bias_t = 2*sps_S_dot_rest_tip_z;
+        const real sps_bias_x = sps_bias_t*sps_omega_2_r1_y + sps_root_2*(sps_beta_3_y +
+            sps_omega_2_r1_x*sps_omega_3_z);
+        const real sps_bias_y = sps_root_2*(sps_omega_2_r1_y*sps_omega_3_z - sps_beta_3_x) -
+            sps_bias_t*sps_omega_2_r1_x;
+        /* (sps-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_y = s[22*w + j];
+        const real alpha_z = s[23*w + j];
+        const real t_ddot_x = s[18*w + j];
+        const real sps_a_p_x = t_ddot_x + alpha_y*sps_q_in_base_z - alpha_z*sps_q_in_base_y;
+        const real alpha_x = s[21*w + j];
+        const real t_ddot_y = s[19*w + j];
+        const real sps_a_p_y = t_ddot_y + alpha_z*sps_q_in_base_x - alpha_x*sps_q_in_base_z;
+        const real t_ddot_z = s[20*w + j];
+        const real sps_a_p_z = t_ddot_z + alpha_x*sps_q_in_base_y - alpha_y*sps_q_in_base_x;
+        /* (sps-S_ddot) acceleration of the connection point */
+        const real sps_S_ddot_x = sps_a_p_x + omega_y*sps_S_dot_t_3 - omega_z*sps_S_dot_t_2;
+        const real sps_S_ddot_y = sps_a_p_y + omega_z*sps_S_dot_t - omega_x*sps_S_dot_t_3;
+        const real sps_S_ddot_z = sps_a_p_z + omega_x*sps_S_dot_t_2 - omega_y*sps_S_dot_t;
+        /* (sps-rel) acceleration of the connection point left to the joint accelerations */
+        const real sps_rel_x = axis_x_sps_axes3_x*sps_S_ddot_x + axis_x_sps_axes3_y*sps_S_ddot_y +
+            axis_x_sps_axes3_z*sps_S_ddot_z - sps_bias_x;
+        const real sps_rel_y = axis_y_sps_axes3_in_base_x*sps_S_ddot_x +
+            axis_y_sps_axes3_in_base_y*sps_S_ddot_y + axis_y_sps_axes3_in_base_z*sps_S_ddot_z -
+            sps_bias_y;
+        const real sps_rel_z = sps_S_ddot_x*sps_axis_z_x + sps_S_ddot_y*sps_axis_z_y +
+            sps_S_ddot_z*sps_axis_z_z + sps_root_2*(sps_omega_2_r1_x*sps_omega_2_r1_x +
+            sps_omega_2_r1_y*sps_omega_2_r1_y);
+        /* (sps-qdd_1) acceleration of joint 1 */
+        const real sps_qdd_1 = inv_sps_w_2_t_3*(sps_rel_x*sps_v_2_t_2 - sps_rel_y*sps_v_2_t);
+        const real sps_qdd_2 = inv_sps_w_2_t_3*(sps_rel_x*sps_v_1_t_3 + sps_rel_y*sps_v_1_t_2);
+        o[0*count + k] = sps_qdd_1;
+        o[1*count + k] = -sps_qdd_2;
+        const real sps_ydd_3 = A[(place_sps_ydd_3[i])*w + j];
+        o[2*count + k] = sps_ydd_3;
+        o[3*count + k] = sps_rel_z;
+        o[5*count + k] = (sps_qdd_1 + sps_qdd_2) + (sps_ydd_3 + sps_rel_z);
+        o[4*count + k] = UNLESS(magnitude(sps_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(sps_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(-sps_w_2_t) > TOLERANCE*R(0.6400000000000001));
     }
 }
 
-INLINE void joint_accelerations_place_urps(size_t w, const joint_accelerations_results_urps *o,
-    size_t leg, size_t first, real *qdd, verdict *t)
+INLINE void joint_accelerations_place_sps(size_t w, size_t count, const real *o, size_t leg,
+    size_t first, real *qdd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qdd[(4*leg)*w + k] = o->entry[0][first + k];
-        qdd[(1 + 4*leg)*w + k] = o->entry[1][first + k];
-        qdd[(2 + 4*leg)*w + k] = o->entry[2][first + k];
-        qdd[(3 + 4*leg)*w + k] = o->entry[3][first + k];
-        t->singular[k] += o->singular[first + k];
+        qdd[(4*leg)*w + k] = o[0*count + first + k];
+        qdd[(1 + 4*leg)*w + k] = o[1*count + first + k];
+        qdd[(2 + 4*leg)*w + k] = o[2*count + first + k];
+        qdd[(3 + 4*leg)*w + k] = o[3*count + first + k];
+        t->singular[k] += o[4*count + first + k];
+        t->total[k] += o[5*count + first + k];
     }
 }
 
-INLINE void joint_accelerations_run(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd, verdict *t)
+INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd, verdict *t)
 {
-    joint_accelerations_values values, *const s = &values;
-    joint_accelerations_results_urps results_urps;
-    joint_accelerations_before(w, X, V, A, s, t);
-    if (w == 1) {  /* the legs side by side */
-        joint_accelerations_legs_urps(m, w, 0, 1, s, 0, 6, X, V, A, &results_urps);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            joint_accelerations_place_urps(w, &results_urps, leg, leg, qdd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 6; ++leg) {
-            joint_accelerations_legs_urps(m, w, leg, 0, s, 1, w, X, V, A, &results_urps);
-            joint_accelerations_place_urps(w, &results_urps, leg, 0, qdd, t);
-        }
+    real s[24] = {0}, o_sps[6*LEGS(6)] = {0};
+    joint_accelerations_before(1, X, V, A, s, t);
+    joint_accelerations_legs_sps(m, 1, 0, 1, s, 0, LEGS(6), X, V, A, o_sps);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        joint_accelerations_place_sps(1, LEGS(6), o_sps, leg, leg, qdd, t);
+    }
+}
+
+INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, verdict *t)
+{
+    real s[24*LANES], o_sps[6*LANES];
+    joint_accelerations_before(LANES, X, V, A, s, t);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        joint_accelerations_legs_sps(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_sps);
+        joint_accelerations_place_sps(LANES, LANES, o_sps, leg, 0, qdd, t);
     }
 }
 
 /* ---- legs: 1218 mul, 906 add, 18 div, 12 sqrt, 12 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
-        t_ddot_x[LANES], t_ddot_y[LANES], t_ddot_z[LANES], alpha_x[LANES], alpha_y[LANES],
-        alpha_z[LANES];
-} legs_values;
-typedef struct {
-    real entry[6][8], singular[8];
-} legs_results_urps;
-
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, legs_values *s,
-    verdict *t)
+INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real A_2 = A[2*w + k];
-        const real A_3 = A[3*w + k];
-        const real A_4 = A[4*w + k];
-        const real A_5 = A[5*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -4554,368 +4657,404 @@ INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, l
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
+        const real A_2 = A[2*w + k];
         const real t_ddot_z = A_2;
+        const real A_3 = A[3*w + k];
         const real alpha_x = A_3;
+        const real A_4 = A[4*w + k];
         const real alpha_y = A_4;
+        const real A_5 = A[5*w + k];
         const real alpha_z = A_5;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->t_ddot_z[k] = t_ddot_z;
-        s->alpha_x[k] = alpha_x;
-        s->alpha_y[k] = alpha_y;
-        s->alpha_z[k] = alpha_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
+        s[18*w + k] = t_ddot_x;
+        s[19*w + k] = t_ddot_y;
+        s[20*w + k] = t_ddot_z;
+        s[21*w + k] = alpha_x;
+        s[22*w + k] = alpha_y;
+        s[23*w + k] = alpha_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void legs_legs_urps(const prepared *m, size_t w, size_t leg, size_t legs, const legs_values
-    *s, size_t states, size_t count, const real *X, const real *V, const real *A,
-    legs_results_urps *o)
+INLINE void legs_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
 {
+    static const size_t place_sps_y_3_extra[] = {7, 8, 9, 10, 11, 12, 7, 7};
+    static const size_t place_sps_yd_3[] = {6, 7, 8, 9, 10, 11, 6, 6};
+    static const size_t place_sps_ydd_3[] = {6, 7, 8, 9, 10, 11, 6, 6};
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real t_ddot_z = s->t_ddot_z[j];
-        const real alpha_x = s->alpha_x[j];
-        const real alpha_y = s->alpha_y[j];
-        const real alpha_z = s->alpha_z[j];
+        /* (sps-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
+        const real sps_platform_point_x = m->sps_platform_point_x[i];
+        const real sps_platform_point_y = m->sps_platform_point_y[i];
+        const real sps_platform_point_z = m->sps_platform_point_z[i];
+        const real sps_q_in_base_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
+            R_xz*sps_platform_point_z;
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real sps_q_in_base_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
+            R_yz*sps_platform_point_z;
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real sps_q_in_base_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
+            R_zz*sps_platform_point_z;
+        const real sps_base_point_x = m->sps_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x;
+        const real sps_base_point_y = m->sps_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y;
+        const real sps_base_point_z = m->sps_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z;
+        /* (sps-px_1) component along the reference direction */
+        const real sps_base_frame_xx = m->sps_base_frame_xx[i];
+        const real sps_base_frame_yx = m->sps_base_frame_yx[i];
+        const real sps_base_frame_zx = m->sps_base_frame_zx[i];
+        const real sps_px_1 = sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx +
+            sps_S_z*sps_base_frame_zx;
+        /* (sps-py_1) component across the reference direction */
+        const real sps_base_frame_xy = m->sps_base_frame_xy[i];
+        const real sps_base_frame_yy = m->sps_base_frame_yy[i];
+        const real sps_base_frame_zy = m->sps_base_frame_zy[i];
+        const real sps_py_1 = sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy +
+            sps_S_z*sps_base_frame_zy;
+        /* (sps-rho2_1) squared amplitude */
+        const real sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1;
+        /* (sps-root_1) amplitude, with the sign of the branch */
+        const real sps_branch_1 = m->sps_branch_1[i];
+        const real sps_root_1 = sps_branch_1*root(sps_rho2_1);
+        /* (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real sps_base_frame_xz = m->sps_base_frame_xz[i];
+        const real sps_base_frame_yz = m->sps_base_frame_yz[i];
+        const real sps_base_frame_zz = m->sps_base_frame_zz[i];
+        const real sps_xi_1_t = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
+            sps_S_z*sps_base_frame_zz;
+        /* (sps-rho2_2) squared amplitude */
+        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t;
+        /* (sps-root_2) amplitude, with the sign of the branch */
+        const real sps_branch_2 = m->sps_branch_2[i];
+        const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
+        /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_sps_root_2 = 1/sps_root_2;
+        const real sps_c_2 = inv_sps_root_2*sps_root_1;
+        /* (sps-s_2) sine of the angle of joint 2 from its reference direction */
+        const real sps_s_2 = inv_sps_root_2*sps_xi_1_t;
+        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
+        const real sps_c_3_t = sine(sps_y_3_extra);
+        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
+        const real sps_s_3 = cosine(sps_y_3_extra);
+        /* (sps-v_1) velocity of the connection point per rate of joint 1 */
+        const real sps_v_1_t = sps_c_2*sps_c_3_t;
+        const real sps_v_1_t_2 = sps_c_2*sps_s_3;
+        const real sps_v_1_t_3 = sps_root_2*sps_v_1_t_2;
+        const real sps_v_1_t_4 = sps_root_2*sps_v_1_t;
+        /* (sps-v_2) velocity of the connection point per rate of joint 2 */
+        const real sps_v_2_t = sps_c_3_t*sps_root_2;
+        const real sps_v_2_t_2 = sps_root_2*sps_s_3;
+        /* (sps-w_1) reciprocal vector 1 */
+        const real sps_axis_z_x = inv_sps_root_2*sps_S_x;
+        const real sps_axis_z_y = inv_sps_root_2*sps_S_y;
+        const real sps_axis_z_z = inv_sps_root_2*sps_S_z;
+        const real sps_w_1_t = sps_s_2*sps_s_3;
+        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_sps_root_1 = 1/sps_root_1;
+        const real sps_c_1 = inv_sps_root_1*sps_py_1;
+        /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
+        const real sps_s_1 = inv_sps_root_1*sps_px_1;
+        /* (sps-w_1) reciprocal vector 1 */
+        const real axis_y_sps_axes3_r4_x = sps_c_1*sps_c_3_t - sps_s_1*sps_w_1_t;
+        const real axis_y_sps_axes3_r4_y = -sps_c_1*sps_w_1_t - sps_c_3_t*sps_s_1;
+        const real axis_y_sps_axes3_in_base_x = axis_y_sps_axes3_r4_x*sps_base_frame_xx +
+            axis_y_sps_axes3_r4_y*sps_base_frame_xy + sps_base_frame_xz*sps_v_1_t_2;
+        const real axis_y_sps_axes3_in_base_y = axis_y_sps_axes3_r4_x*sps_base_frame_yx +
+            axis_y_sps_axes3_r4_y*sps_base_frame_yy + sps_base_frame_yz*sps_v_1_t_2;
+        const real axis_y_sps_axes3_in_base_z = axis_y_sps_axes3_r4_x*sps_base_frame_zx +
+            axis_y_sps_axes3_r4_y*sps_base_frame_zy + sps_base_frame_zz*sps_v_1_t_2;
+        const real axis_x_sps_axes3_x = axis_y_sps_axes3_in_base_y*sps_axis_z_z -
+            axis_y_sps_axes3_in_base_z*sps_axis_z_y;
+        const real axis_x_sps_axes3_y = axis_y_sps_axes3_in_base_z*sps_axis_z_x -
+            axis_y_sps_axes3_in_base_x*sps_axis_z_z;
+        const real axis_x_sps_axes3_z = axis_y_sps_axes3_in_base_x*sps_axis_z_y -
+            axis_y_sps_axes3_in_base_y*sps_axis_z_x;
+        /* (sps-w_2) reciprocal vector 2 */
+        const real sps_w_2_t = sps_v_1_t_3*sps_v_2_t_2 + sps_v_1_t_4*sps_v_2_t;
+        const real inv_sps_w_2_t_3 = 1/sps_w_2_t;
+        /* (sps-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real sps_S_dot_t = omega_y*sps_q_in_base_z - omega_z*sps_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real sps_S_dot_t_2 = omega_z*sps_q_in_base_x - omega_x*sps_q_in_base_z;
+        const real sps_S_dot_t_3 = omega_x*sps_q_in_base_y - omega_y*sps_q_in_base_x;
+        const real t_dot_x = s[12*w + j];
+        const real sps_S_dot_x = sps_S_dot_t + t_dot_x;
+        const real t_dot_y = s[13*w + j];
+        const real sps_S_dot_y = sps_S_dot_t_2 + t_dot_y;
+        const real t_dot_z = s[14*w + j];
+        const real sps_S_dot_z = sps_S_dot_t_3 + t_dot_z;
+        /* (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra */
+        const real sps_S_dot_rest_tip_x = axis_x_sps_axes3_x*sps_S_dot_x +
+            axis_x_sps_axes3_y*sps_S_dot_y + axis_x_sps_axes3_z*sps_S_dot_z;
+        const real sps_S_dot_rest_tip_y = axis_y_sps_axes3_in_base_x*sps_S_dot_x +
+            axis_y_sps_axes3_in_base_y*sps_S_dot_y + axis_y_sps_axes3_in_base_z*sps_S_dot_z;
+        const real sps_S_dot_rest_tip_z = sps_S_dot_x*sps_axis_z_x + sps_S_dot_y*sps_axis_z_y +
+            sps_S_dot_z*sps_axis_z_z;
+        /* (sps-qd_2) rate of joint 2 */
+        const real sps_qd_1 = inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_2_t_2 -
+            sps_S_dot_rest_tip_y*sps_v_2_t);
+        const real sps_qd_2 = inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_1_t_4 +
+            sps_S_dot_rest_tip_y*sps_v_1_t_3);
+        /* (sps-omega_1) angular velocity of link 1 */
+        const real sps_omega_1_t = sps_qd_1*sps_s_2;
+        const real sps_omega_1_t_2 = sps_c_2*sps_qd_1;
+        /* (sps-omega_2) angular velocity of link 2 */
+        const real sps_omega_2_r1_x = sps_c_3_t*sps_omega_1_t_2 - sps_qd_2*sps_s_3;
+        const real sps_omega_2_r1_y = sps_c_3_t*sps_qd_2 + sps_omega_1_t_2*sps_s_3;
+        /* (sps-omega_3) angular velocity of link 3 */
+        const real sps_yd_3 = V[(place_sps_yd_3[i])*w + j];
+        const real sps_omega_3_z = sps_omega_1_t + sps_yd_3;
+        /* (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+        const real sps_zeta_3_x = sps_omega_2_r1_y*sps_yd_3;
+        const real sps_zeta_3_y = sps_omega_2_r1_x*sps_yd_3;
+        /* (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real sps_zeta_2_y = sps_omega_1_t*sps_qd_2;
+        /* (sps-beta_3) angular acceleration of link 3 at zero joint accelerations */
+        const real sps_beta_3_x = sps_zeta_3_x - sps_c_3_t*sps_zeta_2_y;
+        const real sps_beta_3_y = -sps_zeta_3_y - sps_s_3*sps_zeta_2_y;
+        /* (sps-W_3) centripetal tensor of link 3 */
+        const real sps_W_3_t = sps_omega_2_r1_x*sps_omega_2_r1_x;
+        const real sps_W_3_t_2 = sps_omega_2_r1_y*sps_omega_2_r1_y;
+        const real sps_W_3_t_3 = sps_omega_3_z*sps_omega_3_z;
+        const real sps_W_3_xy = sps_omega_2_r1_x*sps_omega_2_r1_y;
+        const real sps_W_3_xz = sps_omega_2_r1_x*sps_omega_3_z;
+        const real sps_W_3_yz = sps_omega_2_r1_y*sps_omega_3_z;
+        /* (sps-bias) acceleration of the connection point at zero joint accelerations */
+        const real sps_bias_t = 2*sps_S_dot_rest_tip_z;
+        const real sps_bias_x = sps_bias_t*sps_omega_2_r1_y + sps_root_2*(sps_W_3_xz +
+            sps_beta_3_y);
+        const real sps_bias_y = sps_root_2*(sps_W_3_yz - sps_beta_3_x) -
+            sps_bias_t*sps_omega_2_r1_x;
+        /* (sps-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+           link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real J_group_3_xy = m->J_group_3_xy[i];
-        const real J_group_3_xz = m->J_group_3_xz[i];
-        const real J_group_3_yz = m->J_group_3_yz[i];
-        const real Sigma_3_xx = m->Sigma_3_xx[i];
-        const real Sigma_3_yy = m->Sigma_3_yy[i];
-        const real Sigma_3_zz = m->Sigma_3_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real h_4_x = m->h_4_x[i];
-        const real h_4_y = m->h_4_y[i];
-        const real h_4_z = m->h_4_z[i];
-        const real urps_base_frame_xx = m->urps_base_frame_xx[i];
-        const real urps_base_frame_xy = m->urps_base_frame_xy[i];
-        const real urps_base_frame_xz = m->urps_base_frame_xz[i];
-        const real urps_base_frame_yx = m->urps_base_frame_yx[i];
-        const real urps_base_frame_yy = m->urps_base_frame_yy[i];
-        const real urps_base_frame_yz = m->urps_base_frame_yz[i];
-        const real urps_base_frame_zx = m->urps_base_frame_zx[i];
-        const real urps_base_frame_zy = m->urps_base_frame_zy[i];
-        const real urps_base_frame_zz = m->urps_base_frame_zz[i];
-        const real urps_base_point_x = m->urps_base_point_x[i];
-        const real urps_base_point_y = m->urps_base_point_y[i];
-        const real urps_base_point_z = m->urps_base_point_z[i];
-        const real urps_link4_mass = m->urps_link4_mass[i];
-        const real urps_platform_point_x = m->urps_platform_point_x[i];
-        const real urps_platform_point_y = m->urps_platform_point_y[i];
-        const real urps_platform_point_z = m->urps_platform_point_z[i];
-        const real y_3_extra = X[(7 + i)*w + j];
-        const real yd_3 = V[(6 + i)*w + j];
-        const real ydd_3 = A[(6 + i)*w + j];
-        /* (urps-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*urps_platform_point_x + R_xy*urps_platform_point_y +
-            R_xz*urps_platform_point_z;
-        const real q_in_base_y = R_yx*urps_platform_point_x + R_yy*urps_platform_point_y +
-            R_yz*urps_platform_point_z;
-        const real q_in_base_z = R_zx*urps_platform_point_x + R_zy*urps_platform_point_y +
-            R_zz*urps_platform_point_z;
-        const real S_x = q_in_base_x + t_x - urps_base_point_x;
-        const real S_y = q_in_base_y + t_y - urps_base_point_y;
-        const real S_z = q_in_base_z + t_z - urps_base_point_z;
-        /* (urps-K4) component along the reference direction */
-        const real px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx +
-            S_z*urps_base_frame_zx;
-        /* (urps-K5) component across the reference direction */
-        const real py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy +
-            S_z*urps_base_frame_zy;
-        /* (urps-K6) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (urps-K7) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (urps-K11) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz +
-            S_z*urps_base_frame_zz;
-        /* (urps-K15) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (urps-K16) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (urps-K17) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (urps-K18) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (urps-K2) cosine of the angle of joint 3 from its reference direction */
-        const real c_3_t = sine(y_3_extra);
-        /* (urps-K3) sine of the angle of joint 3 from its reference direction */
-        const real s_3 = cosine(y_3_extra);
-        /* (urps-V3) velocity of the connection point per rate of joint 1 */
-        const real v_1_t = c_2*c_3_t;
-        const real v_1_t_2 = c_2*s_3;
-        const real v_1_t_3 = root_2*v_1_t_2;
-        const real v_1_t_4 = root_2*v_1_t;
-        /* (urps-V4) velocity of the connection point per rate of joint 2 */
-        const real v_2_t = c_3_t*root_2;
-        const real v_2_t_2 = root_2*s_3;
-        /* (urps-V6) reciprocal vector 1 */
-        const real axis_z_x = S_x*inv_root_2;
-        const real axis_z_y = S_y*inv_root_2;
-        const real axis_z_z = S_z*inv_root_2;
-        const real w_1_t = s_2*s_3;
-        /* (urps-K8) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (urps-K9) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (urps-V6) reciprocal vector 1 */
-        const real axis_y_urps_axes3_r4_x = c_1*c_3_t - s_1*w_1_t;
-        const real axis_y_urps_axes3_r4_y = -c_1*w_1_t - c_3_t*s_1;
-        const real axis_y_urps_axes3_in_base_x = axis_y_urps_axes3_r4_x*urps_base_frame_xx +
-            axis_y_urps_axes3_r4_y*urps_base_frame_xy + urps_base_frame_xz*v_1_t_2;
-        const real axis_y_urps_axes3_in_base_y = axis_y_urps_axes3_r4_x*urps_base_frame_yx +
-            axis_y_urps_axes3_r4_y*urps_base_frame_yy + urps_base_frame_yz*v_1_t_2;
-        const real axis_y_urps_axes3_in_base_z = axis_y_urps_axes3_r4_x*urps_base_frame_zx +
-            axis_y_urps_axes3_r4_y*urps_base_frame_zy + urps_base_frame_zz*v_1_t_2;
-        const real axis_x_urps_axes3_x = axis_y_urps_axes3_in_base_y*axis_z_z -
-            axis_y_urps_axes3_in_base_z*axis_z_y;
-        const real axis_x_urps_axes3_y = axis_y_urps_axes3_in_base_z*axis_z_x -
-            axis_y_urps_axes3_in_base_x*axis_z_z;
-        const real axis_x_urps_axes3_z = axis_y_urps_axes3_in_base_x*axis_z_y -
-            axis_y_urps_axes3_in_base_y*axis_z_x;
-        const real w_1_t_2 = v_1_t_3*v_2_t_2 + v_1_t_4*v_2_t;
-        const real inv_w_1_t_23 = 1/w_1_t_2;
-        /* (urps-N2) remainder without the acceleration in: acceleration of the reference point of link 3,
-           less gravity */
-        const real g_tip_x = axis_x_urps_axes3_x*gravity_x + axis_x_urps_axes3_y*gravity_y +
-            axis_x_urps_axes3_z*gravity_z;
-        const real g_tip_y = axis_y_urps_axes3_in_base_x*gravity_x +
-            axis_y_urps_axes3_in_base_y*gravity_y + axis_y_urps_axes3_in_base_z*gravity_z;
-        const real g_tip_z = axis_z_x*gravity_x + axis_z_y*gravity_y + axis_z_z*gravity_z;
-        /* (urps-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        /* (urps-V9) velocity of the connection point left to the joints that are not extra */
-        const real S_dot_rest_tip_x = S_dot_x*axis_x_urps_axes3_x + S_dot_y*axis_x_urps_axes3_y +
-            S_dot_z*axis_x_urps_axes3_z;
-        const real S_dot_rest_tip_y = S_dot_x*axis_y_urps_axes3_in_base_x +
-            S_dot_y*axis_y_urps_axes3_in_base_y + S_dot_z*axis_y_urps_axes3_in_base_z;
-        const real S_dot_rest_tip_z = S_dot_x*axis_z_x + S_dot_y*axis_z_y + S_dot_z*axis_z_z;
-        /* (urps-V10) rate of joint 1 */
-        const real qd_1 = inv_w_1_t_23*(S_dot_rest_tip_x*v_2_t_2 - S_dot_rest_tip_y*v_2_t);
-        const real qd_2 = inv_w_1_t_23*(S_dot_rest_tip_x*v_1_t_4 + S_dot_rest_tip_y*v_1_t_3);
-        /* (urps-V13) angular velocity of link 1 */
-        const real omega_1_t = qd_1*s_2;
-        const real omega_1_t_2 = c_2*qd_1;
-        /* (urps-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_y = omega_1_t*qd_2;
-        /* (urps-V14) angular velocity of link 2 */
-        const real omega_2_r1_x = c_3_t*omega_1_t_2 - qd_2*s_3;
-        const real omega_2_r1_y = c_3_t*qd_2 + omega_1_t_2*s_3;
-        /* (urps-A5) angular acceleration of link 3 from the turning of axis 3 */
-        const real zeta_3_x = omega_2_r1_y*yd_3;
-        const real zeta_3_y = omega_2_r1_x*yd_3;
-        /* (urps-A6) angular acceleration of link 3 at zero joint accelerations */
-        const real beta_3_x = zeta_3_x - c_3_t*zeta_2_y;
-        const real beta_3_y = -zeta_3_y - s_3*zeta_2_y;
-        /* (urps-V15) angular velocity of link 3 */
-        const real omega_3_z = omega_1_t + yd_3;
-        /* (urps-V16) centripetal tensor of link 3 */
-        const real W_3_t = omega_2_r1_x*omega_2_r1_x;
-        const real W_3_t_2 = omega_2_r1_y*omega_2_r1_y;
-        const real W_3_t_3 = omega_3_z*omega_3_z;
-        const real W_3_xy = omega_2_r1_x*omega_2_r1_y;
-        const real W_3_xz = omega_2_r1_x*omega_3_z;
-        const real W_3_yz = omega_2_r1_y*omega_3_z;
-        /* (urps-A7) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_rest_tip_z;
-        const real bias_x = bias_t*omega_2_r1_y + root_2*(W_3_xz + beta_3_y);
-        const real bias_y = root_2*(W_3_yz - beta_3_x) - bias_t*omega_2_r1_x;
-        /* (urps-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
-        const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
-        const real a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x;
-        /* (urps-A3) acceleration of the connection point */
-        const real S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z;
-        const real S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x;
-        const real S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y;
-        const real S_ddot_tip_x = S_ddot_x*axis_x_urps_axes3_x + S_ddot_y*axis_x_urps_axes3_y +
-            S_ddot_z*axis_x_urps_axes3_z;
-        const real S_ddot_tip_y = S_ddot_x*axis_y_urps_axes3_in_base_x +
-            S_ddot_y*axis_y_urps_axes3_in_base_y + S_ddot_z*axis_y_urps_axes3_in_base_z;
-        /* (urps-A8) acceleration of the connection point left to the joint accelerations */
-        const real rel_x = S_ddot_tip_x - bias_x;
-        const real rel_y = S_ddot_tip_y - bias_y;
-        /* (urps-A11) acceleration of joint 1 */
-        const real qdd_1 = inv_w_1_t_23*(rel_x*v_2_t_2 - rel_y*v_2_t);
-        const real qdd_2 = inv_w_1_t_23*(rel_x*v_1_t_4 + rel_y*v_1_t_3);
-        /* (urps-N3) acceleration of the reference point of link 4, less gravity */
-        const real acc_4_x = S_ddot_tip_x - g_tip_x;
-        const real acc_4_y = S_ddot_tip_y - g_tip_y;
-        const real acc_4_z = S_ddot_x*axis_z_x + S_ddot_y*axis_z_y + S_ddot_z*axis_z_z - g_tip_z;
-        /* (urps-A22) angular acceleration of link 2 */
-        const real alpha_2_x = omega_1_t_2*qd_2 + qdd_1*s_2;
-        const real alpha_2_y = zeta_2_y - c_2*qdd_1;
-        /* (urps-A26) angular acceleration of link 3 */
-        const real alpha_3_x = zeta_3_x - alpha_2_y*c_3_t - qdd_2*s_3;
-        const real alpha_3_y = c_3_t*qdd_2 - zeta_3_y - alpha_2_y*s_3;
-        const real alpha_3_z = alpha_2_x + ydd_3;
-        /* (urps-A29) acceleration tensor of link 3 */
-        const real B_3_xy = W_3_xy - alpha_3_z;
-        const real B_3_xz = W_3_xz + alpha_3_y;
-        const real B_3_yx = W_3_xy + alpha_3_z;
-        const real B_3_yz = W_3_yz - alpha_3_x;
-        const real B_3_zx = W_3_xz - alpha_3_y;
-        const real B_3_zy = W_3_yz + alpha_3_x;
-        /* (urps-N12) inertia moment of the links that turn with link 3, about their reference points */
-        const real mu_3_x = B_3_yx*J_group_3_xz + B_3_zy*Sigma_3_yy + J_group_3_yz*(W_3_t_2 -
-            W_3_t_3) + acc_4_z*h_4_z + g_tip_y*h_3_x - B_3_yz*Sigma_3_zz - B_3_zx*J_group_3_xy -
-            acc_4_y*h_4_x - g_tip_z*h_3_z;
-        const real mu_3_y = B_3_xz*Sigma_3_zz + B_3_zy*J_group_3_xy + acc_4_x*h_4_x +
-            g_tip_z*h_3_y - B_3_xy*J_group_3_yz - B_3_zx*Sigma_3_xx - J_group_3_xz*(W_3_t -
-            W_3_t_3) - acc_4_z*h_4_y - g_tip_x*h_3_x;
-        const real mu_3_z = B_3_xz*J_group_3_yz + B_3_yx*Sigma_3_xx + J_group_3_xy*(W_3_t -
-            W_3_t_2) + acc_4_y*h_4_y + g_tip_x*h_3_z - B_3_xy*Sigma_3_yy - B_3_yz*J_group_3_xz -
-            acc_4_x*h_4_z - g_tip_y*h_3_y;
-        /* (urps-N24) moment about axis 1 of the distal links' inertia and weight */
-        const real Gamma_1 = mu_3_x*v_1_t + mu_3_y*v_1_t_2 + mu_3_z*s_2;
-        /* (urps-N12) inertia moment of the links that turn with link 3, about their reference points */
-        const real mu_3_r0_y = mu_3_x*s_3 - c_3_t*mu_3_y;
-        /* (urps-N32) leg force on the platform without actuation and without the mass at the connection
+        const real sps_g_tip_x = axis_x_sps_axes3_x*gravity_x + axis_x_sps_axes3_y*gravity_y +
+            axis_x_sps_axes3_z*gravity_z;
+        const real sps_g_tip_y = axis_y_sps_axes3_in_base_x*gravity_x +
+            axis_y_sps_axes3_in_base_y*gravity_y + axis_y_sps_axes3_in_base_z*gravity_z;
+        const real sps_g_tip_z = gravity_x*sps_axis_z_x + gravity_y*sps_axis_z_y +
+            gravity_z*sps_axis_z_z;
+        /* (sps-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_y = s[22*w + j];
+        const real alpha_z = s[23*w + j];
+        const real t_ddot_x = s[18*w + j];
+        const real sps_a_p_x = t_ddot_x + alpha_y*sps_q_in_base_z - alpha_z*sps_q_in_base_y;
+        const real alpha_x = s[21*w + j];
+        const real t_ddot_y = s[19*w + j];
+        const real sps_a_p_y = t_ddot_y + alpha_z*sps_q_in_base_x - alpha_x*sps_q_in_base_z;
+        const real t_ddot_z = s[20*w + j];
+        const real sps_a_p_z = t_ddot_z + alpha_x*sps_q_in_base_y - alpha_y*sps_q_in_base_x;
+        /* (sps-S_ddot) acceleration of the connection point */
+        const real sps_S_ddot_x = sps_a_p_x + omega_y*sps_S_dot_t_3 - omega_z*sps_S_dot_t_2;
+        const real sps_S_ddot_y = sps_a_p_y + omega_z*sps_S_dot_t - omega_x*sps_S_dot_t_3;
+        const real sps_S_ddot_z = sps_a_p_z + omega_x*sps_S_dot_t_2 - omega_y*sps_S_dot_t;
+        const real sps_S_ddot_tip_x = axis_x_sps_axes3_x*sps_S_ddot_x +
+            axis_x_sps_axes3_y*sps_S_ddot_y + axis_x_sps_axes3_z*sps_S_ddot_z;
+        const real sps_S_ddot_tip_y = axis_y_sps_axes3_in_base_x*sps_S_ddot_x +
+            axis_y_sps_axes3_in_base_y*sps_S_ddot_y + axis_y_sps_axes3_in_base_z*sps_S_ddot_z;
+        /* (sps-rel) acceleration of the connection point left to the joint accelerations */
+        const real sps_rel_x = sps_S_ddot_tip_x - sps_bias_x;
+        const real sps_rel_y = sps_S_ddot_tip_y - sps_bias_y;
+        /* (sps-qdd_1) acceleration of joint 1 */
+        const real sps_qdd_1 = inv_sps_w_2_t_3*(sps_rel_x*sps_v_2_t_2 - sps_rel_y*sps_v_2_t);
+        const real sps_qdd_2 = inv_sps_w_2_t_3*(sps_rel_x*sps_v_1_t_4 + sps_rel_y*sps_v_1_t_3);
+        /* (sps-acc_4) acceleration of the reference point of link 4, less gravity */
+        const real sps_acc_4_x = sps_S_ddot_tip_x - sps_g_tip_x;
+        const real sps_acc_4_y = sps_S_ddot_tip_y - sps_g_tip_y;
+        const real sps_acc_4_z = sps_S_ddot_x*sps_axis_z_x + sps_S_ddot_y*sps_axis_z_y +
+            sps_S_ddot_z*sps_axis_z_z - sps_g_tip_z;
+        /* (sps-alpha_2) angular acceleration of link 2 */
+        const real sps_alpha_2_x = sps_omega_1_t_2*sps_qd_2 + sps_qdd_1*sps_s_2;
+        const real sps_alpha_2_y = sps_zeta_2_y - sps_c_2*sps_qdd_1;
+        /* (sps-alpha_3) angular acceleration of link 3 */
+        const real sps_alpha_3_x = sps_zeta_3_x - sps_alpha_2_y*sps_c_3_t - sps_qdd_2*sps_s_3;
+        const real sps_alpha_3_y = sps_c_3_t*sps_qdd_2 - sps_zeta_3_y - sps_alpha_2_y*sps_s_3;
+        const real sps_ydd_3 = A[(place_sps_ydd_3[i])*w + j];
+        const real sps_alpha_3_z = sps_alpha_2_x + sps_ydd_3;
+        /* (sps-B_3) acceleration tensor of link 3 */
+        const real sps_B_3_xy = sps_W_3_xy - sps_alpha_3_z;
+        const real sps_B_3_xz = sps_W_3_xz + sps_alpha_3_y;
+        const real sps_B_3_yx = sps_W_3_xy + sps_alpha_3_z;
+        const real sps_B_3_yz = sps_W_3_yz - sps_alpha_3_x;
+        const real sps_B_3_zx = sps_W_3_xz - sps_alpha_3_y;
+        const real sps_B_3_zy = sps_W_3_yz + sps_alpha_3_x;
+        /* (sps-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+        const real sps_J_group_3_xy = m->sps_J_group_3_xy[i];
+        const real sps_J_group_3_xz = m->sps_J_group_3_xz[i];
+        const real sps_J_group_3_yz = m->sps_J_group_3_yz[i];
+        const real sps_Sigma_3_yy = m->sps_Sigma_3_yy[i];
+        const real sps_Sigma_3_zz = m->sps_Sigma_3_zz[i];
+        const real sps_h_3_x = m->sps_h_3_x[i];
+        const real sps_h_3_z = m->sps_h_3_z[i];
+        const real sps_h_4_x = m->sps_h_4_x[i];
+        const real sps_h_4_z = m->sps_h_4_z[i];
+        const real sps_mu_3_x = sps_B_3_yx*sps_J_group_3_xz + sps_B_3_zy*sps_Sigma_3_yy +
+            sps_J_group_3_yz*(sps_W_3_t_2 - sps_W_3_t_3) + sps_acc_4_z*sps_h_4_z +
+            sps_g_tip_y*sps_h_3_x - sps_B_3_yz*sps_Sigma_3_zz - sps_B_3_zx*sps_J_group_3_xy -
+            sps_acc_4_y*sps_h_4_x - sps_g_tip_z*sps_h_3_z;
+        const real sps_Sigma_3_xx = m->sps_Sigma_3_xx[i];
+        const real sps_h_3_y = m->sps_h_3_y[i];
+        const real sps_h_4_y = m->sps_h_4_y[i];
+        const real sps_mu_3_y = sps_B_3_xz*sps_Sigma_3_zz + sps_B_3_zy*sps_J_group_3_xy +
+            sps_acc_4_x*sps_h_4_x + sps_g_tip_z*sps_h_3_y - sps_B_3_xy*sps_J_group_3_yz -
+            sps_B_3_zx*sps_Sigma_3_xx - sps_J_group_3_xz*(sps_W_3_t - sps_W_3_t_3) -
+            sps_acc_4_z*sps_h_4_y - sps_g_tip_x*sps_h_3_x;
+        const real sps_mu_3_z = sps_B_3_xz*sps_J_group_3_yz + sps_B_3_yx*sps_Sigma_3_xx +
+            sps_J_group_3_xy*(sps_W_3_t - sps_W_3_t_2) + sps_acc_4_y*sps_h_4_y +
+            sps_g_tip_x*sps_h_3_z - sps_B_3_xy*sps_Sigma_3_yy - sps_B_3_yz*sps_J_group_3_xz -
+            sps_acc_4_x*sps_h_4_z - sps_g_tip_y*sps_h_3_y;
+        const real sps_mu_3_r0_y = sps_mu_3_x*sps_s_3 - sps_c_3_t*sps_mu_3_y;
+        /* (sps-Gamma_1) moment about axis 1 of the distal links' inertia and weight */
+        const real sps_Gamma_1 = sps_mu_3_x*sps_v_1_t + sps_mu_3_y*sps_v_1_t_2 +
+            sps_mu_3_z*sps_s_2;
+        /* (sps-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_x = h_4_y*(W_3_t_2 + W_3_t_3) - B_3_xy*h_4_z - B_3_xz*h_4_x -
-            inv_w_1_t_23*(Gamma_1*v_2_t_2 - mu_3_r0_y*v_1_t_4);
-        const real c_y = h_4_z*(W_3_t + W_3_t_3) + inv_w_1_t_23*(Gamma_1*v_2_t +
-            mu_3_r0_y*v_1_t_3) - B_3_yx*h_4_y - B_3_yz*h_4_x;
-        /* (urps-N37) leg force on the platform without actuation, the last link's mass included */
-        const real c_true_x = c_x - acc_4_x*urps_link4_mass;
-        const real c_true_y = c_y - acc_4_y*urps_link4_mass;
-        const real c_true_z = h_4_x*(W_3_t + W_3_t_2) - B_3_zx*h_4_y - B_3_zy*h_4_z -
-            acc_4_z*urps_link4_mass;
-        const real c_true_in_base_x = axis_x_urps_axes3_x*c_true_x +
-            axis_y_urps_axes3_in_base_x*c_true_y + axis_z_x*c_true_z;
-        const real c_true_in_base_y = axis_x_urps_axes3_y*c_true_x +
-            axis_y_urps_axes3_in_base_y*c_true_y + axis_z_y*c_true_z;
-        const real c_true_in_base_z = axis_x_urps_axes3_z*c_true_x +
-            axis_y_urps_axes3_in_base_z*c_true_y + axis_z_z*c_true_z;
-        o->entry[0][k] = c_true_in_base_x;
-        o->entry[1][k] = c_true_in_base_y;
-        o->entry[2][k] = c_true_in_base_z;
-        o->entry[3][k] = axis_z_x;
-        o->entry[4][k] = axis_z_y;
-        o->entry[5][k] = axis_z_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(-w_1_t_2) > TOLERANCE*R(0.6400000000000001));
+        const real sps_c_x = sps_h_4_y*(sps_W_3_t_2 + sps_W_3_t_3) -
+            inv_sps_w_2_t_3*(sps_Gamma_1*sps_v_2_t_2 - sps_mu_3_r0_y*sps_v_1_t_4) -
+            sps_B_3_xy*sps_h_4_z - sps_B_3_xz*sps_h_4_x;
+        const real sps_c_y = inv_sps_w_2_t_3*(sps_Gamma_1*sps_v_2_t + sps_mu_3_r0_y*sps_v_1_t_3) +
+            sps_h_4_z*(sps_W_3_t + sps_W_3_t_3) - sps_B_3_yx*sps_h_4_y - sps_B_3_yz*sps_h_4_x;
+        /* (sps-c_true) leg force on the platform without actuation, the last link's mass included */
+        const real sps_link4_mass = m->sps_link4_mass[i];
+        const real sps_c_true_x = sps_c_x - sps_acc_4_x*sps_link4_mass;
+        const real sps_c_true_y = sps_c_y - sps_acc_4_y*sps_link4_mass;
+        const real sps_c_true_z = sps_h_4_x*(sps_W_3_t + sps_W_3_t_2) - sps_B_3_zx*sps_h_4_y -
+            sps_B_3_zy*sps_h_4_z - sps_acc_4_z*sps_link4_mass;
+        const real sps_c_true_in_base_x = axis_x_sps_axes3_x*sps_c_true_x +
+            axis_y_sps_axes3_in_base_x*sps_c_true_y + sps_axis_z_x*sps_c_true_z;
+        const real sps_c_true_in_base_y = axis_x_sps_axes3_y*sps_c_true_x +
+            axis_y_sps_axes3_in_base_y*sps_c_true_y + sps_axis_z_y*sps_c_true_z;
+        const real sps_c_true_in_base_z = axis_x_sps_axes3_z*sps_c_true_x +
+            axis_y_sps_axes3_in_base_z*sps_c_true_y + sps_axis_z_z*sps_c_true_z;
+        o[0*count + k] = sps_c_true_in_base_x;
+        o[1*count + k] = sps_c_true_in_base_y;
+        o[2*count + k] = sps_c_true_in_base_z;
+        o[3*count + k] = sps_axis_z_x;
+        o[4*count + k] = sps_axis_z_y;
+        o[5*count + k] = sps_axis_z_z;
+        o[6*count + k] = UNLESS(magnitude(sps_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(sps_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(-sps_w_2_t) > TOLERANCE*R(0.6400000000000001));
     }
 }
 
-INLINE void legs_place_urps(size_t w, const legs_results_urps *o, size_t leg, size_t first, real
+INLINE void legs_place_sps(size_t w, size_t count, const real *o, size_t leg, size_t first, real
     *leg_force, real *drive, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        leg_force[(3*leg)*w + k] = o->entry[0][first + k];
-        leg_force[(1 + 3*leg)*w + k] = o->entry[1][first + k];
-        leg_force[(2 + 3*leg)*w + k] = o->entry[2][first + k];
-        drive[(3*leg)*w + k] = o->entry[3][first + k];
-        drive[(1 + 3*leg)*w + k] = o->entry[4][first + k];
-        drive[(2 + 3*leg)*w + k] = o->entry[5][first + k];
-        t->singular[k] += o->singular[first + k];
+        leg_force[(3*leg)*w + k] = o[0*count + first + k];
+        leg_force[(1 + 3*leg)*w + k] = o[1*count + first + k];
+        leg_force[(2 + 3*leg)*w + k] = o[2*count + first + k];
+        drive[(3*leg)*w + k] = o[3*count + first + k];
+        drive[(1 + 3*leg)*w + k] = o[4*count + first + k];
+        drive[(2 + 3*leg)*w + k] = o[5*count + first + k];
+        t->singular[k] += o[6*count + first + k];
     }
 }
 
-INLINE void legs_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
-    real *leg_force, real *drive, verdict *t)
+INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
+    *leg_force, real *drive, verdict *t)
 {
-    legs_values values, *const s = &values;
-    legs_results_urps results_urps;
-    legs_before(w, X, V, A, s, t);
-    if (w == 1) {  /* the legs side by side */
-        legs_legs_urps(m, w, 0, 1, s, 0, 6, X, V, A, &results_urps);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            legs_place_urps(w, &results_urps, leg, leg, leg_force, drive, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 6; ++leg) {
-            legs_legs_urps(m, w, leg, 0, s, 1, w, X, V, A, &results_urps);
-            legs_place_urps(w, &results_urps, leg, 0, leg_force, drive, t);
-        }
+    real s[24] = {0}, o_sps[7*LEGS(6)] = {0};
+    legs_before(1, X, V, A, s, t);
+    legs_legs_sps(m, 1, 0, 1, s, 0, LEGS(6), X, V, A, o_sps);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        legs_place_sps(1, LEGS(6), o_sps, leg, leg, leg_force, drive, t);
     }
 }
 
 /* ---- potential: 357 mul, 258 add, 12 div, 12 sqrt, 12 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], potential_t[LANES],
-        sum[1][LANES];
-} potential_values;
-typedef struct {
-    real sum[1][8], singular[8];
-} potential_results_urps;
-
-INLINE void potential_before(const prepared *m, size_t w, const real *X, potential_values *s,
-    verdict *t)
+INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
+        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+        const real quaternion_scale = 2/quaternion_norm2;
+        const real quaternion_sx = X_3*quaternion_scale;
+        const real quaternion_sy = X_4*quaternion_scale;
+        const real quaternion_sz = X_5*quaternion_scale;
+        const real quaternion_wx = X_6*quaternion_sx;
+        const real quaternion_wy = X_6*quaternion_sy;
+        const real quaternion_wz = X_6*quaternion_sz;
+        const real quaternion_xx = X_3*quaternion_sx;
+        const real quaternion_xy = X_3*quaternion_sy;
+        const real quaternion_xz = X_3*quaternion_sz;
+        const real quaternion_yy = X_4*quaternion_sy;
+        const real quaternion_yz = X_4*quaternion_sz;
+        const real quaternion_zz = X_5*quaternion_sz;
+        const real R_xx = 1 - quaternion_yy - quaternion_zz;
+        const real R_xy = quaternion_xy - quaternion_wz;
+        const real R_xz = quaternion_wy + quaternion_xz;
+        const real R_yx = quaternion_wz + quaternion_xy;
+        const real R_yy = 1 - quaternion_xx - quaternion_zz;
+        const real R_yz = quaternion_yz - quaternion_wx;
+        const real R_zx = quaternion_xz - quaternion_wy;
+        const real R_zy = quaternion_wx + quaternion_yz;
+        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
@@ -4923,234 +5062,181 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, potenti
         const real h_star_y = m->h_star_y;
         const real h_star_z = m->h_star_z;
         const real m_star = m->m_star;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* (V1) potential energy */
         const real potential_t = gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z +
             m_star*t_x) + gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
             gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->potential_t[k] = potential_t;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = potential_t;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void potential_legs_urps(const prepared *m, size_t w, size_t leg, size_t legs, const
-    potential_values *s, size_t states, size_t count, int add, const real *X,
-    potential_results_urps *o)
+INLINE void potential_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
+    static const size_t place_sps_y_3_extra[] = {7, 8, 9, 10, 11, 12, 7, 7};
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real b_r0_x = m->b_r0_x[i];
-        const real b_r0_y = m->b_r0_y[i];
-        const real b_r0_z = m->b_r0_z[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real g_r0_z = m->g_r0_z[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real h_4_x = m->h_4_x[i];
-        const real h_4_y = m->h_4_y[i];
-        const real h_4_z = m->h_4_z[i];
-        const real urps_base_frame_xx = m->urps_base_frame_xx[i];
-        const real urps_base_frame_xy = m->urps_base_frame_xy[i];
-        const real urps_base_frame_xz = m->urps_base_frame_xz[i];
-        const real urps_base_frame_yx = m->urps_base_frame_yx[i];
-        const real urps_base_frame_yy = m->urps_base_frame_yy[i];
-        const real urps_base_frame_yz = m->urps_base_frame_yz[i];
-        const real urps_base_frame_zx = m->urps_base_frame_zx[i];
-        const real urps_base_frame_zy = m->urps_base_frame_zy[i];
-        const real urps_base_frame_zz = m->urps_base_frame_zz[i];
-        const real urps_base_point_x = m->urps_base_point_x[i];
-        const real urps_base_point_y = m->urps_base_point_y[i];
-        const real urps_base_point_z = m->urps_base_point_z[i];
-        const real urps_link3_mass = m->urps_link3_mass[i];
-        const real urps_platform_point_x = m->urps_platform_point_x[i];
-        const real urps_platform_point_y = m->urps_platform_point_y[i];
-        const real urps_platform_point_z = m->urps_platform_point_z[i];
-        const real y_3_extra = X[(7 + i)*w + j];
-        /* (urps-K1) from the base point to the connection point */
-        const real S_x = t_x + R_xx*urps_platform_point_x + R_xy*urps_platform_point_y +
-            R_xz*urps_platform_point_z - urps_base_point_x;
-        const real S_y = t_y + R_yx*urps_platform_point_x + R_yy*urps_platform_point_y +
-            R_yz*urps_platform_point_z - urps_base_point_y;
-        const real S_z = t_z + R_zx*urps_platform_point_x + R_zy*urps_platform_point_y +
-            R_zz*urps_platform_point_z - urps_base_point_z;
-        /* (urps-K4) component along the reference direction */
-        const real px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx +
-            S_z*urps_base_frame_zx;
-        /* (urps-K5) component across the reference direction */
-        const real py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy +
-            S_z*urps_base_frame_zy;
-        /* (urps-K6) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (urps-K7) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (urps-K11) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz +
-            S_z*urps_base_frame_zz;
-        /* (urps-K15) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (urps-K16) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (urps-K17) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (urps-K18) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (urps-K2) cosine of the angle of joint 3 from its reference direction */
-        const real c_3_t = sine(y_3_extra);
-        /* (urps-K3) sine of the angle of joint 3 from its reference direction */
-        const real s_3 = cosine(y_3_extra);
-        /* (urps-K8) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (urps-K9) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (V1) potential energy */
-        const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
-        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
-        const real g_r3_y = -c_2*g_r0_z - g_r1_y*s_2;
-        const real b_r1_x = b_r0_y*s_1 - b_r0_x*c_1;
-        const real b_r1_y = -b_r0_x*s_1 - b_r0_y*c_1;
-        const real b_r3_y = -b_r0_z*c_2 - b_r1_y*s_2;
-        const real potential_t_2 = (g_r0_z*s_2 - c_2*g_r1_y)*(h_3_x + h_4_x +
-            urps_link3_mass*(b_r0_z*s_2 - b_r1_y*c_2)) + (-c_3_t*g_r1_x - g_r3_y*s_3)*(h_3_z +
-            h_4_z + urps_link3_mass*(-b_r1_x*c_3_t - b_r3_y*s_3)) + (g_r1_x*s_3 -
-            c_3_t*g_r3_y)*(h_3_y + h_4_y + urps_link3_mass*(b_r1_x*s_3 - b_r3_y*c_3_t));
-        o->sum[0][k] = add ? o->sum[0][k] + potential_t_2 : potential_t_2;  /* total_urps */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
+        /* (sps-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
+        const real sps_base_point_x = m->sps_base_point_x[i];
+        const real sps_platform_point_x = m->sps_platform_point_x[i];
+        const real sps_platform_point_y = m->sps_platform_point_y[i];
+        const real sps_platform_point_z = m->sps_platform_point_z[i];
+        const real t_x = s[0*w + j];
+        const real sps_S_x = t_x + R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
+            R_xz*sps_platform_point_z - sps_base_point_x;
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real sps_base_point_y = m->sps_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real sps_S_y = t_y + R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
+            R_yz*sps_platform_point_z - sps_base_point_y;
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real sps_base_point_z = m->sps_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real sps_S_z = t_z + R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
+            R_zz*sps_platform_point_z - sps_base_point_z;
+        /* (sps-px_1) component along the reference direction */
+        const real sps_base_frame_xx = m->sps_base_frame_xx[i];
+        const real sps_base_frame_yx = m->sps_base_frame_yx[i];
+        const real sps_base_frame_zx = m->sps_base_frame_zx[i];
+        const real sps_px_1 = sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx +
+            sps_S_z*sps_base_frame_zx;
+        /* (sps-py_1) component across the reference direction */
+        const real sps_base_frame_xy = m->sps_base_frame_xy[i];
+        const real sps_base_frame_yy = m->sps_base_frame_yy[i];
+        const real sps_base_frame_zy = m->sps_base_frame_zy[i];
+        const real sps_py_1 = sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy +
+            sps_S_z*sps_base_frame_zy;
+        /* (sps-rho2_1) squared amplitude */
+        const real sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1;
+        /* (sps-root_1) amplitude, with the sign of the branch */
+        const real sps_branch_1 = m->sps_branch_1[i];
+        const real sps_root_1 = sps_branch_1*root(sps_rho2_1);
+        /* (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real sps_base_frame_xz = m->sps_base_frame_xz[i];
+        const real sps_base_frame_yz = m->sps_base_frame_yz[i];
+        const real sps_base_frame_zz = m->sps_base_frame_zz[i];
+        const real sps_xi_1_t = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
+            sps_S_z*sps_base_frame_zz;
+        /* (sps-rho2_2) squared amplitude */
+        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t;
+        /* (sps-root_2) amplitude, with the sign of the branch */
+        const real sps_branch_2 = m->sps_branch_2[i];
+        const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
+        /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_sps_root_2 = 1/sps_root_2;
+        const real sps_c_2 = inv_sps_root_2*sps_root_1;
+        /* (sps-s_2) sine of the angle of joint 2 from its reference direction */
+        const real sps_s_2 = inv_sps_root_2*sps_xi_1_t;
+        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
+        const real sps_c_3_t = sine(sps_y_3_extra);
+        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
+        const real sps_s_3 = cosine(sps_y_3_extra);
+        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_sps_root_1 = 1/sps_root_1;
+        const real sps_c_1 = inv_sps_root_1*sps_py_1;
+        /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
+        const real sps_s_1 = inv_sps_root_1*sps_px_1;
+        /* (potential) potential energy */
+        const real sps_g_r0_x = m->sps_g_r0_x[i];
+        const real sps_g_r0_y = m->sps_g_r0_y[i];
+        const real sps_g_r1_x = sps_g_r0_y*sps_s_1 - sps_c_1*sps_g_r0_x;
+        const real sps_g_r1_y = -sps_c_1*sps_g_r0_y - sps_g_r0_x*sps_s_1;
+        const real sps_g_r0_z = m->sps_g_r0_z[i];
+        const real sps_g_r3_y = -sps_c_2*sps_g_r0_z - sps_g_r1_y*sps_s_2;
+        const real sps_b_r0_x = m->sps_b_r0_x[i];
+        const real sps_b_r0_y = m->sps_b_r0_y[i];
+        const real sps_b_r1_x = sps_b_r0_y*sps_s_1 - sps_b_r0_x*sps_c_1;
+        const real sps_b_r1_y = -sps_b_r0_x*sps_s_1 - sps_b_r0_y*sps_c_1;
+        const real sps_b_r0_z = m->sps_b_r0_z[i];
+        const real sps_b_r3_y = -sps_b_r0_z*sps_c_2 - sps_b_r1_y*sps_s_2;
+        const real sps_h_3_x = m->sps_h_3_x[i];
+        const real sps_h_3_y = m->sps_h_3_y[i];
+        const real sps_h_3_z = m->sps_h_3_z[i];
+        const real sps_h_4_x = m->sps_h_4_x[i];
+        const real sps_h_4_y = m->sps_h_4_y[i];
+        const real sps_h_4_z = m->sps_h_4_z[i];
+        const real sps_link3_mass = m->sps_link3_mass[i];
+        const real sps_potential_t = (sps_g_r0_z*sps_s_2 - sps_c_2*sps_g_r1_y)*(sps_h_3_x +
+            sps_h_4_x + sps_link3_mass*(sps_b_r0_z*sps_s_2 - sps_b_r1_y*sps_c_2)) +
+            (-sps_c_3_t*sps_g_r1_x - sps_g_r3_y*sps_s_3)*(sps_h_3_z + sps_h_4_z +
+            sps_link3_mass*(-sps_b_r1_x*sps_c_3_t - sps_b_r3_y*sps_s_3)) + (sps_g_r1_x*sps_s_3 -
+            sps_c_3_t*sps_g_r3_y)*(sps_h_3_y + sps_h_4_y + sps_link3_mass*(sps_b_r1_x*sps_s_3 -
+            sps_b_r3_y*sps_c_3_t));
+        terms[0*count + k] = add ? terms[0*count + k] + sps_potential_t : sps_potential_t;  /* total_sps */
+        o[0*count + k] = UNLESS(magnitude(sps_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(sps_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
     }
 }
 
-INLINE void potential_place_urps(size_t w, const potential_results_urps *o, size_t first, verdict
-    *t)
+INLINE void potential_place_sps(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
+        t->singular[k] += o[0*count + first + k];
     }
 }
 
-INLINE void potential_after(size_t w, const potential_values *s, real *potential)
+INLINE void potential_after(size_t w, const real *s, const real *sums, real *potential)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real potential_t = s->potential_t[k];
-        const real total_urps = s->sum[0][k];
-        /* (V1) potential energy */
-        const real potential_ = -potential_t - total_urps;
+        /* (potential) potential energy */
+        const real potential_t = s[12*w + k];
+        const real total_sps = sums[0*w + k];
+        const real potential_ = -potential_t - total_sps;
         potential[0*w + k] = potential_;
     }
 }
 
-INLINE void potential_run(const prepared *m, size_t w, const real *X, real *potential, verdict *t)
+INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    potential_values values, *const s = &values;
-    potential_results_urps results_urps;
-    potential_before(m, w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        memset(results_urps.sum, 0, sizeof results_urps.sum);
-        potential_legs_urps(m, w, 0, 1, s, 0, 6, 0, X, &results_urps);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            potential_place_urps(w, &results_urps, leg, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_urps.sum[n], 6);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_urps.sum, 0, sizeof results_urps.sum);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            potential_legs_urps(m, w, leg, 0, s, 1, w, 1, X, &results_urps);
-            potential_place_urps(w, &results_urps, 0, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_urps.sum[n][k];
-            }
-        }
+    real s[13] = {0}, sums[1] = {0}, terms_sps[1*LEGS(6)] = {0}, o_sps[1*LEGS(6)] = {0};
+    potential_before(m, 1, X, s, t);
+    potential_legs_sps(m, 1, 0, 1, s, 0, LEGS(6), 0, X, terms_sps, o_sps);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        potential_place_sps(1, LEGS(6), o_sps, leg, t);
     }
-    potential_after(w, s, potential);
+    for (size_t n = 0; n < 1; ++n) {
+        sums[n] = total(terms_sps + n*LEGS(6), 6);
+    }
+    potential_after(1, s, sums, potential);
 }
 
 /* ---- condition: 283 mul, 192 add, 6 div, 25 sqrt, 12 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], sum[1][LANES];
-} condition_values;
-typedef struct {
-    real sum[1][8], entry[7][8], singular[8];
-} condition_results_urps;
-
-INLINE void condition_before(const prepared *m, size_t w, const real *X, condition_values *s, real
-    *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real legs_size = m->legs_size;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -5174,412 +5260,599 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, conditi
         const real R_zx = quaternion_xz - quaternion_wy;
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
+        t->total[k] += legs_size;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void condition_legs_urps(const prepared *m, size_t w, size_t leg, size_t legs, const
-    condition_values *s, size_t states, size_t count, int add, const real *X,
-    condition_results_urps *o)
+INLINE void condition_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
+    static const size_t place_sps_y_3_extra[] = {7, 8, 9, 10, 11, 12, 7, 7};
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
+        /* (sps-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
+        const real sps_platform_point_x = m->sps_platform_point_x[i];
+        const real sps_platform_point_y = m->sps_platform_point_y[i];
+        const real sps_platform_point_z = m->sps_platform_point_z[i];
+        const real sps_q_in_base_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
+            R_xz*sps_platform_point_z;
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real sps_q_in_base_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
+            R_yz*sps_platform_point_z;
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real sps_q_in_base_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
+            R_zz*sps_platform_point_z;
+        const real sps_base_point_x = m->sps_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x;
+        const real sps_base_point_y = m->sps_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y;
+        const real sps_base_point_z = m->sps_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z;
+        /* (sps-px_1) component along the reference direction */
+        const real sps_base_frame_xx = m->sps_base_frame_xx[i];
+        const real sps_base_frame_yx = m->sps_base_frame_yx[i];
+        const real sps_base_frame_zx = m->sps_base_frame_zx[i];
+        const real sps_px_1 = sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx +
+            sps_S_z*sps_base_frame_zx;
+        /* (sps-py_1) component across the reference direction */
+        const real sps_base_frame_xy = m->sps_base_frame_xy[i];
+        const real sps_base_frame_yy = m->sps_base_frame_yy[i];
+        const real sps_base_frame_zy = m->sps_base_frame_zy[i];
+        const real sps_py_1 = sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy +
+            sps_S_z*sps_base_frame_zy;
+        /* (sps-rho2_1) squared amplitude */
+        const real sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1;
+        /* (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real sps_base_frame_xz = m->sps_base_frame_xz[i];
+        const real sps_base_frame_yz = m->sps_base_frame_yz[i];
+        const real sps_base_frame_zz = m->sps_base_frame_zz[i];
+        const real sps_xi_1_t = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
+            sps_S_z*sps_base_frame_zz;
+        /* (sps-rho2_2) squared amplitude */
+        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t;
+        /* (sps-root_2) amplitude, with the sign of the branch */
+        const real sps_branch_2 = m->sps_branch_2[i];
+        const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
+        /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_sps_root_2 = 1/sps_root_2;
+        const real sps_branch_1 = m->sps_branch_1[i];
+        const real sps_c_2 = inv_sps_root_2*sps_branch_1*root(sps_rho2_1);
+        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
+        const real sps_c_3_t = sine(sps_y_3_extra);
+        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
+        const real sps_s_3 = cosine(sps_y_3_extra);
+        /* (sps-w_1) reciprocal vector 1 */
+        const real sps_axis_z_x = inv_sps_root_2*sps_S_x;
+        const real sps_axis_z_y = inv_sps_root_2*sps_S_y;
+        const real sps_axis_z_z = inv_sps_root_2*sps_S_z;
+        /* (sps-w_2) reciprocal vector 2 */
+        const real sps_w_2_t = sps_c_2*sps_c_3_t*sps_c_3_t*sps_root_2*sps_root_2 +
+            sps_c_2*sps_root_2*sps_root_2*sps_s_3*sps_s_3;
+        /* (sps-H_a_4) moment of the column's unit force about the platform origin */
+        const real sps_H_a_4_x = sps_axis_z_z*sps_q_in_base_y - sps_axis_z_y*sps_q_in_base_z;
+        const real sps_H_a_4_y = sps_axis_z_x*sps_q_in_base_z - sps_axis_z_z*sps_q_in_base_x;
+        const real sps_H_a_4_z = sps_axis_z_y*sps_q_in_base_x - sps_axis_z_x*sps_q_in_base_y;
+        /* (spread) rms distance of the platform points from their centroid */
         const real b_c_x = m->b_c_x;
+        const real sps_spread_t = b_c_x - sps_platform_point_x;
         const real b_c_y = m->b_c_y;
+        const real sps_spread_t_2 = b_c_y - sps_platform_point_y;
         const real b_c_z = m->b_c_z;
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real urps_base_frame_xx = m->urps_base_frame_xx[i];
-        const real urps_base_frame_xy = m->urps_base_frame_xy[i];
-        const real urps_base_frame_xz = m->urps_base_frame_xz[i];
-        const real urps_base_frame_yx = m->urps_base_frame_yx[i];
-        const real urps_base_frame_yy = m->urps_base_frame_yy[i];
-        const real urps_base_frame_yz = m->urps_base_frame_yz[i];
-        const real urps_base_frame_zx = m->urps_base_frame_zx[i];
-        const real urps_base_frame_zy = m->urps_base_frame_zy[i];
-        const real urps_base_frame_zz = m->urps_base_frame_zz[i];
-        const real urps_base_point_x = m->urps_base_point_x[i];
-        const real urps_base_point_y = m->urps_base_point_y[i];
-        const real urps_base_point_z = m->urps_base_point_z[i];
-        const real urps_platform_point_x = m->urps_platform_point_x[i];
-        const real urps_platform_point_y = m->urps_platform_point_y[i];
-        const real urps_platform_point_z = m->urps_platform_point_z[i];
-        const real y_3_extra = X[(7 + i)*w + j];
-        /* (urps-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*urps_platform_point_x + R_xy*urps_platform_point_y +
-            R_xz*urps_platform_point_z;
-        const real q_in_base_y = R_yx*urps_platform_point_x + R_yy*urps_platform_point_y +
-            R_yz*urps_platform_point_z;
-        const real q_in_base_z = R_zx*urps_platform_point_x + R_zy*urps_platform_point_y +
-            R_zz*urps_platform_point_z;
-        const real S_x = q_in_base_x + t_x - urps_base_point_x;
-        const real S_y = q_in_base_y + t_y - urps_base_point_y;
-        const real S_z = q_in_base_z + t_z - urps_base_point_z;
-        /* (urps-K4) component along the reference direction */
-        const real px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx +
-            S_z*urps_base_frame_zx;
-        /* (urps-K5) component across the reference direction */
-        const real py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy +
-            S_z*urps_base_frame_zy;
-        /* (urps-K6) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (urps-K11) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz +
-            S_z*urps_base_frame_zz;
-        /* (urps-K15) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (urps-K16) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (urps-K17) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = branch_1*inv_root_2*root(rho2_1);
-        /* (urps-K2) cosine of the angle of joint 3 from its reference direction */
-        const real c_3_t = sine(y_3_extra);
-        /* (urps-K3) sine of the angle of joint 3 from its reference direction */
-        const real s_3 = cosine(y_3_extra);
-        /* (urps-V6) reciprocal vector 1 */
-        const real axis_z_x = S_x*inv_root_2;
-        const real axis_z_y = S_y*inv_root_2;
-        const real axis_z_z = S_z*inv_root_2;
-        const real w_1_t = c_2*c_3_t*c_3_t*root_2*root_2 + c_2*root_2*root_2*s_3*s_3;
-        /* (M9) moment of the column's unit force about the platform origin */
-        const real H_a_4_x = axis_z_z*q_in_base_y - axis_z_y*q_in_base_z;
-        const real H_a_4_y = axis_z_x*q_in_base_z - axis_z_z*q_in_base_x;
-        const real H_a_4_z = axis_z_y*q_in_base_x - axis_z_x*q_in_base_y;
-        /* (C2) rms distance of the platform points from their centroid */
-        const real spread_t_2 = b_c_x - urps_platform_point_x;
-        const real spread_t_3 = b_c_y - urps_platform_point_y;
-        const real spread_t_4 = b_c_z - urps_platform_point_z;
-        const real spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 +
-            spread_t_4*spread_t_4;
-        /* (urps-K6) squared amplitude */
-        const real pivot_size = magnitude(rho2_1);
-        /* (urps-K15) squared amplitude */
-        const real pivot_size_2 = magnitude(rho2_2);
-        /* (urps-V6) reciprocal vector 1 */
-        const real pivot_size_3 = magnitude(w_1_t);
-        /* (urps-N28) force at the connection point that balances the leg's inertia and weight along all
+        const real sps_spread_t_3 = b_c_z - sps_platform_point_z;
+        const real sps_spread_t_4 = sps_spread_t*sps_spread_t + sps_spread_t_2*sps_spread_t_2 +
+            sps_spread_t_3*sps_spread_t_3;
+        /* (sps-rho2_1) squared amplitude */
+        const real sps_pivot_size = magnitude(sps_rho2_1);
+        /* (sps-rho2_2) squared amplitude */
+        const real sps_pivot_size_2 = magnitude(sps_rho2_2);
+        /* (sps-w_2) reciprocal vector 2 */
+        const real sps_pivot_size_3 = magnitude(sps_w_2_t);
+        /* (sps-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real least_pivots = lesser(lesser(R(1.25)*root(pivot_size),
-            R(1.25)*root(pivot_size_2)), R(1.5624999999999998)*pivot_size_3);
-        o->sum[0][k] = add ? o->sum[0][k] + spread_t_5 : spread_t_5;  /* total_urps */
-        o->entry[0][k] = axis_z_x;
-        o->entry[1][k] = axis_z_y;
-        o->entry[2][k] = axis_z_z;
-        o->entry[3][k] = H_a_4_x;
-        o->entry[4][k] = H_a_4_y;
-        o->entry[5][k] = H_a_4_z;
-        o->entry[6][k] = least_pivots;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(-w_1_t) > TOLERANCE*R(0.6400000000000001));
+        const real sps_least_pivots = lesser(lesser(R(1.25)*root(sps_pivot_size),
+            R(1.25)*root(sps_pivot_size_2)), R(1.5624999999999998)*sps_pivot_size_3);
+        terms[0*count + k] = add ? terms[0*count + k] + sps_spread_t_4 : sps_spread_t_4;  /* total_sps */
+        o[0*count + k] = sps_axis_z_x;
+        o[1*count + k] = sps_axis_z_y;
+        o[2*count + k] = sps_axis_z_z;
+        o[3*count + k] = sps_H_a_4_x;
+        o[4*count + k] = sps_H_a_4_y;
+        o[5*count + k] = sps_H_a_4_z;
+        o[6*count + k] = sps_least_pivots;
+        o[8*count + k] = (sps_axis_z_x + (sps_axis_z_y + sps_axis_z_z)) + ((sps_H_a_4_x +
+            sps_H_a_4_y) + (sps_H_a_4_z + sps_least_pivots));
+        o[7*count + k] = UNLESS(magnitude(sps_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(sps_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(-sps_w_2_t) > TOLERANCE*R(0.6400000000000001));
     }
 }
 
-INLINE void condition_place_urps(size_t w, const condition_results_urps *o, size_t leg, size_t
-    first, real *H, real *pivots, verdict *t)
+INLINE void condition_place_sps(size_t w, size_t count, const real *o, size_t leg, size_t first,
+    real *H, real *pivots, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(6 + leg)*w + k] = o->entry[1][first + k];
-        H[(12 + leg)*w + k] = o->entry[2][first + k];
-        H[(18 + leg)*w + k] = o->entry[3][first + k];
-        H[(24 + leg)*w + k] = o->entry[4][first + k];
-        H[(30 + leg)*w + k] = o->entry[5][first + k];
-        pivots[(leg)*w + k] = o->entry[6][first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(6 + leg)*w + k] = o[1*count + first + k];
+        H[(12 + leg)*w + k] = o[2*count + first + k];
+        H[(18 + leg)*w + k] = o[3*count + first + k];
+        H[(24 + leg)*w + k] = o[4*count + first + k];
+        H[(30 + leg)*w + k] = o[5*count + first + k];
+        pivots[(leg)*w + k] = o[6*count + first + k];
+        t->singular[k] += o[7*count + first + k];
+        t->total[k] += o[8*count + first + k];
     }
 }
 
-INLINE void condition_after(const prepared *m, size_t w, const condition_values *s, real *lengths)
+INLINE void condition_after(const prepared *m, size_t w, const real *sums, real *lengths, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real total_urps = s->sum[0][k];
+        /* (spread) rms distance of the platform points from their centroid */
         const real spread_t = m->spread_t;
-        /* (C2) rms distance of the platform points from their centroid */
-        const real spread_ = spread_t*root(total_urps);
+        const real total_sps = sums[0*w + k];
+        const real spread_ = spread_t*root(total_sps);
         lengths[0*w + k] = spread_;
+        t->total[k] += spread_;
     }
 }
 
-INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, real *lengths, real
-    *pivots, real *reach, verdict *t)
+INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
+    real *reach, verdict *t)
 {
-    condition_values values, *const s = &values;
-    condition_results_urps results_urps;
-    clear(H, 72*w);
-    clear(reach, 6*w);
-    condition_before(m, w, X, s, lengths, t);
-    if (w == 1) {  /* the legs side by side */
-        memset(results_urps.sum, 0, sizeof results_urps.sum);
-        condition_legs_urps(m, w, 0, 1, s, 0, 6, 0, X, &results_urps);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            condition_place_urps(w, &results_urps, leg, leg, H, pivots, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_urps.sum[n], 6);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_urps.sum, 0, sizeof results_urps.sum);
-        for (size_t leg = 0; leg < 6; ++leg) {
-            condition_legs_urps(m, w, leg, 0, s, 1, w, 1, X, &results_urps);
-            condition_place_urps(w, &results_urps, leg, 0, H, pivots, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_urps.sum[n][k];
-            }
-        }
+    real s[12] = {0}, sums[1] = {0}, terms_sps[1*LEGS(6)] = {0}, o_sps[9*LEGS(6)] = {0};
+    clear(H, 72);
+    clear(reach, 6);
+    condition_before(m, 1, X, s, lengths, t);
+    condition_legs_sps(m, 1, 0, 1, s, 0, LEGS(6), 0, X, terms_sps, o_sps);
+    for (size_t leg = 0; leg < 6; ++leg) {
+        condition_place_sps(1, LEGS(6), o_sps, leg, leg, H, pivots, t);
     }
-    condition_after(m, w, s, lengths);
+    for (size_t n = 0; n < 1; ++n) {
+        sums[n] = total(terms_sps + n*LEGS(6), 6);
+    }
+    condition_after(m, 1, sums, lengths, t);
 }
 
 /* ---- what users call, as steps over these ---- */
 
-INLINE void M_any(const prepared *m, size_t w, const real *X, real *M_out, int *code)
+INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real X_in[13*LANES], M[144*LANES];
-    verdict why;
-    start(w, &why);
-    X = side_by_side(13, w, X, X_in, why.invalid);
-    M_run(m, w, X, M, &why);
-    check(144, w, M, why.overflow);
-    judge(&why, w, code);
-    deliver(M, 144, w, code, M_out);
-}
-
-INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, real *Z_out, int
-    *code)
-{
-    real X_in[13*LANES], V_in[12*LANES], Z[12*LANES];
-    verdict why;
-    start(w, &why);
-    X = side_by_side(13, w, X, X_in, why.invalid);
-    V = side_by_side(12, w, V, V_in, why.invalid);
-    Z_run(m, w, X, V, Z, &why);
-    check(12, w, Z, why.overflow);
-    judge(&why, w, code);
-    deliver(Z, 12, w, code, Z_out);
-}
-
-INLINE void H_any(const prepared *m, size_t w, const real *X, real *H_out, int *code)
-{
-    real X_in[13*LANES], H[72*LANES];
-    verdict why;
-    start(w, &why);
-    X = side_by_side(13, w, X, X_in, why.invalid);
-    H_run(m, w, X, H, &why);
-    check(72, w, H, why.overflow);
-    judge(&why, w, code);
-    deliver(H, 72, w, code, H_out);
-}
-
-INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, real *q_out, int
-    *code)
-{
-    real X_in[13*LANES], q[24*LANES];
-    verdict why;
-    start(w, &why);
-    X = side_by_side(13, w, X, X_in, why.invalid);
-    inverse_kinematics_run(m, w, X, q, &why);
-    check(24, w, q, why.overflow);
-    judge(&why, w, code);
-    deliver(q, 24, w, code, q_out);
-}
-
-INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *qd_out, int *code)
-{
-    real X_in[13*LANES], V_in[12*LANES], qd[24*LANES];
-    verdict why;
-    start(w, &why);
-    X = side_by_side(13, w, X, X_in, why.invalid);
-    V = side_by_side(12, w, V, V_in, why.invalid);
-    joint_rates_run(m, w, X, V, qd, &why);
-    check(24, w, qd, why.overflow);
-    judge(&why, w, code);
-    deliver(qd, 24, w, code, qd_out);
-}
-
-INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd_out, int *code)
-{
-    real X_in[13*LANES], V_in[12*LANES], A_in[12*LANES], qdd[24*LANES];
-    verdict why;
-    start(w, &why);
-    X = side_by_side(13, w, X, X_in, why.invalid);
-    V = side_by_side(12, w, V, V_in, why.invalid);
-    A = side_by_side(12, w, A, A_in, why.invalid);
-    joint_accelerations_run(m, w, X, V, A, qdd, &why);
-    check(24, w, qdd, why.overflow);
-    judge(&why, w, code);
-    deliver(qdd, 24, w, code, qdd_out);
-}
-
-INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *V, real *M_out,
-    real *Z_out, real *H_out, int *code)
-{
-    real X_in[13*LANES], V_in[12*LANES], M[144*LANES], Z[12*LANES], H[72*LANES];
-    verdict why;
-    start(w, &why);
-    X = side_by_side(13, w, X, X_in, why.invalid);
-    V = side_by_side(12, w, V, V_in, why.invalid);
-    dynamics_run(m, w, X, V, M, Z, H, &why);
-    check(144, w, M, why.overflow);
-    check(12, w, Z, why.overflow);
-    check(72, w, H, why.overflow);
-    judge(&why, w, code);
-    deliver(M, 144, w, code, M_out);
-    deliver(Z, 12, w, code, Z_out);
-    deliver(H, 72, w, code, H_out);
-}
-
-INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, const real *V, const
-    real *A, const real *wrench, real *tau_out, int *code)
-{
-    real X_in[13*LANES], V_in[12*LANES], A_in[12*LANES], wrench_in[6*LANES], required[12*LANES],
-        H[72*LANES], extend_1[12*LANES], subtract_2[12*LANES], tau[6*LANES], work[48*LANES];
-    verdict why;
-    start(w, &why);
-    X = side_by_side(13, w, X, X_in, why.invalid);
-    V = side_by_side(12, w, V, V_in, why.invalid);
-    A = side_by_side(12, w, A, A_in, why.invalid);
-    wrench = optional(6, w, wrench, 0, wrench_in, why.invalid);
-    required_run(m, w, X, V, A, required, H, &why);
-    for (size_t i = 0; i < 12*w; ++i) {
-        extend_1[i] = i < 6*w ? wrench[i] : 0;
-    }
-    for (size_t i = 0; i < 12*w; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
-    }
-    const real *const take_3 = H;
-    const real *const take_4 = subtract_2;
-    set_matrix(6, w, take_3, work);
-    solve(6, w, take_4, work, tau, why.singular);
-    check(6, w, tau, why.overflow);
-    judge(&why, w, code);
-    deliver(tau, 6, w, code, tau_out);
-}
-
-INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, const real *V, const
-    real *tau, const real *wrench, real *A_out, int *code)
-{
-    real X_in[13*LANES], V_in[12*LANES], tau_in[6*LANES], wrench_in[6*LANES], M[144*LANES],
-        Z[12*LANES], H[72*LANES], times_1[12*LANES] = {0}, extend_2[12*LANES], add_3[12*LANES],
-        subtract_4[12*LANES], A[12*LANES], work[192*LANES];
-    verdict why;
-    start(w, &why);
-    X = side_by_side(13, w, X, X_in, why.invalid);
-    V = side_by_side(12, w, V, V_in, why.invalid);
-    tau = side_by_side(6, w, tau, tau_in, why.invalid);
-    wrench = optional(6, w, wrench, 0, wrench_in, why.invalid);
-    dynamics_run(m, w, X, V, M, Z, H, &why);
-    product(12, 6, 1, w, H, tau, times_1);
-    for (size_t i = 0; i < 12*w; ++i) {
-        extend_2[i] = i < 6*w ? wrench[i] : 0;
-    }
-    for (size_t i = 0; i < 12*w; ++i) {
-        add_3[i] = times_1[i] + extend_2[i];
-    }
-    for (size_t i = 0; i < 12*w; ++i) {
-        subtract_4[i] = add_3[i] - Z[i];
-    }
-    set_matrix(12, w, M, work);
-    solve(12, w, subtract_4, work, A, why.singular);
-    check(12, w, A, why.overflow);
-    judge(&why, w, code);
-    deliver(A, 12, w, code, A_out);
-}
-
-INLINE void complete_acceleration_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, const real *wrench, real *completed_out, int *code)
-{
-    static const size_t places_0[] = {6, 7, 8, 9, 10, 11};
-    static const size_t places_1[] = {6, 7, 8, 9, 10, 11};
-    static const size_t places_2[] = {6, 7, 8, 9, 10, 11};
-    real X_in[13*LANES], V_in[12*LANES], A_in[12*LANES], wrench_in[6*LANES], clear_at_1[12*LANES],
-        M[144*LANES], Z[12*LANES], H[72*LANES], times_2[12*LANES] = {0}, add_3[12*LANES],
-        extend_4[12*LANES], subtract_5[12*LANES], take_columns_6[72*LANES] = {0}, negative_9[6*LANES],
-        solve_10[6*LANES], completed[12*LANES], work[48*LANES];
-    verdict why;
-    start(w, &why);
-    X = side_by_side(13, w, X, X_in, why.invalid);
-    V = side_by_side(12, w, V, V_in, why.invalid);
-    A = side_by_side(12, w, A, A_in, why.invalid);
-    wrench = optional(6, w, wrench, 0, wrench_in, why.invalid);
-    for (size_t i = 0; i < 12*w; ++i) {
-        clear_at_1[i] = A[i];
-    }
-    clear_at(6, 1*w, places_0, clear_at_1);
-    dynamics_run(m, w, X, V, M, Z, H, &why);
-    product(12, 12, 1, w, M, clear_at_1, times_2);
-    for (size_t i = 0; i < 12*w; ++i) {
-        add_3[i] = times_2[i] + Z[i];
-    }
-    for (size_t i = 0; i < 12*w; ++i) {
-        extend_4[i] = i < 6*w ? wrench[i] : 0;
-    }
-    for (size_t i = 0; i < 12*w; ++i) {
-        subtract_5[i] = add_3[i] - extend_4[i];
-    }
-    take_columns(12, 12, 6, w, places_1, M, take_columns_6);
-    const real *const take_7 = take_columns_6 + 36*w;
-    const real *const take_8 = subtract_5 + 6*w;
-    for (size_t i = 0; i < 6*w; ++i) {
-        negative_9[i] = -take_8[i];
-    }
-    set_matrix(6, w, take_7, work);
-    solve(6, w, negative_9, work, solve_10, why.singular);
-    for (size_t i = 0; i < 12*w; ++i) {
-        completed[i] = clear_at_1[i];
-    }
-    add_at(6, 1*w, places_2, solve_10, completed);
-    check(12, w, completed, why.overflow);
-    judge(&why, w, code);
-    deliver(completed, 12, w, code, completed_out);
-}
-
-INLINE void leg_reactions_any(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces_out, int *code)
-{
-    static const size_t places_0[] = {0, 1, 2, 3, 4, 5};
-    real wrench_in[6], required[12] = {0}, H[72] = {0}, extend_1[12] = {0}, subtract_2[12] = {0},
-        solve_5[6] = {0}, leg_force[18] = {0}, drive[18] = {0}, forces[18] = {0}, work[48];
+    real M[144] = {0};
     verdict why;
     start(1, &why);
     check(13, 1, X, why.invalid);
-    check(12, 1, V, why.invalid);
-    check(12, 1, A, why.invalid);
-    wrench = optional(6, 1, wrench, 0, wrench_in, why.invalid);
-    required_run(m, 1, X, V, A, required, H, &why);
+    M_run(m, X, M, &why);
+    if (!is_finite(why.total[0])) {
+        check(144, 1, M, why.overflow);
+    }
+    judge(&why, code);
+    copy(144, M, M_out);
+    if (*code != OK) {
+        refuse(144, M_out);
+    }
+}
+
+INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
+{
+    real X_in[13*LANES], M[144*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(13, X, X_in, why.total);
+    M_run_lanes(m, X, M, &why);
+    suspect(&why, code);
+    deliver(144, M, M_out);
+}
+
+INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
+{
+    real Z[12] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 13) + total(V, 12);
+    if (!is_finite(total_in)) {
+        check(13, 1, X, why.invalid);
+        check(12, 1, V, why.invalid);
+    }
+    Z_run(m, X, V, Z, &why);
+    if (!is_finite(why.total[0])) {
+        check(12, 1, Z, why.overflow);
+    }
+    judge(&why, code);
+    copy(12, Z, Z_out);
+    if (*code != OK) {
+        refuse(12, Z_out);
+    }
+}
+
+INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
+{
+    real X_in[13*LANES], V_in[12*LANES], Z[12*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(13, X, X_in, why.total);
+    V = side_by_side(12, V, V_in, why.total);
+    Z_run_lanes(m, X, V, Z, &why);
+    suspect(&why, code);
+    deliver(12, Z, Z_out);
+}
+
+INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(13, 1, X, why.invalid);
+    H_run(m, X, H_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(72, 1, H_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(72, H_out);
+    }
+}
+
+INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
+{
+    real X_in[13*LANES], H[72*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(13, X, X_in, why.total);
+    H_run_lanes(m, X, H, &why);
+    suspect(&why, code);
+    deliver(72, H, H_out);
+}
+
+INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out, int *code)
+{
+    real q[24] = {0};
+    verdict why;
+    start(1, &why);
+    check(13, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q, &why);
+    if (!is_finite(why.total[0])) {
+        check(24, 1, q, why.overflow);
+    }
+    judge(&why, code);
+    copy(24, q, q_out);
+    if (*code != OK) {
+        refuse(24, q_out);
+    }
+}
+
+INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
+{
+    real X_in[13*LANES], q[24*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(13, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    suspect(&why, code);
+    deliver(24, q, q_out);
+}
+
+INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
+{
+    real qd[24] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 13) + total(V, 12);
+    if (!is_finite(total_in)) {
+        check(13, 1, X, why.invalid);
+        check(12, 1, V, why.invalid);
+    }
+    joint_rates_run(m, X, V, qd, &why);
+    if (!is_finite(why.total[0])) {
+        check(24, 1, qd, why.overflow);
+    }
+    judge(&why, code);
+    copy(24, qd, qd_out);
+    if (*code != OK) {
+        refuse(24, qd_out);
+    }
+}
+
+INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
+{
+    real X_in[13*LANES], V_in[12*LANES], qd[24*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(13, X, X_in, why.total);
+    V = side_by_side(12, V, V_in, why.total);
+    joint_rates_run_lanes(m, X, V, qd, &why);
+    suspect(&why, code);
+    deliver(24, qd, qd_out);
+}
+
+INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
+{
+    real qdd[24] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 13) + total(V, 12) + total(A, 12);
+    if (!is_finite(total_in)) {
+        check(13, 1, X, why.invalid);
+        check(12, 1, V, why.invalid);
+        check(12, 1, A, why.invalid);
+    }
+    joint_accelerations_run(m, X, V, A, qdd, &why);
+    if (!is_finite(why.total[0])) {
+        check(24, 1, qdd, why.overflow);
+    }
+    judge(&why, code);
+    copy(24, qdd, qdd_out);
+    if (*code != OK) {
+        refuse(24, qdd_out);
+    }
+}
+
+INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
+{
+    real X_in[13*LANES], V_in[12*LANES], A_in[12*LANES], qdd[24*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(13, X, X_in, why.total);
+    V = side_by_side(12, V, V_in, why.total);
+    A = side_by_side(12, A, A_in, why.total);
+    joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
+    suspect(&why, code);
+    deliver(24, qdd, qdd_out);
+}
+
+INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out, int *code)
+{
+    real M[144] = {0}, Z[12] = {0}, H[72] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 13) + total(V, 12);
+    if (!is_finite(total_in)) {
+        check(13, 1, X, why.invalid);
+        check(12, 1, V, why.invalid);
+    }
+    dynamics_run(m, X, V, M, Z, H, &why);
+    if (!is_finite(why.total[0])) {
+        check(144, 1, M, why.overflow);
+        check(12, 1, Z, why.overflow);
+        check(72, 1, H, why.overflow);
+    }
+    judge(&why, code);
+    copy(144, M, M_out);
+    copy(12, Z, Z_out);
+    copy(72, H, H_out);
+    if (*code != OK) {
+        refuse(144, M_out);
+        refuse(12, Z_out);
+        refuse(72, H_out);
+    }
+}
+
+INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out, int *code)
+{
+    real X_in[13*LANES], V_in[12*LANES], M[144*LANES], Z[12*LANES], H[72*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(13, X, X_in, why.total);
+    V = side_by_side(12, V, V_in, why.total);
+    dynamics_run_lanes(m, X, V, M, Z, H, &why);
+    suspect(&why, code);
+    deliver(144, M, M_out);
+    deliver(12, Z, Z_out);
+    deliver(72, H, H_out);
+}
+
+INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, real *x, real
+    *unsure, real *total)
+{
+    for (size_t k = 0; k < w; ++k) {
+        real a00 = a[(0)*w + k];
+        real a01 = a[(1)*w + k];
+        real a02 = a[(2)*w + k];
+        real a03 = a[(3)*w + k];
+        real a04 = a[(4)*w + k];
+        real a05 = a[(5)*w + k];
+        real b0 = b[0*w + k];
+        real a10 = a[(2*stride + 0)*w + k];
+        real a11 = a[(2*stride + 1)*w + k];
+        real a12 = a[(2*stride + 2)*w + k];
+        real a13 = a[(2*stride + 3)*w + k];
+        real a14 = a[(2*stride + 4)*w + k];
+        real a15 = a[(2*stride + 5)*w + k];
+        real b1 = b[2*w + k];
+        real a20 = a[(1*stride + 0)*w + k];
+        real a21 = a[(1*stride + 1)*w + k];
+        real a22 = a[(1*stride + 2)*w + k];
+        real a23 = a[(1*stride + 3)*w + k];
+        real a24 = a[(1*stride + 4)*w + k];
+        real a25 = a[(1*stride + 5)*w + k];
+        real b2 = b[1*w + k];
+        real a30 = a[(3*stride + 0)*w + k];
+        real a31 = a[(3*stride + 1)*w + k];
+        real a32 = a[(3*stride + 2)*w + k];
+        real a33 = a[(3*stride + 3)*w + k];
+        real a34 = a[(3*stride + 4)*w + k];
+        real a35 = a[(3*stride + 5)*w + k];
+        real b3 = b[3*w + k];
+        real a40 = a[(4*stride + 0)*w + k];
+        real a41 = a[(4*stride + 1)*w + k];
+        real a42 = a[(4*stride + 2)*w + k];
+        real a43 = a[(4*stride + 3)*w + k];
+        real a44 = a[(4*stride + 4)*w + k];
+        real a45 = a[(4*stride + 5)*w + k];
+        real b4 = b[4*w + k];
+        real a50 = a[(5*stride + 0)*w + k];
+        real a51 = a[(5*stride + 1)*w + k];
+        real a52 = a[(5*stride + 2)*w + k];
+        real a53 = a[(5*stride + 3)*w + k];
+        real a54 = a[(5*stride + 4)*w + k];
+        real a55 = a[(5*stride + 5)*w + k];
+        real b5 = b[5*w + k];
+        const real f0 = 1/a00;
+        const real d1 = a00*a11 - a10*a01;
+        const real f1 = a00/d1;
+        const real g10 = a10*f0;
+        a12 -= g10*a02;
+        a13 -= g10*a03;
+        a14 -= g10*a04;
+        a15 -= g10*a05;
+        b1 -= g10*b0;
+        const real g20 = a20*f0;
+        a21 -= g20*a01;
+        a22 -= g20*a02;
+        a23 -= g20*a03;
+        a24 -= g20*a04;
+        a25 -= g20*a05;
+        b2 -= g20*b0;
+        const real g30 = a30*f0;
+        a31 -= g30*a01;
+        a32 -= g30*a02;
+        a33 -= g30*a03;
+        a34 -= g30*a04;
+        a35 -= g30*a05;
+        b3 -= g30*b0;
+        const real g40 = a40*f0;
+        a41 -= g40*a01;
+        a42 -= g40*a02;
+        a43 -= g40*a03;
+        a44 -= g40*a04;
+        a45 -= g40*a05;
+        b4 -= g40*b0;
+        const real g50 = a50*f0;
+        a51 -= g50*a01;
+        a52 -= g50*a02;
+        a53 -= g50*a03;
+        a54 -= g50*a04;
+        a55 -= g50*a05;
+        b5 -= g50*b0;
+        const real g21 = a21*f1;
+        a22 -= g21*a12;
+        a23 -= g21*a13;
+        a24 -= g21*a14;
+        a25 -= g21*a15;
+        b2 -= g21*b1;
+        const real g31 = a31*f1;
+        a32 -= g31*a12;
+        a33 -= g31*a13;
+        a34 -= g31*a14;
+        a35 -= g31*a15;
+        b3 -= g31*b1;
+        const real g41 = a41*f1;
+        a42 -= g41*a12;
+        a43 -= g41*a13;
+        a44 -= g41*a14;
+        a45 -= g41*a15;
+        b4 -= g41*b1;
+        const real g51 = a51*f1;
+        a52 -= g51*a12;
+        a53 -= g51*a13;
+        a54 -= g51*a14;
+        a55 -= g51*a15;
+        b5 -= g51*b1;
+        const real f2 = 1/a22;
+        const real d3 = a22*a33 - a32*a23;
+        const real f3 = a22/d3;
+        const real g32 = a32*f2;
+        a34 -= g32*a24;
+        a35 -= g32*a25;
+        b3 -= g32*b2;
+        const real g42 = a42*f2;
+        a43 -= g42*a23;
+        a44 -= g42*a24;
+        a45 -= g42*a25;
+        b4 -= g42*b2;
+        const real g52 = a52*f2;
+        a53 -= g52*a23;
+        a54 -= g52*a24;
+        a55 -= g52*a25;
+        b5 -= g52*b2;
+        const real g43 = a43*f3;
+        a44 -= g43*a34;
+        a45 -= g43*a35;
+        b4 -= g43*b3;
+        const real g53 = a53*f3;
+        a54 -= g53*a34;
+        a55 -= g53*a35;
+        b5 -= g53*b3;
+        const real f4 = 1/a44;
+        const real d5 = a44*a55 - a54*a45;
+        const real f5 = a44/d5;
+        const real g54 = a54*f4;
+        b5 -= g54*b4;
+        const real x5 = (b5)*f5;
+        const real x4 = (b4)*f4 - a45*f4*x5;
+        const real x3 = (b3 - a35*x5)*f3 - a34*f3*x4;
+        const real x2 = (b2 - a25*x5 - a24*x4)*f2 - a23*f2*x3;
+        const real x1 = (b1 - a15*x5 - a14*x4 - a13*x3)*f1 - a12*f1*x2;
+        const real x0 = (b0 - a05*x5 - a04*x4 - a03*x3 - a02*x2)*f0 - a01*f0*x1;
+        x[0*w + k] = x0;
+        x[1*w + k] = x1;
+        x[2*w + k] = x2;
+        x[3*w + k] = x3;
+        x[4*w + k] = x4;
+        x[5*w + k] = x5;
+        total[k] += (x0 + (x1 + x2)) + (x3 + (x4 + x5));
+        const real most0 = larger(larger(magnitude(g21), magnitude(g31)), larger(magnitude(g41),
+            magnitude(g51)));
+        const real most1 = larger(larger(larger(magnitude(g20), magnitude(g30)),
+            larger(magnitude(g40), larger(magnitude(g50), magnitude(g32)))),
+            larger(larger(magnitude(g42), magnitude(g52)), larger(magnitude(g43),
+            larger(magnitude(g53), magnitude(g54)))));
+        const real most2 = magnitude(g10);
+        const real most3 = magnitude(f1);
+        const real most4 = larger(larger(magnitude(f0), magnitude(f2)), larger(magnitude(f3),
+            larger(magnitude(f4), magnitude(f5))));
+        unsure[k] += UNLESS(most0 <= R(2.5)) + UNLESS(most1 <= R(10)) + UNLESS(most2 <= R(40)) +
+            UNLESS(most3 <= R(1000)) + UNLESS(most4 <= R(4000)) + UNLESS(is_finite(a00 + d1 + a22
+            + d3 + a44 + d5));
+    }
+}
+
+INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau_out, int *code)
+{
+    real wrench_in[6], required[12] = {0}, H[72] = {0}, extend_1[12] = {0}, subtract_2[12] = {0},
+        unsure_5[1] = {0}, work[48];
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 13) + total(V, 12) + total(A, 12);
+    if (!is_finite(total_in)) {
+        check(13, 1, X, why.invalid);
+        check(12, 1, V, why.invalid);
+        check(12, 1, A, why.invalid);
+    }
+    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < 12; ++i) {
         extend_1[i] = i < 6 ? wrench[i] : 0;
     }
@@ -5588,38 +5861,448 @@ INLINE void leg_reactions_any(const prepared *m, const real *X, const real *V, c
     }
     const real *const take_3 = H;
     const real *const take_4 = subtract_2;
-    set_matrix(6, 1, take_3, work);
-    solve_state(6, take_4, work, solve_5, why.singular);
-    legs_run(m, 1, X, V, A, leg_force, drive, &why);
+    eliminate_0(1, 6, take_3, take_4, tau_out, unsure_5, why.total);
+    if (unsure_5[0] > 0) {
+        set_matrix(6, 1, take_3, work);
+        solve_apart(6, take_4, work, tau_out, why.singular);
+        check(6, 1, tau_out, why.overflow);
+    }
+    if (!is_finite(why.total[0])) {
+        check(6, 1, tau_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(6, tau_out);
+    }
+}
+
+INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau_out, int *code)
+{
+    real X_in[13*LANES], V_in[12*LANES], A_in[12*LANES], wrench_in[6*LANES], required[12*LANES],
+        H[72*LANES], extend_1[12*LANES], subtract_2[12*LANES], tau[6*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(13, X, X_in, why.total);
+    V = side_by_side(12, V, V_in, why.total);
+    A = side_by_side(12, A, A_in, why.total);
+    wrench = optional_side_by_side(6, wrench, 0, wrench_in, why.total);
+    required_run_lanes(m, X, V, A, required, H, &why);
+    for (size_t i = 0; i < 12*LANES; ++i) {
+        extend_1[i] = i < 6*LANES ? wrench[i] : 0;
+    }
+    for (size_t i = 0; i < 12*LANES; ++i) {
+        subtract_2[i] = required[i] - extend_1[i];
+    }
+    const real *const take_3 = H;
+    const real *const take_4 = subtract_2;
+    eliminate_0(LANES, 6, take_3, take_4, tau, why.singular, why.total);
+    suspect(&why, code);
+    deliver(6, tau, tau_out);
+}
+
+INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
+    const real *wrench, real *A_out, int *code)
+{
+    real wrench_in[6], M[144] = {0}, Z[12] = {0}, H[72] = {0}, times_1[12] = {0}, extend_2[12] = {0},
+        add_3[12] = {0}, subtract_4[12] = {0}, work[192];
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 13) + total(V, 12) + total(tau, 6);
+    if (!is_finite(total_in)) {
+        check(13, 1, X, why.invalid);
+        check(12, 1, V, why.invalid);
+        check(6, 1, tau, why.invalid);
+    }
+    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    dynamics_run(m, X, V, M, Z, H, &why);
+    product(12, 6, 1, 1, H, tau, times_1);
+    for (size_t i = 0; i < 12; ++i) {
+        extend_2[i] = i < 6 ? wrench[i] : 0;
+    }
+    for (size_t i = 0; i < 12; ++i) {
+        add_3[i] = times_1[i] + extend_2[i];
+    }
+    for (size_t i = 0; i < 12; ++i) {
+        subtract_4[i] = add_3[i] - Z[i];
+    }
+    set_matrix(12, 1, M, work);
+    solve_state(12, subtract_4, work, A_out, why.singular);
+    check(12, 1, A_out, why.overflow);
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(12, A_out);
+    }
+}
+
+INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
+    *tau, const real *wrench, real *A_out, int *code)
+{
+    real X_in[13*LANES], V_in[12*LANES], tau_in[6*LANES], wrench_in[6*LANES], M[144*LANES],
+        Z[12*LANES], H[72*LANES], times_1[12*LANES] = {0}, extend_2[12*LANES], add_3[12*LANES],
+        subtract_4[12*LANES], A[12*LANES], work[192*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(13, X, X_in, why.total);
+    V = side_by_side(12, V, V_in, why.total);
+    tau = side_by_side(6, tau, tau_in, why.total);
+    wrench = optional_side_by_side(6, wrench, 0, wrench_in, why.total);
+    dynamics_run_lanes(m, X, V, M, Z, H, &why);
+    product(12, 6, 1, LANES, H, tau, times_1);
+    for (size_t i = 0; i < 12*LANES; ++i) {
+        extend_2[i] = i < 6*LANES ? wrench[i] : 0;
+    }
+    for (size_t i = 0; i < 12*LANES; ++i) {
+        add_3[i] = times_1[i] + extend_2[i];
+    }
+    for (size_t i = 0; i < 12*LANES; ++i) {
+        subtract_4[i] = add_3[i] - Z[i];
+    }
+    set_matrix(12, LANES, M, work);
+    solve(12, LANES, subtract_4, work, A, why.singular);
+    add_up(12, A, why.total);
+    suspect(&why, code);
+    deliver(12, A, A_out);
+}
+
+INLINE void eliminate_1(size_t w, size_t stride, const real *a, const real *b, real *x, real
+    *unsure, real *total)
+{
+    for (size_t k = 0; k < w; ++k) {
+        real a00 = a[(0)*w + k];
+        real a01 = a[(1)*w + k];
+        real a02 = a[(2)*w + k];
+        real a03 = a[(3)*w + k];
+        real a04 = a[(4)*w + k];
+        real a05 = a[(5)*w + k];
+        real b0 = b[0*w + k];
+        real a10 = a[(1*stride + 0)*w + k];
+        real a11 = a[(1*stride + 1)*w + k];
+        real a12 = a[(1*stride + 2)*w + k];
+        real a13 = a[(1*stride + 3)*w + k];
+        real a14 = a[(1*stride + 4)*w + k];
+        real a15 = a[(1*stride + 5)*w + k];
+        real b1 = b[1*w + k];
+        real a20 = a[(2*stride + 0)*w + k];
+        real a21 = a[(2*stride + 1)*w + k];
+        real a22 = a[(2*stride + 2)*w + k];
+        real a23 = a[(2*stride + 3)*w + k];
+        real a24 = a[(2*stride + 4)*w + k];
+        real a25 = a[(2*stride + 5)*w + k];
+        real b2 = b[2*w + k];
+        real a30 = a[(3*stride + 0)*w + k];
+        real a31 = a[(3*stride + 1)*w + k];
+        real a32 = a[(3*stride + 2)*w + k];
+        real a33 = a[(3*stride + 3)*w + k];
+        real a34 = a[(3*stride + 4)*w + k];
+        real a35 = a[(3*stride + 5)*w + k];
+        real b3 = b[3*w + k];
+        real a40 = a[(4*stride + 0)*w + k];
+        real a41 = a[(4*stride + 1)*w + k];
+        real a42 = a[(4*stride + 2)*w + k];
+        real a43 = a[(4*stride + 3)*w + k];
+        real a44 = a[(4*stride + 4)*w + k];
+        real a45 = a[(4*stride + 5)*w + k];
+        real b4 = b[4*w + k];
+        real a50 = a[(5*stride + 0)*w + k];
+        real a51 = a[(5*stride + 1)*w + k];
+        real a52 = a[(5*stride + 2)*w + k];
+        real a53 = a[(5*stride + 3)*w + k];
+        real a54 = a[(5*stride + 4)*w + k];
+        real a55 = a[(5*stride + 5)*w + k];
+        real b5 = b[5*w + k];
+        const real f0 = 1/a00;
+        const real d1 = a00*a11 - a10*a01;
+        const real f1 = a00/d1;
+        const real g10 = a10*f0;
+        a12 -= g10*a02;
+        a13 -= g10*a03;
+        a14 -= g10*a04;
+        a15 -= g10*a05;
+        b1 -= g10*b0;
+        const real g20 = a20*f0;
+        a21 -= g20*a01;
+        a22 -= g20*a02;
+        a23 -= g20*a03;
+        a24 -= g20*a04;
+        a25 -= g20*a05;
+        b2 -= g20*b0;
+        const real g30 = a30*f0;
+        a31 -= g30*a01;
+        a32 -= g30*a02;
+        a33 -= g30*a03;
+        a34 -= g30*a04;
+        a35 -= g30*a05;
+        b3 -= g30*b0;
+        const real g40 = a40*f0;
+        a41 -= g40*a01;
+        a42 -= g40*a02;
+        a43 -= g40*a03;
+        a44 -= g40*a04;
+        a45 -= g40*a05;
+        b4 -= g40*b0;
+        const real g50 = a50*f0;
+        a51 -= g50*a01;
+        a52 -= g50*a02;
+        a53 -= g50*a03;
+        a54 -= g50*a04;
+        a55 -= g50*a05;
+        b5 -= g50*b0;
+        const real g21 = a21*f1;
+        a22 -= g21*a12;
+        a23 -= g21*a13;
+        a24 -= g21*a14;
+        a25 -= g21*a15;
+        b2 -= g21*b1;
+        const real g31 = a31*f1;
+        a32 -= g31*a12;
+        a33 -= g31*a13;
+        a34 -= g31*a14;
+        a35 -= g31*a15;
+        b3 -= g31*b1;
+        const real g41 = a41*f1;
+        a42 -= g41*a12;
+        a43 -= g41*a13;
+        a44 -= g41*a14;
+        a45 -= g41*a15;
+        b4 -= g41*b1;
+        const real g51 = a51*f1;
+        a52 -= g51*a12;
+        a53 -= g51*a13;
+        a54 -= g51*a14;
+        a55 -= g51*a15;
+        b5 -= g51*b1;
+        const real f2 = 1/a22;
+        const real d3 = a22*a33 - a32*a23;
+        const real f3 = a22/d3;
+        const real g32 = a32*f2;
+        a34 -= g32*a24;
+        a35 -= g32*a25;
+        b3 -= g32*b2;
+        const real g42 = a42*f2;
+        a43 -= g42*a23;
+        a44 -= g42*a24;
+        a45 -= g42*a25;
+        b4 -= g42*b2;
+        const real g52 = a52*f2;
+        a53 -= g52*a23;
+        a54 -= g52*a24;
+        a55 -= g52*a25;
+        b5 -= g52*b2;
+        const real g43 = a43*f3;
+        a44 -= g43*a34;
+        a45 -= g43*a35;
+        b4 -= g43*b3;
+        const real g53 = a53*f3;
+        a54 -= g53*a34;
+        a55 -= g53*a35;
+        b5 -= g53*b3;
+        const real f4 = 1/a44;
+        const real d5 = a44*a55 - a54*a45;
+        const real f5 = a44/d5;
+        const real g54 = a54*f4;
+        b5 -= g54*b4;
+        const real x5 = (b5)*f5;
+        const real x4 = (b4)*f4 - a45*f4*x5;
+        const real x3 = (b3 - a35*x5)*f3 - a34*f3*x4;
+        const real x2 = (b2 - a25*x5 - a24*x4)*f2 - a23*f2*x3;
+        const real x1 = (b1 - a15*x5 - a14*x4 - a13*x3)*f1 - a12*f1*x2;
+        const real x0 = (b0 - a05*x5 - a04*x4 - a03*x3 - a02*x2)*f0 - a01*f0*x1;
+        x[0*w + k] = x0;
+        x[1*w + k] = x1;
+        x[2*w + k] = x2;
+        x[3*w + k] = x3;
+        x[4*w + k] = x4;
+        x[5*w + k] = x5;
+        total[k] += (x0 + (x1 + x2)) + (x3 + (x4 + x5));
+        const real most0 = larger(larger(larger(magnitude(g10), larger(magnitude(g20),
+            magnitude(g30))), larger(larger(magnitude(g40), magnitude(g50)),
+            larger(magnitude(g21), magnitude(g31)))), larger(larger(larger(magnitude(g41),
+            magnitude(g51)), larger(magnitude(g32), magnitude(g42))),
+            larger(larger(magnitude(g52), magnitude(g43)), larger(magnitude(g53),
+            magnitude(g54)))));
+        const real most1 = larger(larger(magnitude(f0), larger(magnitude(f1), magnitude(f2))),
+            larger(magnitude(f3), larger(magnitude(f4), magnitude(f5))));
+        unsure[k] += UNLESS(most0 <= R(10)) + UNLESS(most1 <= R(1024000)) + UNLESS(is_finite(a00 +
+            d1 + a22 + d3 + a44 + d5));
+    }
+}
+
+INLINE void complete_acceleration_one(const prepared *m, const real *X, const real *V, const real
+    *A, const real *wrench, real *completed_out, int *code)
+{
+    static const size_t places_0[] = {6, 7, 8, 9, 10, 11};
+    static const size_t places_1[] = {6, 7, 8, 9, 10, 11};
+    static const size_t places_2[] = {6, 7, 8, 9, 10, 11};
+    real wrench_in[6], clear_at_1[12] = {0}, M[144] = {0}, Z[12] = {0}, H[72] = {0}, times_2[12] =
+        {0}, add_3[12] = {0}, extend_4[12] = {0}, subtract_5[12] = {0}, take_columns_6[72] = {0},
+        negative_9[6] = {0}, solve_10[6] = {0}, unsure_12[1] = {0}, completed[12] = {0}, work[48];
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 13) + total(V, 12) + total(A, 12);
+    if (!is_finite(total_in)) {
+        check(13, 1, X, why.invalid);
+        check(12, 1, V, why.invalid);
+        check(12, 1, A, why.invalid);
+    }
+    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    for (size_t i = 0; i < 12; ++i) {
+        clear_at_1[i] = A[i];
+    }
+    clear_at(6, 1, places_0, clear_at_1);
+    dynamics_run(m, X, V, M, Z, H, &why);
+    product(12, 12, 1, 1, M, clear_at_1, times_2);
+    for (size_t i = 0; i < 12; ++i) {
+        add_3[i] = times_2[i] + Z[i];
+    }
+    for (size_t i = 0; i < 12; ++i) {
+        extend_4[i] = i < 6 ? wrench[i] : 0;
+    }
+    for (size_t i = 0; i < 12; ++i) {
+        subtract_5[i] = add_3[i] - extend_4[i];
+    }
+    take_columns(12, 12, 6, 1, places_1, M, take_columns_6);
+    const real *const take_7 = take_columns_6 + 36;
+    const real *const take_8 = subtract_5 + 6;
+    for (size_t i = 0; i < 6; ++i) {
+        negative_9[i] = -take_8[i];
+    }
+    eliminate_1(1, 6, take_7, negative_9, solve_10, unsure_12, why.total);
+    if (unsure_12[0] > 0) {
+        set_matrix(6, 1, take_7, work);
+        solve_apart(6, negative_9, work, solve_10, why.singular);
+        check(6, 1, solve_10, why.overflow);
+    }
+    for (size_t i = 0; i < 12; ++i) {
+        completed[i] = clear_at_1[i];
+    }
+    add_at(6, 1, places_2, solve_10, completed);
+    check(12, 1, completed, why.overflow);
+    judge(&why, code);
+    copy(12, completed, completed_out);
+    if (*code != OK) {
+        refuse(12, completed_out);
+    }
+}
+
+INLINE void complete_acceleration_lanes(const prepared *m, const real *X, const real *V, const
+    real *A, const real *wrench, real *completed_out, int *code)
+{
+    static const size_t places_0[] = {6, 7, 8, 9, 10, 11};
+    static const size_t places_1[] = {6, 7, 8, 9, 10, 11};
+    static const size_t places_2[] = {6, 7, 8, 9, 10, 11};
+    real X_in[13*LANES], V_in[12*LANES], A_in[12*LANES], wrench_in[6*LANES], clear_at_1[12*LANES],
+        M[144*LANES], Z[12*LANES], H[72*LANES], times_2[12*LANES] = {0}, add_3[12*LANES],
+        extend_4[12*LANES], subtract_5[12*LANES], take_columns_6[72*LANES] = {0}, negative_9[6*LANES],
+        solve_10[6*LANES], completed[12*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(13, X, X_in, why.total);
+    V = side_by_side(12, V, V_in, why.total);
+    A = side_by_side(12, A, A_in, why.total);
+    wrench = optional_side_by_side(6, wrench, 0, wrench_in, why.total);
+    for (size_t i = 0; i < 12*LANES; ++i) {
+        clear_at_1[i] = A[i];
+    }
+    clear_at(6, 1*LANES, places_0, clear_at_1);
+    dynamics_run_lanes(m, X, V, M, Z, H, &why);
+    product(12, 12, 1, LANES, M, clear_at_1, times_2);
+    for (size_t i = 0; i < 12*LANES; ++i) {
+        add_3[i] = times_2[i] + Z[i];
+    }
+    for (size_t i = 0; i < 12*LANES; ++i) {
+        extend_4[i] = i < 6*LANES ? wrench[i] : 0;
+    }
+    for (size_t i = 0; i < 12*LANES; ++i) {
+        subtract_5[i] = add_3[i] - extend_4[i];
+    }
+    take_columns(12, 12, 6, LANES, places_1, M, take_columns_6);
+    const real *const take_7 = take_columns_6 + 36*LANES;
+    const real *const take_8 = subtract_5 + 6*LANES;
+    for (size_t i = 0; i < 6*LANES; ++i) {
+        negative_9[i] = -take_8[i];
+    }
+    eliminate_1(LANES, 6, take_7, negative_9, solve_10, why.singular, why.total);
+    for (size_t i = 0; i < 12*LANES; ++i) {
+        completed[i] = clear_at_1[i];
+    }
+    add_at(6, 1*LANES, places_2, solve_10, completed);
+    add_up(12, completed, why.total);
+    suspect(&why, code);
+    deliver(12, completed, completed_out);
+}
+
+INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *forces_out, int *code)
+{
+    static const size_t places_0[] = {0, 1, 2, 3, 4, 5};
+    real wrench_in[6], required[12] = {0}, H[72] = {0}, extend_1[12] = {0}, subtract_2[12] = {0},
+        solve_5[6] = {0}, unsure_6[1] = {0}, leg_force[18] = {0}, drive[18] = {0}, forces[18] = {0},
+        work[48];
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 13) + total(V, 12) + total(A, 12);
+    if (!is_finite(total_in)) {
+        check(13, 1, X, why.invalid);
+        check(12, 1, V, why.invalid);
+        check(12, 1, A, why.invalid);
+    }
+    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    required_run(m, X, V, A, required, H, &why);
+    for (size_t i = 0; i < 12; ++i) {
+        extend_1[i] = i < 6 ? wrench[i] : 0;
+    }
+    for (size_t i = 0; i < 12; ++i) {
+        subtract_2[i] = required[i] - extend_1[i];
+    }
+    const real *const take_3 = H;
+    const real *const take_4 = subtract_2;
+    eliminate_0(1, 6, take_3, take_4, solve_5, unsure_6, why.total);
+    if (unsure_6[0] > 0) {
+        set_matrix(6, 1, take_3, work);
+        solve_apart(6, take_4, work, solve_5, why.singular);
+        check(6, 1, solve_5, why.overflow);
+    }
+    legs_run(m, X, V, A, leg_force, drive, &why);
     for (size_t i = 0; i < 18; ++i) {
         forces[i] = leg_force[i];
     }
     add_forces(6, 3, 1, places_0, solve_5, drive, forces);
     check(18, 1, forces, why.overflow);
-    judge(&why, 1, code);
-    deliver(forces, 18, 1, code, forces_out);
+    judge(&why, code);
+    copy(18, forces, forces_out);
+    if (*code != OK) {
+        refuse(18, forces_out);
+    }
 }
 
-INLINE void energy_any(const prepared *m, const real *X, const real *V, real *kinetic_out, real
+INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out, int *code)
 {
     real M[144] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
     start(1, &why);
-    check(13, 1, X, why.invalid);
-    check(12, 1, V, why.invalid);
-    M_run(m, 1, X, M, &why);
-    potential_run(m, 1, X, potential_of_potential, &why);
+    const real total_in = total(X, 13) + total(V, 12);
+    if (!is_finite(total_in)) {
+        check(13, 1, X, why.invalid);
+        check(12, 1, V, why.invalid);
+    }
+    M_run(m, X, M, &why);
+    potential_run(m, X, potential_of_potential, &why);
     half_form(12, 1, V, M, kinetic);
     const real *const potential = potential_of_potential;
     check(1, 1, kinetic, why.overflow);
     check(1, 1, potential, why.overflow);
-    judge(&why, 1, code);
-    deliver(kinetic, 1, 1, code, kinetic_out);
-    deliver(potential, 1, 1, code, potential_out);
+    judge(&why, code);
+    copy(1, kinetic, kinetic_out);
+    copy(1, potential, potential_out);
+    if (*code != OK) {
+        refuse(1, kinetic_out);
+        refuse(1, potential_out);
+    }
 }
 
-INLINE void condition_any(const prepared *m, const real *X, const real *length, real *sigma_out,
+INLINE void condition_one(const prepared *m, const real *X, const real *length, real *sigma_out,
     real *legs_out, int *code)
 {
     static const size_t places_0[] = {3, 4, 5, 6, 7, 8, 9, 10, 11};
@@ -5629,8 +6312,8 @@ INLINE void condition_any(const prepared *m, const real *X, const real *length, 
     start(1, &why);
     check(13, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, 1, length, 0, length_in, why.invalid);
-    condition_run(m, 1, X, H, lengths, legs, reach, &why);
+    length = optional(1, length, 0, length_in, why.invalid);
+    condition_run(m, X, H, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
             lengths[i] : lengths[1 + i];
@@ -5640,42 +6323,57 @@ INLINE void condition_any(const prepared *m, const real *X, const real *length, 
     }
     divide_rows(9, 6, 1, places_0, choose_length_1, divide_rows_2);
     singular_values(12, 6, divide_rows_2, sigma);
+    if (!is_finite(why.total[0])) {
+        check(6, 1, legs, why.overflow);
+    }
     check(6, 1, sigma, why.overflow);
-    check(6, 1, legs, why.overflow);
-    judge(&why, 1, code);
-    deliver(sigma, 6, 1, code, sigma_out);
-    deliver(legs, 6, 1, code, legs_out);
+    judge(&why, code);
+    copy(6, sigma, sigma_out);
+    copy(6, legs, legs_out);
+    if (*code != OK) {
+        refuse(6, sigma_out);
+        refuse(6, legs_out);
+    }
 }
 
-static void mismatch_any(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
+static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
     static const size_t places_0[] = {3, 7, 11, 15, 19, 23};
     real q[24] = {0}, take_1[6] = {0}, gap[6] = {0};
     verdict why;
     start(1, &why);
-    check(13, 1, X, why.invalid);
-    check(6, 1, q_actuated, why.invalid);
-    inverse_kinematics_run(m, 1, X, q, &why);
+    const real total_in = total(X, 13) + total(q_actuated, 6);
+    if (!is_finite(total_in)) {
+        check(13, 1, X, why.invalid);
+        check(6, 1, q_actuated, why.invalid);
+    }
+    inverse_kinematics_run(m, X, q, &why);
     take(6, 1, places_0, q, take_1);
     for (size_t i = 0; i < 6; ++i) {
         gap[i] = q_actuated[i] - take_1[i];
     }
     check(6, 1, gap, why.overflow);
-    judge(&why, 1, code);
-    deliver(gap, 6, 1, code, gap_out);
+    judge(&why, code);
+    copy(6, gap, gap_out);
+    if (*code != OK) {
+        refuse(6, gap_out);
+    }
 }
 
-static void slope_any(const prepared *m, const real *X, real *slope_out, int *code)
+static void slope_one(const prepared *m, const real *X, real *slope_out, int *code)
 {
-    real slope[72] = {0};
     verdict why;
     start(1, &why);
     check(13, 1, X, why.invalid);
-    H_run(m, 1, X, slope, &why);
-    check(72, 1, slope, why.overflow);
-    judge(&why, 1, code);
-    deliver(slope, 72, 1, code, slope_out);
+    H_run(m, X, slope_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(72, 1, slope_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(72, slope_out);
+    }
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -5686,12 +6384,12 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
     real trial[13] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    mismatch_any(m, found, q_actuated, gap, &code);
+    mismatch_one(m, found, q_actuated, gap, &code);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        slope_any(m, found, slope, &code);
+        slope_one(m, found, slope, &code);
         if (code != OK) {
             break;
         }
@@ -5705,7 +6403,7 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            mismatch_any(m, trial, q_actuated, next, &tried);
+            mismatch_one(m, trial, q_actuated, next, &tried);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -5723,21 +6421,27 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 }
 
 
-INLINE void forward_kinematics_any(const prepared *m, const real *q_actuated, const real *X0, real
+INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
     *X_out, int *code)
 {
     real X[13] = {0};
     verdict why;
     start(1, &why);
-    check(6, 1, q_actuated, why.invalid);
-    check(13, 1, X0, why.invalid);
+    const real total_in = total(q_actuated, 6) + total(X0, 13);
+    if (!is_finite(total_in)) {
+        check(6, 1, q_actuated, why.invalid);
+        check(13, 1, X0, why.invalid);
+    }
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(13, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 13, 1, code, X_out);
+    judge(&why, code);
+    copy(13, X, X_out);
+    if (*code != OK) {
+        refuse(13, X_out);
+    }
 }
 
-INLINE void dissipation_any(const real *V, real *dissipation_out, int *code)
+INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 {
     real subtract_1[12] = {0};
     verdict why;
@@ -5748,93 +6452,271 @@ INLINE void dissipation_any(const real *V, real *dissipation_out, int *code)
     }
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
-    judge(&why, 1, code);
-    deliver(dissipation, 1, 1, code, dissipation_out);
+    judge(&why, code);
+    copy(1, dissipation, dissipation_out);
+    if (*code != OK) {
+        refuse(1, dissipation_out);
+    }
 }
 
-INLINE void momentum_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *momentum_out, int *code)
+INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
+    *code)
+{
+    real M[144] = {0}, momentum[12] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 13) + total(V, 12);
+    if (!is_finite(total_in)) {
+        check(13, 1, X, why.invalid);
+        check(12, 1, V, why.invalid);
+    }
+    M_run(m, X, M, &why);
+    product(12, 12, 1, 1, M, V, momentum);
+    check(12, 1, momentum, why.overflow);
+    judge(&why, code);
+    copy(12, momentum, momentum_out);
+    if (*code != OK) {
+        refuse(12, momentum_out);
+    }
+}
+
+INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
+    int *code)
 {
     real X_in[13*LANES], V_in[12*LANES], M[144*LANES], momentum[12*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(13, w, X, X_in, why.invalid);
-    V = side_by_side(12, w, V, V_in, why.invalid);
-    M_run(m, w, X, M, &why);
-    product(12, 12, 1, w, M, V, momentum);
-    check(12, w, momentum, why.overflow);
-    judge(&why, w, code);
-    deliver(momentum, 12, w, code, momentum_out);
+    start(LANES, &why);
+    X = side_by_side(13, X, X_in, why.total);
+    V = side_by_side(12, V, V_in, why.total);
+    M_run_lanes(m, X, M, &why);
+    product(12, 12, 1, LANES, M, V, momentum);
+    add_up(12, momentum, why.total);
+    suspect(&why, code);
+    deliver(12, momentum, momentum_out);
 }
 
-INLINE void actuator_positions_any(const prepared *m, size_t w, const real *X, real *q_out, int
-    *code)
+INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
+{
+    static const size_t places_0[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23};
+    real q[24] = {0}, margins[24] = {0};
+    verdict why;
+    start(1, &why);
+    check(13, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q, &why);
+    for (size_t i = 0; i < 24; ++i) {
+        margins[i] = q[i];
+    }
+    unlimited(24, 24, 1, places_0, margins, why.overflow);
+    judge(&why, code);
+    copy(24, margins, margins_out);
+    if (*code != OK) {
+        refuse(24, margins_out);
+    }
+}
+
+INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
+{
+    static const size_t places_0[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23};
+    real X_in[13*LANES], q[24*LANES], margins[24*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(13, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    for (size_t i = 0; i < 24*LANES; ++i) {
+        margins[i] = q[i];
+    }
+    unlimited(24, 24, LANES, places_0, margins, why.invalid);
+    suspect(&why, code);
+    deliver(24, margins, margins_out);
+}
+
+INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
+{
+    real q[24] = {0}, subtract_1[24] = {0}, within[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(13, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q, &why);
+    for (size_t i = 0; i < 24; ++i) {
+        subtract_1[i] = q[i] - q[i];
+    }
+    not_negative(24, 1, subtract_1, within, why.overflow);
+    check(1, 1, within, why.overflow);
+    judge(&why, code);
+    copy(1, within, within_out);
+    if (*code != OK) {
+        refuse(1, within_out);
+    }
+}
+
+INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
+{
+    real X_in[13*LANES], q[24*LANES], subtract_1[24*LANES], within[1*LANES] = {0};
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(13, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    for (size_t i = 0; i < 24*LANES; ++i) {
+        subtract_1[i] = q[i] - q[i];
+    }
+    not_negative(24, LANES, subtract_1, within, why.invalid);
+    add_up(1, within, why.total);
+    suspect(&why, code);
+    deliver(1, within, within_out);
+}
+
+INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
+{
+    static const size_t places_0[] = {3, 7, 11, 15, 19, 23};
+    real q_of_inverse_kinematics[24] = {0}, q[6] = {0};
+    verdict why;
+    start(1, &why);
+    check(13, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
+    take(6, 1, places_0, q_of_inverse_kinematics, q);
+    check(6, 1, q, why.overflow);
+    judge(&why, code);
+    copy(6, q, q_out);
+    if (*code != OK) {
+        refuse(6, q_out);
+    }
+}
+
+INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     static const size_t places_0[] = {3, 7, 11, 15, 19, 23};
     real X_in[13*LANES], q_of_inverse_kinematics[24*LANES], q[6*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(13, w, X, X_in, why.invalid);
-    inverse_kinematics_run(m, w, X, q_of_inverse_kinematics, &why);
-    take(6, 1*w, places_0, q_of_inverse_kinematics, q);
-    check(6, w, q, why.overflow);
-    judge(&why, w, code);
-    deliver(q, 6, w, code, q_out);
+    start(LANES, &why);
+    X = side_by_side(13, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
+    take(6, 1*LANES, places_0, q_of_inverse_kinematics, q);
+    add_up(6, q, why.total);
+    suspect(&why, code);
+    deliver(6, q, q_out);
 }
 
-INLINE void actuator_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *qd_out, int *code)
+INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
+{
+    static const size_t places_0[] = {3, 7, 11, 15, 19, 23};
+    real qd_of_joint_rates[24] = {0}, qd[6] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 13) + total(V, 12);
+    if (!is_finite(total_in)) {
+        check(13, 1, X, why.invalid);
+        check(12, 1, V, why.invalid);
+    }
+    joint_rates_run(m, X, V, qd_of_joint_rates, &why);
+    take(6, 1, places_0, qd_of_joint_rates, qd);
+    check(6, 1, qd, why.overflow);
+    judge(&why, code);
+    copy(6, qd, qd_out);
+    if (*code != OK) {
+        refuse(6, qd_out);
+    }
+}
+
+INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
+    int *code)
 {
     static const size_t places_0[] = {3, 7, 11, 15, 19, 23};
     real X_in[13*LANES], V_in[12*LANES], qd_of_joint_rates[24*LANES], qd[6*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(13, w, X, X_in, why.invalid);
-    V = side_by_side(12, w, V, V_in, why.invalid);
-    joint_rates_run(m, w, X, V, qd_of_joint_rates, &why);
-    take(6, 1*w, places_0, qd_of_joint_rates, qd);
-    check(6, w, qd, why.overflow);
-    judge(&why, w, code);
-    deliver(qd, 6, w, code, qd_out);
+    start(LANES, &why);
+    X = side_by_side(13, X, X_in, why.total);
+    V = side_by_side(12, V, V_in, why.total);
+    joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
+    take(6, 1*LANES, places_0, qd_of_joint_rates, qd);
+    add_up(6, qd, why.total);
+    suspect(&why, code);
+    deliver(6, qd, qd_out);
 }
 
-INLINE void actuator_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd_out, int *code)
+INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
+{
+    static const size_t places_0[] = {3, 7, 11, 15, 19, 23};
+    real qdd_of_joint_accelerations[24] = {0}, qdd[6] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 13) + total(V, 12) + total(A, 12);
+    if (!is_finite(total_in)) {
+        check(13, 1, X, why.invalid);
+        check(12, 1, V, why.invalid);
+        check(12, 1, A, why.invalid);
+    }
+    joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
+    take(6, 1, places_0, qdd_of_joint_accelerations, qdd);
+    check(6, 1, qdd, why.overflow);
+    judge(&why, code);
+    copy(6, qdd, qdd_out);
+    if (*code != OK) {
+        refuse(6, qdd_out);
+    }
+}
+
+INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out, int *code)
 {
     static const size_t places_0[] = {3, 7, 11, 15, 19, 23};
     real X_in[13*LANES], V_in[12*LANES], A_in[12*LANES], qdd_of_joint_accelerations[24*LANES],
         qdd[6*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(13, w, X, X_in, why.invalid);
-    V = side_by_side(12, w, V, V_in, why.invalid);
-    A = side_by_side(12, w, A, A_in, why.invalid);
-    joint_accelerations_run(m, w, X, V, A, qdd_of_joint_accelerations, &why);
-    take(6, 1*w, places_0, qdd_of_joint_accelerations, qdd);
-    check(6, w, qdd, why.overflow);
-    judge(&why, w, code);
-    deliver(qdd, 6, w, code, qdd_out);
+    start(LANES, &why);
+    X = side_by_side(13, X, X_in, why.total);
+    V = side_by_side(12, V, V_in, why.total);
+    A = side_by_side(12, A, A_in, why.total);
+    joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
+    take(6, 1*LANES, places_0, qdd_of_joint_accelerations, qdd);
+    add_up(6, qdd, why.total);
+    suspect(&why, code);
+    deliver(6, qdd, qdd_out);
 }
 
-INLINE void power_any(const prepared *m, size_t w, const real *X, const real *V, const real *tau,
-    real *power_out, int *code)
+INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out, int *code)
+{
+    real H[72] = {0}, times_1[12] = {0}, power[1] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 13) + total(V, 12) + total(tau, 6);
+    if (!is_finite(total_in)) {
+        check(13, 1, X, why.invalid);
+        check(12, 1, V, why.invalid);
+        check(6, 1, tau, why.invalid);
+    }
+    H_run(m, X, H, &why);
+    product(12, 6, 1, 1, H, tau, times_1);
+    inner(12, 1, times_1, V, power);
+    check(1, 1, power, why.overflow);
+    judge(&why, code);
+    copy(1, power, power_out);
+    if (*code != OK) {
+        refuse(1, power_out);
+    }
+}
+
+INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out, int *code)
 {
     real X_in[13*LANES], V_in[12*LANES], tau_in[6*LANES], H[72*LANES], times_1[12*LANES] = {0},
         power[1*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(13, w, X, X_in, why.invalid);
-    V = side_by_side(12, w, V, V_in, why.invalid);
-    tau = side_by_side(6, w, tau, tau_in, why.invalid);
-    H_run(m, w, X, H, &why);
-    product(12, 6, 1, w, H, tau, times_1);
-    inner(12, w, times_1, V, power);
-    check(1, w, power, why.overflow);
-    judge(&why, w, code);
-    deliver(power, 1, w, code, power_out);
+    start(LANES, &why);
+    X = side_by_side(13, X, X_in, why.total);
+    V = side_by_side(12, V, V_in, why.total);
+    tau = side_by_side(6, tau, tau_in, why.total);
+    H_run_lanes(m, X, H, &why);
+    product(12, 6, 1, LANES, H, tau, times_1);
+    inner(12, LANES, times_1, V, power);
+    add_up(1, power, why.total);
+    suspect(&why, code);
+    deliver(1, power, power_out);
 }
 
-INLINE void rotation_any(const real *X, real *R_out, int *code)
+INLINE void rotation_one(const real *X, real *R_out, int *code)
 {
     real R[9] = {0};
     verdict why;
@@ -5843,34 +6725,46 @@ INLINE void rotation_any(const real *X, real *R_out, int *code)
     const real *const take_1 = X + 3;
     rotation_of_quaternion(take_1, R);
     check(9, 1, R, why.overflow);
-    judge(&why, 1, code);
-    deliver(R, 9, 1, code, R_out);
+    judge(&why, code);
+    copy(9, R, R_out);
+    if (*code != OK) {
+        refuse(9, R_out);
+    }
 }
 
-INLINE void pose_any(const real *t, const real *R, real *X_out, int *code)
+INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
 {
     real quaternion_of_rotation_1[4] = {0}, join_2[7] = {0}, X[13] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, t, why.invalid);
-    check(9, 1, R, why.invalid);
+    const real total_in = total(t, 3) + total(R, 9);
+    if (!is_finite(total_in)) {
+        check(3, 1, t, why.invalid);
+        check(9, 1, R, why.invalid);
+    }
     quaternion_of_rotation(R, quaternion_of_rotation_1);
     beside(1, 3, 4, t, quaternion_of_rotation_1, join_2);
     for (size_t i = 0; i < 13; ++i) {
         X[i] = i < 7 ? join_2[i] : 0;
     }
     check(13, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 13, 1, code, X_out);
+    judge(&why, code);
+    copy(13, X, X_out);
+    if (*code != OK) {
+        refuse(13, X_out);
+    }
 }
 
-INLINE void X_dot_any(const real *X, const real *V, real *X_dot_out, int *code)
+INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
 {
     real quaternion_rate_3[4] = {0}, join_5[7] = {0}, X_dot[13] = {0};
     verdict why;
     start(1, &why);
-    check(13, 1, X, why.invalid);
-    check(12, 1, V, why.invalid);
+    const real total_in = total(X, 13) + total(V, 12);
+    if (!is_finite(total_in)) {
+        check(13, 1, X, why.invalid);
+        check(12, 1, V, why.invalid);
+    }
     const real *const take_1 = V + 3;
     const real *const take_2 = X + 3;
     quaternion_rate(take_2, take_1, quaternion_rate_3);
@@ -5879,35 +6773,47 @@ INLINE void X_dot_any(const real *X, const real *V, real *X_dot_out, int *code)
     const real *const take_6 = V + 6;
     beside(1, 7, 6, join_5, take_6, X_dot);
     check(13, 1, X_dot, why.overflow);
-    judge(&why, 1, code);
-    deliver(X_dot, 13, 1, code, X_dot_out);
+    judge(&why, code);
+    copy(13, X_dot, X_dot_out);
+    if (*code != OK) {
+        refuse(13, X_dot_out);
+    }
 }
 
-INLINE void pose_from_rpy_any(const real *t, const real *rpy, real *X_out, int *code)
+INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *code)
 {
     real quaternion_of_rpy_1[4] = {0}, join_2[7] = {0}, X[13] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, t, why.invalid);
-    check(3, 1, rpy, why.invalid);
+    const real total_in = total(t, 3) + total(rpy, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, t, why.invalid);
+        check(3, 1, rpy, why.invalid);
+    }
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
     beside(1, 3, 4, t, quaternion_of_rpy_1, join_2);
     for (size_t i = 0; i < 13; ++i) {
         X[i] = i < 7 ? join_2[i] : 0;
     }
     check(13, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 13, 1, code, X_out);
+    judge(&why, code);
+    copy(13, X, X_out);
+    if (*code != OK) {
+        refuse(13, X_out);
+    }
 }
 
-INLINE void retract_any(const real *X, const real *step, real *X_moved_out, int *code)
+INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
 {
     real turn_quaternion_7[4] = {0}, add_8[3] = {0}, add_9[6] = {0}, join_10[7] = {0}, X_moved[13] =
         {0};
     verdict why;
     start(1, &why);
-    check(13, 1, X, why.invalid);
-    check(12, 1, step, why.invalid);
+    const real total_in = total(X, 13) + total(step, 12);
+    if (!is_finite(total_in)) {
+        check(13, 1, X, why.invalid);
+        check(12, 1, step, why.invalid);
+    }
     const real *const take_1 = X;
     const real *const take_2 = X + 3;
     const real *const take_3 = X + 7;
@@ -5924,18 +6830,24 @@ INLINE void retract_any(const real *X, const real *step, real *X_moved_out, int 
     beside(1, 3, 4, add_8, turn_quaternion_7, join_10);
     beside(1, 7, 6, join_10, add_9, X_moved);
     check(13, 1, X_moved, why.overflow);
-    judge(&why, 1, code);
-    deliver(X_moved, 13, 1, code, X_moved_out);
+    judge(&why, code);
+    copy(13, X_moved, X_moved_out);
+    if (*code != OK) {
+        refuse(13, X_moved_out);
+    }
 }
 
-INLINE void difference_any(const real *X0, const real *X1, real *step_out, int *code)
+INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
 {
     real turn_between_7[3] = {0}, subtract_8[3] = {0}, subtract_9[6] = {0}, join_10[6] = {0}, step[12]
         = {0};
     verdict why;
     start(1, &why);
-    check(13, 1, X0, why.invalid);
-    check(13, 1, X1, why.invalid);
+    const real total_in = total(X0, 13) + total(X1, 13);
+    if (!is_finite(total_in)) {
+        check(13, 1, X0, why.invalid);
+        check(13, 1, X1, why.invalid);
+    }
     const real *const take_1 = X0;
     const real *const take_2 = X0 + 3;
     const real *const take_3 = X0 + 7;
@@ -5952,20 +6864,26 @@ INLINE void difference_any(const real *X0, const real *X1, real *step_out, int *
     beside(1, 3, 3, subtract_8, turn_between_7, join_10);
     beside(1, 6, 6, join_10, subtract_9, step);
     check(12, 1, step, why.overflow);
-    judge(&why, 1, code);
-    deliver(step, 12, 1, code, step_out);
+    judge(&why, code);
+    copy(12, step, step_out);
+    if (*code != OK) {
+        refuse(12, step_out);
+    }
 }
 
-INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real *X_out, int *code)
+INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
 {
     real turn_between_7[3] = {0}, subtract_8[3] = {0}, subtract_9[6] = {0}, join_10[6] = {0},
         join_11[12] = {0}, scale_12[12] = {0}, turn_quaternion_19[4] = {0}, add_20[3] = {0}, add_21[6]
         = {0}, join_22[7] = {0}, X[13] = {0};
     verdict why;
     start(1, &why);
-    check(13, 1, X0, why.invalid);
-    check(13, 1, X1, why.invalid);
-    check(1, 1, s, why.invalid);
+    const real total_in = total(X0, 13) + total(X1, 13) + total(s, 1);
+    if (!is_finite(total_in)) {
+        check(13, 1, X0, why.invalid);
+        check(13, 1, X1, why.invalid);
+        check(1, 1, s, why.invalid);
+    }
     const real *const take_1 = X0;
     const real *const take_2 = X0 + 3;
     const real *const take_3 = X0 + 7;
@@ -6000,8 +6918,11 @@ INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real 
     beside(1, 3, 4, add_20, turn_quaternion_19, join_22);
     beside(1, 7, 6, join_22, add_21, X);
     check(13, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 13, 1, code, X_out);
+    judge(&why, code);
+    copy(13, X, X_out);
+    if (*code != OK) {
+        refuse(13, X_out);
+    }
 }
 
 /* ---- one state, and batches ---- */
@@ -6009,7 +6930,7 @@ INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real 
 int stewart_sps_M(const stewart_sps_model *model, const stewart_sps_real *X, stewart_sps_real *M)
 {
     int code;
-    M_any(model, 1, X, M, &code);
+    M_one(model, X, M, &code);
     return code;
 }
 
@@ -6017,9 +6938,9 @@ size_t stewart_sps_M_batch(const stewart_sps_model *model, size_t n, const stewa
     stewart_sps_real *M, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        M_any(model, LANES, X + 13*i, M + 144*i, codes);
+        M_lanes(model, X + 13*i, M + 144*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_M(model, X + 13*(i + k), M + 144*(i + k));
@@ -6038,7 +6959,7 @@ int stewart_sps_Z(const stewart_sps_model *model, const stewart_sps_real *X, con
     stewart_sps_real *V, stewart_sps_real *Z)
 {
     int code;
-    Z_any(model, 1, X, V, Z, &code);
+    Z_one(model, X, V, Z, &code);
     return code;
 }
 
@@ -6046,9 +6967,9 @@ size_t stewart_sps_Z_batch(const stewart_sps_model *model, size_t n, const stewa
     const stewart_sps_real *V, stewart_sps_real *Z, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        Z_any(model, LANES, X + 13*i, V + 12*i, Z + 12*i, codes);
+        Z_lanes(model, X + 13*i, V + 12*i, Z + 12*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_Z(model, X + 13*(i + k), V + 12*(i + k), Z + 12*(i + k));
@@ -6066,7 +6987,7 @@ size_t stewart_sps_Z_batch(const stewart_sps_model *model, size_t n, const stewa
 int stewart_sps_H(const stewart_sps_model *model, const stewart_sps_real *X, stewart_sps_real *H)
 {
     int code;
-    H_any(model, 1, X, H, &code);
+    H_one(model, X, H, &code);
     return code;
 }
 
@@ -6074,9 +6995,9 @@ size_t stewart_sps_H_batch(const stewart_sps_model *model, size_t n, const stewa
     stewart_sps_real *H, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        H_any(model, LANES, X + 13*i, H + 72*i, codes);
+        H_lanes(model, X + 13*i, H + 72*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_H(model, X + 13*(i + k), H + 72*(i + k));
@@ -6095,7 +7016,7 @@ int stewart_sps_inverse_kinematics(const stewart_sps_model *model, const stewart
     stewart_sps_real *q)
 {
     int code;
-    inverse_kinematics_any(model, 1, X, q, &code);
+    inverse_kinematics_one(model, X, q, &code);
     return code;
 }
 
@@ -6103,9 +7024,9 @@ size_t stewart_sps_inverse_kinematics_batch(const stewart_sps_model *model, size
     stewart_sps_real *X, stewart_sps_real *q, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_kinematics_any(model, LANES, X + 13*i, q + 24*i, codes);
+        inverse_kinematics_lanes(model, X + 13*i, q + 24*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_inverse_kinematics(model, X + 13*(i + k), q + 24*(i + k));
@@ -6124,7 +7045,7 @@ int stewart_sps_joint_rates(const stewart_sps_model *model, const stewart_sps_re
     stewart_sps_real *V, stewart_sps_real *rates)
 {
     int code;
-    joint_rates_any(model, 1, X, V, rates, &code);
+    joint_rates_one(model, X, V, rates, &code);
     return code;
 }
 
@@ -6132,9 +7053,9 @@ size_t stewart_sps_joint_rates_batch(const stewart_sps_model *model, size_t n, c
     stewart_sps_real *X, const stewart_sps_real *V, stewart_sps_real *rates, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_rates_any(model, LANES, X + 13*i, V + 12*i, rates + 24*i, codes);
+        joint_rates_lanes(model, X + 13*i, V + 12*i, rates + 24*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_joint_rates(model, X + 13*(i + k), V + 12*(i + k), rates + 24*(i + k));
@@ -6153,7 +7074,7 @@ int stewart_sps_joint_accelerations(const stewart_sps_model *model, const stewar
     const stewart_sps_real *V, const stewart_sps_real *A, stewart_sps_real *accelerations)
 {
     int code;
-    joint_accelerations_any(model, 1, X, V, A, accelerations, &code);
+    joint_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
@@ -6162,9 +7083,9 @@ size_t stewart_sps_joint_accelerations_batch(const stewart_sps_model *model, siz
     *accelerations, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_accelerations_any(model, LANES, X + 13*i, V + 12*i, A + 12*i, accelerations + 24*i, codes);
+        joint_accelerations_lanes(model, X + 13*i, V + 12*i, A + 12*i, accelerations + 24*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_joint_accelerations(model, X + 13*(i + k), V + 12*(i + k), A + 12*(i + k),
@@ -6185,7 +7106,7 @@ int stewart_sps_dynamics(const stewart_sps_model *model, const stewart_sps_real 
     stewart_sps_real *V, stewart_sps_real *M, stewart_sps_real *Z, stewart_sps_real *H)
 {
     int code;
-    dynamics_any(model, 1, X, V, M, Z, H, &code);
+    dynamics_one(model, X, V, M, Z, H, &code);
     return code;
 }
 
@@ -6194,9 +7115,9 @@ size_t stewart_sps_dynamics_batch(const stewart_sps_model *model, size_t n, cons
     int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        dynamics_any(model, LANES, X + 13*i, V + 12*i, M + 144*i, Z + 12*i, H + 72*i, codes);
+        dynamics_lanes(model, X + 13*i, V + 12*i, M + 144*i, Z + 12*i, H + 72*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_dynamics(model, X + 13*(i + k), V + 12*(i + k), M + 144*(i + k), Z + 12*(i
@@ -6217,7 +7138,7 @@ int stewart_sps_inverse_dynamics(const stewart_sps_model *model, const stewart_s
     stewart_sps_real *tau)
 {
     int code;
-    inverse_dynamics_any(model, 1, X, V, A, wrench, tau, &code);
+    inverse_dynamics_one(model, X, V, A, wrench, tau, &code);
     return code;
 }
 
@@ -6226,10 +7147,10 @@ size_t stewart_sps_inverse_dynamics_batch(const stewart_sps_model *model, size_t
     stewart_sps_real *wrench, stewart_sps_real *tau, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_dynamics_any(model, LANES, X + 13*i, V + 12*i, A + 12*i, wrench ? wrench + 6*i : NULL, tau
-            + 6*i, codes);
+        inverse_dynamics_lanes(model, X + 13*i, V + 12*i, A + 12*i, wrench ? wrench + 6*i : NULL, tau +
+            6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_inverse_dynamics(model, X + 13*(i + k), V + 12*(i + k), A + 12*(i + k),
@@ -6251,7 +7172,7 @@ int stewart_sps_forward_dynamics(const stewart_sps_model *model, const stewart_s
     stewart_sps_real *A)
 {
     int code;
-    forward_dynamics_any(model, 1, X, V, tau, wrench, A, &code);
+    forward_dynamics_one(model, X, V, tau, wrench, A, &code);
     return code;
 }
 
@@ -6260,10 +7181,10 @@ size_t stewart_sps_forward_dynamics_batch(const stewart_sps_model *model, size_t
     stewart_sps_real *wrench, stewart_sps_real *A, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        forward_dynamics_any(model, LANES, X + 13*i, V + 12*i, tau + 6*i, wrench ? wrench + 6*i : NULL, A
-            + 12*i, codes);
+        forward_dynamics_lanes(model, X + 13*i, V + 12*i, tau + 6*i, wrench ? wrench + 6*i : NULL, A +
+            12*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_forward_dynamics(model, X + 13*(i + k), V + 12*(i + k), tau + 6*(i + k),
@@ -6285,7 +7206,7 @@ int stewart_sps_complete_acceleration(const stewart_sps_model *model, const stew
     stewart_sps_real *completed)
 {
     int code;
-    complete_acceleration_any(model, 1, X, V, A, wrench, completed, &code);
+    complete_acceleration_one(model, X, V, A, wrench, completed, &code);
     return code;
 }
 
@@ -6294,10 +7215,10 @@ size_t stewart_sps_complete_acceleration_batch(const stewart_sps_model *model, s
     stewart_sps_real *wrench, stewart_sps_real *completed, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        complete_acceleration_any(model, LANES, X + 13*i, V + 12*i, A + 12*i, wrench ? wrench + 6*i :
-            NULL, completed + 12*i, codes);
+        complete_acceleration_lanes(model, X + 13*i, V + 12*i, A + 12*i, wrench ? wrench + 6*i : NULL,
+            completed + 12*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_complete_acceleration(model, X + 13*(i + k), V + 12*(i + k), A + 12*(i +
@@ -6319,7 +7240,7 @@ int stewart_sps_leg_reactions(const stewart_sps_model *model, const stewart_sps_
     stewart_sps_real *forces)
 {
     int code;
-    leg_reactions_any(model, X, V, A, wrench, forces, &code);
+    leg_reactions_one(model, X, V, A, wrench, forces, &code);
     return code;
 }
 
@@ -6340,7 +7261,7 @@ int stewart_sps_energy(const stewart_sps_model *model, const stewart_sps_real *X
     stewart_sps_real *V, stewart_sps_real *kinetic, stewart_sps_real *potential)
 {
     int code;
-    energy_any(model, X, V, kinetic, potential, &code);
+    energy_one(model, X, V, kinetic, potential, &code);
     return code;
 }
 
@@ -6360,7 +7281,7 @@ int stewart_sps_condition(const stewart_sps_model *model, const stewart_sps_real
     stewart_sps_real *sigma, stewart_sps_real *legs)
 {
     int code;
-    condition_any(model, X, NULL, sigma, legs, &code);
+    condition_one(model, X, NULL, sigma, legs, &code);
     return code;
 }
 
@@ -6379,7 +7300,7 @@ int stewart_sps_forward_kinematics(const stewart_sps_model *model, const stewart
     *q_actuated, const stewart_sps_real *X0, stewart_sps_real *X)
 {
     int code;
-    forward_kinematics_any(model, q_actuated, X0, X, &code);
+    forward_kinematics_one(model, q_actuated, X0, X, &code);
     return code;
 }
 
@@ -6400,7 +7321,7 @@ int stewart_sps_dissipation(const stewart_sps_model *model, const stewart_sps_re
     int code;
     (void)model;
     (void)X;
-    dissipation_any(V, dissipation, &code);
+    dissipation_one(V, dissipation, &code);
     return code;
 }
 
@@ -6419,7 +7340,7 @@ int stewart_sps_momentum(const stewart_sps_model *model, const stewart_sps_real 
     stewart_sps_real *V, stewart_sps_real *momentum)
 {
     int code;
-    momentum_any(model, 1, X, V, momentum, &code);
+    momentum_one(model, X, V, momentum, &code);
     return code;
 }
 
@@ -6427,9 +7348,9 @@ size_t stewart_sps_momentum_batch(const stewart_sps_model *model, size_t n, cons
     *X, const stewart_sps_real *V, stewart_sps_real *momentum, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        momentum_any(model, LANES, X + 13*i, V + 12*i, momentum + 12*i, codes);
+        momentum_lanes(model, X + 13*i, V + 12*i, momentum + 12*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_momentum(model, X + 13*(i + k), V + 12*(i + k), momentum + 12*(i + k));
@@ -6444,11 +7365,69 @@ size_t stewart_sps_momentum_batch(const stewart_sps_model *model, size_t n, cons
     return failed;
 }
 
+int stewart_sps_joint_margins(const stewart_sps_model *model, const stewart_sps_real *X,
+    stewart_sps_real *margins)
+{
+    int code;
+    joint_margins_one(model, X, margins, &code);
+    return code;
+}
+
+size_t stewart_sps_joint_margins_batch(const stewart_sps_model *model, size_t n, const
+    stewart_sps_real *X, stewart_sps_real *margins, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        joint_margins_lanes(model, X + 13*i, margins + 24*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = stewart_sps_joint_margins(model, X + 13*(i + k), margins + 24*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = stewart_sps_joint_margins(model, X + 13*i, margins + 24*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int stewart_sps_within_limits(const stewart_sps_model *model, const stewart_sps_real *X,
+    stewart_sps_real *within)
+{
+    int code;
+    within_limits_one(model, X, within, &code);
+    return code;
+}
+
+size_t stewart_sps_within_limits_batch(const stewart_sps_model *model, size_t n, const
+    stewart_sps_real *X, stewart_sps_real *within, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        within_limits_lanes(model, X + 13*i, within + 1*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = stewart_sps_within_limits(model, X + 13*(i + k), within + 1*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = stewart_sps_within_limits(model, X + 13*i, within + 1*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
 int stewart_sps_actuator_positions(const stewart_sps_model *model, const stewart_sps_real *X,
     stewart_sps_real *q)
 {
     int code;
-    actuator_positions_any(model, 1, X, q, &code);
+    actuator_positions_one(model, X, q, &code);
     return code;
 }
 
@@ -6456,9 +7435,9 @@ size_t stewart_sps_actuator_positions_batch(const stewart_sps_model *model, size
     stewart_sps_real *X, stewart_sps_real *q, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_positions_any(model, LANES, X + 13*i, q + 6*i, codes);
+        actuator_positions_lanes(model, X + 13*i, q + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_actuator_positions(model, X + 13*(i + k), q + 6*(i + k));
@@ -6477,7 +7456,7 @@ int stewart_sps_actuator_rates(const stewart_sps_model *model, const stewart_sps
     stewart_sps_real *V, stewart_sps_real *rates)
 {
     int code;
-    actuator_rates_any(model, 1, X, V, rates, &code);
+    actuator_rates_one(model, X, V, rates, &code);
     return code;
 }
 
@@ -6485,9 +7464,9 @@ size_t stewart_sps_actuator_rates_batch(const stewart_sps_model *model, size_t n
     stewart_sps_real *X, const stewart_sps_real *V, stewart_sps_real *rates, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_rates_any(model, LANES, X + 13*i, V + 12*i, rates + 6*i, codes);
+        actuator_rates_lanes(model, X + 13*i, V + 12*i, rates + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_actuator_rates(model, X + 13*(i + k), V + 12*(i + k), rates + 6*(i + k));
@@ -6506,7 +7485,7 @@ int stewart_sps_actuator_accelerations(const stewart_sps_model *model, const ste
     const stewart_sps_real *V, const stewart_sps_real *A, stewart_sps_real *accelerations)
 {
     int code;
-    actuator_accelerations_any(model, 1, X, V, A, accelerations, &code);
+    actuator_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
@@ -6515,10 +7494,9 @@ size_t stewart_sps_actuator_accelerations_batch(const stewart_sps_model *model, 
     *accelerations, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_accelerations_any(model, LANES, X + 13*i, V + 12*i, A + 12*i, accelerations + 6*i,
-            codes);
+        actuator_accelerations_lanes(model, X + 13*i, V + 12*i, A + 12*i, accelerations + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_actuator_accelerations(model, X + 13*(i + k), V + 12*(i + k), A + 12*(i +
@@ -6539,7 +7517,7 @@ int stewart_sps_power(const stewart_sps_model *model, const stewart_sps_real *X,
     stewart_sps_real *V, const stewart_sps_real *tau, stewart_sps_real *power)
 {
     int code;
-    power_any(model, 1, X, V, tau, power, &code);
+    power_one(model, X, V, tau, power, &code);
     return code;
 }
 
@@ -6548,9 +7526,9 @@ size_t stewart_sps_power_batch(const stewart_sps_model *model, size_t n, const s
     *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        power_any(model, LANES, X + 13*i, V + 12*i, tau + 6*i, power + 1*i, codes);
+        power_lanes(model, X + 13*i, V + 12*i, tau + 6*i, power + 1*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_power(model, X + 13*(i + k), V + 12*(i + k), tau + 6*(i + k), power + 1*(i
@@ -6569,7 +7547,7 @@ size_t stewart_sps_power_batch(const stewart_sps_model *model, size_t n, const s
 int stewart_sps_rotation(const stewart_sps_real *X, stewart_sps_real *R)
 {
     int code;
-    rotation_any(X, R, &code);
+    rotation_one(X, R, &code);
     return code;
 }
 
@@ -6587,7 +7565,7 @@ size_t stewart_sps_rotation_batch(size_t n, const stewart_sps_real *X, stewart_s
 int stewart_sps_pose(const stewart_sps_real *t, const stewart_sps_real *R, stewart_sps_real *X)
 {
     int code;
-    pose_any(t, R, X, &code);
+    pose_one(t, R, X, &code);
     return code;
 }
 
@@ -6606,7 +7584,7 @@ int stewart_sps_X_dot(const stewart_sps_real *X, const stewart_sps_real *V, stew
     *X_dot)
 {
     int code;
-    X_dot_any(X, V, X_dot, &code);
+    X_dot_one(X, V, X_dot, &code);
     return code;
 }
 
@@ -6625,7 +7603,7 @@ int stewart_sps_pose_from_rpy(const stewart_sps_real *t, const stewart_sps_real 
     stewart_sps_real *X)
 {
     int code;
-    pose_from_rpy_any(t, rpy, X, &code);
+    pose_from_rpy_one(t, rpy, X, &code);
     return code;
 }
 
@@ -6644,7 +7622,7 @@ int stewart_sps_retract(const stewart_sps_real *X, const stewart_sps_real *step,
     *X_moved)
 {
     int code;
-    retract_any(X, step, X_moved, &code);
+    retract_one(X, step, X_moved, &code);
     return code;
 }
 
@@ -6663,7 +7641,7 @@ int stewart_sps_difference(const stewart_sps_real *X0, const stewart_sps_real *X
     stewart_sps_real *step)
 {
     int code;
-    difference_any(X0, X1, step, &code);
+    difference_one(X0, X1, step, &code);
     return code;
 }
 
@@ -6682,7 +7660,7 @@ int stewart_sps_interpolate(const stewart_sps_real *X0, const stewart_sps_real *
     stewart_sps_real *s, stewart_sps_real *X)
 {
     int code;
-    interpolate_any(X0, X1, s, X, &code);
+    interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 

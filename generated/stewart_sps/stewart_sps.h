@@ -53,6 +53,7 @@ typedef STEWART_SPS_REAL stewart_sps_real;
 #define STEWART_SPS_NC 0
 #define STEWART_SPS_NW 6
 #define STEWART_SPS_NJ 24
+#define STEWART_SPS_OVERCONSTRAINED 0
 
 enum {
     STEWART_SPS_OK = 0,
@@ -73,41 +74,42 @@ typedef struct {
     /* inertia tensor about the centre of mass, platform axes [kg m^2] */
     stewart_sps_real platform_inertia[3][3];
     /* base point, base frame [m] */
-    stewart_sps_real urps_base_point[6][3];
+    stewart_sps_real sps_base_point[6][3];
     /* rotation from leg axes to base axes [-] */
-    stewart_sps_real urps_base_frame[6][3][3];
+    stewart_sps_real sps_base_frame[6][3][3];
     /* platform joint, platform frame [m] */
-    stewart_sps_real urps_platform_point[6][3];
+    stewart_sps_real sps_platform_point[6][3];
     /* mass of link 3 [kg] */
-    stewart_sps_real urps_link3_mass[6];
+    stewart_sps_real sps_link3_mass[6];
     /* centre of mass of link 3, link frame [m] */
-    stewart_sps_real urps_link3_centre_of_mass[6][3];
+    stewart_sps_real sps_link3_centre_of_mass[6][3];
     /* inertia tensor of link 3 about its centre of mass, link axes [kg m^2] */
-    stewart_sps_real urps_link3_inertia[6][3][3];
+    stewart_sps_real sps_link3_inertia[6][3][3];
     /* mass of link 4 [kg] */
-    stewart_sps_real urps_link4_mass[6];
+    stewart_sps_real sps_link4_mass[6];
     /* centre of mass of link 4, link frame [m] */
-    stewart_sps_real urps_link4_centre_of_mass[6][3];
+    stewart_sps_real sps_link4_centre_of_mass[6][3];
     /* inertia tensor of link 4 about its centre of mass, link axes [kg m^2] */
-    stewart_sps_real urps_link4_inertia[6][3][3];
+    stewart_sps_real sps_link4_inertia[6][3][3];
 } stewart_sps_params;
 
 /* What depends on the parameters alone; set by stewart_sps_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
-    stewart_sps_real J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+    /* 6 legs of type sps; copies of the first fill up */
+    stewart_sps_real sps_J_group_3_xx[8], sps_J_group_3_xy[8], sps_J_group_3_xz[8],
+            sps_J_group_3_yy[8], sps_J_group_3_yz[8], sps_J_group_3_zz[8], sps_Sigma_3_xx[8],
+            sps_Sigma_3_yy[8], sps_Sigma_3_zz[8], sps_b_r0_x[8], sps_b_r0_y[8], sps_b_r0_z[8],
+            sps_base_frame_xx[8], sps_base_frame_xy[8], sps_base_frame_xz[8], sps_base_frame_yx[8],
+            sps_base_frame_yy[8], sps_base_frame_yz[8], sps_base_frame_zx[8], sps_base_frame_zy[8],
+            sps_base_frame_zz[8], sps_base_point_x[8], sps_base_point_y[8], sps_base_point_z[8],
+            sps_branch_1[8], sps_branch_2[8], sps_g_r0_x[8], sps_g_r0_y[8], sps_g_r0_z[8],
+            sps_h_3_x[8], sps_h_3_y[8], sps_h_3_z[8], sps_h_4_x[8], sps_h_4_y[8], sps_h_4_z[8],
+            sps_link3_mass[8], sps_link4_mass[8], sps_platform_point_x[8], sps_platform_point_y[8],
+            sps_platform_point_z[8];
+    stewart_sps_real J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
             J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
             h_star_x, h_star_y, h_star_z, legs_size, m_star, spread_t;
-    /* legs of type urps */
-    stewart_sps_real J_group_3_xx[6], J_group_3_xy[6], J_group_3_xz[6], J_group_3_yy[6],
-            J_group_3_yz[6], J_group_3_zz[6], Sigma_3_xx[6], Sigma_3_yy[6], Sigma_3_zz[6], b_r0_x[6],
-            b_r0_y[6], b_r0_z[6], branch_1[6], branch_2[6], g_r0_x[6], g_r0_y[6], g_r0_z[6], h_3_x[6],
-            h_3_y[6], h_3_z[6], h_4_x[6], h_4_y[6], h_4_z[6], urps_base_frame_xx[6],
-            urps_base_frame_xy[6], urps_base_frame_xz[6], urps_base_frame_yx[6],
-            urps_base_frame_yy[6], urps_base_frame_yz[6], urps_base_frame_zx[6],
-            urps_base_frame_zy[6], urps_base_frame_zz[6], urps_base_point_x[6], urps_base_point_y[6],
-            urps_base_point_z[6], urps_link3_mass[6], urps_link4_mass[6], urps_platform_point_x[6],
-            urps_platform_point_y[6], urps_platform_point_z[6];
 } stewart_sps_model;
 
 extern const stewart_sps_params stewart_sps_default_params;
@@ -129,7 +131,7 @@ int stewart_sps_M(const stewart_sps_model *model, const stewart_sps_real *X, ste
 size_t stewart_sps_M_batch(const stewart_sps_model *model, size_t n, const stewart_sps_real *X,
     stewart_sps_real *M, int *status);
 
-/* Velocity and gravity terms Z. 1290 mul, 957 add, 18 div, 12 sqrt, 12 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 1269 mul, 936 add, 18 div, 12 sqrt, 12 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int stewart_sps_Z(const stewart_sps_model *model, const stewart_sps_real *X, const
     stewart_sps_real *V, stewart_sps_real *Z);
@@ -164,7 +166,7 @@ size_t stewart_sps_joint_accelerations_batch(const stewart_sps_model *model, siz
     stewart_sps_real *X, const stewart_sps_real *V, const stewart_sps_real *A, stewart_sps_real
     *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 2196 mul, 1626 add, 18 div, 12 sqrt, 12 trig. In: X
+/* M, Z and H together, sharing the work. 2175 mul, 1605 add, 18 div, 12 sqrt, 12 trig. In: X
    (NQ), V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int stewart_sps_dynamics(const stewart_sps_model *model, const stewart_sps_real *X, const
     stewart_sps_real *V, stewart_sps_real *M, stewart_sps_real *Z, stewart_sps_real *H);
@@ -183,7 +185,7 @@ size_t stewart_sps_inverse_dynamics_batch(const stewart_sps_model *model, size_t
     stewart_sps_real *X, const stewart_sps_real *V, const stewart_sps_real *A, const
     stewart_sps_real *wrench, stewart_sps_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 2196 mul, 1626 add, 18 div, 12
+/* Acceleration A under the actuator forces tau and the wrench. 2175 mul, 1605 add, 18 div, 12
    sqrt, 12 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int stewart_sps_forward_dynamics(const stewart_sps_model *model, const stewart_sps_real *X, const
@@ -252,6 +254,21 @@ int stewart_sps_momentum(const stewart_sps_model *model, const stewart_sps_real 
     stewart_sps_real *V, stewart_sps_real *momentum);
 size_t stewart_sps_momentum_batch(const stewart_sps_model *model, size_t n, const stewart_sps_real
     *X, const stewart_sps_real *V, stewart_sps_real *momentum, int *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 162 mul, 120 add, 12 div, 12 sqrt, 12 trig. In: X (NQ). Out: margins (NJ).
+   */
+int stewart_sps_joint_margins(const stewart_sps_model *model, const stewart_sps_real *X,
+    stewart_sps_real *margins);
+size_t stewart_sps_joint_margins_batch(const stewart_sps_model *model, size_t n, const
+    stewart_sps_real *X, stewart_sps_real *margins, int *status);
+
+/* Whether all joints are within their limits of displacement. 162 mul, 120 add, 12 div, 12 sqrt,
+   12 trig. In: X (NQ). Out: within (1). */
+int stewart_sps_within_limits(const stewart_sps_model *model, const stewart_sps_real *X,
+    stewart_sps_real *within);
+size_t stewart_sps_within_limits_batch(const stewart_sps_model *model, size_t n, const
+    stewart_sps_real *X, stewart_sps_real *within, int *status);
 
 /* Displacements of the actuated joints, in the order of tau. 162 mul, 120 add, 12 div, 12 sqrt,
    12 trig. In: X (NQ). Out: q (NU). */

@@ -33,6 +33,7 @@ __all__ = [
     "NC",
     "NW",
     "NJ",
+    "OVERCONSTRAINED",
     "ACTUATED",
     "ACTUATOR_NAMES",
     "H",
@@ -57,6 +58,7 @@ __all__ = [
     "inverse_dynamics",
     "inverse_kinematics",
     "joint_accelerations",
+    "joint_margins",
     "joint_rates",
     "leg_reactions",
     "momentum",
@@ -66,6 +68,7 @@ __all__ = [
     "power",
     "retract",
     "rotation",
+    "within_limits",
 ]
 
 NQ = 13
@@ -74,6 +77,7 @@ NU = 6
 NC = 0
 NW = 6
 NJ = 24
+OVERCONSTRAINED = 0
 
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
@@ -94,10 +98,10 @@ _SHAPES = {  # of the arrays that functions give
     "reach": (6,),
 }
 # Where the entries of a leg type's legs stand in these arrays, row by row.
-_Z_urps = (
+_Z_sps = (
     [6, 7, 8, 9, 10, 11],
 )
-_M_urps = (
+_M_sps = (
     [72, 84, 96, 108, 120, 132],
     [6, 7, 8, 9, 10, 11],
     [73, 85, 97, 109, 121, 133],
@@ -112,7 +116,7 @@ _M_urps = (
     [66, 67, 68, 69, 70, 71],
     [78, 91, 104, 117, 130, 143],
 )
-_H_urps = (
+_H_sps = (
     [0, 1, 2, 3, 4, 5],
     [6, 7, 8, 9, 10, 11],
     [12, 13, 14, 15, 16, 17],
@@ -120,38 +124,38 @@ _H_urps = (
     [24, 25, 26, 27, 28, 29],
     [30, 31, 32, 33, 34, 35],
 )
-_required_urps = (
+_required_sps = (
     [6, 7, 8, 9, 10, 11],
 )
-_q_urps = (
+_q_sps = (
     [0, 4, 8, 12, 16, 20],
     [1, 5, 9, 13, 17, 21],
     [2, 6, 10, 14, 18, 22],
     [3, 7, 11, 15, 19, 23],
 )
-_qd_urps = (
+_qd_sps = (
     [0, 4, 8, 12, 16, 20],
     [1, 5, 9, 13, 17, 21],
     [2, 6, 10, 14, 18, 22],
     [3, 7, 11, 15, 19, 23],
 )
-_qdd_urps = (
+_qdd_sps = (
     [0, 4, 8, 12, 16, 20],
     [1, 5, 9, 13, 17, 21],
     [2, 6, 10, 14, 18, 22],
     [3, 7, 11, 15, 19, 23],
 )
-_leg_force_urps = (
+_leg_force_sps = (
     [0, 3, 6, 9, 12, 15],
     [1, 4, 7, 10, 13, 16],
     [2, 5, 8, 11, 14, 17],
 )
-_drive_urps = (
+_drive_sps = (
     [0, 3, 6, 9, 12, 15],
     [1, 4, 7, 10, 13, 16],
     [2, 5, 8, 11, 14, 17],
 )
-_pivots_urps = (
+_pivots_sps = (
     [0, 1, 2, 3, 4, 5],
 )
 ACTUATED = (3, 7, 11, 15, 19, 23)  # places of the actuated joints in q, in the order of tau
@@ -162,7 +166,7 @@ _DEFAULTS = {
     "platform_mass": 12.0,
     "platform_centre_of_mass": [0.0, 0.0, 0.04],
     "platform_inertia": [[0.35, 0.0, 0.0], [0.0, 0.35, 0.0], [0.0, 0.0, 0.6]],
-    "urps_base_point": [
+    "sps_base_point": [
         [-0.07595833716604927, 0.3902743704941056, 0.017731158385886236],
         [0.3759666878769001, 0.12935533563203033, 0.017731158385886236],
         [-0.3000083507108508, -0.2609190348620751, 0.017731158385886236],
@@ -170,7 +174,7 @@ _DEFAULTS = {
         [0.37596668787689996, -0.12935533563203055, 0.017731158385886236],
         [-0.07595833716604977, -0.39027437049410546, 0.017731158385886236],
     ],
-    "urps_base_frame": [
+    "sps_base_frame": [
         [[0.0, 0.7666445685820955, -0.6420717292200091], [0.0, 0.6420717292200091, 0.7666445685820955], [1.0, 0.0, 0.0]],
         [[0.0, 0.17272814426528374, -0.9849695366754605], [0.0, 0.9849695366754605, 0.17272814426528374], [1.0, 0.0, 0.0]],
         [[0.0, -0.9393727128473789, -0.34289780745545156], [0.0, 0.34289780745545156, -0.9393727128473789], [1.0, 0.0, 0.0]],
@@ -178,7 +182,7 @@ _DEFAULTS = {
         [[0.0, 0.17272814426528307, 0.9849695366754606], [0.0, -0.9849695366754606, 0.17272814426528307], [1.0, 0.0, 0.0]],
         [[0.0, 0.7666445685820946, 0.6420717292200101], [0.0, -0.6420717292200101, 0.7666445685820946], [1.0, 0.0, 0.0]],
     ],
-    "urps_platform_point": [
+    "sps_platform_point": [
         [0.22999337057462865, 0.19262151876600273, -0.02],
         [0.05181844327958512, 0.29549086100263816, -0.02],
         [-0.28181181385421367, 0.10286934223663546, -0.02],
@@ -186,7 +190,7 @@ _DEFAULTS = {
         [0.05181844327958492, -0.29549086100263816, -0.02],
         [0.22999337057462838, -0.19262151876600303, -0.02],
     ],
-    "urps_link3_mass": [
+    "sps_link3_mass": [
         2.4,
         2.4,
         2.4,
@@ -194,7 +198,7 @@ _DEFAULTS = {
         2.4,
         2.4,
     ],
-    "urps_link3_centre_of_mass": [
+    "sps_link3_centre_of_mass": [
         [0.18, 0.0, 0.0],
         [0.18, 0.0, 0.0],
         [0.18, 0.0, 0.0],
@@ -202,7 +206,7 @@ _DEFAULTS = {
         [0.18, 0.0, 0.0],
         [0.18, 0.0, 0.0],
     ],
-    "urps_link3_inertia": [
+    "sps_link3_inertia": [
         [[0.0010799999999999998, 0.0, 0.0], [0.0, 0.026459999999999997, 0.0], [0.0, 0.0, 0.026459999999999997]],
         [[0.0010799999999999998, 0.0, 0.0], [0.0, 0.026459999999999997, 0.0], [0.0, 0.0, 0.026459999999999997]],
         [[0.0010799999999999998, 0.0, 0.0], [0.0, 0.026459999999999997, 0.0], [0.0, 0.0, 0.026459999999999997]],
@@ -210,7 +214,7 @@ _DEFAULTS = {
         [[0.0010799999999999998, 0.0, 0.0], [0.0, 0.026459999999999997, 0.0], [0.0, 0.0, 0.026459999999999997]],
         [[0.0010799999999999998, 0.0, 0.0], [0.0, 0.026459999999999997, 0.0], [0.0, 0.0, 0.026459999999999997]],
     ],
-    "urps_link4_mass": [
+    "sps_link4_mass": [
         1.1,
         1.1,
         1.1,
@@ -218,7 +222,7 @@ _DEFAULTS = {
         1.1,
         1.1,
     ],
-    "urps_link4_centre_of_mass": [
+    "sps_link4_centre_of_mass": [
         [-0.22, 0.0, 0.0],
         [-0.22, 0.0, 0.0],
         [-0.22, 0.0, 0.0],
@@ -226,7 +230,7 @@ _DEFAULTS = {
         [-0.22, 0.0, 0.0],
         [-0.22, 0.0, 0.0],
     ],
-    "urps_link4_inertia": [
+    "sps_link4_inertia": [
         [[0.00022000000000000003, 0.0, 0.0], [0.0, 0.01785666666666667, 0.0], [0.0, 0.0, 0.01785666666666667]],
         [[0.00022000000000000003, 0.0, 0.0], [0.0, 0.01785666666666667, 0.0], [0.0, 0.0, 0.01785666666666667]],
         [[0.00022000000000000003, 0.0, 0.0], [0.0, 0.01785666666666667, 0.0], [0.0, 0.0, 0.01785666666666667]],
@@ -240,15 +244,15 @@ _RULES = {  # shape, in all and of one; entries that are zero by structure; what
     "platform_mass": ((), (), (), "mass"),
     "platform_centre_of_mass": ((3,), (3,), (), "free"),
     "platform_inertia": ((3, 3), (3, 3), (), "inertia"),
-    "urps_base_point": ((6, 3), (3,), (), "free"),
-    "urps_base_frame": ((6, 3, 3), (3, 3), (), "rotation"),
-    "urps_platform_point": ((6, 3), (3,), (), "free"),
-    "urps_link3_mass": ((6,), (), (), "mass"),
-    "urps_link3_centre_of_mass": ((6, 3), (3,), (), "free"),
-    "urps_link3_inertia": ((6, 3, 3), (3, 3), (), "inertia"),
-    "urps_link4_mass": ((6,), (), (), "mass"),
-    "urps_link4_centre_of_mass": ((6, 3), (3,), (), "free"),
-    "urps_link4_inertia": ((6, 3, 3), (3, 3), (), "inertia"),
+    "sps_base_point": ((6, 3), (3,), (), "free"),
+    "sps_base_frame": ((6, 3, 3), (3, 3), (), "rotation"),
+    "sps_platform_point": ((6, 3), (3,), (), "free"),
+    "sps_link3_mass": ((6,), (), (), "mass"),
+    "sps_link3_centre_of_mass": ((6, 3), (3,), (), "free"),
+    "sps_link3_inertia": ((6, 3, 3), (3, 3), (), "inertia"),
+    "sps_link4_mass": ((6,), (), (), "mass"),
+    "sps_link4_centre_of_mass": ((6, 3), (3,), (), "free"),
+    "sps_link4_inertia": ((6, 3, 3), (3, 3), (), "inertia"),
 }
 
 
@@ -264,15 +268,15 @@ class Parameters:
         platform_mass: mass of the platform [kg], a number.
         platform_centre_of_mass: centre of mass, platform frame [m], shape (3,).
         platform_inertia: inertia tensor about the centre of mass, platform axes [kg m^2], shape (3, 3).
-        urps_base_point: base point, base frame [m], shape (6, 3).
-        urps_base_frame: rotation from leg axes to base axes [-], shape (6, 3, 3).
-        urps_platform_point: platform joint, platform frame [m], shape (6, 3).
-        urps_link3_mass: mass of link 3 [kg], shape (6,).
-        urps_link3_centre_of_mass: centre of mass of link 3, link frame [m], shape (6, 3).
-        urps_link3_inertia: inertia tensor of link 3 about its centre of mass, link axes [kg m^2], shape (6, 3, 3).
-        urps_link4_mass: mass of link 4 [kg], shape (6,).
-        urps_link4_centre_of_mass: centre of mass of link 4, link frame [m], shape (6, 3).
-        urps_link4_inertia: inertia tensor of link 4 about its centre of mass, link axes [kg m^2], shape (6, 3, 3).
+        sps_base_point: base point, base frame [m], shape (6, 3).
+        sps_base_frame: rotation from leg axes to base axes [-], shape (6, 3, 3).
+        sps_platform_point: platform joint, platform frame [m], shape (6, 3).
+        sps_link3_mass: mass of link 3 [kg], shape (6,).
+        sps_link3_centre_of_mass: centre of mass of link 3, link frame [m], shape (6, 3).
+        sps_link3_inertia: inertia tensor of link 3 about its centre of mass, link axes [kg m^2], shape (6, 3, 3).
+        sps_link4_mass: mass of link 4 [kg], shape (6,).
+        sps_link4_centre_of_mass: centre of mass of link 4, link frame [m], shape (6, 3).
+        sps_link4_inertia: inertia tensor of link 4 about its centre of mass, link axes [kg m^2], shape (6, 3, 3).
     """
 
     def __init__(self, **values):
@@ -373,7 +377,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return np.full(shape, default)
+        return _filled(shape, default) if isinstance(default, float) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -386,6 +390,16 @@ def _argument(function, name, value, shape, default=None, rule=""):
     elif rule == "positive" and not np.all((array > 0.0) & (array < np.inf)):
         raise ValueError(f"{function}: {name} must be positive and finite")
     return array
+
+
+_FILLED = {}
+
+
+def _filled(shape, value):
+    """An array of one value, made once."""
+    if (shape, value) not in _FILLED:
+        _FILLED[shape, value] = _frozen(np.full(shape, value))
+    return _FILLED[shape, value]
 
 
 def _lead(leads):
@@ -479,15 +493,15 @@ HOME_X = _frozen(np.array([0.0, 0.0, 0.75, 0.0, 0.0, 0.0, 1.0, 0.3, 0.3, 0.3, 0.
 HOME_Q = _frozen(np.array([0.15, 0.45, 0.3, 0.8, 0.15, -0.45, 0.3, 0.8, 0.15, 0.45, 0.3, 0.8, 0.15, -0.45, 0.3, 0.8, 0.15, 0.45, 0.3, 0.8, 0.15, -0.45, 0.3, 0.8]))
 
 _BRANCHES = {  # assembly branch of home, a sign per leg
-    "branch_1": np.array([1.0, 1.0, 1.0, 1.0, 1.0, 1.0]),
-    "branch_2": np.array([1.0, 1.0, 1.0, 1.0, 1.0, 1.0]),
+    "sps_branch_1": np.array([1.0, 1.0, 1.0, 1.0, 1.0, 1.0]),
+    "sps_branch_2": np.array([1.0, 1.0, 1.0, 1.0, 1.0, 1.0]),
 }
 
 
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
-    _urps = 6
+    _sps = 6
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -501,48 +515,48 @@ def _prepare(p):
     platform_inertia_yy = p.platform_inertia[1, 1]
     platform_inertia_yz = p.platform_inertia[1, 2]
     platform_inertia_zz = p.platform_inertia[2, 2]
-    urps_base_point_x = p.urps_base_point[:, 0]
-    urps_base_point_y = p.urps_base_point[:, 1]
-    urps_base_point_z = p.urps_base_point[:, 2]
-    urps_base_frame_xx = p.urps_base_frame[:, 0, 0]
-    urps_base_frame_xy = p.urps_base_frame[:, 0, 1]
-    urps_base_frame_xz = p.urps_base_frame[:, 0, 2]
-    urps_base_frame_yx = p.urps_base_frame[:, 1, 0]
-    urps_base_frame_yy = p.urps_base_frame[:, 1, 1]
-    urps_base_frame_yz = p.urps_base_frame[:, 1, 2]
-    urps_base_frame_zx = p.urps_base_frame[:, 2, 0]
-    urps_base_frame_zy = p.urps_base_frame[:, 2, 1]
-    urps_base_frame_zz = p.urps_base_frame[:, 2, 2]
-    urps_platform_point_x = p.urps_platform_point[:, 0]
-    urps_platform_point_y = p.urps_platform_point[:, 1]
-    urps_platform_point_z = p.urps_platform_point[:, 2]
-    urps_link3_mass = p.urps_link3_mass
-    urps_link3_centre_of_mass_x = p.urps_link3_centre_of_mass[:, 0]
-    urps_link3_centre_of_mass_y = p.urps_link3_centre_of_mass[:, 1]
-    urps_link3_centre_of_mass_z = p.urps_link3_centre_of_mass[:, 2]
-    urps_link3_inertia_xx = p.urps_link3_inertia[:, 0, 0]
-    urps_link3_inertia_xy = p.urps_link3_inertia[:, 0, 1]
-    urps_link3_inertia_xz = p.urps_link3_inertia[:, 0, 2]
-    urps_link3_inertia_yy = p.urps_link3_inertia[:, 1, 1]
-    urps_link3_inertia_yz = p.urps_link3_inertia[:, 1, 2]
-    urps_link3_inertia_zz = p.urps_link3_inertia[:, 2, 2]
-    urps_link4_mass = p.urps_link4_mass
-    urps_link4_centre_of_mass_x = p.urps_link4_centre_of_mass[:, 0]
-    urps_link4_centre_of_mass_y = p.urps_link4_centre_of_mass[:, 1]
-    urps_link4_centre_of_mass_z = p.urps_link4_centre_of_mass[:, 2]
-    urps_link4_inertia_xx = p.urps_link4_inertia[:, 0, 0]
-    urps_link4_inertia_xy = p.urps_link4_inertia[:, 0, 1]
-    urps_link4_inertia_xz = p.urps_link4_inertia[:, 0, 2]
-    urps_link4_inertia_yy = p.urps_link4_inertia[:, 1, 1]
-    urps_link4_inertia_yz = p.urps_link4_inertia[:, 1, 2]
-    urps_link4_inertia_zz = p.urps_link4_inertia[:, 2, 2]
-    branch_1 = _BRANCHES["branch_1"]
-    branch_2 = _BRANCHES["branch_2"]
-    # (L2) first moment about the platform origin
+    sps_base_point_x = p.sps_base_point[:, 0]
+    sps_base_point_y = p.sps_base_point[:, 1]
+    sps_base_point_z = p.sps_base_point[:, 2]
+    sps_base_frame_xx = p.sps_base_frame[:, 0, 0]
+    sps_base_frame_xy = p.sps_base_frame[:, 0, 1]
+    sps_base_frame_xz = p.sps_base_frame[:, 0, 2]
+    sps_base_frame_yx = p.sps_base_frame[:, 1, 0]
+    sps_base_frame_yy = p.sps_base_frame[:, 1, 1]
+    sps_base_frame_yz = p.sps_base_frame[:, 1, 2]
+    sps_base_frame_zx = p.sps_base_frame[:, 2, 0]
+    sps_base_frame_zy = p.sps_base_frame[:, 2, 1]
+    sps_base_frame_zz = p.sps_base_frame[:, 2, 2]
+    sps_platform_point_x = p.sps_platform_point[:, 0]
+    sps_platform_point_y = p.sps_platform_point[:, 1]
+    sps_platform_point_z = p.sps_platform_point[:, 2]
+    sps_link3_mass = p.sps_link3_mass
+    sps_link3_centre_of_mass_x = p.sps_link3_centre_of_mass[:, 0]
+    sps_link3_centre_of_mass_y = p.sps_link3_centre_of_mass[:, 1]
+    sps_link3_centre_of_mass_z = p.sps_link3_centre_of_mass[:, 2]
+    sps_link3_inertia_xx = p.sps_link3_inertia[:, 0, 0]
+    sps_link3_inertia_xy = p.sps_link3_inertia[:, 0, 1]
+    sps_link3_inertia_xz = p.sps_link3_inertia[:, 0, 2]
+    sps_link3_inertia_yy = p.sps_link3_inertia[:, 1, 1]
+    sps_link3_inertia_yz = p.sps_link3_inertia[:, 1, 2]
+    sps_link3_inertia_zz = p.sps_link3_inertia[:, 2, 2]
+    sps_link4_mass = p.sps_link4_mass
+    sps_link4_centre_of_mass_x = p.sps_link4_centre_of_mass[:, 0]
+    sps_link4_centre_of_mass_y = p.sps_link4_centre_of_mass[:, 1]
+    sps_link4_centre_of_mass_z = p.sps_link4_centre_of_mass[:, 2]
+    sps_link4_inertia_xx = p.sps_link4_inertia[:, 0, 0]
+    sps_link4_inertia_xy = p.sps_link4_inertia[:, 0, 1]
+    sps_link4_inertia_xz = p.sps_link4_inertia[:, 0, 2]
+    sps_link4_inertia_yy = p.sps_link4_inertia[:, 1, 1]
+    sps_link4_inertia_yz = p.sps_link4_inertia[:, 1, 2]
+    sps_link4_inertia_zz = p.sps_link4_inertia[:, 2, 2]
+    sps_branch_1 = _BRANCHES["sps_branch_1"]
+    sps_branch_2 = _BRANCHES["sps_branch_2"]
+    # (h_star) first moment about the platform origin
     h_star_t = platform_centre_of_mass_x*platform_mass
     h_star_t_2 = platform_centre_of_mass_y*platform_mass
     h_star_t_3 = platform_centre_of_mass_z*platform_mass
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_t = platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_2 = platform_centre_of_mass_y*platform_centre_of_mass_y
     J_star_t_3 = platform_centre_of_mass_z*platform_centre_of_mass_z
@@ -553,166 +567,166 @@ def _prepare(p):
     J_star_t_8 = platform_mass*(J_star_t_2 - J_star_t_4)
     J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass
     J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4)
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread_t = 0.16666666666666666*sqrt(6.0)
-    # (C3) rms size of the legs, taken where the platform points coincide
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     legs_size = 1.9595917942265426*spread_t
-    # (urps-G3) inertia tensor of link 3 about the origin of link 3
-    J_3_t = urps_link3_centre_of_mass_x*urps_link3_centre_of_mass_x
-    J_3_t_2 = urps_link3_centre_of_mass_y*urps_link3_centre_of_mass_y
-    J_3_t_3 = urps_link3_centre_of_mass_z*urps_link3_centre_of_mass_z
-    J_3_t_4 = J_3_t + J_3_t_2 + J_3_t_3
-    # (urps-G5) inertia tensor of link 4 about the connection point
-    J_4_t = urps_link4_centre_of_mass_x*urps_link4_centre_of_mass_x
-    J_4_t_2 = urps_link4_centre_of_mass_y*urps_link4_centre_of_mass_y
-    J_4_t_3 = urps_link4_centre_of_mass_z*urps_link4_centre_of_mass_z
-    J_4_t_4 = J_4_t + J_4_t_2 + J_4_t_3
-    # (urps-N8) inertia of the links that turn with link 3, each about its reference point
-    J_group_3_xx = (
-    urps_link3_inertia_yy + urps_link4_inertia_yy - urps_link3_mass*(J_3_t_2 - J_3_t_4) -
-        urps_link4_mass*(J_4_t_2 - J_4_t_4)
+    # (sps-h_4) first moment of link 4 about the connection point
+    sps_h_4_x = sps_link4_centre_of_mass_x*sps_link4_mass
+    sps_h_4_y = sps_link4_centre_of_mass_y*sps_link4_mass
+    sps_h_4_z = sps_link4_centre_of_mass_z*sps_link4_mass
+    # (sps-J_3) inertia tensor of link 3 about the origin of link 3
+    sps_J_3_t = sps_link3_centre_of_mass_x*sps_link3_centre_of_mass_x
+    sps_J_3_t_2 = sps_link3_centre_of_mass_y*sps_link3_centre_of_mass_y
+    sps_J_3_t_3 = sps_link3_centre_of_mass_z*sps_link3_centre_of_mass_z
+    sps_J_3_t_4 = sps_J_3_t + sps_J_3_t_2 + sps_J_3_t_3
+    # (sps-J_4) inertia tensor of link 4 about the connection point
+    sps_J_4_t = sps_link4_centre_of_mass_x*sps_link4_centre_of_mass_x
+    sps_J_4_t_2 = sps_link4_centre_of_mass_y*sps_link4_centre_of_mass_y
+    sps_J_4_t_3 = sps_link4_centre_of_mass_z*sps_link4_centre_of_mass_z
+    sps_J_4_t_4 = sps_J_4_t + sps_J_4_t_2 + sps_J_4_t_3
+    # (sps-J_group_3) inertia of the links that turn with link 3, each about its reference point
+    sps_J_group_3_xx = (
+    sps_link3_inertia_yy + sps_link4_inertia_yy - sps_link3_mass*(sps_J_3_t_2 - sps_J_3_t_4) -
+        sps_link4_mass*(sps_J_4_t_2 - sps_J_4_t_4)
     )
-    J_group_3_xy = (
-    urps_link3_inertia_yz + urps_link4_inertia_yz -
-        urps_link3_centre_of_mass_y*urps_link3_centre_of_mass_z*urps_link3_mass -
-        urps_link4_centre_of_mass_y*urps_link4_centre_of_mass_z*urps_link4_mass
+    sps_J_group_3_xy = (
+    sps_link3_inertia_yz + sps_link4_inertia_yz -
+        sps_link3_centre_of_mass_y*sps_link3_centre_of_mass_z*sps_link3_mass -
+        sps_link4_centre_of_mass_y*sps_link4_centre_of_mass_z*sps_link4_mass
     )
-    J_group_3_xz = (
-    urps_link3_inertia_xy + urps_link4_inertia_xy -
-        urps_link3_centre_of_mass_x*urps_link3_centre_of_mass_y*urps_link3_mass -
-        urps_link4_centre_of_mass_x*urps_link4_centre_of_mass_y*urps_link4_mass
+    sps_J_group_3_xz = (
+    sps_link3_inertia_xy + sps_link4_inertia_xy -
+        sps_link3_centre_of_mass_x*sps_link3_centre_of_mass_y*sps_link3_mass -
+        sps_link4_centre_of_mass_x*sps_link4_centre_of_mass_y*sps_link4_mass
     )
-    J_group_3_yy = (
-    urps_link3_inertia_zz + urps_link4_inertia_zz - urps_link3_mass*(J_3_t_3 - J_3_t_4) -
-        urps_link4_mass*(J_4_t_3 - J_4_t_4)
+    sps_J_group_3_yy = (
+    sps_link3_inertia_zz + sps_link4_inertia_zz - sps_link3_mass*(sps_J_3_t_3 - sps_J_3_t_4) -
+        sps_link4_mass*(sps_J_4_t_3 - sps_J_4_t_4)
     )
-    J_group_3_yz = (
-    urps_link3_inertia_xz + urps_link4_inertia_xz -
-        urps_link3_centre_of_mass_x*urps_link3_centre_of_mass_z*urps_link3_mass -
-        urps_link4_centre_of_mass_x*urps_link4_centre_of_mass_z*urps_link4_mass
+    sps_J_group_3_yz = (
+    sps_link3_inertia_xz + sps_link4_inertia_xz -
+        sps_link3_centre_of_mass_x*sps_link3_centre_of_mass_z*sps_link3_mass -
+        sps_link4_centre_of_mass_x*sps_link4_centre_of_mass_z*sps_link4_mass
     )
-    J_group_3_zz = (
-    urps_link3_inertia_xx + urps_link4_inertia_xx - urps_link3_mass*(J_3_t - J_3_t_4) -
-        urps_link4_mass*(J_4_t - J_4_t_4)
+    sps_J_group_3_zz = (
+    sps_link3_inertia_xx + sps_link4_inertia_xx - sps_link3_mass*(sps_J_3_t - sps_J_3_t_4) -
+        sps_link4_mass*(sps_J_4_t - sps_J_4_t_4)
     )
-    # (urps-G4) first moment of link 4 about the connection point
-    h_4_x = urps_link4_centre_of_mass_x*urps_link4_mass
-    h_4_y = urps_link4_centre_of_mass_y*urps_link4_mass
-    h_4_z = urps_link4_centre_of_mass_z*urps_link4_mass
-    # (L2) first moment about the platform origin
-    h_star_t_4 = urps_link4_mass*urps_platform_point_x
-    h_star_t_5 = urps_link4_mass*urps_platform_point_y
-    h_star_t_6 = urps_link4_mass*urps_platform_point_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t_11 = urps_platform_point_x*urps_platform_point_x
-    J_star_t_12 = urps_platform_point_y*urps_platform_point_y
-    J_star_t_13 = urps_platform_point_z*urps_platform_point_z
-    J_star_t_14 = J_star_t_11 + J_star_t_12 + J_star_t_13
-    J_star_t_15 = urps_link4_mass*(J_star_t_11 - J_star_t_14)
-    J_star_t_16 = urps_link4_mass*urps_platform_point_x*urps_platform_point_y
-    J_star_t_17 = urps_link4_mass*urps_platform_point_x*urps_platform_point_z
-    J_star_t_18 = urps_link4_mass*(J_star_t_12 - J_star_t_14)
-    J_star_t_19 = urps_link4_mass*urps_platform_point_y*urps_platform_point_z
-    J_star_t_20 = urps_link4_mass*(J_star_t_13 - J_star_t_14)
-    # (urps-G2) first moment of link 3 about the origin of link 3
-    h_3_x = urps_link3_centre_of_mass_x*urps_link3_mass
-    h_3_y = urps_link3_centre_of_mass_y*urps_link3_mass
-    h_3_z = urps_link3_centre_of_mass_z*urps_link3_mass
-    # (urps-N9) half the trace of that inertia tensor
-    trace_J_group_3 = 0.5*J_group_3_xx + 0.5*J_group_3_yy + 0.5*J_group_3_zz
-    # (urps-N10) second moment of mass of the links that turn with link 3
-    Sigma_3_xx = trace_J_group_3 - J_group_3_xx
-    Sigma_3_yy = trace_J_group_3 - J_group_3_yy
-    Sigma_3_zz = trace_J_group_3 - J_group_3_zz
-    # (V1) potential energy
-    g_r0_x = (
-    gravity_x*urps_base_frame_xx + gravity_y*urps_base_frame_yx + gravity_z*urps_base_frame_zx
+    # (h_star) first moment about the platform origin
+    sps_h_star_t = sps_link4_mass*sps_platform_point_x
+    sps_h_star_t_2 = sps_link4_mass*sps_platform_point_y
+    sps_h_star_t_3 = sps_link4_mass*sps_platform_point_z
+    # (J_star) inertia tensor about the platform origin
+    sps_J_star_t = sps_platform_point_x*sps_platform_point_x
+    sps_J_star_t_2 = sps_platform_point_y*sps_platform_point_y
+    sps_J_star_t_3 = sps_platform_point_z*sps_platform_point_z
+    sps_J_star_t_4 = sps_J_star_t + sps_J_star_t_2 + sps_J_star_t_3
+    sps_J_star_t_5 = sps_link4_mass*(sps_J_star_t - sps_J_star_t_4)
+    sps_J_star_t_6 = sps_link4_mass*sps_platform_point_x*sps_platform_point_y
+    sps_J_star_t_7 = sps_link4_mass*sps_platform_point_x*sps_platform_point_z
+    sps_J_star_t_8 = sps_link4_mass*(sps_J_star_t_2 - sps_J_star_t_4)
+    sps_J_star_t_9 = sps_link4_mass*sps_platform_point_y*sps_platform_point_z
+    sps_J_star_t_10 = sps_link4_mass*(sps_J_star_t_3 - sps_J_star_t_4)
+    # (sps-h_3) first moment of link 3 about the origin of link 3
+    sps_h_3_x = sps_link3_centre_of_mass_x*sps_link3_mass
+    sps_h_3_y = sps_link3_centre_of_mass_y*sps_link3_mass
+    sps_h_3_z = sps_link3_centre_of_mass_z*sps_link3_mass
+    # (sps-trace_J_3) half the trace of that inertia tensor
+    sps_trace_J_3 = 0.5*sps_J_group_3_xx + 0.5*sps_J_group_3_yy + 0.5*sps_J_group_3_zz
+    # (sps-Sigma_3) second moment of mass of the links that turn with link 3
+    sps_Sigma_3_xx = sps_trace_J_3 - sps_J_group_3_xx
+    sps_Sigma_3_yy = sps_trace_J_3 - sps_J_group_3_yy
+    sps_Sigma_3_zz = sps_trace_J_3 - sps_J_group_3_zz
+    # (potential) potential energy
+    sps_g_r0_x = (
+    gravity_x*sps_base_frame_xx + gravity_y*sps_base_frame_yx + gravity_z*sps_base_frame_zx
     )
-    g_r0_y = (
-    gravity_x*urps_base_frame_xy + gravity_y*urps_base_frame_yy + gravity_z*urps_base_frame_zy
+    sps_g_r0_y = (
+    gravity_x*sps_base_frame_xy + gravity_y*sps_base_frame_yy + gravity_z*sps_base_frame_zy
     )
-    g_r0_z = (
-    gravity_x*urps_base_frame_xz + gravity_y*urps_base_frame_yz + gravity_z*urps_base_frame_zz
+    sps_g_r0_z = (
+    gravity_x*sps_base_frame_xz + gravity_y*sps_base_frame_yz + gravity_z*sps_base_frame_zz
     )
-    b_r0_x = (
-    urps_base_frame_xx*urps_base_point_x + urps_base_frame_yx*urps_base_point_y +
-        urps_base_frame_zx*urps_base_point_z
+    sps_b_r0_x = (
+    sps_base_frame_xx*sps_base_point_x + sps_base_frame_yx*sps_base_point_y +
+        sps_base_frame_zx*sps_base_point_z
     )
-    b_r0_y = (
-    urps_base_frame_xy*urps_base_point_x + urps_base_frame_yy*urps_base_point_y +
-        urps_base_frame_zy*urps_base_point_z
+    sps_b_r0_y = (
+    sps_base_frame_xy*sps_base_point_x + sps_base_frame_yy*sps_base_point_y +
+        sps_base_frame_zy*sps_base_point_z
     )
-    b_r0_z = (
-    urps_base_frame_xz*urps_base_point_x + urps_base_frame_yz*urps_base_point_y +
-        urps_base_frame_zz*urps_base_point_z
+    sps_b_r0_z = (
+    sps_base_frame_xz*sps_base_point_x + sps_base_frame_yz*sps_base_point_y +
+        sps_base_frame_zz*sps_base_point_z
     )
-    total_urps = np.sum(np.broadcast_to(urps_link4_mass, _urps))
-    total_urps_x = np.sum(np.broadcast_to(h_star_t_4, _urps))
-    total_urps_y = np.sum(np.broadcast_to(h_star_t_5, _urps))
-    total_urps_z = np.sum(np.broadcast_to(h_star_t_6, _urps))
-    total_urps_xx = np.sum(np.broadcast_to(J_star_t_15, _urps))
-    total_urps_xy = np.sum(np.broadcast_to(J_star_t_16, _urps))
-    total_urps_xz = np.sum(np.broadcast_to(J_star_t_17, _urps))
-    total_urps_yy = np.sum(np.broadcast_to(J_star_t_18, _urps))
-    total_urps_yz = np.sum(np.broadcast_to(J_star_t_19, _urps))
-    total_urps_zz = np.sum(np.broadcast_to(J_star_t_20, _urps))
-    total_urps_x_2 = np.sum(np.broadcast_to(urps_platform_point_x, _urps))
-    total_urps_y_2 = np.sum(np.broadcast_to(urps_platform_point_y, _urps))
-    total_urps_z_2 = np.sum(np.broadcast_to(urps_platform_point_z, _urps))
-    # (L1) mass of the platform with the gathered masses
-    m_star = platform_mass + total_urps
-    # (L2) first moment about the platform origin
-    h_star_x = h_star_t + total_urps_x
-    h_star_y = h_star_t_2 + total_urps_y
-    h_star_z = h_star_t_3 + total_urps_z
-    # (L3) inertia tensor about the platform origin
-    J_star_xx = platform_inertia_xx - J_star_t_5 - total_urps_xx
-    J_star_xy = platform_inertia_xy - J_star_t_6 - total_urps_xy
-    J_star_xz = platform_inertia_xz - J_star_t_7 - total_urps_xz
-    J_star_yy = platform_inertia_yy - J_star_t_8 - total_urps_yy
-    J_star_yz = platform_inertia_yz - J_star_t_9 - total_urps_yz
-    J_star_zz = platform_inertia_zz - J_star_t_10 - total_urps_zz
-    J_star_t_21 = J_star_xx - J_star_yy
-    J_star_t_22 = 0.5*J_star_t_21
-    J_star_t_23 = J_star_xx - J_star_zz
-    J_star_t_24 = 0.5*J_star_t_23
-    # (M4) centripetal force and weight of the platform
+    total_sps = np.sum(np.broadcast_to(sps_link4_mass, _sps))
+    total_sps_x = np.sum(np.broadcast_to(sps_h_star_t, _sps))
+    total_sps_y = np.sum(np.broadcast_to(sps_h_star_t_2, _sps))
+    total_sps_z = np.sum(np.broadcast_to(sps_h_star_t_3, _sps))
+    total_sps_xx = np.sum(np.broadcast_to(sps_J_star_t_5, _sps))
+    total_sps_xy = np.sum(np.broadcast_to(sps_J_star_t_6, _sps))
+    total_sps_xz = np.sum(np.broadcast_to(sps_J_star_t_7, _sps))
+    total_sps_yy = np.sum(np.broadcast_to(sps_J_star_t_8, _sps))
+    total_sps_yz = np.sum(np.broadcast_to(sps_J_star_t_9, _sps))
+    total_sps_zz = np.sum(np.broadcast_to(sps_J_star_t_10, _sps))
+    total_sps_x_2 = np.sum(np.broadcast_to(sps_platform_point_x, _sps))
+    total_sps_y_2 = np.sum(np.broadcast_to(sps_platform_point_y, _sps))
+    total_sps_z_2 = np.sum(np.broadcast_to(sps_platform_point_z, _sps))
+    # (m_star) mass of the platform with the gathered masses
+    m_star = platform_mass + total_sps
+    # (h_star) first moment about the platform origin
+    h_star_x = h_star_t + total_sps_x
+    h_star_y = h_star_t_2 + total_sps_y
+    h_star_z = h_star_t_3 + total_sps_z
+    # (J_star) inertia tensor about the platform origin
+    J_star_xx = platform_inertia_xx - J_star_t_5 - total_sps_xx
+    J_star_xy = platform_inertia_xy - J_star_t_6 - total_sps_xy
+    J_star_xz = platform_inertia_xz - J_star_t_7 - total_sps_xz
+    J_star_yy = platform_inertia_yy - J_star_t_8 - total_sps_yy
+    J_star_yz = platform_inertia_yz - J_star_t_9 - total_sps_yz
+    J_star_zz = platform_inertia_zz - J_star_t_10 - total_sps_zz
+    J_star_t_11 = J_star_xx - J_star_yy
+    J_star_t_12 = 0.5*J_star_t_11
+    J_star_t_13 = J_star_xx - J_star_zz
+    J_star_t_14 = 0.5*J_star_t_13
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
     Z_p_t_3 = gravity_z*m_star
-    # (C1) centroid of the platform points
-    b_c_x = 0.16666666666666666*total_urps_x_2
-    b_c_y = 0.16666666666666666*total_urps_y_2
-    b_c_z = 0.16666666666666666*total_urps_z_2
+    # (b_c) centroid of the platform points
+    b_c_x = 0.16666666666666666*total_sps_x_2
+    b_c_y = 0.16666666666666666*total_sps_y_2
+    b_c_z = 0.16666666666666666*total_sps_z_2
     return {
         "dynamics": (
-        (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
                 J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
                 h_star_y, h_star_z, m_star,),
             (
-                (_urps,
-        (J_group_3_xx, J_group_3_xy, J_group_3_xz, J_group_3_yy, J_group_3_yz, J_group_3_zz,
-                    Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, h_3_x, h_3_y, h_3_z,
-                    h_4_x, h_4_y, h_4_z, urps_base_frame_xx, urps_base_frame_xy,
-                    urps_base_frame_xz, urps_base_frame_yx, urps_base_frame_yy,
-                    urps_base_frame_yz, urps_base_frame_zx, urps_base_frame_zy,
-                    urps_base_frame_zz, urps_base_point_x, urps_base_point_y, urps_base_point_z,
-                    urps_platform_point_x, urps_platform_point_y, urps_platform_point_z,),
+                (_sps,
+        (sps_J_group_3_xx, sps_J_group_3_xy, sps_J_group_3_xz, sps_J_group_3_yy, sps_J_group_3_yz,
+                    sps_J_group_3_zz, sps_Sigma_3_xx, sps_Sigma_3_yy, sps_Sigma_3_zz,
+                    sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
+                    sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx, sps_base_frame_zy,
+                    sps_base_frame_zz, sps_base_point_x, sps_base_point_y, sps_base_point_z,
+                    sps_branch_1, sps_branch_2, sps_h_3_x, sps_h_3_y, sps_h_3_z, sps_h_4_x,
+                    sps_h_4_y, sps_h_4_z, sps_platform_point_x, sps_platform_point_y,
+                    sps_platform_point_z,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
+        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
                 h_star_z, m_star,),
             (
-                (_urps,
-        (J_group_3_xx, J_group_3_xy, J_group_3_xz, J_group_3_yy, J_group_3_yz, J_group_3_zz,
-                    branch_1, branch_2, h_4_x, h_4_y, h_4_z, urps_base_frame_xx,
-                    urps_base_frame_xy, urps_base_frame_xz, urps_base_frame_yx,
-                    urps_base_frame_yy, urps_base_frame_yz, urps_base_frame_zx,
-                    urps_base_frame_zy, urps_base_frame_zz, urps_base_point_x, urps_base_point_y,
-                    urps_base_point_z, urps_platform_point_x, urps_platform_point_y,
-                    urps_platform_point_z,),
+                (_sps,
+        (sps_J_group_3_xx, sps_J_group_3_xy, sps_J_group_3_xz, sps_J_group_3_yy, sps_J_group_3_yz,
+                    sps_J_group_3_zz, sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz,
+                    sps_base_frame_yx, sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx,
+                    sps_base_frame_zy, sps_base_frame_zz, sps_base_point_x, sps_base_point_y,
+                    sps_base_point_z, sps_branch_1, sps_branch_2, sps_h_4_x, sps_h_4_y, sps_h_4_z,
+                    sps_platform_point_x, sps_platform_point_y, sps_platform_point_z,),
                 ),
             ),
         ),
@@ -720,26 +734,26 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
                 Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
             (
-                (_urps,
-        (J_group_3_xy, J_group_3_xz, J_group_3_yz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1,
-                    branch_2, h_3_x, h_3_y, h_3_z, h_4_x, h_4_y, h_4_z, urps_base_frame_xx,
-                    urps_base_frame_xy, urps_base_frame_xz, urps_base_frame_yx,
-                    urps_base_frame_yy, urps_base_frame_yz, urps_base_frame_zx,
-                    urps_base_frame_zy, urps_base_frame_zz, urps_base_point_x, urps_base_point_y,
-                    urps_base_point_z, urps_platform_point_x, urps_platform_point_y,
-                    urps_platform_point_z,),
+                (_sps,
+        (sps_J_group_3_xy, sps_J_group_3_xz, sps_J_group_3_yz, sps_Sigma_3_xx, sps_Sigma_3_yy,
+                    sps_Sigma_3_zz, sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz,
+                    sps_base_frame_yx, sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx,
+                    sps_base_frame_zy, sps_base_frame_zz, sps_base_point_x, sps_base_point_y,
+                    sps_base_point_z, sps_branch_1, sps_branch_2, sps_h_3_x, sps_h_3_y, sps_h_3_z,
+                    sps_h_4_x, sps_h_4_y, sps_h_4_z, sps_platform_point_x, sps_platform_point_y,
+                    sps_platform_point_z,),
                 ),
             ),
         ),
         "H": (
         (),
             (
-                (_urps,
-        (branch_2, urps_base_frame_xx, urps_base_frame_xy, urps_base_frame_xz, urps_base_frame_yx,
-                    urps_base_frame_yy, urps_base_frame_yz, urps_base_frame_zx,
-                    urps_base_frame_zy, urps_base_frame_zz, urps_base_point_x, urps_base_point_y,
-                    urps_base_point_z, urps_platform_point_x, urps_platform_point_y,
-                    urps_platform_point_z,),
+                (_sps,
+        (sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
+                    sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx, sps_base_frame_zy,
+                    sps_base_frame_zz, sps_base_point_x, sps_base_point_y, sps_base_point_z,
+                    sps_branch_2, sps_platform_point_x, sps_platform_point_y,
+                    sps_platform_point_z,),
                 ),
             ),
         ),
@@ -747,97 +761,98 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
                 gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
-                (_urps,
-        (J_group_3_xy, J_group_3_xz, J_group_3_yz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1,
-                    branch_2, h_3_x, h_3_y, h_3_z, h_4_x, h_4_y, h_4_z, urps_base_frame_xx,
-                    urps_base_frame_xy, urps_base_frame_xz, urps_base_frame_yx,
-                    urps_base_frame_yy, urps_base_frame_yz, urps_base_frame_zx,
-                    urps_base_frame_zy, urps_base_frame_zz, urps_base_point_x, urps_base_point_y,
-                    urps_base_point_z, urps_platform_point_x, urps_platform_point_y,
-                    urps_platform_point_z,),
+                (_sps,
+        (sps_J_group_3_xy, sps_J_group_3_xz, sps_J_group_3_yz, sps_Sigma_3_xx, sps_Sigma_3_yy,
+                    sps_Sigma_3_zz, sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz,
+                    sps_base_frame_yx, sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx,
+                    sps_base_frame_zy, sps_base_frame_zz, sps_base_point_x, sps_base_point_y,
+                    sps_base_point_z, sps_branch_1, sps_branch_2, sps_h_3_x, sps_h_3_y, sps_h_3_z,
+                    sps_h_4_x, sps_h_4_y, sps_h_4_z, sps_platform_point_x, sps_platform_point_y,
+                    sps_platform_point_z,),
                 ),
             ),
         ),
         "inverse_kinematics": (
         (),
             (
-                (_urps,
-        (branch_1, branch_2, urps_base_frame_xx, urps_base_frame_xy, urps_base_frame_xz,
-                    urps_base_frame_yx, urps_base_frame_yy, urps_base_frame_yz,
-                    urps_base_frame_zx, urps_base_frame_zy, urps_base_frame_zz, urps_base_point_x,
-                    urps_base_point_y, urps_base_point_z, urps_platform_point_x,
-                    urps_platform_point_y, urps_platform_point_z,),
+                (_sps,
+        (sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
+                    sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx, sps_base_frame_zy,
+                    sps_base_frame_zz, sps_base_point_x, sps_base_point_y, sps_base_point_z,
+                    sps_branch_1, sps_branch_2, sps_platform_point_x, sps_platform_point_y,
+                    sps_platform_point_z,),
                 ),
             ),
         ),
         "joint_rates": (
         (),
             (
-                (_urps,
-        (branch_1, branch_2, urps_base_frame_xx, urps_base_frame_xy, urps_base_frame_xz,
-                    urps_base_frame_yx, urps_base_frame_yy, urps_base_frame_yz,
-                    urps_base_frame_zx, urps_base_frame_zy, urps_base_frame_zz, urps_base_point_x,
-                    urps_base_point_y, urps_base_point_z, urps_platform_point_x,
-                    urps_platform_point_y, urps_platform_point_z,),
+                (_sps,
+        (sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
+                    sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx, sps_base_frame_zy,
+                    sps_base_frame_zz, sps_base_point_x, sps_base_point_y, sps_base_point_z,
+                    sps_branch_1, sps_branch_2, sps_platform_point_x, sps_platform_point_y,
+                    sps_platform_point_z,),
                 ),
             ),
         ),
         "joint_accelerations": (
         (),
             (
-                (_urps,
-        (branch_1, branch_2, urps_base_frame_xx, urps_base_frame_xy, urps_base_frame_xz,
-                    urps_base_frame_yx, urps_base_frame_yy, urps_base_frame_yz,
-                    urps_base_frame_zx, urps_base_frame_zy, urps_base_frame_zz, urps_base_point_x,
-                    urps_base_point_y, urps_base_point_z, urps_platform_point_x,
-                    urps_platform_point_y, urps_platform_point_z,),
+                (_sps,
+        (sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
+                    sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx, sps_base_frame_zy,
+                    sps_base_frame_zz, sps_base_point_x, sps_base_point_y, sps_base_point_z,
+                    sps_branch_1, sps_branch_2, sps_platform_point_x, sps_platform_point_y,
+                    sps_platform_point_z,),
                 ),
             ),
         ),
         "legs": (
         (gravity_x, gravity_y, gravity_z,),
             (
-                (_urps,
-        (J_group_3_xy, J_group_3_xz, J_group_3_yz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1,
-                    branch_2, h_3_x, h_3_y, h_3_z, h_4_x, h_4_y, h_4_z, urps_base_frame_xx,
-                    urps_base_frame_xy, urps_base_frame_xz, urps_base_frame_yx,
-                    urps_base_frame_yy, urps_base_frame_yz, urps_base_frame_zx,
-                    urps_base_frame_zy, urps_base_frame_zz, urps_base_point_x, urps_base_point_y,
-                    urps_base_point_z, urps_link4_mass, urps_platform_point_x,
-                    urps_platform_point_y, urps_platform_point_z,),
+                (_sps,
+        (sps_J_group_3_xy, sps_J_group_3_xz, sps_J_group_3_yz, sps_Sigma_3_xx, sps_Sigma_3_yy,
+                    sps_Sigma_3_zz, sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz,
+                    sps_base_frame_yx, sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx,
+                    sps_base_frame_zy, sps_base_frame_zz, sps_base_point_x, sps_base_point_y,
+                    sps_base_point_z, sps_branch_1, sps_branch_2, sps_h_3_x, sps_h_3_y, sps_h_3_z,
+                    sps_h_4_x, sps_h_4_y, sps_h_4_z, sps_link4_mass, sps_platform_point_x,
+                    sps_platform_point_y, sps_platform_point_z,),
                 ),
             ),
         ),
         "potential": (
         (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
-                (_urps,
-        (b_r0_x, b_r0_y, b_r0_z, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_3_x, h_3_y, h_3_z,
-                    h_4_x, h_4_y, h_4_z, urps_base_frame_xx, urps_base_frame_xy,
-                    urps_base_frame_xz, urps_base_frame_yx, urps_base_frame_yy,
-                    urps_base_frame_yz, urps_base_frame_zx, urps_base_frame_zy,
-                    urps_base_frame_zz, urps_base_point_x, urps_base_point_y, urps_base_point_z,
-                    urps_link3_mass, urps_platform_point_x, urps_platform_point_y,
-                    urps_platform_point_z,),
+                (_sps,
+        (sps_b_r0_x, sps_b_r0_y, sps_b_r0_z, sps_base_frame_xx, sps_base_frame_xy,
+                    sps_base_frame_xz, sps_base_frame_yx, sps_base_frame_yy, sps_base_frame_yz,
+                    sps_base_frame_zx, sps_base_frame_zy, sps_base_frame_zz, sps_base_point_x,
+                    sps_base_point_y, sps_base_point_z, sps_branch_1, sps_branch_2, sps_g_r0_x,
+                    sps_g_r0_y, sps_g_r0_z, sps_h_3_x, sps_h_3_y, sps_h_3_z, sps_h_4_x, sps_h_4_y,
+                    sps_h_4_z, sps_link3_mass, sps_platform_point_x, sps_platform_point_y,
+                    sps_platform_point_z,),
                 ),
             ),
         ),
         "condition": (
         (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
             (
-                (_urps,
-        (branch_1, branch_2, urps_base_frame_xx, urps_base_frame_xy, urps_base_frame_xz,
-                    urps_base_frame_yx, urps_base_frame_yy, urps_base_frame_yz,
-                    urps_base_frame_zx, urps_base_frame_zy, urps_base_frame_zz, urps_base_point_x,
-                    urps_base_point_y, urps_base_point_z, urps_platform_point_x,
-                    urps_platform_point_y, urps_platform_point_z,),
+                (_sps,
+        (sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
+                    sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx, sps_base_frame_zy,
+                    sps_base_frame_zz, sps_base_point_x, sps_base_point_y, sps_base_point_z,
+                    sps_branch_1, sps_branch_2, sps_platform_point_x, sps_platform_point_y,
+                    sps_platform_point_z,),
                 ),
             ),
         ),
     }
 
 
-_FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
+_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
@@ -883,17 +898,19 @@ class _Floats:
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
-        for k in range(self.states):
-            try:
-                ok, arrays = function(self, *(row[k] for row in rows))
-            except (ZeroDivisionError, OverflowError):
-                continue
-            if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
-                for a, array in zip(found, arrays):
-                    a[k] = array
-        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
+        found = [self.state(function, names, [row[k] for row in rows]) for k in range(self.states)]
+        return [np.array(a).T.reshape(*_SHAPES[n], self.states) for a, n in zip(zip(*found), names)]
+
+    def state(self, function, names, given):
+        """Lists that a function gives at a state."""
+        try:
+            ok, arrays = function(self, *given)
+        except (ZeroDivisionError, OverflowError):
+            ok = False
+        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+            return arrays
+        return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
 
 
 class _Arrays:
@@ -961,35 +978,44 @@ def _mode(p, states):
     return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
 
 
-def _call(function, steps, p, *arguments, mode=_mode):
-    """What the steps give at arguments (name, value, shape of a state, default, rule)."""
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+    """What the steps give at arguments (name, value, shape of a state, default, rule).
+
+    Where that may be infinite only NaN makes a state impossible.
+    """
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
     lead, p = _lead(leads), _given(p)
     read = [a[4:] != ("unused",) for a in arguments]
     if lead or mode is _Judged:
-        results = _many(steps, p, lead, given, shapes, read, mode)
+        results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
-        results = _one(steps, p, given, shapes, read)
+        results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
 
 
-def _one(steps, p, given, shapes, read):
+def _one(steps, p, given, shapes, read, unbounded):
     """Results at a single state."""
     states = [v.reshape(*shape, 1) for v, shape in zip(given, shapes)]
     with np.errstate(all="ignore"):
-        results = [a[..., 0] for a in steps(_Floats(p, 1), *states)]
-    if all(all(map(math.isfinite, v.ravel().tolist())) for v in (*compress(given, read), *results)):
-        return [np.array(a)[()] for a in results]
+        results = [a[..., 0].copy() for a in steps(_Floats(p, 1), *states)]
+    looked_at = [np.minimum(a, 0.0) for a in results] if unbounded else results
+    entries = (v.ravel().tolist() for v in (*compress(given, read), *looked_at))
+    if all(all(map(math.isfinite, row)) for row in entries):
+        return [a[()] for a in results]
     return [np.full(a.shape, np.nan)[()] for a in results]
 
 
-def _many(steps, p, lead, given, shapes, read, mode):
+def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block."""
     count = math.prod(lead)
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
+    if count > _BLOCK:
+        # Never touched, freed at once: the C library, which learns from it, then keeps the memory
+        # of intermediate arrays from block to block instead of giving its pages back.
+        np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
         for first in range(0, max(count, 1), _BLOCK):
             block = slice(first, min(first + _BLOCK, count))
@@ -1001,7 +1027,7 @@ def _many(steps, p, lead, given, shapes, read, mode):
             _all_finite(compress(states, read), good)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite(found, good)
+            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -1049,6 +1075,18 @@ def _with_forces(a, amounts, directions, legs):
     for k, leg in enumerate(legs):
         result[leg] += amounts[k] * directions[k]
     return result
+
+
+def _unlimited(a, places):
+    """a, some entries infinite; what is not known stays so."""
+    result = np.array(a)
+    result[places] += np.inf
+    return result
+
+
+def _not_negative(a):
+    """1 where no entry is negative, else 0; NaN where one is not finite."""
+    return np.where(np.isfinite(a).all(axis=0), np.all(a >= 0.0, axis=0), np.nan)
 
 
 def _rows_divided(a, b, places):
@@ -1151,8 +1189,8 @@ def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
     n, states = b.shape
     if 0 < states <= _FEW:
-        matrices, rights = np.moveaxis(a, -1, 0).tolist(), b.T.tolist()
-        return np.array([_solve_one(*each) for each in zip(matrices, rights)]).T.reshape(n, states)
+        systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
+        return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
     good = np.all((size > 0.0) & np.isfinite(size), axis=0)
     rows = np.concatenate((a, b[:, None]), axis=1)
@@ -1179,28 +1217,32 @@ def _solve(a, b):
 
 
 def _solve_one(a, b):
-    """The same for one system of nested lists."""
-    n = len(b)
-    failure = [np.nan] * n
-    for i, row in enumerate(a):
-        size = max(map(abs, row), default=0.0)
-        if not 0.0 < size < np.inf:
-            return failure
-        a[i] = [v / size for v in row] + [b[i] / size]
-    for k in range(n):
-        best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
-            a[k], a[best] = a[best], a[k]
-        if not abs(a[k][k]) > _PIVOT:
-            return failure
-        head = a[k]
-        for i in range(k + 1, n):
-            factor = a[i][k] / head[k]
-            a[i] = [v - factor * h for v, h in zip(a[i], head)]
-    x = [0.0] * n
-    for k in reversed(range(n)):
-        x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
-    return x if all(map(math.isfinite, x)) else failure
+    """The same for one system of nested lists: the rows left lose an entry at every step."""
+    rows, heads = [], []
+    for row, right in zip(a, b):
+        size = max(map(abs, row))
+        if not 0.0 < size < math.inf:
+            return [math.nan] * len(b)
+        rows.append([v / size for v in (*row, right)])
+    while rows:
+        column = [abs(row[0]) for row in rows]
+        largest = max(column)
+        if largest > _CLEARLY * column[0]:
+            best = column.index(largest)
+            rows[0], rows[best] = rows[best], rows[0]
+        pivot, *head = rows[0]
+        if not abs(pivot) > _PIVOT:
+            return [math.nan] * len(b)
+        heads.append((pivot, head))
+        for i in range(1, len(rows)):
+            first, *row = rows[i]
+            factor = first / pivot
+            rows[i] = [v - factor * h for v, h in zip(row, head)]
+        del rows[0]
+    x = []
+    for pivot, (*head, right) in reversed(heads):
+        x.insert(0, (right - sum([h * v for h, v in zip(head, x)])) / pivot)
+    return x if all(map(math.isfinite, x)) else [math.nan] * len(b)
 
 
 def _matrices(a, *others):
@@ -1311,14 +1353,14 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 2196 mul, 1626 add, 18 div, 12 sqrt, 12 trig
+# dynamics: 2175 mul, 1605 add, 18 div, 12 sqrt, 12 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("dynamics")
     (
-    J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
+    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
         Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
         m_star,
     ) = shared
@@ -1374,481 +1416,529 @@ def _run_dynamics(m, X, V):
     out_M = m.zeros("M")
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy
-    J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
     J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_12 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_15 = 2.0*J_star_t_14 + J_star_xx
-    # (P1) centripetal tensor of the platform
-    W_p_t = omega_x*omega_x
-    W_p_t_2 = omega_y*omega_y
-    W_p_t_3 = omega_z*omega_z
-    W_p_xx = W_p_t_2 + W_p_t_3
-    W_p_xy = omega_x*omega_y
-    W_p_xz = omega_x*omega_z
-    W_p_yy = W_p_t + W_p_t_3
-    W_p_yz = omega_y*omega_z
-    W_p_zz = W_p_t + W_p_t_2
-    # (M4) centripetal force and weight of the platform
-    Z_p_x = W_p_xy*h_star_in_base_y + W_p_xz*h_star_in_base_z - Z_p_t - W_p_xx*h_star_in_base_x
-    Z_p_y = W_p_xy*h_star_in_base_x + W_p_yz*h_star_in_base_z - Z_p_t_2 - W_p_yy*h_star_in_base_y
-    Z_p_z = W_p_xz*h_star_in_base_x + W_p_yz*h_star_in_base_y - Z_p_t_3 - W_p_zz*h_star_in_base_z
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
+    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    # (Z_p) centripetal force and weight of the platform
+    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
+    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
+    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
+    Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
+    Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z_2*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x_2*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y - g_r0_y_2*h_star_x
+    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
+    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
     sums = [0.0] * 27
     for leg, k in legs[0]:
         (
-        J_group_3_xx, J_group_3_xy, J_group_3_xz, J_group_3_yy, J_group_3_yz, J_group_3_zz,
-            Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, h_3_x, h_3_y, h_3_z, h_4_x,
-            h_4_y, h_4_z, urps_base_frame_xx, urps_base_frame_xy, urps_base_frame_xz,
-            urps_base_frame_yx, urps_base_frame_yy, urps_base_frame_yz, urps_base_frame_zx,
-            urps_base_frame_zy, urps_base_frame_zz, urps_base_point_x, urps_base_point_y,
-            urps_base_point_z, urps_platform_point_x, urps_platform_point_y,
-            urps_platform_point_z,
+        sps_J_group_3_xx, sps_J_group_3_xy, sps_J_group_3_xz, sps_J_group_3_yy, sps_J_group_3_yz,
+            sps_J_group_3_zz, sps_Sigma_3_xx, sps_Sigma_3_yy, sps_Sigma_3_zz, sps_base_frame_xx,
+            sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx, sps_base_frame_yy,
+            sps_base_frame_yz, sps_base_frame_zx, sps_base_frame_zy, sps_base_frame_zz,
+            sps_base_point_x, sps_base_point_y, sps_base_point_z, sps_branch_1, sps_branch_2,
+            sps_h_3_x, sps_h_3_y, sps_h_3_z, sps_h_4_x, sps_h_4_y, sps_h_4_z,
+            sps_platform_point_x, sps_platform_point_y, sps_platform_point_z,
         ) = k
-        y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
-        yd_3 = V[[6, 7, 8, 9, 10, 11][leg]]
-        # (urps-K1) from the base point to the connection point
-        q_in_base_x = (
-        R_xx*urps_platform_point_x + R_xy*urps_platform_point_y + R_xz*urps_platform_point_z
+        sps_y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
+        sps_yd_3 = V[[6, 7, 8, 9, 10, 11][leg]]
+        # (sps-S) from the base point to the connection point
+        sps_q_in_base_x = (
+        R_xx*sps_platform_point_x + R_xy*sps_platform_point_y + R_xz*sps_platform_point_z
         )
-        q_in_base_y = (
-        R_yx*urps_platform_point_x + R_yy*urps_platform_point_y + R_yz*urps_platform_point_z
+        sps_q_in_base_y = (
+        R_yx*sps_platform_point_x + R_yy*sps_platform_point_y + R_yz*sps_platform_point_z
         )
-        q_in_base_z = (
-        R_zx*urps_platform_point_x + R_zy*urps_platform_point_y + R_zz*urps_platform_point_z
+        sps_q_in_base_z = (
+        R_zx*sps_platform_point_x + R_zy*sps_platform_point_y + R_zz*sps_platform_point_z
         )
-        S_x = q_in_base_x + t_x - urps_base_point_x
-        S_y = q_in_base_y + t_y - urps_base_point_y
-        S_z = q_in_base_z + t_z - urps_base_point_z
-        # (urps-K4) component along the reference direction
-        px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx + S_z*urps_base_frame_zx
-        # (urps-K5) component across the reference direction
-        py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy + S_z*urps_base_frame_zy
-        # (urps-K6) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (urps-K7) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (urps-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz + S_z*urps_base_frame_zz
-        # (urps-K15) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (urps-K16) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (urps-K17) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (urps-K18) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (urps-K2) cosine of the angle of joint 3 from its reference direction
-        c_3_t = sin(y_3_extra)
-        # (urps-K3) sine of the angle of joint 3 from its reference direction
-        s_3 = cos(y_3_extra)
-        # (urps-V3) velocity of the connection point per rate of joint 1
-        v_1_t = c_2*c_3_t
-        v_1_t_2 = c_2*s_3
-        v_1_t_3 = root_2*v_1_t_2
-        v_1_t_4 = root_2*v_1_t
-        # (urps-V4) velocity of the connection point per rate of joint 2
-        v_2_t = c_3_t*root_2
-        v_2_t_2 = root_2*s_3
-        # (urps-V6) reciprocal vector 1
-        axis_z_x = S_x*inv_root_2
-        axis_z_y = S_y*inv_root_2
-        axis_z_z = S_z*inv_root_2
-        w_1_t = s_2*s_3
-        # (urps-K8) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (urps-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (urps-V6) reciprocal vector 1
-        axis_y_urps_axes3_r4_x = c_1*c_3_t - s_1*w_1_t
-        axis_y_urps_axes3_r4_y = -c_1*w_1_t - c_3_t*s_1
-        axis_y_urps_axes3_in_base_x = (
-        axis_y_urps_axes3_r4_x*urps_base_frame_xx + axis_y_urps_axes3_r4_y*urps_base_frame_xy +
-            urps_base_frame_xz*v_1_t_2
+        sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x
+        sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y
+        sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z
+        # (sps-px_1) component along the reference direction
+        sps_px_1 = (
+        sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
         )
-        axis_y_urps_axes3_in_base_y = (
-        axis_y_urps_axes3_r4_x*urps_base_frame_yx + axis_y_urps_axes3_r4_y*urps_base_frame_yy +
-            urps_base_frame_yz*v_1_t_2
+        # (sps-py_1) component across the reference direction
+        sps_py_1 = (
+        sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy + sps_S_z*sps_base_frame_zy
         )
-        axis_y_urps_axes3_in_base_z = (
-        axis_y_urps_axes3_r4_x*urps_base_frame_zx + axis_y_urps_axes3_r4_y*urps_base_frame_zy +
-            urps_base_frame_zz*v_1_t_2
+        # (sps-rho2_1) squared amplitude
+        sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
+        # (sps-root_1) amplitude, with the sign of the branch
+        sps_root_1 = sps_branch_1*sqrt(sps_rho2_1)
+        # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        sps_xi_1_t = (
+        sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
         )
-        axis_x_urps_axes3_x = (
-        axis_y_urps_axes3_in_base_y*axis_z_z - axis_y_urps_axes3_in_base_z*axis_z_y
+        # (sps-rho2_2) squared amplitude
+        sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t
+        # (sps-root_2) amplitude, with the sign of the branch
+        sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
+        # (sps-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_sps_root_2 = 1.0/sps_root_2
+        sps_c_2 = inv_sps_root_2*sps_root_1
+        # (sps-s_2) sine of the angle of joint 2 from its reference direction
+        sps_s_2 = inv_sps_root_2*sps_xi_1_t
+        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
+        sps_c_3_t = sin(sps_y_3_extra)
+        # (sps-s_3) sine of the angle of joint 3 from its reference direction
+        sps_s_3 = cos(sps_y_3_extra)
+        # (sps-v_1) velocity of the connection point per rate of joint 1
+        sps_v_1_t = sps_c_2*sps_c_3_t
+        sps_v_1_t_2 = sps_c_2*sps_s_3
+        sps_v_1_t_3 = sps_root_2*sps_v_1_t_2
+        sps_v_1_t_4 = sps_root_2*sps_v_1_t
+        # (sps-v_2) velocity of the connection point per rate of joint 2
+        sps_v_2_t = sps_c_3_t*sps_root_2
+        sps_v_2_t_2 = sps_root_2*sps_s_3
+        # (sps-w_1) reciprocal vector 1
+        sps_axis_z_x = inv_sps_root_2*sps_S_x
+        sps_axis_z_y = inv_sps_root_2*sps_S_y
+        sps_axis_z_z = inv_sps_root_2*sps_S_z
+        sps_w_1_t = sps_s_2*sps_s_3
+        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_sps_root_1 = 1.0/sps_root_1
+        sps_c_1 = inv_sps_root_1*sps_py_1
+        # (sps-s_1) sine of the angle of joint 1 from its reference direction
+        sps_s_1 = inv_sps_root_1*sps_px_1
+        # (sps-w_1) reciprocal vector 1
+        axis_y_sps_axes3_r4_x = sps_c_1*sps_c_3_t - sps_s_1*sps_w_1_t
+        axis_y_sps_axes3_r4_y = -sps_c_1*sps_w_1_t - sps_c_3_t*sps_s_1
+        axis_y_sps_axes3_in_base_x = (
+        axis_y_sps_axes3_r4_x*sps_base_frame_xx + axis_y_sps_axes3_r4_y*sps_base_frame_xy +
+            sps_base_frame_xz*sps_v_1_t_2
         )
-        axis_x_urps_axes3_y = (
-        axis_y_urps_axes3_in_base_z*axis_z_x - axis_y_urps_axes3_in_base_x*axis_z_z
+        axis_y_sps_axes3_in_base_y = (
+        axis_y_sps_axes3_r4_x*sps_base_frame_yx + axis_y_sps_axes3_r4_y*sps_base_frame_yy +
+            sps_base_frame_yz*sps_v_1_t_2
         )
-        axis_x_urps_axes3_z = (
-        axis_y_urps_axes3_in_base_x*axis_z_y - axis_y_urps_axes3_in_base_y*axis_z_x
+        axis_y_sps_axes3_in_base_z = (
+        axis_y_sps_axes3_r4_x*sps_base_frame_zx + axis_y_sps_axes3_r4_y*sps_base_frame_zy +
+            sps_base_frame_zz*sps_v_1_t_2
         )
-        w_1_t_2 = v_1_t_3*v_2_t_2 + v_1_t_4*v_2_t
-        inv_w_1_t_23 = 1.0/w_1_t_2
-        w_1_t_3 = inv_w_1_t_23*v_2_t_2
-        w_1_t_4 = inv_w_1_t_23*v_2_t
-        # (urps-V7) reciprocal vector 2
-        w_2_t = inv_w_1_t_23*v_1_t_4
-        w_2_t_2 = inv_w_1_t_23*v_1_t_3
-        # (urps-A19) coefficient of the acceleration in: angular acceleration of link 1
-        d_alpha_1_zx = s_2*w_1_t_3
-        d_alpha_1_zy = s_2*w_1_t_4
-        # (urps-A23) coefficient of the acceleration in: angular acceleration of link 2
-        d_alpha_2_xx = v_1_t*w_1_t_3 - s_3*w_2_t
-        d_alpha_2_xy = -s_3*w_2_t_2 - v_1_t*w_1_t_4
-        d_alpha_2_yx = c_3_t*w_2_t + v_1_t_2*w_1_t_3
-        d_alpha_2_yy = c_3_t*w_2_t_2 - v_1_t_2*w_1_t_4
-        # (urps-N13) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        d_mu_3_t = (
-        J_group_3_xx*d_alpha_2_xx + J_group_3_xy*d_alpha_2_yx + J_group_3_xz*d_alpha_1_zx
+        axis_x_sps_axes3_x = (
+        axis_y_sps_axes3_in_base_y*sps_axis_z_z - axis_y_sps_axes3_in_base_z*sps_axis_z_y
         )
-        d_mu_3_t_2 = (
-        J_group_3_xy*d_alpha_2_xy + J_group_3_yy*d_alpha_2_yy - J_group_3_yz*d_alpha_1_zy
+        axis_x_sps_axes3_y = (
+        axis_y_sps_axes3_in_base_z*sps_axis_z_x - axis_y_sps_axes3_in_base_x*sps_axis_z_z
         )
-        d_mu_3_xy = (
-        J_group_3_xx*d_alpha_2_xy + J_group_3_xy*d_alpha_2_yy - h_4_x - J_group_3_xz*d_alpha_1_zy
+        axis_x_sps_axes3_z = (
+        axis_y_sps_axes3_in_base_x*sps_axis_z_y - axis_y_sps_axes3_in_base_y*sps_axis_z_x
         )
-        d_mu_3_yx = (
-        h_4_x + J_group_3_xy*d_alpha_2_xx + J_group_3_yy*d_alpha_2_yx + J_group_3_yz*d_alpha_1_zx
+        # (sps-w_2) reciprocal vector 2
+        sps_w_2_t = sps_v_1_t_3*sps_v_2_t_2 + sps_v_1_t_4*sps_v_2_t
+        inv_sps_w_2_t_3 = 1.0/sps_w_2_t
+        sps_w_2_t_2 = inv_sps_w_2_t_3*sps_v_1_t_4
+        sps_w_2_t_3 = inv_sps_w_2_t_3*sps_v_1_t_3
+        # (sps-w_1) reciprocal vector 1
+        sps_w_1_t_2 = inv_sps_w_2_t_3*sps_v_2_t_2
+        sps_w_1_t_3 = inv_sps_w_2_t_3*sps_v_2_t
+        # (sps-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
+        sps_d_alpha_1_zx = sps_s_2*sps_w_1_t_2
+        sps_d_alpha_1_zy = sps_s_2*sps_w_1_t_3
+        # (sps-d_alpha_2) coefficient of the acceleration in: angular acceleration of link 2
+        sps_d_alpha_2_xx = sps_v_1_t*sps_w_1_t_2 - sps_s_3*sps_w_2_t_2
+        sps_d_alpha_2_xy = -sps_s_3*sps_w_2_t_3 - sps_v_1_t*sps_w_1_t_3
+        sps_d_alpha_2_yx = sps_c_3_t*sps_w_2_t_2 + sps_v_1_t_2*sps_w_1_t_2
+        sps_d_alpha_2_yy = sps_c_3_t*sps_w_2_t_3 - sps_v_1_t_2*sps_w_1_t_3
+        # (sps-d_mu_3) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        sps_d_mu_3_t = (
+        sps_J_group_3_xx*sps_d_alpha_2_xx + sps_J_group_3_xy*sps_d_alpha_2_yx +
+            sps_J_group_3_xz*sps_d_alpha_1_zx
         )
-        d_mu_3_zx = (
-        J_group_3_xz*d_alpha_2_xx + J_group_3_yz*d_alpha_2_yx + J_group_3_zz*d_alpha_1_zx - h_4_z
+        sps_d_mu_3_t_2 = (
+        sps_J_group_3_xy*sps_d_alpha_2_xy + sps_J_group_3_yy*sps_d_alpha_2_yy -
+            sps_J_group_3_yz*sps_d_alpha_1_zy
         )
-        d_mu_3_zy = (
-        h_4_y + J_group_3_xz*d_alpha_2_xy + J_group_3_yz*d_alpha_2_yy - J_group_3_zz*d_alpha_1_zy
+        sps_d_mu_3_xy = (
+        sps_J_group_3_xx*sps_d_alpha_2_xy + sps_J_group_3_xy*sps_d_alpha_2_yy - sps_h_4_x -
+            sps_J_group_3_xz*sps_d_alpha_1_zy
         )
-        # (urps-N25) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_y = d_mu_3_t_2*v_1_t_2 + d_mu_3_xy*v_1_t + d_mu_3_zy*s_2
-        d_Gamma_1_z = h_4_z*v_1_t - h_4_y*v_1_t_2
-        # (urps-N21) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_y = d_mu_3_xy*s_3 - c_3_t*d_mu_3_t_2
-        d_Gamma_2_z = c_3_t*h_4_y + h_4_z*s_3
-        # (urps-N29) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_xz = d_Gamma_1_z*w_1_t_3 - d_Gamma_2_z*w_2_t
-        d_G_yz = -d_Gamma_1_z*w_1_t_4 - d_Gamma_2_z*w_2_t_2
-        # (urps-N33) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_xx = (
-        d_alpha_1_zx*h_4_z + w_2_t*(d_mu_3_t*s_3 - c_3_t*d_mu_3_yx) - d_alpha_2_yx*h_4_x -
-            w_1_t_3*(d_mu_3_t*v_1_t + d_mu_3_yx*v_1_t_2 + d_mu_3_zx*s_2)
+        sps_d_mu_3_yx = (
+        sps_h_4_x + sps_J_group_3_xy*sps_d_alpha_2_xx + sps_J_group_3_yy*sps_d_alpha_2_yx +
+            sps_J_group_3_yz*sps_d_alpha_1_zx
         )
-        d_c_xy = d_Gamma_2_y*w_2_t - d_Gamma_1_y*w_1_t_3 - d_alpha_1_zy*h_4_z - d_alpha_2_yy*h_4_x
-        d_c_yy = (
-        d_Gamma_1_y*w_1_t_4 + d_Gamma_2_y*w_2_t_2 + d_alpha_1_zy*h_4_y + d_alpha_2_xy*h_4_x
+        sps_d_mu_3_zx = (
+        sps_J_group_3_xz*sps_d_alpha_2_xx + sps_J_group_3_yz*sps_d_alpha_2_yx +
+            sps_J_group_3_zz*sps_d_alpha_1_zx - sps_h_4_z
         )
-        # (urps-N35) inertia of the leg at the connection point, without the mass gathered there
-        Q_t = 0.5*d_c_xx
-        Q_t_2 = 0.5*d_c_yy
-        Q_t_3 = Q_t*axis_x_urps_axes3_x + axis_y_urps_axes3_in_base_x*d_c_xy - axis_z_x*d_G_xz
-        Q_t_4 = Q_t*axis_x_urps_axes3_y + axis_y_urps_axes3_in_base_y*d_c_xy - axis_z_y*d_G_xz
-        Q_t_5 = Q_t*axis_x_urps_axes3_z + axis_y_urps_axes3_in_base_z*d_c_xy - axis_z_z*d_G_xz
-        Q_t_6 = Q_t_2*axis_y_urps_axes3_in_base_x - axis_z_x*d_G_yz
-        Q_t_7 = Q_t_2*axis_y_urps_axes3_in_base_y - axis_z_y*d_G_yz
-        Q_t_8 = Q_t_2*axis_y_urps_axes3_in_base_z - axis_z_z*d_G_yz
-        Q_t_9 = Q_t_3*axis_x_urps_axes3_x + Q_t_6*axis_y_urps_axes3_in_base_x
-        Q_t_10 = 2.0*Q_t_9
-        Q_t_11 = (
-        Q_t_3*axis_x_urps_axes3_y + Q_t_4*axis_x_urps_axes3_x + Q_t_6*axis_y_urps_axes3_in_base_y
-            + Q_t_7*axis_y_urps_axes3_in_base_x
+        sps_d_mu_3_zy = (
+        sps_h_4_y + sps_J_group_3_xz*sps_d_alpha_2_xy + sps_J_group_3_yz*sps_d_alpha_2_yy -
+            sps_J_group_3_zz*sps_d_alpha_1_zy
         )
-        Q_t_12 = (
-        Q_t_3*axis_x_urps_axes3_z + Q_t_5*axis_x_urps_axes3_x + Q_t_6*axis_y_urps_axes3_in_base_z
-            + Q_t_8*axis_y_urps_axes3_in_base_x
+        # (sps-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        sps_d_Gamma_2_y = sps_d_mu_3_xy*sps_s_3 - sps_c_3_t*sps_d_mu_3_t_2
+        sps_d_Gamma_2_z = sps_c_3_t*sps_h_4_y + sps_h_4_z*sps_s_3
+        # (sps-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        sps_d_Gamma_1_y = (
+        sps_d_mu_3_t_2*sps_v_1_t_2 + sps_d_mu_3_xy*sps_v_1_t + sps_d_mu_3_zy*sps_s_2
         )
-        Q_t_13 = Q_t_4*axis_x_urps_axes3_y + Q_t_7*axis_y_urps_axes3_in_base_y
-        Q_t_14 = 2.0*Q_t_13
-        Q_t_15 = (
-        Q_t_4*axis_x_urps_axes3_z + Q_t_5*axis_x_urps_axes3_y + Q_t_7*axis_y_urps_axes3_in_base_z
-            + Q_t_8*axis_y_urps_axes3_in_base_y
+        sps_d_Gamma_1_z = sps_h_4_z*sps_v_1_t - sps_h_4_y*sps_v_1_t_2
+        # (sps-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        sps_d_G_xz = sps_d_Gamma_1_z*sps_w_1_t_2 - sps_d_Gamma_2_z*sps_w_2_t_2
+        sps_d_G_yz = -sps_d_Gamma_1_z*sps_w_1_t_3 - sps_d_Gamma_2_z*sps_w_2_t_3
+        # (sps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        sps_d_c_xx = (
+        sps_d_alpha_1_zx*sps_h_4_z + sps_w_2_t_2*(sps_d_mu_3_t*sps_s_3 - sps_c_3_t*sps_d_mu_3_yx)
+            - sps_d_alpha_2_yx*sps_h_4_x - sps_w_1_t_2*(sps_d_mu_3_t*sps_v_1_t +
+            sps_d_mu_3_yx*sps_v_1_t_2 + sps_d_mu_3_zx*sps_s_2)
         )
-        Q_t_16 = Q_t_5*axis_x_urps_axes3_z + Q_t_8*axis_y_urps_axes3_in_base_z
-        Q_t_17 = 2.0*Q_t_16
-        # (M2) coupling block of M
-        M_ta_t = Q_t_11*q_in_base_z
-        M_ta_t_2 = Q_t_12*q_in_base_y
-        M_ta_t_3 = M_ta_t - M_ta_t_2
-        M_ta_t_4 = Q_t_10*q_in_base_z - Q_t_12*q_in_base_x
-        M_ta_t_5 = Q_t_10*q_in_base_y - Q_t_11*q_in_base_x
-        M_ta_t_6 = Q_t_14*q_in_base_z - Q_t_15*q_in_base_y
-        M_ta_t_7 = Q_t_15*q_in_base_x
-        M_ta_t_8 = M_ta_t - M_ta_t_7
-        M_ta_t_9 = Q_t_11*q_in_base_y - Q_t_14*q_in_base_x
-        M_ta_t_10 = Q_t_15*q_in_base_z - Q_t_17*q_in_base_y
-        M_ta_t_11 = Q_t_12*q_in_base_z - Q_t_17*q_in_base_x
-        M_ta_t_12 = M_ta_t_7 - M_ta_t_2
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
-        M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y
-        M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z
-        M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x
-        M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z
-        M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
-        # (urps-N2) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        g_tip_x = (
-        axis_x_urps_axes3_x*gravity_x + axis_x_urps_axes3_y*gravity_y +
-            axis_x_urps_axes3_z*gravity_z
+        sps_d_c_xy = (
+        sps_d_Gamma_2_y*sps_w_2_t_2 - sps_d_Gamma_1_y*sps_w_1_t_2 - sps_d_alpha_1_zy*sps_h_4_z -
+            sps_d_alpha_2_yy*sps_h_4_x
         )
-        g_tip_y = (
-        axis_y_urps_axes3_in_base_x*gravity_x + axis_y_urps_axes3_in_base_y*gravity_y +
-            axis_y_urps_axes3_in_base_z*gravity_z
+        sps_d_c_yy = (
+        sps_d_Gamma_1_y*sps_w_1_t_3 + sps_d_Gamma_2_y*sps_w_2_t_3 + sps_d_alpha_1_zy*sps_h_4_y +
+            sps_d_alpha_2_xy*sps_h_4_x
         )
-        g_tip_z = axis_z_x*gravity_x + axis_z_y*gravity_y + axis_z_z*gravity_z
-        # (urps-A1) centripetal acceleration of the connection point
-        u_1_x = W_p_xy*q_in_base_y + W_p_xz*q_in_base_z - W_p_xx*q_in_base_x
-        u_1_y = W_p_xy*q_in_base_x + W_p_yz*q_in_base_z - W_p_yy*q_in_base_y
-        u_1_z = W_p_xz*q_in_base_x + W_p_yz*q_in_base_y - W_p_zz*q_in_base_z
-        u_1_tip_x = (
-        axis_x_urps_axes3_x*u_1_x + axis_x_urps_axes3_y*u_1_y + axis_x_urps_axes3_z*u_1_z
+        # (sps-Q) inertia of the leg at the connection point, without the mass gathered there
+        sps_Q_t = 0.5*sps_d_c_xx
+        sps_Q_t_2 = 0.5*sps_d_c_yy
+        sps_Q_t_3 = (
+        axis_x_sps_axes3_x*sps_Q_t + axis_y_sps_axes3_in_base_x*sps_d_c_xy -
+            sps_axis_z_x*sps_d_G_xz
         )
-        u_1_tip_y = (
-        axis_y_urps_axes3_in_base_x*u_1_x + axis_y_urps_axes3_in_base_y*u_1_y +
-            axis_y_urps_axes3_in_base_z*u_1_z
+        sps_Q_t_4 = (
+        axis_x_sps_axes3_y*sps_Q_t + axis_y_sps_axes3_in_base_y*sps_d_c_xy -
+            sps_axis_z_y*sps_d_G_xz
         )
-        # (urps-N4) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
-        acc_4_o_x = u_1_tip_x - g_tip_x
-        acc_4_o_y = u_1_tip_y - g_tip_y
-        acc_4_o_z = axis_z_x*u_1_x + axis_z_y*u_1_y + axis_z_z*u_1_z - g_tip_z
-        # (urps-V1) velocity of the connection point
-        S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x
-        # (urps-V9) velocity of the connection point left to the joints that are not extra
-        S_dot_rest_tip_x = (
-        S_dot_x*axis_x_urps_axes3_x + S_dot_y*axis_x_urps_axes3_y + S_dot_z*axis_x_urps_axes3_z
+        sps_Q_t_5 = (
+        axis_x_sps_axes3_z*sps_Q_t + axis_y_sps_axes3_in_base_z*sps_d_c_xy -
+            sps_axis_z_z*sps_d_G_xz
         )
-        S_dot_rest_tip_y = (
-        S_dot_x*axis_y_urps_axes3_in_base_x + S_dot_y*axis_y_urps_axes3_in_base_y +
-            S_dot_z*axis_y_urps_axes3_in_base_z
+        sps_Q_t_6 = axis_y_sps_axes3_in_base_x*sps_Q_t_2 - sps_axis_z_x*sps_d_G_yz
+        sps_Q_t_7 = axis_y_sps_axes3_in_base_y*sps_Q_t_2 - sps_axis_z_y*sps_d_G_yz
+        sps_Q_t_8 = axis_y_sps_axes3_in_base_z*sps_Q_t_2 - sps_axis_z_z*sps_d_G_yz
+        sps_Q_t_9 = axis_x_sps_axes3_x*sps_Q_t_3 + axis_y_sps_axes3_in_base_x*sps_Q_t_6
+        sps_Q_t_10 = 2.0*sps_Q_t_9
+        sps_Q_t_11 = (
+        axis_x_sps_axes3_x*sps_Q_t_4 + axis_x_sps_axes3_y*sps_Q_t_3 +
+            axis_y_sps_axes3_in_base_x*sps_Q_t_7 + axis_y_sps_axes3_in_base_y*sps_Q_t_6
         )
-        S_dot_rest_tip_z = S_dot_x*axis_z_x + S_dot_y*axis_z_y + S_dot_z*axis_z_z
-        # (urps-V10) rate of joint 1
-        qd_1 = inv_w_1_t_23*(S_dot_rest_tip_x*v_2_t_2 - S_dot_rest_tip_y*v_2_t)
-        qd_2 = inv_w_1_t_23*(S_dot_rest_tip_x*v_1_t_4 + S_dot_rest_tip_y*v_1_t_3)
-        # (urps-V13) angular velocity of link 1
-        omega_1_t = qd_1*s_2
-        omega_1_t_2 = c_2*qd_1
-        # (urps-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_y = omega_1_t*qd_2
-        # (urps-V14) angular velocity of link 2
-        omega_2_r1_x = c_3_t*omega_1_t_2 - qd_2*s_3
-        omega_2_r1_y = c_3_t*qd_2 + omega_1_t_2*s_3
-        # (urps-A5) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_x = omega_2_r1_y*yd_3
-        zeta_3_y = omega_2_r1_x*yd_3
-        # (urps-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_x = zeta_3_x - c_3_t*zeta_2_y
-        beta_3_y = -zeta_3_y - s_3*zeta_2_y
-        # (urps-V15) angular velocity of link 3
-        omega_3_z = omega_1_t + yd_3
-        # (urps-V16) centripetal tensor of link 3
-        W_3_t = omega_2_r1_x*omega_2_r1_x
-        W_3_t_2 = omega_2_r1_y*omega_2_r1_y
-        W_3_t_3 = omega_3_z*omega_3_z
-        W_3_xy = omega_2_r1_x*omega_2_r1_y
-        W_3_xz = omega_2_r1_x*omega_3_z
-        W_3_yz = omega_2_r1_y*omega_3_z
-        # (urps-A7) acceleration of the connection point at zero joint accelerations
-        bias_t = 2.0*S_dot_rest_tip_z
-        bias_x = bias_t*omega_2_r1_y + root_2*(W_3_xz + beta_3_y)
-        bias_y = root_2*(W_3_yz - beta_3_x) - bias_t*omega_2_r1_x
-        # (urps-A10) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_x = u_1_tip_x - bias_x
-        rel_o_y = u_1_tip_y - bias_y
-        # (urps-A13) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_o = inv_w_1_t_23*(rel_o_x*v_2_t_2 - rel_o_y*v_2_t)
-        qdd_2_o = inv_w_1_t_23*(rel_o_x*v_1_t_4 + rel_o_y*v_1_t_3)
-        # (urps-A25) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_o_x = omega_1_t_2*qd_2 + qdd_1_o*s_2
-        alpha_2_o_y = zeta_2_y - c_2*qdd_1_o
-        # (urps-A28) remainder without the acceleration in: angular acceleration of link 3
-        alpha_3_o_x = zeta_3_x - alpha_2_o_y*c_3_t - qdd_2_o*s_3
-        alpha_3_o_y = c_3_t*qdd_2_o - zeta_3_y - alpha_2_o_y*s_3
-        # (urps-A30) remainder of the acceleration tensor of link 3
-        B_3_o_xy = W_3_xy - alpha_2_o_x
-        B_3_o_xz = W_3_xz + alpha_3_o_y
-        B_3_o_yx = W_3_xy + alpha_2_o_x
-        B_3_o_yz = W_3_yz - alpha_3_o_x
-        B_3_o_zx = W_3_xz - alpha_3_o_y
-        B_3_o_zy = W_3_yz + alpha_3_o_x
-        # (urps-N15) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        mu_3_o_x = (
-        B_3_o_yx*J_group_3_xz + B_3_o_zy*Sigma_3_yy + J_group_3_yz*(W_3_t_2 - W_3_t_3) +
-            acc_4_o_z*h_4_z + g_tip_y*h_3_x - B_3_o_yz*Sigma_3_zz - B_3_o_zx*J_group_3_xy -
-            acc_4_o_y*h_4_x - g_tip_z*h_3_z
+        sps_Q_t_12 = (
+        axis_x_sps_axes3_x*sps_Q_t_5 + axis_x_sps_axes3_z*sps_Q_t_3 +
+            axis_y_sps_axes3_in_base_x*sps_Q_t_8 + axis_y_sps_axes3_in_base_z*sps_Q_t_6
         )
-        mu_3_o_y = (
-        B_3_o_xz*Sigma_3_zz + B_3_o_zy*J_group_3_xy + acc_4_o_x*h_4_x + g_tip_z*h_3_y -
-            B_3_o_xy*J_group_3_yz - B_3_o_zx*Sigma_3_xx - J_group_3_xz*(W_3_t - W_3_t_3) -
-            acc_4_o_z*h_4_y - g_tip_x*h_3_x
+        sps_Q_t_13 = axis_x_sps_axes3_y*sps_Q_t_4 + axis_y_sps_axes3_in_base_y*sps_Q_t_7
+        sps_Q_t_14 = 2.0*sps_Q_t_13
+        sps_Q_t_15 = (
+        axis_x_sps_axes3_y*sps_Q_t_5 + axis_x_sps_axes3_z*sps_Q_t_4 +
+            axis_y_sps_axes3_in_base_y*sps_Q_t_8 + axis_y_sps_axes3_in_base_z*sps_Q_t_7
         )
-        mu_3_o_z = (
-        B_3_o_xz*J_group_3_yz + B_3_o_yx*Sigma_3_xx + J_group_3_xy*(W_3_t - W_3_t_2) +
-            acc_4_o_y*h_4_y + g_tip_x*h_3_z - B_3_o_xy*Sigma_3_yy - B_3_o_yz*J_group_3_xz -
-            acc_4_o_x*h_4_z - g_tip_y*h_3_y
+        sps_Q_t_16 = axis_x_sps_axes3_z*sps_Q_t_5 + axis_y_sps_axes3_in_base_z*sps_Q_t_8
+        sps_Q_t_17 = 2.0*sps_Q_t_16
+        # (M_ta) coupling block of M
+        sps_M_ta_t = sps_Q_t_11*sps_q_in_base_z
+        sps_M_ta_t_2 = sps_Q_t_12*sps_q_in_base_y
+        sps_M_ta_t_3 = sps_M_ta_t - sps_M_ta_t_2
+        sps_M_ta_t_4 = sps_Q_t_10*sps_q_in_base_z - sps_Q_t_12*sps_q_in_base_x
+        sps_M_ta_t_5 = sps_Q_t_10*sps_q_in_base_y - sps_Q_t_11*sps_q_in_base_x
+        sps_M_ta_t_6 = sps_Q_t_14*sps_q_in_base_z - sps_Q_t_15*sps_q_in_base_y
+        sps_M_ta_t_7 = sps_Q_t_15*sps_q_in_base_x
+        sps_M_ta_t_8 = sps_M_ta_t - sps_M_ta_t_7
+        sps_M_ta_t_9 = sps_Q_t_11*sps_q_in_base_y - sps_Q_t_14*sps_q_in_base_x
+        sps_M_ta_t_10 = sps_Q_t_15*sps_q_in_base_z - sps_Q_t_17*sps_q_in_base_y
+        sps_M_ta_t_11 = sps_Q_t_12*sps_q_in_base_z - sps_Q_t_17*sps_q_in_base_x
+        sps_M_ta_t_12 = sps_M_ta_t_7 - sps_M_ta_t_2
+        # (M_aa) rotational block of M
+        sps_M_aa_t = sps_M_ta_t_6*sps_q_in_base_z - sps_M_ta_t_10*sps_q_in_base_y
+        sps_M_aa_t_2 = sps_M_ta_t_8*sps_q_in_base_z - sps_M_ta_t_11*sps_q_in_base_y
+        sps_M_aa_t_3 = sps_M_ta_t_12*sps_q_in_base_y + sps_M_ta_t_9*sps_q_in_base_z
+        sps_M_aa_t_4 = sps_M_ta_t_4*sps_q_in_base_z - sps_M_ta_t_11*sps_q_in_base_x
+        sps_M_aa_t_5 = sps_M_ta_t_12*sps_q_in_base_x + sps_M_ta_t_5*sps_q_in_base_z
+        sps_M_aa_t_6 = sps_M_ta_t_5*sps_q_in_base_y - sps_M_ta_t_9*sps_q_in_base_x
+        # (sps-S_dot) velocity of the connection point
+        sps_S_dot_t = omega_y*sps_q_in_base_z - omega_z*sps_q_in_base_y
+        sps_S_dot_t_2 = omega_z*sps_q_in_base_x - omega_x*sps_q_in_base_z
+        sps_S_dot_t_3 = omega_x*sps_q_in_base_y - omega_y*sps_q_in_base_x
+        sps_S_dot_x = sps_S_dot_t + t_dot_x
+        sps_S_dot_y = sps_S_dot_t_2 + t_dot_y
+        sps_S_dot_z = sps_S_dot_t_3 + t_dot_z
+        # (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra
+        sps_S_dot_rest_tip_x = (
+        axis_x_sps_axes3_x*sps_S_dot_x + axis_x_sps_axes3_y*sps_S_dot_y +
+            axis_x_sps_axes3_z*sps_S_dot_z
         )
-        # (urps-N27) remainder without the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        Gamma_1_o = mu_3_o_x*v_1_t + mu_3_o_y*v_1_t_2 + mu_3_o_z*s_2
-        # (urps-N15) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        mu_3_o_r0_y = mu_3_o_x*s_3 - c_3_t*mu_3_o_y
-        # (urps-N7) remainder without the acceleration in: inertia force of link 4 from its turning about its reference point
-        phi_4_o_z = B_3_o_zx*h_4_y + B_3_o_zy*h_4_z - h_4_x*(W_3_t + W_3_t_2)
-        # (urps-N34) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_o_x = (
-        h_4_y*(W_3_t_2 + W_3_t_3) - B_3_o_xy*h_4_z - B_3_o_xz*h_4_x -
-            inv_w_1_t_23*(Gamma_1_o*v_2_t_2 - mu_3_o_r0_y*v_1_t_4)
+        sps_S_dot_rest_tip_y = (
+        axis_y_sps_axes3_in_base_x*sps_S_dot_x + axis_y_sps_axes3_in_base_y*sps_S_dot_y +
+            axis_y_sps_axes3_in_base_z*sps_S_dot_z
         )
-        c_o_y = (
-        h_4_z*(W_3_t + W_3_t_3) + inv_w_1_t_23*(Gamma_1_o*v_2_t + mu_3_o_r0_y*v_1_t_3) -
-            B_3_o_yx*h_4_y - B_3_o_yz*h_4_x
+        sps_S_dot_rest_tip_z = (
+        sps_S_dot_x*sps_axis_z_x + sps_S_dot_y*sps_axis_z_y + sps_S_dot_z*sps_axis_z_z
         )
-        # (urps-N36) velocity and gravity terms of the leg force
-        U_in_base_x = (
-        axis_z_x*phi_4_o_z - axis_x_urps_axes3_x*c_o_x - axis_y_urps_axes3_in_base_x*c_o_y
+        # (sps-qd_2) rate of joint 2
+        sps_qd_1 = (
+        inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_2_t_2 - sps_S_dot_rest_tip_y*sps_v_2_t)
         )
-        U_in_base_y = (
-        axis_z_y*phi_4_o_z - axis_x_urps_axes3_y*c_o_x - axis_y_urps_axes3_in_base_y*c_o_y
+        sps_qd_2 = (
+        inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_1_t_4 + sps_S_dot_rest_tip_y*sps_v_1_t_3)
         )
-        U_in_base_z = (
-        axis_z_z*phi_4_o_z - axis_x_urps_axes3_z*c_o_x - axis_y_urps_axes3_in_base_z*c_o_y
+        # (sps-omega_1) angular velocity of link 1
+        sps_omega_1_t = sps_qd_1*sps_s_2
+        sps_omega_1_t_2 = sps_c_2*sps_qd_1
+        # (sps-omega_2) angular velocity of link 2
+        sps_omega_2_r1_x = sps_c_3_t*sps_omega_1_t_2 - sps_qd_2*sps_s_3
+        sps_omega_2_r1_y = sps_c_3_t*sps_qd_2 + sps_omega_1_t_2*sps_s_3
+        # (sps-omega_3) angular velocity of link 3
+        sps_omega_3_z = sps_omega_1_t + sps_yd_3
+        # (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        sps_zeta_3_x = sps_omega_2_r1_y*sps_yd_3
+        sps_zeta_3_y = sps_omega_2_r1_x*sps_yd_3
+        # (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        sps_zeta_2_y = sps_omega_1_t*sps_qd_2
+        # (sps-u_1) centripetal acceleration of the connection point
+        sps_u_1_x = omega_y*sps_S_dot_t_3 - omega_z*sps_S_dot_t_2
+        sps_u_1_y = omega_z*sps_S_dot_t - omega_x*sps_S_dot_t_3
+        sps_u_1_z = omega_x*sps_S_dot_t_2 - omega_y*sps_S_dot_t
+        # (sps-beta_3) angular acceleration of link 3 at zero joint accelerations
+        sps_beta_3_x = sps_zeta_3_x - sps_c_3_t*sps_zeta_2_y
+        sps_beta_3_y = -sps_zeta_3_y - sps_s_3*sps_zeta_2_y
+        # (sps-W_3) centripetal tensor of link 3
+        sps_W_3_t = sps_omega_2_r1_x*sps_omega_2_r1_x
+        sps_W_3_t_2 = sps_omega_2_r1_y*sps_omega_2_r1_y
+        sps_W_3_t_3 = sps_omega_3_z*sps_omega_3_z
+        sps_W_3_xy = sps_omega_2_r1_x*sps_omega_2_r1_y
+        sps_W_3_xz = sps_omega_2_r1_x*sps_omega_3_z
+        sps_W_3_yz = sps_omega_2_r1_y*sps_omega_3_z
+        # (sps-bias) acceleration of the connection point at zero joint accelerations
+        sps_bias_t = 2.0*sps_S_dot_rest_tip_z
+        sps_bias_x = sps_bias_t*sps_omega_2_r1_y + sps_root_2*(sps_W_3_xz + sps_beta_3_y)
+        sps_bias_y = sps_root_2*(sps_W_3_yz - sps_beta_3_x) - sps_bias_t*sps_omega_2_r1_x
+        # (sps-u_1) centripetal acceleration of the connection point
+        sps_u_1_tip_x = (
+        axis_x_sps_axes3_x*sps_u_1_x + axis_x_sps_axes3_y*sps_u_1_y + axis_x_sps_axes3_z*sps_u_1_z
         )
-        # (M7) rotational part of Z
-        Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
-        Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
-        Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
-        # (urps-N39) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 3
-        d_P_3_in_base_x = axis_x_urps_axes3_x*d_mu_3_zx + axis_y_urps_axes3_in_base_x*d_mu_3_zy
-        d_P_3_in_base_y = axis_x_urps_axes3_y*d_mu_3_zx + axis_y_urps_axes3_in_base_y*d_mu_3_zy
-        d_P_3_in_base_z = axis_x_urps_axes3_z*d_mu_3_zx + axis_y_urps_axes3_in_base_z*d_mu_3_zy
-        # (M8) coupling of extra joint 3 with the rotation of the platform
-        M_ya_3_x = d_P_3_in_base_z*q_in_base_y - d_P_3_in_base_y*q_in_base_z
-        M_ya_3_y = d_P_3_in_base_x*q_in_base_z - d_P_3_in_base_z*q_in_base_x
-        M_ya_3_z = d_P_3_in_base_y*q_in_base_x - d_P_3_in_base_x*q_in_base_y
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_4_x = axis_z_z*q_in_base_y - axis_z_y*q_in_base_z
-        H_a_4_y = axis_z_x*q_in_base_z - axis_z_z*q_in_base_x
-        H_a_4_z = axis_z_y*q_in_base_x - axis_z_x*q_in_base_y
+        sps_u_1_tip_y = (
+        axis_y_sps_axes3_in_base_x*sps_u_1_x + axis_y_sps_axes3_in_base_y*sps_u_1_y +
+            axis_y_sps_axes3_in_base_z*sps_u_1_z
+        )
+        # (sps-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        sps_rel_o_x = sps_u_1_tip_x - sps_bias_x
+        sps_rel_o_y = sps_u_1_tip_y - sps_bias_y
+        # (sps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        sps_qdd_1_o = inv_sps_w_2_t_3*(sps_rel_o_x*sps_v_2_t_2 - sps_rel_o_y*sps_v_2_t)
+        sps_qdd_2_o = inv_sps_w_2_t_3*(sps_rel_o_x*sps_v_1_t_4 + sps_rel_o_y*sps_v_1_t_3)
+        # (sps-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        sps_alpha_2_o_x = sps_omega_1_t_2*sps_qd_2 + sps_qdd_1_o*sps_s_2
+        sps_alpha_2_o_y = sps_zeta_2_y - sps_c_2*sps_qdd_1_o
+        # (sps-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        sps_alpha_3_o_x = sps_zeta_3_x - sps_alpha_2_o_y*sps_c_3_t - sps_qdd_2_o*sps_s_3
+        sps_alpha_3_o_y = sps_c_3_t*sps_qdd_2_o - sps_zeta_3_y - sps_alpha_2_o_y*sps_s_3
+        # (sps-B_3_o) remainder of the acceleration tensor of link 3
+        sps_B_3_o_xy = sps_W_3_xy - sps_alpha_2_o_x
+        sps_B_3_o_xz = sps_W_3_xz + sps_alpha_3_o_y
+        sps_B_3_o_yx = sps_W_3_xy + sps_alpha_2_o_x
+        sps_B_3_o_yz = sps_W_3_yz - sps_alpha_3_o_x
+        sps_B_3_o_zx = sps_W_3_xz - sps_alpha_3_o_y
+        sps_B_3_o_zy = sps_W_3_yz + sps_alpha_3_o_x
+        # (sps-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning about its reference point
+        sps_phi_4_o_z = (
+        sps_B_3_o_zx*sps_h_4_y + sps_B_3_o_zy*sps_h_4_z - sps_h_4_x*(sps_W_3_t + sps_W_3_t_2)
+        )
+        # (sps-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        sps_g_tip_x = (
+        axis_x_sps_axes3_x*gravity_x + axis_x_sps_axes3_y*gravity_y + axis_x_sps_axes3_z*gravity_z
+        )
+        sps_g_tip_y = (
+        axis_y_sps_axes3_in_base_x*gravity_x + axis_y_sps_axes3_in_base_y*gravity_y +
+            axis_y_sps_axes3_in_base_z*gravity_z
+        )
+        sps_g_tip_z = gravity_x*sps_axis_z_x + gravity_y*sps_axis_z_y + gravity_z*sps_axis_z_z
+        # (sps-acc_4_o) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+        sps_acc_4_o_x = sps_u_1_tip_x - sps_g_tip_x
+        sps_acc_4_o_y = sps_u_1_tip_y - sps_g_tip_y
+        sps_acc_4_o_z = (
+        sps_axis_z_x*sps_u_1_x + sps_axis_z_y*sps_u_1_y + sps_axis_z_z*sps_u_1_z - sps_g_tip_z
+        )
+        # (sps-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        sps_mu_3_o_x = (
+        sps_B_3_o_yx*sps_J_group_3_xz + sps_B_3_o_zy*sps_Sigma_3_yy +
+            sps_J_group_3_yz*(sps_W_3_t_2 - sps_W_3_t_3) + sps_acc_4_o_z*sps_h_4_z +
+            sps_g_tip_y*sps_h_3_x - sps_B_3_o_yz*sps_Sigma_3_zz - sps_B_3_o_zx*sps_J_group_3_xy -
+            sps_acc_4_o_y*sps_h_4_x - sps_g_tip_z*sps_h_3_z
+        )
+        sps_mu_3_o_y = (
+        sps_B_3_o_xz*sps_Sigma_3_zz + sps_B_3_o_zy*sps_J_group_3_xy + sps_acc_4_o_x*sps_h_4_x +
+            sps_g_tip_z*sps_h_3_y - sps_B_3_o_xy*sps_J_group_3_yz - sps_B_3_o_zx*sps_Sigma_3_xx -
+            sps_J_group_3_xz*(sps_W_3_t - sps_W_3_t_3) - sps_acc_4_o_z*sps_h_4_y -
+            sps_g_tip_x*sps_h_3_x
+        )
+        sps_mu_3_o_z = (
+        sps_B_3_o_xz*sps_J_group_3_yz + sps_B_3_o_yx*sps_Sigma_3_xx + sps_J_group_3_xy*(sps_W_3_t
+            - sps_W_3_t_2) + sps_acc_4_o_y*sps_h_4_y + sps_g_tip_x*sps_h_3_z -
+            sps_B_3_o_xy*sps_Sigma_3_yy - sps_B_3_o_yz*sps_J_group_3_xz - sps_acc_4_o_x*sps_h_4_z
+            - sps_g_tip_y*sps_h_3_y
+        )
+        sps_mu_3_o_r0_y = sps_mu_3_o_x*sps_s_3 - sps_c_3_t*sps_mu_3_o_y
+        # (sps-Gamma_1_o) remainder without the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        sps_Gamma_1_o = sps_mu_3_o_x*sps_v_1_t + sps_mu_3_o_y*sps_v_1_t_2 + sps_mu_3_o_z*sps_s_2
+        # (sps-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        sps_c_o_x = (
+        sps_h_4_y*(sps_W_3_t_2 + sps_W_3_t_3) - inv_sps_w_2_t_3*(sps_Gamma_1_o*sps_v_2_t_2 -
+            sps_mu_3_o_r0_y*sps_v_1_t_4) - sps_B_3_o_xy*sps_h_4_z - sps_B_3_o_xz*sps_h_4_x
+        )
+        sps_c_o_y = (
+        inv_sps_w_2_t_3*(sps_Gamma_1_o*sps_v_2_t + sps_mu_3_o_r0_y*sps_v_1_t_3) +
+            sps_h_4_z*(sps_W_3_t + sps_W_3_t_3) - sps_B_3_o_yx*sps_h_4_y - sps_B_3_o_yz*sps_h_4_x
+        )
+        # (sps-U) velocity and gravity terms of the leg force
+        sps_U_in_base_x = (
+        sps_axis_z_x*sps_phi_4_o_z - axis_x_sps_axes3_x*sps_c_o_x -
+            axis_y_sps_axes3_in_base_x*sps_c_o_y
+        )
+        sps_U_in_base_y = (
+        sps_axis_z_y*sps_phi_4_o_z - axis_x_sps_axes3_y*sps_c_o_x -
+            axis_y_sps_axes3_in_base_y*sps_c_o_y
+        )
+        sps_U_in_base_z = (
+        sps_axis_z_z*sps_phi_4_o_z - axis_x_sps_axes3_z*sps_c_o_x -
+            axis_y_sps_axes3_in_base_z*sps_c_o_y
+        )
+        # (Z_a) rotational part of Z
+        sps_Z_a_t = sps_U_in_base_z*sps_q_in_base_y - sps_U_in_base_y*sps_q_in_base_z
+        sps_Z_a_t_2 = sps_U_in_base_x*sps_q_in_base_z - sps_U_in_base_z*sps_q_in_base_x
+        sps_Z_a_t_3 = sps_U_in_base_y*sps_q_in_base_x - sps_U_in_base_x*sps_q_in_base_y
+        # (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 3
+        sps_d_P_3_in_base_x = (
+        axis_x_sps_axes3_x*sps_d_mu_3_zx + axis_y_sps_axes3_in_base_x*sps_d_mu_3_zy
+        )
+        sps_d_P_3_in_base_y = (
+        axis_x_sps_axes3_y*sps_d_mu_3_zx + axis_y_sps_axes3_in_base_y*sps_d_mu_3_zy
+        )
+        sps_d_P_3_in_base_z = (
+        axis_x_sps_axes3_z*sps_d_mu_3_zx + axis_y_sps_axes3_in_base_z*sps_d_mu_3_zy
+        )
+        # (sps-M_ya_3) coupling of extra joint 3 with the rotation of the platform
+        sps_M_ya_3_x = sps_d_P_3_in_base_z*sps_q_in_base_y - sps_d_P_3_in_base_y*sps_q_in_base_z
+        sps_M_ya_3_y = sps_d_P_3_in_base_x*sps_q_in_base_z - sps_d_P_3_in_base_z*sps_q_in_base_x
+        sps_M_ya_3_z = sps_d_P_3_in_base_y*sps_q_in_base_x - sps_d_P_3_in_base_x*sps_q_in_base_y
+        # (sps-H_a_4) moment of the column's unit force about the platform origin
+        sps_H_a_4_x = sps_axis_z_z*sps_q_in_base_y - sps_axis_z_y*sps_q_in_base_z
+        sps_H_a_4_y = sps_axis_z_x*sps_q_in_base_z - sps_axis_z_z*sps_q_in_base_x
+        sps_H_a_4_z = sps_axis_z_y*sps_q_in_base_x - sps_axis_z_x*sps_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-w_1_t_2) >
+        ok & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-sps_w_2_t) >
             _TOLERANCE * 0.6400000000000001))
         )
         sums = m.added(sums, leg, (
-        Q_t_10, Q_t_11, Q_t_12, Q_t_14, Q_t_15, Q_t_17, M_ta_t_3, M_ta_t_4, M_ta_t_5,
-            M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2,
-            M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y, U_in_base_z,
-            Z_a_t, Z_a_t_2, Z_a_t_3,
+        sps_Q_t_10, sps_Q_t_11, sps_Q_t_12, sps_Q_t_14, sps_Q_t_15, sps_Q_t_17, sps_M_ta_t_3,
+            sps_M_ta_t_4, sps_M_ta_t_5, sps_M_ta_t_6, sps_M_ta_t_8, sps_M_ta_t_9,
+            sps_M_ta_t_10, sps_M_ta_t_11, sps_M_ta_t_12, sps_M_aa_t, sps_M_aa_t_2,
+            sps_M_aa_t_3, sps_M_aa_t_4, sps_M_aa_t_5, sps_M_aa_t_6, sps_U_in_base_x,
+            sps_U_in_base_y, sps_U_in_base_z, sps_Z_a_t, sps_Z_a_t_2, sps_Z_a_t_3,
         ))
-        out_Z[_Z_urps[0][leg]] = mu_3_o_z
-        out_M[_M_urps[0][leg]] = d_P_3_in_base_x
-        out_M[_M_urps[1][leg]] = d_P_3_in_base_x
-        out_M[_M_urps[2][leg]] = d_P_3_in_base_y
-        out_M[_M_urps[3][leg]] = d_P_3_in_base_y
-        out_M[_M_urps[4][leg]] = d_P_3_in_base_z
-        out_M[_M_urps[5][leg]] = d_P_3_in_base_z
-        out_M[_M_urps[6][leg]] = M_ya_3_x
-        out_M[_M_urps[7][leg]] = M_ya_3_x
-        out_M[_M_urps[8][leg]] = M_ya_3_y
-        out_M[_M_urps[9][leg]] = M_ya_3_y
-        out_M[_M_urps[10][leg]] = M_ya_3_z
-        out_M[_M_urps[11][leg]] = M_ya_3_z
-        out_M[_M_urps[12][leg]] = J_group_3_zz
-        out_H[_H_urps[0][leg]] = axis_z_x
-        out_H[_H_urps[1][leg]] = axis_z_y
-        out_H[_H_urps[2][leg]] = axis_z_z
-        out_H[_H_urps[3][leg]] = H_a_4_x
-        out_H[_H_urps[4][leg]] = H_a_4_y
-        out_H[_H_urps[5][leg]] = H_a_4_z
+        out_Z[_Z_sps[0][leg]] = sps_mu_3_o_z
+        out_M[_M_sps[0][leg]] = sps_d_P_3_in_base_x
+        out_M[_M_sps[1][leg]] = sps_d_P_3_in_base_x
+        out_M[_M_sps[2][leg]] = sps_d_P_3_in_base_y
+        out_M[_M_sps[3][leg]] = sps_d_P_3_in_base_y
+        out_M[_M_sps[4][leg]] = sps_d_P_3_in_base_z
+        out_M[_M_sps[5][leg]] = sps_d_P_3_in_base_z
+        out_M[_M_sps[6][leg]] = sps_M_ya_3_x
+        out_M[_M_sps[7][leg]] = sps_M_ya_3_x
+        out_M[_M_sps[8][leg]] = sps_M_ya_3_y
+        out_M[_M_sps[9][leg]] = sps_M_ya_3_y
+        out_M[_M_sps[10][leg]] = sps_M_ya_3_z
+        out_M[_M_sps[11][leg]] = sps_M_ya_3_z
+        out_M[_M_sps[12][leg]] = sps_J_group_3_zz
+        out_H[_H_sps[0][leg]] = sps_axis_z_x
+        out_H[_H_sps[1][leg]] = sps_axis_z_y
+        out_H[_H_sps[2][leg]] = sps_axis_z_z
+        out_H[_H_sps[3][leg]] = sps_H_a_4_x
+        out_H[_H_sps[4][leg]] = sps_H_a_4_y
+        out_H[_H_sps[5][leg]] = sps_H_a_4_z
     (
-    total_urps_xx, total_urps_xy, total_urps_xz, total_urps_yy, total_urps_yz, total_urps_zz,
-        total_urps_xx_2, total_urps_xy_2, total_urps_xz_2, total_urps_yx, total_urps_yy_2,
-        total_urps_yz_2, total_urps_zx, total_urps_zy, total_urps_zz_2, total_urps_xx_3,
-        total_urps_xy_3, total_urps_xz_3, total_urps_yy_3, total_urps_yz_3, total_urps_zz_3,
-        total_urps_x, total_urps_y, total_urps_z, total_urps_x_2, total_urps_y_2, total_urps_z_2,
+    total_sps_xx, total_sps_xy, total_sps_xz, total_sps_yy, total_sps_yz, total_sps_zz,
+        total_sps_xx_2, total_sps_xy_2, total_sps_xz_2, total_sps_yx, total_sps_yy_2,
+        total_sps_yz_2, total_sps_zx, total_sps_zy, total_sps_zz_2, total_sps_xx_3,
+        total_sps_xy_3, total_sps_xz_3, total_sps_yy_3, total_sps_yz_3, total_sps_zz_3,
+        total_sps_x, total_sps_y, total_sps_z, total_sps_x_2, total_sps_y_2, total_sps_z_2,
     ) = sums
-    # (M1) translational block of M
-    M_tt_xx = m_star - total_urps_xx
-    M_tt_yy = m_star - total_urps_yy
-    M_tt_zz = m_star - total_urps_zz
-    # (M2) coupling block of M
-    M_ta_xy = h_star_in_base_z - total_urps_xy_2
-    M_ta_xz = total_urps_xz_2 - h_star_in_base_y
-    M_ta_yx = total_urps_yx - h_star_in_base_z
-    M_ta_yz = h_star_in_base_x + total_urps_yz_2
-    M_ta_zx = h_star_in_base_y + total_urps_zx
-    M_ta_zy = -h_star_in_base_x - total_urps_zy
-    # (M3) rotational block of M
-    M_aa_xx = J_star_t_8 - total_urps_xx_3
-    M_aa_xy = J_star_t_9 + total_urps_xy_3
-    M_aa_xz = J_star_t_10 - total_urps_xz_3
-    M_aa_yy = J_star_t_12 - total_urps_yy_3
-    M_aa_yz = J_star_t_13 + total_urps_yz_3
-    M_aa_zz = J_star_t_15 - total_urps_zz_3
-    # (M5) translational part of Z
-    Z_t_x = Z_p_x + total_urps_x
-    Z_t_y = Z_p_y + total_urps_y
-    Z_t_z = Z_p_z + total_urps_z
-    # (M7) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_urps_x_2
-    Z_a_y = Z_q_in_base_y + total_urps_y_2
-    Z_a_z = Z_q_in_base_z + total_urps_z_2
+    # (M_tt) translational block of M
+    M_tt_xx = m_star - total_sps_xx
+    M_tt_yy = m_star - total_sps_yy
+    M_tt_zz = m_star - total_sps_zz
+    # (M_ta) coupling block of M
+    M_ta_xy = h_star_in_base_z - total_sps_xy_2
+    M_ta_xz = total_sps_xz_2 - h_star_in_base_y
+    M_ta_yx = total_sps_yx - h_star_in_base_z
+    M_ta_yz = h_star_in_base_x + total_sps_yz_2
+    M_ta_zx = h_star_in_base_y + total_sps_zx
+    M_ta_zy = -h_star_in_base_x - total_sps_zy
+    # (M_aa) rotational block of M
+    M_aa_xx = J_star_t_8 - total_sps_xx_3
+    M_aa_xy = J_star_t_9 + total_sps_xy_3
+    M_aa_xz = J_star_t_10 - total_sps_xz_3
+    M_aa_yy = J_star_t_13 - total_sps_yy_3
+    M_aa_yz = J_star_t_15 + total_sps_yz_3
+    M_aa_zz = J_star_t_17 - total_sps_zz_3
+    # (Z_t) translational part of Z
+    Z_t_x = Z_p_x + total_sps_x
+    Z_t_y = Z_p_y + total_sps_y
+    Z_t_z = Z_p_z + total_sps_z
+    # (Z_a) rotational part of Z
+    Z_a_x = Z_q_in_base_x + total_sps_x_2
+    Z_a_y = Z_q_in_base_y + total_sps_y_2
+    Z_a_z = Z_q_in_base_z + total_sps_z_2
     out_M[0] = M_tt_xx
-    out_M[1] = -total_urps_xy
-    out_M[12] = -total_urps_xy
-    out_M[2] = -total_urps_xz
-    out_M[24] = -total_urps_xz
+    out_M[1] = -total_sps_xy
+    out_M[12] = -total_sps_xy
+    out_M[2] = -total_sps_xz
+    out_M[24] = -total_sps_xz
     out_M[13] = M_tt_yy
-    out_M[14] = -total_urps_yz
-    out_M[25] = -total_urps_yz
+    out_M[14] = -total_sps_yz
+    out_M[25] = -total_sps_yz
     out_M[26] = M_tt_zz
-    out_M[3] = total_urps_xx_2
-    out_M[36] = total_urps_xx_2
+    out_M[3] = total_sps_xx_2
+    out_M[36] = total_sps_xx_2
     out_M[4] = M_ta_xy
     out_M[48] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[60] = M_ta_xz
     out_M[15] = M_ta_yx
     out_M[37] = M_ta_yx
-    out_M[16] = -total_urps_yy_2
-    out_M[49] = -total_urps_yy_2
+    out_M[16] = -total_sps_yy_2
+    out_M[49] = -total_sps_yy_2
     out_M[17] = M_ta_yz
     out_M[61] = M_ta_yz
     out_M[27] = M_ta_zx
     out_M[38] = M_ta_zx
     out_M[28] = M_ta_zy
     out_M[50] = M_ta_zy
-    out_M[29] = -total_urps_zz_2
-    out_M[62] = -total_urps_zz_2
+    out_M[29] = -total_sps_zz_2
+    out_M[62] = -total_sps_zz_2
     out_M[39] = M_aa_xx
     out_M[40] = M_aa_xy
     out_M[51] = M_aa_xy
@@ -1874,7 +1964,7 @@ def _run_M(m, X):
     cos = m.cos
     shared, legs = m.constants("M")
     (
-    J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
+    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
         h_star_z, m_star,
     ) = shared
     X_0 = X[0]
@@ -1914,296 +2004,332 @@ def _run_M(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_M = m.zeros("M")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy
-    J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
     J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_12 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_15 = 2.0*J_star_t_14 + J_star_xx
+    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
+    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
     sums = [0.0] * 21
     for leg, k in legs[0]:
         (
-        J_group_3_xx, J_group_3_xy, J_group_3_xz, J_group_3_yy, J_group_3_yz, J_group_3_zz,
-            branch_1, branch_2, h_4_x, h_4_y, h_4_z, urps_base_frame_xx, urps_base_frame_xy,
-            urps_base_frame_xz, urps_base_frame_yx, urps_base_frame_yy, urps_base_frame_yz,
-            urps_base_frame_zx, urps_base_frame_zy, urps_base_frame_zz, urps_base_point_x,
-            urps_base_point_y, urps_base_point_z, urps_platform_point_x, urps_platform_point_y,
-            urps_platform_point_z,
+        sps_J_group_3_xx, sps_J_group_3_xy, sps_J_group_3_xz, sps_J_group_3_yy, sps_J_group_3_yz,
+            sps_J_group_3_zz, sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz,
+            sps_base_frame_yx, sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx,
+            sps_base_frame_zy, sps_base_frame_zz, sps_base_point_x, sps_base_point_y,
+            sps_base_point_z, sps_branch_1, sps_branch_2, sps_h_4_x, sps_h_4_y, sps_h_4_z,
+            sps_platform_point_x, sps_platform_point_y, sps_platform_point_z,
         ) = k
-        y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
-        # (urps-K1) from the base point to the connection point
-        q_in_base_x = (
-        R_xx*urps_platform_point_x + R_xy*urps_platform_point_y + R_xz*urps_platform_point_z
+        sps_y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
+        # (sps-S) from the base point to the connection point
+        sps_q_in_base_x = (
+        R_xx*sps_platform_point_x + R_xy*sps_platform_point_y + R_xz*sps_platform_point_z
         )
-        q_in_base_y = (
-        R_yx*urps_platform_point_x + R_yy*urps_platform_point_y + R_yz*urps_platform_point_z
+        sps_q_in_base_y = (
+        R_yx*sps_platform_point_x + R_yy*sps_platform_point_y + R_yz*sps_platform_point_z
         )
-        q_in_base_z = (
-        R_zx*urps_platform_point_x + R_zy*urps_platform_point_y + R_zz*urps_platform_point_z
+        sps_q_in_base_z = (
+        R_zx*sps_platform_point_x + R_zy*sps_platform_point_y + R_zz*sps_platform_point_z
         )
-        S_x = q_in_base_x + t_x - urps_base_point_x
-        S_y = q_in_base_y + t_y - urps_base_point_y
-        S_z = q_in_base_z + t_z - urps_base_point_z
-        # (urps-K4) component along the reference direction
-        px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx + S_z*urps_base_frame_zx
-        # (urps-K5) component across the reference direction
-        py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy + S_z*urps_base_frame_zy
-        # (urps-K6) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (urps-K7) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (urps-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz + S_z*urps_base_frame_zz
-        # (urps-K15) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (urps-K16) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (urps-K17) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (urps-K18) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (urps-K2) cosine of the angle of joint 3 from its reference direction
-        c_3_t = sin(y_3_extra)
-        # (urps-K3) sine of the angle of joint 3 from its reference direction
-        s_3 = cos(y_3_extra)
-        # (urps-V3) velocity of the connection point per rate of joint 1
-        v_1_t = c_2*c_3_t
-        v_1_t_2 = c_2*s_3
-        v_1_t_3 = root_2*v_1_t_2
-        v_1_t_4 = root_2*v_1_t
-        # (urps-V4) velocity of the connection point per rate of joint 2
-        v_2_t = c_3_t*root_2
-        v_2_t_2 = root_2*s_3
-        # (urps-V6) reciprocal vector 1
-        axis_z_x = S_x*inv_root_2
-        axis_z_y = S_y*inv_root_2
-        axis_z_z = S_z*inv_root_2
-        w_1_t = s_2*s_3
-        # (urps-K8) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (urps-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (urps-V6) reciprocal vector 1
-        axis_y_urps_axes3_r4_x = c_1*c_3_t - s_1*w_1_t
-        axis_y_urps_axes3_r4_y = -c_1*w_1_t - c_3_t*s_1
-        axis_y_urps_axes3_in_base_x = (
-        axis_y_urps_axes3_r4_x*urps_base_frame_xx + axis_y_urps_axes3_r4_y*urps_base_frame_xy +
-            urps_base_frame_xz*v_1_t_2
+        sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x
+        sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y
+        sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z
+        # (sps-px_1) component along the reference direction
+        sps_px_1 = (
+        sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
         )
-        axis_y_urps_axes3_in_base_y = (
-        axis_y_urps_axes3_r4_x*urps_base_frame_yx + axis_y_urps_axes3_r4_y*urps_base_frame_yy +
-            urps_base_frame_yz*v_1_t_2
+        # (sps-py_1) component across the reference direction
+        sps_py_1 = (
+        sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy + sps_S_z*sps_base_frame_zy
         )
-        axis_y_urps_axes3_in_base_z = (
-        axis_y_urps_axes3_r4_x*urps_base_frame_zx + axis_y_urps_axes3_r4_y*urps_base_frame_zy +
-            urps_base_frame_zz*v_1_t_2
+        # (sps-rho2_1) squared amplitude
+        sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
+        # (sps-root_1) amplitude, with the sign of the branch
+        sps_root_1 = sps_branch_1*sqrt(sps_rho2_1)
+        # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        sps_xi_1_t = (
+        sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
         )
-        axis_x_urps_axes3_x = (
-        axis_y_urps_axes3_in_base_y*axis_z_z - axis_y_urps_axes3_in_base_z*axis_z_y
+        # (sps-rho2_2) squared amplitude
+        sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t
+        # (sps-root_2) amplitude, with the sign of the branch
+        sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
+        # (sps-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_sps_root_2 = 1.0/sps_root_2
+        sps_c_2 = inv_sps_root_2*sps_root_1
+        # (sps-s_2) sine of the angle of joint 2 from its reference direction
+        sps_s_2 = inv_sps_root_2*sps_xi_1_t
+        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
+        sps_c_3_t = sin(sps_y_3_extra)
+        # (sps-s_3) sine of the angle of joint 3 from its reference direction
+        sps_s_3 = cos(sps_y_3_extra)
+        # (sps-v_1) velocity of the connection point per rate of joint 1
+        sps_v_1_t = sps_c_2*sps_c_3_t
+        sps_v_1_t_2 = sps_c_2*sps_s_3
+        sps_v_1_t_3 = sps_root_2*sps_v_1_t_2
+        sps_v_1_t_4 = sps_root_2*sps_v_1_t
+        # (sps-v_2) velocity of the connection point per rate of joint 2
+        sps_v_2_t = sps_c_3_t*sps_root_2
+        sps_v_2_t_2 = sps_root_2*sps_s_3
+        # (sps-w_1) reciprocal vector 1
+        sps_axis_z_x = inv_sps_root_2*sps_S_x
+        sps_axis_z_y = inv_sps_root_2*sps_S_y
+        sps_axis_z_z = inv_sps_root_2*sps_S_z
+        sps_w_1_t = sps_s_2*sps_s_3
+        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_sps_root_1 = 1.0/sps_root_1
+        sps_c_1 = inv_sps_root_1*sps_py_1
+        # (sps-s_1) sine of the angle of joint 1 from its reference direction
+        sps_s_1 = inv_sps_root_1*sps_px_1
+        # (sps-w_1) reciprocal vector 1
+        axis_y_sps_axes3_r4_x = sps_c_1*sps_c_3_t - sps_s_1*sps_w_1_t
+        axis_y_sps_axes3_r4_y = -sps_c_1*sps_w_1_t - sps_c_3_t*sps_s_1
+        axis_y_sps_axes3_in_base_x = (
+        axis_y_sps_axes3_r4_x*sps_base_frame_xx + axis_y_sps_axes3_r4_y*sps_base_frame_xy +
+            sps_base_frame_xz*sps_v_1_t_2
         )
-        axis_x_urps_axes3_y = (
-        axis_y_urps_axes3_in_base_z*axis_z_x - axis_y_urps_axes3_in_base_x*axis_z_z
+        axis_y_sps_axes3_in_base_y = (
+        axis_y_sps_axes3_r4_x*sps_base_frame_yx + axis_y_sps_axes3_r4_y*sps_base_frame_yy +
+            sps_base_frame_yz*sps_v_1_t_2
         )
-        axis_x_urps_axes3_z = (
-        axis_y_urps_axes3_in_base_x*axis_z_y - axis_y_urps_axes3_in_base_y*axis_z_x
+        axis_y_sps_axes3_in_base_z = (
+        axis_y_sps_axes3_r4_x*sps_base_frame_zx + axis_y_sps_axes3_r4_y*sps_base_frame_zy +
+            sps_base_frame_zz*sps_v_1_t_2
         )
-        w_1_t_2 = v_1_t_3*v_2_t_2 + v_1_t_4*v_2_t
-        inv_w_1_t_23 = 1.0/w_1_t_2
-        w_1_t_3 = inv_w_1_t_23*v_2_t_2
-        w_1_t_4 = inv_w_1_t_23*v_2_t
-        # (urps-V7) reciprocal vector 2
-        w_2_t = inv_w_1_t_23*v_1_t_4
-        w_2_t_2 = inv_w_1_t_23*v_1_t_3
-        # (urps-A19) coefficient of the acceleration in: angular acceleration of link 1
-        d_alpha_1_zx = s_2*w_1_t_3
-        d_alpha_1_zy = s_2*w_1_t_4
-        # (urps-A23) coefficient of the acceleration in: angular acceleration of link 2
-        d_alpha_2_xx = v_1_t*w_1_t_3 - s_3*w_2_t
-        d_alpha_2_xy = -s_3*w_2_t_2 - v_1_t*w_1_t_4
-        d_alpha_2_yx = c_3_t*w_2_t + v_1_t_2*w_1_t_3
-        d_alpha_2_yy = c_3_t*w_2_t_2 - v_1_t_2*w_1_t_4
-        # (urps-N13) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        d_mu_3_t = (
-        J_group_3_xx*d_alpha_2_xx + J_group_3_xy*d_alpha_2_yx + J_group_3_xz*d_alpha_1_zx
+        axis_x_sps_axes3_x = (
+        axis_y_sps_axes3_in_base_y*sps_axis_z_z - axis_y_sps_axes3_in_base_z*sps_axis_z_y
         )
-        d_mu_3_t_2 = (
-        J_group_3_xy*d_alpha_2_xy + J_group_3_yy*d_alpha_2_yy - J_group_3_yz*d_alpha_1_zy
+        axis_x_sps_axes3_y = (
+        axis_y_sps_axes3_in_base_z*sps_axis_z_x - axis_y_sps_axes3_in_base_x*sps_axis_z_z
         )
-        d_mu_3_xy = (
-        J_group_3_xx*d_alpha_2_xy + J_group_3_xy*d_alpha_2_yy - h_4_x - J_group_3_xz*d_alpha_1_zy
+        axis_x_sps_axes3_z = (
+        axis_y_sps_axes3_in_base_x*sps_axis_z_y - axis_y_sps_axes3_in_base_y*sps_axis_z_x
         )
-        d_mu_3_yx = (
-        h_4_x + J_group_3_xy*d_alpha_2_xx + J_group_3_yy*d_alpha_2_yx + J_group_3_yz*d_alpha_1_zx
+        # (sps-w_2) reciprocal vector 2
+        sps_w_2_t = sps_v_1_t_3*sps_v_2_t_2 + sps_v_1_t_4*sps_v_2_t
+        inv_sps_w_2_t_3 = 1.0/sps_w_2_t
+        sps_w_2_t_2 = inv_sps_w_2_t_3*sps_v_1_t_4
+        sps_w_2_t_3 = inv_sps_w_2_t_3*sps_v_1_t_3
+        # (sps-w_1) reciprocal vector 1
+        sps_w_1_t_2 = inv_sps_w_2_t_3*sps_v_2_t_2
+        sps_w_1_t_3 = inv_sps_w_2_t_3*sps_v_2_t
+        # (sps-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
+        sps_d_alpha_1_zx = sps_s_2*sps_w_1_t_2
+        sps_d_alpha_1_zy = sps_s_2*sps_w_1_t_3
+        # (sps-d_alpha_2) coefficient of the acceleration in: angular acceleration of link 2
+        sps_d_alpha_2_xx = sps_v_1_t*sps_w_1_t_2 - sps_s_3*sps_w_2_t_2
+        sps_d_alpha_2_xy = -sps_s_3*sps_w_2_t_3 - sps_v_1_t*sps_w_1_t_3
+        sps_d_alpha_2_yx = sps_c_3_t*sps_w_2_t_2 + sps_v_1_t_2*sps_w_1_t_2
+        sps_d_alpha_2_yy = sps_c_3_t*sps_w_2_t_3 - sps_v_1_t_2*sps_w_1_t_3
+        # (sps-d_mu_3) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        sps_d_mu_3_t = (
+        sps_J_group_3_xx*sps_d_alpha_2_xx + sps_J_group_3_xy*sps_d_alpha_2_yx +
+            sps_J_group_3_xz*sps_d_alpha_1_zx
         )
-        d_mu_3_zx = (
-        J_group_3_xz*d_alpha_2_xx + J_group_3_yz*d_alpha_2_yx + J_group_3_zz*d_alpha_1_zx - h_4_z
+        sps_d_mu_3_t_2 = (
+        sps_J_group_3_xy*sps_d_alpha_2_xy + sps_J_group_3_yy*sps_d_alpha_2_yy -
+            sps_J_group_3_yz*sps_d_alpha_1_zy
         )
-        d_mu_3_zy = (
-        h_4_y + J_group_3_xz*d_alpha_2_xy + J_group_3_yz*d_alpha_2_yy - J_group_3_zz*d_alpha_1_zy
+        sps_d_mu_3_xy = (
+        sps_J_group_3_xx*sps_d_alpha_2_xy + sps_J_group_3_xy*sps_d_alpha_2_yy - sps_h_4_x -
+            sps_J_group_3_xz*sps_d_alpha_1_zy
         )
-        # (urps-N25) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_y = d_mu_3_t_2*v_1_t_2 + d_mu_3_xy*v_1_t + d_mu_3_zy*s_2
-        d_Gamma_1_z = h_4_z*v_1_t - h_4_y*v_1_t_2
-        # (urps-N21) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_y = d_mu_3_xy*s_3 - c_3_t*d_mu_3_t_2
-        d_Gamma_2_z = c_3_t*h_4_y + h_4_z*s_3
-        # (urps-N29) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_xz = d_Gamma_1_z*w_1_t_3 - d_Gamma_2_z*w_2_t
-        d_G_yz = -d_Gamma_1_z*w_1_t_4 - d_Gamma_2_z*w_2_t_2
-        # (urps-N33) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_xx = (
-        d_alpha_1_zx*h_4_z + w_2_t*(d_mu_3_t*s_3 - c_3_t*d_mu_3_yx) - d_alpha_2_yx*h_4_x -
-            w_1_t_3*(d_mu_3_t*v_1_t + d_mu_3_yx*v_1_t_2 + d_mu_3_zx*s_2)
+        sps_d_mu_3_yx = (
+        sps_h_4_x + sps_J_group_3_xy*sps_d_alpha_2_xx + sps_J_group_3_yy*sps_d_alpha_2_yx +
+            sps_J_group_3_yz*sps_d_alpha_1_zx
         )
-        d_c_xy = d_Gamma_2_y*w_2_t - d_Gamma_1_y*w_1_t_3 - d_alpha_1_zy*h_4_z - d_alpha_2_yy*h_4_x
-        d_c_yy = (
-        d_Gamma_1_y*w_1_t_4 + d_Gamma_2_y*w_2_t_2 + d_alpha_1_zy*h_4_y + d_alpha_2_xy*h_4_x
+        sps_d_mu_3_zx = (
+        sps_J_group_3_xz*sps_d_alpha_2_xx + sps_J_group_3_yz*sps_d_alpha_2_yx +
+            sps_J_group_3_zz*sps_d_alpha_1_zx - sps_h_4_z
         )
-        # (urps-N35) inertia of the leg at the connection point, without the mass gathered there
-        Q_t = 0.5*d_c_xx
-        Q_t_2 = 0.5*d_c_yy
-        Q_t_3 = Q_t*axis_x_urps_axes3_x + axis_y_urps_axes3_in_base_x*d_c_xy - axis_z_x*d_G_xz
-        Q_t_4 = Q_t*axis_x_urps_axes3_y + axis_y_urps_axes3_in_base_y*d_c_xy - axis_z_y*d_G_xz
-        Q_t_5 = Q_t*axis_x_urps_axes3_z + axis_y_urps_axes3_in_base_z*d_c_xy - axis_z_z*d_G_xz
-        Q_t_6 = Q_t_2*axis_y_urps_axes3_in_base_x - axis_z_x*d_G_yz
-        Q_t_7 = Q_t_2*axis_y_urps_axes3_in_base_y - axis_z_y*d_G_yz
-        Q_t_8 = Q_t_2*axis_y_urps_axes3_in_base_z - axis_z_z*d_G_yz
-        Q_t_9 = Q_t_3*axis_x_urps_axes3_x + Q_t_6*axis_y_urps_axes3_in_base_x
-        Q_t_10 = 2.0*Q_t_9
-        Q_t_11 = (
-        Q_t_3*axis_x_urps_axes3_y + Q_t_4*axis_x_urps_axes3_x + Q_t_6*axis_y_urps_axes3_in_base_y
-            + Q_t_7*axis_y_urps_axes3_in_base_x
+        sps_d_mu_3_zy = (
+        sps_h_4_y + sps_J_group_3_xz*sps_d_alpha_2_xy + sps_J_group_3_yz*sps_d_alpha_2_yy -
+            sps_J_group_3_zz*sps_d_alpha_1_zy
         )
-        Q_t_12 = (
-        Q_t_3*axis_x_urps_axes3_z + Q_t_5*axis_x_urps_axes3_x + Q_t_6*axis_y_urps_axes3_in_base_z
-            + Q_t_8*axis_y_urps_axes3_in_base_x
+        # (sps-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        sps_d_Gamma_2_y = sps_d_mu_3_xy*sps_s_3 - sps_c_3_t*sps_d_mu_3_t_2
+        sps_d_Gamma_2_z = sps_c_3_t*sps_h_4_y + sps_h_4_z*sps_s_3
+        # (sps-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        sps_d_Gamma_1_y = (
+        sps_d_mu_3_t_2*sps_v_1_t_2 + sps_d_mu_3_xy*sps_v_1_t + sps_d_mu_3_zy*sps_s_2
         )
-        Q_t_13 = Q_t_4*axis_x_urps_axes3_y + Q_t_7*axis_y_urps_axes3_in_base_y
-        Q_t_14 = 2.0*Q_t_13
-        Q_t_15 = (
-        Q_t_4*axis_x_urps_axes3_z + Q_t_5*axis_x_urps_axes3_y + Q_t_7*axis_y_urps_axes3_in_base_z
-            + Q_t_8*axis_y_urps_axes3_in_base_y
+        sps_d_Gamma_1_z = sps_h_4_z*sps_v_1_t - sps_h_4_y*sps_v_1_t_2
+        # (sps-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        sps_d_G_xz = sps_d_Gamma_1_z*sps_w_1_t_2 - sps_d_Gamma_2_z*sps_w_2_t_2
+        sps_d_G_yz = -sps_d_Gamma_1_z*sps_w_1_t_3 - sps_d_Gamma_2_z*sps_w_2_t_3
+        # (sps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        sps_d_c_xx = (
+        sps_d_alpha_1_zx*sps_h_4_z + sps_w_2_t_2*(sps_d_mu_3_t*sps_s_3 - sps_c_3_t*sps_d_mu_3_yx)
+            - sps_d_alpha_2_yx*sps_h_4_x - sps_w_1_t_2*(sps_d_mu_3_t*sps_v_1_t +
+            sps_d_mu_3_yx*sps_v_1_t_2 + sps_d_mu_3_zx*sps_s_2)
         )
-        Q_t_16 = Q_t_5*axis_x_urps_axes3_z + Q_t_8*axis_y_urps_axes3_in_base_z
-        Q_t_17 = 2.0*Q_t_16
-        # (M2) coupling block of M
-        M_ta_t = Q_t_11*q_in_base_z
-        M_ta_t_2 = Q_t_12*q_in_base_y
-        M_ta_t_3 = M_ta_t - M_ta_t_2
-        M_ta_t_4 = Q_t_10*q_in_base_z - Q_t_12*q_in_base_x
-        M_ta_t_5 = Q_t_10*q_in_base_y - Q_t_11*q_in_base_x
-        M_ta_t_6 = Q_t_14*q_in_base_z - Q_t_15*q_in_base_y
-        M_ta_t_7 = Q_t_15*q_in_base_x
-        M_ta_t_8 = M_ta_t - M_ta_t_7
-        M_ta_t_9 = Q_t_11*q_in_base_y - Q_t_14*q_in_base_x
-        M_ta_t_10 = Q_t_15*q_in_base_z - Q_t_17*q_in_base_y
-        M_ta_t_11 = Q_t_12*q_in_base_z - Q_t_17*q_in_base_x
-        M_ta_t_12 = M_ta_t_7 - M_ta_t_2
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
-        M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y
-        M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z
-        M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x
-        M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z
-        M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
-        # (urps-N39) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 3
-        d_P_3_in_base_x = axis_x_urps_axes3_x*d_mu_3_zx + axis_y_urps_axes3_in_base_x*d_mu_3_zy
-        d_P_3_in_base_y = axis_x_urps_axes3_y*d_mu_3_zx + axis_y_urps_axes3_in_base_y*d_mu_3_zy
-        d_P_3_in_base_z = axis_x_urps_axes3_z*d_mu_3_zx + axis_y_urps_axes3_in_base_z*d_mu_3_zy
-        # (M8) coupling of extra joint 3 with the rotation of the platform
-        M_ya_3_x = d_P_3_in_base_z*q_in_base_y - d_P_3_in_base_y*q_in_base_z
-        M_ya_3_y = d_P_3_in_base_x*q_in_base_z - d_P_3_in_base_z*q_in_base_x
-        M_ya_3_z = d_P_3_in_base_y*q_in_base_x - d_P_3_in_base_x*q_in_base_y
+        sps_d_c_xy = (
+        sps_d_Gamma_2_y*sps_w_2_t_2 - sps_d_Gamma_1_y*sps_w_1_t_2 - sps_d_alpha_1_zy*sps_h_4_z -
+            sps_d_alpha_2_yy*sps_h_4_x
+        )
+        sps_d_c_yy = (
+        sps_d_Gamma_1_y*sps_w_1_t_3 + sps_d_Gamma_2_y*sps_w_2_t_3 + sps_d_alpha_1_zy*sps_h_4_y +
+            sps_d_alpha_2_xy*sps_h_4_x
+        )
+        # (sps-Q) inertia of the leg at the connection point, without the mass gathered there
+        sps_Q_t = 0.5*sps_d_c_xx
+        sps_Q_t_2 = 0.5*sps_d_c_yy
+        sps_Q_t_3 = (
+        axis_x_sps_axes3_x*sps_Q_t + axis_y_sps_axes3_in_base_x*sps_d_c_xy -
+            sps_axis_z_x*sps_d_G_xz
+        )
+        sps_Q_t_4 = (
+        axis_x_sps_axes3_y*sps_Q_t + axis_y_sps_axes3_in_base_y*sps_d_c_xy -
+            sps_axis_z_y*sps_d_G_xz
+        )
+        sps_Q_t_5 = (
+        axis_x_sps_axes3_z*sps_Q_t + axis_y_sps_axes3_in_base_z*sps_d_c_xy -
+            sps_axis_z_z*sps_d_G_xz
+        )
+        sps_Q_t_6 = axis_y_sps_axes3_in_base_x*sps_Q_t_2 - sps_axis_z_x*sps_d_G_yz
+        sps_Q_t_7 = axis_y_sps_axes3_in_base_y*sps_Q_t_2 - sps_axis_z_y*sps_d_G_yz
+        sps_Q_t_8 = axis_y_sps_axes3_in_base_z*sps_Q_t_2 - sps_axis_z_z*sps_d_G_yz
+        sps_Q_t_9 = axis_x_sps_axes3_x*sps_Q_t_3 + axis_y_sps_axes3_in_base_x*sps_Q_t_6
+        sps_Q_t_10 = 2.0*sps_Q_t_9
+        sps_Q_t_11 = (
+        axis_x_sps_axes3_x*sps_Q_t_4 + axis_x_sps_axes3_y*sps_Q_t_3 +
+            axis_y_sps_axes3_in_base_x*sps_Q_t_7 + axis_y_sps_axes3_in_base_y*sps_Q_t_6
+        )
+        sps_Q_t_12 = (
+        axis_x_sps_axes3_x*sps_Q_t_5 + axis_x_sps_axes3_z*sps_Q_t_3 +
+            axis_y_sps_axes3_in_base_x*sps_Q_t_8 + axis_y_sps_axes3_in_base_z*sps_Q_t_6
+        )
+        sps_Q_t_13 = axis_x_sps_axes3_y*sps_Q_t_4 + axis_y_sps_axes3_in_base_y*sps_Q_t_7
+        sps_Q_t_14 = 2.0*sps_Q_t_13
+        sps_Q_t_15 = (
+        axis_x_sps_axes3_y*sps_Q_t_5 + axis_x_sps_axes3_z*sps_Q_t_4 +
+            axis_y_sps_axes3_in_base_y*sps_Q_t_8 + axis_y_sps_axes3_in_base_z*sps_Q_t_7
+        )
+        sps_Q_t_16 = axis_x_sps_axes3_z*sps_Q_t_5 + axis_y_sps_axes3_in_base_z*sps_Q_t_8
+        sps_Q_t_17 = 2.0*sps_Q_t_16
+        # (M_ta) coupling block of M
+        sps_M_ta_t = sps_Q_t_11*sps_q_in_base_z
+        sps_M_ta_t_2 = sps_Q_t_12*sps_q_in_base_y
+        sps_M_ta_t_3 = sps_M_ta_t - sps_M_ta_t_2
+        sps_M_ta_t_4 = sps_Q_t_10*sps_q_in_base_z - sps_Q_t_12*sps_q_in_base_x
+        sps_M_ta_t_5 = sps_Q_t_10*sps_q_in_base_y - sps_Q_t_11*sps_q_in_base_x
+        sps_M_ta_t_6 = sps_Q_t_14*sps_q_in_base_z - sps_Q_t_15*sps_q_in_base_y
+        sps_M_ta_t_7 = sps_Q_t_15*sps_q_in_base_x
+        sps_M_ta_t_8 = sps_M_ta_t - sps_M_ta_t_7
+        sps_M_ta_t_9 = sps_Q_t_11*sps_q_in_base_y - sps_Q_t_14*sps_q_in_base_x
+        sps_M_ta_t_10 = sps_Q_t_15*sps_q_in_base_z - sps_Q_t_17*sps_q_in_base_y
+        sps_M_ta_t_11 = sps_Q_t_12*sps_q_in_base_z - sps_Q_t_17*sps_q_in_base_x
+        sps_M_ta_t_12 = sps_M_ta_t_7 - sps_M_ta_t_2
+        # (M_aa) rotational block of M
+        sps_M_aa_t = sps_M_ta_t_6*sps_q_in_base_z - sps_M_ta_t_10*sps_q_in_base_y
+        sps_M_aa_t_2 = sps_M_ta_t_8*sps_q_in_base_z - sps_M_ta_t_11*sps_q_in_base_y
+        sps_M_aa_t_3 = sps_M_ta_t_12*sps_q_in_base_y + sps_M_ta_t_9*sps_q_in_base_z
+        sps_M_aa_t_4 = sps_M_ta_t_4*sps_q_in_base_z - sps_M_ta_t_11*sps_q_in_base_x
+        sps_M_aa_t_5 = sps_M_ta_t_12*sps_q_in_base_x + sps_M_ta_t_5*sps_q_in_base_z
+        sps_M_aa_t_6 = sps_M_ta_t_5*sps_q_in_base_y - sps_M_ta_t_9*sps_q_in_base_x
+        # (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 3
+        sps_d_P_3_in_base_x = (
+        axis_x_sps_axes3_x*sps_d_mu_3_zx + axis_y_sps_axes3_in_base_x*sps_d_mu_3_zy
+        )
+        sps_d_P_3_in_base_y = (
+        axis_x_sps_axes3_y*sps_d_mu_3_zx + axis_y_sps_axes3_in_base_y*sps_d_mu_3_zy
+        )
+        sps_d_P_3_in_base_z = (
+        axis_x_sps_axes3_z*sps_d_mu_3_zx + axis_y_sps_axes3_in_base_z*sps_d_mu_3_zy
+        )
+        # (sps-M_ya_3) coupling of extra joint 3 with the rotation of the platform
+        sps_M_ya_3_x = sps_d_P_3_in_base_z*sps_q_in_base_y - sps_d_P_3_in_base_y*sps_q_in_base_z
+        sps_M_ya_3_y = sps_d_P_3_in_base_x*sps_q_in_base_z - sps_d_P_3_in_base_z*sps_q_in_base_x
+        sps_M_ya_3_z = sps_d_P_3_in_base_y*sps_q_in_base_x - sps_d_P_3_in_base_x*sps_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-w_1_t_2) >
+        ok & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-sps_w_2_t) >
             _TOLERANCE * 0.6400000000000001))
         )
         sums = m.added(sums, leg, (
-        Q_t_10, Q_t_11, Q_t_12, Q_t_14, Q_t_15, Q_t_17, M_ta_t_3, M_ta_t_4, M_ta_t_5,
-            M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2,
-            M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6,
+        sps_Q_t_10, sps_Q_t_11, sps_Q_t_12, sps_Q_t_14, sps_Q_t_15, sps_Q_t_17, sps_M_ta_t_3,
+            sps_M_ta_t_4, sps_M_ta_t_5, sps_M_ta_t_6, sps_M_ta_t_8, sps_M_ta_t_9,
+            sps_M_ta_t_10, sps_M_ta_t_11, sps_M_ta_t_12, sps_M_aa_t, sps_M_aa_t_2,
+            sps_M_aa_t_3, sps_M_aa_t_4, sps_M_aa_t_5, sps_M_aa_t_6,
         ))
-        out_M[_M_urps[0][leg]] = d_P_3_in_base_x
-        out_M[_M_urps[1][leg]] = d_P_3_in_base_x
-        out_M[_M_urps[2][leg]] = d_P_3_in_base_y
-        out_M[_M_urps[3][leg]] = d_P_3_in_base_y
-        out_M[_M_urps[4][leg]] = d_P_3_in_base_z
-        out_M[_M_urps[5][leg]] = d_P_3_in_base_z
-        out_M[_M_urps[6][leg]] = M_ya_3_x
-        out_M[_M_urps[7][leg]] = M_ya_3_x
-        out_M[_M_urps[8][leg]] = M_ya_3_y
-        out_M[_M_urps[9][leg]] = M_ya_3_y
-        out_M[_M_urps[10][leg]] = M_ya_3_z
-        out_M[_M_urps[11][leg]] = M_ya_3_z
-        out_M[_M_urps[12][leg]] = J_group_3_zz
+        out_M[_M_sps[0][leg]] = sps_d_P_3_in_base_x
+        out_M[_M_sps[1][leg]] = sps_d_P_3_in_base_x
+        out_M[_M_sps[2][leg]] = sps_d_P_3_in_base_y
+        out_M[_M_sps[3][leg]] = sps_d_P_3_in_base_y
+        out_M[_M_sps[4][leg]] = sps_d_P_3_in_base_z
+        out_M[_M_sps[5][leg]] = sps_d_P_3_in_base_z
+        out_M[_M_sps[6][leg]] = sps_M_ya_3_x
+        out_M[_M_sps[7][leg]] = sps_M_ya_3_x
+        out_M[_M_sps[8][leg]] = sps_M_ya_3_y
+        out_M[_M_sps[9][leg]] = sps_M_ya_3_y
+        out_M[_M_sps[10][leg]] = sps_M_ya_3_z
+        out_M[_M_sps[11][leg]] = sps_M_ya_3_z
+        out_M[_M_sps[12][leg]] = sps_J_group_3_zz
     (
-    total_urps_xx, total_urps_xy, total_urps_xz, total_urps_yy, total_urps_yz, total_urps_zz,
-        total_urps_xx_2, total_urps_xy_2, total_urps_xz_2, total_urps_yx, total_urps_yy_2,
-        total_urps_yz_2, total_urps_zx, total_urps_zy, total_urps_zz_2, total_urps_xx_3,
-        total_urps_xy_3, total_urps_xz_3, total_urps_yy_3, total_urps_yz_3, total_urps_zz_3,
+    total_sps_xx, total_sps_xy, total_sps_xz, total_sps_yy, total_sps_yz, total_sps_zz,
+        total_sps_xx_2, total_sps_xy_2, total_sps_xz_2, total_sps_yx, total_sps_yy_2,
+        total_sps_yz_2, total_sps_zx, total_sps_zy, total_sps_zz_2, total_sps_xx_3,
+        total_sps_xy_3, total_sps_xz_3, total_sps_yy_3, total_sps_yz_3, total_sps_zz_3,
     ) = sums
-    # (M1) translational block of M
-    M_tt_xx = m_star - total_urps_xx
-    M_tt_yy = m_star - total_urps_yy
-    M_tt_zz = m_star - total_urps_zz
-    # (M2) coupling block of M
-    M_ta_xy = h_star_in_base_z - total_urps_xy_2
-    M_ta_xz = total_urps_xz_2 - h_star_in_base_y
-    M_ta_yx = total_urps_yx - h_star_in_base_z
-    M_ta_yz = h_star_in_base_x + total_urps_yz_2
-    M_ta_zx = h_star_in_base_y + total_urps_zx
-    M_ta_zy = -h_star_in_base_x - total_urps_zy
-    # (M3) rotational block of M
-    M_aa_xx = J_star_t_8 - total_urps_xx_3
-    M_aa_xy = J_star_t_9 + total_urps_xy_3
-    M_aa_xz = J_star_t_10 - total_urps_xz_3
-    M_aa_yy = J_star_t_12 - total_urps_yy_3
-    M_aa_yz = J_star_t_13 + total_urps_yz_3
-    M_aa_zz = J_star_t_15 - total_urps_zz_3
+    # (M_tt) translational block of M
+    M_tt_xx = m_star - total_sps_xx
+    M_tt_yy = m_star - total_sps_yy
+    M_tt_zz = m_star - total_sps_zz
+    # (M_ta) coupling block of M
+    M_ta_xy = h_star_in_base_z - total_sps_xy_2
+    M_ta_xz = total_sps_xz_2 - h_star_in_base_y
+    M_ta_yx = total_sps_yx - h_star_in_base_z
+    M_ta_yz = h_star_in_base_x + total_sps_yz_2
+    M_ta_zx = h_star_in_base_y + total_sps_zx
+    M_ta_zy = -h_star_in_base_x - total_sps_zy
+    # (M_aa) rotational block of M
+    M_aa_xx = J_star_t_8 - total_sps_xx_3
+    M_aa_xy = J_star_t_9 + total_sps_xy_3
+    M_aa_xz = J_star_t_10 - total_sps_xz_3
+    M_aa_yy = J_star_t_13 - total_sps_yy_3
+    M_aa_yz = J_star_t_15 + total_sps_yz_3
+    M_aa_zz = J_star_t_17 - total_sps_zz_3
     out_M[0] = M_tt_xx
-    out_M[1] = -total_urps_xy
-    out_M[12] = -total_urps_xy
-    out_M[2] = -total_urps_xz
-    out_M[24] = -total_urps_xz
+    out_M[1] = -total_sps_xy
+    out_M[12] = -total_sps_xy
+    out_M[2] = -total_sps_xz
+    out_M[24] = -total_sps_xz
     out_M[13] = M_tt_yy
-    out_M[14] = -total_urps_yz
-    out_M[25] = -total_urps_yz
+    out_M[14] = -total_sps_yz
+    out_M[25] = -total_sps_yz
     out_M[26] = M_tt_zz
-    out_M[3] = total_urps_xx_2
-    out_M[36] = total_urps_xx_2
+    out_M[3] = total_sps_xx_2
+    out_M[36] = total_sps_xx_2
     out_M[4] = M_ta_xy
     out_M[48] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[60] = M_ta_xz
     out_M[15] = M_ta_yx
     out_M[37] = M_ta_yx
-    out_M[16] = -total_urps_yy_2
-    out_M[49] = -total_urps_yy_2
+    out_M[16] = -total_sps_yy_2
+    out_M[49] = -total_sps_yy_2
     out_M[17] = M_ta_yz
     out_M[61] = M_ta_yz
     out_M[27] = M_ta_zx
     out_M[38] = M_ta_zx
     out_M[28] = M_ta_zy
     out_M[50] = M_ta_zy
-    out_M[29] = -total_urps_zz_2
-    out_M[62] = -total_urps_zz_2
+    out_M[29] = -total_sps_zz_2
+    out_M[62] = -total_sps_zz_2
     out_M[39] = M_aa_xx
     out_M[40] = M_aa_xy
     out_M[51] = M_aa_xy
@@ -2216,7 +2342,7 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 1290 mul, 957 add, 18 div, 12 sqrt, 12 trig
+# Z: 1269 mul, 936 add, 18 div, 12 sqrt, 12 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -2276,284 +2402,303 @@ def _run_Z(m, X, V):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_Z = m.zeros("Z")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (P1) centripetal tensor of the platform
-    W_p_t = omega_x*omega_x
-    W_p_t_2 = omega_y*omega_y
-    W_p_t_3 = omega_z*omega_z
-    W_p_xx = W_p_t_2 + W_p_t_3
-    W_p_xy = omega_x*omega_y
-    W_p_xz = omega_x*omega_z
-    W_p_yy = W_p_t + W_p_t_3
-    W_p_yz = omega_y*omega_z
-    W_p_zz = W_p_t + W_p_t_2
-    # (M4) centripetal force and weight of the platform
-    Z_p_x = W_p_xy*h_star_in_base_y + W_p_xz*h_star_in_base_z - Z_p_t - W_p_xx*h_star_in_base_x
-    Z_p_y = W_p_xy*h_star_in_base_x + W_p_yz*h_star_in_base_z - Z_p_t_2 - W_p_yy*h_star_in_base_y
-    Z_p_z = W_p_xz*h_star_in_base_x + W_p_yz*h_star_in_base_y - Z_p_t_3 - W_p_zz*h_star_in_base_z
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_p) centripetal force and weight of the platform
+    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
+    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
+    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
+    Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
+    Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z_2*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x_2*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y - g_r0_y_2*h_star_x
+    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
+    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_group_3_xy, J_group_3_xz, J_group_3_yz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1,
-            branch_2, h_3_x, h_3_y, h_3_z, h_4_x, h_4_y, h_4_z, urps_base_frame_xx,
-            urps_base_frame_xy, urps_base_frame_xz, urps_base_frame_yx, urps_base_frame_yy,
-            urps_base_frame_yz, urps_base_frame_zx, urps_base_frame_zy, urps_base_frame_zz,
-            urps_base_point_x, urps_base_point_y, urps_base_point_z, urps_platform_point_x,
-            urps_platform_point_y, urps_platform_point_z,
+        sps_J_group_3_xy, sps_J_group_3_xz, sps_J_group_3_yz, sps_Sigma_3_xx, sps_Sigma_3_yy,
+            sps_Sigma_3_zz, sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz,
+            sps_base_frame_yx, sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx,
+            sps_base_frame_zy, sps_base_frame_zz, sps_base_point_x, sps_base_point_y,
+            sps_base_point_z, sps_branch_1, sps_branch_2, sps_h_3_x, sps_h_3_y, sps_h_3_z,
+            sps_h_4_x, sps_h_4_y, sps_h_4_z, sps_platform_point_x, sps_platform_point_y,
+            sps_platform_point_z,
         ) = k
-        y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
-        yd_3 = V[[6, 7, 8, 9, 10, 11][leg]]
-        # (urps-K1) from the base point to the connection point
-        q_in_base_x = (
-        R_xx*urps_platform_point_x + R_xy*urps_platform_point_y + R_xz*urps_platform_point_z
+        sps_y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
+        sps_yd_3 = V[[6, 7, 8, 9, 10, 11][leg]]
+        # (sps-S) from the base point to the connection point
+        sps_q_in_base_x = (
+        R_xx*sps_platform_point_x + R_xy*sps_platform_point_y + R_xz*sps_platform_point_z
         )
-        q_in_base_y = (
-        R_yx*urps_platform_point_x + R_yy*urps_platform_point_y + R_yz*urps_platform_point_z
+        sps_q_in_base_y = (
+        R_yx*sps_platform_point_x + R_yy*sps_platform_point_y + R_yz*sps_platform_point_z
         )
-        q_in_base_z = (
-        R_zx*urps_platform_point_x + R_zy*urps_platform_point_y + R_zz*urps_platform_point_z
+        sps_q_in_base_z = (
+        R_zx*sps_platform_point_x + R_zy*sps_platform_point_y + R_zz*sps_platform_point_z
         )
-        S_x = q_in_base_x + t_x - urps_base_point_x
-        S_y = q_in_base_y + t_y - urps_base_point_y
-        S_z = q_in_base_z + t_z - urps_base_point_z
-        # (urps-K4) component along the reference direction
-        px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx + S_z*urps_base_frame_zx
-        # (urps-K5) component across the reference direction
-        py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy + S_z*urps_base_frame_zy
-        # (urps-K6) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (urps-K7) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (urps-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz + S_z*urps_base_frame_zz
-        # (urps-K15) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (urps-K16) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (urps-K17) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (urps-K18) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (urps-K2) cosine of the angle of joint 3 from its reference direction
-        c_3_t = sin(y_3_extra)
-        # (urps-K3) sine of the angle of joint 3 from its reference direction
-        s_3 = cos(y_3_extra)
-        # (urps-V3) velocity of the connection point per rate of joint 1
-        v_1_t = c_2*c_3_t
-        v_1_t_2 = c_2*s_3
-        v_1_t_3 = root_2*v_1_t_2
-        v_1_t_4 = root_2*v_1_t
-        # (urps-V4) velocity of the connection point per rate of joint 2
-        v_2_t = c_3_t*root_2
-        v_2_t_2 = root_2*s_3
-        # (urps-V6) reciprocal vector 1
-        axis_z_x = S_x*inv_root_2
-        axis_z_y = S_y*inv_root_2
-        axis_z_z = S_z*inv_root_2
-        w_1_t = s_2*s_3
-        # (urps-K8) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (urps-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (urps-V6) reciprocal vector 1
-        axis_y_urps_axes3_r4_x = c_1*c_3_t - s_1*w_1_t
-        axis_y_urps_axes3_r4_y = -c_1*w_1_t - c_3_t*s_1
-        axis_y_urps_axes3_in_base_x = (
-        axis_y_urps_axes3_r4_x*urps_base_frame_xx + axis_y_urps_axes3_r4_y*urps_base_frame_xy +
-            urps_base_frame_xz*v_1_t_2
+        sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x
+        sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y
+        sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z
+        # (sps-px_1) component along the reference direction
+        sps_px_1 = (
+        sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
         )
-        axis_y_urps_axes3_in_base_y = (
-        axis_y_urps_axes3_r4_x*urps_base_frame_yx + axis_y_urps_axes3_r4_y*urps_base_frame_yy +
-            urps_base_frame_yz*v_1_t_2
+        # (sps-py_1) component across the reference direction
+        sps_py_1 = (
+        sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy + sps_S_z*sps_base_frame_zy
         )
-        axis_y_urps_axes3_in_base_z = (
-        axis_y_urps_axes3_r4_x*urps_base_frame_zx + axis_y_urps_axes3_r4_y*urps_base_frame_zy +
-            urps_base_frame_zz*v_1_t_2
+        # (sps-rho2_1) squared amplitude
+        sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
+        # (sps-root_1) amplitude, with the sign of the branch
+        sps_root_1 = sps_branch_1*sqrt(sps_rho2_1)
+        # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        sps_xi_1_t = (
+        sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
         )
-        axis_x_urps_axes3_x = (
-        axis_y_urps_axes3_in_base_y*axis_z_z - axis_y_urps_axes3_in_base_z*axis_z_y
+        # (sps-rho2_2) squared amplitude
+        sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t
+        # (sps-root_2) amplitude, with the sign of the branch
+        sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
+        # (sps-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_sps_root_2 = 1.0/sps_root_2
+        sps_c_2 = inv_sps_root_2*sps_root_1
+        # (sps-s_2) sine of the angle of joint 2 from its reference direction
+        sps_s_2 = inv_sps_root_2*sps_xi_1_t
+        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
+        sps_c_3_t = sin(sps_y_3_extra)
+        # (sps-s_3) sine of the angle of joint 3 from its reference direction
+        sps_s_3 = cos(sps_y_3_extra)
+        # (sps-v_1) velocity of the connection point per rate of joint 1
+        sps_v_1_t = sps_c_2*sps_c_3_t
+        sps_v_1_t_2 = sps_c_2*sps_s_3
+        sps_v_1_t_3 = sps_root_2*sps_v_1_t_2
+        sps_v_1_t_4 = sps_root_2*sps_v_1_t
+        # (sps-v_2) velocity of the connection point per rate of joint 2
+        sps_v_2_t = sps_c_3_t*sps_root_2
+        sps_v_2_t_2 = sps_root_2*sps_s_3
+        # (sps-w_1) reciprocal vector 1
+        sps_axis_z_x = inv_sps_root_2*sps_S_x
+        sps_axis_z_y = inv_sps_root_2*sps_S_y
+        sps_axis_z_z = inv_sps_root_2*sps_S_z
+        sps_w_1_t = sps_s_2*sps_s_3
+        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_sps_root_1 = 1.0/sps_root_1
+        sps_c_1 = inv_sps_root_1*sps_py_1
+        # (sps-s_1) sine of the angle of joint 1 from its reference direction
+        sps_s_1 = inv_sps_root_1*sps_px_1
+        # (sps-w_1) reciprocal vector 1
+        axis_y_sps_axes3_r4_x = sps_c_1*sps_c_3_t - sps_s_1*sps_w_1_t
+        axis_y_sps_axes3_r4_y = -sps_c_1*sps_w_1_t - sps_c_3_t*sps_s_1
+        axis_y_sps_axes3_in_base_x = (
+        axis_y_sps_axes3_r4_x*sps_base_frame_xx + axis_y_sps_axes3_r4_y*sps_base_frame_xy +
+            sps_base_frame_xz*sps_v_1_t_2
         )
-        axis_x_urps_axes3_y = (
-        axis_y_urps_axes3_in_base_z*axis_z_x - axis_y_urps_axes3_in_base_x*axis_z_z
+        axis_y_sps_axes3_in_base_y = (
+        axis_y_sps_axes3_r4_x*sps_base_frame_yx + axis_y_sps_axes3_r4_y*sps_base_frame_yy +
+            sps_base_frame_yz*sps_v_1_t_2
         )
-        axis_x_urps_axes3_z = (
-        axis_y_urps_axes3_in_base_x*axis_z_y - axis_y_urps_axes3_in_base_y*axis_z_x
+        axis_y_sps_axes3_in_base_z = (
+        axis_y_sps_axes3_r4_x*sps_base_frame_zx + axis_y_sps_axes3_r4_y*sps_base_frame_zy +
+            sps_base_frame_zz*sps_v_1_t_2
         )
-        w_1_t_2 = v_1_t_3*v_2_t_2 + v_1_t_4*v_2_t
-        inv_w_1_t_23 = 1.0/w_1_t_2
-        # (urps-N2) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        g_tip_x = (
-        axis_x_urps_axes3_x*gravity_x + axis_x_urps_axes3_y*gravity_y +
-            axis_x_urps_axes3_z*gravity_z
+        axis_x_sps_axes3_x = (
+        axis_y_sps_axes3_in_base_y*sps_axis_z_z - axis_y_sps_axes3_in_base_z*sps_axis_z_y
         )
-        g_tip_y = (
-        axis_y_urps_axes3_in_base_x*gravity_x + axis_y_urps_axes3_in_base_y*gravity_y +
-            axis_y_urps_axes3_in_base_z*gravity_z
+        axis_x_sps_axes3_y = (
+        axis_y_sps_axes3_in_base_z*sps_axis_z_x - axis_y_sps_axes3_in_base_x*sps_axis_z_z
         )
-        g_tip_z = axis_z_x*gravity_x + axis_z_y*gravity_y + axis_z_z*gravity_z
-        # (urps-A1) centripetal acceleration of the connection point
-        u_1_x = W_p_xy*q_in_base_y + W_p_xz*q_in_base_z - W_p_xx*q_in_base_x
-        u_1_y = W_p_xy*q_in_base_x + W_p_yz*q_in_base_z - W_p_yy*q_in_base_y
-        u_1_z = W_p_xz*q_in_base_x + W_p_yz*q_in_base_y - W_p_zz*q_in_base_z
-        u_1_tip_x = (
-        axis_x_urps_axes3_x*u_1_x + axis_x_urps_axes3_y*u_1_y + axis_x_urps_axes3_z*u_1_z
+        axis_x_sps_axes3_z = (
+        axis_y_sps_axes3_in_base_x*sps_axis_z_y - axis_y_sps_axes3_in_base_y*sps_axis_z_x
         )
-        u_1_tip_y = (
-        axis_y_urps_axes3_in_base_x*u_1_x + axis_y_urps_axes3_in_base_y*u_1_y +
-            axis_y_urps_axes3_in_base_z*u_1_z
+        # (sps-w_2) reciprocal vector 2
+        sps_w_2_t = sps_v_1_t_3*sps_v_2_t_2 + sps_v_1_t_4*sps_v_2_t
+        inv_sps_w_2_t_3 = 1.0/sps_w_2_t
+        # (sps-S_dot) velocity of the connection point
+        sps_S_dot_t = omega_y*sps_q_in_base_z - omega_z*sps_q_in_base_y
+        sps_S_dot_t_2 = omega_z*sps_q_in_base_x - omega_x*sps_q_in_base_z
+        sps_S_dot_t_3 = omega_x*sps_q_in_base_y - omega_y*sps_q_in_base_x
+        sps_S_dot_x = sps_S_dot_t + t_dot_x
+        sps_S_dot_y = sps_S_dot_t_2 + t_dot_y
+        sps_S_dot_z = sps_S_dot_t_3 + t_dot_z
+        # (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra
+        sps_S_dot_rest_tip_x = (
+        axis_x_sps_axes3_x*sps_S_dot_x + axis_x_sps_axes3_y*sps_S_dot_y +
+            axis_x_sps_axes3_z*sps_S_dot_z
         )
-        # (urps-N4) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
-        acc_4_o_x = u_1_tip_x - g_tip_x
-        acc_4_o_y = u_1_tip_y - g_tip_y
-        acc_4_o_z = axis_z_x*u_1_x + axis_z_y*u_1_y + axis_z_z*u_1_z - g_tip_z
-        # (urps-V1) velocity of the connection point
-        S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x
-        # (urps-V9) velocity of the connection point left to the joints that are not extra
-        S_dot_rest_tip_x = (
-        S_dot_x*axis_x_urps_axes3_x + S_dot_y*axis_x_urps_axes3_y + S_dot_z*axis_x_urps_axes3_z
+        sps_S_dot_rest_tip_y = (
+        axis_y_sps_axes3_in_base_x*sps_S_dot_x + axis_y_sps_axes3_in_base_y*sps_S_dot_y +
+            axis_y_sps_axes3_in_base_z*sps_S_dot_z
         )
-        S_dot_rest_tip_y = (
-        S_dot_x*axis_y_urps_axes3_in_base_x + S_dot_y*axis_y_urps_axes3_in_base_y +
-            S_dot_z*axis_y_urps_axes3_in_base_z
+        sps_S_dot_rest_tip_z = (
+        sps_S_dot_x*sps_axis_z_x + sps_S_dot_y*sps_axis_z_y + sps_S_dot_z*sps_axis_z_z
         )
-        S_dot_rest_tip_z = S_dot_x*axis_z_x + S_dot_y*axis_z_y + S_dot_z*axis_z_z
-        # (urps-V10) rate of joint 1
-        qd_1 = inv_w_1_t_23*(S_dot_rest_tip_x*v_2_t_2 - S_dot_rest_tip_y*v_2_t)
-        qd_2 = inv_w_1_t_23*(S_dot_rest_tip_x*v_1_t_4 + S_dot_rest_tip_y*v_1_t_3)
-        # (urps-V13) angular velocity of link 1
-        omega_1_t = qd_1*s_2
-        omega_1_t_2 = c_2*qd_1
-        # (urps-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_y = omega_1_t*qd_2
-        # (urps-V14) angular velocity of link 2
-        omega_2_r1_x = c_3_t*omega_1_t_2 - qd_2*s_3
-        omega_2_r1_y = c_3_t*qd_2 + omega_1_t_2*s_3
-        # (urps-A5) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_x = omega_2_r1_y*yd_3
-        zeta_3_y = omega_2_r1_x*yd_3
-        # (urps-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_x = zeta_3_x - c_3_t*zeta_2_y
-        beta_3_y = -zeta_3_y - s_3*zeta_2_y
-        # (urps-V15) angular velocity of link 3
-        omega_3_z = omega_1_t + yd_3
-        # (urps-V16) centripetal tensor of link 3
-        W_3_t = omega_2_r1_x*omega_2_r1_x
-        W_3_t_2 = omega_2_r1_y*omega_2_r1_y
-        W_3_t_3 = omega_3_z*omega_3_z
-        W_3_xy = omega_2_r1_x*omega_2_r1_y
-        W_3_xz = omega_2_r1_x*omega_3_z
-        W_3_yz = omega_2_r1_y*omega_3_z
-        # (urps-A7) acceleration of the connection point at zero joint accelerations
-        bias_t = 2.0*S_dot_rest_tip_z
-        bias_x = bias_t*omega_2_r1_y + root_2*(W_3_xz + beta_3_y)
-        bias_y = root_2*(W_3_yz - beta_3_x) - bias_t*omega_2_r1_x
-        # (urps-A10) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_x = u_1_tip_x - bias_x
-        rel_o_y = u_1_tip_y - bias_y
-        # (urps-A13) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_o = inv_w_1_t_23*(rel_o_x*v_2_t_2 - rel_o_y*v_2_t)
-        qdd_2_o = inv_w_1_t_23*(rel_o_x*v_1_t_4 + rel_o_y*v_1_t_3)
-        # (urps-A25) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_o_x = omega_1_t_2*qd_2 + qdd_1_o*s_2
-        alpha_2_o_y = zeta_2_y - c_2*qdd_1_o
-        # (urps-A28) remainder without the acceleration in: angular acceleration of link 3
-        alpha_3_o_x = zeta_3_x - alpha_2_o_y*c_3_t - qdd_2_o*s_3
-        alpha_3_o_y = c_3_t*qdd_2_o - zeta_3_y - alpha_2_o_y*s_3
-        # (urps-A30) remainder of the acceleration tensor of link 3
-        B_3_o_xy = W_3_xy - alpha_2_o_x
-        B_3_o_xz = W_3_xz + alpha_3_o_y
-        B_3_o_yx = W_3_xy + alpha_2_o_x
-        B_3_o_yz = W_3_yz - alpha_3_o_x
-        B_3_o_zx = W_3_xz - alpha_3_o_y
-        B_3_o_zy = W_3_yz + alpha_3_o_x
-        # (urps-N15) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        mu_3_o_x = (
-        B_3_o_yx*J_group_3_xz + B_3_o_zy*Sigma_3_yy + J_group_3_yz*(W_3_t_2 - W_3_t_3) +
-            acc_4_o_z*h_4_z + g_tip_y*h_3_x - B_3_o_yz*Sigma_3_zz - B_3_o_zx*J_group_3_xy -
-            acc_4_o_y*h_4_x - g_tip_z*h_3_z
+        # (sps-qd_2) rate of joint 2
+        sps_qd_1 = (
+        inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_2_t_2 - sps_S_dot_rest_tip_y*sps_v_2_t)
         )
-        mu_3_o_y = (
-        B_3_o_xz*Sigma_3_zz + B_3_o_zy*J_group_3_xy + acc_4_o_x*h_4_x + g_tip_z*h_3_y -
-            B_3_o_xy*J_group_3_yz - B_3_o_zx*Sigma_3_xx - J_group_3_xz*(W_3_t - W_3_t_3) -
-            acc_4_o_z*h_4_y - g_tip_x*h_3_x
+        sps_qd_2 = (
+        inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_1_t_4 + sps_S_dot_rest_tip_y*sps_v_1_t_3)
         )
-        mu_3_o_z = (
-        B_3_o_xz*J_group_3_yz + B_3_o_yx*Sigma_3_xx + J_group_3_xy*(W_3_t - W_3_t_2) +
-            acc_4_o_y*h_4_y + g_tip_x*h_3_z - B_3_o_xy*Sigma_3_yy - B_3_o_yz*J_group_3_xz -
-            acc_4_o_x*h_4_z - g_tip_y*h_3_y
+        # (sps-omega_1) angular velocity of link 1
+        sps_omega_1_t = sps_qd_1*sps_s_2
+        sps_omega_1_t_2 = sps_c_2*sps_qd_1
+        # (sps-omega_2) angular velocity of link 2
+        sps_omega_2_r1_x = sps_c_3_t*sps_omega_1_t_2 - sps_qd_2*sps_s_3
+        sps_omega_2_r1_y = sps_c_3_t*sps_qd_2 + sps_omega_1_t_2*sps_s_3
+        # (sps-omega_3) angular velocity of link 3
+        sps_omega_3_z = sps_omega_1_t + sps_yd_3
+        # (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        sps_zeta_3_x = sps_omega_2_r1_y*sps_yd_3
+        sps_zeta_3_y = sps_omega_2_r1_x*sps_yd_3
+        # (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        sps_zeta_2_y = sps_omega_1_t*sps_qd_2
+        # (sps-u_1) centripetal acceleration of the connection point
+        sps_u_1_x = omega_y*sps_S_dot_t_3 - omega_z*sps_S_dot_t_2
+        sps_u_1_y = omega_z*sps_S_dot_t - omega_x*sps_S_dot_t_3
+        sps_u_1_z = omega_x*sps_S_dot_t_2 - omega_y*sps_S_dot_t
+        # (sps-beta_3) angular acceleration of link 3 at zero joint accelerations
+        sps_beta_3_x = sps_zeta_3_x - sps_c_3_t*sps_zeta_2_y
+        sps_beta_3_y = -sps_zeta_3_y - sps_s_3*sps_zeta_2_y
+        # (sps-W_3) centripetal tensor of link 3
+        sps_W_3_t = sps_omega_2_r1_x*sps_omega_2_r1_x
+        sps_W_3_t_2 = sps_omega_2_r1_y*sps_omega_2_r1_y
+        sps_W_3_t_3 = sps_omega_3_z*sps_omega_3_z
+        sps_W_3_xy = sps_omega_2_r1_x*sps_omega_2_r1_y
+        sps_W_3_xz = sps_omega_2_r1_x*sps_omega_3_z
+        sps_W_3_yz = sps_omega_2_r1_y*sps_omega_3_z
+        # (sps-bias) acceleration of the connection point at zero joint accelerations
+        sps_bias_t = 2.0*sps_S_dot_rest_tip_z
+        sps_bias_x = sps_bias_t*sps_omega_2_r1_y + sps_root_2*(sps_W_3_xz + sps_beta_3_y)
+        sps_bias_y = sps_root_2*(sps_W_3_yz - sps_beta_3_x) - sps_bias_t*sps_omega_2_r1_x
+        # (sps-u_1) centripetal acceleration of the connection point
+        sps_u_1_tip_x = (
+        axis_x_sps_axes3_x*sps_u_1_x + axis_x_sps_axes3_y*sps_u_1_y + axis_x_sps_axes3_z*sps_u_1_z
         )
-        # (urps-N27) remainder without the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        Gamma_1_o = mu_3_o_x*v_1_t + mu_3_o_y*v_1_t_2 + mu_3_o_z*s_2
-        # (urps-N15) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        mu_3_o_r0_y = mu_3_o_x*s_3 - c_3_t*mu_3_o_y
-        # (urps-N7) remainder without the acceleration in: inertia force of link 4 from its turning about its reference point
-        phi_4_o_z = B_3_o_zx*h_4_y + B_3_o_zy*h_4_z - h_4_x*(W_3_t + W_3_t_2)
-        # (urps-N34) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_o_x = (
-        h_4_y*(W_3_t_2 + W_3_t_3) - B_3_o_xy*h_4_z - B_3_o_xz*h_4_x -
-            inv_w_1_t_23*(Gamma_1_o*v_2_t_2 - mu_3_o_r0_y*v_1_t_4)
+        sps_u_1_tip_y = (
+        axis_y_sps_axes3_in_base_x*sps_u_1_x + axis_y_sps_axes3_in_base_y*sps_u_1_y +
+            axis_y_sps_axes3_in_base_z*sps_u_1_z
         )
-        c_o_y = (
-        h_4_z*(W_3_t + W_3_t_3) + inv_w_1_t_23*(Gamma_1_o*v_2_t + mu_3_o_r0_y*v_1_t_3) -
-            B_3_o_yx*h_4_y - B_3_o_yz*h_4_x
+        # (sps-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        sps_rel_o_x = sps_u_1_tip_x - sps_bias_x
+        sps_rel_o_y = sps_u_1_tip_y - sps_bias_y
+        # (sps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        sps_qdd_1_o = inv_sps_w_2_t_3*(sps_rel_o_x*sps_v_2_t_2 - sps_rel_o_y*sps_v_2_t)
+        sps_qdd_2_o = inv_sps_w_2_t_3*(sps_rel_o_x*sps_v_1_t_4 + sps_rel_o_y*sps_v_1_t_3)
+        # (sps-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        sps_alpha_2_o_x = sps_omega_1_t_2*sps_qd_2 + sps_qdd_1_o*sps_s_2
+        sps_alpha_2_o_y = sps_zeta_2_y - sps_c_2*sps_qdd_1_o
+        # (sps-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        sps_alpha_3_o_x = sps_zeta_3_x - sps_alpha_2_o_y*sps_c_3_t - sps_qdd_2_o*sps_s_3
+        sps_alpha_3_o_y = sps_c_3_t*sps_qdd_2_o - sps_zeta_3_y - sps_alpha_2_o_y*sps_s_3
+        # (sps-B_3_o) remainder of the acceleration tensor of link 3
+        sps_B_3_o_xy = sps_W_3_xy - sps_alpha_2_o_x
+        sps_B_3_o_xz = sps_W_3_xz + sps_alpha_3_o_y
+        sps_B_3_o_yx = sps_W_3_xy + sps_alpha_2_o_x
+        sps_B_3_o_yz = sps_W_3_yz - sps_alpha_3_o_x
+        sps_B_3_o_zx = sps_W_3_xz - sps_alpha_3_o_y
+        sps_B_3_o_zy = sps_W_3_yz + sps_alpha_3_o_x
+        # (sps-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning about its reference point
+        sps_phi_4_o_z = (
+        sps_B_3_o_zx*sps_h_4_y + sps_B_3_o_zy*sps_h_4_z - sps_h_4_x*(sps_W_3_t + sps_W_3_t_2)
         )
-        # (urps-N36) velocity and gravity terms of the leg force
-        U_in_base_x = (
-        axis_z_x*phi_4_o_z - axis_x_urps_axes3_x*c_o_x - axis_y_urps_axes3_in_base_x*c_o_y
+        # (sps-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        sps_g_tip_x = (
+        axis_x_sps_axes3_x*gravity_x + axis_x_sps_axes3_y*gravity_y + axis_x_sps_axes3_z*gravity_z
         )
-        U_in_base_y = (
-        axis_z_y*phi_4_o_z - axis_x_urps_axes3_y*c_o_x - axis_y_urps_axes3_in_base_y*c_o_y
+        sps_g_tip_y = (
+        axis_y_sps_axes3_in_base_x*gravity_x + axis_y_sps_axes3_in_base_y*gravity_y +
+            axis_y_sps_axes3_in_base_z*gravity_z
         )
-        U_in_base_z = (
-        axis_z_z*phi_4_o_z - axis_x_urps_axes3_z*c_o_x - axis_y_urps_axes3_in_base_z*c_o_y
+        sps_g_tip_z = gravity_x*sps_axis_z_x + gravity_y*sps_axis_z_y + gravity_z*sps_axis_z_z
+        # (sps-acc_4_o) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+        sps_acc_4_o_x = sps_u_1_tip_x - sps_g_tip_x
+        sps_acc_4_o_y = sps_u_1_tip_y - sps_g_tip_y
+        sps_acc_4_o_z = (
+        sps_axis_z_x*sps_u_1_x + sps_axis_z_y*sps_u_1_y + sps_axis_z_z*sps_u_1_z - sps_g_tip_z
         )
-        # (M7) rotational part of Z
-        Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
-        Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
-        Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
+        # (sps-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        sps_mu_3_o_x = (
+        sps_B_3_o_yx*sps_J_group_3_xz + sps_B_3_o_zy*sps_Sigma_3_yy +
+            sps_J_group_3_yz*(sps_W_3_t_2 - sps_W_3_t_3) + sps_acc_4_o_z*sps_h_4_z +
+            sps_g_tip_y*sps_h_3_x - sps_B_3_o_yz*sps_Sigma_3_zz - sps_B_3_o_zx*sps_J_group_3_xy -
+            sps_acc_4_o_y*sps_h_4_x - sps_g_tip_z*sps_h_3_z
+        )
+        sps_mu_3_o_y = (
+        sps_B_3_o_xz*sps_Sigma_3_zz + sps_B_3_o_zy*sps_J_group_3_xy + sps_acc_4_o_x*sps_h_4_x +
+            sps_g_tip_z*sps_h_3_y - sps_B_3_o_xy*sps_J_group_3_yz - sps_B_3_o_zx*sps_Sigma_3_xx -
+            sps_J_group_3_xz*(sps_W_3_t - sps_W_3_t_3) - sps_acc_4_o_z*sps_h_4_y -
+            sps_g_tip_x*sps_h_3_x
+        )
+        sps_mu_3_o_z = (
+        sps_B_3_o_xz*sps_J_group_3_yz + sps_B_3_o_yx*sps_Sigma_3_xx + sps_J_group_3_xy*(sps_W_3_t
+            - sps_W_3_t_2) + sps_acc_4_o_y*sps_h_4_y + sps_g_tip_x*sps_h_3_z -
+            sps_B_3_o_xy*sps_Sigma_3_yy - sps_B_3_o_yz*sps_J_group_3_xz - sps_acc_4_o_x*sps_h_4_z
+            - sps_g_tip_y*sps_h_3_y
+        )
+        sps_mu_3_o_r0_y = sps_mu_3_o_x*sps_s_3 - sps_c_3_t*sps_mu_3_o_y
+        # (sps-Gamma_1_o) remainder without the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        sps_Gamma_1_o = sps_mu_3_o_x*sps_v_1_t + sps_mu_3_o_y*sps_v_1_t_2 + sps_mu_3_o_z*sps_s_2
+        # (sps-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        sps_c_o_x = (
+        sps_h_4_y*(sps_W_3_t_2 + sps_W_3_t_3) - inv_sps_w_2_t_3*(sps_Gamma_1_o*sps_v_2_t_2 -
+            sps_mu_3_o_r0_y*sps_v_1_t_4) - sps_B_3_o_xy*sps_h_4_z - sps_B_3_o_xz*sps_h_4_x
+        )
+        sps_c_o_y = (
+        inv_sps_w_2_t_3*(sps_Gamma_1_o*sps_v_2_t + sps_mu_3_o_r0_y*sps_v_1_t_3) +
+            sps_h_4_z*(sps_W_3_t + sps_W_3_t_3) - sps_B_3_o_yx*sps_h_4_y - sps_B_3_o_yz*sps_h_4_x
+        )
+        # (sps-U) velocity and gravity terms of the leg force
+        sps_U_in_base_x = (
+        sps_axis_z_x*sps_phi_4_o_z - axis_x_sps_axes3_x*sps_c_o_x -
+            axis_y_sps_axes3_in_base_x*sps_c_o_y
+        )
+        sps_U_in_base_y = (
+        sps_axis_z_y*sps_phi_4_o_z - axis_x_sps_axes3_y*sps_c_o_x -
+            axis_y_sps_axes3_in_base_y*sps_c_o_y
+        )
+        sps_U_in_base_z = (
+        sps_axis_z_z*sps_phi_4_o_z - axis_x_sps_axes3_z*sps_c_o_x -
+            axis_y_sps_axes3_in_base_z*sps_c_o_y
+        )
+        # (Z_a) rotational part of Z
+        sps_Z_a_t = sps_U_in_base_z*sps_q_in_base_y - sps_U_in_base_y*sps_q_in_base_z
+        sps_Z_a_t_2 = sps_U_in_base_x*sps_q_in_base_z - sps_U_in_base_z*sps_q_in_base_x
+        sps_Z_a_t_3 = sps_U_in_base_y*sps_q_in_base_x - sps_U_in_base_x*sps_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-w_1_t_2) >
+        ok & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-sps_w_2_t) >
             _TOLERANCE * 0.6400000000000001))
         )
         sums = m.added(sums, leg, (
-        U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
+        sps_U_in_base_x, sps_U_in_base_y, sps_U_in_base_z, sps_Z_a_t, sps_Z_a_t_2,
+            sps_Z_a_t_3,
         ))
-        out_Z[_Z_urps[0][leg]] = mu_3_o_z
-    (
-    total_urps_x, total_urps_y, total_urps_z, total_urps_x_2, total_urps_y_2, total_urps_z_2,
-    ) = sums
-    # (M5) translational part of Z
-    Z_t_x = Z_p_x + total_urps_x
-    Z_t_y = Z_p_y + total_urps_y
-    Z_t_z = Z_p_z + total_urps_z
-    # (M7) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_urps_x_2
-    Z_a_y = Z_q_in_base_y + total_urps_y_2
-    Z_a_z = Z_q_in_base_z + total_urps_z_2
+        out_Z[_Z_sps[0][leg]] = sps_mu_3_o_z
+    total_sps_x, total_sps_y, total_sps_z, total_sps_x_2, total_sps_y_2, total_sps_z_2 = sums
+    # (Z_t) translational part of Z
+    Z_t_x = Z_p_x + total_sps_x
+    Z_t_y = Z_p_y + total_sps_y
+    Z_t_z = Z_p_z + total_sps_z
+    # (Z_a) rotational part of Z
+    Z_a_x = Z_q_in_base_x + total_sps_x_2
+    Z_a_y = Z_q_in_base_y + total_sps_y_2
+    Z_a_z = Z_q_in_base_z + total_sps_z_2
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
@@ -2606,56 +2751,62 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        branch_2, urps_base_frame_xx, urps_base_frame_xy, urps_base_frame_xz, urps_base_frame_yx,
-            urps_base_frame_yy, urps_base_frame_yz, urps_base_frame_zx, urps_base_frame_zy,
-            urps_base_frame_zz, urps_base_point_x, urps_base_point_y, urps_base_point_z,
-            urps_platform_point_x, urps_platform_point_y, urps_platform_point_z,
+        sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
+            sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx, sps_base_frame_zy,
+            sps_base_frame_zz, sps_base_point_x, sps_base_point_y, sps_base_point_z, sps_branch_2,
+            sps_platform_point_x, sps_platform_point_y, sps_platform_point_z,
         ) = k
-        # (urps-K1) from the base point to the connection point
-        q_in_base_x = (
-        R_xx*urps_platform_point_x + R_xy*urps_platform_point_y + R_xz*urps_platform_point_z
+        # (sps-S) from the base point to the connection point
+        sps_q_in_base_x = (
+        R_xx*sps_platform_point_x + R_xy*sps_platform_point_y + R_xz*sps_platform_point_z
         )
-        q_in_base_y = (
-        R_yx*urps_platform_point_x + R_yy*urps_platform_point_y + R_yz*urps_platform_point_z
+        sps_q_in_base_y = (
+        R_yx*sps_platform_point_x + R_yy*sps_platform_point_y + R_yz*sps_platform_point_z
         )
-        q_in_base_z = (
-        R_zx*urps_platform_point_x + R_zy*urps_platform_point_y + R_zz*urps_platform_point_z
+        sps_q_in_base_z = (
+        R_zx*sps_platform_point_x + R_zy*sps_platform_point_y + R_zz*sps_platform_point_z
         )
-        S_x = q_in_base_x + t_x - urps_base_point_x
-        S_y = q_in_base_y + t_y - urps_base_point_y
-        S_z = q_in_base_z + t_z - urps_base_point_z
-        # (urps-K4) component along the reference direction
-        px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx + S_z*urps_base_frame_zx
-        # (urps-K5) component across the reference direction
-        py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy + S_z*urps_base_frame_zy
-        # (urps-K6) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (urps-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz + S_z*urps_base_frame_zz
-        # (urps-K15) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (urps-K16) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (urps-K17) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        # (urps-V6) reciprocal vector 1
-        axis_z_x = S_x*inv_root_2
-        axis_z_y = S_y*inv_root_2
-        axis_z_z = S_z*inv_root_2
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_4_x = axis_z_z*q_in_base_y - axis_z_y*q_in_base_z
-        H_a_4_y = axis_z_x*q_in_base_z - axis_z_z*q_in_base_x
-        H_a_4_z = axis_z_y*q_in_base_x - axis_z_x*q_in_base_y
+        sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x
+        sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y
+        sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z
+        # (sps-px_1) component along the reference direction
+        sps_px_1 = (
+        sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
+        )
+        # (sps-py_1) component across the reference direction
+        sps_py_1 = (
+        sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy + sps_S_z*sps_base_frame_zy
+        )
+        # (sps-rho2_1) squared amplitude
+        sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
+        # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        sps_xi_1_t = (
+        sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
+        )
+        # (sps-rho2_2) squared amplitude
+        sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t
+        # (sps-root_2) amplitude, with the sign of the branch
+        sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
+        # (sps-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_sps_root_2 = 1.0/sps_root_2
+        # (sps-w_1) reciprocal vector 1
+        sps_axis_z_x = inv_sps_root_2*sps_S_x
+        sps_axis_z_y = inv_sps_root_2*sps_S_y
+        sps_axis_z_z = inv_sps_root_2*sps_S_z
+        # (sps-H_a_4) moment of the column's unit force about the platform origin
+        sps_H_a_4_x = sps_axis_z_z*sps_q_in_base_y - sps_axis_z_y*sps_q_in_base_z
+        sps_H_a_4_y = sps_axis_z_x*sps_q_in_base_z - sps_axis_z_z*sps_q_in_base_x
+        sps_H_a_4_z = sps_axis_z_y*sps_q_in_base_x - sps_axis_z_x*sps_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
+        ok & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
         )
-        out_H[_H_urps[0][leg]] = axis_z_x
-        out_H[_H_urps[1][leg]] = axis_z_y
-        out_H[_H_urps[2][leg]] = axis_z_z
-        out_H[_H_urps[3][leg]] = H_a_4_x
-        out_H[_H_urps[4][leg]] = H_a_4_y
-        out_H[_H_urps[5][leg]] = H_a_4_z
+        out_H[_H_sps[0][leg]] = sps_axis_z_x
+        out_H[_H_sps[1][leg]] = sps_axis_z_y
+        out_H[_H_sps[2][leg]] = sps_axis_z_z
+        out_H[_H_sps[3][leg]] = sps_H_a_4_x
+        out_H[_H_sps[4][leg]] = sps_H_a_4_y
+        out_H[_H_sps[5][leg]] = sps_H_a_4_z
     return ok, (out_H,)
 
 
@@ -2733,29 +2884,29 @@ def _run_required(m, X, V, A):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (P1) centripetal tensor of the platform
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_x*omega_x
     W_p_t_2 = omega_y*omega_y
     W_p_t_3 = omega_z*omega_z
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
     W_p_yz = omega_y*omega_z
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
-    # (E2) inertia force of the platform less its weight
+    # (f_p) inertia force of the platform less its weight
     f_p_x = (
     a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) + h_star_in_base_z*(W_p_xz + alpha_y) -
         h_star_in_base_x*(W_p_t_2 + W_p_t_3)
@@ -2768,11 +2919,11 @@ def _run_required(m, X, V, A):
     a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) + h_star_in_base_y*(W_p_yz + alpha_x) -
         h_star_in_base_z*(W_p_t + W_p_t_2)
     )
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
     a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
     a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
-    # (E3) inertia moment of the platform less that of its weight
+    # (mu_p) inertia moment of the platform less that of its weight
     alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
     alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
     alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
@@ -2794,259 +2945,286 @@ def _run_required(m, X, V, A):
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_group_3_xy, J_group_3_xz, J_group_3_yz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1,
-            branch_2, h_3_x, h_3_y, h_3_z, h_4_x, h_4_y, h_4_z, urps_base_frame_xx,
-            urps_base_frame_xy, urps_base_frame_xz, urps_base_frame_yx, urps_base_frame_yy,
-            urps_base_frame_yz, urps_base_frame_zx, urps_base_frame_zy, urps_base_frame_zz,
-            urps_base_point_x, urps_base_point_y, urps_base_point_z, urps_platform_point_x,
-            urps_platform_point_y, urps_platform_point_z,
+        sps_J_group_3_xy, sps_J_group_3_xz, sps_J_group_3_yz, sps_Sigma_3_xx, sps_Sigma_3_yy,
+            sps_Sigma_3_zz, sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz,
+            sps_base_frame_yx, sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx,
+            sps_base_frame_zy, sps_base_frame_zz, sps_base_point_x, sps_base_point_y,
+            sps_base_point_z, sps_branch_1, sps_branch_2, sps_h_3_x, sps_h_3_y, sps_h_3_z,
+            sps_h_4_x, sps_h_4_y, sps_h_4_z, sps_platform_point_x, sps_platform_point_y,
+            sps_platform_point_z,
         ) = k
-        y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
-        yd_3 = V[[6, 7, 8, 9, 10, 11][leg]]
-        ydd_3 = A[[6, 7, 8, 9, 10, 11][leg]]
-        # (urps-K1) from the base point to the connection point
-        q_in_base_x = (
-        R_xx*urps_platform_point_x + R_xy*urps_platform_point_y + R_xz*urps_platform_point_z
+        sps_y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
+        sps_yd_3 = V[[6, 7, 8, 9, 10, 11][leg]]
+        sps_ydd_3 = A[[6, 7, 8, 9, 10, 11][leg]]
+        # (sps-S) from the base point to the connection point
+        sps_q_in_base_x = (
+        R_xx*sps_platform_point_x + R_xy*sps_platform_point_y + R_xz*sps_platform_point_z
         )
-        q_in_base_y = (
-        R_yx*urps_platform_point_x + R_yy*urps_platform_point_y + R_yz*urps_platform_point_z
+        sps_q_in_base_y = (
+        R_yx*sps_platform_point_x + R_yy*sps_platform_point_y + R_yz*sps_platform_point_z
         )
-        q_in_base_z = (
-        R_zx*urps_platform_point_x + R_zy*urps_platform_point_y + R_zz*urps_platform_point_z
+        sps_q_in_base_z = (
+        R_zx*sps_platform_point_x + R_zy*sps_platform_point_y + R_zz*sps_platform_point_z
         )
-        S_x = q_in_base_x + t_x - urps_base_point_x
-        S_y = q_in_base_y + t_y - urps_base_point_y
-        S_z = q_in_base_z + t_z - urps_base_point_z
-        # (urps-K4) component along the reference direction
-        px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx + S_z*urps_base_frame_zx
-        # (urps-K5) component across the reference direction
-        py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy + S_z*urps_base_frame_zy
-        # (urps-K6) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (urps-K7) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (urps-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz + S_z*urps_base_frame_zz
-        # (urps-K15) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (urps-K16) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (urps-K17) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (urps-K18) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (urps-K2) cosine of the angle of joint 3 from its reference direction
-        c_3_t = sin(y_3_extra)
-        # (urps-K3) sine of the angle of joint 3 from its reference direction
-        s_3 = cos(y_3_extra)
-        # (urps-V3) velocity of the connection point per rate of joint 1
-        v_1_t = c_2*c_3_t
-        v_1_t_2 = c_2*s_3
-        v_1_t_3 = root_2*v_1_t_2
-        v_1_t_4 = root_2*v_1_t
-        # (urps-V4) velocity of the connection point per rate of joint 2
-        v_2_t = c_3_t*root_2
-        v_2_t_2 = root_2*s_3
-        # (urps-V6) reciprocal vector 1
-        axis_z_x = S_x*inv_root_2
-        axis_z_y = S_y*inv_root_2
-        axis_z_z = S_z*inv_root_2
-        w_1_t = s_2*s_3
-        # (urps-K8) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (urps-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (urps-V6) reciprocal vector 1
-        axis_y_urps_axes3_r4_x = c_1*c_3_t - s_1*w_1_t
-        axis_y_urps_axes3_r4_y = -c_1*w_1_t - c_3_t*s_1
-        axis_y_urps_axes3_in_base_x = (
-        axis_y_urps_axes3_r4_x*urps_base_frame_xx + axis_y_urps_axes3_r4_y*urps_base_frame_xy +
-            urps_base_frame_xz*v_1_t_2
+        sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x
+        sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y
+        sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z
+        # (sps-px_1) component along the reference direction
+        sps_px_1 = (
+        sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
         )
-        axis_y_urps_axes3_in_base_y = (
-        axis_y_urps_axes3_r4_x*urps_base_frame_yx + axis_y_urps_axes3_r4_y*urps_base_frame_yy +
-            urps_base_frame_yz*v_1_t_2
+        # (sps-py_1) component across the reference direction
+        sps_py_1 = (
+        sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy + sps_S_z*sps_base_frame_zy
         )
-        axis_y_urps_axes3_in_base_z = (
-        axis_y_urps_axes3_r4_x*urps_base_frame_zx + axis_y_urps_axes3_r4_y*urps_base_frame_zy +
-            urps_base_frame_zz*v_1_t_2
+        # (sps-rho2_1) squared amplitude
+        sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
+        # (sps-root_1) amplitude, with the sign of the branch
+        sps_root_1 = sps_branch_1*sqrt(sps_rho2_1)
+        # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        sps_xi_1_t = (
+        sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
         )
-        axis_x_urps_axes3_x = (
-        axis_y_urps_axes3_in_base_y*axis_z_z - axis_y_urps_axes3_in_base_z*axis_z_y
+        # (sps-rho2_2) squared amplitude
+        sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t
+        # (sps-root_2) amplitude, with the sign of the branch
+        sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
+        # (sps-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_sps_root_2 = 1.0/sps_root_2
+        sps_c_2 = inv_sps_root_2*sps_root_1
+        # (sps-s_2) sine of the angle of joint 2 from its reference direction
+        sps_s_2 = inv_sps_root_2*sps_xi_1_t
+        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
+        sps_c_3_t = sin(sps_y_3_extra)
+        # (sps-s_3) sine of the angle of joint 3 from its reference direction
+        sps_s_3 = cos(sps_y_3_extra)
+        # (sps-v_1) velocity of the connection point per rate of joint 1
+        sps_v_1_t = sps_c_2*sps_c_3_t
+        sps_v_1_t_2 = sps_c_2*sps_s_3
+        sps_v_1_t_3 = sps_root_2*sps_v_1_t_2
+        sps_v_1_t_4 = sps_root_2*sps_v_1_t
+        # (sps-v_2) velocity of the connection point per rate of joint 2
+        sps_v_2_t = sps_c_3_t*sps_root_2
+        sps_v_2_t_2 = sps_root_2*sps_s_3
+        # (sps-w_1) reciprocal vector 1
+        sps_axis_z_x = inv_sps_root_2*sps_S_x
+        sps_axis_z_y = inv_sps_root_2*sps_S_y
+        sps_axis_z_z = inv_sps_root_2*sps_S_z
+        sps_w_1_t = sps_s_2*sps_s_3
+        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_sps_root_1 = 1.0/sps_root_1
+        sps_c_1 = inv_sps_root_1*sps_py_1
+        # (sps-s_1) sine of the angle of joint 1 from its reference direction
+        sps_s_1 = inv_sps_root_1*sps_px_1
+        # (sps-w_1) reciprocal vector 1
+        axis_y_sps_axes3_r4_x = sps_c_1*sps_c_3_t - sps_s_1*sps_w_1_t
+        axis_y_sps_axes3_r4_y = -sps_c_1*sps_w_1_t - sps_c_3_t*sps_s_1
+        axis_y_sps_axes3_in_base_x = (
+        axis_y_sps_axes3_r4_x*sps_base_frame_xx + axis_y_sps_axes3_r4_y*sps_base_frame_xy +
+            sps_base_frame_xz*sps_v_1_t_2
         )
-        axis_x_urps_axes3_y = (
-        axis_y_urps_axes3_in_base_z*axis_z_x - axis_y_urps_axes3_in_base_x*axis_z_z
+        axis_y_sps_axes3_in_base_y = (
+        axis_y_sps_axes3_r4_x*sps_base_frame_yx + axis_y_sps_axes3_r4_y*sps_base_frame_yy +
+            sps_base_frame_yz*sps_v_1_t_2
         )
-        axis_x_urps_axes3_z = (
-        axis_y_urps_axes3_in_base_x*axis_z_y - axis_y_urps_axes3_in_base_y*axis_z_x
+        axis_y_sps_axes3_in_base_z = (
+        axis_y_sps_axes3_r4_x*sps_base_frame_zx + axis_y_sps_axes3_r4_y*sps_base_frame_zy +
+            sps_base_frame_zz*sps_v_1_t_2
         )
-        w_1_t_2 = v_1_t_3*v_2_t_2 + v_1_t_4*v_2_t
-        inv_w_1_t_23 = 1.0/w_1_t_2
-        # (urps-N2) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        g_tip_x = (
-        axis_x_urps_axes3_x*gravity_x + axis_x_urps_axes3_y*gravity_y +
-            axis_x_urps_axes3_z*gravity_z
+        axis_x_sps_axes3_x = (
+        axis_y_sps_axes3_in_base_y*sps_axis_z_z - axis_y_sps_axes3_in_base_z*sps_axis_z_y
         )
-        g_tip_y = (
-        axis_y_urps_axes3_in_base_x*gravity_x + axis_y_urps_axes3_in_base_y*gravity_y +
-            axis_y_urps_axes3_in_base_z*gravity_z
+        axis_x_sps_axes3_y = (
+        axis_y_sps_axes3_in_base_z*sps_axis_z_x - axis_y_sps_axes3_in_base_x*sps_axis_z_z
         )
-        g_tip_z = axis_z_x*gravity_x + axis_z_y*gravity_y + axis_z_z*gravity_z
-        # (urps-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        # (urps-V9) velocity of the connection point left to the joints that are not extra
-        S_dot_rest_tip_x = (
-        S_dot_x*axis_x_urps_axes3_x + S_dot_y*axis_x_urps_axes3_y + S_dot_z*axis_x_urps_axes3_z
+        axis_x_sps_axes3_z = (
+        axis_y_sps_axes3_in_base_x*sps_axis_z_y - axis_y_sps_axes3_in_base_y*sps_axis_z_x
         )
-        S_dot_rest_tip_y = (
-        S_dot_x*axis_y_urps_axes3_in_base_x + S_dot_y*axis_y_urps_axes3_in_base_y +
-            S_dot_z*axis_y_urps_axes3_in_base_z
+        # (sps-w_2) reciprocal vector 2
+        sps_w_2_t = sps_v_1_t_3*sps_v_2_t_2 + sps_v_1_t_4*sps_v_2_t
+        inv_sps_w_2_t_3 = 1.0/sps_w_2_t
+        # (sps-S_dot) velocity of the connection point
+        sps_S_dot_t = omega_y*sps_q_in_base_z - omega_z*sps_q_in_base_y
+        sps_S_dot_t_2 = omega_z*sps_q_in_base_x - omega_x*sps_q_in_base_z
+        sps_S_dot_t_3 = omega_x*sps_q_in_base_y - omega_y*sps_q_in_base_x
+        sps_S_dot_x = sps_S_dot_t + t_dot_x
+        sps_S_dot_y = sps_S_dot_t_2 + t_dot_y
+        sps_S_dot_z = sps_S_dot_t_3 + t_dot_z
+        # (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra
+        sps_S_dot_rest_tip_x = (
+        axis_x_sps_axes3_x*sps_S_dot_x + axis_x_sps_axes3_y*sps_S_dot_y +
+            axis_x_sps_axes3_z*sps_S_dot_z
         )
-        S_dot_rest_tip_z = S_dot_x*axis_z_x + S_dot_y*axis_z_y + S_dot_z*axis_z_z
-        # (urps-V10) rate of joint 1
-        qd_1 = inv_w_1_t_23*(S_dot_rest_tip_x*v_2_t_2 - S_dot_rest_tip_y*v_2_t)
-        qd_2 = inv_w_1_t_23*(S_dot_rest_tip_x*v_1_t_4 + S_dot_rest_tip_y*v_1_t_3)
-        # (urps-V13) angular velocity of link 1
-        omega_1_t = qd_1*s_2
-        omega_1_t_2 = c_2*qd_1
-        # (urps-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_y = omega_1_t*qd_2
-        # (urps-V14) angular velocity of link 2
-        omega_2_r1_x = c_3_t*omega_1_t_2 - qd_2*s_3
-        omega_2_r1_y = c_3_t*qd_2 + omega_1_t_2*s_3
-        # (urps-A5) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_x = omega_2_r1_y*yd_3
-        zeta_3_y = omega_2_r1_x*yd_3
-        # (urps-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_x = zeta_3_x - c_3_t*zeta_2_y
-        beta_3_y = -zeta_3_y - s_3*zeta_2_y
-        # (urps-V15) angular velocity of link 3
-        omega_3_z = omega_1_t + yd_3
-        # (urps-V16) centripetal tensor of link 3
-        W_3_t = omega_2_r1_x*omega_2_r1_x
-        W_3_t_2 = omega_2_r1_y*omega_2_r1_y
-        W_3_t_3 = omega_3_z*omega_3_z
-        W_3_xy = omega_2_r1_x*omega_2_r1_y
-        W_3_xz = omega_2_r1_x*omega_3_z
-        W_3_yz = omega_2_r1_y*omega_3_z
-        # (urps-A7) acceleration of the connection point at zero joint accelerations
-        bias_t = 2.0*S_dot_rest_tip_z
-        bias_x = bias_t*omega_2_r1_y + root_2*(W_3_xz + beta_3_y)
-        bias_y = root_2*(W_3_yz - beta_3_x) - bias_t*omega_2_r1_x
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_4_x = axis_z_z*q_in_base_y - axis_z_y*q_in_base_z
-        H_a_4_y = axis_z_x*q_in_base_z - axis_z_z*q_in_base_x
-        H_a_4_z = axis_z_y*q_in_base_x - axis_z_x*q_in_base_y
-        # (urps-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (urps-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        S_ddot_tip_x = (
-        S_ddot_x*axis_x_urps_axes3_x + S_ddot_y*axis_x_urps_axes3_y + S_ddot_z*axis_x_urps_axes3_z
+        sps_S_dot_rest_tip_y = (
+        axis_y_sps_axes3_in_base_x*sps_S_dot_x + axis_y_sps_axes3_in_base_y*sps_S_dot_y +
+            axis_y_sps_axes3_in_base_z*sps_S_dot_z
         )
-        S_ddot_tip_y = (
-        S_ddot_x*axis_y_urps_axes3_in_base_x + S_ddot_y*axis_y_urps_axes3_in_base_y +
-            S_ddot_z*axis_y_urps_axes3_in_base_z
+        sps_S_dot_rest_tip_z = (
+        sps_S_dot_x*sps_axis_z_x + sps_S_dot_y*sps_axis_z_y + sps_S_dot_z*sps_axis_z_z
         )
-        # (urps-A8) acceleration of the connection point left to the joint accelerations
-        rel_x = S_ddot_tip_x - bias_x
-        rel_y = S_ddot_tip_y - bias_y
-        # (urps-A11) acceleration of joint 1
-        qdd_1 = inv_w_1_t_23*(rel_x*v_2_t_2 - rel_y*v_2_t)
-        qdd_2 = inv_w_1_t_23*(rel_x*v_1_t_4 + rel_y*v_1_t_3)
-        # (urps-N3) acceleration of the reference point of link 4, less gravity
-        acc_4_x = S_ddot_tip_x - g_tip_x
-        acc_4_y = S_ddot_tip_y - g_tip_y
-        acc_4_z = S_ddot_x*axis_z_x + S_ddot_y*axis_z_y + S_ddot_z*axis_z_z - g_tip_z
-        # (urps-A22) angular acceleration of link 2
-        alpha_2_x = omega_1_t_2*qd_2 + qdd_1*s_2
-        alpha_2_y = zeta_2_y - c_2*qdd_1
-        # (urps-A26) angular acceleration of link 3
-        alpha_3_x = zeta_3_x - alpha_2_y*c_3_t - qdd_2*s_3
-        alpha_3_y = c_3_t*qdd_2 - zeta_3_y - alpha_2_y*s_3
-        alpha_3_z = alpha_2_x + ydd_3
-        # (urps-A29) acceleration tensor of link 3
-        B_3_xy = W_3_xy - alpha_3_z
-        B_3_xz = W_3_xz + alpha_3_y
-        B_3_yx = W_3_xy + alpha_3_z
-        B_3_yz = W_3_yz - alpha_3_x
-        B_3_zx = W_3_xz - alpha_3_y
-        B_3_zy = W_3_yz + alpha_3_x
-        # (urps-N12) inertia moment of the links that turn with link 3, about their reference points
-        mu_3_x = (
-        B_3_yx*J_group_3_xz + B_3_zy*Sigma_3_yy + J_group_3_yz*(W_3_t_2 - W_3_t_3) + acc_4_z*h_4_z
-            + g_tip_y*h_3_x - B_3_yz*Sigma_3_zz - B_3_zx*J_group_3_xy - acc_4_y*h_4_x -
-            g_tip_z*h_3_z
+        # (sps-qd_2) rate of joint 2
+        sps_qd_1 = (
+        inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_2_t_2 - sps_S_dot_rest_tip_y*sps_v_2_t)
         )
-        mu_3_y = (
-        B_3_xz*Sigma_3_zz + B_3_zy*J_group_3_xy + acc_4_x*h_4_x + g_tip_z*h_3_y -
-            B_3_xy*J_group_3_yz - B_3_zx*Sigma_3_xx - J_group_3_xz*(W_3_t - W_3_t_3) -
-            acc_4_z*h_4_y - g_tip_x*h_3_x
+        sps_qd_2 = (
+        inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_1_t_4 + sps_S_dot_rest_tip_y*sps_v_1_t_3)
         )
-        mu_3_z = (
-        B_3_xz*J_group_3_yz + B_3_yx*Sigma_3_xx + J_group_3_xy*(W_3_t - W_3_t_2) + acc_4_y*h_4_y +
-            g_tip_x*h_3_z - B_3_xy*Sigma_3_yy - B_3_yz*J_group_3_xz - acc_4_x*h_4_z -
-            g_tip_y*h_3_y
+        # (sps-omega_1) angular velocity of link 1
+        sps_omega_1_t = sps_qd_1*sps_s_2
+        sps_omega_1_t_2 = sps_c_2*sps_qd_1
+        # (sps-omega_2) angular velocity of link 2
+        sps_omega_2_r1_x = sps_c_3_t*sps_omega_1_t_2 - sps_qd_2*sps_s_3
+        sps_omega_2_r1_y = sps_c_3_t*sps_qd_2 + sps_omega_1_t_2*sps_s_3
+        # (sps-omega_3) angular velocity of link 3
+        sps_omega_3_z = sps_omega_1_t + sps_yd_3
+        # (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        sps_zeta_3_x = sps_omega_2_r1_y*sps_yd_3
+        sps_zeta_3_y = sps_omega_2_r1_x*sps_yd_3
+        # (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        sps_zeta_2_y = sps_omega_1_t*sps_qd_2
+        # (sps-beta_3) angular acceleration of link 3 at zero joint accelerations
+        sps_beta_3_x = sps_zeta_3_x - sps_c_3_t*sps_zeta_2_y
+        sps_beta_3_y = -sps_zeta_3_y - sps_s_3*sps_zeta_2_y
+        # (sps-W_3) centripetal tensor of link 3
+        sps_W_3_t = sps_omega_2_r1_x*sps_omega_2_r1_x
+        sps_W_3_t_2 = sps_omega_2_r1_y*sps_omega_2_r1_y
+        sps_W_3_t_3 = sps_omega_3_z*sps_omega_3_z
+        sps_W_3_xy = sps_omega_2_r1_x*sps_omega_2_r1_y
+        sps_W_3_xz = sps_omega_2_r1_x*sps_omega_3_z
+        sps_W_3_yz = sps_omega_2_r1_y*sps_omega_3_z
+        # (sps-bias) acceleration of the connection point at zero joint accelerations
+        sps_bias_t = 2.0*sps_S_dot_rest_tip_z
+        sps_bias_x = sps_bias_t*sps_omega_2_r1_y + sps_root_2*(sps_W_3_xz + sps_beta_3_y)
+        sps_bias_y = sps_root_2*(sps_W_3_yz - sps_beta_3_x) - sps_bias_t*sps_omega_2_r1_x
+        # (sps-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        sps_g_tip_x = (
+        axis_x_sps_axes3_x*gravity_x + axis_x_sps_axes3_y*gravity_y + axis_x_sps_axes3_z*gravity_z
         )
-        # (urps-N24) moment about axis 1 of the distal links' inertia and weight
-        Gamma_1 = mu_3_x*v_1_t + mu_3_y*v_1_t_2 + mu_3_z*s_2
-        # (urps-N12) inertia moment of the links that turn with link 3, about their reference points
-        mu_3_r0_y = mu_3_x*s_3 - c_3_t*mu_3_y
-        # (urps-N5) inertia force of link 4 from its turning about its reference point
-        phi_4_z = B_3_zx*h_4_y + B_3_zy*h_4_z - h_4_x*(W_3_t + W_3_t_2)
-        # (urps-N32) leg force on the platform without actuation and without the mass at the connection point
-        c_x = (
-        h_4_y*(W_3_t_2 + W_3_t_3) - B_3_xy*h_4_z - B_3_xz*h_4_x - inv_w_1_t_23*(Gamma_1*v_2_t_2 -
-            mu_3_r0_y*v_1_t_4)
+        sps_g_tip_y = (
+        axis_y_sps_axes3_in_base_x*gravity_x + axis_y_sps_axes3_in_base_y*gravity_y +
+            axis_y_sps_axes3_in_base_z*gravity_z
         )
-        c_y = (
-        h_4_z*(W_3_t + W_3_t_3) + inv_w_1_t_23*(Gamma_1*v_2_t + mu_3_r0_y*v_1_t_3) - B_3_yx*h_4_y
-            - B_3_yz*h_4_x
+        sps_g_tip_z = gravity_x*sps_axis_z_x + gravity_y*sps_axis_z_y + gravity_z*sps_axis_z_z
+        # (sps-H_a_4) moment of the column's unit force about the platform origin
+        sps_H_a_4_x = sps_axis_z_z*sps_q_in_base_y - sps_axis_z_y*sps_q_in_base_z
+        sps_H_a_4_y = sps_axis_z_x*sps_q_in_base_z - sps_axis_z_z*sps_q_in_base_x
+        sps_H_a_4_z = sps_axis_z_y*sps_q_in_base_x - sps_axis_z_x*sps_q_in_base_y
+        # (sps-a_p) acceleration of the connection point without its centripetal part
+        sps_a_p_x = t_ddot_x + alpha_y*sps_q_in_base_z - alpha_z*sps_q_in_base_y
+        sps_a_p_y = t_ddot_y + alpha_z*sps_q_in_base_x - alpha_x*sps_q_in_base_z
+        sps_a_p_z = t_ddot_z + alpha_x*sps_q_in_base_y - alpha_y*sps_q_in_base_x
+        # (sps-S_ddot) acceleration of the connection point
+        sps_S_ddot_x = sps_a_p_x + omega_y*sps_S_dot_t_3 - omega_z*sps_S_dot_t_2
+        sps_S_ddot_y = sps_a_p_y + omega_z*sps_S_dot_t - omega_x*sps_S_dot_t_3
+        sps_S_ddot_z = sps_a_p_z + omega_x*sps_S_dot_t_2 - omega_y*sps_S_dot_t
+        sps_S_ddot_tip_x = (
+        axis_x_sps_axes3_x*sps_S_ddot_x + axis_x_sps_axes3_y*sps_S_ddot_y +
+            axis_x_sps_axes3_z*sps_S_ddot_z
         )
-        c_in_base_x = axis_x_urps_axes3_x*c_x + axis_y_urps_axes3_in_base_x*c_y - axis_z_x*phi_4_z
-        c_in_base_y = axis_x_urps_axes3_y*c_x + axis_y_urps_axes3_in_base_y*c_y - axis_z_y*phi_4_z
-        c_in_base_z = axis_x_urps_axes3_z*c_x + axis_y_urps_axes3_in_base_z*c_y - axis_z_z*phi_4_z
-        # (E5) moment that actuators and external wrench must give
-        R_a_t = c_in_base_z*q_in_base_y - c_in_base_y*q_in_base_z
-        R_a_t_2 = c_in_base_x*q_in_base_z - c_in_base_z*q_in_base_x
-        R_a_t_3 = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y
+        sps_S_ddot_tip_y = (
+        axis_y_sps_axes3_in_base_x*sps_S_ddot_x + axis_y_sps_axes3_in_base_y*sps_S_ddot_y +
+            axis_y_sps_axes3_in_base_z*sps_S_ddot_z
+        )
+        # (sps-rel) acceleration of the connection point left to the joint accelerations
+        sps_rel_x = sps_S_ddot_tip_x - sps_bias_x
+        sps_rel_y = sps_S_ddot_tip_y - sps_bias_y
+        # (sps-qdd_1) acceleration of joint 1
+        sps_qdd_1 = inv_sps_w_2_t_3*(sps_rel_x*sps_v_2_t_2 - sps_rel_y*sps_v_2_t)
+        sps_qdd_2 = inv_sps_w_2_t_3*(sps_rel_x*sps_v_1_t_4 + sps_rel_y*sps_v_1_t_3)
+        # (sps-acc_4) acceleration of the reference point of link 4, less gravity
+        sps_acc_4_x = sps_S_ddot_tip_x - sps_g_tip_x
+        sps_acc_4_y = sps_S_ddot_tip_y - sps_g_tip_y
+        sps_acc_4_z = (
+        sps_S_ddot_x*sps_axis_z_x + sps_S_ddot_y*sps_axis_z_y + sps_S_ddot_z*sps_axis_z_z -
+            sps_g_tip_z
+        )
+        # (sps-alpha_2) angular acceleration of link 2
+        sps_alpha_2_x = sps_omega_1_t_2*sps_qd_2 + sps_qdd_1*sps_s_2
+        sps_alpha_2_y = sps_zeta_2_y - sps_c_2*sps_qdd_1
+        # (sps-alpha_3) angular acceleration of link 3
+        sps_alpha_3_x = sps_zeta_3_x - sps_alpha_2_y*sps_c_3_t - sps_qdd_2*sps_s_3
+        sps_alpha_3_y = sps_c_3_t*sps_qdd_2 - sps_zeta_3_y - sps_alpha_2_y*sps_s_3
+        sps_alpha_3_z = sps_alpha_2_x + sps_ydd_3
+        # (sps-B_3) acceleration tensor of link 3
+        sps_B_3_xy = sps_W_3_xy - sps_alpha_3_z
+        sps_B_3_xz = sps_W_3_xz + sps_alpha_3_y
+        sps_B_3_yx = sps_W_3_xy + sps_alpha_3_z
+        sps_B_3_yz = sps_W_3_yz - sps_alpha_3_x
+        sps_B_3_zx = sps_W_3_xz - sps_alpha_3_y
+        sps_B_3_zy = sps_W_3_yz + sps_alpha_3_x
+        # (sps-phi_4) inertia force of link 4 from its turning about its reference point
+        sps_phi_4_z = (
+        sps_B_3_zx*sps_h_4_y + sps_B_3_zy*sps_h_4_z - sps_h_4_x*(sps_W_3_t + sps_W_3_t_2)
+        )
+        # (sps-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        sps_mu_3_x = (
+        sps_B_3_yx*sps_J_group_3_xz + sps_B_3_zy*sps_Sigma_3_yy + sps_J_group_3_yz*(sps_W_3_t_2 -
+            sps_W_3_t_3) + sps_acc_4_z*sps_h_4_z + sps_g_tip_y*sps_h_3_x -
+            sps_B_3_yz*sps_Sigma_3_zz - sps_B_3_zx*sps_J_group_3_xy - sps_acc_4_y*sps_h_4_x -
+            sps_g_tip_z*sps_h_3_z
+        )
+        sps_mu_3_y = (
+        sps_B_3_xz*sps_Sigma_3_zz + sps_B_3_zy*sps_J_group_3_xy + sps_acc_4_x*sps_h_4_x +
+            sps_g_tip_z*sps_h_3_y - sps_B_3_xy*sps_J_group_3_yz - sps_B_3_zx*sps_Sigma_3_xx -
+            sps_J_group_3_xz*(sps_W_3_t - sps_W_3_t_3) - sps_acc_4_z*sps_h_4_y -
+            sps_g_tip_x*sps_h_3_x
+        )
+        sps_mu_3_z = (
+        sps_B_3_xz*sps_J_group_3_yz + sps_B_3_yx*sps_Sigma_3_xx + sps_J_group_3_xy*(sps_W_3_t -
+            sps_W_3_t_2) + sps_acc_4_y*sps_h_4_y + sps_g_tip_x*sps_h_3_z -
+            sps_B_3_xy*sps_Sigma_3_yy - sps_B_3_yz*sps_J_group_3_xz - sps_acc_4_x*sps_h_4_z -
+            sps_g_tip_y*sps_h_3_y
+        )
+        sps_mu_3_r0_y = sps_mu_3_x*sps_s_3 - sps_c_3_t*sps_mu_3_y
+        # (sps-Gamma_1) moment about axis 1 of the distal links' inertia and weight
+        sps_Gamma_1 = sps_mu_3_x*sps_v_1_t + sps_mu_3_y*sps_v_1_t_2 + sps_mu_3_z*sps_s_2
+        # (sps-c) leg force on the platform without actuation and without the mass at the connection point
+        sps_c_x = (
+        sps_h_4_y*(sps_W_3_t_2 + sps_W_3_t_3) - inv_sps_w_2_t_3*(sps_Gamma_1*sps_v_2_t_2 -
+            sps_mu_3_r0_y*sps_v_1_t_4) - sps_B_3_xy*sps_h_4_z - sps_B_3_xz*sps_h_4_x
+        )
+        sps_c_y = (
+        inv_sps_w_2_t_3*(sps_Gamma_1*sps_v_2_t + sps_mu_3_r0_y*sps_v_1_t_3) + sps_h_4_z*(sps_W_3_t
+            + sps_W_3_t_3) - sps_B_3_yx*sps_h_4_y - sps_B_3_yz*sps_h_4_x
+        )
+        sps_c_in_base_x = (
+        axis_x_sps_axes3_x*sps_c_x + axis_y_sps_axes3_in_base_x*sps_c_y - sps_axis_z_x*sps_phi_4_z
+        )
+        sps_c_in_base_y = (
+        axis_x_sps_axes3_y*sps_c_x + axis_y_sps_axes3_in_base_y*sps_c_y - sps_axis_z_y*sps_phi_4_z
+        )
+        sps_c_in_base_z = (
+        axis_x_sps_axes3_z*sps_c_x + axis_y_sps_axes3_in_base_z*sps_c_y - sps_axis_z_z*sps_phi_4_z
+        )
+        # (R_a) moment that actuators and external wrench must give
+        sps_R_a_t = sps_c_in_base_z*sps_q_in_base_y - sps_c_in_base_y*sps_q_in_base_z
+        sps_R_a_t_2 = sps_c_in_base_x*sps_q_in_base_z - sps_c_in_base_z*sps_q_in_base_x
+        sps_R_a_t_3 = sps_c_in_base_y*sps_q_in_base_x - sps_c_in_base_x*sps_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-w_1_t_2) >
+        ok & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-sps_w_2_t) >
             _TOLERANCE * 0.6400000000000001))
         )
         sums = m.added(sums, leg, (
-        c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
+        sps_c_in_base_x, sps_c_in_base_y, sps_c_in_base_z, sps_R_a_t, sps_R_a_t_2,
+            sps_R_a_t_3,
         ))
-        out_required[_required_urps[0][leg]] = mu_3_z
-        out_H[_H_urps[0][leg]] = axis_z_x
-        out_H[_H_urps[1][leg]] = axis_z_y
-        out_H[_H_urps[2][leg]] = axis_z_z
-        out_H[_H_urps[3][leg]] = H_a_4_x
-        out_H[_H_urps[4][leg]] = H_a_4_y
-        out_H[_H_urps[5][leg]] = H_a_4_z
-    (
-    total_urps_x, total_urps_y, total_urps_z, total_urps_x_2, total_urps_y_2, total_urps_z_2,
-    ) = sums
-    # (E4) force that actuators and external wrench must give
-    R_t_x = f_p_x - total_urps_x
-    R_t_y = f_p_y - total_urps_y
-    R_t_z = f_p_z - total_urps_z
-    # (E5) moment that actuators and external wrench must give
-    R_a_x = mu_p_in_base_x - total_urps_x_2
-    R_a_y = mu_p_in_base_y - total_urps_y_2
-    R_a_z = mu_p_in_base_z - total_urps_z_2
+        out_required[_required_sps[0][leg]] = sps_mu_3_z
+        out_H[_H_sps[0][leg]] = sps_axis_z_x
+        out_H[_H_sps[1][leg]] = sps_axis_z_y
+        out_H[_H_sps[2][leg]] = sps_axis_z_z
+        out_H[_H_sps[3][leg]] = sps_H_a_4_x
+        out_H[_H_sps[4][leg]] = sps_H_a_4_y
+        out_H[_H_sps[5][leg]] = sps_H_a_4_z
+    total_sps_x, total_sps_y, total_sps_z, total_sps_x_2, total_sps_y_2, total_sps_z_2 = sums
+    # (R_t) force that actuators and external wrench must give
+    R_t_x = f_p_x - total_sps_x
+    R_t_y = f_p_y - total_sps_y
+    R_t_z = f_p_z - total_sps_z
+    # (R_a) moment that actuators and external wrench must give
+    R_a_x = mu_p_in_base_x - total_sps_x_2
+    R_a_y = mu_p_in_base_y - total_sps_y_2
+    R_a_z = mu_p_in_base_z - total_sps_z_2
     out_required[0] = R_t_x
     out_required[1] = R_t_y
     out_required[2] = R_t_z
@@ -3100,56 +3278,61 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, urps_base_frame_xx, urps_base_frame_xy, urps_base_frame_xz,
-            urps_base_frame_yx, urps_base_frame_yy, urps_base_frame_yz, urps_base_frame_zx,
-            urps_base_frame_zy, urps_base_frame_zz, urps_base_point_x, urps_base_point_y,
-            urps_base_point_z, urps_platform_point_x, urps_platform_point_y,
-            urps_platform_point_z,
+        sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
+            sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx, sps_base_frame_zy,
+            sps_base_frame_zz, sps_base_point_x, sps_base_point_y, sps_base_point_z, sps_branch_1,
+            sps_branch_2, sps_platform_point_x, sps_platform_point_y, sps_platform_point_z,
         ) = k
-        y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
-        # (urps-K1) from the base point to the connection point
-        S_x = (
-        t_x + R_xx*urps_platform_point_x + R_xy*urps_platform_point_y + R_xz*urps_platform_point_z
-            - urps_base_point_x
+        sps_y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
+        # (sps-S) from the base point to the connection point
+        sps_S_x = (
+        t_x + R_xx*sps_platform_point_x + R_xy*sps_platform_point_y + R_xz*sps_platform_point_z -
+            sps_base_point_x
         )
-        S_y = (
-        t_y + R_yx*urps_platform_point_x + R_yy*urps_platform_point_y + R_yz*urps_platform_point_z
-            - urps_base_point_y
+        sps_S_y = (
+        t_y + R_yx*sps_platform_point_x + R_yy*sps_platform_point_y + R_yz*sps_platform_point_z -
+            sps_base_point_y
         )
-        S_z = (
-        t_z + R_zx*urps_platform_point_x + R_zy*urps_platform_point_y + R_zz*urps_platform_point_z
-            - urps_base_point_z
+        sps_S_z = (
+        t_z + R_zx*sps_platform_point_x + R_zy*sps_platform_point_y + R_zz*sps_platform_point_z -
+            sps_base_point_z
         )
-        # (urps-K4) component along the reference direction
-        px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx + S_z*urps_base_frame_zx
-        # (urps-K5) component across the reference direction
-        py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy + S_z*urps_base_frame_zy
-        # (urps-K6) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (urps-K7) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (urps-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz + S_z*urps_base_frame_zz
-        # (urps-K15) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (urps-K16) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (urps-K17) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        # (urps-K8) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        # (urps-K10) displacement of joint 1
-        q_1 = atan2(inv_root_1*py_1, inv_root_1*px_1)
-        # (urps-K19) displacement of joint 2
-        q_2 = atan2(-inv_root_2*xi_1_t, inv_root_2*root_1)
+        # (sps-px_1) component along the reference direction
+        sps_px_1 = (
+        sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
+        )
+        # (sps-py_1) component across the reference direction
+        sps_py_1 = (
+        sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy + sps_S_z*sps_base_frame_zy
+        )
+        # (sps-rho2_1) squared amplitude
+        sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
+        # (sps-root_1) amplitude, with the sign of the branch
+        sps_root_1 = sps_branch_1*sqrt(sps_rho2_1)
+        # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        sps_xi_1_t = (
+        sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
+        )
+        # (sps-rho2_2) squared amplitude
+        sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t
+        # (sps-root_2) amplitude, with the sign of the branch
+        sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
+        # (sps-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_sps_root_2 = 1.0/sps_root_2
+        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_sps_root_1 = 1.0/sps_root_1
+        # (sps-q_1) displacement of joint 1
+        sps_q_1 = atan2(inv_sps_root_1*sps_py_1, inv_sps_root_1*sps_px_1)
+        # (sps-q_2) displacement of joint 2
+        sps_q_2 = atan2(-inv_sps_root_2*sps_xi_1_t, inv_sps_root_2*sps_root_1)
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
+        ok & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
         )
-        out_q[_q_urps[0][leg]] = q_1
-        out_q[_q_urps[1][leg]] = q_2
-        out_q[_q_urps[2][leg]] = y_3_extra
-        out_q[_q_urps[3][leg]] = root_2
+        out_q[_q_sps[0][leg]] = sps_q_1
+        out_q[_q_sps[1][leg]] = sps_q_2
+        out_q[_q_sps[2][leg]] = sps_y_3_extra
+        out_q[_q_sps[3][leg]] = sps_root_2
     return ok, (out_q,)
 
 
@@ -3211,110 +3394,124 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, urps_base_frame_xx, urps_base_frame_xy, urps_base_frame_xz,
-            urps_base_frame_yx, urps_base_frame_yy, urps_base_frame_yz, urps_base_frame_zx,
-            urps_base_frame_zy, urps_base_frame_zz, urps_base_point_x, urps_base_point_y,
-            urps_base_point_z, urps_platform_point_x, urps_platform_point_y,
-            urps_platform_point_z,
+        sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
+            sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx, sps_base_frame_zy,
+            sps_base_frame_zz, sps_base_point_x, sps_base_point_y, sps_base_point_z, sps_branch_1,
+            sps_branch_2, sps_platform_point_x, sps_platform_point_y, sps_platform_point_z,
         ) = k
-        y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
-        yd_3 = V[[6, 7, 8, 9, 10, 11][leg]]
-        # (urps-K1) from the base point to the connection point
-        q_in_base_x = (
-        R_xx*urps_platform_point_x + R_xy*urps_platform_point_y + R_xz*urps_platform_point_z
+        sps_y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
+        sps_yd_3 = V[[6, 7, 8, 9, 10, 11][leg]]
+        # (sps-S) from the base point to the connection point
+        sps_q_in_base_x = (
+        R_xx*sps_platform_point_x + R_xy*sps_platform_point_y + R_xz*sps_platform_point_z
         )
-        q_in_base_y = (
-        R_yx*urps_platform_point_x + R_yy*urps_platform_point_y + R_yz*urps_platform_point_z
+        sps_q_in_base_y = (
+        R_yx*sps_platform_point_x + R_yy*sps_platform_point_y + R_yz*sps_platform_point_z
         )
-        q_in_base_z = (
-        R_zx*urps_platform_point_x + R_zy*urps_platform_point_y + R_zz*urps_platform_point_z
+        sps_q_in_base_z = (
+        R_zx*sps_platform_point_x + R_zy*sps_platform_point_y + R_zz*sps_platform_point_z
         )
-        S_x = q_in_base_x + t_x - urps_base_point_x
-        S_y = q_in_base_y + t_y - urps_base_point_y
-        S_z = q_in_base_z + t_z - urps_base_point_z
-        # (urps-K4) component along the reference direction
-        px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx + S_z*urps_base_frame_zx
-        # (urps-K5) component across the reference direction
-        py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy + S_z*urps_base_frame_zy
-        # (urps-K6) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (urps-K7) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (urps-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz + S_z*urps_base_frame_zz
-        # (urps-K15) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (urps-K16) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (urps-K17) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (urps-K2) cosine of the angle of joint 3 from its reference direction
-        c_3_t = sin(y_3_extra)
-        # (urps-K3) sine of the angle of joint 3 from its reference direction
-        s_3 = cos(y_3_extra)
-        # (urps-V3) velocity of the connection point per rate of joint 1
-        v_1_t = c_2*s_3
-        v_1_t_2 = root_2*v_1_t
-        v_1_t_3 = c_2*c_3_t*root_2
-        # (urps-V4) velocity of the connection point per rate of joint 2
-        v_2_t = c_3_t*root_2
-        v_2_t_2 = root_2*s_3
-        # (urps-V6) reciprocal vector 1
-        axis_z_x = S_x*inv_root_2
-        axis_z_y = S_y*inv_root_2
-        axis_z_z = S_z*inv_root_2
-        w_1_t = inv_root_2*s_3*xi_1_t
-        # (urps-K8) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (urps-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (urps-V6) reciprocal vector 1
-        axis_y_urps_axes3_r4_x = c_1*c_3_t - s_1*w_1_t
-        axis_y_urps_axes3_r4_y = -c_1*w_1_t - c_3_t*s_1
-        axis_y_urps_axes3_in_base_x = (
-        axis_y_urps_axes3_r4_x*urps_base_frame_xx + axis_y_urps_axes3_r4_y*urps_base_frame_xy +
-            urps_base_frame_xz*v_1_t
+        sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x
+        sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y
+        sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z
+        # (sps-px_1) component along the reference direction
+        sps_px_1 = (
+        sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
         )
-        axis_y_urps_axes3_in_base_y = (
-        axis_y_urps_axes3_r4_x*urps_base_frame_yx + axis_y_urps_axes3_r4_y*urps_base_frame_yy +
-            urps_base_frame_yz*v_1_t
+        # (sps-py_1) component across the reference direction
+        sps_py_1 = (
+        sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy + sps_S_z*sps_base_frame_zy
         )
-        axis_y_urps_axes3_in_base_z = (
-        axis_y_urps_axes3_r4_x*urps_base_frame_zx + axis_y_urps_axes3_r4_y*urps_base_frame_zy +
-            urps_base_frame_zz*v_1_t
+        # (sps-rho2_1) squared amplitude
+        sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
+        # (sps-root_1) amplitude, with the sign of the branch
+        sps_root_1 = sps_branch_1*sqrt(sps_rho2_1)
+        # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        sps_xi_1_t = (
+        sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
         )
-        w_1_t_2 = v_1_t_2*v_2_t_2 + v_1_t_3*v_2_t
-        inv_w_1_t_23 = 1.0/w_1_t_2
-        # (urps-V1) velocity of the connection point
-        S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x
-        # (urps-V9) velocity of the connection point left to the joints that are not extra
-        S_dot_rest_tip_x = (
-        S_dot_x*(axis_y_urps_axes3_in_base_y*axis_z_z - axis_y_urps_axes3_in_base_z*axis_z_y) +
-            S_dot_y*(axis_y_urps_axes3_in_base_z*axis_z_x - axis_y_urps_axes3_in_base_x*axis_z_z)
-            + S_dot_z*(axis_y_urps_axes3_in_base_x*axis_z_y -
-            axis_y_urps_axes3_in_base_y*axis_z_x)
+        # (sps-rho2_2) squared amplitude
+        sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t
+        # (sps-root_2) amplitude, with the sign of the branch
+        sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
+        # (sps-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_sps_root_2 = 1.0/sps_root_2
+        sps_c_2 = inv_sps_root_2*sps_root_1
+        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
+        sps_c_3_t = sin(sps_y_3_extra)
+        # (sps-s_3) sine of the angle of joint 3 from its reference direction
+        sps_s_3 = cos(sps_y_3_extra)
+        # (sps-v_1) velocity of the connection point per rate of joint 1
+        sps_v_1_t = sps_c_2*sps_s_3
+        sps_v_1_t_2 = sps_root_2*sps_v_1_t
+        sps_v_1_t_3 = sps_c_2*sps_c_3_t*sps_root_2
+        # (sps-v_2) velocity of the connection point per rate of joint 2
+        sps_v_2_t = sps_c_3_t*sps_root_2
+        sps_v_2_t_2 = sps_root_2*sps_s_3
+        # (sps-w_1) reciprocal vector 1
+        sps_axis_z_x = inv_sps_root_2*sps_S_x
+        sps_axis_z_y = inv_sps_root_2*sps_S_y
+        sps_axis_z_z = inv_sps_root_2*sps_S_z
+        sps_w_1_t = inv_sps_root_2*sps_s_3*sps_xi_1_t
+        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_sps_root_1 = 1.0/sps_root_1
+        sps_c_1 = inv_sps_root_1*sps_py_1
+        # (sps-s_1) sine of the angle of joint 1 from its reference direction
+        sps_s_1 = inv_sps_root_1*sps_px_1
+        # (sps-w_1) reciprocal vector 1
+        axis_y_sps_axes3_r4_x = sps_c_1*sps_c_3_t - sps_s_1*sps_w_1_t
+        axis_y_sps_axes3_r4_y = -sps_c_1*sps_w_1_t - sps_c_3_t*sps_s_1
+        axis_y_sps_axes3_in_base_x = (
+        axis_y_sps_axes3_r4_x*sps_base_frame_xx + axis_y_sps_axes3_r4_y*sps_base_frame_xy +
+            sps_base_frame_xz*sps_v_1_t
         )
-        S_dot_rest_tip_y = (
-        S_dot_x*axis_y_urps_axes3_in_base_x + S_dot_y*axis_y_urps_axes3_in_base_y +
-            S_dot_z*axis_y_urps_axes3_in_base_z
+        axis_y_sps_axes3_in_base_y = (
+        axis_y_sps_axes3_r4_x*sps_base_frame_yx + axis_y_sps_axes3_r4_y*sps_base_frame_yy +
+            sps_base_frame_yz*sps_v_1_t
         )
-        S_dot_rest_tip_z = S_dot_x*axis_z_x + S_dot_y*axis_z_y + S_dot_z*axis_z_z
-        # (urps-V10) rate of joint 1
-        qd_1 = inv_w_1_t_23*(S_dot_rest_tip_x*v_2_t_2 - S_dot_rest_tip_y*v_2_t)
-        qd_2 = inv_w_1_t_23*(S_dot_rest_tip_x*v_1_t_3 + S_dot_rest_tip_y*v_1_t_2)
+        axis_y_sps_axes3_in_base_z = (
+        axis_y_sps_axes3_r4_x*sps_base_frame_zx + axis_y_sps_axes3_r4_y*sps_base_frame_zy +
+            sps_base_frame_zz*sps_v_1_t
+        )
+        # (sps-w_2) reciprocal vector 2
+        sps_w_2_t = sps_v_1_t_2*sps_v_2_t_2 + sps_v_1_t_3*sps_v_2_t
+        inv_sps_w_2_t_3 = 1.0/sps_w_2_t
+        # (sps-S_dot) velocity of the connection point
+        sps_S_dot_x = t_dot_x + omega_y*sps_q_in_base_z - omega_z*sps_q_in_base_y
+        sps_S_dot_y = t_dot_y + omega_z*sps_q_in_base_x - omega_x*sps_q_in_base_z
+        sps_S_dot_z = t_dot_z + omega_x*sps_q_in_base_y - omega_y*sps_q_in_base_x
+        # (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra
+        sps_S_dot_rest_tip_x = (
+        sps_S_dot_x*(axis_y_sps_axes3_in_base_y*sps_axis_z_z -
+            axis_y_sps_axes3_in_base_z*sps_axis_z_y) +
+            sps_S_dot_y*(axis_y_sps_axes3_in_base_z*sps_axis_z_x -
+            axis_y_sps_axes3_in_base_x*sps_axis_z_z) +
+            sps_S_dot_z*(axis_y_sps_axes3_in_base_x*sps_axis_z_y -
+            axis_y_sps_axes3_in_base_y*sps_axis_z_x)
+        )
+        sps_S_dot_rest_tip_y = (
+        axis_y_sps_axes3_in_base_x*sps_S_dot_x + axis_y_sps_axes3_in_base_y*sps_S_dot_y +
+            axis_y_sps_axes3_in_base_z*sps_S_dot_z
+        )
+        sps_S_dot_rest_tip_z = (
+        sps_S_dot_x*sps_axis_z_x + sps_S_dot_y*sps_axis_z_y + sps_S_dot_z*sps_axis_z_z
+        )
+        # (sps-qd_2) rate of joint 2
+        sps_qd_1 = (
+        inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_2_t_2 - sps_S_dot_rest_tip_y*sps_v_2_t)
+        )
+        sps_qd_2 = (
+        inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_1_t_3 + sps_S_dot_rest_tip_y*sps_v_1_t_2)
+        )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-w_1_t_2) >
+        ok & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-sps_w_2_t) >
             _TOLERANCE * 0.6400000000000001))
         )
-        out_qd[_qd_urps[0][leg]] = qd_1
-        out_qd[_qd_urps[1][leg]] = -qd_2
-        out_qd[_qd_urps[2][leg]] = yd_3
-        out_qd[_qd_urps[3][leg]] = S_dot_rest_tip_z
+        out_qd[_qd_sps[0][leg]] = sps_qd_1
+        out_qd[_qd_sps[1][leg]] = -sps_qd_2
+        out_qd[_qd_sps[2][leg]] = sps_yd_3
+        out_qd[_qd_sps[3][leg]] = sps_S_dot_rest_tip_z
     return ok, (out_qd,)
 
 
@@ -3389,163 +3586,180 @@ def _run_joint_accelerations(m, X, V, A):
     out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, urps_base_frame_xx, urps_base_frame_xy, urps_base_frame_xz,
-            urps_base_frame_yx, urps_base_frame_yy, urps_base_frame_yz, urps_base_frame_zx,
-            urps_base_frame_zy, urps_base_frame_zz, urps_base_point_x, urps_base_point_y,
-            urps_base_point_z, urps_platform_point_x, urps_platform_point_y,
-            urps_platform_point_z,
+        sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
+            sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx, sps_base_frame_zy,
+            sps_base_frame_zz, sps_base_point_x, sps_base_point_y, sps_base_point_z, sps_branch_1,
+            sps_branch_2, sps_platform_point_x, sps_platform_point_y, sps_platform_point_z,
         ) = k
-        y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
-        yd_3 = V[[6, 7, 8, 9, 10, 11][leg]]
-        ydd_3 = A[[6, 7, 8, 9, 10, 11][leg]]
-        # (urps-K1) from the base point to the connection point
-        q_in_base_x = (
-        R_xx*urps_platform_point_x + R_xy*urps_platform_point_y + R_xz*urps_platform_point_z
+        sps_y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
+        sps_yd_3 = V[[6, 7, 8, 9, 10, 11][leg]]
+        sps_ydd_3 = A[[6, 7, 8, 9, 10, 11][leg]]
+        # (sps-S) from the base point to the connection point
+        sps_q_in_base_x = (
+        R_xx*sps_platform_point_x + R_xy*sps_platform_point_y + R_xz*sps_platform_point_z
         )
-        q_in_base_y = (
-        R_yx*urps_platform_point_x + R_yy*urps_platform_point_y + R_yz*urps_platform_point_z
+        sps_q_in_base_y = (
+        R_yx*sps_platform_point_x + R_yy*sps_platform_point_y + R_yz*sps_platform_point_z
         )
-        q_in_base_z = (
-        R_zx*urps_platform_point_x + R_zy*urps_platform_point_y + R_zz*urps_platform_point_z
+        sps_q_in_base_z = (
+        R_zx*sps_platform_point_x + R_zy*sps_platform_point_y + R_zz*sps_platform_point_z
         )
-        S_x = q_in_base_x + t_x - urps_base_point_x
-        S_y = q_in_base_y + t_y - urps_base_point_y
-        S_z = q_in_base_z + t_z - urps_base_point_z
-        # (urps-K4) component along the reference direction
-        px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx + S_z*urps_base_frame_zx
-        # (urps-K5) component across the reference direction
-        py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy + S_z*urps_base_frame_zy
-        # (urps-K6) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (urps-K7) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (urps-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz + S_z*urps_base_frame_zz
-        # (urps-K15) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (urps-K16) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (urps-K17) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (urps-K18) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (urps-K2) cosine of the angle of joint 3 from its reference direction
-        c_3_t = sin(y_3_extra)
-        # (urps-K3) sine of the angle of joint 3 from its reference direction
-        s_3 = cos(y_3_extra)
-        # (urps-V3) velocity of the connection point per rate of joint 1
-        v_1_t = c_2*s_3
-        v_1_t_2 = root_2*v_1_t
-        v_1_t_3 = c_2*c_3_t*root_2
-        # (urps-V4) velocity of the connection point per rate of joint 2
-        v_2_t = c_3_t*root_2
-        v_2_t_2 = root_2*s_3
-        # (urps-V6) reciprocal vector 1
-        axis_z_x = S_x*inv_root_2
-        axis_z_y = S_y*inv_root_2
-        axis_z_z = S_z*inv_root_2
-        w_1_t = s_2*s_3
-        # (urps-K8) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (urps-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (urps-V6) reciprocal vector 1
-        axis_y_urps_axes3_r4_x = c_1*c_3_t - s_1*w_1_t
-        axis_y_urps_axes3_r4_y = -c_1*w_1_t - c_3_t*s_1
-        axis_y_urps_axes3_in_base_x = (
-        axis_y_urps_axes3_r4_x*urps_base_frame_xx + axis_y_urps_axes3_r4_y*urps_base_frame_xy +
-            urps_base_frame_xz*v_1_t
+        sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x
+        sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y
+        sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z
+        # (sps-px_1) component along the reference direction
+        sps_px_1 = (
+        sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
         )
-        axis_y_urps_axes3_in_base_y = (
-        axis_y_urps_axes3_r4_x*urps_base_frame_yx + axis_y_urps_axes3_r4_y*urps_base_frame_yy +
-            urps_base_frame_yz*v_1_t
+        # (sps-py_1) component across the reference direction
+        sps_py_1 = (
+        sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy + sps_S_z*sps_base_frame_zy
         )
-        axis_y_urps_axes3_in_base_z = (
-        axis_y_urps_axes3_r4_x*urps_base_frame_zx + axis_y_urps_axes3_r4_y*urps_base_frame_zy +
-            urps_base_frame_zz*v_1_t
+        # (sps-rho2_1) squared amplitude
+        sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
+        # (sps-root_1) amplitude, with the sign of the branch
+        sps_root_1 = sps_branch_1*sqrt(sps_rho2_1)
+        # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        sps_xi_1_t = (
+        sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
         )
-        axis_x_urps_axes3_x = (
-        axis_y_urps_axes3_in_base_y*axis_z_z - axis_y_urps_axes3_in_base_z*axis_z_y
+        # (sps-rho2_2) squared amplitude
+        sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t
+        # (sps-root_2) amplitude, with the sign of the branch
+        sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
+        # (sps-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_sps_root_2 = 1.0/sps_root_2
+        sps_c_2 = inv_sps_root_2*sps_root_1
+        # (sps-s_2) sine of the angle of joint 2 from its reference direction
+        sps_s_2 = inv_sps_root_2*sps_xi_1_t
+        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
+        sps_c_3_t = sin(sps_y_3_extra)
+        # (sps-s_3) sine of the angle of joint 3 from its reference direction
+        sps_s_3 = cos(sps_y_3_extra)
+        # (sps-v_1) velocity of the connection point per rate of joint 1
+        sps_v_1_t = sps_c_2*sps_s_3
+        sps_v_1_t_2 = sps_root_2*sps_v_1_t
+        sps_v_1_t_3 = sps_c_2*sps_c_3_t*sps_root_2
+        # (sps-v_2) velocity of the connection point per rate of joint 2
+        sps_v_2_t = sps_c_3_t*sps_root_2
+        sps_v_2_t_2 = sps_root_2*sps_s_3
+        # (sps-w_1) reciprocal vector 1
+        sps_axis_z_x = inv_sps_root_2*sps_S_x
+        sps_axis_z_y = inv_sps_root_2*sps_S_y
+        sps_axis_z_z = inv_sps_root_2*sps_S_z
+        sps_w_1_t = sps_s_2*sps_s_3
+        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_sps_root_1 = 1.0/sps_root_1
+        sps_c_1 = inv_sps_root_1*sps_py_1
+        # (sps-s_1) sine of the angle of joint 1 from its reference direction
+        sps_s_1 = inv_sps_root_1*sps_px_1
+        # (sps-w_1) reciprocal vector 1
+        axis_y_sps_axes3_r4_x = sps_c_1*sps_c_3_t - sps_s_1*sps_w_1_t
+        axis_y_sps_axes3_r4_y = -sps_c_1*sps_w_1_t - sps_c_3_t*sps_s_1
+        axis_y_sps_axes3_in_base_x = (
+        axis_y_sps_axes3_r4_x*sps_base_frame_xx + axis_y_sps_axes3_r4_y*sps_base_frame_xy +
+            sps_base_frame_xz*sps_v_1_t
         )
-        axis_x_urps_axes3_y = (
-        axis_y_urps_axes3_in_base_z*axis_z_x - axis_y_urps_axes3_in_base_x*axis_z_z
+        axis_y_sps_axes3_in_base_y = (
+        axis_y_sps_axes3_r4_x*sps_base_frame_yx + axis_y_sps_axes3_r4_y*sps_base_frame_yy +
+            sps_base_frame_yz*sps_v_1_t
         )
-        axis_x_urps_axes3_z = (
-        axis_y_urps_axes3_in_base_x*axis_z_y - axis_y_urps_axes3_in_base_y*axis_z_x
+        axis_y_sps_axes3_in_base_z = (
+        axis_y_sps_axes3_r4_x*sps_base_frame_zx + axis_y_sps_axes3_r4_y*sps_base_frame_zy +
+            sps_base_frame_zz*sps_v_1_t
         )
-        w_1_t_2 = v_1_t_2*v_2_t_2 + v_1_t_3*v_2_t
-        inv_w_1_t_23 = 1.0/w_1_t_2
-        # (urps-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        # (urps-V9) velocity of the connection point left to the joints that are not extra
-        S_dot_rest_tip_x = (
-        S_dot_x*axis_x_urps_axes3_x + S_dot_y*axis_x_urps_axes3_y + S_dot_z*axis_x_urps_axes3_z
+        axis_x_sps_axes3_x = (
+        axis_y_sps_axes3_in_base_y*sps_axis_z_z - axis_y_sps_axes3_in_base_z*sps_axis_z_y
         )
-        S_dot_rest_tip_y = (
-        S_dot_x*axis_y_urps_axes3_in_base_x + S_dot_y*axis_y_urps_axes3_in_base_y +
-            S_dot_z*axis_y_urps_axes3_in_base_z
+        axis_x_sps_axes3_y = (
+        axis_y_sps_axes3_in_base_z*sps_axis_z_x - axis_y_sps_axes3_in_base_x*sps_axis_z_z
         )
-        S_dot_rest_tip_z = S_dot_x*axis_z_x + S_dot_y*axis_z_y + S_dot_z*axis_z_z
-        # (urps-V10) rate of joint 1
-        qd_1 = inv_w_1_t_23*(S_dot_rest_tip_x*v_2_t_2 - S_dot_rest_tip_y*v_2_t)
-        qd_2 = inv_w_1_t_23*(S_dot_rest_tip_x*v_1_t_3 + S_dot_rest_tip_y*v_1_t_2)
-        # (urps-V13) angular velocity of link 1
-        omega_1_t = qd_1*s_2
-        omega_1_t_2 = c_2*qd_1
-        # (urps-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_y = omega_1_t*qd_2
-        # (urps-V14) angular velocity of link 2
-        omega_2_r1_x = c_3_t*omega_1_t_2 - qd_2*s_3
-        omega_2_r1_y = c_3_t*qd_2 + omega_1_t_2*s_3
-        # (urps-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_x = omega_2_r1_y*yd_3 - c_3_t*zeta_2_y
-        beta_3_y = -omega_2_r1_x*yd_3 - s_3*zeta_2_y
-        # (urps-V15) angular velocity of link 3
-        omega_3_z = omega_1_t + yd_3
-        # (urps-A7) acceleration of the connection point at zero joint accelerations
-        bias_t = 2.0*S_dot_rest_tip_z
-        bias_x = bias_t*omega_2_r1_y + root_2*(beta_3_y + omega_2_r1_x*omega_3_z)
-        bias_y = root_2*(omega_2_r1_y*omega_3_z - beta_3_x) - bias_t*omega_2_r1_x
-        # (urps-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (urps-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        # (urps-A8) acceleration of the connection point left to the joint accelerations
-        rel_x = (
-        S_ddot_x*axis_x_urps_axes3_x + S_ddot_y*axis_x_urps_axes3_y + S_ddot_z*axis_x_urps_axes3_z
-            - bias_x
+        axis_x_sps_axes3_z = (
+        axis_y_sps_axes3_in_base_x*sps_axis_z_y - axis_y_sps_axes3_in_base_y*sps_axis_z_x
         )
-        rel_y = (
-        S_ddot_x*axis_y_urps_axes3_in_base_x + S_ddot_y*axis_y_urps_axes3_in_base_y +
-            S_ddot_z*axis_y_urps_axes3_in_base_z - bias_y
+        # (sps-w_2) reciprocal vector 2
+        sps_w_2_t = sps_v_1_t_2*sps_v_2_t_2 + sps_v_1_t_3*sps_v_2_t
+        inv_sps_w_2_t_3 = 1.0/sps_w_2_t
+        # (sps-S_dot) velocity of the connection point
+        sps_S_dot_t = omega_y*sps_q_in_base_z - omega_z*sps_q_in_base_y
+        sps_S_dot_t_2 = omega_z*sps_q_in_base_x - omega_x*sps_q_in_base_z
+        sps_S_dot_t_3 = omega_x*sps_q_in_base_y - omega_y*sps_q_in_base_x
+        sps_S_dot_x = sps_S_dot_t + t_dot_x
+        sps_S_dot_y = sps_S_dot_t_2 + t_dot_y
+        sps_S_dot_z = sps_S_dot_t_3 + t_dot_z
+        # (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra
+        sps_S_dot_rest_tip_x = (
+        axis_x_sps_axes3_x*sps_S_dot_x + axis_x_sps_axes3_y*sps_S_dot_y +
+            axis_x_sps_axes3_z*sps_S_dot_z
         )
-        rel_z = (
-        S_ddot_x*axis_z_x + S_ddot_y*axis_z_y + S_ddot_z*axis_z_z +
-            root_2*(omega_2_r1_x*omega_2_r1_x + omega_2_r1_y*omega_2_r1_y)
+        sps_S_dot_rest_tip_y = (
+        axis_y_sps_axes3_in_base_x*sps_S_dot_x + axis_y_sps_axes3_in_base_y*sps_S_dot_y +
+            axis_y_sps_axes3_in_base_z*sps_S_dot_z
         )
-        # (urps-A11) acceleration of joint 1
-        qdd_1 = inv_w_1_t_23*(rel_x*v_2_t_2 - rel_y*v_2_t)
-        qdd_2 = inv_w_1_t_23*(rel_x*v_1_t_3 + rel_y*v_1_t_2)
+        sps_S_dot_rest_tip_z = (
+        sps_S_dot_x*sps_axis_z_x + sps_S_dot_y*sps_axis_z_y + sps_S_dot_z*sps_axis_z_z
+        )
+        # (sps-qd_2) rate of joint 2
+        sps_qd_1 = (
+        inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_2_t_2 - sps_S_dot_rest_tip_y*sps_v_2_t)
+        )
+        sps_qd_2 = (
+        inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_1_t_3 + sps_S_dot_rest_tip_y*sps_v_1_t_2)
+        )
+        # (sps-omega_1) angular velocity of link 1
+        sps_omega_1_t = sps_qd_1*sps_s_2
+        sps_omega_1_t_2 = sps_c_2*sps_qd_1
+        # (sps-omega_2) angular velocity of link 2
+        sps_omega_2_r1_x = sps_c_3_t*sps_omega_1_t_2 - sps_qd_2*sps_s_3
+        sps_omega_2_r1_y = sps_c_3_t*sps_qd_2 + sps_omega_1_t_2*sps_s_3
+        # (sps-omega_3) angular velocity of link 3
+        sps_omega_3_z = sps_omega_1_t + sps_yd_3
+        # (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        sps_zeta_2_y = sps_omega_1_t*sps_qd_2
+        # (sps-beta_3) angular acceleration of link 3 at zero joint accelerations
+        sps_beta_3_x = sps_omega_2_r1_y*sps_yd_3 - sps_c_3_t*sps_zeta_2_y
+        sps_beta_3_y = -sps_omega_2_r1_x*sps_yd_3 - sps_s_3*sps_zeta_2_y
+        # (sps-bias) acceleration of the connection point at zero joint accelerations
+        sps_bias_t = 2.0*sps_S_dot_rest_tip_z
+        sps_bias_x = (
+        sps_bias_t*sps_omega_2_r1_y + sps_root_2*(sps_beta_3_y + sps_omega_2_r1_x*sps_omega_3_z)
+        )
+        sps_bias_y = (
+        sps_root_2*(sps_omega_2_r1_y*sps_omega_3_z - sps_beta_3_x) - sps_bias_t*sps_omega_2_r1_x
+        )
+        # (sps-a_p) acceleration of the connection point without its centripetal part
+        sps_a_p_x = t_ddot_x + alpha_y*sps_q_in_base_z - alpha_z*sps_q_in_base_y
+        sps_a_p_y = t_ddot_y + alpha_z*sps_q_in_base_x - alpha_x*sps_q_in_base_z
+        sps_a_p_z = t_ddot_z + alpha_x*sps_q_in_base_y - alpha_y*sps_q_in_base_x
+        # (sps-S_ddot) acceleration of the connection point
+        sps_S_ddot_x = sps_a_p_x + omega_y*sps_S_dot_t_3 - omega_z*sps_S_dot_t_2
+        sps_S_ddot_y = sps_a_p_y + omega_z*sps_S_dot_t - omega_x*sps_S_dot_t_3
+        sps_S_ddot_z = sps_a_p_z + omega_x*sps_S_dot_t_2 - omega_y*sps_S_dot_t
+        # (sps-rel) acceleration of the connection point left to the joint accelerations
+        sps_rel_x = (
+        axis_x_sps_axes3_x*sps_S_ddot_x + axis_x_sps_axes3_y*sps_S_ddot_y +
+            axis_x_sps_axes3_z*sps_S_ddot_z - sps_bias_x
+        )
+        sps_rel_y = (
+        axis_y_sps_axes3_in_base_x*sps_S_ddot_x + axis_y_sps_axes3_in_base_y*sps_S_ddot_y +
+            axis_y_sps_axes3_in_base_z*sps_S_ddot_z - sps_bias_y
+        )
+        sps_rel_z = (
+        sps_S_ddot_x*sps_axis_z_x + sps_S_ddot_y*sps_axis_z_y + sps_S_ddot_z*sps_axis_z_z +
+            sps_root_2*(sps_omega_2_r1_x*sps_omega_2_r1_x + sps_omega_2_r1_y*sps_omega_2_r1_y)
+        )
+        # (sps-qdd_1) acceleration of joint 1
+        sps_qdd_1 = inv_sps_w_2_t_3*(sps_rel_x*sps_v_2_t_2 - sps_rel_y*sps_v_2_t)
+        sps_qdd_2 = inv_sps_w_2_t_3*(sps_rel_x*sps_v_1_t_3 + sps_rel_y*sps_v_1_t_2)
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-w_1_t_2) >
+        ok & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-sps_w_2_t) >
             _TOLERANCE * 0.6400000000000001))
         )
-        out_qdd[_qdd_urps[0][leg]] = qdd_1
-        out_qdd[_qdd_urps[1][leg]] = -qdd_2
-        out_qdd[_qdd_urps[2][leg]] = ydd_3
-        out_qdd[_qdd_urps[3][leg]] = rel_z
+        out_qdd[_qdd_sps[0][leg]] = sps_qdd_1
+        out_qdd[_qdd_sps[1][leg]] = -sps_qdd_2
+        out_qdd[_qdd_sps[2][leg]] = sps_ydd_3
+        out_qdd[_qdd_sps[3][leg]] = sps_rel_z
     return ok, (out_qdd,)
 
 
@@ -3622,244 +3836,270 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        J_group_3_xy, J_group_3_xz, J_group_3_yz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1,
-            branch_2, h_3_x, h_3_y, h_3_z, h_4_x, h_4_y, h_4_z, urps_base_frame_xx,
-            urps_base_frame_xy, urps_base_frame_xz, urps_base_frame_yx, urps_base_frame_yy,
-            urps_base_frame_yz, urps_base_frame_zx, urps_base_frame_zy, urps_base_frame_zz,
-            urps_base_point_x, urps_base_point_y, urps_base_point_z, urps_link4_mass,
-            urps_platform_point_x, urps_platform_point_y, urps_platform_point_z,
+        sps_J_group_3_xy, sps_J_group_3_xz, sps_J_group_3_yz, sps_Sigma_3_xx, sps_Sigma_3_yy,
+            sps_Sigma_3_zz, sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz,
+            sps_base_frame_yx, sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx,
+            sps_base_frame_zy, sps_base_frame_zz, sps_base_point_x, sps_base_point_y,
+            sps_base_point_z, sps_branch_1, sps_branch_2, sps_h_3_x, sps_h_3_y, sps_h_3_z,
+            sps_h_4_x, sps_h_4_y, sps_h_4_z, sps_link4_mass, sps_platform_point_x,
+            sps_platform_point_y, sps_platform_point_z,
         ) = k
-        y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
-        yd_3 = V[[6, 7, 8, 9, 10, 11][leg]]
-        ydd_3 = A[[6, 7, 8, 9, 10, 11][leg]]
-        # (urps-K1) from the base point to the connection point
-        q_in_base_x = (
-        R_xx*urps_platform_point_x + R_xy*urps_platform_point_y + R_xz*urps_platform_point_z
+        sps_y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
+        sps_yd_3 = V[[6, 7, 8, 9, 10, 11][leg]]
+        sps_ydd_3 = A[[6, 7, 8, 9, 10, 11][leg]]
+        # (sps-S) from the base point to the connection point
+        sps_q_in_base_x = (
+        R_xx*sps_platform_point_x + R_xy*sps_platform_point_y + R_xz*sps_platform_point_z
         )
-        q_in_base_y = (
-        R_yx*urps_platform_point_x + R_yy*urps_platform_point_y + R_yz*urps_platform_point_z
+        sps_q_in_base_y = (
+        R_yx*sps_platform_point_x + R_yy*sps_platform_point_y + R_yz*sps_platform_point_z
         )
-        q_in_base_z = (
-        R_zx*urps_platform_point_x + R_zy*urps_platform_point_y + R_zz*urps_platform_point_z
+        sps_q_in_base_z = (
+        R_zx*sps_platform_point_x + R_zy*sps_platform_point_y + R_zz*sps_platform_point_z
         )
-        S_x = q_in_base_x + t_x - urps_base_point_x
-        S_y = q_in_base_y + t_y - urps_base_point_y
-        S_z = q_in_base_z + t_z - urps_base_point_z
-        # (urps-K4) component along the reference direction
-        px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx + S_z*urps_base_frame_zx
-        # (urps-K5) component across the reference direction
-        py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy + S_z*urps_base_frame_zy
-        # (urps-K6) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (urps-K7) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (urps-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz + S_z*urps_base_frame_zz
-        # (urps-K15) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (urps-K16) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (urps-K17) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (urps-K18) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (urps-K2) cosine of the angle of joint 3 from its reference direction
-        c_3_t = sin(y_3_extra)
-        # (urps-K3) sine of the angle of joint 3 from its reference direction
-        s_3 = cos(y_3_extra)
-        # (urps-V3) velocity of the connection point per rate of joint 1
-        v_1_t = c_2*c_3_t
-        v_1_t_2 = c_2*s_3
-        v_1_t_3 = root_2*v_1_t_2
-        v_1_t_4 = root_2*v_1_t
-        # (urps-V4) velocity of the connection point per rate of joint 2
-        v_2_t = c_3_t*root_2
-        v_2_t_2 = root_2*s_3
-        # (urps-V6) reciprocal vector 1
-        axis_z_x = S_x*inv_root_2
-        axis_z_y = S_y*inv_root_2
-        axis_z_z = S_z*inv_root_2
-        w_1_t = s_2*s_3
-        # (urps-K8) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (urps-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (urps-V6) reciprocal vector 1
-        axis_y_urps_axes3_r4_x = c_1*c_3_t - s_1*w_1_t
-        axis_y_urps_axes3_r4_y = -c_1*w_1_t - c_3_t*s_1
-        axis_y_urps_axes3_in_base_x = (
-        axis_y_urps_axes3_r4_x*urps_base_frame_xx + axis_y_urps_axes3_r4_y*urps_base_frame_xy +
-            urps_base_frame_xz*v_1_t_2
+        sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x
+        sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y
+        sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z
+        # (sps-px_1) component along the reference direction
+        sps_px_1 = (
+        sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
         )
-        axis_y_urps_axes3_in_base_y = (
-        axis_y_urps_axes3_r4_x*urps_base_frame_yx + axis_y_urps_axes3_r4_y*urps_base_frame_yy +
-            urps_base_frame_yz*v_1_t_2
+        # (sps-py_1) component across the reference direction
+        sps_py_1 = (
+        sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy + sps_S_z*sps_base_frame_zy
         )
-        axis_y_urps_axes3_in_base_z = (
-        axis_y_urps_axes3_r4_x*urps_base_frame_zx + axis_y_urps_axes3_r4_y*urps_base_frame_zy +
-            urps_base_frame_zz*v_1_t_2
+        # (sps-rho2_1) squared amplitude
+        sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
+        # (sps-root_1) amplitude, with the sign of the branch
+        sps_root_1 = sps_branch_1*sqrt(sps_rho2_1)
+        # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        sps_xi_1_t = (
+        sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
         )
-        axis_x_urps_axes3_x = (
-        axis_y_urps_axes3_in_base_y*axis_z_z - axis_y_urps_axes3_in_base_z*axis_z_y
+        # (sps-rho2_2) squared amplitude
+        sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t
+        # (sps-root_2) amplitude, with the sign of the branch
+        sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
+        # (sps-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_sps_root_2 = 1.0/sps_root_2
+        sps_c_2 = inv_sps_root_2*sps_root_1
+        # (sps-s_2) sine of the angle of joint 2 from its reference direction
+        sps_s_2 = inv_sps_root_2*sps_xi_1_t
+        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
+        sps_c_3_t = sin(sps_y_3_extra)
+        # (sps-s_3) sine of the angle of joint 3 from its reference direction
+        sps_s_3 = cos(sps_y_3_extra)
+        # (sps-v_1) velocity of the connection point per rate of joint 1
+        sps_v_1_t = sps_c_2*sps_c_3_t
+        sps_v_1_t_2 = sps_c_2*sps_s_3
+        sps_v_1_t_3 = sps_root_2*sps_v_1_t_2
+        sps_v_1_t_4 = sps_root_2*sps_v_1_t
+        # (sps-v_2) velocity of the connection point per rate of joint 2
+        sps_v_2_t = sps_c_3_t*sps_root_2
+        sps_v_2_t_2 = sps_root_2*sps_s_3
+        # (sps-w_1) reciprocal vector 1
+        sps_axis_z_x = inv_sps_root_2*sps_S_x
+        sps_axis_z_y = inv_sps_root_2*sps_S_y
+        sps_axis_z_z = inv_sps_root_2*sps_S_z
+        sps_w_1_t = sps_s_2*sps_s_3
+        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_sps_root_1 = 1.0/sps_root_1
+        sps_c_1 = inv_sps_root_1*sps_py_1
+        # (sps-s_1) sine of the angle of joint 1 from its reference direction
+        sps_s_1 = inv_sps_root_1*sps_px_1
+        # (sps-w_1) reciprocal vector 1
+        axis_y_sps_axes3_r4_x = sps_c_1*sps_c_3_t - sps_s_1*sps_w_1_t
+        axis_y_sps_axes3_r4_y = -sps_c_1*sps_w_1_t - sps_c_3_t*sps_s_1
+        axis_y_sps_axes3_in_base_x = (
+        axis_y_sps_axes3_r4_x*sps_base_frame_xx + axis_y_sps_axes3_r4_y*sps_base_frame_xy +
+            sps_base_frame_xz*sps_v_1_t_2
         )
-        axis_x_urps_axes3_y = (
-        axis_y_urps_axes3_in_base_z*axis_z_x - axis_y_urps_axes3_in_base_x*axis_z_z
+        axis_y_sps_axes3_in_base_y = (
+        axis_y_sps_axes3_r4_x*sps_base_frame_yx + axis_y_sps_axes3_r4_y*sps_base_frame_yy +
+            sps_base_frame_yz*sps_v_1_t_2
         )
-        axis_x_urps_axes3_z = (
-        axis_y_urps_axes3_in_base_x*axis_z_y - axis_y_urps_axes3_in_base_y*axis_z_x
+        axis_y_sps_axes3_in_base_z = (
+        axis_y_sps_axes3_r4_x*sps_base_frame_zx + axis_y_sps_axes3_r4_y*sps_base_frame_zy +
+            sps_base_frame_zz*sps_v_1_t_2
         )
-        w_1_t_2 = v_1_t_3*v_2_t_2 + v_1_t_4*v_2_t
-        inv_w_1_t_23 = 1.0/w_1_t_2
-        # (urps-N2) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        g_tip_x = (
-        axis_x_urps_axes3_x*gravity_x + axis_x_urps_axes3_y*gravity_y +
-            axis_x_urps_axes3_z*gravity_z
+        axis_x_sps_axes3_x = (
+        axis_y_sps_axes3_in_base_y*sps_axis_z_z - axis_y_sps_axes3_in_base_z*sps_axis_z_y
         )
-        g_tip_y = (
-        axis_y_urps_axes3_in_base_x*gravity_x + axis_y_urps_axes3_in_base_y*gravity_y +
-            axis_y_urps_axes3_in_base_z*gravity_z
+        axis_x_sps_axes3_y = (
+        axis_y_sps_axes3_in_base_z*sps_axis_z_x - axis_y_sps_axes3_in_base_x*sps_axis_z_z
         )
-        g_tip_z = axis_z_x*gravity_x + axis_z_y*gravity_y + axis_z_z*gravity_z
-        # (urps-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        # (urps-V9) velocity of the connection point left to the joints that are not extra
-        S_dot_rest_tip_x = (
-        S_dot_x*axis_x_urps_axes3_x + S_dot_y*axis_x_urps_axes3_y + S_dot_z*axis_x_urps_axes3_z
+        axis_x_sps_axes3_z = (
+        axis_y_sps_axes3_in_base_x*sps_axis_z_y - axis_y_sps_axes3_in_base_y*sps_axis_z_x
         )
-        S_dot_rest_tip_y = (
-        S_dot_x*axis_y_urps_axes3_in_base_x + S_dot_y*axis_y_urps_axes3_in_base_y +
-            S_dot_z*axis_y_urps_axes3_in_base_z
+        # (sps-w_2) reciprocal vector 2
+        sps_w_2_t = sps_v_1_t_3*sps_v_2_t_2 + sps_v_1_t_4*sps_v_2_t
+        inv_sps_w_2_t_3 = 1.0/sps_w_2_t
+        # (sps-S_dot) velocity of the connection point
+        sps_S_dot_t = omega_y*sps_q_in_base_z - omega_z*sps_q_in_base_y
+        sps_S_dot_t_2 = omega_z*sps_q_in_base_x - omega_x*sps_q_in_base_z
+        sps_S_dot_t_3 = omega_x*sps_q_in_base_y - omega_y*sps_q_in_base_x
+        sps_S_dot_x = sps_S_dot_t + t_dot_x
+        sps_S_dot_y = sps_S_dot_t_2 + t_dot_y
+        sps_S_dot_z = sps_S_dot_t_3 + t_dot_z
+        # (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra
+        sps_S_dot_rest_tip_x = (
+        axis_x_sps_axes3_x*sps_S_dot_x + axis_x_sps_axes3_y*sps_S_dot_y +
+            axis_x_sps_axes3_z*sps_S_dot_z
         )
-        S_dot_rest_tip_z = S_dot_x*axis_z_x + S_dot_y*axis_z_y + S_dot_z*axis_z_z
-        # (urps-V10) rate of joint 1
-        qd_1 = inv_w_1_t_23*(S_dot_rest_tip_x*v_2_t_2 - S_dot_rest_tip_y*v_2_t)
-        qd_2 = inv_w_1_t_23*(S_dot_rest_tip_x*v_1_t_4 + S_dot_rest_tip_y*v_1_t_3)
-        # (urps-V13) angular velocity of link 1
-        omega_1_t = qd_1*s_2
-        omega_1_t_2 = c_2*qd_1
-        # (urps-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_y = omega_1_t*qd_2
-        # (urps-V14) angular velocity of link 2
-        omega_2_r1_x = c_3_t*omega_1_t_2 - qd_2*s_3
-        omega_2_r1_y = c_3_t*qd_2 + omega_1_t_2*s_3
-        # (urps-A5) angular acceleration of link 3 from the turning of axis 3
-        zeta_3_x = omega_2_r1_y*yd_3
-        zeta_3_y = omega_2_r1_x*yd_3
-        # (urps-A6) angular acceleration of link 3 at zero joint accelerations
-        beta_3_x = zeta_3_x - c_3_t*zeta_2_y
-        beta_3_y = -zeta_3_y - s_3*zeta_2_y
-        # (urps-V15) angular velocity of link 3
-        omega_3_z = omega_1_t + yd_3
-        # (urps-V16) centripetal tensor of link 3
-        W_3_t = omega_2_r1_x*omega_2_r1_x
-        W_3_t_2 = omega_2_r1_y*omega_2_r1_y
-        W_3_t_3 = omega_3_z*omega_3_z
-        W_3_xy = omega_2_r1_x*omega_2_r1_y
-        W_3_xz = omega_2_r1_x*omega_3_z
-        W_3_yz = omega_2_r1_y*omega_3_z
-        # (urps-A7) acceleration of the connection point at zero joint accelerations
-        bias_t = 2.0*S_dot_rest_tip_z
-        bias_x = bias_t*omega_2_r1_y + root_2*(W_3_xz + beta_3_y)
-        bias_y = root_2*(W_3_yz - beta_3_x) - bias_t*omega_2_r1_x
-        # (urps-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (urps-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        S_ddot_tip_x = (
-        S_ddot_x*axis_x_urps_axes3_x + S_ddot_y*axis_x_urps_axes3_y + S_ddot_z*axis_x_urps_axes3_z
+        sps_S_dot_rest_tip_y = (
+        axis_y_sps_axes3_in_base_x*sps_S_dot_x + axis_y_sps_axes3_in_base_y*sps_S_dot_y +
+            axis_y_sps_axes3_in_base_z*sps_S_dot_z
         )
-        S_ddot_tip_y = (
-        S_ddot_x*axis_y_urps_axes3_in_base_x + S_ddot_y*axis_y_urps_axes3_in_base_y +
-            S_ddot_z*axis_y_urps_axes3_in_base_z
+        sps_S_dot_rest_tip_z = (
+        sps_S_dot_x*sps_axis_z_x + sps_S_dot_y*sps_axis_z_y + sps_S_dot_z*sps_axis_z_z
         )
-        # (urps-A8) acceleration of the connection point left to the joint accelerations
-        rel_x = S_ddot_tip_x - bias_x
-        rel_y = S_ddot_tip_y - bias_y
-        # (urps-A11) acceleration of joint 1
-        qdd_1 = inv_w_1_t_23*(rel_x*v_2_t_2 - rel_y*v_2_t)
-        qdd_2 = inv_w_1_t_23*(rel_x*v_1_t_4 + rel_y*v_1_t_3)
-        # (urps-N3) acceleration of the reference point of link 4, less gravity
-        acc_4_x = S_ddot_tip_x - g_tip_x
-        acc_4_y = S_ddot_tip_y - g_tip_y
-        acc_4_z = S_ddot_x*axis_z_x + S_ddot_y*axis_z_y + S_ddot_z*axis_z_z - g_tip_z
-        # (urps-A22) angular acceleration of link 2
-        alpha_2_x = omega_1_t_2*qd_2 + qdd_1*s_2
-        alpha_2_y = zeta_2_y - c_2*qdd_1
-        # (urps-A26) angular acceleration of link 3
-        alpha_3_x = zeta_3_x - alpha_2_y*c_3_t - qdd_2*s_3
-        alpha_3_y = c_3_t*qdd_2 - zeta_3_y - alpha_2_y*s_3
-        alpha_3_z = alpha_2_x + ydd_3
-        # (urps-A29) acceleration tensor of link 3
-        B_3_xy = W_3_xy - alpha_3_z
-        B_3_xz = W_3_xz + alpha_3_y
-        B_3_yx = W_3_xy + alpha_3_z
-        B_3_yz = W_3_yz - alpha_3_x
-        B_3_zx = W_3_xz - alpha_3_y
-        B_3_zy = W_3_yz + alpha_3_x
-        # (urps-N12) inertia moment of the links that turn with link 3, about their reference points
-        mu_3_x = (
-        B_3_yx*J_group_3_xz + B_3_zy*Sigma_3_yy + J_group_3_yz*(W_3_t_2 - W_3_t_3) + acc_4_z*h_4_z
-            + g_tip_y*h_3_x - B_3_yz*Sigma_3_zz - B_3_zx*J_group_3_xy - acc_4_y*h_4_x -
-            g_tip_z*h_3_z
+        # (sps-qd_2) rate of joint 2
+        sps_qd_1 = (
+        inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_2_t_2 - sps_S_dot_rest_tip_y*sps_v_2_t)
         )
-        mu_3_y = (
-        B_3_xz*Sigma_3_zz + B_3_zy*J_group_3_xy + acc_4_x*h_4_x + g_tip_z*h_3_y -
-            B_3_xy*J_group_3_yz - B_3_zx*Sigma_3_xx - J_group_3_xz*(W_3_t - W_3_t_3) -
-            acc_4_z*h_4_y - g_tip_x*h_3_x
+        sps_qd_2 = (
+        inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_1_t_4 + sps_S_dot_rest_tip_y*sps_v_1_t_3)
         )
-        mu_3_z = (
-        B_3_xz*J_group_3_yz + B_3_yx*Sigma_3_xx + J_group_3_xy*(W_3_t - W_3_t_2) + acc_4_y*h_4_y +
-            g_tip_x*h_3_z - B_3_xy*Sigma_3_yy - B_3_yz*J_group_3_xz - acc_4_x*h_4_z -
-            g_tip_y*h_3_y
+        # (sps-omega_1) angular velocity of link 1
+        sps_omega_1_t = sps_qd_1*sps_s_2
+        sps_omega_1_t_2 = sps_c_2*sps_qd_1
+        # (sps-omega_2) angular velocity of link 2
+        sps_omega_2_r1_x = sps_c_3_t*sps_omega_1_t_2 - sps_qd_2*sps_s_3
+        sps_omega_2_r1_y = sps_c_3_t*sps_qd_2 + sps_omega_1_t_2*sps_s_3
+        # (sps-omega_3) angular velocity of link 3
+        sps_omega_3_z = sps_omega_1_t + sps_yd_3
+        # (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        sps_zeta_3_x = sps_omega_2_r1_y*sps_yd_3
+        sps_zeta_3_y = sps_omega_2_r1_x*sps_yd_3
+        # (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        sps_zeta_2_y = sps_omega_1_t*sps_qd_2
+        # (sps-beta_3) angular acceleration of link 3 at zero joint accelerations
+        sps_beta_3_x = sps_zeta_3_x - sps_c_3_t*sps_zeta_2_y
+        sps_beta_3_y = -sps_zeta_3_y - sps_s_3*sps_zeta_2_y
+        # (sps-W_3) centripetal tensor of link 3
+        sps_W_3_t = sps_omega_2_r1_x*sps_omega_2_r1_x
+        sps_W_3_t_2 = sps_omega_2_r1_y*sps_omega_2_r1_y
+        sps_W_3_t_3 = sps_omega_3_z*sps_omega_3_z
+        sps_W_3_xy = sps_omega_2_r1_x*sps_omega_2_r1_y
+        sps_W_3_xz = sps_omega_2_r1_x*sps_omega_3_z
+        sps_W_3_yz = sps_omega_2_r1_y*sps_omega_3_z
+        # (sps-bias) acceleration of the connection point at zero joint accelerations
+        sps_bias_t = 2.0*sps_S_dot_rest_tip_z
+        sps_bias_x = sps_bias_t*sps_omega_2_r1_y + sps_root_2*(sps_W_3_xz + sps_beta_3_y)
+        sps_bias_y = sps_root_2*(sps_W_3_yz - sps_beta_3_x) - sps_bias_t*sps_omega_2_r1_x
+        # (sps-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        sps_g_tip_x = (
+        axis_x_sps_axes3_x*gravity_x + axis_x_sps_axes3_y*gravity_y + axis_x_sps_axes3_z*gravity_z
         )
-        # (urps-N24) moment about axis 1 of the distal links' inertia and weight
-        Gamma_1 = mu_3_x*v_1_t + mu_3_y*v_1_t_2 + mu_3_z*s_2
-        # (urps-N12) inertia moment of the links that turn with link 3, about their reference points
-        mu_3_r0_y = mu_3_x*s_3 - c_3_t*mu_3_y
-        # (urps-N32) leg force on the platform without actuation and without the mass at the connection point
-        c_x = (
-        h_4_y*(W_3_t_2 + W_3_t_3) - B_3_xy*h_4_z - B_3_xz*h_4_x - inv_w_1_t_23*(Gamma_1*v_2_t_2 -
-            mu_3_r0_y*v_1_t_4)
+        sps_g_tip_y = (
+        axis_y_sps_axes3_in_base_x*gravity_x + axis_y_sps_axes3_in_base_y*gravity_y +
+            axis_y_sps_axes3_in_base_z*gravity_z
         )
-        c_y = (
-        h_4_z*(W_3_t + W_3_t_3) + inv_w_1_t_23*(Gamma_1*v_2_t + mu_3_r0_y*v_1_t_3) - B_3_yx*h_4_y
-            - B_3_yz*h_4_x
+        sps_g_tip_z = gravity_x*sps_axis_z_x + gravity_y*sps_axis_z_y + gravity_z*sps_axis_z_z
+        # (sps-a_p) acceleration of the connection point without its centripetal part
+        sps_a_p_x = t_ddot_x + alpha_y*sps_q_in_base_z - alpha_z*sps_q_in_base_y
+        sps_a_p_y = t_ddot_y + alpha_z*sps_q_in_base_x - alpha_x*sps_q_in_base_z
+        sps_a_p_z = t_ddot_z + alpha_x*sps_q_in_base_y - alpha_y*sps_q_in_base_x
+        # (sps-S_ddot) acceleration of the connection point
+        sps_S_ddot_x = sps_a_p_x + omega_y*sps_S_dot_t_3 - omega_z*sps_S_dot_t_2
+        sps_S_ddot_y = sps_a_p_y + omega_z*sps_S_dot_t - omega_x*sps_S_dot_t_3
+        sps_S_ddot_z = sps_a_p_z + omega_x*sps_S_dot_t_2 - omega_y*sps_S_dot_t
+        sps_S_ddot_tip_x = (
+        axis_x_sps_axes3_x*sps_S_ddot_x + axis_x_sps_axes3_y*sps_S_ddot_y +
+            axis_x_sps_axes3_z*sps_S_ddot_z
         )
-        # (urps-N37) leg force on the platform without actuation, the last link's mass included
-        c_true_x = c_x - acc_4_x*urps_link4_mass
-        c_true_y = c_y - acc_4_y*urps_link4_mass
-        c_true_z = h_4_x*(W_3_t + W_3_t_2) - B_3_zx*h_4_y - B_3_zy*h_4_z - acc_4_z*urps_link4_mass
-        c_true_in_base_x = (
-        axis_x_urps_axes3_x*c_true_x + axis_y_urps_axes3_in_base_x*c_true_y + axis_z_x*c_true_z
+        sps_S_ddot_tip_y = (
+        axis_y_sps_axes3_in_base_x*sps_S_ddot_x + axis_y_sps_axes3_in_base_y*sps_S_ddot_y +
+            axis_y_sps_axes3_in_base_z*sps_S_ddot_z
         )
-        c_true_in_base_y = (
-        axis_x_urps_axes3_y*c_true_x + axis_y_urps_axes3_in_base_y*c_true_y + axis_z_y*c_true_z
+        # (sps-rel) acceleration of the connection point left to the joint accelerations
+        sps_rel_x = sps_S_ddot_tip_x - sps_bias_x
+        sps_rel_y = sps_S_ddot_tip_y - sps_bias_y
+        # (sps-qdd_1) acceleration of joint 1
+        sps_qdd_1 = inv_sps_w_2_t_3*(sps_rel_x*sps_v_2_t_2 - sps_rel_y*sps_v_2_t)
+        sps_qdd_2 = inv_sps_w_2_t_3*(sps_rel_x*sps_v_1_t_4 + sps_rel_y*sps_v_1_t_3)
+        # (sps-acc_4) acceleration of the reference point of link 4, less gravity
+        sps_acc_4_x = sps_S_ddot_tip_x - sps_g_tip_x
+        sps_acc_4_y = sps_S_ddot_tip_y - sps_g_tip_y
+        sps_acc_4_z = (
+        sps_S_ddot_x*sps_axis_z_x + sps_S_ddot_y*sps_axis_z_y + sps_S_ddot_z*sps_axis_z_z -
+            sps_g_tip_z
         )
-        c_true_in_base_z = (
-        axis_x_urps_axes3_z*c_true_x + axis_y_urps_axes3_in_base_z*c_true_y + axis_z_z*c_true_z
+        # (sps-alpha_2) angular acceleration of link 2
+        sps_alpha_2_x = sps_omega_1_t_2*sps_qd_2 + sps_qdd_1*sps_s_2
+        sps_alpha_2_y = sps_zeta_2_y - sps_c_2*sps_qdd_1
+        # (sps-alpha_3) angular acceleration of link 3
+        sps_alpha_3_x = sps_zeta_3_x - sps_alpha_2_y*sps_c_3_t - sps_qdd_2*sps_s_3
+        sps_alpha_3_y = sps_c_3_t*sps_qdd_2 - sps_zeta_3_y - sps_alpha_2_y*sps_s_3
+        sps_alpha_3_z = sps_alpha_2_x + sps_ydd_3
+        # (sps-B_3) acceleration tensor of link 3
+        sps_B_3_xy = sps_W_3_xy - sps_alpha_3_z
+        sps_B_3_xz = sps_W_3_xz + sps_alpha_3_y
+        sps_B_3_yx = sps_W_3_xy + sps_alpha_3_z
+        sps_B_3_yz = sps_W_3_yz - sps_alpha_3_x
+        sps_B_3_zx = sps_W_3_xz - sps_alpha_3_y
+        sps_B_3_zy = sps_W_3_yz + sps_alpha_3_x
+        # (sps-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        sps_mu_3_x = (
+        sps_B_3_yx*sps_J_group_3_xz + sps_B_3_zy*sps_Sigma_3_yy + sps_J_group_3_yz*(sps_W_3_t_2 -
+            sps_W_3_t_3) + sps_acc_4_z*sps_h_4_z + sps_g_tip_y*sps_h_3_x -
+            sps_B_3_yz*sps_Sigma_3_zz - sps_B_3_zx*sps_J_group_3_xy - sps_acc_4_y*sps_h_4_x -
+            sps_g_tip_z*sps_h_3_z
+        )
+        sps_mu_3_y = (
+        sps_B_3_xz*sps_Sigma_3_zz + sps_B_3_zy*sps_J_group_3_xy + sps_acc_4_x*sps_h_4_x +
+            sps_g_tip_z*sps_h_3_y - sps_B_3_xy*sps_J_group_3_yz - sps_B_3_zx*sps_Sigma_3_xx -
+            sps_J_group_3_xz*(sps_W_3_t - sps_W_3_t_3) - sps_acc_4_z*sps_h_4_y -
+            sps_g_tip_x*sps_h_3_x
+        )
+        sps_mu_3_z = (
+        sps_B_3_xz*sps_J_group_3_yz + sps_B_3_yx*sps_Sigma_3_xx + sps_J_group_3_xy*(sps_W_3_t -
+            sps_W_3_t_2) + sps_acc_4_y*sps_h_4_y + sps_g_tip_x*sps_h_3_z -
+            sps_B_3_xy*sps_Sigma_3_yy - sps_B_3_yz*sps_J_group_3_xz - sps_acc_4_x*sps_h_4_z -
+            sps_g_tip_y*sps_h_3_y
+        )
+        sps_mu_3_r0_y = sps_mu_3_x*sps_s_3 - sps_c_3_t*sps_mu_3_y
+        # (sps-Gamma_1) moment about axis 1 of the distal links' inertia and weight
+        sps_Gamma_1 = sps_mu_3_x*sps_v_1_t + sps_mu_3_y*sps_v_1_t_2 + sps_mu_3_z*sps_s_2
+        # (sps-c) leg force on the platform without actuation and without the mass at the connection point
+        sps_c_x = (
+        sps_h_4_y*(sps_W_3_t_2 + sps_W_3_t_3) - inv_sps_w_2_t_3*(sps_Gamma_1*sps_v_2_t_2 -
+            sps_mu_3_r0_y*sps_v_1_t_4) - sps_B_3_xy*sps_h_4_z - sps_B_3_xz*sps_h_4_x
+        )
+        sps_c_y = (
+        inv_sps_w_2_t_3*(sps_Gamma_1*sps_v_2_t + sps_mu_3_r0_y*sps_v_1_t_3) + sps_h_4_z*(sps_W_3_t
+            + sps_W_3_t_3) - sps_B_3_yx*sps_h_4_y - sps_B_3_yz*sps_h_4_x
+        )
+        # (sps-c_true) leg force on the platform without actuation, the last link's mass included
+        sps_c_true_x = sps_c_x - sps_acc_4_x*sps_link4_mass
+        sps_c_true_y = sps_c_y - sps_acc_4_y*sps_link4_mass
+        sps_c_true_z = (
+        sps_h_4_x*(sps_W_3_t + sps_W_3_t_2) - sps_B_3_zx*sps_h_4_y - sps_B_3_zy*sps_h_4_z -
+            sps_acc_4_z*sps_link4_mass
+        )
+        sps_c_true_in_base_x = (
+        axis_x_sps_axes3_x*sps_c_true_x + axis_y_sps_axes3_in_base_x*sps_c_true_y +
+            sps_axis_z_x*sps_c_true_z
+        )
+        sps_c_true_in_base_y = (
+        axis_x_sps_axes3_y*sps_c_true_x + axis_y_sps_axes3_in_base_y*sps_c_true_y +
+            sps_axis_z_y*sps_c_true_z
+        )
+        sps_c_true_in_base_z = (
+        axis_x_sps_axes3_z*sps_c_true_x + axis_y_sps_axes3_in_base_z*sps_c_true_y +
+            sps_axis_z_z*sps_c_true_z
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-w_1_t_2) >
+        ok & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-sps_w_2_t) >
             _TOLERANCE * 0.6400000000000001))
         )
-        out_leg_force[_leg_force_urps[0][leg]] = c_true_in_base_x
-        out_leg_force[_leg_force_urps[1][leg]] = c_true_in_base_y
-        out_leg_force[_leg_force_urps[2][leg]] = c_true_in_base_z
-        out_drive[_drive_urps[0][leg]] = axis_z_x
-        out_drive[_drive_urps[1][leg]] = axis_z_y
-        out_drive[_drive_urps[2][leg]] = axis_z_z
+        out_leg_force[_leg_force_sps[0][leg]] = sps_c_true_in_base_x
+        out_leg_force[_leg_force_sps[1][leg]] = sps_c_true_in_base_y
+        out_leg_force[_leg_force_sps[2][leg]] = sps_c_true_in_base_z
+        out_drive[_drive_sps[0][leg]] = sps_axis_z_x
+        out_drive[_drive_sps[1][leg]] = sps_axis_z_y
+        out_drive[_drive_sps[2][leg]] = sps_axis_z_z
     return ok, (out_leg_force, out_drive,)
 
 
@@ -3907,7 +4147,7 @@ def _run_potential(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_potential = m.zeros("potential")
-    # (V1) potential energy
+    # (potential) potential energy
     potential_t = (
     gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
         gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
@@ -3916,78 +4156,86 @@ def _run_potential(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        b_r0_x, b_r0_y, b_r0_z, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_3_x, h_3_y, h_3_z,
-            h_4_x, h_4_y, h_4_z, urps_base_frame_xx, urps_base_frame_xy, urps_base_frame_xz,
-            urps_base_frame_yx, urps_base_frame_yy, urps_base_frame_yz, urps_base_frame_zx,
-            urps_base_frame_zy, urps_base_frame_zz, urps_base_point_x, urps_base_point_y,
-            urps_base_point_z, urps_link3_mass, urps_platform_point_x, urps_platform_point_y,
-            urps_platform_point_z,
+        sps_b_r0_x, sps_b_r0_y, sps_b_r0_z, sps_base_frame_xx, sps_base_frame_xy,
+            sps_base_frame_xz, sps_base_frame_yx, sps_base_frame_yy, sps_base_frame_yz,
+            sps_base_frame_zx, sps_base_frame_zy, sps_base_frame_zz, sps_base_point_x,
+            sps_base_point_y, sps_base_point_z, sps_branch_1, sps_branch_2, sps_g_r0_x,
+            sps_g_r0_y, sps_g_r0_z, sps_h_3_x, sps_h_3_y, sps_h_3_z, sps_h_4_x, sps_h_4_y,
+            sps_h_4_z, sps_link3_mass, sps_platform_point_x, sps_platform_point_y,
+            sps_platform_point_z,
         ) = k
-        y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
-        # (urps-K1) from the base point to the connection point
-        S_x = (
-        t_x + R_xx*urps_platform_point_x + R_xy*urps_platform_point_y + R_xz*urps_platform_point_z
-            - urps_base_point_x
+        sps_y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
+        # (sps-S) from the base point to the connection point
+        sps_S_x = (
+        t_x + R_xx*sps_platform_point_x + R_xy*sps_platform_point_y + R_xz*sps_platform_point_z -
+            sps_base_point_x
         )
-        S_y = (
-        t_y + R_yx*urps_platform_point_x + R_yy*urps_platform_point_y + R_yz*urps_platform_point_z
-            - urps_base_point_y
+        sps_S_y = (
+        t_y + R_yx*sps_platform_point_x + R_yy*sps_platform_point_y + R_yz*sps_platform_point_z -
+            sps_base_point_y
         )
-        S_z = (
-        t_z + R_zx*urps_platform_point_x + R_zy*urps_platform_point_y + R_zz*urps_platform_point_z
-            - urps_base_point_z
+        sps_S_z = (
+        t_z + R_zx*sps_platform_point_x + R_zy*sps_platform_point_y + R_zz*sps_platform_point_z -
+            sps_base_point_z
         )
-        # (urps-K4) component along the reference direction
-        px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx + S_z*urps_base_frame_zx
-        # (urps-K5) component across the reference direction
-        py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy + S_z*urps_base_frame_zy
-        # (urps-K6) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (urps-K7) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (urps-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz + S_z*urps_base_frame_zz
-        # (urps-K15) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (urps-K16) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (urps-K17) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (urps-K18) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (urps-K2) cosine of the angle of joint 3 from its reference direction
-        c_3_t = sin(y_3_extra)
-        # (urps-K3) sine of the angle of joint 3 from its reference direction
-        s_3 = cos(y_3_extra)
-        # (urps-K8) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (urps-K9) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (V1) potential energy
-        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-        g_r3_y = -c_2*g_r0_z - g_r1_y*s_2
-        b_r1_x = b_r0_y*s_1 - b_r0_x*c_1
-        b_r1_y = -b_r0_x*s_1 - b_r0_y*c_1
-        b_r3_y = -b_r0_z*c_2 - b_r1_y*s_2
-        potential_t_2 = (
-        (g_r0_z*s_2 - c_2*g_r1_y)*(h_3_x + h_4_x + urps_link3_mass*(b_r0_z*s_2 - b_r1_y*c_2)) +
-            (-c_3_t*g_r1_x - g_r3_y*s_3)*(h_3_z + h_4_z + urps_link3_mass*(-b_r1_x*c_3_t -
-            b_r3_y*s_3)) + (g_r1_x*s_3 - c_3_t*g_r3_y)*(h_3_y + h_4_y +
-            urps_link3_mass*(b_r1_x*s_3 - b_r3_y*c_3_t))
+        # (sps-px_1) component along the reference direction
+        sps_px_1 = (
+        sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
+        )
+        # (sps-py_1) component across the reference direction
+        sps_py_1 = (
+        sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy + sps_S_z*sps_base_frame_zy
+        )
+        # (sps-rho2_1) squared amplitude
+        sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
+        # (sps-root_1) amplitude, with the sign of the branch
+        sps_root_1 = sps_branch_1*sqrt(sps_rho2_1)
+        # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        sps_xi_1_t = (
+        sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
+        )
+        # (sps-rho2_2) squared amplitude
+        sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t
+        # (sps-root_2) amplitude, with the sign of the branch
+        sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
+        # (sps-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_sps_root_2 = 1.0/sps_root_2
+        sps_c_2 = inv_sps_root_2*sps_root_1
+        # (sps-s_2) sine of the angle of joint 2 from its reference direction
+        sps_s_2 = inv_sps_root_2*sps_xi_1_t
+        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
+        sps_c_3_t = sin(sps_y_3_extra)
+        # (sps-s_3) sine of the angle of joint 3 from its reference direction
+        sps_s_3 = cos(sps_y_3_extra)
+        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_sps_root_1 = 1.0/sps_root_1
+        sps_c_1 = inv_sps_root_1*sps_py_1
+        # (sps-s_1) sine of the angle of joint 1 from its reference direction
+        sps_s_1 = inv_sps_root_1*sps_px_1
+        # (potential) potential energy
+        sps_g_r1_x = sps_g_r0_y*sps_s_1 - sps_c_1*sps_g_r0_x
+        sps_g_r1_y = -sps_c_1*sps_g_r0_y - sps_g_r0_x*sps_s_1
+        sps_g_r3_y = -sps_c_2*sps_g_r0_z - sps_g_r1_y*sps_s_2
+        sps_b_r1_x = sps_b_r0_y*sps_s_1 - sps_b_r0_x*sps_c_1
+        sps_b_r1_y = -sps_b_r0_x*sps_s_1 - sps_b_r0_y*sps_c_1
+        sps_b_r3_y = -sps_b_r0_z*sps_c_2 - sps_b_r1_y*sps_s_2
+        sps_potential_t = (
+        (sps_g_r0_z*sps_s_2 - sps_c_2*sps_g_r1_y)*(sps_h_3_x + sps_h_4_x +
+            sps_link3_mass*(sps_b_r0_z*sps_s_2 - sps_b_r1_y*sps_c_2)) + (-sps_c_3_t*sps_g_r1_x -
+            sps_g_r3_y*sps_s_3)*(sps_h_3_z + sps_h_4_z + sps_link3_mass*(-sps_b_r1_x*sps_c_3_t -
+            sps_b_r3_y*sps_s_3)) + (sps_g_r1_x*sps_s_3 - sps_c_3_t*sps_g_r3_y)*(sps_h_3_y +
+            sps_h_4_y + sps_link3_mass*(sps_b_r1_x*sps_s_3 - sps_b_r3_y*sps_c_3_t))
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
+        ok & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
         )
         sums = m.added(sums, leg, (
-        potential_t_2,
+        sps_potential_t,
         ))
-    total_urps, = sums
-    # (V1) potential energy
-    potential = -potential_t - total_urps
+    total_sps, = sums
+    # (potential) potential energy
+    potential = -potential_t - total_sps
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -4046,88 +4294,99 @@ def _run_condition(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, urps_base_frame_xx, urps_base_frame_xy, urps_base_frame_xz,
-            urps_base_frame_yx, urps_base_frame_yy, urps_base_frame_yz, urps_base_frame_zx,
-            urps_base_frame_zy, urps_base_frame_zz, urps_base_point_x, urps_base_point_y,
-            urps_base_point_z, urps_platform_point_x, urps_platform_point_y,
-            urps_platform_point_z,
+        sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
+            sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx, sps_base_frame_zy,
+            sps_base_frame_zz, sps_base_point_x, sps_base_point_y, sps_base_point_z, sps_branch_1,
+            sps_branch_2, sps_platform_point_x, sps_platform_point_y, sps_platform_point_z,
         ) = k
-        y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
-        # (urps-K1) from the base point to the connection point
-        q_in_base_x = (
-        R_xx*urps_platform_point_x + R_xy*urps_platform_point_y + R_xz*urps_platform_point_z
+        sps_y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
+        # (sps-S) from the base point to the connection point
+        sps_q_in_base_x = (
+        R_xx*sps_platform_point_x + R_xy*sps_platform_point_y + R_xz*sps_platform_point_z
         )
-        q_in_base_y = (
-        R_yx*urps_platform_point_x + R_yy*urps_platform_point_y + R_yz*urps_platform_point_z
+        sps_q_in_base_y = (
+        R_yx*sps_platform_point_x + R_yy*sps_platform_point_y + R_yz*sps_platform_point_z
         )
-        q_in_base_z = (
-        R_zx*urps_platform_point_x + R_zy*urps_platform_point_y + R_zz*urps_platform_point_z
+        sps_q_in_base_z = (
+        R_zx*sps_platform_point_x + R_zy*sps_platform_point_y + R_zz*sps_platform_point_z
         )
-        S_x = q_in_base_x + t_x - urps_base_point_x
-        S_y = q_in_base_y + t_y - urps_base_point_y
-        S_z = q_in_base_z + t_z - urps_base_point_z
-        # (urps-K4) component along the reference direction
-        px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx + S_z*urps_base_frame_zx
-        # (urps-K5) component across the reference direction
-        py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy + S_z*urps_base_frame_zy
-        # (urps-K6) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (urps-K11) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz + S_z*urps_base_frame_zz
-        # (urps-K15) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (urps-K16) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (urps-K17) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = branch_1*inv_root_2*sqrt(rho2_1)
-        # (urps-K2) cosine of the angle of joint 3 from its reference direction
-        c_3_t = sin(y_3_extra)
-        # (urps-K3) sine of the angle of joint 3 from its reference direction
-        s_3 = cos(y_3_extra)
-        # (urps-V6) reciprocal vector 1
-        axis_z_x = S_x*inv_root_2
-        axis_z_y = S_y*inv_root_2
-        axis_z_z = S_z*inv_root_2
-        w_1_t = c_2*c_3_t*c_3_t*root_2*root_2 + c_2*root_2*root_2*s_3*s_3
-        # (M9) moment of the column's unit force about the platform origin
-        H_a_4_x = axis_z_z*q_in_base_y - axis_z_y*q_in_base_z
-        H_a_4_y = axis_z_x*q_in_base_z - axis_z_z*q_in_base_x
-        H_a_4_z = axis_z_y*q_in_base_x - axis_z_x*q_in_base_y
-        # (C2) rms distance of the platform points from their centroid
-        spread_t_2 = b_c_x - urps_platform_point_x
-        spread_t_3 = b_c_y - urps_platform_point_y
-        spread_t_4 = b_c_z - urps_platform_point_z
-        spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 + spread_t_4*spread_t_4
-        # (urps-K6) squared amplitude
-        pivot_size = abs(rho2_1)
-        # (urps-K15) squared amplitude
-        pivot_size_2 = abs(rho2_2)
-        # (urps-V6) reciprocal vector 1
-        pivot_size_3 = abs(w_1_t)
-        # (urps-N28) force at the connection point that balances the leg's inertia and weight along all freedoms
-        least_pivots = (
-        least(least(1.25*sqrt(pivot_size), 1.25*sqrt(pivot_size_2)),
-            1.5624999999999998*pivot_size_3)
+        sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x
+        sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y
+        sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z
+        # (sps-px_1) component along the reference direction
+        sps_px_1 = (
+        sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
+        )
+        # (sps-py_1) component across the reference direction
+        sps_py_1 = (
+        sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy + sps_S_z*sps_base_frame_zy
+        )
+        # (sps-rho2_1) squared amplitude
+        sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
+        # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        sps_xi_1_t = (
+        sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
+        )
+        # (sps-rho2_2) squared amplitude
+        sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t
+        # (sps-root_2) amplitude, with the sign of the branch
+        sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
+        # (sps-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_sps_root_2 = 1.0/sps_root_2
+        sps_c_2 = inv_sps_root_2*sps_branch_1*sqrt(sps_rho2_1)
+        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
+        sps_c_3_t = sin(sps_y_3_extra)
+        # (sps-s_3) sine of the angle of joint 3 from its reference direction
+        sps_s_3 = cos(sps_y_3_extra)
+        # (sps-w_1) reciprocal vector 1
+        sps_axis_z_x = inv_sps_root_2*sps_S_x
+        sps_axis_z_y = inv_sps_root_2*sps_S_y
+        sps_axis_z_z = inv_sps_root_2*sps_S_z
+        # (sps-w_2) reciprocal vector 2
+        sps_w_2_t = (
+        sps_c_2*sps_c_3_t*sps_c_3_t*sps_root_2*sps_root_2 +
+            sps_c_2*sps_root_2*sps_root_2*sps_s_3*sps_s_3
+        )
+        # (sps-H_a_4) moment of the column's unit force about the platform origin
+        sps_H_a_4_x = sps_axis_z_z*sps_q_in_base_y - sps_axis_z_y*sps_q_in_base_z
+        sps_H_a_4_y = sps_axis_z_x*sps_q_in_base_z - sps_axis_z_z*sps_q_in_base_x
+        sps_H_a_4_z = sps_axis_z_y*sps_q_in_base_x - sps_axis_z_x*sps_q_in_base_y
+        # (spread) rms distance of the platform points from their centroid
+        sps_spread_t = b_c_x - sps_platform_point_x
+        sps_spread_t_2 = b_c_y - sps_platform_point_y
+        sps_spread_t_3 = b_c_z - sps_platform_point_z
+        sps_spread_t_4 = (
+        sps_spread_t*sps_spread_t + sps_spread_t_2*sps_spread_t_2 + sps_spread_t_3*sps_spread_t_3
+        )
+        # (sps-rho2_1) squared amplitude
+        sps_pivot_size = abs(sps_rho2_1)
+        # (sps-rho2_2) squared amplitude
+        sps_pivot_size_2 = abs(sps_rho2_2)
+        # (sps-w_2) reciprocal vector 2
+        sps_pivot_size_3 = abs(sps_w_2_t)
+        # (sps-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        sps_least_pivots = (
+        least(least(1.25*sqrt(sps_pivot_size), 1.25*sqrt(sps_pivot_size_2)),
+            1.5624999999999998*sps_pivot_size_3)
         )
         clear = (
-        clear & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-w_1_t) >
+        clear & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-sps_w_2_t) >
             _TOLERANCE * 0.6400000000000001))
         )
         sums = m.added(sums, leg, (
-        spread_t_5,
+        sps_spread_t_4,
         ))
-        out_H[_H_urps[0][leg]] = axis_z_x
-        out_H[_H_urps[1][leg]] = axis_z_y
-        out_H[_H_urps[2][leg]] = axis_z_z
-        out_H[_H_urps[3][leg]] = H_a_4_x
-        out_H[_H_urps[4][leg]] = H_a_4_y
-        out_H[_H_urps[5][leg]] = H_a_4_z
-        out_pivots[_pivots_urps[0][leg]] = least_pivots
-    total_urps, = sums
-    # (C2) rms distance of the platform points from their centroid
-    spread = spread_t*sqrt(total_urps)
+        out_H[_H_sps[0][leg]] = sps_axis_z_x
+        out_H[_H_sps[1][leg]] = sps_axis_z_y
+        out_H[_H_sps[2][leg]] = sps_axis_z_z
+        out_H[_H_sps[3][leg]] = sps_H_a_4_x
+        out_H[_H_sps[4][leg]] = sps_H_a_4_y
+        out_H[_H_sps[5][leg]] = sps_H_a_4_z
+        out_pivots[_pivots_sps[0][leg]] = sps_least_pivots
+    total_sps, = sums
+    # (spread) rms distance of the platform points from their centroid
+    spread = spread_t*sqrt(total_sps)
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 
@@ -4268,6 +4527,20 @@ def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
     momentum = np.einsum("ijs,js->is", M, V)
     return (momentum,)
+
+
+def _steps_joint_margins(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    margins = _unlimited(q, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19,
+        20, 21, 22, 23])
+    return (margins,)
+
+
+def _steps_within_limits(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    subtract_1 = q - q
+    within = _not_negative(subtract_1)
+    return (within,)
 
 
 def _steps_actuator_positions(m, X):
@@ -4724,6 +4997,40 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+    )
+
+
+def joint_margins(X, p=None):
+    """How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+    where there is none.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        margins: distances, in the order of q [m or rad] (..., NJ).
+    """
+    return _call(
+        "joint_margins", _steps_joint_margins, p,
+        ("X", X, (NQ,)),
+        unbounded=True,
+    )
+
+
+def within_limits(X, p=None):
+    """Whether all joints are within their limits of displacement.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        within: 1 where no margin is negative, else 0; NaN is neither (...,).
+    """
+    return _call(
+        "within_limits", _steps_within_limits, p,
+        ("X", X, (NQ,)),
     )
 
 

@@ -51,6 +51,7 @@ typedef TRICEPT_REAL tricept_real;
 #define TRICEPT_NC 3
 #define TRICEPT_NW 6
 #define TRICEPT_NJ 12
+#define TRICEPT_OVERCONSTRAINED 0
 
 enum {
     TRICEPT_OK = 0,
@@ -89,59 +90,60 @@ typedef struct {
     /* inertia tensor of link 3 about its centre of mass, link axes [kg m^2] */
     tricept_real ups_link3_inertia[3][3][3];
     /* base point, base frame [m] */
-    tricept_real up_base_point[1][3];
+    tricept_real tube_base_point[1][3];
     /* rotation from leg axes to base axes [-] */
-    tricept_real up_base_frame[1][3][3];
+    tricept_real tube_base_frame[1][3][3];
     /* platform joint, platform frame [m] */
-    tricept_real up_platform_point[1][3];
+    tricept_real tube_platform_point[1][3];
     /* platform axes in the last link's frame [-] */
-    tricept_real up_platform_joint_rotation[1][3][3];
+    tricept_real tube_platform_joint_rotation[1][3][3];
     /* mass of link 2 [kg] */
-    tricept_real up_link2_mass[1];
+    tricept_real tube_link2_mass[1];
     /* centre of mass of link 2, link frame [m] */
-    tricept_real up_link2_centre_of_mass[1][3];
+    tricept_real tube_link2_centre_of_mass[1][3];
     /* inertia tensor of link 2 about its centre of mass, link axes [kg m^2] */
-    tricept_real up_link2_inertia[1][3][3];
+    tricept_real tube_link2_inertia[1][3][3];
     /* mass of link 3 [kg] */
-    tricept_real up_link3_mass[1];
+    tricept_real tube_link3_mass[1];
     /* centre of mass of link 3, link frame [m] */
-    tricept_real up_link3_centre_of_mass[1][3];
+    tricept_real tube_link3_centre_of_mass[1][3];
     /* inertia tensor of link 3 about its centre of mass, link axes [kg m^2] */
-    tricept_real up_link3_inertia[1][3][3];
+    tricept_real tube_link3_inertia[1][3][3];
 } tricept_params;
 
 /* What depends on the parameters alone; set by tricept_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
-    tricept_real J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+    /* 3 legs of type ups; copies of the first fill up */
+    tricept_real ups_J_group_2_xx[4], ups_J_group_2_xy[4], ups_J_group_2_xz[4], ups_J_group_2_yy[4],
+            ups_J_group_2_yz[4], ups_J_group_2_zz[4], ups_Sigma_2_xx[4], ups_Sigma_2_yy[4],
+            ups_Sigma_2_zz[4], ups_b_r0_x[4], ups_b_r0_y[4], ups_b_r0_z[4], ups_base_frame_xx[4],
+            ups_base_frame_xy[4], ups_base_frame_xz[4], ups_base_frame_yx[4], ups_base_frame_yy[4],
+            ups_base_frame_yz[4], ups_base_frame_zx[4], ups_base_frame_zy[4], ups_base_frame_zz[4],
+            ups_base_point_x[4], ups_base_point_y[4], ups_base_point_z[4], ups_branch_1[4],
+            ups_branch_2[4], ups_g_r0_x[4], ups_g_r0_y[4], ups_g_r0_z[4], ups_h_2_x[4], ups_h_2_y[4],
+            ups_h_2_z[4], ups_h_3_x[4], ups_h_3_y[4], ups_h_3_z[4], ups_link2_mass[4],
+            ups_link3_mass[4], ups_platform_point_x[4], ups_platform_point_y[4],
+            ups_platform_point_z[4];
+    /* 1 legs of type tube */
+    tricept_real tube_J_group_2_xx[1], tube_J_group_2_xy[1], tube_J_group_2_xz[1],
+            tube_J_group_2_yy[1], tube_J_group_2_yz[1], tube_J_group_2_zz[1], tube_Sigma_2_xx[1],
+            tube_Sigma_2_yy[1], tube_Sigma_2_zz[1], tube_b_r0_x[1], tube_b_r0_y[1], tube_b_r0_z[1],
+            tube_base_frame_xx[1], tube_base_frame_xy[1], tube_base_frame_xz[1],
+            tube_base_frame_yx[1], tube_base_frame_yy[1], tube_base_frame_yz[1],
+            tube_base_frame_zx[1], tube_base_frame_zy[1], tube_base_frame_zz[1], tube_base_point_x[1],
+            tube_base_point_y[1], tube_base_point_z[1], tube_branch_1[1], tube_branch_2[1],
+            tube_g_r0_x[1], tube_g_r0_y[1], tube_g_r0_z[1], tube_h_2_x[1], tube_h_2_y[1],
+            tube_h_2_z[1], tube_h_3_x[1], tube_h_3_y[1], tube_h_3_z[1], tube_link2_mass[1],
+            tube_link3_mass[1], tube_platform_joint_rotation_xx[1],
+            tube_platform_joint_rotation_xy[1], tube_platform_joint_rotation_xz[1],
+            tube_platform_joint_rotation_yx[1], tube_platform_joint_rotation_yy[1],
+            tube_platform_joint_rotation_yz[1], tube_platform_joint_rotation_zx[1],
+            tube_platform_joint_rotation_zy[1], tube_platform_joint_rotation_zz[1],
+            tube_platform_point_x[1], tube_platform_point_y[1], tube_platform_point_z[1];
+    tricept_real J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
             J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
             h_star_x, h_star_y, h_star_z, m_star;
-    /* legs of type ups */
-    tricept_real J_group_2_ups_xx[3], J_group_2_ups_xy[3], J_group_2_ups_xz[3], J_group_2_ups_yy[3],
-            J_group_2_ups_yz[3], J_group_2_ups_zz[3], Sigma_2_ups_xx[3], Sigma_2_ups_yy[3],
-            Sigma_2_ups_zz[3], b_ups_r0_x[3], b_ups_r0_y[3], b_ups_r0_z[3], branch_1_ups[3],
-            branch_2_ups[3], g_r0_x_2[3], g_r0_y_2[3], g_r0_z_2[3], h_2_ups_x[3], h_2_ups_y[3],
-            h_2_ups_z[3], h_3_ups_x[3], h_3_ups_y[3], h_3_ups_z[3], ups_base_frame_xx[3],
-            ups_base_frame_xy[3], ups_base_frame_xz[3], ups_base_frame_yx[3], ups_base_frame_yy[3],
-            ups_base_frame_yz[3], ups_base_frame_zx[3], ups_base_frame_zy[3], ups_base_frame_zz[3],
-            ups_base_point_x[3], ups_base_point_y[3], ups_base_point_z[3], ups_link2_mass[3],
-            ups_link3_mass[3], ups_platform_point_x[3], ups_platform_point_y[3],
-            ups_platform_point_z[3];
-    /* legs of type up */
-    tricept_real J_group_2_up_xx[1], J_group_2_up_xy[1], J_group_2_up_xz[1], J_group_2_up_yy[1],
-            J_group_2_up_yz[1], J_group_2_up_zz[1], Sigma_2_up_xx[1], Sigma_2_up_yy[1],
-            Sigma_2_up_zz[1], b_up_r0_x[1], b_up_r0_y[1], b_up_r0_z[1], branch_1_up[1],
-            branch_2_up[1], g_r0_x[1], g_r0_y[1], g_r0_z[1], h_2_up_x[1], h_2_up_y[1], h_2_up_z[1],
-            h_3_up_x[1], h_3_up_y[1], h_3_up_z[1], up_base_frame_xx[1], up_base_frame_xy[1],
-            up_base_frame_xz[1], up_base_frame_yx[1], up_base_frame_yy[1], up_base_frame_yz[1],
-            up_base_frame_zx[1], up_base_frame_zy[1], up_base_frame_zz[1], up_base_point_x[1],
-            up_base_point_y[1], up_base_point_z[1], up_link2_mass[1], up_link3_mass[1],
-            up_platform_joint_rotation_xx[1], up_platform_joint_rotation_xy[1],
-            up_platform_joint_rotation_xz[1], up_platform_joint_rotation_yx[1],
-            up_platform_joint_rotation_yy[1], up_platform_joint_rotation_yz[1],
-            up_platform_joint_rotation_zx[1], up_platform_joint_rotation_zy[1],
-            up_platform_joint_rotation_zz[1], up_platform_point_x[1], up_platform_point_y[1],
-            up_platform_point_z[1];
 } tricept_model;
 
 extern const tricept_params tricept_default_params;
@@ -158,7 +160,7 @@ extern const char *const tricept_ACTUATOR_NAMES[TRICEPT_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int tricept_prepare(const tricept_params *params, tricept_model *model);
 
-/* Inertia matrix M. 1208 mul, 857 add, 15 div, 14 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 1196 mul, 845 add, 15 div, 14 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int tricept_M(const tricept_model *model, const tricept_real *X, tricept_real *M);
 size_t tricept_M_batch(const tricept_model *model, size_t n, const tricept_real *X, tricept_real
     *M, int *status);
@@ -215,7 +217,7 @@ int tricept_joint_accelerations(const tricept_model *model, const tricept_real *
 size_t tricept_joint_accelerations_batch(const tricept_model *model, size_t n, const tricept_real
     *X, const tricept_real *V, const tricept_real *A, tricept_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1986 mul, 1460 add, 15 div, 14 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1974 mul, 1448 add, 15 div, 14 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int tricept_dynamics(const tricept_model *model, const tricept_real *X, const tricept_real *V,
     tricept_real *M, tricept_real *Z, tricept_real *H);
@@ -232,7 +234,7 @@ size_t tricept_inverse_dynamics_batch(const tricept_model *model, size_t n, cons
     const tricept_real *V, const tricept_real *A, const tricept_real *wrench, tricept_real *tau,
     tricept_real *lambda, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1986 mul, 1460 add, 15 div, 14
+/* Acceleration A under the actuator forces tau and the wrench. 1974 mul, 1448 add, 15 div, 14
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV), lambda (NC). */
 int tricept_forward_dynamics(const tricept_model *model, const tricept_real *X, const tricept_real
@@ -307,12 +309,25 @@ int tricept_dissipation(const tricept_model *model, const tricept_real *X, const
 size_t tricept_dissipation_batch(const tricept_model *model, size_t n, const tricept_real *X,
     const tricept_real *V, tricept_real *dissipation, int *status);
 
-/* Generalised momentum M V. 1208 mul, 857 add, 15 div, 14 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 1196 mul, 845 add, 15 div, 14 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int tricept_momentum(const tricept_model *model, const tricept_real *X, const tricept_real *V,
     tricept_real *momentum);
 size_t tricept_momentum_batch(const tricept_model *model, size_t n, const tricept_real *X, const
     tricept_real *V, tricept_real *momentum, int *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 108 mul, 80 add, 8 div, 8 sqrt, 8 trig. In: X (NQ). Out: margins (NJ). */
+int tricept_joint_margins(const tricept_model *model, const tricept_real *X, tricept_real
+    *margins);
+size_t tricept_joint_margins_batch(const tricept_model *model, size_t n, const tricept_real *X,
+    tricept_real *margins, int *status);
+
+/* Whether all joints are within their limits of displacement. 108 mul, 80 add, 8 div, 8 sqrt, 8
+   trig. In: X (NQ). Out: within (1). */
+int tricept_within_limits(const tricept_model *model, const tricept_real *X, tricept_real *within);
+size_t tricept_within_limits_batch(const tricept_model *model, size_t n, const tricept_real *X,
+    tricept_real *within, int *status);
 
 /* Displacements of the actuated joints, in the order of tau. 108 mul, 80 add, 8 div, 8 sqrt, 8
    trig. In: X (NQ). Out: q (NU). */

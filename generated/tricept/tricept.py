@@ -33,6 +33,7 @@ __all__ = [
     "NC",
     "NW",
     "NJ",
+    "OVERCONSTRAINED",
     "ACTUATED",
     "ACTUATOR_NAMES",
     "H",
@@ -61,6 +62,7 @@ __all__ = [
     "inverse_dynamics",
     "inverse_kinematics",
     "joint_accelerations",
+    "joint_margins",
     "joint_rates",
     "leg_reactions",
     "momentum",
@@ -71,6 +73,7 @@ __all__ = [
     "project",
     "retract",
     "rotation",
+    "within_limits",
 ]
 
 NQ = 7
@@ -79,6 +82,7 @@ NU = 3
 NC = 3
 NW = 6
 NJ = 12
+OVERCONSTRAINED = 0
 
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
@@ -111,7 +115,7 @@ _H_ups = (
     [12, 13, 14],
     [15, 16, 17],
 )
-_Hk_up = (
+_Hk_tube = (
     [0],
     [3],
     [6],
@@ -128,7 +132,7 @@ _Hk_up = (
     [14],
     [17],
 )
-_constraint_bias_up = (
+_constraint_bias_tube = (
     [0],
     [1],
     [2],
@@ -138,7 +142,7 @@ _q_ups = (
     [1, 4, 7],
     [2, 5, 8],
 )
-_q_up = (
+_q_tube = (
     [9],
     [10],
     [11],
@@ -148,7 +152,7 @@ _qd_ups = (
     [1, 4, 7],
     [2, 5, 8],
 )
-_qd_up = (
+_qd_tube = (
     [9],
     [10],
     [11],
@@ -158,12 +162,12 @@ _qdd_ups = (
     [1, 4, 7],
     [2, 5, 8],
 )
-_qdd_up = (
+_qdd_tube = (
     [9],
     [10],
     [11],
 )
-_constraints_up = (
+_constraints_tube = (
     [0],
     [1],
     [2],
@@ -178,7 +182,7 @@ _drive_ups = (
     [1, 7, 13],
     [2, 8, 14],
 )
-_leg_force_up = (
+_leg_force_tube = (
     [18],
     [19],
     [20],
@@ -186,7 +190,7 @@ _leg_force_up = (
     [22],
     [23],
 )
-_constraint_direction_up = (
+_constraint_direction_tube = (
     [0],
     [1],
     [2],
@@ -206,7 +210,7 @@ _constraint_direction_up = (
 _pivots_ups = (
     [0, 1, 2],
 )
-_pivots_up = (
+_pivots_tube = (
     [3],
 )
 ACTUATED = (2, 5, 8)  # places of the actuated joints in q, in the order of tau
@@ -262,34 +266,34 @@ _DEFAULTS = {
         [[0.004, 0.0, 0.0], [0.0, 2.3, 0.0], [0.0, 0.0, 2.3]],
         [[0.004, 0.0, 0.0], [0.0, 2.3, 0.0], [0.0, 0.0, 2.3]],
     ],
-    "up_base_point": [
+    "tube_base_point": [
         [0.0, 0.0, 0.0],
     ],
-    "up_base_frame": [
+    "tube_base_frame": [
         [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]],
     ],
-    "up_platform_point": [
+    "tube_platform_point": [
         [0.0, 0.0, 0.0],
     ],
-    "up_platform_joint_rotation": [
+    "tube_platform_joint_rotation": [
         [[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]],
     ],
-    "up_link2_mass": [
+    "tube_link2_mass": [
         20.0,
     ],
-    "up_link2_centre_of_mass": [
+    "tube_link2_centre_of_mass": [
         [0.03, 0.0, 0.0],
     ],
-    "up_link2_inertia": [
+    "tube_link2_inertia": [
         [[0.25, 0.0, 0.0], [0.0, 0.2, 0.0], [0.0, 0.0, 0.2]],
     ],
-    "up_link3_mass": [
+    "tube_link3_mass": [
         62.0,
     ],
-    "up_link3_centre_of_mass": [
+    "tube_link3_centre_of_mass": [
         [-0.75, 0.0, 0.0],
     ],
-    "up_link3_inertia": [
+    "tube_link3_inertia": [
         [[0.3, 0.0, 0.0], [0.0, 12.5, 0.0], [0.0, 0.0, 12.5]],
     ],
 }
@@ -307,16 +311,16 @@ _RULES = {  # shape, in all and of one; entries that are zero by structure; what
     "ups_link3_mass": ((3,), (), (), "mass"),
     "ups_link3_centre_of_mass": ((3, 3), (3,), (), "free"),
     "ups_link3_inertia": ((3, 3, 3), (3, 3), (), "inertia"),
-    "up_base_point": ((1, 3), (3,), (), "free"),
-    "up_base_frame": ((1, 3, 3), (3, 3), (), "rotation"),
-    "up_platform_point": ((1, 3), (3,), (), "free"),
-    "up_platform_joint_rotation": ((1, 3, 3), (3, 3), (), "rotation"),
-    "up_link2_mass": ((1,), (), (), "mass"),
-    "up_link2_centre_of_mass": ((1, 3), (3,), (), "free"),
-    "up_link2_inertia": ((1, 3, 3), (3, 3), (), "inertia"),
-    "up_link3_mass": ((1,), (), (), "mass"),
-    "up_link3_centre_of_mass": ((1, 3), (3,), (), "free"),
-    "up_link3_inertia": ((1, 3, 3), (3, 3), (), "inertia"),
+    "tube_base_point": ((1, 3), (3,), (), "free"),
+    "tube_base_frame": ((1, 3, 3), (3, 3), (), "rotation"),
+    "tube_platform_point": ((1, 3), (3,), (), "free"),
+    "tube_platform_joint_rotation": ((1, 3, 3), (3, 3), (), "rotation"),
+    "tube_link2_mass": ((1,), (), (), "mass"),
+    "tube_link2_centre_of_mass": ((1, 3), (3,), (), "free"),
+    "tube_link2_inertia": ((1, 3, 3), (3, 3), (), "inertia"),
+    "tube_link3_mass": ((1,), (), (), "mass"),
+    "tube_link3_centre_of_mass": ((1, 3), (3,), (), "free"),
+    "tube_link3_inertia": ((1, 3, 3), (3, 3), (), "inertia"),
 }
 
 
@@ -341,16 +345,16 @@ class Parameters:
         ups_link3_mass: mass of link 3 [kg], shape (3,).
         ups_link3_centre_of_mass: centre of mass of link 3, link frame [m], shape (3, 3).
         ups_link3_inertia: inertia tensor of link 3 about its centre of mass, link axes [kg m^2], shape (3, 3, 3).
-        up_base_point: base point, base frame [m], shape (1, 3).
-        up_base_frame: rotation from leg axes to base axes [-], shape (1, 3, 3).
-        up_platform_point: platform joint, platform frame [m], shape (1, 3).
-        up_platform_joint_rotation: platform axes in the last link's frame [-], shape (1, 3, 3).
-        up_link2_mass: mass of link 2 [kg], shape (1,).
-        up_link2_centre_of_mass: centre of mass of link 2, link frame [m], shape (1, 3).
-        up_link2_inertia: inertia tensor of link 2 about its centre of mass, link axes [kg m^2], shape (1, 3, 3).
-        up_link3_mass: mass of link 3 [kg], shape (1,).
-        up_link3_centre_of_mass: centre of mass of link 3, link frame [m], shape (1, 3).
-        up_link3_inertia: inertia tensor of link 3 about its centre of mass, link axes [kg m^2], shape (1, 3, 3).
+        tube_base_point: base point, base frame [m], shape (1, 3).
+        tube_base_frame: rotation from leg axes to base axes [-], shape (1, 3, 3).
+        tube_platform_point: platform joint, platform frame [m], shape (1, 3).
+        tube_platform_joint_rotation: platform axes in the last link's frame [-], shape (1, 3, 3).
+        tube_link2_mass: mass of link 2 [kg], shape (1,).
+        tube_link2_centre_of_mass: centre of mass of link 2, link frame [m], shape (1, 3).
+        tube_link2_inertia: inertia tensor of link 2 about its centre of mass, link axes [kg m^2], shape (1, 3, 3).
+        tube_link3_mass: mass of link 3 [kg], shape (1,).
+        tube_link3_centre_of_mass: centre of mass of link 3, link frame [m], shape (1, 3).
+        tube_link3_inertia: inertia tensor of link 3 about its centre of mass, link axes [kg m^2], shape (1, 3, 3).
     """
 
     def __init__(self, **values):
@@ -451,7 +455,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return np.full(shape, default)
+        return _filled(shape, default) if isinstance(default, float) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -464,6 +468,16 @@ def _argument(function, name, value, shape, default=None, rule=""):
     elif rule == "positive" and not np.all((array > 0.0) & (array < np.inf)):
         raise ValueError(f"{function}: {name} must be positive and finite")
     return array
+
+
+_FILLED = {}
+
+
+def _filled(shape, value):
+    """An array of one value, made once."""
+    if (shape, value) not in _FILLED:
+        _FILLED[shape, value] = _frozen(np.full(shape, value))
+    return _FILLED[shape, value]
 
 
 def _lead(leads):
@@ -557,10 +571,10 @@ HOME_X = _frozen(np.array([0.0, 0.0, -1.35, 0.0, 0.0, 0.0, 1.0]))
 HOME_Q = _frozen(np.array([0.21866894587394195, 0.0, 1.3829316685939332, 0.21866894587394195, 0.0, 1.3829316685939332, 0.21866894587394195, 0.0, 1.3829316685939332, 0.0, 0.0, 1.35]))
 
 _BRANCHES = {  # assembly branch of home, a sign per leg
-    "branch_1_ups": np.array([1.0, 1.0, 1.0]),
-    "branch_2_ups": np.array([1.0, 1.0, 1.0]),
-    "branch_1_up": np.array([1.0]),
-    "branch_2_up": np.array([1.0]),
+    "ups_branch_1": np.array([1.0, 1.0, 1.0]),
+    "ups_branch_2": np.array([1.0, 1.0, 1.0]),
+    "tube_branch_1": np.array([1.0]),
+    "tube_branch_2": np.array([1.0]),
 }
 
 
@@ -568,7 +582,7 @@ def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
     _ups = 3
-    _up = 1
+    _tube = 1
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -617,59 +631,59 @@ def _prepare(p):
     ups_link3_inertia_yy = p.ups_link3_inertia[:, 1, 1]
     ups_link3_inertia_yz = p.ups_link3_inertia[:, 1, 2]
     ups_link3_inertia_zz = p.ups_link3_inertia[:, 2, 2]
-    up_base_point_x = p.up_base_point[:, 0]
-    up_base_point_y = p.up_base_point[:, 1]
-    up_base_point_z = p.up_base_point[:, 2]
-    up_base_frame_xx = p.up_base_frame[:, 0, 0]
-    up_base_frame_xy = p.up_base_frame[:, 0, 1]
-    up_base_frame_xz = p.up_base_frame[:, 0, 2]
-    up_base_frame_yx = p.up_base_frame[:, 1, 0]
-    up_base_frame_yy = p.up_base_frame[:, 1, 1]
-    up_base_frame_yz = p.up_base_frame[:, 1, 2]
-    up_base_frame_zx = p.up_base_frame[:, 2, 0]
-    up_base_frame_zy = p.up_base_frame[:, 2, 1]
-    up_base_frame_zz = p.up_base_frame[:, 2, 2]
-    up_platform_point_x = p.up_platform_point[:, 0]
-    up_platform_point_y = p.up_platform_point[:, 1]
-    up_platform_point_z = p.up_platform_point[:, 2]
-    up_platform_joint_rotation_xx = p.up_platform_joint_rotation[:, 0, 0]
-    up_platform_joint_rotation_xy = p.up_platform_joint_rotation[:, 0, 1]
-    up_platform_joint_rotation_xz = p.up_platform_joint_rotation[:, 0, 2]
-    up_platform_joint_rotation_yx = p.up_platform_joint_rotation[:, 1, 0]
-    up_platform_joint_rotation_yy = p.up_platform_joint_rotation[:, 1, 1]
-    up_platform_joint_rotation_yz = p.up_platform_joint_rotation[:, 1, 2]
-    up_platform_joint_rotation_zx = p.up_platform_joint_rotation[:, 2, 0]
-    up_platform_joint_rotation_zy = p.up_platform_joint_rotation[:, 2, 1]
-    up_platform_joint_rotation_zz = p.up_platform_joint_rotation[:, 2, 2]
-    up_link2_mass = p.up_link2_mass
-    up_link2_centre_of_mass_x = p.up_link2_centre_of_mass[:, 0]
-    up_link2_centre_of_mass_y = p.up_link2_centre_of_mass[:, 1]
-    up_link2_centre_of_mass_z = p.up_link2_centre_of_mass[:, 2]
-    up_link2_inertia_xx = p.up_link2_inertia[:, 0, 0]
-    up_link2_inertia_xy = p.up_link2_inertia[:, 0, 1]
-    up_link2_inertia_xz = p.up_link2_inertia[:, 0, 2]
-    up_link2_inertia_yy = p.up_link2_inertia[:, 1, 1]
-    up_link2_inertia_yz = p.up_link2_inertia[:, 1, 2]
-    up_link2_inertia_zz = p.up_link2_inertia[:, 2, 2]
-    up_link3_mass = p.up_link3_mass
-    up_link3_centre_of_mass_x = p.up_link3_centre_of_mass[:, 0]
-    up_link3_centre_of_mass_y = p.up_link3_centre_of_mass[:, 1]
-    up_link3_centre_of_mass_z = p.up_link3_centre_of_mass[:, 2]
-    up_link3_inertia_xx = p.up_link3_inertia[:, 0, 0]
-    up_link3_inertia_xy = p.up_link3_inertia[:, 0, 1]
-    up_link3_inertia_xz = p.up_link3_inertia[:, 0, 2]
-    up_link3_inertia_yy = p.up_link3_inertia[:, 1, 1]
-    up_link3_inertia_yz = p.up_link3_inertia[:, 1, 2]
-    up_link3_inertia_zz = p.up_link3_inertia[:, 2, 2]
-    branch_1_ups = _BRANCHES["branch_1_ups"]
-    branch_2_ups = _BRANCHES["branch_2_ups"]
-    branch_1_up = _BRANCHES["branch_1_up"]
-    branch_2_up = _BRANCHES["branch_2_up"]
-    # (L2) first moment about the platform origin
+    tube_base_point_x = p.tube_base_point[:, 0]
+    tube_base_point_y = p.tube_base_point[:, 1]
+    tube_base_point_z = p.tube_base_point[:, 2]
+    tube_base_frame_xx = p.tube_base_frame[:, 0, 0]
+    tube_base_frame_xy = p.tube_base_frame[:, 0, 1]
+    tube_base_frame_xz = p.tube_base_frame[:, 0, 2]
+    tube_base_frame_yx = p.tube_base_frame[:, 1, 0]
+    tube_base_frame_yy = p.tube_base_frame[:, 1, 1]
+    tube_base_frame_yz = p.tube_base_frame[:, 1, 2]
+    tube_base_frame_zx = p.tube_base_frame[:, 2, 0]
+    tube_base_frame_zy = p.tube_base_frame[:, 2, 1]
+    tube_base_frame_zz = p.tube_base_frame[:, 2, 2]
+    tube_platform_point_x = p.tube_platform_point[:, 0]
+    tube_platform_point_y = p.tube_platform_point[:, 1]
+    tube_platform_point_z = p.tube_platform_point[:, 2]
+    tube_platform_joint_rotation_xx = p.tube_platform_joint_rotation[:, 0, 0]
+    tube_platform_joint_rotation_xy = p.tube_platform_joint_rotation[:, 0, 1]
+    tube_platform_joint_rotation_xz = p.tube_platform_joint_rotation[:, 0, 2]
+    tube_platform_joint_rotation_yx = p.tube_platform_joint_rotation[:, 1, 0]
+    tube_platform_joint_rotation_yy = p.tube_platform_joint_rotation[:, 1, 1]
+    tube_platform_joint_rotation_yz = p.tube_platform_joint_rotation[:, 1, 2]
+    tube_platform_joint_rotation_zx = p.tube_platform_joint_rotation[:, 2, 0]
+    tube_platform_joint_rotation_zy = p.tube_platform_joint_rotation[:, 2, 1]
+    tube_platform_joint_rotation_zz = p.tube_platform_joint_rotation[:, 2, 2]
+    tube_link2_mass = p.tube_link2_mass
+    tube_link2_centre_of_mass_x = p.tube_link2_centre_of_mass[:, 0]
+    tube_link2_centre_of_mass_y = p.tube_link2_centre_of_mass[:, 1]
+    tube_link2_centre_of_mass_z = p.tube_link2_centre_of_mass[:, 2]
+    tube_link2_inertia_xx = p.tube_link2_inertia[:, 0, 0]
+    tube_link2_inertia_xy = p.tube_link2_inertia[:, 0, 1]
+    tube_link2_inertia_xz = p.tube_link2_inertia[:, 0, 2]
+    tube_link2_inertia_yy = p.tube_link2_inertia[:, 1, 1]
+    tube_link2_inertia_yz = p.tube_link2_inertia[:, 1, 2]
+    tube_link2_inertia_zz = p.tube_link2_inertia[:, 2, 2]
+    tube_link3_mass = p.tube_link3_mass
+    tube_link3_centre_of_mass_x = p.tube_link3_centre_of_mass[:, 0]
+    tube_link3_centre_of_mass_y = p.tube_link3_centre_of_mass[:, 1]
+    tube_link3_centre_of_mass_z = p.tube_link3_centre_of_mass[:, 2]
+    tube_link3_inertia_xx = p.tube_link3_inertia[:, 0, 0]
+    tube_link3_inertia_xy = p.tube_link3_inertia[:, 0, 1]
+    tube_link3_inertia_xz = p.tube_link3_inertia[:, 0, 2]
+    tube_link3_inertia_yy = p.tube_link3_inertia[:, 1, 1]
+    tube_link3_inertia_yz = p.tube_link3_inertia[:, 1, 2]
+    tube_link3_inertia_zz = p.tube_link3_inertia[:, 2, 2]
+    ups_branch_1 = _BRANCHES["ups_branch_1"]
+    ups_branch_2 = _BRANCHES["ups_branch_2"]
+    tube_branch_1 = _BRANCHES["tube_branch_1"]
+    tube_branch_2 = _BRANCHES["tube_branch_2"]
+    # (h_star) first moment about the platform origin
     h_star_t = platform_centre_of_mass_x*platform_mass
     h_star_t_2 = platform_centre_of_mass_y*platform_mass
     h_star_t_3 = platform_centre_of_mass_z*platform_mass
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_t = platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_2 = platform_centre_of_mass_y*platform_centre_of_mass_y
     J_star_t_3 = platform_centre_of_mass_z*platform_centre_of_mass_z
@@ -680,262 +694,271 @@ def _prepare(p):
     J_star_t_8 = platform_mass*(J_star_t_2 - J_star_t_4)
     J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass
     J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4)
-    # (ups-G3) inertia tensor of link 2 about the origin of link 2
-    J_2_ups_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x
-    J_2_ups_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y
-    J_2_ups_t_3 = ups_link2_centre_of_mass_z*ups_link2_centre_of_mass_z
-    J_2_ups_t_4 = J_2_ups_t + J_2_ups_t_2 + J_2_ups_t_3
-    # (ups-G5) inertia tensor of link 3 about the connection point
-    J_3_ups_t = ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_x
-    J_3_ups_t_2 = ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_y
-    J_3_ups_t_3 = ups_link3_centre_of_mass_z*ups_link3_centre_of_mass_z
-    J_3_ups_t_4 = J_3_ups_t + J_3_ups_t_2 + J_3_ups_t_3
-    # (ups-N8) inertia of the links that turn with link 2, each about its reference point
-    J_group_2_ups_xx = (
-    ups_link2_inertia_xx + ups_link3_inertia_xx - ups_link2_mass*(J_2_ups_t - J_2_ups_t_4) -
-        ups_link3_mass*(J_3_ups_t - J_3_ups_t_4)
+    # (ups-h_3) first moment of link 3 about the connection point
+    ups_h_3_x = ups_link3_centre_of_mass_x*ups_link3_mass
+    ups_h_3_y = ups_link3_centre_of_mass_y*ups_link3_mass
+    ups_h_3_z = ups_link3_centre_of_mass_z*ups_link3_mass
+    # (ups-J_2) inertia tensor of link 2 about the origin of link 2
+    ups_J_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x
+    ups_J_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y
+    ups_J_2_t_3 = ups_link2_centre_of_mass_z*ups_link2_centre_of_mass_z
+    ups_J_2_t_4 = ups_J_2_t + ups_J_2_t_2 + ups_J_2_t_3
+    # (ups-J_3) inertia tensor of link 3 about the connection point
+    ups_J_3_t = ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_x
+    ups_J_3_t_2 = ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_y
+    ups_J_3_t_3 = ups_link3_centre_of_mass_z*ups_link3_centre_of_mass_z
+    ups_J_3_t_4 = ups_J_3_t + ups_J_3_t_2 + ups_J_3_t_3
+    # (ups-J_group_2) inertia of the links that turn with link 2, each about its reference point
+    ups_J_group_2_xx = (
+    ups_link2_inertia_xx + ups_link3_inertia_xx - ups_link2_mass*(ups_J_2_t - ups_J_2_t_4) -
+        ups_link3_mass*(ups_J_3_t - ups_J_3_t_4)
     )
-    J_group_2_ups_xy = (
+    ups_J_group_2_xy = (
     ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_z*ups_link2_mass +
         ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_z*ups_link3_mass -
         ups_link2_inertia_xz - ups_link3_inertia_xz
     )
-    J_group_2_ups_xz = (
+    ups_J_group_2_xz = (
     ups_link2_inertia_xy + ups_link3_inertia_xy -
         ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_y*ups_link2_mass -
         ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_y*ups_link3_mass
     )
-    J_group_2_ups_yy = (
-    ups_link2_inertia_zz + ups_link3_inertia_zz - ups_link2_mass*(J_2_ups_t_3 - J_2_ups_t_4) -
-        ups_link3_mass*(J_3_ups_t_3 - J_3_ups_t_4)
+    ups_J_group_2_yy = (
+    ups_link2_inertia_zz + ups_link3_inertia_zz - ups_link2_mass*(ups_J_2_t_3 - ups_J_2_t_4) -
+        ups_link3_mass*(ups_J_3_t_3 - ups_J_3_t_4)
     )
-    J_group_2_ups_yz = (
+    ups_J_group_2_yz = (
     ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_z*ups_link2_mass +
         ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_z*ups_link3_mass -
         ups_link2_inertia_yz - ups_link3_inertia_yz
     )
-    J_group_2_ups_zz = (
-    ups_link2_inertia_yy + ups_link3_inertia_yy - ups_link2_mass*(J_2_ups_t_2 - J_2_ups_t_4) -
-        ups_link3_mass*(J_3_ups_t_2 - J_3_ups_t_4)
+    ups_J_group_2_zz = (
+    ups_link2_inertia_yy + ups_link3_inertia_yy - ups_link2_mass*(ups_J_2_t_2 - ups_J_2_t_4) -
+        ups_link3_mass*(ups_J_3_t_2 - ups_J_3_t_4)
     )
-    # (ups-G4) first moment of link 3 about the connection point
-    h_3_ups_x = ups_link3_centre_of_mass_x*ups_link3_mass
-    h_3_ups_y = ups_link3_centre_of_mass_y*ups_link3_mass
-    h_3_ups_z = ups_link3_centre_of_mass_z*ups_link3_mass
-    # (L2) first moment about the platform origin
-    h_star_t_4 = ups_link3_mass*ups_platform_point_x
-    h_star_t_5 = ups_link3_mass*ups_platform_point_y
-    h_star_t_6 = ups_link3_mass*ups_platform_point_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t_11 = ups_platform_point_x*ups_platform_point_x
-    J_star_t_12 = ups_platform_point_y*ups_platform_point_y
-    J_star_t_13 = ups_platform_point_z*ups_platform_point_z
-    J_star_t_14 = J_star_t_11 + J_star_t_12 + J_star_t_13
-    J_star_t_15 = ups_link3_mass*(J_star_t_11 - J_star_t_14)
-    J_star_t_16 = ups_link3_mass*ups_platform_point_x*ups_platform_point_y
-    J_star_t_17 = ups_link3_mass*ups_platform_point_x*ups_platform_point_z
-    J_star_t_18 = ups_link3_mass*(J_star_t_12 - J_star_t_14)
-    J_star_t_19 = ups_link3_mass*ups_platform_point_y*ups_platform_point_z
-    J_star_t_20 = ups_link3_mass*(J_star_t_13 - J_star_t_14)
-    # (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-    g_r0_x_2 = (
+    # (h_star) first moment about the platform origin
+    ups_h_star_t = ups_link3_mass*ups_platform_point_x
+    ups_h_star_t_2 = ups_link3_mass*ups_platform_point_y
+    ups_h_star_t_3 = ups_link3_mass*ups_platform_point_z
+    # (J_star) inertia tensor about the platform origin
+    ups_J_star_t = ups_platform_point_x*ups_platform_point_x
+    ups_J_star_t_2 = ups_platform_point_y*ups_platform_point_y
+    ups_J_star_t_3 = ups_platform_point_z*ups_platform_point_z
+    ups_J_star_t_4 = ups_J_star_t + ups_J_star_t_2 + ups_J_star_t_3
+    ups_J_star_t_5 = ups_link3_mass*(ups_J_star_t - ups_J_star_t_4)
+    ups_J_star_t_6 = ups_link3_mass*ups_platform_point_x*ups_platform_point_y
+    ups_J_star_t_7 = ups_link3_mass*ups_platform_point_x*ups_platform_point_z
+    ups_J_star_t_8 = ups_link3_mass*(ups_J_star_t_2 - ups_J_star_t_4)
+    ups_J_star_t_9 = ups_link3_mass*ups_platform_point_y*ups_platform_point_z
+    ups_J_star_t_10 = ups_link3_mass*(ups_J_star_t_3 - ups_J_star_t_4)
+    # (ups-h_2) first moment of link 2 about the origin of link 2
+    ups_h_2_x = ups_link2_centre_of_mass_x*ups_link2_mass
+    ups_h_2_y = ups_link2_centre_of_mass_y*ups_link2_mass
+    ups_h_2_z = ups_link2_centre_of_mass_z*ups_link2_mass
+    # (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+    ups_g_r0_x = (
     gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx + gravity_z*ups_base_frame_zx
     )
-    g_r0_y_2 = (
+    ups_g_r0_y = (
     gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy + gravity_z*ups_base_frame_zy
     )
-    g_r0_z_2 = (
+    ups_g_r0_z = (
     gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz + gravity_z*ups_base_frame_zz
     )
-    # (ups-G2) first moment of link 2 about the origin of link 2
-    h_2_ups_x = ups_link2_centre_of_mass_x*ups_link2_mass
-    h_2_ups_y = ups_link2_centre_of_mass_y*ups_link2_mass
-    h_2_ups_z = ups_link2_centre_of_mass_z*ups_link2_mass
-    # (ups-N9) half the trace of that inertia tensor
-    trace_J_group_2_ups_ups = 0.5*J_group_2_ups_xx + 0.5*J_group_2_ups_yy + 0.5*J_group_2_ups_zz
-    # (ups-N10) second moment of mass of the links that turn with link 2
-    Sigma_2_ups_xx = trace_J_group_2_ups_ups - J_group_2_ups_xx
-    Sigma_2_ups_yy = trace_J_group_2_ups_ups - J_group_2_ups_yy
-    Sigma_2_ups_zz = trace_J_group_2_ups_ups - J_group_2_ups_zz
-    # (V1) potential energy
-    b_ups_r0_x = (
+    # (ups-trace_J_2) half the trace of that inertia tensor
+    ups_trace_J_2 = 0.5*ups_J_group_2_xx + 0.5*ups_J_group_2_yy + 0.5*ups_J_group_2_zz
+    # (ups-Sigma_2) second moment of mass of the links that turn with link 2
+    ups_Sigma_2_xx = ups_trace_J_2 - ups_J_group_2_xx
+    ups_Sigma_2_yy = ups_trace_J_2 - ups_J_group_2_yy
+    ups_Sigma_2_zz = ups_trace_J_2 - ups_J_group_2_zz
+    # (potential) potential energy
+    ups_b_r0_x = (
     ups_base_frame_xx*ups_base_point_x + ups_base_frame_yx*ups_base_point_y +
         ups_base_frame_zx*ups_base_point_z
     )
-    b_ups_r0_y = (
+    ups_b_r0_y = (
     ups_base_frame_xy*ups_base_point_x + ups_base_frame_yy*ups_base_point_y +
         ups_base_frame_zy*ups_base_point_z
     )
-    b_ups_r0_z = (
+    ups_b_r0_z = (
     ups_base_frame_xz*ups_base_point_x + ups_base_frame_yz*ups_base_point_y +
         ups_base_frame_zz*ups_base_point_z
     )
     total_ups = np.sum(np.broadcast_to(ups_link3_mass, _ups))
-    total_ups_x = np.sum(np.broadcast_to(h_star_t_4, _ups))
-    total_ups_y = np.sum(np.broadcast_to(h_star_t_5, _ups))
-    total_ups_z = np.sum(np.broadcast_to(h_star_t_6, _ups))
-    total_ups_xx = np.sum(np.broadcast_to(J_star_t_15, _ups))
-    total_ups_xy = np.sum(np.broadcast_to(J_star_t_16, _ups))
-    total_ups_xz = np.sum(np.broadcast_to(J_star_t_17, _ups))
-    total_ups_yy = np.sum(np.broadcast_to(J_star_t_18, _ups))
-    total_ups_yz = np.sum(np.broadcast_to(J_star_t_19, _ups))
-    total_ups_zz = np.sum(np.broadcast_to(J_star_t_20, _ups))
+    total_ups_x = np.sum(np.broadcast_to(ups_h_star_t, _ups))
+    total_ups_y = np.sum(np.broadcast_to(ups_h_star_t_2, _ups))
+    total_ups_z = np.sum(np.broadcast_to(ups_h_star_t_3, _ups))
+    total_ups_xx = np.sum(np.broadcast_to(ups_J_star_t_5, _ups))
+    total_ups_xy = np.sum(np.broadcast_to(ups_J_star_t_6, _ups))
+    total_ups_xz = np.sum(np.broadcast_to(ups_J_star_t_7, _ups))
+    total_ups_yy = np.sum(np.broadcast_to(ups_J_star_t_8, _ups))
+    total_ups_yz = np.sum(np.broadcast_to(ups_J_star_t_9, _ups))
+    total_ups_zz = np.sum(np.broadcast_to(ups_J_star_t_10, _ups))
     total_ups_x_2 = np.sum(np.broadcast_to(ups_platform_point_x, _ups))
     total_ups_y_2 = np.sum(np.broadcast_to(ups_platform_point_y, _ups))
     total_ups_z_2 = np.sum(np.broadcast_to(ups_platform_point_z, _ups))
-    # (up-G4) first moment of link 3 about the origin of link 3
-    h_3_up_x = up_link3_centre_of_mass_x*up_link3_mass
-    h_3_up_y = up_link3_centre_of_mass_y*up_link3_mass
-    h_3_up_z = up_link3_centre_of_mass_z*up_link3_mass
-    # (up-G3) inertia tensor of link 2 about the origin of link 2
-    J_2_up_t = up_link2_centre_of_mass_x*up_link2_centre_of_mass_x
-    J_2_up_t_2 = up_link2_centre_of_mass_y*up_link2_centre_of_mass_y
-    J_2_up_t_3 = up_link2_centre_of_mass_z*up_link2_centre_of_mass_z
-    J_2_up_t_4 = J_2_up_t + J_2_up_t_2 + J_2_up_t_3
-    # (up-G5) inertia tensor of link 3 about the origin of link 3
-    J_3_up_t = up_link3_centre_of_mass_x*up_link3_centre_of_mass_x
-    J_3_up_t_2 = up_link3_centre_of_mass_y*up_link3_centre_of_mass_y
-    J_3_up_t_3 = up_link3_centre_of_mass_z*up_link3_centre_of_mass_z
-    J_3_up_t_4 = J_3_up_t + J_3_up_t_2 + J_3_up_t_3
-    # (up-N15) inertia of the links that turn with link 2, each about its reference point
-    J_group_2_up_xx = (
-    up_link2_inertia_xx + up_link3_inertia_xx - up_link2_mass*(J_2_up_t - J_2_up_t_4) -
-        up_link3_mass*(J_3_up_t - J_3_up_t_4)
+    # (tube-h_3) first moment of link 3 about the origin of link 3
+    tube_h_3_x = tube_link3_centre_of_mass_x*tube_link3_mass
+    tube_h_3_y = tube_link3_centre_of_mass_y*tube_link3_mass
+    tube_h_3_z = tube_link3_centre_of_mass_z*tube_link3_mass
+    # (tube-J_2) inertia tensor of link 2 about the origin of link 2
+    tube_J_2_t = tube_link2_centre_of_mass_x*tube_link2_centre_of_mass_x
+    tube_J_2_t_2 = tube_link2_centre_of_mass_y*tube_link2_centre_of_mass_y
+    tube_J_2_t_3 = tube_link2_centre_of_mass_z*tube_link2_centre_of_mass_z
+    tube_J_2_t_4 = tube_J_2_t + tube_J_2_t_2 + tube_J_2_t_3
+    # (tube-J_3) inertia tensor of link 3 about the origin of link 3
+    tube_J_3_t = tube_link3_centre_of_mass_x*tube_link3_centre_of_mass_x
+    tube_J_3_t_2 = tube_link3_centre_of_mass_y*tube_link3_centre_of_mass_y
+    tube_J_3_t_3 = tube_link3_centre_of_mass_z*tube_link3_centre_of_mass_z
+    tube_J_3_t_4 = tube_J_3_t + tube_J_3_t_2 + tube_J_3_t_3
+    # (tube-J_group_2) inertia of the links that turn with link 2, each about its reference point
+    tube_J_group_2_xx = (
+    tube_link2_inertia_xx + tube_link3_inertia_xx - tube_link2_mass*(tube_J_2_t - tube_J_2_t_4) -
+        tube_link3_mass*(tube_J_3_t - tube_J_3_t_4)
     )
-    J_group_2_up_xy = (
-    up_link2_centre_of_mass_x*up_link2_centre_of_mass_z*up_link2_mass +
-        up_link3_centre_of_mass_x*up_link3_centre_of_mass_z*up_link3_mass - up_link2_inertia_xz -
-        up_link3_inertia_xz
+    tube_J_group_2_xy = (
+    tube_link2_centre_of_mass_x*tube_link2_centre_of_mass_z*tube_link2_mass +
+        tube_link3_centre_of_mass_x*tube_link3_centre_of_mass_z*tube_link3_mass -
+        tube_link2_inertia_xz - tube_link3_inertia_xz
     )
-    J_group_2_up_xz = (
-    up_link2_inertia_xy + up_link3_inertia_xy -
-        up_link2_centre_of_mass_x*up_link2_centre_of_mass_y*up_link2_mass -
-        up_link3_centre_of_mass_x*up_link3_centre_of_mass_y*up_link3_mass
+    tube_J_group_2_xz = (
+    tube_link2_inertia_xy + tube_link3_inertia_xy -
+        tube_link2_centre_of_mass_x*tube_link2_centre_of_mass_y*tube_link2_mass -
+        tube_link3_centre_of_mass_x*tube_link3_centre_of_mass_y*tube_link3_mass
     )
-    J_group_2_up_yy = (
-    up_link2_inertia_zz + up_link3_inertia_zz - up_link2_mass*(J_2_up_t_3 - J_2_up_t_4) -
-        up_link3_mass*(J_3_up_t_3 - J_3_up_t_4)
+    tube_J_group_2_yy = (
+    tube_link2_inertia_zz + tube_link3_inertia_zz - tube_link2_mass*(tube_J_2_t_3 - tube_J_2_t_4)
+        - tube_link3_mass*(tube_J_3_t_3 - tube_J_3_t_4)
     )
-    J_group_2_up_yz = (
-    up_link2_centre_of_mass_y*up_link2_centre_of_mass_z*up_link2_mass +
-        up_link3_centre_of_mass_y*up_link3_centre_of_mass_z*up_link3_mass - up_link2_inertia_yz -
-        up_link3_inertia_yz
+    tube_J_group_2_yz = (
+    tube_link2_centre_of_mass_y*tube_link2_centre_of_mass_z*tube_link2_mass +
+        tube_link3_centre_of_mass_y*tube_link3_centre_of_mass_z*tube_link3_mass -
+        tube_link2_inertia_yz - tube_link3_inertia_yz
     )
-    J_group_2_up_zz = (
-    up_link2_inertia_yy + up_link3_inertia_yy - up_link2_mass*(J_2_up_t_2 - J_2_up_t_4) -
-        up_link3_mass*(J_3_up_t_2 - J_3_up_t_4)
+    tube_J_group_2_zz = (
+    tube_link2_inertia_yy + tube_link3_inertia_yy - tube_link2_mass*(tube_J_2_t_2 - tube_J_2_t_4)
+        - tube_link3_mass*(tube_J_3_t_2 - tube_J_3_t_4)
     )
-    # (up-N6) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-    g_r0_x = gravity_x*up_base_frame_xx + gravity_y*up_base_frame_yx + gravity_z*up_base_frame_zx
-    g_r0_y = gravity_x*up_base_frame_xy + gravity_y*up_base_frame_yy + gravity_z*up_base_frame_zy
-    g_r0_z = gravity_x*up_base_frame_xz + gravity_y*up_base_frame_yz + gravity_z*up_base_frame_zz
-    # (up-G2) first moment of link 2 about the origin of link 2
-    h_2_up_x = up_link2_centre_of_mass_x*up_link2_mass
-    h_2_up_y = up_link2_centre_of_mass_y*up_link2_mass
-    h_2_up_z = up_link2_centre_of_mass_z*up_link2_mass
-    # (up-N16) half the trace of that inertia tensor
-    trace_J_group_2_up_up = 0.5*J_group_2_up_xx + 0.5*J_group_2_up_yy + 0.5*J_group_2_up_zz
-    # (up-N17) second moment of mass of the links that turn with link 2
-    Sigma_2_up_xx = trace_J_group_2_up_up - J_group_2_up_xx
-    Sigma_2_up_yy = trace_J_group_2_up_up - J_group_2_up_yy
-    Sigma_2_up_zz = trace_J_group_2_up_up - J_group_2_up_zz
-    # (V1) potential energy
-    b_up_r0_x = (
-    up_base_frame_xx*up_base_point_x + up_base_frame_yx*up_base_point_y +
-        up_base_frame_zx*up_base_point_z
+    # (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+    tube_g_r0_x = (
+    gravity_x*tube_base_frame_xx + gravity_y*tube_base_frame_yx + gravity_z*tube_base_frame_zx
     )
-    b_up_r0_y = (
-    up_base_frame_xy*up_base_point_x + up_base_frame_yy*up_base_point_y +
-        up_base_frame_zy*up_base_point_z
+    tube_g_r0_y = (
+    gravity_x*tube_base_frame_xy + gravity_y*tube_base_frame_yy + gravity_z*tube_base_frame_zy
     )
-    b_up_r0_z = (
-    up_base_frame_xz*up_base_point_x + up_base_frame_yz*up_base_point_y +
-        up_base_frame_zz*up_base_point_z
+    tube_g_r0_z = (
+    gravity_x*tube_base_frame_xz + gravity_y*tube_base_frame_yz + gravity_z*tube_base_frame_zz
     )
-    total_up_x = np.sum(np.broadcast_to(up_platform_point_x, _up))
-    total_up_y = np.sum(np.broadcast_to(up_platform_point_y, _up))
-    total_up_z = np.sum(np.broadcast_to(up_platform_point_z, _up))
-    # (L1) mass of the platform with the gathered masses
+    # (tube-h_2) first moment of link 2 about the origin of link 2
+    tube_h_2_x = tube_link2_centre_of_mass_x*tube_link2_mass
+    tube_h_2_y = tube_link2_centre_of_mass_y*tube_link2_mass
+    tube_h_2_z = tube_link2_centre_of_mass_z*tube_link2_mass
+    # (tube-trace_J_2) half the trace of that inertia tensor
+    tube_trace_J_2 = 0.5*tube_J_group_2_xx + 0.5*tube_J_group_2_yy + 0.5*tube_J_group_2_zz
+    # (tube-Sigma_2) second moment of mass of the links that turn with link 2
+    tube_Sigma_2_xx = tube_trace_J_2 - tube_J_group_2_xx
+    tube_Sigma_2_yy = tube_trace_J_2 - tube_J_group_2_yy
+    tube_Sigma_2_zz = tube_trace_J_2 - tube_J_group_2_zz
+    # (potential) potential energy
+    tube_b_r0_x = (
+    tube_base_frame_xx*tube_base_point_x + tube_base_frame_yx*tube_base_point_y +
+        tube_base_frame_zx*tube_base_point_z
+    )
+    tube_b_r0_y = (
+    tube_base_frame_xy*tube_base_point_x + tube_base_frame_yy*tube_base_point_y +
+        tube_base_frame_zy*tube_base_point_z
+    )
+    tube_b_r0_z = (
+    tube_base_frame_xz*tube_base_point_x + tube_base_frame_yz*tube_base_point_y +
+        tube_base_frame_zz*tube_base_point_z
+    )
+    total_tube_x = np.sum(np.broadcast_to(tube_platform_point_x, _tube))
+    total_tube_y = np.sum(np.broadcast_to(tube_platform_point_y, _tube))
+    total_tube_z = np.sum(np.broadcast_to(tube_platform_point_z, _tube))
+    # (m_star) mass of the platform with the gathered masses
     m_star = platform_mass + total_ups
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_x = h_star_t + total_ups_x
     h_star_y = h_star_t_2 + total_ups_y
     h_star_z = h_star_t_3 + total_ups_z
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_xx = platform_inertia_xx - J_star_t_5 - total_ups_xx
     J_star_xy = platform_inertia_xy - J_star_t_6 - total_ups_xy
     J_star_xz = platform_inertia_xz - J_star_t_7 - total_ups_xz
     J_star_yy = platform_inertia_yy - J_star_t_8 - total_ups_yy
     J_star_yz = platform_inertia_yz - J_star_t_9 - total_ups_yz
     J_star_zz = platform_inertia_zz - J_star_t_10 - total_ups_zz
-    J_star_t_21 = J_star_xx - J_star_yy
-    J_star_t_22 = 0.5*J_star_t_21
-    J_star_t_23 = J_star_xx - J_star_zz
-    J_star_t_24 = 0.5*J_star_t_23
-    # (M4) centripetal force and weight of the platform
+    J_star_t_11 = J_star_xx - J_star_yy
+    J_star_t_12 = 0.5*J_star_t_11
+    J_star_t_13 = J_star_xx - J_star_zz
+    J_star_t_14 = 0.5*J_star_t_13
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
     Z_p_t_3 = gravity_z*m_star
-    # (C1) centroid of the platform points
-    b_c_x = 0.25*total_up_x + 0.25*total_ups_x_2
-    b_c_y = 0.25*total_up_y + 0.25*total_ups_y_2
-    b_c_z = 0.25*total_up_z + 0.25*total_ups_z_2
+    # (b_c) centroid of the platform points
+    b_c_x = 0.25*total_tube_x + 0.25*total_ups_x_2
+    b_c_y = 0.25*total_tube_y + 0.25*total_ups_y_2
+    b_c_z = 0.25*total_tube_z + 0.25*total_ups_z_2
     return {
         "dynamics": (
-        (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
                 J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
                 h_star_y, h_star_z, m_star,),
             (
                 (_ups,
-        (J_group_2_ups_xx, J_group_2_ups_xy, J_group_2_ups_xz, J_group_2_ups_yy, J_group_2_ups_yz,
-                    J_group_2_ups_zz, Sigma_2_ups_xx, Sigma_2_ups_yy, Sigma_2_ups_zz,
-                    branch_1_ups, branch_2_ups, g_r0_x_2, g_r0_y_2, g_r0_z_2, h_2_ups_x,
-                    h_2_ups_y, h_2_ups_z, h_3_ups_x, h_3_ups_y, h_3_ups_z, ups_base_frame_xx,
-                    ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
-                    ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
-                    ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_platform_point_x,
+        (ups_J_group_2_xx, ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yy, ups_J_group_2_yz,
+                    ups_J_group_2_zz, ups_Sigma_2_xx, ups_Sigma_2_yy, ups_Sigma_2_zz,
+                    ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+                    ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y, ups_g_r0_z, ups_h_2_x,
+                    ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z, ups_platform_point_x,
                     ups_platform_point_y, ups_platform_point_z,),
                 ),
-                (_up,
-        (J_group_2_up_xx, J_group_2_up_xy, J_group_2_up_xz, J_group_2_up_yy, J_group_2_up_yz,
-                    J_group_2_up_zz, Sigma_2_up_xx, Sigma_2_up_yy, Sigma_2_up_zz, branch_1_up,
-                    branch_2_up, g_r0_x, g_r0_y, g_r0_z, h_2_up_x, h_2_up_y, h_2_up_z, h_3_up_x,
-                    h_3_up_y, h_3_up_z, up_base_frame_xx, up_base_frame_xy, up_base_frame_xz,
-                    up_base_frame_yx, up_base_frame_yy, up_base_frame_yz, up_base_frame_zx,
-                    up_base_frame_zy, up_base_frame_zz, up_base_point_x, up_base_point_y,
-                    up_base_point_z, up_link3_mass, up_platform_joint_rotation_xx,
-                    up_platform_joint_rotation_xy, up_platform_joint_rotation_xz,
-                    up_platform_joint_rotation_yx, up_platform_joint_rotation_yy,
-                    up_platform_joint_rotation_yz, up_platform_joint_rotation_zx,
-                    up_platform_joint_rotation_zy, up_platform_joint_rotation_zz,
-                    up_platform_point_x, up_platform_point_y, up_platform_point_z,),
+                (_tube,
+        (tube_J_group_2_xx, tube_J_group_2_xy, tube_J_group_2_xz, tube_J_group_2_yy,
+                    tube_J_group_2_yz, tube_J_group_2_zz, tube_Sigma_2_xx, tube_Sigma_2_yy,
+                    tube_Sigma_2_zz, tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz,
+                    tube_base_frame_yx, tube_base_frame_yy, tube_base_frame_yz,
+                    tube_base_frame_zx, tube_base_frame_zy, tube_base_frame_zz, tube_base_point_x,
+                    tube_base_point_y, tube_base_point_z, tube_branch_1, tube_branch_2,
+                    tube_g_r0_x, tube_g_r0_y, tube_g_r0_z, tube_h_2_x, tube_h_2_y, tube_h_2_z,
+                    tube_h_3_x, tube_h_3_y, tube_h_3_z, tube_link3_mass,
+                    tube_platform_joint_rotation_xx, tube_platform_joint_rotation_xy,
+                    tube_platform_joint_rotation_xz, tube_platform_joint_rotation_yx,
+                    tube_platform_joint_rotation_yy, tube_platform_joint_rotation_yz,
+                    tube_platform_joint_rotation_zx, tube_platform_joint_rotation_zy,
+                    tube_platform_joint_rotation_zz, tube_platform_point_x, tube_platform_point_y,
+                    tube_platform_point_z,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
+        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
                 h_star_z, m_star,),
             (
                 (_ups,
-        (J_group_2_ups_xx, J_group_2_ups_xy, J_group_2_ups_xz, J_group_2_ups_yy, J_group_2_ups_yz,
-                    J_group_2_ups_zz, branch_1_ups, branch_2_ups, h_3_ups_x, h_3_ups_y, h_3_ups_z,
-                    ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+        (ups_J_group_2_xx, ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yy, ups_J_group_2_yz,
+                    ups_J_group_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
+                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
+                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
+                    ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_x, ups_h_3_y, ups_h_3_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
-                (_up,
-        (J_group_2_up_xx, J_group_2_up_xy, J_group_2_up_xz, J_group_2_up_yy, J_group_2_up_yz,
-                    J_group_2_up_zz, branch_1_up, branch_2_up, h_3_up_x, h_3_up_y, h_3_up_z,
-                    up_base_frame_xx, up_base_frame_xy, up_base_frame_xz, up_base_frame_yx,
-                    up_base_frame_yy, up_base_frame_yz, up_base_frame_zx, up_base_frame_zy,
-                    up_base_frame_zz, up_base_point_x, up_base_point_y, up_base_point_z,
-                    up_link3_mass, up_platform_joint_rotation_xx, up_platform_joint_rotation_xy,
-                    up_platform_joint_rotation_xz, up_platform_joint_rotation_yx,
-                    up_platform_joint_rotation_yy, up_platform_joint_rotation_yz,
-                    up_platform_joint_rotation_zx, up_platform_joint_rotation_zy,
-                    up_platform_joint_rotation_zz, up_platform_point_x, up_platform_point_y,
-                    up_platform_point_z,),
+                (_tube,
+        (tube_J_group_2_xx, tube_J_group_2_xy, tube_J_group_2_xz, tube_J_group_2_yy,
+                    tube_J_group_2_yz, tube_J_group_2_zz, tube_base_frame_xx, tube_base_frame_xy,
+                    tube_base_frame_xz, tube_base_frame_yx, tube_base_frame_yy,
+                    tube_base_frame_yz, tube_base_frame_zx, tube_base_frame_zy,
+                    tube_base_frame_zz, tube_base_point_x, tube_base_point_y, tube_base_point_z,
+                    tube_branch_1, tube_branch_2, tube_h_3_x, tube_h_3_y, tube_h_3_z,
+                    tube_link3_mass, tube_platform_joint_rotation_xx,
+                    tube_platform_joint_rotation_xy, tube_platform_joint_rotation_xz,
+                    tube_platform_joint_rotation_yx, tube_platform_joint_rotation_yy,
+                    tube_platform_joint_rotation_yz, tube_platform_joint_rotation_zx,
+                    tube_platform_joint_rotation_zy, tube_platform_joint_rotation_zz,
+                    tube_platform_point_x, tube_platform_point_y, tube_platform_point_z,),
                 ),
             ),
         ),
@@ -944,27 +967,28 @@ def _prepare(p):
                 Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
             (
                 (_ups,
-        (J_group_2_ups_xy, J_group_2_ups_xz, J_group_2_ups_yz, Sigma_2_ups_xx, Sigma_2_ups_yy,
-                    Sigma_2_ups_zz, branch_1_ups, branch_2_ups, g_r0_x_2, g_r0_y_2, g_r0_z_2,
-                    h_2_ups_x, h_2_ups_y, h_2_ups_z, h_3_ups_x, h_3_ups_y, h_3_ups_z,
-                    ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+        (ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yz, ups_Sigma_2_xx, ups_Sigma_2_yy,
+                    ups_Sigma_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
+                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
+                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
+                    ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y,
+                    ups_g_r0_z, ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
-                (_up,
-        (J_group_2_up_xy, J_group_2_up_xz, J_group_2_up_yz, Sigma_2_up_xx, Sigma_2_up_yy,
-                    Sigma_2_up_zz, branch_1_up, branch_2_up, g_r0_x, g_r0_y, g_r0_z, h_2_up_x,
-                    h_2_up_y, h_2_up_z, h_3_up_x, h_3_up_y, h_3_up_z, up_base_frame_xx,
-                    up_base_frame_xy, up_base_frame_xz, up_base_frame_yx, up_base_frame_yy,
-                    up_base_frame_yz, up_base_frame_zx, up_base_frame_zy, up_base_frame_zz,
-                    up_base_point_x, up_base_point_y, up_base_point_z, up_link3_mass,
-                    up_platform_joint_rotation_xx, up_platform_joint_rotation_xy,
-                    up_platform_joint_rotation_xz, up_platform_joint_rotation_yx,
-                    up_platform_joint_rotation_yy, up_platform_joint_rotation_yz,
-                    up_platform_joint_rotation_zx, up_platform_joint_rotation_zy,
-                    up_platform_joint_rotation_zz, up_platform_point_x, up_platform_point_y,
-                    up_platform_point_z,),
+                (_tube,
+        (tube_J_group_2_xy, tube_J_group_2_xz, tube_J_group_2_yz, tube_Sigma_2_xx,
+                    tube_Sigma_2_yy, tube_Sigma_2_zz, tube_base_frame_xx, tube_base_frame_xy,
+                    tube_base_frame_xz, tube_base_frame_yx, tube_base_frame_yy,
+                    tube_base_frame_yz, tube_base_frame_zx, tube_base_frame_zy,
+                    tube_base_frame_zz, tube_base_point_x, tube_base_point_y, tube_base_point_z,
+                    tube_branch_1, tube_branch_2, tube_g_r0_x, tube_g_r0_y, tube_g_r0_z,
+                    tube_h_2_x, tube_h_2_y, tube_h_2_z, tube_h_3_x, tube_h_3_y, tube_h_3_z,
+                    tube_link3_mass, tube_platform_joint_rotation_xx,
+                    tube_platform_joint_rotation_xy, tube_platform_joint_rotation_xz,
+                    tube_platform_joint_rotation_yx, tube_platform_joint_rotation_yy,
+                    tube_platform_joint_rotation_yz, tube_platform_joint_rotation_zx,
+                    tube_platform_joint_rotation_zy, tube_platform_joint_rotation_zz,
+                    tube_platform_point_x, tube_platform_point_y, tube_platform_point_z,),
                 ),
             ),
         ),
@@ -972,42 +996,45 @@ def _prepare(p):
         (),
             (
                 (_ups,
-        (branch_2_ups, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
                     ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
                     ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
+                    ups_branch_2, ups_platform_point_x, ups_platform_point_y,
+                    ups_platform_point_z,),
                 ),
             ),
         ),
         "Hk": (
         (),
             (
-                (_up,
-        (branch_1_up, branch_2_up, up_base_frame_xx, up_base_frame_xy, up_base_frame_xz,
-                    up_base_frame_yx, up_base_frame_yy, up_base_frame_yz, up_base_frame_zx,
-                    up_base_frame_zy, up_base_frame_zz, up_base_point_x, up_base_point_y,
-                    up_base_point_z, up_platform_joint_rotation_xx, up_platform_joint_rotation_xy,
-                    up_platform_joint_rotation_xz, up_platform_joint_rotation_yx,
-                    up_platform_joint_rotation_yy, up_platform_joint_rotation_yz,
-                    up_platform_joint_rotation_zx, up_platform_joint_rotation_zy,
-                    up_platform_joint_rotation_zz, up_platform_point_x, up_platform_point_y,
-                    up_platform_point_z,),
+                (_tube,
+        (tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz, tube_base_frame_yx,
+                    tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx,
+                    tube_base_frame_zy, tube_base_frame_zz, tube_base_point_x, tube_base_point_y,
+                    tube_base_point_z, tube_branch_1, tube_branch_2,
+                    tube_platform_joint_rotation_xx, tube_platform_joint_rotation_xy,
+                    tube_platform_joint_rotation_xz, tube_platform_joint_rotation_yx,
+                    tube_platform_joint_rotation_yy, tube_platform_joint_rotation_yz,
+                    tube_platform_joint_rotation_zx, tube_platform_joint_rotation_zy,
+                    tube_platform_joint_rotation_zz, tube_platform_point_x, tube_platform_point_y,
+                    tube_platform_point_z,),
                 ),
             ),
         ),
         "constraint_bias": (
         (),
             (
-                (_up,
-        (branch_1_up, branch_2_up, up_base_frame_xx, up_base_frame_xy, up_base_frame_xz,
-                    up_base_frame_yx, up_base_frame_yy, up_base_frame_yz, up_base_frame_zx,
-                    up_base_frame_zy, up_base_frame_zz, up_base_point_x, up_base_point_y,
-                    up_base_point_z, up_platform_joint_rotation_xx, up_platform_joint_rotation_xy,
-                    up_platform_joint_rotation_xz, up_platform_joint_rotation_yx,
-                    up_platform_joint_rotation_yy, up_platform_joint_rotation_yz,
-                    up_platform_joint_rotation_zx, up_platform_joint_rotation_zy,
-                    up_platform_joint_rotation_zz, up_platform_point_x, up_platform_point_y,
-                    up_platform_point_z,),
+                (_tube,
+        (tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz, tube_base_frame_yx,
+                    tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx,
+                    tube_base_frame_zy, tube_base_frame_zz, tube_base_point_x, tube_base_point_y,
+                    tube_base_point_z, tube_branch_1, tube_branch_2,
+                    tube_platform_joint_rotation_xx, tube_platform_joint_rotation_xy,
+                    tube_platform_joint_rotation_xz, tube_platform_joint_rotation_yx,
+                    tube_platform_joint_rotation_yy, tube_platform_joint_rotation_yz,
+                    tube_platform_joint_rotation_zx, tube_platform_joint_rotation_zy,
+                    tube_platform_joint_rotation_zz, tube_platform_point_x, tube_platform_point_y,
+                    tube_platform_point_z,),
                 ),
             ),
         ),
@@ -1016,27 +1043,28 @@ def _prepare(p):
                 gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
                 (_ups,
-        (J_group_2_ups_xy, J_group_2_ups_xz, J_group_2_ups_yz, Sigma_2_ups_xx, Sigma_2_ups_yy,
-                    Sigma_2_ups_zz, branch_1_ups, branch_2_ups, g_r0_x_2, g_r0_y_2, g_r0_z_2,
-                    h_2_ups_x, h_2_ups_y, h_2_ups_z, h_3_ups_x, h_3_ups_y, h_3_ups_z,
-                    ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+        (ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yz, ups_Sigma_2_xx, ups_Sigma_2_yy,
+                    ups_Sigma_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
+                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
+                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
+                    ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y,
+                    ups_g_r0_z, ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
-                (_up,
-        (J_group_2_up_xy, J_group_2_up_xz, J_group_2_up_yz, Sigma_2_up_xx, Sigma_2_up_yy,
-                    Sigma_2_up_zz, branch_1_up, branch_2_up, g_r0_x, g_r0_y, g_r0_z, h_2_up_x,
-                    h_2_up_y, h_2_up_z, h_3_up_x, h_3_up_y, h_3_up_z, up_base_frame_xx,
-                    up_base_frame_xy, up_base_frame_xz, up_base_frame_yx, up_base_frame_yy,
-                    up_base_frame_yz, up_base_frame_zx, up_base_frame_zy, up_base_frame_zz,
-                    up_base_point_x, up_base_point_y, up_base_point_z, up_link3_mass,
-                    up_platform_joint_rotation_xx, up_platform_joint_rotation_xy,
-                    up_platform_joint_rotation_xz, up_platform_joint_rotation_yx,
-                    up_platform_joint_rotation_yy, up_platform_joint_rotation_yz,
-                    up_platform_joint_rotation_zx, up_platform_joint_rotation_zy,
-                    up_platform_joint_rotation_zz, up_platform_point_x, up_platform_point_y,
-                    up_platform_point_z,),
+                (_tube,
+        (tube_J_group_2_xy, tube_J_group_2_xz, tube_J_group_2_yz, tube_Sigma_2_xx,
+                    tube_Sigma_2_yy, tube_Sigma_2_zz, tube_base_frame_xx, tube_base_frame_xy,
+                    tube_base_frame_xz, tube_base_frame_yx, tube_base_frame_yy,
+                    tube_base_frame_yz, tube_base_frame_zx, tube_base_frame_zy,
+                    tube_base_frame_zz, tube_base_point_x, tube_base_point_y, tube_base_point_z,
+                    tube_branch_1, tube_branch_2, tube_g_r0_x, tube_g_r0_y, tube_g_r0_z,
+                    tube_h_2_x, tube_h_2_y, tube_h_2_z, tube_h_3_x, tube_h_3_y, tube_h_3_z,
+                    tube_link3_mass, tube_platform_joint_rotation_xx,
+                    tube_platform_joint_rotation_xy, tube_platform_joint_rotation_xz,
+                    tube_platform_joint_rotation_yx, tube_platform_joint_rotation_yy,
+                    tube_platform_joint_rotation_yz, tube_platform_joint_rotation_zx,
+                    tube_platform_joint_rotation_zy, tube_platform_joint_rotation_zz,
+                    tube_platform_point_x, tube_platform_point_y, tube_platform_point_z,),
                 ),
             ),
         ),
@@ -1044,18 +1072,18 @@ def _prepare(p):
         (),
             (
                 (_ups,
-        (branch_1_ups, branch_2_ups, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-                    ups_base_point_z, ups_platform_point_x, ups_platform_point_y,
+        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+                    ups_branch_1, ups_branch_2, ups_platform_point_x, ups_platform_point_y,
                     ups_platform_point_z,),
                 ),
-                (_up,
-        (branch_1_up, branch_2_up, up_base_frame_xx, up_base_frame_xy, up_base_frame_xz,
-                    up_base_frame_yx, up_base_frame_yy, up_base_frame_yz, up_base_frame_zx,
-                    up_base_frame_zy, up_base_frame_zz, up_base_point_x, up_base_point_y,
-                    up_base_point_z, up_platform_point_x, up_platform_point_y,
-                    up_platform_point_z,),
+                (_tube,
+        (tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz, tube_base_frame_yx,
+                    tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx,
+                    tube_base_frame_zy, tube_base_frame_zz, tube_base_point_x, tube_base_point_y,
+                    tube_base_point_z, tube_branch_1, tube_branch_2, tube_platform_point_x,
+                    tube_platform_point_y, tube_platform_point_z,),
                 ),
             ),
         ),
@@ -1063,22 +1091,23 @@ def _prepare(p):
         (),
             (
                 (_ups,
-        (branch_1_ups, branch_2_ups, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-                    ups_base_point_z, ups_platform_point_x, ups_platform_point_y,
+        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+                    ups_branch_1, ups_branch_2, ups_platform_point_x, ups_platform_point_y,
                     ups_platform_point_z,),
                 ),
-                (_up,
-        (branch_1_up, branch_2_up, up_base_frame_xx, up_base_frame_xy, up_base_frame_xz,
-                    up_base_frame_yx, up_base_frame_yy, up_base_frame_yz, up_base_frame_zx,
-                    up_base_frame_zy, up_base_frame_zz, up_base_point_x, up_base_point_y,
-                    up_base_point_z, up_platform_joint_rotation_xx, up_platform_joint_rotation_xy,
-                    up_platform_joint_rotation_xz, up_platform_joint_rotation_yx,
-                    up_platform_joint_rotation_yy, up_platform_joint_rotation_yz,
-                    up_platform_joint_rotation_zx, up_platform_joint_rotation_zy,
-                    up_platform_joint_rotation_zz, up_platform_point_x, up_platform_point_y,
-                    up_platform_point_z,),
+                (_tube,
+        (tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz, tube_base_frame_yx,
+                    tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx,
+                    tube_base_frame_zy, tube_base_frame_zz, tube_base_point_x, tube_base_point_y,
+                    tube_base_point_z, tube_branch_1, tube_branch_2,
+                    tube_platform_joint_rotation_xx, tube_platform_joint_rotation_xy,
+                    tube_platform_joint_rotation_xz, tube_platform_joint_rotation_yx,
+                    tube_platform_joint_rotation_yy, tube_platform_joint_rotation_yz,
+                    tube_platform_joint_rotation_zx, tube_platform_joint_rotation_zy,
+                    tube_platform_joint_rotation_zz, tube_platform_point_x, tube_platform_point_y,
+                    tube_platform_point_z,),
                 ),
             ),
         ),
@@ -1086,38 +1115,40 @@ def _prepare(p):
         (),
             (
                 (_ups,
-        (branch_1_ups, branch_2_ups, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-                    ups_base_point_z, ups_platform_point_x, ups_platform_point_y,
+        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+                    ups_branch_1, ups_branch_2, ups_platform_point_x, ups_platform_point_y,
                     ups_platform_point_z,),
                 ),
-                (_up,
-        (branch_1_up, branch_2_up, up_base_frame_xx, up_base_frame_xy, up_base_frame_xz,
-                    up_base_frame_yx, up_base_frame_yy, up_base_frame_yz, up_base_frame_zx,
-                    up_base_frame_zy, up_base_frame_zz, up_base_point_x, up_base_point_y,
-                    up_base_point_z, up_platform_joint_rotation_xx, up_platform_joint_rotation_xy,
-                    up_platform_joint_rotation_xz, up_platform_joint_rotation_yx,
-                    up_platform_joint_rotation_yy, up_platform_joint_rotation_yz,
-                    up_platform_joint_rotation_zx, up_platform_joint_rotation_zy,
-                    up_platform_joint_rotation_zz, up_platform_point_x, up_platform_point_y,
-                    up_platform_point_z,),
+                (_tube,
+        (tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz, tube_base_frame_yx,
+                    tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx,
+                    tube_base_frame_zy, tube_base_frame_zz, tube_base_point_x, tube_base_point_y,
+                    tube_base_point_z, tube_branch_1, tube_branch_2,
+                    tube_platform_joint_rotation_xx, tube_platform_joint_rotation_xy,
+                    tube_platform_joint_rotation_xz, tube_platform_joint_rotation_yx,
+                    tube_platform_joint_rotation_yy, tube_platform_joint_rotation_yz,
+                    tube_platform_joint_rotation_zx, tube_platform_joint_rotation_zy,
+                    tube_platform_joint_rotation_zz, tube_platform_point_x, tube_platform_point_y,
+                    tube_platform_point_z,),
                 ),
             ),
         ),
         "constraints": (
         (),
             (
-                (_up,
-        (branch_1_up, branch_2_up, up_base_frame_xx, up_base_frame_xy, up_base_frame_xz,
-                    up_base_frame_yx, up_base_frame_yy, up_base_frame_yz, up_base_frame_zx,
-                    up_base_frame_zy, up_base_frame_zz, up_base_point_x, up_base_point_y,
-                    up_base_point_z, up_platform_joint_rotation_xx, up_platform_joint_rotation_xy,
-                    up_platform_joint_rotation_xz, up_platform_joint_rotation_yx,
-                    up_platform_joint_rotation_yy, up_platform_joint_rotation_yz,
-                    up_platform_joint_rotation_zx, up_platform_joint_rotation_zy,
-                    up_platform_joint_rotation_zz, up_platform_point_x, up_platform_point_y,
-                    up_platform_point_z,),
+                (_tube,
+        (tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz, tube_base_frame_yx,
+                    tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx,
+                    tube_base_frame_zy, tube_base_frame_zz, tube_base_point_x, tube_base_point_y,
+                    tube_base_point_z, tube_branch_1, tube_branch_2,
+                    tube_platform_joint_rotation_xx, tube_platform_joint_rotation_xy,
+                    tube_platform_joint_rotation_xz, tube_platform_joint_rotation_yx,
+                    tube_platform_joint_rotation_yy, tube_platform_joint_rotation_yz,
+                    tube_platform_joint_rotation_zx, tube_platform_joint_rotation_zy,
+                    tube_platform_joint_rotation_zz, tube_platform_point_x, tube_platform_point_y,
+                    tube_platform_point_z,),
                 ),
             ),
         ),
@@ -1125,28 +1156,29 @@ def _prepare(p):
         (),
             (
                 (_ups,
-        (J_group_2_ups_xy, J_group_2_ups_xz, J_group_2_ups_yz, Sigma_2_ups_xx, Sigma_2_ups_yy,
-                    Sigma_2_ups_zz, branch_1_ups, branch_2_ups, g_r0_x_2, g_r0_y_2, g_r0_z_2,
-                    h_2_ups_x, h_2_ups_y, h_2_ups_z, h_3_ups_x, h_3_ups_y, h_3_ups_z,
-                    ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+        (ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yz, ups_Sigma_2_xx, ups_Sigma_2_yy,
+                    ups_Sigma_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
+                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
+                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
+                    ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y,
+                    ups_g_r0_z, ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z,
                     ups_link3_mass, ups_platform_point_x, ups_platform_point_y,
                     ups_platform_point_z,),
                 ),
-                (_up,
-        (J_group_2_up_xy, J_group_2_up_xz, J_group_2_up_yz, Sigma_2_up_xx, Sigma_2_up_yy,
-                    Sigma_2_up_zz, branch_1_up, branch_2_up, g_r0_x, g_r0_y, g_r0_z, h_2_up_x,
-                    h_2_up_y, h_2_up_z, h_3_up_x, h_3_up_y, h_3_up_z, up_base_frame_xx,
-                    up_base_frame_xy, up_base_frame_xz, up_base_frame_yx, up_base_frame_yy,
-                    up_base_frame_yz, up_base_frame_zx, up_base_frame_zy, up_base_frame_zz,
-                    up_base_point_x, up_base_point_y, up_base_point_z, up_link3_mass,
-                    up_platform_joint_rotation_xx, up_platform_joint_rotation_xy,
-                    up_platform_joint_rotation_xz, up_platform_joint_rotation_yx,
-                    up_platform_joint_rotation_yy, up_platform_joint_rotation_yz,
-                    up_platform_joint_rotation_zx, up_platform_joint_rotation_zy,
-                    up_platform_joint_rotation_zz, up_platform_point_x, up_platform_point_y,
-                    up_platform_point_z,),
+                (_tube,
+        (tube_J_group_2_xy, tube_J_group_2_xz, tube_J_group_2_yz, tube_Sigma_2_xx,
+                    tube_Sigma_2_yy, tube_Sigma_2_zz, tube_base_frame_xx, tube_base_frame_xy,
+                    tube_base_frame_xz, tube_base_frame_yx, tube_base_frame_yy,
+                    tube_base_frame_yz, tube_base_frame_zx, tube_base_frame_zy,
+                    tube_base_frame_zz, tube_base_point_x, tube_base_point_y, tube_base_point_z,
+                    tube_branch_1, tube_branch_2, tube_g_r0_x, tube_g_r0_y, tube_g_r0_z,
+                    tube_h_2_x, tube_h_2_y, tube_h_2_z, tube_h_3_x, tube_h_3_y, tube_h_3_z,
+                    tube_link3_mass, tube_platform_joint_rotation_xx,
+                    tube_platform_joint_rotation_xy, tube_platform_joint_rotation_xz,
+                    tube_platform_joint_rotation_yx, tube_platform_joint_rotation_yy,
+                    tube_platform_joint_rotation_yz, tube_platform_joint_rotation_zx,
+                    tube_platform_joint_rotation_zy, tube_platform_joint_rotation_zz,
+                    tube_platform_point_x, tube_platform_point_y, tube_platform_point_z,),
                 ),
             ),
         ),
@@ -1154,22 +1186,23 @@ def _prepare(p):
         (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
                 (_ups,
-        (b_ups_r0_x, b_ups_r0_y, b_ups_r0_z, branch_1_ups, branch_2_ups, g_r0_x_2, g_r0_y_2,
-                    g_r0_z_2, h_2_ups_x, h_2_ups_y, h_2_ups_z, h_3_ups_x, h_3_ups_y, h_3_ups_z,
-                    ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-                    ups_link2_mass, ups_platform_point_x, ups_platform_point_y,
+        (ups_b_r0_x, ups_b_r0_y, ups_b_r0_z, ups_base_frame_xx, ups_base_frame_xy,
+                    ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
+                    ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x,
+                    ups_g_r0_y, ups_g_r0_z, ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y,
+                    ups_h_3_z, ups_link2_mass, ups_platform_point_x, ups_platform_point_y,
                     ups_platform_point_z,),
                 ),
-                (_up,
-        (b_up_r0_x, b_up_r0_y, b_up_r0_z, branch_1_up, branch_2_up, g_r0_x, g_r0_y, g_r0_z,
-                    h_2_up_x, h_2_up_y, h_2_up_z, h_3_up_x, h_3_up_y, h_3_up_z, up_base_frame_xx,
-                    up_base_frame_xy, up_base_frame_xz, up_base_frame_yx, up_base_frame_yy,
-                    up_base_frame_yz, up_base_frame_zx, up_base_frame_zy, up_base_frame_zz,
-                    up_base_point_x, up_base_point_y, up_base_point_z, up_link2_mass,
-                    up_link3_mass, up_platform_point_x, up_platform_point_y,
-                    up_platform_point_z,),
+                (_tube,
+        (tube_b_r0_x, tube_b_r0_y, tube_b_r0_z, tube_base_frame_xx, tube_base_frame_xy,
+                    tube_base_frame_xz, tube_base_frame_yx, tube_base_frame_yy,
+                    tube_base_frame_yz, tube_base_frame_zx, tube_base_frame_zy,
+                    tube_base_frame_zz, tube_base_point_x, tube_base_point_y, tube_base_point_z,
+                    tube_branch_1, tube_branch_2, tube_g_r0_x, tube_g_r0_y, tube_g_r0_z,
+                    tube_h_2_x, tube_h_2_y, tube_h_2_z, tube_h_3_x, tube_h_3_y, tube_h_3_z,
+                    tube_link2_mass, tube_link3_mass, tube_platform_point_x,
+                    tube_platform_point_y, tube_platform_point_z,),
                 ),
             ),
         ),
@@ -1177,29 +1210,31 @@ def _prepare(p):
         (b_c_x, b_c_y, b_c_z,),
             (
                 (_ups,
-        (branch_1_ups, branch_2_ups, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-                    ups_base_point_z, ups_platform_point_x, ups_platform_point_y,
+        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+                    ups_branch_1, ups_branch_2, ups_platform_point_x, ups_platform_point_y,
                     ups_platform_point_z,),
                 ),
-                (_up,
-        (branch_1_up, branch_2_up, up_base_frame_xx, up_base_frame_xy, up_base_frame_xz,
-                    up_base_frame_yx, up_base_frame_yy, up_base_frame_yz, up_base_frame_zx,
-                    up_base_frame_zy, up_base_frame_zz, up_base_point_x, up_base_point_y,
-                    up_base_point_z, up_platform_joint_rotation_xx, up_platform_joint_rotation_xy,
-                    up_platform_joint_rotation_xz, up_platform_joint_rotation_yx,
-                    up_platform_joint_rotation_yy, up_platform_joint_rotation_yz,
-                    up_platform_joint_rotation_zx, up_platform_joint_rotation_zy,
-                    up_platform_joint_rotation_zz, up_platform_point_x, up_platform_point_y,
-                    up_platform_point_z,),
+                (_tube,
+        (tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz, tube_base_frame_yx,
+                    tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx,
+                    tube_base_frame_zy, tube_base_frame_zz, tube_base_point_x, tube_base_point_y,
+                    tube_base_point_z, tube_branch_1, tube_branch_2,
+                    tube_platform_joint_rotation_xx, tube_platform_joint_rotation_xy,
+                    tube_platform_joint_rotation_xz, tube_platform_joint_rotation_yx,
+                    tube_platform_joint_rotation_yy, tube_platform_joint_rotation_yz,
+                    tube_platform_joint_rotation_zx, tube_platform_joint_rotation_zy,
+                    tube_platform_joint_rotation_zz, tube_platform_point_x, tube_platform_point_y,
+                    tube_platform_point_z,),
                 ),
             ),
         ),
     }
 
 
-_FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
+_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
@@ -1245,17 +1280,19 @@ class _Floats:
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
-        for k in range(self.states):
-            try:
-                ok, arrays = function(self, *(row[k] for row in rows))
-            except (ZeroDivisionError, OverflowError):
-                continue
-            if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
-                for a, array in zip(found, arrays):
-                    a[k] = array
-        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
+        found = [self.state(function, names, [row[k] for row in rows]) for k in range(self.states)]
+        return [np.array(a).T.reshape(*_SHAPES[n], self.states) for a, n in zip(zip(*found), names)]
+
+    def state(self, function, names, given):
+        """Lists that a function gives at a state."""
+        try:
+            ok, arrays = function(self, *given)
+        except (ZeroDivisionError, OverflowError):
+            ok = False
+        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+            return arrays
+        return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
 
 
 class _Arrays:
@@ -1323,35 +1360,44 @@ def _mode(p, states):
     return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
 
 
-def _call(function, steps, p, *arguments, mode=_mode):
-    """What the steps give at arguments (name, value, shape of a state, default, rule)."""
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+    """What the steps give at arguments (name, value, shape of a state, default, rule).
+
+    Where that may be infinite only NaN makes a state impossible.
+    """
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
     lead, p = _lead(leads), _given(p)
     read = [a[4:] != ("unused",) for a in arguments]
     if lead or mode is _Judged:
-        results = _many(steps, p, lead, given, shapes, read, mode)
+        results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
-        results = _one(steps, p, given, shapes, read)
+        results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
 
 
-def _one(steps, p, given, shapes, read):
+def _one(steps, p, given, shapes, read, unbounded):
     """Results at a single state."""
     states = [v.reshape(*shape, 1) for v, shape in zip(given, shapes)]
     with np.errstate(all="ignore"):
-        results = [a[..., 0] for a in steps(_Floats(p, 1), *states)]
-    if all(all(map(math.isfinite, v.ravel().tolist())) for v in (*compress(given, read), *results)):
-        return [np.array(a)[()] for a in results]
+        results = [a[..., 0].copy() for a in steps(_Floats(p, 1), *states)]
+    looked_at = [np.minimum(a, 0.0) for a in results] if unbounded else results
+    entries = (v.ravel().tolist() for v in (*compress(given, read), *looked_at))
+    if all(all(map(math.isfinite, row)) for row in entries):
+        return [a[()] for a in results]
     return [np.full(a.shape, np.nan)[()] for a in results]
 
 
-def _many(steps, p, lead, given, shapes, read, mode):
+def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block."""
     count = math.prod(lead)
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
+    if count > _BLOCK:
+        # Never touched, freed at once: the C library, which learns from it, then keeps the memory
+        # of intermediate arrays from block to block instead of giving its pages back.
+        np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
         for first in range(0, max(count, 1), _BLOCK):
             block = slice(first, min(first + _BLOCK, count))
@@ -1363,7 +1409,7 @@ def _many(steps, p, lead, given, shapes, read, mode):
             _all_finite(compress(states, read), good)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite(found, good)
+            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -1392,6 +1438,18 @@ def _with_forces(a, amounts, directions, legs):
     for k, leg in enumerate(legs):
         result[leg] += amounts[k] * directions[k]
     return result
+
+
+def _unlimited(a, places):
+    """a, some entries infinite; what is not known stays so."""
+    result = np.array(a)
+    result[places] += np.inf
+    return result
+
+
+def _not_negative(a):
+    """1 where no entry is negative, else 0; NaN where one is not finite."""
+    return np.where(np.isfinite(a).all(axis=0), np.all(a >= 0.0, axis=0), np.nan)
 
 
 def _rows_divided(a, b, places):
@@ -1494,8 +1552,8 @@ def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
     n, states = b.shape
     if 0 < states <= _FEW:
-        matrices, rights = np.moveaxis(a, -1, 0).tolist(), b.T.tolist()
-        return np.array([_solve_one(*each) for each in zip(matrices, rights)]).T.reshape(n, states)
+        systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
+        return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
     good = np.all((size > 0.0) & np.isfinite(size), axis=0)
     rows = np.concatenate((a, b[:, None]), axis=1)
@@ -1522,28 +1580,32 @@ def _solve(a, b):
 
 
 def _solve_one(a, b):
-    """The same for one system of nested lists."""
-    n = len(b)
-    failure = [np.nan] * n
-    for i, row in enumerate(a):
-        size = max(map(abs, row), default=0.0)
-        if not 0.0 < size < np.inf:
-            return failure
-        a[i] = [v / size for v in row] + [b[i] / size]
-    for k in range(n):
-        best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
-            a[k], a[best] = a[best], a[k]
-        if not abs(a[k][k]) > _PIVOT:
-            return failure
-        head = a[k]
-        for i in range(k + 1, n):
-            factor = a[i][k] / head[k]
-            a[i] = [v - factor * h for v, h in zip(a[i], head)]
-    x = [0.0] * n
-    for k in reversed(range(n)):
-        x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
-    return x if all(map(math.isfinite, x)) else failure
+    """The same for one system of nested lists: the rows left lose an entry at every step."""
+    rows, heads = [], []
+    for row, right in zip(a, b):
+        size = max(map(abs, row))
+        if not 0.0 < size < math.inf:
+            return [math.nan] * len(b)
+        rows.append([v / size for v in (*row, right)])
+    while rows:
+        column = [abs(row[0]) for row in rows]
+        largest = max(column)
+        if largest > _CLEARLY * column[0]:
+            best = column.index(largest)
+            rows[0], rows[best] = rows[best], rows[0]
+        pivot, *head = rows[0]
+        if not abs(pivot) > _PIVOT:
+            return [math.nan] * len(b)
+        heads.append((pivot, head))
+        for i in range(1, len(rows)):
+            first, *row = rows[i]
+            factor = first / pivot
+            rows[i] = [v - factor * h for v, h in zip(row, head)]
+        del rows[0]
+    x = []
+    for pivot, (*head, right) in reversed(heads):
+        x.insert(0, (right - sum([h * v for h, v in zip(head, x)])) / pivot)
+    return x if all(map(math.isfinite, x)) else [math.nan] * len(b)
 
 
 def _saddle(a, b):
@@ -1662,12 +1724,12 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 1986 mul, 1460 add, 15 div, 14 sqrt, 0 trig
+# dynamics: 1974 mul, 1448 add, 15 div, 14 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
-    J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
+    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
         Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
         m_star,
     ) = shared
@@ -1725,334 +1787,342 @@ def _run_dynamics(m, X, V):
     out_H = m.zeros("H")
     out_Hk = m.zeros("Hk")
     out_constraint_bias = m.zeros("constraint_bias")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy
-    J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
     J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_12 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_15 = 2.0*J_star_t_14 + J_star_xx
-    # (M4) centripetal force and weight of the platform
+    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
+    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
     Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
     Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    g_r0_x_3 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y_3 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z_3 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_3*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z_3*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z_3*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x_3*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_3*h_star_y - Z_q_t*omega_r0_y - g_r0_y_3*h_star_x
+    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
+    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
     sums = [0.0] * 27
     for leg, k in legs[0]:
         (
-        J_group_2_ups_xx, J_group_2_ups_xy, J_group_2_ups_xz, J_group_2_ups_yy, J_group_2_ups_yz,
-            J_group_2_ups_zz, Sigma_2_ups_xx, Sigma_2_ups_yy, Sigma_2_ups_zz, branch_1_ups,
-            branch_2_ups, g_r0_x_2, g_r0_y_2, g_r0_z_2, h_2_ups_x, h_2_ups_y, h_2_ups_z,
-            h_3_ups_x, h_3_ups_y, h_3_ups_z, ups_base_frame_xx, ups_base_frame_xy,
-            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-            ups_base_point_y, ups_base_point_z, ups_platform_point_x, ups_platform_point_y,
+        ups_J_group_2_xx, ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yy, ups_J_group_2_yz,
+            ups_J_group_2_zz, ups_Sigma_2_xx, ups_Sigma_2_yy, ups_Sigma_2_zz, ups_base_frame_xx,
+            ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
+            ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
+            ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+            ups_g_r0_x, ups_g_r0_y, ups_g_r0_z, ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x,
+            ups_h_3_y, ups_h_3_z, ups_platform_point_x, ups_platform_point_y,
             ups_platform_point_z,
         ) = k
-        # (ups-K1) from the base point to the connection point
-        q_ups_in_base_x = (
+        # (ups-S) from the base point to the connection point
+        ups_q_in_base_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        q_ups_in_base_y = (
+        ups_q_in_base_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        q_ups_in_base_z = (
+        ups_q_in_base_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        S_ups_x = q_ups_in_base_x + t_x - ups_base_point_x
-        S_ups_y = q_ups_in_base_y + t_y - ups_base_point_y
-        S_ups_z = q_ups_in_base_z + t_z - ups_base_point_z
-        # (ups-K2) component along the reference direction
-        px_1_ups = (
-        S_ups_x*ups_base_frame_xx + S_ups_y*ups_base_frame_yx + S_ups_z*ups_base_frame_zx
+        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        # (ups-px_1) component along the reference direction
+        ups_px_1 = (
+        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-K3) component across the reference direction
-        py_1_ups = (
-        S_ups_x*ups_base_frame_xy + S_ups_y*ups_base_frame_yy + S_ups_z*ups_base_frame_zy
+        # (ups-py_1) component across the reference direction
+        ups_py_1 = (
+        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-K4) squared amplitude
-        rho2_1_ups = px_1_ups*px_1_ups + py_1_ups*py_1_ups
-        # (ups-K5) amplitude, with the sign of the branch
-        root_1_ups = branch_1_ups*sqrt(rho2_1_ups)
-        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_ups_t = (
-        S_ups_x*ups_base_frame_xz + S_ups_y*ups_base_frame_yz + S_ups_z*ups_base_frame_zz
+        # (ups-rho2_1) squared amplitude
+        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
+        # (ups-root_1) amplitude, with the sign of the branch
+        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ups_xi_1_t = (
+        ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-K13) squared amplitude
-        rho2_2_ups = rho2_1_ups + xi_1_ups_t*xi_1_ups_t
-        # (ups-K14) amplitude, with the sign of the branch
-        root_2_ups = branch_2_ups*sqrt(rho2_2_ups)
-        # (ups-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2_ups = 1.0/root_2_ups
-        c_2_ups = inv_root_2_ups*root_1_ups
-        # (ups-K16) sine of the angle of joint 2 from its reference direction
-        s_2_ups = inv_root_2_ups*xi_1_ups_t
-        # (ups-V5) reciprocal vector 1
-        axis_x_x = S_ups_x*inv_root_2_ups
-        axis_x_y = S_ups_y*inv_root_2_ups
-        axis_x_z = S_ups_z*inv_root_2_ups
-        # (ups-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_ups = 1.0/root_1_ups
-        c_1_ups = inv_root_1_ups*py_1_ups
-        # (ups-K7) sine of the angle of joint 1 from its reference direction
-        s_1_ups = inv_root_1_ups*px_1_ups
-        # (ups-V5) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = s_1_ups*ups_base_frame_xy - c_1_ups*ups_base_frame_xx
-        axis_z_ups_axes2_in_base_y = s_1_ups*ups_base_frame_yy - c_1_ups*ups_base_frame_yx
-        axis_z_ups_axes2_in_base_z = s_1_ups*ups_base_frame_zy - c_1_ups*ups_base_frame_zx
+        # (ups-rho2_2) squared amplitude
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        # (ups-root_2) amplitude, with the sign of the branch
+        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_root_2 = 1.0/ups_root_2
+        ups_c_2 = inv_ups_root_2*ups_root_1
+        # (ups-s_2) sine of the angle of joint 2 from its reference direction
+        ups_s_2 = inv_ups_root_2*ups_xi_1_t
+        # (ups-w_1) reciprocal vector 1
+        ups_axis_x_x = inv_ups_root_2*ups_S_x
+        ups_axis_x_y = inv_ups_root_2*ups_S_y
+        ups_axis_x_z = inv_ups_root_2*ups_S_z
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
+        # (ups-w_1) reciprocal vector 1
+        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
+        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
+        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
         axis_y_ups_axes2_x = (
-        axis_x_z*axis_z_ups_axes2_in_base_y - axis_x_y*axis_z_ups_axes2_in_base_z
+        axis_z_ups_axes2_in_base_y*ups_axis_x_z - axis_z_ups_axes2_in_base_z*ups_axis_x_y
         )
         axis_y_ups_axes2_y = (
-        axis_x_x*axis_z_ups_axes2_in_base_z - axis_x_z*axis_z_ups_axes2_in_base_x
+        axis_z_ups_axes2_in_base_z*ups_axis_x_x - axis_z_ups_axes2_in_base_x*ups_axis_x_z
         )
         axis_y_ups_axes2_z = (
-        axis_x_y*axis_z_ups_axes2_in_base_x - axis_x_x*axis_z_ups_axes2_in_base_y
+        axis_z_ups_axes2_in_base_x*ups_axis_x_y - axis_z_ups_axes2_in_base_y*ups_axis_x_x
         )
-        # (ups-A14) coefficient of the acceleration in: angular acceleration of link 1
-        d_alpha_1_ups_t = inv_root_1_ups*s_2_ups
-        # (ups-N22) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_ups_t = h_3_ups_z*inv_root_2_ups
-        # (ups-N6) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        d_phi_3_ups_t = h_3_ups_y*inv_root_2_ups
-        d_phi_3_ups_t_2 = h_3_ups_x*inv_root_2_ups
-        # (ups-N25) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_ups_yy = (
-        -d_phi_3_ups_t_2 - inv_root_2_ups*(h_3_ups_x + J_group_2_ups_zz*inv_root_2_ups)
+        # (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
+        ups_d_alpha_1_t = inv_ups_root_1*ups_s_2
+        # (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+        ups_d_phi_3_t = inv_ups_root_2*ups_h_3_z
+        ups_d_phi_3_t_2 = inv_ups_root_2*ups_h_3_y
+        ups_d_phi_3_t_3 = inv_ups_root_2*ups_h_3_x
+        # (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        ups_d_c_yy = (
+        -ups_d_phi_3_t_3 - inv_ups_root_2*(ups_h_3_x + inv_ups_root_2*ups_J_group_2_zz)
         )
-        d_c_ups_yz = (
-        d_alpha_1_ups_t*h_3_ups_y - inv_root_2_ups*(J_group_2_ups_xz*d_alpha_1_ups_t -
-            J_group_2_ups_yz*inv_root_2_ups)
+        ups_d_c_yz = (
+        ups_d_alpha_1_t*ups_h_3_y - inv_ups_root_2*(ups_J_group_2_xz*ups_d_alpha_1_t -
+            inv_ups_root_2*ups_J_group_2_yz)
         )
-        d_c_ups_zz = (
-        d_alpha_1_ups_t*h_3_ups_z - d_phi_3_ups_t_2 -
-            inv_root_1_ups*(s_2_ups*(J_group_2_ups_xx*d_alpha_1_ups_t - h_3_ups_z -
-            J_group_2_ups_xy*inv_root_2_ups) - c_2_ups*(J_group_2_ups_xy*d_alpha_1_ups_t -
-            h_3_ups_x - J_group_2_ups_yy*inv_root_2_ups))
+        ups_d_c_zz = (
+        ups_d_alpha_1_t*ups_h_3_z - ups_d_phi_3_t_3 -
+            inv_ups_root_1*(ups_s_2*(ups_J_group_2_xx*ups_d_alpha_1_t - ups_h_3_z -
+            inv_ups_root_2*ups_J_group_2_xy) - ups_c_2*(ups_J_group_2_xy*ups_d_alpha_1_t -
+            ups_h_3_x - inv_ups_root_2*ups_J_group_2_yy))
         )
-        # (ups-N27) inertia of the leg at the connection point, without the mass gathered there
-        Q_ups_t = 0.5*d_c_ups_yy
-        Q_ups_t_2 = 0.5*d_c_ups_zz
-        Q_ups_t_3 = (
-        Q_ups_t*axis_y_ups_axes2_x + axis_z_ups_axes2_in_base_x*d_c_ups_yz - axis_x_x*d_G_ups_t
+        # (ups-Q) inertia of the leg at the connection point, without the mass gathered there
+        ups_Q_t = 0.5*ups_d_c_yy
+        ups_Q_t_2 = 0.5*ups_d_c_zz
+        ups_Q_t_3 = (
+        axis_y_ups_axes2_x*ups_Q_t + axis_z_ups_axes2_in_base_x*ups_d_c_yz -
+            ups_axis_x_x*ups_d_phi_3_t
         )
-        Q_ups_t_4 = (
-        Q_ups_t*axis_y_ups_axes2_y + axis_z_ups_axes2_in_base_y*d_c_ups_yz - axis_x_y*d_G_ups_t
+        ups_Q_t_4 = (
+        axis_y_ups_axes2_y*ups_Q_t + axis_z_ups_axes2_in_base_y*ups_d_c_yz -
+            ups_axis_x_y*ups_d_phi_3_t
         )
-        Q_ups_t_5 = (
-        Q_ups_t*axis_y_ups_axes2_z + axis_z_ups_axes2_in_base_z*d_c_ups_yz - axis_x_z*d_G_ups_t
+        ups_Q_t_5 = (
+        axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_in_base_z*ups_d_c_yz -
+            ups_axis_x_z*ups_d_phi_3_t
         )
-        Q_ups_t_6 = Q_ups_t_2*axis_z_ups_axes2_in_base_x + axis_x_x*d_phi_3_ups_t
-        Q_ups_t_7 = Q_ups_t_2*axis_z_ups_axes2_in_base_y + axis_x_y*d_phi_3_ups_t
-        Q_ups_t_8 = Q_ups_t_2*axis_z_ups_axes2_in_base_z + axis_x_z*d_phi_3_ups_t
-        Q_ups_t_9 = Q_ups_t_3*axis_y_ups_axes2_x + Q_ups_t_6*axis_z_ups_axes2_in_base_x
-        Q_ups_t_10 = 2.0*Q_ups_t_9
-        Q_ups_t_11 = (
-        Q_ups_t_3*axis_y_ups_axes2_y + Q_ups_t_4*axis_y_ups_axes2_x +
-            Q_ups_t_6*axis_z_ups_axes2_in_base_y + Q_ups_t_7*axis_z_ups_axes2_in_base_x
+        ups_Q_t_6 = axis_z_ups_axes2_in_base_x*ups_Q_t_2 + ups_axis_x_x*ups_d_phi_3_t_2
+        ups_Q_t_7 = axis_z_ups_axes2_in_base_y*ups_Q_t_2 + ups_axis_x_y*ups_d_phi_3_t_2
+        ups_Q_t_8 = axis_z_ups_axes2_in_base_z*ups_Q_t_2 + ups_axis_x_z*ups_d_phi_3_t_2
+        ups_Q_t_9 = axis_y_ups_axes2_x*ups_Q_t_3 + axis_z_ups_axes2_in_base_x*ups_Q_t_6
+        ups_Q_t_10 = 2.0*ups_Q_t_9
+        ups_Q_t_11 = (
+        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 +
+            axis_z_ups_axes2_in_base_x*ups_Q_t_7 + axis_z_ups_axes2_in_base_y*ups_Q_t_6
         )
-        Q_ups_t_12 = (
-        Q_ups_t_3*axis_y_ups_axes2_z + Q_ups_t_5*axis_y_ups_axes2_x +
-            Q_ups_t_6*axis_z_ups_axes2_in_base_z + Q_ups_t_8*axis_z_ups_axes2_in_base_x
+        ups_Q_t_12 = (
+        axis_y_ups_axes2_x*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_3 +
+            axis_z_ups_axes2_in_base_x*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_6
         )
-        Q_ups_t_13 = Q_ups_t_4*axis_y_ups_axes2_y + Q_ups_t_7*axis_z_ups_axes2_in_base_y
-        Q_ups_t_14 = 2.0*Q_ups_t_13
-        Q_ups_t_15 = (
-        Q_ups_t_4*axis_y_ups_axes2_z + Q_ups_t_5*axis_y_ups_axes2_y +
-            Q_ups_t_7*axis_z_ups_axes2_in_base_z + Q_ups_t_8*axis_z_ups_axes2_in_base_y
+        ups_Q_t_13 = axis_y_ups_axes2_y*ups_Q_t_4 + axis_z_ups_axes2_in_base_y*ups_Q_t_7
+        ups_Q_t_14 = 2.0*ups_Q_t_13
+        ups_Q_t_15 = (
+        axis_y_ups_axes2_y*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_4 +
+            axis_z_ups_axes2_in_base_y*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_7
         )
-        Q_ups_t_16 = Q_ups_t_5*axis_y_ups_axes2_z + Q_ups_t_8*axis_z_ups_axes2_in_base_z
-        Q_ups_t_17 = 2.0*Q_ups_t_16
-        # (M2) coupling block of M
-        M_ta_t = Q_ups_t_11*q_ups_in_base_z
-        M_ta_t_2 = Q_ups_t_12*q_ups_in_base_y
-        M_ta_t_3 = M_ta_t - M_ta_t_2
-        M_ta_t_4 = Q_ups_t_10*q_ups_in_base_z - Q_ups_t_12*q_ups_in_base_x
-        M_ta_t_5 = Q_ups_t_10*q_ups_in_base_y - Q_ups_t_11*q_ups_in_base_x
-        M_ta_t_6 = Q_ups_t_14*q_ups_in_base_z - Q_ups_t_15*q_ups_in_base_y
-        M_ta_t_7 = Q_ups_t_15*q_ups_in_base_x
-        M_ta_t_8 = M_ta_t - M_ta_t_7
-        M_ta_t_9 = Q_ups_t_11*q_ups_in_base_y - Q_ups_t_14*q_ups_in_base_x
-        M_ta_t_10 = Q_ups_t_15*q_ups_in_base_z - Q_ups_t_17*q_ups_in_base_y
-        M_ta_t_11 = Q_ups_t_12*q_ups_in_base_z - Q_ups_t_17*q_ups_in_base_x
-        M_ta_t_12 = M_ta_t_7 - M_ta_t_2
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t_6*q_ups_in_base_z - M_ta_t_10*q_ups_in_base_y
-        M_aa_t_2 = M_ta_t_8*q_ups_in_base_z - M_ta_t_11*q_ups_in_base_y
-        M_aa_t_3 = M_ta_t_12*q_ups_in_base_y + M_ta_t_9*q_ups_in_base_z
-        M_aa_t_4 = M_ta_t_4*q_ups_in_base_z - M_ta_t_11*q_ups_in_base_x
-        M_aa_t_5 = M_ta_t_12*q_ups_in_base_x + M_ta_t_5*q_ups_in_base_z
-        M_aa_t_6 = M_ta_t_5*q_ups_in_base_y - M_ta_t_9*q_ups_in_base_x
-        # (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x_2 = g_r0_y_2*s_1_ups - c_1_ups*g_r0_x_2
-        g_r1_y_2 = -c_1_ups*g_r0_y_2 - g_r0_x_2*s_1_ups
-        g_r3_x_2 = g_r0_z_2*s_2_ups - c_2_ups*g_r1_y_2
-        g_r3_y_2 = -c_2_ups*g_r0_z_2 - g_r1_y_2*s_2_ups
-        # (ups-A1) centripetal acceleration of the connection point
-        u_1_ups_t = omega_y*q_ups_in_base_z - omega_z*q_ups_in_base_y
-        u_1_ups_t_2 = omega_z*q_ups_in_base_x - omega_x*q_ups_in_base_z
-        u_1_ups_t_3 = omega_x*q_ups_in_base_y - omega_y*q_ups_in_base_x
-        u_1_ups_x = omega_y*u_1_ups_t_3 - omega_z*u_1_ups_t_2
-        u_1_ups_y = omega_z*u_1_ups_t - omega_x*u_1_ups_t_3
-        u_1_ups_z = omega_x*u_1_ups_t_2 - omega_y*u_1_ups_t
-        u_1_ups_t_4 = axis_y_ups_axes2_x*u_1_ups_x
-        u_1_ups_t_5 = axis_y_ups_axes2_y*u_1_ups_y
-        u_1_ups_t_6 = axis_y_ups_axes2_z*u_1_ups_z
-        u_1_ups_tip_z = (
-        axis_z_ups_axes2_in_base_x*u_1_ups_x + axis_z_ups_axes2_in_base_y*u_1_ups_y +
-            axis_z_ups_axes2_in_base_z*u_1_ups_z
+        ups_Q_t_16 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_in_base_z*ups_Q_t_8
+        ups_Q_t_17 = 2.0*ups_Q_t_16
+        # (M_ta) coupling block of M
+        ups_M_ta_t = ups_Q_t_11*ups_q_in_base_z
+        ups_M_ta_t_2 = ups_Q_t_12*ups_q_in_base_y
+        ups_M_ta_t_3 = ups_M_ta_t - ups_M_ta_t_2
+        ups_M_ta_t_4 = ups_Q_t_10*ups_q_in_base_z - ups_Q_t_12*ups_q_in_base_x
+        ups_M_ta_t_5 = ups_Q_t_10*ups_q_in_base_y - ups_Q_t_11*ups_q_in_base_x
+        ups_M_ta_t_6 = ups_Q_t_14*ups_q_in_base_z - ups_Q_t_15*ups_q_in_base_y
+        ups_M_ta_t_7 = ups_Q_t_15*ups_q_in_base_x
+        ups_M_ta_t_8 = ups_M_ta_t - ups_M_ta_t_7
+        ups_M_ta_t_9 = ups_Q_t_11*ups_q_in_base_y - ups_Q_t_14*ups_q_in_base_x
+        ups_M_ta_t_10 = ups_Q_t_15*ups_q_in_base_z - ups_Q_t_17*ups_q_in_base_y
+        ups_M_ta_t_11 = ups_Q_t_12*ups_q_in_base_z - ups_Q_t_17*ups_q_in_base_x
+        ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2
+        # (M_aa) rotational block of M
+        ups_M_aa_t = ups_M_ta_t_6*ups_q_in_base_z - ups_M_ta_t_10*ups_q_in_base_y
+        ups_M_aa_t_2 = ups_M_ta_t_8*ups_q_in_base_z - ups_M_ta_t_11*ups_q_in_base_y
+        ups_M_aa_t_3 = ups_M_ta_t_12*ups_q_in_base_y + ups_M_ta_t_9*ups_q_in_base_z
+        ups_M_aa_t_4 = ups_M_ta_t_4*ups_q_in_base_z - ups_M_ta_t_11*ups_q_in_base_x
+        ups_M_aa_t_5 = ups_M_ta_t_12*ups_q_in_base_x + ups_M_ta_t_5*ups_q_in_base_z
+        ups_M_aa_t_6 = ups_M_ta_t_5*ups_q_in_base_y - ups_M_ta_t_9*ups_q_in_base_x
+        # (ups-S_dot) velocity of the connection point
+        ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y
+        ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z
+        ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x
+        ups_S_dot_x = t_dot_x + ups_S_dot_t
+        ups_S_dot_y = t_dot_y + ups_S_dot_t_2
+        ups_S_dot_z = t_dot_z + ups_S_dot_t_3
+        ups_S_dot_tip_x = (
+        ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y + ups_S_dot_z*ups_axis_x_z
         )
-        # (ups-N4) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        acc_3_ups_o_x = axis_x_x*u_1_ups_x + axis_x_y*u_1_ups_y + axis_x_z*u_1_ups_z - g_r3_x_2
-        acc_3_ups_o_y = u_1_ups_t_4 + u_1_ups_t_5 + u_1_ups_t_6 - g_r3_y_2
-        acc_3_ups_o_z = u_1_ups_tip_z - g_r1_x_2
-        # (ups-V1) velocity of the connection point
-        S_dot_ups_x = t_dot_x + u_1_ups_t
-        S_dot_ups_y = t_dot_y + u_1_ups_t_2
-        S_dot_ups_z = t_dot_z + u_1_ups_t_3
-        S_dot_ups_tip_x = S_dot_ups_x*axis_x_x + S_dot_ups_y*axis_x_y + S_dot_ups_z*axis_x_z
-        # (ups-V8) rate of joint 1
-        qd_2_ups = (
-        inv_root_2_ups*(S_dot_ups_x*axis_y_ups_axes2_x + S_dot_ups_y*axis_y_ups_axes2_y +
-            S_dot_ups_z*axis_y_ups_axes2_z)
+        # (ups-qd_2) rate of joint 2
+        ups_qd_2 = (
+        inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
+            axis_y_ups_axes2_z*ups_S_dot_z)
         )
-        qd_1_ups = (
-        inv_root_1_ups*(S_dot_ups_x*axis_z_ups_axes2_in_base_x +
-            S_dot_ups_y*axis_z_ups_axes2_in_base_y + S_dot_ups_z*axis_z_ups_axes2_in_base_z)
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
+            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z)
         )
-        # (ups-V11) angular velocity of link 1
-        omega_1_ups_t = qd_1_ups*s_2_ups
-        omega_1_ups_t_2 = c_2_ups*qd_1_ups
-        # (ups-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_ups_x = omega_1_ups_t_2*qd_2_ups
-        zeta_2_ups_y = omega_1_ups_t*qd_2_ups
-        # (ups-V13) centripetal tensor of link 2
-        W_2_ups_t = omega_1_ups_t*omega_1_ups_t
-        W_2_ups_t_2 = omega_1_ups_t_2*omega_1_ups_t_2
-        W_2_ups_t_3 = qd_2_ups*qd_2_ups
-        W_2_ups_xy = omega_1_ups_t*omega_1_ups_t_2
-        # (ups-A5) acceleration of the connection point at zero joint accelerations
-        bias_ups_t = 2.0*S_dot_ups_tip_x
-        bias_ups_z = bias_ups_t*omega_1_ups_t_2 + 2.0*root_2_ups*zeta_2_ups_y
-        # (ups-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_ups_o_z = u_1_ups_tip_z - bias_ups_z
-        # (ups-A9) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_ups_o_t = (
-        inv_root_2_ups*(u_1_ups_t_4 + u_1_ups_t_5 + u_1_ups_t_6 - bias_ups_t*qd_2_ups)
+        # (ups-omega_1) angular velocity of link 1
+        ups_omega_1_t = ups_qd_1*ups_s_2
+        ups_omega_1_t_2 = ups_c_2*ups_qd_1
+        # (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2
+        ups_zeta_2_y = ups_omega_1_t*ups_qd_2
+        # (ups-u_1) centripetal acceleration of the connection point
+        ups_u_1_x = omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2
+        ups_u_1_y = omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3
+        ups_u_1_z = omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t
+        # (ups-W_2) centripetal tensor of link 2
+        ups_W_2_t = ups_omega_1_t*ups_omega_1_t
+        ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2
+        ups_W_2_t_3 = ups_qd_2*ups_qd_2
+        ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2
+        # (ups-bias) acceleration of the connection point at zero joint accelerations
+        ups_bias_t = 2.0*ups_S_dot_tip_x
+        ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2.0*ups_root_2*ups_zeta_2_y
+        # (ups-u_1) centripetal acceleration of the connection point
+        ups_u_1_t = axis_y_ups_axes2_x*ups_u_1_x
+        ups_u_1_t_2 = axis_y_ups_axes2_y*ups_u_1_y
+        ups_u_1_t_3 = axis_y_ups_axes2_z*ups_u_1_z
+        ups_u_1_tip_z = (
+        axis_z_ups_axes2_in_base_x*ups_u_1_x + axis_z_ups_axes2_in_base_y*ups_u_1_y +
+            axis_z_ups_axes2_in_base_z*ups_u_1_z
         )
-        qdd_1_ups_o = inv_root_1_ups*rel_ups_o_z
-        # (ups-A15) remainder without the acceleration in: angular acceleration of link 1
-        alpha_1_ups_o_t = qdd_1_ups_o*s_2_ups
-        alpha_1_ups_o_t_2 = c_2_ups*qdd_1_ups_o
-        # (ups-A18) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_ups_o_x = alpha_1_ups_o_t - zeta_2_ups_x
-        alpha_2_ups_o_y = -alpha_1_ups_o_t_2 - zeta_2_ups_y
-        # (ups-A20) remainder of the acceleration tensor of link 2
-        B_2_ups_o_xy = -2.0*W_2_ups_xy - qdd_1_ups_o_t
-        B_2_ups_o_zx = zeta_2_ups_y - alpha_2_ups_o_y
-        B_2_ups_o_zy = alpha_2_ups_o_x - zeta_2_ups_x
-        # (ups-N14) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_ups_o_x = (
-        B_2_ups_o_zy*Sigma_2_ups_yy + J_group_2_ups_xz*qdd_1_ups_o_t +
-            J_group_2_ups_yz*(W_2_ups_t_2 - W_2_ups_t_3) + Sigma_2_ups_zz*alpha_1_ups_o_t +
-            g_r1_x_2*h_2_ups_z + g_r3_y_2*h_2_ups_y - B_2_ups_o_zx*J_group_2_ups_xy -
-            acc_3_ups_o_y*h_3_ups_y - acc_3_ups_o_z*h_3_ups_z
+        # (ups-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        ups_rel_o_z = ups_u_1_tip_z - ups_bias_z
+        # (ups-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        ups_qdd_2_o_t = (
+        inv_ups_root_2*(ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 - ups_bias_t*ups_qd_2)
         )
-        mu_2_ups_o_y = (
-        B_2_ups_o_zy*J_group_2_ups_xy + acc_3_ups_o_x*h_3_ups_y + g_r1_x_2*h_2_ups_x -
-            B_2_ups_o_xy*J_group_2_ups_yz - B_2_ups_o_zx*Sigma_2_ups_xx -
-            J_group_2_ups_xz*(W_2_ups_t - W_2_ups_t_3) - Sigma_2_ups_zz*alpha_1_ups_o_t_2 -
-            acc_3_ups_o_z*h_3_ups_x - g_r3_x_2*h_2_ups_y
+        ups_qdd_1_o = inv_ups_root_1*ups_rel_o_z
+        # (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        ups_alpha_1_o_t = ups_qdd_1_o*ups_s_2
+        ups_alpha_1_o_t_2 = ups_c_2*ups_qdd_1_o
+        # (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        ups_alpha_2_o_x = ups_alpha_1_o_t - ups_zeta_2_x
+        ups_alpha_2_o_y = -ups_alpha_1_o_t_2 - ups_zeta_2_y
+        # (ups-B_2_o) remainder of the acceleration tensor of link 2
+        ups_B_2_o_xy = -2.0*ups_W_2_xy - ups_qdd_2_o_t
+        ups_B_2_o_zx = ups_zeta_2_y - ups_alpha_2_o_y
+        ups_B_2_o_zy = ups_alpha_2_o_x - ups_zeta_2_x
+        # (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
+        ups_phi_3_o_x = (
+        -ups_B_2_o_xy*ups_h_3_z - ups_alpha_1_o_t_2*ups_h_3_y - ups_h_3_x*(ups_W_2_t_2 +
+            ups_W_2_t_3)
         )
-        mu_2_ups_o_z = (
-        J_group_2_ups_xy*(W_2_ups_t - W_2_ups_t_2) + J_group_2_ups_xz*alpha_1_ups_o_t +
-            Sigma_2_ups_xx*qdd_1_ups_o_t + acc_3_ups_o_x*h_3_ups_z + acc_3_ups_o_y*h_3_ups_x -
-            B_2_ups_o_xy*Sigma_2_ups_yy - J_group_2_ups_yz*alpha_1_ups_o_t_2 - g_r3_x_2*h_2_ups_z
-            - g_r3_y_2*h_2_ups_x
+        # (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x
+        ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1
+        ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y
+        ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2
+        # (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        ups_acc_3_o_x = (
+        ups_axis_x_x*ups_u_1_x + ups_axis_x_y*ups_u_1_y + ups_axis_x_z*ups_u_1_z - ups_g_r3_x
         )
-        # (ups-N7) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
-        phi_3_ups_o_x = (
-        -B_2_ups_o_xy*h_3_ups_z - alpha_1_ups_o_t_2*h_3_ups_y - h_3_ups_x*(W_2_ups_t_2 +
-            W_2_ups_t_3)
+        ups_acc_3_o_y = ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 - ups_g_r3_y
+        ups_acc_3_o_z = ups_u_1_tip_z - ups_g_r1_x
+        # (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        ups_mu_2_o_x = (
+        ups_B_2_o_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_2_o_t +
+            ups_J_group_2_yz*(ups_W_2_t_2 - ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_o_t +
+            ups_g_r1_x*ups_h_2_z + ups_g_r3_y*ups_h_2_y - ups_B_2_o_zx*ups_J_group_2_xy -
+            ups_acc_3_o_y*ups_h_3_y - ups_acc_3_o_z*ups_h_3_z
         )
-        # (ups-N26) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_ups_o_y = (
-        alpha_1_ups_o_t*h_3_ups_y - h_3_ups_x*qdd_1_ups_o_t - h_3_ups_z*(W_2_ups_t + W_2_ups_t_3)
-            - inv_root_2_ups*mu_2_ups_o_z
+        ups_mu_2_o_y = (
+        ups_B_2_o_zy*ups_J_group_2_xy + ups_acc_3_o_x*ups_h_3_y + ups_g_r1_x*ups_h_2_x -
+            ups_B_2_o_xy*ups_J_group_2_yz - ups_B_2_o_zx*ups_Sigma_2_xx -
+            ups_J_group_2_xz*(ups_W_2_t - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_o_t_2 -
+            ups_acc_3_o_z*ups_h_3_x - ups_g_r3_x*ups_h_2_y
         )
-        c_ups_o_z = (
-        B_2_ups_o_zy*h_3_ups_z + h_3_ups_y*(W_2_ups_t + W_2_ups_t_2) - B_2_ups_o_zx*h_3_ups_x -
-            inv_root_1_ups*(mu_2_ups_o_x*s_2_ups - c_2_ups*mu_2_ups_o_y)
+        ups_mu_2_o_z = (
+        ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) + ups_J_group_2_xz*ups_alpha_1_o_t +
+            ups_Sigma_2_xx*ups_qdd_2_o_t + ups_acc_3_o_x*ups_h_3_z + ups_acc_3_o_y*ups_h_3_x -
+            ups_B_2_o_xy*ups_Sigma_2_yy - ups_J_group_2_yz*ups_alpha_1_o_t_2 -
+            ups_g_r3_x*ups_h_2_z - ups_g_r3_y*ups_h_2_x
         )
-        # (ups-N28) velocity and gravity terms of the leg force
-        U_ups_in_base_x = (
-        axis_x_x*phi_3_ups_o_x - axis_y_ups_axes2_x*c_ups_o_y -
-            axis_z_ups_axes2_in_base_x*c_ups_o_z
+        # (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        ups_c_o_y = (
+        ups_alpha_1_o_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_o_z - ups_h_3_x*ups_qdd_2_o_t -
+            ups_h_3_z*(ups_W_2_t + ups_W_2_t_3)
         )
-        U_ups_in_base_y = (
-        axis_x_y*phi_3_ups_o_x - axis_y_ups_axes2_y*c_ups_o_y -
-            axis_z_ups_axes2_in_base_y*c_ups_o_z
+        ups_c_o_z = (
+        ups_B_2_o_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
+            inv_ups_root_1*(ups_mu_2_o_x*ups_s_2 - ups_c_2*ups_mu_2_o_y) - ups_B_2_o_zx*ups_h_3_x
         )
-        U_ups_in_base_z = (
-        axis_x_z*phi_3_ups_o_x - axis_y_ups_axes2_z*c_ups_o_y -
-            axis_z_ups_axes2_in_base_z*c_ups_o_z
+        # (ups-U) velocity and gravity terms of the leg force
+        ups_U_in_base_x = (
+        ups_axis_x_x*ups_phi_3_o_x - axis_y_ups_axes2_x*ups_c_o_y -
+            axis_z_ups_axes2_in_base_x*ups_c_o_z
         )
-        # (M7) rotational part of Z
-        Z_a_t = U_ups_in_base_z*q_ups_in_base_y - U_ups_in_base_y*q_ups_in_base_z
-        Z_a_t_2 = U_ups_in_base_x*q_ups_in_base_z - U_ups_in_base_z*q_ups_in_base_x
-        Z_a_t_3 = U_ups_in_base_y*q_ups_in_base_x - U_ups_in_base_x*q_ups_in_base_y
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_3_ups_x = axis_x_z*q_ups_in_base_y - axis_x_y*q_ups_in_base_z
-        H_a_3_ups_y = axis_x_x*q_ups_in_base_z - axis_x_z*q_ups_in_base_x
-        H_a_3_ups_z = axis_x_y*q_ups_in_base_x - axis_x_x*q_ups_in_base_y
+        ups_U_in_base_y = (
+        ups_axis_x_y*ups_phi_3_o_x - axis_y_ups_axes2_y*ups_c_o_y -
+            axis_z_ups_axes2_in_base_y*ups_c_o_z
+        )
+        ups_U_in_base_z = (
+        ups_axis_x_z*ups_phi_3_o_x - axis_y_ups_axes2_z*ups_c_o_y -
+            axis_z_ups_axes2_in_base_z*ups_c_o_z
+        )
+        # (Z_a) rotational part of Z
+        ups_Z_a_t = ups_U_in_base_z*ups_q_in_base_y - ups_U_in_base_y*ups_q_in_base_z
+        ups_Z_a_t_2 = ups_U_in_base_x*ups_q_in_base_z - ups_U_in_base_z*ups_q_in_base_x
+        ups_Z_a_t_3 = ups_U_in_base_y*ups_q_in_base_x - ups_U_in_base_x*ups_q_in_base_y
+        # (ups-H_a_3) moment of the column's unit force about the platform origin
+        ups_H_a_3_x = ups_axis_x_z*ups_q_in_base_y - ups_axis_x_y*ups_q_in_base_z
+        ups_H_a_3_y = ups_axis_x_x*ups_q_in_base_z - ups_axis_x_z*ups_q_in_base_x
+        ups_H_a_3_z = ups_axis_x_y*ups_q_in_base_x - ups_axis_x_x*ups_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1_ups) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
-            (abs(rho2_2_ups) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(root_1_ups) >
-            _TOLERANCE * 1.38293) & (abs(root_2_ups) > _TOLERANCE * 1.38293))
+        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
+            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) >
+            _TOLERANCE * 1.38293) & (abs(ups_root_2) > _TOLERANCE * 1.38293))
         )
         sums = m.added(sums, leg, (
-        Q_ups_t_10, Q_ups_t_11, Q_ups_t_12, Q_ups_t_14, Q_ups_t_15, Q_ups_t_17, M_ta_t_3,
-            M_ta_t_4, M_ta_t_5, M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12,
-            M_aa_t, M_aa_t_2, M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6, U_ups_in_base_x,
-            U_ups_in_base_y, U_ups_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
+        ups_Q_t_10, ups_Q_t_11, ups_Q_t_12, ups_Q_t_14, ups_Q_t_15, ups_Q_t_17, ups_M_ta_t_3,
+            ups_M_ta_t_4, ups_M_ta_t_5, ups_M_ta_t_6, ups_M_ta_t_8, ups_M_ta_t_9,
+            ups_M_ta_t_10, ups_M_ta_t_11, ups_M_ta_t_12, ups_M_aa_t, ups_M_aa_t_2,
+            ups_M_aa_t_3, ups_M_aa_t_4, ups_M_aa_t_5, ups_M_aa_t_6, ups_U_in_base_x,
+            ups_U_in_base_y, ups_U_in_base_z, ups_Z_a_t, ups_Z_a_t_2, ups_Z_a_t_3,
         ))
-        out_H[_H_ups[0][leg]] = axis_x_x
-        out_H[_H_ups[1][leg]] = axis_x_y
-        out_H[_H_ups[2][leg]] = axis_x_z
-        out_H[_H_ups[3][leg]] = H_a_3_ups_x
-        out_H[_H_ups[4][leg]] = H_a_3_ups_y
-        out_H[_H_ups[5][leg]] = H_a_3_ups_z
+        out_H[_H_ups[0][leg]] = ups_axis_x_x
+        out_H[_H_ups[1][leg]] = ups_axis_x_y
+        out_H[_H_ups[2][leg]] = ups_axis_x_z
+        out_H[_H_ups[3][leg]] = ups_H_a_3_x
+        out_H[_H_ups[4][leg]] = ups_H_a_3_y
+        out_H[_H_ups[5][leg]] = ups_H_a_3_z
     (
     total_ups_xx, total_ups_xy, total_ups_xz, total_ups_yy, total_ups_yz, total_ups_zz,
         total_ups_xx_2, total_ups_xy_2, total_ups_xz_2, total_ups_yx, total_ups_yy_2,
@@ -2063,1159 +2133,1279 @@ def _run_dynamics(m, X, V):
     sums = [0.0] * 27
     for leg, k in legs[1]:
         (
-        J_group_2_up_xx, J_group_2_up_xy, J_group_2_up_xz, J_group_2_up_yy, J_group_2_up_yz,
-            J_group_2_up_zz, Sigma_2_up_xx, Sigma_2_up_yy, Sigma_2_up_zz, branch_1_up,
-            branch_2_up, g_r0_x, g_r0_y, g_r0_z, h_2_up_x, h_2_up_y, h_2_up_z, h_3_up_x, h_3_up_y,
-            h_3_up_z, up_base_frame_xx, up_base_frame_xy, up_base_frame_xz, up_base_frame_yx,
-            up_base_frame_yy, up_base_frame_yz, up_base_frame_zx, up_base_frame_zy,
-            up_base_frame_zz, up_base_point_x, up_base_point_y, up_base_point_z, up_link3_mass,
-            up_platform_joint_rotation_xx, up_platform_joint_rotation_xy,
-            up_platform_joint_rotation_xz, up_platform_joint_rotation_yx,
-            up_platform_joint_rotation_yy, up_platform_joint_rotation_yz,
-            up_platform_joint_rotation_zx, up_platform_joint_rotation_zy,
-            up_platform_joint_rotation_zz, up_platform_point_x, up_platform_point_y,
-            up_platform_point_z,
+        tube_J_group_2_xx, tube_J_group_2_xy, tube_J_group_2_xz, tube_J_group_2_yy,
+            tube_J_group_2_yz, tube_J_group_2_zz, tube_Sigma_2_xx, tube_Sigma_2_yy,
+            tube_Sigma_2_zz, tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz,
+            tube_base_frame_yx, tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx,
+            tube_base_frame_zy, tube_base_frame_zz, tube_base_point_x, tube_base_point_y,
+            tube_base_point_z, tube_branch_1, tube_branch_2, tube_g_r0_x, tube_g_r0_y,
+            tube_g_r0_z, tube_h_2_x, tube_h_2_y, tube_h_2_z, tube_h_3_x, tube_h_3_y, tube_h_3_z,
+            tube_link3_mass, tube_platform_joint_rotation_xx, tube_platform_joint_rotation_xy,
+            tube_platform_joint_rotation_xz, tube_platform_joint_rotation_yx,
+            tube_platform_joint_rotation_yy, tube_platform_joint_rotation_yz,
+            tube_platform_joint_rotation_zx, tube_platform_joint_rotation_zy,
+            tube_platform_joint_rotation_zz, tube_platform_point_x, tube_platform_point_y,
+            tube_platform_point_z,
         ) = k
-        # (up-K1) from the base point to the connection point
-        q_up_in_base_x = (
-        R_xx*up_platform_point_x + R_xy*up_platform_point_y + R_xz*up_platform_point_z
-        )
-        q_up_in_base_y = (
-        R_yx*up_platform_point_x + R_yy*up_platform_point_y + R_yz*up_platform_point_z
-        )
-        q_up_in_base_z = (
-        R_zx*up_platform_point_x + R_zy*up_platform_point_y + R_zz*up_platform_point_z
-        )
-        S_up_x = q_up_in_base_x + t_x - up_base_point_x
-        S_up_y = q_up_in_base_y + t_y - up_base_point_y
-        S_up_z = q_up_in_base_z + t_z - up_base_point_z
-        # (up-K2) component along the reference direction
-        px_1_up = S_up_x*up_base_frame_xx + S_up_y*up_base_frame_yx + S_up_z*up_base_frame_zx
-        # (up-K3) component across the reference direction
-        py_1_up = S_up_x*up_base_frame_xy + S_up_y*up_base_frame_yy + S_up_z*up_base_frame_zy
-        # (up-K4) squared amplitude
-        rho2_1_up = px_1_up*px_1_up + py_1_up*py_1_up
-        # (up-K5) amplitude, with the sign of the branch
-        root_1_up = branch_1_up*sqrt(rho2_1_up)
-        # (up-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_up_t = S_up_x*up_base_frame_xz + S_up_y*up_base_frame_yz + S_up_z*up_base_frame_zz
-        # (up-K13) squared amplitude
-        rho2_2_up = rho2_1_up + xi_1_up_t*xi_1_up_t
-        # (up-K14) amplitude, with the sign of the branch
-        root_2_up = branch_2_up*sqrt(rho2_2_up)
-        # (up-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2_up = 1.0/root_2_up
-        c_2_up = inv_root_2_up*root_1_up
-        # (up-K16) sine of the angle of joint 2 from its reference direction
-        s_2_up = inv_root_2_up*xi_1_up_t
-        # (up-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_up = 1.0/root_1_up
-        c_1_up = inv_root_1_up*py_1_up
-        # (up-K7) sine of the angle of joint 1 from its reference direction
-        s_1_up = inv_root_1_up*px_1_up
-        # (up-V8) force part of the wrench that does no work along the leg's freedoms, 1
-        axis_z_up_axes2_in_base_x = s_1_up*up_base_frame_xy - c_1_up*up_base_frame_xx
-        axis_z_up_axes2_in_base_y = s_1_up*up_base_frame_yy - c_1_up*up_base_frame_yx
-        axis_z_up_axes2_in_base_z = s_1_up*up_base_frame_zy - c_1_up*up_base_frame_zx
-        f_c1_up_t = s_1_up*s_2_up
-        f_c1_up_t_2 = c_1_up*s_2_up
-        axis_y_up_axes2_in_base_x = (
-        f_c1_up_t*up_base_frame_xx + f_c1_up_t_2*up_base_frame_xy - c_2_up*up_base_frame_xz
-        )
-        axis_y_up_axes2_in_base_y = (
-        f_c1_up_t*up_base_frame_yx + f_c1_up_t_2*up_base_frame_yy - c_2_up*up_base_frame_yz
-        )
-        axis_y_up_axes2_in_base_z = (
-        f_c1_up_t*up_base_frame_zx + f_c1_up_t_2*up_base_frame_zy - c_2_up*up_base_frame_zz
-        )
-        axis_x_up_axes2_x = (
-        axis_y_up_axes2_in_base_y*axis_z_up_axes2_in_base_z -
-            axis_y_up_axes2_in_base_z*axis_z_up_axes2_in_base_y
-        )
-        axis_x_up_axes2_y = (
-        axis_y_up_axes2_in_base_z*axis_z_up_axes2_in_base_x -
-            axis_y_up_axes2_in_base_x*axis_z_up_axes2_in_base_z
-        )
-        axis_x_up_axes2_z = (
-        axis_y_up_axes2_in_base_x*axis_z_up_axes2_in_base_y -
-            axis_y_up_axes2_in_base_y*axis_z_up_axes2_in_base_x
-        )
-        # (up-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_up_t = R_xx*up_base_frame_xx + R_yx*up_base_frame_yx + R_zx*up_base_frame_zx
-        n_m1_up_t_2 = R_xy*up_base_frame_xx + R_yy*up_base_frame_yx + R_zy*up_base_frame_zx
-        n_m1_up_t_3 = R_xz*up_base_frame_xx + R_yz*up_base_frame_yx + R_zz*up_base_frame_zx
-        n_m1_up_t_4 = R_xx*up_base_frame_xy + R_yx*up_base_frame_yy + R_zx*up_base_frame_zy
-        n_m1_up_t_5 = R_xy*up_base_frame_xy + R_yy*up_base_frame_yy + R_zy*up_base_frame_zy
-        n_m1_up_t_6 = R_xz*up_base_frame_xy + R_yz*up_base_frame_yy + R_zz*up_base_frame_zy
-        n_m1_up_t_7 = R_xx*up_base_frame_xz + R_yx*up_base_frame_yz + R_zx*up_base_frame_zz
-        n_m1_up_t_8 = R_xy*up_base_frame_xz + R_yy*up_base_frame_yz + R_zy*up_base_frame_zz
-        n_m1_up_t_9 = R_xz*up_base_frame_xz + R_yz*up_base_frame_yz + R_zz*up_base_frame_zz
-        end_p1_up_r0_x = (
-        n_m1_up_t*up_platform_joint_rotation_yx + n_m1_up_t_2*up_platform_joint_rotation_yy +
-            n_m1_up_t_3*up_platform_joint_rotation_yz
-        )
-        end_p1_up_r0_y = (
-        n_m1_up_t_4*up_platform_joint_rotation_yx + n_m1_up_t_5*up_platform_joint_rotation_yy +
-            n_m1_up_t_6*up_platform_joint_rotation_yz
-        )
-        end_p1_up_r0_z = (
-        n_m1_up_t_7*up_platform_joint_rotation_yx + n_m1_up_t_8*up_platform_joint_rotation_yy +
-            n_m1_up_t_9*up_platform_joint_rotation_yz
-        )
-        end_p1_up_r1_x = end_p1_up_r0_y*s_1_up - c_1_up*end_p1_up_r0_x
-        end_p1_up_r1_y = -c_1_up*end_p1_up_r0_y - end_p1_up_r0_x*s_1_up
-        end_p1_up_r3_x = end_p1_up_r0_z*s_2_up - c_2_up*end_p1_up_r1_y
-        end_p1_up_r3_y = -c_2_up*end_p1_up_r0_z - end_p1_up_r1_y*s_2_up
-        # (up-V6) direction 2 of the moment that the platform joint transmits
-        end_p2_up_r0_x = (
-        n_m1_up_t*up_platform_joint_rotation_zx + n_m1_up_t_2*up_platform_joint_rotation_zy +
-            n_m1_up_t_3*up_platform_joint_rotation_zz
-        )
-        end_p2_up_r0_y = (
-        n_m1_up_t_4*up_platform_joint_rotation_zx + n_m1_up_t_5*up_platform_joint_rotation_zy +
-            n_m1_up_t_6*up_platform_joint_rotation_zz
-        )
-        end_p2_up_r0_z = (
-        n_m1_up_t_7*up_platform_joint_rotation_zx + n_m1_up_t_8*up_platform_joint_rotation_zy +
-            n_m1_up_t_9*up_platform_joint_rotation_zz
-        )
-        end_p2_up_r1_x = end_p2_up_r0_y*s_1_up - c_1_up*end_p2_up_r0_x
-        end_p2_up_r1_y = -c_1_up*end_p2_up_r0_y - end_p2_up_r0_x*s_1_up
-        end_p2_up_r3_x = end_p2_up_r0_z*s_2_up - c_2_up*end_p2_up_r1_y
-        end_p2_up_r3_y = -c_2_up*end_p2_up_r0_z - end_p2_up_r1_y*s_2_up
-        # (up-V7) direction 3 of the moment that the platform joint transmits
-        end_p3_up_r0_x = (
-        n_m1_up_t*up_platform_joint_rotation_xx + n_m1_up_t_2*up_platform_joint_rotation_xy +
-            n_m1_up_t_3*up_platform_joint_rotation_xz
-        )
-        end_p3_up_r0_y = (
-        n_m1_up_t_4*up_platform_joint_rotation_xx + n_m1_up_t_5*up_platform_joint_rotation_xy +
-            n_m1_up_t_6*up_platform_joint_rotation_xz
-        )
-        end_p3_up_r0_z = (
-        n_m1_up_t_7*up_platform_joint_rotation_xx + n_m1_up_t_8*up_platform_joint_rotation_xy +
-            n_m1_up_t_9*up_platform_joint_rotation_xz
-        )
-        end_p3_up_r1_x = end_p3_up_r0_y*s_1_up - c_1_up*end_p3_up_r0_x
-        end_p3_up_r1_y = -c_1_up*end_p3_up_r0_y - end_p3_up_r0_x*s_1_up
-        end_p3_up_r3_x = end_p3_up_r0_z*s_2_up - c_2_up*end_p3_up_r1_y
-        end_p3_up_r3_y = -c_2_up*end_p3_up_r0_z - end_p3_up_r1_y*s_2_up
-        # (up-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_up_t_10 = c_2_up*end_p1_up_r1_x
-        # (up-V6) direction 2 of the moment that the platform joint transmits
-        n_m2_up_r0_y = -c_2_up*end_p2_up_r3_x - end_p2_up_r3_y*s_2_up
-        # (up-V7) direction 3 of the moment that the platform joint transmits
-        n_m3_up_t = end_p3_up_r1_x*s_2_up
-        # (up-V8) force part of the wrench that does no work along the leg's freedoms, 1
-        f_c1_up_t_3 = end_p1_up_r3_y*n_m3_up_t + end_p3_up_r3_x*n_m1_up_t_10
-        inv_f_c1_up_t_26 = 1.0/f_c1_up_t_3
-        f_c1_up_t_4 = inv_f_c1_up_t_26*n_m3_up_t*root_2_up
-        f_c1_up_t_5 = inv_f_c1_up_t_26*n_m1_up_t_10*root_2_up
-        # (up-V12) force part of the wrench that does no work along the leg's freedoms, 2
-        f_c2_up_t = end_p3_up_r3_x*inv_f_c1_up_t_26*root_1_up
-        f_c2_up_t_2 = end_p1_up_r3_y*inv_f_c1_up_t_26*root_1_up
-        # (up-V16) force part of the wrench that does no work along the leg's freedoms, 3
-        f_c3_up_t = end_p3_up_r3_x*inv_f_c1_up_t_26*n_m2_up_r0_y
-        f_c3_up_t_2 = end_p1_up_r3_y*inv_f_c1_up_t_26*n_m2_up_r0_y
-        # (up-V32) size of the moment
-        size_c3_up = sqrt(1.0 + f_c3_up_t*f_c3_up_t + f_c3_up_t_2*f_c3_up_t_2)
-        # (up-V34) moment along direction 1 that goes with it
-        inv_size_c3_up = 1.0/size_c3_up
-        mu1_c3_up = f_c3_up_t*inv_size_c3_up
-        # (up-V36) moment along direction 3 that goes with it
-        mu3_c3_up = f_c3_up_t_2*inv_size_c3_up
-        # (up-V38) force part of reciprocal wrench 1
-        w_1_up_t = 1.35*n_m1_up_t_10
-        w_1_up_t_2 = 1.35*n_m2_up_r0_y
-        w_1_up_t_3 = 1.35*n_m3_up_t
-        w_1_up_t_4 = 1.35*end_p1_up_r3_y
-        w_1_up_t_5 = 1.35*end_p3_up_r3_x
-        w_1_up_t_6 = 1.35*f_c1_up_t_4
-        w_1_up_t_7 = 1.35*f_c1_up_t_5
-        w_1_up_t_8 = 1.35*f_c2_up_t
-        w_1_up_t_9 = 1.35*f_c2_up_t_2
-        w_1_up_t_10 = 1.35*mu1_c3_up
-        w_1_up_t_11 = 1.35*inv_size_c3_up
-        w_1_up_t_12 = 1.35*mu3_c3_up
-        w_1_up_t_13 = sqrt(rho2_2_up + w_1_up_t_4*w_1_up_t_4 + w_1_up_t_5*w_1_up_t_5)
-        inv_w_1_up_t_16 = 1.0/w_1_up_t_13
-        w_1_up_t_14 = inv_w_1_up_t_16*root_2_up
-        w_1_up_t_15 = inv_w_1_up_t_16*w_1_up_t_4
-        w_1_up_t_16 = inv_w_1_up_t_16*w_1_up_t_5
-        w_1_up_t_17 = w_1_up_t_15*w_1_up_t_6 + w_1_up_t_16*w_1_up_t_7 - w_1_up_t_14
-        w_1_up_t_18 = 1.0 + w_1_up_t_14*w_1_up_t_17
-        w_1_up_t_19 = w_1_up_t_15*w_1_up_t_17 - w_1_up_t_6
-        w_1_up_t_20 = w_1_up_t_16*w_1_up_t_17 - w_1_up_t_7
-        w_1_up_t_21 = w_1_up_t_15*w_1_up_t_8 - w_1_up_t_16*w_1_up_t_9
-        w_1_up_t_22 = w_1_up_t_14*w_1_up_t_21
-        w_1_up_t_23 = w_1_up_t_15*w_1_up_t_21 - w_1_up_t_8
-        w_1_up_t_24 = w_1_up_t_9 + w_1_up_t_16*w_1_up_t_21
-        w_1_up_t_25 = w_1_up_t_10*w_1_up_t_15 - w_1_up_t_12*w_1_up_t_16
-        w_1_up_t_26 = w_1_up_t_14*w_1_up_t_25
-        w_1_up_t_27 = w_1_up_t_10 - w_1_up_t_15*w_1_up_t_25
-        w_1_up_t_28 = w_1_up_t_12 + w_1_up_t_16*w_1_up_t_25
-        w_1_up_t_29 = w_1_up_t*w_1_up_t_15 - w_1_up_t_16*w_1_up_t_3
-        w_1_up_t_30 = w_1_up_t_14*w_1_up_t_29
-        w_1_up_t_31 = w_1_up_t - w_1_up_t_15*w_1_up_t_29
-        w_1_up_t_32 = w_1_up_t_3 + w_1_up_t_16*w_1_up_t_29
-        w_1_up_t_33 = (
-        sqrt(w_1_up_t_18*w_1_up_t_18 + w_1_up_t_19*w_1_up_t_19 + w_1_up_t_20*w_1_up_t_20)
-        )
-        inv_w_1_up_t_57 = 1.0/w_1_up_t_33
-        w_1_up_t_34 = inv_w_1_up_t_57*w_1_up_t_18
-        w_1_up_t_35 = inv_w_1_up_t_57*w_1_up_t_19
-        w_1_up_t_36 = inv_w_1_up_t_57*w_1_up_t_20
-        w_1_up_t_37 = w_1_up_t_22*w_1_up_t_34 + w_1_up_t_23*w_1_up_t_35 + w_1_up_t_24*w_1_up_t_36
-        w_1_up_t_38 = w_1_up_t_22 - w_1_up_t_34*w_1_up_t_37
-        w_1_up_t_39 = w_1_up_t_23 - w_1_up_t_35*w_1_up_t_37
-        w_1_up_t_40 = w_1_up_t_24 - w_1_up_t_36*w_1_up_t_37
-        w_1_up_t_41 = w_1_up_t_26*w_1_up_t_34 + w_1_up_t_28*w_1_up_t_36 - w_1_up_t_27*w_1_up_t_35
-        w_1_up_t_42 = w_1_up_t_26 - w_1_up_t_34*w_1_up_t_41
-        w_1_up_t_43 = w_1_up_t_27 + w_1_up_t_35*w_1_up_t_41
-        w_1_up_t_44 = w_1_up_t_28 - w_1_up_t_36*w_1_up_t_41
-        w_1_up_t_45 = w_1_up_t_30*w_1_up_t_34 + w_1_up_t_32*w_1_up_t_36 - w_1_up_t_31*w_1_up_t_35
-        w_1_up_t_46 = w_1_up_t_30 - w_1_up_t_34*w_1_up_t_45
-        w_1_up_t_47 = w_1_up_t_31 + w_1_up_t_35*w_1_up_t_45
-        w_1_up_t_48 = w_1_up_t_32 - w_1_up_t_36*w_1_up_t_45
-        w_1_up_t_49 = (
-        sqrt(1.0 + w_1_up_t_38*w_1_up_t_38 + w_1_up_t_39*w_1_up_t_39 + w_1_up_t_40*w_1_up_t_40)
-        )
-        inv_w_1_up_t_95 = 1.0/w_1_up_t_49
-        w_1_up_t_50 = inv_w_1_up_t_95*w_1_up_t_38
-        w_1_up_t_51 = inv_w_1_up_t_95*w_1_up_t_39
-        w_1_up_t_52 = inv_w_1_up_t_95*w_1_up_t_40
-        w_1_up_t_53 = w_1_up_t_42*w_1_up_t_50 + w_1_up_t_44*w_1_up_t_52 - w_1_up_t_43*w_1_up_t_51
-        w_1_up_t_54 = w_1_up_t_50*w_1_up_t_53 - w_1_up_t_42
-        w_1_up_t_55 = inv_w_1_up_t_95*w_1_up_t_53
-        w_1_up_t_56 = w_1_up_t_43 + w_1_up_t_51*w_1_up_t_53
-        w_1_up_t_57 = w_1_up_t_52*w_1_up_t_53 - w_1_up_t_44
-        w_1_up_t_58 = (
-        w_1_up_t_46*w_1_up_t_50 + w_1_up_t_48*w_1_up_t_52 - inv_w_1_up_t_95*root_1_up -
-            w_1_up_t_47*w_1_up_t_51
-        )
-        w_1_up_t_59 = w_1_up_t_50*w_1_up_t_58 - w_1_up_t_46
-        w_1_up_t_60 = root_1_up + inv_w_1_up_t_95*w_1_up_t_58
-        w_1_up_t_61 = w_1_up_t_47 + w_1_up_t_51*w_1_up_t_58
-        w_1_up_t_62 = w_1_up_t_52*w_1_up_t_58 - w_1_up_t_48
-        w_1_up_t_63 = (
-        sqrt(w_1_up_t_11*w_1_up_t_11 + w_1_up_t_54*w_1_up_t_54 + w_1_up_t_55*w_1_up_t_55 +
-            w_1_up_t_56*w_1_up_t_56 + w_1_up_t_57*w_1_up_t_57)
-        )
-        inv_w_1_up_t_129 = 1.0/w_1_up_t_63
-        w_1_up_t_64 = inv_w_1_up_t_129*w_1_up_t_54
-        w_1_up_t_65 = inv_w_1_up_t_129*w_1_up_t_55
-        w_1_up_t_66 = inv_w_1_up_t_129*w_1_up_t_56
-        w_1_up_t_67 = inv_w_1_up_t_129*w_1_up_t_11
-        w_1_up_t_68 = inv_w_1_up_t_129*w_1_up_t_57
-        w_1_up_t_69 = (
-        w_1_up_t_59*w_1_up_t_64 + w_1_up_t_60*w_1_up_t_65 + w_1_up_t_61*w_1_up_t_66 +
-            w_1_up_t_62*w_1_up_t_68 - w_1_up_t_2*w_1_up_t_67
-        )
-        w_1_up_t_70 = w_1_up_t_59 - w_1_up_t_64*w_1_up_t_69
-        w_1_up_t_71 = w_1_up_t_60 - w_1_up_t_65*w_1_up_t_69
-        w_1_up_t_72 = w_1_up_t_61 - w_1_up_t_66*w_1_up_t_69
-        w_1_up_t_73 = w_1_up_t_2 + w_1_up_t_67*w_1_up_t_69
-        w_1_up_t_74 = w_1_up_t_62 - w_1_up_t_68*w_1_up_t_69
-        w_1_up_t_75 = (
-        sqrt(w_1_up_t_70*w_1_up_t_70 + w_1_up_t_71*w_1_up_t_71 + w_1_up_t_72*w_1_up_t_72 +
-            w_1_up_t_73*w_1_up_t_73 + w_1_up_t_74*w_1_up_t_74)
-        )
-        inv_w_1_up_t_157 = 1.0/w_1_up_t_75
-        w_1_up_t_76 = inv_w_1_up_t_157*w_1_up_t_70
-        w_1_up_t_77 = inv_w_1_up_t_157*w_1_up_t_71
-        w_1_up_t_78 = inv_w_1_up_t_157*w_1_up_t_72
-        w_1_up_t_79 = inv_w_1_up_t_157*w_1_up_t_73
-        w_1_up_t_80 = inv_w_1_up_t_157*w_1_up_t_74
-        w_1_up_t_81 = inv_w_1_up_t_157*w_1_up_t_76
-        w_1_up_t_82 = inv_w_1_up_t_157*w_1_up_t_77
-        w_1_up_t_83 = 1.35*inv_w_1_up_t_157*w_1_up_t_78
-        w_1_up_t_84 = 1.35*inv_w_1_up_t_157*w_1_up_t_79
-        w_1_up_t_85 = 1.35*inv_w_1_up_t_157*w_1_up_t_80
-        w_1_up_t_86 = s_2_up*w_1_up_t_81
-        w_1_up_t_87 = c_2_up*w_1_up_t_81
-        # (up-V42) force part of reciprocal wrench 2
-        w_2_up_t = inv_w_1_up_t_16*inv_w_1_up_t_57*w_1_up_t_17
-        w_2_up_t_2 = inv_w_1_up_t_95*(inv_w_1_up_t_16*w_1_up_t_21 - w_1_up_t_37*w_2_up_t)
-        w_2_up_t_3 = (
-        inv_w_1_up_t_129*(w_1_up_t_41*w_2_up_t + w_1_up_t_53*w_2_up_t_2 -
-            inv_w_1_up_t_16*w_1_up_t_25)
-        )
-        w_2_up_t_4 = (
-        inv_w_1_up_t_157*(inv_w_1_up_t_16*w_1_up_t_29 + w_1_up_t_69*w_2_up_t_3 -
-            w_1_up_t_45*w_2_up_t - w_1_up_t_58*w_2_up_t_2)
-        )
-        w_2_up_t_5 = (
-        inv_w_1_up_t_16*w_1_up_t_14 + w_1_up_t_34*w_2_up_t + w_1_up_t_50*w_2_up_t_2 +
-            w_1_up_t_64*w_2_up_t_3 - w_1_up_t_76*w_2_up_t_4
-        )
-        w_2_up_t_6 = inv_w_1_up_t_95*w_2_up_t_2 + w_1_up_t_65*w_2_up_t_3 - w_1_up_t_77*w_2_up_t_4
-        w_2_up_t_7 = (
-        inv_w_1_up_t_16*w_1_up_t_15 + w_1_up_t_35*w_2_up_t + w_1_up_t_51*w_2_up_t_2 +
-            w_1_up_t_66*w_2_up_t_3 - w_1_up_t_78*w_2_up_t_4
-        )
-        w_2_up_t_8 = 1.35*w_2_up_t_7
-        w_2_up_t_9 = w_1_up_t_67*w_2_up_t_3 + w_1_up_t_79*w_2_up_t_4
-        w_2_up_t_10 = 1.35*w_2_up_t_9
-        w_2_up_t_11 = (
-        inv_w_1_up_t_16*w_1_up_t_16 + w_1_up_t_36*w_2_up_t + w_1_up_t_52*w_2_up_t_2 +
-            w_1_up_t_68*w_2_up_t_3 - w_1_up_t_80*w_2_up_t_4
-        )
-        w_2_up_t_12 = 1.35*w_2_up_t_11
-        # (up-A25) coefficient of the acceleration in: angular acceleration of link 1
-        d_alpha_1_up_xz = s_2_up*w_1_up_t_82
-        d_alpha_1_up_yz = c_2_up*w_1_up_t_82
-        # (up-N5) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-        d_acc_3_up_t = root_2_up*w_2_up_t_5
-        d_acc_3_up_t_2 = root_2_up*w_2_up_t_6
-        d_acc_3_up_t_3 = root_2_up*w_1_up_t_87
-        d_acc_3_up_t_4 = d_alpha_1_up_yz*root_2_up
-        # (up-N9) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        d_phi_3_up_t = h_3_up_y*w_1_up_t_87 - h_3_up_z*w_2_up_t_5
-        d_phi_3_up_t_2 = d_alpha_1_up_yz*h_3_up_y - h_3_up_z*w_2_up_t_6
-        # (up-N24) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        d_N_2_up_zy = (
-        J_group_2_up_xz*w_1_up_t_86 + J_group_2_up_zz*w_2_up_t_5 + d_acc_3_up_t*h_3_up_x +
-            root_2_up*(d_acc_3_up_t*up_link3_mass + h_3_up_x*w_2_up_t_5 - h_3_up_y*w_1_up_t_86) -
-            J_group_2_up_yz*w_1_up_t_87
-        )
-        d_N_2_up_zz = (
-        J_group_2_up_xz*d_alpha_1_up_xz + J_group_2_up_zz*w_2_up_t_6 + d_acc_3_up_t_2*h_3_up_x +
-            root_2_up*(d_acc_3_up_t_2*up_link3_mass + h_3_up_x*w_2_up_t_6 -
-            d_alpha_1_up_xz*h_3_up_y) - J_group_2_up_yz*d_alpha_1_up_yz
-        )
-        # (up-N36) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_up_t = c_2_up*h_3_up_y
-        d_Gamma_1_up_t_2 = (
-        c_2_up*(J_group_2_up_xy*w_1_up_t_86 + J_group_2_up_yz*w_2_up_t_5 -
-            J_group_2_up_yy*w_1_up_t_87 - d_acc_3_up_t_3*h_3_up_x -
-            root_2_up*(d_acc_3_up_t_3*up_link3_mass + h_3_up_x*w_1_up_t_87 -
-            h_3_up_z*w_1_up_t_86))
-        )
-        d_Gamma_1_up_y = (
-        s_2_up*(J_group_2_up_xx*w_1_up_t_86 + J_group_2_up_xz*w_2_up_t_5 -
-            J_group_2_up_xy*w_1_up_t_87 - d_acc_3_up_t*h_3_up_y - d_acc_3_up_t_3*h_3_up_z) -
-            d_Gamma_1_up_t_2
-        )
-        d_Gamma_1_up_t_3 = (
-        c_2_up*(J_group_2_up_xy*d_alpha_1_up_xz + J_group_2_up_yz*w_2_up_t_6 -
-            J_group_2_up_yy*d_alpha_1_up_yz - d_acc_3_up_t_4*h_3_up_x -
-            root_2_up*(d_acc_3_up_t_4*up_link3_mass + d_alpha_1_up_yz*h_3_up_x -
-            d_alpha_1_up_xz*h_3_up_z))
-        )
-        d_Gamma_1_up_z = (
-        s_2_up*(J_group_2_up_xx*d_alpha_1_up_xz + J_group_2_up_xz*w_2_up_t_6 -
-            J_group_2_up_xy*d_alpha_1_up_yz - d_acc_3_up_t_2*h_3_up_y - d_acc_3_up_t_4*h_3_up_z) -
-            d_Gamma_1_up_t_3
-        )
-        # (up-N40) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_up_yz = d_Gamma_1_up_z*w_1_up_t_81 + d_N_2_up_zz*w_2_up_t_5
-        # (up-N62) inertia of the leg at the connection point, without the mass gathered there
-        Q_up_t = d_Gamma_1_up_y*w_1_up_t_81 + d_N_2_up_zy*w_2_up_t_5 - up_link3_mass
-        Q_up_t_2 = 0.5*Q_up_t
-        Q_up_t_3 = d_Gamma_1_up_z*w_1_up_t_82 + d_N_2_up_zz*w_2_up_t_6 - up_link3_mass
-        Q_up_t_4 = 0.5*Q_up_t_3
-        Q_up_t_5 = (
-        Q_up_t_2*axis_y_up_axes2_in_base_x + axis_z_up_axes2_in_base_x*d_G_up_yz -
-            axis_x_up_axes2_x*d_phi_3_up_t
-        )
-        Q_up_t_6 = (
-        Q_up_t_2*axis_y_up_axes2_in_base_y + axis_z_up_axes2_in_base_y*d_G_up_yz -
-            axis_x_up_axes2_y*d_phi_3_up_t
-        )
-        Q_up_t_7 = (
-        Q_up_t_2*axis_y_up_axes2_in_base_z + axis_z_up_axes2_in_base_z*d_G_up_yz -
-            axis_x_up_axes2_z*d_phi_3_up_t
-        )
-        Q_up_t_8 = Q_up_t_4*axis_z_up_axes2_in_base_x - axis_x_up_axes2_x*d_phi_3_up_t_2
-        Q_up_t_9 = Q_up_t_4*axis_z_up_axes2_in_base_y - axis_x_up_axes2_y*d_phi_3_up_t_2
-        Q_up_t_10 = Q_up_t_4*axis_z_up_axes2_in_base_z - axis_x_up_axes2_z*d_phi_3_up_t_2
-        Q_up_t_11 = Q_up_t_5*axis_y_up_axes2_in_base_x + Q_up_t_8*axis_z_up_axes2_in_base_x
-        Q_up_t_12 = 2.0*Q_up_t_11 + up_link3_mass
-        Q_up_t_13 = (
-        Q_up_t_5*axis_y_up_axes2_in_base_y + Q_up_t_6*axis_y_up_axes2_in_base_x +
-            Q_up_t_8*axis_z_up_axes2_in_base_y + Q_up_t_9*axis_z_up_axes2_in_base_x
-        )
-        Q_up_t_14 = (
-        Q_up_t_10*axis_z_up_axes2_in_base_x + Q_up_t_5*axis_y_up_axes2_in_base_z +
-            Q_up_t_7*axis_y_up_axes2_in_base_x + Q_up_t_8*axis_z_up_axes2_in_base_z
-        )
-        Q_up_t_15 = Q_up_t_6*axis_y_up_axes2_in_base_y + Q_up_t_9*axis_z_up_axes2_in_base_y
-        Q_up_t_16 = 2.0*Q_up_t_15 + up_link3_mass
-        Q_up_t_17 = (
-        Q_up_t_10*axis_z_up_axes2_in_base_y + Q_up_t_6*axis_y_up_axes2_in_base_z +
-            Q_up_t_7*axis_y_up_axes2_in_base_y + Q_up_t_9*axis_z_up_axes2_in_base_z
-        )
-        Q_up_t_18 = Q_up_t_10*axis_z_up_axes2_in_base_z + Q_up_t_7*axis_y_up_axes2_in_base_z
-        Q_up_t_19 = 2.0*Q_up_t_18 + up_link3_mass
-        # (up-V50) moment part of reciprocal wrench 1
-        o_1_up_x = -end_p2_up_r3_y*w_1_up_t_84 - end_p3_up_r1_x*w_1_up_t_85
-        o_1_up_y = end_p2_up_r3_x*w_1_up_t_84 - end_p1_up_r1_x*w_1_up_t_83
-        o_1_up_z = end_p1_up_r3_y*w_1_up_t_83 + end_p3_up_r3_x*w_1_up_t_85
-        o_1_up_t = c_2_up*o_1_up_x
-        o_1_up_t_2 = o_1_up_y*s_2_up
-        o_1_up_t_3 = c_2_up*o_1_up_y
-        o_1_up_t_4 = o_1_up_x*s_2_up
-        # (up-V51) moment part of reciprocal wrench 2
-        o_2_up_x = end_p2_up_r3_y*w_2_up_t_10 - end_p3_up_r1_x*w_2_up_t_12
-        o_2_up_y = -end_p1_up_r1_x*w_2_up_t_8 - end_p2_up_r3_x*w_2_up_t_10
-        o_2_up_z = end_p1_up_r3_y*w_2_up_t_8 + end_p3_up_r3_x*w_2_up_t_12
-        # (up-A24) coefficient of the acceleration in: angular acceleration of link 1
-        d0_alpha_1_up_xz = o_1_up_z*s_2_up
-        d0_alpha_1_up_yz = c_2_up*o_1_up_z
-        # (up-N4) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-        d0_acc_3_up_t = o_2_up_x*root_2_up
-        d0_acc_3_up_t_2 = o_2_up_y*root_2_up
-        d0_acc_3_up_t_3 = o_2_up_z*root_2_up
-        d0_acc_3_up_t_4 = o_1_up_t*root_2_up
-        d0_acc_3_up_t_5 = o_1_up_t_3*root_2_up
-        d0_acc_3_up_t_6 = d0_alpha_1_up_yz*root_2_up
-        # (up-N8) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        d0_phi_3_up_t = h_3_up_y*o_1_up_t - h_3_up_z*o_2_up_x
-        d0_phi_3_up_t_2 = h_3_up_y*o_1_up_t_3 - h_3_up_z*o_2_up_y
-        d0_phi_3_up_t_3 = d0_alpha_1_up_yz*h_3_up_y - h_3_up_z*o_2_up_z
-        # (up-N23) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        d0_N_2_up_zx = (
-        J_group_2_up_xz*o_1_up_t_4 + J_group_2_up_zz*o_2_up_x + d0_acc_3_up_t*h_3_up_x +
-            root_2_up*(d0_acc_3_up_t*up_link3_mass + h_3_up_x*o_2_up_x - h_3_up_y*o_1_up_t_4) -
-            J_group_2_up_yz*o_1_up_t
-        )
-        d0_N_2_up_zy = (
-        J_group_2_up_xz*o_1_up_t_2 + J_group_2_up_zz*o_2_up_y + d0_acc_3_up_t_2*h_3_up_x +
-            root_2_up*(d0_acc_3_up_t_2*up_link3_mass + h_3_up_x*o_2_up_y - h_3_up_y*o_1_up_t_2) -
-            J_group_2_up_yz*o_1_up_t_3
-        )
-        d0_N_2_up_zz = (
-        J_group_2_up_xz*d0_alpha_1_up_xz + J_group_2_up_zz*o_2_up_z + d0_acc_3_up_t_3*h_3_up_x +
-            root_2_up*(d0_acc_3_up_t_3*up_link3_mass + h_3_up_x*o_2_up_z -
-            d0_alpha_1_up_xz*h_3_up_y) - J_group_2_up_yz*d0_alpha_1_up_yz
-        )
-        # (up-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d0_Gamma_1_up_t = (
-        c_2_up*(J_group_2_up_xy*o_1_up_t_4 + J_group_2_up_yz*o_2_up_x - J_group_2_up_yy*o_1_up_t -
-            d0_acc_3_up_t_4*h_3_up_x - root_2_up*(d0_acc_3_up_t_4*up_link3_mass +
-            h_3_up_x*o_1_up_t - h_3_up_z*o_1_up_t_4))
-        )
-        d0_Gamma_1_up_x = (
-        s_2_up*(J_group_2_up_xx*o_1_up_t_4 + J_group_2_up_xz*o_2_up_x - J_group_2_up_xy*o_1_up_t -
-            d0_acc_3_up_t*h_3_up_y - d0_acc_3_up_t_4*h_3_up_z) - d0_Gamma_1_up_t
-        )
-        d0_Gamma_1_up_t_2 = (
-        c_2_up*(J_group_2_up_xy*o_1_up_t_2 + J_group_2_up_yz*o_2_up_y - J_group_2_up_yy*o_1_up_t_3
-            - d0_acc_3_up_t_5*h_3_up_x - root_2_up*(d0_acc_3_up_t_5*up_link3_mass +
-            h_3_up_x*o_1_up_t_3 - h_3_up_z*o_1_up_t_2))
-        )
-        d0_Gamma_1_up_y = (
-        s_2_up*(J_group_2_up_xx*o_1_up_t_2 + J_group_2_up_xz*o_2_up_y - J_group_2_up_xy*o_1_up_t_3
-            - d0_acc_3_up_t_2*h_3_up_y - d0_acc_3_up_t_5*h_3_up_z) - d0_Gamma_1_up_t_2
-        )
-        d0_Gamma_1_up_t_3 = (
-        c_2_up*(J_group_2_up_xy*d0_alpha_1_up_xz + J_group_2_up_yz*o_2_up_z -
-            J_group_2_up_yy*d0_alpha_1_up_yz - d0_acc_3_up_t_6*h_3_up_x -
-            root_2_up*(d0_acc_3_up_t_6*up_link3_mass + d0_alpha_1_up_yz*h_3_up_x -
-            d0_alpha_1_up_xz*h_3_up_z))
-        )
-        d0_Gamma_1_up_z = (
-        s_2_up*(J_group_2_up_xx*d0_alpha_1_up_xz + J_group_2_up_xz*o_2_up_z -
-            J_group_2_up_xy*d0_alpha_1_up_yz - d0_acc_3_up_t_3*h_3_up_y -
-            d0_acc_3_up_t_6*h_3_up_z) - d0_Gamma_1_up_t_3
-        )
-        # (up-N39) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d0_G_up_yx = d0_Gamma_1_up_x*w_1_up_t_81 + d0_N_2_up_zx*w_2_up_t_5
-        d0_G_up_yy = d0_Gamma_1_up_y*w_1_up_t_81 + d0_N_2_up_zy*w_2_up_t_5
-        d0_G_up_yz = d0_Gamma_1_up_z*w_1_up_t_81 + d0_N_2_up_zz*w_2_up_t_5
-        d0_G_up_zx = d0_Gamma_1_up_x*w_1_up_t_82 + d0_N_2_up_zx*w_2_up_t_6
-        d0_G_up_zy = d0_Gamma_1_up_y*w_1_up_t_82 + d0_N_2_up_zy*w_2_up_t_6
-        d0_G_up_zz = d0_Gamma_1_up_z*w_1_up_t_82 + d0_N_2_up_zz*w_2_up_t_6
-        # (M2) coupling block of M
-        M_ta_t_13 = Q_up_t_13*q_up_in_base_z
-        M_ta_t_14 = Q_up_t_14*q_up_in_base_y
-        M_ta_t_15 = Q_up_t_12*q_up_in_base_z - Q_up_t_14*q_up_in_base_x
-        M_ta_t_16 = Q_up_t_12*q_up_in_base_y - Q_up_t_13*q_up_in_base_x
-        M_ta_t_17 = Q_up_t_16*q_up_in_base_z - Q_up_t_17*q_up_in_base_y
-        M_ta_t_18 = Q_up_t_17*q_up_in_base_x
-        M_ta_t_19 = M_ta_t_13 - M_ta_t_18
-        M_ta_t_20 = Q_up_t_13*q_up_in_base_y - Q_up_t_16*q_up_in_base_x
-        M_ta_t_21 = Q_up_t_17*q_up_in_base_z - Q_up_t_19*q_up_in_base_y
-        M_ta_t_22 = Q_up_t_14*q_up_in_base_z - Q_up_t_19*q_up_in_base_x
-        M_ta_t_23 = M_ta_t_14 - M_ta_t_18
-        # (up-N59) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d0_c_up_in_base_x = (
-        axis_x_up_axes2_x*d0_phi_3_up_t - axis_y_up_axes2_in_base_x*d0_G_up_yx -
-            axis_z_up_axes2_in_base_x*d0_G_up_zx
-        )
-        d0_c_up_in_base_y = (
-        axis_x_up_axes2_y*d0_phi_3_up_t - axis_y_up_axes2_in_base_y*d0_G_up_yx -
-            axis_z_up_axes2_in_base_y*d0_G_up_zx
-        )
-        d0_c_up_in_base_z = (
-        axis_x_up_axes2_z*d0_phi_3_up_t - axis_y_up_axes2_in_base_z*d0_G_up_yx -
-            axis_z_up_axes2_in_base_z*d0_G_up_zx
-        )
-        d0_c_up_in_base_x_2 = (
-        axis_x_up_axes2_x*d0_phi_3_up_t_2 - axis_y_up_axes2_in_base_x*d0_G_up_yy -
-            axis_z_up_axes2_in_base_x*d0_G_up_zy
-        )
-        d0_c_up_in_base_y_2 = (
-        axis_x_up_axes2_y*d0_phi_3_up_t_2 - axis_y_up_axes2_in_base_y*d0_G_up_yy -
-            axis_z_up_axes2_in_base_y*d0_G_up_zy
-        )
-        d0_c_up_in_base_z_2 = (
-        axis_x_up_axes2_z*d0_phi_3_up_t_2 - axis_y_up_axes2_in_base_z*d0_G_up_yy -
-            axis_z_up_axes2_in_base_z*d0_G_up_zy
-        )
-        d0_c_up_in_base_x_3 = (
-        axis_x_up_axes2_x*d0_phi_3_up_t_3 - axis_y_up_axes2_in_base_x*d0_G_up_yz -
-            axis_z_up_axes2_in_base_x*d0_G_up_zz
-        )
-        d0_c_up_in_base_y_3 = (
-        axis_x_up_axes2_y*d0_phi_3_up_t_3 - axis_y_up_axes2_in_base_y*d0_G_up_yz -
-            axis_z_up_axes2_in_base_y*d0_G_up_zz
-        )
-        d0_c_up_in_base_z_3 = (
-        axis_x_up_axes2_z*d0_phi_3_up_t_3 - axis_y_up_axes2_in_base_z*d0_G_up_yz -
-            axis_z_up_axes2_in_base_z*d0_G_up_zz
-        )
-        d0_c_up_in_base_y_4 = (
-        axis_x_up_axes2_y*d0_c_up_in_base_x + axis_y_up_axes2_in_base_y*d0_c_up_in_base_x_2 +
-            axis_z_up_axes2_in_base_y*d0_c_up_in_base_x_3
-        )
-        d0_c_up_in_base_z_4 = (
-        axis_x_up_axes2_z*d0_c_up_in_base_x + axis_y_up_axes2_in_base_z*d0_c_up_in_base_x_2 +
-            axis_z_up_axes2_in_base_z*d0_c_up_in_base_x_3
-        )
-        d0_c_up_in_base_x_4 = (
-        axis_x_up_axes2_x*d0_c_up_in_base_y + axis_y_up_axes2_in_base_x*d0_c_up_in_base_y_2 +
-            axis_z_up_axes2_in_base_x*d0_c_up_in_base_y_3
-        )
-        d0_c_up_in_base_y_5 = (
-        axis_x_up_axes2_y*d0_c_up_in_base_y + axis_y_up_axes2_in_base_y*d0_c_up_in_base_y_2 +
-            axis_z_up_axes2_in_base_y*d0_c_up_in_base_y_3
-        )
-        d0_c_up_in_base_z_5 = (
-        axis_x_up_axes2_z*d0_c_up_in_base_y + axis_y_up_axes2_in_base_z*d0_c_up_in_base_y_2 +
-            axis_z_up_axes2_in_base_z*d0_c_up_in_base_y_3
-        )
-        d0_c_up_in_base_x_5 = (
-        axis_x_up_axes2_x*d0_c_up_in_base_z + axis_y_up_axes2_in_base_x*d0_c_up_in_base_z_2 +
-            axis_z_up_axes2_in_base_x*d0_c_up_in_base_z_3
-        )
-        d0_c_up_in_base_y_6 = (
-        axis_x_up_axes2_y*d0_c_up_in_base_z + axis_y_up_axes2_in_base_y*d0_c_up_in_base_z_2 +
-            axis_z_up_axes2_in_base_y*d0_c_up_in_base_z_3
-        )
-        d0_c_up_in_base_z_6 = (
-        axis_x_up_axes2_z*d0_c_up_in_base_z + axis_y_up_axes2_in_base_z*d0_c_up_in_base_z_2 +
-            axis_z_up_axes2_in_base_z*d0_c_up_in_base_z_3
-        )
-        # (M2) coupling block of M
-        M_ta_t_24 = (
-        M_ta_t_13 + axis_x_up_axes2_x*d0_c_up_in_base_x +
-            axis_y_up_axes2_in_base_x*d0_c_up_in_base_x_2 +
-            axis_z_up_axes2_in_base_x*d0_c_up_in_base_x_3 - M_ta_t_14
-        )
-        M_ta_t_25 = M_ta_t_15 - d0_c_up_in_base_y_4
-        M_ta_t_26 = M_ta_t_16 + d0_c_up_in_base_z_4
-        M_ta_t_27 = M_ta_t_17 + d0_c_up_in_base_x_4
-        M_ta_t_28 = M_ta_t_19 - d0_c_up_in_base_y_5
-        M_ta_t_29 = M_ta_t_20 + d0_c_up_in_base_z_5
-        M_ta_t_30 = M_ta_t_21 + d0_c_up_in_base_x_5
-        M_ta_t_31 = M_ta_t_22 - d0_c_up_in_base_y_6
-        M_ta_t_32 = M_ta_t_23 + d0_c_up_in_base_z_6
-        # (up-N43) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        d0_G_m1_up_x = d0_Gamma_1_up_x*w_1_up_t_83 + d0_N_2_up_zx*w_2_up_t_8
-        d0_G_m1_up_y = d0_Gamma_1_up_y*w_1_up_t_83 + d0_N_2_up_zy*w_2_up_t_8
-        d0_G_m1_up_z = d0_Gamma_1_up_z*w_1_up_t_83 + d0_N_2_up_zz*w_2_up_t_8
-        # (up-N47) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
-        d0_G_m2_up_x = d0_Gamma_1_up_x*w_1_up_t_84 - d0_N_2_up_zx*w_2_up_t_10
-        d0_G_m2_up_y = d0_Gamma_1_up_y*w_1_up_t_84 - d0_N_2_up_zy*w_2_up_t_10
-        d0_G_m2_up_z = d0_Gamma_1_up_z*w_1_up_t_84 - d0_N_2_up_zz*w_2_up_t_10
-        # (up-N51) coefficient of the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all freedoms
-        d0_G_m3_up_x = d0_Gamma_1_up_x*w_1_up_t_85 + d0_N_2_up_zx*w_2_up_t_12
-        d0_G_m3_up_y = d0_Gamma_1_up_y*w_1_up_t_85 + d0_N_2_up_zy*w_2_up_t_12
-        d0_G_m3_up_z = d0_Gamma_1_up_z*w_1_up_t_85 + d0_N_2_up_zz*w_2_up_t_12
-        # (up-N55) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        d0_G_m_up_xx = -d0_G_m2_up_x*end_p2_up_r3_y - d0_G_m3_up_x*end_p3_up_r1_x
-        d0_G_m_up_xy = -d0_G_m2_up_y*end_p2_up_r3_y - d0_G_m3_up_y*end_p3_up_r1_x
-        d0_G_m_up_xz = -d0_G_m2_up_z*end_p2_up_r3_y - d0_G_m3_up_z*end_p3_up_r1_x
-        d0_G_m_up_yx = d0_G_m2_up_x*end_p2_up_r3_x - d0_G_m1_up_x*end_p1_up_r1_x
-        d0_G_m_up_yy = d0_G_m2_up_y*end_p2_up_r3_x - d0_G_m1_up_y*end_p1_up_r1_x
-        d0_G_m_up_yz = d0_G_m2_up_z*end_p2_up_r3_x - d0_G_m1_up_z*end_p1_up_r1_x
-        d0_G_m_up_zx = d0_G_m1_up_x*end_p1_up_r3_y + d0_G_m3_up_x*end_p3_up_r3_x
-        d0_G_m_up_zy = d0_G_m1_up_y*end_p1_up_r3_y + d0_G_m3_up_y*end_p3_up_r3_x
-        d0_G_m_up_zz = d0_G_m1_up_z*end_p1_up_r3_y + d0_G_m3_up_z*end_p3_up_r3_x
-        # (up-N44) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        d_G_m1_up_x = h_3_up_z*w_2_up_t_8 - d_Gamma_1_up_t*w_1_up_t_83
-        d_G_m1_up_y = d_Gamma_1_up_y*w_1_up_t_83 + d_N_2_up_zy*w_2_up_t_8
-        d_G_m1_up_z = d_Gamma_1_up_z*w_1_up_t_83 + d_N_2_up_zz*w_2_up_t_8
-        # (up-N48) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
-        d_G_m2_up_x = -d_Gamma_1_up_t*w_1_up_t_84 - h_3_up_z*w_2_up_t_10
-        d_G_m2_up_y = d_Gamma_1_up_y*w_1_up_t_84 - d_N_2_up_zy*w_2_up_t_10
-        d_G_m2_up_z = d_Gamma_1_up_z*w_1_up_t_84 - d_N_2_up_zz*w_2_up_t_10
-        # (up-N52) coefficient of the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all freedoms
-        d_G_m3_up_x = h_3_up_z*w_2_up_t_12 - d_Gamma_1_up_t*w_1_up_t_85
-        d_G_m3_up_y = d_Gamma_1_up_y*w_1_up_t_85 + d_N_2_up_zy*w_2_up_t_12
-        d_G_m3_up_z = d_Gamma_1_up_z*w_1_up_t_85 + d_N_2_up_zz*w_2_up_t_12
-        # (up-N56) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_m_up_xx = -d_G_m2_up_x*end_p2_up_r3_y - d_G_m3_up_x*end_p3_up_r1_x
-        d_G_m_up_xy = -d_G_m2_up_y*end_p2_up_r3_y - d_G_m3_up_y*end_p3_up_r1_x
-        d_G_m_up_xz = -d_G_m2_up_z*end_p2_up_r3_y - d_G_m3_up_z*end_p3_up_r1_x
-        d_G_m_up_yx = d_G_m2_up_x*end_p2_up_r3_x - d_G_m1_up_x*end_p1_up_r1_x
-        d_G_m_up_yy = d_G_m2_up_y*end_p2_up_r3_x - d_G_m1_up_y*end_p1_up_r1_x
-        d_G_m_up_yz = d_G_m2_up_z*end_p2_up_r3_x - d_G_m1_up_z*end_p1_up_r1_x
-        d_G_m_up_zx = d_G_m1_up_x*end_p1_up_r3_y + d_G_m3_up_x*end_p3_up_r3_x
-        d_G_m_up_zy = d_G_m1_up_y*end_p1_up_r3_y + d_G_m3_up_y*end_p3_up_r3_x
-        d_G_m_up_zz = d_G_m1_up_z*end_p1_up_r3_y + d_G_m3_up_z*end_p3_up_r3_x
-        # (up-N65) coefficient of the acceleration in: moment of the leg on the platform without actuation
-        d_c_m_up_in_base_x = (
-        -axis_x_up_axes2_x*d_G_m_up_xx - axis_y_up_axes2_in_base_x*d_G_m_up_yx -
-            axis_z_up_axes2_in_base_x*d_G_m_up_zx
-        )
-        d_c_m_up_in_base_y = (
-        -axis_x_up_axes2_y*d_G_m_up_xx - axis_y_up_axes2_in_base_y*d_G_m_up_yx -
-            axis_z_up_axes2_in_base_y*d_G_m_up_zx
-        )
-        d_c_m_up_in_base_z = (
-        -axis_x_up_axes2_z*d_G_m_up_xx - axis_y_up_axes2_in_base_z*d_G_m_up_yx -
-            axis_z_up_axes2_in_base_z*d_G_m_up_zx
-        )
-        d_c_m_up_in_base_x_2 = (
-        -axis_x_up_axes2_x*d_G_m_up_xy - axis_y_up_axes2_in_base_x*d_G_m_up_yy -
-            axis_z_up_axes2_in_base_x*d_G_m_up_zy
-        )
-        d_c_m_up_in_base_y_2 = (
-        -axis_x_up_axes2_y*d_G_m_up_xy - axis_y_up_axes2_in_base_y*d_G_m_up_yy -
-            axis_z_up_axes2_in_base_y*d_G_m_up_zy
-        )
-        d_c_m_up_in_base_z_2 = (
-        -axis_x_up_axes2_z*d_G_m_up_xy - axis_y_up_axes2_in_base_z*d_G_m_up_yy -
-            axis_z_up_axes2_in_base_z*d_G_m_up_zy
-        )
-        d_c_m_up_in_base_x_3 = (
-        -axis_x_up_axes2_x*d_G_m_up_xz - axis_y_up_axes2_in_base_x*d_G_m_up_yz -
-            axis_z_up_axes2_in_base_x*d_G_m_up_zz
-        )
-        d_c_m_up_in_base_y_3 = (
-        -axis_x_up_axes2_y*d_G_m_up_xz - axis_y_up_axes2_in_base_y*d_G_m_up_yz -
-            axis_z_up_axes2_in_base_y*d_G_m_up_zz
-        )
-        d_c_m_up_in_base_z_3 = (
-        -axis_x_up_axes2_z*d_G_m_up_xz - axis_y_up_axes2_in_base_z*d_G_m_up_yz -
-            axis_z_up_axes2_in_base_z*d_G_m_up_zz
-        )
-        d_c_m_up_in_base_x_4 = (
-        axis_x_up_axes2_x*d_c_m_up_in_base_x + axis_y_up_axes2_in_base_x*d_c_m_up_in_base_x_2 +
-            axis_z_up_axes2_in_base_x*d_c_m_up_in_base_x_3
-        )
-        d_c_m_up_in_base_y_4 = (
-        axis_x_up_axes2_y*d_c_m_up_in_base_x + axis_y_up_axes2_in_base_y*d_c_m_up_in_base_x_2 +
-            axis_z_up_axes2_in_base_y*d_c_m_up_in_base_x_3
-        )
-        d_c_m_up_in_base_z_4 = (
-        axis_x_up_axes2_z*d_c_m_up_in_base_x + axis_y_up_axes2_in_base_z*d_c_m_up_in_base_x_2 +
-            axis_z_up_axes2_in_base_z*d_c_m_up_in_base_x_3
-        )
-        d_c_m_up_in_base_x_5 = (
-        axis_x_up_axes2_x*d_c_m_up_in_base_y + axis_y_up_axes2_in_base_x*d_c_m_up_in_base_y_2 +
-            axis_z_up_axes2_in_base_x*d_c_m_up_in_base_y_3
-        )
-        # (up-N64) coefficient of the acceleration in: moment of the leg on the platform without actuation
-        d0_c_m_up_in_base_x = (
-        -axis_x_up_axes2_x*d0_G_m_up_xx - axis_y_up_axes2_in_base_x*d0_G_m_up_yx -
-            axis_z_up_axes2_in_base_x*d0_G_m_up_zx
-        )
-        d0_c_m_up_in_base_y = (
-        -axis_x_up_axes2_y*d0_G_m_up_xx - axis_y_up_axes2_in_base_y*d0_G_m_up_yx -
-            axis_z_up_axes2_in_base_y*d0_G_m_up_zx
-        )
-        d0_c_m_up_in_base_x_2 = (
-        -axis_x_up_axes2_x*d0_G_m_up_xy - axis_y_up_axes2_in_base_x*d0_G_m_up_yy -
-            axis_z_up_axes2_in_base_x*d0_G_m_up_zy
-        )
-        d0_c_m_up_in_base_y_2 = (
-        -axis_x_up_axes2_y*d0_G_m_up_xy - axis_y_up_axes2_in_base_y*d0_G_m_up_yy -
-            axis_z_up_axes2_in_base_y*d0_G_m_up_zy
-        )
-        d0_c_m_up_in_base_x_3 = (
-        -axis_x_up_axes2_x*d0_G_m_up_xz - axis_y_up_axes2_in_base_x*d0_G_m_up_yz -
-            axis_z_up_axes2_in_base_x*d0_G_m_up_zz
-        )
-        d0_c_m_up_in_base_y_3 = (
-        -axis_x_up_axes2_y*d0_G_m_up_xz - axis_y_up_axes2_in_base_y*d0_G_m_up_yz -
-            axis_z_up_axes2_in_base_y*d0_G_m_up_zz
-        )
-        d0_c_m_up_in_base_z = (
-        axis_x_up_axes2_z*(-axis_x_up_axes2_z*d0_G_m_up_xx -
-            axis_y_up_axes2_in_base_z*d0_G_m_up_yx - axis_z_up_axes2_in_base_z*d0_G_m_up_zx) +
-            axis_y_up_axes2_in_base_z*(-axis_x_up_axes2_z*d0_G_m_up_xy -
-            axis_y_up_axes2_in_base_z*d0_G_m_up_yy - axis_z_up_axes2_in_base_z*d0_G_m_up_zy) +
-            axis_z_up_axes2_in_base_z*(-axis_x_up_axes2_z*d0_G_m_up_xz -
-            axis_y_up_axes2_in_base_z*d0_G_m_up_yz - axis_z_up_axes2_in_base_z*d0_G_m_up_zz)
-        )
-        # (M3) rotational block of M
-        M_aa_t_7 = (
-        M_ta_t_17*q_up_in_base_z + d0_c_up_in_base_x_4*q_up_in_base_z +
-            d_c_m_up_in_base_y_4*q_up_in_base_z - M_ta_t_21*q_up_in_base_y -
-            axis_x_up_axes2_x*d0_c_m_up_in_base_x -
-            axis_y_up_axes2_in_base_x*d0_c_m_up_in_base_x_2 -
-            axis_z_up_axes2_in_base_x*d0_c_m_up_in_base_x_3 - d0_c_up_in_base_x_5*q_up_in_base_y -
-            d_c_m_up_in_base_z_4*q_up_in_base_y
-        )
-        M_aa_t_8 = (
-        M_ta_t_19*q_up_in_base_z + axis_x_up_axes2_y*d0_c_m_up_in_base_x +
-            axis_y_up_axes2_in_base_y*d0_c_m_up_in_base_x_2 +
-            axis_z_up_axes2_in_base_y*d0_c_m_up_in_base_x_3 + d0_c_up_in_base_y_6*q_up_in_base_y +
-            d_c_m_up_in_base_x_4*q_up_in_base_z - M_ta_t_22*q_up_in_base_y -
-            d0_c_up_in_base_y_5*q_up_in_base_z - d_c_m_up_in_base_z_4*q_up_in_base_x
-        )
-        M_aa_t_9 = (
-        M_ta_t_20*q_up_in_base_z + d0_c_up_in_base_z_5*q_up_in_base_z +
-            d_c_m_up_in_base_x_4*q_up_in_base_y - M_ta_t_23*q_up_in_base_y -
-            axis_x_up_axes2_z*d0_c_m_up_in_base_x -
-            axis_y_up_axes2_in_base_z*d0_c_m_up_in_base_x_2 -
-            axis_z_up_axes2_in_base_z*d0_c_m_up_in_base_x_3 - d0_c_up_in_base_z_6*q_up_in_base_y -
-            d_c_m_up_in_base_y_4*q_up_in_base_x
-        )
-        M_aa_t_10 = (
-        M_ta_t_22*q_up_in_base_x + axis_x_up_axes2_y*d0_c_m_up_in_base_y +
-            axis_y_up_axes2_in_base_y*d0_c_m_up_in_base_y_2 +
-            axis_z_up_axes2_in_base_y*d0_c_m_up_in_base_y_3 + d0_c_up_in_base_y_4*q_up_in_base_z +
-            d_c_m_up_in_base_x_5*q_up_in_base_z - M_ta_t_15*q_up_in_base_z -
-            d0_c_up_in_base_y_6*q_up_in_base_x -
-            q_up_in_base_x*(axis_x_up_axes2_z*d_c_m_up_in_base_y +
-            axis_y_up_axes2_in_base_z*d_c_m_up_in_base_y_2 +
-            axis_z_up_axes2_in_base_z*d_c_m_up_in_base_y_3)
-        )
-        M_aa_t_11 = (
-        M_ta_t_16*q_up_in_base_z + axis_x_up_axes2_z*d0_c_m_up_in_base_y +
-            axis_y_up_axes2_in_base_z*d0_c_m_up_in_base_y_2 +
-            axis_z_up_axes2_in_base_z*d0_c_m_up_in_base_y_3 + d0_c_up_in_base_z_4*q_up_in_base_z +
-            q_up_in_base_x*(axis_x_up_axes2_y*d_c_m_up_in_base_y +
-            axis_y_up_axes2_in_base_y*d_c_m_up_in_base_y_2 +
-            axis_z_up_axes2_in_base_y*d_c_m_up_in_base_y_3) - M_ta_t_23*q_up_in_base_x -
-            d0_c_up_in_base_z_6*q_up_in_base_x - d_c_m_up_in_base_x_5*q_up_in_base_y
-        )
-        M_aa_t_12 = (
-        M_ta_t_16*q_up_in_base_y + d0_c_up_in_base_z_4*q_up_in_base_y +
-            q_up_in_base_y*(axis_x_up_axes2_x*d_c_m_up_in_base_z +
-            axis_y_up_axes2_in_base_x*d_c_m_up_in_base_z_2 +
-            axis_z_up_axes2_in_base_x*d_c_m_up_in_base_z_3) - d0_c_m_up_in_base_z -
-            M_ta_t_20*q_up_in_base_x - d0_c_up_in_base_z_5*q_up_in_base_x -
-            q_up_in_base_x*(axis_x_up_axes2_y*d_c_m_up_in_base_z +
-            axis_y_up_axes2_in_base_y*d_c_m_up_in_base_z_2 +
-            axis_z_up_axes2_in_base_y*d_c_m_up_in_base_z_3)
-        )
-        # (up-V1) velocity of the connection point
-        S_dot_up_t = omega_y*q_up_in_base_z - omega_z*q_up_in_base_y
-        S_dot_up_t_2 = omega_z*q_up_in_base_x - omega_x*q_up_in_base_z
-        S_dot_up_t_3 = omega_x*q_up_in_base_y - omega_y*q_up_in_base_x
-        S_dot_up_x = S_dot_up_t + t_dot_x
-        S_dot_up_y = S_dot_up_t_2 + t_dot_y
-        S_dot_up_z = S_dot_up_t_3 + t_dot_z
-        # (up-V53) rate at which the joints turn along moment direction 1
-        omega_tip_x = (
-        axis_x_up_axes2_x*omega_x + axis_x_up_axes2_y*omega_y + axis_x_up_axes2_z*omega_z
-        )
-        omega_tip_y = (
-        axis_y_up_axes2_in_base_x*omega_x + axis_y_up_axes2_in_base_y*omega_y +
-            axis_y_up_axes2_in_base_z*omega_z
-        )
-        omega_tip_z = (
-        axis_z_up_axes2_in_base_x*omega_x + axis_z_up_axes2_in_base_y*omega_y +
-            axis_z_up_axes2_in_base_z*omega_z
-        )
-        eta_1_up = end_p1_up_r3_y*omega_tip_z - end_p1_up_r1_x*omega_tip_y
-        # (up-V54) rate at which the joints turn along moment direction 2
-        eta_2_up = end_p2_up_r3_x*omega_tip_y - end_p2_up_r3_y*omega_tip_x
-        # (up-V55) rate at which the joints turn along moment direction 3
-        eta_3_up = end_p3_up_r3_x*omega_tip_z - end_p3_up_r1_x*omega_tip_x
-        # (up-V1) velocity of the connection point
-        S_dot_up_tip_x = (
-        S_dot_up_x*axis_x_up_axes2_x + S_dot_up_y*axis_x_up_axes2_y + S_dot_up_z*axis_x_up_axes2_z
-        )
-        S_dot_up_tip_y = (
-        S_dot_up_x*axis_y_up_axes2_in_base_x + S_dot_up_y*axis_y_up_axes2_in_base_y +
-            S_dot_up_z*axis_y_up_axes2_in_base_z
-        )
-        S_dot_up_tip_z = (
-        S_dot_up_x*axis_z_up_axes2_in_base_x + S_dot_up_y*axis_z_up_axes2_in_base_y +
-            S_dot_up_z*axis_z_up_axes2_in_base_z
-        )
-        # (up-V56) rate of joint 1
-        qd_1_up_t = 1.35*eta_1_up
-        qd_1_up_t_2 = 1.35*eta_2_up
-        qd_1_up_t_3 = 1.35*eta_3_up
-        qd_1_up_t_4 = (
-        inv_w_1_up_t_157*(S_dot_up_tip_y*w_1_up_t_76 + S_dot_up_tip_z*w_1_up_t_77 +
-            qd_1_up_t*w_1_up_t_78 + qd_1_up_t_2*w_1_up_t_79 + qd_1_up_t_3*w_1_up_t_80)
-        )
-        qd_1_up_t_5 = (
-        inv_w_1_up_t_129*(S_dot_up_tip_y*w_1_up_t_64 + S_dot_up_tip_z*w_1_up_t_65 +
-            qd_1_up_t*w_1_up_t_66 + qd_1_up_t_3*w_1_up_t_68 - qd_1_up_t_2*w_1_up_t_67 -
-            qd_1_up_t_4*w_1_up_t_69)
-        )
-        qd_1_up_t_6 = (
-        inv_w_1_up_t_95*(S_dot_up_tip_y*w_1_up_t_50 + S_dot_up_tip_z*inv_w_1_up_t_95 +
-            qd_1_up_t*w_1_up_t_51 + qd_1_up_t_3*w_1_up_t_52 + qd_1_up_t_4*w_1_up_t_58 +
-            qd_1_up_t_5*w_1_up_t_53)
-        )
-        qd_1_up_t_7 = (
-        S_dot_up_tip_y*w_1_up_t_14 + qd_1_up_t*w_1_up_t_15 + qd_1_up_t_3*w_1_up_t_16 +
-            qd_1_up_t_6*w_1_up_t_21 + inv_w_1_up_t_57*w_1_up_t_17*(S_dot_up_tip_y*w_1_up_t_34 +
-            qd_1_up_t*w_1_up_t_35 + qd_1_up_t_3*w_1_up_t_36 + qd_1_up_t_4*w_1_up_t_45 +
-            qd_1_up_t_5*w_1_up_t_41 - qd_1_up_t_6*w_1_up_t_37) - qd_1_up_t_4*w_1_up_t_29 -
-            qd_1_up_t_5*w_1_up_t_25
-        )
-        qd_1_up_t_8 = inv_w_1_up_t_16*qd_1_up_t_7
-        # (up-V59) angular velocity of link 1
-        omega_1_up_t = qd_1_up_t_4*s_2_up
-        omega_1_up_t_2 = c_2_up*qd_1_up_t_4
-        # (up-A8) rate of moment direction 1
-        nd_m1_up_y = (
-        end_p1_up_r3_x*omega_1_up_t_2 + end_p1_up_r3_x*omega_tip_y - end_p1_up_r3_y*omega_tip_x
-        )
-        nd_m1_up_z = (
-        end_p1_up_r3_x*omega_tip_z - end_p1_up_r1_x*omega_tip_x - end_p1_up_r3_x*qd_1_up_t_8
-        )
-        # (up-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_up_x = omega_1_up_t_2*qd_1_up_t_8
-        zeta_2_up_y = omega_1_up_t*qd_1_up_t_8
-        # (up-A9) bias of the angular acceleration along moment direction 1
-        nu_1_up_t = omega_1_up_t - omega_tip_x
-        nu_1_up_t_2 = omega_1_up_t_2 + omega_tip_y
-        nu_1_up_t_3 = omega_tip_z - qd_1_up_t_8
-        nu_1_up_t_4 = (
-        nd_m1_up_y*nu_1_up_t_2 + nd_m1_up_z*nu_1_up_t_3 - nu_1_up_t*(end_p1_up_r1_x*qd_1_up_t_8 -
-            end_p1_up_r3_y*omega_1_up_t_2)
-        )
-        nu_1_up = nu_1_up_t_4 - end_p1_up_r1_x*zeta_2_up_y
-        # (up-A10) rate of moment direction 2
-        nd_m2_up_x = (
-        end_p2_up_r1_x*omega_tip_x - end_p2_up_r1_x*omega_1_up_t - end_p2_up_r3_x*omega_tip_z
-        )
-        nd_m2_up_y = (
-        end_p2_up_r1_x*omega_1_up_t_2 + end_p2_up_r1_x*omega_tip_y - end_p2_up_r3_y*omega_tip_z
-        )
-        # (up-A11) bias of the angular acceleration along moment direction 2
-        nu_2_up_t = end_p2_up_r3_y*zeta_2_up_x - end_p2_up_r3_x*zeta_2_up_y
-        nu_2_up_t_2 = (
-        nd_m2_up_x*nu_1_up_t + nu_1_up_t_3*(end_p2_up_r3_y*omega_1_up_t_2 -
-            end_p2_up_r3_x*omega_1_up_t) - nd_m2_up_y*nu_1_up_t_2
-        )
-        nu_2_up = -nu_2_up_t - nu_2_up_t_2
-        # (up-A12) rate of moment direction 3
-        nd_m3_up_x = (
-        end_p3_up_r3_x*omega_tip_y + end_p3_up_r3_y*omega_1_up_t - end_p3_up_r3_y*omega_tip_x
-        )
-        nd_m3_up_z = (
-        end_p3_up_r1_x*omega_tip_y + end_p3_up_r3_y*qd_1_up_t_8 - end_p3_up_r3_y*omega_tip_z
-        )
-        # (up-A13) bias of the angular acceleration along moment direction 3
-        nu_3_up_t = (
-        nd_m3_up_x*nu_1_up_t + nu_1_up_t_2*(end_p3_up_r1_x*qd_1_up_t_8 +
-            end_p3_up_r3_x*omega_1_up_t) - nd_m3_up_z*nu_1_up_t_3
-        )
-        nu_3_up = -nu_3_up_t - end_p3_up_r1_x*zeta_2_up_x
-        # (up-V61) centripetal tensor of link 2
-        W_2_up_t = omega_1_up_t*omega_1_up_t
-        W_2_up_t_2 = omega_1_up_t_2*omega_1_up_t_2
-        W_2_up_t_3 = qd_1_up_t_8*qd_1_up_t_8
-        W_2_up_xy = omega_1_up_t*omega_1_up_t_2
-        # (up-A5) acceleration of the connection point at zero joint accelerations
-        bias_up_t = root_2_up*zeta_2_up_y
-        bias_up_t_2 = W_2_up_xy*root_2_up
-        bias_up_t_3 = 2.0*S_dot_up_tip_x
-        bias_up_t_4 = bias_up_t_3*qd_1_up_t_8
-        bias_up_t_5 = bias_up_t_3*omega_1_up_t_2
-        bias_up_y = bias_up_t_4 - bias_up_t_2
-        bias_up_z = 2.0*bias_up_t + bias_up_t_5
-        # (up-A1) centripetal acceleration of the connection point
-        u_1_up_x = S_dot_up_t_3*omega_y - S_dot_up_t_2*omega_z
-        u_1_up_y = S_dot_up_t*omega_z - S_dot_up_t_3*omega_x
-        u_1_up_z = S_dot_up_t_2*omega_x - S_dot_up_t*omega_y
-        # (up-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_up_o_y = (
-        axis_y_up_axes2_in_base_x*u_1_up_x + axis_y_up_axes2_in_base_y*u_1_up_y +
-            axis_y_up_axes2_in_base_z*u_1_up_z - bias_up_y
-        )
-        rel_up_o_z = (
-        axis_z_up_axes2_in_base_x*u_1_up_x + axis_z_up_axes2_in_base_y*u_1_up_y +
-            axis_z_up_axes2_in_base_z*u_1_up_z - bias_up_z
-        )
-        # (up-A18) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_up_o_t = 1.35*nu_1_up
-        qdd_1_up_o_t_2 = 1.35*nu_2_up
-        qdd_1_up_o_t_3 = 1.35*nu_3_up
-        qdd_1_up_o_t_4 = (
-        inv_w_1_up_t_157*(qdd_1_up_o_t*w_1_up_t_78 + qdd_1_up_o_t_2*w_1_up_t_79 +
-            qdd_1_up_o_t_3*w_1_up_t_80 + rel_up_o_y*w_1_up_t_76 + rel_up_o_z*w_1_up_t_77)
-        )
-        qdd_1_up_o_t_5 = (
-        inv_w_1_up_t_129*(qdd_1_up_o_t*w_1_up_t_66 + qdd_1_up_o_t_3*w_1_up_t_68 +
-            rel_up_o_y*w_1_up_t_64 + rel_up_o_z*w_1_up_t_65 - qdd_1_up_o_t_2*w_1_up_t_67 -
-            qdd_1_up_o_t_4*w_1_up_t_69)
-        )
-        qdd_1_up_o_t_6 = (
-        inv_w_1_up_t_95*(inv_w_1_up_t_95*rel_up_o_z + qdd_1_up_o_t*w_1_up_t_51 +
-            qdd_1_up_o_t_3*w_1_up_t_52 + qdd_1_up_o_t_4*w_1_up_t_58 + qdd_1_up_o_t_5*w_1_up_t_53 +
-            rel_up_o_y*w_1_up_t_50)
-        )
-        qdd_1_up_o_t_7 = (
-        qdd_1_up_o_t*w_1_up_t_15 + qdd_1_up_o_t_3*w_1_up_t_16 + qdd_1_up_o_t_6*w_1_up_t_21 +
-            rel_up_o_y*w_1_up_t_14 + inv_w_1_up_t_57*w_1_up_t_17*(qdd_1_up_o_t*w_1_up_t_35 +
-            qdd_1_up_o_t_3*w_1_up_t_36 + qdd_1_up_o_t_4*w_1_up_t_45 + qdd_1_up_o_t_5*w_1_up_t_41 +
-            rel_up_o_y*w_1_up_t_34 - qdd_1_up_o_t_6*w_1_up_t_37) - qdd_1_up_o_t_4*w_1_up_t_29 -
-            qdd_1_up_o_t_5*w_1_up_t_25
-        )
-        qdd_1_up_o_t_8 = inv_w_1_up_t_16*qdd_1_up_o_t_7
-        # (up-A26) remainder without the acceleration in: angular acceleration of link 1
-        alpha_1_up_o_t = qdd_1_up_o_t_4*s_2_up
-        alpha_1_up_o_t_2 = c_2_up*qdd_1_up_o_t_4
-        # (up-A30) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_up_o_x = alpha_1_up_o_t - zeta_2_up_x
-        alpha_2_up_o_y = -alpha_1_up_o_t_2 - zeta_2_up_y
-        # (up-A32) remainder of the acceleration tensor of link 2
-        B_2_up_o_xy = -W_2_up_xy - qdd_1_up_o_t_8
-        B_2_up_o_yx = qdd_1_up_o_t_8 - W_2_up_xy
-        B_2_up_o_zx = zeta_2_up_y - alpha_2_up_o_y
-        B_2_up_o_zy = alpha_2_up_o_x - zeta_2_up_x
-        # (up-N6) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        g_r1_x = g_r0_y*s_1_up - c_1_up*g_r0_x
-        g_r1_y = -c_1_up*g_r0_y - g_r0_x*s_1_up
-        g_r3_x = g_r0_z*s_2_up - c_2_up*g_r1_y
-        g_r3_y = -c_2_up*g_r0_z - g_r1_y*s_2_up
-        acc_3_up_o_x = (
-        axis_x_up_axes2_x*u_1_up_x + axis_x_up_axes2_y*u_1_up_y + axis_x_up_axes2_z*u_1_up_z -
-            g_r3_x
-        )
-        acc_3_up_o_y = bias_up_t_4 + qdd_1_up_o_t_8*root_2_up - bias_up_t_2 - g_r3_y
-        acc_3_up_o_z = bias_up_t + bias_up_t_5 - g_r1_x - alpha_2_up_o_y*root_2_up
-        # (up-N14) remainder without the acceleration in: inertia force of link 3 less its weight
-        f_3_up_o_x = (
-        acc_3_up_o_x*up_link3_mass - B_2_up_o_xy*h_3_up_z - alpha_1_up_o_t_2*h_3_up_y -
-            h_3_up_x*(W_2_up_t_2 + W_2_up_t_3)
-        )
-        f_3_up_o_y = (
-        B_2_up_o_yx*h_3_up_x + acc_3_up_o_y*up_link3_mass + h_3_up_z*(W_2_up_t + W_2_up_t_3) -
-            alpha_1_up_o_t*h_3_up_y
-        )
-        f_3_up_o_z = (
-        B_2_up_o_zx*h_3_up_x + acc_3_up_o_z*up_link3_mass - B_2_up_o_zy*h_3_up_z -
-            h_3_up_y*(W_2_up_t + W_2_up_t_2)
-        )
-        # (up-N21) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_up_o_x = (
-        B_2_up_o_yx*J_group_2_up_xz + B_2_up_o_zy*Sigma_2_up_yy + J_group_2_up_yz*(W_2_up_t_2 -
-            W_2_up_t_3) + Sigma_2_up_zz*alpha_1_up_o_t + g_r1_x*h_2_up_z + g_r3_y*h_2_up_y -
-            B_2_up_o_zx*J_group_2_up_xy - acc_3_up_o_y*h_3_up_y - acc_3_up_o_z*h_3_up_z
-        )
-        mu_2_up_o_y = (
-        B_2_up_o_zy*J_group_2_up_xy + acc_3_up_o_x*h_3_up_y + g_r1_x*h_2_up_x -
-            B_2_up_o_xy*J_group_2_up_yz - B_2_up_o_zx*Sigma_2_up_xx - J_group_2_up_xz*(W_2_up_t -
-            W_2_up_t_3) - Sigma_2_up_zz*alpha_1_up_o_t_2 - acc_3_up_o_z*h_3_up_x - g_r3_x*h_2_up_y
-        )
-        mu_2_up_o_z = (
-        B_2_up_o_yx*Sigma_2_up_xx + J_group_2_up_xy*(W_2_up_t - W_2_up_t_2) +
-            J_group_2_up_xz*alpha_1_up_o_t + acc_3_up_o_x*h_3_up_z + acc_3_up_o_y*h_3_up_x -
-            B_2_up_o_xy*Sigma_2_up_yy - J_group_2_up_yz*alpha_1_up_o_t_2 - g_r3_x*h_2_up_z -
-            g_r3_y*h_2_up_x
-        )
-        # (up-N25) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_up_o_y = mu_2_up_o_y - f_3_up_o_z*root_2_up
-        N_2_up_o_z = mu_2_up_o_z + f_3_up_o_y*root_2_up
-        # (up-N41) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_up_o_t = N_2_up_o_z*inv_w_1_up_t_16
-        G_up_o_t_2 = G_up_o_t*inv_w_1_up_t_57*w_1_up_t_17
-        G_up_o_t_3 = inv_w_1_up_t_95*(G_up_o_t*w_1_up_t_21 - G_up_o_t_2*w_1_up_t_37)
-        G_up_o_t_4 = (
-        inv_w_1_up_t_129*(G_up_o_t_2*w_1_up_t_41 + G_up_o_t_3*w_1_up_t_53 - G_up_o_t*w_1_up_t_25)
-        )
-        G_up_o_t_5 = (
-        inv_w_1_up_t_157*(G_up_o_t_2*w_1_up_t_45 + G_up_o_t_3*w_1_up_t_58 + mu_2_up_o_x*s_2_up -
-            G_up_o_t*w_1_up_t_29 - G_up_o_t_4*w_1_up_t_69 - N_2_up_o_y*c_2_up)
-        )
-        G_up_o_t_6 = (
-        G_up_o_t*w_1_up_t_14 + G_up_o_t_2*w_1_up_t_34 + G_up_o_t_3*w_1_up_t_50 +
-            G_up_o_t_4*w_1_up_t_64 + G_up_o_t_5*w_1_up_t_76
-        )
-        G_up_o_t_7 = G_up_o_t_3*inv_w_1_up_t_95 + G_up_o_t_4*w_1_up_t_65 + G_up_o_t_5*w_1_up_t_77
-        G_up_o_t_8 = (
-        G_up_o_t*w_1_up_t_15 + G_up_o_t_2*w_1_up_t_35 + G_up_o_t_3*w_1_up_t_51 +
-            G_up_o_t_4*w_1_up_t_66 + G_up_o_t_5*w_1_up_t_78
-        )
-        G_up_o_t_9 = 1.35*G_up_o_t_8
-        G_up_o_t_10 = G_up_o_t_4*w_1_up_t_67 - G_up_o_t_5*w_1_up_t_79
-        G_up_o_t_11 = 1.35*G_up_o_t_10
-        G_up_o_t_12 = (
-        G_up_o_t*w_1_up_t_16 + G_up_o_t_2*w_1_up_t_36 + G_up_o_t_3*w_1_up_t_52 +
-            G_up_o_t_4*w_1_up_t_68 + G_up_o_t_5*w_1_up_t_80
-        )
-        G_up_o_t_13 = 1.35*G_up_o_t_12
-        # (up-N67) velocity and gravity terms of the leg force
-        U_up_in_base_x = (
-        G_up_o_t_6*axis_y_up_axes2_in_base_x + G_up_o_t_7*axis_z_up_axes2_in_base_x +
-            axis_x_up_axes2_x*f_3_up_o_x
-        )
-        U_up_in_base_y = (
-        G_up_o_t_6*axis_y_up_axes2_in_base_y + G_up_o_t_7*axis_z_up_axes2_in_base_y +
-            axis_x_up_axes2_y*f_3_up_o_x
-        )
-        U_up_in_base_z = (
-        G_up_o_t_6*axis_y_up_axes2_in_base_z + G_up_o_t_7*axis_z_up_axes2_in_base_z +
-            axis_x_up_axes2_z*f_3_up_o_x
-        )
-        # (up-N57) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        G_m_up_o_x = G_up_o_t_11*end_p2_up_r3_y - G_up_o_t_13*end_p3_up_r1_x
-        G_m_up_o_y = -G_up_o_t_11*end_p2_up_r3_x - G_up_o_t_9*end_p1_up_r1_x
-        G_m_up_o_z = G_up_o_t_13*end_p3_up_r3_x + G_up_o_t_9*end_p1_up_r3_y
-        # (M7) rotational part of Z
-        Z_a_t_4 = (
-        G_m_up_o_x*axis_x_up_axes2_x + G_m_up_o_y*axis_y_up_axes2_in_base_x +
-            G_m_up_o_z*axis_z_up_axes2_in_base_x + U_up_in_base_z*q_up_in_base_y -
-            U_up_in_base_y*q_up_in_base_z
-        )
-        Z_a_t_5 = (
-        G_m_up_o_x*axis_x_up_axes2_y + G_m_up_o_y*axis_y_up_axes2_in_base_y +
-            G_m_up_o_z*axis_z_up_axes2_in_base_y + U_up_in_base_x*q_up_in_base_z -
-            U_up_in_base_z*q_up_in_base_x
-        )
-        Z_a_t_6 = (
-        G_m_up_o_x*axis_x_up_axes2_z + G_m_up_o_y*axis_y_up_axes2_in_base_z +
-            G_m_up_o_z*axis_z_up_axes2_in_base_z + U_up_in_base_y*q_up_in_base_x -
-            U_up_in_base_x*q_up_in_base_y
-        )
-        # (up-V25) the moment that goes with it
-        mu_c1_up_t = end_p1_up_r1_x*f_c1_up_t_4
-        mu_c1_up_t_2 = end_p3_up_r1_x*f_c1_up_t_5
-        mu_c1_up_z = -end_p1_up_r3_y*f_c1_up_t_4 - end_p3_up_r3_x*f_c1_up_t_5
-        # (M9) moment of the column's unit force about the platform origin
-        Hk_a_1_up_x = (
-        axis_x_up_axes2_x*mu_c1_up_t_2 + axis_y_up_axes2_in_base_x*mu_c1_up_t +
-            axis_y_up_axes2_in_base_z*q_up_in_base_y + axis_z_up_axes2_in_base_x*mu_c1_up_z -
-            axis_y_up_axes2_in_base_y*q_up_in_base_z
-        )
-        Hk_a_1_up_y = (
-        axis_x_up_axes2_y*mu_c1_up_t_2 + axis_y_up_axes2_in_base_x*q_up_in_base_z +
-            axis_y_up_axes2_in_base_y*mu_c1_up_t + axis_z_up_axes2_in_base_y*mu_c1_up_z -
-            axis_y_up_axes2_in_base_z*q_up_in_base_x
-        )
-        Hk_a_1_up_z = (
-        axis_x_up_axes2_z*mu_c1_up_t_2 + axis_y_up_axes2_in_base_y*q_up_in_base_x +
-            axis_y_up_axes2_in_base_z*mu_c1_up_t + axis_z_up_axes2_in_base_z*mu_c1_up_z -
-            axis_y_up_axes2_in_base_x*q_up_in_base_y
-        )
-        # (M11) part of the constraint's second derivative that does not hold the acceleration
-        gamma_c1_up = rel_up_o_y - f_c1_up_t_4*nu_1_up - f_c1_up_t_5*nu_3_up
-        # (up-V31) the moment that goes with it
-        mu_c2_up_t = end_p1_up_r1_x*f_c2_up_t
-        mu_c2_up_t_2 = end_p3_up_r1_x*f_c2_up_t_2
-        mu_c2_up_z = end_p3_up_r3_x*f_c2_up_t_2 - end_p1_up_r3_y*f_c2_up_t
-        # (M12) moment of the column's unit force about the platform origin
-        Hk_a_2_up_x = (
-        axis_y_up_axes2_in_base_x*mu_c2_up_t + axis_z_up_axes2_in_base_x*mu_c2_up_z +
-            axis_z_up_axes2_in_base_z*q_up_in_base_y - axis_x_up_axes2_x*mu_c2_up_t_2 -
-            axis_z_up_axes2_in_base_y*q_up_in_base_z
-        )
-        Hk_a_2_up_y = (
-        axis_y_up_axes2_in_base_y*mu_c2_up_t + axis_z_up_axes2_in_base_x*q_up_in_base_z +
-            axis_z_up_axes2_in_base_y*mu_c2_up_z - axis_x_up_axes2_y*mu_c2_up_t_2 -
-            axis_z_up_axes2_in_base_z*q_up_in_base_x
-        )
-        Hk_a_2_up_z = (
-        axis_y_up_axes2_in_base_z*mu_c2_up_t + axis_z_up_axes2_in_base_y*q_up_in_base_x +
-            axis_z_up_axes2_in_base_z*mu_c2_up_z - axis_x_up_axes2_z*mu_c2_up_t_2 -
-            axis_z_up_axes2_in_base_x*q_up_in_base_y
-        )
-        # (M14) part of the constraint's second derivative that does not hold the acceleration
-        gamma_c2_up = rel_up_o_z + f_c2_up_t_2*nu_3_up - f_c2_up_t*nu_1_up
-        # (up-V37) the moment that goes with it
-        mu_c3_up_x = -end_p2_up_r3_y*inv_size_c3_up - end_p3_up_r1_x*mu3_c3_up
-        mu_c3_up_y = end_p1_up_r1_x*mu1_c3_up + end_p2_up_r3_x*inv_size_c3_up
-        mu_c3_up_z = end_p3_up_r3_x*mu3_c3_up - end_p1_up_r3_y*mu1_c3_up
-        mu_c3_up_in_base_x = (
-        axis_x_up_axes2_x*mu_c3_up_x + axis_y_up_axes2_in_base_x*mu_c3_up_y +
-            axis_z_up_axes2_in_base_x*mu_c3_up_z
-        )
-        mu_c3_up_in_base_y = (
-        axis_x_up_axes2_y*mu_c3_up_x + axis_y_up_axes2_in_base_y*mu_c3_up_y +
-            axis_z_up_axes2_in_base_y*mu_c3_up_z
-        )
-        mu_c3_up_in_base_z = (
-        axis_x_up_axes2_z*mu_c3_up_x + axis_y_up_axes2_in_base_z*mu_c3_up_y +
-            axis_z_up_axes2_in_base_z*mu_c3_up_z
-        )
-        # (M17) part of the constraint's second derivative that does not hold the acceleration
-        gamma_c3_up = inv_size_c3_up*nu_2_up + mu3_c3_up*nu_3_up - mu1_c3_up*nu_1_up
+        # (tube-S) from the base point to the connection point
+        tube_q_in_base_x = (
+        R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
+        )
+        tube_q_in_base_y = (
+        R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
+        )
+        tube_q_in_base_z = (
+        R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
+        )
+        tube_S_x = t_x + tube_q_in_base_x - tube_base_point_x
+        tube_S_y = t_y + tube_q_in_base_y - tube_base_point_y
+        tube_S_z = t_z + tube_q_in_base_z - tube_base_point_z
+        # (tube-px_1) component along the reference direction
+        tube_px_1 = (
+        tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
+        )
+        # (tube-py_1) component across the reference direction
+        tube_py_1 = (
+        tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
+        )
+        # (tube-rho2_1) squared amplitude
+        tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
+        # (tube-root_1) amplitude, with the sign of the branch
+        tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
+        # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        tube_xi_1_t = (
+        tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
+        )
+        # (tube-rho2_2) squared amplitude
+        tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t
+        # (tube-root_2) amplitude, with the sign of the branch
+        tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
+        # (tube-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_tube_root_2 = 1.0/tube_root_2
+        tube_c_2 = inv_tube_root_2*tube_root_1
+        # (tube-s_2) sine of the angle of joint 2 from its reference direction
+        tube_s_2 = inv_tube_root_2*tube_xi_1_t
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = inv_tube_root_1*tube_py_1
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_px_1
+        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        axis_z_tube_axes2_in_base_x = tube_base_frame_xy*tube_s_1 - tube_base_frame_xx*tube_c_1
+        axis_z_tube_axes2_in_base_y = tube_base_frame_yy*tube_s_1 - tube_base_frame_yx*tube_c_1
+        axis_z_tube_axes2_in_base_z = tube_base_frame_zy*tube_s_1 - tube_base_frame_zx*tube_c_1
+        tube_f_c1_t = tube_s_1*tube_s_2
+        tube_f_c1_t_2 = tube_c_1*tube_s_2
+        axis_y_tube_axes2_in_base_x = (
+        tube_base_frame_xx*tube_f_c1_t + tube_base_frame_xy*tube_f_c1_t_2 -
+            tube_base_frame_xz*tube_c_2
+        )
+        axis_y_tube_axes2_in_base_y = (
+        tube_base_frame_yx*tube_f_c1_t + tube_base_frame_yy*tube_f_c1_t_2 -
+            tube_base_frame_yz*tube_c_2
+        )
+        axis_y_tube_axes2_in_base_z = (
+        tube_base_frame_zx*tube_f_c1_t + tube_base_frame_zy*tube_f_c1_t_2 -
+            tube_base_frame_zz*tube_c_2
+        )
+        axis_x_tube_axes2_x = (
+        axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_z -
+            axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_y
+        )
+        axis_x_tube_axes2_y = (
+        axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_x -
+            axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_z
+        )
+        axis_x_tube_axes2_z = (
+        axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_y -
+            axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_x
+        )
+        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
+        tube_n_m1_t_2 = (
+        R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx + R_zy*tube_base_frame_zx
+        )
+        tube_n_m1_t_3 = (
+        R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx + R_zz*tube_base_frame_zx
+        )
+        tube_n_m1_t_4 = (
+        R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy + R_zx*tube_base_frame_zy
+        )
+        tube_n_m1_t_5 = (
+        R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy + R_zy*tube_base_frame_zy
+        )
+        tube_n_m1_t_6 = (
+        R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy + R_zz*tube_base_frame_zy
+        )
+        tube_n_m1_t_7 = (
+        R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz + R_zx*tube_base_frame_zz
+        )
+        tube_n_m1_t_8 = (
+        R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz + R_zy*tube_base_frame_zz
+        )
+        tube_n_m1_t_9 = (
+        R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz + R_zz*tube_base_frame_zz
+        )
+        tube_end_p1_r0_x = (
+        tube_n_m1_t*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_yz
+        )
+        tube_end_p1_r0_y = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_yz
+        )
+        tube_end_p1_r0_z = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_yz
+        )
+        tube_end_p1_r1_x = tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x
+        tube_end_p1_r1_y = -tube_c_1*tube_end_p1_r0_y - tube_end_p1_r0_x*tube_s_1
+        tube_end_p1_r3_x = tube_end_p1_r0_z*tube_s_2 - tube_c_2*tube_end_p1_r1_y
+        tube_end_p1_r3_y = -tube_c_2*tube_end_p1_r0_z - tube_end_p1_r1_y*tube_s_2
+        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
+        tube_end_p2_r0_x = (
+        tube_n_m1_t*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_zz
+        )
+        tube_end_p2_r0_y = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_zz
+        )
+        tube_end_p2_r0_z = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_zz
+        )
+        tube_end_p2_r1_x = tube_end_p2_r0_y*tube_s_1 - tube_c_1*tube_end_p2_r0_x
+        tube_end_p2_r1_y = -tube_c_1*tube_end_p2_r0_y - tube_end_p2_r0_x*tube_s_1
+        tube_end_p2_r3_x = tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y
+        tube_end_p2_r3_y = -tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2
+        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
+        tube_end_p3_r0_x = (
+        tube_n_m1_t*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_xz
+        )
+        tube_end_p3_r0_y = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_xz
+        )
+        tube_end_p3_r0_z = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_xz
+        )
+        tube_end_p3_r1_x = tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x
+        tube_end_p3_r1_y = -tube_c_1*tube_end_p3_r0_y - tube_end_p3_r0_x*tube_s_1
+        tube_end_p3_r3_x = tube_end_p3_r0_z*tube_s_2 - tube_c_2*tube_end_p3_r1_y
+        tube_end_p3_r3_y = -tube_c_2*tube_end_p3_r0_z - tube_end_p3_r1_y*tube_s_2
+        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        tube_n_m1_t_10 = tube_c_2*tube_end_p1_r1_x
+        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
+        tube_n_m2_r0_y = -tube_c_2*tube_end_p2_r3_x - tube_end_p2_r3_y*tube_s_2
+        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
+        tube_n_m3_t = tube_end_p3_r1_x*tube_s_2
+        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        tube_f_c1_t_3 = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10
+        inv_tube_f_c1_t_26 = 1.0/tube_f_c1_t_3
+        tube_f_c1_t_4 = inv_tube_f_c1_t_26*tube_n_m3_t*tube_root_2
+        tube_f_c1_t_5 = inv_tube_f_c1_t_26*tube_n_m1_t_10*tube_root_2
+        # (tube-f_c2) force part of the wrench that does no work along the leg's freedoms, 2
+        tube_f_c2_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_root_1
+        tube_f_c2_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_root_1
+        # (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3
+        tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y
+        tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y
+        # (tube-size_c3) size of the moment
+        tube_size_c3 = sqrt(1.0 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2)
+        # (tube-mu1_c3) moment along direction 1 that goes with it
+        inv_tube_size_c3 = 1.0/tube_size_c3
+        tube_mu1_c3 = inv_tube_size_c3*tube_f_c3_t
+        # (tube-mu3_c3) moment along direction 3 that goes with it
+        tube_mu3_c3 = inv_tube_size_c3*tube_f_c3_t_2
+        # (tube-w_1) force part of reciprocal wrench 1
+        tube_w_1_t = 1.35*tube_n_m1_t_10
+        tube_w_1_t_2 = 1.35*tube_n_m2_r0_y
+        tube_w_1_t_3 = 1.35*tube_n_m3_t
+        tube_w_1_t_4 = 1.35*tube_end_p1_r3_y
+        tube_w_1_t_5 = 1.35*tube_end_p3_r3_x
+        tube_w_1_t_6 = 1.35*tube_f_c1_t_4
+        tube_w_1_t_7 = 1.35*tube_f_c1_t_5
+        tube_w_1_t_8 = 1.35*tube_f_c2_t
+        tube_w_1_t_9 = 1.35*tube_f_c2_t_2
+        tube_w_1_t_10 = 1.35*tube_mu1_c3
+        tube_w_1_t_11 = 1.35*inv_tube_size_c3
+        tube_w_1_t_12 = 1.35*tube_mu3_c3
+        tube_w_1_t_13 = sqrt(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
+        inv_tube_w_1_t_16 = 1.0/tube_w_1_t_13
+        tube_w_1_t_14 = inv_tube_w_1_t_16*tube_root_2
+        tube_w_1_t_15 = inv_tube_w_1_t_16*tube_w_1_t_4
+        tube_w_1_t_16 = inv_tube_w_1_t_16*tube_w_1_t_5
+        tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
+        tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
+        tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
+        tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7
+        tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9
+        tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21
+        tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8
+        tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21
+        tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16
+        tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25
+        tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25
+        tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25
+        tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3
+        tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29
+        tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29
+        tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29
+        tube_w_1_t_33 = (
+        sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
+            tube_w_1_t_20*tube_w_1_t_20)
+        )
+        inv_tube_w_1_t_57 = 1.0/tube_w_1_t_33
+        tube_w_1_t_34 = inv_tube_w_1_t_57*tube_w_1_t_18
+        tube_w_1_t_35 = inv_tube_w_1_t_57*tube_w_1_t_19
+        tube_w_1_t_36 = inv_tube_w_1_t_57*tube_w_1_t_20
+        tube_w_1_t_37 = (
+        tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
+        )
+        tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37
+        tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37
+        tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37
+        tube_w_1_t_41 = (
+        tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 - tube_w_1_t_27*tube_w_1_t_35
+        )
+        tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41
+        tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41
+        tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41
+        tube_w_1_t_45 = (
+        tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 - tube_w_1_t_31*tube_w_1_t_35
+        )
+        tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45
+        tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45
+        tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45
+        tube_w_1_t_49 = (
+        sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
+            tube_w_1_t_40*tube_w_1_t_40)
+        )
+        inv_tube_w_1_t_95 = 1.0/tube_w_1_t_49
+        tube_w_1_t_50 = inv_tube_w_1_t_95*tube_w_1_t_38
+        tube_w_1_t_51 = inv_tube_w_1_t_95*tube_w_1_t_39
+        tube_w_1_t_52 = inv_tube_w_1_t_95*tube_w_1_t_40
+        tube_w_1_t_53 = (
+        tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
+        )
+        tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
+        tube_w_1_t_55 = inv_tube_w_1_t_95*tube_w_1_t_53
+        tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
+        tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
+        tube_w_1_t_58 = (
+        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_95*tube_root_1
+            - tube_w_1_t_47*tube_w_1_t_51
+        )
+        tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
+        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_95*tube_w_1_t_58
+        tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
+        tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
+        tube_w_1_t_63 = (
+        sqrt(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54 +
+            tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
+            tube_w_1_t_57*tube_w_1_t_57)
+        )
+        inv_tube_w_1_t_129 = 1.0/tube_w_1_t_63
+        tube_w_1_t_64 = inv_tube_w_1_t_129*tube_w_1_t_54
+        tube_w_1_t_65 = inv_tube_w_1_t_129*tube_w_1_t_55
+        tube_w_1_t_66 = inv_tube_w_1_t_129*tube_w_1_t_56
+        tube_w_1_t_67 = inv_tube_w_1_t_129*tube_w_1_t_11
+        tube_w_1_t_68 = inv_tube_w_1_t_129*tube_w_1_t_57
+        tube_w_1_t_69 = (
+        tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
+            tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
+        )
+        tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69
+        tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69
+        tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69
+        tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69
+        tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69
+        tube_w_1_t_75 = (
+        sqrt(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71 +
+            tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
+            tube_w_1_t_74*tube_w_1_t_74)
+        )
+        inv_tube_w_1_t_157 = 1.0/tube_w_1_t_75
+        tube_w_1_t_76 = inv_tube_w_1_t_157*tube_w_1_t_70
+        tube_w_1_t_77 = inv_tube_w_1_t_157*tube_w_1_t_71
+        tube_w_1_t_78 = inv_tube_w_1_t_157*tube_w_1_t_72
+        tube_w_1_t_79 = inv_tube_w_1_t_157*tube_w_1_t_73
+        tube_w_1_t_80 = inv_tube_w_1_t_157*tube_w_1_t_74
+        tube_w_1_t_81 = inv_tube_w_1_t_157*tube_w_1_t_76
+        tube_w_1_t_82 = inv_tube_w_1_t_157*tube_w_1_t_77
+        tube_w_1_t_83 = 1.35*inv_tube_w_1_t_157*tube_w_1_t_78
+        tube_w_1_t_84 = 1.35*inv_tube_w_1_t_157*tube_w_1_t_79
+        tube_w_1_t_85 = 1.35*inv_tube_w_1_t_157*tube_w_1_t_80
+        # (tube-w_2) force part of reciprocal wrench 2
+        tube_w_2_t = inv_tube_w_1_t_16*inv_tube_w_1_t_57*tube_w_1_t_17
+        tube_w_2_t_2 = (
+        inv_tube_w_1_t_95*(inv_tube_w_1_t_16*tube_w_1_t_21 - tube_w_1_t_37*tube_w_2_t)
+        )
+        tube_w_2_t_3 = (
+        inv_tube_w_1_t_129*(tube_w_1_t_41*tube_w_2_t + tube_w_1_t_53*tube_w_2_t_2 -
+            inv_tube_w_1_t_16*tube_w_1_t_25)
+        )
+        tube_w_2_t_4 = (
+        inv_tube_w_1_t_157*(inv_tube_w_1_t_16*tube_w_1_t_29 + tube_w_1_t_69*tube_w_2_t_3 -
+            tube_w_1_t_45*tube_w_2_t - tube_w_1_t_58*tube_w_2_t_2)
+        )
+        tube_w_2_t_5 = (
+        inv_tube_w_1_t_16*tube_w_1_t_14 + tube_w_1_t_34*tube_w_2_t + tube_w_1_t_50*tube_w_2_t_2 +
+            tube_w_1_t_64*tube_w_2_t_3 - tube_w_1_t_76*tube_w_2_t_4
+        )
+        tube_w_2_t_6 = (
+        inv_tube_w_1_t_95*tube_w_2_t_2 + tube_w_1_t_65*tube_w_2_t_3 - tube_w_1_t_77*tube_w_2_t_4
+        )
+        tube_w_2_t_7 = (
+        inv_tube_w_1_t_16*tube_w_1_t_15 + tube_w_1_t_35*tube_w_2_t + tube_w_1_t_51*tube_w_2_t_2 +
+            tube_w_1_t_66*tube_w_2_t_3 - tube_w_1_t_78*tube_w_2_t_4
+        )
+        tube_w_2_t_8 = 1.35*tube_w_2_t_7
+        tube_w_2_t_9 = tube_w_1_t_67*tube_w_2_t_3 + tube_w_1_t_79*tube_w_2_t_4
+        tube_w_2_t_10 = 1.35*tube_w_2_t_9
+        tube_w_2_t_11 = (
+        inv_tube_w_1_t_16*tube_w_1_t_16 + tube_w_1_t_36*tube_w_2_t + tube_w_1_t_52*tube_w_2_t_2 +
+            tube_w_1_t_68*tube_w_2_t_3 - tube_w_1_t_80*tube_w_2_t_4
+        )
+        tube_w_2_t_12 = 1.35*tube_w_2_t_11
+        # (tube-w_1) force part of reciprocal wrench 1
+        tube_w_1_t_86 = tube_s_2*tube_w_1_t_81
+        tube_w_1_t_87 = tube_c_2*tube_w_1_t_81
+        # (tube-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
+        tube_d_alpha_1_xz = tube_s_2*tube_w_1_t_82
+        tube_d_alpha_1_yz = tube_c_2*tube_w_1_t_82
+        # (tube-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
+        tube_d_acc_3_t = tube_root_2*tube_w_2_t_5
+        tube_d_acc_3_t_2 = tube_root_2*tube_w_2_t_6
+        tube_d_acc_3_t_3 = tube_root_2*tube_w_1_t_87
+        tube_d_acc_3_t_4 = tube_d_alpha_1_yz*tube_root_2
+        # (tube-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+        tube_d_phi_3_t = tube_h_3_y*tube_w_1_t_87 - tube_h_3_z*tube_w_2_t_5
+        tube_d_phi_3_t_2 = tube_d_alpha_1_yz*tube_h_3_y - tube_h_3_z*tube_w_2_t_6
+        # (tube-d_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        tube_d_N_2_zy = (
+        tube_J_group_2_xz*tube_w_1_t_86 + tube_J_group_2_zz*tube_w_2_t_5 +
+            tube_d_acc_3_t*tube_h_3_x + tube_root_2*(tube_d_acc_3_t*tube_link3_mass +
+            tube_h_3_x*tube_w_2_t_5 - tube_h_3_y*tube_w_1_t_86) - tube_J_group_2_yz*tube_w_1_t_87
+        )
+        tube_d_N_2_zz = (
+        tube_J_group_2_xz*tube_d_alpha_1_xz + tube_J_group_2_zz*tube_w_2_t_6 +
+            tube_d_acc_3_t_2*tube_h_3_x + tube_root_2*(tube_d_acc_3_t_2*tube_link3_mass +
+            tube_h_3_x*tube_w_2_t_6 - tube_d_alpha_1_xz*tube_h_3_y) -
+            tube_J_group_2_yz*tube_d_alpha_1_yz
+        )
+        # (tube-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        tube_d_Gamma_1_t = tube_c_2*tube_h_3_y
+        tube_d_Gamma_1_t_2 = (
+        tube_c_2*(tube_J_group_2_xy*tube_w_1_t_86 + tube_J_group_2_yz*tube_w_2_t_5 -
+            tube_J_group_2_yy*tube_w_1_t_87 - tube_d_acc_3_t_3*tube_h_3_x -
+            tube_root_2*(tube_d_acc_3_t_3*tube_link3_mass + tube_h_3_x*tube_w_1_t_87 -
+            tube_h_3_z*tube_w_1_t_86))
+        )
+        tube_d_Gamma_1_y = (
+        tube_s_2*(tube_J_group_2_xx*tube_w_1_t_86 + tube_J_group_2_xz*tube_w_2_t_5 -
+            tube_J_group_2_xy*tube_w_1_t_87 - tube_d_acc_3_t*tube_h_3_y -
+            tube_d_acc_3_t_3*tube_h_3_z) - tube_d_Gamma_1_t_2
+        )
+        tube_d_Gamma_1_t_3 = (
+        tube_c_2*(tube_J_group_2_xy*tube_d_alpha_1_xz + tube_J_group_2_yz*tube_w_2_t_6 -
+            tube_J_group_2_yy*tube_d_alpha_1_yz - tube_d_acc_3_t_4*tube_h_3_x -
+            tube_root_2*(tube_d_acc_3_t_4*tube_link3_mass + tube_d_alpha_1_yz*tube_h_3_x -
+            tube_d_alpha_1_xz*tube_h_3_z))
+        )
+        tube_d_Gamma_1_z = (
+        tube_s_2*(tube_J_group_2_xx*tube_d_alpha_1_xz + tube_J_group_2_xz*tube_w_2_t_6 -
+            tube_J_group_2_xy*tube_d_alpha_1_yz - tube_d_acc_3_t_2*tube_h_3_y -
+            tube_d_acc_3_t_4*tube_h_3_z) - tube_d_Gamma_1_t_3
+        )
+        # (tube-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        tube_d_G_yz = tube_d_Gamma_1_z*tube_w_1_t_81 + tube_d_N_2_zz*tube_w_2_t_5
+        # (tube-Q) inertia of the leg at the connection point, without the mass gathered there
+        tube_Q_t = tube_d_Gamma_1_y*tube_w_1_t_81 + tube_d_N_2_zy*tube_w_2_t_5 - tube_link3_mass
+        tube_Q_t_2 = 0.5*tube_Q_t
+        tube_Q_t_3 = tube_d_Gamma_1_z*tube_w_1_t_82 + tube_d_N_2_zz*tube_w_2_t_6 - tube_link3_mass
+        tube_Q_t_4 = 0.5*tube_Q_t_3
+        tube_Q_t_5 = (
+        axis_y_tube_axes2_in_base_x*tube_Q_t_2 + axis_z_tube_axes2_in_base_x*tube_d_G_yz -
+            axis_x_tube_axes2_x*tube_d_phi_3_t
+        )
+        tube_Q_t_6 = (
+        axis_y_tube_axes2_in_base_y*tube_Q_t_2 + axis_z_tube_axes2_in_base_y*tube_d_G_yz -
+            axis_x_tube_axes2_y*tube_d_phi_3_t
+        )
+        tube_Q_t_7 = (
+        axis_y_tube_axes2_in_base_z*tube_Q_t_2 + axis_z_tube_axes2_in_base_z*tube_d_G_yz -
+            axis_x_tube_axes2_z*tube_d_phi_3_t
+        )
+        tube_Q_t_8 = axis_z_tube_axes2_in_base_x*tube_Q_t_4 - axis_x_tube_axes2_x*tube_d_phi_3_t_2
+        tube_Q_t_9 = axis_z_tube_axes2_in_base_y*tube_Q_t_4 - axis_x_tube_axes2_y*tube_d_phi_3_t_2
+        tube_Q_t_10 = (
+        axis_z_tube_axes2_in_base_z*tube_Q_t_4 - axis_x_tube_axes2_z*tube_d_phi_3_t_2
+        )
+        tube_Q_t_11 = (
+        axis_y_tube_axes2_in_base_x*tube_Q_t_5 + axis_z_tube_axes2_in_base_x*tube_Q_t_8
+        )
+        tube_Q_t_12 = 2.0*tube_Q_t_11 + tube_link3_mass
+        tube_Q_t_13 = (
+        axis_y_tube_axes2_in_base_x*tube_Q_t_6 + axis_y_tube_axes2_in_base_y*tube_Q_t_5 +
+            axis_z_tube_axes2_in_base_x*tube_Q_t_9 + axis_z_tube_axes2_in_base_y*tube_Q_t_8
+        )
+        tube_Q_t_14 = (
+        axis_y_tube_axes2_in_base_x*tube_Q_t_7 + axis_y_tube_axes2_in_base_z*tube_Q_t_5 +
+            axis_z_tube_axes2_in_base_x*tube_Q_t_10 + axis_z_tube_axes2_in_base_z*tube_Q_t_8
+        )
+        tube_Q_t_15 = (
+        axis_y_tube_axes2_in_base_y*tube_Q_t_6 + axis_z_tube_axes2_in_base_y*tube_Q_t_9
+        )
+        tube_Q_t_16 = 2.0*tube_Q_t_15 + tube_link3_mass
+        tube_Q_t_17 = (
+        axis_y_tube_axes2_in_base_y*tube_Q_t_7 + axis_y_tube_axes2_in_base_z*tube_Q_t_6 +
+            axis_z_tube_axes2_in_base_y*tube_Q_t_10 + axis_z_tube_axes2_in_base_z*tube_Q_t_9
+        )
+        tube_Q_t_18 = (
+        axis_y_tube_axes2_in_base_z*tube_Q_t_7 + axis_z_tube_axes2_in_base_z*tube_Q_t_10
+        )
+        tube_Q_t_19 = 2.0*tube_Q_t_18 + tube_link3_mass
+        # (tube-o_2) moment part of reciprocal wrench 2
+        tube_o_2_x = tube_end_p2_r3_y*tube_w_2_t_10 - tube_end_p3_r1_x*tube_w_2_t_12
+        tube_o_2_y = -tube_end_p1_r1_x*tube_w_2_t_8 - tube_end_p2_r3_x*tube_w_2_t_10
+        tube_o_2_z = tube_end_p1_r3_y*tube_w_2_t_8 + tube_end_p3_r3_x*tube_w_2_t_12
+        # (tube-o_1) moment part of reciprocal wrench 1
+        tube_o_1_x = -tube_end_p2_r3_y*tube_w_1_t_84 - tube_end_p3_r1_x*tube_w_1_t_85
+        tube_o_1_y = tube_end_p2_r3_x*tube_w_1_t_84 - tube_end_p1_r1_x*tube_w_1_t_83
+        tube_o_1_z = tube_end_p1_r3_y*tube_w_1_t_83 + tube_end_p3_r3_x*tube_w_1_t_85
+        tube_o_1_t = tube_c_2*tube_o_1_x
+        tube_o_1_t_2 = tube_o_1_y*tube_s_2
+        tube_o_1_t_3 = tube_c_2*tube_o_1_y
+        tube_o_1_t_4 = tube_o_1_x*tube_s_2
+        # (tube-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
+        tube_dalpha_alpha_1_xz = tube_o_1_z*tube_s_2
+        tube_dalpha_alpha_1_yz = tube_c_2*tube_o_1_z
+        # (tube-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
+        tube_dalpha_acc_3_t = tube_o_2_x*tube_root_2
+        tube_dalpha_acc_3_t_2 = tube_o_2_y*tube_root_2
+        tube_dalpha_acc_3_t_3 = tube_o_2_z*tube_root_2
+        tube_dalpha_acc_3_t_4 = tube_o_1_t*tube_root_2
+        tube_dalpha_acc_3_t_5 = tube_o_1_t_3*tube_root_2
+        tube_dalpha_acc_3_t_6 = tube_dalpha_alpha_1_yz*tube_root_2
+        # (tube-dalpha_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+        tube_dalpha_phi_3_t = tube_h_3_y*tube_o_1_t - tube_h_3_z*tube_o_2_x
+        tube_dalpha_phi_3_t_2 = tube_h_3_y*tube_o_1_t_3 - tube_h_3_z*tube_o_2_y
+        tube_dalpha_phi_3_t_3 = tube_dalpha_alpha_1_yz*tube_h_3_y - tube_h_3_z*tube_o_2_z
+        # (tube-dalpha_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        tube_dalpha_N_2_zx = (
+        tube_J_group_2_xz*tube_o_1_t_4 + tube_J_group_2_zz*tube_o_2_x +
+            tube_dalpha_acc_3_t*tube_h_3_x + tube_root_2*(tube_dalpha_acc_3_t*tube_link3_mass +
+            tube_h_3_x*tube_o_2_x - tube_h_3_y*tube_o_1_t_4) - tube_J_group_2_yz*tube_o_1_t
+        )
+        tube_dalpha_N_2_zy = (
+        tube_J_group_2_xz*tube_o_1_t_2 + tube_J_group_2_zz*tube_o_2_y +
+            tube_dalpha_acc_3_t_2*tube_h_3_x + tube_root_2*(tube_dalpha_acc_3_t_2*tube_link3_mass
+            + tube_h_3_x*tube_o_2_y - tube_h_3_y*tube_o_1_t_2) - tube_J_group_2_yz*tube_o_1_t_3
+        )
+        tube_dalpha_N_2_zz = (
+        tube_J_group_2_xz*tube_dalpha_alpha_1_xz + tube_J_group_2_zz*tube_o_2_z +
+            tube_dalpha_acc_3_t_3*tube_h_3_x + tube_root_2*(tube_dalpha_acc_3_t_3*tube_link3_mass
+            + tube_h_3_x*tube_o_2_z - tube_dalpha_alpha_1_xz*tube_h_3_y) -
+            tube_J_group_2_yz*tube_dalpha_alpha_1_yz
+        )
+        # (tube-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        tube_dalpha_Gamma_1_t = (
+        tube_c_2*(tube_J_group_2_xy*tube_o_1_t_4 + tube_J_group_2_yz*tube_o_2_x -
+            tube_J_group_2_yy*tube_o_1_t - tube_dalpha_acc_3_t_4*tube_h_3_x -
+            tube_root_2*(tube_dalpha_acc_3_t_4*tube_link3_mass + tube_h_3_x*tube_o_1_t -
+            tube_h_3_z*tube_o_1_t_4))
+        )
+        tube_dalpha_Gamma_1_x = (
+        tube_s_2*(tube_J_group_2_xx*tube_o_1_t_4 + tube_J_group_2_xz*tube_o_2_x -
+            tube_J_group_2_xy*tube_o_1_t - tube_dalpha_acc_3_t*tube_h_3_y -
+            tube_dalpha_acc_3_t_4*tube_h_3_z) - tube_dalpha_Gamma_1_t
+        )
+        tube_dalpha_Gamma_1_t_2 = (
+        tube_c_2*(tube_J_group_2_xy*tube_o_1_t_2 + tube_J_group_2_yz*tube_o_2_y -
+            tube_J_group_2_yy*tube_o_1_t_3 - tube_dalpha_acc_3_t_5*tube_h_3_x -
+            tube_root_2*(tube_dalpha_acc_3_t_5*tube_link3_mass + tube_h_3_x*tube_o_1_t_3 -
+            tube_h_3_z*tube_o_1_t_2))
+        )
+        tube_dalpha_Gamma_1_y = (
+        tube_s_2*(tube_J_group_2_xx*tube_o_1_t_2 + tube_J_group_2_xz*tube_o_2_y -
+            tube_J_group_2_xy*tube_o_1_t_3 - tube_dalpha_acc_3_t_2*tube_h_3_y -
+            tube_dalpha_acc_3_t_5*tube_h_3_z) - tube_dalpha_Gamma_1_t_2
+        )
+        tube_dalpha_Gamma_1_t_3 = (
+        tube_c_2*(tube_J_group_2_xy*tube_dalpha_alpha_1_xz + tube_J_group_2_yz*tube_o_2_z -
+            tube_J_group_2_yy*tube_dalpha_alpha_1_yz - tube_dalpha_acc_3_t_6*tube_h_3_x -
+            tube_root_2*(tube_dalpha_acc_3_t_6*tube_link3_mass + tube_dalpha_alpha_1_yz*tube_h_3_x
+            - tube_dalpha_alpha_1_xz*tube_h_3_z))
+        )
+        tube_dalpha_Gamma_1_z = (
+        tube_s_2*(tube_J_group_2_xx*tube_dalpha_alpha_1_xz + tube_J_group_2_xz*tube_o_2_z -
+            tube_J_group_2_xy*tube_dalpha_alpha_1_yz - tube_dalpha_acc_3_t_3*tube_h_3_y -
+            tube_dalpha_acc_3_t_6*tube_h_3_z) - tube_dalpha_Gamma_1_t_3
+        )
+        # (tube-dalpha_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        tube_dalpha_G_yx = tube_dalpha_Gamma_1_x*tube_w_1_t_81 + tube_dalpha_N_2_zx*tube_w_2_t_5
+        tube_dalpha_G_yy = tube_dalpha_Gamma_1_y*tube_w_1_t_81 + tube_dalpha_N_2_zy*tube_w_2_t_5
+        tube_dalpha_G_yz = tube_dalpha_Gamma_1_z*tube_w_1_t_81 + tube_dalpha_N_2_zz*tube_w_2_t_5
+        tube_dalpha_G_zx = tube_dalpha_Gamma_1_x*tube_w_1_t_82 + tube_dalpha_N_2_zx*tube_w_2_t_6
+        tube_dalpha_G_zy = tube_dalpha_Gamma_1_y*tube_w_1_t_82 + tube_dalpha_N_2_zy*tube_w_2_t_6
+        tube_dalpha_G_zz = tube_dalpha_Gamma_1_z*tube_w_1_t_82 + tube_dalpha_N_2_zz*tube_w_2_t_6
+        # (tube-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        tube_dalpha_c_in_base_x = (
+        axis_x_tube_axes2_x*tube_dalpha_phi_3_t - axis_y_tube_axes2_in_base_x*tube_dalpha_G_yx -
+            axis_z_tube_axes2_in_base_x*tube_dalpha_G_zx
+        )
+        tube_dalpha_c_in_base_y = (
+        axis_x_tube_axes2_y*tube_dalpha_phi_3_t - axis_y_tube_axes2_in_base_y*tube_dalpha_G_yx -
+            axis_z_tube_axes2_in_base_y*tube_dalpha_G_zx
+        )
+        tube_dalpha_c_in_base_z = (
+        axis_x_tube_axes2_z*tube_dalpha_phi_3_t - axis_y_tube_axes2_in_base_z*tube_dalpha_G_yx -
+            axis_z_tube_axes2_in_base_z*tube_dalpha_G_zx
+        )
+        tube_dalpha_c_in_base_x_2 = (
+        axis_x_tube_axes2_x*tube_dalpha_phi_3_t_2 - axis_y_tube_axes2_in_base_x*tube_dalpha_G_yy -
+            axis_z_tube_axes2_in_base_x*tube_dalpha_G_zy
+        )
+        tube_dalpha_c_in_base_y_2 = (
+        axis_x_tube_axes2_y*tube_dalpha_phi_3_t_2 - axis_y_tube_axes2_in_base_y*tube_dalpha_G_yy -
+            axis_z_tube_axes2_in_base_y*tube_dalpha_G_zy
+        )
+        tube_dalpha_c_in_base_z_2 = (
+        axis_x_tube_axes2_z*tube_dalpha_phi_3_t_2 - axis_y_tube_axes2_in_base_z*tube_dalpha_G_yy -
+            axis_z_tube_axes2_in_base_z*tube_dalpha_G_zy
+        )
+        tube_dalpha_c_in_base_x_3 = (
+        axis_x_tube_axes2_x*tube_dalpha_phi_3_t_3 - axis_y_tube_axes2_in_base_x*tube_dalpha_G_yz -
+            axis_z_tube_axes2_in_base_x*tube_dalpha_G_zz
+        )
+        tube_dalpha_c_in_base_y_3 = (
+        axis_x_tube_axes2_y*tube_dalpha_phi_3_t_3 - axis_y_tube_axes2_in_base_y*tube_dalpha_G_yz -
+            axis_z_tube_axes2_in_base_y*tube_dalpha_G_zz
+        )
+        tube_dalpha_c_in_base_z_3 = (
+        axis_x_tube_axes2_z*tube_dalpha_phi_3_t_3 - axis_y_tube_axes2_in_base_z*tube_dalpha_G_yz -
+            axis_z_tube_axes2_in_base_z*tube_dalpha_G_zz
+        )
+        # (M_ta) coupling block of M
+        tube_M_ta_t = tube_Q_t_13*tube_q_in_base_z
+        tube_M_ta_t_2 = tube_Q_t_14*tube_q_in_base_y
+        tube_M_ta_t_3 = tube_Q_t_17*tube_q_in_base_x
+        tube_M_ta_t_4 = (
+        tube_M_ta_t + axis_x_tube_axes2_x*tube_dalpha_c_in_base_x +
+            axis_y_tube_axes2_in_base_x*tube_dalpha_c_in_base_x_2 +
+            axis_z_tube_axes2_in_base_x*tube_dalpha_c_in_base_x_3 - tube_M_ta_t_2
+        )
+        tube_M_ta_t_5 = (
+        tube_Q_t_12*tube_q_in_base_z - axis_x_tube_axes2_y*tube_dalpha_c_in_base_x -
+            axis_y_tube_axes2_in_base_y*tube_dalpha_c_in_base_x_2 -
+            axis_z_tube_axes2_in_base_y*tube_dalpha_c_in_base_x_3 - tube_Q_t_14*tube_q_in_base_x
+        )
+        tube_M_ta_t_6 = (
+        axis_x_tube_axes2_z*tube_dalpha_c_in_base_x +
+            axis_y_tube_axes2_in_base_z*tube_dalpha_c_in_base_x_2 +
+            axis_z_tube_axes2_in_base_z*tube_dalpha_c_in_base_x_3 + tube_Q_t_12*tube_q_in_base_y -
+            tube_Q_t_13*tube_q_in_base_x
+        )
+        tube_M_ta_t_7 = (
+        axis_x_tube_axes2_x*tube_dalpha_c_in_base_y +
+            axis_y_tube_axes2_in_base_x*tube_dalpha_c_in_base_y_2 +
+            axis_z_tube_axes2_in_base_x*tube_dalpha_c_in_base_y_3 + tube_Q_t_16*tube_q_in_base_z -
+            tube_Q_t_17*tube_q_in_base_y
+        )
+        tube_M_ta_t_8 = (
+        tube_M_ta_t - tube_M_ta_t_3 - axis_x_tube_axes2_y*tube_dalpha_c_in_base_y -
+            axis_y_tube_axes2_in_base_y*tube_dalpha_c_in_base_y_2 -
+            axis_z_tube_axes2_in_base_y*tube_dalpha_c_in_base_y_3
+        )
+        tube_M_ta_t_9 = (
+        axis_x_tube_axes2_z*tube_dalpha_c_in_base_y +
+            axis_y_tube_axes2_in_base_z*tube_dalpha_c_in_base_y_2 +
+            axis_z_tube_axes2_in_base_z*tube_dalpha_c_in_base_y_3 + tube_Q_t_13*tube_q_in_base_y -
+            tube_Q_t_16*tube_q_in_base_x
+        )
+        tube_M_ta_t_10 = (
+        axis_x_tube_axes2_x*tube_dalpha_c_in_base_z +
+            axis_y_tube_axes2_in_base_x*tube_dalpha_c_in_base_z_2 +
+            axis_z_tube_axes2_in_base_x*tube_dalpha_c_in_base_z_3 + tube_Q_t_17*tube_q_in_base_z -
+            tube_Q_t_19*tube_q_in_base_y
+        )
+        tube_M_ta_t_11 = (
+        tube_Q_t_14*tube_q_in_base_z - axis_x_tube_axes2_y*tube_dalpha_c_in_base_z -
+            axis_y_tube_axes2_in_base_y*tube_dalpha_c_in_base_z_2 -
+            axis_z_tube_axes2_in_base_y*tube_dalpha_c_in_base_z_3 - tube_Q_t_19*tube_q_in_base_x
+        )
+        tube_M_ta_t_12 = (
+        tube_M_ta_t_3 - tube_M_ta_t_2 - axis_x_tube_axes2_z*tube_dalpha_c_in_base_z -
+            axis_y_tube_axes2_in_base_z*tube_dalpha_c_in_base_z_2 -
+            axis_z_tube_axes2_in_base_z*tube_dalpha_c_in_base_z_3
+        )
+        # (tube-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        tube_dalpha_G_m1_x = tube_dalpha_Gamma_1_x*tube_w_1_t_83 + tube_dalpha_N_2_zx*tube_w_2_t_8
+        tube_dalpha_G_m1_y = tube_dalpha_Gamma_1_y*tube_w_1_t_83 + tube_dalpha_N_2_zy*tube_w_2_t_8
+        tube_dalpha_G_m1_z = tube_dalpha_Gamma_1_z*tube_w_1_t_83 + tube_dalpha_N_2_zz*tube_w_2_t_8
+        # (tube-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        tube_dalpha_G_m2_x = (
+        tube_dalpha_Gamma_1_x*tube_w_1_t_84 - tube_dalpha_N_2_zx*tube_w_2_t_10
+        )
+        tube_dalpha_G_m2_y = (
+        tube_dalpha_Gamma_1_y*tube_w_1_t_84 - tube_dalpha_N_2_zy*tube_w_2_t_10
+        )
+        tube_dalpha_G_m2_z = (
+        tube_dalpha_Gamma_1_z*tube_w_1_t_84 - tube_dalpha_N_2_zz*tube_w_2_t_10
+        )
+        # (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all freedoms
+        tube_dalpha_G_m3_x = (
+        tube_dalpha_Gamma_1_x*tube_w_1_t_85 + tube_dalpha_N_2_zx*tube_w_2_t_12
+        )
+        tube_dalpha_G_m3_y = (
+        tube_dalpha_Gamma_1_y*tube_w_1_t_85 + tube_dalpha_N_2_zy*tube_w_2_t_12
+        )
+        tube_dalpha_G_m3_z = (
+        tube_dalpha_Gamma_1_z*tube_w_1_t_85 + tube_dalpha_N_2_zz*tube_w_2_t_12
+        )
+        # (tube-dalpha_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        tube_dalpha_G_m_xx = (
+        -tube_dalpha_G_m2_x*tube_end_p2_r3_y - tube_dalpha_G_m3_x*tube_end_p3_r1_x
+        )
+        tube_dalpha_G_m_xy = (
+        -tube_dalpha_G_m2_y*tube_end_p2_r3_y - tube_dalpha_G_m3_y*tube_end_p3_r1_x
+        )
+        tube_dalpha_G_m_xz = (
+        -tube_dalpha_G_m2_z*tube_end_p2_r3_y - tube_dalpha_G_m3_z*tube_end_p3_r1_x
+        )
+        tube_dalpha_G_m_yx = (
+        tube_dalpha_G_m2_x*tube_end_p2_r3_x - tube_dalpha_G_m1_x*tube_end_p1_r1_x
+        )
+        tube_dalpha_G_m_yy = (
+        tube_dalpha_G_m2_y*tube_end_p2_r3_x - tube_dalpha_G_m1_y*tube_end_p1_r1_x
+        )
+        tube_dalpha_G_m_yz = (
+        tube_dalpha_G_m2_z*tube_end_p2_r3_x - tube_dalpha_G_m1_z*tube_end_p1_r1_x
+        )
+        tube_dalpha_G_m_zx = (
+        tube_dalpha_G_m1_x*tube_end_p1_r3_y + tube_dalpha_G_m3_x*tube_end_p3_r3_x
+        )
+        tube_dalpha_G_m_zy = (
+        tube_dalpha_G_m1_y*tube_end_p1_r3_y + tube_dalpha_G_m3_y*tube_end_p3_r3_x
+        )
+        tube_dalpha_G_m_zz = (
+        tube_dalpha_G_m1_z*tube_end_p1_r3_y + tube_dalpha_G_m3_z*tube_end_p3_r3_x
+        )
+        # (tube-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        tube_d_G_m1_x = tube_h_3_z*tube_w_2_t_8 - tube_d_Gamma_1_t*tube_w_1_t_83
+        tube_d_G_m1_y = tube_d_Gamma_1_y*tube_w_1_t_83 + tube_d_N_2_zy*tube_w_2_t_8
+        tube_d_G_m1_z = tube_d_Gamma_1_z*tube_w_1_t_83 + tube_d_N_2_zz*tube_w_2_t_8
+        # (tube-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        tube_d_G_m2_x = -tube_d_Gamma_1_t*tube_w_1_t_84 - tube_h_3_z*tube_w_2_t_10
+        tube_d_G_m2_y = tube_d_Gamma_1_y*tube_w_1_t_84 - tube_d_N_2_zy*tube_w_2_t_10
+        tube_d_G_m2_z = tube_d_Gamma_1_z*tube_w_1_t_84 - tube_d_N_2_zz*tube_w_2_t_10
+        # (tube-d_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all freedoms
+        tube_d_G_m3_x = tube_h_3_z*tube_w_2_t_12 - tube_d_Gamma_1_t*tube_w_1_t_85
+        tube_d_G_m3_y = tube_d_Gamma_1_y*tube_w_1_t_85 + tube_d_N_2_zy*tube_w_2_t_12
+        tube_d_G_m3_z = tube_d_Gamma_1_z*tube_w_1_t_85 + tube_d_N_2_zz*tube_w_2_t_12
+        # (tube-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        tube_d_G_m_xx = -tube_d_G_m2_x*tube_end_p2_r3_y - tube_d_G_m3_x*tube_end_p3_r1_x
+        tube_d_G_m_xy = -tube_d_G_m2_y*tube_end_p2_r3_y - tube_d_G_m3_y*tube_end_p3_r1_x
+        tube_d_G_m_xz = -tube_d_G_m2_z*tube_end_p2_r3_y - tube_d_G_m3_z*tube_end_p3_r1_x
+        tube_d_G_m_yx = tube_d_G_m2_x*tube_end_p2_r3_x - tube_d_G_m1_x*tube_end_p1_r1_x
+        tube_d_G_m_yy = tube_d_G_m2_y*tube_end_p2_r3_x - tube_d_G_m1_y*tube_end_p1_r1_x
+        tube_d_G_m_yz = tube_d_G_m2_z*tube_end_p2_r3_x - tube_d_G_m1_z*tube_end_p1_r1_x
+        tube_d_G_m_zx = tube_d_G_m1_x*tube_end_p1_r3_y + tube_d_G_m3_x*tube_end_p3_r3_x
+        tube_d_G_m_zy = tube_d_G_m1_y*tube_end_p1_r3_y + tube_d_G_m3_y*tube_end_p3_r3_x
+        tube_d_G_m_zz = tube_d_G_m1_z*tube_end_p1_r3_y + tube_d_G_m3_z*tube_end_p3_r3_x
+        # (tube-dalpha_c_m) coefficient of the acceleration in: moment of the leg on the platform without actuation
+        tube_dalpha_c_m_in_base_x = (
+        -axis_x_tube_axes2_x*tube_dalpha_G_m_xx - axis_y_tube_axes2_in_base_x*tube_dalpha_G_m_yx -
+            axis_z_tube_axes2_in_base_x*tube_dalpha_G_m_zx
+        )
+        tube_dalpha_c_m_in_base_y = (
+        -axis_x_tube_axes2_y*tube_dalpha_G_m_xx - axis_y_tube_axes2_in_base_y*tube_dalpha_G_m_yx -
+            axis_z_tube_axes2_in_base_y*tube_dalpha_G_m_zx
+        )
+        tube_dalpha_c_m_in_base_x_2 = (
+        -axis_x_tube_axes2_x*tube_dalpha_G_m_xy - axis_y_tube_axes2_in_base_x*tube_dalpha_G_m_yy -
+            axis_z_tube_axes2_in_base_x*tube_dalpha_G_m_zy
+        )
+        tube_dalpha_c_m_in_base_y_2 = (
+        -axis_x_tube_axes2_y*tube_dalpha_G_m_xy - axis_y_tube_axes2_in_base_y*tube_dalpha_G_m_yy -
+            axis_z_tube_axes2_in_base_y*tube_dalpha_G_m_zy
+        )
+        tube_dalpha_c_m_in_base_x_3 = (
+        -axis_x_tube_axes2_x*tube_dalpha_G_m_xz - axis_y_tube_axes2_in_base_x*tube_dalpha_G_m_yz -
+            axis_z_tube_axes2_in_base_x*tube_dalpha_G_m_zz
+        )
+        tube_dalpha_c_m_in_base_y_3 = (
+        -axis_x_tube_axes2_y*tube_dalpha_G_m_xz - axis_y_tube_axes2_in_base_y*tube_dalpha_G_m_yz -
+            axis_z_tube_axes2_in_base_y*tube_dalpha_G_m_zz
+        )
+        tube_dalpha_c_m_in_base_z = (
+        axis_x_tube_axes2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_xx -
+            axis_y_tube_axes2_in_base_z*tube_dalpha_G_m_yx -
+            axis_z_tube_axes2_in_base_z*tube_dalpha_G_m_zx) +
+            axis_y_tube_axes2_in_base_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_xy -
+            axis_y_tube_axes2_in_base_z*tube_dalpha_G_m_yy -
+            axis_z_tube_axes2_in_base_z*tube_dalpha_G_m_zy) +
+            axis_z_tube_axes2_in_base_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_xz -
+            axis_y_tube_axes2_in_base_z*tube_dalpha_G_m_yz -
+            axis_z_tube_axes2_in_base_z*tube_dalpha_G_m_zz)
+        )
+        # (tube-d_c_m) coefficient of the acceleration in: moment of the leg on the platform without actuation
+        tube_d_c_m_in_base_x = (
+        -axis_x_tube_axes2_x*tube_d_G_m_xx - axis_y_tube_axes2_in_base_x*tube_d_G_m_yx -
+            axis_z_tube_axes2_in_base_x*tube_d_G_m_zx
+        )
+        tube_d_c_m_in_base_y = (
+        -axis_x_tube_axes2_y*tube_d_G_m_xx - axis_y_tube_axes2_in_base_y*tube_d_G_m_yx -
+            axis_z_tube_axes2_in_base_y*tube_d_G_m_zx
+        )
+        tube_d_c_m_in_base_z = (
+        -axis_x_tube_axes2_z*tube_d_G_m_xx - axis_y_tube_axes2_in_base_z*tube_d_G_m_yx -
+            axis_z_tube_axes2_in_base_z*tube_d_G_m_zx
+        )
+        tube_d_c_m_in_base_x_2 = (
+        -axis_x_tube_axes2_x*tube_d_G_m_xy - axis_y_tube_axes2_in_base_x*tube_d_G_m_yy -
+            axis_z_tube_axes2_in_base_x*tube_d_G_m_zy
+        )
+        tube_d_c_m_in_base_y_2 = (
+        -axis_x_tube_axes2_y*tube_d_G_m_xy - axis_y_tube_axes2_in_base_y*tube_d_G_m_yy -
+            axis_z_tube_axes2_in_base_y*tube_d_G_m_zy
+        )
+        tube_d_c_m_in_base_z_2 = (
+        -axis_x_tube_axes2_z*tube_d_G_m_xy - axis_y_tube_axes2_in_base_z*tube_d_G_m_yy -
+            axis_z_tube_axes2_in_base_z*tube_d_G_m_zy
+        )
+        tube_d_c_m_in_base_x_3 = (
+        -axis_x_tube_axes2_x*tube_d_G_m_xz - axis_y_tube_axes2_in_base_x*tube_d_G_m_yz -
+            axis_z_tube_axes2_in_base_x*tube_d_G_m_zz
+        )
+        tube_d_c_m_in_base_y_3 = (
+        -axis_x_tube_axes2_y*tube_d_G_m_xz - axis_y_tube_axes2_in_base_y*tube_d_G_m_yz -
+            axis_z_tube_axes2_in_base_y*tube_d_G_m_zz
+        )
+        tube_d_c_m_in_base_z_3 = (
+        -axis_x_tube_axes2_z*tube_d_G_m_xz - axis_y_tube_axes2_in_base_z*tube_d_G_m_yz -
+            axis_z_tube_axes2_in_base_z*tube_d_G_m_zz
+        )
+        tube_d_c_m_in_base_x_4 = (
+        axis_x_tube_axes2_x*tube_d_c_m_in_base_x +
+            axis_y_tube_axes2_in_base_x*tube_d_c_m_in_base_x_2 +
+            axis_z_tube_axes2_in_base_x*tube_d_c_m_in_base_x_3
+        )
+        tube_d_c_m_in_base_y_4 = (
+        axis_x_tube_axes2_y*tube_d_c_m_in_base_x +
+            axis_y_tube_axes2_in_base_y*tube_d_c_m_in_base_x_2 +
+            axis_z_tube_axes2_in_base_y*tube_d_c_m_in_base_x_3
+        )
+        tube_d_c_m_in_base_z_4 = (
+        axis_x_tube_axes2_z*tube_d_c_m_in_base_x +
+            axis_y_tube_axes2_in_base_z*tube_d_c_m_in_base_x_2 +
+            axis_z_tube_axes2_in_base_z*tube_d_c_m_in_base_x_3
+        )
+        tube_d_c_m_in_base_x_5 = (
+        axis_x_tube_axes2_x*tube_d_c_m_in_base_y +
+            axis_y_tube_axes2_in_base_x*tube_d_c_m_in_base_y_2 +
+            axis_z_tube_axes2_in_base_x*tube_d_c_m_in_base_y_3
+        )
+        # (M_aa) rotational block of M
+        tube_M_aa_t = (
+        tube_M_ta_t_7*tube_q_in_base_z + tube_d_c_m_in_base_y_4*tube_q_in_base_z -
+            axis_x_tube_axes2_x*tube_dalpha_c_m_in_base_x -
+            axis_y_tube_axes2_in_base_x*tube_dalpha_c_m_in_base_x_2 -
+            axis_z_tube_axes2_in_base_x*tube_dalpha_c_m_in_base_x_3 -
+            tube_M_ta_t_10*tube_q_in_base_y - tube_d_c_m_in_base_z_4*tube_q_in_base_y
+        )
+        tube_M_aa_t_2 = (
+        axis_x_tube_axes2_y*tube_dalpha_c_m_in_base_x +
+            axis_y_tube_axes2_in_base_y*tube_dalpha_c_m_in_base_x_2 +
+            axis_z_tube_axes2_in_base_y*tube_dalpha_c_m_in_base_x_3 +
+            tube_M_ta_t_8*tube_q_in_base_z + tube_d_c_m_in_base_x_4*tube_q_in_base_z -
+            tube_M_ta_t_11*tube_q_in_base_y - tube_d_c_m_in_base_z_4*tube_q_in_base_x
+        )
+        tube_M_aa_t_3 = (
+        tube_M_ta_t_12*tube_q_in_base_y + tube_M_ta_t_9*tube_q_in_base_z +
+            tube_d_c_m_in_base_x_4*tube_q_in_base_y -
+            axis_x_tube_axes2_z*tube_dalpha_c_m_in_base_x -
+            axis_y_tube_axes2_in_base_z*tube_dalpha_c_m_in_base_x_2 -
+            axis_z_tube_axes2_in_base_z*tube_dalpha_c_m_in_base_x_3 -
+            tube_d_c_m_in_base_y_4*tube_q_in_base_x
+        )
+        tube_M_aa_t_4 = (
+        axis_x_tube_axes2_y*tube_dalpha_c_m_in_base_y +
+            axis_y_tube_axes2_in_base_y*tube_dalpha_c_m_in_base_y_2 +
+            axis_z_tube_axes2_in_base_y*tube_dalpha_c_m_in_base_y_3 +
+            tube_M_ta_t_11*tube_q_in_base_x + tube_d_c_m_in_base_x_5*tube_q_in_base_z -
+            tube_M_ta_t_5*tube_q_in_base_z -
+            tube_q_in_base_x*(axis_x_tube_axes2_z*tube_d_c_m_in_base_y +
+            axis_y_tube_axes2_in_base_z*tube_d_c_m_in_base_y_2 +
+            axis_z_tube_axes2_in_base_z*tube_d_c_m_in_base_y_3)
+        )
+        tube_M_aa_t_5 = (
+        axis_x_tube_axes2_z*tube_dalpha_c_m_in_base_y +
+            axis_y_tube_axes2_in_base_z*tube_dalpha_c_m_in_base_y_2 +
+            axis_z_tube_axes2_in_base_z*tube_dalpha_c_m_in_base_y_3 +
+            tube_M_ta_t_12*tube_q_in_base_x + tube_M_ta_t_6*tube_q_in_base_z +
+            tube_q_in_base_x*(axis_x_tube_axes2_y*tube_d_c_m_in_base_y +
+            axis_y_tube_axes2_in_base_y*tube_d_c_m_in_base_y_2 +
+            axis_z_tube_axes2_in_base_y*tube_d_c_m_in_base_y_3) -
+            tube_d_c_m_in_base_x_5*tube_q_in_base_y
+        )
+        tube_M_aa_t_6 = (
+        tube_M_ta_t_6*tube_q_in_base_y +
+            tube_q_in_base_y*(axis_x_tube_axes2_x*tube_d_c_m_in_base_z +
+            axis_y_tube_axes2_in_base_x*tube_d_c_m_in_base_z_2 +
+            axis_z_tube_axes2_in_base_x*tube_d_c_m_in_base_z_3) - tube_dalpha_c_m_in_base_z -
+            tube_M_ta_t_9*tube_q_in_base_x -
+            tube_q_in_base_x*(axis_x_tube_axes2_y*tube_d_c_m_in_base_z +
+            axis_y_tube_axes2_in_base_y*tube_d_c_m_in_base_z_2 +
+            axis_z_tube_axes2_in_base_y*tube_d_c_m_in_base_z_3)
+        )
+        # (tube-S_dot) velocity of the connection point
+        tube_S_dot_t = omega_y*tube_q_in_base_z - omega_z*tube_q_in_base_y
+        tube_S_dot_t_2 = omega_z*tube_q_in_base_x - omega_x*tube_q_in_base_z
+        tube_S_dot_t_3 = omega_x*tube_q_in_base_y - omega_y*tube_q_in_base_x
+        tube_S_dot_x = t_dot_x + tube_S_dot_t
+        tube_S_dot_y = t_dot_y + tube_S_dot_t_2
+        tube_S_dot_z = t_dot_z + tube_S_dot_t_3
+        # (tube-eta_1) rate at which the joints turn along moment direction 1
+        tube_omega_tip_x = (
+        axis_x_tube_axes2_x*omega_x + axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z
+        )
+        tube_omega_tip_y = (
+        axis_y_tube_axes2_in_base_x*omega_x + axis_y_tube_axes2_in_base_y*omega_y +
+            axis_y_tube_axes2_in_base_z*omega_z
+        )
+        tube_omega_tip_z = (
+        axis_z_tube_axes2_in_base_x*omega_x + axis_z_tube_axes2_in_base_y*omega_y +
+            axis_z_tube_axes2_in_base_z*omega_z
+        )
+        tube_eta_1 = tube_end_p1_r3_y*tube_omega_tip_z - tube_end_p1_r1_x*tube_omega_tip_y
+        # (tube-eta_2) rate at which the joints turn along moment direction 2
+        tube_eta_2 = tube_end_p2_r3_x*tube_omega_tip_y - tube_end_p2_r3_y*tube_omega_tip_x
+        # (tube-eta_3) rate at which the joints turn along moment direction 3
+        tube_eta_3 = tube_end_p3_r3_x*tube_omega_tip_z - tube_end_p3_r1_x*tube_omega_tip_x
+        # (tube-S_dot) velocity of the connection point
+        tube_S_dot_tip_x = (
+        axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
+            axis_x_tube_axes2_z*tube_S_dot_z
+        )
+        tube_S_dot_tip_y = (
+        axis_y_tube_axes2_in_base_x*tube_S_dot_x + axis_y_tube_axes2_in_base_y*tube_S_dot_y +
+            axis_y_tube_axes2_in_base_z*tube_S_dot_z
+        )
+        tube_S_dot_tip_z = (
+        axis_z_tube_axes2_in_base_x*tube_S_dot_x + axis_z_tube_axes2_in_base_y*tube_S_dot_y +
+            axis_z_tube_axes2_in_base_z*tube_S_dot_z
+        )
+        # (tube-qd_3) rate of joint 3
+        tube_qd_3_t = 1.35*tube_eta_1
+        tube_qd_3_t_2 = 1.35*tube_eta_2
+        tube_qd_3_t_3 = 1.35*tube_eta_3
+        tube_qd_3_t_4 = (
+        inv_tube_w_1_t_157*(tube_S_dot_tip_y*tube_w_1_t_76 + tube_S_dot_tip_z*tube_w_1_t_77 +
+            tube_qd_3_t*tube_w_1_t_78 + tube_qd_3_t_2*tube_w_1_t_79 + tube_qd_3_t_3*tube_w_1_t_80)
+        )
+        tube_qd_3_t_5 = (
+        inv_tube_w_1_t_129*(tube_S_dot_tip_y*tube_w_1_t_64 + tube_S_dot_tip_z*tube_w_1_t_65 +
+            tube_qd_3_t*tube_w_1_t_66 + tube_qd_3_t_3*tube_w_1_t_68 - tube_qd_3_t_2*tube_w_1_t_67
+            - tube_qd_3_t_4*tube_w_1_t_69)
+        )
+        tube_qd_3_t_6 = (
+        inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_S_dot_tip_z + tube_S_dot_tip_y*tube_w_1_t_50 +
+            tube_qd_3_t*tube_w_1_t_51 + tube_qd_3_t_3*tube_w_1_t_52 + tube_qd_3_t_4*tube_w_1_t_58
+            + tube_qd_3_t_5*tube_w_1_t_53)
+        )
+        tube_qd_3_t_7 = (
+        tube_S_dot_tip_y*tube_w_1_t_14 + tube_qd_3_t*tube_w_1_t_15 + tube_qd_3_t_3*tube_w_1_t_16 +
+            tube_qd_3_t_6*tube_w_1_t_21 +
+            inv_tube_w_1_t_57*tube_w_1_t_17*(tube_S_dot_tip_y*tube_w_1_t_34 +
+            tube_qd_3_t*tube_w_1_t_35 + tube_qd_3_t_3*tube_w_1_t_36 + tube_qd_3_t_4*tube_w_1_t_45
+            + tube_qd_3_t_5*tube_w_1_t_41 - tube_qd_3_t_6*tube_w_1_t_37) -
+            tube_qd_3_t_4*tube_w_1_t_29 - tube_qd_3_t_5*tube_w_1_t_25
+        )
+        tube_qd_3_t_8 = inv_tube_w_1_t_16*tube_qd_3_t_7
+        # (tube-omega_1) angular velocity of link 1
+        tube_omega_1_t = tube_qd_3_t_4*tube_s_2
+        tube_omega_1_t_2 = tube_c_2*tube_qd_3_t_4
+        # (tube-u_1) centripetal acceleration of the connection point
+        tube_u_1_x = omega_y*tube_S_dot_t_3 - omega_z*tube_S_dot_t_2
+        tube_u_1_y = omega_z*tube_S_dot_t - omega_x*tube_S_dot_t_3
+        tube_u_1_z = omega_x*tube_S_dot_t_2 - omega_y*tube_S_dot_t
+        # (tube-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        tube_zeta_2_x = tube_omega_1_t_2*tube_qd_3_t_8
+        tube_zeta_2_y = tube_omega_1_t*tube_qd_3_t_8
+        # (tube-W_2) centripetal tensor of link 2
+        tube_W_2_t = tube_omega_1_t*tube_omega_1_t
+        tube_W_2_t_2 = tube_omega_1_t_2*tube_omega_1_t_2
+        tube_W_2_t_3 = tube_qd_3_t_8*tube_qd_3_t_8
+        tube_W_2_xy = tube_omega_1_t*tube_omega_1_t_2
+        # (tube-bias) acceleration of the connection point at zero joint accelerations
+        tube_bias_t = tube_root_2*tube_zeta_2_y
+        tube_bias_t_2 = tube_W_2_xy*tube_root_2
+        tube_bias_t_3 = 2.0*tube_S_dot_tip_x
+        tube_bias_t_4 = tube_bias_t_3*tube_qd_3_t_8
+        tube_bias_t_5 = tube_bias_t_3*tube_omega_1_t_2
+        tube_bias_y = tube_bias_t_4 - tube_bias_t_2
+        tube_bias_z = 2.0*tube_bias_t + tube_bias_t_5
+        # (tube-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        tube_rel_o_y = (
+        axis_y_tube_axes2_in_base_x*tube_u_1_x + axis_y_tube_axes2_in_base_y*tube_u_1_y +
+            axis_y_tube_axes2_in_base_z*tube_u_1_z - tube_bias_y
+        )
+        tube_rel_o_z = (
+        axis_z_tube_axes2_in_base_x*tube_u_1_x + axis_z_tube_axes2_in_base_y*tube_u_1_y +
+            axis_z_tube_axes2_in_base_z*tube_u_1_z - tube_bias_z
+        )
+        # (tube-nd_m1) rate of moment direction 1
+        tube_nd_m1_y = (
+        tube_end_p1_r3_x*tube_omega_1_t_2 + tube_end_p1_r3_x*tube_omega_tip_y -
+            tube_end_p1_r3_y*tube_omega_tip_x
+        )
+        tube_nd_m1_z = (
+        tube_end_p1_r3_x*tube_omega_tip_z - tube_end_p1_r1_x*tube_omega_tip_x -
+            tube_end_p1_r3_x*tube_qd_3_t_8
+        )
+        # (tube-nu_1) bias of the angular acceleration along moment direction 1
+        tube_nu_1_t = tube_omega_1_t - tube_omega_tip_x
+        tube_nu_1_t_2 = tube_omega_1_t_2 + tube_omega_tip_y
+        tube_nu_1_t_3 = tube_omega_tip_z - tube_qd_3_t_8
+        tube_nu_1_t_4 = (
+        tube_nd_m1_y*tube_nu_1_t_2 + tube_nd_m1_z*tube_nu_1_t_3 -
+            tube_nu_1_t*(tube_end_p1_r1_x*tube_qd_3_t_8 - tube_end_p1_r3_y*tube_omega_1_t_2)
+        )
+        tube_nu_1 = tube_nu_1_t_4 - tube_end_p1_r1_x*tube_zeta_2_y
+        # (tube-nd_m2) rate of moment direction 2
+        tube_nd_m2_x = (
+        tube_end_p2_r1_x*tube_omega_tip_x - tube_end_p2_r1_x*tube_omega_1_t -
+            tube_end_p2_r3_x*tube_omega_tip_z
+        )
+        tube_nd_m2_y = (
+        tube_end_p2_r1_x*tube_omega_1_t_2 + tube_end_p2_r1_x*tube_omega_tip_y -
+            tube_end_p2_r3_y*tube_omega_tip_z
+        )
+        # (tube-nu_2) bias of the angular acceleration along moment direction 2
+        tube_nu_2_t = tube_end_p2_r3_y*tube_zeta_2_x - tube_end_p2_r3_x*tube_zeta_2_y
+        tube_nu_2_t_2 = (
+        tube_nd_m2_x*tube_nu_1_t + tube_nu_1_t_3*(tube_end_p2_r3_y*tube_omega_1_t_2 -
+            tube_end_p2_r3_x*tube_omega_1_t) - tube_nd_m2_y*tube_nu_1_t_2
+        )
+        tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2
+        # (tube-nd_m3) rate of moment direction 3
+        tube_nd_m3_x = (
+        tube_end_p3_r3_x*tube_omega_tip_y + tube_end_p3_r3_y*tube_omega_1_t -
+            tube_end_p3_r3_y*tube_omega_tip_x
+        )
+        tube_nd_m3_z = (
+        tube_end_p3_r1_x*tube_omega_tip_y + tube_end_p3_r3_y*tube_qd_3_t_8 -
+            tube_end_p3_r3_y*tube_omega_tip_z
+        )
+        # (tube-nu_3) bias of the angular acceleration along moment direction 3
+        tube_nu_3_t = (
+        tube_nd_m3_x*tube_nu_1_t + tube_nu_1_t_2*(tube_end_p3_r1_x*tube_qd_3_t_8 +
+            tube_end_p3_r3_x*tube_omega_1_t) - tube_nd_m3_z*tube_nu_1_t_3
+        )
+        tube_nu_3 = -tube_nu_3_t - tube_end_p3_r1_x*tube_zeta_2_x
+        # (tube-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
+        tube_qdd_3_o_t = 1.35*tube_nu_1
+        tube_qdd_3_o_t_2 = 1.35*tube_nu_2
+        tube_qdd_3_o_t_3 = 1.35*tube_nu_3
+        tube_qdd_3_o_t_4 = (
+        inv_tube_w_1_t_157*(tube_qdd_3_o_t*tube_w_1_t_78 + tube_qdd_3_o_t_2*tube_w_1_t_79 +
+            tube_qdd_3_o_t_3*tube_w_1_t_80 + tube_rel_o_y*tube_w_1_t_76 +
+            tube_rel_o_z*tube_w_1_t_77)
+        )
+        tube_qdd_3_o_t_5 = (
+        inv_tube_w_1_t_129*(tube_qdd_3_o_t*tube_w_1_t_66 + tube_qdd_3_o_t_3*tube_w_1_t_68 +
+            tube_rel_o_y*tube_w_1_t_64 + tube_rel_o_z*tube_w_1_t_65 -
+            tube_qdd_3_o_t_2*tube_w_1_t_67 - tube_qdd_3_o_t_4*tube_w_1_t_69)
+        )
+        tube_qdd_3_o_t_6 = (
+        inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_rel_o_z + tube_qdd_3_o_t*tube_w_1_t_51 +
+            tube_qdd_3_o_t_3*tube_w_1_t_52 + tube_qdd_3_o_t_4*tube_w_1_t_58 +
+            tube_qdd_3_o_t_5*tube_w_1_t_53 + tube_rel_o_y*tube_w_1_t_50)
+        )
+        tube_qdd_3_o_t_7 = (
+        tube_qdd_3_o_t*tube_w_1_t_15 + tube_qdd_3_o_t_3*tube_w_1_t_16 +
+            tube_qdd_3_o_t_6*tube_w_1_t_21 + tube_rel_o_y*tube_w_1_t_14 +
+            inv_tube_w_1_t_57*tube_w_1_t_17*(tube_qdd_3_o_t*tube_w_1_t_35 +
+            tube_qdd_3_o_t_3*tube_w_1_t_36 + tube_qdd_3_o_t_4*tube_w_1_t_45 +
+            tube_qdd_3_o_t_5*tube_w_1_t_41 + tube_rel_o_y*tube_w_1_t_34 -
+            tube_qdd_3_o_t_6*tube_w_1_t_37) - tube_qdd_3_o_t_4*tube_w_1_t_29 -
+            tube_qdd_3_o_t_5*tube_w_1_t_25
+        )
+        tube_qdd_3_o_t_8 = inv_tube_w_1_t_16*tube_qdd_3_o_t_7
+        # (tube-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        tube_alpha_1_o_t = tube_qdd_3_o_t_4*tube_s_2
+        tube_alpha_1_o_t_2 = tube_c_2*tube_qdd_3_o_t_4
+        # (tube-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        tube_alpha_2_o_x = tube_alpha_1_o_t - tube_zeta_2_x
+        tube_alpha_2_o_y = -tube_alpha_1_o_t_2 - tube_zeta_2_y
+        # (tube-B_2_o) remainder of the acceleration tensor of link 2
+        tube_B_2_o_xy = -tube_W_2_xy - tube_qdd_3_o_t_8
+        tube_B_2_o_yx = tube_qdd_3_o_t_8 - tube_W_2_xy
+        tube_B_2_o_zx = tube_zeta_2_y - tube_alpha_2_o_y
+        tube_B_2_o_zy = tube_alpha_2_o_x - tube_zeta_2_x
+        # (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        tube_g_r1_x = tube_g_r0_y*tube_s_1 - tube_c_1*tube_g_r0_x
+        tube_g_r1_y = -tube_c_1*tube_g_r0_y - tube_g_r0_x*tube_s_1
+        tube_g_r3_x = tube_g_r0_z*tube_s_2 - tube_c_2*tube_g_r1_y
+        tube_g_r3_y = -tube_c_2*tube_g_r0_z - tube_g_r1_y*tube_s_2
+        tube_acc_3_o_x = (
+        axis_x_tube_axes2_x*tube_u_1_x + axis_x_tube_axes2_y*tube_u_1_y +
+            axis_x_tube_axes2_z*tube_u_1_z - tube_g_r3_x
+        )
+        tube_acc_3_o_y = (
+        tube_bias_t_4 + tube_qdd_3_o_t_8*tube_root_2 - tube_bias_t_2 - tube_g_r3_y
+        )
+        tube_acc_3_o_z = tube_bias_t + tube_bias_t_5 - tube_g_r1_x - tube_alpha_2_o_y*tube_root_2
+        # (tube-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight
+        tube_f_3_o_x = (
+        tube_acc_3_o_x*tube_link3_mass - tube_B_2_o_xy*tube_h_3_z - tube_alpha_1_o_t_2*tube_h_3_y
+            - tube_h_3_x*(tube_W_2_t_2 + tube_W_2_t_3)
+        )
+        tube_f_3_o_y = (
+        tube_B_2_o_yx*tube_h_3_x + tube_acc_3_o_y*tube_link3_mass + tube_h_3_z*(tube_W_2_t +
+            tube_W_2_t_3) - tube_alpha_1_o_t*tube_h_3_y
+        )
+        tube_f_3_o_z = (
+        tube_B_2_o_zx*tube_h_3_x + tube_acc_3_o_z*tube_link3_mass - tube_B_2_o_zy*tube_h_3_z -
+            tube_h_3_y*(tube_W_2_t + tube_W_2_t_2)
+        )
+        # (tube-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        tube_mu_2_o_x = (
+        tube_B_2_o_yx*tube_J_group_2_xz + tube_B_2_o_zy*tube_Sigma_2_yy +
+            tube_J_group_2_yz*(tube_W_2_t_2 - tube_W_2_t_3) + tube_Sigma_2_zz*tube_alpha_1_o_t +
+            tube_g_r1_x*tube_h_2_z + tube_g_r3_y*tube_h_2_y - tube_B_2_o_zx*tube_J_group_2_xy -
+            tube_acc_3_o_y*tube_h_3_y - tube_acc_3_o_z*tube_h_3_z
+        )
+        tube_mu_2_o_y = (
+        tube_B_2_o_zy*tube_J_group_2_xy + tube_acc_3_o_x*tube_h_3_y + tube_g_r1_x*tube_h_2_x -
+            tube_B_2_o_xy*tube_J_group_2_yz - tube_B_2_o_zx*tube_Sigma_2_xx -
+            tube_J_group_2_xz*(tube_W_2_t - tube_W_2_t_3) - tube_Sigma_2_zz*tube_alpha_1_o_t_2 -
+            tube_acc_3_o_z*tube_h_3_x - tube_g_r3_x*tube_h_2_y
+        )
+        tube_mu_2_o_z = (
+        tube_B_2_o_yx*tube_Sigma_2_xx + tube_J_group_2_xy*(tube_W_2_t - tube_W_2_t_2) +
+            tube_J_group_2_xz*tube_alpha_1_o_t + tube_acc_3_o_x*tube_h_3_z +
+            tube_acc_3_o_y*tube_h_3_x - tube_B_2_o_xy*tube_Sigma_2_yy -
+            tube_J_group_2_yz*tube_alpha_1_o_t_2 - tube_g_r3_x*tube_h_2_z - tube_g_r3_y*tube_h_2_x
+        )
+        # (tube-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        tube_N_2_o_y = tube_mu_2_o_y - tube_f_3_o_z*tube_root_2
+        tube_N_2_o_z = tube_mu_2_o_z + tube_f_3_o_y*tube_root_2
+        # (tube-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        tube_G_o_t = inv_tube_w_1_t_16*tube_N_2_o_z
+        tube_G_o_t_2 = inv_tube_w_1_t_57*tube_G_o_t*tube_w_1_t_17
+        tube_G_o_t_3 = inv_tube_w_1_t_95*(tube_G_o_t*tube_w_1_t_21 - tube_G_o_t_2*tube_w_1_t_37)
+        tube_G_o_t_4 = (
+        inv_tube_w_1_t_129*(tube_G_o_t_2*tube_w_1_t_41 + tube_G_o_t_3*tube_w_1_t_53 -
+            tube_G_o_t*tube_w_1_t_25)
+        )
+        tube_G_o_t_5 = (
+        inv_tube_w_1_t_157*(tube_G_o_t_2*tube_w_1_t_45 + tube_G_o_t_3*tube_w_1_t_58 +
+            tube_mu_2_o_x*tube_s_2 - tube_G_o_t*tube_w_1_t_29 - tube_G_o_t_4*tube_w_1_t_69 -
+            tube_N_2_o_y*tube_c_2)
+        )
+        tube_G_o_t_6 = (
+        tube_G_o_t*tube_w_1_t_14 + tube_G_o_t_2*tube_w_1_t_34 + tube_G_o_t_3*tube_w_1_t_50 +
+            tube_G_o_t_4*tube_w_1_t_64 + tube_G_o_t_5*tube_w_1_t_76
+        )
+        tube_G_o_t_7 = (
+        inv_tube_w_1_t_95*tube_G_o_t_3 + tube_G_o_t_4*tube_w_1_t_65 + tube_G_o_t_5*tube_w_1_t_77
+        )
+        tube_G_o_t_8 = (
+        tube_G_o_t*tube_w_1_t_15 + tube_G_o_t_2*tube_w_1_t_35 + tube_G_o_t_3*tube_w_1_t_51 +
+            tube_G_o_t_4*tube_w_1_t_66 + tube_G_o_t_5*tube_w_1_t_78
+        )
+        tube_G_o_t_9 = 1.35*tube_G_o_t_8
+        tube_G_o_t_10 = tube_G_o_t_4*tube_w_1_t_67 - tube_G_o_t_5*tube_w_1_t_79
+        tube_G_o_t_11 = 1.35*tube_G_o_t_10
+        tube_G_o_t_12 = (
+        tube_G_o_t*tube_w_1_t_16 + tube_G_o_t_2*tube_w_1_t_36 + tube_G_o_t_3*tube_w_1_t_52 +
+            tube_G_o_t_4*tube_w_1_t_68 + tube_G_o_t_5*tube_w_1_t_80
+        )
+        tube_G_o_t_13 = 1.35*tube_G_o_t_12
+        # (tube-U) velocity and gravity terms of the leg force
+        tube_U_in_base_x = (
+        axis_x_tube_axes2_x*tube_f_3_o_x + axis_y_tube_axes2_in_base_x*tube_G_o_t_6 +
+            axis_z_tube_axes2_in_base_x*tube_G_o_t_7
+        )
+        tube_U_in_base_y = (
+        axis_x_tube_axes2_y*tube_f_3_o_x + axis_y_tube_axes2_in_base_y*tube_G_o_t_6 +
+            axis_z_tube_axes2_in_base_y*tube_G_o_t_7
+        )
+        tube_U_in_base_z = (
+        axis_x_tube_axes2_z*tube_f_3_o_x + axis_y_tube_axes2_in_base_z*tube_G_o_t_6 +
+            axis_z_tube_axes2_in_base_z*tube_G_o_t_7
+        )
+        # (tube-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        tube_G_m_o_x = tube_G_o_t_11*tube_end_p2_r3_y - tube_G_o_t_13*tube_end_p3_r1_x
+        tube_G_m_o_y = -tube_G_o_t_11*tube_end_p2_r3_x - tube_G_o_t_9*tube_end_p1_r1_x
+        tube_G_m_o_z = tube_G_o_t_13*tube_end_p3_r3_x + tube_G_o_t_9*tube_end_p1_r3_y
+        # (Z_a) rotational part of Z
+        tube_Z_a_t = (
+        axis_x_tube_axes2_x*tube_G_m_o_x + axis_y_tube_axes2_in_base_x*tube_G_m_o_y +
+            axis_z_tube_axes2_in_base_x*tube_G_m_o_z + tube_U_in_base_z*tube_q_in_base_y -
+            tube_U_in_base_y*tube_q_in_base_z
+        )
+        tube_Z_a_t_2 = (
+        axis_x_tube_axes2_y*tube_G_m_o_x + axis_y_tube_axes2_in_base_y*tube_G_m_o_y +
+            axis_z_tube_axes2_in_base_y*tube_G_m_o_z + tube_U_in_base_x*tube_q_in_base_z -
+            tube_U_in_base_z*tube_q_in_base_x
+        )
+        tube_Z_a_t_3 = (
+        axis_x_tube_axes2_z*tube_G_m_o_x + axis_y_tube_axes2_in_base_z*tube_G_m_o_y +
+            axis_z_tube_axes2_in_base_z*tube_G_m_o_z + tube_U_in_base_y*tube_q_in_base_x -
+            tube_U_in_base_x*tube_q_in_base_y
+        )
+        # (tube-mu_c1) the moment that goes with it
+        tube_mu_c1_t = tube_end_p1_r1_x*tube_f_c1_t_4
+        tube_mu_c1_t_2 = tube_end_p3_r1_x*tube_f_c1_t_5
+        tube_mu_c1_z = -tube_end_p1_r3_y*tube_f_c1_t_4 - tube_end_p3_r3_x*tube_f_c1_t_5
+        # (tube-Hk_a_1) moment of the column's unit force about the platform origin
+        tube_Hk_a_1_x = (
+        axis_x_tube_axes2_x*tube_mu_c1_t_2 + axis_y_tube_axes2_in_base_x*tube_mu_c1_t +
+            axis_y_tube_axes2_in_base_z*tube_q_in_base_y +
+            axis_z_tube_axes2_in_base_x*tube_mu_c1_z -
+            axis_y_tube_axes2_in_base_y*tube_q_in_base_z
+        )
+        tube_Hk_a_1_y = (
+        axis_x_tube_axes2_y*tube_mu_c1_t_2 + axis_y_tube_axes2_in_base_x*tube_q_in_base_z +
+            axis_y_tube_axes2_in_base_y*tube_mu_c1_t + axis_z_tube_axes2_in_base_y*tube_mu_c1_z -
+            axis_y_tube_axes2_in_base_z*tube_q_in_base_x
+        )
+        tube_Hk_a_1_z = (
+        axis_x_tube_axes2_z*tube_mu_c1_t_2 + axis_y_tube_axes2_in_base_y*tube_q_in_base_x +
+            axis_y_tube_axes2_in_base_z*tube_mu_c1_t + axis_z_tube_axes2_in_base_z*tube_mu_c1_z -
+            axis_y_tube_axes2_in_base_x*tube_q_in_base_y
+        )
+        # (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+        tube_gamma_c1 = tube_rel_o_y - tube_f_c1_t_4*tube_nu_1 - tube_f_c1_t_5*tube_nu_3
+        # (tube-mu_c2) the moment that goes with it
+        tube_mu_c2_t = tube_end_p1_r1_x*tube_f_c2_t
+        tube_mu_c2_t_2 = tube_end_p3_r1_x*tube_f_c2_t_2
+        tube_mu_c2_z = tube_end_p3_r3_x*tube_f_c2_t_2 - tube_end_p1_r3_y*tube_f_c2_t
+        # (tube-Hk_a_2) moment of the column's unit force about the platform origin
+        tube_Hk_a_2_x = (
+        axis_y_tube_axes2_in_base_x*tube_mu_c2_t + axis_z_tube_axes2_in_base_x*tube_mu_c2_z +
+            axis_z_tube_axes2_in_base_z*tube_q_in_base_y - axis_x_tube_axes2_x*tube_mu_c2_t_2 -
+            axis_z_tube_axes2_in_base_y*tube_q_in_base_z
+        )
+        tube_Hk_a_2_y = (
+        axis_y_tube_axes2_in_base_y*tube_mu_c2_t + axis_z_tube_axes2_in_base_x*tube_q_in_base_z +
+            axis_z_tube_axes2_in_base_y*tube_mu_c2_z - axis_x_tube_axes2_y*tube_mu_c2_t_2 -
+            axis_z_tube_axes2_in_base_z*tube_q_in_base_x
+        )
+        tube_Hk_a_2_z = (
+        axis_y_tube_axes2_in_base_z*tube_mu_c2_t + axis_z_tube_axes2_in_base_y*tube_q_in_base_x +
+            axis_z_tube_axes2_in_base_z*tube_mu_c2_z - axis_x_tube_axes2_z*tube_mu_c2_t_2 -
+            axis_z_tube_axes2_in_base_x*tube_q_in_base_y
+        )
+        # (tube-gamma_c2) part of the constraint's second derivative that does not hold the acceleration
+        tube_gamma_c2 = tube_rel_o_z + tube_f_c2_t_2*tube_nu_3 - tube_f_c2_t*tube_nu_1
+        # (tube-mu_c3) the moment that goes with it
+        tube_mu_c3_x = -inv_tube_size_c3*tube_end_p2_r3_y - tube_end_p3_r1_x*tube_mu3_c3
+        tube_mu_c3_y = inv_tube_size_c3*tube_end_p2_r3_x + tube_end_p1_r1_x*tube_mu1_c3
+        tube_mu_c3_z = tube_end_p3_r3_x*tube_mu3_c3 - tube_end_p1_r3_y*tube_mu1_c3
+        tube_mu_c3_in_base_x = (
+        axis_x_tube_axes2_x*tube_mu_c3_x + axis_y_tube_axes2_in_base_x*tube_mu_c3_y +
+            axis_z_tube_axes2_in_base_x*tube_mu_c3_z
+        )
+        tube_mu_c3_in_base_y = (
+        axis_x_tube_axes2_y*tube_mu_c3_x + axis_y_tube_axes2_in_base_y*tube_mu_c3_y +
+            axis_z_tube_axes2_in_base_y*tube_mu_c3_z
+        )
+        tube_mu_c3_in_base_z = (
+        axis_x_tube_axes2_z*tube_mu_c3_x + axis_y_tube_axes2_in_base_z*tube_mu_c3_y +
+            axis_z_tube_axes2_in_base_z*tube_mu_c3_z
+        )
+        # (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
+        tube_gamma_c3 = inv_tube_size_c3*tube_nu_2 + tube_mu3_c3*tube_nu_3 - tube_mu1_c3*tube_nu_1
         ok = (
-        ok & m.every(leg, (abs(rho2_1_up) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(rho2_2_up) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(f_c1_up_t_3) >
-            _TOLERANCE * 1.0) & (abs(size_c3_up) > _TOLERANCE * 1.0) & (abs(w_1_up_t_13) >
-            _TOLERANCE * 1.35) & (abs(w_1_up_t_33) > _TOLERANCE * 1.0) & (abs(w_1_up_t_49) >
-            _TOLERANCE * 1.0) & (abs(w_1_up_t_63) > _TOLERANCE * 1.35) & (abs(w_1_up_t_75) >
-            _TOLERANCE * 1.35))
+        ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_f_c1_t_3) > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) &
+            (abs(tube_w_1_t_13) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) &
+            (abs(tube_w_1_t_49) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) &
+            (abs(tube_w_1_t_75) > _TOLERANCE * 1.35))
         )
         sums = m.added(sums, leg, (
-        Q_up_t_12, Q_up_t_13, Q_up_t_14, Q_up_t_16, Q_up_t_17, Q_up_t_19, M_ta_t_24,
-            M_ta_t_25, M_ta_t_26, M_ta_t_27, M_ta_t_28, M_ta_t_29, M_ta_t_30, M_ta_t_31,
-            M_ta_t_32, M_aa_t_7, M_aa_t_8, M_aa_t_9, M_aa_t_10, M_aa_t_11, M_aa_t_12,
-            U_up_in_base_x, U_up_in_base_y, U_up_in_base_z, Z_a_t_4, Z_a_t_5, Z_a_t_6,
+        tube_Q_t_12, tube_Q_t_13, tube_Q_t_14, tube_Q_t_16, tube_Q_t_17, tube_Q_t_19,
+            tube_M_ta_t_4, tube_M_ta_t_5, tube_M_ta_t_6, tube_M_ta_t_7, tube_M_ta_t_8,
+            tube_M_ta_t_9, tube_M_ta_t_10, tube_M_ta_t_11, tube_M_ta_t_12, tube_M_aa_t,
+            tube_M_aa_t_2, tube_M_aa_t_3, tube_M_aa_t_4, tube_M_aa_t_5, tube_M_aa_t_6,
+            tube_U_in_base_x, tube_U_in_base_y, tube_U_in_base_z, tube_Z_a_t, tube_Z_a_t_2,
+            tube_Z_a_t_3,
         ))
-        out_Hk[_Hk_up[0][leg]] = axis_y_up_axes2_in_base_x
-        out_Hk[_Hk_up[1][leg]] = axis_y_up_axes2_in_base_y
-        out_Hk[_Hk_up[2][leg]] = axis_y_up_axes2_in_base_z
-        out_Hk[_Hk_up[3][leg]] = Hk_a_1_up_x
-        out_Hk[_Hk_up[4][leg]] = Hk_a_1_up_y
-        out_Hk[_Hk_up[5][leg]] = Hk_a_1_up_z
-        out_constraint_bias[_constraint_bias_up[0][leg]] = gamma_c1_up
-        out_Hk[_Hk_up[6][leg]] = axis_z_up_axes2_in_base_x
-        out_Hk[_Hk_up[7][leg]] = axis_z_up_axes2_in_base_y
-        out_Hk[_Hk_up[8][leg]] = axis_z_up_axes2_in_base_z
-        out_Hk[_Hk_up[9][leg]] = Hk_a_2_up_x
-        out_Hk[_Hk_up[10][leg]] = Hk_a_2_up_y
-        out_Hk[_Hk_up[11][leg]] = Hk_a_2_up_z
-        out_constraint_bias[_constraint_bias_up[1][leg]] = gamma_c2_up
-        out_Hk[_Hk_up[12][leg]] = mu_c3_up_in_base_x
-        out_Hk[_Hk_up[13][leg]] = mu_c3_up_in_base_y
-        out_Hk[_Hk_up[14][leg]] = mu_c3_up_in_base_z
-        out_constraint_bias[_constraint_bias_up[2][leg]] = gamma_c3_up
+        out_Hk[_Hk_tube[0][leg]] = axis_y_tube_axes2_in_base_x
+        out_Hk[_Hk_tube[1][leg]] = axis_y_tube_axes2_in_base_y
+        out_Hk[_Hk_tube[2][leg]] = axis_y_tube_axes2_in_base_z
+        out_Hk[_Hk_tube[3][leg]] = tube_Hk_a_1_x
+        out_Hk[_Hk_tube[4][leg]] = tube_Hk_a_1_y
+        out_Hk[_Hk_tube[5][leg]] = tube_Hk_a_1_z
+        out_constraint_bias[_constraint_bias_tube[0][leg]] = tube_gamma_c1
+        out_Hk[_Hk_tube[6][leg]] = axis_z_tube_axes2_in_base_x
+        out_Hk[_Hk_tube[7][leg]] = axis_z_tube_axes2_in_base_y
+        out_Hk[_Hk_tube[8][leg]] = axis_z_tube_axes2_in_base_z
+        out_Hk[_Hk_tube[9][leg]] = tube_Hk_a_2_x
+        out_Hk[_Hk_tube[10][leg]] = tube_Hk_a_2_y
+        out_Hk[_Hk_tube[11][leg]] = tube_Hk_a_2_z
+        out_constraint_bias[_constraint_bias_tube[1][leg]] = tube_gamma_c2
+        out_Hk[_Hk_tube[12][leg]] = tube_mu_c3_in_base_x
+        out_Hk[_Hk_tube[13][leg]] = tube_mu_c3_in_base_y
+        out_Hk[_Hk_tube[14][leg]] = tube_mu_c3_in_base_z
+        out_constraint_bias[_constraint_bias_tube[2][leg]] = tube_gamma_c3
     (
-    total_up_xx, total_up_xy, total_up_xz, total_up_yy, total_up_yz, total_up_zz, total_up_xx_2,
-        total_up_xy_2, total_up_xz_2, total_up_yx, total_up_yy_2, total_up_yz_2, total_up_zx,
-        total_up_zy, total_up_zz_2, total_up_xx_3, total_up_xy_3, total_up_xz_3, total_up_yy_3,
-        total_up_yz_3, total_up_zz_3, total_up_x, total_up_y, total_up_z, total_up_x_2,
-        total_up_y_2, total_up_z_2,
+    total_tube_xx, total_tube_xy, total_tube_xz, total_tube_yy, total_tube_yz, total_tube_zz,
+        total_tube_xx_2, total_tube_xy_2, total_tube_xz_2, total_tube_yx, total_tube_yy_2,
+        total_tube_yz_2, total_tube_zx, total_tube_zy, total_tube_zz_2, total_tube_xx_3,
+        total_tube_xy_3, total_tube_xz_3, total_tube_yy_3, total_tube_yz_3, total_tube_zz_3,
+        total_tube_x, total_tube_y, total_tube_z, total_tube_x_2, total_tube_y_2, total_tube_z_2,
     ) = sums
-    # (M1) translational block of M
-    M_tt_xx = m_star + total_up_xx - total_ups_xx
-    M_tt_xy = total_up_xy - total_ups_xy
-    M_tt_xz = total_up_xz - total_ups_xz
-    M_tt_yy = m_star + total_up_yy - total_ups_yy
-    M_tt_yz = total_up_yz - total_ups_yz
-    M_tt_zz = m_star + total_up_zz - total_ups_zz
-    # (M2) coupling block of M
-    M_ta_xx = total_ups_xx_2 - total_up_xx_2
-    M_ta_xy = h_star_in_base_z + total_up_xy_2 - total_ups_xy_2
-    M_ta_xz = total_ups_xz_2 - h_star_in_base_y - total_up_xz_2
-    M_ta_yx = total_ups_yx - h_star_in_base_z - total_up_yx
-    M_ta_yy = total_up_yy_2 - total_ups_yy_2
-    M_ta_yz = h_star_in_base_x + total_ups_yz_2 - total_up_yz_2
-    M_ta_zx = h_star_in_base_y + total_ups_zx - total_up_zx
-    M_ta_zy = total_up_zy - h_star_in_base_x - total_ups_zy
-    M_ta_zz = -total_up_zz_2 - total_ups_zz_2
-    # (M3) rotational block of M
-    M_aa_xx = J_star_t_8 + total_up_xx_3 - total_ups_xx_3
-    M_aa_xy = J_star_t_9 + total_ups_xy_3 - total_up_xy_3
-    M_aa_xz = J_star_t_10 + total_up_xz_3 - total_ups_xz_3
-    M_aa_yy = J_star_t_12 - total_up_yy_3 - total_ups_yy_3
-    M_aa_yz = J_star_t_13 + total_ups_yz_3 - total_up_yz_3
-    M_aa_zz = J_star_t_15 + total_up_zz_3 - total_ups_zz_3
-    # (M5) translational part of Z
-    Z_t_x = Z_p_x + total_up_x + total_ups_x
-    Z_t_y = Z_p_y + total_up_y + total_ups_y
-    Z_t_z = Z_p_z + total_up_z + total_ups_z
-    # (M7) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_up_x_2 + total_ups_x_2
-    Z_a_y = Z_q_in_base_y + total_up_y_2 + total_ups_y_2
-    Z_a_z = Z_q_in_base_z + total_up_z_2 + total_ups_z_2
+    # (M_tt) translational block of M
+    M_tt_xx = m_star + total_tube_xx - total_ups_xx
+    M_tt_xy = total_tube_xy - total_ups_xy
+    M_tt_xz = total_tube_xz - total_ups_xz
+    M_tt_yy = m_star + total_tube_yy - total_ups_yy
+    M_tt_yz = total_tube_yz - total_ups_yz
+    M_tt_zz = m_star + total_tube_zz - total_ups_zz
+    # (M_ta) coupling block of M
+    M_ta_xx = total_ups_xx_2 - total_tube_xx_2
+    M_ta_xy = h_star_in_base_z + total_tube_xy_2 - total_ups_xy_2
+    M_ta_xz = total_ups_xz_2 - h_star_in_base_y - total_tube_xz_2
+    M_ta_yx = total_ups_yx - h_star_in_base_z - total_tube_yx
+    M_ta_yy = total_tube_yy_2 - total_ups_yy_2
+    M_ta_yz = h_star_in_base_x + total_ups_yz_2 - total_tube_yz_2
+    M_ta_zx = h_star_in_base_y + total_ups_zx - total_tube_zx
+    M_ta_zy = total_tube_zy - h_star_in_base_x - total_ups_zy
+    M_ta_zz = total_tube_zz_2 - total_ups_zz_2
+    # (M_aa) rotational block of M
+    M_aa_xx = J_star_t_8 + total_tube_xx_3 - total_ups_xx_3
+    M_aa_xy = J_star_t_9 + total_ups_xy_3 - total_tube_xy_3
+    M_aa_xz = J_star_t_10 + total_tube_xz_3 - total_ups_xz_3
+    M_aa_yy = J_star_t_13 - total_tube_yy_3 - total_ups_yy_3
+    M_aa_yz = J_star_t_15 + total_ups_yz_3 - total_tube_yz_3
+    M_aa_zz = J_star_t_17 + total_tube_zz_3 - total_ups_zz_3
+    # (Z_t) translational part of Z
+    Z_t_x = Z_p_x + total_tube_x + total_ups_x
+    Z_t_y = Z_p_y + total_tube_y + total_ups_y
+    Z_t_z = Z_p_z + total_tube_z + total_ups_z
+    # (Z_a) rotational part of Z
+    Z_a_x = Z_q_in_base_x + total_tube_x_2 + total_ups_x_2
+    Z_a_y = Z_q_in_base_y + total_tube_y_2 + total_ups_y_2
+    Z_a_z = Z_q_in_base_z + total_tube_z_2 + total_ups_z_2
     out_M[0] = M_tt_xx
     out_M[1] = M_tt_xy
     out_M[6] = M_tt_xy
@@ -3261,12 +3451,12 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H, out_Hk, out_constraint_bias,)
 
 
-# M: 1208 mul, 857 add, 15 div, 14 sqrt, 0 trig
+# M: 1196 mul, 845 add, 15 div, 14 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
     (
-    J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
+    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
         h_star_z, m_star,
     ) = shared
     X_0 = X[0]
@@ -3306,179 +3496,182 @@ def _run_M(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_M = m.zeros("M")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (L3) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy
-    J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
     J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_12 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_15 = 2.0*J_star_t_14 + J_star_xx
+    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
+    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
     sums = [0.0] * 21
     for leg, k in legs[0]:
         (
-        J_group_2_ups_xx, J_group_2_ups_xy, J_group_2_ups_xz, J_group_2_ups_yy, J_group_2_ups_yz,
-            J_group_2_ups_zz, branch_1_ups, branch_2_ups, h_3_ups_x, h_3_ups_y, h_3_ups_z,
-            ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+        ups_J_group_2_xx, ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yy, ups_J_group_2_yz,
+            ups_J_group_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
+            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
+            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
+            ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_x, ups_h_3_y, ups_h_3_z,
             ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
-        # (ups-K1) from the base point to the connection point
-        q_ups_in_base_x = (
+        # (ups-S) from the base point to the connection point
+        ups_q_in_base_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        q_ups_in_base_y = (
+        ups_q_in_base_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        q_ups_in_base_z = (
+        ups_q_in_base_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        S_ups_x = q_ups_in_base_x + t_x - ups_base_point_x
-        S_ups_y = q_ups_in_base_y + t_y - ups_base_point_y
-        S_ups_z = q_ups_in_base_z + t_z - ups_base_point_z
-        # (ups-K2) component along the reference direction
-        px_1_ups = (
-        S_ups_x*ups_base_frame_xx + S_ups_y*ups_base_frame_yx + S_ups_z*ups_base_frame_zx
+        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        # (ups-px_1) component along the reference direction
+        ups_px_1 = (
+        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-K3) component across the reference direction
-        py_1_ups = (
-        S_ups_x*ups_base_frame_xy + S_ups_y*ups_base_frame_yy + S_ups_z*ups_base_frame_zy
+        # (ups-py_1) component across the reference direction
+        ups_py_1 = (
+        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-K4) squared amplitude
-        rho2_1_ups = px_1_ups*px_1_ups + py_1_ups*py_1_ups
-        # (ups-K5) amplitude, with the sign of the branch
-        root_1_ups = branch_1_ups*sqrt(rho2_1_ups)
-        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_ups_t = (
-        S_ups_x*ups_base_frame_xz + S_ups_y*ups_base_frame_yz + S_ups_z*ups_base_frame_zz
+        # (ups-rho2_1) squared amplitude
+        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
+        # (ups-root_1) amplitude, with the sign of the branch
+        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ups_xi_1_t = (
+        ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-K13) squared amplitude
-        rho2_2_ups = rho2_1_ups + xi_1_ups_t*xi_1_ups_t
-        # (ups-K14) amplitude, with the sign of the branch
-        root_2_ups = branch_2_ups*sqrt(rho2_2_ups)
-        # (ups-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2_ups = 1.0/root_2_ups
-        # (ups-K16) sine of the angle of joint 2 from its reference direction
-        s_2_ups = inv_root_2_ups*xi_1_ups_t
-        # (ups-V5) reciprocal vector 1
-        axis_x_x = S_ups_x*inv_root_2_ups
-        axis_x_y = S_ups_y*inv_root_2_ups
-        axis_x_z = S_ups_z*inv_root_2_ups
-        # (ups-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_ups = 1.0/root_1_ups
-        c_1_ups = inv_root_1_ups*py_1_ups
-        # (ups-K7) sine of the angle of joint 1 from its reference direction
-        s_1_ups = inv_root_1_ups*px_1_ups
-        # (ups-V5) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = s_1_ups*ups_base_frame_xy - c_1_ups*ups_base_frame_xx
-        axis_z_ups_axes2_in_base_y = s_1_ups*ups_base_frame_yy - c_1_ups*ups_base_frame_yx
-        axis_z_ups_axes2_in_base_z = s_1_ups*ups_base_frame_zy - c_1_ups*ups_base_frame_zx
+        # (ups-rho2_2) squared amplitude
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        # (ups-root_2) amplitude, with the sign of the branch
+        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_root_2 = 1.0/ups_root_2
+        # (ups-s_2) sine of the angle of joint 2 from its reference direction
+        ups_s_2 = inv_ups_root_2*ups_xi_1_t
+        # (ups-w_1) reciprocal vector 1
+        ups_axis_x_x = inv_ups_root_2*ups_S_x
+        ups_axis_x_y = inv_ups_root_2*ups_S_y
+        ups_axis_x_z = inv_ups_root_2*ups_S_z
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
+        # (ups-w_1) reciprocal vector 1
+        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
+        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
+        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
         axis_y_ups_axes2_x = (
-        axis_x_z*axis_z_ups_axes2_in_base_y - axis_x_y*axis_z_ups_axes2_in_base_z
+        axis_z_ups_axes2_in_base_y*ups_axis_x_z - axis_z_ups_axes2_in_base_z*ups_axis_x_y
         )
         axis_y_ups_axes2_y = (
-        axis_x_x*axis_z_ups_axes2_in_base_z - axis_x_z*axis_z_ups_axes2_in_base_x
+        axis_z_ups_axes2_in_base_z*ups_axis_x_x - axis_z_ups_axes2_in_base_x*ups_axis_x_z
         )
         axis_y_ups_axes2_z = (
-        axis_x_y*axis_z_ups_axes2_in_base_x - axis_x_x*axis_z_ups_axes2_in_base_y
+        axis_z_ups_axes2_in_base_x*ups_axis_x_y - axis_z_ups_axes2_in_base_y*ups_axis_x_x
         )
-        # (ups-A14) coefficient of the acceleration in: angular acceleration of link 1
-        d_alpha_1_ups_t = inv_root_1_ups*s_2_ups
-        # (ups-N22) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_ups_t = h_3_ups_z*inv_root_2_ups
-        # (ups-N6) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        d_phi_3_ups_t = h_3_ups_y*inv_root_2_ups
-        d_phi_3_ups_t_2 = h_3_ups_x*inv_root_2_ups
-        # (ups-N25) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_ups_yy = (
-        -d_phi_3_ups_t_2 - inv_root_2_ups*(h_3_ups_x + J_group_2_ups_zz*inv_root_2_ups)
+        # (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
+        ups_d_alpha_1_t = inv_ups_root_1*ups_s_2
+        # (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+        ups_d_phi_3_t = inv_ups_root_2*ups_h_3_z
+        ups_d_phi_3_t_2 = inv_ups_root_2*ups_h_3_y
+        ups_d_phi_3_t_3 = inv_ups_root_2*ups_h_3_x
+        # (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        ups_d_c_yy = (
+        -ups_d_phi_3_t_3 - inv_ups_root_2*(ups_h_3_x + inv_ups_root_2*ups_J_group_2_zz)
         )
-        d_c_ups_yz = (
-        d_alpha_1_ups_t*h_3_ups_y - inv_root_2_ups*(J_group_2_ups_xz*d_alpha_1_ups_t -
-            J_group_2_ups_yz*inv_root_2_ups)
+        ups_d_c_yz = (
+        ups_d_alpha_1_t*ups_h_3_y - inv_ups_root_2*(ups_J_group_2_xz*ups_d_alpha_1_t -
+            inv_ups_root_2*ups_J_group_2_yz)
         )
-        d_c_ups_zz = (
-        d_alpha_1_ups_t*h_3_ups_z - d_phi_3_ups_t_2 -
-            inv_root_1_ups*(s_2_ups*(J_group_2_ups_xx*d_alpha_1_ups_t - h_3_ups_z -
-            J_group_2_ups_xy*inv_root_2_ups) -
-            inv_root_2_ups*root_1_ups*(J_group_2_ups_xy*d_alpha_1_ups_t - h_3_ups_x -
-            J_group_2_ups_yy*inv_root_2_ups))
+        ups_d_c_zz = (
+        ups_d_alpha_1_t*ups_h_3_z - ups_d_phi_3_t_3 -
+            inv_ups_root_1*(ups_s_2*(ups_J_group_2_xx*ups_d_alpha_1_t - ups_h_3_z -
+            inv_ups_root_2*ups_J_group_2_xy) -
+            inv_ups_root_2*ups_root_1*(ups_J_group_2_xy*ups_d_alpha_1_t - ups_h_3_x -
+            inv_ups_root_2*ups_J_group_2_yy))
         )
-        # (ups-N27) inertia of the leg at the connection point, without the mass gathered there
-        Q_ups_t = 0.5*d_c_ups_yy
-        Q_ups_t_2 = 0.5*d_c_ups_zz
-        Q_ups_t_3 = (
-        Q_ups_t*axis_y_ups_axes2_x + axis_z_ups_axes2_in_base_x*d_c_ups_yz - axis_x_x*d_G_ups_t
+        # (ups-Q) inertia of the leg at the connection point, without the mass gathered there
+        ups_Q_t = 0.5*ups_d_c_yy
+        ups_Q_t_2 = 0.5*ups_d_c_zz
+        ups_Q_t_3 = (
+        axis_y_ups_axes2_x*ups_Q_t + axis_z_ups_axes2_in_base_x*ups_d_c_yz -
+            ups_axis_x_x*ups_d_phi_3_t
         )
-        Q_ups_t_4 = (
-        Q_ups_t*axis_y_ups_axes2_y + axis_z_ups_axes2_in_base_y*d_c_ups_yz - axis_x_y*d_G_ups_t
+        ups_Q_t_4 = (
+        axis_y_ups_axes2_y*ups_Q_t + axis_z_ups_axes2_in_base_y*ups_d_c_yz -
+            ups_axis_x_y*ups_d_phi_3_t
         )
-        Q_ups_t_5 = (
-        Q_ups_t*axis_y_ups_axes2_z + axis_z_ups_axes2_in_base_z*d_c_ups_yz - axis_x_z*d_G_ups_t
+        ups_Q_t_5 = (
+        axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_in_base_z*ups_d_c_yz -
+            ups_axis_x_z*ups_d_phi_3_t
         )
-        Q_ups_t_6 = Q_ups_t_2*axis_z_ups_axes2_in_base_x + axis_x_x*d_phi_3_ups_t
-        Q_ups_t_7 = Q_ups_t_2*axis_z_ups_axes2_in_base_y + axis_x_y*d_phi_3_ups_t
-        Q_ups_t_8 = Q_ups_t_2*axis_z_ups_axes2_in_base_z + axis_x_z*d_phi_3_ups_t
-        Q_ups_t_9 = Q_ups_t_3*axis_y_ups_axes2_x + Q_ups_t_6*axis_z_ups_axes2_in_base_x
-        Q_ups_t_10 = 2.0*Q_ups_t_9
-        Q_ups_t_11 = (
-        Q_ups_t_3*axis_y_ups_axes2_y + Q_ups_t_4*axis_y_ups_axes2_x +
-            Q_ups_t_6*axis_z_ups_axes2_in_base_y + Q_ups_t_7*axis_z_ups_axes2_in_base_x
+        ups_Q_t_6 = axis_z_ups_axes2_in_base_x*ups_Q_t_2 + ups_axis_x_x*ups_d_phi_3_t_2
+        ups_Q_t_7 = axis_z_ups_axes2_in_base_y*ups_Q_t_2 + ups_axis_x_y*ups_d_phi_3_t_2
+        ups_Q_t_8 = axis_z_ups_axes2_in_base_z*ups_Q_t_2 + ups_axis_x_z*ups_d_phi_3_t_2
+        ups_Q_t_9 = axis_y_ups_axes2_x*ups_Q_t_3 + axis_z_ups_axes2_in_base_x*ups_Q_t_6
+        ups_Q_t_10 = 2.0*ups_Q_t_9
+        ups_Q_t_11 = (
+        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 +
+            axis_z_ups_axes2_in_base_x*ups_Q_t_7 + axis_z_ups_axes2_in_base_y*ups_Q_t_6
         )
-        Q_ups_t_12 = (
-        Q_ups_t_3*axis_y_ups_axes2_z + Q_ups_t_5*axis_y_ups_axes2_x +
-            Q_ups_t_6*axis_z_ups_axes2_in_base_z + Q_ups_t_8*axis_z_ups_axes2_in_base_x
+        ups_Q_t_12 = (
+        axis_y_ups_axes2_x*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_3 +
+            axis_z_ups_axes2_in_base_x*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_6
         )
-        Q_ups_t_13 = Q_ups_t_4*axis_y_ups_axes2_y + Q_ups_t_7*axis_z_ups_axes2_in_base_y
-        Q_ups_t_14 = 2.0*Q_ups_t_13
-        Q_ups_t_15 = (
-        Q_ups_t_4*axis_y_ups_axes2_z + Q_ups_t_5*axis_y_ups_axes2_y +
-            Q_ups_t_7*axis_z_ups_axes2_in_base_z + Q_ups_t_8*axis_z_ups_axes2_in_base_y
+        ups_Q_t_13 = axis_y_ups_axes2_y*ups_Q_t_4 + axis_z_ups_axes2_in_base_y*ups_Q_t_7
+        ups_Q_t_14 = 2.0*ups_Q_t_13
+        ups_Q_t_15 = (
+        axis_y_ups_axes2_y*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_4 +
+            axis_z_ups_axes2_in_base_y*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_7
         )
-        Q_ups_t_16 = Q_ups_t_5*axis_y_ups_axes2_z + Q_ups_t_8*axis_z_ups_axes2_in_base_z
-        Q_ups_t_17 = 2.0*Q_ups_t_16
-        # (M2) coupling block of M
-        M_ta_t = Q_ups_t_11*q_ups_in_base_z
-        M_ta_t_2 = Q_ups_t_12*q_ups_in_base_y
-        M_ta_t_3 = M_ta_t - M_ta_t_2
-        M_ta_t_4 = Q_ups_t_10*q_ups_in_base_z - Q_ups_t_12*q_ups_in_base_x
-        M_ta_t_5 = Q_ups_t_10*q_ups_in_base_y - Q_ups_t_11*q_ups_in_base_x
-        M_ta_t_6 = Q_ups_t_14*q_ups_in_base_z - Q_ups_t_15*q_ups_in_base_y
-        M_ta_t_7 = Q_ups_t_15*q_ups_in_base_x
-        M_ta_t_8 = M_ta_t - M_ta_t_7
-        M_ta_t_9 = Q_ups_t_11*q_ups_in_base_y - Q_ups_t_14*q_ups_in_base_x
-        M_ta_t_10 = Q_ups_t_15*q_ups_in_base_z - Q_ups_t_17*q_ups_in_base_y
-        M_ta_t_11 = Q_ups_t_12*q_ups_in_base_z - Q_ups_t_17*q_ups_in_base_x
-        M_ta_t_12 = M_ta_t_7 - M_ta_t_2
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t_6*q_ups_in_base_z - M_ta_t_10*q_ups_in_base_y
-        M_aa_t_2 = M_ta_t_8*q_ups_in_base_z - M_ta_t_11*q_ups_in_base_y
-        M_aa_t_3 = M_ta_t_12*q_ups_in_base_y + M_ta_t_9*q_ups_in_base_z
-        M_aa_t_4 = M_ta_t_4*q_ups_in_base_z - M_ta_t_11*q_ups_in_base_x
-        M_aa_t_5 = M_ta_t_12*q_ups_in_base_x + M_ta_t_5*q_ups_in_base_z
-        M_aa_t_6 = M_ta_t_5*q_ups_in_base_y - M_ta_t_9*q_ups_in_base_x
+        ups_Q_t_16 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_in_base_z*ups_Q_t_8
+        ups_Q_t_17 = 2.0*ups_Q_t_16
+        # (M_ta) coupling block of M
+        ups_M_ta_t = ups_Q_t_11*ups_q_in_base_z
+        ups_M_ta_t_2 = ups_Q_t_12*ups_q_in_base_y
+        ups_M_ta_t_3 = ups_M_ta_t - ups_M_ta_t_2
+        ups_M_ta_t_4 = ups_Q_t_10*ups_q_in_base_z - ups_Q_t_12*ups_q_in_base_x
+        ups_M_ta_t_5 = ups_Q_t_10*ups_q_in_base_y - ups_Q_t_11*ups_q_in_base_x
+        ups_M_ta_t_6 = ups_Q_t_14*ups_q_in_base_z - ups_Q_t_15*ups_q_in_base_y
+        ups_M_ta_t_7 = ups_Q_t_15*ups_q_in_base_x
+        ups_M_ta_t_8 = ups_M_ta_t - ups_M_ta_t_7
+        ups_M_ta_t_9 = ups_Q_t_11*ups_q_in_base_y - ups_Q_t_14*ups_q_in_base_x
+        ups_M_ta_t_10 = ups_Q_t_15*ups_q_in_base_z - ups_Q_t_17*ups_q_in_base_y
+        ups_M_ta_t_11 = ups_Q_t_12*ups_q_in_base_z - ups_Q_t_17*ups_q_in_base_x
+        ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2
+        # (M_aa) rotational block of M
+        ups_M_aa_t = ups_M_ta_t_6*ups_q_in_base_z - ups_M_ta_t_10*ups_q_in_base_y
+        ups_M_aa_t_2 = ups_M_ta_t_8*ups_q_in_base_z - ups_M_ta_t_11*ups_q_in_base_y
+        ups_M_aa_t_3 = ups_M_ta_t_12*ups_q_in_base_y + ups_M_ta_t_9*ups_q_in_base_z
+        ups_M_aa_t_4 = ups_M_ta_t_4*ups_q_in_base_z - ups_M_ta_t_11*ups_q_in_base_x
+        ups_M_aa_t_5 = ups_M_ta_t_12*ups_q_in_base_x + ups_M_ta_t_5*ups_q_in_base_z
+        ups_M_aa_t_6 = ups_M_ta_t_5*ups_q_in_base_y - ups_M_ta_t_9*ups_q_in_base_x
         ok = (
-        ok & m.every(leg, (abs(rho2_1_ups) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
-            (abs(rho2_2_ups) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(root_1_ups) >
-            _TOLERANCE * 1.38293) & (abs(root_2_ups) > _TOLERANCE * 1.38293))
+        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
+            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) >
+            _TOLERANCE * 1.38293) & (abs(ups_root_2) > _TOLERANCE * 1.38293))
         )
         sums = m.added(sums, leg, (
-        Q_ups_t_10, Q_ups_t_11, Q_ups_t_12, Q_ups_t_14, Q_ups_t_15, Q_ups_t_17, M_ta_t_3,
-            M_ta_t_4, M_ta_t_5, M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12,
-            M_aa_t, M_aa_t_2, M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6,
+        ups_Q_t_10, ups_Q_t_11, ups_Q_t_12, ups_Q_t_14, ups_Q_t_15, ups_Q_t_17, ups_M_ta_t_3,
+            ups_M_ta_t_4, ups_M_ta_t_5, ups_M_ta_t_6, ups_M_ta_t_8, ups_M_ta_t_9,
+            ups_M_ta_t_10, ups_M_ta_t_11, ups_M_ta_t_12, ups_M_aa_t, ups_M_aa_t_2,
+            ups_M_aa_t_3, ups_M_aa_t_4, ups_M_aa_t_5, ups_M_aa_t_6,
         ))
     (
     total_ups_xx, total_ups_xy, total_ups_xz, total_ups_yy, total_ups_yz, total_ups_zz,
@@ -3489,773 +3682,871 @@ def _run_M(m, X):
     sums = [0.0] * 21
     for leg, k in legs[1]:
         (
-        J_group_2_up_xx, J_group_2_up_xy, J_group_2_up_xz, J_group_2_up_yy, J_group_2_up_yz,
-            J_group_2_up_zz, branch_1_up, branch_2_up, h_3_up_x, h_3_up_y, h_3_up_z,
-            up_base_frame_xx, up_base_frame_xy, up_base_frame_xz, up_base_frame_yx,
-            up_base_frame_yy, up_base_frame_yz, up_base_frame_zx, up_base_frame_zy,
-            up_base_frame_zz, up_base_point_x, up_base_point_y, up_base_point_z, up_link3_mass,
-            up_platform_joint_rotation_xx, up_platform_joint_rotation_xy,
-            up_platform_joint_rotation_xz, up_platform_joint_rotation_yx,
-            up_platform_joint_rotation_yy, up_platform_joint_rotation_yz,
-            up_platform_joint_rotation_zx, up_platform_joint_rotation_zy,
-            up_platform_joint_rotation_zz, up_platform_point_x, up_platform_point_y,
-            up_platform_point_z,
+        tube_J_group_2_xx, tube_J_group_2_xy, tube_J_group_2_xz, tube_J_group_2_yy,
+            tube_J_group_2_yz, tube_J_group_2_zz, tube_base_frame_xx, tube_base_frame_xy,
+            tube_base_frame_xz, tube_base_frame_yx, tube_base_frame_yy, tube_base_frame_yz,
+            tube_base_frame_zx, tube_base_frame_zy, tube_base_frame_zz, tube_base_point_x,
+            tube_base_point_y, tube_base_point_z, tube_branch_1, tube_branch_2, tube_h_3_x,
+            tube_h_3_y, tube_h_3_z, tube_link3_mass, tube_platform_joint_rotation_xx,
+            tube_platform_joint_rotation_xy, tube_platform_joint_rotation_xz,
+            tube_platform_joint_rotation_yx, tube_platform_joint_rotation_yy,
+            tube_platform_joint_rotation_yz, tube_platform_joint_rotation_zx,
+            tube_platform_joint_rotation_zy, tube_platform_joint_rotation_zz,
+            tube_platform_point_x, tube_platform_point_y, tube_platform_point_z,
         ) = k
-        # (up-K1) from the base point to the connection point
-        q_up_in_base_x = (
-        R_xx*up_platform_point_x + R_xy*up_platform_point_y + R_xz*up_platform_point_z
-        )
-        q_up_in_base_y = (
-        R_yx*up_platform_point_x + R_yy*up_platform_point_y + R_yz*up_platform_point_z
-        )
-        q_up_in_base_z = (
-        R_zx*up_platform_point_x + R_zy*up_platform_point_y + R_zz*up_platform_point_z
-        )
-        S_up_x = q_up_in_base_x + t_x - up_base_point_x
-        S_up_y = q_up_in_base_y + t_y - up_base_point_y
-        S_up_z = q_up_in_base_z + t_z - up_base_point_z
-        # (up-K2) component along the reference direction
-        px_1_up = S_up_x*up_base_frame_xx + S_up_y*up_base_frame_yx + S_up_z*up_base_frame_zx
-        # (up-K3) component across the reference direction
-        py_1_up = S_up_x*up_base_frame_xy + S_up_y*up_base_frame_yy + S_up_z*up_base_frame_zy
-        # (up-K4) squared amplitude
-        rho2_1_up = px_1_up*px_1_up + py_1_up*py_1_up
-        # (up-K5) amplitude, with the sign of the branch
-        root_1_up = branch_1_up*sqrt(rho2_1_up)
-        # (up-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_up_t = S_up_x*up_base_frame_xz + S_up_y*up_base_frame_yz + S_up_z*up_base_frame_zz
-        # (up-K13) squared amplitude
-        rho2_2_up = rho2_1_up + xi_1_up_t*xi_1_up_t
-        # (up-K14) amplitude, with the sign of the branch
-        root_2_up = branch_2_up*sqrt(rho2_2_up)
-        # (up-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2_up = 1.0/root_2_up
-        c_2_up = inv_root_2_up*root_1_up
-        # (up-K16) sine of the angle of joint 2 from its reference direction
-        s_2_up = inv_root_2_up*xi_1_up_t
-        # (up-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_up = 1.0/root_1_up
-        c_1_up = inv_root_1_up*py_1_up
-        # (up-K7) sine of the angle of joint 1 from its reference direction
-        s_1_up = inv_root_1_up*px_1_up
-        # (up-V8) force part of the wrench that does no work along the leg's freedoms, 1
-        axis_z_up_axes2_in_base_x = s_1_up*up_base_frame_xy - c_1_up*up_base_frame_xx
-        axis_z_up_axes2_in_base_y = s_1_up*up_base_frame_yy - c_1_up*up_base_frame_yx
-        axis_z_up_axes2_in_base_z = s_1_up*up_base_frame_zy - c_1_up*up_base_frame_zx
-        f_c1_up_t = s_1_up*s_2_up
-        f_c1_up_t_2 = c_1_up*s_2_up
-        axis_y_up_axes2_in_base_x = (
-        f_c1_up_t*up_base_frame_xx + f_c1_up_t_2*up_base_frame_xy - c_2_up*up_base_frame_xz
-        )
-        axis_y_up_axes2_in_base_y = (
-        f_c1_up_t*up_base_frame_yx + f_c1_up_t_2*up_base_frame_yy - c_2_up*up_base_frame_yz
-        )
-        axis_y_up_axes2_in_base_z = (
-        f_c1_up_t*up_base_frame_zx + f_c1_up_t_2*up_base_frame_zy - c_2_up*up_base_frame_zz
-        )
-        axis_x_up_axes2_x = (
-        axis_y_up_axes2_in_base_y*axis_z_up_axes2_in_base_z -
-            axis_y_up_axes2_in_base_z*axis_z_up_axes2_in_base_y
-        )
-        axis_x_up_axes2_y = (
-        axis_y_up_axes2_in_base_z*axis_z_up_axes2_in_base_x -
-            axis_y_up_axes2_in_base_x*axis_z_up_axes2_in_base_z
-        )
-        axis_x_up_axes2_z = (
-        axis_y_up_axes2_in_base_x*axis_z_up_axes2_in_base_y -
-            axis_y_up_axes2_in_base_y*axis_z_up_axes2_in_base_x
-        )
-        # (up-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_up_t = R_xx*up_base_frame_xx + R_yx*up_base_frame_yx + R_zx*up_base_frame_zx
-        n_m1_up_t_2 = R_xy*up_base_frame_xx + R_yy*up_base_frame_yx + R_zy*up_base_frame_zx
-        n_m1_up_t_3 = R_xz*up_base_frame_xx + R_yz*up_base_frame_yx + R_zz*up_base_frame_zx
-        n_m1_up_t_4 = R_xx*up_base_frame_xy + R_yx*up_base_frame_yy + R_zx*up_base_frame_zy
-        n_m1_up_t_5 = R_xy*up_base_frame_xy + R_yy*up_base_frame_yy + R_zy*up_base_frame_zy
-        n_m1_up_t_6 = R_xz*up_base_frame_xy + R_yz*up_base_frame_yy + R_zz*up_base_frame_zy
-        n_m1_up_t_7 = R_xx*up_base_frame_xz + R_yx*up_base_frame_yz + R_zx*up_base_frame_zz
-        n_m1_up_t_8 = R_xy*up_base_frame_xz + R_yy*up_base_frame_yz + R_zy*up_base_frame_zz
-        n_m1_up_t_9 = R_xz*up_base_frame_xz + R_yz*up_base_frame_yz + R_zz*up_base_frame_zz
-        end_p1_up_r0_x = (
-        n_m1_up_t*up_platform_joint_rotation_yx + n_m1_up_t_2*up_platform_joint_rotation_yy +
-            n_m1_up_t_3*up_platform_joint_rotation_yz
-        )
-        end_p1_up_r0_y = (
-        n_m1_up_t_4*up_platform_joint_rotation_yx + n_m1_up_t_5*up_platform_joint_rotation_yy +
-            n_m1_up_t_6*up_platform_joint_rotation_yz
-        )
-        end_p1_up_r1_x = end_p1_up_r0_y*s_1_up - c_1_up*end_p1_up_r0_x
-        end_p1_up_r3_y = (
-        -c_2_up*(n_m1_up_t_7*up_platform_joint_rotation_yx +
-            n_m1_up_t_8*up_platform_joint_rotation_yy + n_m1_up_t_9*up_platform_joint_rotation_yz)
-            - s_2_up*(-c_1_up*end_p1_up_r0_y - end_p1_up_r0_x*s_1_up)
-        )
-        # (up-V6) direction 2 of the moment that the platform joint transmits
-        end_p2_up_r0_z = (
-        n_m1_up_t_7*up_platform_joint_rotation_zx + n_m1_up_t_8*up_platform_joint_rotation_zy +
-            n_m1_up_t_9*up_platform_joint_rotation_zz
-        )
-        end_p2_up_r1_y = (
-        -c_1_up*(n_m1_up_t_4*up_platform_joint_rotation_zx +
-            n_m1_up_t_5*up_platform_joint_rotation_zy + n_m1_up_t_6*up_platform_joint_rotation_zz)
-            - s_1_up*(n_m1_up_t*up_platform_joint_rotation_zx +
-            n_m1_up_t_2*up_platform_joint_rotation_zy + n_m1_up_t_3*up_platform_joint_rotation_zz)
-        )
-        end_p2_up_r3_x = end_p2_up_r0_z*s_2_up - c_2_up*end_p2_up_r1_y
-        end_p2_up_r3_y = -c_2_up*end_p2_up_r0_z - end_p2_up_r1_y*s_2_up
-        # (up-V7) direction 3 of the moment that the platform joint transmits
-        end_p3_up_r0_x = (
-        n_m1_up_t*up_platform_joint_rotation_xx + n_m1_up_t_2*up_platform_joint_rotation_xy +
-            n_m1_up_t_3*up_platform_joint_rotation_xz
-        )
-        end_p3_up_r0_y = (
-        n_m1_up_t_4*up_platform_joint_rotation_xx + n_m1_up_t_5*up_platform_joint_rotation_xy +
-            n_m1_up_t_6*up_platform_joint_rotation_xz
-        )
-        end_p3_up_r1_x = end_p3_up_r0_y*s_1_up - c_1_up*end_p3_up_r0_x
-        end_p3_up_r3_x = (
-        s_2_up*(n_m1_up_t_7*up_platform_joint_rotation_xx +
-            n_m1_up_t_8*up_platform_joint_rotation_xy + n_m1_up_t_9*up_platform_joint_rotation_xz)
-            - c_2_up*(-c_1_up*end_p3_up_r0_y - end_p3_up_r0_x*s_1_up)
-        )
-        # (up-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_up_t_10 = c_2_up*end_p1_up_r1_x
-        # (up-V6) direction 2 of the moment that the platform joint transmits
-        n_m2_up_r0_y = -c_2_up*end_p2_up_r3_x - end_p2_up_r3_y*s_2_up
-        # (up-V7) direction 3 of the moment that the platform joint transmits
-        n_m3_up_t = end_p3_up_r1_x*s_2_up
-        # (up-V8) force part of the wrench that does no work along the leg's freedoms, 1
-        f_c1_up_t_3 = end_p1_up_r3_y*n_m3_up_t + end_p3_up_r3_x*n_m1_up_t_10
-        inv_f_c1_up_t_26 = 1.0/f_c1_up_t_3
-        # (up-V16) force part of the wrench that does no work along the leg's freedoms, 3
-        f_c3_up_t = end_p3_up_r3_x*inv_f_c1_up_t_26*n_m2_up_r0_y
-        f_c3_up_t_2 = end_p1_up_r3_y*inv_f_c1_up_t_26*n_m2_up_r0_y
-        # (up-V32) size of the moment
-        size_c3_up = sqrt(1.0 + f_c3_up_t*f_c3_up_t + f_c3_up_t_2*f_c3_up_t_2)
-        # (up-V34) moment along direction 1 that goes with it
-        inv_size_c3_up = 1.0/size_c3_up
-        # (up-V38) force part of reciprocal wrench 1
-        w_1_up_t = 1.35*n_m1_up_t_10
-        w_1_up_t_2 = 1.35*n_m2_up_r0_y
-        w_1_up_t_3 = 1.35*n_m3_up_t
-        w_1_up_t_4 = 1.35*end_p1_up_r3_y
-        w_1_up_t_5 = 1.35*end_p3_up_r3_x
-        w_1_up_t_6 = 1.35*inv_f_c1_up_t_26*n_m3_up_t*root_2_up
-        w_1_up_t_7 = 1.35*inv_f_c1_up_t_26*n_m1_up_t_10*root_2_up
-        w_1_up_t_8 = 1.35*end_p3_up_r3_x*inv_f_c1_up_t_26*root_1_up
-        w_1_up_t_9 = 1.35*end_p1_up_r3_y*inv_f_c1_up_t_26*root_1_up
-        w_1_up_t_10 = 1.35*f_c3_up_t*inv_size_c3_up
-        w_1_up_t_11 = 1.35*inv_size_c3_up
-        w_1_up_t_12 = 1.35*f_c3_up_t_2*inv_size_c3_up
-        w_1_up_t_13 = sqrt(rho2_2_up + w_1_up_t_4*w_1_up_t_4 + w_1_up_t_5*w_1_up_t_5)
-        inv_w_1_up_t_16 = 1.0/w_1_up_t_13
-        w_1_up_t_14 = inv_w_1_up_t_16*root_2_up
-        w_1_up_t_15 = inv_w_1_up_t_16*w_1_up_t_4
-        w_1_up_t_16 = inv_w_1_up_t_16*w_1_up_t_5
-        w_1_up_t_17 = w_1_up_t_15*w_1_up_t_6 + w_1_up_t_16*w_1_up_t_7 - w_1_up_t_14
-        w_1_up_t_18 = 1.0 + w_1_up_t_14*w_1_up_t_17
-        w_1_up_t_19 = w_1_up_t_15*w_1_up_t_17 - w_1_up_t_6
-        w_1_up_t_20 = w_1_up_t_16*w_1_up_t_17 - w_1_up_t_7
-        w_1_up_t_21 = w_1_up_t_15*w_1_up_t_8 - w_1_up_t_16*w_1_up_t_9
-        w_1_up_t_22 = w_1_up_t_14*w_1_up_t_21
-        w_1_up_t_23 = w_1_up_t_15*w_1_up_t_21 - w_1_up_t_8
-        w_1_up_t_24 = w_1_up_t_9 + w_1_up_t_16*w_1_up_t_21
-        w_1_up_t_25 = w_1_up_t_10*w_1_up_t_15 - w_1_up_t_12*w_1_up_t_16
-        w_1_up_t_26 = w_1_up_t_14*w_1_up_t_25
-        w_1_up_t_27 = w_1_up_t_10 - w_1_up_t_15*w_1_up_t_25
-        w_1_up_t_28 = w_1_up_t_12 + w_1_up_t_16*w_1_up_t_25
-        w_1_up_t_29 = w_1_up_t*w_1_up_t_15 - w_1_up_t_16*w_1_up_t_3
-        w_1_up_t_30 = w_1_up_t_14*w_1_up_t_29
-        w_1_up_t_31 = w_1_up_t - w_1_up_t_15*w_1_up_t_29
-        w_1_up_t_32 = w_1_up_t_3 + w_1_up_t_16*w_1_up_t_29
-        w_1_up_t_33 = (
-        sqrt(w_1_up_t_18*w_1_up_t_18 + w_1_up_t_19*w_1_up_t_19 + w_1_up_t_20*w_1_up_t_20)
-        )
-        inv_w_1_up_t_57 = 1.0/w_1_up_t_33
-        w_1_up_t_34 = inv_w_1_up_t_57*w_1_up_t_18
-        w_1_up_t_35 = inv_w_1_up_t_57*w_1_up_t_19
-        w_1_up_t_36 = inv_w_1_up_t_57*w_1_up_t_20
-        w_1_up_t_37 = w_1_up_t_22*w_1_up_t_34 + w_1_up_t_23*w_1_up_t_35 + w_1_up_t_24*w_1_up_t_36
-        w_1_up_t_38 = w_1_up_t_22 - w_1_up_t_34*w_1_up_t_37
-        w_1_up_t_39 = w_1_up_t_23 - w_1_up_t_35*w_1_up_t_37
-        w_1_up_t_40 = w_1_up_t_24 - w_1_up_t_36*w_1_up_t_37
-        w_1_up_t_41 = w_1_up_t_26*w_1_up_t_34 + w_1_up_t_28*w_1_up_t_36 - w_1_up_t_27*w_1_up_t_35
-        w_1_up_t_42 = w_1_up_t_26 - w_1_up_t_34*w_1_up_t_41
-        w_1_up_t_43 = w_1_up_t_27 + w_1_up_t_35*w_1_up_t_41
-        w_1_up_t_44 = w_1_up_t_28 - w_1_up_t_36*w_1_up_t_41
-        w_1_up_t_45 = w_1_up_t_30*w_1_up_t_34 + w_1_up_t_32*w_1_up_t_36 - w_1_up_t_31*w_1_up_t_35
-        w_1_up_t_46 = w_1_up_t_30 - w_1_up_t_34*w_1_up_t_45
-        w_1_up_t_47 = w_1_up_t_31 + w_1_up_t_35*w_1_up_t_45
-        w_1_up_t_48 = w_1_up_t_32 - w_1_up_t_36*w_1_up_t_45
-        w_1_up_t_49 = (
-        sqrt(1.0 + w_1_up_t_38*w_1_up_t_38 + w_1_up_t_39*w_1_up_t_39 + w_1_up_t_40*w_1_up_t_40)
-        )
-        inv_w_1_up_t_95 = 1.0/w_1_up_t_49
-        w_1_up_t_50 = inv_w_1_up_t_95*w_1_up_t_38
-        w_1_up_t_51 = inv_w_1_up_t_95*w_1_up_t_39
-        w_1_up_t_52 = inv_w_1_up_t_95*w_1_up_t_40
-        w_1_up_t_53 = w_1_up_t_42*w_1_up_t_50 + w_1_up_t_44*w_1_up_t_52 - w_1_up_t_43*w_1_up_t_51
-        w_1_up_t_54 = w_1_up_t_50*w_1_up_t_53 - w_1_up_t_42
-        w_1_up_t_55 = inv_w_1_up_t_95*w_1_up_t_53
-        w_1_up_t_56 = w_1_up_t_43 + w_1_up_t_51*w_1_up_t_53
-        w_1_up_t_57 = w_1_up_t_52*w_1_up_t_53 - w_1_up_t_44
-        w_1_up_t_58 = (
-        w_1_up_t_46*w_1_up_t_50 + w_1_up_t_48*w_1_up_t_52 - inv_w_1_up_t_95*root_1_up -
-            w_1_up_t_47*w_1_up_t_51
-        )
-        w_1_up_t_59 = w_1_up_t_50*w_1_up_t_58 - w_1_up_t_46
-        w_1_up_t_60 = root_1_up + inv_w_1_up_t_95*w_1_up_t_58
-        w_1_up_t_61 = w_1_up_t_47 + w_1_up_t_51*w_1_up_t_58
-        w_1_up_t_62 = w_1_up_t_52*w_1_up_t_58 - w_1_up_t_48
-        w_1_up_t_63 = (
-        sqrt(w_1_up_t_11*w_1_up_t_11 + w_1_up_t_54*w_1_up_t_54 + w_1_up_t_55*w_1_up_t_55 +
-            w_1_up_t_56*w_1_up_t_56 + w_1_up_t_57*w_1_up_t_57)
-        )
-        inv_w_1_up_t_129 = 1.0/w_1_up_t_63
-        w_1_up_t_64 = inv_w_1_up_t_129*w_1_up_t_54
-        w_1_up_t_65 = inv_w_1_up_t_129*w_1_up_t_55
-        w_1_up_t_66 = inv_w_1_up_t_129*w_1_up_t_56
-        w_1_up_t_67 = inv_w_1_up_t_129*w_1_up_t_11
-        w_1_up_t_68 = inv_w_1_up_t_129*w_1_up_t_57
-        w_1_up_t_69 = (
-        w_1_up_t_59*w_1_up_t_64 + w_1_up_t_60*w_1_up_t_65 + w_1_up_t_61*w_1_up_t_66 +
-            w_1_up_t_62*w_1_up_t_68 - w_1_up_t_2*w_1_up_t_67
-        )
-        w_1_up_t_70 = w_1_up_t_59 - w_1_up_t_64*w_1_up_t_69
-        w_1_up_t_71 = w_1_up_t_60 - w_1_up_t_65*w_1_up_t_69
-        w_1_up_t_72 = w_1_up_t_61 - w_1_up_t_66*w_1_up_t_69
-        w_1_up_t_73 = w_1_up_t_2 + w_1_up_t_67*w_1_up_t_69
-        w_1_up_t_74 = w_1_up_t_62 - w_1_up_t_68*w_1_up_t_69
-        w_1_up_t_75 = (
-        sqrt(w_1_up_t_70*w_1_up_t_70 + w_1_up_t_71*w_1_up_t_71 + w_1_up_t_72*w_1_up_t_72 +
-            w_1_up_t_73*w_1_up_t_73 + w_1_up_t_74*w_1_up_t_74)
-        )
-        inv_w_1_up_t_157 = 1.0/w_1_up_t_75
-        w_1_up_t_76 = inv_w_1_up_t_157*w_1_up_t_70
-        w_1_up_t_77 = inv_w_1_up_t_157*w_1_up_t_71
-        w_1_up_t_78 = inv_w_1_up_t_157*w_1_up_t_72
-        w_1_up_t_79 = inv_w_1_up_t_157*w_1_up_t_73
-        w_1_up_t_80 = inv_w_1_up_t_157*w_1_up_t_74
-        w_1_up_t_81 = inv_w_1_up_t_157*w_1_up_t_76
-        w_1_up_t_82 = inv_w_1_up_t_157*w_1_up_t_77
-        w_1_up_t_83 = 1.35*inv_w_1_up_t_157*w_1_up_t_78
-        w_1_up_t_84 = 1.35*inv_w_1_up_t_157*w_1_up_t_79
-        w_1_up_t_85 = 1.35*inv_w_1_up_t_157*w_1_up_t_80
-        w_1_up_t_86 = s_2_up*w_1_up_t_81
-        w_1_up_t_87 = c_2_up*w_1_up_t_81
-        # (up-V42) force part of reciprocal wrench 2
-        w_2_up_t = inv_w_1_up_t_16*inv_w_1_up_t_57*w_1_up_t_17
-        w_2_up_t_2 = inv_w_1_up_t_95*(inv_w_1_up_t_16*w_1_up_t_21 - w_1_up_t_37*w_2_up_t)
-        w_2_up_t_3 = (
-        inv_w_1_up_t_129*(w_1_up_t_41*w_2_up_t + w_1_up_t_53*w_2_up_t_2 -
-            inv_w_1_up_t_16*w_1_up_t_25)
-        )
-        w_2_up_t_4 = (
-        inv_w_1_up_t_157*(inv_w_1_up_t_16*w_1_up_t_29 + w_1_up_t_69*w_2_up_t_3 -
-            w_1_up_t_45*w_2_up_t - w_1_up_t_58*w_2_up_t_2)
-        )
-        w_2_up_t_5 = (
-        inv_w_1_up_t_16*w_1_up_t_14 + w_1_up_t_34*w_2_up_t + w_1_up_t_50*w_2_up_t_2 +
-            w_1_up_t_64*w_2_up_t_3 - w_1_up_t_76*w_2_up_t_4
-        )
-        w_2_up_t_6 = inv_w_1_up_t_95*w_2_up_t_2 + w_1_up_t_65*w_2_up_t_3 - w_1_up_t_77*w_2_up_t_4
-        w_2_up_t_7 = (
-        inv_w_1_up_t_16*w_1_up_t_15 + w_1_up_t_35*w_2_up_t + w_1_up_t_51*w_2_up_t_2 +
-            w_1_up_t_66*w_2_up_t_3 - w_1_up_t_78*w_2_up_t_4
-        )
-        w_2_up_t_8 = 1.35*w_2_up_t_7
-        w_2_up_t_9 = w_1_up_t_67*w_2_up_t_3 + w_1_up_t_79*w_2_up_t_4
-        w_2_up_t_10 = 1.35*w_2_up_t_9
-        w_2_up_t_11 = (
-        inv_w_1_up_t_16*w_1_up_t_16 + w_1_up_t_36*w_2_up_t + w_1_up_t_52*w_2_up_t_2 +
-            w_1_up_t_68*w_2_up_t_3 - w_1_up_t_80*w_2_up_t_4
-        )
-        w_2_up_t_12 = 1.35*w_2_up_t_11
-        # (up-A25) coefficient of the acceleration in: angular acceleration of link 1
-        d_alpha_1_up_xz = s_2_up*w_1_up_t_82
-        d_alpha_1_up_yz = c_2_up*w_1_up_t_82
-        # (up-N5) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-        d_acc_3_up_t = root_2_up*w_2_up_t_5
-        d_acc_3_up_t_2 = root_2_up*w_2_up_t_6
-        d_acc_3_up_t_3 = root_2_up*w_1_up_t_87
-        d_acc_3_up_t_4 = d_alpha_1_up_yz*root_2_up
-        # (up-N9) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        d_phi_3_up_t = h_3_up_y*w_1_up_t_87 - h_3_up_z*w_2_up_t_5
-        d_phi_3_up_t_2 = d_alpha_1_up_yz*h_3_up_y - h_3_up_z*w_2_up_t_6
-        # (up-N24) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        d_N_2_up_zy = (
-        J_group_2_up_xz*w_1_up_t_86 + J_group_2_up_zz*w_2_up_t_5 + d_acc_3_up_t*h_3_up_x +
-            root_2_up*(d_acc_3_up_t*up_link3_mass + h_3_up_x*w_2_up_t_5 - h_3_up_y*w_1_up_t_86) -
-            J_group_2_up_yz*w_1_up_t_87
-        )
-        d_N_2_up_zz = (
-        J_group_2_up_xz*d_alpha_1_up_xz + J_group_2_up_zz*w_2_up_t_6 + d_acc_3_up_t_2*h_3_up_x +
-            root_2_up*(d_acc_3_up_t_2*up_link3_mass + h_3_up_x*w_2_up_t_6 -
-            d_alpha_1_up_xz*h_3_up_y) - J_group_2_up_yz*d_alpha_1_up_yz
-        )
-        # (up-N36) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_up_t = c_2_up*h_3_up_y
-        d_Gamma_1_up_t_2 = (
-        c_2_up*(J_group_2_up_xy*w_1_up_t_86 + J_group_2_up_yz*w_2_up_t_5 -
-            J_group_2_up_yy*w_1_up_t_87 - d_acc_3_up_t_3*h_3_up_x -
-            root_2_up*(d_acc_3_up_t_3*up_link3_mass + h_3_up_x*w_1_up_t_87 -
-            h_3_up_z*w_1_up_t_86))
-        )
-        d_Gamma_1_up_y = (
-        s_2_up*(J_group_2_up_xx*w_1_up_t_86 + J_group_2_up_xz*w_2_up_t_5 -
-            J_group_2_up_xy*w_1_up_t_87 - d_acc_3_up_t*h_3_up_y - d_acc_3_up_t_3*h_3_up_z) -
-            d_Gamma_1_up_t_2
-        )
-        d_Gamma_1_up_t_3 = (
-        c_2_up*(J_group_2_up_xy*d_alpha_1_up_xz + J_group_2_up_yz*w_2_up_t_6 -
-            J_group_2_up_yy*d_alpha_1_up_yz - d_acc_3_up_t_4*h_3_up_x -
-            root_2_up*(d_acc_3_up_t_4*up_link3_mass + d_alpha_1_up_yz*h_3_up_x -
-            d_alpha_1_up_xz*h_3_up_z))
-        )
-        d_Gamma_1_up_z = (
-        s_2_up*(J_group_2_up_xx*d_alpha_1_up_xz + J_group_2_up_xz*w_2_up_t_6 -
-            J_group_2_up_xy*d_alpha_1_up_yz - d_acc_3_up_t_2*h_3_up_y - d_acc_3_up_t_4*h_3_up_z) -
-            d_Gamma_1_up_t_3
-        )
-        # (up-N40) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_up_yz = d_Gamma_1_up_z*w_1_up_t_81 + d_N_2_up_zz*w_2_up_t_5
-        # (up-N62) inertia of the leg at the connection point, without the mass gathered there
-        Q_up_t = d_Gamma_1_up_y*w_1_up_t_81 + d_N_2_up_zy*w_2_up_t_5 - up_link3_mass
-        Q_up_t_2 = 0.5*Q_up_t
-        Q_up_t_3 = d_Gamma_1_up_z*w_1_up_t_82 + d_N_2_up_zz*w_2_up_t_6 - up_link3_mass
-        Q_up_t_4 = 0.5*Q_up_t_3
-        Q_up_t_5 = (
-        Q_up_t_2*axis_y_up_axes2_in_base_x + axis_z_up_axes2_in_base_x*d_G_up_yz -
-            axis_x_up_axes2_x*d_phi_3_up_t
-        )
-        Q_up_t_6 = (
-        Q_up_t_2*axis_y_up_axes2_in_base_y + axis_z_up_axes2_in_base_y*d_G_up_yz -
-            axis_x_up_axes2_y*d_phi_3_up_t
-        )
-        Q_up_t_7 = (
-        Q_up_t_2*axis_y_up_axes2_in_base_z + axis_z_up_axes2_in_base_z*d_G_up_yz -
-            axis_x_up_axes2_z*d_phi_3_up_t
-        )
-        Q_up_t_8 = Q_up_t_4*axis_z_up_axes2_in_base_x - axis_x_up_axes2_x*d_phi_3_up_t_2
-        Q_up_t_9 = Q_up_t_4*axis_z_up_axes2_in_base_y - axis_x_up_axes2_y*d_phi_3_up_t_2
-        Q_up_t_10 = Q_up_t_4*axis_z_up_axes2_in_base_z - axis_x_up_axes2_z*d_phi_3_up_t_2
-        Q_up_t_11 = Q_up_t_5*axis_y_up_axes2_in_base_x + Q_up_t_8*axis_z_up_axes2_in_base_x
-        Q_up_t_12 = 2.0*Q_up_t_11 + up_link3_mass
-        Q_up_t_13 = (
-        Q_up_t_5*axis_y_up_axes2_in_base_y + Q_up_t_6*axis_y_up_axes2_in_base_x +
-            Q_up_t_8*axis_z_up_axes2_in_base_y + Q_up_t_9*axis_z_up_axes2_in_base_x
-        )
-        Q_up_t_14 = (
-        Q_up_t_10*axis_z_up_axes2_in_base_x + Q_up_t_5*axis_y_up_axes2_in_base_z +
-            Q_up_t_7*axis_y_up_axes2_in_base_x + Q_up_t_8*axis_z_up_axes2_in_base_z
-        )
-        Q_up_t_15 = Q_up_t_6*axis_y_up_axes2_in_base_y + Q_up_t_9*axis_z_up_axes2_in_base_y
-        Q_up_t_16 = 2.0*Q_up_t_15 + up_link3_mass
-        Q_up_t_17 = (
-        Q_up_t_10*axis_z_up_axes2_in_base_y + Q_up_t_6*axis_y_up_axes2_in_base_z +
-            Q_up_t_7*axis_y_up_axes2_in_base_y + Q_up_t_9*axis_z_up_axes2_in_base_z
-        )
-        Q_up_t_18 = Q_up_t_10*axis_z_up_axes2_in_base_z + Q_up_t_7*axis_y_up_axes2_in_base_z
-        Q_up_t_19 = 2.0*Q_up_t_18 + up_link3_mass
-        # (up-V50) moment part of reciprocal wrench 1
-        o_1_up_x = -end_p2_up_r3_y*w_1_up_t_84 - end_p3_up_r1_x*w_1_up_t_85
-        o_1_up_y = end_p2_up_r3_x*w_1_up_t_84 - end_p1_up_r1_x*w_1_up_t_83
-        o_1_up_z = end_p1_up_r3_y*w_1_up_t_83 + end_p3_up_r3_x*w_1_up_t_85
-        o_1_up_t = c_2_up*o_1_up_x
-        o_1_up_t_2 = o_1_up_y*s_2_up
-        o_1_up_t_3 = c_2_up*o_1_up_y
-        o_1_up_t_4 = o_1_up_x*s_2_up
-        # (up-V51) moment part of reciprocal wrench 2
-        o_2_up_x = end_p2_up_r3_y*w_2_up_t_10 - end_p3_up_r1_x*w_2_up_t_12
-        o_2_up_y = -end_p1_up_r1_x*w_2_up_t_8 - end_p2_up_r3_x*w_2_up_t_10
-        o_2_up_z = end_p1_up_r3_y*w_2_up_t_8 + end_p3_up_r3_x*w_2_up_t_12
-        # (up-A24) coefficient of the acceleration in: angular acceleration of link 1
-        d0_alpha_1_up_xz = o_1_up_z*s_2_up
-        d0_alpha_1_up_yz = c_2_up*o_1_up_z
-        # (up-N4) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-        d0_acc_3_up_t = o_2_up_x*root_2_up
-        d0_acc_3_up_t_2 = o_2_up_y*root_2_up
-        d0_acc_3_up_t_3 = o_2_up_z*root_2_up
-        d0_acc_3_up_t_4 = o_1_up_t*root_2_up
-        d0_acc_3_up_t_5 = o_1_up_t_3*root_2_up
-        d0_acc_3_up_t_6 = d0_alpha_1_up_yz*root_2_up
-        # (up-N8) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        d0_phi_3_up_t = h_3_up_y*o_1_up_t - h_3_up_z*o_2_up_x
-        d0_phi_3_up_t_2 = h_3_up_y*o_1_up_t_3 - h_3_up_z*o_2_up_y
-        d0_phi_3_up_t_3 = d0_alpha_1_up_yz*h_3_up_y - h_3_up_z*o_2_up_z
-        # (up-N23) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        d0_N_2_up_zx = (
-        J_group_2_up_xz*o_1_up_t_4 + J_group_2_up_zz*o_2_up_x + d0_acc_3_up_t*h_3_up_x +
-            root_2_up*(d0_acc_3_up_t*up_link3_mass + h_3_up_x*o_2_up_x - h_3_up_y*o_1_up_t_4) -
-            J_group_2_up_yz*o_1_up_t
-        )
-        d0_N_2_up_zy = (
-        J_group_2_up_xz*o_1_up_t_2 + J_group_2_up_zz*o_2_up_y + d0_acc_3_up_t_2*h_3_up_x +
-            root_2_up*(d0_acc_3_up_t_2*up_link3_mass + h_3_up_x*o_2_up_y - h_3_up_y*o_1_up_t_2) -
-            J_group_2_up_yz*o_1_up_t_3
-        )
-        d0_N_2_up_zz = (
-        J_group_2_up_xz*d0_alpha_1_up_xz + J_group_2_up_zz*o_2_up_z + d0_acc_3_up_t_3*h_3_up_x +
-            root_2_up*(d0_acc_3_up_t_3*up_link3_mass + h_3_up_x*o_2_up_z -
-            d0_alpha_1_up_xz*h_3_up_y) - J_group_2_up_yz*d0_alpha_1_up_yz
-        )
-        # (up-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d0_Gamma_1_up_t = (
-        c_2_up*(J_group_2_up_xy*o_1_up_t_4 + J_group_2_up_yz*o_2_up_x - J_group_2_up_yy*o_1_up_t -
-            d0_acc_3_up_t_4*h_3_up_x - root_2_up*(d0_acc_3_up_t_4*up_link3_mass +
-            h_3_up_x*o_1_up_t - h_3_up_z*o_1_up_t_4))
-        )
-        d0_Gamma_1_up_x = (
-        s_2_up*(J_group_2_up_xx*o_1_up_t_4 + J_group_2_up_xz*o_2_up_x - J_group_2_up_xy*o_1_up_t -
-            d0_acc_3_up_t*h_3_up_y - d0_acc_3_up_t_4*h_3_up_z) - d0_Gamma_1_up_t
-        )
-        d0_Gamma_1_up_t_2 = (
-        c_2_up*(J_group_2_up_xy*o_1_up_t_2 + J_group_2_up_yz*o_2_up_y - J_group_2_up_yy*o_1_up_t_3
-            - d0_acc_3_up_t_5*h_3_up_x - root_2_up*(d0_acc_3_up_t_5*up_link3_mass +
-            h_3_up_x*o_1_up_t_3 - h_3_up_z*o_1_up_t_2))
-        )
-        d0_Gamma_1_up_y = (
-        s_2_up*(J_group_2_up_xx*o_1_up_t_2 + J_group_2_up_xz*o_2_up_y - J_group_2_up_xy*o_1_up_t_3
-            - d0_acc_3_up_t_2*h_3_up_y - d0_acc_3_up_t_5*h_3_up_z) - d0_Gamma_1_up_t_2
-        )
-        d0_Gamma_1_up_t_3 = (
-        c_2_up*(J_group_2_up_xy*d0_alpha_1_up_xz + J_group_2_up_yz*o_2_up_z -
-            J_group_2_up_yy*d0_alpha_1_up_yz - d0_acc_3_up_t_6*h_3_up_x -
-            root_2_up*(d0_acc_3_up_t_6*up_link3_mass + d0_alpha_1_up_yz*h_3_up_x -
-            d0_alpha_1_up_xz*h_3_up_z))
-        )
-        d0_Gamma_1_up_z = (
-        s_2_up*(J_group_2_up_xx*d0_alpha_1_up_xz + J_group_2_up_xz*o_2_up_z -
-            J_group_2_up_xy*d0_alpha_1_up_yz - d0_acc_3_up_t_3*h_3_up_y -
-            d0_acc_3_up_t_6*h_3_up_z) - d0_Gamma_1_up_t_3
-        )
-        # (up-N39) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d0_G_up_yx = d0_Gamma_1_up_x*w_1_up_t_81 + d0_N_2_up_zx*w_2_up_t_5
-        d0_G_up_yy = d0_Gamma_1_up_y*w_1_up_t_81 + d0_N_2_up_zy*w_2_up_t_5
-        d0_G_up_yz = d0_Gamma_1_up_z*w_1_up_t_81 + d0_N_2_up_zz*w_2_up_t_5
-        d0_G_up_zx = d0_Gamma_1_up_x*w_1_up_t_82 + d0_N_2_up_zx*w_2_up_t_6
-        d0_G_up_zy = d0_Gamma_1_up_y*w_1_up_t_82 + d0_N_2_up_zy*w_2_up_t_6
-        d0_G_up_zz = d0_Gamma_1_up_z*w_1_up_t_82 + d0_N_2_up_zz*w_2_up_t_6
-        # (M2) coupling block of M
-        M_ta_t_13 = Q_up_t_13*q_up_in_base_z
-        M_ta_t_14 = Q_up_t_14*q_up_in_base_y
-        M_ta_t_15 = Q_up_t_12*q_up_in_base_z - Q_up_t_14*q_up_in_base_x
-        M_ta_t_16 = Q_up_t_12*q_up_in_base_y - Q_up_t_13*q_up_in_base_x
-        M_ta_t_17 = Q_up_t_16*q_up_in_base_z - Q_up_t_17*q_up_in_base_y
-        M_ta_t_18 = Q_up_t_17*q_up_in_base_x
-        M_ta_t_19 = M_ta_t_13 - M_ta_t_18
-        M_ta_t_20 = Q_up_t_13*q_up_in_base_y - Q_up_t_16*q_up_in_base_x
-        M_ta_t_21 = Q_up_t_17*q_up_in_base_z - Q_up_t_19*q_up_in_base_y
-        M_ta_t_22 = Q_up_t_14*q_up_in_base_z - Q_up_t_19*q_up_in_base_x
-        M_ta_t_23 = M_ta_t_14 - M_ta_t_18
-        # (up-N59) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d0_c_up_in_base_x = (
-        axis_x_up_axes2_x*d0_phi_3_up_t - axis_y_up_axes2_in_base_x*d0_G_up_yx -
-            axis_z_up_axes2_in_base_x*d0_G_up_zx
-        )
-        d0_c_up_in_base_y = (
-        axis_x_up_axes2_y*d0_phi_3_up_t - axis_y_up_axes2_in_base_y*d0_G_up_yx -
-            axis_z_up_axes2_in_base_y*d0_G_up_zx
-        )
-        d0_c_up_in_base_z = (
-        axis_x_up_axes2_z*d0_phi_3_up_t - axis_y_up_axes2_in_base_z*d0_G_up_yx -
-            axis_z_up_axes2_in_base_z*d0_G_up_zx
-        )
-        d0_c_up_in_base_x_2 = (
-        axis_x_up_axes2_x*d0_phi_3_up_t_2 - axis_y_up_axes2_in_base_x*d0_G_up_yy -
-            axis_z_up_axes2_in_base_x*d0_G_up_zy
-        )
-        d0_c_up_in_base_y_2 = (
-        axis_x_up_axes2_y*d0_phi_3_up_t_2 - axis_y_up_axes2_in_base_y*d0_G_up_yy -
-            axis_z_up_axes2_in_base_y*d0_G_up_zy
-        )
-        d0_c_up_in_base_z_2 = (
-        axis_x_up_axes2_z*d0_phi_3_up_t_2 - axis_y_up_axes2_in_base_z*d0_G_up_yy -
-            axis_z_up_axes2_in_base_z*d0_G_up_zy
-        )
-        d0_c_up_in_base_x_3 = (
-        axis_x_up_axes2_x*d0_phi_3_up_t_3 - axis_y_up_axes2_in_base_x*d0_G_up_yz -
-            axis_z_up_axes2_in_base_x*d0_G_up_zz
-        )
-        d0_c_up_in_base_y_3 = (
-        axis_x_up_axes2_y*d0_phi_3_up_t_3 - axis_y_up_axes2_in_base_y*d0_G_up_yz -
-            axis_z_up_axes2_in_base_y*d0_G_up_zz
-        )
-        d0_c_up_in_base_z_3 = (
-        axis_x_up_axes2_z*d0_phi_3_up_t_3 - axis_y_up_axes2_in_base_z*d0_G_up_yz -
-            axis_z_up_axes2_in_base_z*d0_G_up_zz
-        )
-        d0_c_up_in_base_y_4 = (
-        axis_x_up_axes2_y*d0_c_up_in_base_x + axis_y_up_axes2_in_base_y*d0_c_up_in_base_x_2 +
-            axis_z_up_axes2_in_base_y*d0_c_up_in_base_x_3
-        )
-        d0_c_up_in_base_z_4 = (
-        axis_x_up_axes2_z*d0_c_up_in_base_x + axis_y_up_axes2_in_base_z*d0_c_up_in_base_x_2 +
-            axis_z_up_axes2_in_base_z*d0_c_up_in_base_x_3
-        )
-        d0_c_up_in_base_x_4 = (
-        axis_x_up_axes2_x*d0_c_up_in_base_y + axis_y_up_axes2_in_base_x*d0_c_up_in_base_y_2 +
-            axis_z_up_axes2_in_base_x*d0_c_up_in_base_y_3
-        )
-        d0_c_up_in_base_y_5 = (
-        axis_x_up_axes2_y*d0_c_up_in_base_y + axis_y_up_axes2_in_base_y*d0_c_up_in_base_y_2 +
-            axis_z_up_axes2_in_base_y*d0_c_up_in_base_y_3
-        )
-        d0_c_up_in_base_z_5 = (
-        axis_x_up_axes2_z*d0_c_up_in_base_y + axis_y_up_axes2_in_base_z*d0_c_up_in_base_y_2 +
-            axis_z_up_axes2_in_base_z*d0_c_up_in_base_y_3
-        )
-        d0_c_up_in_base_x_5 = (
-        axis_x_up_axes2_x*d0_c_up_in_base_z + axis_y_up_axes2_in_base_x*d0_c_up_in_base_z_2 +
-            axis_z_up_axes2_in_base_x*d0_c_up_in_base_z_3
-        )
-        d0_c_up_in_base_y_6 = (
-        axis_x_up_axes2_y*d0_c_up_in_base_z + axis_y_up_axes2_in_base_y*d0_c_up_in_base_z_2 +
-            axis_z_up_axes2_in_base_y*d0_c_up_in_base_z_3
-        )
-        d0_c_up_in_base_z_6 = (
-        axis_x_up_axes2_z*d0_c_up_in_base_z + axis_y_up_axes2_in_base_z*d0_c_up_in_base_z_2 +
-            axis_z_up_axes2_in_base_z*d0_c_up_in_base_z_3
-        )
-        # (M2) coupling block of M
-        M_ta_t_24 = (
-        M_ta_t_13 + axis_x_up_axes2_x*d0_c_up_in_base_x +
-            axis_y_up_axes2_in_base_x*d0_c_up_in_base_x_2 +
-            axis_z_up_axes2_in_base_x*d0_c_up_in_base_x_3 - M_ta_t_14
-        )
-        M_ta_t_25 = M_ta_t_15 - d0_c_up_in_base_y_4
-        M_ta_t_26 = M_ta_t_16 + d0_c_up_in_base_z_4
-        M_ta_t_27 = M_ta_t_17 + d0_c_up_in_base_x_4
-        M_ta_t_28 = M_ta_t_19 - d0_c_up_in_base_y_5
-        M_ta_t_29 = M_ta_t_20 + d0_c_up_in_base_z_5
-        M_ta_t_30 = M_ta_t_21 + d0_c_up_in_base_x_5
-        M_ta_t_31 = M_ta_t_22 - d0_c_up_in_base_y_6
-        M_ta_t_32 = M_ta_t_23 + d0_c_up_in_base_z_6
-        # (up-N43) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        d0_G_m1_up_x = d0_Gamma_1_up_x*w_1_up_t_83 + d0_N_2_up_zx*w_2_up_t_8
-        d0_G_m1_up_y = d0_Gamma_1_up_y*w_1_up_t_83 + d0_N_2_up_zy*w_2_up_t_8
-        d0_G_m1_up_z = d0_Gamma_1_up_z*w_1_up_t_83 + d0_N_2_up_zz*w_2_up_t_8
-        # (up-N47) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
-        d0_G_m2_up_x = d0_Gamma_1_up_x*w_1_up_t_84 - d0_N_2_up_zx*w_2_up_t_10
-        d0_G_m2_up_y = d0_Gamma_1_up_y*w_1_up_t_84 - d0_N_2_up_zy*w_2_up_t_10
-        d0_G_m2_up_z = d0_Gamma_1_up_z*w_1_up_t_84 - d0_N_2_up_zz*w_2_up_t_10
-        # (up-N51) coefficient of the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all freedoms
-        d0_G_m3_up_x = d0_Gamma_1_up_x*w_1_up_t_85 + d0_N_2_up_zx*w_2_up_t_12
-        d0_G_m3_up_y = d0_Gamma_1_up_y*w_1_up_t_85 + d0_N_2_up_zy*w_2_up_t_12
-        d0_G_m3_up_z = d0_Gamma_1_up_z*w_1_up_t_85 + d0_N_2_up_zz*w_2_up_t_12
-        # (up-N55) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        d0_G_m_up_xx = -d0_G_m2_up_x*end_p2_up_r3_y - d0_G_m3_up_x*end_p3_up_r1_x
-        d0_G_m_up_xy = -d0_G_m2_up_y*end_p2_up_r3_y - d0_G_m3_up_y*end_p3_up_r1_x
-        d0_G_m_up_xz = -d0_G_m2_up_z*end_p2_up_r3_y - d0_G_m3_up_z*end_p3_up_r1_x
-        d0_G_m_up_yx = d0_G_m2_up_x*end_p2_up_r3_x - d0_G_m1_up_x*end_p1_up_r1_x
-        d0_G_m_up_yy = d0_G_m2_up_y*end_p2_up_r3_x - d0_G_m1_up_y*end_p1_up_r1_x
-        d0_G_m_up_yz = d0_G_m2_up_z*end_p2_up_r3_x - d0_G_m1_up_z*end_p1_up_r1_x
-        d0_G_m_up_zx = d0_G_m1_up_x*end_p1_up_r3_y + d0_G_m3_up_x*end_p3_up_r3_x
-        d0_G_m_up_zy = d0_G_m1_up_y*end_p1_up_r3_y + d0_G_m3_up_y*end_p3_up_r3_x
-        d0_G_m_up_zz = d0_G_m1_up_z*end_p1_up_r3_y + d0_G_m3_up_z*end_p3_up_r3_x
-        # (up-N44) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        d_G_m1_up_x = h_3_up_z*w_2_up_t_8 - d_Gamma_1_up_t*w_1_up_t_83
-        d_G_m1_up_y = d_Gamma_1_up_y*w_1_up_t_83 + d_N_2_up_zy*w_2_up_t_8
-        d_G_m1_up_z = d_Gamma_1_up_z*w_1_up_t_83 + d_N_2_up_zz*w_2_up_t_8
-        # (up-N48) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
-        d_G_m2_up_x = -d_Gamma_1_up_t*w_1_up_t_84 - h_3_up_z*w_2_up_t_10
-        d_G_m2_up_y = d_Gamma_1_up_y*w_1_up_t_84 - d_N_2_up_zy*w_2_up_t_10
-        d_G_m2_up_z = d_Gamma_1_up_z*w_1_up_t_84 - d_N_2_up_zz*w_2_up_t_10
-        # (up-N52) coefficient of the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all freedoms
-        d_G_m3_up_x = h_3_up_z*w_2_up_t_12 - d_Gamma_1_up_t*w_1_up_t_85
-        d_G_m3_up_y = d_Gamma_1_up_y*w_1_up_t_85 + d_N_2_up_zy*w_2_up_t_12
-        d_G_m3_up_z = d_Gamma_1_up_z*w_1_up_t_85 + d_N_2_up_zz*w_2_up_t_12
-        # (up-N56) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_m_up_xx = -d_G_m2_up_x*end_p2_up_r3_y - d_G_m3_up_x*end_p3_up_r1_x
-        d_G_m_up_xy = -d_G_m2_up_y*end_p2_up_r3_y - d_G_m3_up_y*end_p3_up_r1_x
-        d_G_m_up_xz = -d_G_m2_up_z*end_p2_up_r3_y - d_G_m3_up_z*end_p3_up_r1_x
-        d_G_m_up_yx = d_G_m2_up_x*end_p2_up_r3_x - d_G_m1_up_x*end_p1_up_r1_x
-        d_G_m_up_yy = d_G_m2_up_y*end_p2_up_r3_x - d_G_m1_up_y*end_p1_up_r1_x
-        d_G_m_up_yz = d_G_m2_up_z*end_p2_up_r3_x - d_G_m1_up_z*end_p1_up_r1_x
-        d_G_m_up_zx = d_G_m1_up_x*end_p1_up_r3_y + d_G_m3_up_x*end_p3_up_r3_x
-        d_G_m_up_zy = d_G_m1_up_y*end_p1_up_r3_y + d_G_m3_up_y*end_p3_up_r3_x
-        d_G_m_up_zz = d_G_m1_up_z*end_p1_up_r3_y + d_G_m3_up_z*end_p3_up_r3_x
-        # (up-N65) coefficient of the acceleration in: moment of the leg on the platform without actuation
-        d_c_m_up_in_base_x = (
-        -axis_x_up_axes2_x*d_G_m_up_xx - axis_y_up_axes2_in_base_x*d_G_m_up_yx -
-            axis_z_up_axes2_in_base_x*d_G_m_up_zx
-        )
-        d_c_m_up_in_base_y = (
-        -axis_x_up_axes2_y*d_G_m_up_xx - axis_y_up_axes2_in_base_y*d_G_m_up_yx -
-            axis_z_up_axes2_in_base_y*d_G_m_up_zx
-        )
-        d_c_m_up_in_base_z = (
-        -axis_x_up_axes2_z*d_G_m_up_xx - axis_y_up_axes2_in_base_z*d_G_m_up_yx -
-            axis_z_up_axes2_in_base_z*d_G_m_up_zx
-        )
-        d_c_m_up_in_base_x_2 = (
-        -axis_x_up_axes2_x*d_G_m_up_xy - axis_y_up_axes2_in_base_x*d_G_m_up_yy -
-            axis_z_up_axes2_in_base_x*d_G_m_up_zy
-        )
-        d_c_m_up_in_base_y_2 = (
-        -axis_x_up_axes2_y*d_G_m_up_xy - axis_y_up_axes2_in_base_y*d_G_m_up_yy -
-            axis_z_up_axes2_in_base_y*d_G_m_up_zy
-        )
-        d_c_m_up_in_base_z_2 = (
-        -axis_x_up_axes2_z*d_G_m_up_xy - axis_y_up_axes2_in_base_z*d_G_m_up_yy -
-            axis_z_up_axes2_in_base_z*d_G_m_up_zy
-        )
-        d_c_m_up_in_base_x_3 = (
-        -axis_x_up_axes2_x*d_G_m_up_xz - axis_y_up_axes2_in_base_x*d_G_m_up_yz -
-            axis_z_up_axes2_in_base_x*d_G_m_up_zz
-        )
-        d_c_m_up_in_base_y_3 = (
-        -axis_x_up_axes2_y*d_G_m_up_xz - axis_y_up_axes2_in_base_y*d_G_m_up_yz -
-            axis_z_up_axes2_in_base_y*d_G_m_up_zz
-        )
-        d_c_m_up_in_base_z_3 = (
-        -axis_x_up_axes2_z*d_G_m_up_xz - axis_y_up_axes2_in_base_z*d_G_m_up_yz -
-            axis_z_up_axes2_in_base_z*d_G_m_up_zz
-        )
-        d_c_m_up_in_base_x_4 = (
-        axis_x_up_axes2_x*d_c_m_up_in_base_x + axis_y_up_axes2_in_base_x*d_c_m_up_in_base_x_2 +
-            axis_z_up_axes2_in_base_x*d_c_m_up_in_base_x_3
-        )
-        d_c_m_up_in_base_y_4 = (
-        axis_x_up_axes2_y*d_c_m_up_in_base_x + axis_y_up_axes2_in_base_y*d_c_m_up_in_base_x_2 +
-            axis_z_up_axes2_in_base_y*d_c_m_up_in_base_x_3
-        )
-        d_c_m_up_in_base_z_4 = (
-        axis_x_up_axes2_z*d_c_m_up_in_base_x + axis_y_up_axes2_in_base_z*d_c_m_up_in_base_x_2 +
-            axis_z_up_axes2_in_base_z*d_c_m_up_in_base_x_3
-        )
-        d_c_m_up_in_base_x_5 = (
-        axis_x_up_axes2_x*d_c_m_up_in_base_y + axis_y_up_axes2_in_base_x*d_c_m_up_in_base_y_2 +
-            axis_z_up_axes2_in_base_x*d_c_m_up_in_base_y_3
-        )
-        # (up-N64) coefficient of the acceleration in: moment of the leg on the platform without actuation
-        d0_c_m_up_in_base_x = (
-        -axis_x_up_axes2_x*d0_G_m_up_xx - axis_y_up_axes2_in_base_x*d0_G_m_up_yx -
-            axis_z_up_axes2_in_base_x*d0_G_m_up_zx
-        )
-        d0_c_m_up_in_base_y = (
-        -axis_x_up_axes2_y*d0_G_m_up_xx - axis_y_up_axes2_in_base_y*d0_G_m_up_yx -
-            axis_z_up_axes2_in_base_y*d0_G_m_up_zx
-        )
-        d0_c_m_up_in_base_x_2 = (
-        -axis_x_up_axes2_x*d0_G_m_up_xy - axis_y_up_axes2_in_base_x*d0_G_m_up_yy -
-            axis_z_up_axes2_in_base_x*d0_G_m_up_zy
-        )
-        d0_c_m_up_in_base_y_2 = (
-        -axis_x_up_axes2_y*d0_G_m_up_xy - axis_y_up_axes2_in_base_y*d0_G_m_up_yy -
-            axis_z_up_axes2_in_base_y*d0_G_m_up_zy
-        )
-        d0_c_m_up_in_base_x_3 = (
-        -axis_x_up_axes2_x*d0_G_m_up_xz - axis_y_up_axes2_in_base_x*d0_G_m_up_yz -
-            axis_z_up_axes2_in_base_x*d0_G_m_up_zz
-        )
-        d0_c_m_up_in_base_y_3 = (
-        -axis_x_up_axes2_y*d0_G_m_up_xz - axis_y_up_axes2_in_base_y*d0_G_m_up_yz -
-            axis_z_up_axes2_in_base_y*d0_G_m_up_zz
-        )
-        d0_c_m_up_in_base_z = (
-        axis_x_up_axes2_z*(-axis_x_up_axes2_z*d0_G_m_up_xx -
-            axis_y_up_axes2_in_base_z*d0_G_m_up_yx - axis_z_up_axes2_in_base_z*d0_G_m_up_zx) +
-            axis_y_up_axes2_in_base_z*(-axis_x_up_axes2_z*d0_G_m_up_xy -
-            axis_y_up_axes2_in_base_z*d0_G_m_up_yy - axis_z_up_axes2_in_base_z*d0_G_m_up_zy) +
-            axis_z_up_axes2_in_base_z*(-axis_x_up_axes2_z*d0_G_m_up_xz -
-            axis_y_up_axes2_in_base_z*d0_G_m_up_yz - axis_z_up_axes2_in_base_z*d0_G_m_up_zz)
-        )
-        # (M3) rotational block of M
-        M_aa_t_7 = (
-        M_ta_t_17*q_up_in_base_z + d0_c_up_in_base_x_4*q_up_in_base_z +
-            d_c_m_up_in_base_y_4*q_up_in_base_z - M_ta_t_21*q_up_in_base_y -
-            axis_x_up_axes2_x*d0_c_m_up_in_base_x -
-            axis_y_up_axes2_in_base_x*d0_c_m_up_in_base_x_2 -
-            axis_z_up_axes2_in_base_x*d0_c_m_up_in_base_x_3 - d0_c_up_in_base_x_5*q_up_in_base_y -
-            d_c_m_up_in_base_z_4*q_up_in_base_y
-        )
-        M_aa_t_8 = (
-        M_ta_t_19*q_up_in_base_z + axis_x_up_axes2_y*d0_c_m_up_in_base_x +
-            axis_y_up_axes2_in_base_y*d0_c_m_up_in_base_x_2 +
-            axis_z_up_axes2_in_base_y*d0_c_m_up_in_base_x_3 + d0_c_up_in_base_y_6*q_up_in_base_y +
-            d_c_m_up_in_base_x_4*q_up_in_base_z - M_ta_t_22*q_up_in_base_y -
-            d0_c_up_in_base_y_5*q_up_in_base_z - d_c_m_up_in_base_z_4*q_up_in_base_x
-        )
-        M_aa_t_9 = (
-        M_ta_t_20*q_up_in_base_z + d0_c_up_in_base_z_5*q_up_in_base_z +
-            d_c_m_up_in_base_x_4*q_up_in_base_y - M_ta_t_23*q_up_in_base_y -
-            axis_x_up_axes2_z*d0_c_m_up_in_base_x -
-            axis_y_up_axes2_in_base_z*d0_c_m_up_in_base_x_2 -
-            axis_z_up_axes2_in_base_z*d0_c_m_up_in_base_x_3 - d0_c_up_in_base_z_6*q_up_in_base_y -
-            d_c_m_up_in_base_y_4*q_up_in_base_x
-        )
-        M_aa_t_10 = (
-        M_ta_t_22*q_up_in_base_x + axis_x_up_axes2_y*d0_c_m_up_in_base_y +
-            axis_y_up_axes2_in_base_y*d0_c_m_up_in_base_y_2 +
-            axis_z_up_axes2_in_base_y*d0_c_m_up_in_base_y_3 + d0_c_up_in_base_y_4*q_up_in_base_z +
-            d_c_m_up_in_base_x_5*q_up_in_base_z - M_ta_t_15*q_up_in_base_z -
-            d0_c_up_in_base_y_6*q_up_in_base_x -
-            q_up_in_base_x*(axis_x_up_axes2_z*d_c_m_up_in_base_y +
-            axis_y_up_axes2_in_base_z*d_c_m_up_in_base_y_2 +
-            axis_z_up_axes2_in_base_z*d_c_m_up_in_base_y_3)
-        )
-        M_aa_t_11 = (
-        M_ta_t_16*q_up_in_base_z + axis_x_up_axes2_z*d0_c_m_up_in_base_y +
-            axis_y_up_axes2_in_base_z*d0_c_m_up_in_base_y_2 +
-            axis_z_up_axes2_in_base_z*d0_c_m_up_in_base_y_3 + d0_c_up_in_base_z_4*q_up_in_base_z +
-            q_up_in_base_x*(axis_x_up_axes2_y*d_c_m_up_in_base_y +
-            axis_y_up_axes2_in_base_y*d_c_m_up_in_base_y_2 +
-            axis_z_up_axes2_in_base_y*d_c_m_up_in_base_y_3) - M_ta_t_23*q_up_in_base_x -
-            d0_c_up_in_base_z_6*q_up_in_base_x - d_c_m_up_in_base_x_5*q_up_in_base_y
-        )
-        M_aa_t_12 = (
-        M_ta_t_16*q_up_in_base_y + d0_c_up_in_base_z_4*q_up_in_base_y +
-            q_up_in_base_y*(axis_x_up_axes2_x*d_c_m_up_in_base_z +
-            axis_y_up_axes2_in_base_x*d_c_m_up_in_base_z_2 +
-            axis_z_up_axes2_in_base_x*d_c_m_up_in_base_z_3) - d0_c_m_up_in_base_z -
-            M_ta_t_20*q_up_in_base_x - d0_c_up_in_base_z_5*q_up_in_base_x -
-            q_up_in_base_x*(axis_x_up_axes2_y*d_c_m_up_in_base_z +
-            axis_y_up_axes2_in_base_y*d_c_m_up_in_base_z_2 +
-            axis_z_up_axes2_in_base_y*d_c_m_up_in_base_z_3)
+        # (tube-S) from the base point to the connection point
+        tube_q_in_base_x = (
+        R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
+        )
+        tube_q_in_base_y = (
+        R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
+        )
+        tube_q_in_base_z = (
+        R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
+        )
+        tube_S_x = t_x + tube_q_in_base_x - tube_base_point_x
+        tube_S_y = t_y + tube_q_in_base_y - tube_base_point_y
+        tube_S_z = t_z + tube_q_in_base_z - tube_base_point_z
+        # (tube-px_1) component along the reference direction
+        tube_px_1 = (
+        tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
+        )
+        # (tube-py_1) component across the reference direction
+        tube_py_1 = (
+        tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
+        )
+        # (tube-rho2_1) squared amplitude
+        tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
+        # (tube-root_1) amplitude, with the sign of the branch
+        tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
+        # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        tube_xi_1_t = (
+        tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
+        )
+        # (tube-rho2_2) squared amplitude
+        tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t
+        # (tube-root_2) amplitude, with the sign of the branch
+        tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
+        # (tube-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_tube_root_2 = 1.0/tube_root_2
+        tube_c_2 = inv_tube_root_2*tube_root_1
+        # (tube-s_2) sine of the angle of joint 2 from its reference direction
+        tube_s_2 = inv_tube_root_2*tube_xi_1_t
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = inv_tube_root_1*tube_py_1
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_px_1
+        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        axis_z_tube_axes2_in_base_x = tube_base_frame_xy*tube_s_1 - tube_base_frame_xx*tube_c_1
+        axis_z_tube_axes2_in_base_y = tube_base_frame_yy*tube_s_1 - tube_base_frame_yx*tube_c_1
+        axis_z_tube_axes2_in_base_z = tube_base_frame_zy*tube_s_1 - tube_base_frame_zx*tube_c_1
+        tube_f_c1_t = tube_s_1*tube_s_2
+        tube_f_c1_t_2 = tube_c_1*tube_s_2
+        axis_y_tube_axes2_in_base_x = (
+        tube_base_frame_xx*tube_f_c1_t + tube_base_frame_xy*tube_f_c1_t_2 -
+            tube_base_frame_xz*tube_c_2
+        )
+        axis_y_tube_axes2_in_base_y = (
+        tube_base_frame_yx*tube_f_c1_t + tube_base_frame_yy*tube_f_c1_t_2 -
+            tube_base_frame_yz*tube_c_2
+        )
+        axis_y_tube_axes2_in_base_z = (
+        tube_base_frame_zx*tube_f_c1_t + tube_base_frame_zy*tube_f_c1_t_2 -
+            tube_base_frame_zz*tube_c_2
+        )
+        axis_x_tube_axes2_x = (
+        axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_z -
+            axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_y
+        )
+        axis_x_tube_axes2_y = (
+        axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_x -
+            axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_z
+        )
+        axis_x_tube_axes2_z = (
+        axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_y -
+            axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_x
+        )
+        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
+        tube_n_m1_t_2 = (
+        R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx + R_zy*tube_base_frame_zx
+        )
+        tube_n_m1_t_3 = (
+        R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx + R_zz*tube_base_frame_zx
+        )
+        tube_n_m1_t_4 = (
+        R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy + R_zx*tube_base_frame_zy
+        )
+        tube_n_m1_t_5 = (
+        R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy + R_zy*tube_base_frame_zy
+        )
+        tube_n_m1_t_6 = (
+        R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy + R_zz*tube_base_frame_zy
+        )
+        tube_n_m1_t_7 = (
+        R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz + R_zx*tube_base_frame_zz
+        )
+        tube_n_m1_t_8 = (
+        R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz + R_zy*tube_base_frame_zz
+        )
+        tube_n_m1_t_9 = (
+        R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz + R_zz*tube_base_frame_zz
+        )
+        tube_end_p1_r0_x = (
+        tube_n_m1_t*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_yz
+        )
+        tube_end_p1_r0_y = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_yz
+        )
+        tube_end_p1_r1_x = tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x
+        tube_end_p1_r3_y = (
+        -tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_yz) - tube_s_2*(-tube_c_1*tube_end_p1_r0_y
+            - tube_end_p1_r0_x*tube_s_1)
+        )
+        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
+        tube_end_p2_r0_z = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_zz
+        )
+        tube_end_p2_r1_y = (
+        -tube_c_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_zz) -
+            tube_s_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_zz)
+        )
+        tube_end_p2_r3_x = tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y
+        tube_end_p2_r3_y = -tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2
+        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
+        tube_end_p3_r0_x = (
+        tube_n_m1_t*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_xz
+        )
+        tube_end_p3_r0_y = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_xz
+        )
+        tube_end_p3_r1_x = tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x
+        tube_end_p3_r3_x = (
+        tube_s_2*(tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(-tube_c_1*tube_end_p3_r0_y
+            - tube_end_p3_r0_x*tube_s_1)
+        )
+        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        tube_n_m1_t_10 = tube_c_2*tube_end_p1_r1_x
+        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
+        tube_n_m2_r0_y = -tube_c_2*tube_end_p2_r3_x - tube_end_p2_r3_y*tube_s_2
+        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
+        tube_n_m3_t = tube_end_p3_r1_x*tube_s_2
+        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        tube_f_c1_t_3 = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10
+        inv_tube_f_c1_t_26 = 1.0/tube_f_c1_t_3
+        # (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3
+        tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y
+        tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y
+        # (tube-size_c3) size of the moment
+        tube_size_c3 = sqrt(1.0 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2)
+        # (tube-mu1_c3) moment along direction 1 that goes with it
+        inv_tube_size_c3 = 1.0/tube_size_c3
+        # (tube-w_1) force part of reciprocal wrench 1
+        tube_w_1_t = 1.35*tube_n_m1_t_10
+        tube_w_1_t_2 = 1.35*tube_n_m2_r0_y
+        tube_w_1_t_3 = 1.35*tube_n_m3_t
+        tube_w_1_t_4 = 1.35*tube_end_p1_r3_y
+        tube_w_1_t_5 = 1.35*tube_end_p3_r3_x
+        tube_w_1_t_6 = 1.35*inv_tube_f_c1_t_26*tube_n_m3_t*tube_root_2
+        tube_w_1_t_7 = 1.35*inv_tube_f_c1_t_26*tube_n_m1_t_10*tube_root_2
+        tube_w_1_t_8 = 1.35*inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_root_1
+        tube_w_1_t_9 = 1.35*inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_root_1
+        tube_w_1_t_10 = 1.35*inv_tube_size_c3*tube_f_c3_t
+        tube_w_1_t_11 = 1.35*inv_tube_size_c3
+        tube_w_1_t_12 = 1.35*inv_tube_size_c3*tube_f_c3_t_2
+        tube_w_1_t_13 = sqrt(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
+        inv_tube_w_1_t_16 = 1.0/tube_w_1_t_13
+        tube_w_1_t_14 = inv_tube_w_1_t_16*tube_root_2
+        tube_w_1_t_15 = inv_tube_w_1_t_16*tube_w_1_t_4
+        tube_w_1_t_16 = inv_tube_w_1_t_16*tube_w_1_t_5
+        tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
+        tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
+        tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
+        tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7
+        tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9
+        tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21
+        tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8
+        tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21
+        tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16
+        tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25
+        tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25
+        tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25
+        tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3
+        tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29
+        tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29
+        tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29
+        tube_w_1_t_33 = (
+        sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
+            tube_w_1_t_20*tube_w_1_t_20)
+        )
+        inv_tube_w_1_t_57 = 1.0/tube_w_1_t_33
+        tube_w_1_t_34 = inv_tube_w_1_t_57*tube_w_1_t_18
+        tube_w_1_t_35 = inv_tube_w_1_t_57*tube_w_1_t_19
+        tube_w_1_t_36 = inv_tube_w_1_t_57*tube_w_1_t_20
+        tube_w_1_t_37 = (
+        tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
+        )
+        tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37
+        tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37
+        tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37
+        tube_w_1_t_41 = (
+        tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 - tube_w_1_t_27*tube_w_1_t_35
+        )
+        tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41
+        tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41
+        tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41
+        tube_w_1_t_45 = (
+        tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 - tube_w_1_t_31*tube_w_1_t_35
+        )
+        tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45
+        tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45
+        tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45
+        tube_w_1_t_49 = (
+        sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
+            tube_w_1_t_40*tube_w_1_t_40)
+        )
+        inv_tube_w_1_t_95 = 1.0/tube_w_1_t_49
+        tube_w_1_t_50 = inv_tube_w_1_t_95*tube_w_1_t_38
+        tube_w_1_t_51 = inv_tube_w_1_t_95*tube_w_1_t_39
+        tube_w_1_t_52 = inv_tube_w_1_t_95*tube_w_1_t_40
+        tube_w_1_t_53 = (
+        tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
+        )
+        tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
+        tube_w_1_t_55 = inv_tube_w_1_t_95*tube_w_1_t_53
+        tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
+        tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
+        tube_w_1_t_58 = (
+        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_95*tube_root_1
+            - tube_w_1_t_47*tube_w_1_t_51
+        )
+        tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
+        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_95*tube_w_1_t_58
+        tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
+        tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
+        tube_w_1_t_63 = (
+        sqrt(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54 +
+            tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
+            tube_w_1_t_57*tube_w_1_t_57)
+        )
+        inv_tube_w_1_t_129 = 1.0/tube_w_1_t_63
+        tube_w_1_t_64 = inv_tube_w_1_t_129*tube_w_1_t_54
+        tube_w_1_t_65 = inv_tube_w_1_t_129*tube_w_1_t_55
+        tube_w_1_t_66 = inv_tube_w_1_t_129*tube_w_1_t_56
+        tube_w_1_t_67 = inv_tube_w_1_t_129*tube_w_1_t_11
+        tube_w_1_t_68 = inv_tube_w_1_t_129*tube_w_1_t_57
+        tube_w_1_t_69 = (
+        tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
+            tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
+        )
+        tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69
+        tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69
+        tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69
+        tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69
+        tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69
+        tube_w_1_t_75 = (
+        sqrt(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71 +
+            tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
+            tube_w_1_t_74*tube_w_1_t_74)
+        )
+        inv_tube_w_1_t_157 = 1.0/tube_w_1_t_75
+        tube_w_1_t_76 = inv_tube_w_1_t_157*tube_w_1_t_70
+        tube_w_1_t_77 = inv_tube_w_1_t_157*tube_w_1_t_71
+        tube_w_1_t_78 = inv_tube_w_1_t_157*tube_w_1_t_72
+        tube_w_1_t_79 = inv_tube_w_1_t_157*tube_w_1_t_73
+        tube_w_1_t_80 = inv_tube_w_1_t_157*tube_w_1_t_74
+        tube_w_1_t_81 = inv_tube_w_1_t_157*tube_w_1_t_76
+        tube_w_1_t_82 = inv_tube_w_1_t_157*tube_w_1_t_77
+        tube_w_1_t_83 = 1.35*inv_tube_w_1_t_157*tube_w_1_t_78
+        tube_w_1_t_84 = 1.35*inv_tube_w_1_t_157*tube_w_1_t_79
+        tube_w_1_t_85 = 1.35*inv_tube_w_1_t_157*tube_w_1_t_80
+        # (tube-w_2) force part of reciprocal wrench 2
+        tube_w_2_t = inv_tube_w_1_t_16*inv_tube_w_1_t_57*tube_w_1_t_17
+        tube_w_2_t_2 = (
+        inv_tube_w_1_t_95*(inv_tube_w_1_t_16*tube_w_1_t_21 - tube_w_1_t_37*tube_w_2_t)
+        )
+        tube_w_2_t_3 = (
+        inv_tube_w_1_t_129*(tube_w_1_t_41*tube_w_2_t + tube_w_1_t_53*tube_w_2_t_2 -
+            inv_tube_w_1_t_16*tube_w_1_t_25)
+        )
+        tube_w_2_t_4 = (
+        inv_tube_w_1_t_157*(inv_tube_w_1_t_16*tube_w_1_t_29 + tube_w_1_t_69*tube_w_2_t_3 -
+            tube_w_1_t_45*tube_w_2_t - tube_w_1_t_58*tube_w_2_t_2)
+        )
+        tube_w_2_t_5 = (
+        inv_tube_w_1_t_16*tube_w_1_t_14 + tube_w_1_t_34*tube_w_2_t + tube_w_1_t_50*tube_w_2_t_2 +
+            tube_w_1_t_64*tube_w_2_t_3 - tube_w_1_t_76*tube_w_2_t_4
+        )
+        tube_w_2_t_6 = (
+        inv_tube_w_1_t_95*tube_w_2_t_2 + tube_w_1_t_65*tube_w_2_t_3 - tube_w_1_t_77*tube_w_2_t_4
+        )
+        tube_w_2_t_7 = (
+        inv_tube_w_1_t_16*tube_w_1_t_15 + tube_w_1_t_35*tube_w_2_t + tube_w_1_t_51*tube_w_2_t_2 +
+            tube_w_1_t_66*tube_w_2_t_3 - tube_w_1_t_78*tube_w_2_t_4
+        )
+        tube_w_2_t_8 = 1.35*tube_w_2_t_7
+        tube_w_2_t_9 = tube_w_1_t_67*tube_w_2_t_3 + tube_w_1_t_79*tube_w_2_t_4
+        tube_w_2_t_10 = 1.35*tube_w_2_t_9
+        tube_w_2_t_11 = (
+        inv_tube_w_1_t_16*tube_w_1_t_16 + tube_w_1_t_36*tube_w_2_t + tube_w_1_t_52*tube_w_2_t_2 +
+            tube_w_1_t_68*tube_w_2_t_3 - tube_w_1_t_80*tube_w_2_t_4
+        )
+        tube_w_2_t_12 = 1.35*tube_w_2_t_11
+        # (tube-w_1) force part of reciprocal wrench 1
+        tube_w_1_t_86 = tube_s_2*tube_w_1_t_81
+        tube_w_1_t_87 = tube_c_2*tube_w_1_t_81
+        # (tube-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
+        tube_d_alpha_1_xz = tube_s_2*tube_w_1_t_82
+        tube_d_alpha_1_yz = tube_c_2*tube_w_1_t_82
+        # (tube-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
+        tube_d_acc_3_t = tube_root_2*tube_w_2_t_5
+        tube_d_acc_3_t_2 = tube_root_2*tube_w_2_t_6
+        tube_d_acc_3_t_3 = tube_root_2*tube_w_1_t_87
+        tube_d_acc_3_t_4 = tube_d_alpha_1_yz*tube_root_2
+        # (tube-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+        tube_d_phi_3_t = tube_h_3_y*tube_w_1_t_87 - tube_h_3_z*tube_w_2_t_5
+        tube_d_phi_3_t_2 = tube_d_alpha_1_yz*tube_h_3_y - tube_h_3_z*tube_w_2_t_6
+        # (tube-d_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        tube_d_N_2_zy = (
+        tube_J_group_2_xz*tube_w_1_t_86 + tube_J_group_2_zz*tube_w_2_t_5 +
+            tube_d_acc_3_t*tube_h_3_x + tube_root_2*(tube_d_acc_3_t*tube_link3_mass +
+            tube_h_3_x*tube_w_2_t_5 - tube_h_3_y*tube_w_1_t_86) - tube_J_group_2_yz*tube_w_1_t_87
+        )
+        tube_d_N_2_zz = (
+        tube_J_group_2_xz*tube_d_alpha_1_xz + tube_J_group_2_zz*tube_w_2_t_6 +
+            tube_d_acc_3_t_2*tube_h_3_x + tube_root_2*(tube_d_acc_3_t_2*tube_link3_mass +
+            tube_h_3_x*tube_w_2_t_6 - tube_d_alpha_1_xz*tube_h_3_y) -
+            tube_J_group_2_yz*tube_d_alpha_1_yz
+        )
+        # (tube-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        tube_d_Gamma_1_t = tube_c_2*tube_h_3_y
+        tube_d_Gamma_1_t_2 = (
+        tube_c_2*(tube_J_group_2_xy*tube_w_1_t_86 + tube_J_group_2_yz*tube_w_2_t_5 -
+            tube_J_group_2_yy*tube_w_1_t_87 - tube_d_acc_3_t_3*tube_h_3_x -
+            tube_root_2*(tube_d_acc_3_t_3*tube_link3_mass + tube_h_3_x*tube_w_1_t_87 -
+            tube_h_3_z*tube_w_1_t_86))
+        )
+        tube_d_Gamma_1_y = (
+        tube_s_2*(tube_J_group_2_xx*tube_w_1_t_86 + tube_J_group_2_xz*tube_w_2_t_5 -
+            tube_J_group_2_xy*tube_w_1_t_87 - tube_d_acc_3_t*tube_h_3_y -
+            tube_d_acc_3_t_3*tube_h_3_z) - tube_d_Gamma_1_t_2
+        )
+        tube_d_Gamma_1_t_3 = (
+        tube_c_2*(tube_J_group_2_xy*tube_d_alpha_1_xz + tube_J_group_2_yz*tube_w_2_t_6 -
+            tube_J_group_2_yy*tube_d_alpha_1_yz - tube_d_acc_3_t_4*tube_h_3_x -
+            tube_root_2*(tube_d_acc_3_t_4*tube_link3_mass + tube_d_alpha_1_yz*tube_h_3_x -
+            tube_d_alpha_1_xz*tube_h_3_z))
+        )
+        tube_d_Gamma_1_z = (
+        tube_s_2*(tube_J_group_2_xx*tube_d_alpha_1_xz + tube_J_group_2_xz*tube_w_2_t_6 -
+            tube_J_group_2_xy*tube_d_alpha_1_yz - tube_d_acc_3_t_2*tube_h_3_y -
+            tube_d_acc_3_t_4*tube_h_3_z) - tube_d_Gamma_1_t_3
+        )
+        # (tube-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        tube_d_G_yz = tube_d_Gamma_1_z*tube_w_1_t_81 + tube_d_N_2_zz*tube_w_2_t_5
+        # (tube-Q) inertia of the leg at the connection point, without the mass gathered there
+        tube_Q_t = tube_d_Gamma_1_y*tube_w_1_t_81 + tube_d_N_2_zy*tube_w_2_t_5 - tube_link3_mass
+        tube_Q_t_2 = 0.5*tube_Q_t
+        tube_Q_t_3 = tube_d_Gamma_1_z*tube_w_1_t_82 + tube_d_N_2_zz*tube_w_2_t_6 - tube_link3_mass
+        tube_Q_t_4 = 0.5*tube_Q_t_3
+        tube_Q_t_5 = (
+        axis_y_tube_axes2_in_base_x*tube_Q_t_2 + axis_z_tube_axes2_in_base_x*tube_d_G_yz -
+            axis_x_tube_axes2_x*tube_d_phi_3_t
+        )
+        tube_Q_t_6 = (
+        axis_y_tube_axes2_in_base_y*tube_Q_t_2 + axis_z_tube_axes2_in_base_y*tube_d_G_yz -
+            axis_x_tube_axes2_y*tube_d_phi_3_t
+        )
+        tube_Q_t_7 = (
+        axis_y_tube_axes2_in_base_z*tube_Q_t_2 + axis_z_tube_axes2_in_base_z*tube_d_G_yz -
+            axis_x_tube_axes2_z*tube_d_phi_3_t
+        )
+        tube_Q_t_8 = axis_z_tube_axes2_in_base_x*tube_Q_t_4 - axis_x_tube_axes2_x*tube_d_phi_3_t_2
+        tube_Q_t_9 = axis_z_tube_axes2_in_base_y*tube_Q_t_4 - axis_x_tube_axes2_y*tube_d_phi_3_t_2
+        tube_Q_t_10 = (
+        axis_z_tube_axes2_in_base_z*tube_Q_t_4 - axis_x_tube_axes2_z*tube_d_phi_3_t_2
+        )
+        tube_Q_t_11 = (
+        axis_y_tube_axes2_in_base_x*tube_Q_t_5 + axis_z_tube_axes2_in_base_x*tube_Q_t_8
+        )
+        tube_Q_t_12 = 2.0*tube_Q_t_11 + tube_link3_mass
+        tube_Q_t_13 = (
+        axis_y_tube_axes2_in_base_x*tube_Q_t_6 + axis_y_tube_axes2_in_base_y*tube_Q_t_5 +
+            axis_z_tube_axes2_in_base_x*tube_Q_t_9 + axis_z_tube_axes2_in_base_y*tube_Q_t_8
+        )
+        tube_Q_t_14 = (
+        axis_y_tube_axes2_in_base_x*tube_Q_t_7 + axis_y_tube_axes2_in_base_z*tube_Q_t_5 +
+            axis_z_tube_axes2_in_base_x*tube_Q_t_10 + axis_z_tube_axes2_in_base_z*tube_Q_t_8
+        )
+        tube_Q_t_15 = (
+        axis_y_tube_axes2_in_base_y*tube_Q_t_6 + axis_z_tube_axes2_in_base_y*tube_Q_t_9
+        )
+        tube_Q_t_16 = 2.0*tube_Q_t_15 + tube_link3_mass
+        tube_Q_t_17 = (
+        axis_y_tube_axes2_in_base_y*tube_Q_t_7 + axis_y_tube_axes2_in_base_z*tube_Q_t_6 +
+            axis_z_tube_axes2_in_base_y*tube_Q_t_10 + axis_z_tube_axes2_in_base_z*tube_Q_t_9
+        )
+        tube_Q_t_18 = (
+        axis_y_tube_axes2_in_base_z*tube_Q_t_7 + axis_z_tube_axes2_in_base_z*tube_Q_t_10
+        )
+        tube_Q_t_19 = 2.0*tube_Q_t_18 + tube_link3_mass
+        # (tube-o_2) moment part of reciprocal wrench 2
+        tube_o_2_x = tube_end_p2_r3_y*tube_w_2_t_10 - tube_end_p3_r1_x*tube_w_2_t_12
+        tube_o_2_y = -tube_end_p1_r1_x*tube_w_2_t_8 - tube_end_p2_r3_x*tube_w_2_t_10
+        tube_o_2_z = tube_end_p1_r3_y*tube_w_2_t_8 + tube_end_p3_r3_x*tube_w_2_t_12
+        # (tube-o_1) moment part of reciprocal wrench 1
+        tube_o_1_x = -tube_end_p2_r3_y*tube_w_1_t_84 - tube_end_p3_r1_x*tube_w_1_t_85
+        tube_o_1_y = tube_end_p2_r3_x*tube_w_1_t_84 - tube_end_p1_r1_x*tube_w_1_t_83
+        tube_o_1_z = tube_end_p1_r3_y*tube_w_1_t_83 + tube_end_p3_r3_x*tube_w_1_t_85
+        tube_o_1_t = tube_c_2*tube_o_1_x
+        tube_o_1_t_2 = tube_o_1_y*tube_s_2
+        tube_o_1_t_3 = tube_c_2*tube_o_1_y
+        tube_o_1_t_4 = tube_o_1_x*tube_s_2
+        # (tube-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
+        tube_dalpha_alpha_1_xz = tube_o_1_z*tube_s_2
+        tube_dalpha_alpha_1_yz = tube_c_2*tube_o_1_z
+        # (tube-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
+        tube_dalpha_acc_3_t = tube_o_2_x*tube_root_2
+        tube_dalpha_acc_3_t_2 = tube_o_2_y*tube_root_2
+        tube_dalpha_acc_3_t_3 = tube_o_2_z*tube_root_2
+        tube_dalpha_acc_3_t_4 = tube_o_1_t*tube_root_2
+        tube_dalpha_acc_3_t_5 = tube_o_1_t_3*tube_root_2
+        tube_dalpha_acc_3_t_6 = tube_dalpha_alpha_1_yz*tube_root_2
+        # (tube-dalpha_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+        tube_dalpha_phi_3_t = tube_h_3_y*tube_o_1_t - tube_h_3_z*tube_o_2_x
+        tube_dalpha_phi_3_t_2 = tube_h_3_y*tube_o_1_t_3 - tube_h_3_z*tube_o_2_y
+        tube_dalpha_phi_3_t_3 = tube_dalpha_alpha_1_yz*tube_h_3_y - tube_h_3_z*tube_o_2_z
+        # (tube-dalpha_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        tube_dalpha_N_2_zx = (
+        tube_J_group_2_xz*tube_o_1_t_4 + tube_J_group_2_zz*tube_o_2_x +
+            tube_dalpha_acc_3_t*tube_h_3_x + tube_root_2*(tube_dalpha_acc_3_t*tube_link3_mass +
+            tube_h_3_x*tube_o_2_x - tube_h_3_y*tube_o_1_t_4) - tube_J_group_2_yz*tube_o_1_t
+        )
+        tube_dalpha_N_2_zy = (
+        tube_J_group_2_xz*tube_o_1_t_2 + tube_J_group_2_zz*tube_o_2_y +
+            tube_dalpha_acc_3_t_2*tube_h_3_x + tube_root_2*(tube_dalpha_acc_3_t_2*tube_link3_mass
+            + tube_h_3_x*tube_o_2_y - tube_h_3_y*tube_o_1_t_2) - tube_J_group_2_yz*tube_o_1_t_3
+        )
+        tube_dalpha_N_2_zz = (
+        tube_J_group_2_xz*tube_dalpha_alpha_1_xz + tube_J_group_2_zz*tube_o_2_z +
+            tube_dalpha_acc_3_t_3*tube_h_3_x + tube_root_2*(tube_dalpha_acc_3_t_3*tube_link3_mass
+            + tube_h_3_x*tube_o_2_z - tube_dalpha_alpha_1_xz*tube_h_3_y) -
+            tube_J_group_2_yz*tube_dalpha_alpha_1_yz
+        )
+        # (tube-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        tube_dalpha_Gamma_1_t = (
+        tube_c_2*(tube_J_group_2_xy*tube_o_1_t_4 + tube_J_group_2_yz*tube_o_2_x -
+            tube_J_group_2_yy*tube_o_1_t - tube_dalpha_acc_3_t_4*tube_h_3_x -
+            tube_root_2*(tube_dalpha_acc_3_t_4*tube_link3_mass + tube_h_3_x*tube_o_1_t -
+            tube_h_3_z*tube_o_1_t_4))
+        )
+        tube_dalpha_Gamma_1_x = (
+        tube_s_2*(tube_J_group_2_xx*tube_o_1_t_4 + tube_J_group_2_xz*tube_o_2_x -
+            tube_J_group_2_xy*tube_o_1_t - tube_dalpha_acc_3_t*tube_h_3_y -
+            tube_dalpha_acc_3_t_4*tube_h_3_z) - tube_dalpha_Gamma_1_t
+        )
+        tube_dalpha_Gamma_1_t_2 = (
+        tube_c_2*(tube_J_group_2_xy*tube_o_1_t_2 + tube_J_group_2_yz*tube_o_2_y -
+            tube_J_group_2_yy*tube_o_1_t_3 - tube_dalpha_acc_3_t_5*tube_h_3_x -
+            tube_root_2*(tube_dalpha_acc_3_t_5*tube_link3_mass + tube_h_3_x*tube_o_1_t_3 -
+            tube_h_3_z*tube_o_1_t_2))
+        )
+        tube_dalpha_Gamma_1_y = (
+        tube_s_2*(tube_J_group_2_xx*tube_o_1_t_2 + tube_J_group_2_xz*tube_o_2_y -
+            tube_J_group_2_xy*tube_o_1_t_3 - tube_dalpha_acc_3_t_2*tube_h_3_y -
+            tube_dalpha_acc_3_t_5*tube_h_3_z) - tube_dalpha_Gamma_1_t_2
+        )
+        tube_dalpha_Gamma_1_t_3 = (
+        tube_c_2*(tube_J_group_2_xy*tube_dalpha_alpha_1_xz + tube_J_group_2_yz*tube_o_2_z -
+            tube_J_group_2_yy*tube_dalpha_alpha_1_yz - tube_dalpha_acc_3_t_6*tube_h_3_x -
+            tube_root_2*(tube_dalpha_acc_3_t_6*tube_link3_mass + tube_dalpha_alpha_1_yz*tube_h_3_x
+            - tube_dalpha_alpha_1_xz*tube_h_3_z))
+        )
+        tube_dalpha_Gamma_1_z = (
+        tube_s_2*(tube_J_group_2_xx*tube_dalpha_alpha_1_xz + tube_J_group_2_xz*tube_o_2_z -
+            tube_J_group_2_xy*tube_dalpha_alpha_1_yz - tube_dalpha_acc_3_t_3*tube_h_3_y -
+            tube_dalpha_acc_3_t_6*tube_h_3_z) - tube_dalpha_Gamma_1_t_3
+        )
+        # (tube-dalpha_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        tube_dalpha_G_yx = tube_dalpha_Gamma_1_x*tube_w_1_t_81 + tube_dalpha_N_2_zx*tube_w_2_t_5
+        tube_dalpha_G_yy = tube_dalpha_Gamma_1_y*tube_w_1_t_81 + tube_dalpha_N_2_zy*tube_w_2_t_5
+        tube_dalpha_G_yz = tube_dalpha_Gamma_1_z*tube_w_1_t_81 + tube_dalpha_N_2_zz*tube_w_2_t_5
+        tube_dalpha_G_zx = tube_dalpha_Gamma_1_x*tube_w_1_t_82 + tube_dalpha_N_2_zx*tube_w_2_t_6
+        tube_dalpha_G_zy = tube_dalpha_Gamma_1_y*tube_w_1_t_82 + tube_dalpha_N_2_zy*tube_w_2_t_6
+        tube_dalpha_G_zz = tube_dalpha_Gamma_1_z*tube_w_1_t_82 + tube_dalpha_N_2_zz*tube_w_2_t_6
+        # (tube-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        tube_dalpha_c_in_base_x = (
+        axis_x_tube_axes2_x*tube_dalpha_phi_3_t - axis_y_tube_axes2_in_base_x*tube_dalpha_G_yx -
+            axis_z_tube_axes2_in_base_x*tube_dalpha_G_zx
+        )
+        tube_dalpha_c_in_base_y = (
+        axis_x_tube_axes2_y*tube_dalpha_phi_3_t - axis_y_tube_axes2_in_base_y*tube_dalpha_G_yx -
+            axis_z_tube_axes2_in_base_y*tube_dalpha_G_zx
+        )
+        tube_dalpha_c_in_base_z = (
+        axis_x_tube_axes2_z*tube_dalpha_phi_3_t - axis_y_tube_axes2_in_base_z*tube_dalpha_G_yx -
+            axis_z_tube_axes2_in_base_z*tube_dalpha_G_zx
+        )
+        tube_dalpha_c_in_base_x_2 = (
+        axis_x_tube_axes2_x*tube_dalpha_phi_3_t_2 - axis_y_tube_axes2_in_base_x*tube_dalpha_G_yy -
+            axis_z_tube_axes2_in_base_x*tube_dalpha_G_zy
+        )
+        tube_dalpha_c_in_base_y_2 = (
+        axis_x_tube_axes2_y*tube_dalpha_phi_3_t_2 - axis_y_tube_axes2_in_base_y*tube_dalpha_G_yy -
+            axis_z_tube_axes2_in_base_y*tube_dalpha_G_zy
+        )
+        tube_dalpha_c_in_base_z_2 = (
+        axis_x_tube_axes2_z*tube_dalpha_phi_3_t_2 - axis_y_tube_axes2_in_base_z*tube_dalpha_G_yy -
+            axis_z_tube_axes2_in_base_z*tube_dalpha_G_zy
+        )
+        tube_dalpha_c_in_base_x_3 = (
+        axis_x_tube_axes2_x*tube_dalpha_phi_3_t_3 - axis_y_tube_axes2_in_base_x*tube_dalpha_G_yz -
+            axis_z_tube_axes2_in_base_x*tube_dalpha_G_zz
+        )
+        tube_dalpha_c_in_base_y_3 = (
+        axis_x_tube_axes2_y*tube_dalpha_phi_3_t_3 - axis_y_tube_axes2_in_base_y*tube_dalpha_G_yz -
+            axis_z_tube_axes2_in_base_y*tube_dalpha_G_zz
+        )
+        tube_dalpha_c_in_base_z_3 = (
+        axis_x_tube_axes2_z*tube_dalpha_phi_3_t_3 - axis_y_tube_axes2_in_base_z*tube_dalpha_G_yz -
+            axis_z_tube_axes2_in_base_z*tube_dalpha_G_zz
+        )
+        # (M_ta) coupling block of M
+        tube_M_ta_t = tube_Q_t_13*tube_q_in_base_z
+        tube_M_ta_t_2 = tube_Q_t_14*tube_q_in_base_y
+        tube_M_ta_t_3 = tube_Q_t_17*tube_q_in_base_x
+        tube_M_ta_t_4 = (
+        tube_M_ta_t + axis_x_tube_axes2_x*tube_dalpha_c_in_base_x +
+            axis_y_tube_axes2_in_base_x*tube_dalpha_c_in_base_x_2 +
+            axis_z_tube_axes2_in_base_x*tube_dalpha_c_in_base_x_3 - tube_M_ta_t_2
+        )
+        tube_M_ta_t_5 = (
+        tube_Q_t_12*tube_q_in_base_z - axis_x_tube_axes2_y*tube_dalpha_c_in_base_x -
+            axis_y_tube_axes2_in_base_y*tube_dalpha_c_in_base_x_2 -
+            axis_z_tube_axes2_in_base_y*tube_dalpha_c_in_base_x_3 - tube_Q_t_14*tube_q_in_base_x
+        )
+        tube_M_ta_t_6 = (
+        axis_x_tube_axes2_z*tube_dalpha_c_in_base_x +
+            axis_y_tube_axes2_in_base_z*tube_dalpha_c_in_base_x_2 +
+            axis_z_tube_axes2_in_base_z*tube_dalpha_c_in_base_x_3 + tube_Q_t_12*tube_q_in_base_y -
+            tube_Q_t_13*tube_q_in_base_x
+        )
+        tube_M_ta_t_7 = (
+        axis_x_tube_axes2_x*tube_dalpha_c_in_base_y +
+            axis_y_tube_axes2_in_base_x*tube_dalpha_c_in_base_y_2 +
+            axis_z_tube_axes2_in_base_x*tube_dalpha_c_in_base_y_3 + tube_Q_t_16*tube_q_in_base_z -
+            tube_Q_t_17*tube_q_in_base_y
+        )
+        tube_M_ta_t_8 = (
+        tube_M_ta_t - tube_M_ta_t_3 - axis_x_tube_axes2_y*tube_dalpha_c_in_base_y -
+            axis_y_tube_axes2_in_base_y*tube_dalpha_c_in_base_y_2 -
+            axis_z_tube_axes2_in_base_y*tube_dalpha_c_in_base_y_3
+        )
+        tube_M_ta_t_9 = (
+        axis_x_tube_axes2_z*tube_dalpha_c_in_base_y +
+            axis_y_tube_axes2_in_base_z*tube_dalpha_c_in_base_y_2 +
+            axis_z_tube_axes2_in_base_z*tube_dalpha_c_in_base_y_3 + tube_Q_t_13*tube_q_in_base_y -
+            tube_Q_t_16*tube_q_in_base_x
+        )
+        tube_M_ta_t_10 = (
+        axis_x_tube_axes2_x*tube_dalpha_c_in_base_z +
+            axis_y_tube_axes2_in_base_x*tube_dalpha_c_in_base_z_2 +
+            axis_z_tube_axes2_in_base_x*tube_dalpha_c_in_base_z_3 + tube_Q_t_17*tube_q_in_base_z -
+            tube_Q_t_19*tube_q_in_base_y
+        )
+        tube_M_ta_t_11 = (
+        tube_Q_t_14*tube_q_in_base_z - axis_x_tube_axes2_y*tube_dalpha_c_in_base_z -
+            axis_y_tube_axes2_in_base_y*tube_dalpha_c_in_base_z_2 -
+            axis_z_tube_axes2_in_base_y*tube_dalpha_c_in_base_z_3 - tube_Q_t_19*tube_q_in_base_x
+        )
+        tube_M_ta_t_12 = (
+        tube_M_ta_t_3 - tube_M_ta_t_2 - axis_x_tube_axes2_z*tube_dalpha_c_in_base_z -
+            axis_y_tube_axes2_in_base_z*tube_dalpha_c_in_base_z_2 -
+            axis_z_tube_axes2_in_base_z*tube_dalpha_c_in_base_z_3
+        )
+        # (tube-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        tube_dalpha_G_m1_x = tube_dalpha_Gamma_1_x*tube_w_1_t_83 + tube_dalpha_N_2_zx*tube_w_2_t_8
+        tube_dalpha_G_m1_y = tube_dalpha_Gamma_1_y*tube_w_1_t_83 + tube_dalpha_N_2_zy*tube_w_2_t_8
+        tube_dalpha_G_m1_z = tube_dalpha_Gamma_1_z*tube_w_1_t_83 + tube_dalpha_N_2_zz*tube_w_2_t_8
+        # (tube-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        tube_dalpha_G_m2_x = (
+        tube_dalpha_Gamma_1_x*tube_w_1_t_84 - tube_dalpha_N_2_zx*tube_w_2_t_10
+        )
+        tube_dalpha_G_m2_y = (
+        tube_dalpha_Gamma_1_y*tube_w_1_t_84 - tube_dalpha_N_2_zy*tube_w_2_t_10
+        )
+        tube_dalpha_G_m2_z = (
+        tube_dalpha_Gamma_1_z*tube_w_1_t_84 - tube_dalpha_N_2_zz*tube_w_2_t_10
+        )
+        # (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all freedoms
+        tube_dalpha_G_m3_x = (
+        tube_dalpha_Gamma_1_x*tube_w_1_t_85 + tube_dalpha_N_2_zx*tube_w_2_t_12
+        )
+        tube_dalpha_G_m3_y = (
+        tube_dalpha_Gamma_1_y*tube_w_1_t_85 + tube_dalpha_N_2_zy*tube_w_2_t_12
+        )
+        tube_dalpha_G_m3_z = (
+        tube_dalpha_Gamma_1_z*tube_w_1_t_85 + tube_dalpha_N_2_zz*tube_w_2_t_12
+        )
+        # (tube-dalpha_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        tube_dalpha_G_m_xx = (
+        -tube_dalpha_G_m2_x*tube_end_p2_r3_y - tube_dalpha_G_m3_x*tube_end_p3_r1_x
+        )
+        tube_dalpha_G_m_xy = (
+        -tube_dalpha_G_m2_y*tube_end_p2_r3_y - tube_dalpha_G_m3_y*tube_end_p3_r1_x
+        )
+        tube_dalpha_G_m_xz = (
+        -tube_dalpha_G_m2_z*tube_end_p2_r3_y - tube_dalpha_G_m3_z*tube_end_p3_r1_x
+        )
+        tube_dalpha_G_m_yx = (
+        tube_dalpha_G_m2_x*tube_end_p2_r3_x - tube_dalpha_G_m1_x*tube_end_p1_r1_x
+        )
+        tube_dalpha_G_m_yy = (
+        tube_dalpha_G_m2_y*tube_end_p2_r3_x - tube_dalpha_G_m1_y*tube_end_p1_r1_x
+        )
+        tube_dalpha_G_m_yz = (
+        tube_dalpha_G_m2_z*tube_end_p2_r3_x - tube_dalpha_G_m1_z*tube_end_p1_r1_x
+        )
+        tube_dalpha_G_m_zx = (
+        tube_dalpha_G_m1_x*tube_end_p1_r3_y + tube_dalpha_G_m3_x*tube_end_p3_r3_x
+        )
+        tube_dalpha_G_m_zy = (
+        tube_dalpha_G_m1_y*tube_end_p1_r3_y + tube_dalpha_G_m3_y*tube_end_p3_r3_x
+        )
+        tube_dalpha_G_m_zz = (
+        tube_dalpha_G_m1_z*tube_end_p1_r3_y + tube_dalpha_G_m3_z*tube_end_p3_r3_x
+        )
+        # (tube-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        tube_d_G_m1_x = tube_h_3_z*tube_w_2_t_8 - tube_d_Gamma_1_t*tube_w_1_t_83
+        tube_d_G_m1_y = tube_d_Gamma_1_y*tube_w_1_t_83 + tube_d_N_2_zy*tube_w_2_t_8
+        tube_d_G_m1_z = tube_d_Gamma_1_z*tube_w_1_t_83 + tube_d_N_2_zz*tube_w_2_t_8
+        # (tube-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        tube_d_G_m2_x = -tube_d_Gamma_1_t*tube_w_1_t_84 - tube_h_3_z*tube_w_2_t_10
+        tube_d_G_m2_y = tube_d_Gamma_1_y*tube_w_1_t_84 - tube_d_N_2_zy*tube_w_2_t_10
+        tube_d_G_m2_z = tube_d_Gamma_1_z*tube_w_1_t_84 - tube_d_N_2_zz*tube_w_2_t_10
+        # (tube-d_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all freedoms
+        tube_d_G_m3_x = tube_h_3_z*tube_w_2_t_12 - tube_d_Gamma_1_t*tube_w_1_t_85
+        tube_d_G_m3_y = tube_d_Gamma_1_y*tube_w_1_t_85 + tube_d_N_2_zy*tube_w_2_t_12
+        tube_d_G_m3_z = tube_d_Gamma_1_z*tube_w_1_t_85 + tube_d_N_2_zz*tube_w_2_t_12
+        # (tube-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        tube_d_G_m_xx = -tube_d_G_m2_x*tube_end_p2_r3_y - tube_d_G_m3_x*tube_end_p3_r1_x
+        tube_d_G_m_xy = -tube_d_G_m2_y*tube_end_p2_r3_y - tube_d_G_m3_y*tube_end_p3_r1_x
+        tube_d_G_m_xz = -tube_d_G_m2_z*tube_end_p2_r3_y - tube_d_G_m3_z*tube_end_p3_r1_x
+        tube_d_G_m_yx = tube_d_G_m2_x*tube_end_p2_r3_x - tube_d_G_m1_x*tube_end_p1_r1_x
+        tube_d_G_m_yy = tube_d_G_m2_y*tube_end_p2_r3_x - tube_d_G_m1_y*tube_end_p1_r1_x
+        tube_d_G_m_yz = tube_d_G_m2_z*tube_end_p2_r3_x - tube_d_G_m1_z*tube_end_p1_r1_x
+        tube_d_G_m_zx = tube_d_G_m1_x*tube_end_p1_r3_y + tube_d_G_m3_x*tube_end_p3_r3_x
+        tube_d_G_m_zy = tube_d_G_m1_y*tube_end_p1_r3_y + tube_d_G_m3_y*tube_end_p3_r3_x
+        tube_d_G_m_zz = tube_d_G_m1_z*tube_end_p1_r3_y + tube_d_G_m3_z*tube_end_p3_r3_x
+        # (tube-dalpha_c_m) coefficient of the acceleration in: moment of the leg on the platform without actuation
+        tube_dalpha_c_m_in_base_x = (
+        -axis_x_tube_axes2_x*tube_dalpha_G_m_xx - axis_y_tube_axes2_in_base_x*tube_dalpha_G_m_yx -
+            axis_z_tube_axes2_in_base_x*tube_dalpha_G_m_zx
+        )
+        tube_dalpha_c_m_in_base_y = (
+        -axis_x_tube_axes2_y*tube_dalpha_G_m_xx - axis_y_tube_axes2_in_base_y*tube_dalpha_G_m_yx -
+            axis_z_tube_axes2_in_base_y*tube_dalpha_G_m_zx
+        )
+        tube_dalpha_c_m_in_base_x_2 = (
+        -axis_x_tube_axes2_x*tube_dalpha_G_m_xy - axis_y_tube_axes2_in_base_x*tube_dalpha_G_m_yy -
+            axis_z_tube_axes2_in_base_x*tube_dalpha_G_m_zy
+        )
+        tube_dalpha_c_m_in_base_y_2 = (
+        -axis_x_tube_axes2_y*tube_dalpha_G_m_xy - axis_y_tube_axes2_in_base_y*tube_dalpha_G_m_yy -
+            axis_z_tube_axes2_in_base_y*tube_dalpha_G_m_zy
+        )
+        tube_dalpha_c_m_in_base_x_3 = (
+        -axis_x_tube_axes2_x*tube_dalpha_G_m_xz - axis_y_tube_axes2_in_base_x*tube_dalpha_G_m_yz -
+            axis_z_tube_axes2_in_base_x*tube_dalpha_G_m_zz
+        )
+        tube_dalpha_c_m_in_base_y_3 = (
+        -axis_x_tube_axes2_y*tube_dalpha_G_m_xz - axis_y_tube_axes2_in_base_y*tube_dalpha_G_m_yz -
+            axis_z_tube_axes2_in_base_y*tube_dalpha_G_m_zz
+        )
+        tube_dalpha_c_m_in_base_z = (
+        axis_x_tube_axes2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_xx -
+            axis_y_tube_axes2_in_base_z*tube_dalpha_G_m_yx -
+            axis_z_tube_axes2_in_base_z*tube_dalpha_G_m_zx) +
+            axis_y_tube_axes2_in_base_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_xy -
+            axis_y_tube_axes2_in_base_z*tube_dalpha_G_m_yy -
+            axis_z_tube_axes2_in_base_z*tube_dalpha_G_m_zy) +
+            axis_z_tube_axes2_in_base_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_xz -
+            axis_y_tube_axes2_in_base_z*tube_dalpha_G_m_yz -
+            axis_z_tube_axes2_in_base_z*tube_dalpha_G_m_zz)
+        )
+        # (tube-d_c_m) coefficient of the acceleration in: moment of the leg on the platform without actuation
+        tube_d_c_m_in_base_x = (
+        -axis_x_tube_axes2_x*tube_d_G_m_xx - axis_y_tube_axes2_in_base_x*tube_d_G_m_yx -
+            axis_z_tube_axes2_in_base_x*tube_d_G_m_zx
+        )
+        tube_d_c_m_in_base_y = (
+        -axis_x_tube_axes2_y*tube_d_G_m_xx - axis_y_tube_axes2_in_base_y*tube_d_G_m_yx -
+            axis_z_tube_axes2_in_base_y*tube_d_G_m_zx
+        )
+        tube_d_c_m_in_base_z = (
+        -axis_x_tube_axes2_z*tube_d_G_m_xx - axis_y_tube_axes2_in_base_z*tube_d_G_m_yx -
+            axis_z_tube_axes2_in_base_z*tube_d_G_m_zx
+        )
+        tube_d_c_m_in_base_x_2 = (
+        -axis_x_tube_axes2_x*tube_d_G_m_xy - axis_y_tube_axes2_in_base_x*tube_d_G_m_yy -
+            axis_z_tube_axes2_in_base_x*tube_d_G_m_zy
+        )
+        tube_d_c_m_in_base_y_2 = (
+        -axis_x_tube_axes2_y*tube_d_G_m_xy - axis_y_tube_axes2_in_base_y*tube_d_G_m_yy -
+            axis_z_tube_axes2_in_base_y*tube_d_G_m_zy
+        )
+        tube_d_c_m_in_base_z_2 = (
+        -axis_x_tube_axes2_z*tube_d_G_m_xy - axis_y_tube_axes2_in_base_z*tube_d_G_m_yy -
+            axis_z_tube_axes2_in_base_z*tube_d_G_m_zy
+        )
+        tube_d_c_m_in_base_x_3 = (
+        -axis_x_tube_axes2_x*tube_d_G_m_xz - axis_y_tube_axes2_in_base_x*tube_d_G_m_yz -
+            axis_z_tube_axes2_in_base_x*tube_d_G_m_zz
+        )
+        tube_d_c_m_in_base_y_3 = (
+        -axis_x_tube_axes2_y*tube_d_G_m_xz - axis_y_tube_axes2_in_base_y*tube_d_G_m_yz -
+            axis_z_tube_axes2_in_base_y*tube_d_G_m_zz
+        )
+        tube_d_c_m_in_base_z_3 = (
+        -axis_x_tube_axes2_z*tube_d_G_m_xz - axis_y_tube_axes2_in_base_z*tube_d_G_m_yz -
+            axis_z_tube_axes2_in_base_z*tube_d_G_m_zz
+        )
+        tube_d_c_m_in_base_x_4 = (
+        axis_x_tube_axes2_x*tube_d_c_m_in_base_x +
+            axis_y_tube_axes2_in_base_x*tube_d_c_m_in_base_x_2 +
+            axis_z_tube_axes2_in_base_x*tube_d_c_m_in_base_x_3
+        )
+        tube_d_c_m_in_base_y_4 = (
+        axis_x_tube_axes2_y*tube_d_c_m_in_base_x +
+            axis_y_tube_axes2_in_base_y*tube_d_c_m_in_base_x_2 +
+            axis_z_tube_axes2_in_base_y*tube_d_c_m_in_base_x_3
+        )
+        tube_d_c_m_in_base_z_4 = (
+        axis_x_tube_axes2_z*tube_d_c_m_in_base_x +
+            axis_y_tube_axes2_in_base_z*tube_d_c_m_in_base_x_2 +
+            axis_z_tube_axes2_in_base_z*tube_d_c_m_in_base_x_3
+        )
+        tube_d_c_m_in_base_x_5 = (
+        axis_x_tube_axes2_x*tube_d_c_m_in_base_y +
+            axis_y_tube_axes2_in_base_x*tube_d_c_m_in_base_y_2 +
+            axis_z_tube_axes2_in_base_x*tube_d_c_m_in_base_y_3
+        )
+        # (M_aa) rotational block of M
+        tube_M_aa_t = (
+        tube_M_ta_t_7*tube_q_in_base_z + tube_d_c_m_in_base_y_4*tube_q_in_base_z -
+            axis_x_tube_axes2_x*tube_dalpha_c_m_in_base_x -
+            axis_y_tube_axes2_in_base_x*tube_dalpha_c_m_in_base_x_2 -
+            axis_z_tube_axes2_in_base_x*tube_dalpha_c_m_in_base_x_3 -
+            tube_M_ta_t_10*tube_q_in_base_y - tube_d_c_m_in_base_z_4*tube_q_in_base_y
+        )
+        tube_M_aa_t_2 = (
+        axis_x_tube_axes2_y*tube_dalpha_c_m_in_base_x +
+            axis_y_tube_axes2_in_base_y*tube_dalpha_c_m_in_base_x_2 +
+            axis_z_tube_axes2_in_base_y*tube_dalpha_c_m_in_base_x_3 +
+            tube_M_ta_t_8*tube_q_in_base_z + tube_d_c_m_in_base_x_4*tube_q_in_base_z -
+            tube_M_ta_t_11*tube_q_in_base_y - tube_d_c_m_in_base_z_4*tube_q_in_base_x
+        )
+        tube_M_aa_t_3 = (
+        tube_M_ta_t_12*tube_q_in_base_y + tube_M_ta_t_9*tube_q_in_base_z +
+            tube_d_c_m_in_base_x_4*tube_q_in_base_y -
+            axis_x_tube_axes2_z*tube_dalpha_c_m_in_base_x -
+            axis_y_tube_axes2_in_base_z*tube_dalpha_c_m_in_base_x_2 -
+            axis_z_tube_axes2_in_base_z*tube_dalpha_c_m_in_base_x_3 -
+            tube_d_c_m_in_base_y_4*tube_q_in_base_x
+        )
+        tube_M_aa_t_4 = (
+        axis_x_tube_axes2_y*tube_dalpha_c_m_in_base_y +
+            axis_y_tube_axes2_in_base_y*tube_dalpha_c_m_in_base_y_2 +
+            axis_z_tube_axes2_in_base_y*tube_dalpha_c_m_in_base_y_3 +
+            tube_M_ta_t_11*tube_q_in_base_x + tube_d_c_m_in_base_x_5*tube_q_in_base_z -
+            tube_M_ta_t_5*tube_q_in_base_z -
+            tube_q_in_base_x*(axis_x_tube_axes2_z*tube_d_c_m_in_base_y +
+            axis_y_tube_axes2_in_base_z*tube_d_c_m_in_base_y_2 +
+            axis_z_tube_axes2_in_base_z*tube_d_c_m_in_base_y_3)
+        )
+        tube_M_aa_t_5 = (
+        axis_x_tube_axes2_z*tube_dalpha_c_m_in_base_y +
+            axis_y_tube_axes2_in_base_z*tube_dalpha_c_m_in_base_y_2 +
+            axis_z_tube_axes2_in_base_z*tube_dalpha_c_m_in_base_y_3 +
+            tube_M_ta_t_12*tube_q_in_base_x + tube_M_ta_t_6*tube_q_in_base_z +
+            tube_q_in_base_x*(axis_x_tube_axes2_y*tube_d_c_m_in_base_y +
+            axis_y_tube_axes2_in_base_y*tube_d_c_m_in_base_y_2 +
+            axis_z_tube_axes2_in_base_y*tube_d_c_m_in_base_y_3) -
+            tube_d_c_m_in_base_x_5*tube_q_in_base_y
+        )
+        tube_M_aa_t_6 = (
+        tube_M_ta_t_6*tube_q_in_base_y +
+            tube_q_in_base_y*(axis_x_tube_axes2_x*tube_d_c_m_in_base_z +
+            axis_y_tube_axes2_in_base_x*tube_d_c_m_in_base_z_2 +
+            axis_z_tube_axes2_in_base_x*tube_d_c_m_in_base_z_3) - tube_dalpha_c_m_in_base_z -
+            tube_M_ta_t_9*tube_q_in_base_x -
+            tube_q_in_base_x*(axis_x_tube_axes2_y*tube_d_c_m_in_base_z +
+            axis_y_tube_axes2_in_base_y*tube_d_c_m_in_base_z_2 +
+            axis_z_tube_axes2_in_base_y*tube_d_c_m_in_base_z_3)
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_up) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(rho2_2_up) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(f_c1_up_t_3) >
-            _TOLERANCE * 1.0) & (abs(size_c3_up) > _TOLERANCE * 1.0) & (abs(w_1_up_t_13) >
-            _TOLERANCE * 1.35) & (abs(w_1_up_t_33) > _TOLERANCE * 1.0) & (abs(w_1_up_t_49) >
-            _TOLERANCE * 1.0) & (abs(w_1_up_t_63) > _TOLERANCE * 1.35) & (abs(w_1_up_t_75) >
-            _TOLERANCE * 1.35))
+        ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_f_c1_t_3) > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) &
+            (abs(tube_w_1_t_13) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) &
+            (abs(tube_w_1_t_49) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) &
+            (abs(tube_w_1_t_75) > _TOLERANCE * 1.35))
         )
         sums = m.added(sums, leg, (
-        Q_up_t_12, Q_up_t_13, Q_up_t_14, Q_up_t_16, Q_up_t_17, Q_up_t_19, M_ta_t_24,
-            M_ta_t_25, M_ta_t_26, M_ta_t_27, M_ta_t_28, M_ta_t_29, M_ta_t_30, M_ta_t_31,
-            M_ta_t_32, M_aa_t_7, M_aa_t_8, M_aa_t_9, M_aa_t_10, M_aa_t_11, M_aa_t_12,
+        tube_Q_t_12, tube_Q_t_13, tube_Q_t_14, tube_Q_t_16, tube_Q_t_17, tube_Q_t_19,
+            tube_M_ta_t_4, tube_M_ta_t_5, tube_M_ta_t_6, tube_M_ta_t_7, tube_M_ta_t_8,
+            tube_M_ta_t_9, tube_M_ta_t_10, tube_M_ta_t_11, tube_M_ta_t_12, tube_M_aa_t,
+            tube_M_aa_t_2, tube_M_aa_t_3, tube_M_aa_t_4, tube_M_aa_t_5, tube_M_aa_t_6,
         ))
     (
-    total_up_xx, total_up_xy, total_up_xz, total_up_yy, total_up_yz, total_up_zz, total_up_xx_2,
-        total_up_xy_2, total_up_xz_2, total_up_yx, total_up_yy_2, total_up_yz_2, total_up_zx,
-        total_up_zy, total_up_zz_2, total_up_xx_3, total_up_xy_3, total_up_xz_3, total_up_yy_3,
-        total_up_yz_3, total_up_zz_3,
+    total_tube_xx, total_tube_xy, total_tube_xz, total_tube_yy, total_tube_yz, total_tube_zz,
+        total_tube_xx_2, total_tube_xy_2, total_tube_xz_2, total_tube_yx, total_tube_yy_2,
+        total_tube_yz_2, total_tube_zx, total_tube_zy, total_tube_zz_2, total_tube_xx_3,
+        total_tube_xy_3, total_tube_xz_3, total_tube_yy_3, total_tube_yz_3, total_tube_zz_3,
     ) = sums
-    # (M1) translational block of M
-    M_tt_xx = m_star + total_up_xx - total_ups_xx
-    M_tt_xy = total_up_xy - total_ups_xy
-    M_tt_xz = total_up_xz - total_ups_xz
-    M_tt_yy = m_star + total_up_yy - total_ups_yy
-    M_tt_yz = total_up_yz - total_ups_yz
-    M_tt_zz = m_star + total_up_zz - total_ups_zz
-    # (M2) coupling block of M
-    M_ta_xx = total_ups_xx_2 - total_up_xx_2
-    M_ta_xy = h_star_in_base_z + total_up_xy_2 - total_ups_xy_2
-    M_ta_xz = total_ups_xz_2 - h_star_in_base_y - total_up_xz_2
-    M_ta_yx = total_ups_yx - h_star_in_base_z - total_up_yx
-    M_ta_yy = total_up_yy_2 - total_ups_yy_2
-    M_ta_yz = h_star_in_base_x + total_ups_yz_2 - total_up_yz_2
-    M_ta_zx = h_star_in_base_y + total_ups_zx - total_up_zx
-    M_ta_zy = total_up_zy - h_star_in_base_x - total_ups_zy
-    M_ta_zz = -total_up_zz_2 - total_ups_zz_2
-    # (M3) rotational block of M
-    M_aa_xx = J_star_t_8 + total_up_xx_3 - total_ups_xx_3
-    M_aa_xy = J_star_t_9 + total_ups_xy_3 - total_up_xy_3
-    M_aa_xz = J_star_t_10 + total_up_xz_3 - total_ups_xz_3
-    M_aa_yy = J_star_t_12 - total_up_yy_3 - total_ups_yy_3
-    M_aa_yz = J_star_t_13 + total_ups_yz_3 - total_up_yz_3
-    M_aa_zz = J_star_t_15 + total_up_zz_3 - total_ups_zz_3
+    # (M_tt) translational block of M
+    M_tt_xx = m_star + total_tube_xx - total_ups_xx
+    M_tt_xy = total_tube_xy - total_ups_xy
+    M_tt_xz = total_tube_xz - total_ups_xz
+    M_tt_yy = m_star + total_tube_yy - total_ups_yy
+    M_tt_yz = total_tube_yz - total_ups_yz
+    M_tt_zz = m_star + total_tube_zz - total_ups_zz
+    # (M_ta) coupling block of M
+    M_ta_xx = total_ups_xx_2 - total_tube_xx_2
+    M_ta_xy = h_star_in_base_z + total_tube_xy_2 - total_ups_xy_2
+    M_ta_xz = total_ups_xz_2 - h_star_in_base_y - total_tube_xz_2
+    M_ta_yx = total_ups_yx - h_star_in_base_z - total_tube_yx
+    M_ta_yy = total_tube_yy_2 - total_ups_yy_2
+    M_ta_yz = h_star_in_base_x + total_ups_yz_2 - total_tube_yz_2
+    M_ta_zx = h_star_in_base_y + total_ups_zx - total_tube_zx
+    M_ta_zy = total_tube_zy - h_star_in_base_x - total_ups_zy
+    M_ta_zz = total_tube_zz_2 - total_ups_zz_2
+    # (M_aa) rotational block of M
+    M_aa_xx = J_star_t_8 + total_tube_xx_3 - total_ups_xx_3
+    M_aa_xy = J_star_t_9 + total_ups_xy_3 - total_tube_xy_3
+    M_aa_xz = J_star_t_10 + total_tube_xz_3 - total_ups_xz_3
+    M_aa_yy = J_star_t_13 - total_tube_yy_3 - total_ups_yy_3
+    M_aa_yz = J_star_t_15 + total_ups_yz_3 - total_tube_yz_3
+    M_aa_zz = J_star_t_17 + total_tube_zz_3 - total_ups_zz_3
     out_M[0] = M_tt_xx
     out_M[1] = M_tt_xy
     out_M[6] = M_tt_xy
@@ -4353,787 +4644,862 @@ def _run_Z(m, X, V):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_Z = m.zeros("Z")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (M4) centripetal force and weight of the platform
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
     Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
     Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    g_r0_x_3 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y_3 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z_3 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_3*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z_3*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z_3*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x_3*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_3*h_star_y - Z_q_t*omega_r0_y - g_r0_y_3*h_star_x
+    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
+    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_group_2_ups_xy, J_group_2_ups_xz, J_group_2_ups_yz, Sigma_2_ups_xx, Sigma_2_ups_yy,
-            Sigma_2_ups_zz, branch_1_ups, branch_2_ups, g_r0_x_2, g_r0_y_2, g_r0_z_2, h_2_ups_x,
-            h_2_ups_y, h_2_ups_z, h_3_ups_x, h_3_ups_y, h_3_ups_z, ups_base_frame_xx,
-            ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
-            ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
-            ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_platform_point_x,
-            ups_platform_point_y, ups_platform_point_z,
+        ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yz, ups_Sigma_2_xx, ups_Sigma_2_yy,
+            ups_Sigma_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
+            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
+            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
+            ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y, ups_g_r0_z,
+            ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z,
+            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
-        # (ups-K1) from the base point to the connection point
-        q_ups_in_base_x = (
+        # (ups-S) from the base point to the connection point
+        ups_q_in_base_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        q_ups_in_base_y = (
+        ups_q_in_base_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        q_ups_in_base_z = (
+        ups_q_in_base_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        S_ups_x = q_ups_in_base_x + t_x - ups_base_point_x
-        S_ups_y = q_ups_in_base_y + t_y - ups_base_point_y
-        S_ups_z = q_ups_in_base_z + t_z - ups_base_point_z
-        # (ups-K2) component along the reference direction
-        px_1_ups = (
-        S_ups_x*ups_base_frame_xx + S_ups_y*ups_base_frame_yx + S_ups_z*ups_base_frame_zx
+        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        # (ups-px_1) component along the reference direction
+        ups_px_1 = (
+        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-K3) component across the reference direction
-        py_1_ups = (
-        S_ups_x*ups_base_frame_xy + S_ups_y*ups_base_frame_yy + S_ups_z*ups_base_frame_zy
+        # (ups-py_1) component across the reference direction
+        ups_py_1 = (
+        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-K4) squared amplitude
-        rho2_1_ups = px_1_ups*px_1_ups + py_1_ups*py_1_ups
-        # (ups-K5) amplitude, with the sign of the branch
-        root_1_ups = branch_1_ups*sqrt(rho2_1_ups)
-        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_ups_t = (
-        S_ups_x*ups_base_frame_xz + S_ups_y*ups_base_frame_yz + S_ups_z*ups_base_frame_zz
+        # (ups-rho2_1) squared amplitude
+        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
+        # (ups-root_1) amplitude, with the sign of the branch
+        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ups_xi_1_t = (
+        ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-K13) squared amplitude
-        rho2_2_ups = rho2_1_ups + xi_1_ups_t*xi_1_ups_t
-        # (ups-K14) amplitude, with the sign of the branch
-        root_2_ups = branch_2_ups*sqrt(rho2_2_ups)
-        # (ups-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2_ups = 1.0/root_2_ups
-        c_2_ups = inv_root_2_ups*root_1_ups
-        # (ups-K16) sine of the angle of joint 2 from its reference direction
-        s_2_ups = inv_root_2_ups*xi_1_ups_t
-        # (ups-V5) reciprocal vector 1
-        axis_x_x = S_ups_x*inv_root_2_ups
-        axis_x_y = S_ups_y*inv_root_2_ups
-        axis_x_z = S_ups_z*inv_root_2_ups
-        # (ups-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_ups = 1.0/root_1_ups
-        c_1_ups = inv_root_1_ups*py_1_ups
-        # (ups-K7) sine of the angle of joint 1 from its reference direction
-        s_1_ups = inv_root_1_ups*px_1_ups
-        # (ups-V5) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = s_1_ups*ups_base_frame_xy - c_1_ups*ups_base_frame_xx
-        axis_z_ups_axes2_in_base_y = s_1_ups*ups_base_frame_yy - c_1_ups*ups_base_frame_yx
-        axis_z_ups_axes2_in_base_z = s_1_ups*ups_base_frame_zy - c_1_ups*ups_base_frame_zx
+        # (ups-rho2_2) squared amplitude
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        # (ups-root_2) amplitude, with the sign of the branch
+        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_root_2 = 1.0/ups_root_2
+        ups_c_2 = inv_ups_root_2*ups_root_1
+        # (ups-s_2) sine of the angle of joint 2 from its reference direction
+        ups_s_2 = inv_ups_root_2*ups_xi_1_t
+        # (ups-w_1) reciprocal vector 1
+        ups_axis_x_x = inv_ups_root_2*ups_S_x
+        ups_axis_x_y = inv_ups_root_2*ups_S_y
+        ups_axis_x_z = inv_ups_root_2*ups_S_z
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
+        # (ups-w_1) reciprocal vector 1
+        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
+        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
+        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
         axis_y_ups_axes2_x = (
-        axis_x_z*axis_z_ups_axes2_in_base_y - axis_x_y*axis_z_ups_axes2_in_base_z
+        axis_z_ups_axes2_in_base_y*ups_axis_x_z - axis_z_ups_axes2_in_base_z*ups_axis_x_y
         )
         axis_y_ups_axes2_y = (
-        axis_x_x*axis_z_ups_axes2_in_base_z - axis_x_z*axis_z_ups_axes2_in_base_x
+        axis_z_ups_axes2_in_base_z*ups_axis_x_x - axis_z_ups_axes2_in_base_x*ups_axis_x_z
         )
         axis_y_ups_axes2_z = (
-        axis_x_y*axis_z_ups_axes2_in_base_x - axis_x_x*axis_z_ups_axes2_in_base_y
+        axis_z_ups_axes2_in_base_x*ups_axis_x_y - axis_z_ups_axes2_in_base_y*ups_axis_x_x
         )
-        # (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x_2 = g_r0_y_2*s_1_ups - c_1_ups*g_r0_x_2
-        g_r1_y_2 = -c_1_ups*g_r0_y_2 - g_r0_x_2*s_1_ups
-        g_r3_x_2 = g_r0_z_2*s_2_ups - c_2_ups*g_r1_y_2
-        g_r3_y_2 = -c_2_ups*g_r0_z_2 - g_r1_y_2*s_2_ups
-        # (ups-A1) centripetal acceleration of the connection point
-        u_1_ups_t = omega_y*q_ups_in_base_z - omega_z*q_ups_in_base_y
-        u_1_ups_t_2 = omega_z*q_ups_in_base_x - omega_x*q_ups_in_base_z
-        u_1_ups_t_3 = omega_x*q_ups_in_base_y - omega_y*q_ups_in_base_x
-        u_1_ups_x = omega_y*u_1_ups_t_3 - omega_z*u_1_ups_t_2
-        u_1_ups_y = omega_z*u_1_ups_t - omega_x*u_1_ups_t_3
-        u_1_ups_z = omega_x*u_1_ups_t_2 - omega_y*u_1_ups_t
-        u_1_ups_t_4 = axis_y_ups_axes2_x*u_1_ups_x
-        u_1_ups_t_5 = axis_y_ups_axes2_y*u_1_ups_y
-        u_1_ups_t_6 = axis_y_ups_axes2_z*u_1_ups_z
-        u_1_ups_tip_z = (
-        axis_z_ups_axes2_in_base_x*u_1_ups_x + axis_z_ups_axes2_in_base_y*u_1_ups_y +
-            axis_z_ups_axes2_in_base_z*u_1_ups_z
+        # (ups-S_dot) velocity of the connection point
+        ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y
+        ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z
+        ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x
+        ups_S_dot_x = t_dot_x + ups_S_dot_t
+        ups_S_dot_y = t_dot_y + ups_S_dot_t_2
+        ups_S_dot_z = t_dot_z + ups_S_dot_t_3
+        ups_S_dot_tip_x = (
+        ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y + ups_S_dot_z*ups_axis_x_z
         )
-        # (ups-N4) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        acc_3_ups_o_x = axis_x_x*u_1_ups_x + axis_x_y*u_1_ups_y + axis_x_z*u_1_ups_z - g_r3_x_2
-        acc_3_ups_o_y = u_1_ups_t_4 + u_1_ups_t_5 + u_1_ups_t_6 - g_r3_y_2
-        acc_3_ups_o_z = u_1_ups_tip_z - g_r1_x_2
-        # (ups-V1) velocity of the connection point
-        S_dot_ups_x = t_dot_x + u_1_ups_t
-        S_dot_ups_y = t_dot_y + u_1_ups_t_2
-        S_dot_ups_z = t_dot_z + u_1_ups_t_3
-        S_dot_ups_tip_x = S_dot_ups_x*axis_x_x + S_dot_ups_y*axis_x_y + S_dot_ups_z*axis_x_z
-        # (ups-V8) rate of joint 1
-        qd_2_ups = (
-        inv_root_2_ups*(S_dot_ups_x*axis_y_ups_axes2_x + S_dot_ups_y*axis_y_ups_axes2_y +
-            S_dot_ups_z*axis_y_ups_axes2_z)
+        # (ups-qd_2) rate of joint 2
+        ups_qd_2 = (
+        inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
+            axis_y_ups_axes2_z*ups_S_dot_z)
         )
-        qd_1_ups = (
-        inv_root_1_ups*(S_dot_ups_x*axis_z_ups_axes2_in_base_x +
-            S_dot_ups_y*axis_z_ups_axes2_in_base_y + S_dot_ups_z*axis_z_ups_axes2_in_base_z)
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
+            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z)
         )
-        # (ups-V11) angular velocity of link 1
-        omega_1_ups_t = qd_1_ups*s_2_ups
-        omega_1_ups_t_2 = c_2_ups*qd_1_ups
-        # (ups-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_ups_x = omega_1_ups_t_2*qd_2_ups
-        zeta_2_ups_y = omega_1_ups_t*qd_2_ups
-        # (ups-V13) centripetal tensor of link 2
-        W_2_ups_t = omega_1_ups_t*omega_1_ups_t
-        W_2_ups_t_2 = omega_1_ups_t_2*omega_1_ups_t_2
-        W_2_ups_t_3 = qd_2_ups*qd_2_ups
-        W_2_ups_xy = omega_1_ups_t*omega_1_ups_t_2
-        # (ups-A5) acceleration of the connection point at zero joint accelerations
-        bias_ups_t = 2.0*S_dot_ups_tip_x
-        bias_ups_z = bias_ups_t*omega_1_ups_t_2 + 2.0*root_2_ups*zeta_2_ups_y
-        # (ups-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_ups_o_z = u_1_ups_tip_z - bias_ups_z
-        # (ups-A9) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_ups_o_t = (
-        inv_root_2_ups*(u_1_ups_t_4 + u_1_ups_t_5 + u_1_ups_t_6 - bias_ups_t*qd_2_ups)
+        # (ups-omega_1) angular velocity of link 1
+        ups_omega_1_t = ups_qd_1*ups_s_2
+        ups_omega_1_t_2 = ups_c_2*ups_qd_1
+        # (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2
+        ups_zeta_2_y = ups_omega_1_t*ups_qd_2
+        # (ups-u_1) centripetal acceleration of the connection point
+        ups_u_1_x = omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2
+        ups_u_1_y = omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3
+        ups_u_1_z = omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t
+        # (ups-W_2) centripetal tensor of link 2
+        ups_W_2_t = ups_omega_1_t*ups_omega_1_t
+        ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2
+        ups_W_2_t_3 = ups_qd_2*ups_qd_2
+        ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2
+        # (ups-bias) acceleration of the connection point at zero joint accelerations
+        ups_bias_t = 2.0*ups_S_dot_tip_x
+        ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2.0*ups_root_2*ups_zeta_2_y
+        # (ups-u_1) centripetal acceleration of the connection point
+        ups_u_1_t = axis_y_ups_axes2_x*ups_u_1_x
+        ups_u_1_t_2 = axis_y_ups_axes2_y*ups_u_1_y
+        ups_u_1_t_3 = axis_y_ups_axes2_z*ups_u_1_z
+        ups_u_1_tip_z = (
+        axis_z_ups_axes2_in_base_x*ups_u_1_x + axis_z_ups_axes2_in_base_y*ups_u_1_y +
+            axis_z_ups_axes2_in_base_z*ups_u_1_z
         )
-        qdd_1_ups_o = inv_root_1_ups*rel_ups_o_z
-        # (ups-A15) remainder without the acceleration in: angular acceleration of link 1
-        alpha_1_ups_o_t = qdd_1_ups_o*s_2_ups
-        alpha_1_ups_o_t_2 = c_2_ups*qdd_1_ups_o
-        # (ups-A18) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_ups_o_x = alpha_1_ups_o_t - zeta_2_ups_x
-        alpha_2_ups_o_y = -alpha_1_ups_o_t_2 - zeta_2_ups_y
-        # (ups-A20) remainder of the acceleration tensor of link 2
-        B_2_ups_o_xy = -2.0*W_2_ups_xy - qdd_1_ups_o_t
-        B_2_ups_o_zx = zeta_2_ups_y - alpha_2_ups_o_y
-        B_2_ups_o_zy = alpha_2_ups_o_x - zeta_2_ups_x
-        # (ups-N14) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_ups_o_x = (
-        B_2_ups_o_zy*Sigma_2_ups_yy + J_group_2_ups_xz*qdd_1_ups_o_t +
-            J_group_2_ups_yz*(W_2_ups_t_2 - W_2_ups_t_3) + Sigma_2_ups_zz*alpha_1_ups_o_t +
-            g_r1_x_2*h_2_ups_z + g_r3_y_2*h_2_ups_y - B_2_ups_o_zx*J_group_2_ups_xy -
-            acc_3_ups_o_y*h_3_ups_y - acc_3_ups_o_z*h_3_ups_z
+        # (ups-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        ups_rel_o_z = ups_u_1_tip_z - ups_bias_z
+        # (ups-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        ups_qdd_2_o_t = (
+        inv_ups_root_2*(ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 - ups_bias_t*ups_qd_2)
         )
-        mu_2_ups_o_y = (
-        B_2_ups_o_zy*J_group_2_ups_xy + acc_3_ups_o_x*h_3_ups_y + g_r1_x_2*h_2_ups_x -
-            B_2_ups_o_xy*J_group_2_ups_yz - B_2_ups_o_zx*Sigma_2_ups_xx -
-            J_group_2_ups_xz*(W_2_ups_t - W_2_ups_t_3) - Sigma_2_ups_zz*alpha_1_ups_o_t_2 -
-            acc_3_ups_o_z*h_3_ups_x - g_r3_x_2*h_2_ups_y
+        ups_qdd_1_o = inv_ups_root_1*ups_rel_o_z
+        # (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        ups_alpha_1_o_t = ups_qdd_1_o*ups_s_2
+        ups_alpha_1_o_t_2 = ups_c_2*ups_qdd_1_o
+        # (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        ups_alpha_2_o_x = ups_alpha_1_o_t - ups_zeta_2_x
+        ups_alpha_2_o_y = -ups_alpha_1_o_t_2 - ups_zeta_2_y
+        # (ups-B_2_o) remainder of the acceleration tensor of link 2
+        ups_B_2_o_xy = -2.0*ups_W_2_xy - ups_qdd_2_o_t
+        ups_B_2_o_zx = ups_zeta_2_y - ups_alpha_2_o_y
+        ups_B_2_o_zy = ups_alpha_2_o_x - ups_zeta_2_x
+        # (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
+        ups_phi_3_o_x = (
+        -ups_B_2_o_xy*ups_h_3_z - ups_alpha_1_o_t_2*ups_h_3_y - ups_h_3_x*(ups_W_2_t_2 +
+            ups_W_2_t_3)
         )
-        mu_2_ups_o_z = (
-        J_group_2_ups_xy*(W_2_ups_t - W_2_ups_t_2) + J_group_2_ups_xz*alpha_1_ups_o_t +
-            Sigma_2_ups_xx*qdd_1_ups_o_t + acc_3_ups_o_x*h_3_ups_z + acc_3_ups_o_y*h_3_ups_x -
-            B_2_ups_o_xy*Sigma_2_ups_yy - J_group_2_ups_yz*alpha_1_ups_o_t_2 - g_r3_x_2*h_2_ups_z
-            - g_r3_y_2*h_2_ups_x
+        # (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x
+        ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1
+        ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y
+        ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2
+        # (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        ups_acc_3_o_x = (
+        ups_axis_x_x*ups_u_1_x + ups_axis_x_y*ups_u_1_y + ups_axis_x_z*ups_u_1_z - ups_g_r3_x
         )
-        # (ups-N7) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
-        phi_3_ups_o_x = (
-        -B_2_ups_o_xy*h_3_ups_z - alpha_1_ups_o_t_2*h_3_ups_y - h_3_ups_x*(W_2_ups_t_2 +
-            W_2_ups_t_3)
+        ups_acc_3_o_y = ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 - ups_g_r3_y
+        ups_acc_3_o_z = ups_u_1_tip_z - ups_g_r1_x
+        # (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        ups_mu_2_o_x = (
+        ups_B_2_o_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_2_o_t +
+            ups_J_group_2_yz*(ups_W_2_t_2 - ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_o_t +
+            ups_g_r1_x*ups_h_2_z + ups_g_r3_y*ups_h_2_y - ups_B_2_o_zx*ups_J_group_2_xy -
+            ups_acc_3_o_y*ups_h_3_y - ups_acc_3_o_z*ups_h_3_z
         )
-        # (ups-N26) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        c_ups_o_y = (
-        alpha_1_ups_o_t*h_3_ups_y - h_3_ups_x*qdd_1_ups_o_t - h_3_ups_z*(W_2_ups_t + W_2_ups_t_3)
-            - inv_root_2_ups*mu_2_ups_o_z
+        ups_mu_2_o_y = (
+        ups_B_2_o_zy*ups_J_group_2_xy + ups_acc_3_o_x*ups_h_3_y + ups_g_r1_x*ups_h_2_x -
+            ups_B_2_o_xy*ups_J_group_2_yz - ups_B_2_o_zx*ups_Sigma_2_xx -
+            ups_J_group_2_xz*(ups_W_2_t - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_o_t_2 -
+            ups_acc_3_o_z*ups_h_3_x - ups_g_r3_x*ups_h_2_y
         )
-        c_ups_o_z = (
-        B_2_ups_o_zy*h_3_ups_z + h_3_ups_y*(W_2_ups_t + W_2_ups_t_2) - B_2_ups_o_zx*h_3_ups_x -
-            inv_root_1_ups*(mu_2_ups_o_x*s_2_ups - c_2_ups*mu_2_ups_o_y)
+        ups_mu_2_o_z = (
+        ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) + ups_J_group_2_xz*ups_alpha_1_o_t +
+            ups_Sigma_2_xx*ups_qdd_2_o_t + ups_acc_3_o_x*ups_h_3_z + ups_acc_3_o_y*ups_h_3_x -
+            ups_B_2_o_xy*ups_Sigma_2_yy - ups_J_group_2_yz*ups_alpha_1_o_t_2 -
+            ups_g_r3_x*ups_h_2_z - ups_g_r3_y*ups_h_2_x
         )
-        # (ups-N28) velocity and gravity terms of the leg force
-        U_ups_in_base_x = (
-        axis_x_x*phi_3_ups_o_x - axis_y_ups_axes2_x*c_ups_o_y -
-            axis_z_ups_axes2_in_base_x*c_ups_o_z
+        # (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        ups_c_o_y = (
+        ups_alpha_1_o_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_o_z - ups_h_3_x*ups_qdd_2_o_t -
+            ups_h_3_z*(ups_W_2_t + ups_W_2_t_3)
         )
-        U_ups_in_base_y = (
-        axis_x_y*phi_3_ups_o_x - axis_y_ups_axes2_y*c_ups_o_y -
-            axis_z_ups_axes2_in_base_y*c_ups_o_z
+        ups_c_o_z = (
+        ups_B_2_o_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
+            inv_ups_root_1*(ups_mu_2_o_x*ups_s_2 - ups_c_2*ups_mu_2_o_y) - ups_B_2_o_zx*ups_h_3_x
         )
-        U_ups_in_base_z = (
-        axis_x_z*phi_3_ups_o_x - axis_y_ups_axes2_z*c_ups_o_y -
-            axis_z_ups_axes2_in_base_z*c_ups_o_z
+        # (ups-U) velocity and gravity terms of the leg force
+        ups_U_in_base_x = (
+        ups_axis_x_x*ups_phi_3_o_x - axis_y_ups_axes2_x*ups_c_o_y -
+            axis_z_ups_axes2_in_base_x*ups_c_o_z
         )
-        # (M7) rotational part of Z
-        Z_a_t = U_ups_in_base_z*q_ups_in_base_y - U_ups_in_base_y*q_ups_in_base_z
-        Z_a_t_2 = U_ups_in_base_x*q_ups_in_base_z - U_ups_in_base_z*q_ups_in_base_x
-        Z_a_t_3 = U_ups_in_base_y*q_ups_in_base_x - U_ups_in_base_x*q_ups_in_base_y
+        ups_U_in_base_y = (
+        ups_axis_x_y*ups_phi_3_o_x - axis_y_ups_axes2_y*ups_c_o_y -
+            axis_z_ups_axes2_in_base_y*ups_c_o_z
+        )
+        ups_U_in_base_z = (
+        ups_axis_x_z*ups_phi_3_o_x - axis_y_ups_axes2_z*ups_c_o_y -
+            axis_z_ups_axes2_in_base_z*ups_c_o_z
+        )
+        # (Z_a) rotational part of Z
+        ups_Z_a_t = ups_U_in_base_z*ups_q_in_base_y - ups_U_in_base_y*ups_q_in_base_z
+        ups_Z_a_t_2 = ups_U_in_base_x*ups_q_in_base_z - ups_U_in_base_z*ups_q_in_base_x
+        ups_Z_a_t_3 = ups_U_in_base_y*ups_q_in_base_x - ups_U_in_base_x*ups_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1_ups) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
-            (abs(rho2_2_ups) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(root_1_ups) >
-            _TOLERANCE * 1.38293) & (abs(root_2_ups) > _TOLERANCE * 1.38293))
+        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
+            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) >
+            _TOLERANCE * 1.38293) & (abs(ups_root_2) > _TOLERANCE * 1.38293))
         )
         sums = m.added(sums, leg, (
-        U_ups_in_base_x, U_ups_in_base_y, U_ups_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
+        ups_U_in_base_x, ups_U_in_base_y, ups_U_in_base_z, ups_Z_a_t, ups_Z_a_t_2,
+            ups_Z_a_t_3,
         ))
     total_ups_x, total_ups_y, total_ups_z, total_ups_x_2, total_ups_y_2, total_ups_z_2 = sums
     sums = [0.0] * 6
     for leg, k in legs[1]:
         (
-        J_group_2_up_xy, J_group_2_up_xz, J_group_2_up_yz, Sigma_2_up_xx, Sigma_2_up_yy,
-            Sigma_2_up_zz, branch_1_up, branch_2_up, g_r0_x, g_r0_y, g_r0_z, h_2_up_x, h_2_up_y,
-            h_2_up_z, h_3_up_x, h_3_up_y, h_3_up_z, up_base_frame_xx, up_base_frame_xy,
-            up_base_frame_xz, up_base_frame_yx, up_base_frame_yy, up_base_frame_yz,
-            up_base_frame_zx, up_base_frame_zy, up_base_frame_zz, up_base_point_x,
-            up_base_point_y, up_base_point_z, up_link3_mass, up_platform_joint_rotation_xx,
-            up_platform_joint_rotation_xy, up_platform_joint_rotation_xz,
-            up_platform_joint_rotation_yx, up_platform_joint_rotation_yy,
-            up_platform_joint_rotation_yz, up_platform_joint_rotation_zx,
-            up_platform_joint_rotation_zy, up_platform_joint_rotation_zz, up_platform_point_x,
-            up_platform_point_y, up_platform_point_z,
+        tube_J_group_2_xy, tube_J_group_2_xz, tube_J_group_2_yz, tube_Sigma_2_xx, tube_Sigma_2_yy,
+            tube_Sigma_2_zz, tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz,
+            tube_base_frame_yx, tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx,
+            tube_base_frame_zy, tube_base_frame_zz, tube_base_point_x, tube_base_point_y,
+            tube_base_point_z, tube_branch_1, tube_branch_2, tube_g_r0_x, tube_g_r0_y,
+            tube_g_r0_z, tube_h_2_x, tube_h_2_y, tube_h_2_z, tube_h_3_x, tube_h_3_y, tube_h_3_z,
+            tube_link3_mass, tube_platform_joint_rotation_xx, tube_platform_joint_rotation_xy,
+            tube_platform_joint_rotation_xz, tube_platform_joint_rotation_yx,
+            tube_platform_joint_rotation_yy, tube_platform_joint_rotation_yz,
+            tube_platform_joint_rotation_zx, tube_platform_joint_rotation_zy,
+            tube_platform_joint_rotation_zz, tube_platform_point_x, tube_platform_point_y,
+            tube_platform_point_z,
         ) = k
-        # (up-K1) from the base point to the connection point
-        q_up_in_base_x = (
-        R_xx*up_platform_point_x + R_xy*up_platform_point_y + R_xz*up_platform_point_z
-        )
-        q_up_in_base_y = (
-        R_yx*up_platform_point_x + R_yy*up_platform_point_y + R_yz*up_platform_point_z
-        )
-        q_up_in_base_z = (
-        R_zx*up_platform_point_x + R_zy*up_platform_point_y + R_zz*up_platform_point_z
-        )
-        S_up_x = q_up_in_base_x + t_x - up_base_point_x
-        S_up_y = q_up_in_base_y + t_y - up_base_point_y
-        S_up_z = q_up_in_base_z + t_z - up_base_point_z
-        # (up-K2) component along the reference direction
-        px_1_up = S_up_x*up_base_frame_xx + S_up_y*up_base_frame_yx + S_up_z*up_base_frame_zx
-        # (up-K3) component across the reference direction
-        py_1_up = S_up_x*up_base_frame_xy + S_up_y*up_base_frame_yy + S_up_z*up_base_frame_zy
-        # (up-K4) squared amplitude
-        rho2_1_up = px_1_up*px_1_up + py_1_up*py_1_up
-        # (up-K5) amplitude, with the sign of the branch
-        root_1_up = branch_1_up*sqrt(rho2_1_up)
-        # (up-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_up_t = S_up_x*up_base_frame_xz + S_up_y*up_base_frame_yz + S_up_z*up_base_frame_zz
-        # (up-K13) squared amplitude
-        rho2_2_up = rho2_1_up + xi_1_up_t*xi_1_up_t
-        # (up-K14) amplitude, with the sign of the branch
-        root_2_up = branch_2_up*sqrt(rho2_2_up)
-        # (up-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2_up = 1.0/root_2_up
-        c_2_up = inv_root_2_up*root_1_up
-        # (up-K16) sine of the angle of joint 2 from its reference direction
-        s_2_up = inv_root_2_up*xi_1_up_t
-        # (up-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_up = 1.0/root_1_up
-        c_1_up = inv_root_1_up*py_1_up
-        # (up-K7) sine of the angle of joint 1 from its reference direction
-        s_1_up = inv_root_1_up*px_1_up
-        # (up-V8) force part of the wrench that does no work along the leg's freedoms, 1
-        axis_z_up_axes2_in_base_x = s_1_up*up_base_frame_xy - c_1_up*up_base_frame_xx
-        axis_z_up_axes2_in_base_y = s_1_up*up_base_frame_yy - c_1_up*up_base_frame_yx
-        axis_z_up_axes2_in_base_z = s_1_up*up_base_frame_zy - c_1_up*up_base_frame_zx
-        f_c1_up_t = s_1_up*s_2_up
-        f_c1_up_t_2 = c_1_up*s_2_up
-        axis_y_up_axes2_in_base_x = (
-        f_c1_up_t*up_base_frame_xx + f_c1_up_t_2*up_base_frame_xy - c_2_up*up_base_frame_xz
-        )
-        axis_y_up_axes2_in_base_y = (
-        f_c1_up_t*up_base_frame_yx + f_c1_up_t_2*up_base_frame_yy - c_2_up*up_base_frame_yz
-        )
-        axis_y_up_axes2_in_base_z = (
-        f_c1_up_t*up_base_frame_zx + f_c1_up_t_2*up_base_frame_zy - c_2_up*up_base_frame_zz
-        )
-        axis_x_up_axes2_x = (
-        axis_y_up_axes2_in_base_y*axis_z_up_axes2_in_base_z -
-            axis_y_up_axes2_in_base_z*axis_z_up_axes2_in_base_y
-        )
-        axis_x_up_axes2_y = (
-        axis_y_up_axes2_in_base_z*axis_z_up_axes2_in_base_x -
-            axis_y_up_axes2_in_base_x*axis_z_up_axes2_in_base_z
-        )
-        axis_x_up_axes2_z = (
-        axis_y_up_axes2_in_base_x*axis_z_up_axes2_in_base_y -
-            axis_y_up_axes2_in_base_y*axis_z_up_axes2_in_base_x
-        )
-        # (up-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_up_t = R_xx*up_base_frame_xx + R_yx*up_base_frame_yx + R_zx*up_base_frame_zx
-        n_m1_up_t_2 = R_xy*up_base_frame_xx + R_yy*up_base_frame_yx + R_zy*up_base_frame_zx
-        n_m1_up_t_3 = R_xz*up_base_frame_xx + R_yz*up_base_frame_yx + R_zz*up_base_frame_zx
-        n_m1_up_t_4 = R_xx*up_base_frame_xy + R_yx*up_base_frame_yy + R_zx*up_base_frame_zy
-        n_m1_up_t_5 = R_xy*up_base_frame_xy + R_yy*up_base_frame_yy + R_zy*up_base_frame_zy
-        n_m1_up_t_6 = R_xz*up_base_frame_xy + R_yz*up_base_frame_yy + R_zz*up_base_frame_zy
-        n_m1_up_t_7 = R_xx*up_base_frame_xz + R_yx*up_base_frame_yz + R_zx*up_base_frame_zz
-        n_m1_up_t_8 = R_xy*up_base_frame_xz + R_yy*up_base_frame_yz + R_zy*up_base_frame_zz
-        n_m1_up_t_9 = R_xz*up_base_frame_xz + R_yz*up_base_frame_yz + R_zz*up_base_frame_zz
-        end_p1_up_r0_x = (
-        n_m1_up_t*up_platform_joint_rotation_yx + n_m1_up_t_2*up_platform_joint_rotation_yy +
-            n_m1_up_t_3*up_platform_joint_rotation_yz
-        )
-        end_p1_up_r0_y = (
-        n_m1_up_t_4*up_platform_joint_rotation_yx + n_m1_up_t_5*up_platform_joint_rotation_yy +
-            n_m1_up_t_6*up_platform_joint_rotation_yz
-        )
-        end_p1_up_r0_z = (
-        n_m1_up_t_7*up_platform_joint_rotation_yx + n_m1_up_t_8*up_platform_joint_rotation_yy +
-            n_m1_up_t_9*up_platform_joint_rotation_yz
-        )
-        end_p1_up_r1_x = end_p1_up_r0_y*s_1_up - c_1_up*end_p1_up_r0_x
-        end_p1_up_r1_y = -c_1_up*end_p1_up_r0_y - end_p1_up_r0_x*s_1_up
-        end_p1_up_r3_x = end_p1_up_r0_z*s_2_up - c_2_up*end_p1_up_r1_y
-        end_p1_up_r3_y = -c_2_up*end_p1_up_r0_z - end_p1_up_r1_y*s_2_up
-        # (up-V6) direction 2 of the moment that the platform joint transmits
-        end_p2_up_r0_x = (
-        n_m1_up_t*up_platform_joint_rotation_zx + n_m1_up_t_2*up_platform_joint_rotation_zy +
-            n_m1_up_t_3*up_platform_joint_rotation_zz
-        )
-        end_p2_up_r0_y = (
-        n_m1_up_t_4*up_platform_joint_rotation_zx + n_m1_up_t_5*up_platform_joint_rotation_zy +
-            n_m1_up_t_6*up_platform_joint_rotation_zz
-        )
-        end_p2_up_r0_z = (
-        n_m1_up_t_7*up_platform_joint_rotation_zx + n_m1_up_t_8*up_platform_joint_rotation_zy +
-            n_m1_up_t_9*up_platform_joint_rotation_zz
-        )
-        end_p2_up_r1_x = end_p2_up_r0_y*s_1_up - c_1_up*end_p2_up_r0_x
-        end_p2_up_r1_y = -c_1_up*end_p2_up_r0_y - end_p2_up_r0_x*s_1_up
-        end_p2_up_r3_x = end_p2_up_r0_z*s_2_up - c_2_up*end_p2_up_r1_y
-        end_p2_up_r3_y = -c_2_up*end_p2_up_r0_z - end_p2_up_r1_y*s_2_up
-        # (up-V7) direction 3 of the moment that the platform joint transmits
-        end_p3_up_r0_x = (
-        n_m1_up_t*up_platform_joint_rotation_xx + n_m1_up_t_2*up_platform_joint_rotation_xy +
-            n_m1_up_t_3*up_platform_joint_rotation_xz
-        )
-        end_p3_up_r0_y = (
-        n_m1_up_t_4*up_platform_joint_rotation_xx + n_m1_up_t_5*up_platform_joint_rotation_xy +
-            n_m1_up_t_6*up_platform_joint_rotation_xz
-        )
-        end_p3_up_r0_z = (
-        n_m1_up_t_7*up_platform_joint_rotation_xx + n_m1_up_t_8*up_platform_joint_rotation_xy +
-            n_m1_up_t_9*up_platform_joint_rotation_xz
-        )
-        end_p3_up_r1_x = end_p3_up_r0_y*s_1_up - c_1_up*end_p3_up_r0_x
-        end_p3_up_r1_y = -c_1_up*end_p3_up_r0_y - end_p3_up_r0_x*s_1_up
-        end_p3_up_r3_x = end_p3_up_r0_z*s_2_up - c_2_up*end_p3_up_r1_y
-        end_p3_up_r3_y = -c_2_up*end_p3_up_r0_z - end_p3_up_r1_y*s_2_up
-        # (up-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_up_t_10 = c_2_up*end_p1_up_r1_x
-        # (up-V6) direction 2 of the moment that the platform joint transmits
-        n_m2_up_r0_y = -c_2_up*end_p2_up_r3_x - end_p2_up_r3_y*s_2_up
-        # (up-V7) direction 3 of the moment that the platform joint transmits
-        n_m3_up_t = end_p3_up_r1_x*s_2_up
-        # (up-V8) force part of the wrench that does no work along the leg's freedoms, 1
-        f_c1_up_t_3 = end_p1_up_r3_y*n_m3_up_t + end_p3_up_r3_x*n_m1_up_t_10
-        inv_f_c1_up_t_26 = 1.0/f_c1_up_t_3
-        # (up-V16) force part of the wrench that does no work along the leg's freedoms, 3
-        f_c3_up_t = end_p3_up_r3_x*inv_f_c1_up_t_26*n_m2_up_r0_y
-        f_c3_up_t_2 = end_p1_up_r3_y*inv_f_c1_up_t_26*n_m2_up_r0_y
-        # (up-V32) size of the moment
-        size_c3_up = sqrt(1.0 + f_c3_up_t*f_c3_up_t + f_c3_up_t_2*f_c3_up_t_2)
-        # (up-V34) moment along direction 1 that goes with it
-        inv_size_c3_up = 1.0/size_c3_up
-        # (up-V38) force part of reciprocal wrench 1
-        w_1_up_t = 1.35*n_m1_up_t_10
-        w_1_up_t_2 = 1.35*n_m2_up_r0_y
-        w_1_up_t_3 = 1.35*n_m3_up_t
-        w_1_up_t_4 = 1.35*end_p1_up_r3_y
-        w_1_up_t_5 = 1.35*end_p3_up_r3_x
-        w_1_up_t_6 = 1.35*inv_f_c1_up_t_26*n_m3_up_t*root_2_up
-        w_1_up_t_7 = 1.35*inv_f_c1_up_t_26*n_m1_up_t_10*root_2_up
-        w_1_up_t_8 = 1.35*end_p3_up_r3_x*inv_f_c1_up_t_26*root_1_up
-        w_1_up_t_9 = 1.35*end_p1_up_r3_y*inv_f_c1_up_t_26*root_1_up
-        w_1_up_t_10 = 1.35*f_c3_up_t*inv_size_c3_up
-        w_1_up_t_11 = 1.35*inv_size_c3_up
-        w_1_up_t_12 = 1.35*f_c3_up_t_2*inv_size_c3_up
-        w_1_up_t_13 = sqrt(rho2_2_up + w_1_up_t_4*w_1_up_t_4 + w_1_up_t_5*w_1_up_t_5)
-        inv_w_1_up_t_16 = 1.0/w_1_up_t_13
-        w_1_up_t_14 = inv_w_1_up_t_16*root_2_up
-        w_1_up_t_15 = inv_w_1_up_t_16*w_1_up_t_4
-        w_1_up_t_16 = inv_w_1_up_t_16*w_1_up_t_5
-        w_1_up_t_17 = w_1_up_t_15*w_1_up_t_6 + w_1_up_t_16*w_1_up_t_7 - w_1_up_t_14
-        w_1_up_t_18 = 1.0 + w_1_up_t_14*w_1_up_t_17
-        w_1_up_t_19 = w_1_up_t_15*w_1_up_t_17 - w_1_up_t_6
-        w_1_up_t_20 = w_1_up_t_16*w_1_up_t_17 - w_1_up_t_7
-        w_1_up_t_21 = w_1_up_t_15*w_1_up_t_8 - w_1_up_t_16*w_1_up_t_9
-        w_1_up_t_22 = w_1_up_t_14*w_1_up_t_21
-        w_1_up_t_23 = w_1_up_t_15*w_1_up_t_21 - w_1_up_t_8
-        w_1_up_t_24 = w_1_up_t_9 + w_1_up_t_16*w_1_up_t_21
-        w_1_up_t_25 = w_1_up_t_10*w_1_up_t_15 - w_1_up_t_12*w_1_up_t_16
-        w_1_up_t_26 = w_1_up_t_14*w_1_up_t_25
-        w_1_up_t_27 = w_1_up_t_10 - w_1_up_t_15*w_1_up_t_25
-        w_1_up_t_28 = w_1_up_t_12 + w_1_up_t_16*w_1_up_t_25
-        w_1_up_t_29 = w_1_up_t*w_1_up_t_15 - w_1_up_t_16*w_1_up_t_3
-        w_1_up_t_30 = w_1_up_t_14*w_1_up_t_29
-        w_1_up_t_31 = w_1_up_t - w_1_up_t_15*w_1_up_t_29
-        w_1_up_t_32 = w_1_up_t_3 + w_1_up_t_16*w_1_up_t_29
-        w_1_up_t_33 = (
-        sqrt(w_1_up_t_18*w_1_up_t_18 + w_1_up_t_19*w_1_up_t_19 + w_1_up_t_20*w_1_up_t_20)
-        )
-        inv_w_1_up_t_57 = 1.0/w_1_up_t_33
-        w_1_up_t_34 = inv_w_1_up_t_57*w_1_up_t_18
-        w_1_up_t_35 = inv_w_1_up_t_57*w_1_up_t_19
-        w_1_up_t_36 = inv_w_1_up_t_57*w_1_up_t_20
-        w_1_up_t_37 = w_1_up_t_22*w_1_up_t_34 + w_1_up_t_23*w_1_up_t_35 + w_1_up_t_24*w_1_up_t_36
-        w_1_up_t_38 = w_1_up_t_22 - w_1_up_t_34*w_1_up_t_37
-        w_1_up_t_39 = w_1_up_t_23 - w_1_up_t_35*w_1_up_t_37
-        w_1_up_t_40 = w_1_up_t_24 - w_1_up_t_36*w_1_up_t_37
-        w_1_up_t_41 = w_1_up_t_26*w_1_up_t_34 + w_1_up_t_28*w_1_up_t_36 - w_1_up_t_27*w_1_up_t_35
-        w_1_up_t_42 = w_1_up_t_26 - w_1_up_t_34*w_1_up_t_41
-        w_1_up_t_43 = w_1_up_t_27 + w_1_up_t_35*w_1_up_t_41
-        w_1_up_t_44 = w_1_up_t_28 - w_1_up_t_36*w_1_up_t_41
-        w_1_up_t_45 = w_1_up_t_30*w_1_up_t_34 + w_1_up_t_32*w_1_up_t_36 - w_1_up_t_31*w_1_up_t_35
-        w_1_up_t_46 = w_1_up_t_30 - w_1_up_t_34*w_1_up_t_45
-        w_1_up_t_47 = w_1_up_t_31 + w_1_up_t_35*w_1_up_t_45
-        w_1_up_t_48 = w_1_up_t_32 - w_1_up_t_36*w_1_up_t_45
-        w_1_up_t_49 = (
-        sqrt(1.0 + w_1_up_t_38*w_1_up_t_38 + w_1_up_t_39*w_1_up_t_39 + w_1_up_t_40*w_1_up_t_40)
-        )
-        inv_w_1_up_t_95 = 1.0/w_1_up_t_49
-        w_1_up_t_50 = inv_w_1_up_t_95*w_1_up_t_38
-        w_1_up_t_51 = inv_w_1_up_t_95*w_1_up_t_39
-        w_1_up_t_52 = inv_w_1_up_t_95*w_1_up_t_40
-        w_1_up_t_53 = w_1_up_t_42*w_1_up_t_50 + w_1_up_t_44*w_1_up_t_52 - w_1_up_t_43*w_1_up_t_51
-        w_1_up_t_54 = w_1_up_t_50*w_1_up_t_53 - w_1_up_t_42
-        w_1_up_t_55 = inv_w_1_up_t_95*w_1_up_t_53
-        w_1_up_t_56 = w_1_up_t_43 + w_1_up_t_51*w_1_up_t_53
-        w_1_up_t_57 = w_1_up_t_52*w_1_up_t_53 - w_1_up_t_44
-        w_1_up_t_58 = (
-        w_1_up_t_46*w_1_up_t_50 + w_1_up_t_48*w_1_up_t_52 - inv_w_1_up_t_95*root_1_up -
-            w_1_up_t_47*w_1_up_t_51
-        )
-        w_1_up_t_59 = w_1_up_t_50*w_1_up_t_58 - w_1_up_t_46
-        w_1_up_t_60 = root_1_up + inv_w_1_up_t_95*w_1_up_t_58
-        w_1_up_t_61 = w_1_up_t_47 + w_1_up_t_51*w_1_up_t_58
-        w_1_up_t_62 = w_1_up_t_52*w_1_up_t_58 - w_1_up_t_48
-        w_1_up_t_63 = (
-        sqrt(w_1_up_t_11*w_1_up_t_11 + w_1_up_t_54*w_1_up_t_54 + w_1_up_t_55*w_1_up_t_55 +
-            w_1_up_t_56*w_1_up_t_56 + w_1_up_t_57*w_1_up_t_57)
-        )
-        inv_w_1_up_t_129 = 1.0/w_1_up_t_63
-        w_1_up_t_64 = inv_w_1_up_t_129*w_1_up_t_54
-        w_1_up_t_65 = inv_w_1_up_t_129*w_1_up_t_55
-        w_1_up_t_66 = inv_w_1_up_t_129*w_1_up_t_56
-        w_1_up_t_67 = inv_w_1_up_t_129*w_1_up_t_11
-        w_1_up_t_68 = inv_w_1_up_t_129*w_1_up_t_57
-        w_1_up_t_69 = (
-        w_1_up_t_59*w_1_up_t_64 + w_1_up_t_60*w_1_up_t_65 + w_1_up_t_61*w_1_up_t_66 +
-            w_1_up_t_62*w_1_up_t_68 - w_1_up_t_2*w_1_up_t_67
-        )
-        w_1_up_t_70 = w_1_up_t_59 - w_1_up_t_64*w_1_up_t_69
-        w_1_up_t_71 = w_1_up_t_60 - w_1_up_t_65*w_1_up_t_69
-        w_1_up_t_72 = w_1_up_t_61 - w_1_up_t_66*w_1_up_t_69
-        w_1_up_t_73 = w_1_up_t_2 + w_1_up_t_67*w_1_up_t_69
-        w_1_up_t_74 = w_1_up_t_62 - w_1_up_t_68*w_1_up_t_69
-        w_1_up_t_75 = (
-        sqrt(w_1_up_t_70*w_1_up_t_70 + w_1_up_t_71*w_1_up_t_71 + w_1_up_t_72*w_1_up_t_72 +
-            w_1_up_t_73*w_1_up_t_73 + w_1_up_t_74*w_1_up_t_74)
-        )
-        inv_w_1_up_t_157 = 1.0/w_1_up_t_75
-        w_1_up_t_76 = inv_w_1_up_t_157*w_1_up_t_70
-        w_1_up_t_77 = inv_w_1_up_t_157*w_1_up_t_71
-        w_1_up_t_78 = inv_w_1_up_t_157*w_1_up_t_72
-        w_1_up_t_79 = inv_w_1_up_t_157*w_1_up_t_73
-        w_1_up_t_80 = inv_w_1_up_t_157*w_1_up_t_74
-        # (up-V1) velocity of the connection point
-        S_dot_up_t = omega_y*q_up_in_base_z - omega_z*q_up_in_base_y
-        S_dot_up_t_2 = omega_z*q_up_in_base_x - omega_x*q_up_in_base_z
-        S_dot_up_t_3 = omega_x*q_up_in_base_y - omega_y*q_up_in_base_x
-        S_dot_up_x = S_dot_up_t + t_dot_x
-        S_dot_up_y = S_dot_up_t_2 + t_dot_y
-        S_dot_up_z = S_dot_up_t_3 + t_dot_z
-        # (up-V53) rate at which the joints turn along moment direction 1
-        omega_tip_x = (
-        axis_x_up_axes2_x*omega_x + axis_x_up_axes2_y*omega_y + axis_x_up_axes2_z*omega_z
-        )
-        omega_tip_y = (
-        axis_y_up_axes2_in_base_x*omega_x + axis_y_up_axes2_in_base_y*omega_y +
-            axis_y_up_axes2_in_base_z*omega_z
-        )
-        omega_tip_z = (
-        axis_z_up_axes2_in_base_x*omega_x + axis_z_up_axes2_in_base_y*omega_y +
-            axis_z_up_axes2_in_base_z*omega_z
-        )
-        eta_1_up = end_p1_up_r3_y*omega_tip_z - end_p1_up_r1_x*omega_tip_y
-        # (up-V54) rate at which the joints turn along moment direction 2
-        eta_2_up = end_p2_up_r3_x*omega_tip_y - end_p2_up_r3_y*omega_tip_x
-        # (up-V55) rate at which the joints turn along moment direction 3
-        eta_3_up = end_p3_up_r3_x*omega_tip_z - end_p3_up_r1_x*omega_tip_x
-        # (up-V1) velocity of the connection point
-        S_dot_up_tip_x = (
-        S_dot_up_x*axis_x_up_axes2_x + S_dot_up_y*axis_x_up_axes2_y + S_dot_up_z*axis_x_up_axes2_z
-        )
-        S_dot_up_tip_y = (
-        S_dot_up_x*axis_y_up_axes2_in_base_x + S_dot_up_y*axis_y_up_axes2_in_base_y +
-            S_dot_up_z*axis_y_up_axes2_in_base_z
-        )
-        S_dot_up_tip_z = (
-        S_dot_up_x*axis_z_up_axes2_in_base_x + S_dot_up_y*axis_z_up_axes2_in_base_y +
-            S_dot_up_z*axis_z_up_axes2_in_base_z
-        )
-        # (up-V56) rate of joint 1
-        qd_1_up_t = 1.35*eta_1_up
-        qd_1_up_t_2 = 1.35*eta_2_up
-        qd_1_up_t_3 = 1.35*eta_3_up
-        qd_1_up_t_4 = (
-        inv_w_1_up_t_157*(S_dot_up_tip_y*w_1_up_t_76 + S_dot_up_tip_z*w_1_up_t_77 +
-            qd_1_up_t*w_1_up_t_78 + qd_1_up_t_2*w_1_up_t_79 + qd_1_up_t_3*w_1_up_t_80)
-        )
-        qd_1_up_t_5 = (
-        inv_w_1_up_t_129*(S_dot_up_tip_y*w_1_up_t_64 + S_dot_up_tip_z*w_1_up_t_65 +
-            qd_1_up_t*w_1_up_t_66 + qd_1_up_t_3*w_1_up_t_68 - qd_1_up_t_2*w_1_up_t_67 -
-            qd_1_up_t_4*w_1_up_t_69)
-        )
-        qd_1_up_t_6 = (
-        inv_w_1_up_t_95*(S_dot_up_tip_y*w_1_up_t_50 + S_dot_up_tip_z*inv_w_1_up_t_95 +
-            qd_1_up_t*w_1_up_t_51 + qd_1_up_t_3*w_1_up_t_52 + qd_1_up_t_4*w_1_up_t_58 +
-            qd_1_up_t_5*w_1_up_t_53)
-        )
-        qd_1_up_t_7 = (
-        S_dot_up_tip_y*w_1_up_t_14 + qd_1_up_t*w_1_up_t_15 + qd_1_up_t_3*w_1_up_t_16 +
-            qd_1_up_t_6*w_1_up_t_21 + inv_w_1_up_t_57*w_1_up_t_17*(S_dot_up_tip_y*w_1_up_t_34 +
-            qd_1_up_t*w_1_up_t_35 + qd_1_up_t_3*w_1_up_t_36 + qd_1_up_t_4*w_1_up_t_45 +
-            qd_1_up_t_5*w_1_up_t_41 - qd_1_up_t_6*w_1_up_t_37) - qd_1_up_t_4*w_1_up_t_29 -
-            qd_1_up_t_5*w_1_up_t_25
-        )
-        qd_1_up_t_8 = inv_w_1_up_t_16*qd_1_up_t_7
-        # (up-V59) angular velocity of link 1
-        omega_1_up_t = qd_1_up_t_4*s_2_up
-        omega_1_up_t_2 = c_2_up*qd_1_up_t_4
-        # (up-A8) rate of moment direction 1
-        nd_m1_up_y = (
-        end_p1_up_r3_x*omega_1_up_t_2 + end_p1_up_r3_x*omega_tip_y - end_p1_up_r3_y*omega_tip_x
-        )
-        nd_m1_up_z = (
-        end_p1_up_r3_x*omega_tip_z - end_p1_up_r1_x*omega_tip_x - end_p1_up_r3_x*qd_1_up_t_8
-        )
-        # (up-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_up_x = omega_1_up_t_2*qd_1_up_t_8
-        zeta_2_up_y = omega_1_up_t*qd_1_up_t_8
-        # (up-A9) bias of the angular acceleration along moment direction 1
-        nu_1_up_t = omega_1_up_t - omega_tip_x
-        nu_1_up_t_2 = omega_1_up_t_2 + omega_tip_y
-        nu_1_up_t_3 = omega_tip_z - qd_1_up_t_8
-        nu_1_up_t_4 = (
-        nd_m1_up_y*nu_1_up_t_2 + nd_m1_up_z*nu_1_up_t_3 - nu_1_up_t*(end_p1_up_r1_x*qd_1_up_t_8 -
-            end_p1_up_r3_y*omega_1_up_t_2)
-        )
-        nu_1_up = nu_1_up_t_4 - end_p1_up_r1_x*zeta_2_up_y
-        # (up-A10) rate of moment direction 2
-        nd_m2_up_x = (
-        end_p2_up_r1_x*omega_tip_x - end_p2_up_r1_x*omega_1_up_t - end_p2_up_r3_x*omega_tip_z
-        )
-        nd_m2_up_y = (
-        end_p2_up_r1_x*omega_1_up_t_2 + end_p2_up_r1_x*omega_tip_y - end_p2_up_r3_y*omega_tip_z
-        )
-        # (up-A11) bias of the angular acceleration along moment direction 2
-        nu_2_up_t = end_p2_up_r3_y*zeta_2_up_x - end_p2_up_r3_x*zeta_2_up_y
-        nu_2_up_t_2 = (
-        nd_m2_up_x*nu_1_up_t + nu_1_up_t_3*(end_p2_up_r3_y*omega_1_up_t_2 -
-            end_p2_up_r3_x*omega_1_up_t) - nd_m2_up_y*nu_1_up_t_2
-        )
-        nu_2_up = -nu_2_up_t - nu_2_up_t_2
-        # (up-A12) rate of moment direction 3
-        nd_m3_up_x = (
-        end_p3_up_r3_x*omega_tip_y + end_p3_up_r3_y*omega_1_up_t - end_p3_up_r3_y*omega_tip_x
-        )
-        nd_m3_up_z = (
-        end_p3_up_r1_x*omega_tip_y + end_p3_up_r3_y*qd_1_up_t_8 - end_p3_up_r3_y*omega_tip_z
-        )
-        # (up-A13) bias of the angular acceleration along moment direction 3
-        nu_3_up_t = (
-        nd_m3_up_x*nu_1_up_t + nu_1_up_t_2*(end_p3_up_r1_x*qd_1_up_t_8 +
-            end_p3_up_r3_x*omega_1_up_t) - nd_m3_up_z*nu_1_up_t_3
-        )
-        nu_3_up = -nu_3_up_t - end_p3_up_r1_x*zeta_2_up_x
-        # (up-V61) centripetal tensor of link 2
-        W_2_up_t = omega_1_up_t*omega_1_up_t
-        W_2_up_t_2 = omega_1_up_t_2*omega_1_up_t_2
-        W_2_up_t_3 = qd_1_up_t_8*qd_1_up_t_8
-        W_2_up_xy = omega_1_up_t*omega_1_up_t_2
-        # (up-A5) acceleration of the connection point at zero joint accelerations
-        bias_up_t = root_2_up*zeta_2_up_y
-        bias_up_t_2 = W_2_up_xy*root_2_up
-        bias_up_t_3 = 2.0*S_dot_up_tip_x
-        bias_up_t_4 = bias_up_t_3*qd_1_up_t_8
-        bias_up_t_5 = bias_up_t_3*omega_1_up_t_2
-        bias_up_y = bias_up_t_4 - bias_up_t_2
-        bias_up_z = 2.0*bias_up_t + bias_up_t_5
-        # (up-A1) centripetal acceleration of the connection point
-        u_1_up_x = S_dot_up_t_3*omega_y - S_dot_up_t_2*omega_z
-        u_1_up_y = S_dot_up_t*omega_z - S_dot_up_t_3*omega_x
-        u_1_up_z = S_dot_up_t_2*omega_x - S_dot_up_t*omega_y
-        # (up-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_up_o_y = (
-        axis_y_up_axes2_in_base_x*u_1_up_x + axis_y_up_axes2_in_base_y*u_1_up_y +
-            axis_y_up_axes2_in_base_z*u_1_up_z - bias_up_y
-        )
-        rel_up_o_z = (
-        axis_z_up_axes2_in_base_x*u_1_up_x + axis_z_up_axes2_in_base_y*u_1_up_y +
-            axis_z_up_axes2_in_base_z*u_1_up_z - bias_up_z
-        )
-        # (up-A18) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_up_o_t = 1.35*nu_1_up
-        qdd_1_up_o_t_2 = 1.35*nu_2_up
-        qdd_1_up_o_t_3 = 1.35*nu_3_up
-        qdd_1_up_o_t_4 = (
-        inv_w_1_up_t_157*(qdd_1_up_o_t*w_1_up_t_78 + qdd_1_up_o_t_2*w_1_up_t_79 +
-            qdd_1_up_o_t_3*w_1_up_t_80 + rel_up_o_y*w_1_up_t_76 + rel_up_o_z*w_1_up_t_77)
-        )
-        qdd_1_up_o_t_5 = (
-        inv_w_1_up_t_129*(qdd_1_up_o_t*w_1_up_t_66 + qdd_1_up_o_t_3*w_1_up_t_68 +
-            rel_up_o_y*w_1_up_t_64 + rel_up_o_z*w_1_up_t_65 - qdd_1_up_o_t_2*w_1_up_t_67 -
-            qdd_1_up_o_t_4*w_1_up_t_69)
-        )
-        qdd_1_up_o_t_6 = (
-        inv_w_1_up_t_95*(inv_w_1_up_t_95*rel_up_o_z + qdd_1_up_o_t*w_1_up_t_51 +
-            qdd_1_up_o_t_3*w_1_up_t_52 + qdd_1_up_o_t_4*w_1_up_t_58 + qdd_1_up_o_t_5*w_1_up_t_53 +
-            rel_up_o_y*w_1_up_t_50)
-        )
-        qdd_1_up_o_t_7 = (
-        qdd_1_up_o_t*w_1_up_t_15 + qdd_1_up_o_t_3*w_1_up_t_16 + qdd_1_up_o_t_6*w_1_up_t_21 +
-            rel_up_o_y*w_1_up_t_14 + inv_w_1_up_t_57*w_1_up_t_17*(qdd_1_up_o_t*w_1_up_t_35 +
-            qdd_1_up_o_t_3*w_1_up_t_36 + qdd_1_up_o_t_4*w_1_up_t_45 + qdd_1_up_o_t_5*w_1_up_t_41 +
-            rel_up_o_y*w_1_up_t_34 - qdd_1_up_o_t_6*w_1_up_t_37) - qdd_1_up_o_t_4*w_1_up_t_29 -
-            qdd_1_up_o_t_5*w_1_up_t_25
-        )
-        qdd_1_up_o_t_8 = inv_w_1_up_t_16*qdd_1_up_o_t_7
-        # (up-A26) remainder without the acceleration in: angular acceleration of link 1
-        alpha_1_up_o_t = qdd_1_up_o_t_4*s_2_up
-        alpha_1_up_o_t_2 = c_2_up*qdd_1_up_o_t_4
-        # (up-A30) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_up_o_x = alpha_1_up_o_t - zeta_2_up_x
-        alpha_2_up_o_y = -alpha_1_up_o_t_2 - zeta_2_up_y
-        # (up-A32) remainder of the acceleration tensor of link 2
-        B_2_up_o_xy = -W_2_up_xy - qdd_1_up_o_t_8
-        B_2_up_o_yx = qdd_1_up_o_t_8 - W_2_up_xy
-        B_2_up_o_zx = zeta_2_up_y - alpha_2_up_o_y
-        B_2_up_o_zy = alpha_2_up_o_x - zeta_2_up_x
-        # (up-N6) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        g_r1_x = g_r0_y*s_1_up - c_1_up*g_r0_x
-        g_r1_y = -c_1_up*g_r0_y - g_r0_x*s_1_up
-        g_r3_x = g_r0_z*s_2_up - c_2_up*g_r1_y
-        g_r3_y = -c_2_up*g_r0_z - g_r1_y*s_2_up
-        acc_3_up_o_x = (
-        axis_x_up_axes2_x*u_1_up_x + axis_x_up_axes2_y*u_1_up_y + axis_x_up_axes2_z*u_1_up_z -
-            g_r3_x
-        )
-        acc_3_up_o_y = bias_up_t_4 + qdd_1_up_o_t_8*root_2_up - bias_up_t_2 - g_r3_y
-        acc_3_up_o_z = bias_up_t + bias_up_t_5 - g_r1_x - alpha_2_up_o_y*root_2_up
-        # (up-N14) remainder without the acceleration in: inertia force of link 3 less its weight
-        f_3_up_o_x = (
-        acc_3_up_o_x*up_link3_mass - B_2_up_o_xy*h_3_up_z - alpha_1_up_o_t_2*h_3_up_y -
-            h_3_up_x*(W_2_up_t_2 + W_2_up_t_3)
-        )
-        f_3_up_o_y = (
-        B_2_up_o_yx*h_3_up_x + acc_3_up_o_y*up_link3_mass + h_3_up_z*(W_2_up_t + W_2_up_t_3) -
-            alpha_1_up_o_t*h_3_up_y
-        )
-        f_3_up_o_z = (
-        B_2_up_o_zx*h_3_up_x + acc_3_up_o_z*up_link3_mass - B_2_up_o_zy*h_3_up_z -
-            h_3_up_y*(W_2_up_t + W_2_up_t_2)
-        )
-        # (up-N21) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_up_o_x = (
-        B_2_up_o_yx*J_group_2_up_xz + B_2_up_o_zy*Sigma_2_up_yy + J_group_2_up_yz*(W_2_up_t_2 -
-            W_2_up_t_3) + Sigma_2_up_zz*alpha_1_up_o_t + g_r1_x*h_2_up_z + g_r3_y*h_2_up_y -
-            B_2_up_o_zx*J_group_2_up_xy - acc_3_up_o_y*h_3_up_y - acc_3_up_o_z*h_3_up_z
-        )
-        mu_2_up_o_y = (
-        B_2_up_o_zy*J_group_2_up_xy + acc_3_up_o_x*h_3_up_y + g_r1_x*h_2_up_x -
-            B_2_up_o_xy*J_group_2_up_yz - B_2_up_o_zx*Sigma_2_up_xx - J_group_2_up_xz*(W_2_up_t -
-            W_2_up_t_3) - Sigma_2_up_zz*alpha_1_up_o_t_2 - acc_3_up_o_z*h_3_up_x - g_r3_x*h_2_up_y
-        )
-        mu_2_up_o_z = (
-        B_2_up_o_yx*Sigma_2_up_xx + J_group_2_up_xy*(W_2_up_t - W_2_up_t_2) +
-            J_group_2_up_xz*alpha_1_up_o_t + acc_3_up_o_x*h_3_up_z + acc_3_up_o_y*h_3_up_x -
-            B_2_up_o_xy*Sigma_2_up_yy - J_group_2_up_yz*alpha_1_up_o_t_2 - g_r3_x*h_2_up_z -
-            g_r3_y*h_2_up_x
-        )
-        # (up-N25) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_up_o_y = mu_2_up_o_y - f_3_up_o_z*root_2_up
-        N_2_up_o_z = mu_2_up_o_z + f_3_up_o_y*root_2_up
-        # (up-N41) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_up_o_t = N_2_up_o_z*inv_w_1_up_t_16
-        G_up_o_t_2 = G_up_o_t*inv_w_1_up_t_57*w_1_up_t_17
-        G_up_o_t_3 = inv_w_1_up_t_95*(G_up_o_t*w_1_up_t_21 - G_up_o_t_2*w_1_up_t_37)
-        G_up_o_t_4 = (
-        inv_w_1_up_t_129*(G_up_o_t_2*w_1_up_t_41 + G_up_o_t_3*w_1_up_t_53 - G_up_o_t*w_1_up_t_25)
-        )
-        G_up_o_t_5 = (
-        inv_w_1_up_t_157*(G_up_o_t_2*w_1_up_t_45 + G_up_o_t_3*w_1_up_t_58 + mu_2_up_o_x*s_2_up -
-            G_up_o_t*w_1_up_t_29 - G_up_o_t_4*w_1_up_t_69 - N_2_up_o_y*c_2_up)
-        )
-        G_up_o_t_6 = (
-        G_up_o_t*w_1_up_t_14 + G_up_o_t_2*w_1_up_t_34 + G_up_o_t_3*w_1_up_t_50 +
-            G_up_o_t_4*w_1_up_t_64 + G_up_o_t_5*w_1_up_t_76
-        )
-        G_up_o_t_7 = G_up_o_t_3*inv_w_1_up_t_95 + G_up_o_t_4*w_1_up_t_65 + G_up_o_t_5*w_1_up_t_77
-        G_up_o_t_8 = (
-        G_up_o_t*w_1_up_t_15 + G_up_o_t_2*w_1_up_t_35 + G_up_o_t_3*w_1_up_t_51 +
-            G_up_o_t_4*w_1_up_t_66 + G_up_o_t_5*w_1_up_t_78
-        )
-        G_up_o_t_9 = 1.35*G_up_o_t_8
-        G_up_o_t_10 = G_up_o_t_4*w_1_up_t_67 - G_up_o_t_5*w_1_up_t_79
-        G_up_o_t_11 = 1.35*G_up_o_t_10
-        G_up_o_t_12 = (
-        G_up_o_t*w_1_up_t_16 + G_up_o_t_2*w_1_up_t_36 + G_up_o_t_3*w_1_up_t_52 +
-            G_up_o_t_4*w_1_up_t_68 + G_up_o_t_5*w_1_up_t_80
-        )
-        G_up_o_t_13 = 1.35*G_up_o_t_12
-        # (up-N67) velocity and gravity terms of the leg force
-        U_up_in_base_x = (
-        G_up_o_t_6*axis_y_up_axes2_in_base_x + G_up_o_t_7*axis_z_up_axes2_in_base_x +
-            axis_x_up_axes2_x*f_3_up_o_x
-        )
-        U_up_in_base_y = (
-        G_up_o_t_6*axis_y_up_axes2_in_base_y + G_up_o_t_7*axis_z_up_axes2_in_base_y +
-            axis_x_up_axes2_y*f_3_up_o_x
-        )
-        U_up_in_base_z = (
-        G_up_o_t_6*axis_y_up_axes2_in_base_z + G_up_o_t_7*axis_z_up_axes2_in_base_z +
-            axis_x_up_axes2_z*f_3_up_o_x
-        )
-        # (up-N57) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        G_m_up_o_x = G_up_o_t_11*end_p2_up_r3_y - G_up_o_t_13*end_p3_up_r1_x
-        G_m_up_o_y = -G_up_o_t_11*end_p2_up_r3_x - G_up_o_t_9*end_p1_up_r1_x
-        G_m_up_o_z = G_up_o_t_13*end_p3_up_r3_x + G_up_o_t_9*end_p1_up_r3_y
-        # (M7) rotational part of Z
-        Z_a_t_4 = (
-        G_m_up_o_x*axis_x_up_axes2_x + G_m_up_o_y*axis_y_up_axes2_in_base_x +
-            G_m_up_o_z*axis_z_up_axes2_in_base_x + U_up_in_base_z*q_up_in_base_y -
-            U_up_in_base_y*q_up_in_base_z
-        )
-        Z_a_t_5 = (
-        G_m_up_o_x*axis_x_up_axes2_y + G_m_up_o_y*axis_y_up_axes2_in_base_y +
-            G_m_up_o_z*axis_z_up_axes2_in_base_y + U_up_in_base_x*q_up_in_base_z -
-            U_up_in_base_z*q_up_in_base_x
-        )
-        Z_a_t_6 = (
-        G_m_up_o_x*axis_x_up_axes2_z + G_m_up_o_y*axis_y_up_axes2_in_base_z +
-            G_m_up_o_z*axis_z_up_axes2_in_base_z + U_up_in_base_y*q_up_in_base_x -
-            U_up_in_base_x*q_up_in_base_y
+        # (tube-S) from the base point to the connection point
+        tube_q_in_base_x = (
+        R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
+        )
+        tube_q_in_base_y = (
+        R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
+        )
+        tube_q_in_base_z = (
+        R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
+        )
+        tube_S_x = t_x + tube_q_in_base_x - tube_base_point_x
+        tube_S_y = t_y + tube_q_in_base_y - tube_base_point_y
+        tube_S_z = t_z + tube_q_in_base_z - tube_base_point_z
+        # (tube-px_1) component along the reference direction
+        tube_px_1 = (
+        tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
+        )
+        # (tube-py_1) component across the reference direction
+        tube_py_1 = (
+        tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
+        )
+        # (tube-rho2_1) squared amplitude
+        tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
+        # (tube-root_1) amplitude, with the sign of the branch
+        tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
+        # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        tube_xi_1_t = (
+        tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
+        )
+        # (tube-rho2_2) squared amplitude
+        tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t
+        # (tube-root_2) amplitude, with the sign of the branch
+        tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
+        # (tube-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_tube_root_2 = 1.0/tube_root_2
+        tube_c_2 = inv_tube_root_2*tube_root_1
+        # (tube-s_2) sine of the angle of joint 2 from its reference direction
+        tube_s_2 = inv_tube_root_2*tube_xi_1_t
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = inv_tube_root_1*tube_py_1
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_px_1
+        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        axis_z_tube_axes2_in_base_x = tube_base_frame_xy*tube_s_1 - tube_base_frame_xx*tube_c_1
+        axis_z_tube_axes2_in_base_y = tube_base_frame_yy*tube_s_1 - tube_base_frame_yx*tube_c_1
+        axis_z_tube_axes2_in_base_z = tube_base_frame_zy*tube_s_1 - tube_base_frame_zx*tube_c_1
+        tube_f_c1_t = tube_s_1*tube_s_2
+        tube_f_c1_t_2 = tube_c_1*tube_s_2
+        axis_y_tube_axes2_in_base_x = (
+        tube_base_frame_xx*tube_f_c1_t + tube_base_frame_xy*tube_f_c1_t_2 -
+            tube_base_frame_xz*tube_c_2
+        )
+        axis_y_tube_axes2_in_base_y = (
+        tube_base_frame_yx*tube_f_c1_t + tube_base_frame_yy*tube_f_c1_t_2 -
+            tube_base_frame_yz*tube_c_2
+        )
+        axis_y_tube_axes2_in_base_z = (
+        tube_base_frame_zx*tube_f_c1_t + tube_base_frame_zy*tube_f_c1_t_2 -
+            tube_base_frame_zz*tube_c_2
+        )
+        axis_x_tube_axes2_x = (
+        axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_z -
+            axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_y
+        )
+        axis_x_tube_axes2_y = (
+        axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_x -
+            axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_z
+        )
+        axis_x_tube_axes2_z = (
+        axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_y -
+            axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_x
+        )
+        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
+        tube_n_m1_t_2 = (
+        R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx + R_zy*tube_base_frame_zx
+        )
+        tube_n_m1_t_3 = (
+        R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx + R_zz*tube_base_frame_zx
+        )
+        tube_n_m1_t_4 = (
+        R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy + R_zx*tube_base_frame_zy
+        )
+        tube_n_m1_t_5 = (
+        R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy + R_zy*tube_base_frame_zy
+        )
+        tube_n_m1_t_6 = (
+        R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy + R_zz*tube_base_frame_zy
+        )
+        tube_n_m1_t_7 = (
+        R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz + R_zx*tube_base_frame_zz
+        )
+        tube_n_m1_t_8 = (
+        R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz + R_zy*tube_base_frame_zz
+        )
+        tube_n_m1_t_9 = (
+        R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz + R_zz*tube_base_frame_zz
+        )
+        tube_end_p1_r0_x = (
+        tube_n_m1_t*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_yz
+        )
+        tube_end_p1_r0_y = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_yz
+        )
+        tube_end_p1_r0_z = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_yz
+        )
+        tube_end_p1_r1_x = tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x
+        tube_end_p1_r1_y = -tube_c_1*tube_end_p1_r0_y - tube_end_p1_r0_x*tube_s_1
+        tube_end_p1_r3_x = tube_end_p1_r0_z*tube_s_2 - tube_c_2*tube_end_p1_r1_y
+        tube_end_p1_r3_y = -tube_c_2*tube_end_p1_r0_z - tube_end_p1_r1_y*tube_s_2
+        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
+        tube_end_p2_r0_x = (
+        tube_n_m1_t*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_zz
+        )
+        tube_end_p2_r0_y = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_zz
+        )
+        tube_end_p2_r0_z = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_zz
+        )
+        tube_end_p2_r1_x = tube_end_p2_r0_y*tube_s_1 - tube_c_1*tube_end_p2_r0_x
+        tube_end_p2_r1_y = -tube_c_1*tube_end_p2_r0_y - tube_end_p2_r0_x*tube_s_1
+        tube_end_p2_r3_x = tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y
+        tube_end_p2_r3_y = -tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2
+        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
+        tube_end_p3_r0_x = (
+        tube_n_m1_t*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_xz
+        )
+        tube_end_p3_r0_y = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_xz
+        )
+        tube_end_p3_r0_z = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_xz
+        )
+        tube_end_p3_r1_x = tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x
+        tube_end_p3_r1_y = -tube_c_1*tube_end_p3_r0_y - tube_end_p3_r0_x*tube_s_1
+        tube_end_p3_r3_x = tube_end_p3_r0_z*tube_s_2 - tube_c_2*tube_end_p3_r1_y
+        tube_end_p3_r3_y = -tube_c_2*tube_end_p3_r0_z - tube_end_p3_r1_y*tube_s_2
+        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        tube_n_m1_t_10 = tube_c_2*tube_end_p1_r1_x
+        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
+        tube_n_m2_r0_y = -tube_c_2*tube_end_p2_r3_x - tube_end_p2_r3_y*tube_s_2
+        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
+        tube_n_m3_t = tube_end_p3_r1_x*tube_s_2
+        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        tube_f_c1_t_3 = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10
+        inv_tube_f_c1_t_26 = 1.0/tube_f_c1_t_3
+        # (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3
+        tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y
+        tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y
+        # (tube-size_c3) size of the moment
+        tube_size_c3 = sqrt(1.0 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2)
+        # (tube-mu1_c3) moment along direction 1 that goes with it
+        inv_tube_size_c3 = 1.0/tube_size_c3
+        # (tube-w_1) force part of reciprocal wrench 1
+        tube_w_1_t = 1.35*tube_n_m1_t_10
+        tube_w_1_t_2 = 1.35*tube_n_m2_r0_y
+        tube_w_1_t_3 = 1.35*tube_n_m3_t
+        tube_w_1_t_4 = 1.35*tube_end_p1_r3_y
+        tube_w_1_t_5 = 1.35*tube_end_p3_r3_x
+        tube_w_1_t_6 = 1.35*inv_tube_f_c1_t_26*tube_n_m3_t*tube_root_2
+        tube_w_1_t_7 = 1.35*inv_tube_f_c1_t_26*tube_n_m1_t_10*tube_root_2
+        tube_w_1_t_8 = 1.35*inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_root_1
+        tube_w_1_t_9 = 1.35*inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_root_1
+        tube_w_1_t_10 = 1.35*inv_tube_size_c3*tube_f_c3_t
+        tube_w_1_t_11 = 1.35*inv_tube_size_c3
+        tube_w_1_t_12 = 1.35*inv_tube_size_c3*tube_f_c3_t_2
+        tube_w_1_t_13 = sqrt(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
+        inv_tube_w_1_t_16 = 1.0/tube_w_1_t_13
+        tube_w_1_t_14 = inv_tube_w_1_t_16*tube_root_2
+        tube_w_1_t_15 = inv_tube_w_1_t_16*tube_w_1_t_4
+        tube_w_1_t_16 = inv_tube_w_1_t_16*tube_w_1_t_5
+        tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
+        tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
+        tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
+        tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7
+        tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9
+        tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21
+        tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8
+        tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21
+        tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16
+        tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25
+        tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25
+        tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25
+        tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3
+        tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29
+        tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29
+        tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29
+        tube_w_1_t_33 = (
+        sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
+            tube_w_1_t_20*tube_w_1_t_20)
+        )
+        inv_tube_w_1_t_57 = 1.0/tube_w_1_t_33
+        tube_w_1_t_34 = inv_tube_w_1_t_57*tube_w_1_t_18
+        tube_w_1_t_35 = inv_tube_w_1_t_57*tube_w_1_t_19
+        tube_w_1_t_36 = inv_tube_w_1_t_57*tube_w_1_t_20
+        tube_w_1_t_37 = (
+        tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
+        )
+        tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37
+        tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37
+        tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37
+        tube_w_1_t_41 = (
+        tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 - tube_w_1_t_27*tube_w_1_t_35
+        )
+        tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41
+        tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41
+        tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41
+        tube_w_1_t_45 = (
+        tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 - tube_w_1_t_31*tube_w_1_t_35
+        )
+        tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45
+        tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45
+        tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45
+        tube_w_1_t_49 = (
+        sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
+            tube_w_1_t_40*tube_w_1_t_40)
+        )
+        inv_tube_w_1_t_95 = 1.0/tube_w_1_t_49
+        tube_w_1_t_50 = inv_tube_w_1_t_95*tube_w_1_t_38
+        tube_w_1_t_51 = inv_tube_w_1_t_95*tube_w_1_t_39
+        tube_w_1_t_52 = inv_tube_w_1_t_95*tube_w_1_t_40
+        tube_w_1_t_53 = (
+        tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
+        )
+        tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
+        tube_w_1_t_55 = inv_tube_w_1_t_95*tube_w_1_t_53
+        tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
+        tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
+        tube_w_1_t_58 = (
+        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_95*tube_root_1
+            - tube_w_1_t_47*tube_w_1_t_51
+        )
+        tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
+        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_95*tube_w_1_t_58
+        tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
+        tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
+        tube_w_1_t_63 = (
+        sqrt(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54 +
+            tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
+            tube_w_1_t_57*tube_w_1_t_57)
+        )
+        inv_tube_w_1_t_129 = 1.0/tube_w_1_t_63
+        tube_w_1_t_64 = inv_tube_w_1_t_129*tube_w_1_t_54
+        tube_w_1_t_65 = inv_tube_w_1_t_129*tube_w_1_t_55
+        tube_w_1_t_66 = inv_tube_w_1_t_129*tube_w_1_t_56
+        tube_w_1_t_67 = inv_tube_w_1_t_129*tube_w_1_t_11
+        tube_w_1_t_68 = inv_tube_w_1_t_129*tube_w_1_t_57
+        tube_w_1_t_69 = (
+        tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
+            tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
+        )
+        tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69
+        tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69
+        tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69
+        tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69
+        tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69
+        tube_w_1_t_75 = (
+        sqrt(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71 +
+            tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
+            tube_w_1_t_74*tube_w_1_t_74)
+        )
+        inv_tube_w_1_t_157 = 1.0/tube_w_1_t_75
+        tube_w_1_t_76 = inv_tube_w_1_t_157*tube_w_1_t_70
+        tube_w_1_t_77 = inv_tube_w_1_t_157*tube_w_1_t_71
+        tube_w_1_t_78 = inv_tube_w_1_t_157*tube_w_1_t_72
+        tube_w_1_t_79 = inv_tube_w_1_t_157*tube_w_1_t_73
+        tube_w_1_t_80 = inv_tube_w_1_t_157*tube_w_1_t_74
+        # (tube-S_dot) velocity of the connection point
+        tube_S_dot_t = omega_y*tube_q_in_base_z - omega_z*tube_q_in_base_y
+        tube_S_dot_t_2 = omega_z*tube_q_in_base_x - omega_x*tube_q_in_base_z
+        tube_S_dot_t_3 = omega_x*tube_q_in_base_y - omega_y*tube_q_in_base_x
+        tube_S_dot_x = t_dot_x + tube_S_dot_t
+        tube_S_dot_y = t_dot_y + tube_S_dot_t_2
+        tube_S_dot_z = t_dot_z + tube_S_dot_t_3
+        # (tube-eta_1) rate at which the joints turn along moment direction 1
+        tube_omega_tip_x = (
+        axis_x_tube_axes2_x*omega_x + axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z
+        )
+        tube_omega_tip_y = (
+        axis_y_tube_axes2_in_base_x*omega_x + axis_y_tube_axes2_in_base_y*omega_y +
+            axis_y_tube_axes2_in_base_z*omega_z
+        )
+        tube_omega_tip_z = (
+        axis_z_tube_axes2_in_base_x*omega_x + axis_z_tube_axes2_in_base_y*omega_y +
+            axis_z_tube_axes2_in_base_z*omega_z
+        )
+        tube_eta_1 = tube_end_p1_r3_y*tube_omega_tip_z - tube_end_p1_r1_x*tube_omega_tip_y
+        # (tube-eta_2) rate at which the joints turn along moment direction 2
+        tube_eta_2 = tube_end_p2_r3_x*tube_omega_tip_y - tube_end_p2_r3_y*tube_omega_tip_x
+        # (tube-eta_3) rate at which the joints turn along moment direction 3
+        tube_eta_3 = tube_end_p3_r3_x*tube_omega_tip_z - tube_end_p3_r1_x*tube_omega_tip_x
+        # (tube-S_dot) velocity of the connection point
+        tube_S_dot_tip_x = (
+        axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
+            axis_x_tube_axes2_z*tube_S_dot_z
+        )
+        tube_S_dot_tip_y = (
+        axis_y_tube_axes2_in_base_x*tube_S_dot_x + axis_y_tube_axes2_in_base_y*tube_S_dot_y +
+            axis_y_tube_axes2_in_base_z*tube_S_dot_z
+        )
+        tube_S_dot_tip_z = (
+        axis_z_tube_axes2_in_base_x*tube_S_dot_x + axis_z_tube_axes2_in_base_y*tube_S_dot_y +
+            axis_z_tube_axes2_in_base_z*tube_S_dot_z
+        )
+        # (tube-qd_3) rate of joint 3
+        tube_qd_3_t = 1.35*tube_eta_1
+        tube_qd_3_t_2 = 1.35*tube_eta_2
+        tube_qd_3_t_3 = 1.35*tube_eta_3
+        tube_qd_3_t_4 = (
+        inv_tube_w_1_t_157*(tube_S_dot_tip_y*tube_w_1_t_76 + tube_S_dot_tip_z*tube_w_1_t_77 +
+            tube_qd_3_t*tube_w_1_t_78 + tube_qd_3_t_2*tube_w_1_t_79 + tube_qd_3_t_3*tube_w_1_t_80)
+        )
+        tube_qd_3_t_5 = (
+        inv_tube_w_1_t_129*(tube_S_dot_tip_y*tube_w_1_t_64 + tube_S_dot_tip_z*tube_w_1_t_65 +
+            tube_qd_3_t*tube_w_1_t_66 + tube_qd_3_t_3*tube_w_1_t_68 - tube_qd_3_t_2*tube_w_1_t_67
+            - tube_qd_3_t_4*tube_w_1_t_69)
+        )
+        tube_qd_3_t_6 = (
+        inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_S_dot_tip_z + tube_S_dot_tip_y*tube_w_1_t_50 +
+            tube_qd_3_t*tube_w_1_t_51 + tube_qd_3_t_3*tube_w_1_t_52 + tube_qd_3_t_4*tube_w_1_t_58
+            + tube_qd_3_t_5*tube_w_1_t_53)
+        )
+        tube_qd_3_t_7 = (
+        tube_S_dot_tip_y*tube_w_1_t_14 + tube_qd_3_t*tube_w_1_t_15 + tube_qd_3_t_3*tube_w_1_t_16 +
+            tube_qd_3_t_6*tube_w_1_t_21 +
+            inv_tube_w_1_t_57*tube_w_1_t_17*(tube_S_dot_tip_y*tube_w_1_t_34 +
+            tube_qd_3_t*tube_w_1_t_35 + tube_qd_3_t_3*tube_w_1_t_36 + tube_qd_3_t_4*tube_w_1_t_45
+            + tube_qd_3_t_5*tube_w_1_t_41 - tube_qd_3_t_6*tube_w_1_t_37) -
+            tube_qd_3_t_4*tube_w_1_t_29 - tube_qd_3_t_5*tube_w_1_t_25
+        )
+        tube_qd_3_t_8 = inv_tube_w_1_t_16*tube_qd_3_t_7
+        # (tube-omega_1) angular velocity of link 1
+        tube_omega_1_t = tube_qd_3_t_4*tube_s_2
+        tube_omega_1_t_2 = tube_c_2*tube_qd_3_t_4
+        # (tube-u_1) centripetal acceleration of the connection point
+        tube_u_1_x = omega_y*tube_S_dot_t_3 - omega_z*tube_S_dot_t_2
+        tube_u_1_y = omega_z*tube_S_dot_t - omega_x*tube_S_dot_t_3
+        tube_u_1_z = omega_x*tube_S_dot_t_2 - omega_y*tube_S_dot_t
+        # (tube-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        tube_zeta_2_x = tube_omega_1_t_2*tube_qd_3_t_8
+        tube_zeta_2_y = tube_omega_1_t*tube_qd_3_t_8
+        # (tube-W_2) centripetal tensor of link 2
+        tube_W_2_t = tube_omega_1_t*tube_omega_1_t
+        tube_W_2_t_2 = tube_omega_1_t_2*tube_omega_1_t_2
+        tube_W_2_t_3 = tube_qd_3_t_8*tube_qd_3_t_8
+        tube_W_2_xy = tube_omega_1_t*tube_omega_1_t_2
+        # (tube-bias) acceleration of the connection point at zero joint accelerations
+        tube_bias_t = tube_root_2*tube_zeta_2_y
+        tube_bias_t_2 = tube_W_2_xy*tube_root_2
+        tube_bias_t_3 = 2.0*tube_S_dot_tip_x
+        tube_bias_t_4 = tube_bias_t_3*tube_qd_3_t_8
+        tube_bias_t_5 = tube_bias_t_3*tube_omega_1_t_2
+        tube_bias_y = tube_bias_t_4 - tube_bias_t_2
+        tube_bias_z = 2.0*tube_bias_t + tube_bias_t_5
+        # (tube-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        tube_rel_o_y = (
+        axis_y_tube_axes2_in_base_x*tube_u_1_x + axis_y_tube_axes2_in_base_y*tube_u_1_y +
+            axis_y_tube_axes2_in_base_z*tube_u_1_z - tube_bias_y
+        )
+        tube_rel_o_z = (
+        axis_z_tube_axes2_in_base_x*tube_u_1_x + axis_z_tube_axes2_in_base_y*tube_u_1_y +
+            axis_z_tube_axes2_in_base_z*tube_u_1_z - tube_bias_z
+        )
+        # (tube-nd_m1) rate of moment direction 1
+        tube_nd_m1_y = (
+        tube_end_p1_r3_x*tube_omega_1_t_2 + tube_end_p1_r3_x*tube_omega_tip_y -
+            tube_end_p1_r3_y*tube_omega_tip_x
+        )
+        tube_nd_m1_z = (
+        tube_end_p1_r3_x*tube_omega_tip_z - tube_end_p1_r1_x*tube_omega_tip_x -
+            tube_end_p1_r3_x*tube_qd_3_t_8
+        )
+        # (tube-nu_1) bias of the angular acceleration along moment direction 1
+        tube_nu_1_t = tube_omega_1_t - tube_omega_tip_x
+        tube_nu_1_t_2 = tube_omega_1_t_2 + tube_omega_tip_y
+        tube_nu_1_t_3 = tube_omega_tip_z - tube_qd_3_t_8
+        tube_nu_1_t_4 = (
+        tube_nd_m1_y*tube_nu_1_t_2 + tube_nd_m1_z*tube_nu_1_t_3 -
+            tube_nu_1_t*(tube_end_p1_r1_x*tube_qd_3_t_8 - tube_end_p1_r3_y*tube_omega_1_t_2)
+        )
+        tube_nu_1 = tube_nu_1_t_4 - tube_end_p1_r1_x*tube_zeta_2_y
+        # (tube-nd_m2) rate of moment direction 2
+        tube_nd_m2_x = (
+        tube_end_p2_r1_x*tube_omega_tip_x - tube_end_p2_r1_x*tube_omega_1_t -
+            tube_end_p2_r3_x*tube_omega_tip_z
+        )
+        tube_nd_m2_y = (
+        tube_end_p2_r1_x*tube_omega_1_t_2 + tube_end_p2_r1_x*tube_omega_tip_y -
+            tube_end_p2_r3_y*tube_omega_tip_z
+        )
+        # (tube-nu_2) bias of the angular acceleration along moment direction 2
+        tube_nu_2_t = tube_end_p2_r3_y*tube_zeta_2_x - tube_end_p2_r3_x*tube_zeta_2_y
+        tube_nu_2_t_2 = (
+        tube_nd_m2_x*tube_nu_1_t + tube_nu_1_t_3*(tube_end_p2_r3_y*tube_omega_1_t_2 -
+            tube_end_p2_r3_x*tube_omega_1_t) - tube_nd_m2_y*tube_nu_1_t_2
+        )
+        tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2
+        # (tube-nd_m3) rate of moment direction 3
+        tube_nd_m3_x = (
+        tube_end_p3_r3_x*tube_omega_tip_y + tube_end_p3_r3_y*tube_omega_1_t -
+            tube_end_p3_r3_y*tube_omega_tip_x
+        )
+        tube_nd_m3_z = (
+        tube_end_p3_r1_x*tube_omega_tip_y + tube_end_p3_r3_y*tube_qd_3_t_8 -
+            tube_end_p3_r3_y*tube_omega_tip_z
+        )
+        # (tube-nu_3) bias of the angular acceleration along moment direction 3
+        tube_nu_3_t = (
+        tube_nd_m3_x*tube_nu_1_t + tube_nu_1_t_2*(tube_end_p3_r1_x*tube_qd_3_t_8 +
+            tube_end_p3_r3_x*tube_omega_1_t) - tube_nd_m3_z*tube_nu_1_t_3
+        )
+        tube_nu_3 = -tube_nu_3_t - tube_end_p3_r1_x*tube_zeta_2_x
+        # (tube-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
+        tube_qdd_3_o_t = 1.35*tube_nu_1
+        tube_qdd_3_o_t_2 = 1.35*tube_nu_2
+        tube_qdd_3_o_t_3 = 1.35*tube_nu_3
+        tube_qdd_3_o_t_4 = (
+        inv_tube_w_1_t_157*(tube_qdd_3_o_t*tube_w_1_t_78 + tube_qdd_3_o_t_2*tube_w_1_t_79 +
+            tube_qdd_3_o_t_3*tube_w_1_t_80 + tube_rel_o_y*tube_w_1_t_76 +
+            tube_rel_o_z*tube_w_1_t_77)
+        )
+        tube_qdd_3_o_t_5 = (
+        inv_tube_w_1_t_129*(tube_qdd_3_o_t*tube_w_1_t_66 + tube_qdd_3_o_t_3*tube_w_1_t_68 +
+            tube_rel_o_y*tube_w_1_t_64 + tube_rel_o_z*tube_w_1_t_65 -
+            tube_qdd_3_o_t_2*tube_w_1_t_67 - tube_qdd_3_o_t_4*tube_w_1_t_69)
+        )
+        tube_qdd_3_o_t_6 = (
+        inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_rel_o_z + tube_qdd_3_o_t*tube_w_1_t_51 +
+            tube_qdd_3_o_t_3*tube_w_1_t_52 + tube_qdd_3_o_t_4*tube_w_1_t_58 +
+            tube_qdd_3_o_t_5*tube_w_1_t_53 + tube_rel_o_y*tube_w_1_t_50)
+        )
+        tube_qdd_3_o_t_7 = (
+        tube_qdd_3_o_t*tube_w_1_t_15 + tube_qdd_3_o_t_3*tube_w_1_t_16 +
+            tube_qdd_3_o_t_6*tube_w_1_t_21 + tube_rel_o_y*tube_w_1_t_14 +
+            inv_tube_w_1_t_57*tube_w_1_t_17*(tube_qdd_3_o_t*tube_w_1_t_35 +
+            tube_qdd_3_o_t_3*tube_w_1_t_36 + tube_qdd_3_o_t_4*tube_w_1_t_45 +
+            tube_qdd_3_o_t_5*tube_w_1_t_41 + tube_rel_o_y*tube_w_1_t_34 -
+            tube_qdd_3_o_t_6*tube_w_1_t_37) - tube_qdd_3_o_t_4*tube_w_1_t_29 -
+            tube_qdd_3_o_t_5*tube_w_1_t_25
+        )
+        tube_qdd_3_o_t_8 = inv_tube_w_1_t_16*tube_qdd_3_o_t_7
+        # (tube-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        tube_alpha_1_o_t = tube_qdd_3_o_t_4*tube_s_2
+        tube_alpha_1_o_t_2 = tube_c_2*tube_qdd_3_o_t_4
+        # (tube-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        tube_alpha_2_o_x = tube_alpha_1_o_t - tube_zeta_2_x
+        tube_alpha_2_o_y = -tube_alpha_1_o_t_2 - tube_zeta_2_y
+        # (tube-B_2_o) remainder of the acceleration tensor of link 2
+        tube_B_2_o_xy = -tube_W_2_xy - tube_qdd_3_o_t_8
+        tube_B_2_o_yx = tube_qdd_3_o_t_8 - tube_W_2_xy
+        tube_B_2_o_zx = tube_zeta_2_y - tube_alpha_2_o_y
+        tube_B_2_o_zy = tube_alpha_2_o_x - tube_zeta_2_x
+        # (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        tube_g_r1_x = tube_g_r0_y*tube_s_1 - tube_c_1*tube_g_r0_x
+        tube_g_r1_y = -tube_c_1*tube_g_r0_y - tube_g_r0_x*tube_s_1
+        tube_g_r3_x = tube_g_r0_z*tube_s_2 - tube_c_2*tube_g_r1_y
+        tube_g_r3_y = -tube_c_2*tube_g_r0_z - tube_g_r1_y*tube_s_2
+        tube_acc_3_o_x = (
+        axis_x_tube_axes2_x*tube_u_1_x + axis_x_tube_axes2_y*tube_u_1_y +
+            axis_x_tube_axes2_z*tube_u_1_z - tube_g_r3_x
+        )
+        tube_acc_3_o_y = (
+        tube_bias_t_4 + tube_qdd_3_o_t_8*tube_root_2 - tube_bias_t_2 - tube_g_r3_y
+        )
+        tube_acc_3_o_z = tube_bias_t + tube_bias_t_5 - tube_g_r1_x - tube_alpha_2_o_y*tube_root_2
+        # (tube-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight
+        tube_f_3_o_x = (
+        tube_acc_3_o_x*tube_link3_mass - tube_B_2_o_xy*tube_h_3_z - tube_alpha_1_o_t_2*tube_h_3_y
+            - tube_h_3_x*(tube_W_2_t_2 + tube_W_2_t_3)
+        )
+        tube_f_3_o_y = (
+        tube_B_2_o_yx*tube_h_3_x + tube_acc_3_o_y*tube_link3_mass + tube_h_3_z*(tube_W_2_t +
+            tube_W_2_t_3) - tube_alpha_1_o_t*tube_h_3_y
+        )
+        tube_f_3_o_z = (
+        tube_B_2_o_zx*tube_h_3_x + tube_acc_3_o_z*tube_link3_mass - tube_B_2_o_zy*tube_h_3_z -
+            tube_h_3_y*(tube_W_2_t + tube_W_2_t_2)
+        )
+        # (tube-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        tube_mu_2_o_x = (
+        tube_B_2_o_yx*tube_J_group_2_xz + tube_B_2_o_zy*tube_Sigma_2_yy +
+            tube_J_group_2_yz*(tube_W_2_t_2 - tube_W_2_t_3) + tube_Sigma_2_zz*tube_alpha_1_o_t +
+            tube_g_r1_x*tube_h_2_z + tube_g_r3_y*tube_h_2_y - tube_B_2_o_zx*tube_J_group_2_xy -
+            tube_acc_3_o_y*tube_h_3_y - tube_acc_3_o_z*tube_h_3_z
+        )
+        tube_mu_2_o_y = (
+        tube_B_2_o_zy*tube_J_group_2_xy + tube_acc_3_o_x*tube_h_3_y + tube_g_r1_x*tube_h_2_x -
+            tube_B_2_o_xy*tube_J_group_2_yz - tube_B_2_o_zx*tube_Sigma_2_xx -
+            tube_J_group_2_xz*(tube_W_2_t - tube_W_2_t_3) - tube_Sigma_2_zz*tube_alpha_1_o_t_2 -
+            tube_acc_3_o_z*tube_h_3_x - tube_g_r3_x*tube_h_2_y
+        )
+        tube_mu_2_o_z = (
+        tube_B_2_o_yx*tube_Sigma_2_xx + tube_J_group_2_xy*(tube_W_2_t - tube_W_2_t_2) +
+            tube_J_group_2_xz*tube_alpha_1_o_t + tube_acc_3_o_x*tube_h_3_z +
+            tube_acc_3_o_y*tube_h_3_x - tube_B_2_o_xy*tube_Sigma_2_yy -
+            tube_J_group_2_yz*tube_alpha_1_o_t_2 - tube_g_r3_x*tube_h_2_z - tube_g_r3_y*tube_h_2_x
+        )
+        # (tube-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        tube_N_2_o_y = tube_mu_2_o_y - tube_f_3_o_z*tube_root_2
+        tube_N_2_o_z = tube_mu_2_o_z + tube_f_3_o_y*tube_root_2
+        # (tube-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        tube_G_o_t = inv_tube_w_1_t_16*tube_N_2_o_z
+        tube_G_o_t_2 = inv_tube_w_1_t_57*tube_G_o_t*tube_w_1_t_17
+        tube_G_o_t_3 = inv_tube_w_1_t_95*(tube_G_o_t*tube_w_1_t_21 - tube_G_o_t_2*tube_w_1_t_37)
+        tube_G_o_t_4 = (
+        inv_tube_w_1_t_129*(tube_G_o_t_2*tube_w_1_t_41 + tube_G_o_t_3*tube_w_1_t_53 -
+            tube_G_o_t*tube_w_1_t_25)
+        )
+        tube_G_o_t_5 = (
+        inv_tube_w_1_t_157*(tube_G_o_t_2*tube_w_1_t_45 + tube_G_o_t_3*tube_w_1_t_58 +
+            tube_mu_2_o_x*tube_s_2 - tube_G_o_t*tube_w_1_t_29 - tube_G_o_t_4*tube_w_1_t_69 -
+            tube_N_2_o_y*tube_c_2)
+        )
+        tube_G_o_t_6 = (
+        tube_G_o_t*tube_w_1_t_14 + tube_G_o_t_2*tube_w_1_t_34 + tube_G_o_t_3*tube_w_1_t_50 +
+            tube_G_o_t_4*tube_w_1_t_64 + tube_G_o_t_5*tube_w_1_t_76
+        )
+        tube_G_o_t_7 = (
+        inv_tube_w_1_t_95*tube_G_o_t_3 + tube_G_o_t_4*tube_w_1_t_65 + tube_G_o_t_5*tube_w_1_t_77
+        )
+        tube_G_o_t_8 = (
+        tube_G_o_t*tube_w_1_t_15 + tube_G_o_t_2*tube_w_1_t_35 + tube_G_o_t_3*tube_w_1_t_51 +
+            tube_G_o_t_4*tube_w_1_t_66 + tube_G_o_t_5*tube_w_1_t_78
+        )
+        tube_G_o_t_9 = 1.35*tube_G_o_t_8
+        tube_G_o_t_10 = tube_G_o_t_4*tube_w_1_t_67 - tube_G_o_t_5*tube_w_1_t_79
+        tube_G_o_t_11 = 1.35*tube_G_o_t_10
+        tube_G_o_t_12 = (
+        tube_G_o_t*tube_w_1_t_16 + tube_G_o_t_2*tube_w_1_t_36 + tube_G_o_t_3*tube_w_1_t_52 +
+            tube_G_o_t_4*tube_w_1_t_68 + tube_G_o_t_5*tube_w_1_t_80
+        )
+        tube_G_o_t_13 = 1.35*tube_G_o_t_12
+        # (tube-U) velocity and gravity terms of the leg force
+        tube_U_in_base_x = (
+        axis_x_tube_axes2_x*tube_f_3_o_x + axis_y_tube_axes2_in_base_x*tube_G_o_t_6 +
+            axis_z_tube_axes2_in_base_x*tube_G_o_t_7
+        )
+        tube_U_in_base_y = (
+        axis_x_tube_axes2_y*tube_f_3_o_x + axis_y_tube_axes2_in_base_y*tube_G_o_t_6 +
+            axis_z_tube_axes2_in_base_y*tube_G_o_t_7
+        )
+        tube_U_in_base_z = (
+        axis_x_tube_axes2_z*tube_f_3_o_x + axis_y_tube_axes2_in_base_z*tube_G_o_t_6 +
+            axis_z_tube_axes2_in_base_z*tube_G_o_t_7
+        )
+        # (tube-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        tube_G_m_o_x = tube_G_o_t_11*tube_end_p2_r3_y - tube_G_o_t_13*tube_end_p3_r1_x
+        tube_G_m_o_y = -tube_G_o_t_11*tube_end_p2_r3_x - tube_G_o_t_9*tube_end_p1_r1_x
+        tube_G_m_o_z = tube_G_o_t_13*tube_end_p3_r3_x + tube_G_o_t_9*tube_end_p1_r3_y
+        # (Z_a) rotational part of Z
+        tube_Z_a_t = (
+        axis_x_tube_axes2_x*tube_G_m_o_x + axis_y_tube_axes2_in_base_x*tube_G_m_o_y +
+            axis_z_tube_axes2_in_base_x*tube_G_m_o_z + tube_U_in_base_z*tube_q_in_base_y -
+            tube_U_in_base_y*tube_q_in_base_z
+        )
+        tube_Z_a_t_2 = (
+        axis_x_tube_axes2_y*tube_G_m_o_x + axis_y_tube_axes2_in_base_y*tube_G_m_o_y +
+            axis_z_tube_axes2_in_base_y*tube_G_m_o_z + tube_U_in_base_x*tube_q_in_base_z -
+            tube_U_in_base_z*tube_q_in_base_x
+        )
+        tube_Z_a_t_3 = (
+        axis_x_tube_axes2_z*tube_G_m_o_x + axis_y_tube_axes2_in_base_z*tube_G_m_o_y +
+            axis_z_tube_axes2_in_base_z*tube_G_m_o_z + tube_U_in_base_y*tube_q_in_base_x -
+            tube_U_in_base_x*tube_q_in_base_y
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_up) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(rho2_2_up) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(f_c1_up_t_3) >
-            _TOLERANCE * 1.0) & (abs(size_c3_up) > _TOLERANCE * 1.0) & (abs(w_1_up_t_13) >
-            _TOLERANCE * 1.35) & (abs(w_1_up_t_33) > _TOLERANCE * 1.0) & (abs(w_1_up_t_49) >
-            _TOLERANCE * 1.0) & (abs(w_1_up_t_63) > _TOLERANCE * 1.35) & (abs(w_1_up_t_75) >
-            _TOLERANCE * 1.35))
+        ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_f_c1_t_3) > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) &
+            (abs(tube_w_1_t_13) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) &
+            (abs(tube_w_1_t_49) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) &
+            (abs(tube_w_1_t_75) > _TOLERANCE * 1.35))
         )
         sums = m.added(sums, leg, (
-        U_up_in_base_x, U_up_in_base_y, U_up_in_base_z, Z_a_t_4, Z_a_t_5, Z_a_t_6,
+        tube_U_in_base_x, tube_U_in_base_y, tube_U_in_base_z, tube_Z_a_t, tube_Z_a_t_2,
+            tube_Z_a_t_3,
         ))
-    total_up_x, total_up_y, total_up_z, total_up_x_2, total_up_y_2, total_up_z_2 = sums
-    # (M5) translational part of Z
-    Z_t_x = Z_p_x + total_up_x + total_ups_x
-    Z_t_y = Z_p_y + total_up_y + total_ups_y
-    Z_t_z = Z_p_z + total_up_z + total_ups_z
-    # (M7) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_up_x_2 + total_ups_x_2
-    Z_a_y = Z_q_in_base_y + total_up_y_2 + total_ups_y_2
-    Z_a_z = Z_q_in_base_z + total_up_z_2 + total_ups_z_2
+    (
+    total_tube_x, total_tube_y, total_tube_z, total_tube_x_2, total_tube_y_2, total_tube_z_2,
+    ) = sums
+    # (Z_t) translational part of Z
+    Z_t_x = Z_p_x + total_tube_x + total_ups_x
+    Z_t_y = Z_p_y + total_tube_y + total_ups_y
+    Z_t_z = Z_p_z + total_tube_z + total_ups_z
+    # (Z_a) rotational part of Z
+    Z_a_x = Z_q_in_base_x + total_tube_x_2 + total_ups_x_2
+    Z_a_y = Z_q_in_base_y + total_tube_y_2 + total_ups_y_2
+    Z_a_z = Z_q_in_base_z + total_tube_z_2 + total_ups_z_2
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
@@ -5186,63 +5552,63 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        branch_2_ups, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
             ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_2,
             ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
-        # (ups-K1) from the base point to the connection point
-        q_ups_in_base_x = (
+        # (ups-S) from the base point to the connection point
+        ups_q_in_base_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        q_ups_in_base_y = (
+        ups_q_in_base_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        q_ups_in_base_z = (
+        ups_q_in_base_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        S_ups_x = q_ups_in_base_x + t_x - ups_base_point_x
-        S_ups_y = q_ups_in_base_y + t_y - ups_base_point_y
-        S_ups_z = q_ups_in_base_z + t_z - ups_base_point_z
-        # (ups-K2) component along the reference direction
-        px_1_ups = (
-        S_ups_x*ups_base_frame_xx + S_ups_y*ups_base_frame_yx + S_ups_z*ups_base_frame_zx
+        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        # (ups-px_1) component along the reference direction
+        ups_px_1 = (
+        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-K3) component across the reference direction
-        py_1_ups = (
-        S_ups_x*ups_base_frame_xy + S_ups_y*ups_base_frame_yy + S_ups_z*ups_base_frame_zy
+        # (ups-py_1) component across the reference direction
+        ups_py_1 = (
+        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-K4) squared amplitude
-        rho2_1_ups = px_1_ups*px_1_ups + py_1_ups*py_1_ups
-        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_ups_t = (
-        S_ups_x*ups_base_frame_xz + S_ups_y*ups_base_frame_yz + S_ups_z*ups_base_frame_zz
+        # (ups-rho2_1) squared amplitude
+        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
+        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ups_xi_1_t = (
+        ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-K13) squared amplitude
-        rho2_2_ups = rho2_1_ups + xi_1_ups_t*xi_1_ups_t
-        # (ups-K14) amplitude, with the sign of the branch
-        root_2_ups = branch_2_ups*sqrt(rho2_2_ups)
-        # (ups-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2_ups = 1.0/root_2_ups
-        # (ups-V5) reciprocal vector 1
-        axis_x_x = S_ups_x*inv_root_2_ups
-        axis_x_y = S_ups_y*inv_root_2_ups
-        axis_x_z = S_ups_z*inv_root_2_ups
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_3_ups_x = axis_x_z*q_ups_in_base_y - axis_x_y*q_ups_in_base_z
-        H_a_3_ups_y = axis_x_x*q_ups_in_base_z - axis_x_z*q_ups_in_base_x
-        H_a_3_ups_z = axis_x_y*q_ups_in_base_x - axis_x_x*q_ups_in_base_y
+        # (ups-rho2_2) squared amplitude
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        # (ups-root_2) amplitude, with the sign of the branch
+        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_root_2 = 1.0/ups_root_2
+        # (ups-w_1) reciprocal vector 1
+        ups_axis_x_x = inv_ups_root_2*ups_S_x
+        ups_axis_x_y = inv_ups_root_2*ups_S_y
+        ups_axis_x_z = inv_ups_root_2*ups_S_z
+        # (ups-H_a_3) moment of the column's unit force about the platform origin
+        ups_H_a_3_x = ups_axis_x_z*ups_q_in_base_y - ups_axis_x_y*ups_q_in_base_z
+        ups_H_a_3_y = ups_axis_x_x*ups_q_in_base_z - ups_axis_x_z*ups_q_in_base_x
+        ups_H_a_3_z = ups_axis_x_y*ups_q_in_base_x - ups_axis_x_x*ups_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1_ups) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
-            (abs(rho2_2_ups) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(root_2_ups) >
+        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
+            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_2) >
             _TOLERANCE * 1.38293))
         )
-        out_H[_H_ups[0][leg]] = axis_x_x
-        out_H[_H_ups[1][leg]] = axis_x_y
-        out_H[_H_ups[2][leg]] = axis_x_z
-        out_H[_H_ups[3][leg]] = H_a_3_ups_x
-        out_H[_H_ups[4][leg]] = H_a_3_ups_y
-        out_H[_H_ups[5][leg]] = H_a_3_ups_z
+        out_H[_H_ups[0][leg]] = ups_axis_x_x
+        out_H[_H_ups[1][leg]] = ups_axis_x_y
+        out_H[_H_ups[2][leg]] = ups_axis_x_z
+        out_H[_H_ups[3][leg]] = ups_H_a_3_x
+        out_H[_H_ups[4][leg]] = ups_H_a_3_y
+        out_H[_H_ups[5][leg]] = ups_H_a_3_z
     return ok, (out_H,)
 
 
@@ -5289,232 +5655,267 @@ def _run_Hk(m, X):
     out_Hk = m.zeros("Hk")
     for leg, k in legs[0]:
         (
-        branch_1_up, branch_2_up, up_base_frame_xx, up_base_frame_xy, up_base_frame_xz,
-            up_base_frame_yx, up_base_frame_yy, up_base_frame_yz, up_base_frame_zx,
-            up_base_frame_zy, up_base_frame_zz, up_base_point_x, up_base_point_y, up_base_point_z,
-            up_platform_joint_rotation_xx, up_platform_joint_rotation_xy,
-            up_platform_joint_rotation_xz, up_platform_joint_rotation_yx,
-            up_platform_joint_rotation_yy, up_platform_joint_rotation_yz,
-            up_platform_joint_rotation_zx, up_platform_joint_rotation_zy,
-            up_platform_joint_rotation_zz, up_platform_point_x, up_platform_point_y,
-            up_platform_point_z,
+        tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz, tube_base_frame_yx,
+            tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx, tube_base_frame_zy,
+            tube_base_frame_zz, tube_base_point_x, tube_base_point_y, tube_base_point_z,
+            tube_branch_1, tube_branch_2, tube_platform_joint_rotation_xx,
+            tube_platform_joint_rotation_xy, tube_platform_joint_rotation_xz,
+            tube_platform_joint_rotation_yx, tube_platform_joint_rotation_yy,
+            tube_platform_joint_rotation_yz, tube_platform_joint_rotation_zx,
+            tube_platform_joint_rotation_zy, tube_platform_joint_rotation_zz,
+            tube_platform_point_x, tube_platform_point_y, tube_platform_point_z,
         ) = k
-        # (up-K1) from the base point to the connection point
-        q_up_in_base_x = (
-        R_xx*up_platform_point_x + R_xy*up_platform_point_y + R_xz*up_platform_point_z
+        # (tube-S) from the base point to the connection point
+        tube_q_in_base_x = (
+        R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
         )
-        q_up_in_base_y = (
-        R_yx*up_platform_point_x + R_yy*up_platform_point_y + R_yz*up_platform_point_z
+        tube_q_in_base_y = (
+        R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
         )
-        q_up_in_base_z = (
-        R_zx*up_platform_point_x + R_zy*up_platform_point_y + R_zz*up_platform_point_z
+        tube_q_in_base_z = (
+        R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
         )
-        S_up_x = q_up_in_base_x + t_x - up_base_point_x
-        S_up_y = q_up_in_base_y + t_y - up_base_point_y
-        S_up_z = q_up_in_base_z + t_z - up_base_point_z
-        # (up-K2) component along the reference direction
-        px_1_up = S_up_x*up_base_frame_xx + S_up_y*up_base_frame_yx + S_up_z*up_base_frame_zx
-        # (up-K3) component across the reference direction
-        py_1_up = S_up_x*up_base_frame_xy + S_up_y*up_base_frame_yy + S_up_z*up_base_frame_zy
-        # (up-K4) squared amplitude
-        rho2_1_up = px_1_up*px_1_up + py_1_up*py_1_up
-        # (up-K5) amplitude, with the sign of the branch
-        root_1_up = branch_1_up*sqrt(rho2_1_up)
-        # (up-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_up_t = S_up_x*up_base_frame_xz + S_up_y*up_base_frame_yz + S_up_z*up_base_frame_zz
-        # (up-K13) squared amplitude
-        rho2_2_up = rho2_1_up + xi_1_up_t*xi_1_up_t
-        # (up-K14) amplitude, with the sign of the branch
-        root_2_up = branch_2_up*sqrt(rho2_2_up)
-        # (up-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2_up = 1.0/root_2_up
-        c_2_up = inv_root_2_up*root_1_up
-        # (up-K16) sine of the angle of joint 2 from its reference direction
-        s_2_up = inv_root_2_up*xi_1_up_t
-        # (up-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_up = 1.0/root_1_up
-        c_1_up = inv_root_1_up*py_1_up
-        # (up-K7) sine of the angle of joint 1 from its reference direction
-        s_1_up = inv_root_1_up*px_1_up
-        # (up-V8) force part of the wrench that does no work along the leg's freedoms, 1
-        axis_z_up_axes2_in_base_x = s_1_up*up_base_frame_xy - c_1_up*up_base_frame_xx
-        axis_z_up_axes2_in_base_y = s_1_up*up_base_frame_yy - c_1_up*up_base_frame_yx
-        axis_z_up_axes2_in_base_z = s_1_up*up_base_frame_zy - c_1_up*up_base_frame_zx
-        f_c1_up_t = s_1_up*s_2_up
-        f_c1_up_t_2 = c_1_up*s_2_up
-        axis_y_up_axes2_in_base_x = (
-        f_c1_up_t*up_base_frame_xx + f_c1_up_t_2*up_base_frame_xy - c_2_up*up_base_frame_xz
+        tube_S_x = t_x + tube_q_in_base_x - tube_base_point_x
+        tube_S_y = t_y + tube_q_in_base_y - tube_base_point_y
+        tube_S_z = t_z + tube_q_in_base_z - tube_base_point_z
+        # (tube-px_1) component along the reference direction
+        tube_px_1 = (
+        tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
         )
-        axis_y_up_axes2_in_base_y = (
-        f_c1_up_t*up_base_frame_yx + f_c1_up_t_2*up_base_frame_yy - c_2_up*up_base_frame_yz
+        # (tube-py_1) component across the reference direction
+        tube_py_1 = (
+        tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
         )
-        axis_y_up_axes2_in_base_z = (
-        f_c1_up_t*up_base_frame_zx + f_c1_up_t_2*up_base_frame_zy - c_2_up*up_base_frame_zz
+        # (tube-rho2_1) squared amplitude
+        tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
+        # (tube-root_1) amplitude, with the sign of the branch
+        tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
+        # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        tube_xi_1_t = (
+        tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
-        axis_x_up_axes2_x = (
-        axis_y_up_axes2_in_base_y*axis_z_up_axes2_in_base_z -
-            axis_y_up_axes2_in_base_z*axis_z_up_axes2_in_base_y
+        # (tube-rho2_2) squared amplitude
+        tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t
+        # (tube-root_2) amplitude, with the sign of the branch
+        tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
+        # (tube-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_tube_root_2 = 1.0/tube_root_2
+        tube_c_2 = inv_tube_root_2*tube_root_1
+        # (tube-s_2) sine of the angle of joint 2 from its reference direction
+        tube_s_2 = inv_tube_root_2*tube_xi_1_t
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = inv_tube_root_1*tube_py_1
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_px_1
+        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        axis_z_tube_axes2_in_base_x = tube_base_frame_xy*tube_s_1 - tube_base_frame_xx*tube_c_1
+        axis_z_tube_axes2_in_base_y = tube_base_frame_yy*tube_s_1 - tube_base_frame_yx*tube_c_1
+        axis_z_tube_axes2_in_base_z = tube_base_frame_zy*tube_s_1 - tube_base_frame_zx*tube_c_1
+        tube_f_c1_t = tube_s_1*tube_s_2
+        tube_f_c1_t_2 = tube_c_1*tube_s_2
+        axis_y_tube_axes2_in_base_x = (
+        tube_base_frame_xx*tube_f_c1_t + tube_base_frame_xy*tube_f_c1_t_2 -
+            tube_base_frame_xz*tube_c_2
         )
-        axis_x_up_axes2_y = (
-        axis_y_up_axes2_in_base_z*axis_z_up_axes2_in_base_x -
-            axis_y_up_axes2_in_base_x*axis_z_up_axes2_in_base_z
+        axis_y_tube_axes2_in_base_y = (
+        tube_base_frame_yx*tube_f_c1_t + tube_base_frame_yy*tube_f_c1_t_2 -
+            tube_base_frame_yz*tube_c_2
         )
-        axis_x_up_axes2_z = (
-        axis_y_up_axes2_in_base_x*axis_z_up_axes2_in_base_y -
-            axis_y_up_axes2_in_base_y*axis_z_up_axes2_in_base_x
+        axis_y_tube_axes2_in_base_z = (
+        tube_base_frame_zx*tube_f_c1_t + tube_base_frame_zy*tube_f_c1_t_2 -
+            tube_base_frame_zz*tube_c_2
         )
-        # (up-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_up_t = R_xx*up_base_frame_xx + R_yx*up_base_frame_yx + R_zx*up_base_frame_zx
-        n_m1_up_t_2 = R_xy*up_base_frame_xx + R_yy*up_base_frame_yx + R_zy*up_base_frame_zx
-        n_m1_up_t_3 = R_xz*up_base_frame_xx + R_yz*up_base_frame_yx + R_zz*up_base_frame_zx
-        n_m1_up_t_4 = R_xx*up_base_frame_xy + R_yx*up_base_frame_yy + R_zx*up_base_frame_zy
-        n_m1_up_t_5 = R_xy*up_base_frame_xy + R_yy*up_base_frame_yy + R_zy*up_base_frame_zy
-        n_m1_up_t_6 = R_xz*up_base_frame_xy + R_yz*up_base_frame_yy + R_zz*up_base_frame_zy
-        n_m1_up_t_7 = R_xx*up_base_frame_xz + R_yx*up_base_frame_yz + R_zx*up_base_frame_zz
-        n_m1_up_t_8 = R_xy*up_base_frame_xz + R_yy*up_base_frame_yz + R_zy*up_base_frame_zz
-        n_m1_up_t_9 = R_xz*up_base_frame_xz + R_yz*up_base_frame_yz + R_zz*up_base_frame_zz
-        end_p1_up_r0_x = (
-        n_m1_up_t*up_platform_joint_rotation_yx + n_m1_up_t_2*up_platform_joint_rotation_yy +
-            n_m1_up_t_3*up_platform_joint_rotation_yz
+        axis_x_tube_axes2_x = (
+        axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_z -
+            axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_y
         )
-        end_p1_up_r0_y = (
-        n_m1_up_t_4*up_platform_joint_rotation_yx + n_m1_up_t_5*up_platform_joint_rotation_yy +
-            n_m1_up_t_6*up_platform_joint_rotation_yz
+        axis_x_tube_axes2_y = (
+        axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_x -
+            axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_z
         )
-        end_p1_up_r1_x = end_p1_up_r0_y*s_1_up - c_1_up*end_p1_up_r0_x
-        end_p1_up_r3_y = (
-        -c_2_up*(n_m1_up_t_7*up_platform_joint_rotation_yx +
-            n_m1_up_t_8*up_platform_joint_rotation_yy + n_m1_up_t_9*up_platform_joint_rotation_yz)
-            - s_2_up*(-c_1_up*end_p1_up_r0_y - end_p1_up_r0_x*s_1_up)
+        axis_x_tube_axes2_z = (
+        axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_y -
+            axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_x
         )
-        # (up-V6) direction 2 of the moment that the platform joint transmits
-        end_p2_up_r0_z = (
-        n_m1_up_t_7*up_platform_joint_rotation_zx + n_m1_up_t_8*up_platform_joint_rotation_zy +
-            n_m1_up_t_9*up_platform_joint_rotation_zz
+        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
+        tube_n_m1_t_2 = (
+        R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx + R_zy*tube_base_frame_zx
         )
-        end_p2_up_r1_y = (
-        -c_1_up*(n_m1_up_t_4*up_platform_joint_rotation_zx +
-            n_m1_up_t_5*up_platform_joint_rotation_zy + n_m1_up_t_6*up_platform_joint_rotation_zz)
-            - s_1_up*(n_m1_up_t*up_platform_joint_rotation_zx +
-            n_m1_up_t_2*up_platform_joint_rotation_zy + n_m1_up_t_3*up_platform_joint_rotation_zz)
+        tube_n_m1_t_3 = (
+        R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx + R_zz*tube_base_frame_zx
         )
-        end_p2_up_r3_x = end_p2_up_r0_z*s_2_up - c_2_up*end_p2_up_r1_y
-        end_p2_up_r3_y = -c_2_up*end_p2_up_r0_z - end_p2_up_r1_y*s_2_up
-        # (up-V7) direction 3 of the moment that the platform joint transmits
-        end_p3_up_r0_x = (
-        n_m1_up_t*up_platform_joint_rotation_xx + n_m1_up_t_2*up_platform_joint_rotation_xy +
-            n_m1_up_t_3*up_platform_joint_rotation_xz
+        tube_n_m1_t_4 = (
+        R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy + R_zx*tube_base_frame_zy
         )
-        end_p3_up_r0_y = (
-        n_m1_up_t_4*up_platform_joint_rotation_xx + n_m1_up_t_5*up_platform_joint_rotation_xy +
-            n_m1_up_t_6*up_platform_joint_rotation_xz
+        tube_n_m1_t_5 = (
+        R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy + R_zy*tube_base_frame_zy
         )
-        end_p3_up_r1_x = end_p3_up_r0_y*s_1_up - c_1_up*end_p3_up_r0_x
-        end_p3_up_r3_x = (
-        s_2_up*(n_m1_up_t_7*up_platform_joint_rotation_xx +
-            n_m1_up_t_8*up_platform_joint_rotation_xy + n_m1_up_t_9*up_platform_joint_rotation_xz)
-            - c_2_up*(-c_1_up*end_p3_up_r0_y - end_p3_up_r0_x*s_1_up)
+        tube_n_m1_t_6 = (
+        R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy + R_zz*tube_base_frame_zy
         )
-        # (up-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_up_t_10 = c_2_up*end_p1_up_r1_x
-        # (up-V6) direction 2 of the moment that the platform joint transmits
-        n_m2_up_r0_y = -c_2_up*end_p2_up_r3_x - end_p2_up_r3_y*s_2_up
-        # (up-V7) direction 3 of the moment that the platform joint transmits
-        n_m3_up_t = end_p3_up_r1_x*s_2_up
-        # (up-V8) force part of the wrench that does no work along the leg's freedoms, 1
-        f_c1_up_t_3 = end_p1_up_r3_y*n_m3_up_t + end_p3_up_r3_x*n_m1_up_t_10
-        inv_f_c1_up_t_26 = 1.0/f_c1_up_t_3
-        f_c1_up_t_4 = inv_f_c1_up_t_26*n_m3_up_t*root_2_up
-        f_c1_up_t_5 = inv_f_c1_up_t_26*n_m1_up_t_10*root_2_up
-        # (up-V12) force part of the wrench that does no work along the leg's freedoms, 2
-        f_c2_up_t = end_p3_up_r3_x*inv_f_c1_up_t_26*root_1_up
-        f_c2_up_t_2 = end_p1_up_r3_y*inv_f_c1_up_t_26*root_1_up
-        # (up-V16) force part of the wrench that does no work along the leg's freedoms, 3
-        f_c3_up_t = end_p3_up_r3_x*inv_f_c1_up_t_26*n_m2_up_r0_y
-        f_c3_up_t_2 = end_p1_up_r3_y*inv_f_c1_up_t_26*n_m2_up_r0_y
-        # (up-V32) size of the moment
-        size_c3_up = sqrt(1.0 + f_c3_up_t*f_c3_up_t + f_c3_up_t_2*f_c3_up_t_2)
-        # (up-V34) moment along direction 1 that goes with it
-        inv_size_c3_up = 1.0/size_c3_up
-        mu1_c3_up = f_c3_up_t*inv_size_c3_up
-        # (up-V36) moment along direction 3 that goes with it
-        mu3_c3_up = f_c3_up_t_2*inv_size_c3_up
-        # (up-V25) the moment that goes with it
-        mu_c1_up_t = end_p1_up_r1_x*f_c1_up_t_4
-        mu_c1_up_t_2 = end_p3_up_r1_x*f_c1_up_t_5
-        mu_c1_up_z = -end_p1_up_r3_y*f_c1_up_t_4 - end_p3_up_r3_x*f_c1_up_t_5
-        # (M9) moment of the column's unit force about the platform origin
-        Hk_a_1_up_x = (
-        axis_x_up_axes2_x*mu_c1_up_t_2 + axis_y_up_axes2_in_base_x*mu_c1_up_t +
-            axis_y_up_axes2_in_base_z*q_up_in_base_y + axis_z_up_axes2_in_base_x*mu_c1_up_z -
-            axis_y_up_axes2_in_base_y*q_up_in_base_z
+        tube_n_m1_t_7 = (
+        R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz + R_zx*tube_base_frame_zz
         )
-        Hk_a_1_up_y = (
-        axis_x_up_axes2_y*mu_c1_up_t_2 + axis_y_up_axes2_in_base_x*q_up_in_base_z +
-            axis_y_up_axes2_in_base_y*mu_c1_up_t + axis_z_up_axes2_in_base_y*mu_c1_up_z -
-            axis_y_up_axes2_in_base_z*q_up_in_base_x
+        tube_n_m1_t_8 = (
+        R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz + R_zy*tube_base_frame_zz
         )
-        Hk_a_1_up_z = (
-        axis_x_up_axes2_z*mu_c1_up_t_2 + axis_y_up_axes2_in_base_y*q_up_in_base_x +
-            axis_y_up_axes2_in_base_z*mu_c1_up_t + axis_z_up_axes2_in_base_z*mu_c1_up_z -
-            axis_y_up_axes2_in_base_x*q_up_in_base_y
+        tube_n_m1_t_9 = (
+        R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz + R_zz*tube_base_frame_zz
         )
-        # (up-V31) the moment that goes with it
-        mu_c2_up_t = end_p1_up_r1_x*f_c2_up_t
-        mu_c2_up_t_2 = end_p3_up_r1_x*f_c2_up_t_2
-        mu_c2_up_z = end_p3_up_r3_x*f_c2_up_t_2 - end_p1_up_r3_y*f_c2_up_t
-        # (M12) moment of the column's unit force about the platform origin
-        Hk_a_2_up_x = (
-        axis_y_up_axes2_in_base_x*mu_c2_up_t + axis_z_up_axes2_in_base_x*mu_c2_up_z +
-            axis_z_up_axes2_in_base_z*q_up_in_base_y - axis_x_up_axes2_x*mu_c2_up_t_2 -
-            axis_z_up_axes2_in_base_y*q_up_in_base_z
+        tube_end_p1_r0_x = (
+        tube_n_m1_t*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_yz
         )
-        Hk_a_2_up_y = (
-        axis_y_up_axes2_in_base_y*mu_c2_up_t + axis_z_up_axes2_in_base_x*q_up_in_base_z +
-            axis_z_up_axes2_in_base_y*mu_c2_up_z - axis_x_up_axes2_y*mu_c2_up_t_2 -
-            axis_z_up_axes2_in_base_z*q_up_in_base_x
+        tube_end_p1_r0_y = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_yz
         )
-        Hk_a_2_up_z = (
-        axis_y_up_axes2_in_base_z*mu_c2_up_t + axis_z_up_axes2_in_base_y*q_up_in_base_x +
-            axis_z_up_axes2_in_base_z*mu_c2_up_z - axis_x_up_axes2_z*mu_c2_up_t_2 -
-            axis_z_up_axes2_in_base_x*q_up_in_base_y
+        tube_end_p1_r1_x = tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x
+        tube_end_p1_r3_y = (
+        -tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_yz) - tube_s_2*(-tube_c_1*tube_end_p1_r0_y
+            - tube_end_p1_r0_x*tube_s_1)
         )
-        # (up-V37) the moment that goes with it
-        mu_c3_up_x = -end_p2_up_r3_y*inv_size_c3_up - end_p3_up_r1_x*mu3_c3_up
-        mu_c3_up_y = end_p1_up_r1_x*mu1_c3_up + end_p2_up_r3_x*inv_size_c3_up
-        mu_c3_up_z = end_p3_up_r3_x*mu3_c3_up - end_p1_up_r3_y*mu1_c3_up
-        mu_c3_up_in_base_x = (
-        axis_x_up_axes2_x*mu_c3_up_x + axis_y_up_axes2_in_base_x*mu_c3_up_y +
-            axis_z_up_axes2_in_base_x*mu_c3_up_z
+        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
+        tube_end_p2_r0_z = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_zz
         )
-        mu_c3_up_in_base_y = (
-        axis_x_up_axes2_y*mu_c3_up_x + axis_y_up_axes2_in_base_y*mu_c3_up_y +
-            axis_z_up_axes2_in_base_y*mu_c3_up_z
+        tube_end_p2_r1_y = (
+        -tube_c_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_zz) -
+            tube_s_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_zz)
         )
-        mu_c3_up_in_base_z = (
-        axis_x_up_axes2_z*mu_c3_up_x + axis_y_up_axes2_in_base_z*mu_c3_up_y +
-            axis_z_up_axes2_in_base_z*mu_c3_up_z
+        tube_end_p2_r3_x = tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y
+        tube_end_p2_r3_y = -tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2
+        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
+        tube_end_p3_r0_x = (
+        tube_n_m1_t*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_xz
+        )
+        tube_end_p3_r0_y = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_xz
+        )
+        tube_end_p3_r1_x = tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x
+        tube_end_p3_r3_x = (
+        tube_s_2*(tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(-tube_c_1*tube_end_p3_r0_y
+            - tube_end_p3_r0_x*tube_s_1)
+        )
+        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        tube_n_m1_t_10 = tube_c_2*tube_end_p1_r1_x
+        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
+        tube_n_m2_r0_y = -tube_c_2*tube_end_p2_r3_x - tube_end_p2_r3_y*tube_s_2
+        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
+        tube_n_m3_t = tube_end_p3_r1_x*tube_s_2
+        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        tube_f_c1_t_3 = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10
+        inv_tube_f_c1_t_26 = 1.0/tube_f_c1_t_3
+        tube_f_c1_t_4 = inv_tube_f_c1_t_26*tube_n_m3_t*tube_root_2
+        tube_f_c1_t_5 = inv_tube_f_c1_t_26*tube_n_m1_t_10*tube_root_2
+        # (tube-f_c2) force part of the wrench that does no work along the leg's freedoms, 2
+        tube_f_c2_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_root_1
+        tube_f_c2_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_root_1
+        # (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3
+        tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y
+        tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y
+        # (tube-size_c3) size of the moment
+        tube_size_c3 = sqrt(1.0 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2)
+        # (tube-mu1_c3) moment along direction 1 that goes with it
+        inv_tube_size_c3 = 1.0/tube_size_c3
+        tube_mu1_c3 = inv_tube_size_c3*tube_f_c3_t
+        # (tube-mu3_c3) moment along direction 3 that goes with it
+        tube_mu3_c3 = inv_tube_size_c3*tube_f_c3_t_2
+        # (tube-mu_c1) the moment that goes with it
+        tube_mu_c1_t = tube_end_p1_r1_x*tube_f_c1_t_4
+        tube_mu_c1_t_2 = tube_end_p3_r1_x*tube_f_c1_t_5
+        tube_mu_c1_z = -tube_end_p1_r3_y*tube_f_c1_t_4 - tube_end_p3_r3_x*tube_f_c1_t_5
+        # (tube-Hk_a_1) moment of the column's unit force about the platform origin
+        tube_Hk_a_1_x = (
+        axis_x_tube_axes2_x*tube_mu_c1_t_2 + axis_y_tube_axes2_in_base_x*tube_mu_c1_t +
+            axis_y_tube_axes2_in_base_z*tube_q_in_base_y +
+            axis_z_tube_axes2_in_base_x*tube_mu_c1_z -
+            axis_y_tube_axes2_in_base_y*tube_q_in_base_z
+        )
+        tube_Hk_a_1_y = (
+        axis_x_tube_axes2_y*tube_mu_c1_t_2 + axis_y_tube_axes2_in_base_x*tube_q_in_base_z +
+            axis_y_tube_axes2_in_base_y*tube_mu_c1_t + axis_z_tube_axes2_in_base_y*tube_mu_c1_z -
+            axis_y_tube_axes2_in_base_z*tube_q_in_base_x
+        )
+        tube_Hk_a_1_z = (
+        axis_x_tube_axes2_z*tube_mu_c1_t_2 + axis_y_tube_axes2_in_base_y*tube_q_in_base_x +
+            axis_y_tube_axes2_in_base_z*tube_mu_c1_t + axis_z_tube_axes2_in_base_z*tube_mu_c1_z -
+            axis_y_tube_axes2_in_base_x*tube_q_in_base_y
+        )
+        # (tube-mu_c2) the moment that goes with it
+        tube_mu_c2_t = tube_end_p1_r1_x*tube_f_c2_t
+        tube_mu_c2_t_2 = tube_end_p3_r1_x*tube_f_c2_t_2
+        tube_mu_c2_z = tube_end_p3_r3_x*tube_f_c2_t_2 - tube_end_p1_r3_y*tube_f_c2_t
+        # (tube-Hk_a_2) moment of the column's unit force about the platform origin
+        tube_Hk_a_2_x = (
+        axis_y_tube_axes2_in_base_x*tube_mu_c2_t + axis_z_tube_axes2_in_base_x*tube_mu_c2_z +
+            axis_z_tube_axes2_in_base_z*tube_q_in_base_y - axis_x_tube_axes2_x*tube_mu_c2_t_2 -
+            axis_z_tube_axes2_in_base_y*tube_q_in_base_z
+        )
+        tube_Hk_a_2_y = (
+        axis_y_tube_axes2_in_base_y*tube_mu_c2_t + axis_z_tube_axes2_in_base_x*tube_q_in_base_z +
+            axis_z_tube_axes2_in_base_y*tube_mu_c2_z - axis_x_tube_axes2_y*tube_mu_c2_t_2 -
+            axis_z_tube_axes2_in_base_z*tube_q_in_base_x
+        )
+        tube_Hk_a_2_z = (
+        axis_y_tube_axes2_in_base_z*tube_mu_c2_t + axis_z_tube_axes2_in_base_y*tube_q_in_base_x +
+            axis_z_tube_axes2_in_base_z*tube_mu_c2_z - axis_x_tube_axes2_z*tube_mu_c2_t_2 -
+            axis_z_tube_axes2_in_base_x*tube_q_in_base_y
+        )
+        # (tube-mu_c3) the moment that goes with it
+        tube_mu_c3_x = -inv_tube_size_c3*tube_end_p2_r3_y - tube_end_p3_r1_x*tube_mu3_c3
+        tube_mu_c3_y = inv_tube_size_c3*tube_end_p2_r3_x + tube_end_p1_r1_x*tube_mu1_c3
+        tube_mu_c3_z = tube_end_p3_r3_x*tube_mu3_c3 - tube_end_p1_r3_y*tube_mu1_c3
+        tube_mu_c3_in_base_x = (
+        axis_x_tube_axes2_x*tube_mu_c3_x + axis_y_tube_axes2_in_base_x*tube_mu_c3_y +
+            axis_z_tube_axes2_in_base_x*tube_mu_c3_z
+        )
+        tube_mu_c3_in_base_y = (
+        axis_x_tube_axes2_y*tube_mu_c3_x + axis_y_tube_axes2_in_base_y*tube_mu_c3_y +
+            axis_z_tube_axes2_in_base_y*tube_mu_c3_z
+        )
+        tube_mu_c3_in_base_z = (
+        axis_x_tube_axes2_z*tube_mu_c3_x + axis_y_tube_axes2_in_base_z*tube_mu_c3_y +
+            axis_z_tube_axes2_in_base_z*tube_mu_c3_z
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_up) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(rho2_2_up) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(f_c1_up_t_3) >
-            _TOLERANCE * 1.0) & (abs(size_c3_up) > _TOLERANCE * 1.0))
+        ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_f_c1_t_3) > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0))
         )
-        out_Hk[_Hk_up[0][leg]] = axis_y_up_axes2_in_base_x
-        out_Hk[_Hk_up[1][leg]] = axis_y_up_axes2_in_base_y
-        out_Hk[_Hk_up[2][leg]] = axis_y_up_axes2_in_base_z
-        out_Hk[_Hk_up[3][leg]] = Hk_a_1_up_x
-        out_Hk[_Hk_up[4][leg]] = Hk_a_1_up_y
-        out_Hk[_Hk_up[5][leg]] = Hk_a_1_up_z
-        out_Hk[_Hk_up[6][leg]] = axis_z_up_axes2_in_base_x
-        out_Hk[_Hk_up[7][leg]] = axis_z_up_axes2_in_base_y
-        out_Hk[_Hk_up[8][leg]] = axis_z_up_axes2_in_base_z
-        out_Hk[_Hk_up[9][leg]] = Hk_a_2_up_x
-        out_Hk[_Hk_up[10][leg]] = Hk_a_2_up_y
-        out_Hk[_Hk_up[11][leg]] = Hk_a_2_up_z
-        out_Hk[_Hk_up[12][leg]] = mu_c3_up_in_base_x
-        out_Hk[_Hk_up[13][leg]] = mu_c3_up_in_base_y
-        out_Hk[_Hk_up[14][leg]] = mu_c3_up_in_base_z
+        out_Hk[_Hk_tube[0][leg]] = axis_y_tube_axes2_in_base_x
+        out_Hk[_Hk_tube[1][leg]] = axis_y_tube_axes2_in_base_y
+        out_Hk[_Hk_tube[2][leg]] = axis_y_tube_axes2_in_base_z
+        out_Hk[_Hk_tube[3][leg]] = tube_Hk_a_1_x
+        out_Hk[_Hk_tube[4][leg]] = tube_Hk_a_1_y
+        out_Hk[_Hk_tube[5][leg]] = tube_Hk_a_1_z
+        out_Hk[_Hk_tube[6][leg]] = axis_z_tube_axes2_in_base_x
+        out_Hk[_Hk_tube[7][leg]] = axis_z_tube_axes2_in_base_y
+        out_Hk[_Hk_tube[8][leg]] = axis_z_tube_axes2_in_base_z
+        out_Hk[_Hk_tube[9][leg]] = tube_Hk_a_2_x
+        out_Hk[_Hk_tube[10][leg]] = tube_Hk_a_2_y
+        out_Hk[_Hk_tube[11][leg]] = tube_Hk_a_2_z
+        out_Hk[_Hk_tube[12][leg]] = tube_mu_c3_in_base_x
+        out_Hk[_Hk_tube[13][leg]] = tube_mu_c3_in_base_y
+        out_Hk[_Hk_tube[14][leg]] = tube_mu_c3_in_base_z
     return ok, (out_Hk,)
 
 
@@ -5574,407 +5975,463 @@ def _run_constraint_bias(m, X, V):
     out_constraint_bias = m.zeros("constraint_bias")
     for leg, k in legs[0]:
         (
-        branch_1_up, branch_2_up, up_base_frame_xx, up_base_frame_xy, up_base_frame_xz,
-            up_base_frame_yx, up_base_frame_yy, up_base_frame_yz, up_base_frame_zx,
-            up_base_frame_zy, up_base_frame_zz, up_base_point_x, up_base_point_y, up_base_point_z,
-            up_platform_joint_rotation_xx, up_platform_joint_rotation_xy,
-            up_platform_joint_rotation_xz, up_platform_joint_rotation_yx,
-            up_platform_joint_rotation_yy, up_platform_joint_rotation_yz,
-            up_platform_joint_rotation_zx, up_platform_joint_rotation_zy,
-            up_platform_joint_rotation_zz, up_platform_point_x, up_platform_point_y,
-            up_platform_point_z,
+        tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz, tube_base_frame_yx,
+            tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx, tube_base_frame_zy,
+            tube_base_frame_zz, tube_base_point_x, tube_base_point_y, tube_base_point_z,
+            tube_branch_1, tube_branch_2, tube_platform_joint_rotation_xx,
+            tube_platform_joint_rotation_xy, tube_platform_joint_rotation_xz,
+            tube_platform_joint_rotation_yx, tube_platform_joint_rotation_yy,
+            tube_platform_joint_rotation_yz, tube_platform_joint_rotation_zx,
+            tube_platform_joint_rotation_zy, tube_platform_joint_rotation_zz,
+            tube_platform_point_x, tube_platform_point_y, tube_platform_point_z,
         ) = k
-        # (up-K1) from the base point to the connection point
-        q_up_in_base_x = (
-        R_xx*up_platform_point_x + R_xy*up_platform_point_y + R_xz*up_platform_point_z
+        # (tube-S) from the base point to the connection point
+        tube_q_in_base_x = (
+        R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
         )
-        q_up_in_base_y = (
-        R_yx*up_platform_point_x + R_yy*up_platform_point_y + R_yz*up_platform_point_z
+        tube_q_in_base_y = (
+        R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
         )
-        q_up_in_base_z = (
-        R_zx*up_platform_point_x + R_zy*up_platform_point_y + R_zz*up_platform_point_z
+        tube_q_in_base_z = (
+        R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
         )
-        S_up_x = q_up_in_base_x + t_x - up_base_point_x
-        S_up_y = q_up_in_base_y + t_y - up_base_point_y
-        S_up_z = q_up_in_base_z + t_z - up_base_point_z
-        # (up-K2) component along the reference direction
-        px_1_up = S_up_x*up_base_frame_xx + S_up_y*up_base_frame_yx + S_up_z*up_base_frame_zx
-        # (up-K3) component across the reference direction
-        py_1_up = S_up_x*up_base_frame_xy + S_up_y*up_base_frame_yy + S_up_z*up_base_frame_zy
-        # (up-K4) squared amplitude
-        rho2_1_up = px_1_up*px_1_up + py_1_up*py_1_up
-        # (up-K5) amplitude, with the sign of the branch
-        root_1_up = branch_1_up*sqrt(rho2_1_up)
-        # (up-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_up_t = S_up_x*up_base_frame_xz + S_up_y*up_base_frame_yz + S_up_z*up_base_frame_zz
-        # (up-K13) squared amplitude
-        rho2_2_up = rho2_1_up + xi_1_up_t*xi_1_up_t
-        # (up-K14) amplitude, with the sign of the branch
-        root_2_up = branch_2_up*sqrt(rho2_2_up)
-        # (up-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2_up = 1.0/root_2_up
-        c_2_up = inv_root_2_up*root_1_up
-        # (up-K16) sine of the angle of joint 2 from its reference direction
-        s_2_up = inv_root_2_up*xi_1_up_t
-        # (up-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_up = 1.0/root_1_up
-        c_1_up = inv_root_1_up*py_1_up
-        # (up-K7) sine of the angle of joint 1 from its reference direction
-        s_1_up = inv_root_1_up*px_1_up
-        # (up-V8) force part of the wrench that does no work along the leg's freedoms, 1
-        axis_z_up_axes2_in_base_x = s_1_up*up_base_frame_xy - c_1_up*up_base_frame_xx
-        axis_z_up_axes2_in_base_y = s_1_up*up_base_frame_yy - c_1_up*up_base_frame_yx
-        axis_z_up_axes2_in_base_z = s_1_up*up_base_frame_zy - c_1_up*up_base_frame_zx
-        f_c1_up_t = s_1_up*s_2_up
-        f_c1_up_t_2 = c_1_up*s_2_up
-        axis_y_up_axes2_in_base_x = (
-        f_c1_up_t*up_base_frame_xx + f_c1_up_t_2*up_base_frame_xy - c_2_up*up_base_frame_xz
+        tube_S_x = t_x + tube_q_in_base_x - tube_base_point_x
+        tube_S_y = t_y + tube_q_in_base_y - tube_base_point_y
+        tube_S_z = t_z + tube_q_in_base_z - tube_base_point_z
+        # (tube-px_1) component along the reference direction
+        tube_px_1 = (
+        tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
         )
-        axis_y_up_axes2_in_base_y = (
-        f_c1_up_t*up_base_frame_yx + f_c1_up_t_2*up_base_frame_yy - c_2_up*up_base_frame_yz
+        # (tube-py_1) component across the reference direction
+        tube_py_1 = (
+        tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
         )
-        axis_y_up_axes2_in_base_z = (
-        f_c1_up_t*up_base_frame_zx + f_c1_up_t_2*up_base_frame_zy - c_2_up*up_base_frame_zz
+        # (tube-rho2_1) squared amplitude
+        tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
+        # (tube-root_1) amplitude, with the sign of the branch
+        tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
+        # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        tube_xi_1_t = (
+        tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
-        axis_x_up_axes2_x = (
-        axis_y_up_axes2_in_base_y*axis_z_up_axes2_in_base_z -
-            axis_y_up_axes2_in_base_z*axis_z_up_axes2_in_base_y
+        # (tube-rho2_2) squared amplitude
+        tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t
+        # (tube-root_2) amplitude, with the sign of the branch
+        tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
+        # (tube-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_tube_root_2 = 1.0/tube_root_2
+        tube_c_2 = inv_tube_root_2*tube_root_1
+        # (tube-s_2) sine of the angle of joint 2 from its reference direction
+        tube_s_2 = inv_tube_root_2*tube_xi_1_t
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = inv_tube_root_1*tube_py_1
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_px_1
+        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        axis_z_tube_axes2_in_base_x = tube_base_frame_xy*tube_s_1 - tube_base_frame_xx*tube_c_1
+        axis_z_tube_axes2_in_base_y = tube_base_frame_yy*tube_s_1 - tube_base_frame_yx*tube_c_1
+        axis_z_tube_axes2_in_base_z = tube_base_frame_zy*tube_s_1 - tube_base_frame_zx*tube_c_1
+        tube_f_c1_t = tube_s_1*tube_s_2
+        tube_f_c1_t_2 = tube_c_1*tube_s_2
+        axis_y_tube_axes2_in_base_x = (
+        tube_base_frame_xx*tube_f_c1_t + tube_base_frame_xy*tube_f_c1_t_2 -
+            tube_base_frame_xz*tube_c_2
         )
-        axis_x_up_axes2_y = (
-        axis_y_up_axes2_in_base_z*axis_z_up_axes2_in_base_x -
-            axis_y_up_axes2_in_base_x*axis_z_up_axes2_in_base_z
+        axis_y_tube_axes2_in_base_y = (
+        tube_base_frame_yx*tube_f_c1_t + tube_base_frame_yy*tube_f_c1_t_2 -
+            tube_base_frame_yz*tube_c_2
         )
-        axis_x_up_axes2_z = (
-        axis_y_up_axes2_in_base_x*axis_z_up_axes2_in_base_y -
-            axis_y_up_axes2_in_base_y*axis_z_up_axes2_in_base_x
+        axis_y_tube_axes2_in_base_z = (
+        tube_base_frame_zx*tube_f_c1_t + tube_base_frame_zy*tube_f_c1_t_2 -
+            tube_base_frame_zz*tube_c_2
         )
-        # (up-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_up_t = R_xx*up_base_frame_xx + R_yx*up_base_frame_yx + R_zx*up_base_frame_zx
-        n_m1_up_t_2 = R_xy*up_base_frame_xx + R_yy*up_base_frame_yx + R_zy*up_base_frame_zx
-        n_m1_up_t_3 = R_xz*up_base_frame_xx + R_yz*up_base_frame_yx + R_zz*up_base_frame_zx
-        n_m1_up_t_4 = R_xx*up_base_frame_xy + R_yx*up_base_frame_yy + R_zx*up_base_frame_zy
-        n_m1_up_t_5 = R_xy*up_base_frame_xy + R_yy*up_base_frame_yy + R_zy*up_base_frame_zy
-        n_m1_up_t_6 = R_xz*up_base_frame_xy + R_yz*up_base_frame_yy + R_zz*up_base_frame_zy
-        n_m1_up_t_7 = R_xx*up_base_frame_xz + R_yx*up_base_frame_yz + R_zx*up_base_frame_zz
-        n_m1_up_t_8 = R_xy*up_base_frame_xz + R_yy*up_base_frame_yz + R_zy*up_base_frame_zz
-        n_m1_up_t_9 = R_xz*up_base_frame_xz + R_yz*up_base_frame_yz + R_zz*up_base_frame_zz
-        end_p1_up_r0_x = (
-        n_m1_up_t*up_platform_joint_rotation_yx + n_m1_up_t_2*up_platform_joint_rotation_yy +
-            n_m1_up_t_3*up_platform_joint_rotation_yz
+        axis_x_tube_axes2_x = (
+        axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_z -
+            axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_y
         )
-        end_p1_up_r0_y = (
-        n_m1_up_t_4*up_platform_joint_rotation_yx + n_m1_up_t_5*up_platform_joint_rotation_yy +
-            n_m1_up_t_6*up_platform_joint_rotation_yz
+        axis_x_tube_axes2_y = (
+        axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_x -
+            axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_z
         )
-        end_p1_up_r0_z = (
-        n_m1_up_t_7*up_platform_joint_rotation_yx + n_m1_up_t_8*up_platform_joint_rotation_yy +
-            n_m1_up_t_9*up_platform_joint_rotation_yz
+        axis_x_tube_axes2_z = (
+        axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_y -
+            axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_x
         )
-        end_p1_up_r1_x = end_p1_up_r0_y*s_1_up - c_1_up*end_p1_up_r0_x
-        end_p1_up_r1_y = -c_1_up*end_p1_up_r0_y - end_p1_up_r0_x*s_1_up
-        end_p1_up_r3_x = end_p1_up_r0_z*s_2_up - c_2_up*end_p1_up_r1_y
-        end_p1_up_r3_y = -c_2_up*end_p1_up_r0_z - end_p1_up_r1_y*s_2_up
-        # (up-V6) direction 2 of the moment that the platform joint transmits
-        end_p2_up_r0_x = (
-        n_m1_up_t*up_platform_joint_rotation_zx + n_m1_up_t_2*up_platform_joint_rotation_zy +
-            n_m1_up_t_3*up_platform_joint_rotation_zz
+        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
+        tube_n_m1_t_2 = (
+        R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx + R_zy*tube_base_frame_zx
         )
-        end_p2_up_r0_y = (
-        n_m1_up_t_4*up_platform_joint_rotation_zx + n_m1_up_t_5*up_platform_joint_rotation_zy +
-            n_m1_up_t_6*up_platform_joint_rotation_zz
+        tube_n_m1_t_3 = (
+        R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx + R_zz*tube_base_frame_zx
         )
-        end_p2_up_r0_z = (
-        n_m1_up_t_7*up_platform_joint_rotation_zx + n_m1_up_t_8*up_platform_joint_rotation_zy +
-            n_m1_up_t_9*up_platform_joint_rotation_zz
+        tube_n_m1_t_4 = (
+        R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy + R_zx*tube_base_frame_zy
         )
-        end_p2_up_r1_x = end_p2_up_r0_y*s_1_up - c_1_up*end_p2_up_r0_x
-        end_p2_up_r1_y = -c_1_up*end_p2_up_r0_y - end_p2_up_r0_x*s_1_up
-        end_p2_up_r3_x = end_p2_up_r0_z*s_2_up - c_2_up*end_p2_up_r1_y
-        end_p2_up_r3_y = -c_2_up*end_p2_up_r0_z - end_p2_up_r1_y*s_2_up
-        # (up-V7) direction 3 of the moment that the platform joint transmits
-        end_p3_up_r0_x = (
-        n_m1_up_t*up_platform_joint_rotation_xx + n_m1_up_t_2*up_platform_joint_rotation_xy +
-            n_m1_up_t_3*up_platform_joint_rotation_xz
+        tube_n_m1_t_5 = (
+        R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy + R_zy*tube_base_frame_zy
         )
-        end_p3_up_r0_y = (
-        n_m1_up_t_4*up_platform_joint_rotation_xx + n_m1_up_t_5*up_platform_joint_rotation_xy +
-            n_m1_up_t_6*up_platform_joint_rotation_xz
+        tube_n_m1_t_6 = (
+        R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy + R_zz*tube_base_frame_zy
         )
-        end_p3_up_r0_z = (
-        n_m1_up_t_7*up_platform_joint_rotation_xx + n_m1_up_t_8*up_platform_joint_rotation_xy +
-            n_m1_up_t_9*up_platform_joint_rotation_xz
+        tube_n_m1_t_7 = (
+        R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz + R_zx*tube_base_frame_zz
         )
-        end_p3_up_r1_x = end_p3_up_r0_y*s_1_up - c_1_up*end_p3_up_r0_x
-        end_p3_up_r1_y = -c_1_up*end_p3_up_r0_y - end_p3_up_r0_x*s_1_up
-        end_p3_up_r3_x = end_p3_up_r0_z*s_2_up - c_2_up*end_p3_up_r1_y
-        end_p3_up_r3_y = -c_2_up*end_p3_up_r0_z - end_p3_up_r1_y*s_2_up
-        # (up-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_up_t_10 = c_2_up*end_p1_up_r1_x
-        # (up-V6) direction 2 of the moment that the platform joint transmits
-        n_m2_up_r0_y = -c_2_up*end_p2_up_r3_x - end_p2_up_r3_y*s_2_up
-        # (up-V7) direction 3 of the moment that the platform joint transmits
-        n_m3_up_t = end_p3_up_r1_x*s_2_up
-        # (up-V8) force part of the wrench that does no work along the leg's freedoms, 1
-        f_c1_up_t_3 = end_p1_up_r3_y*n_m3_up_t + end_p3_up_r3_x*n_m1_up_t_10
-        inv_f_c1_up_t_26 = 1.0/f_c1_up_t_3
-        f_c1_up_t_4 = inv_f_c1_up_t_26*n_m3_up_t*root_2_up
-        f_c1_up_t_5 = inv_f_c1_up_t_26*n_m1_up_t_10*root_2_up
-        # (up-V12) force part of the wrench that does no work along the leg's freedoms, 2
-        f_c2_up_t = end_p3_up_r3_x*inv_f_c1_up_t_26*root_1_up
-        f_c2_up_t_2 = end_p1_up_r3_y*inv_f_c1_up_t_26*root_1_up
-        # (up-V16) force part of the wrench that does no work along the leg's freedoms, 3
-        f_c3_up_t = end_p3_up_r3_x*inv_f_c1_up_t_26*n_m2_up_r0_y
-        f_c3_up_t_2 = end_p1_up_r3_y*inv_f_c1_up_t_26*n_m2_up_r0_y
-        # (up-V32) size of the moment
-        size_c3_up = sqrt(1.0 + f_c3_up_t*f_c3_up_t + f_c3_up_t_2*f_c3_up_t_2)
-        # (up-V34) moment along direction 1 that goes with it
-        inv_size_c3_up = 1.0/size_c3_up
-        mu1_c3_up = f_c3_up_t*inv_size_c3_up
-        # (up-V36) moment along direction 3 that goes with it
-        mu3_c3_up = f_c3_up_t_2*inv_size_c3_up
-        # (up-V38) force part of reciprocal wrench 1
-        w_1_up_t = 1.35*n_m1_up_t_10
-        w_1_up_t_2 = 1.35*n_m2_up_r0_y
-        w_1_up_t_3 = 1.35*n_m3_up_t
-        w_1_up_t_4 = 1.35*end_p1_up_r3_y
-        w_1_up_t_5 = 1.35*end_p3_up_r3_x
-        w_1_up_t_6 = 1.35*f_c1_up_t_4
-        w_1_up_t_7 = 1.35*f_c1_up_t_5
-        w_1_up_t_8 = 1.35*f_c2_up_t
-        w_1_up_t_9 = 1.35*f_c2_up_t_2
-        w_1_up_t_10 = 1.35*mu1_c3_up
-        w_1_up_t_11 = 1.35*inv_size_c3_up
-        w_1_up_t_12 = 1.35*mu3_c3_up
-        w_1_up_t_13 = sqrt(rho2_2_up + w_1_up_t_4*w_1_up_t_4 + w_1_up_t_5*w_1_up_t_5)
-        inv_w_1_up_t_16 = 1.0/w_1_up_t_13
-        w_1_up_t_14 = inv_w_1_up_t_16*root_2_up
-        w_1_up_t_15 = inv_w_1_up_t_16*w_1_up_t_4
-        w_1_up_t_16 = inv_w_1_up_t_16*w_1_up_t_5
-        w_1_up_t_17 = w_1_up_t_15*w_1_up_t_6 + w_1_up_t_16*w_1_up_t_7 - w_1_up_t_14
-        w_1_up_t_18 = 1.0 + w_1_up_t_14*w_1_up_t_17
-        w_1_up_t_19 = w_1_up_t_15*w_1_up_t_17 - w_1_up_t_6
-        w_1_up_t_20 = w_1_up_t_16*w_1_up_t_17 - w_1_up_t_7
-        w_1_up_t_21 = w_1_up_t_15*w_1_up_t_8 - w_1_up_t_16*w_1_up_t_9
-        w_1_up_t_22 = w_1_up_t_14*w_1_up_t_21
-        w_1_up_t_23 = w_1_up_t_15*w_1_up_t_21 - w_1_up_t_8
-        w_1_up_t_24 = w_1_up_t_9 + w_1_up_t_16*w_1_up_t_21
-        w_1_up_t_25 = w_1_up_t_10*w_1_up_t_15 - w_1_up_t_12*w_1_up_t_16
-        w_1_up_t_26 = w_1_up_t_14*w_1_up_t_25
-        w_1_up_t_27 = w_1_up_t_10 - w_1_up_t_15*w_1_up_t_25
-        w_1_up_t_28 = w_1_up_t_12 + w_1_up_t_16*w_1_up_t_25
-        w_1_up_t_29 = w_1_up_t*w_1_up_t_15 - w_1_up_t_16*w_1_up_t_3
-        w_1_up_t_30 = w_1_up_t_14*w_1_up_t_29
-        w_1_up_t_31 = w_1_up_t - w_1_up_t_15*w_1_up_t_29
-        w_1_up_t_32 = w_1_up_t_3 + w_1_up_t_16*w_1_up_t_29
-        w_1_up_t_33 = (
-        sqrt(w_1_up_t_18*w_1_up_t_18 + w_1_up_t_19*w_1_up_t_19 + w_1_up_t_20*w_1_up_t_20)
+        tube_n_m1_t_8 = (
+        R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz + R_zy*tube_base_frame_zz
         )
-        inv_w_1_up_t_57 = 1.0/w_1_up_t_33
-        w_1_up_t_34 = inv_w_1_up_t_57*w_1_up_t_18
-        w_1_up_t_35 = inv_w_1_up_t_57*w_1_up_t_19
-        w_1_up_t_36 = inv_w_1_up_t_57*w_1_up_t_20
-        w_1_up_t_37 = w_1_up_t_22*w_1_up_t_34 + w_1_up_t_23*w_1_up_t_35 + w_1_up_t_24*w_1_up_t_36
-        w_1_up_t_38 = w_1_up_t_22 - w_1_up_t_34*w_1_up_t_37
-        w_1_up_t_39 = w_1_up_t_23 - w_1_up_t_35*w_1_up_t_37
-        w_1_up_t_40 = w_1_up_t_24 - w_1_up_t_36*w_1_up_t_37
-        w_1_up_t_41 = w_1_up_t_26*w_1_up_t_34 + w_1_up_t_28*w_1_up_t_36 - w_1_up_t_27*w_1_up_t_35
-        w_1_up_t_42 = w_1_up_t_26 - w_1_up_t_34*w_1_up_t_41
-        w_1_up_t_43 = w_1_up_t_27 + w_1_up_t_35*w_1_up_t_41
-        w_1_up_t_44 = w_1_up_t_28 - w_1_up_t_36*w_1_up_t_41
-        w_1_up_t_45 = w_1_up_t_30*w_1_up_t_34 + w_1_up_t_32*w_1_up_t_36 - w_1_up_t_31*w_1_up_t_35
-        w_1_up_t_46 = w_1_up_t_30 - w_1_up_t_34*w_1_up_t_45
-        w_1_up_t_47 = w_1_up_t_31 + w_1_up_t_35*w_1_up_t_45
-        w_1_up_t_48 = w_1_up_t_32 - w_1_up_t_36*w_1_up_t_45
-        w_1_up_t_49 = (
-        sqrt(1.0 + w_1_up_t_38*w_1_up_t_38 + w_1_up_t_39*w_1_up_t_39 + w_1_up_t_40*w_1_up_t_40)
+        tube_n_m1_t_9 = (
+        R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz + R_zz*tube_base_frame_zz
         )
-        inv_w_1_up_t_95 = 1.0/w_1_up_t_49
-        w_1_up_t_50 = inv_w_1_up_t_95*w_1_up_t_38
-        w_1_up_t_51 = inv_w_1_up_t_95*w_1_up_t_39
-        w_1_up_t_52 = inv_w_1_up_t_95*w_1_up_t_40
-        w_1_up_t_53 = w_1_up_t_42*w_1_up_t_50 + w_1_up_t_44*w_1_up_t_52 - w_1_up_t_43*w_1_up_t_51
-        w_1_up_t_54 = w_1_up_t_50*w_1_up_t_53 - w_1_up_t_42
-        w_1_up_t_55 = inv_w_1_up_t_95*w_1_up_t_53
-        w_1_up_t_56 = w_1_up_t_43 + w_1_up_t_51*w_1_up_t_53
-        w_1_up_t_57 = w_1_up_t_52*w_1_up_t_53 - w_1_up_t_44
-        w_1_up_t_58 = (
-        w_1_up_t_46*w_1_up_t_50 + w_1_up_t_48*w_1_up_t_52 - inv_w_1_up_t_95*root_1_up -
-            w_1_up_t_47*w_1_up_t_51
+        tube_end_p1_r0_x = (
+        tube_n_m1_t*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_yz
         )
-        w_1_up_t_59 = w_1_up_t_50*w_1_up_t_58 - w_1_up_t_46
-        w_1_up_t_60 = root_1_up + inv_w_1_up_t_95*w_1_up_t_58
-        w_1_up_t_61 = w_1_up_t_47 + w_1_up_t_51*w_1_up_t_58
-        w_1_up_t_62 = w_1_up_t_52*w_1_up_t_58 - w_1_up_t_48
-        w_1_up_t_63 = (
-        sqrt(w_1_up_t_11*w_1_up_t_11 + w_1_up_t_54*w_1_up_t_54 + w_1_up_t_55*w_1_up_t_55 +
-            w_1_up_t_56*w_1_up_t_56 + w_1_up_t_57*w_1_up_t_57)
+        tube_end_p1_r0_y = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_yz
         )
-        inv_w_1_up_t_129 = 1.0/w_1_up_t_63
-        w_1_up_t_64 = inv_w_1_up_t_129*w_1_up_t_54
-        w_1_up_t_65 = inv_w_1_up_t_129*w_1_up_t_55
-        w_1_up_t_66 = inv_w_1_up_t_129*w_1_up_t_56
-        w_1_up_t_67 = inv_w_1_up_t_129*w_1_up_t_11
-        w_1_up_t_68 = inv_w_1_up_t_129*w_1_up_t_57
-        w_1_up_t_69 = (
-        w_1_up_t_59*w_1_up_t_64 + w_1_up_t_60*w_1_up_t_65 + w_1_up_t_61*w_1_up_t_66 +
-            w_1_up_t_62*w_1_up_t_68 - w_1_up_t_2*w_1_up_t_67
+        tube_end_p1_r0_z = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_yz
         )
-        w_1_up_t_70 = w_1_up_t_59 - w_1_up_t_64*w_1_up_t_69
-        w_1_up_t_71 = w_1_up_t_60 - w_1_up_t_65*w_1_up_t_69
-        w_1_up_t_72 = w_1_up_t_61 - w_1_up_t_66*w_1_up_t_69
-        w_1_up_t_73 = w_1_up_t_2 + w_1_up_t_67*w_1_up_t_69
-        w_1_up_t_74 = w_1_up_t_62 - w_1_up_t_68*w_1_up_t_69
-        w_1_up_t_75 = (
-        sqrt(w_1_up_t_70*w_1_up_t_70 + w_1_up_t_71*w_1_up_t_71 + w_1_up_t_72*w_1_up_t_72 +
-            w_1_up_t_73*w_1_up_t_73 + w_1_up_t_74*w_1_up_t_74)
+        tube_end_p1_r1_x = tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x
+        tube_end_p1_r1_y = -tube_c_1*tube_end_p1_r0_y - tube_end_p1_r0_x*tube_s_1
+        tube_end_p1_r3_x = tube_end_p1_r0_z*tube_s_2 - tube_c_2*tube_end_p1_r1_y
+        tube_end_p1_r3_y = -tube_c_2*tube_end_p1_r0_z - tube_end_p1_r1_y*tube_s_2
+        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
+        tube_end_p2_r0_x = (
+        tube_n_m1_t*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_zz
         )
-        inv_w_1_up_t_157 = 1.0/w_1_up_t_75
-        # (up-V1) velocity of the connection point
-        S_dot_up_t = omega_y*q_up_in_base_z - omega_z*q_up_in_base_y
-        S_dot_up_t_2 = omega_z*q_up_in_base_x - omega_x*q_up_in_base_z
-        S_dot_up_t_3 = omega_x*q_up_in_base_y - omega_y*q_up_in_base_x
-        S_dot_up_x = S_dot_up_t + t_dot_x
-        S_dot_up_y = S_dot_up_t_2 + t_dot_y
-        S_dot_up_z = S_dot_up_t_3 + t_dot_z
-        # (up-V53) rate at which the joints turn along moment direction 1
-        omega_tip_x = (
-        axis_x_up_axes2_x*omega_x + axis_x_up_axes2_y*omega_y + axis_x_up_axes2_z*omega_z
+        tube_end_p2_r0_y = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_zz
         )
-        omega_tip_y = (
-        axis_y_up_axes2_in_base_x*omega_x + axis_y_up_axes2_in_base_y*omega_y +
-            axis_y_up_axes2_in_base_z*omega_z
+        tube_end_p2_r0_z = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_zz
         )
-        omega_tip_z = (
-        axis_z_up_axes2_in_base_x*omega_x + axis_z_up_axes2_in_base_y*omega_y +
-            axis_z_up_axes2_in_base_z*omega_z
+        tube_end_p2_r1_x = tube_end_p2_r0_y*tube_s_1 - tube_c_1*tube_end_p2_r0_x
+        tube_end_p2_r1_y = -tube_c_1*tube_end_p2_r0_y - tube_end_p2_r0_x*tube_s_1
+        tube_end_p2_r3_x = tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y
+        tube_end_p2_r3_y = -tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2
+        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
+        tube_end_p3_r0_x = (
+        tube_n_m1_t*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_xz
         )
-        eta_1_up = end_p1_up_r3_y*omega_tip_z - end_p1_up_r1_x*omega_tip_y
-        # (up-V54) rate at which the joints turn along moment direction 2
-        eta_2_up = end_p2_up_r3_x*omega_tip_y - end_p2_up_r3_y*omega_tip_x
-        # (up-V55) rate at which the joints turn along moment direction 3
-        eta_3_up = end_p3_up_r3_x*omega_tip_z - end_p3_up_r1_x*omega_tip_x
-        # (up-V1) velocity of the connection point
-        S_dot_up_tip_x = (
-        S_dot_up_x*axis_x_up_axes2_x + S_dot_up_y*axis_x_up_axes2_y + S_dot_up_z*axis_x_up_axes2_z
+        tube_end_p3_r0_y = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_xz
         )
-        S_dot_up_tip_y = (
-        S_dot_up_x*axis_y_up_axes2_in_base_x + S_dot_up_y*axis_y_up_axes2_in_base_y +
-            S_dot_up_z*axis_y_up_axes2_in_base_z
+        tube_end_p3_r0_z = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_xz
         )
-        S_dot_up_tip_z = (
-        S_dot_up_x*axis_z_up_axes2_in_base_x + S_dot_up_y*axis_z_up_axes2_in_base_y +
-            S_dot_up_z*axis_z_up_axes2_in_base_z
+        tube_end_p3_r1_x = tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x
+        tube_end_p3_r1_y = -tube_c_1*tube_end_p3_r0_y - tube_end_p3_r0_x*tube_s_1
+        tube_end_p3_r3_x = tube_end_p3_r0_z*tube_s_2 - tube_c_2*tube_end_p3_r1_y
+        tube_end_p3_r3_y = -tube_c_2*tube_end_p3_r0_z - tube_end_p3_r1_y*tube_s_2
+        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        tube_n_m1_t_10 = tube_c_2*tube_end_p1_r1_x
+        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
+        tube_n_m2_r0_y = -tube_c_2*tube_end_p2_r3_x - tube_end_p2_r3_y*tube_s_2
+        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
+        tube_n_m3_t = tube_end_p3_r1_x*tube_s_2
+        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        tube_f_c1_t_3 = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10
+        inv_tube_f_c1_t_26 = 1.0/tube_f_c1_t_3
+        tube_f_c1_t_4 = inv_tube_f_c1_t_26*tube_n_m3_t*tube_root_2
+        tube_f_c1_t_5 = inv_tube_f_c1_t_26*tube_n_m1_t_10*tube_root_2
+        # (tube-f_c2) force part of the wrench that does no work along the leg's freedoms, 2
+        tube_f_c2_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_root_1
+        tube_f_c2_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_root_1
+        # (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3
+        tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y
+        tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y
+        # (tube-size_c3) size of the moment
+        tube_size_c3 = sqrt(1.0 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2)
+        # (tube-mu1_c3) moment along direction 1 that goes with it
+        inv_tube_size_c3 = 1.0/tube_size_c3
+        tube_mu1_c3 = inv_tube_size_c3*tube_f_c3_t
+        # (tube-mu3_c3) moment along direction 3 that goes with it
+        tube_mu3_c3 = inv_tube_size_c3*tube_f_c3_t_2
+        # (tube-w_1) force part of reciprocal wrench 1
+        tube_w_1_t = 1.35*tube_n_m1_t_10
+        tube_w_1_t_2 = 1.35*tube_n_m2_r0_y
+        tube_w_1_t_3 = 1.35*tube_n_m3_t
+        tube_w_1_t_4 = 1.35*tube_end_p1_r3_y
+        tube_w_1_t_5 = 1.35*tube_end_p3_r3_x
+        tube_w_1_t_6 = 1.35*tube_f_c1_t_4
+        tube_w_1_t_7 = 1.35*tube_f_c1_t_5
+        tube_w_1_t_8 = 1.35*tube_f_c2_t
+        tube_w_1_t_9 = 1.35*tube_f_c2_t_2
+        tube_w_1_t_10 = 1.35*tube_mu1_c3
+        tube_w_1_t_11 = 1.35*inv_tube_size_c3
+        tube_w_1_t_12 = 1.35*tube_mu3_c3
+        tube_w_1_t_13 = sqrt(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
+        inv_tube_w_1_t_16 = 1.0/tube_w_1_t_13
+        tube_w_1_t_14 = inv_tube_w_1_t_16*tube_root_2
+        tube_w_1_t_15 = inv_tube_w_1_t_16*tube_w_1_t_4
+        tube_w_1_t_16 = inv_tube_w_1_t_16*tube_w_1_t_5
+        tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
+        tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
+        tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
+        tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7
+        tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9
+        tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21
+        tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8
+        tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21
+        tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16
+        tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25
+        tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25
+        tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25
+        tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3
+        tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29
+        tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29
+        tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29
+        tube_w_1_t_33 = (
+        sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
+            tube_w_1_t_20*tube_w_1_t_20)
         )
-        # (up-V56) rate of joint 1
-        qd_1_up_t = 1.35*eta_1_up
-        qd_1_up_t_2 = 1.35*eta_2_up
-        qd_1_up_t_3 = 1.35*eta_3_up
-        qd_1_up_t_4 = (
-        inv_w_1_up_t_157*(S_dot_up_tip_y*inv_w_1_up_t_157*w_1_up_t_70 +
-            S_dot_up_tip_z*inv_w_1_up_t_157*w_1_up_t_71 + inv_w_1_up_t_157*qd_1_up_t*w_1_up_t_72 +
-            inv_w_1_up_t_157*qd_1_up_t_2*w_1_up_t_73 + inv_w_1_up_t_157*qd_1_up_t_3*w_1_up_t_74)
+        inv_tube_w_1_t_57 = 1.0/tube_w_1_t_33
+        tube_w_1_t_34 = inv_tube_w_1_t_57*tube_w_1_t_18
+        tube_w_1_t_35 = inv_tube_w_1_t_57*tube_w_1_t_19
+        tube_w_1_t_36 = inv_tube_w_1_t_57*tube_w_1_t_20
+        tube_w_1_t_37 = (
+        tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
         )
-        qd_1_up_t_5 = (
-        inv_w_1_up_t_129*(S_dot_up_tip_y*w_1_up_t_64 + S_dot_up_tip_z*w_1_up_t_65 +
-            qd_1_up_t*w_1_up_t_66 + qd_1_up_t_3*w_1_up_t_68 - qd_1_up_t_2*w_1_up_t_67 -
-            qd_1_up_t_4*w_1_up_t_69)
+        tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37
+        tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37
+        tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37
+        tube_w_1_t_41 = (
+        tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 - tube_w_1_t_27*tube_w_1_t_35
         )
-        qd_1_up_t_6 = (
-        inv_w_1_up_t_95*(S_dot_up_tip_y*w_1_up_t_50 + S_dot_up_tip_z*inv_w_1_up_t_95 +
-            qd_1_up_t*w_1_up_t_51 + qd_1_up_t_3*w_1_up_t_52 + qd_1_up_t_4*w_1_up_t_58 +
-            qd_1_up_t_5*w_1_up_t_53)
+        tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41
+        tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41
+        tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41
+        tube_w_1_t_45 = (
+        tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 - tube_w_1_t_31*tube_w_1_t_35
         )
-        qd_1_up_t_7 = (
-        S_dot_up_tip_y*w_1_up_t_14 + qd_1_up_t*w_1_up_t_15 + qd_1_up_t_3*w_1_up_t_16 +
-            qd_1_up_t_6*w_1_up_t_21 + inv_w_1_up_t_57*w_1_up_t_17*(S_dot_up_tip_y*w_1_up_t_34 +
-            qd_1_up_t*w_1_up_t_35 + qd_1_up_t_3*w_1_up_t_36 + qd_1_up_t_4*w_1_up_t_45 +
-            qd_1_up_t_5*w_1_up_t_41 - qd_1_up_t_6*w_1_up_t_37) - qd_1_up_t_4*w_1_up_t_29 -
-            qd_1_up_t_5*w_1_up_t_25
+        tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45
+        tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45
+        tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45
+        tube_w_1_t_49 = (
+        sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
+            tube_w_1_t_40*tube_w_1_t_40)
         )
-        qd_1_up_t_8 = inv_w_1_up_t_16*qd_1_up_t_7
-        # (up-V59) angular velocity of link 1
-        omega_1_up_t = qd_1_up_t_4*s_2_up
-        omega_1_up_t_2 = c_2_up*qd_1_up_t_4
-        # (up-A8) rate of moment direction 1
-        nd_m1_up_y = (
-        end_p1_up_r3_x*omega_1_up_t_2 + end_p1_up_r3_x*omega_tip_y - end_p1_up_r3_y*omega_tip_x
+        inv_tube_w_1_t_95 = 1.0/tube_w_1_t_49
+        tube_w_1_t_50 = inv_tube_w_1_t_95*tube_w_1_t_38
+        tube_w_1_t_51 = inv_tube_w_1_t_95*tube_w_1_t_39
+        tube_w_1_t_52 = inv_tube_w_1_t_95*tube_w_1_t_40
+        tube_w_1_t_53 = (
+        tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
         )
-        nd_m1_up_z = (
-        end_p1_up_r3_x*omega_tip_z - end_p1_up_r1_x*omega_tip_x - end_p1_up_r3_x*qd_1_up_t_8
+        tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
+        tube_w_1_t_55 = inv_tube_w_1_t_95*tube_w_1_t_53
+        tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
+        tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
+        tube_w_1_t_58 = (
+        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_95*tube_root_1
+            - tube_w_1_t_47*tube_w_1_t_51
         )
-        # (up-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_up_x = omega_1_up_t_2*qd_1_up_t_8
-        zeta_2_up_y = omega_1_up_t*qd_1_up_t_8
-        # (up-A9) bias of the angular acceleration along moment direction 1
-        nu_1_up_t = omega_1_up_t - omega_tip_x
-        nu_1_up_t_2 = omega_1_up_t_2 + omega_tip_y
-        nu_1_up_t_3 = omega_tip_z - qd_1_up_t_8
-        nu_1_up_t_4 = (
-        nd_m1_up_y*nu_1_up_t_2 + nd_m1_up_z*nu_1_up_t_3 - nu_1_up_t*(end_p1_up_r1_x*qd_1_up_t_8 -
-            end_p1_up_r3_y*omega_1_up_t_2)
+        tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
+        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_95*tube_w_1_t_58
+        tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
+        tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
+        tube_w_1_t_63 = (
+        sqrt(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54 +
+            tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
+            tube_w_1_t_57*tube_w_1_t_57)
         )
-        nu_1_up = nu_1_up_t_4 - end_p1_up_r1_x*zeta_2_up_y
-        # (up-A10) rate of moment direction 2
-        nd_m2_up_x = (
-        end_p2_up_r1_x*omega_tip_x - end_p2_up_r1_x*omega_1_up_t - end_p2_up_r3_x*omega_tip_z
+        inv_tube_w_1_t_129 = 1.0/tube_w_1_t_63
+        tube_w_1_t_64 = inv_tube_w_1_t_129*tube_w_1_t_54
+        tube_w_1_t_65 = inv_tube_w_1_t_129*tube_w_1_t_55
+        tube_w_1_t_66 = inv_tube_w_1_t_129*tube_w_1_t_56
+        tube_w_1_t_67 = inv_tube_w_1_t_129*tube_w_1_t_11
+        tube_w_1_t_68 = inv_tube_w_1_t_129*tube_w_1_t_57
+        tube_w_1_t_69 = (
+        tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
+            tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
         )
-        nd_m2_up_y = (
-        end_p2_up_r1_x*omega_1_up_t_2 + end_p2_up_r1_x*omega_tip_y - end_p2_up_r3_y*omega_tip_z
+        tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69
+        tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69
+        tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69
+        tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69
+        tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69
+        tube_w_1_t_75 = (
+        sqrt(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71 +
+            tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
+            tube_w_1_t_74*tube_w_1_t_74)
         )
-        # (up-A11) bias of the angular acceleration along moment direction 2
-        nu_2_up_t = end_p2_up_r3_y*zeta_2_up_x - end_p2_up_r3_x*zeta_2_up_y
-        nu_2_up_t_2 = (
-        nd_m2_up_x*nu_1_up_t + nu_1_up_t_3*(end_p2_up_r3_y*omega_1_up_t_2 -
-            end_p2_up_r3_x*omega_1_up_t) - nd_m2_up_y*nu_1_up_t_2
+        inv_tube_w_1_t_157 = 1.0/tube_w_1_t_75
+        # (tube-S_dot) velocity of the connection point
+        tube_S_dot_t = omega_y*tube_q_in_base_z - omega_z*tube_q_in_base_y
+        tube_S_dot_t_2 = omega_z*tube_q_in_base_x - omega_x*tube_q_in_base_z
+        tube_S_dot_t_3 = omega_x*tube_q_in_base_y - omega_y*tube_q_in_base_x
+        tube_S_dot_x = t_dot_x + tube_S_dot_t
+        tube_S_dot_y = t_dot_y + tube_S_dot_t_2
+        tube_S_dot_z = t_dot_z + tube_S_dot_t_3
+        # (tube-eta_1) rate at which the joints turn along moment direction 1
+        tube_omega_tip_x = (
+        axis_x_tube_axes2_x*omega_x + axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z
         )
-        nu_2_up = -nu_2_up_t - nu_2_up_t_2
-        # (up-A12) rate of moment direction 3
-        nd_m3_up_x = (
-        end_p3_up_r3_x*omega_tip_y + end_p3_up_r3_y*omega_1_up_t - end_p3_up_r3_y*omega_tip_x
+        tube_omega_tip_y = (
+        axis_y_tube_axes2_in_base_x*omega_x + axis_y_tube_axes2_in_base_y*omega_y +
+            axis_y_tube_axes2_in_base_z*omega_z
         )
-        nd_m3_up_z = (
-        end_p3_up_r1_x*omega_tip_y + end_p3_up_r3_y*qd_1_up_t_8 - end_p3_up_r3_y*omega_tip_z
+        tube_omega_tip_z = (
+        axis_z_tube_axes2_in_base_x*omega_x + axis_z_tube_axes2_in_base_y*omega_y +
+            axis_z_tube_axes2_in_base_z*omega_z
         )
-        # (up-A13) bias of the angular acceleration along moment direction 3
-        nu_3_up_t = (
-        nd_m3_up_x*nu_1_up_t + nu_1_up_t_2*(end_p3_up_r1_x*qd_1_up_t_8 +
-            end_p3_up_r3_x*omega_1_up_t) - nd_m3_up_z*nu_1_up_t_3
+        tube_eta_1 = tube_end_p1_r3_y*tube_omega_tip_z - tube_end_p1_r1_x*tube_omega_tip_y
+        # (tube-eta_2) rate at which the joints turn along moment direction 2
+        tube_eta_2 = tube_end_p2_r3_x*tube_omega_tip_y - tube_end_p2_r3_y*tube_omega_tip_x
+        # (tube-eta_3) rate at which the joints turn along moment direction 3
+        tube_eta_3 = tube_end_p3_r3_x*tube_omega_tip_z - tube_end_p3_r1_x*tube_omega_tip_x
+        # (tube-S_dot) velocity of the connection point
+        tube_S_dot_tip_x = (
+        axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
+            axis_x_tube_axes2_z*tube_S_dot_z
         )
-        nu_3_up = -nu_3_up_t - end_p3_up_r1_x*zeta_2_up_x
-        # (up-A5) acceleration of the connection point at zero joint accelerations
-        bias_up_t = 2.0*S_dot_up_tip_x
-        bias_up_y = bias_up_t*qd_1_up_t_8 - omega_1_up_t*omega_1_up_t_2*root_2_up
-        bias_up_z = bias_up_t*omega_1_up_t_2 + 2.0*root_2_up*zeta_2_up_y
-        # (up-A1) centripetal acceleration of the connection point
-        u_1_up_x = S_dot_up_t_3*omega_y - S_dot_up_t_2*omega_z
-        u_1_up_y = S_dot_up_t*omega_z - S_dot_up_t_3*omega_x
-        u_1_up_z = S_dot_up_t_2*omega_x - S_dot_up_t*omega_y
-        # (up-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_up_o_y = (
-        axis_y_up_axes2_in_base_x*u_1_up_x + axis_y_up_axes2_in_base_y*u_1_up_y +
-            axis_y_up_axes2_in_base_z*u_1_up_z - bias_up_y
+        tube_S_dot_tip_y = (
+        axis_y_tube_axes2_in_base_x*tube_S_dot_x + axis_y_tube_axes2_in_base_y*tube_S_dot_y +
+            axis_y_tube_axes2_in_base_z*tube_S_dot_z
         )
-        rel_up_o_z = (
-        axis_z_up_axes2_in_base_x*u_1_up_x + axis_z_up_axes2_in_base_y*u_1_up_y +
-            axis_z_up_axes2_in_base_z*u_1_up_z - bias_up_z
+        tube_S_dot_tip_z = (
+        axis_z_tube_axes2_in_base_x*tube_S_dot_x + axis_z_tube_axes2_in_base_y*tube_S_dot_y +
+            axis_z_tube_axes2_in_base_z*tube_S_dot_z
         )
-        # (M11) part of the constraint's second derivative that does not hold the acceleration
-        gamma_c1_up = rel_up_o_y - f_c1_up_t_4*nu_1_up - f_c1_up_t_5*nu_3_up
-        # (M14) part of the constraint's second derivative that does not hold the acceleration
-        gamma_c2_up = rel_up_o_z + f_c2_up_t_2*nu_3_up - f_c2_up_t*nu_1_up
-        # (M17) part of the constraint's second derivative that does not hold the acceleration
-        gamma_c3_up = inv_size_c3_up*nu_2_up + mu3_c3_up*nu_3_up - mu1_c3_up*nu_1_up
+        # (tube-qd_3) rate of joint 3
+        tube_qd_3_t = 1.35*tube_eta_1
+        tube_qd_3_t_2 = 1.35*tube_eta_2
+        tube_qd_3_t_3 = 1.35*tube_eta_3
+        tube_qd_3_t_4 = (
+        inv_tube_w_1_t_157*(inv_tube_w_1_t_157*tube_S_dot_tip_y*tube_w_1_t_70 +
+            inv_tube_w_1_t_157*tube_S_dot_tip_z*tube_w_1_t_71 +
+            inv_tube_w_1_t_157*tube_qd_3_t*tube_w_1_t_72 +
+            inv_tube_w_1_t_157*tube_qd_3_t_2*tube_w_1_t_73 +
+            inv_tube_w_1_t_157*tube_qd_3_t_3*tube_w_1_t_74)
+        )
+        tube_qd_3_t_5 = (
+        inv_tube_w_1_t_129*(tube_S_dot_tip_y*tube_w_1_t_64 + tube_S_dot_tip_z*tube_w_1_t_65 +
+            tube_qd_3_t*tube_w_1_t_66 + tube_qd_3_t_3*tube_w_1_t_68 - tube_qd_3_t_2*tube_w_1_t_67
+            - tube_qd_3_t_4*tube_w_1_t_69)
+        )
+        tube_qd_3_t_6 = (
+        inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_S_dot_tip_z + tube_S_dot_tip_y*tube_w_1_t_50 +
+            tube_qd_3_t*tube_w_1_t_51 + tube_qd_3_t_3*tube_w_1_t_52 + tube_qd_3_t_4*tube_w_1_t_58
+            + tube_qd_3_t_5*tube_w_1_t_53)
+        )
+        tube_qd_3_t_7 = (
+        tube_S_dot_tip_y*tube_w_1_t_14 + tube_qd_3_t*tube_w_1_t_15 + tube_qd_3_t_3*tube_w_1_t_16 +
+            tube_qd_3_t_6*tube_w_1_t_21 +
+            inv_tube_w_1_t_57*tube_w_1_t_17*(tube_S_dot_tip_y*tube_w_1_t_34 +
+            tube_qd_3_t*tube_w_1_t_35 + tube_qd_3_t_3*tube_w_1_t_36 + tube_qd_3_t_4*tube_w_1_t_45
+            + tube_qd_3_t_5*tube_w_1_t_41 - tube_qd_3_t_6*tube_w_1_t_37) -
+            tube_qd_3_t_4*tube_w_1_t_29 - tube_qd_3_t_5*tube_w_1_t_25
+        )
+        tube_qd_3_t_8 = inv_tube_w_1_t_16*tube_qd_3_t_7
+        # (tube-omega_1) angular velocity of link 1
+        tube_omega_1_t = tube_qd_3_t_4*tube_s_2
+        tube_omega_1_t_2 = tube_c_2*tube_qd_3_t_4
+        # (tube-u_1) centripetal acceleration of the connection point
+        tube_u_1_x = omega_y*tube_S_dot_t_3 - omega_z*tube_S_dot_t_2
+        tube_u_1_y = omega_z*tube_S_dot_t - omega_x*tube_S_dot_t_3
+        tube_u_1_z = omega_x*tube_S_dot_t_2 - omega_y*tube_S_dot_t
+        # (tube-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        tube_zeta_2_x = tube_omega_1_t_2*tube_qd_3_t_8
+        tube_zeta_2_y = tube_omega_1_t*tube_qd_3_t_8
+        # (tube-bias) acceleration of the connection point at zero joint accelerations
+        tube_bias_t = 2.0*tube_S_dot_tip_x
+        tube_bias_y = tube_bias_t*tube_qd_3_t_8 - tube_omega_1_t*tube_omega_1_t_2*tube_root_2
+        tube_bias_z = tube_bias_t*tube_omega_1_t_2 + 2.0*tube_root_2*tube_zeta_2_y
+        # (tube-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        tube_rel_o_y = (
+        axis_y_tube_axes2_in_base_x*tube_u_1_x + axis_y_tube_axes2_in_base_y*tube_u_1_y +
+            axis_y_tube_axes2_in_base_z*tube_u_1_z - tube_bias_y
+        )
+        tube_rel_o_z = (
+        axis_z_tube_axes2_in_base_x*tube_u_1_x + axis_z_tube_axes2_in_base_y*tube_u_1_y +
+            axis_z_tube_axes2_in_base_z*tube_u_1_z - tube_bias_z
+        )
+        # (tube-nd_m1) rate of moment direction 1
+        tube_nd_m1_y = (
+        tube_end_p1_r3_x*tube_omega_1_t_2 + tube_end_p1_r3_x*tube_omega_tip_y -
+            tube_end_p1_r3_y*tube_omega_tip_x
+        )
+        tube_nd_m1_z = (
+        tube_end_p1_r3_x*tube_omega_tip_z - tube_end_p1_r1_x*tube_omega_tip_x -
+            tube_end_p1_r3_x*tube_qd_3_t_8
+        )
+        # (tube-nu_1) bias of the angular acceleration along moment direction 1
+        tube_nu_1_t = tube_omega_1_t - tube_omega_tip_x
+        tube_nu_1_t_2 = tube_omega_1_t_2 + tube_omega_tip_y
+        tube_nu_1_t_3 = tube_omega_tip_z - tube_qd_3_t_8
+        tube_nu_1_t_4 = (
+        tube_nd_m1_y*tube_nu_1_t_2 + tube_nd_m1_z*tube_nu_1_t_3 -
+            tube_nu_1_t*(tube_end_p1_r1_x*tube_qd_3_t_8 - tube_end_p1_r3_y*tube_omega_1_t_2)
+        )
+        tube_nu_1 = tube_nu_1_t_4 - tube_end_p1_r1_x*tube_zeta_2_y
+        # (tube-nd_m2) rate of moment direction 2
+        tube_nd_m2_x = (
+        tube_end_p2_r1_x*tube_omega_tip_x - tube_end_p2_r1_x*tube_omega_1_t -
+            tube_end_p2_r3_x*tube_omega_tip_z
+        )
+        tube_nd_m2_y = (
+        tube_end_p2_r1_x*tube_omega_1_t_2 + tube_end_p2_r1_x*tube_omega_tip_y -
+            tube_end_p2_r3_y*tube_omega_tip_z
+        )
+        # (tube-nu_2) bias of the angular acceleration along moment direction 2
+        tube_nu_2_t = tube_end_p2_r3_y*tube_zeta_2_x - tube_end_p2_r3_x*tube_zeta_2_y
+        tube_nu_2_t_2 = (
+        tube_nd_m2_x*tube_nu_1_t + tube_nu_1_t_3*(tube_end_p2_r3_y*tube_omega_1_t_2 -
+            tube_end_p2_r3_x*tube_omega_1_t) - tube_nd_m2_y*tube_nu_1_t_2
+        )
+        tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2
+        # (tube-nd_m3) rate of moment direction 3
+        tube_nd_m3_x = (
+        tube_end_p3_r3_x*tube_omega_tip_y + tube_end_p3_r3_y*tube_omega_1_t -
+            tube_end_p3_r3_y*tube_omega_tip_x
+        )
+        tube_nd_m3_z = (
+        tube_end_p3_r1_x*tube_omega_tip_y + tube_end_p3_r3_y*tube_qd_3_t_8 -
+            tube_end_p3_r3_y*tube_omega_tip_z
+        )
+        # (tube-nu_3) bias of the angular acceleration along moment direction 3
+        tube_nu_3_t = (
+        tube_nd_m3_x*tube_nu_1_t + tube_nu_1_t_2*(tube_end_p3_r1_x*tube_qd_3_t_8 +
+            tube_end_p3_r3_x*tube_omega_1_t) - tube_nd_m3_z*tube_nu_1_t_3
+        )
+        tube_nu_3 = -tube_nu_3_t - tube_end_p3_r1_x*tube_zeta_2_x
+        # (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+        tube_gamma_c1 = tube_rel_o_y - tube_f_c1_t_4*tube_nu_1 - tube_f_c1_t_5*tube_nu_3
+        # (tube-gamma_c2) part of the constraint's second derivative that does not hold the acceleration
+        tube_gamma_c2 = tube_rel_o_z + tube_f_c2_t_2*tube_nu_3 - tube_f_c2_t*tube_nu_1
+        # (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
+        tube_gamma_c3 = inv_tube_size_c3*tube_nu_2 + tube_mu3_c3*tube_nu_3 - tube_mu1_c3*tube_nu_1
         ok = (
-        ok & m.every(leg, (abs(rho2_1_up) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(rho2_2_up) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(f_c1_up_t_3) >
-            _TOLERANCE * 1.0) & (abs(size_c3_up) > _TOLERANCE * 1.0) & (abs(w_1_up_t_13) >
-            _TOLERANCE * 1.35) & (abs(w_1_up_t_33) > _TOLERANCE * 1.0) & (abs(w_1_up_t_49) >
-            _TOLERANCE * 1.0) & (abs(w_1_up_t_63) > _TOLERANCE * 1.35) & (abs(w_1_up_t_75) >
-            _TOLERANCE * 1.35))
+        ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_f_c1_t_3) > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) &
+            (abs(tube_w_1_t_13) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) &
+            (abs(tube_w_1_t_49) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) &
+            (abs(tube_w_1_t_75) > _TOLERANCE * 1.35))
         )
-        out_constraint_bias[_constraint_bias_up[0][leg]] = gamma_c1_up
-        out_constraint_bias[_constraint_bias_up[1][leg]] = gamma_c2_up
-        out_constraint_bias[_constraint_bias_up[2][leg]] = gamma_c3_up
+        out_constraint_bias[_constraint_bias_tube[0][leg]] = tube_gamma_c1
+        out_constraint_bias[_constraint_bias_tube[1][leg]] = tube_gamma_c2
+        out_constraint_bias[_constraint_bias_tube[2][leg]] = tube_gamma_c3
     return ok, (out_constraint_bias,)
 
 
@@ -6051,29 +6508,29 @@ def _run_required(m, X, V, A):
     out_required = m.zeros("required")
     out_H = m.zeros("H")
     out_Hk = m.zeros("Hk")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (P1) centripetal tensor of the platform
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_x*omega_x
     W_p_t_2 = omega_y*omega_y
     W_p_t_3 = omega_z*omega_z
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
     W_p_yz = omega_y*omega_z
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
-    # (E2) inertia force of the platform less its weight
+    # (f_p) inertia force of the platform less its weight
     f_p_x = (
     a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) + h_star_in_base_z*(W_p_xz + alpha_y) -
         h_star_in_base_x*(W_p_t_2 + W_p_t_3)
@@ -6086,11 +6543,11 @@ def _run_required(m, X, V, A):
     a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) + h_star_in_base_y*(W_p_yz + alpha_x) -
         h_star_in_base_z*(W_p_t + W_p_t_2)
     )
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
     a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
     a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
-    # (E3) inertia moment of the platform less that of its weight
+    # (mu_p) inertia moment of the platform less that of its weight
     alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
     alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
     alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
@@ -6112,871 +6569,942 @@ def _run_required(m, X, V, A):
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_group_2_ups_xy, J_group_2_ups_xz, J_group_2_ups_yz, Sigma_2_ups_xx, Sigma_2_ups_yy,
-            Sigma_2_ups_zz, branch_1_ups, branch_2_ups, g_r0_x_2, g_r0_y_2, g_r0_z_2, h_2_ups_x,
-            h_2_ups_y, h_2_ups_z, h_3_ups_x, h_3_ups_y, h_3_ups_z, ups_base_frame_xx,
-            ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
-            ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
-            ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_platform_point_x,
-            ups_platform_point_y, ups_platform_point_z,
+        ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yz, ups_Sigma_2_xx, ups_Sigma_2_yy,
+            ups_Sigma_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
+            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
+            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
+            ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y, ups_g_r0_z,
+            ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z,
+            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
-        # (ups-K1) from the base point to the connection point
-        q_ups_in_base_x = (
+        # (ups-S) from the base point to the connection point
+        ups_q_in_base_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        q_ups_in_base_y = (
+        ups_q_in_base_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        q_ups_in_base_z = (
+        ups_q_in_base_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        S_ups_x = q_ups_in_base_x + t_x - ups_base_point_x
-        S_ups_y = q_ups_in_base_y + t_y - ups_base_point_y
-        S_ups_z = q_ups_in_base_z + t_z - ups_base_point_z
-        # (ups-K2) component along the reference direction
-        px_1_ups = (
-        S_ups_x*ups_base_frame_xx + S_ups_y*ups_base_frame_yx + S_ups_z*ups_base_frame_zx
+        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        # (ups-px_1) component along the reference direction
+        ups_px_1 = (
+        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-K3) component across the reference direction
-        py_1_ups = (
-        S_ups_x*ups_base_frame_xy + S_ups_y*ups_base_frame_yy + S_ups_z*ups_base_frame_zy
+        # (ups-py_1) component across the reference direction
+        ups_py_1 = (
+        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-K4) squared amplitude
-        rho2_1_ups = px_1_ups*px_1_ups + py_1_ups*py_1_ups
-        # (ups-K5) amplitude, with the sign of the branch
-        root_1_ups = branch_1_ups*sqrt(rho2_1_ups)
-        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_ups_t = (
-        S_ups_x*ups_base_frame_xz + S_ups_y*ups_base_frame_yz + S_ups_z*ups_base_frame_zz
+        # (ups-rho2_1) squared amplitude
+        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
+        # (ups-root_1) amplitude, with the sign of the branch
+        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ups_xi_1_t = (
+        ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-K13) squared amplitude
-        rho2_2_ups = rho2_1_ups + xi_1_ups_t*xi_1_ups_t
-        # (ups-K14) amplitude, with the sign of the branch
-        root_2_ups = branch_2_ups*sqrt(rho2_2_ups)
-        # (ups-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2_ups = 1.0/root_2_ups
-        c_2_ups = inv_root_2_ups*root_1_ups
-        # (ups-K16) sine of the angle of joint 2 from its reference direction
-        s_2_ups = inv_root_2_ups*xi_1_ups_t
-        # (ups-V5) reciprocal vector 1
-        axis_x_x = S_ups_x*inv_root_2_ups
-        axis_x_y = S_ups_y*inv_root_2_ups
-        axis_x_z = S_ups_z*inv_root_2_ups
-        # (ups-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_ups = 1.0/root_1_ups
-        c_1_ups = inv_root_1_ups*py_1_ups
-        # (ups-K7) sine of the angle of joint 1 from its reference direction
-        s_1_ups = inv_root_1_ups*px_1_ups
-        # (ups-V5) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = s_1_ups*ups_base_frame_xy - c_1_ups*ups_base_frame_xx
-        axis_z_ups_axes2_in_base_y = s_1_ups*ups_base_frame_yy - c_1_ups*ups_base_frame_yx
-        axis_z_ups_axes2_in_base_z = s_1_ups*ups_base_frame_zy - c_1_ups*ups_base_frame_zx
+        # (ups-rho2_2) squared amplitude
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        # (ups-root_2) amplitude, with the sign of the branch
+        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_root_2 = 1.0/ups_root_2
+        ups_c_2 = inv_ups_root_2*ups_root_1
+        # (ups-s_2) sine of the angle of joint 2 from its reference direction
+        ups_s_2 = inv_ups_root_2*ups_xi_1_t
+        # (ups-w_1) reciprocal vector 1
+        ups_axis_x_x = inv_ups_root_2*ups_S_x
+        ups_axis_x_y = inv_ups_root_2*ups_S_y
+        ups_axis_x_z = inv_ups_root_2*ups_S_z
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
+        # (ups-w_1) reciprocal vector 1
+        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
+        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
+        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
         axis_y_ups_axes2_x = (
-        axis_x_z*axis_z_ups_axes2_in_base_y - axis_x_y*axis_z_ups_axes2_in_base_z
+        axis_z_ups_axes2_in_base_y*ups_axis_x_z - axis_z_ups_axes2_in_base_z*ups_axis_x_y
         )
         axis_y_ups_axes2_y = (
-        axis_x_x*axis_z_ups_axes2_in_base_z - axis_x_z*axis_z_ups_axes2_in_base_x
+        axis_z_ups_axes2_in_base_z*ups_axis_x_x - axis_z_ups_axes2_in_base_x*ups_axis_x_z
         )
         axis_y_ups_axes2_z = (
-        axis_x_y*axis_z_ups_axes2_in_base_x - axis_x_x*axis_z_ups_axes2_in_base_y
+        axis_z_ups_axes2_in_base_x*ups_axis_x_y - axis_z_ups_axes2_in_base_y*ups_axis_x_x
         )
-        # (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x_2 = g_r0_y_2*s_1_ups - c_1_ups*g_r0_x_2
-        g_r1_y_2 = -c_1_ups*g_r0_y_2 - g_r0_x_2*s_1_ups
-        g_r3_x_2 = g_r0_z_2*s_2_ups - c_2_ups*g_r1_y_2
-        g_r3_y_2 = -c_2_ups*g_r0_z_2 - g_r1_y_2*s_2_ups
-        # (ups-A1) centripetal acceleration of the connection point
-        u_1_ups_t = omega_y*q_ups_in_base_z - omega_z*q_ups_in_base_y
-        u_1_ups_t_2 = omega_z*q_ups_in_base_x - omega_x*q_ups_in_base_z
-        u_1_ups_t_3 = omega_x*q_ups_in_base_y - omega_y*q_ups_in_base_x
-        # (ups-V1) velocity of the connection point
-        S_dot_ups_x = t_dot_x + u_1_ups_t
-        S_dot_ups_y = t_dot_y + u_1_ups_t_2
-        S_dot_ups_z = t_dot_z + u_1_ups_t_3
-        S_dot_ups_tip_x = S_dot_ups_x*axis_x_x + S_dot_ups_y*axis_x_y + S_dot_ups_z*axis_x_z
-        # (ups-V8) rate of joint 1
-        qd_2_ups = (
-        inv_root_2_ups*(S_dot_ups_x*axis_y_ups_axes2_x + S_dot_ups_y*axis_y_ups_axes2_y +
-            S_dot_ups_z*axis_y_ups_axes2_z)
+        # (ups-S_dot) velocity of the connection point
+        ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y
+        ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z
+        ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x
+        ups_S_dot_x = t_dot_x + ups_S_dot_t
+        ups_S_dot_y = t_dot_y + ups_S_dot_t_2
+        ups_S_dot_z = t_dot_z + ups_S_dot_t_3
+        ups_S_dot_tip_x = (
+        ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y + ups_S_dot_z*ups_axis_x_z
         )
-        qd_1_ups = (
-        inv_root_1_ups*(S_dot_ups_x*axis_z_ups_axes2_in_base_x +
-            S_dot_ups_y*axis_z_ups_axes2_in_base_y + S_dot_ups_z*axis_z_ups_axes2_in_base_z)
+        # (ups-qd_2) rate of joint 2
+        ups_qd_2 = (
+        inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
+            axis_y_ups_axes2_z*ups_S_dot_z)
         )
-        # (ups-V11) angular velocity of link 1
-        omega_1_ups_t = qd_1_ups*s_2_ups
-        omega_1_ups_t_2 = c_2_ups*qd_1_ups
-        # (ups-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_ups_x = omega_1_ups_t_2*qd_2_ups
-        zeta_2_ups_y = omega_1_ups_t*qd_2_ups
-        # (ups-V13) centripetal tensor of link 2
-        W_2_ups_t = omega_1_ups_t*omega_1_ups_t
-        W_2_ups_t_2 = omega_1_ups_t_2*omega_1_ups_t_2
-        W_2_ups_t_3 = qd_2_ups*qd_2_ups
-        W_2_ups_xy = omega_1_ups_t*omega_1_ups_t_2
-        # (ups-A5) acceleration of the connection point at zero joint accelerations
-        bias_ups_t = 2.0*S_dot_ups_tip_x
-        bias_ups_z = bias_ups_t*omega_1_ups_t_2 + 2.0*root_2_ups*zeta_2_ups_y
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_3_ups_x = axis_x_z*q_ups_in_base_y - axis_x_y*q_ups_in_base_z
-        H_a_3_ups_y = axis_x_x*q_ups_in_base_z - axis_x_z*q_ups_in_base_x
-        H_a_3_ups_z = axis_x_y*q_ups_in_base_x - axis_x_x*q_ups_in_base_y
-        # (ups-A2) acceleration of the connection point without its centripetal part
-        a_p_ups_x = t_ddot_x + alpha_y*q_ups_in_base_z - alpha_z*q_ups_in_base_y
-        a_p_ups_y = t_ddot_y + alpha_z*q_ups_in_base_x - alpha_x*q_ups_in_base_z
-        a_p_ups_z = t_ddot_z + alpha_x*q_ups_in_base_y - alpha_y*q_ups_in_base_x
-        # (ups-A3) acceleration of the connection point
-        S_ddot_ups_x = a_p_ups_x + omega_y*u_1_ups_t_3 - omega_z*u_1_ups_t_2
-        S_ddot_ups_y = a_p_ups_y + omega_z*u_1_ups_t - omega_x*u_1_ups_t_3
-        S_ddot_ups_z = a_p_ups_z + omega_x*u_1_ups_t_2 - omega_y*u_1_ups_t
-        S_ddot_ups_t = S_ddot_ups_x*axis_y_ups_axes2_x
-        S_ddot_ups_t_2 = S_ddot_ups_y*axis_y_ups_axes2_y
-        S_ddot_ups_t_3 = S_ddot_ups_z*axis_y_ups_axes2_z
-        S_ddot_ups_tip_z = (
-        S_ddot_ups_x*axis_z_ups_axes2_in_base_x + S_ddot_ups_y*axis_z_ups_axes2_in_base_y +
-            S_ddot_ups_z*axis_z_ups_axes2_in_base_z
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
+            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z)
         )
-        # (ups-A6) acceleration of the connection point left to the joint accelerations
-        rel_ups_z = S_ddot_ups_tip_z - bias_ups_z
-        # (ups-A8) acceleration of joint 1
-        qdd_1_ups_t = (
-        inv_root_2_ups*(S_ddot_ups_t + S_ddot_ups_t_2 + S_ddot_ups_t_3 - bias_ups_t*qd_2_ups)
+        # (ups-omega_1) angular velocity of link 1
+        ups_omega_1_t = ups_qd_1*ups_s_2
+        ups_omega_1_t_2 = ups_c_2*ups_qd_1
+        # (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2
+        ups_zeta_2_y = ups_omega_1_t*ups_qd_2
+        # (ups-W_2) centripetal tensor of link 2
+        ups_W_2_t = ups_omega_1_t*ups_omega_1_t
+        ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2
+        ups_W_2_t_3 = ups_qd_2*ups_qd_2
+        ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2
+        # (ups-bias) acceleration of the connection point at zero joint accelerations
+        ups_bias_t = 2.0*ups_S_dot_tip_x
+        ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2.0*ups_root_2*ups_zeta_2_y
+        # (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x
+        ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1
+        ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y
+        ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2
+        # (ups-H_a_3) moment of the column's unit force about the platform origin
+        ups_H_a_3_x = ups_axis_x_z*ups_q_in_base_y - ups_axis_x_y*ups_q_in_base_z
+        ups_H_a_3_y = ups_axis_x_x*ups_q_in_base_z - ups_axis_x_z*ups_q_in_base_x
+        ups_H_a_3_z = ups_axis_x_y*ups_q_in_base_x - ups_axis_x_x*ups_q_in_base_y
+        # (ups-a_p) acceleration of the connection point without its centripetal part
+        ups_a_p_x = t_ddot_x + alpha_y*ups_q_in_base_z - alpha_z*ups_q_in_base_y
+        ups_a_p_y = t_ddot_y + alpha_z*ups_q_in_base_x - alpha_x*ups_q_in_base_z
+        ups_a_p_z = t_ddot_z + alpha_x*ups_q_in_base_y - alpha_y*ups_q_in_base_x
+        # (ups-S_ddot) acceleration of the connection point
+        ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2
+        ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3
+        ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t
+        ups_S_ddot_t = axis_y_ups_axes2_x*ups_S_ddot_x
+        ups_S_ddot_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y
+        ups_S_ddot_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z
+        ups_S_ddot_tip_z = (
+        axis_z_ups_axes2_in_base_x*ups_S_ddot_x + axis_z_ups_axes2_in_base_y*ups_S_ddot_y +
+            axis_z_ups_axes2_in_base_z*ups_S_ddot_z
         )
-        qdd_1_ups = inv_root_1_ups*rel_ups_z
-        # (ups-N3) acceleration of the reference point of link 3, less gravity
-        acc_3_ups_x = (
-        S_ddot_ups_x*axis_x_x + S_ddot_ups_y*axis_x_y + S_ddot_ups_z*axis_x_z - g_r3_x_2
+        # (ups-rel) acceleration of the connection point left to the joint accelerations
+        ups_rel_z = ups_S_ddot_tip_z - ups_bias_z
+        # (ups-qdd_1) acceleration of joint 1
+        ups_qdd_1_t = (
+        inv_ups_root_2*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_bias_t*ups_qd_2)
         )
-        acc_3_ups_y = S_ddot_ups_t + S_ddot_ups_t_2 + S_ddot_ups_t_3 - g_r3_y_2
-        acc_3_ups_z = S_ddot_ups_tip_z - g_r1_x_2
-        # (ups-A13) angular acceleration of link 1
-        alpha_1_ups_t = qdd_1_ups*s_2_ups
-        alpha_1_ups_t_2 = c_2_ups*qdd_1_ups
-        # (ups-A16) angular acceleration of link 2
-        alpha_2_ups_x = alpha_1_ups_t - zeta_2_ups_x
-        alpha_2_ups_y = -alpha_1_ups_t_2 - zeta_2_ups_y
-        # (ups-A19) acceleration tensor of link 2
-        B_2_ups_xy = -2.0*W_2_ups_xy - qdd_1_ups_t
-        B_2_ups_zx = zeta_2_ups_y - alpha_2_ups_y
-        B_2_ups_zy = alpha_2_ups_x - zeta_2_ups_x
-        # (ups-N12) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_ups_x = (
-        B_2_ups_zy*Sigma_2_ups_yy + J_group_2_ups_xz*qdd_1_ups_t + J_group_2_ups_yz*(W_2_ups_t_2 -
-            W_2_ups_t_3) + Sigma_2_ups_zz*alpha_1_ups_t + g_r1_x_2*h_2_ups_z + g_r3_y_2*h_2_ups_y
-            - B_2_ups_zx*J_group_2_ups_xy - acc_3_ups_y*h_3_ups_y - acc_3_ups_z*h_3_ups_z
+        ups_qdd_1 = inv_ups_root_1*ups_rel_z
+        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
+        ups_acc_3_x = (
+        ups_S_ddot_x*ups_axis_x_x + ups_S_ddot_y*ups_axis_x_y + ups_S_ddot_z*ups_axis_x_z -
+            ups_g_r3_x
         )
-        mu_2_ups_y = (
-        B_2_ups_zy*J_group_2_ups_xy + acc_3_ups_x*h_3_ups_y + g_r1_x_2*h_2_ups_x -
-            B_2_ups_xy*J_group_2_ups_yz - B_2_ups_zx*Sigma_2_ups_xx - J_group_2_ups_xz*(W_2_ups_t
-            - W_2_ups_t_3) - Sigma_2_ups_zz*alpha_1_ups_t_2 - acc_3_ups_z*h_3_ups_x -
-            g_r3_x_2*h_2_ups_y
+        ups_acc_3_y = ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_g_r3_y
+        ups_acc_3_z = ups_S_ddot_tip_z - ups_g_r1_x
+        # (ups-alpha_1) angular acceleration of link 1
+        ups_alpha_1_t = ups_qdd_1*ups_s_2
+        ups_alpha_1_t_2 = ups_c_2*ups_qdd_1
+        # (ups-alpha_2) angular acceleration of link 2
+        ups_alpha_2_x = ups_alpha_1_t - ups_zeta_2_x
+        ups_alpha_2_y = -ups_alpha_1_t_2 - ups_zeta_2_y
+        # (ups-B_2) acceleration tensor of link 2
+        ups_B_2_xy = -2.0*ups_W_2_xy - ups_qdd_1_t
+        ups_B_2_zx = ups_zeta_2_y - ups_alpha_2_y
+        ups_B_2_zy = ups_alpha_2_x - ups_zeta_2_x
+        # (ups-phi_3) inertia force of link 3 from its turning about its reference point
+        ups_phi_3_x = (
+        -ups_B_2_xy*ups_h_3_z - ups_alpha_1_t_2*ups_h_3_y - ups_h_3_x*(ups_W_2_t_2 + ups_W_2_t_3)
         )
-        mu_2_ups_z = (
-        J_group_2_ups_xy*(W_2_ups_t - W_2_ups_t_2) + J_group_2_ups_xz*alpha_1_ups_t +
-            Sigma_2_ups_xx*qdd_1_ups_t + acc_3_ups_x*h_3_ups_z + acc_3_ups_y*h_3_ups_x -
-            B_2_ups_xy*Sigma_2_ups_yy - J_group_2_ups_yz*alpha_1_ups_t_2 - g_r3_x_2*h_2_ups_z -
-            g_r3_y_2*h_2_ups_x
+        # (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        ups_mu_2_x = (
+        ups_B_2_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_1_t + ups_J_group_2_yz*(ups_W_2_t_2 -
+            ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_t + ups_g_r1_x*ups_h_2_z +
+            ups_g_r3_y*ups_h_2_y - ups_B_2_zx*ups_J_group_2_xy - ups_acc_3_y*ups_h_3_y -
+            ups_acc_3_z*ups_h_3_z
         )
-        # (ups-N5) inertia force of link 3 from its turning about its reference point
-        phi_3_ups_x = (
-        -B_2_ups_xy*h_3_ups_z - alpha_1_ups_t_2*h_3_ups_y - h_3_ups_x*(W_2_ups_t_2 + W_2_ups_t_3)
+        ups_mu_2_y = (
+        ups_B_2_zy*ups_J_group_2_xy + ups_acc_3_x*ups_h_3_y + ups_g_r1_x*ups_h_2_x -
+            ups_B_2_xy*ups_J_group_2_yz - ups_B_2_zx*ups_Sigma_2_xx - ups_J_group_2_xz*(ups_W_2_t
+            - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_t_2 - ups_acc_3_z*ups_h_3_x -
+            ups_g_r3_x*ups_h_2_y
         )
-        # (ups-N24) leg force on the platform without actuation and without the mass at the connection point
-        c_ups_y = (
-        alpha_1_ups_t*h_3_ups_y - h_3_ups_x*qdd_1_ups_t - h_3_ups_z*(W_2_ups_t + W_2_ups_t_3) -
-            inv_root_2_ups*mu_2_ups_z
+        ups_mu_2_z = (
+        ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) + ups_J_group_2_xz*ups_alpha_1_t +
+            ups_Sigma_2_xx*ups_qdd_1_t + ups_acc_3_x*ups_h_3_z + ups_acc_3_y*ups_h_3_x -
+            ups_B_2_xy*ups_Sigma_2_yy - ups_J_group_2_yz*ups_alpha_1_t_2 - ups_g_r3_x*ups_h_2_z -
+            ups_g_r3_y*ups_h_2_x
         )
-        c_ups_z = (
-        B_2_ups_zy*h_3_ups_z + h_3_ups_y*(W_2_ups_t + W_2_ups_t_2) - B_2_ups_zx*h_3_ups_x -
-            inv_root_1_ups*(mu_2_ups_x*s_2_ups - c_2_ups*mu_2_ups_y)
+        # (ups-c) leg force on the platform without actuation and without the mass at the connection point
+        ups_c_y = (
+        ups_alpha_1_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_z - ups_h_3_x*ups_qdd_1_t -
+            ups_h_3_z*(ups_W_2_t + ups_W_2_t_3)
         )
-        c_ups_in_base_x = (
-        axis_y_ups_axes2_x*c_ups_y + axis_z_ups_axes2_in_base_x*c_ups_z - axis_x_x*phi_3_ups_x
+        ups_c_z = (
+        ups_B_2_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
+            inv_ups_root_1*(ups_mu_2_x*ups_s_2 - ups_c_2*ups_mu_2_y) - ups_B_2_zx*ups_h_3_x
         )
-        c_ups_in_base_y = (
-        axis_y_ups_axes2_y*c_ups_y + axis_z_ups_axes2_in_base_y*c_ups_z - axis_x_y*phi_3_ups_x
+        ups_c_in_base_x = (
+        axis_y_ups_axes2_x*ups_c_y + axis_z_ups_axes2_in_base_x*ups_c_z - ups_axis_x_x*ups_phi_3_x
         )
-        c_ups_in_base_z = (
-        axis_y_ups_axes2_z*c_ups_y + axis_z_ups_axes2_in_base_z*c_ups_z - axis_x_z*phi_3_ups_x
+        ups_c_in_base_y = (
+        axis_y_ups_axes2_y*ups_c_y + axis_z_ups_axes2_in_base_y*ups_c_z - ups_axis_x_y*ups_phi_3_x
         )
-        # (E5) moment that actuators and external wrench must give
-        R_a_t = c_ups_in_base_z*q_ups_in_base_y - c_ups_in_base_y*q_ups_in_base_z
-        R_a_t_2 = c_ups_in_base_x*q_ups_in_base_z - c_ups_in_base_z*q_ups_in_base_x
-        R_a_t_3 = c_ups_in_base_y*q_ups_in_base_x - c_ups_in_base_x*q_ups_in_base_y
+        ups_c_in_base_z = (
+        axis_y_ups_axes2_z*ups_c_y + axis_z_ups_axes2_in_base_z*ups_c_z - ups_axis_x_z*ups_phi_3_x
+        )
+        # (R_a) moment that actuators and external wrench must give
+        ups_R_a_t = ups_c_in_base_z*ups_q_in_base_y - ups_c_in_base_y*ups_q_in_base_z
+        ups_R_a_t_2 = ups_c_in_base_x*ups_q_in_base_z - ups_c_in_base_z*ups_q_in_base_x
+        ups_R_a_t_3 = ups_c_in_base_y*ups_q_in_base_x - ups_c_in_base_x*ups_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1_ups) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
-            (abs(rho2_2_ups) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(root_1_ups) >
-            _TOLERANCE * 1.38293) & (abs(root_2_ups) > _TOLERANCE * 1.38293))
+        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
+            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) >
+            _TOLERANCE * 1.38293) & (abs(ups_root_2) > _TOLERANCE * 1.38293))
         )
         sums = m.added(sums, leg, (
-        c_ups_in_base_x, c_ups_in_base_y, c_ups_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
+        ups_c_in_base_x, ups_c_in_base_y, ups_c_in_base_z, ups_R_a_t, ups_R_a_t_2,
+            ups_R_a_t_3,
         ))
-        out_H[_H_ups[0][leg]] = axis_x_x
-        out_H[_H_ups[1][leg]] = axis_x_y
-        out_H[_H_ups[2][leg]] = axis_x_z
-        out_H[_H_ups[3][leg]] = H_a_3_ups_x
-        out_H[_H_ups[4][leg]] = H_a_3_ups_y
-        out_H[_H_ups[5][leg]] = H_a_3_ups_z
+        out_H[_H_ups[0][leg]] = ups_axis_x_x
+        out_H[_H_ups[1][leg]] = ups_axis_x_y
+        out_H[_H_ups[2][leg]] = ups_axis_x_z
+        out_H[_H_ups[3][leg]] = ups_H_a_3_x
+        out_H[_H_ups[4][leg]] = ups_H_a_3_y
+        out_H[_H_ups[5][leg]] = ups_H_a_3_z
     total_ups_x, total_ups_y, total_ups_z, total_ups_x_2, total_ups_y_2, total_ups_z_2 = sums
     sums = [0.0] * 6
     for leg, k in legs[1]:
         (
-        J_group_2_up_xy, J_group_2_up_xz, J_group_2_up_yz, Sigma_2_up_xx, Sigma_2_up_yy,
-            Sigma_2_up_zz, branch_1_up, branch_2_up, g_r0_x, g_r0_y, g_r0_z, h_2_up_x, h_2_up_y,
-            h_2_up_z, h_3_up_x, h_3_up_y, h_3_up_z, up_base_frame_xx, up_base_frame_xy,
-            up_base_frame_xz, up_base_frame_yx, up_base_frame_yy, up_base_frame_yz,
-            up_base_frame_zx, up_base_frame_zy, up_base_frame_zz, up_base_point_x,
-            up_base_point_y, up_base_point_z, up_link3_mass, up_platform_joint_rotation_xx,
-            up_platform_joint_rotation_xy, up_platform_joint_rotation_xz,
-            up_platform_joint_rotation_yx, up_platform_joint_rotation_yy,
-            up_platform_joint_rotation_yz, up_platform_joint_rotation_zx,
-            up_platform_joint_rotation_zy, up_platform_joint_rotation_zz, up_platform_point_x,
-            up_platform_point_y, up_platform_point_z,
+        tube_J_group_2_xy, tube_J_group_2_xz, tube_J_group_2_yz, tube_Sigma_2_xx, tube_Sigma_2_yy,
+            tube_Sigma_2_zz, tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz,
+            tube_base_frame_yx, tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx,
+            tube_base_frame_zy, tube_base_frame_zz, tube_base_point_x, tube_base_point_y,
+            tube_base_point_z, tube_branch_1, tube_branch_2, tube_g_r0_x, tube_g_r0_y,
+            tube_g_r0_z, tube_h_2_x, tube_h_2_y, tube_h_2_z, tube_h_3_x, tube_h_3_y, tube_h_3_z,
+            tube_link3_mass, tube_platform_joint_rotation_xx, tube_platform_joint_rotation_xy,
+            tube_platform_joint_rotation_xz, tube_platform_joint_rotation_yx,
+            tube_platform_joint_rotation_yy, tube_platform_joint_rotation_yz,
+            tube_platform_joint_rotation_zx, tube_platform_joint_rotation_zy,
+            tube_platform_joint_rotation_zz, tube_platform_point_x, tube_platform_point_y,
+            tube_platform_point_z,
         ) = k
-        # (up-K1) from the base point to the connection point
-        q_up_in_base_x = (
-        R_xx*up_platform_point_x + R_xy*up_platform_point_y + R_xz*up_platform_point_z
-        )
-        q_up_in_base_y = (
-        R_yx*up_platform_point_x + R_yy*up_platform_point_y + R_yz*up_platform_point_z
-        )
-        q_up_in_base_z = (
-        R_zx*up_platform_point_x + R_zy*up_platform_point_y + R_zz*up_platform_point_z
-        )
-        S_up_x = q_up_in_base_x + t_x - up_base_point_x
-        S_up_y = q_up_in_base_y + t_y - up_base_point_y
-        S_up_z = q_up_in_base_z + t_z - up_base_point_z
-        # (up-K2) component along the reference direction
-        px_1_up = S_up_x*up_base_frame_xx + S_up_y*up_base_frame_yx + S_up_z*up_base_frame_zx
-        # (up-K3) component across the reference direction
-        py_1_up = S_up_x*up_base_frame_xy + S_up_y*up_base_frame_yy + S_up_z*up_base_frame_zy
-        # (up-K4) squared amplitude
-        rho2_1_up = px_1_up*px_1_up + py_1_up*py_1_up
-        # (up-K5) amplitude, with the sign of the branch
-        root_1_up = branch_1_up*sqrt(rho2_1_up)
-        # (up-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_up_t = S_up_x*up_base_frame_xz + S_up_y*up_base_frame_yz + S_up_z*up_base_frame_zz
-        # (up-K13) squared amplitude
-        rho2_2_up = rho2_1_up + xi_1_up_t*xi_1_up_t
-        # (up-K14) amplitude, with the sign of the branch
-        root_2_up = branch_2_up*sqrt(rho2_2_up)
-        # (up-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2_up = 1.0/root_2_up
-        c_2_up = inv_root_2_up*root_1_up
-        # (up-K16) sine of the angle of joint 2 from its reference direction
-        s_2_up = inv_root_2_up*xi_1_up_t
-        # (up-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_up = 1.0/root_1_up
-        c_1_up = inv_root_1_up*py_1_up
-        # (up-K7) sine of the angle of joint 1 from its reference direction
-        s_1_up = inv_root_1_up*px_1_up
-        # (up-V8) force part of the wrench that does no work along the leg's freedoms, 1
-        axis_z_up_axes2_in_base_x = s_1_up*up_base_frame_xy - c_1_up*up_base_frame_xx
-        axis_z_up_axes2_in_base_y = s_1_up*up_base_frame_yy - c_1_up*up_base_frame_yx
-        axis_z_up_axes2_in_base_z = s_1_up*up_base_frame_zy - c_1_up*up_base_frame_zx
-        f_c1_up_t = s_1_up*s_2_up
-        f_c1_up_t_2 = c_1_up*s_2_up
-        axis_y_up_axes2_in_base_x = (
-        f_c1_up_t*up_base_frame_xx + f_c1_up_t_2*up_base_frame_xy - c_2_up*up_base_frame_xz
-        )
-        axis_y_up_axes2_in_base_y = (
-        f_c1_up_t*up_base_frame_yx + f_c1_up_t_2*up_base_frame_yy - c_2_up*up_base_frame_yz
-        )
-        axis_y_up_axes2_in_base_z = (
-        f_c1_up_t*up_base_frame_zx + f_c1_up_t_2*up_base_frame_zy - c_2_up*up_base_frame_zz
-        )
-        axis_x_up_axes2_x = (
-        axis_y_up_axes2_in_base_y*axis_z_up_axes2_in_base_z -
-            axis_y_up_axes2_in_base_z*axis_z_up_axes2_in_base_y
-        )
-        axis_x_up_axes2_y = (
-        axis_y_up_axes2_in_base_z*axis_z_up_axes2_in_base_x -
-            axis_y_up_axes2_in_base_x*axis_z_up_axes2_in_base_z
-        )
-        axis_x_up_axes2_z = (
-        axis_y_up_axes2_in_base_x*axis_z_up_axes2_in_base_y -
-            axis_y_up_axes2_in_base_y*axis_z_up_axes2_in_base_x
-        )
-        # (up-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_up_t = R_xx*up_base_frame_xx + R_yx*up_base_frame_yx + R_zx*up_base_frame_zx
-        n_m1_up_t_2 = R_xy*up_base_frame_xx + R_yy*up_base_frame_yx + R_zy*up_base_frame_zx
-        n_m1_up_t_3 = R_xz*up_base_frame_xx + R_yz*up_base_frame_yx + R_zz*up_base_frame_zx
-        n_m1_up_t_4 = R_xx*up_base_frame_xy + R_yx*up_base_frame_yy + R_zx*up_base_frame_zy
-        n_m1_up_t_5 = R_xy*up_base_frame_xy + R_yy*up_base_frame_yy + R_zy*up_base_frame_zy
-        n_m1_up_t_6 = R_xz*up_base_frame_xy + R_yz*up_base_frame_yy + R_zz*up_base_frame_zy
-        n_m1_up_t_7 = R_xx*up_base_frame_xz + R_yx*up_base_frame_yz + R_zx*up_base_frame_zz
-        n_m1_up_t_8 = R_xy*up_base_frame_xz + R_yy*up_base_frame_yz + R_zy*up_base_frame_zz
-        n_m1_up_t_9 = R_xz*up_base_frame_xz + R_yz*up_base_frame_yz + R_zz*up_base_frame_zz
-        end_p1_up_r0_x = (
-        n_m1_up_t*up_platform_joint_rotation_yx + n_m1_up_t_2*up_platform_joint_rotation_yy +
-            n_m1_up_t_3*up_platform_joint_rotation_yz
-        )
-        end_p1_up_r0_y = (
-        n_m1_up_t_4*up_platform_joint_rotation_yx + n_m1_up_t_5*up_platform_joint_rotation_yy +
-            n_m1_up_t_6*up_platform_joint_rotation_yz
-        )
-        end_p1_up_r0_z = (
-        n_m1_up_t_7*up_platform_joint_rotation_yx + n_m1_up_t_8*up_platform_joint_rotation_yy +
-            n_m1_up_t_9*up_platform_joint_rotation_yz
-        )
-        end_p1_up_r1_x = end_p1_up_r0_y*s_1_up - c_1_up*end_p1_up_r0_x
-        end_p1_up_r1_y = -c_1_up*end_p1_up_r0_y - end_p1_up_r0_x*s_1_up
-        end_p1_up_r3_x = end_p1_up_r0_z*s_2_up - c_2_up*end_p1_up_r1_y
-        end_p1_up_r3_y = -c_2_up*end_p1_up_r0_z - end_p1_up_r1_y*s_2_up
-        # (up-V6) direction 2 of the moment that the platform joint transmits
-        end_p2_up_r0_x = (
-        n_m1_up_t*up_platform_joint_rotation_zx + n_m1_up_t_2*up_platform_joint_rotation_zy +
-            n_m1_up_t_3*up_platform_joint_rotation_zz
-        )
-        end_p2_up_r0_y = (
-        n_m1_up_t_4*up_platform_joint_rotation_zx + n_m1_up_t_5*up_platform_joint_rotation_zy +
-            n_m1_up_t_6*up_platform_joint_rotation_zz
-        )
-        end_p2_up_r0_z = (
-        n_m1_up_t_7*up_platform_joint_rotation_zx + n_m1_up_t_8*up_platform_joint_rotation_zy +
-            n_m1_up_t_9*up_platform_joint_rotation_zz
-        )
-        end_p2_up_r1_x = end_p2_up_r0_y*s_1_up - c_1_up*end_p2_up_r0_x
-        end_p2_up_r1_y = -c_1_up*end_p2_up_r0_y - end_p2_up_r0_x*s_1_up
-        end_p2_up_r3_x = end_p2_up_r0_z*s_2_up - c_2_up*end_p2_up_r1_y
-        end_p2_up_r3_y = -c_2_up*end_p2_up_r0_z - end_p2_up_r1_y*s_2_up
-        # (up-V7) direction 3 of the moment that the platform joint transmits
-        end_p3_up_r0_x = (
-        n_m1_up_t*up_platform_joint_rotation_xx + n_m1_up_t_2*up_platform_joint_rotation_xy +
-            n_m1_up_t_3*up_platform_joint_rotation_xz
-        )
-        end_p3_up_r0_y = (
-        n_m1_up_t_4*up_platform_joint_rotation_xx + n_m1_up_t_5*up_platform_joint_rotation_xy +
-            n_m1_up_t_6*up_platform_joint_rotation_xz
-        )
-        end_p3_up_r0_z = (
-        n_m1_up_t_7*up_platform_joint_rotation_xx + n_m1_up_t_8*up_platform_joint_rotation_xy +
-            n_m1_up_t_9*up_platform_joint_rotation_xz
-        )
-        end_p3_up_r1_x = end_p3_up_r0_y*s_1_up - c_1_up*end_p3_up_r0_x
-        end_p3_up_r1_y = -c_1_up*end_p3_up_r0_y - end_p3_up_r0_x*s_1_up
-        end_p3_up_r3_x = end_p3_up_r0_z*s_2_up - c_2_up*end_p3_up_r1_y
-        end_p3_up_r3_y = -c_2_up*end_p3_up_r0_z - end_p3_up_r1_y*s_2_up
-        # (up-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_up_t_10 = c_2_up*end_p1_up_r1_x
-        # (up-V6) direction 2 of the moment that the platform joint transmits
-        n_m2_up_r0_y = -c_2_up*end_p2_up_r3_x - end_p2_up_r3_y*s_2_up
-        # (up-V7) direction 3 of the moment that the platform joint transmits
-        n_m3_up_t = end_p3_up_r1_x*s_2_up
-        # (up-V8) force part of the wrench that does no work along the leg's freedoms, 1
-        f_c1_up_t_3 = end_p1_up_r3_y*n_m3_up_t + end_p3_up_r3_x*n_m1_up_t_10
-        inv_f_c1_up_t_26 = 1.0/f_c1_up_t_3
-        f_c1_up_t_4 = inv_f_c1_up_t_26*n_m3_up_t*root_2_up
-        f_c1_up_t_5 = inv_f_c1_up_t_26*n_m1_up_t_10*root_2_up
-        # (up-V12) force part of the wrench that does no work along the leg's freedoms, 2
-        f_c2_up_t = end_p3_up_r3_x*inv_f_c1_up_t_26*root_1_up
-        f_c2_up_t_2 = end_p1_up_r3_y*inv_f_c1_up_t_26*root_1_up
-        # (up-V16) force part of the wrench that does no work along the leg's freedoms, 3
-        f_c3_up_t = end_p3_up_r3_x*inv_f_c1_up_t_26*n_m2_up_r0_y
-        f_c3_up_t_2 = end_p1_up_r3_y*inv_f_c1_up_t_26*n_m2_up_r0_y
-        # (up-V32) size of the moment
-        size_c3_up = sqrt(1.0 + f_c3_up_t*f_c3_up_t + f_c3_up_t_2*f_c3_up_t_2)
-        # (up-V34) moment along direction 1 that goes with it
-        inv_size_c3_up = 1.0/size_c3_up
-        mu1_c3_up = f_c3_up_t*inv_size_c3_up
-        # (up-V36) moment along direction 3 that goes with it
-        mu3_c3_up = f_c3_up_t_2*inv_size_c3_up
-        # (up-V38) force part of reciprocal wrench 1
-        w_1_up_t = 1.35*n_m1_up_t_10
-        w_1_up_t_2 = 1.35*n_m2_up_r0_y
-        w_1_up_t_3 = 1.35*n_m3_up_t
-        w_1_up_t_4 = 1.35*end_p1_up_r3_y
-        w_1_up_t_5 = 1.35*end_p3_up_r3_x
-        w_1_up_t_6 = 1.35*f_c1_up_t_4
-        w_1_up_t_7 = 1.35*f_c1_up_t_5
-        w_1_up_t_8 = 1.35*f_c2_up_t
-        w_1_up_t_9 = 1.35*f_c2_up_t_2
-        w_1_up_t_10 = 1.35*mu1_c3_up
-        w_1_up_t_11 = 1.35*inv_size_c3_up
-        w_1_up_t_12 = 1.35*mu3_c3_up
-        w_1_up_t_13 = sqrt(rho2_2_up + w_1_up_t_4*w_1_up_t_4 + w_1_up_t_5*w_1_up_t_5)
-        inv_w_1_up_t_16 = 1.0/w_1_up_t_13
-        w_1_up_t_14 = inv_w_1_up_t_16*root_2_up
-        w_1_up_t_15 = inv_w_1_up_t_16*w_1_up_t_4
-        w_1_up_t_16 = inv_w_1_up_t_16*w_1_up_t_5
-        w_1_up_t_17 = w_1_up_t_15*w_1_up_t_6 + w_1_up_t_16*w_1_up_t_7 - w_1_up_t_14
-        w_1_up_t_18 = 1.0 + w_1_up_t_14*w_1_up_t_17
-        w_1_up_t_19 = w_1_up_t_15*w_1_up_t_17 - w_1_up_t_6
-        w_1_up_t_20 = w_1_up_t_16*w_1_up_t_17 - w_1_up_t_7
-        w_1_up_t_21 = w_1_up_t_15*w_1_up_t_8 - w_1_up_t_16*w_1_up_t_9
-        w_1_up_t_22 = w_1_up_t_14*w_1_up_t_21
-        w_1_up_t_23 = w_1_up_t_15*w_1_up_t_21 - w_1_up_t_8
-        w_1_up_t_24 = w_1_up_t_9 + w_1_up_t_16*w_1_up_t_21
-        w_1_up_t_25 = w_1_up_t_10*w_1_up_t_15 - w_1_up_t_12*w_1_up_t_16
-        w_1_up_t_26 = w_1_up_t_14*w_1_up_t_25
-        w_1_up_t_27 = w_1_up_t_10 - w_1_up_t_15*w_1_up_t_25
-        w_1_up_t_28 = w_1_up_t_12 + w_1_up_t_16*w_1_up_t_25
-        w_1_up_t_29 = w_1_up_t*w_1_up_t_15 - w_1_up_t_16*w_1_up_t_3
-        w_1_up_t_30 = w_1_up_t_14*w_1_up_t_29
-        w_1_up_t_31 = w_1_up_t - w_1_up_t_15*w_1_up_t_29
-        w_1_up_t_32 = w_1_up_t_3 + w_1_up_t_16*w_1_up_t_29
-        w_1_up_t_33 = (
-        sqrt(w_1_up_t_18*w_1_up_t_18 + w_1_up_t_19*w_1_up_t_19 + w_1_up_t_20*w_1_up_t_20)
-        )
-        inv_w_1_up_t_57 = 1.0/w_1_up_t_33
-        w_1_up_t_34 = inv_w_1_up_t_57*w_1_up_t_18
-        w_1_up_t_35 = inv_w_1_up_t_57*w_1_up_t_19
-        w_1_up_t_36 = inv_w_1_up_t_57*w_1_up_t_20
-        w_1_up_t_37 = w_1_up_t_22*w_1_up_t_34 + w_1_up_t_23*w_1_up_t_35 + w_1_up_t_24*w_1_up_t_36
-        w_1_up_t_38 = w_1_up_t_22 - w_1_up_t_34*w_1_up_t_37
-        w_1_up_t_39 = w_1_up_t_23 - w_1_up_t_35*w_1_up_t_37
-        w_1_up_t_40 = w_1_up_t_24 - w_1_up_t_36*w_1_up_t_37
-        w_1_up_t_41 = w_1_up_t_26*w_1_up_t_34 + w_1_up_t_28*w_1_up_t_36 - w_1_up_t_27*w_1_up_t_35
-        w_1_up_t_42 = w_1_up_t_26 - w_1_up_t_34*w_1_up_t_41
-        w_1_up_t_43 = w_1_up_t_27 + w_1_up_t_35*w_1_up_t_41
-        w_1_up_t_44 = w_1_up_t_28 - w_1_up_t_36*w_1_up_t_41
-        w_1_up_t_45 = w_1_up_t_30*w_1_up_t_34 + w_1_up_t_32*w_1_up_t_36 - w_1_up_t_31*w_1_up_t_35
-        w_1_up_t_46 = w_1_up_t_30 - w_1_up_t_34*w_1_up_t_45
-        w_1_up_t_47 = w_1_up_t_31 + w_1_up_t_35*w_1_up_t_45
-        w_1_up_t_48 = w_1_up_t_32 - w_1_up_t_36*w_1_up_t_45
-        w_1_up_t_49 = (
-        sqrt(1.0 + w_1_up_t_38*w_1_up_t_38 + w_1_up_t_39*w_1_up_t_39 + w_1_up_t_40*w_1_up_t_40)
-        )
-        inv_w_1_up_t_95 = 1.0/w_1_up_t_49
-        w_1_up_t_50 = inv_w_1_up_t_95*w_1_up_t_38
-        w_1_up_t_51 = inv_w_1_up_t_95*w_1_up_t_39
-        w_1_up_t_52 = inv_w_1_up_t_95*w_1_up_t_40
-        w_1_up_t_53 = w_1_up_t_42*w_1_up_t_50 + w_1_up_t_44*w_1_up_t_52 - w_1_up_t_43*w_1_up_t_51
-        w_1_up_t_54 = w_1_up_t_50*w_1_up_t_53 - w_1_up_t_42
-        w_1_up_t_55 = inv_w_1_up_t_95*w_1_up_t_53
-        w_1_up_t_56 = w_1_up_t_43 + w_1_up_t_51*w_1_up_t_53
-        w_1_up_t_57 = w_1_up_t_52*w_1_up_t_53 - w_1_up_t_44
-        w_1_up_t_58 = (
-        w_1_up_t_46*w_1_up_t_50 + w_1_up_t_48*w_1_up_t_52 - inv_w_1_up_t_95*root_1_up -
-            w_1_up_t_47*w_1_up_t_51
-        )
-        w_1_up_t_59 = w_1_up_t_50*w_1_up_t_58 - w_1_up_t_46
-        w_1_up_t_60 = root_1_up + inv_w_1_up_t_95*w_1_up_t_58
-        w_1_up_t_61 = w_1_up_t_47 + w_1_up_t_51*w_1_up_t_58
-        w_1_up_t_62 = w_1_up_t_52*w_1_up_t_58 - w_1_up_t_48
-        w_1_up_t_63 = (
-        sqrt(w_1_up_t_11*w_1_up_t_11 + w_1_up_t_54*w_1_up_t_54 + w_1_up_t_55*w_1_up_t_55 +
-            w_1_up_t_56*w_1_up_t_56 + w_1_up_t_57*w_1_up_t_57)
-        )
-        inv_w_1_up_t_129 = 1.0/w_1_up_t_63
-        w_1_up_t_64 = inv_w_1_up_t_129*w_1_up_t_54
-        w_1_up_t_65 = inv_w_1_up_t_129*w_1_up_t_55
-        w_1_up_t_66 = inv_w_1_up_t_129*w_1_up_t_56
-        w_1_up_t_67 = inv_w_1_up_t_129*w_1_up_t_11
-        w_1_up_t_68 = inv_w_1_up_t_129*w_1_up_t_57
-        w_1_up_t_69 = (
-        w_1_up_t_59*w_1_up_t_64 + w_1_up_t_60*w_1_up_t_65 + w_1_up_t_61*w_1_up_t_66 +
-            w_1_up_t_62*w_1_up_t_68 - w_1_up_t_2*w_1_up_t_67
-        )
-        w_1_up_t_70 = w_1_up_t_59 - w_1_up_t_64*w_1_up_t_69
-        w_1_up_t_71 = w_1_up_t_60 - w_1_up_t_65*w_1_up_t_69
-        w_1_up_t_72 = w_1_up_t_61 - w_1_up_t_66*w_1_up_t_69
-        w_1_up_t_73 = w_1_up_t_2 + w_1_up_t_67*w_1_up_t_69
-        w_1_up_t_74 = w_1_up_t_62 - w_1_up_t_68*w_1_up_t_69
-        w_1_up_t_75 = (
-        sqrt(w_1_up_t_70*w_1_up_t_70 + w_1_up_t_71*w_1_up_t_71 + w_1_up_t_72*w_1_up_t_72 +
-            w_1_up_t_73*w_1_up_t_73 + w_1_up_t_74*w_1_up_t_74)
-        )
-        inv_w_1_up_t_157 = 1.0/w_1_up_t_75
-        w_1_up_t_76 = inv_w_1_up_t_157*w_1_up_t_70
-        w_1_up_t_77 = inv_w_1_up_t_157*w_1_up_t_71
-        w_1_up_t_78 = inv_w_1_up_t_157*w_1_up_t_72
-        w_1_up_t_79 = inv_w_1_up_t_157*w_1_up_t_73
-        w_1_up_t_80 = inv_w_1_up_t_157*w_1_up_t_74
-        # (up-V1) velocity of the connection point
-        S_dot_up_t = omega_y*q_up_in_base_z - omega_z*q_up_in_base_y
-        S_dot_up_t_2 = omega_z*q_up_in_base_x - omega_x*q_up_in_base_z
-        S_dot_up_t_3 = omega_x*q_up_in_base_y - omega_y*q_up_in_base_x
-        S_dot_up_x = S_dot_up_t + t_dot_x
-        S_dot_up_y = S_dot_up_t_2 + t_dot_y
-        S_dot_up_z = S_dot_up_t_3 + t_dot_z
-        # (up-V53) rate at which the joints turn along moment direction 1
-        omega_tip_x = (
-        axis_x_up_axes2_x*omega_x + axis_x_up_axes2_y*omega_y + axis_x_up_axes2_z*omega_z
-        )
-        omega_tip_y = (
-        axis_y_up_axes2_in_base_x*omega_x + axis_y_up_axes2_in_base_y*omega_y +
-            axis_y_up_axes2_in_base_z*omega_z
-        )
-        omega_tip_z = (
-        axis_z_up_axes2_in_base_x*omega_x + axis_z_up_axes2_in_base_y*omega_y +
-            axis_z_up_axes2_in_base_z*omega_z
-        )
-        eta_1_up = end_p1_up_r3_y*omega_tip_z - end_p1_up_r1_x*omega_tip_y
-        # (up-V54) rate at which the joints turn along moment direction 2
-        eta_2_up = end_p2_up_r3_x*omega_tip_y - end_p2_up_r3_y*omega_tip_x
-        # (up-V55) rate at which the joints turn along moment direction 3
-        eta_3_up = end_p3_up_r3_x*omega_tip_z - end_p3_up_r1_x*omega_tip_x
-        # (up-V1) velocity of the connection point
-        S_dot_up_tip_x = (
-        S_dot_up_x*axis_x_up_axes2_x + S_dot_up_y*axis_x_up_axes2_y + S_dot_up_z*axis_x_up_axes2_z
-        )
-        S_dot_up_tip_y = (
-        S_dot_up_x*axis_y_up_axes2_in_base_x + S_dot_up_y*axis_y_up_axes2_in_base_y +
-            S_dot_up_z*axis_y_up_axes2_in_base_z
-        )
-        S_dot_up_tip_z = (
-        S_dot_up_x*axis_z_up_axes2_in_base_x + S_dot_up_y*axis_z_up_axes2_in_base_y +
-            S_dot_up_z*axis_z_up_axes2_in_base_z
-        )
-        # (up-V56) rate of joint 1
-        qd_1_up_t = 1.35*eta_1_up
-        qd_1_up_t_2 = 1.35*eta_2_up
-        qd_1_up_t_3 = 1.35*eta_3_up
-        qd_1_up_t_4 = (
-        inv_w_1_up_t_157*(S_dot_up_tip_y*w_1_up_t_76 + S_dot_up_tip_z*w_1_up_t_77 +
-            qd_1_up_t*w_1_up_t_78 + qd_1_up_t_2*w_1_up_t_79 + qd_1_up_t_3*w_1_up_t_80)
-        )
-        qd_1_up_t_5 = (
-        inv_w_1_up_t_129*(S_dot_up_tip_y*w_1_up_t_64 + S_dot_up_tip_z*w_1_up_t_65 +
-            qd_1_up_t*w_1_up_t_66 + qd_1_up_t_3*w_1_up_t_68 - qd_1_up_t_2*w_1_up_t_67 -
-            qd_1_up_t_4*w_1_up_t_69)
-        )
-        qd_1_up_t_6 = (
-        inv_w_1_up_t_95*(S_dot_up_tip_y*w_1_up_t_50 + S_dot_up_tip_z*inv_w_1_up_t_95 +
-            qd_1_up_t*w_1_up_t_51 + qd_1_up_t_3*w_1_up_t_52 + qd_1_up_t_4*w_1_up_t_58 +
-            qd_1_up_t_5*w_1_up_t_53)
-        )
-        qd_1_up_t_7 = (
-        S_dot_up_tip_y*w_1_up_t_14 + qd_1_up_t*w_1_up_t_15 + qd_1_up_t_3*w_1_up_t_16 +
-            qd_1_up_t_6*w_1_up_t_21 + inv_w_1_up_t_57*w_1_up_t_17*(S_dot_up_tip_y*w_1_up_t_34 +
-            qd_1_up_t*w_1_up_t_35 + qd_1_up_t_3*w_1_up_t_36 + qd_1_up_t_4*w_1_up_t_45 +
-            qd_1_up_t_5*w_1_up_t_41 - qd_1_up_t_6*w_1_up_t_37) - qd_1_up_t_4*w_1_up_t_29 -
-            qd_1_up_t_5*w_1_up_t_25
-        )
-        qd_1_up_t_8 = inv_w_1_up_t_16*qd_1_up_t_7
-        # (up-V59) angular velocity of link 1
-        omega_1_up_t = qd_1_up_t_4*s_2_up
-        omega_1_up_t_2 = c_2_up*qd_1_up_t_4
-        # (up-A8) rate of moment direction 1
-        nd_m1_up_y = (
-        end_p1_up_r3_x*omega_1_up_t_2 + end_p1_up_r3_x*omega_tip_y - end_p1_up_r3_y*omega_tip_x
-        )
-        nd_m1_up_z = (
-        end_p1_up_r3_x*omega_tip_z - end_p1_up_r1_x*omega_tip_x - end_p1_up_r3_x*qd_1_up_t_8
-        )
-        # (up-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_up_x = omega_1_up_t_2*qd_1_up_t_8
-        zeta_2_up_y = omega_1_up_t*qd_1_up_t_8
-        # (up-A9) bias of the angular acceleration along moment direction 1
-        nu_1_up_t = omega_1_up_t - omega_tip_x
-        nu_1_up_t_2 = omega_1_up_t_2 + omega_tip_y
-        nu_1_up_t_3 = omega_tip_z - qd_1_up_t_8
-        nu_1_up_t_4 = (
-        nd_m1_up_y*nu_1_up_t_2 + nd_m1_up_z*nu_1_up_t_3 - nu_1_up_t*(end_p1_up_r1_x*qd_1_up_t_8 -
-            end_p1_up_r3_y*omega_1_up_t_2)
-        )
-        nu_1_up = nu_1_up_t_4 - end_p1_up_r1_x*zeta_2_up_y
-        # (up-A10) rate of moment direction 2
-        nd_m2_up_x = (
-        end_p2_up_r1_x*omega_tip_x - end_p2_up_r1_x*omega_1_up_t - end_p2_up_r3_x*omega_tip_z
-        )
-        nd_m2_up_y = (
-        end_p2_up_r1_x*omega_1_up_t_2 + end_p2_up_r1_x*omega_tip_y - end_p2_up_r3_y*omega_tip_z
-        )
-        # (up-A11) bias of the angular acceleration along moment direction 2
-        nu_2_up_t = end_p2_up_r3_y*zeta_2_up_x - end_p2_up_r3_x*zeta_2_up_y
-        nu_2_up_t_2 = (
-        nd_m2_up_x*nu_1_up_t + nu_1_up_t_3*(end_p2_up_r3_y*omega_1_up_t_2 -
-            end_p2_up_r3_x*omega_1_up_t) - nd_m2_up_y*nu_1_up_t_2
-        )
-        nu_2_up = -nu_2_up_t - nu_2_up_t_2
-        # (up-A12) rate of moment direction 3
-        nd_m3_up_x = (
-        end_p3_up_r3_x*omega_tip_y + end_p3_up_r3_y*omega_1_up_t - end_p3_up_r3_y*omega_tip_x
-        )
-        nd_m3_up_z = (
-        end_p3_up_r1_x*omega_tip_y + end_p3_up_r3_y*qd_1_up_t_8 - end_p3_up_r3_y*omega_tip_z
-        )
-        # (up-A13) bias of the angular acceleration along moment direction 3
-        nu_3_up_t = (
-        nd_m3_up_x*nu_1_up_t + nu_1_up_t_2*(end_p3_up_r1_x*qd_1_up_t_8 +
-            end_p3_up_r3_x*omega_1_up_t) - nd_m3_up_z*nu_1_up_t_3
-        )
-        nu_3_up = -nu_3_up_t - end_p3_up_r1_x*zeta_2_up_x
-        # (up-V61) centripetal tensor of link 2
-        W_2_up_t = omega_1_up_t*omega_1_up_t
-        W_2_up_t_2 = omega_1_up_t_2*omega_1_up_t_2
-        W_2_up_t_3 = qd_1_up_t_8*qd_1_up_t_8
-        W_2_up_xy = omega_1_up_t*omega_1_up_t_2
-        # (up-A5) acceleration of the connection point at zero joint accelerations
-        bias_up_t = root_2_up*zeta_2_up_y
-        bias_up_t_2 = W_2_up_xy*root_2_up
-        bias_up_t_3 = 2.0*S_dot_up_tip_x
-        bias_up_t_4 = bias_up_t_3*qd_1_up_t_8
-        bias_up_t_5 = bias_up_t_3*omega_1_up_t_2
-        bias_up_y = bias_up_t_4 - bias_up_t_2
-        bias_up_z = 2.0*bias_up_t + bias_up_t_5
-        # (up-N6) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        g_r1_x = g_r0_y*s_1_up - c_1_up*g_r0_x
-        g_r1_y = -c_1_up*g_r0_y - g_r0_x*s_1_up
-        g_r3_x = g_r0_z*s_2_up - c_2_up*g_r1_y
-        g_r3_y = -c_2_up*g_r0_z - g_r1_y*s_2_up
-        # (up-V25) the moment that goes with it
-        mu_c1_up_t = end_p1_up_r1_x*f_c1_up_t_4
-        mu_c1_up_t_2 = end_p3_up_r1_x*f_c1_up_t_5
-        mu_c1_up_z = -end_p1_up_r3_y*f_c1_up_t_4 - end_p3_up_r3_x*f_c1_up_t_5
-        # (M9) moment of the column's unit force about the platform origin
-        Hk_a_1_up_x = (
-        axis_x_up_axes2_x*mu_c1_up_t_2 + axis_y_up_axes2_in_base_x*mu_c1_up_t +
-            axis_y_up_axes2_in_base_z*q_up_in_base_y + axis_z_up_axes2_in_base_x*mu_c1_up_z -
-            axis_y_up_axes2_in_base_y*q_up_in_base_z
-        )
-        Hk_a_1_up_y = (
-        axis_x_up_axes2_y*mu_c1_up_t_2 + axis_y_up_axes2_in_base_x*q_up_in_base_z +
-            axis_y_up_axes2_in_base_y*mu_c1_up_t + axis_z_up_axes2_in_base_y*mu_c1_up_z -
-            axis_y_up_axes2_in_base_z*q_up_in_base_x
-        )
-        Hk_a_1_up_z = (
-        axis_x_up_axes2_z*mu_c1_up_t_2 + axis_y_up_axes2_in_base_y*q_up_in_base_x +
-            axis_y_up_axes2_in_base_z*mu_c1_up_t + axis_z_up_axes2_in_base_z*mu_c1_up_z -
-            axis_y_up_axes2_in_base_x*q_up_in_base_y
-        )
-        # (up-V31) the moment that goes with it
-        mu_c2_up_t = end_p1_up_r1_x*f_c2_up_t
-        mu_c2_up_t_2 = end_p3_up_r1_x*f_c2_up_t_2
-        mu_c2_up_z = end_p3_up_r3_x*f_c2_up_t_2 - end_p1_up_r3_y*f_c2_up_t
-        # (M12) moment of the column's unit force about the platform origin
-        Hk_a_2_up_x = (
-        axis_y_up_axes2_in_base_x*mu_c2_up_t + axis_z_up_axes2_in_base_x*mu_c2_up_z +
-            axis_z_up_axes2_in_base_z*q_up_in_base_y - axis_x_up_axes2_x*mu_c2_up_t_2 -
-            axis_z_up_axes2_in_base_y*q_up_in_base_z
-        )
-        Hk_a_2_up_y = (
-        axis_y_up_axes2_in_base_y*mu_c2_up_t + axis_z_up_axes2_in_base_x*q_up_in_base_z +
-            axis_z_up_axes2_in_base_y*mu_c2_up_z - axis_x_up_axes2_y*mu_c2_up_t_2 -
-            axis_z_up_axes2_in_base_z*q_up_in_base_x
-        )
-        Hk_a_2_up_z = (
-        axis_y_up_axes2_in_base_z*mu_c2_up_t + axis_z_up_axes2_in_base_y*q_up_in_base_x +
-            axis_z_up_axes2_in_base_z*mu_c2_up_z - axis_x_up_axes2_z*mu_c2_up_t_2 -
-            axis_z_up_axes2_in_base_x*q_up_in_base_y
-        )
-        # (up-V37) the moment that goes with it
-        mu_c3_up_x = -end_p2_up_r3_y*inv_size_c3_up - end_p3_up_r1_x*mu3_c3_up
-        mu_c3_up_y = end_p1_up_r1_x*mu1_c3_up + end_p2_up_r3_x*inv_size_c3_up
-        mu_c3_up_z = end_p3_up_r3_x*mu3_c3_up - end_p1_up_r3_y*mu1_c3_up
-        mu_c3_up_in_base_x = (
-        axis_x_up_axes2_x*mu_c3_up_x + axis_y_up_axes2_in_base_x*mu_c3_up_y +
-            axis_z_up_axes2_in_base_x*mu_c3_up_z
-        )
-        mu_c3_up_in_base_y = (
-        axis_x_up_axes2_y*mu_c3_up_x + axis_y_up_axes2_in_base_y*mu_c3_up_y +
-            axis_z_up_axes2_in_base_y*mu_c3_up_z
-        )
-        mu_c3_up_in_base_z = (
-        axis_x_up_axes2_z*mu_c3_up_x + axis_y_up_axes2_in_base_z*mu_c3_up_y +
-            axis_z_up_axes2_in_base_z*mu_c3_up_z
-        )
-        # (up-A14) acceleration with which the joints turn along moment direction 1
-        alpha_tip_x = (
-        alpha_x*axis_x_up_axes2_x + alpha_y*axis_x_up_axes2_y + alpha_z*axis_x_up_axes2_z
-        )
-        alpha_tip_y = (
-        alpha_x*axis_y_up_axes2_in_base_x + alpha_y*axis_y_up_axes2_in_base_y +
-            alpha_z*axis_y_up_axes2_in_base_z
-        )
-        alpha_tip_z = (
-        alpha_x*axis_z_up_axes2_in_base_x + alpha_y*axis_z_up_axes2_in_base_y +
-            alpha_z*axis_z_up_axes2_in_base_z
-        )
-        etad_1_up_t = alpha_tip_y*end_p1_up_r1_x - alpha_tip_z*end_p1_up_r3_y
-        etad_1_up = nu_1_up - etad_1_up_t
-        # (up-A15) acceleration with which the joints turn along moment direction 2
-        etad_2_up_t = alpha_tip_x*end_p2_up_r3_y - alpha_tip_y*end_p2_up_r3_x
-        etad_2_up = nu_2_up - etad_2_up_t
-        # (up-A16) acceleration with which the joints turn along moment direction 3
-        etad_3_up_t = alpha_tip_x*end_p3_up_r1_x - alpha_tip_z*end_p3_up_r3_x
-        etad_3_up = nu_3_up - etad_3_up_t
-        # (up-A2) acceleration of the connection point without its centripetal part
-        a_p_up_x = t_ddot_x + alpha_y*q_up_in_base_z - alpha_z*q_up_in_base_y
-        a_p_up_y = t_ddot_y + alpha_z*q_up_in_base_x - alpha_x*q_up_in_base_z
-        a_p_up_z = t_ddot_z + alpha_x*q_up_in_base_y - alpha_y*q_up_in_base_x
-        # (up-A3) acceleration of the connection point
-        S_ddot_up_x = a_p_up_x + S_dot_up_t_3*omega_y - S_dot_up_t_2*omega_z
-        S_ddot_up_y = a_p_up_y + S_dot_up_t*omega_z - S_dot_up_t_3*omega_x
-        S_ddot_up_z = a_p_up_z + S_dot_up_t_2*omega_x - S_dot_up_t*omega_y
-        # (up-A6) acceleration of the connection point left to the joint accelerations
-        rel_up_y = (
-        S_ddot_up_x*axis_y_up_axes2_in_base_x + S_ddot_up_y*axis_y_up_axes2_in_base_y +
-            S_ddot_up_z*axis_y_up_axes2_in_base_z - bias_up_y
-        )
-        rel_up_z = (
-        S_ddot_up_x*axis_z_up_axes2_in_base_x + S_ddot_up_y*axis_z_up_axes2_in_base_y +
-            S_ddot_up_z*axis_z_up_axes2_in_base_z - bias_up_z
-        )
-        # (up-A17) acceleration of joint 1
-        qdd_1_up_t = 1.35*etad_1_up
-        qdd_1_up_t_2 = 1.35*etad_2_up
-        qdd_1_up_t_3 = 1.35*etad_3_up
-        qdd_1_up_t_4 = (
-        inv_w_1_up_t_157*(qdd_1_up_t*w_1_up_t_78 + qdd_1_up_t_2*w_1_up_t_79 +
-            qdd_1_up_t_3*w_1_up_t_80 + rel_up_y*w_1_up_t_76 + rel_up_z*w_1_up_t_77)
-        )
-        qdd_1_up_t_5 = (
-        inv_w_1_up_t_129*(qdd_1_up_t*w_1_up_t_66 + qdd_1_up_t_3*w_1_up_t_68 + rel_up_y*w_1_up_t_64
-            + rel_up_z*w_1_up_t_65 - qdd_1_up_t_2*w_1_up_t_67 - qdd_1_up_t_4*w_1_up_t_69)
-        )
-        qdd_1_up_t_6 = (
-        inv_w_1_up_t_95*(inv_w_1_up_t_95*rel_up_z + qdd_1_up_t*w_1_up_t_51 +
-            qdd_1_up_t_3*w_1_up_t_52 + qdd_1_up_t_4*w_1_up_t_58 + qdd_1_up_t_5*w_1_up_t_53 +
-            rel_up_y*w_1_up_t_50)
-        )
-        qdd_1_up_t_7 = (
-        qdd_1_up_t*w_1_up_t_15 + qdd_1_up_t_3*w_1_up_t_16 + qdd_1_up_t_6*w_1_up_t_21 +
-            rel_up_y*w_1_up_t_14 + inv_w_1_up_t_57*w_1_up_t_17*(qdd_1_up_t*w_1_up_t_35 +
-            qdd_1_up_t_3*w_1_up_t_36 + qdd_1_up_t_4*w_1_up_t_45 + qdd_1_up_t_5*w_1_up_t_41 +
-            rel_up_y*w_1_up_t_34 - qdd_1_up_t_6*w_1_up_t_37) - qdd_1_up_t_4*w_1_up_t_29 -
-            qdd_1_up_t_5*w_1_up_t_25
-        )
-        qdd_1_up_t_8 = inv_w_1_up_t_16*qdd_1_up_t_7
-        # (up-A23) angular acceleration of link 1
-        alpha_1_up_t = qdd_1_up_t_4*s_2_up
-        alpha_1_up_t_2 = c_2_up*qdd_1_up_t_4
-        # (up-A27) angular acceleration of link 2
-        alpha_2_up_x = alpha_1_up_t - zeta_2_up_x
-        alpha_2_up_y = -alpha_1_up_t_2 - zeta_2_up_y
-        # (up-A31) acceleration tensor of link 2
-        B_2_up_xy = -W_2_up_xy - qdd_1_up_t_8
-        B_2_up_yx = qdd_1_up_t_8 - W_2_up_xy
-        B_2_up_zx = zeta_2_up_y - alpha_2_up_y
-        B_2_up_zy = alpha_2_up_x - zeta_2_up_x
-        # (up-N3) acceleration of the reference point of link 3, less gravity
-        acc_3_up_x = (
-        S_ddot_up_x*axis_x_up_axes2_x + S_ddot_up_y*axis_x_up_axes2_y +
-            S_ddot_up_z*axis_x_up_axes2_z - g_r3_x
-        )
-        acc_3_up_y = bias_up_t_4 + qdd_1_up_t_8*root_2_up - bias_up_t_2 - g_r3_y
-        acc_3_up_z = bias_up_t + bias_up_t_5 - g_r1_x - alpha_2_up_y*root_2_up
-        # (up-N11) inertia force of link 3 less its weight
-        f_3_up_x = (
-        acc_3_up_x*up_link3_mass - B_2_up_xy*h_3_up_z - alpha_1_up_t_2*h_3_up_y -
-            h_3_up_x*(W_2_up_t_2 + W_2_up_t_3)
-        )
-        f_3_up_y = (
-        B_2_up_yx*h_3_up_x + acc_3_up_y*up_link3_mass + h_3_up_z*(W_2_up_t + W_2_up_t_3) -
-            alpha_1_up_t*h_3_up_y
-        )
-        f_3_up_z = (
-        B_2_up_zx*h_3_up_x + acc_3_up_z*up_link3_mass - B_2_up_zy*h_3_up_z - h_3_up_y*(W_2_up_t +
-            W_2_up_t_2)
-        )
-        # (up-N18) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_up_x = (
-        B_2_up_yx*J_group_2_up_xz + B_2_up_zy*Sigma_2_up_yy + J_group_2_up_yz*(W_2_up_t_2 -
-            W_2_up_t_3) + Sigma_2_up_zz*alpha_1_up_t + g_r1_x*h_2_up_z + g_r3_y*h_2_up_y -
-            B_2_up_zx*J_group_2_up_xy - acc_3_up_y*h_3_up_y - acc_3_up_z*h_3_up_z
-        )
-        mu_2_up_y = (
-        B_2_up_zy*J_group_2_up_xy + acc_3_up_x*h_3_up_y + g_r1_x*h_2_up_x -
-            B_2_up_xy*J_group_2_up_yz - B_2_up_zx*Sigma_2_up_xx - J_group_2_up_xz*(W_2_up_t -
-            W_2_up_t_3) - Sigma_2_up_zz*alpha_1_up_t_2 - acc_3_up_z*h_3_up_x - g_r3_x*h_2_up_y
-        )
-        mu_2_up_z = (
-        B_2_up_yx*Sigma_2_up_xx + J_group_2_up_xy*(W_2_up_t - W_2_up_t_2) +
-            J_group_2_up_xz*alpha_1_up_t + acc_3_up_x*h_3_up_z + acc_3_up_y*h_3_up_x -
-            B_2_up_xy*Sigma_2_up_yy - J_group_2_up_yz*alpha_1_up_t_2 - g_r3_x*h_2_up_z -
-            g_r3_y*h_2_up_x
-        )
-        # (up-N22) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_up_y = mu_2_up_y - f_3_up_z*root_2_up
-        N_2_up_z = mu_2_up_z + f_3_up_y*root_2_up
-        # (up-N38) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_up_t = N_2_up_z*inv_w_1_up_t_16
-        G_up_t_2 = G_up_t*inv_w_1_up_t_57*w_1_up_t_17
-        G_up_t_3 = inv_w_1_up_t_95*(G_up_t*w_1_up_t_21 - G_up_t_2*w_1_up_t_37)
-        G_up_t_4 = (
-        inv_w_1_up_t_129*(G_up_t_2*w_1_up_t_41 + G_up_t_3*w_1_up_t_53 - G_up_t*w_1_up_t_25)
-        )
-        G_up_t_5 = (
-        inv_w_1_up_t_157*(G_up_t_2*w_1_up_t_45 + G_up_t_3*w_1_up_t_58 + mu_2_up_x*s_2_up -
-            G_up_t*w_1_up_t_29 - G_up_t_4*w_1_up_t_69 - N_2_up_y*c_2_up)
-        )
-        G_up_t_6 = (
-        G_up_t*w_1_up_t_14 + G_up_t_2*w_1_up_t_34 + G_up_t_3*w_1_up_t_50 + G_up_t_4*w_1_up_t_64 +
-            G_up_t_5*w_1_up_t_76
-        )
-        G_up_t_7 = G_up_t_3*inv_w_1_up_t_95 + G_up_t_4*w_1_up_t_65 + G_up_t_5*w_1_up_t_77
-        G_up_t_8 = (
-        G_up_t*w_1_up_t_15 + G_up_t_2*w_1_up_t_35 + G_up_t_3*w_1_up_t_51 + G_up_t_4*w_1_up_t_66 +
-            G_up_t_5*w_1_up_t_78
-        )
-        G_up_t_9 = 1.35*G_up_t_8
-        G_up_t_10 = G_up_t_4*w_1_up_t_67 - G_up_t_5*w_1_up_t_79
-        G_up_t_11 = 1.35*G_up_t_10
-        G_up_t_12 = (
-        G_up_t*w_1_up_t_16 + G_up_t_2*w_1_up_t_36 + G_up_t_3*w_1_up_t_52 + G_up_t_4*w_1_up_t_68 +
-            G_up_t_5*w_1_up_t_80
-        )
-        G_up_t_13 = 1.35*G_up_t_12
-        # (up-N58) leg force on the platform without actuation and without the mass at the connection point
-        c_up_in_base_x = (
-        -G_up_t_6*axis_y_up_axes2_in_base_x - G_up_t_7*axis_z_up_axes2_in_base_x -
-            axis_x_up_axes2_x*f_3_up_x
-        )
-        c_up_in_base_y = (
-        -G_up_t_6*axis_y_up_axes2_in_base_y - G_up_t_7*axis_z_up_axes2_in_base_y -
-            axis_x_up_axes2_y*f_3_up_x
-        )
-        c_up_in_base_z = (
-        -G_up_t_6*axis_y_up_axes2_in_base_z - G_up_t_7*axis_z_up_axes2_in_base_z -
-            axis_x_up_axes2_z*f_3_up_x
-        )
-        # (up-N54) moment at the connection point that balances the leg's inertia and weight along all freedoms
-        G_m_up_x = G_up_t_11*end_p2_up_r3_y - G_up_t_13*end_p3_up_r1_x
-        G_m_up_y = -G_up_t_11*end_p2_up_r3_x - G_up_t_9*end_p1_up_r1_x
-        G_m_up_z = G_up_t_13*end_p3_up_r3_x + G_up_t_9*end_p1_up_r3_y
-        # (E5) moment that actuators and external wrench must give
-        R_a_t_4 = (
-        c_up_in_base_z*q_up_in_base_y - G_m_up_x*axis_x_up_axes2_x -
-            G_m_up_y*axis_y_up_axes2_in_base_x - G_m_up_z*axis_z_up_axes2_in_base_x -
-            c_up_in_base_y*q_up_in_base_z
-        )
-        R_a_t_5 = (
-        c_up_in_base_x*q_up_in_base_z - G_m_up_x*axis_x_up_axes2_y -
-            G_m_up_y*axis_y_up_axes2_in_base_y - G_m_up_z*axis_z_up_axes2_in_base_y -
-            c_up_in_base_z*q_up_in_base_x
-        )
-        R_a_t_6 = (
-        c_up_in_base_y*q_up_in_base_x - G_m_up_x*axis_x_up_axes2_z -
-            G_m_up_y*axis_y_up_axes2_in_base_z - G_m_up_z*axis_z_up_axes2_in_base_z -
-            c_up_in_base_x*q_up_in_base_y
+        # (tube-S) from the base point to the connection point
+        tube_q_in_base_x = (
+        R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
+        )
+        tube_q_in_base_y = (
+        R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
+        )
+        tube_q_in_base_z = (
+        R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
+        )
+        tube_S_x = t_x + tube_q_in_base_x - tube_base_point_x
+        tube_S_y = t_y + tube_q_in_base_y - tube_base_point_y
+        tube_S_z = t_z + tube_q_in_base_z - tube_base_point_z
+        # (tube-px_1) component along the reference direction
+        tube_px_1 = (
+        tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
+        )
+        # (tube-py_1) component across the reference direction
+        tube_py_1 = (
+        tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
+        )
+        # (tube-rho2_1) squared amplitude
+        tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
+        # (tube-root_1) amplitude, with the sign of the branch
+        tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
+        # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        tube_xi_1_t = (
+        tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
+        )
+        # (tube-rho2_2) squared amplitude
+        tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t
+        # (tube-root_2) amplitude, with the sign of the branch
+        tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
+        # (tube-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_tube_root_2 = 1.0/tube_root_2
+        tube_c_2 = inv_tube_root_2*tube_root_1
+        # (tube-s_2) sine of the angle of joint 2 from its reference direction
+        tube_s_2 = inv_tube_root_2*tube_xi_1_t
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = inv_tube_root_1*tube_py_1
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_px_1
+        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        axis_z_tube_axes2_in_base_x = tube_base_frame_xy*tube_s_1 - tube_base_frame_xx*tube_c_1
+        axis_z_tube_axes2_in_base_y = tube_base_frame_yy*tube_s_1 - tube_base_frame_yx*tube_c_1
+        axis_z_tube_axes2_in_base_z = tube_base_frame_zy*tube_s_1 - tube_base_frame_zx*tube_c_1
+        tube_f_c1_t = tube_s_1*tube_s_2
+        tube_f_c1_t_2 = tube_c_1*tube_s_2
+        axis_y_tube_axes2_in_base_x = (
+        tube_base_frame_xx*tube_f_c1_t + tube_base_frame_xy*tube_f_c1_t_2 -
+            tube_base_frame_xz*tube_c_2
+        )
+        axis_y_tube_axes2_in_base_y = (
+        tube_base_frame_yx*tube_f_c1_t + tube_base_frame_yy*tube_f_c1_t_2 -
+            tube_base_frame_yz*tube_c_2
+        )
+        axis_y_tube_axes2_in_base_z = (
+        tube_base_frame_zx*tube_f_c1_t + tube_base_frame_zy*tube_f_c1_t_2 -
+            tube_base_frame_zz*tube_c_2
+        )
+        axis_x_tube_axes2_x = (
+        axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_z -
+            axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_y
+        )
+        axis_x_tube_axes2_y = (
+        axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_x -
+            axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_z
+        )
+        axis_x_tube_axes2_z = (
+        axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_y -
+            axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_x
+        )
+        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
+        tube_n_m1_t_2 = (
+        R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx + R_zy*tube_base_frame_zx
+        )
+        tube_n_m1_t_3 = (
+        R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx + R_zz*tube_base_frame_zx
+        )
+        tube_n_m1_t_4 = (
+        R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy + R_zx*tube_base_frame_zy
+        )
+        tube_n_m1_t_5 = (
+        R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy + R_zy*tube_base_frame_zy
+        )
+        tube_n_m1_t_6 = (
+        R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy + R_zz*tube_base_frame_zy
+        )
+        tube_n_m1_t_7 = (
+        R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz + R_zx*tube_base_frame_zz
+        )
+        tube_n_m1_t_8 = (
+        R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz + R_zy*tube_base_frame_zz
+        )
+        tube_n_m1_t_9 = (
+        R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz + R_zz*tube_base_frame_zz
+        )
+        tube_end_p1_r0_x = (
+        tube_n_m1_t*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_yz
+        )
+        tube_end_p1_r0_y = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_yz
+        )
+        tube_end_p1_r0_z = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_yz
+        )
+        tube_end_p1_r1_x = tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x
+        tube_end_p1_r1_y = -tube_c_1*tube_end_p1_r0_y - tube_end_p1_r0_x*tube_s_1
+        tube_end_p1_r3_x = tube_end_p1_r0_z*tube_s_2 - tube_c_2*tube_end_p1_r1_y
+        tube_end_p1_r3_y = -tube_c_2*tube_end_p1_r0_z - tube_end_p1_r1_y*tube_s_2
+        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
+        tube_end_p2_r0_x = (
+        tube_n_m1_t*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_zz
+        )
+        tube_end_p2_r0_y = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_zz
+        )
+        tube_end_p2_r0_z = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_zz
+        )
+        tube_end_p2_r1_x = tube_end_p2_r0_y*tube_s_1 - tube_c_1*tube_end_p2_r0_x
+        tube_end_p2_r1_y = -tube_c_1*tube_end_p2_r0_y - tube_end_p2_r0_x*tube_s_1
+        tube_end_p2_r3_x = tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y
+        tube_end_p2_r3_y = -tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2
+        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
+        tube_end_p3_r0_x = (
+        tube_n_m1_t*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_xz
+        )
+        tube_end_p3_r0_y = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_xz
+        )
+        tube_end_p3_r0_z = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_xz
+        )
+        tube_end_p3_r1_x = tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x
+        tube_end_p3_r1_y = -tube_c_1*tube_end_p3_r0_y - tube_end_p3_r0_x*tube_s_1
+        tube_end_p3_r3_x = tube_end_p3_r0_z*tube_s_2 - tube_c_2*tube_end_p3_r1_y
+        tube_end_p3_r3_y = -tube_c_2*tube_end_p3_r0_z - tube_end_p3_r1_y*tube_s_2
+        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        tube_n_m1_t_10 = tube_c_2*tube_end_p1_r1_x
+        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
+        tube_n_m2_r0_y = -tube_c_2*tube_end_p2_r3_x - tube_end_p2_r3_y*tube_s_2
+        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
+        tube_n_m3_t = tube_end_p3_r1_x*tube_s_2
+        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        tube_f_c1_t_3 = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10
+        inv_tube_f_c1_t_26 = 1.0/tube_f_c1_t_3
+        tube_f_c1_t_4 = inv_tube_f_c1_t_26*tube_n_m3_t*tube_root_2
+        tube_f_c1_t_5 = inv_tube_f_c1_t_26*tube_n_m1_t_10*tube_root_2
+        # (tube-f_c2) force part of the wrench that does no work along the leg's freedoms, 2
+        tube_f_c2_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_root_1
+        tube_f_c2_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_root_1
+        # (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3
+        tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y
+        tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y
+        # (tube-size_c3) size of the moment
+        tube_size_c3 = sqrt(1.0 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2)
+        # (tube-mu1_c3) moment along direction 1 that goes with it
+        inv_tube_size_c3 = 1.0/tube_size_c3
+        tube_mu1_c3 = inv_tube_size_c3*tube_f_c3_t
+        # (tube-mu3_c3) moment along direction 3 that goes with it
+        tube_mu3_c3 = inv_tube_size_c3*tube_f_c3_t_2
+        # (tube-w_1) force part of reciprocal wrench 1
+        tube_w_1_t = 1.35*tube_n_m1_t_10
+        tube_w_1_t_2 = 1.35*tube_n_m2_r0_y
+        tube_w_1_t_3 = 1.35*tube_n_m3_t
+        tube_w_1_t_4 = 1.35*tube_end_p1_r3_y
+        tube_w_1_t_5 = 1.35*tube_end_p3_r3_x
+        tube_w_1_t_6 = 1.35*tube_f_c1_t_4
+        tube_w_1_t_7 = 1.35*tube_f_c1_t_5
+        tube_w_1_t_8 = 1.35*tube_f_c2_t
+        tube_w_1_t_9 = 1.35*tube_f_c2_t_2
+        tube_w_1_t_10 = 1.35*tube_mu1_c3
+        tube_w_1_t_11 = 1.35*inv_tube_size_c3
+        tube_w_1_t_12 = 1.35*tube_mu3_c3
+        tube_w_1_t_13 = sqrt(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
+        inv_tube_w_1_t_16 = 1.0/tube_w_1_t_13
+        tube_w_1_t_14 = inv_tube_w_1_t_16*tube_root_2
+        tube_w_1_t_15 = inv_tube_w_1_t_16*tube_w_1_t_4
+        tube_w_1_t_16 = inv_tube_w_1_t_16*tube_w_1_t_5
+        tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
+        tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
+        tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
+        tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7
+        tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9
+        tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21
+        tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8
+        tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21
+        tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16
+        tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25
+        tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25
+        tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25
+        tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3
+        tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29
+        tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29
+        tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29
+        tube_w_1_t_33 = (
+        sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
+            tube_w_1_t_20*tube_w_1_t_20)
+        )
+        inv_tube_w_1_t_57 = 1.0/tube_w_1_t_33
+        tube_w_1_t_34 = inv_tube_w_1_t_57*tube_w_1_t_18
+        tube_w_1_t_35 = inv_tube_w_1_t_57*tube_w_1_t_19
+        tube_w_1_t_36 = inv_tube_w_1_t_57*tube_w_1_t_20
+        tube_w_1_t_37 = (
+        tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
+        )
+        tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37
+        tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37
+        tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37
+        tube_w_1_t_41 = (
+        tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 - tube_w_1_t_27*tube_w_1_t_35
+        )
+        tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41
+        tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41
+        tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41
+        tube_w_1_t_45 = (
+        tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 - tube_w_1_t_31*tube_w_1_t_35
+        )
+        tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45
+        tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45
+        tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45
+        tube_w_1_t_49 = (
+        sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
+            tube_w_1_t_40*tube_w_1_t_40)
+        )
+        inv_tube_w_1_t_95 = 1.0/tube_w_1_t_49
+        tube_w_1_t_50 = inv_tube_w_1_t_95*tube_w_1_t_38
+        tube_w_1_t_51 = inv_tube_w_1_t_95*tube_w_1_t_39
+        tube_w_1_t_52 = inv_tube_w_1_t_95*tube_w_1_t_40
+        tube_w_1_t_53 = (
+        tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
+        )
+        tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
+        tube_w_1_t_55 = inv_tube_w_1_t_95*tube_w_1_t_53
+        tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
+        tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
+        tube_w_1_t_58 = (
+        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_95*tube_root_1
+            - tube_w_1_t_47*tube_w_1_t_51
+        )
+        tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
+        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_95*tube_w_1_t_58
+        tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
+        tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
+        tube_w_1_t_63 = (
+        sqrt(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54 +
+            tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
+            tube_w_1_t_57*tube_w_1_t_57)
+        )
+        inv_tube_w_1_t_129 = 1.0/tube_w_1_t_63
+        tube_w_1_t_64 = inv_tube_w_1_t_129*tube_w_1_t_54
+        tube_w_1_t_65 = inv_tube_w_1_t_129*tube_w_1_t_55
+        tube_w_1_t_66 = inv_tube_w_1_t_129*tube_w_1_t_56
+        tube_w_1_t_67 = inv_tube_w_1_t_129*tube_w_1_t_11
+        tube_w_1_t_68 = inv_tube_w_1_t_129*tube_w_1_t_57
+        tube_w_1_t_69 = (
+        tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
+            tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
+        )
+        tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69
+        tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69
+        tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69
+        tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69
+        tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69
+        tube_w_1_t_75 = (
+        sqrt(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71 +
+            tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
+            tube_w_1_t_74*tube_w_1_t_74)
+        )
+        inv_tube_w_1_t_157 = 1.0/tube_w_1_t_75
+        tube_w_1_t_76 = inv_tube_w_1_t_157*tube_w_1_t_70
+        tube_w_1_t_77 = inv_tube_w_1_t_157*tube_w_1_t_71
+        tube_w_1_t_78 = inv_tube_w_1_t_157*tube_w_1_t_72
+        tube_w_1_t_79 = inv_tube_w_1_t_157*tube_w_1_t_73
+        tube_w_1_t_80 = inv_tube_w_1_t_157*tube_w_1_t_74
+        # (tube-S_dot) velocity of the connection point
+        tube_S_dot_t = omega_y*tube_q_in_base_z - omega_z*tube_q_in_base_y
+        tube_S_dot_t_2 = omega_z*tube_q_in_base_x - omega_x*tube_q_in_base_z
+        tube_S_dot_t_3 = omega_x*tube_q_in_base_y - omega_y*tube_q_in_base_x
+        tube_S_dot_x = t_dot_x + tube_S_dot_t
+        tube_S_dot_y = t_dot_y + tube_S_dot_t_2
+        tube_S_dot_z = t_dot_z + tube_S_dot_t_3
+        # (tube-eta_1) rate at which the joints turn along moment direction 1
+        tube_omega_tip_x = (
+        axis_x_tube_axes2_x*omega_x + axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z
+        )
+        tube_omega_tip_y = (
+        axis_y_tube_axes2_in_base_x*omega_x + axis_y_tube_axes2_in_base_y*omega_y +
+            axis_y_tube_axes2_in_base_z*omega_z
+        )
+        tube_omega_tip_z = (
+        axis_z_tube_axes2_in_base_x*omega_x + axis_z_tube_axes2_in_base_y*omega_y +
+            axis_z_tube_axes2_in_base_z*omega_z
+        )
+        tube_eta_1 = tube_end_p1_r3_y*tube_omega_tip_z - tube_end_p1_r1_x*tube_omega_tip_y
+        # (tube-eta_2) rate at which the joints turn along moment direction 2
+        tube_eta_2 = tube_end_p2_r3_x*tube_omega_tip_y - tube_end_p2_r3_y*tube_omega_tip_x
+        # (tube-eta_3) rate at which the joints turn along moment direction 3
+        tube_eta_3 = tube_end_p3_r3_x*tube_omega_tip_z - tube_end_p3_r1_x*tube_omega_tip_x
+        # (tube-S_dot) velocity of the connection point
+        tube_S_dot_tip_x = (
+        axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
+            axis_x_tube_axes2_z*tube_S_dot_z
+        )
+        tube_S_dot_tip_y = (
+        axis_y_tube_axes2_in_base_x*tube_S_dot_x + axis_y_tube_axes2_in_base_y*tube_S_dot_y +
+            axis_y_tube_axes2_in_base_z*tube_S_dot_z
+        )
+        tube_S_dot_tip_z = (
+        axis_z_tube_axes2_in_base_x*tube_S_dot_x + axis_z_tube_axes2_in_base_y*tube_S_dot_y +
+            axis_z_tube_axes2_in_base_z*tube_S_dot_z
+        )
+        # (tube-qd_3) rate of joint 3
+        tube_qd_3_t = 1.35*tube_eta_1
+        tube_qd_3_t_2 = 1.35*tube_eta_2
+        tube_qd_3_t_3 = 1.35*tube_eta_3
+        tube_qd_3_t_4 = (
+        inv_tube_w_1_t_157*(tube_S_dot_tip_y*tube_w_1_t_76 + tube_S_dot_tip_z*tube_w_1_t_77 +
+            tube_qd_3_t*tube_w_1_t_78 + tube_qd_3_t_2*tube_w_1_t_79 + tube_qd_3_t_3*tube_w_1_t_80)
+        )
+        tube_qd_3_t_5 = (
+        inv_tube_w_1_t_129*(tube_S_dot_tip_y*tube_w_1_t_64 + tube_S_dot_tip_z*tube_w_1_t_65 +
+            tube_qd_3_t*tube_w_1_t_66 + tube_qd_3_t_3*tube_w_1_t_68 - tube_qd_3_t_2*tube_w_1_t_67
+            - tube_qd_3_t_4*tube_w_1_t_69)
+        )
+        tube_qd_3_t_6 = (
+        inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_S_dot_tip_z + tube_S_dot_tip_y*tube_w_1_t_50 +
+            tube_qd_3_t*tube_w_1_t_51 + tube_qd_3_t_3*tube_w_1_t_52 + tube_qd_3_t_4*tube_w_1_t_58
+            + tube_qd_3_t_5*tube_w_1_t_53)
+        )
+        tube_qd_3_t_7 = (
+        tube_S_dot_tip_y*tube_w_1_t_14 + tube_qd_3_t*tube_w_1_t_15 + tube_qd_3_t_3*tube_w_1_t_16 +
+            tube_qd_3_t_6*tube_w_1_t_21 +
+            inv_tube_w_1_t_57*tube_w_1_t_17*(tube_S_dot_tip_y*tube_w_1_t_34 +
+            tube_qd_3_t*tube_w_1_t_35 + tube_qd_3_t_3*tube_w_1_t_36 + tube_qd_3_t_4*tube_w_1_t_45
+            + tube_qd_3_t_5*tube_w_1_t_41 - tube_qd_3_t_6*tube_w_1_t_37) -
+            tube_qd_3_t_4*tube_w_1_t_29 - tube_qd_3_t_5*tube_w_1_t_25
+        )
+        tube_qd_3_t_8 = inv_tube_w_1_t_16*tube_qd_3_t_7
+        # (tube-omega_1) angular velocity of link 1
+        tube_omega_1_t = tube_qd_3_t_4*tube_s_2
+        tube_omega_1_t_2 = tube_c_2*tube_qd_3_t_4
+        # (tube-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        tube_zeta_2_x = tube_omega_1_t_2*tube_qd_3_t_8
+        tube_zeta_2_y = tube_omega_1_t*tube_qd_3_t_8
+        # (tube-W_2) centripetal tensor of link 2
+        tube_W_2_t = tube_omega_1_t*tube_omega_1_t
+        tube_W_2_t_2 = tube_omega_1_t_2*tube_omega_1_t_2
+        tube_W_2_t_3 = tube_qd_3_t_8*tube_qd_3_t_8
+        tube_W_2_xy = tube_omega_1_t*tube_omega_1_t_2
+        # (tube-bias) acceleration of the connection point at zero joint accelerations
+        tube_bias_t = tube_root_2*tube_zeta_2_y
+        tube_bias_t_2 = tube_W_2_xy*tube_root_2
+        tube_bias_t_3 = 2.0*tube_S_dot_tip_x
+        tube_bias_t_4 = tube_bias_t_3*tube_qd_3_t_8
+        tube_bias_t_5 = tube_bias_t_3*tube_omega_1_t_2
+        tube_bias_y = tube_bias_t_4 - tube_bias_t_2
+        tube_bias_z = 2.0*tube_bias_t + tube_bias_t_5
+        # (tube-nd_m1) rate of moment direction 1
+        tube_nd_m1_y = (
+        tube_end_p1_r3_x*tube_omega_1_t_2 + tube_end_p1_r3_x*tube_omega_tip_y -
+            tube_end_p1_r3_y*tube_omega_tip_x
+        )
+        tube_nd_m1_z = (
+        tube_end_p1_r3_x*tube_omega_tip_z - tube_end_p1_r1_x*tube_omega_tip_x -
+            tube_end_p1_r3_x*tube_qd_3_t_8
+        )
+        # (tube-nu_1) bias of the angular acceleration along moment direction 1
+        tube_nu_1_t = tube_omega_1_t - tube_omega_tip_x
+        tube_nu_1_t_2 = tube_omega_1_t_2 + tube_omega_tip_y
+        tube_nu_1_t_3 = tube_omega_tip_z - tube_qd_3_t_8
+        tube_nu_1_t_4 = (
+        tube_nd_m1_y*tube_nu_1_t_2 + tube_nd_m1_z*tube_nu_1_t_3 -
+            tube_nu_1_t*(tube_end_p1_r1_x*tube_qd_3_t_8 - tube_end_p1_r3_y*tube_omega_1_t_2)
+        )
+        tube_nu_1 = tube_nu_1_t_4 - tube_end_p1_r1_x*tube_zeta_2_y
+        # (tube-nd_m2) rate of moment direction 2
+        tube_nd_m2_x = (
+        tube_end_p2_r1_x*tube_omega_tip_x - tube_end_p2_r1_x*tube_omega_1_t -
+            tube_end_p2_r3_x*tube_omega_tip_z
+        )
+        tube_nd_m2_y = (
+        tube_end_p2_r1_x*tube_omega_1_t_2 + tube_end_p2_r1_x*tube_omega_tip_y -
+            tube_end_p2_r3_y*tube_omega_tip_z
+        )
+        # (tube-nu_2) bias of the angular acceleration along moment direction 2
+        tube_nu_2_t = tube_end_p2_r3_y*tube_zeta_2_x - tube_end_p2_r3_x*tube_zeta_2_y
+        tube_nu_2_t_2 = (
+        tube_nd_m2_x*tube_nu_1_t + tube_nu_1_t_3*(tube_end_p2_r3_y*tube_omega_1_t_2 -
+            tube_end_p2_r3_x*tube_omega_1_t) - tube_nd_m2_y*tube_nu_1_t_2
+        )
+        tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2
+        # (tube-nd_m3) rate of moment direction 3
+        tube_nd_m3_x = (
+        tube_end_p3_r3_x*tube_omega_tip_y + tube_end_p3_r3_y*tube_omega_1_t -
+            tube_end_p3_r3_y*tube_omega_tip_x
+        )
+        tube_nd_m3_z = (
+        tube_end_p3_r1_x*tube_omega_tip_y + tube_end_p3_r3_y*tube_qd_3_t_8 -
+            tube_end_p3_r3_y*tube_omega_tip_z
+        )
+        # (tube-nu_3) bias of the angular acceleration along moment direction 3
+        tube_nu_3_t = (
+        tube_nd_m3_x*tube_nu_1_t + tube_nu_1_t_2*(tube_end_p3_r1_x*tube_qd_3_t_8 +
+            tube_end_p3_r3_x*tube_omega_1_t) - tube_nd_m3_z*tube_nu_1_t_3
+        )
+        tube_nu_3 = -tube_nu_3_t - tube_end_p3_r1_x*tube_zeta_2_x
+        # (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        tube_g_r1_x = tube_g_r0_y*tube_s_1 - tube_c_1*tube_g_r0_x
+        tube_g_r1_y = -tube_c_1*tube_g_r0_y - tube_g_r0_x*tube_s_1
+        tube_g_r3_x = tube_g_r0_z*tube_s_2 - tube_c_2*tube_g_r1_y
+        tube_g_r3_y = -tube_c_2*tube_g_r0_z - tube_g_r1_y*tube_s_2
+        # (tube-mu_c1) the moment that goes with it
+        tube_mu_c1_t = tube_end_p1_r1_x*tube_f_c1_t_4
+        tube_mu_c1_t_2 = tube_end_p3_r1_x*tube_f_c1_t_5
+        tube_mu_c1_z = -tube_end_p1_r3_y*tube_f_c1_t_4 - tube_end_p3_r3_x*tube_f_c1_t_5
+        # (tube-Hk_a_1) moment of the column's unit force about the platform origin
+        tube_Hk_a_1_x = (
+        axis_x_tube_axes2_x*tube_mu_c1_t_2 + axis_y_tube_axes2_in_base_x*tube_mu_c1_t +
+            axis_y_tube_axes2_in_base_z*tube_q_in_base_y +
+            axis_z_tube_axes2_in_base_x*tube_mu_c1_z -
+            axis_y_tube_axes2_in_base_y*tube_q_in_base_z
+        )
+        tube_Hk_a_1_y = (
+        axis_x_tube_axes2_y*tube_mu_c1_t_2 + axis_y_tube_axes2_in_base_x*tube_q_in_base_z +
+            axis_y_tube_axes2_in_base_y*tube_mu_c1_t + axis_z_tube_axes2_in_base_y*tube_mu_c1_z -
+            axis_y_tube_axes2_in_base_z*tube_q_in_base_x
+        )
+        tube_Hk_a_1_z = (
+        axis_x_tube_axes2_z*tube_mu_c1_t_2 + axis_y_tube_axes2_in_base_y*tube_q_in_base_x +
+            axis_y_tube_axes2_in_base_z*tube_mu_c1_t + axis_z_tube_axes2_in_base_z*tube_mu_c1_z -
+            axis_y_tube_axes2_in_base_x*tube_q_in_base_y
+        )
+        # (tube-mu_c2) the moment that goes with it
+        tube_mu_c2_t = tube_end_p1_r1_x*tube_f_c2_t
+        tube_mu_c2_t_2 = tube_end_p3_r1_x*tube_f_c2_t_2
+        tube_mu_c2_z = tube_end_p3_r3_x*tube_f_c2_t_2 - tube_end_p1_r3_y*tube_f_c2_t
+        # (tube-Hk_a_2) moment of the column's unit force about the platform origin
+        tube_Hk_a_2_x = (
+        axis_y_tube_axes2_in_base_x*tube_mu_c2_t + axis_z_tube_axes2_in_base_x*tube_mu_c2_z +
+            axis_z_tube_axes2_in_base_z*tube_q_in_base_y - axis_x_tube_axes2_x*tube_mu_c2_t_2 -
+            axis_z_tube_axes2_in_base_y*tube_q_in_base_z
+        )
+        tube_Hk_a_2_y = (
+        axis_y_tube_axes2_in_base_y*tube_mu_c2_t + axis_z_tube_axes2_in_base_x*tube_q_in_base_z +
+            axis_z_tube_axes2_in_base_y*tube_mu_c2_z - axis_x_tube_axes2_y*tube_mu_c2_t_2 -
+            axis_z_tube_axes2_in_base_z*tube_q_in_base_x
+        )
+        tube_Hk_a_2_z = (
+        axis_y_tube_axes2_in_base_z*tube_mu_c2_t + axis_z_tube_axes2_in_base_y*tube_q_in_base_x +
+            axis_z_tube_axes2_in_base_z*tube_mu_c2_z - axis_x_tube_axes2_z*tube_mu_c2_t_2 -
+            axis_z_tube_axes2_in_base_x*tube_q_in_base_y
+        )
+        # (tube-mu_c3) the moment that goes with it
+        tube_mu_c3_x = -inv_tube_size_c3*tube_end_p2_r3_y - tube_end_p3_r1_x*tube_mu3_c3
+        tube_mu_c3_y = inv_tube_size_c3*tube_end_p2_r3_x + tube_end_p1_r1_x*tube_mu1_c3
+        tube_mu_c3_z = tube_end_p3_r3_x*tube_mu3_c3 - tube_end_p1_r3_y*tube_mu1_c3
+        tube_mu_c3_in_base_x = (
+        axis_x_tube_axes2_x*tube_mu_c3_x + axis_y_tube_axes2_in_base_x*tube_mu_c3_y +
+            axis_z_tube_axes2_in_base_x*tube_mu_c3_z
+        )
+        tube_mu_c3_in_base_y = (
+        axis_x_tube_axes2_y*tube_mu_c3_x + axis_y_tube_axes2_in_base_y*tube_mu_c3_y +
+            axis_z_tube_axes2_in_base_y*tube_mu_c3_z
+        )
+        tube_mu_c3_in_base_z = (
+        axis_x_tube_axes2_z*tube_mu_c3_x + axis_y_tube_axes2_in_base_z*tube_mu_c3_y +
+            axis_z_tube_axes2_in_base_z*tube_mu_c3_z
+        )
+        # (tube-a_p) acceleration of the connection point without its centripetal part
+        tube_a_p_x = t_ddot_x + alpha_y*tube_q_in_base_z - alpha_z*tube_q_in_base_y
+        tube_a_p_y = t_ddot_y + alpha_z*tube_q_in_base_x - alpha_x*tube_q_in_base_z
+        tube_a_p_z = t_ddot_z + alpha_x*tube_q_in_base_y - alpha_y*tube_q_in_base_x
+        # (tube-S_ddot) acceleration of the connection point
+        tube_S_ddot_x = tube_a_p_x + omega_y*tube_S_dot_t_3 - omega_z*tube_S_dot_t_2
+        tube_S_ddot_y = tube_a_p_y + omega_z*tube_S_dot_t - omega_x*tube_S_dot_t_3
+        tube_S_ddot_z = tube_a_p_z + omega_x*tube_S_dot_t_2 - omega_y*tube_S_dot_t
+        # (tube-rel) acceleration of the connection point left to the joint accelerations
+        tube_rel_y = (
+        axis_y_tube_axes2_in_base_x*tube_S_ddot_x + axis_y_tube_axes2_in_base_y*tube_S_ddot_y +
+            axis_y_tube_axes2_in_base_z*tube_S_ddot_z - tube_bias_y
+        )
+        tube_rel_z = (
+        axis_z_tube_axes2_in_base_x*tube_S_ddot_x + axis_z_tube_axes2_in_base_y*tube_S_ddot_y +
+            axis_z_tube_axes2_in_base_z*tube_S_ddot_z - tube_bias_z
+        )
+        # (tube-etad_1) acceleration with which the joints turn along moment direction 1
+        tube_alpha_tip_x = (
+        alpha_x*axis_x_tube_axes2_x + alpha_y*axis_x_tube_axes2_y + alpha_z*axis_x_tube_axes2_z
+        )
+        tube_alpha_tip_y = (
+        alpha_x*axis_y_tube_axes2_in_base_x + alpha_y*axis_y_tube_axes2_in_base_y +
+            alpha_z*axis_y_tube_axes2_in_base_z
+        )
+        tube_alpha_tip_z = (
+        alpha_x*axis_z_tube_axes2_in_base_x + alpha_y*axis_z_tube_axes2_in_base_y +
+            alpha_z*axis_z_tube_axes2_in_base_z
+        )
+        tube_etad_1_t = tube_alpha_tip_y*tube_end_p1_r1_x - tube_alpha_tip_z*tube_end_p1_r3_y
+        tube_etad_1 = tube_nu_1 - tube_etad_1_t
+        # (tube-etad_2) acceleration with which the joints turn along moment direction 2
+        tube_etad_2_t = tube_alpha_tip_x*tube_end_p2_r3_y - tube_alpha_tip_y*tube_end_p2_r3_x
+        tube_etad_2 = tube_nu_2 - tube_etad_2_t
+        # (tube-etad_3) acceleration with which the joints turn along moment direction 3
+        tube_etad_3_t = tube_alpha_tip_x*tube_end_p3_r1_x - tube_alpha_tip_z*tube_end_p3_r3_x
+        tube_etad_3 = tube_nu_3 - tube_etad_3_t
+        # (tube-qdd_1) acceleration of joint 1
+        tube_qdd_1_t = 1.35*tube_etad_1
+        tube_qdd_1_t_2 = 1.35*tube_etad_2
+        tube_qdd_1_t_3 = 1.35*tube_etad_3
+        tube_qdd_1_t_4 = (
+        inv_tube_w_1_t_157*(tube_qdd_1_t*tube_w_1_t_78 + tube_qdd_1_t_2*tube_w_1_t_79 +
+            tube_qdd_1_t_3*tube_w_1_t_80 + tube_rel_y*tube_w_1_t_76 + tube_rel_z*tube_w_1_t_77)
+        )
+        tube_qdd_1_t_5 = (
+        inv_tube_w_1_t_129*(tube_qdd_1_t*tube_w_1_t_66 + tube_qdd_1_t_3*tube_w_1_t_68 +
+            tube_rel_y*tube_w_1_t_64 + tube_rel_z*tube_w_1_t_65 - tube_qdd_1_t_2*tube_w_1_t_67 -
+            tube_qdd_1_t_4*tube_w_1_t_69)
+        )
+        tube_qdd_1_t_6 = (
+        inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_rel_z + tube_qdd_1_t*tube_w_1_t_51 +
+            tube_qdd_1_t_3*tube_w_1_t_52 + tube_qdd_1_t_4*tube_w_1_t_58 +
+            tube_qdd_1_t_5*tube_w_1_t_53 + tube_rel_y*tube_w_1_t_50)
+        )
+        tube_qdd_1_t_7 = (
+        tube_qdd_1_t*tube_w_1_t_15 + tube_qdd_1_t_3*tube_w_1_t_16 + tube_qdd_1_t_6*tube_w_1_t_21 +
+            tube_rel_y*tube_w_1_t_14 + inv_tube_w_1_t_57*tube_w_1_t_17*(tube_qdd_1_t*tube_w_1_t_35
+            + tube_qdd_1_t_3*tube_w_1_t_36 + tube_qdd_1_t_4*tube_w_1_t_45 +
+            tube_qdd_1_t_5*tube_w_1_t_41 + tube_rel_y*tube_w_1_t_34 -
+            tube_qdd_1_t_6*tube_w_1_t_37) - tube_qdd_1_t_4*tube_w_1_t_29 -
+            tube_qdd_1_t_5*tube_w_1_t_25
+        )
+        tube_qdd_1_t_8 = inv_tube_w_1_t_16*tube_qdd_1_t_7
+        # (tube-alpha_1) angular acceleration of link 1
+        tube_alpha_1_t = tube_qdd_1_t_4*tube_s_2
+        tube_alpha_1_t_2 = tube_c_2*tube_qdd_1_t_4
+        # (tube-alpha_2) angular acceleration of link 2
+        tube_alpha_2_x = tube_alpha_1_t - tube_zeta_2_x
+        tube_alpha_2_y = -tube_alpha_1_t_2 - tube_zeta_2_y
+        # (tube-B_2) acceleration tensor of link 2
+        tube_B_2_xy = -tube_W_2_xy - tube_qdd_1_t_8
+        tube_B_2_yx = tube_qdd_1_t_8 - tube_W_2_xy
+        tube_B_2_zx = tube_zeta_2_y - tube_alpha_2_y
+        tube_B_2_zy = tube_alpha_2_x - tube_zeta_2_x
+        # (tube-acc_3) acceleration of the reference point of link 3, less gravity
+        tube_acc_3_x = (
+        axis_x_tube_axes2_x*tube_S_ddot_x + axis_x_tube_axes2_y*tube_S_ddot_y +
+            axis_x_tube_axes2_z*tube_S_ddot_z - tube_g_r3_x
+        )
+        tube_acc_3_y = tube_bias_t_4 + tube_qdd_1_t_8*tube_root_2 - tube_bias_t_2 - tube_g_r3_y
+        tube_acc_3_z = tube_bias_t + tube_bias_t_5 - tube_g_r1_x - tube_alpha_2_y*tube_root_2
+        # (tube-f_3) inertia force of link 3 less its weight
+        tube_f_3_x = (
+        tube_acc_3_x*tube_link3_mass - tube_B_2_xy*tube_h_3_z - tube_alpha_1_t_2*tube_h_3_y -
+            tube_h_3_x*(tube_W_2_t_2 + tube_W_2_t_3)
+        )
+        tube_f_3_y = (
+        tube_B_2_yx*tube_h_3_x + tube_acc_3_y*tube_link3_mass + tube_h_3_z*(tube_W_2_t +
+            tube_W_2_t_3) - tube_alpha_1_t*tube_h_3_y
+        )
+        tube_f_3_z = (
+        tube_B_2_zx*tube_h_3_x + tube_acc_3_z*tube_link3_mass - tube_B_2_zy*tube_h_3_z -
+            tube_h_3_y*(tube_W_2_t + tube_W_2_t_2)
+        )
+        # (tube-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        tube_mu_2_x = (
+        tube_B_2_yx*tube_J_group_2_xz + tube_B_2_zy*tube_Sigma_2_yy +
+            tube_J_group_2_yz*(tube_W_2_t_2 - tube_W_2_t_3) + tube_Sigma_2_zz*tube_alpha_1_t +
+            tube_g_r1_x*tube_h_2_z + tube_g_r3_y*tube_h_2_y - tube_B_2_zx*tube_J_group_2_xy -
+            tube_acc_3_y*tube_h_3_y - tube_acc_3_z*tube_h_3_z
+        )
+        tube_mu_2_y = (
+        tube_B_2_zy*tube_J_group_2_xy + tube_acc_3_x*tube_h_3_y + tube_g_r1_x*tube_h_2_x -
+            tube_B_2_xy*tube_J_group_2_yz - tube_B_2_zx*tube_Sigma_2_xx -
+            tube_J_group_2_xz*(tube_W_2_t - tube_W_2_t_3) - tube_Sigma_2_zz*tube_alpha_1_t_2 -
+            tube_acc_3_z*tube_h_3_x - tube_g_r3_x*tube_h_2_y
+        )
+        tube_mu_2_z = (
+        tube_B_2_yx*tube_Sigma_2_xx + tube_J_group_2_xy*(tube_W_2_t - tube_W_2_t_2) +
+            tube_J_group_2_xz*tube_alpha_1_t + tube_acc_3_x*tube_h_3_z + tube_acc_3_y*tube_h_3_x -
+            tube_B_2_xy*tube_Sigma_2_yy - tube_J_group_2_yz*tube_alpha_1_t_2 -
+            tube_g_r3_x*tube_h_2_z - tube_g_r3_y*tube_h_2_x
+        )
+        # (tube-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        tube_N_2_y = tube_mu_2_y - tube_f_3_z*tube_root_2
+        tube_N_2_z = tube_mu_2_z + tube_f_3_y*tube_root_2
+        # (tube-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        tube_G_t = inv_tube_w_1_t_16*tube_N_2_z
+        tube_G_t_2 = inv_tube_w_1_t_57*tube_G_t*tube_w_1_t_17
+        tube_G_t_3 = inv_tube_w_1_t_95*(tube_G_t*tube_w_1_t_21 - tube_G_t_2*tube_w_1_t_37)
+        tube_G_t_4 = (
+        inv_tube_w_1_t_129*(tube_G_t_2*tube_w_1_t_41 + tube_G_t_3*tube_w_1_t_53 -
+            tube_G_t*tube_w_1_t_25)
+        )
+        tube_G_t_5 = (
+        inv_tube_w_1_t_157*(tube_G_t_2*tube_w_1_t_45 + tube_G_t_3*tube_w_1_t_58 +
+            tube_mu_2_x*tube_s_2 - tube_G_t*tube_w_1_t_29 - tube_G_t_4*tube_w_1_t_69 -
+            tube_N_2_y*tube_c_2)
+        )
+        tube_G_t_6 = (
+        tube_G_t*tube_w_1_t_14 + tube_G_t_2*tube_w_1_t_34 + tube_G_t_3*tube_w_1_t_50 +
+            tube_G_t_4*tube_w_1_t_64 + tube_G_t_5*tube_w_1_t_76
+        )
+        tube_G_t_7 = (
+        inv_tube_w_1_t_95*tube_G_t_3 + tube_G_t_4*tube_w_1_t_65 + tube_G_t_5*tube_w_1_t_77
+        )
+        tube_G_t_8 = (
+        tube_G_t*tube_w_1_t_15 + tube_G_t_2*tube_w_1_t_35 + tube_G_t_3*tube_w_1_t_51 +
+            tube_G_t_4*tube_w_1_t_66 + tube_G_t_5*tube_w_1_t_78
+        )
+        tube_G_t_9 = 1.35*tube_G_t_8
+        tube_G_t_10 = tube_G_t_4*tube_w_1_t_67 - tube_G_t_5*tube_w_1_t_79
+        tube_G_t_11 = 1.35*tube_G_t_10
+        tube_G_t_12 = (
+        tube_G_t*tube_w_1_t_16 + tube_G_t_2*tube_w_1_t_36 + tube_G_t_3*tube_w_1_t_52 +
+            tube_G_t_4*tube_w_1_t_68 + tube_G_t_5*tube_w_1_t_80
+        )
+        tube_G_t_13 = 1.35*tube_G_t_12
+        # (tube-c) leg force on the platform without actuation and without the mass at the connection point
+        tube_c_in_base_x = (
+        -axis_x_tube_axes2_x*tube_f_3_x - axis_y_tube_axes2_in_base_x*tube_G_t_6 -
+            axis_z_tube_axes2_in_base_x*tube_G_t_7
+        )
+        tube_c_in_base_y = (
+        -axis_x_tube_axes2_y*tube_f_3_x - axis_y_tube_axes2_in_base_y*tube_G_t_6 -
+            axis_z_tube_axes2_in_base_y*tube_G_t_7
+        )
+        tube_c_in_base_z = (
+        -axis_x_tube_axes2_z*tube_f_3_x - axis_y_tube_axes2_in_base_z*tube_G_t_6 -
+            axis_z_tube_axes2_in_base_z*tube_G_t_7
+        )
+        # (tube-G_m) moment at the connection point that balances the leg's inertia and weight along all freedoms
+        tube_G_m_x = tube_G_t_11*tube_end_p2_r3_y - tube_G_t_13*tube_end_p3_r1_x
+        tube_G_m_y = -tube_G_t_11*tube_end_p2_r3_x - tube_G_t_9*tube_end_p1_r1_x
+        tube_G_m_z = tube_G_t_13*tube_end_p3_r3_x + tube_G_t_9*tube_end_p1_r3_y
+        # (R_a) moment that actuators and external wrench must give
+        tube_R_a_t = (
+        tube_c_in_base_z*tube_q_in_base_y - axis_x_tube_axes2_x*tube_G_m_x -
+            axis_y_tube_axes2_in_base_x*tube_G_m_y - axis_z_tube_axes2_in_base_x*tube_G_m_z -
+            tube_c_in_base_y*tube_q_in_base_z
+        )
+        tube_R_a_t_2 = (
+        tube_c_in_base_x*tube_q_in_base_z - axis_x_tube_axes2_y*tube_G_m_x -
+            axis_y_tube_axes2_in_base_y*tube_G_m_y - axis_z_tube_axes2_in_base_y*tube_G_m_z -
+            tube_c_in_base_z*tube_q_in_base_x
+        )
+        tube_R_a_t_3 = (
+        tube_c_in_base_y*tube_q_in_base_x - axis_x_tube_axes2_z*tube_G_m_x -
+            axis_y_tube_axes2_in_base_z*tube_G_m_y - axis_z_tube_axes2_in_base_z*tube_G_m_z -
+            tube_c_in_base_x*tube_q_in_base_y
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_up) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(rho2_2_up) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(f_c1_up_t_3) >
-            _TOLERANCE * 1.0) & (abs(size_c3_up) > _TOLERANCE * 1.0) & (abs(w_1_up_t_13) >
-            _TOLERANCE * 1.35) & (abs(w_1_up_t_33) > _TOLERANCE * 1.0) & (abs(w_1_up_t_49) >
-            _TOLERANCE * 1.0) & (abs(w_1_up_t_63) > _TOLERANCE * 1.35) & (abs(w_1_up_t_75) >
-            _TOLERANCE * 1.35))
+        ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_f_c1_t_3) > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) &
+            (abs(tube_w_1_t_13) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) &
+            (abs(tube_w_1_t_49) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) &
+            (abs(tube_w_1_t_75) > _TOLERANCE * 1.35))
         )
         sums = m.added(sums, leg, (
-        c_up_in_base_x, c_up_in_base_y, c_up_in_base_z, R_a_t_4, R_a_t_5, R_a_t_6,
+        tube_c_in_base_x, tube_c_in_base_y, tube_c_in_base_z, tube_R_a_t, tube_R_a_t_2,
+            tube_R_a_t_3,
         ))
-        out_Hk[_Hk_up[0][leg]] = axis_y_up_axes2_in_base_x
-        out_Hk[_Hk_up[1][leg]] = axis_y_up_axes2_in_base_y
-        out_Hk[_Hk_up[2][leg]] = axis_y_up_axes2_in_base_z
-        out_Hk[_Hk_up[3][leg]] = Hk_a_1_up_x
-        out_Hk[_Hk_up[4][leg]] = Hk_a_1_up_y
-        out_Hk[_Hk_up[5][leg]] = Hk_a_1_up_z
-        out_Hk[_Hk_up[6][leg]] = axis_z_up_axes2_in_base_x
-        out_Hk[_Hk_up[7][leg]] = axis_z_up_axes2_in_base_y
-        out_Hk[_Hk_up[8][leg]] = axis_z_up_axes2_in_base_z
-        out_Hk[_Hk_up[9][leg]] = Hk_a_2_up_x
-        out_Hk[_Hk_up[10][leg]] = Hk_a_2_up_y
-        out_Hk[_Hk_up[11][leg]] = Hk_a_2_up_z
-        out_Hk[_Hk_up[12][leg]] = mu_c3_up_in_base_x
-        out_Hk[_Hk_up[13][leg]] = mu_c3_up_in_base_y
-        out_Hk[_Hk_up[14][leg]] = mu_c3_up_in_base_z
-    total_up_x, total_up_y, total_up_z, total_up_x_2, total_up_y_2, total_up_z_2 = sums
-    # (E4) force that actuators and external wrench must give
-    R_t_x = f_p_x - total_up_x - total_ups_x
-    R_t_y = f_p_y - total_up_y - total_ups_y
-    R_t_z = f_p_z - total_up_z - total_ups_z
-    # (E5) moment that actuators and external wrench must give
-    R_a_x = mu_p_in_base_x - total_up_x_2 - total_ups_x_2
-    R_a_y = mu_p_in_base_y - total_up_y_2 - total_ups_y_2
-    R_a_z = mu_p_in_base_z - total_up_z_2 - total_ups_z_2
+        out_Hk[_Hk_tube[0][leg]] = axis_y_tube_axes2_in_base_x
+        out_Hk[_Hk_tube[1][leg]] = axis_y_tube_axes2_in_base_y
+        out_Hk[_Hk_tube[2][leg]] = axis_y_tube_axes2_in_base_z
+        out_Hk[_Hk_tube[3][leg]] = tube_Hk_a_1_x
+        out_Hk[_Hk_tube[4][leg]] = tube_Hk_a_1_y
+        out_Hk[_Hk_tube[5][leg]] = tube_Hk_a_1_z
+        out_Hk[_Hk_tube[6][leg]] = axis_z_tube_axes2_in_base_x
+        out_Hk[_Hk_tube[7][leg]] = axis_z_tube_axes2_in_base_y
+        out_Hk[_Hk_tube[8][leg]] = axis_z_tube_axes2_in_base_z
+        out_Hk[_Hk_tube[9][leg]] = tube_Hk_a_2_x
+        out_Hk[_Hk_tube[10][leg]] = tube_Hk_a_2_y
+        out_Hk[_Hk_tube[11][leg]] = tube_Hk_a_2_z
+        out_Hk[_Hk_tube[12][leg]] = tube_mu_c3_in_base_x
+        out_Hk[_Hk_tube[13][leg]] = tube_mu_c3_in_base_y
+        out_Hk[_Hk_tube[14][leg]] = tube_mu_c3_in_base_z
+    (
+    total_tube_x, total_tube_y, total_tube_z, total_tube_x_2, total_tube_y_2, total_tube_z_2,
+    ) = sums
+    # (R_t) force that actuators and external wrench must give
+    R_t_x = f_p_x - total_tube_x - total_ups_x
+    R_t_y = f_p_y - total_tube_y - total_ups_y
+    R_t_z = f_p_z - total_tube_z - total_ups_z
+    # (R_a) moment that actuators and external wrench must give
+    R_a_x = mu_p_in_base_x - total_tube_x_2 - total_ups_x_2
+    R_a_y = mu_p_in_base_y - total_tube_y_2 - total_ups_y_2
+    R_a_z = mu_p_in_base_z - total_tube_z_2 - total_ups_z_2
     out_required[0] = R_t_x
     out_required[1] = R_t_y
     out_required[2] = R_t_z
@@ -7030,108 +7558,115 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        branch_1_ups, branch_2_ups, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-            ups_base_point_z, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
+            ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
-        # (ups-K1) from the base point to the connection point
-        S_ups_x = (
+        # (ups-S) from the base point to the connection point
+        ups_S_x = (
         t_x + R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z -
             ups_base_point_x
         )
-        S_ups_y = (
+        ups_S_y = (
         t_y + R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z -
             ups_base_point_y
         )
-        S_ups_z = (
+        ups_S_z = (
         t_z + R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z -
             ups_base_point_z
         )
-        # (ups-K2) component along the reference direction
-        px_1_ups = (
-        S_ups_x*ups_base_frame_xx + S_ups_y*ups_base_frame_yx + S_ups_z*ups_base_frame_zx
+        # (ups-px_1) component along the reference direction
+        ups_px_1 = (
+        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-K3) component across the reference direction
-        py_1_ups = (
-        S_ups_x*ups_base_frame_xy + S_ups_y*ups_base_frame_yy + S_ups_z*ups_base_frame_zy
+        # (ups-py_1) component across the reference direction
+        ups_py_1 = (
+        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-K4) squared amplitude
-        rho2_1_ups = px_1_ups*px_1_ups + py_1_ups*py_1_ups
-        # (ups-K5) amplitude, with the sign of the branch
-        root_1_ups = branch_1_ups*sqrt(rho2_1_ups)
-        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_ups_t = (
-        S_ups_x*ups_base_frame_xz + S_ups_y*ups_base_frame_yz + S_ups_z*ups_base_frame_zz
+        # (ups-rho2_1) squared amplitude
+        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
+        # (ups-root_1) amplitude, with the sign of the branch
+        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ups_xi_1_t = (
+        ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-K13) squared amplitude
-        rho2_2_ups = rho2_1_ups + xi_1_ups_t*xi_1_ups_t
-        # (ups-K14) amplitude, with the sign of the branch
-        root_2_ups = branch_2_ups*sqrt(rho2_2_ups)
-        # (ups-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2_ups = 1.0/root_2_ups
-        # (ups-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_ups = 1.0/root_1_ups
-        # (ups-K8) displacement of joint 1
-        q_1_ups = atan2(inv_root_1_ups*py_1_ups, inv_root_1_ups*px_1_ups)
-        # (ups-K17) displacement of joint 2
-        q_2_ups = atan2(-inv_root_2_ups*xi_1_ups_t, inv_root_2_ups*root_1_ups)
+        # (ups-rho2_2) squared amplitude
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        # (ups-root_2) amplitude, with the sign of the branch
+        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_root_2 = 1.0/ups_root_2
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        # (ups-q_1) displacement of joint 1
+        ups_q_1 = atan2(inv_ups_root_1*ups_py_1, inv_ups_root_1*ups_px_1)
+        # (ups-q_2) displacement of joint 2
+        ups_q_2 = atan2(-inv_ups_root_2*ups_xi_1_t, inv_ups_root_2*ups_root_1)
         ok = (
-        ok & m.every(leg, (abs(rho2_1_ups) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
-            (abs(rho2_2_ups) > _TOLERANCE * _TOLERANCE * 1.9124953849))
+        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
+            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849))
         )
-        out_q[_q_ups[0][leg]] = q_1_ups
-        out_q[_q_ups[1][leg]] = q_2_ups
-        out_q[_q_ups[2][leg]] = root_2_ups
+        out_q[_q_ups[0][leg]] = ups_q_1
+        out_q[_q_ups[1][leg]] = ups_q_2
+        out_q[_q_ups[2][leg]] = ups_root_2
     for leg, k in legs[1]:
         (
-        branch_1_up, branch_2_up, up_base_frame_xx, up_base_frame_xy, up_base_frame_xz,
-            up_base_frame_yx, up_base_frame_yy, up_base_frame_yz, up_base_frame_zx,
-            up_base_frame_zy, up_base_frame_zz, up_base_point_x, up_base_point_y, up_base_point_z,
-            up_platform_point_x, up_platform_point_y, up_platform_point_z,
+        tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz, tube_base_frame_yx,
+            tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx, tube_base_frame_zy,
+            tube_base_frame_zz, tube_base_point_x, tube_base_point_y, tube_base_point_z,
+            tube_branch_1, tube_branch_2, tube_platform_point_x, tube_platform_point_y,
+            tube_platform_point_z,
         ) = k
-        # (up-K1) from the base point to the connection point
-        S_up_x = (
-        t_x + R_xx*up_platform_point_x + R_xy*up_platform_point_y + R_xz*up_platform_point_z -
-            up_base_point_x
+        # (tube-S) from the base point to the connection point
+        tube_S_x = (
+        t_x + R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
+            - tube_base_point_x
         )
-        S_up_y = (
-        t_y + R_yx*up_platform_point_x + R_yy*up_platform_point_y + R_yz*up_platform_point_z -
-            up_base_point_y
+        tube_S_y = (
+        t_y + R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
+            - tube_base_point_y
         )
-        S_up_z = (
-        t_z + R_zx*up_platform_point_x + R_zy*up_platform_point_y + R_zz*up_platform_point_z -
-            up_base_point_z
+        tube_S_z = (
+        t_z + R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
+            - tube_base_point_z
         )
-        # (up-K2) component along the reference direction
-        px_1_up = S_up_x*up_base_frame_xx + S_up_y*up_base_frame_yx + S_up_z*up_base_frame_zx
-        # (up-K3) component across the reference direction
-        py_1_up = S_up_x*up_base_frame_xy + S_up_y*up_base_frame_yy + S_up_z*up_base_frame_zy
-        # (up-K4) squared amplitude
-        rho2_1_up = px_1_up*px_1_up + py_1_up*py_1_up
-        # (up-K5) amplitude, with the sign of the branch
-        root_1_up = branch_1_up*sqrt(rho2_1_up)
-        # (up-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_up_t = S_up_x*up_base_frame_xz + S_up_y*up_base_frame_yz + S_up_z*up_base_frame_zz
-        # (up-K13) squared amplitude
-        rho2_2_up = rho2_1_up + xi_1_up_t*xi_1_up_t
-        # (up-K14) amplitude, with the sign of the branch
-        root_2_up = branch_2_up*sqrt(rho2_2_up)
-        # (up-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2_up = 1.0/root_2_up
-        # (up-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_up = 1.0/root_1_up
-        # (up-K8) displacement of joint 1
-        q_1_up = atan2(inv_root_1_up*py_1_up, inv_root_1_up*px_1_up)
-        # (up-K17) displacement of joint 2
-        q_2_up = atan2(-inv_root_2_up*xi_1_up_t, inv_root_2_up*root_1_up)
+        # (tube-px_1) component along the reference direction
+        tube_px_1 = (
+        tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
+        )
+        # (tube-py_1) component across the reference direction
+        tube_py_1 = (
+        tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
+        )
+        # (tube-rho2_1) squared amplitude
+        tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
+        # (tube-root_1) amplitude, with the sign of the branch
+        tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
+        # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        tube_xi_1_t = (
+        tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
+        )
+        # (tube-rho2_2) squared amplitude
+        tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t
+        # (tube-root_2) amplitude, with the sign of the branch
+        tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
+        # (tube-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_tube_root_2 = 1.0/tube_root_2
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        # (tube-q_1) displacement of joint 1
+        tube_q_1 = atan2(inv_tube_root_1*tube_py_1, inv_tube_root_1*tube_px_1)
+        # (tube-q_2) displacement of joint 2
+        tube_q_2 = atan2(-inv_tube_root_2*tube_xi_1_t, inv_tube_root_2*tube_root_1)
         ok = (
-        ok & m.every(leg, (abs(rho2_1_up) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(rho2_2_up) > _TOLERANCE * _TOLERANCE * 1.8225000000000002))
+        ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002))
         )
-        out_q[_q_up[0][leg]] = q_1_up
-        out_q[_q_up[1][leg]] = q_2_up
-        out_q[_q_up[2][leg]] = root_2_up
+        out_q[_q_tube[0][leg]] = tube_q_1
+        out_q[_q_tube[1][leg]] = tube_q_2
+        out_q[_q_tube[2][leg]] = tube_root_2
     return ok, (out_q,)
 
 
@@ -7191,397 +7726,449 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        branch_1_ups, branch_2_ups, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-            ups_base_point_z, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
+            ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
-        # (ups-K1) from the base point to the connection point
-        q_ups_in_base_x = (
+        # (ups-S) from the base point to the connection point
+        ups_q_in_base_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        q_ups_in_base_y = (
+        ups_q_in_base_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        q_ups_in_base_z = (
+        ups_q_in_base_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        S_ups_x = q_ups_in_base_x + t_x - ups_base_point_x
-        S_ups_y = q_ups_in_base_y + t_y - ups_base_point_y
-        S_ups_z = q_ups_in_base_z + t_z - ups_base_point_z
-        # (ups-K2) component along the reference direction
-        px_1_ups = (
-        S_ups_x*ups_base_frame_xx + S_ups_y*ups_base_frame_yx + S_ups_z*ups_base_frame_zx
+        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        # (ups-px_1) component along the reference direction
+        ups_px_1 = (
+        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-K3) component across the reference direction
-        py_1_ups = (
-        S_ups_x*ups_base_frame_xy + S_ups_y*ups_base_frame_yy + S_ups_z*ups_base_frame_zy
+        # (ups-py_1) component across the reference direction
+        ups_py_1 = (
+        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-K4) squared amplitude
-        rho2_1_ups = px_1_ups*px_1_ups + py_1_ups*py_1_ups
-        # (ups-K5) amplitude, with the sign of the branch
-        root_1_ups = branch_1_ups*sqrt(rho2_1_ups)
-        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_ups_t = (
-        S_ups_x*ups_base_frame_xz + S_ups_y*ups_base_frame_yz + S_ups_z*ups_base_frame_zz
+        # (ups-rho2_1) squared amplitude
+        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
+        # (ups-root_1) amplitude, with the sign of the branch
+        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ups_xi_1_t = (
+        ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-K13) squared amplitude
-        rho2_2_ups = rho2_1_ups + xi_1_ups_t*xi_1_ups_t
-        # (ups-K14) amplitude, with the sign of the branch
-        root_2_ups = branch_2_ups*sqrt(rho2_2_ups)
-        # (ups-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2_ups = 1.0/root_2_ups
-        # (ups-V5) reciprocal vector 1
-        axis_x_x = S_ups_x*inv_root_2_ups
-        axis_x_y = S_ups_y*inv_root_2_ups
-        axis_x_z = S_ups_z*inv_root_2_ups
-        # (ups-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_ups = 1.0/root_1_ups
-        c_1_ups = inv_root_1_ups*py_1_ups
-        # (ups-K7) sine of the angle of joint 1 from its reference direction
-        s_1_ups = inv_root_1_ups*px_1_ups
-        # (ups-V5) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = s_1_ups*ups_base_frame_xy - c_1_ups*ups_base_frame_xx
-        axis_z_ups_axes2_in_base_y = s_1_ups*ups_base_frame_yy - c_1_ups*ups_base_frame_yx
-        axis_z_ups_axes2_in_base_z = s_1_ups*ups_base_frame_zy - c_1_ups*ups_base_frame_zx
-        # (ups-V1) velocity of the connection point
-        S_dot_ups_x = t_dot_x + omega_y*q_ups_in_base_z - omega_z*q_ups_in_base_y
-        S_dot_ups_y = t_dot_y + omega_z*q_ups_in_base_x - omega_x*q_ups_in_base_z
-        S_dot_ups_z = t_dot_z + omega_x*q_ups_in_base_y - omega_y*q_ups_in_base_x
-        S_dot_ups_tip_x = S_dot_ups_x*axis_x_x + S_dot_ups_y*axis_x_y + S_dot_ups_z*axis_x_z
-        # (ups-V8) rate of joint 1
-        qd_2_ups = (
-        inv_root_2_ups*(S_dot_ups_x*(axis_x_z*axis_z_ups_axes2_in_base_y -
-            axis_x_y*axis_z_ups_axes2_in_base_z) +
-            S_dot_ups_y*(axis_x_x*axis_z_ups_axes2_in_base_z -
-            axis_x_z*axis_z_ups_axes2_in_base_x) +
-            S_dot_ups_z*(axis_x_y*axis_z_ups_axes2_in_base_x -
-            axis_x_x*axis_z_ups_axes2_in_base_y))
+        # (ups-rho2_2) squared amplitude
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        # (ups-root_2) amplitude, with the sign of the branch
+        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_root_2 = 1.0/ups_root_2
+        # (ups-w_1) reciprocal vector 1
+        ups_axis_x_x = inv_ups_root_2*ups_S_x
+        ups_axis_x_y = inv_ups_root_2*ups_S_y
+        ups_axis_x_z = inv_ups_root_2*ups_S_z
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
+        # (ups-w_1) reciprocal vector 1
+        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
+        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
+        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
+        # (ups-S_dot) velocity of the connection point
+        ups_S_dot_x = t_dot_x + omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y
+        ups_S_dot_y = t_dot_y + omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z
+        ups_S_dot_z = t_dot_z + omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x
+        ups_S_dot_tip_x = (
+        ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y + ups_S_dot_z*ups_axis_x_z
         )
-        qd_1_ups = (
-        inv_root_1_ups*(S_dot_ups_x*axis_z_ups_axes2_in_base_x +
-            S_dot_ups_y*axis_z_ups_axes2_in_base_y + S_dot_ups_z*axis_z_ups_axes2_in_base_z)
+        # (ups-qd_2) rate of joint 2
+        ups_qd_2 = (
+        inv_ups_root_2*(ups_S_dot_x*(axis_z_ups_axes2_in_base_y*ups_axis_x_z -
+            axis_z_ups_axes2_in_base_z*ups_axis_x_y) +
+            ups_S_dot_y*(axis_z_ups_axes2_in_base_z*ups_axis_x_x -
+            axis_z_ups_axes2_in_base_x*ups_axis_x_z) +
+            ups_S_dot_z*(axis_z_ups_axes2_in_base_x*ups_axis_x_y -
+            axis_z_ups_axes2_in_base_y*ups_axis_x_x))
+        )
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
+            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z)
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_ups) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
-            (abs(rho2_2_ups) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(root_1_ups) >
-            _TOLERANCE * 1.38293) & (abs(root_2_ups) > _TOLERANCE * 1.38293))
+        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
+            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) >
+            _TOLERANCE * 1.38293) & (abs(ups_root_2) > _TOLERANCE * 1.38293))
         )
-        out_qd[_qd_ups[0][leg]] = qd_1_ups
-        out_qd[_qd_ups[1][leg]] = qd_2_ups
-        out_qd[_qd_ups[2][leg]] = S_dot_ups_tip_x
+        out_qd[_qd_ups[0][leg]] = ups_qd_1
+        out_qd[_qd_ups[1][leg]] = ups_qd_2
+        out_qd[_qd_ups[2][leg]] = ups_S_dot_tip_x
     for leg, k in legs[1]:
         (
-        branch_1_up, branch_2_up, up_base_frame_xx, up_base_frame_xy, up_base_frame_xz,
-            up_base_frame_yx, up_base_frame_yy, up_base_frame_yz, up_base_frame_zx,
-            up_base_frame_zy, up_base_frame_zz, up_base_point_x, up_base_point_y, up_base_point_z,
-            up_platform_joint_rotation_xx, up_platform_joint_rotation_xy,
-            up_platform_joint_rotation_xz, up_platform_joint_rotation_yx,
-            up_platform_joint_rotation_yy, up_platform_joint_rotation_yz,
-            up_platform_joint_rotation_zx, up_platform_joint_rotation_zy,
-            up_platform_joint_rotation_zz, up_platform_point_x, up_platform_point_y,
-            up_platform_point_z,
+        tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz, tube_base_frame_yx,
+            tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx, tube_base_frame_zy,
+            tube_base_frame_zz, tube_base_point_x, tube_base_point_y, tube_base_point_z,
+            tube_branch_1, tube_branch_2, tube_platform_joint_rotation_xx,
+            tube_platform_joint_rotation_xy, tube_platform_joint_rotation_xz,
+            tube_platform_joint_rotation_yx, tube_platform_joint_rotation_yy,
+            tube_platform_joint_rotation_yz, tube_platform_joint_rotation_zx,
+            tube_platform_joint_rotation_zy, tube_platform_joint_rotation_zz,
+            tube_platform_point_x, tube_platform_point_y, tube_platform_point_z,
         ) = k
-        # (up-K1) from the base point to the connection point
-        q_up_in_base_x = (
-        R_xx*up_platform_point_x + R_xy*up_platform_point_y + R_xz*up_platform_point_z
+        # (tube-S) from the base point to the connection point
+        tube_q_in_base_x = (
+        R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
         )
-        q_up_in_base_y = (
-        R_yx*up_platform_point_x + R_yy*up_platform_point_y + R_yz*up_platform_point_z
+        tube_q_in_base_y = (
+        R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
         )
-        q_up_in_base_z = (
-        R_zx*up_platform_point_x + R_zy*up_platform_point_y + R_zz*up_platform_point_z
+        tube_q_in_base_z = (
+        R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
         )
-        S_up_x = q_up_in_base_x + t_x - up_base_point_x
-        S_up_y = q_up_in_base_y + t_y - up_base_point_y
-        S_up_z = q_up_in_base_z + t_z - up_base_point_z
-        # (up-K2) component along the reference direction
-        px_1_up = S_up_x*up_base_frame_xx + S_up_y*up_base_frame_yx + S_up_z*up_base_frame_zx
-        # (up-K3) component across the reference direction
-        py_1_up = S_up_x*up_base_frame_xy + S_up_y*up_base_frame_yy + S_up_z*up_base_frame_zy
-        # (up-K4) squared amplitude
-        rho2_1_up = px_1_up*px_1_up + py_1_up*py_1_up
-        # (up-K5) amplitude, with the sign of the branch
-        root_1_up = branch_1_up*sqrt(rho2_1_up)
-        # (up-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_up_t = S_up_x*up_base_frame_xz + S_up_y*up_base_frame_yz + S_up_z*up_base_frame_zz
-        # (up-K13) squared amplitude
-        rho2_2_up = rho2_1_up + xi_1_up_t*xi_1_up_t
-        # (up-K14) amplitude, with the sign of the branch
-        root_2_up = branch_2_up*sqrt(rho2_2_up)
-        # (up-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2_up = 1.0/root_2_up
-        c_2_up = inv_root_2_up*root_1_up
-        # (up-K16) sine of the angle of joint 2 from its reference direction
-        s_2_up = inv_root_2_up*xi_1_up_t
-        # (up-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_up = 1.0/root_1_up
-        c_1_up = inv_root_1_up*py_1_up
-        # (up-K7) sine of the angle of joint 1 from its reference direction
-        s_1_up = inv_root_1_up*px_1_up
-        # (up-V8) force part of the wrench that does no work along the leg's freedoms, 1
-        axis_z_up_axes2_in_base_x = s_1_up*up_base_frame_xy - c_1_up*up_base_frame_xx
-        axis_z_up_axes2_in_base_y = s_1_up*up_base_frame_yy - c_1_up*up_base_frame_yx
-        axis_z_up_axes2_in_base_z = s_1_up*up_base_frame_zy - c_1_up*up_base_frame_zx
-        f_c1_up_t = s_1_up*s_2_up
-        f_c1_up_t_2 = c_1_up*s_2_up
-        axis_y_up_axes2_in_base_x = (
-        f_c1_up_t*up_base_frame_xx + f_c1_up_t_2*up_base_frame_xy - c_2_up*up_base_frame_xz
+        tube_S_x = t_x + tube_q_in_base_x - tube_base_point_x
+        tube_S_y = t_y + tube_q_in_base_y - tube_base_point_y
+        tube_S_z = t_z + tube_q_in_base_z - tube_base_point_z
+        # (tube-px_1) component along the reference direction
+        tube_px_1 = (
+        tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
         )
-        axis_y_up_axes2_in_base_y = (
-        f_c1_up_t*up_base_frame_yx + f_c1_up_t_2*up_base_frame_yy - c_2_up*up_base_frame_yz
+        # (tube-py_1) component across the reference direction
+        tube_py_1 = (
+        tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
         )
-        axis_y_up_axes2_in_base_z = (
-        f_c1_up_t*up_base_frame_zx + f_c1_up_t_2*up_base_frame_zy - c_2_up*up_base_frame_zz
+        # (tube-rho2_1) squared amplitude
+        tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
+        # (tube-root_1) amplitude, with the sign of the branch
+        tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
+        # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        tube_xi_1_t = (
+        tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
-        axis_x_up_axes2_x = (
-        axis_y_up_axes2_in_base_y*axis_z_up_axes2_in_base_z -
-            axis_y_up_axes2_in_base_z*axis_z_up_axes2_in_base_y
+        # (tube-rho2_2) squared amplitude
+        tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t
+        # (tube-root_2) amplitude, with the sign of the branch
+        tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
+        # (tube-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_tube_root_2 = 1.0/tube_root_2
+        tube_c_2 = inv_tube_root_2*tube_root_1
+        # (tube-s_2) sine of the angle of joint 2 from its reference direction
+        tube_s_2 = inv_tube_root_2*tube_xi_1_t
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = inv_tube_root_1*tube_py_1
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_px_1
+        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        axis_z_tube_axes2_in_base_x = tube_base_frame_xy*tube_s_1 - tube_base_frame_xx*tube_c_1
+        axis_z_tube_axes2_in_base_y = tube_base_frame_yy*tube_s_1 - tube_base_frame_yx*tube_c_1
+        axis_z_tube_axes2_in_base_z = tube_base_frame_zy*tube_s_1 - tube_base_frame_zx*tube_c_1
+        tube_f_c1_t = tube_s_1*tube_s_2
+        tube_f_c1_t_2 = tube_c_1*tube_s_2
+        axis_y_tube_axes2_in_base_x = (
+        tube_base_frame_xx*tube_f_c1_t + tube_base_frame_xy*tube_f_c1_t_2 -
+            tube_base_frame_xz*tube_c_2
         )
-        axis_x_up_axes2_y = (
-        axis_y_up_axes2_in_base_z*axis_z_up_axes2_in_base_x -
-            axis_y_up_axes2_in_base_x*axis_z_up_axes2_in_base_z
+        axis_y_tube_axes2_in_base_y = (
+        tube_base_frame_yx*tube_f_c1_t + tube_base_frame_yy*tube_f_c1_t_2 -
+            tube_base_frame_yz*tube_c_2
         )
-        axis_x_up_axes2_z = (
-        axis_y_up_axes2_in_base_x*axis_z_up_axes2_in_base_y -
-            axis_y_up_axes2_in_base_y*axis_z_up_axes2_in_base_x
+        axis_y_tube_axes2_in_base_z = (
+        tube_base_frame_zx*tube_f_c1_t + tube_base_frame_zy*tube_f_c1_t_2 -
+            tube_base_frame_zz*tube_c_2
         )
-        # (up-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_up_t = R_xx*up_base_frame_xx + R_yx*up_base_frame_yx + R_zx*up_base_frame_zx
-        n_m1_up_t_2 = R_xy*up_base_frame_xx + R_yy*up_base_frame_yx + R_zy*up_base_frame_zx
-        n_m1_up_t_3 = R_xz*up_base_frame_xx + R_yz*up_base_frame_yx + R_zz*up_base_frame_zx
-        n_m1_up_t_4 = R_xx*up_base_frame_xy + R_yx*up_base_frame_yy + R_zx*up_base_frame_zy
-        n_m1_up_t_5 = R_xy*up_base_frame_xy + R_yy*up_base_frame_yy + R_zy*up_base_frame_zy
-        n_m1_up_t_6 = R_xz*up_base_frame_xy + R_yz*up_base_frame_yy + R_zz*up_base_frame_zy
-        n_m1_up_t_7 = R_xx*up_base_frame_xz + R_yx*up_base_frame_yz + R_zx*up_base_frame_zz
-        n_m1_up_t_8 = R_xy*up_base_frame_xz + R_yy*up_base_frame_yz + R_zy*up_base_frame_zz
-        n_m1_up_t_9 = R_xz*up_base_frame_xz + R_yz*up_base_frame_yz + R_zz*up_base_frame_zz
-        end_p1_up_r0_x = (
-        n_m1_up_t*up_platform_joint_rotation_yx + n_m1_up_t_2*up_platform_joint_rotation_yy +
-            n_m1_up_t_3*up_platform_joint_rotation_yz
+        axis_x_tube_axes2_x = (
+        axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_z -
+            axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_y
         )
-        end_p1_up_r0_y = (
-        n_m1_up_t_4*up_platform_joint_rotation_yx + n_m1_up_t_5*up_platform_joint_rotation_yy +
-            n_m1_up_t_6*up_platform_joint_rotation_yz
+        axis_x_tube_axes2_y = (
+        axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_x -
+            axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_z
         )
-        end_p1_up_r1_x = end_p1_up_r0_y*s_1_up - c_1_up*end_p1_up_r0_x
-        end_p1_up_r3_y = (
-        -c_2_up*(n_m1_up_t_7*up_platform_joint_rotation_yx +
-            n_m1_up_t_8*up_platform_joint_rotation_yy + n_m1_up_t_9*up_platform_joint_rotation_yz)
-            - s_2_up*(-c_1_up*end_p1_up_r0_y - end_p1_up_r0_x*s_1_up)
+        axis_x_tube_axes2_z = (
+        axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_y -
+            axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_x
         )
-        # (up-V6) direction 2 of the moment that the platform joint transmits
-        end_p2_up_r0_z = (
-        n_m1_up_t_7*up_platform_joint_rotation_zx + n_m1_up_t_8*up_platform_joint_rotation_zy +
-            n_m1_up_t_9*up_platform_joint_rotation_zz
+        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
+        tube_n_m1_t_2 = (
+        R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx + R_zy*tube_base_frame_zx
         )
-        end_p2_up_r1_y = (
-        -c_1_up*(n_m1_up_t_4*up_platform_joint_rotation_zx +
-            n_m1_up_t_5*up_platform_joint_rotation_zy + n_m1_up_t_6*up_platform_joint_rotation_zz)
-            - s_1_up*(n_m1_up_t*up_platform_joint_rotation_zx +
-            n_m1_up_t_2*up_platform_joint_rotation_zy + n_m1_up_t_3*up_platform_joint_rotation_zz)
+        tube_n_m1_t_3 = (
+        R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx + R_zz*tube_base_frame_zx
         )
-        end_p2_up_r3_x = end_p2_up_r0_z*s_2_up - c_2_up*end_p2_up_r1_y
-        end_p2_up_r3_y = -c_2_up*end_p2_up_r0_z - end_p2_up_r1_y*s_2_up
-        # (up-V7) direction 3 of the moment that the platform joint transmits
-        end_p3_up_r0_x = (
-        n_m1_up_t*up_platform_joint_rotation_xx + n_m1_up_t_2*up_platform_joint_rotation_xy +
-            n_m1_up_t_3*up_platform_joint_rotation_xz
+        tube_n_m1_t_4 = (
+        R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy + R_zx*tube_base_frame_zy
         )
-        end_p3_up_r0_y = (
-        n_m1_up_t_4*up_platform_joint_rotation_xx + n_m1_up_t_5*up_platform_joint_rotation_xy +
-            n_m1_up_t_6*up_platform_joint_rotation_xz
+        tube_n_m1_t_5 = (
+        R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy + R_zy*tube_base_frame_zy
         )
-        end_p3_up_r1_x = end_p3_up_r0_y*s_1_up - c_1_up*end_p3_up_r0_x
-        end_p3_up_r3_x = (
-        s_2_up*(n_m1_up_t_7*up_platform_joint_rotation_xx +
-            n_m1_up_t_8*up_platform_joint_rotation_xy + n_m1_up_t_9*up_platform_joint_rotation_xz)
-            - c_2_up*(-c_1_up*end_p3_up_r0_y - end_p3_up_r0_x*s_1_up)
+        tube_n_m1_t_6 = (
+        R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy + R_zz*tube_base_frame_zy
         )
-        # (up-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_up_t_10 = c_2_up*end_p1_up_r1_x
-        # (up-V6) direction 2 of the moment that the platform joint transmits
-        n_m2_up_r0_y = -c_2_up*end_p2_up_r3_x - end_p2_up_r3_y*s_2_up
-        # (up-V7) direction 3 of the moment that the platform joint transmits
-        n_m3_up_t = end_p3_up_r1_x*s_2_up
-        # (up-V8) force part of the wrench that does no work along the leg's freedoms, 1
-        f_c1_up_t_3 = end_p1_up_r3_y*n_m3_up_t + end_p3_up_r3_x*n_m1_up_t_10
-        inv_f_c1_up_t_26 = 1.0/f_c1_up_t_3
-        # (up-V16) force part of the wrench that does no work along the leg's freedoms, 3
-        f_c3_up_t = end_p3_up_r3_x*inv_f_c1_up_t_26*n_m2_up_r0_y
-        f_c3_up_t_2 = end_p1_up_r3_y*inv_f_c1_up_t_26*n_m2_up_r0_y
-        # (up-V32) size of the moment
-        size_c3_up = sqrt(1.0 + f_c3_up_t*f_c3_up_t + f_c3_up_t_2*f_c3_up_t_2)
-        # (up-V34) moment along direction 1 that goes with it
-        inv_size_c3_up = 1.0/size_c3_up
-        # (up-V38) force part of reciprocal wrench 1
-        w_1_up_t = 1.35*n_m1_up_t_10
-        w_1_up_t_2 = 1.35*n_m2_up_r0_y
-        w_1_up_t_3 = 1.35*n_m3_up_t
-        w_1_up_t_4 = 1.35*end_p1_up_r3_y
-        w_1_up_t_5 = 1.35*end_p3_up_r3_x
-        w_1_up_t_6 = 1.35*inv_f_c1_up_t_26*n_m3_up_t*root_2_up
-        w_1_up_t_7 = 1.35*inv_f_c1_up_t_26*n_m1_up_t_10*root_2_up
-        w_1_up_t_8 = 1.35*end_p3_up_r3_x*inv_f_c1_up_t_26*root_1_up
-        w_1_up_t_9 = 1.35*end_p1_up_r3_y*inv_f_c1_up_t_26*root_1_up
-        w_1_up_t_10 = 1.35*f_c3_up_t*inv_size_c3_up
-        w_1_up_t_11 = 1.35*inv_size_c3_up
-        w_1_up_t_12 = 1.35*f_c3_up_t_2*inv_size_c3_up
-        w_1_up_t_13 = sqrt(rho2_2_up + w_1_up_t_4*w_1_up_t_4 + w_1_up_t_5*w_1_up_t_5)
-        inv_w_1_up_t_16 = 1.0/w_1_up_t_13
-        w_1_up_t_14 = inv_w_1_up_t_16*root_2_up
-        w_1_up_t_15 = inv_w_1_up_t_16*w_1_up_t_4
-        w_1_up_t_16 = inv_w_1_up_t_16*w_1_up_t_5
-        w_1_up_t_17 = w_1_up_t_15*w_1_up_t_6 + w_1_up_t_16*w_1_up_t_7 - w_1_up_t_14
-        w_1_up_t_18 = 1.0 + w_1_up_t_14*w_1_up_t_17
-        w_1_up_t_19 = w_1_up_t_15*w_1_up_t_17 - w_1_up_t_6
-        w_1_up_t_20 = w_1_up_t_16*w_1_up_t_17 - w_1_up_t_7
-        w_1_up_t_21 = w_1_up_t_15*w_1_up_t_8 - w_1_up_t_16*w_1_up_t_9
-        w_1_up_t_22 = w_1_up_t_14*w_1_up_t_21
-        w_1_up_t_23 = w_1_up_t_15*w_1_up_t_21 - w_1_up_t_8
-        w_1_up_t_24 = w_1_up_t_9 + w_1_up_t_16*w_1_up_t_21
-        w_1_up_t_25 = w_1_up_t_10*w_1_up_t_15 - w_1_up_t_12*w_1_up_t_16
-        w_1_up_t_26 = w_1_up_t_14*w_1_up_t_25
-        w_1_up_t_27 = w_1_up_t_10 - w_1_up_t_15*w_1_up_t_25
-        w_1_up_t_28 = w_1_up_t_12 + w_1_up_t_16*w_1_up_t_25
-        w_1_up_t_29 = w_1_up_t*w_1_up_t_15 - w_1_up_t_16*w_1_up_t_3
-        w_1_up_t_30 = w_1_up_t_14*w_1_up_t_29
-        w_1_up_t_31 = w_1_up_t - w_1_up_t_15*w_1_up_t_29
-        w_1_up_t_32 = w_1_up_t_3 + w_1_up_t_16*w_1_up_t_29
-        w_1_up_t_33 = (
-        sqrt(w_1_up_t_18*w_1_up_t_18 + w_1_up_t_19*w_1_up_t_19 + w_1_up_t_20*w_1_up_t_20)
+        tube_n_m1_t_7 = (
+        R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz + R_zx*tube_base_frame_zz
         )
-        inv_w_1_up_t_57 = 1.0/w_1_up_t_33
-        w_1_up_t_34 = inv_w_1_up_t_57*w_1_up_t_18
-        w_1_up_t_35 = inv_w_1_up_t_57*w_1_up_t_19
-        w_1_up_t_36 = inv_w_1_up_t_57*w_1_up_t_20
-        w_1_up_t_37 = w_1_up_t_22*w_1_up_t_34 + w_1_up_t_23*w_1_up_t_35 + w_1_up_t_24*w_1_up_t_36
-        w_1_up_t_38 = w_1_up_t_22 - w_1_up_t_34*w_1_up_t_37
-        w_1_up_t_39 = w_1_up_t_23 - w_1_up_t_35*w_1_up_t_37
-        w_1_up_t_40 = w_1_up_t_24 - w_1_up_t_36*w_1_up_t_37
-        w_1_up_t_41 = w_1_up_t_26*w_1_up_t_34 + w_1_up_t_28*w_1_up_t_36 - w_1_up_t_27*w_1_up_t_35
-        w_1_up_t_42 = w_1_up_t_26 - w_1_up_t_34*w_1_up_t_41
-        w_1_up_t_43 = w_1_up_t_27 + w_1_up_t_35*w_1_up_t_41
-        w_1_up_t_44 = w_1_up_t_28 - w_1_up_t_36*w_1_up_t_41
-        w_1_up_t_45 = w_1_up_t_30*w_1_up_t_34 + w_1_up_t_32*w_1_up_t_36 - w_1_up_t_31*w_1_up_t_35
-        w_1_up_t_46 = w_1_up_t_30 - w_1_up_t_34*w_1_up_t_45
-        w_1_up_t_47 = w_1_up_t_31 + w_1_up_t_35*w_1_up_t_45
-        w_1_up_t_48 = w_1_up_t_32 - w_1_up_t_36*w_1_up_t_45
-        w_1_up_t_49 = (
-        sqrt(1.0 + w_1_up_t_38*w_1_up_t_38 + w_1_up_t_39*w_1_up_t_39 + w_1_up_t_40*w_1_up_t_40)
+        tube_n_m1_t_8 = (
+        R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz + R_zy*tube_base_frame_zz
         )
-        inv_w_1_up_t_95 = 1.0/w_1_up_t_49
-        w_1_up_t_50 = inv_w_1_up_t_95*w_1_up_t_38
-        w_1_up_t_51 = inv_w_1_up_t_95*w_1_up_t_39
-        w_1_up_t_52 = inv_w_1_up_t_95*w_1_up_t_40
-        w_1_up_t_53 = w_1_up_t_42*w_1_up_t_50 + w_1_up_t_44*w_1_up_t_52 - w_1_up_t_43*w_1_up_t_51
-        w_1_up_t_54 = w_1_up_t_50*w_1_up_t_53 - w_1_up_t_42
-        w_1_up_t_55 = inv_w_1_up_t_95*w_1_up_t_53
-        w_1_up_t_56 = w_1_up_t_43 + w_1_up_t_51*w_1_up_t_53
-        w_1_up_t_57 = w_1_up_t_52*w_1_up_t_53 - w_1_up_t_44
-        w_1_up_t_58 = (
-        w_1_up_t_46*w_1_up_t_50 + w_1_up_t_48*w_1_up_t_52 - inv_w_1_up_t_95*root_1_up -
-            w_1_up_t_47*w_1_up_t_51
+        tube_n_m1_t_9 = (
+        R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz + R_zz*tube_base_frame_zz
         )
-        w_1_up_t_59 = w_1_up_t_50*w_1_up_t_58 - w_1_up_t_46
-        w_1_up_t_60 = root_1_up + inv_w_1_up_t_95*w_1_up_t_58
-        w_1_up_t_61 = w_1_up_t_47 + w_1_up_t_51*w_1_up_t_58
-        w_1_up_t_62 = w_1_up_t_52*w_1_up_t_58 - w_1_up_t_48
-        w_1_up_t_63 = (
-        sqrt(w_1_up_t_11*w_1_up_t_11 + w_1_up_t_54*w_1_up_t_54 + w_1_up_t_55*w_1_up_t_55 +
-            w_1_up_t_56*w_1_up_t_56 + w_1_up_t_57*w_1_up_t_57)
+        tube_end_p1_r0_x = (
+        tube_n_m1_t*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_yz
         )
-        inv_w_1_up_t_129 = 1.0/w_1_up_t_63
-        w_1_up_t_64 = inv_w_1_up_t_129*w_1_up_t_54
-        w_1_up_t_65 = inv_w_1_up_t_129*w_1_up_t_55
-        w_1_up_t_66 = inv_w_1_up_t_129*w_1_up_t_56
-        w_1_up_t_67 = inv_w_1_up_t_129*w_1_up_t_11
-        w_1_up_t_68 = inv_w_1_up_t_129*w_1_up_t_57
-        w_1_up_t_69 = (
-        w_1_up_t_59*w_1_up_t_64 + w_1_up_t_60*w_1_up_t_65 + w_1_up_t_61*w_1_up_t_66 +
-            w_1_up_t_62*w_1_up_t_68 - w_1_up_t_2*w_1_up_t_67
+        tube_end_p1_r0_y = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_yz
         )
-        w_1_up_t_70 = w_1_up_t_59 - w_1_up_t_64*w_1_up_t_69
-        w_1_up_t_71 = w_1_up_t_60 - w_1_up_t_65*w_1_up_t_69
-        w_1_up_t_72 = w_1_up_t_61 - w_1_up_t_66*w_1_up_t_69
-        w_1_up_t_73 = w_1_up_t_2 + w_1_up_t_67*w_1_up_t_69
-        w_1_up_t_74 = w_1_up_t_62 - w_1_up_t_68*w_1_up_t_69
-        w_1_up_t_75 = (
-        sqrt(w_1_up_t_70*w_1_up_t_70 + w_1_up_t_71*w_1_up_t_71 + w_1_up_t_72*w_1_up_t_72 +
-            w_1_up_t_73*w_1_up_t_73 + w_1_up_t_74*w_1_up_t_74)
+        tube_end_p1_r1_x = tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x
+        tube_end_p1_r3_y = (
+        -tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_yz) - tube_s_2*(-tube_c_1*tube_end_p1_r0_y
+            - tube_end_p1_r0_x*tube_s_1)
         )
-        inv_w_1_up_t_157 = 1.0/w_1_up_t_75
-        # (up-V1) velocity of the connection point
-        S_dot_up_x = t_dot_x + omega_y*q_up_in_base_z - omega_z*q_up_in_base_y
-        S_dot_up_y = t_dot_y + omega_z*q_up_in_base_x - omega_x*q_up_in_base_z
-        S_dot_up_z = t_dot_z + omega_x*q_up_in_base_y - omega_y*q_up_in_base_x
-        # (up-V53) rate at which the joints turn along moment direction 1
-        omega_tip_x = (
-        axis_x_up_axes2_x*omega_x + axis_x_up_axes2_y*omega_y + axis_x_up_axes2_z*omega_z
+        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
+        tube_end_p2_r0_z = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_zz
         )
-        omega_tip_y = (
-        axis_y_up_axes2_in_base_x*omega_x + axis_y_up_axes2_in_base_y*omega_y +
-            axis_y_up_axes2_in_base_z*omega_z
+        tube_end_p2_r1_y = (
+        -tube_c_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_zz) -
+            tube_s_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_zz)
         )
-        omega_tip_z = (
-        axis_z_up_axes2_in_base_x*omega_x + axis_z_up_axes2_in_base_y*omega_y +
-            axis_z_up_axes2_in_base_z*omega_z
+        tube_end_p2_r3_x = tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y
+        tube_end_p2_r3_y = -tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2
+        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
+        tube_end_p3_r0_x = (
+        tube_n_m1_t*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_xz
         )
-        eta_1_up = end_p1_up_r3_y*omega_tip_z - end_p1_up_r1_x*omega_tip_y
-        # (up-V54) rate at which the joints turn along moment direction 2
-        eta_2_up = end_p2_up_r3_x*omega_tip_y - end_p2_up_r3_y*omega_tip_x
-        # (up-V55) rate at which the joints turn along moment direction 3
-        eta_3_up = end_p3_up_r3_x*omega_tip_z - end_p3_up_r1_x*omega_tip_x
-        # (up-V1) velocity of the connection point
-        S_dot_up_tip_x = (
-        S_dot_up_x*axis_x_up_axes2_x + S_dot_up_y*axis_x_up_axes2_y + S_dot_up_z*axis_x_up_axes2_z
+        tube_end_p3_r0_y = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_xz
         )
-        S_dot_up_tip_y = (
-        S_dot_up_x*axis_y_up_axes2_in_base_x + S_dot_up_y*axis_y_up_axes2_in_base_y +
-            S_dot_up_z*axis_y_up_axes2_in_base_z
+        tube_end_p3_r1_x = tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x
+        tube_end_p3_r3_x = (
+        tube_s_2*(tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(-tube_c_1*tube_end_p3_r0_y
+            - tube_end_p3_r0_x*tube_s_1)
         )
-        S_dot_up_tip_z = (
-        S_dot_up_x*axis_z_up_axes2_in_base_x + S_dot_up_y*axis_z_up_axes2_in_base_y +
-            S_dot_up_z*axis_z_up_axes2_in_base_z
+        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        tube_n_m1_t_10 = tube_c_2*tube_end_p1_r1_x
+        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
+        tube_n_m2_r0_y = -tube_c_2*tube_end_p2_r3_x - tube_end_p2_r3_y*tube_s_2
+        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
+        tube_n_m3_t = tube_end_p3_r1_x*tube_s_2
+        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        tube_f_c1_t_3 = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10
+        inv_tube_f_c1_t_26 = 1.0/tube_f_c1_t_3
+        # (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3
+        tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y
+        tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y
+        # (tube-size_c3) size of the moment
+        tube_size_c3 = sqrt(1.0 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2)
+        # (tube-mu1_c3) moment along direction 1 that goes with it
+        inv_tube_size_c3 = 1.0/tube_size_c3
+        # (tube-w_1) force part of reciprocal wrench 1
+        tube_w_1_t = 1.35*tube_n_m1_t_10
+        tube_w_1_t_2 = 1.35*tube_n_m2_r0_y
+        tube_w_1_t_3 = 1.35*tube_n_m3_t
+        tube_w_1_t_4 = 1.35*tube_end_p1_r3_y
+        tube_w_1_t_5 = 1.35*tube_end_p3_r3_x
+        tube_w_1_t_6 = 1.35*inv_tube_f_c1_t_26*tube_n_m3_t*tube_root_2
+        tube_w_1_t_7 = 1.35*inv_tube_f_c1_t_26*tube_n_m1_t_10*tube_root_2
+        tube_w_1_t_8 = 1.35*inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_root_1
+        tube_w_1_t_9 = 1.35*inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_root_1
+        tube_w_1_t_10 = 1.35*inv_tube_size_c3*tube_f_c3_t
+        tube_w_1_t_11 = 1.35*inv_tube_size_c3
+        tube_w_1_t_12 = 1.35*inv_tube_size_c3*tube_f_c3_t_2
+        tube_w_1_t_13 = sqrt(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
+        inv_tube_w_1_t_16 = 1.0/tube_w_1_t_13
+        tube_w_1_t_14 = inv_tube_w_1_t_16*tube_root_2
+        tube_w_1_t_15 = inv_tube_w_1_t_16*tube_w_1_t_4
+        tube_w_1_t_16 = inv_tube_w_1_t_16*tube_w_1_t_5
+        tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
+        tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
+        tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
+        tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7
+        tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9
+        tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21
+        tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8
+        tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21
+        tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16
+        tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25
+        tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25
+        tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25
+        tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3
+        tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29
+        tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29
+        tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29
+        tube_w_1_t_33 = (
+        sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
+            tube_w_1_t_20*tube_w_1_t_20)
         )
-        # (up-V56) rate of joint 1
-        qd_1_up_t = 1.35*eta_1_up
-        qd_1_up_t_2 = 1.35*eta_2_up
-        qd_1_up_t_3 = 1.35*eta_3_up
-        qd_1_up_t_4 = (
-        inv_w_1_up_t_157*(S_dot_up_tip_y*inv_w_1_up_t_157*w_1_up_t_70 +
-            S_dot_up_tip_z*inv_w_1_up_t_157*w_1_up_t_71 + inv_w_1_up_t_157*qd_1_up_t*w_1_up_t_72 +
-            inv_w_1_up_t_157*qd_1_up_t_2*w_1_up_t_73 + inv_w_1_up_t_157*qd_1_up_t_3*w_1_up_t_74)
+        inv_tube_w_1_t_57 = 1.0/tube_w_1_t_33
+        tube_w_1_t_34 = inv_tube_w_1_t_57*tube_w_1_t_18
+        tube_w_1_t_35 = inv_tube_w_1_t_57*tube_w_1_t_19
+        tube_w_1_t_36 = inv_tube_w_1_t_57*tube_w_1_t_20
+        tube_w_1_t_37 = (
+        tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
         )
-        qd_1_up_t_5 = (
-        inv_w_1_up_t_129*(S_dot_up_tip_y*w_1_up_t_64 + S_dot_up_tip_z*w_1_up_t_65 +
-            qd_1_up_t*w_1_up_t_66 + qd_1_up_t_3*w_1_up_t_68 - qd_1_up_t_2*w_1_up_t_67 -
-            qd_1_up_t_4*w_1_up_t_69)
+        tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37
+        tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37
+        tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37
+        tube_w_1_t_41 = (
+        tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 - tube_w_1_t_27*tube_w_1_t_35
         )
-        qd_1_up_t_6 = (
-        inv_w_1_up_t_95*(S_dot_up_tip_y*w_1_up_t_50 + S_dot_up_tip_z*inv_w_1_up_t_95 +
-            qd_1_up_t*w_1_up_t_51 + qd_1_up_t_3*w_1_up_t_52 + qd_1_up_t_4*w_1_up_t_58 +
-            qd_1_up_t_5*w_1_up_t_53)
+        tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41
+        tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41
+        tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41
+        tube_w_1_t_45 = (
+        tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 - tube_w_1_t_31*tube_w_1_t_35
         )
-        qd_1_up_t_7 = (
-        S_dot_up_tip_y*w_1_up_t_14 + qd_1_up_t*w_1_up_t_15 + qd_1_up_t_3*w_1_up_t_16 +
-            qd_1_up_t_6*w_1_up_t_21 + inv_w_1_up_t_57*w_1_up_t_17*(S_dot_up_tip_y*w_1_up_t_34 +
-            qd_1_up_t*w_1_up_t_35 + qd_1_up_t_3*w_1_up_t_36 + qd_1_up_t_4*w_1_up_t_45 +
-            qd_1_up_t_5*w_1_up_t_41 - qd_1_up_t_6*w_1_up_t_37) - qd_1_up_t_4*w_1_up_t_29 -
-            qd_1_up_t_5*w_1_up_t_25
+        tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45
+        tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45
+        tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45
+        tube_w_1_t_49 = (
+        sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
+            tube_w_1_t_40*tube_w_1_t_40)
         )
-        qd_1_up_t_8 = inv_w_1_up_t_16*qd_1_up_t_7
+        inv_tube_w_1_t_95 = 1.0/tube_w_1_t_49
+        tube_w_1_t_50 = inv_tube_w_1_t_95*tube_w_1_t_38
+        tube_w_1_t_51 = inv_tube_w_1_t_95*tube_w_1_t_39
+        tube_w_1_t_52 = inv_tube_w_1_t_95*tube_w_1_t_40
+        tube_w_1_t_53 = (
+        tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
+        )
+        tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
+        tube_w_1_t_55 = inv_tube_w_1_t_95*tube_w_1_t_53
+        tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
+        tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
+        tube_w_1_t_58 = (
+        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_95*tube_root_1
+            - tube_w_1_t_47*tube_w_1_t_51
+        )
+        tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
+        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_95*tube_w_1_t_58
+        tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
+        tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
+        tube_w_1_t_63 = (
+        sqrt(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54 +
+            tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
+            tube_w_1_t_57*tube_w_1_t_57)
+        )
+        inv_tube_w_1_t_129 = 1.0/tube_w_1_t_63
+        tube_w_1_t_64 = inv_tube_w_1_t_129*tube_w_1_t_54
+        tube_w_1_t_65 = inv_tube_w_1_t_129*tube_w_1_t_55
+        tube_w_1_t_66 = inv_tube_w_1_t_129*tube_w_1_t_56
+        tube_w_1_t_67 = inv_tube_w_1_t_129*tube_w_1_t_11
+        tube_w_1_t_68 = inv_tube_w_1_t_129*tube_w_1_t_57
+        tube_w_1_t_69 = (
+        tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
+            tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
+        )
+        tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69
+        tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69
+        tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69
+        tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69
+        tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69
+        tube_w_1_t_75 = (
+        sqrt(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71 +
+            tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
+            tube_w_1_t_74*tube_w_1_t_74)
+        )
+        inv_tube_w_1_t_157 = 1.0/tube_w_1_t_75
+        # (tube-S_dot) velocity of the connection point
+        tube_S_dot_x = t_dot_x + omega_y*tube_q_in_base_z - omega_z*tube_q_in_base_y
+        tube_S_dot_y = t_dot_y + omega_z*tube_q_in_base_x - omega_x*tube_q_in_base_z
+        tube_S_dot_z = t_dot_z + omega_x*tube_q_in_base_y - omega_y*tube_q_in_base_x
+        # (tube-eta_1) rate at which the joints turn along moment direction 1
+        tube_omega_tip_x = (
+        axis_x_tube_axes2_x*omega_x + axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z
+        )
+        tube_omega_tip_y = (
+        axis_y_tube_axes2_in_base_x*omega_x + axis_y_tube_axes2_in_base_y*omega_y +
+            axis_y_tube_axes2_in_base_z*omega_z
+        )
+        tube_omega_tip_z = (
+        axis_z_tube_axes2_in_base_x*omega_x + axis_z_tube_axes2_in_base_y*omega_y +
+            axis_z_tube_axes2_in_base_z*omega_z
+        )
+        tube_eta_1 = tube_end_p1_r3_y*tube_omega_tip_z - tube_end_p1_r1_x*tube_omega_tip_y
+        # (tube-eta_2) rate at which the joints turn along moment direction 2
+        tube_eta_2 = tube_end_p2_r3_x*tube_omega_tip_y - tube_end_p2_r3_y*tube_omega_tip_x
+        # (tube-eta_3) rate at which the joints turn along moment direction 3
+        tube_eta_3 = tube_end_p3_r3_x*tube_omega_tip_z - tube_end_p3_r1_x*tube_omega_tip_x
+        # (tube-S_dot) velocity of the connection point
+        tube_S_dot_tip_x = (
+        axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
+            axis_x_tube_axes2_z*tube_S_dot_z
+        )
+        tube_S_dot_tip_y = (
+        axis_y_tube_axes2_in_base_x*tube_S_dot_x + axis_y_tube_axes2_in_base_y*tube_S_dot_y +
+            axis_y_tube_axes2_in_base_z*tube_S_dot_z
+        )
+        tube_S_dot_tip_z = (
+        axis_z_tube_axes2_in_base_x*tube_S_dot_x + axis_z_tube_axes2_in_base_y*tube_S_dot_y +
+            axis_z_tube_axes2_in_base_z*tube_S_dot_z
+        )
+        # (tube-qd_3) rate of joint 3
+        tube_qd_3_t = 1.35*tube_eta_1
+        tube_qd_3_t_2 = 1.35*tube_eta_2
+        tube_qd_3_t_3 = 1.35*tube_eta_3
+        tube_qd_3_t_4 = (
+        inv_tube_w_1_t_157*(inv_tube_w_1_t_157*tube_S_dot_tip_y*tube_w_1_t_70 +
+            inv_tube_w_1_t_157*tube_S_dot_tip_z*tube_w_1_t_71 +
+            inv_tube_w_1_t_157*tube_qd_3_t*tube_w_1_t_72 +
+            inv_tube_w_1_t_157*tube_qd_3_t_2*tube_w_1_t_73 +
+            inv_tube_w_1_t_157*tube_qd_3_t_3*tube_w_1_t_74)
+        )
+        tube_qd_3_t_5 = (
+        inv_tube_w_1_t_129*(tube_S_dot_tip_y*tube_w_1_t_64 + tube_S_dot_tip_z*tube_w_1_t_65 +
+            tube_qd_3_t*tube_w_1_t_66 + tube_qd_3_t_3*tube_w_1_t_68 - tube_qd_3_t_2*tube_w_1_t_67
+            - tube_qd_3_t_4*tube_w_1_t_69)
+        )
+        tube_qd_3_t_6 = (
+        inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_S_dot_tip_z + tube_S_dot_tip_y*tube_w_1_t_50 +
+            tube_qd_3_t*tube_w_1_t_51 + tube_qd_3_t_3*tube_w_1_t_52 + tube_qd_3_t_4*tube_w_1_t_58
+            + tube_qd_3_t_5*tube_w_1_t_53)
+        )
+        tube_qd_3_t_7 = (
+        tube_S_dot_tip_y*tube_w_1_t_14 + tube_qd_3_t*tube_w_1_t_15 + tube_qd_3_t_3*tube_w_1_t_16 +
+            tube_qd_3_t_6*tube_w_1_t_21 +
+            inv_tube_w_1_t_57*tube_w_1_t_17*(tube_S_dot_tip_y*tube_w_1_t_34 +
+            tube_qd_3_t*tube_w_1_t_35 + tube_qd_3_t_3*tube_w_1_t_36 + tube_qd_3_t_4*tube_w_1_t_45
+            + tube_qd_3_t_5*tube_w_1_t_41 - tube_qd_3_t_6*tube_w_1_t_37) -
+            tube_qd_3_t_4*tube_w_1_t_29 - tube_qd_3_t_5*tube_w_1_t_25
+        )
+        tube_qd_3_t_8 = inv_tube_w_1_t_16*tube_qd_3_t_7
         ok = (
-        ok & m.every(leg, (abs(rho2_1_up) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(rho2_2_up) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(f_c1_up_t_3) >
-            _TOLERANCE * 1.0) & (abs(size_c3_up) > _TOLERANCE * 1.0) & (abs(w_1_up_t_13) >
-            _TOLERANCE * 1.35) & (abs(w_1_up_t_33) > _TOLERANCE * 1.0) & (abs(w_1_up_t_49) >
-            _TOLERANCE * 1.0) & (abs(w_1_up_t_63) > _TOLERANCE * 1.35) & (abs(w_1_up_t_75) >
-            _TOLERANCE * 1.35))
+        ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_f_c1_t_3) > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) &
+            (abs(tube_w_1_t_13) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) &
+            (abs(tube_w_1_t_49) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) &
+            (abs(tube_w_1_t_75) > _TOLERANCE * 1.35))
         )
-        out_qd[_qd_up[0][leg]] = qd_1_up_t_4
-        out_qd[_qd_up[1][leg]] = qd_1_up_t_8
-        out_qd[_qd_up[2][leg]] = S_dot_up_tip_x
+        out_qd[_qd_tube[0][leg]] = tube_qd_3_t_4
+        out_qd[_qd_tube[1][leg]] = tube_qd_3_t_8
+        out_qd[_qd_tube[2][leg]] = tube_S_dot_tip_x
     return ok, (out_qd,)
 
 
@@ -7654,570 +8241,627 @@ def _run_joint_accelerations(m, X, V, A):
     out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
-        branch_1_ups, branch_2_ups, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-            ups_base_point_z, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
+            ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
-        # (ups-K1) from the base point to the connection point
-        q_ups_in_base_x = (
+        # (ups-S) from the base point to the connection point
+        ups_q_in_base_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        q_ups_in_base_y = (
+        ups_q_in_base_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        q_ups_in_base_z = (
+        ups_q_in_base_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        S_ups_x = q_ups_in_base_x + t_x - ups_base_point_x
-        S_ups_y = q_ups_in_base_y + t_y - ups_base_point_y
-        S_ups_z = q_ups_in_base_z + t_z - ups_base_point_z
-        # (ups-K2) component along the reference direction
-        px_1_ups = (
-        S_ups_x*ups_base_frame_xx + S_ups_y*ups_base_frame_yx + S_ups_z*ups_base_frame_zx
+        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        # (ups-px_1) component along the reference direction
+        ups_px_1 = (
+        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-K3) component across the reference direction
-        py_1_ups = (
-        S_ups_x*ups_base_frame_xy + S_ups_y*ups_base_frame_yy + S_ups_z*ups_base_frame_zy
+        # (ups-py_1) component across the reference direction
+        ups_py_1 = (
+        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-K4) squared amplitude
-        rho2_1_ups = px_1_ups*px_1_ups + py_1_ups*py_1_ups
-        # (ups-K5) amplitude, with the sign of the branch
-        root_1_ups = branch_1_ups*sqrt(rho2_1_ups)
-        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_ups_t = (
-        S_ups_x*ups_base_frame_xz + S_ups_y*ups_base_frame_yz + S_ups_z*ups_base_frame_zz
+        # (ups-rho2_1) squared amplitude
+        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
+        # (ups-root_1) amplitude, with the sign of the branch
+        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ups_xi_1_t = (
+        ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-K13) squared amplitude
-        rho2_2_ups = rho2_1_ups + xi_1_ups_t*xi_1_ups_t
-        # (ups-K14) amplitude, with the sign of the branch
-        root_2_ups = branch_2_ups*sqrt(rho2_2_ups)
-        # (ups-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2_ups = 1.0/root_2_ups
-        # (ups-V5) reciprocal vector 1
-        axis_x_x = S_ups_x*inv_root_2_ups
-        axis_x_y = S_ups_y*inv_root_2_ups
-        axis_x_z = S_ups_z*inv_root_2_ups
-        # (ups-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_ups = 1.0/root_1_ups
-        c_1_ups = inv_root_1_ups*py_1_ups
-        # (ups-K7) sine of the angle of joint 1 from its reference direction
-        s_1_ups = inv_root_1_ups*px_1_ups
-        # (ups-V5) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = s_1_ups*ups_base_frame_xy - c_1_ups*ups_base_frame_xx
-        axis_z_ups_axes2_in_base_y = s_1_ups*ups_base_frame_yy - c_1_ups*ups_base_frame_yx
-        axis_z_ups_axes2_in_base_z = s_1_ups*ups_base_frame_zy - c_1_ups*ups_base_frame_zx
+        # (ups-rho2_2) squared amplitude
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        # (ups-root_2) amplitude, with the sign of the branch
+        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_root_2 = 1.0/ups_root_2
+        # (ups-w_1) reciprocal vector 1
+        ups_axis_x_x = inv_ups_root_2*ups_S_x
+        ups_axis_x_y = inv_ups_root_2*ups_S_y
+        ups_axis_x_z = inv_ups_root_2*ups_S_z
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
+        # (ups-w_1) reciprocal vector 1
+        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
+        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
+        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
         axis_y_ups_axes2_x = (
-        axis_x_z*axis_z_ups_axes2_in_base_y - axis_x_y*axis_z_ups_axes2_in_base_z
+        axis_z_ups_axes2_in_base_y*ups_axis_x_z - axis_z_ups_axes2_in_base_z*ups_axis_x_y
         )
         axis_y_ups_axes2_y = (
-        axis_x_x*axis_z_ups_axes2_in_base_z - axis_x_z*axis_z_ups_axes2_in_base_x
+        axis_z_ups_axes2_in_base_z*ups_axis_x_x - axis_z_ups_axes2_in_base_x*ups_axis_x_z
         )
         axis_y_ups_axes2_z = (
-        axis_x_y*axis_z_ups_axes2_in_base_x - axis_x_x*axis_z_ups_axes2_in_base_y
+        axis_z_ups_axes2_in_base_x*ups_axis_x_y - axis_z_ups_axes2_in_base_y*ups_axis_x_x
         )
-        # (ups-A1) centripetal acceleration of the connection point
-        u_1_ups_t = omega_y*q_ups_in_base_z - omega_z*q_ups_in_base_y
-        u_1_ups_t_2 = omega_z*q_ups_in_base_x - omega_x*q_ups_in_base_z
-        u_1_ups_t_3 = omega_x*q_ups_in_base_y - omega_y*q_ups_in_base_x
-        # (ups-V1) velocity of the connection point
-        S_dot_ups_x = t_dot_x + u_1_ups_t
-        S_dot_ups_y = t_dot_y + u_1_ups_t_2
-        S_dot_ups_z = t_dot_z + u_1_ups_t_3
-        S_dot_ups_tip_x = S_dot_ups_x*axis_x_x + S_dot_ups_y*axis_x_y + S_dot_ups_z*axis_x_z
-        # (ups-V8) rate of joint 1
-        qd_2_ups = (
-        inv_root_2_ups*(S_dot_ups_x*axis_y_ups_axes2_x + S_dot_ups_y*axis_y_ups_axes2_y +
-            S_dot_ups_z*axis_y_ups_axes2_z)
+        # (ups-S_dot) velocity of the connection point
+        ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y
+        ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z
+        ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x
+        ups_S_dot_x = t_dot_x + ups_S_dot_t
+        ups_S_dot_y = t_dot_y + ups_S_dot_t_2
+        ups_S_dot_z = t_dot_z + ups_S_dot_t_3
+        ups_S_dot_tip_x = (
+        ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y + ups_S_dot_z*ups_axis_x_z
         )
-        qd_1_ups = (
-        inv_root_1_ups*(S_dot_ups_x*axis_z_ups_axes2_in_base_x +
-            S_dot_ups_y*axis_z_ups_axes2_in_base_y + S_dot_ups_z*axis_z_ups_axes2_in_base_z)
+        # (ups-qd_2) rate of joint 2
+        ups_qd_2 = (
+        inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
+            axis_y_ups_axes2_z*ups_S_dot_z)
         )
-        # (ups-V11) angular velocity of link 1
-        omega_1_ups_t = inv_root_2_ups*qd_1_ups*xi_1_ups_t
-        omega_1_ups_t_2 = inv_root_2_ups*qd_1_ups*root_1_ups
-        # (ups-A5) acceleration of the connection point at zero joint accelerations
-        bias_ups_t = 2.0*S_dot_ups_tip_x
-        bias_ups_z = bias_ups_t*omega_1_ups_t_2 + 2.0*omega_1_ups_t*qd_2_ups*root_2_ups
-        # (ups-A2) acceleration of the connection point without its centripetal part
-        a_p_ups_x = t_ddot_x + alpha_y*q_ups_in_base_z - alpha_z*q_ups_in_base_y
-        a_p_ups_y = t_ddot_y + alpha_z*q_ups_in_base_x - alpha_x*q_ups_in_base_z
-        a_p_ups_z = t_ddot_z + alpha_x*q_ups_in_base_y - alpha_y*q_ups_in_base_x
-        # (ups-A3) acceleration of the connection point
-        S_ddot_ups_x = a_p_ups_x + omega_y*u_1_ups_t_3 - omega_z*u_1_ups_t_2
-        S_ddot_ups_y = a_p_ups_y + omega_z*u_1_ups_t - omega_x*u_1_ups_t_3
-        S_ddot_ups_z = a_p_ups_z + omega_x*u_1_ups_t_2 - omega_y*u_1_ups_t
-        # (ups-A6) acceleration of the connection point left to the joint accelerations
-        rel_ups_x = (
-        S_ddot_ups_x*axis_x_x + S_ddot_ups_y*axis_x_y + S_ddot_ups_z*axis_x_z +
-            root_2_ups*(omega_1_ups_t_2*omega_1_ups_t_2 + qd_2_ups*qd_2_ups)
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
+            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z)
         )
-        rel_ups_z = (
-        S_ddot_ups_x*axis_z_ups_axes2_in_base_x + S_ddot_ups_y*axis_z_ups_axes2_in_base_y +
-            S_ddot_ups_z*axis_z_ups_axes2_in_base_z - bias_ups_z
+        # (ups-omega_1) angular velocity of link 1
+        ups_omega_1_t = inv_ups_root_2*ups_qd_1*ups_xi_1_t
+        ups_omega_1_t_2 = inv_ups_root_2*ups_qd_1*ups_root_1
+        # (ups-bias) acceleration of the connection point at zero joint accelerations
+        ups_bias_t = 2.0*ups_S_dot_tip_x
+        ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2.0*ups_omega_1_t*ups_qd_2*ups_root_2
+        # (ups-a_p) acceleration of the connection point without its centripetal part
+        ups_a_p_x = t_ddot_x + alpha_y*ups_q_in_base_z - alpha_z*ups_q_in_base_y
+        ups_a_p_y = t_ddot_y + alpha_z*ups_q_in_base_x - alpha_x*ups_q_in_base_z
+        ups_a_p_z = t_ddot_z + alpha_x*ups_q_in_base_y - alpha_y*ups_q_in_base_x
+        # (ups-S_ddot) acceleration of the connection point
+        ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2
+        ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3
+        ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t
+        # (ups-rel) acceleration of the connection point left to the joint accelerations
+        ups_rel_x = (
+        ups_S_ddot_x*ups_axis_x_x + ups_S_ddot_y*ups_axis_x_y + ups_S_ddot_z*ups_axis_x_z +
+            ups_root_2*(ups_omega_1_t_2*ups_omega_1_t_2 + ups_qd_2*ups_qd_2)
         )
-        # (ups-A8) acceleration of joint 1
-        qdd_2_ups = (
-        inv_root_2_ups*(S_ddot_ups_x*axis_y_ups_axes2_x + S_ddot_ups_y*axis_y_ups_axes2_y +
-            S_ddot_ups_z*axis_y_ups_axes2_z - bias_ups_t*qd_2_ups) + omega_1_ups_t*omega_1_ups_t_2
+        ups_rel_z = (
+        axis_z_ups_axes2_in_base_x*ups_S_ddot_x + axis_z_ups_axes2_in_base_y*ups_S_ddot_y +
+            axis_z_ups_axes2_in_base_z*ups_S_ddot_z - ups_bias_z
         )
-        qdd_1_ups = inv_root_1_ups*rel_ups_z
+        # (ups-qdd_1) acceleration of joint 1
+        ups_qdd_2 = (
+        inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_ddot_x + axis_y_ups_axes2_y*ups_S_ddot_y +
+            axis_y_ups_axes2_z*ups_S_ddot_z - ups_bias_t*ups_qd_2) + ups_omega_1_t*ups_omega_1_t_2
+        )
+        ups_qdd_1 = inv_ups_root_1*ups_rel_z
         ok = (
-        ok & m.every(leg, (abs(rho2_1_ups) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
-            (abs(rho2_2_ups) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(root_1_ups) >
-            _TOLERANCE * 1.38293) & (abs(root_2_ups) > _TOLERANCE * 1.38293))
+        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
+            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) >
+            _TOLERANCE * 1.38293) & (abs(ups_root_2) > _TOLERANCE * 1.38293))
         )
-        out_qdd[_qdd_ups[0][leg]] = qdd_1_ups
-        out_qdd[_qdd_ups[1][leg]] = qdd_2_ups
-        out_qdd[_qdd_ups[2][leg]] = rel_ups_x
+        out_qdd[_qdd_ups[0][leg]] = ups_qdd_1
+        out_qdd[_qdd_ups[1][leg]] = ups_qdd_2
+        out_qdd[_qdd_ups[2][leg]] = ups_rel_x
     for leg, k in legs[1]:
         (
-        branch_1_up, branch_2_up, up_base_frame_xx, up_base_frame_xy, up_base_frame_xz,
-            up_base_frame_yx, up_base_frame_yy, up_base_frame_yz, up_base_frame_zx,
-            up_base_frame_zy, up_base_frame_zz, up_base_point_x, up_base_point_y, up_base_point_z,
-            up_platform_joint_rotation_xx, up_platform_joint_rotation_xy,
-            up_platform_joint_rotation_xz, up_platform_joint_rotation_yx,
-            up_platform_joint_rotation_yy, up_platform_joint_rotation_yz,
-            up_platform_joint_rotation_zx, up_platform_joint_rotation_zy,
-            up_platform_joint_rotation_zz, up_platform_point_x, up_platform_point_y,
-            up_platform_point_z,
+        tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz, tube_base_frame_yx,
+            tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx, tube_base_frame_zy,
+            tube_base_frame_zz, tube_base_point_x, tube_base_point_y, tube_base_point_z,
+            tube_branch_1, tube_branch_2, tube_platform_joint_rotation_xx,
+            tube_platform_joint_rotation_xy, tube_platform_joint_rotation_xz,
+            tube_platform_joint_rotation_yx, tube_platform_joint_rotation_yy,
+            tube_platform_joint_rotation_yz, tube_platform_joint_rotation_zx,
+            tube_platform_joint_rotation_zy, tube_platform_joint_rotation_zz,
+            tube_platform_point_x, tube_platform_point_y, tube_platform_point_z,
         ) = k
-        # (up-K1) from the base point to the connection point
-        q_up_in_base_x = (
-        R_xx*up_platform_point_x + R_xy*up_platform_point_y + R_xz*up_platform_point_z
+        # (tube-S) from the base point to the connection point
+        tube_q_in_base_x = (
+        R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
         )
-        q_up_in_base_y = (
-        R_yx*up_platform_point_x + R_yy*up_platform_point_y + R_yz*up_platform_point_z
+        tube_q_in_base_y = (
+        R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
         )
-        q_up_in_base_z = (
-        R_zx*up_platform_point_x + R_zy*up_platform_point_y + R_zz*up_platform_point_z
+        tube_q_in_base_z = (
+        R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
         )
-        S_up_x = q_up_in_base_x + t_x - up_base_point_x
-        S_up_y = q_up_in_base_y + t_y - up_base_point_y
-        S_up_z = q_up_in_base_z + t_z - up_base_point_z
-        # (up-K2) component along the reference direction
-        px_1_up = S_up_x*up_base_frame_xx + S_up_y*up_base_frame_yx + S_up_z*up_base_frame_zx
-        # (up-K3) component across the reference direction
-        py_1_up = S_up_x*up_base_frame_xy + S_up_y*up_base_frame_yy + S_up_z*up_base_frame_zy
-        # (up-K4) squared amplitude
-        rho2_1_up = px_1_up*px_1_up + py_1_up*py_1_up
-        # (up-K5) amplitude, with the sign of the branch
-        root_1_up = branch_1_up*sqrt(rho2_1_up)
-        # (up-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_up_t = S_up_x*up_base_frame_xz + S_up_y*up_base_frame_yz + S_up_z*up_base_frame_zz
-        # (up-K13) squared amplitude
-        rho2_2_up = rho2_1_up + xi_1_up_t*xi_1_up_t
-        # (up-K14) amplitude, with the sign of the branch
-        root_2_up = branch_2_up*sqrt(rho2_2_up)
-        # (up-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2_up = 1.0/root_2_up
-        c_2_up = inv_root_2_up*root_1_up
-        # (up-K16) sine of the angle of joint 2 from its reference direction
-        s_2_up = inv_root_2_up*xi_1_up_t
-        # (up-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_up = 1.0/root_1_up
-        c_1_up = inv_root_1_up*py_1_up
-        # (up-K7) sine of the angle of joint 1 from its reference direction
-        s_1_up = inv_root_1_up*px_1_up
-        # (up-V8) force part of the wrench that does no work along the leg's freedoms, 1
-        axis_z_up_axes2_in_base_x = s_1_up*up_base_frame_xy - c_1_up*up_base_frame_xx
-        axis_z_up_axes2_in_base_y = s_1_up*up_base_frame_yy - c_1_up*up_base_frame_yx
-        axis_z_up_axes2_in_base_z = s_1_up*up_base_frame_zy - c_1_up*up_base_frame_zx
-        f_c1_up_t = s_1_up*s_2_up
-        f_c1_up_t_2 = c_1_up*s_2_up
-        axis_y_up_axes2_in_base_x = (
-        f_c1_up_t*up_base_frame_xx + f_c1_up_t_2*up_base_frame_xy - c_2_up*up_base_frame_xz
+        tube_S_x = t_x + tube_q_in_base_x - tube_base_point_x
+        tube_S_y = t_y + tube_q_in_base_y - tube_base_point_y
+        tube_S_z = t_z + tube_q_in_base_z - tube_base_point_z
+        # (tube-px_1) component along the reference direction
+        tube_px_1 = (
+        tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
         )
-        axis_y_up_axes2_in_base_y = (
-        f_c1_up_t*up_base_frame_yx + f_c1_up_t_2*up_base_frame_yy - c_2_up*up_base_frame_yz
+        # (tube-py_1) component across the reference direction
+        tube_py_1 = (
+        tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
         )
-        axis_y_up_axes2_in_base_z = (
-        f_c1_up_t*up_base_frame_zx + f_c1_up_t_2*up_base_frame_zy - c_2_up*up_base_frame_zz
+        # (tube-rho2_1) squared amplitude
+        tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
+        # (tube-root_1) amplitude, with the sign of the branch
+        tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
+        # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        tube_xi_1_t = (
+        tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
-        axis_x_up_axes2_x = (
-        axis_y_up_axes2_in_base_y*axis_z_up_axes2_in_base_z -
-            axis_y_up_axes2_in_base_z*axis_z_up_axes2_in_base_y
+        # (tube-rho2_2) squared amplitude
+        tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t
+        # (tube-root_2) amplitude, with the sign of the branch
+        tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
+        # (tube-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_tube_root_2 = 1.0/tube_root_2
+        tube_c_2 = inv_tube_root_2*tube_root_1
+        # (tube-s_2) sine of the angle of joint 2 from its reference direction
+        tube_s_2 = inv_tube_root_2*tube_xi_1_t
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = inv_tube_root_1*tube_py_1
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_px_1
+        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        axis_z_tube_axes2_in_base_x = tube_base_frame_xy*tube_s_1 - tube_base_frame_xx*tube_c_1
+        axis_z_tube_axes2_in_base_y = tube_base_frame_yy*tube_s_1 - tube_base_frame_yx*tube_c_1
+        axis_z_tube_axes2_in_base_z = tube_base_frame_zy*tube_s_1 - tube_base_frame_zx*tube_c_1
+        tube_f_c1_t = tube_s_1*tube_s_2
+        tube_f_c1_t_2 = tube_c_1*tube_s_2
+        axis_y_tube_axes2_in_base_x = (
+        tube_base_frame_xx*tube_f_c1_t + tube_base_frame_xy*tube_f_c1_t_2 -
+            tube_base_frame_xz*tube_c_2
         )
-        axis_x_up_axes2_y = (
-        axis_y_up_axes2_in_base_z*axis_z_up_axes2_in_base_x -
-            axis_y_up_axes2_in_base_x*axis_z_up_axes2_in_base_z
+        axis_y_tube_axes2_in_base_y = (
+        tube_base_frame_yx*tube_f_c1_t + tube_base_frame_yy*tube_f_c1_t_2 -
+            tube_base_frame_yz*tube_c_2
         )
-        axis_x_up_axes2_z = (
-        axis_y_up_axes2_in_base_x*axis_z_up_axes2_in_base_y -
-            axis_y_up_axes2_in_base_y*axis_z_up_axes2_in_base_x
+        axis_y_tube_axes2_in_base_z = (
+        tube_base_frame_zx*tube_f_c1_t + tube_base_frame_zy*tube_f_c1_t_2 -
+            tube_base_frame_zz*tube_c_2
         )
-        # (up-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_up_t = R_xx*up_base_frame_xx + R_yx*up_base_frame_yx + R_zx*up_base_frame_zx
-        n_m1_up_t_2 = R_xy*up_base_frame_xx + R_yy*up_base_frame_yx + R_zy*up_base_frame_zx
-        n_m1_up_t_3 = R_xz*up_base_frame_xx + R_yz*up_base_frame_yx + R_zz*up_base_frame_zx
-        n_m1_up_t_4 = R_xx*up_base_frame_xy + R_yx*up_base_frame_yy + R_zx*up_base_frame_zy
-        n_m1_up_t_5 = R_xy*up_base_frame_xy + R_yy*up_base_frame_yy + R_zy*up_base_frame_zy
-        n_m1_up_t_6 = R_xz*up_base_frame_xy + R_yz*up_base_frame_yy + R_zz*up_base_frame_zy
-        n_m1_up_t_7 = R_xx*up_base_frame_xz + R_yx*up_base_frame_yz + R_zx*up_base_frame_zz
-        n_m1_up_t_8 = R_xy*up_base_frame_xz + R_yy*up_base_frame_yz + R_zy*up_base_frame_zz
-        n_m1_up_t_9 = R_xz*up_base_frame_xz + R_yz*up_base_frame_yz + R_zz*up_base_frame_zz
-        end_p1_up_r0_x = (
-        n_m1_up_t*up_platform_joint_rotation_yx + n_m1_up_t_2*up_platform_joint_rotation_yy +
-            n_m1_up_t_3*up_platform_joint_rotation_yz
+        axis_x_tube_axes2_x = (
+        axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_z -
+            axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_y
         )
-        end_p1_up_r0_y = (
-        n_m1_up_t_4*up_platform_joint_rotation_yx + n_m1_up_t_5*up_platform_joint_rotation_yy +
-            n_m1_up_t_6*up_platform_joint_rotation_yz
+        axis_x_tube_axes2_y = (
+        axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_x -
+            axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_z
         )
-        end_p1_up_r0_z = (
-        n_m1_up_t_7*up_platform_joint_rotation_yx + n_m1_up_t_8*up_platform_joint_rotation_yy +
-            n_m1_up_t_9*up_platform_joint_rotation_yz
+        axis_x_tube_axes2_z = (
+        axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_y -
+            axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_x
         )
-        end_p1_up_r1_x = end_p1_up_r0_y*s_1_up - c_1_up*end_p1_up_r0_x
-        end_p1_up_r1_y = -c_1_up*end_p1_up_r0_y - end_p1_up_r0_x*s_1_up
-        end_p1_up_r3_x = end_p1_up_r0_z*s_2_up - c_2_up*end_p1_up_r1_y
-        end_p1_up_r3_y = -c_2_up*end_p1_up_r0_z - end_p1_up_r1_y*s_2_up
-        # (up-V6) direction 2 of the moment that the platform joint transmits
-        end_p2_up_r0_x = (
-        n_m1_up_t*up_platform_joint_rotation_zx + n_m1_up_t_2*up_platform_joint_rotation_zy +
-            n_m1_up_t_3*up_platform_joint_rotation_zz
+        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
+        tube_n_m1_t_2 = (
+        R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx + R_zy*tube_base_frame_zx
         )
-        end_p2_up_r0_y = (
-        n_m1_up_t_4*up_platform_joint_rotation_zx + n_m1_up_t_5*up_platform_joint_rotation_zy +
-            n_m1_up_t_6*up_platform_joint_rotation_zz
+        tube_n_m1_t_3 = (
+        R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx + R_zz*tube_base_frame_zx
         )
-        end_p2_up_r0_z = (
-        n_m1_up_t_7*up_platform_joint_rotation_zx + n_m1_up_t_8*up_platform_joint_rotation_zy +
-            n_m1_up_t_9*up_platform_joint_rotation_zz
+        tube_n_m1_t_4 = (
+        R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy + R_zx*tube_base_frame_zy
         )
-        end_p2_up_r1_x = end_p2_up_r0_y*s_1_up - c_1_up*end_p2_up_r0_x
-        end_p2_up_r1_y = -c_1_up*end_p2_up_r0_y - end_p2_up_r0_x*s_1_up
-        end_p2_up_r3_x = end_p2_up_r0_z*s_2_up - c_2_up*end_p2_up_r1_y
-        end_p2_up_r3_y = -c_2_up*end_p2_up_r0_z - end_p2_up_r1_y*s_2_up
-        # (up-V7) direction 3 of the moment that the platform joint transmits
-        end_p3_up_r0_x = (
-        n_m1_up_t*up_platform_joint_rotation_xx + n_m1_up_t_2*up_platform_joint_rotation_xy +
-            n_m1_up_t_3*up_platform_joint_rotation_xz
+        tube_n_m1_t_5 = (
+        R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy + R_zy*tube_base_frame_zy
         )
-        end_p3_up_r0_y = (
-        n_m1_up_t_4*up_platform_joint_rotation_xx + n_m1_up_t_5*up_platform_joint_rotation_xy +
-            n_m1_up_t_6*up_platform_joint_rotation_xz
+        tube_n_m1_t_6 = (
+        R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy + R_zz*tube_base_frame_zy
         )
-        end_p3_up_r0_z = (
-        n_m1_up_t_7*up_platform_joint_rotation_xx + n_m1_up_t_8*up_platform_joint_rotation_xy +
-            n_m1_up_t_9*up_platform_joint_rotation_xz
+        tube_n_m1_t_7 = (
+        R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz + R_zx*tube_base_frame_zz
         )
-        end_p3_up_r1_x = end_p3_up_r0_y*s_1_up - c_1_up*end_p3_up_r0_x
-        end_p3_up_r1_y = -c_1_up*end_p3_up_r0_y - end_p3_up_r0_x*s_1_up
-        end_p3_up_r3_x = end_p3_up_r0_z*s_2_up - c_2_up*end_p3_up_r1_y
-        end_p3_up_r3_y = -c_2_up*end_p3_up_r0_z - end_p3_up_r1_y*s_2_up
-        # (up-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_up_t_10 = c_2_up*end_p1_up_r1_x
-        # (up-V6) direction 2 of the moment that the platform joint transmits
-        n_m2_up_r0_y = -c_2_up*end_p2_up_r3_x - end_p2_up_r3_y*s_2_up
-        # (up-V7) direction 3 of the moment that the platform joint transmits
-        n_m3_up_t = end_p3_up_r1_x*s_2_up
-        # (up-V8) force part of the wrench that does no work along the leg's freedoms, 1
-        f_c1_up_t_3 = end_p1_up_r3_y*n_m3_up_t + end_p3_up_r3_x*n_m1_up_t_10
-        inv_f_c1_up_t_26 = 1.0/f_c1_up_t_3
-        # (up-V16) force part of the wrench that does no work along the leg's freedoms, 3
-        f_c3_up_t = end_p3_up_r3_x*inv_f_c1_up_t_26*n_m2_up_r0_y
-        f_c3_up_t_2 = end_p1_up_r3_y*inv_f_c1_up_t_26*n_m2_up_r0_y
-        # (up-V32) size of the moment
-        size_c3_up = sqrt(1.0 + f_c3_up_t*f_c3_up_t + f_c3_up_t_2*f_c3_up_t_2)
-        # (up-V34) moment along direction 1 that goes with it
-        inv_size_c3_up = 1.0/size_c3_up
-        # (up-V38) force part of reciprocal wrench 1
-        w_1_up_t = 1.35*n_m1_up_t_10
-        w_1_up_t_2 = 1.35*n_m2_up_r0_y
-        w_1_up_t_3 = 1.35*n_m3_up_t
-        w_1_up_t_4 = 1.35*end_p1_up_r3_y
-        w_1_up_t_5 = 1.35*end_p3_up_r3_x
-        w_1_up_t_6 = 1.35*inv_f_c1_up_t_26*n_m3_up_t*root_2_up
-        w_1_up_t_7 = 1.35*inv_f_c1_up_t_26*n_m1_up_t_10*root_2_up
-        w_1_up_t_8 = 1.35*end_p3_up_r3_x*inv_f_c1_up_t_26*root_1_up
-        w_1_up_t_9 = 1.35*end_p1_up_r3_y*inv_f_c1_up_t_26*root_1_up
-        w_1_up_t_10 = 1.35*f_c3_up_t*inv_size_c3_up
-        w_1_up_t_11 = 1.35*inv_size_c3_up
-        w_1_up_t_12 = 1.35*f_c3_up_t_2*inv_size_c3_up
-        w_1_up_t_13 = sqrt(rho2_2_up + w_1_up_t_4*w_1_up_t_4 + w_1_up_t_5*w_1_up_t_5)
-        inv_w_1_up_t_16 = 1.0/w_1_up_t_13
-        w_1_up_t_14 = inv_w_1_up_t_16*root_2_up
-        w_1_up_t_15 = inv_w_1_up_t_16*w_1_up_t_4
-        w_1_up_t_16 = inv_w_1_up_t_16*w_1_up_t_5
-        w_1_up_t_17 = w_1_up_t_15*w_1_up_t_6 + w_1_up_t_16*w_1_up_t_7 - w_1_up_t_14
-        w_1_up_t_18 = 1.0 + w_1_up_t_14*w_1_up_t_17
-        w_1_up_t_19 = w_1_up_t_15*w_1_up_t_17 - w_1_up_t_6
-        w_1_up_t_20 = w_1_up_t_16*w_1_up_t_17 - w_1_up_t_7
-        w_1_up_t_21 = w_1_up_t_15*w_1_up_t_8 - w_1_up_t_16*w_1_up_t_9
-        w_1_up_t_22 = w_1_up_t_14*w_1_up_t_21
-        w_1_up_t_23 = w_1_up_t_15*w_1_up_t_21 - w_1_up_t_8
-        w_1_up_t_24 = w_1_up_t_9 + w_1_up_t_16*w_1_up_t_21
-        w_1_up_t_25 = w_1_up_t_10*w_1_up_t_15 - w_1_up_t_12*w_1_up_t_16
-        w_1_up_t_26 = w_1_up_t_14*w_1_up_t_25
-        w_1_up_t_27 = w_1_up_t_10 - w_1_up_t_15*w_1_up_t_25
-        w_1_up_t_28 = w_1_up_t_12 + w_1_up_t_16*w_1_up_t_25
-        w_1_up_t_29 = w_1_up_t*w_1_up_t_15 - w_1_up_t_16*w_1_up_t_3
-        w_1_up_t_30 = w_1_up_t_14*w_1_up_t_29
-        w_1_up_t_31 = w_1_up_t - w_1_up_t_15*w_1_up_t_29
-        w_1_up_t_32 = w_1_up_t_3 + w_1_up_t_16*w_1_up_t_29
-        w_1_up_t_33 = (
-        sqrt(w_1_up_t_18*w_1_up_t_18 + w_1_up_t_19*w_1_up_t_19 + w_1_up_t_20*w_1_up_t_20)
+        tube_n_m1_t_8 = (
+        R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz + R_zy*tube_base_frame_zz
         )
-        inv_w_1_up_t_57 = 1.0/w_1_up_t_33
-        w_1_up_t_34 = inv_w_1_up_t_57*w_1_up_t_18
-        w_1_up_t_35 = inv_w_1_up_t_57*w_1_up_t_19
-        w_1_up_t_36 = inv_w_1_up_t_57*w_1_up_t_20
-        w_1_up_t_37 = w_1_up_t_22*w_1_up_t_34 + w_1_up_t_23*w_1_up_t_35 + w_1_up_t_24*w_1_up_t_36
-        w_1_up_t_38 = w_1_up_t_22 - w_1_up_t_34*w_1_up_t_37
-        w_1_up_t_39 = w_1_up_t_23 - w_1_up_t_35*w_1_up_t_37
-        w_1_up_t_40 = w_1_up_t_24 - w_1_up_t_36*w_1_up_t_37
-        w_1_up_t_41 = w_1_up_t_26*w_1_up_t_34 + w_1_up_t_28*w_1_up_t_36 - w_1_up_t_27*w_1_up_t_35
-        w_1_up_t_42 = w_1_up_t_26 - w_1_up_t_34*w_1_up_t_41
-        w_1_up_t_43 = w_1_up_t_27 + w_1_up_t_35*w_1_up_t_41
-        w_1_up_t_44 = w_1_up_t_28 - w_1_up_t_36*w_1_up_t_41
-        w_1_up_t_45 = w_1_up_t_30*w_1_up_t_34 + w_1_up_t_32*w_1_up_t_36 - w_1_up_t_31*w_1_up_t_35
-        w_1_up_t_46 = w_1_up_t_30 - w_1_up_t_34*w_1_up_t_45
-        w_1_up_t_47 = w_1_up_t_31 + w_1_up_t_35*w_1_up_t_45
-        w_1_up_t_48 = w_1_up_t_32 - w_1_up_t_36*w_1_up_t_45
-        w_1_up_t_49 = (
-        sqrt(1.0 + w_1_up_t_38*w_1_up_t_38 + w_1_up_t_39*w_1_up_t_39 + w_1_up_t_40*w_1_up_t_40)
+        tube_n_m1_t_9 = (
+        R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz + R_zz*tube_base_frame_zz
         )
-        inv_w_1_up_t_95 = 1.0/w_1_up_t_49
-        w_1_up_t_50 = inv_w_1_up_t_95*w_1_up_t_38
-        w_1_up_t_51 = inv_w_1_up_t_95*w_1_up_t_39
-        w_1_up_t_52 = inv_w_1_up_t_95*w_1_up_t_40
-        w_1_up_t_53 = w_1_up_t_42*w_1_up_t_50 + w_1_up_t_44*w_1_up_t_52 - w_1_up_t_43*w_1_up_t_51
-        w_1_up_t_54 = w_1_up_t_50*w_1_up_t_53 - w_1_up_t_42
-        w_1_up_t_55 = inv_w_1_up_t_95*w_1_up_t_53
-        w_1_up_t_56 = w_1_up_t_43 + w_1_up_t_51*w_1_up_t_53
-        w_1_up_t_57 = w_1_up_t_52*w_1_up_t_53 - w_1_up_t_44
-        w_1_up_t_58 = (
-        w_1_up_t_46*w_1_up_t_50 + w_1_up_t_48*w_1_up_t_52 - inv_w_1_up_t_95*root_1_up -
-            w_1_up_t_47*w_1_up_t_51
+        tube_end_p1_r0_x = (
+        tube_n_m1_t*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_yz
         )
-        w_1_up_t_59 = w_1_up_t_50*w_1_up_t_58 - w_1_up_t_46
-        w_1_up_t_60 = root_1_up + inv_w_1_up_t_95*w_1_up_t_58
-        w_1_up_t_61 = w_1_up_t_47 + w_1_up_t_51*w_1_up_t_58
-        w_1_up_t_62 = w_1_up_t_52*w_1_up_t_58 - w_1_up_t_48
-        w_1_up_t_63 = (
-        sqrt(w_1_up_t_11*w_1_up_t_11 + w_1_up_t_54*w_1_up_t_54 + w_1_up_t_55*w_1_up_t_55 +
-            w_1_up_t_56*w_1_up_t_56 + w_1_up_t_57*w_1_up_t_57)
+        tube_end_p1_r0_y = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_yz
         )
-        inv_w_1_up_t_129 = 1.0/w_1_up_t_63
-        w_1_up_t_64 = inv_w_1_up_t_129*w_1_up_t_54
-        w_1_up_t_65 = inv_w_1_up_t_129*w_1_up_t_55
-        w_1_up_t_66 = inv_w_1_up_t_129*w_1_up_t_56
-        w_1_up_t_67 = inv_w_1_up_t_129*w_1_up_t_11
-        w_1_up_t_68 = inv_w_1_up_t_129*w_1_up_t_57
-        w_1_up_t_69 = (
-        w_1_up_t_59*w_1_up_t_64 + w_1_up_t_60*w_1_up_t_65 + w_1_up_t_61*w_1_up_t_66 +
-            w_1_up_t_62*w_1_up_t_68 - w_1_up_t_2*w_1_up_t_67
+        tube_end_p1_r0_z = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_yz
         )
-        w_1_up_t_70 = w_1_up_t_59 - w_1_up_t_64*w_1_up_t_69
-        w_1_up_t_71 = w_1_up_t_60 - w_1_up_t_65*w_1_up_t_69
-        w_1_up_t_72 = w_1_up_t_61 - w_1_up_t_66*w_1_up_t_69
-        w_1_up_t_73 = w_1_up_t_2 + w_1_up_t_67*w_1_up_t_69
-        w_1_up_t_74 = w_1_up_t_62 - w_1_up_t_68*w_1_up_t_69
-        w_1_up_t_75 = (
-        sqrt(w_1_up_t_70*w_1_up_t_70 + w_1_up_t_71*w_1_up_t_71 + w_1_up_t_72*w_1_up_t_72 +
-            w_1_up_t_73*w_1_up_t_73 + w_1_up_t_74*w_1_up_t_74)
+        tube_end_p1_r1_x = tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x
+        tube_end_p1_r1_y = -tube_c_1*tube_end_p1_r0_y - tube_end_p1_r0_x*tube_s_1
+        tube_end_p1_r3_x = tube_end_p1_r0_z*tube_s_2 - tube_c_2*tube_end_p1_r1_y
+        tube_end_p1_r3_y = -tube_c_2*tube_end_p1_r0_z - tube_end_p1_r1_y*tube_s_2
+        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
+        tube_end_p2_r0_x = (
+        tube_n_m1_t*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_zz
         )
-        inv_w_1_up_t_157 = 1.0/w_1_up_t_75
-        w_1_up_t_76 = inv_w_1_up_t_157*w_1_up_t_70
-        w_1_up_t_77 = inv_w_1_up_t_157*w_1_up_t_71
-        w_1_up_t_78 = inv_w_1_up_t_157*w_1_up_t_72
-        w_1_up_t_79 = inv_w_1_up_t_157*w_1_up_t_73
-        w_1_up_t_80 = inv_w_1_up_t_157*w_1_up_t_74
-        # (up-V1) velocity of the connection point
-        S_dot_up_t = omega_y*q_up_in_base_z - omega_z*q_up_in_base_y
-        S_dot_up_t_2 = omega_z*q_up_in_base_x - omega_x*q_up_in_base_z
-        S_dot_up_t_3 = omega_x*q_up_in_base_y - omega_y*q_up_in_base_x
-        S_dot_up_x = S_dot_up_t + t_dot_x
-        S_dot_up_y = S_dot_up_t_2 + t_dot_y
-        S_dot_up_z = S_dot_up_t_3 + t_dot_z
-        # (up-V53) rate at which the joints turn along moment direction 1
-        omega_tip_x = (
-        axis_x_up_axes2_x*omega_x + axis_x_up_axes2_y*omega_y + axis_x_up_axes2_z*omega_z
+        tube_end_p2_r0_y = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_zz
         )
-        omega_tip_y = (
-        axis_y_up_axes2_in_base_x*omega_x + axis_y_up_axes2_in_base_y*omega_y +
-            axis_y_up_axes2_in_base_z*omega_z
+        tube_end_p2_r0_z = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_zz
         )
-        omega_tip_z = (
-        axis_z_up_axes2_in_base_x*omega_x + axis_z_up_axes2_in_base_y*omega_y +
-            axis_z_up_axes2_in_base_z*omega_z
+        tube_end_p2_r1_x = tube_end_p2_r0_y*tube_s_1 - tube_c_1*tube_end_p2_r0_x
+        tube_end_p2_r1_y = -tube_c_1*tube_end_p2_r0_y - tube_end_p2_r0_x*tube_s_1
+        tube_end_p2_r3_x = tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y
+        tube_end_p2_r3_y = -tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2
+        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
+        tube_end_p3_r0_x = (
+        tube_n_m1_t*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_xz
         )
-        eta_1_up = end_p1_up_r3_y*omega_tip_z - end_p1_up_r1_x*omega_tip_y
-        # (up-V54) rate at which the joints turn along moment direction 2
-        eta_2_up = end_p2_up_r3_x*omega_tip_y - end_p2_up_r3_y*omega_tip_x
-        # (up-V55) rate at which the joints turn along moment direction 3
-        eta_3_up = end_p3_up_r3_x*omega_tip_z - end_p3_up_r1_x*omega_tip_x
-        # (up-V1) velocity of the connection point
-        S_dot_up_tip_x = (
-        S_dot_up_x*axis_x_up_axes2_x + S_dot_up_y*axis_x_up_axes2_y + S_dot_up_z*axis_x_up_axes2_z
+        tube_end_p3_r0_y = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_xz
         )
-        S_dot_up_tip_y = (
-        S_dot_up_x*axis_y_up_axes2_in_base_x + S_dot_up_y*axis_y_up_axes2_in_base_y +
-            S_dot_up_z*axis_y_up_axes2_in_base_z
+        tube_end_p3_r0_z = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_xz
         )
-        S_dot_up_tip_z = (
-        S_dot_up_x*axis_z_up_axes2_in_base_x + S_dot_up_y*axis_z_up_axes2_in_base_y +
-            S_dot_up_z*axis_z_up_axes2_in_base_z
+        tube_end_p3_r1_x = tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x
+        tube_end_p3_r1_y = -tube_c_1*tube_end_p3_r0_y - tube_end_p3_r0_x*tube_s_1
+        tube_end_p3_r3_x = tube_end_p3_r0_z*tube_s_2 - tube_c_2*tube_end_p3_r1_y
+        tube_end_p3_r3_y = -tube_c_2*tube_end_p3_r0_z - tube_end_p3_r1_y*tube_s_2
+        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        tube_n_m1_t_10 = tube_c_2*tube_end_p1_r1_x
+        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
+        tube_n_m2_r0_y = -tube_c_2*tube_end_p2_r3_x - tube_end_p2_r3_y*tube_s_2
+        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
+        tube_n_m3_t = tube_end_p3_r1_x*tube_s_2
+        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        tube_f_c1_t_3 = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10
+        inv_tube_f_c1_t_26 = 1.0/tube_f_c1_t_3
+        # (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3
+        tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y
+        tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y
+        # (tube-size_c3) size of the moment
+        tube_size_c3 = sqrt(1.0 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2)
+        # (tube-mu1_c3) moment along direction 1 that goes with it
+        inv_tube_size_c3 = 1.0/tube_size_c3
+        # (tube-w_1) force part of reciprocal wrench 1
+        tube_w_1_t = 1.35*tube_n_m1_t_10
+        tube_w_1_t_2 = 1.35*tube_n_m2_r0_y
+        tube_w_1_t_3 = 1.35*tube_n_m3_t
+        tube_w_1_t_4 = 1.35*tube_end_p1_r3_y
+        tube_w_1_t_5 = 1.35*tube_end_p3_r3_x
+        tube_w_1_t_6 = 1.35*inv_tube_f_c1_t_26*tube_n_m3_t*tube_root_2
+        tube_w_1_t_7 = 1.35*inv_tube_f_c1_t_26*tube_n_m1_t_10*tube_root_2
+        tube_w_1_t_8 = 1.35*inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_root_1
+        tube_w_1_t_9 = 1.35*inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_root_1
+        tube_w_1_t_10 = 1.35*inv_tube_size_c3*tube_f_c3_t
+        tube_w_1_t_11 = 1.35*inv_tube_size_c3
+        tube_w_1_t_12 = 1.35*inv_tube_size_c3*tube_f_c3_t_2
+        tube_w_1_t_13 = sqrt(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
+        inv_tube_w_1_t_16 = 1.0/tube_w_1_t_13
+        tube_w_1_t_14 = inv_tube_w_1_t_16*tube_root_2
+        tube_w_1_t_15 = inv_tube_w_1_t_16*tube_w_1_t_4
+        tube_w_1_t_16 = inv_tube_w_1_t_16*tube_w_1_t_5
+        tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
+        tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
+        tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
+        tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7
+        tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9
+        tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21
+        tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8
+        tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21
+        tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16
+        tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25
+        tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25
+        tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25
+        tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3
+        tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29
+        tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29
+        tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29
+        tube_w_1_t_33 = (
+        sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
+            tube_w_1_t_20*tube_w_1_t_20)
         )
-        # (up-V56) rate of joint 1
-        qd_1_up_t = 1.35*eta_1_up
-        qd_1_up_t_2 = 1.35*eta_2_up
-        qd_1_up_t_3 = 1.35*eta_3_up
-        qd_1_up_t_4 = (
-        inv_w_1_up_t_157*(S_dot_up_tip_y*w_1_up_t_76 + S_dot_up_tip_z*w_1_up_t_77 +
-            qd_1_up_t*w_1_up_t_78 + qd_1_up_t_2*w_1_up_t_79 + qd_1_up_t_3*w_1_up_t_80)
+        inv_tube_w_1_t_57 = 1.0/tube_w_1_t_33
+        tube_w_1_t_34 = inv_tube_w_1_t_57*tube_w_1_t_18
+        tube_w_1_t_35 = inv_tube_w_1_t_57*tube_w_1_t_19
+        tube_w_1_t_36 = inv_tube_w_1_t_57*tube_w_1_t_20
+        tube_w_1_t_37 = (
+        tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
         )
-        qd_1_up_t_5 = (
-        inv_w_1_up_t_129*(S_dot_up_tip_y*w_1_up_t_64 + S_dot_up_tip_z*w_1_up_t_65 +
-            qd_1_up_t*w_1_up_t_66 + qd_1_up_t_3*w_1_up_t_68 - qd_1_up_t_2*w_1_up_t_67 -
-            qd_1_up_t_4*w_1_up_t_69)
+        tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37
+        tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37
+        tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37
+        tube_w_1_t_41 = (
+        tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 - tube_w_1_t_27*tube_w_1_t_35
         )
-        qd_1_up_t_6 = (
-        inv_w_1_up_t_95*(S_dot_up_tip_y*w_1_up_t_50 + S_dot_up_tip_z*inv_w_1_up_t_95 +
-            qd_1_up_t*w_1_up_t_51 + qd_1_up_t_3*w_1_up_t_52 + qd_1_up_t_4*w_1_up_t_58 +
-            qd_1_up_t_5*w_1_up_t_53)
+        tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41
+        tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41
+        tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41
+        tube_w_1_t_45 = (
+        tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 - tube_w_1_t_31*tube_w_1_t_35
         )
-        qd_1_up_t_7 = (
-        S_dot_up_tip_y*w_1_up_t_14 + qd_1_up_t*w_1_up_t_15 + qd_1_up_t_3*w_1_up_t_16 +
-            qd_1_up_t_6*w_1_up_t_21 + inv_w_1_up_t_57*w_1_up_t_17*(S_dot_up_tip_y*w_1_up_t_34 +
-            qd_1_up_t*w_1_up_t_35 + qd_1_up_t_3*w_1_up_t_36 + qd_1_up_t_4*w_1_up_t_45 +
-            qd_1_up_t_5*w_1_up_t_41 - qd_1_up_t_6*w_1_up_t_37) - qd_1_up_t_4*w_1_up_t_29 -
-            qd_1_up_t_5*w_1_up_t_25
+        tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45
+        tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45
+        tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45
+        tube_w_1_t_49 = (
+        sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
+            tube_w_1_t_40*tube_w_1_t_40)
         )
-        qd_1_up_t_8 = inv_w_1_up_t_16*qd_1_up_t_7
-        # (up-V59) angular velocity of link 1
-        omega_1_up_t = qd_1_up_t_4*s_2_up
-        omega_1_up_t_2 = c_2_up*qd_1_up_t_4
-        # (up-A8) rate of moment direction 1
-        nd_m1_up_y = (
-        end_p1_up_r3_x*omega_1_up_t_2 + end_p1_up_r3_x*omega_tip_y - end_p1_up_r3_y*omega_tip_x
+        inv_tube_w_1_t_95 = 1.0/tube_w_1_t_49
+        tube_w_1_t_50 = inv_tube_w_1_t_95*tube_w_1_t_38
+        tube_w_1_t_51 = inv_tube_w_1_t_95*tube_w_1_t_39
+        tube_w_1_t_52 = inv_tube_w_1_t_95*tube_w_1_t_40
+        tube_w_1_t_53 = (
+        tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
         )
-        nd_m1_up_z = (
-        end_p1_up_r3_x*omega_tip_z - end_p1_up_r1_x*omega_tip_x - end_p1_up_r3_x*qd_1_up_t_8
+        tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
+        tube_w_1_t_55 = inv_tube_w_1_t_95*tube_w_1_t_53
+        tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
+        tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
+        tube_w_1_t_58 = (
+        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_95*tube_root_1
+            - tube_w_1_t_47*tube_w_1_t_51
         )
-        # (up-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_up_x = omega_1_up_t_2*qd_1_up_t_8
-        zeta_2_up_y = omega_1_up_t*qd_1_up_t_8
-        # (up-A9) bias of the angular acceleration along moment direction 1
-        nu_1_up_t = omega_1_up_t - omega_tip_x
-        nu_1_up_t_2 = omega_1_up_t_2 + omega_tip_y
-        nu_1_up_t_3 = omega_tip_z - qd_1_up_t_8
-        nu_1_up_t_4 = (
-        nd_m1_up_y*nu_1_up_t_2 + nd_m1_up_z*nu_1_up_t_3 - nu_1_up_t*(end_p1_up_r1_x*qd_1_up_t_8 -
-            end_p1_up_r3_y*omega_1_up_t_2)
+        tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
+        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_95*tube_w_1_t_58
+        tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
+        tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
+        tube_w_1_t_63 = (
+        sqrt(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54 +
+            tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
+            tube_w_1_t_57*tube_w_1_t_57)
         )
-        nu_1_up = nu_1_up_t_4 - end_p1_up_r1_x*zeta_2_up_y
-        # (up-A10) rate of moment direction 2
-        nd_m2_up_x = (
-        end_p2_up_r1_x*omega_tip_x - end_p2_up_r1_x*omega_1_up_t - end_p2_up_r3_x*omega_tip_z
+        inv_tube_w_1_t_129 = 1.0/tube_w_1_t_63
+        tube_w_1_t_64 = inv_tube_w_1_t_129*tube_w_1_t_54
+        tube_w_1_t_65 = inv_tube_w_1_t_129*tube_w_1_t_55
+        tube_w_1_t_66 = inv_tube_w_1_t_129*tube_w_1_t_56
+        tube_w_1_t_67 = inv_tube_w_1_t_129*tube_w_1_t_11
+        tube_w_1_t_68 = inv_tube_w_1_t_129*tube_w_1_t_57
+        tube_w_1_t_69 = (
+        tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
+            tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
         )
-        nd_m2_up_y = (
-        end_p2_up_r1_x*omega_1_up_t_2 + end_p2_up_r1_x*omega_tip_y - end_p2_up_r3_y*omega_tip_z
+        tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69
+        tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69
+        tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69
+        tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69
+        tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69
+        tube_w_1_t_75 = (
+        sqrt(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71 +
+            tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
+            tube_w_1_t_74*tube_w_1_t_74)
         )
-        # (up-A11) bias of the angular acceleration along moment direction 2
-        nu_2_up_t = end_p2_up_r3_y*zeta_2_up_x - end_p2_up_r3_x*zeta_2_up_y
-        nu_2_up_t_2 = (
-        nd_m2_up_x*nu_1_up_t + nu_1_up_t_3*(end_p2_up_r3_y*omega_1_up_t_2 -
-            end_p2_up_r3_x*omega_1_up_t) - nd_m2_up_y*nu_1_up_t_2
+        inv_tube_w_1_t_157 = 1.0/tube_w_1_t_75
+        tube_w_1_t_76 = inv_tube_w_1_t_157*tube_w_1_t_70
+        tube_w_1_t_77 = inv_tube_w_1_t_157*tube_w_1_t_71
+        tube_w_1_t_78 = inv_tube_w_1_t_157*tube_w_1_t_72
+        tube_w_1_t_79 = inv_tube_w_1_t_157*tube_w_1_t_73
+        tube_w_1_t_80 = inv_tube_w_1_t_157*tube_w_1_t_74
+        # (tube-S_dot) velocity of the connection point
+        tube_S_dot_t = omega_y*tube_q_in_base_z - omega_z*tube_q_in_base_y
+        tube_S_dot_t_2 = omega_z*tube_q_in_base_x - omega_x*tube_q_in_base_z
+        tube_S_dot_t_3 = omega_x*tube_q_in_base_y - omega_y*tube_q_in_base_x
+        tube_S_dot_x = t_dot_x + tube_S_dot_t
+        tube_S_dot_y = t_dot_y + tube_S_dot_t_2
+        tube_S_dot_z = t_dot_z + tube_S_dot_t_3
+        # (tube-eta_1) rate at which the joints turn along moment direction 1
+        tube_omega_tip_x = (
+        axis_x_tube_axes2_x*omega_x + axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z
         )
-        nu_2_up = -nu_2_up_t - nu_2_up_t_2
-        # (up-A12) rate of moment direction 3
-        nd_m3_up_x = (
-        end_p3_up_r3_x*omega_tip_y + end_p3_up_r3_y*omega_1_up_t - end_p3_up_r3_y*omega_tip_x
+        tube_omega_tip_y = (
+        axis_y_tube_axes2_in_base_x*omega_x + axis_y_tube_axes2_in_base_y*omega_y +
+            axis_y_tube_axes2_in_base_z*omega_z
         )
-        nd_m3_up_z = (
-        end_p3_up_r1_x*omega_tip_y + end_p3_up_r3_y*qd_1_up_t_8 - end_p3_up_r3_y*omega_tip_z
+        tube_omega_tip_z = (
+        axis_z_tube_axes2_in_base_x*omega_x + axis_z_tube_axes2_in_base_y*omega_y +
+            axis_z_tube_axes2_in_base_z*omega_z
         )
-        # (up-A13) bias of the angular acceleration along moment direction 3
-        nu_3_up_t = (
-        nd_m3_up_x*nu_1_up_t + nu_1_up_t_2*(end_p3_up_r1_x*qd_1_up_t_8 +
-            end_p3_up_r3_x*omega_1_up_t) - nd_m3_up_z*nu_1_up_t_3
+        tube_eta_1 = tube_end_p1_r3_y*tube_omega_tip_z - tube_end_p1_r1_x*tube_omega_tip_y
+        # (tube-eta_2) rate at which the joints turn along moment direction 2
+        tube_eta_2 = tube_end_p2_r3_x*tube_omega_tip_y - tube_end_p2_r3_y*tube_omega_tip_x
+        # (tube-eta_3) rate at which the joints turn along moment direction 3
+        tube_eta_3 = tube_end_p3_r3_x*tube_omega_tip_z - tube_end_p3_r1_x*tube_omega_tip_x
+        # (tube-S_dot) velocity of the connection point
+        tube_S_dot_tip_x = (
+        axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
+            axis_x_tube_axes2_z*tube_S_dot_z
         )
-        nu_3_up = -nu_3_up_t - end_p3_up_r1_x*zeta_2_up_x
-        # (up-A5) acceleration of the connection point at zero joint accelerations
-        bias_up_t = 2.0*S_dot_up_tip_x
-        bias_up_y = bias_up_t*qd_1_up_t_8 - omega_1_up_t*omega_1_up_t_2*root_2_up
-        bias_up_z = bias_up_t*omega_1_up_t_2 + 2.0*root_2_up*zeta_2_up_y
-        # (up-A14) acceleration with which the joints turn along moment direction 1
-        alpha_tip_x = (
-        alpha_x*axis_x_up_axes2_x + alpha_y*axis_x_up_axes2_y + alpha_z*axis_x_up_axes2_z
+        tube_S_dot_tip_y = (
+        axis_y_tube_axes2_in_base_x*tube_S_dot_x + axis_y_tube_axes2_in_base_y*tube_S_dot_y +
+            axis_y_tube_axes2_in_base_z*tube_S_dot_z
         )
-        alpha_tip_y = (
-        alpha_x*axis_y_up_axes2_in_base_x + alpha_y*axis_y_up_axes2_in_base_y +
-            alpha_z*axis_y_up_axes2_in_base_z
+        tube_S_dot_tip_z = (
+        axis_z_tube_axes2_in_base_x*tube_S_dot_x + axis_z_tube_axes2_in_base_y*tube_S_dot_y +
+            axis_z_tube_axes2_in_base_z*tube_S_dot_z
         )
-        alpha_tip_z = (
-        alpha_x*axis_z_up_axes2_in_base_x + alpha_y*axis_z_up_axes2_in_base_y +
-            alpha_z*axis_z_up_axes2_in_base_z
+        # (tube-qd_3) rate of joint 3
+        tube_qd_3_t = 1.35*tube_eta_1
+        tube_qd_3_t_2 = 1.35*tube_eta_2
+        tube_qd_3_t_3 = 1.35*tube_eta_3
+        tube_qd_3_t_4 = (
+        inv_tube_w_1_t_157*(tube_S_dot_tip_y*tube_w_1_t_76 + tube_S_dot_tip_z*tube_w_1_t_77 +
+            tube_qd_3_t*tube_w_1_t_78 + tube_qd_3_t_2*tube_w_1_t_79 + tube_qd_3_t_3*tube_w_1_t_80)
         )
-        etad_1_up_t = alpha_tip_y*end_p1_up_r1_x - alpha_tip_z*end_p1_up_r3_y
-        etad_1_up = nu_1_up - etad_1_up_t
-        # (up-A15) acceleration with which the joints turn along moment direction 2
-        etad_2_up_t = alpha_tip_x*end_p2_up_r3_y - alpha_tip_y*end_p2_up_r3_x
-        etad_2_up = nu_2_up - etad_2_up_t
-        # (up-A16) acceleration with which the joints turn along moment direction 3
-        etad_3_up_t = alpha_tip_x*end_p3_up_r1_x - alpha_tip_z*end_p3_up_r3_x
-        etad_3_up = nu_3_up - etad_3_up_t
-        # (up-A2) acceleration of the connection point without its centripetal part
-        a_p_up_x = t_ddot_x + alpha_y*q_up_in_base_z - alpha_z*q_up_in_base_y
-        a_p_up_y = t_ddot_y + alpha_z*q_up_in_base_x - alpha_x*q_up_in_base_z
-        a_p_up_z = t_ddot_z + alpha_x*q_up_in_base_y - alpha_y*q_up_in_base_x
-        # (up-A3) acceleration of the connection point
-        S_ddot_up_x = a_p_up_x + S_dot_up_t_3*omega_y - S_dot_up_t_2*omega_z
-        S_ddot_up_y = a_p_up_y + S_dot_up_t*omega_z - S_dot_up_t_3*omega_x
-        S_ddot_up_z = a_p_up_z + S_dot_up_t_2*omega_x - S_dot_up_t*omega_y
-        # (up-A6) acceleration of the connection point left to the joint accelerations
-        rel_up_x = (
-        S_ddot_up_x*axis_x_up_axes2_x + S_ddot_up_y*axis_x_up_axes2_y +
-            S_ddot_up_z*axis_x_up_axes2_z + root_2_up*(omega_1_up_t_2*omega_1_up_t_2 +
-            qd_1_up_t_8*qd_1_up_t_8)
+        tube_qd_3_t_5 = (
+        inv_tube_w_1_t_129*(tube_S_dot_tip_y*tube_w_1_t_64 + tube_S_dot_tip_z*tube_w_1_t_65 +
+            tube_qd_3_t*tube_w_1_t_66 + tube_qd_3_t_3*tube_w_1_t_68 - tube_qd_3_t_2*tube_w_1_t_67
+            - tube_qd_3_t_4*tube_w_1_t_69)
         )
-        rel_up_y = (
-        S_ddot_up_x*axis_y_up_axes2_in_base_x + S_ddot_up_y*axis_y_up_axes2_in_base_y +
-            S_ddot_up_z*axis_y_up_axes2_in_base_z - bias_up_y
+        tube_qd_3_t_6 = (
+        inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_S_dot_tip_z + tube_S_dot_tip_y*tube_w_1_t_50 +
+            tube_qd_3_t*tube_w_1_t_51 + tube_qd_3_t_3*tube_w_1_t_52 + tube_qd_3_t_4*tube_w_1_t_58
+            + tube_qd_3_t_5*tube_w_1_t_53)
         )
-        rel_up_z = (
-        S_ddot_up_x*axis_z_up_axes2_in_base_x + S_ddot_up_y*axis_z_up_axes2_in_base_y +
-            S_ddot_up_z*axis_z_up_axes2_in_base_z - bias_up_z
+        tube_qd_3_t_7 = (
+        tube_S_dot_tip_y*tube_w_1_t_14 + tube_qd_3_t*tube_w_1_t_15 + tube_qd_3_t_3*tube_w_1_t_16 +
+            tube_qd_3_t_6*tube_w_1_t_21 +
+            inv_tube_w_1_t_57*tube_w_1_t_17*(tube_S_dot_tip_y*tube_w_1_t_34 +
+            tube_qd_3_t*tube_w_1_t_35 + tube_qd_3_t_3*tube_w_1_t_36 + tube_qd_3_t_4*tube_w_1_t_45
+            + tube_qd_3_t_5*tube_w_1_t_41 - tube_qd_3_t_6*tube_w_1_t_37) -
+            tube_qd_3_t_4*tube_w_1_t_29 - tube_qd_3_t_5*tube_w_1_t_25
         )
-        # (up-A17) acceleration of joint 1
-        qdd_1_up_t = 1.35*etad_1_up
-        qdd_1_up_t_2 = 1.35*etad_2_up
-        qdd_1_up_t_3 = 1.35*etad_3_up
-        qdd_1_up_t_4 = (
-        inv_w_1_up_t_157*(qdd_1_up_t*w_1_up_t_78 + qdd_1_up_t_2*w_1_up_t_79 +
-            qdd_1_up_t_3*w_1_up_t_80 + rel_up_y*w_1_up_t_76 + rel_up_z*w_1_up_t_77)
+        tube_qd_3_t_8 = inv_tube_w_1_t_16*tube_qd_3_t_7
+        # (tube-omega_1) angular velocity of link 1
+        tube_omega_1_t = tube_qd_3_t_4*tube_s_2
+        tube_omega_1_t_2 = tube_c_2*tube_qd_3_t_4
+        # (tube-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        tube_zeta_2_x = tube_omega_1_t_2*tube_qd_3_t_8
+        tube_zeta_2_y = tube_omega_1_t*tube_qd_3_t_8
+        # (tube-bias) acceleration of the connection point at zero joint accelerations
+        tube_bias_t = 2.0*tube_S_dot_tip_x
+        tube_bias_y = tube_bias_t*tube_qd_3_t_8 - tube_omega_1_t*tube_omega_1_t_2*tube_root_2
+        tube_bias_z = tube_bias_t*tube_omega_1_t_2 + 2.0*tube_root_2*tube_zeta_2_y
+        # (tube-nd_m1) rate of moment direction 1
+        tube_nd_m1_y = (
+        tube_end_p1_r3_x*tube_omega_1_t_2 + tube_end_p1_r3_x*tube_omega_tip_y -
+            tube_end_p1_r3_y*tube_omega_tip_x
         )
-        qdd_1_up_t_5 = (
-        inv_w_1_up_t_129*(qdd_1_up_t*w_1_up_t_66 + qdd_1_up_t_3*w_1_up_t_68 + rel_up_y*w_1_up_t_64
-            + rel_up_z*w_1_up_t_65 - qdd_1_up_t_2*w_1_up_t_67 - qdd_1_up_t_4*w_1_up_t_69)
+        tube_nd_m1_z = (
+        tube_end_p1_r3_x*tube_omega_tip_z - tube_end_p1_r1_x*tube_omega_tip_x -
+            tube_end_p1_r3_x*tube_qd_3_t_8
         )
-        qdd_1_up_t_6 = (
-        inv_w_1_up_t_95*(inv_w_1_up_t_95*rel_up_z + qdd_1_up_t*w_1_up_t_51 +
-            qdd_1_up_t_3*w_1_up_t_52 + qdd_1_up_t_4*w_1_up_t_58 + qdd_1_up_t_5*w_1_up_t_53 +
-            rel_up_y*w_1_up_t_50)
+        # (tube-nu_1) bias of the angular acceleration along moment direction 1
+        tube_nu_1_t = tube_omega_1_t - tube_omega_tip_x
+        tube_nu_1_t_2 = tube_omega_1_t_2 + tube_omega_tip_y
+        tube_nu_1_t_3 = tube_omega_tip_z - tube_qd_3_t_8
+        tube_nu_1_t_4 = (
+        tube_nd_m1_y*tube_nu_1_t_2 + tube_nd_m1_z*tube_nu_1_t_3 -
+            tube_nu_1_t*(tube_end_p1_r1_x*tube_qd_3_t_8 - tube_end_p1_r3_y*tube_omega_1_t_2)
         )
-        qdd_1_up_t_7 = (
-        qdd_1_up_t*w_1_up_t_15 + qdd_1_up_t_3*w_1_up_t_16 + qdd_1_up_t_6*w_1_up_t_21 +
-            rel_up_y*w_1_up_t_14 + inv_w_1_up_t_57*w_1_up_t_17*(qdd_1_up_t*w_1_up_t_35 +
-            qdd_1_up_t_3*w_1_up_t_36 + qdd_1_up_t_4*w_1_up_t_45 + qdd_1_up_t_5*w_1_up_t_41 +
-            rel_up_y*w_1_up_t_34 - qdd_1_up_t_6*w_1_up_t_37) - qdd_1_up_t_4*w_1_up_t_29 -
-            qdd_1_up_t_5*w_1_up_t_25
+        tube_nu_1 = tube_nu_1_t_4 - tube_end_p1_r1_x*tube_zeta_2_y
+        # (tube-nd_m2) rate of moment direction 2
+        tube_nd_m2_x = (
+        tube_end_p2_r1_x*tube_omega_tip_x - tube_end_p2_r1_x*tube_omega_1_t -
+            tube_end_p2_r3_x*tube_omega_tip_z
         )
-        qdd_1_up_t_8 = inv_w_1_up_t_16*qdd_1_up_t_7
+        tube_nd_m2_y = (
+        tube_end_p2_r1_x*tube_omega_1_t_2 + tube_end_p2_r1_x*tube_omega_tip_y -
+            tube_end_p2_r3_y*tube_omega_tip_z
+        )
+        # (tube-nu_2) bias of the angular acceleration along moment direction 2
+        tube_nu_2_t = tube_end_p2_r3_y*tube_zeta_2_x - tube_end_p2_r3_x*tube_zeta_2_y
+        tube_nu_2_t_2 = (
+        tube_nd_m2_x*tube_nu_1_t + tube_nu_1_t_3*(tube_end_p2_r3_y*tube_omega_1_t_2 -
+            tube_end_p2_r3_x*tube_omega_1_t) - tube_nd_m2_y*tube_nu_1_t_2
+        )
+        tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2
+        # (tube-nd_m3) rate of moment direction 3
+        tube_nd_m3_x = (
+        tube_end_p3_r3_x*tube_omega_tip_y + tube_end_p3_r3_y*tube_omega_1_t -
+            tube_end_p3_r3_y*tube_omega_tip_x
+        )
+        tube_nd_m3_z = (
+        tube_end_p3_r1_x*tube_omega_tip_y + tube_end_p3_r3_y*tube_qd_3_t_8 -
+            tube_end_p3_r3_y*tube_omega_tip_z
+        )
+        # (tube-nu_3) bias of the angular acceleration along moment direction 3
+        tube_nu_3_t = (
+        tube_nd_m3_x*tube_nu_1_t + tube_nu_1_t_2*(tube_end_p3_r1_x*tube_qd_3_t_8 +
+            tube_end_p3_r3_x*tube_omega_1_t) - tube_nd_m3_z*tube_nu_1_t_3
+        )
+        tube_nu_3 = -tube_nu_3_t - tube_end_p3_r1_x*tube_zeta_2_x
+        # (tube-a_p) acceleration of the connection point without its centripetal part
+        tube_a_p_x = t_ddot_x + alpha_y*tube_q_in_base_z - alpha_z*tube_q_in_base_y
+        tube_a_p_y = t_ddot_y + alpha_z*tube_q_in_base_x - alpha_x*tube_q_in_base_z
+        tube_a_p_z = t_ddot_z + alpha_x*tube_q_in_base_y - alpha_y*tube_q_in_base_x
+        # (tube-S_ddot) acceleration of the connection point
+        tube_S_ddot_x = tube_a_p_x + omega_y*tube_S_dot_t_3 - omega_z*tube_S_dot_t_2
+        tube_S_ddot_y = tube_a_p_y + omega_z*tube_S_dot_t - omega_x*tube_S_dot_t_3
+        tube_S_ddot_z = tube_a_p_z + omega_x*tube_S_dot_t_2 - omega_y*tube_S_dot_t
+        # (tube-rel) acceleration of the connection point left to the joint accelerations
+        tube_rel_x = (
+        axis_x_tube_axes2_x*tube_S_ddot_x + axis_x_tube_axes2_y*tube_S_ddot_y +
+            axis_x_tube_axes2_z*tube_S_ddot_z + tube_root_2*(tube_omega_1_t_2*tube_omega_1_t_2 +
+            tube_qd_3_t_8*tube_qd_3_t_8)
+        )
+        tube_rel_y = (
+        axis_y_tube_axes2_in_base_x*tube_S_ddot_x + axis_y_tube_axes2_in_base_y*tube_S_ddot_y +
+            axis_y_tube_axes2_in_base_z*tube_S_ddot_z - tube_bias_y
+        )
+        tube_rel_z = (
+        axis_z_tube_axes2_in_base_x*tube_S_ddot_x + axis_z_tube_axes2_in_base_y*tube_S_ddot_y +
+            axis_z_tube_axes2_in_base_z*tube_S_ddot_z - tube_bias_z
+        )
+        # (tube-etad_1) acceleration with which the joints turn along moment direction 1
+        tube_alpha_tip_x = (
+        alpha_x*axis_x_tube_axes2_x + alpha_y*axis_x_tube_axes2_y + alpha_z*axis_x_tube_axes2_z
+        )
+        tube_alpha_tip_y = (
+        alpha_x*axis_y_tube_axes2_in_base_x + alpha_y*axis_y_tube_axes2_in_base_y +
+            alpha_z*axis_y_tube_axes2_in_base_z
+        )
+        tube_alpha_tip_z = (
+        alpha_x*axis_z_tube_axes2_in_base_x + alpha_y*axis_z_tube_axes2_in_base_y +
+            alpha_z*axis_z_tube_axes2_in_base_z
+        )
+        tube_etad_1_t = tube_alpha_tip_y*tube_end_p1_r1_x - tube_alpha_tip_z*tube_end_p1_r3_y
+        tube_etad_1 = tube_nu_1 - tube_etad_1_t
+        # (tube-etad_2) acceleration with which the joints turn along moment direction 2
+        tube_etad_2_t = tube_alpha_tip_x*tube_end_p2_r3_y - tube_alpha_tip_y*tube_end_p2_r3_x
+        tube_etad_2 = tube_nu_2 - tube_etad_2_t
+        # (tube-etad_3) acceleration with which the joints turn along moment direction 3
+        tube_etad_3_t = tube_alpha_tip_x*tube_end_p3_r1_x - tube_alpha_tip_z*tube_end_p3_r3_x
+        tube_etad_3 = tube_nu_3 - tube_etad_3_t
+        # (tube-qdd_1) acceleration of joint 1
+        tube_qdd_1_t = 1.35*tube_etad_1
+        tube_qdd_1_t_2 = 1.35*tube_etad_2
+        tube_qdd_1_t_3 = 1.35*tube_etad_3
+        tube_qdd_1_t_4 = (
+        inv_tube_w_1_t_157*(tube_qdd_1_t*tube_w_1_t_78 + tube_qdd_1_t_2*tube_w_1_t_79 +
+            tube_qdd_1_t_3*tube_w_1_t_80 + tube_rel_y*tube_w_1_t_76 + tube_rel_z*tube_w_1_t_77)
+        )
+        tube_qdd_1_t_5 = (
+        inv_tube_w_1_t_129*(tube_qdd_1_t*tube_w_1_t_66 + tube_qdd_1_t_3*tube_w_1_t_68 +
+            tube_rel_y*tube_w_1_t_64 + tube_rel_z*tube_w_1_t_65 - tube_qdd_1_t_2*tube_w_1_t_67 -
+            tube_qdd_1_t_4*tube_w_1_t_69)
+        )
+        tube_qdd_1_t_6 = (
+        inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_rel_z + tube_qdd_1_t*tube_w_1_t_51 +
+            tube_qdd_1_t_3*tube_w_1_t_52 + tube_qdd_1_t_4*tube_w_1_t_58 +
+            tube_qdd_1_t_5*tube_w_1_t_53 + tube_rel_y*tube_w_1_t_50)
+        )
+        tube_qdd_1_t_7 = (
+        tube_qdd_1_t*tube_w_1_t_15 + tube_qdd_1_t_3*tube_w_1_t_16 + tube_qdd_1_t_6*tube_w_1_t_21 +
+            tube_rel_y*tube_w_1_t_14 + inv_tube_w_1_t_57*tube_w_1_t_17*(tube_qdd_1_t*tube_w_1_t_35
+            + tube_qdd_1_t_3*tube_w_1_t_36 + tube_qdd_1_t_4*tube_w_1_t_45 +
+            tube_qdd_1_t_5*tube_w_1_t_41 + tube_rel_y*tube_w_1_t_34 -
+            tube_qdd_1_t_6*tube_w_1_t_37) - tube_qdd_1_t_4*tube_w_1_t_29 -
+            tube_qdd_1_t_5*tube_w_1_t_25
+        )
+        tube_qdd_1_t_8 = inv_tube_w_1_t_16*tube_qdd_1_t_7
         ok = (
-        ok & m.every(leg, (abs(rho2_1_up) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(rho2_2_up) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(f_c1_up_t_3) >
-            _TOLERANCE * 1.0) & (abs(size_c3_up) > _TOLERANCE * 1.0) & (abs(w_1_up_t_13) >
-            _TOLERANCE * 1.35) & (abs(w_1_up_t_33) > _TOLERANCE * 1.0) & (abs(w_1_up_t_49) >
-            _TOLERANCE * 1.0) & (abs(w_1_up_t_63) > _TOLERANCE * 1.35) & (abs(w_1_up_t_75) >
-            _TOLERANCE * 1.35))
+        ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_f_c1_t_3) > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) &
+            (abs(tube_w_1_t_13) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) &
+            (abs(tube_w_1_t_49) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) &
+            (abs(tube_w_1_t_75) > _TOLERANCE * 1.35))
         )
-        out_qdd[_qdd_up[0][leg]] = qdd_1_up_t_4
-        out_qdd[_qdd_up[1][leg]] = qdd_1_up_t_8
-        out_qdd[_qdd_up[2][leg]] = rel_up_x
+        out_qdd[_qdd_tube[0][leg]] = tube_qdd_1_t_4
+        out_qdd[_qdd_tube[1][leg]] = tube_qdd_1_t_8
+        out_qdd[_qdd_tube[2][leg]] = tube_rel_x
     return ok, (out_qdd,)
 
 
@@ -8264,150 +8908,182 @@ def _run_constraints(m, X):
     out_constraints = m.zeros("constraints")
     for leg, k in legs[0]:
         (
-        branch_1_up, branch_2_up, up_base_frame_xx, up_base_frame_xy, up_base_frame_xz,
-            up_base_frame_yx, up_base_frame_yy, up_base_frame_yz, up_base_frame_zx,
-            up_base_frame_zy, up_base_frame_zz, up_base_point_x, up_base_point_y, up_base_point_z,
-            up_platform_joint_rotation_xx, up_platform_joint_rotation_xy,
-            up_platform_joint_rotation_xz, up_platform_joint_rotation_yx,
-            up_platform_joint_rotation_yy, up_platform_joint_rotation_yz,
-            up_platform_joint_rotation_zx, up_platform_joint_rotation_zy,
-            up_platform_joint_rotation_zz, up_platform_point_x, up_platform_point_y,
-            up_platform_point_z,
+        tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz, tube_base_frame_yx,
+            tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx, tube_base_frame_zy,
+            tube_base_frame_zz, tube_base_point_x, tube_base_point_y, tube_base_point_z,
+            tube_branch_1, tube_branch_2, tube_platform_joint_rotation_xx,
+            tube_platform_joint_rotation_xy, tube_platform_joint_rotation_xz,
+            tube_platform_joint_rotation_yx, tube_platform_joint_rotation_yy,
+            tube_platform_joint_rotation_yz, tube_platform_joint_rotation_zx,
+            tube_platform_joint_rotation_zy, tube_platform_joint_rotation_zz,
+            tube_platform_point_x, tube_platform_point_y, tube_platform_point_z,
         ) = k
-        # (up-K1) from the base point to the connection point
-        S_up_x = (
-        t_x + R_xx*up_platform_point_x + R_xy*up_platform_point_y + R_xz*up_platform_point_z -
-            up_base_point_x
+        # (tube-S) from the base point to the connection point
+        tube_S_x = (
+        t_x + R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
+            - tube_base_point_x
         )
-        S_up_y = (
-        t_y + R_yx*up_platform_point_x + R_yy*up_platform_point_y + R_yz*up_platform_point_z -
-            up_base_point_y
+        tube_S_y = (
+        t_y + R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
+            - tube_base_point_y
         )
-        S_up_z = (
-        t_z + R_zx*up_platform_point_x + R_zy*up_platform_point_y + R_zz*up_platform_point_z -
-            up_base_point_z
+        tube_S_z = (
+        t_z + R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
+            - tube_base_point_z
         )
-        # (up-K2) component along the reference direction
-        px_1_up = S_up_x*up_base_frame_xx + S_up_y*up_base_frame_yx + S_up_z*up_base_frame_zx
-        # (up-K3) component across the reference direction
-        py_1_up = S_up_x*up_base_frame_xy + S_up_y*up_base_frame_yy + S_up_z*up_base_frame_zy
-        # (up-K4) squared amplitude
-        rho2_1_up = px_1_up*px_1_up + py_1_up*py_1_up
-        # (up-K5) amplitude, with the sign of the branch
-        root_1_up = branch_1_up*sqrt(rho2_1_up)
-        # (up-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_up_t = S_up_x*up_base_frame_xz + S_up_y*up_base_frame_yz + S_up_z*up_base_frame_zz
-        # (up-K13) squared amplitude
-        rho2_2_up = rho2_1_up + xi_1_up_t*xi_1_up_t
-        # (up-K14) amplitude, with the sign of the branch
-        root_2_up = branch_2_up*sqrt(rho2_2_up)
-        # (up-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2_up = 1.0/root_2_up
-        c_2_up = inv_root_2_up*root_1_up
-        # (up-K16) sine of the angle of joint 2 from its reference direction
-        s_2_up = inv_root_2_up*xi_1_up_t
-        # (up-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_up = 1.0/root_1_up
-        c_1_up = inv_root_1_up*py_1_up
-        # (up-K7) sine of the angle of joint 1 from its reference direction
-        s_1_up = inv_root_1_up*px_1_up
-        # (up-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_up_t = R_xx*up_base_frame_xx + R_yx*up_base_frame_yx + R_zx*up_base_frame_zx
-        n_m1_up_t_2 = R_xy*up_base_frame_xx + R_yy*up_base_frame_yx + R_zy*up_base_frame_zx
-        n_m1_up_t_3 = R_xz*up_base_frame_xx + R_yz*up_base_frame_yx + R_zz*up_base_frame_zx
-        n_m1_up_t_4 = R_xx*up_base_frame_xy + R_yx*up_base_frame_yy + R_zx*up_base_frame_zy
-        n_m1_up_t_5 = R_xy*up_base_frame_xy + R_yy*up_base_frame_yy + R_zy*up_base_frame_zy
-        n_m1_up_t_6 = R_xz*up_base_frame_xy + R_yz*up_base_frame_yy + R_zz*up_base_frame_zy
-        n_m1_up_t_7 = R_xx*up_base_frame_xz + R_yx*up_base_frame_yz + R_zx*up_base_frame_zz
-        n_m1_up_t_8 = R_xy*up_base_frame_xz + R_yy*up_base_frame_yz + R_zy*up_base_frame_zz
-        n_m1_up_t_9 = R_xz*up_base_frame_xz + R_yz*up_base_frame_yz + R_zz*up_base_frame_zz
-        end_p1_up_r0_x = (
-        n_m1_up_t*up_platform_joint_rotation_yx + n_m1_up_t_2*up_platform_joint_rotation_yy +
-            n_m1_up_t_3*up_platform_joint_rotation_yz
+        # (tube-px_1) component along the reference direction
+        tube_px_1 = (
+        tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
         )
-        end_p1_up_r0_y = (
-        n_m1_up_t_4*up_platform_joint_rotation_yx + n_m1_up_t_5*up_platform_joint_rotation_yy +
-            n_m1_up_t_6*up_platform_joint_rotation_yz
+        # (tube-py_1) component across the reference direction
+        tube_py_1 = (
+        tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
         )
-        end_p1_up_r0_z = (
-        n_m1_up_t_7*up_platform_joint_rotation_yx + n_m1_up_t_8*up_platform_joint_rotation_yy +
-            n_m1_up_t_9*up_platform_joint_rotation_yz
+        # (tube-rho2_1) squared amplitude
+        tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
+        # (tube-root_1) amplitude, with the sign of the branch
+        tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
+        # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        tube_xi_1_t = (
+        tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
-        end_p1_up_r1_y = -c_1_up*end_p1_up_r0_y - end_p1_up_r0_x*s_1_up
-        end_p1_up_r3_x = end_p1_up_r0_z*s_2_up - c_2_up*end_p1_up_r1_y
-        end_p1_up_r3_y = -c_2_up*end_p1_up_r0_z - end_p1_up_r1_y*s_2_up
-        # (up-V6) direction 2 of the moment that the platform joint transmits
-        end_p2_up_r0_x = (
-        n_m1_up_t*up_platform_joint_rotation_zx + n_m1_up_t_2*up_platform_joint_rotation_zy +
-            n_m1_up_t_3*up_platform_joint_rotation_zz
+        # (tube-rho2_2) squared amplitude
+        tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t
+        # (tube-root_2) amplitude, with the sign of the branch
+        tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
+        # (tube-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_tube_root_2 = 1.0/tube_root_2
+        tube_c_2 = inv_tube_root_2*tube_root_1
+        # (tube-s_2) sine of the angle of joint 2 from its reference direction
+        tube_s_2 = inv_tube_root_2*tube_xi_1_t
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = inv_tube_root_1*tube_py_1
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_px_1
+        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
+        tube_n_m1_t_2 = (
+        R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx + R_zy*tube_base_frame_zx
         )
-        end_p2_up_r0_y = (
-        n_m1_up_t_4*up_platform_joint_rotation_zx + n_m1_up_t_5*up_platform_joint_rotation_zy +
-            n_m1_up_t_6*up_platform_joint_rotation_zz
+        tube_n_m1_t_3 = (
+        R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx + R_zz*tube_base_frame_zx
         )
-        end_p2_up_r0_z = (
-        n_m1_up_t_7*up_platform_joint_rotation_zx + n_m1_up_t_8*up_platform_joint_rotation_zy +
-            n_m1_up_t_9*up_platform_joint_rotation_zz
+        tube_n_m1_t_4 = (
+        R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy + R_zx*tube_base_frame_zy
         )
-        end_p2_up_r1_y = -c_1_up*end_p2_up_r0_y - end_p2_up_r0_x*s_1_up
-        # (up-V7) direction 3 of the moment that the platform joint transmits
-        end_p3_up_r0_x = (
-        n_m1_up_t*up_platform_joint_rotation_xx + n_m1_up_t_2*up_platform_joint_rotation_xy +
-            n_m1_up_t_3*up_platform_joint_rotation_xz
+        tube_n_m1_t_5 = (
+        R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy + R_zy*tube_base_frame_zy
         )
-        end_p3_up_r0_y = (
-        n_m1_up_t_4*up_platform_joint_rotation_xx + n_m1_up_t_5*up_platform_joint_rotation_xy +
-            n_m1_up_t_6*up_platform_joint_rotation_xz
+        tube_n_m1_t_6 = (
+        R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy + R_zz*tube_base_frame_zy
         )
-        end_p3_up_r0_z = (
-        n_m1_up_t_7*up_platform_joint_rotation_xx + n_m1_up_t_8*up_platform_joint_rotation_xy +
-            n_m1_up_t_9*up_platform_joint_rotation_xz
+        tube_n_m1_t_7 = (
+        R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz + R_zx*tube_base_frame_zz
         )
-        end_p3_up_r1_y = -c_1_up*end_p3_up_r0_y - end_p3_up_r0_x*s_1_up
-        end_p3_up_r3_x = end_p3_up_r0_z*s_2_up - c_2_up*end_p3_up_r1_y
-        end_p3_up_r3_y = -c_2_up*end_p3_up_r0_z - end_p3_up_r1_y*s_2_up
-        # (up-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_up_t_10 = c_2_up*(end_p1_up_r0_y*s_1_up - c_1_up*end_p1_up_r0_x)
-        # (up-V6) direction 2 of the moment that the platform joint transmits
-        n_m2_up_r0_y = (
-        -c_2_up*(end_p2_up_r0_z*s_2_up - c_2_up*end_p2_up_r1_y) - s_2_up*(-c_2_up*end_p2_up_r0_z -
-            end_p2_up_r1_y*s_2_up)
+        tube_n_m1_t_8 = (
+        R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz + R_zy*tube_base_frame_zz
         )
-        # (up-V7) direction 3 of the moment that the platform joint transmits
-        n_m3_up_t = s_2_up*(end_p3_up_r0_y*s_1_up - c_1_up*end_p3_up_r0_x)
-        # (up-V8) force part of the wrench that does no work along the leg's freedoms, 1
-        f_c1_up_t = end_p1_up_r3_y*n_m3_up_t + end_p3_up_r3_x*n_m1_up_t_10
-        inv_f_c1_up_t_26 = 1.0/f_c1_up_t
-        # (up-V16) force part of the wrench that does no work along the leg's freedoms, 3
-        f_c3_up_t = end_p3_up_r3_x*inv_f_c1_up_t_26*n_m2_up_r0_y
-        f_c3_up_t_2 = end_p1_up_r3_y*inv_f_c1_up_t_26*n_m2_up_r0_y
-        # (up-V32) size of the moment
-        size_c3_up = sqrt(1.0 + f_c3_up_t*f_c3_up_t + f_c3_up_t_2*f_c3_up_t_2)
-        # (up-V34) moment along direction 1 that goes with it
-        inv_size_c3_up = 1.0/size_c3_up
-        # (M10) distance by which the leg misses the platform, along a direction left out
-        phi_c1_up = (
-        end_p1_up_r3_x*inv_f_c1_up_t_26*n_m3_up_t*root_2_up -
-            end_p3_up_r3_y*inv_f_c1_up_t_26*n_m1_up_t_10*root_2_up
+        tube_n_m1_t_9 = (
+        R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz + R_zz*tube_base_frame_zz
         )
-        # (M13) distance by which the leg misses the platform, along a direction left out
-        phi_c2_up = (
-        end_p1_up_r3_x*end_p3_up_r3_x*inv_f_c1_up_t_26*root_1_up +
-            end_p1_up_r3_y*end_p3_up_r3_y*inv_f_c1_up_t_26*root_1_up
+        tube_end_p1_r0_x = (
+        tube_n_m1_t*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_yz
         )
-        # (M16) angle by which the leg misses the platform, about a direction left out
-        phi_c3_up = (
-        end_p1_up_r3_x*f_c3_up_t*inv_size_c3_up + end_p3_up_r3_y*f_c3_up_t_2*inv_size_c3_up -
-            inv_size_c3_up*(end_p2_up_r0_y*s_1_up - c_1_up*end_p2_up_r0_x)
+        tube_end_p1_r0_y = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_yz
+        )
+        tube_end_p1_r0_z = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_yz
+        )
+        tube_end_p1_r1_y = -tube_c_1*tube_end_p1_r0_y - tube_end_p1_r0_x*tube_s_1
+        tube_end_p1_r3_x = tube_end_p1_r0_z*tube_s_2 - tube_c_2*tube_end_p1_r1_y
+        tube_end_p1_r3_y = -tube_c_2*tube_end_p1_r0_z - tube_end_p1_r1_y*tube_s_2
+        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
+        tube_end_p2_r0_x = (
+        tube_n_m1_t*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_zz
+        )
+        tube_end_p2_r0_y = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_zz
+        )
+        tube_end_p2_r0_z = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_zz
+        )
+        tube_end_p2_r1_y = -tube_c_1*tube_end_p2_r0_y - tube_end_p2_r0_x*tube_s_1
+        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
+        tube_end_p3_r0_x = (
+        tube_n_m1_t*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_xz
+        )
+        tube_end_p3_r0_y = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_xz
+        )
+        tube_end_p3_r0_z = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_xz
+        )
+        tube_end_p3_r1_y = -tube_c_1*tube_end_p3_r0_y - tube_end_p3_r0_x*tube_s_1
+        tube_end_p3_r3_x = tube_end_p3_r0_z*tube_s_2 - tube_c_2*tube_end_p3_r1_y
+        tube_end_p3_r3_y = -tube_c_2*tube_end_p3_r0_z - tube_end_p3_r1_y*tube_s_2
+        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        tube_n_m1_t_10 = tube_c_2*(tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x)
+        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
+        tube_n_m2_r0_y = (
+        -tube_c_2*(tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y) -
+            tube_s_2*(-tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2)
+        )
+        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
+        tube_n_m3_t = tube_s_2*(tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x)
+        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        tube_f_c1_t = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10
+        inv_tube_f_c1_t_26 = 1.0/tube_f_c1_t
+        # (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3
+        tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y
+        tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y
+        # (tube-size_c3) size of the moment
+        tube_size_c3 = sqrt(1.0 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2)
+        # (tube-mu1_c3) moment along direction 1 that goes with it
+        inv_tube_size_c3 = 1.0/tube_size_c3
+        # (tube-phi_c1) distance by which the leg misses the platform, along a direction left out
+        tube_phi_c1 = (
+        inv_tube_f_c1_t_26*tube_end_p1_r3_x*tube_n_m3_t*tube_root_2 -
+            inv_tube_f_c1_t_26*tube_end_p3_r3_y*tube_n_m1_t_10*tube_root_2
+        )
+        # (tube-phi_c2) distance by which the leg misses the platform, along a direction left out
+        tube_phi_c2 = (
+        inv_tube_f_c1_t_26*tube_end_p1_r3_x*tube_end_p3_r3_x*tube_root_1 +
+            inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_end_p3_r3_y*tube_root_1
+        )
+        # (tube-phi_c3) angle by which the leg misses the platform, about a direction left out
+        tube_phi_c3 = (
+        inv_tube_size_c3*tube_end_p1_r3_x*tube_f_c3_t +
+            inv_tube_size_c3*tube_end_p3_r3_y*tube_f_c3_t_2 -
+            inv_tube_size_c3*(tube_end_p2_r0_y*tube_s_1 - tube_c_1*tube_end_p2_r0_x)
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_up) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(rho2_2_up) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(f_c1_up_t) >
-            _TOLERANCE * 1.0) & (abs(size_c3_up) > _TOLERANCE * 1.0))
+        ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t)
+            > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0))
         )
-        out_constraints[_constraints_up[0][leg]] = phi_c1_up
-        out_constraints[_constraints_up[1][leg]] = phi_c2_up
-        out_constraints[_constraints_up[2][leg]] = phi_c3_up
+        out_constraints[_constraints_tube[0][leg]] = tube_phi_c1
+        out_constraints[_constraints_tube[1][leg]] = tube_phi_c2
+        out_constraints[_constraints_tube[2][leg]] = tube_phi_c3
     return ok, (out_constraints,)
 
 
@@ -8482,847 +9158,913 @@ def _run_legs(m, X, V, A):
     out_constraint_direction = m.zeros("constraint_direction")
     for leg, k in legs[0]:
         (
-        J_group_2_ups_xy, J_group_2_ups_xz, J_group_2_ups_yz, Sigma_2_ups_xx, Sigma_2_ups_yy,
-            Sigma_2_ups_zz, branch_1_ups, branch_2_ups, g_r0_x_2, g_r0_y_2, g_r0_z_2, h_2_ups_x,
-            h_2_ups_y, h_2_ups_z, h_3_ups_x, h_3_ups_y, h_3_ups_z, ups_base_frame_xx,
-            ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
-            ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
-            ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_link3_mass,
+        ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yz, ups_Sigma_2_xx, ups_Sigma_2_yy,
+            ups_Sigma_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
+            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
+            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
+            ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y, ups_g_r0_z,
+            ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z, ups_link3_mass,
             ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
-        # (ups-K1) from the base point to the connection point
-        q_ups_in_base_x = (
+        # (ups-S) from the base point to the connection point
+        ups_q_in_base_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        q_ups_in_base_y = (
+        ups_q_in_base_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        q_ups_in_base_z = (
+        ups_q_in_base_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        S_ups_x = q_ups_in_base_x + t_x - ups_base_point_x
-        S_ups_y = q_ups_in_base_y + t_y - ups_base_point_y
-        S_ups_z = q_ups_in_base_z + t_z - ups_base_point_z
-        # (ups-K2) component along the reference direction
-        px_1_ups = (
-        S_ups_x*ups_base_frame_xx + S_ups_y*ups_base_frame_yx + S_ups_z*ups_base_frame_zx
+        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        # (ups-px_1) component along the reference direction
+        ups_px_1 = (
+        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-K3) component across the reference direction
-        py_1_ups = (
-        S_ups_x*ups_base_frame_xy + S_ups_y*ups_base_frame_yy + S_ups_z*ups_base_frame_zy
+        # (ups-py_1) component across the reference direction
+        ups_py_1 = (
+        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-K4) squared amplitude
-        rho2_1_ups = px_1_ups*px_1_ups + py_1_ups*py_1_ups
-        # (ups-K5) amplitude, with the sign of the branch
-        root_1_ups = branch_1_ups*sqrt(rho2_1_ups)
-        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_ups_t = (
-        S_ups_x*ups_base_frame_xz + S_ups_y*ups_base_frame_yz + S_ups_z*ups_base_frame_zz
+        # (ups-rho2_1) squared amplitude
+        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
+        # (ups-root_1) amplitude, with the sign of the branch
+        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ups_xi_1_t = (
+        ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-K13) squared amplitude
-        rho2_2_ups = rho2_1_ups + xi_1_ups_t*xi_1_ups_t
-        # (ups-K14) amplitude, with the sign of the branch
-        root_2_ups = branch_2_ups*sqrt(rho2_2_ups)
-        # (ups-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2_ups = 1.0/root_2_ups
-        c_2_ups = inv_root_2_ups*root_1_ups
-        # (ups-K16) sine of the angle of joint 2 from its reference direction
-        s_2_ups = inv_root_2_ups*xi_1_ups_t
-        # (ups-V5) reciprocal vector 1
-        axis_x_x = S_ups_x*inv_root_2_ups
-        axis_x_y = S_ups_y*inv_root_2_ups
-        axis_x_z = S_ups_z*inv_root_2_ups
-        # (ups-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_ups = 1.0/root_1_ups
-        c_1_ups = inv_root_1_ups*py_1_ups
-        # (ups-K7) sine of the angle of joint 1 from its reference direction
-        s_1_ups = inv_root_1_ups*px_1_ups
-        # (ups-V5) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = s_1_ups*ups_base_frame_xy - c_1_ups*ups_base_frame_xx
-        axis_z_ups_axes2_in_base_y = s_1_ups*ups_base_frame_yy - c_1_ups*ups_base_frame_yx
-        axis_z_ups_axes2_in_base_z = s_1_ups*ups_base_frame_zy - c_1_ups*ups_base_frame_zx
+        # (ups-rho2_2) squared amplitude
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        # (ups-root_2) amplitude, with the sign of the branch
+        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_root_2 = 1.0/ups_root_2
+        ups_c_2 = inv_ups_root_2*ups_root_1
+        # (ups-s_2) sine of the angle of joint 2 from its reference direction
+        ups_s_2 = inv_ups_root_2*ups_xi_1_t
+        # (ups-w_1) reciprocal vector 1
+        ups_axis_x_x = inv_ups_root_2*ups_S_x
+        ups_axis_x_y = inv_ups_root_2*ups_S_y
+        ups_axis_x_z = inv_ups_root_2*ups_S_z
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
+        # (ups-w_1) reciprocal vector 1
+        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
+        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
+        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
         axis_y_ups_axes2_x = (
-        axis_x_z*axis_z_ups_axes2_in_base_y - axis_x_y*axis_z_ups_axes2_in_base_z
+        axis_z_ups_axes2_in_base_y*ups_axis_x_z - axis_z_ups_axes2_in_base_z*ups_axis_x_y
         )
         axis_y_ups_axes2_y = (
-        axis_x_x*axis_z_ups_axes2_in_base_z - axis_x_z*axis_z_ups_axes2_in_base_x
+        axis_z_ups_axes2_in_base_z*ups_axis_x_x - axis_z_ups_axes2_in_base_x*ups_axis_x_z
         )
         axis_y_ups_axes2_z = (
-        axis_x_y*axis_z_ups_axes2_in_base_x - axis_x_x*axis_z_ups_axes2_in_base_y
+        axis_z_ups_axes2_in_base_x*ups_axis_x_y - axis_z_ups_axes2_in_base_y*ups_axis_x_x
         )
-        # (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x_2 = g_r0_y_2*s_1_ups - c_1_ups*g_r0_x_2
-        g_r1_y_2 = -c_1_ups*g_r0_y_2 - g_r0_x_2*s_1_ups
-        g_r3_x_2 = g_r0_z_2*s_2_ups - c_2_ups*g_r1_y_2
-        g_r3_y_2 = -c_2_ups*g_r0_z_2 - g_r1_y_2*s_2_ups
-        # (ups-A1) centripetal acceleration of the connection point
-        u_1_ups_t = omega_y*q_ups_in_base_z - omega_z*q_ups_in_base_y
-        u_1_ups_t_2 = omega_z*q_ups_in_base_x - omega_x*q_ups_in_base_z
-        u_1_ups_t_3 = omega_x*q_ups_in_base_y - omega_y*q_ups_in_base_x
-        # (ups-V1) velocity of the connection point
-        S_dot_ups_x = t_dot_x + u_1_ups_t
-        S_dot_ups_y = t_dot_y + u_1_ups_t_2
-        S_dot_ups_z = t_dot_z + u_1_ups_t_3
-        S_dot_ups_tip_x = S_dot_ups_x*axis_x_x + S_dot_ups_y*axis_x_y + S_dot_ups_z*axis_x_z
-        # (ups-V8) rate of joint 1
-        qd_2_ups = (
-        inv_root_2_ups*(S_dot_ups_x*axis_y_ups_axes2_x + S_dot_ups_y*axis_y_ups_axes2_y +
-            S_dot_ups_z*axis_y_ups_axes2_z)
+        # (ups-S_dot) velocity of the connection point
+        ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y
+        ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z
+        ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x
+        ups_S_dot_x = t_dot_x + ups_S_dot_t
+        ups_S_dot_y = t_dot_y + ups_S_dot_t_2
+        ups_S_dot_z = t_dot_z + ups_S_dot_t_3
+        ups_S_dot_tip_x = (
+        ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y + ups_S_dot_z*ups_axis_x_z
         )
-        qd_1_ups = (
-        inv_root_1_ups*(S_dot_ups_x*axis_z_ups_axes2_in_base_x +
-            S_dot_ups_y*axis_z_ups_axes2_in_base_y + S_dot_ups_z*axis_z_ups_axes2_in_base_z)
+        # (ups-qd_2) rate of joint 2
+        ups_qd_2 = (
+        inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
+            axis_y_ups_axes2_z*ups_S_dot_z)
         )
-        # (ups-V11) angular velocity of link 1
-        omega_1_ups_t = qd_1_ups*s_2_ups
-        omega_1_ups_t_2 = c_2_ups*qd_1_ups
-        # (ups-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_ups_x = omega_1_ups_t_2*qd_2_ups
-        zeta_2_ups_y = omega_1_ups_t*qd_2_ups
-        # (ups-V13) centripetal tensor of link 2
-        W_2_ups_t = omega_1_ups_t*omega_1_ups_t
-        W_2_ups_t_2 = omega_1_ups_t_2*omega_1_ups_t_2
-        W_2_ups_t_3 = qd_2_ups*qd_2_ups
-        W_2_ups_xy = omega_1_ups_t*omega_1_ups_t_2
-        # (ups-A5) acceleration of the connection point at zero joint accelerations
-        bias_ups_t = 2.0*S_dot_ups_tip_x
-        bias_ups_z = bias_ups_t*omega_1_ups_t_2 + 2.0*root_2_ups*zeta_2_ups_y
-        # (ups-A2) acceleration of the connection point without its centripetal part
-        a_p_ups_x = t_ddot_x + alpha_y*q_ups_in_base_z - alpha_z*q_ups_in_base_y
-        a_p_ups_y = t_ddot_y + alpha_z*q_ups_in_base_x - alpha_x*q_ups_in_base_z
-        a_p_ups_z = t_ddot_z + alpha_x*q_ups_in_base_y - alpha_y*q_ups_in_base_x
-        # (ups-A3) acceleration of the connection point
-        S_ddot_ups_x = a_p_ups_x + omega_y*u_1_ups_t_3 - omega_z*u_1_ups_t_2
-        S_ddot_ups_y = a_p_ups_y + omega_z*u_1_ups_t - omega_x*u_1_ups_t_3
-        S_ddot_ups_z = a_p_ups_z + omega_x*u_1_ups_t_2 - omega_y*u_1_ups_t
-        S_ddot_ups_t = S_ddot_ups_x*axis_y_ups_axes2_x
-        S_ddot_ups_t_2 = S_ddot_ups_y*axis_y_ups_axes2_y
-        S_ddot_ups_t_3 = S_ddot_ups_z*axis_y_ups_axes2_z
-        S_ddot_ups_tip_z = (
-        S_ddot_ups_x*axis_z_ups_axes2_in_base_x + S_ddot_ups_y*axis_z_ups_axes2_in_base_y +
-            S_ddot_ups_z*axis_z_ups_axes2_in_base_z
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
+            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z)
         )
-        # (ups-A6) acceleration of the connection point left to the joint accelerations
-        rel_ups_z = S_ddot_ups_tip_z - bias_ups_z
-        # (ups-A8) acceleration of joint 1
-        qdd_1_ups_t = (
-        inv_root_2_ups*(S_ddot_ups_t + S_ddot_ups_t_2 + S_ddot_ups_t_3 - bias_ups_t*qd_2_ups)
+        # (ups-omega_1) angular velocity of link 1
+        ups_omega_1_t = ups_qd_1*ups_s_2
+        ups_omega_1_t_2 = ups_c_2*ups_qd_1
+        # (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2
+        ups_zeta_2_y = ups_omega_1_t*ups_qd_2
+        # (ups-W_2) centripetal tensor of link 2
+        ups_W_2_t = ups_omega_1_t*ups_omega_1_t
+        ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2
+        ups_W_2_t_3 = ups_qd_2*ups_qd_2
+        ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2
+        # (ups-bias) acceleration of the connection point at zero joint accelerations
+        ups_bias_t = 2.0*ups_S_dot_tip_x
+        ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2.0*ups_root_2*ups_zeta_2_y
+        # (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x
+        ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1
+        ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y
+        ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2
+        # (ups-a_p) acceleration of the connection point without its centripetal part
+        ups_a_p_x = t_ddot_x + alpha_y*ups_q_in_base_z - alpha_z*ups_q_in_base_y
+        ups_a_p_y = t_ddot_y + alpha_z*ups_q_in_base_x - alpha_x*ups_q_in_base_z
+        ups_a_p_z = t_ddot_z + alpha_x*ups_q_in_base_y - alpha_y*ups_q_in_base_x
+        # (ups-S_ddot) acceleration of the connection point
+        ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2
+        ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3
+        ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t
+        ups_S_ddot_t = axis_y_ups_axes2_x*ups_S_ddot_x
+        ups_S_ddot_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y
+        ups_S_ddot_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z
+        ups_S_ddot_tip_z = (
+        axis_z_ups_axes2_in_base_x*ups_S_ddot_x + axis_z_ups_axes2_in_base_y*ups_S_ddot_y +
+            axis_z_ups_axes2_in_base_z*ups_S_ddot_z
         )
-        qdd_1_ups = inv_root_1_ups*rel_ups_z
-        # (ups-N3) acceleration of the reference point of link 3, less gravity
-        acc_3_ups_x = (
-        S_ddot_ups_x*axis_x_x + S_ddot_ups_y*axis_x_y + S_ddot_ups_z*axis_x_z - g_r3_x_2
+        # (ups-rel) acceleration of the connection point left to the joint accelerations
+        ups_rel_z = ups_S_ddot_tip_z - ups_bias_z
+        # (ups-qdd_1) acceleration of joint 1
+        ups_qdd_1_t = (
+        inv_ups_root_2*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_bias_t*ups_qd_2)
         )
-        acc_3_ups_y = S_ddot_ups_t + S_ddot_ups_t_2 + S_ddot_ups_t_3 - g_r3_y_2
-        acc_3_ups_z = S_ddot_ups_tip_z - g_r1_x_2
-        # (ups-A13) angular acceleration of link 1
-        alpha_1_ups_t = qdd_1_ups*s_2_ups
-        alpha_1_ups_t_2 = c_2_ups*qdd_1_ups
-        # (ups-A16) angular acceleration of link 2
-        alpha_2_ups_x = alpha_1_ups_t - zeta_2_ups_x
-        alpha_2_ups_y = -alpha_1_ups_t_2 - zeta_2_ups_y
-        # (ups-A19) acceleration tensor of link 2
-        B_2_ups_xy = -2.0*W_2_ups_xy - qdd_1_ups_t
-        B_2_ups_zx = zeta_2_ups_y - alpha_2_ups_y
-        B_2_ups_zy = alpha_2_ups_x - zeta_2_ups_x
-        # (ups-N12) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_ups_x = (
-        B_2_ups_zy*Sigma_2_ups_yy + J_group_2_ups_xz*qdd_1_ups_t + J_group_2_ups_yz*(W_2_ups_t_2 -
-            W_2_ups_t_3) + Sigma_2_ups_zz*alpha_1_ups_t + g_r1_x_2*h_2_ups_z + g_r3_y_2*h_2_ups_y
-            - B_2_ups_zx*J_group_2_ups_xy - acc_3_ups_y*h_3_ups_y - acc_3_ups_z*h_3_ups_z
+        ups_qdd_1 = inv_ups_root_1*ups_rel_z
+        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
+        ups_acc_3_x = (
+        ups_S_ddot_x*ups_axis_x_x + ups_S_ddot_y*ups_axis_x_y + ups_S_ddot_z*ups_axis_x_z -
+            ups_g_r3_x
         )
-        mu_2_ups_y = (
-        B_2_ups_zy*J_group_2_ups_xy + acc_3_ups_x*h_3_ups_y + g_r1_x_2*h_2_ups_x -
-            B_2_ups_xy*J_group_2_ups_yz - B_2_ups_zx*Sigma_2_ups_xx - J_group_2_ups_xz*(W_2_ups_t
-            - W_2_ups_t_3) - Sigma_2_ups_zz*alpha_1_ups_t_2 - acc_3_ups_z*h_3_ups_x -
-            g_r3_x_2*h_2_ups_y
+        ups_acc_3_y = ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_g_r3_y
+        ups_acc_3_z = ups_S_ddot_tip_z - ups_g_r1_x
+        # (ups-alpha_1) angular acceleration of link 1
+        ups_alpha_1_t = ups_qdd_1*ups_s_2
+        ups_alpha_1_t_2 = ups_c_2*ups_qdd_1
+        # (ups-alpha_2) angular acceleration of link 2
+        ups_alpha_2_x = ups_alpha_1_t - ups_zeta_2_x
+        ups_alpha_2_y = -ups_alpha_1_t_2 - ups_zeta_2_y
+        # (ups-B_2) acceleration tensor of link 2
+        ups_B_2_xy = -2.0*ups_W_2_xy - ups_qdd_1_t
+        ups_B_2_zx = ups_zeta_2_y - ups_alpha_2_y
+        ups_B_2_zy = ups_alpha_2_x - ups_zeta_2_x
+        # (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        ups_mu_2_x = (
+        ups_B_2_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_1_t + ups_J_group_2_yz*(ups_W_2_t_2 -
+            ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_t + ups_g_r1_x*ups_h_2_z +
+            ups_g_r3_y*ups_h_2_y - ups_B_2_zx*ups_J_group_2_xy - ups_acc_3_y*ups_h_3_y -
+            ups_acc_3_z*ups_h_3_z
         )
-        mu_2_ups_z = (
-        J_group_2_ups_xy*(W_2_ups_t - W_2_ups_t_2) + J_group_2_ups_xz*alpha_1_ups_t +
-            Sigma_2_ups_xx*qdd_1_ups_t + acc_3_ups_x*h_3_ups_z + acc_3_ups_y*h_3_ups_x -
-            B_2_ups_xy*Sigma_2_ups_yy - J_group_2_ups_yz*alpha_1_ups_t_2 - g_r3_x_2*h_2_ups_z -
-            g_r3_y_2*h_2_ups_x
+        ups_mu_2_y = (
+        ups_B_2_zy*ups_J_group_2_xy + ups_acc_3_x*ups_h_3_y + ups_g_r1_x*ups_h_2_x -
+            ups_B_2_xy*ups_J_group_2_yz - ups_B_2_zx*ups_Sigma_2_xx - ups_J_group_2_xz*(ups_W_2_t
+            - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_t_2 - ups_acc_3_z*ups_h_3_x -
+            ups_g_r3_x*ups_h_2_y
         )
-        # (ups-N24) leg force on the platform without actuation and without the mass at the connection point
-        c_ups_y = (
-        alpha_1_ups_t*h_3_ups_y - h_3_ups_x*qdd_1_ups_t - h_3_ups_z*(W_2_ups_t + W_2_ups_t_3) -
-            inv_root_2_ups*mu_2_ups_z
+        ups_mu_2_z = (
+        ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) + ups_J_group_2_xz*ups_alpha_1_t +
+            ups_Sigma_2_xx*ups_qdd_1_t + ups_acc_3_x*ups_h_3_z + ups_acc_3_y*ups_h_3_x -
+            ups_B_2_xy*ups_Sigma_2_yy - ups_J_group_2_yz*ups_alpha_1_t_2 - ups_g_r3_x*ups_h_2_z -
+            ups_g_r3_y*ups_h_2_x
         )
-        c_ups_z = (
-        B_2_ups_zy*h_3_ups_z + h_3_ups_y*(W_2_ups_t + W_2_ups_t_2) - B_2_ups_zx*h_3_ups_x -
-            inv_root_1_ups*(mu_2_ups_x*s_2_ups - c_2_ups*mu_2_ups_y)
+        # (ups-c) leg force on the platform without actuation and without the mass at the connection point
+        ups_c_y = (
+        ups_alpha_1_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_z - ups_h_3_x*ups_qdd_1_t -
+            ups_h_3_z*(ups_W_2_t + ups_W_2_t_3)
         )
-        # (ups-N29) leg force on the platform without actuation, the last link's mass included
-        c_true_ups_x = (
-        B_2_ups_xy*h_3_ups_z + alpha_1_ups_t_2*h_3_ups_y + h_3_ups_x*(W_2_ups_t_2 + W_2_ups_t_3) -
-            acc_3_ups_x*ups_link3_mass
+        ups_c_z = (
+        ups_B_2_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
+            inv_ups_root_1*(ups_mu_2_x*ups_s_2 - ups_c_2*ups_mu_2_y) - ups_B_2_zx*ups_h_3_x
         )
-        c_true_ups_y = c_ups_y - acc_3_ups_y*ups_link3_mass
-        c_true_ups_z = c_ups_z - acc_3_ups_z*ups_link3_mass
-        c_true_ups_in_base_x = (
-        axis_x_x*c_true_ups_x + axis_y_ups_axes2_x*c_true_ups_y +
-            axis_z_ups_axes2_in_base_x*c_true_ups_z
+        # (ups-c_true) leg force on the platform without actuation, the last link's mass included
+        ups_c_true_x = (
+        ups_B_2_xy*ups_h_3_z + ups_alpha_1_t_2*ups_h_3_y + ups_h_3_x*(ups_W_2_t_2 + ups_W_2_t_3) -
+            ups_acc_3_x*ups_link3_mass
         )
-        c_true_ups_in_base_y = (
-        axis_x_y*c_true_ups_x + axis_y_ups_axes2_y*c_true_ups_y +
-            axis_z_ups_axes2_in_base_y*c_true_ups_z
+        ups_c_true_y = ups_c_y - ups_acc_3_y*ups_link3_mass
+        ups_c_true_z = ups_c_z - ups_acc_3_z*ups_link3_mass
+        ups_c_true_in_base_x = (
+        axis_y_ups_axes2_x*ups_c_true_y + axis_z_ups_axes2_in_base_x*ups_c_true_z +
+            ups_axis_x_x*ups_c_true_x
         )
-        c_true_ups_in_base_z = (
-        axis_x_z*c_true_ups_x + axis_y_ups_axes2_z*c_true_ups_y +
-            axis_z_ups_axes2_in_base_z*c_true_ups_z
+        ups_c_true_in_base_y = (
+        axis_y_ups_axes2_y*ups_c_true_y + axis_z_ups_axes2_in_base_y*ups_c_true_z +
+            ups_axis_x_y*ups_c_true_x
+        )
+        ups_c_true_in_base_z = (
+        axis_y_ups_axes2_z*ups_c_true_y + axis_z_ups_axes2_in_base_z*ups_c_true_z +
+            ups_axis_x_z*ups_c_true_x
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_ups) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
-            (abs(rho2_2_ups) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(root_1_ups) >
-            _TOLERANCE * 1.38293) & (abs(root_2_ups) > _TOLERANCE * 1.38293))
+        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
+            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) >
+            _TOLERANCE * 1.38293) & (abs(ups_root_2) > _TOLERANCE * 1.38293))
         )
-        out_leg_force[_leg_force_ups[0][leg]] = c_true_ups_in_base_x
-        out_leg_force[_leg_force_ups[1][leg]] = c_true_ups_in_base_y
-        out_leg_force[_leg_force_ups[2][leg]] = c_true_ups_in_base_z
-        out_drive[_drive_ups[0][leg]] = axis_x_x
-        out_drive[_drive_ups[1][leg]] = axis_x_y
-        out_drive[_drive_ups[2][leg]] = axis_x_z
+        out_leg_force[_leg_force_ups[0][leg]] = ups_c_true_in_base_x
+        out_leg_force[_leg_force_ups[1][leg]] = ups_c_true_in_base_y
+        out_leg_force[_leg_force_ups[2][leg]] = ups_c_true_in_base_z
+        out_drive[_drive_ups[0][leg]] = ups_axis_x_x
+        out_drive[_drive_ups[1][leg]] = ups_axis_x_y
+        out_drive[_drive_ups[2][leg]] = ups_axis_x_z
     for leg, k in legs[1]:
         (
-        J_group_2_up_xy, J_group_2_up_xz, J_group_2_up_yz, Sigma_2_up_xx, Sigma_2_up_yy,
-            Sigma_2_up_zz, branch_1_up, branch_2_up, g_r0_x, g_r0_y, g_r0_z, h_2_up_x, h_2_up_y,
-            h_2_up_z, h_3_up_x, h_3_up_y, h_3_up_z, up_base_frame_xx, up_base_frame_xy,
-            up_base_frame_xz, up_base_frame_yx, up_base_frame_yy, up_base_frame_yz,
-            up_base_frame_zx, up_base_frame_zy, up_base_frame_zz, up_base_point_x,
-            up_base_point_y, up_base_point_z, up_link3_mass, up_platform_joint_rotation_xx,
-            up_platform_joint_rotation_xy, up_platform_joint_rotation_xz,
-            up_platform_joint_rotation_yx, up_platform_joint_rotation_yy,
-            up_platform_joint_rotation_yz, up_platform_joint_rotation_zx,
-            up_platform_joint_rotation_zy, up_platform_joint_rotation_zz, up_platform_point_x,
-            up_platform_point_y, up_platform_point_z,
+        tube_J_group_2_xy, tube_J_group_2_xz, tube_J_group_2_yz, tube_Sigma_2_xx, tube_Sigma_2_yy,
+            tube_Sigma_2_zz, tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz,
+            tube_base_frame_yx, tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx,
+            tube_base_frame_zy, tube_base_frame_zz, tube_base_point_x, tube_base_point_y,
+            tube_base_point_z, tube_branch_1, tube_branch_2, tube_g_r0_x, tube_g_r0_y,
+            tube_g_r0_z, tube_h_2_x, tube_h_2_y, tube_h_2_z, tube_h_3_x, tube_h_3_y, tube_h_3_z,
+            tube_link3_mass, tube_platform_joint_rotation_xx, tube_platform_joint_rotation_xy,
+            tube_platform_joint_rotation_xz, tube_platform_joint_rotation_yx,
+            tube_platform_joint_rotation_yy, tube_platform_joint_rotation_yz,
+            tube_platform_joint_rotation_zx, tube_platform_joint_rotation_zy,
+            tube_platform_joint_rotation_zz, tube_platform_point_x, tube_platform_point_y,
+            tube_platform_point_z,
         ) = k
-        # (up-K1) from the base point to the connection point
-        q_up_in_base_x = (
-        R_xx*up_platform_point_x + R_xy*up_platform_point_y + R_xz*up_platform_point_z
-        )
-        q_up_in_base_y = (
-        R_yx*up_platform_point_x + R_yy*up_platform_point_y + R_yz*up_platform_point_z
-        )
-        q_up_in_base_z = (
-        R_zx*up_platform_point_x + R_zy*up_platform_point_y + R_zz*up_platform_point_z
-        )
-        S_up_x = q_up_in_base_x + t_x - up_base_point_x
-        S_up_y = q_up_in_base_y + t_y - up_base_point_y
-        S_up_z = q_up_in_base_z + t_z - up_base_point_z
-        # (up-K2) component along the reference direction
-        px_1_up = S_up_x*up_base_frame_xx + S_up_y*up_base_frame_yx + S_up_z*up_base_frame_zx
-        # (up-K3) component across the reference direction
-        py_1_up = S_up_x*up_base_frame_xy + S_up_y*up_base_frame_yy + S_up_z*up_base_frame_zy
-        # (up-K4) squared amplitude
-        rho2_1_up = px_1_up*px_1_up + py_1_up*py_1_up
-        # (up-K5) amplitude, with the sign of the branch
-        root_1_up = branch_1_up*sqrt(rho2_1_up)
-        # (up-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_up_t = S_up_x*up_base_frame_xz + S_up_y*up_base_frame_yz + S_up_z*up_base_frame_zz
-        # (up-K13) squared amplitude
-        rho2_2_up = rho2_1_up + xi_1_up_t*xi_1_up_t
-        # (up-K14) amplitude, with the sign of the branch
-        root_2_up = branch_2_up*sqrt(rho2_2_up)
-        # (up-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2_up = 1.0/root_2_up
-        c_2_up = inv_root_2_up*root_1_up
-        # (up-K16) sine of the angle of joint 2 from its reference direction
-        s_2_up = inv_root_2_up*xi_1_up_t
-        # (up-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_up = 1.0/root_1_up
-        c_1_up = inv_root_1_up*py_1_up
-        # (up-K7) sine of the angle of joint 1 from its reference direction
-        s_1_up = inv_root_1_up*px_1_up
-        # (up-V8) force part of the wrench that does no work along the leg's freedoms, 1
-        axis_z_up_axes2_in_base_x = s_1_up*up_base_frame_xy - c_1_up*up_base_frame_xx
-        axis_z_up_axes2_in_base_y = s_1_up*up_base_frame_yy - c_1_up*up_base_frame_yx
-        axis_z_up_axes2_in_base_z = s_1_up*up_base_frame_zy - c_1_up*up_base_frame_zx
-        f_c1_up_t = s_1_up*s_2_up
-        f_c1_up_t_2 = c_1_up*s_2_up
-        axis_y_up_axes2_in_base_x = (
-        f_c1_up_t*up_base_frame_xx + f_c1_up_t_2*up_base_frame_xy - c_2_up*up_base_frame_xz
-        )
-        axis_y_up_axes2_in_base_y = (
-        f_c1_up_t*up_base_frame_yx + f_c1_up_t_2*up_base_frame_yy - c_2_up*up_base_frame_yz
-        )
-        axis_y_up_axes2_in_base_z = (
-        f_c1_up_t*up_base_frame_zx + f_c1_up_t_2*up_base_frame_zy - c_2_up*up_base_frame_zz
-        )
-        axis_x_up_axes2_x = (
-        axis_y_up_axes2_in_base_y*axis_z_up_axes2_in_base_z -
-            axis_y_up_axes2_in_base_z*axis_z_up_axes2_in_base_y
-        )
-        axis_x_up_axes2_y = (
-        axis_y_up_axes2_in_base_z*axis_z_up_axes2_in_base_x -
-            axis_y_up_axes2_in_base_x*axis_z_up_axes2_in_base_z
-        )
-        axis_x_up_axes2_z = (
-        axis_y_up_axes2_in_base_x*axis_z_up_axes2_in_base_y -
-            axis_y_up_axes2_in_base_y*axis_z_up_axes2_in_base_x
-        )
-        # (up-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_up_t = R_xx*up_base_frame_xx + R_yx*up_base_frame_yx + R_zx*up_base_frame_zx
-        n_m1_up_t_2 = R_xy*up_base_frame_xx + R_yy*up_base_frame_yx + R_zy*up_base_frame_zx
-        n_m1_up_t_3 = R_xz*up_base_frame_xx + R_yz*up_base_frame_yx + R_zz*up_base_frame_zx
-        n_m1_up_t_4 = R_xx*up_base_frame_xy + R_yx*up_base_frame_yy + R_zx*up_base_frame_zy
-        n_m1_up_t_5 = R_xy*up_base_frame_xy + R_yy*up_base_frame_yy + R_zy*up_base_frame_zy
-        n_m1_up_t_6 = R_xz*up_base_frame_xy + R_yz*up_base_frame_yy + R_zz*up_base_frame_zy
-        n_m1_up_t_7 = R_xx*up_base_frame_xz + R_yx*up_base_frame_yz + R_zx*up_base_frame_zz
-        n_m1_up_t_8 = R_xy*up_base_frame_xz + R_yy*up_base_frame_yz + R_zy*up_base_frame_zz
-        n_m1_up_t_9 = R_xz*up_base_frame_xz + R_yz*up_base_frame_yz + R_zz*up_base_frame_zz
-        end_p1_up_r0_x = (
-        n_m1_up_t*up_platform_joint_rotation_yx + n_m1_up_t_2*up_platform_joint_rotation_yy +
-            n_m1_up_t_3*up_platform_joint_rotation_yz
-        )
-        end_p1_up_r0_y = (
-        n_m1_up_t_4*up_platform_joint_rotation_yx + n_m1_up_t_5*up_platform_joint_rotation_yy +
-            n_m1_up_t_6*up_platform_joint_rotation_yz
-        )
-        end_p1_up_r0_z = (
-        n_m1_up_t_7*up_platform_joint_rotation_yx + n_m1_up_t_8*up_platform_joint_rotation_yy +
-            n_m1_up_t_9*up_platform_joint_rotation_yz
-        )
-        end_p1_up_r1_x = end_p1_up_r0_y*s_1_up - c_1_up*end_p1_up_r0_x
-        end_p1_up_r1_y = -c_1_up*end_p1_up_r0_y - end_p1_up_r0_x*s_1_up
-        end_p1_up_r3_x = end_p1_up_r0_z*s_2_up - c_2_up*end_p1_up_r1_y
-        end_p1_up_r3_y = -c_2_up*end_p1_up_r0_z - end_p1_up_r1_y*s_2_up
-        # (up-V6) direction 2 of the moment that the platform joint transmits
-        end_p2_up_r0_x = (
-        n_m1_up_t*up_platform_joint_rotation_zx + n_m1_up_t_2*up_platform_joint_rotation_zy +
-            n_m1_up_t_3*up_platform_joint_rotation_zz
-        )
-        end_p2_up_r0_y = (
-        n_m1_up_t_4*up_platform_joint_rotation_zx + n_m1_up_t_5*up_platform_joint_rotation_zy +
-            n_m1_up_t_6*up_platform_joint_rotation_zz
-        )
-        end_p2_up_r0_z = (
-        n_m1_up_t_7*up_platform_joint_rotation_zx + n_m1_up_t_8*up_platform_joint_rotation_zy +
-            n_m1_up_t_9*up_platform_joint_rotation_zz
-        )
-        end_p2_up_r1_x = end_p2_up_r0_y*s_1_up - c_1_up*end_p2_up_r0_x
-        end_p2_up_r1_y = -c_1_up*end_p2_up_r0_y - end_p2_up_r0_x*s_1_up
-        end_p2_up_r3_x = end_p2_up_r0_z*s_2_up - c_2_up*end_p2_up_r1_y
-        end_p2_up_r3_y = -c_2_up*end_p2_up_r0_z - end_p2_up_r1_y*s_2_up
-        # (up-V7) direction 3 of the moment that the platform joint transmits
-        end_p3_up_r0_x = (
-        n_m1_up_t*up_platform_joint_rotation_xx + n_m1_up_t_2*up_platform_joint_rotation_xy +
-            n_m1_up_t_3*up_platform_joint_rotation_xz
-        )
-        end_p3_up_r0_y = (
-        n_m1_up_t_4*up_platform_joint_rotation_xx + n_m1_up_t_5*up_platform_joint_rotation_xy +
-            n_m1_up_t_6*up_platform_joint_rotation_xz
-        )
-        end_p3_up_r0_z = (
-        n_m1_up_t_7*up_platform_joint_rotation_xx + n_m1_up_t_8*up_platform_joint_rotation_xy +
-            n_m1_up_t_9*up_platform_joint_rotation_xz
-        )
-        end_p3_up_r1_x = end_p3_up_r0_y*s_1_up - c_1_up*end_p3_up_r0_x
-        end_p3_up_r1_y = -c_1_up*end_p3_up_r0_y - end_p3_up_r0_x*s_1_up
-        end_p3_up_r3_x = end_p3_up_r0_z*s_2_up - c_2_up*end_p3_up_r1_y
-        end_p3_up_r3_y = -c_2_up*end_p3_up_r0_z - end_p3_up_r1_y*s_2_up
-        # (up-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_up_t_10 = c_2_up*end_p1_up_r1_x
-        # (up-V6) direction 2 of the moment that the platform joint transmits
-        n_m2_up_r0_y = -c_2_up*end_p2_up_r3_x - end_p2_up_r3_y*s_2_up
-        # (up-V7) direction 3 of the moment that the platform joint transmits
-        n_m3_up_t = end_p3_up_r1_x*s_2_up
-        # (up-V8) force part of the wrench that does no work along the leg's freedoms, 1
-        f_c1_up_t_3 = end_p1_up_r3_y*n_m3_up_t + end_p3_up_r3_x*n_m1_up_t_10
-        inv_f_c1_up_t_26 = 1.0/f_c1_up_t_3
-        f_c1_up_t_4 = inv_f_c1_up_t_26*n_m3_up_t*root_2_up
-        f_c1_up_t_5 = inv_f_c1_up_t_26*n_m1_up_t_10*root_2_up
-        # (up-V12) force part of the wrench that does no work along the leg's freedoms, 2
-        f_c2_up_t = end_p3_up_r3_x*inv_f_c1_up_t_26*root_1_up
-        f_c2_up_t_2 = end_p1_up_r3_y*inv_f_c1_up_t_26*root_1_up
-        # (up-V16) force part of the wrench that does no work along the leg's freedoms, 3
-        f_c3_up_t = end_p3_up_r3_x*inv_f_c1_up_t_26*n_m2_up_r0_y
-        f_c3_up_t_2 = end_p1_up_r3_y*inv_f_c1_up_t_26*n_m2_up_r0_y
-        # (up-V32) size of the moment
-        size_c3_up = sqrt(1.0 + f_c3_up_t*f_c3_up_t + f_c3_up_t_2*f_c3_up_t_2)
-        # (up-V34) moment along direction 1 that goes with it
-        inv_size_c3_up = 1.0/size_c3_up
-        mu1_c3_up = f_c3_up_t*inv_size_c3_up
-        # (up-V36) moment along direction 3 that goes with it
-        mu3_c3_up = f_c3_up_t_2*inv_size_c3_up
-        # (up-V38) force part of reciprocal wrench 1
-        w_1_up_t = 1.35*n_m1_up_t_10
-        w_1_up_t_2 = 1.35*n_m2_up_r0_y
-        w_1_up_t_3 = 1.35*n_m3_up_t
-        w_1_up_t_4 = 1.35*end_p1_up_r3_y
-        w_1_up_t_5 = 1.35*end_p3_up_r3_x
-        w_1_up_t_6 = 1.35*f_c1_up_t_4
-        w_1_up_t_7 = 1.35*f_c1_up_t_5
-        w_1_up_t_8 = 1.35*f_c2_up_t
-        w_1_up_t_9 = 1.35*f_c2_up_t_2
-        w_1_up_t_10 = 1.35*mu1_c3_up
-        w_1_up_t_11 = 1.35*inv_size_c3_up
-        w_1_up_t_12 = 1.35*mu3_c3_up
-        w_1_up_t_13 = sqrt(rho2_2_up + w_1_up_t_4*w_1_up_t_4 + w_1_up_t_5*w_1_up_t_5)
-        inv_w_1_up_t_16 = 1.0/w_1_up_t_13
-        w_1_up_t_14 = inv_w_1_up_t_16*root_2_up
-        w_1_up_t_15 = inv_w_1_up_t_16*w_1_up_t_4
-        w_1_up_t_16 = inv_w_1_up_t_16*w_1_up_t_5
-        w_1_up_t_17 = w_1_up_t_15*w_1_up_t_6 + w_1_up_t_16*w_1_up_t_7 - w_1_up_t_14
-        w_1_up_t_18 = 1.0 + w_1_up_t_14*w_1_up_t_17
-        w_1_up_t_19 = w_1_up_t_15*w_1_up_t_17 - w_1_up_t_6
-        w_1_up_t_20 = w_1_up_t_16*w_1_up_t_17 - w_1_up_t_7
-        w_1_up_t_21 = w_1_up_t_15*w_1_up_t_8 - w_1_up_t_16*w_1_up_t_9
-        w_1_up_t_22 = w_1_up_t_14*w_1_up_t_21
-        w_1_up_t_23 = w_1_up_t_15*w_1_up_t_21 - w_1_up_t_8
-        w_1_up_t_24 = w_1_up_t_9 + w_1_up_t_16*w_1_up_t_21
-        w_1_up_t_25 = w_1_up_t_10*w_1_up_t_15 - w_1_up_t_12*w_1_up_t_16
-        w_1_up_t_26 = w_1_up_t_14*w_1_up_t_25
-        w_1_up_t_27 = w_1_up_t_10 - w_1_up_t_15*w_1_up_t_25
-        w_1_up_t_28 = w_1_up_t_12 + w_1_up_t_16*w_1_up_t_25
-        w_1_up_t_29 = w_1_up_t*w_1_up_t_15 - w_1_up_t_16*w_1_up_t_3
-        w_1_up_t_30 = w_1_up_t_14*w_1_up_t_29
-        w_1_up_t_31 = w_1_up_t - w_1_up_t_15*w_1_up_t_29
-        w_1_up_t_32 = w_1_up_t_3 + w_1_up_t_16*w_1_up_t_29
-        w_1_up_t_33 = (
-        sqrt(w_1_up_t_18*w_1_up_t_18 + w_1_up_t_19*w_1_up_t_19 + w_1_up_t_20*w_1_up_t_20)
-        )
-        inv_w_1_up_t_57 = 1.0/w_1_up_t_33
-        w_1_up_t_34 = inv_w_1_up_t_57*w_1_up_t_18
-        w_1_up_t_35 = inv_w_1_up_t_57*w_1_up_t_19
-        w_1_up_t_36 = inv_w_1_up_t_57*w_1_up_t_20
-        w_1_up_t_37 = w_1_up_t_22*w_1_up_t_34 + w_1_up_t_23*w_1_up_t_35 + w_1_up_t_24*w_1_up_t_36
-        w_1_up_t_38 = w_1_up_t_22 - w_1_up_t_34*w_1_up_t_37
-        w_1_up_t_39 = w_1_up_t_23 - w_1_up_t_35*w_1_up_t_37
-        w_1_up_t_40 = w_1_up_t_24 - w_1_up_t_36*w_1_up_t_37
-        w_1_up_t_41 = w_1_up_t_26*w_1_up_t_34 + w_1_up_t_28*w_1_up_t_36 - w_1_up_t_27*w_1_up_t_35
-        w_1_up_t_42 = w_1_up_t_26 - w_1_up_t_34*w_1_up_t_41
-        w_1_up_t_43 = w_1_up_t_27 + w_1_up_t_35*w_1_up_t_41
-        w_1_up_t_44 = w_1_up_t_28 - w_1_up_t_36*w_1_up_t_41
-        w_1_up_t_45 = w_1_up_t_30*w_1_up_t_34 + w_1_up_t_32*w_1_up_t_36 - w_1_up_t_31*w_1_up_t_35
-        w_1_up_t_46 = w_1_up_t_30 - w_1_up_t_34*w_1_up_t_45
-        w_1_up_t_47 = w_1_up_t_31 + w_1_up_t_35*w_1_up_t_45
-        w_1_up_t_48 = w_1_up_t_32 - w_1_up_t_36*w_1_up_t_45
-        w_1_up_t_49 = (
-        sqrt(1.0 + w_1_up_t_38*w_1_up_t_38 + w_1_up_t_39*w_1_up_t_39 + w_1_up_t_40*w_1_up_t_40)
-        )
-        inv_w_1_up_t_95 = 1.0/w_1_up_t_49
-        w_1_up_t_50 = inv_w_1_up_t_95*w_1_up_t_38
-        w_1_up_t_51 = inv_w_1_up_t_95*w_1_up_t_39
-        w_1_up_t_52 = inv_w_1_up_t_95*w_1_up_t_40
-        w_1_up_t_53 = w_1_up_t_42*w_1_up_t_50 + w_1_up_t_44*w_1_up_t_52 - w_1_up_t_43*w_1_up_t_51
-        w_1_up_t_54 = w_1_up_t_50*w_1_up_t_53 - w_1_up_t_42
-        w_1_up_t_55 = inv_w_1_up_t_95*w_1_up_t_53
-        w_1_up_t_56 = w_1_up_t_43 + w_1_up_t_51*w_1_up_t_53
-        w_1_up_t_57 = w_1_up_t_52*w_1_up_t_53 - w_1_up_t_44
-        w_1_up_t_58 = (
-        w_1_up_t_46*w_1_up_t_50 + w_1_up_t_48*w_1_up_t_52 - inv_w_1_up_t_95*root_1_up -
-            w_1_up_t_47*w_1_up_t_51
-        )
-        w_1_up_t_59 = w_1_up_t_50*w_1_up_t_58 - w_1_up_t_46
-        w_1_up_t_60 = root_1_up + inv_w_1_up_t_95*w_1_up_t_58
-        w_1_up_t_61 = w_1_up_t_47 + w_1_up_t_51*w_1_up_t_58
-        w_1_up_t_62 = w_1_up_t_52*w_1_up_t_58 - w_1_up_t_48
-        w_1_up_t_63 = (
-        sqrt(w_1_up_t_11*w_1_up_t_11 + w_1_up_t_54*w_1_up_t_54 + w_1_up_t_55*w_1_up_t_55 +
-            w_1_up_t_56*w_1_up_t_56 + w_1_up_t_57*w_1_up_t_57)
-        )
-        inv_w_1_up_t_129 = 1.0/w_1_up_t_63
-        w_1_up_t_64 = inv_w_1_up_t_129*w_1_up_t_54
-        w_1_up_t_65 = inv_w_1_up_t_129*w_1_up_t_55
-        w_1_up_t_66 = inv_w_1_up_t_129*w_1_up_t_56
-        w_1_up_t_67 = inv_w_1_up_t_129*w_1_up_t_11
-        w_1_up_t_68 = inv_w_1_up_t_129*w_1_up_t_57
-        w_1_up_t_69 = (
-        w_1_up_t_59*w_1_up_t_64 + w_1_up_t_60*w_1_up_t_65 + w_1_up_t_61*w_1_up_t_66 +
-            w_1_up_t_62*w_1_up_t_68 - w_1_up_t_2*w_1_up_t_67
-        )
-        w_1_up_t_70 = w_1_up_t_59 - w_1_up_t_64*w_1_up_t_69
-        w_1_up_t_71 = w_1_up_t_60 - w_1_up_t_65*w_1_up_t_69
-        w_1_up_t_72 = w_1_up_t_61 - w_1_up_t_66*w_1_up_t_69
-        w_1_up_t_73 = w_1_up_t_2 + w_1_up_t_67*w_1_up_t_69
-        w_1_up_t_74 = w_1_up_t_62 - w_1_up_t_68*w_1_up_t_69
-        w_1_up_t_75 = (
-        sqrt(w_1_up_t_70*w_1_up_t_70 + w_1_up_t_71*w_1_up_t_71 + w_1_up_t_72*w_1_up_t_72 +
-            w_1_up_t_73*w_1_up_t_73 + w_1_up_t_74*w_1_up_t_74)
-        )
-        inv_w_1_up_t_157 = 1.0/w_1_up_t_75
-        w_1_up_t_76 = inv_w_1_up_t_157*w_1_up_t_70
-        w_1_up_t_77 = inv_w_1_up_t_157*w_1_up_t_71
-        w_1_up_t_78 = inv_w_1_up_t_157*w_1_up_t_72
-        w_1_up_t_79 = inv_w_1_up_t_157*w_1_up_t_73
-        w_1_up_t_80 = inv_w_1_up_t_157*w_1_up_t_74
-        # (up-V1) velocity of the connection point
-        S_dot_up_t = omega_y*q_up_in_base_z - omega_z*q_up_in_base_y
-        S_dot_up_t_2 = omega_z*q_up_in_base_x - omega_x*q_up_in_base_z
-        S_dot_up_t_3 = omega_x*q_up_in_base_y - omega_y*q_up_in_base_x
-        S_dot_up_x = S_dot_up_t + t_dot_x
-        S_dot_up_y = S_dot_up_t_2 + t_dot_y
-        S_dot_up_z = S_dot_up_t_3 + t_dot_z
-        # (up-V53) rate at which the joints turn along moment direction 1
-        omega_tip_x = (
-        axis_x_up_axes2_x*omega_x + axis_x_up_axes2_y*omega_y + axis_x_up_axes2_z*omega_z
-        )
-        omega_tip_y = (
-        axis_y_up_axes2_in_base_x*omega_x + axis_y_up_axes2_in_base_y*omega_y +
-            axis_y_up_axes2_in_base_z*omega_z
-        )
-        omega_tip_z = (
-        axis_z_up_axes2_in_base_x*omega_x + axis_z_up_axes2_in_base_y*omega_y +
-            axis_z_up_axes2_in_base_z*omega_z
-        )
-        eta_1_up = end_p1_up_r3_y*omega_tip_z - end_p1_up_r1_x*omega_tip_y
-        # (up-V54) rate at which the joints turn along moment direction 2
-        eta_2_up = end_p2_up_r3_x*omega_tip_y - end_p2_up_r3_y*omega_tip_x
-        # (up-V55) rate at which the joints turn along moment direction 3
-        eta_3_up = end_p3_up_r3_x*omega_tip_z - end_p3_up_r1_x*omega_tip_x
-        # (up-V1) velocity of the connection point
-        S_dot_up_tip_x = (
-        S_dot_up_x*axis_x_up_axes2_x + S_dot_up_y*axis_x_up_axes2_y + S_dot_up_z*axis_x_up_axes2_z
-        )
-        S_dot_up_tip_y = (
-        S_dot_up_x*axis_y_up_axes2_in_base_x + S_dot_up_y*axis_y_up_axes2_in_base_y +
-            S_dot_up_z*axis_y_up_axes2_in_base_z
-        )
-        S_dot_up_tip_z = (
-        S_dot_up_x*axis_z_up_axes2_in_base_x + S_dot_up_y*axis_z_up_axes2_in_base_y +
-            S_dot_up_z*axis_z_up_axes2_in_base_z
-        )
-        # (up-V56) rate of joint 1
-        qd_1_up_t = 1.35*eta_1_up
-        qd_1_up_t_2 = 1.35*eta_2_up
-        qd_1_up_t_3 = 1.35*eta_3_up
-        qd_1_up_t_4 = (
-        inv_w_1_up_t_157*(S_dot_up_tip_y*w_1_up_t_76 + S_dot_up_tip_z*w_1_up_t_77 +
-            qd_1_up_t*w_1_up_t_78 + qd_1_up_t_2*w_1_up_t_79 + qd_1_up_t_3*w_1_up_t_80)
-        )
-        qd_1_up_t_5 = (
-        inv_w_1_up_t_129*(S_dot_up_tip_y*w_1_up_t_64 + S_dot_up_tip_z*w_1_up_t_65 +
-            qd_1_up_t*w_1_up_t_66 + qd_1_up_t_3*w_1_up_t_68 - qd_1_up_t_2*w_1_up_t_67 -
-            qd_1_up_t_4*w_1_up_t_69)
-        )
-        qd_1_up_t_6 = (
-        inv_w_1_up_t_95*(S_dot_up_tip_y*w_1_up_t_50 + S_dot_up_tip_z*inv_w_1_up_t_95 +
-            qd_1_up_t*w_1_up_t_51 + qd_1_up_t_3*w_1_up_t_52 + qd_1_up_t_4*w_1_up_t_58 +
-            qd_1_up_t_5*w_1_up_t_53)
-        )
-        qd_1_up_t_7 = (
-        S_dot_up_tip_y*w_1_up_t_14 + qd_1_up_t*w_1_up_t_15 + qd_1_up_t_3*w_1_up_t_16 +
-            qd_1_up_t_6*w_1_up_t_21 + inv_w_1_up_t_57*w_1_up_t_17*(S_dot_up_tip_y*w_1_up_t_34 +
-            qd_1_up_t*w_1_up_t_35 + qd_1_up_t_3*w_1_up_t_36 + qd_1_up_t_4*w_1_up_t_45 +
-            qd_1_up_t_5*w_1_up_t_41 - qd_1_up_t_6*w_1_up_t_37) - qd_1_up_t_4*w_1_up_t_29 -
-            qd_1_up_t_5*w_1_up_t_25
-        )
-        qd_1_up_t_8 = inv_w_1_up_t_16*qd_1_up_t_7
-        # (up-V59) angular velocity of link 1
-        omega_1_up_t = qd_1_up_t_4*s_2_up
-        omega_1_up_t_2 = c_2_up*qd_1_up_t_4
-        # (up-A8) rate of moment direction 1
-        nd_m1_up_y = (
-        end_p1_up_r3_x*omega_1_up_t_2 + end_p1_up_r3_x*omega_tip_y - end_p1_up_r3_y*omega_tip_x
-        )
-        nd_m1_up_z = (
-        end_p1_up_r3_x*omega_tip_z - end_p1_up_r1_x*omega_tip_x - end_p1_up_r3_x*qd_1_up_t_8
-        )
-        # (up-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_up_x = omega_1_up_t_2*qd_1_up_t_8
-        zeta_2_up_y = omega_1_up_t*qd_1_up_t_8
-        # (up-A9) bias of the angular acceleration along moment direction 1
-        nu_1_up_t = omega_1_up_t - omega_tip_x
-        nu_1_up_t_2 = omega_1_up_t_2 + omega_tip_y
-        nu_1_up_t_3 = omega_tip_z - qd_1_up_t_8
-        nu_1_up_t_4 = (
-        nd_m1_up_y*nu_1_up_t_2 + nd_m1_up_z*nu_1_up_t_3 - nu_1_up_t*(end_p1_up_r1_x*qd_1_up_t_8 -
-            end_p1_up_r3_y*omega_1_up_t_2)
-        )
-        nu_1_up = nu_1_up_t_4 - end_p1_up_r1_x*zeta_2_up_y
-        # (up-A10) rate of moment direction 2
-        nd_m2_up_x = (
-        end_p2_up_r1_x*omega_tip_x - end_p2_up_r1_x*omega_1_up_t - end_p2_up_r3_x*omega_tip_z
-        )
-        nd_m2_up_y = (
-        end_p2_up_r1_x*omega_1_up_t_2 + end_p2_up_r1_x*omega_tip_y - end_p2_up_r3_y*omega_tip_z
-        )
-        # (up-A11) bias of the angular acceleration along moment direction 2
-        nu_2_up_t = end_p2_up_r3_y*zeta_2_up_x - end_p2_up_r3_x*zeta_2_up_y
-        nu_2_up_t_2 = (
-        nd_m2_up_x*nu_1_up_t + nu_1_up_t_3*(end_p2_up_r3_y*omega_1_up_t_2 -
-            end_p2_up_r3_x*omega_1_up_t) - nd_m2_up_y*nu_1_up_t_2
-        )
-        nu_2_up = -nu_2_up_t - nu_2_up_t_2
-        # (up-A12) rate of moment direction 3
-        nd_m3_up_x = (
-        end_p3_up_r3_x*omega_tip_y + end_p3_up_r3_y*omega_1_up_t - end_p3_up_r3_y*omega_tip_x
-        )
-        nd_m3_up_z = (
-        end_p3_up_r1_x*omega_tip_y + end_p3_up_r3_y*qd_1_up_t_8 - end_p3_up_r3_y*omega_tip_z
-        )
-        # (up-A13) bias of the angular acceleration along moment direction 3
-        nu_3_up_t = (
-        nd_m3_up_x*nu_1_up_t + nu_1_up_t_2*(end_p3_up_r1_x*qd_1_up_t_8 +
-            end_p3_up_r3_x*omega_1_up_t) - nd_m3_up_z*nu_1_up_t_3
-        )
-        nu_3_up = -nu_3_up_t - end_p3_up_r1_x*zeta_2_up_x
-        # (up-V61) centripetal tensor of link 2
-        W_2_up_t = omega_1_up_t*omega_1_up_t
-        W_2_up_t_2 = omega_1_up_t_2*omega_1_up_t_2
-        W_2_up_t_3 = qd_1_up_t_8*qd_1_up_t_8
-        W_2_up_xy = omega_1_up_t*omega_1_up_t_2
-        # (up-A5) acceleration of the connection point at zero joint accelerations
-        bias_up_t = root_2_up*zeta_2_up_y
-        bias_up_t_2 = W_2_up_xy*root_2_up
-        bias_up_t_3 = 2.0*S_dot_up_tip_x
-        bias_up_t_4 = bias_up_t_3*qd_1_up_t_8
-        bias_up_t_5 = bias_up_t_3*omega_1_up_t_2
-        bias_up_y = bias_up_t_4 - bias_up_t_2
-        bias_up_z = 2.0*bias_up_t + bias_up_t_5
-        # (up-N6) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        g_r1_x = g_r0_y*s_1_up - c_1_up*g_r0_x
-        g_r1_y = -c_1_up*g_r0_y - g_r0_x*s_1_up
-        g_r3_x = g_r0_z*s_2_up - c_2_up*g_r1_y
-        g_r3_y = -c_2_up*g_r0_z - g_r1_y*s_2_up
-        # (up-V25) the moment that goes with it
-        mu_c1_up_t = end_p1_up_r1_x*f_c1_up_t_4
-        mu_c1_up_t_2 = end_p3_up_r1_x*f_c1_up_t_5
-        mu_c1_up_z = -end_p1_up_r3_y*f_c1_up_t_4 - end_p3_up_r3_x*f_c1_up_t_5
-        mu_c1_up_in_base_x = (
-        axis_x_up_axes2_x*mu_c1_up_t_2 + axis_y_up_axes2_in_base_x*mu_c1_up_t +
-            axis_z_up_axes2_in_base_x*mu_c1_up_z
-        )
-        mu_c1_up_in_base_y = (
-        axis_x_up_axes2_y*mu_c1_up_t_2 + axis_y_up_axes2_in_base_y*mu_c1_up_t +
-            axis_z_up_axes2_in_base_y*mu_c1_up_z
-        )
-        mu_c1_up_in_base_z = (
-        axis_x_up_axes2_z*mu_c1_up_t_2 + axis_y_up_axes2_in_base_z*mu_c1_up_t +
-            axis_z_up_axes2_in_base_z*mu_c1_up_z
-        )
-        # (up-V31) the moment that goes with it
-        mu_c2_up_t = end_p1_up_r1_x*f_c2_up_t
-        mu_c2_up_t_2 = end_p3_up_r1_x*f_c2_up_t_2
-        mu_c2_up_z = end_p3_up_r3_x*f_c2_up_t_2 - end_p1_up_r3_y*f_c2_up_t
-        mu_c2_up_in_base_x = (
-        axis_y_up_axes2_in_base_x*mu_c2_up_t + axis_z_up_axes2_in_base_x*mu_c2_up_z -
-            axis_x_up_axes2_x*mu_c2_up_t_2
-        )
-        mu_c2_up_in_base_y = (
-        axis_y_up_axes2_in_base_y*mu_c2_up_t + axis_z_up_axes2_in_base_y*mu_c2_up_z -
-            axis_x_up_axes2_y*mu_c2_up_t_2
-        )
-        mu_c2_up_in_base_z = (
-        axis_y_up_axes2_in_base_z*mu_c2_up_t + axis_z_up_axes2_in_base_z*mu_c2_up_z -
-            axis_x_up_axes2_z*mu_c2_up_t_2
-        )
-        # (up-V37) the moment that goes with it
-        mu_c3_up_x = -end_p2_up_r3_y*inv_size_c3_up - end_p3_up_r1_x*mu3_c3_up
-        mu_c3_up_y = end_p1_up_r1_x*mu1_c3_up + end_p2_up_r3_x*inv_size_c3_up
-        mu_c3_up_z = end_p3_up_r3_x*mu3_c3_up - end_p1_up_r3_y*mu1_c3_up
-        mu_c3_up_in_base_x = (
-        axis_x_up_axes2_x*mu_c3_up_x + axis_y_up_axes2_in_base_x*mu_c3_up_y +
-            axis_z_up_axes2_in_base_x*mu_c3_up_z
-        )
-        mu_c3_up_in_base_y = (
-        axis_x_up_axes2_y*mu_c3_up_x + axis_y_up_axes2_in_base_y*mu_c3_up_y +
-            axis_z_up_axes2_in_base_y*mu_c3_up_z
-        )
-        mu_c3_up_in_base_z = (
-        axis_x_up_axes2_z*mu_c3_up_x + axis_y_up_axes2_in_base_z*mu_c3_up_y +
-            axis_z_up_axes2_in_base_z*mu_c3_up_z
-        )
-        # (up-A14) acceleration with which the joints turn along moment direction 1
-        alpha_tip_x = (
-        alpha_x*axis_x_up_axes2_x + alpha_y*axis_x_up_axes2_y + alpha_z*axis_x_up_axes2_z
-        )
-        alpha_tip_y = (
-        alpha_x*axis_y_up_axes2_in_base_x + alpha_y*axis_y_up_axes2_in_base_y +
-            alpha_z*axis_y_up_axes2_in_base_z
-        )
-        alpha_tip_z = (
-        alpha_x*axis_z_up_axes2_in_base_x + alpha_y*axis_z_up_axes2_in_base_y +
-            alpha_z*axis_z_up_axes2_in_base_z
-        )
-        etad_1_up_t = alpha_tip_y*end_p1_up_r1_x - alpha_tip_z*end_p1_up_r3_y
-        etad_1_up = nu_1_up - etad_1_up_t
-        # (up-A15) acceleration with which the joints turn along moment direction 2
-        etad_2_up_t = alpha_tip_x*end_p2_up_r3_y - alpha_tip_y*end_p2_up_r3_x
-        etad_2_up = nu_2_up - etad_2_up_t
-        # (up-A16) acceleration with which the joints turn along moment direction 3
-        etad_3_up_t = alpha_tip_x*end_p3_up_r1_x - alpha_tip_z*end_p3_up_r3_x
-        etad_3_up = nu_3_up - etad_3_up_t
-        # (up-A2) acceleration of the connection point without its centripetal part
-        a_p_up_x = t_ddot_x + alpha_y*q_up_in_base_z - alpha_z*q_up_in_base_y
-        a_p_up_y = t_ddot_y + alpha_z*q_up_in_base_x - alpha_x*q_up_in_base_z
-        a_p_up_z = t_ddot_z + alpha_x*q_up_in_base_y - alpha_y*q_up_in_base_x
-        # (up-A3) acceleration of the connection point
-        S_ddot_up_x = a_p_up_x + S_dot_up_t_3*omega_y - S_dot_up_t_2*omega_z
-        S_ddot_up_y = a_p_up_y + S_dot_up_t*omega_z - S_dot_up_t_3*omega_x
-        S_ddot_up_z = a_p_up_z + S_dot_up_t_2*omega_x - S_dot_up_t*omega_y
-        # (up-A6) acceleration of the connection point left to the joint accelerations
-        rel_up_y = (
-        S_ddot_up_x*axis_y_up_axes2_in_base_x + S_ddot_up_y*axis_y_up_axes2_in_base_y +
-            S_ddot_up_z*axis_y_up_axes2_in_base_z - bias_up_y
-        )
-        rel_up_z = (
-        S_ddot_up_x*axis_z_up_axes2_in_base_x + S_ddot_up_y*axis_z_up_axes2_in_base_y +
-            S_ddot_up_z*axis_z_up_axes2_in_base_z - bias_up_z
-        )
-        # (up-A17) acceleration of joint 1
-        qdd_1_up_t = 1.35*etad_1_up
-        qdd_1_up_t_2 = 1.35*etad_2_up
-        qdd_1_up_t_3 = 1.35*etad_3_up
-        qdd_1_up_t_4 = (
-        inv_w_1_up_t_157*(qdd_1_up_t*w_1_up_t_78 + qdd_1_up_t_2*w_1_up_t_79 +
-            qdd_1_up_t_3*w_1_up_t_80 + rel_up_y*w_1_up_t_76 + rel_up_z*w_1_up_t_77)
-        )
-        qdd_1_up_t_5 = (
-        inv_w_1_up_t_129*(qdd_1_up_t*w_1_up_t_66 + qdd_1_up_t_3*w_1_up_t_68 + rel_up_y*w_1_up_t_64
-            + rel_up_z*w_1_up_t_65 - qdd_1_up_t_2*w_1_up_t_67 - qdd_1_up_t_4*w_1_up_t_69)
-        )
-        qdd_1_up_t_6 = (
-        inv_w_1_up_t_95*(inv_w_1_up_t_95*rel_up_z + qdd_1_up_t*w_1_up_t_51 +
-            qdd_1_up_t_3*w_1_up_t_52 + qdd_1_up_t_4*w_1_up_t_58 + qdd_1_up_t_5*w_1_up_t_53 +
-            rel_up_y*w_1_up_t_50)
-        )
-        qdd_1_up_t_7 = (
-        qdd_1_up_t*w_1_up_t_15 + qdd_1_up_t_3*w_1_up_t_16 + qdd_1_up_t_6*w_1_up_t_21 +
-            rel_up_y*w_1_up_t_14 + inv_w_1_up_t_57*w_1_up_t_17*(qdd_1_up_t*w_1_up_t_35 +
-            qdd_1_up_t_3*w_1_up_t_36 + qdd_1_up_t_4*w_1_up_t_45 + qdd_1_up_t_5*w_1_up_t_41 +
-            rel_up_y*w_1_up_t_34 - qdd_1_up_t_6*w_1_up_t_37) - qdd_1_up_t_4*w_1_up_t_29 -
-            qdd_1_up_t_5*w_1_up_t_25
-        )
-        qdd_1_up_t_8 = inv_w_1_up_t_16*qdd_1_up_t_7
-        # (up-A23) angular acceleration of link 1
-        alpha_1_up_t = qdd_1_up_t_4*s_2_up
-        alpha_1_up_t_2 = c_2_up*qdd_1_up_t_4
-        # (up-A27) angular acceleration of link 2
-        alpha_2_up_x = alpha_1_up_t - zeta_2_up_x
-        alpha_2_up_y = -alpha_1_up_t_2 - zeta_2_up_y
-        # (up-A31) acceleration tensor of link 2
-        B_2_up_xy = -W_2_up_xy - qdd_1_up_t_8
-        B_2_up_yx = qdd_1_up_t_8 - W_2_up_xy
-        B_2_up_zx = zeta_2_up_y - alpha_2_up_y
-        B_2_up_zy = alpha_2_up_x - zeta_2_up_x
-        # (up-N3) acceleration of the reference point of link 3, less gravity
-        acc_3_up_x = (
-        S_ddot_up_x*axis_x_up_axes2_x + S_ddot_up_y*axis_x_up_axes2_y +
-            S_ddot_up_z*axis_x_up_axes2_z - g_r3_x
-        )
-        acc_3_up_y = bias_up_t_4 + qdd_1_up_t_8*root_2_up - bias_up_t_2 - g_r3_y
-        acc_3_up_z = bias_up_t + bias_up_t_5 - g_r1_x - alpha_2_up_y*root_2_up
-        # (up-N11) inertia force of link 3 less its weight
-        f_3_up_x = (
-        acc_3_up_x*up_link3_mass - B_2_up_xy*h_3_up_z - alpha_1_up_t_2*h_3_up_y -
-            h_3_up_x*(W_2_up_t_2 + W_2_up_t_3)
-        )
-        f_3_up_y = (
-        B_2_up_yx*h_3_up_x + acc_3_up_y*up_link3_mass + h_3_up_z*(W_2_up_t + W_2_up_t_3) -
-            alpha_1_up_t*h_3_up_y
-        )
-        f_3_up_z = (
-        B_2_up_zx*h_3_up_x + acc_3_up_z*up_link3_mass - B_2_up_zy*h_3_up_z - h_3_up_y*(W_2_up_t +
-            W_2_up_t_2)
-        )
-        # (up-N18) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_up_x = (
-        B_2_up_yx*J_group_2_up_xz + B_2_up_zy*Sigma_2_up_yy + J_group_2_up_yz*(W_2_up_t_2 -
-            W_2_up_t_3) + Sigma_2_up_zz*alpha_1_up_t + g_r1_x*h_2_up_z + g_r3_y*h_2_up_y -
-            B_2_up_zx*J_group_2_up_xy - acc_3_up_y*h_3_up_y - acc_3_up_z*h_3_up_z
-        )
-        mu_2_up_y = (
-        B_2_up_zy*J_group_2_up_xy + acc_3_up_x*h_3_up_y + g_r1_x*h_2_up_x -
-            B_2_up_xy*J_group_2_up_yz - B_2_up_zx*Sigma_2_up_xx - J_group_2_up_xz*(W_2_up_t -
-            W_2_up_t_3) - Sigma_2_up_zz*alpha_1_up_t_2 - acc_3_up_z*h_3_up_x - g_r3_x*h_2_up_y
-        )
-        mu_2_up_z = (
-        B_2_up_yx*Sigma_2_up_xx + J_group_2_up_xy*(W_2_up_t - W_2_up_t_2) +
-            J_group_2_up_xz*alpha_1_up_t + acc_3_up_x*h_3_up_z + acc_3_up_y*h_3_up_x -
-            B_2_up_xy*Sigma_2_up_yy - J_group_2_up_yz*alpha_1_up_t_2 - g_r3_x*h_2_up_z -
-            g_r3_y*h_2_up_x
-        )
-        # (up-N22) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_up_y = mu_2_up_y - f_3_up_z*root_2_up
-        N_2_up_z = mu_2_up_z + f_3_up_y*root_2_up
-        # (up-N38) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_up_t = N_2_up_z*inv_w_1_up_t_16
-        G_up_t_2 = G_up_t*inv_w_1_up_t_57*w_1_up_t_17
-        G_up_t_3 = inv_w_1_up_t_95*(G_up_t*w_1_up_t_21 - G_up_t_2*w_1_up_t_37)
-        G_up_t_4 = (
-        inv_w_1_up_t_129*(G_up_t_2*w_1_up_t_41 + G_up_t_3*w_1_up_t_53 - G_up_t*w_1_up_t_25)
-        )
-        G_up_t_5 = (
-        inv_w_1_up_t_157*(G_up_t_2*w_1_up_t_45 + G_up_t_3*w_1_up_t_58 + mu_2_up_x*s_2_up -
-            G_up_t*w_1_up_t_29 - G_up_t_4*w_1_up_t_69 - N_2_up_y*c_2_up)
-        )
-        G_up_t_6 = (
-        G_up_t*w_1_up_t_14 + G_up_t_2*w_1_up_t_34 + G_up_t_3*w_1_up_t_50 + G_up_t_4*w_1_up_t_64 +
-            G_up_t_5*w_1_up_t_76
-        )
-        G_up_t_7 = G_up_t_3*inv_w_1_up_t_95 + G_up_t_4*w_1_up_t_65 + G_up_t_5*w_1_up_t_77
-        G_up_t_8 = (
-        G_up_t*w_1_up_t_15 + G_up_t_2*w_1_up_t_35 + G_up_t_3*w_1_up_t_51 + G_up_t_4*w_1_up_t_66 +
-            G_up_t_5*w_1_up_t_78
-        )
-        G_up_t_9 = 1.35*G_up_t_8
-        G_up_t_10 = G_up_t_4*w_1_up_t_67 - G_up_t_5*w_1_up_t_79
-        G_up_t_11 = 1.35*G_up_t_10
-        G_up_t_12 = (
-        G_up_t*w_1_up_t_16 + G_up_t_2*w_1_up_t_36 + G_up_t_3*w_1_up_t_52 + G_up_t_4*w_1_up_t_68 +
-            G_up_t_5*w_1_up_t_80
-        )
-        G_up_t_13 = 1.35*G_up_t_12
-        # (up-N58) leg force on the platform without actuation and without the mass at the connection point
-        c_up_in_base_x = (
-        -G_up_t_6*axis_y_up_axes2_in_base_x - G_up_t_7*axis_z_up_axes2_in_base_x -
-            axis_x_up_axes2_x*f_3_up_x
-        )
-        c_up_in_base_y = (
-        -G_up_t_6*axis_y_up_axes2_in_base_y - G_up_t_7*axis_z_up_axes2_in_base_y -
-            axis_x_up_axes2_y*f_3_up_x
-        )
-        c_up_in_base_z = (
-        -G_up_t_6*axis_y_up_axes2_in_base_z - G_up_t_7*axis_z_up_axes2_in_base_z -
-            axis_x_up_axes2_z*f_3_up_x
-        )
-        # (up-N54) moment at the connection point that balances the leg's inertia and weight along all freedoms
-        G_m_up_x = G_up_t_11*end_p2_up_r3_y - G_up_t_13*end_p3_up_r1_x
-        G_m_up_y = -G_up_t_11*end_p2_up_r3_x - G_up_t_9*end_p1_up_r1_x
-        G_m_up_z = G_up_t_13*end_p3_up_r3_x + G_up_t_9*end_p1_up_r3_y
-        # (up-N63) moment of the leg on the platform without actuation
-        c_m_up_in_base_x = (
-        -G_m_up_x*axis_x_up_axes2_x - G_m_up_y*axis_y_up_axes2_in_base_x -
-            G_m_up_z*axis_z_up_axes2_in_base_x
-        )
-        c_m_up_in_base_y = (
-        -G_m_up_x*axis_x_up_axes2_y - G_m_up_y*axis_y_up_axes2_in_base_y -
-            G_m_up_z*axis_z_up_axes2_in_base_y
-        )
-        c_m_up_in_base_z = (
-        -G_m_up_x*axis_x_up_axes2_z - G_m_up_y*axis_y_up_axes2_in_base_z -
-            G_m_up_z*axis_z_up_axes2_in_base_z
+        # (tube-S) from the base point to the connection point
+        tube_q_in_base_x = (
+        R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
+        )
+        tube_q_in_base_y = (
+        R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
+        )
+        tube_q_in_base_z = (
+        R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
+        )
+        tube_S_x = t_x + tube_q_in_base_x - tube_base_point_x
+        tube_S_y = t_y + tube_q_in_base_y - tube_base_point_y
+        tube_S_z = t_z + tube_q_in_base_z - tube_base_point_z
+        # (tube-px_1) component along the reference direction
+        tube_px_1 = (
+        tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
+        )
+        # (tube-py_1) component across the reference direction
+        tube_py_1 = (
+        tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
+        )
+        # (tube-rho2_1) squared amplitude
+        tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
+        # (tube-root_1) amplitude, with the sign of the branch
+        tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
+        # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        tube_xi_1_t = (
+        tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
+        )
+        # (tube-rho2_2) squared amplitude
+        tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t
+        # (tube-root_2) amplitude, with the sign of the branch
+        tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
+        # (tube-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_tube_root_2 = 1.0/tube_root_2
+        tube_c_2 = inv_tube_root_2*tube_root_1
+        # (tube-s_2) sine of the angle of joint 2 from its reference direction
+        tube_s_2 = inv_tube_root_2*tube_xi_1_t
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = inv_tube_root_1*tube_py_1
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_px_1
+        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        axis_z_tube_axes2_in_base_x = tube_base_frame_xy*tube_s_1 - tube_base_frame_xx*tube_c_1
+        axis_z_tube_axes2_in_base_y = tube_base_frame_yy*tube_s_1 - tube_base_frame_yx*tube_c_1
+        axis_z_tube_axes2_in_base_z = tube_base_frame_zy*tube_s_1 - tube_base_frame_zx*tube_c_1
+        tube_f_c1_t = tube_s_1*tube_s_2
+        tube_f_c1_t_2 = tube_c_1*tube_s_2
+        axis_y_tube_axes2_in_base_x = (
+        tube_base_frame_xx*tube_f_c1_t + tube_base_frame_xy*tube_f_c1_t_2 -
+            tube_base_frame_xz*tube_c_2
+        )
+        axis_y_tube_axes2_in_base_y = (
+        tube_base_frame_yx*tube_f_c1_t + tube_base_frame_yy*tube_f_c1_t_2 -
+            tube_base_frame_yz*tube_c_2
+        )
+        axis_y_tube_axes2_in_base_z = (
+        tube_base_frame_zx*tube_f_c1_t + tube_base_frame_zy*tube_f_c1_t_2 -
+            tube_base_frame_zz*tube_c_2
+        )
+        axis_x_tube_axes2_x = (
+        axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_z -
+            axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_y
+        )
+        axis_x_tube_axes2_y = (
+        axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_x -
+            axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_z
+        )
+        axis_x_tube_axes2_z = (
+        axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_y -
+            axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_x
+        )
+        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
+        tube_n_m1_t_2 = (
+        R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx + R_zy*tube_base_frame_zx
+        )
+        tube_n_m1_t_3 = (
+        R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx + R_zz*tube_base_frame_zx
+        )
+        tube_n_m1_t_4 = (
+        R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy + R_zx*tube_base_frame_zy
+        )
+        tube_n_m1_t_5 = (
+        R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy + R_zy*tube_base_frame_zy
+        )
+        tube_n_m1_t_6 = (
+        R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy + R_zz*tube_base_frame_zy
+        )
+        tube_n_m1_t_7 = (
+        R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz + R_zx*tube_base_frame_zz
+        )
+        tube_n_m1_t_8 = (
+        R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz + R_zy*tube_base_frame_zz
+        )
+        tube_n_m1_t_9 = (
+        R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz + R_zz*tube_base_frame_zz
+        )
+        tube_end_p1_r0_x = (
+        tube_n_m1_t*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_yz
+        )
+        tube_end_p1_r0_y = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_yz
+        )
+        tube_end_p1_r0_z = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_yz
+        )
+        tube_end_p1_r1_x = tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x
+        tube_end_p1_r1_y = -tube_c_1*tube_end_p1_r0_y - tube_end_p1_r0_x*tube_s_1
+        tube_end_p1_r3_x = tube_end_p1_r0_z*tube_s_2 - tube_c_2*tube_end_p1_r1_y
+        tube_end_p1_r3_y = -tube_c_2*tube_end_p1_r0_z - tube_end_p1_r1_y*tube_s_2
+        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
+        tube_end_p2_r0_x = (
+        tube_n_m1_t*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_zz
+        )
+        tube_end_p2_r0_y = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_zz
+        )
+        tube_end_p2_r0_z = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_zz
+        )
+        tube_end_p2_r1_x = tube_end_p2_r0_y*tube_s_1 - tube_c_1*tube_end_p2_r0_x
+        tube_end_p2_r1_y = -tube_c_1*tube_end_p2_r0_y - tube_end_p2_r0_x*tube_s_1
+        tube_end_p2_r3_x = tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y
+        tube_end_p2_r3_y = -tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2
+        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
+        tube_end_p3_r0_x = (
+        tube_n_m1_t*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_xz
+        )
+        tube_end_p3_r0_y = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_xz
+        )
+        tube_end_p3_r0_z = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_xz
+        )
+        tube_end_p3_r1_x = tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x
+        tube_end_p3_r1_y = -tube_c_1*tube_end_p3_r0_y - tube_end_p3_r0_x*tube_s_1
+        tube_end_p3_r3_x = tube_end_p3_r0_z*tube_s_2 - tube_c_2*tube_end_p3_r1_y
+        tube_end_p3_r3_y = -tube_c_2*tube_end_p3_r0_z - tube_end_p3_r1_y*tube_s_2
+        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        tube_n_m1_t_10 = tube_c_2*tube_end_p1_r1_x
+        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
+        tube_n_m2_r0_y = -tube_c_2*tube_end_p2_r3_x - tube_end_p2_r3_y*tube_s_2
+        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
+        tube_n_m3_t = tube_end_p3_r1_x*tube_s_2
+        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        tube_f_c1_t_3 = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10
+        inv_tube_f_c1_t_26 = 1.0/tube_f_c1_t_3
+        tube_f_c1_t_4 = inv_tube_f_c1_t_26*tube_n_m3_t*tube_root_2
+        tube_f_c1_t_5 = inv_tube_f_c1_t_26*tube_n_m1_t_10*tube_root_2
+        # (tube-f_c2) force part of the wrench that does no work along the leg's freedoms, 2
+        tube_f_c2_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_root_1
+        tube_f_c2_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_root_1
+        # (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3
+        tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y
+        tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y
+        # (tube-size_c3) size of the moment
+        tube_size_c3 = sqrt(1.0 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2)
+        # (tube-mu1_c3) moment along direction 1 that goes with it
+        inv_tube_size_c3 = 1.0/tube_size_c3
+        tube_mu1_c3 = inv_tube_size_c3*tube_f_c3_t
+        # (tube-mu3_c3) moment along direction 3 that goes with it
+        tube_mu3_c3 = inv_tube_size_c3*tube_f_c3_t_2
+        # (tube-w_1) force part of reciprocal wrench 1
+        tube_w_1_t = 1.35*tube_n_m1_t_10
+        tube_w_1_t_2 = 1.35*tube_n_m2_r0_y
+        tube_w_1_t_3 = 1.35*tube_n_m3_t
+        tube_w_1_t_4 = 1.35*tube_end_p1_r3_y
+        tube_w_1_t_5 = 1.35*tube_end_p3_r3_x
+        tube_w_1_t_6 = 1.35*tube_f_c1_t_4
+        tube_w_1_t_7 = 1.35*tube_f_c1_t_5
+        tube_w_1_t_8 = 1.35*tube_f_c2_t
+        tube_w_1_t_9 = 1.35*tube_f_c2_t_2
+        tube_w_1_t_10 = 1.35*tube_mu1_c3
+        tube_w_1_t_11 = 1.35*inv_tube_size_c3
+        tube_w_1_t_12 = 1.35*tube_mu3_c3
+        tube_w_1_t_13 = sqrt(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
+        inv_tube_w_1_t_16 = 1.0/tube_w_1_t_13
+        tube_w_1_t_14 = inv_tube_w_1_t_16*tube_root_2
+        tube_w_1_t_15 = inv_tube_w_1_t_16*tube_w_1_t_4
+        tube_w_1_t_16 = inv_tube_w_1_t_16*tube_w_1_t_5
+        tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
+        tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
+        tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
+        tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7
+        tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9
+        tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21
+        tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8
+        tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21
+        tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16
+        tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25
+        tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25
+        tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25
+        tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3
+        tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29
+        tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29
+        tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29
+        tube_w_1_t_33 = (
+        sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
+            tube_w_1_t_20*tube_w_1_t_20)
+        )
+        inv_tube_w_1_t_57 = 1.0/tube_w_1_t_33
+        tube_w_1_t_34 = inv_tube_w_1_t_57*tube_w_1_t_18
+        tube_w_1_t_35 = inv_tube_w_1_t_57*tube_w_1_t_19
+        tube_w_1_t_36 = inv_tube_w_1_t_57*tube_w_1_t_20
+        tube_w_1_t_37 = (
+        tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
+        )
+        tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37
+        tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37
+        tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37
+        tube_w_1_t_41 = (
+        tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 - tube_w_1_t_27*tube_w_1_t_35
+        )
+        tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41
+        tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41
+        tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41
+        tube_w_1_t_45 = (
+        tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 - tube_w_1_t_31*tube_w_1_t_35
+        )
+        tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45
+        tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45
+        tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45
+        tube_w_1_t_49 = (
+        sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
+            tube_w_1_t_40*tube_w_1_t_40)
+        )
+        inv_tube_w_1_t_95 = 1.0/tube_w_1_t_49
+        tube_w_1_t_50 = inv_tube_w_1_t_95*tube_w_1_t_38
+        tube_w_1_t_51 = inv_tube_w_1_t_95*tube_w_1_t_39
+        tube_w_1_t_52 = inv_tube_w_1_t_95*tube_w_1_t_40
+        tube_w_1_t_53 = (
+        tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
+        )
+        tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
+        tube_w_1_t_55 = inv_tube_w_1_t_95*tube_w_1_t_53
+        tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
+        tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
+        tube_w_1_t_58 = (
+        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_95*tube_root_1
+            - tube_w_1_t_47*tube_w_1_t_51
+        )
+        tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
+        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_95*tube_w_1_t_58
+        tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
+        tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
+        tube_w_1_t_63 = (
+        sqrt(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54 +
+            tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
+            tube_w_1_t_57*tube_w_1_t_57)
+        )
+        inv_tube_w_1_t_129 = 1.0/tube_w_1_t_63
+        tube_w_1_t_64 = inv_tube_w_1_t_129*tube_w_1_t_54
+        tube_w_1_t_65 = inv_tube_w_1_t_129*tube_w_1_t_55
+        tube_w_1_t_66 = inv_tube_w_1_t_129*tube_w_1_t_56
+        tube_w_1_t_67 = inv_tube_w_1_t_129*tube_w_1_t_11
+        tube_w_1_t_68 = inv_tube_w_1_t_129*tube_w_1_t_57
+        tube_w_1_t_69 = (
+        tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
+            tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
+        )
+        tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69
+        tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69
+        tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69
+        tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69
+        tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69
+        tube_w_1_t_75 = (
+        sqrt(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71 +
+            tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
+            tube_w_1_t_74*tube_w_1_t_74)
+        )
+        inv_tube_w_1_t_157 = 1.0/tube_w_1_t_75
+        tube_w_1_t_76 = inv_tube_w_1_t_157*tube_w_1_t_70
+        tube_w_1_t_77 = inv_tube_w_1_t_157*tube_w_1_t_71
+        tube_w_1_t_78 = inv_tube_w_1_t_157*tube_w_1_t_72
+        tube_w_1_t_79 = inv_tube_w_1_t_157*tube_w_1_t_73
+        tube_w_1_t_80 = inv_tube_w_1_t_157*tube_w_1_t_74
+        # (tube-S_dot) velocity of the connection point
+        tube_S_dot_t = omega_y*tube_q_in_base_z - omega_z*tube_q_in_base_y
+        tube_S_dot_t_2 = omega_z*tube_q_in_base_x - omega_x*tube_q_in_base_z
+        tube_S_dot_t_3 = omega_x*tube_q_in_base_y - omega_y*tube_q_in_base_x
+        tube_S_dot_x = t_dot_x + tube_S_dot_t
+        tube_S_dot_y = t_dot_y + tube_S_dot_t_2
+        tube_S_dot_z = t_dot_z + tube_S_dot_t_3
+        # (tube-eta_1) rate at which the joints turn along moment direction 1
+        tube_omega_tip_x = (
+        axis_x_tube_axes2_x*omega_x + axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z
+        )
+        tube_omega_tip_y = (
+        axis_y_tube_axes2_in_base_x*omega_x + axis_y_tube_axes2_in_base_y*omega_y +
+            axis_y_tube_axes2_in_base_z*omega_z
+        )
+        tube_omega_tip_z = (
+        axis_z_tube_axes2_in_base_x*omega_x + axis_z_tube_axes2_in_base_y*omega_y +
+            axis_z_tube_axes2_in_base_z*omega_z
+        )
+        tube_eta_1 = tube_end_p1_r3_y*tube_omega_tip_z - tube_end_p1_r1_x*tube_omega_tip_y
+        # (tube-eta_2) rate at which the joints turn along moment direction 2
+        tube_eta_2 = tube_end_p2_r3_x*tube_omega_tip_y - tube_end_p2_r3_y*tube_omega_tip_x
+        # (tube-eta_3) rate at which the joints turn along moment direction 3
+        tube_eta_3 = tube_end_p3_r3_x*tube_omega_tip_z - tube_end_p3_r1_x*tube_omega_tip_x
+        # (tube-S_dot) velocity of the connection point
+        tube_S_dot_tip_x = (
+        axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
+            axis_x_tube_axes2_z*tube_S_dot_z
+        )
+        tube_S_dot_tip_y = (
+        axis_y_tube_axes2_in_base_x*tube_S_dot_x + axis_y_tube_axes2_in_base_y*tube_S_dot_y +
+            axis_y_tube_axes2_in_base_z*tube_S_dot_z
+        )
+        tube_S_dot_tip_z = (
+        axis_z_tube_axes2_in_base_x*tube_S_dot_x + axis_z_tube_axes2_in_base_y*tube_S_dot_y +
+            axis_z_tube_axes2_in_base_z*tube_S_dot_z
+        )
+        # (tube-qd_3) rate of joint 3
+        tube_qd_3_t = 1.35*tube_eta_1
+        tube_qd_3_t_2 = 1.35*tube_eta_2
+        tube_qd_3_t_3 = 1.35*tube_eta_3
+        tube_qd_3_t_4 = (
+        inv_tube_w_1_t_157*(tube_S_dot_tip_y*tube_w_1_t_76 + tube_S_dot_tip_z*tube_w_1_t_77 +
+            tube_qd_3_t*tube_w_1_t_78 + tube_qd_3_t_2*tube_w_1_t_79 + tube_qd_3_t_3*tube_w_1_t_80)
+        )
+        tube_qd_3_t_5 = (
+        inv_tube_w_1_t_129*(tube_S_dot_tip_y*tube_w_1_t_64 + tube_S_dot_tip_z*tube_w_1_t_65 +
+            tube_qd_3_t*tube_w_1_t_66 + tube_qd_3_t_3*tube_w_1_t_68 - tube_qd_3_t_2*tube_w_1_t_67
+            - tube_qd_3_t_4*tube_w_1_t_69)
+        )
+        tube_qd_3_t_6 = (
+        inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_S_dot_tip_z + tube_S_dot_tip_y*tube_w_1_t_50 +
+            tube_qd_3_t*tube_w_1_t_51 + tube_qd_3_t_3*tube_w_1_t_52 + tube_qd_3_t_4*tube_w_1_t_58
+            + tube_qd_3_t_5*tube_w_1_t_53)
+        )
+        tube_qd_3_t_7 = (
+        tube_S_dot_tip_y*tube_w_1_t_14 + tube_qd_3_t*tube_w_1_t_15 + tube_qd_3_t_3*tube_w_1_t_16 +
+            tube_qd_3_t_6*tube_w_1_t_21 +
+            inv_tube_w_1_t_57*tube_w_1_t_17*(tube_S_dot_tip_y*tube_w_1_t_34 +
+            tube_qd_3_t*tube_w_1_t_35 + tube_qd_3_t_3*tube_w_1_t_36 + tube_qd_3_t_4*tube_w_1_t_45
+            + tube_qd_3_t_5*tube_w_1_t_41 - tube_qd_3_t_6*tube_w_1_t_37) -
+            tube_qd_3_t_4*tube_w_1_t_29 - tube_qd_3_t_5*tube_w_1_t_25
+        )
+        tube_qd_3_t_8 = inv_tube_w_1_t_16*tube_qd_3_t_7
+        # (tube-omega_1) angular velocity of link 1
+        tube_omega_1_t = tube_qd_3_t_4*tube_s_2
+        tube_omega_1_t_2 = tube_c_2*tube_qd_3_t_4
+        # (tube-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        tube_zeta_2_x = tube_omega_1_t_2*tube_qd_3_t_8
+        tube_zeta_2_y = tube_omega_1_t*tube_qd_3_t_8
+        # (tube-W_2) centripetal tensor of link 2
+        tube_W_2_t = tube_omega_1_t*tube_omega_1_t
+        tube_W_2_t_2 = tube_omega_1_t_2*tube_omega_1_t_2
+        tube_W_2_t_3 = tube_qd_3_t_8*tube_qd_3_t_8
+        tube_W_2_xy = tube_omega_1_t*tube_omega_1_t_2
+        # (tube-bias) acceleration of the connection point at zero joint accelerations
+        tube_bias_t = tube_root_2*tube_zeta_2_y
+        tube_bias_t_2 = tube_W_2_xy*tube_root_2
+        tube_bias_t_3 = 2.0*tube_S_dot_tip_x
+        tube_bias_t_4 = tube_bias_t_3*tube_qd_3_t_8
+        tube_bias_t_5 = tube_bias_t_3*tube_omega_1_t_2
+        tube_bias_y = tube_bias_t_4 - tube_bias_t_2
+        tube_bias_z = 2.0*tube_bias_t + tube_bias_t_5
+        # (tube-nd_m1) rate of moment direction 1
+        tube_nd_m1_y = (
+        tube_end_p1_r3_x*tube_omega_1_t_2 + tube_end_p1_r3_x*tube_omega_tip_y -
+            tube_end_p1_r3_y*tube_omega_tip_x
+        )
+        tube_nd_m1_z = (
+        tube_end_p1_r3_x*tube_omega_tip_z - tube_end_p1_r1_x*tube_omega_tip_x -
+            tube_end_p1_r3_x*tube_qd_3_t_8
+        )
+        # (tube-nu_1) bias of the angular acceleration along moment direction 1
+        tube_nu_1_t = tube_omega_1_t - tube_omega_tip_x
+        tube_nu_1_t_2 = tube_omega_1_t_2 + tube_omega_tip_y
+        tube_nu_1_t_3 = tube_omega_tip_z - tube_qd_3_t_8
+        tube_nu_1_t_4 = (
+        tube_nd_m1_y*tube_nu_1_t_2 + tube_nd_m1_z*tube_nu_1_t_3 -
+            tube_nu_1_t*(tube_end_p1_r1_x*tube_qd_3_t_8 - tube_end_p1_r3_y*tube_omega_1_t_2)
+        )
+        tube_nu_1 = tube_nu_1_t_4 - tube_end_p1_r1_x*tube_zeta_2_y
+        # (tube-nd_m2) rate of moment direction 2
+        tube_nd_m2_x = (
+        tube_end_p2_r1_x*tube_omega_tip_x - tube_end_p2_r1_x*tube_omega_1_t -
+            tube_end_p2_r3_x*tube_omega_tip_z
+        )
+        tube_nd_m2_y = (
+        tube_end_p2_r1_x*tube_omega_1_t_2 + tube_end_p2_r1_x*tube_omega_tip_y -
+            tube_end_p2_r3_y*tube_omega_tip_z
+        )
+        # (tube-nu_2) bias of the angular acceleration along moment direction 2
+        tube_nu_2_t = tube_end_p2_r3_y*tube_zeta_2_x - tube_end_p2_r3_x*tube_zeta_2_y
+        tube_nu_2_t_2 = (
+        tube_nd_m2_x*tube_nu_1_t + tube_nu_1_t_3*(tube_end_p2_r3_y*tube_omega_1_t_2 -
+            tube_end_p2_r3_x*tube_omega_1_t) - tube_nd_m2_y*tube_nu_1_t_2
+        )
+        tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2
+        # (tube-nd_m3) rate of moment direction 3
+        tube_nd_m3_x = (
+        tube_end_p3_r3_x*tube_omega_tip_y + tube_end_p3_r3_y*tube_omega_1_t -
+            tube_end_p3_r3_y*tube_omega_tip_x
+        )
+        tube_nd_m3_z = (
+        tube_end_p3_r1_x*tube_omega_tip_y + tube_end_p3_r3_y*tube_qd_3_t_8 -
+            tube_end_p3_r3_y*tube_omega_tip_z
+        )
+        # (tube-nu_3) bias of the angular acceleration along moment direction 3
+        tube_nu_3_t = (
+        tube_nd_m3_x*tube_nu_1_t + tube_nu_1_t_2*(tube_end_p3_r1_x*tube_qd_3_t_8 +
+            tube_end_p3_r3_x*tube_omega_1_t) - tube_nd_m3_z*tube_nu_1_t_3
+        )
+        tube_nu_3 = -tube_nu_3_t - tube_end_p3_r1_x*tube_zeta_2_x
+        # (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        tube_g_r1_x = tube_g_r0_y*tube_s_1 - tube_c_1*tube_g_r0_x
+        tube_g_r1_y = -tube_c_1*tube_g_r0_y - tube_g_r0_x*tube_s_1
+        tube_g_r3_x = tube_g_r0_z*tube_s_2 - tube_c_2*tube_g_r1_y
+        tube_g_r3_y = -tube_c_2*tube_g_r0_z - tube_g_r1_y*tube_s_2
+        # (tube-mu_c1) the moment that goes with it
+        tube_mu_c1_t = tube_end_p1_r1_x*tube_f_c1_t_4
+        tube_mu_c1_t_2 = tube_end_p3_r1_x*tube_f_c1_t_5
+        tube_mu_c1_z = -tube_end_p1_r3_y*tube_f_c1_t_4 - tube_end_p3_r3_x*tube_f_c1_t_5
+        tube_mu_c1_in_base_x = (
+        axis_x_tube_axes2_x*tube_mu_c1_t_2 + axis_y_tube_axes2_in_base_x*tube_mu_c1_t +
+            axis_z_tube_axes2_in_base_x*tube_mu_c1_z
+        )
+        tube_mu_c1_in_base_y = (
+        axis_x_tube_axes2_y*tube_mu_c1_t_2 + axis_y_tube_axes2_in_base_y*tube_mu_c1_t +
+            axis_z_tube_axes2_in_base_y*tube_mu_c1_z
+        )
+        tube_mu_c1_in_base_z = (
+        axis_x_tube_axes2_z*tube_mu_c1_t_2 + axis_y_tube_axes2_in_base_z*tube_mu_c1_t +
+            axis_z_tube_axes2_in_base_z*tube_mu_c1_z
+        )
+        # (tube-mu_c2) the moment that goes with it
+        tube_mu_c2_t = tube_end_p1_r1_x*tube_f_c2_t
+        tube_mu_c2_t_2 = tube_end_p3_r1_x*tube_f_c2_t_2
+        tube_mu_c2_z = tube_end_p3_r3_x*tube_f_c2_t_2 - tube_end_p1_r3_y*tube_f_c2_t
+        tube_mu_c2_in_base_x = (
+        axis_y_tube_axes2_in_base_x*tube_mu_c2_t + axis_z_tube_axes2_in_base_x*tube_mu_c2_z -
+            axis_x_tube_axes2_x*tube_mu_c2_t_2
+        )
+        tube_mu_c2_in_base_y = (
+        axis_y_tube_axes2_in_base_y*tube_mu_c2_t + axis_z_tube_axes2_in_base_y*tube_mu_c2_z -
+            axis_x_tube_axes2_y*tube_mu_c2_t_2
+        )
+        tube_mu_c2_in_base_z = (
+        axis_y_tube_axes2_in_base_z*tube_mu_c2_t + axis_z_tube_axes2_in_base_z*tube_mu_c2_z -
+            axis_x_tube_axes2_z*tube_mu_c2_t_2
+        )
+        # (tube-mu_c3) the moment that goes with it
+        tube_mu_c3_x = -inv_tube_size_c3*tube_end_p2_r3_y - tube_end_p3_r1_x*tube_mu3_c3
+        tube_mu_c3_y = inv_tube_size_c3*tube_end_p2_r3_x + tube_end_p1_r1_x*tube_mu1_c3
+        tube_mu_c3_z = tube_end_p3_r3_x*tube_mu3_c3 - tube_end_p1_r3_y*tube_mu1_c3
+        tube_mu_c3_in_base_x = (
+        axis_x_tube_axes2_x*tube_mu_c3_x + axis_y_tube_axes2_in_base_x*tube_mu_c3_y +
+            axis_z_tube_axes2_in_base_x*tube_mu_c3_z
+        )
+        tube_mu_c3_in_base_y = (
+        axis_x_tube_axes2_y*tube_mu_c3_x + axis_y_tube_axes2_in_base_y*tube_mu_c3_y +
+            axis_z_tube_axes2_in_base_y*tube_mu_c3_z
+        )
+        tube_mu_c3_in_base_z = (
+        axis_x_tube_axes2_z*tube_mu_c3_x + axis_y_tube_axes2_in_base_z*tube_mu_c3_y +
+            axis_z_tube_axes2_in_base_z*tube_mu_c3_z
+        )
+        # (tube-a_p) acceleration of the connection point without its centripetal part
+        tube_a_p_x = t_ddot_x + alpha_y*tube_q_in_base_z - alpha_z*tube_q_in_base_y
+        tube_a_p_y = t_ddot_y + alpha_z*tube_q_in_base_x - alpha_x*tube_q_in_base_z
+        tube_a_p_z = t_ddot_z + alpha_x*tube_q_in_base_y - alpha_y*tube_q_in_base_x
+        # (tube-S_ddot) acceleration of the connection point
+        tube_S_ddot_x = tube_a_p_x + omega_y*tube_S_dot_t_3 - omega_z*tube_S_dot_t_2
+        tube_S_ddot_y = tube_a_p_y + omega_z*tube_S_dot_t - omega_x*tube_S_dot_t_3
+        tube_S_ddot_z = tube_a_p_z + omega_x*tube_S_dot_t_2 - omega_y*tube_S_dot_t
+        # (tube-rel) acceleration of the connection point left to the joint accelerations
+        tube_rel_y = (
+        axis_y_tube_axes2_in_base_x*tube_S_ddot_x + axis_y_tube_axes2_in_base_y*tube_S_ddot_y +
+            axis_y_tube_axes2_in_base_z*tube_S_ddot_z - tube_bias_y
+        )
+        tube_rel_z = (
+        axis_z_tube_axes2_in_base_x*tube_S_ddot_x + axis_z_tube_axes2_in_base_y*tube_S_ddot_y +
+            axis_z_tube_axes2_in_base_z*tube_S_ddot_z - tube_bias_z
+        )
+        # (tube-etad_1) acceleration with which the joints turn along moment direction 1
+        tube_alpha_tip_x = (
+        alpha_x*axis_x_tube_axes2_x + alpha_y*axis_x_tube_axes2_y + alpha_z*axis_x_tube_axes2_z
+        )
+        tube_alpha_tip_y = (
+        alpha_x*axis_y_tube_axes2_in_base_x + alpha_y*axis_y_tube_axes2_in_base_y +
+            alpha_z*axis_y_tube_axes2_in_base_z
+        )
+        tube_alpha_tip_z = (
+        alpha_x*axis_z_tube_axes2_in_base_x + alpha_y*axis_z_tube_axes2_in_base_y +
+            alpha_z*axis_z_tube_axes2_in_base_z
+        )
+        tube_etad_1_t = tube_alpha_tip_y*tube_end_p1_r1_x - tube_alpha_tip_z*tube_end_p1_r3_y
+        tube_etad_1 = tube_nu_1 - tube_etad_1_t
+        # (tube-etad_2) acceleration with which the joints turn along moment direction 2
+        tube_etad_2_t = tube_alpha_tip_x*tube_end_p2_r3_y - tube_alpha_tip_y*tube_end_p2_r3_x
+        tube_etad_2 = tube_nu_2 - tube_etad_2_t
+        # (tube-etad_3) acceleration with which the joints turn along moment direction 3
+        tube_etad_3_t = tube_alpha_tip_x*tube_end_p3_r1_x - tube_alpha_tip_z*tube_end_p3_r3_x
+        tube_etad_3 = tube_nu_3 - tube_etad_3_t
+        # (tube-qdd_1) acceleration of joint 1
+        tube_qdd_1_t = 1.35*tube_etad_1
+        tube_qdd_1_t_2 = 1.35*tube_etad_2
+        tube_qdd_1_t_3 = 1.35*tube_etad_3
+        tube_qdd_1_t_4 = (
+        inv_tube_w_1_t_157*(tube_qdd_1_t*tube_w_1_t_78 + tube_qdd_1_t_2*tube_w_1_t_79 +
+            tube_qdd_1_t_3*tube_w_1_t_80 + tube_rel_y*tube_w_1_t_76 + tube_rel_z*tube_w_1_t_77)
+        )
+        tube_qdd_1_t_5 = (
+        inv_tube_w_1_t_129*(tube_qdd_1_t*tube_w_1_t_66 + tube_qdd_1_t_3*tube_w_1_t_68 +
+            tube_rel_y*tube_w_1_t_64 + tube_rel_z*tube_w_1_t_65 - tube_qdd_1_t_2*tube_w_1_t_67 -
+            tube_qdd_1_t_4*tube_w_1_t_69)
+        )
+        tube_qdd_1_t_6 = (
+        inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_rel_z + tube_qdd_1_t*tube_w_1_t_51 +
+            tube_qdd_1_t_3*tube_w_1_t_52 + tube_qdd_1_t_4*tube_w_1_t_58 +
+            tube_qdd_1_t_5*tube_w_1_t_53 + tube_rel_y*tube_w_1_t_50)
+        )
+        tube_qdd_1_t_7 = (
+        tube_qdd_1_t*tube_w_1_t_15 + tube_qdd_1_t_3*tube_w_1_t_16 + tube_qdd_1_t_6*tube_w_1_t_21 +
+            tube_rel_y*tube_w_1_t_14 + inv_tube_w_1_t_57*tube_w_1_t_17*(tube_qdd_1_t*tube_w_1_t_35
+            + tube_qdd_1_t_3*tube_w_1_t_36 + tube_qdd_1_t_4*tube_w_1_t_45 +
+            tube_qdd_1_t_5*tube_w_1_t_41 + tube_rel_y*tube_w_1_t_34 -
+            tube_qdd_1_t_6*tube_w_1_t_37) - tube_qdd_1_t_4*tube_w_1_t_29 -
+            tube_qdd_1_t_5*tube_w_1_t_25
+        )
+        tube_qdd_1_t_8 = inv_tube_w_1_t_16*tube_qdd_1_t_7
+        # (tube-alpha_1) angular acceleration of link 1
+        tube_alpha_1_t = tube_qdd_1_t_4*tube_s_2
+        tube_alpha_1_t_2 = tube_c_2*tube_qdd_1_t_4
+        # (tube-alpha_2) angular acceleration of link 2
+        tube_alpha_2_x = tube_alpha_1_t - tube_zeta_2_x
+        tube_alpha_2_y = -tube_alpha_1_t_2 - tube_zeta_2_y
+        # (tube-B_2) acceleration tensor of link 2
+        tube_B_2_xy = -tube_W_2_xy - tube_qdd_1_t_8
+        tube_B_2_yx = tube_qdd_1_t_8 - tube_W_2_xy
+        tube_B_2_zx = tube_zeta_2_y - tube_alpha_2_y
+        tube_B_2_zy = tube_alpha_2_x - tube_zeta_2_x
+        # (tube-acc_3) acceleration of the reference point of link 3, less gravity
+        tube_acc_3_x = (
+        axis_x_tube_axes2_x*tube_S_ddot_x + axis_x_tube_axes2_y*tube_S_ddot_y +
+            axis_x_tube_axes2_z*tube_S_ddot_z - tube_g_r3_x
+        )
+        tube_acc_3_y = tube_bias_t_4 + tube_qdd_1_t_8*tube_root_2 - tube_bias_t_2 - tube_g_r3_y
+        tube_acc_3_z = tube_bias_t + tube_bias_t_5 - tube_g_r1_x - tube_alpha_2_y*tube_root_2
+        # (tube-f_3) inertia force of link 3 less its weight
+        tube_f_3_x = (
+        tube_acc_3_x*tube_link3_mass - tube_B_2_xy*tube_h_3_z - tube_alpha_1_t_2*tube_h_3_y -
+            tube_h_3_x*(tube_W_2_t_2 + tube_W_2_t_3)
+        )
+        tube_f_3_y = (
+        tube_B_2_yx*tube_h_3_x + tube_acc_3_y*tube_link3_mass + tube_h_3_z*(tube_W_2_t +
+            tube_W_2_t_3) - tube_alpha_1_t*tube_h_3_y
+        )
+        tube_f_3_z = (
+        tube_B_2_zx*tube_h_3_x + tube_acc_3_z*tube_link3_mass - tube_B_2_zy*tube_h_3_z -
+            tube_h_3_y*(tube_W_2_t + tube_W_2_t_2)
+        )
+        # (tube-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        tube_mu_2_x = (
+        tube_B_2_yx*tube_J_group_2_xz + tube_B_2_zy*tube_Sigma_2_yy +
+            tube_J_group_2_yz*(tube_W_2_t_2 - tube_W_2_t_3) + tube_Sigma_2_zz*tube_alpha_1_t +
+            tube_g_r1_x*tube_h_2_z + tube_g_r3_y*tube_h_2_y - tube_B_2_zx*tube_J_group_2_xy -
+            tube_acc_3_y*tube_h_3_y - tube_acc_3_z*tube_h_3_z
+        )
+        tube_mu_2_y = (
+        tube_B_2_zy*tube_J_group_2_xy + tube_acc_3_x*tube_h_3_y + tube_g_r1_x*tube_h_2_x -
+            tube_B_2_xy*tube_J_group_2_yz - tube_B_2_zx*tube_Sigma_2_xx -
+            tube_J_group_2_xz*(tube_W_2_t - tube_W_2_t_3) - tube_Sigma_2_zz*tube_alpha_1_t_2 -
+            tube_acc_3_z*tube_h_3_x - tube_g_r3_x*tube_h_2_y
+        )
+        tube_mu_2_z = (
+        tube_B_2_yx*tube_Sigma_2_xx + tube_J_group_2_xy*(tube_W_2_t - tube_W_2_t_2) +
+            tube_J_group_2_xz*tube_alpha_1_t + tube_acc_3_x*tube_h_3_z + tube_acc_3_y*tube_h_3_x -
+            tube_B_2_xy*tube_Sigma_2_yy - tube_J_group_2_yz*tube_alpha_1_t_2 -
+            tube_g_r3_x*tube_h_2_z - tube_g_r3_y*tube_h_2_x
+        )
+        # (tube-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        tube_N_2_y = tube_mu_2_y - tube_f_3_z*tube_root_2
+        tube_N_2_z = tube_mu_2_z + tube_f_3_y*tube_root_2
+        # (tube-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        tube_G_t = inv_tube_w_1_t_16*tube_N_2_z
+        tube_G_t_2 = inv_tube_w_1_t_57*tube_G_t*tube_w_1_t_17
+        tube_G_t_3 = inv_tube_w_1_t_95*(tube_G_t*tube_w_1_t_21 - tube_G_t_2*tube_w_1_t_37)
+        tube_G_t_4 = (
+        inv_tube_w_1_t_129*(tube_G_t_2*tube_w_1_t_41 + tube_G_t_3*tube_w_1_t_53 -
+            tube_G_t*tube_w_1_t_25)
+        )
+        tube_G_t_5 = (
+        inv_tube_w_1_t_157*(tube_G_t_2*tube_w_1_t_45 + tube_G_t_3*tube_w_1_t_58 +
+            tube_mu_2_x*tube_s_2 - tube_G_t*tube_w_1_t_29 - tube_G_t_4*tube_w_1_t_69 -
+            tube_N_2_y*tube_c_2)
+        )
+        tube_G_t_6 = (
+        tube_G_t*tube_w_1_t_14 + tube_G_t_2*tube_w_1_t_34 + tube_G_t_3*tube_w_1_t_50 +
+            tube_G_t_4*tube_w_1_t_64 + tube_G_t_5*tube_w_1_t_76
+        )
+        tube_G_t_7 = (
+        inv_tube_w_1_t_95*tube_G_t_3 + tube_G_t_4*tube_w_1_t_65 + tube_G_t_5*tube_w_1_t_77
+        )
+        tube_G_t_8 = (
+        tube_G_t*tube_w_1_t_15 + tube_G_t_2*tube_w_1_t_35 + tube_G_t_3*tube_w_1_t_51 +
+            tube_G_t_4*tube_w_1_t_66 + tube_G_t_5*tube_w_1_t_78
+        )
+        tube_G_t_9 = 1.35*tube_G_t_8
+        tube_G_t_10 = tube_G_t_4*tube_w_1_t_67 - tube_G_t_5*tube_w_1_t_79
+        tube_G_t_11 = 1.35*tube_G_t_10
+        tube_G_t_12 = (
+        tube_G_t*tube_w_1_t_16 + tube_G_t_2*tube_w_1_t_36 + tube_G_t_3*tube_w_1_t_52 +
+            tube_G_t_4*tube_w_1_t_68 + tube_G_t_5*tube_w_1_t_80
+        )
+        tube_G_t_13 = 1.35*tube_G_t_12
+        # (tube-c) leg force on the platform without actuation and without the mass at the connection point
+        tube_c_in_base_x = (
+        -axis_x_tube_axes2_x*tube_f_3_x - axis_y_tube_axes2_in_base_x*tube_G_t_6 -
+            axis_z_tube_axes2_in_base_x*tube_G_t_7
+        )
+        tube_c_in_base_y = (
+        -axis_x_tube_axes2_y*tube_f_3_x - axis_y_tube_axes2_in_base_y*tube_G_t_6 -
+            axis_z_tube_axes2_in_base_y*tube_G_t_7
+        )
+        tube_c_in_base_z = (
+        -axis_x_tube_axes2_z*tube_f_3_x - axis_y_tube_axes2_in_base_z*tube_G_t_6 -
+            axis_z_tube_axes2_in_base_z*tube_G_t_7
+        )
+        # (tube-G_m) moment at the connection point that balances the leg's inertia and weight along all freedoms
+        tube_G_m_x = tube_G_t_11*tube_end_p2_r3_y - tube_G_t_13*tube_end_p3_r1_x
+        tube_G_m_y = -tube_G_t_11*tube_end_p2_r3_x - tube_G_t_9*tube_end_p1_r1_x
+        tube_G_m_z = tube_G_t_13*tube_end_p3_r3_x + tube_G_t_9*tube_end_p1_r3_y
+        # (tube-c_m) moment of the leg on the platform without actuation
+        tube_c_m_in_base_x = (
+        -axis_x_tube_axes2_x*tube_G_m_x - axis_y_tube_axes2_in_base_x*tube_G_m_y -
+            axis_z_tube_axes2_in_base_x*tube_G_m_z
+        )
+        tube_c_m_in_base_y = (
+        -axis_x_tube_axes2_y*tube_G_m_x - axis_y_tube_axes2_in_base_y*tube_G_m_y -
+            axis_z_tube_axes2_in_base_y*tube_G_m_z
+        )
+        tube_c_m_in_base_z = (
+        -axis_x_tube_axes2_z*tube_G_m_x - axis_y_tube_axes2_in_base_z*tube_G_m_y -
+            axis_z_tube_axes2_in_base_z*tube_G_m_z
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_up) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(rho2_2_up) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(f_c1_up_t_3) >
-            _TOLERANCE * 1.0) & (abs(size_c3_up) > _TOLERANCE * 1.0) & (abs(w_1_up_t_13) >
-            _TOLERANCE * 1.35) & (abs(w_1_up_t_33) > _TOLERANCE * 1.0) & (abs(w_1_up_t_49) >
-            _TOLERANCE * 1.0) & (abs(w_1_up_t_63) > _TOLERANCE * 1.35) & (abs(w_1_up_t_75) >
-            _TOLERANCE * 1.35))
+        ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_f_c1_t_3) > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) &
+            (abs(tube_w_1_t_13) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) &
+            (abs(tube_w_1_t_49) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) &
+            (abs(tube_w_1_t_75) > _TOLERANCE * 1.35))
         )
-        out_leg_force[_leg_force_up[0][leg]] = c_up_in_base_x
-        out_leg_force[_leg_force_up[1][leg]] = c_up_in_base_y
-        out_leg_force[_leg_force_up[2][leg]] = c_up_in_base_z
-        out_leg_force[_leg_force_up[3][leg]] = c_m_up_in_base_x
-        out_leg_force[_leg_force_up[4][leg]] = c_m_up_in_base_y
-        out_leg_force[_leg_force_up[5][leg]] = c_m_up_in_base_z
-        out_constraint_direction[_constraint_direction_up[0][leg]] = axis_y_up_axes2_in_base_x
-        out_constraint_direction[_constraint_direction_up[1][leg]] = axis_y_up_axes2_in_base_y
-        out_constraint_direction[_constraint_direction_up[2][leg]] = axis_y_up_axes2_in_base_z
-        out_constraint_direction[_constraint_direction_up[3][leg]] = mu_c1_up_in_base_x
-        out_constraint_direction[_constraint_direction_up[4][leg]] = mu_c1_up_in_base_y
-        out_constraint_direction[_constraint_direction_up[5][leg]] = mu_c1_up_in_base_z
-        out_constraint_direction[_constraint_direction_up[6][leg]] = axis_z_up_axes2_in_base_x
-        out_constraint_direction[_constraint_direction_up[7][leg]] = axis_z_up_axes2_in_base_y
-        out_constraint_direction[_constraint_direction_up[8][leg]] = axis_z_up_axes2_in_base_z
-        out_constraint_direction[_constraint_direction_up[9][leg]] = mu_c2_up_in_base_x
-        out_constraint_direction[_constraint_direction_up[10][leg]] = mu_c2_up_in_base_y
-        out_constraint_direction[_constraint_direction_up[11][leg]] = mu_c2_up_in_base_z
-        out_constraint_direction[_constraint_direction_up[12][leg]] = mu_c3_up_in_base_x
-        out_constraint_direction[_constraint_direction_up[13][leg]] = mu_c3_up_in_base_y
-        out_constraint_direction[_constraint_direction_up[14][leg]] = mu_c3_up_in_base_z
+        out_leg_force[_leg_force_tube[0][leg]] = tube_c_in_base_x
+        out_leg_force[_leg_force_tube[1][leg]] = tube_c_in_base_y
+        out_leg_force[_leg_force_tube[2][leg]] = tube_c_in_base_z
+        out_leg_force[_leg_force_tube[3][leg]] = tube_c_m_in_base_x
+        out_leg_force[_leg_force_tube[4][leg]] = tube_c_m_in_base_y
+        out_leg_force[_leg_force_tube[5][leg]] = tube_c_m_in_base_z
+        out_constraint_direction[_constraint_direction_tube[0][leg]] = axis_y_tube_axes2_in_base_x
+        out_constraint_direction[_constraint_direction_tube[1][leg]] = axis_y_tube_axes2_in_base_y
+        out_constraint_direction[_constraint_direction_tube[2][leg]] = axis_y_tube_axes2_in_base_z
+        out_constraint_direction[_constraint_direction_tube[3][leg]] = tube_mu_c1_in_base_x
+        out_constraint_direction[_constraint_direction_tube[4][leg]] = tube_mu_c1_in_base_y
+        out_constraint_direction[_constraint_direction_tube[5][leg]] = tube_mu_c1_in_base_z
+        out_constraint_direction[_constraint_direction_tube[6][leg]] = axis_z_tube_axes2_in_base_x
+        out_constraint_direction[_constraint_direction_tube[7][leg]] = axis_z_tube_axes2_in_base_y
+        out_constraint_direction[_constraint_direction_tube[8][leg]] = axis_z_tube_axes2_in_base_z
+        out_constraint_direction[_constraint_direction_tube[9][leg]] = tube_mu_c2_in_base_x
+        out_constraint_direction[_constraint_direction_tube[10][leg]] = tube_mu_c2_in_base_y
+        out_constraint_direction[_constraint_direction_tube[11][leg]] = tube_mu_c2_in_base_z
+        out_constraint_direction[_constraint_direction_tube[12][leg]] = tube_mu_c3_in_base_x
+        out_constraint_direction[_constraint_direction_tube[13][leg]] = tube_mu_c3_in_base_y
+        out_constraint_direction[_constraint_direction_tube[14][leg]] = tube_mu_c3_in_base_z
     return ok, (out_leg_force, out_drive, out_constraint_direction,)
 
 
@@ -9368,7 +10110,7 @@ def _run_potential(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_potential = m.zeros("potential")
-    # (V1) potential energy
+    # (potential) potential energy
     potential_t = (
     gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
         gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
@@ -9377,146 +10119,155 @@ def _run_potential(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        b_ups_r0_x, b_ups_r0_y, b_ups_r0_z, branch_1_ups, branch_2_ups, g_r0_x_2, g_r0_y_2,
-            g_r0_z_2, h_2_ups_x, h_2_ups_y, h_2_ups_z, h_3_ups_x, h_3_ups_y, h_3_ups_z,
-            ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-            ups_link2_mass, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_b_r0_x, ups_b_r0_y, ups_b_r0_z, ups_base_frame_xx, ups_base_frame_xy,
+            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
+            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x,
+            ups_g_r0_y, ups_g_r0_z, ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y,
+            ups_h_3_z, ups_link2_mass, ups_platform_point_x, ups_platform_point_y,
+            ups_platform_point_z,
         ) = k
-        # (ups-K1) from the base point to the connection point
-        S_ups_x = (
+        # (ups-S) from the base point to the connection point
+        ups_S_x = (
         t_x + R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z -
             ups_base_point_x
         )
-        S_ups_y = (
+        ups_S_y = (
         t_y + R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z -
             ups_base_point_y
         )
-        S_ups_z = (
+        ups_S_z = (
         t_z + R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z -
             ups_base_point_z
         )
-        # (ups-K2) component along the reference direction
-        px_1_ups = (
-        S_ups_x*ups_base_frame_xx + S_ups_y*ups_base_frame_yx + S_ups_z*ups_base_frame_zx
+        # (ups-px_1) component along the reference direction
+        ups_px_1 = (
+        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-K3) component across the reference direction
-        py_1_ups = (
-        S_ups_x*ups_base_frame_xy + S_ups_y*ups_base_frame_yy + S_ups_z*ups_base_frame_zy
+        # (ups-py_1) component across the reference direction
+        ups_py_1 = (
+        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-K4) squared amplitude
-        rho2_1_ups = px_1_ups*px_1_ups + py_1_ups*py_1_ups
-        # (ups-K5) amplitude, with the sign of the branch
-        root_1_ups = branch_1_ups*sqrt(rho2_1_ups)
-        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_ups_t = (
-        S_ups_x*ups_base_frame_xz + S_ups_y*ups_base_frame_yz + S_ups_z*ups_base_frame_zz
+        # (ups-rho2_1) squared amplitude
+        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
+        # (ups-root_1) amplitude, with the sign of the branch
+        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ups_xi_1_t = (
+        ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-K13) squared amplitude
-        rho2_2_ups = rho2_1_ups + xi_1_ups_t*xi_1_ups_t
-        # (ups-K14) amplitude, with the sign of the branch
-        root_2_ups = branch_2_ups*sqrt(rho2_2_ups)
-        # (ups-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2_ups = 1.0/root_2_ups
-        c_2_ups = inv_root_2_ups*root_1_ups
-        # (ups-K16) sine of the angle of joint 2 from its reference direction
-        s_2_ups = inv_root_2_ups*xi_1_ups_t
-        # (ups-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_ups = 1.0/root_1_ups
-        c_1_ups = inv_root_1_ups*py_1_ups
-        # (ups-K7) sine of the angle of joint 1 from its reference direction
-        s_1_ups = inv_root_1_ups*px_1_ups
-        # (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_y_2 = -c_1_ups*g_r0_y_2 - g_r0_x_2*s_1_ups
-        # (V1) potential energy
-        b_ups_r1_y = -b_ups_r0_x*s_1_ups - b_ups_r0_y*c_1_ups
-        potential_t_2 = (
-        (g_r0_y_2*s_1_ups - c_1_ups*g_r0_x_2)*(h_2_ups_y + h_3_ups_y +
-            ups_link2_mass*(b_ups_r0_y*s_1_ups - b_ups_r0_x*c_1_ups)) + (g_r0_z_2*s_2_ups -
-            c_2_ups*g_r1_y_2)*(h_2_ups_x + h_3_ups_x + ups_link2_mass*(b_ups_r0_z*s_2_ups -
-            b_ups_r1_y*c_2_ups)) - (-c_2_ups*g_r0_z_2 - g_r1_y_2*s_2_ups)*(h_2_ups_z + h_3_ups_z -
-            ups_link2_mass*(-b_ups_r0_z*c_2_ups - b_ups_r1_y*s_2_ups))
+        # (ups-rho2_2) squared amplitude
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        # (ups-root_2) amplitude, with the sign of the branch
+        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_root_2 = 1.0/ups_root_2
+        ups_c_2 = inv_ups_root_2*ups_root_1
+        # (ups-s_2) sine of the angle of joint 2 from its reference direction
+        ups_s_2 = inv_ups_root_2*ups_xi_1_t
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
+        # (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1
+        # (potential) potential energy
+        ups_b_r1_y = -ups_b_r0_x*ups_s_1 - ups_b_r0_y*ups_c_1
+        ups_potential_t = (
+        (ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x)*(ups_h_2_y + ups_h_3_y +
+            ups_link2_mass*(ups_b_r0_y*ups_s_1 - ups_b_r0_x*ups_c_1)) + (ups_g_r0_z*ups_s_2 -
+            ups_c_2*ups_g_r1_y)*(ups_h_2_x + ups_h_3_x + ups_link2_mass*(ups_b_r0_z*ups_s_2 -
+            ups_b_r1_y*ups_c_2)) - (-ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2)*(ups_h_2_z +
+            ups_h_3_z - ups_link2_mass*(-ups_b_r0_z*ups_c_2 - ups_b_r1_y*ups_s_2))
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_ups) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
-            (abs(rho2_2_ups) > _TOLERANCE * _TOLERANCE * 1.9124953849))
+        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
+            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849))
         )
         sums = m.added(sums, leg, (
-        potential_t_2,
+        ups_potential_t,
         ))
     total_ups, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
         (
-        b_up_r0_x, b_up_r0_y, b_up_r0_z, branch_1_up, branch_2_up, g_r0_x, g_r0_y, g_r0_z,
-            h_2_up_x, h_2_up_y, h_2_up_z, h_3_up_x, h_3_up_y, h_3_up_z, up_base_frame_xx,
-            up_base_frame_xy, up_base_frame_xz, up_base_frame_yx, up_base_frame_yy,
-            up_base_frame_yz, up_base_frame_zx, up_base_frame_zy, up_base_frame_zz,
-            up_base_point_x, up_base_point_y, up_base_point_z, up_link2_mass, up_link3_mass,
-            up_platform_point_x, up_platform_point_y, up_platform_point_z,
+        tube_b_r0_x, tube_b_r0_y, tube_b_r0_z, tube_base_frame_xx, tube_base_frame_xy,
+            tube_base_frame_xz, tube_base_frame_yx, tube_base_frame_yy, tube_base_frame_yz,
+            tube_base_frame_zx, tube_base_frame_zy, tube_base_frame_zz, tube_base_point_x,
+            tube_base_point_y, tube_base_point_z, tube_branch_1, tube_branch_2, tube_g_r0_x,
+            tube_g_r0_y, tube_g_r0_z, tube_h_2_x, tube_h_2_y, tube_h_2_z, tube_h_3_x, tube_h_3_y,
+            tube_h_3_z, tube_link2_mass, tube_link3_mass, tube_platform_point_x,
+            tube_platform_point_y, tube_platform_point_z,
         ) = k
-        # (up-K1) from the base point to the connection point
-        S_up_x = (
-        t_x + R_xx*up_platform_point_x + R_xy*up_platform_point_y + R_xz*up_platform_point_z -
-            up_base_point_x
+        # (tube-S) from the base point to the connection point
+        tube_S_x = (
+        t_x + R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
+            - tube_base_point_x
         )
-        S_up_y = (
-        t_y + R_yx*up_platform_point_x + R_yy*up_platform_point_y + R_yz*up_platform_point_z -
-            up_base_point_y
+        tube_S_y = (
+        t_y + R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
+            - tube_base_point_y
         )
-        S_up_z = (
-        t_z + R_zx*up_platform_point_x + R_zy*up_platform_point_y + R_zz*up_platform_point_z -
-            up_base_point_z
+        tube_S_z = (
+        t_z + R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
+            - tube_base_point_z
         )
-        # (up-K2) component along the reference direction
-        px_1_up = S_up_x*up_base_frame_xx + S_up_y*up_base_frame_yx + S_up_z*up_base_frame_zx
-        # (up-K3) component across the reference direction
-        py_1_up = S_up_x*up_base_frame_xy + S_up_y*up_base_frame_yy + S_up_z*up_base_frame_zy
-        # (up-K4) squared amplitude
-        rho2_1_up = px_1_up*px_1_up + py_1_up*py_1_up
-        # (up-K5) amplitude, with the sign of the branch
-        root_1_up = branch_1_up*sqrt(rho2_1_up)
-        # (up-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_up_t = S_up_x*up_base_frame_xz + S_up_y*up_base_frame_yz + S_up_z*up_base_frame_zz
-        # (up-K13) squared amplitude
-        rho2_2_up = rho2_1_up + xi_1_up_t*xi_1_up_t
-        # (up-K14) amplitude, with the sign of the branch
-        root_2_up = branch_2_up*sqrt(rho2_2_up)
-        # (up-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2_up = 1.0/root_2_up
-        c_2_up = inv_root_2_up*root_1_up
-        # (up-K16) sine of the angle of joint 2 from its reference direction
-        s_2_up = inv_root_2_up*xi_1_up_t
-        # (up-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_up = 1.0/root_1_up
-        c_1_up = inv_root_1_up*py_1_up
-        # (up-K7) sine of the angle of joint 1 from its reference direction
-        s_1_up = inv_root_1_up*px_1_up
-        # (up-N6) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        g_r1_y = -c_1_up*g_r0_y - g_r0_x*s_1_up
-        # (V1) potential energy
-        b_up_r1_x = b_up_r0_y*s_1_up - b_up_r0_x*c_1_up
-        b_up_r1_y = -b_up_r0_x*s_1_up - b_up_r0_y*c_1_up
-        b_up_r3_x = b_up_r0_z*s_2_up - b_up_r1_y*c_2_up
-        b_up_r3_y = -b_up_r0_z*c_2_up - b_up_r1_y*s_2_up
-        potential_t_3 = (
-        (g_r0_y*s_1_up - c_1_up*g_r0_x)*(h_2_up_y + h_3_up_y + b_up_r1_x*up_link2_mass +
-            b_up_r1_x*up_link3_mass) + (g_r0_z*s_2_up - c_2_up*g_r1_y)*(h_2_up_x + h_3_up_x +
-            b_up_r3_x*up_link2_mass + up_link3_mass*(b_up_r3_x + root_2_up)) - (-c_2_up*g_r0_z -
-            g_r1_y*s_2_up)*(h_2_up_z + h_3_up_z - b_up_r3_y*up_link2_mass -
-            b_up_r3_y*up_link3_mass)
+        # (tube-px_1) component along the reference direction
+        tube_px_1 = (
+        tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
+        )
+        # (tube-py_1) component across the reference direction
+        tube_py_1 = (
+        tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
+        )
+        # (tube-rho2_1) squared amplitude
+        tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
+        # (tube-root_1) amplitude, with the sign of the branch
+        tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
+        # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        tube_xi_1_t = (
+        tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
+        )
+        # (tube-rho2_2) squared amplitude
+        tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t
+        # (tube-root_2) amplitude, with the sign of the branch
+        tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
+        # (tube-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_tube_root_2 = 1.0/tube_root_2
+        tube_c_2 = inv_tube_root_2*tube_root_1
+        # (tube-s_2) sine of the angle of joint 2 from its reference direction
+        tube_s_2 = inv_tube_root_2*tube_xi_1_t
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = inv_tube_root_1*tube_py_1
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_px_1
+        # (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        tube_g_r1_y = -tube_c_1*tube_g_r0_y - tube_g_r0_x*tube_s_1
+        # (potential) potential energy
+        tube_b_r1_x = tube_b_r0_y*tube_s_1 - tube_b_r0_x*tube_c_1
+        tube_b_r1_y = -tube_b_r0_x*tube_s_1 - tube_b_r0_y*tube_c_1
+        tube_b_r3_x = tube_b_r0_z*tube_s_2 - tube_b_r1_y*tube_c_2
+        tube_b_r3_y = -tube_b_r0_z*tube_c_2 - tube_b_r1_y*tube_s_2
+        tube_potential_t = (
+        (tube_g_r0_y*tube_s_1 - tube_c_1*tube_g_r0_x)*(tube_h_2_y + tube_h_3_y +
+            tube_b_r1_x*tube_link2_mass + tube_b_r1_x*tube_link3_mass) + (tube_g_r0_z*tube_s_2 -
+            tube_c_2*tube_g_r1_y)*(tube_h_2_x + tube_h_3_x + tube_b_r3_x*tube_link2_mass +
+            tube_link3_mass*(tube_b_r3_x + tube_root_2)) - (-tube_c_2*tube_g_r0_z -
+            tube_g_r1_y*tube_s_2)*(tube_h_2_z + tube_h_3_z - tube_b_r3_y*tube_link2_mass -
+            tube_b_r3_y*tube_link3_mass)
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1_up) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(rho2_2_up) > _TOLERANCE * _TOLERANCE * 1.8225000000000002))
+        ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002))
         )
         sums = m.added(sums, leg, (
-        potential_t_3,
+        tube_potential_t,
         ))
-    total_up, = sums
-    # (V1) potential energy
-    potential = -potential_t - total_up - total_ups
+    total_tube, = sums
+    # (potential) potential energy
+    potential = -potential_t - total_tube - total_ups
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -9574,448 +10325,500 @@ def _run_condition(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        branch_1_ups, branch_2_ups, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-            ups_base_point_z, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
+            ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
-        # (ups-K1) from the base point to the connection point
-        q_ups_in_base_x = (
+        # (ups-S) from the base point to the connection point
+        ups_q_in_base_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        q_ups_in_base_y = (
+        ups_q_in_base_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        q_ups_in_base_z = (
+        ups_q_in_base_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        S_ups_x = q_ups_in_base_x + t_x - ups_base_point_x
-        S_ups_y = q_ups_in_base_y + t_y - ups_base_point_y
-        S_ups_z = q_ups_in_base_z + t_z - ups_base_point_z
-        # (ups-K2) component along the reference direction
-        px_1_ups = (
-        S_ups_x*ups_base_frame_xx + S_ups_y*ups_base_frame_yx + S_ups_z*ups_base_frame_zx
+        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        # (ups-px_1) component along the reference direction
+        ups_px_1 = (
+        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-K3) component across the reference direction
-        py_1_ups = (
-        S_ups_x*ups_base_frame_xy + S_ups_y*ups_base_frame_yy + S_ups_z*ups_base_frame_zy
+        # (ups-py_1) component across the reference direction
+        ups_py_1 = (
+        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-K4) squared amplitude
-        rho2_1_ups = px_1_ups*px_1_ups + py_1_ups*py_1_ups
-        # (ups-K5) amplitude, with the sign of the branch
-        root_1_ups = branch_1_ups*sqrt(rho2_1_ups)
-        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_ups_t = (
-        S_ups_x*ups_base_frame_xz + S_ups_y*ups_base_frame_yz + S_ups_z*ups_base_frame_zz
+        # (ups-rho2_1) squared amplitude
+        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
+        # (ups-root_1) amplitude, with the sign of the branch
+        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        ups_xi_1_t = (
+        ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-K13) squared amplitude
-        rho2_2_ups = rho2_1_ups + xi_1_ups_t*xi_1_ups_t
-        # (ups-K14) amplitude, with the sign of the branch
-        root_2_ups = branch_2_ups*sqrt(rho2_2_ups)
-        # (ups-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2_ups = 1.0/root_2_ups
-        # (ups-V5) reciprocal vector 1
-        axis_x_x = S_ups_x*inv_root_2_ups
-        axis_x_y = S_ups_y*inv_root_2_ups
-        axis_x_z = S_ups_z*inv_root_2_ups
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_3_ups_x = axis_x_z*q_ups_in_base_y - axis_x_y*q_ups_in_base_z
-        H_a_3_ups_y = axis_x_x*q_ups_in_base_z - axis_x_z*q_ups_in_base_x
-        H_a_3_ups_z = axis_x_y*q_ups_in_base_x - axis_x_x*q_ups_in_base_y
-        # (C2) rms distance of the platform points from their centroid
-        spread_t_5 = b_c_x - ups_platform_point_x
-        spread_t_6 = b_c_y - ups_platform_point_y
-        spread_t_7 = b_c_z - ups_platform_point_z
-        spread_t_8 = spread_t_5*spread_t_5 + spread_t_6*spread_t_6 + spread_t_7*spread_t_7
-        # (ups-K4) squared amplitude
-        pivot_size = abs(rho2_1_ups)
-        # (ups-K13) squared amplitude
-        pivot_size_2 = abs(rho2_2_ups)
-        # (ups-V5) reciprocal vector 1
-        pivot_size_3 = abs(root_1_ups)
-        pivot_size_4 = abs(root_2_ups)
-        # (ups-N21) force at the connection point that balances the leg's inertia and weight along all freedoms
-        least_pivots = (
-        least(least(least(0.7231023985306559*sqrt(pivot_size),
-            0.7231023985306559*sqrt(pivot_size_2)), 0.7231023985306559*pivot_size_3),
-            0.7231023985306559*pivot_size_4)
+        # (ups-rho2_2) squared amplitude
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        # (ups-root_2) amplitude, with the sign of the branch
+        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_root_2 = 1.0/ups_root_2
+        # (ups-w_1) reciprocal vector 1
+        ups_axis_x_x = inv_ups_root_2*ups_S_x
+        ups_axis_x_y = inv_ups_root_2*ups_S_y
+        ups_axis_x_z = inv_ups_root_2*ups_S_z
+        # (ups-H_a_3) moment of the column's unit force about the platform origin
+        ups_H_a_3_x = ups_axis_x_z*ups_q_in_base_y - ups_axis_x_y*ups_q_in_base_z
+        ups_H_a_3_y = ups_axis_x_x*ups_q_in_base_z - ups_axis_x_z*ups_q_in_base_x
+        ups_H_a_3_z = ups_axis_x_y*ups_q_in_base_x - ups_axis_x_x*ups_q_in_base_y
+        # (spread) rms distance of the platform points from their centroid
+        ups_spread_t = b_c_x - ups_platform_point_x
+        ups_spread_t_2 = b_c_y - ups_platform_point_y
+        ups_spread_t_3 = b_c_z - ups_platform_point_z
+        ups_spread_t_4 = (
+        ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 + ups_spread_t_3*ups_spread_t_3
+        )
+        # (ups-rho2_1) squared amplitude
+        ups_pivot_size = abs(ups_rho2_1)
+        # (ups-rho2_2) squared amplitude
+        ups_pivot_size_2 = abs(ups_rho2_2)
+        # (ups-w_1) reciprocal vector 1
+        ups_pivot_size_3 = abs(ups_root_1)
+        ups_pivot_size_4 = abs(ups_root_2)
+        # (ups-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        ups_least_pivots = (
+        least(least(least(0.7231023985306559*sqrt(ups_pivot_size),
+            0.7231023985306559*sqrt(ups_pivot_size_2)), 0.7231023985306559*ups_pivot_size_3),
+            0.7231023985306559*ups_pivot_size_4)
         )
         clear = (
-        clear & m.every(leg, (abs(rho2_1_ups) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
-            (abs(rho2_2_ups) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(root_1_ups) >
-            _TOLERANCE * 1.38293) & (abs(root_2_ups) > _TOLERANCE * 1.38293))
+        clear & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
+            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) >
+            _TOLERANCE * 1.38293) & (abs(ups_root_2) > _TOLERANCE * 1.38293))
         )
         sums = m.added(sums, leg, (
-        spread_t_8,
+        ups_spread_t_4,
         ))
-        out_H[_H_ups[0][leg]] = axis_x_x
-        out_H[_H_ups[1][leg]] = axis_x_y
-        out_H[_H_ups[2][leg]] = axis_x_z
-        out_H[_H_ups[3][leg]] = H_a_3_ups_x
-        out_H[_H_ups[4][leg]] = H_a_3_ups_y
-        out_H[_H_ups[5][leg]] = H_a_3_ups_z
-        out_pivots[_pivots_ups[0][leg]] = least_pivots
+        out_H[_H_ups[0][leg]] = ups_axis_x_x
+        out_H[_H_ups[1][leg]] = ups_axis_x_y
+        out_H[_H_ups[2][leg]] = ups_axis_x_z
+        out_H[_H_ups[3][leg]] = ups_H_a_3_x
+        out_H[_H_ups[4][leg]] = ups_H_a_3_y
+        out_H[_H_ups[5][leg]] = ups_H_a_3_z
+        out_pivots[_pivots_ups[0][leg]] = ups_least_pivots
     total_ups, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
         (
-        branch_1_up, branch_2_up, up_base_frame_xx, up_base_frame_xy, up_base_frame_xz,
-            up_base_frame_yx, up_base_frame_yy, up_base_frame_yz, up_base_frame_zx,
-            up_base_frame_zy, up_base_frame_zz, up_base_point_x, up_base_point_y, up_base_point_z,
-            up_platform_joint_rotation_xx, up_platform_joint_rotation_xy,
-            up_platform_joint_rotation_xz, up_platform_joint_rotation_yx,
-            up_platform_joint_rotation_yy, up_platform_joint_rotation_yz,
-            up_platform_joint_rotation_zx, up_platform_joint_rotation_zy,
-            up_platform_joint_rotation_zz, up_platform_point_x, up_platform_point_y,
-            up_platform_point_z,
+        tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz, tube_base_frame_yx,
+            tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx, tube_base_frame_zy,
+            tube_base_frame_zz, tube_base_point_x, tube_base_point_y, tube_base_point_z,
+            tube_branch_1, tube_branch_2, tube_platform_joint_rotation_xx,
+            tube_platform_joint_rotation_xy, tube_platform_joint_rotation_xz,
+            tube_platform_joint_rotation_yx, tube_platform_joint_rotation_yy,
+            tube_platform_joint_rotation_yz, tube_platform_joint_rotation_zx,
+            tube_platform_joint_rotation_zy, tube_platform_joint_rotation_zz,
+            tube_platform_point_x, tube_platform_point_y, tube_platform_point_z,
         ) = k
-        # (up-K1) from the base point to the connection point
-        q_up_in_base_x = (
-        R_xx*up_platform_point_x + R_xy*up_platform_point_y + R_xz*up_platform_point_z
+        # (tube-S) from the base point to the connection point
+        tube_q_in_base_x = (
+        R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
         )
-        q_up_in_base_y = (
-        R_yx*up_platform_point_x + R_yy*up_platform_point_y + R_yz*up_platform_point_z
+        tube_q_in_base_y = (
+        R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
         )
-        q_up_in_base_z = (
-        R_zx*up_platform_point_x + R_zy*up_platform_point_y + R_zz*up_platform_point_z
+        tube_q_in_base_z = (
+        R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
         )
-        S_up_x = q_up_in_base_x + t_x - up_base_point_x
-        S_up_y = q_up_in_base_y + t_y - up_base_point_y
-        S_up_z = q_up_in_base_z + t_z - up_base_point_z
-        # (up-K2) component along the reference direction
-        px_1_up = S_up_x*up_base_frame_xx + S_up_y*up_base_frame_yx + S_up_z*up_base_frame_zx
-        # (up-K3) component across the reference direction
-        py_1_up = S_up_x*up_base_frame_xy + S_up_y*up_base_frame_yy + S_up_z*up_base_frame_zy
-        # (up-K4) squared amplitude
-        rho2_1_up = px_1_up*px_1_up + py_1_up*py_1_up
-        # (up-K5) amplitude, with the sign of the branch
-        root_1_up = branch_1_up*sqrt(rho2_1_up)
-        # (up-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_up_t = S_up_x*up_base_frame_xz + S_up_y*up_base_frame_yz + S_up_z*up_base_frame_zz
-        # (up-K13) squared amplitude
-        rho2_2_up = rho2_1_up + xi_1_up_t*xi_1_up_t
-        # (up-K14) amplitude, with the sign of the branch
-        root_2_up = branch_2_up*sqrt(rho2_2_up)
-        # (up-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2_up = 1.0/root_2_up
-        c_2_up = inv_root_2_up*root_1_up
-        # (up-K16) sine of the angle of joint 2 from its reference direction
-        s_2_up = inv_root_2_up*xi_1_up_t
-        # (up-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1_up = 1.0/root_1_up
-        c_1_up = inv_root_1_up*py_1_up
-        # (up-K7) sine of the angle of joint 1 from its reference direction
-        s_1_up = inv_root_1_up*px_1_up
-        # (up-V8) force part of the wrench that does no work along the leg's freedoms, 1
-        axis_z_up_axes2_in_base_x = s_1_up*up_base_frame_xy - c_1_up*up_base_frame_xx
-        axis_z_up_axes2_in_base_y = s_1_up*up_base_frame_yy - c_1_up*up_base_frame_yx
-        axis_z_up_axes2_in_base_z = s_1_up*up_base_frame_zy - c_1_up*up_base_frame_zx
-        f_c1_up_t = s_1_up*s_2_up
-        f_c1_up_t_2 = c_1_up*s_2_up
-        axis_y_up_axes2_in_base_x = (
-        f_c1_up_t*up_base_frame_xx + f_c1_up_t_2*up_base_frame_xy - c_2_up*up_base_frame_xz
+        tube_S_x = t_x + tube_q_in_base_x - tube_base_point_x
+        tube_S_y = t_y + tube_q_in_base_y - tube_base_point_y
+        tube_S_z = t_z + tube_q_in_base_z - tube_base_point_z
+        # (tube-px_1) component along the reference direction
+        tube_px_1 = (
+        tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
         )
-        axis_y_up_axes2_in_base_y = (
-        f_c1_up_t*up_base_frame_yx + f_c1_up_t_2*up_base_frame_yy - c_2_up*up_base_frame_yz
+        # (tube-py_1) component across the reference direction
+        tube_py_1 = (
+        tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
         )
-        axis_y_up_axes2_in_base_z = (
-        f_c1_up_t*up_base_frame_zx + f_c1_up_t_2*up_base_frame_zy - c_2_up*up_base_frame_zz
+        # (tube-rho2_1) squared amplitude
+        tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
+        # (tube-root_1) amplitude, with the sign of the branch
+        tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
+        # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        tube_xi_1_t = (
+        tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
-        axis_x_up_axes2_x = (
-        axis_y_up_axes2_in_base_y*axis_z_up_axes2_in_base_z -
-            axis_y_up_axes2_in_base_z*axis_z_up_axes2_in_base_y
+        # (tube-rho2_2) squared amplitude
+        tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t
+        # (tube-root_2) amplitude, with the sign of the branch
+        tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
+        # (tube-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_tube_root_2 = 1.0/tube_root_2
+        tube_c_2 = inv_tube_root_2*tube_root_1
+        # (tube-s_2) sine of the angle of joint 2 from its reference direction
+        tube_s_2 = inv_tube_root_2*tube_xi_1_t
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = inv_tube_root_1*tube_py_1
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_px_1
+        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        axis_z_tube_axes2_in_base_x = tube_base_frame_xy*tube_s_1 - tube_base_frame_xx*tube_c_1
+        axis_z_tube_axes2_in_base_y = tube_base_frame_yy*tube_s_1 - tube_base_frame_yx*tube_c_1
+        axis_z_tube_axes2_in_base_z = tube_base_frame_zy*tube_s_1 - tube_base_frame_zx*tube_c_1
+        tube_f_c1_t = tube_s_1*tube_s_2
+        tube_f_c1_t_2 = tube_c_1*tube_s_2
+        axis_y_tube_axes2_in_base_x = (
+        tube_base_frame_xx*tube_f_c1_t + tube_base_frame_xy*tube_f_c1_t_2 -
+            tube_base_frame_xz*tube_c_2
         )
-        axis_x_up_axes2_y = (
-        axis_y_up_axes2_in_base_z*axis_z_up_axes2_in_base_x -
-            axis_y_up_axes2_in_base_x*axis_z_up_axes2_in_base_z
+        axis_y_tube_axes2_in_base_y = (
+        tube_base_frame_yx*tube_f_c1_t + tube_base_frame_yy*tube_f_c1_t_2 -
+            tube_base_frame_yz*tube_c_2
         )
-        axis_x_up_axes2_z = (
-        axis_y_up_axes2_in_base_x*axis_z_up_axes2_in_base_y -
-            axis_y_up_axes2_in_base_y*axis_z_up_axes2_in_base_x
+        axis_y_tube_axes2_in_base_z = (
+        tube_base_frame_zx*tube_f_c1_t + tube_base_frame_zy*tube_f_c1_t_2 -
+            tube_base_frame_zz*tube_c_2
         )
-        # (up-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_up_t = R_xx*up_base_frame_xx + R_yx*up_base_frame_yx + R_zx*up_base_frame_zx
-        n_m1_up_t_2 = R_xy*up_base_frame_xx + R_yy*up_base_frame_yx + R_zy*up_base_frame_zx
-        n_m1_up_t_3 = R_xz*up_base_frame_xx + R_yz*up_base_frame_yx + R_zz*up_base_frame_zx
-        n_m1_up_t_4 = R_xx*up_base_frame_xy + R_yx*up_base_frame_yy + R_zx*up_base_frame_zy
-        n_m1_up_t_5 = R_xy*up_base_frame_xy + R_yy*up_base_frame_yy + R_zy*up_base_frame_zy
-        n_m1_up_t_6 = R_xz*up_base_frame_xy + R_yz*up_base_frame_yy + R_zz*up_base_frame_zy
-        n_m1_up_t_7 = R_xx*up_base_frame_xz + R_yx*up_base_frame_yz + R_zx*up_base_frame_zz
-        n_m1_up_t_8 = R_xy*up_base_frame_xz + R_yy*up_base_frame_yz + R_zy*up_base_frame_zz
-        n_m1_up_t_9 = R_xz*up_base_frame_xz + R_yz*up_base_frame_yz + R_zz*up_base_frame_zz
-        end_p1_up_r0_x = (
-        n_m1_up_t*up_platform_joint_rotation_yx + n_m1_up_t_2*up_platform_joint_rotation_yy +
-            n_m1_up_t_3*up_platform_joint_rotation_yz
+        axis_x_tube_axes2_x = (
+        axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_z -
+            axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_y
         )
-        end_p1_up_r0_y = (
-        n_m1_up_t_4*up_platform_joint_rotation_yx + n_m1_up_t_5*up_platform_joint_rotation_yy +
-            n_m1_up_t_6*up_platform_joint_rotation_yz
+        axis_x_tube_axes2_y = (
+        axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_x -
+            axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_z
         )
-        end_p1_up_r1_x = end_p1_up_r0_y*s_1_up - c_1_up*end_p1_up_r0_x
-        end_p1_up_r3_y = (
-        -c_2_up*(n_m1_up_t_7*up_platform_joint_rotation_yx +
-            n_m1_up_t_8*up_platform_joint_rotation_yy + n_m1_up_t_9*up_platform_joint_rotation_yz)
-            - s_2_up*(-c_1_up*end_p1_up_r0_y - end_p1_up_r0_x*s_1_up)
+        axis_x_tube_axes2_z = (
+        axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_y -
+            axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_x
         )
-        # (up-V6) direction 2 of the moment that the platform joint transmits
-        end_p2_up_r0_z = (
-        n_m1_up_t_7*up_platform_joint_rotation_zx + n_m1_up_t_8*up_platform_joint_rotation_zy +
-            n_m1_up_t_9*up_platform_joint_rotation_zz
+        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
+        tube_n_m1_t_2 = (
+        R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx + R_zy*tube_base_frame_zx
         )
-        end_p2_up_r1_y = (
-        -c_1_up*(n_m1_up_t_4*up_platform_joint_rotation_zx +
-            n_m1_up_t_5*up_platform_joint_rotation_zy + n_m1_up_t_6*up_platform_joint_rotation_zz)
-            - s_1_up*(n_m1_up_t*up_platform_joint_rotation_zx +
-            n_m1_up_t_2*up_platform_joint_rotation_zy + n_m1_up_t_3*up_platform_joint_rotation_zz)
+        tube_n_m1_t_3 = (
+        R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx + R_zz*tube_base_frame_zx
         )
-        end_p2_up_r3_x = end_p2_up_r0_z*s_2_up - c_2_up*end_p2_up_r1_y
-        end_p2_up_r3_y = -c_2_up*end_p2_up_r0_z - end_p2_up_r1_y*s_2_up
-        # (up-V7) direction 3 of the moment that the platform joint transmits
-        end_p3_up_r0_x = (
-        n_m1_up_t*up_platform_joint_rotation_xx + n_m1_up_t_2*up_platform_joint_rotation_xy +
-            n_m1_up_t_3*up_platform_joint_rotation_xz
+        tube_n_m1_t_4 = (
+        R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy + R_zx*tube_base_frame_zy
         )
-        end_p3_up_r0_y = (
-        n_m1_up_t_4*up_platform_joint_rotation_xx + n_m1_up_t_5*up_platform_joint_rotation_xy +
-            n_m1_up_t_6*up_platform_joint_rotation_xz
+        tube_n_m1_t_5 = (
+        R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy + R_zy*tube_base_frame_zy
         )
-        end_p3_up_r1_x = end_p3_up_r0_y*s_1_up - c_1_up*end_p3_up_r0_x
-        end_p3_up_r3_x = (
-        s_2_up*(n_m1_up_t_7*up_platform_joint_rotation_xx +
-            n_m1_up_t_8*up_platform_joint_rotation_xy + n_m1_up_t_9*up_platform_joint_rotation_xz)
-            - c_2_up*(-c_1_up*end_p3_up_r0_y - end_p3_up_r0_x*s_1_up)
+        tube_n_m1_t_6 = (
+        R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy + R_zz*tube_base_frame_zy
         )
-        # (up-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_up_t_10 = c_2_up*end_p1_up_r1_x
-        # (up-V6) direction 2 of the moment that the platform joint transmits
-        n_m2_up_r0_y = -c_2_up*end_p2_up_r3_x - end_p2_up_r3_y*s_2_up
-        # (up-V7) direction 3 of the moment that the platform joint transmits
-        n_m3_up_t = end_p3_up_r1_x*s_2_up
-        # (up-V8) force part of the wrench that does no work along the leg's freedoms, 1
-        f_c1_up_t_3 = end_p1_up_r3_y*n_m3_up_t + end_p3_up_r3_x*n_m1_up_t_10
-        inv_f_c1_up_t_26 = 1.0/f_c1_up_t_3
-        f_c1_up_t_4 = inv_f_c1_up_t_26*n_m3_up_t*root_2_up
-        f_c1_up_t_5 = inv_f_c1_up_t_26*n_m1_up_t_10*root_2_up
-        # (up-V12) force part of the wrench that does no work along the leg's freedoms, 2
-        f_c2_up_t = end_p3_up_r3_x*inv_f_c1_up_t_26*root_1_up
-        f_c2_up_t_2 = end_p1_up_r3_y*inv_f_c1_up_t_26*root_1_up
-        # (up-V16) force part of the wrench that does no work along the leg's freedoms, 3
-        f_c3_up_t = end_p3_up_r3_x*inv_f_c1_up_t_26*n_m2_up_r0_y
-        f_c3_up_t_2 = end_p1_up_r3_y*inv_f_c1_up_t_26*n_m2_up_r0_y
-        # (up-V32) size of the moment
-        size_c3_up = sqrt(1.0 + f_c3_up_t*f_c3_up_t + f_c3_up_t_2*f_c3_up_t_2)
-        # (up-V34) moment along direction 1 that goes with it
-        inv_size_c3_up = 1.0/size_c3_up
-        mu1_c3_up = f_c3_up_t*inv_size_c3_up
-        # (up-V36) moment along direction 3 that goes with it
-        mu3_c3_up = f_c3_up_t_2*inv_size_c3_up
-        # (up-V38) force part of reciprocal wrench 1
-        w_1_up_t = 1.35*n_m1_up_t_10
-        w_1_up_t_2 = 1.35*n_m2_up_r0_y
-        w_1_up_t_3 = 1.35*n_m3_up_t
-        w_1_up_t_4 = 1.35*end_p1_up_r3_y
-        w_1_up_t_5 = 1.35*end_p3_up_r3_x
-        w_1_up_t_6 = 1.35*f_c1_up_t_4
-        w_1_up_t_7 = 1.35*f_c1_up_t_5
-        w_1_up_t_8 = 1.35*f_c2_up_t
-        w_1_up_t_9 = 1.35*f_c2_up_t_2
-        w_1_up_t_10 = 1.35*mu1_c3_up
-        w_1_up_t_11 = 1.35*inv_size_c3_up
-        w_1_up_t_12 = 1.35*mu3_c3_up
-        w_1_up_t_13 = sqrt(rho2_2_up + w_1_up_t_4*w_1_up_t_4 + w_1_up_t_5*w_1_up_t_5)
-        inv_w_1_up_t_16 = 1.0/w_1_up_t_13
-        w_1_up_t_14 = inv_w_1_up_t_16*root_2_up
-        w_1_up_t_15 = inv_w_1_up_t_16*w_1_up_t_4
-        w_1_up_t_16 = inv_w_1_up_t_16*w_1_up_t_5
-        w_1_up_t_17 = w_1_up_t_15*w_1_up_t_6 + w_1_up_t_16*w_1_up_t_7 - w_1_up_t_14
-        w_1_up_t_18 = 1.0 + w_1_up_t_14*w_1_up_t_17
-        w_1_up_t_19 = w_1_up_t_15*w_1_up_t_17 - w_1_up_t_6
-        w_1_up_t_20 = w_1_up_t_16*w_1_up_t_17 - w_1_up_t_7
-        w_1_up_t_21 = w_1_up_t_15*w_1_up_t_8 - w_1_up_t_16*w_1_up_t_9
-        w_1_up_t_22 = w_1_up_t_14*w_1_up_t_21
-        w_1_up_t_23 = w_1_up_t_15*w_1_up_t_21 - w_1_up_t_8
-        w_1_up_t_24 = w_1_up_t_9 + w_1_up_t_16*w_1_up_t_21
-        w_1_up_t_25 = w_1_up_t_10*w_1_up_t_15 - w_1_up_t_12*w_1_up_t_16
-        w_1_up_t_26 = w_1_up_t_14*w_1_up_t_25
-        w_1_up_t_27 = w_1_up_t_10 - w_1_up_t_15*w_1_up_t_25
-        w_1_up_t_28 = w_1_up_t_12 + w_1_up_t_16*w_1_up_t_25
-        w_1_up_t_29 = w_1_up_t*w_1_up_t_15 - w_1_up_t_16*w_1_up_t_3
-        w_1_up_t_30 = w_1_up_t_14*w_1_up_t_29
-        w_1_up_t_31 = w_1_up_t - w_1_up_t_15*w_1_up_t_29
-        w_1_up_t_32 = w_1_up_t_3 + w_1_up_t_16*w_1_up_t_29
-        w_1_up_t_33 = (
-        sqrt(w_1_up_t_18*w_1_up_t_18 + w_1_up_t_19*w_1_up_t_19 + w_1_up_t_20*w_1_up_t_20)
+        tube_n_m1_t_7 = (
+        R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz + R_zx*tube_base_frame_zz
         )
-        inv_w_1_up_t_57 = 1.0/w_1_up_t_33
-        w_1_up_t_34 = inv_w_1_up_t_57*w_1_up_t_18
-        w_1_up_t_35 = inv_w_1_up_t_57*w_1_up_t_19
-        w_1_up_t_36 = inv_w_1_up_t_57*w_1_up_t_20
-        w_1_up_t_37 = w_1_up_t_22*w_1_up_t_34 + w_1_up_t_23*w_1_up_t_35 + w_1_up_t_24*w_1_up_t_36
-        w_1_up_t_38 = w_1_up_t_22 - w_1_up_t_34*w_1_up_t_37
-        w_1_up_t_39 = w_1_up_t_23 - w_1_up_t_35*w_1_up_t_37
-        w_1_up_t_40 = w_1_up_t_24 - w_1_up_t_36*w_1_up_t_37
-        w_1_up_t_41 = w_1_up_t_26*w_1_up_t_34 + w_1_up_t_28*w_1_up_t_36 - w_1_up_t_27*w_1_up_t_35
-        w_1_up_t_42 = w_1_up_t_26 - w_1_up_t_34*w_1_up_t_41
-        w_1_up_t_43 = w_1_up_t_27 + w_1_up_t_35*w_1_up_t_41
-        w_1_up_t_44 = w_1_up_t_28 - w_1_up_t_36*w_1_up_t_41
-        w_1_up_t_45 = w_1_up_t_30*w_1_up_t_34 + w_1_up_t_32*w_1_up_t_36 - w_1_up_t_31*w_1_up_t_35
-        w_1_up_t_46 = w_1_up_t_30 - w_1_up_t_34*w_1_up_t_45
-        w_1_up_t_47 = w_1_up_t_31 + w_1_up_t_35*w_1_up_t_45
-        w_1_up_t_48 = w_1_up_t_32 - w_1_up_t_36*w_1_up_t_45
-        w_1_up_t_49 = (
-        sqrt(1.0 + w_1_up_t_38*w_1_up_t_38 + w_1_up_t_39*w_1_up_t_39 + w_1_up_t_40*w_1_up_t_40)
+        tube_n_m1_t_8 = (
+        R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz + R_zy*tube_base_frame_zz
         )
-        inv_w_1_up_t_95 = 1.0/w_1_up_t_49
-        w_1_up_t_50 = inv_w_1_up_t_95*w_1_up_t_38
-        w_1_up_t_51 = inv_w_1_up_t_95*w_1_up_t_39
-        w_1_up_t_52 = inv_w_1_up_t_95*w_1_up_t_40
-        w_1_up_t_53 = w_1_up_t_42*w_1_up_t_50 + w_1_up_t_44*w_1_up_t_52 - w_1_up_t_43*w_1_up_t_51
-        w_1_up_t_54 = w_1_up_t_50*w_1_up_t_53 - w_1_up_t_42
-        w_1_up_t_55 = inv_w_1_up_t_95*w_1_up_t_53
-        w_1_up_t_56 = w_1_up_t_43 + w_1_up_t_51*w_1_up_t_53
-        w_1_up_t_57 = w_1_up_t_52*w_1_up_t_53 - w_1_up_t_44
-        w_1_up_t_58 = (
-        w_1_up_t_46*w_1_up_t_50 + w_1_up_t_48*w_1_up_t_52 - inv_w_1_up_t_95*root_1_up -
-            w_1_up_t_47*w_1_up_t_51
+        tube_n_m1_t_9 = (
+        R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz + R_zz*tube_base_frame_zz
         )
-        w_1_up_t_59 = w_1_up_t_50*w_1_up_t_58 - w_1_up_t_46
-        w_1_up_t_60 = root_1_up + inv_w_1_up_t_95*w_1_up_t_58
-        w_1_up_t_61 = w_1_up_t_47 + w_1_up_t_51*w_1_up_t_58
-        w_1_up_t_62 = w_1_up_t_52*w_1_up_t_58 - w_1_up_t_48
-        w_1_up_t_63 = (
-        sqrt(w_1_up_t_11*w_1_up_t_11 + w_1_up_t_54*w_1_up_t_54 + w_1_up_t_55*w_1_up_t_55 +
-            w_1_up_t_56*w_1_up_t_56 + w_1_up_t_57*w_1_up_t_57)
+        tube_end_p1_r0_x = (
+        tube_n_m1_t*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_yz
         )
-        inv_w_1_up_t_129 = 1.0/w_1_up_t_63
-        w_1_up_t_64 = inv_w_1_up_t_129*w_1_up_t_54
-        w_1_up_t_65 = inv_w_1_up_t_129*w_1_up_t_55
-        w_1_up_t_66 = inv_w_1_up_t_129*w_1_up_t_56
-        w_1_up_t_67 = inv_w_1_up_t_129*w_1_up_t_11
-        w_1_up_t_68 = inv_w_1_up_t_129*w_1_up_t_57
-        w_1_up_t_69 = (
-        w_1_up_t_59*w_1_up_t_64 + w_1_up_t_60*w_1_up_t_65 + w_1_up_t_61*w_1_up_t_66 +
-            w_1_up_t_62*w_1_up_t_68 - w_1_up_t_2*w_1_up_t_67
+        tube_end_p1_r0_y = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_yz
         )
-        w_1_up_t_70 = w_1_up_t_59 - w_1_up_t_64*w_1_up_t_69
-        w_1_up_t_71 = w_1_up_t_60 - w_1_up_t_65*w_1_up_t_69
-        w_1_up_t_72 = w_1_up_t_61 - w_1_up_t_66*w_1_up_t_69
-        w_1_up_t_73 = w_1_up_t_2 + w_1_up_t_67*w_1_up_t_69
-        w_1_up_t_74 = w_1_up_t_62 - w_1_up_t_68*w_1_up_t_69
-        w_1_up_t_75 = (
-        sqrt(w_1_up_t_70*w_1_up_t_70 + w_1_up_t_71*w_1_up_t_71 + w_1_up_t_72*w_1_up_t_72 +
-            w_1_up_t_73*w_1_up_t_73 + w_1_up_t_74*w_1_up_t_74)
+        tube_end_p1_r1_x = tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x
+        tube_end_p1_r3_y = (
+        -tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_yz) - tube_s_2*(-tube_c_1*tube_end_p1_r0_y
+            - tube_end_p1_r0_x*tube_s_1)
         )
-        # (up-V25) the moment that goes with it
-        mu_c1_up_t = end_p1_up_r1_x*f_c1_up_t_4
-        mu_c1_up_t_2 = end_p3_up_r1_x*f_c1_up_t_5
-        mu_c1_up_z = -end_p1_up_r3_y*f_c1_up_t_4 - end_p3_up_r3_x*f_c1_up_t_5
-        # (M9) moment of the column's unit force about the platform origin
-        Hk_a_1_up_x = (
-        axis_x_up_axes2_x*mu_c1_up_t_2 + axis_y_up_axes2_in_base_x*mu_c1_up_t +
-            axis_y_up_axes2_in_base_z*q_up_in_base_y + axis_z_up_axes2_in_base_x*mu_c1_up_z -
-            axis_y_up_axes2_in_base_y*q_up_in_base_z
+        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
+        tube_end_p2_r0_z = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_zz
         )
-        Hk_a_1_up_y = (
-        axis_x_up_axes2_y*mu_c1_up_t_2 + axis_y_up_axes2_in_base_x*q_up_in_base_z +
-            axis_y_up_axes2_in_base_y*mu_c1_up_t + axis_z_up_axes2_in_base_y*mu_c1_up_z -
-            axis_y_up_axes2_in_base_z*q_up_in_base_x
+        tube_end_p2_r1_y = (
+        -tube_c_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_zz) -
+            tube_s_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_zz)
         )
-        Hk_a_1_up_z = (
-        axis_x_up_axes2_z*mu_c1_up_t_2 + axis_y_up_axes2_in_base_y*q_up_in_base_x +
-            axis_y_up_axes2_in_base_z*mu_c1_up_t + axis_z_up_axes2_in_base_z*mu_c1_up_z -
-            axis_y_up_axes2_in_base_x*q_up_in_base_y
+        tube_end_p2_r3_x = tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y
+        tube_end_p2_r3_y = -tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2
+        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
+        tube_end_p3_r0_x = (
+        tube_n_m1_t*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_xz
         )
-        # (up-V31) the moment that goes with it
-        mu_c2_up_t = end_p1_up_r1_x*f_c2_up_t
-        mu_c2_up_t_2 = end_p3_up_r1_x*f_c2_up_t_2
-        mu_c2_up_z = end_p3_up_r3_x*f_c2_up_t_2 - end_p1_up_r3_y*f_c2_up_t
-        # (M12) moment of the column's unit force about the platform origin
-        Hk_a_2_up_x = (
-        axis_y_up_axes2_in_base_x*mu_c2_up_t + axis_z_up_axes2_in_base_x*mu_c2_up_z +
-            axis_z_up_axes2_in_base_z*q_up_in_base_y - axis_x_up_axes2_x*mu_c2_up_t_2 -
-            axis_z_up_axes2_in_base_y*q_up_in_base_z
+        tube_end_p3_r0_y = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_xz
         )
-        Hk_a_2_up_y = (
-        axis_y_up_axes2_in_base_y*mu_c2_up_t + axis_z_up_axes2_in_base_x*q_up_in_base_z +
-            axis_z_up_axes2_in_base_y*mu_c2_up_z - axis_x_up_axes2_y*mu_c2_up_t_2 -
-            axis_z_up_axes2_in_base_z*q_up_in_base_x
+        tube_end_p3_r1_x = tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x
+        tube_end_p3_r3_x = (
+        tube_s_2*(tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(-tube_c_1*tube_end_p3_r0_y
+            - tube_end_p3_r0_x*tube_s_1)
         )
-        Hk_a_2_up_z = (
-        axis_y_up_axes2_in_base_z*mu_c2_up_t + axis_z_up_axes2_in_base_y*q_up_in_base_x +
-            axis_z_up_axes2_in_base_z*mu_c2_up_z - axis_x_up_axes2_z*mu_c2_up_t_2 -
-            axis_z_up_axes2_in_base_x*q_up_in_base_y
+        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        tube_n_m1_t_10 = tube_c_2*tube_end_p1_r1_x
+        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
+        tube_n_m2_r0_y = -tube_c_2*tube_end_p2_r3_x - tube_end_p2_r3_y*tube_s_2
+        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
+        tube_n_m3_t = tube_end_p3_r1_x*tube_s_2
+        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        tube_f_c1_t_3 = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10
+        inv_tube_f_c1_t_26 = 1.0/tube_f_c1_t_3
+        tube_f_c1_t_4 = inv_tube_f_c1_t_26*tube_n_m3_t*tube_root_2
+        tube_f_c1_t_5 = inv_tube_f_c1_t_26*tube_n_m1_t_10*tube_root_2
+        # (tube-f_c2) force part of the wrench that does no work along the leg's freedoms, 2
+        tube_f_c2_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_root_1
+        tube_f_c2_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_root_1
+        # (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3
+        tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y
+        tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y
+        # (tube-size_c3) size of the moment
+        tube_size_c3 = sqrt(1.0 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2)
+        # (tube-mu1_c3) moment along direction 1 that goes with it
+        inv_tube_size_c3 = 1.0/tube_size_c3
+        tube_mu1_c3 = inv_tube_size_c3*tube_f_c3_t
+        # (tube-mu3_c3) moment along direction 3 that goes with it
+        tube_mu3_c3 = inv_tube_size_c3*tube_f_c3_t_2
+        # (tube-w_1) force part of reciprocal wrench 1
+        tube_w_1_t = 1.35*tube_n_m1_t_10
+        tube_w_1_t_2 = 1.35*tube_n_m2_r0_y
+        tube_w_1_t_3 = 1.35*tube_n_m3_t
+        tube_w_1_t_4 = 1.35*tube_end_p1_r3_y
+        tube_w_1_t_5 = 1.35*tube_end_p3_r3_x
+        tube_w_1_t_6 = 1.35*tube_f_c1_t_4
+        tube_w_1_t_7 = 1.35*tube_f_c1_t_5
+        tube_w_1_t_8 = 1.35*tube_f_c2_t
+        tube_w_1_t_9 = 1.35*tube_f_c2_t_2
+        tube_w_1_t_10 = 1.35*tube_mu1_c3
+        tube_w_1_t_11 = 1.35*inv_tube_size_c3
+        tube_w_1_t_12 = 1.35*tube_mu3_c3
+        tube_w_1_t_13 = sqrt(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
+        inv_tube_w_1_t_16 = 1.0/tube_w_1_t_13
+        tube_w_1_t_14 = inv_tube_w_1_t_16*tube_root_2
+        tube_w_1_t_15 = inv_tube_w_1_t_16*tube_w_1_t_4
+        tube_w_1_t_16 = inv_tube_w_1_t_16*tube_w_1_t_5
+        tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
+        tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
+        tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
+        tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7
+        tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9
+        tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21
+        tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8
+        tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21
+        tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16
+        tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25
+        tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25
+        tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25
+        tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3
+        tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29
+        tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29
+        tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29
+        tube_w_1_t_33 = (
+        sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
+            tube_w_1_t_20*tube_w_1_t_20)
         )
-        # (up-V37) the moment that goes with it
-        mu_c3_up_x = -end_p2_up_r3_y*inv_size_c3_up - end_p3_up_r1_x*mu3_c3_up
-        mu_c3_up_y = end_p1_up_r1_x*mu1_c3_up + end_p2_up_r3_x*inv_size_c3_up
-        mu_c3_up_z = end_p3_up_r3_x*mu3_c3_up - end_p1_up_r3_y*mu1_c3_up
-        mu_c3_up_in_base_x = (
-        axis_x_up_axes2_x*mu_c3_up_x + axis_y_up_axes2_in_base_x*mu_c3_up_y +
-            axis_z_up_axes2_in_base_x*mu_c3_up_z
+        inv_tube_w_1_t_57 = 1.0/tube_w_1_t_33
+        tube_w_1_t_34 = inv_tube_w_1_t_57*tube_w_1_t_18
+        tube_w_1_t_35 = inv_tube_w_1_t_57*tube_w_1_t_19
+        tube_w_1_t_36 = inv_tube_w_1_t_57*tube_w_1_t_20
+        tube_w_1_t_37 = (
+        tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
         )
-        mu_c3_up_in_base_y = (
-        axis_x_up_axes2_y*mu_c3_up_x + axis_y_up_axes2_in_base_y*mu_c3_up_y +
-            axis_z_up_axes2_in_base_y*mu_c3_up_z
+        tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37
+        tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37
+        tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37
+        tube_w_1_t_41 = (
+        tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 - tube_w_1_t_27*tube_w_1_t_35
         )
-        mu_c3_up_in_base_z = (
-        axis_x_up_axes2_z*mu_c3_up_x + axis_y_up_axes2_in_base_z*mu_c3_up_y +
-            axis_z_up_axes2_in_base_z*mu_c3_up_z
+        tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41
+        tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41
+        tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41
+        tube_w_1_t_45 = (
+        tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 - tube_w_1_t_31*tube_w_1_t_35
         )
-        # (C2) rms distance of the platform points from their centroid
-        spread_t = b_c_x - up_platform_point_x
-        spread_t_2 = b_c_y - up_platform_point_y
-        spread_t_3 = b_c_z - up_platform_point_z
-        spread_t_4 = spread_t*spread_t + spread_t_2*spread_t_2 + spread_t_3*spread_t_3
-        # (up-K4) squared amplitude
-        pivot_size_5 = abs(rho2_1_up)
-        # (up-K13) squared amplitude
-        pivot_size_6 = abs(rho2_2_up)
-        # (up-V8) force part of the wrench that does no work along the leg's freedoms, 1
-        pivot_size_7 = abs(f_c1_up_t_3)
-        # (up-V32) size of the moment
-        pivot_size_8 = abs(size_c3_up)
-        # (up-V38) force part of reciprocal wrench 1
-        pivot_size_9 = abs(w_1_up_t_13)
-        pivot_size_10 = abs(w_1_up_t_33)
-        pivot_size_11 = abs(w_1_up_t_49)
-        pivot_size_12 = abs(w_1_up_t_63)
-        pivot_size_13 = abs(w_1_up_t_75)
-        least_pivots_2 = (
-        least(least(least(least(least(least(least(least(pivot_size_10, pivot_size_11),
-            0.7407407407407407*pivot_size_12), 0.7407407407407407*pivot_size_13),
-            0.7407407407407407*sqrt(pivot_size_5)), 0.7407407407407407*sqrt(pivot_size_6)),
-            pivot_size_7), pivot_size_8), 0.7407407407407407*pivot_size_9)
+        tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45
+        tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45
+        tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45
+        tube_w_1_t_49 = (
+        sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
+            tube_w_1_t_40*tube_w_1_t_40)
+        )
+        inv_tube_w_1_t_95 = 1.0/tube_w_1_t_49
+        tube_w_1_t_50 = inv_tube_w_1_t_95*tube_w_1_t_38
+        tube_w_1_t_51 = inv_tube_w_1_t_95*tube_w_1_t_39
+        tube_w_1_t_52 = inv_tube_w_1_t_95*tube_w_1_t_40
+        tube_w_1_t_53 = (
+        tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
+        )
+        tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
+        tube_w_1_t_55 = inv_tube_w_1_t_95*tube_w_1_t_53
+        tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
+        tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
+        tube_w_1_t_58 = (
+        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_95*tube_root_1
+            - tube_w_1_t_47*tube_w_1_t_51
+        )
+        tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
+        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_95*tube_w_1_t_58
+        tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
+        tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
+        tube_w_1_t_63 = (
+        sqrt(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54 +
+            tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
+            tube_w_1_t_57*tube_w_1_t_57)
+        )
+        inv_tube_w_1_t_129 = 1.0/tube_w_1_t_63
+        tube_w_1_t_64 = inv_tube_w_1_t_129*tube_w_1_t_54
+        tube_w_1_t_65 = inv_tube_w_1_t_129*tube_w_1_t_55
+        tube_w_1_t_66 = inv_tube_w_1_t_129*tube_w_1_t_56
+        tube_w_1_t_67 = inv_tube_w_1_t_129*tube_w_1_t_11
+        tube_w_1_t_68 = inv_tube_w_1_t_129*tube_w_1_t_57
+        tube_w_1_t_69 = (
+        tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
+            tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
+        )
+        tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69
+        tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69
+        tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69
+        tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69
+        tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69
+        tube_w_1_t_75 = (
+        sqrt(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71 +
+            tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
+            tube_w_1_t_74*tube_w_1_t_74)
+        )
+        # (tube-mu_c1) the moment that goes with it
+        tube_mu_c1_t = tube_end_p1_r1_x*tube_f_c1_t_4
+        tube_mu_c1_t_2 = tube_end_p3_r1_x*tube_f_c1_t_5
+        tube_mu_c1_z = -tube_end_p1_r3_y*tube_f_c1_t_4 - tube_end_p3_r3_x*tube_f_c1_t_5
+        # (tube-Hk_a_1) moment of the column's unit force about the platform origin
+        tube_Hk_a_1_x = (
+        axis_x_tube_axes2_x*tube_mu_c1_t_2 + axis_y_tube_axes2_in_base_x*tube_mu_c1_t +
+            axis_y_tube_axes2_in_base_z*tube_q_in_base_y +
+            axis_z_tube_axes2_in_base_x*tube_mu_c1_z -
+            axis_y_tube_axes2_in_base_y*tube_q_in_base_z
+        )
+        tube_Hk_a_1_y = (
+        axis_x_tube_axes2_y*tube_mu_c1_t_2 + axis_y_tube_axes2_in_base_x*tube_q_in_base_z +
+            axis_y_tube_axes2_in_base_y*tube_mu_c1_t + axis_z_tube_axes2_in_base_y*tube_mu_c1_z -
+            axis_y_tube_axes2_in_base_z*tube_q_in_base_x
+        )
+        tube_Hk_a_1_z = (
+        axis_x_tube_axes2_z*tube_mu_c1_t_2 + axis_y_tube_axes2_in_base_y*tube_q_in_base_x +
+            axis_y_tube_axes2_in_base_z*tube_mu_c1_t + axis_z_tube_axes2_in_base_z*tube_mu_c1_z -
+            axis_y_tube_axes2_in_base_x*tube_q_in_base_y
+        )
+        # (tube-mu_c2) the moment that goes with it
+        tube_mu_c2_t = tube_end_p1_r1_x*tube_f_c2_t
+        tube_mu_c2_t_2 = tube_end_p3_r1_x*tube_f_c2_t_2
+        tube_mu_c2_z = tube_end_p3_r3_x*tube_f_c2_t_2 - tube_end_p1_r3_y*tube_f_c2_t
+        # (tube-Hk_a_2) moment of the column's unit force about the platform origin
+        tube_Hk_a_2_x = (
+        axis_y_tube_axes2_in_base_x*tube_mu_c2_t + axis_z_tube_axes2_in_base_x*tube_mu_c2_z +
+            axis_z_tube_axes2_in_base_z*tube_q_in_base_y - axis_x_tube_axes2_x*tube_mu_c2_t_2 -
+            axis_z_tube_axes2_in_base_y*tube_q_in_base_z
+        )
+        tube_Hk_a_2_y = (
+        axis_y_tube_axes2_in_base_y*tube_mu_c2_t + axis_z_tube_axes2_in_base_x*tube_q_in_base_z +
+            axis_z_tube_axes2_in_base_y*tube_mu_c2_z - axis_x_tube_axes2_y*tube_mu_c2_t_2 -
+            axis_z_tube_axes2_in_base_z*tube_q_in_base_x
+        )
+        tube_Hk_a_2_z = (
+        axis_y_tube_axes2_in_base_z*tube_mu_c2_t + axis_z_tube_axes2_in_base_y*tube_q_in_base_x +
+            axis_z_tube_axes2_in_base_z*tube_mu_c2_z - axis_x_tube_axes2_z*tube_mu_c2_t_2 -
+            axis_z_tube_axes2_in_base_x*tube_q_in_base_y
+        )
+        # (tube-mu_c3) the moment that goes with it
+        tube_mu_c3_x = -inv_tube_size_c3*tube_end_p2_r3_y - tube_end_p3_r1_x*tube_mu3_c3
+        tube_mu_c3_y = inv_tube_size_c3*tube_end_p2_r3_x + tube_end_p1_r1_x*tube_mu1_c3
+        tube_mu_c3_z = tube_end_p3_r3_x*tube_mu3_c3 - tube_end_p1_r3_y*tube_mu1_c3
+        tube_mu_c3_in_base_x = (
+        axis_x_tube_axes2_x*tube_mu_c3_x + axis_y_tube_axes2_in_base_x*tube_mu_c3_y +
+            axis_z_tube_axes2_in_base_x*tube_mu_c3_z
+        )
+        tube_mu_c3_in_base_y = (
+        axis_x_tube_axes2_y*tube_mu_c3_x + axis_y_tube_axes2_in_base_y*tube_mu_c3_y +
+            axis_z_tube_axes2_in_base_y*tube_mu_c3_z
+        )
+        tube_mu_c3_in_base_z = (
+        axis_x_tube_axes2_z*tube_mu_c3_x + axis_y_tube_axes2_in_base_z*tube_mu_c3_y +
+            axis_z_tube_axes2_in_base_z*tube_mu_c3_z
+        )
+        # (spread) rms distance of the platform points from their centroid
+        tube_spread_t = b_c_x - tube_platform_point_x
+        tube_spread_t_2 = b_c_y - tube_platform_point_y
+        tube_spread_t_3 = b_c_z - tube_platform_point_z
+        tube_spread_t_4 = (
+        tube_spread_t*tube_spread_t + tube_spread_t_2*tube_spread_t_2 +
+            tube_spread_t_3*tube_spread_t_3
+        )
+        # (tube-rho2_1) squared amplitude
+        tube_pivot_size = abs(tube_rho2_1)
+        # (tube-rho2_2) squared amplitude
+        tube_pivot_size_2 = abs(tube_rho2_2)
+        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        tube_pivot_size_3 = abs(tube_f_c1_t_3)
+        # (tube-size_c3) size of the moment
+        tube_pivot_size_4 = abs(tube_size_c3)
+        # (tube-w_1) force part of reciprocal wrench 1
+        tube_pivot_size_5 = abs(tube_w_1_t_13)
+        tube_pivot_size_6 = abs(tube_w_1_t_33)
+        tube_pivot_size_7 = abs(tube_w_1_t_49)
+        tube_pivot_size_8 = abs(tube_w_1_t_63)
+        tube_pivot_size_9 = abs(tube_w_1_t_75)
+        tube_least_pivots = (
+        least(least(least(least(least(least(least(least(0.7407407407407407*sqrt(tube_pivot_size),
+            0.7407407407407407*sqrt(tube_pivot_size_2)), tube_pivot_size_3), tube_pivot_size_4),
+            0.7407407407407407*tube_pivot_size_5), tube_pivot_size_6), tube_pivot_size_7),
+            0.7407407407407407*tube_pivot_size_8), 0.7407407407407407*tube_pivot_size_9)
         )
         clear = (
-        clear & m.every(leg, (abs(rho2_1_up) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(rho2_2_up) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(f_c1_up_t_3) >
-            _TOLERANCE * 1.0) & (abs(size_c3_up) > _TOLERANCE * 1.0) & (abs(w_1_up_t_13) >
-            _TOLERANCE * 1.35) & (abs(w_1_up_t_33) > _TOLERANCE * 1.0) & (abs(w_1_up_t_49) >
-            _TOLERANCE * 1.0) & (abs(w_1_up_t_63) > _TOLERANCE * 1.35) & (abs(w_1_up_t_75) >
-            _TOLERANCE * 1.35))
+        clear & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_f_c1_t_3) > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) &
+            (abs(tube_w_1_t_13) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) &
+            (abs(tube_w_1_t_49) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) &
+            (abs(tube_w_1_t_75) > _TOLERANCE * 1.35))
         )
         sums = m.added(sums, leg, (
-        spread_t_4,
+        tube_spread_t_4,
         ))
-        out_Hk[_Hk_up[0][leg]] = axis_y_up_axes2_in_base_x
-        out_Hk[_Hk_up[1][leg]] = axis_y_up_axes2_in_base_y
-        out_Hk[_Hk_up[2][leg]] = axis_y_up_axes2_in_base_z
-        out_Hk[_Hk_up[3][leg]] = Hk_a_1_up_x
-        out_Hk[_Hk_up[4][leg]] = Hk_a_1_up_y
-        out_Hk[_Hk_up[5][leg]] = Hk_a_1_up_z
-        out_Hk[_Hk_up[6][leg]] = axis_z_up_axes2_in_base_x
-        out_Hk[_Hk_up[7][leg]] = axis_z_up_axes2_in_base_y
-        out_Hk[_Hk_up[8][leg]] = axis_z_up_axes2_in_base_z
-        out_Hk[_Hk_up[9][leg]] = Hk_a_2_up_x
-        out_Hk[_Hk_up[10][leg]] = Hk_a_2_up_y
-        out_Hk[_Hk_up[11][leg]] = Hk_a_2_up_z
-        out_Hk[_Hk_up[12][leg]] = mu_c3_up_in_base_x
-        out_Hk[_Hk_up[13][leg]] = mu_c3_up_in_base_y
-        out_Hk[_Hk_up[14][leg]] = mu_c3_up_in_base_z
-        out_pivots[_pivots_up[0][leg]] = least_pivots_2
-    total_up, = sums
-    # (C2) rms distance of the platform points from their centroid
-    spread = sqrt(0.25*total_up + 0.25*total_ups)
+        out_Hk[_Hk_tube[0][leg]] = axis_y_tube_axes2_in_base_x
+        out_Hk[_Hk_tube[1][leg]] = axis_y_tube_axes2_in_base_y
+        out_Hk[_Hk_tube[2][leg]] = axis_y_tube_axes2_in_base_z
+        out_Hk[_Hk_tube[3][leg]] = tube_Hk_a_1_x
+        out_Hk[_Hk_tube[4][leg]] = tube_Hk_a_1_y
+        out_Hk[_Hk_tube[5][leg]] = tube_Hk_a_1_z
+        out_Hk[_Hk_tube[6][leg]] = axis_z_tube_axes2_in_base_x
+        out_Hk[_Hk_tube[7][leg]] = axis_z_tube_axes2_in_base_y
+        out_Hk[_Hk_tube[8][leg]] = axis_z_tube_axes2_in_base_z
+        out_Hk[_Hk_tube[9][leg]] = tube_Hk_a_2_x
+        out_Hk[_Hk_tube[10][leg]] = tube_Hk_a_2_y
+        out_Hk[_Hk_tube[11][leg]] = tube_Hk_a_2_z
+        out_Hk[_Hk_tube[12][leg]] = tube_mu_c3_in_base_x
+        out_Hk[_Hk_tube[13][leg]] = tube_mu_c3_in_base_y
+        out_Hk[_Hk_tube[14][leg]] = tube_mu_c3_in_base_z
+        out_pivots[_pivots_tube[0][leg]] = tube_least_pivots
+    total_tube, = sums
+    # (spread) rms distance of the platform points from their centroid
+    spread = sqrt(0.25*total_tube + 0.25*total_ups)
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_Hk, out_lengths, out_pivots, out_reach,)
 
@@ -10205,6 +11008,19 @@ def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
     momentum = np.einsum("ijs,js->is", M, V)
     return (momentum,)
+
+
+def _steps_joint_margins(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    margins = _unlimited(q, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11])
+    return (margins,)
+
+
+def _steps_within_limits(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    subtract_1 = q - q
+    within = _not_negative(subtract_1)
+    return (within,)
 
 
 def _steps_actuator_positions(m, X):
@@ -10735,6 +11551,40 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+    )
+
+
+def joint_margins(X, p=None):
+    """How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+    where there is none.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        margins: distances, in the order of q [m or rad] (..., NJ).
+    """
+    return _call(
+        "joint_margins", _steps_joint_margins, p,
+        ("X", X, (NQ,)),
+        unbounded=True,
+    )
+
+
+def within_limits(X, p=None):
+    """Whether all joints are within their limits of displacement.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        within: 1 where no margin is negative, else 0; NaN is neither (...,).
+    """
+    return _call(
+        "within_limits", _steps_within_limits, p,
+        ("X", X, (NQ,)),
     )
 
 

@@ -26,7 +26,10 @@ enum {
 
 #define R(x) ((real)(x))
 #define UNLESS(condition) ((condition) ? R(0) : R(1))  /* flag of what must hold */
-#define LANES 8  /* states that a batch runs side by side */
+#ifndef TRIPOD_3PRS_LANES
+#define TRIPOD_3PRS_LANES 8  /* 1 where there are no vectors: less memory, shorter code */
+#endif
+#define LANES ((size_t)TRIPOD_3PRS_LANES)  /* states that a batch runs side by side */
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
@@ -36,6 +39,20 @@ enum {
 #define INLINE static inline
 #define APART static
 #endif
+
+/* Bytes of a vector. */
+#if defined(__AVX__)
+#define VECTOR 32
+#elif defined(__SSE2__) || defined(__ARM_NEON)
+#define VECTOR 16
+#else
+#define VECTOR 1
+#endif
+/* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
+#define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
+#define LEGS(n) \
+    ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
+        : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
@@ -104,63 +121,122 @@ INLINE int is_finite(real x)
     return x - x == 0;
 }
 
-/* Why states are impossible, by state: more than 0 where a cause holds. */
+/* Why states are impossible, by state: more than 0 where a cause holds.  total: the sum of all
+   results, and side by side of all inputs, which is finite only where they are. */
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
+    real total[LANES];
 } verdict;
 
 INLINE void start(size_t w, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
+        t->total[k] = 0;
     }
 }
 
-/* x - x is 0 for every number and NaN for the rest; sums side by side add up fast. */
+/* x - x is 0 for every number and NaN for the rest. */
 INLINE int all_finite(const real *x, size_t n)
 {
+    real sum = 0;
+    for (size_t i = 0; i < n; ++i) {
+        sum += x[i] - x[i];
+    }
+    return sum == 0;
+}
+
+/* Whether all are finite: then so is their sum, but for numbers so large that they need a closer
+   look.  Many add up fast as sums side by side. */
+INLINE int sum_is_finite(const real *x, size_t n)
+{
+    if (n < 2*LANES) {
+        return is_finite(total(x, n));
+    }
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
         for (size_t k = 0; k < LANES; ++k) {
-            sum[k] += x[i + k] - x[i + k];
+            sum[k] += x[i + k];
         }
     }
     for (size_t i = most; i < n; ++i) {
-        sum[0] += x[i] - x[i];
+        sum[i - most] += x[i];
     }
-    return total(sum, LANES) == 0;
+    return is_finite(total(sum, LANES));
 }
 
 /* Flag the states with entries that are not finite; the states stand side by side. */
 INLINE void check(size_t size, size_t w, const real *x, real *flags)
 {
-    if (!all_finite(x, size*w)) {
+    if (!sum_is_finite(x, size*w)) {
         for (size_t i = 0; i < size*w; ++i) {
             flags[i%w] += UNLESS(is_finite(x[i]));
         }
     }
 }
 
-/* Input, given state by state, with its states side by side: entry e of state k at e*w + k. */
-INLINE const real *side_by_side(size_t size, size_t w, const real *x, real *lanes, real *flags)
+/* Add up the entries of every state. */
+INLINE void add_up(size_t size, const real *x, real *total)
 {
-    for (size_t e = 0; e < size && w > 1; ++e) {
-        for (size_t k = 0; k < w; ++k) {
-            lanes[e*w + k] = x[size*k + e];
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            total[k] += x[e*LANES + k];
         }
     }
-    check(size, w, w > 1 ? lanes : x, flags);
-    return w > 1 ? lanes : x;
 }
 
-/* The same for input that may be NULL: then all its entries are `none`. */
-INLINE const real *optional(size_t size, size_t w, const real *x, real none, real *lanes, real *flags)
+/* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
+INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
 {
-    for (size_t e = 0; e < size*w && !x; ++e) {
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            lanes[e*LANES + k] = x[size*k + e];
+        }
+    }
+    add_up(size, lanes, total);
+    return lanes;
+}
+
+/* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
+INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+{
+    for (size_t e = 0; e < size && !x; ++e) {
+        own[e] = none;
+    }
+    if (x) {
+        check(size, 1, x, flags);
+    }
+    return x ? x : own;
+}
+
+INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
+    real *total)
+{
+    for (size_t e = 0; e < size*LANES && !x; ++e) {
         lanes[e] = none;
     }
-    return x ? side_by_side(size, w, x, lanes, flags) : lanes;
+    return x ? side_by_side(size, x, lanes, total) : lanes;
+}
+
+/* Motion of the base, or NULL: at rest, its axes those of the world. */
+INLINE const real *motion_of_base(const real *x, real *own, real *flags)
+{
+    for (size_t e = 0; e < 18 && !x; ++e) {
+        own[e] = R(e < 9 && e%4 == 0);
+    }
+    if (x) {
+        check(18, 1, x, flags);
+    }
+    return x ? x : own;
+}
+
+INLINE const real *motion_of_base_side_by_side(const real *x, real *lanes, real *total)
+{
+    for (size_t i = 0; i < 18*LANES && !x; ++i) {
+        lanes[i] = R(i/LANES < 9 && i/LANES%4 == 0);
+    }
+    return x ? side_by_side(18, x, lanes, total) : lanes;
 }
 
 /* Flag the states of an input, NULL or given state by state, with entries that are not positive. */
@@ -171,14 +247,25 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE void judge(const verdict *t, size_t w, int *code)
+INLINE void judge(const verdict *t, int *code)
 {
-    for (size_t k = 0; k < w; ++k) {
-        code[k] = t->invalid[k] > 0 ? INVALID
-            : t->diverged[k] > 0 ? NOT_CONVERGED
-            : t->unreachable[k] > 0 ? UNREACHABLE
-            : t->singular[k] > 0 ? SINGULAR
-            : t->overflow[k] > 0 ? INVALID : OK;
+    *code = t->invalid[0] > 0 ? INVALID
+        : t->diverged[0] > 0 ? NOT_CONVERGED
+        : t->unreachable[0] > 0 ? UNREACHABLE
+        : t->singular[0] > 0 ? SINGULAR
+        : t->overflow[0] > 0 ? INVALID : OK;
+}
+
+/* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
+INLINE void suspect(const verdict *t, int *code)
+{
+    real flags[LANES];
+    for (size_t k = 0; k < LANES; ++k) {
+        flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
+            + (t->total[k] - t->total[k]);
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        code[k] = flags[k] == 0 ? OK : INVALID;
     }
 }
 
@@ -199,17 +286,19 @@ INLINE void refuse(size_t size, real *out)
     }
 }
 
-/* Outputs state by state; NaN where a state is impossible. */
-INLINE void deliver(const real *x, size_t size, size_t w, const int *code, real *out)
+/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < w; ++k) {
-            out[size*k + e] = x[e*w + k];
-        }
+        out[e] = x[e];
     }
-    for (size_t k = 0; k < w; ++k) {
-        if (code[k] != OK) {
-            refuse(size, out + size*k);
+}
+
+INLINE void deliver(size_t size, const real *x, real *out)
+{
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            out[size*k + e] = x[e*LANES + k];
         }
     }
 }
@@ -415,11 +504,11 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
     const real platform_inertia_yy = params->platform_inertia[1][1];
     const real platform_inertia_yz = params->platform_inertia[1][2];
     const real platform_inertia_zz = params->platform_inertia[2][2];
-    /* (L2) first moment about the platform origin */
+    /* (h_star) first moment about the platform origin */
     const real h_star_x = platform_centre_of_mass_x*platform_mass;
     const real h_star_y = platform_centre_of_mass_y*platform_mass;
     const real h_star_z = platform_centre_of_mass_z*platform_mass;
-    /* (L3) inertia tensor about the platform origin */
+    /* (J_star) inertia tensor about the platform origin */
     const real J_star_t = platform_centre_of_mass_x*platform_centre_of_mass_x;
     const real J_star_t_2 = platform_centre_of_mass_y*platform_centre_of_mass_y;
     const real J_star_t_3 = platform_centre_of_mass_z*platform_centre_of_mass_z;
@@ -437,11 +526,11 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
     const real J_star_t_6 = R(0.5)*J_star_t_5;
     const real J_star_t_7 = J_star_xx - J_star_zz;
     const real J_star_t_8 = R(0.5)*J_star_t_7;
-    /* (M4) centripetal force and weight of the platform */
+    /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*platform_mass;
     const real Z_p_t_2 = gravity_y*platform_mass;
     const real Z_p_t_3 = gravity_z*platform_mass;
-    /* (C2) rms distance of the platform points from their centroid */
+    /* (spread) rms distance of the platform points from their centroid */
     const real spread_t = R(0.3333333333333333)*root(3);
     model->J_star_t_6 = J_star_t_6;
     model->J_star_t_8 = J_star_t_8;
@@ -462,92 +551,83 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
     model->h_star_z = h_star_z;
     model->platform_mass = platform_mass;
     model->spread_t = spread_t;
-    for (size_t leg = 0; leg < 3; ++leg) {
-        const real prs_base_point_x = params->prs_base_point[leg][0];
-        const real prs_base_point_y = params->prs_base_point[leg][1];
-        const real prs_base_point_z = params->prs_base_point[leg][2];
-        const real prs_base_frame_xx = params->prs_base_frame[leg][0][0];
-        const real prs_base_frame_xy = params->prs_base_frame[leg][0][1];
-        const real prs_base_frame_xz = params->prs_base_frame[leg][0][2];
-        const real prs_base_frame_yx = params->prs_base_frame[leg][1][0];
-        const real prs_base_frame_yy = params->prs_base_frame[leg][1][1];
-        const real prs_base_frame_yz = params->prs_base_frame[leg][1][2];
-        const real prs_base_frame_zx = params->prs_base_frame[leg][2][0];
-        const real prs_base_frame_zy = params->prs_base_frame[leg][2][1];
-        const real prs_base_frame_zz = params->prs_base_frame[leg][2][2];
-        const real prs_platform_point_x = params->prs_platform_point[leg][0];
-        const real prs_platform_point_y = params->prs_platform_point[leg][1];
-        const real prs_platform_point_z = params->prs_platform_point[leg][2];
-        const real prs_platform_joint_offset_x = params->prs_platform_joint_offset[leg][0];
-        const real prs_link1_mass = params->prs_link1_mass[leg];
-        const real prs_link1_centre_of_mass_x = params->prs_link1_centre_of_mass[leg][0];
-        const real prs_link1_centre_of_mass_y = params->prs_link1_centre_of_mass[leg][1];
-        const real prs_link1_centre_of_mass_z = params->prs_link1_centre_of_mass[leg][2];
-        const real prs_link2_mass = params->prs_link2_mass[leg];
-        const real prs_link2_centre_of_mass_x = params->prs_link2_centre_of_mass[leg][0];
-        const real prs_link2_centre_of_mass_y = params->prs_link2_centre_of_mass[leg][1];
-        const real prs_link2_centre_of_mass_z = params->prs_link2_centre_of_mass[leg][2];
-        const real prs_link2_inertia_zz = params->prs_link2_inertia[leg][2][2];
-        static const signed char signs_branch_1[] = {-1, -1, -1};
-        const real branch_1 = signs_branch_1[leg];
-        /* (prs-K6) squared length, across the axis, of the direction fixed in link 2 */
-        const real uu_2_t = prs_platform_joint_offset_x*prs_platform_joint_offset_x;
-        /* (prs-G2) length of the leg's lever arms, the measure of what is near singular */
-        const real size_t_ = R(3.5999999999999994e-07) + uu_2_t;
-        const real size_ = root(size_t_);
-        /* (prs-K8) amplitude: off the manifold the nearest angle is taken */
-        const real root_2_t = size_*size_*size_t_;
-        /* (prs-N15) force that accelerates joint 1, per unit */
-        const real P_c1_t = prs_link1_mass + prs_link2_mass;
-        /* (prs-G4) first moment of link 2 about the origin of link 2 */
-        const real h_2_x = prs_link2_centre_of_mass_x*prs_link2_mass;
-        const real h_2_y = prs_link2_centre_of_mass_y*prs_link2_mass;
-        /* (prs-G5) inertia tensor of link 2 about the origin of link 2 */
-        const real J_2_t = prs_link2_centre_of_mass_z*prs_link2_centre_of_mass_z;
-        const real J_2_t_2 = J_2_t + prs_link2_centre_of_mass_x*prs_link2_centre_of_mass_x +
-            prs_link2_centre_of_mass_y*prs_link2_centre_of_mass_y;
-        const real J_2_zz = prs_link2_inertia_zz - prs_link2_mass*(J_2_t - J_2_t_2);
-        /* (prs-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
-           less gravity */
-        const real g_r0_x = gravity_x*prs_base_frame_xx + gravity_y*prs_base_frame_yx +
+    for (size_t leg = 0; leg < 4; ++leg) {
+        const size_t own = leg < 3 ? leg : 0;
+        const real prs_base_point_x = params->prs_base_point[own][0];
+        const real prs_base_point_y = params->prs_base_point[own][1];
+        const real prs_base_point_z = params->prs_base_point[own][2];
+        const real prs_base_frame_xx = params->prs_base_frame[own][0][0];
+        const real prs_base_frame_xy = params->prs_base_frame[own][0][1];
+        const real prs_base_frame_xz = params->prs_base_frame[own][0][2];
+        const real prs_base_frame_yx = params->prs_base_frame[own][1][0];
+        const real prs_base_frame_yy = params->prs_base_frame[own][1][1];
+        const real prs_base_frame_yz = params->prs_base_frame[own][1][2];
+        const real prs_base_frame_zx = params->prs_base_frame[own][2][0];
+        const real prs_base_frame_zy = params->prs_base_frame[own][2][1];
+        const real prs_base_frame_zz = params->prs_base_frame[own][2][2];
+        const real prs_platform_point_x = params->prs_platform_point[own][0];
+        const real prs_platform_point_y = params->prs_platform_point[own][1];
+        const real prs_platform_point_z = params->prs_platform_point[own][2];
+        const real prs_platform_joint_offset_x = params->prs_platform_joint_offset[own][0];
+        const real prs_link1_mass = params->prs_link1_mass[own];
+        const real prs_link1_centre_of_mass_x = params->prs_link1_centre_of_mass[own][0];
+        const real prs_link1_centre_of_mass_y = params->prs_link1_centre_of_mass[own][1];
+        const real prs_link1_centre_of_mass_z = params->prs_link1_centre_of_mass[own][2];
+        const real prs_link2_mass = params->prs_link2_mass[own];
+        const real prs_link2_centre_of_mass_x = params->prs_link2_centre_of_mass[own][0];
+        const real prs_link2_centre_of_mass_y = params->prs_link2_centre_of_mass[own][1];
+        const real prs_link2_centre_of_mass_z = params->prs_link2_centre_of_mass[own][2];
+        const real prs_link2_inertia_zz = params->prs_link2_inertia[own][2][2];
+        static const signed char signs_prs_branch_1[] = {-1, -1, -1};
+        const real prs_branch_1 = signs_prs_branch_1[own];
+        /* (prs-disc_1) discriminant of the distance equation */
+        const real prs_disc_1_t = prs_platform_joint_offset_x*prs_platform_joint_offset_x;
+        /* (prs-size) length of the leg's lever arms, the measure of what is near singular */
+        const real prs_size_t = R(3.5999999999999994e-07) + prs_disc_1_t;
+        const real prs_size = root(prs_size_t);
+        /* (prs-root_2) amplitude: off the manifold the nearest angle is taken */
+        const real prs_root_2_t = prs_size*prs_size*prs_size_t;
+        /* (prs-J_2) inertia tensor of link 2 about the origin of link 2 */
+        const real prs_J_2_t = prs_link2_centre_of_mass_z*prs_link2_centre_of_mass_z;
+        const real prs_J_2_t_2 = prs_J_2_t + prs_link2_centre_of_mass_x*prs_link2_centre_of_mass_x
+            + prs_link2_centre_of_mass_y*prs_link2_centre_of_mass_y;
+        const real prs_J_2_zz = prs_link2_inertia_zz - prs_link2_mass*(prs_J_2_t - prs_J_2_t_2);
+        /* (prs-h_2) first moment of link 2 about the origin of link 2 */
+        const real prs_h_2_x = prs_link2_centre_of_mass_x*prs_link2_mass;
+        const real prs_h_2_y = prs_link2_centre_of_mass_y*prs_link2_mass;
+        /* (prs-P_c_1) force that accelerates joint 1, per unit */
+        const real prs_P_c_1_t = prs_link1_mass + prs_link2_mass;
+        /* (prs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real prs_g_r0_x = gravity_x*prs_base_frame_xx + gravity_y*prs_base_frame_yx +
             gravity_z*prs_base_frame_zx;
-        const real g_r0_y = gravity_x*prs_base_frame_xy + gravity_y*prs_base_frame_yy +
+        const real prs_g_r0_y = gravity_x*prs_base_frame_xy + gravity_y*prs_base_frame_yy +
             gravity_z*prs_base_frame_zy;
-        /* (prs-G3) first moment of link 1 about the origin of link 1 */
-        const real h_1_x = prs_link1_centre_of_mass_x*prs_link1_mass;
-        const real h_1_y = prs_link1_centre_of_mass_y*prs_link1_mass;
-        /* (V1) potential energy */
-        const real b_r0_x = prs_base_frame_xx*prs_base_point_x +
+        /* (prs-h_1) first moment of link 1 about the origin of link 1 */
+        const real prs_h_1_x = prs_link1_centre_of_mass_x*prs_link1_mass;
+        const real prs_h_1_y = prs_link1_centre_of_mass_y*prs_link1_mass;
+        /* (potential) potential energy */
+        const real prs_b_r0_x = prs_base_frame_xx*prs_base_point_x +
             prs_base_frame_yx*prs_base_point_y + prs_base_frame_zx*prs_base_point_z;
-        const real b_r0_y = prs_base_frame_xy*prs_base_point_x +
+        const real prs_b_r0_y = prs_base_frame_xy*prs_base_point_x +
             prs_base_frame_yy*prs_base_point_y + prs_base_frame_zy*prs_base_point_z;
-        const real b_r0_z = prs_base_frame_xz*prs_base_point_x +
+        const real prs_b_r0_z = prs_base_frame_xz*prs_base_point_x +
             prs_base_frame_yz*prs_base_point_y + prs_base_frame_zz*prs_base_point_z;
-        const real potential_t = b_r0_y*prs_link1_mass;
-        const real potential_t_2 = b_r0_y*prs_link2_mass;
-        const real potential_t_3 = (gravity_x*prs_base_frame_xz + gravity_y*prs_base_frame_yz +
-            gravity_z*prs_base_frame_zz)*(b_r0_z*prs_link1_mass + b_r0_z*prs_link2_mass +
-            prs_link1_centre_of_mass_z*prs_link1_mass +
+        const real prs_potential_t = prs_b_r0_y*prs_link1_mass;
+        const real prs_potential_t_2 = prs_b_r0_y*prs_link2_mass;
+        const real prs_potential_t_3 = (gravity_x*prs_base_frame_xz + gravity_y*prs_base_frame_yz
+            + gravity_z*prs_base_frame_zz)*(prs_b_r0_z*prs_link1_mass + prs_b_r0_z*prs_link2_mass
+            + prs_link1_centre_of_mass_z*prs_link1_mass +
             prs_link2_centre_of_mass_z*prs_link2_mass);
-        /* (prs-K8) amplitude: off the manifold the nearest angle is taken */
-        const real inv_root_2_t_2 = 1/root_2_t;
-        /* (prs-V3) reciprocal vector 1 */
-        const real inv_size = 1/size_;
-        model->J_2_zz[leg] = J_2_zz;
-        model->P_c1_t[leg] = P_c1_t;
-        model->b_r0_x[leg] = b_r0_x;
-        model->branch_1[leg] = branch_1;
-        model->g_r0_x[leg] = g_r0_x;
-        model->g_r0_y[leg] = g_r0_y;
-        model->h_1_x[leg] = h_1_x;
-        model->h_1_y[leg] = h_1_y;
-        model->h_2_x[leg] = h_2_x;
-        model->h_2_y[leg] = h_2_y;
-        model->inv_root_2_t_2[leg] = inv_root_2_t_2;
-        model->inv_size[leg] = inv_size;
-        model->potential_t[leg] = potential_t;
-        model->potential_t_2[leg] = potential_t_2;
-        model->potential_t_3[leg] = potential_t_3;
+        /* (prs-root_2) amplitude: off the manifold the nearest angle is taken */
+        const real inv_prs_root_2_t_2 = 1/prs_root_2_t;
+        /* (prs-w_1) reciprocal vector 1 */
+        const real inv_prs_size = 1/prs_size;
+        model->inv_prs_root_2_t_2[leg] = inv_prs_root_2_t_2;
+        model->inv_prs_size[leg] = inv_prs_size;
+        model->prs_J_2_zz[leg] = prs_J_2_zz;
+        model->prs_P_c_1_t[leg] = prs_P_c_1_t;
+        model->prs_b_r0_x[leg] = prs_b_r0_x;
         model->prs_base_frame_xx[leg] = prs_base_frame_xx;
         model->prs_base_frame_xy[leg] = prs_base_frame_xy;
         model->prs_base_frame_xz[leg] = prs_base_frame_xz;
@@ -560,25 +640,35 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
         model->prs_base_point_x[leg] = prs_base_point_x;
         model->prs_base_point_y[leg] = prs_base_point_y;
         model->prs_base_point_z[leg] = prs_base_point_z;
+        model->prs_branch_1[leg] = prs_branch_1;
+        model->prs_disc_1_t[leg] = prs_disc_1_t;
+        model->prs_g_r0_x[leg] = prs_g_r0_x;
+        model->prs_g_r0_y[leg] = prs_g_r0_y;
+        model->prs_h_1_x[leg] = prs_h_1_x;
+        model->prs_h_1_y[leg] = prs_h_1_y;
+        model->prs_h_2_x[leg] = prs_h_2_x;
+        model->prs_h_2_y[leg] = prs_h_2_y;
         model->prs_link1_mass[leg] = prs_link1_mass;
         model->prs_link2_mass[leg] = prs_link2_mass;
         model->prs_platform_joint_offset_x[leg] = prs_platform_joint_offset_x;
         model->prs_platform_point_x[leg] = prs_platform_point_x;
         model->prs_platform_point_y[leg] = prs_platform_point_y;
         model->prs_platform_point_z[leg] = prs_platform_point_z;
-        model->root_2_t[leg] = root_2_t;
-        model->size_[leg] = size_;
-        model->uu_2_t[leg] = uu_2_t;
-        total_prs_x += prs_platform_point_x;
-        total_prs_y += prs_platform_point_y;
-        total_prs_z += prs_platform_point_z;
-        total_prs += size_t_;
+        model->prs_potential_t[leg] = prs_potential_t;
+        model->prs_potential_t_2[leg] = prs_potential_t_2;
+        model->prs_potential_t_3[leg] = prs_potential_t_3;
+        model->prs_root_2_t[leg] = prs_root_2_t;
+        model->prs_size[leg] = prs_size;
+        total_prs_x += leg < 3 ? prs_platform_point_x : 0;
+        total_prs_y += leg < 3 ? prs_platform_point_y : 0;
+        total_prs_z += leg < 3 ? prs_platform_point_z : 0;
+        total_prs += leg < 3 ? prs_size_t : 0;
     }
-    /* (C1) centroid of the platform points */
+    /* (b_c) centroid of the platform points */
     const real b_c_x = R(0.3333333333333333)*total_prs_x;
     const real b_c_y = R(0.3333333333333333)*total_prs_y;
     const real b_c_z = R(0.3333333333333333)*total_prs_z;
-    /* (C3) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = spread_t*root(total_prs);
     model->b_c_x = b_c_x;
     model->b_c_y = b_c_y;
@@ -776,6 +866,12 @@ INLINE void solve_state(size_t n, const real *b, real *rows, real *x, real *sing
 {
     set_right_side(n, 1, b, rows);
     solve_one(n, stride_of(n, 1), rows, x, singular);
+}
+
+/* The same where it is rare: apart, for the sake of what is done otherwise. */
+APART void solve_apart(size_t n, const real *b, real *rows, real *x, real *singular)
+{
+    solve_state(n, b, rows, x, singular);
 }
 
 INLINE void solve(size_t n, size_t w, const real *b, real *rows, real *x, real *singular)
@@ -1007,6 +1103,29 @@ INLINE void take(size_t rows, size_t n, const size_t *places, const real *a, rea
     }
 }
 
+/* Rows as `places` tells made infinite, where all entries are finite before. */
+INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, real *x, real *flags)
+{
+    check(size, w, x, flags);
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t k = 0; k < w; ++k) {
+            x[places[i]*w + k] = R(INFINITY);
+        }
+    }
+}
+
+/* 1 where no entry is negative, else 0. */
+INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
+{
+    check(size, w, a, flags);
+    for (size_t k = 0; k < w; ++k) {
+        x[k] = 1;
+        for (size_t e = 0; e < size; ++e) {
+            x[k] = a[e*w + k] < 0 ? 0 : x[k];
+        }
+    }
+}
+
 INLINE void divide_rows(size_t rows, size_t n, size_t w, const size_t *places, const real *b, real *x)
 {
     for (size_t i = 0; i < rows; ++i) {
@@ -1194,57 +1313,21 @@ static void moved(const real *X, const real *step, real part, real *to)
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics: 738 mul, 540 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
-        h_star_in_base_x[LANES], h_star_in_base_y[LANES], h_star_in_base_z[LANES], J_star_t_10[LANES],
-        J_star_t_11[LANES], J_star_t_12[LANES], J_star_t_14[LANES], J_star_t_15[LANES],
-        J_star_t_17[LANES], Z_p_x[LANES], Z_p_y[LANES], Z_p_z[LANES], Z_q_in_base_x[LANES],
-        Z_q_in_base_y[LANES], Z_q_in_base_z[LANES], sum[27][LANES];
-} dynamics_values;
-typedef struct {
-    real sum[27][8], entry[13][8], unreachable[8], singular[8];
-} dynamics_results_prs;
-
-INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V,
-    dynamics_values *s, verdict *t)
+INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        const real J_star_t_6 = m->J_star_t_6;
-        const real J_star_t_8 = m->J_star_t_8;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -1269,24 +1352,39 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
-        /* (L2) first moment about the platform origin */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_z = m->h_star_z;
         const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
         const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
         const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
-        /* (L3) inertia tensor about the platform origin */
+        /* (J_star) inertia tensor about the platform origin */
+        const real J_star_t_6 = m->J_star_t_6;
+        const real J_star_xy = m->J_star_xy;
+        const real J_star_yz = m->J_star_yz;
         const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_6*R_xy;
         const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_6*R_yy;
         const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_6*R_zy;
+        const real J_star_t_8 = m->J_star_t_8;
+        const real J_star_xz = m->J_star_xz;
         const real J_star_t_4 = J_star_t_8*R_xz - J_star_xz*R_xx;
         const real J_star_t_5 = J_star_t_8*R_yz - J_star_xz*R_yx;
         const real J_star_t_7 = J_star_t_8*R_zz - J_star_xz*R_zx;
         const real J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz;
+        const real J_star_xx = m->J_star_xx;
         const real J_star_t_10 = 2*J_star_t_9 + J_star_xx;
         const real J_star_t_11 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
@@ -1298,454 +1396,497 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
             J_star_t_7*R_yz;
         const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_7*R_zz;
         const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
-        /* (M4) centripetal force and weight of the platform */
+        /* (Z_p) centripetal force and weight of the platform */
         const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
         const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
         const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
+        const real Z_p_t_2 = m->Z_p_t_2;
         const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
+        const real Z_p_t_3 = m->Z_p_t_3;
         const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (M6) gyroscopic moment and moment of the weight of the platform */
+        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real gravity_z = m->gravity_z;
+        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
         const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
         const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
         const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
         const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
+        const real J_star_yy = m->J_star_yy;
         const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
+        const real J_star_zz = m->J_star_zz;
         const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z -
+        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
             g_r0_z*h_star_y;
         const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x_2*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y_2*h_star_x;
+            g_r0_x*h_star_z;
+        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
+            g_r0_y*h_star_x;
         const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
         const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
         const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->h_star_in_base_x[k] = h_star_in_base_x;
-        s->h_star_in_base_y[k] = h_star_in_base_y;
-        s->h_star_in_base_z[k] = h_star_in_base_z;
-        s->J_star_t_10[k] = J_star_t_10;
-        s->J_star_t_11[k] = J_star_t_11;
-        s->J_star_t_12[k] = J_star_t_12;
-        s->J_star_t_14[k] = J_star_t_14;
-        s->J_star_t_15[k] = J_star_t_15;
-        s->J_star_t_17[k] = J_star_t_17;
-        s->Z_p_x[k] = Z_p_x;
-        s->Z_p_y[k] = Z_p_y;
-        s->Z_p_z[k] = Z_p_z;
-        s->Z_q_in_base_x[k] = Z_q_in_base_x;
-        s->Z_q_in_base_y[k] = Z_q_in_base_y;
-        s->Z_q_in_base_z[k] = Z_q_in_base_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
+        s[18*w + k] = h_star_in_base_x;
+        s[19*w + k] = h_star_in_base_y;
+        s[20*w + k] = h_star_in_base_z;
+        s[21*w + k] = J_star_t_10;
+        s[22*w + k] = J_star_t_11;
+        s[23*w + k] = J_star_t_12;
+        s[24*w + k] = J_star_t_14;
+        s[25*w + k] = J_star_t_15;
+        s[26*w + k] = J_star_t_17;
+        s[27*w + k] = Z_p_x;
+        s[28*w + k] = Z_p_y;
+        s[29*w + k] = Z_p_z;
+        s[30*w + k] = Z_q_in_base_x;
+        s[31*w + k] = Z_q_in_base_y;
+        s[32*w + k] = Z_q_in_base_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void dynamics_legs_prs(const prepared *m, size_t leg, size_t legs, const dynamics_values
-    *s, size_t states, size_t count, int add, dynamics_results_prs *o)
+INLINE void dynamics_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real J_2_zz = m->J_2_zz[i];
-        const real P_c1_t = m->P_c1_t[i];
-        const real branch_1 = m->branch_1[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
-        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
-        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_base_point_x = m->prs_base_point_x[i];
-        const real prs_base_point_y = m->prs_base_point_y[i];
-        const real prs_base_point_z = m->prs_base_point_z[i];
-        const real prs_link1_mass = m->prs_link1_mass[i];
-        const real prs_link2_mass = m->prs_link2_mass[i];
-        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
+        /* (prs-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real prs_platform_point_x = m->prs_platform_point_x[i];
         const real prs_platform_point_y = m->prs_platform_point_y[i];
         const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real root_2_t = m->root_2_t[i];
-        const real size_ = m->size_[i];
-        const real uu_2_t = m->uu_2_t[i];
-        /* (prs-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
+        const real prs_q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
             R_xz*prs_platform_point_z;
-        const real q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real prs_q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
             R_yz*prs_platform_point_z;
-        const real q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real prs_q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
             R_zz*prs_platform_point_z;
-        const real S_x = q_in_base_x + t_x - prs_base_point_x;
-        const real S_y = q_in_base_y + t_y - prs_base_point_y;
-        const real S_z = q_in_base_z + t_z - prs_base_point_z;
-        /* (prs-K2) component along axis 1 */
-        const real px_1 = S_x*prs_base_frame_xx + S_y*prs_base_frame_yx + S_z*prs_base_frame_zx;
-        /* (prs-K3) discriminant of the distance equation */
-        const real disc_1_t = S_x*prs_base_frame_xz + S_y*prs_base_frame_yz +
-            S_z*prs_base_frame_zz;
-        const real disc_1_t_2 = S_x*S_x + S_y*S_y + S_z*S_z;
-        const real disc_1 = disc_1_t*disc_1_t + px_1*px_1 + uu_2_t - disc_1_t_2;
-        /* (prs-K4) displacement of joint 1 */
-        const real q_1_t = branch_1*root(disc_1);
-        /* (prs-K1) from the base point to the connection point */
-        const real S_r0_y = S_x*prs_base_frame_xy + S_y*prs_base_frame_yy + S_z*prs_base_frame_zy;
-        /* (prs-K7) squared amplitude */
-        const real rho2_2 = uu_2_t*(S_r0_y*S_r0_y + q_1_t*q_1_t);
-        /* (prs-K9) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/(root(rho2_2));
-        const real c_2 = inv_root_2*prs_platform_joint_offset_x*q_1_t;
-        /* (prs-K10) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = S_r0_y*inv_root_2*prs_platform_joint_offset_x;
-        /* (prs-V3) reciprocal vector 1 */
-        const real axis_y_prs_axes2_in_base_x = -c_2*prs_base_frame_xy - prs_base_frame_xx*s_2;
-        const real axis_y_prs_axes2_in_base_y = -c_2*prs_base_frame_yy - prs_base_frame_yx*s_2;
-        const real axis_y_prs_axes2_in_base_z = -c_2*prs_base_frame_zy - prs_base_frame_zx*s_2;
-        const real axis_x_prs_axes2_in_base_x = prs_base_frame_xy*s_2 - c_2*prs_base_frame_xx;
-        const real axis_x_prs_axes2_in_base_y = prs_base_frame_yy*s_2 - c_2*prs_base_frame_yx;
-        const real axis_x_prs_axes2_in_base_z = prs_base_frame_zy*s_2 - c_2*prs_base_frame_zx;
-        /* (prs-N11) force that accelerates joint 2, per unit */
-        const real P_c2_r0_x = c_2*h_2_y - h_2_x*s_2;
-        /* (prs-V2) velocity of the connection point per rate of joint 2 */
-        const real v_2_t = prs_platform_joint_offset_x*s_2;
-        const real v_2_t_2 = c_2*prs_platform_joint_offset_x;
-        /* (prs-V3) reciprocal vector 1 */
-        const real inv_v_2_t_2 = 1/v_2_t_2;
-        const real w_1_t = inv_v_2_t_2*v_2_t;
-        const real _r0_x = -c_2 - s_2*w_1_t;
-        const real _r0_y = c_2*w_1_t - s_2;
-        /* (prs-V4) reciprocal vector 2 */
-        const real w_2_t = inv_v_2_t_2*s_2;
-        const real w_2_t_2 = c_2*inv_v_2_t_2;
-        /* (prs-N27) coefficient of the acceleration in: force along axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_t = inv_v_2_t_2*(P_c2_r0_x + P_c1_t*v_2_t);
-        const real _r0_x_2 = -P_c1_t*c_2 - d_Gamma_1_t*s_2;
-        const real _r0_y_2 = c_2*d_Gamma_1_t - P_c1_t*s_2;
-        /* (prs-N22) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
-           and weight */
-        const real d_Gamma_2_t = inv_v_2_t_2*(J_2_zz + P_c2_r0_x*v_2_t);
-        const real _r0_x_3 = -P_c2_r0_x*c_2 - d_Gamma_2_t*s_2;
-        const real _r0_y_3 = c_2*d_Gamma_2_t - P_c2_r0_x*s_2;
-        /* (prs-N30) coefficient of the acceleration in: force at the connection point that balances the
+        const real prs_base_point_x = m->prs_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x;
+        const real prs_base_point_y = m->prs_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y;
+        const real prs_base_point_z = m->prs_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z;
+        /* (prs-px_1) component along axis 1 */
+        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
+        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
+        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
+        const real prs_px_1 = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
+            prs_S_z*prs_base_frame_zx;
+        /* (prs-disc_1) discriminant of the distance equation */
+        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
+        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
+        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
+        const real prs_disc_1_t_2 = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
+            prs_S_z*prs_base_frame_zz;
+        const real prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
+        const real prs_disc_1_t = m->prs_disc_1_t[i];
+        const real prs_disc_1 = prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 -
+            prs_disc_1_t_3;
+        /* (prs-q_1) displacement of joint 1 */
+        const real prs_branch_1 = m->prs_branch_1[i];
+        const real prs_q_1_t = prs_branch_1*root(prs_disc_1);
+        /* (prs-S) from the base point to the connection point */
+        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
+        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
+        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
+        const real prs_S_r0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
+            prs_S_z*prs_base_frame_zy;
+        /* (prs-rho2_2) squared amplitude */
+        const real prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t);
+        /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_prs_root_2 = 1/(root(prs_rho2_2));
+        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
+        const real prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t;
+        /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
+        const real prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x;
+        /* (prs-w_1) reciprocal vector 1 */
+        const real axis_y_prs_axes2_in_base_x = -prs_base_frame_xx*prs_s_2 -
+            prs_base_frame_xy*prs_c_2;
+        const real axis_y_prs_axes2_in_base_y = -prs_base_frame_yx*prs_s_2 -
+            prs_base_frame_yy*prs_c_2;
+        const real axis_y_prs_axes2_in_base_z = -prs_base_frame_zx*prs_s_2 -
+            prs_base_frame_zy*prs_c_2;
+        const real axis_x_prs_axes2_in_base_x = prs_base_frame_xy*prs_s_2 -
+            prs_base_frame_xx*prs_c_2;
+        const real axis_x_prs_axes2_in_base_y = prs_base_frame_yy*prs_s_2 -
+            prs_base_frame_yx*prs_c_2;
+        const real axis_x_prs_axes2_in_base_z = prs_base_frame_zy*prs_s_2 -
+            prs_base_frame_zx*prs_c_2;
+        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
+        const real prs_v_2_t = prs_platform_joint_offset_x*prs_s_2;
+        const real prs_v_2_t_2 = prs_c_2*prs_platform_joint_offset_x;
+        /* (prs-w_1) reciprocal vector 1 */
+        const real inv_prs_v_2_t_2 = 1/prs_v_2_t_2;
+        const real prs_w_1_t = inv_prs_v_2_t_2*prs_v_2_t;
+        const real prs__r0_x = -prs_c_2 - prs_s_2*prs_w_1_t;
+        const real prs__r0_y = prs_c_2*prs_w_1_t - prs_s_2;
+        /* (prs-w_2) reciprocal vector 2 */
+        const real prs_w_2_t = inv_prs_v_2_t_2*prs_s_2;
+        const real prs_w_2_t_2 = inv_prs_v_2_t_2*prs_c_2;
+        /* (prs-P_c_2) force that accelerates joint 2, per unit */
+        const real prs_h_2_x = m->prs_h_2_x[i];
+        const real prs_h_2_y = m->prs_h_2_y[i];
+        const real prs_P_c_2_r0_x = prs_c_2*prs_h_2_y - prs_h_2_x*prs_s_2;
+        /* (prs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real prs_J_2_zz = m->prs_J_2_zz[i];
+        const real prs_d_Gamma_2_t = inv_prs_v_2_t_2*(prs_J_2_zz + prs_P_c_2_r0_x*prs_v_2_t);
+        const real prs__r0_x_2 = -prs_P_c_2_r0_x*prs_c_2 - prs_d_Gamma_2_t*prs_s_2;
+        const real prs__r0_y_2 = prs_c_2*prs_d_Gamma_2_t - prs_P_c_2_r0_x*prs_s_2;
+        /* (prs-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
+           inertia and weight */
+        const real prs_P_c_1_t = m->prs_P_c_1_t[i];
+        const real prs_d_Gamma_1_t = inv_prs_v_2_t_2*(prs_P_c_2_r0_x + prs_P_c_1_t*prs_v_2_t);
+        const real prs__r0_x_3 = -prs_P_c_1_t*prs_c_2 - prs_d_Gamma_1_t*prs_s_2;
+        const real prs__r0_y_3 = prs_c_2*prs_d_Gamma_1_t - prs_P_c_1_t*prs_s_2;
+        /* (prs-d_G) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
-        const real d_G_xx = _r0_x*_r0_x_2 - _r0_x_3*w_2_t;
-        const real d_G_xy = _r0_x*_r0_y_2 - _r0_y_3*w_2_t;
-        const real d_G_yx = _r0_x_2*_r0_y + _r0_x_3*w_2_t_2;
-        const real d_G_yy = _r0_y*_r0_y_2 + _r0_y_3*w_2_t_2;
-        /* (prs-N33) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real prs_d_G_xx = prs__r0_x*prs__r0_x_3 - prs__r0_x_2*prs_w_2_t;
+        const real prs_d_G_xy = prs__r0_x*prs__r0_y_3 - prs__r0_y_2*prs_w_2_t;
+        const real prs_d_G_yx = prs__r0_x_2*prs_w_2_t_2 + prs__r0_x_3*prs__r0_y;
+        const real prs_d_G_yy = prs__r0_y*prs__r0_y_3 + prs__r0_y_2*prs_w_2_t_2;
+        /* (prs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_in_base_x = -axis_x_prs_axes2_in_base_x*d_G_xx -
-            axis_y_prs_axes2_in_base_x*d_G_yx;
-        const real d_c_in_base_y = -axis_x_prs_axes2_in_base_y*d_G_xx -
-            axis_y_prs_axes2_in_base_y*d_G_yx;
-        const real d_c_in_base_x_2 = -axis_x_prs_axes2_in_base_x*d_G_xy -
-            axis_y_prs_axes2_in_base_x*d_G_yy;
-        const real d_c_in_base_y_2 = -axis_x_prs_axes2_in_base_y*d_G_xy -
-            axis_y_prs_axes2_in_base_y*d_G_yy;
-        const real d_c_in_base_x_3 = axis_x_prs_axes2_in_base_x*d_c_in_base_x +
-            axis_y_prs_axes2_in_base_x*d_c_in_base_x_2;
-        const real d_c_in_base_y_3 = axis_x_prs_axes2_in_base_y*d_c_in_base_x +
-            axis_y_prs_axes2_in_base_y*d_c_in_base_x_2;
-        const real d_c_in_base_z = axis_x_prs_axes2_in_base_z*d_c_in_base_x +
-            axis_y_prs_axes2_in_base_z*d_c_in_base_x_2;
-        const real d_c_in_base_y_4 = axis_x_prs_axes2_in_base_y*d_c_in_base_y +
-            axis_y_prs_axes2_in_base_y*d_c_in_base_y_2;
-        const real d_c_in_base_z_2 = axis_x_prs_axes2_in_base_z*d_c_in_base_y +
-            axis_y_prs_axes2_in_base_z*d_c_in_base_y_2;
-        const real d_c_in_base_z_3 =
-            axis_x_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*d_G_xx -
-            axis_y_prs_axes2_in_base_z*d_G_yx) +
-            axis_y_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*d_G_xy -
-            axis_y_prs_axes2_in_base_z*d_G_yy);
-        /* (M2) coupling block of M */
-        const real M_ta_t = d_c_in_base_y_3*q_in_base_z;
-        const real M_ta_t_2 = d_c_in_base_z*q_in_base_y;
-        const real M_ta_t_3 = M_ta_t - M_ta_t_2;
-        const real M_ta_t_4 = d_c_in_base_x_3*q_in_base_z - d_c_in_base_z*q_in_base_x;
-        const real M_ta_t_5 = d_c_in_base_x_3*q_in_base_y - d_c_in_base_y_3*q_in_base_x;
-        const real M_ta_t_6 = d_c_in_base_y_4*q_in_base_z - d_c_in_base_z_2*q_in_base_y;
-        const real M_ta_t_7 = d_c_in_base_z_2*q_in_base_x;
-        const real M_ta_t_8 = M_ta_t - M_ta_t_7;
-        const real M_ta_t_9 = d_c_in_base_y_3*q_in_base_y - d_c_in_base_y_4*q_in_base_x;
-        const real M_ta_t_10 = d_c_in_base_z_2*q_in_base_z - d_c_in_base_z_3*q_in_base_y;
-        const real M_ta_t_11 = d_c_in_base_z*q_in_base_z - d_c_in_base_z_3*q_in_base_x;
-        const real M_ta_t_12 = M_ta_t_7 - M_ta_t_2;
-        /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y;
-        const real M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y;
-        const real M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z;
-        const real M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x;
-        const real M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z;
-        const real M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x;
-        /* (prs-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        /* (prs-V6) rate of joint 2 */
-        const real qd_2 = inv_v_2_t_2*(S_dot_x*prs_base_frame_xy + S_dot_y*prs_base_frame_yy +
-            S_dot_z*prs_base_frame_zy);
-        /* (prs-V8) centripetal tensor of link 2 */
-        const real W_2_t = qd_2*qd_2;
-        /* (prs-A1) centripetal acceleration of the connection point */
-        const real u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z;
-        const real u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x;
-        const real u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y;
-        const real u_1_tip_y = axis_y_prs_axes2_in_base_x*u_1_x + axis_y_prs_axes2_in_base_y*u_1_y
-            + axis_y_prs_axes2_in_base_z*u_1_z;
-        const real u_1_tip_z = prs_base_frame_xz*u_1_x + prs_base_frame_yz*u_1_y +
-            prs_base_frame_zz*u_1_z;
-        /* (prs-A6) remainder without the acceleration in: acceleration of the connection point left to
+        const real prs_d_c_in_base_x = -axis_x_prs_axes2_in_base_x*prs_d_G_xx -
+            axis_y_prs_axes2_in_base_x*prs_d_G_yx;
+        const real prs_d_c_in_base_y = -axis_x_prs_axes2_in_base_y*prs_d_G_xx -
+            axis_y_prs_axes2_in_base_y*prs_d_G_yx;
+        const real prs_d_c_in_base_x_2 = -axis_x_prs_axes2_in_base_x*prs_d_G_xy -
+            axis_y_prs_axes2_in_base_x*prs_d_G_yy;
+        const real prs_d_c_in_base_y_2 = -axis_x_prs_axes2_in_base_y*prs_d_G_xy -
+            axis_y_prs_axes2_in_base_y*prs_d_G_yy;
+        const real prs_d_c_in_base_x_3 = axis_x_prs_axes2_in_base_x*prs_d_c_in_base_x +
+            axis_y_prs_axes2_in_base_x*prs_d_c_in_base_x_2;
+        const real prs_d_c_in_base_y_3 = axis_x_prs_axes2_in_base_y*prs_d_c_in_base_x +
+            axis_y_prs_axes2_in_base_y*prs_d_c_in_base_x_2;
+        const real prs_d_c_in_base_z = axis_x_prs_axes2_in_base_z*prs_d_c_in_base_x +
+            axis_y_prs_axes2_in_base_z*prs_d_c_in_base_x_2;
+        const real prs_d_c_in_base_y_4 = axis_x_prs_axes2_in_base_y*prs_d_c_in_base_y +
+            axis_y_prs_axes2_in_base_y*prs_d_c_in_base_y_2;
+        const real prs_d_c_in_base_z_2 = axis_x_prs_axes2_in_base_z*prs_d_c_in_base_y +
+            axis_y_prs_axes2_in_base_z*prs_d_c_in_base_y_2;
+        const real prs_d_c_in_base_z_3 =
+            axis_x_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*prs_d_G_xx -
+            axis_y_prs_axes2_in_base_z*prs_d_G_yx) +
+            axis_y_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*prs_d_G_xy -
+            axis_y_prs_axes2_in_base_z*prs_d_G_yy);
+        /* (M_ta) coupling block of M */
+        const real prs_M_ta_t = prs_d_c_in_base_y_3*prs_q_in_base_z;
+        const real prs_M_ta_t_2 = prs_d_c_in_base_z*prs_q_in_base_y;
+        const real prs_M_ta_t_3 = prs_M_ta_t - prs_M_ta_t_2;
+        const real prs_M_ta_t_4 = prs_d_c_in_base_x_3*prs_q_in_base_z -
+            prs_d_c_in_base_z*prs_q_in_base_x;
+        const real prs_M_ta_t_5 = prs_d_c_in_base_x_3*prs_q_in_base_y -
+            prs_d_c_in_base_y_3*prs_q_in_base_x;
+        const real prs_M_ta_t_6 = prs_d_c_in_base_y_4*prs_q_in_base_z -
+            prs_d_c_in_base_z_2*prs_q_in_base_y;
+        const real prs_M_ta_t_7 = prs_d_c_in_base_z_2*prs_q_in_base_x;
+        const real prs_M_ta_t_8 = prs_M_ta_t - prs_M_ta_t_7;
+        const real prs_M_ta_t_9 = prs_d_c_in_base_y_3*prs_q_in_base_y -
+            prs_d_c_in_base_y_4*prs_q_in_base_x;
+        const real prs_M_ta_t_10 = prs_d_c_in_base_z_2*prs_q_in_base_z -
+            prs_d_c_in_base_z_3*prs_q_in_base_y;
+        const real prs_M_ta_t_11 = prs_d_c_in_base_z*prs_q_in_base_z -
+            prs_d_c_in_base_z_3*prs_q_in_base_x;
+        const real prs_M_ta_t_12 = prs_M_ta_t_7 - prs_M_ta_t_2;
+        /* (M_aa) rotational block of M */
+        const real prs_M_aa_t = prs_M_ta_t_6*prs_q_in_base_z - prs_M_ta_t_10*prs_q_in_base_y;
+        const real prs_M_aa_t_2 = prs_M_ta_t_8*prs_q_in_base_z - prs_M_ta_t_11*prs_q_in_base_y;
+        const real prs_M_aa_t_3 = prs_M_ta_t_12*prs_q_in_base_y + prs_M_ta_t_9*prs_q_in_base_z;
+        const real prs_M_aa_t_4 = prs_M_ta_t_4*prs_q_in_base_z - prs_M_ta_t_11*prs_q_in_base_x;
+        const real prs_M_aa_t_5 = prs_M_ta_t_12*prs_q_in_base_x + prs_M_ta_t_5*prs_q_in_base_z;
+        const real prs_M_aa_t_6 = prs_M_ta_t_5*prs_q_in_base_y - prs_M_ta_t_9*prs_q_in_base_x;
+        /* (prs-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real prs_S_dot_t = omega_y*prs_q_in_base_z - omega_z*prs_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real prs_S_dot_t_2 = omega_z*prs_q_in_base_x - omega_x*prs_q_in_base_z;
+        const real prs_S_dot_t_3 = omega_x*prs_q_in_base_y - omega_y*prs_q_in_base_x;
+        const real t_dot_x = s[12*w + j];
+        const real prs_S_dot_x = prs_S_dot_t + t_dot_x;
+        const real t_dot_y = s[13*w + j];
+        const real prs_S_dot_y = prs_S_dot_t_2 + t_dot_y;
+        const real t_dot_z = s[14*w + j];
+        const real prs_S_dot_z = prs_S_dot_t_3 + t_dot_z;
+        /* (prs-qd_2) rate of joint 2 */
+        const real prs_qd_2 = inv_prs_v_2_t_2*(prs_S_dot_x*prs_base_frame_xy +
+            prs_S_dot_y*prs_base_frame_yy + prs_S_dot_z*prs_base_frame_zy);
+        /* (prs-u_1) centripetal acceleration of the connection point */
+        const real prs_u_1_x = omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2;
+        const real prs_u_1_y = omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3;
+        const real prs_u_1_z = omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t;
+        /* (prs-W_2) centripetal tensor of link 2 */
+        const real prs_W_2_t = prs_qd_2*prs_qd_2;
+        /* (prs-u_1) centripetal acceleration of the connection point */
+        const real prs_u_1_tip_y = axis_y_prs_axes2_in_base_x*prs_u_1_x +
+            axis_y_prs_axes2_in_base_y*prs_u_1_y + axis_y_prs_axes2_in_base_z*prs_u_1_z;
+        const real prs_u_1_tip_z = prs_base_frame_xz*prs_u_1_x + prs_base_frame_yz*prs_u_1_y +
+            prs_base_frame_zz*prs_u_1_z;
+        /* (prs-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rel_o_x = axis_x_prs_axes2_in_base_x*u_1_x + axis_x_prs_axes2_in_base_y*u_1_y +
-            axis_x_prs_axes2_in_base_z*u_1_z + prs_platform_joint_offset_x*qd_2*qd_2;
-        /* (prs-A8) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_2_o = inv_v_2_t_2*(rel_o_x*s_2 - c_2*u_1_tip_y);
-        const real qdd_1_o_t = c_2*rel_o_x + qdd_2_o*v_2_t + s_2*u_1_tip_y;
-        /* (prs-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
-           less gravity */
-        const real acc_1_o_x = -g_r0_x - qdd_1_o_t;
-        /* (prs-N6) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real acc_2_o_x = c_2*g_r0_x + c_2*qdd_1_o_t - g_r0_y*s_2;
-        const real acc_2_o_y = c_2*g_r0_y + g_r0_x*s_2 + qdd_1_o_t*s_2;
-        /* (prs-N10) remainder without the acceleration in: inertia force of link 2 less its weight */
-        const real f_2_o_x = acc_2_o_x*prs_link2_mass + h_2_y*qdd_2_o - W_2_t*h_2_x;
-        const real f_2_o_y = acc_2_o_y*prs_link2_mass - W_2_t*h_2_y - h_2_x*qdd_2_o;
-        /* (prs-N25) remainder without the acceleration in: inertia force of the links from 1 outwards,
-           the last link left out */
-        const real T_1_o_x = acc_1_o_x*prs_link1_mass - c_2*f_2_o_x - f_2_o_y*s_2;
-        /* (prs-N20) remainder without the acceleration in: inertia moment of the links that turn with
+        const real prs_rel_o_x = axis_x_prs_axes2_in_base_x*prs_u_1_x +
+            axis_x_prs_axes2_in_base_y*prs_u_1_y + axis_x_prs_axes2_in_base_z*prs_u_1_z +
+            prs_platform_joint_offset_x*prs_qd_2*prs_qd_2;
+        /* (prs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        const real prs_qdd_2_o = inv_prs_v_2_t_2*(prs_rel_o_x*prs_s_2 - prs_c_2*prs_u_1_tip_y);
+        const real prs_qdd_2_o_t = prs_c_2*prs_rel_o_x + prs_qdd_2_o*prs_v_2_t +
+            prs_s_2*prs_u_1_tip_y;
+        /* (prs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real prs_g_r0_x = m->prs_g_r0_x[i];
+        const real prs_g_r0_y = m->prs_g_r0_y[i];
+        const real prs_acc_2_o_x = prs_c_2*prs_g_r0_x + prs_c_2*prs_qdd_2_o_t -
+            prs_g_r0_y*prs_s_2;
+        const real prs_acc_2_o_y = prs_c_2*prs_g_r0_y + prs_g_r0_x*prs_s_2 +
+            prs_qdd_2_o_t*prs_s_2;
+        /* (prs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real mu_2_o_z = acc_2_o_y*h_2_x - J_2_zz*qdd_2_o - acc_2_o_x*h_2_y;
-        /* (prs-N31) remainder without the acceleration in: force at the connection point that balances
+        const real prs_mu_2_o_z = prs_acc_2_o_y*prs_h_2_x - prs_J_2_zz*prs_qdd_2_o -
+            prs_acc_2_o_x*prs_h_2_y;
+        /* (prs-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
+           link 1, less gravity */
+        const real prs_acc_1_o_x = -prs_g_r0_x - prs_qdd_2_o_t;
+        /* (prs-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
+        const real prs_link2_mass = m->prs_link2_mass[i];
+        const real prs_f_2_o_x = prs_acc_2_o_x*prs_link2_mass + prs_h_2_y*prs_qdd_2_o -
+            prs_W_2_t*prs_h_2_x;
+        const real prs_f_2_o_y = prs_acc_2_o_y*prs_link2_mass - prs_W_2_t*prs_h_2_y -
+            prs_h_2_x*prs_qdd_2_o;
+        /* (prs-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards,
+           the last link left out */
+        const real prs_link1_mass = m->prs_link1_mass[i];
+        const real prs_T_1_o_x = prs_acc_1_o_x*prs_link1_mass - prs_c_2*prs_f_2_o_x -
+            prs_f_2_o_y*prs_s_2;
+        /* (prs-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real G_o_t = inv_v_2_t_2*(mu_2_o_z + T_1_o_x*v_2_t);
-        const real _r0_x_4 = -G_o_t*s_2 - T_1_o_x*c_2;
-        const real _r0_y_4 = G_o_t*c_2 - T_1_o_x*s_2;
-        /* (prs-N36) velocity and gravity terms of the leg force */
-        const real U_in_base_x = _r0_x_4*axis_x_prs_axes2_in_base_x +
-            _r0_y_4*axis_y_prs_axes2_in_base_x;
-        const real U_in_base_y = _r0_x_4*axis_x_prs_axes2_in_base_y +
-            _r0_y_4*axis_y_prs_axes2_in_base_y;
-        const real U_in_base_z = _r0_x_4*axis_x_prs_axes2_in_base_z +
-            _r0_y_4*axis_y_prs_axes2_in_base_z;
-        /* (M7) rotational part of Z */
-        const real Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z;
-        const real Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x;
-        const real Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y;
-        /* (prs-V3) reciprocal vector 1 */
-        const real w_1_in_base_x = _r0_x*axis_x_prs_axes2_in_base_x +
-            _r0_y*axis_y_prs_axes2_in_base_x;
-        const real w_1_in_base_y = _r0_x*axis_x_prs_axes2_in_base_y +
-            _r0_y*axis_y_prs_axes2_in_base_y;
-        const real w_1_in_base_z = _r0_x*axis_x_prs_axes2_in_base_z +
-            _r0_y*axis_y_prs_axes2_in_base_z;
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_1_x = q_in_base_y*w_1_in_base_z - q_in_base_z*w_1_in_base_y;
-        const real H_a_1_y = q_in_base_z*w_1_in_base_x - q_in_base_x*w_1_in_base_z;
-        const real H_a_1_z = q_in_base_x*w_1_in_base_y - q_in_base_y*w_1_in_base_x;
-        /* (M9) moment of the column's unit force about the platform origin */
-        const real Hk_a_1_x = prs_base_frame_zz*q_in_base_y - prs_base_frame_yz*q_in_base_z;
-        const real Hk_a_1_y = prs_base_frame_xz*q_in_base_z - prs_base_frame_zz*q_in_base_x;
-        const real Hk_a_1_z = prs_base_frame_yz*q_in_base_x - prs_base_frame_xz*q_in_base_y;
-        o->sum[0][k] = add ? o->sum[0][k] + d_c_in_base_x_3 : d_c_in_base_x_3;  /* total_prs_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + d_c_in_base_y_3 : d_c_in_base_y_3;  /* total_prs_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + d_c_in_base_z : d_c_in_base_z;  /* total_prs_xz */
-        o->sum[3][k] = add ? o->sum[3][k] + d_c_in_base_y_4 : d_c_in_base_y_4;  /* total_prs_yy */
-        o->sum[4][k] = add ? o->sum[4][k] + d_c_in_base_z_2 : d_c_in_base_z_2;  /* total_prs_yz */
-        o->sum[5][k] = add ? o->sum[5][k] + d_c_in_base_z_3 : d_c_in_base_z_3;  /* total_prs_zz */
-        o->sum[6][k] = add ? o->sum[6][k] + M_ta_t_3 : M_ta_t_3;  /* total_prs_xx_2 */
-        o->sum[7][k] = add ? o->sum[7][k] + M_ta_t_4 : M_ta_t_4;  /* total_prs_xy_2 */
-        o->sum[8][k] = add ? o->sum[8][k] + M_ta_t_5 : M_ta_t_5;  /* total_prs_xz_2 */
-        o->sum[9][k] = add ? o->sum[9][k] + M_ta_t_6 : M_ta_t_6;  /* total_prs_yx */
-        o->sum[10][k] = add ? o->sum[10][k] + M_ta_t_8 : M_ta_t_8;  /* total_prs_yy_2 */
-        o->sum[11][k] = add ? o->sum[11][k] + M_ta_t_9 : M_ta_t_9;  /* total_prs_yz_2 */
-        o->sum[12][k] = add ? o->sum[12][k] + M_ta_t_10 : M_ta_t_10;  /* total_prs_zx */
-        o->sum[13][k] = add ? o->sum[13][k] + M_ta_t_11 : M_ta_t_11;  /* total_prs_zy */
-        o->sum[14][k] = add ? o->sum[14][k] + M_ta_t_12 : M_ta_t_12;  /* total_prs_zz_2 */
-        o->sum[15][k] = add ? o->sum[15][k] + M_aa_t : M_aa_t;  /* total_prs_xx_3 */
-        o->sum[16][k] = add ? o->sum[16][k] + M_aa_t_2 : M_aa_t_2;  /* total_prs_xy_3 */
-        o->sum[17][k] = add ? o->sum[17][k] + M_aa_t_3 : M_aa_t_3;  /* total_prs_xz_3 */
-        o->sum[18][k] = add ? o->sum[18][k] + M_aa_t_4 : M_aa_t_4;  /* total_prs_yy_3 */
-        o->sum[19][k] = add ? o->sum[19][k] + M_aa_t_5 : M_aa_t_5;  /* total_prs_yz_3 */
-        o->sum[20][k] = add ? o->sum[20][k] + M_aa_t_6 : M_aa_t_6;  /* total_prs_zz_3 */
-        o->sum[21][k] = add ? o->sum[21][k] + U_in_base_x : U_in_base_x;  /* total_prs_x */
-        o->sum[22][k] = add ? o->sum[22][k] + U_in_base_y : U_in_base_y;  /* total_prs_y */
-        o->sum[23][k] = add ? o->sum[23][k] + U_in_base_z : U_in_base_z;  /* total_prs_z */
-        o->sum[24][k] = add ? o->sum[24][k] + Z_a_t : Z_a_t;  /* total_prs_x_2 */
-        o->sum[25][k] = add ? o->sum[25][k] + Z_a_t_2 : Z_a_t_2;  /* total_prs_y_2 */
-        o->sum[26][k] = add ? o->sum[26][k] + Z_a_t_3 : Z_a_t_3;  /* total_prs_z_2 */
-        o->entry[0][k] = w_1_in_base_x;
-        o->entry[1][k] = w_1_in_base_y;
-        o->entry[2][k] = w_1_in_base_z;
-        o->entry[3][k] = H_a_1_x;
-        o->entry[4][k] = H_a_1_y;
-        o->entry[5][k] = H_a_1_z;
-        o->entry[6][k] = prs_base_frame_xz;
-        o->entry[7][k] = prs_base_frame_yz;
-        o->entry[8][k] = prs_base_frame_zz;
-        o->entry[9][k] = Hk_a_1_x;
-        o->entry[10][k] = Hk_a_1_y;
-        o->entry[11][k] = Hk_a_1_z;
-        o->entry[12][k] = u_1_tip_z;
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*root_2_t) +
-            UNLESS(magnitude(-v_2_t_2) > TOLERANCE*size_);
+        const real prs_G_o_t = inv_prs_v_2_t_2*(prs_mu_2_o_z + prs_T_1_o_x*prs_v_2_t);
+        const real prs__r0_x_4 = -prs_G_o_t*prs_s_2 - prs_T_1_o_x*prs_c_2;
+        const real prs__r0_y_4 = prs_G_o_t*prs_c_2 - prs_T_1_o_x*prs_s_2;
+        /* (prs-U) velocity and gravity terms of the leg force */
+        const real prs_U_in_base_x = axis_x_prs_axes2_in_base_x*prs__r0_x_4 +
+            axis_y_prs_axes2_in_base_x*prs__r0_y_4;
+        const real prs_U_in_base_y = axis_x_prs_axes2_in_base_y*prs__r0_x_4 +
+            axis_y_prs_axes2_in_base_y*prs__r0_y_4;
+        const real prs_U_in_base_z = axis_x_prs_axes2_in_base_z*prs__r0_x_4 +
+            axis_y_prs_axes2_in_base_z*prs__r0_y_4;
+        /* (Z_a) rotational part of Z */
+        const real prs_Z_a_t = prs_U_in_base_z*prs_q_in_base_y - prs_U_in_base_y*prs_q_in_base_z;
+        const real prs_Z_a_t_2 = prs_U_in_base_x*prs_q_in_base_z -
+            prs_U_in_base_z*prs_q_in_base_x;
+        const real prs_Z_a_t_3 = prs_U_in_base_y*prs_q_in_base_x -
+            prs_U_in_base_x*prs_q_in_base_y;
+        /* (prs-w_1) reciprocal vector 1 */
+        const real prs_w_1_in_base_x = axis_x_prs_axes2_in_base_x*prs__r0_x +
+            axis_y_prs_axes2_in_base_x*prs__r0_y;
+        const real prs_w_1_in_base_y = axis_x_prs_axes2_in_base_y*prs__r0_x +
+            axis_y_prs_axes2_in_base_y*prs__r0_y;
+        const real prs_w_1_in_base_z = axis_x_prs_axes2_in_base_z*prs__r0_x +
+            axis_y_prs_axes2_in_base_z*prs__r0_y;
+        /* (prs-H_a_1) moment of the column's unit force about the platform origin */
+        const real prs_H_a_1_x = prs_q_in_base_y*prs_w_1_in_base_z -
+            prs_q_in_base_z*prs_w_1_in_base_y;
+        const real prs_H_a_1_y = prs_q_in_base_z*prs_w_1_in_base_x -
+            prs_q_in_base_x*prs_w_1_in_base_z;
+        const real prs_H_a_1_z = prs_q_in_base_x*prs_w_1_in_base_y -
+            prs_q_in_base_y*prs_w_1_in_base_x;
+        /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
+        const real prs_Hk_a_1_x = prs_base_frame_zz*prs_q_in_base_y -
+            prs_base_frame_yz*prs_q_in_base_z;
+        const real prs_Hk_a_1_y = prs_base_frame_xz*prs_q_in_base_z -
+            prs_base_frame_zz*prs_q_in_base_x;
+        const real prs_Hk_a_1_z = prs_base_frame_yz*prs_q_in_base_x -
+            prs_base_frame_xz*prs_q_in_base_y;
+        terms[0*count + k] = add ? terms[0*count + k] + prs_d_c_in_base_x_3 : prs_d_c_in_base_x_3;  /* total_prs_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + prs_d_c_in_base_y_3 : prs_d_c_in_base_y_3;  /* total_prs_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + prs_d_c_in_base_z : prs_d_c_in_base_z;  /* total_prs_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + prs_d_c_in_base_y_4 : prs_d_c_in_base_y_4;  /* total_prs_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + prs_d_c_in_base_z_2 : prs_d_c_in_base_z_2;  /* total_prs_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + prs_d_c_in_base_z_3 : prs_d_c_in_base_z_3;  /* total_prs_zz */
+        terms[6*count + k] = add ? terms[6*count + k] + prs_M_ta_t_3 : prs_M_ta_t_3;  /* total_prs_xx_2 */
+        terms[7*count + k] = add ? terms[7*count + k] + prs_M_ta_t_4 : prs_M_ta_t_4;  /* total_prs_xy_2 */
+        terms[8*count + k] = add ? terms[8*count + k] + prs_M_ta_t_5 : prs_M_ta_t_5;  /* total_prs_xz_2 */
+        terms[9*count + k] = add ? terms[9*count + k] + prs_M_ta_t_6 : prs_M_ta_t_6;  /* total_prs_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + prs_M_ta_t_8 : prs_M_ta_t_8;  /* total_prs_yy_2 */
+        terms[11*count + k] = add ? terms[11*count + k] + prs_M_ta_t_9 : prs_M_ta_t_9;  /* total_prs_yz_2 */
+        terms[12*count + k] = add ? terms[12*count + k] + prs_M_ta_t_10 : prs_M_ta_t_10;  /* total_prs_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + prs_M_ta_t_11 : prs_M_ta_t_11;  /* total_prs_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + prs_M_ta_t_12 : prs_M_ta_t_12;  /* total_prs_zz_2 */
+        terms[15*count + k] = add ? terms[15*count + k] + prs_M_aa_t : prs_M_aa_t;  /* total_prs_xx_3 */
+        terms[16*count + k] = add ? terms[16*count + k] + prs_M_aa_t_2 : prs_M_aa_t_2;  /* total_prs_xy_3 */
+        terms[17*count + k] = add ? terms[17*count + k] + prs_M_aa_t_3 : prs_M_aa_t_3;  /* total_prs_xz_3 */
+        terms[18*count + k] = add ? terms[18*count + k] + prs_M_aa_t_4 : prs_M_aa_t_4;  /* total_prs_yy_3 */
+        terms[19*count + k] = add ? terms[19*count + k] + prs_M_aa_t_5 : prs_M_aa_t_5;  /* total_prs_yz_3 */
+        terms[20*count + k] = add ? terms[20*count + k] + prs_M_aa_t_6 : prs_M_aa_t_6;  /* total_prs_zz_3 */
+        terms[21*count + k] = add ? terms[21*count + k] + prs_U_in_base_x : prs_U_in_base_x;  /* total_prs_x */
+        terms[22*count + k] = add ? terms[22*count + k] + prs_U_in_base_y : prs_U_in_base_y;  /* total_prs_y */
+        terms[23*count + k] = add ? terms[23*count + k] + prs_U_in_base_z : prs_U_in_base_z;  /* total_prs_z */
+        terms[24*count + k] = add ? terms[24*count + k] + prs_Z_a_t : prs_Z_a_t;  /* total_prs_x_2 */
+        terms[25*count + k] = add ? terms[25*count + k] + prs_Z_a_t_2 : prs_Z_a_t_2;  /* total_prs_y_2 */
+        terms[26*count + k] = add ? terms[26*count + k] + prs_Z_a_t_3 : prs_Z_a_t_3;  /* total_prs_z_2 */
+        o[0*count + k] = prs_w_1_in_base_x;
+        o[1*count + k] = prs_w_1_in_base_y;
+        o[2*count + k] = prs_w_1_in_base_z;
+        o[3*count + k] = prs_H_a_1_x;
+        o[4*count + k] = prs_H_a_1_y;
+        o[5*count + k] = prs_H_a_1_z;
+        o[6*count + k] = prs_base_frame_xz;
+        o[7*count + k] = prs_base_frame_yz;
+        o[8*count + k] = prs_base_frame_zz;
+        o[9*count + k] = prs_Hk_a_1_x;
+        o[10*count + k] = prs_Hk_a_1_y;
+        o[11*count + k] = prs_Hk_a_1_z;
+        o[12*count + k] = prs_u_1_tip_z;
+        o[15*count + k] = ((prs_w_1_in_base_x + (prs_w_1_in_base_y + prs_w_1_in_base_z)) +
+            (prs_H_a_1_x + (prs_H_a_1_y + prs_H_a_1_z))) + ((prs_base_frame_xz +
+            (prs_base_frame_yz + prs_base_frame_zz)) + ((prs_Hk_a_1_x + prs_Hk_a_1_y) +
+            (prs_Hk_a_1_z + prs_u_1_tip_z)));
+        const real prs_root_2_t = m->prs_root_2_t[i];
+        const real prs_size = m->prs_size[i];
+        o[13*count + k] = UNLESS(prs_disc_1 >= 0);
+        o[14*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
+            UNLESS(magnitude(-prs_v_2_t_2) > TOLERANCE*prs_size);
     }
 }
 
-INLINE void dynamics_place_prs(size_t w, const dynamics_results_prs *o, size_t leg, size_t first,
+INLINE void dynamics_place_prs(size_t w, size_t count, const real *o, size_t leg, size_t first,
     real *H, real *Hk, real *constraint_bias, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(3 + leg)*w + k] = o->entry[1][first + k];
-        H[(6 + leg)*w + k] = o->entry[2][first + k];
-        H[(9 + leg)*w + k] = o->entry[3][first + k];
-        H[(12 + leg)*w + k] = o->entry[4][first + k];
-        H[(15 + leg)*w + k] = o->entry[5][first + k];
-        Hk[(leg)*w + k] = o->entry[6][first + k];
-        Hk[(3 + leg)*w + k] = o->entry[7][first + k];
-        Hk[(6 + leg)*w + k] = o->entry[8][first + k];
-        Hk[(9 + leg)*w + k] = o->entry[9][first + k];
-        Hk[(12 + leg)*w + k] = o->entry[10][first + k];
-        Hk[(15 + leg)*w + k] = o->entry[11][first + k];
-        constraint_bias[(leg)*w + k] = o->entry[12][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(3 + leg)*w + k] = o[1*count + first + k];
+        H[(6 + leg)*w + k] = o[2*count + first + k];
+        H[(9 + leg)*w + k] = o[3*count + first + k];
+        H[(12 + leg)*w + k] = o[4*count + first + k];
+        H[(15 + leg)*w + k] = o[5*count + first + k];
+        Hk[(leg)*w + k] = o[6*count + first + k];
+        Hk[(3 + leg)*w + k] = o[7*count + first + k];
+        Hk[(6 + leg)*w + k] = o[8*count + first + k];
+        Hk[(9 + leg)*w + k] = o[9*count + first + k];
+        Hk[(12 + leg)*w + k] = o[10*count + first + k];
+        Hk[(15 + leg)*w + k] = o[11*count + first + k];
+        constraint_bias[(leg)*w + k] = o[12*count + first + k];
+        t->unreachable[k] += o[13*count + first + k];
+        t->singular[k] += o[14*count + first + k];
+        t->total[k] += o[15*count + first + k];
     }
 }
 
-INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s, real *M, real
-    *Z)
+INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const real *sums, real *M,
+    real *Z, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real h_star_in_base_x = s->h_star_in_base_x[k];
-        const real h_star_in_base_y = s->h_star_in_base_y[k];
-        const real h_star_in_base_z = s->h_star_in_base_z[k];
-        const real J_star_t_10 = s->J_star_t_10[k];
-        const real J_star_t_11 = s->J_star_t_11[k];
-        const real J_star_t_12 = s->J_star_t_12[k];
-        const real J_star_t_14 = s->J_star_t_14[k];
-        const real J_star_t_15 = s->J_star_t_15[k];
-        const real J_star_t_17 = s->J_star_t_17[k];
-        const real Z_p_x = s->Z_p_x[k];
-        const real Z_p_y = s->Z_p_y[k];
-        const real Z_p_z = s->Z_p_z[k];
-        const real Z_q_in_base_x = s->Z_q_in_base_x[k];
-        const real Z_q_in_base_y = s->Z_q_in_base_y[k];
-        const real Z_q_in_base_z = s->Z_q_in_base_z[k];
-        const real total_prs_xx = s->sum[0][k];
-        const real total_prs_xy = s->sum[1][k];
-        const real total_prs_xz = s->sum[2][k];
-        const real total_prs_yy = s->sum[3][k];
-        const real total_prs_yz = s->sum[4][k];
-        const real total_prs_zz = s->sum[5][k];
-        const real total_prs_xx_2 = s->sum[6][k];
-        const real total_prs_xy_2 = s->sum[7][k];
-        const real total_prs_xz_2 = s->sum[8][k];
-        const real total_prs_yx = s->sum[9][k];
-        const real total_prs_yy_2 = s->sum[10][k];
-        const real total_prs_yz_2 = s->sum[11][k];
-        const real total_prs_zx = s->sum[12][k];
-        const real total_prs_zy = s->sum[13][k];
-        const real total_prs_zz_2 = s->sum[14][k];
-        const real total_prs_xx_3 = s->sum[15][k];
-        const real total_prs_xy_3 = s->sum[16][k];
-        const real total_prs_xz_3 = s->sum[17][k];
-        const real total_prs_yy_3 = s->sum[18][k];
-        const real total_prs_yz_3 = s->sum[19][k];
-        const real total_prs_zz_3 = s->sum[20][k];
-        const real total_prs_x = s->sum[21][k];
-        const real total_prs_y = s->sum[22][k];
-        const real total_prs_z = s->sum[23][k];
-        const real total_prs_x_2 = s->sum[24][k];
-        const real total_prs_y_2 = s->sum[25][k];
-        const real total_prs_z_2 = s->sum[26][k];
+        /* (M_tt) translational block of M */
         const real platform_mass = m->platform_mass;
-        /* (M1) translational block of M */
+        const real total_prs_xx = sums[0*w + k];
         const real M_tt_xx = platform_mass - total_prs_xx;
+        const real total_prs_yy = sums[3*w + k];
         const real M_tt_yy = platform_mass - total_prs_yy;
+        const real total_prs_zz = sums[5*w + k];
         const real M_tt_zz = platform_mass - total_prs_zz;
-        /* (M2) coupling block of M */
+        /* (M_ta) coupling block of M */
+        const real h_star_in_base_z = s[20*w + k];
+        const real total_prs_xy_2 = sums[7*w + k];
         const real M_ta_xy = h_star_in_base_z - total_prs_xy_2;
+        const real h_star_in_base_y = s[19*w + k];
+        const real total_prs_xz_2 = sums[8*w + k];
         const real M_ta_xz = total_prs_xz_2 - h_star_in_base_y;
+        const real total_prs_yx = sums[9*w + k];
         const real M_ta_yx = total_prs_yx - h_star_in_base_z;
+        const real h_star_in_base_x = s[18*w + k];
+        const real total_prs_yz_2 = sums[11*w + k];
         const real M_ta_yz = h_star_in_base_x + total_prs_yz_2;
+        const real total_prs_zx = sums[12*w + k];
         const real M_ta_zx = h_star_in_base_y + total_prs_zx;
+        const real total_prs_zy = sums[13*w + k];
         const real M_ta_zy = -h_star_in_base_x - total_prs_zy;
-        /* (M3) rotational block of M */
+        /* (M_aa) rotational block of M */
+        const real J_star_t_10 = s[21*w + k];
+        const real total_prs_xx_3 = sums[15*w + k];
         const real M_aa_xx = J_star_t_10 - total_prs_xx_3;
+        const real J_star_t_11 = s[22*w + k];
+        const real total_prs_xy_3 = sums[16*w + k];
         const real M_aa_xy = J_star_t_11 + total_prs_xy_3;
+        const real J_star_t_12 = s[23*w + k];
+        const real total_prs_xz_3 = sums[17*w + k];
         const real M_aa_xz = J_star_t_12 - total_prs_xz_3;
+        const real J_star_t_14 = s[24*w + k];
+        const real total_prs_yy_3 = sums[18*w + k];
         const real M_aa_yy = J_star_t_14 - total_prs_yy_3;
+        const real J_star_t_15 = s[25*w + k];
+        const real total_prs_yz_3 = sums[19*w + k];
         const real M_aa_yz = J_star_t_15 + total_prs_yz_3;
+        const real J_star_t_17 = s[26*w + k];
+        const real total_prs_zz_3 = sums[20*w + k];
         const real M_aa_zz = J_star_t_17 - total_prs_zz_3;
-        /* (M5) translational part of Z */
+        /* (Z_t) translational part of Z */
+        const real Z_p_x = s[27*w + k];
+        const real total_prs_x = sums[21*w + k];
         const real Z_t_x = Z_p_x + total_prs_x;
+        const real Z_p_y = s[28*w + k];
+        const real total_prs_y = sums[22*w + k];
         const real Z_t_y = Z_p_y + total_prs_y;
+        const real Z_p_z = s[29*w + k];
+        const real total_prs_z = sums[23*w + k];
         const real Z_t_z = Z_p_z + total_prs_z;
-        /* (M7) rotational part of Z */
+        /* (Z_a) rotational part of Z */
+        const real Z_q_in_base_x = s[30*w + k];
+        const real total_prs_x_2 = sums[24*w + k];
         const real Z_a_x = Z_q_in_base_x + total_prs_x_2;
+        const real Z_q_in_base_y = s[31*w + k];
+        const real total_prs_y_2 = sums[25*w + k];
         const real Z_a_y = Z_q_in_base_y + total_prs_y_2;
+        const real Z_q_in_base_z = s[32*w + k];
+        const real total_prs_z_2 = sums[26*w + k];
         const real Z_a_z = Z_q_in_base_z + total_prs_z_2;
         M[0*w + k] = M_tt_xx;
+        const real total_prs_xy = sums[1*w + k];
         M[1*w + k] = -total_prs_xy;
         M[6*w + k] = -total_prs_xy;
+        const real total_prs_xz = sums[2*w + k];
         M[2*w + k] = -total_prs_xz;
         M[12*w + k] = -total_prs_xz;
         M[7*w + k] = M_tt_yy;
+        const real total_prs_yz = sums[4*w + k];
         M[8*w + k] = -total_prs_yz;
         M[13*w + k] = -total_prs_yz;
         M[14*w + k] = M_tt_zz;
+        const real total_prs_xx_2 = sums[6*w + k];
         M[3*w + k] = total_prs_xx_2;
         M[18*w + k] = total_prs_xx_2;
         M[4*w + k] = M_ta_xy;
@@ -1754,6 +1895,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
+        const real total_prs_yy_2 = sums[10*w + k];
         M[10*w + k] = -total_prs_yy_2;
         M[25*w + k] = -total_prs_yy_2;
         M[11*w + k] = M_ta_yz;
@@ -1762,6 +1904,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
+        const real total_prs_zz_2 = sums[14*w + k];
         M[17*w + k] = -total_prs_zz_2;
         M[32*w + k] = -total_prs_zz_2;
         M[21*w + k] = M_aa_xx;
@@ -1779,75 +1922,57 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
+        t->total[k] += (((M_tt_xx + (total_prs_xy + total_prs_xz)) + (M_tt_yy + (total_prs_yz +
+            M_tt_zz))) + ((total_prs_xx_2 + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + total_prs_yy_2) +
+            (M_ta_yz + M_ta_zx)))) + (((M_ta_zy + (total_prs_zz_2 + M_aa_xx)) + ((M_aa_xy +
+            M_aa_xz) + (M_aa_yy + M_aa_yz))) + ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) +
+            (Z_a_y + Z_a_z))));
     }
 }
 
-INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real *V, real *M, real
-    *Z, real *H, real *Hk, real *constraint_bias, verdict *t)
+INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
+    *H, real *Hk, real *constraint_bias, verdict *t)
 {
-    dynamics_values values, *const s = &values;
-    dynamics_results_prs results_prs;
-    dynamics_before(m, w, X, V, s, t);
-    if (w == 1) {  /* the legs side by side */
-        dynamics_legs_prs(m, 0, 1, s, 0, 3, 0, &results_prs);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            dynamics_place_prs(w, &results_prs, leg, leg, H, Hk, constraint_bias, t);
-        }
-        for (size_t n = 0; n < 27; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_prs.sum[n], 3);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_prs.sum, 0, sizeof results_prs.sum);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            dynamics_legs_prs(m, leg, 0, s, 1, w, 1, &results_prs);
-            dynamics_place_prs(w, &results_prs, leg, 0, H, Hk, constraint_bias, t);
-        }
-        for (size_t n = 0; n < 27; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_prs.sum[n][k];
-            }
-        }
+    real s[33] = {0}, sums[27] = {0}, terms_prs[27*LEGS(3)] = {0}, o_prs[16*LEGS(3)] = {0};
+    dynamics_before(m, 1, X, V, s, t);
+    dynamics_legs_prs(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_prs, o_prs);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        dynamics_place_prs(1, LEGS(3), o_prs, leg, leg, H, Hk, constraint_bias, t);
     }
-    dynamics_after(m, w, s, M, Z);
+    for (size_t n = 0; n < 27; ++n) {
+        sums[n] = total(terms_prs + n*LEGS(3), 3);
+    }
+    dynamics_after(m, 1, s, sums, M, Z, t);
+}
+
+INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, real *Hk, real *constraint_bias, verdict *t)
+{
+    real s[33*LANES], sums[27*LANES], o_prs[16*LANES];
+    dynamics_before(m, LANES, X, V, s, t);
+    clear(sums, 27*LANES);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        dynamics_legs_prs(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_prs);
+        dynamics_place_prs(LANES, LANES, o_prs, leg, 0, H, Hk, constraint_bias, t);
+    }
+    dynamics_after(m, LANES, s, sums, M, Z, t);
 }
 
 /* ---- M: 414 mul, 318 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], h_star_in_base_x[LANES],
-        h_star_in_base_y[LANES], h_star_in_base_z[LANES], J_star_t_10[LANES], J_star_t_11[LANES],
-        J_star_t_12[LANES], J_star_t_14[LANES], J_star_t_15[LANES], J_star_t_17[LANES],
-        sum[21][LANES];
-} M_values;
-typedef struct {
-    real sum[21][8], unreachable[8], singular[8];
-} M_results_prs;
-
-INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, verdict *t)
+INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real J_star_t_6 = m->J_star_t_6;
-        const real J_star_t_8 = m->J_star_t_8;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_yz = m->J_star_yz;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -1871,18 +1996,27 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, ve
         const real R_zx = quaternion_xz - quaternion_wy;
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* (L2) first moment about the platform origin */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_z = m->h_star_z;
         const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
         const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
         const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
-        /* (L3) inertia tensor about the platform origin */
+        /* (J_star) inertia tensor about the platform origin */
+        const real J_star_t_6 = m->J_star_t_6;
+        const real J_star_xy = m->J_star_xy;
+        const real J_star_yz = m->J_star_yz;
         const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_6*R_xy;
         const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_6*R_yy;
         const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_6*R_zy;
+        const real J_star_t_8 = m->J_star_t_8;
+        const real J_star_xz = m->J_star_xz;
         const real J_star_t_4 = J_star_t_8*R_xz - J_star_xz*R_xx;
         const real J_star_t_5 = J_star_t_8*R_yz - J_star_xz*R_yx;
         const real J_star_t_7 = J_star_t_8*R_zz - J_star_xz*R_zx;
         const real J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz;
+        const real J_star_xx = m->J_star_xx;
         const real J_star_t_10 = 2*J_star_t_9 + J_star_xx;
         const real J_star_t_11 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
@@ -1894,278 +2028,292 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, ve
             J_star_t_7*R_yz;
         const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_7*R_zz;
         const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->h_star_in_base_x[k] = h_star_in_base_x;
-        s->h_star_in_base_y[k] = h_star_in_base_y;
-        s->h_star_in_base_z[k] = h_star_in_base_z;
-        s->J_star_t_10[k] = J_star_t_10;
-        s->J_star_t_11[k] = J_star_t_11;
-        s->J_star_t_12[k] = J_star_t_12;
-        s->J_star_t_14[k] = J_star_t_14;
-        s->J_star_t_15[k] = J_star_t_15;
-        s->J_star_t_17[k] = J_star_t_17;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = h_star_in_base_x;
+        s[13*w + k] = h_star_in_base_y;
+        s[14*w + k] = h_star_in_base_z;
+        s[15*w + k] = J_star_t_10;
+        s[16*w + k] = J_star_t_11;
+        s[17*w + k] = J_star_t_12;
+        s[18*w + k] = J_star_t_14;
+        s[19*w + k] = J_star_t_15;
+        s[20*w + k] = J_star_t_17;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void M_legs_prs(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
-    states, size_t count, int add, M_results_prs *o)
+INLINE void M_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real J_2_zz = m->J_2_zz[i];
-        const real P_c1_t = m->P_c1_t[i];
-        const real branch_1 = m->branch_1[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
-        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
-        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_base_point_x = m->prs_base_point_x[i];
-        const real prs_base_point_y = m->prs_base_point_y[i];
-        const real prs_base_point_z = m->prs_base_point_z[i];
-        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
+        /* (prs-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real prs_platform_point_x = m->prs_platform_point_x[i];
         const real prs_platform_point_y = m->prs_platform_point_y[i];
         const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real root_2_t = m->root_2_t[i];
-        const real size_ = m->size_[i];
-        const real uu_2_t = m->uu_2_t[i];
-        /* (prs-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
+        const real prs_q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
             R_xz*prs_platform_point_z;
-        const real q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real prs_q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
             R_yz*prs_platform_point_z;
-        const real q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real prs_q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
             R_zz*prs_platform_point_z;
-        const real S_x = q_in_base_x + t_x - prs_base_point_x;
-        const real S_y = q_in_base_y + t_y - prs_base_point_y;
-        const real S_z = q_in_base_z + t_z - prs_base_point_z;
-        /* (prs-K2) component along axis 1 */
-        const real px_1 = S_x*prs_base_frame_xx + S_y*prs_base_frame_yx + S_z*prs_base_frame_zx;
-        /* (prs-K3) discriminant of the distance equation */
-        const real disc_1_t = S_x*prs_base_frame_xz + S_y*prs_base_frame_yz +
-            S_z*prs_base_frame_zz;
-        const real disc_1_t_2 = S_x*S_x + S_y*S_y + S_z*S_z;
-        const real disc_1 = disc_1_t*disc_1_t + px_1*px_1 + uu_2_t - disc_1_t_2;
-        /* (prs-K4) displacement of joint 1 */
-        const real q_1_t = branch_1*root(disc_1);
-        /* (prs-K1) from the base point to the connection point */
-        const real S_r0_y = S_x*prs_base_frame_xy + S_y*prs_base_frame_yy + S_z*prs_base_frame_zy;
-        /* (prs-K7) squared amplitude */
-        const real rho2_2 = uu_2_t*(S_r0_y*S_r0_y + q_1_t*q_1_t);
-        /* (prs-K9) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/(root(rho2_2));
-        const real c_2 = inv_root_2*prs_platform_joint_offset_x*q_1_t;
-        /* (prs-K10) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = S_r0_y*inv_root_2*prs_platform_joint_offset_x;
-        /* (prs-V3) reciprocal vector 1 */
-        const real axis_y_prs_axes2_in_base_x = -c_2*prs_base_frame_xy - prs_base_frame_xx*s_2;
-        const real axis_y_prs_axes2_in_base_y = -c_2*prs_base_frame_yy - prs_base_frame_yx*s_2;
-        const real axis_y_prs_axes2_in_base_z = -c_2*prs_base_frame_zy - prs_base_frame_zx*s_2;
-        const real axis_x_prs_axes2_in_base_x = prs_base_frame_xy*s_2 - c_2*prs_base_frame_xx;
-        const real axis_x_prs_axes2_in_base_y = prs_base_frame_yy*s_2 - c_2*prs_base_frame_yx;
-        const real axis_x_prs_axes2_in_base_z = prs_base_frame_zy*s_2 - c_2*prs_base_frame_zx;
-        /* (prs-N11) force that accelerates joint 2, per unit */
-        const real P_c2_r0_x = c_2*h_2_y - h_2_x*s_2;
-        /* (prs-V2) velocity of the connection point per rate of joint 2 */
-        const real v_2_t = prs_platform_joint_offset_x*s_2;
-        const real v_2_t_2 = c_2*prs_platform_joint_offset_x;
-        /* (prs-V3) reciprocal vector 1 */
-        const real inv_v_2_t_2 = 1/v_2_t_2;
-        const real w_1_t = inv_v_2_t_2*v_2_t;
-        const real _r0_x = -c_2 - s_2*w_1_t;
-        const real _r0_y = c_2*w_1_t - s_2;
-        /* (prs-V4) reciprocal vector 2 */
-        const real w_2_t = inv_v_2_t_2*s_2;
-        const real w_2_t_2 = c_2*inv_v_2_t_2;
-        /* (prs-N27) coefficient of the acceleration in: force along axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_t = inv_v_2_t_2*(P_c2_r0_x + P_c1_t*v_2_t);
-        const real _r0_x_2 = -P_c1_t*c_2 - d_Gamma_1_t*s_2;
-        const real _r0_y_2 = c_2*d_Gamma_1_t - P_c1_t*s_2;
-        /* (prs-N22) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
-           and weight */
-        const real d_Gamma_2_t = inv_v_2_t_2*(J_2_zz + P_c2_r0_x*v_2_t);
-        const real _r0_x_3 = -P_c2_r0_x*c_2 - d_Gamma_2_t*s_2;
-        const real _r0_y_3 = c_2*d_Gamma_2_t - P_c2_r0_x*s_2;
-        /* (prs-N30) coefficient of the acceleration in: force at the connection point that balances the
+        const real prs_base_point_x = m->prs_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x;
+        const real prs_base_point_y = m->prs_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y;
+        const real prs_base_point_z = m->prs_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z;
+        /* (prs-px_1) component along axis 1 */
+        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
+        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
+        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
+        const real prs_px_1 = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
+            prs_S_z*prs_base_frame_zx;
+        /* (prs-disc_1) discriminant of the distance equation */
+        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
+        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
+        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
+        const real prs_disc_1_t_2 = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
+            prs_S_z*prs_base_frame_zz;
+        const real prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
+        const real prs_disc_1_t = m->prs_disc_1_t[i];
+        const real prs_disc_1 = prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 -
+            prs_disc_1_t_3;
+        /* (prs-q_1) displacement of joint 1 */
+        const real prs_branch_1 = m->prs_branch_1[i];
+        const real prs_q_1_t = prs_branch_1*root(prs_disc_1);
+        /* (prs-S) from the base point to the connection point */
+        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
+        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
+        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
+        const real prs_S_r0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
+            prs_S_z*prs_base_frame_zy;
+        /* (prs-rho2_2) squared amplitude */
+        const real prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t);
+        /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_prs_root_2 = 1/(root(prs_rho2_2));
+        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
+        const real prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t;
+        /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
+        const real prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x;
+        /* (prs-w_1) reciprocal vector 1 */
+        const real axis_y_prs_axes2_in_base_x = -prs_base_frame_xx*prs_s_2 -
+            prs_base_frame_xy*prs_c_2;
+        const real axis_y_prs_axes2_in_base_y = -prs_base_frame_yx*prs_s_2 -
+            prs_base_frame_yy*prs_c_2;
+        const real axis_y_prs_axes2_in_base_z = -prs_base_frame_zx*prs_s_2 -
+            prs_base_frame_zy*prs_c_2;
+        const real axis_x_prs_axes2_in_base_x = prs_base_frame_xy*prs_s_2 -
+            prs_base_frame_xx*prs_c_2;
+        const real axis_x_prs_axes2_in_base_y = prs_base_frame_yy*prs_s_2 -
+            prs_base_frame_yx*prs_c_2;
+        const real axis_x_prs_axes2_in_base_z = prs_base_frame_zy*prs_s_2 -
+            prs_base_frame_zx*prs_c_2;
+        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
+        const real prs_v_2_t = prs_platform_joint_offset_x*prs_s_2;
+        const real prs_v_2_t_2 = prs_c_2*prs_platform_joint_offset_x;
+        /* (prs-w_1) reciprocal vector 1 */
+        const real inv_prs_v_2_t_2 = 1/prs_v_2_t_2;
+        const real prs_w_1_t = inv_prs_v_2_t_2*prs_v_2_t;
+        const real prs__r0_x = -prs_c_2 - prs_s_2*prs_w_1_t;
+        const real prs__r0_y = prs_c_2*prs_w_1_t - prs_s_2;
+        /* (prs-w_2) reciprocal vector 2 */
+        const real prs_w_2_t = inv_prs_v_2_t_2*prs_s_2;
+        const real prs_w_2_t_2 = inv_prs_v_2_t_2*prs_c_2;
+        /* (prs-P_c_2) force that accelerates joint 2, per unit */
+        const real prs_h_2_x = m->prs_h_2_x[i];
+        const real prs_h_2_y = m->prs_h_2_y[i];
+        const real prs_P_c_2_r0_x = prs_c_2*prs_h_2_y - prs_h_2_x*prs_s_2;
+        /* (prs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real prs_J_2_zz = m->prs_J_2_zz[i];
+        const real prs_d_Gamma_2_t = inv_prs_v_2_t_2*(prs_J_2_zz + prs_P_c_2_r0_x*prs_v_2_t);
+        const real prs__r0_x_2 = -prs_P_c_2_r0_x*prs_c_2 - prs_d_Gamma_2_t*prs_s_2;
+        const real prs__r0_y_2 = prs_c_2*prs_d_Gamma_2_t - prs_P_c_2_r0_x*prs_s_2;
+        /* (prs-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
+           inertia and weight */
+        const real prs_P_c_1_t = m->prs_P_c_1_t[i];
+        const real prs_d_Gamma_1_t = inv_prs_v_2_t_2*(prs_P_c_2_r0_x + prs_P_c_1_t*prs_v_2_t);
+        const real prs__r0_x_3 = -prs_P_c_1_t*prs_c_2 - prs_d_Gamma_1_t*prs_s_2;
+        const real prs__r0_y_3 = prs_c_2*prs_d_Gamma_1_t - prs_P_c_1_t*prs_s_2;
+        /* (prs-d_G) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
-        const real d_G_xx = _r0_x*_r0_x_2 - _r0_x_3*w_2_t;
-        const real d_G_xy = _r0_x*_r0_y_2 - _r0_y_3*w_2_t;
-        const real d_G_yx = _r0_x_2*_r0_y + _r0_x_3*w_2_t_2;
-        const real d_G_yy = _r0_y*_r0_y_2 + _r0_y_3*w_2_t_2;
-        /* (prs-N33) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real prs_d_G_xx = prs__r0_x*prs__r0_x_3 - prs__r0_x_2*prs_w_2_t;
+        const real prs_d_G_xy = prs__r0_x*prs__r0_y_3 - prs__r0_y_2*prs_w_2_t;
+        const real prs_d_G_yx = prs__r0_x_2*prs_w_2_t_2 + prs__r0_x_3*prs__r0_y;
+        const real prs_d_G_yy = prs__r0_y*prs__r0_y_3 + prs__r0_y_2*prs_w_2_t_2;
+        /* (prs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_in_base_x = -axis_x_prs_axes2_in_base_x*d_G_xx -
-            axis_y_prs_axes2_in_base_x*d_G_yx;
-        const real d_c_in_base_y = -axis_x_prs_axes2_in_base_y*d_G_xx -
-            axis_y_prs_axes2_in_base_y*d_G_yx;
-        const real d_c_in_base_x_2 = -axis_x_prs_axes2_in_base_x*d_G_xy -
-            axis_y_prs_axes2_in_base_x*d_G_yy;
-        const real d_c_in_base_y_2 = -axis_x_prs_axes2_in_base_y*d_G_xy -
-            axis_y_prs_axes2_in_base_y*d_G_yy;
-        const real d_c_in_base_x_3 = axis_x_prs_axes2_in_base_x*d_c_in_base_x +
-            axis_y_prs_axes2_in_base_x*d_c_in_base_x_2;
-        const real d_c_in_base_y_3 = axis_x_prs_axes2_in_base_y*d_c_in_base_x +
-            axis_y_prs_axes2_in_base_y*d_c_in_base_x_2;
-        const real d_c_in_base_z = axis_x_prs_axes2_in_base_z*d_c_in_base_x +
-            axis_y_prs_axes2_in_base_z*d_c_in_base_x_2;
-        const real d_c_in_base_y_4 = axis_x_prs_axes2_in_base_y*d_c_in_base_y +
-            axis_y_prs_axes2_in_base_y*d_c_in_base_y_2;
-        const real d_c_in_base_z_2 = axis_x_prs_axes2_in_base_z*d_c_in_base_y +
-            axis_y_prs_axes2_in_base_z*d_c_in_base_y_2;
-        const real d_c_in_base_z_3 =
-            axis_x_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*d_G_xx -
-            axis_y_prs_axes2_in_base_z*d_G_yx) +
-            axis_y_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*d_G_xy -
-            axis_y_prs_axes2_in_base_z*d_G_yy);
-        /* (M2) coupling block of M */
-        const real M_ta_t = d_c_in_base_y_3*q_in_base_z;
-        const real M_ta_t_2 = d_c_in_base_z*q_in_base_y;
-        const real M_ta_t_3 = M_ta_t - M_ta_t_2;
-        const real M_ta_t_4 = d_c_in_base_x_3*q_in_base_z - d_c_in_base_z*q_in_base_x;
-        const real M_ta_t_5 = d_c_in_base_x_3*q_in_base_y - d_c_in_base_y_3*q_in_base_x;
-        const real M_ta_t_6 = d_c_in_base_y_4*q_in_base_z - d_c_in_base_z_2*q_in_base_y;
-        const real M_ta_t_7 = d_c_in_base_z_2*q_in_base_x;
-        const real M_ta_t_8 = M_ta_t - M_ta_t_7;
-        const real M_ta_t_9 = d_c_in_base_y_3*q_in_base_y - d_c_in_base_y_4*q_in_base_x;
-        const real M_ta_t_10 = d_c_in_base_z_2*q_in_base_z - d_c_in_base_z_3*q_in_base_y;
-        const real M_ta_t_11 = d_c_in_base_z*q_in_base_z - d_c_in_base_z_3*q_in_base_x;
-        const real M_ta_t_12 = M_ta_t_7 - M_ta_t_2;
-        /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y;
-        const real M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y;
-        const real M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z;
-        const real M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x;
-        const real M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z;
-        const real M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x;
-        o->sum[0][k] = add ? o->sum[0][k] + d_c_in_base_x_3 : d_c_in_base_x_3;  /* total_prs_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + d_c_in_base_y_3 : d_c_in_base_y_3;  /* total_prs_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + d_c_in_base_z : d_c_in_base_z;  /* total_prs_xz */
-        o->sum[3][k] = add ? o->sum[3][k] + d_c_in_base_y_4 : d_c_in_base_y_4;  /* total_prs_yy */
-        o->sum[4][k] = add ? o->sum[4][k] + d_c_in_base_z_2 : d_c_in_base_z_2;  /* total_prs_yz */
-        o->sum[5][k] = add ? o->sum[5][k] + d_c_in_base_z_3 : d_c_in_base_z_3;  /* total_prs_zz */
-        o->sum[6][k] = add ? o->sum[6][k] + M_ta_t_3 : M_ta_t_3;  /* total_prs_xx_2 */
-        o->sum[7][k] = add ? o->sum[7][k] + M_ta_t_4 : M_ta_t_4;  /* total_prs_xy_2 */
-        o->sum[8][k] = add ? o->sum[8][k] + M_ta_t_5 : M_ta_t_5;  /* total_prs_xz_2 */
-        o->sum[9][k] = add ? o->sum[9][k] + M_ta_t_6 : M_ta_t_6;  /* total_prs_yx */
-        o->sum[10][k] = add ? o->sum[10][k] + M_ta_t_8 : M_ta_t_8;  /* total_prs_yy_2 */
-        o->sum[11][k] = add ? o->sum[11][k] + M_ta_t_9 : M_ta_t_9;  /* total_prs_yz_2 */
-        o->sum[12][k] = add ? o->sum[12][k] + M_ta_t_10 : M_ta_t_10;  /* total_prs_zx */
-        o->sum[13][k] = add ? o->sum[13][k] + M_ta_t_11 : M_ta_t_11;  /* total_prs_zy */
-        o->sum[14][k] = add ? o->sum[14][k] + M_ta_t_12 : M_ta_t_12;  /* total_prs_zz_2 */
-        o->sum[15][k] = add ? o->sum[15][k] + M_aa_t : M_aa_t;  /* total_prs_xx_3 */
-        o->sum[16][k] = add ? o->sum[16][k] + M_aa_t_2 : M_aa_t_2;  /* total_prs_xy_3 */
-        o->sum[17][k] = add ? o->sum[17][k] + M_aa_t_3 : M_aa_t_3;  /* total_prs_xz_3 */
-        o->sum[18][k] = add ? o->sum[18][k] + M_aa_t_4 : M_aa_t_4;  /* total_prs_yy_3 */
-        o->sum[19][k] = add ? o->sum[19][k] + M_aa_t_5 : M_aa_t_5;  /* total_prs_yz_3 */
-        o->sum[20][k] = add ? o->sum[20][k] + M_aa_t_6 : M_aa_t_6;  /* total_prs_zz_3 */
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*root_2_t) +
-            UNLESS(magnitude(-v_2_t_2) > TOLERANCE*size_);
+        const real prs_d_c_in_base_x = -axis_x_prs_axes2_in_base_x*prs_d_G_xx -
+            axis_y_prs_axes2_in_base_x*prs_d_G_yx;
+        const real prs_d_c_in_base_y = -axis_x_prs_axes2_in_base_y*prs_d_G_xx -
+            axis_y_prs_axes2_in_base_y*prs_d_G_yx;
+        const real prs_d_c_in_base_x_2 = -axis_x_prs_axes2_in_base_x*prs_d_G_xy -
+            axis_y_prs_axes2_in_base_x*prs_d_G_yy;
+        const real prs_d_c_in_base_y_2 = -axis_x_prs_axes2_in_base_y*prs_d_G_xy -
+            axis_y_prs_axes2_in_base_y*prs_d_G_yy;
+        const real prs_d_c_in_base_x_3 = axis_x_prs_axes2_in_base_x*prs_d_c_in_base_x +
+            axis_y_prs_axes2_in_base_x*prs_d_c_in_base_x_2;
+        const real prs_d_c_in_base_y_3 = axis_x_prs_axes2_in_base_y*prs_d_c_in_base_x +
+            axis_y_prs_axes2_in_base_y*prs_d_c_in_base_x_2;
+        const real prs_d_c_in_base_z = axis_x_prs_axes2_in_base_z*prs_d_c_in_base_x +
+            axis_y_prs_axes2_in_base_z*prs_d_c_in_base_x_2;
+        const real prs_d_c_in_base_y_4 = axis_x_prs_axes2_in_base_y*prs_d_c_in_base_y +
+            axis_y_prs_axes2_in_base_y*prs_d_c_in_base_y_2;
+        const real prs_d_c_in_base_z_2 = axis_x_prs_axes2_in_base_z*prs_d_c_in_base_y +
+            axis_y_prs_axes2_in_base_z*prs_d_c_in_base_y_2;
+        const real prs_d_c_in_base_z_3 =
+            axis_x_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*prs_d_G_xx -
+            axis_y_prs_axes2_in_base_z*prs_d_G_yx) +
+            axis_y_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*prs_d_G_xy -
+            axis_y_prs_axes2_in_base_z*prs_d_G_yy);
+        /* (M_ta) coupling block of M */
+        const real prs_M_ta_t = prs_d_c_in_base_y_3*prs_q_in_base_z;
+        const real prs_M_ta_t_2 = prs_d_c_in_base_z*prs_q_in_base_y;
+        const real prs_M_ta_t_3 = prs_M_ta_t - prs_M_ta_t_2;
+        const real prs_M_ta_t_4 = prs_d_c_in_base_x_3*prs_q_in_base_z -
+            prs_d_c_in_base_z*prs_q_in_base_x;
+        const real prs_M_ta_t_5 = prs_d_c_in_base_x_3*prs_q_in_base_y -
+            prs_d_c_in_base_y_3*prs_q_in_base_x;
+        const real prs_M_ta_t_6 = prs_d_c_in_base_y_4*prs_q_in_base_z -
+            prs_d_c_in_base_z_2*prs_q_in_base_y;
+        const real prs_M_ta_t_7 = prs_d_c_in_base_z_2*prs_q_in_base_x;
+        const real prs_M_ta_t_8 = prs_M_ta_t - prs_M_ta_t_7;
+        const real prs_M_ta_t_9 = prs_d_c_in_base_y_3*prs_q_in_base_y -
+            prs_d_c_in_base_y_4*prs_q_in_base_x;
+        const real prs_M_ta_t_10 = prs_d_c_in_base_z_2*prs_q_in_base_z -
+            prs_d_c_in_base_z_3*prs_q_in_base_y;
+        const real prs_M_ta_t_11 = prs_d_c_in_base_z*prs_q_in_base_z -
+            prs_d_c_in_base_z_3*prs_q_in_base_x;
+        const real prs_M_ta_t_12 = prs_M_ta_t_7 - prs_M_ta_t_2;
+        /* (M_aa) rotational block of M */
+        const real prs_M_aa_t = prs_M_ta_t_6*prs_q_in_base_z - prs_M_ta_t_10*prs_q_in_base_y;
+        const real prs_M_aa_t_2 = prs_M_ta_t_8*prs_q_in_base_z - prs_M_ta_t_11*prs_q_in_base_y;
+        const real prs_M_aa_t_3 = prs_M_ta_t_12*prs_q_in_base_y + prs_M_ta_t_9*prs_q_in_base_z;
+        const real prs_M_aa_t_4 = prs_M_ta_t_4*prs_q_in_base_z - prs_M_ta_t_11*prs_q_in_base_x;
+        const real prs_M_aa_t_5 = prs_M_ta_t_12*prs_q_in_base_x + prs_M_ta_t_5*prs_q_in_base_z;
+        const real prs_M_aa_t_6 = prs_M_ta_t_5*prs_q_in_base_y - prs_M_ta_t_9*prs_q_in_base_x;
+        terms[0*count + k] = add ? terms[0*count + k] + prs_d_c_in_base_x_3 : prs_d_c_in_base_x_3;  /* total_prs_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + prs_d_c_in_base_y_3 : prs_d_c_in_base_y_3;  /* total_prs_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + prs_d_c_in_base_z : prs_d_c_in_base_z;  /* total_prs_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + prs_d_c_in_base_y_4 : prs_d_c_in_base_y_4;  /* total_prs_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + prs_d_c_in_base_z_2 : prs_d_c_in_base_z_2;  /* total_prs_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + prs_d_c_in_base_z_3 : prs_d_c_in_base_z_3;  /* total_prs_zz */
+        terms[6*count + k] = add ? terms[6*count + k] + prs_M_ta_t_3 : prs_M_ta_t_3;  /* total_prs_xx_2 */
+        terms[7*count + k] = add ? terms[7*count + k] + prs_M_ta_t_4 : prs_M_ta_t_4;  /* total_prs_xy_2 */
+        terms[8*count + k] = add ? terms[8*count + k] + prs_M_ta_t_5 : prs_M_ta_t_5;  /* total_prs_xz_2 */
+        terms[9*count + k] = add ? terms[9*count + k] + prs_M_ta_t_6 : prs_M_ta_t_6;  /* total_prs_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + prs_M_ta_t_8 : prs_M_ta_t_8;  /* total_prs_yy_2 */
+        terms[11*count + k] = add ? terms[11*count + k] + prs_M_ta_t_9 : prs_M_ta_t_9;  /* total_prs_yz_2 */
+        terms[12*count + k] = add ? terms[12*count + k] + prs_M_ta_t_10 : prs_M_ta_t_10;  /* total_prs_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + prs_M_ta_t_11 : prs_M_ta_t_11;  /* total_prs_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + prs_M_ta_t_12 : prs_M_ta_t_12;  /* total_prs_zz_2 */
+        terms[15*count + k] = add ? terms[15*count + k] + prs_M_aa_t : prs_M_aa_t;  /* total_prs_xx_3 */
+        terms[16*count + k] = add ? terms[16*count + k] + prs_M_aa_t_2 : prs_M_aa_t_2;  /* total_prs_xy_3 */
+        terms[17*count + k] = add ? terms[17*count + k] + prs_M_aa_t_3 : prs_M_aa_t_3;  /* total_prs_xz_3 */
+        terms[18*count + k] = add ? terms[18*count + k] + prs_M_aa_t_4 : prs_M_aa_t_4;  /* total_prs_yy_3 */
+        terms[19*count + k] = add ? terms[19*count + k] + prs_M_aa_t_5 : prs_M_aa_t_5;  /* total_prs_yz_3 */
+        terms[20*count + k] = add ? terms[20*count + k] + prs_M_aa_t_6 : prs_M_aa_t_6;  /* total_prs_zz_3 */
+        const real prs_root_2_t = m->prs_root_2_t[i];
+        const real prs_size = m->prs_size[i];
+        o[0*count + k] = UNLESS(prs_disc_1 >= 0);
+        o[1*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
+            UNLESS(magnitude(-prs_v_2_t_2) > TOLERANCE*prs_size);
     }
 }
 
-INLINE void M_place_prs(size_t w, const M_results_prs *o, size_t first, verdict *t)
+INLINE void M_place_prs(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        t->unreachable[k] += o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
     }
 }
 
-INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
+INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums, real *M, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real h_star_in_base_x = s->h_star_in_base_x[k];
-        const real h_star_in_base_y = s->h_star_in_base_y[k];
-        const real h_star_in_base_z = s->h_star_in_base_z[k];
-        const real J_star_t_10 = s->J_star_t_10[k];
-        const real J_star_t_11 = s->J_star_t_11[k];
-        const real J_star_t_12 = s->J_star_t_12[k];
-        const real J_star_t_14 = s->J_star_t_14[k];
-        const real J_star_t_15 = s->J_star_t_15[k];
-        const real J_star_t_17 = s->J_star_t_17[k];
-        const real total_prs_xx = s->sum[0][k];
-        const real total_prs_xy = s->sum[1][k];
-        const real total_prs_xz = s->sum[2][k];
-        const real total_prs_yy = s->sum[3][k];
-        const real total_prs_yz = s->sum[4][k];
-        const real total_prs_zz = s->sum[5][k];
-        const real total_prs_xx_2 = s->sum[6][k];
-        const real total_prs_xy_2 = s->sum[7][k];
-        const real total_prs_xz_2 = s->sum[8][k];
-        const real total_prs_yx = s->sum[9][k];
-        const real total_prs_yy_2 = s->sum[10][k];
-        const real total_prs_yz_2 = s->sum[11][k];
-        const real total_prs_zx = s->sum[12][k];
-        const real total_prs_zy = s->sum[13][k];
-        const real total_prs_zz_2 = s->sum[14][k];
-        const real total_prs_xx_3 = s->sum[15][k];
-        const real total_prs_xy_3 = s->sum[16][k];
-        const real total_prs_xz_3 = s->sum[17][k];
-        const real total_prs_yy_3 = s->sum[18][k];
-        const real total_prs_yz_3 = s->sum[19][k];
-        const real total_prs_zz_3 = s->sum[20][k];
+        /* (M_tt) translational block of M */
         const real platform_mass = m->platform_mass;
-        /* (M1) translational block of M */
+        const real total_prs_xx = sums[0*w + k];
         const real M_tt_xx = platform_mass - total_prs_xx;
+        const real total_prs_yy = sums[3*w + k];
         const real M_tt_yy = platform_mass - total_prs_yy;
+        const real total_prs_zz = sums[5*w + k];
         const real M_tt_zz = platform_mass - total_prs_zz;
-        /* (M2) coupling block of M */
+        /* (M_ta) coupling block of M */
+        const real h_star_in_base_z = s[14*w + k];
+        const real total_prs_xy_2 = sums[7*w + k];
         const real M_ta_xy = h_star_in_base_z - total_prs_xy_2;
+        const real h_star_in_base_y = s[13*w + k];
+        const real total_prs_xz_2 = sums[8*w + k];
         const real M_ta_xz = total_prs_xz_2 - h_star_in_base_y;
+        const real total_prs_yx = sums[9*w + k];
         const real M_ta_yx = total_prs_yx - h_star_in_base_z;
+        const real h_star_in_base_x = s[12*w + k];
+        const real total_prs_yz_2 = sums[11*w + k];
         const real M_ta_yz = h_star_in_base_x + total_prs_yz_2;
+        const real total_prs_zx = sums[12*w + k];
         const real M_ta_zx = h_star_in_base_y + total_prs_zx;
+        const real total_prs_zy = sums[13*w + k];
         const real M_ta_zy = -h_star_in_base_x - total_prs_zy;
-        /* (M3) rotational block of M */
+        /* (M_aa) rotational block of M */
+        const real J_star_t_10 = s[15*w + k];
+        const real total_prs_xx_3 = sums[15*w + k];
         const real M_aa_xx = J_star_t_10 - total_prs_xx_3;
+        const real J_star_t_11 = s[16*w + k];
+        const real total_prs_xy_3 = sums[16*w + k];
         const real M_aa_xy = J_star_t_11 + total_prs_xy_3;
+        const real J_star_t_12 = s[17*w + k];
+        const real total_prs_xz_3 = sums[17*w + k];
         const real M_aa_xz = J_star_t_12 - total_prs_xz_3;
+        const real J_star_t_14 = s[18*w + k];
+        const real total_prs_yy_3 = sums[18*w + k];
         const real M_aa_yy = J_star_t_14 - total_prs_yy_3;
+        const real J_star_t_15 = s[19*w + k];
+        const real total_prs_yz_3 = sums[19*w + k];
         const real M_aa_yz = J_star_t_15 + total_prs_yz_3;
+        const real J_star_t_17 = s[20*w + k];
+        const real total_prs_zz_3 = sums[20*w + k];
         const real M_aa_zz = J_star_t_17 - total_prs_zz_3;
         M[0*w + k] = M_tt_xx;
+        const real total_prs_xy = sums[1*w + k];
         M[1*w + k] = -total_prs_xy;
         M[6*w + k] = -total_prs_xy;
+        const real total_prs_xz = sums[2*w + k];
         M[2*w + k] = -total_prs_xz;
         M[12*w + k] = -total_prs_xz;
         M[7*w + k] = M_tt_yy;
+        const real total_prs_yz = sums[4*w + k];
         M[8*w + k] = -total_prs_yz;
         M[13*w + k] = -total_prs_yz;
         M[14*w + k] = M_tt_zz;
+        const real total_prs_xx_2 = sums[6*w + k];
         M[3*w + k] = total_prs_xx_2;
         M[18*w + k] = total_prs_xx_2;
         M[4*w + k] = M_ta_xy;
@@ -2174,6 +2322,7 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
+        const real total_prs_yy_2 = sums[10*w + k];
         M[10*w + k] = -total_prs_yy_2;
         M[25*w + k] = -total_prs_yy_2;
         M[11*w + k] = M_ta_yz;
@@ -2182,6 +2331,7 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
+        const real total_prs_zz_2 = sums[14*w + k];
         M[17*w + k] = -total_prs_zz_2;
         M[32*w + k] = -total_prs_zz_2;
         M[21*w + k] = M_aa_xx;
@@ -2193,87 +2343,55 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         M[29*w + k] = M_aa_yz;
         M[34*w + k] = M_aa_yz;
         M[35*w + k] = M_aa_zz;
+        t->total[k] += (((M_tt_xx + total_prs_xy) + (total_prs_xz + (M_tt_yy + total_prs_yz))) +
+            ((M_tt_zz + total_prs_xx_2) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((total_prs_yy_2 +
+            M_ta_yz) + (M_ta_zx + (M_ta_zy + total_prs_zz_2))) + ((M_aa_xx + (M_aa_xy + M_aa_xz))
+            + (M_aa_yy + (M_aa_yz + M_aa_zz))));
     }
 }
 
-INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *t)
+INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    M_values values, *const s = &values;
-    M_results_prs results_prs;
-    M_before(m, w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        M_legs_prs(m, 0, 1, s, 0, 3, 0, &results_prs);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            M_place_prs(w, &results_prs, leg, t);
-        }
-        for (size_t n = 0; n < 21; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_prs.sum[n], 3);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_prs.sum, 0, sizeof results_prs.sum);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            M_legs_prs(m, leg, 0, s, 1, w, 1, &results_prs);
-            M_place_prs(w, &results_prs, 0, t);
-        }
-        for (size_t n = 0; n < 21; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_prs.sum[n][k];
-            }
-        }
+    real s[21] = {0}, sums[21] = {0}, terms_prs[21*LEGS(3)] = {0}, o_prs[2*LEGS(3)] = {0};
+    M_before(m, 1, X, s, t);
+    M_legs_prs(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_prs, o_prs);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        M_place_prs(1, LEGS(3), o_prs, leg, t);
     }
-    M_after(m, w, s, M);
+    for (size_t n = 0; n < 21; ++n) {
+        sums[n] = total(terms_prs + n*LEGS(3), 3);
+    }
+    M_after(m, 1, s, sums, M, t);
+}
+
+INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
+{
+    real s[21*LANES], sums[21*LANES], o_prs[2*LANES];
+    M_before(m, LANES, X, s, t);
+    clear(sums, 21*LANES);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        M_legs_prs(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_prs);
+        M_place_prs(LANES, LANES, o_prs, 0, t);
+    }
+    M_after(m, LANES, s, sums, M, t);
 }
 
 /* ---- Z: 405 mul, 285 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES], Z_p_x[LANES],
-        Z_p_y[LANES], Z_p_z[LANES], Z_q_in_base_x[LANES], Z_q_in_base_y[LANES], Z_q_in_base_z[LANES],
-        sum[6][LANES];
-} Z_values;
-typedef struct {
-    real sum[6][8], unreachable[8], singular[8];
-} Z_results_prs;
-
-INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, Z_values *s,
-    verdict *t)
+INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -2298,260 +2416,301 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
-        /* (L2) first moment about the platform origin */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_z = m->h_star_z;
         const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
         const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
         const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
-        /* (M4) centripetal force and weight of the platform */
+        /* (Z_p) centripetal force and weight of the platform */
         const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
         const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
         const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
+        const real Z_p_t_2 = m->Z_p_t_2;
         const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
+        const real Z_p_t_3 = m->Z_p_t_3;
         const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (M6) gyroscopic moment and moment of the weight of the platform */
+        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real gravity_z = m->gravity_z;
+        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
         const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
         const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
         const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_xx = m->J_star_xx;
+        const real J_star_xy = m->J_star_xy;
+        const real J_star_xz = m->J_star_xz;
         const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
+        const real J_star_yy = m->J_star_yy;
+        const real J_star_yz = m->J_star_yz;
         const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
+        const real J_star_zz = m->J_star_zz;
         const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z -
+        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
             g_r0_z*h_star_y;
         const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x_2*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y_2*h_star_x;
+            g_r0_x*h_star_z;
+        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
+            g_r0_y*h_star_x;
         const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
         const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
         const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->Z_p_x[k] = Z_p_x;
-        s->Z_p_y[k] = Z_p_y;
-        s->Z_p_z[k] = Z_p_z;
-        s->Z_q_in_base_x[k] = Z_q_in_base_x;
-        s->Z_q_in_base_y[k] = Z_q_in_base_y;
-        s->Z_q_in_base_z[k] = Z_q_in_base_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
+        s[18*w + k] = Z_p_x;
+        s[19*w + k] = Z_p_y;
+        s[20*w + k] = Z_p_z;
+        s[21*w + k] = Z_q_in_base_x;
+        s[22*w + k] = Z_q_in_base_y;
+        s[23*w + k] = Z_q_in_base_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void Z_legs_prs(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
-    states, size_t count, int add, Z_results_prs *o)
+INLINE void Z_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real J_2_zz = m->J_2_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
-        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
-        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_base_point_x = m->prs_base_point_x[i];
-        const real prs_base_point_y = m->prs_base_point_y[i];
-        const real prs_base_point_z = m->prs_base_point_z[i];
-        const real prs_link1_mass = m->prs_link1_mass[i];
-        const real prs_link2_mass = m->prs_link2_mass[i];
-        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
+        /* (prs-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real prs_platform_point_x = m->prs_platform_point_x[i];
         const real prs_platform_point_y = m->prs_platform_point_y[i];
         const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real root_2_t = m->root_2_t[i];
-        const real size_ = m->size_[i];
-        const real uu_2_t = m->uu_2_t[i];
-        /* (prs-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
+        const real prs_q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
             R_xz*prs_platform_point_z;
-        const real q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real prs_q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
             R_yz*prs_platform_point_z;
-        const real q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real prs_q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
             R_zz*prs_platform_point_z;
-        const real S_x = q_in_base_x + t_x - prs_base_point_x;
-        const real S_y = q_in_base_y + t_y - prs_base_point_y;
-        const real S_z = q_in_base_z + t_z - prs_base_point_z;
-        /* (prs-K2) component along axis 1 */
-        const real px_1 = S_x*prs_base_frame_xx + S_y*prs_base_frame_yx + S_z*prs_base_frame_zx;
-        /* (prs-K3) discriminant of the distance equation */
-        const real disc_1_t = S_x*prs_base_frame_xz + S_y*prs_base_frame_yz +
-            S_z*prs_base_frame_zz;
-        const real disc_1_t_2 = S_x*S_x + S_y*S_y + S_z*S_z;
-        const real disc_1 = disc_1_t*disc_1_t + px_1*px_1 + uu_2_t - disc_1_t_2;
-        /* (prs-K4) displacement of joint 1 */
-        const real q_1_t = branch_1*root(disc_1);
-        /* (prs-K1) from the base point to the connection point */
-        const real S_r0_y = S_x*prs_base_frame_xy + S_y*prs_base_frame_yy + S_z*prs_base_frame_zy;
-        /* (prs-K7) squared amplitude */
-        const real rho2_2 = uu_2_t*(S_r0_y*S_r0_y + q_1_t*q_1_t);
-        /* (prs-K9) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/(root(rho2_2));
-        const real c_2 = inv_root_2*prs_platform_joint_offset_x*q_1_t;
-        /* (prs-K10) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = S_r0_y*inv_root_2*prs_platform_joint_offset_x;
-        /* (prs-V3) reciprocal vector 1 */
-        const real axis_y_prs_axes2_in_base_x = -c_2*prs_base_frame_xy - prs_base_frame_xx*s_2;
-        const real axis_y_prs_axes2_in_base_y = -c_2*prs_base_frame_yy - prs_base_frame_yx*s_2;
-        const real axis_y_prs_axes2_in_base_z = -c_2*prs_base_frame_zy - prs_base_frame_zx*s_2;
-        const real axis_x_prs_axes2_in_base_x = prs_base_frame_xy*s_2 - c_2*prs_base_frame_xx;
-        const real axis_x_prs_axes2_in_base_y = prs_base_frame_yy*s_2 - c_2*prs_base_frame_yx;
-        const real axis_x_prs_axes2_in_base_z = prs_base_frame_zy*s_2 - c_2*prs_base_frame_zx;
-        /* (prs-V2) velocity of the connection point per rate of joint 2 */
-        const real v_2_t = prs_platform_joint_offset_x*s_2;
-        const real v_2_t_2 = c_2*prs_platform_joint_offset_x;
-        /* (prs-V3) reciprocal vector 1 */
-        const real inv_v_2_t_2 = 1/v_2_t_2;
-        /* (prs-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        /* (prs-V6) rate of joint 2 */
-        const real qd_2 = inv_v_2_t_2*(S_dot_x*prs_base_frame_xy + S_dot_y*prs_base_frame_yy +
-            S_dot_z*prs_base_frame_zy);
-        /* (prs-V8) centripetal tensor of link 2 */
-        const real W_2_t = qd_2*qd_2;
-        /* (prs-A1) centripetal acceleration of the connection point */
-        const real u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z;
-        const real u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x;
-        const real u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y;
-        const real u_1_tip_y = axis_y_prs_axes2_in_base_x*u_1_x + axis_y_prs_axes2_in_base_y*u_1_y
-            + axis_y_prs_axes2_in_base_z*u_1_z;
-        /* (prs-A6) remainder without the acceleration in: acceleration of the connection point left to
+        const real prs_base_point_x = m->prs_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x;
+        const real prs_base_point_y = m->prs_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y;
+        const real prs_base_point_z = m->prs_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z;
+        /* (prs-px_1) component along axis 1 */
+        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
+        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
+        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
+        const real prs_px_1 = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
+            prs_S_z*prs_base_frame_zx;
+        /* (prs-disc_1) discriminant of the distance equation */
+        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
+        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
+        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
+        const real prs_disc_1_t_2 = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
+            prs_S_z*prs_base_frame_zz;
+        const real prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
+        const real prs_disc_1_t = m->prs_disc_1_t[i];
+        const real prs_disc_1 = prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 -
+            prs_disc_1_t_3;
+        /* (prs-q_1) displacement of joint 1 */
+        const real prs_branch_1 = m->prs_branch_1[i];
+        const real prs_q_1_t = prs_branch_1*root(prs_disc_1);
+        /* (prs-S) from the base point to the connection point */
+        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
+        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
+        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
+        const real prs_S_r0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
+            prs_S_z*prs_base_frame_zy;
+        /* (prs-rho2_2) squared amplitude */
+        const real prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t);
+        /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_prs_root_2 = 1/(root(prs_rho2_2));
+        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
+        const real prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t;
+        /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
+        const real prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x;
+        /* (prs-w_1) reciprocal vector 1 */
+        const real axis_y_prs_axes2_in_base_x = -prs_base_frame_xx*prs_s_2 -
+            prs_base_frame_xy*prs_c_2;
+        const real axis_y_prs_axes2_in_base_y = -prs_base_frame_yx*prs_s_2 -
+            prs_base_frame_yy*prs_c_2;
+        const real axis_y_prs_axes2_in_base_z = -prs_base_frame_zx*prs_s_2 -
+            prs_base_frame_zy*prs_c_2;
+        const real axis_x_prs_axes2_in_base_x = prs_base_frame_xy*prs_s_2 -
+            prs_base_frame_xx*prs_c_2;
+        const real axis_x_prs_axes2_in_base_y = prs_base_frame_yy*prs_s_2 -
+            prs_base_frame_yx*prs_c_2;
+        const real axis_x_prs_axes2_in_base_z = prs_base_frame_zy*prs_s_2 -
+            prs_base_frame_zx*prs_c_2;
+        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
+        const real prs_v_2_t = prs_platform_joint_offset_x*prs_s_2;
+        const real prs_v_2_t_2 = prs_c_2*prs_platform_joint_offset_x;
+        /* (prs-w_1) reciprocal vector 1 */
+        const real inv_prs_v_2_t_2 = 1/prs_v_2_t_2;
+        /* (prs-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real prs_S_dot_t = omega_y*prs_q_in_base_z - omega_z*prs_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real prs_S_dot_t_2 = omega_z*prs_q_in_base_x - omega_x*prs_q_in_base_z;
+        const real prs_S_dot_t_3 = omega_x*prs_q_in_base_y - omega_y*prs_q_in_base_x;
+        const real t_dot_x = s[12*w + j];
+        const real prs_S_dot_x = prs_S_dot_t + t_dot_x;
+        const real t_dot_y = s[13*w + j];
+        const real prs_S_dot_y = prs_S_dot_t_2 + t_dot_y;
+        const real t_dot_z = s[14*w + j];
+        const real prs_S_dot_z = prs_S_dot_t_3 + t_dot_z;
+        /* (prs-qd_2) rate of joint 2 */
+        const real prs_qd_2 = inv_prs_v_2_t_2*(prs_S_dot_x*prs_base_frame_xy +
+            prs_S_dot_y*prs_base_frame_yy + prs_S_dot_z*prs_base_frame_zy);
+        /* (prs-u_1) centripetal acceleration of the connection point */
+        const real prs_u_1_x = omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2;
+        const real prs_u_1_y = omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3;
+        const real prs_u_1_z = omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t;
+        /* (prs-W_2) centripetal tensor of link 2 */
+        const real prs_W_2_t = prs_qd_2*prs_qd_2;
+        /* (prs-u_1) centripetal acceleration of the connection point */
+        const real prs_u_1_tip_y = axis_y_prs_axes2_in_base_x*prs_u_1_x +
+            axis_y_prs_axes2_in_base_y*prs_u_1_y + axis_y_prs_axes2_in_base_z*prs_u_1_z;
+        /* (prs-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rel_o_x = axis_x_prs_axes2_in_base_x*u_1_x + axis_x_prs_axes2_in_base_y*u_1_y +
-            axis_x_prs_axes2_in_base_z*u_1_z + prs_platform_joint_offset_x*qd_2*qd_2;
-        /* (prs-A8) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_2_o = inv_v_2_t_2*(rel_o_x*s_2 - c_2*u_1_tip_y);
-        const real qdd_1_o_t = c_2*rel_o_x + qdd_2_o*v_2_t + s_2*u_1_tip_y;
-        /* (prs-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
-           less gravity */
-        const real acc_1_o_x = -g_r0_x - qdd_1_o_t;
-        /* (prs-N6) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real acc_2_o_x = c_2*g_r0_x + c_2*qdd_1_o_t - g_r0_y*s_2;
-        const real acc_2_o_y = c_2*g_r0_y + g_r0_x*s_2 + qdd_1_o_t*s_2;
-        /* (prs-N10) remainder without the acceleration in: inertia force of link 2 less its weight */
-        const real f_2_o_x = acc_2_o_x*prs_link2_mass + h_2_y*qdd_2_o - W_2_t*h_2_x;
-        const real f_2_o_y = acc_2_o_y*prs_link2_mass - W_2_t*h_2_y - h_2_x*qdd_2_o;
-        /* (prs-N25) remainder without the acceleration in: inertia force of the links from 1 outwards,
-           the last link left out */
-        const real T_1_o_x = acc_1_o_x*prs_link1_mass - c_2*f_2_o_x - f_2_o_y*s_2;
-        /* (prs-N20) remainder without the acceleration in: inertia moment of the links that turn with
+        const real prs_rel_o_x = axis_x_prs_axes2_in_base_x*prs_u_1_x +
+            axis_x_prs_axes2_in_base_y*prs_u_1_y + axis_x_prs_axes2_in_base_z*prs_u_1_z +
+            prs_platform_joint_offset_x*prs_qd_2*prs_qd_2;
+        /* (prs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        const real prs_qdd_2_o = inv_prs_v_2_t_2*(prs_rel_o_x*prs_s_2 - prs_c_2*prs_u_1_tip_y);
+        const real prs_qdd_2_o_t = prs_c_2*prs_rel_o_x + prs_qdd_2_o*prs_v_2_t +
+            prs_s_2*prs_u_1_tip_y;
+        /* (prs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real prs_g_r0_x = m->prs_g_r0_x[i];
+        const real prs_g_r0_y = m->prs_g_r0_y[i];
+        const real prs_acc_2_o_x = prs_c_2*prs_g_r0_x + prs_c_2*prs_qdd_2_o_t -
+            prs_g_r0_y*prs_s_2;
+        const real prs_acc_2_o_y = prs_c_2*prs_g_r0_y + prs_g_r0_x*prs_s_2 +
+            prs_qdd_2_o_t*prs_s_2;
+        /* (prs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real mu_2_o_z = acc_2_o_y*h_2_x - J_2_zz*qdd_2_o - acc_2_o_x*h_2_y;
-        /* (prs-N31) remainder without the acceleration in: force at the connection point that balances
+        const real prs_J_2_zz = m->prs_J_2_zz[i];
+        const real prs_h_2_x = m->prs_h_2_x[i];
+        const real prs_h_2_y = m->prs_h_2_y[i];
+        const real prs_mu_2_o_z = prs_acc_2_o_y*prs_h_2_x - prs_J_2_zz*prs_qdd_2_o -
+            prs_acc_2_o_x*prs_h_2_y;
+        /* (prs-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
+           link 1, less gravity */
+        const real prs_acc_1_o_x = -prs_g_r0_x - prs_qdd_2_o_t;
+        /* (prs-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
+        const real prs_link2_mass = m->prs_link2_mass[i];
+        const real prs_f_2_o_x = prs_acc_2_o_x*prs_link2_mass + prs_h_2_y*prs_qdd_2_o -
+            prs_W_2_t*prs_h_2_x;
+        const real prs_f_2_o_y = prs_acc_2_o_y*prs_link2_mass - prs_W_2_t*prs_h_2_y -
+            prs_h_2_x*prs_qdd_2_o;
+        /* (prs-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards,
+           the last link left out */
+        const real prs_link1_mass = m->prs_link1_mass[i];
+        const real prs_T_1_o_x = prs_acc_1_o_x*prs_link1_mass - prs_c_2*prs_f_2_o_x -
+            prs_f_2_o_y*prs_s_2;
+        /* (prs-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real G_o_t = inv_v_2_t_2*(mu_2_o_z + T_1_o_x*v_2_t);
-        const real _r0_x = -G_o_t*s_2 - T_1_o_x*c_2;
-        const real _r0_y = G_o_t*c_2 - T_1_o_x*s_2;
-        /* (prs-N36) velocity and gravity terms of the leg force */
-        const real U_in_base_x = _r0_x*axis_x_prs_axes2_in_base_x +
-            _r0_y*axis_y_prs_axes2_in_base_x;
-        const real U_in_base_y = _r0_x*axis_x_prs_axes2_in_base_y +
-            _r0_y*axis_y_prs_axes2_in_base_y;
-        const real U_in_base_z = _r0_x*axis_x_prs_axes2_in_base_z +
-            _r0_y*axis_y_prs_axes2_in_base_z;
-        /* (M7) rotational part of Z */
-        const real Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z;
-        const real Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x;
-        const real Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y;
-        o->sum[0][k] = add ? o->sum[0][k] + U_in_base_x : U_in_base_x;  /* total_prs_x */
-        o->sum[1][k] = add ? o->sum[1][k] + U_in_base_y : U_in_base_y;  /* total_prs_y */
-        o->sum[2][k] = add ? o->sum[2][k] + U_in_base_z : U_in_base_z;  /* total_prs_z */
-        o->sum[3][k] = add ? o->sum[3][k] + Z_a_t : Z_a_t;  /* total_prs_x_2 */
-        o->sum[4][k] = add ? o->sum[4][k] + Z_a_t_2 : Z_a_t_2;  /* total_prs_y_2 */
-        o->sum[5][k] = add ? o->sum[5][k] + Z_a_t_3 : Z_a_t_3;  /* total_prs_z_2 */
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*root_2_t) +
-            UNLESS(magnitude(-v_2_t_2) > TOLERANCE*size_);
+        const real prs_G_o_t = inv_prs_v_2_t_2*(prs_mu_2_o_z + prs_T_1_o_x*prs_v_2_t);
+        const real prs__r0_x = -prs_G_o_t*prs_s_2 - prs_T_1_o_x*prs_c_2;
+        const real prs__r0_y = prs_G_o_t*prs_c_2 - prs_T_1_o_x*prs_s_2;
+        /* (prs-U) velocity and gravity terms of the leg force */
+        const real prs_U_in_base_x = axis_x_prs_axes2_in_base_x*prs__r0_x +
+            axis_y_prs_axes2_in_base_x*prs__r0_y;
+        const real prs_U_in_base_y = axis_x_prs_axes2_in_base_y*prs__r0_x +
+            axis_y_prs_axes2_in_base_y*prs__r0_y;
+        const real prs_U_in_base_z = axis_x_prs_axes2_in_base_z*prs__r0_x +
+            axis_y_prs_axes2_in_base_z*prs__r0_y;
+        /* (Z_a) rotational part of Z */
+        const real prs_Z_a_t = prs_U_in_base_z*prs_q_in_base_y - prs_U_in_base_y*prs_q_in_base_z;
+        const real prs_Z_a_t_2 = prs_U_in_base_x*prs_q_in_base_z -
+            prs_U_in_base_z*prs_q_in_base_x;
+        const real prs_Z_a_t_3 = prs_U_in_base_y*prs_q_in_base_x -
+            prs_U_in_base_x*prs_q_in_base_y;
+        terms[0*count + k] = add ? terms[0*count + k] + prs_U_in_base_x : prs_U_in_base_x;  /* total_prs_x */
+        terms[1*count + k] = add ? terms[1*count + k] + prs_U_in_base_y : prs_U_in_base_y;  /* total_prs_y */
+        terms[2*count + k] = add ? terms[2*count + k] + prs_U_in_base_z : prs_U_in_base_z;  /* total_prs_z */
+        terms[3*count + k] = add ? terms[3*count + k] + prs_Z_a_t : prs_Z_a_t;  /* total_prs_x_2 */
+        terms[4*count + k] = add ? terms[4*count + k] + prs_Z_a_t_2 : prs_Z_a_t_2;  /* total_prs_y_2 */
+        terms[5*count + k] = add ? terms[5*count + k] + prs_Z_a_t_3 : prs_Z_a_t_3;  /* total_prs_z_2 */
+        const real prs_root_2_t = m->prs_root_2_t[i];
+        const real prs_size = m->prs_size[i];
+        o[0*count + k] = UNLESS(prs_disc_1 >= 0);
+        o[1*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
+            UNLESS(magnitude(-prs_v_2_t_2) > TOLERANCE*prs_size);
     }
 }
 
-INLINE void Z_place_prs(size_t w, const Z_results_prs *o, size_t first, verdict *t)
+INLINE void Z_place_prs(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        t->unreachable[k] += o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
     }
 }
 
-INLINE void Z_after(size_t w, const Z_values *s, real *Z)
+INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real Z_p_x = s->Z_p_x[k];
-        const real Z_p_y = s->Z_p_y[k];
-        const real Z_p_z = s->Z_p_z[k];
-        const real Z_q_in_base_x = s->Z_q_in_base_x[k];
-        const real Z_q_in_base_y = s->Z_q_in_base_y[k];
-        const real Z_q_in_base_z = s->Z_q_in_base_z[k];
-        const real total_prs_x = s->sum[0][k];
-        const real total_prs_y = s->sum[1][k];
-        const real total_prs_z = s->sum[2][k];
-        const real total_prs_x_2 = s->sum[3][k];
-        const real total_prs_y_2 = s->sum[4][k];
-        const real total_prs_z_2 = s->sum[5][k];
-        /* (M5) translational part of Z */
+        /* (Z_t) translational part of Z */
+        const real Z_p_x = s[18*w + k];
+        const real total_prs_x = sums[0*w + k];
         const real Z_t_x = Z_p_x + total_prs_x;
+        const real Z_p_y = s[19*w + k];
+        const real total_prs_y = sums[1*w + k];
         const real Z_t_y = Z_p_y + total_prs_y;
+        const real Z_p_z = s[20*w + k];
+        const real total_prs_z = sums[2*w + k];
         const real Z_t_z = Z_p_z + total_prs_z;
-        /* (M7) rotational part of Z */
+        /* (Z_a) rotational part of Z */
+        const real Z_q_in_base_x = s[21*w + k];
+        const real total_prs_x_2 = sums[3*w + k];
         const real Z_a_x = Z_q_in_base_x + total_prs_x_2;
+        const real Z_q_in_base_y = s[22*w + k];
+        const real total_prs_y_2 = sums[4*w + k];
         const real Z_a_y = Z_q_in_base_y + total_prs_y_2;
+        const real Z_q_in_base_z = s[23*w + k];
+        const real total_prs_z_2 = sums[5*w + k];
         const real Z_a_z = Z_q_in_base_z + total_prs_z_2;
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
@@ -2559,62 +2718,51 @@ INLINE void Z_after(size_t w, const Z_values *s, real *Z)
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
+        t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
     }
 }
 
-INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    Z_values values, *const s = &values;
-    Z_results_prs results_prs;
-    Z_before(m, w, X, V, s, t);
-    if (w == 1) {  /* the legs side by side */
-        Z_legs_prs(m, 0, 1, s, 0, 3, 0, &results_prs);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            Z_place_prs(w, &results_prs, leg, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_prs.sum[n], 3);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_prs.sum, 0, sizeof results_prs.sum);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            Z_legs_prs(m, leg, 0, s, 1, w, 1, &results_prs);
-            Z_place_prs(w, &results_prs, 0, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_prs.sum[n][k];
-            }
-        }
+    real s[24] = {0}, sums[6] = {0}, terms_prs[6*LEGS(3)] = {0}, o_prs[2*LEGS(3)] = {0};
+    Z_before(m, 1, X, V, s, t);
+    Z_legs_prs(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_prs, o_prs);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        Z_place_prs(1, LEGS(3), o_prs, leg, t);
     }
-    Z_after(w, s, Z);
+    for (size_t n = 0; n < 6; ++n) {
+        sums[n] = total(terms_prs + n*LEGS(3), 3);
+    }
+    Z_after(1, s, sums, Z, t);
+}
+
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+{
+    real s[24*LANES], sums[6*LANES], o_prs[2*LANES];
+    Z_before(m, LANES, X, V, s, t);
+    clear(sums, 6*LANES);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        Z_legs_prs(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_prs);
+        Z_place_prs(LANES, LANES, o_prs, 0, t);
+    }
+    Z_after(LANES, s, sums, Z, t);
 }
 
 /* ---- H: 177 mul, 114 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES];
-} H_values;
-typedef struct {
-    real entry[6][8], unreachable[8], singular[8];
-} H_results_prs;
-
-INLINE void H_before(size_t w, const real *X, H_values *s, verdict *t)
+INLINE void H_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -2638,166 +2786,172 @@ INLINE void H_before(size_t w, const real *X, H_values *s, verdict *t)
         const real R_zx = quaternion_xz - quaternion_wy;
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void H_legs_prs(const prepared *m, size_t leg, size_t legs, const H_values *s, size_t
-    states, size_t count, H_results_prs *o)
+INLINE void H_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real branch_1 = m->branch_1[i];
-        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
-        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
-        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_base_point_x = m->prs_base_point_x[i];
-        const real prs_base_point_y = m->prs_base_point_y[i];
-        const real prs_base_point_z = m->prs_base_point_z[i];
-        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
+        /* (prs-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real prs_platform_point_x = m->prs_platform_point_x[i];
         const real prs_platform_point_y = m->prs_platform_point_y[i];
         const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real root_2_t = m->root_2_t[i];
-        const real size_ = m->size_[i];
-        const real uu_2_t = m->uu_2_t[i];
-        /* (prs-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
+        const real prs_q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
             R_xz*prs_platform_point_z;
-        const real q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real prs_q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
             R_yz*prs_platform_point_z;
-        const real q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real prs_q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
             R_zz*prs_platform_point_z;
-        const real S_x = q_in_base_x + t_x - prs_base_point_x;
-        const real S_y = q_in_base_y + t_y - prs_base_point_y;
-        const real S_z = q_in_base_z + t_z - prs_base_point_z;
-        /* (prs-K2) component along axis 1 */
-        const real px_1 = S_x*prs_base_frame_xx + S_y*prs_base_frame_yx + S_z*prs_base_frame_zx;
-        /* (prs-K3) discriminant of the distance equation */
-        const real disc_1_t = S_x*prs_base_frame_xz + S_y*prs_base_frame_yz +
-            S_z*prs_base_frame_zz;
-        const real disc_1_t_2 = S_x*S_x + S_y*S_y + S_z*S_z;
-        const real disc_1 = disc_1_t*disc_1_t + px_1*px_1 + uu_2_t - disc_1_t_2;
-        /* (prs-K4) displacement of joint 1 */
-        const real q_1_t = branch_1*root(disc_1);
-        /* (prs-K1) from the base point to the connection point */
-        const real S_r0_y = S_x*prs_base_frame_xy + S_y*prs_base_frame_yy + S_z*prs_base_frame_zy;
-        /* (prs-K7) squared amplitude */
-        const real rho2_2 = uu_2_t*(S_r0_y*S_r0_y + q_1_t*q_1_t);
-        /* (prs-K9) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/(root(rho2_2));
-        const real c_2 = inv_root_2*prs_platform_joint_offset_x*q_1_t;
-        /* (prs-K10) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = S_r0_y*inv_root_2*prs_platform_joint_offset_x;
-        /* (prs-V2) velocity of the connection point per rate of joint 2 */
-        const real v_2_t = c_2*prs_platform_joint_offset_x;
-        /* (prs-V3) reciprocal vector 1 */
-        const real w_1_t = prs_platform_joint_offset_x*s_2/v_2_t;
-        const real _r0_x = -c_2 - s_2*w_1_t;
-        const real _r0_y = c_2*w_1_t - s_2;
-        const real w_1_in_base_x = _r0_x*(prs_base_frame_xy*s_2 - c_2*prs_base_frame_xx) +
-            _r0_y*(-c_2*prs_base_frame_xy - prs_base_frame_xx*s_2);
-        const real w_1_in_base_y = _r0_x*(prs_base_frame_yy*s_2 - c_2*prs_base_frame_yx) +
-            _r0_y*(-c_2*prs_base_frame_yy - prs_base_frame_yx*s_2);
-        const real w_1_in_base_z = _r0_x*(prs_base_frame_zy*s_2 - c_2*prs_base_frame_zx) +
-            _r0_y*(-c_2*prs_base_frame_zy - prs_base_frame_zx*s_2);
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_1_x = q_in_base_y*w_1_in_base_z - q_in_base_z*w_1_in_base_y;
-        const real H_a_1_y = q_in_base_z*w_1_in_base_x - q_in_base_x*w_1_in_base_z;
-        const real H_a_1_z = q_in_base_x*w_1_in_base_y - q_in_base_y*w_1_in_base_x;
-        o->entry[0][k] = w_1_in_base_x;
-        o->entry[1][k] = w_1_in_base_y;
-        o->entry[2][k] = w_1_in_base_z;
-        o->entry[3][k] = H_a_1_x;
-        o->entry[4][k] = H_a_1_y;
-        o->entry[5][k] = H_a_1_z;
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*root_2_t) +
-            UNLESS(magnitude(-v_2_t) > TOLERANCE*size_);
+        const real prs_base_point_x = m->prs_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x;
+        const real prs_base_point_y = m->prs_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y;
+        const real prs_base_point_z = m->prs_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z;
+        /* (prs-px_1) component along axis 1 */
+        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
+        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
+        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
+        const real prs_px_1 = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
+            prs_S_z*prs_base_frame_zx;
+        /* (prs-disc_1) discriminant of the distance equation */
+        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
+        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
+        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
+        const real prs_disc_1_t_2 = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
+            prs_S_z*prs_base_frame_zz;
+        const real prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
+        const real prs_disc_1_t = m->prs_disc_1_t[i];
+        const real prs_disc_1 = prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 -
+            prs_disc_1_t_3;
+        /* (prs-q_1) displacement of joint 1 */
+        const real prs_branch_1 = m->prs_branch_1[i];
+        const real prs_q_1_t = prs_branch_1*root(prs_disc_1);
+        /* (prs-S) from the base point to the connection point */
+        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
+        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
+        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
+        const real prs_S_r0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
+            prs_S_z*prs_base_frame_zy;
+        /* (prs-rho2_2) squared amplitude */
+        const real prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t);
+        /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_prs_root_2 = 1/(root(prs_rho2_2));
+        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
+        const real prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t;
+        /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
+        const real prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x;
+        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
+        const real prs_v_2_t = prs_c_2*prs_platform_joint_offset_x;
+        /* (prs-w_1) reciprocal vector 1 */
+        const real prs_w_1_t = prs_platform_joint_offset_x*prs_s_2/prs_v_2_t;
+        const real prs__r0_x = -prs_c_2 - prs_s_2*prs_w_1_t;
+        const real prs__r0_y = prs_c_2*prs_w_1_t - prs_s_2;
+        const real prs_w_1_in_base_x = prs__r0_x*(prs_base_frame_xy*prs_s_2 -
+            prs_base_frame_xx*prs_c_2) + prs__r0_y*(-prs_base_frame_xx*prs_s_2 -
+            prs_base_frame_xy*prs_c_2);
+        const real prs_w_1_in_base_y = prs__r0_x*(prs_base_frame_yy*prs_s_2 -
+            prs_base_frame_yx*prs_c_2) + prs__r0_y*(-prs_base_frame_yx*prs_s_2 -
+            prs_base_frame_yy*prs_c_2);
+        const real prs_w_1_in_base_z = prs__r0_x*(prs_base_frame_zy*prs_s_2 -
+            prs_base_frame_zx*prs_c_2) + prs__r0_y*(-prs_base_frame_zx*prs_s_2 -
+            prs_base_frame_zy*prs_c_2);
+        /* (prs-H_a_1) moment of the column's unit force about the platform origin */
+        const real prs_H_a_1_x = prs_q_in_base_y*prs_w_1_in_base_z -
+            prs_q_in_base_z*prs_w_1_in_base_y;
+        const real prs_H_a_1_y = prs_q_in_base_z*prs_w_1_in_base_x -
+            prs_q_in_base_x*prs_w_1_in_base_z;
+        const real prs_H_a_1_z = prs_q_in_base_x*prs_w_1_in_base_y -
+            prs_q_in_base_y*prs_w_1_in_base_x;
+        o[0*count + k] = prs_w_1_in_base_x;
+        o[1*count + k] = prs_w_1_in_base_y;
+        o[2*count + k] = prs_w_1_in_base_z;
+        o[3*count + k] = prs_H_a_1_x;
+        o[4*count + k] = prs_H_a_1_y;
+        o[5*count + k] = prs_H_a_1_z;
+        o[8*count + k] = (prs_w_1_in_base_x + (prs_w_1_in_base_y + prs_w_1_in_base_z)) +
+            (prs_H_a_1_x + (prs_H_a_1_y + prs_H_a_1_z));
+        const real prs_root_2_t = m->prs_root_2_t[i];
+        const real prs_size = m->prs_size[i];
+        o[6*count + k] = UNLESS(prs_disc_1 >= 0);
+        o[7*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
+            UNLESS(magnitude(-prs_v_2_t) > TOLERANCE*prs_size);
     }
 }
 
-INLINE void H_place_prs(size_t w, const H_results_prs *o, size_t leg, size_t first, real *H,
+INLINE void H_place_prs(size_t w, size_t count, const real *o, size_t leg, size_t first, real *H,
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(3 + leg)*w + k] = o->entry[1][first + k];
-        H[(6 + leg)*w + k] = o->entry[2][first + k];
-        H[(9 + leg)*w + k] = o->entry[3][first + k];
-        H[(12 + leg)*w + k] = o->entry[4][first + k];
-        H[(15 + leg)*w + k] = o->entry[5][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(3 + leg)*w + k] = o[1*count + first + k];
+        H[(6 + leg)*w + k] = o[2*count + first + k];
+        H[(9 + leg)*w + k] = o[3*count + first + k];
+        H[(12 + leg)*w + k] = o[4*count + first + k];
+        H[(15 + leg)*w + k] = o[5*count + first + k];
+        t->unreachable[k] += o[6*count + first + k];
+        t->singular[k] += o[7*count + first + k];
+        t->total[k] += o[8*count + first + k];
     }
 }
 
-INLINE void H_run(const prepared *m, size_t w, const real *X, real *H, verdict *t)
+INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    H_values values, *const s = &values;
-    H_results_prs results_prs;
-    H_before(w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        H_legs_prs(m, 0, 1, s, 0, 3, &results_prs);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            H_place_prs(w, &results_prs, leg, leg, H, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            H_legs_prs(m, leg, 0, s, 1, w, &results_prs);
-            H_place_prs(w, &results_prs, leg, 0, H, t);
-        }
+    real s[12] = {0}, o_prs[9*LEGS(3)] = {0};
+    H_before(1, X, s, t);
+    H_legs_prs(m, 1, 0, 1, s, 0, LEGS(3), o_prs);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        H_place_prs(1, LEGS(3), o_prs, leg, leg, H, t);
+    }
+}
+
+INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
+{
+    real s[12*LANES], o_prs[9*LANES];
+    H_before(LANES, X, s, t);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        H_legs_prs(m, LANES, leg, 0, s, 1, LANES, o_prs);
+        H_place_prs(LANES, LANES, o_prs, leg, 0, H, t);
     }
 }
 
 /* ---- Hk: 45 mul, 27 add, 0 div, 0 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES], R_yy[LANES], R_yz[LANES], R_zx[LANES],
-        R_zy[LANES], R_zz[LANES];
-} Hk_values;
-typedef struct {
-    real entry[6][8];
-} Hk_results_prs;
-
-INLINE void Hk_before(size_t w, const real *X, Hk_values *s, verdict *t)
+INLINE void Hk_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        /* X: named entries */
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -2821,111 +2975,108 @@ INLINE void Hk_before(size_t w, const real *X, Hk_values *s, verdict *t)
         const real R_zx = quaternion_xz - quaternion_wy;
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
+        s[0*w + k] = R_xx;
+        s[1*w + k] = R_xy;
+        s[2*w + k] = R_xz;
+        s[3*w + k] = R_yx;
+        s[4*w + k] = R_yy;
+        s[5*w + k] = R_yz;
+        s[6*w + k] = R_zx;
+        s[7*w + k] = R_zy;
+        s[8*w + k] = R_zz;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void Hk_legs_prs(const prepared *m, size_t leg, size_t legs, const Hk_values *s, size_t
-    states, size_t count, Hk_results_prs *o)
+INLINE void Hk_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
+        /* (prs-S) from the base point to the connection point */
+        const real R_xx = s[0*w + j];
+        const real R_xy = s[1*w + j];
+        const real R_xz = s[2*w + j];
         const real prs_platform_point_x = m->prs_platform_point_x[i];
         const real prs_platform_point_y = m->prs_platform_point_y[i];
         const real prs_platform_point_z = m->prs_platform_point_z[i];
-        /* (prs-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
+        const real prs_q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
             R_xz*prs_platform_point_z;
-        const real q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
+        const real R_yx = s[3*w + j];
+        const real R_yy = s[4*w + j];
+        const real R_yz = s[5*w + j];
+        const real prs_q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
             R_yz*prs_platform_point_z;
-        const real q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
+        const real R_zx = s[6*w + j];
+        const real R_zy = s[7*w + j];
+        const real R_zz = s[8*w + j];
+        const real prs_q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
             R_zz*prs_platform_point_z;
-        /* (M9) moment of the column's unit force about the platform origin */
-        const real Hk_a_1_x = prs_base_frame_zz*q_in_base_y - prs_base_frame_yz*q_in_base_z;
-        const real Hk_a_1_y = prs_base_frame_xz*q_in_base_z - prs_base_frame_zz*q_in_base_x;
-        const real Hk_a_1_z = prs_base_frame_yz*q_in_base_x - prs_base_frame_xz*q_in_base_y;
-        o->entry[0][k] = prs_base_frame_xz;
-        o->entry[1][k] = prs_base_frame_yz;
-        o->entry[2][k] = prs_base_frame_zz;
-        o->entry[3][k] = Hk_a_1_x;
-        o->entry[4][k] = Hk_a_1_y;
-        o->entry[5][k] = Hk_a_1_z;
+        /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
+        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
+        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
+        const real prs_Hk_a_1_x = prs_base_frame_zz*prs_q_in_base_y -
+            prs_base_frame_yz*prs_q_in_base_z;
+        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
+        const real prs_Hk_a_1_y = prs_base_frame_xz*prs_q_in_base_z -
+            prs_base_frame_zz*prs_q_in_base_x;
+        const real prs_Hk_a_1_z = prs_base_frame_yz*prs_q_in_base_x -
+            prs_base_frame_xz*prs_q_in_base_y;
+        o[0*count + k] = prs_base_frame_xz;
+        o[1*count + k] = prs_base_frame_yz;
+        o[2*count + k] = prs_base_frame_zz;
+        o[3*count + k] = prs_Hk_a_1_x;
+        o[4*count + k] = prs_Hk_a_1_y;
+        o[5*count + k] = prs_Hk_a_1_z;
+        o[6*count + k] = (prs_base_frame_xz + (prs_base_frame_yz + prs_base_frame_zz)) +
+            (prs_Hk_a_1_x + (prs_Hk_a_1_y + prs_Hk_a_1_z));
     }
 }
 
-INLINE void Hk_place_prs(size_t w, const Hk_results_prs *o, size_t leg, size_t first, real *Hk)
+INLINE void Hk_place_prs(size_t w, size_t count, const real *o, size_t leg, size_t first, real
+    *Hk, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        Hk[(leg)*w + k] = o->entry[0][first + k];
-        Hk[(3 + leg)*w + k] = o->entry[1][first + k];
-        Hk[(6 + leg)*w + k] = o->entry[2][first + k];
-        Hk[(9 + leg)*w + k] = o->entry[3][first + k];
-        Hk[(12 + leg)*w + k] = o->entry[4][first + k];
-        Hk[(15 + leg)*w + k] = o->entry[5][first + k];
+        Hk[(leg)*w + k] = o[0*count + first + k];
+        Hk[(3 + leg)*w + k] = o[1*count + first + k];
+        Hk[(6 + leg)*w + k] = o[2*count + first + k];
+        Hk[(9 + leg)*w + k] = o[3*count + first + k];
+        Hk[(12 + leg)*w + k] = o[4*count + first + k];
+        Hk[(15 + leg)*w + k] = o[5*count + first + k];
+        t->total[k] += o[6*count + first + k];
     }
 }
 
-INLINE void Hk_run(const prepared *m, size_t w, const real *X, real *Hk, verdict *t)
+INLINE void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
 {
-    Hk_values values, *const s = &values;
-    Hk_results_prs results_prs;
-    Hk_before(w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        Hk_legs_prs(m, 0, 1, s, 0, 3, &results_prs);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            Hk_place_prs(w, &results_prs, leg, leg, Hk);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            Hk_legs_prs(m, leg, 0, s, 1, w, &results_prs);
-            Hk_place_prs(w, &results_prs, leg, 0, Hk);
-        }
+    real s[9] = {0}, o_prs[7*LEGS(3)] = {0};
+    Hk_before(1, X, s, t);
+    Hk_legs_prs(m, 1, 0, 1, s, 0, LEGS(3), o_prs);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        Hk_place_prs(1, LEGS(3), o_prs, leg, leg, Hk, t);
+    }
+}
+
+INLINE void Hk_run_lanes(const prepared *m, const real *X, real *Hk, verdict *t)
+{
+    real s[9*LANES], o_prs[7*LANES];
+    Hk_before(LANES, X, s, t);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        Hk_legs_prs(m, LANES, leg, 0, s, 1, LANES, o_prs);
+        Hk_place_prs(LANES, LANES, o_prs, leg, 0, Hk, t);
     }
 }
 
 /* ---- constraint_bias: 72 mul, 42 add, 0 div, 0 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES], R_yy[LANES], R_yz[LANES], R_zx[LANES],
-        R_zy[LANES], R_zz[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES];
-} constraint_bias_values;
-typedef struct {
-    real entry[1][8];
-} constraint_bias_results_prs;
-
-INLINE void constraint_bias_before(size_t w, const real *X, const real *V, constraint_bias_values
-    *s, verdict *t)
+INLINE void constraint_bias_before(size_t w, const real *X, const real *V, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        /* X: named entries */
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -2950,148 +3101,120 @@ INLINE void constraint_bias_before(size_t w, const real *X, const real *V, const
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
+        s[0*w + k] = R_xx;
+        s[1*w + k] = R_xy;
+        s[2*w + k] = R_xz;
+        s[3*w + k] = R_yx;
+        s[4*w + k] = R_yy;
+        s[5*w + k] = R_yz;
+        s[6*w + k] = R_zx;
+        s[7*w + k] = R_zy;
+        s[8*w + k] = R_zz;
+        s[9*w + k] = omega_x;
+        s[10*w + k] = omega_y;
+        s[11*w + k] = omega_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void constraint_bias_legs_prs(const prepared *m, size_t leg, size_t legs, const
-    constraint_bias_values *s, size_t states, size_t count, constraint_bias_results_prs *o)
+INLINE void constraint_bias_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const
+    real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
+        /* (prs-S) from the base point to the connection point */
+        const real R_xx = s[0*w + j];
+        const real R_xy = s[1*w + j];
+        const real R_xz = s[2*w + j];
         const real prs_platform_point_x = m->prs_platform_point_x[i];
         const real prs_platform_point_y = m->prs_platform_point_y[i];
         const real prs_platform_point_z = m->prs_platform_point_z[i];
-        /* (prs-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
+        const real prs_q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
             R_xz*prs_platform_point_z;
-        const real q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
+        const real R_yx = s[3*w + j];
+        const real R_yy = s[4*w + j];
+        const real R_yz = s[5*w + j];
+        const real prs_q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
             R_yz*prs_platform_point_z;
-        const real q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
+        const real R_zx = s[6*w + j];
+        const real R_zy = s[7*w + j];
+        const real R_zz = s[8*w + j];
+        const real prs_q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
             R_zz*prs_platform_point_z;
-        /* (prs-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        /* (prs-A1) centripetal acceleration of the connection point */
-        const real u_1_tip_z = prs_base_frame_xz*(S_dot_t_3*omega_y - S_dot_t_2*omega_z) +
-            prs_base_frame_yz*(S_dot_t*omega_z - S_dot_t_3*omega_x) +
-            prs_base_frame_zz*(S_dot_t_2*omega_x - S_dot_t*omega_y);
-        o->entry[0][k] = u_1_tip_z;
+        /* (prs-S_dot) velocity of the connection point */
+        const real omega_y = s[10*w + j];
+        const real omega_z = s[11*w + j];
+        const real prs_S_dot_t = omega_y*prs_q_in_base_z - omega_z*prs_q_in_base_y;
+        const real omega_x = s[9*w + j];
+        const real prs_S_dot_t_2 = omega_z*prs_q_in_base_x - omega_x*prs_q_in_base_z;
+        const real prs_S_dot_t_3 = omega_x*prs_q_in_base_y - omega_y*prs_q_in_base_x;
+        /* (prs-u_1) centripetal acceleration of the connection point */
+        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
+        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
+        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
+        const real prs_u_1_tip_z = prs_base_frame_xz*(omega_y*prs_S_dot_t_3 -
+            omega_z*prs_S_dot_t_2) + prs_base_frame_yz*(omega_z*prs_S_dot_t -
+            omega_x*prs_S_dot_t_3) + prs_base_frame_zz*(omega_x*prs_S_dot_t_2 -
+            omega_y*prs_S_dot_t);
+        o[0*count + k] = prs_u_1_tip_z;
+        o[1*count + k] = prs_u_1_tip_z;
     }
 }
 
-INLINE void constraint_bias_place_prs(size_t w, const constraint_bias_results_prs *o, size_t leg,
-    size_t first, real *constraint_bias)
+INLINE void constraint_bias_place_prs(size_t w, size_t count, const real *o, size_t leg, size_t
+    first, real *constraint_bias, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        constraint_bias[(leg)*w + k] = o->entry[0][first + k];
+        constraint_bias[(leg)*w + k] = o[0*count + first + k];
+        t->total[k] += o[1*count + first + k];
     }
 }
 
-INLINE void constraint_bias_run(const prepared *m, size_t w, const real *X, const real *V, real
+INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V, real
     *constraint_bias, verdict *t)
 {
-    constraint_bias_values values, *const s = &values;
-    constraint_bias_results_prs results_prs;
-    constraint_bias_before(w, X, V, s, t);
-    if (w == 1) {  /* the legs side by side */
-        constraint_bias_legs_prs(m, 0, 1, s, 0, 3, &results_prs);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            constraint_bias_place_prs(w, &results_prs, leg, leg, constraint_bias);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            constraint_bias_legs_prs(m, leg, 0, s, 1, w, &results_prs);
-            constraint_bias_place_prs(w, &results_prs, leg, 0, constraint_bias);
-        }
+    real s[12] = {0}, o_prs[2*LEGS(3)] = {0};
+    constraint_bias_before(1, X, V, s, t);
+    constraint_bias_legs_prs(m, 1, 0, 1, s, 0, LEGS(3), o_prs);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        constraint_bias_place_prs(1, LEGS(3), o_prs, leg, leg, constraint_bias, t);
+    }
+}
+
+INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const real *V, real
+    *constraint_bias, verdict *t)
+{
+    real s[12*LANES], o_prs[2*LANES];
+    constraint_bias_before(LANES, X, V, s, t);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        constraint_bias_legs_prs(m, LANES, leg, 0, s, 1, LANES, o_prs);
+        constraint_bias_place_prs(LANES, LANES, o_prs, leg, 0, constraint_bias, t);
     }
 }
 
 /* ---- required: 510 mul, 372 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
-        t_ddot_x[LANES], t_ddot_y[LANES], t_ddot_z[LANES], alpha_x[LANES], alpha_y[LANES],
-        alpha_z[LANES], f_p_x[LANES], f_p_y[LANES], f_p_z[LANES], mu_p_in_base_x[LANES],
-        mu_p_in_base_y[LANES], mu_p_in_base_z[LANES], sum[6][LANES];
-} required_values;
-typedef struct {
-    real sum[6][8], entry[12][8], unreachable[8], singular[8];
-} required_results_prs;
-
 INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, required_values *s, verdict *t)
+    *A, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real A_2 = A[2*w + k];
-        const real A_3 = A[3*w + k];
-        const real A_4 = A[4*w + k];
-        const real A_5 = A[5*w + k];
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_zz = m->J_star_zz;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real platform_mass = m->platform_mass;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -3116,53 +3239,78 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
+        const real A_2 = A[2*w + k];
         const real t_ddot_z = A_2;
+        const real A_3 = A[3*w + k];
         const real alpha_x = A_3;
+        const real A_4 = A[4*w + k];
         const real alpha_y = A_4;
+        const real A_5 = A[5*w + k];
         const real alpha_z = A_5;
-        /* (L2) first moment about the platform origin */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_z = m->h_star_z;
         const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
         const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
         const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
-        /* (P1) centripetal tensor of the platform */
+        /* (W_p) centripetal tensor of the platform */
         const real W_p_t = omega_x*omega_x;
         const real W_p_t_2 = omega_y*omega_y;
         const real W_p_t_3 = omega_z*omega_z;
         const real W_p_xy = omega_x*omega_y;
         const real W_p_xz = omega_x*omega_z;
         const real W_p_yz = omega_y*omega_z;
-        /* (M6) gyroscopic moment and moment of the weight of the platform */
+        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
         const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
         const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
         const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_xx = m->J_star_xx;
+        const real J_star_xy = m->J_star_xy;
+        const real J_star_xz = m->J_star_xz;
         const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
+        const real J_star_yy = m->J_star_yy;
+        const real J_star_yz = m->J_star_yz;
         const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
+        const real J_star_zz = m->J_star_zz;
         const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        /* (E1) acceleration of the platform origin, less gravity */
+        /* (a_t) acceleration of the platform origin, less gravity */
+        const real gravity_x = m->gravity_x;
         const real a_t_x = t_ddot_x - gravity_x;
+        const real gravity_y = m->gravity_y;
         const real a_t_y = t_ddot_y - gravity_y;
+        const real gravity_z = m->gravity_z;
         const real a_t_z = t_ddot_z - gravity_z;
-        /* (E2) inertia force of the platform less its weight */
+        /* (f_p) inertia force of the platform less its weight */
+        const real platform_mass = m->platform_mass;
         const real f_p_x = a_t_x*platform_mass + h_star_in_base_y*(W_p_xy - alpha_z) +
             h_star_in_base_z*(W_p_xz + alpha_y) - h_star_in_base_x*(W_p_t_2 + W_p_t_3);
         const real f_p_y = a_t_y*platform_mass + h_star_in_base_x*(W_p_xy + alpha_z) +
             h_star_in_base_z*(W_p_yz - alpha_x) - h_star_in_base_y*(W_p_t + W_p_t_3);
         const real f_p_z = a_t_z*platform_mass + h_star_in_base_x*(W_p_xz - alpha_y) +
             h_star_in_base_y*(W_p_yz + alpha_x) - h_star_in_base_z*(W_p_t + W_p_t_2);
-        /* (E1) acceleration of the platform origin, less gravity */
+        /* (a_t) acceleration of the platform origin, less gravity */
         const real a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
         const real a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
         const real a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
-        /* (E3) inertia moment of the platform less that of its weight */
+        /* (mu_p) inertia moment of the platform less that of its weight */
         const real alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
         const real alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
         const real alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
@@ -3175,273 +3323,291 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z;
         const real mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z;
         const real mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->t_ddot_z[k] = t_ddot_z;
-        s->alpha_x[k] = alpha_x;
-        s->alpha_y[k] = alpha_y;
-        s->alpha_z[k] = alpha_z;
-        s->f_p_x[k] = f_p_x;
-        s->f_p_y[k] = f_p_y;
-        s->f_p_z[k] = f_p_z;
-        s->mu_p_in_base_x[k] = mu_p_in_base_x;
-        s->mu_p_in_base_y[k] = mu_p_in_base_y;
-        s->mu_p_in_base_z[k] = mu_p_in_base_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
+        s[18*w + k] = t_ddot_x;
+        s[19*w + k] = t_ddot_y;
+        s[20*w + k] = t_ddot_z;
+        s[21*w + k] = alpha_x;
+        s[22*w + k] = alpha_y;
+        s[23*w + k] = alpha_z;
+        s[24*w + k] = f_p_x;
+        s[25*w + k] = f_p_y;
+        s[26*w + k] = f_p_z;
+        s[27*w + k] = mu_p_in_base_x;
+        s[28*w + k] = mu_p_in_base_y;
+        s[29*w + k] = mu_p_in_base_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void required_legs_prs(const prepared *m, size_t leg, size_t legs, const required_values
-    *s, size_t states, size_t count, int add, required_results_prs *o)
+INLINE void required_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real t_ddot_z = s->t_ddot_z[j];
-        const real alpha_x = s->alpha_x[j];
-        const real alpha_y = s->alpha_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real J_2_zz = m->J_2_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
-        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
-        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_base_point_x = m->prs_base_point_x[i];
-        const real prs_base_point_y = m->prs_base_point_y[i];
-        const real prs_base_point_z = m->prs_base_point_z[i];
-        const real prs_link1_mass = m->prs_link1_mass[i];
-        const real prs_link2_mass = m->prs_link2_mass[i];
-        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
+        /* (prs-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real prs_platform_point_x = m->prs_platform_point_x[i];
         const real prs_platform_point_y = m->prs_platform_point_y[i];
         const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real root_2_t = m->root_2_t[i];
-        const real size_ = m->size_[i];
-        const real uu_2_t = m->uu_2_t[i];
-        /* (prs-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
+        const real prs_q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
             R_xz*prs_platform_point_z;
-        const real q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real prs_q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
             R_yz*prs_platform_point_z;
-        const real q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real prs_q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
             R_zz*prs_platform_point_z;
-        const real S_x = q_in_base_x + t_x - prs_base_point_x;
-        const real S_y = q_in_base_y + t_y - prs_base_point_y;
-        const real S_z = q_in_base_z + t_z - prs_base_point_z;
-        /* (prs-K2) component along axis 1 */
-        const real px_1 = S_x*prs_base_frame_xx + S_y*prs_base_frame_yx + S_z*prs_base_frame_zx;
-        /* (prs-K3) discriminant of the distance equation */
-        const real disc_1_t = S_x*prs_base_frame_xz + S_y*prs_base_frame_yz +
-            S_z*prs_base_frame_zz;
-        const real disc_1_t_2 = S_x*S_x + S_y*S_y + S_z*S_z;
-        const real disc_1 = disc_1_t*disc_1_t + px_1*px_1 + uu_2_t - disc_1_t_2;
-        /* (prs-K4) displacement of joint 1 */
-        const real q_1_t = branch_1*root(disc_1);
-        /* (prs-K1) from the base point to the connection point */
-        const real S_r0_y = S_x*prs_base_frame_xy + S_y*prs_base_frame_yy + S_z*prs_base_frame_zy;
-        /* (prs-K7) squared amplitude */
-        const real rho2_2 = uu_2_t*(S_r0_y*S_r0_y + q_1_t*q_1_t);
-        /* (prs-K9) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/(root(rho2_2));
-        const real c_2 = inv_root_2*prs_platform_joint_offset_x*q_1_t;
-        /* (prs-K10) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = S_r0_y*inv_root_2*prs_platform_joint_offset_x;
-        /* (prs-V2) velocity of the connection point per rate of joint 2 */
-        const real v_2_t = prs_platform_joint_offset_x*s_2;
-        const real v_2_t_2 = c_2*prs_platform_joint_offset_x;
-        /* (prs-V3) reciprocal vector 1 */
-        const real inv_v_2_t_2 = 1/v_2_t_2;
-        const real w_1_t = inv_v_2_t_2*v_2_t;
-        const real _r0_x = -c_2 - s_2*w_1_t;
-        const real _r0_y = c_2*w_1_t - s_2;
-        /* (prs-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        /* (prs-V6) rate of joint 2 */
-        const real qd_2 = inv_v_2_t_2*(S_dot_x*prs_base_frame_xy + S_dot_y*prs_base_frame_yy +
-            S_dot_z*prs_base_frame_zy);
-        /* (prs-V8) centripetal tensor of link 2 */
-        const real W_2_t = qd_2*qd_2;
-        /* (M9) moment of the column's unit force about the platform origin */
-        const real Hk_a_1_x = prs_base_frame_zz*q_in_base_y - prs_base_frame_yz*q_in_base_z;
-        const real Hk_a_1_y = prs_base_frame_xz*q_in_base_z - prs_base_frame_zz*q_in_base_x;
-        const real Hk_a_1_z = prs_base_frame_yz*q_in_base_x - prs_base_frame_xz*q_in_base_y;
-        /* (prs-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
-        const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
-        const real a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x;
-        /* (prs-A3) acceleration of the connection point */
-        const real S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z;
-        const real S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x;
-        const real S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y;
-        const real S_ddot_r0_x = S_ddot_x*prs_base_frame_xx + S_ddot_y*prs_base_frame_yx +
-            S_ddot_z*prs_base_frame_zx;
-        const real S_ddot_r0_y = S_ddot_x*prs_base_frame_xy + S_ddot_y*prs_base_frame_yy +
-            S_ddot_z*prs_base_frame_zy;
-        const real S_ddot_r1_y = -S_ddot_r0_x*s_2 - S_ddot_r0_y*c_2;
-        /* (prs-A5) acceleration of the connection point left to the joint accelerations */
-        const real rel_x = S_ddot_r0_y*s_2 + prs_platform_joint_offset_x*qd_2*qd_2 -
-            S_ddot_r0_x*c_2;
-        /* (prs-A7) acceleration of joint 1 */
-        const real qdd_2 = inv_v_2_t_2*(rel_x*s_2 - S_ddot_r1_y*c_2);
-        const real qdd_1_t = S_ddot_r1_y*s_2 + c_2*rel_x + qdd_2*v_2_t;
-        /* (prs-N1) acceleration of the reference point of link 1, less gravity */
-        const real acc_1_x = -g_r0_x - qdd_1_t;
-        /* (prs-N5) acceleration of the reference point of link 2, less gravity */
-        const real acc_2_x = c_2*g_r0_x + c_2*qdd_1_t - g_r0_y*s_2;
-        const real acc_2_y = c_2*g_r0_y + g_r0_x*s_2 + qdd_1_t*s_2;
-        /* (prs-N9) inertia force of link 2 less its weight */
-        const real f_2_x = acc_2_x*prs_link2_mass + h_2_y*qdd_2 - W_2_t*h_2_x;
-        const real f_2_y = acc_2_y*prs_link2_mass - W_2_t*h_2_y - h_2_x*qdd_2;
-        /* (prs-N24) inertia force of the links from 1 outwards, the last link left out */
-        const real T_1_x = acc_1_x*prs_link1_mass - c_2*f_2_x - f_2_y*s_2;
-        /* (prs-N19) inertia moment of the links that turn with link 2, about their reference points */
-        const real mu_2_z = acc_2_y*h_2_x - J_2_zz*qdd_2 - acc_2_x*h_2_y;
-        /* (prs-N29) force at the connection point that balances the leg's inertia and weight along all
+        const real prs_base_point_x = m->prs_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x;
+        const real prs_base_point_y = m->prs_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y;
+        const real prs_base_point_z = m->prs_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z;
+        /* (prs-px_1) component along axis 1 */
+        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
+        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
+        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
+        const real prs_px_1 = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
+            prs_S_z*prs_base_frame_zx;
+        /* (prs-disc_1) discriminant of the distance equation */
+        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
+        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
+        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
+        const real prs_disc_1_t_2 = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
+            prs_S_z*prs_base_frame_zz;
+        const real prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
+        const real prs_disc_1_t = m->prs_disc_1_t[i];
+        const real prs_disc_1 = prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 -
+            prs_disc_1_t_3;
+        /* (prs-q_1) displacement of joint 1 */
+        const real prs_branch_1 = m->prs_branch_1[i];
+        const real prs_q_1_t = prs_branch_1*root(prs_disc_1);
+        /* (prs-S) from the base point to the connection point */
+        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
+        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
+        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
+        const real prs_S_r0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
+            prs_S_z*prs_base_frame_zy;
+        /* (prs-rho2_2) squared amplitude */
+        const real prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t);
+        /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_prs_root_2 = 1/(root(prs_rho2_2));
+        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
+        const real prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t;
+        /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
+        const real prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x;
+        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
+        const real prs_v_2_t = prs_platform_joint_offset_x*prs_s_2;
+        const real prs_v_2_t_2 = prs_c_2*prs_platform_joint_offset_x;
+        /* (prs-w_1) reciprocal vector 1 */
+        const real inv_prs_v_2_t_2 = 1/prs_v_2_t_2;
+        const real prs_w_1_t = inv_prs_v_2_t_2*prs_v_2_t;
+        const real prs__r0_x = -prs_c_2 - prs_s_2*prs_w_1_t;
+        const real prs__r0_y = prs_c_2*prs_w_1_t - prs_s_2;
+        /* (prs-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real prs_S_dot_t = omega_y*prs_q_in_base_z - omega_z*prs_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real prs_S_dot_t_2 = omega_z*prs_q_in_base_x - omega_x*prs_q_in_base_z;
+        const real prs_S_dot_t_3 = omega_x*prs_q_in_base_y - omega_y*prs_q_in_base_x;
+        const real t_dot_x = s[12*w + j];
+        const real prs_S_dot_x = prs_S_dot_t + t_dot_x;
+        const real t_dot_y = s[13*w + j];
+        const real prs_S_dot_y = prs_S_dot_t_2 + t_dot_y;
+        const real t_dot_z = s[14*w + j];
+        const real prs_S_dot_z = prs_S_dot_t_3 + t_dot_z;
+        /* (prs-qd_2) rate of joint 2 */
+        const real prs_qd_2 = inv_prs_v_2_t_2*(prs_S_dot_x*prs_base_frame_xy +
+            prs_S_dot_y*prs_base_frame_yy + prs_S_dot_z*prs_base_frame_zy);
+        /* (prs-W_2) centripetal tensor of link 2 */
+        const real prs_W_2_t = prs_qd_2*prs_qd_2;
+        /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
+        const real prs_Hk_a_1_x = prs_base_frame_zz*prs_q_in_base_y -
+            prs_base_frame_yz*prs_q_in_base_z;
+        const real prs_Hk_a_1_y = prs_base_frame_xz*prs_q_in_base_z -
+            prs_base_frame_zz*prs_q_in_base_x;
+        const real prs_Hk_a_1_z = prs_base_frame_yz*prs_q_in_base_x -
+            prs_base_frame_xz*prs_q_in_base_y;
+        /* (prs-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_y = s[22*w + j];
+        const real alpha_z = s[23*w + j];
+        const real t_ddot_x = s[18*w + j];
+        const real prs_a_p_x = t_ddot_x + alpha_y*prs_q_in_base_z - alpha_z*prs_q_in_base_y;
+        const real alpha_x = s[21*w + j];
+        const real t_ddot_y = s[19*w + j];
+        const real prs_a_p_y = t_ddot_y + alpha_z*prs_q_in_base_x - alpha_x*prs_q_in_base_z;
+        const real t_ddot_z = s[20*w + j];
+        const real prs_a_p_z = t_ddot_z + alpha_x*prs_q_in_base_y - alpha_y*prs_q_in_base_x;
+        /* (prs-S_ddot) acceleration of the connection point */
+        const real prs_S_ddot_x = prs_a_p_x + omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2;
+        const real prs_S_ddot_y = prs_a_p_y + omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3;
+        const real prs_S_ddot_z = prs_a_p_z + omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t;
+        const real prs_S_ddot_r0_x = prs_S_ddot_x*prs_base_frame_xx +
+            prs_S_ddot_y*prs_base_frame_yx + prs_S_ddot_z*prs_base_frame_zx;
+        const real prs_S_ddot_r0_y = prs_S_ddot_x*prs_base_frame_xy +
+            prs_S_ddot_y*prs_base_frame_yy + prs_S_ddot_z*prs_base_frame_zy;
+        const real prs_S_ddot_r1_y = -prs_S_ddot_r0_x*prs_s_2 - prs_S_ddot_r0_y*prs_c_2;
+        /* (prs-rel) acceleration of the connection point left to the joint accelerations */
+        const real prs_rel_x = prs_S_ddot_r0_y*prs_s_2 +
+            prs_platform_joint_offset_x*prs_qd_2*prs_qd_2 - prs_S_ddot_r0_x*prs_c_2;
+        /* (prs-qdd_1) acceleration of joint 1 */
+        const real prs_qdd_2 = inv_prs_v_2_t_2*(prs_rel_x*prs_s_2 - prs_S_ddot_r1_y*prs_c_2);
+        const real prs_qdd_1_t = prs_S_ddot_r1_y*prs_s_2 + prs_c_2*prs_rel_x +
+            prs_qdd_2*prs_v_2_t;
+        /* (prs-acc_2) acceleration of the reference point of link 2, less gravity */
+        const real prs_g_r0_x = m->prs_g_r0_x[i];
+        const real prs_g_r0_y = m->prs_g_r0_y[i];
+        const real prs_acc_2_x = prs_c_2*prs_g_r0_x + prs_c_2*prs_qdd_1_t - prs_g_r0_y*prs_s_2;
+        const real prs_acc_2_y = prs_c_2*prs_g_r0_y + prs_g_r0_x*prs_s_2 + prs_qdd_1_t*prs_s_2;
+        /* (prs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+        const real prs_J_2_zz = m->prs_J_2_zz[i];
+        const real prs_h_2_x = m->prs_h_2_x[i];
+        const real prs_h_2_y = m->prs_h_2_y[i];
+        const real prs_mu_2_z = prs_acc_2_y*prs_h_2_x - prs_J_2_zz*prs_qdd_2 -
+            prs_acc_2_x*prs_h_2_y;
+        /* (prs-acc_1) acceleration of the reference point of link 1, less gravity */
+        const real prs_acc_1_x = -prs_g_r0_x - prs_qdd_1_t;
+        /* (prs-f_2) inertia force of link 2 less its weight */
+        const real prs_link2_mass = m->prs_link2_mass[i];
+        const real prs_f_2_x = prs_acc_2_x*prs_link2_mass + prs_h_2_y*prs_qdd_2 -
+            prs_W_2_t*prs_h_2_x;
+        const real prs_f_2_y = prs_acc_2_y*prs_link2_mass - prs_W_2_t*prs_h_2_y -
+            prs_h_2_x*prs_qdd_2;
+        /* (prs-T_1) inertia force of the links from 1 outwards, the last link left out */
+        const real prs_link1_mass = m->prs_link1_mass[i];
+        const real prs_T_1_x = prs_acc_1_x*prs_link1_mass - prs_c_2*prs_f_2_x - prs_f_2_y*prs_s_2;
+        /* (prs-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real G_t = inv_v_2_t_2*(mu_2_z + T_1_x*v_2_t);
-        const real _r0_x_2 = -G_t*s_2 - T_1_x*c_2;
-        const real _r0_y_2 = G_t*c_2 - T_1_x*s_2;
-        /* (prs-N32) leg force on the platform without actuation and without the mass at the connection
+        const real prs_G_t = inv_prs_v_2_t_2*(prs_mu_2_z + prs_T_1_x*prs_v_2_t);
+        const real prs__r0_x_2 = -prs_G_t*prs_s_2 - prs_T_1_x*prs_c_2;
+        const real prs__r0_y_2 = prs_G_t*prs_c_2 - prs_T_1_x*prs_s_2;
+        /* (prs-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_r0_x = _r0_x_2*c_2 + _r0_y_2*s_2;
-        const real c_r0_y = _r0_y_2*c_2 - _r0_x_2*s_2;
-        const real c_in_base_x = c_r0_x*prs_base_frame_xx + c_r0_y*prs_base_frame_xy;
-        const real c_in_base_y = c_r0_x*prs_base_frame_yx + c_r0_y*prs_base_frame_yy;
-        const real c_in_base_z = c_r0_x*prs_base_frame_zx + c_r0_y*prs_base_frame_zy;
-        /* (E5) moment that actuators and external wrench must give */
-        const real R_a_t = c_in_base_z*q_in_base_y - c_in_base_y*q_in_base_z;
-        const real R_a_t_2 = c_in_base_x*q_in_base_z - c_in_base_z*q_in_base_x;
-        const real R_a_t_3 = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y;
-        /* (prs-V3) reciprocal vector 1 */
-        const real w_1_r0_x = -_r0_x*c_2 - _r0_y*s_2;
-        const real w_1_r0_y = _r0_x*s_2 - _r0_y*c_2;
-        const real w_1_in_base_x = prs_base_frame_xx*w_1_r0_x + prs_base_frame_xy*w_1_r0_y;
-        const real w_1_in_base_y = prs_base_frame_yx*w_1_r0_x + prs_base_frame_yy*w_1_r0_y;
-        const real w_1_in_base_z = prs_base_frame_zx*w_1_r0_x + prs_base_frame_zy*w_1_r0_y;
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_1_x = q_in_base_y*w_1_in_base_z - q_in_base_z*w_1_in_base_y;
-        const real H_a_1_y = q_in_base_z*w_1_in_base_x - q_in_base_x*w_1_in_base_z;
-        const real H_a_1_z = q_in_base_x*w_1_in_base_y - q_in_base_y*w_1_in_base_x;
-        o->sum[0][k] = add ? o->sum[0][k] + c_in_base_x : c_in_base_x;  /* total_prs_x */
-        o->sum[1][k] = add ? o->sum[1][k] + c_in_base_y : c_in_base_y;  /* total_prs_y */
-        o->sum[2][k] = add ? o->sum[2][k] + c_in_base_z : c_in_base_z;  /* total_prs_z */
-        o->sum[3][k] = add ? o->sum[3][k] + R_a_t : R_a_t;  /* total_prs_x_2 */
-        o->sum[4][k] = add ? o->sum[4][k] + R_a_t_2 : R_a_t_2;  /* total_prs_y_2 */
-        o->sum[5][k] = add ? o->sum[5][k] + R_a_t_3 : R_a_t_3;  /* total_prs_z_2 */
-        o->entry[0][k] = w_1_in_base_x;
-        o->entry[1][k] = w_1_in_base_y;
-        o->entry[2][k] = w_1_in_base_z;
-        o->entry[3][k] = H_a_1_x;
-        o->entry[4][k] = H_a_1_y;
-        o->entry[5][k] = H_a_1_z;
-        o->entry[6][k] = prs_base_frame_xz;
-        o->entry[7][k] = prs_base_frame_yz;
-        o->entry[8][k] = prs_base_frame_zz;
-        o->entry[9][k] = Hk_a_1_x;
-        o->entry[10][k] = Hk_a_1_y;
-        o->entry[11][k] = Hk_a_1_z;
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*root_2_t) +
-            UNLESS(magnitude(-v_2_t_2) > TOLERANCE*size_);
+        const real prs_c_r0_x = prs__r0_x_2*prs_c_2 + prs__r0_y_2*prs_s_2;
+        const real prs_c_r0_y = prs__r0_y_2*prs_c_2 - prs__r0_x_2*prs_s_2;
+        const real prs_c_in_base_x = prs_base_frame_xx*prs_c_r0_x + prs_base_frame_xy*prs_c_r0_y;
+        const real prs_c_in_base_y = prs_base_frame_yx*prs_c_r0_x + prs_base_frame_yy*prs_c_r0_y;
+        const real prs_c_in_base_z = prs_base_frame_zx*prs_c_r0_x + prs_base_frame_zy*prs_c_r0_y;
+        /* (R_a) moment that actuators and external wrench must give */
+        const real prs_R_a_t = prs_c_in_base_z*prs_q_in_base_y - prs_c_in_base_y*prs_q_in_base_z;
+        const real prs_R_a_t_2 = prs_c_in_base_x*prs_q_in_base_z -
+            prs_c_in_base_z*prs_q_in_base_x;
+        const real prs_R_a_t_3 = prs_c_in_base_y*prs_q_in_base_x -
+            prs_c_in_base_x*prs_q_in_base_y;
+        /* (prs-w_1) reciprocal vector 1 */
+        const real prs_w_1_r0_x = -prs__r0_x*prs_c_2 - prs__r0_y*prs_s_2;
+        const real prs_w_1_r0_y = prs__r0_x*prs_s_2 - prs__r0_y*prs_c_2;
+        const real prs_w_1_in_base_x = prs_base_frame_xx*prs_w_1_r0_x +
+            prs_base_frame_xy*prs_w_1_r0_y;
+        const real prs_w_1_in_base_y = prs_base_frame_yx*prs_w_1_r0_x +
+            prs_base_frame_yy*prs_w_1_r0_y;
+        const real prs_w_1_in_base_z = prs_base_frame_zx*prs_w_1_r0_x +
+            prs_base_frame_zy*prs_w_1_r0_y;
+        /* (prs-H_a_1) moment of the column's unit force about the platform origin */
+        const real prs_H_a_1_x = prs_q_in_base_y*prs_w_1_in_base_z -
+            prs_q_in_base_z*prs_w_1_in_base_y;
+        const real prs_H_a_1_y = prs_q_in_base_z*prs_w_1_in_base_x -
+            prs_q_in_base_x*prs_w_1_in_base_z;
+        const real prs_H_a_1_z = prs_q_in_base_x*prs_w_1_in_base_y -
+            prs_q_in_base_y*prs_w_1_in_base_x;
+        terms[0*count + k] = add ? terms[0*count + k] + prs_c_in_base_x : prs_c_in_base_x;  /* total_prs_x */
+        terms[1*count + k] = add ? terms[1*count + k] + prs_c_in_base_y : prs_c_in_base_y;  /* total_prs_y */
+        terms[2*count + k] = add ? terms[2*count + k] + prs_c_in_base_z : prs_c_in_base_z;  /* total_prs_z */
+        terms[3*count + k] = add ? terms[3*count + k] + prs_R_a_t : prs_R_a_t;  /* total_prs_x_2 */
+        terms[4*count + k] = add ? terms[4*count + k] + prs_R_a_t_2 : prs_R_a_t_2;  /* total_prs_y_2 */
+        terms[5*count + k] = add ? terms[5*count + k] + prs_R_a_t_3 : prs_R_a_t_3;  /* total_prs_z_2 */
+        o[0*count + k] = prs_w_1_in_base_x;
+        o[1*count + k] = prs_w_1_in_base_y;
+        o[2*count + k] = prs_w_1_in_base_z;
+        o[3*count + k] = prs_H_a_1_x;
+        o[4*count + k] = prs_H_a_1_y;
+        o[5*count + k] = prs_H_a_1_z;
+        o[6*count + k] = prs_base_frame_xz;
+        o[7*count + k] = prs_base_frame_yz;
+        o[8*count + k] = prs_base_frame_zz;
+        o[9*count + k] = prs_Hk_a_1_x;
+        o[10*count + k] = prs_Hk_a_1_y;
+        o[11*count + k] = prs_Hk_a_1_z;
+        const real prs_root_2_t = m->prs_root_2_t[i];
+        const real prs_size = m->prs_size[i];
+        o[12*count + k] = UNLESS(prs_disc_1 >= 0);
+        o[13*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
+            UNLESS(magnitude(-prs_v_2_t_2) > TOLERANCE*prs_size);
     }
 }
 
-INLINE void required_place_prs(size_t w, const required_results_prs *o, size_t leg, size_t first,
+INLINE void required_place_prs(size_t w, size_t count, const real *o, size_t leg, size_t first,
     real *H, real *Hk, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(3 + leg)*w + k] = o->entry[1][first + k];
-        H[(6 + leg)*w + k] = o->entry[2][first + k];
-        H[(9 + leg)*w + k] = o->entry[3][first + k];
-        H[(12 + leg)*w + k] = o->entry[4][first + k];
-        H[(15 + leg)*w + k] = o->entry[5][first + k];
-        Hk[(leg)*w + k] = o->entry[6][first + k];
-        Hk[(3 + leg)*w + k] = o->entry[7][first + k];
-        Hk[(6 + leg)*w + k] = o->entry[8][first + k];
-        Hk[(9 + leg)*w + k] = o->entry[9][first + k];
-        Hk[(12 + leg)*w + k] = o->entry[10][first + k];
-        Hk[(15 + leg)*w + k] = o->entry[11][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(3 + leg)*w + k] = o[1*count + first + k];
+        H[(6 + leg)*w + k] = o[2*count + first + k];
+        H[(9 + leg)*w + k] = o[3*count + first + k];
+        H[(12 + leg)*w + k] = o[4*count + first + k];
+        H[(15 + leg)*w + k] = o[5*count + first + k];
+        Hk[(leg)*w + k] = o[6*count + first + k];
+        Hk[(3 + leg)*w + k] = o[7*count + first + k];
+        Hk[(6 + leg)*w + k] = o[8*count + first + k];
+        Hk[(9 + leg)*w + k] = o[9*count + first + k];
+        Hk[(12 + leg)*w + k] = o[10*count + first + k];
+        Hk[(15 + leg)*w + k] = o[11*count + first + k];
+        t->unreachable[k] += o[12*count + first + k];
+        t->singular[k] += o[13*count + first + k];
     }
 }
 
-INLINE void required_after(size_t w, const required_values *s, real *required)
+INLINE void required_after(size_t w, const real *s, const real *sums, real *required)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real f_p_x = s->f_p_x[k];
-        const real f_p_y = s->f_p_y[k];
-        const real f_p_z = s->f_p_z[k];
-        const real mu_p_in_base_x = s->mu_p_in_base_x[k];
-        const real mu_p_in_base_y = s->mu_p_in_base_y[k];
-        const real mu_p_in_base_z = s->mu_p_in_base_z[k];
-        const real total_prs_x = s->sum[0][k];
-        const real total_prs_y = s->sum[1][k];
-        const real total_prs_z = s->sum[2][k];
-        const real total_prs_x_2 = s->sum[3][k];
-        const real total_prs_y_2 = s->sum[4][k];
-        const real total_prs_z_2 = s->sum[5][k];
-        /* (E4) force that actuators and external wrench must give */
+        /* (R_t) force that actuators and external wrench must give */
+        const real f_p_x = s[24*w + k];
+        const real total_prs_x = sums[0*w + k];
         const real R_t_x = f_p_x - total_prs_x;
+        const real f_p_y = s[25*w + k];
+        const real total_prs_y = sums[1*w + k];
         const real R_t_y = f_p_y - total_prs_y;
+        const real f_p_z = s[26*w + k];
+        const real total_prs_z = sums[2*w + k];
         const real R_t_z = f_p_z - total_prs_z;
-        /* (E5) moment that actuators and external wrench must give */
+        /* (R_a) moment that actuators and external wrench must give */
+        const real mu_p_in_base_x = s[27*w + k];
+        const real total_prs_x_2 = sums[3*w + k];
         const real R_a_x = mu_p_in_base_x - total_prs_x_2;
+        const real mu_p_in_base_y = s[28*w + k];
+        const real total_prs_y_2 = sums[4*w + k];
         const real R_a_y = mu_p_in_base_y - total_prs_y_2;
+        const real mu_p_in_base_z = s[29*w + k];
+        const real total_prs_z_2 = sums[5*w + k];
         const real R_a_z = mu_p_in_base_z - total_prs_z_2;
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
@@ -3452,61 +3618,49 @@ INLINE void required_after(size_t w, const required_values *s, real *required)
     }
 }
 
-INLINE void required_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+    *required, real *H, real *Hk, verdict *t)
+{
+    real s[30] = {0}, sums[6] = {0}, terms_prs[6*LEGS(3)] = {0}, o_prs[14*LEGS(3)] = {0};
+    required_before(m, 1, X, V, A, s, t);
+    required_legs_prs(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_prs, o_prs);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        required_place_prs(1, LEGS(3), o_prs, leg, leg, H, Hk, t);
+    }
+    for (size_t n = 0; n < 6; ++n) {
+        sums[n] = total(terms_prs + n*LEGS(3), 3);
+    }
+    required_after(1, s, sums, required);
+}
+
+INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, real *Hk, verdict *t)
 {
-    required_values values, *const s = &values;
-    required_results_prs results_prs;
-    required_before(m, w, X, V, A, s, t);
-    if (w == 1) {  /* the legs side by side */
-        required_legs_prs(m, 0, 1, s, 0, 3, 0, &results_prs);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            required_place_prs(w, &results_prs, leg, leg, H, Hk, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_prs.sum[n], 3);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_prs.sum, 0, sizeof results_prs.sum);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            required_legs_prs(m, leg, 0, s, 1, w, 1, &results_prs);
-            required_place_prs(w, &results_prs, leg, 0, H, Hk, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_prs.sum[n][k];
-            }
-        }
+    real s[30*LANES], sums[6*LANES], o_prs[14*LANES];
+    required_before(m, LANES, X, V, A, s, t);
+    clear(sums, 6*LANES);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        required_legs_prs(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_prs);
+        required_place_prs(LANES, LANES, o_prs, leg, 0, H, Hk, t);
     }
-    required_after(w, s, required);
+    required_after(LANES, s, sums, required);
 }
 
 /* ---- inverse_kinematics: 93 mul, 75 add, 3 div, 6 sqrt, 3 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES];
-} inverse_kinematics_values;
-typedef struct {
-    real entry[2][8], unreachable[8], singular[8];
-} inverse_kinematics_results_prs;
-
-INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematics_values *s,
-    verdict *t)
+INLINE void inverse_kinematics_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -3530,153 +3684,143 @@ INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematic
         const real R_zx = quaternion_xz - quaternion_wy;
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void inverse_kinematics_legs_prs(const prepared *m, size_t leg, size_t legs, const
-    inverse_kinematics_values *s, size_t states, size_t count, inverse_kinematics_results_prs *o)
+INLINE void inverse_kinematics_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs,
+    const real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real branch_1 = m->branch_1[i];
-        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
-        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
-        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
+        /* (prs-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real prs_base_point_x = m->prs_base_point_x[i];
-        const real prs_base_point_y = m->prs_base_point_y[i];
-        const real prs_base_point_z = m->prs_base_point_z[i];
-        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
         const real prs_platform_point_x = m->prs_platform_point_x[i];
         const real prs_platform_point_y = m->prs_platform_point_y[i];
         const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real root_2_t = m->root_2_t[i];
-        const real uu_2_t = m->uu_2_t[i];
-        /* (prs-K1) from the base point to the connection point */
-        const real S_x = t_x + R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
+        const real t_x = s[0*w + j];
+        const real prs_S_x = t_x + R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
             R_xz*prs_platform_point_z - prs_base_point_x;
-        const real S_y = t_y + R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real prs_base_point_y = m->prs_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real prs_S_y = t_y + R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
             R_yz*prs_platform_point_z - prs_base_point_y;
-        const real S_z = t_z + R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real prs_base_point_z = m->prs_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real prs_S_z = t_z + R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
             R_zz*prs_platform_point_z - prs_base_point_z;
-        /* (prs-K2) component along axis 1 */
-        const real px_1 = S_x*prs_base_frame_xx + S_y*prs_base_frame_yx + S_z*prs_base_frame_zx;
-        /* (prs-K3) discriminant of the distance equation */
-        const real disc_1_t = S_x*prs_base_frame_xz + S_y*prs_base_frame_yz +
-            S_z*prs_base_frame_zz;
-        const real disc_1_t_2 = S_x*S_x + S_y*S_y + S_z*S_z;
-        const real disc_1 = disc_1_t*disc_1_t + px_1*px_1 + uu_2_t - disc_1_t_2;
-        /* (prs-K4) displacement of joint 1 */
-        const real q_1_t = branch_1*root(disc_1);
-        const real q_1 = px_1 + q_1_t;
-        /* (prs-K1) from the base point to the connection point */
-        const real S_r0_y = S_x*prs_base_frame_xy + S_y*prs_base_frame_yy + S_z*prs_base_frame_zy;
-        /* (prs-K7) squared amplitude */
-        const real rho2_2 = uu_2_t*(S_r0_y*S_r0_y + q_1_t*q_1_t);
-        /* (prs-K9) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/(root(rho2_2));
-        /* (prs-K11) displacement of joint 2 */
-        const real q_2 = angle(S_r0_y*inv_root_2*prs_platform_joint_offset_x,
-            -inv_root_2*prs_platform_joint_offset_x*q_1_t);
-        o->entry[0][k] = q_1;
-        o->entry[1][k] = q_2;
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*root_2_t);
+        /* (prs-px_1) component along axis 1 */
+        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
+        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
+        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
+        const real prs_px_1 = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
+            prs_S_z*prs_base_frame_zx;
+        /* (prs-disc_1) discriminant of the distance equation */
+        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
+        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
+        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
+        const real prs_disc_1_t_2 = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
+            prs_S_z*prs_base_frame_zz;
+        const real prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
+        const real prs_disc_1_t = m->prs_disc_1_t[i];
+        const real prs_disc_1 = prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 -
+            prs_disc_1_t_3;
+        /* (prs-q_1) displacement of joint 1 */
+        const real prs_branch_1 = m->prs_branch_1[i];
+        const real prs_q_1_t = prs_branch_1*root(prs_disc_1);
+        const real prs_q_1 = prs_px_1 + prs_q_1_t;
+        /* (prs-S) from the base point to the connection point */
+        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
+        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
+        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
+        const real prs_S_r0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
+            prs_S_z*prs_base_frame_zy;
+        /* (prs-rho2_2) squared amplitude */
+        const real prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t);
+        /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_prs_root_2 = 1/(root(prs_rho2_2));
+        /* (prs-q_2) displacement of joint 2 */
+        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
+        const real prs_q_2 = angle(inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x,
+            -inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t);
+        o[0*count + k] = prs_q_1;
+        o[1*count + k] = prs_q_2;
+        o[4*count + k] = prs_q_1 + prs_q_2;
+        const real prs_root_2_t = m->prs_root_2_t[i];
+        o[2*count + k] = UNLESS(prs_disc_1 >= 0);
+        o[3*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t);
     }
 }
 
-INLINE void inverse_kinematics_place_prs(size_t w, const inverse_kinematics_results_prs *o, size_t
-    leg, size_t first, real *q, verdict *t)
+INLINE void inverse_kinematics_place_prs(size_t w, size_t count, const real *o, size_t leg, size_t
+    first, real *q, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        q[(2*leg)*w + k] = o->entry[0][first + k];
-        q[(1 + 2*leg)*w + k] = o->entry[1][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        q[(2*leg)*w + k] = o[0*count + first + k];
+        q[(1 + 2*leg)*w + k] = o[1*count + first + k];
+        t->unreachable[k] += o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
 }
 
-INLINE void inverse_kinematics_run(const prepared *m, size_t w, const real *X, real *q, verdict
-    *t)
+INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    inverse_kinematics_values values, *const s = &values;
-    inverse_kinematics_results_prs results_prs;
-    inverse_kinematics_before(w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        inverse_kinematics_legs_prs(m, 0, 1, s, 0, 3, &results_prs);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            inverse_kinematics_place_prs(w, &results_prs, leg, leg, q, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            inverse_kinematics_legs_prs(m, leg, 0, s, 1, w, &results_prs);
-            inverse_kinematics_place_prs(w, &results_prs, leg, 0, q, t);
-        }
+    real s[12] = {0}, o_prs[5*LEGS(3)] = {0};
+    inverse_kinematics_before(1, X, s, t);
+    inverse_kinematics_legs_prs(m, 1, 0, 1, s, 0, LEGS(3), o_prs);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        inverse_kinematics_place_prs(1, LEGS(3), o_prs, leg, leg, q, t);
+    }
+}
+
+INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
+{
+    real s[12*LANES], o_prs[5*LANES];
+    inverse_kinematics_before(LANES, X, s, t);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        inverse_kinematics_legs_prs(m, LANES, leg, 0, s, 1, LANES, o_prs);
+        inverse_kinematics_place_prs(LANES, LANES, o_prs, leg, 0, q, t);
     }
 }
 
 /* ---- joint_rates: 138 mul, 105 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES];
-} joint_rates_values;
-typedef struct {
-    real entry[2][8], unreachable[8], singular[8];
-} joint_rates_results_prs;
-
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rates_values *s,
-    verdict *t)
+INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -3701,193 +3845,183 @@ INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rat
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void joint_rates_legs_prs(const prepared *m, size_t leg, size_t legs, const
-    joint_rates_values *s, size_t states, size_t count, joint_rates_results_prs *o)
+INLINE void joint_rates_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real branch_1 = m->branch_1[i];
-        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
-        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
-        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_base_point_x = m->prs_base_point_x[i];
-        const real prs_base_point_y = m->prs_base_point_y[i];
-        const real prs_base_point_z = m->prs_base_point_z[i];
-        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
+        /* (prs-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real prs_platform_point_x = m->prs_platform_point_x[i];
         const real prs_platform_point_y = m->prs_platform_point_y[i];
         const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real root_2_t = m->root_2_t[i];
-        const real size_ = m->size_[i];
-        const real uu_2_t = m->uu_2_t[i];
-        /* (prs-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
+        const real prs_q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
             R_xz*prs_platform_point_z;
-        const real q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real prs_q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
             R_yz*prs_platform_point_z;
-        const real q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real prs_q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
             R_zz*prs_platform_point_z;
-        const real S_x = q_in_base_x + t_x - prs_base_point_x;
-        const real S_y = q_in_base_y + t_y - prs_base_point_y;
-        const real S_z = q_in_base_z + t_z - prs_base_point_z;
-        /* (prs-K2) component along axis 1 */
-        const real px_1 = S_x*prs_base_frame_xx + S_y*prs_base_frame_yx + S_z*prs_base_frame_zx;
-        /* (prs-K3) discriminant of the distance equation */
-        const real disc_1_t = S_x*prs_base_frame_xz + S_y*prs_base_frame_yz +
-            S_z*prs_base_frame_zz;
-        const real disc_1_t_2 = S_x*S_x + S_y*S_y + S_z*S_z;
-        const real disc_1 = disc_1_t*disc_1_t + px_1*px_1 + uu_2_t - disc_1_t_2;
-        /* (prs-K4) displacement of joint 1 */
-        const real q_1_t = branch_1*root(disc_1);
-        /* (prs-K1) from the base point to the connection point */
-        const real S_r0_y = S_x*prs_base_frame_xy + S_y*prs_base_frame_yy + S_z*prs_base_frame_zy;
-        /* (prs-K7) squared amplitude */
-        const real rho2_2 = uu_2_t*(S_r0_y*S_r0_y + q_1_t*q_1_t);
-        /* (prs-K9) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/(root(rho2_2));
-        /* (prs-V2) velocity of the connection point per rate of joint 2 */
-        const real v_2_t =
-            inv_root_2*prs_platform_joint_offset_x*prs_platform_joint_offset_x*q_1_t;
-        /* (prs-V1) velocity of the connection point */
-        const real S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x;
-        /* (prs-V6) rate of joint 2 */
-        const real qd_2 = (S_dot_x*prs_base_frame_xy + S_dot_y*prs_base_frame_yy +
-            S_dot_z*prs_base_frame_zy)/v_2_t;
-        const real qd_2_t = S_dot_x*prs_base_frame_xx + S_dot_y*prs_base_frame_yx +
-            S_dot_z*prs_base_frame_zx -
-            S_r0_y*inv_root_2*prs_platform_joint_offset_x*prs_platform_joint_offset_x*qd_2;
-        o->entry[0][k] = qd_2_t;
-        o->entry[1][k] = -qd_2;
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*root_2_t) +
-            UNLESS(magnitude(-v_2_t) > TOLERANCE*size_);
+        const real prs_base_point_x = m->prs_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x;
+        const real prs_base_point_y = m->prs_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y;
+        const real prs_base_point_z = m->prs_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z;
+        /* (prs-px_1) component along axis 1 */
+        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
+        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
+        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
+        const real prs_px_1 = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
+            prs_S_z*prs_base_frame_zx;
+        /* (prs-disc_1) discriminant of the distance equation */
+        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
+        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
+        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
+        const real prs_disc_1_t_2 = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
+            prs_S_z*prs_base_frame_zz;
+        const real prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
+        const real prs_disc_1_t = m->prs_disc_1_t[i];
+        const real prs_disc_1 = prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 -
+            prs_disc_1_t_3;
+        /* (prs-q_1) displacement of joint 1 */
+        const real prs_branch_1 = m->prs_branch_1[i];
+        const real prs_q_1_t = prs_branch_1*root(prs_disc_1);
+        /* (prs-S) from the base point to the connection point */
+        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
+        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
+        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
+        const real prs_S_r0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
+            prs_S_z*prs_base_frame_zy;
+        /* (prs-rho2_2) squared amplitude */
+        const real prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t);
+        /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_prs_root_2 = 1/(root(prs_rho2_2));
+        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
+        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
+        const real prs_v_2_t =
+            inv_prs_root_2*prs_platform_joint_offset_x*prs_platform_joint_offset_x*prs_q_1_t;
+        /* (prs-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real t_dot_x = s[12*w + j];
+        const real prs_S_dot_x = t_dot_x + omega_y*prs_q_in_base_z - omega_z*prs_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real t_dot_y = s[13*w + j];
+        const real prs_S_dot_y = t_dot_y + omega_z*prs_q_in_base_x - omega_x*prs_q_in_base_z;
+        const real t_dot_z = s[14*w + j];
+        const real prs_S_dot_z = t_dot_z + omega_x*prs_q_in_base_y - omega_y*prs_q_in_base_x;
+        /* (prs-qd_2) rate of joint 2 */
+        const real prs_qd_2 = (prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
+            prs_S_dot_z*prs_base_frame_zy)/prs_v_2_t;
+        const real prs_qd_2_t = prs_S_dot_x*prs_base_frame_xx + prs_S_dot_y*prs_base_frame_yx +
+            prs_S_dot_z*prs_base_frame_zx -
+            inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x*prs_platform_joint_offset_x*prs_qd_2;
+        o[0*count + k] = prs_qd_2_t;
+        o[1*count + k] = -prs_qd_2;
+        o[4*count + k] = prs_qd_2_t + prs_qd_2;
+        const real prs_root_2_t = m->prs_root_2_t[i];
+        const real prs_size = m->prs_size[i];
+        o[2*count + k] = UNLESS(prs_disc_1 >= 0);
+        o[3*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
+            UNLESS(magnitude(-prs_v_2_t) > TOLERANCE*prs_size);
     }
 }
 
-INLINE void joint_rates_place_prs(size_t w, const joint_rates_results_prs *o, size_t leg, size_t
-    first, real *qd, verdict *t)
+INLINE void joint_rates_place_prs(size_t w, size_t count, const real *o, size_t leg, size_t first,
+    real *qd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qd[(2*leg)*w + k] = o->entry[0][first + k];
-        qd[(1 + 2*leg)*w + k] = o->entry[1][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        qd[(2*leg)*w + k] = o[0*count + first + k];
+        qd[(1 + 2*leg)*w + k] = o[1*count + first + k];
+        t->unreachable[k] += o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
 }
 
-INLINE void joint_rates_run(const prepared *m, size_t w, const real *X, const real *V, real *qd,
+INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+{
+    real s[18] = {0}, o_prs[5*LEGS(3)] = {0};
+    joint_rates_before(1, X, V, s, t);
+    joint_rates_legs_prs(m, 1, 0, 1, s, 0, LEGS(3), o_prs);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        joint_rates_place_prs(1, LEGS(3), o_prs, leg, leg, qd, t);
+    }
+}
+
+INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    joint_rates_values values, *const s = &values;
-    joint_rates_results_prs results_prs;
-    joint_rates_before(w, X, V, s, t);
-    if (w == 1) {  /* the legs side by side */
-        joint_rates_legs_prs(m, 0, 1, s, 0, 3, &results_prs);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            joint_rates_place_prs(w, &results_prs, leg, leg, qd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            joint_rates_legs_prs(m, leg, 0, s, 1, w, &results_prs);
-            joint_rates_place_prs(w, &results_prs, leg, 0, qd, t);
-        }
+    real s[18*LANES], o_prs[5*LANES];
+    joint_rates_before(LANES, X, V, s, t);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        joint_rates_legs_prs(m, LANES, leg, 0, s, 1, LANES, o_prs);
+        joint_rates_place_prs(LANES, LANES, o_prs, leg, 0, qd, t);
     }
 }
 
 /* ---- joint_accelerations: 219 mul, 162 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
-        t_ddot_x[LANES], t_ddot_y[LANES], t_ddot_z[LANES], alpha_x[LANES], alpha_y[LANES],
-        alpha_z[LANES];
-} joint_accelerations_values;
-typedef struct {
-    real entry[2][8], unreachable[8], singular[8];
-} joint_accelerations_results_prs;
-
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A,
-    joint_accelerations_values *s, verdict *t)
+INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
+    *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real A_2 = A[2*w + k];
-        const real A_3 = A[3*w + k];
-        const real A_4 = A[4*w + k];
-        const real A_5 = A[5*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -3912,220 +4046,232 @@ INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, c
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
+        const real A_2 = A[2*w + k];
         const real t_ddot_z = A_2;
+        const real A_3 = A[3*w + k];
         const real alpha_x = A_3;
+        const real A_4 = A[4*w + k];
         const real alpha_y = A_4;
+        const real A_5 = A[5*w + k];
         const real alpha_z = A_5;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->t_ddot_z[k] = t_ddot_z;
-        s->alpha_x[k] = alpha_x;
-        s->alpha_y[k] = alpha_y;
-        s->alpha_z[k] = alpha_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
+        s[18*w + k] = t_ddot_x;
+        s[19*w + k] = t_ddot_y;
+        s[20*w + k] = t_ddot_z;
+        s[21*w + k] = alpha_x;
+        s[22*w + k] = alpha_y;
+        s[23*w + k] = alpha_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void joint_accelerations_legs_prs(const prepared *m, size_t leg, size_t legs, const
-    joint_accelerations_values *s, size_t states, size_t count, joint_accelerations_results_prs
-    *o)
+INLINE void joint_accelerations_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs,
+    const real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real t_ddot_z = s->t_ddot_z[j];
-        const real alpha_x = s->alpha_x[j];
-        const real alpha_y = s->alpha_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real branch_1 = m->branch_1[i];
-        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
-        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
-        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_base_point_x = m->prs_base_point_x[i];
-        const real prs_base_point_y = m->prs_base_point_y[i];
-        const real prs_base_point_z = m->prs_base_point_z[i];
-        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
+        /* (prs-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real prs_platform_point_x = m->prs_platform_point_x[i];
         const real prs_platform_point_y = m->prs_platform_point_y[i];
         const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real root_2_t = m->root_2_t[i];
-        const real size_ = m->size_[i];
-        const real uu_2_t = m->uu_2_t[i];
-        /* (prs-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
+        const real prs_q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
             R_xz*prs_platform_point_z;
-        const real q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real prs_q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
             R_yz*prs_platform_point_z;
-        const real q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real prs_q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
             R_zz*prs_platform_point_z;
-        const real S_x = q_in_base_x + t_x - prs_base_point_x;
-        const real S_y = q_in_base_y + t_y - prs_base_point_y;
-        const real S_z = q_in_base_z + t_z - prs_base_point_z;
-        /* (prs-K2) component along axis 1 */
-        const real px_1 = S_x*prs_base_frame_xx + S_y*prs_base_frame_yx + S_z*prs_base_frame_zx;
-        /* (prs-K3) discriminant of the distance equation */
-        const real disc_1_t = S_x*prs_base_frame_xz + S_y*prs_base_frame_yz +
-            S_z*prs_base_frame_zz;
-        const real disc_1_t_2 = S_x*S_x + S_y*S_y + S_z*S_z;
-        const real disc_1 = disc_1_t*disc_1_t + px_1*px_1 + uu_2_t - disc_1_t_2;
-        /* (prs-K4) displacement of joint 1 */
-        const real q_1_t = branch_1*root(disc_1);
-        /* (prs-K1) from the base point to the connection point */
-        const real S_r0_y = S_x*prs_base_frame_xy + S_y*prs_base_frame_yy + S_z*prs_base_frame_zy;
-        /* (prs-K7) squared amplitude */
-        const real rho2_2 = uu_2_t*(S_r0_y*S_r0_y + q_1_t*q_1_t);
-        /* (prs-K9) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/(root(rho2_2));
-        const real c_2 = inv_root_2*prs_platform_joint_offset_x*q_1_t;
-        /* (prs-K10) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = S_r0_y*inv_root_2*prs_platform_joint_offset_x;
-        /* (prs-V2) velocity of the connection point per rate of joint 2 */
-        const real v_2_t = c_2*prs_platform_joint_offset_x;
-        /* (prs-V3) reciprocal vector 1 */
-        const real inv_v_2_t_2 = 1/v_2_t;
-        /* (prs-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        /* (prs-V6) rate of joint 2 */
-        const real qd_2 = inv_v_2_t_2*(S_dot_x*prs_base_frame_xy + S_dot_y*prs_base_frame_yy +
-            S_dot_z*prs_base_frame_zy);
-        /* (prs-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
-        const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
-        const real a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x;
-        /* (prs-A3) acceleration of the connection point */
-        const real S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z;
-        const real S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x;
-        const real S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y;
-        const real S_ddot_r0_x = S_ddot_x*prs_base_frame_xx + S_ddot_y*prs_base_frame_yx +
-            S_ddot_z*prs_base_frame_zx;
-        const real S_ddot_r0_y = S_ddot_x*prs_base_frame_xy + S_ddot_y*prs_base_frame_yy +
-            S_ddot_z*prs_base_frame_zy;
-        const real S_ddot_r1_y = -S_ddot_r0_x*s_2 - S_ddot_r0_y*c_2;
-        /* (prs-A5) acceleration of the connection point left to the joint accelerations */
-        const real rel_x = S_ddot_r0_y*s_2 + prs_platform_joint_offset_x*qd_2*qd_2 -
-            S_ddot_r0_x*c_2;
-        /* (prs-A7) acceleration of joint 1 */
-        const real qdd_2 = inv_v_2_t_2*(rel_x*s_2 - S_ddot_r1_y*c_2);
-        const real qdd_1_t = S_ddot_r1_y*s_2 + c_2*rel_x + prs_platform_joint_offset_x*qdd_2*s_2;
-        o->entry[0][k] = -qdd_1_t;
-        o->entry[1][k] = -qdd_2;
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*root_2_t) +
-            UNLESS(magnitude(-v_2_t) > TOLERANCE*size_);
+        const real prs_base_point_x = m->prs_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x;
+        const real prs_base_point_y = m->prs_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y;
+        const real prs_base_point_z = m->prs_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z;
+        /* (prs-px_1) component along axis 1 */
+        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
+        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
+        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
+        const real prs_px_1 = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
+            prs_S_z*prs_base_frame_zx;
+        /* (prs-disc_1) discriminant of the distance equation */
+        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
+        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
+        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
+        const real prs_disc_1_t_2 = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
+            prs_S_z*prs_base_frame_zz;
+        const real prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
+        const real prs_disc_1_t = m->prs_disc_1_t[i];
+        const real prs_disc_1 = prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 -
+            prs_disc_1_t_3;
+        /* (prs-q_1) displacement of joint 1 */
+        const real prs_branch_1 = m->prs_branch_1[i];
+        const real prs_q_1_t = prs_branch_1*root(prs_disc_1);
+        /* (prs-S) from the base point to the connection point */
+        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
+        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
+        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
+        const real prs_S_r0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
+            prs_S_z*prs_base_frame_zy;
+        /* (prs-rho2_2) squared amplitude */
+        const real prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t);
+        /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_prs_root_2 = 1/(root(prs_rho2_2));
+        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
+        const real prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t;
+        /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
+        const real prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x;
+        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
+        const real prs_v_2_t = prs_c_2*prs_platform_joint_offset_x;
+        /* (prs-w_1) reciprocal vector 1 */
+        const real inv_prs_v_2_t_2 = 1/prs_v_2_t;
+        /* (prs-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real prs_S_dot_t = omega_y*prs_q_in_base_z - omega_z*prs_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real prs_S_dot_t_2 = omega_z*prs_q_in_base_x - omega_x*prs_q_in_base_z;
+        const real prs_S_dot_t_3 = omega_x*prs_q_in_base_y - omega_y*prs_q_in_base_x;
+        const real t_dot_x = s[12*w + j];
+        const real prs_S_dot_x = prs_S_dot_t + t_dot_x;
+        const real t_dot_y = s[13*w + j];
+        const real prs_S_dot_y = prs_S_dot_t_2 + t_dot_y;
+        const real t_dot_z = s[14*w + j];
+        const real prs_S_dot_z = prs_S_dot_t_3 + t_dot_z;
+        /* (prs-qd_2) rate of joint 2 */
+        const real prs_qd_2 = inv_prs_v_2_t_2*(prs_S_dot_x*prs_base_frame_xy +
+            prs_S_dot_y*prs_base_frame_yy + prs_S_dot_z*prs_base_frame_zy);
+        /* (prs-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_y = s[22*w + j];
+        const real alpha_z = s[23*w + j];
+        const real t_ddot_x = s[18*w + j];
+        const real prs_a_p_x = t_ddot_x + alpha_y*prs_q_in_base_z - alpha_z*prs_q_in_base_y;
+        const real alpha_x = s[21*w + j];
+        const real t_ddot_y = s[19*w + j];
+        const real prs_a_p_y = t_ddot_y + alpha_z*prs_q_in_base_x - alpha_x*prs_q_in_base_z;
+        const real t_ddot_z = s[20*w + j];
+        const real prs_a_p_z = t_ddot_z + alpha_x*prs_q_in_base_y - alpha_y*prs_q_in_base_x;
+        /* (prs-S_ddot) acceleration of the connection point */
+        const real prs_S_ddot_x = prs_a_p_x + omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2;
+        const real prs_S_ddot_y = prs_a_p_y + omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3;
+        const real prs_S_ddot_z = prs_a_p_z + omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t;
+        const real prs_S_ddot_r0_x = prs_S_ddot_x*prs_base_frame_xx +
+            prs_S_ddot_y*prs_base_frame_yx + prs_S_ddot_z*prs_base_frame_zx;
+        const real prs_S_ddot_r0_y = prs_S_ddot_x*prs_base_frame_xy +
+            prs_S_ddot_y*prs_base_frame_yy + prs_S_ddot_z*prs_base_frame_zy;
+        const real prs_S_ddot_r1_y = -prs_S_ddot_r0_x*prs_s_2 - prs_S_ddot_r0_y*prs_c_2;
+        /* (prs-rel) acceleration of the connection point left to the joint accelerations */
+        const real prs_rel_x = prs_S_ddot_r0_y*prs_s_2 +
+            prs_platform_joint_offset_x*prs_qd_2*prs_qd_2 - prs_S_ddot_r0_x*prs_c_2;
+        /* (prs-qdd_1) acceleration of joint 1 */
+        const real prs_qdd_2 = inv_prs_v_2_t_2*(prs_rel_x*prs_s_2 - prs_S_ddot_r1_y*prs_c_2);
+        const real prs_qdd_1_t = prs_S_ddot_r1_y*prs_s_2 + prs_c_2*prs_rel_x +
+            prs_platform_joint_offset_x*prs_qdd_2*prs_s_2;
+        o[0*count + k] = -prs_qdd_1_t;
+        o[1*count + k] = -prs_qdd_2;
+        o[4*count + k] = prs_qdd_1_t + prs_qdd_2;
+        const real prs_root_2_t = m->prs_root_2_t[i];
+        const real prs_size = m->prs_size[i];
+        o[2*count + k] = UNLESS(prs_disc_1 >= 0);
+        o[3*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
+            UNLESS(magnitude(-prs_v_2_t) > TOLERANCE*prs_size);
     }
 }
 
-INLINE void joint_accelerations_place_prs(size_t w, const joint_accelerations_results_prs *o,
-    size_t leg, size_t first, real *qdd, verdict *t)
+INLINE void joint_accelerations_place_prs(size_t w, size_t count, const real *o, size_t leg,
+    size_t first, real *qdd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qdd[(2*leg)*w + k] = o->entry[0][first + k];
-        qdd[(1 + 2*leg)*w + k] = o->entry[1][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        qdd[(2*leg)*w + k] = o[0*count + first + k];
+        qdd[(1 + 2*leg)*w + k] = o[1*count + first + k];
+        t->unreachable[k] += o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
 }
 
-INLINE void joint_accelerations_run(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd, verdict *t)
+INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd, verdict *t)
 {
-    joint_accelerations_values values, *const s = &values;
-    joint_accelerations_results_prs results_prs;
-    joint_accelerations_before(w, X, V, A, s, t);
-    if (w == 1) {  /* the legs side by side */
-        joint_accelerations_legs_prs(m, 0, 1, s, 0, 3, &results_prs);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            joint_accelerations_place_prs(w, &results_prs, leg, leg, qdd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            joint_accelerations_legs_prs(m, leg, 0, s, 1, w, &results_prs);
-            joint_accelerations_place_prs(w, &results_prs, leg, 0, qdd, t);
-        }
+    real s[24] = {0}, o_prs[5*LEGS(3)] = {0};
+    joint_accelerations_before(1, X, V, A, s, t);
+    joint_accelerations_legs_prs(m, 1, 0, 1, s, 0, LEGS(3), o_prs);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        joint_accelerations_place_prs(1, LEGS(3), o_prs, leg, leg, qdd, t);
+    }
+}
+
+INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, verdict *t)
+{
+    real s[24*LANES], o_prs[5*LANES];
+    joint_accelerations_before(LANES, X, V, A, s, t);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        joint_accelerations_legs_prs(m, LANES, leg, 0, s, 1, LANES, o_prs);
+        joint_accelerations_place_prs(LANES, LANES, o_prs, leg, 0, qdd, t);
     }
 }
 
 /* ---- constraints: 36 mul, 42 add, 0 div, 0 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES];
-} constraints_values;
-typedef struct {
-    real entry[1][8];
-} constraints_results_prs;
-
-INLINE void constraints_before(size_t w, const real *X, constraints_values *s, verdict *t)
+INLINE void constraints_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -4149,129 +4295,109 @@ INLINE void constraints_before(size_t w, const real *X, constraints_values *s, v
         const real R_zx = quaternion_xz - quaternion_wy;
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void constraints_legs_prs(const prepared *m, size_t leg, size_t legs, const
-    constraints_values *s, size_t states, size_t count, constraints_results_prs *o)
+INLINE void constraints_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
+        /* (prs-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real prs_base_point_x = m->prs_base_point_x[i];
-        const real prs_base_point_y = m->prs_base_point_y[i];
-        const real prs_base_point_z = m->prs_base_point_z[i];
         const real prs_platform_point_x = m->prs_platform_point_x[i];
         const real prs_platform_point_y = m->prs_platform_point_y[i];
         const real prs_platform_point_z = m->prs_platform_point_z[i];
-        /* (prs-K1) from the base point to the connection point */
-        const real S_x = t_x + R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
+        const real t_x = s[0*w + j];
+        const real prs_S_x = t_x + R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
             R_xz*prs_platform_point_z - prs_base_point_x;
-        const real S_y = t_y + R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real prs_base_point_y = m->prs_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real prs_S_y = t_y + R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
             R_yz*prs_platform_point_z - prs_base_point_y;
-        const real S_z = t_z + R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real prs_base_point_z = m->prs_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real prs_S_z = t_z + R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
             R_zz*prs_platform_point_z - prs_base_point_z;
-        /* (prs-K3) discriminant of the distance equation */
-        const real disc_1_t = S_x*prs_base_frame_xz + S_y*prs_base_frame_yz +
-            S_z*prs_base_frame_zz;
-        o->entry[0][k] = disc_1_t;
+        /* (prs-disc_1) discriminant of the distance equation */
+        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
+        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
+        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
+        const real prs_disc_1_t_2 = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
+            prs_S_z*prs_base_frame_zz;
+        o[0*count + k] = prs_disc_1_t_2;
+        o[1*count + k] = prs_disc_1_t_2;
     }
 }
 
-INLINE void constraints_place_prs(size_t w, const constraints_results_prs *o, size_t leg, size_t
-    first, real *constraints)
+INLINE void constraints_place_prs(size_t w, size_t count, const real *o, size_t leg, size_t first,
+    real *constraints, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        constraints[(leg)*w + k] = o->entry[0][first + k];
+        constraints[(leg)*w + k] = o[0*count + first + k];
+        t->total[k] += o[1*count + first + k];
     }
 }
 
-INLINE void constraints_run(const prepared *m, size_t w, const real *X, real *constraints, verdict
-    *t)
+INLINE void constraints_run(const prepared *m, const real *X, real *constraints, verdict *t)
 {
-    constraints_values values, *const s = &values;
-    constraints_results_prs results_prs;
-    constraints_before(w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        constraints_legs_prs(m, 0, 1, s, 0, 3, &results_prs);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            constraints_place_prs(w, &results_prs, leg, leg, constraints);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            constraints_legs_prs(m, leg, 0, s, 1, w, &results_prs);
-            constraints_place_prs(w, &results_prs, leg, 0, constraints);
-        }
+    real s[12] = {0}, o_prs[2*LEGS(3)] = {0};
+    constraints_before(1, X, s, t);
+    constraints_legs_prs(m, 1, 0, 1, s, 0, LEGS(3), o_prs);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        constraints_place_prs(1, LEGS(3), o_prs, leg, leg, constraints, t);
+    }
+}
+
+INLINE void constraints_run_lanes(const prepared *m, const real *X, real *constraints, verdict *t)
+{
+    real s[12*LANES], o_prs[2*LANES];
+    constraints_before(LANES, X, s, t);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        constraints_legs_prs(m, LANES, leg, 0, s, 1, LANES, o_prs);
+        constraints_place_prs(LANES, LANES, o_prs, leg, 0, constraints, t);
     }
 }
 
 /* ---- legs: 363 mul, 246 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
-        t_ddot_x[LANES], t_ddot_y[LANES], t_ddot_z[LANES], alpha_x[LANES], alpha_y[LANES],
-        alpha_z[LANES];
-} legs_values;
-typedef struct {
-    real entry[9][8], unreachable[8], singular[8];
-} legs_results_prs;
-
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, legs_values *s,
-    verdict *t)
+INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real A_2 = A[2*w + k];
-        const real A_3 = A[3*w + k];
-        const real A_4 = A[4*w + k];
-        const real A_5 = A[5*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -4296,274 +4422,306 @@ INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, l
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
+        const real A_2 = A[2*w + k];
         const real t_ddot_z = A_2;
+        const real A_3 = A[3*w + k];
         const real alpha_x = A_3;
+        const real A_4 = A[4*w + k];
         const real alpha_y = A_4;
+        const real A_5 = A[5*w + k];
         const real alpha_z = A_5;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->t_ddot_z[k] = t_ddot_z;
-        s->alpha_x[k] = alpha_x;
-        s->alpha_y[k] = alpha_y;
-        s->alpha_z[k] = alpha_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
+        s[18*w + k] = t_ddot_x;
+        s[19*w + k] = t_ddot_y;
+        s[20*w + k] = t_ddot_z;
+        s[21*w + k] = alpha_x;
+        s[22*w + k] = alpha_y;
+        s[23*w + k] = alpha_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void legs_legs_prs(const prepared *m, size_t leg, size_t legs, const legs_values *s, size_t
-    states, size_t count, legs_results_prs *o)
+INLINE void legs_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real t_ddot_z = s->t_ddot_z[j];
-        const real alpha_x = s->alpha_x[j];
-        const real alpha_y = s->alpha_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real J_2_zz = m->J_2_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
-        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
-        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_base_point_x = m->prs_base_point_x[i];
-        const real prs_base_point_y = m->prs_base_point_y[i];
-        const real prs_base_point_z = m->prs_base_point_z[i];
-        const real prs_link1_mass = m->prs_link1_mass[i];
-        const real prs_link2_mass = m->prs_link2_mass[i];
-        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
+        /* (prs-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real prs_platform_point_x = m->prs_platform_point_x[i];
         const real prs_platform_point_y = m->prs_platform_point_y[i];
         const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real root_2_t = m->root_2_t[i];
-        const real size_ = m->size_[i];
-        const real uu_2_t = m->uu_2_t[i];
-        /* (prs-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
+        const real prs_q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
             R_xz*prs_platform_point_z;
-        const real q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real prs_q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
             R_yz*prs_platform_point_z;
-        const real q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real prs_q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
             R_zz*prs_platform_point_z;
-        const real S_x = q_in_base_x + t_x - prs_base_point_x;
-        const real S_y = q_in_base_y + t_y - prs_base_point_y;
-        const real S_z = q_in_base_z + t_z - prs_base_point_z;
-        /* (prs-K2) component along axis 1 */
-        const real px_1 = S_x*prs_base_frame_xx + S_y*prs_base_frame_yx + S_z*prs_base_frame_zx;
-        /* (prs-K3) discriminant of the distance equation */
-        const real disc_1_t = S_x*prs_base_frame_xz + S_y*prs_base_frame_yz +
-            S_z*prs_base_frame_zz;
-        const real disc_1_t_2 = S_x*S_x + S_y*S_y + S_z*S_z;
-        const real disc_1 = disc_1_t*disc_1_t + px_1*px_1 + uu_2_t - disc_1_t_2;
-        /* (prs-K4) displacement of joint 1 */
-        const real q_1_t = branch_1*root(disc_1);
-        /* (prs-K1) from the base point to the connection point */
-        const real S_r0_y = S_x*prs_base_frame_xy + S_y*prs_base_frame_yy + S_z*prs_base_frame_zy;
-        /* (prs-K7) squared amplitude */
-        const real rho2_2 = uu_2_t*(S_r0_y*S_r0_y + q_1_t*q_1_t);
-        /* (prs-K9) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/(root(rho2_2));
-        const real c_2 = inv_root_2*prs_platform_joint_offset_x*q_1_t;
-        /* (prs-K10) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = S_r0_y*inv_root_2*prs_platform_joint_offset_x;
-        /* (prs-V2) velocity of the connection point per rate of joint 2 */
-        const real v_2_t = prs_platform_joint_offset_x*s_2;
-        const real v_2_t_2 = c_2*prs_platform_joint_offset_x;
-        /* (prs-V3) reciprocal vector 1 */
-        const real inv_v_2_t_2 = 1/v_2_t_2;
-        const real w_1_t = inv_v_2_t_2*v_2_t;
-        const real _r0_x = -c_2 - s_2*w_1_t;
-        const real _r0_y = c_2*w_1_t - s_2;
-        /* (prs-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        /* (prs-V6) rate of joint 2 */
-        const real qd_2 = inv_v_2_t_2*(S_dot_x*prs_base_frame_xy + S_dot_y*prs_base_frame_yy +
-            S_dot_z*prs_base_frame_zy);
-        /* (prs-V8) centripetal tensor of link 2 */
-        const real W_2_t = qd_2*qd_2;
-        /* (prs-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
-        const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
-        const real a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x;
-        /* (prs-A3) acceleration of the connection point */
-        const real S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z;
-        const real S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x;
-        const real S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y;
-        const real S_ddot_r0_x = S_ddot_x*prs_base_frame_xx + S_ddot_y*prs_base_frame_yx +
-            S_ddot_z*prs_base_frame_zx;
-        const real S_ddot_r0_y = S_ddot_x*prs_base_frame_xy + S_ddot_y*prs_base_frame_yy +
-            S_ddot_z*prs_base_frame_zy;
-        const real S_ddot_r1_y = -S_ddot_r0_x*s_2 - S_ddot_r0_y*c_2;
-        /* (prs-A5) acceleration of the connection point left to the joint accelerations */
-        const real rel_x = S_ddot_r0_y*s_2 + prs_platform_joint_offset_x*qd_2*qd_2 -
-            S_ddot_r0_x*c_2;
-        /* (prs-A7) acceleration of joint 1 */
-        const real qdd_2 = inv_v_2_t_2*(rel_x*s_2 - S_ddot_r1_y*c_2);
-        const real qdd_1_t = S_ddot_r1_y*s_2 + c_2*rel_x + qdd_2*v_2_t;
-        /* (prs-N1) acceleration of the reference point of link 1, less gravity */
-        const real acc_1_x = -g_r0_x - qdd_1_t;
-        /* (prs-N5) acceleration of the reference point of link 2, less gravity */
-        const real acc_2_x = c_2*g_r0_x + c_2*qdd_1_t - g_r0_y*s_2;
-        const real acc_2_y = c_2*g_r0_y + g_r0_x*s_2 + qdd_1_t*s_2;
-        /* (prs-N9) inertia force of link 2 less its weight */
-        const real f_2_x = acc_2_x*prs_link2_mass + h_2_y*qdd_2 - W_2_t*h_2_x;
-        const real f_2_y = acc_2_y*prs_link2_mass - W_2_t*h_2_y - h_2_x*qdd_2;
-        /* (prs-N24) inertia force of the links from 1 outwards, the last link left out */
-        const real T_1_x = acc_1_x*prs_link1_mass - c_2*f_2_x - f_2_y*s_2;
-        /* (prs-N19) inertia moment of the links that turn with link 2, about their reference points */
-        const real mu_2_z = acc_2_y*h_2_x - J_2_zz*qdd_2 - acc_2_x*h_2_y;
-        /* (prs-N29) force at the connection point that balances the leg's inertia and weight along all
+        const real prs_base_point_x = m->prs_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x;
+        const real prs_base_point_y = m->prs_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y;
+        const real prs_base_point_z = m->prs_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z;
+        /* (prs-px_1) component along axis 1 */
+        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
+        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
+        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
+        const real prs_px_1 = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
+            prs_S_z*prs_base_frame_zx;
+        /* (prs-disc_1) discriminant of the distance equation */
+        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
+        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
+        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
+        const real prs_disc_1_t_2 = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
+            prs_S_z*prs_base_frame_zz;
+        const real prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
+        const real prs_disc_1_t = m->prs_disc_1_t[i];
+        const real prs_disc_1 = prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 -
+            prs_disc_1_t_3;
+        /* (prs-q_1) displacement of joint 1 */
+        const real prs_branch_1 = m->prs_branch_1[i];
+        const real prs_q_1_t = prs_branch_1*root(prs_disc_1);
+        /* (prs-S) from the base point to the connection point */
+        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
+        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
+        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
+        const real prs_S_r0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
+            prs_S_z*prs_base_frame_zy;
+        /* (prs-rho2_2) squared amplitude */
+        const real prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t);
+        /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_prs_root_2 = 1/(root(prs_rho2_2));
+        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
+        const real prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t;
+        /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
+        const real prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x;
+        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
+        const real prs_v_2_t = prs_platform_joint_offset_x*prs_s_2;
+        const real prs_v_2_t_2 = prs_c_2*prs_platform_joint_offset_x;
+        /* (prs-w_1) reciprocal vector 1 */
+        const real inv_prs_v_2_t_2 = 1/prs_v_2_t_2;
+        const real prs_w_1_t = inv_prs_v_2_t_2*prs_v_2_t;
+        const real prs__r0_x = -prs_c_2 - prs_s_2*prs_w_1_t;
+        const real prs__r0_y = prs_c_2*prs_w_1_t - prs_s_2;
+        /* (prs-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real prs_S_dot_t = omega_y*prs_q_in_base_z - omega_z*prs_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real prs_S_dot_t_2 = omega_z*prs_q_in_base_x - omega_x*prs_q_in_base_z;
+        const real prs_S_dot_t_3 = omega_x*prs_q_in_base_y - omega_y*prs_q_in_base_x;
+        const real t_dot_x = s[12*w + j];
+        const real prs_S_dot_x = prs_S_dot_t + t_dot_x;
+        const real t_dot_y = s[13*w + j];
+        const real prs_S_dot_y = prs_S_dot_t_2 + t_dot_y;
+        const real t_dot_z = s[14*w + j];
+        const real prs_S_dot_z = prs_S_dot_t_3 + t_dot_z;
+        /* (prs-qd_2) rate of joint 2 */
+        const real prs_qd_2 = inv_prs_v_2_t_2*(prs_S_dot_x*prs_base_frame_xy +
+            prs_S_dot_y*prs_base_frame_yy + prs_S_dot_z*prs_base_frame_zy);
+        /* (prs-W_2) centripetal tensor of link 2 */
+        const real prs_W_2_t = prs_qd_2*prs_qd_2;
+        /* (prs-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_y = s[22*w + j];
+        const real alpha_z = s[23*w + j];
+        const real t_ddot_x = s[18*w + j];
+        const real prs_a_p_x = t_ddot_x + alpha_y*prs_q_in_base_z - alpha_z*prs_q_in_base_y;
+        const real alpha_x = s[21*w + j];
+        const real t_ddot_y = s[19*w + j];
+        const real prs_a_p_y = t_ddot_y + alpha_z*prs_q_in_base_x - alpha_x*prs_q_in_base_z;
+        const real t_ddot_z = s[20*w + j];
+        const real prs_a_p_z = t_ddot_z + alpha_x*prs_q_in_base_y - alpha_y*prs_q_in_base_x;
+        /* (prs-S_ddot) acceleration of the connection point */
+        const real prs_S_ddot_x = prs_a_p_x + omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2;
+        const real prs_S_ddot_y = prs_a_p_y + omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3;
+        const real prs_S_ddot_z = prs_a_p_z + omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t;
+        const real prs_S_ddot_r0_x = prs_S_ddot_x*prs_base_frame_xx +
+            prs_S_ddot_y*prs_base_frame_yx + prs_S_ddot_z*prs_base_frame_zx;
+        const real prs_S_ddot_r0_y = prs_S_ddot_x*prs_base_frame_xy +
+            prs_S_ddot_y*prs_base_frame_yy + prs_S_ddot_z*prs_base_frame_zy;
+        const real prs_S_ddot_r1_y = -prs_S_ddot_r0_x*prs_s_2 - prs_S_ddot_r0_y*prs_c_2;
+        /* (prs-rel) acceleration of the connection point left to the joint accelerations */
+        const real prs_rel_x = prs_S_ddot_r0_y*prs_s_2 +
+            prs_platform_joint_offset_x*prs_qd_2*prs_qd_2 - prs_S_ddot_r0_x*prs_c_2;
+        /* (prs-qdd_1) acceleration of joint 1 */
+        const real prs_qdd_2 = inv_prs_v_2_t_2*(prs_rel_x*prs_s_2 - prs_S_ddot_r1_y*prs_c_2);
+        const real prs_qdd_1_t = prs_S_ddot_r1_y*prs_s_2 + prs_c_2*prs_rel_x +
+            prs_qdd_2*prs_v_2_t;
+        /* (prs-acc_2) acceleration of the reference point of link 2, less gravity */
+        const real prs_g_r0_x = m->prs_g_r0_x[i];
+        const real prs_g_r0_y = m->prs_g_r0_y[i];
+        const real prs_acc_2_x = prs_c_2*prs_g_r0_x + prs_c_2*prs_qdd_1_t - prs_g_r0_y*prs_s_2;
+        const real prs_acc_2_y = prs_c_2*prs_g_r0_y + prs_g_r0_x*prs_s_2 + prs_qdd_1_t*prs_s_2;
+        /* (prs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+        const real prs_J_2_zz = m->prs_J_2_zz[i];
+        const real prs_h_2_x = m->prs_h_2_x[i];
+        const real prs_h_2_y = m->prs_h_2_y[i];
+        const real prs_mu_2_z = prs_acc_2_y*prs_h_2_x - prs_J_2_zz*prs_qdd_2 -
+            prs_acc_2_x*prs_h_2_y;
+        /* (prs-acc_1) acceleration of the reference point of link 1, less gravity */
+        const real prs_acc_1_x = -prs_g_r0_x - prs_qdd_1_t;
+        /* (prs-f_2) inertia force of link 2 less its weight */
+        const real prs_link2_mass = m->prs_link2_mass[i];
+        const real prs_f_2_x = prs_acc_2_x*prs_link2_mass + prs_h_2_y*prs_qdd_2 -
+            prs_W_2_t*prs_h_2_x;
+        const real prs_f_2_y = prs_acc_2_y*prs_link2_mass - prs_W_2_t*prs_h_2_y -
+            prs_h_2_x*prs_qdd_2;
+        /* (prs-T_1) inertia force of the links from 1 outwards, the last link left out */
+        const real prs_link1_mass = m->prs_link1_mass[i];
+        const real prs_T_1_x = prs_acc_1_x*prs_link1_mass - prs_c_2*prs_f_2_x - prs_f_2_y*prs_s_2;
+        /* (prs-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real G_t = inv_v_2_t_2*(mu_2_z + T_1_x*v_2_t);
-        const real _r0_x_2 = -G_t*s_2 - T_1_x*c_2;
-        const real _r0_y_2 = G_t*c_2 - T_1_x*s_2;
-        /* (prs-N32) leg force on the platform without actuation and without the mass at the connection
+        const real prs_G_t = inv_prs_v_2_t_2*(prs_mu_2_z + prs_T_1_x*prs_v_2_t);
+        const real prs__r0_x_2 = -prs_G_t*prs_s_2 - prs_T_1_x*prs_c_2;
+        const real prs__r0_y_2 = prs_G_t*prs_c_2 - prs_T_1_x*prs_s_2;
+        /* (prs-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_r0_x = _r0_x_2*c_2 + _r0_y_2*s_2;
-        const real c_r0_y = _r0_y_2*c_2 - _r0_x_2*s_2;
-        const real c_in_base_x = c_r0_x*prs_base_frame_xx + c_r0_y*prs_base_frame_xy;
-        const real c_in_base_y = c_r0_x*prs_base_frame_yx + c_r0_y*prs_base_frame_yy;
-        const real c_in_base_z = c_r0_x*prs_base_frame_zx + c_r0_y*prs_base_frame_zy;
-        /* (prs-V3) reciprocal vector 1 */
-        const real w_1_r0_x = -_r0_x*c_2 - _r0_y*s_2;
-        const real w_1_r0_y = _r0_x*s_2 - _r0_y*c_2;
-        const real w_1_in_base_x = prs_base_frame_xx*w_1_r0_x + prs_base_frame_xy*w_1_r0_y;
-        const real w_1_in_base_y = prs_base_frame_yx*w_1_r0_x + prs_base_frame_yy*w_1_r0_y;
-        const real w_1_in_base_z = prs_base_frame_zx*w_1_r0_x + prs_base_frame_zy*w_1_r0_y;
-        o->entry[0][k] = c_in_base_x;
-        o->entry[1][k] = c_in_base_y;
-        o->entry[2][k] = c_in_base_z;
-        o->entry[3][k] = w_1_in_base_x;
-        o->entry[4][k] = w_1_in_base_y;
-        o->entry[5][k] = w_1_in_base_z;
-        o->entry[6][k] = prs_base_frame_xz;
-        o->entry[7][k] = prs_base_frame_yz;
-        o->entry[8][k] = prs_base_frame_zz;
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*root_2_t) +
-            UNLESS(magnitude(-v_2_t_2) > TOLERANCE*size_);
+        const real prs_c_r0_x = prs__r0_x_2*prs_c_2 + prs__r0_y_2*prs_s_2;
+        const real prs_c_r0_y = prs__r0_y_2*prs_c_2 - prs__r0_x_2*prs_s_2;
+        const real prs_c_in_base_x = prs_base_frame_xx*prs_c_r0_x + prs_base_frame_xy*prs_c_r0_y;
+        const real prs_c_in_base_y = prs_base_frame_yx*prs_c_r0_x + prs_base_frame_yy*prs_c_r0_y;
+        const real prs_c_in_base_z = prs_base_frame_zx*prs_c_r0_x + prs_base_frame_zy*prs_c_r0_y;
+        /* (prs-w_1) reciprocal vector 1 */
+        const real prs_w_1_r0_x = -prs__r0_x*prs_c_2 - prs__r0_y*prs_s_2;
+        const real prs_w_1_r0_y = prs__r0_x*prs_s_2 - prs__r0_y*prs_c_2;
+        const real prs_w_1_in_base_x = prs_base_frame_xx*prs_w_1_r0_x +
+            prs_base_frame_xy*prs_w_1_r0_y;
+        const real prs_w_1_in_base_y = prs_base_frame_yx*prs_w_1_r0_x +
+            prs_base_frame_yy*prs_w_1_r0_y;
+        const real prs_w_1_in_base_z = prs_base_frame_zx*prs_w_1_r0_x +
+            prs_base_frame_zy*prs_w_1_r0_y;
+        o[0*count + k] = prs_c_in_base_x;
+        o[1*count + k] = prs_c_in_base_y;
+        o[2*count + k] = prs_c_in_base_z;
+        o[3*count + k] = prs_w_1_in_base_x;
+        o[4*count + k] = prs_w_1_in_base_y;
+        o[5*count + k] = prs_w_1_in_base_z;
+        o[6*count + k] = prs_base_frame_xz;
+        o[7*count + k] = prs_base_frame_yz;
+        o[8*count + k] = prs_base_frame_zz;
+        const real prs_root_2_t = m->prs_root_2_t[i];
+        const real prs_size = m->prs_size[i];
+        o[9*count + k] = UNLESS(prs_disc_1 >= 0);
+        o[10*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
+            UNLESS(magnitude(-prs_v_2_t_2) > TOLERANCE*prs_size);
     }
 }
 
-INLINE void legs_place_prs(size_t w, const legs_results_prs *o, size_t leg, size_t first, real
+INLINE void legs_place_prs(size_t w, size_t count, const real *o, size_t leg, size_t first, real
     *leg_force, real *drive, real *constraint_direction, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        leg_force[(3*leg)*w + k] = o->entry[0][first + k];
-        leg_force[(1 + 3*leg)*w + k] = o->entry[1][first + k];
-        leg_force[(2 + 3*leg)*w + k] = o->entry[2][first + k];
-        drive[(3*leg)*w + k] = o->entry[3][first + k];
-        drive[(1 + 3*leg)*w + k] = o->entry[4][first + k];
-        drive[(2 + 3*leg)*w + k] = o->entry[5][first + k];
-        constraint_direction[(3*leg)*w + k] = o->entry[6][first + k];
-        constraint_direction[(1 + 3*leg)*w + k] = o->entry[7][first + k];
-        constraint_direction[(2 + 3*leg)*w + k] = o->entry[8][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        leg_force[(3*leg)*w + k] = o[0*count + first + k];
+        leg_force[(1 + 3*leg)*w + k] = o[1*count + first + k];
+        leg_force[(2 + 3*leg)*w + k] = o[2*count + first + k];
+        drive[(3*leg)*w + k] = o[3*count + first + k];
+        drive[(1 + 3*leg)*w + k] = o[4*count + first + k];
+        drive[(2 + 3*leg)*w + k] = o[5*count + first + k];
+        constraint_direction[(3*leg)*w + k] = o[6*count + first + k];
+        constraint_direction[(1 + 3*leg)*w + k] = o[7*count + first + k];
+        constraint_direction[(2 + 3*leg)*w + k] = o[8*count + first + k];
+        t->unreachable[k] += o[9*count + first + k];
+        t->singular[k] += o[10*count + first + k];
     }
 }
 
-INLINE void legs_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
-    real *leg_force, real *drive, real *constraint_direction, verdict *t)
+INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
+    *leg_force, real *drive, real *constraint_direction, verdict *t)
 {
-    legs_values values, *const s = &values;
-    legs_results_prs results_prs;
-    legs_before(w, X, V, A, s, t);
-    if (w == 1) {  /* the legs side by side */
-        legs_legs_prs(m, 0, 1, s, 0, 3, &results_prs);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            legs_place_prs(w, &results_prs, leg, leg, leg_force, drive, constraint_direction, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            legs_legs_prs(m, leg, 0, s, 1, w, &results_prs);
-            legs_place_prs(w, &results_prs, leg, 0, leg_force, drive, constraint_direction, t);
-        }
+    real s[24] = {0}, o_prs[11*LEGS(3)] = {0};
+    legs_before(1, X, V, A, s, t);
+    legs_legs_prs(m, 1, 0, 1, s, 0, LEGS(3), o_prs);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        legs_place_prs(1, LEGS(3), o_prs, leg, leg, leg_force, drive, constraint_direction, t);
     }
 }
 
 /* ---- potential: 132 mul, 123 add, 3 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], potential_t_4[LANES],
-        sum[1][LANES];
-} potential_values;
-typedef struct {
-    real sum[1][8], unreachable[8], singular[8];
-} potential_results_prs;
-
-INLINE void potential_before(const prepared *m, size_t w, const real *X, potential_values *s,
-    verdict *t)
+INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
+        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+        const real quaternion_scale = 2/quaternion_norm2;
+        const real quaternion_sx = X_3*quaternion_scale;
+        const real quaternion_sy = X_4*quaternion_scale;
+        const real quaternion_sz = X_5*quaternion_scale;
+        const real quaternion_wx = X_6*quaternion_sx;
+        const real quaternion_wy = X_6*quaternion_sy;
+        const real quaternion_wz = X_6*quaternion_sz;
+        const real quaternion_xx = X_3*quaternion_sx;
+        const real quaternion_xy = X_3*quaternion_sy;
+        const real quaternion_xz = X_3*quaternion_sz;
+        const real quaternion_yy = X_4*quaternion_sy;
+        const real quaternion_yz = X_4*quaternion_sz;
+        const real quaternion_zz = X_5*quaternion_sz;
+        const real R_xx = 1 - quaternion_yy - quaternion_zz;
+        const real R_xy = quaternion_xy - quaternion_wz;
+        const real R_xz = quaternion_wy + quaternion_xz;
+        const real R_yx = quaternion_wz + quaternion_xy;
+        const real R_yy = 1 - quaternion_xx - quaternion_zz;
+        const real R_yz = quaternion_yz - quaternion_wx;
+        const real R_zx = quaternion_xz - quaternion_wy;
+        const real R_zy = quaternion_wx + quaternion_yz;
+        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
@@ -4571,217 +4729,166 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, potenti
         const real h_star_y = m->h_star_y;
         const real h_star_z = m->h_star_z;
         const real platform_mass = m->platform_mass;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* (V1) potential energy */
-        const real potential_t_4 = gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z +
+        const real potential_t = gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z +
             platform_mass*t_x) + gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z +
             platform_mass*t_y) + gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z +
             platform_mass*t_z);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->potential_t_4[k] = potential_t_4;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = potential_t;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void potential_legs_prs(const prepared *m, size_t leg, size_t legs, const potential_values
-    *s, size_t states, size_t count, int add, potential_results_prs *o)
+INLINE void potential_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real b_r0_x = m->b_r0_x[i];
-        const real branch_1 = m->branch_1[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_1_x = m->h_1_x[i];
-        const real h_1_y = m->h_1_y[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real potential_t = m->potential_t[i];
-        const real potential_t_2 = m->potential_t_2[i];
-        const real potential_t_3 = m->potential_t_3[i];
-        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
-        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
-        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
+        /* (prs-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real prs_base_point_x = m->prs_base_point_x[i];
-        const real prs_base_point_y = m->prs_base_point_y[i];
-        const real prs_base_point_z = m->prs_base_point_z[i];
-        const real prs_link1_mass = m->prs_link1_mass[i];
-        const real prs_link2_mass = m->prs_link2_mass[i];
-        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
         const real prs_platform_point_x = m->prs_platform_point_x[i];
         const real prs_platform_point_y = m->prs_platform_point_y[i];
         const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real root_2_t = m->root_2_t[i];
-        const real uu_2_t = m->uu_2_t[i];
-        /* (prs-K1) from the base point to the connection point */
-        const real S_x = t_x + R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
+        const real t_x = s[0*w + j];
+        const real prs_S_x = t_x + R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
             R_xz*prs_platform_point_z - prs_base_point_x;
-        const real S_y = t_y + R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real prs_base_point_y = m->prs_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real prs_S_y = t_y + R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
             R_yz*prs_platform_point_z - prs_base_point_y;
-        const real S_z = t_z + R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real prs_base_point_z = m->prs_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real prs_S_z = t_z + R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
             R_zz*prs_platform_point_z - prs_base_point_z;
-        /* (prs-K2) component along axis 1 */
-        const real px_1 = S_x*prs_base_frame_xx + S_y*prs_base_frame_yx + S_z*prs_base_frame_zx;
-        /* (prs-K3) discriminant of the distance equation */
-        const real disc_1_t = S_x*prs_base_frame_xz + S_y*prs_base_frame_yz +
-            S_z*prs_base_frame_zz;
-        const real disc_1_t_2 = S_x*S_x + S_y*S_y + S_z*S_z;
-        const real disc_1 = disc_1_t*disc_1_t + px_1*px_1 + uu_2_t - disc_1_t_2;
-        /* (prs-K4) displacement of joint 1 */
-        const real q_1_t = branch_1*root(disc_1);
-        const real q_1 = px_1 + q_1_t;
-        /* (prs-K1) from the base point to the connection point */
-        const real S_r0_y = S_x*prs_base_frame_xy + S_y*prs_base_frame_yy + S_z*prs_base_frame_zy;
-        /* (prs-K7) squared amplitude */
-        const real rho2_2 = uu_2_t*(S_r0_y*S_r0_y + q_1_t*q_1_t);
-        /* (prs-K9) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/(root(rho2_2));
-        const real c_2 = inv_root_2*prs_platform_joint_offset_x*q_1_t;
-        /* (prs-K10) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = S_r0_y*inv_root_2*prs_platform_joint_offset_x;
-        /* (V1) potential energy */
-        const real potential_t_5 = b_r0_x + q_1;
-        const real potential_t_6 = potential_t_3 + g_r0_x*(h_1_x + potential_t_5*prs_link1_mass +
-            potential_t_5*prs_link2_mass - c_2*h_2_x - h_2_y*s_2) + g_r0_y*(h_1_y + potential_t +
-            potential_t_2 + h_2_x*s_2 - c_2*h_2_y);
-        o->sum[0][k] = add ? o->sum[0][k] + potential_t_6 : potential_t_6;  /* total_prs */
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*root_2_t);
+        /* (prs-px_1) component along axis 1 */
+        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
+        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
+        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
+        const real prs_px_1 = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
+            prs_S_z*prs_base_frame_zx;
+        /* (prs-disc_1) discriminant of the distance equation */
+        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
+        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
+        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
+        const real prs_disc_1_t_2 = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
+            prs_S_z*prs_base_frame_zz;
+        const real prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
+        const real prs_disc_1_t = m->prs_disc_1_t[i];
+        const real prs_disc_1 = prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 -
+            prs_disc_1_t_3;
+        /* (prs-q_1) displacement of joint 1 */
+        const real prs_branch_1 = m->prs_branch_1[i];
+        const real prs_q_1_t = prs_branch_1*root(prs_disc_1);
+        const real prs_q_1 = prs_px_1 + prs_q_1_t;
+        /* (prs-S) from the base point to the connection point */
+        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
+        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
+        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
+        const real prs_S_r0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
+            prs_S_z*prs_base_frame_zy;
+        /* (prs-rho2_2) squared amplitude */
+        const real prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t);
+        /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_prs_root_2 = 1/(root(prs_rho2_2));
+        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
+        const real prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t;
+        /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
+        const real prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x;
+        /* (potential) potential energy */
+        const real prs_b_r0_x = m->prs_b_r0_x[i];
+        const real prs_potential_t_4 = prs_b_r0_x + prs_q_1;
+        const real prs_g_r0_x = m->prs_g_r0_x[i];
+        const real prs_g_r0_y = m->prs_g_r0_y[i];
+        const real prs_h_1_x = m->prs_h_1_x[i];
+        const real prs_h_1_y = m->prs_h_1_y[i];
+        const real prs_h_2_x = m->prs_h_2_x[i];
+        const real prs_h_2_y = m->prs_h_2_y[i];
+        const real prs_link1_mass = m->prs_link1_mass[i];
+        const real prs_link2_mass = m->prs_link2_mass[i];
+        const real prs_potential_t = m->prs_potential_t[i];
+        const real prs_potential_t_2 = m->prs_potential_t_2[i];
+        const real prs_potential_t_3 = m->prs_potential_t_3[i];
+        const real prs_potential_t_5 = prs_potential_t_3 + prs_g_r0_x*(prs_h_1_x +
+            prs_link1_mass*prs_potential_t_4 + prs_link2_mass*prs_potential_t_4 -
+            prs_c_2*prs_h_2_x - prs_h_2_y*prs_s_2) + prs_g_r0_y*(prs_h_1_y + prs_potential_t +
+            prs_potential_t_2 + prs_h_2_x*prs_s_2 - prs_c_2*prs_h_2_y);
+        terms[0*count + k] = add ? terms[0*count + k] + prs_potential_t_5 : prs_potential_t_5;  /* total_prs */
+        const real prs_root_2_t = m->prs_root_2_t[i];
+        o[0*count + k] = UNLESS(prs_disc_1 >= 0);
+        o[1*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t);
     }
 }
 
-INLINE void potential_place_prs(size_t w, const potential_results_prs *o, size_t first, verdict
-    *t)
+INLINE void potential_place_prs(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        t->unreachable[k] += o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
     }
 }
 
-INLINE void potential_after(size_t w, const potential_values *s, real *potential)
+INLINE void potential_after(size_t w, const real *s, const real *sums, real *potential)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real potential_t_4 = s->potential_t_4[k];
-        const real total_prs = s->sum[0][k];
-        /* (V1) potential energy */
-        const real potential_ = -potential_t_4 - total_prs;
+        /* (potential) potential energy */
+        const real potential_t = s[12*w + k];
+        const real total_prs = sums[0*w + k];
+        const real potential_ = -potential_t - total_prs;
         potential[0*w + k] = potential_;
     }
 }
 
-INLINE void potential_run(const prepared *m, size_t w, const real *X, real *potential, verdict *t)
+INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    potential_values values, *const s = &values;
-    potential_results_prs results_prs;
-    potential_before(m, w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        memset(results_prs.sum, 0, sizeof results_prs.sum);
-        potential_legs_prs(m, 0, 1, s, 0, 3, 0, &results_prs);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            potential_place_prs(w, &results_prs, leg, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_prs.sum[n], 3);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_prs.sum, 0, sizeof results_prs.sum);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            potential_legs_prs(m, leg, 0, s, 1, w, 1, &results_prs);
-            potential_place_prs(w, &results_prs, 0, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_prs.sum[n][k];
-            }
-        }
+    real s[13] = {0}, sums[1] = {0}, terms_prs[1*LEGS(3)] = {0}, o_prs[2*LEGS(3)] = {0};
+    potential_before(m, 1, X, s, t);
+    potential_legs_prs(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_prs, o_prs);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        potential_place_prs(1, LEGS(3), o_prs, leg, t);
     }
-    potential_after(w, s, potential);
+    for (size_t n = 0; n < 1; ++n) {
+        sums[n] = total(terms_prs + n*LEGS(3), 3);
+    }
+    potential_after(1, s, sums, potential);
 }
 
 /* ---- condition: 211 mul, 144 add, 6 div, 10 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], sum[1][LANES];
-} condition_values;
-typedef struct {
-    real sum[1][8], entry[14][8], unreachable[8], singular[8];
-} condition_results_prs;
-
-INLINE void condition_before(const prepared *m, size_t w, const real *X, condition_values *s, real
-    *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real legs_size = m->legs_size;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -4805,456 +4912,879 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, conditi
         const real R_zx = quaternion_xz - quaternion_wy;
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
+        t->total[k] += legs_size;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void condition_legs_prs(const prepared *m, size_t leg, size_t legs, const condition_values
-    *s, size_t states, size_t count, int add, condition_results_prs *o)
+INLINE void condition_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real b_c_x = m->b_c_x;
-        const real b_c_y = m->b_c_y;
-        const real b_c_z = m->b_c_z;
-        const real branch_1 = m->branch_1[i];
-        const real inv_root_2_t_2 = m->inv_root_2_t_2[i];
-        const real inv_size = m->inv_size[i];
-        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
-        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
-        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_base_point_x = m->prs_base_point_x[i];
-        const real prs_base_point_y = m->prs_base_point_y[i];
-        const real prs_base_point_z = m->prs_base_point_z[i];
-        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
+        /* (prs-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real prs_platform_point_x = m->prs_platform_point_x[i];
         const real prs_platform_point_y = m->prs_platform_point_y[i];
         const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real root_2_t = m->root_2_t[i];
-        const real size_ = m->size_[i];
-        const real uu_2_t = m->uu_2_t[i];
-        /* (prs-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
+        const real prs_q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
             R_xz*prs_platform_point_z;
-        const real q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real prs_q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
             R_yz*prs_platform_point_z;
-        const real q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real prs_q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
             R_zz*prs_platform_point_z;
-        const real S_x = q_in_base_x + t_x - prs_base_point_x;
-        const real S_y = q_in_base_y + t_y - prs_base_point_y;
-        const real S_z = q_in_base_z + t_z - prs_base_point_z;
-        /* (prs-K2) component along axis 1 */
-        const real px_1 = S_x*prs_base_frame_xx + S_y*prs_base_frame_yx + S_z*prs_base_frame_zx;
-        /* (prs-K3) discriminant of the distance equation */
-        const real disc_1_t = S_x*prs_base_frame_xz + S_y*prs_base_frame_yz +
-            S_z*prs_base_frame_zz;
-        const real disc_1_t_2 = S_x*S_x + S_y*S_y + S_z*S_z;
-        const real disc_1 = disc_1_t*disc_1_t + px_1*px_1 + uu_2_t - disc_1_t_2;
-        /* (prs-K4) displacement of joint 1 */
-        const real q_1_t = branch_1*root(disc_1);
-        /* (prs-K1) from the base point to the connection point */
-        const real S_r0_y = S_x*prs_base_frame_xy + S_y*prs_base_frame_yy + S_z*prs_base_frame_zy;
-        /* (prs-K7) squared amplitude */
-        const real rho2_2 = uu_2_t*(S_r0_y*S_r0_y + q_1_t*q_1_t);
-        /* (prs-K9) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/(root(rho2_2));
-        const real c_2 = inv_root_2*prs_platform_joint_offset_x*q_1_t;
-        /* (prs-K10) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = S_r0_y*inv_root_2*prs_platform_joint_offset_x;
-        /* (prs-V2) velocity of the connection point per rate of joint 2 */
-        const real v_2_t = c_2*prs_platform_joint_offset_x;
-        /* (prs-V3) reciprocal vector 1 */
-        const real w_1_t = prs_platform_joint_offset_x*s_2/v_2_t;
-        const real _r0_x = -c_2 - s_2*w_1_t;
-        const real _r0_y = c_2*w_1_t - s_2;
-        const real w_1_in_base_x = _r0_x*(prs_base_frame_xy*s_2 - c_2*prs_base_frame_xx) +
-            _r0_y*(-c_2*prs_base_frame_xy - prs_base_frame_xx*s_2);
-        const real w_1_in_base_y = _r0_x*(prs_base_frame_yy*s_2 - c_2*prs_base_frame_yx) +
-            _r0_y*(-c_2*prs_base_frame_yy - prs_base_frame_yx*s_2);
-        const real w_1_in_base_z = _r0_x*(prs_base_frame_zy*s_2 - c_2*prs_base_frame_zx) +
-            _r0_y*(-c_2*prs_base_frame_zy - prs_base_frame_zx*s_2);
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_1_x = q_in_base_y*w_1_in_base_z - q_in_base_z*w_1_in_base_y;
-        const real H_a_1_y = q_in_base_z*w_1_in_base_x - q_in_base_x*w_1_in_base_z;
-        const real H_a_1_z = q_in_base_x*w_1_in_base_y - q_in_base_y*w_1_in_base_x;
-        /* (M9) moment of the column's unit force about the platform origin */
-        const real Hk_a_1_x = prs_base_frame_zz*q_in_base_y - prs_base_frame_yz*q_in_base_z;
-        const real Hk_a_1_y = prs_base_frame_xz*q_in_base_z - prs_base_frame_zz*q_in_base_x;
-        const real Hk_a_1_z = prs_base_frame_yz*q_in_base_x - prs_base_frame_xz*q_in_base_y;
-        /* (C2) rms distance of the platform points from their centroid */
-        const real spread_t_2 = b_c_x - prs_platform_point_x;
-        const real spread_t_3 = b_c_y - prs_platform_point_y;
-        const real spread_t_4 = b_c_z - prs_platform_point_z;
-        const real spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 +
-            spread_t_4*spread_t_4;
-        /* (prs-K8) amplitude: off the manifold the nearest angle is taken */
-        const real pivot_size = magnitude(rho2_2);
-        /* (prs-V3) reciprocal vector 1 */
-        const real pivot_size_2 = magnitude(v_2_t);
-        /* (prs-N29) force at the connection point that balances the leg's inertia and weight along all
+        const real prs_base_point_x = m->prs_base_point_x[i];
+        const real t_x = s[0*w + j];
+        const real prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x;
+        const real prs_base_point_y = m->prs_base_point_y[i];
+        const real t_y = s[1*w + j];
+        const real prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y;
+        const real prs_base_point_z = m->prs_base_point_z[i];
+        const real t_z = s[2*w + j];
+        const real prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z;
+        /* (prs-px_1) component along axis 1 */
+        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
+        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
+        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
+        const real prs_px_1 = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
+            prs_S_z*prs_base_frame_zx;
+        /* (prs-disc_1) discriminant of the distance equation */
+        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
+        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
+        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
+        const real prs_disc_1_t_2 = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
+            prs_S_z*prs_base_frame_zz;
+        const real prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
+        const real prs_disc_1_t = m->prs_disc_1_t[i];
+        const real prs_disc_1 = prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 -
+            prs_disc_1_t_3;
+        /* (prs-q_1) displacement of joint 1 */
+        const real prs_branch_1 = m->prs_branch_1[i];
+        const real prs_q_1_t = prs_branch_1*root(prs_disc_1);
+        /* (prs-S) from the base point to the connection point */
+        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
+        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
+        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
+        const real prs_S_r0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
+            prs_S_z*prs_base_frame_zy;
+        /* (prs-rho2_2) squared amplitude */
+        const real prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t);
+        /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_prs_root_2 = 1/(root(prs_rho2_2));
+        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
+        const real prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t;
+        /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
+        const real prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x;
+        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
+        const real prs_v_2_t = prs_c_2*prs_platform_joint_offset_x;
+        /* (prs-w_1) reciprocal vector 1 */
+        const real prs_w_1_t = prs_platform_joint_offset_x*prs_s_2/prs_v_2_t;
+        const real prs__r0_x = -prs_c_2 - prs_s_2*prs_w_1_t;
+        const real prs__r0_y = prs_c_2*prs_w_1_t - prs_s_2;
+        const real prs_w_1_in_base_x = prs__r0_x*(prs_base_frame_xy*prs_s_2 -
+            prs_base_frame_xx*prs_c_2) + prs__r0_y*(-prs_base_frame_xx*prs_s_2 -
+            prs_base_frame_xy*prs_c_2);
+        const real prs_w_1_in_base_y = prs__r0_x*(prs_base_frame_yy*prs_s_2 -
+            prs_base_frame_yx*prs_c_2) + prs__r0_y*(-prs_base_frame_yx*prs_s_2 -
+            prs_base_frame_yy*prs_c_2);
+        const real prs_w_1_in_base_z = prs__r0_x*(prs_base_frame_zy*prs_s_2 -
+            prs_base_frame_zx*prs_c_2) + prs__r0_y*(-prs_base_frame_zx*prs_s_2 -
+            prs_base_frame_zy*prs_c_2);
+        /* (prs-H_a_1) moment of the column's unit force about the platform origin */
+        const real prs_H_a_1_x = prs_q_in_base_y*prs_w_1_in_base_z -
+            prs_q_in_base_z*prs_w_1_in_base_y;
+        const real prs_H_a_1_y = prs_q_in_base_z*prs_w_1_in_base_x -
+            prs_q_in_base_x*prs_w_1_in_base_z;
+        const real prs_H_a_1_z = prs_q_in_base_x*prs_w_1_in_base_y -
+            prs_q_in_base_y*prs_w_1_in_base_x;
+        /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
+        const real prs_Hk_a_1_x = prs_base_frame_zz*prs_q_in_base_y -
+            prs_base_frame_yz*prs_q_in_base_z;
+        const real prs_Hk_a_1_y = prs_base_frame_xz*prs_q_in_base_z -
+            prs_base_frame_zz*prs_q_in_base_x;
+        const real prs_Hk_a_1_z = prs_base_frame_yz*prs_q_in_base_x -
+            prs_base_frame_xz*prs_q_in_base_y;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_x = m->b_c_x;
+        const real prs_spread_t = b_c_x - prs_platform_point_x;
+        const real b_c_y = m->b_c_y;
+        const real prs_spread_t_2 = b_c_y - prs_platform_point_y;
+        const real b_c_z = m->b_c_z;
+        const real prs_spread_t_3 = b_c_z - prs_platform_point_z;
+        const real prs_spread_t_4 = prs_spread_t*prs_spread_t + prs_spread_t_2*prs_spread_t_2 +
+            prs_spread_t_3*prs_spread_t_3;
+        /* (prs-root_2) amplitude: off the manifold the nearest angle is taken */
+        const real prs_pivot_size = magnitude(prs_rho2_2);
+        /* (prs-w_1) reciprocal vector 1 */
+        const real prs_pivot_size_2 = magnitude(prs_v_2_t);
+        /* (prs-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real least_pivots = lesser(root(inv_root_2_t_2*pivot_size), inv_size*pivot_size_2);
-        o->sum[0][k] = add ? o->sum[0][k] + spread_t_5 : spread_t_5;  /* total_prs */
-        o->entry[0][k] = w_1_in_base_x;
-        o->entry[1][k] = w_1_in_base_y;
-        o->entry[2][k] = w_1_in_base_z;
-        o->entry[3][k] = H_a_1_x;
-        o->entry[4][k] = H_a_1_y;
-        o->entry[5][k] = H_a_1_z;
-        o->entry[6][k] = prs_base_frame_xz;
-        o->entry[7][k] = prs_base_frame_yz;
-        o->entry[8][k] = prs_base_frame_zz;
-        o->entry[9][k] = Hk_a_1_x;
-        o->entry[10][k] = Hk_a_1_y;
-        o->entry[11][k] = Hk_a_1_z;
-        o->entry[12][k] = least_pivots;
-        o->entry[13][k] = disc_1;
-        o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*root_2_t) +
-            UNLESS(magnitude(-v_2_t) > TOLERANCE*size_);
+        const real inv_prs_root_2_t_2 = m->inv_prs_root_2_t_2[i];
+        const real inv_prs_size = m->inv_prs_size[i];
+        const real prs_least_pivots = lesser(root(inv_prs_root_2_t_2*prs_pivot_size),
+            inv_prs_size*prs_pivot_size_2);
+        terms[0*count + k] = add ? terms[0*count + k] + prs_spread_t_4 : prs_spread_t_4;  /* total_prs */
+        o[0*count + k] = prs_w_1_in_base_x;
+        o[1*count + k] = prs_w_1_in_base_y;
+        o[2*count + k] = prs_w_1_in_base_z;
+        o[3*count + k] = prs_H_a_1_x;
+        o[4*count + k] = prs_H_a_1_y;
+        o[5*count + k] = prs_H_a_1_z;
+        o[6*count + k] = prs_base_frame_xz;
+        o[7*count + k] = prs_base_frame_yz;
+        o[8*count + k] = prs_base_frame_zz;
+        o[9*count + k] = prs_Hk_a_1_x;
+        o[10*count + k] = prs_Hk_a_1_y;
+        o[11*count + k] = prs_Hk_a_1_z;
+        o[12*count + k] = prs_least_pivots;
+        o[13*count + k] = prs_disc_1;
+        o[16*count + k] = ((prs_w_1_in_base_x + (prs_w_1_in_base_y + prs_w_1_in_base_z)) +
+            ((prs_H_a_1_x + prs_H_a_1_y) + (prs_H_a_1_z + prs_base_frame_xz))) +
+            ((prs_base_frame_yz + (prs_base_frame_zz + prs_Hk_a_1_x)) + ((prs_Hk_a_1_y +
+            prs_Hk_a_1_z) + (prs_least_pivots + prs_disc_1)));
+        const real prs_root_2_t = m->prs_root_2_t[i];
+        const real prs_size = m->prs_size[i];
+        o[14*count + k] = UNLESS(prs_disc_1 >= 0);
+        o[15*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
+            UNLESS(magnitude(-prs_v_2_t) > TOLERANCE*prs_size);
     }
 }
 
-INLINE void condition_place_prs(size_t w, const condition_results_prs *o, size_t leg, size_t
-    first, real *H, real *Hk, real *pivots, real *reach, verdict *t)
+INLINE void condition_place_prs(size_t w, size_t count, const real *o, size_t leg, size_t first,
+    real *H, real *Hk, real *pivots, real *reach, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(3 + leg)*w + k] = o->entry[1][first + k];
-        H[(6 + leg)*w + k] = o->entry[2][first + k];
-        H[(9 + leg)*w + k] = o->entry[3][first + k];
-        H[(12 + leg)*w + k] = o->entry[4][first + k];
-        H[(15 + leg)*w + k] = o->entry[5][first + k];
-        Hk[(leg)*w + k] = o->entry[6][first + k];
-        Hk[(3 + leg)*w + k] = o->entry[7][first + k];
-        Hk[(6 + leg)*w + k] = o->entry[8][first + k];
-        Hk[(9 + leg)*w + k] = o->entry[9][first + k];
-        Hk[(12 + leg)*w + k] = o->entry[10][first + k];
-        Hk[(15 + leg)*w + k] = o->entry[11][first + k];
-        pivots[(leg)*w + k] = o->entry[12][first + k];
-        reach[(leg)*w + k] = o->entry[13][first + k];
-        t->unreachable[k] += o->unreachable[first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(3 + leg)*w + k] = o[1*count + first + k];
+        H[(6 + leg)*w + k] = o[2*count + first + k];
+        H[(9 + leg)*w + k] = o[3*count + first + k];
+        H[(12 + leg)*w + k] = o[4*count + first + k];
+        H[(15 + leg)*w + k] = o[5*count + first + k];
+        Hk[(leg)*w + k] = o[6*count + first + k];
+        Hk[(3 + leg)*w + k] = o[7*count + first + k];
+        Hk[(6 + leg)*w + k] = o[8*count + first + k];
+        Hk[(9 + leg)*w + k] = o[9*count + first + k];
+        Hk[(12 + leg)*w + k] = o[10*count + first + k];
+        Hk[(15 + leg)*w + k] = o[11*count + first + k];
+        pivots[(leg)*w + k] = o[12*count + first + k];
+        reach[(leg)*w + k] = o[13*count + first + k];
+        t->unreachable[k] += o[14*count + first + k];
+        t->singular[k] += o[15*count + first + k];
+        t->total[k] += o[16*count + first + k];
     }
 }
 
-INLINE void condition_after(const prepared *m, size_t w, const condition_values *s, real *lengths)
+INLINE void condition_after(const prepared *m, size_t w, const real *sums, real *lengths, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real total_prs = s->sum[0][k];
+        /* (spread) rms distance of the platform points from their centroid */
         const real spread_t = m->spread_t;
-        /* (C2) rms distance of the platform points from their centroid */
+        const real total_prs = sums[0*w + k];
         const real spread_ = spread_t*root(total_prs);
         lengths[0*w + k] = spread_;
+        t->total[k] += spread_;
     }
 }
 
-INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, real *Hk, real
-    *lengths, real *pivots, real *reach, verdict *t)
+INLINE void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
+    *pivots, real *reach, verdict *t)
 {
-    condition_values values, *const s = &values;
-    condition_results_prs results_prs;
-    condition_before(m, w, X, s, lengths, t);
-    if (w == 1) {  /* the legs side by side */
-        memset(results_prs.sum, 0, sizeof results_prs.sum);
-        condition_legs_prs(m, 0, 1, s, 0, 3, 0, &results_prs);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            condition_place_prs(w, &results_prs, leg, leg, H, Hk, pivots, reach, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_prs.sum[n], 3);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_prs.sum, 0, sizeof results_prs.sum);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            condition_legs_prs(m, leg, 0, s, 1, w, 1, &results_prs);
-            condition_place_prs(w, &results_prs, leg, 0, H, Hk, pivots, reach, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_prs.sum[n][k];
-            }
-        }
+    real s[12] = {0}, sums[1] = {0}, terms_prs[1*LEGS(3)] = {0}, o_prs[17*LEGS(3)] = {0};
+    condition_before(m, 1, X, s, lengths, t);
+    condition_legs_prs(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_prs, o_prs);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        condition_place_prs(1, LEGS(3), o_prs, leg, leg, H, Hk, pivots, reach, t);
     }
-    condition_after(m, w, s, lengths);
+    for (size_t n = 0; n < 1; ++n) {
+        sums[n] = total(terms_prs + n*LEGS(3), 3);
+    }
+    condition_after(m, 1, sums, lengths, t);
 }
 
 /* ---- what users call, as steps over these ---- */
 
-INLINE void M_any(const prepared *m, size_t w, const real *X, real *M_out, int *code)
+INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    M_run(m, X, M_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(36, 1, M_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(36, M_out);
+    }
+}
+
+INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
     real X_in[7*LANES], M[36*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    M_run(m, w, X, M, &why);
-    check(36, w, M, why.overflow);
-    judge(&why, w, code);
-    deliver(M, 36, w, code, M_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    M_run_lanes(m, X, M, &why);
+    suspect(&why, code);
+    deliver(36, M, M_out);
 }
 
-INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, real *Z_out, int
-    *code)
+INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    Z_run(m, X, V, Z_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(6, 1, Z_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(6, Z_out);
+    }
+}
+
+INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     real X_in[7*LANES], V_in[6*LANES], Z[6*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    Z_run(m, w, X, V, Z, &why);
-    check(6, w, Z, why.overflow);
-    judge(&why, w, code);
-    deliver(Z, 6, w, code, Z_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    Z_run_lanes(m, X, V, Z, &why);
+    suspect(&why, code);
+    deliver(6, Z, Z_out);
 }
 
-INLINE void H_any(const prepared *m, size_t w, const real *X, real *H_out, int *code)
+INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    H_run(m, X, H_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(18, 1, H_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(18, H_out);
+    }
+}
+
+INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
     real X_in[7*LANES], H[18*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    H_run(m, w, X, H, &why);
-    check(18, w, H, why.overflow);
-    judge(&why, w, code);
-    deliver(H, 18, w, code, H_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    H_run_lanes(m, X, H, &why);
+    suspect(&why, code);
+    deliver(18, H, H_out);
 }
 
-INLINE void Hk_any(const prepared *m, size_t w, const real *X, real *Hk_out, int *code)
+INLINE void Hk_one(const prepared *m, const real *X, real *Hk_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    Hk_run(m, X, Hk_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(18, 1, Hk_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(18, Hk_out);
+    }
+}
+
+INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
 {
     real X_in[7*LANES], Hk[18*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    Hk_run(m, w, X, Hk, &why);
-    check(18, w, Hk, why.overflow);
-    judge(&why, w, code);
-    deliver(Hk, 18, w, code, Hk_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    Hk_run_lanes(m, X, Hk, &why);
+    suspect(&why, code);
+    deliver(18, Hk, Hk_out);
 }
 
-INLINE void constraints_any(const prepared *m, size_t w, const real *X, real *constraints_out, int
-    *code)
+INLINE void constraints_one(const prepared *m, const real *X, real *constraints_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    constraints_run(m, X, constraints_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(3, 1, constraints_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(3, constraints_out);
+    }
+}
+
+INLINE void constraints_lanes(const prepared *m, const real *X, real *constraints_out, int *code)
 {
     real X_in[7*LANES], constraints[3*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    constraints_run(m, w, X, constraints, &why);
-    check(3, w, constraints, why.overflow);
-    judge(&why, w, code);
-    deliver(constraints, 3, w, code, constraints_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    constraints_run_lanes(m, X, constraints, &why);
+    suspect(&why, code);
+    deliver(3, constraints, constraints_out);
 }
 
-INLINE void constraint_bias_any(const prepared *m, size_t w, const real *X, const real *V, real
+INLINE void constraint_bias_one(const prepared *m, const real *X, const real *V, real
+    *constraint_bias_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    constraint_bias_run(m, X, V, constraint_bias_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(3, 1, constraint_bias_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(3, constraint_bias_out);
+    }
+}
+
+INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *V, real
     *constraint_bias_out, int *code)
 {
     real X_in[7*LANES], V_in[6*LANES], constraint_bias[3*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    constraint_bias_run(m, w, X, V, constraint_bias, &why);
-    check(3, w, constraint_bias, why.overflow);
-    judge(&why, w, code);
-    deliver(constraint_bias, 3, w, code, constraint_bias_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    constraint_bias_run_lanes(m, X, V, constraint_bias, &why);
+    suspect(&why, code);
+    deliver(3, constraint_bias, constraint_bias_out);
 }
 
-INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, real *q_out, int
-    *code)
+INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(6, 1, q_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(6, q_out);
+    }
+}
+
+INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     real X_in[7*LANES], q[6*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    inverse_kinematics_run(m, w, X, q, &why);
-    check(6, w, q, why.overflow);
-    judge(&why, w, code);
-    deliver(q, 6, w, code, q_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    suspect(&why, code);
+    deliver(6, q, q_out);
 }
 
-INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *qd_out, int *code)
+INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    joint_rates_run(m, X, V, qd_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(6, 1, qd_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(6, qd_out);
+    }
+}
+
+INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
 {
     real X_in[7*LANES], V_in[6*LANES], qd[6*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    joint_rates_run(m, w, X, V, qd, &why);
-    check(6, w, qd, why.overflow);
-    judge(&why, w, code);
-    deliver(qd, 6, w, code, qd_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    joint_rates_run_lanes(m, X, V, qd, &why);
+    suspect(&why, code);
+    deliver(6, qd, qd_out);
 }
 
-INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd_out, int *code)
+INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+        check(6, 1, A, why.invalid);
+    }
+    joint_accelerations_run(m, X, V, A, qdd_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(6, 1, qdd_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(6, qdd_out);
+    }
+}
+
+INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
 {
     real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], qdd[6*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    A = side_by_side(6, w, A, A_in, why.invalid);
-    joint_accelerations_run(m, w, X, V, A, qdd, &why);
-    check(6, w, qdd, why.overflow);
-    judge(&why, w, code);
-    deliver(qdd, 6, w, code, qdd_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    A = side_by_side(6, A, A_in, why.total);
+    joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
+    suspect(&why, code);
+    deliver(6, qdd, qdd_out);
 }
 
-INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *V, real *M_out,
-    real *Z_out, real *H_out, int *code)
+INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out, int *code)
+{
+    real Hk[18] = {0}, constraint_bias[3] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    dynamics_run(m, X, V, M_out, Z_out, H_out, Hk, constraint_bias, &why);
+    if (!is_finite(why.total[0])) {
+        check(36, 1, M_out, why.overflow);
+        check(6, 1, Z_out, why.overflow);
+        check(18, 1, H_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(36, M_out);
+        refuse(6, Z_out);
+        refuse(18, H_out);
+    }
+}
+
+INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out, int *code)
 {
     real X_in[7*LANES], V_in[6*LANES], M[36*LANES], Z[6*LANES], H[18*LANES], Hk[18*LANES],
         constraint_bias[3*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    dynamics_run(m, w, X, V, M, Z, H, Hk, constraint_bias, &why);
-    check(36, w, M, why.overflow);
-    check(6, w, Z, why.overflow);
-    check(18, w, H, why.overflow);
-    judge(&why, w, code);
-    deliver(M, 36, w, code, M_out);
-    deliver(Z, 6, w, code, Z_out);
-    deliver(H, 18, w, code, H_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    dynamics_run_lanes(m, X, V, M, Z, H, Hk, constraint_bias, &why);
+    suspect(&why, code);
+    deliver(36, M, M_out);
+    deliver(6, Z, Z_out);
+    deliver(18, H, H_out);
 }
 
-INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, const real *V, const
-    real *A, const real *wrench, real *tau_out, real *lambda_out, int *code)
+INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, real *x, real
+    *unsure, real *total)
 {
-    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], wrench_in[6*LANES], required[6*LANES],
-        H[18*LANES], Hk[18*LANES], subtract_2[6*LANES], beside_3[36*LANES] = {0}, solve_4[6*LANES],
-        work[48*LANES];
+    for (size_t k = 0; k < w; ++k) {
+        real a00 = a[(2*stride + 0)*w + k];
+        real a01 = a[(2*stride + 1)*w + k];
+        real a02 = a[(2*stride + 2)*w + k];
+        real a03 = a[(2*stride + 3)*w + k];
+        real a04 = a[(2*stride + 4)*w + k];
+        real a05 = a[(2*stride + 5)*w + k];
+        real b0 = b[2*w + k];
+        real a10 = a[(4*stride + 0)*w + k];
+        real a11 = a[(4*stride + 1)*w + k];
+        real a12 = a[(4*stride + 2)*w + k];
+        real a13 = a[(4*stride + 3)*w + k];
+        real a14 = a[(4*stride + 4)*w + k];
+        real a15 = a[(4*stride + 5)*w + k];
+        real b1 = b[4*w + k];
+        real a20 = a[(3*stride + 0)*w + k];
+        real a21 = a[(3*stride + 1)*w + k];
+        real a22 = a[(3*stride + 2)*w + k];
+        real a23 = a[(3*stride + 3)*w + k];
+        real a24 = a[(3*stride + 4)*w + k];
+        real a25 = a[(3*stride + 5)*w + k];
+        real b2 = b[3*w + k];
+        real a30 = a[(5*stride + 0)*w + k];
+        real a31 = a[(5*stride + 1)*w + k];
+        real a32 = a[(5*stride + 2)*w + k];
+        real a33 = a[(5*stride + 3)*w + k];
+        real a34 = a[(5*stride + 4)*w + k];
+        real a35 = a[(5*stride + 5)*w + k];
+        real b3 = b[5*w + k];
+        real a40 = a[(1*stride + 0)*w + k];
+        real a41 = a[(1*stride + 1)*w + k];
+        real a42 = a[(1*stride + 2)*w + k];
+        real a43 = a[(1*stride + 3)*w + k];
+        real a44 = a[(1*stride + 4)*w + k];
+        real a45 = a[(1*stride + 5)*w + k];
+        real b4 = b[1*w + k];
+        real a50 = a[(0)*w + k];
+        real a51 = a[(1)*w + k];
+        real a52 = a[(2)*w + k];
+        real a53 = a[(3)*w + k];
+        real a54 = a[(4)*w + k];
+        real a55 = a[(5)*w + k];
+        real b5 = b[0*w + k];
+        const real f0 = 1/a00;
+        const real d1 = a00*a11 - a10*a01;
+        const real f1 = a00/d1;
+        const real g10 = a10*f0;
+        a12 -= g10*a02;
+        a13 -= g10*a03;
+        a14 -= g10*a04;
+        a15 -= g10*a05;
+        b1 -= g10*b0;
+        const real g20 = a20*f0;
+        a21 -= g20*a01;
+        a22 -= g20*a02;
+        a23 -= g20*a03;
+        a24 -= g20*a04;
+        a25 -= g20*a05;
+        b2 -= g20*b0;
+        const real g30 = a30*f0;
+        a31 -= g30*a01;
+        a32 -= g30*a02;
+        a33 -= g30*a03;
+        a34 -= g30*a04;
+        a35 -= g30*a05;
+        b3 -= g30*b0;
+        const real g40 = a40*f0;
+        a41 -= g40*a01;
+        a42 -= g40*a02;
+        a43 -= g40*a03;
+        a44 -= g40*a04;
+        a45 -= g40*a05;
+        b4 -= g40*b0;
+        const real g50 = a50*f0;
+        a51 -= g50*a01;
+        a52 -= g50*a02;
+        a53 -= g50*a03;
+        a54 -= g50*a04;
+        a55 -= g50*a05;
+        b5 -= g50*b0;
+        const real g21 = a21*f1;
+        a22 -= g21*a12;
+        a23 -= g21*a13;
+        a24 -= g21*a14;
+        a25 -= g21*a15;
+        b2 -= g21*b1;
+        const real g31 = a31*f1;
+        a32 -= g31*a12;
+        a33 -= g31*a13;
+        a34 -= g31*a14;
+        a35 -= g31*a15;
+        b3 -= g31*b1;
+        const real g41 = a41*f1;
+        a42 -= g41*a12;
+        a43 -= g41*a13;
+        a44 -= g41*a14;
+        a45 -= g41*a15;
+        b4 -= g41*b1;
+        const real g51 = a51*f1;
+        a52 -= g51*a12;
+        a53 -= g51*a13;
+        a54 -= g51*a14;
+        a55 -= g51*a15;
+        b5 -= g51*b1;
+        const real f2 = 1/a22;
+        const real d3 = a22*a33 - a32*a23;
+        const real f3 = a22/d3;
+        const real g32 = a32*f2;
+        a34 -= g32*a24;
+        a35 -= g32*a25;
+        b3 -= g32*b2;
+        const real g42 = a42*f2;
+        a43 -= g42*a23;
+        a44 -= g42*a24;
+        a45 -= g42*a25;
+        b4 -= g42*b2;
+        const real g52 = a52*f2;
+        a53 -= g52*a23;
+        a54 -= g52*a24;
+        a55 -= g52*a25;
+        b5 -= g52*b2;
+        const real g43 = a43*f3;
+        a44 -= g43*a34;
+        a45 -= g43*a35;
+        b4 -= g43*b3;
+        const real g53 = a53*f3;
+        a54 -= g53*a34;
+        a55 -= g53*a35;
+        b5 -= g53*b3;
+        const real f4 = 1/a44;
+        const real d5 = a44*a55 - a54*a45;
+        const real f5 = a44/d5;
+        const real g54 = a54*f4;
+        b5 -= g54*b4;
+        const real x5 = (b5)*f5;
+        const real x4 = (b4)*f4 - a45*f4*x5;
+        const real x3 = (b3 - a35*x5)*f3 - a34*f3*x4;
+        const real x2 = (b2 - a25*x5 - a24*x4)*f2 - a23*f2*x3;
+        const real x1 = (b1 - a15*x5 - a14*x4 - a13*x3)*f1 - a12*f1*x2;
+        const real x0 = (b0 - a05*x5 - a04*x4 - a03*x3 - a02*x2)*f0 - a01*f0*x1;
+        x[0*w + k] = x0;
+        x[1*w + k] = x1;
+        x[2*w + k] = x2;
+        x[3*w + k] = x3;
+        x[4*w + k] = x4;
+        x[5*w + k] = x5;
+        total[k] += (x0 + (x1 + x2)) + (x3 + (x4 + x5));
+        const real most0 = larger(magnitude(g10), larger(magnitude(g20), magnitude(g30)));
+        const real most1 = larger(larger(magnitude(g40), larger(magnitude(g50), magnitude(g21))),
+            larger(magnitude(g31), larger(magnitude(g32), magnitude(g54))));
+        const real most2 = larger(larger(magnitude(g41), larger(magnitude(g51), magnitude(g42))),
+            larger(magnitude(g52), larger(magnitude(g43), magnitude(g53))));
+        const real most3 = larger(magnitude(f0), larger(magnitude(f4), magnitude(f5)));
+        const real most4 = larger(magnitude(f1), larger(magnitude(f2), magnitude(f3)));
+        unsure[k] += UNLESS(most0 <= R(2.5)) + UNLESS(most1 <= R(10)) + UNLESS(most2 <= R(40)) +
+            UNLESS(most3 <= R(1000)) + UNLESS(most4 <= R(4000)) + UNLESS(is_finite(a00 + d1 + a22
+            + d3 + a44 + d5));
+    }
+}
+
+INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau_out, real *lambda_out, int *code)
+{
+    real wrench_in[6], required[6] = {0}, H[18] = {0}, Hk[18] = {0}, subtract_2[6] = {0}, beside_3[36]
+        = {0}, solve_4[6] = {0}, unsure_7[1] = {0}, work[48];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    A = side_by_side(6, w, A, A_in, why.invalid);
-    wrench = optional(6, w, wrench, 0, wrench_in, why.invalid);
-    required_run(m, w, X, V, A, required, H, Hk, &why);
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+        check(6, 1, A, why.invalid);
+    }
+    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    required_run(m, X, V, A, required, H, Hk, &why);
     const real *const extend_1 = wrench;
-    for (size_t i = 0; i < 6*w; ++i) {
+    for (size_t i = 0; i < 6; ++i) {
         subtract_2[i] = required[i] - extend_1[i];
     }
-    beside(6, 3*w, 3*w, H, Hk, beside_3);
-    set_matrix(6, w, beside_3, work);
-    solve(6, w, subtract_2, work, solve_4, why.singular);
+    beside(6, 3, 3, H, Hk, beside_3);
+    eliminate_0(1, 6, beside_3, subtract_2, solve_4, unsure_7, why.total);
+    if (unsure_7[0] > 0) {
+        set_matrix(6, 1, beside_3, work);
+        solve_apart(6, subtract_2, work, solve_4, why.singular);
+        check(6, 1, solve_4, why.overflow);
+    }
     const real *const tau = solve_4;
-    const real *const lambda_ = solve_4 + 3*w;
-    check(3, w, tau, why.overflow);
-    check(3, w, lambda_, why.overflow);
-    judge(&why, w, code);
-    deliver(tau, 3, w, code, tau_out);
-    deliver(lambda_, 3, w, code, lambda_out);
+    const real *const lambda_ = solve_4 + 3;
+    check(3, 1, tau, why.overflow);
+    check(3, 1, lambda_, why.overflow);
+    judge(&why, code);
+    copy(3, tau, tau_out);
+    copy(3, lambda_, lambda_out);
+    if (*code != OK) {
+        refuse(3, tau_out);
+        refuse(3, lambda_out);
+    }
 }
 
-INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, const real *V, const
-    real *tau, const real *wrench, real *A_out, real *lambda_out, int *code)
+INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau_out, real *lambda_out, int *code)
+{
+    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], wrench_in[6*LANES], required[6*LANES],
+        H[18*LANES], Hk[18*LANES], subtract_2[6*LANES], beside_3[36*LANES] = {0}, solve_4[6*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    A = side_by_side(6, A, A_in, why.total);
+    wrench = optional_side_by_side(6, wrench, 0, wrench_in, why.total);
+    required_run_lanes(m, X, V, A, required, H, Hk, &why);
+    const real *const extend_1 = wrench;
+    for (size_t i = 0; i < 6*LANES; ++i) {
+        subtract_2[i] = required[i] - extend_1[i];
+    }
+    beside(6, 3*LANES, 3*LANES, H, Hk, beside_3);
+    eliminate_0(LANES, 6, beside_3, subtract_2, solve_4, why.singular, why.total);
+    const real *const tau = solve_4;
+    const real *const lambda_ = solve_4 + 3*LANES;
+    add_up(3, tau, why.total);
+    add_up(3, lambda_, why.total);
+    suspect(&why, code);
+    deliver(3, tau, tau_out);
+    deliver(3, lambda_, lambda_out);
+}
+
+INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
+    const real *wrench, real *A_out, real *lambda_out, int *code)
+{
+    real wrench_in[6], M[36] = {0}, Z[6] = {0}, H[18] = {0}, Hk[18] = {0}, constraint_bias[3] = {0},
+        times_1[6] = {0}, add_3[6] = {0}, subtract_4[6] = {0}, negative_5[3] = {0}, join_6[9] = {0},
+        solve_8[9] = {0}, work[108];
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6) + total(tau, 3);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+        check(3, 1, tau, why.invalid);
+    }
+    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    dynamics_run(m, X, V, M, Z, H, Hk, constraint_bias, &why);
+    product(6, 3, 1, 1, H, tau, times_1);
+    const real *const extend_2 = wrench;
+    for (size_t i = 0; i < 6; ++i) {
+        add_3[i] = times_1[i] + extend_2[i];
+    }
+    for (size_t i = 0; i < 6; ++i) {
+        subtract_4[i] = add_3[i] - Z[i];
+    }
+    for (size_t i = 0; i < 3; ++i) {
+        negative_5[i] = -constraint_bias[i];
+    }
+    beside(1, 6, 3, subtract_4, negative_5, join_6);
+    saddle(6, 3, stride_of(9, 1), 1, M, Hk, work);
+    solve_state(9, join_6, work, solve_8, why.singular);
+    const real *const A = solve_8;
+    const real *const lambda_ = solve_8 + 6;
+    check(6, 1, A, why.overflow);
+    check(3, 1, lambda_, why.overflow);
+    judge(&why, code);
+    copy(6, A, A_out);
+    copy(3, lambda_, lambda_out);
+    if (*code != OK) {
+        refuse(6, A_out);
+        refuse(3, lambda_out);
+    }
+}
+
+INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
+    *tau, const real *wrench, real *A_out, real *lambda_out, int *code)
 {
     real X_in[7*LANES], V_in[6*LANES], tau_in[3*LANES], wrench_in[6*LANES], M[36*LANES], Z[6*LANES],
         H[18*LANES], Hk[18*LANES], constraint_bias[3*LANES], times_1[6*LANES] = {0}, add_3[6*LANES],
         subtract_4[6*LANES], negative_5[3*LANES], join_6[9*LANES] = {0}, solve_8[9*LANES],
         work[108*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    tau = side_by_side(3, w, tau, tau_in, why.invalid);
-    wrench = optional(6, w, wrench, 0, wrench_in, why.invalid);
-    dynamics_run(m, w, X, V, M, Z, H, Hk, constraint_bias, &why);
-    product(6, 3, 1, w, H, tau, times_1);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    tau = side_by_side(3, tau, tau_in, why.total);
+    wrench = optional_side_by_side(6, wrench, 0, wrench_in, why.total);
+    dynamics_run_lanes(m, X, V, M, Z, H, Hk, constraint_bias, &why);
+    product(6, 3, 1, LANES, H, tau, times_1);
     const real *const extend_2 = wrench;
-    for (size_t i = 0; i < 6*w; ++i) {
+    for (size_t i = 0; i < 6*LANES; ++i) {
         add_3[i] = times_1[i] + extend_2[i];
     }
-    for (size_t i = 0; i < 6*w; ++i) {
+    for (size_t i = 0; i < 6*LANES; ++i) {
         subtract_4[i] = add_3[i] - Z[i];
     }
-    for (size_t i = 0; i < 3*w; ++i) {
+    for (size_t i = 0; i < 3*LANES; ++i) {
         negative_5[i] = -constraint_bias[i];
     }
-    beside(1, 6*w, 3*w, subtract_4, negative_5, join_6);
-    saddle(6, 3, stride_of(9, w), w, M, Hk, work);
-    solve(9, w, join_6, work, solve_8, why.singular);
+    beside(1, 6*LANES, 3*LANES, subtract_4, negative_5, join_6);
+    saddle(6, 3, stride_of(9, LANES), LANES, M, Hk, work);
+    solve(9, LANES, join_6, work, solve_8, why.singular);
     const real *const A = solve_8;
-    const real *const lambda_ = solve_8 + 6*w;
-    check(6, w, A, why.overflow);
-    check(3, w, lambda_, why.overflow);
-    judge(&why, w, code);
-    deliver(A, 6, w, code, A_out);
-    deliver(lambda_, 3, w, code, lambda_out);
+    const real *const lambda_ = solve_8 + 6*LANES;
+    add_up(6, A, why.total);
+    add_up(3, lambda_, why.total);
+    suspect(&why, code);
+    deliver(6, A, A_out);
+    deliver(3, lambda_, lambda_out);
 }
 
-INLINE void complete_acceleration_any(const real *A, real *completed_out, int *code)
+INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
 {
     verdict why;
     start(1, &why);
     check(6, 1, A, why.invalid);
     const real *const completed = A;
     check(6, 1, completed, why.overflow);
-    judge(&why, 1, code);
-    deliver(completed, 6, 1, code, completed_out);
+    judge(&why, code);
+    copy(6, completed, completed_out);
+    if (*code != OK) {
+        refuse(6, completed_out);
+    }
 }
 
-INLINE void leg_reactions_any(const prepared *m, const real *X, const real *V, const real *A,
+INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out, int *code)
 {
     static const size_t places_0[] = {0, 1, 2};
     static const size_t places_1[] = {0, 1, 2};
     real wrench_in[6], required[6] = {0}, H[18] = {0}, Hk[18] = {0}, subtract_2[6] = {0}, beside_3[36]
-        = {0}, solve_4[6] = {0}, leg_force[9] = {0}, drive[9] = {0}, constraint_direction[9] = {0},
-        add_forces_7[9] = {0}, forces[9] = {0}, work[48];
+        = {0}, solve_4[6] = {0}, unsure_7[1] = {0}, leg_force[9] = {0}, drive[9] = {0},
+        constraint_direction[9] = {0}, add_forces_7[9] = {0}, forces[9] = {0}, work[48];
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
-    check(6, 1, V, why.invalid);
-    check(6, 1, A, why.invalid);
-    wrench = optional(6, 1, wrench, 0, wrench_in, why.invalid);
-    required_run(m, 1, X, V, A, required, H, Hk, &why);
+    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+        check(6, 1, A, why.invalid);
+    }
+    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    required_run(m, X, V, A, required, H, Hk, &why);
     const real *const extend_1 = wrench;
     for (size_t i = 0; i < 6; ++i) {
         subtract_2[i] = required[i] - extend_1[i];
     }
     beside(6, 3, 3, H, Hk, beside_3);
-    set_matrix(6, 1, beside_3, work);
-    solve_state(6, subtract_2, work, solve_4, why.singular);
+    eliminate_0(1, 6, beside_3, subtract_2, solve_4, unsure_7, why.total);
+    if (unsure_7[0] > 0) {
+        set_matrix(6, 1, beside_3, work);
+        solve_apart(6, subtract_2, work, solve_4, why.singular);
+        check(6, 1, solve_4, why.overflow);
+    }
     const real *const split_5 = solve_4;
     const real *const split_6 = solve_4 + 3;
-    legs_run(m, 1, X, V, A, leg_force, drive, constraint_direction, &why);
+    legs_run(m, X, V, A, leg_force, drive, constraint_direction, &why);
     for (size_t i = 0; i < 9; ++i) {
         add_forces_7[i] = leg_force[i];
     }
@@ -5264,30 +5794,40 @@ INLINE void leg_reactions_any(const prepared *m, const real *X, const real *V, c
     }
     add_forces(3, 3, 1, places_1, split_6, constraint_direction, forces);
     check(9, 1, forces, why.overflow);
-    judge(&why, 1, code);
-    deliver(forces, 9, 1, code, forces_out);
+    judge(&why, code);
+    copy(9, forces, forces_out);
+    if (*code != OK) {
+        refuse(9, forces_out);
+    }
 }
 
-INLINE void energy_any(const prepared *m, const real *X, const real *V, real *kinetic_out, real
+INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out, int *code)
 {
     real M[36] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
-    check(6, 1, V, why.invalid);
-    M_run(m, 1, X, M, &why);
-    potential_run(m, 1, X, potential_of_potential, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    M_run(m, X, M, &why);
+    potential_run(m, X, potential_of_potential, &why);
     half_form(6, 1, V, M, kinetic);
     const real *const potential = potential_of_potential;
     check(1, 1, kinetic, why.overflow);
     check(1, 1, potential, why.overflow);
-    judge(&why, 1, code);
-    deliver(kinetic, 1, 1, code, kinetic_out);
-    deliver(potential, 1, 1, code, potential_out);
+    judge(&why, code);
+    copy(1, kinetic, kinetic_out);
+    copy(1, potential, potential_out);
+    if (*code != OK) {
+        refuse(1, kinetic_out);
+        refuse(1, potential_out);
+    }
 }
 
-INLINE void condition_any(const prepared *m, const real *X, const real *length, real *sigma_out,
+INLINE void condition_one(const prepared *m, const real *X, const real *length, real *sigma_out,
     real *legs_out, int *code)
 {
     static const size_t places_0[] = {3, 4, 5};
@@ -5297,8 +5837,8 @@ INLINE void condition_any(const prepared *m, const real *X, const real *length, 
     start(1, &why);
     check(7, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, 1, length, 0, length_in, why.invalid);
-    condition_run(m, 1, X, H, Hk, lengths, legs, reach, &why);
+    length = optional(1, length, 0, length_in, why.invalid);
+    condition_run(m, X, H, Hk, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
             lengths[i] : lengths[1 + i];
@@ -5308,14 +5848,20 @@ INLINE void condition_any(const prepared *m, const real *X, const real *length, 
     }
     divide_rows(3, 3, 1, places_0, choose_length_1, divide_rows_2);
     singular_values(6, 3, divide_rows_2, sigma);
+    if (!is_finite(why.total[0])) {
+        check(3, 1, legs, why.overflow);
+    }
     check(3, 1, sigma, why.overflow);
-    check(3, 1, legs, why.overflow);
-    judge(&why, 1, code);
-    deliver(sigma, 3, 1, code, sigma_out);
-    deliver(legs, 3, 1, code, legs_out);
+    judge(&why, code);
+    copy(3, sigma, sigma_out);
+    copy(3, legs, legs_out);
+    if (*code != OK) {
+        refuse(3, sigma_out);
+        refuse(3, legs_out);
+    }
 }
 
-INLINE void condition_constrained_any(const prepared *m, const real *X, const real *length, real
+INLINE void condition_constrained_one(const prepared *m, const real *X, const real *length, real
     *sigma_out, real *legs_out, int *code)
 {
     static const size_t places_0[] = {3, 4, 5};
@@ -5325,8 +5871,8 @@ INLINE void condition_constrained_any(const prepared *m, const real *X, const re
     start(1, &why);
     check(7, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, 1, length, 0, length_in, why.invalid);
-    condition_run(m, 1, X, H, Hk, lengths, legs, reach, &why);
+    length = optional(1, length, 0, length_in, why.invalid);
+    condition_run(m, X, H, Hk, lengths, legs, reach, &why);
     beside(6, 3, 3, H, Hk, beside_1);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_2[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
@@ -5337,14 +5883,20 @@ INLINE void condition_constrained_any(const prepared *m, const real *X, const re
     }
     divide_rows(3, 6, 1, places_0, choose_length_2, divide_rows_3);
     singular_values(6, 6, divide_rows_3, sigma);
+    if (!is_finite(why.total[0])) {
+        check(3, 1, legs, why.overflow);
+    }
     check(6, 1, sigma, why.overflow);
-    check(3, 1, legs, why.overflow);
-    judge(&why, 1, code);
-    deliver(sigma, 6, 1, code, sigma_out);
-    deliver(legs, 3, 1, code, legs_out);
+    judge(&why, code);
+    copy(6, sigma, sigma_out);
+    copy(3, legs, legs_out);
+    if (*code != OK) {
+        refuse(6, sigma_out);
+        refuse(3, legs_out);
+    }
 }
 
-static void mismatch_any(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
+static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
     static const size_t places_0[] = {0, 2, 4};
@@ -5352,35 +5904,44 @@ static void mismatch_any(const prepared *m, const real *X, const real *q_actuate
         gap[6] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
-    check(3, 1, q_actuated, why.invalid);
-    inverse_kinematics_run(m, 1, X, q, &why);
+    const real total_in = total(X, 7) + total(q_actuated, 3);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(3, 1, q_actuated, why.invalid);
+    }
+    inverse_kinematics_run(m, X, q, &why);
     take(3, 1, places_0, q, take_1);
     for (size_t i = 0; i < 3; ++i) {
         subtract_2[i] = q_actuated[i] - take_1[i];
     }
-    constraints_run(m, 1, X, constraints, &why);
+    constraints_run(m, X, constraints, &why);
     for (size_t i = 0; i < 3; ++i) {
         negative_3[i] = -constraints[i];
     }
     beside(1, 3, 3, subtract_2, negative_3, gap);
     check(6, 1, gap, why.overflow);
-    judge(&why, 1, code);
-    deliver(gap, 6, 1, code, gap_out);
+    judge(&why, code);
+    copy(6, gap, gap_out);
+    if (*code != OK) {
+        refuse(6, gap_out);
+    }
 }
 
-static void slope_any(const prepared *m, const real *X, real *slope_out, int *code)
+static void slope_one(const prepared *m, const real *X, real *slope_out, int *code)
 {
     real H[18] = {0}, Hk[18] = {0}, slope[36] = {0};
     verdict why;
     start(1, &why);
     check(7, 1, X, why.invalid);
-    H_run(m, 1, X, H, &why);
-    Hk_run(m, 1, X, Hk, &why);
+    H_run(m, X, H, &why);
+    Hk_run(m, X, Hk, &why);
     beside(6, 3, 3, H, Hk, slope);
     check(36, 1, slope, why.overflow);
-    judge(&why, 1, code);
-    deliver(slope, 36, 1, code, slope_out);
+    judge(&why, code);
+    copy(36, slope, slope_out);
+    if (*code != OK) {
+        refuse(36, slope_out);
+    }
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -5391,12 +5952,12 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
     real trial[7] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    mismatch_any(m, found, q_actuated, gap, &code);
+    mismatch_one(m, found, q_actuated, gap, &code);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        slope_any(m, found, slope, &code);
+        slope_one(m, found, slope, &code);
         if (code != OK) {
             break;
         }
@@ -5410,7 +5971,7 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            mismatch_any(m, trial, q_actuated, next, &tried);
+            mismatch_one(m, trial, q_actuated, next, &tried);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -5428,45 +5989,57 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 }
 
 
-INLINE void forward_kinematics_any(const prepared *m, const real *q_actuated, const real *X0, real
+INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
     *X_out, int *code)
 {
     real X[7] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, q_actuated, why.invalid);
-    check(7, 1, X0, why.invalid);
+    const real total_in = total(q_actuated, 3) + total(X0, 7);
+    if (!is_finite(total_in)) {
+        check(3, 1, q_actuated, why.invalid);
+        check(7, 1, X0, why.invalid);
+    }
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(7, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 7, 1, code, X_out);
+    judge(&why, code);
+    copy(7, X, X_out);
+    if (*code != OK) {
+        refuse(7, X_out);
+    }
 }
 
-static void constraint_gap_any(const prepared *m, const real *X, real *gap_out, int *code)
+static void constraint_gap_one(const prepared *m, const real *X, real *gap_out, int *code)
 {
     real constraints[3] = {0}, gap[3] = {0};
     verdict why;
     start(1, &why);
     check(7, 1, X, why.invalid);
-    constraints_run(m, 1, X, constraints, &why);
+    constraints_run(m, X, constraints, &why);
     for (size_t i = 0; i < 3; ++i) {
         gap[i] = -constraints[i];
     }
     check(3, 1, gap, why.overflow);
-    judge(&why, 1, code);
-    deliver(gap, 3, 1, code, gap_out);
+    judge(&why, code);
+    copy(3, gap, gap_out);
+    if (*code != OK) {
+        refuse(3, gap_out);
+    }
 }
 
-static void constraint_slope_any(const prepared *m, const real *X, real *slope_out, int *code)
+static void constraint_slope_one(const prepared *m, const real *X, real *slope_out, int *code)
 {
-    real slope[18] = {0};
     verdict why;
     start(1, &why);
     check(7, 1, X, why.invalid);
-    Hk_run(m, 1, X, slope, &why);
-    check(18, 1, slope, why.overflow);
-    judge(&why, 1, code);
-    deliver(slope, 18, 1, code, slope_out);
+    Hk_run(m, X, slope_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(18, 1, slope_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(18, slope_out);
+    }
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -5477,12 +6050,12 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
     real trial[7] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    constraint_gap_any(m, found, gap, &code);
+    constraint_gap_one(m, found, gap, &code);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > MET; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        constraint_slope_any(m, found, slope, &code);
+        constraint_slope_one(m, found, slope, &code);
         if (code != OK) {
             break;
         }
@@ -5496,7 +6069,7 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            constraint_gap_any(m, trial, next, &tried);
+            constraint_gap_one(m, trial, next, &tried);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -5514,7 +6087,7 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
 }
 
 
-INLINE void project_any(const prepared *m, const real *X, real *projected_out, int *code)
+INLINE void project_one(const prepared *m, const real *X, real *projected_out, int *code)
 {
     real projected[7] = {0};
     verdict why;
@@ -5522,11 +6095,14 @@ INLINE void project_any(const prepared *m, const real *X, real *projected_out, i
     check(7, 1, X, why.invalid);
     blame(search_constraint_gap(m, X, projected), &why);
     check(7, 1, projected, why.overflow);
-    judge(&why, 1, code);
-    deliver(projected, 7, 1, code, projected_out);
+    judge(&why, code);
+    copy(7, projected, projected_out);
+    if (*code != OK) {
+        refuse(7, projected_out);
+    }
 }
 
-INLINE void dissipation_any(const real *V, real *dissipation_out, int *code)
+INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 {
     real subtract_1[6] = {0};
     verdict why;
@@ -5537,93 +6113,271 @@ INLINE void dissipation_any(const real *V, real *dissipation_out, int *code)
     }
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
-    judge(&why, 1, code);
-    deliver(dissipation, 1, 1, code, dissipation_out);
+    judge(&why, code);
+    copy(1, dissipation, dissipation_out);
+    if (*code != OK) {
+        refuse(1, dissipation_out);
+    }
 }
 
-INLINE void momentum_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *momentum_out, int *code)
+INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
+    *code)
+{
+    real M[36] = {0}, momentum[6] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    M_run(m, X, M, &why);
+    product(6, 6, 1, 1, M, V, momentum);
+    check(6, 1, momentum, why.overflow);
+    judge(&why, code);
+    copy(6, momentum, momentum_out);
+    if (*code != OK) {
+        refuse(6, momentum_out);
+    }
+}
+
+INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
+    int *code)
 {
     real X_in[7*LANES], V_in[6*LANES], M[36*LANES], momentum[6*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    M_run(m, w, X, M, &why);
-    product(6, 6, 1, w, M, V, momentum);
-    check(6, w, momentum, why.overflow);
-    judge(&why, w, code);
-    deliver(momentum, 6, w, code, momentum_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    M_run_lanes(m, X, M, &why);
+    product(6, 6, 1, LANES, M, V, momentum);
+    add_up(6, momentum, why.total);
+    suspect(&why, code);
+    deliver(6, momentum, momentum_out);
 }
 
-INLINE void actuator_positions_any(const prepared *m, size_t w, const real *X, real *q_out, int
-    *code)
+INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
+{
+    static const size_t places_0[] = {0, 1, 2, 3, 4, 5};
+    real q[6] = {0}, margins[6] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q, &why);
+    for (size_t i = 0; i < 6; ++i) {
+        margins[i] = q[i];
+    }
+    unlimited(6, 6, 1, places_0, margins, why.overflow);
+    judge(&why, code);
+    copy(6, margins, margins_out);
+    if (*code != OK) {
+        refuse(6, margins_out);
+    }
+}
+
+INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
+{
+    static const size_t places_0[] = {0, 1, 2, 3, 4, 5};
+    real X_in[7*LANES], q[6*LANES], margins[6*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    for (size_t i = 0; i < 6*LANES; ++i) {
+        margins[i] = q[i];
+    }
+    unlimited(6, 6, LANES, places_0, margins, why.invalid);
+    suspect(&why, code);
+    deliver(6, margins, margins_out);
+}
+
+INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
+{
+    real q[6] = {0}, subtract_1[6] = {0}, within[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q, &why);
+    for (size_t i = 0; i < 6; ++i) {
+        subtract_1[i] = q[i] - q[i];
+    }
+    not_negative(6, 1, subtract_1, within, why.overflow);
+    check(1, 1, within, why.overflow);
+    judge(&why, code);
+    copy(1, within, within_out);
+    if (*code != OK) {
+        refuse(1, within_out);
+    }
+}
+
+INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
+{
+    real X_in[7*LANES], q[6*LANES], subtract_1[6*LANES], within[1*LANES] = {0};
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    for (size_t i = 0; i < 6*LANES; ++i) {
+        subtract_1[i] = q[i] - q[i];
+    }
+    not_negative(6, LANES, subtract_1, within, why.invalid);
+    add_up(1, within, why.total);
+    suspect(&why, code);
+    deliver(1, within, within_out);
+}
+
+INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
+{
+    static const size_t places_0[] = {0, 2, 4};
+    real q_of_inverse_kinematics[6] = {0}, q[3] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
+    take(3, 1, places_0, q_of_inverse_kinematics, q);
+    check(3, 1, q, why.overflow);
+    judge(&why, code);
+    copy(3, q, q_out);
+    if (*code != OK) {
+        refuse(3, q_out);
+    }
+}
+
+INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     static const size_t places_0[] = {0, 2, 4};
     real X_in[7*LANES], q_of_inverse_kinematics[6*LANES], q[3*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    inverse_kinematics_run(m, w, X, q_of_inverse_kinematics, &why);
-    take(3, 1*w, places_0, q_of_inverse_kinematics, q);
-    check(3, w, q, why.overflow);
-    judge(&why, w, code);
-    deliver(q, 3, w, code, q_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
+    take(3, 1*LANES, places_0, q_of_inverse_kinematics, q);
+    add_up(3, q, why.total);
+    suspect(&why, code);
+    deliver(3, q, q_out);
 }
 
-INLINE void actuator_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *qd_out, int *code)
+INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
+{
+    static const size_t places_0[] = {0, 2, 4};
+    real qd_of_joint_rates[6] = {0}, qd[3] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    joint_rates_run(m, X, V, qd_of_joint_rates, &why);
+    take(3, 1, places_0, qd_of_joint_rates, qd);
+    check(3, 1, qd, why.overflow);
+    judge(&why, code);
+    copy(3, qd, qd_out);
+    if (*code != OK) {
+        refuse(3, qd_out);
+    }
+}
+
+INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
+    int *code)
 {
     static const size_t places_0[] = {0, 2, 4};
     real X_in[7*LANES], V_in[6*LANES], qd_of_joint_rates[6*LANES], qd[3*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    joint_rates_run(m, w, X, V, qd_of_joint_rates, &why);
-    take(3, 1*w, places_0, qd_of_joint_rates, qd);
-    check(3, w, qd, why.overflow);
-    judge(&why, w, code);
-    deliver(qd, 3, w, code, qd_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
+    take(3, 1*LANES, places_0, qd_of_joint_rates, qd);
+    add_up(3, qd, why.total);
+    suspect(&why, code);
+    deliver(3, qd, qd_out);
 }
 
-INLINE void actuator_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd_out, int *code)
+INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
+{
+    static const size_t places_0[] = {0, 2, 4};
+    real qdd_of_joint_accelerations[6] = {0}, qdd[3] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+        check(6, 1, A, why.invalid);
+    }
+    joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
+    take(3, 1, places_0, qdd_of_joint_accelerations, qdd);
+    check(3, 1, qdd, why.overflow);
+    judge(&why, code);
+    copy(3, qdd, qdd_out);
+    if (*code != OK) {
+        refuse(3, qdd_out);
+    }
+}
+
+INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out, int *code)
 {
     static const size_t places_0[] = {0, 2, 4};
     real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], qdd_of_joint_accelerations[6*LANES],
         qdd[3*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    A = side_by_side(6, w, A, A_in, why.invalid);
-    joint_accelerations_run(m, w, X, V, A, qdd_of_joint_accelerations, &why);
-    take(3, 1*w, places_0, qdd_of_joint_accelerations, qdd);
-    check(3, w, qdd, why.overflow);
-    judge(&why, w, code);
-    deliver(qdd, 3, w, code, qdd_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    A = side_by_side(6, A, A_in, why.total);
+    joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
+    take(3, 1*LANES, places_0, qdd_of_joint_accelerations, qdd);
+    add_up(3, qdd, why.total);
+    suspect(&why, code);
+    deliver(3, qdd, qdd_out);
 }
 
-INLINE void power_any(const prepared *m, size_t w, const real *X, const real *V, const real *tau,
-    real *power_out, int *code)
+INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out, int *code)
+{
+    real H[18] = {0}, times_1[6] = {0}, power[1] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6) + total(tau, 3);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+        check(3, 1, tau, why.invalid);
+    }
+    H_run(m, X, H, &why);
+    product(6, 3, 1, 1, H, tau, times_1);
+    inner(6, 1, times_1, V, power);
+    check(1, 1, power, why.overflow);
+    judge(&why, code);
+    copy(1, power, power_out);
+    if (*code != OK) {
+        refuse(1, power_out);
+    }
+}
+
+INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out, int *code)
 {
     real X_in[7*LANES], V_in[6*LANES], tau_in[3*LANES], H[18*LANES], times_1[6*LANES] = {0},
         power[1*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    tau = side_by_side(3, w, tau, tau_in, why.invalid);
-    H_run(m, w, X, H, &why);
-    product(6, 3, 1, w, H, tau, times_1);
-    inner(6, w, times_1, V, power);
-    check(1, w, power, why.overflow);
-    judge(&why, w, code);
-    deliver(power, 1, w, code, power_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    tau = side_by_side(3, tau, tau_in, why.total);
+    H_run_lanes(m, X, H, &why);
+    product(6, 3, 1, LANES, H, tau, times_1);
+    inner(6, LANES, times_1, V, power);
+    add_up(1, power, why.total);
+    suspect(&why, code);
+    deliver(1, power, power_out);
 }
 
-INLINE void rotation_any(const real *X, real *R_out, int *code)
+INLINE void rotation_one(const real *X, real *R_out, int *code)
 {
     real R[9] = {0};
     verdict why;
@@ -5632,64 +6386,88 @@ INLINE void rotation_any(const real *X, real *R_out, int *code)
     const real *const take_1 = X + 3;
     rotation_of_quaternion(take_1, R);
     check(9, 1, R, why.overflow);
-    judge(&why, 1, code);
-    deliver(R, 9, 1, code, R_out);
+    judge(&why, code);
+    copy(9, R, R_out);
+    if (*code != OK) {
+        refuse(9, R_out);
+    }
 }
 
-INLINE void pose_any(const real *t, const real *R, real *X_out, int *code)
+INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
 {
     real quaternion_of_rotation_1[4] = {0}, join_2[7] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, t, why.invalid);
-    check(9, 1, R, why.invalid);
+    const real total_in = total(t, 3) + total(R, 9);
+    if (!is_finite(total_in)) {
+        check(3, 1, t, why.invalid);
+        check(9, 1, R, why.invalid);
+    }
     quaternion_of_rotation(R, quaternion_of_rotation_1);
     beside(1, 3, 4, t, quaternion_of_rotation_1, join_2);
     const real *const X = join_2;
     check(7, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 7, 1, code, X_out);
+    judge(&why, code);
+    copy(7, X, X_out);
+    if (*code != OK) {
+        refuse(7, X_out);
+    }
 }
 
-INLINE void X_dot_any(const real *X, const real *V, real *X_dot_out, int *code)
+INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
 {
     real quaternion_rate_3[4] = {0}, X_dot[7] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
-    check(6, 1, V, why.invalid);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
     const real *const take_1 = V + 3;
     const real *const take_2 = X + 3;
     quaternion_rate(take_2, take_1, quaternion_rate_3);
     const real *const take_4 = V;
     beside(1, 3, 4, take_4, quaternion_rate_3, X_dot);
     check(7, 1, X_dot, why.overflow);
-    judge(&why, 1, code);
-    deliver(X_dot, 7, 1, code, X_dot_out);
+    judge(&why, code);
+    copy(7, X_dot, X_dot_out);
+    if (*code != OK) {
+        refuse(7, X_dot_out);
+    }
 }
 
-INLINE void pose_from_rpy_any(const real *t, const real *rpy, real *X_out, int *code)
+INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *code)
 {
     real quaternion_of_rpy_1[4] = {0}, join_2[7] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, t, why.invalid);
-    check(3, 1, rpy, why.invalid);
+    const real total_in = total(t, 3) + total(rpy, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, t, why.invalid);
+        check(3, 1, rpy, why.invalid);
+    }
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
     beside(1, 3, 4, t, quaternion_of_rpy_1, join_2);
     const real *const X = join_2;
     check(7, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 7, 1, code, X_out);
+    judge(&why, code);
+    copy(7, X, X_out);
+    if (*code != OK) {
+        refuse(7, X_out);
+    }
 }
 
-INLINE void retract_any(const real *X, const real *step, real *X_moved_out, int *code)
+INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
 {
     real turn_quaternion_5[4] = {0}, add_6[3] = {0}, X_moved[7] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
-    check(6, 1, step, why.invalid);
+    const real total_in = total(X, 7) + total(step, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, step, why.invalid);
+    }
     const real *const take_1 = X;
     const real *const take_2 = X + 3;
     const real *const take_3 = step;
@@ -5700,17 +6478,23 @@ INLINE void retract_any(const real *X, const real *step, real *X_moved_out, int 
     }
     beside(1, 3, 4, add_6, turn_quaternion_5, X_moved);
     check(7, 1, X_moved, why.overflow);
-    judge(&why, 1, code);
-    deliver(X_moved, 7, 1, code, X_moved_out);
+    judge(&why, code);
+    copy(7, X_moved, X_moved_out);
+    if (*code != OK) {
+        refuse(7, X_moved_out);
+    }
 }
 
-INLINE void difference_any(const real *X0, const real *X1, real *step_out, int *code)
+INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
 {
     real turn_between_5[3] = {0}, subtract_6[3] = {0}, step[6] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X0, why.invalid);
-    check(7, 1, X1, why.invalid);
+    const real total_in = total(X0, 7) + total(X1, 7);
+    if (!is_finite(total_in)) {
+        check(7, 1, X0, why.invalid);
+        check(7, 1, X1, why.invalid);
+    }
     const real *const take_1 = X0;
     const real *const take_2 = X0 + 3;
     const real *const take_3 = X1;
@@ -5721,19 +6505,25 @@ INLINE void difference_any(const real *X0, const real *X1, real *step_out, int *
     }
     beside(1, 3, 3, subtract_6, turn_between_5, step);
     check(6, 1, step, why.overflow);
-    judge(&why, 1, code);
-    deliver(step, 6, 1, code, step_out);
+    judge(&why, code);
+    copy(6, step, step_out);
+    if (*code != OK) {
+        refuse(6, step_out);
+    }
 }
 
-INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real *X_out, int *code)
+INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
 {
     real turn_between_5[3] = {0}, subtract_6[3] = {0}, join_7[6] = {0}, scale_8[6] = {0},
         turn_quaternion_13[4] = {0}, add_14[3] = {0}, X[7] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X0, why.invalid);
-    check(7, 1, X1, why.invalid);
-    check(1, 1, s, why.invalid);
+    const real total_in = total(X0, 7) + total(X1, 7) + total(s, 1);
+    if (!is_finite(total_in)) {
+        check(7, 1, X0, why.invalid);
+        check(7, 1, X1, why.invalid);
+        check(1, 1, s, why.invalid);
+    }
     const real *const take_1 = X0;
     const real *const take_2 = X0 + 3;
     const real *const take_3 = X1;
@@ -5756,8 +6546,11 @@ INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real 
     }
     beside(1, 3, 4, add_14, turn_quaternion_13, X);
     check(7, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 7, 1, code, X_out);
+    judge(&why, code);
+    copy(7, X, X_out);
+    if (*code != OK) {
+        refuse(7, X_out);
+    }
 }
 
 /* ---- one state, and batches ---- */
@@ -5765,7 +6558,7 @@ INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real 
 int tripod_3prs_M(const tripod_3prs_model *model, const tripod_3prs_real *X, tripod_3prs_real *M)
 {
     int code;
-    M_any(model, 1, X, M, &code);
+    M_one(model, X, M, &code);
     return code;
 }
 
@@ -5773,9 +6566,9 @@ size_t tripod_3prs_M_batch(const tripod_3prs_model *model, size_t n, const tripo
     tripod_3prs_real *M, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        M_any(model, LANES, X + 7*i, M + 36*i, codes);
+        M_lanes(model, X + 7*i, M + 36*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_M(model, X + 7*(i + k), M + 36*(i + k));
@@ -5794,7 +6587,7 @@ int tripod_3prs_Z(const tripod_3prs_model *model, const tripod_3prs_real *X, con
     tripod_3prs_real *V, tripod_3prs_real *Z)
 {
     int code;
-    Z_any(model, 1, X, V, Z, &code);
+    Z_one(model, X, V, Z, &code);
     return code;
 }
 
@@ -5802,9 +6595,9 @@ size_t tripod_3prs_Z_batch(const tripod_3prs_model *model, size_t n, const tripo
     const tripod_3prs_real *V, tripod_3prs_real *Z, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        Z_any(model, LANES, X + 7*i, V + 6*i, Z + 6*i, codes);
+        Z_lanes(model, X + 7*i, V + 6*i, Z + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_Z(model, X + 7*(i + k), V + 6*(i + k), Z + 6*(i + k));
@@ -5822,7 +6615,7 @@ size_t tripod_3prs_Z_batch(const tripod_3prs_model *model, size_t n, const tripo
 int tripod_3prs_H(const tripod_3prs_model *model, const tripod_3prs_real *X, tripod_3prs_real *H)
 {
     int code;
-    H_any(model, 1, X, H, &code);
+    H_one(model, X, H, &code);
     return code;
 }
 
@@ -5830,9 +6623,9 @@ size_t tripod_3prs_H_batch(const tripod_3prs_model *model, size_t n, const tripo
     tripod_3prs_real *H, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        H_any(model, LANES, X + 7*i, H + 18*i, codes);
+        H_lanes(model, X + 7*i, H + 18*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_H(model, X + 7*(i + k), H + 18*(i + k));
@@ -5851,7 +6644,7 @@ int tripod_3prs_Hk(const tripod_3prs_model *model, const tripod_3prs_real *X, tr
     *Hk)
 {
     int code;
-    Hk_any(model, 1, X, Hk, &code);
+    Hk_one(model, X, Hk, &code);
     return code;
 }
 
@@ -5859,9 +6652,9 @@ size_t tripod_3prs_Hk_batch(const tripod_3prs_model *model, size_t n, const trip
     tripod_3prs_real *Hk, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        Hk_any(model, LANES, X + 7*i, Hk + 18*i, codes);
+        Hk_lanes(model, X + 7*i, Hk + 18*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_Hk(model, X + 7*(i + k), Hk + 18*(i + k));
@@ -5880,7 +6673,7 @@ int tripod_3prs_constraints(const tripod_3prs_model *model, const tripod_3prs_re
     tripod_3prs_real *residual)
 {
     int code;
-    constraints_any(model, 1, X, residual, &code);
+    constraints_one(model, X, residual, &code);
     return code;
 }
 
@@ -5888,9 +6681,9 @@ size_t tripod_3prs_constraints_batch(const tripod_3prs_model *model, size_t n, c
     tripod_3prs_real *X, tripod_3prs_real *residual, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        constraints_any(model, LANES, X + 7*i, residual + 3*i, codes);
+        constraints_lanes(model, X + 7*i, residual + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_constraints(model, X + 7*(i + k), residual + 3*(i + k));
@@ -5909,7 +6702,7 @@ int tripod_3prs_constraint_bias(const tripod_3prs_model *model, const tripod_3pr
     tripod_3prs_real *V, tripod_3prs_real *bias)
 {
     int code;
-    constraint_bias_any(model, 1, X, V, bias, &code);
+    constraint_bias_one(model, X, V, bias, &code);
     return code;
 }
 
@@ -5917,9 +6710,9 @@ size_t tripod_3prs_constraint_bias_batch(const tripod_3prs_model *model, size_t 
     tripod_3prs_real *X, const tripod_3prs_real *V, tripod_3prs_real *bias, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        constraint_bias_any(model, LANES, X + 7*i, V + 6*i, bias + 3*i, codes);
+        constraint_bias_lanes(model, X + 7*i, V + 6*i, bias + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_constraint_bias(model, X + 7*(i + k), V + 6*(i + k), bias + 3*(i + k));
@@ -5938,7 +6731,7 @@ int tripod_3prs_inverse_kinematics(const tripod_3prs_model *model, const tripod_
     tripod_3prs_real *q)
 {
     int code;
-    inverse_kinematics_any(model, 1, X, q, &code);
+    inverse_kinematics_one(model, X, q, &code);
     return code;
 }
 
@@ -5946,9 +6739,9 @@ size_t tripod_3prs_inverse_kinematics_batch(const tripod_3prs_model *model, size
     tripod_3prs_real *X, tripod_3prs_real *q, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_kinematics_any(model, LANES, X + 7*i, q + 6*i, codes);
+        inverse_kinematics_lanes(model, X + 7*i, q + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_inverse_kinematics(model, X + 7*(i + k), q + 6*(i + k));
@@ -5967,7 +6760,7 @@ int tripod_3prs_joint_rates(const tripod_3prs_model *model, const tripod_3prs_re
     tripod_3prs_real *V, tripod_3prs_real *rates)
 {
     int code;
-    joint_rates_any(model, 1, X, V, rates, &code);
+    joint_rates_one(model, X, V, rates, &code);
     return code;
 }
 
@@ -5975,9 +6768,9 @@ size_t tripod_3prs_joint_rates_batch(const tripod_3prs_model *model, size_t n, c
     tripod_3prs_real *X, const tripod_3prs_real *V, tripod_3prs_real *rates, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_rates_any(model, LANES, X + 7*i, V + 6*i, rates + 6*i, codes);
+        joint_rates_lanes(model, X + 7*i, V + 6*i, rates + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_joint_rates(model, X + 7*(i + k), V + 6*(i + k), rates + 6*(i + k));
@@ -5996,7 +6789,7 @@ int tripod_3prs_joint_accelerations(const tripod_3prs_model *model, const tripod
     const tripod_3prs_real *V, const tripod_3prs_real *A, tripod_3prs_real *accelerations)
 {
     int code;
-    joint_accelerations_any(model, 1, X, V, A, accelerations, &code);
+    joint_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
@@ -6005,9 +6798,9 @@ size_t tripod_3prs_joint_accelerations_batch(const tripod_3prs_model *model, siz
     *accelerations, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_accelerations_any(model, LANES, X + 7*i, V + 6*i, A + 6*i, accelerations + 6*i, codes);
+        joint_accelerations_lanes(model, X + 7*i, V + 6*i, A + 6*i, accelerations + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_joint_accelerations(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k),
@@ -6028,7 +6821,7 @@ int tripod_3prs_dynamics(const tripod_3prs_model *model, const tripod_3prs_real 
     tripod_3prs_real *V, tripod_3prs_real *M, tripod_3prs_real *Z, tripod_3prs_real *H)
 {
     int code;
-    dynamics_any(model, 1, X, V, M, Z, H, &code);
+    dynamics_one(model, X, V, M, Z, H, &code);
     return code;
 }
 
@@ -6037,9 +6830,9 @@ size_t tripod_3prs_dynamics_batch(const tripod_3prs_model *model, size_t n, cons
     int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        dynamics_any(model, LANES, X + 7*i, V + 6*i, M + 36*i, Z + 6*i, H + 18*i, codes);
+        dynamics_lanes(model, X + 7*i, V + 6*i, M + 36*i, Z + 6*i, H + 18*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_dynamics(model, X + 7*(i + k), V + 6*(i + k), M + 36*(i + k), Z + 6*(i +
@@ -6060,7 +6853,7 @@ int tripod_3prs_inverse_dynamics(const tripod_3prs_model *model, const tripod_3p
     tripod_3prs_real *tau, tripod_3prs_real *lambda)
 {
     int code;
-    inverse_dynamics_any(model, 1, X, V, A, wrench, tau, lambda, &code);
+    inverse_dynamics_one(model, X, V, A, wrench, tau, lambda, &code);
     return code;
 }
 
@@ -6069,10 +6862,10 @@ size_t tripod_3prs_inverse_dynamics_batch(const tripod_3prs_model *model, size_t
     tripod_3prs_real *wrench, tripod_3prs_real *tau, tripod_3prs_real *lambda, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_dynamics_any(model, LANES, X + 7*i, V + 6*i, A + 6*i, wrench ? wrench + 6*i : NULL, tau +
-            3*i, lambda + 3*i, codes);
+        inverse_dynamics_lanes(model, X + 7*i, V + 6*i, A + 6*i, wrench ? wrench + 6*i : NULL, tau + 3*i,
+            lambda + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_inverse_dynamics(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k), wrench
@@ -6094,7 +6887,7 @@ int tripod_3prs_forward_dynamics(const tripod_3prs_model *model, const tripod_3p
     tripod_3prs_real *A, tripod_3prs_real *lambda)
 {
     int code;
-    forward_dynamics_any(model, 1, X, V, tau, wrench, A, lambda, &code);
+    forward_dynamics_one(model, X, V, tau, wrench, A, lambda, &code);
     return code;
 }
 
@@ -6103,10 +6896,10 @@ size_t tripod_3prs_forward_dynamics_batch(const tripod_3prs_model *model, size_t
     tripod_3prs_real *wrench, tripod_3prs_real *A, tripod_3prs_real *lambda, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        forward_dynamics_any(model, LANES, X + 7*i, V + 6*i, tau + 3*i, wrench ? wrench + 6*i : NULL, A +
-            6*i, lambda + 3*i, codes);
+        forward_dynamics_lanes(model, X + 7*i, V + 6*i, tau + 3*i, wrench ? wrench + 6*i : NULL, A + 6*i,
+            lambda + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_forward_dynamics(model, X + 7*(i + k), V + 6*(i + k), tau + 3*(i + k),
@@ -6132,7 +6925,7 @@ int tripod_3prs_complete_acceleration(const tripod_3prs_model *model, const trip
     (void)X;
     (void)V;
     (void)wrench;
-    complete_acceleration_any(A, completed, &code);
+    complete_acceleration_one(A, completed, &code);
     return code;
 }
 
@@ -6154,7 +6947,7 @@ int tripod_3prs_leg_reactions(const tripod_3prs_model *model, const tripod_3prs_
     tripod_3prs_real *forces)
 {
     int code;
-    leg_reactions_any(model, X, V, A, wrench, forces, &code);
+    leg_reactions_one(model, X, V, A, wrench, forces, &code);
     return code;
 }
 
@@ -6175,7 +6968,7 @@ int tripod_3prs_energy(const tripod_3prs_model *model, const tripod_3prs_real *X
     tripod_3prs_real *V, tripod_3prs_real *kinetic, tripod_3prs_real *potential)
 {
     int code;
-    energy_any(model, X, V, kinetic, potential, &code);
+    energy_one(model, X, V, kinetic, potential, &code);
     return code;
 }
 
@@ -6195,7 +6988,7 @@ int tripod_3prs_condition(const tripod_3prs_model *model, const tripod_3prs_real
     tripod_3prs_real *sigma, tripod_3prs_real *legs)
 {
     int code;
-    condition_any(model, X, NULL, sigma, legs, &code);
+    condition_one(model, X, NULL, sigma, legs, &code);
     return code;
 }
 
@@ -6214,7 +7007,7 @@ int tripod_3prs_condition_constrained(const tripod_3prs_model *model, const trip
     tripod_3prs_real *sigma, tripod_3prs_real *legs)
 {
     int code;
-    condition_constrained_any(model, X, NULL, sigma, legs, &code);
+    condition_constrained_one(model, X, NULL, sigma, legs, &code);
     return code;
 }
 
@@ -6233,7 +7026,7 @@ int tripod_3prs_forward_kinematics(const tripod_3prs_model *model, const tripod_
     *q_actuated, const tripod_3prs_real *X0, tripod_3prs_real *X)
 {
     int code;
-    forward_kinematics_any(model, q_actuated, X0, X, &code);
+    forward_kinematics_one(model, q_actuated, X0, X, &code);
     return code;
 }
 
@@ -6252,7 +7045,7 @@ int tripod_3prs_project(const tripod_3prs_model *model, const tripod_3prs_real *
     tripod_3prs_real *projected)
 {
     int code;
-    project_any(model, X, projected, &code);
+    project_one(model, X, projected, &code);
     return code;
 }
 
@@ -6273,7 +7066,7 @@ int tripod_3prs_dissipation(const tripod_3prs_model *model, const tripod_3prs_re
     int code;
     (void)model;
     (void)X;
-    dissipation_any(V, dissipation, &code);
+    dissipation_one(V, dissipation, &code);
     return code;
 }
 
@@ -6292,7 +7085,7 @@ int tripod_3prs_momentum(const tripod_3prs_model *model, const tripod_3prs_real 
     tripod_3prs_real *V, tripod_3prs_real *momentum)
 {
     int code;
-    momentum_any(model, 1, X, V, momentum, &code);
+    momentum_one(model, X, V, momentum, &code);
     return code;
 }
 
@@ -6300,9 +7093,9 @@ size_t tripod_3prs_momentum_batch(const tripod_3prs_model *model, size_t n, cons
     *X, const tripod_3prs_real *V, tripod_3prs_real *momentum, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        momentum_any(model, LANES, X + 7*i, V + 6*i, momentum + 6*i, codes);
+        momentum_lanes(model, X + 7*i, V + 6*i, momentum + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_momentum(model, X + 7*(i + k), V + 6*(i + k), momentum + 6*(i + k));
@@ -6317,11 +7110,69 @@ size_t tripod_3prs_momentum_batch(const tripod_3prs_model *model, size_t n, cons
     return failed;
 }
 
+int tripod_3prs_joint_margins(const tripod_3prs_model *model, const tripod_3prs_real *X,
+    tripod_3prs_real *margins)
+{
+    int code;
+    joint_margins_one(model, X, margins, &code);
+    return code;
+}
+
+size_t tripod_3prs_joint_margins_batch(const tripod_3prs_model *model, size_t n, const
+    tripod_3prs_real *X, tripod_3prs_real *margins, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        joint_margins_lanes(model, X + 7*i, margins + 6*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = tripod_3prs_joint_margins(model, X + 7*(i + k), margins + 6*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = tripod_3prs_joint_margins(model, X + 7*i, margins + 6*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int tripod_3prs_within_limits(const tripod_3prs_model *model, const tripod_3prs_real *X,
+    tripod_3prs_real *within)
+{
+    int code;
+    within_limits_one(model, X, within, &code);
+    return code;
+}
+
+size_t tripod_3prs_within_limits_batch(const tripod_3prs_model *model, size_t n, const
+    tripod_3prs_real *X, tripod_3prs_real *within, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        within_limits_lanes(model, X + 7*i, within + 1*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = tripod_3prs_within_limits(model, X + 7*(i + k), within + 1*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = tripod_3prs_within_limits(model, X + 7*i, within + 1*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
 int tripod_3prs_actuator_positions(const tripod_3prs_model *model, const tripod_3prs_real *X,
     tripod_3prs_real *q)
 {
     int code;
-    actuator_positions_any(model, 1, X, q, &code);
+    actuator_positions_one(model, X, q, &code);
     return code;
 }
 
@@ -6329,9 +7180,9 @@ size_t tripod_3prs_actuator_positions_batch(const tripod_3prs_model *model, size
     tripod_3prs_real *X, tripod_3prs_real *q, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_positions_any(model, LANES, X + 7*i, q + 3*i, codes);
+        actuator_positions_lanes(model, X + 7*i, q + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_actuator_positions(model, X + 7*(i + k), q + 3*(i + k));
@@ -6350,7 +7201,7 @@ int tripod_3prs_actuator_rates(const tripod_3prs_model *model, const tripod_3prs
     tripod_3prs_real *V, tripod_3prs_real *rates)
 {
     int code;
-    actuator_rates_any(model, 1, X, V, rates, &code);
+    actuator_rates_one(model, X, V, rates, &code);
     return code;
 }
 
@@ -6358,9 +7209,9 @@ size_t tripod_3prs_actuator_rates_batch(const tripod_3prs_model *model, size_t n
     tripod_3prs_real *X, const tripod_3prs_real *V, tripod_3prs_real *rates, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_rates_any(model, LANES, X + 7*i, V + 6*i, rates + 3*i, codes);
+        actuator_rates_lanes(model, X + 7*i, V + 6*i, rates + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_actuator_rates(model, X + 7*(i + k), V + 6*(i + k), rates + 3*(i + k));
@@ -6379,7 +7230,7 @@ int tripod_3prs_actuator_accelerations(const tripod_3prs_model *model, const tri
     const tripod_3prs_real *V, const tripod_3prs_real *A, tripod_3prs_real *accelerations)
 {
     int code;
-    actuator_accelerations_any(model, 1, X, V, A, accelerations, &code);
+    actuator_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
@@ -6388,9 +7239,9 @@ size_t tripod_3prs_actuator_accelerations_batch(const tripod_3prs_model *model, 
     *accelerations, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_accelerations_any(model, LANES, X + 7*i, V + 6*i, A + 6*i, accelerations + 3*i, codes);
+        actuator_accelerations_lanes(model, X + 7*i, V + 6*i, A + 6*i, accelerations + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_actuator_accelerations(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k),
@@ -6411,7 +7262,7 @@ int tripod_3prs_power(const tripod_3prs_model *model, const tripod_3prs_real *X,
     tripod_3prs_real *V, const tripod_3prs_real *tau, tripod_3prs_real *power)
 {
     int code;
-    power_any(model, 1, X, V, tau, power, &code);
+    power_one(model, X, V, tau, power, &code);
     return code;
 }
 
@@ -6420,9 +7271,9 @@ size_t tripod_3prs_power_batch(const tripod_3prs_model *model, size_t n, const t
     *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        power_any(model, LANES, X + 7*i, V + 6*i, tau + 3*i, power + 1*i, codes);
+        power_lanes(model, X + 7*i, V + 6*i, tau + 3*i, power + 1*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_power(model, X + 7*(i + k), V + 6*(i + k), tau + 3*(i + k), power + 1*(i +
@@ -6441,7 +7292,7 @@ size_t tripod_3prs_power_batch(const tripod_3prs_model *model, size_t n, const t
 int tripod_3prs_rotation(const tripod_3prs_real *X, tripod_3prs_real *R)
 {
     int code;
-    rotation_any(X, R, &code);
+    rotation_one(X, R, &code);
     return code;
 }
 
@@ -6459,7 +7310,7 @@ size_t tripod_3prs_rotation_batch(size_t n, const tripod_3prs_real *X, tripod_3p
 int tripod_3prs_pose(const tripod_3prs_real *t, const tripod_3prs_real *R, tripod_3prs_real *X)
 {
     int code;
-    pose_any(t, R, X, &code);
+    pose_one(t, R, X, &code);
     return code;
 }
 
@@ -6478,7 +7329,7 @@ int tripod_3prs_X_dot(const tripod_3prs_real *X, const tripod_3prs_real *V, trip
     *X_dot)
 {
     int code;
-    X_dot_any(X, V, X_dot, &code);
+    X_dot_one(X, V, X_dot, &code);
     return code;
 }
 
@@ -6497,7 +7348,7 @@ int tripod_3prs_pose_from_rpy(const tripod_3prs_real *t, const tripod_3prs_real 
     tripod_3prs_real *X)
 {
     int code;
-    pose_from_rpy_any(t, rpy, X, &code);
+    pose_from_rpy_one(t, rpy, X, &code);
     return code;
 }
 
@@ -6516,7 +7367,7 @@ int tripod_3prs_retract(const tripod_3prs_real *X, const tripod_3prs_real *step,
     *X_moved)
 {
     int code;
-    retract_any(X, step, X_moved, &code);
+    retract_one(X, step, X_moved, &code);
     return code;
 }
 
@@ -6535,7 +7386,7 @@ int tripod_3prs_difference(const tripod_3prs_real *X0, const tripod_3prs_real *X
     tripod_3prs_real *step)
 {
     int code;
-    difference_any(X0, X1, step, &code);
+    difference_one(X0, X1, step, &code);
     return code;
 }
 
@@ -6554,7 +7405,7 @@ int tripod_3prs_interpolate(const tripod_3prs_real *X0, const tripod_3prs_real *
     tripod_3prs_real *s, tripod_3prs_real *X)
 {
     int code;
-    interpolate_any(X0, X1, s, X, &code);
+    interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 

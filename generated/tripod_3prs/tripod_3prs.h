@@ -51,6 +51,7 @@ typedef TRIPOD_3PRS_REAL tripod_3prs_real;
 #define TRIPOD_3PRS_NC 3
 #define TRIPOD_3PRS_NW 6
 #define TRIPOD_3PRS_NJ 6
+#define TRIPOD_3PRS_OVERCONSTRAINED 0
 
 enum {
     TRIPOD_3PRS_OK = 0,
@@ -95,18 +96,19 @@ typedef struct {
 /* What depends on the parameters alone; set by tripod_3prs_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
+    /* 3 legs of type prs; copies of the first fill up */
+    tripod_3prs_real inv_prs_root_2_t_2[4], inv_prs_size[4], prs_J_2_zz[4], prs_P_c_1_t[4],
+            prs_b_r0_x[4], prs_base_frame_xx[4], prs_base_frame_xy[4], prs_base_frame_xz[4],
+            prs_base_frame_yx[4], prs_base_frame_yy[4], prs_base_frame_yz[4], prs_base_frame_zx[4],
+            prs_base_frame_zy[4], prs_base_frame_zz[4], prs_base_point_x[4], prs_base_point_y[4],
+            prs_base_point_z[4], prs_branch_1[4], prs_disc_1_t[4], prs_g_r0_x[4], prs_g_r0_y[4],
+            prs_h_1_x[4], prs_h_1_y[4], prs_h_2_x[4], prs_h_2_y[4], prs_link1_mass[4],
+            prs_link2_mass[4], prs_platform_joint_offset_x[4], prs_platform_point_x[4],
+            prs_platform_point_y[4], prs_platform_point_z[4], prs_potential_t[4],
+            prs_potential_t_2[4], prs_potential_t_3[4], prs_root_2_t[4], prs_size[4];
     tripod_3prs_real J_star_t_6, J_star_t_8, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
             J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
             h_star_x, h_star_y, h_star_z, legs_size, platform_mass, spread_t;
-    /* legs of type prs */
-    tripod_3prs_real J_2_zz[3], P_c1_t[3], b_r0_x[3], branch_1[3], g_r0_x[3], g_r0_y[3], h_1_x[3],
-            h_1_y[3], h_2_x[3], h_2_y[3], inv_root_2_t_2[3], inv_size[3], potential_t[3],
-            potential_t_2[3], potential_t_3[3], prs_base_frame_xx[3], prs_base_frame_xy[3],
-            prs_base_frame_xz[3], prs_base_frame_yx[3], prs_base_frame_yy[3], prs_base_frame_yz[3],
-            prs_base_frame_zx[3], prs_base_frame_zy[3], prs_base_frame_zz[3], prs_base_point_x[3],
-            prs_base_point_y[3], prs_base_point_z[3], prs_link1_mass[3], prs_link2_mass[3],
-            prs_platform_joint_offset_x[3], prs_platform_point_x[3], prs_platform_point_y[3],
-            prs_platform_point_z[3], root_2_t[3], size_[3], uu_2_t[3];
 } tripod_3prs_model;
 
 extern const tripod_3prs_params tripod_3prs_default_params;
@@ -287,6 +289,20 @@ int tripod_3prs_momentum(const tripod_3prs_model *model, const tripod_3prs_real 
     tripod_3prs_real *V, tripod_3prs_real *momentum);
 size_t tripod_3prs_momentum_batch(const tripod_3prs_model *model, size_t n, const tripod_3prs_real
     *X, const tripod_3prs_real *V, tripod_3prs_real *momentum, int *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 93 mul, 75 add, 3 div, 6 sqrt, 3 trig. In: X (NQ). Out: margins (NJ). */
+int tripod_3prs_joint_margins(const tripod_3prs_model *model, const tripod_3prs_real *X,
+    tripod_3prs_real *margins);
+size_t tripod_3prs_joint_margins_batch(const tripod_3prs_model *model, size_t n, const
+    tripod_3prs_real *X, tripod_3prs_real *margins, int *status);
+
+/* Whether all joints are within their limits of displacement. 93 mul, 75 add, 3 div, 6 sqrt, 3
+   trig. In: X (NQ). Out: within (1). */
+int tripod_3prs_within_limits(const tripod_3prs_model *model, const tripod_3prs_real *X,
+    tripod_3prs_real *within);
+size_t tripod_3prs_within_limits_batch(const tripod_3prs_model *model, size_t n, const
+    tripod_3prs_real *X, tripod_3prs_real *within, int *status);
 
 /* Displacements of the actuated joints, in the order of tau. 93 mul, 75 add, 3 div, 6 sqrt, 3
    trig. In: X (NQ). Out: q (NU). */

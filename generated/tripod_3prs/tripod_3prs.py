@@ -33,6 +33,7 @@ __all__ = [
     "NC",
     "NW",
     "NJ",
+    "OVERCONSTRAINED",
     "ACTUATED",
     "ACTUATOR_NAMES",
     "H",
@@ -61,6 +62,7 @@ __all__ = [
     "inverse_dynamics",
     "inverse_kinematics",
     "joint_accelerations",
+    "joint_margins",
     "joint_rates",
     "leg_reactions",
     "momentum",
@@ -71,6 +73,7 @@ __all__ = [
     "project",
     "retract",
     "rotation",
+    "within_limits",
 ]
 
 NQ = 7
@@ -79,6 +82,7 @@ NU = 3
 NC = 3
 NW = 6
 NJ = 6
+OVERCONSTRAINED = 0
 
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
@@ -357,7 +361,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return np.full(shape, default)
+        return _filled(shape, default) if isinstance(default, float) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -370,6 +374,16 @@ def _argument(function, name, value, shape, default=None, rule=""):
     elif rule == "positive" and not np.all((array > 0.0) & (array < np.inf)):
         raise ValueError(f"{function}: {name} must be positive and finite")
     return array
+
+
+_FILLED = {}
+
+
+def _filled(shape, value):
+    """An array of one value, made once."""
+    if (shape, value) not in _FILLED:
+        _FILLED[shape, value] = _frozen(np.full(shape, value))
+    return _FILLED[shape, value]
 
 
 def _lead(leads):
@@ -463,7 +477,7 @@ HOME_X = _frozen(np.array([0.0, 0.0, 0.75, 0.0, 0.0, 0.0, 1.0]))
 HOME_Q = _frozen(np.array([0.2, 0.45, 0.2, 0.45, 0.2, 0.45]))
 
 _BRANCHES = {  # assembly branch of home, a sign per leg
-    "branch_1": np.array([-1.0, -1.0, -1.0]),
+    "prs_branch_1": np.array([-1.0, -1.0, -1.0]),
 }
 
 
@@ -509,12 +523,12 @@ def _prepare(p):
     prs_link2_centre_of_mass_y = p.prs_link2_centre_of_mass[:, 1]
     prs_link2_centre_of_mass_z = p.prs_link2_centre_of_mass[:, 2]
     prs_link2_inertia_zz = p.prs_link2_inertia[:, 2, 2]
-    branch_1 = _BRANCHES["branch_1"]
-    # (L2) first moment about the platform origin
+    prs_branch_1 = _BRANCHES["prs_branch_1"]
+    # (h_star) first moment about the platform origin
     h_star_x = platform_centre_of_mass_x*platform_mass
     h_star_y = platform_centre_of_mass_y*platform_mass
     h_star_z = platform_centre_of_mass_z*platform_mass
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_t = platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_2 = platform_centre_of_mass_y*platform_centre_of_mass_y
     J_star_t_3 = platform_centre_of_mass_z*platform_centre_of_mass_z
@@ -535,74 +549,74 @@ def _prepare(p):
     J_star_t_6 = 0.5*J_star_t_5
     J_star_t_7 = J_star_xx - J_star_zz
     J_star_t_8 = 0.5*J_star_t_7
-    # (M4) centripetal force and weight of the platform
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*platform_mass
     Z_p_t_2 = gravity_y*platform_mass
     Z_p_t_3 = gravity_z*platform_mass
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread_t = 0.3333333333333333*sqrt(3.0)
-    # (prs-K6) squared length, across the axis, of the direction fixed in link 2
-    uu_2_t = prs_platform_joint_offset_x*prs_platform_joint_offset_x
-    # (prs-G2) length of the leg's lever arms, the measure of what is near singular
-    size_t = 3.5999999999999994e-07 + uu_2_t
-    size = sqrt(size_t)
-    # (prs-K8) amplitude: off the manifold the nearest angle is taken
-    root_2_t = size*size*size_t
-    # (prs-N15) force that accelerates joint 1, per unit
-    P_c1_t = prs_link1_mass + prs_link2_mass
-    # (prs-G4) first moment of link 2 about the origin of link 2
-    h_2_x = prs_link2_centre_of_mass_x*prs_link2_mass
-    h_2_y = prs_link2_centre_of_mass_y*prs_link2_mass
-    # (prs-G5) inertia tensor of link 2 about the origin of link 2
-    J_2_t = prs_link2_centre_of_mass_z*prs_link2_centre_of_mass_z
-    J_2_t_2 = (
-    J_2_t + prs_link2_centre_of_mass_x*prs_link2_centre_of_mass_x +
+    # (prs-disc_1) discriminant of the distance equation
+    prs_disc_1_t = prs_platform_joint_offset_x*prs_platform_joint_offset_x
+    # (prs-size) length of the leg's lever arms, the measure of what is near singular
+    prs_size_t = 3.5999999999999994e-07 + prs_disc_1_t
+    prs_size = sqrt(prs_size_t)
+    # (prs-root_2) amplitude: off the manifold the nearest angle is taken
+    prs_root_2_t = prs_size*prs_size*prs_size_t
+    # (prs-J_2) inertia tensor of link 2 about the origin of link 2
+    prs_J_2_t = prs_link2_centre_of_mass_z*prs_link2_centre_of_mass_z
+    prs_J_2_t_2 = (
+    prs_J_2_t + prs_link2_centre_of_mass_x*prs_link2_centre_of_mass_x +
         prs_link2_centre_of_mass_y*prs_link2_centre_of_mass_y
     )
-    J_2_zz = prs_link2_inertia_zz - prs_link2_mass*(J_2_t - J_2_t_2)
-    # (prs-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-    g_r0_x = (
+    prs_J_2_zz = prs_link2_inertia_zz - prs_link2_mass*(prs_J_2_t - prs_J_2_t_2)
+    # (prs-h_2) first moment of link 2 about the origin of link 2
+    prs_h_2_x = prs_link2_centre_of_mass_x*prs_link2_mass
+    prs_h_2_y = prs_link2_centre_of_mass_y*prs_link2_mass
+    # (prs-P_c_1) force that accelerates joint 1, per unit
+    prs_P_c_1_t = prs_link1_mass + prs_link2_mass
+    # (prs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+    prs_g_r0_x = (
     gravity_x*prs_base_frame_xx + gravity_y*prs_base_frame_yx + gravity_z*prs_base_frame_zx
     )
-    g_r0_y = (
+    prs_g_r0_y = (
     gravity_x*prs_base_frame_xy + gravity_y*prs_base_frame_yy + gravity_z*prs_base_frame_zy
     )
-    # (prs-G3) first moment of link 1 about the origin of link 1
-    h_1_x = prs_link1_centre_of_mass_x*prs_link1_mass
-    h_1_y = prs_link1_centre_of_mass_y*prs_link1_mass
-    # (V1) potential energy
-    b_r0_x = (
+    # (prs-h_1) first moment of link 1 about the origin of link 1
+    prs_h_1_x = prs_link1_centre_of_mass_x*prs_link1_mass
+    prs_h_1_y = prs_link1_centre_of_mass_y*prs_link1_mass
+    # (potential) potential energy
+    prs_b_r0_x = (
     prs_base_frame_xx*prs_base_point_x + prs_base_frame_yx*prs_base_point_y +
         prs_base_frame_zx*prs_base_point_z
     )
-    b_r0_y = (
+    prs_b_r0_y = (
     prs_base_frame_xy*prs_base_point_x + prs_base_frame_yy*prs_base_point_y +
         prs_base_frame_zy*prs_base_point_z
     )
-    b_r0_z = (
+    prs_b_r0_z = (
     prs_base_frame_xz*prs_base_point_x + prs_base_frame_yz*prs_base_point_y +
         prs_base_frame_zz*prs_base_point_z
     )
-    potential_t = b_r0_y*prs_link1_mass
-    potential_t_2 = b_r0_y*prs_link2_mass
-    potential_t_3 = (
+    prs_potential_t = prs_b_r0_y*prs_link1_mass
+    prs_potential_t_2 = prs_b_r0_y*prs_link2_mass
+    prs_potential_t_3 = (
     (gravity_x*prs_base_frame_xz + gravity_y*prs_base_frame_yz +
-        gravity_z*prs_base_frame_zz)*(b_r0_z*prs_link1_mass + b_r0_z*prs_link2_mass +
+        gravity_z*prs_base_frame_zz)*(prs_b_r0_z*prs_link1_mass + prs_b_r0_z*prs_link2_mass +
         prs_link1_centre_of_mass_z*prs_link1_mass + prs_link2_centre_of_mass_z*prs_link2_mass)
     )
-    # (prs-K8) amplitude: off the manifold the nearest angle is taken
-    inv_root_2_t_2 = 1.0/root_2_t
-    # (prs-V3) reciprocal vector 1
-    inv_size = 1.0/size
+    # (prs-root_2) amplitude: off the manifold the nearest angle is taken
+    inv_prs_root_2_t_2 = 1.0/prs_root_2_t
+    # (prs-w_1) reciprocal vector 1
+    inv_prs_size = 1.0/prs_size
     total_prs_x = np.sum(np.broadcast_to(prs_platform_point_x, _prs))
     total_prs_y = np.sum(np.broadcast_to(prs_platform_point_y, _prs))
     total_prs_z = np.sum(np.broadcast_to(prs_platform_point_z, _prs))
-    total_prs = np.sum(np.broadcast_to(size_t, _prs))
-    # (C1) centroid of the platform points
+    total_prs = np.sum(np.broadcast_to(prs_size_t, _prs))
+    # (b_c) centroid of the platform points
     b_c_x = 0.3333333333333333*total_prs_x
     b_c_y = 0.3333333333333333*total_prs_y
     b_c_z = 0.3333333333333333*total_prs_z
-    # (C3) rms size of the legs, taken where the platform points coincide
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     legs_size = spread_t*sqrt(total_prs)
     return {
         "dynamics": (
@@ -611,12 +625,13 @@ def _prepare(p):
                 h_star_z, platform_mass,),
             (
                 (_prs,
-        (J_2_zz, P_c1_t, branch_1, g_r0_x, g_r0_y, h_2_x, h_2_y, prs_base_frame_xx,
-                    prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx, prs_base_frame_yy,
-                    prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy, prs_base_frame_zz,
-                    prs_base_point_x, prs_base_point_y, prs_base_point_z, prs_link1_mass,
-                    prs_link2_mass, prs_platform_joint_offset_x, prs_platform_point_x,
-                    prs_platform_point_y, prs_platform_point_z, root_2_t, size, uu_2_t,),
+        (prs_J_2_zz, prs_P_c_1_t, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz,
+                    prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx,
+                    prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x, prs_base_point_y,
+                    prs_base_point_z, prs_branch_1, prs_disc_1_t, prs_g_r0_x, prs_g_r0_y,
+                    prs_h_2_x, prs_h_2_y, prs_link1_mass, prs_link2_mass,
+                    prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
+                    prs_platform_point_z, prs_root_2_t, prs_size,),
                 ),
             ),
         ),
@@ -625,12 +640,12 @@ def _prepare(p):
                 h_star_z, platform_mass,),
             (
                 (_prs,
-        (J_2_zz, P_c1_t, branch_1, h_2_x, h_2_y, prs_base_frame_xx, prs_base_frame_xy,
-                    prs_base_frame_xz, prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz,
-                    prs_base_frame_zx, prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x,
-                    prs_base_point_y, prs_base_point_z, prs_platform_joint_offset_x,
-                    prs_platform_point_x, prs_platform_point_y, prs_platform_point_z, root_2_t,
-                    size, uu_2_t,),
+        (prs_J_2_zz, prs_P_c_1_t, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz,
+                    prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx,
+                    prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x, prs_base_point_y,
+                    prs_base_point_z, prs_branch_1, prs_disc_1_t, prs_h_2_x, prs_h_2_y,
+                    prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
+                    prs_platform_point_z, prs_root_2_t, prs_size,),
                 ),
             ),
         ),
@@ -639,12 +654,13 @@ def _prepare(p):
                 Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
             (
                 (_prs,
-        (J_2_zz, branch_1, g_r0_x, g_r0_y, h_2_x, h_2_y, prs_base_frame_xx, prs_base_frame_xy,
-                    prs_base_frame_xz, prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz,
-                    prs_base_frame_zx, prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x,
-                    prs_base_point_y, prs_base_point_z, prs_link1_mass, prs_link2_mass,
-                    prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
-                    prs_platform_point_z, root_2_t, size, uu_2_t,),
+        (prs_J_2_zz, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
+                    prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
+                    prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z,
+                    prs_branch_1, prs_disc_1_t, prs_g_r0_x, prs_g_r0_y, prs_h_2_x, prs_h_2_y,
+                    prs_link1_mass, prs_link2_mass, prs_platform_joint_offset_x,
+                    prs_platform_point_x, prs_platform_point_y, prs_platform_point_z,
+                    prs_root_2_t, prs_size,),
                 ),
             ),
         ),
@@ -652,11 +668,11 @@ def _prepare(p):
         (),
             (
                 (_prs,
-        (branch_1, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
+        (prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
                     prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
                     prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z,
-                    prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
-                    prs_platform_point_z, root_2_t, size, uu_2_t,),
+                    prs_branch_1, prs_disc_1_t, prs_platform_joint_offset_x, prs_platform_point_x,
+                    prs_platform_point_y, prs_platform_point_z, prs_root_2_t, prs_size,),
                 ),
             ),
         ),
@@ -683,12 +699,13 @@ def _prepare(p):
                 gravity_z, h_star_x, h_star_y, h_star_z, platform_mass,),
             (
                 (_prs,
-        (J_2_zz, branch_1, g_r0_x, g_r0_y, h_2_x, h_2_y, prs_base_frame_xx, prs_base_frame_xy,
-                    prs_base_frame_xz, prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz,
-                    prs_base_frame_zx, prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x,
-                    prs_base_point_y, prs_base_point_z, prs_link1_mass, prs_link2_mass,
-                    prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
-                    prs_platform_point_z, root_2_t, size, uu_2_t,),
+        (prs_J_2_zz, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
+                    prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
+                    prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z,
+                    prs_branch_1, prs_disc_1_t, prs_g_r0_x, prs_g_r0_y, prs_h_2_x, prs_h_2_y,
+                    prs_link1_mass, prs_link2_mass, prs_platform_joint_offset_x,
+                    prs_platform_point_x, prs_platform_point_y, prs_platform_point_z,
+                    prs_root_2_t, prs_size,),
                 ),
             ),
         ),
@@ -696,11 +713,11 @@ def _prepare(p):
         (),
             (
                 (_prs,
-        (branch_1, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
+        (prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
                     prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
                     prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z,
-                    prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
-                    prs_platform_point_z, root_2_t, uu_2_t,),
+                    prs_branch_1, prs_disc_1_t, prs_platform_joint_offset_x, prs_platform_point_x,
+                    prs_platform_point_y, prs_platform_point_z, prs_root_2_t,),
                 ),
             ),
         ),
@@ -708,11 +725,11 @@ def _prepare(p):
         (),
             (
                 (_prs,
-        (branch_1, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
+        (prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
                     prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
                     prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z,
-                    prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
-                    prs_platform_point_z, root_2_t, size, uu_2_t,),
+                    prs_branch_1, prs_disc_1_t, prs_platform_joint_offset_x, prs_platform_point_x,
+                    prs_platform_point_y, prs_platform_point_z, prs_root_2_t, prs_size,),
                 ),
             ),
         ),
@@ -720,11 +737,11 @@ def _prepare(p):
         (),
             (
                 (_prs,
-        (branch_1, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
+        (prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
                     prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
                     prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z,
-                    prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
-                    prs_platform_point_z, root_2_t, size, uu_2_t,),
+                    prs_branch_1, prs_disc_1_t, prs_platform_joint_offset_x, prs_platform_point_x,
+                    prs_platform_point_y, prs_platform_point_z, prs_root_2_t, prs_size,),
                 ),
             ),
         ),
@@ -742,12 +759,13 @@ def _prepare(p):
         (),
             (
                 (_prs,
-        (J_2_zz, branch_1, g_r0_x, g_r0_y, h_2_x, h_2_y, prs_base_frame_xx, prs_base_frame_xy,
-                    prs_base_frame_xz, prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz,
-                    prs_base_frame_zx, prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x,
-                    prs_base_point_y, prs_base_point_z, prs_link1_mass, prs_link2_mass,
-                    prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
-                    prs_platform_point_z, root_2_t, size, uu_2_t,),
+        (prs_J_2_zz, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
+                    prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
+                    prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z,
+                    prs_branch_1, prs_disc_1_t, prs_g_r0_x, prs_g_r0_y, prs_h_2_x, prs_h_2_y,
+                    prs_link1_mass, prs_link2_mass, prs_platform_joint_offset_x,
+                    prs_platform_point_x, prs_platform_point_y, prs_platform_point_z,
+                    prs_root_2_t, prs_size,),
                 ),
             ),
         ),
@@ -755,13 +773,14 @@ def _prepare(p):
         (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, platform_mass,),
             (
                 (_prs,
-        (b_r0_x, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, potential_t, potential_t_2,
-                    potential_t_3, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz,
-                    prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx,
-                    prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x, prs_base_point_y,
-                    prs_base_point_z, prs_link1_mass, prs_link2_mass, prs_platform_joint_offset_x,
-                    prs_platform_point_x, prs_platform_point_y, prs_platform_point_z, root_2_t,
-                    uu_2_t,),
+        (prs_b_r0_x, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
+                    prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
+                    prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z,
+                    prs_branch_1, prs_disc_1_t, prs_g_r0_x, prs_g_r0_y, prs_h_1_x, prs_h_1_y,
+                    prs_h_2_x, prs_h_2_y, prs_link1_mass, prs_link2_mass,
+                    prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
+                    prs_platform_point_z, prs_potential_t, prs_potential_t_2, prs_potential_t_3,
+                    prs_root_2_t,),
                 ),
             ),
         ),
@@ -769,19 +788,20 @@ def _prepare(p):
         (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
             (
                 (_prs,
-        (branch_1, inv_root_2_t_2, inv_size, prs_base_frame_xx, prs_base_frame_xy,
+        (inv_prs_root_2_t_2, inv_prs_size, prs_base_frame_xx, prs_base_frame_xy,
                     prs_base_frame_xz, prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz,
                     prs_base_frame_zx, prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x,
-                    prs_base_point_y, prs_base_point_z, prs_platform_joint_offset_x,
-                    prs_platform_point_x, prs_platform_point_y, prs_platform_point_z, root_2_t,
-                    size, uu_2_t,),
+                    prs_base_point_y, prs_base_point_z, prs_branch_1, prs_disc_1_t,
+                    prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
+                    prs_platform_point_z, prs_root_2_t, prs_size,),
                 ),
             ),
         ),
     }
 
 
-_FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
+_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
@@ -827,17 +847,19 @@ class _Floats:
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
-        for k in range(self.states):
-            try:
-                ok, arrays = function(self, *(row[k] for row in rows))
-            except (ZeroDivisionError, OverflowError):
-                continue
-            if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
-                for a, array in zip(found, arrays):
-                    a[k] = array
-        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
+        found = [self.state(function, names, [row[k] for row in rows]) for k in range(self.states)]
+        return [np.array(a).T.reshape(*_SHAPES[n], self.states) for a, n in zip(zip(*found), names)]
+
+    def state(self, function, names, given):
+        """Lists that a function gives at a state."""
+        try:
+            ok, arrays = function(self, *given)
+        except (ZeroDivisionError, OverflowError):
+            ok = False
+        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+            return arrays
+        return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
 
 
 class _Arrays:
@@ -905,35 +927,44 @@ def _mode(p, states):
     return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
 
 
-def _call(function, steps, p, *arguments, mode=_mode):
-    """What the steps give at arguments (name, value, shape of a state, default, rule)."""
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+    """What the steps give at arguments (name, value, shape of a state, default, rule).
+
+    Where that may be infinite only NaN makes a state impossible.
+    """
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
     lead, p = _lead(leads), _given(p)
     read = [a[4:] != ("unused",) for a in arguments]
     if lead or mode is _Judged:
-        results = _many(steps, p, lead, given, shapes, read, mode)
+        results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
-        results = _one(steps, p, given, shapes, read)
+        results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
 
 
-def _one(steps, p, given, shapes, read):
+def _one(steps, p, given, shapes, read, unbounded):
     """Results at a single state."""
     states = [v.reshape(*shape, 1) for v, shape in zip(given, shapes)]
     with np.errstate(all="ignore"):
-        results = [a[..., 0] for a in steps(_Floats(p, 1), *states)]
-    if all(all(map(math.isfinite, v.ravel().tolist())) for v in (*compress(given, read), *results)):
-        return [np.array(a)[()] for a in results]
+        results = [a[..., 0].copy() for a in steps(_Floats(p, 1), *states)]
+    looked_at = [np.minimum(a, 0.0) for a in results] if unbounded else results
+    entries = (v.ravel().tolist() for v in (*compress(given, read), *looked_at))
+    if all(all(map(math.isfinite, row)) for row in entries):
+        return [a[()] for a in results]
     return [np.full(a.shape, np.nan)[()] for a in results]
 
 
-def _many(steps, p, lead, given, shapes, read, mode):
+def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block."""
     count = math.prod(lead)
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
+    if count > _BLOCK:
+        # Never touched, freed at once: the C library, which learns from it, then keeps the memory
+        # of intermediate arrays from block to block instead of giving its pages back.
+        np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
         for first in range(0, max(count, 1), _BLOCK):
             block = slice(first, min(first + _BLOCK, count))
@@ -945,7 +976,7 @@ def _many(steps, p, lead, given, shapes, read, mode):
             _all_finite(compress(states, read), good)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite(found, good)
+            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -974,6 +1005,18 @@ def _with_forces(a, amounts, directions, legs):
     for k, leg in enumerate(legs):
         result[leg] += amounts[k] * directions[k]
     return result
+
+
+def _unlimited(a, places):
+    """a, some entries infinite; what is not known stays so."""
+    result = np.array(a)
+    result[places] += np.inf
+    return result
+
+
+def _not_negative(a):
+    """1 where no entry is negative, else 0; NaN where one is not finite."""
+    return np.where(np.isfinite(a).all(axis=0), np.all(a >= 0.0, axis=0), np.nan)
 
 
 def _rows_divided(a, b, places):
@@ -1076,8 +1119,8 @@ def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
     n, states = b.shape
     if 0 < states <= _FEW:
-        matrices, rights = np.moveaxis(a, -1, 0).tolist(), b.T.tolist()
-        return np.array([_solve_one(*each) for each in zip(matrices, rights)]).T.reshape(n, states)
+        systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
+        return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
     good = np.all((size > 0.0) & np.isfinite(size), axis=0)
     rows = np.concatenate((a, b[:, None]), axis=1)
@@ -1104,28 +1147,32 @@ def _solve(a, b):
 
 
 def _solve_one(a, b):
-    """The same for one system of nested lists."""
-    n = len(b)
-    failure = [np.nan] * n
-    for i, row in enumerate(a):
-        size = max(map(abs, row), default=0.0)
-        if not 0.0 < size < np.inf:
-            return failure
-        a[i] = [v / size for v in row] + [b[i] / size]
-    for k in range(n):
-        best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
-            a[k], a[best] = a[best], a[k]
-        if not abs(a[k][k]) > _PIVOT:
-            return failure
-        head = a[k]
-        for i in range(k + 1, n):
-            factor = a[i][k] / head[k]
-            a[i] = [v - factor * h for v, h in zip(a[i], head)]
-    x = [0.0] * n
-    for k in reversed(range(n)):
-        x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
-    return x if all(map(math.isfinite, x)) else failure
+    """The same for one system of nested lists: the rows left lose an entry at every step."""
+    rows, heads = [], []
+    for row, right in zip(a, b):
+        size = max(map(abs, row))
+        if not 0.0 < size < math.inf:
+            return [math.nan] * len(b)
+        rows.append([v / size for v in (*row, right)])
+    while rows:
+        column = [abs(row[0]) for row in rows]
+        largest = max(column)
+        if largest > _CLEARLY * column[0]:
+            best = column.index(largest)
+            rows[0], rows[best] = rows[best], rows[0]
+        pivot, *head = rows[0]
+        if not abs(pivot) > _PIVOT:
+            return [math.nan] * len(b)
+        heads.append((pivot, head))
+        for i in range(1, len(rows)):
+            first, *row = rows[i]
+            factor = first / pivot
+            rows[i] = [v - factor * h for v, h in zip(row, head)]
+        del rows[0]
+    x = []
+    for pivot, (*head, right) in reversed(heads):
+        x.insert(0, (right - sum([h * v for h, v in zip(head, x)])) / pivot)
+    return x if all(map(math.isfinite, x)) else [math.nan] * len(b)
 
 
 def _saddle(a, b):
@@ -1307,11 +1354,11 @@ def _run_dynamics(m, X, V):
     out_H = m.zeros("H")
     out_Hk = m.zeros("Hk")
     out_constraint_bias = m.zeros("constraint_bias")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_6*R_xy
     J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_6*R_yy
     J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_6*R_zy
@@ -1327,238 +1374,277 @@ def _run_dynamics(m, X, V):
     J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_7*R_yz
     J_star_t_16 = J_star_t_3*R_zy - J_star_t_7*R_zz
     J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
-    # (M4) centripetal force and weight of the platform
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
     Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
     Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x_2*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y - g_r0_y_2*h_star_x
+    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
+    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
     sums = [0.0] * 27
     for leg, k in legs[0]:
         (
-        J_2_zz, P_c1_t, branch_1, g_r0_x, g_r0_y, h_2_x, h_2_y, prs_base_frame_xx,
-            prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx, prs_base_frame_yy,
-            prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy, prs_base_frame_zz,
-            prs_base_point_x, prs_base_point_y, prs_base_point_z, prs_link1_mass, prs_link2_mass,
-            prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
-            prs_platform_point_z, root_2_t, size, uu_2_t,
+        prs_J_2_zz, prs_P_c_1_t, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz,
+            prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx,
+            prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x, prs_base_point_y,
+            prs_base_point_z, prs_branch_1, prs_disc_1_t, prs_g_r0_x, prs_g_r0_y, prs_h_2_x,
+            prs_h_2_y, prs_link1_mass, prs_link2_mass, prs_platform_joint_offset_x,
+            prs_platform_point_x, prs_platform_point_y, prs_platform_point_z, prs_root_2_t,
+            prs_size,
         ) = k
-        # (prs-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (prs-S) from the base point to the connection point
+        prs_q_in_base_x = (
         R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z
         )
-        q_in_base_y = (
+        prs_q_in_base_y = (
         R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z
         )
-        q_in_base_z = (
+        prs_q_in_base_z = (
         R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - prs_base_point_x
-        S_y = q_in_base_y + t_y - prs_base_point_y
-        S_z = q_in_base_z + t_z - prs_base_point_z
-        # (prs-K2) component along axis 1
-        px_1 = S_x*prs_base_frame_xx + S_y*prs_base_frame_yx + S_z*prs_base_frame_zx
-        # (prs-K3) discriminant of the distance equation
-        disc_1_t = S_x*prs_base_frame_xz + S_y*prs_base_frame_yz + S_z*prs_base_frame_zz
-        disc_1_t_2 = S_x*S_x + S_y*S_y + S_z*S_z
-        disc_1 = disc_1_t*disc_1_t + px_1*px_1 + uu_2_t - disc_1_t_2
-        # (prs-K4) displacement of joint 1
-        q_1_t = branch_1*sqrt(disc_1)
-        # (prs-K1) from the base point to the connection point
-        S_r0_y = S_x*prs_base_frame_xy + S_y*prs_base_frame_yy + S_z*prs_base_frame_zy
-        # (prs-K7) squared amplitude
-        rho2_2 = uu_2_t*(S_r0_y*S_r0_y + q_1_t*q_1_t)
-        # (prs-K9) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/(sqrt(rho2_2))
-        c_2 = inv_root_2*prs_platform_joint_offset_x*q_1_t
-        # (prs-K10) sine of the angle of joint 2 from its reference direction
-        s_2 = S_r0_y*inv_root_2*prs_platform_joint_offset_x
-        # (prs-V3) reciprocal vector 1
-        axis_y_prs_axes2_in_base_x = -c_2*prs_base_frame_xy - prs_base_frame_xx*s_2
-        axis_y_prs_axes2_in_base_y = -c_2*prs_base_frame_yy - prs_base_frame_yx*s_2
-        axis_y_prs_axes2_in_base_z = -c_2*prs_base_frame_zy - prs_base_frame_zx*s_2
-        axis_x_prs_axes2_in_base_x = prs_base_frame_xy*s_2 - c_2*prs_base_frame_xx
-        axis_x_prs_axes2_in_base_y = prs_base_frame_yy*s_2 - c_2*prs_base_frame_yx
-        axis_x_prs_axes2_in_base_z = prs_base_frame_zy*s_2 - c_2*prs_base_frame_zx
-        # (prs-N11) force that accelerates joint 2, per unit
-        P_c2_r0_x = c_2*h_2_y - h_2_x*s_2
-        # (prs-V2) velocity of the connection point per rate of joint 2
-        v_2_t = prs_platform_joint_offset_x*s_2
-        v_2_t_2 = c_2*prs_platform_joint_offset_x
-        # (prs-V3) reciprocal vector 1
-        inv_v_2_t_2 = 1.0/v_2_t_2
-        w_1_t = inv_v_2_t_2*v_2_t
-        _r0_x = -c_2 - s_2*w_1_t
-        _r0_y = c_2*w_1_t - s_2
-        # (prs-V4) reciprocal vector 2
-        w_2_t = inv_v_2_t_2*s_2
-        w_2_t_2 = c_2*inv_v_2_t_2
-        # (prs-N27) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
-        d_Gamma_1_t = inv_v_2_t_2*(P_c2_r0_x + P_c1_t*v_2_t)
-        _r0_x_2 = -P_c1_t*c_2 - d_Gamma_1_t*s_2
-        _r0_y_2 = c_2*d_Gamma_1_t - P_c1_t*s_2
-        # (prs-N22) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_t = inv_v_2_t_2*(J_2_zz + P_c2_r0_x*v_2_t)
-        _r0_x_3 = -P_c2_r0_x*c_2 - d_Gamma_2_t*s_2
-        _r0_y_3 = c_2*d_Gamma_2_t - P_c2_r0_x*s_2
-        # (prs-N30) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_xx = _r0_x*_r0_x_2 - _r0_x_3*w_2_t
-        d_G_xy = _r0_x*_r0_y_2 - _r0_y_3*w_2_t
-        d_G_yx = _r0_x_2*_r0_y + _r0_x_3*w_2_t_2
-        d_G_yy = _r0_y*_r0_y_2 + _r0_y_3*w_2_t_2
-        # (prs-N33) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_in_base_x = -axis_x_prs_axes2_in_base_x*d_G_xx - axis_y_prs_axes2_in_base_x*d_G_yx
-        d_c_in_base_y = -axis_x_prs_axes2_in_base_y*d_G_xx - axis_y_prs_axes2_in_base_y*d_G_yx
-        d_c_in_base_x_2 = -axis_x_prs_axes2_in_base_x*d_G_xy - axis_y_prs_axes2_in_base_x*d_G_yy
-        d_c_in_base_y_2 = -axis_x_prs_axes2_in_base_y*d_G_xy - axis_y_prs_axes2_in_base_y*d_G_yy
-        d_c_in_base_x_3 = (
-        axis_x_prs_axes2_in_base_x*d_c_in_base_x + axis_y_prs_axes2_in_base_x*d_c_in_base_x_2
+        prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x
+        prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y
+        prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z
+        # (prs-px_1) component along axis 1
+        prs_px_1 = (
+        prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
-        d_c_in_base_y_3 = (
-        axis_x_prs_axes2_in_base_y*d_c_in_base_x + axis_y_prs_axes2_in_base_y*d_c_in_base_x_2
+        # (prs-disc_1) discriminant of the distance equation
+        prs_disc_1_t_2 = (
+        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
-        d_c_in_base_z = (
-        axis_x_prs_axes2_in_base_z*d_c_in_base_x + axis_y_prs_axes2_in_base_z*d_c_in_base_x_2
+        prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
+        prs_disc_1 = (
+        prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 - prs_disc_1_t_3
         )
-        d_c_in_base_y_4 = (
-        axis_x_prs_axes2_in_base_y*d_c_in_base_y + axis_y_prs_axes2_in_base_y*d_c_in_base_y_2
+        # (prs-q_1) displacement of joint 1
+        prs_q_1_t = prs_branch_1*sqrt(prs_disc_1)
+        # (prs-S) from the base point to the connection point
+        prs_S_r0_y = (
+        prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
         )
-        d_c_in_base_z_2 = (
-        axis_x_prs_axes2_in_base_z*d_c_in_base_y + axis_y_prs_axes2_in_base_z*d_c_in_base_y_2
+        # (prs-rho2_2) squared amplitude
+        prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t)
+        # (prs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_prs_root_2 = 1.0/(sqrt(prs_rho2_2))
+        prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t
+        # (prs-s_2) sine of the angle of joint 2 from its reference direction
+        prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x
+        # (prs-w_1) reciprocal vector 1
+        axis_y_prs_axes2_in_base_x = -prs_base_frame_xx*prs_s_2 - prs_base_frame_xy*prs_c_2
+        axis_y_prs_axes2_in_base_y = -prs_base_frame_yx*prs_s_2 - prs_base_frame_yy*prs_c_2
+        axis_y_prs_axes2_in_base_z = -prs_base_frame_zx*prs_s_2 - prs_base_frame_zy*prs_c_2
+        axis_x_prs_axes2_in_base_x = prs_base_frame_xy*prs_s_2 - prs_base_frame_xx*prs_c_2
+        axis_x_prs_axes2_in_base_y = prs_base_frame_yy*prs_s_2 - prs_base_frame_yx*prs_c_2
+        axis_x_prs_axes2_in_base_z = prs_base_frame_zy*prs_s_2 - prs_base_frame_zx*prs_c_2
+        # (prs-v_2) velocity of the connection point per rate of joint 2
+        prs_v_2_t = prs_platform_joint_offset_x*prs_s_2
+        prs_v_2_t_2 = prs_c_2*prs_platform_joint_offset_x
+        # (prs-w_1) reciprocal vector 1
+        inv_prs_v_2_t_2 = 1.0/prs_v_2_t_2
+        prs_w_1_t = inv_prs_v_2_t_2*prs_v_2_t
+        prs__r0_x = -prs_c_2 - prs_s_2*prs_w_1_t
+        prs__r0_y = prs_c_2*prs_w_1_t - prs_s_2
+        # (prs-w_2) reciprocal vector 2
+        prs_w_2_t = inv_prs_v_2_t_2*prs_s_2
+        prs_w_2_t_2 = inv_prs_v_2_t_2*prs_c_2
+        # (prs-P_c_2) force that accelerates joint 2, per unit
+        prs_P_c_2_r0_x = prs_c_2*prs_h_2_y - prs_h_2_x*prs_s_2
+        # (prs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        prs_d_Gamma_2_t = inv_prs_v_2_t_2*(prs_J_2_zz + prs_P_c_2_r0_x*prs_v_2_t)
+        prs__r0_x_2 = -prs_P_c_2_r0_x*prs_c_2 - prs_d_Gamma_2_t*prs_s_2
+        prs__r0_y_2 = prs_c_2*prs_d_Gamma_2_t - prs_P_c_2_r0_x*prs_s_2
+        # (prs-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
+        prs_d_Gamma_1_t = inv_prs_v_2_t_2*(prs_P_c_2_r0_x + prs_P_c_1_t*prs_v_2_t)
+        prs__r0_x_3 = -prs_P_c_1_t*prs_c_2 - prs_d_Gamma_1_t*prs_s_2
+        prs__r0_y_3 = prs_c_2*prs_d_Gamma_1_t - prs_P_c_1_t*prs_s_2
+        # (prs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        prs_d_G_xx = prs__r0_x*prs__r0_x_3 - prs__r0_x_2*prs_w_2_t
+        prs_d_G_xy = prs__r0_x*prs__r0_y_3 - prs__r0_y_2*prs_w_2_t
+        prs_d_G_yx = prs__r0_x_2*prs_w_2_t_2 + prs__r0_x_3*prs__r0_y
+        prs_d_G_yy = prs__r0_y*prs__r0_y_3 + prs__r0_y_2*prs_w_2_t_2
+        # (prs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        prs_d_c_in_base_x = (
+        -axis_x_prs_axes2_in_base_x*prs_d_G_xx - axis_y_prs_axes2_in_base_x*prs_d_G_yx
         )
-        d_c_in_base_z_3 = (
-        axis_x_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*d_G_xx -
-            axis_y_prs_axes2_in_base_z*d_G_yx) +
-            axis_y_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*d_G_xy -
-            axis_y_prs_axes2_in_base_z*d_G_yy)
+        prs_d_c_in_base_y = (
+        -axis_x_prs_axes2_in_base_y*prs_d_G_xx - axis_y_prs_axes2_in_base_y*prs_d_G_yx
         )
-        # (M2) coupling block of M
-        M_ta_t = d_c_in_base_y_3*q_in_base_z
-        M_ta_t_2 = d_c_in_base_z*q_in_base_y
-        M_ta_t_3 = M_ta_t - M_ta_t_2
-        M_ta_t_4 = d_c_in_base_x_3*q_in_base_z - d_c_in_base_z*q_in_base_x
-        M_ta_t_5 = d_c_in_base_x_3*q_in_base_y - d_c_in_base_y_3*q_in_base_x
-        M_ta_t_6 = d_c_in_base_y_4*q_in_base_z - d_c_in_base_z_2*q_in_base_y
-        M_ta_t_7 = d_c_in_base_z_2*q_in_base_x
-        M_ta_t_8 = M_ta_t - M_ta_t_7
-        M_ta_t_9 = d_c_in_base_y_3*q_in_base_y - d_c_in_base_y_4*q_in_base_x
-        M_ta_t_10 = d_c_in_base_z_2*q_in_base_z - d_c_in_base_z_3*q_in_base_y
-        M_ta_t_11 = d_c_in_base_z*q_in_base_z - d_c_in_base_z_3*q_in_base_x
-        M_ta_t_12 = M_ta_t_7 - M_ta_t_2
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
-        M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y
-        M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z
-        M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x
-        M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z
-        M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
-        # (prs-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        # (prs-V6) rate of joint 2
-        qd_2 = (
-        inv_v_2_t_2*(S_dot_x*prs_base_frame_xy + S_dot_y*prs_base_frame_yy +
-            S_dot_z*prs_base_frame_zy)
+        prs_d_c_in_base_x_2 = (
+        -axis_x_prs_axes2_in_base_x*prs_d_G_xy - axis_y_prs_axes2_in_base_x*prs_d_G_yy
         )
-        # (prs-V8) centripetal tensor of link 2
-        W_2_t = qd_2*qd_2
-        # (prs-A1) centripetal acceleration of the connection point
-        u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
-        u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y
-        u_1_tip_y = (
-        axis_y_prs_axes2_in_base_x*u_1_x + axis_y_prs_axes2_in_base_y*u_1_y +
-            axis_y_prs_axes2_in_base_z*u_1_z
+        prs_d_c_in_base_y_2 = (
+        -axis_x_prs_axes2_in_base_y*prs_d_G_xy - axis_y_prs_axes2_in_base_y*prs_d_G_yy
         )
-        u_1_tip_z = prs_base_frame_xz*u_1_x + prs_base_frame_yz*u_1_y + prs_base_frame_zz*u_1_z
-        # (prs-A6) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_x = (
-        axis_x_prs_axes2_in_base_x*u_1_x + axis_x_prs_axes2_in_base_y*u_1_y +
-            axis_x_prs_axes2_in_base_z*u_1_z + prs_platform_joint_offset_x*qd_2*qd_2
+        prs_d_c_in_base_x_3 = (
+        axis_x_prs_axes2_in_base_x*prs_d_c_in_base_x +
+            axis_y_prs_axes2_in_base_x*prs_d_c_in_base_x_2
         )
-        # (prs-A8) remainder without the acceleration in: acceleration of joint 1
-        qdd_2_o = inv_v_2_t_2*(rel_o_x*s_2 - c_2*u_1_tip_y)
-        qdd_1_o_t = c_2*rel_o_x + qdd_2_o*v_2_t + s_2*u_1_tip_y
-        # (prs-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        acc_1_o_x = -g_r0_x - qdd_1_o_t
-        # (prs-N6) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        acc_2_o_x = c_2*g_r0_x + c_2*qdd_1_o_t - g_r0_y*s_2
-        acc_2_o_y = c_2*g_r0_y + g_r0_x*s_2 + qdd_1_o_t*s_2
-        # (prs-N10) remainder without the acceleration in: inertia force of link 2 less its weight
-        f_2_o_x = acc_2_o_x*prs_link2_mass + h_2_y*qdd_2_o - W_2_t*h_2_x
-        f_2_o_y = acc_2_o_y*prs_link2_mass - W_2_t*h_2_y - h_2_x*qdd_2_o
-        # (prs-N25) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
-        T_1_o_x = acc_1_o_x*prs_link1_mass - c_2*f_2_o_x - f_2_o_y*s_2
-        # (prs-N20) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_o_z = acc_2_o_y*h_2_x - J_2_zz*qdd_2_o - acc_2_o_x*h_2_y
-        # (prs-N31) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_o_t = inv_v_2_t_2*(mu_2_o_z + T_1_o_x*v_2_t)
-        _r0_x_4 = -G_o_t*s_2 - T_1_o_x*c_2
-        _r0_y_4 = G_o_t*c_2 - T_1_o_x*s_2
-        # (prs-N36) velocity and gravity terms of the leg force
-        U_in_base_x = _r0_x_4*axis_x_prs_axes2_in_base_x + _r0_y_4*axis_y_prs_axes2_in_base_x
-        U_in_base_y = _r0_x_4*axis_x_prs_axes2_in_base_y + _r0_y_4*axis_y_prs_axes2_in_base_y
-        U_in_base_z = _r0_x_4*axis_x_prs_axes2_in_base_z + _r0_y_4*axis_y_prs_axes2_in_base_z
-        # (M7) rotational part of Z
-        Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
-        Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
-        Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
-        # (prs-V3) reciprocal vector 1
-        w_1_in_base_x = _r0_x*axis_x_prs_axes2_in_base_x + _r0_y*axis_y_prs_axes2_in_base_x
-        w_1_in_base_y = _r0_x*axis_x_prs_axes2_in_base_y + _r0_y*axis_y_prs_axes2_in_base_y
-        w_1_in_base_z = _r0_x*axis_x_prs_axes2_in_base_z + _r0_y*axis_y_prs_axes2_in_base_z
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_x = q_in_base_y*w_1_in_base_z - q_in_base_z*w_1_in_base_y
-        H_a_1_y = q_in_base_z*w_1_in_base_x - q_in_base_x*w_1_in_base_z
-        H_a_1_z = q_in_base_x*w_1_in_base_y - q_in_base_y*w_1_in_base_x
-        # (M9) moment of the column's unit force about the platform origin
-        Hk_a_1_x = prs_base_frame_zz*q_in_base_y - prs_base_frame_yz*q_in_base_z
-        Hk_a_1_y = prs_base_frame_xz*q_in_base_z - prs_base_frame_zz*q_in_base_x
-        Hk_a_1_z = prs_base_frame_yz*q_in_base_x - prs_base_frame_xz*q_in_base_y
+        prs_d_c_in_base_y_3 = (
+        axis_x_prs_axes2_in_base_y*prs_d_c_in_base_x +
+            axis_y_prs_axes2_in_base_y*prs_d_c_in_base_x_2
+        )
+        prs_d_c_in_base_z = (
+        axis_x_prs_axes2_in_base_z*prs_d_c_in_base_x +
+            axis_y_prs_axes2_in_base_z*prs_d_c_in_base_x_2
+        )
+        prs_d_c_in_base_y_4 = (
+        axis_x_prs_axes2_in_base_y*prs_d_c_in_base_y +
+            axis_y_prs_axes2_in_base_y*prs_d_c_in_base_y_2
+        )
+        prs_d_c_in_base_z_2 = (
+        axis_x_prs_axes2_in_base_z*prs_d_c_in_base_y +
+            axis_y_prs_axes2_in_base_z*prs_d_c_in_base_y_2
+        )
+        prs_d_c_in_base_z_3 = (
+        axis_x_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*prs_d_G_xx -
+            axis_y_prs_axes2_in_base_z*prs_d_G_yx) +
+            axis_y_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*prs_d_G_xy -
+            axis_y_prs_axes2_in_base_z*prs_d_G_yy)
+        )
+        # (M_ta) coupling block of M
+        prs_M_ta_t = prs_d_c_in_base_y_3*prs_q_in_base_z
+        prs_M_ta_t_2 = prs_d_c_in_base_z*prs_q_in_base_y
+        prs_M_ta_t_3 = prs_M_ta_t - prs_M_ta_t_2
+        prs_M_ta_t_4 = prs_d_c_in_base_x_3*prs_q_in_base_z - prs_d_c_in_base_z*prs_q_in_base_x
+        prs_M_ta_t_5 = prs_d_c_in_base_x_3*prs_q_in_base_y - prs_d_c_in_base_y_3*prs_q_in_base_x
+        prs_M_ta_t_6 = prs_d_c_in_base_y_4*prs_q_in_base_z - prs_d_c_in_base_z_2*prs_q_in_base_y
+        prs_M_ta_t_7 = prs_d_c_in_base_z_2*prs_q_in_base_x
+        prs_M_ta_t_8 = prs_M_ta_t - prs_M_ta_t_7
+        prs_M_ta_t_9 = prs_d_c_in_base_y_3*prs_q_in_base_y - prs_d_c_in_base_y_4*prs_q_in_base_x
+        prs_M_ta_t_10 = prs_d_c_in_base_z_2*prs_q_in_base_z - prs_d_c_in_base_z_3*prs_q_in_base_y
+        prs_M_ta_t_11 = prs_d_c_in_base_z*prs_q_in_base_z - prs_d_c_in_base_z_3*prs_q_in_base_x
+        prs_M_ta_t_12 = prs_M_ta_t_7 - prs_M_ta_t_2
+        # (M_aa) rotational block of M
+        prs_M_aa_t = prs_M_ta_t_6*prs_q_in_base_z - prs_M_ta_t_10*prs_q_in_base_y
+        prs_M_aa_t_2 = prs_M_ta_t_8*prs_q_in_base_z - prs_M_ta_t_11*prs_q_in_base_y
+        prs_M_aa_t_3 = prs_M_ta_t_12*prs_q_in_base_y + prs_M_ta_t_9*prs_q_in_base_z
+        prs_M_aa_t_4 = prs_M_ta_t_4*prs_q_in_base_z - prs_M_ta_t_11*prs_q_in_base_x
+        prs_M_aa_t_5 = prs_M_ta_t_12*prs_q_in_base_x + prs_M_ta_t_5*prs_q_in_base_z
+        prs_M_aa_t_6 = prs_M_ta_t_5*prs_q_in_base_y - prs_M_ta_t_9*prs_q_in_base_x
+        # (prs-S_dot) velocity of the connection point
+        prs_S_dot_t = omega_y*prs_q_in_base_z - omega_z*prs_q_in_base_y
+        prs_S_dot_t_2 = omega_z*prs_q_in_base_x - omega_x*prs_q_in_base_z
+        prs_S_dot_t_3 = omega_x*prs_q_in_base_y - omega_y*prs_q_in_base_x
+        prs_S_dot_x = prs_S_dot_t + t_dot_x
+        prs_S_dot_y = prs_S_dot_t_2 + t_dot_y
+        prs_S_dot_z = prs_S_dot_t_3 + t_dot_z
+        # (prs-qd_2) rate of joint 2
+        prs_qd_2 = (
+        inv_prs_v_2_t_2*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
+            prs_S_dot_z*prs_base_frame_zy)
+        )
+        # (prs-u_1) centripetal acceleration of the connection point
+        prs_u_1_x = omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2
+        prs_u_1_y = omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3
+        prs_u_1_z = omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t
+        # (prs-W_2) centripetal tensor of link 2
+        prs_W_2_t = prs_qd_2*prs_qd_2
+        # (prs-u_1) centripetal acceleration of the connection point
+        prs_u_1_tip_y = (
+        axis_y_prs_axes2_in_base_x*prs_u_1_x + axis_y_prs_axes2_in_base_y*prs_u_1_y +
+            axis_y_prs_axes2_in_base_z*prs_u_1_z
+        )
+        prs_u_1_tip_z = (
+        prs_base_frame_xz*prs_u_1_x + prs_base_frame_yz*prs_u_1_y + prs_base_frame_zz*prs_u_1_z
+        )
+        # (prs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        prs_rel_o_x = (
+        axis_x_prs_axes2_in_base_x*prs_u_1_x + axis_x_prs_axes2_in_base_y*prs_u_1_y +
+            axis_x_prs_axes2_in_base_z*prs_u_1_z + prs_platform_joint_offset_x*prs_qd_2*prs_qd_2
+        )
+        # (prs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        prs_qdd_2_o = inv_prs_v_2_t_2*(prs_rel_o_x*prs_s_2 - prs_c_2*prs_u_1_tip_y)
+        prs_qdd_2_o_t = prs_c_2*prs_rel_o_x + prs_qdd_2_o*prs_v_2_t + prs_s_2*prs_u_1_tip_y
+        # (prs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        prs_acc_2_o_x = prs_c_2*prs_g_r0_x + prs_c_2*prs_qdd_2_o_t - prs_g_r0_y*prs_s_2
+        prs_acc_2_o_y = prs_c_2*prs_g_r0_y + prs_g_r0_x*prs_s_2 + prs_qdd_2_o_t*prs_s_2
+        # (prs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        prs_mu_2_o_z = prs_acc_2_o_y*prs_h_2_x - prs_J_2_zz*prs_qdd_2_o - prs_acc_2_o_x*prs_h_2_y
+        # (prs-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+        prs_acc_1_o_x = -prs_g_r0_x - prs_qdd_2_o_t
+        # (prs-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight
+        prs_f_2_o_x = prs_acc_2_o_x*prs_link2_mass + prs_h_2_y*prs_qdd_2_o - prs_W_2_t*prs_h_2_x
+        prs_f_2_o_y = prs_acc_2_o_y*prs_link2_mass - prs_W_2_t*prs_h_2_y - prs_h_2_x*prs_qdd_2_o
+        # (prs-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
+        prs_T_1_o_x = prs_acc_1_o_x*prs_link1_mass - prs_c_2*prs_f_2_o_x - prs_f_2_o_y*prs_s_2
+        # (prs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        prs_G_o_t = inv_prs_v_2_t_2*(prs_mu_2_o_z + prs_T_1_o_x*prs_v_2_t)
+        prs__r0_x_4 = -prs_G_o_t*prs_s_2 - prs_T_1_o_x*prs_c_2
+        prs__r0_y_4 = prs_G_o_t*prs_c_2 - prs_T_1_o_x*prs_s_2
+        # (prs-U) velocity and gravity terms of the leg force
+        prs_U_in_base_x = (
+        axis_x_prs_axes2_in_base_x*prs__r0_x_4 + axis_y_prs_axes2_in_base_x*prs__r0_y_4
+        )
+        prs_U_in_base_y = (
+        axis_x_prs_axes2_in_base_y*prs__r0_x_4 + axis_y_prs_axes2_in_base_y*prs__r0_y_4
+        )
+        prs_U_in_base_z = (
+        axis_x_prs_axes2_in_base_z*prs__r0_x_4 + axis_y_prs_axes2_in_base_z*prs__r0_y_4
+        )
+        # (Z_a) rotational part of Z
+        prs_Z_a_t = prs_U_in_base_z*prs_q_in_base_y - prs_U_in_base_y*prs_q_in_base_z
+        prs_Z_a_t_2 = prs_U_in_base_x*prs_q_in_base_z - prs_U_in_base_z*prs_q_in_base_x
+        prs_Z_a_t_3 = prs_U_in_base_y*prs_q_in_base_x - prs_U_in_base_x*prs_q_in_base_y
+        # (prs-w_1) reciprocal vector 1
+        prs_w_1_in_base_x = (
+        axis_x_prs_axes2_in_base_x*prs__r0_x + axis_y_prs_axes2_in_base_x*prs__r0_y
+        )
+        prs_w_1_in_base_y = (
+        axis_x_prs_axes2_in_base_y*prs__r0_x + axis_y_prs_axes2_in_base_y*prs__r0_y
+        )
+        prs_w_1_in_base_z = (
+        axis_x_prs_axes2_in_base_z*prs__r0_x + axis_y_prs_axes2_in_base_z*prs__r0_y
+        )
+        # (prs-H_a_1) moment of the column's unit force about the platform origin
+        prs_H_a_1_x = prs_q_in_base_y*prs_w_1_in_base_z - prs_q_in_base_z*prs_w_1_in_base_y
+        prs_H_a_1_y = prs_q_in_base_z*prs_w_1_in_base_x - prs_q_in_base_x*prs_w_1_in_base_z
+        prs_H_a_1_z = prs_q_in_base_x*prs_w_1_in_base_y - prs_q_in_base_y*prs_w_1_in_base_x
+        # (prs-Hk_a_1) moment of the column's unit force about the platform origin
+        prs_Hk_a_1_x = prs_base_frame_zz*prs_q_in_base_y - prs_base_frame_yz*prs_q_in_base_z
+        prs_Hk_a_1_y = prs_base_frame_xz*prs_q_in_base_z - prs_base_frame_zz*prs_q_in_base_x
+        prs_Hk_a_1_z = prs_base_frame_yz*prs_q_in_base_x - prs_base_frame_xz*prs_q_in_base_y
         ok = (
-        ok & m.every(leg, (disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * root_2_t) &
-            (abs(-v_2_t_2) > _TOLERANCE * size))
+        ok & m.every(leg, (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE *
+            prs_root_2_t) & (abs(-prs_v_2_t_2) > _TOLERANCE * prs_size))
         )
         sums = m.added(sums, leg, (
-        d_c_in_base_x_3, d_c_in_base_y_3, d_c_in_base_z, d_c_in_base_y_4, d_c_in_base_z_2,
-            d_c_in_base_z_3, M_ta_t_3, M_ta_t_4, M_ta_t_5, M_ta_t_6, M_ta_t_8, M_ta_t_9,
-            M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2, M_aa_t_3, M_aa_t_4, M_aa_t_5,
-            M_aa_t_6, U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
+        prs_d_c_in_base_x_3, prs_d_c_in_base_y_3, prs_d_c_in_base_z, prs_d_c_in_base_y_4,
+            prs_d_c_in_base_z_2, prs_d_c_in_base_z_3, prs_M_ta_t_3, prs_M_ta_t_4,
+            prs_M_ta_t_5, prs_M_ta_t_6, prs_M_ta_t_8, prs_M_ta_t_9, prs_M_ta_t_10,
+            prs_M_ta_t_11, prs_M_ta_t_12, prs_M_aa_t, prs_M_aa_t_2, prs_M_aa_t_3,
+            prs_M_aa_t_4, prs_M_aa_t_5, prs_M_aa_t_6, prs_U_in_base_x, prs_U_in_base_y,
+            prs_U_in_base_z, prs_Z_a_t, prs_Z_a_t_2, prs_Z_a_t_3,
         ))
-        out_H[_H_prs[0][leg]] = w_1_in_base_x
-        out_H[_H_prs[1][leg]] = w_1_in_base_y
-        out_H[_H_prs[2][leg]] = w_1_in_base_z
-        out_H[_H_prs[3][leg]] = H_a_1_x
-        out_H[_H_prs[4][leg]] = H_a_1_y
-        out_H[_H_prs[5][leg]] = H_a_1_z
+        out_H[_H_prs[0][leg]] = prs_w_1_in_base_x
+        out_H[_H_prs[1][leg]] = prs_w_1_in_base_y
+        out_H[_H_prs[2][leg]] = prs_w_1_in_base_z
+        out_H[_H_prs[3][leg]] = prs_H_a_1_x
+        out_H[_H_prs[4][leg]] = prs_H_a_1_y
+        out_H[_H_prs[5][leg]] = prs_H_a_1_z
         out_Hk[_Hk_prs[0][leg]] = prs_base_frame_xz
         out_Hk[_Hk_prs[1][leg]] = prs_base_frame_yz
         out_Hk[_Hk_prs[2][leg]] = prs_base_frame_zz
-        out_Hk[_Hk_prs[3][leg]] = Hk_a_1_x
-        out_Hk[_Hk_prs[4][leg]] = Hk_a_1_y
-        out_Hk[_Hk_prs[5][leg]] = Hk_a_1_z
-        out_constraint_bias[_constraint_bias_prs[0][leg]] = u_1_tip_z
+        out_Hk[_Hk_prs[3][leg]] = prs_Hk_a_1_x
+        out_Hk[_Hk_prs[4][leg]] = prs_Hk_a_1_y
+        out_Hk[_Hk_prs[5][leg]] = prs_Hk_a_1_z
+        out_constraint_bias[_constraint_bias_prs[0][leg]] = prs_u_1_tip_z
     (
     total_prs_xx, total_prs_xy, total_prs_xz, total_prs_yy, total_prs_yz, total_prs_zz,
         total_prs_xx_2, total_prs_xy_2, total_prs_xz_2, total_prs_yx, total_prs_yy_2,
@@ -1566,29 +1652,29 @@ def _run_dynamics(m, X, V):
         total_prs_xy_3, total_prs_xz_3, total_prs_yy_3, total_prs_yz_3, total_prs_zz_3,
         total_prs_x, total_prs_y, total_prs_z, total_prs_x_2, total_prs_y_2, total_prs_z_2,
     ) = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = platform_mass - total_prs_xx
     M_tt_yy = platform_mass - total_prs_yy
     M_tt_zz = platform_mass - total_prs_zz
-    # (M2) coupling block of M
+    # (M_ta) coupling block of M
     M_ta_xy = h_star_in_base_z - total_prs_xy_2
     M_ta_xz = total_prs_xz_2 - h_star_in_base_y
     M_ta_yx = total_prs_yx - h_star_in_base_z
     M_ta_yz = h_star_in_base_x + total_prs_yz_2
     M_ta_zx = h_star_in_base_y + total_prs_zx
     M_ta_zy = -h_star_in_base_x - total_prs_zy
-    # (M3) rotational block of M
+    # (M_aa) rotational block of M
     M_aa_xx = J_star_t_10 - total_prs_xx_3
     M_aa_xy = J_star_t_11 + total_prs_xy_3
     M_aa_xz = J_star_t_12 - total_prs_xz_3
     M_aa_yy = J_star_t_14 - total_prs_yy_3
     M_aa_yz = J_star_t_15 + total_prs_yz_3
     M_aa_zz = J_star_t_17 - total_prs_zz_3
-    # (M5) translational part of Z
+    # (Z_t) translational part of Z
     Z_t_x = Z_p_x + total_prs_x
     Z_t_y = Z_p_y + total_prs_y
     Z_t_z = Z_p_z + total_prs_z
-    # (M7) rotational part of Z
+    # (Z_a) rotational part of Z
     Z_a_x = Z_q_in_base_x + total_prs_x_2
     Z_a_y = Z_q_in_base_y + total_prs_y_2
     Z_a_z = Z_q_in_base_z + total_prs_z_2
@@ -1682,11 +1768,11 @@ def _run_M(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_M = m.zeros("M")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_6*R_xy
     J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_6*R_yy
     J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_6*R_zy
@@ -1705,130 +1791,153 @@ def _run_M(m, X):
     sums = [0.0] * 21
     for leg, k in legs[0]:
         (
-        J_2_zz, P_c1_t, branch_1, h_2_x, h_2_y, prs_base_frame_xx, prs_base_frame_xy,
-            prs_base_frame_xz, prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz,
-            prs_base_frame_zx, prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x,
-            prs_base_point_y, prs_base_point_z, prs_platform_joint_offset_x, prs_platform_point_x,
-            prs_platform_point_y, prs_platform_point_z, root_2_t, size, uu_2_t,
+        prs_J_2_zz, prs_P_c_1_t, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz,
+            prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx,
+            prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x, prs_base_point_y,
+            prs_base_point_z, prs_branch_1, prs_disc_1_t, prs_h_2_x, prs_h_2_y,
+            prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
+            prs_platform_point_z, prs_root_2_t, prs_size,
         ) = k
-        # (prs-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (prs-S) from the base point to the connection point
+        prs_q_in_base_x = (
         R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z
         )
-        q_in_base_y = (
+        prs_q_in_base_y = (
         R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z
         )
-        q_in_base_z = (
+        prs_q_in_base_z = (
         R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - prs_base_point_x
-        S_y = q_in_base_y + t_y - prs_base_point_y
-        S_z = q_in_base_z + t_z - prs_base_point_z
-        # (prs-K2) component along axis 1
-        px_1 = S_x*prs_base_frame_xx + S_y*prs_base_frame_yx + S_z*prs_base_frame_zx
-        # (prs-K3) discriminant of the distance equation
-        disc_1_t = S_x*prs_base_frame_xz + S_y*prs_base_frame_yz + S_z*prs_base_frame_zz
-        disc_1_t_2 = S_x*S_x + S_y*S_y + S_z*S_z
-        disc_1 = disc_1_t*disc_1_t + px_1*px_1 + uu_2_t - disc_1_t_2
-        # (prs-K4) displacement of joint 1
-        q_1_t = branch_1*sqrt(disc_1)
-        # (prs-K1) from the base point to the connection point
-        S_r0_y = S_x*prs_base_frame_xy + S_y*prs_base_frame_yy + S_z*prs_base_frame_zy
-        # (prs-K7) squared amplitude
-        rho2_2 = uu_2_t*(S_r0_y*S_r0_y + q_1_t*q_1_t)
-        # (prs-K9) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/(sqrt(rho2_2))
-        c_2 = inv_root_2*prs_platform_joint_offset_x*q_1_t
-        # (prs-K10) sine of the angle of joint 2 from its reference direction
-        s_2 = S_r0_y*inv_root_2*prs_platform_joint_offset_x
-        # (prs-V3) reciprocal vector 1
-        axis_y_prs_axes2_in_base_x = -c_2*prs_base_frame_xy - prs_base_frame_xx*s_2
-        axis_y_prs_axes2_in_base_y = -c_2*prs_base_frame_yy - prs_base_frame_yx*s_2
-        axis_y_prs_axes2_in_base_z = -c_2*prs_base_frame_zy - prs_base_frame_zx*s_2
-        axis_x_prs_axes2_in_base_x = prs_base_frame_xy*s_2 - c_2*prs_base_frame_xx
-        axis_x_prs_axes2_in_base_y = prs_base_frame_yy*s_2 - c_2*prs_base_frame_yx
-        axis_x_prs_axes2_in_base_z = prs_base_frame_zy*s_2 - c_2*prs_base_frame_zx
-        # (prs-N11) force that accelerates joint 2, per unit
-        P_c2_r0_x = c_2*h_2_y - h_2_x*s_2
-        # (prs-V2) velocity of the connection point per rate of joint 2
-        v_2_t = prs_platform_joint_offset_x*s_2
-        v_2_t_2 = c_2*prs_platform_joint_offset_x
-        # (prs-V3) reciprocal vector 1
-        inv_v_2_t_2 = 1.0/v_2_t_2
-        w_1_t = inv_v_2_t_2*v_2_t
-        _r0_x = -c_2 - s_2*w_1_t
-        _r0_y = c_2*w_1_t - s_2
-        # (prs-V4) reciprocal vector 2
-        w_2_t = inv_v_2_t_2*s_2
-        w_2_t_2 = c_2*inv_v_2_t_2
-        # (prs-N27) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
-        d_Gamma_1_t = inv_v_2_t_2*(P_c2_r0_x + P_c1_t*v_2_t)
-        _r0_x_2 = -P_c1_t*c_2 - d_Gamma_1_t*s_2
-        _r0_y_2 = c_2*d_Gamma_1_t - P_c1_t*s_2
-        # (prs-N22) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        d_Gamma_2_t = inv_v_2_t_2*(J_2_zz + P_c2_r0_x*v_2_t)
-        _r0_x_3 = -P_c2_r0_x*c_2 - d_Gamma_2_t*s_2
-        _r0_y_3 = c_2*d_Gamma_2_t - P_c2_r0_x*s_2
-        # (prs-N30) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_xx = _r0_x*_r0_x_2 - _r0_x_3*w_2_t
-        d_G_xy = _r0_x*_r0_y_2 - _r0_y_3*w_2_t
-        d_G_yx = _r0_x_2*_r0_y + _r0_x_3*w_2_t_2
-        d_G_yy = _r0_y*_r0_y_2 + _r0_y_3*w_2_t_2
-        # (prs-N33) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_in_base_x = -axis_x_prs_axes2_in_base_x*d_G_xx - axis_y_prs_axes2_in_base_x*d_G_yx
-        d_c_in_base_y = -axis_x_prs_axes2_in_base_y*d_G_xx - axis_y_prs_axes2_in_base_y*d_G_yx
-        d_c_in_base_x_2 = -axis_x_prs_axes2_in_base_x*d_G_xy - axis_y_prs_axes2_in_base_x*d_G_yy
-        d_c_in_base_y_2 = -axis_x_prs_axes2_in_base_y*d_G_xy - axis_y_prs_axes2_in_base_y*d_G_yy
-        d_c_in_base_x_3 = (
-        axis_x_prs_axes2_in_base_x*d_c_in_base_x + axis_y_prs_axes2_in_base_x*d_c_in_base_x_2
+        prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x
+        prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y
+        prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z
+        # (prs-px_1) component along axis 1
+        prs_px_1 = (
+        prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
-        d_c_in_base_y_3 = (
-        axis_x_prs_axes2_in_base_y*d_c_in_base_x + axis_y_prs_axes2_in_base_y*d_c_in_base_x_2
+        # (prs-disc_1) discriminant of the distance equation
+        prs_disc_1_t_2 = (
+        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
-        d_c_in_base_z = (
-        axis_x_prs_axes2_in_base_z*d_c_in_base_x + axis_y_prs_axes2_in_base_z*d_c_in_base_x_2
+        prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
+        prs_disc_1 = (
+        prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 - prs_disc_1_t_3
         )
-        d_c_in_base_y_4 = (
-        axis_x_prs_axes2_in_base_y*d_c_in_base_y + axis_y_prs_axes2_in_base_y*d_c_in_base_y_2
+        # (prs-q_1) displacement of joint 1
+        prs_q_1_t = prs_branch_1*sqrt(prs_disc_1)
+        # (prs-S) from the base point to the connection point
+        prs_S_r0_y = (
+        prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
         )
-        d_c_in_base_z_2 = (
-        axis_x_prs_axes2_in_base_z*d_c_in_base_y + axis_y_prs_axes2_in_base_z*d_c_in_base_y_2
+        # (prs-rho2_2) squared amplitude
+        prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t)
+        # (prs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_prs_root_2 = 1.0/(sqrt(prs_rho2_2))
+        prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t
+        # (prs-s_2) sine of the angle of joint 2 from its reference direction
+        prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x
+        # (prs-w_1) reciprocal vector 1
+        axis_y_prs_axes2_in_base_x = -prs_base_frame_xx*prs_s_2 - prs_base_frame_xy*prs_c_2
+        axis_y_prs_axes2_in_base_y = -prs_base_frame_yx*prs_s_2 - prs_base_frame_yy*prs_c_2
+        axis_y_prs_axes2_in_base_z = -prs_base_frame_zx*prs_s_2 - prs_base_frame_zy*prs_c_2
+        axis_x_prs_axes2_in_base_x = prs_base_frame_xy*prs_s_2 - prs_base_frame_xx*prs_c_2
+        axis_x_prs_axes2_in_base_y = prs_base_frame_yy*prs_s_2 - prs_base_frame_yx*prs_c_2
+        axis_x_prs_axes2_in_base_z = prs_base_frame_zy*prs_s_2 - prs_base_frame_zx*prs_c_2
+        # (prs-v_2) velocity of the connection point per rate of joint 2
+        prs_v_2_t = prs_platform_joint_offset_x*prs_s_2
+        prs_v_2_t_2 = prs_c_2*prs_platform_joint_offset_x
+        # (prs-w_1) reciprocal vector 1
+        inv_prs_v_2_t_2 = 1.0/prs_v_2_t_2
+        prs_w_1_t = inv_prs_v_2_t_2*prs_v_2_t
+        prs__r0_x = -prs_c_2 - prs_s_2*prs_w_1_t
+        prs__r0_y = prs_c_2*prs_w_1_t - prs_s_2
+        # (prs-w_2) reciprocal vector 2
+        prs_w_2_t = inv_prs_v_2_t_2*prs_s_2
+        prs_w_2_t_2 = inv_prs_v_2_t_2*prs_c_2
+        # (prs-P_c_2) force that accelerates joint 2, per unit
+        prs_P_c_2_r0_x = prs_c_2*prs_h_2_y - prs_h_2_x*prs_s_2
+        # (prs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        prs_d_Gamma_2_t = inv_prs_v_2_t_2*(prs_J_2_zz + prs_P_c_2_r0_x*prs_v_2_t)
+        prs__r0_x_2 = -prs_P_c_2_r0_x*prs_c_2 - prs_d_Gamma_2_t*prs_s_2
+        prs__r0_y_2 = prs_c_2*prs_d_Gamma_2_t - prs_P_c_2_r0_x*prs_s_2
+        # (prs-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
+        prs_d_Gamma_1_t = inv_prs_v_2_t_2*(prs_P_c_2_r0_x + prs_P_c_1_t*prs_v_2_t)
+        prs__r0_x_3 = -prs_P_c_1_t*prs_c_2 - prs_d_Gamma_1_t*prs_s_2
+        prs__r0_y_3 = prs_c_2*prs_d_Gamma_1_t - prs_P_c_1_t*prs_s_2
+        # (prs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        prs_d_G_xx = prs__r0_x*prs__r0_x_3 - prs__r0_x_2*prs_w_2_t
+        prs_d_G_xy = prs__r0_x*prs__r0_y_3 - prs__r0_y_2*prs_w_2_t
+        prs_d_G_yx = prs__r0_x_2*prs_w_2_t_2 + prs__r0_x_3*prs__r0_y
+        prs_d_G_yy = prs__r0_y*prs__r0_y_3 + prs__r0_y_2*prs_w_2_t_2
+        # (prs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        prs_d_c_in_base_x = (
+        -axis_x_prs_axes2_in_base_x*prs_d_G_xx - axis_y_prs_axes2_in_base_x*prs_d_G_yx
         )
-        d_c_in_base_z_3 = (
-        axis_x_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*d_G_xx -
-            axis_y_prs_axes2_in_base_z*d_G_yx) +
-            axis_y_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*d_G_xy -
-            axis_y_prs_axes2_in_base_z*d_G_yy)
+        prs_d_c_in_base_y = (
+        -axis_x_prs_axes2_in_base_y*prs_d_G_xx - axis_y_prs_axes2_in_base_y*prs_d_G_yx
         )
-        # (M2) coupling block of M
-        M_ta_t = d_c_in_base_y_3*q_in_base_z
-        M_ta_t_2 = d_c_in_base_z*q_in_base_y
-        M_ta_t_3 = M_ta_t - M_ta_t_2
-        M_ta_t_4 = d_c_in_base_x_3*q_in_base_z - d_c_in_base_z*q_in_base_x
-        M_ta_t_5 = d_c_in_base_x_3*q_in_base_y - d_c_in_base_y_3*q_in_base_x
-        M_ta_t_6 = d_c_in_base_y_4*q_in_base_z - d_c_in_base_z_2*q_in_base_y
-        M_ta_t_7 = d_c_in_base_z_2*q_in_base_x
-        M_ta_t_8 = M_ta_t - M_ta_t_7
-        M_ta_t_9 = d_c_in_base_y_3*q_in_base_y - d_c_in_base_y_4*q_in_base_x
-        M_ta_t_10 = d_c_in_base_z_2*q_in_base_z - d_c_in_base_z_3*q_in_base_y
-        M_ta_t_11 = d_c_in_base_z*q_in_base_z - d_c_in_base_z_3*q_in_base_x
-        M_ta_t_12 = M_ta_t_7 - M_ta_t_2
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
-        M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y
-        M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z
-        M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x
-        M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z
-        M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
+        prs_d_c_in_base_x_2 = (
+        -axis_x_prs_axes2_in_base_x*prs_d_G_xy - axis_y_prs_axes2_in_base_x*prs_d_G_yy
+        )
+        prs_d_c_in_base_y_2 = (
+        -axis_x_prs_axes2_in_base_y*prs_d_G_xy - axis_y_prs_axes2_in_base_y*prs_d_G_yy
+        )
+        prs_d_c_in_base_x_3 = (
+        axis_x_prs_axes2_in_base_x*prs_d_c_in_base_x +
+            axis_y_prs_axes2_in_base_x*prs_d_c_in_base_x_2
+        )
+        prs_d_c_in_base_y_3 = (
+        axis_x_prs_axes2_in_base_y*prs_d_c_in_base_x +
+            axis_y_prs_axes2_in_base_y*prs_d_c_in_base_x_2
+        )
+        prs_d_c_in_base_z = (
+        axis_x_prs_axes2_in_base_z*prs_d_c_in_base_x +
+            axis_y_prs_axes2_in_base_z*prs_d_c_in_base_x_2
+        )
+        prs_d_c_in_base_y_4 = (
+        axis_x_prs_axes2_in_base_y*prs_d_c_in_base_y +
+            axis_y_prs_axes2_in_base_y*prs_d_c_in_base_y_2
+        )
+        prs_d_c_in_base_z_2 = (
+        axis_x_prs_axes2_in_base_z*prs_d_c_in_base_y +
+            axis_y_prs_axes2_in_base_z*prs_d_c_in_base_y_2
+        )
+        prs_d_c_in_base_z_3 = (
+        axis_x_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*prs_d_G_xx -
+            axis_y_prs_axes2_in_base_z*prs_d_G_yx) +
+            axis_y_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*prs_d_G_xy -
+            axis_y_prs_axes2_in_base_z*prs_d_G_yy)
+        )
+        # (M_ta) coupling block of M
+        prs_M_ta_t = prs_d_c_in_base_y_3*prs_q_in_base_z
+        prs_M_ta_t_2 = prs_d_c_in_base_z*prs_q_in_base_y
+        prs_M_ta_t_3 = prs_M_ta_t - prs_M_ta_t_2
+        prs_M_ta_t_4 = prs_d_c_in_base_x_3*prs_q_in_base_z - prs_d_c_in_base_z*prs_q_in_base_x
+        prs_M_ta_t_5 = prs_d_c_in_base_x_3*prs_q_in_base_y - prs_d_c_in_base_y_3*prs_q_in_base_x
+        prs_M_ta_t_6 = prs_d_c_in_base_y_4*prs_q_in_base_z - prs_d_c_in_base_z_2*prs_q_in_base_y
+        prs_M_ta_t_7 = prs_d_c_in_base_z_2*prs_q_in_base_x
+        prs_M_ta_t_8 = prs_M_ta_t - prs_M_ta_t_7
+        prs_M_ta_t_9 = prs_d_c_in_base_y_3*prs_q_in_base_y - prs_d_c_in_base_y_4*prs_q_in_base_x
+        prs_M_ta_t_10 = prs_d_c_in_base_z_2*prs_q_in_base_z - prs_d_c_in_base_z_3*prs_q_in_base_y
+        prs_M_ta_t_11 = prs_d_c_in_base_z*prs_q_in_base_z - prs_d_c_in_base_z_3*prs_q_in_base_x
+        prs_M_ta_t_12 = prs_M_ta_t_7 - prs_M_ta_t_2
+        # (M_aa) rotational block of M
+        prs_M_aa_t = prs_M_ta_t_6*prs_q_in_base_z - prs_M_ta_t_10*prs_q_in_base_y
+        prs_M_aa_t_2 = prs_M_ta_t_8*prs_q_in_base_z - prs_M_ta_t_11*prs_q_in_base_y
+        prs_M_aa_t_3 = prs_M_ta_t_12*prs_q_in_base_y + prs_M_ta_t_9*prs_q_in_base_z
+        prs_M_aa_t_4 = prs_M_ta_t_4*prs_q_in_base_z - prs_M_ta_t_11*prs_q_in_base_x
+        prs_M_aa_t_5 = prs_M_ta_t_12*prs_q_in_base_x + prs_M_ta_t_5*prs_q_in_base_z
+        prs_M_aa_t_6 = prs_M_ta_t_5*prs_q_in_base_y - prs_M_ta_t_9*prs_q_in_base_x
         ok = (
-        ok & m.every(leg, (disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * root_2_t) &
-            (abs(-v_2_t_2) > _TOLERANCE * size))
+        ok & m.every(leg, (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE *
+            prs_root_2_t) & (abs(-prs_v_2_t_2) > _TOLERANCE * prs_size))
         )
         sums = m.added(sums, leg, (
-        d_c_in_base_x_3, d_c_in_base_y_3, d_c_in_base_z, d_c_in_base_y_4, d_c_in_base_z_2,
-            d_c_in_base_z_3, M_ta_t_3, M_ta_t_4, M_ta_t_5, M_ta_t_6, M_ta_t_8, M_ta_t_9,
-            M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2, M_aa_t_3, M_aa_t_4, M_aa_t_5,
-            M_aa_t_6,
+        prs_d_c_in_base_x_3, prs_d_c_in_base_y_3, prs_d_c_in_base_z, prs_d_c_in_base_y_4,
+            prs_d_c_in_base_z_2, prs_d_c_in_base_z_3, prs_M_ta_t_3, prs_M_ta_t_4,
+            prs_M_ta_t_5, prs_M_ta_t_6, prs_M_ta_t_8, prs_M_ta_t_9, prs_M_ta_t_10,
+            prs_M_ta_t_11, prs_M_ta_t_12, prs_M_aa_t, prs_M_aa_t_2, prs_M_aa_t_3,
+            prs_M_aa_t_4, prs_M_aa_t_5, prs_M_aa_t_6,
         ))
     (
     total_prs_xx, total_prs_xy, total_prs_xz, total_prs_yy, total_prs_yz, total_prs_zz,
@@ -1836,18 +1945,18 @@ def _run_M(m, X):
         total_prs_yz_2, total_prs_zx, total_prs_zy, total_prs_zz_2, total_prs_xx_3,
         total_prs_xy_3, total_prs_xz_3, total_prs_yy_3, total_prs_yz_3, total_prs_zz_3,
     ) = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = platform_mass - total_prs_xx
     M_tt_yy = platform_mass - total_prs_yy
     M_tt_zz = platform_mass - total_prs_zz
-    # (M2) coupling block of M
+    # (M_ta) coupling block of M
     M_ta_xy = h_star_in_base_z - total_prs_xy_2
     M_ta_xz = total_prs_xz_2 - h_star_in_base_y
     M_ta_yx = total_prs_yx - h_star_in_base_z
     M_ta_yz = h_star_in_base_x + total_prs_yz_2
     M_ta_zx = h_star_in_base_y + total_prs_zx
     M_ta_zy = -h_star_in_base_x - total_prs_zy
-    # (M3) rotational block of M
+    # (M_aa) rotational block of M
     M_aa_xx = J_star_t_10 - total_prs_xx_3
     M_aa_xy = J_star_t_11 + total_prs_xy_3
     M_aa_xz = J_star_t_12 - total_prs_xz_3
@@ -1951,152 +2060,168 @@ def _run_Z(m, X, V):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_Z = m.zeros("Z")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (M4) centripetal force and weight of the platform
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
     Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
     Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x_2*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y - g_r0_y_2*h_star_x
+    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
+    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_2_zz, branch_1, g_r0_x, g_r0_y, h_2_x, h_2_y, prs_base_frame_xx, prs_base_frame_xy,
-            prs_base_frame_xz, prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz,
-            prs_base_frame_zx, prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x,
-            prs_base_point_y, prs_base_point_z, prs_link1_mass, prs_link2_mass,
-            prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
-            prs_platform_point_z, root_2_t, size, uu_2_t,
+        prs_J_2_zz, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
+            prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
+            prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z, prs_branch_1,
+            prs_disc_1_t, prs_g_r0_x, prs_g_r0_y, prs_h_2_x, prs_h_2_y, prs_link1_mass,
+            prs_link2_mass, prs_platform_joint_offset_x, prs_platform_point_x,
+            prs_platform_point_y, prs_platform_point_z, prs_root_2_t, prs_size,
         ) = k
-        # (prs-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (prs-S) from the base point to the connection point
+        prs_q_in_base_x = (
         R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z
         )
-        q_in_base_y = (
+        prs_q_in_base_y = (
         R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z
         )
-        q_in_base_z = (
+        prs_q_in_base_z = (
         R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - prs_base_point_x
-        S_y = q_in_base_y + t_y - prs_base_point_y
-        S_z = q_in_base_z + t_z - prs_base_point_z
-        # (prs-K2) component along axis 1
-        px_1 = S_x*prs_base_frame_xx + S_y*prs_base_frame_yx + S_z*prs_base_frame_zx
-        # (prs-K3) discriminant of the distance equation
-        disc_1_t = S_x*prs_base_frame_xz + S_y*prs_base_frame_yz + S_z*prs_base_frame_zz
-        disc_1_t_2 = S_x*S_x + S_y*S_y + S_z*S_z
-        disc_1 = disc_1_t*disc_1_t + px_1*px_1 + uu_2_t - disc_1_t_2
-        # (prs-K4) displacement of joint 1
-        q_1_t = branch_1*sqrt(disc_1)
-        # (prs-K1) from the base point to the connection point
-        S_r0_y = S_x*prs_base_frame_xy + S_y*prs_base_frame_yy + S_z*prs_base_frame_zy
-        # (prs-K7) squared amplitude
-        rho2_2 = uu_2_t*(S_r0_y*S_r0_y + q_1_t*q_1_t)
-        # (prs-K9) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/(sqrt(rho2_2))
-        c_2 = inv_root_2*prs_platform_joint_offset_x*q_1_t
-        # (prs-K10) sine of the angle of joint 2 from its reference direction
-        s_2 = S_r0_y*inv_root_2*prs_platform_joint_offset_x
-        # (prs-V3) reciprocal vector 1
-        axis_y_prs_axes2_in_base_x = -c_2*prs_base_frame_xy - prs_base_frame_xx*s_2
-        axis_y_prs_axes2_in_base_y = -c_2*prs_base_frame_yy - prs_base_frame_yx*s_2
-        axis_y_prs_axes2_in_base_z = -c_2*prs_base_frame_zy - prs_base_frame_zx*s_2
-        axis_x_prs_axes2_in_base_x = prs_base_frame_xy*s_2 - c_2*prs_base_frame_xx
-        axis_x_prs_axes2_in_base_y = prs_base_frame_yy*s_2 - c_2*prs_base_frame_yx
-        axis_x_prs_axes2_in_base_z = prs_base_frame_zy*s_2 - c_2*prs_base_frame_zx
-        # (prs-V2) velocity of the connection point per rate of joint 2
-        v_2_t = prs_platform_joint_offset_x*s_2
-        v_2_t_2 = c_2*prs_platform_joint_offset_x
-        # (prs-V3) reciprocal vector 1
-        inv_v_2_t_2 = 1.0/v_2_t_2
-        # (prs-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        # (prs-V6) rate of joint 2
-        qd_2 = (
-        inv_v_2_t_2*(S_dot_x*prs_base_frame_xy + S_dot_y*prs_base_frame_yy +
-            S_dot_z*prs_base_frame_zy)
+        prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x
+        prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y
+        prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z
+        # (prs-px_1) component along axis 1
+        prs_px_1 = (
+        prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
-        # (prs-V8) centripetal tensor of link 2
-        W_2_t = qd_2*qd_2
-        # (prs-A1) centripetal acceleration of the connection point
-        u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
-        u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y
-        u_1_tip_y = (
-        axis_y_prs_axes2_in_base_x*u_1_x + axis_y_prs_axes2_in_base_y*u_1_y +
-            axis_y_prs_axes2_in_base_z*u_1_z
+        # (prs-disc_1) discriminant of the distance equation
+        prs_disc_1_t_2 = (
+        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
-        # (prs-A6) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_x = (
-        axis_x_prs_axes2_in_base_x*u_1_x + axis_x_prs_axes2_in_base_y*u_1_y +
-            axis_x_prs_axes2_in_base_z*u_1_z + prs_platform_joint_offset_x*qd_2*qd_2
+        prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
+        prs_disc_1 = (
+        prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 - prs_disc_1_t_3
         )
-        # (prs-A8) remainder without the acceleration in: acceleration of joint 1
-        qdd_2_o = inv_v_2_t_2*(rel_o_x*s_2 - c_2*u_1_tip_y)
-        qdd_1_o_t = c_2*rel_o_x + qdd_2_o*v_2_t + s_2*u_1_tip_y
-        # (prs-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        acc_1_o_x = -g_r0_x - qdd_1_o_t
-        # (prs-N6) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        acc_2_o_x = c_2*g_r0_x + c_2*qdd_1_o_t - g_r0_y*s_2
-        acc_2_o_y = c_2*g_r0_y + g_r0_x*s_2 + qdd_1_o_t*s_2
-        # (prs-N10) remainder without the acceleration in: inertia force of link 2 less its weight
-        f_2_o_x = acc_2_o_x*prs_link2_mass + h_2_y*qdd_2_o - W_2_t*h_2_x
-        f_2_o_y = acc_2_o_y*prs_link2_mass - W_2_t*h_2_y - h_2_x*qdd_2_o
-        # (prs-N25) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
-        T_1_o_x = acc_1_o_x*prs_link1_mass - c_2*f_2_o_x - f_2_o_y*s_2
-        # (prs-N20) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_o_z = acc_2_o_y*h_2_x - J_2_zz*qdd_2_o - acc_2_o_x*h_2_y
-        # (prs-N31) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_o_t = inv_v_2_t_2*(mu_2_o_z + T_1_o_x*v_2_t)
-        _r0_x = -G_o_t*s_2 - T_1_o_x*c_2
-        _r0_y = G_o_t*c_2 - T_1_o_x*s_2
-        # (prs-N36) velocity and gravity terms of the leg force
-        U_in_base_x = _r0_x*axis_x_prs_axes2_in_base_x + _r0_y*axis_y_prs_axes2_in_base_x
-        U_in_base_y = _r0_x*axis_x_prs_axes2_in_base_y + _r0_y*axis_y_prs_axes2_in_base_y
-        U_in_base_z = _r0_x*axis_x_prs_axes2_in_base_z + _r0_y*axis_y_prs_axes2_in_base_z
-        # (M7) rotational part of Z
-        Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
-        Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
-        Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
+        # (prs-q_1) displacement of joint 1
+        prs_q_1_t = prs_branch_1*sqrt(prs_disc_1)
+        # (prs-S) from the base point to the connection point
+        prs_S_r0_y = (
+        prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
+        )
+        # (prs-rho2_2) squared amplitude
+        prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t)
+        # (prs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_prs_root_2 = 1.0/(sqrt(prs_rho2_2))
+        prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t
+        # (prs-s_2) sine of the angle of joint 2 from its reference direction
+        prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x
+        # (prs-w_1) reciprocal vector 1
+        axis_y_prs_axes2_in_base_x = -prs_base_frame_xx*prs_s_2 - prs_base_frame_xy*prs_c_2
+        axis_y_prs_axes2_in_base_y = -prs_base_frame_yx*prs_s_2 - prs_base_frame_yy*prs_c_2
+        axis_y_prs_axes2_in_base_z = -prs_base_frame_zx*prs_s_2 - prs_base_frame_zy*prs_c_2
+        axis_x_prs_axes2_in_base_x = prs_base_frame_xy*prs_s_2 - prs_base_frame_xx*prs_c_2
+        axis_x_prs_axes2_in_base_y = prs_base_frame_yy*prs_s_2 - prs_base_frame_yx*prs_c_2
+        axis_x_prs_axes2_in_base_z = prs_base_frame_zy*prs_s_2 - prs_base_frame_zx*prs_c_2
+        # (prs-v_2) velocity of the connection point per rate of joint 2
+        prs_v_2_t = prs_platform_joint_offset_x*prs_s_2
+        prs_v_2_t_2 = prs_c_2*prs_platform_joint_offset_x
+        # (prs-w_1) reciprocal vector 1
+        inv_prs_v_2_t_2 = 1.0/prs_v_2_t_2
+        # (prs-S_dot) velocity of the connection point
+        prs_S_dot_t = omega_y*prs_q_in_base_z - omega_z*prs_q_in_base_y
+        prs_S_dot_t_2 = omega_z*prs_q_in_base_x - omega_x*prs_q_in_base_z
+        prs_S_dot_t_3 = omega_x*prs_q_in_base_y - omega_y*prs_q_in_base_x
+        prs_S_dot_x = prs_S_dot_t + t_dot_x
+        prs_S_dot_y = prs_S_dot_t_2 + t_dot_y
+        prs_S_dot_z = prs_S_dot_t_3 + t_dot_z
+        # (prs-qd_2) rate of joint 2
+        prs_qd_2 = (
+        inv_prs_v_2_t_2*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
+            prs_S_dot_z*prs_base_frame_zy)
+        )
+        # (prs-u_1) centripetal acceleration of the connection point
+        prs_u_1_x = omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2
+        prs_u_1_y = omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3
+        prs_u_1_z = omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t
+        # (prs-W_2) centripetal tensor of link 2
+        prs_W_2_t = prs_qd_2*prs_qd_2
+        # (prs-u_1) centripetal acceleration of the connection point
+        prs_u_1_tip_y = (
+        axis_y_prs_axes2_in_base_x*prs_u_1_x + axis_y_prs_axes2_in_base_y*prs_u_1_y +
+            axis_y_prs_axes2_in_base_z*prs_u_1_z
+        )
+        # (prs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        prs_rel_o_x = (
+        axis_x_prs_axes2_in_base_x*prs_u_1_x + axis_x_prs_axes2_in_base_y*prs_u_1_y +
+            axis_x_prs_axes2_in_base_z*prs_u_1_z + prs_platform_joint_offset_x*prs_qd_2*prs_qd_2
+        )
+        # (prs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        prs_qdd_2_o = inv_prs_v_2_t_2*(prs_rel_o_x*prs_s_2 - prs_c_2*prs_u_1_tip_y)
+        prs_qdd_2_o_t = prs_c_2*prs_rel_o_x + prs_qdd_2_o*prs_v_2_t + prs_s_2*prs_u_1_tip_y
+        # (prs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        prs_acc_2_o_x = prs_c_2*prs_g_r0_x + prs_c_2*prs_qdd_2_o_t - prs_g_r0_y*prs_s_2
+        prs_acc_2_o_y = prs_c_2*prs_g_r0_y + prs_g_r0_x*prs_s_2 + prs_qdd_2_o_t*prs_s_2
+        # (prs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        prs_mu_2_o_z = prs_acc_2_o_y*prs_h_2_x - prs_J_2_zz*prs_qdd_2_o - prs_acc_2_o_x*prs_h_2_y
+        # (prs-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+        prs_acc_1_o_x = -prs_g_r0_x - prs_qdd_2_o_t
+        # (prs-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight
+        prs_f_2_o_x = prs_acc_2_o_x*prs_link2_mass + prs_h_2_y*prs_qdd_2_o - prs_W_2_t*prs_h_2_x
+        prs_f_2_o_y = prs_acc_2_o_y*prs_link2_mass - prs_W_2_t*prs_h_2_y - prs_h_2_x*prs_qdd_2_o
+        # (prs-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
+        prs_T_1_o_x = prs_acc_1_o_x*prs_link1_mass - prs_c_2*prs_f_2_o_x - prs_f_2_o_y*prs_s_2
+        # (prs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        prs_G_o_t = inv_prs_v_2_t_2*(prs_mu_2_o_z + prs_T_1_o_x*prs_v_2_t)
+        prs__r0_x = -prs_G_o_t*prs_s_2 - prs_T_1_o_x*prs_c_2
+        prs__r0_y = prs_G_o_t*prs_c_2 - prs_T_1_o_x*prs_s_2
+        # (prs-U) velocity and gravity terms of the leg force
+        prs_U_in_base_x = (
+        axis_x_prs_axes2_in_base_x*prs__r0_x + axis_y_prs_axes2_in_base_x*prs__r0_y
+        )
+        prs_U_in_base_y = (
+        axis_x_prs_axes2_in_base_y*prs__r0_x + axis_y_prs_axes2_in_base_y*prs__r0_y
+        )
+        prs_U_in_base_z = (
+        axis_x_prs_axes2_in_base_z*prs__r0_x + axis_y_prs_axes2_in_base_z*prs__r0_y
+        )
+        # (Z_a) rotational part of Z
+        prs_Z_a_t = prs_U_in_base_z*prs_q_in_base_y - prs_U_in_base_y*prs_q_in_base_z
+        prs_Z_a_t_2 = prs_U_in_base_x*prs_q_in_base_z - prs_U_in_base_z*prs_q_in_base_x
+        prs_Z_a_t_3 = prs_U_in_base_y*prs_q_in_base_x - prs_U_in_base_x*prs_q_in_base_y
         ok = (
-        ok & m.every(leg, (disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * root_2_t) &
-            (abs(-v_2_t_2) > _TOLERANCE * size))
+        ok & m.every(leg, (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE *
+            prs_root_2_t) & (abs(-prs_v_2_t_2) > _TOLERANCE * prs_size))
         )
         sums = m.added(sums, leg, (
-        U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
+        prs_U_in_base_x, prs_U_in_base_y, prs_U_in_base_z, prs_Z_a_t, prs_Z_a_t_2,
+            prs_Z_a_t_3,
         ))
     total_prs_x, total_prs_y, total_prs_z, total_prs_x_2, total_prs_y_2, total_prs_z_2 = sums
-    # (M5) translational part of Z
+    # (Z_t) translational part of Z
     Z_t_x = Z_p_x + total_prs_x
     Z_t_y = Z_p_y + total_prs_y
     Z_t_z = Z_p_z + total_prs_z
-    # (M7) rotational part of Z
+    # (Z_a) rotational part of Z
     Z_a_x = Z_q_in_base_x + total_prs_x_2
     Z_a_y = Z_q_in_base_y + total_prs_y_2
     Z_a_z = Z_q_in_base_z + total_prs_z_2
@@ -2152,74 +2277,82 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        branch_1, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
+        prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
             prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
-            prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z,
-            prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
-            prs_platform_point_z, root_2_t, size, uu_2_t,
+            prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z, prs_branch_1,
+            prs_disc_1_t, prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
+            prs_platform_point_z, prs_root_2_t, prs_size,
         ) = k
-        # (prs-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (prs-S) from the base point to the connection point
+        prs_q_in_base_x = (
         R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z
         )
-        q_in_base_y = (
+        prs_q_in_base_y = (
         R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z
         )
-        q_in_base_z = (
+        prs_q_in_base_z = (
         R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - prs_base_point_x
-        S_y = q_in_base_y + t_y - prs_base_point_y
-        S_z = q_in_base_z + t_z - prs_base_point_z
-        # (prs-K2) component along axis 1
-        px_1 = S_x*prs_base_frame_xx + S_y*prs_base_frame_yx + S_z*prs_base_frame_zx
-        # (prs-K3) discriminant of the distance equation
-        disc_1_t = S_x*prs_base_frame_xz + S_y*prs_base_frame_yz + S_z*prs_base_frame_zz
-        disc_1_t_2 = S_x*S_x + S_y*S_y + S_z*S_z
-        disc_1 = disc_1_t*disc_1_t + px_1*px_1 + uu_2_t - disc_1_t_2
-        # (prs-K4) displacement of joint 1
-        q_1_t = branch_1*sqrt(disc_1)
-        # (prs-K1) from the base point to the connection point
-        S_r0_y = S_x*prs_base_frame_xy + S_y*prs_base_frame_yy + S_z*prs_base_frame_zy
-        # (prs-K7) squared amplitude
-        rho2_2 = uu_2_t*(S_r0_y*S_r0_y + q_1_t*q_1_t)
-        # (prs-K9) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/(sqrt(rho2_2))
-        c_2 = inv_root_2*prs_platform_joint_offset_x*q_1_t
-        # (prs-K10) sine of the angle of joint 2 from its reference direction
-        s_2 = S_r0_y*inv_root_2*prs_platform_joint_offset_x
-        # (prs-V2) velocity of the connection point per rate of joint 2
-        v_2_t = c_2*prs_platform_joint_offset_x
-        # (prs-V3) reciprocal vector 1
-        w_1_t = prs_platform_joint_offset_x*s_2/v_2_t
-        _r0_x = -c_2 - s_2*w_1_t
-        _r0_y = c_2*w_1_t - s_2
-        w_1_in_base_x = (
-        _r0_x*(prs_base_frame_xy*s_2 - c_2*prs_base_frame_xx) + _r0_y*(-c_2*prs_base_frame_xy -
-            prs_base_frame_xx*s_2)
+        prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x
+        prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y
+        prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z
+        # (prs-px_1) component along axis 1
+        prs_px_1 = (
+        prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
-        w_1_in_base_y = (
-        _r0_x*(prs_base_frame_yy*s_2 - c_2*prs_base_frame_yx) + _r0_y*(-c_2*prs_base_frame_yy -
-            prs_base_frame_yx*s_2)
+        # (prs-disc_1) discriminant of the distance equation
+        prs_disc_1_t_2 = (
+        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
-        w_1_in_base_z = (
-        _r0_x*(prs_base_frame_zy*s_2 - c_2*prs_base_frame_zx) + _r0_y*(-c_2*prs_base_frame_zy -
-            prs_base_frame_zx*s_2)
+        prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
+        prs_disc_1 = (
+        prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 - prs_disc_1_t_3
         )
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_x = q_in_base_y*w_1_in_base_z - q_in_base_z*w_1_in_base_y
-        H_a_1_y = q_in_base_z*w_1_in_base_x - q_in_base_x*w_1_in_base_z
-        H_a_1_z = q_in_base_x*w_1_in_base_y - q_in_base_y*w_1_in_base_x
+        # (prs-q_1) displacement of joint 1
+        prs_q_1_t = prs_branch_1*sqrt(prs_disc_1)
+        # (prs-S) from the base point to the connection point
+        prs_S_r0_y = (
+        prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
+        )
+        # (prs-rho2_2) squared amplitude
+        prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t)
+        # (prs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_prs_root_2 = 1.0/(sqrt(prs_rho2_2))
+        prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t
+        # (prs-s_2) sine of the angle of joint 2 from its reference direction
+        prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x
+        # (prs-v_2) velocity of the connection point per rate of joint 2
+        prs_v_2_t = prs_c_2*prs_platform_joint_offset_x
+        # (prs-w_1) reciprocal vector 1
+        prs_w_1_t = prs_platform_joint_offset_x*prs_s_2/prs_v_2_t
+        prs__r0_x = -prs_c_2 - prs_s_2*prs_w_1_t
+        prs__r0_y = prs_c_2*prs_w_1_t - prs_s_2
+        prs_w_1_in_base_x = (
+        prs__r0_x*(prs_base_frame_xy*prs_s_2 - prs_base_frame_xx*prs_c_2) +
+            prs__r0_y*(-prs_base_frame_xx*prs_s_2 - prs_base_frame_xy*prs_c_2)
+        )
+        prs_w_1_in_base_y = (
+        prs__r0_x*(prs_base_frame_yy*prs_s_2 - prs_base_frame_yx*prs_c_2) +
+            prs__r0_y*(-prs_base_frame_yx*prs_s_2 - prs_base_frame_yy*prs_c_2)
+        )
+        prs_w_1_in_base_z = (
+        prs__r0_x*(prs_base_frame_zy*prs_s_2 - prs_base_frame_zx*prs_c_2) +
+            prs__r0_y*(-prs_base_frame_zx*prs_s_2 - prs_base_frame_zy*prs_c_2)
+        )
+        # (prs-H_a_1) moment of the column's unit force about the platform origin
+        prs_H_a_1_x = prs_q_in_base_y*prs_w_1_in_base_z - prs_q_in_base_z*prs_w_1_in_base_y
+        prs_H_a_1_y = prs_q_in_base_z*prs_w_1_in_base_x - prs_q_in_base_x*prs_w_1_in_base_z
+        prs_H_a_1_z = prs_q_in_base_x*prs_w_1_in_base_y - prs_q_in_base_y*prs_w_1_in_base_x
         ok = (
-        ok & m.every(leg, (disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * root_2_t) &
-            (abs(-v_2_t) > _TOLERANCE * size))
+        ok & m.every(leg, (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE *
+            prs_root_2_t) & (abs(-prs_v_2_t) > _TOLERANCE * prs_size))
         )
-        out_H[_H_prs[0][leg]] = w_1_in_base_x
-        out_H[_H_prs[1][leg]] = w_1_in_base_y
-        out_H[_H_prs[2][leg]] = w_1_in_base_z
-        out_H[_H_prs[3][leg]] = H_a_1_x
-        out_H[_H_prs[4][leg]] = H_a_1_y
-        out_H[_H_prs[5][leg]] = H_a_1_z
+        out_H[_H_prs[0][leg]] = prs_w_1_in_base_x
+        out_H[_H_prs[1][leg]] = prs_w_1_in_base_y
+        out_H[_H_prs[2][leg]] = prs_w_1_in_base_z
+        out_H[_H_prs[3][leg]] = prs_H_a_1_x
+        out_H[_H_prs[4][leg]] = prs_H_a_1_y
+        out_H[_H_prs[5][leg]] = prs_H_a_1_z
     return ok, (out_H,)
 
 
@@ -2262,26 +2395,26 @@ def _run_Hk(m, X):
         prs_base_frame_xz, prs_base_frame_yz, prs_base_frame_zz, prs_platform_point_x,
             prs_platform_point_y, prs_platform_point_z,
         ) = k
-        # (prs-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (prs-S) from the base point to the connection point
+        prs_q_in_base_x = (
         R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z
         )
-        q_in_base_y = (
+        prs_q_in_base_y = (
         R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z
         )
-        q_in_base_z = (
+        prs_q_in_base_z = (
         R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z
         )
-        # (M9) moment of the column's unit force about the platform origin
-        Hk_a_1_x = prs_base_frame_zz*q_in_base_y - prs_base_frame_yz*q_in_base_z
-        Hk_a_1_y = prs_base_frame_xz*q_in_base_z - prs_base_frame_zz*q_in_base_x
-        Hk_a_1_z = prs_base_frame_yz*q_in_base_x - prs_base_frame_xz*q_in_base_y
+        # (prs-Hk_a_1) moment of the column's unit force about the platform origin
+        prs_Hk_a_1_x = prs_base_frame_zz*prs_q_in_base_y - prs_base_frame_yz*prs_q_in_base_z
+        prs_Hk_a_1_y = prs_base_frame_xz*prs_q_in_base_z - prs_base_frame_zz*prs_q_in_base_x
+        prs_Hk_a_1_z = prs_base_frame_yz*prs_q_in_base_x - prs_base_frame_xz*prs_q_in_base_y
         out_Hk[_Hk_prs[0][leg]] = prs_base_frame_xz
         out_Hk[_Hk_prs[1][leg]] = prs_base_frame_yz
         out_Hk[_Hk_prs[2][leg]] = prs_base_frame_zz
-        out_Hk[_Hk_prs[3][leg]] = Hk_a_1_x
-        out_Hk[_Hk_prs[4][leg]] = Hk_a_1_y
-        out_Hk[_Hk_prs[5][leg]] = Hk_a_1_z
+        out_Hk[_Hk_prs[3][leg]] = prs_Hk_a_1_x
+        out_Hk[_Hk_prs[4][leg]] = prs_Hk_a_1_y
+        out_Hk[_Hk_prs[5][leg]] = prs_Hk_a_1_z
     return ok, (out_Hk,)
 
 
@@ -2331,27 +2464,27 @@ def _run_constraint_bias(m, X, V):
         prs_base_frame_xz, prs_base_frame_yz, prs_base_frame_zz, prs_platform_point_x,
             prs_platform_point_y, prs_platform_point_z,
         ) = k
-        # (prs-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (prs-S) from the base point to the connection point
+        prs_q_in_base_x = (
         R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z
         )
-        q_in_base_y = (
+        prs_q_in_base_y = (
         R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z
         )
-        q_in_base_z = (
+        prs_q_in_base_z = (
         R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z
         )
-        # (prs-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        # (prs-A1) centripetal acceleration of the connection point
-        u_1_tip_z = (
-        prs_base_frame_xz*(S_dot_t_3*omega_y - S_dot_t_2*omega_z) +
-            prs_base_frame_yz*(S_dot_t*omega_z - S_dot_t_3*omega_x) +
-            prs_base_frame_zz*(S_dot_t_2*omega_x - S_dot_t*omega_y)
+        # (prs-S_dot) velocity of the connection point
+        prs_S_dot_t = omega_y*prs_q_in_base_z - omega_z*prs_q_in_base_y
+        prs_S_dot_t_2 = omega_z*prs_q_in_base_x - omega_x*prs_q_in_base_z
+        prs_S_dot_t_3 = omega_x*prs_q_in_base_y - omega_y*prs_q_in_base_x
+        # (prs-u_1) centripetal acceleration of the connection point
+        prs_u_1_tip_z = (
+        prs_base_frame_xz*(omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2) +
+            prs_base_frame_yz*(omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3) +
+            prs_base_frame_zz*(omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t)
         )
-        out_constraint_bias[_constraint_bias_prs[0][leg]] = u_1_tip_z
+        out_constraint_bias[_constraint_bias_prs[0][leg]] = prs_u_1_tip_z
     return ok, (out_constraint_bias,)
 
 
@@ -2428,29 +2561,29 @@ def _run_required(m, X, V, A):
     out_required = m.zeros("required")
     out_H = m.zeros("H")
     out_Hk = m.zeros("Hk")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (P1) centripetal tensor of the platform
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_x*omega_x
     W_p_t_2 = omega_y*omega_y
     W_p_t_3 = omega_z*omega_z
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
     W_p_yz = omega_y*omega_z
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
-    # (E2) inertia force of the platform less its weight
+    # (f_p) inertia force of the platform less its weight
     f_p_x = (
     a_t_x*platform_mass + h_star_in_base_y*(W_p_xy - alpha_z) + h_star_in_base_z*(W_p_xz +
         alpha_y) - h_star_in_base_x*(W_p_t_2 + W_p_t_3)
@@ -2463,11 +2596,11 @@ def _run_required(m, X, V, A):
     a_t_z*platform_mass + h_star_in_base_x*(W_p_xz - alpha_y) + h_star_in_base_y*(W_p_yz +
         alpha_x) - h_star_in_base_z*(W_p_t + W_p_t_2)
     )
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
     a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
     a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
-    # (E3) inertia moment of the platform less that of its weight
+    # (mu_p) inertia moment of the platform less that of its weight
     alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
     alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
     alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
@@ -2489,150 +2622,164 @@ def _run_required(m, X, V, A):
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_2_zz, branch_1, g_r0_x, g_r0_y, h_2_x, h_2_y, prs_base_frame_xx, prs_base_frame_xy,
-            prs_base_frame_xz, prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz,
-            prs_base_frame_zx, prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x,
-            prs_base_point_y, prs_base_point_z, prs_link1_mass, prs_link2_mass,
-            prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
-            prs_platform_point_z, root_2_t, size, uu_2_t,
+        prs_J_2_zz, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
+            prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
+            prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z, prs_branch_1,
+            prs_disc_1_t, prs_g_r0_x, prs_g_r0_y, prs_h_2_x, prs_h_2_y, prs_link1_mass,
+            prs_link2_mass, prs_platform_joint_offset_x, prs_platform_point_x,
+            prs_platform_point_y, prs_platform_point_z, prs_root_2_t, prs_size,
         ) = k
-        # (prs-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (prs-S) from the base point to the connection point
+        prs_q_in_base_x = (
         R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z
         )
-        q_in_base_y = (
+        prs_q_in_base_y = (
         R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z
         )
-        q_in_base_z = (
+        prs_q_in_base_z = (
         R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - prs_base_point_x
-        S_y = q_in_base_y + t_y - prs_base_point_y
-        S_z = q_in_base_z + t_z - prs_base_point_z
-        # (prs-K2) component along axis 1
-        px_1 = S_x*prs_base_frame_xx + S_y*prs_base_frame_yx + S_z*prs_base_frame_zx
-        # (prs-K3) discriminant of the distance equation
-        disc_1_t = S_x*prs_base_frame_xz + S_y*prs_base_frame_yz + S_z*prs_base_frame_zz
-        disc_1_t_2 = S_x*S_x + S_y*S_y + S_z*S_z
-        disc_1 = disc_1_t*disc_1_t + px_1*px_1 + uu_2_t - disc_1_t_2
-        # (prs-K4) displacement of joint 1
-        q_1_t = branch_1*sqrt(disc_1)
-        # (prs-K1) from the base point to the connection point
-        S_r0_y = S_x*prs_base_frame_xy + S_y*prs_base_frame_yy + S_z*prs_base_frame_zy
-        # (prs-K7) squared amplitude
-        rho2_2 = uu_2_t*(S_r0_y*S_r0_y + q_1_t*q_1_t)
-        # (prs-K9) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/(sqrt(rho2_2))
-        c_2 = inv_root_2*prs_platform_joint_offset_x*q_1_t
-        # (prs-K10) sine of the angle of joint 2 from its reference direction
-        s_2 = S_r0_y*inv_root_2*prs_platform_joint_offset_x
-        # (prs-V2) velocity of the connection point per rate of joint 2
-        v_2_t = prs_platform_joint_offset_x*s_2
-        v_2_t_2 = c_2*prs_platform_joint_offset_x
-        # (prs-V3) reciprocal vector 1
-        inv_v_2_t_2 = 1.0/v_2_t_2
-        w_1_t = inv_v_2_t_2*v_2_t
-        _r0_x = -c_2 - s_2*w_1_t
-        _r0_y = c_2*w_1_t - s_2
-        # (prs-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        # (prs-V6) rate of joint 2
-        qd_2 = (
-        inv_v_2_t_2*(S_dot_x*prs_base_frame_xy + S_dot_y*prs_base_frame_yy +
-            S_dot_z*prs_base_frame_zy)
+        prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x
+        prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y
+        prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z
+        # (prs-px_1) component along axis 1
+        prs_px_1 = (
+        prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
-        # (prs-V8) centripetal tensor of link 2
-        W_2_t = qd_2*qd_2
-        # (M9) moment of the column's unit force about the platform origin
-        Hk_a_1_x = prs_base_frame_zz*q_in_base_y - prs_base_frame_yz*q_in_base_z
-        Hk_a_1_y = prs_base_frame_xz*q_in_base_z - prs_base_frame_zz*q_in_base_x
-        Hk_a_1_z = prs_base_frame_yz*q_in_base_x - prs_base_frame_xz*q_in_base_y
-        # (prs-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (prs-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        S_ddot_r0_x = (
-        S_ddot_x*prs_base_frame_xx + S_ddot_y*prs_base_frame_yx + S_ddot_z*prs_base_frame_zx
+        # (prs-disc_1) discriminant of the distance equation
+        prs_disc_1_t_2 = (
+        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
-        S_ddot_r0_y = (
-        S_ddot_x*prs_base_frame_xy + S_ddot_y*prs_base_frame_yy + S_ddot_z*prs_base_frame_zy
+        prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
+        prs_disc_1 = (
+        prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 - prs_disc_1_t_3
         )
-        S_ddot_r1_y = -S_ddot_r0_x*s_2 - S_ddot_r0_y*c_2
-        # (prs-A5) acceleration of the connection point left to the joint accelerations
-        rel_x = S_ddot_r0_y*s_2 + prs_platform_joint_offset_x*qd_2*qd_2 - S_ddot_r0_x*c_2
-        # (prs-A7) acceleration of joint 1
-        qdd_2 = inv_v_2_t_2*(rel_x*s_2 - S_ddot_r1_y*c_2)
-        qdd_1_t = S_ddot_r1_y*s_2 + c_2*rel_x + qdd_2*v_2_t
-        # (prs-N1) acceleration of the reference point of link 1, less gravity
-        acc_1_x = -g_r0_x - qdd_1_t
-        # (prs-N5) acceleration of the reference point of link 2, less gravity
-        acc_2_x = c_2*g_r0_x + c_2*qdd_1_t - g_r0_y*s_2
-        acc_2_y = c_2*g_r0_y + g_r0_x*s_2 + qdd_1_t*s_2
-        # (prs-N9) inertia force of link 2 less its weight
-        f_2_x = acc_2_x*prs_link2_mass + h_2_y*qdd_2 - W_2_t*h_2_x
-        f_2_y = acc_2_y*prs_link2_mass - W_2_t*h_2_y - h_2_x*qdd_2
-        # (prs-N24) inertia force of the links from 1 outwards, the last link left out
-        T_1_x = acc_1_x*prs_link1_mass - c_2*f_2_x - f_2_y*s_2
-        # (prs-N19) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_z = acc_2_y*h_2_x - J_2_zz*qdd_2 - acc_2_x*h_2_y
-        # (prs-N29) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_t = inv_v_2_t_2*(mu_2_z + T_1_x*v_2_t)
-        _r0_x_2 = -G_t*s_2 - T_1_x*c_2
-        _r0_y_2 = G_t*c_2 - T_1_x*s_2
-        # (prs-N32) leg force on the platform without actuation and without the mass at the connection point
-        c_r0_x = _r0_x_2*c_2 + _r0_y_2*s_2
-        c_r0_y = _r0_y_2*c_2 - _r0_x_2*s_2
-        c_in_base_x = c_r0_x*prs_base_frame_xx + c_r0_y*prs_base_frame_xy
-        c_in_base_y = c_r0_x*prs_base_frame_yx + c_r0_y*prs_base_frame_yy
-        c_in_base_z = c_r0_x*prs_base_frame_zx + c_r0_y*prs_base_frame_zy
-        # (E5) moment that actuators and external wrench must give
-        R_a_t = c_in_base_z*q_in_base_y - c_in_base_y*q_in_base_z
-        R_a_t_2 = c_in_base_x*q_in_base_z - c_in_base_z*q_in_base_x
-        R_a_t_3 = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y
-        # (prs-V3) reciprocal vector 1
-        w_1_r0_x = -_r0_x*c_2 - _r0_y*s_2
-        w_1_r0_y = _r0_x*s_2 - _r0_y*c_2
-        w_1_in_base_x = prs_base_frame_xx*w_1_r0_x + prs_base_frame_xy*w_1_r0_y
-        w_1_in_base_y = prs_base_frame_yx*w_1_r0_x + prs_base_frame_yy*w_1_r0_y
-        w_1_in_base_z = prs_base_frame_zx*w_1_r0_x + prs_base_frame_zy*w_1_r0_y
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_x = q_in_base_y*w_1_in_base_z - q_in_base_z*w_1_in_base_y
-        H_a_1_y = q_in_base_z*w_1_in_base_x - q_in_base_x*w_1_in_base_z
-        H_a_1_z = q_in_base_x*w_1_in_base_y - q_in_base_y*w_1_in_base_x
+        # (prs-q_1) displacement of joint 1
+        prs_q_1_t = prs_branch_1*sqrt(prs_disc_1)
+        # (prs-S) from the base point to the connection point
+        prs_S_r0_y = (
+        prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
+        )
+        # (prs-rho2_2) squared amplitude
+        prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t)
+        # (prs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_prs_root_2 = 1.0/(sqrt(prs_rho2_2))
+        prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t
+        # (prs-s_2) sine of the angle of joint 2 from its reference direction
+        prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x
+        # (prs-v_2) velocity of the connection point per rate of joint 2
+        prs_v_2_t = prs_platform_joint_offset_x*prs_s_2
+        prs_v_2_t_2 = prs_c_2*prs_platform_joint_offset_x
+        # (prs-w_1) reciprocal vector 1
+        inv_prs_v_2_t_2 = 1.0/prs_v_2_t_2
+        prs_w_1_t = inv_prs_v_2_t_2*prs_v_2_t
+        prs__r0_x = -prs_c_2 - prs_s_2*prs_w_1_t
+        prs__r0_y = prs_c_2*prs_w_1_t - prs_s_2
+        # (prs-S_dot) velocity of the connection point
+        prs_S_dot_t = omega_y*prs_q_in_base_z - omega_z*prs_q_in_base_y
+        prs_S_dot_t_2 = omega_z*prs_q_in_base_x - omega_x*prs_q_in_base_z
+        prs_S_dot_t_3 = omega_x*prs_q_in_base_y - omega_y*prs_q_in_base_x
+        prs_S_dot_x = prs_S_dot_t + t_dot_x
+        prs_S_dot_y = prs_S_dot_t_2 + t_dot_y
+        prs_S_dot_z = prs_S_dot_t_3 + t_dot_z
+        # (prs-qd_2) rate of joint 2
+        prs_qd_2 = (
+        inv_prs_v_2_t_2*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
+            prs_S_dot_z*prs_base_frame_zy)
+        )
+        # (prs-W_2) centripetal tensor of link 2
+        prs_W_2_t = prs_qd_2*prs_qd_2
+        # (prs-Hk_a_1) moment of the column's unit force about the platform origin
+        prs_Hk_a_1_x = prs_base_frame_zz*prs_q_in_base_y - prs_base_frame_yz*prs_q_in_base_z
+        prs_Hk_a_1_y = prs_base_frame_xz*prs_q_in_base_z - prs_base_frame_zz*prs_q_in_base_x
+        prs_Hk_a_1_z = prs_base_frame_yz*prs_q_in_base_x - prs_base_frame_xz*prs_q_in_base_y
+        # (prs-a_p) acceleration of the connection point without its centripetal part
+        prs_a_p_x = t_ddot_x + alpha_y*prs_q_in_base_z - alpha_z*prs_q_in_base_y
+        prs_a_p_y = t_ddot_y + alpha_z*prs_q_in_base_x - alpha_x*prs_q_in_base_z
+        prs_a_p_z = t_ddot_z + alpha_x*prs_q_in_base_y - alpha_y*prs_q_in_base_x
+        # (prs-S_ddot) acceleration of the connection point
+        prs_S_ddot_x = prs_a_p_x + omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2
+        prs_S_ddot_y = prs_a_p_y + omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3
+        prs_S_ddot_z = prs_a_p_z + omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t
+        prs_S_ddot_r0_x = (
+        prs_S_ddot_x*prs_base_frame_xx + prs_S_ddot_y*prs_base_frame_yx +
+            prs_S_ddot_z*prs_base_frame_zx
+        )
+        prs_S_ddot_r0_y = (
+        prs_S_ddot_x*prs_base_frame_xy + prs_S_ddot_y*prs_base_frame_yy +
+            prs_S_ddot_z*prs_base_frame_zy
+        )
+        prs_S_ddot_r1_y = -prs_S_ddot_r0_x*prs_s_2 - prs_S_ddot_r0_y*prs_c_2
+        # (prs-rel) acceleration of the connection point left to the joint accelerations
+        prs_rel_x = (
+        prs_S_ddot_r0_y*prs_s_2 + prs_platform_joint_offset_x*prs_qd_2*prs_qd_2 -
+            prs_S_ddot_r0_x*prs_c_2
+        )
+        # (prs-qdd_1) acceleration of joint 1
+        prs_qdd_2 = inv_prs_v_2_t_2*(prs_rel_x*prs_s_2 - prs_S_ddot_r1_y*prs_c_2)
+        prs_qdd_1_t = prs_S_ddot_r1_y*prs_s_2 + prs_c_2*prs_rel_x + prs_qdd_2*prs_v_2_t
+        # (prs-acc_2) acceleration of the reference point of link 2, less gravity
+        prs_acc_2_x = prs_c_2*prs_g_r0_x + prs_c_2*prs_qdd_1_t - prs_g_r0_y*prs_s_2
+        prs_acc_2_y = prs_c_2*prs_g_r0_y + prs_g_r0_x*prs_s_2 + prs_qdd_1_t*prs_s_2
+        # (prs-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        prs_mu_2_z = prs_acc_2_y*prs_h_2_x - prs_J_2_zz*prs_qdd_2 - prs_acc_2_x*prs_h_2_y
+        # (prs-acc_1) acceleration of the reference point of link 1, less gravity
+        prs_acc_1_x = -prs_g_r0_x - prs_qdd_1_t
+        # (prs-f_2) inertia force of link 2 less its weight
+        prs_f_2_x = prs_acc_2_x*prs_link2_mass + prs_h_2_y*prs_qdd_2 - prs_W_2_t*prs_h_2_x
+        prs_f_2_y = prs_acc_2_y*prs_link2_mass - prs_W_2_t*prs_h_2_y - prs_h_2_x*prs_qdd_2
+        # (prs-T_1) inertia force of the links from 1 outwards, the last link left out
+        prs_T_1_x = prs_acc_1_x*prs_link1_mass - prs_c_2*prs_f_2_x - prs_f_2_y*prs_s_2
+        # (prs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        prs_G_t = inv_prs_v_2_t_2*(prs_mu_2_z + prs_T_1_x*prs_v_2_t)
+        prs__r0_x_2 = -prs_G_t*prs_s_2 - prs_T_1_x*prs_c_2
+        prs__r0_y_2 = prs_G_t*prs_c_2 - prs_T_1_x*prs_s_2
+        # (prs-c) leg force on the platform without actuation and without the mass at the connection point
+        prs_c_r0_x = prs__r0_x_2*prs_c_2 + prs__r0_y_2*prs_s_2
+        prs_c_r0_y = prs__r0_y_2*prs_c_2 - prs__r0_x_2*prs_s_2
+        prs_c_in_base_x = prs_base_frame_xx*prs_c_r0_x + prs_base_frame_xy*prs_c_r0_y
+        prs_c_in_base_y = prs_base_frame_yx*prs_c_r0_x + prs_base_frame_yy*prs_c_r0_y
+        prs_c_in_base_z = prs_base_frame_zx*prs_c_r0_x + prs_base_frame_zy*prs_c_r0_y
+        # (R_a) moment that actuators and external wrench must give
+        prs_R_a_t = prs_c_in_base_z*prs_q_in_base_y - prs_c_in_base_y*prs_q_in_base_z
+        prs_R_a_t_2 = prs_c_in_base_x*prs_q_in_base_z - prs_c_in_base_z*prs_q_in_base_x
+        prs_R_a_t_3 = prs_c_in_base_y*prs_q_in_base_x - prs_c_in_base_x*prs_q_in_base_y
+        # (prs-w_1) reciprocal vector 1
+        prs_w_1_r0_x = -prs__r0_x*prs_c_2 - prs__r0_y*prs_s_2
+        prs_w_1_r0_y = prs__r0_x*prs_s_2 - prs__r0_y*prs_c_2
+        prs_w_1_in_base_x = prs_base_frame_xx*prs_w_1_r0_x + prs_base_frame_xy*prs_w_1_r0_y
+        prs_w_1_in_base_y = prs_base_frame_yx*prs_w_1_r0_x + prs_base_frame_yy*prs_w_1_r0_y
+        prs_w_1_in_base_z = prs_base_frame_zx*prs_w_1_r0_x + prs_base_frame_zy*prs_w_1_r0_y
+        # (prs-H_a_1) moment of the column's unit force about the platform origin
+        prs_H_a_1_x = prs_q_in_base_y*prs_w_1_in_base_z - prs_q_in_base_z*prs_w_1_in_base_y
+        prs_H_a_1_y = prs_q_in_base_z*prs_w_1_in_base_x - prs_q_in_base_x*prs_w_1_in_base_z
+        prs_H_a_1_z = prs_q_in_base_x*prs_w_1_in_base_y - prs_q_in_base_y*prs_w_1_in_base_x
         ok = (
-        ok & m.every(leg, (disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * root_2_t) &
-            (abs(-v_2_t_2) > _TOLERANCE * size))
+        ok & m.every(leg, (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE *
+            prs_root_2_t) & (abs(-prs_v_2_t_2) > _TOLERANCE * prs_size))
         )
         sums = m.added(sums, leg, (
-        c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
+        prs_c_in_base_x, prs_c_in_base_y, prs_c_in_base_z, prs_R_a_t, prs_R_a_t_2,
+            prs_R_a_t_3,
         ))
-        out_H[_H_prs[0][leg]] = w_1_in_base_x
-        out_H[_H_prs[1][leg]] = w_1_in_base_y
-        out_H[_H_prs[2][leg]] = w_1_in_base_z
-        out_H[_H_prs[3][leg]] = H_a_1_x
-        out_H[_H_prs[4][leg]] = H_a_1_y
-        out_H[_H_prs[5][leg]] = H_a_1_z
+        out_H[_H_prs[0][leg]] = prs_w_1_in_base_x
+        out_H[_H_prs[1][leg]] = prs_w_1_in_base_y
+        out_H[_H_prs[2][leg]] = prs_w_1_in_base_z
+        out_H[_H_prs[3][leg]] = prs_H_a_1_x
+        out_H[_H_prs[4][leg]] = prs_H_a_1_y
+        out_H[_H_prs[5][leg]] = prs_H_a_1_z
         out_Hk[_Hk_prs[0][leg]] = prs_base_frame_xz
         out_Hk[_Hk_prs[1][leg]] = prs_base_frame_yz
         out_Hk[_Hk_prs[2][leg]] = prs_base_frame_zz
-        out_Hk[_Hk_prs[3][leg]] = Hk_a_1_x
-        out_Hk[_Hk_prs[4][leg]] = Hk_a_1_y
-        out_Hk[_Hk_prs[5][leg]] = Hk_a_1_z
+        out_Hk[_Hk_prs[3][leg]] = prs_Hk_a_1_x
+        out_Hk[_Hk_prs[4][leg]] = prs_Hk_a_1_y
+        out_Hk[_Hk_prs[5][leg]] = prs_Hk_a_1_z
     total_prs_x, total_prs_y, total_prs_z, total_prs_x_2, total_prs_y_2, total_prs_z_2 = sums
-    # (E4) force that actuators and external wrench must give
+    # (R_t) force that actuators and external wrench must give
     R_t_x = f_p_x - total_prs_x
     R_t_y = f_p_y - total_prs_y
     R_t_z = f_p_z - total_prs_z
-    # (E5) moment that actuators and external wrench must give
+    # (R_a) moment that actuators and external wrench must give
     R_a_x = mu_p_in_base_x - total_prs_x_2
     R_a_y = mu_p_in_base_y - total_prs_y_2
     R_a_z = mu_p_in_base_z - total_prs_z_2
@@ -2689,50 +2836,59 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        branch_1, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
+        prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
             prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
-            prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z,
-            prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
-            prs_platform_point_z, root_2_t, uu_2_t,
+            prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z, prs_branch_1,
+            prs_disc_1_t, prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
+            prs_platform_point_z, prs_root_2_t,
         ) = k
-        # (prs-K1) from the base point to the connection point
-        S_x = (
+        # (prs-S) from the base point to the connection point
+        prs_S_x = (
         t_x + R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z -
             prs_base_point_x
         )
-        S_y = (
+        prs_S_y = (
         t_y + R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z -
             prs_base_point_y
         )
-        S_z = (
+        prs_S_z = (
         t_z + R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z -
             prs_base_point_z
         )
-        # (prs-K2) component along axis 1
-        px_1 = S_x*prs_base_frame_xx + S_y*prs_base_frame_yx + S_z*prs_base_frame_zx
-        # (prs-K3) discriminant of the distance equation
-        disc_1_t = S_x*prs_base_frame_xz + S_y*prs_base_frame_yz + S_z*prs_base_frame_zz
-        disc_1_t_2 = S_x*S_x + S_y*S_y + S_z*S_z
-        disc_1 = disc_1_t*disc_1_t + px_1*px_1 + uu_2_t - disc_1_t_2
-        # (prs-K4) displacement of joint 1
-        q_1_t = branch_1*sqrt(disc_1)
-        q_1 = px_1 + q_1_t
-        # (prs-K1) from the base point to the connection point
-        S_r0_y = S_x*prs_base_frame_xy + S_y*prs_base_frame_yy + S_z*prs_base_frame_zy
-        # (prs-K7) squared amplitude
-        rho2_2 = uu_2_t*(S_r0_y*S_r0_y + q_1_t*q_1_t)
-        # (prs-K9) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/(sqrt(rho2_2))
-        # (prs-K11) displacement of joint 2
-        q_2 = (
-        atan2(S_r0_y*inv_root_2*prs_platform_joint_offset_x,
-            -inv_root_2*prs_platform_joint_offset_x*q_1_t)
+        # (prs-px_1) component along axis 1
+        prs_px_1 = (
+        prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
+        )
+        # (prs-disc_1) discriminant of the distance equation
+        prs_disc_1_t_2 = (
+        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
+        )
+        prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
+        prs_disc_1 = (
+        prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 - prs_disc_1_t_3
+        )
+        # (prs-q_1) displacement of joint 1
+        prs_q_1_t = prs_branch_1*sqrt(prs_disc_1)
+        prs_q_1 = prs_px_1 + prs_q_1_t
+        # (prs-S) from the base point to the connection point
+        prs_S_r0_y = (
+        prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
+        )
+        # (prs-rho2_2) squared amplitude
+        prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t)
+        # (prs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_prs_root_2 = 1.0/(sqrt(prs_rho2_2))
+        # (prs-q_2) displacement of joint 2
+        prs_q_2 = (
+        atan2(inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x,
+            -inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t)
         )
         ok = (
-        ok & m.every(leg, (disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * root_2_t))
+        ok & m.every(leg, (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE *
+            prs_root_2_t))
         )
-        out_q[_q_prs[0][leg]] = q_1
-        out_q[_q_prs[1][leg]] = q_2
+        out_q[_q_prs[0][leg]] = prs_q_1
+        out_q[_q_prs[1][leg]] = prs_q_2
     return ok, (out_q,)
 
 
@@ -2792,59 +2948,71 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        branch_1, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
+        prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
             prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
-            prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z,
-            prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
-            prs_platform_point_z, root_2_t, size, uu_2_t,
+            prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z, prs_branch_1,
+            prs_disc_1_t, prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
+            prs_platform_point_z, prs_root_2_t, prs_size,
         ) = k
-        # (prs-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (prs-S) from the base point to the connection point
+        prs_q_in_base_x = (
         R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z
         )
-        q_in_base_y = (
+        prs_q_in_base_y = (
         R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z
         )
-        q_in_base_z = (
+        prs_q_in_base_z = (
         R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - prs_base_point_x
-        S_y = q_in_base_y + t_y - prs_base_point_y
-        S_z = q_in_base_z + t_z - prs_base_point_z
-        # (prs-K2) component along axis 1
-        px_1 = S_x*prs_base_frame_xx + S_y*prs_base_frame_yx + S_z*prs_base_frame_zx
-        # (prs-K3) discriminant of the distance equation
-        disc_1_t = S_x*prs_base_frame_xz + S_y*prs_base_frame_yz + S_z*prs_base_frame_zz
-        disc_1_t_2 = S_x*S_x + S_y*S_y + S_z*S_z
-        disc_1 = disc_1_t*disc_1_t + px_1*px_1 + uu_2_t - disc_1_t_2
-        # (prs-K4) displacement of joint 1
-        q_1_t = branch_1*sqrt(disc_1)
-        # (prs-K1) from the base point to the connection point
-        S_r0_y = S_x*prs_base_frame_xy + S_y*prs_base_frame_yy + S_z*prs_base_frame_zy
-        # (prs-K7) squared amplitude
-        rho2_2 = uu_2_t*(S_r0_y*S_r0_y + q_1_t*q_1_t)
-        # (prs-K9) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/(sqrt(rho2_2))
-        # (prs-V2) velocity of the connection point per rate of joint 2
-        v_2_t = inv_root_2*prs_platform_joint_offset_x*prs_platform_joint_offset_x*q_1_t
-        # (prs-V1) velocity of the connection point
-        S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x
-        # (prs-V6) rate of joint 2
-        qd_2 = (
-        (S_dot_x*prs_base_frame_xy + S_dot_y*prs_base_frame_yy + S_dot_z*prs_base_frame_zy)/v_2_t
+        prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x
+        prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y
+        prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z
+        # (prs-px_1) component along axis 1
+        prs_px_1 = (
+        prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
-        qd_2_t = (
-        S_dot_x*prs_base_frame_xx + S_dot_y*prs_base_frame_yx + S_dot_z*prs_base_frame_zx -
-            S_r0_y*inv_root_2*prs_platform_joint_offset_x*prs_platform_joint_offset_x*qd_2
+        # (prs-disc_1) discriminant of the distance equation
+        prs_disc_1_t_2 = (
+        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
+        )
+        prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
+        prs_disc_1 = (
+        prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 - prs_disc_1_t_3
+        )
+        # (prs-q_1) displacement of joint 1
+        prs_q_1_t = prs_branch_1*sqrt(prs_disc_1)
+        # (prs-S) from the base point to the connection point
+        prs_S_r0_y = (
+        prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
+        )
+        # (prs-rho2_2) squared amplitude
+        prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t)
+        # (prs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_prs_root_2 = 1.0/(sqrt(prs_rho2_2))
+        # (prs-v_2) velocity of the connection point per rate of joint 2
+        prs_v_2_t = (
+        inv_prs_root_2*prs_platform_joint_offset_x*prs_platform_joint_offset_x*prs_q_1_t
+        )
+        # (prs-S_dot) velocity of the connection point
+        prs_S_dot_x = t_dot_x + omega_y*prs_q_in_base_z - omega_z*prs_q_in_base_y
+        prs_S_dot_y = t_dot_y + omega_z*prs_q_in_base_x - omega_x*prs_q_in_base_z
+        prs_S_dot_z = t_dot_z + omega_x*prs_q_in_base_y - omega_y*prs_q_in_base_x
+        # (prs-qd_2) rate of joint 2
+        prs_qd_2 = (
+        (prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
+            prs_S_dot_z*prs_base_frame_zy)/prs_v_2_t
+        )
+        prs_qd_2_t = (
+        prs_S_dot_x*prs_base_frame_xx + prs_S_dot_y*prs_base_frame_yx +
+            prs_S_dot_z*prs_base_frame_zx -
+            inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x*prs_platform_joint_offset_x*prs_qd_2
         )
         ok = (
-        ok & m.every(leg, (disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * root_2_t) &
-            (abs(-v_2_t) > _TOLERANCE * size))
+        ok & m.every(leg, (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE *
+            prs_root_2_t) & (abs(-prs_v_2_t) > _TOLERANCE * prs_size))
         )
-        out_qd[_qd_prs[0][leg]] = qd_2_t
-        out_qd[_qd_prs[1][leg]] = -qd_2
+        out_qd[_qd_prs[0][leg]] = prs_qd_2_t
+        out_qd[_qd_prs[1][leg]] = -prs_qd_2
     return ok, (out_qd,)
 
 
@@ -2917,84 +3085,100 @@ def _run_joint_accelerations(m, X, V, A):
     out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
-        branch_1, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
+        prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
             prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
-            prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z,
-            prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
-            prs_platform_point_z, root_2_t, size, uu_2_t,
+            prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z, prs_branch_1,
+            prs_disc_1_t, prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
+            prs_platform_point_z, prs_root_2_t, prs_size,
         ) = k
-        # (prs-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (prs-S) from the base point to the connection point
+        prs_q_in_base_x = (
         R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z
         )
-        q_in_base_y = (
+        prs_q_in_base_y = (
         R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z
         )
-        q_in_base_z = (
+        prs_q_in_base_z = (
         R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - prs_base_point_x
-        S_y = q_in_base_y + t_y - prs_base_point_y
-        S_z = q_in_base_z + t_z - prs_base_point_z
-        # (prs-K2) component along axis 1
-        px_1 = S_x*prs_base_frame_xx + S_y*prs_base_frame_yx + S_z*prs_base_frame_zx
-        # (prs-K3) discriminant of the distance equation
-        disc_1_t = S_x*prs_base_frame_xz + S_y*prs_base_frame_yz + S_z*prs_base_frame_zz
-        disc_1_t_2 = S_x*S_x + S_y*S_y + S_z*S_z
-        disc_1 = disc_1_t*disc_1_t + px_1*px_1 + uu_2_t - disc_1_t_2
-        # (prs-K4) displacement of joint 1
-        q_1_t = branch_1*sqrt(disc_1)
-        # (prs-K1) from the base point to the connection point
-        S_r0_y = S_x*prs_base_frame_xy + S_y*prs_base_frame_yy + S_z*prs_base_frame_zy
-        # (prs-K7) squared amplitude
-        rho2_2 = uu_2_t*(S_r0_y*S_r0_y + q_1_t*q_1_t)
-        # (prs-K9) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/(sqrt(rho2_2))
-        c_2 = inv_root_2*prs_platform_joint_offset_x*q_1_t
-        # (prs-K10) sine of the angle of joint 2 from its reference direction
-        s_2 = S_r0_y*inv_root_2*prs_platform_joint_offset_x
-        # (prs-V2) velocity of the connection point per rate of joint 2
-        v_2_t = c_2*prs_platform_joint_offset_x
-        # (prs-V3) reciprocal vector 1
-        inv_v_2_t_2 = 1.0/v_2_t
-        # (prs-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        # (prs-V6) rate of joint 2
-        qd_2 = (
-        inv_v_2_t_2*(S_dot_x*prs_base_frame_xy + S_dot_y*prs_base_frame_yy +
-            S_dot_z*prs_base_frame_zy)
+        prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x
+        prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y
+        prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z
+        # (prs-px_1) component along axis 1
+        prs_px_1 = (
+        prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
-        # (prs-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (prs-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        S_ddot_r0_x = (
-        S_ddot_x*prs_base_frame_xx + S_ddot_y*prs_base_frame_yx + S_ddot_z*prs_base_frame_zx
+        # (prs-disc_1) discriminant of the distance equation
+        prs_disc_1_t_2 = (
+        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
-        S_ddot_r0_y = (
-        S_ddot_x*prs_base_frame_xy + S_ddot_y*prs_base_frame_yy + S_ddot_z*prs_base_frame_zy
+        prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
+        prs_disc_1 = (
+        prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 - prs_disc_1_t_3
         )
-        S_ddot_r1_y = -S_ddot_r0_x*s_2 - S_ddot_r0_y*c_2
-        # (prs-A5) acceleration of the connection point left to the joint accelerations
-        rel_x = S_ddot_r0_y*s_2 + prs_platform_joint_offset_x*qd_2*qd_2 - S_ddot_r0_x*c_2
-        # (prs-A7) acceleration of joint 1
-        qdd_2 = inv_v_2_t_2*(rel_x*s_2 - S_ddot_r1_y*c_2)
-        qdd_1_t = S_ddot_r1_y*s_2 + c_2*rel_x + prs_platform_joint_offset_x*qdd_2*s_2
+        # (prs-q_1) displacement of joint 1
+        prs_q_1_t = prs_branch_1*sqrt(prs_disc_1)
+        # (prs-S) from the base point to the connection point
+        prs_S_r0_y = (
+        prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
+        )
+        # (prs-rho2_2) squared amplitude
+        prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t)
+        # (prs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_prs_root_2 = 1.0/(sqrt(prs_rho2_2))
+        prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t
+        # (prs-s_2) sine of the angle of joint 2 from its reference direction
+        prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x
+        # (prs-v_2) velocity of the connection point per rate of joint 2
+        prs_v_2_t = prs_c_2*prs_platform_joint_offset_x
+        # (prs-w_1) reciprocal vector 1
+        inv_prs_v_2_t_2 = 1.0/prs_v_2_t
+        # (prs-S_dot) velocity of the connection point
+        prs_S_dot_t = omega_y*prs_q_in_base_z - omega_z*prs_q_in_base_y
+        prs_S_dot_t_2 = omega_z*prs_q_in_base_x - omega_x*prs_q_in_base_z
+        prs_S_dot_t_3 = omega_x*prs_q_in_base_y - omega_y*prs_q_in_base_x
+        prs_S_dot_x = prs_S_dot_t + t_dot_x
+        prs_S_dot_y = prs_S_dot_t_2 + t_dot_y
+        prs_S_dot_z = prs_S_dot_t_3 + t_dot_z
+        # (prs-qd_2) rate of joint 2
+        prs_qd_2 = (
+        inv_prs_v_2_t_2*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
+            prs_S_dot_z*prs_base_frame_zy)
+        )
+        # (prs-a_p) acceleration of the connection point without its centripetal part
+        prs_a_p_x = t_ddot_x + alpha_y*prs_q_in_base_z - alpha_z*prs_q_in_base_y
+        prs_a_p_y = t_ddot_y + alpha_z*prs_q_in_base_x - alpha_x*prs_q_in_base_z
+        prs_a_p_z = t_ddot_z + alpha_x*prs_q_in_base_y - alpha_y*prs_q_in_base_x
+        # (prs-S_ddot) acceleration of the connection point
+        prs_S_ddot_x = prs_a_p_x + omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2
+        prs_S_ddot_y = prs_a_p_y + omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3
+        prs_S_ddot_z = prs_a_p_z + omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t
+        prs_S_ddot_r0_x = (
+        prs_S_ddot_x*prs_base_frame_xx + prs_S_ddot_y*prs_base_frame_yx +
+            prs_S_ddot_z*prs_base_frame_zx
+        )
+        prs_S_ddot_r0_y = (
+        prs_S_ddot_x*prs_base_frame_xy + prs_S_ddot_y*prs_base_frame_yy +
+            prs_S_ddot_z*prs_base_frame_zy
+        )
+        prs_S_ddot_r1_y = -prs_S_ddot_r0_x*prs_s_2 - prs_S_ddot_r0_y*prs_c_2
+        # (prs-rel) acceleration of the connection point left to the joint accelerations
+        prs_rel_x = (
+        prs_S_ddot_r0_y*prs_s_2 + prs_platform_joint_offset_x*prs_qd_2*prs_qd_2 -
+            prs_S_ddot_r0_x*prs_c_2
+        )
+        # (prs-qdd_1) acceleration of joint 1
+        prs_qdd_2 = inv_prs_v_2_t_2*(prs_rel_x*prs_s_2 - prs_S_ddot_r1_y*prs_c_2)
+        prs_qdd_1_t = (
+        prs_S_ddot_r1_y*prs_s_2 + prs_c_2*prs_rel_x +
+            prs_platform_joint_offset_x*prs_qdd_2*prs_s_2
+        )
         ok = (
-        ok & m.every(leg, (disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * root_2_t) &
-            (abs(-v_2_t) > _TOLERANCE * size))
+        ok & m.every(leg, (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE *
+            prs_root_2_t) & (abs(-prs_v_2_t) > _TOLERANCE * prs_size))
         )
-        out_qdd[_qdd_prs[0][leg]] = -qdd_1_t
-        out_qdd[_qdd_prs[1][leg]] = -qdd_2
+        out_qdd[_qdd_prs[0][leg]] = -prs_qdd_1_t
+        out_qdd[_qdd_prs[1][leg]] = -prs_qdd_2
     return ok, (out_qdd,)
 
 
@@ -3044,22 +3228,24 @@ def _run_constraints(m, X):
             prs_base_point_y, prs_base_point_z, prs_platform_point_x, prs_platform_point_y,
             prs_platform_point_z,
         ) = k
-        # (prs-K1) from the base point to the connection point
-        S_x = (
+        # (prs-S) from the base point to the connection point
+        prs_S_x = (
         t_x + R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z -
             prs_base_point_x
         )
-        S_y = (
+        prs_S_y = (
         t_y + R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z -
             prs_base_point_y
         )
-        S_z = (
+        prs_S_z = (
         t_z + R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z -
             prs_base_point_z
         )
-        # (prs-K3) discriminant of the distance equation
-        disc_1_t = S_x*prs_base_frame_xz + S_y*prs_base_frame_yz + S_z*prs_base_frame_zz
-        out_constraints[_constraints_prs[0][leg]] = disc_1_t
+        # (prs-disc_1) discriminant of the distance equation
+        prs_disc_1_t_2 = (
+        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
+        )
+        out_constraints[_constraints_prs[0][leg]] = prs_disc_1_t_2
     return ok, (out_constraints,)
 
 
@@ -3134,123 +3320,136 @@ def _run_legs(m, X, V, A):
     out_constraint_direction = m.zeros("constraint_direction")
     for leg, k in legs[0]:
         (
-        J_2_zz, branch_1, g_r0_x, g_r0_y, h_2_x, h_2_y, prs_base_frame_xx, prs_base_frame_xy,
-            prs_base_frame_xz, prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz,
-            prs_base_frame_zx, prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x,
-            prs_base_point_y, prs_base_point_z, prs_link1_mass, prs_link2_mass,
-            prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
-            prs_platform_point_z, root_2_t, size, uu_2_t,
+        prs_J_2_zz, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
+            prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
+            prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z, prs_branch_1,
+            prs_disc_1_t, prs_g_r0_x, prs_g_r0_y, prs_h_2_x, prs_h_2_y, prs_link1_mass,
+            prs_link2_mass, prs_platform_joint_offset_x, prs_platform_point_x,
+            prs_platform_point_y, prs_platform_point_z, prs_root_2_t, prs_size,
         ) = k
-        # (prs-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (prs-S) from the base point to the connection point
+        prs_q_in_base_x = (
         R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z
         )
-        q_in_base_y = (
+        prs_q_in_base_y = (
         R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z
         )
-        q_in_base_z = (
+        prs_q_in_base_z = (
         R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - prs_base_point_x
-        S_y = q_in_base_y + t_y - prs_base_point_y
-        S_z = q_in_base_z + t_z - prs_base_point_z
-        # (prs-K2) component along axis 1
-        px_1 = S_x*prs_base_frame_xx + S_y*prs_base_frame_yx + S_z*prs_base_frame_zx
-        # (prs-K3) discriminant of the distance equation
-        disc_1_t = S_x*prs_base_frame_xz + S_y*prs_base_frame_yz + S_z*prs_base_frame_zz
-        disc_1_t_2 = S_x*S_x + S_y*S_y + S_z*S_z
-        disc_1 = disc_1_t*disc_1_t + px_1*px_1 + uu_2_t - disc_1_t_2
-        # (prs-K4) displacement of joint 1
-        q_1_t = branch_1*sqrt(disc_1)
-        # (prs-K1) from the base point to the connection point
-        S_r0_y = S_x*prs_base_frame_xy + S_y*prs_base_frame_yy + S_z*prs_base_frame_zy
-        # (prs-K7) squared amplitude
-        rho2_2 = uu_2_t*(S_r0_y*S_r0_y + q_1_t*q_1_t)
-        # (prs-K9) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/(sqrt(rho2_2))
-        c_2 = inv_root_2*prs_platform_joint_offset_x*q_1_t
-        # (prs-K10) sine of the angle of joint 2 from its reference direction
-        s_2 = S_r0_y*inv_root_2*prs_platform_joint_offset_x
-        # (prs-V2) velocity of the connection point per rate of joint 2
-        v_2_t = prs_platform_joint_offset_x*s_2
-        v_2_t_2 = c_2*prs_platform_joint_offset_x
-        # (prs-V3) reciprocal vector 1
-        inv_v_2_t_2 = 1.0/v_2_t_2
-        w_1_t = inv_v_2_t_2*v_2_t
-        _r0_x = -c_2 - s_2*w_1_t
-        _r0_y = c_2*w_1_t - s_2
-        # (prs-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        # (prs-V6) rate of joint 2
-        qd_2 = (
-        inv_v_2_t_2*(S_dot_x*prs_base_frame_xy + S_dot_y*prs_base_frame_yy +
-            S_dot_z*prs_base_frame_zy)
+        prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x
+        prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y
+        prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z
+        # (prs-px_1) component along axis 1
+        prs_px_1 = (
+        prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
-        # (prs-V8) centripetal tensor of link 2
-        W_2_t = qd_2*qd_2
-        # (prs-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (prs-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        S_ddot_r0_x = (
-        S_ddot_x*prs_base_frame_xx + S_ddot_y*prs_base_frame_yx + S_ddot_z*prs_base_frame_zx
+        # (prs-disc_1) discriminant of the distance equation
+        prs_disc_1_t_2 = (
+        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
-        S_ddot_r0_y = (
-        S_ddot_x*prs_base_frame_xy + S_ddot_y*prs_base_frame_yy + S_ddot_z*prs_base_frame_zy
+        prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
+        prs_disc_1 = (
+        prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 - prs_disc_1_t_3
         )
-        S_ddot_r1_y = -S_ddot_r0_x*s_2 - S_ddot_r0_y*c_2
-        # (prs-A5) acceleration of the connection point left to the joint accelerations
-        rel_x = S_ddot_r0_y*s_2 + prs_platform_joint_offset_x*qd_2*qd_2 - S_ddot_r0_x*c_2
-        # (prs-A7) acceleration of joint 1
-        qdd_2 = inv_v_2_t_2*(rel_x*s_2 - S_ddot_r1_y*c_2)
-        qdd_1_t = S_ddot_r1_y*s_2 + c_2*rel_x + qdd_2*v_2_t
-        # (prs-N1) acceleration of the reference point of link 1, less gravity
-        acc_1_x = -g_r0_x - qdd_1_t
-        # (prs-N5) acceleration of the reference point of link 2, less gravity
-        acc_2_x = c_2*g_r0_x + c_2*qdd_1_t - g_r0_y*s_2
-        acc_2_y = c_2*g_r0_y + g_r0_x*s_2 + qdd_1_t*s_2
-        # (prs-N9) inertia force of link 2 less its weight
-        f_2_x = acc_2_x*prs_link2_mass + h_2_y*qdd_2 - W_2_t*h_2_x
-        f_2_y = acc_2_y*prs_link2_mass - W_2_t*h_2_y - h_2_x*qdd_2
-        # (prs-N24) inertia force of the links from 1 outwards, the last link left out
-        T_1_x = acc_1_x*prs_link1_mass - c_2*f_2_x - f_2_y*s_2
-        # (prs-N19) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_z = acc_2_y*h_2_x - J_2_zz*qdd_2 - acc_2_x*h_2_y
-        # (prs-N29) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_t = inv_v_2_t_2*(mu_2_z + T_1_x*v_2_t)
-        _r0_x_2 = -G_t*s_2 - T_1_x*c_2
-        _r0_y_2 = G_t*c_2 - T_1_x*s_2
-        # (prs-N32) leg force on the platform without actuation and without the mass at the connection point
-        c_r0_x = _r0_x_2*c_2 + _r0_y_2*s_2
-        c_r0_y = _r0_y_2*c_2 - _r0_x_2*s_2
-        c_in_base_x = c_r0_x*prs_base_frame_xx + c_r0_y*prs_base_frame_xy
-        c_in_base_y = c_r0_x*prs_base_frame_yx + c_r0_y*prs_base_frame_yy
-        c_in_base_z = c_r0_x*prs_base_frame_zx + c_r0_y*prs_base_frame_zy
-        # (prs-V3) reciprocal vector 1
-        w_1_r0_x = -_r0_x*c_2 - _r0_y*s_2
-        w_1_r0_y = _r0_x*s_2 - _r0_y*c_2
-        w_1_in_base_x = prs_base_frame_xx*w_1_r0_x + prs_base_frame_xy*w_1_r0_y
-        w_1_in_base_y = prs_base_frame_yx*w_1_r0_x + prs_base_frame_yy*w_1_r0_y
-        w_1_in_base_z = prs_base_frame_zx*w_1_r0_x + prs_base_frame_zy*w_1_r0_y
+        # (prs-q_1) displacement of joint 1
+        prs_q_1_t = prs_branch_1*sqrt(prs_disc_1)
+        # (prs-S) from the base point to the connection point
+        prs_S_r0_y = (
+        prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
+        )
+        # (prs-rho2_2) squared amplitude
+        prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t)
+        # (prs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_prs_root_2 = 1.0/(sqrt(prs_rho2_2))
+        prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t
+        # (prs-s_2) sine of the angle of joint 2 from its reference direction
+        prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x
+        # (prs-v_2) velocity of the connection point per rate of joint 2
+        prs_v_2_t = prs_platform_joint_offset_x*prs_s_2
+        prs_v_2_t_2 = prs_c_2*prs_platform_joint_offset_x
+        # (prs-w_1) reciprocal vector 1
+        inv_prs_v_2_t_2 = 1.0/prs_v_2_t_2
+        prs_w_1_t = inv_prs_v_2_t_2*prs_v_2_t
+        prs__r0_x = -prs_c_2 - prs_s_2*prs_w_1_t
+        prs__r0_y = prs_c_2*prs_w_1_t - prs_s_2
+        # (prs-S_dot) velocity of the connection point
+        prs_S_dot_t = omega_y*prs_q_in_base_z - omega_z*prs_q_in_base_y
+        prs_S_dot_t_2 = omega_z*prs_q_in_base_x - omega_x*prs_q_in_base_z
+        prs_S_dot_t_3 = omega_x*prs_q_in_base_y - omega_y*prs_q_in_base_x
+        prs_S_dot_x = prs_S_dot_t + t_dot_x
+        prs_S_dot_y = prs_S_dot_t_2 + t_dot_y
+        prs_S_dot_z = prs_S_dot_t_3 + t_dot_z
+        # (prs-qd_2) rate of joint 2
+        prs_qd_2 = (
+        inv_prs_v_2_t_2*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
+            prs_S_dot_z*prs_base_frame_zy)
+        )
+        # (prs-W_2) centripetal tensor of link 2
+        prs_W_2_t = prs_qd_2*prs_qd_2
+        # (prs-a_p) acceleration of the connection point without its centripetal part
+        prs_a_p_x = t_ddot_x + alpha_y*prs_q_in_base_z - alpha_z*prs_q_in_base_y
+        prs_a_p_y = t_ddot_y + alpha_z*prs_q_in_base_x - alpha_x*prs_q_in_base_z
+        prs_a_p_z = t_ddot_z + alpha_x*prs_q_in_base_y - alpha_y*prs_q_in_base_x
+        # (prs-S_ddot) acceleration of the connection point
+        prs_S_ddot_x = prs_a_p_x + omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2
+        prs_S_ddot_y = prs_a_p_y + omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3
+        prs_S_ddot_z = prs_a_p_z + omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t
+        prs_S_ddot_r0_x = (
+        prs_S_ddot_x*prs_base_frame_xx + prs_S_ddot_y*prs_base_frame_yx +
+            prs_S_ddot_z*prs_base_frame_zx
+        )
+        prs_S_ddot_r0_y = (
+        prs_S_ddot_x*prs_base_frame_xy + prs_S_ddot_y*prs_base_frame_yy +
+            prs_S_ddot_z*prs_base_frame_zy
+        )
+        prs_S_ddot_r1_y = -prs_S_ddot_r0_x*prs_s_2 - prs_S_ddot_r0_y*prs_c_2
+        # (prs-rel) acceleration of the connection point left to the joint accelerations
+        prs_rel_x = (
+        prs_S_ddot_r0_y*prs_s_2 + prs_platform_joint_offset_x*prs_qd_2*prs_qd_2 -
+            prs_S_ddot_r0_x*prs_c_2
+        )
+        # (prs-qdd_1) acceleration of joint 1
+        prs_qdd_2 = inv_prs_v_2_t_2*(prs_rel_x*prs_s_2 - prs_S_ddot_r1_y*prs_c_2)
+        prs_qdd_1_t = prs_S_ddot_r1_y*prs_s_2 + prs_c_2*prs_rel_x + prs_qdd_2*prs_v_2_t
+        # (prs-acc_2) acceleration of the reference point of link 2, less gravity
+        prs_acc_2_x = prs_c_2*prs_g_r0_x + prs_c_2*prs_qdd_1_t - prs_g_r0_y*prs_s_2
+        prs_acc_2_y = prs_c_2*prs_g_r0_y + prs_g_r0_x*prs_s_2 + prs_qdd_1_t*prs_s_2
+        # (prs-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        prs_mu_2_z = prs_acc_2_y*prs_h_2_x - prs_J_2_zz*prs_qdd_2 - prs_acc_2_x*prs_h_2_y
+        # (prs-acc_1) acceleration of the reference point of link 1, less gravity
+        prs_acc_1_x = -prs_g_r0_x - prs_qdd_1_t
+        # (prs-f_2) inertia force of link 2 less its weight
+        prs_f_2_x = prs_acc_2_x*prs_link2_mass + prs_h_2_y*prs_qdd_2 - prs_W_2_t*prs_h_2_x
+        prs_f_2_y = prs_acc_2_y*prs_link2_mass - prs_W_2_t*prs_h_2_y - prs_h_2_x*prs_qdd_2
+        # (prs-T_1) inertia force of the links from 1 outwards, the last link left out
+        prs_T_1_x = prs_acc_1_x*prs_link1_mass - prs_c_2*prs_f_2_x - prs_f_2_y*prs_s_2
+        # (prs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        prs_G_t = inv_prs_v_2_t_2*(prs_mu_2_z + prs_T_1_x*prs_v_2_t)
+        prs__r0_x_2 = -prs_G_t*prs_s_2 - prs_T_1_x*prs_c_2
+        prs__r0_y_2 = prs_G_t*prs_c_2 - prs_T_1_x*prs_s_2
+        # (prs-c) leg force on the platform without actuation and without the mass at the connection point
+        prs_c_r0_x = prs__r0_x_2*prs_c_2 + prs__r0_y_2*prs_s_2
+        prs_c_r0_y = prs__r0_y_2*prs_c_2 - prs__r0_x_2*prs_s_2
+        prs_c_in_base_x = prs_base_frame_xx*prs_c_r0_x + prs_base_frame_xy*prs_c_r0_y
+        prs_c_in_base_y = prs_base_frame_yx*prs_c_r0_x + prs_base_frame_yy*prs_c_r0_y
+        prs_c_in_base_z = prs_base_frame_zx*prs_c_r0_x + prs_base_frame_zy*prs_c_r0_y
+        # (prs-w_1) reciprocal vector 1
+        prs_w_1_r0_x = -prs__r0_x*prs_c_2 - prs__r0_y*prs_s_2
+        prs_w_1_r0_y = prs__r0_x*prs_s_2 - prs__r0_y*prs_c_2
+        prs_w_1_in_base_x = prs_base_frame_xx*prs_w_1_r0_x + prs_base_frame_xy*prs_w_1_r0_y
+        prs_w_1_in_base_y = prs_base_frame_yx*prs_w_1_r0_x + prs_base_frame_yy*prs_w_1_r0_y
+        prs_w_1_in_base_z = prs_base_frame_zx*prs_w_1_r0_x + prs_base_frame_zy*prs_w_1_r0_y
         ok = (
-        ok & m.every(leg, (disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * root_2_t) &
-            (abs(-v_2_t_2) > _TOLERANCE * size))
+        ok & m.every(leg, (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE *
+            prs_root_2_t) & (abs(-prs_v_2_t_2) > _TOLERANCE * prs_size))
         )
-        out_leg_force[_leg_force_prs[0][leg]] = c_in_base_x
-        out_leg_force[_leg_force_prs[1][leg]] = c_in_base_y
-        out_leg_force[_leg_force_prs[2][leg]] = c_in_base_z
-        out_drive[_drive_prs[0][leg]] = w_1_in_base_x
-        out_drive[_drive_prs[1][leg]] = w_1_in_base_y
-        out_drive[_drive_prs[2][leg]] = w_1_in_base_z
+        out_leg_force[_leg_force_prs[0][leg]] = prs_c_in_base_x
+        out_leg_force[_leg_force_prs[1][leg]] = prs_c_in_base_y
+        out_leg_force[_leg_force_prs[2][leg]] = prs_c_in_base_z
+        out_drive[_drive_prs[0][leg]] = prs_w_1_in_base_x
+        out_drive[_drive_prs[1][leg]] = prs_w_1_in_base_y
+        out_drive[_drive_prs[2][leg]] = prs_w_1_in_base_z
         out_constraint_direction[_constraint_direction_prs[0][leg]] = prs_base_frame_xz
         out_constraint_direction[_constraint_direction_prs[1][leg]] = prs_base_frame_yz
         out_constraint_direction[_constraint_direction_prs[2][leg]] = prs_base_frame_zz
@@ -3299,8 +3498,8 @@ def _run_potential(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_potential = m.zeros("potential")
-    # (V1) potential energy
-    potential_t_4 = (
+    # (potential) potential energy
+    potential_t = (
     gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + platform_mass*t_x) +
         gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + platform_mass*t_y) +
         gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + platform_mass*t_z)
@@ -3308,60 +3507,71 @@ def _run_potential(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        b_r0_x, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, potential_t, potential_t_2,
-            potential_t_3, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz,
-            prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx,
-            prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x, prs_base_point_y,
-            prs_base_point_z, prs_link1_mass, prs_link2_mass, prs_platform_joint_offset_x,
-            prs_platform_point_x, prs_platform_point_y, prs_platform_point_z, root_2_t, uu_2_t,
+        prs_b_r0_x, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
+            prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
+            prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z, prs_branch_1,
+            prs_disc_1_t, prs_g_r0_x, prs_g_r0_y, prs_h_1_x, prs_h_1_y, prs_h_2_x, prs_h_2_y,
+            prs_link1_mass, prs_link2_mass, prs_platform_joint_offset_x, prs_platform_point_x,
+            prs_platform_point_y, prs_platform_point_z, prs_potential_t, prs_potential_t_2,
+            prs_potential_t_3, prs_root_2_t,
         ) = k
-        # (prs-K1) from the base point to the connection point
-        S_x = (
+        # (prs-S) from the base point to the connection point
+        prs_S_x = (
         t_x + R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z -
             prs_base_point_x
         )
-        S_y = (
+        prs_S_y = (
         t_y + R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z -
             prs_base_point_y
         )
-        S_z = (
+        prs_S_z = (
         t_z + R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z -
             prs_base_point_z
         )
-        # (prs-K2) component along axis 1
-        px_1 = S_x*prs_base_frame_xx + S_y*prs_base_frame_yx + S_z*prs_base_frame_zx
-        # (prs-K3) discriminant of the distance equation
-        disc_1_t = S_x*prs_base_frame_xz + S_y*prs_base_frame_yz + S_z*prs_base_frame_zz
-        disc_1_t_2 = S_x*S_x + S_y*S_y + S_z*S_z
-        disc_1 = disc_1_t*disc_1_t + px_1*px_1 + uu_2_t - disc_1_t_2
-        # (prs-K4) displacement of joint 1
-        q_1_t = branch_1*sqrt(disc_1)
-        q_1 = px_1 + q_1_t
-        # (prs-K1) from the base point to the connection point
-        S_r0_y = S_x*prs_base_frame_xy + S_y*prs_base_frame_yy + S_z*prs_base_frame_zy
-        # (prs-K7) squared amplitude
-        rho2_2 = uu_2_t*(S_r0_y*S_r0_y + q_1_t*q_1_t)
-        # (prs-K9) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/(sqrt(rho2_2))
-        c_2 = inv_root_2*prs_platform_joint_offset_x*q_1_t
-        # (prs-K10) sine of the angle of joint 2 from its reference direction
-        s_2 = S_r0_y*inv_root_2*prs_platform_joint_offset_x
-        # (V1) potential energy
-        potential_t_5 = b_r0_x + q_1
-        potential_t_6 = (
-        potential_t_3 + g_r0_x*(h_1_x + potential_t_5*prs_link1_mass +
-            potential_t_5*prs_link2_mass - c_2*h_2_x - h_2_y*s_2) + g_r0_y*(h_1_y + potential_t +
-            potential_t_2 + h_2_x*s_2 - c_2*h_2_y)
+        # (prs-px_1) component along axis 1
+        prs_px_1 = (
+        prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
+        )
+        # (prs-disc_1) discriminant of the distance equation
+        prs_disc_1_t_2 = (
+        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
+        )
+        prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
+        prs_disc_1 = (
+        prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 - prs_disc_1_t_3
+        )
+        # (prs-q_1) displacement of joint 1
+        prs_q_1_t = prs_branch_1*sqrt(prs_disc_1)
+        prs_q_1 = prs_px_1 + prs_q_1_t
+        # (prs-S) from the base point to the connection point
+        prs_S_r0_y = (
+        prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
+        )
+        # (prs-rho2_2) squared amplitude
+        prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t)
+        # (prs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_prs_root_2 = 1.0/(sqrt(prs_rho2_2))
+        prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t
+        # (prs-s_2) sine of the angle of joint 2 from its reference direction
+        prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x
+        # (potential) potential energy
+        prs_potential_t_4 = prs_b_r0_x + prs_q_1
+        prs_potential_t_5 = (
+        prs_potential_t_3 + prs_g_r0_x*(prs_h_1_x + prs_link1_mass*prs_potential_t_4 +
+            prs_link2_mass*prs_potential_t_4 - prs_c_2*prs_h_2_x - prs_h_2_y*prs_s_2) +
+            prs_g_r0_y*(prs_h_1_y + prs_potential_t + prs_potential_t_2 + prs_h_2_x*prs_s_2 -
+            prs_c_2*prs_h_2_y)
         )
         ok = (
-        ok & m.every(leg, (disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * root_2_t))
+        ok & m.every(leg, (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE *
+            prs_root_2_t))
         )
         sums = m.added(sums, leg, (
-        potential_t_6,
+        prs_potential_t_5,
         ))
     total_prs, = sums
-    # (V1) potential energy
-    potential = -potential_t_4 - total_prs
+    # (potential) potential energy
+    potential = -potential_t - total_prs
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -3419,103 +3629,116 @@ def _run_condition(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        branch_1, inv_root_2_t_2, inv_size, prs_base_frame_xx, prs_base_frame_xy,
-            prs_base_frame_xz, prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz,
-            prs_base_frame_zx, prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x,
-            prs_base_point_y, prs_base_point_z, prs_platform_joint_offset_x, prs_platform_point_x,
-            prs_platform_point_y, prs_platform_point_z, root_2_t, size, uu_2_t,
+        inv_prs_root_2_t_2, inv_prs_size, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz,
+            prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx,
+            prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x, prs_base_point_y,
+            prs_base_point_z, prs_branch_1, prs_disc_1_t, prs_platform_joint_offset_x,
+            prs_platform_point_x, prs_platform_point_y, prs_platform_point_z, prs_root_2_t,
+            prs_size,
         ) = k
-        # (prs-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (prs-S) from the base point to the connection point
+        prs_q_in_base_x = (
         R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z
         )
-        q_in_base_y = (
+        prs_q_in_base_y = (
         R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z
         )
-        q_in_base_z = (
+        prs_q_in_base_z = (
         R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z
         )
-        S_x = q_in_base_x + t_x - prs_base_point_x
-        S_y = q_in_base_y + t_y - prs_base_point_y
-        S_z = q_in_base_z + t_z - prs_base_point_z
-        # (prs-K2) component along axis 1
-        px_1 = S_x*prs_base_frame_xx + S_y*prs_base_frame_yx + S_z*prs_base_frame_zx
-        # (prs-K3) discriminant of the distance equation
-        disc_1_t = S_x*prs_base_frame_xz + S_y*prs_base_frame_yz + S_z*prs_base_frame_zz
-        disc_1_t_2 = S_x*S_x + S_y*S_y + S_z*S_z
-        disc_1 = disc_1_t*disc_1_t + px_1*px_1 + uu_2_t - disc_1_t_2
-        # (prs-K4) displacement of joint 1
-        q_1_t = branch_1*sqrt(disc_1)
-        # (prs-K1) from the base point to the connection point
-        S_r0_y = S_x*prs_base_frame_xy + S_y*prs_base_frame_yy + S_z*prs_base_frame_zy
-        # (prs-K7) squared amplitude
-        rho2_2 = uu_2_t*(S_r0_y*S_r0_y + q_1_t*q_1_t)
-        # (prs-K9) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/(sqrt(rho2_2))
-        c_2 = inv_root_2*prs_platform_joint_offset_x*q_1_t
-        # (prs-K10) sine of the angle of joint 2 from its reference direction
-        s_2 = S_r0_y*inv_root_2*prs_platform_joint_offset_x
-        # (prs-V2) velocity of the connection point per rate of joint 2
-        v_2_t = c_2*prs_platform_joint_offset_x
-        # (prs-V3) reciprocal vector 1
-        w_1_t = prs_platform_joint_offset_x*s_2/v_2_t
-        _r0_x = -c_2 - s_2*w_1_t
-        _r0_y = c_2*w_1_t - s_2
-        w_1_in_base_x = (
-        _r0_x*(prs_base_frame_xy*s_2 - c_2*prs_base_frame_xx) + _r0_y*(-c_2*prs_base_frame_xy -
-            prs_base_frame_xx*s_2)
+        prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x
+        prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y
+        prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z
+        # (prs-px_1) component along axis 1
+        prs_px_1 = (
+        prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
-        w_1_in_base_y = (
-        _r0_x*(prs_base_frame_yy*s_2 - c_2*prs_base_frame_yx) + _r0_y*(-c_2*prs_base_frame_yy -
-            prs_base_frame_yx*s_2)
+        # (prs-disc_1) discriminant of the distance equation
+        prs_disc_1_t_2 = (
+        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
-        w_1_in_base_z = (
-        _r0_x*(prs_base_frame_zy*s_2 - c_2*prs_base_frame_zx) + _r0_y*(-c_2*prs_base_frame_zy -
-            prs_base_frame_zx*s_2)
+        prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
+        prs_disc_1 = (
+        prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 - prs_disc_1_t_3
         )
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_1_x = q_in_base_y*w_1_in_base_z - q_in_base_z*w_1_in_base_y
-        H_a_1_y = q_in_base_z*w_1_in_base_x - q_in_base_x*w_1_in_base_z
-        H_a_1_z = q_in_base_x*w_1_in_base_y - q_in_base_y*w_1_in_base_x
-        # (M9) moment of the column's unit force about the platform origin
-        Hk_a_1_x = prs_base_frame_zz*q_in_base_y - prs_base_frame_yz*q_in_base_z
-        Hk_a_1_y = prs_base_frame_xz*q_in_base_z - prs_base_frame_zz*q_in_base_x
-        Hk_a_1_z = prs_base_frame_yz*q_in_base_x - prs_base_frame_xz*q_in_base_y
-        # (C2) rms distance of the platform points from their centroid
-        spread_t_2 = b_c_x - prs_platform_point_x
-        spread_t_3 = b_c_y - prs_platform_point_y
-        spread_t_4 = b_c_z - prs_platform_point_z
-        spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 + spread_t_4*spread_t_4
-        # (prs-K8) amplitude: off the manifold the nearest angle is taken
-        pivot_size = abs(rho2_2)
-        # (prs-V3) reciprocal vector 1
-        pivot_size_2 = abs(v_2_t)
-        # (prs-N29) force at the connection point that balances the leg's inertia and weight along all freedoms
-        least_pivots = least(sqrt(inv_root_2_t_2*pivot_size), inv_size*pivot_size_2)
-        reached = reached & m.every(leg, (disc_1 >= 0.0))
+        # (prs-q_1) displacement of joint 1
+        prs_q_1_t = prs_branch_1*sqrt(prs_disc_1)
+        # (prs-S) from the base point to the connection point
+        prs_S_r0_y = (
+        prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
+        )
+        # (prs-rho2_2) squared amplitude
+        prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t)
+        # (prs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_prs_root_2 = 1.0/(sqrt(prs_rho2_2))
+        prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t
+        # (prs-s_2) sine of the angle of joint 2 from its reference direction
+        prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x
+        # (prs-v_2) velocity of the connection point per rate of joint 2
+        prs_v_2_t = prs_c_2*prs_platform_joint_offset_x
+        # (prs-w_1) reciprocal vector 1
+        prs_w_1_t = prs_platform_joint_offset_x*prs_s_2/prs_v_2_t
+        prs__r0_x = -prs_c_2 - prs_s_2*prs_w_1_t
+        prs__r0_y = prs_c_2*prs_w_1_t - prs_s_2
+        prs_w_1_in_base_x = (
+        prs__r0_x*(prs_base_frame_xy*prs_s_2 - prs_base_frame_xx*prs_c_2) +
+            prs__r0_y*(-prs_base_frame_xx*prs_s_2 - prs_base_frame_xy*prs_c_2)
+        )
+        prs_w_1_in_base_y = (
+        prs__r0_x*(prs_base_frame_yy*prs_s_2 - prs_base_frame_yx*prs_c_2) +
+            prs__r0_y*(-prs_base_frame_yx*prs_s_2 - prs_base_frame_yy*prs_c_2)
+        )
+        prs_w_1_in_base_z = (
+        prs__r0_x*(prs_base_frame_zy*prs_s_2 - prs_base_frame_zx*prs_c_2) +
+            prs__r0_y*(-prs_base_frame_zx*prs_s_2 - prs_base_frame_zy*prs_c_2)
+        )
+        # (prs-H_a_1) moment of the column's unit force about the platform origin
+        prs_H_a_1_x = prs_q_in_base_y*prs_w_1_in_base_z - prs_q_in_base_z*prs_w_1_in_base_y
+        prs_H_a_1_y = prs_q_in_base_z*prs_w_1_in_base_x - prs_q_in_base_x*prs_w_1_in_base_z
+        prs_H_a_1_z = prs_q_in_base_x*prs_w_1_in_base_y - prs_q_in_base_y*prs_w_1_in_base_x
+        # (prs-Hk_a_1) moment of the column's unit force about the platform origin
+        prs_Hk_a_1_x = prs_base_frame_zz*prs_q_in_base_y - prs_base_frame_yz*prs_q_in_base_z
+        prs_Hk_a_1_y = prs_base_frame_xz*prs_q_in_base_z - prs_base_frame_zz*prs_q_in_base_x
+        prs_Hk_a_1_z = prs_base_frame_yz*prs_q_in_base_x - prs_base_frame_xz*prs_q_in_base_y
+        # (spread) rms distance of the platform points from their centroid
+        prs_spread_t = b_c_x - prs_platform_point_x
+        prs_spread_t_2 = b_c_y - prs_platform_point_y
+        prs_spread_t_3 = b_c_z - prs_platform_point_z
+        prs_spread_t_4 = (
+        prs_spread_t*prs_spread_t + prs_spread_t_2*prs_spread_t_2 + prs_spread_t_3*prs_spread_t_3
+        )
+        # (prs-root_2) amplitude: off the manifold the nearest angle is taken
+        prs_pivot_size = abs(prs_rho2_2)
+        # (prs-w_1) reciprocal vector 1
+        prs_pivot_size_2 = abs(prs_v_2_t)
+        # (prs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        prs_least_pivots = (
+        least(sqrt(inv_prs_root_2_t_2*prs_pivot_size), inv_prs_size*prs_pivot_size_2)
+        )
+        reached = reached & m.every(leg, (prs_disc_1 >= 0.0))
         clear = (
-        clear & m.every(leg, (abs(rho2_2) > _TOLERANCE * _TOLERANCE * root_2_t) & (abs(-v_2_t) >
-            _TOLERANCE * size))
+        clear & m.every(leg, (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE * prs_root_2_t) &
+            (abs(-prs_v_2_t) > _TOLERANCE * prs_size))
         )
         sums = m.added(sums, leg, (
-        spread_t_5,
+        prs_spread_t_4,
         ))
-        out_H[_H_prs[0][leg]] = w_1_in_base_x
-        out_H[_H_prs[1][leg]] = w_1_in_base_y
-        out_H[_H_prs[2][leg]] = w_1_in_base_z
-        out_H[_H_prs[3][leg]] = H_a_1_x
-        out_H[_H_prs[4][leg]] = H_a_1_y
-        out_H[_H_prs[5][leg]] = H_a_1_z
+        out_H[_H_prs[0][leg]] = prs_w_1_in_base_x
+        out_H[_H_prs[1][leg]] = prs_w_1_in_base_y
+        out_H[_H_prs[2][leg]] = prs_w_1_in_base_z
+        out_H[_H_prs[3][leg]] = prs_H_a_1_x
+        out_H[_H_prs[4][leg]] = prs_H_a_1_y
+        out_H[_H_prs[5][leg]] = prs_H_a_1_z
         out_Hk[_Hk_prs[0][leg]] = prs_base_frame_xz
         out_Hk[_Hk_prs[1][leg]] = prs_base_frame_yz
         out_Hk[_Hk_prs[2][leg]] = prs_base_frame_zz
-        out_Hk[_Hk_prs[3][leg]] = Hk_a_1_x
-        out_Hk[_Hk_prs[4][leg]] = Hk_a_1_y
-        out_Hk[_Hk_prs[5][leg]] = Hk_a_1_z
-        out_pivots[_pivots_prs[0][leg]] = least_pivots
-        out_reach[_reach_prs[0][leg]] = disc_1
+        out_Hk[_Hk_prs[3][leg]] = prs_Hk_a_1_x
+        out_Hk[_Hk_prs[4][leg]] = prs_Hk_a_1_y
+        out_Hk[_Hk_prs[5][leg]] = prs_Hk_a_1_z
+        out_pivots[_pivots_prs[0][leg]] = prs_least_pivots
+        out_reach[_reach_prs[0][leg]] = prs_disc_1
     total_prs, = sums
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(total_prs)
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_Hk, out_lengths, out_pivots, out_reach,)
@@ -3706,6 +3929,19 @@ def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
     momentum = np.einsum("ijs,js->is", M, V)
     return (momentum,)
+
+
+def _steps_joint_margins(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    margins = _unlimited(q, [0, 1, 2, 3, 4, 5])
+    return (margins,)
+
+
+def _steps_within_limits(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    subtract_1 = q - q
+    within = _not_negative(subtract_1)
+    return (within,)
 
 
 def _steps_actuator_positions(m, X):
@@ -4236,6 +4472,40 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+    )
+
+
+def joint_margins(X, p=None):
+    """How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+    where there is none.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        margins: distances, in the order of q [m or rad] (..., NJ).
+    """
+    return _call(
+        "joint_margins", _steps_joint_margins, p,
+        ("X", X, (NQ,)),
+        unbounded=True,
+    )
+
+
+def within_limits(X, p=None):
+    """Whether all joints are within their limits of displacement.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        within: 1 where no margin is negative, else 0; NaN is neither (...,).
+    """
+    return _call(
+        "within_limits", _steps_within_limits, p,
+        ("X", X, (NQ,)),
     )
 
 

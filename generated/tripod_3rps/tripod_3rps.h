@@ -51,6 +51,7 @@ typedef TRIPOD_3RPS_REAL tripod_3rps_real;
 #define TRIPOD_3RPS_NC 3
 #define TRIPOD_3RPS_NW 6
 #define TRIPOD_3RPS_NJ 6
+#define TRIPOD_3RPS_OVERCONSTRAINED 0
 
 enum {
     TRIPOD_3RPS_OK = 0,
@@ -93,17 +94,17 @@ typedef struct {
 /* What depends on the parameters alone; set by tripod_3rps_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
+    /* 3 legs of type rps; copies of the first fill up */
+    tripod_3rps_real rps_J_group_1_zz[4], rps_b_r0_x[4], rps_b_r0_y[4], rps_base_frame_xx[4],
+            rps_base_frame_xy[4], rps_base_frame_xz[4], rps_base_frame_yx[4], rps_base_frame_yy[4],
+            rps_base_frame_yz[4], rps_base_frame_zx[4], rps_base_frame_zy[4], rps_base_frame_zz[4],
+            rps_base_point_x[4], rps_base_point_y[4], rps_base_point_z[4], rps_branch_1[4],
+            rps_g_r0_x[4], rps_g_r0_y[4], rps_h_1_x[4], rps_h_1_y[4], rps_h_2_x[4], rps_h_2_y[4],
+            rps_link1_mass[4], rps_link2_mass[4], rps_platform_point_x[4], rps_platform_point_y[4],
+            rps_platform_point_z[4], rps_potential_t[4];
     tripod_3rps_real J_star_t_6, J_star_t_8, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
             J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
             h_star_x, h_star_y, h_star_z, legs_size, platform_mass, spread_t;
-    /* legs of type rps */
-    tripod_3rps_real J_group_1_zz[3], b_r0_x[3], b_r0_y[3], branch_1[3], g_r0_x[3], g_r0_y[3],
-            h_1_x[3], h_1_y[3], h_2_x[3], h_2_y[3], potential_t[3], rps_base_frame_xx[3],
-            rps_base_frame_xy[3], rps_base_frame_xz[3], rps_base_frame_yx[3], rps_base_frame_yy[3],
-            rps_base_frame_yz[3], rps_base_frame_zx[3], rps_base_frame_zy[3], rps_base_frame_zz[3],
-            rps_base_point_x[3], rps_base_point_y[3], rps_base_point_z[3], rps_link1_mass[3],
-            rps_link2_mass[3], rps_platform_point_x[3], rps_platform_point_y[3],
-            rps_platform_point_z[3];
 } tripod_3rps_model;
 
 extern const tripod_3rps_params tripod_3rps_default_params;
@@ -284,6 +285,20 @@ int tripod_3rps_momentum(const tripod_3rps_model *model, const tripod_3rps_real 
     tripod_3rps_real *V, tripod_3rps_real *momentum);
 size_t tripod_3rps_momentum_batch(const tripod_3rps_model *model, size_t n, const tripod_3rps_real
     *X, const tripod_3rps_real *V, tripod_3rps_real *momentum, int *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 60 mul, 51 add, 3 div, 3 sqrt, 3 trig. In: X (NQ). Out: margins (NJ). */
+int tripod_3rps_joint_margins(const tripod_3rps_model *model, const tripod_3rps_real *X,
+    tripod_3rps_real *margins);
+size_t tripod_3rps_joint_margins_batch(const tripod_3rps_model *model, size_t n, const
+    tripod_3rps_real *X, tripod_3rps_real *margins, int *status);
+
+/* Whether all joints are within their limits of displacement. 60 mul, 51 add, 3 div, 3 sqrt, 3
+   trig. In: X (NQ). Out: within (1). */
+int tripod_3rps_within_limits(const tripod_3rps_model *model, const tripod_3rps_real *X,
+    tripod_3rps_real *within);
+size_t tripod_3rps_within_limits_batch(const tripod_3rps_model *model, size_t n, const
+    tripod_3rps_real *X, tripod_3rps_real *within, int *status);
 
 /* Displacements of the actuated joints, in the order of tau. 60 mul, 51 add, 3 div, 3 sqrt, 3
    trig. In: X (NQ). Out: q (NU). */

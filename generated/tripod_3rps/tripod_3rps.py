@@ -33,6 +33,7 @@ __all__ = [
     "NC",
     "NW",
     "NJ",
+    "OVERCONSTRAINED",
     "ACTUATED",
     "ACTUATOR_NAMES",
     "H",
@@ -61,6 +62,7 @@ __all__ = [
     "inverse_dynamics",
     "inverse_kinematics",
     "joint_accelerations",
+    "joint_margins",
     "joint_rates",
     "leg_reactions",
     "momentum",
@@ -71,6 +73,7 @@ __all__ = [
     "project",
     "retract",
     "rotation",
+    "within_limits",
 ]
 
 NQ = 7
@@ -79,6 +82,7 @@ NU = 3
 NC = 3
 NW = 6
 NJ = 6
+OVERCONSTRAINED = 0
 
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
@@ -347,7 +351,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return np.full(shape, default)
+        return _filled(shape, default) if isinstance(default, float) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -360,6 +364,16 @@ def _argument(function, name, value, shape, default=None, rule=""):
     elif rule == "positive" and not np.all((array > 0.0) & (array < np.inf)):
         raise ValueError(f"{function}: {name} must be positive and finite")
     return array
+
+
+_FILLED = {}
+
+
+def _filled(shape, value):
+    """An array of one value, made once."""
+    if (shape, value) not in _FILLED:
+        _FILLED[shape, value] = _frozen(np.full(shape, value))
+    return _FILLED[shape, value]
 
 
 def _lead(leads):
@@ -453,7 +467,7 @@ HOME_X = _frozen(np.array([0.0, 0.0, 0.75, 0.0, 0.0, 0.0, 1.0]))
 HOME_Q = _frozen(np.array([0.2, 0.75, 0.2, 0.75, 0.2, 0.75]))
 
 _BRANCHES = {  # assembly branch of home, a sign per leg
-    "branch_1": np.array([1.0, 1.0, 1.0]),
+    "rps_branch_1": np.array([1.0, 1.0, 1.0]),
 }
 
 
@@ -499,12 +513,12 @@ def _prepare(p):
     rps_link2_centre_of_mass_y = p.rps_link2_centre_of_mass[:, 1]
     rps_link2_centre_of_mass_z = p.rps_link2_centre_of_mass[:, 2]
     rps_link2_inertia_zz = p.rps_link2_inertia[:, 2, 2]
-    branch_1 = _BRANCHES["branch_1"]
-    # (L2) first moment about the platform origin
+    rps_branch_1 = _BRANCHES["rps_branch_1"]
+    # (h_star) first moment about the platform origin
     h_star_x = platform_centre_of_mass_x*platform_mass
     h_star_y = platform_centre_of_mass_y*platform_mass
     h_star_z = platform_centre_of_mass_z*platform_mass
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_t = platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_2 = platform_centre_of_mass_y*platform_centre_of_mass_y
     J_star_t_3 = platform_centre_of_mass_z*platform_centre_of_mass_z
@@ -525,66 +539,66 @@ def _prepare(p):
     J_star_t_6 = 0.5*J_star_t_5
     J_star_t_7 = J_star_xx - J_star_zz
     J_star_t_8 = 0.5*J_star_t_7
-    # (M4) centripetal force and weight of the platform
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*platform_mass
     Z_p_t_2 = gravity_y*platform_mass
     Z_p_t_3 = gravity_z*platform_mass
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread_t = 0.3333333333333333*sqrt(3.0)
-    # (C3) rms size of the legs, taken where the platform points coincide
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     legs_size = 1.299038105676658*spread_t
-    # (rps-G4) first moment of link 2 about the origin of link 2
-    h_2_x = rps_link2_centre_of_mass_x*rps_link2_mass
-    h_2_y = rps_link2_centre_of_mass_y*rps_link2_mass
-    # (rps-G3) inertia tensor of link 1 about the origin of link 1
-    J_1_t = rps_link1_centre_of_mass_z*rps_link1_centre_of_mass_z
-    J_1_t_2 = (
-    J_1_t + rps_link1_centre_of_mass_x*rps_link1_centre_of_mass_x +
+    # (rps-h_2) first moment of link 2 about the origin of link 2
+    rps_h_2_x = rps_link2_centre_of_mass_x*rps_link2_mass
+    rps_h_2_y = rps_link2_centre_of_mass_y*rps_link2_mass
+    # (rps-J_1) inertia tensor of link 1 about the origin of link 1
+    rps_J_1_t = rps_link1_centre_of_mass_z*rps_link1_centre_of_mass_z
+    rps_J_1_t_2 = (
+    rps_J_1_t + rps_link1_centre_of_mass_x*rps_link1_centre_of_mass_x +
         rps_link1_centre_of_mass_y*rps_link1_centre_of_mass_y
     )
-    # (rps-G5) inertia tensor of link 2 about the origin of link 2
-    J_2_t = rps_link2_centre_of_mass_z*rps_link2_centre_of_mass_z
-    J_2_t_2 = (
-    J_2_t + rps_link2_centre_of_mass_x*rps_link2_centre_of_mass_x +
+    # (rps-J_2) inertia tensor of link 2 about the origin of link 2
+    rps_J_2_t = rps_link2_centre_of_mass_z*rps_link2_centre_of_mass_z
+    rps_J_2_t_2 = (
+    rps_J_2_t + rps_link2_centre_of_mass_x*rps_link2_centre_of_mass_x +
         rps_link2_centre_of_mass_y*rps_link2_centre_of_mass_y
     )
-    # (rps-N12) inertia of the links that turn with link 1, each about its reference point
-    J_group_1_zz = (
-    rps_link1_inertia_zz + rps_link2_inertia_zz - rps_link1_mass*(J_1_t - J_1_t_2) -
-        rps_link2_mass*(J_2_t - J_2_t_2)
+    # (rps-J_group_1) inertia of the links that turn with link 1, each about its reference point
+    rps_J_group_1_zz = (
+    rps_link1_inertia_zz + rps_link2_inertia_zz - rps_link1_mass*(rps_J_1_t - rps_J_1_t_2) -
+        rps_link2_mass*(rps_J_2_t - rps_J_2_t_2)
     )
-    # (rps-N5) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-    g_r0_x = (
+    # (rps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+    rps_g_r0_x = (
     gravity_x*rps_base_frame_xx + gravity_y*rps_base_frame_yx + gravity_z*rps_base_frame_zx
     )
-    g_r0_y = (
+    rps_g_r0_y = (
     gravity_x*rps_base_frame_xy + gravity_y*rps_base_frame_yy + gravity_z*rps_base_frame_zy
     )
-    # (rps-G2) first moment of link 1 about the origin of link 1
-    h_1_x = rps_link1_centre_of_mass_x*rps_link1_mass
-    h_1_y = rps_link1_centre_of_mass_y*rps_link1_mass
-    # (V1) potential energy
-    b_r0_x = (
+    # (rps-h_1) first moment of link 1 about the origin of link 1
+    rps_h_1_x = rps_link1_centre_of_mass_x*rps_link1_mass
+    rps_h_1_y = rps_link1_centre_of_mass_y*rps_link1_mass
+    # (potential) potential energy
+    rps_b_r0_x = (
     rps_base_frame_xx*rps_base_point_x + rps_base_frame_yx*rps_base_point_y +
         rps_base_frame_zx*rps_base_point_z
     )
-    b_r0_y = (
+    rps_b_r0_y = (
     rps_base_frame_xy*rps_base_point_x + rps_base_frame_yy*rps_base_point_y +
         rps_base_frame_zy*rps_base_point_z
     )
-    b_r0_z = (
+    rps_b_r0_z = (
     rps_base_frame_xz*rps_base_point_x + rps_base_frame_yz*rps_base_point_y +
         rps_base_frame_zz*rps_base_point_z
     )
-    potential_t = (
+    rps_potential_t = (
     (gravity_x*rps_base_frame_xz + gravity_y*rps_base_frame_yz +
-        gravity_z*rps_base_frame_zz)*(b_r0_z*rps_link1_mass + b_r0_z*rps_link2_mass +
+        gravity_z*rps_base_frame_zz)*(rps_b_r0_z*rps_link1_mass + rps_b_r0_z*rps_link2_mass +
         rps_link1_centre_of_mass_z*rps_link1_mass + rps_link2_centre_of_mass_z*rps_link2_mass)
     )
     total_rps_x = np.sum(np.broadcast_to(rps_platform_point_x, _rps))
     total_rps_y = np.sum(np.broadcast_to(rps_platform_point_y, _rps))
     total_rps_z = np.sum(np.broadcast_to(rps_platform_point_z, _rps))
-    # (C1) centroid of the platform points
+    # (b_c) centroid of the platform points
     b_c_x = 0.3333333333333333*total_rps_x
     b_c_y = 0.3333333333333333*total_rps_y
     b_c_z = 0.3333333333333333*total_rps_z
@@ -595,11 +609,12 @@ def _prepare(p):
                 h_star_z, platform_mass,),
             (
                 (_rps,
-        (J_group_1_zz, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rps_base_frame_xx,
-                    rps_base_frame_xy, rps_base_frame_xz, rps_base_frame_yx, rps_base_frame_yy,
-                    rps_base_frame_yz, rps_base_frame_zx, rps_base_frame_zy, rps_base_frame_zz,
-                    rps_base_point_x, rps_base_point_y, rps_base_point_z, rps_link2_mass,
-                    rps_platform_point_x, rps_platform_point_y, rps_platform_point_z,),
+        (rps_J_group_1_zz, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_xz,
+                    rps_base_frame_yx, rps_base_frame_yy, rps_base_frame_yz, rps_base_frame_zx,
+                    rps_base_frame_zy, rps_base_frame_zz, rps_base_point_x, rps_base_point_y,
+                    rps_base_point_z, rps_branch_1, rps_g_r0_x, rps_g_r0_y, rps_h_1_x, rps_h_1_y,
+                    rps_h_2_x, rps_h_2_y, rps_link2_mass, rps_platform_point_x,
+                    rps_platform_point_y, rps_platform_point_z,),
                 ),
             ),
         ),
@@ -608,10 +623,11 @@ def _prepare(p):
                 h_star_z, platform_mass,),
             (
                 (_rps,
-        (J_group_1_zz, branch_1, h_2_x, h_2_y, rps_base_frame_xx, rps_base_frame_xy,
-                    rps_base_frame_yx, rps_base_frame_yy, rps_base_frame_zx, rps_base_frame_zy,
-                    rps_base_point_x, rps_base_point_y, rps_base_point_z, rps_link2_mass,
-                    rps_platform_point_x, rps_platform_point_y, rps_platform_point_z,),
+        (rps_J_group_1_zz, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx,
+                    rps_base_frame_yy, rps_base_frame_zx, rps_base_frame_zy, rps_base_point_x,
+                    rps_base_point_y, rps_base_point_z, rps_branch_1, rps_h_2_x, rps_h_2_y,
+                    rps_link2_mass, rps_platform_point_x, rps_platform_point_y,
+                    rps_platform_point_z,),
                 ),
             ),
         ),
@@ -620,11 +636,11 @@ def _prepare(p):
                 Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
             (
                 (_rps,
-        (J_group_1_zz, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rps_base_frame_xx,
-                    rps_base_frame_xy, rps_base_frame_yx, rps_base_frame_yy, rps_base_frame_zx,
-                    rps_base_frame_zy, rps_base_point_x, rps_base_point_y, rps_base_point_z,
-                    rps_link2_mass, rps_platform_point_x, rps_platform_point_y,
-                    rps_platform_point_z,),
+        (rps_J_group_1_zz, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx,
+                    rps_base_frame_yy, rps_base_frame_zx, rps_base_frame_zy, rps_base_point_x,
+                    rps_base_point_y, rps_base_point_z, rps_branch_1, rps_g_r0_x, rps_g_r0_y,
+                    rps_h_1_x, rps_h_1_y, rps_h_2_x, rps_h_2_y, rps_link2_mass,
+                    rps_platform_point_x, rps_platform_point_y, rps_platform_point_z,),
                 ),
             ),
         ),
@@ -632,9 +648,9 @@ def _prepare(p):
         (),
             (
                 (_rps,
-        (branch_1, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx, rps_base_frame_yy,
+        (rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx, rps_base_frame_yy,
                     rps_base_frame_zx, rps_base_frame_zy, rps_base_point_x, rps_base_point_y,
-                    rps_base_point_z, rps_platform_point_x, rps_platform_point_y,
+                    rps_base_point_z, rps_branch_1, rps_platform_point_x, rps_platform_point_y,
                     rps_platform_point_z,),
                 ),
             ),
@@ -662,11 +678,12 @@ def _prepare(p):
                 gravity_z, h_star_x, h_star_y, h_star_z, platform_mass,),
             (
                 (_rps,
-        (J_group_1_zz, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rps_base_frame_xx,
-                    rps_base_frame_xy, rps_base_frame_xz, rps_base_frame_yx, rps_base_frame_yy,
-                    rps_base_frame_yz, rps_base_frame_zx, rps_base_frame_zy, rps_base_frame_zz,
-                    rps_base_point_x, rps_base_point_y, rps_base_point_z, rps_link2_mass,
-                    rps_platform_point_x, rps_platform_point_y, rps_platform_point_z,),
+        (rps_J_group_1_zz, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_xz,
+                    rps_base_frame_yx, rps_base_frame_yy, rps_base_frame_yz, rps_base_frame_zx,
+                    rps_base_frame_zy, rps_base_frame_zz, rps_base_point_x, rps_base_point_y,
+                    rps_base_point_z, rps_branch_1, rps_g_r0_x, rps_g_r0_y, rps_h_1_x, rps_h_1_y,
+                    rps_h_2_x, rps_h_2_y, rps_link2_mass, rps_platform_point_x,
+                    rps_platform_point_y, rps_platform_point_z,),
                 ),
             ),
         ),
@@ -674,9 +691,9 @@ def _prepare(p):
         (),
             (
                 (_rps,
-        (branch_1, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx, rps_base_frame_yy,
+        (rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx, rps_base_frame_yy,
                     rps_base_frame_zx, rps_base_frame_zy, rps_base_point_x, rps_base_point_y,
-                    rps_base_point_z, rps_platform_point_x, rps_platform_point_y,
+                    rps_base_point_z, rps_branch_1, rps_platform_point_x, rps_platform_point_y,
                     rps_platform_point_z,),
                 ),
             ),
@@ -685,9 +702,9 @@ def _prepare(p):
         (),
             (
                 (_rps,
-        (branch_1, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx, rps_base_frame_yy,
+        (rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx, rps_base_frame_yy,
                     rps_base_frame_zx, rps_base_frame_zy, rps_base_point_x, rps_base_point_y,
-                    rps_base_point_z, rps_platform_point_x, rps_platform_point_y,
+                    rps_base_point_z, rps_branch_1, rps_platform_point_x, rps_platform_point_y,
                     rps_platform_point_z,),
                 ),
             ),
@@ -696,9 +713,9 @@ def _prepare(p):
         (),
             (
                 (_rps,
-        (branch_1, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx, rps_base_frame_yy,
+        (rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx, rps_base_frame_yy,
                     rps_base_frame_zx, rps_base_frame_zy, rps_base_point_x, rps_base_point_y,
-                    rps_base_point_z, rps_platform_point_x, rps_platform_point_y,
+                    rps_base_point_z, rps_branch_1, rps_platform_point_x, rps_platform_point_y,
                     rps_platform_point_z,),
                 ),
             ),
@@ -717,11 +734,12 @@ def _prepare(p):
         (),
             (
                 (_rps,
-        (J_group_1_zz, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rps_base_frame_xx,
-                    rps_base_frame_xy, rps_base_frame_xz, rps_base_frame_yx, rps_base_frame_yy,
-                    rps_base_frame_yz, rps_base_frame_zx, rps_base_frame_zy, rps_base_frame_zz,
-                    rps_base_point_x, rps_base_point_y, rps_base_point_z, rps_link2_mass,
-                    rps_platform_point_x, rps_platform_point_y, rps_platform_point_z,),
+        (rps_J_group_1_zz, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_xz,
+                    rps_base_frame_yx, rps_base_frame_yy, rps_base_frame_yz, rps_base_frame_zx,
+                    rps_base_frame_zy, rps_base_frame_zz, rps_base_point_x, rps_base_point_y,
+                    rps_base_point_z, rps_branch_1, rps_g_r0_x, rps_g_r0_y, rps_h_1_x, rps_h_1_y,
+                    rps_h_2_x, rps_h_2_y, rps_link2_mass, rps_platform_point_x,
+                    rps_platform_point_y, rps_platform_point_z,),
                 ),
             ),
         ),
@@ -729,11 +747,12 @@ def _prepare(p):
         (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, platform_mass,),
             (
                 (_rps,
-        (b_r0_x, b_r0_y, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, potential_t,
-                    rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx, rps_base_frame_yy,
-                    rps_base_frame_zx, rps_base_frame_zy, rps_base_point_x, rps_base_point_y,
-                    rps_base_point_z, rps_link1_mass, rps_link2_mass, rps_platform_point_x,
-                    rps_platform_point_y, rps_platform_point_z,),
+        (rps_b_r0_x, rps_b_r0_y, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx,
+                    rps_base_frame_yy, rps_base_frame_zx, rps_base_frame_zy, rps_base_point_x,
+                    rps_base_point_y, rps_base_point_z, rps_branch_1, rps_g_r0_x, rps_g_r0_y,
+                    rps_h_1_x, rps_h_1_y, rps_h_2_x, rps_h_2_y, rps_link1_mass, rps_link2_mass,
+                    rps_platform_point_x, rps_platform_point_y, rps_platform_point_z,
+                    rps_potential_t,),
                 ),
             ),
         ),
@@ -741,17 +760,19 @@ def _prepare(p):
         (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
             (
                 (_rps,
-        (branch_1, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_xz, rps_base_frame_yx,
+        (rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_xz, rps_base_frame_yx,
                     rps_base_frame_yy, rps_base_frame_yz, rps_base_frame_zx, rps_base_frame_zy,
                     rps_base_frame_zz, rps_base_point_x, rps_base_point_y, rps_base_point_z,
-                    rps_platform_point_x, rps_platform_point_y, rps_platform_point_z,),
+                    rps_branch_1, rps_platform_point_x, rps_platform_point_y,
+                    rps_platform_point_z,),
                 ),
             ),
         ),
     }
 
 
-_FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
+_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
@@ -797,17 +818,19 @@ class _Floats:
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
-        for k in range(self.states):
-            try:
-                ok, arrays = function(self, *(row[k] for row in rows))
-            except (ZeroDivisionError, OverflowError):
-                continue
-            if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
-                for a, array in zip(found, arrays):
-                    a[k] = array
-        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
+        found = [self.state(function, names, [row[k] for row in rows]) for k in range(self.states)]
+        return [np.array(a).T.reshape(*_SHAPES[n], self.states) for a, n in zip(zip(*found), names)]
+
+    def state(self, function, names, given):
+        """Lists that a function gives at a state."""
+        try:
+            ok, arrays = function(self, *given)
+        except (ZeroDivisionError, OverflowError):
+            ok = False
+        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+            return arrays
+        return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
 
 
 class _Arrays:
@@ -875,35 +898,44 @@ def _mode(p, states):
     return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
 
 
-def _call(function, steps, p, *arguments, mode=_mode):
-    """What the steps give at arguments (name, value, shape of a state, default, rule)."""
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+    """What the steps give at arguments (name, value, shape of a state, default, rule).
+
+    Where that may be infinite only NaN makes a state impossible.
+    """
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
     lead, p = _lead(leads), _given(p)
     read = [a[4:] != ("unused",) for a in arguments]
     if lead or mode is _Judged:
-        results = _many(steps, p, lead, given, shapes, read, mode)
+        results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
-        results = _one(steps, p, given, shapes, read)
+        results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
 
 
-def _one(steps, p, given, shapes, read):
+def _one(steps, p, given, shapes, read, unbounded):
     """Results at a single state."""
     states = [v.reshape(*shape, 1) for v, shape in zip(given, shapes)]
     with np.errstate(all="ignore"):
-        results = [a[..., 0] for a in steps(_Floats(p, 1), *states)]
-    if all(all(map(math.isfinite, v.ravel().tolist())) for v in (*compress(given, read), *results)):
-        return [np.array(a)[()] for a in results]
+        results = [a[..., 0].copy() for a in steps(_Floats(p, 1), *states)]
+    looked_at = [np.minimum(a, 0.0) for a in results] if unbounded else results
+    entries = (v.ravel().tolist() for v in (*compress(given, read), *looked_at))
+    if all(all(map(math.isfinite, row)) for row in entries):
+        return [a[()] for a in results]
     return [np.full(a.shape, np.nan)[()] for a in results]
 
 
-def _many(steps, p, lead, given, shapes, read, mode):
+def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block."""
     count = math.prod(lead)
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
+    if count > _BLOCK:
+        # Never touched, freed at once: the C library, which learns from it, then keeps the memory
+        # of intermediate arrays from block to block instead of giving its pages back.
+        np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
         for first in range(0, max(count, 1), _BLOCK):
             block = slice(first, min(first + _BLOCK, count))
@@ -915,7 +947,7 @@ def _many(steps, p, lead, given, shapes, read, mode):
             _all_finite(compress(states, read), good)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite(found, good)
+            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -944,6 +976,18 @@ def _with_forces(a, amounts, directions, legs):
     for k, leg in enumerate(legs):
         result[leg] += amounts[k] * directions[k]
     return result
+
+
+def _unlimited(a, places):
+    """a, some entries infinite; what is not known stays so."""
+    result = np.array(a)
+    result[places] += np.inf
+    return result
+
+
+def _not_negative(a):
+    """1 where no entry is negative, else 0; NaN where one is not finite."""
+    return np.where(np.isfinite(a).all(axis=0), np.all(a >= 0.0, axis=0), np.nan)
 
 
 def _rows_divided(a, b, places):
@@ -1046,8 +1090,8 @@ def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
     n, states = b.shape
     if 0 < states <= _FEW:
-        matrices, rights = np.moveaxis(a, -1, 0).tolist(), b.T.tolist()
-        return np.array([_solve_one(*each) for each in zip(matrices, rights)]).T.reshape(n, states)
+        systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
+        return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
     good = np.all((size > 0.0) & np.isfinite(size), axis=0)
     rows = np.concatenate((a, b[:, None]), axis=1)
@@ -1074,28 +1118,32 @@ def _solve(a, b):
 
 
 def _solve_one(a, b):
-    """The same for one system of nested lists."""
-    n = len(b)
-    failure = [np.nan] * n
-    for i, row in enumerate(a):
-        size = max(map(abs, row), default=0.0)
-        if not 0.0 < size < np.inf:
-            return failure
-        a[i] = [v / size for v in row] + [b[i] / size]
-    for k in range(n):
-        best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
-            a[k], a[best] = a[best], a[k]
-        if not abs(a[k][k]) > _PIVOT:
-            return failure
-        head = a[k]
-        for i in range(k + 1, n):
-            factor = a[i][k] / head[k]
-            a[i] = [v - factor * h for v, h in zip(a[i], head)]
-    x = [0.0] * n
-    for k in reversed(range(n)):
-        x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
-    return x if all(map(math.isfinite, x)) else failure
+    """The same for one system of nested lists: the rows left lose an entry at every step."""
+    rows, heads = [], []
+    for row, right in zip(a, b):
+        size = max(map(abs, row))
+        if not 0.0 < size < math.inf:
+            return [math.nan] * len(b)
+        rows.append([v / size for v in (*row, right)])
+    while rows:
+        column = [abs(row[0]) for row in rows]
+        largest = max(column)
+        if largest > _CLEARLY * column[0]:
+            best = column.index(largest)
+            rows[0], rows[best] = rows[best], rows[0]
+        pivot, *head = rows[0]
+        if not abs(pivot) > _PIVOT:
+            return [math.nan] * len(b)
+        heads.append((pivot, head))
+        for i in range(1, len(rows)):
+            first, *row = rows[i]
+            factor = first / pivot
+            rows[i] = [v - factor * h for v, h in zip(row, head)]
+        del rows[0]
+    x = []
+    for pivot, (*head, right) in reversed(heads):
+        x.insert(0, (right - sum([h * v for h, v in zip(head, x)])) / pivot)
+    return x if all(map(math.isfinite, x)) else [math.nan] * len(b)
 
 
 def _saddle(a, b):
@@ -1277,11 +1325,11 @@ def _run_dynamics(m, X, V):
     out_H = m.zeros("H")
     out_Hk = m.zeros("Hk")
     out_constraint_bias = m.zeros("constraint_bias")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_6*R_xy
     J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_6*R_yy
     J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_6*R_zy
@@ -1297,214 +1345,247 @@ def _run_dynamics(m, X, V):
     J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_7*R_yz
     J_star_t_16 = J_star_t_3*R_zy - J_star_t_7*R_zz
     J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
-    # (M4) centripetal force and weight of the platform
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
     Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
     Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x_2*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y - g_r0_y_2*h_star_x
+    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
+    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
     sums = [0.0] * 27
     for leg, k in legs[0]:
         (
-        J_group_1_zz, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rps_base_frame_xx,
-            rps_base_frame_xy, rps_base_frame_xz, rps_base_frame_yx, rps_base_frame_yy,
-            rps_base_frame_yz, rps_base_frame_zx, rps_base_frame_zy, rps_base_frame_zz,
-            rps_base_point_x, rps_base_point_y, rps_base_point_z, rps_link2_mass,
-            rps_platform_point_x, rps_platform_point_y, rps_platform_point_z,
+        rps_J_group_1_zz, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_xz,
+            rps_base_frame_yx, rps_base_frame_yy, rps_base_frame_yz, rps_base_frame_zx,
+            rps_base_frame_zy, rps_base_frame_zz, rps_base_point_x, rps_base_point_y,
+            rps_base_point_z, rps_branch_1, rps_g_r0_x, rps_g_r0_y, rps_h_1_x, rps_h_1_y,
+            rps_h_2_x, rps_h_2_y, rps_link2_mass, rps_platform_point_x, rps_platform_point_y,
+            rps_platform_point_z,
         ) = k
-        # (rps-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (rps-S) from the base point to the connection point
+        rps_q_in_base_x = (
         R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z
         )
-        q_in_base_y = (
+        rps_q_in_base_y = (
         R_yx*rps_platform_point_x + R_yy*rps_platform_point_y + R_yz*rps_platform_point_z
         )
-        q_in_base_z = (
+        rps_q_in_base_z = (
         R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rps_base_point_x
-        S_y = q_in_base_y + t_y - rps_base_point_y
-        S_z = q_in_base_z + t_z - rps_base_point_z
-        # (rps-K2) component along the reference direction
-        px_1 = S_x*rps_base_frame_xx + S_y*rps_base_frame_yx + S_z*rps_base_frame_zx
-        # (rps-K3) component across the reference direction
-        py_1 = S_x*rps_base_frame_xy + S_y*rps_base_frame_yy + S_z*rps_base_frame_zy
-        # (rps-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rps-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rps-K7) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*px_1
-        # (rps-K8) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*py_1
-        # (rps-V4) reciprocal vector 1
-        axis_y_rps_axes1_in_base_x = c_1*rps_base_frame_xy - rps_base_frame_xx*s_1
-        axis_y_rps_axes1_in_base_y = c_1*rps_base_frame_yy - rps_base_frame_yx*s_1
-        axis_y_rps_axes1_in_base_z = c_1*rps_base_frame_zy - rps_base_frame_zx*s_1
-        axis_x_rps_axes1_in_base_x = c_1*rps_base_frame_xx + rps_base_frame_xy*s_1
-        axis_x_rps_axes1_in_base_y = c_1*rps_base_frame_yx + rps_base_frame_yy*s_1
-        axis_x_rps_axes1_in_base_z = c_1*rps_base_frame_zx + rps_base_frame_zy*s_1
-        # (rps-N7) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
-        d_phi_2_t = h_2_y*inv_root_1
-        # (rps-N28) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_t = (
-        inv_root_1*(h_2_x + J_group_1_zz*inv_root_1 + root_1*(rps_link2_mass + h_2_x*inv_root_1))
+        rps_S_x = rps_q_in_base_x + t_x - rps_base_point_x
+        rps_S_y = rps_q_in_base_y + t_y - rps_base_point_y
+        rps_S_z = rps_q_in_base_z + t_z - rps_base_point_z
+        # (rps-py_1) component across the reference direction
+        rps_py_1 = (
+        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
         )
-        # (rps-N31) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_in_base_x = (
-        axis_y_rps_axes1_in_base_x*d_phi_2_t - axis_x_rps_axes1_in_base_x*rps_link2_mass
+        # (rps-px_1) component along the reference direction
+        rps_px_1 = (
+        rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
         )
-        d_c_in_base_y = (
-        axis_y_rps_axes1_in_base_y*d_phi_2_t - axis_x_rps_axes1_in_base_y*rps_link2_mass
+        # (rps-rho2_1) squared amplitude
+        rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
+        # (rps-root_1) amplitude, with the sign of the branch
+        rps_root_1 = rps_branch_1*sqrt(rps_rho2_1)
+        # (rps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rps_root_1 = 1.0/rps_root_1
+        rps_c_1 = inv_rps_root_1*rps_px_1
+        # (rps-s_1) sine of the angle of joint 1 from its reference direction
+        rps_s_1 = inv_rps_root_1*rps_py_1
+        # (rps-w_1) reciprocal vector 1
+        axis_y_rps_axes1_in_base_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1
+        axis_y_rps_axes1_in_base_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1
+        axis_y_rps_axes1_in_base_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1
+        axis_x_rps_axes1_in_base_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
+        axis_x_rps_axes1_in_base_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
+        axis_x_rps_axes1_in_base_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
+        # (rps-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
+        rps_d_phi_2_t = inv_rps_root_1*rps_h_2_y
+        # (rps-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rps_d_G_t = (
+        inv_rps_root_1*(rps_h_2_x + inv_rps_root_1*rps_J_group_1_zz + rps_root_1*(rps_link2_mass +
+            inv_rps_root_1*rps_h_2_x))
         )
-        d_c_in_base_x_2 = axis_x_rps_axes1_in_base_x*d_phi_2_t - axis_y_rps_axes1_in_base_x*d_G_t
-        d_c_in_base_y_2 = axis_x_rps_axes1_in_base_y*d_phi_2_t - axis_y_rps_axes1_in_base_y*d_G_t
-        d_c_in_base_x_3 = (
-        axis_x_rps_axes1_in_base_x*d_c_in_base_x + axis_y_rps_axes1_in_base_x*d_c_in_base_x_2
+        # (rps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rps_d_c_in_base_x = (
+        axis_y_rps_axes1_in_base_x*rps_d_phi_2_t - axis_x_rps_axes1_in_base_x*rps_link2_mass
         )
-        d_c_in_base_y_3 = (
-        axis_x_rps_axes1_in_base_y*d_c_in_base_x + axis_y_rps_axes1_in_base_y*d_c_in_base_x_2
+        rps_d_c_in_base_y = (
+        axis_y_rps_axes1_in_base_y*rps_d_phi_2_t - axis_x_rps_axes1_in_base_y*rps_link2_mass
         )
-        d_c_in_base_z = (
-        axis_x_rps_axes1_in_base_z*d_c_in_base_x + axis_y_rps_axes1_in_base_z*d_c_in_base_x_2
+        rps_d_c_in_base_x_2 = (
+        axis_x_rps_axes1_in_base_x*rps_d_phi_2_t - axis_y_rps_axes1_in_base_x*rps_d_G_t
         )
-        d_c_in_base_y_4 = (
-        axis_x_rps_axes1_in_base_y*d_c_in_base_y + axis_y_rps_axes1_in_base_y*d_c_in_base_y_2
+        rps_d_c_in_base_y_2 = (
+        axis_x_rps_axes1_in_base_y*rps_d_phi_2_t - axis_y_rps_axes1_in_base_y*rps_d_G_t
         )
-        d_c_in_base_z_2 = (
-        axis_x_rps_axes1_in_base_z*d_c_in_base_y + axis_y_rps_axes1_in_base_z*d_c_in_base_y_2
+        rps_d_c_in_base_x_3 = (
+        axis_x_rps_axes1_in_base_x*rps_d_c_in_base_x +
+            axis_y_rps_axes1_in_base_x*rps_d_c_in_base_x_2
         )
-        d_c_in_base_z_3 = (
-        axis_x_rps_axes1_in_base_z*(axis_y_rps_axes1_in_base_z*d_phi_2_t -
+        rps_d_c_in_base_y_3 = (
+        axis_x_rps_axes1_in_base_y*rps_d_c_in_base_x +
+            axis_y_rps_axes1_in_base_y*rps_d_c_in_base_x_2
+        )
+        rps_d_c_in_base_z = (
+        axis_x_rps_axes1_in_base_z*rps_d_c_in_base_x +
+            axis_y_rps_axes1_in_base_z*rps_d_c_in_base_x_2
+        )
+        rps_d_c_in_base_y_4 = (
+        axis_x_rps_axes1_in_base_y*rps_d_c_in_base_y +
+            axis_y_rps_axes1_in_base_y*rps_d_c_in_base_y_2
+        )
+        rps_d_c_in_base_z_2 = (
+        axis_x_rps_axes1_in_base_z*rps_d_c_in_base_y +
+            axis_y_rps_axes1_in_base_z*rps_d_c_in_base_y_2
+        )
+        rps_d_c_in_base_z_3 = (
+        axis_x_rps_axes1_in_base_z*(axis_y_rps_axes1_in_base_z*rps_d_phi_2_t -
             axis_x_rps_axes1_in_base_z*rps_link2_mass) +
-            axis_y_rps_axes1_in_base_z*(axis_x_rps_axes1_in_base_z*d_phi_2_t -
-            axis_y_rps_axes1_in_base_z*d_G_t)
+            axis_y_rps_axes1_in_base_z*(axis_x_rps_axes1_in_base_z*rps_d_phi_2_t -
+            axis_y_rps_axes1_in_base_z*rps_d_G_t)
         )
-        # (M2) coupling block of M
-        M_ta_t = d_c_in_base_y_3*q_in_base_z
-        M_ta_t_2 = d_c_in_base_z*q_in_base_y
-        M_ta_t_3 = M_ta_t - M_ta_t_2
-        M_ta_t_4 = d_c_in_base_x_3*q_in_base_z - d_c_in_base_z*q_in_base_x
-        M_ta_t_5 = d_c_in_base_x_3*q_in_base_y - d_c_in_base_y_3*q_in_base_x
-        M_ta_t_6 = d_c_in_base_y_4*q_in_base_z - d_c_in_base_z_2*q_in_base_y
-        M_ta_t_7 = d_c_in_base_z_2*q_in_base_x
-        M_ta_t_8 = M_ta_t - M_ta_t_7
-        M_ta_t_9 = d_c_in_base_y_3*q_in_base_y - d_c_in_base_y_4*q_in_base_x
-        M_ta_t_10 = d_c_in_base_z_2*q_in_base_z - d_c_in_base_z_3*q_in_base_y
-        M_ta_t_11 = d_c_in_base_z*q_in_base_z - d_c_in_base_z_3*q_in_base_x
-        M_ta_t_12 = M_ta_t_7 - M_ta_t_2
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
-        M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y
-        M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z
-        M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x
-        M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z
-        M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
-        # (rps-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_tip_x = (
-        S_dot_x*axis_x_rps_axes1_in_base_x + S_dot_y*axis_x_rps_axes1_in_base_y +
-            S_dot_z*axis_x_rps_axes1_in_base_z
+        # (M_ta) coupling block of M
+        rps_M_ta_t = rps_d_c_in_base_y_3*rps_q_in_base_z
+        rps_M_ta_t_2 = rps_d_c_in_base_z*rps_q_in_base_y
+        rps_M_ta_t_3 = rps_M_ta_t - rps_M_ta_t_2
+        rps_M_ta_t_4 = rps_d_c_in_base_x_3*rps_q_in_base_z - rps_d_c_in_base_z*rps_q_in_base_x
+        rps_M_ta_t_5 = rps_d_c_in_base_x_3*rps_q_in_base_y - rps_d_c_in_base_y_3*rps_q_in_base_x
+        rps_M_ta_t_6 = rps_d_c_in_base_y_4*rps_q_in_base_z - rps_d_c_in_base_z_2*rps_q_in_base_y
+        rps_M_ta_t_7 = rps_d_c_in_base_z_2*rps_q_in_base_x
+        rps_M_ta_t_8 = rps_M_ta_t - rps_M_ta_t_7
+        rps_M_ta_t_9 = rps_d_c_in_base_y_3*rps_q_in_base_y - rps_d_c_in_base_y_4*rps_q_in_base_x
+        rps_M_ta_t_10 = rps_d_c_in_base_z_2*rps_q_in_base_z - rps_d_c_in_base_z_3*rps_q_in_base_y
+        rps_M_ta_t_11 = rps_d_c_in_base_z*rps_q_in_base_z - rps_d_c_in_base_z_3*rps_q_in_base_x
+        rps_M_ta_t_12 = rps_M_ta_t_7 - rps_M_ta_t_2
+        # (M_aa) rotational block of M
+        rps_M_aa_t = rps_M_ta_t_6*rps_q_in_base_z - rps_M_ta_t_10*rps_q_in_base_y
+        rps_M_aa_t_2 = rps_M_ta_t_8*rps_q_in_base_z - rps_M_ta_t_11*rps_q_in_base_y
+        rps_M_aa_t_3 = rps_M_ta_t_12*rps_q_in_base_y + rps_M_ta_t_9*rps_q_in_base_z
+        rps_M_aa_t_4 = rps_M_ta_t_4*rps_q_in_base_z - rps_M_ta_t_11*rps_q_in_base_x
+        rps_M_aa_t_5 = rps_M_ta_t_12*rps_q_in_base_x + rps_M_ta_t_5*rps_q_in_base_z
+        rps_M_aa_t_6 = rps_M_ta_t_5*rps_q_in_base_y - rps_M_ta_t_9*rps_q_in_base_x
+        # (rps-S_dot) velocity of the connection point
+        rps_S_dot_t = omega_y*rps_q_in_base_z - omega_z*rps_q_in_base_y
+        rps_S_dot_t_2 = omega_z*rps_q_in_base_x - omega_x*rps_q_in_base_z
+        rps_S_dot_t_3 = omega_x*rps_q_in_base_y - omega_y*rps_q_in_base_x
+        rps_S_dot_x = rps_S_dot_t + t_dot_x
+        rps_S_dot_y = rps_S_dot_t_2 + t_dot_y
+        rps_S_dot_z = rps_S_dot_t_3 + t_dot_z
+        rps_S_dot_tip_x = (
+        axis_x_rps_axes1_in_base_x*rps_S_dot_x + axis_x_rps_axes1_in_base_y*rps_S_dot_y +
+            axis_x_rps_axes1_in_base_z*rps_S_dot_z
         )
-        # (rps-V6) rate of joint 1
-        qd_1 = (
-        inv_root_1*(S_dot_x*axis_y_rps_axes1_in_base_x + S_dot_y*axis_y_rps_axes1_in_base_y +
-            S_dot_z*axis_y_rps_axes1_in_base_z)
+        # (rps-qd_2) rate of joint 2
+        rps_qd_1 = (
+        inv_rps_root_1*(axis_y_rps_axes1_in_base_x*rps_S_dot_x +
+            axis_y_rps_axes1_in_base_y*rps_S_dot_y + axis_y_rps_axes1_in_base_z*rps_S_dot_z)
         )
-        # (rps-V9) centripetal tensor of link 1
-        W_1_t = qd_1*qd_1
-        # (rps-A1) centripetal acceleration of the connection point
-        u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
-        u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y
-        u_1_tip_y = (
-        axis_y_rps_axes1_in_base_x*u_1_x + axis_y_rps_axes1_in_base_y*u_1_y +
-            axis_y_rps_axes1_in_base_z*u_1_z
+        # (rps-u_1) centripetal acceleration of the connection point
+        rps_u_1_x = omega_y*rps_S_dot_t_3 - omega_z*rps_S_dot_t_2
+        rps_u_1_y = omega_z*rps_S_dot_t - omega_x*rps_S_dot_t_3
+        rps_u_1_z = omega_x*rps_S_dot_t_2 - omega_y*rps_S_dot_t
+        # (rps-W_1) centripetal tensor of link 1
+        rps_W_1_t = rps_qd_1*rps_qd_1
+        # (rps-u_1) centripetal acceleration of the connection point
+        rps_u_1_tip_y = (
+        axis_y_rps_axes1_in_base_x*rps_u_1_x + axis_y_rps_axes1_in_base_y*rps_u_1_y +
+            axis_y_rps_axes1_in_base_z*rps_u_1_z
         )
-        u_1_tip_z = rps_base_frame_xz*u_1_x + rps_base_frame_yz*u_1_y + rps_base_frame_zz*u_1_z
-        # (rps-A6) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_y = u_1_tip_y - 2.0*S_dot_tip_x*qd_1
-        # (rps-A8) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_o = inv_root_1*rel_o_y
-        # (rps-N5) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x = c_1*g_r0_x + g_r0_y*s_1
-        g_r1_y = c_1*g_r0_y - g_r0_x*s_1
-        acc_2_o_x = (
-        axis_x_rps_axes1_in_base_x*u_1_x + axis_x_rps_axes1_in_base_y*u_1_y +
-            axis_x_rps_axes1_in_base_z*u_1_z - g_r1_x
+        rps_u_1_tip_z = (
+        rps_base_frame_xz*rps_u_1_x + rps_base_frame_yz*rps_u_1_y + rps_base_frame_zz*rps_u_1_z
         )
-        acc_2_o_y = u_1_tip_y - g_r1_y
-        # (rps-N11) remainder without the acceleration in: inertia force of link 2 less its weight
-        f_2_o_x = acc_2_o_x*rps_link2_mass - W_1_t*h_2_x - h_2_y*qdd_1_o
-        f_2_o_y = acc_2_o_y*rps_link2_mass + h_2_x*qdd_1_o - W_1_t*h_2_y
-        # (rps-N17) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_o_z = (
-        J_group_1_zz*qdd_1_o + acc_2_o_y*h_2_x + g_r1_x*h_1_y - acc_2_o_x*h_2_y - g_r1_y*h_1_x
+        # (rps-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        rps_rel_o_y = rps_u_1_tip_y - 2.0*rps_S_dot_tip_x*rps_qd_1
+        # (rps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        rps_qdd_1_o = inv_rps_root_1*rps_rel_o_y
+        # (rps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        rps_g_r1_x = rps_c_1*rps_g_r0_x + rps_g_r0_y*rps_s_1
+        rps_g_r1_y = rps_c_1*rps_g_r0_y - rps_g_r0_x*rps_s_1
+        rps_acc_2_o_x = (
+        axis_x_rps_axes1_in_base_x*rps_u_1_x + axis_x_rps_axes1_in_base_y*rps_u_1_y +
+            axis_x_rps_axes1_in_base_z*rps_u_1_z - rps_g_r1_x
         )
-        # (rps-N29) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_o_t = f_2_o_y + inv_root_1*mu_1_o_z
-        # (rps-N34) velocity and gravity terms of the leg force
-        U_in_base_x = G_o_t*axis_y_rps_axes1_in_base_x + axis_x_rps_axes1_in_base_x*f_2_o_x
-        U_in_base_y = G_o_t*axis_y_rps_axes1_in_base_y + axis_x_rps_axes1_in_base_y*f_2_o_x
-        U_in_base_z = G_o_t*axis_y_rps_axes1_in_base_z + axis_x_rps_axes1_in_base_z*f_2_o_x
-        # (M7) rotational part of Z
-        Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
-        Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
-        Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_2_x = axis_x_rps_axes1_in_base_z*q_in_base_y - axis_x_rps_axes1_in_base_y*q_in_base_z
-        H_a_2_y = axis_x_rps_axes1_in_base_x*q_in_base_z - axis_x_rps_axes1_in_base_z*q_in_base_x
-        H_a_2_z = axis_x_rps_axes1_in_base_y*q_in_base_x - axis_x_rps_axes1_in_base_x*q_in_base_y
-        # (M9) moment of the column's unit force about the platform origin
-        Hk_a_1_x = q_in_base_y*rps_base_frame_zz - q_in_base_z*rps_base_frame_yz
-        Hk_a_1_y = q_in_base_z*rps_base_frame_xz - q_in_base_x*rps_base_frame_zz
-        Hk_a_1_z = q_in_base_x*rps_base_frame_yz - q_in_base_y*rps_base_frame_xz
+        rps_acc_2_o_y = rps_u_1_tip_y - rps_g_r1_y
+        # (rps-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight
+        rps_f_2_o_x = rps_acc_2_o_x*rps_link2_mass - rps_W_1_t*rps_h_2_x - rps_h_2_y*rps_qdd_1_o
+        rps_f_2_o_y = rps_acc_2_o_y*rps_link2_mass + rps_h_2_x*rps_qdd_1_o - rps_W_1_t*rps_h_2_y
+        # (rps-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        rps_mu_1_o_z = (
+        rps_J_group_1_zz*rps_qdd_1_o + rps_acc_2_o_y*rps_h_2_x + rps_g_r1_x*rps_h_1_y -
+            rps_acc_2_o_x*rps_h_2_y - rps_g_r1_y*rps_h_1_x
+        )
+        # (rps-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rps_G_o_t = rps_f_2_o_y + inv_rps_root_1*rps_mu_1_o_z
+        # (rps-U) velocity and gravity terms of the leg force
+        rps_U_in_base_x = (
+        axis_x_rps_axes1_in_base_x*rps_f_2_o_x + axis_y_rps_axes1_in_base_x*rps_G_o_t
+        )
+        rps_U_in_base_y = (
+        axis_x_rps_axes1_in_base_y*rps_f_2_o_x + axis_y_rps_axes1_in_base_y*rps_G_o_t
+        )
+        rps_U_in_base_z = (
+        axis_x_rps_axes1_in_base_z*rps_f_2_o_x + axis_y_rps_axes1_in_base_z*rps_G_o_t
+        )
+        # (Z_a) rotational part of Z
+        rps_Z_a_t = rps_U_in_base_z*rps_q_in_base_y - rps_U_in_base_y*rps_q_in_base_z
+        rps_Z_a_t_2 = rps_U_in_base_x*rps_q_in_base_z - rps_U_in_base_z*rps_q_in_base_x
+        rps_Z_a_t_3 = rps_U_in_base_y*rps_q_in_base_x - rps_U_in_base_x*rps_q_in_base_y
+        # (rps-H_a_2) moment of the column's unit force about the platform origin
+        rps_H_a_2_x = (
+        axis_x_rps_axes1_in_base_z*rps_q_in_base_y - axis_x_rps_axes1_in_base_y*rps_q_in_base_z
+        )
+        rps_H_a_2_y = (
+        axis_x_rps_axes1_in_base_x*rps_q_in_base_z - axis_x_rps_axes1_in_base_z*rps_q_in_base_x
+        )
+        rps_H_a_2_z = (
+        axis_x_rps_axes1_in_base_y*rps_q_in_base_x - axis_x_rps_axes1_in_base_x*rps_q_in_base_y
+        )
+        # (rps-Hk_a_1) moment of the column's unit force about the platform origin
+        rps_Hk_a_1_x = rps_base_frame_zz*rps_q_in_base_y - rps_base_frame_yz*rps_q_in_base_z
+        rps_Hk_a_1_y = rps_base_frame_xz*rps_q_in_base_z - rps_base_frame_zz*rps_q_in_base_x
+        rps_Hk_a_1_z = rps_base_frame_yz*rps_q_in_base_x - rps_base_frame_xz*rps_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_1) >
-            _TOLERANCE * 0.75))
+        ok & m.every(leg, (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_root_1)
+            > _TOLERANCE * 0.75))
         )
         sums = m.added(sums, leg, (
-        d_c_in_base_x_3, d_c_in_base_y_3, d_c_in_base_z, d_c_in_base_y_4, d_c_in_base_z_2,
-            d_c_in_base_z_3, M_ta_t_3, M_ta_t_4, M_ta_t_5, M_ta_t_6, M_ta_t_8, M_ta_t_9,
-            M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2, M_aa_t_3, M_aa_t_4, M_aa_t_5,
-            M_aa_t_6, U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
+        rps_d_c_in_base_x_3, rps_d_c_in_base_y_3, rps_d_c_in_base_z, rps_d_c_in_base_y_4,
+            rps_d_c_in_base_z_2, rps_d_c_in_base_z_3, rps_M_ta_t_3, rps_M_ta_t_4,
+            rps_M_ta_t_5, rps_M_ta_t_6, rps_M_ta_t_8, rps_M_ta_t_9, rps_M_ta_t_10,
+            rps_M_ta_t_11, rps_M_ta_t_12, rps_M_aa_t, rps_M_aa_t_2, rps_M_aa_t_3,
+            rps_M_aa_t_4, rps_M_aa_t_5, rps_M_aa_t_6, rps_U_in_base_x, rps_U_in_base_y,
+            rps_U_in_base_z, rps_Z_a_t, rps_Z_a_t_2, rps_Z_a_t_3,
         ))
         out_H[_H_rps[0][leg]] = axis_x_rps_axes1_in_base_x
         out_H[_H_rps[1][leg]] = axis_x_rps_axes1_in_base_y
         out_H[_H_rps[2][leg]] = axis_x_rps_axes1_in_base_z
-        out_H[_H_rps[3][leg]] = H_a_2_x
-        out_H[_H_rps[4][leg]] = H_a_2_y
-        out_H[_H_rps[5][leg]] = H_a_2_z
+        out_H[_H_rps[3][leg]] = rps_H_a_2_x
+        out_H[_H_rps[4][leg]] = rps_H_a_2_y
+        out_H[_H_rps[5][leg]] = rps_H_a_2_z
         out_Hk[_Hk_rps[0][leg]] = rps_base_frame_xz
         out_Hk[_Hk_rps[1][leg]] = rps_base_frame_yz
         out_Hk[_Hk_rps[2][leg]] = rps_base_frame_zz
-        out_Hk[_Hk_rps[3][leg]] = Hk_a_1_x
-        out_Hk[_Hk_rps[4][leg]] = Hk_a_1_y
-        out_Hk[_Hk_rps[5][leg]] = Hk_a_1_z
-        out_constraint_bias[_constraint_bias_rps[0][leg]] = u_1_tip_z
+        out_Hk[_Hk_rps[3][leg]] = rps_Hk_a_1_x
+        out_Hk[_Hk_rps[4][leg]] = rps_Hk_a_1_y
+        out_Hk[_Hk_rps[5][leg]] = rps_Hk_a_1_z
+        out_constraint_bias[_constraint_bias_rps[0][leg]] = rps_u_1_tip_z
     (
     total_rps_xx, total_rps_xy, total_rps_xz, total_rps_yy, total_rps_yz, total_rps_zz,
         total_rps_xx_2, total_rps_xy_2, total_rps_xz_2, total_rps_yx, total_rps_yy_2,
@@ -1512,29 +1593,29 @@ def _run_dynamics(m, X, V):
         total_rps_xy_3, total_rps_xz_3, total_rps_yy_3, total_rps_yz_3, total_rps_zz_3,
         total_rps_x, total_rps_y, total_rps_z, total_rps_x_2, total_rps_y_2, total_rps_z_2,
     ) = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = platform_mass - total_rps_xx
     M_tt_yy = platform_mass - total_rps_yy
     M_tt_zz = platform_mass - total_rps_zz
-    # (M2) coupling block of M
+    # (M_ta) coupling block of M
     M_ta_xy = h_star_in_base_z - total_rps_xy_2
     M_ta_xz = total_rps_xz_2 - h_star_in_base_y
     M_ta_yx = total_rps_yx - h_star_in_base_z
     M_ta_yz = h_star_in_base_x + total_rps_yz_2
     M_ta_zx = h_star_in_base_y + total_rps_zx
     M_ta_zy = -h_star_in_base_x - total_rps_zy
-    # (M3) rotational block of M
+    # (M_aa) rotational block of M
     M_aa_xx = J_star_t_10 - total_rps_xx_3
     M_aa_xy = J_star_t_11 + total_rps_xy_3
     M_aa_xz = J_star_t_12 - total_rps_xz_3
     M_aa_yy = J_star_t_14 - total_rps_yy_3
     M_aa_yz = J_star_t_15 + total_rps_yz_3
     M_aa_zz = J_star_t_17 - total_rps_zz_3
-    # (M5) translational part of Z
+    # (Z_t) translational part of Z
     Z_t_x = Z_p_x + total_rps_x
     Z_t_y = Z_p_y + total_rps_y
     Z_t_z = Z_p_z + total_rps_z
-    # (M7) rotational part of Z
+    # (Z_a) rotational part of Z
     Z_a_x = Z_q_in_base_x + total_rps_x_2
     Z_a_y = Z_q_in_base_y + total_rps_y_2
     Z_a_z = Z_q_in_base_z + total_rps_z_2
@@ -1628,11 +1709,11 @@ def _run_M(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_M = m.zeros("M")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_6*R_xy
     J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_6*R_yy
     J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_6*R_zy
@@ -1651,109 +1732,124 @@ def _run_M(m, X):
     sums = [0.0] * 21
     for leg, k in legs[0]:
         (
-        J_group_1_zz, branch_1, h_2_x, h_2_y, rps_base_frame_xx, rps_base_frame_xy,
-            rps_base_frame_yx, rps_base_frame_yy, rps_base_frame_zx, rps_base_frame_zy,
-            rps_base_point_x, rps_base_point_y, rps_base_point_z, rps_link2_mass,
-            rps_platform_point_x, rps_platform_point_y, rps_platform_point_z,
+        rps_J_group_1_zz, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx,
+            rps_base_frame_yy, rps_base_frame_zx, rps_base_frame_zy, rps_base_point_x,
+            rps_base_point_y, rps_base_point_z, rps_branch_1, rps_h_2_x, rps_h_2_y,
+            rps_link2_mass, rps_platform_point_x, rps_platform_point_y, rps_platform_point_z,
         ) = k
-        # (rps-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (rps-S) from the base point to the connection point
+        rps_q_in_base_x = (
         R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z
         )
-        q_in_base_y = (
+        rps_q_in_base_y = (
         R_yx*rps_platform_point_x + R_yy*rps_platform_point_y + R_yz*rps_platform_point_z
         )
-        q_in_base_z = (
+        rps_q_in_base_z = (
         R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rps_base_point_x
-        S_y = q_in_base_y + t_y - rps_base_point_y
-        S_z = q_in_base_z + t_z - rps_base_point_z
-        # (rps-K2) component along the reference direction
-        px_1 = S_x*rps_base_frame_xx + S_y*rps_base_frame_yx + S_z*rps_base_frame_zx
-        # (rps-K3) component across the reference direction
-        py_1 = S_x*rps_base_frame_xy + S_y*rps_base_frame_yy + S_z*rps_base_frame_zy
-        # (rps-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rps-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rps-K7) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*px_1
-        # (rps-K8) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*py_1
-        # (rps-V4) reciprocal vector 1
-        axis_y_rps_axes1_in_base_x = c_1*rps_base_frame_xy - rps_base_frame_xx*s_1
-        axis_y_rps_axes1_in_base_y = c_1*rps_base_frame_yy - rps_base_frame_yx*s_1
-        axis_y_rps_axes1_in_base_z = c_1*rps_base_frame_zy - rps_base_frame_zx*s_1
-        axis_x_rps_axes1_in_base_x = c_1*rps_base_frame_xx + rps_base_frame_xy*s_1
-        axis_x_rps_axes1_in_base_y = c_1*rps_base_frame_yx + rps_base_frame_yy*s_1
-        axis_x_rps_axes1_in_base_z = c_1*rps_base_frame_zx + rps_base_frame_zy*s_1
-        # (rps-N7) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
-        d_phi_2_t = h_2_y*inv_root_1
-        # (rps-N28) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_t = (
-        inv_root_1*(h_2_x + J_group_1_zz*inv_root_1 + root_1*(rps_link2_mass + h_2_x*inv_root_1))
+        rps_S_x = rps_q_in_base_x + t_x - rps_base_point_x
+        rps_S_y = rps_q_in_base_y + t_y - rps_base_point_y
+        rps_S_z = rps_q_in_base_z + t_z - rps_base_point_z
+        # (rps-py_1) component across the reference direction
+        rps_py_1 = (
+        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
         )
-        # (rps-N31) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d_c_in_base_x = (
-        axis_y_rps_axes1_in_base_x*d_phi_2_t - axis_x_rps_axes1_in_base_x*rps_link2_mass
+        # (rps-px_1) component along the reference direction
+        rps_px_1 = (
+        rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
         )
-        d_c_in_base_y = (
-        axis_y_rps_axes1_in_base_y*d_phi_2_t - axis_x_rps_axes1_in_base_y*rps_link2_mass
+        # (rps-rho2_1) squared amplitude
+        rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
+        # (rps-root_1) amplitude, with the sign of the branch
+        rps_root_1 = rps_branch_1*sqrt(rps_rho2_1)
+        # (rps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rps_root_1 = 1.0/rps_root_1
+        rps_c_1 = inv_rps_root_1*rps_px_1
+        # (rps-s_1) sine of the angle of joint 1 from its reference direction
+        rps_s_1 = inv_rps_root_1*rps_py_1
+        # (rps-w_1) reciprocal vector 1
+        axis_y_rps_axes1_in_base_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1
+        axis_y_rps_axes1_in_base_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1
+        axis_y_rps_axes1_in_base_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1
+        axis_x_rps_axes1_in_base_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
+        axis_x_rps_axes1_in_base_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
+        axis_x_rps_axes1_in_base_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
+        # (rps-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
+        rps_d_phi_2_t = inv_rps_root_1*rps_h_2_y
+        # (rps-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rps_d_G_t = (
+        inv_rps_root_1*(rps_h_2_x + inv_rps_root_1*rps_J_group_1_zz + rps_root_1*(rps_link2_mass +
+            inv_rps_root_1*rps_h_2_x))
         )
-        d_c_in_base_x_2 = axis_x_rps_axes1_in_base_x*d_phi_2_t - axis_y_rps_axes1_in_base_x*d_G_t
-        d_c_in_base_y_2 = axis_x_rps_axes1_in_base_y*d_phi_2_t - axis_y_rps_axes1_in_base_y*d_G_t
-        d_c_in_base_x_3 = (
-        axis_x_rps_axes1_in_base_x*d_c_in_base_x + axis_y_rps_axes1_in_base_x*d_c_in_base_x_2
+        # (rps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rps_d_c_in_base_x = (
+        axis_y_rps_axes1_in_base_x*rps_d_phi_2_t - axis_x_rps_axes1_in_base_x*rps_link2_mass
         )
-        d_c_in_base_y_3 = (
-        axis_x_rps_axes1_in_base_y*d_c_in_base_x + axis_y_rps_axes1_in_base_y*d_c_in_base_x_2
+        rps_d_c_in_base_y = (
+        axis_y_rps_axes1_in_base_y*rps_d_phi_2_t - axis_x_rps_axes1_in_base_y*rps_link2_mass
         )
-        d_c_in_base_z = (
-        axis_x_rps_axes1_in_base_z*d_c_in_base_x + axis_y_rps_axes1_in_base_z*d_c_in_base_x_2
+        rps_d_c_in_base_x_2 = (
+        axis_x_rps_axes1_in_base_x*rps_d_phi_2_t - axis_y_rps_axes1_in_base_x*rps_d_G_t
         )
-        d_c_in_base_y_4 = (
-        axis_x_rps_axes1_in_base_y*d_c_in_base_y + axis_y_rps_axes1_in_base_y*d_c_in_base_y_2
+        rps_d_c_in_base_y_2 = (
+        axis_x_rps_axes1_in_base_y*rps_d_phi_2_t - axis_y_rps_axes1_in_base_y*rps_d_G_t
         )
-        d_c_in_base_z_2 = (
-        axis_x_rps_axes1_in_base_z*d_c_in_base_y + axis_y_rps_axes1_in_base_z*d_c_in_base_y_2
+        rps_d_c_in_base_x_3 = (
+        axis_x_rps_axes1_in_base_x*rps_d_c_in_base_x +
+            axis_y_rps_axes1_in_base_x*rps_d_c_in_base_x_2
         )
-        d_c_in_base_z_3 = (
-        axis_x_rps_axes1_in_base_z*(axis_y_rps_axes1_in_base_z*d_phi_2_t -
+        rps_d_c_in_base_y_3 = (
+        axis_x_rps_axes1_in_base_y*rps_d_c_in_base_x +
+            axis_y_rps_axes1_in_base_y*rps_d_c_in_base_x_2
+        )
+        rps_d_c_in_base_z = (
+        axis_x_rps_axes1_in_base_z*rps_d_c_in_base_x +
+            axis_y_rps_axes1_in_base_z*rps_d_c_in_base_x_2
+        )
+        rps_d_c_in_base_y_4 = (
+        axis_x_rps_axes1_in_base_y*rps_d_c_in_base_y +
+            axis_y_rps_axes1_in_base_y*rps_d_c_in_base_y_2
+        )
+        rps_d_c_in_base_z_2 = (
+        axis_x_rps_axes1_in_base_z*rps_d_c_in_base_y +
+            axis_y_rps_axes1_in_base_z*rps_d_c_in_base_y_2
+        )
+        rps_d_c_in_base_z_3 = (
+        axis_x_rps_axes1_in_base_z*(axis_y_rps_axes1_in_base_z*rps_d_phi_2_t -
             axis_x_rps_axes1_in_base_z*rps_link2_mass) +
-            axis_y_rps_axes1_in_base_z*(axis_x_rps_axes1_in_base_z*d_phi_2_t -
-            axis_y_rps_axes1_in_base_z*d_G_t)
+            axis_y_rps_axes1_in_base_z*(axis_x_rps_axes1_in_base_z*rps_d_phi_2_t -
+            axis_y_rps_axes1_in_base_z*rps_d_G_t)
         )
-        # (M2) coupling block of M
-        M_ta_t = d_c_in_base_y_3*q_in_base_z
-        M_ta_t_2 = d_c_in_base_z*q_in_base_y
-        M_ta_t_3 = M_ta_t - M_ta_t_2
-        M_ta_t_4 = d_c_in_base_x_3*q_in_base_z - d_c_in_base_z*q_in_base_x
-        M_ta_t_5 = d_c_in_base_x_3*q_in_base_y - d_c_in_base_y_3*q_in_base_x
-        M_ta_t_6 = d_c_in_base_y_4*q_in_base_z - d_c_in_base_z_2*q_in_base_y
-        M_ta_t_7 = d_c_in_base_z_2*q_in_base_x
-        M_ta_t_8 = M_ta_t - M_ta_t_7
-        M_ta_t_9 = d_c_in_base_y_3*q_in_base_y - d_c_in_base_y_4*q_in_base_x
-        M_ta_t_10 = d_c_in_base_z_2*q_in_base_z - d_c_in_base_z_3*q_in_base_y
-        M_ta_t_11 = d_c_in_base_z*q_in_base_z - d_c_in_base_z_3*q_in_base_x
-        M_ta_t_12 = M_ta_t_7 - M_ta_t_2
-        # (M3) rotational block of M
-        M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
-        M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y
-        M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z
-        M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x
-        M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z
-        M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
+        # (M_ta) coupling block of M
+        rps_M_ta_t = rps_d_c_in_base_y_3*rps_q_in_base_z
+        rps_M_ta_t_2 = rps_d_c_in_base_z*rps_q_in_base_y
+        rps_M_ta_t_3 = rps_M_ta_t - rps_M_ta_t_2
+        rps_M_ta_t_4 = rps_d_c_in_base_x_3*rps_q_in_base_z - rps_d_c_in_base_z*rps_q_in_base_x
+        rps_M_ta_t_5 = rps_d_c_in_base_x_3*rps_q_in_base_y - rps_d_c_in_base_y_3*rps_q_in_base_x
+        rps_M_ta_t_6 = rps_d_c_in_base_y_4*rps_q_in_base_z - rps_d_c_in_base_z_2*rps_q_in_base_y
+        rps_M_ta_t_7 = rps_d_c_in_base_z_2*rps_q_in_base_x
+        rps_M_ta_t_8 = rps_M_ta_t - rps_M_ta_t_7
+        rps_M_ta_t_9 = rps_d_c_in_base_y_3*rps_q_in_base_y - rps_d_c_in_base_y_4*rps_q_in_base_x
+        rps_M_ta_t_10 = rps_d_c_in_base_z_2*rps_q_in_base_z - rps_d_c_in_base_z_3*rps_q_in_base_y
+        rps_M_ta_t_11 = rps_d_c_in_base_z*rps_q_in_base_z - rps_d_c_in_base_z_3*rps_q_in_base_x
+        rps_M_ta_t_12 = rps_M_ta_t_7 - rps_M_ta_t_2
+        # (M_aa) rotational block of M
+        rps_M_aa_t = rps_M_ta_t_6*rps_q_in_base_z - rps_M_ta_t_10*rps_q_in_base_y
+        rps_M_aa_t_2 = rps_M_ta_t_8*rps_q_in_base_z - rps_M_ta_t_11*rps_q_in_base_y
+        rps_M_aa_t_3 = rps_M_ta_t_12*rps_q_in_base_y + rps_M_ta_t_9*rps_q_in_base_z
+        rps_M_aa_t_4 = rps_M_ta_t_4*rps_q_in_base_z - rps_M_ta_t_11*rps_q_in_base_x
+        rps_M_aa_t_5 = rps_M_ta_t_12*rps_q_in_base_x + rps_M_ta_t_5*rps_q_in_base_z
+        rps_M_aa_t_6 = rps_M_ta_t_5*rps_q_in_base_y - rps_M_ta_t_9*rps_q_in_base_x
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_1) >
-            _TOLERANCE * 0.75))
+        ok & m.every(leg, (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_root_1)
+            > _TOLERANCE * 0.75))
         )
         sums = m.added(sums, leg, (
-        d_c_in_base_x_3, d_c_in_base_y_3, d_c_in_base_z, d_c_in_base_y_4, d_c_in_base_z_2,
-            d_c_in_base_z_3, M_ta_t_3, M_ta_t_4, M_ta_t_5, M_ta_t_6, M_ta_t_8, M_ta_t_9,
-            M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2, M_aa_t_3, M_aa_t_4, M_aa_t_5,
-            M_aa_t_6,
+        rps_d_c_in_base_x_3, rps_d_c_in_base_y_3, rps_d_c_in_base_z, rps_d_c_in_base_y_4,
+            rps_d_c_in_base_z_2, rps_d_c_in_base_z_3, rps_M_ta_t_3, rps_M_ta_t_4,
+            rps_M_ta_t_5, rps_M_ta_t_6, rps_M_ta_t_8, rps_M_ta_t_9, rps_M_ta_t_10,
+            rps_M_ta_t_11, rps_M_ta_t_12, rps_M_aa_t, rps_M_aa_t_2, rps_M_aa_t_3,
+            rps_M_aa_t_4, rps_M_aa_t_5, rps_M_aa_t_6,
         ))
     (
     total_rps_xx, total_rps_xy, total_rps_xz, total_rps_yy, total_rps_yz, total_rps_zz,
@@ -1761,18 +1857,18 @@ def _run_M(m, X):
         total_rps_yz_2, total_rps_zx, total_rps_zy, total_rps_zz_2, total_rps_xx_3,
         total_rps_xy_3, total_rps_xz_3, total_rps_yy_3, total_rps_yz_3, total_rps_zz_3,
     ) = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = platform_mass - total_rps_xx
     M_tt_yy = platform_mass - total_rps_yy
     M_tt_zz = platform_mass - total_rps_zz
-    # (M2) coupling block of M
+    # (M_ta) coupling block of M
     M_ta_xy = h_star_in_base_z - total_rps_xy_2
     M_ta_xz = total_rps_xz_2 - h_star_in_base_y
     M_ta_yx = total_rps_yx - h_star_in_base_z
     M_ta_yz = h_star_in_base_x + total_rps_yz_2
     M_ta_zx = h_star_in_base_y + total_rps_zx
     M_ta_zy = -h_star_in_base_x - total_rps_zy
-    # (M3) rotational block of M
+    # (M_aa) rotational block of M
     M_aa_xx = J_star_t_10 - total_rps_xx_3
     M_aa_xy = J_star_t_11 + total_rps_xy_3
     M_aa_xz = J_star_t_12 - total_rps_xz_3
@@ -1876,142 +1972,156 @@ def _run_Z(m, X, V):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_Z = m.zeros("Z")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (M4) centripetal force and weight of the platform
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
     Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
     Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x_2*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y - g_r0_y_2*h_star_x
+    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
+    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_group_1_zz, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rps_base_frame_xx,
-            rps_base_frame_xy, rps_base_frame_yx, rps_base_frame_yy, rps_base_frame_zx,
-            rps_base_frame_zy, rps_base_point_x, rps_base_point_y, rps_base_point_z,
-            rps_link2_mass, rps_platform_point_x, rps_platform_point_y, rps_platform_point_z,
+        rps_J_group_1_zz, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx,
+            rps_base_frame_yy, rps_base_frame_zx, rps_base_frame_zy, rps_base_point_x,
+            rps_base_point_y, rps_base_point_z, rps_branch_1, rps_g_r0_x, rps_g_r0_y, rps_h_1_x,
+            rps_h_1_y, rps_h_2_x, rps_h_2_y, rps_link2_mass, rps_platform_point_x,
+            rps_platform_point_y, rps_platform_point_z,
         ) = k
-        # (rps-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (rps-S) from the base point to the connection point
+        rps_q_in_base_x = (
         R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z
         )
-        q_in_base_y = (
+        rps_q_in_base_y = (
         R_yx*rps_platform_point_x + R_yy*rps_platform_point_y + R_yz*rps_platform_point_z
         )
-        q_in_base_z = (
+        rps_q_in_base_z = (
         R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rps_base_point_x
-        S_y = q_in_base_y + t_y - rps_base_point_y
-        S_z = q_in_base_z + t_z - rps_base_point_z
-        # (rps-K2) component along the reference direction
-        px_1 = S_x*rps_base_frame_xx + S_y*rps_base_frame_yx + S_z*rps_base_frame_zx
-        # (rps-K3) component across the reference direction
-        py_1 = S_x*rps_base_frame_xy + S_y*rps_base_frame_yy + S_z*rps_base_frame_zy
-        # (rps-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rps-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rps-K7) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*px_1
-        # (rps-K8) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*py_1
-        # (rps-V4) reciprocal vector 1
-        axis_y_rps_axes1_in_base_x = c_1*rps_base_frame_xy - rps_base_frame_xx*s_1
-        axis_y_rps_axes1_in_base_y = c_1*rps_base_frame_yy - rps_base_frame_yx*s_1
-        axis_y_rps_axes1_in_base_z = c_1*rps_base_frame_zy - rps_base_frame_zx*s_1
-        axis_x_rps_axes1_in_base_x = c_1*rps_base_frame_xx + rps_base_frame_xy*s_1
-        axis_x_rps_axes1_in_base_y = c_1*rps_base_frame_yx + rps_base_frame_yy*s_1
-        axis_x_rps_axes1_in_base_z = c_1*rps_base_frame_zx + rps_base_frame_zy*s_1
-        # (rps-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_tip_x = (
-        S_dot_x*axis_x_rps_axes1_in_base_x + S_dot_y*axis_x_rps_axes1_in_base_y +
-            S_dot_z*axis_x_rps_axes1_in_base_z
+        rps_S_x = rps_q_in_base_x + t_x - rps_base_point_x
+        rps_S_y = rps_q_in_base_y + t_y - rps_base_point_y
+        rps_S_z = rps_q_in_base_z + t_z - rps_base_point_z
+        # (rps-py_1) component across the reference direction
+        rps_py_1 = (
+        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
         )
-        # (rps-V6) rate of joint 1
-        qd_1 = (
-        inv_root_1*(S_dot_x*axis_y_rps_axes1_in_base_x + S_dot_y*axis_y_rps_axes1_in_base_y +
-            S_dot_z*axis_y_rps_axes1_in_base_z)
+        # (rps-px_1) component along the reference direction
+        rps_px_1 = (
+        rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
         )
-        # (rps-V9) centripetal tensor of link 1
-        W_1_t = qd_1*qd_1
-        # (rps-A1) centripetal acceleration of the connection point
-        u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
-        u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y
-        u_1_tip_y = (
-        axis_y_rps_axes1_in_base_x*u_1_x + axis_y_rps_axes1_in_base_y*u_1_y +
-            axis_y_rps_axes1_in_base_z*u_1_z
+        # (rps-rho2_1) squared amplitude
+        rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
+        # (rps-root_1) amplitude, with the sign of the branch
+        rps_root_1 = rps_branch_1*sqrt(rps_rho2_1)
+        # (rps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rps_root_1 = 1.0/rps_root_1
+        rps_c_1 = inv_rps_root_1*rps_px_1
+        # (rps-s_1) sine of the angle of joint 1 from its reference direction
+        rps_s_1 = inv_rps_root_1*rps_py_1
+        # (rps-w_1) reciprocal vector 1
+        axis_y_rps_axes1_in_base_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1
+        axis_y_rps_axes1_in_base_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1
+        axis_y_rps_axes1_in_base_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1
+        axis_x_rps_axes1_in_base_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
+        axis_x_rps_axes1_in_base_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
+        axis_x_rps_axes1_in_base_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
+        # (rps-S_dot) velocity of the connection point
+        rps_S_dot_t = omega_y*rps_q_in_base_z - omega_z*rps_q_in_base_y
+        rps_S_dot_t_2 = omega_z*rps_q_in_base_x - omega_x*rps_q_in_base_z
+        rps_S_dot_t_3 = omega_x*rps_q_in_base_y - omega_y*rps_q_in_base_x
+        rps_S_dot_x = rps_S_dot_t + t_dot_x
+        rps_S_dot_y = rps_S_dot_t_2 + t_dot_y
+        rps_S_dot_z = rps_S_dot_t_3 + t_dot_z
+        rps_S_dot_tip_x = (
+        axis_x_rps_axes1_in_base_x*rps_S_dot_x + axis_x_rps_axes1_in_base_y*rps_S_dot_y +
+            axis_x_rps_axes1_in_base_z*rps_S_dot_z
         )
-        # (rps-A6) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_y = u_1_tip_y - 2.0*S_dot_tip_x*qd_1
-        # (rps-A8) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_o = inv_root_1*rel_o_y
-        # (rps-N5) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x = c_1*g_r0_x + g_r0_y*s_1
-        g_r1_y = c_1*g_r0_y - g_r0_x*s_1
-        acc_2_o_x = (
-        axis_x_rps_axes1_in_base_x*u_1_x + axis_x_rps_axes1_in_base_y*u_1_y +
-            axis_x_rps_axes1_in_base_z*u_1_z - g_r1_x
+        # (rps-qd_2) rate of joint 2
+        rps_qd_1 = (
+        inv_rps_root_1*(axis_y_rps_axes1_in_base_x*rps_S_dot_x +
+            axis_y_rps_axes1_in_base_y*rps_S_dot_y + axis_y_rps_axes1_in_base_z*rps_S_dot_z)
         )
-        acc_2_o_y = u_1_tip_y - g_r1_y
-        # (rps-N11) remainder without the acceleration in: inertia force of link 2 less its weight
-        f_2_o_x = acc_2_o_x*rps_link2_mass - W_1_t*h_2_x - h_2_y*qdd_1_o
-        f_2_o_y = acc_2_o_y*rps_link2_mass + h_2_x*qdd_1_o - W_1_t*h_2_y
-        # (rps-N17) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        mu_1_o_z = (
-        J_group_1_zz*qdd_1_o + acc_2_o_y*h_2_x + g_r1_x*h_1_y - acc_2_o_x*h_2_y - g_r1_y*h_1_x
+        # (rps-u_1) centripetal acceleration of the connection point
+        rps_u_1_x = omega_y*rps_S_dot_t_3 - omega_z*rps_S_dot_t_2
+        rps_u_1_y = omega_z*rps_S_dot_t - omega_x*rps_S_dot_t_3
+        rps_u_1_z = omega_x*rps_S_dot_t_2 - omega_y*rps_S_dot_t
+        # (rps-W_1) centripetal tensor of link 1
+        rps_W_1_t = rps_qd_1*rps_qd_1
+        # (rps-u_1) centripetal acceleration of the connection point
+        rps_u_1_tip_y = (
+        axis_y_rps_axes1_in_base_x*rps_u_1_x + axis_y_rps_axes1_in_base_y*rps_u_1_y +
+            axis_y_rps_axes1_in_base_z*rps_u_1_z
         )
-        # (rps-N29) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_o_t = f_2_o_y + inv_root_1*mu_1_o_z
-        # (rps-N34) velocity and gravity terms of the leg force
-        U_in_base_x = G_o_t*axis_y_rps_axes1_in_base_x + axis_x_rps_axes1_in_base_x*f_2_o_x
-        U_in_base_y = G_o_t*axis_y_rps_axes1_in_base_y + axis_x_rps_axes1_in_base_y*f_2_o_x
-        U_in_base_z = G_o_t*axis_y_rps_axes1_in_base_z + axis_x_rps_axes1_in_base_z*f_2_o_x
-        # (M7) rotational part of Z
-        Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
-        Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
-        Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
+        # (rps-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        rps_rel_o_y = rps_u_1_tip_y - 2.0*rps_S_dot_tip_x*rps_qd_1
+        # (rps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        rps_qdd_1_o = inv_rps_root_1*rps_rel_o_y
+        # (rps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        rps_g_r1_x = rps_c_1*rps_g_r0_x + rps_g_r0_y*rps_s_1
+        rps_g_r1_y = rps_c_1*rps_g_r0_y - rps_g_r0_x*rps_s_1
+        rps_acc_2_o_x = (
+        axis_x_rps_axes1_in_base_x*rps_u_1_x + axis_x_rps_axes1_in_base_y*rps_u_1_y +
+            axis_x_rps_axes1_in_base_z*rps_u_1_z - rps_g_r1_x
+        )
+        rps_acc_2_o_y = rps_u_1_tip_y - rps_g_r1_y
+        # (rps-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight
+        rps_f_2_o_x = rps_acc_2_o_x*rps_link2_mass - rps_W_1_t*rps_h_2_x - rps_h_2_y*rps_qdd_1_o
+        rps_f_2_o_y = rps_acc_2_o_y*rps_link2_mass + rps_h_2_x*rps_qdd_1_o - rps_W_1_t*rps_h_2_y
+        # (rps-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        rps_mu_1_o_z = (
+        rps_J_group_1_zz*rps_qdd_1_o + rps_acc_2_o_y*rps_h_2_x + rps_g_r1_x*rps_h_1_y -
+            rps_acc_2_o_x*rps_h_2_y - rps_g_r1_y*rps_h_1_x
+        )
+        # (rps-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rps_G_o_t = rps_f_2_o_y + inv_rps_root_1*rps_mu_1_o_z
+        # (rps-U) velocity and gravity terms of the leg force
+        rps_U_in_base_x = (
+        axis_x_rps_axes1_in_base_x*rps_f_2_o_x + axis_y_rps_axes1_in_base_x*rps_G_o_t
+        )
+        rps_U_in_base_y = (
+        axis_x_rps_axes1_in_base_y*rps_f_2_o_x + axis_y_rps_axes1_in_base_y*rps_G_o_t
+        )
+        rps_U_in_base_z = (
+        axis_x_rps_axes1_in_base_z*rps_f_2_o_x + axis_y_rps_axes1_in_base_z*rps_G_o_t
+        )
+        # (Z_a) rotational part of Z
+        rps_Z_a_t = rps_U_in_base_z*rps_q_in_base_y - rps_U_in_base_y*rps_q_in_base_z
+        rps_Z_a_t_2 = rps_U_in_base_x*rps_q_in_base_z - rps_U_in_base_z*rps_q_in_base_x
+        rps_Z_a_t_3 = rps_U_in_base_y*rps_q_in_base_x - rps_U_in_base_x*rps_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_1) >
-            _TOLERANCE * 0.75))
+        ok & m.every(leg, (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_root_1)
+            > _TOLERANCE * 0.75))
         )
         sums = m.added(sums, leg, (
-        U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
+        rps_U_in_base_x, rps_U_in_base_y, rps_U_in_base_z, rps_Z_a_t, rps_Z_a_t_2,
+            rps_Z_a_t_3,
         ))
     total_rps_x, total_rps_y, total_rps_z, total_rps_x_2, total_rps_y_2, total_rps_z_2 = sums
-    # (M5) translational part of Z
+    # (Z_t) translational part of Z
     Z_t_x = Z_p_x + total_rps_x
     Z_t_y = Z_p_y + total_rps_y
     Z_t_z = Z_p_z + total_rps_z
-    # (M7) rotational part of Z
+    # (Z_a) rotational part of Z
     Z_a_x = Z_q_in_base_x + total_rps_x_2
     Z_a_y = Z_q_in_base_y + total_rps_y_2
     Z_a_z = Z_q_in_base_z + total_rps_z_2
@@ -2067,54 +2177,65 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        branch_1, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx, rps_base_frame_yy,
+        rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx, rps_base_frame_yy,
             rps_base_frame_zx, rps_base_frame_zy, rps_base_point_x, rps_base_point_y,
-            rps_base_point_z, rps_platform_point_x, rps_platform_point_y, rps_platform_point_z,
+            rps_base_point_z, rps_branch_1, rps_platform_point_x, rps_platform_point_y,
+            rps_platform_point_z,
         ) = k
-        # (rps-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (rps-S) from the base point to the connection point
+        rps_q_in_base_x = (
         R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z
         )
-        q_in_base_y = (
+        rps_q_in_base_y = (
         R_yx*rps_platform_point_x + R_yy*rps_platform_point_y + R_yz*rps_platform_point_z
         )
-        q_in_base_z = (
+        rps_q_in_base_z = (
         R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rps_base_point_x
-        S_y = q_in_base_y + t_y - rps_base_point_y
-        S_z = q_in_base_z + t_z - rps_base_point_z
-        # (rps-K2) component along the reference direction
-        px_1 = S_x*rps_base_frame_xx + S_y*rps_base_frame_yx + S_z*rps_base_frame_zx
-        # (rps-K3) component across the reference direction
-        py_1 = S_x*rps_base_frame_xy + S_y*rps_base_frame_yy + S_z*rps_base_frame_zy
-        # (rps-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rps-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rps-K7) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*px_1
-        # (rps-K8) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*py_1
-        # (rps-V4) reciprocal vector 1
-        axis_x_rps_axes1_in_base_x = c_1*rps_base_frame_xx + rps_base_frame_xy*s_1
-        axis_x_rps_axes1_in_base_y = c_1*rps_base_frame_yx + rps_base_frame_yy*s_1
-        axis_x_rps_axes1_in_base_z = c_1*rps_base_frame_zx + rps_base_frame_zy*s_1
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_2_x = axis_x_rps_axes1_in_base_z*q_in_base_y - axis_x_rps_axes1_in_base_y*q_in_base_z
-        H_a_2_y = axis_x_rps_axes1_in_base_x*q_in_base_z - axis_x_rps_axes1_in_base_z*q_in_base_x
-        H_a_2_z = axis_x_rps_axes1_in_base_y*q_in_base_x - axis_x_rps_axes1_in_base_x*q_in_base_y
+        rps_S_x = rps_q_in_base_x + t_x - rps_base_point_x
+        rps_S_y = rps_q_in_base_y + t_y - rps_base_point_y
+        rps_S_z = rps_q_in_base_z + t_z - rps_base_point_z
+        # (rps-py_1) component across the reference direction
+        rps_py_1 = (
+        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
+        )
+        # (rps-px_1) component along the reference direction
+        rps_px_1 = (
+        rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
+        )
+        # (rps-rho2_1) squared amplitude
+        rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
+        # (rps-root_1) amplitude, with the sign of the branch
+        rps_root_1 = rps_branch_1*sqrt(rps_rho2_1)
+        # (rps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rps_root_1 = 1.0/rps_root_1
+        rps_c_1 = inv_rps_root_1*rps_px_1
+        # (rps-s_1) sine of the angle of joint 1 from its reference direction
+        rps_s_1 = inv_rps_root_1*rps_py_1
+        # (rps-w_1) reciprocal vector 1
+        axis_x_rps_axes1_in_base_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
+        axis_x_rps_axes1_in_base_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
+        axis_x_rps_axes1_in_base_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
+        # (rps-H_a_2) moment of the column's unit force about the platform origin
+        rps_H_a_2_x = (
+        axis_x_rps_axes1_in_base_z*rps_q_in_base_y - axis_x_rps_axes1_in_base_y*rps_q_in_base_z
+        )
+        rps_H_a_2_y = (
+        axis_x_rps_axes1_in_base_x*rps_q_in_base_z - axis_x_rps_axes1_in_base_z*rps_q_in_base_x
+        )
+        rps_H_a_2_z = (
+        axis_x_rps_axes1_in_base_y*rps_q_in_base_x - axis_x_rps_axes1_in_base_x*rps_q_in_base_y
+        )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_1) >
-            _TOLERANCE * 0.75))
+        ok & m.every(leg, (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_root_1)
+            > _TOLERANCE * 0.75))
         )
         out_H[_H_rps[0][leg]] = axis_x_rps_axes1_in_base_x
         out_H[_H_rps[1][leg]] = axis_x_rps_axes1_in_base_y
         out_H[_H_rps[2][leg]] = axis_x_rps_axes1_in_base_z
-        out_H[_H_rps[3][leg]] = H_a_2_x
-        out_H[_H_rps[4][leg]] = H_a_2_y
-        out_H[_H_rps[5][leg]] = H_a_2_z
+        out_H[_H_rps[3][leg]] = rps_H_a_2_x
+        out_H[_H_rps[4][leg]] = rps_H_a_2_y
+        out_H[_H_rps[5][leg]] = rps_H_a_2_z
     return ok, (out_H,)
 
 
@@ -2157,26 +2278,26 @@ def _run_Hk(m, X):
         rps_base_frame_xz, rps_base_frame_yz, rps_base_frame_zz, rps_platform_point_x,
             rps_platform_point_y, rps_platform_point_z,
         ) = k
-        # (rps-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (rps-S) from the base point to the connection point
+        rps_q_in_base_x = (
         R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z
         )
-        q_in_base_y = (
+        rps_q_in_base_y = (
         R_yx*rps_platform_point_x + R_yy*rps_platform_point_y + R_yz*rps_platform_point_z
         )
-        q_in_base_z = (
+        rps_q_in_base_z = (
         R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z
         )
-        # (M9) moment of the column's unit force about the platform origin
-        Hk_a_1_x = q_in_base_y*rps_base_frame_zz - q_in_base_z*rps_base_frame_yz
-        Hk_a_1_y = q_in_base_z*rps_base_frame_xz - q_in_base_x*rps_base_frame_zz
-        Hk_a_1_z = q_in_base_x*rps_base_frame_yz - q_in_base_y*rps_base_frame_xz
+        # (rps-Hk_a_1) moment of the column's unit force about the platform origin
+        rps_Hk_a_1_x = rps_base_frame_zz*rps_q_in_base_y - rps_base_frame_yz*rps_q_in_base_z
+        rps_Hk_a_1_y = rps_base_frame_xz*rps_q_in_base_z - rps_base_frame_zz*rps_q_in_base_x
+        rps_Hk_a_1_z = rps_base_frame_yz*rps_q_in_base_x - rps_base_frame_xz*rps_q_in_base_y
         out_Hk[_Hk_rps[0][leg]] = rps_base_frame_xz
         out_Hk[_Hk_rps[1][leg]] = rps_base_frame_yz
         out_Hk[_Hk_rps[2][leg]] = rps_base_frame_zz
-        out_Hk[_Hk_rps[3][leg]] = Hk_a_1_x
-        out_Hk[_Hk_rps[4][leg]] = Hk_a_1_y
-        out_Hk[_Hk_rps[5][leg]] = Hk_a_1_z
+        out_Hk[_Hk_rps[3][leg]] = rps_Hk_a_1_x
+        out_Hk[_Hk_rps[4][leg]] = rps_Hk_a_1_y
+        out_Hk[_Hk_rps[5][leg]] = rps_Hk_a_1_z
     return ok, (out_Hk,)
 
 
@@ -2226,27 +2347,27 @@ def _run_constraint_bias(m, X, V):
         rps_base_frame_xz, rps_base_frame_yz, rps_base_frame_zz, rps_platform_point_x,
             rps_platform_point_y, rps_platform_point_z,
         ) = k
-        # (rps-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (rps-S) from the base point to the connection point
+        rps_q_in_base_x = (
         R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z
         )
-        q_in_base_y = (
+        rps_q_in_base_y = (
         R_yx*rps_platform_point_x + R_yy*rps_platform_point_y + R_yz*rps_platform_point_z
         )
-        q_in_base_z = (
+        rps_q_in_base_z = (
         R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z
         )
-        # (rps-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        # (rps-A1) centripetal acceleration of the connection point
-        u_1_tip_z = (
-        rps_base_frame_xz*(S_dot_t_3*omega_y - S_dot_t_2*omega_z) +
-            rps_base_frame_yz*(S_dot_t*omega_z - S_dot_t_3*omega_x) +
-            rps_base_frame_zz*(S_dot_t_2*omega_x - S_dot_t*omega_y)
+        # (rps-S_dot) velocity of the connection point
+        rps_S_dot_t = omega_y*rps_q_in_base_z - omega_z*rps_q_in_base_y
+        rps_S_dot_t_2 = omega_z*rps_q_in_base_x - omega_x*rps_q_in_base_z
+        rps_S_dot_t_3 = omega_x*rps_q_in_base_y - omega_y*rps_q_in_base_x
+        # (rps-u_1) centripetal acceleration of the connection point
+        rps_u_1_tip_z = (
+        rps_base_frame_xz*(omega_y*rps_S_dot_t_3 - omega_z*rps_S_dot_t_2) +
+            rps_base_frame_yz*(omega_z*rps_S_dot_t - omega_x*rps_S_dot_t_3) +
+            rps_base_frame_zz*(omega_x*rps_S_dot_t_2 - omega_y*rps_S_dot_t)
         )
-        out_constraint_bias[_constraint_bias_rps[0][leg]] = u_1_tip_z
+        out_constraint_bias[_constraint_bias_rps[0][leg]] = rps_u_1_tip_z
     return ok, (out_constraint_bias,)
 
 
@@ -2323,29 +2444,29 @@ def _run_required(m, X, V, A):
     out_required = m.zeros("required")
     out_H = m.zeros("H")
     out_Hk = m.zeros("Hk")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (P1) centripetal tensor of the platform
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_x*omega_x
     W_p_t_2 = omega_y*omega_y
     W_p_t_3 = omega_z*omega_z
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
     W_p_yz = omega_y*omega_z
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
-    # (E2) inertia force of the platform less its weight
+    # (f_p) inertia force of the platform less its weight
     f_p_x = (
     a_t_x*platform_mass + h_star_in_base_y*(W_p_xy - alpha_z) + h_star_in_base_z*(W_p_xz +
         alpha_y) - h_star_in_base_x*(W_p_t_2 + W_p_t_3)
@@ -2358,11 +2479,11 @@ def _run_required(m, X, V, A):
     a_t_z*platform_mass + h_star_in_base_x*(W_p_xz - alpha_y) + h_star_in_base_y*(W_p_yz +
         alpha_x) - h_star_in_base_z*(W_p_t + W_p_t_2)
     )
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
     a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
     a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
-    # (E3) inertia moment of the platform less that of its weight
+    # (mu_p) inertia moment of the platform less that of its weight
     alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
     alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
     alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
@@ -2384,136 +2505,157 @@ def _run_required(m, X, V, A):
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_group_1_zz, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rps_base_frame_xx,
-            rps_base_frame_xy, rps_base_frame_xz, rps_base_frame_yx, rps_base_frame_yy,
-            rps_base_frame_yz, rps_base_frame_zx, rps_base_frame_zy, rps_base_frame_zz,
-            rps_base_point_x, rps_base_point_y, rps_base_point_z, rps_link2_mass,
-            rps_platform_point_x, rps_platform_point_y, rps_platform_point_z,
+        rps_J_group_1_zz, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_xz,
+            rps_base_frame_yx, rps_base_frame_yy, rps_base_frame_yz, rps_base_frame_zx,
+            rps_base_frame_zy, rps_base_frame_zz, rps_base_point_x, rps_base_point_y,
+            rps_base_point_z, rps_branch_1, rps_g_r0_x, rps_g_r0_y, rps_h_1_x, rps_h_1_y,
+            rps_h_2_x, rps_h_2_y, rps_link2_mass, rps_platform_point_x, rps_platform_point_y,
+            rps_platform_point_z,
         ) = k
-        # (rps-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (rps-S) from the base point to the connection point
+        rps_q_in_base_x = (
         R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z
         )
-        q_in_base_y = (
+        rps_q_in_base_y = (
         R_yx*rps_platform_point_x + R_yy*rps_platform_point_y + R_yz*rps_platform_point_z
         )
-        q_in_base_z = (
+        rps_q_in_base_z = (
         R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rps_base_point_x
-        S_y = q_in_base_y + t_y - rps_base_point_y
-        S_z = q_in_base_z + t_z - rps_base_point_z
-        # (rps-K2) component along the reference direction
-        px_1 = S_x*rps_base_frame_xx + S_y*rps_base_frame_yx + S_z*rps_base_frame_zx
-        # (rps-K3) component across the reference direction
-        py_1 = S_x*rps_base_frame_xy + S_y*rps_base_frame_yy + S_z*rps_base_frame_zy
-        # (rps-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rps-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rps-K7) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*px_1
-        # (rps-K8) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*py_1
-        # (rps-V4) reciprocal vector 1
-        axis_y_rps_axes1_in_base_x = c_1*rps_base_frame_xy - rps_base_frame_xx*s_1
-        axis_y_rps_axes1_in_base_y = c_1*rps_base_frame_yy - rps_base_frame_yx*s_1
-        axis_y_rps_axes1_in_base_z = c_1*rps_base_frame_zy - rps_base_frame_zx*s_1
-        axis_x_rps_axes1_in_base_x = c_1*rps_base_frame_xx + rps_base_frame_xy*s_1
-        axis_x_rps_axes1_in_base_y = c_1*rps_base_frame_yx + rps_base_frame_yy*s_1
-        axis_x_rps_axes1_in_base_z = c_1*rps_base_frame_zx + rps_base_frame_zy*s_1
-        # (rps-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_tip_x = (
-        S_dot_x*axis_x_rps_axes1_in_base_x + S_dot_y*axis_x_rps_axes1_in_base_y +
-            S_dot_z*axis_x_rps_axes1_in_base_z
+        rps_S_x = rps_q_in_base_x + t_x - rps_base_point_x
+        rps_S_y = rps_q_in_base_y + t_y - rps_base_point_y
+        rps_S_z = rps_q_in_base_z + t_z - rps_base_point_z
+        # (rps-py_1) component across the reference direction
+        rps_py_1 = (
+        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
         )
-        # (rps-V6) rate of joint 1
-        qd_1 = (
-        inv_root_1*(S_dot_x*axis_y_rps_axes1_in_base_x + S_dot_y*axis_y_rps_axes1_in_base_y +
-            S_dot_z*axis_y_rps_axes1_in_base_z)
+        # (rps-px_1) component along the reference direction
+        rps_px_1 = (
+        rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
         )
-        # (rps-V9) centripetal tensor of link 1
-        W_1_t = qd_1*qd_1
-        # (rps-N5) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x = c_1*g_r0_x + g_r0_y*s_1
-        g_r1_y = c_1*g_r0_y - g_r0_x*s_1
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_2_x = axis_x_rps_axes1_in_base_z*q_in_base_y - axis_x_rps_axes1_in_base_y*q_in_base_z
-        H_a_2_y = axis_x_rps_axes1_in_base_x*q_in_base_z - axis_x_rps_axes1_in_base_z*q_in_base_x
-        H_a_2_z = axis_x_rps_axes1_in_base_y*q_in_base_x - axis_x_rps_axes1_in_base_x*q_in_base_y
-        # (M9) moment of the column's unit force about the platform origin
-        Hk_a_1_x = q_in_base_y*rps_base_frame_zz - q_in_base_z*rps_base_frame_yz
-        Hk_a_1_y = q_in_base_z*rps_base_frame_xz - q_in_base_x*rps_base_frame_zz
-        Hk_a_1_z = q_in_base_x*rps_base_frame_yz - q_in_base_y*rps_base_frame_xz
-        # (rps-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (rps-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        S_ddot_tip_y = (
-        S_ddot_x*axis_y_rps_axes1_in_base_x + S_ddot_y*axis_y_rps_axes1_in_base_y +
-            S_ddot_z*axis_y_rps_axes1_in_base_z
+        # (rps-rho2_1) squared amplitude
+        rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
+        # (rps-root_1) amplitude, with the sign of the branch
+        rps_root_1 = rps_branch_1*sqrt(rps_rho2_1)
+        # (rps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rps_root_1 = 1.0/rps_root_1
+        rps_c_1 = inv_rps_root_1*rps_px_1
+        # (rps-s_1) sine of the angle of joint 1 from its reference direction
+        rps_s_1 = inv_rps_root_1*rps_py_1
+        # (rps-w_1) reciprocal vector 1
+        axis_y_rps_axes1_in_base_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1
+        axis_y_rps_axes1_in_base_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1
+        axis_y_rps_axes1_in_base_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1
+        axis_x_rps_axes1_in_base_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
+        axis_x_rps_axes1_in_base_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
+        axis_x_rps_axes1_in_base_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
+        # (rps-S_dot) velocity of the connection point
+        rps_S_dot_t = omega_y*rps_q_in_base_z - omega_z*rps_q_in_base_y
+        rps_S_dot_t_2 = omega_z*rps_q_in_base_x - omega_x*rps_q_in_base_z
+        rps_S_dot_t_3 = omega_x*rps_q_in_base_y - omega_y*rps_q_in_base_x
+        rps_S_dot_x = rps_S_dot_t + t_dot_x
+        rps_S_dot_y = rps_S_dot_t_2 + t_dot_y
+        rps_S_dot_z = rps_S_dot_t_3 + t_dot_z
+        rps_S_dot_tip_x = (
+        axis_x_rps_axes1_in_base_x*rps_S_dot_x + axis_x_rps_axes1_in_base_y*rps_S_dot_y +
+            axis_x_rps_axes1_in_base_z*rps_S_dot_z
         )
-        # (rps-A5) acceleration of the connection point left to the joint accelerations
-        rel_y = S_ddot_tip_y - 2.0*S_dot_tip_x*qd_1
-        # (rps-A7) acceleration of joint 1
-        qdd_1 = inv_root_1*rel_y
-        # (rps-N3) acceleration of the reference point of link 2, less gravity
-        acc_2_x = (
-        S_ddot_x*axis_x_rps_axes1_in_base_x + S_ddot_y*axis_x_rps_axes1_in_base_y +
-            S_ddot_z*axis_x_rps_axes1_in_base_z - g_r1_x
+        # (rps-qd_2) rate of joint 2
+        rps_qd_1 = (
+        inv_rps_root_1*(axis_y_rps_axes1_in_base_x*rps_S_dot_x +
+            axis_y_rps_axes1_in_base_y*rps_S_dot_y + axis_y_rps_axes1_in_base_z*rps_S_dot_z)
         )
-        acc_2_y = S_ddot_tip_y - g_r1_y
-        # (rps-N9) inertia force of link 2 less its weight
-        f_2_x = acc_2_x*rps_link2_mass - W_1_t*h_2_x - h_2_y*qdd_1
-        f_2_y = acc_2_y*rps_link2_mass + h_2_x*qdd_1 - W_1_t*h_2_y
-        # (rps-N15) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_z = J_group_1_zz*qdd_1 + acc_2_y*h_2_x + g_r1_x*h_1_y - acc_2_x*h_2_y - g_r1_y*h_1_x
-        # (rps-N27) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_t = f_2_y + inv_root_1*mu_1_z
-        # (rps-N30) leg force on the platform without actuation and without the mass at the connection point
-        c_in_base_x = -G_t*axis_y_rps_axes1_in_base_x - axis_x_rps_axes1_in_base_x*f_2_x
-        c_in_base_y = -G_t*axis_y_rps_axes1_in_base_y - axis_x_rps_axes1_in_base_y*f_2_x
-        c_in_base_z = -G_t*axis_y_rps_axes1_in_base_z - axis_x_rps_axes1_in_base_z*f_2_x
-        # (E5) moment that actuators and external wrench must give
-        R_a_t = c_in_base_z*q_in_base_y - c_in_base_y*q_in_base_z
-        R_a_t_2 = c_in_base_x*q_in_base_z - c_in_base_z*q_in_base_x
-        R_a_t_3 = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y
+        # (rps-W_1) centripetal tensor of link 1
+        rps_W_1_t = rps_qd_1*rps_qd_1
+        # (rps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        rps_g_r1_x = rps_c_1*rps_g_r0_x + rps_g_r0_y*rps_s_1
+        rps_g_r1_y = rps_c_1*rps_g_r0_y - rps_g_r0_x*rps_s_1
+        # (rps-H_a_2) moment of the column's unit force about the platform origin
+        rps_H_a_2_x = (
+        axis_x_rps_axes1_in_base_z*rps_q_in_base_y - axis_x_rps_axes1_in_base_y*rps_q_in_base_z
+        )
+        rps_H_a_2_y = (
+        axis_x_rps_axes1_in_base_x*rps_q_in_base_z - axis_x_rps_axes1_in_base_z*rps_q_in_base_x
+        )
+        rps_H_a_2_z = (
+        axis_x_rps_axes1_in_base_y*rps_q_in_base_x - axis_x_rps_axes1_in_base_x*rps_q_in_base_y
+        )
+        # (rps-Hk_a_1) moment of the column's unit force about the platform origin
+        rps_Hk_a_1_x = rps_base_frame_zz*rps_q_in_base_y - rps_base_frame_yz*rps_q_in_base_z
+        rps_Hk_a_1_y = rps_base_frame_xz*rps_q_in_base_z - rps_base_frame_zz*rps_q_in_base_x
+        rps_Hk_a_1_z = rps_base_frame_yz*rps_q_in_base_x - rps_base_frame_xz*rps_q_in_base_y
+        # (rps-a_p) acceleration of the connection point without its centripetal part
+        rps_a_p_x = t_ddot_x + alpha_y*rps_q_in_base_z - alpha_z*rps_q_in_base_y
+        rps_a_p_y = t_ddot_y + alpha_z*rps_q_in_base_x - alpha_x*rps_q_in_base_z
+        rps_a_p_z = t_ddot_z + alpha_x*rps_q_in_base_y - alpha_y*rps_q_in_base_x
+        # (rps-S_ddot) acceleration of the connection point
+        rps_S_ddot_x = rps_a_p_x + omega_y*rps_S_dot_t_3 - omega_z*rps_S_dot_t_2
+        rps_S_ddot_y = rps_a_p_y + omega_z*rps_S_dot_t - omega_x*rps_S_dot_t_3
+        rps_S_ddot_z = rps_a_p_z + omega_x*rps_S_dot_t_2 - omega_y*rps_S_dot_t
+        rps_S_ddot_tip_y = (
+        axis_y_rps_axes1_in_base_x*rps_S_ddot_x + axis_y_rps_axes1_in_base_y*rps_S_ddot_y +
+            axis_y_rps_axes1_in_base_z*rps_S_ddot_z
+        )
+        # (rps-rel) acceleration of the connection point left to the joint accelerations
+        rps_rel_y = rps_S_ddot_tip_y - 2.0*rps_S_dot_tip_x*rps_qd_1
+        # (rps-qdd_1) acceleration of joint 1
+        rps_qdd_1 = inv_rps_root_1*rps_rel_y
+        # (rps-acc_2) acceleration of the reference point of link 2, less gravity
+        rps_acc_2_x = (
+        axis_x_rps_axes1_in_base_x*rps_S_ddot_x + axis_x_rps_axes1_in_base_y*rps_S_ddot_y +
+            axis_x_rps_axes1_in_base_z*rps_S_ddot_z - rps_g_r1_x
+        )
+        rps_acc_2_y = rps_S_ddot_tip_y - rps_g_r1_y
+        # (rps-f_2) inertia force of link 2 less its weight
+        rps_f_2_x = rps_acc_2_x*rps_link2_mass - rps_W_1_t*rps_h_2_x - rps_h_2_y*rps_qdd_1
+        rps_f_2_y = rps_acc_2_y*rps_link2_mass + rps_h_2_x*rps_qdd_1 - rps_W_1_t*rps_h_2_y
+        # (rps-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rps_mu_1_z = (
+        rps_J_group_1_zz*rps_qdd_1 + rps_acc_2_y*rps_h_2_x + rps_g_r1_x*rps_h_1_y -
+            rps_acc_2_x*rps_h_2_y - rps_g_r1_y*rps_h_1_x
+        )
+        # (rps-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rps_G_t = rps_f_2_y + inv_rps_root_1*rps_mu_1_z
+        # (rps-c) leg force on the platform without actuation and without the mass at the connection point
+        rps_c_in_base_x = (
+        -axis_x_rps_axes1_in_base_x*rps_f_2_x - axis_y_rps_axes1_in_base_x*rps_G_t
+        )
+        rps_c_in_base_y = (
+        -axis_x_rps_axes1_in_base_y*rps_f_2_x - axis_y_rps_axes1_in_base_y*rps_G_t
+        )
+        rps_c_in_base_z = (
+        -axis_x_rps_axes1_in_base_z*rps_f_2_x - axis_y_rps_axes1_in_base_z*rps_G_t
+        )
+        # (R_a) moment that actuators and external wrench must give
+        rps_R_a_t = rps_c_in_base_z*rps_q_in_base_y - rps_c_in_base_y*rps_q_in_base_z
+        rps_R_a_t_2 = rps_c_in_base_x*rps_q_in_base_z - rps_c_in_base_z*rps_q_in_base_x
+        rps_R_a_t_3 = rps_c_in_base_y*rps_q_in_base_x - rps_c_in_base_x*rps_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_1) >
-            _TOLERANCE * 0.75))
+        ok & m.every(leg, (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_root_1)
+            > _TOLERANCE * 0.75))
         )
         sums = m.added(sums, leg, (
-        c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
+        rps_c_in_base_x, rps_c_in_base_y, rps_c_in_base_z, rps_R_a_t, rps_R_a_t_2,
+            rps_R_a_t_3,
         ))
         out_H[_H_rps[0][leg]] = axis_x_rps_axes1_in_base_x
         out_H[_H_rps[1][leg]] = axis_x_rps_axes1_in_base_y
         out_H[_H_rps[2][leg]] = axis_x_rps_axes1_in_base_z
-        out_H[_H_rps[3][leg]] = H_a_2_x
-        out_H[_H_rps[4][leg]] = H_a_2_y
-        out_H[_H_rps[5][leg]] = H_a_2_z
+        out_H[_H_rps[3][leg]] = rps_H_a_2_x
+        out_H[_H_rps[4][leg]] = rps_H_a_2_y
+        out_H[_H_rps[5][leg]] = rps_H_a_2_z
         out_Hk[_Hk_rps[0][leg]] = rps_base_frame_xz
         out_Hk[_Hk_rps[1][leg]] = rps_base_frame_yz
         out_Hk[_Hk_rps[2][leg]] = rps_base_frame_zz
-        out_Hk[_Hk_rps[3][leg]] = Hk_a_1_x
-        out_Hk[_Hk_rps[4][leg]] = Hk_a_1_y
-        out_Hk[_Hk_rps[5][leg]] = Hk_a_1_z
+        out_Hk[_Hk_rps[3][leg]] = rps_Hk_a_1_x
+        out_Hk[_Hk_rps[4][leg]] = rps_Hk_a_1_y
+        out_Hk[_Hk_rps[5][leg]] = rps_Hk_a_1_z
     total_rps_x, total_rps_y, total_rps_z, total_rps_x_2, total_rps_y_2, total_rps_z_2 = sums
-    # (E4) force that actuators and external wrench must give
+    # (R_t) force that actuators and external wrench must give
     R_t_x = f_p_x - total_rps_x
     R_t_y = f_p_y - total_rps_y
     R_t_z = f_p_z - total_rps_z
-    # (E5) moment that actuators and external wrench must give
+    # (R_a) moment that actuators and external wrench must give
     R_a_x = mu_p_in_base_x - total_rps_x_2
     R_a_y = mu_p_in_base_y - total_rps_y_2
     R_a_z = mu_p_in_base_z - total_rps_z_2
@@ -2570,38 +2712,43 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        branch_1, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx, rps_base_frame_yy,
+        rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx, rps_base_frame_yy,
             rps_base_frame_zx, rps_base_frame_zy, rps_base_point_x, rps_base_point_y,
-            rps_base_point_z, rps_platform_point_x, rps_platform_point_y, rps_platform_point_z,
+            rps_base_point_z, rps_branch_1, rps_platform_point_x, rps_platform_point_y,
+            rps_platform_point_z,
         ) = k
-        # (rps-K1) from the base point to the connection point
-        S_x = (
+        # (rps-S) from the base point to the connection point
+        rps_S_x = (
         t_x + R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z -
             rps_base_point_x
         )
-        S_y = (
+        rps_S_y = (
         t_y + R_yx*rps_platform_point_x + R_yy*rps_platform_point_y + R_yz*rps_platform_point_z -
             rps_base_point_y
         )
-        S_z = (
+        rps_S_z = (
         t_z + R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z -
             rps_base_point_z
         )
-        # (rps-K2) component along the reference direction
-        px_1 = S_x*rps_base_frame_xx + S_y*rps_base_frame_yx + S_z*rps_base_frame_zx
-        # (rps-K3) component across the reference direction
-        py_1 = S_x*rps_base_frame_xy + S_y*rps_base_frame_yy + S_z*rps_base_frame_zy
-        # (rps-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rps-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rps-K7) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        # (rps-K9) displacement of joint 1
-        q_1 = atan2(inv_root_1*py_1, inv_root_1*px_1)
-        ok = ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625))
-        out_q[_q_rps[0][leg]] = q_1
-        out_q[_q_rps[1][leg]] = root_1
+        # (rps-py_1) component across the reference direction
+        rps_py_1 = (
+        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
+        )
+        # (rps-px_1) component along the reference direction
+        rps_px_1 = (
+        rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
+        )
+        # (rps-rho2_1) squared amplitude
+        rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
+        # (rps-root_1) amplitude, with the sign of the branch
+        rps_root_1 = rps_branch_1*sqrt(rps_rho2_1)
+        # (rps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rps_root_1 = 1.0/rps_root_1
+        # (rps-q_1) displacement of joint 1
+        rps_q_1 = atan2(inv_rps_root_1*rps_py_1, inv_rps_root_1*rps_px_1)
+        ok = ok & m.every(leg, (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625))
+        out_q[_q_rps[0][leg]] = rps_q_1
+        out_q[_q_rps[1][leg]] = rps_root_1
     return ok, (out_q,)
 
 
@@ -2661,56 +2808,62 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        branch_1, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx, rps_base_frame_yy,
+        rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx, rps_base_frame_yy,
             rps_base_frame_zx, rps_base_frame_zy, rps_base_point_x, rps_base_point_y,
-            rps_base_point_z, rps_platform_point_x, rps_platform_point_y, rps_platform_point_z,
+            rps_base_point_z, rps_branch_1, rps_platform_point_x, rps_platform_point_y,
+            rps_platform_point_z,
         ) = k
-        # (rps-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (rps-S) from the base point to the connection point
+        rps_q_in_base_x = (
         R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z
         )
-        q_in_base_y = (
+        rps_q_in_base_y = (
         R_yx*rps_platform_point_x + R_yy*rps_platform_point_y + R_yz*rps_platform_point_z
         )
-        q_in_base_z = (
+        rps_q_in_base_z = (
         R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rps_base_point_x
-        S_y = q_in_base_y + t_y - rps_base_point_y
-        S_z = q_in_base_z + t_z - rps_base_point_z
-        # (rps-K2) component along the reference direction
-        px_1 = S_x*rps_base_frame_xx + S_y*rps_base_frame_yx + S_z*rps_base_frame_zx
-        # (rps-K3) component across the reference direction
-        py_1 = S_x*rps_base_frame_xy + S_y*rps_base_frame_yy + S_z*rps_base_frame_zy
-        # (rps-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rps-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rps-K7) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*px_1
-        # (rps-K8) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*py_1
-        # (rps-V1) velocity of the connection point
-        S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_tip_x = (
-        S_dot_x*(c_1*rps_base_frame_xx + rps_base_frame_xy*s_1) + S_dot_y*(c_1*rps_base_frame_yx +
-            rps_base_frame_yy*s_1) + S_dot_z*(c_1*rps_base_frame_zx + rps_base_frame_zy*s_1)
+        rps_S_x = rps_q_in_base_x + t_x - rps_base_point_x
+        rps_S_y = rps_q_in_base_y + t_y - rps_base_point_y
+        rps_S_z = rps_q_in_base_z + t_z - rps_base_point_z
+        # (rps-py_1) component across the reference direction
+        rps_py_1 = (
+        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
         )
-        # (rps-V6) rate of joint 1
-        qd_1 = (
-        inv_root_1*(S_dot_x*(c_1*rps_base_frame_xy - rps_base_frame_xx*s_1) +
-            S_dot_y*(c_1*rps_base_frame_yy - rps_base_frame_yx*s_1) +
-            S_dot_z*(c_1*rps_base_frame_zy - rps_base_frame_zx*s_1))
+        # (rps-px_1) component along the reference direction
+        rps_px_1 = (
+        rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
+        )
+        # (rps-rho2_1) squared amplitude
+        rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
+        # (rps-root_1) amplitude, with the sign of the branch
+        rps_root_1 = rps_branch_1*sqrt(rps_rho2_1)
+        # (rps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rps_root_1 = 1.0/rps_root_1
+        rps_c_1 = inv_rps_root_1*rps_px_1
+        # (rps-s_1) sine of the angle of joint 1 from its reference direction
+        rps_s_1 = inv_rps_root_1*rps_py_1
+        # (rps-S_dot) velocity of the connection point
+        rps_S_dot_x = t_dot_x + omega_y*rps_q_in_base_z - omega_z*rps_q_in_base_y
+        rps_S_dot_y = t_dot_y + omega_z*rps_q_in_base_x - omega_x*rps_q_in_base_z
+        rps_S_dot_z = t_dot_z + omega_x*rps_q_in_base_y - omega_y*rps_q_in_base_x
+        rps_S_dot_tip_x = (
+        rps_S_dot_x*(rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1) +
+            rps_S_dot_y*(rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1) +
+            rps_S_dot_z*(rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1)
+        )
+        # (rps-qd_2) rate of joint 2
+        rps_qd_1 = (
+        inv_rps_root_1*(rps_S_dot_x*(rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1) +
+            rps_S_dot_y*(rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1) +
+            rps_S_dot_z*(rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1))
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_1) >
-            _TOLERANCE * 0.75))
+        ok & m.every(leg, (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_root_1)
+            > _TOLERANCE * 0.75))
         )
-        out_qd[_qd_rps[0][leg]] = qd_1
-        out_qd[_qd_rps[1][leg]] = S_dot_tip_x
+        out_qd[_qd_rps[0][leg]] = rps_qd_1
+        out_qd[_qd_rps[1][leg]] = rps_S_dot_tip_x
     return ok, (out_qd,)
 
 
@@ -2783,84 +2936,89 @@ def _run_joint_accelerations(m, X, V, A):
     out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
-        branch_1, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx, rps_base_frame_yy,
+        rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx, rps_base_frame_yy,
             rps_base_frame_zx, rps_base_frame_zy, rps_base_point_x, rps_base_point_y,
-            rps_base_point_z, rps_platform_point_x, rps_platform_point_y, rps_platform_point_z,
+            rps_base_point_z, rps_branch_1, rps_platform_point_x, rps_platform_point_y,
+            rps_platform_point_z,
         ) = k
-        # (rps-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (rps-S) from the base point to the connection point
+        rps_q_in_base_x = (
         R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z
         )
-        q_in_base_y = (
+        rps_q_in_base_y = (
         R_yx*rps_platform_point_x + R_yy*rps_platform_point_y + R_yz*rps_platform_point_z
         )
-        q_in_base_z = (
+        rps_q_in_base_z = (
         R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rps_base_point_x
-        S_y = q_in_base_y + t_y - rps_base_point_y
-        S_z = q_in_base_z + t_z - rps_base_point_z
-        # (rps-K2) component along the reference direction
-        px_1 = S_x*rps_base_frame_xx + S_y*rps_base_frame_yx + S_z*rps_base_frame_zx
-        # (rps-K3) component across the reference direction
-        py_1 = S_x*rps_base_frame_xy + S_y*rps_base_frame_yy + S_z*rps_base_frame_zy
-        # (rps-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rps-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rps-K7) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*px_1
-        # (rps-K8) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*py_1
-        # (rps-V4) reciprocal vector 1
-        axis_y_rps_axes1_in_base_x = c_1*rps_base_frame_xy - rps_base_frame_xx*s_1
-        axis_y_rps_axes1_in_base_y = c_1*rps_base_frame_yy - rps_base_frame_yx*s_1
-        axis_y_rps_axes1_in_base_z = c_1*rps_base_frame_zy - rps_base_frame_zx*s_1
-        axis_x_rps_axes1_in_base_x = c_1*rps_base_frame_xx + rps_base_frame_xy*s_1
-        axis_x_rps_axes1_in_base_y = c_1*rps_base_frame_yx + rps_base_frame_yy*s_1
-        axis_x_rps_axes1_in_base_z = c_1*rps_base_frame_zx + rps_base_frame_zy*s_1
-        # (rps-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_tip_x = (
-        S_dot_x*axis_x_rps_axes1_in_base_x + S_dot_y*axis_x_rps_axes1_in_base_y +
-            S_dot_z*axis_x_rps_axes1_in_base_z
+        rps_S_x = rps_q_in_base_x + t_x - rps_base_point_x
+        rps_S_y = rps_q_in_base_y + t_y - rps_base_point_y
+        rps_S_z = rps_q_in_base_z + t_z - rps_base_point_z
+        # (rps-py_1) component across the reference direction
+        rps_py_1 = (
+        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
         )
-        # (rps-V6) rate of joint 1
-        qd_1 = (
-        inv_root_1*(S_dot_x*axis_y_rps_axes1_in_base_x + S_dot_y*axis_y_rps_axes1_in_base_y +
-            S_dot_z*axis_y_rps_axes1_in_base_z)
+        # (rps-px_1) component along the reference direction
+        rps_px_1 = (
+        rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
         )
-        # (rps-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (rps-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        # (rps-A5) acceleration of the connection point left to the joint accelerations
-        rel_x = (
-        S_ddot_x*axis_x_rps_axes1_in_base_x + S_ddot_y*axis_x_rps_axes1_in_base_y +
-            S_ddot_z*axis_x_rps_axes1_in_base_z + qd_1*qd_1*root_1
+        # (rps-rho2_1) squared amplitude
+        rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
+        # (rps-root_1) amplitude, with the sign of the branch
+        rps_root_1 = rps_branch_1*sqrt(rps_rho2_1)
+        # (rps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rps_root_1 = 1.0/rps_root_1
+        rps_c_1 = inv_rps_root_1*rps_px_1
+        # (rps-s_1) sine of the angle of joint 1 from its reference direction
+        rps_s_1 = inv_rps_root_1*rps_py_1
+        # (rps-w_1) reciprocal vector 1
+        axis_y_rps_axes1_in_base_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1
+        axis_y_rps_axes1_in_base_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1
+        axis_y_rps_axes1_in_base_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1
+        axis_x_rps_axes1_in_base_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
+        axis_x_rps_axes1_in_base_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
+        axis_x_rps_axes1_in_base_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
+        # (rps-S_dot) velocity of the connection point
+        rps_S_dot_t = omega_y*rps_q_in_base_z - omega_z*rps_q_in_base_y
+        rps_S_dot_t_2 = omega_z*rps_q_in_base_x - omega_x*rps_q_in_base_z
+        rps_S_dot_t_3 = omega_x*rps_q_in_base_y - omega_y*rps_q_in_base_x
+        rps_S_dot_x = rps_S_dot_t + t_dot_x
+        rps_S_dot_y = rps_S_dot_t_2 + t_dot_y
+        rps_S_dot_z = rps_S_dot_t_3 + t_dot_z
+        rps_S_dot_tip_x = (
+        axis_x_rps_axes1_in_base_x*rps_S_dot_x + axis_x_rps_axes1_in_base_y*rps_S_dot_y +
+            axis_x_rps_axes1_in_base_z*rps_S_dot_z
         )
-        rel_y = (
-        S_ddot_x*axis_y_rps_axes1_in_base_x + S_ddot_y*axis_y_rps_axes1_in_base_y +
-            S_ddot_z*axis_y_rps_axes1_in_base_z - 2.0*S_dot_tip_x*qd_1
+        # (rps-qd_2) rate of joint 2
+        rps_qd_1 = (
+        inv_rps_root_1*(axis_y_rps_axes1_in_base_x*rps_S_dot_x +
+            axis_y_rps_axes1_in_base_y*rps_S_dot_y + axis_y_rps_axes1_in_base_z*rps_S_dot_z)
         )
-        # (rps-A7) acceleration of joint 1
-        qdd_1 = inv_root_1*rel_y
+        # (rps-a_p) acceleration of the connection point without its centripetal part
+        rps_a_p_x = t_ddot_x + alpha_y*rps_q_in_base_z - alpha_z*rps_q_in_base_y
+        rps_a_p_y = t_ddot_y + alpha_z*rps_q_in_base_x - alpha_x*rps_q_in_base_z
+        rps_a_p_z = t_ddot_z + alpha_x*rps_q_in_base_y - alpha_y*rps_q_in_base_x
+        # (rps-S_ddot) acceleration of the connection point
+        rps_S_ddot_x = rps_a_p_x + omega_y*rps_S_dot_t_3 - omega_z*rps_S_dot_t_2
+        rps_S_ddot_y = rps_a_p_y + omega_z*rps_S_dot_t - omega_x*rps_S_dot_t_3
+        rps_S_ddot_z = rps_a_p_z + omega_x*rps_S_dot_t_2 - omega_y*rps_S_dot_t
+        # (rps-rel) acceleration of the connection point left to the joint accelerations
+        rps_rel_x = (
+        axis_x_rps_axes1_in_base_x*rps_S_ddot_x + axis_x_rps_axes1_in_base_y*rps_S_ddot_y +
+            axis_x_rps_axes1_in_base_z*rps_S_ddot_z + rps_qd_1*rps_qd_1*rps_root_1
+        )
+        rps_rel_y = (
+        axis_y_rps_axes1_in_base_x*rps_S_ddot_x + axis_y_rps_axes1_in_base_y*rps_S_ddot_y +
+            axis_y_rps_axes1_in_base_z*rps_S_ddot_z - 2.0*rps_S_dot_tip_x*rps_qd_1
+        )
+        # (rps-qdd_1) acceleration of joint 1
+        rps_qdd_1 = inv_rps_root_1*rps_rel_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_1) >
-            _TOLERANCE * 0.75))
+        ok & m.every(leg, (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_root_1)
+            > _TOLERANCE * 0.75))
         )
-        out_qdd[_qdd_rps[0][leg]] = qdd_1
-        out_qdd[_qdd_rps[1][leg]] = rel_x
+        out_qdd[_qdd_rps[0][leg]] = rps_qdd_1
+        out_qdd[_qdd_rps[1][leg]] = rps_rel_x
     return ok, (out_qdd,)
 
 
@@ -2910,22 +3068,24 @@ def _run_constraints(m, X):
             rps_base_point_y, rps_base_point_z, rps_platform_point_x, rps_platform_point_y,
             rps_platform_point_z,
         ) = k
-        # (rps-K1) from the base point to the connection point
-        S_x = (
+        # (rps-S) from the base point to the connection point
+        rps_S_x = (
         t_x + R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z -
             rps_base_point_x
         )
-        S_y = (
+        rps_S_y = (
         t_y + R_yx*rps_platform_point_x + R_yy*rps_platform_point_y + R_yz*rps_platform_point_z -
             rps_base_point_y
         )
-        S_z = (
+        rps_S_z = (
         t_z + R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z -
             rps_base_point_z
         )
-        # (rps-K10) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*rps_base_frame_xz + S_y*rps_base_frame_yz + S_z*rps_base_frame_zz
-        out_constraints[_constraints_rps[0][leg]] = xi_1_t
+        # (rps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rps_xi_1_t = (
+        rps_S_x*rps_base_frame_xz + rps_S_y*rps_base_frame_yz + rps_S_z*rps_base_frame_zz
+        )
+        out_constraints[_constraints_rps[0][leg]] = rps_xi_1_t
     return ok, (out_constraints,)
 
 
@@ -3000,106 +3160,120 @@ def _run_legs(m, X, V, A):
     out_constraint_direction = m.zeros("constraint_direction")
     for leg, k in legs[0]:
         (
-        J_group_1_zz, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rps_base_frame_xx,
-            rps_base_frame_xy, rps_base_frame_xz, rps_base_frame_yx, rps_base_frame_yy,
-            rps_base_frame_yz, rps_base_frame_zx, rps_base_frame_zy, rps_base_frame_zz,
-            rps_base_point_x, rps_base_point_y, rps_base_point_z, rps_link2_mass,
-            rps_platform_point_x, rps_platform_point_y, rps_platform_point_z,
+        rps_J_group_1_zz, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_xz,
+            rps_base_frame_yx, rps_base_frame_yy, rps_base_frame_yz, rps_base_frame_zx,
+            rps_base_frame_zy, rps_base_frame_zz, rps_base_point_x, rps_base_point_y,
+            rps_base_point_z, rps_branch_1, rps_g_r0_x, rps_g_r0_y, rps_h_1_x, rps_h_1_y,
+            rps_h_2_x, rps_h_2_y, rps_link2_mass, rps_platform_point_x, rps_platform_point_y,
+            rps_platform_point_z,
         ) = k
-        # (rps-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (rps-S) from the base point to the connection point
+        rps_q_in_base_x = (
         R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z
         )
-        q_in_base_y = (
+        rps_q_in_base_y = (
         R_yx*rps_platform_point_x + R_yy*rps_platform_point_y + R_yz*rps_platform_point_z
         )
-        q_in_base_z = (
+        rps_q_in_base_z = (
         R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rps_base_point_x
-        S_y = q_in_base_y + t_y - rps_base_point_y
-        S_z = q_in_base_z + t_z - rps_base_point_z
-        # (rps-K2) component along the reference direction
-        px_1 = S_x*rps_base_frame_xx + S_y*rps_base_frame_yx + S_z*rps_base_frame_zx
-        # (rps-K3) component across the reference direction
-        py_1 = S_x*rps_base_frame_xy + S_y*rps_base_frame_yy + S_z*rps_base_frame_zy
-        # (rps-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rps-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rps-K7) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*px_1
-        # (rps-K8) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*py_1
-        # (rps-V4) reciprocal vector 1
-        axis_y_rps_axes1_in_base_x = c_1*rps_base_frame_xy - rps_base_frame_xx*s_1
-        axis_y_rps_axes1_in_base_y = c_1*rps_base_frame_yy - rps_base_frame_yx*s_1
-        axis_y_rps_axes1_in_base_z = c_1*rps_base_frame_zy - rps_base_frame_zx*s_1
-        axis_x_rps_axes1_in_base_x = c_1*rps_base_frame_xx + rps_base_frame_xy*s_1
-        axis_x_rps_axes1_in_base_y = c_1*rps_base_frame_yx + rps_base_frame_yy*s_1
-        axis_x_rps_axes1_in_base_z = c_1*rps_base_frame_zx + rps_base_frame_zy*s_1
-        # (rps-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_tip_x = (
-        S_dot_x*axis_x_rps_axes1_in_base_x + S_dot_y*axis_x_rps_axes1_in_base_y +
-            S_dot_z*axis_x_rps_axes1_in_base_z
+        rps_S_x = rps_q_in_base_x + t_x - rps_base_point_x
+        rps_S_y = rps_q_in_base_y + t_y - rps_base_point_y
+        rps_S_z = rps_q_in_base_z + t_z - rps_base_point_z
+        # (rps-py_1) component across the reference direction
+        rps_py_1 = (
+        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
         )
-        # (rps-V6) rate of joint 1
-        qd_1 = (
-        inv_root_1*(S_dot_x*axis_y_rps_axes1_in_base_x + S_dot_y*axis_y_rps_axes1_in_base_y +
-            S_dot_z*axis_y_rps_axes1_in_base_z)
+        # (rps-px_1) component along the reference direction
+        rps_px_1 = (
+        rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
         )
-        # (rps-V9) centripetal tensor of link 1
-        W_1_t = qd_1*qd_1
-        # (rps-N5) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        g_r1_x = c_1*g_r0_x + g_r0_y*s_1
-        g_r1_y = c_1*g_r0_y - g_r0_x*s_1
-        # (rps-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (rps-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        S_ddot_tip_y = (
-        S_ddot_x*axis_y_rps_axes1_in_base_x + S_ddot_y*axis_y_rps_axes1_in_base_y +
-            S_ddot_z*axis_y_rps_axes1_in_base_z
+        # (rps-rho2_1) squared amplitude
+        rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
+        # (rps-root_1) amplitude, with the sign of the branch
+        rps_root_1 = rps_branch_1*sqrt(rps_rho2_1)
+        # (rps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rps_root_1 = 1.0/rps_root_1
+        rps_c_1 = inv_rps_root_1*rps_px_1
+        # (rps-s_1) sine of the angle of joint 1 from its reference direction
+        rps_s_1 = inv_rps_root_1*rps_py_1
+        # (rps-w_1) reciprocal vector 1
+        axis_y_rps_axes1_in_base_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1
+        axis_y_rps_axes1_in_base_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1
+        axis_y_rps_axes1_in_base_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1
+        axis_x_rps_axes1_in_base_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
+        axis_x_rps_axes1_in_base_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
+        axis_x_rps_axes1_in_base_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
+        # (rps-S_dot) velocity of the connection point
+        rps_S_dot_t = omega_y*rps_q_in_base_z - omega_z*rps_q_in_base_y
+        rps_S_dot_t_2 = omega_z*rps_q_in_base_x - omega_x*rps_q_in_base_z
+        rps_S_dot_t_3 = omega_x*rps_q_in_base_y - omega_y*rps_q_in_base_x
+        rps_S_dot_x = rps_S_dot_t + t_dot_x
+        rps_S_dot_y = rps_S_dot_t_2 + t_dot_y
+        rps_S_dot_z = rps_S_dot_t_3 + t_dot_z
+        rps_S_dot_tip_x = (
+        axis_x_rps_axes1_in_base_x*rps_S_dot_x + axis_x_rps_axes1_in_base_y*rps_S_dot_y +
+            axis_x_rps_axes1_in_base_z*rps_S_dot_z
         )
-        # (rps-A5) acceleration of the connection point left to the joint accelerations
-        rel_y = S_ddot_tip_y - 2.0*S_dot_tip_x*qd_1
-        # (rps-A7) acceleration of joint 1
-        qdd_1 = inv_root_1*rel_y
-        # (rps-N3) acceleration of the reference point of link 2, less gravity
-        acc_2_x = (
-        S_ddot_x*axis_x_rps_axes1_in_base_x + S_ddot_y*axis_x_rps_axes1_in_base_y +
-            S_ddot_z*axis_x_rps_axes1_in_base_z - g_r1_x
+        # (rps-qd_2) rate of joint 2
+        rps_qd_1 = (
+        inv_rps_root_1*(axis_y_rps_axes1_in_base_x*rps_S_dot_x +
+            axis_y_rps_axes1_in_base_y*rps_S_dot_y + axis_y_rps_axes1_in_base_z*rps_S_dot_z)
         )
-        acc_2_y = S_ddot_tip_y - g_r1_y
-        # (rps-N9) inertia force of link 2 less its weight
-        f_2_x = acc_2_x*rps_link2_mass - W_1_t*h_2_x - h_2_y*qdd_1
-        f_2_y = acc_2_y*rps_link2_mass + h_2_x*qdd_1 - W_1_t*h_2_y
-        # (rps-N15) inertia moment of the links that turn with link 1, about their reference points
-        mu_1_z = J_group_1_zz*qdd_1 + acc_2_y*h_2_x + g_r1_x*h_1_y - acc_2_x*h_2_y - g_r1_y*h_1_x
-        # (rps-N27) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_t = f_2_y + inv_root_1*mu_1_z
-        # (rps-N30) leg force on the platform without actuation and without the mass at the connection point
-        c_in_base_x = -G_t*axis_y_rps_axes1_in_base_x - axis_x_rps_axes1_in_base_x*f_2_x
-        c_in_base_y = -G_t*axis_y_rps_axes1_in_base_y - axis_x_rps_axes1_in_base_y*f_2_x
-        c_in_base_z = -G_t*axis_y_rps_axes1_in_base_z - axis_x_rps_axes1_in_base_z*f_2_x
+        # (rps-W_1) centripetal tensor of link 1
+        rps_W_1_t = rps_qd_1*rps_qd_1
+        # (rps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        rps_g_r1_x = rps_c_1*rps_g_r0_x + rps_g_r0_y*rps_s_1
+        rps_g_r1_y = rps_c_1*rps_g_r0_y - rps_g_r0_x*rps_s_1
+        # (rps-a_p) acceleration of the connection point without its centripetal part
+        rps_a_p_x = t_ddot_x + alpha_y*rps_q_in_base_z - alpha_z*rps_q_in_base_y
+        rps_a_p_y = t_ddot_y + alpha_z*rps_q_in_base_x - alpha_x*rps_q_in_base_z
+        rps_a_p_z = t_ddot_z + alpha_x*rps_q_in_base_y - alpha_y*rps_q_in_base_x
+        # (rps-S_ddot) acceleration of the connection point
+        rps_S_ddot_x = rps_a_p_x + omega_y*rps_S_dot_t_3 - omega_z*rps_S_dot_t_2
+        rps_S_ddot_y = rps_a_p_y + omega_z*rps_S_dot_t - omega_x*rps_S_dot_t_3
+        rps_S_ddot_z = rps_a_p_z + omega_x*rps_S_dot_t_2 - omega_y*rps_S_dot_t
+        rps_S_ddot_tip_y = (
+        axis_y_rps_axes1_in_base_x*rps_S_ddot_x + axis_y_rps_axes1_in_base_y*rps_S_ddot_y +
+            axis_y_rps_axes1_in_base_z*rps_S_ddot_z
+        )
+        # (rps-rel) acceleration of the connection point left to the joint accelerations
+        rps_rel_y = rps_S_ddot_tip_y - 2.0*rps_S_dot_tip_x*rps_qd_1
+        # (rps-qdd_1) acceleration of joint 1
+        rps_qdd_1 = inv_rps_root_1*rps_rel_y
+        # (rps-acc_2) acceleration of the reference point of link 2, less gravity
+        rps_acc_2_x = (
+        axis_x_rps_axes1_in_base_x*rps_S_ddot_x + axis_x_rps_axes1_in_base_y*rps_S_ddot_y +
+            axis_x_rps_axes1_in_base_z*rps_S_ddot_z - rps_g_r1_x
+        )
+        rps_acc_2_y = rps_S_ddot_tip_y - rps_g_r1_y
+        # (rps-f_2) inertia force of link 2 less its weight
+        rps_f_2_x = rps_acc_2_x*rps_link2_mass - rps_W_1_t*rps_h_2_x - rps_h_2_y*rps_qdd_1
+        rps_f_2_y = rps_acc_2_y*rps_link2_mass + rps_h_2_x*rps_qdd_1 - rps_W_1_t*rps_h_2_y
+        # (rps-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rps_mu_1_z = (
+        rps_J_group_1_zz*rps_qdd_1 + rps_acc_2_y*rps_h_2_x + rps_g_r1_x*rps_h_1_y -
+            rps_acc_2_x*rps_h_2_y - rps_g_r1_y*rps_h_1_x
+        )
+        # (rps-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rps_G_t = rps_f_2_y + inv_rps_root_1*rps_mu_1_z
+        # (rps-c) leg force on the platform without actuation and without the mass at the connection point
+        rps_c_in_base_x = (
+        -axis_x_rps_axes1_in_base_x*rps_f_2_x - axis_y_rps_axes1_in_base_x*rps_G_t
+        )
+        rps_c_in_base_y = (
+        -axis_x_rps_axes1_in_base_y*rps_f_2_x - axis_y_rps_axes1_in_base_y*rps_G_t
+        )
+        rps_c_in_base_z = (
+        -axis_x_rps_axes1_in_base_z*rps_f_2_x - axis_y_rps_axes1_in_base_z*rps_G_t
+        )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_1) >
-            _TOLERANCE * 0.75))
+        ok & m.every(leg, (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_root_1)
+            > _TOLERANCE * 0.75))
         )
-        out_leg_force[_leg_force_rps[0][leg]] = c_in_base_x
-        out_leg_force[_leg_force_rps[1][leg]] = c_in_base_y
-        out_leg_force[_leg_force_rps[2][leg]] = c_in_base_z
+        out_leg_force[_leg_force_rps[0][leg]] = rps_c_in_base_x
+        out_leg_force[_leg_force_rps[1][leg]] = rps_c_in_base_y
+        out_leg_force[_leg_force_rps[2][leg]] = rps_c_in_base_z
         out_drive[_drive_rps[0][leg]] = axis_x_rps_axes1_in_base_x
         out_drive[_drive_rps[1][leg]] = axis_x_rps_axes1_in_base_y
         out_drive[_drive_rps[2][leg]] = axis_x_rps_axes1_in_base_z
@@ -3151,8 +3325,8 @@ def _run_potential(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_potential = m.zeros("potential")
-    # (V1) potential energy
-    potential_t_2 = (
+    # (potential) potential energy
+    potential_t = (
     gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + platform_mass*t_x) +
         gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + platform_mass*t_y) +
         gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + platform_mass*t_z)
@@ -3160,53 +3334,58 @@ def _run_potential(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        b_r0_x, b_r0_y, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, potential_t,
-            rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx, rps_base_frame_yy,
-            rps_base_frame_zx, rps_base_frame_zy, rps_base_point_x, rps_base_point_y,
-            rps_base_point_z, rps_link1_mass, rps_link2_mass, rps_platform_point_x,
-            rps_platform_point_y, rps_platform_point_z,
+        rps_b_r0_x, rps_b_r0_y, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx,
+            rps_base_frame_yy, rps_base_frame_zx, rps_base_frame_zy, rps_base_point_x,
+            rps_base_point_y, rps_base_point_z, rps_branch_1, rps_g_r0_x, rps_g_r0_y, rps_h_1_x,
+            rps_h_1_y, rps_h_2_x, rps_h_2_y, rps_link1_mass, rps_link2_mass, rps_platform_point_x,
+            rps_platform_point_y, rps_platform_point_z, rps_potential_t,
         ) = k
-        # (rps-K1) from the base point to the connection point
-        S_x = (
+        # (rps-S) from the base point to the connection point
+        rps_S_x = (
         t_x + R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z -
             rps_base_point_x
         )
-        S_y = (
+        rps_S_y = (
         t_y + R_yx*rps_platform_point_x + R_yy*rps_platform_point_y + R_yz*rps_platform_point_z -
             rps_base_point_y
         )
-        S_z = (
+        rps_S_z = (
         t_z + R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z -
             rps_base_point_z
         )
-        # (rps-K2) component along the reference direction
-        px_1 = S_x*rps_base_frame_xx + S_y*rps_base_frame_yx + S_z*rps_base_frame_zx
-        # (rps-K3) component across the reference direction
-        py_1 = S_x*rps_base_frame_xy + S_y*rps_base_frame_yy + S_z*rps_base_frame_zy
-        # (rps-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rps-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rps-K7) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*px_1
-        # (rps-K8) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*py_1
-        # (V1) potential energy
-        b_r1_x = b_r0_x*c_1 + b_r0_y*s_1
-        b_r1_y = b_r0_y*c_1 - b_r0_x*s_1
-        potential_t_3 = (
-        potential_t + (c_1*g_r0_x + g_r0_y*s_1)*(h_1_x + h_2_x + b_r1_x*rps_link1_mass +
-            rps_link2_mass*(b_r1_x + root_1)) + (c_1*g_r0_y - g_r0_x*s_1)*(h_1_y + h_2_y +
-            b_r1_y*rps_link1_mass + b_r1_y*rps_link2_mass)
+        # (rps-py_1) component across the reference direction
+        rps_py_1 = (
+        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
         )
-        ok = ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625))
+        # (rps-px_1) component along the reference direction
+        rps_px_1 = (
+        rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
+        )
+        # (rps-rho2_1) squared amplitude
+        rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
+        # (rps-root_1) amplitude, with the sign of the branch
+        rps_root_1 = rps_branch_1*sqrt(rps_rho2_1)
+        # (rps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rps_root_1 = 1.0/rps_root_1
+        rps_c_1 = inv_rps_root_1*rps_px_1
+        # (rps-s_1) sine of the angle of joint 1 from its reference direction
+        rps_s_1 = inv_rps_root_1*rps_py_1
+        # (potential) potential energy
+        rps_b_r1_x = rps_b_r0_x*rps_c_1 + rps_b_r0_y*rps_s_1
+        rps_b_r1_y = rps_b_r0_y*rps_c_1 - rps_b_r0_x*rps_s_1
+        rps_potential_t_2 = (
+        rps_potential_t + (rps_c_1*rps_g_r0_x + rps_g_r0_y*rps_s_1)*(rps_h_1_x + rps_h_2_x +
+            rps_b_r1_x*rps_link1_mass + rps_link2_mass*(rps_b_r1_x + rps_root_1)) +
+            (rps_c_1*rps_g_r0_y - rps_g_r0_x*rps_s_1)*(rps_h_1_y + rps_h_2_y +
+            rps_b_r1_y*rps_link1_mass + rps_b_r1_y*rps_link2_mass)
+        )
+        ok = ok & m.every(leg, (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625))
         sums = m.added(sums, leg, (
-        potential_t_3,
+        rps_potential_t_2,
         ))
     total_rps, = sums
-    # (V1) potential energy
-    potential = -potential_t_2 - total_rps
+    # (potential) potential energy
+    potential = -potential_t - total_rps
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -3264,82 +3443,96 @@ def _run_condition(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        branch_1, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_xz, rps_base_frame_yx,
+        rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_xz, rps_base_frame_yx,
             rps_base_frame_yy, rps_base_frame_yz, rps_base_frame_zx, rps_base_frame_zy,
-            rps_base_frame_zz, rps_base_point_x, rps_base_point_y, rps_base_point_z,
+            rps_base_frame_zz, rps_base_point_x, rps_base_point_y, rps_base_point_z, rps_branch_1,
             rps_platform_point_x, rps_platform_point_y, rps_platform_point_z,
         ) = k
-        # (rps-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (rps-S) from the base point to the connection point
+        rps_q_in_base_x = (
         R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z
         )
-        q_in_base_y = (
+        rps_q_in_base_y = (
         R_yx*rps_platform_point_x + R_yy*rps_platform_point_y + R_yz*rps_platform_point_z
         )
-        q_in_base_z = (
+        rps_q_in_base_z = (
         R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z
         )
-        S_x = q_in_base_x + t_x - rps_base_point_x
-        S_y = q_in_base_y + t_y - rps_base_point_y
-        S_z = q_in_base_z + t_z - rps_base_point_z
-        # (rps-K2) component along the reference direction
-        px_1 = S_x*rps_base_frame_xx + S_y*rps_base_frame_yx + S_z*rps_base_frame_zx
-        # (rps-K3) component across the reference direction
-        py_1 = S_x*rps_base_frame_xy + S_y*rps_base_frame_yy + S_z*rps_base_frame_zy
-        # (rps-K5) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (rps-K6) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (rps-K7) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*px_1
-        # (rps-K8) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*py_1
-        # (rps-V4) reciprocal vector 1
-        axis_x_rps_axes1_in_base_x = c_1*rps_base_frame_xx + rps_base_frame_xy*s_1
-        axis_x_rps_axes1_in_base_y = c_1*rps_base_frame_yx + rps_base_frame_yy*s_1
-        axis_x_rps_axes1_in_base_z = c_1*rps_base_frame_zx + rps_base_frame_zy*s_1
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_2_x = axis_x_rps_axes1_in_base_z*q_in_base_y - axis_x_rps_axes1_in_base_y*q_in_base_z
-        H_a_2_y = axis_x_rps_axes1_in_base_x*q_in_base_z - axis_x_rps_axes1_in_base_z*q_in_base_x
-        H_a_2_z = axis_x_rps_axes1_in_base_y*q_in_base_x - axis_x_rps_axes1_in_base_x*q_in_base_y
-        # (M9) moment of the column's unit force about the platform origin
-        Hk_a_1_x = q_in_base_y*rps_base_frame_zz - q_in_base_z*rps_base_frame_yz
-        Hk_a_1_y = q_in_base_z*rps_base_frame_xz - q_in_base_x*rps_base_frame_zz
-        Hk_a_1_z = q_in_base_x*rps_base_frame_yz - q_in_base_y*rps_base_frame_xz
-        # (C2) rms distance of the platform points from their centroid
-        spread_t_2 = b_c_x - rps_platform_point_x
-        spread_t_3 = b_c_y - rps_platform_point_y
-        spread_t_4 = b_c_z - rps_platform_point_z
-        spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 + spread_t_4*spread_t_4
-        # (rps-K5) squared amplitude
-        pivot_size = abs(rho2_1)
-        # (rps-V4) reciprocal vector 1
-        pivot_size_2 = abs(root_1)
-        # (rps-N27) force at the connection point that balances the leg's inertia and weight along all freedoms
-        least_pivots = least(1.3333333333333333*sqrt(pivot_size), 1.3333333333333333*pivot_size_2)
+        rps_S_x = rps_q_in_base_x + t_x - rps_base_point_x
+        rps_S_y = rps_q_in_base_y + t_y - rps_base_point_y
+        rps_S_z = rps_q_in_base_z + t_z - rps_base_point_z
+        # (rps-py_1) component across the reference direction
+        rps_py_1 = (
+        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
+        )
+        # (rps-px_1) component along the reference direction
+        rps_px_1 = (
+        rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
+        )
+        # (rps-rho2_1) squared amplitude
+        rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
+        # (rps-root_1) amplitude, with the sign of the branch
+        rps_root_1 = rps_branch_1*sqrt(rps_rho2_1)
+        # (rps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rps_root_1 = 1.0/rps_root_1
+        rps_c_1 = inv_rps_root_1*rps_px_1
+        # (rps-s_1) sine of the angle of joint 1 from its reference direction
+        rps_s_1 = inv_rps_root_1*rps_py_1
+        # (rps-w_1) reciprocal vector 1
+        axis_x_rps_axes1_in_base_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
+        axis_x_rps_axes1_in_base_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
+        axis_x_rps_axes1_in_base_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
+        # (rps-H_a_2) moment of the column's unit force about the platform origin
+        rps_H_a_2_x = (
+        axis_x_rps_axes1_in_base_z*rps_q_in_base_y - axis_x_rps_axes1_in_base_y*rps_q_in_base_z
+        )
+        rps_H_a_2_y = (
+        axis_x_rps_axes1_in_base_x*rps_q_in_base_z - axis_x_rps_axes1_in_base_z*rps_q_in_base_x
+        )
+        rps_H_a_2_z = (
+        axis_x_rps_axes1_in_base_y*rps_q_in_base_x - axis_x_rps_axes1_in_base_x*rps_q_in_base_y
+        )
+        # (rps-Hk_a_1) moment of the column's unit force about the platform origin
+        rps_Hk_a_1_x = rps_base_frame_zz*rps_q_in_base_y - rps_base_frame_yz*rps_q_in_base_z
+        rps_Hk_a_1_y = rps_base_frame_xz*rps_q_in_base_z - rps_base_frame_zz*rps_q_in_base_x
+        rps_Hk_a_1_z = rps_base_frame_yz*rps_q_in_base_x - rps_base_frame_xz*rps_q_in_base_y
+        # (spread) rms distance of the platform points from their centroid
+        rps_spread_t = b_c_x - rps_platform_point_x
+        rps_spread_t_2 = b_c_y - rps_platform_point_y
+        rps_spread_t_3 = b_c_z - rps_platform_point_z
+        rps_spread_t_4 = (
+        rps_spread_t*rps_spread_t + rps_spread_t_2*rps_spread_t_2 + rps_spread_t_3*rps_spread_t_3
+        )
+        # (rps-rho2_1) squared amplitude
+        rps_pivot_size = abs(rps_rho2_1)
+        # (rps-w_1) reciprocal vector 1
+        rps_pivot_size_2 = abs(rps_root_1)
+        # (rps-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rps_least_pivots = (
+        least(1.3333333333333333*sqrt(rps_pivot_size), 1.3333333333333333*rps_pivot_size_2)
+        )
         clear = (
-        clear & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_1) >
-            _TOLERANCE * 0.75))
+        clear & m.every(leg, (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) &
+            (abs(rps_root_1) > _TOLERANCE * 0.75))
         )
         sums = m.added(sums, leg, (
-        spread_t_5,
+        rps_spread_t_4,
         ))
         out_H[_H_rps[0][leg]] = axis_x_rps_axes1_in_base_x
         out_H[_H_rps[1][leg]] = axis_x_rps_axes1_in_base_y
         out_H[_H_rps[2][leg]] = axis_x_rps_axes1_in_base_z
-        out_H[_H_rps[3][leg]] = H_a_2_x
-        out_H[_H_rps[4][leg]] = H_a_2_y
-        out_H[_H_rps[5][leg]] = H_a_2_z
+        out_H[_H_rps[3][leg]] = rps_H_a_2_x
+        out_H[_H_rps[4][leg]] = rps_H_a_2_y
+        out_H[_H_rps[5][leg]] = rps_H_a_2_z
         out_Hk[_Hk_rps[0][leg]] = rps_base_frame_xz
         out_Hk[_Hk_rps[1][leg]] = rps_base_frame_yz
         out_Hk[_Hk_rps[2][leg]] = rps_base_frame_zz
-        out_Hk[_Hk_rps[3][leg]] = Hk_a_1_x
-        out_Hk[_Hk_rps[4][leg]] = Hk_a_1_y
-        out_Hk[_Hk_rps[5][leg]] = Hk_a_1_z
-        out_pivots[_pivots_rps[0][leg]] = least_pivots
+        out_Hk[_Hk_rps[3][leg]] = rps_Hk_a_1_x
+        out_Hk[_Hk_rps[4][leg]] = rps_Hk_a_1_y
+        out_Hk[_Hk_rps[5][leg]] = rps_Hk_a_1_z
+        out_pivots[_pivots_rps[0][leg]] = rps_least_pivots
     total_rps, = sums
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(total_rps)
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_Hk, out_lengths, out_pivots, out_reach,)
@@ -3530,6 +3723,19 @@ def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
     momentum = np.einsum("ijs,js->is", M, V)
     return (momentum,)
+
+
+def _steps_joint_margins(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    margins = _unlimited(q, [0, 1, 2, 3, 4, 5])
+    return (margins,)
+
+
+def _steps_within_limits(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    subtract_1 = q - q
+    within = _not_negative(subtract_1)
+    return (within,)
 
 
 def _steps_actuator_positions(m, X):
@@ -4060,6 +4266,40 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+    )
+
+
+def joint_margins(X, p=None):
+    """How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+    where there is none.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        margins: distances, in the order of q [m or rad] (..., NJ).
+    """
+    return _call(
+        "joint_margins", _steps_joint_margins, p,
+        ("X", X, (NQ,)),
+        unbounded=True,
+    )
+
+
+def within_limits(X, p=None):
+    """Whether all joints are within their limits of displacement.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        within: 1 where no margin is negative, else 0; NaN is neither (...,).
+    """
+    return _call(
+        "within_limits", _steps_within_limits, p,
+        ("X", X, (NQ,)),
     )
 
 

@@ -26,7 +26,10 @@ enum {
 
 #define R(x) ((real)(x))
 #define UNLESS(condition) ((condition) ? R(0) : R(1))  /* flag of what must hold */
-#define LANES 8  /* states that a batch runs side by side */
+#ifndef TRIPOD_3UPS_LANES
+#define TRIPOD_3UPS_LANES 8  /* 1 where there are no vectors: less memory, shorter code */
+#endif
+#define LANES ((size_t)TRIPOD_3UPS_LANES)  /* states that a batch runs side by side */
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
@@ -36,6 +39,20 @@ enum {
 #define INLINE static inline
 #define APART static
 #endif
+
+/* Bytes of a vector. */
+#if defined(__AVX__)
+#define VECTOR 32
+#elif defined(__SSE2__) || defined(__ARM_NEON)
+#define VECTOR 16
+#else
+#define VECTOR 1
+#endif
+/* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
+#define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
+#define LEGS(n) \
+    ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
+        : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
@@ -104,63 +121,122 @@ INLINE int is_finite(real x)
     return x - x == 0;
 }
 
-/* Why states are impossible, by state: more than 0 where a cause holds. */
+/* Why states are impossible, by state: more than 0 where a cause holds.  total: the sum of all
+   results, and side by side of all inputs, which is finite only where they are. */
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
+    real total[LANES];
 } verdict;
 
 INLINE void start(size_t w, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
+        t->total[k] = 0;
     }
 }
 
-/* x - x is 0 for every number and NaN for the rest; sums side by side add up fast. */
+/* x - x is 0 for every number and NaN for the rest. */
 INLINE int all_finite(const real *x, size_t n)
 {
+    real sum = 0;
+    for (size_t i = 0; i < n; ++i) {
+        sum += x[i] - x[i];
+    }
+    return sum == 0;
+}
+
+/* Whether all are finite: then so is their sum, but for numbers so large that they need a closer
+   look.  Many add up fast as sums side by side. */
+INLINE int sum_is_finite(const real *x, size_t n)
+{
+    if (n < 2*LANES) {
+        return is_finite(total(x, n));
+    }
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
         for (size_t k = 0; k < LANES; ++k) {
-            sum[k] += x[i + k] - x[i + k];
+            sum[k] += x[i + k];
         }
     }
     for (size_t i = most; i < n; ++i) {
-        sum[0] += x[i] - x[i];
+        sum[i - most] += x[i];
     }
-    return total(sum, LANES) == 0;
+    return is_finite(total(sum, LANES));
 }
 
 /* Flag the states with entries that are not finite; the states stand side by side. */
 INLINE void check(size_t size, size_t w, const real *x, real *flags)
 {
-    if (!all_finite(x, size*w)) {
+    if (!sum_is_finite(x, size*w)) {
         for (size_t i = 0; i < size*w; ++i) {
             flags[i%w] += UNLESS(is_finite(x[i]));
         }
     }
 }
 
-/* Input, given state by state, with its states side by side: entry e of state k at e*w + k. */
-INLINE const real *side_by_side(size_t size, size_t w, const real *x, real *lanes, real *flags)
+/* Add up the entries of every state. */
+INLINE void add_up(size_t size, const real *x, real *total)
 {
-    for (size_t e = 0; e < size && w > 1; ++e) {
-        for (size_t k = 0; k < w; ++k) {
-            lanes[e*w + k] = x[size*k + e];
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            total[k] += x[e*LANES + k];
         }
     }
-    check(size, w, w > 1 ? lanes : x, flags);
-    return w > 1 ? lanes : x;
 }
 
-/* The same for input that may be NULL: then all its entries are `none`. */
-INLINE const real *optional(size_t size, size_t w, const real *x, real none, real *lanes, real *flags)
+/* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
+INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
 {
-    for (size_t e = 0; e < size*w && !x; ++e) {
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            lanes[e*LANES + k] = x[size*k + e];
+        }
+    }
+    add_up(size, lanes, total);
+    return lanes;
+}
+
+/* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
+INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+{
+    for (size_t e = 0; e < size && !x; ++e) {
+        own[e] = none;
+    }
+    if (x) {
+        check(size, 1, x, flags);
+    }
+    return x ? x : own;
+}
+
+INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
+    real *total)
+{
+    for (size_t e = 0; e < size*LANES && !x; ++e) {
         lanes[e] = none;
     }
-    return x ? side_by_side(size, w, x, lanes, flags) : lanes;
+    return x ? side_by_side(size, x, lanes, total) : lanes;
+}
+
+/* Motion of the base, or NULL: at rest, its axes those of the world. */
+INLINE const real *motion_of_base(const real *x, real *own, real *flags)
+{
+    for (size_t e = 0; e < 18 && !x; ++e) {
+        own[e] = R(e < 9 && e%4 == 0);
+    }
+    if (x) {
+        check(18, 1, x, flags);
+    }
+    return x ? x : own;
+}
+
+INLINE const real *motion_of_base_side_by_side(const real *x, real *lanes, real *total)
+{
+    for (size_t i = 0; i < 18*LANES && !x; ++i) {
+        lanes[i] = R(i/LANES < 9 && i/LANES%4 == 0);
+    }
+    return x ? side_by_side(18, x, lanes, total) : lanes;
 }
 
 /* Flag the states of an input, NULL or given state by state, with entries that are not positive. */
@@ -171,14 +247,25 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE void judge(const verdict *t, size_t w, int *code)
+INLINE void judge(const verdict *t, int *code)
 {
-    for (size_t k = 0; k < w; ++k) {
-        code[k] = t->invalid[k] > 0 ? INVALID
-            : t->diverged[k] > 0 ? NOT_CONVERGED
-            : t->unreachable[k] > 0 ? UNREACHABLE
-            : t->singular[k] > 0 ? SINGULAR
-            : t->overflow[k] > 0 ? INVALID : OK;
+    *code = t->invalid[0] > 0 ? INVALID
+        : t->diverged[0] > 0 ? NOT_CONVERGED
+        : t->unreachable[0] > 0 ? UNREACHABLE
+        : t->singular[0] > 0 ? SINGULAR
+        : t->overflow[0] > 0 ? INVALID : OK;
+}
+
+/* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
+INLINE void suspect(const verdict *t, int *code)
+{
+    real flags[LANES];
+    for (size_t k = 0; k < LANES; ++k) {
+        flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
+            + (t->total[k] - t->total[k]);
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        code[k] = flags[k] == 0 ? OK : INVALID;
     }
 }
 
@@ -199,17 +286,19 @@ INLINE void refuse(size_t size, real *out)
     }
 }
 
-/* Outputs state by state; NaN where a state is impossible. */
-INLINE void deliver(const real *x, size_t size, size_t w, const int *code, real *out)
+/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < w; ++k) {
-            out[size*k + e] = x[e*w + k];
-        }
+        out[e] = x[e];
     }
-    for (size_t k = 0; k < w; ++k) {
-        if (code[k] != OK) {
-            refuse(size, out + size*k);
+}
+
+INLINE void deliver(size_t size, const real *x, real *out)
+{
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            out[size*k + e] = x[e*LANES + k];
         }
     }
 }
@@ -395,151 +484,140 @@ int tripod_3ups_prepare(const tripod_3ups_params *params, tripod_3ups_model *mod
     const real platform_centre_of_mass_x = params->platform_centre_of_mass[0];
     const real platform_centre_of_mass_y = params->platform_centre_of_mass[1];
     const real platform_centre_of_mass_z = params->platform_centre_of_mass[2];
-    /* (L2) first moment about the platform origin */
+    /* (h_star) first moment about the platform origin */
     const real h_star_t = platform_centre_of_mass_x*platform_mass;
     const real h_star_t_2 = platform_centre_of_mass_y*platform_mass;
     const real h_star_t_3 = platform_centre_of_mass_z*platform_mass;
-    /* (C2) rms distance of the platform points from their centroid */
+    /* (spread) rms distance of the platform points from their centroid */
     const real spread_t = R(0.3333333333333333)*root(3);
-    /* (C3) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = R(1.385640646055102)*spread_t;
     model->gravity_x = gravity_x;
     model->gravity_y = gravity_y;
     model->gravity_z = gravity_z;
     model->legs_size = legs_size;
     model->spread_t = spread_t;
-    for (size_t leg = 0; leg < 3; ++leg) {
-        const real ups_base_point_x = params->ups_base_point[leg][0];
-        const real ups_base_point_y = params->ups_base_point[leg][1];
-        const real ups_base_point_z = params->ups_base_point[leg][2];
-        const real ups_base_frame_xx = params->ups_base_frame[leg][0][0];
-        const real ups_base_frame_xy = params->ups_base_frame[leg][0][1];
-        const real ups_base_frame_xz = params->ups_base_frame[leg][0][2];
-        const real ups_base_frame_yx = params->ups_base_frame[leg][1][0];
-        const real ups_base_frame_yy = params->ups_base_frame[leg][1][1];
-        const real ups_base_frame_yz = params->ups_base_frame[leg][1][2];
-        const real ups_base_frame_zx = params->ups_base_frame[leg][2][0];
-        const real ups_base_frame_zy = params->ups_base_frame[leg][2][1];
-        const real ups_base_frame_zz = params->ups_base_frame[leg][2][2];
-        const real ups_platform_point_x = params->ups_platform_point[leg][0];
-        const real ups_platform_point_y = params->ups_platform_point[leg][1];
-        const real ups_platform_point_z = params->ups_platform_point[leg][2];
-        const real ups_link2_mass = params->ups_link2_mass[leg];
-        const real ups_link2_centre_of_mass_x = params->ups_link2_centre_of_mass[leg][0];
-        const real ups_link2_centre_of_mass_y = params->ups_link2_centre_of_mass[leg][1];
-        const real ups_link2_centre_of_mass_z = params->ups_link2_centre_of_mass[leg][2];
-        const real ups_link2_inertia_xx = params->ups_link2_inertia[leg][0][0];
-        const real ups_link2_inertia_xy = params->ups_link2_inertia[leg][0][1];
-        const real ups_link2_inertia_xz = params->ups_link2_inertia[leg][0][2];
-        const real ups_link2_inertia_yy = params->ups_link2_inertia[leg][1][1];
-        const real ups_link2_inertia_yz = params->ups_link2_inertia[leg][1][2];
-        const real ups_link2_inertia_zz = params->ups_link2_inertia[leg][2][2];
-        const real ups_link3_mass = params->ups_link3_mass[leg];
-        const real ups_link3_centre_of_mass_x = params->ups_link3_centre_of_mass[leg][0];
-        const real ups_link3_centre_of_mass_y = params->ups_link3_centre_of_mass[leg][1];
-        const real ups_link3_centre_of_mass_z = params->ups_link3_centre_of_mass[leg][2];
-        const real ups_link3_inertia_xx = params->ups_link3_inertia[leg][0][0];
-        const real ups_link3_inertia_xy = params->ups_link3_inertia[leg][0][1];
-        const real ups_link3_inertia_xz = params->ups_link3_inertia[leg][0][2];
-        const real ups_link3_inertia_yy = params->ups_link3_inertia[leg][1][1];
-        const real ups_link3_inertia_yz = params->ups_link3_inertia[leg][1][2];
-        const real ups_link3_inertia_zz = params->ups_link3_inertia[leg][2][2];
-        static const signed char signs_branch_1[] = {1, 1, 1};
-        const real branch_1 = signs_branch_1[leg];
-        static const signed char signs_branch_2[] = {1, 1, 1};
-        const real branch_2 = signs_branch_2[leg];
-        /* (ups-G3) inertia tensor of link 2 about the origin of link 2 */
-        const real J_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x;
-        const real J_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y;
-        const real J_2_t_3 = ups_link2_centre_of_mass_z*ups_link2_centre_of_mass_z;
-        const real J_2_t_4 = J_2_t + J_2_t_2 + J_2_t_3;
-        /* (ups-G5) inertia tensor of link 3 about the connection point */
-        const real J_3_t = ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_x;
-        const real J_3_t_2 = ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_y;
-        const real J_3_t_3 = ups_link3_centre_of_mass_z*ups_link3_centre_of_mass_z;
-        const real J_3_t_4 = J_3_t + J_3_t_2 + J_3_t_3;
-        /* (ups-N8) inertia of the links that turn with link 2, each about its reference point */
-        const real J_group_2_xx = ups_link2_inertia_xx + ups_link3_inertia_xx -
-            ups_link2_mass*(J_2_t - J_2_t_4) - ups_link3_mass*(J_3_t - J_3_t_4);
-        const real J_group_2_xy =
+    for (size_t leg = 0; leg < 4; ++leg) {
+        const size_t own = leg < 3 ? leg : 0;
+        const real ups_base_point_x = params->ups_base_point[own][0];
+        const real ups_base_point_y = params->ups_base_point[own][1];
+        const real ups_base_point_z = params->ups_base_point[own][2];
+        const real ups_base_frame_xx = params->ups_base_frame[own][0][0];
+        const real ups_base_frame_xy = params->ups_base_frame[own][0][1];
+        const real ups_base_frame_xz = params->ups_base_frame[own][0][2];
+        const real ups_base_frame_yx = params->ups_base_frame[own][1][0];
+        const real ups_base_frame_yy = params->ups_base_frame[own][1][1];
+        const real ups_base_frame_yz = params->ups_base_frame[own][1][2];
+        const real ups_base_frame_zx = params->ups_base_frame[own][2][0];
+        const real ups_base_frame_zy = params->ups_base_frame[own][2][1];
+        const real ups_base_frame_zz = params->ups_base_frame[own][2][2];
+        const real ups_platform_point_x = params->ups_platform_point[own][0];
+        const real ups_platform_point_y = params->ups_platform_point[own][1];
+        const real ups_platform_point_z = params->ups_platform_point[own][2];
+        const real ups_link2_mass = params->ups_link2_mass[own];
+        const real ups_link2_centre_of_mass_x = params->ups_link2_centre_of_mass[own][0];
+        const real ups_link2_centre_of_mass_y = params->ups_link2_centre_of_mass[own][1];
+        const real ups_link2_centre_of_mass_z = params->ups_link2_centre_of_mass[own][2];
+        const real ups_link2_inertia_xx = params->ups_link2_inertia[own][0][0];
+        const real ups_link2_inertia_xy = params->ups_link2_inertia[own][0][1];
+        const real ups_link2_inertia_xz = params->ups_link2_inertia[own][0][2];
+        const real ups_link2_inertia_yy = params->ups_link2_inertia[own][1][1];
+        const real ups_link2_inertia_yz = params->ups_link2_inertia[own][1][2];
+        const real ups_link2_inertia_zz = params->ups_link2_inertia[own][2][2];
+        const real ups_link3_mass = params->ups_link3_mass[own];
+        const real ups_link3_centre_of_mass_x = params->ups_link3_centre_of_mass[own][0];
+        const real ups_link3_centre_of_mass_y = params->ups_link3_centre_of_mass[own][1];
+        const real ups_link3_centre_of_mass_z = params->ups_link3_centre_of_mass[own][2];
+        const real ups_link3_inertia_xx = params->ups_link3_inertia[own][0][0];
+        const real ups_link3_inertia_xy = params->ups_link3_inertia[own][0][1];
+        const real ups_link3_inertia_xz = params->ups_link3_inertia[own][0][2];
+        const real ups_link3_inertia_yy = params->ups_link3_inertia[own][1][1];
+        const real ups_link3_inertia_yz = params->ups_link3_inertia[own][1][2];
+        const real ups_link3_inertia_zz = params->ups_link3_inertia[own][2][2];
+        static const signed char signs_ups_branch_1[] = {1, 1, 1};
+        const real ups_branch_1 = signs_ups_branch_1[own];
+        static const signed char signs_ups_branch_2[] = {1, 1, 1};
+        const real ups_branch_2 = signs_ups_branch_2[own];
+        /* (ups-h_3) first moment of link 3 about the connection point */
+        const real ups_h_3_x = ups_link3_centre_of_mass_x*ups_link3_mass;
+        const real ups_h_3_y = ups_link3_centre_of_mass_y*ups_link3_mass;
+        const real ups_h_3_z = ups_link3_centre_of_mass_z*ups_link3_mass;
+        /* (ups-J_2) inertia tensor of link 2 about the origin of link 2 */
+        const real ups_J_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x;
+        const real ups_J_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y;
+        const real ups_J_2_t_3 = ups_link2_centre_of_mass_z*ups_link2_centre_of_mass_z;
+        const real ups_J_2_t_4 = ups_J_2_t + ups_J_2_t_2 + ups_J_2_t_3;
+        /* (ups-J_3) inertia tensor of link 3 about the connection point */
+        const real ups_J_3_t = ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_x;
+        const real ups_J_3_t_2 = ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_y;
+        const real ups_J_3_t_3 = ups_link3_centre_of_mass_z*ups_link3_centre_of_mass_z;
+        const real ups_J_3_t_4 = ups_J_3_t + ups_J_3_t_2 + ups_J_3_t_3;
+        /* (ups-J_group_2) inertia of the links that turn with link 2, each about its reference point */
+        const real ups_J_group_2_xx = ups_link2_inertia_xx + ups_link3_inertia_xx -
+            ups_link2_mass*(ups_J_2_t - ups_J_2_t_4) - ups_link3_mass*(ups_J_3_t - ups_J_3_t_4);
+        const real ups_J_group_2_xy =
             ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_z*ups_link2_mass +
             ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_z*ups_link3_mass -
             ups_link2_inertia_xz - ups_link3_inertia_xz;
-        const real J_group_2_xz = ups_link2_inertia_xy + ups_link3_inertia_xy -
+        const real ups_J_group_2_xz = ups_link2_inertia_xy + ups_link3_inertia_xy -
             ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_y*ups_link2_mass -
             ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_y*ups_link3_mass;
-        const real J_group_2_yy = ups_link2_inertia_zz + ups_link3_inertia_zz -
-            ups_link2_mass*(J_2_t_3 - J_2_t_4) - ups_link3_mass*(J_3_t_3 - J_3_t_4);
-        const real J_group_2_yz =
+        const real ups_J_group_2_yy = ups_link2_inertia_zz + ups_link3_inertia_zz -
+            ups_link2_mass*(ups_J_2_t_3 - ups_J_2_t_4) - ups_link3_mass*(ups_J_3_t_3 -
+            ups_J_3_t_4);
+        const real ups_J_group_2_yz =
             ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_z*ups_link2_mass +
             ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_z*ups_link3_mass -
             ups_link2_inertia_yz - ups_link3_inertia_yz;
-        const real J_group_2_zz = ups_link2_inertia_yy + ups_link3_inertia_yy -
-            ups_link2_mass*(J_2_t_2 - J_2_t_4) - ups_link3_mass*(J_3_t_2 - J_3_t_4);
-        /* (ups-G4) first moment of link 3 about the connection point */
-        const real h_3_x = ups_link3_centre_of_mass_x*ups_link3_mass;
-        const real h_3_y = ups_link3_centre_of_mass_y*ups_link3_mass;
-        const real h_3_z = ups_link3_centre_of_mass_z*ups_link3_mass;
-        /* (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real g_r0_x = gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx +
+        const real ups_J_group_2_zz = ups_link2_inertia_yy + ups_link3_inertia_yy -
+            ups_link2_mass*(ups_J_2_t_2 - ups_J_2_t_4) - ups_link3_mass*(ups_J_3_t_2 -
+            ups_J_3_t_4);
+        /* (ups-h_2) first moment of link 2 about the origin of link 2 */
+        const real ups_h_2_x = ups_link2_centre_of_mass_x*ups_link2_mass;
+        const real ups_h_2_y = ups_link2_centre_of_mass_y*ups_link2_mass;
+        const real ups_h_2_z = ups_link2_centre_of_mass_z*ups_link2_mass;
+        /* (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real ups_g_r0_x = gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx +
             gravity_z*ups_base_frame_zx;
-        const real g_r0_y = gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy +
+        const real ups_g_r0_y = gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy +
             gravity_z*ups_base_frame_zy;
-        const real g_r0_z = gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz +
+        const real ups_g_r0_z = gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz +
             gravity_z*ups_base_frame_zz;
-        /* (ups-G2) first moment of link 2 about the origin of link 2 */
-        const real h_2_x = ups_link2_centre_of_mass_x*ups_link2_mass;
-        const real h_2_y = ups_link2_centre_of_mass_y*ups_link2_mass;
-        const real h_2_z = ups_link2_centre_of_mass_z*ups_link2_mass;
-        /* (ups-N9) half the trace of that inertia tensor */
-        const real trace_J_group_2 = R(0.5)*J_group_2_xx + R(0.5)*J_group_2_yy +
-            R(0.5)*J_group_2_zz;
-        /* (ups-N10) second moment of mass of the links that turn with link 2 */
-        const real Sigma_2_xx = trace_J_group_2 - J_group_2_xx;
-        const real Sigma_2_yy = trace_J_group_2 - J_group_2_yy;
-        const real Sigma_2_zz = trace_J_group_2 - J_group_2_zz;
-        /* (ups-N11) first moments of the links that turn with link 2 */
-        const real h_group_2_x = h_2_x + h_3_x;
-        const real h_group_2_y = -h_2_z - h_3_z;
-        const real h_group_2_z = h_2_y + h_3_y;
-        /* (L2) first moment about the platform origin */
-        const real h_star_t_4 = ups_link3_mass*ups_platform_point_x;
-        const real h_star_t_5 = ups_link3_mass*ups_platform_point_y;
-        const real h_star_t_6 = ups_link3_mass*ups_platform_point_z;
-        /* (V1) potential energy */
-        const real b_r0_x = ups_base_frame_xx*ups_base_point_x +
+        /* (ups-trace_J_2) half the trace of that inertia tensor */
+        const real ups_trace_J_2 = R(0.5)*ups_J_group_2_xx + R(0.5)*ups_J_group_2_yy +
+            R(0.5)*ups_J_group_2_zz;
+        /* (ups-Sigma_2) second moment of mass of the links that turn with link 2 */
+        const real ups_Sigma_2_xx = ups_trace_J_2 - ups_J_group_2_xx;
+        const real ups_Sigma_2_yy = ups_trace_J_2 - ups_J_group_2_yy;
+        const real ups_Sigma_2_zz = ups_trace_J_2 - ups_J_group_2_zz;
+        /* (ups-h_group_2) first moments of the links that turn with link 2 */
+        const real ups_h_group_2_x = ups_h_2_x + ups_h_3_x;
+        const real ups_h_group_2_y = -ups_h_2_z - ups_h_3_z;
+        const real ups_h_group_2_z = ups_h_2_y + ups_h_3_y;
+        /* (h_star) first moment about the platform origin */
+        const real ups_h_star_t = ups_link3_mass*ups_platform_point_x;
+        const real ups_h_star_t_2 = ups_link3_mass*ups_platform_point_y;
+        const real ups_h_star_t_3 = ups_link3_mass*ups_platform_point_z;
+        /* (potential) potential energy */
+        const real ups_b_r0_x = ups_base_frame_xx*ups_base_point_x +
             ups_base_frame_yx*ups_base_point_y + ups_base_frame_zx*ups_base_point_z;
-        const real b_r0_y = ups_base_frame_xy*ups_base_point_x +
+        const real ups_b_r0_y = ups_base_frame_xy*ups_base_point_x +
             ups_base_frame_yy*ups_base_point_y + ups_base_frame_zy*ups_base_point_z;
-        const real b_r0_z = ups_base_frame_xz*ups_base_point_x +
+        const real ups_b_r0_z = ups_base_frame_xz*ups_base_point_x +
             ups_base_frame_yz*ups_base_point_y + ups_base_frame_zz*ups_base_point_z;
-        model->J_group_2_xx[leg] = J_group_2_xx;
-        model->J_group_2_xy[leg] = J_group_2_xy;
-        model->J_group_2_xz[leg] = J_group_2_xz;
-        model->J_group_2_yy[leg] = J_group_2_yy;
-        model->J_group_2_yz[leg] = J_group_2_yz;
-        model->J_group_2_zz[leg] = J_group_2_zz;
-        model->Sigma_2_xx[leg] = Sigma_2_xx;
-        model->Sigma_2_yy[leg] = Sigma_2_yy;
-        model->Sigma_2_zz[leg] = Sigma_2_zz;
-        model->b_r0_x[leg] = b_r0_x;
-        model->b_r0_y[leg] = b_r0_y;
-        model->b_r0_z[leg] = b_r0_z;
-        model->branch_1[leg] = branch_1;
-        model->branch_2[leg] = branch_2;
-        model->g_r0_x[leg] = g_r0_x;
-        model->g_r0_y[leg] = g_r0_y;
-        model->g_r0_z[leg] = g_r0_z;
-        model->h_2_x[leg] = h_2_x;
-        model->h_2_y[leg] = h_2_y;
-        model->h_2_z[leg] = h_2_z;
-        model->h_3_x[leg] = h_3_x;
-        model->h_3_y[leg] = h_3_y;
-        model->h_3_z[leg] = h_3_z;
-        model->h_group_2_x[leg] = h_group_2_x;
-        model->h_group_2_y[leg] = h_group_2_y;
-        model->h_group_2_z[leg] = h_group_2_z;
+        model->ups_J_group_2_xx[leg] = ups_J_group_2_xx;
+        model->ups_J_group_2_xy[leg] = ups_J_group_2_xy;
+        model->ups_J_group_2_xz[leg] = ups_J_group_2_xz;
+        model->ups_J_group_2_yy[leg] = ups_J_group_2_yy;
+        model->ups_J_group_2_yz[leg] = ups_J_group_2_yz;
+        model->ups_J_group_2_zz[leg] = ups_J_group_2_zz;
+        model->ups_Sigma_2_xx[leg] = ups_Sigma_2_xx;
+        model->ups_Sigma_2_yy[leg] = ups_Sigma_2_yy;
+        model->ups_Sigma_2_zz[leg] = ups_Sigma_2_zz;
+        model->ups_b_r0_x[leg] = ups_b_r0_x;
+        model->ups_b_r0_y[leg] = ups_b_r0_y;
+        model->ups_b_r0_z[leg] = ups_b_r0_z;
         model->ups_base_frame_xx[leg] = ups_base_frame_xx;
         model->ups_base_frame_xy[leg] = ups_base_frame_xy;
         model->ups_base_frame_xz[leg] = ups_base_frame_xz;
@@ -552,30 +630,44 @@ int tripod_3ups_prepare(const tripod_3ups_params *params, tripod_3ups_model *mod
         model->ups_base_point_x[leg] = ups_base_point_x;
         model->ups_base_point_y[leg] = ups_base_point_y;
         model->ups_base_point_z[leg] = ups_base_point_z;
+        model->ups_branch_1[leg] = ups_branch_1;
+        model->ups_branch_2[leg] = ups_branch_2;
+        model->ups_g_r0_x[leg] = ups_g_r0_x;
+        model->ups_g_r0_y[leg] = ups_g_r0_y;
+        model->ups_g_r0_z[leg] = ups_g_r0_z;
+        model->ups_h_2_x[leg] = ups_h_2_x;
+        model->ups_h_2_y[leg] = ups_h_2_y;
+        model->ups_h_2_z[leg] = ups_h_2_z;
+        model->ups_h_3_x[leg] = ups_h_3_x;
+        model->ups_h_3_y[leg] = ups_h_3_y;
+        model->ups_h_3_z[leg] = ups_h_3_z;
+        model->ups_h_group_2_x[leg] = ups_h_group_2_x;
+        model->ups_h_group_2_y[leg] = ups_h_group_2_y;
+        model->ups_h_group_2_z[leg] = ups_h_group_2_z;
         model->ups_link2_mass[leg] = ups_link2_mass;
         model->ups_link3_mass[leg] = ups_link3_mass;
         model->ups_platform_point_x[leg] = ups_platform_point_x;
         model->ups_platform_point_y[leg] = ups_platform_point_y;
         model->ups_platform_point_z[leg] = ups_platform_point_z;
-        total_ups += ups_link3_mass;
-        total_ups_x += h_star_t_4;
-        total_ups_y += h_star_t_5;
-        total_ups_z += h_star_t_6;
-        total_ups_x_2 += ups_platform_point_x;
-        total_ups_y_2 += ups_platform_point_y;
-        total_ups_z_2 += ups_platform_point_z;
+        total_ups += leg < 3 ? ups_link3_mass : 0;
+        total_ups_x += leg < 3 ? ups_h_star_t : 0;
+        total_ups_y += leg < 3 ? ups_h_star_t_2 : 0;
+        total_ups_z += leg < 3 ? ups_h_star_t_3 : 0;
+        total_ups_x_2 += leg < 3 ? ups_platform_point_x : 0;
+        total_ups_y_2 += leg < 3 ? ups_platform_point_y : 0;
+        total_ups_z_2 += leg < 3 ? ups_platform_point_z : 0;
     }
-    /* (L1) mass of the platform with the gathered masses */
+    /* (m_star) mass of the platform with the gathered masses */
     const real m_star = platform_mass + total_ups;
-    /* (M2) centripetal force and weight of the platform */
+    /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_x = gravity_x*m_star;
     const real Z_p_y = gravity_y*m_star;
     const real Z_p_z = gravity_z*m_star;
-    /* (L2) first moment about the platform origin */
+    /* (h_star) first moment about the platform origin */
     const real h_star_x = h_star_t + total_ups_x;
     const real h_star_y = h_star_t_2 + total_ups_y;
     const real h_star_z = h_star_t_3 + total_ups_z;
-    /* (C1) centroid of the platform points */
+    /* (b_c) centroid of the platform points */
     const real b_c_x = R(0.3333333333333333)*total_ups_x_2;
     const real b_c_y = R(0.3333333333333333)*total_ups_y_2;
     const real b_c_z = R(0.3333333333333333)*total_ups_z_2;
@@ -659,98 +751,6 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
     }
 }
 
-/* Swap a row with the pivot's in those states in which it is the chosen one.  What is chosen are
-   whole entries: unlike products with 0 and 1, these keep what is not finite where it belongs. */
-APART void swap_lanes(size_t n, size_t p, real i, const real *restrict best, real *restrict pivot,
-        real *restrict other)
-{
-    for (size_t j = p; j <= n; ++j) {
-        for (size_t k = 0; k < LANES; ++k) {
-            const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = best[k] == i ? up : down;
-            other[j*LANES + k] = best[k] == i ? down : up;
-        }
-    }
-}
-
-/* The choice of choose_one in every state. */
-INLINE void choose_lanes(size_t n, size_t p, real *a)
-{
-    const size_t row = (n + 1)*LANES;
-    real most[LANES], best[LANES], any = 0;
-    for (size_t k = 0; k < LANES; ++k) {
-        most[k] = CLEARLY*magnitude(a[p*row + p*LANES + k]);
-        best[k] = 0;
-    }
-    for (size_t i = p + 1; i < n; ++i) {
-        for (size_t k = 0; k < LANES; ++k) {
-            const real size = magnitude(a[i*row + p*LANES + k]);
-            best[k] = size > most[k] ? (real)i : best[k];
-            most[k] = larger(size, most[k]);
-        }
-    }
-    for (size_t k = 0; k < LANES; ++k) {
-        any += best[k];
-    }
-    for (size_t i = p + 1; i < n && any > 0; ++i) {
-        swap_lanes(n, p, (real)i, best, a + p*row, a + i*row);
-    }
-}
-
-/* The same for LANES systems side by side, without padding.  What comes NEARLY to the threshold
-   counts as singular here: the batch then settles it as for a single state. */
-INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
-{
-    const size_t row = (n + 1)*LANES;
-    memset(x, 0, n*LANES*sizeof *x);
-    for (size_t i = 0; i < n; ++i) {
-        real size[LANES] = {0};
-        for (size_t j = 0; j < n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                size[k] = larger(size[k], magnitude(a[i*row + j*LANES + k]));
-            }
-        }
-        for (size_t k = 0; k < LANES; ++k) {
-            size[k] = 1/size[k];
-        }
-        for (size_t j = 0; j <= n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + j*LANES + k] *= size[k];
-            }
-        }
-    }
-    for (size_t p = 0; p < n; ++p) {
-        const real *const pivot = a + p*row;
-        choose_lanes(n, p, a);
-        for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > NEARLY*PIVOT);
-            x[p*LANES + k] = 1/pivot[p*LANES + k];
-        }
-        for (size_t i = p + 1; i < n; ++i) {
-            real *const other = a + i*row;
-            real factor[LANES];
-            for (size_t k = 0; k < LANES; ++k) {
-                factor[k] = other[p*LANES + k]*x[p*LANES + k];
-            }
-            for (size_t j = p + 1; j <= n; ++j) {
-                for (size_t k = 0; k < LANES; ++k) {
-                    other[j*LANES + k] -= factor[k]*pivot[j*LANES + k];
-                }
-            }
-        }
-    }
-    for (size_t p = n; p-- > 0;) {
-        for (size_t k = 0; k < LANES; ++k) {
-            x[p*LANES + k] *= a[p*row + n*LANES + k];
-        }
-        for (size_t i = 0; i < p; ++i) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + n*LANES + k] -= a[i*row + p*LANES + k]*x[p*LANES + k];
-            }
-        }
-    }
-}
-
 /* Length of the rows of a system of n equations, whose right side stands in column n. */
 INLINE size_t stride_of(size_t n, size_t w)
 {
@@ -783,14 +783,10 @@ INLINE void solve_state(size_t n, const real *b, real *rows, real *x, real *sing
     solve_one(n, stride_of(n, 1), rows, x, singular);
 }
 
-INLINE void solve(size_t n, size_t w, const real *b, real *rows, real *x, real *singular)
+/* The same where it is rare: apart, for the sake of what is done otherwise. */
+APART void solve_apart(size_t n, const real *b, real *rows, real *x, real *singular)
 {
-    if (w == 1) {
-        solve_state(n, b, rows, x, singular);
-    } else {
-        set_right_side(n, LANES, b, rows);
-        solve_lanes(n, rows, x, singular);
-    }
+    solve_state(n, b, rows, x, singular);
 }
 
 #define BIG 3  /* most rows or columns of a matrix that is not square, or not solved */
@@ -1012,6 +1008,29 @@ INLINE void take(size_t rows, size_t n, const size_t *places, const real *a, rea
     }
 }
 
+/* Rows as `places` tells made infinite, where all entries are finite before. */
+INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, real *x, real *flags)
+{
+    check(size, w, x, flags);
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t k = 0; k < w; ++k) {
+            x[places[i]*w + k] = R(INFINITY);
+        }
+    }
+}
+
+/* 1 where no entry is negative, else 0. */
+INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
+{
+    check(size, w, a, flags);
+    for (size_t k = 0; k < w; ++k) {
+        x[k] = 1;
+        for (size_t e = 0; e < size; ++e) {
+            x[k] = a[e*w + k] < 0 ? 0 : x[k];
+        }
+    }
+}
+
 /* To row places[i] of x: the row c[i] of n entries times b[i]. */
 INLINE void add_forces(size_t rows, size_t n, size_t w, const size_t *places, const real *b,
         const real *c, real *x)
@@ -1040,1181 +1059,1199 @@ static void moved(const real *X, const real *step, real part, real *to)
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics: 507 mul, 354 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], t_dot_x[LANES], t_dot_y[LANES], t_dot_z[LANES],
-        sum[9][LANES];
-} dynamics_values;
-typedef struct {
-    real sum[9][8], entry[3][8], singular[8];
-} dynamics_results_ups;
-
-INLINE void dynamics_before(size_t w, const real *X, const real *V, dynamics_values *s)
+INLINE void dynamics_before(size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real t_z = X_2;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = t_dot_x;
+        s[4*w + k] = t_dot_y;
+        s[5*w + k] = t_dot_z;
     }
 }
 
-INLINE void dynamics_legs_ups(const prepared *m, size_t leg, size_t legs, const dynamics_values
-    *s, size_t states, size_t count, int add, dynamics_results_ups *o)
+INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real J_group_2_xx = m->J_group_2_xx[i];
-        const real J_group_2_xy = m->J_group_2_xy[i];
-        const real J_group_2_xz = m->J_group_2_xz[i];
-        const real J_group_2_yy = m->J_group_2_yy[i];
-        const real J_group_2_yz = m->J_group_2_yz[i];
-        const real J_group_2_zz = m->J_group_2_zz[i];
-        const real Sigma_2_xx = m->Sigma_2_xx[i];
-        const real Sigma_2_yy = m->Sigma_2_yy[i];
-        const real Sigma_2_zz = m->Sigma_2_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real g_r0_z = m->g_r0_z[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real h_group_2_x = m->h_group_2_x[i];
-        const real h_group_2_y = m->h_group_2_y[i];
-        const real h_group_2_z = m->h_group_2_z[i];
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        /* (ups-S) from the base point to the connection point */
+        const real t_x = s[0*w + j];
         const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_base_point_z = m->ups_base_point_z[i];
         const real ups_platform_point_x = m->ups_platform_point_x[i];
+        const real ups_S_x = t_x + ups_platform_point_x - ups_base_point_x;
+        const real t_y = s[1*w + j];
+        const real ups_base_point_y = m->ups_base_point_y[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
+        const real ups_S_y = t_y + ups_platform_point_y - ups_base_point_y;
+        const real t_z = s[2*w + j];
+        const real ups_base_point_z = m->ups_base_point_z[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        /* (ups-K1) from the base point to the connection point */
-        const real S_x = t_x + ups_platform_point_x - ups_base_point_x;
-        const real S_y = t_y + ups_platform_point_y - ups_base_point_y;
-        const real S_z = t_z + ups_platform_point_z - ups_base_point_z;
-        /* (ups-K2) component along the reference direction */
-        const real px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx;
-        /* (ups-K3) component across the reference direction */
-        const real py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy;
-        /* (ups-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (ups-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (ups-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz;
-        /* (ups-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (ups-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (ups-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (ups-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_x_x = S_x*inv_root_2;
-        const real axis_x_y = S_y*inv_root_2;
-        const real axis_x_z = S_z*inv_root_2;
-        /* (ups-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (ups-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx;
-        const real axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx;
-        const real axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx;
-        const real axis_y_ups_axes2_x = axis_x_z*axis_z_ups_axes2_in_base_y -
-            axis_x_y*axis_z_ups_axes2_in_base_z;
-        const real axis_y_ups_axes2_y = axis_x_x*axis_z_ups_axes2_in_base_z -
-            axis_x_z*axis_z_ups_axes2_in_base_x;
-        const real axis_y_ups_axes2_z = axis_x_y*axis_z_ups_axes2_in_base_x -
-            axis_x_x*axis_z_ups_axes2_in_base_y;
-        /* (ups-A13) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d_alpha_1_t = inv_root_1*s_2;
-        /* (ups-N22) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_t = h_3_z*inv_root_2;
-        /* (ups-N6) coefficient of the acceleration in: inertia force of link 3 from its turning about its
-           reference point */
-        const real d_phi_3_t = h_3_y*inv_root_2;
-        const real d_phi_3_t_2 = h_3_x*inv_root_2;
-        /* (ups-N25) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real ups_S_z = t_z + ups_platform_point_z - ups_base_point_z;
+        /* (ups-px_1) component along the reference direction */
+        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
+        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
+        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
+        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
+            ups_S_z*ups_base_frame_zx;
+        /* (ups-py_1) component across the reference direction */
+        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
+        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
+        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
+        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
+            ups_S_z*ups_base_frame_zy;
+        /* (ups-rho2_1) squared amplitude */
+        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
+        /* (ups-root_1) amplitude, with the sign of the branch */
+        const real ups_branch_1 = m->ups_branch_1[i];
+        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
+        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
+        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+            ups_S_z*ups_base_frame_zz;
+        /* (ups-rho2_2) squared amplitude */
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        /* (ups-root_2) amplitude, with the sign of the branch */
+        const real ups_branch_2 = m->ups_branch_2[i];
+        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
+        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ups_root_2 = 1/ups_root_2;
+        const real ups_c_2 = inv_ups_root_2*ups_root_1;
+        /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
+        const real ups_s_2 = inv_ups_root_2*ups_xi_1_t;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
+        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
+        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
+            ups_base_frame_xx*ups_c_1;
+        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
+            ups_base_frame_yx*ups_c_1;
+        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
+            ups_base_frame_zx*ups_c_1;
+        const real axis_y_ups_axes2_x = axis_z_ups_axes2_in_base_y*ups_axis_x_z -
+            axis_z_ups_axes2_in_base_z*ups_axis_x_y;
+        const real axis_y_ups_axes2_y = axis_z_ups_axes2_in_base_z*ups_axis_x_x -
+            axis_z_ups_axes2_in_base_x*ups_axis_x_z;
+        const real axis_y_ups_axes2_z = axis_z_ups_axes2_in_base_x*ups_axis_x_y -
+            axis_z_ups_axes2_in_base_y*ups_axis_x_x;
+        /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+        const real ups_d_alpha_1_t = inv_ups_root_1*ups_s_2;
+        /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
+           about its reference point */
+        const real ups_h_3_z = m->ups_h_3_z[i];
+        const real ups_d_phi_3_t = inv_ups_root_2*ups_h_3_z;
+        const real ups_h_3_y = m->ups_h_3_y[i];
+        const real ups_d_phi_3_t_2 = inv_ups_root_2*ups_h_3_y;
+        const real ups_h_3_x = m->ups_h_3_x[i];
+        const real ups_d_phi_3_t_3 = inv_ups_root_2*ups_h_3_x;
+        /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_yy = -d_phi_3_t_2 - inv_root_2*(h_3_x + J_group_2_zz*inv_root_2);
-        const real d_c_yz = d_alpha_1_t*h_3_y - inv_root_2*(J_group_2_xz*d_alpha_1_t -
-            J_group_2_yz*inv_root_2);
-        const real d_c_zz = d_alpha_1_t*h_3_z - d_phi_3_t_2 -
-            inv_root_1*(s_2*(J_group_2_xx*d_alpha_1_t - h_3_z - J_group_2_xy*inv_root_2) -
-            c_2*(J_group_2_xy*d_alpha_1_t - h_3_x - J_group_2_yy*inv_root_2));
-        /* (ups-N27) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = R(0.5)*d_c_yy;
-        const real Q_t_2 = R(0.5)*d_c_zz;
-        const real Q_t_3 = Q_t*axis_y_ups_axes2_x + axis_z_ups_axes2_in_base_x*d_c_yz -
-            axis_x_x*d_G_t;
-        const real Q_t_4 = Q_t*axis_y_ups_axes2_y + axis_z_ups_axes2_in_base_y*d_c_yz -
-            axis_x_y*d_G_t;
-        const real Q_t_5 = Q_t*axis_y_ups_axes2_z + axis_z_ups_axes2_in_base_z*d_c_yz -
-            axis_x_z*d_G_t;
-        const real Q_t_6 = Q_t_2*axis_z_ups_axes2_in_base_x + axis_x_x*d_phi_3_t;
-        const real Q_t_7 = Q_t_2*axis_z_ups_axes2_in_base_y + axis_x_y*d_phi_3_t;
-        const real Q_t_8 = Q_t_2*axis_z_ups_axes2_in_base_z + axis_x_z*d_phi_3_t;
-        const real Q_t_9 = Q_t_3*axis_y_ups_axes2_x + Q_t_6*axis_z_ups_axes2_in_base_x;
-        const real Q_t_10 = 2*Q_t_9;
-        const real Q_t_11 = Q_t_3*axis_y_ups_axes2_y + Q_t_4*axis_y_ups_axes2_x +
-            Q_t_6*axis_z_ups_axes2_in_base_y + Q_t_7*axis_z_ups_axes2_in_base_x;
-        const real Q_t_12 = Q_t_3*axis_y_ups_axes2_z + Q_t_5*axis_y_ups_axes2_x +
-            Q_t_6*axis_z_ups_axes2_in_base_z + Q_t_8*axis_z_ups_axes2_in_base_x;
-        const real Q_t_13 = Q_t_4*axis_y_ups_axes2_y + Q_t_7*axis_z_ups_axes2_in_base_y;
-        const real Q_t_14 = 2*Q_t_13;
-        const real Q_t_15 = Q_t_4*axis_y_ups_axes2_z + Q_t_5*axis_y_ups_axes2_y +
-            Q_t_7*axis_z_ups_axes2_in_base_z + Q_t_8*axis_z_ups_axes2_in_base_y;
-        const real Q_t_16 = Q_t_5*axis_y_ups_axes2_z + Q_t_8*axis_z_ups_axes2_in_base_z;
-        const real Q_t_17 = 2*Q_t_16;
-        /* (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
-        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
-        const real g_r3_x = g_r0_z*s_2 - c_2*g_r1_y;
-        const real g_r3_y = -c_2*g_r0_z - g_r1_y*s_2;
-        /* (ups-V1) velocity of the connection point */
-        const real S_dot_tip_x = axis_x_x*t_dot_x + axis_x_y*t_dot_y + axis_x_z*t_dot_z;
-        /* (ups-V8) rate of joint 1 */
-        const real qd_2 = inv_root_2*(axis_y_ups_axes2_x*t_dot_x + axis_y_ups_axes2_y*t_dot_y +
-            axis_y_ups_axes2_z*t_dot_z);
-        const real qd_1 = inv_root_1*(axis_z_ups_axes2_in_base_x*t_dot_x +
+        const real ups_J_group_2_zz = m->ups_J_group_2_zz[i];
+        const real ups_d_c_yy = -ups_d_phi_3_t_3 - inv_ups_root_2*(ups_h_3_x +
+            inv_ups_root_2*ups_J_group_2_zz);
+        const real ups_J_group_2_xz = m->ups_J_group_2_xz[i];
+        const real ups_J_group_2_yz = m->ups_J_group_2_yz[i];
+        const real ups_d_c_yz = ups_d_alpha_1_t*ups_h_3_y -
+            inv_ups_root_2*(ups_J_group_2_xz*ups_d_alpha_1_t - inv_ups_root_2*ups_J_group_2_yz);
+        const real ups_J_group_2_xx = m->ups_J_group_2_xx[i];
+        const real ups_J_group_2_xy = m->ups_J_group_2_xy[i];
+        const real ups_J_group_2_yy = m->ups_J_group_2_yy[i];
+        const real ups_d_c_zz = ups_d_alpha_1_t*ups_h_3_z - ups_d_phi_3_t_3 -
+            inv_ups_root_1*(ups_s_2*(ups_J_group_2_xx*ups_d_alpha_1_t - ups_h_3_z -
+            inv_ups_root_2*ups_J_group_2_xy) - ups_c_2*(ups_J_group_2_xy*ups_d_alpha_1_t -
+            ups_h_3_x - inv_ups_root_2*ups_J_group_2_yy));
+        /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real ups_Q_t = R(0.5)*ups_d_c_yy;
+        const real ups_Q_t_2 = R(0.5)*ups_d_c_zz;
+        const real ups_Q_t_3 = axis_y_ups_axes2_x*ups_Q_t + axis_z_ups_axes2_in_base_x*ups_d_c_yz
+            - ups_axis_x_x*ups_d_phi_3_t;
+        const real ups_Q_t_4 = axis_y_ups_axes2_y*ups_Q_t + axis_z_ups_axes2_in_base_y*ups_d_c_yz
+            - ups_axis_x_y*ups_d_phi_3_t;
+        const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_in_base_z*ups_d_c_yz
+            - ups_axis_x_z*ups_d_phi_3_t;
+        const real ups_Q_t_6 = axis_z_ups_axes2_in_base_x*ups_Q_t_2 +
+            ups_axis_x_x*ups_d_phi_3_t_2;
+        const real ups_Q_t_7 = axis_z_ups_axes2_in_base_y*ups_Q_t_2 +
+            ups_axis_x_y*ups_d_phi_3_t_2;
+        const real ups_Q_t_8 = axis_z_ups_axes2_in_base_z*ups_Q_t_2 +
+            ups_axis_x_z*ups_d_phi_3_t_2;
+        const real ups_Q_t_9 = axis_y_ups_axes2_x*ups_Q_t_3 +
+            axis_z_ups_axes2_in_base_x*ups_Q_t_6;
+        const real ups_Q_t_10 = 2*ups_Q_t_9;
+        const real ups_Q_t_11 = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 +
+            axis_z_ups_axes2_in_base_x*ups_Q_t_7 + axis_z_ups_axes2_in_base_y*ups_Q_t_6;
+        const real ups_Q_t_12 = axis_y_ups_axes2_x*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_3 +
+            axis_z_ups_axes2_in_base_x*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_6;
+        const real ups_Q_t_13 = axis_y_ups_axes2_y*ups_Q_t_4 +
+            axis_z_ups_axes2_in_base_y*ups_Q_t_7;
+        const real ups_Q_t_14 = 2*ups_Q_t_13;
+        const real ups_Q_t_15 = axis_y_ups_axes2_y*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_4 +
+            axis_z_ups_axes2_in_base_y*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_7;
+        const real ups_Q_t_16 = axis_y_ups_axes2_z*ups_Q_t_5 +
+            axis_z_ups_axes2_in_base_z*ups_Q_t_8;
+        const real ups_Q_t_17 = 2*ups_Q_t_16;
+        /* (ups-S_dot) velocity of the connection point */
+        const real t_dot_x = s[3*w + j];
+        const real t_dot_y = s[4*w + j];
+        const real t_dot_z = s[5*w + j];
+        const real ups_S_dot_tip_x = t_dot_x*ups_axis_x_x + t_dot_y*ups_axis_x_y +
+            t_dot_z*ups_axis_x_z;
+        /* (ups-qd_2) rate of joint 2 */
+        const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*t_dot_x +
+            axis_y_ups_axes2_y*t_dot_y + axis_y_ups_axes2_z*t_dot_z);
+        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_in_base_x*t_dot_x +
             axis_z_ups_axes2_in_base_y*t_dot_y + axis_z_ups_axes2_in_base_z*t_dot_z);
-        /* (ups-V11) angular velocity of link 1 */
-        const real omega_1_t = qd_1*s_2;
-        const real omega_1_t_2 = c_2*qd_1;
-        /* (ups-A3) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_x = omega_1_t_2*qd_2;
-        const real zeta_2_y = omega_1_t*qd_2;
-        /* (ups-V13) centripetal tensor of link 2 */
-        const real W_2_t = omega_1_t*omega_1_t;
-        const real W_2_t_2 = omega_1_t_2*omega_1_t_2;
-        const real W_2_t_3 = qd_2*qd_2;
-        const real W_2_xy = omega_1_t*omega_1_t_2;
-        /* (ups-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_tip_x;
-        const real bias_z = bias_t*omega_1_t_2 + 2*root_2*zeta_2_y;
-        /* (ups-A8) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_o_t = bias_t*inv_root_2*qd_2;
-        const real qdd_1_o = bias_z*inv_root_1;
-        /* (ups-A14) remainder without the acceleration in: angular acceleration of link 1 */
-        const real alpha_1_o_t = qdd_1_o*s_2;
-        const real alpha_1_o_t_2 = c_2*qdd_1_o;
-        /* (ups-A17) remainder without the acceleration in: angular acceleration of link 2 */
-        const real alpha_2_o_x = -alpha_1_o_t - zeta_2_x;
-        const real alpha_2_o_y = alpha_1_o_t_2 - zeta_2_y;
-        /* (ups-A19) remainder of the acceleration tensor of link 2 */
-        const real B_2_o_xy = qdd_1_o_t - 2*W_2_xy;
-        const real B_2_o_zx = zeta_2_y - alpha_2_o_y;
-        const real B_2_o_zy = alpha_2_o_x - zeta_2_x;
-        /* (ups-N14) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (ups-omega_1) angular velocity of link 1 */
+        const real ups_omega_1_t = ups_qd_1*ups_s_2;
+        const real ups_omega_1_t_2 = ups_c_2*ups_qd_1;
+        /* (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2;
+        const real ups_zeta_2_y = ups_omega_1_t*ups_qd_2;
+        /* (ups-W_2) centripetal tensor of link 2 */
+        const real ups_W_2_t = ups_omega_1_t*ups_omega_1_t;
+        const real ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2;
+        const real ups_W_2_t_3 = ups_qd_2*ups_qd_2;
+        const real ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2;
+        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
+        const real ups_bias_t = 2*ups_S_dot_tip_x;
+        const real ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2*ups_root_2*ups_zeta_2_y;
+        /* (ups-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        const real ups_qdd_2_o_t = inv_ups_root_2*ups_bias_t*ups_qd_2;
+        const real ups_qdd_1_o = inv_ups_root_1*ups_bias_z;
+        /* (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+        const real ups_alpha_1_o_t = ups_qdd_1_o*ups_s_2;
+        const real ups_alpha_1_o_t_2 = ups_c_2*ups_qdd_1_o;
+        /* (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        const real ups_alpha_2_o_x = -ups_alpha_1_o_t - ups_zeta_2_x;
+        const real ups_alpha_2_o_y = ups_alpha_1_o_t_2 - ups_zeta_2_y;
+        /* (ups-B_2_o) remainder of the acceleration tensor of link 2 */
+        const real ups_B_2_o_xy = ups_qdd_2_o_t - 2*ups_W_2_xy;
+        const real ups_B_2_o_zx = ups_zeta_2_y - ups_alpha_2_o_y;
+        const real ups_B_2_o_zy = ups_alpha_2_o_x - ups_zeta_2_x;
+        /* (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
+           about its reference point */
+        const real ups_phi_3_o_x = ups_alpha_1_o_t_2*ups_h_3_y - ups_B_2_o_xy*ups_h_3_z -
+            ups_h_3_x*(ups_W_2_t_2 + ups_W_2_t_3);
+        /* (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real ups_g_r0_x = m->ups_g_r0_x[i];
+        const real ups_g_r0_y = m->ups_g_r0_y[i];
+        const real ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x;
+        const real ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1;
+        const real ups_g_r0_z = m->ups_g_r0_z[i];
+        const real ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y;
+        const real ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2;
+        /* (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real mu_2_o_x = B_2_o_zy*Sigma_2_yy + J_group_2_yz*(W_2_t_2 - W_2_t_3) +
-            g_r3_y*h_group_2_z - B_2_o_zx*J_group_2_xy - J_group_2_xz*qdd_1_o_t -
-            Sigma_2_zz*alpha_1_o_t - g_r1_x*h_group_2_y;
-        const real mu_2_o_y = B_2_o_zy*J_group_2_xy + Sigma_2_zz*alpha_1_o_t_2 +
-            g_r1_x*h_group_2_x - B_2_o_xy*J_group_2_yz - B_2_o_zx*Sigma_2_xx - J_group_2_xz*(W_2_t
-            - W_2_t_3) - g_r3_x*h_group_2_z;
-        const real mu_2_o_z = J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_yz*alpha_1_o_t_2 +
-            g_r3_x*h_group_2_y - B_2_o_xy*Sigma_2_yy - J_group_2_xz*alpha_1_o_t -
-            Sigma_2_xx*qdd_1_o_t - g_r3_y*h_group_2_x;
-        /* (ups-N7) remainder without the acceleration in: inertia force of link 3 from its turning about
-           its reference point */
-        const real phi_3_o_x = alpha_1_o_t_2*h_3_y - B_2_o_xy*h_3_z - h_3_x*(W_2_t_2 + W_2_t_3);
-        /* (ups-N26) remainder without the acceleration in: leg force on the platform without actuation
+        const real ups_Sigma_2_yy = m->ups_Sigma_2_yy[i];
+        const real ups_Sigma_2_zz = m->ups_Sigma_2_zz[i];
+        const real ups_h_group_2_y = m->ups_h_group_2_y[i];
+        const real ups_h_group_2_z = m->ups_h_group_2_z[i];
+        const real ups_mu_2_o_x = ups_B_2_o_zy*ups_Sigma_2_yy + ups_J_group_2_yz*(ups_W_2_t_2 -
+            ups_W_2_t_3) + ups_g_r3_y*ups_h_group_2_z - ups_B_2_o_zx*ups_J_group_2_xy -
+            ups_J_group_2_xz*ups_qdd_2_o_t - ups_Sigma_2_zz*ups_alpha_1_o_t -
+            ups_g_r1_x*ups_h_group_2_y;
+        const real ups_Sigma_2_xx = m->ups_Sigma_2_xx[i];
+        const real ups_h_group_2_x = m->ups_h_group_2_x[i];
+        const real ups_mu_2_o_y = ups_B_2_o_zy*ups_J_group_2_xy + ups_Sigma_2_zz*ups_alpha_1_o_t_2
+            + ups_g_r1_x*ups_h_group_2_x - ups_B_2_o_xy*ups_J_group_2_yz -
+            ups_B_2_o_zx*ups_Sigma_2_xx - ups_J_group_2_xz*(ups_W_2_t - ups_W_2_t_3) -
+            ups_g_r3_x*ups_h_group_2_z;
+        const real ups_mu_2_o_z = ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) +
+            ups_J_group_2_yz*ups_alpha_1_o_t_2 + ups_g_r3_x*ups_h_group_2_y -
+            ups_B_2_o_xy*ups_Sigma_2_yy - ups_J_group_2_xz*ups_alpha_1_o_t -
+            ups_Sigma_2_xx*ups_qdd_2_o_t - ups_g_r3_y*ups_h_group_2_x;
+        /* (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real c_o_y = h_3_x*qdd_1_o_t - alpha_1_o_t*h_3_y - h_3_z*(W_2_t + W_2_t_3) -
-            inv_root_2*mu_2_o_z;
-        const real c_o_z = B_2_o_zy*h_3_z + h_3_y*(W_2_t + W_2_t_2) - B_2_o_zx*h_3_x -
-            inv_root_1*(mu_2_o_x*s_2 - c_2*mu_2_o_y);
-        /* (ups-N28) velocity and gravity terms of the leg force */
-        const real U_in_base_x = axis_x_x*phi_3_o_x - axis_y_ups_axes2_x*c_o_y -
-            axis_z_ups_axes2_in_base_x*c_o_z;
-        const real U_in_base_y = axis_x_y*phi_3_o_x - axis_y_ups_axes2_y*c_o_y -
-            axis_z_ups_axes2_in_base_y*c_o_z;
-        const real U_in_base_z = axis_x_z*phi_3_o_x - axis_y_ups_axes2_z*c_o_y -
-            axis_z_ups_axes2_in_base_z*c_o_z;
-        o->sum[0][k] = add ? o->sum[0][k] + Q_t_10 : Q_t_10;  /* total_ups_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + Q_t_11 : Q_t_11;  /* total_ups_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + Q_t_12 : Q_t_12;  /* total_ups_xz */
-        o->sum[3][k] = add ? o->sum[3][k] + Q_t_14 : Q_t_14;  /* total_ups_yy */
-        o->sum[4][k] = add ? o->sum[4][k] + Q_t_15 : Q_t_15;  /* total_ups_yz */
-        o->sum[5][k] = add ? o->sum[5][k] + Q_t_17 : Q_t_17;  /* total_ups_zz */
-        o->sum[6][k] = add ? o->sum[6][k] + U_in_base_x : U_in_base_x;  /* total_ups_x */
-        o->sum[7][k] = add ? o->sum[7][k] + U_in_base_y : U_in_base_y;  /* total_ups_y */
-        o->sum[8][k] = add ? o->sum[8][k] + U_in_base_z : U_in_base_z;  /* total_ups_z */
-        o->entry[0][k] = axis_x_x;
-        o->entry[1][k] = axis_x_y;
-        o->entry[2][k] = axis_x_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
+        const real ups_c_o_y = ups_h_3_x*ups_qdd_2_o_t - inv_ups_root_2*ups_mu_2_o_z -
+            ups_alpha_1_o_t*ups_h_3_y - ups_h_3_z*(ups_W_2_t + ups_W_2_t_3);
+        const real ups_c_o_z = ups_B_2_o_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
+            inv_ups_root_1*(ups_mu_2_o_x*ups_s_2 - ups_c_2*ups_mu_2_o_y) - ups_B_2_o_zx*ups_h_3_x;
+        /* (ups-U) velocity and gravity terms of the leg force */
+        const real ups_U_in_base_x = ups_axis_x_x*ups_phi_3_o_x - axis_y_ups_axes2_x*ups_c_o_y -
+            axis_z_ups_axes2_in_base_x*ups_c_o_z;
+        const real ups_U_in_base_y = ups_axis_x_y*ups_phi_3_o_x - axis_y_ups_axes2_y*ups_c_o_y -
+            axis_z_ups_axes2_in_base_y*ups_c_o_z;
+        const real ups_U_in_base_z = ups_axis_x_z*ups_phi_3_o_x - axis_y_ups_axes2_z*ups_c_o_y -
+            axis_z_ups_axes2_in_base_z*ups_c_o_z;
+        terms[0*count + k] = add ? terms[0*count + k] + ups_Q_t_10 : ups_Q_t_10;  /* total_ups_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + ups_Q_t_11 : ups_Q_t_11;  /* total_ups_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + ups_Q_t_12 : ups_Q_t_12;  /* total_ups_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + ups_Q_t_14 : ups_Q_t_14;  /* total_ups_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + ups_Q_t_15 : ups_Q_t_15;  /* total_ups_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + ups_Q_t_17 : ups_Q_t_17;  /* total_ups_zz */
+        terms[6*count + k] = add ? terms[6*count + k] + ups_U_in_base_x : ups_U_in_base_x;  /* total_ups_x */
+        terms[7*count + k] = add ? terms[7*count + k] + ups_U_in_base_y : ups_U_in_base_y;  /* total_ups_y */
+        terms[8*count + k] = add ? terms[8*count + k] + ups_U_in_base_z : ups_U_in_base_z;  /* total_ups_z */
+        o[0*count + k] = ups_axis_x_x;
+        o[1*count + k] = ups_axis_x_y;
+        o[2*count + k] = ups_axis_x_z;
+        o[4*count + k] = ups_axis_x_x + (ups_axis_x_y + ups_axis_x_z);
+        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
             TOLERANCE*R(0.8));
     }
 }
 
-INLINE void dynamics_place_ups(size_t w, const dynamics_results_ups *o, size_t leg, size_t first,
+INLINE void dynamics_place_ups(size_t w, size_t count, const real *o, size_t leg, size_t first,
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(3 + leg)*w + k] = o->entry[1][first + k];
-        H[(6 + leg)*w + k] = o->entry[2][first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(3 + leg)*w + k] = o[1*count + first + k];
+        H[(6 + leg)*w + k] = o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
 }
 
-INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s, real *M, real
-    *Z)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real total_ups_xx = s->sum[0][k];
-        const real total_ups_xy = s->sum[1][k];
-        const real total_ups_xz = s->sum[2][k];
-        const real total_ups_yy = s->sum[3][k];
-        const real total_ups_yz = s->sum[4][k];
-        const real total_ups_zz = s->sum[5][k];
-        const real total_ups_x = s->sum[6][k];
-        const real total_ups_y = s->sum[7][k];
-        const real total_ups_z = s->sum[8][k];
-        const real Z_p_x = m->Z_p_x;
-        const real Z_p_y = m->Z_p_y;
-        const real Z_p_z = m->Z_p_z;
-        const real m_star = m->m_star;
-        /* (M1) translational block of M */
-        const real M_tt_xx = m_star - total_ups_xx;
-        const real M_tt_yy = m_star - total_ups_yy;
-        const real M_tt_zz = m_star - total_ups_zz;
-        /* (M3) translational part of Z */
-        const real Z_t_x = total_ups_x - Z_p_x;
-        const real Z_t_y = total_ups_y - Z_p_y;
-        const real Z_t_z = total_ups_z - Z_p_z;
-        M[0*w + k] = M_tt_xx;
-        M[1*w + k] = -total_ups_xy;
-        M[3*w + k] = -total_ups_xy;
-        M[2*w + k] = -total_ups_xz;
-        M[6*w + k] = -total_ups_xz;
-        M[4*w + k] = M_tt_yy;
-        M[5*w + k] = -total_ups_yz;
-        M[7*w + k] = -total_ups_yz;
-        M[8*w + k] = M_tt_zz;
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-        Z[2*w + k] = Z_t_z;
-    }
-}
-
-INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real *V, real *M, real
-    *Z, real *H, verdict *t)
-{
-    dynamics_values values, *const s = &values;
-    dynamics_results_ups results_ups;
-    dynamics_before(w, X, V, s);
-    if (w == 1) {  /* the legs side by side */
-        dynamics_legs_ups(m, 0, 1, s, 0, 3, 0, &results_ups);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            dynamics_place_ups(w, &results_ups, leg, leg, H, t);
-        }
-        for (size_t n = 0; n < 9; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_ups.sum[n], 3);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_ups.sum, 0, sizeof results_ups.sum);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            dynamics_legs_ups(m, leg, 0, s, 1, w, 1, &results_ups);
-            dynamics_place_ups(w, &results_ups, leg, 0, H, t);
-        }
-        for (size_t n = 0; n < 9; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_ups.sum[n][k];
-            }
-        }
-    }
-    dynamics_after(m, w, s, M, Z);
-}
-
-/* ---- M: 267 mul, 177 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], sum[6][LANES];
-} M_values;
-typedef struct {
-    real sum[6][8], singular[8];
-} M_results_ups;
-
-INLINE void M_before(size_t w, const real *X, M_values *s)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-    }
-}
-
-INLINE void M_legs_ups(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
-    states, size_t count, int add, M_results_ups *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real J_group_2_xx = m->J_group_2_xx[i];
-        const real J_group_2_xy = m->J_group_2_xy[i];
-        const real J_group_2_xz = m->J_group_2_xz[i];
-        const real J_group_2_yy = m->J_group_2_yy[i];
-        const real J_group_2_yz = m->J_group_2_yz[i];
-        const real J_group_2_zz = m->J_group_2_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        /* (ups-K1) from the base point to the connection point */
-        const real S_x = t_x + ups_platform_point_x - ups_base_point_x;
-        const real S_y = t_y + ups_platform_point_y - ups_base_point_y;
-        const real S_z = t_z + ups_platform_point_z - ups_base_point_z;
-        /* (ups-K2) component along the reference direction */
-        const real px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx;
-        /* (ups-K3) component across the reference direction */
-        const real py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy;
-        /* (ups-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (ups-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (ups-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz;
-        /* (ups-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (ups-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (ups-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        /* (ups-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_x_x = S_x*inv_root_2;
-        const real axis_x_y = S_y*inv_root_2;
-        const real axis_x_z = S_z*inv_root_2;
-        /* (ups-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (ups-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx;
-        const real axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx;
-        const real axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx;
-        const real axis_y_ups_axes2_x = axis_x_z*axis_z_ups_axes2_in_base_y -
-            axis_x_y*axis_z_ups_axes2_in_base_z;
-        const real axis_y_ups_axes2_y = axis_x_x*axis_z_ups_axes2_in_base_z -
-            axis_x_z*axis_z_ups_axes2_in_base_x;
-        const real axis_y_ups_axes2_z = axis_x_y*axis_z_ups_axes2_in_base_x -
-            axis_x_x*axis_z_ups_axes2_in_base_y;
-        /* (ups-A13) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d_alpha_1_t = inv_root_1*s_2;
-        /* (ups-N22) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_t = h_3_z*inv_root_2;
-        /* (ups-N6) coefficient of the acceleration in: inertia force of link 3 from its turning about its
-           reference point */
-        const real d_phi_3_t = h_3_y*inv_root_2;
-        const real d_phi_3_t_2 = h_3_x*inv_root_2;
-        /* (ups-N25) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real d_c_yy = -d_phi_3_t_2 - inv_root_2*(h_3_x + J_group_2_zz*inv_root_2);
-        const real d_c_yz = d_alpha_1_t*h_3_y - inv_root_2*(J_group_2_xz*d_alpha_1_t -
-            J_group_2_yz*inv_root_2);
-        const real d_c_zz = d_alpha_1_t*h_3_z - d_phi_3_t_2 -
-            inv_root_1*(s_2*(J_group_2_xx*d_alpha_1_t - h_3_z - J_group_2_xy*inv_root_2) -
-            inv_root_2*root_1*(J_group_2_xy*d_alpha_1_t - h_3_x - J_group_2_yy*inv_root_2));
-        /* (ups-N27) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = R(0.5)*d_c_yy;
-        const real Q_t_2 = R(0.5)*d_c_zz;
-        const real Q_t_3 = Q_t*axis_y_ups_axes2_x + axis_z_ups_axes2_in_base_x*d_c_yz -
-            axis_x_x*d_G_t;
-        const real Q_t_4 = Q_t*axis_y_ups_axes2_y + axis_z_ups_axes2_in_base_y*d_c_yz -
-            axis_x_y*d_G_t;
-        const real Q_t_5 = Q_t*axis_y_ups_axes2_z + axis_z_ups_axes2_in_base_z*d_c_yz -
-            axis_x_z*d_G_t;
-        const real Q_t_6 = Q_t_2*axis_z_ups_axes2_in_base_x + axis_x_x*d_phi_3_t;
-        const real Q_t_7 = Q_t_2*axis_z_ups_axes2_in_base_y + axis_x_y*d_phi_3_t;
-        const real Q_t_8 = Q_t_2*axis_z_ups_axes2_in_base_z + axis_x_z*d_phi_3_t;
-        const real Q_t_9 = Q_t_3*axis_y_ups_axes2_x + Q_t_6*axis_z_ups_axes2_in_base_x;
-        const real Q_t_10 = 2*Q_t_9;
-        const real Q_t_11 = Q_t_3*axis_y_ups_axes2_y + Q_t_4*axis_y_ups_axes2_x +
-            Q_t_6*axis_z_ups_axes2_in_base_y + Q_t_7*axis_z_ups_axes2_in_base_x;
-        const real Q_t_12 = Q_t_3*axis_y_ups_axes2_z + Q_t_5*axis_y_ups_axes2_x +
-            Q_t_6*axis_z_ups_axes2_in_base_z + Q_t_8*axis_z_ups_axes2_in_base_x;
-        const real Q_t_13 = Q_t_4*axis_y_ups_axes2_y + Q_t_7*axis_z_ups_axes2_in_base_y;
-        const real Q_t_14 = 2*Q_t_13;
-        const real Q_t_15 = Q_t_4*axis_y_ups_axes2_z + Q_t_5*axis_y_ups_axes2_y +
-            Q_t_7*axis_z_ups_axes2_in_base_z + Q_t_8*axis_z_ups_axes2_in_base_y;
-        const real Q_t_16 = Q_t_5*axis_y_ups_axes2_z + Q_t_8*axis_z_ups_axes2_in_base_z;
-        const real Q_t_17 = 2*Q_t_16;
-        o->sum[0][k] = add ? o->sum[0][k] + Q_t_10 : Q_t_10;  /* total_ups_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + Q_t_11 : Q_t_11;  /* total_ups_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + Q_t_12 : Q_t_12;  /* total_ups_xz */
-        o->sum[3][k] = add ? o->sum[3][k] + Q_t_14 : Q_t_14;  /* total_ups_yy */
-        o->sum[4][k] = add ? o->sum[4][k] + Q_t_15 : Q_t_15;  /* total_ups_yz */
-        o->sum[5][k] = add ? o->sum[5][k] + Q_t_17 : Q_t_17;  /* total_ups_zz */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
-            TOLERANCE*R(0.8));
-    }
-}
-
-INLINE void M_place_ups(size_t w, const M_results_ups *o, size_t first, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real total_ups_xx = s->sum[0][k];
-        const real total_ups_xy = s->sum[1][k];
-        const real total_ups_xz = s->sum[2][k];
-        const real total_ups_yy = s->sum[3][k];
-        const real total_ups_yz = s->sum[4][k];
-        const real total_ups_zz = s->sum[5][k];
-        const real m_star = m->m_star;
-        /* (M1) translational block of M */
-        const real M_tt_xx = m_star - total_ups_xx;
-        const real M_tt_yy = m_star - total_ups_yy;
-        const real M_tt_zz = m_star - total_ups_zz;
-        M[0*w + k] = M_tt_xx;
-        M[1*w + k] = -total_ups_xy;
-        M[3*w + k] = -total_ups_xy;
-        M[2*w + k] = -total_ups_xz;
-        M[6*w + k] = -total_ups_xz;
-        M[4*w + k] = M_tt_yy;
-        M[5*w + k] = -total_ups_yz;
-        M[7*w + k] = -total_ups_yz;
-        M[8*w + k] = M_tt_zz;
-    }
-}
-
-INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *t)
-{
-    M_values values, *const s = &values;
-    M_results_ups results_ups;
-    M_before(w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        M_legs_ups(m, 0, 1, s, 0, 3, 0, &results_ups);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            M_place_ups(w, &results_ups, leg, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_ups.sum[n], 3);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_ups.sum, 0, sizeof results_ups.sum);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            M_legs_ups(m, leg, 0, s, 1, w, 1, &results_ups);
-            M_place_ups(w, &results_ups, 0, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_ups.sum[n][k];
-            }
-        }
-    }
-    M_after(m, w, s, M);
-}
-
-/* ---- Z: 339 mul, 237 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], t_dot_x[LANES], t_dot_y[LANES], t_dot_z[LANES],
-        sum[3][LANES];
-} Z_values;
-typedef struct {
-    real sum[3][8], singular[8];
-} Z_results_ups;
-
-INLINE void Z_before(size_t w, const real *X, const real *V, Z_values *s)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
-        /* V: named entries */
-        const real t_dot_x = V_0;
-        const real t_dot_y = V_1;
-        const real t_dot_z = V_2;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-    }
-}
-
-INLINE void Z_legs_ups(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
-    states, size_t count, int add, Z_results_ups *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real J_group_2_xy = m->J_group_2_xy[i];
-        const real J_group_2_xz = m->J_group_2_xz[i];
-        const real J_group_2_yz = m->J_group_2_yz[i];
-        const real Sigma_2_xx = m->Sigma_2_xx[i];
-        const real Sigma_2_yy = m->Sigma_2_yy[i];
-        const real Sigma_2_zz = m->Sigma_2_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real g_r0_z = m->g_r0_z[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real h_group_2_x = m->h_group_2_x[i];
-        const real h_group_2_y = m->h_group_2_y[i];
-        const real h_group_2_z = m->h_group_2_z[i];
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        /* (ups-K1) from the base point to the connection point */
-        const real S_x = t_x + ups_platform_point_x - ups_base_point_x;
-        const real S_y = t_y + ups_platform_point_y - ups_base_point_y;
-        const real S_z = t_z + ups_platform_point_z - ups_base_point_z;
-        /* (ups-K2) component along the reference direction */
-        const real px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx;
-        /* (ups-K3) component across the reference direction */
-        const real py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy;
-        /* (ups-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (ups-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (ups-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz;
-        /* (ups-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (ups-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (ups-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (ups-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_x_x = S_x*inv_root_2;
-        const real axis_x_y = S_y*inv_root_2;
-        const real axis_x_z = S_z*inv_root_2;
-        /* (ups-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (ups-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx;
-        const real axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx;
-        const real axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx;
-        const real axis_y_ups_axes2_x = axis_x_z*axis_z_ups_axes2_in_base_y -
-            axis_x_y*axis_z_ups_axes2_in_base_z;
-        const real axis_y_ups_axes2_y = axis_x_x*axis_z_ups_axes2_in_base_z -
-            axis_x_z*axis_z_ups_axes2_in_base_x;
-        const real axis_y_ups_axes2_z = axis_x_y*axis_z_ups_axes2_in_base_x -
-            axis_x_x*axis_z_ups_axes2_in_base_y;
-        /* (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
-        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
-        const real g_r3_x = g_r0_z*s_2 - c_2*g_r1_y;
-        const real g_r3_y = -c_2*g_r0_z - g_r1_y*s_2;
-        /* (ups-V1) velocity of the connection point */
-        const real S_dot_tip_x = axis_x_x*t_dot_x + axis_x_y*t_dot_y + axis_x_z*t_dot_z;
-        /* (ups-V8) rate of joint 1 */
-        const real qd_2 = inv_root_2*(axis_y_ups_axes2_x*t_dot_x + axis_y_ups_axes2_y*t_dot_y +
-            axis_y_ups_axes2_z*t_dot_z);
-        const real qd_1 = inv_root_1*(axis_z_ups_axes2_in_base_x*t_dot_x +
-            axis_z_ups_axes2_in_base_y*t_dot_y + axis_z_ups_axes2_in_base_z*t_dot_z);
-        /* (ups-V11) angular velocity of link 1 */
-        const real omega_1_t = qd_1*s_2;
-        const real omega_1_t_2 = c_2*qd_1;
-        /* (ups-A3) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_x = omega_1_t_2*qd_2;
-        const real zeta_2_y = omega_1_t*qd_2;
-        /* (ups-V13) centripetal tensor of link 2 */
-        const real W_2_t = omega_1_t*omega_1_t;
-        const real W_2_t_2 = omega_1_t_2*omega_1_t_2;
-        const real W_2_t_3 = qd_2*qd_2;
-        const real W_2_xy = omega_1_t*omega_1_t_2;
-        /* (ups-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_tip_x;
-        const real bias_z = bias_t*omega_1_t_2 + 2*root_2*zeta_2_y;
-        /* (ups-A8) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_o_t = bias_t*inv_root_2*qd_2;
-        const real qdd_1_o = bias_z*inv_root_1;
-        /* (ups-A14) remainder without the acceleration in: angular acceleration of link 1 */
-        const real alpha_1_o_t = qdd_1_o*s_2;
-        const real alpha_1_o_t_2 = c_2*qdd_1_o;
-        /* (ups-A17) remainder without the acceleration in: angular acceleration of link 2 */
-        const real alpha_2_o_x = -alpha_1_o_t - zeta_2_x;
-        const real alpha_2_o_y = alpha_1_o_t_2 - zeta_2_y;
-        /* (ups-A19) remainder of the acceleration tensor of link 2 */
-        const real B_2_o_xy = qdd_1_o_t - 2*W_2_xy;
-        const real B_2_o_zx = zeta_2_y - alpha_2_o_y;
-        const real B_2_o_zy = alpha_2_o_x - zeta_2_x;
-        /* (ups-N14) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
-        const real mu_2_o_x = B_2_o_zy*Sigma_2_yy + J_group_2_yz*(W_2_t_2 - W_2_t_3) +
-            g_r3_y*h_group_2_z - B_2_o_zx*J_group_2_xy - J_group_2_xz*qdd_1_o_t -
-            Sigma_2_zz*alpha_1_o_t - g_r1_x*h_group_2_y;
-        const real mu_2_o_y = B_2_o_zy*J_group_2_xy + Sigma_2_zz*alpha_1_o_t_2 +
-            g_r1_x*h_group_2_x - B_2_o_xy*J_group_2_yz - B_2_o_zx*Sigma_2_xx - J_group_2_xz*(W_2_t
-            - W_2_t_3) - g_r3_x*h_group_2_z;
-        const real mu_2_o_z = J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_yz*alpha_1_o_t_2 +
-            g_r3_x*h_group_2_y - B_2_o_xy*Sigma_2_yy - J_group_2_xz*alpha_1_o_t -
-            Sigma_2_xx*qdd_1_o_t - g_r3_y*h_group_2_x;
-        /* (ups-N7) remainder without the acceleration in: inertia force of link 3 from its turning about
-           its reference point */
-        const real phi_3_o_x = alpha_1_o_t_2*h_3_y - B_2_o_xy*h_3_z - h_3_x*(W_2_t_2 + W_2_t_3);
-        /* (ups-N26) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real c_o_y = h_3_x*qdd_1_o_t - alpha_1_o_t*h_3_y - h_3_z*(W_2_t + W_2_t_3) -
-            inv_root_2*mu_2_o_z;
-        const real c_o_z = B_2_o_zy*h_3_z + h_3_y*(W_2_t + W_2_t_2) - B_2_o_zx*h_3_x -
-            inv_root_1*(mu_2_o_x*s_2 - c_2*mu_2_o_y);
-        /* (ups-N28) velocity and gravity terms of the leg force */
-        const real U_in_base_x = axis_x_x*phi_3_o_x - axis_y_ups_axes2_x*c_o_y -
-            axis_z_ups_axes2_in_base_x*c_o_z;
-        const real U_in_base_y = axis_x_y*phi_3_o_x - axis_y_ups_axes2_y*c_o_y -
-            axis_z_ups_axes2_in_base_y*c_o_z;
-        const real U_in_base_z = axis_x_z*phi_3_o_x - axis_y_ups_axes2_z*c_o_y -
-            axis_z_ups_axes2_in_base_z*c_o_z;
-        o->sum[0][k] = add ? o->sum[0][k] + U_in_base_x : U_in_base_x;  /* total_ups_x */
-        o->sum[1][k] = add ? o->sum[1][k] + U_in_base_y : U_in_base_y;  /* total_ups_y */
-        o->sum[2][k] = add ? o->sum[2][k] + U_in_base_z : U_in_base_z;  /* total_ups_z */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
-            TOLERANCE*R(0.8));
-    }
-}
-
-INLINE void Z_place_ups(size_t w, const Z_results_ups *o, size_t first, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void Z_after(const prepared *m, size_t w, const Z_values *s, real *Z)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real total_ups_x = s->sum[0][k];
-        const real total_ups_y = s->sum[1][k];
-        const real total_ups_z = s->sum[2][k];
-        const real Z_p_x = m->Z_p_x;
-        const real Z_p_y = m->Z_p_y;
-        const real Z_p_z = m->Z_p_z;
-        /* (M3) translational part of Z */
-        const real Z_t_x = total_ups_x - Z_p_x;
-        const real Z_t_y = total_ups_y - Z_p_y;
-        const real Z_t_z = total_ups_z - Z_p_z;
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-        Z[2*w + k] = Z_t_z;
-    }
-}
-
-INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, real *Z, verdict *t)
-{
-    Z_values values, *const s = &values;
-    Z_results_ups results_ups;
-    Z_before(w, X, V, s);
-    if (w == 1) {  /* the legs side by side */
-        Z_legs_ups(m, 0, 1, s, 0, 3, 0, &results_ups);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            Z_place_ups(w, &results_ups, leg, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_ups.sum[n], 3);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_ups.sum, 0, sizeof results_ups.sum);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            Z_legs_ups(m, leg, 0, s, 1, w, 1, &results_ups);
-            Z_place_ups(w, &results_ups, 0, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_ups.sum[n][k];
-            }
-        }
-    }
-    Z_after(m, w, s, Z);
-}
-
-/* ---- H: 48 mul, 42 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES];
-} H_values;
-typedef struct {
-    real entry[3][8], singular[8];
-} H_results_ups;
-
-INLINE void H_before(size_t w, const real *X, H_values *s)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-    }
-}
-
-INLINE void H_legs_ups(const prepared *m, size_t leg, size_t legs, const H_values *s, size_t
-    states, size_t count, H_results_ups *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real branch_2 = m->branch_2[i];
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        /* (ups-K1) from the base point to the connection point */
-        const real S_x = t_x + ups_platform_point_x - ups_base_point_x;
-        const real S_y = t_y + ups_platform_point_y - ups_base_point_y;
-        const real S_z = t_z + ups_platform_point_z - ups_base_point_z;
-        /* (ups-K2) component along the reference direction */
-        const real px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx;
-        /* (ups-K3) component across the reference direction */
-        const real py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy;
-        /* (ups-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (ups-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz;
-        /* (ups-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (ups-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (ups-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_x_x = S_x*inv_root_2;
-        const real axis_x_y = S_y*inv_root_2;
-        const real axis_x_z = S_z*inv_root_2;
-        o->entry[0][k] = axis_x_x;
-        o->entry[1][k] = axis_x_y;
-        o->entry[2][k] = axis_x_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(root_2) > TOLERANCE*R(0.8));
-    }
-}
-
-INLINE void H_place_ups(size_t w, const H_results_ups *o, size_t leg, size_t first, real *H,
+INLINE void dynamics_after(const prepared *m, size_t w, const real *sums, real *M, real *Z,
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(3 + leg)*w + k] = o->entry[1][first + k];
-        H[(6 + leg)*w + k] = o->entry[2][first + k];
-        t->singular[k] += o->singular[first + k];
+        /* (M_tt) translational block of M */
+        const real m_star = m->m_star;
+        const real total_ups_xx = sums[0*w + k];
+        const real M_tt_xx = m_star - total_ups_xx;
+        const real total_ups_yy = sums[3*w + k];
+        const real M_tt_yy = m_star - total_ups_yy;
+        const real total_ups_zz = sums[5*w + k];
+        const real M_tt_zz = m_star - total_ups_zz;
+        /* (Z_t) translational part of Z */
+        const real Z_p_x = m->Z_p_x;
+        const real total_ups_x = sums[6*w + k];
+        const real Z_t_x = total_ups_x - Z_p_x;
+        const real Z_p_y = m->Z_p_y;
+        const real total_ups_y = sums[7*w + k];
+        const real Z_t_y = total_ups_y - Z_p_y;
+        const real Z_p_z = m->Z_p_z;
+        const real total_ups_z = sums[8*w + k];
+        const real Z_t_z = total_ups_z - Z_p_z;
+        M[0*w + k] = M_tt_xx;
+        const real total_ups_xy = sums[1*w + k];
+        M[1*w + k] = -total_ups_xy;
+        M[3*w + k] = -total_ups_xy;
+        const real total_ups_xz = sums[2*w + k];
+        M[2*w + k] = -total_ups_xz;
+        M[6*w + k] = -total_ups_xz;
+        M[4*w + k] = M_tt_yy;
+        const real total_ups_yz = sums[4*w + k];
+        M[5*w + k] = -total_ups_yz;
+        M[7*w + k] = -total_ups_yz;
+        M[8*w + k] = M_tt_zz;
+        Z[0*w + k] = Z_t_x;
+        Z[1*w + k] = Z_t_y;
+        Z[2*w + k] = Z_t_z;
+        t->total[k] += ((M_tt_xx + total_ups_xy) + (total_ups_xz + M_tt_yy)) + ((total_ups_yz +
+            M_tt_zz) + (Z_t_x + (Z_t_y + Z_t_z)));
     }
 }
 
-INLINE void H_run(const prepared *m, size_t w, const real *X, real *H, verdict *t)
+INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
+    *H, verdict *t)
 {
-    H_values values, *const s = &values;
-    H_results_ups results_ups;
-    H_before(w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        H_legs_ups(m, 0, 1, s, 0, 3, &results_ups);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            H_place_ups(w, &results_ups, leg, leg, H, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            H_legs_ups(m, leg, 0, s, 1, w, &results_ups);
-            H_place_ups(w, &results_ups, leg, 0, H, t);
-        }
+    real s[6] = {0}, sums[9] = {0}, terms_ups[9*LEGS(3)] = {0}, o_ups[5*LEGS(3)] = {0};
+    dynamics_before(1, X, V, s);
+    dynamics_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_ups, o_ups);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        dynamics_place_ups(1, LEGS(3), o_ups, leg, leg, H, t);
+    }
+    for (size_t n = 0; n < 9; ++n) {
+        sums[n] = total(terms_ups + n*LEGS(3), 3);
+    }
+    dynamics_after(m, 1, sums, M, Z, t);
+}
+
+INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, verdict *t)
+{
+    real s[6*LANES], sums[9*LANES], o_ups[5*LANES];
+    dynamics_before(LANES, X, V, s);
+    clear(sums, 9*LANES);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        dynamics_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ups);
+        dynamics_place_ups(LANES, LANES, o_ups, leg, 0, H, t);
+    }
+    dynamics_after(m, LANES, sums, M, Z, t);
+}
+
+/* ---- M: 267 mul, 177 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
+INLINE void M_before(size_t w, const real *X, real *s)
+{
+    for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
+        const real X_0 = X[0*w + k];
+        const real t_x = X_0;
+        const real X_1 = X[1*w + k];
+        const real t_y = X_1;
+        const real X_2 = X[2*w + k];
+        const real t_z = X_2;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+    }
+}
+
+INLINE void M_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, int add, real *terms, real *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        /* (ups-S) from the base point to the connection point */
+        const real t_x = s[0*w + j];
+        const real ups_base_point_x = m->ups_base_point_x[i];
+        const real ups_platform_point_x = m->ups_platform_point_x[i];
+        const real ups_S_x = t_x + ups_platform_point_x - ups_base_point_x;
+        const real t_y = s[1*w + j];
+        const real ups_base_point_y = m->ups_base_point_y[i];
+        const real ups_platform_point_y = m->ups_platform_point_y[i];
+        const real ups_S_y = t_y + ups_platform_point_y - ups_base_point_y;
+        const real t_z = s[2*w + j];
+        const real ups_base_point_z = m->ups_base_point_z[i];
+        const real ups_platform_point_z = m->ups_platform_point_z[i];
+        const real ups_S_z = t_z + ups_platform_point_z - ups_base_point_z;
+        /* (ups-px_1) component along the reference direction */
+        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
+        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
+        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
+        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
+            ups_S_z*ups_base_frame_zx;
+        /* (ups-py_1) component across the reference direction */
+        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
+        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
+        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
+        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
+            ups_S_z*ups_base_frame_zy;
+        /* (ups-rho2_1) squared amplitude */
+        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
+        /* (ups-root_1) amplitude, with the sign of the branch */
+        const real ups_branch_1 = m->ups_branch_1[i];
+        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
+        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
+        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+            ups_S_z*ups_base_frame_zz;
+        /* (ups-rho2_2) squared amplitude */
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        /* (ups-root_2) amplitude, with the sign of the branch */
+        const real ups_branch_2 = m->ups_branch_2[i];
+        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
+        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ups_root_2 = 1/ups_root_2;
+        /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
+        const real ups_s_2 = inv_ups_root_2*ups_xi_1_t;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
+        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
+        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
+            ups_base_frame_xx*ups_c_1;
+        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
+            ups_base_frame_yx*ups_c_1;
+        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
+            ups_base_frame_zx*ups_c_1;
+        const real axis_y_ups_axes2_x = axis_z_ups_axes2_in_base_y*ups_axis_x_z -
+            axis_z_ups_axes2_in_base_z*ups_axis_x_y;
+        const real axis_y_ups_axes2_y = axis_z_ups_axes2_in_base_z*ups_axis_x_x -
+            axis_z_ups_axes2_in_base_x*ups_axis_x_z;
+        const real axis_y_ups_axes2_z = axis_z_ups_axes2_in_base_x*ups_axis_x_y -
+            axis_z_ups_axes2_in_base_y*ups_axis_x_x;
+        /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+        const real ups_d_alpha_1_t = inv_ups_root_1*ups_s_2;
+        /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
+           about its reference point */
+        const real ups_h_3_z = m->ups_h_3_z[i];
+        const real ups_d_phi_3_t = inv_ups_root_2*ups_h_3_z;
+        const real ups_h_3_y = m->ups_h_3_y[i];
+        const real ups_d_phi_3_t_2 = inv_ups_root_2*ups_h_3_y;
+        const real ups_h_3_x = m->ups_h_3_x[i];
+        const real ups_d_phi_3_t_3 = inv_ups_root_2*ups_h_3_x;
+        /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real ups_J_group_2_zz = m->ups_J_group_2_zz[i];
+        const real ups_d_c_yy = -ups_d_phi_3_t_3 - inv_ups_root_2*(ups_h_3_x +
+            inv_ups_root_2*ups_J_group_2_zz);
+        const real ups_J_group_2_xz = m->ups_J_group_2_xz[i];
+        const real ups_J_group_2_yz = m->ups_J_group_2_yz[i];
+        const real ups_d_c_yz = ups_d_alpha_1_t*ups_h_3_y -
+            inv_ups_root_2*(ups_J_group_2_xz*ups_d_alpha_1_t - inv_ups_root_2*ups_J_group_2_yz);
+        const real ups_J_group_2_xx = m->ups_J_group_2_xx[i];
+        const real ups_J_group_2_xy = m->ups_J_group_2_xy[i];
+        const real ups_J_group_2_yy = m->ups_J_group_2_yy[i];
+        const real ups_d_c_zz = ups_d_alpha_1_t*ups_h_3_z - ups_d_phi_3_t_3 -
+            inv_ups_root_1*(ups_s_2*(ups_J_group_2_xx*ups_d_alpha_1_t - ups_h_3_z -
+            inv_ups_root_2*ups_J_group_2_xy) -
+            inv_ups_root_2*ups_root_1*(ups_J_group_2_xy*ups_d_alpha_1_t - ups_h_3_x -
+            inv_ups_root_2*ups_J_group_2_yy));
+        /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real ups_Q_t = R(0.5)*ups_d_c_yy;
+        const real ups_Q_t_2 = R(0.5)*ups_d_c_zz;
+        const real ups_Q_t_3 = axis_y_ups_axes2_x*ups_Q_t + axis_z_ups_axes2_in_base_x*ups_d_c_yz
+            - ups_axis_x_x*ups_d_phi_3_t;
+        const real ups_Q_t_4 = axis_y_ups_axes2_y*ups_Q_t + axis_z_ups_axes2_in_base_y*ups_d_c_yz
+            - ups_axis_x_y*ups_d_phi_3_t;
+        const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_in_base_z*ups_d_c_yz
+            - ups_axis_x_z*ups_d_phi_3_t;
+        const real ups_Q_t_6 = axis_z_ups_axes2_in_base_x*ups_Q_t_2 +
+            ups_axis_x_x*ups_d_phi_3_t_2;
+        const real ups_Q_t_7 = axis_z_ups_axes2_in_base_y*ups_Q_t_2 +
+            ups_axis_x_y*ups_d_phi_3_t_2;
+        const real ups_Q_t_8 = axis_z_ups_axes2_in_base_z*ups_Q_t_2 +
+            ups_axis_x_z*ups_d_phi_3_t_2;
+        const real ups_Q_t_9 = axis_y_ups_axes2_x*ups_Q_t_3 +
+            axis_z_ups_axes2_in_base_x*ups_Q_t_6;
+        const real ups_Q_t_10 = 2*ups_Q_t_9;
+        const real ups_Q_t_11 = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 +
+            axis_z_ups_axes2_in_base_x*ups_Q_t_7 + axis_z_ups_axes2_in_base_y*ups_Q_t_6;
+        const real ups_Q_t_12 = axis_y_ups_axes2_x*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_3 +
+            axis_z_ups_axes2_in_base_x*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_6;
+        const real ups_Q_t_13 = axis_y_ups_axes2_y*ups_Q_t_4 +
+            axis_z_ups_axes2_in_base_y*ups_Q_t_7;
+        const real ups_Q_t_14 = 2*ups_Q_t_13;
+        const real ups_Q_t_15 = axis_y_ups_axes2_y*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_4 +
+            axis_z_ups_axes2_in_base_y*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_7;
+        const real ups_Q_t_16 = axis_y_ups_axes2_z*ups_Q_t_5 +
+            axis_z_ups_axes2_in_base_z*ups_Q_t_8;
+        const real ups_Q_t_17 = 2*ups_Q_t_16;
+        terms[0*count + k] = add ? terms[0*count + k] + ups_Q_t_10 : ups_Q_t_10;  /* total_ups_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + ups_Q_t_11 : ups_Q_t_11;  /* total_ups_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + ups_Q_t_12 : ups_Q_t_12;  /* total_ups_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + ups_Q_t_14 : ups_Q_t_14;  /* total_ups_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + ups_Q_t_15 : ups_Q_t_15;  /* total_ups_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + ups_Q_t_17 : ups_Q_t_17;  /* total_ups_zz */
+        o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
+            TOLERANCE*R(0.8));
+    }
+}
+
+INLINE void M_place_ups(size_t w, size_t count, const real *o, size_t first, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        t->singular[k] += o[0*count + first + k];
+    }
+}
+
+INLINE void M_after(const prepared *m, size_t w, const real *sums, real *M, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        /* (M_tt) translational block of M */
+        const real m_star = m->m_star;
+        const real total_ups_xx = sums[0*w + k];
+        const real M_tt_xx = m_star - total_ups_xx;
+        const real total_ups_yy = sums[3*w + k];
+        const real M_tt_yy = m_star - total_ups_yy;
+        const real total_ups_zz = sums[5*w + k];
+        const real M_tt_zz = m_star - total_ups_zz;
+        M[0*w + k] = M_tt_xx;
+        const real total_ups_xy = sums[1*w + k];
+        M[1*w + k] = -total_ups_xy;
+        M[3*w + k] = -total_ups_xy;
+        const real total_ups_xz = sums[2*w + k];
+        M[2*w + k] = -total_ups_xz;
+        M[6*w + k] = -total_ups_xz;
+        M[4*w + k] = M_tt_yy;
+        const real total_ups_yz = sums[4*w + k];
+        M[5*w + k] = -total_ups_yz;
+        M[7*w + k] = -total_ups_yz;
+        M[8*w + k] = M_tt_zz;
+        t->total[k] += (M_tt_xx + (total_ups_xy + total_ups_xz)) + (M_tt_yy + (total_ups_yz +
+            M_tt_zz));
+    }
+}
+
+INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
+{
+    real s[3] = {0}, sums[6] = {0}, terms_ups[6*LEGS(3)] = {0}, o_ups[1*LEGS(3)] = {0};
+    M_before(1, X, s);
+    M_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_ups, o_ups);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        M_place_ups(1, LEGS(3), o_ups, leg, t);
+    }
+    for (size_t n = 0; n < 6; ++n) {
+        sums[n] = total(terms_ups + n*LEGS(3), 3);
+    }
+    M_after(m, 1, sums, M, t);
+}
+
+INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
+{
+    real s[3*LANES], sums[6*LANES], o_ups[1*LANES];
+    M_before(LANES, X, s);
+    clear(sums, 6*LANES);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        M_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ups);
+        M_place_ups(LANES, LANES, o_ups, 0, t);
+    }
+    M_after(m, LANES, sums, M, t);
+}
+
+/* ---- Z: 339 mul, 237 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
+INLINE void Z_before(size_t w, const real *X, const real *V, real *s)
+{
+    for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
+        const real X_0 = X[0*w + k];
+        const real t_x = X_0;
+        const real X_1 = X[1*w + k];
+        const real t_y = X_1;
+        const real X_2 = X[2*w + k];
+        const real t_z = X_2;
+        /* V: named entries */
+        const real V_0 = V[0*w + k];
+        const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
+        const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
+        const real t_dot_z = V_2;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = t_dot_x;
+        s[4*w + k] = t_dot_y;
+        s[5*w + k] = t_dot_z;
+    }
+}
+
+INLINE void Z_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, int add, real *terms, real *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        /* (ups-S) from the base point to the connection point */
+        const real t_x = s[0*w + j];
+        const real ups_base_point_x = m->ups_base_point_x[i];
+        const real ups_platform_point_x = m->ups_platform_point_x[i];
+        const real ups_S_x = t_x + ups_platform_point_x - ups_base_point_x;
+        const real t_y = s[1*w + j];
+        const real ups_base_point_y = m->ups_base_point_y[i];
+        const real ups_platform_point_y = m->ups_platform_point_y[i];
+        const real ups_S_y = t_y + ups_platform_point_y - ups_base_point_y;
+        const real t_z = s[2*w + j];
+        const real ups_base_point_z = m->ups_base_point_z[i];
+        const real ups_platform_point_z = m->ups_platform_point_z[i];
+        const real ups_S_z = t_z + ups_platform_point_z - ups_base_point_z;
+        /* (ups-px_1) component along the reference direction */
+        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
+        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
+        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
+        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
+            ups_S_z*ups_base_frame_zx;
+        /* (ups-py_1) component across the reference direction */
+        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
+        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
+        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
+        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
+            ups_S_z*ups_base_frame_zy;
+        /* (ups-rho2_1) squared amplitude */
+        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
+        /* (ups-root_1) amplitude, with the sign of the branch */
+        const real ups_branch_1 = m->ups_branch_1[i];
+        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
+        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
+        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+            ups_S_z*ups_base_frame_zz;
+        /* (ups-rho2_2) squared amplitude */
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        /* (ups-root_2) amplitude, with the sign of the branch */
+        const real ups_branch_2 = m->ups_branch_2[i];
+        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
+        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ups_root_2 = 1/ups_root_2;
+        const real ups_c_2 = inv_ups_root_2*ups_root_1;
+        /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
+        const real ups_s_2 = inv_ups_root_2*ups_xi_1_t;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
+        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
+        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
+            ups_base_frame_xx*ups_c_1;
+        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
+            ups_base_frame_yx*ups_c_1;
+        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
+            ups_base_frame_zx*ups_c_1;
+        const real axis_y_ups_axes2_x = axis_z_ups_axes2_in_base_y*ups_axis_x_z -
+            axis_z_ups_axes2_in_base_z*ups_axis_x_y;
+        const real axis_y_ups_axes2_y = axis_z_ups_axes2_in_base_z*ups_axis_x_x -
+            axis_z_ups_axes2_in_base_x*ups_axis_x_z;
+        const real axis_y_ups_axes2_z = axis_z_ups_axes2_in_base_x*ups_axis_x_y -
+            axis_z_ups_axes2_in_base_y*ups_axis_x_x;
+        /* (ups-S_dot) velocity of the connection point */
+        const real t_dot_x = s[3*w + j];
+        const real t_dot_y = s[4*w + j];
+        const real t_dot_z = s[5*w + j];
+        const real ups_S_dot_tip_x = t_dot_x*ups_axis_x_x + t_dot_y*ups_axis_x_y +
+            t_dot_z*ups_axis_x_z;
+        /* (ups-qd_2) rate of joint 2 */
+        const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*t_dot_x +
+            axis_y_ups_axes2_y*t_dot_y + axis_y_ups_axes2_z*t_dot_z);
+        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_in_base_x*t_dot_x +
+            axis_z_ups_axes2_in_base_y*t_dot_y + axis_z_ups_axes2_in_base_z*t_dot_z);
+        /* (ups-omega_1) angular velocity of link 1 */
+        const real ups_omega_1_t = ups_qd_1*ups_s_2;
+        const real ups_omega_1_t_2 = ups_c_2*ups_qd_1;
+        /* (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2;
+        const real ups_zeta_2_y = ups_omega_1_t*ups_qd_2;
+        /* (ups-W_2) centripetal tensor of link 2 */
+        const real ups_W_2_t = ups_omega_1_t*ups_omega_1_t;
+        const real ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2;
+        const real ups_W_2_t_3 = ups_qd_2*ups_qd_2;
+        const real ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2;
+        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
+        const real ups_bias_t = 2*ups_S_dot_tip_x;
+        const real ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2*ups_root_2*ups_zeta_2_y;
+        /* (ups-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        const real ups_qdd_2_o_t = inv_ups_root_2*ups_bias_t*ups_qd_2;
+        const real ups_qdd_1_o = inv_ups_root_1*ups_bias_z;
+        /* (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+        const real ups_alpha_1_o_t = ups_qdd_1_o*ups_s_2;
+        const real ups_alpha_1_o_t_2 = ups_c_2*ups_qdd_1_o;
+        /* (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        const real ups_alpha_2_o_x = -ups_alpha_1_o_t - ups_zeta_2_x;
+        const real ups_alpha_2_o_y = ups_alpha_1_o_t_2 - ups_zeta_2_y;
+        /* (ups-B_2_o) remainder of the acceleration tensor of link 2 */
+        const real ups_B_2_o_xy = ups_qdd_2_o_t - 2*ups_W_2_xy;
+        const real ups_B_2_o_zx = ups_zeta_2_y - ups_alpha_2_o_y;
+        const real ups_B_2_o_zy = ups_alpha_2_o_x - ups_zeta_2_x;
+        /* (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
+           about its reference point */
+        const real ups_h_3_x = m->ups_h_3_x[i];
+        const real ups_h_3_y = m->ups_h_3_y[i];
+        const real ups_h_3_z = m->ups_h_3_z[i];
+        const real ups_phi_3_o_x = ups_alpha_1_o_t_2*ups_h_3_y - ups_B_2_o_xy*ups_h_3_z -
+            ups_h_3_x*(ups_W_2_t_2 + ups_W_2_t_3);
+        /* (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real ups_g_r0_x = m->ups_g_r0_x[i];
+        const real ups_g_r0_y = m->ups_g_r0_y[i];
+        const real ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x;
+        const real ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1;
+        const real ups_g_r0_z = m->ups_g_r0_z[i];
+        const real ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y;
+        const real ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2;
+        /* (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 2, about their reference points */
+        const real ups_J_group_2_xy = m->ups_J_group_2_xy[i];
+        const real ups_J_group_2_xz = m->ups_J_group_2_xz[i];
+        const real ups_J_group_2_yz = m->ups_J_group_2_yz[i];
+        const real ups_Sigma_2_yy = m->ups_Sigma_2_yy[i];
+        const real ups_Sigma_2_zz = m->ups_Sigma_2_zz[i];
+        const real ups_h_group_2_y = m->ups_h_group_2_y[i];
+        const real ups_h_group_2_z = m->ups_h_group_2_z[i];
+        const real ups_mu_2_o_x = ups_B_2_o_zy*ups_Sigma_2_yy + ups_J_group_2_yz*(ups_W_2_t_2 -
+            ups_W_2_t_3) + ups_g_r3_y*ups_h_group_2_z - ups_B_2_o_zx*ups_J_group_2_xy -
+            ups_J_group_2_xz*ups_qdd_2_o_t - ups_Sigma_2_zz*ups_alpha_1_o_t -
+            ups_g_r1_x*ups_h_group_2_y;
+        const real ups_Sigma_2_xx = m->ups_Sigma_2_xx[i];
+        const real ups_h_group_2_x = m->ups_h_group_2_x[i];
+        const real ups_mu_2_o_y = ups_B_2_o_zy*ups_J_group_2_xy + ups_Sigma_2_zz*ups_alpha_1_o_t_2
+            + ups_g_r1_x*ups_h_group_2_x - ups_B_2_o_xy*ups_J_group_2_yz -
+            ups_B_2_o_zx*ups_Sigma_2_xx - ups_J_group_2_xz*(ups_W_2_t - ups_W_2_t_3) -
+            ups_g_r3_x*ups_h_group_2_z;
+        const real ups_mu_2_o_z = ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) +
+            ups_J_group_2_yz*ups_alpha_1_o_t_2 + ups_g_r3_x*ups_h_group_2_y -
+            ups_B_2_o_xy*ups_Sigma_2_yy - ups_J_group_2_xz*ups_alpha_1_o_t -
+            ups_Sigma_2_xx*ups_qdd_2_o_t - ups_g_r3_y*ups_h_group_2_x;
+        /* (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation
+           and without the mass at the connection point */
+        const real ups_c_o_y = ups_h_3_x*ups_qdd_2_o_t - inv_ups_root_2*ups_mu_2_o_z -
+            ups_alpha_1_o_t*ups_h_3_y - ups_h_3_z*(ups_W_2_t + ups_W_2_t_3);
+        const real ups_c_o_z = ups_B_2_o_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
+            inv_ups_root_1*(ups_mu_2_o_x*ups_s_2 - ups_c_2*ups_mu_2_o_y) - ups_B_2_o_zx*ups_h_3_x;
+        /* (ups-U) velocity and gravity terms of the leg force */
+        const real ups_U_in_base_x = ups_axis_x_x*ups_phi_3_o_x - axis_y_ups_axes2_x*ups_c_o_y -
+            axis_z_ups_axes2_in_base_x*ups_c_o_z;
+        const real ups_U_in_base_y = ups_axis_x_y*ups_phi_3_o_x - axis_y_ups_axes2_y*ups_c_o_y -
+            axis_z_ups_axes2_in_base_y*ups_c_o_z;
+        const real ups_U_in_base_z = ups_axis_x_z*ups_phi_3_o_x - axis_y_ups_axes2_z*ups_c_o_y -
+            axis_z_ups_axes2_in_base_z*ups_c_o_z;
+        terms[0*count + k] = add ? terms[0*count + k] + ups_U_in_base_x : ups_U_in_base_x;  /* total_ups_x */
+        terms[1*count + k] = add ? terms[1*count + k] + ups_U_in_base_y : ups_U_in_base_y;  /* total_ups_y */
+        terms[2*count + k] = add ? terms[2*count + k] + ups_U_in_base_z : ups_U_in_base_z;  /* total_ups_z */
+        o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
+            TOLERANCE*R(0.8));
+    }
+}
+
+INLINE void Z_place_ups(size_t w, size_t count, const real *o, size_t first, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        t->singular[k] += o[0*count + first + k];
+    }
+}
+
+INLINE void Z_after(const prepared *m, size_t w, const real *sums, real *Z, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        /* (Z_t) translational part of Z */
+        const real Z_p_x = m->Z_p_x;
+        const real total_ups_x = sums[0*w + k];
+        const real Z_t_x = total_ups_x - Z_p_x;
+        const real Z_p_y = m->Z_p_y;
+        const real total_ups_y = sums[1*w + k];
+        const real Z_t_y = total_ups_y - Z_p_y;
+        const real Z_p_z = m->Z_p_z;
+        const real total_ups_z = sums[2*w + k];
+        const real Z_t_z = total_ups_z - Z_p_z;
+        Z[0*w + k] = Z_t_x;
+        Z[1*w + k] = Z_t_y;
+        Z[2*w + k] = Z_t_z;
+        t->total[k] += Z_t_x + (Z_t_y + Z_t_z);
+    }
+}
+
+INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+{
+    real s[6] = {0}, sums[3] = {0}, terms_ups[3*LEGS(3)] = {0}, o_ups[1*LEGS(3)] = {0};
+    Z_before(1, X, V, s);
+    Z_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_ups, o_ups);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        Z_place_ups(1, LEGS(3), o_ups, leg, t);
+    }
+    for (size_t n = 0; n < 3; ++n) {
+        sums[n] = total(terms_ups + n*LEGS(3), 3);
+    }
+    Z_after(m, 1, sums, Z, t);
+}
+
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+{
+    real s[6*LANES], sums[3*LANES], o_ups[1*LANES];
+    Z_before(LANES, X, V, s);
+    clear(sums, 3*LANES);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        Z_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ups);
+        Z_place_ups(LANES, LANES, o_ups, 0, t);
+    }
+    Z_after(m, LANES, sums, Z, t);
+}
+
+/* ---- H: 48 mul, 42 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+INLINE void H_before(size_t w, const real *X, real *s)
+{
+    for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
+        const real X_0 = X[0*w + k];
+        const real t_x = X_0;
+        const real X_1 = X[1*w + k];
+        const real t_y = X_1;
+        const real X_2 = X[2*w + k];
+        const real t_z = X_2;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+    }
+}
+
+INLINE void H_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, real *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        /* (ups-S) from the base point to the connection point */
+        const real t_x = s[0*w + j];
+        const real ups_base_point_x = m->ups_base_point_x[i];
+        const real ups_platform_point_x = m->ups_platform_point_x[i];
+        const real ups_S_x = t_x + ups_platform_point_x - ups_base_point_x;
+        const real t_y = s[1*w + j];
+        const real ups_base_point_y = m->ups_base_point_y[i];
+        const real ups_platform_point_y = m->ups_platform_point_y[i];
+        const real ups_S_y = t_y + ups_platform_point_y - ups_base_point_y;
+        const real t_z = s[2*w + j];
+        const real ups_base_point_z = m->ups_base_point_z[i];
+        const real ups_platform_point_z = m->ups_platform_point_z[i];
+        const real ups_S_z = t_z + ups_platform_point_z - ups_base_point_z;
+        /* (ups-px_1) component along the reference direction */
+        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
+        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
+        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
+        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
+            ups_S_z*ups_base_frame_zx;
+        /* (ups-py_1) component across the reference direction */
+        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
+        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
+        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
+        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
+            ups_S_z*ups_base_frame_zy;
+        /* (ups-rho2_1) squared amplitude */
+        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
+        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
+        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
+        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+            ups_S_z*ups_base_frame_zz;
+        /* (ups-rho2_2) squared amplitude */
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        /* (ups-root_2) amplitude, with the sign of the branch */
+        const real ups_branch_2 = m->ups_branch_2[i];
+        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
+        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ups_root_2 = 1/ups_root_2;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
+        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
+        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
+        o[0*count + k] = ups_axis_x_x;
+        o[1*count + k] = ups_axis_x_y;
+        o[2*count + k] = ups_axis_x_z;
+        o[4*count + k] = ups_axis_x_x + (ups_axis_x_y + ups_axis_x_z);
+        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(ups_root_2) > TOLERANCE*R(0.8));
+    }
+}
+
+INLINE void H_place_ups(size_t w, size_t count, const real *o, size_t leg, size_t first, real *H,
+    verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(3 + leg)*w + k] = o[1*count + first + k];
+        H[(6 + leg)*w + k] = o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
+    }
+}
+
+INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
+{
+    real s[3] = {0}, o_ups[5*LEGS(3)] = {0};
+    H_before(1, X, s);
+    H_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), o_ups);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        H_place_ups(1, LEGS(3), o_ups, leg, leg, H, t);
+    }
+}
+
+INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
+{
+    real s[3*LANES], o_ups[5*LANES];
+    H_before(LANES, X, s);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        H_legs_ups(m, LANES, leg, 0, s, 1, LANES, o_ups);
+        H_place_ups(LANES, LANES, o_ups, leg, 0, H, t);
     }
 }
 
 /* ---- required: 387 mul, 297 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], t_dot_x[LANES], t_dot_y[LANES], t_dot_z[LANES],
-        t_ddot_x[LANES], t_ddot_y[LANES], t_ddot_z[LANES], f_p_x[LANES], f_p_y[LANES], f_p_z[LANES],
-        sum[3][LANES];
-} required_values;
-typedef struct {
-    real sum[3][8], entry[3][8], singular[8];
-} required_results_ups;
-
 INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, required_values *s)
+    *A, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real A_2 = A[2*w + k];
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real m_star = m->m_star;
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real t_z = X_2;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
+        const real A_2 = A[2*w + k];
         const real t_ddot_z = A_2;
-        /* (E1) acceleration of the platform origin, less gravity */
+        /* (a_t) acceleration of the platform origin, less gravity */
+        const real gravity_x = m->gravity_x;
         const real a_t_x = t_ddot_x - gravity_x;
+        const real gravity_y = m->gravity_y;
         const real a_t_y = t_ddot_y - gravity_y;
+        const real gravity_z = m->gravity_z;
         const real a_t_z = t_ddot_z - gravity_z;
-        /* (E2) inertia force of the platform less its weight */
+        /* (f_p) inertia force of the platform less its weight */
+        const real m_star = m->m_star;
         const real f_p_x = a_t_x*m_star;
         const real f_p_y = a_t_y*m_star;
         const real f_p_z = a_t_z*m_star;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->t_ddot_z[k] = t_ddot_z;
-        s->f_p_x[k] = f_p_x;
-        s->f_p_y[k] = f_p_y;
-        s->f_p_z[k] = f_p_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = t_dot_x;
+        s[4*w + k] = t_dot_y;
+        s[5*w + k] = t_dot_z;
+        s[6*w + k] = t_ddot_x;
+        s[7*w + k] = t_ddot_y;
+        s[8*w + k] = t_ddot_z;
+        s[9*w + k] = f_p_x;
+        s[10*w + k] = f_p_y;
+        s[11*w + k] = f_p_z;
     }
 }
 
-INLINE void required_legs_ups(const prepared *m, size_t leg, size_t legs, const required_values
-    *s, size_t states, size_t count, int add, required_results_ups *o)
+INLINE void required_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real t_ddot_z = s->t_ddot_z[j];
-        const real J_group_2_xy = m->J_group_2_xy[i];
-        const real J_group_2_xz = m->J_group_2_xz[i];
-        const real J_group_2_yz = m->J_group_2_yz[i];
-        const real Sigma_2_xx = m->Sigma_2_xx[i];
-        const real Sigma_2_yy = m->Sigma_2_yy[i];
-        const real Sigma_2_zz = m->Sigma_2_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real g_r0_z = m->g_r0_z[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real h_2_z = m->h_2_z[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        /* (ups-S) from the base point to the connection point */
+        const real t_x = s[0*w + j];
         const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_base_point_z = m->ups_base_point_z[i];
         const real ups_platform_point_x = m->ups_platform_point_x[i];
+        const real ups_S_x = t_x + ups_platform_point_x - ups_base_point_x;
+        const real t_y = s[1*w + j];
+        const real ups_base_point_y = m->ups_base_point_y[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
+        const real ups_S_y = t_y + ups_platform_point_y - ups_base_point_y;
+        const real t_z = s[2*w + j];
+        const real ups_base_point_z = m->ups_base_point_z[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        /* (ups-K1) from the base point to the connection point */
-        const real S_x = t_x + ups_platform_point_x - ups_base_point_x;
-        const real S_y = t_y + ups_platform_point_y - ups_base_point_y;
-        const real S_z = t_z + ups_platform_point_z - ups_base_point_z;
-        /* (ups-K2) component along the reference direction */
-        const real px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx;
-        /* (ups-K3) component across the reference direction */
-        const real py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy;
-        /* (ups-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (ups-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (ups-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz;
-        /* (ups-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (ups-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (ups-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (ups-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_x_x = S_x*inv_root_2;
-        const real axis_x_y = S_y*inv_root_2;
-        const real axis_x_z = S_z*inv_root_2;
-        /* (ups-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (ups-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx;
-        const real axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx;
-        const real axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx;
-        const real axis_y_ups_axes2_x = axis_x_z*axis_z_ups_axes2_in_base_y -
-            axis_x_y*axis_z_ups_axes2_in_base_z;
-        const real axis_y_ups_axes2_y = axis_x_x*axis_z_ups_axes2_in_base_z -
-            axis_x_z*axis_z_ups_axes2_in_base_x;
-        const real axis_y_ups_axes2_z = axis_x_y*axis_z_ups_axes2_in_base_x -
-            axis_x_x*axis_z_ups_axes2_in_base_y;
-        /* (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
-        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
-        const real g_r3_x = g_r0_z*s_2 - c_2*g_r1_y;
-        const real g_r3_y = -c_2*g_r0_z - g_r1_y*s_2;
-        /* (ups-V1) velocity of the connection point */
-        const real S_dot_tip_x = axis_x_x*t_dot_x + axis_x_y*t_dot_y + axis_x_z*t_dot_z;
-        /* (ups-V8) rate of joint 1 */
-        const real qd_2 = inv_root_2*(axis_y_ups_axes2_x*t_dot_x + axis_y_ups_axes2_y*t_dot_y +
-            axis_y_ups_axes2_z*t_dot_z);
-        const real qd_1 = inv_root_1*(axis_z_ups_axes2_in_base_x*t_dot_x +
+        const real ups_S_z = t_z + ups_platform_point_z - ups_base_point_z;
+        /* (ups-px_1) component along the reference direction */
+        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
+        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
+        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
+        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
+            ups_S_z*ups_base_frame_zx;
+        /* (ups-py_1) component across the reference direction */
+        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
+        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
+        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
+        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
+            ups_S_z*ups_base_frame_zy;
+        /* (ups-rho2_1) squared amplitude */
+        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
+        /* (ups-root_1) amplitude, with the sign of the branch */
+        const real ups_branch_1 = m->ups_branch_1[i];
+        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
+        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
+        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+            ups_S_z*ups_base_frame_zz;
+        /* (ups-rho2_2) squared amplitude */
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        /* (ups-root_2) amplitude, with the sign of the branch */
+        const real ups_branch_2 = m->ups_branch_2[i];
+        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
+        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ups_root_2 = 1/ups_root_2;
+        const real ups_c_2 = inv_ups_root_2*ups_root_1;
+        /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
+        const real ups_s_2 = inv_ups_root_2*ups_xi_1_t;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
+        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
+        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
+            ups_base_frame_xx*ups_c_1;
+        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
+            ups_base_frame_yx*ups_c_1;
+        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
+            ups_base_frame_zx*ups_c_1;
+        const real axis_y_ups_axes2_x = axis_z_ups_axes2_in_base_y*ups_axis_x_z -
+            axis_z_ups_axes2_in_base_z*ups_axis_x_y;
+        const real axis_y_ups_axes2_y = axis_z_ups_axes2_in_base_z*ups_axis_x_x -
+            axis_z_ups_axes2_in_base_x*ups_axis_x_z;
+        const real axis_y_ups_axes2_z = axis_z_ups_axes2_in_base_x*ups_axis_x_y -
+            axis_z_ups_axes2_in_base_y*ups_axis_x_x;
+        /* (ups-S_dot) velocity of the connection point */
+        const real t_dot_x = s[3*w + j];
+        const real t_dot_y = s[4*w + j];
+        const real t_dot_z = s[5*w + j];
+        const real ups_S_dot_tip_x = t_dot_x*ups_axis_x_x + t_dot_y*ups_axis_x_y +
+            t_dot_z*ups_axis_x_z;
+        /* (ups-qd_2) rate of joint 2 */
+        const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*t_dot_x +
+            axis_y_ups_axes2_y*t_dot_y + axis_y_ups_axes2_z*t_dot_z);
+        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_in_base_x*t_dot_x +
             axis_z_ups_axes2_in_base_y*t_dot_y + axis_z_ups_axes2_in_base_z*t_dot_z);
-        /* (ups-V11) angular velocity of link 1 */
-        const real omega_1_t = qd_1*s_2;
-        const real omega_1_t_2 = c_2*qd_1;
-        /* (ups-A3) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_x = omega_1_t_2*qd_2;
-        const real zeta_2_y = omega_1_t*qd_2;
-        /* (ups-V13) centripetal tensor of link 2 */
-        const real W_2_t = omega_1_t*omega_1_t;
-        const real W_2_t_2 = omega_1_t_2*omega_1_t_2;
-        const real W_2_t_3 = qd_2*qd_2;
-        const real W_2_xy = omega_1_t*omega_1_t_2;
-        /* (ups-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_tip_x;
-        const real bias_z = bias_t*omega_1_t_2 + 2*root_2*zeta_2_y;
-        /* (ups-A2) acceleration of the connection point */
-        const real S_ddot_t = axis_y_ups_axes2_x*t_ddot_x;
-        const real S_ddot_t_2 = axis_y_ups_axes2_y*t_ddot_y;
-        const real S_ddot_t_3 = axis_y_ups_axes2_z*t_ddot_z;
-        const real S_ddot_tip_z = axis_z_ups_axes2_in_base_x*t_ddot_x +
+        /* (ups-omega_1) angular velocity of link 1 */
+        const real ups_omega_1_t = ups_qd_1*ups_s_2;
+        const real ups_omega_1_t_2 = ups_c_2*ups_qd_1;
+        /* (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2;
+        const real ups_zeta_2_y = ups_omega_1_t*ups_qd_2;
+        /* (ups-W_2) centripetal tensor of link 2 */
+        const real ups_W_2_t = ups_omega_1_t*ups_omega_1_t;
+        const real ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2;
+        const real ups_W_2_t_3 = ups_qd_2*ups_qd_2;
+        const real ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2;
+        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
+        const real ups_bias_t = 2*ups_S_dot_tip_x;
+        const real ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2*ups_root_2*ups_zeta_2_y;
+        /* (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real ups_g_r0_x = m->ups_g_r0_x[i];
+        const real ups_g_r0_y = m->ups_g_r0_y[i];
+        const real ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x;
+        const real ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1;
+        const real ups_g_r0_z = m->ups_g_r0_z[i];
+        const real ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y;
+        const real ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2;
+        /* (ups-S_ddot) acceleration of the connection point */
+        const real t_ddot_x = s[6*w + j];
+        const real ups_S_ddot_t = axis_y_ups_axes2_x*t_ddot_x;
+        const real t_ddot_y = s[7*w + j];
+        const real ups_S_ddot_t_2 = axis_y_ups_axes2_y*t_ddot_y;
+        const real t_ddot_z = s[8*w + j];
+        const real ups_S_ddot_t_3 = axis_y_ups_axes2_z*t_ddot_z;
+        const real ups_S_ddot_tip_z = axis_z_ups_axes2_in_base_x*t_ddot_x +
             axis_z_ups_axes2_in_base_y*t_ddot_y + axis_z_ups_axes2_in_base_z*t_ddot_z;
-        /* (ups-A5) acceleration of the connection point left to the joint accelerations */
-        const real rel_z = S_ddot_tip_z - bias_z;
-        /* (ups-A7) acceleration of joint 1 */
-        const real qdd_1_t = inv_root_2*(S_ddot_t + S_ddot_t_2 + S_ddot_t_3 - bias_t*qd_2);
-        const real qdd_1 = inv_root_1*rel_z;
-        /* (ups-N3) acceleration of the reference point of link 3, less gravity */
-        const real acc_3_x = axis_x_x*t_ddot_x + axis_x_y*t_ddot_y + axis_x_z*t_ddot_z - g_r3_x;
-        const real acc_3_y = S_ddot_t + S_ddot_t_2 + S_ddot_t_3 - g_r3_y;
-        const real acc_3_z = S_ddot_tip_z - g_r1_x;
-        /* (ups-A12) angular acceleration of link 1 */
-        const real alpha_1_t = qdd_1*s_2;
-        const real alpha_1_t_2 = c_2*qdd_1;
-        /* (ups-A15) angular acceleration of link 2 */
-        const real alpha_2_x = alpha_1_t - zeta_2_x;
-        const real alpha_2_y = -alpha_1_t_2 - zeta_2_y;
-        /* (ups-A18) acceleration tensor of link 2 */
-        const real B_2_xy = -2*W_2_xy - qdd_1_t;
-        const real B_2_zx = zeta_2_y - alpha_2_y;
-        const real B_2_zy = alpha_2_x - zeta_2_x;
-        /* (ups-N12) inertia moment of the links that turn with link 2, about their reference points */
-        const real mu_2_x = B_2_zy*Sigma_2_yy + J_group_2_xz*qdd_1_t + J_group_2_yz*(W_2_t_2 -
-            W_2_t_3) + Sigma_2_zz*alpha_1_t + g_r1_x*h_2_z + g_r3_y*h_2_y - B_2_zx*J_group_2_xy -
-            acc_3_y*h_3_y - acc_3_z*h_3_z;
-        const real mu_2_y = B_2_zy*J_group_2_xy + acc_3_x*h_3_y + g_r1_x*h_2_x -
-            B_2_xy*J_group_2_yz - B_2_zx*Sigma_2_xx - J_group_2_xz*(W_2_t - W_2_t_3) -
-            Sigma_2_zz*alpha_1_t_2 - acc_3_z*h_3_x - g_r3_x*h_2_y;
-        const real mu_2_z = J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_xz*alpha_1_t +
-            Sigma_2_xx*qdd_1_t + acc_3_x*h_3_z + acc_3_y*h_3_x - B_2_xy*Sigma_2_yy -
-            J_group_2_yz*alpha_1_t_2 - g_r3_x*h_2_z - g_r3_y*h_2_x;
-        /* (ups-N5) inertia force of link 3 from its turning about its reference point */
-        const real phi_3_x = -B_2_xy*h_3_z - alpha_1_t_2*h_3_y - h_3_x*(W_2_t_2 + W_2_t_3);
-        /* (ups-N24) leg force on the platform without actuation and without the mass at the connection
+        /* (ups-rel) acceleration of the connection point left to the joint accelerations */
+        const real ups_rel_z = ups_S_ddot_tip_z - ups_bias_z;
+        /* (ups-qdd_1) acceleration of joint 1 */
+        const real ups_qdd_1_t = inv_ups_root_2*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 -
+            ups_bias_t*ups_qd_2);
+        const real ups_qdd_1 = inv_ups_root_1*ups_rel_z;
+        /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
+        const real ups_acc_3_x = t_ddot_x*ups_axis_x_x + t_ddot_y*ups_axis_x_y +
+            t_ddot_z*ups_axis_x_z - ups_g_r3_x;
+        const real ups_acc_3_y = ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_g_r3_y;
+        const real ups_acc_3_z = ups_S_ddot_tip_z - ups_g_r1_x;
+        /* (ups-alpha_1) angular acceleration of link 1 */
+        const real ups_alpha_1_t = ups_qdd_1*ups_s_2;
+        const real ups_alpha_1_t_2 = ups_c_2*ups_qdd_1;
+        /* (ups-alpha_2) angular acceleration of link 2 */
+        const real ups_alpha_2_x = ups_alpha_1_t - ups_zeta_2_x;
+        const real ups_alpha_2_y = -ups_alpha_1_t_2 - ups_zeta_2_y;
+        /* (ups-B_2) acceleration tensor of link 2 */
+        const real ups_B_2_xy = -2*ups_W_2_xy - ups_qdd_1_t;
+        const real ups_B_2_zx = ups_zeta_2_y - ups_alpha_2_y;
+        const real ups_B_2_zy = ups_alpha_2_x - ups_zeta_2_x;
+        /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
+        const real ups_h_3_x = m->ups_h_3_x[i];
+        const real ups_h_3_y = m->ups_h_3_y[i];
+        const real ups_h_3_z = m->ups_h_3_z[i];
+        const real ups_phi_3_x = -ups_B_2_xy*ups_h_3_z - ups_alpha_1_t_2*ups_h_3_y -
+            ups_h_3_x*(ups_W_2_t_2 + ups_W_2_t_3);
+        /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+        const real ups_J_group_2_xy = m->ups_J_group_2_xy[i];
+        const real ups_J_group_2_xz = m->ups_J_group_2_xz[i];
+        const real ups_J_group_2_yz = m->ups_J_group_2_yz[i];
+        const real ups_Sigma_2_yy = m->ups_Sigma_2_yy[i];
+        const real ups_Sigma_2_zz = m->ups_Sigma_2_zz[i];
+        const real ups_h_2_y = m->ups_h_2_y[i];
+        const real ups_h_2_z = m->ups_h_2_z[i];
+        const real ups_mu_2_x = ups_B_2_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_1_t +
+            ups_J_group_2_yz*(ups_W_2_t_2 - ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_t +
+            ups_g_r1_x*ups_h_2_z + ups_g_r3_y*ups_h_2_y - ups_B_2_zx*ups_J_group_2_xy -
+            ups_acc_3_y*ups_h_3_y - ups_acc_3_z*ups_h_3_z;
+        const real ups_Sigma_2_xx = m->ups_Sigma_2_xx[i];
+        const real ups_h_2_x = m->ups_h_2_x[i];
+        const real ups_mu_2_y = ups_B_2_zy*ups_J_group_2_xy + ups_acc_3_x*ups_h_3_y +
+            ups_g_r1_x*ups_h_2_x - ups_B_2_xy*ups_J_group_2_yz - ups_B_2_zx*ups_Sigma_2_xx -
+            ups_J_group_2_xz*(ups_W_2_t - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_t_2 -
+            ups_acc_3_z*ups_h_3_x - ups_g_r3_x*ups_h_2_y;
+        const real ups_mu_2_z = ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) +
+            ups_J_group_2_xz*ups_alpha_1_t + ups_Sigma_2_xx*ups_qdd_1_t + ups_acc_3_x*ups_h_3_z +
+            ups_acc_3_y*ups_h_3_x - ups_B_2_xy*ups_Sigma_2_yy - ups_J_group_2_yz*ups_alpha_1_t_2 -
+            ups_g_r3_x*ups_h_2_z - ups_g_r3_y*ups_h_2_x;
+        /* (ups-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_y = alpha_1_t*h_3_y - h_3_x*qdd_1_t - h_3_z*(W_2_t + W_2_t_3) -
-            inv_root_2*mu_2_z;
-        const real c_z = B_2_zy*h_3_z + h_3_y*(W_2_t + W_2_t_2) - B_2_zx*h_3_x -
-            inv_root_1*(mu_2_x*s_2 - c_2*mu_2_y);
-        const real c_in_base_x = axis_y_ups_axes2_x*c_y + axis_z_ups_axes2_in_base_x*c_z -
-            axis_x_x*phi_3_x;
-        const real c_in_base_y = axis_y_ups_axes2_y*c_y + axis_z_ups_axes2_in_base_y*c_z -
-            axis_x_y*phi_3_x;
-        const real c_in_base_z = axis_y_ups_axes2_z*c_y + axis_z_ups_axes2_in_base_z*c_z -
-            axis_x_z*phi_3_x;
-        o->sum[0][k] = add ? o->sum[0][k] + c_in_base_x : c_in_base_x;  /* total_ups_x */
-        o->sum[1][k] = add ? o->sum[1][k] + c_in_base_y : c_in_base_y;  /* total_ups_y */
-        o->sum[2][k] = add ? o->sum[2][k] + c_in_base_z : c_in_base_z;  /* total_ups_z */
-        o->entry[0][k] = axis_x_x;
-        o->entry[1][k] = axis_x_y;
-        o->entry[2][k] = axis_x_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
+        const real ups_c_y = ups_alpha_1_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_z -
+            ups_h_3_x*ups_qdd_1_t - ups_h_3_z*(ups_W_2_t + ups_W_2_t_3);
+        const real ups_c_z = ups_B_2_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
+            inv_ups_root_1*(ups_mu_2_x*ups_s_2 - ups_c_2*ups_mu_2_y) - ups_B_2_zx*ups_h_3_x;
+        const real ups_c_in_base_x = axis_y_ups_axes2_x*ups_c_y +
+            axis_z_ups_axes2_in_base_x*ups_c_z - ups_axis_x_x*ups_phi_3_x;
+        const real ups_c_in_base_y = axis_y_ups_axes2_y*ups_c_y +
+            axis_z_ups_axes2_in_base_y*ups_c_z - ups_axis_x_y*ups_phi_3_x;
+        const real ups_c_in_base_z = axis_y_ups_axes2_z*ups_c_y +
+            axis_z_ups_axes2_in_base_z*ups_c_z - ups_axis_x_z*ups_phi_3_x;
+        terms[0*count + k] = add ? terms[0*count + k] + ups_c_in_base_x : ups_c_in_base_x;  /* total_ups_x */
+        terms[1*count + k] = add ? terms[1*count + k] + ups_c_in_base_y : ups_c_in_base_y;  /* total_ups_y */
+        terms[2*count + k] = add ? terms[2*count + k] + ups_c_in_base_z : ups_c_in_base_z;  /* total_ups_z */
+        o[0*count + k] = ups_axis_x_x;
+        o[1*count + k] = ups_axis_x_y;
+        o[2*count + k] = ups_axis_x_z;
+        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
             TOLERANCE*R(0.8));
     }
 }
 
-INLINE void required_place_ups(size_t w, const required_results_ups *o, size_t leg, size_t first,
+INLINE void required_place_ups(size_t w, size_t count, const real *o, size_t leg, size_t first,
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(3 + leg)*w + k] = o->entry[1][first + k];
-        H[(6 + leg)*w + k] = o->entry[2][first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(3 + leg)*w + k] = o[1*count + first + k];
+        H[(6 + leg)*w + k] = o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
     }
 }
 
-INLINE void required_after(size_t w, const required_values *s, real *required)
+INLINE void required_after(size_t w, const real *s, const real *sums, real *required)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real f_p_x = s->f_p_x[k];
-        const real f_p_y = s->f_p_y[k];
-        const real f_p_z = s->f_p_z[k];
-        const real total_ups_x = s->sum[0][k];
-        const real total_ups_y = s->sum[1][k];
-        const real total_ups_z = s->sum[2][k];
-        /* (E3) force that actuators and external wrench must give */
+        /* (R_t) force that actuators and external wrench must give */
+        const real f_p_x = s[9*w + k];
+        const real total_ups_x = sums[0*w + k];
         const real R_t_x = f_p_x - total_ups_x;
+        const real f_p_y = s[10*w + k];
+        const real total_ups_y = sums[1*w + k];
         const real R_t_y = f_p_y - total_ups_y;
+        const real f_p_z = s[11*w + k];
+        const real total_ups_z = sums[2*w + k];
         const real R_t_z = f_p_z - total_ups_z;
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
@@ -2222,750 +2259,752 @@ INLINE void required_after(size_t w, const required_values *s, real *required)
     }
 }
 
-INLINE void required_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+    *required, real *H, verdict *t)
+{
+    real s[12] = {0}, sums[3] = {0}, terms_ups[3*LEGS(3)] = {0}, o_ups[4*LEGS(3)] = {0};
+    required_before(m, 1, X, V, A, s);
+    required_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_ups, o_ups);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        required_place_ups(1, LEGS(3), o_ups, leg, leg, H, t);
+    }
+    for (size_t n = 0; n < 3; ++n) {
+        sums[n] = total(terms_ups + n*LEGS(3), 3);
+    }
+    required_after(1, s, sums, required);
+}
+
+INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, verdict *t)
 {
-    required_values values, *const s = &values;
-    required_results_ups results_ups;
-    required_before(m, w, X, V, A, s);
-    if (w == 1) {  /* the legs side by side */
-        required_legs_ups(m, 0, 1, s, 0, 3, 0, &results_ups);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            required_place_ups(w, &results_ups, leg, leg, H, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_ups.sum[n], 3);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_ups.sum, 0, sizeof results_ups.sum);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            required_legs_ups(m, leg, 0, s, 1, w, 1, &results_ups);
-            required_place_ups(w, &results_ups, leg, 0, H, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_ups.sum[n][k];
-            }
-        }
+    real s[12*LANES], sums[3*LANES], o_ups[4*LANES];
+    required_before(m, LANES, X, V, A, s);
+    clear(sums, 3*LANES);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        required_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ups);
+        required_place_ups(LANES, LANES, o_ups, leg, 0, H, t);
     }
-    required_after(w, s, required);
+    required_after(LANES, s, sums, required);
 }
 
 /* ---- inverse_kinematics: 54 mul, 42 add, 6 div, 6 sqrt, 6 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES];
-} inverse_kinematics_values;
-typedef struct {
-    real entry[3][8], singular[8];
-} inverse_kinematics_results_ups;
-
-INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematics_values *s)
+INLINE void inverse_kinematics_before(size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real t_z = X_2;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
     }
 }
 
-INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t leg, size_t legs, const
-    inverse_kinematics_values *s, size_t states, size_t count, inverse_kinematics_results_ups *o)
+INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs,
+    const real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        /* (ups-S) from the base point to the connection point */
+        const real t_x = s[0*w + j];
         const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_base_point_z = m->ups_base_point_z[i];
         const real ups_platform_point_x = m->ups_platform_point_x[i];
+        const real ups_S_x = t_x + ups_platform_point_x - ups_base_point_x;
+        const real t_y = s[1*w + j];
+        const real ups_base_point_y = m->ups_base_point_y[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
+        const real ups_S_y = t_y + ups_platform_point_y - ups_base_point_y;
+        const real t_z = s[2*w + j];
+        const real ups_base_point_z = m->ups_base_point_z[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        /* (ups-K1) from the base point to the connection point */
-        const real S_x = t_x + ups_platform_point_x - ups_base_point_x;
-        const real S_y = t_y + ups_platform_point_y - ups_base_point_y;
-        const real S_z = t_z + ups_platform_point_z - ups_base_point_z;
-        /* (ups-K2) component along the reference direction */
-        const real px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx;
-        /* (ups-K3) component across the reference direction */
-        const real py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy;
-        /* (ups-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (ups-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (ups-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz;
-        /* (ups-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (ups-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (ups-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        /* (ups-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        /* (ups-K8) displacement of joint 1 */
-        const real q_1 = angle(inv_root_1*py_1, inv_root_1*px_1);
-        /* (ups-K17) displacement of joint 2 */
-        const real q_2 = angle(-inv_root_2*xi_1_t, inv_root_2*root_1);
-        o->entry[0][k] = q_1;
-        o->entry[1][k] = q_2;
-        o->entry[2][k] = root_2;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
+        const real ups_S_z = t_z + ups_platform_point_z - ups_base_point_z;
+        /* (ups-px_1) component along the reference direction */
+        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
+        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
+        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
+        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
+            ups_S_z*ups_base_frame_zx;
+        /* (ups-py_1) component across the reference direction */
+        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
+        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
+        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
+        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
+            ups_S_z*ups_base_frame_zy;
+        /* (ups-rho2_1) squared amplitude */
+        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
+        /* (ups-root_1) amplitude, with the sign of the branch */
+        const real ups_branch_1 = m->ups_branch_1[i];
+        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
+        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
+        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+            ups_S_z*ups_base_frame_zz;
+        /* (ups-rho2_2) squared amplitude */
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        /* (ups-root_2) amplitude, with the sign of the branch */
+        const real ups_branch_2 = m->ups_branch_2[i];
+        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
+        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ups_root_2 = 1/ups_root_2;
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        /* (ups-q_1) displacement of joint 1 */
+        const real ups_q_1 = angle(inv_ups_root_1*ups_py_1, inv_ups_root_1*ups_px_1);
+        /* (ups-q_2) displacement of joint 2 */
+        const real ups_q_2 = angle(-inv_ups_root_2*ups_xi_1_t, inv_ups_root_2*ups_root_1);
+        o[0*count + k] = ups_q_1;
+        o[1*count + k] = ups_q_2;
+        o[2*count + k] = ups_root_2;
+        o[4*count + k] = ups_q_1 + (ups_q_2 + ups_root_2);
+        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
     }
 }
 
-INLINE void inverse_kinematics_place_ups(size_t w, const inverse_kinematics_results_ups *o, size_t
-    leg, size_t first, real *q, verdict *t)
+INLINE void inverse_kinematics_place_ups(size_t w, size_t count, const real *o, size_t leg, size_t
+    first, real *q, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        q[(3*leg)*w + k] = o->entry[0][first + k];
-        q[(1 + 3*leg)*w + k] = o->entry[1][first + k];
-        q[(2 + 3*leg)*w + k] = o->entry[2][first + k];
-        t->singular[k] += o->singular[first + k];
+        q[(3*leg)*w + k] = o[0*count + first + k];
+        q[(1 + 3*leg)*w + k] = o[1*count + first + k];
+        q[(2 + 3*leg)*w + k] = o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
 }
 
-INLINE void inverse_kinematics_run(const prepared *m, size_t w, const real *X, real *q, verdict
-    *t)
+INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    inverse_kinematics_values values, *const s = &values;
-    inverse_kinematics_results_ups results_ups;
-    inverse_kinematics_before(w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        inverse_kinematics_legs_ups(m, 0, 1, s, 0, 3, &results_ups);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            inverse_kinematics_place_ups(w, &results_ups, leg, leg, q, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            inverse_kinematics_legs_ups(m, leg, 0, s, 1, w, &results_ups);
-            inverse_kinematics_place_ups(w, &results_ups, leg, 0, q, t);
-        }
+    real s[3] = {0}, o_ups[5*LEGS(3)] = {0};
+    inverse_kinematics_before(1, X, s);
+    inverse_kinematics_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), o_ups);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        inverse_kinematics_place_ups(1, LEGS(3), o_ups, leg, leg, q, t);
+    }
+}
+
+INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
+{
+    real s[3*LANES], o_ups[5*LANES];
+    inverse_kinematics_before(LANES, X, s);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        inverse_kinematics_legs_ups(m, LANES, leg, 0, s, 1, LANES, o_ups);
+        inverse_kinematics_place_ups(LANES, LANES, o_ups, leg, 0, q, t);
     }
 }
 
 /* ---- joint_rates: 126 mul, 78 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], t_dot_x[LANES], t_dot_y[LANES], t_dot_z[LANES];
-} joint_rates_values;
-typedef struct {
-    real entry[3][8], singular[8];
-} joint_rates_results_ups;
-
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rates_values *s)
+INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real t_z = X_2;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = t_dot_x;
+        s[4*w + k] = t_dot_y;
+        s[5*w + k] = t_dot_z;
     }
 }
 
-INLINE void joint_rates_legs_ups(const prepared *m, size_t leg, size_t legs, const
-    joint_rates_values *s, size_t states, size_t count, joint_rates_results_ups *o)
+INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        /* (ups-S) from the base point to the connection point */
+        const real t_x = s[0*w + j];
         const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_base_point_z = m->ups_base_point_z[i];
         const real ups_platform_point_x = m->ups_platform_point_x[i];
+        const real ups_S_x = t_x + ups_platform_point_x - ups_base_point_x;
+        const real t_y = s[1*w + j];
+        const real ups_base_point_y = m->ups_base_point_y[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
+        const real ups_S_y = t_y + ups_platform_point_y - ups_base_point_y;
+        const real t_z = s[2*w + j];
+        const real ups_base_point_z = m->ups_base_point_z[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        /* (ups-K1) from the base point to the connection point */
-        const real S_x = t_x + ups_platform_point_x - ups_base_point_x;
-        const real S_y = t_y + ups_platform_point_y - ups_base_point_y;
-        const real S_z = t_z + ups_platform_point_z - ups_base_point_z;
-        /* (ups-K2) component along the reference direction */
-        const real px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx;
-        /* (ups-K3) component across the reference direction */
-        const real py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy;
-        /* (ups-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (ups-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (ups-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz;
-        /* (ups-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (ups-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (ups-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_x_x = S_x*inv_root_2;
-        const real axis_x_y = S_y*inv_root_2;
-        const real axis_x_z = S_z*inv_root_2;
-        /* (ups-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (ups-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx;
-        const real axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx;
-        const real axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx;
-        /* (ups-V1) velocity of the connection point */
-        const real S_dot_tip_x = axis_x_x*t_dot_x + axis_x_y*t_dot_y + axis_x_z*t_dot_z;
-        /* (ups-V8) rate of joint 1 */
-        const real qd_2 = inv_root_2*(t_dot_x*(axis_x_z*axis_z_ups_axes2_in_base_y -
-            axis_x_y*axis_z_ups_axes2_in_base_z) + t_dot_y*(axis_x_x*axis_z_ups_axes2_in_base_z -
-            axis_x_z*axis_z_ups_axes2_in_base_x) + t_dot_z*(axis_x_y*axis_z_ups_axes2_in_base_x -
-            axis_x_x*axis_z_ups_axes2_in_base_y));
-        const real qd_1 = inv_root_1*(axis_z_ups_axes2_in_base_x*t_dot_x +
+        const real ups_S_z = t_z + ups_platform_point_z - ups_base_point_z;
+        /* (ups-px_1) component along the reference direction */
+        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
+        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
+        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
+        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
+            ups_S_z*ups_base_frame_zx;
+        /* (ups-py_1) component across the reference direction */
+        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
+        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
+        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
+        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
+            ups_S_z*ups_base_frame_zy;
+        /* (ups-rho2_1) squared amplitude */
+        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
+        /* (ups-root_1) amplitude, with the sign of the branch */
+        const real ups_branch_1 = m->ups_branch_1[i];
+        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
+        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
+        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+            ups_S_z*ups_base_frame_zz;
+        /* (ups-rho2_2) squared amplitude */
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        /* (ups-root_2) amplitude, with the sign of the branch */
+        const real ups_branch_2 = m->ups_branch_2[i];
+        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
+        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ups_root_2 = 1/ups_root_2;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
+        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
+        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
+            ups_base_frame_xx*ups_c_1;
+        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
+            ups_base_frame_yx*ups_c_1;
+        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
+            ups_base_frame_zx*ups_c_1;
+        /* (ups-S_dot) velocity of the connection point */
+        const real t_dot_x = s[3*w + j];
+        const real t_dot_y = s[4*w + j];
+        const real t_dot_z = s[5*w + j];
+        const real ups_S_dot_tip_x = t_dot_x*ups_axis_x_x + t_dot_y*ups_axis_x_y +
+            t_dot_z*ups_axis_x_z;
+        /* (ups-qd_2) rate of joint 2 */
+        const real ups_qd_2 = inv_ups_root_2*(t_dot_x*(axis_z_ups_axes2_in_base_y*ups_axis_x_z -
+            axis_z_ups_axes2_in_base_z*ups_axis_x_y) +
+            t_dot_y*(axis_z_ups_axes2_in_base_z*ups_axis_x_x -
+            axis_z_ups_axes2_in_base_x*ups_axis_x_z) +
+            t_dot_z*(axis_z_ups_axes2_in_base_x*ups_axis_x_y -
+            axis_z_ups_axes2_in_base_y*ups_axis_x_x));
+        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_in_base_x*t_dot_x +
             axis_z_ups_axes2_in_base_y*t_dot_y + axis_z_ups_axes2_in_base_z*t_dot_z);
-        o->entry[0][k] = qd_1;
-        o->entry[1][k] = qd_2;
-        o->entry[2][k] = S_dot_tip_x;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
+        o[0*count + k] = ups_qd_1;
+        o[1*count + k] = ups_qd_2;
+        o[2*count + k] = ups_S_dot_tip_x;
+        o[4*count + k] = ups_qd_1 + (ups_qd_2 + ups_S_dot_tip_x);
+        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
             TOLERANCE*R(0.8));
     }
 }
 
-INLINE void joint_rates_place_ups(size_t w, const joint_rates_results_ups *o, size_t leg, size_t
-    first, real *qd, verdict *t)
+INLINE void joint_rates_place_ups(size_t w, size_t count, const real *o, size_t leg, size_t first,
+    real *qd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qd[(3*leg)*w + k] = o->entry[0][first + k];
-        qd[(1 + 3*leg)*w + k] = o->entry[1][first + k];
-        qd[(2 + 3*leg)*w + k] = o->entry[2][first + k];
-        t->singular[k] += o->singular[first + k];
+        qd[(3*leg)*w + k] = o[0*count + first + k];
+        qd[(1 + 3*leg)*w + k] = o[1*count + first + k];
+        qd[(2 + 3*leg)*w + k] = o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
 }
 
-INLINE void joint_rates_run(const prepared *m, size_t w, const real *X, const real *V, real *qd,
+INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+{
+    real s[6] = {0}, o_ups[5*LEGS(3)] = {0};
+    joint_rates_before(1, X, V, s);
+    joint_rates_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), o_ups);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        joint_rates_place_ups(1, LEGS(3), o_ups, leg, leg, qd, t);
+    }
+}
+
+INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    joint_rates_values values, *const s = &values;
-    joint_rates_results_ups results_ups;
-    joint_rates_before(w, X, V, s);
-    if (w == 1) {  /* the legs side by side */
-        joint_rates_legs_ups(m, 0, 1, s, 0, 3, &results_ups);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            joint_rates_place_ups(w, &results_ups, leg, leg, qd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            joint_rates_legs_ups(m, leg, 0, s, 1, w, &results_ups);
-            joint_rates_place_ups(w, &results_ups, leg, 0, qd, t);
-        }
+    real s[6*LANES], o_ups[5*LANES];
+    joint_rates_before(LANES, X, V, s);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        joint_rates_legs_ups(m, LANES, leg, 0, s, 1, LANES, o_ups);
+        joint_rates_place_ups(LANES, LANES, o_ups, leg, 0, qd, t);
     }
 }
 
 /* ---- joint_accelerations: 201 mul, 114 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], t_dot_x[LANES], t_dot_y[LANES], t_dot_z[LANES],
-        t_ddot_x[LANES], t_ddot_y[LANES], t_ddot_z[LANES];
-} joint_accelerations_values;
-typedef struct {
-    real entry[3][8], singular[8];
-} joint_accelerations_results_ups;
-
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A,
-    joint_accelerations_values *s)
+INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
+    *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real A_2 = A[2*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real t_z = X_2;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
+        const real A_2 = A[2*w + k];
         const real t_ddot_z = A_2;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->t_ddot_z[k] = t_ddot_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = t_dot_x;
+        s[4*w + k] = t_dot_y;
+        s[5*w + k] = t_dot_z;
+        s[6*w + k] = t_ddot_x;
+        s[7*w + k] = t_ddot_y;
+        s[8*w + k] = t_ddot_z;
     }
 }
 
-INLINE void joint_accelerations_legs_ups(const prepared *m, size_t leg, size_t legs, const
-    joint_accelerations_values *s, size_t states, size_t count, joint_accelerations_results_ups
-    *o)
+INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs,
+    const real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real t_ddot_z = s->t_ddot_z[j];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        /* (ups-S) from the base point to the connection point */
+        const real t_x = s[0*w + j];
         const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_base_point_z = m->ups_base_point_z[i];
         const real ups_platform_point_x = m->ups_platform_point_x[i];
+        const real ups_S_x = t_x + ups_platform_point_x - ups_base_point_x;
+        const real t_y = s[1*w + j];
+        const real ups_base_point_y = m->ups_base_point_y[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
+        const real ups_S_y = t_y + ups_platform_point_y - ups_base_point_y;
+        const real t_z = s[2*w + j];
+        const real ups_base_point_z = m->ups_base_point_z[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        /* (ups-K1) from the base point to the connection point */
-        const real S_x = t_x + ups_platform_point_x - ups_base_point_x;
-        const real S_y = t_y + ups_platform_point_y - ups_base_point_y;
-        const real S_z = t_z + ups_platform_point_z - ups_base_point_z;
-        /* (ups-K2) component along the reference direction */
-        const real px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx;
-        /* (ups-K3) component across the reference direction */
-        const real py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy;
-        /* (ups-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (ups-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (ups-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz;
-        /* (ups-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (ups-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (ups-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_x_x = S_x*inv_root_2;
-        const real axis_x_y = S_y*inv_root_2;
-        const real axis_x_z = S_z*inv_root_2;
-        /* (ups-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (ups-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx;
-        const real axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx;
-        const real axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx;
-        const real axis_y_ups_axes2_x = axis_x_z*axis_z_ups_axes2_in_base_y -
-            axis_x_y*axis_z_ups_axes2_in_base_z;
-        const real axis_y_ups_axes2_y = axis_x_x*axis_z_ups_axes2_in_base_z -
-            axis_x_z*axis_z_ups_axes2_in_base_x;
-        const real axis_y_ups_axes2_z = axis_x_y*axis_z_ups_axes2_in_base_x -
-            axis_x_x*axis_z_ups_axes2_in_base_y;
-        /* (ups-V1) velocity of the connection point */
-        const real S_dot_tip_x = axis_x_x*t_dot_x + axis_x_y*t_dot_y + axis_x_z*t_dot_z;
-        /* (ups-V8) rate of joint 1 */
-        const real qd_2 = inv_root_2*(axis_y_ups_axes2_x*t_dot_x + axis_y_ups_axes2_y*t_dot_y +
-            axis_y_ups_axes2_z*t_dot_z);
-        const real qd_1 = inv_root_1*(axis_z_ups_axes2_in_base_x*t_dot_x +
+        const real ups_S_z = t_z + ups_platform_point_z - ups_base_point_z;
+        /* (ups-px_1) component along the reference direction */
+        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
+        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
+        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
+        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
+            ups_S_z*ups_base_frame_zx;
+        /* (ups-py_1) component across the reference direction */
+        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
+        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
+        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
+        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
+            ups_S_z*ups_base_frame_zy;
+        /* (ups-rho2_1) squared amplitude */
+        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
+        /* (ups-root_1) amplitude, with the sign of the branch */
+        const real ups_branch_1 = m->ups_branch_1[i];
+        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
+        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
+        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+            ups_S_z*ups_base_frame_zz;
+        /* (ups-rho2_2) squared amplitude */
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        /* (ups-root_2) amplitude, with the sign of the branch */
+        const real ups_branch_2 = m->ups_branch_2[i];
+        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
+        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ups_root_2 = 1/ups_root_2;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
+        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
+        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
+            ups_base_frame_xx*ups_c_1;
+        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
+            ups_base_frame_yx*ups_c_1;
+        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
+            ups_base_frame_zx*ups_c_1;
+        const real axis_y_ups_axes2_x = axis_z_ups_axes2_in_base_y*ups_axis_x_z -
+            axis_z_ups_axes2_in_base_z*ups_axis_x_y;
+        const real axis_y_ups_axes2_y = axis_z_ups_axes2_in_base_z*ups_axis_x_x -
+            axis_z_ups_axes2_in_base_x*ups_axis_x_z;
+        const real axis_y_ups_axes2_z = axis_z_ups_axes2_in_base_x*ups_axis_x_y -
+            axis_z_ups_axes2_in_base_y*ups_axis_x_x;
+        /* (ups-S_dot) velocity of the connection point */
+        const real t_dot_x = s[3*w + j];
+        const real t_dot_y = s[4*w + j];
+        const real t_dot_z = s[5*w + j];
+        const real ups_S_dot_tip_x = t_dot_x*ups_axis_x_x + t_dot_y*ups_axis_x_y +
+            t_dot_z*ups_axis_x_z;
+        /* (ups-qd_2) rate of joint 2 */
+        const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*t_dot_x +
+            axis_y_ups_axes2_y*t_dot_y + axis_y_ups_axes2_z*t_dot_z);
+        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_in_base_x*t_dot_x +
             axis_z_ups_axes2_in_base_y*t_dot_y + axis_z_ups_axes2_in_base_z*t_dot_z);
-        /* (ups-V11) angular velocity of link 1 */
-        const real omega_1_t = inv_root_2*qd_1*xi_1_t;
-        const real omega_1_t_2 = inv_root_2*qd_1*root_1;
-        /* (ups-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_tip_x;
-        const real bias_z = bias_t*omega_1_t_2 + 2*omega_1_t*qd_2*root_2;
-        /* (ups-A5) acceleration of the connection point left to the joint accelerations */
-        const real rel_x = axis_x_x*t_ddot_x + axis_x_y*t_ddot_y + axis_x_z*t_ddot_z +
-            root_2*(omega_1_t_2*omega_1_t_2 + qd_2*qd_2);
-        const real rel_z = axis_z_ups_axes2_in_base_x*t_ddot_x +
-            axis_z_ups_axes2_in_base_y*t_ddot_y + axis_z_ups_axes2_in_base_z*t_ddot_z - bias_z;
-        /* (ups-A7) acceleration of joint 1 */
-        const real qdd_2 = inv_root_2*(axis_y_ups_axes2_x*t_ddot_x + axis_y_ups_axes2_y*t_ddot_y +
-            axis_y_ups_axes2_z*t_ddot_z - bias_t*qd_2) + omega_1_t*omega_1_t_2;
-        const real qdd_1 = inv_root_1*rel_z;
-        o->entry[0][k] = qdd_1;
-        o->entry[1][k] = qdd_2;
-        o->entry[2][k] = rel_x;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
+        /* (ups-omega_1) angular velocity of link 1 */
+        const real ups_omega_1_t = inv_ups_root_2*ups_qd_1*ups_xi_1_t;
+        const real ups_omega_1_t_2 = inv_ups_root_2*ups_qd_1*ups_root_1;
+        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
+        const real ups_bias_t = 2*ups_S_dot_tip_x;
+        const real ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2*ups_omega_1_t*ups_qd_2*ups_root_2;
+        /* (ups-rel) acceleration of the connection point left to the joint accelerations */
+        const real t_ddot_x = s[6*w + j];
+        const real t_ddot_y = s[7*w + j];
+        const real t_ddot_z = s[8*w + j];
+        const real ups_rel_x = t_ddot_x*ups_axis_x_x + t_ddot_y*ups_axis_x_y +
+            t_ddot_z*ups_axis_x_z + ups_root_2*(ups_omega_1_t_2*ups_omega_1_t_2 +
+            ups_qd_2*ups_qd_2);
+        const real ups_rel_z = axis_z_ups_axes2_in_base_x*t_ddot_x +
+            axis_z_ups_axes2_in_base_y*t_ddot_y + axis_z_ups_axes2_in_base_z*t_ddot_z -
+            ups_bias_z;
+        /* (ups-qdd_1) acceleration of joint 1 */
+        const real ups_qdd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*t_ddot_x +
+            axis_y_ups_axes2_y*t_ddot_y + axis_y_ups_axes2_z*t_ddot_z - ups_bias_t*ups_qd_2) +
+            ups_omega_1_t*ups_omega_1_t_2;
+        const real ups_qdd_1 = inv_ups_root_1*ups_rel_z;
+        o[0*count + k] = ups_qdd_1;
+        o[1*count + k] = ups_qdd_2;
+        o[2*count + k] = ups_rel_x;
+        o[4*count + k] = ups_qdd_1 + (ups_qdd_2 + ups_rel_x);
+        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
             TOLERANCE*R(0.8));
     }
 }
 
-INLINE void joint_accelerations_place_ups(size_t w, const joint_accelerations_results_ups *o,
-    size_t leg, size_t first, real *qdd, verdict *t)
+INLINE void joint_accelerations_place_ups(size_t w, size_t count, const real *o, size_t leg,
+    size_t first, real *qdd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qdd[(3*leg)*w + k] = o->entry[0][first + k];
-        qdd[(1 + 3*leg)*w + k] = o->entry[1][first + k];
-        qdd[(2 + 3*leg)*w + k] = o->entry[2][first + k];
-        t->singular[k] += o->singular[first + k];
+        qdd[(3*leg)*w + k] = o[0*count + first + k];
+        qdd[(1 + 3*leg)*w + k] = o[1*count + first + k];
+        qdd[(2 + 3*leg)*w + k] = o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
 }
 
-INLINE void joint_accelerations_run(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd, verdict *t)
+INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd, verdict *t)
 {
-    joint_accelerations_values values, *const s = &values;
-    joint_accelerations_results_ups results_ups;
-    joint_accelerations_before(w, X, V, A, s);
-    if (w == 1) {  /* the legs side by side */
-        joint_accelerations_legs_ups(m, 0, 1, s, 0, 3, &results_ups);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            joint_accelerations_place_ups(w, &results_ups, leg, leg, qdd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            joint_accelerations_legs_ups(m, leg, 0, s, 1, w, &results_ups);
-            joint_accelerations_place_ups(w, &results_ups, leg, 0, qdd, t);
-        }
+    real s[9] = {0}, o_ups[5*LEGS(3)] = {0};
+    joint_accelerations_before(1, X, V, A, s);
+    joint_accelerations_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), o_ups);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        joint_accelerations_place_ups(1, LEGS(3), o_ups, leg, leg, qdd, t);
+    }
+}
+
+INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, verdict *t)
+{
+    real s[9*LANES], o_ups[5*LANES];
+    joint_accelerations_before(LANES, X, V, A, s);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        joint_accelerations_legs_ups(m, LANES, leg, 0, s, 1, LANES, o_ups);
+        joint_accelerations_place_ups(LANES, LANES, o_ups, leg, 0, qdd, t);
     }
 }
 
 /* ---- legs: 393 mul, 291 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], t_dot_x[LANES], t_dot_y[LANES], t_dot_z[LANES],
-        t_ddot_x[LANES], t_ddot_y[LANES], t_ddot_z[LANES];
-} legs_values;
-typedef struct {
-    real entry[6][8], singular[8];
-} legs_results_ups;
-
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, legs_values *s)
+INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real A_2 = A[2*w + k];
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real t_z = X_2;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
+        const real A_2 = A[2*w + k];
         const real t_ddot_z = A_2;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->t_ddot_z[k] = t_ddot_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = t_dot_x;
+        s[4*w + k] = t_dot_y;
+        s[5*w + k] = t_dot_z;
+        s[6*w + k] = t_ddot_x;
+        s[7*w + k] = t_ddot_y;
+        s[8*w + k] = t_ddot_z;
     }
 }
 
-INLINE void legs_legs_ups(const prepared *m, size_t leg, size_t legs, const legs_values *s, size_t
-    states, size_t count, legs_results_ups *o)
+INLINE void legs_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real t_ddot_z = s->t_ddot_z[j];
-        const real J_group_2_xy = m->J_group_2_xy[i];
-        const real J_group_2_xz = m->J_group_2_xz[i];
-        const real J_group_2_yz = m->J_group_2_yz[i];
-        const real Sigma_2_xx = m->Sigma_2_xx[i];
-        const real Sigma_2_yy = m->Sigma_2_yy[i];
-        const real Sigma_2_zz = m->Sigma_2_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real g_r0_z = m->g_r0_z[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real h_2_z = m->h_2_z[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        /* (ups-S) from the base point to the connection point */
+        const real t_x = s[0*w + j];
         const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_link3_mass = m->ups_link3_mass[i];
         const real ups_platform_point_x = m->ups_platform_point_x[i];
+        const real ups_S_x = t_x + ups_platform_point_x - ups_base_point_x;
+        const real t_y = s[1*w + j];
+        const real ups_base_point_y = m->ups_base_point_y[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
+        const real ups_S_y = t_y + ups_platform_point_y - ups_base_point_y;
+        const real t_z = s[2*w + j];
+        const real ups_base_point_z = m->ups_base_point_z[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        /* (ups-K1) from the base point to the connection point */
-        const real S_x = t_x + ups_platform_point_x - ups_base_point_x;
-        const real S_y = t_y + ups_platform_point_y - ups_base_point_y;
-        const real S_z = t_z + ups_platform_point_z - ups_base_point_z;
-        /* (ups-K2) component along the reference direction */
-        const real px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx;
-        /* (ups-K3) component across the reference direction */
-        const real py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy;
-        /* (ups-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (ups-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (ups-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz;
-        /* (ups-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (ups-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (ups-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (ups-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_x_x = S_x*inv_root_2;
-        const real axis_x_y = S_y*inv_root_2;
-        const real axis_x_z = S_z*inv_root_2;
-        /* (ups-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (ups-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx;
-        const real axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx;
-        const real axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx;
-        const real axis_y_ups_axes2_x = axis_x_z*axis_z_ups_axes2_in_base_y -
-            axis_x_y*axis_z_ups_axes2_in_base_z;
-        const real axis_y_ups_axes2_y = axis_x_x*axis_z_ups_axes2_in_base_z -
-            axis_x_z*axis_z_ups_axes2_in_base_x;
-        const real axis_y_ups_axes2_z = axis_x_y*axis_z_ups_axes2_in_base_x -
-            axis_x_x*axis_z_ups_axes2_in_base_y;
-        /* (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
-        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
-        const real g_r3_x = g_r0_z*s_2 - c_2*g_r1_y;
-        const real g_r3_y = -c_2*g_r0_z - g_r1_y*s_2;
-        /* (ups-V1) velocity of the connection point */
-        const real S_dot_tip_x = axis_x_x*t_dot_x + axis_x_y*t_dot_y + axis_x_z*t_dot_z;
-        /* (ups-V8) rate of joint 1 */
-        const real qd_2 = inv_root_2*(axis_y_ups_axes2_x*t_dot_x + axis_y_ups_axes2_y*t_dot_y +
-            axis_y_ups_axes2_z*t_dot_z);
-        const real qd_1 = inv_root_1*(axis_z_ups_axes2_in_base_x*t_dot_x +
+        const real ups_S_z = t_z + ups_platform_point_z - ups_base_point_z;
+        /* (ups-px_1) component along the reference direction */
+        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
+        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
+        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
+        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
+            ups_S_z*ups_base_frame_zx;
+        /* (ups-py_1) component across the reference direction */
+        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
+        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
+        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
+        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
+            ups_S_z*ups_base_frame_zy;
+        /* (ups-rho2_1) squared amplitude */
+        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
+        /* (ups-root_1) amplitude, with the sign of the branch */
+        const real ups_branch_1 = m->ups_branch_1[i];
+        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
+        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
+        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+            ups_S_z*ups_base_frame_zz;
+        /* (ups-rho2_2) squared amplitude */
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        /* (ups-root_2) amplitude, with the sign of the branch */
+        const real ups_branch_2 = m->ups_branch_2[i];
+        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
+        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ups_root_2 = 1/ups_root_2;
+        const real ups_c_2 = inv_ups_root_2*ups_root_1;
+        /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
+        const real ups_s_2 = inv_ups_root_2*ups_xi_1_t;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
+        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
+        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
+            ups_base_frame_xx*ups_c_1;
+        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
+            ups_base_frame_yx*ups_c_1;
+        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
+            ups_base_frame_zx*ups_c_1;
+        const real axis_y_ups_axes2_x = axis_z_ups_axes2_in_base_y*ups_axis_x_z -
+            axis_z_ups_axes2_in_base_z*ups_axis_x_y;
+        const real axis_y_ups_axes2_y = axis_z_ups_axes2_in_base_z*ups_axis_x_x -
+            axis_z_ups_axes2_in_base_x*ups_axis_x_z;
+        const real axis_y_ups_axes2_z = axis_z_ups_axes2_in_base_x*ups_axis_x_y -
+            axis_z_ups_axes2_in_base_y*ups_axis_x_x;
+        /* (ups-S_dot) velocity of the connection point */
+        const real t_dot_x = s[3*w + j];
+        const real t_dot_y = s[4*w + j];
+        const real t_dot_z = s[5*w + j];
+        const real ups_S_dot_tip_x = t_dot_x*ups_axis_x_x + t_dot_y*ups_axis_x_y +
+            t_dot_z*ups_axis_x_z;
+        /* (ups-qd_2) rate of joint 2 */
+        const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*t_dot_x +
+            axis_y_ups_axes2_y*t_dot_y + axis_y_ups_axes2_z*t_dot_z);
+        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_in_base_x*t_dot_x +
             axis_z_ups_axes2_in_base_y*t_dot_y + axis_z_ups_axes2_in_base_z*t_dot_z);
-        /* (ups-V11) angular velocity of link 1 */
-        const real omega_1_t = qd_1*s_2;
-        const real omega_1_t_2 = c_2*qd_1;
-        /* (ups-A3) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_x = omega_1_t_2*qd_2;
-        const real zeta_2_y = omega_1_t*qd_2;
-        /* (ups-V13) centripetal tensor of link 2 */
-        const real W_2_t = omega_1_t*omega_1_t;
-        const real W_2_t_2 = omega_1_t_2*omega_1_t_2;
-        const real W_2_t_3 = qd_2*qd_2;
-        const real W_2_xy = omega_1_t*omega_1_t_2;
-        /* (ups-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_tip_x;
-        const real bias_z = bias_t*omega_1_t_2 + 2*root_2*zeta_2_y;
-        /* (ups-A2) acceleration of the connection point */
-        const real S_ddot_t = axis_y_ups_axes2_x*t_ddot_x;
-        const real S_ddot_t_2 = axis_y_ups_axes2_y*t_ddot_y;
-        const real S_ddot_t_3 = axis_y_ups_axes2_z*t_ddot_z;
-        const real S_ddot_tip_z = axis_z_ups_axes2_in_base_x*t_ddot_x +
+        /* (ups-omega_1) angular velocity of link 1 */
+        const real ups_omega_1_t = ups_qd_1*ups_s_2;
+        const real ups_omega_1_t_2 = ups_c_2*ups_qd_1;
+        /* (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2;
+        const real ups_zeta_2_y = ups_omega_1_t*ups_qd_2;
+        /* (ups-W_2) centripetal tensor of link 2 */
+        const real ups_W_2_t = ups_omega_1_t*ups_omega_1_t;
+        const real ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2;
+        const real ups_W_2_t_3 = ups_qd_2*ups_qd_2;
+        const real ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2;
+        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
+        const real ups_bias_t = 2*ups_S_dot_tip_x;
+        const real ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2*ups_root_2*ups_zeta_2_y;
+        /* (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real ups_g_r0_x = m->ups_g_r0_x[i];
+        const real ups_g_r0_y = m->ups_g_r0_y[i];
+        const real ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x;
+        const real ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1;
+        const real ups_g_r0_z = m->ups_g_r0_z[i];
+        const real ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y;
+        const real ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2;
+        /* (ups-S_ddot) acceleration of the connection point */
+        const real t_ddot_x = s[6*w + j];
+        const real ups_S_ddot_t = axis_y_ups_axes2_x*t_ddot_x;
+        const real t_ddot_y = s[7*w + j];
+        const real ups_S_ddot_t_2 = axis_y_ups_axes2_y*t_ddot_y;
+        const real t_ddot_z = s[8*w + j];
+        const real ups_S_ddot_t_3 = axis_y_ups_axes2_z*t_ddot_z;
+        const real ups_S_ddot_tip_z = axis_z_ups_axes2_in_base_x*t_ddot_x +
             axis_z_ups_axes2_in_base_y*t_ddot_y + axis_z_ups_axes2_in_base_z*t_ddot_z;
-        /* (ups-A5) acceleration of the connection point left to the joint accelerations */
-        const real rel_z = S_ddot_tip_z - bias_z;
-        /* (ups-A7) acceleration of joint 1 */
-        const real qdd_1_t = inv_root_2*(S_ddot_t + S_ddot_t_2 + S_ddot_t_3 - bias_t*qd_2);
-        const real qdd_1 = inv_root_1*rel_z;
-        /* (ups-N3) acceleration of the reference point of link 3, less gravity */
-        const real acc_3_x = axis_x_x*t_ddot_x + axis_x_y*t_ddot_y + axis_x_z*t_ddot_z - g_r3_x;
-        const real acc_3_y = S_ddot_t + S_ddot_t_2 + S_ddot_t_3 - g_r3_y;
-        const real acc_3_z = S_ddot_tip_z - g_r1_x;
-        /* (ups-A12) angular acceleration of link 1 */
-        const real alpha_1_t = qdd_1*s_2;
-        const real alpha_1_t_2 = c_2*qdd_1;
-        /* (ups-A15) angular acceleration of link 2 */
-        const real alpha_2_x = alpha_1_t - zeta_2_x;
-        const real alpha_2_y = -alpha_1_t_2 - zeta_2_y;
-        /* (ups-A18) acceleration tensor of link 2 */
-        const real B_2_xy = -2*W_2_xy - qdd_1_t;
-        const real B_2_zx = zeta_2_y - alpha_2_y;
-        const real B_2_zy = alpha_2_x - zeta_2_x;
-        /* (ups-N12) inertia moment of the links that turn with link 2, about their reference points */
-        const real mu_2_x = B_2_zy*Sigma_2_yy + J_group_2_xz*qdd_1_t + J_group_2_yz*(W_2_t_2 -
-            W_2_t_3) + Sigma_2_zz*alpha_1_t + g_r1_x*h_2_z + g_r3_y*h_2_y - B_2_zx*J_group_2_xy -
-            acc_3_y*h_3_y - acc_3_z*h_3_z;
-        const real mu_2_y = B_2_zy*J_group_2_xy + acc_3_x*h_3_y + g_r1_x*h_2_x -
-            B_2_xy*J_group_2_yz - B_2_zx*Sigma_2_xx - J_group_2_xz*(W_2_t - W_2_t_3) -
-            Sigma_2_zz*alpha_1_t_2 - acc_3_z*h_3_x - g_r3_x*h_2_y;
-        const real mu_2_z = J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_xz*alpha_1_t +
-            Sigma_2_xx*qdd_1_t + acc_3_x*h_3_z + acc_3_y*h_3_x - B_2_xy*Sigma_2_yy -
-            J_group_2_yz*alpha_1_t_2 - g_r3_x*h_2_z - g_r3_y*h_2_x;
-        /* (ups-N24) leg force on the platform without actuation and without the mass at the connection
+        /* (ups-rel) acceleration of the connection point left to the joint accelerations */
+        const real ups_rel_z = ups_S_ddot_tip_z - ups_bias_z;
+        /* (ups-qdd_1) acceleration of joint 1 */
+        const real ups_qdd_1_t = inv_ups_root_2*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 -
+            ups_bias_t*ups_qd_2);
+        const real ups_qdd_1 = inv_ups_root_1*ups_rel_z;
+        /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
+        const real ups_acc_3_x = t_ddot_x*ups_axis_x_x + t_ddot_y*ups_axis_x_y +
+            t_ddot_z*ups_axis_x_z - ups_g_r3_x;
+        const real ups_acc_3_y = ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_g_r3_y;
+        const real ups_acc_3_z = ups_S_ddot_tip_z - ups_g_r1_x;
+        /* (ups-alpha_1) angular acceleration of link 1 */
+        const real ups_alpha_1_t = ups_qdd_1*ups_s_2;
+        const real ups_alpha_1_t_2 = ups_c_2*ups_qdd_1;
+        /* (ups-alpha_2) angular acceleration of link 2 */
+        const real ups_alpha_2_x = ups_alpha_1_t - ups_zeta_2_x;
+        const real ups_alpha_2_y = -ups_alpha_1_t_2 - ups_zeta_2_y;
+        /* (ups-B_2) acceleration tensor of link 2 */
+        const real ups_B_2_xy = -2*ups_W_2_xy - ups_qdd_1_t;
+        const real ups_B_2_zx = ups_zeta_2_y - ups_alpha_2_y;
+        const real ups_B_2_zy = ups_alpha_2_x - ups_zeta_2_x;
+        /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+        const real ups_J_group_2_xy = m->ups_J_group_2_xy[i];
+        const real ups_J_group_2_xz = m->ups_J_group_2_xz[i];
+        const real ups_J_group_2_yz = m->ups_J_group_2_yz[i];
+        const real ups_Sigma_2_yy = m->ups_Sigma_2_yy[i];
+        const real ups_Sigma_2_zz = m->ups_Sigma_2_zz[i];
+        const real ups_h_2_y = m->ups_h_2_y[i];
+        const real ups_h_2_z = m->ups_h_2_z[i];
+        const real ups_h_3_y = m->ups_h_3_y[i];
+        const real ups_h_3_z = m->ups_h_3_z[i];
+        const real ups_mu_2_x = ups_B_2_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_1_t +
+            ups_J_group_2_yz*(ups_W_2_t_2 - ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_t +
+            ups_g_r1_x*ups_h_2_z + ups_g_r3_y*ups_h_2_y - ups_B_2_zx*ups_J_group_2_xy -
+            ups_acc_3_y*ups_h_3_y - ups_acc_3_z*ups_h_3_z;
+        const real ups_Sigma_2_xx = m->ups_Sigma_2_xx[i];
+        const real ups_h_2_x = m->ups_h_2_x[i];
+        const real ups_h_3_x = m->ups_h_3_x[i];
+        const real ups_mu_2_y = ups_B_2_zy*ups_J_group_2_xy + ups_acc_3_x*ups_h_3_y +
+            ups_g_r1_x*ups_h_2_x - ups_B_2_xy*ups_J_group_2_yz - ups_B_2_zx*ups_Sigma_2_xx -
+            ups_J_group_2_xz*(ups_W_2_t - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_t_2 -
+            ups_acc_3_z*ups_h_3_x - ups_g_r3_x*ups_h_2_y;
+        const real ups_mu_2_z = ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) +
+            ups_J_group_2_xz*ups_alpha_1_t + ups_Sigma_2_xx*ups_qdd_1_t + ups_acc_3_x*ups_h_3_z +
+            ups_acc_3_y*ups_h_3_x - ups_B_2_xy*ups_Sigma_2_yy - ups_J_group_2_yz*ups_alpha_1_t_2 -
+            ups_g_r3_x*ups_h_2_z - ups_g_r3_y*ups_h_2_x;
+        /* (ups-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_y = alpha_1_t*h_3_y - h_3_x*qdd_1_t - h_3_z*(W_2_t + W_2_t_3) -
-            inv_root_2*mu_2_z;
-        const real c_z = B_2_zy*h_3_z + h_3_y*(W_2_t + W_2_t_2) - B_2_zx*h_3_x -
-            inv_root_1*(mu_2_x*s_2 - c_2*mu_2_y);
-        /* (ups-N29) leg force on the platform without actuation, the last link's mass included */
-        const real c_true_x = B_2_xy*h_3_z + alpha_1_t_2*h_3_y + h_3_x*(W_2_t_2 + W_2_t_3) -
-            acc_3_x*ups_link3_mass;
-        const real c_true_y = c_y - acc_3_y*ups_link3_mass;
-        const real c_true_z = c_z - acc_3_z*ups_link3_mass;
-        const real c_true_in_base_x = axis_x_x*c_true_x + axis_y_ups_axes2_x*c_true_y +
-            axis_z_ups_axes2_in_base_x*c_true_z;
-        const real c_true_in_base_y = axis_x_y*c_true_x + axis_y_ups_axes2_y*c_true_y +
-            axis_z_ups_axes2_in_base_y*c_true_z;
-        const real c_true_in_base_z = axis_x_z*c_true_x + axis_y_ups_axes2_z*c_true_y +
-            axis_z_ups_axes2_in_base_z*c_true_z;
-        o->entry[0][k] = c_true_in_base_x;
-        o->entry[1][k] = c_true_in_base_y;
-        o->entry[2][k] = c_true_in_base_z;
-        o->entry[3][k] = axis_x_x;
-        o->entry[4][k] = axis_x_y;
-        o->entry[5][k] = axis_x_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
+        const real ups_c_y = ups_alpha_1_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_z -
+            ups_h_3_x*ups_qdd_1_t - ups_h_3_z*(ups_W_2_t + ups_W_2_t_3);
+        const real ups_c_z = ups_B_2_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
+            inv_ups_root_1*(ups_mu_2_x*ups_s_2 - ups_c_2*ups_mu_2_y) - ups_B_2_zx*ups_h_3_x;
+        /* (ups-c_true) leg force on the platform without actuation, the last link's mass included */
+        const real ups_link3_mass = m->ups_link3_mass[i];
+        const real ups_c_true_x = ups_B_2_xy*ups_h_3_z + ups_alpha_1_t_2*ups_h_3_y +
+            ups_h_3_x*(ups_W_2_t_2 + ups_W_2_t_3) - ups_acc_3_x*ups_link3_mass;
+        const real ups_c_true_y = ups_c_y - ups_acc_3_y*ups_link3_mass;
+        const real ups_c_true_z = ups_c_z - ups_acc_3_z*ups_link3_mass;
+        const real ups_c_true_in_base_x = axis_y_ups_axes2_x*ups_c_true_y +
+            axis_z_ups_axes2_in_base_x*ups_c_true_z + ups_axis_x_x*ups_c_true_x;
+        const real ups_c_true_in_base_y = axis_y_ups_axes2_y*ups_c_true_y +
+            axis_z_ups_axes2_in_base_y*ups_c_true_z + ups_axis_x_y*ups_c_true_x;
+        const real ups_c_true_in_base_z = axis_y_ups_axes2_z*ups_c_true_y +
+            axis_z_ups_axes2_in_base_z*ups_c_true_z + ups_axis_x_z*ups_c_true_x;
+        o[0*count + k] = ups_c_true_in_base_x;
+        o[1*count + k] = ups_c_true_in_base_y;
+        o[2*count + k] = ups_c_true_in_base_z;
+        o[3*count + k] = ups_axis_x_x;
+        o[4*count + k] = ups_axis_x_y;
+        o[5*count + k] = ups_axis_x_z;
+        o[6*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
             TOLERANCE*R(0.8));
     }
 }
 
-INLINE void legs_place_ups(size_t w, const legs_results_ups *o, size_t leg, size_t first, real
+INLINE void legs_place_ups(size_t w, size_t count, const real *o, size_t leg, size_t first, real
     *leg_force, real *drive, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        leg_force[(3*leg)*w + k] = o->entry[0][first + k];
-        leg_force[(1 + 3*leg)*w + k] = o->entry[1][first + k];
-        leg_force[(2 + 3*leg)*w + k] = o->entry[2][first + k];
-        drive[(3*leg)*w + k] = o->entry[3][first + k];
-        drive[(1 + 3*leg)*w + k] = o->entry[4][first + k];
-        drive[(2 + 3*leg)*w + k] = o->entry[5][first + k];
-        t->singular[k] += o->singular[first + k];
+        leg_force[(3*leg)*w + k] = o[0*count + first + k];
+        leg_force[(1 + 3*leg)*w + k] = o[1*count + first + k];
+        leg_force[(2 + 3*leg)*w + k] = o[2*count + first + k];
+        drive[(3*leg)*w + k] = o[3*count + first + k];
+        drive[(1 + 3*leg)*w + k] = o[4*count + first + k];
+        drive[(2 + 3*leg)*w + k] = o[5*count + first + k];
+        t->singular[k] += o[6*count + first + k];
     }
 }
 
-INLINE void legs_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
-    real *leg_force, real *drive, verdict *t)
+INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
+    *leg_force, real *drive, verdict *t)
 {
-    legs_values values, *const s = &values;
-    legs_results_ups results_ups;
-    legs_before(w, X, V, A, s);
-    if (w == 1) {  /* the legs side by side */
-        legs_legs_ups(m, 0, 1, s, 0, 3, &results_ups);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            legs_place_ups(w, &results_ups, leg, leg, leg_force, drive, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            legs_legs_ups(m, leg, 0, s, 1, w, &results_ups);
-            legs_place_ups(w, &results_ups, leg, 0, leg_force, drive, t);
-        }
+    real s[9] = {0}, o_ups[7*LEGS(3)] = {0};
+    legs_before(1, X, V, A, s);
+    legs_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), o_ups);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        legs_place_ups(1, LEGS(3), o_ups, leg, leg, leg_force, drive, t);
     }
 }
 
 /* ---- potential: 126 mul, 99 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], potential_t[LANES], sum[1][LANES];
-} potential_values;
-typedef struct {
-    real sum[1][8], singular[8];
-} potential_results_ups;
-
-INLINE void potential_before(const prepared *m, size_t w, const real *X, potential_values *s)
+INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
+        /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
@@ -2973,572 +3012,847 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, potenti
         const real h_star_y = m->h_star_y;
         const real h_star_z = m->h_star_z;
         const real m_star = m->m_star;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
-        /* (V1) potential energy */
         const real potential_t = gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y +
             m_star*t_y) + gravity_z*(h_star_z + m_star*t_z);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->potential_t[k] = potential_t;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = potential_t;
     }
 }
 
-INLINE void potential_legs_ups(const prepared *m, size_t leg, size_t legs, const potential_values
-    *s, size_t states, size_t count, int add, potential_results_ups *o)
+INLINE void potential_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real b_r0_x = m->b_r0_x[i];
-        const real b_r0_y = m->b_r0_y[i];
-        const real b_r0_z = m->b_r0_z[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real g_r0_z = m->g_r0_z[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real h_2_z = m->h_2_z[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        /* (ups-S) from the base point to the connection point */
+        const real t_x = s[0*w + j];
         const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_link2_mass = m->ups_link2_mass[i];
         const real ups_platform_point_x = m->ups_platform_point_x[i];
+        const real ups_S_x = t_x + ups_platform_point_x - ups_base_point_x;
+        const real t_y = s[1*w + j];
+        const real ups_base_point_y = m->ups_base_point_y[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
+        const real ups_S_y = t_y + ups_platform_point_y - ups_base_point_y;
+        const real t_z = s[2*w + j];
+        const real ups_base_point_z = m->ups_base_point_z[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        /* (ups-K1) from the base point to the connection point */
-        const real S_x = t_x + ups_platform_point_x - ups_base_point_x;
-        const real S_y = t_y + ups_platform_point_y - ups_base_point_y;
-        const real S_z = t_z + ups_platform_point_z - ups_base_point_z;
-        /* (ups-K2) component along the reference direction */
-        const real px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx;
-        /* (ups-K3) component across the reference direction */
-        const real py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy;
-        /* (ups-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (ups-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (ups-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz;
-        /* (ups-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (ups-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (ups-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (ups-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (ups-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (ups-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
-        /* (V1) potential energy */
-        const real b_r1_y = -b_r0_x*s_1 - b_r0_y*c_1;
-        const real potential_t_2 = (g_r0_y*s_1 - c_1*g_r0_x)*(h_2_y + h_3_y +
-            ups_link2_mass*(b_r0_y*s_1 - b_r0_x*c_1)) + (g_r0_z*s_2 - c_2*g_r1_y)*(h_2_x + h_3_x +
-            ups_link2_mass*(b_r0_z*s_2 - b_r1_y*c_2)) - (-c_2*g_r0_z - g_r1_y*s_2)*(h_2_z + h_3_z
-            - ups_link2_mass*(-b_r0_z*c_2 - b_r1_y*s_2));
-        o->sum[0][k] = add ? o->sum[0][k] + potential_t_2 : potential_t_2;  /* total_ups */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
+        const real ups_S_z = t_z + ups_platform_point_z - ups_base_point_z;
+        /* (ups-px_1) component along the reference direction */
+        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
+        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
+        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
+        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
+            ups_S_z*ups_base_frame_zx;
+        /* (ups-py_1) component across the reference direction */
+        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
+        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
+        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
+        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
+            ups_S_z*ups_base_frame_zy;
+        /* (ups-rho2_1) squared amplitude */
+        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
+        /* (ups-root_1) amplitude, with the sign of the branch */
+        const real ups_branch_1 = m->ups_branch_1[i];
+        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
+        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
+        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+            ups_S_z*ups_base_frame_zz;
+        /* (ups-rho2_2) squared amplitude */
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        /* (ups-root_2) amplitude, with the sign of the branch */
+        const real ups_branch_2 = m->ups_branch_2[i];
+        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
+        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ups_root_2 = 1/ups_root_2;
+        const real ups_c_2 = inv_ups_root_2*ups_root_1;
+        /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
+        const real ups_s_2 = inv_ups_root_2*ups_xi_1_t;
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
+        /* (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real ups_g_r0_x = m->ups_g_r0_x[i];
+        const real ups_g_r0_y = m->ups_g_r0_y[i];
+        const real ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1;
+        /* (potential) potential energy */
+        const real ups_b_r0_x = m->ups_b_r0_x[i];
+        const real ups_b_r0_y = m->ups_b_r0_y[i];
+        const real ups_b_r1_y = -ups_b_r0_x*ups_s_1 - ups_b_r0_y*ups_c_1;
+        const real ups_b_r0_z = m->ups_b_r0_z[i];
+        const real ups_g_r0_z = m->ups_g_r0_z[i];
+        const real ups_h_2_x = m->ups_h_2_x[i];
+        const real ups_h_2_y = m->ups_h_2_y[i];
+        const real ups_h_2_z = m->ups_h_2_z[i];
+        const real ups_h_3_x = m->ups_h_3_x[i];
+        const real ups_h_3_y = m->ups_h_3_y[i];
+        const real ups_h_3_z = m->ups_h_3_z[i];
+        const real ups_link2_mass = m->ups_link2_mass[i];
+        const real ups_potential_t = (ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x)*(ups_h_2_y +
+            ups_h_3_y + ups_link2_mass*(ups_b_r0_y*ups_s_1 - ups_b_r0_x*ups_c_1)) +
+            (ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y)*(ups_h_2_x + ups_h_3_x +
+            ups_link2_mass*(ups_b_r0_z*ups_s_2 - ups_b_r1_y*ups_c_2)) - (-ups_c_2*ups_g_r0_z -
+            ups_g_r1_y*ups_s_2)*(ups_h_2_z + ups_h_3_z - ups_link2_mass*(-ups_b_r0_z*ups_c_2 -
+            ups_b_r1_y*ups_s_2));
+        terms[0*count + k] = add ? terms[0*count + k] + ups_potential_t : ups_potential_t;  /* total_ups */
+        o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
     }
 }
 
-INLINE void potential_place_ups(size_t w, const potential_results_ups *o, size_t first, verdict
-    *t)
+INLINE void potential_place_ups(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
+        t->singular[k] += o[0*count + first + k];
     }
 }
 
-INLINE void potential_after(size_t w, const potential_values *s, real *potential)
+INLINE void potential_after(size_t w, const real *s, const real *sums, real *potential)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real potential_t = s->potential_t[k];
-        const real total_ups = s->sum[0][k];
-        /* (V1) potential energy */
+        /* (potential) potential energy */
+        const real potential_t = s[3*w + k];
+        const real total_ups = sums[0*w + k];
         const real potential_ = -potential_t - total_ups;
         potential[0*w + k] = potential_;
     }
 }
 
-INLINE void potential_run(const prepared *m, size_t w, const real *X, real *potential, verdict *t)
+INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    potential_values values, *const s = &values;
-    potential_results_ups results_ups;
-    potential_before(m, w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        memset(results_ups.sum, 0, sizeof results_ups.sum);
-        potential_legs_ups(m, 0, 1, s, 0, 3, 0, &results_ups);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            potential_place_ups(w, &results_ups, leg, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_ups.sum[n], 3);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_ups.sum, 0, sizeof results_ups.sum);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            potential_legs_ups(m, leg, 0, s, 1, w, 1, &results_ups);
-            potential_place_ups(w, &results_ups, 0, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_ups.sum[n][k];
-            }
-        }
+    real s[4] = {0}, sums[1] = {0}, terms_ups[1*LEGS(3)] = {0}, o_ups[1*LEGS(3)] = {0};
+    potential_before(m, 1, X, s);
+    potential_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_ups, o_ups);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        potential_place_ups(1, LEGS(3), o_ups, leg, t);
     }
-    potential_after(w, s, potential);
+    for (size_t n = 0; n < 1; ++n) {
+        sums[n] = total(terms_ups + n*LEGS(3), 3);
+    }
+    potential_after(1, s, sums, potential);
 }
 
 /* ---- condition: 73 mul, 69 add, 3 div, 13 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], sum[1][LANES];
-} condition_values;
-typedef struct {
-    real sum[1][8], entry[4][8], singular[8];
-} condition_results_ups;
-
-INLINE void condition_before(const prepared *m, size_t w, const real *X, condition_values *s, real
-    *lengths)
+INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[0*w + k];
-        const real X_1 = X[1*w + k];
-        const real X_2 = X[2*w + k];
-        const real legs_size = m->legs_size;
         /* X: named entries */
+        const real X_0 = X[0*w + k];
         const real t_x = X_0;
+        const real X_1 = X[1*w + k];
         const real t_y = X_1;
+        const real X_2 = X[2*w + k];
         const real t_z = X_2;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
+        t->total[k] += legs_size;
     }
 }
 
-INLINE void condition_legs_ups(const prepared *m, size_t leg, size_t legs, const condition_values
-    *s, size_t states, size_t count, int add, condition_results_ups *o)
+INLINE void condition_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real b_c_x = m->b_c_x;
-        const real b_c_y = m->b_c_y;
-        const real b_c_z = m->b_c_z;
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        /* (ups-S) from the base point to the connection point */
+        const real t_x = s[0*w + j];
         const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_base_point_z = m->ups_base_point_z[i];
         const real ups_platform_point_x = m->ups_platform_point_x[i];
+        const real ups_S_x = t_x + ups_platform_point_x - ups_base_point_x;
+        const real t_y = s[1*w + j];
+        const real ups_base_point_y = m->ups_base_point_y[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
+        const real ups_S_y = t_y + ups_platform_point_y - ups_base_point_y;
+        const real t_z = s[2*w + j];
+        const real ups_base_point_z = m->ups_base_point_z[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        /* (ups-K1) from the base point to the connection point */
-        const real S_x = t_x + ups_platform_point_x - ups_base_point_x;
-        const real S_y = t_y + ups_platform_point_y - ups_base_point_y;
-        const real S_z = t_z + ups_platform_point_z - ups_base_point_z;
-        /* (ups-K2) component along the reference direction */
-        const real px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx;
-        /* (ups-K3) component across the reference direction */
-        const real py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy;
-        /* (ups-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (ups-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (ups-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz;
-        /* (ups-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (ups-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (ups-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        /* (ups-V5) reciprocal vector 1 */
-        const real axis_x_x = S_x*inv_root_2;
-        const real axis_x_y = S_y*inv_root_2;
-        const real axis_x_z = S_z*inv_root_2;
-        /* (C2) rms distance of the platform points from their centroid */
-        const real spread_t_2 = b_c_x - ups_platform_point_x;
-        const real spread_t_3 = b_c_y - ups_platform_point_y;
-        const real spread_t_4 = b_c_z - ups_platform_point_z;
-        const real spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 +
-            spread_t_4*spread_t_4;
-        /* (ups-K4) squared amplitude */
-        const real pivot_size = magnitude(rho2_1);
-        /* (ups-K13) squared amplitude */
-        const real pivot_size_2 = magnitude(rho2_2);
-        /* (ups-V5) reciprocal vector 1 */
-        const real pivot_size_3 = magnitude(root_1);
-        const real pivot_size_4 = magnitude(root_2);
-        /* (ups-N21) force at the connection point that balances the leg's inertia and weight along all
+        const real ups_S_z = t_z + ups_platform_point_z - ups_base_point_z;
+        /* (ups-px_1) component along the reference direction */
+        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
+        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
+        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
+        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
+            ups_S_z*ups_base_frame_zx;
+        /* (ups-py_1) component across the reference direction */
+        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
+        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
+        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
+        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
+            ups_S_z*ups_base_frame_zy;
+        /* (ups-rho2_1) squared amplitude */
+        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
+        /* (ups-root_1) amplitude, with the sign of the branch */
+        const real ups_branch_1 = m->ups_branch_1[i];
+        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
+        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
+        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+            ups_S_z*ups_base_frame_zz;
+        /* (ups-rho2_2) squared amplitude */
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        /* (ups-root_2) amplitude, with the sign of the branch */
+        const real ups_branch_2 = m->ups_branch_2[i];
+        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
+        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_ups_root_2 = 1/ups_root_2;
+        /* (ups-w_1) reciprocal vector 1 */
+        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
+        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
+        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_x = m->b_c_x;
+        const real ups_spread_t = b_c_x - ups_platform_point_x;
+        const real b_c_y = m->b_c_y;
+        const real ups_spread_t_2 = b_c_y - ups_platform_point_y;
+        const real b_c_z = m->b_c_z;
+        const real ups_spread_t_3 = b_c_z - ups_platform_point_z;
+        const real ups_spread_t_4 = ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 +
+            ups_spread_t_3*ups_spread_t_3;
+        /* (ups-rho2_1) squared amplitude */
+        const real ups_pivot_size = magnitude(ups_rho2_1);
+        /* (ups-rho2_2) squared amplitude */
+        const real ups_pivot_size_2 = magnitude(ups_rho2_2);
+        /* (ups-w_1) reciprocal vector 1 */
+        const real ups_pivot_size_3 = magnitude(ups_root_1);
+        const real ups_pivot_size_4 = magnitude(ups_root_2);
+        /* (ups-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real least_pivots = lesser(lesser(lesser(R(1.25)*root(pivot_size),
-            R(1.25)*root(pivot_size_2)), R(1.25)*pivot_size_3), R(1.25)*pivot_size_4);
-        o->sum[0][k] = add ? o->sum[0][k] + spread_t_5 : spread_t_5;  /* total_ups */
-        o->entry[0][k] = axis_x_x;
-        o->entry[1][k] = axis_x_y;
-        o->entry[2][k] = axis_x_z;
-        o->entry[3][k] = least_pivots;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
+        const real ups_least_pivots = lesser(lesser(lesser(R(1.25)*root(ups_pivot_size),
+            R(1.25)*root(ups_pivot_size_2)), R(1.25)*ups_pivot_size_3), R(1.25)*ups_pivot_size_4);
+        terms[0*count + k] = add ? terms[0*count + k] + ups_spread_t_4 : ups_spread_t_4;  /* total_ups */
+        o[0*count + k] = ups_axis_x_x;
+        o[1*count + k] = ups_axis_x_y;
+        o[2*count + k] = ups_axis_x_z;
+        o[3*count + k] = ups_least_pivots;
+        o[5*count + k] = (ups_axis_x_x + ups_axis_x_y) + (ups_axis_x_z + ups_least_pivots);
+        o[4*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
             TOLERANCE*R(0.8));
     }
 }
 
-INLINE void condition_place_ups(size_t w, const condition_results_ups *o, size_t leg, size_t
-    first, real *H, real *pivots, verdict *t)
+INLINE void condition_place_ups(size_t w, size_t count, const real *o, size_t leg, size_t first,
+    real *H, real *pivots, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(3 + leg)*w + k] = o->entry[1][first + k];
-        H[(6 + leg)*w + k] = o->entry[2][first + k];
-        pivots[(leg)*w + k] = o->entry[3][first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(3 + leg)*w + k] = o[1*count + first + k];
+        H[(6 + leg)*w + k] = o[2*count + first + k];
+        pivots[(leg)*w + k] = o[3*count + first + k];
+        t->singular[k] += o[4*count + first + k];
+        t->total[k] += o[5*count + first + k];
     }
 }
 
-INLINE void condition_after(const prepared *m, size_t w, const condition_values *s, real *lengths)
+INLINE void condition_after(const prepared *m, size_t w, const real *sums, real *lengths, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real total_ups = s->sum[0][k];
+        /* (spread) rms distance of the platform points from their centroid */
         const real spread_t = m->spread_t;
-        /* (C2) rms distance of the platform points from their centroid */
+        const real total_ups = sums[0*w + k];
         const real spread_ = spread_t*root(total_ups);
         lengths[0*w + k] = spread_;
+        t->total[k] += spread_;
     }
 }
 
-INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, real *lengths, real
-    *pivots, real *reach, verdict *t)
+INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
+    real *reach, verdict *t)
 {
-    condition_values values, *const s = &values;
-    condition_results_ups results_ups;
-    clear(reach, 3*w);
-    condition_before(m, w, X, s, lengths);
-    if (w == 1) {  /* the legs side by side */
-        memset(results_ups.sum, 0, sizeof results_ups.sum);
-        condition_legs_ups(m, 0, 1, s, 0, 3, 0, &results_ups);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            condition_place_ups(w, &results_ups, leg, leg, H, pivots, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_ups.sum[n], 3);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_ups.sum, 0, sizeof results_ups.sum);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            condition_legs_ups(m, leg, 0, s, 1, w, 1, &results_ups);
-            condition_place_ups(w, &results_ups, leg, 0, H, pivots, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_ups.sum[n][k];
-            }
-        }
+    real s[3] = {0}, sums[1] = {0}, terms_ups[1*LEGS(3)] = {0}, o_ups[6*LEGS(3)] = {0};
+    clear(reach, 3);
+    condition_before(m, 1, X, s, lengths, t);
+    condition_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_ups, o_ups);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        condition_place_ups(1, LEGS(3), o_ups, leg, leg, H, pivots, t);
     }
-    condition_after(m, w, s, lengths);
+    for (size_t n = 0; n < 1; ++n) {
+        sums[n] = total(terms_ups + n*LEGS(3), 3);
+    }
+    condition_after(m, 1, sums, lengths, t);
 }
 
 /* ---- what users call, as steps over these ---- */
 
-INLINE void M_any(const prepared *m, size_t w, const real *X, real *M_out, int *code)
+INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(3, 1, X, why.invalid);
+    M_run(m, X, M_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(9, 1, M_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(9, M_out);
+    }
+}
+
+INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
     real X_in[3*LANES], M[9*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    M_run(m, w, X, M, &why);
-    check(9, w, M, why.overflow);
-    judge(&why, w, code);
-    deliver(M, 9, w, code, M_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    M_run_lanes(m, X, M, &why);
+    suspect(&why, code);
+    deliver(9, M, M_out);
 }
 
-INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, real *Z_out, int
-    *code)
+INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 3) + total(V, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+    }
+    Z_run(m, X, V, Z_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(3, 1, Z_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(3, Z_out);
+    }
+}
+
+INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     real X_in[3*LANES], V_in[3*LANES], Z[3*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    V = side_by_side(3, w, V, V_in, why.invalid);
-    Z_run(m, w, X, V, Z, &why);
-    check(3, w, Z, why.overflow);
-    judge(&why, w, code);
-    deliver(Z, 3, w, code, Z_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    V = side_by_side(3, V, V_in, why.total);
+    Z_run_lanes(m, X, V, Z, &why);
+    suspect(&why, code);
+    deliver(3, Z, Z_out);
 }
 
-INLINE void H_any(const prepared *m, size_t w, const real *X, real *H_out, int *code)
+INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(3, 1, X, why.invalid);
+    H_run(m, X, H_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(9, 1, H_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(9, H_out);
+    }
+}
+
+INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
     real X_in[3*LANES], H[9*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    H_run(m, w, X, H, &why);
-    check(9, w, H, why.overflow);
-    judge(&why, w, code);
-    deliver(H, 9, w, code, H_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    H_run_lanes(m, X, H, &why);
+    suspect(&why, code);
+    deliver(9, H, H_out);
 }
 
-INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, real *q_out, int
-    *code)
+INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(3, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(9, 1, q_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(9, q_out);
+    }
+}
+
+INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     real X_in[3*LANES], q[9*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    inverse_kinematics_run(m, w, X, q, &why);
-    check(9, w, q, why.overflow);
-    judge(&why, w, code);
-    deliver(q, 9, w, code, q_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    suspect(&why, code);
+    deliver(9, q, q_out);
 }
 
-INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *qd_out, int *code)
+INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 3) + total(V, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+    }
+    joint_rates_run(m, X, V, qd_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(9, 1, qd_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(9, qd_out);
+    }
+}
+
+INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
 {
     real X_in[3*LANES], V_in[3*LANES], qd[9*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    V = side_by_side(3, w, V, V_in, why.invalid);
-    joint_rates_run(m, w, X, V, qd, &why);
-    check(9, w, qd, why.overflow);
-    judge(&why, w, code);
-    deliver(qd, 9, w, code, qd_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    V = side_by_side(3, V, V_in, why.total);
+    joint_rates_run_lanes(m, X, V, qd, &why);
+    suspect(&why, code);
+    deliver(9, qd, qd_out);
 }
 
-INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd_out, int *code)
+INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 3) + total(V, 3) + total(A, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+        check(3, 1, A, why.invalid);
+    }
+    joint_accelerations_run(m, X, V, A, qdd_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(9, 1, qdd_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(9, qdd_out);
+    }
+}
+
+INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
 {
     real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], qdd[9*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    V = side_by_side(3, w, V, V_in, why.invalid);
-    A = side_by_side(3, w, A, A_in, why.invalid);
-    joint_accelerations_run(m, w, X, V, A, qdd, &why);
-    check(9, w, qdd, why.overflow);
-    judge(&why, w, code);
-    deliver(qdd, 9, w, code, qdd_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    V = side_by_side(3, V, V_in, why.total);
+    A = side_by_side(3, A, A_in, why.total);
+    joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
+    suspect(&why, code);
+    deliver(9, qdd, qdd_out);
 }
 
-INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *V, real *M_out,
-    real *Z_out, real *H_out, int *code)
+INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 3) + total(V, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+    }
+    dynamics_run(m, X, V, M_out, Z_out, H_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(9, 1, M_out, why.overflow);
+        check(3, 1, Z_out, why.overflow);
+        check(9, 1, H_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(9, M_out);
+        refuse(3, Z_out);
+        refuse(9, H_out);
+    }
+}
+
+INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out, int *code)
 {
     real X_in[3*LANES], V_in[3*LANES], M[9*LANES], Z[3*LANES], H[9*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    V = side_by_side(3, w, V, V_in, why.invalid);
-    dynamics_run(m, w, X, V, M, Z, H, &why);
-    check(9, w, M, why.overflow);
-    check(3, w, Z, why.overflow);
-    check(9, w, H, why.overflow);
-    judge(&why, w, code);
-    deliver(M, 9, w, code, M_out);
-    deliver(Z, 3, w, code, Z_out);
-    deliver(H, 9, w, code, H_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    V = side_by_side(3, V, V_in, why.total);
+    dynamics_run_lanes(m, X, V, M, Z, H, &why);
+    suspect(&why, code);
+    deliver(9, M, M_out);
+    deliver(3, Z, Z_out);
+    deliver(9, H, H_out);
 }
 
-INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, const real *V, const
-    real *A, const real *wrench, real *tau_out, int *code)
+INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, real *x, real
+    *unsure, real *total)
 {
-    real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], wrench_in[3*LANES], required[3*LANES],
-        H[9*LANES], subtract_2[3*LANES], tau[3*LANES], work[12*LANES];
+    for (size_t k = 0; k < w; ++k) {
+        real a00 = a[(0)*w + k];
+        real a01 = a[(1)*w + k];
+        real a02 = a[(2)*w + k];
+        real b0 = b[0*w + k];
+        real a10 = a[(1*stride + 0)*w + k];
+        real a11 = a[(1*stride + 1)*w + k];
+        real a12 = a[(1*stride + 2)*w + k];
+        real b1 = b[1*w + k];
+        real a20 = a[(2*stride + 0)*w + k];
+        real a21 = a[(2*stride + 1)*w + k];
+        real a22 = a[(2*stride + 2)*w + k];
+        real b2 = b[2*w + k];
+        const real f0 = 1/a00;
+        const real d1 = a00*a11 - a10*a01;
+        const real f1 = a00/d1;
+        const real g10 = a10*f0;
+        a12 -= g10*a02;
+        b1 -= g10*b0;
+        const real g20 = a20*f0;
+        a21 -= g20*a01;
+        a22 -= g20*a02;
+        b2 -= g20*b0;
+        const real g21 = a21*f1;
+        a22 -= g21*a12;
+        b2 -= g21*b1;
+        const real f2 = 1/a22;
+        const real x2 = (b2)*f2;
+        const real x1 = (b1)*f1 - a12*f1*x2;
+        const real x0 = (b0 - a02*x2)*f0 - a01*f0*x1;
+        x[0*w + k] = x0;
+        x[1*w + k] = x1;
+        x[2*w + k] = x2;
+        total[k] += x0 + (x1 + x2);
+        const real most0 = magnitude(g10);
+        const real most1 = larger(magnitude(g20), magnitude(g21));
+        const real most2 = magnitude(f2);
+        const real most3 = larger(magnitude(f0), magnitude(f1));
+        unsure[k] += UNLESS(most0 <= R(10)) + UNLESS(most1 <= R(40)) + UNLESS(most2 <= R(1000)) +
+            UNLESS(most3 <= R(4000)) + UNLESS(is_finite(a00 + d1 + a22));
+    }
+}
+
+INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau_out, int *code)
+{
+    real wrench_in[3], required[3] = {0}, H[9] = {0}, subtract_2[3] = {0}, unsure_4[1] = {0},
+        work[12];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    V = side_by_side(3, w, V, V_in, why.invalid);
-    A = side_by_side(3, w, A, A_in, why.invalid);
-    wrench = optional(3, w, wrench, 0, wrench_in, why.invalid);
-    required_run(m, w, X, V, A, required, H, &why);
+    start(1, &why);
+    const real total_in = total(X, 3) + total(V, 3) + total(A, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+        check(3, 1, A, why.invalid);
+    }
+    wrench = optional(3, wrench, 0, wrench_in, why.invalid);
+    required_run(m, X, V, A, required, H, &why);
     const real *const extend_1 = wrench;
-    for (size_t i = 0; i < 3*w; ++i) {
+    for (size_t i = 0; i < 3; ++i) {
         subtract_2[i] = required[i] - extend_1[i];
     }
-    set_matrix(3, w, H, work);
-    solve(3, w, subtract_2, work, tau, why.singular);
-    check(3, w, tau, why.overflow);
-    judge(&why, w, code);
-    deliver(tau, 3, w, code, tau_out);
+    eliminate_0(1, 3, H, subtract_2, tau_out, unsure_4, why.total);
+    if (unsure_4[0] > 0) {
+        set_matrix(3, 1, H, work);
+        solve_apart(3, subtract_2, work, tau_out, why.singular);
+        check(3, 1, tau_out, why.overflow);
+    }
+    if (!is_finite(why.total[0])) {
+        check(3, 1, tau_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(3, tau_out);
+    }
 }
 
-INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, const real *V, const
-    real *tau, const real *wrench, real *A_out, int *code)
+INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau_out, int *code)
 {
-    real X_in[3*LANES], V_in[3*LANES], tau_in[3*LANES], wrench_in[3*LANES], M[9*LANES], Z[3*LANES],
-        H[9*LANES], times_1[3*LANES] = {0}, add_3[3*LANES], subtract_4[3*LANES], A[3*LANES],
-        work[12*LANES];
+    real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], wrench_in[3*LANES], required[3*LANES],
+        H[9*LANES], subtract_2[3*LANES], tau[3*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    V = side_by_side(3, w, V, V_in, why.invalid);
-    tau = side_by_side(3, w, tau, tau_in, why.invalid);
-    wrench = optional(3, w, wrench, 0, wrench_in, why.invalid);
-    dynamics_run(m, w, X, V, M, Z, H, &why);
-    product(3, 3, 1, w, H, tau, times_1);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    V = side_by_side(3, V, V_in, why.total);
+    A = side_by_side(3, A, A_in, why.total);
+    wrench = optional_side_by_side(3, wrench, 0, wrench_in, why.total);
+    required_run_lanes(m, X, V, A, required, H, &why);
+    const real *const extend_1 = wrench;
+    for (size_t i = 0; i < 3*LANES; ++i) {
+        subtract_2[i] = required[i] - extend_1[i];
+    }
+    eliminate_0(LANES, 3, H, subtract_2, tau, why.singular, why.total);
+    suspect(&why, code);
+    deliver(3, tau, tau_out);
+}
+
+INLINE void eliminate_1(size_t w, size_t stride, const real *a, const real *b, real *x, real
+    *unsure, real *total)
+{
+    for (size_t k = 0; k < w; ++k) {
+        real a00 = a[(0)*w + k];
+        real a01 = a[(1)*w + k];
+        real a02 = a[(2)*w + k];
+        real b0 = b[0*w + k];
+        real a10 = a[(1*stride + 0)*w + k];
+        real a11 = a[(1*stride + 1)*w + k];
+        real a12 = a[(1*stride + 2)*w + k];
+        real b1 = b[1*w + k];
+        real a20 = a[(2*stride + 0)*w + k];
+        real a21 = a[(2*stride + 1)*w + k];
+        real a22 = a[(2*stride + 2)*w + k];
+        real b2 = b[2*w + k];
+        const real f0 = 1/a00;
+        const real d1 = a00*a11 - a10*a01;
+        const real f1 = a00/d1;
+        const real g10 = a10*f0;
+        a12 -= g10*a02;
+        b1 -= g10*b0;
+        const real g20 = a20*f0;
+        a21 -= g20*a01;
+        a22 -= g20*a02;
+        b2 -= g20*b0;
+        const real g21 = a21*f1;
+        a22 -= g21*a12;
+        b2 -= g21*b1;
+        const real f2 = 1/a22;
+        const real x2 = (b2)*f2;
+        const real x1 = (b1)*f1 - a12*f1*x2;
+        const real x0 = (b0 - a02*x2)*f0 - a01*f0*x1;
+        x[0*w + k] = x0;
+        x[1*w + k] = x1;
+        x[2*w + k] = x2;
+        total[k] += x0 + (x1 + x2);
+        const real most0 = larger(magnitude(g10), larger(magnitude(g20), magnitude(g21)));
+        const real most1 = larger(magnitude(f0), larger(magnitude(f1), magnitude(f2)));
+        unsure[k] += UNLESS(most0 <= R(10)) + UNLESS(most1 <= R(250)) + UNLESS(is_finite(a00 + d1
+            + a22));
+    }
+}
+
+INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
+    const real *wrench, real *A_out, int *code)
+{
+    real wrench_in[3], M[9] = {0}, Z[3] = {0}, H[9] = {0}, times_1[3] = {0}, add_3[3] = {0},
+        subtract_4[3] = {0}, unsure_7[1] = {0}, work[12];
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 3) + total(V, 3) + total(tau, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+        check(3, 1, tau, why.invalid);
+    }
+    wrench = optional(3, wrench, 0, wrench_in, why.invalid);
+    dynamics_run(m, X, V, M, Z, H, &why);
+    product(3, 3, 1, 1, H, tau, times_1);
     const real *const extend_2 = wrench;
-    for (size_t i = 0; i < 3*w; ++i) {
+    for (size_t i = 0; i < 3; ++i) {
         add_3[i] = times_1[i] + extend_2[i];
     }
-    for (size_t i = 0; i < 3*w; ++i) {
+    for (size_t i = 0; i < 3; ++i) {
         subtract_4[i] = add_3[i] - Z[i];
     }
-    set_matrix(3, w, M, work);
-    solve(3, w, subtract_4, work, A, why.singular);
-    check(3, w, A, why.overflow);
-    judge(&why, w, code);
-    deliver(A, 3, w, code, A_out);
+    eliminate_1(1, 3, M, subtract_4, A_out, unsure_7, why.total);
+    if (unsure_7[0] > 0) {
+        set_matrix(3, 1, M, work);
+        solve_apart(3, subtract_4, work, A_out, why.singular);
+        check(3, 1, A_out, why.overflow);
+    }
+    if (!is_finite(why.total[0])) {
+        check(3, 1, A_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(3, A_out);
+    }
 }
 
-INLINE void complete_acceleration_any(const real *A, real *completed_out, int *code)
+INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
+    *tau, const real *wrench, real *A_out, int *code)
+{
+    real X_in[3*LANES], V_in[3*LANES], tau_in[3*LANES], wrench_in[3*LANES], M[9*LANES], Z[3*LANES],
+        H[9*LANES], times_1[3*LANES] = {0}, add_3[3*LANES], subtract_4[3*LANES], A[3*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    V = side_by_side(3, V, V_in, why.total);
+    tau = side_by_side(3, tau, tau_in, why.total);
+    wrench = optional_side_by_side(3, wrench, 0, wrench_in, why.total);
+    dynamics_run_lanes(m, X, V, M, Z, H, &why);
+    product(3, 3, 1, LANES, H, tau, times_1);
+    const real *const extend_2 = wrench;
+    for (size_t i = 0; i < 3*LANES; ++i) {
+        add_3[i] = times_1[i] + extend_2[i];
+    }
+    for (size_t i = 0; i < 3*LANES; ++i) {
+        subtract_4[i] = add_3[i] - Z[i];
+    }
+    eliminate_1(LANES, 3, M, subtract_4, A, why.singular, why.total);
+    suspect(&why, code);
+    deliver(3, A, A_out);
+}
+
+INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
 {
     verdict why;
     start(1, &why);
     check(3, 1, A, why.invalid);
     const real *const completed = A;
     check(3, 1, completed, why.overflow);
-    judge(&why, 1, code);
-    deliver(completed, 3, 1, code, completed_out);
+    judge(&why, code);
+    copy(3, completed, completed_out);
+    if (*code != OK) {
+        refuse(3, completed_out);
+    }
 }
 
-INLINE void leg_reactions_any(const prepared *m, const real *X, const real *V, const real *A,
+INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out, int *code)
 {
     static const size_t places_0[] = {0, 1, 2};
     real wrench_in[3], required[3] = {0}, H[9] = {0}, subtract_2[3] = {0}, solve_3[3] = {0},
-        leg_force[9] = {0}, drive[9] = {0}, forces[9] = {0}, work[12];
+        unsure_5[1] = {0}, leg_force[9] = {0}, drive[9] = {0}, forces[9] = {0}, work[12];
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
-    check(3, 1, V, why.invalid);
-    check(3, 1, A, why.invalid);
-    wrench = optional(3, 1, wrench, 0, wrench_in, why.invalid);
-    required_run(m, 1, X, V, A, required, H, &why);
+    const real total_in = total(X, 3) + total(V, 3) + total(A, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+        check(3, 1, A, why.invalid);
+    }
+    wrench = optional(3, wrench, 0, wrench_in, why.invalid);
+    required_run(m, X, V, A, required, H, &why);
     const real *const extend_1 = wrench;
     for (size_t i = 0; i < 3; ++i) {
         subtract_2[i] = required[i] - extend_1[i];
     }
-    set_matrix(3, 1, H, work);
-    solve_state(3, subtract_2, work, solve_3, why.singular);
-    legs_run(m, 1, X, V, A, leg_force, drive, &why);
+    eliminate_0(1, 3, H, subtract_2, solve_3, unsure_5, why.total);
+    if (unsure_5[0] > 0) {
+        set_matrix(3, 1, H, work);
+        solve_apart(3, subtract_2, work, solve_3, why.singular);
+        check(3, 1, solve_3, why.overflow);
+    }
+    legs_run(m, X, V, A, leg_force, drive, &why);
     for (size_t i = 0; i < 9; ++i) {
         forces[i] = leg_force[i];
     }
     add_forces(3, 3, 1, places_0, solve_3, drive, forces);
     check(9, 1, forces, why.overflow);
-    judge(&why, 1, code);
-    deliver(forces, 9, 1, code, forces_out);
+    judge(&why, code);
+    copy(9, forces, forces_out);
+    if (*code != OK) {
+        refuse(9, forces_out);
+    }
 }
 
-INLINE void energy_any(const prepared *m, const real *X, const real *V, real *kinetic_out, real
+INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out, int *code)
 {
     real M[9] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
-    check(3, 1, V, why.invalid);
-    M_run(m, 1, X, M, &why);
-    potential_run(m, 1, X, potential_of_potential, &why);
+    const real total_in = total(X, 3) + total(V, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+    }
+    M_run(m, X, M, &why);
+    potential_run(m, X, potential_of_potential, &why);
     half_form(3, 1, V, M, kinetic);
     const real *const potential = potential_of_potential;
     check(1, 1, kinetic, why.overflow);
     check(1, 1, potential, why.overflow);
-    judge(&why, 1, code);
-    deliver(kinetic, 1, 1, code, kinetic_out);
-    deliver(potential, 1, 1, code, potential_out);
+    judge(&why, code);
+    copy(1, kinetic, kinetic_out);
+    copy(1, potential, potential_out);
+    if (*code != OK) {
+        refuse(1, kinetic_out);
+        refuse(1, potential_out);
+    }
 }
 
-INLINE void condition_any(const prepared *m, const real *X, real *sigma_out, real *legs_out, int
+INLINE void condition_one(const prepared *m, const real *X, real *sigma_out, real *legs_out, int
     *code)
 {
-    real H[9] = {0}, lengths[2] = {0}, legs[3] = {0}, reach[3] = {0}, sigma[3] = {0};
+    real H[9] = {0}, lengths[2] = {0}, reach[3] = {0}, sigma[3] = {0};
     verdict why;
     start(1, &why);
     check(3, 1, X, why.invalid);
-    condition_run(m, 1, X, H, lengths, legs, reach, &why);
+    condition_run(m, X, H, lengths, legs_out, reach, &why);
     singular_values(3, 3, H, sigma);
+    if (!is_finite(why.total[0])) {
+        check(3, 1, legs_out, why.overflow);
+    }
     check(3, 1, sigma, why.overflow);
-    check(3, 1, legs, why.overflow);
-    judge(&why, 1, code);
-    deliver(sigma, 3, 1, code, sigma_out);
-    deliver(legs, 3, 1, code, legs_out);
+    judge(&why, code);
+    copy(3, sigma, sigma_out);
+    if (*code != OK) {
+        refuse(3, sigma_out);
+        refuse(3, legs_out);
+    }
 }
 
-static void mismatch_any(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
+static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
     static const size_t places_0[] = {2, 5, 8};
     real q[9] = {0}, take_1[3] = {0}, gap[3] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
-    check(3, 1, q_actuated, why.invalid);
-    inverse_kinematics_run(m, 1, X, q, &why);
+    const real total_in = total(X, 3) + total(q_actuated, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, q_actuated, why.invalid);
+    }
+    inverse_kinematics_run(m, X, q, &why);
     take(3, 1, places_0, q, take_1);
     for (size_t i = 0; i < 3; ++i) {
         gap[i] = q_actuated[i] - take_1[i];
     }
     check(3, 1, gap, why.overflow);
-    judge(&why, 1, code);
-    deliver(gap, 3, 1, code, gap_out);
+    judge(&why, code);
+    copy(3, gap, gap_out);
+    if (*code != OK) {
+        refuse(3, gap_out);
+    }
 }
 
-static void slope_any(const prepared *m, const real *X, real *slope_out, int *code)
+static void slope_one(const prepared *m, const real *X, real *slope_out, int *code)
 {
-    real slope[9] = {0};
     verdict why;
     start(1, &why);
     check(3, 1, X, why.invalid);
-    H_run(m, 1, X, slope, &why);
-    check(9, 1, slope, why.overflow);
-    judge(&why, 1, code);
-    deliver(slope, 9, 1, code, slope_out);
+    H_run(m, X, slope_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(9, 1, slope_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(9, slope_out);
+    }
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -3549,12 +3863,12 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
     real trial[3] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    mismatch_any(m, found, q_actuated, gap, &code);
+    mismatch_one(m, found, q_actuated, gap, &code);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        slope_any(m, found, slope, &code);
+        slope_one(m, found, slope, &code);
         if (code != OK) {
             break;
         }
@@ -3568,7 +3882,7 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            mismatch_any(m, trial, q_actuated, next, &tried);
+            mismatch_one(m, trial, q_actuated, next, &tried);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -3586,21 +3900,27 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 }
 
 
-INLINE void forward_kinematics_any(const prepared *m, const real *q_actuated, const real *X0, real
+INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
     *X_out, int *code)
 {
     real X[3] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, q_actuated, why.invalid);
-    check(3, 1, X0, why.invalid);
+    const real total_in = total(q_actuated, 3) + total(X0, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, q_actuated, why.invalid);
+        check(3, 1, X0, why.invalid);
+    }
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(3, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 3, 1, code, X_out);
+    judge(&why, code);
+    copy(3, X, X_out);
+    if (*code != OK) {
+        refuse(3, X_out);
+    }
 }
 
-INLINE void dissipation_any(const real *V, real *dissipation_out, int *code)
+INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 {
     real subtract_1[3] = {0};
     verdict why;
@@ -3611,130 +3931,323 @@ INLINE void dissipation_any(const real *V, real *dissipation_out, int *code)
     }
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
-    judge(&why, 1, code);
-    deliver(dissipation, 1, 1, code, dissipation_out);
+    judge(&why, code);
+    copy(1, dissipation, dissipation_out);
+    if (*code != OK) {
+        refuse(1, dissipation_out);
+    }
 }
 
-INLINE void momentum_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *momentum_out, int *code)
+INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
+    *code)
+{
+    real M[9] = {0}, momentum[3] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 3) + total(V, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+    }
+    M_run(m, X, M, &why);
+    product(3, 3, 1, 1, M, V, momentum);
+    check(3, 1, momentum, why.overflow);
+    judge(&why, code);
+    copy(3, momentum, momentum_out);
+    if (*code != OK) {
+        refuse(3, momentum_out);
+    }
+}
+
+INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
+    int *code)
 {
     real X_in[3*LANES], V_in[3*LANES], M[9*LANES], momentum[3*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    V = side_by_side(3, w, V, V_in, why.invalid);
-    M_run(m, w, X, M, &why);
-    product(3, 3, 1, w, M, V, momentum);
-    check(3, w, momentum, why.overflow);
-    judge(&why, w, code);
-    deliver(momentum, 3, w, code, momentum_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    V = side_by_side(3, V, V_in, why.total);
+    M_run_lanes(m, X, M, &why);
+    product(3, 3, 1, LANES, M, V, momentum);
+    add_up(3, momentum, why.total);
+    suspect(&why, code);
+    deliver(3, momentum, momentum_out);
 }
 
-INLINE void actuator_positions_any(const prepared *m, size_t w, const real *X, real *q_out, int
-    *code)
+INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
+{
+    static const size_t places_0[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+    real q[9] = {0}, margins[9] = {0};
+    verdict why;
+    start(1, &why);
+    check(3, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q, &why);
+    for (size_t i = 0; i < 9; ++i) {
+        margins[i] = q[i];
+    }
+    unlimited(9, 9, 1, places_0, margins, why.overflow);
+    judge(&why, code);
+    copy(9, margins, margins_out);
+    if (*code != OK) {
+        refuse(9, margins_out);
+    }
+}
+
+INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
+{
+    static const size_t places_0[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+    real X_in[3*LANES], q[9*LANES], margins[9*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    for (size_t i = 0; i < 9*LANES; ++i) {
+        margins[i] = q[i];
+    }
+    unlimited(9, 9, LANES, places_0, margins, why.invalid);
+    suspect(&why, code);
+    deliver(9, margins, margins_out);
+}
+
+INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
+{
+    real q[9] = {0}, subtract_1[9] = {0}, within[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(3, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q, &why);
+    for (size_t i = 0; i < 9; ++i) {
+        subtract_1[i] = q[i] - q[i];
+    }
+    not_negative(9, 1, subtract_1, within, why.overflow);
+    check(1, 1, within, why.overflow);
+    judge(&why, code);
+    copy(1, within, within_out);
+    if (*code != OK) {
+        refuse(1, within_out);
+    }
+}
+
+INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
+{
+    real X_in[3*LANES], q[9*LANES], subtract_1[9*LANES], within[1*LANES] = {0};
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    for (size_t i = 0; i < 9*LANES; ++i) {
+        subtract_1[i] = q[i] - q[i];
+    }
+    not_negative(9, LANES, subtract_1, within, why.invalid);
+    add_up(1, within, why.total);
+    suspect(&why, code);
+    deliver(1, within, within_out);
+}
+
+INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
+{
+    static const size_t places_0[] = {2, 5, 8};
+    real q_of_inverse_kinematics[9] = {0}, q[3] = {0};
+    verdict why;
+    start(1, &why);
+    check(3, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
+    take(3, 1, places_0, q_of_inverse_kinematics, q);
+    check(3, 1, q, why.overflow);
+    judge(&why, code);
+    copy(3, q, q_out);
+    if (*code != OK) {
+        refuse(3, q_out);
+    }
+}
+
+INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     static const size_t places_0[] = {2, 5, 8};
     real X_in[3*LANES], q_of_inverse_kinematics[9*LANES], q[3*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    inverse_kinematics_run(m, w, X, q_of_inverse_kinematics, &why);
-    take(3, 1*w, places_0, q_of_inverse_kinematics, q);
-    check(3, w, q, why.overflow);
-    judge(&why, w, code);
-    deliver(q, 3, w, code, q_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
+    take(3, 1*LANES, places_0, q_of_inverse_kinematics, q);
+    add_up(3, q, why.total);
+    suspect(&why, code);
+    deliver(3, q, q_out);
 }
 
-INLINE void actuator_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *qd_out, int *code)
+INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
+{
+    static const size_t places_0[] = {2, 5, 8};
+    real qd_of_joint_rates[9] = {0}, qd[3] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 3) + total(V, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+    }
+    joint_rates_run(m, X, V, qd_of_joint_rates, &why);
+    take(3, 1, places_0, qd_of_joint_rates, qd);
+    check(3, 1, qd, why.overflow);
+    judge(&why, code);
+    copy(3, qd, qd_out);
+    if (*code != OK) {
+        refuse(3, qd_out);
+    }
+}
+
+INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
+    int *code)
 {
     static const size_t places_0[] = {2, 5, 8};
     real X_in[3*LANES], V_in[3*LANES], qd_of_joint_rates[9*LANES], qd[3*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    V = side_by_side(3, w, V, V_in, why.invalid);
-    joint_rates_run(m, w, X, V, qd_of_joint_rates, &why);
-    take(3, 1*w, places_0, qd_of_joint_rates, qd);
-    check(3, w, qd, why.overflow);
-    judge(&why, w, code);
-    deliver(qd, 3, w, code, qd_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    V = side_by_side(3, V, V_in, why.total);
+    joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
+    take(3, 1*LANES, places_0, qd_of_joint_rates, qd);
+    add_up(3, qd, why.total);
+    suspect(&why, code);
+    deliver(3, qd, qd_out);
 }
 
-INLINE void actuator_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd_out, int *code)
+INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
+{
+    static const size_t places_0[] = {2, 5, 8};
+    real qdd_of_joint_accelerations[9] = {0}, qdd[3] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 3) + total(V, 3) + total(A, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+        check(3, 1, A, why.invalid);
+    }
+    joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
+    take(3, 1, places_0, qdd_of_joint_accelerations, qdd);
+    check(3, 1, qdd, why.overflow);
+    judge(&why, code);
+    copy(3, qdd, qdd_out);
+    if (*code != OK) {
+        refuse(3, qdd_out);
+    }
+}
+
+INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out, int *code)
 {
     static const size_t places_0[] = {2, 5, 8};
     real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], qdd_of_joint_accelerations[9*LANES],
         qdd[3*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    V = side_by_side(3, w, V, V_in, why.invalid);
-    A = side_by_side(3, w, A, A_in, why.invalid);
-    joint_accelerations_run(m, w, X, V, A, qdd_of_joint_accelerations, &why);
-    take(3, 1*w, places_0, qdd_of_joint_accelerations, qdd);
-    check(3, w, qdd, why.overflow);
-    judge(&why, w, code);
-    deliver(qdd, 3, w, code, qdd_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    V = side_by_side(3, V, V_in, why.total);
+    A = side_by_side(3, A, A_in, why.total);
+    joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
+    take(3, 1*LANES, places_0, qdd_of_joint_accelerations, qdd);
+    add_up(3, qdd, why.total);
+    suspect(&why, code);
+    deliver(3, qdd, qdd_out);
 }
 
-INLINE void power_any(const prepared *m, size_t w, const real *X, const real *V, const real *tau,
-    real *power_out, int *code)
+INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out, int *code)
+{
+    real H[9] = {0}, times_1[3] = {0}, power[1] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 3) + total(V, 3) + total(tau, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, V, why.invalid);
+        check(3, 1, tau, why.invalid);
+    }
+    H_run(m, X, H, &why);
+    product(3, 3, 1, 1, H, tau, times_1);
+    inner(3, 1, times_1, V, power);
+    check(1, 1, power, why.overflow);
+    judge(&why, code);
+    copy(1, power, power_out);
+    if (*code != OK) {
+        refuse(1, power_out);
+    }
+}
+
+INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out, int *code)
 {
     real X_in[3*LANES], V_in[3*LANES], tau_in[3*LANES], H[9*LANES], times_1[3*LANES] = {0},
         power[1*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(3, w, X, X_in, why.invalid);
-    V = side_by_side(3, w, V, V_in, why.invalid);
-    tau = side_by_side(3, w, tau, tau_in, why.invalid);
-    H_run(m, w, X, H, &why);
-    product(3, 3, 1, w, H, tau, times_1);
-    inner(3, w, times_1, V, power);
-    check(1, w, power, why.overflow);
-    judge(&why, w, code);
-    deliver(power, 1, w, code, power_out);
+    start(LANES, &why);
+    X = side_by_side(3, X, X_in, why.total);
+    V = side_by_side(3, V, V_in, why.total);
+    tau = side_by_side(3, tau, tau_in, why.total);
+    H_run_lanes(m, X, H, &why);
+    product(3, 3, 1, LANES, H, tau, times_1);
+    inner(3, LANES, times_1, V, power);
+    add_up(1, power, why.total);
+    suspect(&why, code);
+    deliver(1, power, power_out);
 }
 
-INLINE void retract_any(const real *X, const real *step, real *X_moved_out, int *code)
+INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
 {
     real X_moved[3] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
-    check(3, 1, step, why.invalid);
+    const real total_in = total(X, 3) + total(step, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X, why.invalid);
+        check(3, 1, step, why.invalid);
+    }
     for (size_t i = 0; i < 3; ++i) {
         X_moved[i] = X[i] + step[i];
     }
     check(3, 1, X_moved, why.overflow);
-    judge(&why, 1, code);
-    deliver(X_moved, 3, 1, code, X_moved_out);
+    judge(&why, code);
+    copy(3, X_moved, X_moved_out);
+    if (*code != OK) {
+        refuse(3, X_moved_out);
+    }
 }
 
-INLINE void difference_any(const real *X0, const real *X1, real *step_out, int *code)
+INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
 {
     real step[3] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X0, why.invalid);
-    check(3, 1, X1, why.invalid);
+    const real total_in = total(X0, 3) + total(X1, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, X0, why.invalid);
+        check(3, 1, X1, why.invalid);
+    }
     for (size_t i = 0; i < 3; ++i) {
         step[i] = X1[i] - X0[i];
     }
     check(3, 1, step, why.overflow);
-    judge(&why, 1, code);
-    deliver(step, 3, 1, code, step_out);
+    judge(&why, code);
+    copy(3, step, step_out);
+    if (*code != OK) {
+        refuse(3, step_out);
+    }
 }
 
-INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real *X_out, int *code)
+INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
 {
     real subtract_1[3] = {0}, scale_2[3] = {0}, X[3] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X0, why.invalid);
-    check(3, 1, X1, why.invalid);
-    check(1, 1, s, why.invalid);
+    const real total_in = total(X0, 3) + total(X1, 3) + total(s, 1);
+    if (!is_finite(total_in)) {
+        check(3, 1, X0, why.invalid);
+        check(3, 1, X1, why.invalid);
+        check(1, 1, s, why.invalid);
+    }
     for (size_t i = 0; i < 3; ++i) {
         subtract_1[i] = X1[i] - X0[i];
     }
@@ -3745,8 +4258,11 @@ INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real 
         X[i] = X0[i] + scale_2[i];
     }
     check(3, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 3, 1, code, X_out);
+    judge(&why, code);
+    copy(3, X, X_out);
+    if (*code != OK) {
+        refuse(3, X_out);
+    }
 }
 
 /* ---- one state, and batches ---- */
@@ -3754,7 +4270,7 @@ INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real 
 int tripod_3ups_M(const tripod_3ups_model *model, const tripod_3ups_real *X, tripod_3ups_real *M)
 {
     int code;
-    M_any(model, 1, X, M, &code);
+    M_one(model, X, M, &code);
     return code;
 }
 
@@ -3762,9 +4278,9 @@ size_t tripod_3ups_M_batch(const tripod_3ups_model *model, size_t n, const tripo
     tripod_3ups_real *M, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        M_any(model, LANES, X + 3*i, M + 9*i, codes);
+        M_lanes(model, X + 3*i, M + 9*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3ups_M(model, X + 3*(i + k), M + 9*(i + k));
@@ -3783,7 +4299,7 @@ int tripod_3ups_Z(const tripod_3ups_model *model, const tripod_3ups_real *X, con
     tripod_3ups_real *V, tripod_3ups_real *Z)
 {
     int code;
-    Z_any(model, 1, X, V, Z, &code);
+    Z_one(model, X, V, Z, &code);
     return code;
 }
 
@@ -3791,9 +4307,9 @@ size_t tripod_3ups_Z_batch(const tripod_3ups_model *model, size_t n, const tripo
     const tripod_3ups_real *V, tripod_3ups_real *Z, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        Z_any(model, LANES, X + 3*i, V + 3*i, Z + 3*i, codes);
+        Z_lanes(model, X + 3*i, V + 3*i, Z + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3ups_Z(model, X + 3*(i + k), V + 3*(i + k), Z + 3*(i + k));
@@ -3811,7 +4327,7 @@ size_t tripod_3ups_Z_batch(const tripod_3ups_model *model, size_t n, const tripo
 int tripod_3ups_H(const tripod_3ups_model *model, const tripod_3ups_real *X, tripod_3ups_real *H)
 {
     int code;
-    H_any(model, 1, X, H, &code);
+    H_one(model, X, H, &code);
     return code;
 }
 
@@ -3819,9 +4335,9 @@ size_t tripod_3ups_H_batch(const tripod_3ups_model *model, size_t n, const tripo
     tripod_3ups_real *H, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        H_any(model, LANES, X + 3*i, H + 9*i, codes);
+        H_lanes(model, X + 3*i, H + 9*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3ups_H(model, X + 3*(i + k), H + 9*(i + k));
@@ -3840,7 +4356,7 @@ int tripod_3ups_inverse_kinematics(const tripod_3ups_model *model, const tripod_
     tripod_3ups_real *q)
 {
     int code;
-    inverse_kinematics_any(model, 1, X, q, &code);
+    inverse_kinematics_one(model, X, q, &code);
     return code;
 }
 
@@ -3848,9 +4364,9 @@ size_t tripod_3ups_inverse_kinematics_batch(const tripod_3ups_model *model, size
     tripod_3ups_real *X, tripod_3ups_real *q, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_kinematics_any(model, LANES, X + 3*i, q + 9*i, codes);
+        inverse_kinematics_lanes(model, X + 3*i, q + 9*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3ups_inverse_kinematics(model, X + 3*(i + k), q + 9*(i + k));
@@ -3869,7 +4385,7 @@ int tripod_3ups_joint_rates(const tripod_3ups_model *model, const tripod_3ups_re
     tripod_3ups_real *V, tripod_3ups_real *rates)
 {
     int code;
-    joint_rates_any(model, 1, X, V, rates, &code);
+    joint_rates_one(model, X, V, rates, &code);
     return code;
 }
 
@@ -3877,9 +4393,9 @@ size_t tripod_3ups_joint_rates_batch(const tripod_3ups_model *model, size_t n, c
     tripod_3ups_real *X, const tripod_3ups_real *V, tripod_3ups_real *rates, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_rates_any(model, LANES, X + 3*i, V + 3*i, rates + 9*i, codes);
+        joint_rates_lanes(model, X + 3*i, V + 3*i, rates + 9*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3ups_joint_rates(model, X + 3*(i + k), V + 3*(i + k), rates + 9*(i + k));
@@ -3898,7 +4414,7 @@ int tripod_3ups_joint_accelerations(const tripod_3ups_model *model, const tripod
     const tripod_3ups_real *V, const tripod_3ups_real *A, tripod_3ups_real *accelerations)
 {
     int code;
-    joint_accelerations_any(model, 1, X, V, A, accelerations, &code);
+    joint_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
@@ -3907,9 +4423,9 @@ size_t tripod_3ups_joint_accelerations_batch(const tripod_3ups_model *model, siz
     *accelerations, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_accelerations_any(model, LANES, X + 3*i, V + 3*i, A + 3*i, accelerations + 9*i, codes);
+        joint_accelerations_lanes(model, X + 3*i, V + 3*i, A + 3*i, accelerations + 9*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3ups_joint_accelerations(model, X + 3*(i + k), V + 3*(i + k), A + 3*(i + k),
@@ -3930,7 +4446,7 @@ int tripod_3ups_dynamics(const tripod_3ups_model *model, const tripod_3ups_real 
     tripod_3ups_real *V, tripod_3ups_real *M, tripod_3ups_real *Z, tripod_3ups_real *H)
 {
     int code;
-    dynamics_any(model, 1, X, V, M, Z, H, &code);
+    dynamics_one(model, X, V, M, Z, H, &code);
     return code;
 }
 
@@ -3939,9 +4455,9 @@ size_t tripod_3ups_dynamics_batch(const tripod_3ups_model *model, size_t n, cons
     int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        dynamics_any(model, LANES, X + 3*i, V + 3*i, M + 9*i, Z + 3*i, H + 9*i, codes);
+        dynamics_lanes(model, X + 3*i, V + 3*i, M + 9*i, Z + 3*i, H + 9*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3ups_dynamics(model, X + 3*(i + k), V + 3*(i + k), M + 9*(i + k), Z + 3*(i + k),
@@ -3962,7 +4478,7 @@ int tripod_3ups_inverse_dynamics(const tripod_3ups_model *model, const tripod_3u
     tripod_3ups_real *tau)
 {
     int code;
-    inverse_dynamics_any(model, 1, X, V, A, wrench, tau, &code);
+    inverse_dynamics_one(model, X, V, A, wrench, tau, &code);
     return code;
 }
 
@@ -3971,10 +4487,10 @@ size_t tripod_3ups_inverse_dynamics_batch(const tripod_3ups_model *model, size_t
     tripod_3ups_real *wrench, tripod_3ups_real *tau, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_dynamics_any(model, LANES, X + 3*i, V + 3*i, A + 3*i, wrench ? wrench + 3*i : NULL, tau +
-            3*i, codes);
+        inverse_dynamics_lanes(model, X + 3*i, V + 3*i, A + 3*i, wrench ? wrench + 3*i : NULL, tau + 3*i,
+            codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3ups_inverse_dynamics(model, X + 3*(i + k), V + 3*(i + k), A + 3*(i + k), wrench
@@ -3996,7 +4512,7 @@ int tripod_3ups_forward_dynamics(const tripod_3ups_model *model, const tripod_3u
     tripod_3ups_real *A)
 {
     int code;
-    forward_dynamics_any(model, 1, X, V, tau, wrench, A, &code);
+    forward_dynamics_one(model, X, V, tau, wrench, A, &code);
     return code;
 }
 
@@ -4005,10 +4521,10 @@ size_t tripod_3ups_forward_dynamics_batch(const tripod_3ups_model *model, size_t
     tripod_3ups_real *wrench, tripod_3ups_real *A, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        forward_dynamics_any(model, LANES, X + 3*i, V + 3*i, tau + 3*i, wrench ? wrench + 3*i : NULL, A +
-            3*i, codes);
+        forward_dynamics_lanes(model, X + 3*i, V + 3*i, tau + 3*i, wrench ? wrench + 3*i : NULL, A + 3*i,
+            codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3ups_forward_dynamics(model, X + 3*(i + k), V + 3*(i + k), tau + 3*(i + k),
@@ -4034,7 +4550,7 @@ int tripod_3ups_complete_acceleration(const tripod_3ups_model *model, const trip
     (void)X;
     (void)V;
     (void)wrench;
-    complete_acceleration_any(A, completed, &code);
+    complete_acceleration_one(A, completed, &code);
     return code;
 }
 
@@ -4056,7 +4572,7 @@ int tripod_3ups_leg_reactions(const tripod_3ups_model *model, const tripod_3ups_
     tripod_3ups_real *forces)
 {
     int code;
-    leg_reactions_any(model, X, V, A, wrench, forces, &code);
+    leg_reactions_one(model, X, V, A, wrench, forces, &code);
     return code;
 }
 
@@ -4077,7 +4593,7 @@ int tripod_3ups_energy(const tripod_3ups_model *model, const tripod_3ups_real *X
     tripod_3ups_real *V, tripod_3ups_real *kinetic, tripod_3ups_real *potential)
 {
     int code;
-    energy_any(model, X, V, kinetic, potential, &code);
+    energy_one(model, X, V, kinetic, potential, &code);
     return code;
 }
 
@@ -4097,7 +4613,7 @@ int tripod_3ups_condition(const tripod_3ups_model *model, const tripod_3ups_real
     tripod_3ups_real *sigma, tripod_3ups_real *legs)
 {
     int code;
-    condition_any(model, X, sigma, legs, &code);
+    condition_one(model, X, sigma, legs, &code);
     return code;
 }
 
@@ -4116,7 +4632,7 @@ int tripod_3ups_forward_kinematics(const tripod_3ups_model *model, const tripod_
     *q_actuated, const tripod_3ups_real *X0, tripod_3ups_real *X)
 {
     int code;
-    forward_kinematics_any(model, q_actuated, X0, X, &code);
+    forward_kinematics_one(model, q_actuated, X0, X, &code);
     return code;
 }
 
@@ -4137,7 +4653,7 @@ int tripod_3ups_dissipation(const tripod_3ups_model *model, const tripod_3ups_re
     int code;
     (void)model;
     (void)X;
-    dissipation_any(V, dissipation, &code);
+    dissipation_one(V, dissipation, &code);
     return code;
 }
 
@@ -4156,7 +4672,7 @@ int tripod_3ups_momentum(const tripod_3ups_model *model, const tripod_3ups_real 
     tripod_3ups_real *V, tripod_3ups_real *momentum)
 {
     int code;
-    momentum_any(model, 1, X, V, momentum, &code);
+    momentum_one(model, X, V, momentum, &code);
     return code;
 }
 
@@ -4164,9 +4680,9 @@ size_t tripod_3ups_momentum_batch(const tripod_3ups_model *model, size_t n, cons
     *X, const tripod_3ups_real *V, tripod_3ups_real *momentum, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        momentum_any(model, LANES, X + 3*i, V + 3*i, momentum + 3*i, codes);
+        momentum_lanes(model, X + 3*i, V + 3*i, momentum + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3ups_momentum(model, X + 3*(i + k), V + 3*(i + k), momentum + 3*(i + k));
@@ -4181,11 +4697,69 @@ size_t tripod_3ups_momentum_batch(const tripod_3ups_model *model, size_t n, cons
     return failed;
 }
 
+int tripod_3ups_joint_margins(const tripod_3ups_model *model, const tripod_3ups_real *X,
+    tripod_3ups_real *margins)
+{
+    int code;
+    joint_margins_one(model, X, margins, &code);
+    return code;
+}
+
+size_t tripod_3ups_joint_margins_batch(const tripod_3ups_model *model, size_t n, const
+    tripod_3ups_real *X, tripod_3ups_real *margins, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        joint_margins_lanes(model, X + 3*i, margins + 9*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = tripod_3ups_joint_margins(model, X + 3*(i + k), margins + 9*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = tripod_3ups_joint_margins(model, X + 3*i, margins + 9*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int tripod_3ups_within_limits(const tripod_3ups_model *model, const tripod_3ups_real *X,
+    tripod_3ups_real *within)
+{
+    int code;
+    within_limits_one(model, X, within, &code);
+    return code;
+}
+
+size_t tripod_3ups_within_limits_batch(const tripod_3ups_model *model, size_t n, const
+    tripod_3ups_real *X, tripod_3ups_real *within, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        within_limits_lanes(model, X + 3*i, within + 1*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = tripod_3ups_within_limits(model, X + 3*(i + k), within + 1*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = tripod_3ups_within_limits(model, X + 3*i, within + 1*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
 int tripod_3ups_actuator_positions(const tripod_3ups_model *model, const tripod_3ups_real *X,
     tripod_3ups_real *q)
 {
     int code;
-    actuator_positions_any(model, 1, X, q, &code);
+    actuator_positions_one(model, X, q, &code);
     return code;
 }
 
@@ -4193,9 +4767,9 @@ size_t tripod_3ups_actuator_positions_batch(const tripod_3ups_model *model, size
     tripod_3ups_real *X, tripod_3ups_real *q, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_positions_any(model, LANES, X + 3*i, q + 3*i, codes);
+        actuator_positions_lanes(model, X + 3*i, q + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3ups_actuator_positions(model, X + 3*(i + k), q + 3*(i + k));
@@ -4214,7 +4788,7 @@ int tripod_3ups_actuator_rates(const tripod_3ups_model *model, const tripod_3ups
     tripod_3ups_real *V, tripod_3ups_real *rates)
 {
     int code;
-    actuator_rates_any(model, 1, X, V, rates, &code);
+    actuator_rates_one(model, X, V, rates, &code);
     return code;
 }
 
@@ -4222,9 +4796,9 @@ size_t tripod_3ups_actuator_rates_batch(const tripod_3ups_model *model, size_t n
     tripod_3ups_real *X, const tripod_3ups_real *V, tripod_3ups_real *rates, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_rates_any(model, LANES, X + 3*i, V + 3*i, rates + 3*i, codes);
+        actuator_rates_lanes(model, X + 3*i, V + 3*i, rates + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3ups_actuator_rates(model, X + 3*(i + k), V + 3*(i + k), rates + 3*(i + k));
@@ -4243,7 +4817,7 @@ int tripod_3ups_actuator_accelerations(const tripod_3ups_model *model, const tri
     const tripod_3ups_real *V, const tripod_3ups_real *A, tripod_3ups_real *accelerations)
 {
     int code;
-    actuator_accelerations_any(model, 1, X, V, A, accelerations, &code);
+    actuator_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
@@ -4252,9 +4826,9 @@ size_t tripod_3ups_actuator_accelerations_batch(const tripod_3ups_model *model, 
     *accelerations, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_accelerations_any(model, LANES, X + 3*i, V + 3*i, A + 3*i, accelerations + 3*i, codes);
+        actuator_accelerations_lanes(model, X + 3*i, V + 3*i, A + 3*i, accelerations + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3ups_actuator_accelerations(model, X + 3*(i + k), V + 3*(i + k), A + 3*(i + k),
@@ -4275,7 +4849,7 @@ int tripod_3ups_power(const tripod_3ups_model *model, const tripod_3ups_real *X,
     tripod_3ups_real *V, const tripod_3ups_real *tau, tripod_3ups_real *power)
 {
     int code;
-    power_any(model, 1, X, V, tau, power, &code);
+    power_one(model, X, V, tau, power, &code);
     return code;
 }
 
@@ -4284,9 +4858,9 @@ size_t tripod_3ups_power_batch(const tripod_3ups_model *model, size_t n, const t
     *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        power_any(model, LANES, X + 3*i, V + 3*i, tau + 3*i, power + 1*i, codes);
+        power_lanes(model, X + 3*i, V + 3*i, tau + 3*i, power + 1*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3ups_power(model, X + 3*(i + k), V + 3*(i + k), tau + 3*(i + k), power + 1*(i +
@@ -4306,7 +4880,7 @@ int tripod_3ups_retract(const tripod_3ups_real *X, const tripod_3ups_real *step,
     *X_moved)
 {
     int code;
-    retract_any(X, step, X_moved, &code);
+    retract_one(X, step, X_moved, &code);
     return code;
 }
 
@@ -4325,7 +4899,7 @@ int tripod_3ups_difference(const tripod_3ups_real *X0, const tripod_3ups_real *X
     tripod_3ups_real *step)
 {
     int code;
-    difference_any(X0, X1, step, &code);
+    difference_one(X0, X1, step, &code);
     return code;
 }
 
@@ -4344,7 +4918,7 @@ int tripod_3ups_interpolate(const tripod_3ups_real *X0, const tripod_3ups_real *
     tripod_3ups_real *s, tripod_3ups_real *X)
 {
     int code;
-    interpolate_any(X0, X1, s, X, &code);
+    interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 

@@ -48,6 +48,7 @@ typedef TRIPOD_3UPS_REAL tripod_3ups_real;
 #define TRIPOD_3UPS_NC 0
 #define TRIPOD_3UPS_NW 3
 #define TRIPOD_3UPS_NJ 9
+#define TRIPOD_3UPS_OVERCONSTRAINED 0
 
 enum {
     TRIPOD_3UPS_OK = 0,
@@ -90,18 +91,20 @@ typedef struct {
 /* What depends on the parameters alone; set by tripod_3ups_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
+    /* 3 legs of type ups; copies of the first fill up */
+    tripod_3ups_real ups_J_group_2_xx[4], ups_J_group_2_xy[4], ups_J_group_2_xz[4],
+            ups_J_group_2_yy[4], ups_J_group_2_yz[4], ups_J_group_2_zz[4], ups_Sigma_2_xx[4],
+            ups_Sigma_2_yy[4], ups_Sigma_2_zz[4], ups_b_r0_x[4], ups_b_r0_y[4], ups_b_r0_z[4],
+            ups_base_frame_xx[4], ups_base_frame_xy[4], ups_base_frame_xz[4], ups_base_frame_yx[4],
+            ups_base_frame_yy[4], ups_base_frame_yz[4], ups_base_frame_zx[4], ups_base_frame_zy[4],
+            ups_base_frame_zz[4], ups_base_point_x[4], ups_base_point_y[4], ups_base_point_z[4],
+            ups_branch_1[4], ups_branch_2[4], ups_g_r0_x[4], ups_g_r0_y[4], ups_g_r0_z[4],
+            ups_h_2_x[4], ups_h_2_y[4], ups_h_2_z[4], ups_h_3_x[4], ups_h_3_y[4], ups_h_3_z[4],
+            ups_h_group_2_x[4], ups_h_group_2_y[4], ups_h_group_2_z[4], ups_link2_mass[4],
+            ups_link3_mass[4], ups_platform_point_x[4], ups_platform_point_y[4],
+            ups_platform_point_z[4];
     tripod_3ups_real Z_p_x, Z_p_y, Z_p_z, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
             h_star_x, h_star_y, h_star_z, legs_size, m_star, spread_t;
-    /* legs of type ups */
-    tripod_3ups_real J_group_2_xx[3], J_group_2_xy[3], J_group_2_xz[3], J_group_2_yy[3],
-            J_group_2_yz[3], J_group_2_zz[3], Sigma_2_xx[3], Sigma_2_yy[3], Sigma_2_zz[3], b_r0_x[3],
-            b_r0_y[3], b_r0_z[3], branch_1[3], branch_2[3], g_r0_x[3], g_r0_y[3], g_r0_z[3], h_2_x[3],
-            h_2_y[3], h_2_z[3], h_3_x[3], h_3_y[3], h_3_z[3], h_group_2_x[3], h_group_2_y[3],
-            h_group_2_z[3], ups_base_frame_xx[3], ups_base_frame_xy[3], ups_base_frame_xz[3],
-            ups_base_frame_yx[3], ups_base_frame_yy[3], ups_base_frame_yz[3], ups_base_frame_zx[3],
-            ups_base_frame_zy[3], ups_base_frame_zz[3], ups_base_point_x[3], ups_base_point_y[3],
-            ups_base_point_z[3], ups_link2_mass[3], ups_link3_mass[3], ups_platform_point_x[3],
-            ups_platform_point_y[3], ups_platform_point_z[3];
 } tripod_3ups_model;
 
 extern const tripod_3ups_params tripod_3ups_default_params;
@@ -245,6 +248,20 @@ int tripod_3ups_momentum(const tripod_3ups_model *model, const tripod_3ups_real 
     tripod_3ups_real *V, tripod_3ups_real *momentum);
 size_t tripod_3ups_momentum_batch(const tripod_3ups_model *model, size_t n, const tripod_3ups_real
     *X, const tripod_3ups_real *V, tripod_3ups_real *momentum, int *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 54 mul, 42 add, 6 div, 6 sqrt, 6 trig. In: X (NQ). Out: margins (NJ). */
+int tripod_3ups_joint_margins(const tripod_3ups_model *model, const tripod_3ups_real *X,
+    tripod_3ups_real *margins);
+size_t tripod_3ups_joint_margins_batch(const tripod_3ups_model *model, size_t n, const
+    tripod_3ups_real *X, tripod_3ups_real *margins, int *status);
+
+/* Whether all joints are within their limits of displacement. 54 mul, 42 add, 6 div, 6 sqrt, 6
+   trig. In: X (NQ). Out: within (1). */
+int tripod_3ups_within_limits(const tripod_3ups_model *model, const tripod_3ups_real *X,
+    tripod_3ups_real *within);
+size_t tripod_3ups_within_limits_batch(const tripod_3ups_model *model, size_t n, const
+    tripod_3ups_real *X, tripod_3ups_real *within, int *status);
 
 /* Displacements of the actuated joints, in the order of tau. 54 mul, 42 add, 6 div, 6 sqrt, 6
    trig. In: X (NQ). Out: q (NU). */

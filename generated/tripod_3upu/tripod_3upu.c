@@ -26,7 +26,10 @@ enum {
 
 #define R(x) ((real)(x))
 #define UNLESS(condition) ((condition) ? R(0) : R(1))  /* flag of what must hold */
-#define LANES 8  /* states that a batch runs side by side */
+#ifndef TRIPOD_3UPU_LANES
+#define TRIPOD_3UPU_LANES 8  /* 1 where there are no vectors: less memory, shorter code */
+#endif
+#define LANES ((size_t)TRIPOD_3UPU_LANES)  /* states that a batch runs side by side */
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
@@ -36,6 +39,20 @@ enum {
 #define INLINE static inline
 #define APART static
 #endif
+
+/* Bytes of a vector. */
+#if defined(__AVX__)
+#define VECTOR 32
+#elif defined(__SSE2__) || defined(__ARM_NEON)
+#define VECTOR 16
+#else
+#define VECTOR 1
+#endif
+/* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
+#define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
+#define LEGS(n) \
+    ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
+        : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
@@ -104,63 +121,122 @@ INLINE int is_finite(real x)
     return x - x == 0;
 }
 
-/* Why states are impossible, by state: more than 0 where a cause holds. */
+/* Why states are impossible, by state: more than 0 where a cause holds.  total: the sum of all
+   results, and side by side of all inputs, which is finite only where they are. */
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
+    real total[LANES];
 } verdict;
 
 INLINE void start(size_t w, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
+        t->total[k] = 0;
     }
 }
 
-/* x - x is 0 for every number and NaN for the rest; sums side by side add up fast. */
+/* x - x is 0 for every number and NaN for the rest. */
 INLINE int all_finite(const real *x, size_t n)
 {
+    real sum = 0;
+    for (size_t i = 0; i < n; ++i) {
+        sum += x[i] - x[i];
+    }
+    return sum == 0;
+}
+
+/* Whether all are finite: then so is their sum, but for numbers so large that they need a closer
+   look.  Many add up fast as sums side by side. */
+INLINE int sum_is_finite(const real *x, size_t n)
+{
+    if (n < 2*LANES) {
+        return is_finite(total(x, n));
+    }
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
         for (size_t k = 0; k < LANES; ++k) {
-            sum[k] += x[i + k] - x[i + k];
+            sum[k] += x[i + k];
         }
     }
     for (size_t i = most; i < n; ++i) {
-        sum[0] += x[i] - x[i];
+        sum[i - most] += x[i];
     }
-    return total(sum, LANES) == 0;
+    return is_finite(total(sum, LANES));
 }
 
 /* Flag the states with entries that are not finite; the states stand side by side. */
 INLINE void check(size_t size, size_t w, const real *x, real *flags)
 {
-    if (!all_finite(x, size*w)) {
+    if (!sum_is_finite(x, size*w)) {
         for (size_t i = 0; i < size*w; ++i) {
             flags[i%w] += UNLESS(is_finite(x[i]));
         }
     }
 }
 
-/* Input, given state by state, with its states side by side: entry e of state k at e*w + k. */
-INLINE const real *side_by_side(size_t size, size_t w, const real *x, real *lanes, real *flags)
+/* Add up the entries of every state. */
+INLINE void add_up(size_t size, const real *x, real *total)
 {
-    for (size_t e = 0; e < size && w > 1; ++e) {
-        for (size_t k = 0; k < w; ++k) {
-            lanes[e*w + k] = x[size*k + e];
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            total[k] += x[e*LANES + k];
         }
     }
-    check(size, w, w > 1 ? lanes : x, flags);
-    return w > 1 ? lanes : x;
 }
 
-/* The same for input that may be NULL: then all its entries are `none`. */
-INLINE const real *optional(size_t size, size_t w, const real *x, real none, real *lanes, real *flags)
+/* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
+INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
 {
-    for (size_t e = 0; e < size*w && !x; ++e) {
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            lanes[e*LANES + k] = x[size*k + e];
+        }
+    }
+    add_up(size, lanes, total);
+    return lanes;
+}
+
+/* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
+INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+{
+    for (size_t e = 0; e < size && !x; ++e) {
+        own[e] = none;
+    }
+    if (x) {
+        check(size, 1, x, flags);
+    }
+    return x ? x : own;
+}
+
+INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
+    real *total)
+{
+    for (size_t e = 0; e < size*LANES && !x; ++e) {
         lanes[e] = none;
     }
-    return x ? side_by_side(size, w, x, lanes, flags) : lanes;
+    return x ? side_by_side(size, x, lanes, total) : lanes;
+}
+
+/* Motion of the base, or NULL: at rest, its axes those of the world. */
+INLINE const real *motion_of_base(const real *x, real *own, real *flags)
+{
+    for (size_t e = 0; e < 18 && !x; ++e) {
+        own[e] = R(e < 9 && e%4 == 0);
+    }
+    if (x) {
+        check(18, 1, x, flags);
+    }
+    return x ? x : own;
+}
+
+INLINE const real *motion_of_base_side_by_side(const real *x, real *lanes, real *total)
+{
+    for (size_t i = 0; i < 18*LANES && !x; ++i) {
+        lanes[i] = R(i/LANES < 9 && i/LANES%4 == 0);
+    }
+    return x ? side_by_side(18, x, lanes, total) : lanes;
 }
 
 /* Flag the states of an input, NULL or given state by state, with entries that are not positive. */
@@ -171,14 +247,25 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE void judge(const verdict *t, size_t w, int *code)
+INLINE void judge(const verdict *t, int *code)
 {
-    for (size_t k = 0; k < w; ++k) {
-        code[k] = t->invalid[k] > 0 ? INVALID
-            : t->diverged[k] > 0 ? NOT_CONVERGED
-            : t->unreachable[k] > 0 ? UNREACHABLE
-            : t->singular[k] > 0 ? SINGULAR
-            : t->overflow[k] > 0 ? INVALID : OK;
+    *code = t->invalid[0] > 0 ? INVALID
+        : t->diverged[0] > 0 ? NOT_CONVERGED
+        : t->unreachable[0] > 0 ? UNREACHABLE
+        : t->singular[0] > 0 ? SINGULAR
+        : t->overflow[0] > 0 ? INVALID : OK;
+}
+
+/* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
+INLINE void suspect(const verdict *t, int *code)
+{
+    real flags[LANES];
+    for (size_t k = 0; k < LANES; ++k) {
+        flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
+            + (t->total[k] - t->total[k]);
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        code[k] = flags[k] == 0 ? OK : INVALID;
     }
 }
 
@@ -199,17 +286,19 @@ INLINE void refuse(size_t size, real *out)
     }
 }
 
-/* Outputs state by state; NaN where a state is impossible. */
-INLINE void deliver(const real *x, size_t size, size_t w, const int *code, real *out)
+/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < w; ++k) {
-            out[size*k + e] = x[e*w + k];
-        }
+        out[e] = x[e];
     }
-    for (size_t k = 0; k < w; ++k) {
-        if (code[k] != OK) {
-            refuse(size, out + size*k);
+}
+
+INLINE void deliver(size_t size, const real *x, real *out)
+{
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
+            out[size*k + e] = x[e*LANES + k];
         }
     }
 }
@@ -413,11 +502,11 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
     const real platform_inertia_yy = params->platform_inertia[1][1];
     const real platform_inertia_yz = params->platform_inertia[1][2];
     const real platform_inertia_zz = params->platform_inertia[2][2];
-    /* (L2) first moment about the platform origin */
+    /* (h_star) first moment about the platform origin */
     const real h_star_x = platform_centre_of_mass_x*platform_mass;
     const real h_star_y = platform_centre_of_mass_y*platform_mass;
     const real h_star_z = platform_centre_of_mass_z*platform_mass;
-    /* (L3) inertia tensor about the platform origin */
+    /* (J_star) inertia tensor about the platform origin */
     const real J_star_t = platform_centre_of_mass_x*platform_centre_of_mass_x;
     const real J_star_t_2 = platform_centre_of_mass_y*platform_centre_of_mass_y;
     const real J_star_t_3 = platform_centre_of_mass_z*platform_centre_of_mass_z;
@@ -435,13 +524,13 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
     const real J_star_t_6 = R(0.5)*J_star_t_5;
     const real J_star_t_7 = J_star_xx - J_star_zz;
     const real J_star_t_8 = R(0.5)*J_star_t_7;
-    /* (M4) centripetal force and weight of the platform */
+    /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*platform_mass;
     const real Z_p_t_2 = gravity_y*platform_mass;
     const real Z_p_t_3 = gravity_z*platform_mass;
-    /* (C2) rms distance of the platform points from their centroid */
+    /* (spread) rms distance of the platform points from their centroid */
     const real spread_t = R(0.3333333333333333)*root(3);
-    /* (C3) rms size of the legs, taken where the platform points coincide */
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = R(1.385640646055102)*spread_t;
     model->J_star_t_6 = J_star_t_6;
     model->J_star_t_8 = J_star_t_8;
@@ -463,130 +552,122 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
     model->legs_size = legs_size;
     model->platform_mass = platform_mass;
     model->spread_t = spread_t;
-    for (size_t leg = 0; leg < 3; ++leg) {
-        const real upu_base_point_x = params->upu_base_point[leg][0];
-        const real upu_base_point_y = params->upu_base_point[leg][1];
-        const real upu_base_point_z = params->upu_base_point[leg][2];
-        const real upu_base_frame_xx = params->upu_base_frame[leg][0][0];
-        const real upu_base_frame_xy = params->upu_base_frame[leg][0][1];
-        const real upu_base_frame_xz = params->upu_base_frame[leg][0][2];
-        const real upu_base_frame_yx = params->upu_base_frame[leg][1][0];
-        const real upu_base_frame_yy = params->upu_base_frame[leg][1][1];
-        const real upu_base_frame_yz = params->upu_base_frame[leg][1][2];
-        const real upu_base_frame_zx = params->upu_base_frame[leg][2][0];
-        const real upu_base_frame_zy = params->upu_base_frame[leg][2][1];
-        const real upu_base_frame_zz = params->upu_base_frame[leg][2][2];
-        const real upu_platform_point_x = params->upu_platform_point[leg][0];
-        const real upu_platform_point_y = params->upu_platform_point[leg][1];
-        const real upu_platform_point_z = params->upu_platform_point[leg][2];
-        const real upu_platform_joint_axis_platform_x = params->upu_platform_joint_axis_platform[leg][0];
-        const real upu_platform_joint_axis_platform_y = params->upu_platform_joint_axis_platform[leg][1];
-        const real upu_platform_joint_axis_platform_z = params->upu_platform_joint_axis_platform[leg][2];
-        const real upu_link2_mass = params->upu_link2_mass[leg];
-        const real upu_link2_centre_of_mass_x = params->upu_link2_centre_of_mass[leg][0];
-        const real upu_link2_centre_of_mass_y = params->upu_link2_centre_of_mass[leg][1];
-        const real upu_link2_centre_of_mass_z = params->upu_link2_centre_of_mass[leg][2];
-        const real upu_link2_inertia_xx = params->upu_link2_inertia[leg][0][0];
-        const real upu_link2_inertia_xy = params->upu_link2_inertia[leg][0][1];
-        const real upu_link2_inertia_xz = params->upu_link2_inertia[leg][0][2];
-        const real upu_link2_inertia_yy = params->upu_link2_inertia[leg][1][1];
-        const real upu_link2_inertia_yz = params->upu_link2_inertia[leg][1][2];
-        const real upu_link2_inertia_zz = params->upu_link2_inertia[leg][2][2];
-        const real upu_link3_mass = params->upu_link3_mass[leg];
-        const real upu_link3_centre_of_mass_x = params->upu_link3_centre_of_mass[leg][0];
-        const real upu_link3_centre_of_mass_y = params->upu_link3_centre_of_mass[leg][1];
-        const real upu_link3_centre_of_mass_z = params->upu_link3_centre_of_mass[leg][2];
-        const real upu_link3_inertia_xx = params->upu_link3_inertia[leg][0][0];
-        const real upu_link3_inertia_xy = params->upu_link3_inertia[leg][0][1];
-        const real upu_link3_inertia_xz = params->upu_link3_inertia[leg][0][2];
-        const real upu_link3_inertia_yy = params->upu_link3_inertia[leg][1][1];
-        const real upu_link3_inertia_yz = params->upu_link3_inertia[leg][1][2];
-        const real upu_link3_inertia_zz = params->upu_link3_inertia[leg][2][2];
-        static const signed char signs_branch_1[] = {1, 1, 1};
-        const real branch_1 = signs_branch_1[leg];
-        static const signed char signs_branch_2[] = {1, 1, 1};
-        const real branch_2 = signs_branch_2[leg];
-        /* (upu-G4) first moment of link 3 about the origin of link 3 */
-        const real h_3_x = upu_link3_centre_of_mass_x*upu_link3_mass;
-        const real h_3_y = upu_link3_centre_of_mass_y*upu_link3_mass;
-        const real h_3_z = upu_link3_centre_of_mass_z*upu_link3_mass;
-        /* (upu-G3) inertia tensor of link 2 about the origin of link 2 */
-        const real J_2_t = upu_link2_centre_of_mass_x*upu_link2_centre_of_mass_x;
-        const real J_2_t_2 = upu_link2_centre_of_mass_y*upu_link2_centre_of_mass_y;
-        const real J_2_t_3 = upu_link2_centre_of_mass_z*upu_link2_centre_of_mass_z;
-        const real J_2_t_4 = J_2_t + J_2_t_2 + J_2_t_3;
-        /* (upu-G5) inertia tensor of link 3 about the origin of link 3 */
-        const real J_3_t = upu_link3_centre_of_mass_x*upu_link3_centre_of_mass_x;
-        const real J_3_t_2 = upu_link3_centre_of_mass_y*upu_link3_centre_of_mass_y;
-        const real J_3_t_3 = upu_link3_centre_of_mass_z*upu_link3_centre_of_mass_z;
-        const real J_3_t_4 = J_3_t + J_3_t_2 + J_3_t_3;
-        /* (upu-N15) inertia of the links that turn with link 2, each about its reference point */
-        const real J_group_2_xx = upu_link2_inertia_xx + upu_link3_inertia_xx -
-            upu_link2_mass*(J_2_t - J_2_t_4) - upu_link3_mass*(J_3_t - J_3_t_4);
-        const real J_group_2_xy =
+    for (size_t leg = 0; leg < 4; ++leg) {
+        const size_t own = leg < 3 ? leg : 0;
+        const real upu_base_point_x = params->upu_base_point[own][0];
+        const real upu_base_point_y = params->upu_base_point[own][1];
+        const real upu_base_point_z = params->upu_base_point[own][2];
+        const real upu_base_frame_xx = params->upu_base_frame[own][0][0];
+        const real upu_base_frame_xy = params->upu_base_frame[own][0][1];
+        const real upu_base_frame_xz = params->upu_base_frame[own][0][2];
+        const real upu_base_frame_yx = params->upu_base_frame[own][1][0];
+        const real upu_base_frame_yy = params->upu_base_frame[own][1][1];
+        const real upu_base_frame_yz = params->upu_base_frame[own][1][2];
+        const real upu_base_frame_zx = params->upu_base_frame[own][2][0];
+        const real upu_base_frame_zy = params->upu_base_frame[own][2][1];
+        const real upu_base_frame_zz = params->upu_base_frame[own][2][2];
+        const real upu_platform_point_x = params->upu_platform_point[own][0];
+        const real upu_platform_point_y = params->upu_platform_point[own][1];
+        const real upu_platform_point_z = params->upu_platform_point[own][2];
+        const real upu_platform_joint_axis_platform_x = params->upu_platform_joint_axis_platform[own][0];
+        const real upu_platform_joint_axis_platform_y = params->upu_platform_joint_axis_platform[own][1];
+        const real upu_platform_joint_axis_platform_z = params->upu_platform_joint_axis_platform[own][2];
+        const real upu_link2_mass = params->upu_link2_mass[own];
+        const real upu_link2_centre_of_mass_x = params->upu_link2_centre_of_mass[own][0];
+        const real upu_link2_centre_of_mass_y = params->upu_link2_centre_of_mass[own][1];
+        const real upu_link2_centre_of_mass_z = params->upu_link2_centre_of_mass[own][2];
+        const real upu_link2_inertia_xx = params->upu_link2_inertia[own][0][0];
+        const real upu_link2_inertia_xy = params->upu_link2_inertia[own][0][1];
+        const real upu_link2_inertia_xz = params->upu_link2_inertia[own][0][2];
+        const real upu_link2_inertia_yy = params->upu_link2_inertia[own][1][1];
+        const real upu_link2_inertia_yz = params->upu_link2_inertia[own][1][2];
+        const real upu_link2_inertia_zz = params->upu_link2_inertia[own][2][2];
+        const real upu_link3_mass = params->upu_link3_mass[own];
+        const real upu_link3_centre_of_mass_x = params->upu_link3_centre_of_mass[own][0];
+        const real upu_link3_centre_of_mass_y = params->upu_link3_centre_of_mass[own][1];
+        const real upu_link3_centre_of_mass_z = params->upu_link3_centre_of_mass[own][2];
+        const real upu_link3_inertia_xx = params->upu_link3_inertia[own][0][0];
+        const real upu_link3_inertia_xy = params->upu_link3_inertia[own][0][1];
+        const real upu_link3_inertia_xz = params->upu_link3_inertia[own][0][2];
+        const real upu_link3_inertia_yy = params->upu_link3_inertia[own][1][1];
+        const real upu_link3_inertia_yz = params->upu_link3_inertia[own][1][2];
+        const real upu_link3_inertia_zz = params->upu_link3_inertia[own][2][2];
+        static const signed char signs_upu_branch_1[] = {1, 1, 1};
+        const real upu_branch_1 = signs_upu_branch_1[own];
+        static const signed char signs_upu_branch_2[] = {1, 1, 1};
+        const real upu_branch_2 = signs_upu_branch_2[own];
+        /* (upu-h_3) first moment of link 3 about the origin of link 3 */
+        const real upu_h_3_x = upu_link3_centre_of_mass_x*upu_link3_mass;
+        const real upu_h_3_y = upu_link3_centre_of_mass_y*upu_link3_mass;
+        const real upu_h_3_z = upu_link3_centre_of_mass_z*upu_link3_mass;
+        /* (upu-J_2) inertia tensor of link 2 about the origin of link 2 */
+        const real upu_J_2_t = upu_link2_centre_of_mass_x*upu_link2_centre_of_mass_x;
+        const real upu_J_2_t_2 = upu_link2_centre_of_mass_y*upu_link2_centre_of_mass_y;
+        const real upu_J_2_t_3 = upu_link2_centre_of_mass_z*upu_link2_centre_of_mass_z;
+        const real upu_J_2_t_4 = upu_J_2_t + upu_J_2_t_2 + upu_J_2_t_3;
+        /* (upu-J_3) inertia tensor of link 3 about the origin of link 3 */
+        const real upu_J_3_t = upu_link3_centre_of_mass_x*upu_link3_centre_of_mass_x;
+        const real upu_J_3_t_2 = upu_link3_centre_of_mass_y*upu_link3_centre_of_mass_y;
+        const real upu_J_3_t_3 = upu_link3_centre_of_mass_z*upu_link3_centre_of_mass_z;
+        const real upu_J_3_t_4 = upu_J_3_t + upu_J_3_t_2 + upu_J_3_t_3;
+        /* (upu-J_group_2) inertia of the links that turn with link 2, each about its reference point */
+        const real upu_J_group_2_xx = upu_link2_inertia_xx + upu_link3_inertia_xx -
+            upu_link2_mass*(upu_J_2_t - upu_J_2_t_4) - upu_link3_mass*(upu_J_3_t - upu_J_3_t_4);
+        const real upu_J_group_2_xy =
             upu_link2_centre_of_mass_x*upu_link2_centre_of_mass_z*upu_link2_mass +
             upu_link3_centre_of_mass_x*upu_link3_centre_of_mass_z*upu_link3_mass -
             upu_link2_inertia_xz - upu_link3_inertia_xz;
-        const real J_group_2_xz = upu_link2_inertia_xy + upu_link3_inertia_xy -
+        const real upu_J_group_2_xz = upu_link2_inertia_xy + upu_link3_inertia_xy -
             upu_link2_centre_of_mass_x*upu_link2_centre_of_mass_y*upu_link2_mass -
             upu_link3_centre_of_mass_x*upu_link3_centre_of_mass_y*upu_link3_mass;
-        const real J_group_2_yy = upu_link2_inertia_zz + upu_link3_inertia_zz -
-            upu_link2_mass*(J_2_t_3 - J_2_t_4) - upu_link3_mass*(J_3_t_3 - J_3_t_4);
-        const real J_group_2_yz =
+        const real upu_J_group_2_yy = upu_link2_inertia_zz + upu_link3_inertia_zz -
+            upu_link2_mass*(upu_J_2_t_3 - upu_J_2_t_4) - upu_link3_mass*(upu_J_3_t_3 -
+            upu_J_3_t_4);
+        const real upu_J_group_2_yz =
             upu_link2_centre_of_mass_y*upu_link2_centre_of_mass_z*upu_link2_mass +
             upu_link3_centre_of_mass_y*upu_link3_centre_of_mass_z*upu_link3_mass -
             upu_link2_inertia_yz - upu_link3_inertia_yz;
-        const real J_group_2_zz = upu_link2_inertia_yy + upu_link3_inertia_yy -
-            upu_link2_mass*(J_2_t_2 - J_2_t_4) - upu_link3_mass*(J_3_t_2 - J_3_t_4);
-        /* (upu-N6) remainder without the acceleration in: acceleration of the reference point of link 3,
-           less gravity */
-        const real g_r0_x = gravity_x*upu_base_frame_xx + gravity_y*upu_base_frame_yx +
+        const real upu_J_group_2_zz = upu_link2_inertia_yy + upu_link3_inertia_yy -
+            upu_link2_mass*(upu_J_2_t_2 - upu_J_2_t_4) - upu_link3_mass*(upu_J_3_t_2 -
+            upu_J_3_t_4);
+        /* (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+           link 3, less gravity */
+        const real upu_g_r0_x = gravity_x*upu_base_frame_xx + gravity_y*upu_base_frame_yx +
             gravity_z*upu_base_frame_zx;
-        const real g_r0_y = gravity_x*upu_base_frame_xy + gravity_y*upu_base_frame_yy +
+        const real upu_g_r0_y = gravity_x*upu_base_frame_xy + gravity_y*upu_base_frame_yy +
             gravity_z*upu_base_frame_zy;
-        const real g_r0_z = gravity_x*upu_base_frame_xz + gravity_y*upu_base_frame_yz +
+        const real upu_g_r0_z = gravity_x*upu_base_frame_xz + gravity_y*upu_base_frame_yz +
             gravity_z*upu_base_frame_zz;
-        /* (upu-G2) first moment of link 2 about the origin of link 2 */
-        const real h_2_x = upu_link2_centre_of_mass_x*upu_link2_mass;
-        const real h_2_y = upu_link2_centre_of_mass_y*upu_link2_mass;
-        const real h_2_z = upu_link2_centre_of_mass_z*upu_link2_mass;
-        /* (upu-N16) half the trace of that inertia tensor */
-        const real trace_J_group_2 = R(0.5)*J_group_2_xx + R(0.5)*J_group_2_yy +
-            R(0.5)*J_group_2_zz;
-        /* (upu-N17) second moment of mass of the links that turn with link 2 */
-        const real Sigma_2_xx = trace_J_group_2 - J_group_2_xx;
-        const real Sigma_2_yy = trace_J_group_2 - J_group_2_yy;
-        const real Sigma_2_zz = trace_J_group_2 - J_group_2_zz;
-        /* (V1) potential energy */
-        const real b_r0_x = upu_base_frame_xx*upu_base_point_x +
+        /* (upu-h_2) first moment of link 2 about the origin of link 2 */
+        const real upu_h_2_x = upu_link2_centre_of_mass_x*upu_link2_mass;
+        const real upu_h_2_y = upu_link2_centre_of_mass_y*upu_link2_mass;
+        const real upu_h_2_z = upu_link2_centre_of_mass_z*upu_link2_mass;
+        /* (upu-trace_J_2) half the trace of that inertia tensor */
+        const real upu_trace_J_2 = R(0.5)*upu_J_group_2_xx + R(0.5)*upu_J_group_2_yy +
+            R(0.5)*upu_J_group_2_zz;
+        /* (upu-Sigma_2) second moment of mass of the links that turn with link 2 */
+        const real upu_Sigma_2_xx = upu_trace_J_2 - upu_J_group_2_xx;
+        const real upu_Sigma_2_yy = upu_trace_J_2 - upu_J_group_2_yy;
+        const real upu_Sigma_2_zz = upu_trace_J_2 - upu_J_group_2_zz;
+        /* (potential) potential energy */
+        const real upu_b_r0_x = upu_base_frame_xx*upu_base_point_x +
             upu_base_frame_yx*upu_base_point_y + upu_base_frame_zx*upu_base_point_z;
-        const real b_r0_y = upu_base_frame_xy*upu_base_point_x +
+        const real upu_b_r0_y = upu_base_frame_xy*upu_base_point_x +
             upu_base_frame_yy*upu_base_point_y + upu_base_frame_zy*upu_base_point_z;
-        const real b_r0_z = upu_base_frame_xz*upu_base_point_x +
+        const real upu_b_r0_z = upu_base_frame_xz*upu_base_point_x +
             upu_base_frame_yz*upu_base_point_y + upu_base_frame_zz*upu_base_point_z;
-        model->J_group_2_xx[leg] = J_group_2_xx;
-        model->J_group_2_xy[leg] = J_group_2_xy;
-        model->J_group_2_xz[leg] = J_group_2_xz;
-        model->J_group_2_yy[leg] = J_group_2_yy;
-        model->J_group_2_yz[leg] = J_group_2_yz;
-        model->J_group_2_zz[leg] = J_group_2_zz;
-        model->Sigma_2_xx[leg] = Sigma_2_xx;
-        model->Sigma_2_yy[leg] = Sigma_2_yy;
-        model->Sigma_2_zz[leg] = Sigma_2_zz;
-        model->b_r0_x[leg] = b_r0_x;
-        model->b_r0_y[leg] = b_r0_y;
-        model->b_r0_z[leg] = b_r0_z;
-        model->branch_1[leg] = branch_1;
-        model->branch_2[leg] = branch_2;
-        model->g_r0_x[leg] = g_r0_x;
-        model->g_r0_y[leg] = g_r0_y;
-        model->g_r0_z[leg] = g_r0_z;
-        model->h_2_x[leg] = h_2_x;
-        model->h_2_y[leg] = h_2_y;
-        model->h_2_z[leg] = h_2_z;
-        model->h_3_x[leg] = h_3_x;
-        model->h_3_y[leg] = h_3_y;
-        model->h_3_z[leg] = h_3_z;
+        model->upu_J_group_2_xx[leg] = upu_J_group_2_xx;
+        model->upu_J_group_2_xy[leg] = upu_J_group_2_xy;
+        model->upu_J_group_2_xz[leg] = upu_J_group_2_xz;
+        model->upu_J_group_2_yy[leg] = upu_J_group_2_yy;
+        model->upu_J_group_2_yz[leg] = upu_J_group_2_yz;
+        model->upu_J_group_2_zz[leg] = upu_J_group_2_zz;
+        model->upu_Sigma_2_xx[leg] = upu_Sigma_2_xx;
+        model->upu_Sigma_2_yy[leg] = upu_Sigma_2_yy;
+        model->upu_Sigma_2_zz[leg] = upu_Sigma_2_zz;
+        model->upu_b_r0_x[leg] = upu_b_r0_x;
+        model->upu_b_r0_y[leg] = upu_b_r0_y;
+        model->upu_b_r0_z[leg] = upu_b_r0_z;
         model->upu_base_frame_xx[leg] = upu_base_frame_xx;
         model->upu_base_frame_xy[leg] = upu_base_frame_xy;
         model->upu_base_frame_xz[leg] = upu_base_frame_xz;
@@ -599,6 +680,17 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
         model->upu_base_point_x[leg] = upu_base_point_x;
         model->upu_base_point_y[leg] = upu_base_point_y;
         model->upu_base_point_z[leg] = upu_base_point_z;
+        model->upu_branch_1[leg] = upu_branch_1;
+        model->upu_branch_2[leg] = upu_branch_2;
+        model->upu_g_r0_x[leg] = upu_g_r0_x;
+        model->upu_g_r0_y[leg] = upu_g_r0_y;
+        model->upu_g_r0_z[leg] = upu_g_r0_z;
+        model->upu_h_2_x[leg] = upu_h_2_x;
+        model->upu_h_2_y[leg] = upu_h_2_y;
+        model->upu_h_2_z[leg] = upu_h_2_z;
+        model->upu_h_3_x[leg] = upu_h_3_x;
+        model->upu_h_3_y[leg] = upu_h_3_y;
+        model->upu_h_3_z[leg] = upu_h_3_z;
         model->upu_link2_mass[leg] = upu_link2_mass;
         model->upu_link3_mass[leg] = upu_link3_mass;
         model->upu_platform_joint_axis_platform_x[leg] = upu_platform_joint_axis_platform_x;
@@ -607,11 +699,11 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
         model->upu_platform_point_x[leg] = upu_platform_point_x;
         model->upu_platform_point_y[leg] = upu_platform_point_y;
         model->upu_platform_point_z[leg] = upu_platform_point_z;
-        total_upu_x += upu_platform_point_x;
-        total_upu_y += upu_platform_point_y;
-        total_upu_z += upu_platform_point_z;
+        total_upu_x += leg < 3 ? upu_platform_point_x : 0;
+        total_upu_y += leg < 3 ? upu_platform_point_y : 0;
+        total_upu_z += leg < 3 ? upu_platform_point_z : 0;
     }
-    /* (C1) centroid of the platform points */
+    /* (b_c) centroid of the platform points */
     const real b_c_x = R(0.3333333333333333)*total_upu_x;
     const real b_c_y = R(0.3333333333333333)*total_upu_y;
     const real b_c_z = R(0.3333333333333333)*total_upu_z;
@@ -810,6 +902,12 @@ INLINE void solve_state(size_t n, const real *b, real *rows, real *x, real *sing
 {
     set_right_side(n, 1, b, rows);
     solve_one(n, stride_of(n, 1), rows, x, singular);
+}
+
+/* The same where it is rare: apart, for the sake of what is done otherwise. */
+APART void solve_apart(size_t n, const real *b, real *rows, real *x, real *singular)
+{
+    solve_state(n, b, rows, x, singular);
 }
 
 INLINE void solve(size_t n, size_t w, const real *b, real *rows, real *x, real *singular)
@@ -1041,6 +1139,29 @@ INLINE void take(size_t rows, size_t n, const size_t *places, const real *a, rea
     }
 }
 
+/* Rows as `places` tells made infinite, where all entries are finite before. */
+INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, real *x, real *flags)
+{
+    check(size, w, x, flags);
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t k = 0; k < w; ++k) {
+            x[places[i]*w + k] = R(INFINITY);
+        }
+    }
+}
+
+/* 1 where no entry is negative, else 0. */
+INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
+{
+    check(size, w, a, flags);
+    for (size_t k = 0; k < w; ++k) {
+        x[k] = 1;
+        for (size_t e = 0; e < size; ++e) {
+            x[k] = a[e*w + k] < 0 ? 0 : x[k];
+        }
+    }
+}
+
 INLINE void divide_rows(size_t rows, size_t n, size_t w, const size_t *places, const real *b, real *x)
 {
     for (size_t i = 0; i < rows; ++i) {
@@ -1227,58 +1348,22 @@ static void moved(const real *X, const real *step, real part, real *to)
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 1647 mul, 1185 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
-        h_star_in_base_x[LANES], h_star_in_base_y[LANES], h_star_in_base_z[LANES], J_star_t_10[LANES],
-        J_star_t_11[LANES], J_star_t_12[LANES], J_star_t_14[LANES], J_star_t_15[LANES],
-        J_star_t_17[LANES], Z_p_x[LANES], Z_p_y[LANES], Z_p_z[LANES], Z_q_in_base_x[LANES],
-        Z_q_in_base_y[LANES], Z_q_in_base_z[LANES], sum[27][LANES];
-} dynamics_values;
-typedef struct {
-    real sum[27][8], entry[13][8], singular[8];
-} dynamics_results_upu;
-
-INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V,
-    dynamics_values *s, verdict *t)
+/* ---- dynamics: 1611 mul, 1149 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        const real J_star_t_6 = m->J_star_t_6;
-        const real J_star_t_8 = m->J_star_t_8;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -1303,24 +1388,39 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
-        /* (L2) first moment about the platform origin */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_z = m->h_star_z;
         const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
         const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
         const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
-        /* (L3) inertia tensor about the platform origin */
+        /* (J_star) inertia tensor about the platform origin */
+        const real J_star_t_6 = m->J_star_t_6;
+        const real J_star_xy = m->J_star_xy;
+        const real J_star_yz = m->J_star_yz;
         const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_6*R_xy;
         const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_6*R_yy;
         const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_6*R_zy;
+        const real J_star_t_8 = m->J_star_t_8;
+        const real J_star_xz = m->J_star_xz;
         const real J_star_t_4 = J_star_t_8*R_xz - J_star_xz*R_xx;
         const real J_star_t_5 = J_star_t_8*R_yz - J_star_xz*R_yx;
         const real J_star_t_7 = J_star_t_8*R_zz - J_star_xz*R_zx;
         const real J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz;
+        const real J_star_xx = m->J_star_xx;
         const real J_star_t_10 = 2*J_star_t_9 + J_star_xx;
         const real J_star_t_11 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
@@ -1332,703 +1432,744 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
             J_star_t_7*R_yz;
         const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_7*R_zz;
         const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
-        /* (M4) centripetal force and weight of the platform */
+        /* (Z_p) centripetal force and weight of the platform */
         const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
         const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
         const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
+        const real Z_p_t_2 = m->Z_p_t_2;
         const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
+        const real Z_p_t_3 = m->Z_p_t_3;
         const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (M6) gyroscopic moment and moment of the weight of the platform */
+        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real gravity_z = m->gravity_z;
+        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
         const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
         const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
         const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
         const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
+        const real J_star_yy = m->J_star_yy;
         const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
+        const real J_star_zz = m->J_star_zz;
         const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z_2*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x_2*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y_2*h_star_x;
+        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
+            g_r0_z*h_star_y;
+        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
+            g_r0_x*h_star_z;
+        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
+            g_r0_y*h_star_x;
         const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
         const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
         const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->h_star_in_base_x[k] = h_star_in_base_x;
-        s->h_star_in_base_y[k] = h_star_in_base_y;
-        s->h_star_in_base_z[k] = h_star_in_base_z;
-        s->J_star_t_10[k] = J_star_t_10;
-        s->J_star_t_11[k] = J_star_t_11;
-        s->J_star_t_12[k] = J_star_t_12;
-        s->J_star_t_14[k] = J_star_t_14;
-        s->J_star_t_15[k] = J_star_t_15;
-        s->J_star_t_17[k] = J_star_t_17;
-        s->Z_p_x[k] = Z_p_x;
-        s->Z_p_y[k] = Z_p_y;
-        s->Z_p_z[k] = Z_p_z;
-        s->Z_q_in_base_x[k] = Z_q_in_base_x;
-        s->Z_q_in_base_y[k] = Z_q_in_base_y;
-        s->Z_q_in_base_z[k] = Z_q_in_base_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
+        s[18*w + k] = h_star_in_base_x;
+        s[19*w + k] = h_star_in_base_y;
+        s[20*w + k] = h_star_in_base_z;
+        s[21*w + k] = J_star_t_10;
+        s[22*w + k] = J_star_t_11;
+        s[23*w + k] = J_star_t_12;
+        s[24*w + k] = J_star_t_14;
+        s[25*w + k] = J_star_t_15;
+        s[26*w + k] = J_star_t_17;
+        s[27*w + k] = Z_p_x;
+        s[28*w + k] = Z_p_y;
+        s[29*w + k] = Z_p_z;
+        s[30*w + k] = Z_q_in_base_x;
+        s[31*w + k] = Z_q_in_base_y;
+        s[32*w + k] = Z_q_in_base_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void dynamics_legs_upu(const prepared *m, size_t leg, size_t legs, const dynamics_values
-    *s, size_t states, size_t count, int add, dynamics_results_upu *o)
+INLINE void dynamics_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real J_group_2_xx = m->J_group_2_xx[i];
-        const real J_group_2_xy = m->J_group_2_xy[i];
-        const real J_group_2_xz = m->J_group_2_xz[i];
-        const real J_group_2_yy = m->J_group_2_yy[i];
-        const real J_group_2_yz = m->J_group_2_yz[i];
-        const real J_group_2_zz = m->J_group_2_zz[i];
-        const real Sigma_2_xx = m->Sigma_2_xx[i];
-        const real Sigma_2_yy = m->Sigma_2_yy[i];
-        const real Sigma_2_zz = m->Sigma_2_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real g_r0_z = m->g_r0_z[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real h_2_z = m->h_2_z[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_link3_mass = m->upu_link3_mass[i];
-        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
-        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
-        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        /* (upu-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        /* (upu-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+        const real upu_q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
-        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real upu_q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
             R_yz*upu_platform_point_z;
-        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real upu_q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
             R_zz*upu_platform_point_z;
-        const real S_x = q_in_base_x + t_x - upu_base_point_x;
-        const real S_y = q_in_base_y + t_y - upu_base_point_y;
-        const real S_z = q_in_base_z + t_z - upu_base_point_z;
-        /* (upu-K2) component along the reference direction */
-        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
-        /* (upu-K3) component across the reference direction */
-        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
-        /* (upu-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upu-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
-        /* (upu-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upu-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+        const real t_x = s[0*w + j];
+        const real upu_base_point_x = m->upu_base_point_x[i];
+        const real upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x;
+        const real t_y = s[1*w + j];
+        const real upu_base_point_y = m->upu_base_point_y[i];
+        const real upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y;
+        const real t_z = s[2*w + j];
+        const real upu_base_point_z = m->upu_base_point_z[i];
+        const real upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z;
+        /* (upu-px_1) component along the reference direction */
+        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
+        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
+        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
+        const real upu_px_1 = upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx +
+            upu_S_z*upu_base_frame_zx;
+        /* (upu-py_1) component across the reference direction */
+        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
+        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
+        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
+        const real upu_py_1 = upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy +
+            upu_S_z*upu_base_frame_zy;
+        /* (upu-rho2_1) squared amplitude */
+        const real upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1;
+        /* (upu-root_1) amplitude, with the sign of the branch */
+        const real upu_branch_1 = m->upu_branch_1[i];
+        const real upu_root_1 = upu_branch_1*root(upu_rho2_1);
+        /* (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
+        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
+        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
+        const real upu_xi_1_t = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
+            upu_S_z*upu_base_frame_zz;
+        /* (upu-rho2_2) squared amplitude */
+        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t;
+        /* (upu-root_2) amplitude, with the sign of the branch */
+        const real upu_branch_2 = m->upu_branch_2[i];
+        const real upu_root_2 = upu_branch_2*root(upu_rho2_2);
+        /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_upu_root_2 = 1/upu_root_2;
+        const real upu_c_2 = inv_upu_root_2*upu_root_1;
+        /* (upu-s_2) sine of the angle of joint 2 from its reference direction */
+        const real upu_s_2 = inv_upu_root_2*upu_xi_1_t;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
+        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
+        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        const real upu_end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
             R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
             R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
             R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+        const real upu_end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
             R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
             R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
             R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        const real end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
+        const real upu_end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
             R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
             R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
             R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
-        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x;
-        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
-        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
-        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
-        /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t = root_1*root_2;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
-        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-           */
-        const real n_c_z = n_m1_r0_y*root_2/volume_c_t;
-        /* (upu-V9) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
-        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
-        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
-        const real w_1_t = s_1*s_2;
-        const real w_1_t_2 = c_1*s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
-            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
-            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
-            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
+        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_upu_root_1 = 1/upu_root_1;
+        const real upu_c_1 = inv_upu_root_1*upu_py_1;
+        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real upu_s_1 = inv_upu_root_1*upu_px_1;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_end_p1_r1_x = upu_end_p1_r0_y*upu_s_1 - upu_c_1*upu_end_p1_r0_x;
+        const real upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1;
+        const real upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y;
+        const real upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2;
+        /* (upu-volume_c) triple product of the velocity vectors */
+        const real upu_volume_c_t = upu_root_1*upu_root_2;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2;
+        /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
+           out */
+        const real upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t;
+        /* (upu-w_1) force part of reciprocal wrench 1 */
+        const real axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 -
+            upu_base_frame_xx*upu_c_1;
+        const real axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 -
+            upu_base_frame_yx*upu_c_1;
+        const real axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 -
+            upu_base_frame_zx*upu_c_1;
+        const real upu_w_1_t = upu_s_1*upu_s_2;
+        const real upu_w_1_t_2 = upu_c_1*upu_s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*upu_w_1_t +
+            upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*upu_w_1_t +
+            upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*upu_w_1_t +
+            upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2;
         const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
             axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
         const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
             axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
         const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
             axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
-        const real inv_w_1_t_25 = 1/w_1_t_3;
-        const real w_1_t_4 = inv_w_1_t_25*n_c_z;
-        /* (upu-A19) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d_alpha_1_t = inv_w_1_t_25*s_2;
-        const real d_alpha_1_t_2 = c_2*inv_w_1_t_25;
-        /* (upu-N5) coefficient of the acceleration in: acceleration of the reference point of link 3,
-           less gravity */
-        const real d_acc_3_t = d_alpha_1_t_2*root_2;
-        /* (upu-N9) coefficient of the acceleration in: inertia force of link 3 from its turning about its
-           reference point */
-        const real d_phi_3_t = h_3_z*inv_root_2;
-        const real d_phi_3_t_2 = d_alpha_1_t_2*h_3_y;
-        /* (upu-N36) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_z = s_2*(J_group_2_xx*d_alpha_1_t - J_group_2_xy*d_alpha_1_t_2 -
-            d_acc_3_t*h_3_z) - c_2*(J_group_2_xy*d_alpha_1_t - J_group_2_yy*d_alpha_1_t_2 -
-            d_acc_3_t*h_3_x - root_2*(d_acc_3_t*upu_link3_mass + d_alpha_1_t_2*h_3_x -
-            d_alpha_1_t*h_3_z));
-        /* (upu-N40) coefficient of the acceleration in: force at the connection point that balances the
+        const real upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y;
+        const real inv_upu_w_1_t_25 = 1/upu_w_1_t_3;
+        const real upu_w_1_t_4 = inv_upu_w_1_t_25*upu_n_c_z;
+        /* (upu-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+        const real upu_d_alpha_1_t = inv_upu_w_1_t_25*upu_s_2;
+        const real upu_d_alpha_1_t_2 = inv_upu_w_1_t_25*upu_c_2;
+        /* (upu-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link
+           3, less gravity */
+        const real upu_d_acc_3_t = upu_d_alpha_1_t_2*upu_root_2;
+        /* (upu-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
+           about its reference point */
+        const real upu_h_3_z = m->upu_h_3_z[i];
+        const real upu_d_phi_3_t = inv_upu_root_2*upu_h_3_z;
+        const real upu_h_3_y = m->upu_h_3_y[i];
+        const real upu_d_phi_3_t_2 = upu_d_alpha_1_t_2*upu_h_3_y;
+        /* (upu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real upu_J_group_2_xx = m->upu_J_group_2_xx[i];
+        const real upu_J_group_2_xy = m->upu_J_group_2_xy[i];
+        const real upu_J_group_2_yy = m->upu_J_group_2_yy[i];
+        const real upu_h_3_x = m->upu_h_3_x[i];
+        const real upu_link3_mass = m->upu_link3_mass[i];
+        const real upu_d_Gamma_1_z = upu_s_2*(upu_J_group_2_xx*upu_d_alpha_1_t -
+            upu_J_group_2_xy*upu_d_alpha_1_t_2 - upu_d_acc_3_t*upu_h_3_z) -
+            upu_c_2*(upu_J_group_2_xy*upu_d_alpha_1_t - upu_J_group_2_yy*upu_d_alpha_1_t_2 -
+            upu_d_acc_3_t*upu_h_3_x - upu_root_2*(upu_d_acc_3_t*upu_link3_mass +
+            upu_d_alpha_1_t_2*upu_h_3_x - upu_d_alpha_1_t*upu_h_3_z));
+        /* (upu-d_G) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
-        const real d_G_t = inv_root_2*(J_group_2_xz*d_alpha_1_t - J_group_2_yz*d_alpha_1_t_2 -
-            d_alpha_1_t*h_3_y*root_2);
-        /* (upu-N54) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = inv_root_2*(h_3_x + J_group_2_zz*inv_root_2 + root_2*(upu_link3_mass +
-            h_3_x*inv_root_2)) - upu_link3_mass;
-        const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = d_Gamma_1_z*inv_w_1_t_25 - upu_link3_mass;
-        const real Q_t_4 = R(0.5)*Q_t_3;
-        const real Q_t_5 = Q_t_2*axis_y_upu_axes2_in_base_x + axis_x_upu_axes2_x*d_phi_3_t +
-            axis_z_upu_axes2_in_base_x*d_G_t;
-        const real Q_t_6 = Q_t_2*axis_y_upu_axes2_in_base_y + axis_x_upu_axes2_y*d_phi_3_t +
-            axis_z_upu_axes2_in_base_y*d_G_t;
-        const real Q_t_7 = Q_t_2*axis_y_upu_axes2_in_base_z + axis_x_upu_axes2_z*d_phi_3_t +
-            axis_z_upu_axes2_in_base_z*d_G_t;
-        const real Q_t_8 = Q_t_4*axis_z_upu_axes2_in_base_x - axis_x_upu_axes2_x*d_phi_3_t_2;
-        const real Q_t_9 = Q_t_4*axis_z_upu_axes2_in_base_y - axis_x_upu_axes2_y*d_phi_3_t_2;
-        const real Q_t_10 = Q_t_4*axis_z_upu_axes2_in_base_z - axis_x_upu_axes2_z*d_phi_3_t_2;
-        const real Q_t_11 = Q_t_5*axis_y_upu_axes2_in_base_x + Q_t_8*axis_z_upu_axes2_in_base_x;
-        const real Q_t_12 = 2*Q_t_11 + upu_link3_mass;
-        const real Q_t_13 = Q_t_5*axis_y_upu_axes2_in_base_y + Q_t_6*axis_y_upu_axes2_in_base_x +
-            Q_t_8*axis_z_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_x;
-        const real Q_t_14 = Q_t_10*axis_z_upu_axes2_in_base_x + Q_t_5*axis_y_upu_axes2_in_base_z +
-            Q_t_7*axis_y_upu_axes2_in_base_x + Q_t_8*axis_z_upu_axes2_in_base_z;
-        const real Q_t_15 = Q_t_6*axis_y_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_y;
-        const real Q_t_16 = 2*Q_t_15 + upu_link3_mass;
-        const real Q_t_17 = Q_t_10*axis_z_upu_axes2_in_base_y + Q_t_6*axis_y_upu_axes2_in_base_z +
-            Q_t_7*axis_y_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_z;
-        const real Q_t_18 = Q_t_10*axis_z_upu_axes2_in_base_z + Q_t_7*axis_y_upu_axes2_in_base_z;
-        const real Q_t_19 = 2*Q_t_18 + upu_link3_mass;
-        /* (upu-V15) moment part of reciprocal wrench 1 */
-        const real o_1_x = end_p1_r3_y*w_1_t_4;
-        const real o_1_y = end_p1_r3_x*w_1_t_4;
-        /* (upu-A18) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d0_alpha_1_xx = o_1_x*s_2;
-        const real d0_alpha_1_xy = o_1_y*s_2;
-        const real d0_alpha_1_yx = c_2*o_1_x;
-        const real d0_alpha_1_yy = c_2*o_1_y;
-        /* (upu-N4) coefficient of the acceleration in: acceleration of the reference point of link 3,
-           less gravity */
-        const real d0_acc_3_t = d0_alpha_1_yx*root_2;
-        const real d0_acc_3_t_2 = d0_alpha_1_yy*root_2;
-        /* (upu-N8) coefficient of the acceleration in: inertia force of link 3 from its turning about its
-           reference point */
-        const real d0_phi_3_t = d0_alpha_1_yx*h_3_y;
-        const real d0_phi_3_t_2 = d0_alpha_1_yy*h_3_y;
-        /* (upu-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d0_Gamma_1_x = s_2*(J_group_2_xy*d0_alpha_1_yx + d0_acc_3_t*h_3_z -
-            J_group_2_xx*d0_alpha_1_xx) - c_2*(J_group_2_yy*d0_alpha_1_yx + d0_acc_3_t*h_3_x -
-            J_group_2_xy*d0_alpha_1_xx - root_2*(d0_alpha_1_xx*h_3_z - d0_acc_3_t*upu_link3_mass -
-            d0_alpha_1_yx*h_3_x));
-        const real d0_Gamma_1_y = s_2*(J_group_2_xx*d0_alpha_1_xy - J_group_2_xy*d0_alpha_1_yy -
-            d0_acc_3_t_2*h_3_z) - c_2*(J_group_2_xy*d0_alpha_1_xy - J_group_2_yy*d0_alpha_1_yy -
-            d0_acc_3_t_2*h_3_x - root_2*(d0_acc_3_t_2*upu_link3_mass + d0_alpha_1_yy*h_3_x -
-            d0_alpha_1_xy*h_3_z));
-        /* (upu-N39) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d0_G_t = d0_Gamma_1_x*inv_w_1_t_25;
-        const real d0_G_t_2 = d0_Gamma_1_y*inv_w_1_t_25;
-        const real d0_G_t_3 = inv_root_2*(J_group_2_yz*d0_alpha_1_yx + d0_alpha_1_xx*h_3_y*root_2
-            - J_group_2_xz*d0_alpha_1_xx);
-        const real d0_G_t_4 = inv_root_2*(J_group_2_xz*d0_alpha_1_xy - J_group_2_yz*d0_alpha_1_yy
-            - d0_alpha_1_xy*h_3_y*root_2);
-        /* (M2) coupling block of M */
-        const real M_ta_t = Q_t_13*q_in_base_z;
-        const real M_ta_t_2 = Q_t_14*q_in_base_y;
-        const real M_ta_t_3 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x;
-        const real M_ta_t_4 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x;
-        const real M_ta_t_5 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y;
-        const real M_ta_t_6 = Q_t_17*q_in_base_x;
-        const real M_ta_t_7 = M_ta_t - M_ta_t_6;
-        const real M_ta_t_8 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x;
-        const real M_ta_t_9 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y;
-        const real M_ta_t_10 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x;
-        const real M_ta_t_11 = M_ta_t_6 - M_ta_t_2;
-        /* (upu-N51) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real d0_c_in_base_x = -axis_x_upu_axes2_x*d0_phi_3_t -
-            axis_y_upu_axes2_in_base_x*d0_G_t_3 - axis_z_upu_axes2_in_base_x*d0_G_t;
-        const real d0_c_in_base_y = -axis_x_upu_axes2_y*d0_phi_3_t -
-            axis_y_upu_axes2_in_base_y*d0_G_t_3 - axis_z_upu_axes2_in_base_y*d0_G_t;
-        const real d0_c_in_base_z = -axis_x_upu_axes2_z*d0_phi_3_t -
-            axis_y_upu_axes2_in_base_z*d0_G_t_3 - axis_z_upu_axes2_in_base_z*d0_G_t;
-        const real d0_c_in_base_x_2 = axis_x_upu_axes2_x*d0_phi_3_t_2 -
-            axis_y_upu_axes2_in_base_x*d0_G_t_4 - axis_z_upu_axes2_in_base_x*d0_G_t_2;
-        const real d0_c_in_base_y_2 = axis_x_upu_axes2_y*d0_phi_3_t_2 -
-            axis_y_upu_axes2_in_base_y*d0_G_t_4 - axis_z_upu_axes2_in_base_y*d0_G_t_2;
-        const real d0_c_in_base_z_2 = axis_x_upu_axes2_z*d0_phi_3_t_2 -
-            axis_y_upu_axes2_in_base_z*d0_G_t_4 - axis_z_upu_axes2_in_base_z*d0_G_t_2;
-        const real d0_c_in_base_y_3 = axis_x_upu_axes2_y*d0_c_in_base_x +
-            axis_y_upu_axes2_in_base_y*d0_c_in_base_x_2;
-        const real d0_c_in_base_z_3 = axis_x_upu_axes2_z*d0_c_in_base_x +
-            axis_y_upu_axes2_in_base_z*d0_c_in_base_x_2;
-        const real d0_c_in_base_x_3 = axis_x_upu_axes2_x*d0_c_in_base_y +
-            axis_y_upu_axes2_in_base_x*d0_c_in_base_y_2;
-        const real d0_c_in_base_y_4 = axis_x_upu_axes2_y*d0_c_in_base_y +
-            axis_y_upu_axes2_in_base_y*d0_c_in_base_y_2;
-        const real d0_c_in_base_z_4 = axis_x_upu_axes2_z*d0_c_in_base_y +
-            axis_y_upu_axes2_in_base_z*d0_c_in_base_y_2;
-        const real d0_c_in_base_x_4 = axis_x_upu_axes2_x*d0_c_in_base_z +
-            axis_y_upu_axes2_in_base_x*d0_c_in_base_z_2;
-        const real d0_c_in_base_y_5 = axis_x_upu_axes2_y*d0_c_in_base_z +
-            axis_y_upu_axes2_in_base_y*d0_c_in_base_z_2;
-        const real d0_c_in_base_z_5 = axis_x_upu_axes2_z*d0_c_in_base_z +
-            axis_y_upu_axes2_in_base_z*d0_c_in_base_z_2;
-        /* (M2) coupling block of M */
-        const real M_ta_t_12 = M_ta_t + axis_x_upu_axes2_x*d0_c_in_base_x +
-            axis_y_upu_axes2_in_base_x*d0_c_in_base_x_2 - M_ta_t_2;
-        const real M_ta_t_13 = M_ta_t_3 - d0_c_in_base_y_3;
-        const real M_ta_t_14 = M_ta_t_4 + d0_c_in_base_z_3;
-        const real M_ta_t_15 = M_ta_t_5 + d0_c_in_base_x_3;
-        const real M_ta_t_16 = M_ta_t_7 - d0_c_in_base_y_4;
-        const real M_ta_t_17 = M_ta_t_8 + d0_c_in_base_z_4;
-        const real M_ta_t_18 = M_ta_t_9 + d0_c_in_base_x_4;
-        const real M_ta_t_19 = M_ta_t_10 - d0_c_in_base_y_5;
-        const real M_ta_t_20 = M_ta_t_11 - d0_c_in_base_z_5;
-        /* (upu-N43) coefficient of the acceleration in: moment along moment direction 1 that balances the
-           leg's inertia and weight along all freedoms */
-        const real d0_G_m1_t = d0_Gamma_1_x*w_1_t_4;
-        const real d0_G_m1_t_2 = d0_Gamma_1_y*w_1_t_4;
-        /* (upu-N44) coefficient of the acceleration in: moment along moment direction 1 that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_m1_t = c_2*h_3_y*w_1_t_4;
-        const real d_G_m1_t_2 = w_1_t_4*(s_2*(J_group_2_xz*inv_root_2 - h_3_y) -
-            J_group_2_yz*c_2*inv_root_2);
-        const real d_G_m1_t_3 = d_Gamma_1_z*w_1_t_4;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_in_base_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x -
-            axis_x_upu_axes2_x*end_p1_r3_y;
-        const real n_m1_in_base_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x -
-            axis_x_upu_axes2_y*end_p1_r3_y;
-        const real n_m1_in_base_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x -
-            axis_x_upu_axes2_z*end_p1_r3_y;
-        /* (upu-N44) coefficient of the acceleration in: moment along moment direction 1 that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_m1_in_base_x = axis_y_upu_axes2_in_base_x*d_G_m1_t_2 +
-            axis_z_upu_axes2_in_base_x*d_G_m1_t_3 - axis_x_upu_axes2_x*d_G_m1_t;
-        const real d_G_m1_in_base_y = axis_y_upu_axes2_in_base_y*d_G_m1_t_2 +
-            axis_z_upu_axes2_in_base_y*d_G_m1_t_3 - axis_x_upu_axes2_y*d_G_m1_t;
-        const real d_G_m1_in_base_z = axis_y_upu_axes2_in_base_z*d_G_m1_t_2 +
-            axis_z_upu_axes2_in_base_z*d_G_m1_t_3 - axis_x_upu_axes2_z*d_G_m1_t;
-        /* (upu-N48) coefficient of the acceleration in: moment at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_m_xx = d_G_m1_in_base_x*n_m1_in_base_x;
-        const real d_G_m_xy = d_G_m1_in_base_y*n_m1_in_base_x;
-        const real d_G_m_xz = d_G_m1_in_base_z*n_m1_in_base_x;
-        const real d_G_m_yx = d_G_m1_in_base_x*n_m1_in_base_y;
-        /* (upu-N43) coefficient of the acceleration in: moment along moment direction 1 that balances the
-           leg's inertia and weight along all freedoms */
-        const real d0_G_m1_in_base_y = axis_x_upu_axes2_y*d0_G_m1_t +
-            axis_y_upu_axes2_in_base_y*d0_G_m1_t_2;
-        const real d0_G_m1_in_base_z = axis_x_upu_axes2_z*d0_G_m1_t +
-            axis_y_upu_axes2_in_base_z*d0_G_m1_t_2;
-        /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t_5*q_in_base_z + d0_c_in_base_x_3*q_in_base_z +
-            d_G_m_xz*q_in_base_y + n_m1_in_base_x*(axis_x_upu_axes2_x*d0_G_m1_t +
-            axis_y_upu_axes2_in_base_x*d0_G_m1_t_2) - M_ta_t_9*q_in_base_y -
-            d0_c_in_base_x_4*q_in_base_y - d_G_m_xy*q_in_base_z;
-        const real M_aa_t_2 = M_ta_t_10*q_in_base_y + d0_G_m1_in_base_y*n_m1_in_base_x +
-            d0_c_in_base_y_4*q_in_base_z + d_G_m_xx*q_in_base_z - M_ta_t_7*q_in_base_z -
-            d0_c_in_base_y_5*q_in_base_y - d_G_m_xz*q_in_base_x;
-        const real M_aa_t_3 = M_ta_t_11*q_in_base_y + M_ta_t_8*q_in_base_z +
-            d0_G_m1_in_base_z*n_m1_in_base_x + d0_c_in_base_z_4*q_in_base_z + d_G_m_xy*q_in_base_x
-            - d0_c_in_base_z_5*q_in_base_y - d_G_m_xx*q_in_base_y;
-        const real M_aa_t_4 = M_ta_t_3*q_in_base_z + d0_G_m1_in_base_y*n_m1_in_base_y +
-            d0_c_in_base_y_5*q_in_base_x + d_G_m_yx*q_in_base_z - M_ta_t_10*q_in_base_x -
-            d0_c_in_base_y_3*q_in_base_z - d_G_m1_in_base_z*n_m1_in_base_y*q_in_base_x;
-        const real M_aa_t_5 = M_ta_t_11*q_in_base_x + M_ta_t_4*q_in_base_z +
-            d0_c_in_base_z_3*q_in_base_z + d_G_m_yx*q_in_base_y - d0_G_m1_in_base_z*n_m1_in_base_y
-            - d0_c_in_base_z_5*q_in_base_x - d_G_m1_in_base_y*n_m1_in_base_y*q_in_base_x;
-        const real M_aa_t_6 = M_ta_t_4*q_in_base_y + d0_G_m1_in_base_z*n_m1_in_base_z +
-            d0_c_in_base_z_3*q_in_base_y + d_G_m1_in_base_y*n_m1_in_base_z*q_in_base_x -
-            M_ta_t_8*q_in_base_x - d0_c_in_base_z_4*q_in_base_x -
-            d_G_m1_in_base_x*n_m1_in_base_z*q_in_base_y;
-        /* (upu-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        /* (upu-V18) rate at which the joints turn along moment direction 1 */
-        const real eta_1 = n_m1_in_base_x*omega_x + n_m1_in_base_y*omega_y +
-            n_m1_in_base_z*omega_z;
-        /* (upu-V1) velocity of the connection point */
-        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
-            S_dot_z*axis_x_upu_axes2_z;
-        /* (upu-V19) rate of joint 1 */
-        const real qd_1_t = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
-            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
-        const real qd_1_t_2 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
-            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z +
-            eta_1*n_c_z);
-        /* (upu-V22) angular velocity of link 1 */
-        const real omega_1_t = qd_1_t_2*s_2;
-        const real omega_1_t_2 = c_2*qd_1_t_2;
-        /* (upu-A8) rate of moment direction 1 */
-        const real omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
-            axis_x_upu_axes2_z*omega_z;
-        const real omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
-            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
-        const real omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
-            axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
-        const real nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t -
-            end_p1_r3_x*omega_tip_z;
-        const real nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y -
-            end_p1_r3_y*omega_tip_z;
-        /* (upu-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_x = omega_1_t_2*qd_1_t;
-        const real zeta_2_y = omega_1_t*qd_1_t;
-        /* (upu-A9) bias of the angular acceleration along moment direction 1 */
-        const real nu_1_t = end_p1_r3_y*zeta_2_x - end_p1_r3_x*zeta_2_y;
-        const real nu_1_t_2 = nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z -
-            qd_1_t)*(end_p1_r3_y*omega_1_t_2 - end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 +
-            omega_tip_y);
-        const real nu_1 = -nu_1_t - nu_1_t_2;
-        /* (upu-V24) centripetal tensor of link 2 */
-        const real W_2_t = omega_1_t*omega_1_t;
-        const real W_2_t_2 = omega_1_t_2*omega_1_t_2;
-        const real W_2_t_3 = qd_1_t*qd_1_t;
-        const real W_2_xy = omega_1_t*omega_1_t_2;
-        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_tip_x;
-        const real bias_t_2 = bias_t*qd_1_t;
-        const real bias_t_3 = bias_t*omega_1_t_2;
-        const real bias_z = bias_t_3 + 2*root_2*zeta_2_y;
-        /* (upu-A1) centripetal acceleration of the connection point */
-        const real u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z;
-        const real u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x;
-        const real u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y;
-        /* (upu-A7) remainder without the acceleration in: acceleration of the connection point left to
+        const real upu_J_group_2_xz = m->upu_J_group_2_xz[i];
+        const real upu_J_group_2_yz = m->upu_J_group_2_yz[i];
+        const real upu_d_G_t = inv_upu_root_2*(upu_J_group_2_xz*upu_d_alpha_1_t -
+            upu_J_group_2_yz*upu_d_alpha_1_t_2 - upu_d_alpha_1_t*upu_h_3_y*upu_root_2);
+        /* (upu-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real upu_J_group_2_zz = m->upu_J_group_2_zz[i];
+        const real upu_Q_t = inv_upu_root_2*(upu_h_3_x + inv_upu_root_2*upu_J_group_2_zz +
+            upu_root_2*(upu_link3_mass + inv_upu_root_2*upu_h_3_x)) - upu_link3_mass;
+        const real upu_Q_t_2 = R(0.5)*upu_Q_t;
+        const real upu_Q_t_3 = inv_upu_w_1_t_25*upu_d_Gamma_1_z - upu_link3_mass;
+        const real upu_Q_t_4 = R(0.5)*upu_Q_t_3;
+        const real upu_Q_t_5 = axis_x_upu_axes2_x*upu_d_phi_3_t +
+            axis_y_upu_axes2_in_base_x*upu_Q_t_2 + axis_z_upu_axes2_in_base_x*upu_d_G_t;
+        const real upu_Q_t_6 = axis_x_upu_axes2_y*upu_d_phi_3_t +
+            axis_y_upu_axes2_in_base_y*upu_Q_t_2 + axis_z_upu_axes2_in_base_y*upu_d_G_t;
+        const real upu_Q_t_7 = axis_x_upu_axes2_z*upu_d_phi_3_t +
+            axis_y_upu_axes2_in_base_z*upu_Q_t_2 + axis_z_upu_axes2_in_base_z*upu_d_G_t;
+        const real upu_Q_t_8 = axis_z_upu_axes2_in_base_x*upu_Q_t_4 -
+            axis_x_upu_axes2_x*upu_d_phi_3_t_2;
+        const real upu_Q_t_9 = axis_z_upu_axes2_in_base_y*upu_Q_t_4 -
+            axis_x_upu_axes2_y*upu_d_phi_3_t_2;
+        const real upu_Q_t_10 = axis_z_upu_axes2_in_base_z*upu_Q_t_4 -
+            axis_x_upu_axes2_z*upu_d_phi_3_t_2;
+        const real upu_Q_t_11 = axis_y_upu_axes2_in_base_x*upu_Q_t_5 +
+            axis_z_upu_axes2_in_base_x*upu_Q_t_8;
+        const real upu_Q_t_12 = 2*upu_Q_t_11 + upu_link3_mass;
+        const real upu_Q_t_13 = axis_y_upu_axes2_in_base_x*upu_Q_t_6 +
+            axis_y_upu_axes2_in_base_y*upu_Q_t_5 + axis_z_upu_axes2_in_base_x*upu_Q_t_9 +
+            axis_z_upu_axes2_in_base_y*upu_Q_t_8;
+        const real upu_Q_t_14 = axis_y_upu_axes2_in_base_x*upu_Q_t_7 +
+            axis_y_upu_axes2_in_base_z*upu_Q_t_5 + axis_z_upu_axes2_in_base_x*upu_Q_t_10 +
+            axis_z_upu_axes2_in_base_z*upu_Q_t_8;
+        const real upu_Q_t_15 = axis_y_upu_axes2_in_base_y*upu_Q_t_6 +
+            axis_z_upu_axes2_in_base_y*upu_Q_t_9;
+        const real upu_Q_t_16 = 2*upu_Q_t_15 + upu_link3_mass;
+        const real upu_Q_t_17 = axis_y_upu_axes2_in_base_y*upu_Q_t_7 +
+            axis_y_upu_axes2_in_base_z*upu_Q_t_6 + axis_z_upu_axes2_in_base_y*upu_Q_t_10 +
+            axis_z_upu_axes2_in_base_z*upu_Q_t_9;
+        const real upu_Q_t_18 = axis_y_upu_axes2_in_base_z*upu_Q_t_7 +
+            axis_z_upu_axes2_in_base_z*upu_Q_t_10;
+        const real upu_Q_t_19 = 2*upu_Q_t_18 + upu_link3_mass;
+        /* (upu-o_1) moment part of reciprocal wrench 1 */
+        const real upu_o_1_x = upu_end_p1_r3_y*upu_w_1_t_4;
+        const real upu_o_1_y = upu_end_p1_r3_x*upu_w_1_t_4;
+        /* (upu-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+        const real upu_dalpha_alpha_1_xx = upu_o_1_x*upu_s_2;
+        const real upu_dalpha_alpha_1_xy = upu_o_1_y*upu_s_2;
+        const real upu_dalpha_alpha_1_yx = upu_c_2*upu_o_1_x;
+        const real upu_dalpha_alpha_1_yy = upu_c_2*upu_o_1_y;
+        /* (upu-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of
+           link 3, less gravity */
+        const real upu_dalpha_acc_3_t = upu_dalpha_alpha_1_yx*upu_root_2;
+        const real upu_dalpha_acc_3_t_2 = upu_dalpha_alpha_1_yy*upu_root_2;
+        /* (upu-dalpha_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
+           about its reference point */
+        const real upu_dalpha_phi_3_t = upu_dalpha_alpha_1_yx*upu_h_3_y;
+        const real upu_dalpha_phi_3_t_2 = upu_dalpha_alpha_1_yy*upu_h_3_y;
+        /* (upu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
+           links' inertia and weight */
+        const real upu_dalpha_Gamma_1_x = upu_s_2*(upu_J_group_2_xy*upu_dalpha_alpha_1_yx +
+            upu_dalpha_acc_3_t*upu_h_3_z - upu_J_group_2_xx*upu_dalpha_alpha_1_xx) -
+            upu_c_2*(upu_J_group_2_yy*upu_dalpha_alpha_1_yx + upu_dalpha_acc_3_t*upu_h_3_x -
+            upu_J_group_2_xy*upu_dalpha_alpha_1_xx - upu_root_2*(upu_dalpha_alpha_1_xx*upu_h_3_z -
+            upu_dalpha_acc_3_t*upu_link3_mass - upu_dalpha_alpha_1_yx*upu_h_3_x));
+        const real upu_dalpha_Gamma_1_y = upu_s_2*(upu_J_group_2_xx*upu_dalpha_alpha_1_xy -
+            upu_J_group_2_xy*upu_dalpha_alpha_1_yy - upu_dalpha_acc_3_t_2*upu_h_3_z) -
+            upu_c_2*(upu_J_group_2_xy*upu_dalpha_alpha_1_xy -
+            upu_J_group_2_yy*upu_dalpha_alpha_1_yy - upu_dalpha_acc_3_t_2*upu_h_3_x -
+            upu_root_2*(upu_dalpha_acc_3_t_2*upu_link3_mass + upu_dalpha_alpha_1_yy*upu_h_3_x -
+            upu_dalpha_alpha_1_xy*upu_h_3_z));
+        /* (upu-dalpha_G) coefficient of the acceleration in: force at the connection point that balances
+           the leg's inertia and weight along all freedoms */
+        const real upu_dalpha_G_t = inv_upu_w_1_t_25*upu_dalpha_Gamma_1_x;
+        const real upu_dalpha_G_t_2 = inv_upu_w_1_t_25*upu_dalpha_Gamma_1_y;
+        const real upu_dalpha_G_t_3 = inv_upu_root_2*(upu_J_group_2_yz*upu_dalpha_alpha_1_yx +
+            upu_dalpha_alpha_1_xx*upu_h_3_y*upu_root_2 - upu_J_group_2_xz*upu_dalpha_alpha_1_xx);
+        const real upu_dalpha_G_t_4 = inv_upu_root_2*(upu_J_group_2_xz*upu_dalpha_alpha_1_xy -
+            upu_J_group_2_yz*upu_dalpha_alpha_1_yy - upu_dalpha_alpha_1_xy*upu_h_3_y*upu_root_2);
+        /* (upu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
+           and without the mass at the connection point */
+        const real upu_dalpha_c_in_base_x = -axis_x_upu_axes2_x*upu_dalpha_phi_3_t -
+            axis_y_upu_axes2_in_base_x*upu_dalpha_G_t_3 -
+            axis_z_upu_axes2_in_base_x*upu_dalpha_G_t;
+        const real upu_dalpha_c_in_base_y = -axis_x_upu_axes2_y*upu_dalpha_phi_3_t -
+            axis_y_upu_axes2_in_base_y*upu_dalpha_G_t_3 -
+            axis_z_upu_axes2_in_base_y*upu_dalpha_G_t;
+        const real upu_dalpha_c_in_base_z = -axis_x_upu_axes2_z*upu_dalpha_phi_3_t -
+            axis_y_upu_axes2_in_base_z*upu_dalpha_G_t_3 -
+            axis_z_upu_axes2_in_base_z*upu_dalpha_G_t;
+        const real upu_dalpha_c_in_base_x_2 = axis_x_upu_axes2_x*upu_dalpha_phi_3_t_2 -
+            axis_y_upu_axes2_in_base_x*upu_dalpha_G_t_4 -
+            axis_z_upu_axes2_in_base_x*upu_dalpha_G_t_2;
+        const real upu_dalpha_c_in_base_y_2 = axis_x_upu_axes2_y*upu_dalpha_phi_3_t_2 -
+            axis_y_upu_axes2_in_base_y*upu_dalpha_G_t_4 -
+            axis_z_upu_axes2_in_base_y*upu_dalpha_G_t_2;
+        const real upu_dalpha_c_in_base_z_2 = axis_x_upu_axes2_z*upu_dalpha_phi_3_t_2 -
+            axis_y_upu_axes2_in_base_z*upu_dalpha_G_t_4 -
+            axis_z_upu_axes2_in_base_z*upu_dalpha_G_t_2;
+        /* (M_ta) coupling block of M */
+        const real upu_M_ta_t = upu_Q_t_13*upu_q_in_base_z;
+        const real upu_M_ta_t_2 = upu_Q_t_14*upu_q_in_base_y;
+        const real upu_M_ta_t_3 = upu_Q_t_17*upu_q_in_base_x;
+        const real upu_M_ta_t_4 = upu_M_ta_t + axis_x_upu_axes2_x*upu_dalpha_c_in_base_x +
+            axis_y_upu_axes2_in_base_x*upu_dalpha_c_in_base_x_2 - upu_M_ta_t_2;
+        const real upu_M_ta_t_5 = upu_Q_t_12*upu_q_in_base_z -
+            axis_x_upu_axes2_y*upu_dalpha_c_in_base_x -
+            axis_y_upu_axes2_in_base_y*upu_dalpha_c_in_base_x_2 - upu_Q_t_14*upu_q_in_base_x;
+        const real upu_M_ta_t_6 = axis_x_upu_axes2_z*upu_dalpha_c_in_base_x +
+            axis_y_upu_axes2_in_base_z*upu_dalpha_c_in_base_x_2 + upu_Q_t_12*upu_q_in_base_y -
+            upu_Q_t_13*upu_q_in_base_x;
+        const real upu_M_ta_t_7 = axis_x_upu_axes2_x*upu_dalpha_c_in_base_y +
+            axis_y_upu_axes2_in_base_x*upu_dalpha_c_in_base_y_2 + upu_Q_t_16*upu_q_in_base_z -
+            upu_Q_t_17*upu_q_in_base_y;
+        const real upu_M_ta_t_8 = upu_M_ta_t - upu_M_ta_t_3 -
+            axis_x_upu_axes2_y*upu_dalpha_c_in_base_y -
+            axis_y_upu_axes2_in_base_y*upu_dalpha_c_in_base_y_2;
+        const real upu_M_ta_t_9 = axis_x_upu_axes2_z*upu_dalpha_c_in_base_y +
+            axis_y_upu_axes2_in_base_z*upu_dalpha_c_in_base_y_2 + upu_Q_t_13*upu_q_in_base_y -
+            upu_Q_t_16*upu_q_in_base_x;
+        const real upu_M_ta_t_10 = axis_x_upu_axes2_x*upu_dalpha_c_in_base_z +
+            axis_y_upu_axes2_in_base_x*upu_dalpha_c_in_base_z_2 + upu_Q_t_17*upu_q_in_base_z -
+            upu_Q_t_19*upu_q_in_base_y;
+        const real upu_M_ta_t_11 = upu_Q_t_14*upu_q_in_base_z -
+            axis_x_upu_axes2_y*upu_dalpha_c_in_base_z -
+            axis_y_upu_axes2_in_base_y*upu_dalpha_c_in_base_z_2 - upu_Q_t_19*upu_q_in_base_x;
+        const real upu_M_ta_t_12 = upu_M_ta_t_3 - upu_M_ta_t_2 -
+            axis_x_upu_axes2_z*upu_dalpha_c_in_base_z -
+            axis_y_upu_axes2_in_base_z*upu_dalpha_c_in_base_z_2;
+        /* (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
+           balances the leg's inertia and weight along all freedoms */
+        const real upu_dalpha_G_m1_t = upu_dalpha_Gamma_1_x*upu_w_1_t_4;
+        const real upu_dalpha_G_m1_t_2 = upu_dalpha_Gamma_1_y*upu_w_1_t_4;
+        /* (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
+           the leg's inertia and weight along all freedoms */
+        const real upu_d_G_m1_t = upu_c_2*upu_h_3_y*upu_w_1_t_4;
+        const real upu_d_G_m1_t_2 = upu_w_1_t_4*(upu_s_2*(inv_upu_root_2*upu_J_group_2_xz -
+            upu_h_3_y) - inv_upu_root_2*upu_J_group_2_yz*upu_c_2);
+        const real upu_d_G_m1_t_3 = upu_d_Gamma_1_z*upu_w_1_t_4;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_n_m1_in_base_x = axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x -
+            axis_x_upu_axes2_x*upu_end_p1_r3_y;
+        const real upu_n_m1_in_base_y = axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x -
+            axis_x_upu_axes2_y*upu_end_p1_r3_y;
+        const real upu_n_m1_in_base_z = axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x -
+            axis_x_upu_axes2_z*upu_end_p1_r3_y;
+        /* (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
+           balances the leg's inertia and weight along all freedoms */
+        const real upu_dalpha_G_m1_in_base_y = axis_x_upu_axes2_y*upu_dalpha_G_m1_t +
+            axis_y_upu_axes2_in_base_y*upu_dalpha_G_m1_t_2;
+        const real upu_dalpha_G_m1_in_base_z = axis_x_upu_axes2_z*upu_dalpha_G_m1_t +
+            axis_y_upu_axes2_in_base_z*upu_dalpha_G_m1_t_2;
+        /* (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
+           the leg's inertia and weight along all freedoms */
+        const real upu_d_G_m1_in_base_x = axis_y_upu_axes2_in_base_x*upu_d_G_m1_t_2 +
+            axis_z_upu_axes2_in_base_x*upu_d_G_m1_t_3 - axis_x_upu_axes2_x*upu_d_G_m1_t;
+        const real upu_d_G_m1_in_base_y = axis_y_upu_axes2_in_base_y*upu_d_G_m1_t_2 +
+            axis_z_upu_axes2_in_base_y*upu_d_G_m1_t_3 - axis_x_upu_axes2_y*upu_d_G_m1_t;
+        const real upu_d_G_m1_in_base_z = axis_y_upu_axes2_in_base_z*upu_d_G_m1_t_2 +
+            axis_z_upu_axes2_in_base_z*upu_d_G_m1_t_3 - axis_x_upu_axes2_z*upu_d_G_m1_t;
+        /* (upu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
+           the leg's inertia and weight along all freedoms */
+        const real upu_d_G_m_xx = upu_d_G_m1_in_base_x*upu_n_m1_in_base_x;
+        const real upu_d_G_m_xy = upu_d_G_m1_in_base_y*upu_n_m1_in_base_x;
+        const real upu_d_G_m_xz = upu_d_G_m1_in_base_z*upu_n_m1_in_base_x;
+        const real upu_d_G_m_yx = upu_d_G_m1_in_base_x*upu_n_m1_in_base_y;
+        /* (M_aa) rotational block of M */
+        const real upu_M_aa_t = upu_M_ta_t_7*upu_q_in_base_z + upu_d_G_m_xz*upu_q_in_base_y +
+            upu_n_m1_in_base_x*(axis_x_upu_axes2_x*upu_dalpha_G_m1_t +
+            axis_y_upu_axes2_in_base_x*upu_dalpha_G_m1_t_2) - upu_M_ta_t_10*upu_q_in_base_y -
+            upu_d_G_m_xy*upu_q_in_base_z;
+        const real upu_M_aa_t_2 = upu_M_ta_t_11*upu_q_in_base_y + upu_d_G_m_xx*upu_q_in_base_z +
+            upu_dalpha_G_m1_in_base_y*upu_n_m1_in_base_x - upu_M_ta_t_8*upu_q_in_base_z -
+            upu_d_G_m_xz*upu_q_in_base_x;
+        const real upu_M_aa_t_3 = upu_M_ta_t_12*upu_q_in_base_y + upu_M_ta_t_9*upu_q_in_base_z +
+            upu_d_G_m_xy*upu_q_in_base_x + upu_dalpha_G_m1_in_base_z*upu_n_m1_in_base_x -
+            upu_d_G_m_xx*upu_q_in_base_y;
+        const real upu_M_aa_t_4 = upu_M_ta_t_5*upu_q_in_base_z + upu_d_G_m_yx*upu_q_in_base_z +
+            upu_dalpha_G_m1_in_base_y*upu_n_m1_in_base_y - upu_M_ta_t_11*upu_q_in_base_x -
+            upu_d_G_m1_in_base_z*upu_n_m1_in_base_y*upu_q_in_base_x;
+        const real upu_M_aa_t_5 = upu_M_ta_t_12*upu_q_in_base_x + upu_M_ta_t_6*upu_q_in_base_z +
+            upu_d_G_m_yx*upu_q_in_base_y - upu_dalpha_G_m1_in_base_z*upu_n_m1_in_base_y -
+            upu_d_G_m1_in_base_y*upu_n_m1_in_base_y*upu_q_in_base_x;
+        const real upu_M_aa_t_6 = upu_M_ta_t_6*upu_q_in_base_y +
+            upu_dalpha_G_m1_in_base_z*upu_n_m1_in_base_z +
+            upu_d_G_m1_in_base_y*upu_n_m1_in_base_z*upu_q_in_base_x - upu_M_ta_t_9*upu_q_in_base_x
+            - upu_d_G_m1_in_base_x*upu_n_m1_in_base_z*upu_q_in_base_y;
+        /* (upu-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real upu_S_dot_t = omega_y*upu_q_in_base_z - omega_z*upu_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real upu_S_dot_t_2 = omega_z*upu_q_in_base_x - omega_x*upu_q_in_base_z;
+        const real upu_S_dot_t_3 = omega_x*upu_q_in_base_y - omega_y*upu_q_in_base_x;
+        const real t_dot_x = s[12*w + j];
+        const real upu_S_dot_x = t_dot_x + upu_S_dot_t;
+        const real t_dot_y = s[13*w + j];
+        const real upu_S_dot_y = t_dot_y + upu_S_dot_t_2;
+        const real t_dot_z = s[14*w + j];
+        const real upu_S_dot_z = t_dot_z + upu_S_dot_t_3;
+        /* (upu-eta_1) rate at which the joints turn along moment direction 1 */
+        const real upu_eta_1 = omega_x*upu_n_m1_in_base_x + omega_y*upu_n_m1_in_base_y +
+            omega_z*upu_n_m1_in_base_z;
+        /* (upu-S_dot) velocity of the connection point */
+        const real upu_S_dot_tip_x = axis_x_upu_axes2_x*upu_S_dot_x +
+            axis_x_upu_axes2_y*upu_S_dot_y + axis_x_upu_axes2_z*upu_S_dot_z;
+        /* (upu-qd_3) rate of joint 3 */
+        const real upu_qd_3_t = inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_dot_x +
+            axis_y_upu_axes2_in_base_y*upu_S_dot_y + axis_y_upu_axes2_in_base_z*upu_S_dot_z);
+        const real upu_qd_3_t_2 = inv_upu_w_1_t_25*(axis_z_upu_axes2_in_base_x*upu_S_dot_x +
+            axis_z_upu_axes2_in_base_y*upu_S_dot_y + axis_z_upu_axes2_in_base_z*upu_S_dot_z +
+            upu_eta_1*upu_n_c_z);
+        /* (upu-omega_1) angular velocity of link 1 */
+        const real upu_omega_1_t = upu_qd_3_t_2*upu_s_2;
+        const real upu_omega_1_t_2 = upu_c_2*upu_qd_3_t_2;
+        /* (upu-u_1) centripetal acceleration of the connection point */
+        const real upu_u_1_x = omega_y*upu_S_dot_t_3 - omega_z*upu_S_dot_t_2;
+        const real upu_u_1_y = omega_z*upu_S_dot_t - omega_x*upu_S_dot_t_3;
+        const real upu_u_1_z = omega_x*upu_S_dot_t_2 - omega_y*upu_S_dot_t;
+        /* (upu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real upu_zeta_2_x = upu_omega_1_t_2*upu_qd_3_t;
+        const real upu_zeta_2_y = upu_omega_1_t*upu_qd_3_t;
+        /* (upu-W_2) centripetal tensor of link 2 */
+        const real upu_W_2_t = upu_omega_1_t*upu_omega_1_t;
+        const real upu_W_2_t_2 = upu_omega_1_t_2*upu_omega_1_t_2;
+        const real upu_W_2_t_3 = upu_qd_3_t*upu_qd_3_t;
+        const real upu_W_2_xy = upu_omega_1_t*upu_omega_1_t_2;
+        /* (upu-bias) acceleration of the connection point at zero joint accelerations */
+        const real upu_bias_t = 2*upu_S_dot_tip_x;
+        const real upu_bias_t_2 = upu_bias_t*upu_qd_3_t;
+        const real upu_bias_t_3 = upu_bias_t*upu_omega_1_t_2;
+        const real upu_bias_z = upu_bias_t_3 + 2*upu_root_2*upu_zeta_2_y;
+        /* (upu-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rel_o_z = axis_z_upu_axes2_in_base_x*u_1_x + axis_z_upu_axes2_in_base_y*u_1_y +
-            axis_z_upu_axes2_in_base_z*u_1_z - bias_z;
-        /* (upu-A12) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_o_t = axis_y_upu_axes2_in_base_x*u_1_x + axis_y_upu_axes2_in_base_y*u_1_y
-            + axis_y_upu_axes2_in_base_z*u_1_z - bias_t_2;
-        const real qdd_1_o_t_2 = inv_root_2*qdd_1_o_t;
-        const real qdd_1_o_t_3 = inv_w_1_t_25*(rel_o_z + n_c_z*nu_1);
-        /* (upu-A20) remainder without the acceleration in: angular acceleration of link 1 */
-        const real alpha_1_o_t = qdd_1_o_t_3*s_2;
-        const real alpha_1_o_t_2 = c_2*qdd_1_o_t_3;
-        /* (upu-A24) remainder without the acceleration in: angular acceleration of link 2 */
-        const real alpha_2_o_x = alpha_1_o_t - zeta_2_x;
-        const real alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y;
-        /* (upu-A26) remainder of the acceleration tensor of link 2 */
-        const real B_2_o_xy = -2*W_2_xy - qdd_1_o_t_2;
-        const real B_2_o_zx = zeta_2_y - alpha_2_o_y;
-        const real B_2_o_zy = alpha_2_o_x - zeta_2_x;
-        /* (upu-N6) remainder without the acceleration in: acceleration of the reference point of link 3,
-           less gravity */
-        const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
-        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
-        const real g_r3_x = g_r0_z*s_2 - c_2*g_r1_y;
-        const real g_r3_y = -c_2*g_r0_z - g_r1_y*s_2;
-        const real acc_3_o_x = axis_x_upu_axes2_x*u_1_x + axis_x_upu_axes2_y*u_1_y +
-            axis_x_upu_axes2_z*u_1_z - g_r3_x;
-        const real acc_3_o_y = bias_t_2 + qdd_1_o_t - g_r3_y;
-        const real acc_3_o_z = bias_t_3 + B_2_o_zx*root_2 - g_r1_x;
-        /* (upu-N14) remainder without the acceleration in: inertia force of link 3 less its weight */
-        const real f_3_o_x = acc_3_o_x*upu_link3_mass - B_2_o_xy*h_3_z - alpha_1_o_t_2*h_3_y -
-            h_3_x*(W_2_t_2 + W_2_t_3);
-        const real f_3_o_y = acc_3_o_y*upu_link3_mass + h_3_x*qdd_1_o_t_2 + h_3_z*(W_2_t +
-            W_2_t_3) - alpha_1_o_t*h_3_y;
-        const real f_3_o_z = B_2_o_zx*h_3_x + acc_3_o_z*upu_link3_mass - B_2_o_zy*h_3_z -
-            h_3_y*(W_2_t + W_2_t_2);
-        /* (upu-N21) remainder without the acceleration in: inertia moment of the links that turn with
+        const real upu_rel_o_z = axis_z_upu_axes2_in_base_x*upu_u_1_x +
+            axis_z_upu_axes2_in_base_y*upu_u_1_y + axis_z_upu_axes2_in_base_z*upu_u_1_z -
+            upu_bias_z;
+        /* (upu-nd_m1) rate of moment direction 1 */
+        const real upu_omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
+            axis_x_upu_axes2_z*omega_z;
+        const real upu_omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
+            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
+        const real upu_omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
+            axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
+        const real upu_nd_m1_x = upu_end_p1_r1_x*upu_omega_tip_x - upu_end_p1_r1_x*upu_omega_1_t -
+            upu_end_p1_r3_x*upu_omega_tip_z;
+        const real upu_nd_m1_y = upu_end_p1_r1_x*upu_omega_1_t_2 + upu_end_p1_r1_x*upu_omega_tip_y
+            - upu_end_p1_r3_y*upu_omega_tip_z;
+        /* (upu-nu_1) bias of the angular acceleration along moment direction 1 */
+        const real upu_nu_1_t = upu_end_p1_r3_y*upu_zeta_2_x - upu_end_p1_r3_x*upu_zeta_2_y;
+        const real upu_nu_1_t_2 = upu_nd_m1_x*(upu_omega_1_t - upu_omega_tip_x) + (upu_omega_tip_z
+            - upu_qd_3_t)*(upu_end_p1_r3_y*upu_omega_1_t_2 - upu_end_p1_r3_x*upu_omega_1_t) -
+            upu_nd_m1_y*(upu_omega_1_t_2 + upu_omega_tip_y);
+        const real upu_nu_1 = -upu_nu_1_t - upu_nu_1_t_2;
+        /* (upu-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
+        const real upu_qdd_3_o_t = axis_y_upu_axes2_in_base_x*upu_u_1_x +
+            axis_y_upu_axes2_in_base_y*upu_u_1_y + axis_y_upu_axes2_in_base_z*upu_u_1_z -
+            upu_bias_t_2;
+        const real upu_qdd_3_o_t_2 = inv_upu_root_2*upu_qdd_3_o_t;
+        const real upu_qdd_3_o_t_3 = inv_upu_w_1_t_25*(upu_rel_o_z + upu_n_c_z*upu_nu_1);
+        /* (upu-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+        const real upu_alpha_1_o_t = upu_qdd_3_o_t_3*upu_s_2;
+        const real upu_alpha_1_o_t_2 = upu_c_2*upu_qdd_3_o_t_3;
+        /* (upu-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        const real upu_alpha_2_o_x = upu_alpha_1_o_t - upu_zeta_2_x;
+        const real upu_alpha_2_o_y = -upu_alpha_1_o_t_2 - upu_zeta_2_y;
+        /* (upu-B_2_o) remainder of the acceleration tensor of link 2 */
+        const real upu_B_2_o_xy = -2*upu_W_2_xy - upu_qdd_3_o_t_2;
+        const real upu_B_2_o_zx = upu_zeta_2_y - upu_alpha_2_o_y;
+        const real upu_B_2_o_zy = upu_alpha_2_o_x - upu_zeta_2_x;
+        /* (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+           link 3, less gravity */
+        const real upu_g_r0_x = m->upu_g_r0_x[i];
+        const real upu_g_r0_y = m->upu_g_r0_y[i];
+        const real upu_g_r1_x = upu_g_r0_y*upu_s_1 - upu_c_1*upu_g_r0_x;
+        const real upu_g_r1_y = -upu_c_1*upu_g_r0_y - upu_g_r0_x*upu_s_1;
+        const real upu_g_r0_z = m->upu_g_r0_z[i];
+        const real upu_g_r3_x = upu_g_r0_z*upu_s_2 - upu_c_2*upu_g_r1_y;
+        const real upu_g_r3_y = -upu_c_2*upu_g_r0_z - upu_g_r1_y*upu_s_2;
+        const real upu_acc_3_o_x = axis_x_upu_axes2_x*upu_u_1_x + axis_x_upu_axes2_y*upu_u_1_y +
+            axis_x_upu_axes2_z*upu_u_1_z - upu_g_r3_x;
+        const real upu_acc_3_o_y = upu_bias_t_2 + upu_qdd_3_o_t - upu_g_r3_y;
+        const real upu_acc_3_o_z = upu_bias_t_3 + upu_B_2_o_zx*upu_root_2 - upu_g_r1_x;
+        /* (upu-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight */
+        const real upu_f_3_o_x = upu_acc_3_o_x*upu_link3_mass - upu_B_2_o_xy*upu_h_3_z -
+            upu_alpha_1_o_t_2*upu_h_3_y - upu_h_3_x*(upu_W_2_t_2 + upu_W_2_t_3);
+        const real upu_f_3_o_y = upu_acc_3_o_y*upu_link3_mass + upu_h_3_x*upu_qdd_3_o_t_2 +
+            upu_h_3_z*(upu_W_2_t + upu_W_2_t_3) - upu_alpha_1_o_t*upu_h_3_y;
+        const real upu_f_3_o_z = upu_B_2_o_zx*upu_h_3_x + upu_acc_3_o_z*upu_link3_mass -
+            upu_B_2_o_zy*upu_h_3_z - upu_h_3_y*(upu_W_2_t + upu_W_2_t_2);
+        /* (upu-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real mu_2_o_x = B_2_o_zy*Sigma_2_yy + J_group_2_xz*qdd_1_o_t_2 +
-            J_group_2_yz*(W_2_t_2 - W_2_t_3) + Sigma_2_zz*alpha_1_o_t + g_r1_x*h_2_z +
-            g_r3_y*h_2_y - B_2_o_zx*J_group_2_xy - acc_3_o_y*h_3_y - acc_3_o_z*h_3_z;
-        const real mu_2_o_y = B_2_o_zy*J_group_2_xy + acc_3_o_x*h_3_y + g_r1_x*h_2_x -
-            B_2_o_xy*J_group_2_yz - B_2_o_zx*Sigma_2_xx - J_group_2_xz*(W_2_t - W_2_t_3) -
-            Sigma_2_zz*alpha_1_o_t_2 - acc_3_o_z*h_3_x - g_r3_x*h_2_y;
-        const real mu_2_o_z = J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_xz*alpha_1_o_t +
-            Sigma_2_xx*qdd_1_o_t_2 + acc_3_o_x*h_3_z + acc_3_o_y*h_3_x - B_2_o_xy*Sigma_2_yy -
-            J_group_2_yz*alpha_1_o_t_2 - g_r3_x*h_2_z - g_r3_y*h_2_x;
-        /* (upu-N25) remainder without the acceleration in: moment about joint 2 of the links from 2
+        const real upu_Sigma_2_yy = m->upu_Sigma_2_yy[i];
+        const real upu_Sigma_2_zz = m->upu_Sigma_2_zz[i];
+        const real upu_h_2_y = m->upu_h_2_y[i];
+        const real upu_h_2_z = m->upu_h_2_z[i];
+        const real upu_mu_2_o_x = upu_B_2_o_zy*upu_Sigma_2_yy + upu_J_group_2_xz*upu_qdd_3_o_t_2 +
+            upu_J_group_2_yz*(upu_W_2_t_2 - upu_W_2_t_3) + upu_Sigma_2_zz*upu_alpha_1_o_t +
+            upu_g_r1_x*upu_h_2_z + upu_g_r3_y*upu_h_2_y - upu_B_2_o_zx*upu_J_group_2_xy -
+            upu_acc_3_o_y*upu_h_3_y - upu_acc_3_o_z*upu_h_3_z;
+        const real upu_Sigma_2_xx = m->upu_Sigma_2_xx[i];
+        const real upu_h_2_x = m->upu_h_2_x[i];
+        const real upu_mu_2_o_y = upu_B_2_o_zy*upu_J_group_2_xy + upu_acc_3_o_x*upu_h_3_y +
+            upu_g_r1_x*upu_h_2_x - upu_B_2_o_xy*upu_J_group_2_yz - upu_B_2_o_zx*upu_Sigma_2_xx -
+            upu_J_group_2_xz*(upu_W_2_t - upu_W_2_t_3) - upu_Sigma_2_zz*upu_alpha_1_o_t_2 -
+            upu_acc_3_o_z*upu_h_3_x - upu_g_r3_x*upu_h_2_y;
+        const real upu_mu_2_o_z = upu_J_group_2_xy*(upu_W_2_t - upu_W_2_t_2) +
+            upu_J_group_2_xz*upu_alpha_1_o_t + upu_Sigma_2_xx*upu_qdd_3_o_t_2 +
+            upu_acc_3_o_x*upu_h_3_z + upu_acc_3_o_y*upu_h_3_x - upu_B_2_o_xy*upu_Sigma_2_yy -
+            upu_J_group_2_yz*upu_alpha_1_o_t_2 - upu_g_r3_x*upu_h_2_z - upu_g_r3_y*upu_h_2_x;
+        /* (upu-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
-        const real N_2_o_y = mu_2_o_y - f_3_o_z*root_2;
-        const real N_2_o_r0_y = mu_2_o_x*s_2 - N_2_o_y*c_2;
-        /* (upu-N41) remainder without the acceleration in: force at the connection point that balances
+        const real upu_N_2_o_y = upu_mu_2_o_y - upu_f_3_o_z*upu_root_2;
+        const real upu_N_2_o_r0_y = upu_mu_2_o_x*upu_s_2 - upu_N_2_o_y*upu_c_2;
+        /* (upu-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real G_o_t = f_3_o_y + inv_root_2*mu_2_o_z;
-        const real G_o_t_2 = N_2_o_r0_y*inv_w_1_t_25;
-        const real G_o_t_3 = N_2_o_r0_y*inv_w_1_t_25*n_c_z;
-        /* (upu-N59) velocity and gravity terms of the leg force */
-        const real U_in_base_x = G_o_t*axis_y_upu_axes2_in_base_x +
-            G_o_t_2*axis_z_upu_axes2_in_base_x + axis_x_upu_axes2_x*f_3_o_x;
-        const real U_in_base_y = G_o_t*axis_y_upu_axes2_in_base_y +
-            G_o_t_2*axis_z_upu_axes2_in_base_y + axis_x_upu_axes2_y*f_3_o_x;
-        const real U_in_base_z = G_o_t*axis_y_upu_axes2_in_base_z +
-            G_o_t_2*axis_z_upu_axes2_in_base_z + axis_x_upu_axes2_z*f_3_o_x;
-        /* (upu-N49) remainder without the acceleration in: moment at the connection point that balances
+        const real upu_G_o_t = upu_f_3_o_y + inv_upu_root_2*upu_mu_2_o_z;
+        const real upu_G_o_t_2 = inv_upu_w_1_t_25*upu_N_2_o_r0_y;
+        const real upu_G_o_t_3 = inv_upu_w_1_t_25*upu_N_2_o_r0_y*upu_n_c_z;
+        /* (upu-U) velocity and gravity terms of the leg force */
+        const real upu_U_in_base_x = axis_x_upu_axes2_x*upu_f_3_o_x +
+            axis_y_upu_axes2_in_base_x*upu_G_o_t + axis_z_upu_axes2_in_base_x*upu_G_o_t_2;
+        const real upu_U_in_base_y = axis_x_upu_axes2_y*upu_f_3_o_x +
+            axis_y_upu_axes2_in_base_y*upu_G_o_t + axis_z_upu_axes2_in_base_y*upu_G_o_t_2;
+        const real upu_U_in_base_z = axis_x_upu_axes2_z*upu_f_3_o_x +
+            axis_y_upu_axes2_in_base_z*upu_G_o_t + axis_z_upu_axes2_in_base_z*upu_G_o_t_2;
+        /* (upu-G_m_o) remainder without the acceleration in: moment at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real G_m_o_x = G_o_t_3*end_p1_r3_y;
-        const real G_m_o_y = G_o_t_3*end_p1_r3_x;
-        /* (M7) rotational part of Z */
-        const real Z_a_t = G_m_o_y*axis_y_upu_axes2_in_base_x + U_in_base_z*q_in_base_y -
-            G_m_o_x*axis_x_upu_axes2_x - U_in_base_y*q_in_base_z;
-        const real Z_a_t_2 = G_m_o_y*axis_y_upu_axes2_in_base_y + U_in_base_x*q_in_base_z -
-            G_m_o_x*axis_x_upu_axes2_y - U_in_base_z*q_in_base_x;
-        const real Z_a_t_3 = G_m_o_y*axis_y_upu_axes2_in_base_z + U_in_base_y*q_in_base_x -
-            G_m_o_x*axis_x_upu_axes2_z - U_in_base_x*q_in_base_y;
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_3_t = axis_x_upu_axes2_z*q_in_base_y - axis_x_upu_axes2_y*q_in_base_z;
-        const real H_a_3_t_2 = axis_x_upu_axes2_x*q_in_base_z - axis_x_upu_axes2_z*q_in_base_x;
-        const real H_a_3_t_3 = axis_x_upu_axes2_y*q_in_base_x - axis_x_upu_axes2_x*q_in_base_y;
-        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        const real upu_G_m_o_x = upu_G_o_t_3*upu_end_p1_r3_y;
+        const real upu_G_m_o_y = upu_G_o_t_3*upu_end_p1_r3_x;
+        /* (Z_a) rotational part of Z */
+        const real upu_Z_a_t = axis_y_upu_axes2_in_base_x*upu_G_m_o_y +
+            upu_U_in_base_z*upu_q_in_base_y - axis_x_upu_axes2_x*upu_G_m_o_x -
+            upu_U_in_base_y*upu_q_in_base_z;
+        const real upu_Z_a_t_2 = axis_y_upu_axes2_in_base_y*upu_G_m_o_y +
+            upu_U_in_base_x*upu_q_in_base_z - axis_x_upu_axes2_y*upu_G_m_o_x -
+            upu_U_in_base_z*upu_q_in_base_x;
+        const real upu_Z_a_t_3 = axis_y_upu_axes2_in_base_z*upu_G_m_o_y +
+            upu_U_in_base_y*upu_q_in_base_x - axis_x_upu_axes2_z*upu_G_m_o_x -
+            upu_U_in_base_x*upu_q_in_base_y;
+        /* (upu-H_a_3) moment of the column's unit force about the platform origin */
+        const real upu_H_a_3_t = axis_x_upu_axes2_z*upu_q_in_base_y -
+            axis_x_upu_axes2_y*upu_q_in_base_z;
+        const real upu_H_a_3_t_2 = axis_x_upu_axes2_x*upu_q_in_base_z -
+            axis_x_upu_axes2_z*upu_q_in_base_x;
+        const real upu_H_a_3_t_3 = axis_x_upu_axes2_y*upu_q_in_base_x -
+            axis_x_upu_axes2_x*upu_q_in_base_y;
+        /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
+           out */
+        const real upu_n_c_t = axis_z_upu_axes2_in_base_x*upu_n_c_z;
+        const real upu_n_c_t_2 = axis_z_upu_axes2_in_base_y*upu_n_c_z;
+        const real upu_n_c_t_3 = axis_z_upu_axes2_in_base_z*upu_n_c_z;
+        /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
+        const real upu_Hk_a_1_x = upu_n_m1_in_base_x + upu_n_c_t_2*upu_q_in_base_z -
+            upu_n_c_t_3*upu_q_in_base_y;
+        const real upu_Hk_a_1_y = upu_n_m1_in_base_y + upu_n_c_t_3*upu_q_in_base_x -
+            upu_n_c_t*upu_q_in_base_z;
+        const real upu_Hk_a_1_z = upu_n_m1_in_base_z + upu_n_c_t*upu_q_in_base_y -
+            upu_n_c_t_2*upu_q_in_base_x;
+        /* (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
            */
-        const real n_c_t = axis_z_upu_axes2_in_base_x*n_c_z;
-        const real n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z;
-        const real n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z;
-        /* (M9) moment of the column's unit force about the platform origin */
-        const real Hk_a_1_x = n_m1_in_base_x + n_c_t_2*q_in_base_z - n_c_t_3*q_in_base_y;
-        const real Hk_a_1_y = n_m1_in_base_y + n_c_t_3*q_in_base_x - n_c_t*q_in_base_z;
-        const real Hk_a_1_z = n_m1_in_base_z + n_c_t*q_in_base_y - n_c_t_2*q_in_base_x;
-        /* (M11) part of the constraint's second derivative that does not hold the acceleration */
-        const real gamma_c1 = nu_1 - n_c_z*rel_o_z;
-        o->sum[0][k] = add ? o->sum[0][k] + Q_t_12 : Q_t_12;  /* total_upu_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + Q_t_13 : Q_t_13;  /* total_upu_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + Q_t_14 : Q_t_14;  /* total_upu_xz */
-        o->sum[3][k] = add ? o->sum[3][k] + Q_t_16 : Q_t_16;  /* total_upu_yy */
-        o->sum[4][k] = add ? o->sum[4][k] + Q_t_17 : Q_t_17;  /* total_upu_yz */
-        o->sum[5][k] = add ? o->sum[5][k] + Q_t_19 : Q_t_19;  /* total_upu_zz */
-        o->sum[6][k] = add ? o->sum[6][k] + M_ta_t_12 : M_ta_t_12;  /* total_upu_xx_2 */
-        o->sum[7][k] = add ? o->sum[7][k] + M_ta_t_13 : M_ta_t_13;  /* total_upu_xy_2 */
-        o->sum[8][k] = add ? o->sum[8][k] + M_ta_t_14 : M_ta_t_14;  /* total_upu_xz_2 */
-        o->sum[9][k] = add ? o->sum[9][k] + M_ta_t_15 : M_ta_t_15;  /* total_upu_yx */
-        o->sum[10][k] = add ? o->sum[10][k] + M_ta_t_16 : M_ta_t_16;  /* total_upu_yy_2 */
-        o->sum[11][k] = add ? o->sum[11][k] + M_ta_t_17 : M_ta_t_17;  /* total_upu_yz_2 */
-        o->sum[12][k] = add ? o->sum[12][k] + M_ta_t_18 : M_ta_t_18;  /* total_upu_zx */
-        o->sum[13][k] = add ? o->sum[13][k] + M_ta_t_19 : M_ta_t_19;  /* total_upu_zy */
-        o->sum[14][k] = add ? o->sum[14][k] + M_ta_t_20 : M_ta_t_20;  /* total_upu_zz_2 */
-        o->sum[15][k] = add ? o->sum[15][k] + M_aa_t : M_aa_t;  /* total_upu_xx_3 */
-        o->sum[16][k] = add ? o->sum[16][k] + M_aa_t_2 : M_aa_t_2;  /* total_upu_xy_3 */
-        o->sum[17][k] = add ? o->sum[17][k] + M_aa_t_3 : M_aa_t_3;  /* total_upu_xz_3 */
-        o->sum[18][k] = add ? o->sum[18][k] + M_aa_t_4 : M_aa_t_4;  /* total_upu_yy_3 */
-        o->sum[19][k] = add ? o->sum[19][k] + M_aa_t_5 : M_aa_t_5;  /* total_upu_yz_3 */
-        o->sum[20][k] = add ? o->sum[20][k] + M_aa_t_6 : M_aa_t_6;  /* total_upu_zz_3 */
-        o->sum[21][k] = add ? o->sum[21][k] + U_in_base_x : U_in_base_x;  /* total_upu_x */
-        o->sum[22][k] = add ? o->sum[22][k] + U_in_base_y : U_in_base_y;  /* total_upu_y */
-        o->sum[23][k] = add ? o->sum[23][k] + U_in_base_z : U_in_base_z;  /* total_upu_z */
-        o->sum[24][k] = add ? o->sum[24][k] + Z_a_t : Z_a_t;  /* total_upu_x_2 */
-        o->sum[25][k] = add ? o->sum[25][k] + Z_a_t_2 : Z_a_t_2;  /* total_upu_y_2 */
-        o->sum[26][k] = add ? o->sum[26][k] + Z_a_t_3 : Z_a_t_3;  /* total_upu_z_2 */
-        o->entry[0][k] = axis_x_upu_axes2_x;
-        o->entry[1][k] = axis_x_upu_axes2_y;
-        o->entry[2][k] = axis_x_upu_axes2_z;
-        o->entry[3][k] = H_a_3_t;
-        o->entry[4][k] = H_a_3_t_2;
-        o->entry[5][k] = H_a_3_t_3;
-        o->entry[6][k] = -n_c_t;
-        o->entry[7][k] = -n_c_t_2;
-        o->entry[8][k] = -n_c_t_3;
-        o->entry[9][k] = Hk_a_1_x;
-        o->entry[10][k] = Hk_a_1_y;
-        o->entry[11][k] = Hk_a_1_z;
-        o->entry[12][k] = gamma_c1;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(-volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(w_1_t_3) >
-            TOLERANCE*R(0.8));
+        const real upu_gamma_c1 = upu_nu_1 - upu_n_c_z*upu_rel_o_z;
+        terms[0*count + k] = add ? terms[0*count + k] + upu_Q_t_12 : upu_Q_t_12;  /* total_upu_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + upu_Q_t_13 : upu_Q_t_13;  /* total_upu_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + upu_Q_t_14 : upu_Q_t_14;  /* total_upu_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + upu_Q_t_16 : upu_Q_t_16;  /* total_upu_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + upu_Q_t_17 : upu_Q_t_17;  /* total_upu_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + upu_Q_t_19 : upu_Q_t_19;  /* total_upu_zz */
+        terms[6*count + k] = add ? terms[6*count + k] + upu_M_ta_t_4 : upu_M_ta_t_4;  /* total_upu_xx_2 */
+        terms[7*count + k] = add ? terms[7*count + k] + upu_M_ta_t_5 : upu_M_ta_t_5;  /* total_upu_xy_2 */
+        terms[8*count + k] = add ? terms[8*count + k] + upu_M_ta_t_6 : upu_M_ta_t_6;  /* total_upu_xz_2 */
+        terms[9*count + k] = add ? terms[9*count + k] + upu_M_ta_t_7 : upu_M_ta_t_7;  /* total_upu_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + upu_M_ta_t_8 : upu_M_ta_t_8;  /* total_upu_yy_2 */
+        terms[11*count + k] = add ? terms[11*count + k] + upu_M_ta_t_9 : upu_M_ta_t_9;  /* total_upu_yz_2 */
+        terms[12*count + k] = add ? terms[12*count + k] + upu_M_ta_t_10 : upu_M_ta_t_10;  /* total_upu_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + upu_M_ta_t_11 : upu_M_ta_t_11;  /* total_upu_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + upu_M_ta_t_12 : upu_M_ta_t_12;  /* total_upu_zz_2 */
+        terms[15*count + k] = add ? terms[15*count + k] + upu_M_aa_t : upu_M_aa_t;  /* total_upu_xx_3 */
+        terms[16*count + k] = add ? terms[16*count + k] + upu_M_aa_t_2 : upu_M_aa_t_2;  /* total_upu_xy_3 */
+        terms[17*count + k] = add ? terms[17*count + k] + upu_M_aa_t_3 : upu_M_aa_t_3;  /* total_upu_xz_3 */
+        terms[18*count + k] = add ? terms[18*count + k] + upu_M_aa_t_4 : upu_M_aa_t_4;  /* total_upu_yy_3 */
+        terms[19*count + k] = add ? terms[19*count + k] + upu_M_aa_t_5 : upu_M_aa_t_5;  /* total_upu_yz_3 */
+        terms[20*count + k] = add ? terms[20*count + k] + upu_M_aa_t_6 : upu_M_aa_t_6;  /* total_upu_zz_3 */
+        terms[21*count + k] = add ? terms[21*count + k] + upu_U_in_base_x : upu_U_in_base_x;  /* total_upu_x */
+        terms[22*count + k] = add ? terms[22*count + k] + upu_U_in_base_y : upu_U_in_base_y;  /* total_upu_y */
+        terms[23*count + k] = add ? terms[23*count + k] + upu_U_in_base_z : upu_U_in_base_z;  /* total_upu_z */
+        terms[24*count + k] = add ? terms[24*count + k] + upu_Z_a_t : upu_Z_a_t;  /* total_upu_x_2 */
+        terms[25*count + k] = add ? terms[25*count + k] + upu_Z_a_t_2 : upu_Z_a_t_2;  /* total_upu_y_2 */
+        terms[26*count + k] = add ? terms[26*count + k] + upu_Z_a_t_3 : upu_Z_a_t_3;  /* total_upu_z_2 */
+        o[0*count + k] = axis_x_upu_axes2_x;
+        o[1*count + k] = axis_x_upu_axes2_y;
+        o[2*count + k] = axis_x_upu_axes2_z;
+        o[3*count + k] = upu_H_a_3_t;
+        o[4*count + k] = upu_H_a_3_t_2;
+        o[5*count + k] = upu_H_a_3_t_3;
+        o[6*count + k] = -upu_n_c_t;
+        o[7*count + k] = -upu_n_c_t_2;
+        o[8*count + k] = -upu_n_c_t_3;
+        o[9*count + k] = upu_Hk_a_1_x;
+        o[10*count + k] = upu_Hk_a_1_y;
+        o[11*count + k] = upu_Hk_a_1_z;
+        o[12*count + k] = upu_gamma_c1;
+        o[14*count + k] = ((axis_x_upu_axes2_x + (axis_x_upu_axes2_y + axis_x_upu_axes2_z)) +
+            (upu_H_a_3_t + (upu_H_a_3_t_2 + upu_H_a_3_t_3))) + ((upu_n_c_t + (upu_n_c_t_2 +
+            upu_n_c_t_3)) + ((upu_Hk_a_1_x + upu_Hk_a_1_y) + (upu_Hk_a_1_z + upu_gamma_c1)));
+        o[13*count + k] = UNLESS(magnitude(upu_rho2_1) >
+            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(upu_rho2_2) >
+            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(-upu_volume_c_t) >
+            TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(upu_root_2) > TOLERANCE*R(0.8)) +
+            UNLESS(magnitude(upu_w_1_t_3) > TOLERANCE*R(0.8));
     }
 }
 
-INLINE void dynamics_place_upu(size_t w, const dynamics_results_upu *o, size_t leg, size_t first,
+INLINE void dynamics_place_upu(size_t w, size_t count, const real *o, size_t leg, size_t first,
     real *H, real *Hk, real *constraint_bias, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(3 + leg)*w + k] = o->entry[1][first + k];
-        H[(6 + leg)*w + k] = o->entry[2][first + k];
-        H[(9 + leg)*w + k] = o->entry[3][first + k];
-        H[(12 + leg)*w + k] = o->entry[4][first + k];
-        H[(15 + leg)*w + k] = o->entry[5][first + k];
-        Hk[(leg)*w + k] = o->entry[6][first + k];
-        Hk[(3 + leg)*w + k] = o->entry[7][first + k];
-        Hk[(6 + leg)*w + k] = o->entry[8][first + k];
-        Hk[(9 + leg)*w + k] = o->entry[9][first + k];
-        Hk[(12 + leg)*w + k] = o->entry[10][first + k];
-        Hk[(15 + leg)*w + k] = o->entry[11][first + k];
-        constraint_bias[(leg)*w + k] = o->entry[12][first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(3 + leg)*w + k] = o[1*count + first + k];
+        H[(6 + leg)*w + k] = o[2*count + first + k];
+        H[(9 + leg)*w + k] = o[3*count + first + k];
+        H[(12 + leg)*w + k] = o[4*count + first + k];
+        H[(15 + leg)*w + k] = o[5*count + first + k];
+        Hk[(leg)*w + k] = o[6*count + first + k];
+        Hk[(3 + leg)*w + k] = o[7*count + first + k];
+        Hk[(6 + leg)*w + k] = o[8*count + first + k];
+        Hk[(9 + leg)*w + k] = o[9*count + first + k];
+        Hk[(12 + leg)*w + k] = o[10*count + first + k];
+        Hk[(15 + leg)*w + k] = o[11*count + first + k];
+        constraint_bias[(leg)*w + k] = o[12*count + first + k];
+        t->singular[k] += o[13*count + first + k];
+        t->total[k] += o[14*count + first + k];
     }
 }
 
-INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s, real *M, real
-    *Z)
+INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const real *sums, real *M,
+    real *Z, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real h_star_in_base_x = s->h_star_in_base_x[k];
-        const real h_star_in_base_y = s->h_star_in_base_y[k];
-        const real h_star_in_base_z = s->h_star_in_base_z[k];
-        const real J_star_t_10 = s->J_star_t_10[k];
-        const real J_star_t_11 = s->J_star_t_11[k];
-        const real J_star_t_12 = s->J_star_t_12[k];
-        const real J_star_t_14 = s->J_star_t_14[k];
-        const real J_star_t_15 = s->J_star_t_15[k];
-        const real J_star_t_17 = s->J_star_t_17[k];
-        const real Z_p_x = s->Z_p_x[k];
-        const real Z_p_y = s->Z_p_y[k];
-        const real Z_p_z = s->Z_p_z[k];
-        const real Z_q_in_base_x = s->Z_q_in_base_x[k];
-        const real Z_q_in_base_y = s->Z_q_in_base_y[k];
-        const real Z_q_in_base_z = s->Z_q_in_base_z[k];
-        const real total_upu_xx = s->sum[0][k];
-        const real total_upu_xy = s->sum[1][k];
-        const real total_upu_xz = s->sum[2][k];
-        const real total_upu_yy = s->sum[3][k];
-        const real total_upu_yz = s->sum[4][k];
-        const real total_upu_zz = s->sum[5][k];
-        const real total_upu_xx_2 = s->sum[6][k];
-        const real total_upu_xy_2 = s->sum[7][k];
-        const real total_upu_xz_2 = s->sum[8][k];
-        const real total_upu_yx = s->sum[9][k];
-        const real total_upu_yy_2 = s->sum[10][k];
-        const real total_upu_yz_2 = s->sum[11][k];
-        const real total_upu_zx = s->sum[12][k];
-        const real total_upu_zy = s->sum[13][k];
-        const real total_upu_zz_2 = s->sum[14][k];
-        const real total_upu_xx_3 = s->sum[15][k];
-        const real total_upu_xy_3 = s->sum[16][k];
-        const real total_upu_xz_3 = s->sum[17][k];
-        const real total_upu_yy_3 = s->sum[18][k];
-        const real total_upu_yz_3 = s->sum[19][k];
-        const real total_upu_zz_3 = s->sum[20][k];
-        const real total_upu_x = s->sum[21][k];
-        const real total_upu_y = s->sum[22][k];
-        const real total_upu_z = s->sum[23][k];
-        const real total_upu_x_2 = s->sum[24][k];
-        const real total_upu_y_2 = s->sum[25][k];
-        const real total_upu_z_2 = s->sum[26][k];
+        /* (M_tt) translational block of M */
         const real platform_mass = m->platform_mass;
-        /* (M1) translational block of M */
+        const real total_upu_xx = sums[0*w + k];
         const real M_tt_xx = platform_mass + total_upu_xx;
+        const real total_upu_yy = sums[3*w + k];
         const real M_tt_yy = platform_mass + total_upu_yy;
+        const real total_upu_zz = sums[5*w + k];
         const real M_tt_zz = platform_mass + total_upu_zz;
-        /* (M2) coupling block of M */
+        /* (M_ta) coupling block of M */
+        const real h_star_in_base_z = s[20*w + k];
+        const real total_upu_xy_2 = sums[7*w + k];
         const real M_ta_xy = h_star_in_base_z + total_upu_xy_2;
+        const real h_star_in_base_y = s[19*w + k];
+        const real total_upu_xz_2 = sums[8*w + k];
         const real M_ta_xz = -h_star_in_base_y - total_upu_xz_2;
+        const real total_upu_yx = sums[9*w + k];
         const real M_ta_yx = -h_star_in_base_z - total_upu_yx;
+        const real h_star_in_base_x = s[18*w + k];
+        const real total_upu_yz_2 = sums[11*w + k];
         const real M_ta_yz = h_star_in_base_x - total_upu_yz_2;
+        const real total_upu_zx = sums[12*w + k];
         const real M_ta_zx = h_star_in_base_y - total_upu_zx;
+        const real total_upu_zy = sums[13*w + k];
         const real M_ta_zy = total_upu_zy - h_star_in_base_x;
-        /* (M3) rotational block of M */
+        /* (M_aa) rotational block of M */
+        const real J_star_t_10 = s[21*w + k];
+        const real total_upu_xx_3 = sums[15*w + k];
         const real M_aa_xx = J_star_t_10 + total_upu_xx_3;
+        const real J_star_t_11 = s[22*w + k];
+        const real total_upu_xy_3 = sums[16*w + k];
         const real M_aa_xy = J_star_t_11 + total_upu_xy_3;
+        const real J_star_t_12 = s[23*w + k];
+        const real total_upu_xz_3 = sums[17*w + k];
         const real M_aa_xz = J_star_t_12 + total_upu_xz_3;
+        const real J_star_t_14 = s[24*w + k];
+        const real total_upu_yy_3 = sums[18*w + k];
         const real M_aa_yy = J_star_t_14 + total_upu_yy_3;
+        const real J_star_t_15 = s[25*w + k];
+        const real total_upu_yz_3 = sums[19*w + k];
         const real M_aa_yz = J_star_t_15 - total_upu_yz_3;
+        const real J_star_t_17 = s[26*w + k];
+        const real total_upu_zz_3 = sums[20*w + k];
         const real M_aa_zz = J_star_t_17 + total_upu_zz_3;
-        /* (M5) translational part of Z */
+        /* (Z_t) translational part of Z */
+        const real Z_p_x = s[27*w + k];
+        const real total_upu_x = sums[21*w + k];
         const real Z_t_x = Z_p_x + total_upu_x;
+        const real Z_p_y = s[28*w + k];
+        const real total_upu_y = sums[22*w + k];
         const real Z_t_y = Z_p_y + total_upu_y;
+        const real Z_p_z = s[29*w + k];
+        const real total_upu_z = sums[23*w + k];
         const real Z_t_z = Z_p_z + total_upu_z;
-        /* (M7) rotational part of Z */
+        /* (Z_a) rotational part of Z */
+        const real Z_q_in_base_x = s[30*w + k];
+        const real total_upu_x_2 = sums[24*w + k];
         const real Z_a_x = Z_q_in_base_x + total_upu_x_2;
+        const real Z_q_in_base_y = s[31*w + k];
+        const real total_upu_y_2 = sums[25*w + k];
         const real Z_a_y = Z_q_in_base_y + total_upu_y_2;
+        const real Z_q_in_base_z = s[32*w + k];
+        const real total_upu_z_2 = sums[26*w + k];
         const real Z_a_z = Z_q_in_base_z + total_upu_z_2;
         M[0*w + k] = M_tt_xx;
+        const real total_upu_xy = sums[1*w + k];
         M[1*w + k] = total_upu_xy;
         M[6*w + k] = total_upu_xy;
+        const real total_upu_xz = sums[2*w + k];
         M[2*w + k] = total_upu_xz;
         M[12*w + k] = total_upu_xz;
         M[7*w + k] = M_tt_yy;
+        const real total_upu_yz = sums[4*w + k];
         M[8*w + k] = total_upu_yz;
         M[13*w + k] = total_upu_yz;
         M[14*w + k] = M_tt_zz;
+        const real total_upu_xx_2 = sums[6*w + k];
         M[3*w + k] = -total_upu_xx_2;
         M[18*w + k] = -total_upu_xx_2;
         M[4*w + k] = M_ta_xy;
@@ -2037,6 +2178,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
+        const real total_upu_yy_2 = sums[10*w + k];
         M[10*w + k] = total_upu_yy_2;
         M[25*w + k] = total_upu_yy_2;
         M[11*w + k] = M_ta_yz;
@@ -2045,6 +2187,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
+        const real total_upu_zz_2 = sums[14*w + k];
         M[17*w + k] = total_upu_zz_2;
         M[32*w + k] = total_upu_zz_2;
         M[21*w + k] = M_aa_xx;
@@ -2062,75 +2205,57 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
+        t->total[k] += (((M_tt_xx + (total_upu_xy + total_upu_xz)) + (M_tt_yy + (total_upu_yz +
+            M_tt_zz))) + ((total_upu_xx_2 + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + total_upu_yy_2) +
+            (M_ta_yz + M_ta_zx)))) + (((M_ta_zy + (total_upu_zz_2 + M_aa_xx)) + ((M_aa_xy +
+            M_aa_xz) + (M_aa_yy + M_aa_yz))) + ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) +
+            (Z_a_y + Z_a_z))));
     }
 }
 
-INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real *V, real *M, real
-    *Z, real *H, real *Hk, real *constraint_bias, verdict *t)
+INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
+    *H, real *Hk, real *constraint_bias, verdict *t)
 {
-    dynamics_values values, *const s = &values;
-    dynamics_results_upu results_upu;
-    dynamics_before(m, w, X, V, s, t);
-    if (w == 1) {  /* the legs side by side */
-        dynamics_legs_upu(m, 0, 1, s, 0, 3, 0, &results_upu);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            dynamics_place_upu(w, &results_upu, leg, leg, H, Hk, constraint_bias, t);
-        }
-        for (size_t n = 0; n < 27; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_upu.sum[n], 3);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_upu.sum, 0, sizeof results_upu.sum);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            dynamics_legs_upu(m, leg, 0, s, 1, w, 1, &results_upu);
-            dynamics_place_upu(w, &results_upu, leg, 0, H, Hk, constraint_bias, t);
-        }
-        for (size_t n = 0; n < 27; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_upu.sum[n][k];
-            }
-        }
+    real s[33] = {0}, sums[27] = {0}, terms_upu[27*LEGS(3)] = {0}, o_upu[15*LEGS(3)] = {0};
+    dynamics_before(m, 1, X, V, s, t);
+    dynamics_legs_upu(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_upu, o_upu);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        dynamics_place_upu(1, LEGS(3), o_upu, leg, leg, H, Hk, constraint_bias, t);
     }
-    dynamics_after(m, w, s, M, Z);
+    for (size_t n = 0; n < 27; ++n) {
+        sums[n] = total(terms_upu + n*LEGS(3), 3);
+    }
+    dynamics_after(m, 1, s, sums, M, Z, t);
 }
 
-/* ---- M: 1068 mul, 735 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], h_star_in_base_x[LANES],
-        h_star_in_base_y[LANES], h_star_in_base_z[LANES], J_star_t_10[LANES], J_star_t_11[LANES],
-        J_star_t_12[LANES], J_star_t_14[LANES], J_star_t_15[LANES], J_star_t_17[LANES],
-        sum[21][LANES];
-} M_values;
-typedef struct {
-    real sum[21][8], singular[8];
-} M_results_upu;
+INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
+    real *H, real *Hk, real *constraint_bias, verdict *t)
+{
+    real s[33*LANES], sums[27*LANES], o_upu[15*LANES];
+    dynamics_before(m, LANES, X, V, s, t);
+    clear(sums, 27*LANES);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        dynamics_legs_upu(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_upu);
+        dynamics_place_upu(LANES, LANES, o_upu, leg, 0, H, Hk, constraint_bias, t);
+    }
+    dynamics_after(m, LANES, s, sums, M, Z, t);
+}
 
-INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, verdict *t)
+/* ---- M: 1032 mul, 699 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real J_star_t_6 = m->J_star_t_6;
-        const real J_star_t_8 = m->J_star_t_8;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_yz = m->J_star_yz;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -2154,18 +2279,27 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, ve
         const real R_zx = quaternion_xz - quaternion_wy;
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* (L2) first moment about the platform origin */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_z = m->h_star_z;
         const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
         const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
         const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
-        /* (L3) inertia tensor about the platform origin */
+        /* (J_star) inertia tensor about the platform origin */
+        const real J_star_t_6 = m->J_star_t_6;
+        const real J_star_xy = m->J_star_xy;
+        const real J_star_yz = m->J_star_yz;
         const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_6*R_xy;
         const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_6*R_yy;
         const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_6*R_zy;
+        const real J_star_t_8 = m->J_star_t_8;
+        const real J_star_xz = m->J_star_xz;
         const real J_star_t_4 = J_star_t_8*R_xz - J_star_xz*R_xx;
         const real J_star_t_5 = J_star_t_8*R_yz - J_star_xz*R_yx;
         const real J_star_t_7 = J_star_t_8*R_zz - J_star_xz*R_zx;
         const real J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz;
+        const real J_star_xx = m->J_star_xx;
         const real J_star_t_10 = 2*J_star_t_9 + J_star_xx;
         const real J_star_t_11 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
@@ -2177,450 +2311,465 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, ve
             J_star_t_7*R_yz;
         const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_7*R_zz;
         const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->h_star_in_base_x[k] = h_star_in_base_x;
-        s->h_star_in_base_y[k] = h_star_in_base_y;
-        s->h_star_in_base_z[k] = h_star_in_base_z;
-        s->J_star_t_10[k] = J_star_t_10;
-        s->J_star_t_11[k] = J_star_t_11;
-        s->J_star_t_12[k] = J_star_t_12;
-        s->J_star_t_14[k] = J_star_t_14;
-        s->J_star_t_15[k] = J_star_t_15;
-        s->J_star_t_17[k] = J_star_t_17;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = h_star_in_base_x;
+        s[13*w + k] = h_star_in_base_y;
+        s[14*w + k] = h_star_in_base_z;
+        s[15*w + k] = J_star_t_10;
+        s[16*w + k] = J_star_t_11;
+        s[17*w + k] = J_star_t_12;
+        s[18*w + k] = J_star_t_14;
+        s[19*w + k] = J_star_t_15;
+        s[20*w + k] = J_star_t_17;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void M_legs_upu(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
-    states, size_t count, int add, M_results_upu *o)
+INLINE void M_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real J_group_2_xx = m->J_group_2_xx[i];
-        const real J_group_2_xy = m->J_group_2_xy[i];
-        const real J_group_2_xz = m->J_group_2_xz[i];
-        const real J_group_2_yy = m->J_group_2_yy[i];
-        const real J_group_2_yz = m->J_group_2_yz[i];
-        const real J_group_2_zz = m->J_group_2_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_link3_mass = m->upu_link3_mass[i];
-        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
-        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
-        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        /* (upu-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        /* (upu-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+        const real upu_q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
-        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real upu_q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
             R_yz*upu_platform_point_z;
-        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real upu_q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
             R_zz*upu_platform_point_z;
-        const real S_x = q_in_base_x + t_x - upu_base_point_x;
-        const real S_y = q_in_base_y + t_y - upu_base_point_y;
-        const real S_z = q_in_base_z + t_z - upu_base_point_z;
-        /* (upu-K2) component along the reference direction */
-        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
-        /* (upu-K3) component across the reference direction */
-        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
-        /* (upu-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upu-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
-        /* (upu-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upu-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+        const real t_x = s[0*w + j];
+        const real upu_base_point_x = m->upu_base_point_x[i];
+        const real upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x;
+        const real t_y = s[1*w + j];
+        const real upu_base_point_y = m->upu_base_point_y[i];
+        const real upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y;
+        const real t_z = s[2*w + j];
+        const real upu_base_point_z = m->upu_base_point_z[i];
+        const real upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z;
+        /* (upu-px_1) component along the reference direction */
+        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
+        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
+        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
+        const real upu_px_1 = upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx +
+            upu_S_z*upu_base_frame_zx;
+        /* (upu-py_1) component across the reference direction */
+        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
+        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
+        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
+        const real upu_py_1 = upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy +
+            upu_S_z*upu_base_frame_zy;
+        /* (upu-rho2_1) squared amplitude */
+        const real upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1;
+        /* (upu-root_1) amplitude, with the sign of the branch */
+        const real upu_branch_1 = m->upu_branch_1[i];
+        const real upu_root_1 = upu_branch_1*root(upu_rho2_1);
+        /* (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
+        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
+        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
+        const real upu_xi_1_t = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
+            upu_S_z*upu_base_frame_zz;
+        /* (upu-rho2_2) squared amplitude */
+        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t;
+        /* (upu-root_2) amplitude, with the sign of the branch */
+        const real upu_branch_2 = m->upu_branch_2[i];
+        const real upu_root_2 = upu_branch_2*root(upu_rho2_2);
+        /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_upu_root_2 = 1/upu_root_2;
+        const real upu_c_2 = inv_upu_root_2*upu_root_1;
+        /* (upu-s_2) sine of the angle of joint 2 from its reference direction */
+        const real upu_s_2 = inv_upu_root_2*upu_xi_1_t;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
+        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
+        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        const real upu_end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
             R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
             R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
             R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+        const real upu_end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
             R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
             R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
             R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        const real end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
+        const real upu_end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
             R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
             R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
             R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
-        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
-        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
-        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
-        /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t = root_1*root_2;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
-        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-           */
-        const real n_c_z = n_m1_r0_y*root_2/volume_c_t;
-        /* (upu-V9) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
-        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
-        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
-        const real w_1_t = s_1*s_2;
-        const real w_1_t_2 = c_1*s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
-            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
-            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
-            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
+        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_upu_root_1 = 1/upu_root_1;
+        const real upu_c_1 = inv_upu_root_1*upu_py_1;
+        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real upu_s_1 = inv_upu_root_1*upu_px_1;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1;
+        const real upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y;
+        const real upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2;
+        /* (upu-volume_c) triple product of the velocity vectors */
+        const real upu_volume_c_t = upu_root_1*upu_root_2;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2;
+        /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
+           out */
+        const real upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t;
+        /* (upu-w_1) force part of reciprocal wrench 1 */
+        const real axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 -
+            upu_base_frame_xx*upu_c_1;
+        const real axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 -
+            upu_base_frame_yx*upu_c_1;
+        const real axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 -
+            upu_base_frame_zx*upu_c_1;
+        const real upu_w_1_t = upu_s_1*upu_s_2;
+        const real upu_w_1_t_2 = upu_c_1*upu_s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*upu_w_1_t +
+            upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*upu_w_1_t +
+            upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*upu_w_1_t +
+            upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2;
         const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
             axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
         const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
             axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
         const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
             axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
-        const real inv_w_1_t_25 = 1/w_1_t_3;
-        const real w_1_t_4 = inv_w_1_t_25*n_c_z;
-        /* (upu-A19) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d_alpha_1_t = inv_w_1_t_25*s_2;
-        const real d_alpha_1_t_2 = c_2*inv_w_1_t_25;
-        /* (upu-N5) coefficient of the acceleration in: acceleration of the reference point of link 3,
-           less gravity */
-        const real d_acc_3_t = d_alpha_1_t_2*root_2;
-        /* (upu-N9) coefficient of the acceleration in: inertia force of link 3 from its turning about its
-           reference point */
-        const real d_phi_3_t = h_3_z*inv_root_2;
-        const real d_phi_3_t_2 = d_alpha_1_t_2*h_3_y;
-        /* (upu-N36) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_z = s_2*(J_group_2_xx*d_alpha_1_t - J_group_2_xy*d_alpha_1_t_2 -
-            d_acc_3_t*h_3_z) - c_2*(J_group_2_xy*d_alpha_1_t - J_group_2_yy*d_alpha_1_t_2 -
-            d_acc_3_t*h_3_x - root_2*(d_acc_3_t*upu_link3_mass + d_alpha_1_t_2*h_3_x -
-            d_alpha_1_t*h_3_z));
-        /* (upu-N40) coefficient of the acceleration in: force at the connection point that balances the
+        const real upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y;
+        const real inv_upu_w_1_t_25 = 1/upu_w_1_t_3;
+        const real upu_w_1_t_4 = inv_upu_w_1_t_25*upu_n_c_z;
+        /* (upu-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+        const real upu_d_alpha_1_t = inv_upu_w_1_t_25*upu_s_2;
+        const real upu_d_alpha_1_t_2 = inv_upu_w_1_t_25*upu_c_2;
+        /* (upu-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link
+           3, less gravity */
+        const real upu_d_acc_3_t = upu_d_alpha_1_t_2*upu_root_2;
+        /* (upu-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
+           about its reference point */
+        const real upu_h_3_z = m->upu_h_3_z[i];
+        const real upu_d_phi_3_t = inv_upu_root_2*upu_h_3_z;
+        const real upu_h_3_y = m->upu_h_3_y[i];
+        const real upu_d_phi_3_t_2 = upu_d_alpha_1_t_2*upu_h_3_y;
+        /* (upu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real upu_J_group_2_xx = m->upu_J_group_2_xx[i];
+        const real upu_J_group_2_xy = m->upu_J_group_2_xy[i];
+        const real upu_J_group_2_yy = m->upu_J_group_2_yy[i];
+        const real upu_h_3_x = m->upu_h_3_x[i];
+        const real upu_link3_mass = m->upu_link3_mass[i];
+        const real upu_d_Gamma_1_z = upu_s_2*(upu_J_group_2_xx*upu_d_alpha_1_t -
+            upu_J_group_2_xy*upu_d_alpha_1_t_2 - upu_d_acc_3_t*upu_h_3_z) -
+            upu_c_2*(upu_J_group_2_xy*upu_d_alpha_1_t - upu_J_group_2_yy*upu_d_alpha_1_t_2 -
+            upu_d_acc_3_t*upu_h_3_x - upu_root_2*(upu_d_acc_3_t*upu_link3_mass +
+            upu_d_alpha_1_t_2*upu_h_3_x - upu_d_alpha_1_t*upu_h_3_z));
+        /* (upu-d_G) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
-        const real d_G_t = inv_root_2*(J_group_2_xz*d_alpha_1_t - J_group_2_yz*d_alpha_1_t_2 -
-            d_alpha_1_t*h_3_y*root_2);
-        /* (upu-N54) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = inv_root_2*(h_3_x + J_group_2_zz*inv_root_2 + root_2*(upu_link3_mass +
-            h_3_x*inv_root_2)) - upu_link3_mass;
-        const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = d_Gamma_1_z*inv_w_1_t_25 - upu_link3_mass;
-        const real Q_t_4 = R(0.5)*Q_t_3;
-        const real Q_t_5 = Q_t_2*axis_y_upu_axes2_in_base_x + axis_x_upu_axes2_x*d_phi_3_t +
-            axis_z_upu_axes2_in_base_x*d_G_t;
-        const real Q_t_6 = Q_t_2*axis_y_upu_axes2_in_base_y + axis_x_upu_axes2_y*d_phi_3_t +
-            axis_z_upu_axes2_in_base_y*d_G_t;
-        const real Q_t_7 = Q_t_2*axis_y_upu_axes2_in_base_z + axis_x_upu_axes2_z*d_phi_3_t +
-            axis_z_upu_axes2_in_base_z*d_G_t;
-        const real Q_t_8 = Q_t_4*axis_z_upu_axes2_in_base_x - axis_x_upu_axes2_x*d_phi_3_t_2;
-        const real Q_t_9 = Q_t_4*axis_z_upu_axes2_in_base_y - axis_x_upu_axes2_y*d_phi_3_t_2;
-        const real Q_t_10 = Q_t_4*axis_z_upu_axes2_in_base_z - axis_x_upu_axes2_z*d_phi_3_t_2;
-        const real Q_t_11 = Q_t_5*axis_y_upu_axes2_in_base_x + Q_t_8*axis_z_upu_axes2_in_base_x;
-        const real Q_t_12 = 2*Q_t_11 + upu_link3_mass;
-        const real Q_t_13 = Q_t_5*axis_y_upu_axes2_in_base_y + Q_t_6*axis_y_upu_axes2_in_base_x +
-            Q_t_8*axis_z_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_x;
-        const real Q_t_14 = Q_t_10*axis_z_upu_axes2_in_base_x + Q_t_5*axis_y_upu_axes2_in_base_z +
-            Q_t_7*axis_y_upu_axes2_in_base_x + Q_t_8*axis_z_upu_axes2_in_base_z;
-        const real Q_t_15 = Q_t_6*axis_y_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_y;
-        const real Q_t_16 = 2*Q_t_15 + upu_link3_mass;
-        const real Q_t_17 = Q_t_10*axis_z_upu_axes2_in_base_y + Q_t_6*axis_y_upu_axes2_in_base_z +
-            Q_t_7*axis_y_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_z;
-        const real Q_t_18 = Q_t_10*axis_z_upu_axes2_in_base_z + Q_t_7*axis_y_upu_axes2_in_base_z;
-        const real Q_t_19 = 2*Q_t_18 + upu_link3_mass;
-        /* (upu-V15) moment part of reciprocal wrench 1 */
-        const real o_1_x = end_p1_r3_y*w_1_t_4;
-        const real o_1_y = end_p1_r3_x*w_1_t_4;
-        /* (upu-A18) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d0_alpha_1_xx = o_1_x*s_2;
-        const real d0_alpha_1_xy = o_1_y*s_2;
-        const real d0_alpha_1_yx = c_2*o_1_x;
-        const real d0_alpha_1_yy = c_2*o_1_y;
-        /* (upu-N4) coefficient of the acceleration in: acceleration of the reference point of link 3,
-           less gravity */
-        const real d0_acc_3_t = d0_alpha_1_yx*root_2;
-        const real d0_acc_3_t_2 = d0_alpha_1_yy*root_2;
-        /* (upu-N8) coefficient of the acceleration in: inertia force of link 3 from its turning about its
-           reference point */
-        const real d0_phi_3_t = d0_alpha_1_yx*h_3_y;
-        const real d0_phi_3_t_2 = d0_alpha_1_yy*h_3_y;
-        /* (upu-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d0_Gamma_1_x = s_2*(J_group_2_xy*d0_alpha_1_yx + d0_acc_3_t*h_3_z -
-            J_group_2_xx*d0_alpha_1_xx) - c_2*(J_group_2_yy*d0_alpha_1_yx + d0_acc_3_t*h_3_x -
-            J_group_2_xy*d0_alpha_1_xx - root_2*(d0_alpha_1_xx*h_3_z - d0_acc_3_t*upu_link3_mass -
-            d0_alpha_1_yx*h_3_x));
-        const real d0_Gamma_1_y = s_2*(J_group_2_xx*d0_alpha_1_xy - J_group_2_xy*d0_alpha_1_yy -
-            d0_acc_3_t_2*h_3_z) - c_2*(J_group_2_xy*d0_alpha_1_xy - J_group_2_yy*d0_alpha_1_yy -
-            d0_acc_3_t_2*h_3_x - root_2*(d0_acc_3_t_2*upu_link3_mass + d0_alpha_1_yy*h_3_x -
-            d0_alpha_1_xy*h_3_z));
-        /* (upu-N39) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d0_G_t = d0_Gamma_1_x*inv_w_1_t_25;
-        const real d0_G_t_2 = d0_Gamma_1_y*inv_w_1_t_25;
-        const real d0_G_t_3 = inv_root_2*(J_group_2_yz*d0_alpha_1_yx + d0_alpha_1_xx*h_3_y*root_2
-            - J_group_2_xz*d0_alpha_1_xx);
-        const real d0_G_t_4 = inv_root_2*(J_group_2_xz*d0_alpha_1_xy - J_group_2_yz*d0_alpha_1_yy
-            - d0_alpha_1_xy*h_3_y*root_2);
-        /* (M2) coupling block of M */
-        const real M_ta_t = Q_t_13*q_in_base_z;
-        const real M_ta_t_2 = Q_t_14*q_in_base_y;
-        const real M_ta_t_3 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x;
-        const real M_ta_t_4 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x;
-        const real M_ta_t_5 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y;
-        const real M_ta_t_6 = Q_t_17*q_in_base_x;
-        const real M_ta_t_7 = M_ta_t - M_ta_t_6;
-        const real M_ta_t_8 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x;
-        const real M_ta_t_9 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y;
-        const real M_ta_t_10 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x;
-        const real M_ta_t_11 = M_ta_t_6 - M_ta_t_2;
-        /* (upu-N51) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real d0_c_in_base_x = -axis_x_upu_axes2_x*d0_phi_3_t -
-            axis_y_upu_axes2_in_base_x*d0_G_t_3 - axis_z_upu_axes2_in_base_x*d0_G_t;
-        const real d0_c_in_base_y = -axis_x_upu_axes2_y*d0_phi_3_t -
-            axis_y_upu_axes2_in_base_y*d0_G_t_3 - axis_z_upu_axes2_in_base_y*d0_G_t;
-        const real d0_c_in_base_z = -axis_x_upu_axes2_z*d0_phi_3_t -
-            axis_y_upu_axes2_in_base_z*d0_G_t_3 - axis_z_upu_axes2_in_base_z*d0_G_t;
-        const real d0_c_in_base_x_2 = axis_x_upu_axes2_x*d0_phi_3_t_2 -
-            axis_y_upu_axes2_in_base_x*d0_G_t_4 - axis_z_upu_axes2_in_base_x*d0_G_t_2;
-        const real d0_c_in_base_y_2 = axis_x_upu_axes2_y*d0_phi_3_t_2 -
-            axis_y_upu_axes2_in_base_y*d0_G_t_4 - axis_z_upu_axes2_in_base_y*d0_G_t_2;
-        const real d0_c_in_base_z_2 = axis_x_upu_axes2_z*d0_phi_3_t_2 -
-            axis_y_upu_axes2_in_base_z*d0_G_t_4 - axis_z_upu_axes2_in_base_z*d0_G_t_2;
-        const real d0_c_in_base_y_3 = axis_x_upu_axes2_y*d0_c_in_base_x +
-            axis_y_upu_axes2_in_base_y*d0_c_in_base_x_2;
-        const real d0_c_in_base_z_3 = axis_x_upu_axes2_z*d0_c_in_base_x +
-            axis_y_upu_axes2_in_base_z*d0_c_in_base_x_2;
-        const real d0_c_in_base_x_3 = axis_x_upu_axes2_x*d0_c_in_base_y +
-            axis_y_upu_axes2_in_base_x*d0_c_in_base_y_2;
-        const real d0_c_in_base_y_4 = axis_x_upu_axes2_y*d0_c_in_base_y +
-            axis_y_upu_axes2_in_base_y*d0_c_in_base_y_2;
-        const real d0_c_in_base_z_4 = axis_x_upu_axes2_z*d0_c_in_base_y +
-            axis_y_upu_axes2_in_base_z*d0_c_in_base_y_2;
-        const real d0_c_in_base_x_4 = axis_x_upu_axes2_x*d0_c_in_base_z +
-            axis_y_upu_axes2_in_base_x*d0_c_in_base_z_2;
-        const real d0_c_in_base_y_5 = axis_x_upu_axes2_y*d0_c_in_base_z +
-            axis_y_upu_axes2_in_base_y*d0_c_in_base_z_2;
-        const real d0_c_in_base_z_5 = axis_x_upu_axes2_z*d0_c_in_base_z +
-            axis_y_upu_axes2_in_base_z*d0_c_in_base_z_2;
-        /* (M2) coupling block of M */
-        const real M_ta_t_12 = M_ta_t + axis_x_upu_axes2_x*d0_c_in_base_x +
-            axis_y_upu_axes2_in_base_x*d0_c_in_base_x_2 - M_ta_t_2;
-        const real M_ta_t_13 = M_ta_t_3 - d0_c_in_base_y_3;
-        const real M_ta_t_14 = M_ta_t_4 + d0_c_in_base_z_3;
-        const real M_ta_t_15 = M_ta_t_5 + d0_c_in_base_x_3;
-        const real M_ta_t_16 = M_ta_t_7 - d0_c_in_base_y_4;
-        const real M_ta_t_17 = M_ta_t_8 + d0_c_in_base_z_4;
-        const real M_ta_t_18 = M_ta_t_9 + d0_c_in_base_x_4;
-        const real M_ta_t_19 = M_ta_t_10 - d0_c_in_base_y_5;
-        const real M_ta_t_20 = M_ta_t_11 - d0_c_in_base_z_5;
-        /* (upu-N43) coefficient of the acceleration in: moment along moment direction 1 that balances the
-           leg's inertia and weight along all freedoms */
-        const real d0_G_m1_t = d0_Gamma_1_x*w_1_t_4;
-        const real d0_G_m1_t_2 = d0_Gamma_1_y*w_1_t_4;
-        /* (upu-N44) coefficient of the acceleration in: moment along moment direction 1 that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_m1_t = c_2*h_3_y*w_1_t_4;
-        const real d_G_m1_t_2 = w_1_t_4*(s_2*(J_group_2_xz*inv_root_2 - h_3_y) -
-            J_group_2_yz*c_2*inv_root_2);
-        const real d_G_m1_t_3 = d_Gamma_1_z*w_1_t_4;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_in_base_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x -
-            axis_x_upu_axes2_x*end_p1_r3_y;
-        const real n_m1_in_base_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x -
-            axis_x_upu_axes2_y*end_p1_r3_y;
-        const real n_m1_in_base_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x -
-            axis_x_upu_axes2_z*end_p1_r3_y;
-        /* (upu-N44) coefficient of the acceleration in: moment along moment direction 1 that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_m1_in_base_x = axis_y_upu_axes2_in_base_x*d_G_m1_t_2 +
-            axis_z_upu_axes2_in_base_x*d_G_m1_t_3 - axis_x_upu_axes2_x*d_G_m1_t;
-        const real d_G_m1_in_base_y = axis_y_upu_axes2_in_base_y*d_G_m1_t_2 +
-            axis_z_upu_axes2_in_base_y*d_G_m1_t_3 - axis_x_upu_axes2_y*d_G_m1_t;
-        const real d_G_m1_in_base_z = axis_y_upu_axes2_in_base_z*d_G_m1_t_2 +
-            axis_z_upu_axes2_in_base_z*d_G_m1_t_3 - axis_x_upu_axes2_z*d_G_m1_t;
-        /* (upu-N48) coefficient of the acceleration in: moment at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_m_xx = d_G_m1_in_base_x*n_m1_in_base_x;
-        const real d_G_m_xy = d_G_m1_in_base_y*n_m1_in_base_x;
-        const real d_G_m_xz = d_G_m1_in_base_z*n_m1_in_base_x;
-        const real d_G_m_yx = d_G_m1_in_base_x*n_m1_in_base_y;
-        /* (upu-N43) coefficient of the acceleration in: moment along moment direction 1 that balances the
-           leg's inertia and weight along all freedoms */
-        const real d0_G_m1_in_base_y = axis_x_upu_axes2_y*d0_G_m1_t +
-            axis_y_upu_axes2_in_base_y*d0_G_m1_t_2;
-        const real d0_G_m1_in_base_z = axis_x_upu_axes2_z*d0_G_m1_t +
-            axis_y_upu_axes2_in_base_z*d0_G_m1_t_2;
-        /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t_5*q_in_base_z + d0_c_in_base_x_3*q_in_base_z +
-            d_G_m_xz*q_in_base_y + n_m1_in_base_x*(axis_x_upu_axes2_x*d0_G_m1_t +
-            axis_y_upu_axes2_in_base_x*d0_G_m1_t_2) - M_ta_t_9*q_in_base_y -
-            d0_c_in_base_x_4*q_in_base_y - d_G_m_xy*q_in_base_z;
-        const real M_aa_t_2 = M_ta_t_10*q_in_base_y + d0_G_m1_in_base_y*n_m1_in_base_x +
-            d0_c_in_base_y_4*q_in_base_z + d_G_m_xx*q_in_base_z - M_ta_t_7*q_in_base_z -
-            d0_c_in_base_y_5*q_in_base_y - d_G_m_xz*q_in_base_x;
-        const real M_aa_t_3 = M_ta_t_11*q_in_base_y + M_ta_t_8*q_in_base_z +
-            d0_G_m1_in_base_z*n_m1_in_base_x + d0_c_in_base_z_4*q_in_base_z + d_G_m_xy*q_in_base_x
-            - d0_c_in_base_z_5*q_in_base_y - d_G_m_xx*q_in_base_y;
-        const real M_aa_t_4 = M_ta_t_3*q_in_base_z + d0_G_m1_in_base_y*n_m1_in_base_y +
-            d0_c_in_base_y_5*q_in_base_x + d_G_m_yx*q_in_base_z - M_ta_t_10*q_in_base_x -
-            d0_c_in_base_y_3*q_in_base_z - d_G_m1_in_base_z*n_m1_in_base_y*q_in_base_x;
-        const real M_aa_t_5 = M_ta_t_11*q_in_base_x + M_ta_t_4*q_in_base_z +
-            d0_c_in_base_z_3*q_in_base_z + d_G_m_yx*q_in_base_y - d0_G_m1_in_base_z*n_m1_in_base_y
-            - d0_c_in_base_z_5*q_in_base_x - d_G_m1_in_base_y*n_m1_in_base_y*q_in_base_x;
-        const real M_aa_t_6 = M_ta_t_4*q_in_base_y + d0_G_m1_in_base_z*n_m1_in_base_z +
-            d0_c_in_base_z_3*q_in_base_y + d_G_m1_in_base_y*n_m1_in_base_z*q_in_base_x -
-            M_ta_t_8*q_in_base_x - d0_c_in_base_z_4*q_in_base_x -
-            d_G_m1_in_base_x*n_m1_in_base_z*q_in_base_y;
-        o->sum[0][k] = add ? o->sum[0][k] + Q_t_12 : Q_t_12;  /* total_upu_xx */
-        o->sum[1][k] = add ? o->sum[1][k] + Q_t_13 : Q_t_13;  /* total_upu_xy */
-        o->sum[2][k] = add ? o->sum[2][k] + Q_t_14 : Q_t_14;  /* total_upu_xz */
-        o->sum[3][k] = add ? o->sum[3][k] + Q_t_16 : Q_t_16;  /* total_upu_yy */
-        o->sum[4][k] = add ? o->sum[4][k] + Q_t_17 : Q_t_17;  /* total_upu_yz */
-        o->sum[5][k] = add ? o->sum[5][k] + Q_t_19 : Q_t_19;  /* total_upu_zz */
-        o->sum[6][k] = add ? o->sum[6][k] + M_ta_t_12 : M_ta_t_12;  /* total_upu_xx_2 */
-        o->sum[7][k] = add ? o->sum[7][k] + M_ta_t_13 : M_ta_t_13;  /* total_upu_xy_2 */
-        o->sum[8][k] = add ? o->sum[8][k] + M_ta_t_14 : M_ta_t_14;  /* total_upu_xz_2 */
-        o->sum[9][k] = add ? o->sum[9][k] + M_ta_t_15 : M_ta_t_15;  /* total_upu_yx */
-        o->sum[10][k] = add ? o->sum[10][k] + M_ta_t_16 : M_ta_t_16;  /* total_upu_yy_2 */
-        o->sum[11][k] = add ? o->sum[11][k] + M_ta_t_17 : M_ta_t_17;  /* total_upu_yz_2 */
-        o->sum[12][k] = add ? o->sum[12][k] + M_ta_t_18 : M_ta_t_18;  /* total_upu_zx */
-        o->sum[13][k] = add ? o->sum[13][k] + M_ta_t_19 : M_ta_t_19;  /* total_upu_zy */
-        o->sum[14][k] = add ? o->sum[14][k] + M_ta_t_20 : M_ta_t_20;  /* total_upu_zz_2 */
-        o->sum[15][k] = add ? o->sum[15][k] + M_aa_t : M_aa_t;  /* total_upu_xx_3 */
-        o->sum[16][k] = add ? o->sum[16][k] + M_aa_t_2 : M_aa_t_2;  /* total_upu_xy_3 */
-        o->sum[17][k] = add ? o->sum[17][k] + M_aa_t_3 : M_aa_t_3;  /* total_upu_xz_3 */
-        o->sum[18][k] = add ? o->sum[18][k] + M_aa_t_4 : M_aa_t_4;  /* total_upu_yy_3 */
-        o->sum[19][k] = add ? o->sum[19][k] + M_aa_t_5 : M_aa_t_5;  /* total_upu_yz_3 */
-        o->sum[20][k] = add ? o->sum[20][k] + M_aa_t_6 : M_aa_t_6;  /* total_upu_zz_3 */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(-volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(w_1_t_3) >
+        const real upu_J_group_2_xz = m->upu_J_group_2_xz[i];
+        const real upu_J_group_2_yz = m->upu_J_group_2_yz[i];
+        const real upu_d_G_t = inv_upu_root_2*(upu_J_group_2_xz*upu_d_alpha_1_t -
+            upu_J_group_2_yz*upu_d_alpha_1_t_2 - upu_d_alpha_1_t*upu_h_3_y*upu_root_2);
+        /* (upu-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real upu_J_group_2_zz = m->upu_J_group_2_zz[i];
+        const real upu_Q_t = inv_upu_root_2*(upu_h_3_x + inv_upu_root_2*upu_J_group_2_zz +
+            upu_root_2*(upu_link3_mass + inv_upu_root_2*upu_h_3_x)) - upu_link3_mass;
+        const real upu_Q_t_2 = R(0.5)*upu_Q_t;
+        const real upu_Q_t_3 = inv_upu_w_1_t_25*upu_d_Gamma_1_z - upu_link3_mass;
+        const real upu_Q_t_4 = R(0.5)*upu_Q_t_3;
+        const real upu_Q_t_5 = axis_x_upu_axes2_x*upu_d_phi_3_t +
+            axis_y_upu_axes2_in_base_x*upu_Q_t_2 + axis_z_upu_axes2_in_base_x*upu_d_G_t;
+        const real upu_Q_t_6 = axis_x_upu_axes2_y*upu_d_phi_3_t +
+            axis_y_upu_axes2_in_base_y*upu_Q_t_2 + axis_z_upu_axes2_in_base_y*upu_d_G_t;
+        const real upu_Q_t_7 = axis_x_upu_axes2_z*upu_d_phi_3_t +
+            axis_y_upu_axes2_in_base_z*upu_Q_t_2 + axis_z_upu_axes2_in_base_z*upu_d_G_t;
+        const real upu_Q_t_8 = axis_z_upu_axes2_in_base_x*upu_Q_t_4 -
+            axis_x_upu_axes2_x*upu_d_phi_3_t_2;
+        const real upu_Q_t_9 = axis_z_upu_axes2_in_base_y*upu_Q_t_4 -
+            axis_x_upu_axes2_y*upu_d_phi_3_t_2;
+        const real upu_Q_t_10 = axis_z_upu_axes2_in_base_z*upu_Q_t_4 -
+            axis_x_upu_axes2_z*upu_d_phi_3_t_2;
+        const real upu_Q_t_11 = axis_y_upu_axes2_in_base_x*upu_Q_t_5 +
+            axis_z_upu_axes2_in_base_x*upu_Q_t_8;
+        const real upu_Q_t_12 = 2*upu_Q_t_11 + upu_link3_mass;
+        const real upu_Q_t_13 = axis_y_upu_axes2_in_base_x*upu_Q_t_6 +
+            axis_y_upu_axes2_in_base_y*upu_Q_t_5 + axis_z_upu_axes2_in_base_x*upu_Q_t_9 +
+            axis_z_upu_axes2_in_base_y*upu_Q_t_8;
+        const real upu_Q_t_14 = axis_y_upu_axes2_in_base_x*upu_Q_t_7 +
+            axis_y_upu_axes2_in_base_z*upu_Q_t_5 + axis_z_upu_axes2_in_base_x*upu_Q_t_10 +
+            axis_z_upu_axes2_in_base_z*upu_Q_t_8;
+        const real upu_Q_t_15 = axis_y_upu_axes2_in_base_y*upu_Q_t_6 +
+            axis_z_upu_axes2_in_base_y*upu_Q_t_9;
+        const real upu_Q_t_16 = 2*upu_Q_t_15 + upu_link3_mass;
+        const real upu_Q_t_17 = axis_y_upu_axes2_in_base_y*upu_Q_t_7 +
+            axis_y_upu_axes2_in_base_z*upu_Q_t_6 + axis_z_upu_axes2_in_base_y*upu_Q_t_10 +
+            axis_z_upu_axes2_in_base_z*upu_Q_t_9;
+        const real upu_Q_t_18 = axis_y_upu_axes2_in_base_z*upu_Q_t_7 +
+            axis_z_upu_axes2_in_base_z*upu_Q_t_10;
+        const real upu_Q_t_19 = 2*upu_Q_t_18 + upu_link3_mass;
+        /* (upu-o_1) moment part of reciprocal wrench 1 */
+        const real upu_o_1_x = upu_end_p1_r3_y*upu_w_1_t_4;
+        const real upu_o_1_y = upu_end_p1_r3_x*upu_w_1_t_4;
+        /* (upu-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+        const real upu_dalpha_alpha_1_xx = upu_o_1_x*upu_s_2;
+        const real upu_dalpha_alpha_1_xy = upu_o_1_y*upu_s_2;
+        const real upu_dalpha_alpha_1_yx = upu_c_2*upu_o_1_x;
+        const real upu_dalpha_alpha_1_yy = upu_c_2*upu_o_1_y;
+        /* (upu-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of
+           link 3, less gravity */
+        const real upu_dalpha_acc_3_t = upu_dalpha_alpha_1_yx*upu_root_2;
+        const real upu_dalpha_acc_3_t_2 = upu_dalpha_alpha_1_yy*upu_root_2;
+        /* (upu-dalpha_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
+           about its reference point */
+        const real upu_dalpha_phi_3_t = upu_dalpha_alpha_1_yx*upu_h_3_y;
+        const real upu_dalpha_phi_3_t_2 = upu_dalpha_alpha_1_yy*upu_h_3_y;
+        /* (upu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
+           links' inertia and weight */
+        const real upu_dalpha_Gamma_1_x = upu_s_2*(upu_J_group_2_xy*upu_dalpha_alpha_1_yx +
+            upu_dalpha_acc_3_t*upu_h_3_z - upu_J_group_2_xx*upu_dalpha_alpha_1_xx) -
+            upu_c_2*(upu_J_group_2_yy*upu_dalpha_alpha_1_yx + upu_dalpha_acc_3_t*upu_h_3_x -
+            upu_J_group_2_xy*upu_dalpha_alpha_1_xx - upu_root_2*(upu_dalpha_alpha_1_xx*upu_h_3_z -
+            upu_dalpha_acc_3_t*upu_link3_mass - upu_dalpha_alpha_1_yx*upu_h_3_x));
+        const real upu_dalpha_Gamma_1_y = upu_s_2*(upu_J_group_2_xx*upu_dalpha_alpha_1_xy -
+            upu_J_group_2_xy*upu_dalpha_alpha_1_yy - upu_dalpha_acc_3_t_2*upu_h_3_z) -
+            upu_c_2*(upu_J_group_2_xy*upu_dalpha_alpha_1_xy -
+            upu_J_group_2_yy*upu_dalpha_alpha_1_yy - upu_dalpha_acc_3_t_2*upu_h_3_x -
+            upu_root_2*(upu_dalpha_acc_3_t_2*upu_link3_mass + upu_dalpha_alpha_1_yy*upu_h_3_x -
+            upu_dalpha_alpha_1_xy*upu_h_3_z));
+        /* (upu-dalpha_G) coefficient of the acceleration in: force at the connection point that balances
+           the leg's inertia and weight along all freedoms */
+        const real upu_dalpha_G_t = inv_upu_w_1_t_25*upu_dalpha_Gamma_1_x;
+        const real upu_dalpha_G_t_2 = inv_upu_w_1_t_25*upu_dalpha_Gamma_1_y;
+        const real upu_dalpha_G_t_3 = inv_upu_root_2*(upu_J_group_2_yz*upu_dalpha_alpha_1_yx +
+            upu_dalpha_alpha_1_xx*upu_h_3_y*upu_root_2 - upu_J_group_2_xz*upu_dalpha_alpha_1_xx);
+        const real upu_dalpha_G_t_4 = inv_upu_root_2*(upu_J_group_2_xz*upu_dalpha_alpha_1_xy -
+            upu_J_group_2_yz*upu_dalpha_alpha_1_yy - upu_dalpha_alpha_1_xy*upu_h_3_y*upu_root_2);
+        /* (upu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
+           and without the mass at the connection point */
+        const real upu_dalpha_c_in_base_x = -axis_x_upu_axes2_x*upu_dalpha_phi_3_t -
+            axis_y_upu_axes2_in_base_x*upu_dalpha_G_t_3 -
+            axis_z_upu_axes2_in_base_x*upu_dalpha_G_t;
+        const real upu_dalpha_c_in_base_y = -axis_x_upu_axes2_y*upu_dalpha_phi_3_t -
+            axis_y_upu_axes2_in_base_y*upu_dalpha_G_t_3 -
+            axis_z_upu_axes2_in_base_y*upu_dalpha_G_t;
+        const real upu_dalpha_c_in_base_z = -axis_x_upu_axes2_z*upu_dalpha_phi_3_t -
+            axis_y_upu_axes2_in_base_z*upu_dalpha_G_t_3 -
+            axis_z_upu_axes2_in_base_z*upu_dalpha_G_t;
+        const real upu_dalpha_c_in_base_x_2 = axis_x_upu_axes2_x*upu_dalpha_phi_3_t_2 -
+            axis_y_upu_axes2_in_base_x*upu_dalpha_G_t_4 -
+            axis_z_upu_axes2_in_base_x*upu_dalpha_G_t_2;
+        const real upu_dalpha_c_in_base_y_2 = axis_x_upu_axes2_y*upu_dalpha_phi_3_t_2 -
+            axis_y_upu_axes2_in_base_y*upu_dalpha_G_t_4 -
+            axis_z_upu_axes2_in_base_y*upu_dalpha_G_t_2;
+        const real upu_dalpha_c_in_base_z_2 = axis_x_upu_axes2_z*upu_dalpha_phi_3_t_2 -
+            axis_y_upu_axes2_in_base_z*upu_dalpha_G_t_4 -
+            axis_z_upu_axes2_in_base_z*upu_dalpha_G_t_2;
+        /* (M_ta) coupling block of M */
+        const real upu_M_ta_t = upu_Q_t_13*upu_q_in_base_z;
+        const real upu_M_ta_t_2 = upu_Q_t_14*upu_q_in_base_y;
+        const real upu_M_ta_t_3 = upu_Q_t_17*upu_q_in_base_x;
+        const real upu_M_ta_t_4 = upu_M_ta_t + axis_x_upu_axes2_x*upu_dalpha_c_in_base_x +
+            axis_y_upu_axes2_in_base_x*upu_dalpha_c_in_base_x_2 - upu_M_ta_t_2;
+        const real upu_M_ta_t_5 = upu_Q_t_12*upu_q_in_base_z -
+            axis_x_upu_axes2_y*upu_dalpha_c_in_base_x -
+            axis_y_upu_axes2_in_base_y*upu_dalpha_c_in_base_x_2 - upu_Q_t_14*upu_q_in_base_x;
+        const real upu_M_ta_t_6 = axis_x_upu_axes2_z*upu_dalpha_c_in_base_x +
+            axis_y_upu_axes2_in_base_z*upu_dalpha_c_in_base_x_2 + upu_Q_t_12*upu_q_in_base_y -
+            upu_Q_t_13*upu_q_in_base_x;
+        const real upu_M_ta_t_7 = axis_x_upu_axes2_x*upu_dalpha_c_in_base_y +
+            axis_y_upu_axes2_in_base_x*upu_dalpha_c_in_base_y_2 + upu_Q_t_16*upu_q_in_base_z -
+            upu_Q_t_17*upu_q_in_base_y;
+        const real upu_M_ta_t_8 = upu_M_ta_t - upu_M_ta_t_3 -
+            axis_x_upu_axes2_y*upu_dalpha_c_in_base_y -
+            axis_y_upu_axes2_in_base_y*upu_dalpha_c_in_base_y_2;
+        const real upu_M_ta_t_9 = axis_x_upu_axes2_z*upu_dalpha_c_in_base_y +
+            axis_y_upu_axes2_in_base_z*upu_dalpha_c_in_base_y_2 + upu_Q_t_13*upu_q_in_base_y -
+            upu_Q_t_16*upu_q_in_base_x;
+        const real upu_M_ta_t_10 = axis_x_upu_axes2_x*upu_dalpha_c_in_base_z +
+            axis_y_upu_axes2_in_base_x*upu_dalpha_c_in_base_z_2 + upu_Q_t_17*upu_q_in_base_z -
+            upu_Q_t_19*upu_q_in_base_y;
+        const real upu_M_ta_t_11 = upu_Q_t_14*upu_q_in_base_z -
+            axis_x_upu_axes2_y*upu_dalpha_c_in_base_z -
+            axis_y_upu_axes2_in_base_y*upu_dalpha_c_in_base_z_2 - upu_Q_t_19*upu_q_in_base_x;
+        const real upu_M_ta_t_12 = upu_M_ta_t_3 - upu_M_ta_t_2 -
+            axis_x_upu_axes2_z*upu_dalpha_c_in_base_z -
+            axis_y_upu_axes2_in_base_z*upu_dalpha_c_in_base_z_2;
+        /* (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
+           balances the leg's inertia and weight along all freedoms */
+        const real upu_dalpha_G_m1_t = upu_dalpha_Gamma_1_x*upu_w_1_t_4;
+        const real upu_dalpha_G_m1_t_2 = upu_dalpha_Gamma_1_y*upu_w_1_t_4;
+        /* (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
+           the leg's inertia and weight along all freedoms */
+        const real upu_d_G_m1_t = upu_c_2*upu_h_3_y*upu_w_1_t_4;
+        const real upu_d_G_m1_t_2 = upu_w_1_t_4*(upu_s_2*(inv_upu_root_2*upu_J_group_2_xz -
+            upu_h_3_y) - inv_upu_root_2*upu_J_group_2_yz*upu_c_2);
+        const real upu_d_G_m1_t_3 = upu_d_Gamma_1_z*upu_w_1_t_4;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_n_m1_in_base_x = axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x -
+            axis_x_upu_axes2_x*upu_end_p1_r3_y;
+        const real upu_n_m1_in_base_y = axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x -
+            axis_x_upu_axes2_y*upu_end_p1_r3_y;
+        const real upu_n_m1_in_base_z = axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x -
+            axis_x_upu_axes2_z*upu_end_p1_r3_y;
+        /* (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
+           balances the leg's inertia and weight along all freedoms */
+        const real upu_dalpha_G_m1_in_base_y = axis_x_upu_axes2_y*upu_dalpha_G_m1_t +
+            axis_y_upu_axes2_in_base_y*upu_dalpha_G_m1_t_2;
+        const real upu_dalpha_G_m1_in_base_z = axis_x_upu_axes2_z*upu_dalpha_G_m1_t +
+            axis_y_upu_axes2_in_base_z*upu_dalpha_G_m1_t_2;
+        /* (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
+           the leg's inertia and weight along all freedoms */
+        const real upu_d_G_m1_in_base_x = axis_y_upu_axes2_in_base_x*upu_d_G_m1_t_2 +
+            axis_z_upu_axes2_in_base_x*upu_d_G_m1_t_3 - axis_x_upu_axes2_x*upu_d_G_m1_t;
+        const real upu_d_G_m1_in_base_y = axis_y_upu_axes2_in_base_y*upu_d_G_m1_t_2 +
+            axis_z_upu_axes2_in_base_y*upu_d_G_m1_t_3 - axis_x_upu_axes2_y*upu_d_G_m1_t;
+        const real upu_d_G_m1_in_base_z = axis_y_upu_axes2_in_base_z*upu_d_G_m1_t_2 +
+            axis_z_upu_axes2_in_base_z*upu_d_G_m1_t_3 - axis_x_upu_axes2_z*upu_d_G_m1_t;
+        /* (upu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
+           the leg's inertia and weight along all freedoms */
+        const real upu_d_G_m_xx = upu_d_G_m1_in_base_x*upu_n_m1_in_base_x;
+        const real upu_d_G_m_xy = upu_d_G_m1_in_base_y*upu_n_m1_in_base_x;
+        const real upu_d_G_m_xz = upu_d_G_m1_in_base_z*upu_n_m1_in_base_x;
+        const real upu_d_G_m_yx = upu_d_G_m1_in_base_x*upu_n_m1_in_base_y;
+        /* (M_aa) rotational block of M */
+        const real upu_M_aa_t = upu_M_ta_t_7*upu_q_in_base_z + upu_d_G_m_xz*upu_q_in_base_y +
+            upu_n_m1_in_base_x*(axis_x_upu_axes2_x*upu_dalpha_G_m1_t +
+            axis_y_upu_axes2_in_base_x*upu_dalpha_G_m1_t_2) - upu_M_ta_t_10*upu_q_in_base_y -
+            upu_d_G_m_xy*upu_q_in_base_z;
+        const real upu_M_aa_t_2 = upu_M_ta_t_11*upu_q_in_base_y + upu_d_G_m_xx*upu_q_in_base_z +
+            upu_dalpha_G_m1_in_base_y*upu_n_m1_in_base_x - upu_M_ta_t_8*upu_q_in_base_z -
+            upu_d_G_m_xz*upu_q_in_base_x;
+        const real upu_M_aa_t_3 = upu_M_ta_t_12*upu_q_in_base_y + upu_M_ta_t_9*upu_q_in_base_z +
+            upu_d_G_m_xy*upu_q_in_base_x + upu_dalpha_G_m1_in_base_z*upu_n_m1_in_base_x -
+            upu_d_G_m_xx*upu_q_in_base_y;
+        const real upu_M_aa_t_4 = upu_M_ta_t_5*upu_q_in_base_z + upu_d_G_m_yx*upu_q_in_base_z +
+            upu_dalpha_G_m1_in_base_y*upu_n_m1_in_base_y - upu_M_ta_t_11*upu_q_in_base_x -
+            upu_d_G_m1_in_base_z*upu_n_m1_in_base_y*upu_q_in_base_x;
+        const real upu_M_aa_t_5 = upu_M_ta_t_12*upu_q_in_base_x + upu_M_ta_t_6*upu_q_in_base_z +
+            upu_d_G_m_yx*upu_q_in_base_y - upu_dalpha_G_m1_in_base_z*upu_n_m1_in_base_y -
+            upu_d_G_m1_in_base_y*upu_n_m1_in_base_y*upu_q_in_base_x;
+        const real upu_M_aa_t_6 = upu_M_ta_t_6*upu_q_in_base_y +
+            upu_dalpha_G_m1_in_base_z*upu_n_m1_in_base_z +
+            upu_d_G_m1_in_base_y*upu_n_m1_in_base_z*upu_q_in_base_x - upu_M_ta_t_9*upu_q_in_base_x
+            - upu_d_G_m1_in_base_x*upu_n_m1_in_base_z*upu_q_in_base_y;
+        terms[0*count + k] = add ? terms[0*count + k] + upu_Q_t_12 : upu_Q_t_12;  /* total_upu_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + upu_Q_t_13 : upu_Q_t_13;  /* total_upu_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + upu_Q_t_14 : upu_Q_t_14;  /* total_upu_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + upu_Q_t_16 : upu_Q_t_16;  /* total_upu_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + upu_Q_t_17 : upu_Q_t_17;  /* total_upu_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + upu_Q_t_19 : upu_Q_t_19;  /* total_upu_zz */
+        terms[6*count + k] = add ? terms[6*count + k] + upu_M_ta_t_4 : upu_M_ta_t_4;  /* total_upu_xx_2 */
+        terms[7*count + k] = add ? terms[7*count + k] + upu_M_ta_t_5 : upu_M_ta_t_5;  /* total_upu_xy_2 */
+        terms[8*count + k] = add ? terms[8*count + k] + upu_M_ta_t_6 : upu_M_ta_t_6;  /* total_upu_xz_2 */
+        terms[9*count + k] = add ? terms[9*count + k] + upu_M_ta_t_7 : upu_M_ta_t_7;  /* total_upu_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + upu_M_ta_t_8 : upu_M_ta_t_8;  /* total_upu_yy_2 */
+        terms[11*count + k] = add ? terms[11*count + k] + upu_M_ta_t_9 : upu_M_ta_t_9;  /* total_upu_yz_2 */
+        terms[12*count + k] = add ? terms[12*count + k] + upu_M_ta_t_10 : upu_M_ta_t_10;  /* total_upu_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + upu_M_ta_t_11 : upu_M_ta_t_11;  /* total_upu_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + upu_M_ta_t_12 : upu_M_ta_t_12;  /* total_upu_zz_2 */
+        terms[15*count + k] = add ? terms[15*count + k] + upu_M_aa_t : upu_M_aa_t;  /* total_upu_xx_3 */
+        terms[16*count + k] = add ? terms[16*count + k] + upu_M_aa_t_2 : upu_M_aa_t_2;  /* total_upu_xy_3 */
+        terms[17*count + k] = add ? terms[17*count + k] + upu_M_aa_t_3 : upu_M_aa_t_3;  /* total_upu_xz_3 */
+        terms[18*count + k] = add ? terms[18*count + k] + upu_M_aa_t_4 : upu_M_aa_t_4;  /* total_upu_yy_3 */
+        terms[19*count + k] = add ? terms[19*count + k] + upu_M_aa_t_5 : upu_M_aa_t_5;  /* total_upu_yz_3 */
+        terms[20*count + k] = add ? terms[20*count + k] + upu_M_aa_t_6 : upu_M_aa_t_6;  /* total_upu_zz_3 */
+        o[0*count + k] = UNLESS(magnitude(upu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(upu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(-upu_volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(upu_root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(upu_w_1_t_3) >
             TOLERANCE*R(0.8));
     }
 }
 
-INLINE void M_place_upu(size_t w, const M_results_upu *o, size_t first, verdict *t)
+INLINE void M_place_upu(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
+        t->singular[k] += o[0*count + first + k];
     }
 }
 
-INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
+INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums, real *M, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real h_star_in_base_x = s->h_star_in_base_x[k];
-        const real h_star_in_base_y = s->h_star_in_base_y[k];
-        const real h_star_in_base_z = s->h_star_in_base_z[k];
-        const real J_star_t_10 = s->J_star_t_10[k];
-        const real J_star_t_11 = s->J_star_t_11[k];
-        const real J_star_t_12 = s->J_star_t_12[k];
-        const real J_star_t_14 = s->J_star_t_14[k];
-        const real J_star_t_15 = s->J_star_t_15[k];
-        const real J_star_t_17 = s->J_star_t_17[k];
-        const real total_upu_xx = s->sum[0][k];
-        const real total_upu_xy = s->sum[1][k];
-        const real total_upu_xz = s->sum[2][k];
-        const real total_upu_yy = s->sum[3][k];
-        const real total_upu_yz = s->sum[4][k];
-        const real total_upu_zz = s->sum[5][k];
-        const real total_upu_xx_2 = s->sum[6][k];
-        const real total_upu_xy_2 = s->sum[7][k];
-        const real total_upu_xz_2 = s->sum[8][k];
-        const real total_upu_yx = s->sum[9][k];
-        const real total_upu_yy_2 = s->sum[10][k];
-        const real total_upu_yz_2 = s->sum[11][k];
-        const real total_upu_zx = s->sum[12][k];
-        const real total_upu_zy = s->sum[13][k];
-        const real total_upu_zz_2 = s->sum[14][k];
-        const real total_upu_xx_3 = s->sum[15][k];
-        const real total_upu_xy_3 = s->sum[16][k];
-        const real total_upu_xz_3 = s->sum[17][k];
-        const real total_upu_yy_3 = s->sum[18][k];
-        const real total_upu_yz_3 = s->sum[19][k];
-        const real total_upu_zz_3 = s->sum[20][k];
+        /* (M_tt) translational block of M */
         const real platform_mass = m->platform_mass;
-        /* (M1) translational block of M */
+        const real total_upu_xx = sums[0*w + k];
         const real M_tt_xx = platform_mass + total_upu_xx;
+        const real total_upu_yy = sums[3*w + k];
         const real M_tt_yy = platform_mass + total_upu_yy;
+        const real total_upu_zz = sums[5*w + k];
         const real M_tt_zz = platform_mass + total_upu_zz;
-        /* (M2) coupling block of M */
+        /* (M_ta) coupling block of M */
+        const real h_star_in_base_z = s[14*w + k];
+        const real total_upu_xy_2 = sums[7*w + k];
         const real M_ta_xy = h_star_in_base_z + total_upu_xy_2;
+        const real h_star_in_base_y = s[13*w + k];
+        const real total_upu_xz_2 = sums[8*w + k];
         const real M_ta_xz = -h_star_in_base_y - total_upu_xz_2;
+        const real total_upu_yx = sums[9*w + k];
         const real M_ta_yx = -h_star_in_base_z - total_upu_yx;
+        const real h_star_in_base_x = s[12*w + k];
+        const real total_upu_yz_2 = sums[11*w + k];
         const real M_ta_yz = h_star_in_base_x - total_upu_yz_2;
+        const real total_upu_zx = sums[12*w + k];
         const real M_ta_zx = h_star_in_base_y - total_upu_zx;
+        const real total_upu_zy = sums[13*w + k];
         const real M_ta_zy = total_upu_zy - h_star_in_base_x;
-        /* (M3) rotational block of M */
+        /* (M_aa) rotational block of M */
+        const real J_star_t_10 = s[15*w + k];
+        const real total_upu_xx_3 = sums[15*w + k];
         const real M_aa_xx = J_star_t_10 + total_upu_xx_3;
+        const real J_star_t_11 = s[16*w + k];
+        const real total_upu_xy_3 = sums[16*w + k];
         const real M_aa_xy = J_star_t_11 + total_upu_xy_3;
+        const real J_star_t_12 = s[17*w + k];
+        const real total_upu_xz_3 = sums[17*w + k];
         const real M_aa_xz = J_star_t_12 + total_upu_xz_3;
+        const real J_star_t_14 = s[18*w + k];
+        const real total_upu_yy_3 = sums[18*w + k];
         const real M_aa_yy = J_star_t_14 + total_upu_yy_3;
+        const real J_star_t_15 = s[19*w + k];
+        const real total_upu_yz_3 = sums[19*w + k];
         const real M_aa_yz = J_star_t_15 - total_upu_yz_3;
+        const real J_star_t_17 = s[20*w + k];
+        const real total_upu_zz_3 = sums[20*w + k];
         const real M_aa_zz = J_star_t_17 + total_upu_zz_3;
         M[0*w + k] = M_tt_xx;
+        const real total_upu_xy = sums[1*w + k];
         M[1*w + k] = total_upu_xy;
         M[6*w + k] = total_upu_xy;
+        const real total_upu_xz = sums[2*w + k];
         M[2*w + k] = total_upu_xz;
         M[12*w + k] = total_upu_xz;
         M[7*w + k] = M_tt_yy;
+        const real total_upu_yz = sums[4*w + k];
         M[8*w + k] = total_upu_yz;
         M[13*w + k] = total_upu_yz;
         M[14*w + k] = M_tt_zz;
+        const real total_upu_xx_2 = sums[6*w + k];
         M[3*w + k] = -total_upu_xx_2;
         M[18*w + k] = -total_upu_xx_2;
         M[4*w + k] = M_ta_xy;
@@ -2629,6 +2778,7 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
+        const real total_upu_yy_2 = sums[10*w + k];
         M[10*w + k] = total_upu_yy_2;
         M[25*w + k] = total_upu_yy_2;
         M[11*w + k] = M_ta_yz;
@@ -2637,6 +2787,7 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
+        const real total_upu_zz_2 = sums[14*w + k];
         M[17*w + k] = total_upu_zz_2;
         M[32*w + k] = total_upu_zz_2;
         M[21*w + k] = M_aa_xx;
@@ -2648,87 +2799,55 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         M[29*w + k] = M_aa_yz;
         M[34*w + k] = M_aa_yz;
         M[35*w + k] = M_aa_zz;
+        t->total[k] += (((M_tt_xx + total_upu_xy) + (total_upu_xz + (M_tt_yy + total_upu_yz))) +
+            ((M_tt_zz + total_upu_xx_2) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((total_upu_yy_2 +
+            M_ta_yz) + (M_ta_zx + (M_ta_zy + total_upu_zz_2))) + ((M_aa_xx + (M_aa_xy + M_aa_xz))
+            + (M_aa_yy + (M_aa_yz + M_aa_zz))));
     }
 }
 
-INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *t)
+INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    M_values values, *const s = &values;
-    M_results_upu results_upu;
-    M_before(m, w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        M_legs_upu(m, 0, 1, s, 0, 3, 0, &results_upu);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            M_place_upu(w, &results_upu, leg, t);
-        }
-        for (size_t n = 0; n < 21; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_upu.sum[n], 3);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_upu.sum, 0, sizeof results_upu.sum);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            M_legs_upu(m, leg, 0, s, 1, w, 1, &results_upu);
-            M_place_upu(w, &results_upu, 0, t);
-        }
-        for (size_t n = 0; n < 21; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_upu.sum[n][k];
-            }
-        }
+    real s[21] = {0}, sums[21] = {0}, terms_upu[21*LEGS(3)] = {0}, o_upu[1*LEGS(3)] = {0};
+    M_before(m, 1, X, s, t);
+    M_legs_upu(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_upu, o_upu);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        M_place_upu(1, LEGS(3), o_upu, leg, t);
     }
-    M_after(m, w, s, M);
+    for (size_t n = 0; n < 21; ++n) {
+        sums[n] = total(terms_upu + n*LEGS(3), 3);
+    }
+    M_after(m, 1, s, sums, M, t);
+}
+
+INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
+{
+    real s[21*LANES], sums[21*LANES], o_upu[1*LANES];
+    M_before(m, LANES, X, s, t);
+    clear(sums, 21*LANES);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        M_legs_upu(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_upu);
+        M_place_upu(LANES, LANES, o_upu, 0, t);
+    }
+    M_after(m, LANES, s, sums, M, t);
 }
 
 /* ---- Z: 849 mul, 618 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES], Z_p_x[LANES],
-        Z_p_y[LANES], Z_p_z[LANES], Z_q_in_base_x[LANES], Z_q_in_base_y[LANES], Z_q_in_base_z[LANES],
-        sum[6][LANES];
-} Z_values;
-typedef struct {
-    real sum[6][8], singular[8];
-} Z_results_upu;
-
-INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, Z_values *s,
-    verdict *t)
+INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -2753,387 +2872,424 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
-        /* (L2) first moment about the platform origin */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_z = m->h_star_z;
         const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
         const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
         const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
-        /* (M4) centripetal force and weight of the platform */
+        /* (Z_p) centripetal force and weight of the platform */
         const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
         const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
         const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
+        const real Z_p_t_2 = m->Z_p_t_2;
         const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
+        const real Z_p_t_3 = m->Z_p_t_3;
         const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (M6) gyroscopic moment and moment of the weight of the platform */
+        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real gravity_z = m->gravity_z;
+        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
         const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
         const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
         const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_xx = m->J_star_xx;
+        const real J_star_xy = m->J_star_xy;
+        const real J_star_xz = m->J_star_xz;
         const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
+        const real J_star_yy = m->J_star_yy;
+        const real J_star_yz = m->J_star_yz;
         const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
+        const real J_star_zz = m->J_star_zz;
         const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z_2*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x_2*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y_2*h_star_x;
+        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
+            g_r0_z*h_star_y;
+        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
+            g_r0_x*h_star_z;
+        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
+            g_r0_y*h_star_x;
         const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
         const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
         const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->Z_p_x[k] = Z_p_x;
-        s->Z_p_y[k] = Z_p_y;
-        s->Z_p_z[k] = Z_p_z;
-        s->Z_q_in_base_x[k] = Z_q_in_base_x;
-        s->Z_q_in_base_y[k] = Z_q_in_base_y;
-        s->Z_q_in_base_z[k] = Z_q_in_base_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
+        s[18*w + k] = Z_p_x;
+        s[19*w + k] = Z_p_y;
+        s[20*w + k] = Z_p_z;
+        s[21*w + k] = Z_q_in_base_x;
+        s[22*w + k] = Z_q_in_base_y;
+        s[23*w + k] = Z_q_in_base_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void Z_legs_upu(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
-    states, size_t count, int add, Z_results_upu *o)
+INLINE void Z_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real J_group_2_xy = m->J_group_2_xy[i];
-        const real J_group_2_xz = m->J_group_2_xz[i];
-        const real J_group_2_yz = m->J_group_2_yz[i];
-        const real Sigma_2_xx = m->Sigma_2_xx[i];
-        const real Sigma_2_yy = m->Sigma_2_yy[i];
-        const real Sigma_2_zz = m->Sigma_2_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real g_r0_z = m->g_r0_z[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real h_2_z = m->h_2_z[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_link3_mass = m->upu_link3_mass[i];
-        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
-        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
-        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        /* (upu-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        /* (upu-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+        const real upu_q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
-        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real upu_q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
             R_yz*upu_platform_point_z;
-        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real upu_q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
             R_zz*upu_platform_point_z;
-        const real S_x = q_in_base_x + t_x - upu_base_point_x;
-        const real S_y = q_in_base_y + t_y - upu_base_point_y;
-        const real S_z = q_in_base_z + t_z - upu_base_point_z;
-        /* (upu-K2) component along the reference direction */
-        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
-        /* (upu-K3) component across the reference direction */
-        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
-        /* (upu-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upu-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
-        /* (upu-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upu-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+        const real t_x = s[0*w + j];
+        const real upu_base_point_x = m->upu_base_point_x[i];
+        const real upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x;
+        const real t_y = s[1*w + j];
+        const real upu_base_point_y = m->upu_base_point_y[i];
+        const real upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y;
+        const real t_z = s[2*w + j];
+        const real upu_base_point_z = m->upu_base_point_z[i];
+        const real upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z;
+        /* (upu-px_1) component along the reference direction */
+        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
+        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
+        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
+        const real upu_px_1 = upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx +
+            upu_S_z*upu_base_frame_zx;
+        /* (upu-py_1) component across the reference direction */
+        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
+        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
+        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
+        const real upu_py_1 = upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy +
+            upu_S_z*upu_base_frame_zy;
+        /* (upu-rho2_1) squared amplitude */
+        const real upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1;
+        /* (upu-root_1) amplitude, with the sign of the branch */
+        const real upu_branch_1 = m->upu_branch_1[i];
+        const real upu_root_1 = upu_branch_1*root(upu_rho2_1);
+        /* (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
+        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
+        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
+        const real upu_xi_1_t = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
+            upu_S_z*upu_base_frame_zz;
+        /* (upu-rho2_2) squared amplitude */
+        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t;
+        /* (upu-root_2) amplitude, with the sign of the branch */
+        const real upu_branch_2 = m->upu_branch_2[i];
+        const real upu_root_2 = upu_branch_2*root(upu_rho2_2);
+        /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_upu_root_2 = 1/upu_root_2;
+        const real upu_c_2 = inv_upu_root_2*upu_root_1;
+        /* (upu-s_2) sine of the angle of joint 2 from its reference direction */
+        const real upu_s_2 = inv_upu_root_2*upu_xi_1_t;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
+        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
+        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        const real upu_end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
             R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
             R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
             R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+        const real upu_end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
             R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
             R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
             R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        const real end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
+        const real upu_end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
             R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
             R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
             R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
-        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x;
-        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
-        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
-        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
-        /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t = root_1*root_2;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
-        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-           */
-        const real n_c_z = n_m1_r0_y*root_2/volume_c_t;
-        /* (upu-V9) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
-        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
-        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
-        const real w_1_t = s_1*s_2;
-        const real w_1_t_2 = c_1*s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
-            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
-            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
-            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
+        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_upu_root_1 = 1/upu_root_1;
+        const real upu_c_1 = inv_upu_root_1*upu_py_1;
+        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real upu_s_1 = inv_upu_root_1*upu_px_1;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_end_p1_r1_x = upu_end_p1_r0_y*upu_s_1 - upu_c_1*upu_end_p1_r0_x;
+        const real upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1;
+        const real upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y;
+        const real upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2;
+        /* (upu-volume_c) triple product of the velocity vectors */
+        const real upu_volume_c_t = upu_root_1*upu_root_2;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2;
+        /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
+           out */
+        const real upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t;
+        /* (upu-w_1) force part of reciprocal wrench 1 */
+        const real axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 -
+            upu_base_frame_xx*upu_c_1;
+        const real axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 -
+            upu_base_frame_yx*upu_c_1;
+        const real axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 -
+            upu_base_frame_zx*upu_c_1;
+        const real upu_w_1_t = upu_s_1*upu_s_2;
+        const real upu_w_1_t_2 = upu_c_1*upu_s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*upu_w_1_t +
+            upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*upu_w_1_t +
+            upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*upu_w_1_t +
+            upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2;
         const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
             axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
         const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
             axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
         const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
             axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
-        const real inv_w_1_t_25 = 1/w_1_t_3;
-        /* (upu-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        /* (upu-V18) rate at which the joints turn along moment direction 1 */
-        const real eta_1 = omega_x*(axis_y_upu_axes2_in_base_x*end_p1_r3_x -
-            axis_x_upu_axes2_x*end_p1_r3_y) + omega_y*(axis_y_upu_axes2_in_base_y*end_p1_r3_x -
-            axis_x_upu_axes2_y*end_p1_r3_y) + omega_z*(axis_y_upu_axes2_in_base_z*end_p1_r3_x -
-            axis_x_upu_axes2_z*end_p1_r3_y);
-        /* (upu-V1) velocity of the connection point */
-        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
-            S_dot_z*axis_x_upu_axes2_z;
-        /* (upu-V19) rate of joint 1 */
-        const real qd_1_t = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
-            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
-        const real qd_1_t_2 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
-            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z +
-            eta_1*n_c_z);
-        /* (upu-V22) angular velocity of link 1 */
-        const real omega_1_t = qd_1_t_2*s_2;
-        const real omega_1_t_2 = c_2*qd_1_t_2;
-        /* (upu-A8) rate of moment direction 1 */
-        const real omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
-            axis_x_upu_axes2_z*omega_z;
-        const real omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
-            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
-        const real omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
-            axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
-        const real nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t -
-            end_p1_r3_x*omega_tip_z;
-        const real nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y -
-            end_p1_r3_y*omega_tip_z;
-        /* (upu-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_x = omega_1_t_2*qd_1_t;
-        const real zeta_2_y = omega_1_t*qd_1_t;
-        /* (upu-A9) bias of the angular acceleration along moment direction 1 */
-        const real nu_1_t = end_p1_r3_y*zeta_2_x - end_p1_r3_x*zeta_2_y;
-        const real nu_1_t_2 = nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z -
-            qd_1_t)*(end_p1_r3_y*omega_1_t_2 - end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 +
-            omega_tip_y);
-        const real nu_1 = -nu_1_t - nu_1_t_2;
-        /* (upu-V24) centripetal tensor of link 2 */
-        const real W_2_t = omega_1_t*omega_1_t;
-        const real W_2_t_2 = omega_1_t_2*omega_1_t_2;
-        const real W_2_t_3 = qd_1_t*qd_1_t;
-        const real W_2_xy = omega_1_t*omega_1_t_2;
-        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_tip_x;
-        const real bias_t_2 = bias_t*qd_1_t;
-        const real bias_t_3 = bias_t*omega_1_t_2;
-        const real bias_z = bias_t_3 + 2*root_2*zeta_2_y;
-        /* (upu-A1) centripetal acceleration of the connection point */
-        const real u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z;
-        const real u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x;
-        const real u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y;
-        /* (upu-A7) remainder without the acceleration in: acceleration of the connection point left to
+        const real upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y;
+        const real inv_upu_w_1_t_25 = 1/upu_w_1_t_3;
+        /* (upu-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real upu_S_dot_t = omega_y*upu_q_in_base_z - omega_z*upu_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real upu_S_dot_t_2 = omega_z*upu_q_in_base_x - omega_x*upu_q_in_base_z;
+        const real upu_S_dot_t_3 = omega_x*upu_q_in_base_y - omega_y*upu_q_in_base_x;
+        const real t_dot_x = s[12*w + j];
+        const real upu_S_dot_x = t_dot_x + upu_S_dot_t;
+        const real t_dot_y = s[13*w + j];
+        const real upu_S_dot_y = t_dot_y + upu_S_dot_t_2;
+        const real t_dot_z = s[14*w + j];
+        const real upu_S_dot_z = t_dot_z + upu_S_dot_t_3;
+        /* (upu-eta_1) rate at which the joints turn along moment direction 1 */
+        const real upu_eta_1 = omega_x*(axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x -
+            axis_x_upu_axes2_x*upu_end_p1_r3_y) +
+            omega_y*(axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x -
+            axis_x_upu_axes2_y*upu_end_p1_r3_y) +
+            omega_z*(axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x -
+            axis_x_upu_axes2_z*upu_end_p1_r3_y);
+        /* (upu-S_dot) velocity of the connection point */
+        const real upu_S_dot_tip_x = axis_x_upu_axes2_x*upu_S_dot_x +
+            axis_x_upu_axes2_y*upu_S_dot_y + axis_x_upu_axes2_z*upu_S_dot_z;
+        /* (upu-qd_3) rate of joint 3 */
+        const real upu_qd_3_t = inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_dot_x +
+            axis_y_upu_axes2_in_base_y*upu_S_dot_y + axis_y_upu_axes2_in_base_z*upu_S_dot_z);
+        const real upu_qd_3_t_2 = inv_upu_w_1_t_25*(axis_z_upu_axes2_in_base_x*upu_S_dot_x +
+            axis_z_upu_axes2_in_base_y*upu_S_dot_y + axis_z_upu_axes2_in_base_z*upu_S_dot_z +
+            upu_eta_1*upu_n_c_z);
+        /* (upu-omega_1) angular velocity of link 1 */
+        const real upu_omega_1_t = upu_qd_3_t_2*upu_s_2;
+        const real upu_omega_1_t_2 = upu_c_2*upu_qd_3_t_2;
+        /* (upu-u_1) centripetal acceleration of the connection point */
+        const real upu_u_1_x = omega_y*upu_S_dot_t_3 - omega_z*upu_S_dot_t_2;
+        const real upu_u_1_y = omega_z*upu_S_dot_t - omega_x*upu_S_dot_t_3;
+        const real upu_u_1_z = omega_x*upu_S_dot_t_2 - omega_y*upu_S_dot_t;
+        /* (upu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real upu_zeta_2_x = upu_omega_1_t_2*upu_qd_3_t;
+        const real upu_zeta_2_y = upu_omega_1_t*upu_qd_3_t;
+        /* (upu-W_2) centripetal tensor of link 2 */
+        const real upu_W_2_t = upu_omega_1_t*upu_omega_1_t;
+        const real upu_W_2_t_2 = upu_omega_1_t_2*upu_omega_1_t_2;
+        const real upu_W_2_t_3 = upu_qd_3_t*upu_qd_3_t;
+        const real upu_W_2_xy = upu_omega_1_t*upu_omega_1_t_2;
+        /* (upu-bias) acceleration of the connection point at zero joint accelerations */
+        const real upu_bias_t = 2*upu_S_dot_tip_x;
+        const real upu_bias_t_2 = upu_bias_t*upu_qd_3_t;
+        const real upu_bias_t_3 = upu_bias_t*upu_omega_1_t_2;
+        const real upu_bias_z = upu_bias_t_3 + 2*upu_root_2*upu_zeta_2_y;
+        /* (upu-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rel_o_z = axis_z_upu_axes2_in_base_x*u_1_x + axis_z_upu_axes2_in_base_y*u_1_y +
-            axis_z_upu_axes2_in_base_z*u_1_z - bias_z;
-        /* (upu-A12) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_o_t = axis_y_upu_axes2_in_base_x*u_1_x + axis_y_upu_axes2_in_base_y*u_1_y
-            + axis_y_upu_axes2_in_base_z*u_1_z - bias_t_2;
-        const real qdd_1_o_t_2 = inv_root_2*qdd_1_o_t;
-        const real qdd_1_o_t_3 = inv_w_1_t_25*(rel_o_z + n_c_z*nu_1);
-        /* (upu-A20) remainder without the acceleration in: angular acceleration of link 1 */
-        const real alpha_1_o_t = qdd_1_o_t_3*s_2;
-        const real alpha_1_o_t_2 = c_2*qdd_1_o_t_3;
-        /* (upu-A24) remainder without the acceleration in: angular acceleration of link 2 */
-        const real alpha_2_o_x = alpha_1_o_t - zeta_2_x;
-        const real alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y;
-        /* (upu-A26) remainder of the acceleration tensor of link 2 */
-        const real B_2_o_xy = -2*W_2_xy - qdd_1_o_t_2;
-        const real B_2_o_zx = zeta_2_y - alpha_2_o_y;
-        const real B_2_o_zy = alpha_2_o_x - zeta_2_x;
-        /* (upu-N6) remainder without the acceleration in: acceleration of the reference point of link 3,
-           less gravity */
-        const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
-        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
-        const real g_r3_x = g_r0_z*s_2 - c_2*g_r1_y;
-        const real g_r3_y = -c_2*g_r0_z - g_r1_y*s_2;
-        const real acc_3_o_x = axis_x_upu_axes2_x*u_1_x + axis_x_upu_axes2_y*u_1_y +
-            axis_x_upu_axes2_z*u_1_z - g_r3_x;
-        const real acc_3_o_y = bias_t_2 + qdd_1_o_t - g_r3_y;
-        const real acc_3_o_z = bias_t_3 + B_2_o_zx*root_2 - g_r1_x;
-        /* (upu-N14) remainder without the acceleration in: inertia force of link 3 less its weight */
-        const real f_3_o_x = acc_3_o_x*upu_link3_mass - B_2_o_xy*h_3_z - alpha_1_o_t_2*h_3_y -
-            h_3_x*(W_2_t_2 + W_2_t_3);
-        const real f_3_o_y = acc_3_o_y*upu_link3_mass + h_3_x*qdd_1_o_t_2 + h_3_z*(W_2_t +
-            W_2_t_3) - alpha_1_o_t*h_3_y;
-        const real f_3_o_z = B_2_o_zx*h_3_x + acc_3_o_z*upu_link3_mass - B_2_o_zy*h_3_z -
-            h_3_y*(W_2_t + W_2_t_2);
-        /* (upu-N21) remainder without the acceleration in: inertia moment of the links that turn with
+        const real upu_rel_o_z = axis_z_upu_axes2_in_base_x*upu_u_1_x +
+            axis_z_upu_axes2_in_base_y*upu_u_1_y + axis_z_upu_axes2_in_base_z*upu_u_1_z -
+            upu_bias_z;
+        /* (upu-nd_m1) rate of moment direction 1 */
+        const real upu_omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
+            axis_x_upu_axes2_z*omega_z;
+        const real upu_omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
+            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
+        const real upu_omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
+            axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
+        const real upu_nd_m1_x = upu_end_p1_r1_x*upu_omega_tip_x - upu_end_p1_r1_x*upu_omega_1_t -
+            upu_end_p1_r3_x*upu_omega_tip_z;
+        const real upu_nd_m1_y = upu_end_p1_r1_x*upu_omega_1_t_2 + upu_end_p1_r1_x*upu_omega_tip_y
+            - upu_end_p1_r3_y*upu_omega_tip_z;
+        /* (upu-nu_1) bias of the angular acceleration along moment direction 1 */
+        const real upu_nu_1_t = upu_end_p1_r3_y*upu_zeta_2_x - upu_end_p1_r3_x*upu_zeta_2_y;
+        const real upu_nu_1_t_2 = upu_nd_m1_x*(upu_omega_1_t - upu_omega_tip_x) + (upu_omega_tip_z
+            - upu_qd_3_t)*(upu_end_p1_r3_y*upu_omega_1_t_2 - upu_end_p1_r3_x*upu_omega_1_t) -
+            upu_nd_m1_y*(upu_omega_1_t_2 + upu_omega_tip_y);
+        const real upu_nu_1 = -upu_nu_1_t - upu_nu_1_t_2;
+        /* (upu-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
+        const real upu_qdd_3_o_t = axis_y_upu_axes2_in_base_x*upu_u_1_x +
+            axis_y_upu_axes2_in_base_y*upu_u_1_y + axis_y_upu_axes2_in_base_z*upu_u_1_z -
+            upu_bias_t_2;
+        const real upu_qdd_3_o_t_2 = inv_upu_root_2*upu_qdd_3_o_t;
+        const real upu_qdd_3_o_t_3 = inv_upu_w_1_t_25*(upu_rel_o_z + upu_n_c_z*upu_nu_1);
+        /* (upu-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+        const real upu_alpha_1_o_t = upu_qdd_3_o_t_3*upu_s_2;
+        const real upu_alpha_1_o_t_2 = upu_c_2*upu_qdd_3_o_t_3;
+        /* (upu-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        const real upu_alpha_2_o_x = upu_alpha_1_o_t - upu_zeta_2_x;
+        const real upu_alpha_2_o_y = -upu_alpha_1_o_t_2 - upu_zeta_2_y;
+        /* (upu-B_2_o) remainder of the acceleration tensor of link 2 */
+        const real upu_B_2_o_xy = -2*upu_W_2_xy - upu_qdd_3_o_t_2;
+        const real upu_B_2_o_zx = upu_zeta_2_y - upu_alpha_2_o_y;
+        const real upu_B_2_o_zy = upu_alpha_2_o_x - upu_zeta_2_x;
+        /* (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+           link 3, less gravity */
+        const real upu_g_r0_x = m->upu_g_r0_x[i];
+        const real upu_g_r0_y = m->upu_g_r0_y[i];
+        const real upu_g_r1_x = upu_g_r0_y*upu_s_1 - upu_c_1*upu_g_r0_x;
+        const real upu_g_r1_y = -upu_c_1*upu_g_r0_y - upu_g_r0_x*upu_s_1;
+        const real upu_g_r0_z = m->upu_g_r0_z[i];
+        const real upu_g_r3_x = upu_g_r0_z*upu_s_2 - upu_c_2*upu_g_r1_y;
+        const real upu_g_r3_y = -upu_c_2*upu_g_r0_z - upu_g_r1_y*upu_s_2;
+        const real upu_acc_3_o_x = axis_x_upu_axes2_x*upu_u_1_x + axis_x_upu_axes2_y*upu_u_1_y +
+            axis_x_upu_axes2_z*upu_u_1_z - upu_g_r3_x;
+        const real upu_acc_3_o_y = upu_bias_t_2 + upu_qdd_3_o_t - upu_g_r3_y;
+        const real upu_acc_3_o_z = upu_bias_t_3 + upu_B_2_o_zx*upu_root_2 - upu_g_r1_x;
+        /* (upu-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight */
+        const real upu_h_3_x = m->upu_h_3_x[i];
+        const real upu_h_3_y = m->upu_h_3_y[i];
+        const real upu_h_3_z = m->upu_h_3_z[i];
+        const real upu_link3_mass = m->upu_link3_mass[i];
+        const real upu_f_3_o_x = upu_acc_3_o_x*upu_link3_mass - upu_B_2_o_xy*upu_h_3_z -
+            upu_alpha_1_o_t_2*upu_h_3_y - upu_h_3_x*(upu_W_2_t_2 + upu_W_2_t_3);
+        const real upu_f_3_o_y = upu_acc_3_o_y*upu_link3_mass + upu_h_3_x*upu_qdd_3_o_t_2 +
+            upu_h_3_z*(upu_W_2_t + upu_W_2_t_3) - upu_alpha_1_o_t*upu_h_3_y;
+        const real upu_f_3_o_z = upu_B_2_o_zx*upu_h_3_x + upu_acc_3_o_z*upu_link3_mass -
+            upu_B_2_o_zy*upu_h_3_z - upu_h_3_y*(upu_W_2_t + upu_W_2_t_2);
+        /* (upu-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real mu_2_o_x = B_2_o_zy*Sigma_2_yy + J_group_2_xz*qdd_1_o_t_2 +
-            J_group_2_yz*(W_2_t_2 - W_2_t_3) + Sigma_2_zz*alpha_1_o_t + g_r1_x*h_2_z +
-            g_r3_y*h_2_y - B_2_o_zx*J_group_2_xy - acc_3_o_y*h_3_y - acc_3_o_z*h_3_z;
-        const real mu_2_o_y = B_2_o_zy*J_group_2_xy + acc_3_o_x*h_3_y + g_r1_x*h_2_x -
-            B_2_o_xy*J_group_2_yz - B_2_o_zx*Sigma_2_xx - J_group_2_xz*(W_2_t - W_2_t_3) -
-            Sigma_2_zz*alpha_1_o_t_2 - acc_3_o_z*h_3_x - g_r3_x*h_2_y;
-        const real mu_2_o_z = J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_xz*alpha_1_o_t +
-            Sigma_2_xx*qdd_1_o_t_2 + acc_3_o_x*h_3_z + acc_3_o_y*h_3_x - B_2_o_xy*Sigma_2_yy -
-            J_group_2_yz*alpha_1_o_t_2 - g_r3_x*h_2_z - g_r3_y*h_2_x;
-        /* (upu-N25) remainder without the acceleration in: moment about joint 2 of the links from 2
+        const real upu_J_group_2_xy = m->upu_J_group_2_xy[i];
+        const real upu_J_group_2_xz = m->upu_J_group_2_xz[i];
+        const real upu_J_group_2_yz = m->upu_J_group_2_yz[i];
+        const real upu_Sigma_2_yy = m->upu_Sigma_2_yy[i];
+        const real upu_Sigma_2_zz = m->upu_Sigma_2_zz[i];
+        const real upu_h_2_y = m->upu_h_2_y[i];
+        const real upu_h_2_z = m->upu_h_2_z[i];
+        const real upu_mu_2_o_x = upu_B_2_o_zy*upu_Sigma_2_yy + upu_J_group_2_xz*upu_qdd_3_o_t_2 +
+            upu_J_group_2_yz*(upu_W_2_t_2 - upu_W_2_t_3) + upu_Sigma_2_zz*upu_alpha_1_o_t +
+            upu_g_r1_x*upu_h_2_z + upu_g_r3_y*upu_h_2_y - upu_B_2_o_zx*upu_J_group_2_xy -
+            upu_acc_3_o_y*upu_h_3_y - upu_acc_3_o_z*upu_h_3_z;
+        const real upu_Sigma_2_xx = m->upu_Sigma_2_xx[i];
+        const real upu_h_2_x = m->upu_h_2_x[i];
+        const real upu_mu_2_o_y = upu_B_2_o_zy*upu_J_group_2_xy + upu_acc_3_o_x*upu_h_3_y +
+            upu_g_r1_x*upu_h_2_x - upu_B_2_o_xy*upu_J_group_2_yz - upu_B_2_o_zx*upu_Sigma_2_xx -
+            upu_J_group_2_xz*(upu_W_2_t - upu_W_2_t_3) - upu_Sigma_2_zz*upu_alpha_1_o_t_2 -
+            upu_acc_3_o_z*upu_h_3_x - upu_g_r3_x*upu_h_2_y;
+        const real upu_mu_2_o_z = upu_J_group_2_xy*(upu_W_2_t - upu_W_2_t_2) +
+            upu_J_group_2_xz*upu_alpha_1_o_t + upu_Sigma_2_xx*upu_qdd_3_o_t_2 +
+            upu_acc_3_o_x*upu_h_3_z + upu_acc_3_o_y*upu_h_3_x - upu_B_2_o_xy*upu_Sigma_2_yy -
+            upu_J_group_2_yz*upu_alpha_1_o_t_2 - upu_g_r3_x*upu_h_2_z - upu_g_r3_y*upu_h_2_x;
+        /* (upu-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
-        const real N_2_o_y = mu_2_o_y - f_3_o_z*root_2;
-        const real N_2_o_r0_y = mu_2_o_x*s_2 - N_2_o_y*c_2;
-        /* (upu-N41) remainder without the acceleration in: force at the connection point that balances
+        const real upu_N_2_o_y = upu_mu_2_o_y - upu_f_3_o_z*upu_root_2;
+        const real upu_N_2_o_r0_y = upu_mu_2_o_x*upu_s_2 - upu_N_2_o_y*upu_c_2;
+        /* (upu-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real G_o_t = f_3_o_y + inv_root_2*mu_2_o_z;
-        const real G_o_t_2 = N_2_o_r0_y*inv_w_1_t_25;
-        const real G_o_t_3 = N_2_o_r0_y*inv_w_1_t_25*n_c_z;
-        /* (upu-N59) velocity and gravity terms of the leg force */
-        const real U_in_base_x = G_o_t*axis_y_upu_axes2_in_base_x +
-            G_o_t_2*axis_z_upu_axes2_in_base_x + axis_x_upu_axes2_x*f_3_o_x;
-        const real U_in_base_y = G_o_t*axis_y_upu_axes2_in_base_y +
-            G_o_t_2*axis_z_upu_axes2_in_base_y + axis_x_upu_axes2_y*f_3_o_x;
-        const real U_in_base_z = G_o_t*axis_y_upu_axes2_in_base_z +
-            G_o_t_2*axis_z_upu_axes2_in_base_z + axis_x_upu_axes2_z*f_3_o_x;
-        /* (upu-N49) remainder without the acceleration in: moment at the connection point that balances
+        const real upu_G_o_t = upu_f_3_o_y + inv_upu_root_2*upu_mu_2_o_z;
+        const real upu_G_o_t_2 = inv_upu_w_1_t_25*upu_N_2_o_r0_y;
+        const real upu_G_o_t_3 = inv_upu_w_1_t_25*upu_N_2_o_r0_y*upu_n_c_z;
+        /* (upu-U) velocity and gravity terms of the leg force */
+        const real upu_U_in_base_x = axis_x_upu_axes2_x*upu_f_3_o_x +
+            axis_y_upu_axes2_in_base_x*upu_G_o_t + axis_z_upu_axes2_in_base_x*upu_G_o_t_2;
+        const real upu_U_in_base_y = axis_x_upu_axes2_y*upu_f_3_o_x +
+            axis_y_upu_axes2_in_base_y*upu_G_o_t + axis_z_upu_axes2_in_base_y*upu_G_o_t_2;
+        const real upu_U_in_base_z = axis_x_upu_axes2_z*upu_f_3_o_x +
+            axis_y_upu_axes2_in_base_z*upu_G_o_t + axis_z_upu_axes2_in_base_z*upu_G_o_t_2;
+        /* (upu-G_m_o) remainder without the acceleration in: moment at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real G_m_o_x = G_o_t_3*end_p1_r3_y;
-        const real G_m_o_y = G_o_t_3*end_p1_r3_x;
-        /* (M7) rotational part of Z */
-        const real Z_a_t = G_m_o_y*axis_y_upu_axes2_in_base_x + U_in_base_z*q_in_base_y -
-            G_m_o_x*axis_x_upu_axes2_x - U_in_base_y*q_in_base_z;
-        const real Z_a_t_2 = G_m_o_y*axis_y_upu_axes2_in_base_y + U_in_base_x*q_in_base_z -
-            G_m_o_x*axis_x_upu_axes2_y - U_in_base_z*q_in_base_x;
-        const real Z_a_t_3 = G_m_o_y*axis_y_upu_axes2_in_base_z + U_in_base_y*q_in_base_x -
-            G_m_o_x*axis_x_upu_axes2_z - U_in_base_x*q_in_base_y;
-        o->sum[0][k] = add ? o->sum[0][k] + U_in_base_x : U_in_base_x;  /* total_upu_x */
-        o->sum[1][k] = add ? o->sum[1][k] + U_in_base_y : U_in_base_y;  /* total_upu_y */
-        o->sum[2][k] = add ? o->sum[2][k] + U_in_base_z : U_in_base_z;  /* total_upu_z */
-        o->sum[3][k] = add ? o->sum[3][k] + Z_a_t : Z_a_t;  /* total_upu_x_2 */
-        o->sum[4][k] = add ? o->sum[4][k] + Z_a_t_2 : Z_a_t_2;  /* total_upu_y_2 */
-        o->sum[5][k] = add ? o->sum[5][k] + Z_a_t_3 : Z_a_t_3;  /* total_upu_z_2 */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(-volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(w_1_t_3) >
+        const real upu_G_m_o_x = upu_G_o_t_3*upu_end_p1_r3_y;
+        const real upu_G_m_o_y = upu_G_o_t_3*upu_end_p1_r3_x;
+        /* (Z_a) rotational part of Z */
+        const real upu_Z_a_t = axis_y_upu_axes2_in_base_x*upu_G_m_o_y +
+            upu_U_in_base_z*upu_q_in_base_y - axis_x_upu_axes2_x*upu_G_m_o_x -
+            upu_U_in_base_y*upu_q_in_base_z;
+        const real upu_Z_a_t_2 = axis_y_upu_axes2_in_base_y*upu_G_m_o_y +
+            upu_U_in_base_x*upu_q_in_base_z - axis_x_upu_axes2_y*upu_G_m_o_x -
+            upu_U_in_base_z*upu_q_in_base_x;
+        const real upu_Z_a_t_3 = axis_y_upu_axes2_in_base_z*upu_G_m_o_y +
+            upu_U_in_base_y*upu_q_in_base_x - axis_x_upu_axes2_z*upu_G_m_o_x -
+            upu_U_in_base_x*upu_q_in_base_y;
+        terms[0*count + k] = add ? terms[0*count + k] + upu_U_in_base_x : upu_U_in_base_x;  /* total_upu_x */
+        terms[1*count + k] = add ? terms[1*count + k] + upu_U_in_base_y : upu_U_in_base_y;  /* total_upu_y */
+        terms[2*count + k] = add ? terms[2*count + k] + upu_U_in_base_z : upu_U_in_base_z;  /* total_upu_z */
+        terms[3*count + k] = add ? terms[3*count + k] + upu_Z_a_t : upu_Z_a_t;  /* total_upu_x_2 */
+        terms[4*count + k] = add ? terms[4*count + k] + upu_Z_a_t_2 : upu_Z_a_t_2;  /* total_upu_y_2 */
+        terms[5*count + k] = add ? terms[5*count + k] + upu_Z_a_t_3 : upu_Z_a_t_3;  /* total_upu_z_2 */
+        o[0*count + k] = UNLESS(magnitude(upu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(upu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(-upu_volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(upu_root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(upu_w_1_t_3) >
             TOLERANCE*R(0.8));
     }
 }
 
-INLINE void Z_place_upu(size_t w, const Z_results_upu *o, size_t first, verdict *t)
+INLINE void Z_place_upu(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
+        t->singular[k] += o[0*count + first + k];
     }
 }
 
-INLINE void Z_after(size_t w, const Z_values *s, real *Z)
+INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real Z_p_x = s->Z_p_x[k];
-        const real Z_p_y = s->Z_p_y[k];
-        const real Z_p_z = s->Z_p_z[k];
-        const real Z_q_in_base_x = s->Z_q_in_base_x[k];
-        const real Z_q_in_base_y = s->Z_q_in_base_y[k];
-        const real Z_q_in_base_z = s->Z_q_in_base_z[k];
-        const real total_upu_x = s->sum[0][k];
-        const real total_upu_y = s->sum[1][k];
-        const real total_upu_z = s->sum[2][k];
-        const real total_upu_x_2 = s->sum[3][k];
-        const real total_upu_y_2 = s->sum[4][k];
-        const real total_upu_z_2 = s->sum[5][k];
-        /* (M5) translational part of Z */
+        /* (Z_t) translational part of Z */
+        const real Z_p_x = s[18*w + k];
+        const real total_upu_x = sums[0*w + k];
         const real Z_t_x = Z_p_x + total_upu_x;
+        const real Z_p_y = s[19*w + k];
+        const real total_upu_y = sums[1*w + k];
         const real Z_t_y = Z_p_y + total_upu_y;
+        const real Z_p_z = s[20*w + k];
+        const real total_upu_z = sums[2*w + k];
         const real Z_t_z = Z_p_z + total_upu_z;
-        /* (M7) rotational part of Z */
+        /* (Z_a) rotational part of Z */
+        const real Z_q_in_base_x = s[21*w + k];
+        const real total_upu_x_2 = sums[3*w + k];
         const real Z_a_x = Z_q_in_base_x + total_upu_x_2;
+        const real Z_q_in_base_y = s[22*w + k];
+        const real total_upu_y_2 = sums[4*w + k];
         const real Z_a_y = Z_q_in_base_y + total_upu_y_2;
+        const real Z_q_in_base_z = s[23*w + k];
+        const real total_upu_z_2 = sums[5*w + k];
         const real Z_a_z = Z_q_in_base_z + total_upu_z_2;
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
@@ -3141,62 +3297,51 @@ INLINE void Z_after(size_t w, const Z_values *s, real *Z)
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
+        t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
     }
 }
 
-INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    Z_values values, *const s = &values;
-    Z_results_upu results_upu;
-    Z_before(m, w, X, V, s, t);
-    if (w == 1) {  /* the legs side by side */
-        Z_legs_upu(m, 0, 1, s, 0, 3, 0, &results_upu);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            Z_place_upu(w, &results_upu, leg, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_upu.sum[n], 3);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_upu.sum, 0, sizeof results_upu.sum);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            Z_legs_upu(m, leg, 0, s, 1, w, 1, &results_upu);
-            Z_place_upu(w, &results_upu, 0, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_upu.sum[n][k];
-            }
-        }
+    real s[24] = {0}, sums[6] = {0}, terms_upu[6*LEGS(3)] = {0}, o_upu[1*LEGS(3)] = {0};
+    Z_before(m, 1, X, V, s, t);
+    Z_legs_upu(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_upu, o_upu);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        Z_place_upu(1, LEGS(3), o_upu, leg, t);
     }
-    Z_after(w, s, Z);
+    for (size_t n = 0; n < 6; ++n) {
+        sums[n] = total(terms_upu + n*LEGS(3), 3);
+    }
+    Z_after(1, s, sums, Z, t);
+}
+
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+{
+    real s[24*LANES], sums[6*LANES], o_upu[1*LANES];
+    Z_before(m, LANES, X, V, s, t);
+    clear(sums, 6*LANES);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        Z_legs_upu(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_upu);
+        Z_place_upu(LANES, LANES, o_upu, 0, t);
+    }
+    Z_after(LANES, s, sums, Z, t);
 }
 
 /* ---- H: 168 mul, 105 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES];
-} H_values;
-typedef struct {
-    real entry[6][8], singular[8];
-} H_results_upu;
-
-INLINE void H_before(size_t w, const real *X, H_values *s, verdict *t)
+INLINE void H_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -3220,180 +3365,186 @@ INLINE void H_before(size_t w, const real *X, H_values *s, verdict *t)
         const real R_zx = quaternion_xz - quaternion_wy;
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void H_legs_upu(const prepared *m, size_t leg, size_t legs, const H_values *s, size_t
-    states, size_t count, H_results_upu *o)
+INLINE void H_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
+    states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_base_point_z = m->upu_base_point_z[i];
+        /* (upu-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        /* (upu-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+        const real upu_q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
-        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real upu_q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
             R_yz*upu_platform_point_z;
-        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real upu_q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
             R_zz*upu_platform_point_z;
-        const real S_x = q_in_base_x + t_x - upu_base_point_x;
-        const real S_y = q_in_base_y + t_y - upu_base_point_y;
-        const real S_z = q_in_base_z + t_z - upu_base_point_z;
-        /* (upu-K2) component along the reference direction */
-        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
-        /* (upu-K3) component across the reference direction */
-        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
-        /* (upu-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upu-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
-        /* (upu-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upu-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upu-V9) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
-        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
-        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
-        const real w_1_t = s_1*s_2;
-        const real w_1_t_2 = c_1*s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
-            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
-            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
-            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
+        const real t_x = s[0*w + j];
+        const real upu_base_point_x = m->upu_base_point_x[i];
+        const real upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x;
+        const real t_y = s[1*w + j];
+        const real upu_base_point_y = m->upu_base_point_y[i];
+        const real upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y;
+        const real t_z = s[2*w + j];
+        const real upu_base_point_z = m->upu_base_point_z[i];
+        const real upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z;
+        /* (upu-px_1) component along the reference direction */
+        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
+        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
+        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
+        const real upu_px_1 = upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx +
+            upu_S_z*upu_base_frame_zx;
+        /* (upu-py_1) component across the reference direction */
+        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
+        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
+        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
+        const real upu_py_1 = upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy +
+            upu_S_z*upu_base_frame_zy;
+        /* (upu-rho2_1) squared amplitude */
+        const real upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1;
+        /* (upu-root_1) amplitude, with the sign of the branch */
+        const real upu_branch_1 = m->upu_branch_1[i];
+        const real upu_root_1 = upu_branch_1*root(upu_rho2_1);
+        /* (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
+        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
+        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
+        const real upu_xi_1_t = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
+            upu_S_z*upu_base_frame_zz;
+        /* (upu-rho2_2) squared amplitude */
+        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t;
+        /* (upu-root_2) amplitude, with the sign of the branch */
+        const real upu_branch_2 = m->upu_branch_2[i];
+        const real upu_root_2 = upu_branch_2*root(upu_rho2_2);
+        /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_upu_root_2 = 1/upu_root_2;
+        const real upu_c_2 = inv_upu_root_2*upu_root_1;
+        /* (upu-s_2) sine of the angle of joint 2 from its reference direction */
+        const real upu_s_2 = inv_upu_root_2*upu_xi_1_t;
+        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_upu_root_1 = 1/upu_root_1;
+        const real upu_c_1 = inv_upu_root_1*upu_py_1;
+        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real upu_s_1 = inv_upu_root_1*upu_px_1;
+        /* (upu-w_1) force part of reciprocal wrench 1 */
+        const real axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 -
+            upu_base_frame_xx*upu_c_1;
+        const real axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 -
+            upu_base_frame_yx*upu_c_1;
+        const real axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 -
+            upu_base_frame_zx*upu_c_1;
+        const real upu_w_1_t = upu_s_1*upu_s_2;
+        const real upu_w_1_t_2 = upu_c_1*upu_s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*upu_w_1_t +
+            upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*upu_w_1_t +
+            upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*upu_w_1_t +
+            upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2;
         const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
             axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
         const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
             axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
         const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
             axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_3_t = axis_x_upu_axes2_z*q_in_base_y - axis_x_upu_axes2_y*q_in_base_z;
-        const real H_a_3_t_2 = axis_x_upu_axes2_x*q_in_base_z - axis_x_upu_axes2_z*q_in_base_x;
-        const real H_a_3_t_3 = axis_x_upu_axes2_y*q_in_base_x - axis_x_upu_axes2_x*q_in_base_y;
-        o->entry[0][k] = axis_x_upu_axes2_x;
-        o->entry[1][k] = axis_x_upu_axes2_y;
-        o->entry[2][k] = axis_x_upu_axes2_z;
-        o->entry[3][k] = H_a_3_t;
-        o->entry[4][k] = H_a_3_t_2;
-        o->entry[5][k] = H_a_3_t_3;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(root_2) > TOLERANCE*R(0.8));
+        /* (upu-H_a_3) moment of the column's unit force about the platform origin */
+        const real upu_H_a_3_t = axis_x_upu_axes2_z*upu_q_in_base_y -
+            axis_x_upu_axes2_y*upu_q_in_base_z;
+        const real upu_H_a_3_t_2 = axis_x_upu_axes2_x*upu_q_in_base_z -
+            axis_x_upu_axes2_z*upu_q_in_base_x;
+        const real upu_H_a_3_t_3 = axis_x_upu_axes2_y*upu_q_in_base_x -
+            axis_x_upu_axes2_x*upu_q_in_base_y;
+        o[0*count + k] = axis_x_upu_axes2_x;
+        o[1*count + k] = axis_x_upu_axes2_y;
+        o[2*count + k] = axis_x_upu_axes2_z;
+        o[3*count + k] = upu_H_a_3_t;
+        o[4*count + k] = upu_H_a_3_t_2;
+        o[5*count + k] = upu_H_a_3_t_3;
+        o[7*count + k] = (axis_x_upu_axes2_x + (axis_x_upu_axes2_y + axis_x_upu_axes2_z)) +
+            (upu_H_a_3_t + (upu_H_a_3_t_2 + upu_H_a_3_t_3));
+        o[6*count + k] = UNLESS(magnitude(upu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(upu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(upu_root_2) > TOLERANCE*R(0.8));
     }
 }
 
-INLINE void H_place_upu(size_t w, const H_results_upu *o, size_t leg, size_t first, real *H,
+INLINE void H_place_upu(size_t w, size_t count, const real *o, size_t leg, size_t first, real *H,
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(3 + leg)*w + k] = o->entry[1][first + k];
-        H[(6 + leg)*w + k] = o->entry[2][first + k];
-        H[(9 + leg)*w + k] = o->entry[3][first + k];
-        H[(12 + leg)*w + k] = o->entry[4][first + k];
-        H[(15 + leg)*w + k] = o->entry[5][first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(3 + leg)*w + k] = o[1*count + first + k];
+        H[(6 + leg)*w + k] = o[2*count + first + k];
+        H[(9 + leg)*w + k] = o[3*count + first + k];
+        H[(12 + leg)*w + k] = o[4*count + first + k];
+        H[(15 + leg)*w + k] = o[5*count + first + k];
+        t->singular[k] += o[6*count + first + k];
+        t->total[k] += o[7*count + first + k];
     }
 }
 
-INLINE void H_run(const prepared *m, size_t w, const real *X, real *H, verdict *t)
+INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    H_values values, *const s = &values;
-    H_results_upu results_upu;
-    H_before(w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        H_legs_upu(m, 0, 1, s, 0, 3, &results_upu);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            H_place_upu(w, &results_upu, leg, leg, H, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            H_legs_upu(m, leg, 0, s, 1, w, &results_upu);
-            H_place_upu(w, &results_upu, leg, 0, H, t);
-        }
+    real s[12] = {0}, o_upu[8*LEGS(3)] = {0};
+    H_before(1, X, s, t);
+    H_legs_upu(m, 1, 0, 1, s, 0, LEGS(3), o_upu);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        H_place_upu(1, LEGS(3), o_upu, leg, leg, H, t);
+    }
+}
+
+INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
+{
+    real s[12*LANES], o_upu[8*LANES];
+    H_before(LANES, X, s, t);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        H_legs_upu(m, LANES, leg, 0, s, 1, LANES, o_upu);
+        H_place_upu(LANES, LANES, o_upu, leg, 0, H, t);
     }
 }
 
 /* ---- Hk: 333 mul, 207 add, 9 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES];
-} Hk_values;
-typedef struct {
-    real entry[6][8], singular[8];
-} Hk_results_upu;
-
-INLINE void Hk_before(size_t w, const real *X, Hk_values *s, verdict *t)
+INLINE void Hk_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -3417,222 +3568,221 @@ INLINE void Hk_before(size_t w, const real *X, Hk_values *s, verdict *t)
         const real R_zx = quaternion_xz - quaternion_wy;
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void Hk_legs_upu(const prepared *m, size_t leg, size_t legs, const Hk_values *s, size_t
-    states, size_t count, Hk_results_upu *o)
+INLINE void Hk_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
-        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
-        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        /* (upu-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        /* (upu-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+        const real upu_q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
-        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real upu_q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
             R_yz*upu_platform_point_z;
-        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real upu_q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
             R_zz*upu_platform_point_z;
-        const real S_x = q_in_base_x + t_x - upu_base_point_x;
-        const real S_y = q_in_base_y + t_y - upu_base_point_y;
-        const real S_z = q_in_base_z + t_z - upu_base_point_z;
-        /* (upu-K2) component along the reference direction */
-        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
-        /* (upu-K3) component across the reference direction */
-        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
-        /* (upu-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upu-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
-        /* (upu-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upu-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+        const real t_x = s[0*w + j];
+        const real upu_base_point_x = m->upu_base_point_x[i];
+        const real upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x;
+        const real t_y = s[1*w + j];
+        const real upu_base_point_y = m->upu_base_point_y[i];
+        const real upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y;
+        const real t_z = s[2*w + j];
+        const real upu_base_point_z = m->upu_base_point_z[i];
+        const real upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z;
+        /* (upu-px_1) component along the reference direction */
+        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
+        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
+        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
+        const real upu_px_1 = upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx +
+            upu_S_z*upu_base_frame_zx;
+        /* (upu-py_1) component across the reference direction */
+        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
+        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
+        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
+        const real upu_py_1 = upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy +
+            upu_S_z*upu_base_frame_zy;
+        /* (upu-rho2_1) squared amplitude */
+        const real upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1;
+        /* (upu-root_1) amplitude, with the sign of the branch */
+        const real upu_branch_1 = m->upu_branch_1[i];
+        const real upu_root_1 = upu_branch_1*root(upu_rho2_1);
+        /* (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
+        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
+        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
+        const real upu_xi_1_t = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
+            upu_S_z*upu_base_frame_zz;
+        /* (upu-rho2_2) squared amplitude */
+        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t;
+        /* (upu-root_2) amplitude, with the sign of the branch */
+        const real upu_branch_2 = m->upu_branch_2[i];
+        const real upu_root_2 = upu_branch_2*root(upu_rho2_2);
+        /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_upu_root_2 = 1/upu_root_2;
+        const real upu_c_2 = inv_upu_root_2*upu_root_1;
+        /* (upu-s_2) sine of the angle of joint 2 from its reference direction */
+        const real upu_s_2 = inv_upu_root_2*upu_xi_1_t;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
+        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
+        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        const real upu_end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
             R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
             R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
             R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+        const real upu_end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
             R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
             R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
             R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        const real end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
+        const real upu_end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
             R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
             R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
             R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
-        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
-        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
-        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
-        /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t = root_1*root_2;
-        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-           */
-        const real n_c_z = root_2*(-c_2*end_p1_r3_x - end_p1_r3_y*s_2)/volume_c_t;
-        /* (upu-V9) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
-        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
-        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
-        const real w_1_t = s_1*s_2;
-        const real w_1_t_2 = c_1*s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
-            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
-            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
-            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
-        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-           */
-        const real n_c_t = axis_z_upu_axes2_in_base_x*n_c_z;
-        const real n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z;
-        const real n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z;
-        /* (M9) moment of the column's unit force about the platform origin */
-        const real Hk_a_1_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x + n_c_t_2*q_in_base_z -
-            end_p1_r3_y*(axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y) - n_c_t_3*q_in_base_y;
-        const real Hk_a_1_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x + n_c_t_3*q_in_base_x -
-            end_p1_r3_y*(axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z) - n_c_t*q_in_base_z;
-        const real Hk_a_1_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x + n_c_t*q_in_base_y -
-            end_p1_r3_y*(axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x) - n_c_t_2*q_in_base_x;
-        o->entry[0][k] = -n_c_t;
-        o->entry[1][k] = -n_c_t_2;
-        o->entry[2][k] = -n_c_t_3;
-        o->entry[3][k] = Hk_a_1_x;
-        o->entry[4][k] = Hk_a_1_y;
-        o->entry[5][k] = Hk_a_1_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(-volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(root_2) > TOLERANCE*R(0.8));
+        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_upu_root_1 = 1/upu_root_1;
+        const real upu_c_1 = inv_upu_root_1*upu_py_1;
+        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real upu_s_1 = inv_upu_root_1*upu_px_1;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1;
+        const real upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y;
+        const real upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2;
+        /* (upu-volume_c) triple product of the velocity vectors */
+        const real upu_volume_c_t = upu_root_1*upu_root_2;
+        /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
+           out */
+        const real upu_n_c_z = upu_root_2*(-upu_c_2*upu_end_p1_r3_x -
+            upu_end_p1_r3_y*upu_s_2)/upu_volume_c_t;
+        /* (upu-w_1) force part of reciprocal wrench 1 */
+        const real axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 -
+            upu_base_frame_xx*upu_c_1;
+        const real axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 -
+            upu_base_frame_yx*upu_c_1;
+        const real axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 -
+            upu_base_frame_zx*upu_c_1;
+        const real upu_w_1_t = upu_s_1*upu_s_2;
+        const real upu_w_1_t_2 = upu_c_1*upu_s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*upu_w_1_t +
+            upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*upu_w_1_t +
+            upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*upu_w_1_t +
+            upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2;
+        /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
+           out */
+        const real upu_n_c_t = axis_z_upu_axes2_in_base_x*upu_n_c_z;
+        const real upu_n_c_t_2 = axis_z_upu_axes2_in_base_y*upu_n_c_z;
+        const real upu_n_c_t_3 = axis_z_upu_axes2_in_base_z*upu_n_c_z;
+        /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
+        const real upu_Hk_a_1_x = axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x +
+            upu_n_c_t_2*upu_q_in_base_z -
+            upu_end_p1_r3_y*(axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y) - upu_n_c_t_3*upu_q_in_base_y;
+        const real upu_Hk_a_1_y = axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x +
+            upu_n_c_t_3*upu_q_in_base_x -
+            upu_end_p1_r3_y*(axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z) - upu_n_c_t*upu_q_in_base_z;
+        const real upu_Hk_a_1_z = axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x +
+            upu_n_c_t*upu_q_in_base_y -
+            upu_end_p1_r3_y*(axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x) - upu_n_c_t_2*upu_q_in_base_x;
+        o[0*count + k] = -upu_n_c_t;
+        o[1*count + k] = -upu_n_c_t_2;
+        o[2*count + k] = -upu_n_c_t_3;
+        o[3*count + k] = upu_Hk_a_1_x;
+        o[4*count + k] = upu_Hk_a_1_y;
+        o[5*count + k] = upu_Hk_a_1_z;
+        o[7*count + k] = (upu_n_c_t + (upu_n_c_t_2 + upu_n_c_t_3)) + (upu_Hk_a_1_x + (upu_Hk_a_1_y
+            + upu_Hk_a_1_z));
+        o[6*count + k] = UNLESS(magnitude(upu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(upu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(-upu_volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(upu_root_2) > TOLERANCE*R(0.8));
     }
 }
 
-INLINE void Hk_place_upu(size_t w, const Hk_results_upu *o, size_t leg, size_t first, real *Hk,
-    verdict *t)
+INLINE void Hk_place_upu(size_t w, size_t count, const real *o, size_t leg, size_t first, real
+    *Hk, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        Hk[(leg)*w + k] = o->entry[0][first + k];
-        Hk[(3 + leg)*w + k] = o->entry[1][first + k];
-        Hk[(6 + leg)*w + k] = o->entry[2][first + k];
-        Hk[(9 + leg)*w + k] = o->entry[3][first + k];
-        Hk[(12 + leg)*w + k] = o->entry[4][first + k];
-        Hk[(15 + leg)*w + k] = o->entry[5][first + k];
-        t->singular[k] += o->singular[first + k];
+        Hk[(leg)*w + k] = o[0*count + first + k];
+        Hk[(3 + leg)*w + k] = o[1*count + first + k];
+        Hk[(6 + leg)*w + k] = o[2*count + first + k];
+        Hk[(9 + leg)*w + k] = o[3*count + first + k];
+        Hk[(12 + leg)*w + k] = o[4*count + first + k];
+        Hk[(15 + leg)*w + k] = o[5*count + first + k];
+        t->singular[k] += o[6*count + first + k];
+        t->total[k] += o[7*count + first + k];
     }
 }
 
-INLINE void Hk_run(const prepared *m, size_t w, const real *X, real *Hk, verdict *t)
+INLINE void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
 {
-    Hk_values values, *const s = &values;
-    Hk_results_upu results_upu;
-    Hk_before(w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        Hk_legs_upu(m, 0, 1, s, 0, 3, &results_upu);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            Hk_place_upu(w, &results_upu, leg, leg, Hk, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            Hk_legs_upu(m, leg, 0, s, 1, w, &results_upu);
-            Hk_place_upu(w, &results_upu, leg, 0, Hk, t);
-        }
+    real s[12] = {0}, o_upu[8*LEGS(3)] = {0};
+    Hk_before(1, X, s, t);
+    Hk_legs_upu(m, 1, 0, 1, s, 0, LEGS(3), o_upu);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        Hk_place_upu(1, LEGS(3), o_upu, leg, leg, Hk, t);
+    }
+}
+
+INLINE void Hk_run_lanes(const prepared *m, const real *X, real *Hk, verdict *t)
+{
+    real s[12*LANES], o_upu[8*LANES];
+    Hk_before(LANES, X, s, t);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        Hk_legs_upu(m, LANES, leg, 0, s, 1, LANES, o_upu);
+        Hk_place_upu(LANES, LANES, o_upu, leg, 0, Hk, t);
     }
 }
 
 /* ---- constraint_bias: 495 mul, 318 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES];
-} constraint_bias_values;
-typedef struct {
-    real entry[1][8], singular[8];
-} constraint_bias_results_upu;
-
-INLINE void constraint_bias_before(size_t w, const real *X, const real *V, constraint_bias_values
-    *s, verdict *t)
+INLINE void constraint_bias_before(size_t w, const real *X, const real *V, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -3657,301 +3807,286 @@ INLINE void constraint_bias_before(size_t w, const real *X, const real *V, const
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void constraint_bias_legs_upu(const prepared *m, size_t leg, size_t legs, const
-    constraint_bias_values *s, size_t states, size_t count, constraint_bias_results_upu *o)
+INLINE void constraint_bias_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, const
+    real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
-        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
-        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        /* (upu-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        /* (upu-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+        const real upu_q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
-        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real upu_q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
             R_yz*upu_platform_point_z;
-        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real upu_q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
             R_zz*upu_platform_point_z;
-        const real S_x = q_in_base_x + t_x - upu_base_point_x;
-        const real S_y = q_in_base_y + t_y - upu_base_point_y;
-        const real S_z = q_in_base_z + t_z - upu_base_point_z;
-        /* (upu-K2) component along the reference direction */
-        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
-        /* (upu-K3) component across the reference direction */
-        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
-        /* (upu-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upu-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
-        /* (upu-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upu-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+        const real t_x = s[0*w + j];
+        const real upu_base_point_x = m->upu_base_point_x[i];
+        const real upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x;
+        const real t_y = s[1*w + j];
+        const real upu_base_point_y = m->upu_base_point_y[i];
+        const real upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y;
+        const real t_z = s[2*w + j];
+        const real upu_base_point_z = m->upu_base_point_z[i];
+        const real upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z;
+        /* (upu-px_1) component along the reference direction */
+        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
+        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
+        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
+        const real upu_px_1 = upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx +
+            upu_S_z*upu_base_frame_zx;
+        /* (upu-py_1) component across the reference direction */
+        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
+        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
+        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
+        const real upu_py_1 = upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy +
+            upu_S_z*upu_base_frame_zy;
+        /* (upu-rho2_1) squared amplitude */
+        const real upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1;
+        /* (upu-root_1) amplitude, with the sign of the branch */
+        const real upu_branch_1 = m->upu_branch_1[i];
+        const real upu_root_1 = upu_branch_1*root(upu_rho2_1);
+        /* (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
+        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
+        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
+        const real upu_xi_1_t = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
+            upu_S_z*upu_base_frame_zz;
+        /* (upu-rho2_2) squared amplitude */
+        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t;
+        /* (upu-root_2) amplitude, with the sign of the branch */
+        const real upu_branch_2 = m->upu_branch_2[i];
+        const real upu_root_2 = upu_branch_2*root(upu_rho2_2);
+        /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_upu_root_2 = 1/upu_root_2;
+        const real upu_c_2 = inv_upu_root_2*upu_root_1;
+        /* (upu-s_2) sine of the angle of joint 2 from its reference direction */
+        const real upu_s_2 = inv_upu_root_2*upu_xi_1_t;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
+        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
+        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        const real upu_end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
             R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
             R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
             R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+        const real upu_end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
             R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
             R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
             R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        const real end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
+        const real upu_end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
             R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
             R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
             R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
-        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x;
-        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
-        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
-        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
-        /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t = root_1*root_2;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
-        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-           */
-        const real n_c_z = n_m1_r0_y*root_2/volume_c_t;
-        /* (upu-V9) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
-        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
-        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
-        const real w_1_t = s_1*s_2;
-        const real w_1_t_2 = c_1*s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
-            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
-            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
-            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
+        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_upu_root_1 = 1/upu_root_1;
+        const real upu_c_1 = inv_upu_root_1*upu_py_1;
+        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real upu_s_1 = inv_upu_root_1*upu_px_1;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_end_p1_r1_x = upu_end_p1_r0_y*upu_s_1 - upu_c_1*upu_end_p1_r0_x;
+        const real upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1;
+        const real upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y;
+        const real upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2;
+        /* (upu-volume_c) triple product of the velocity vectors */
+        const real upu_volume_c_t = upu_root_1*upu_root_2;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2;
+        /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
+           out */
+        const real upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t;
+        /* (upu-w_1) force part of reciprocal wrench 1 */
+        const real axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 -
+            upu_base_frame_xx*upu_c_1;
+        const real axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 -
+            upu_base_frame_yx*upu_c_1;
+        const real axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 -
+            upu_base_frame_zx*upu_c_1;
+        const real upu_w_1_t = upu_s_1*upu_s_2;
+        const real upu_w_1_t_2 = upu_c_1*upu_s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*upu_w_1_t +
+            upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*upu_w_1_t +
+            upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*upu_w_1_t +
+            upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2;
         const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
             axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
         const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
             axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
         const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
             axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
-        /* (upu-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        /* (upu-V18) rate at which the joints turn along moment direction 1 */
-        const real eta_1 = omega_x*(axis_y_upu_axes2_in_base_x*end_p1_r3_x -
-            axis_x_upu_axes2_x*end_p1_r3_y) + omega_y*(axis_y_upu_axes2_in_base_y*end_p1_r3_x -
-            axis_x_upu_axes2_y*end_p1_r3_y) + omega_z*(axis_y_upu_axes2_in_base_z*end_p1_r3_x -
-            axis_x_upu_axes2_z*end_p1_r3_y);
-        /* (upu-V1) velocity of the connection point */
-        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
-            S_dot_z*axis_x_upu_axes2_z;
-        /* (upu-V19) rate of joint 1 */
-        const real qd_1_t = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
-            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
-        const real qd_1_t_2 = (S_dot_x*axis_z_upu_axes2_in_base_x +
-            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z +
-            eta_1*n_c_z)/w_1_t_3;
-        /* (upu-V22) angular velocity of link 1 */
-        const real omega_1_t = qd_1_t_2*s_2;
-        const real omega_1_t_2 = c_2*qd_1_t_2;
-        /* (upu-A8) rate of moment direction 1 */
-        const real omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
-            axis_x_upu_axes2_z*omega_z;
-        const real omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
-            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
-        const real omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
-            axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
-        const real nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t -
-            end_p1_r3_x*omega_tip_z;
-        const real nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y -
-            end_p1_r3_y*omega_tip_z;
-        /* (upu-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_y = omega_1_t*qd_1_t;
-        /* (upu-A9) bias of the angular acceleration along moment direction 1 */
-        const real nu_1_t = end_p1_r3_y*omega_1_t_2*qd_1_t - end_p1_r3_x*zeta_2_y;
-        const real nu_1_t_2 = nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z -
-            qd_1_t)*(end_p1_r3_y*omega_1_t_2 - end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 +
-            omega_tip_y);
-        const real nu_1 = -nu_1_t - nu_1_t_2;
-        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_z = 2*S_dot_tip_x*omega_1_t_2 + 2*root_2*zeta_2_y;
-        /* (upu-A7) remainder without the acceleration in: acceleration of the connection point left to
+        const real upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y;
+        /* (upu-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real upu_S_dot_t = omega_y*upu_q_in_base_z - omega_z*upu_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real upu_S_dot_t_2 = omega_z*upu_q_in_base_x - omega_x*upu_q_in_base_z;
+        const real upu_S_dot_t_3 = omega_x*upu_q_in_base_y - omega_y*upu_q_in_base_x;
+        const real t_dot_x = s[12*w + j];
+        const real upu_S_dot_x = t_dot_x + upu_S_dot_t;
+        const real t_dot_y = s[13*w + j];
+        const real upu_S_dot_y = t_dot_y + upu_S_dot_t_2;
+        const real t_dot_z = s[14*w + j];
+        const real upu_S_dot_z = t_dot_z + upu_S_dot_t_3;
+        /* (upu-eta_1) rate at which the joints turn along moment direction 1 */
+        const real upu_eta_1 = omega_x*(axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x -
+            axis_x_upu_axes2_x*upu_end_p1_r3_y) +
+            omega_y*(axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x -
+            axis_x_upu_axes2_y*upu_end_p1_r3_y) +
+            omega_z*(axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x -
+            axis_x_upu_axes2_z*upu_end_p1_r3_y);
+        /* (upu-S_dot) velocity of the connection point */
+        const real upu_S_dot_tip_x = axis_x_upu_axes2_x*upu_S_dot_x +
+            axis_x_upu_axes2_y*upu_S_dot_y + axis_x_upu_axes2_z*upu_S_dot_z;
+        /* (upu-qd_3) rate of joint 3 */
+        const real upu_qd_3_t = inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_dot_x +
+            axis_y_upu_axes2_in_base_y*upu_S_dot_y + axis_y_upu_axes2_in_base_z*upu_S_dot_z);
+        const real upu_qd_3_t_2 = (axis_z_upu_axes2_in_base_x*upu_S_dot_x +
+            axis_z_upu_axes2_in_base_y*upu_S_dot_y + axis_z_upu_axes2_in_base_z*upu_S_dot_z +
+            upu_eta_1*upu_n_c_z)/upu_w_1_t_3;
+        /* (upu-omega_1) angular velocity of link 1 */
+        const real upu_omega_1_t = upu_qd_3_t_2*upu_s_2;
+        const real upu_omega_1_t_2 = upu_c_2*upu_qd_3_t_2;
+        /* (upu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real upu_zeta_2_y = upu_omega_1_t*upu_qd_3_t;
+        /* (upu-bias) acceleration of the connection point at zero joint accelerations */
+        const real upu_bias_z = 2*upu_S_dot_tip_x*upu_omega_1_t_2 + 2*upu_root_2*upu_zeta_2_y;
+        /* (upu-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rel_o_z = axis_z_upu_axes2_in_base_x*(S_dot_t_3*omega_y - S_dot_t_2*omega_z) +
-            axis_z_upu_axes2_in_base_y*(S_dot_t*omega_z - S_dot_t_3*omega_x) +
-            axis_z_upu_axes2_in_base_z*(S_dot_t_2*omega_x - S_dot_t*omega_y) - bias_z;
-        /* (M11) part of the constraint's second derivative that does not hold the acceleration */
-        const real gamma_c1 = nu_1 - n_c_z*rel_o_z;
-        o->entry[0][k] = gamma_c1;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(-volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(w_1_t_3) >
+        const real upu_rel_o_z = axis_z_upu_axes2_in_base_x*(omega_y*upu_S_dot_t_3 -
+            omega_z*upu_S_dot_t_2) + axis_z_upu_axes2_in_base_y*(omega_z*upu_S_dot_t -
+            omega_x*upu_S_dot_t_3) + axis_z_upu_axes2_in_base_z*(omega_x*upu_S_dot_t_2 -
+            omega_y*upu_S_dot_t) - upu_bias_z;
+        /* (upu-nd_m1) rate of moment direction 1 */
+        const real upu_omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
+            axis_x_upu_axes2_z*omega_z;
+        const real upu_omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
+            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
+        const real upu_omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
+            axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
+        const real upu_nd_m1_x = upu_end_p1_r1_x*upu_omega_tip_x - upu_end_p1_r1_x*upu_omega_1_t -
+            upu_end_p1_r3_x*upu_omega_tip_z;
+        const real upu_nd_m1_y = upu_end_p1_r1_x*upu_omega_1_t_2 + upu_end_p1_r1_x*upu_omega_tip_y
+            - upu_end_p1_r3_y*upu_omega_tip_z;
+        /* (upu-nu_1) bias of the angular acceleration along moment direction 1 */
+        const real upu_nu_1_t = upu_end_p1_r3_y*upu_omega_1_t_2*upu_qd_3_t -
+            upu_end_p1_r3_x*upu_zeta_2_y;
+        const real upu_nu_1_t_2 = upu_nd_m1_x*(upu_omega_1_t - upu_omega_tip_x) + (upu_omega_tip_z
+            - upu_qd_3_t)*(upu_end_p1_r3_y*upu_omega_1_t_2 - upu_end_p1_r3_x*upu_omega_1_t) -
+            upu_nd_m1_y*(upu_omega_1_t_2 + upu_omega_tip_y);
+        const real upu_nu_1 = -upu_nu_1_t - upu_nu_1_t_2;
+        /* (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+           */
+        const real upu_gamma_c1 = upu_nu_1 - upu_n_c_z*upu_rel_o_z;
+        o[0*count + k] = upu_gamma_c1;
+        o[2*count + k] = upu_gamma_c1;
+        o[1*count + k] = UNLESS(magnitude(upu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(upu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(-upu_volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(upu_root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(upu_w_1_t_3) >
             TOLERANCE*R(0.8));
     }
 }
 
-INLINE void constraint_bias_place_upu(size_t w, const constraint_bias_results_upu *o, size_t leg,
-    size_t first, real *constraint_bias, verdict *t)
+INLINE void constraint_bias_place_upu(size_t w, size_t count, const real *o, size_t leg, size_t
+    first, real *constraint_bias, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        constraint_bias[(leg)*w + k] = o->entry[0][first + k];
-        t->singular[k] += o->singular[first + k];
+        constraint_bias[(leg)*w + k] = o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
+        t->total[k] += o[2*count + first + k];
     }
 }
 
-INLINE void constraint_bias_run(const prepared *m, size_t w, const real *X, const real *V, real
+INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V, real
     *constraint_bias, verdict *t)
 {
-    constraint_bias_values values, *const s = &values;
-    constraint_bias_results_upu results_upu;
-    constraint_bias_before(w, X, V, s, t);
-    if (w == 1) {  /* the legs side by side */
-        constraint_bias_legs_upu(m, 0, 1, s, 0, 3, &results_upu);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            constraint_bias_place_upu(w, &results_upu, leg, leg, constraint_bias, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            constraint_bias_legs_upu(m, leg, 0, s, 1, w, &results_upu);
-            constraint_bias_place_upu(w, &results_upu, leg, 0, constraint_bias, t);
-        }
+    real s[18] = {0}, o_upu[3*LEGS(3)] = {0};
+    constraint_bias_before(1, X, V, s, t);
+    constraint_bias_legs_upu(m, 1, 0, 1, s, 0, LEGS(3), o_upu);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        constraint_bias_place_upu(1, LEGS(3), o_upu, leg, leg, constraint_bias, t);
+    }
+}
+
+INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const real *V, real
+    *constraint_bias, verdict *t)
+{
+    real s[18*LANES], o_upu[3*LANES];
+    constraint_bias_before(LANES, X, V, s, t);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        constraint_bias_legs_upu(m, LANES, leg, 0, s, 1, LANES, o_upu);
+        constraint_bias_place_upu(LANES, LANES, o_upu, leg, 0, constraint_bias, t);
     }
 }
 
 /* ---- required: 957 mul, 714 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
-        t_ddot_x[LANES], t_ddot_y[LANES], t_ddot_z[LANES], alpha_x[LANES], alpha_y[LANES],
-        alpha_z[LANES], f_p_x[LANES], f_p_y[LANES], f_p_z[LANES], mu_p_in_base_x[LANES],
-        mu_p_in_base_y[LANES], mu_p_in_base_z[LANES], sum[6][LANES];
-} required_values;
-typedef struct {
-    real sum[6][8], entry[12][8], singular[8];
-} required_results_upu;
-
 INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, required_values *s, verdict *t)
+    *A, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real A_2 = A[2*w + k];
-        const real A_3 = A[3*w + k];
-        const real A_4 = A[4*w + k];
-        const real A_5 = A[5*w + k];
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_zz = m->J_star_zz;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real platform_mass = m->platform_mass;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -3976,53 +4111,78 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
+        const real A_2 = A[2*w + k];
         const real t_ddot_z = A_2;
+        const real A_3 = A[3*w + k];
         const real alpha_x = A_3;
+        const real A_4 = A[4*w + k];
         const real alpha_y = A_4;
+        const real A_5 = A[5*w + k];
         const real alpha_z = A_5;
-        /* (L2) first moment about the platform origin */
+        /* (h_star) first moment about the platform origin */
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_z = m->h_star_z;
         const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
         const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
         const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
-        /* (P1) centripetal tensor of the platform */
+        /* (W_p) centripetal tensor of the platform */
         const real W_p_t = omega_x*omega_x;
         const real W_p_t_2 = omega_y*omega_y;
         const real W_p_t_3 = omega_z*omega_z;
         const real W_p_xy = omega_x*omega_y;
         const real W_p_xz = omega_x*omega_z;
         const real W_p_yz = omega_y*omega_z;
-        /* (M6) gyroscopic moment and moment of the weight of the platform */
+        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
         const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
         const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
         const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_xx = m->J_star_xx;
+        const real J_star_xy = m->J_star_xy;
+        const real J_star_xz = m->J_star_xz;
         const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
+        const real J_star_yy = m->J_star_yy;
+        const real J_star_yz = m->J_star_yz;
         const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
+        const real J_star_zz = m->J_star_zz;
         const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        /* (E1) acceleration of the platform origin, less gravity */
+        /* (a_t) acceleration of the platform origin, less gravity */
+        const real gravity_x = m->gravity_x;
         const real a_t_x = t_ddot_x - gravity_x;
+        const real gravity_y = m->gravity_y;
         const real a_t_y = t_ddot_y - gravity_y;
+        const real gravity_z = m->gravity_z;
         const real a_t_z = t_ddot_z - gravity_z;
-        /* (E2) inertia force of the platform less its weight */
+        /* (f_p) inertia force of the platform less its weight */
+        const real platform_mass = m->platform_mass;
         const real f_p_x = a_t_x*platform_mass + h_star_in_base_y*(W_p_xy - alpha_z) +
             h_star_in_base_z*(W_p_xz + alpha_y) - h_star_in_base_x*(W_p_t_2 + W_p_t_3);
         const real f_p_y = a_t_y*platform_mass + h_star_in_base_x*(W_p_xy + alpha_z) +
             h_star_in_base_z*(W_p_yz - alpha_x) - h_star_in_base_y*(W_p_t + W_p_t_3);
         const real f_p_z = a_t_z*platform_mass + h_star_in_base_x*(W_p_xz - alpha_y) +
             h_star_in_base_y*(W_p_yz + alpha_x) - h_star_in_base_z*(W_p_t + W_p_t_2);
-        /* (E1) acceleration of the platform origin, less gravity */
+        /* (a_t) acceleration of the platform origin, less gravity */
         const real a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
         const real a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
         const real a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
-        /* (E3) inertia moment of the platform less that of its weight */
+        /* (mu_p) inertia moment of the platform less that of its weight */
         const real alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
         const real alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
         const real alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
@@ -4035,411 +4195,429 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z;
         const real mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z;
         const real mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->t_ddot_z[k] = t_ddot_z;
-        s->alpha_x[k] = alpha_x;
-        s->alpha_y[k] = alpha_y;
-        s->alpha_z[k] = alpha_z;
-        s->f_p_x[k] = f_p_x;
-        s->f_p_y[k] = f_p_y;
-        s->f_p_z[k] = f_p_z;
-        s->mu_p_in_base_x[k] = mu_p_in_base_x;
-        s->mu_p_in_base_y[k] = mu_p_in_base_y;
-        s->mu_p_in_base_z[k] = mu_p_in_base_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
+        s[18*w + k] = t_ddot_x;
+        s[19*w + k] = t_ddot_y;
+        s[20*w + k] = t_ddot_z;
+        s[21*w + k] = alpha_x;
+        s[22*w + k] = alpha_y;
+        s[23*w + k] = alpha_z;
+        s[24*w + k] = f_p_x;
+        s[25*w + k] = f_p_y;
+        s[26*w + k] = f_p_z;
+        s[27*w + k] = mu_p_in_base_x;
+        s[28*w + k] = mu_p_in_base_y;
+        s[29*w + k] = mu_p_in_base_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void required_legs_upu(const prepared *m, size_t leg, size_t legs, const required_values
-    *s, size_t states, size_t count, int add, required_results_upu *o)
+INLINE void required_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real t_ddot_z = s->t_ddot_z[j];
-        const real alpha_x = s->alpha_x[j];
-        const real alpha_y = s->alpha_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real J_group_2_xy = m->J_group_2_xy[i];
-        const real J_group_2_xz = m->J_group_2_xz[i];
-        const real J_group_2_yz = m->J_group_2_yz[i];
-        const real Sigma_2_xx = m->Sigma_2_xx[i];
-        const real Sigma_2_yy = m->Sigma_2_yy[i];
-        const real Sigma_2_zz = m->Sigma_2_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real g_r0_z = m->g_r0_z[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real h_2_z = m->h_2_z[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_link3_mass = m->upu_link3_mass[i];
-        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
-        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
-        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        /* (upu-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        /* (upu-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+        const real upu_q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
-        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real upu_q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
             R_yz*upu_platform_point_z;
-        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real upu_q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
             R_zz*upu_platform_point_z;
-        const real S_x = q_in_base_x + t_x - upu_base_point_x;
-        const real S_y = q_in_base_y + t_y - upu_base_point_y;
-        const real S_z = q_in_base_z + t_z - upu_base_point_z;
-        /* (upu-K2) component along the reference direction */
-        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
-        /* (upu-K3) component across the reference direction */
-        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
-        /* (upu-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upu-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
-        /* (upu-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upu-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+        const real t_x = s[0*w + j];
+        const real upu_base_point_x = m->upu_base_point_x[i];
+        const real upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x;
+        const real t_y = s[1*w + j];
+        const real upu_base_point_y = m->upu_base_point_y[i];
+        const real upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y;
+        const real t_z = s[2*w + j];
+        const real upu_base_point_z = m->upu_base_point_z[i];
+        const real upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z;
+        /* (upu-px_1) component along the reference direction */
+        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
+        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
+        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
+        const real upu_px_1 = upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx +
+            upu_S_z*upu_base_frame_zx;
+        /* (upu-py_1) component across the reference direction */
+        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
+        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
+        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
+        const real upu_py_1 = upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy +
+            upu_S_z*upu_base_frame_zy;
+        /* (upu-rho2_1) squared amplitude */
+        const real upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1;
+        /* (upu-root_1) amplitude, with the sign of the branch */
+        const real upu_branch_1 = m->upu_branch_1[i];
+        const real upu_root_1 = upu_branch_1*root(upu_rho2_1);
+        /* (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
+        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
+        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
+        const real upu_xi_1_t = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
+            upu_S_z*upu_base_frame_zz;
+        /* (upu-rho2_2) squared amplitude */
+        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t;
+        /* (upu-root_2) amplitude, with the sign of the branch */
+        const real upu_branch_2 = m->upu_branch_2[i];
+        const real upu_root_2 = upu_branch_2*root(upu_rho2_2);
+        /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_upu_root_2 = 1/upu_root_2;
+        const real upu_c_2 = inv_upu_root_2*upu_root_1;
+        /* (upu-s_2) sine of the angle of joint 2 from its reference direction */
+        const real upu_s_2 = inv_upu_root_2*upu_xi_1_t;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
+        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
+        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        const real upu_end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
             R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
             R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
             R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+        const real upu_end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
             R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
             R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
             R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        const real end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
+        const real upu_end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
             R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
             R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
             R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
-        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x;
-        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
-        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
-        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
-        /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t = root_1*root_2;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
-        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-           */
-        const real n_c_z = n_m1_r0_y*root_2/volume_c_t;
-        /* (upu-V9) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
-        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
-        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
-        const real w_1_t = s_1*s_2;
-        const real w_1_t_2 = c_1*s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
-            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
-            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
-            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
+        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_upu_root_1 = 1/upu_root_1;
+        const real upu_c_1 = inv_upu_root_1*upu_py_1;
+        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real upu_s_1 = inv_upu_root_1*upu_px_1;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_end_p1_r1_x = upu_end_p1_r0_y*upu_s_1 - upu_c_1*upu_end_p1_r0_x;
+        const real upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1;
+        const real upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y;
+        const real upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2;
+        /* (upu-volume_c) triple product of the velocity vectors */
+        const real upu_volume_c_t = upu_root_1*upu_root_2;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2;
+        /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
+           out */
+        const real upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t;
+        /* (upu-w_1) force part of reciprocal wrench 1 */
+        const real axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 -
+            upu_base_frame_xx*upu_c_1;
+        const real axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 -
+            upu_base_frame_yx*upu_c_1;
+        const real axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 -
+            upu_base_frame_zx*upu_c_1;
+        const real upu_w_1_t = upu_s_1*upu_s_2;
+        const real upu_w_1_t_2 = upu_c_1*upu_s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*upu_w_1_t +
+            upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*upu_w_1_t +
+            upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*upu_w_1_t +
+            upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2;
         const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
             axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
         const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
             axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
         const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
             axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
-        const real inv_w_1_t_25 = 1/w_1_t_3;
-        /* (upu-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
-            S_dot_z*axis_x_upu_axes2_z;
-        /* (upu-V19) rate of joint 1 */
-        const real qd_1_t = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
-            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
-        /* (upu-A8) rate of moment direction 1 */
-        const real omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
+        const real upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y;
+        const real inv_upu_w_1_t_25 = 1/upu_w_1_t_3;
+        /* (upu-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real upu_S_dot_t = omega_y*upu_q_in_base_z - omega_z*upu_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real upu_S_dot_t_2 = omega_z*upu_q_in_base_x - omega_x*upu_q_in_base_z;
+        const real upu_S_dot_t_3 = omega_x*upu_q_in_base_y - omega_y*upu_q_in_base_x;
+        const real t_dot_x = s[12*w + j];
+        const real upu_S_dot_x = t_dot_x + upu_S_dot_t;
+        const real t_dot_y = s[13*w + j];
+        const real upu_S_dot_y = t_dot_y + upu_S_dot_t_2;
+        const real t_dot_z = s[14*w + j];
+        const real upu_S_dot_z = t_dot_z + upu_S_dot_t_3;
+        const real upu_S_dot_tip_x = axis_x_upu_axes2_x*upu_S_dot_x +
+            axis_x_upu_axes2_y*upu_S_dot_y + axis_x_upu_axes2_z*upu_S_dot_z;
+        /* (upu-qd_3) rate of joint 3 */
+        const real upu_qd_3_t = inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_dot_x +
+            axis_y_upu_axes2_in_base_y*upu_S_dot_y + axis_y_upu_axes2_in_base_z*upu_S_dot_z);
+        /* (upu-W_2) centripetal tensor of link 2 */
+        const real upu_W_2_t = upu_qd_3_t*upu_qd_3_t;
+        /* (upu-bias) acceleration of the connection point at zero joint accelerations */
+        const real upu_bias_t = 2*upu_S_dot_tip_x;
+        const real upu_bias_t_2 = upu_bias_t*upu_qd_3_t;
+        /* (upu-nd_m1) rate of moment direction 1 */
+        const real upu_omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
             axis_x_upu_axes2_z*omega_z;
-        const real omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
+        const real upu_omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
             axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
-        const real omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
+        const real upu_omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
             axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
-        /* (upu-V24) centripetal tensor of link 2 */
-        const real W_2_t = qd_1_t*qd_1_t;
-        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_tip_x;
-        const real bias_t_2 = bias_t*qd_1_t;
-        /* (upu-N6) remainder without the acceleration in: acceleration of the reference point of link 3,
-           less gravity */
-        const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
-        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
-        const real g_r3_x = g_r0_z*s_2 - c_2*g_r1_y;
-        const real g_r3_y = -c_2*g_r0_z - g_r1_y*s_2;
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_3_t = axis_x_upu_axes2_z*q_in_base_y - axis_x_upu_axes2_y*q_in_base_z;
-        const real H_a_3_t_2 = axis_x_upu_axes2_x*q_in_base_z - axis_x_upu_axes2_z*q_in_base_x;
-        const real H_a_3_t_3 = axis_x_upu_axes2_y*q_in_base_x - axis_x_upu_axes2_x*q_in_base_y;
-        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-           */
-        const real n_c_t = axis_z_upu_axes2_in_base_x*n_c_z;
-        const real n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z;
-        const real n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z;
-        /* (M9) moment of the column's unit force about the platform origin */
-        const real Hk_a_1_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x + n_c_t_2*q_in_base_z -
-            axis_x_upu_axes2_x*end_p1_r3_y - n_c_t_3*q_in_base_y;
-        const real Hk_a_1_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x + n_c_t_3*q_in_base_x -
-            axis_x_upu_axes2_y*end_p1_r3_y - n_c_t*q_in_base_z;
-        const real Hk_a_1_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x + n_c_t*q_in_base_y -
-            axis_x_upu_axes2_z*end_p1_r3_y - n_c_t_2*q_in_base_x;
-        /* (upu-V19) rate of joint 1 */
-        const real qd_1_t_2 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
-            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z -
-            n_c_z*(end_p1_r3_y*omega_tip_x - end_p1_r3_x*omega_tip_y));
-        /* (upu-V22) angular velocity of link 1 */
-        const real omega_1_t = qd_1_t_2*s_2;
-        const real omega_1_t_2 = c_2*qd_1_t_2;
-        /* (upu-A8) rate of moment direction 1 */
-        const real nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t -
-            end_p1_r3_x*omega_tip_z;
-        const real nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y -
-            end_p1_r3_y*omega_tip_z;
-        /* (upu-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_x = omega_1_t_2*qd_1_t;
-        const real zeta_2_y = omega_1_t*qd_1_t;
-        /* (upu-A9) bias of the angular acceleration along moment direction 1 */
-        const real nu_1_t = end_p1_r3_y*zeta_2_x - end_p1_r3_x*zeta_2_y;
-        const real nu_1_t_2 = nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z -
-            qd_1_t)*(end_p1_r3_y*omega_1_t_2 - end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 +
-            omega_tip_y);
-        const real nu_1 = -nu_1_t - nu_1_t_2;
-        /* (upu-A10) acceleration with which the joints turn along moment direction 1 */
-        const real etad_1_t = end_p1_r3_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y
-            + alpha_z*axis_x_upu_axes2_z) - end_p1_r3_x*(alpha_x*axis_y_upu_axes2_in_base_x +
+        /* (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+           link 3, less gravity */
+        const real upu_g_r0_x = m->upu_g_r0_x[i];
+        const real upu_g_r0_y = m->upu_g_r0_y[i];
+        const real upu_g_r1_x = upu_g_r0_y*upu_s_1 - upu_c_1*upu_g_r0_x;
+        const real upu_g_r1_y = -upu_c_1*upu_g_r0_y - upu_g_r0_x*upu_s_1;
+        const real upu_g_r0_z = m->upu_g_r0_z[i];
+        const real upu_g_r3_x = upu_g_r0_z*upu_s_2 - upu_c_2*upu_g_r1_y;
+        const real upu_g_r3_y = -upu_c_2*upu_g_r0_z - upu_g_r1_y*upu_s_2;
+        /* (upu-H_a_3) moment of the column's unit force about the platform origin */
+        const real upu_H_a_3_t = axis_x_upu_axes2_z*upu_q_in_base_y -
+            axis_x_upu_axes2_y*upu_q_in_base_z;
+        const real upu_H_a_3_t_2 = axis_x_upu_axes2_x*upu_q_in_base_z -
+            axis_x_upu_axes2_z*upu_q_in_base_x;
+        const real upu_H_a_3_t_3 = axis_x_upu_axes2_y*upu_q_in_base_x -
+            axis_x_upu_axes2_x*upu_q_in_base_y;
+        /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
+           out */
+        const real upu_n_c_t = axis_z_upu_axes2_in_base_x*upu_n_c_z;
+        const real upu_n_c_t_2 = axis_z_upu_axes2_in_base_y*upu_n_c_z;
+        const real upu_n_c_t_3 = axis_z_upu_axes2_in_base_z*upu_n_c_z;
+        /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
+        const real upu_Hk_a_1_x = axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x +
+            upu_n_c_t_2*upu_q_in_base_z - axis_x_upu_axes2_x*upu_end_p1_r3_y -
+            upu_n_c_t_3*upu_q_in_base_y;
+        const real upu_Hk_a_1_y = axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x +
+            upu_n_c_t_3*upu_q_in_base_x - axis_x_upu_axes2_y*upu_end_p1_r3_y -
+            upu_n_c_t*upu_q_in_base_z;
+        const real upu_Hk_a_1_z = axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x +
+            upu_n_c_t*upu_q_in_base_y - axis_x_upu_axes2_z*upu_end_p1_r3_y -
+            upu_n_c_t_2*upu_q_in_base_x;
+        /* (upu-qd_1) rate of joint 1 */
+        const real upu_qd_1_t = inv_upu_w_1_t_25*(axis_z_upu_axes2_in_base_x*upu_S_dot_x +
+            axis_z_upu_axes2_in_base_y*upu_S_dot_y + axis_z_upu_axes2_in_base_z*upu_S_dot_z -
+            upu_n_c_z*(upu_end_p1_r3_y*upu_omega_tip_x - upu_end_p1_r3_x*upu_omega_tip_y));
+        /* (upu-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_y = s[22*w + j];
+        const real alpha_z = s[23*w + j];
+        const real t_ddot_x = s[18*w + j];
+        const real upu_a_p_x = t_ddot_x + alpha_y*upu_q_in_base_z - alpha_z*upu_q_in_base_y;
+        const real alpha_x = s[21*w + j];
+        const real t_ddot_y = s[19*w + j];
+        const real upu_a_p_y = t_ddot_y + alpha_z*upu_q_in_base_x - alpha_x*upu_q_in_base_z;
+        const real t_ddot_z = s[20*w + j];
+        const real upu_a_p_z = t_ddot_z + alpha_x*upu_q_in_base_y - alpha_y*upu_q_in_base_x;
+        /* (upu-S_ddot) acceleration of the connection point */
+        const real upu_S_ddot_x = upu_a_p_x + omega_y*upu_S_dot_t_3 - omega_z*upu_S_dot_t_2;
+        const real upu_S_ddot_y = upu_a_p_y + omega_z*upu_S_dot_t - omega_x*upu_S_dot_t_3;
+        const real upu_S_ddot_z = upu_a_p_z + omega_x*upu_S_dot_t_2 - omega_y*upu_S_dot_t;
+        /* (upu-omega_1) angular velocity of link 1 */
+        const real upu_omega_1_t = upu_qd_1_t*upu_s_2;
+        const real upu_omega_1_t_2 = upu_c_2*upu_qd_1_t;
+        /* (upu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real upu_zeta_2_x = upu_omega_1_t_2*upu_qd_3_t;
+        const real upu_zeta_2_y = upu_omega_1_t*upu_qd_3_t;
+        /* (upu-W_2) centripetal tensor of link 2 */
+        const real upu_W_2_t_2 = upu_omega_1_t*upu_omega_1_t;
+        const real upu_W_2_t_3 = upu_omega_1_t_2*upu_omega_1_t_2;
+        const real upu_W_2_xy = upu_omega_1_t*upu_omega_1_t_2;
+        /* (upu-bias) acceleration of the connection point at zero joint accelerations */
+        const real upu_bias_t_3 = upu_bias_t*upu_omega_1_t_2;
+        const real upu_bias_z = upu_bias_t_3 + 2*upu_root_2*upu_zeta_2_y;
+        /* (upu-rel) acceleration of the connection point left to the joint accelerations */
+        const real upu_rel_z = axis_z_upu_axes2_in_base_x*upu_S_ddot_x +
+            axis_z_upu_axes2_in_base_y*upu_S_ddot_y + axis_z_upu_axes2_in_base_z*upu_S_ddot_z -
+            upu_bias_z;
+        /* (upu-nd_m1) rate of moment direction 1 */
+        const real upu_nd_m1_x = upu_end_p1_r1_x*upu_omega_tip_x - upu_end_p1_r1_x*upu_omega_1_t -
+            upu_end_p1_r3_x*upu_omega_tip_z;
+        const real upu_nd_m1_y = upu_end_p1_r1_x*upu_omega_1_t_2 + upu_end_p1_r1_x*upu_omega_tip_y
+            - upu_end_p1_r3_y*upu_omega_tip_z;
+        /* (upu-nu_1) bias of the angular acceleration along moment direction 1 */
+        const real upu_nu_1_t = upu_end_p1_r3_y*upu_zeta_2_x - upu_end_p1_r3_x*upu_zeta_2_y;
+        const real upu_nu_1_t_2 = upu_nd_m1_x*(upu_omega_1_t - upu_omega_tip_x) + (upu_omega_tip_z
+            - upu_qd_3_t)*(upu_end_p1_r3_y*upu_omega_1_t_2 - upu_end_p1_r3_x*upu_omega_1_t) -
+            upu_nd_m1_y*(upu_omega_1_t_2 + upu_omega_tip_y);
+        const real upu_nu_1 = -upu_nu_1_t - upu_nu_1_t_2;
+        /* (upu-etad_1) acceleration with which the joints turn along moment direction 1 */
+        const real upu_etad_1_t = upu_end_p1_r3_y*(alpha_x*axis_x_upu_axes2_x +
+            alpha_y*axis_x_upu_axes2_y + alpha_z*axis_x_upu_axes2_z) -
+            upu_end_p1_r3_x*(alpha_x*axis_y_upu_axes2_in_base_x +
             alpha_y*axis_y_upu_axes2_in_base_y + alpha_z*axis_y_upu_axes2_in_base_z);
-        const real etad_1 = nu_1 - etad_1_t;
-        /* (upu-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
-        const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
-        const real a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x;
-        /* (upu-A3) acceleration of the connection point */
-        const real S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z;
-        const real S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x;
-        const real S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y;
-        /* (upu-V24) centripetal tensor of link 2 */
-        const real W_2_t_2 = omega_1_t*omega_1_t;
-        const real W_2_t_3 = omega_1_t_2*omega_1_t_2;
-        const real W_2_xy = omega_1_t*omega_1_t_2;
-        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_t_3 = bias_t*omega_1_t_2;
-        const real bias_z = bias_t_3 + 2*root_2*zeta_2_y;
-        /* (upu-A6) acceleration of the connection point left to the joint accelerations */
-        const real rel_z = S_ddot_x*axis_z_upu_axes2_in_base_x +
-            S_ddot_y*axis_z_upu_axes2_in_base_y + S_ddot_z*axis_z_upu_axes2_in_base_z - bias_z;
-        /* (upu-A11) acceleration of joint 1 */
-        const real qdd_1_t = S_ddot_x*axis_y_upu_axes2_in_base_x +
-            S_ddot_y*axis_y_upu_axes2_in_base_y + S_ddot_z*axis_y_upu_axes2_in_base_z - bias_t_2;
-        const real qdd_1_t_2 = inv_root_2*qdd_1_t;
-        const real qdd_1_t_3 = inv_w_1_t_25*(rel_z + etad_1*n_c_z);
-        /* (upu-A17) angular acceleration of link 1 */
-        const real alpha_1_t = qdd_1_t_3*s_2;
-        const real alpha_1_t_2 = c_2*qdd_1_t_3;
-        /* (upu-A21) angular acceleration of link 2 */
-        const real alpha_2_x = alpha_1_t - zeta_2_x;
-        const real alpha_2_y = -alpha_1_t_2 - zeta_2_y;
-        /* (upu-A25) acceleration tensor of link 2 */
-        const real B_2_xy = -2*W_2_xy - qdd_1_t_2;
-        const real B_2_zx = zeta_2_y - alpha_2_y;
-        const real B_2_zy = alpha_2_x - zeta_2_x;
-        /* (upu-N3) acceleration of the reference point of link 3, less gravity */
-        const real acc_3_x = S_ddot_x*axis_x_upu_axes2_x + S_ddot_y*axis_x_upu_axes2_y +
-            S_ddot_z*axis_x_upu_axes2_z - g_r3_x;
-        const real acc_3_y = bias_t_2 + qdd_1_t - g_r3_y;
-        const real acc_3_z = bias_t_3 + B_2_zx*root_2 - g_r1_x;
-        /* (upu-N11) inertia force of link 3 less its weight */
-        const real f_3_x = acc_3_x*upu_link3_mass - B_2_xy*h_3_z - alpha_1_t_2*h_3_y -
-            h_3_x*(W_2_t + W_2_t_3);
-        const real f_3_y = acc_3_y*upu_link3_mass + h_3_x*qdd_1_t_2 + h_3_z*(W_2_t + W_2_t_2) -
-            alpha_1_t*h_3_y;
-        const real f_3_z = B_2_zx*h_3_x + acc_3_z*upu_link3_mass - B_2_zy*h_3_z - h_3_y*(W_2_t_2 +
-            W_2_t_3);
-        /* (upu-N18) inertia moment of the links that turn with link 2, about their reference points */
-        const real mu_2_x = B_2_zy*Sigma_2_yy + J_group_2_xz*qdd_1_t_2 + Sigma_2_zz*alpha_1_t +
-            g_r1_x*h_2_z + g_r3_y*h_2_y - B_2_zx*J_group_2_xy - J_group_2_yz*(W_2_t - W_2_t_3) -
-            acc_3_y*h_3_y - acc_3_z*h_3_z;
-        const real mu_2_y = B_2_zy*J_group_2_xy + J_group_2_xz*(W_2_t - W_2_t_2) + acc_3_x*h_3_y +
-            g_r1_x*h_2_x - B_2_xy*J_group_2_yz - B_2_zx*Sigma_2_xx - Sigma_2_zz*alpha_1_t_2 -
-            acc_3_z*h_3_x - g_r3_x*h_2_y;
-        const real mu_2_z = J_group_2_xy*(W_2_t_2 - W_2_t_3) + J_group_2_xz*alpha_1_t +
-            Sigma_2_xx*qdd_1_t_2 + acc_3_x*h_3_z + acc_3_y*h_3_x - B_2_xy*Sigma_2_yy -
-            J_group_2_yz*alpha_1_t_2 - g_r3_x*h_2_z - g_r3_y*h_2_x;
-        /* (upu-N22) moment about joint 2 of the links from 2 outwards, the force at the connection point
+        const real upu_etad_1 = upu_nu_1 - upu_etad_1_t;
+        /* (upu-qdd_1) acceleration of joint 1 */
+        const real upu_qdd_1_t = axis_y_upu_axes2_in_base_x*upu_S_ddot_x +
+            axis_y_upu_axes2_in_base_y*upu_S_ddot_y + axis_y_upu_axes2_in_base_z*upu_S_ddot_z -
+            upu_bias_t_2;
+        const real upu_qdd_1_t_2 = inv_upu_root_2*upu_qdd_1_t;
+        const real upu_qdd_1_t_3 = inv_upu_w_1_t_25*(upu_rel_z + upu_etad_1*upu_n_c_z);
+        /* (upu-alpha_1) angular acceleration of link 1 */
+        const real upu_alpha_1_t = upu_qdd_1_t_3*upu_s_2;
+        const real upu_alpha_1_t_2 = upu_c_2*upu_qdd_1_t_3;
+        /* (upu-alpha_2) angular acceleration of link 2 */
+        const real upu_alpha_2_x = upu_alpha_1_t - upu_zeta_2_x;
+        const real upu_alpha_2_y = -upu_alpha_1_t_2 - upu_zeta_2_y;
+        /* (upu-B_2) acceleration tensor of link 2 */
+        const real upu_B_2_xy = -2*upu_W_2_xy - upu_qdd_1_t_2;
+        const real upu_B_2_zx = upu_zeta_2_y - upu_alpha_2_y;
+        const real upu_B_2_zy = upu_alpha_2_x - upu_zeta_2_x;
+        /* (upu-acc_3) acceleration of the reference point of link 3, less gravity */
+        const real upu_acc_3_x = axis_x_upu_axes2_x*upu_S_ddot_x + axis_x_upu_axes2_y*upu_S_ddot_y
+            + axis_x_upu_axes2_z*upu_S_ddot_z - upu_g_r3_x;
+        const real upu_acc_3_y = upu_bias_t_2 + upu_qdd_1_t - upu_g_r3_y;
+        const real upu_acc_3_z = upu_bias_t_3 + upu_B_2_zx*upu_root_2 - upu_g_r1_x;
+        /* (upu-f_3) inertia force of link 3 less its weight */
+        const real upu_h_3_x = m->upu_h_3_x[i];
+        const real upu_h_3_y = m->upu_h_3_y[i];
+        const real upu_h_3_z = m->upu_h_3_z[i];
+        const real upu_link3_mass = m->upu_link3_mass[i];
+        const real upu_f_3_x = upu_acc_3_x*upu_link3_mass - upu_B_2_xy*upu_h_3_z -
+            upu_alpha_1_t_2*upu_h_3_y - upu_h_3_x*(upu_W_2_t + upu_W_2_t_3);
+        const real upu_f_3_y = upu_acc_3_y*upu_link3_mass + upu_h_3_x*upu_qdd_1_t_2 +
+            upu_h_3_z*(upu_W_2_t + upu_W_2_t_2) - upu_alpha_1_t*upu_h_3_y;
+        const real upu_f_3_z = upu_B_2_zx*upu_h_3_x + upu_acc_3_z*upu_link3_mass -
+            upu_B_2_zy*upu_h_3_z - upu_h_3_y*(upu_W_2_t_2 + upu_W_2_t_3);
+        /* (upu-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+        const real upu_J_group_2_xy = m->upu_J_group_2_xy[i];
+        const real upu_J_group_2_xz = m->upu_J_group_2_xz[i];
+        const real upu_J_group_2_yz = m->upu_J_group_2_yz[i];
+        const real upu_Sigma_2_yy = m->upu_Sigma_2_yy[i];
+        const real upu_Sigma_2_zz = m->upu_Sigma_2_zz[i];
+        const real upu_h_2_y = m->upu_h_2_y[i];
+        const real upu_h_2_z = m->upu_h_2_z[i];
+        const real upu_mu_2_x = upu_B_2_zy*upu_Sigma_2_yy + upu_J_group_2_xz*upu_qdd_1_t_2 +
+            upu_Sigma_2_zz*upu_alpha_1_t + upu_g_r1_x*upu_h_2_z + upu_g_r3_y*upu_h_2_y -
+            upu_B_2_zx*upu_J_group_2_xy - upu_J_group_2_yz*(upu_W_2_t - upu_W_2_t_3) -
+            upu_acc_3_y*upu_h_3_y - upu_acc_3_z*upu_h_3_z;
+        const real upu_Sigma_2_xx = m->upu_Sigma_2_xx[i];
+        const real upu_h_2_x = m->upu_h_2_x[i];
+        const real upu_mu_2_y = upu_B_2_zy*upu_J_group_2_xy + upu_J_group_2_xz*(upu_W_2_t -
+            upu_W_2_t_2) + upu_acc_3_x*upu_h_3_y + upu_g_r1_x*upu_h_2_x -
+            upu_B_2_xy*upu_J_group_2_yz - upu_B_2_zx*upu_Sigma_2_xx -
+            upu_Sigma_2_zz*upu_alpha_1_t_2 - upu_acc_3_z*upu_h_3_x - upu_g_r3_x*upu_h_2_y;
+        const real upu_mu_2_z = upu_J_group_2_xy*(upu_W_2_t_2 - upu_W_2_t_3) +
+            upu_J_group_2_xz*upu_alpha_1_t + upu_Sigma_2_xx*upu_qdd_1_t_2 + upu_acc_3_x*upu_h_3_z
+            + upu_acc_3_y*upu_h_3_x - upu_B_2_xy*upu_Sigma_2_yy - upu_J_group_2_yz*upu_alpha_1_t_2
+            - upu_g_r3_x*upu_h_2_z - upu_g_r3_y*upu_h_2_x;
+        /* (upu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
            left out */
-        const real N_2_y = mu_2_y - f_3_z*root_2;
-        const real N_2_r0_y = mu_2_x*s_2 - N_2_y*c_2;
-        /* (upu-N38) force at the connection point that balances the leg's inertia and weight along all
+        const real upu_N_2_y = upu_mu_2_y - upu_f_3_z*upu_root_2;
+        const real upu_N_2_r0_y = upu_mu_2_x*upu_s_2 - upu_N_2_y*upu_c_2;
+        /* (upu-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real G_t = f_3_y + inv_root_2*mu_2_z;
-        const real G_t_2 = N_2_r0_y*inv_w_1_t_25;
-        const real G_t_3 = N_2_r0_y*inv_w_1_t_25*n_c_z;
-        /* (upu-N50) leg force on the platform without actuation and without the mass at the connection
+        const real upu_G_t = upu_f_3_y + inv_upu_root_2*upu_mu_2_z;
+        const real upu_G_t_2 = inv_upu_w_1_t_25*upu_N_2_r0_y;
+        const real upu_G_t_3 = inv_upu_w_1_t_25*upu_N_2_r0_y*upu_n_c_z;
+        /* (upu-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_in_base_x = -G_t*axis_y_upu_axes2_in_base_x -
-            G_t_2*axis_z_upu_axes2_in_base_x - axis_x_upu_axes2_x*f_3_x;
-        const real c_in_base_y = -G_t*axis_y_upu_axes2_in_base_y -
-            G_t_2*axis_z_upu_axes2_in_base_y - axis_x_upu_axes2_y*f_3_x;
-        const real c_in_base_z = -G_t*axis_y_upu_axes2_in_base_z -
-            G_t_2*axis_z_upu_axes2_in_base_z - axis_x_upu_axes2_z*f_3_x;
-        /* (upu-N46) moment at the connection point that balances the leg's inertia and weight along all
+        const real upu_c_in_base_x = -axis_x_upu_axes2_x*upu_f_3_x -
+            axis_y_upu_axes2_in_base_x*upu_G_t - axis_z_upu_axes2_in_base_x*upu_G_t_2;
+        const real upu_c_in_base_y = -axis_x_upu_axes2_y*upu_f_3_x -
+            axis_y_upu_axes2_in_base_y*upu_G_t - axis_z_upu_axes2_in_base_y*upu_G_t_2;
+        const real upu_c_in_base_z = -axis_x_upu_axes2_z*upu_f_3_x -
+            axis_y_upu_axes2_in_base_z*upu_G_t - axis_z_upu_axes2_in_base_z*upu_G_t_2;
+        /* (upu-G_m) moment at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real G_m_x = G_t_3*end_p1_r3_y;
-        const real G_m_y = G_t_3*end_p1_r3_x;
-        /* (E5) moment that actuators and external wrench must give */
-        const real R_a_t = G_m_x*axis_x_upu_axes2_x + c_in_base_z*q_in_base_y -
-            G_m_y*axis_y_upu_axes2_in_base_x - c_in_base_y*q_in_base_z;
-        const real R_a_t_2 = G_m_x*axis_x_upu_axes2_y + c_in_base_x*q_in_base_z -
-            G_m_y*axis_y_upu_axes2_in_base_y - c_in_base_z*q_in_base_x;
-        const real R_a_t_3 = G_m_x*axis_x_upu_axes2_z + c_in_base_y*q_in_base_x -
-            G_m_y*axis_y_upu_axes2_in_base_z - c_in_base_x*q_in_base_y;
-        o->sum[0][k] = add ? o->sum[0][k] + c_in_base_x : c_in_base_x;  /* total_upu_x */
-        o->sum[1][k] = add ? o->sum[1][k] + c_in_base_y : c_in_base_y;  /* total_upu_y */
-        o->sum[2][k] = add ? o->sum[2][k] + c_in_base_z : c_in_base_z;  /* total_upu_z */
-        o->sum[3][k] = add ? o->sum[3][k] + R_a_t : R_a_t;  /* total_upu_x_2 */
-        o->sum[4][k] = add ? o->sum[4][k] + R_a_t_2 : R_a_t_2;  /* total_upu_y_2 */
-        o->sum[5][k] = add ? o->sum[5][k] + R_a_t_3 : R_a_t_3;  /* total_upu_z_2 */
-        o->entry[0][k] = axis_x_upu_axes2_x;
-        o->entry[1][k] = axis_x_upu_axes2_y;
-        o->entry[2][k] = axis_x_upu_axes2_z;
-        o->entry[3][k] = H_a_3_t;
-        o->entry[4][k] = H_a_3_t_2;
-        o->entry[5][k] = H_a_3_t_3;
-        o->entry[6][k] = -n_c_t;
-        o->entry[7][k] = -n_c_t_2;
-        o->entry[8][k] = -n_c_t_3;
-        o->entry[9][k] = Hk_a_1_x;
-        o->entry[10][k] = Hk_a_1_y;
-        o->entry[11][k] = Hk_a_1_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(-volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(w_1_t_3) >
-            TOLERANCE*R(0.8));
+        const real upu_G_m_x = upu_G_t_3*upu_end_p1_r3_y;
+        const real upu_G_m_y = upu_G_t_3*upu_end_p1_r3_x;
+        /* (R_a) moment that actuators and external wrench must give */
+        const real upu_R_a_t = axis_x_upu_axes2_x*upu_G_m_x + upu_c_in_base_z*upu_q_in_base_y -
+            axis_y_upu_axes2_in_base_x*upu_G_m_y - upu_c_in_base_y*upu_q_in_base_z;
+        const real upu_R_a_t_2 = axis_x_upu_axes2_y*upu_G_m_x + upu_c_in_base_x*upu_q_in_base_z -
+            axis_y_upu_axes2_in_base_y*upu_G_m_y - upu_c_in_base_z*upu_q_in_base_x;
+        const real upu_R_a_t_3 = axis_x_upu_axes2_z*upu_G_m_x + upu_c_in_base_y*upu_q_in_base_x -
+            axis_y_upu_axes2_in_base_z*upu_G_m_y - upu_c_in_base_x*upu_q_in_base_y;
+        terms[0*count + k] = add ? terms[0*count + k] + upu_c_in_base_x : upu_c_in_base_x;  /* total_upu_x */
+        terms[1*count + k] = add ? terms[1*count + k] + upu_c_in_base_y : upu_c_in_base_y;  /* total_upu_y */
+        terms[2*count + k] = add ? terms[2*count + k] + upu_c_in_base_z : upu_c_in_base_z;  /* total_upu_z */
+        terms[3*count + k] = add ? terms[3*count + k] + upu_R_a_t : upu_R_a_t;  /* total_upu_x_2 */
+        terms[4*count + k] = add ? terms[4*count + k] + upu_R_a_t_2 : upu_R_a_t_2;  /* total_upu_y_2 */
+        terms[5*count + k] = add ? terms[5*count + k] + upu_R_a_t_3 : upu_R_a_t_3;  /* total_upu_z_2 */
+        o[0*count + k] = axis_x_upu_axes2_x;
+        o[1*count + k] = axis_x_upu_axes2_y;
+        o[2*count + k] = axis_x_upu_axes2_z;
+        o[3*count + k] = upu_H_a_3_t;
+        o[4*count + k] = upu_H_a_3_t_2;
+        o[5*count + k] = upu_H_a_3_t_3;
+        o[6*count + k] = -upu_n_c_t;
+        o[7*count + k] = -upu_n_c_t_2;
+        o[8*count + k] = -upu_n_c_t_3;
+        o[9*count + k] = upu_Hk_a_1_x;
+        o[10*count + k] = upu_Hk_a_1_y;
+        o[11*count + k] = upu_Hk_a_1_z;
+        o[12*count + k] = UNLESS(magnitude(upu_rho2_1) >
+            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(upu_rho2_2) >
+            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(-upu_volume_c_t) >
+            TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(upu_root_2) > TOLERANCE*R(0.8)) +
+            UNLESS(magnitude(upu_w_1_t_3) > TOLERANCE*R(0.8));
     }
 }
 
-INLINE void required_place_upu(size_t w, const required_results_upu *o, size_t leg, size_t first,
+INLINE void required_place_upu(size_t w, size_t count, const real *o, size_t leg, size_t first,
     real *H, real *Hk, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(3 + leg)*w + k] = o->entry[1][first + k];
-        H[(6 + leg)*w + k] = o->entry[2][first + k];
-        H[(9 + leg)*w + k] = o->entry[3][first + k];
-        H[(12 + leg)*w + k] = o->entry[4][first + k];
-        H[(15 + leg)*w + k] = o->entry[5][first + k];
-        Hk[(leg)*w + k] = o->entry[6][first + k];
-        Hk[(3 + leg)*w + k] = o->entry[7][first + k];
-        Hk[(6 + leg)*w + k] = o->entry[8][first + k];
-        Hk[(9 + leg)*w + k] = o->entry[9][first + k];
-        Hk[(12 + leg)*w + k] = o->entry[10][first + k];
-        Hk[(15 + leg)*w + k] = o->entry[11][first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(3 + leg)*w + k] = o[1*count + first + k];
+        H[(6 + leg)*w + k] = o[2*count + first + k];
+        H[(9 + leg)*w + k] = o[3*count + first + k];
+        H[(12 + leg)*w + k] = o[4*count + first + k];
+        H[(15 + leg)*w + k] = o[5*count + first + k];
+        Hk[(leg)*w + k] = o[6*count + first + k];
+        Hk[(3 + leg)*w + k] = o[7*count + first + k];
+        Hk[(6 + leg)*w + k] = o[8*count + first + k];
+        Hk[(9 + leg)*w + k] = o[9*count + first + k];
+        Hk[(12 + leg)*w + k] = o[10*count + first + k];
+        Hk[(15 + leg)*w + k] = o[11*count + first + k];
+        t->singular[k] += o[12*count + first + k];
     }
 }
 
-INLINE void required_after(size_t w, const required_values *s, real *required)
+INLINE void required_after(size_t w, const real *s, const real *sums, real *required)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real f_p_x = s->f_p_x[k];
-        const real f_p_y = s->f_p_y[k];
-        const real f_p_z = s->f_p_z[k];
-        const real mu_p_in_base_x = s->mu_p_in_base_x[k];
-        const real mu_p_in_base_y = s->mu_p_in_base_y[k];
-        const real mu_p_in_base_z = s->mu_p_in_base_z[k];
-        const real total_upu_x = s->sum[0][k];
-        const real total_upu_y = s->sum[1][k];
-        const real total_upu_z = s->sum[2][k];
-        const real total_upu_x_2 = s->sum[3][k];
-        const real total_upu_y_2 = s->sum[4][k];
-        const real total_upu_z_2 = s->sum[5][k];
-        /* (E4) force that actuators and external wrench must give */
+        /* (R_t) force that actuators and external wrench must give */
+        const real f_p_x = s[24*w + k];
+        const real total_upu_x = sums[0*w + k];
         const real R_t_x = f_p_x - total_upu_x;
+        const real f_p_y = s[25*w + k];
+        const real total_upu_y = sums[1*w + k];
         const real R_t_y = f_p_y - total_upu_y;
+        const real f_p_z = s[26*w + k];
+        const real total_upu_z = sums[2*w + k];
         const real R_t_z = f_p_z - total_upu_z;
-        /* (E5) moment that actuators and external wrench must give */
+        /* (R_a) moment that actuators and external wrench must give */
+        const real mu_p_in_base_x = s[27*w + k];
+        const real total_upu_x_2 = sums[3*w + k];
         const real R_a_x = mu_p_in_base_x - total_upu_x_2;
+        const real mu_p_in_base_y = s[28*w + k];
+        const real total_upu_y_2 = sums[4*w + k];
         const real R_a_y = mu_p_in_base_y - total_upu_y_2;
+        const real mu_p_in_base_z = s[29*w + k];
+        const real total_upu_z_2 = sums[5*w + k];
         const real R_a_z = mu_p_in_base_z - total_upu_z_2;
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
@@ -4450,61 +4628,49 @@ INLINE void required_after(size_t w, const required_values *s, real *required)
     }
 }
 
-INLINE void required_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+    *required, real *H, real *Hk, verdict *t)
+{
+    real s[30] = {0}, sums[6] = {0}, terms_upu[6*LEGS(3)] = {0}, o_upu[13*LEGS(3)] = {0};
+    required_before(m, 1, X, V, A, s, t);
+    required_legs_upu(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_upu, o_upu);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        required_place_upu(1, LEGS(3), o_upu, leg, leg, H, Hk, t);
+    }
+    for (size_t n = 0; n < 6; ++n) {
+        sums[n] = total(terms_upu + n*LEGS(3), 3);
+    }
+    required_after(1, s, sums, required);
+}
+
+INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, real *Hk, verdict *t)
 {
-    required_values values, *const s = &values;
-    required_results_upu results_upu;
-    required_before(m, w, X, V, A, s, t);
-    if (w == 1) {  /* the legs side by side */
-        required_legs_upu(m, 0, 1, s, 0, 3, 0, &results_upu);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            required_place_upu(w, &results_upu, leg, leg, H, Hk, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_upu.sum[n], 3);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_upu.sum, 0, sizeof results_upu.sum);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            required_legs_upu(m, leg, 0, s, 1, w, 1, &results_upu);
-            required_place_upu(w, &results_upu, leg, 0, H, Hk, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_upu.sum[n][k];
-            }
-        }
+    real s[30*LANES], sums[6*LANES], o_upu[13*LANES];
+    required_before(m, LANES, X, V, A, s, t);
+    clear(sums, 6*LANES);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        required_legs_upu(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_upu);
+        required_place_upu(LANES, LANES, o_upu, leg, 0, H, Hk, t);
     }
-    required_after(w, s, required);
+    required_after(LANES, s, sums, required);
 }
 
 /* ---- inverse_kinematics: 81 mul, 60 add, 6 div, 6 sqrt, 6 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES];
-} inverse_kinematics_values;
-typedef struct {
-    real entry[3][8], singular[8];
-} inverse_kinematics_results_upu;
-
-INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematics_values *s,
-    verdict *t)
+INLINE void inverse_kinematics_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -4528,155 +4694,145 @@ INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematic
         const real R_zx = quaternion_xz - quaternion_wy;
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void inverse_kinematics_legs_upu(const prepared *m, size_t leg, size_t legs, const
-    inverse_kinematics_values *s, size_t states, size_t count, inverse_kinematics_results_upu *o)
+INLINE void inverse_kinematics_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs,
+    const real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
+        /* (upu-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
+        const real t_x = s[0*w + j];
         const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_base_point_z = m->upu_base_point_z[i];
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        /* (upu-K1) from the base point to the connection point */
-        const real S_x = t_x + R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+        const real upu_S_x = t_x + R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z - upu_base_point_x;
-        const real S_y = t_y + R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real t_y = s[1*w + j];
+        const real upu_base_point_y = m->upu_base_point_y[i];
+        const real upu_S_y = t_y + R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
             R_yz*upu_platform_point_z - upu_base_point_y;
-        const real S_z = t_z + R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real t_z = s[2*w + j];
+        const real upu_base_point_z = m->upu_base_point_z[i];
+        const real upu_S_z = t_z + R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
             R_zz*upu_platform_point_z - upu_base_point_z;
-        /* (upu-K2) component along the reference direction */
-        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
-        /* (upu-K3) component across the reference direction */
-        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
-        /* (upu-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upu-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
-        /* (upu-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upu-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        /* (upu-K8) displacement of joint 1 */
-        const real q_1 = angle(inv_root_1*py_1, inv_root_1*px_1);
-        /* (upu-K17) displacement of joint 2 */
-        const real q_2 = angle(-inv_root_2*xi_1_t, inv_root_2*root_1);
-        o->entry[0][k] = q_1;
-        o->entry[1][k] = q_2;
-        o->entry[2][k] = root_2;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
+        /* (upu-px_1) component along the reference direction */
+        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
+        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
+        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
+        const real upu_px_1 = upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx +
+            upu_S_z*upu_base_frame_zx;
+        /* (upu-py_1) component across the reference direction */
+        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
+        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
+        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
+        const real upu_py_1 = upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy +
+            upu_S_z*upu_base_frame_zy;
+        /* (upu-rho2_1) squared amplitude */
+        const real upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1;
+        /* (upu-root_1) amplitude, with the sign of the branch */
+        const real upu_branch_1 = m->upu_branch_1[i];
+        const real upu_root_1 = upu_branch_1*root(upu_rho2_1);
+        /* (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
+        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
+        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
+        const real upu_xi_1_t = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
+            upu_S_z*upu_base_frame_zz;
+        /* (upu-rho2_2) squared amplitude */
+        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t;
+        /* (upu-root_2) amplitude, with the sign of the branch */
+        const real upu_branch_2 = m->upu_branch_2[i];
+        const real upu_root_2 = upu_branch_2*root(upu_rho2_2);
+        /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_upu_root_2 = 1/upu_root_2;
+        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_upu_root_1 = 1/upu_root_1;
+        /* (upu-q_1) displacement of joint 1 */
+        const real upu_q_1 = angle(inv_upu_root_1*upu_py_1, inv_upu_root_1*upu_px_1);
+        /* (upu-q_2) displacement of joint 2 */
+        const real upu_q_2 = angle(-inv_upu_root_2*upu_xi_1_t, inv_upu_root_2*upu_root_1);
+        o[0*count + k] = upu_q_1;
+        o[1*count + k] = upu_q_2;
+        o[2*count + k] = upu_root_2;
+        o[4*count + k] = upu_q_1 + (upu_q_2 + upu_root_2);
+        o[3*count + k] = UNLESS(magnitude(upu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(upu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
     }
 }
 
-INLINE void inverse_kinematics_place_upu(size_t w, const inverse_kinematics_results_upu *o, size_t
-    leg, size_t first, real *q, verdict *t)
+INLINE void inverse_kinematics_place_upu(size_t w, size_t count, const real *o, size_t leg, size_t
+    first, real *q, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        q[(3*leg)*w + k] = o->entry[0][first + k];
-        q[(1 + 3*leg)*w + k] = o->entry[1][first + k];
-        q[(2 + 3*leg)*w + k] = o->entry[2][first + k];
-        t->singular[k] += o->singular[first + k];
+        q[(3*leg)*w + k] = o[0*count + first + k];
+        q[(1 + 3*leg)*w + k] = o[1*count + first + k];
+        q[(2 + 3*leg)*w + k] = o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
 }
 
-INLINE void inverse_kinematics_run(const prepared *m, size_t w, const real *X, real *q, verdict
-    *t)
+INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    inverse_kinematics_values values, *const s = &values;
-    inverse_kinematics_results_upu results_upu;
-    inverse_kinematics_before(w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        inverse_kinematics_legs_upu(m, 0, 1, s, 0, 3, &results_upu);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            inverse_kinematics_place_upu(w, &results_upu, leg, leg, q, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            inverse_kinematics_legs_upu(m, leg, 0, s, 1, w, &results_upu);
-            inverse_kinematics_place_upu(w, &results_upu, leg, 0, q, t);
-        }
+    real s[12] = {0}, o_upu[5*LEGS(3)] = {0};
+    inverse_kinematics_before(1, X, s, t);
+    inverse_kinematics_legs_upu(m, 1, 0, 1, s, 0, LEGS(3), o_upu);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        inverse_kinematics_place_upu(1, LEGS(3), o_upu, leg, leg, q, t);
+    }
+}
+
+INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
+{
+    real s[12*LANES], o_upu[5*LANES];
+    inverse_kinematics_before(LANES, X, s, t);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        inverse_kinematics_legs_upu(m, LANES, leg, 0, s, 1, LANES, o_upu);
+        inverse_kinematics_place_upu(LANES, LANES, o_upu, leg, 0, q, t);
     }
 }
 
 /* ---- joint_rates: 366 mul, 237 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES];
-} joint_rates_values;
-typedef struct {
-    real entry[3][8], singular[8];
-} joint_rates_results_upu;
-
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rates_values *s,
-    verdict *t)
+INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -4701,253 +4857,247 @@ INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rat
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void joint_rates_legs_upu(const prepared *m, size_t leg, size_t legs, const
-    joint_rates_values *s, size_t states, size_t count, joint_rates_results_upu *o)
+INLINE void joint_rates_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
-        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
-        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        /* (upu-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        /* (upu-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+        const real upu_q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
-        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real upu_q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
             R_yz*upu_platform_point_z;
-        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real upu_q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
             R_zz*upu_platform_point_z;
-        const real S_x = q_in_base_x + t_x - upu_base_point_x;
-        const real S_y = q_in_base_y + t_y - upu_base_point_y;
-        const real S_z = q_in_base_z + t_z - upu_base_point_z;
-        /* (upu-K2) component along the reference direction */
-        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
-        /* (upu-K3) component across the reference direction */
-        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
-        /* (upu-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upu-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
-        /* (upu-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upu-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+        const real t_x = s[0*w + j];
+        const real upu_base_point_x = m->upu_base_point_x[i];
+        const real upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x;
+        const real t_y = s[1*w + j];
+        const real upu_base_point_y = m->upu_base_point_y[i];
+        const real upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y;
+        const real t_z = s[2*w + j];
+        const real upu_base_point_z = m->upu_base_point_z[i];
+        const real upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z;
+        /* (upu-px_1) component along the reference direction */
+        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
+        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
+        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
+        const real upu_px_1 = upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx +
+            upu_S_z*upu_base_frame_zx;
+        /* (upu-py_1) component across the reference direction */
+        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
+        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
+        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
+        const real upu_py_1 = upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy +
+            upu_S_z*upu_base_frame_zy;
+        /* (upu-rho2_1) squared amplitude */
+        const real upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1;
+        /* (upu-root_1) amplitude, with the sign of the branch */
+        const real upu_branch_1 = m->upu_branch_1[i];
+        const real upu_root_1 = upu_branch_1*root(upu_rho2_1);
+        /* (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
+        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
+        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
+        const real upu_xi_1_t = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
+            upu_S_z*upu_base_frame_zz;
+        /* (upu-rho2_2) squared amplitude */
+        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t;
+        /* (upu-root_2) amplitude, with the sign of the branch */
+        const real upu_branch_2 = m->upu_branch_2[i];
+        const real upu_root_2 = upu_branch_2*root(upu_rho2_2);
+        /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_upu_root_2 = 1/upu_root_2;
+        const real upu_c_2 = inv_upu_root_2*upu_root_1;
+        /* (upu-s_2) sine of the angle of joint 2 from its reference direction */
+        const real upu_s_2 = inv_upu_root_2*upu_xi_1_t;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
+        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
+        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        const real upu_end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
             R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
             R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
             R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+        const real upu_end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
             R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
             R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
             R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        const real end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
+        const real upu_end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
             R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
             R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
             R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
-        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
-        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
-        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
-        /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t = root_1*root_2;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
-        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-           */
-        const real n_c_z = n_m1_r0_y*root_2/volume_c_t;
-        /* (upu-V9) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
-        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
-        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
-        const real w_1_t = s_1*s_2;
-        const real w_1_t_2 = c_1*s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
-            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
-            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
-            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
+        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_upu_root_1 = 1/upu_root_1;
+        const real upu_c_1 = inv_upu_root_1*upu_py_1;
+        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real upu_s_1 = inv_upu_root_1*upu_px_1;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1;
+        const real upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y;
+        const real upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2;
+        /* (upu-volume_c) triple product of the velocity vectors */
+        const real upu_volume_c_t = upu_root_1*upu_root_2;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2;
+        /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
+           out */
+        const real upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t;
+        /* (upu-w_1) force part of reciprocal wrench 1 */
+        const real axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 -
+            upu_base_frame_xx*upu_c_1;
+        const real axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 -
+            upu_base_frame_yx*upu_c_1;
+        const real axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 -
+            upu_base_frame_zx*upu_c_1;
+        const real upu_w_1_t = upu_s_1*upu_s_2;
+        const real upu_w_1_t_2 = upu_c_1*upu_s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*upu_w_1_t +
+            upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*upu_w_1_t +
+            upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*upu_w_1_t +
+            upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2;
         const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
             axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
         const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
             axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
         const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
             axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
-        /* (upu-V1) velocity of the connection point */
-        const real S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
-            S_dot_z*axis_x_upu_axes2_z;
-        /* (upu-V19) rate of joint 1 */
-        const real qd_1_t = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
-            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
-        const real qd_1_t_2 = S_dot_x*axis_z_upu_axes2_in_base_x +
-            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z -
-            n_c_z*(end_p1_r3_y*(axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
-            axis_x_upu_axes2_z*omega_z) - end_p1_r3_x*(axis_y_upu_axes2_in_base_x*omega_x +
+        const real upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y;
+        /* (upu-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real t_dot_x = s[12*w + j];
+        const real upu_S_dot_x = t_dot_x + omega_y*upu_q_in_base_z - omega_z*upu_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real t_dot_y = s[13*w + j];
+        const real upu_S_dot_y = t_dot_y + omega_z*upu_q_in_base_x - omega_x*upu_q_in_base_z;
+        const real t_dot_z = s[14*w + j];
+        const real upu_S_dot_z = t_dot_z + omega_x*upu_q_in_base_y - omega_y*upu_q_in_base_x;
+        const real upu_S_dot_tip_x = axis_x_upu_axes2_x*upu_S_dot_x +
+            axis_x_upu_axes2_y*upu_S_dot_y + axis_x_upu_axes2_z*upu_S_dot_z;
+        /* (upu-qd_3) rate of joint 3 */
+        const real upu_qd_3_t = inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_dot_x +
+            axis_y_upu_axes2_in_base_y*upu_S_dot_y + axis_y_upu_axes2_in_base_z*upu_S_dot_z);
+        /* (upu-qd_1) rate of joint 1 */
+        const real upu_qd_1_t = axis_z_upu_axes2_in_base_x*upu_S_dot_x +
+            axis_z_upu_axes2_in_base_y*upu_S_dot_y + axis_z_upu_axes2_in_base_z*upu_S_dot_z -
+            upu_n_c_z*(upu_end_p1_r3_y*(axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
+            axis_x_upu_axes2_z*omega_z) - upu_end_p1_r3_x*(axis_y_upu_axes2_in_base_x*omega_x +
             axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z));
-        const real qd_1_t_3 = qd_1_t_2/w_1_t_3;
-        o->entry[0][k] = qd_1_t_3;
-        o->entry[1][k] = qd_1_t;
-        o->entry[2][k] = S_dot_tip_x;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(-volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(w_1_t_3) >
+        const real upu_qd_1_t_2 = upu_qd_1_t/upu_w_1_t_3;
+        o[0*count + k] = upu_qd_1_t_2;
+        o[1*count + k] = upu_qd_3_t;
+        o[2*count + k] = upu_S_dot_tip_x;
+        o[4*count + k] = upu_qd_1_t_2 + (upu_qd_3_t + upu_S_dot_tip_x);
+        o[3*count + k] = UNLESS(magnitude(upu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(upu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(-upu_volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(upu_root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(upu_w_1_t_3) >
             TOLERANCE*R(0.8));
     }
 }
 
-INLINE void joint_rates_place_upu(size_t w, const joint_rates_results_upu *o, size_t leg, size_t
-    first, real *qd, verdict *t)
+INLINE void joint_rates_place_upu(size_t w, size_t count, const real *o, size_t leg, size_t first,
+    real *qd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qd[(3*leg)*w + k] = o->entry[0][first + k];
-        qd[(1 + 3*leg)*w + k] = o->entry[1][first + k];
-        qd[(2 + 3*leg)*w + k] = o->entry[2][first + k];
-        t->singular[k] += o->singular[first + k];
+        qd[(3*leg)*w + k] = o[0*count + first + k];
+        qd[(1 + 3*leg)*w + k] = o[1*count + first + k];
+        qd[(2 + 3*leg)*w + k] = o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
 }
 
-INLINE void joint_rates_run(const prepared *m, size_t w, const real *X, const real *V, real *qd,
+INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+{
+    real s[18] = {0}, o_upu[5*LEGS(3)] = {0};
+    joint_rates_before(1, X, V, s, t);
+    joint_rates_legs_upu(m, 1, 0, 1, s, 0, LEGS(3), o_upu);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        joint_rates_place_upu(1, LEGS(3), o_upu, leg, leg, qd, t);
+    }
+}
+
+INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    joint_rates_values values, *const s = &values;
-    joint_rates_results_upu results_upu;
-    joint_rates_before(w, X, V, s, t);
-    if (w == 1) {  /* the legs side by side */
-        joint_rates_legs_upu(m, 0, 1, s, 0, 3, &results_upu);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            joint_rates_place_upu(w, &results_upu, leg, leg, qd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            joint_rates_legs_upu(m, leg, 0, s, 1, w, &results_upu);
-            joint_rates_place_upu(w, &results_upu, leg, 0, qd, t);
-        }
+    real s[18*LANES], o_upu[5*LANES];
+    joint_rates_before(LANES, X, V, s, t);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        joint_rates_legs_upu(m, LANES, leg, 0, s, 1, LANES, o_upu);
+        joint_rates_place_upu(LANES, LANES, o_upu, leg, 0, qd, t);
     }
 }
 
 /* ---- joint_accelerations: 558 mul, 375 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
-        t_ddot_x[LANES], t_ddot_y[LANES], t_ddot_z[LANES], alpha_x[LANES], alpha_y[LANES],
-        alpha_z[LANES];
-} joint_accelerations_values;
-typedef struct {
-    real entry[3][8], singular[8];
-} joint_accelerations_results_upu;
-
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A,
-    joint_accelerations_values *s, verdict *t)
+INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
+    *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real A_2 = A[2*w + k];
-        const real A_3 = A[3*w + k];
-        const real A_4 = A[4*w + k];
-        const real A_5 = A[5*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -4972,310 +5122,328 @@ INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, c
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
+        const real A_2 = A[2*w + k];
         const real t_ddot_z = A_2;
+        const real A_3 = A[3*w + k];
         const real alpha_x = A_3;
+        const real A_4 = A[4*w + k];
         const real alpha_y = A_4;
+        const real A_5 = A[5*w + k];
         const real alpha_z = A_5;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->t_ddot_z[k] = t_ddot_z;
-        s->alpha_x[k] = alpha_x;
-        s->alpha_y[k] = alpha_y;
-        s->alpha_z[k] = alpha_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
+        s[18*w + k] = t_ddot_x;
+        s[19*w + k] = t_ddot_y;
+        s[20*w + k] = t_ddot_z;
+        s[21*w + k] = alpha_x;
+        s[22*w + k] = alpha_y;
+        s[23*w + k] = alpha_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void joint_accelerations_legs_upu(const prepared *m, size_t leg, size_t legs, const
-    joint_accelerations_values *s, size_t states, size_t count, joint_accelerations_results_upu
-    *o)
+INLINE void joint_accelerations_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs,
+    const real *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real t_ddot_z = s->t_ddot_z[j];
-        const real alpha_x = s->alpha_x[j];
-        const real alpha_y = s->alpha_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
-        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
-        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        /* (upu-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        /* (upu-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+        const real upu_q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
-        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real upu_q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
             R_yz*upu_platform_point_z;
-        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real upu_q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
             R_zz*upu_platform_point_z;
-        const real S_x = q_in_base_x + t_x - upu_base_point_x;
-        const real S_y = q_in_base_y + t_y - upu_base_point_y;
-        const real S_z = q_in_base_z + t_z - upu_base_point_z;
-        /* (upu-K2) component along the reference direction */
-        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
-        /* (upu-K3) component across the reference direction */
-        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
-        /* (upu-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upu-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
-        /* (upu-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upu-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+        const real t_x = s[0*w + j];
+        const real upu_base_point_x = m->upu_base_point_x[i];
+        const real upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x;
+        const real t_y = s[1*w + j];
+        const real upu_base_point_y = m->upu_base_point_y[i];
+        const real upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y;
+        const real t_z = s[2*w + j];
+        const real upu_base_point_z = m->upu_base_point_z[i];
+        const real upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z;
+        /* (upu-px_1) component along the reference direction */
+        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
+        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
+        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
+        const real upu_px_1 = upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx +
+            upu_S_z*upu_base_frame_zx;
+        /* (upu-py_1) component across the reference direction */
+        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
+        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
+        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
+        const real upu_py_1 = upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy +
+            upu_S_z*upu_base_frame_zy;
+        /* (upu-rho2_1) squared amplitude */
+        const real upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1;
+        /* (upu-root_1) amplitude, with the sign of the branch */
+        const real upu_branch_1 = m->upu_branch_1[i];
+        const real upu_root_1 = upu_branch_1*root(upu_rho2_1);
+        /* (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
+        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
+        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
+        const real upu_xi_1_t = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
+            upu_S_z*upu_base_frame_zz;
+        /* (upu-rho2_2) squared amplitude */
+        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t;
+        /* (upu-root_2) amplitude, with the sign of the branch */
+        const real upu_branch_2 = m->upu_branch_2[i];
+        const real upu_root_2 = upu_branch_2*root(upu_rho2_2);
+        /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_upu_root_2 = 1/upu_root_2;
+        const real upu_c_2 = inv_upu_root_2*upu_root_1;
+        /* (upu-s_2) sine of the angle of joint 2 from its reference direction */
+        const real upu_s_2 = inv_upu_root_2*upu_xi_1_t;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
+        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
+        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        const real upu_end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
             R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
             R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
             R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+        const real upu_end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
             R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
             R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
             R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        const real end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
+        const real upu_end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
             R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
             R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
             R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
-        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x;
-        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
-        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
-        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
-        /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t = root_1*root_2;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
-        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-           */
-        const real n_c_z = n_m1_r0_y*root_2/volume_c_t;
-        /* (upu-V9) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
-        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
-        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
-        const real w_1_t = s_1*s_2;
-        const real w_1_t_2 = c_1*s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
-            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
-            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
-            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
+        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_upu_root_1 = 1/upu_root_1;
+        const real upu_c_1 = inv_upu_root_1*upu_py_1;
+        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real upu_s_1 = inv_upu_root_1*upu_px_1;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_end_p1_r1_x = upu_end_p1_r0_y*upu_s_1 - upu_c_1*upu_end_p1_r0_x;
+        const real upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1;
+        const real upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y;
+        const real upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2;
+        /* (upu-volume_c) triple product of the velocity vectors */
+        const real upu_volume_c_t = upu_root_1*upu_root_2;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2;
+        /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
+           out */
+        const real upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t;
+        /* (upu-w_1) force part of reciprocal wrench 1 */
+        const real axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 -
+            upu_base_frame_xx*upu_c_1;
+        const real axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 -
+            upu_base_frame_yx*upu_c_1;
+        const real axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 -
+            upu_base_frame_zx*upu_c_1;
+        const real upu_w_1_t = upu_s_1*upu_s_2;
+        const real upu_w_1_t_2 = upu_c_1*upu_s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*upu_w_1_t +
+            upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*upu_w_1_t +
+            upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*upu_w_1_t +
+            upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2;
         const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
             axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
         const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
             axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
         const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
             axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
-        const real inv_w_1_t_25 = 1/w_1_t_3;
-        /* (upu-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
-            S_dot_z*axis_x_upu_axes2_z;
-        /* (upu-V19) rate of joint 1 */
-        const real qd_1_t = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
-            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
-        /* (upu-A8) rate of moment direction 1 */
-        const real omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
+        const real upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y;
+        const real inv_upu_w_1_t_25 = 1/upu_w_1_t_3;
+        /* (upu-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real upu_S_dot_t = omega_y*upu_q_in_base_z - omega_z*upu_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real upu_S_dot_t_2 = omega_z*upu_q_in_base_x - omega_x*upu_q_in_base_z;
+        const real upu_S_dot_t_3 = omega_x*upu_q_in_base_y - omega_y*upu_q_in_base_x;
+        const real t_dot_x = s[12*w + j];
+        const real upu_S_dot_x = t_dot_x + upu_S_dot_t;
+        const real t_dot_y = s[13*w + j];
+        const real upu_S_dot_y = t_dot_y + upu_S_dot_t_2;
+        const real t_dot_z = s[14*w + j];
+        const real upu_S_dot_z = t_dot_z + upu_S_dot_t_3;
+        const real upu_S_dot_tip_x = axis_x_upu_axes2_x*upu_S_dot_x +
+            axis_x_upu_axes2_y*upu_S_dot_y + axis_x_upu_axes2_z*upu_S_dot_z;
+        /* (upu-qd_3) rate of joint 3 */
+        const real upu_qd_3_t = inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_dot_x +
+            axis_y_upu_axes2_in_base_y*upu_S_dot_y + axis_y_upu_axes2_in_base_z*upu_S_dot_z);
+        /* (upu-bias) acceleration of the connection point at zero joint accelerations */
+        const real upu_bias_t = 2*upu_S_dot_tip_x;
+        /* (upu-nd_m1) rate of moment direction 1 */
+        const real upu_omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
             axis_x_upu_axes2_z*omega_z;
-        const real omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
+        const real upu_omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
             axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
-        const real omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
+        const real upu_omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
             axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
-        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_tip_x;
-        /* (upu-V19) rate of joint 1 */
-        const real qd_1_t_2 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
-            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z -
-            n_c_z*(end_p1_r3_y*omega_tip_x - end_p1_r3_x*omega_tip_y));
-        /* (upu-V22) angular velocity of link 1 */
-        const real omega_1_t = qd_1_t_2*s_2;
-        const real omega_1_t_2 = c_2*qd_1_t_2;
-        /* (upu-A8) rate of moment direction 1 */
-        const real nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t -
-            end_p1_r3_x*omega_tip_z;
-        const real nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y -
-            end_p1_r3_y*omega_tip_z;
-        /* (upu-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_y = omega_1_t*qd_1_t;
-        /* (upu-A9) bias of the angular acceleration along moment direction 1 */
-        const real nu_1_t = end_p1_r3_y*omega_1_t_2*qd_1_t - end_p1_r3_x*zeta_2_y;
-        const real nu_1_t_2 = nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z -
-            qd_1_t)*(end_p1_r3_y*omega_1_t_2 - end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 +
-            omega_tip_y);
-        const real nu_1 = -nu_1_t - nu_1_t_2;
-        /* (upu-A10) acceleration with which the joints turn along moment direction 1 */
-        const real etad_1_t = end_p1_r3_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y
-            + alpha_z*axis_x_upu_axes2_z) - end_p1_r3_x*(alpha_x*axis_y_upu_axes2_in_base_x +
+        /* (upu-qd_1) rate of joint 1 */
+        const real upu_qd_1_t = inv_upu_w_1_t_25*(axis_z_upu_axes2_in_base_x*upu_S_dot_x +
+            axis_z_upu_axes2_in_base_y*upu_S_dot_y + axis_z_upu_axes2_in_base_z*upu_S_dot_z -
+            upu_n_c_z*(upu_end_p1_r3_y*upu_omega_tip_x - upu_end_p1_r3_x*upu_omega_tip_y));
+        /* (upu-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_y = s[22*w + j];
+        const real alpha_z = s[23*w + j];
+        const real t_ddot_x = s[18*w + j];
+        const real upu_a_p_x = t_ddot_x + alpha_y*upu_q_in_base_z - alpha_z*upu_q_in_base_y;
+        const real alpha_x = s[21*w + j];
+        const real t_ddot_y = s[19*w + j];
+        const real upu_a_p_y = t_ddot_y + alpha_z*upu_q_in_base_x - alpha_x*upu_q_in_base_z;
+        const real t_ddot_z = s[20*w + j];
+        const real upu_a_p_z = t_ddot_z + alpha_x*upu_q_in_base_y - alpha_y*upu_q_in_base_x;
+        /* (upu-S_ddot) acceleration of the connection point */
+        const real upu_S_ddot_x = upu_a_p_x + omega_y*upu_S_dot_t_3 - omega_z*upu_S_dot_t_2;
+        const real upu_S_ddot_y = upu_a_p_y + omega_z*upu_S_dot_t - omega_x*upu_S_dot_t_3;
+        const real upu_S_ddot_z = upu_a_p_z + omega_x*upu_S_dot_t_2 - omega_y*upu_S_dot_t;
+        /* (upu-omega_1) angular velocity of link 1 */
+        const real upu_omega_1_t = upu_qd_1_t*upu_s_2;
+        const real upu_omega_1_t_2 = upu_c_2*upu_qd_1_t;
+        /* (upu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real upu_zeta_2_y = upu_omega_1_t*upu_qd_3_t;
+        /* (upu-bias) acceleration of the connection point at zero joint accelerations */
+        const real upu_bias_z = upu_bias_t*upu_omega_1_t_2 + 2*upu_root_2*upu_zeta_2_y;
+        /* (upu-rel) acceleration of the connection point left to the joint accelerations */
+        const real upu_rel_x = axis_x_upu_axes2_x*upu_S_ddot_x + axis_x_upu_axes2_y*upu_S_ddot_y +
+            axis_x_upu_axes2_z*upu_S_ddot_z + upu_root_2*(upu_omega_1_t_2*upu_omega_1_t_2 +
+            upu_qd_3_t*upu_qd_3_t);
+        const real upu_rel_z = axis_z_upu_axes2_in_base_x*upu_S_ddot_x +
+            axis_z_upu_axes2_in_base_y*upu_S_ddot_y + axis_z_upu_axes2_in_base_z*upu_S_ddot_z -
+            upu_bias_z;
+        /* (upu-nd_m1) rate of moment direction 1 */
+        const real upu_nd_m1_x = upu_end_p1_r1_x*upu_omega_tip_x - upu_end_p1_r1_x*upu_omega_1_t -
+            upu_end_p1_r3_x*upu_omega_tip_z;
+        const real upu_nd_m1_y = upu_end_p1_r1_x*upu_omega_1_t_2 + upu_end_p1_r1_x*upu_omega_tip_y
+            - upu_end_p1_r3_y*upu_omega_tip_z;
+        /* (upu-nu_1) bias of the angular acceleration along moment direction 1 */
+        const real upu_nu_1_t = upu_end_p1_r3_y*upu_omega_1_t_2*upu_qd_3_t -
+            upu_end_p1_r3_x*upu_zeta_2_y;
+        const real upu_nu_1_t_2 = upu_nd_m1_x*(upu_omega_1_t - upu_omega_tip_x) + (upu_omega_tip_z
+            - upu_qd_3_t)*(upu_end_p1_r3_y*upu_omega_1_t_2 - upu_end_p1_r3_x*upu_omega_1_t) -
+            upu_nd_m1_y*(upu_omega_1_t_2 + upu_omega_tip_y);
+        const real upu_nu_1 = -upu_nu_1_t - upu_nu_1_t_2;
+        /* (upu-etad_1) acceleration with which the joints turn along moment direction 1 */
+        const real upu_etad_1_t = upu_end_p1_r3_y*(alpha_x*axis_x_upu_axes2_x +
+            alpha_y*axis_x_upu_axes2_y + alpha_z*axis_x_upu_axes2_z) -
+            upu_end_p1_r3_x*(alpha_x*axis_y_upu_axes2_in_base_x +
             alpha_y*axis_y_upu_axes2_in_base_y + alpha_z*axis_y_upu_axes2_in_base_z);
-        const real etad_1 = nu_1 - etad_1_t;
-        /* (upu-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
-        const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
-        const real a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x;
-        /* (upu-A3) acceleration of the connection point */
-        const real S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z;
-        const real S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x;
-        const real S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y;
-        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_z = bias_t*omega_1_t_2 + 2*root_2*zeta_2_y;
-        /* (upu-A6) acceleration of the connection point left to the joint accelerations */
-        const real rel_x = S_ddot_x*axis_x_upu_axes2_x + S_ddot_y*axis_x_upu_axes2_y +
-            S_ddot_z*axis_x_upu_axes2_z + root_2*(omega_1_t_2*omega_1_t_2 + qd_1_t*qd_1_t);
-        const real rel_z = S_ddot_x*axis_z_upu_axes2_in_base_x +
-            S_ddot_y*axis_z_upu_axes2_in_base_y + S_ddot_z*axis_z_upu_axes2_in_base_z - bias_z;
-        /* (upu-A11) acceleration of joint 1 */
-        const real qdd_1_t = inv_root_2*(S_ddot_x*axis_y_upu_axes2_in_base_x +
-            S_ddot_y*axis_y_upu_axes2_in_base_y + S_ddot_z*axis_y_upu_axes2_in_base_z -
-            bias_t*qd_1_t) + omega_1_t*omega_1_t_2;
-        const real qdd_1_t_2 = inv_w_1_t_25*(rel_z + etad_1*n_c_z);
-        o->entry[0][k] = qdd_1_t_2;
-        o->entry[1][k] = qdd_1_t;
-        o->entry[2][k] = rel_x;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(-volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(w_1_t_3) >
+        const real upu_etad_1 = upu_nu_1 - upu_etad_1_t;
+        /* (upu-qdd_1) acceleration of joint 1 */
+        const real upu_qdd_1_t = inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_ddot_x +
+            axis_y_upu_axes2_in_base_y*upu_S_ddot_y + axis_y_upu_axes2_in_base_z*upu_S_ddot_z -
+            upu_bias_t*upu_qd_3_t) + upu_omega_1_t*upu_omega_1_t_2;
+        const real upu_qdd_1_t_2 = inv_upu_w_1_t_25*(upu_rel_z + upu_etad_1*upu_n_c_z);
+        o[0*count + k] = upu_qdd_1_t_2;
+        o[1*count + k] = upu_qdd_1_t;
+        o[2*count + k] = upu_rel_x;
+        o[4*count + k] = upu_qdd_1_t_2 + (upu_qdd_1_t + upu_rel_x);
+        o[3*count + k] = UNLESS(magnitude(upu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(upu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(-upu_volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(upu_root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(upu_w_1_t_3) >
             TOLERANCE*R(0.8));
     }
 }
 
-INLINE void joint_accelerations_place_upu(size_t w, const joint_accelerations_results_upu *o,
-    size_t leg, size_t first, real *qdd, verdict *t)
+INLINE void joint_accelerations_place_upu(size_t w, size_t count, const real *o, size_t leg,
+    size_t first, real *qdd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qdd[(3*leg)*w + k] = o->entry[0][first + k];
-        qdd[(1 + 3*leg)*w + k] = o->entry[1][first + k];
-        qdd[(2 + 3*leg)*w + k] = o->entry[2][first + k];
-        t->singular[k] += o->singular[first + k];
+        qdd[(3*leg)*w + k] = o[0*count + first + k];
+        qdd[(1 + 3*leg)*w + k] = o[1*count + first + k];
+        qdd[(2 + 3*leg)*w + k] = o[2*count + first + k];
+        t->singular[k] += o[3*count + first + k];
+        t->total[k] += o[4*count + first + k];
     }
 }
 
-INLINE void joint_accelerations_run(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd, verdict *t)
+INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd, verdict *t)
 {
-    joint_accelerations_values values, *const s = &values;
-    joint_accelerations_results_upu results_upu;
-    joint_accelerations_before(w, X, V, A, s, t);
-    if (w == 1) {  /* the legs side by side */
-        joint_accelerations_legs_upu(m, 0, 1, s, 0, 3, &results_upu);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            joint_accelerations_place_upu(w, &results_upu, leg, leg, qdd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            joint_accelerations_legs_upu(m, leg, 0, s, 1, w, &results_upu);
-            joint_accelerations_place_upu(w, &results_upu, leg, 0, qdd, t);
-        }
+    real s[24] = {0}, o_upu[5*LEGS(3)] = {0};
+    joint_accelerations_before(1, X, V, A, s, t);
+    joint_accelerations_legs_upu(m, 1, 0, 1, s, 0, LEGS(3), o_upu);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        joint_accelerations_place_upu(1, LEGS(3), o_upu, leg, leg, qdd, t);
+    }
+}
+
+INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd, verdict *t)
+{
+    real s[24*LANES], o_upu[5*LANES];
+    joint_accelerations_before(LANES, X, V, A, s, t);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        joint_accelerations_legs_upu(m, LANES, leg, 0, s, 1, LANES, o_upu);
+        joint_accelerations_place_upu(LANES, LANES, o_upu, leg, 0, qdd, t);
     }
 }
 
 /* ---- constraints: 138 mul, 102 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES];
-} constraints_values;
-typedef struct {
-    real entry[1][8], singular[8];
-} constraints_results_upu;
-
-INLINE void constraints_before(size_t w, const real *X, constraints_values *s, verdict *t)
+INLINE void constraints_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -5299,158 +5467,142 @@ INLINE void constraints_before(size_t w, const real *X, constraints_values *s, v
         const real R_zx = quaternion_xz - quaternion_wy;
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void constraints_legs_upu(const prepared *m, size_t leg, size_t legs, const
-    constraints_values *s, size_t states, size_t count, constraints_results_upu *o)
+INLINE void constraints_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real branch_1 = m->branch_1[i];
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
+        /* (upu-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
+        const real t_x = s[0*w + j];
         const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
-        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
-        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        /* (upu-K1) from the base point to the connection point */
-        const real S_x = t_x + R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+        const real upu_S_x = t_x + R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z - upu_base_point_x;
-        const real S_y = t_y + R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real t_y = s[1*w + j];
+        const real upu_base_point_y = m->upu_base_point_y[i];
+        const real upu_S_y = t_y + R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
             R_yz*upu_platform_point_z - upu_base_point_y;
-        const real S_z = t_z + R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real t_z = s[2*w + j];
+        const real upu_base_point_z = m->upu_base_point_z[i];
+        const real upu_S_z = t_z + R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
             R_zz*upu_platform_point_z - upu_base_point_z;
-        /* (upu-K2) component along the reference direction */
-        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
-        /* (upu-K3) component across the reference direction */
-        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
-        /* (upu-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upu-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+        /* (upu-px_1) component along the reference direction */
+        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
+        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
+        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
+        const real upu_px_1 = upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx +
+            upu_S_z*upu_base_frame_zx;
+        /* (upu-py_1) component across the reference direction */
+        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
+        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
+        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
+        const real upu_py_1 = upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy +
+            upu_S_z*upu_base_frame_zy;
+        /* (upu-rho2_1) squared amplitude */
+        const real upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1;
+        /* (upu-root_1) amplitude, with the sign of the branch */
+        const real upu_branch_1 = m->upu_branch_1[i];
+        const real upu_root_1 = upu_branch_1*root(upu_rho2_1);
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
+        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
+        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        const real upu_end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
             R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
             R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
             R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+        const real upu_end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
             R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
             R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
             R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r1_x = end_p1_r0_y*inv_root_1*px_1 - end_p1_r0_x*inv_root_1*py_1;
-        o->entry[0][k] = -end_p1_r1_x;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
+        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_upu_root_1 = 1/upu_root_1;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_end_p1_r1_x = inv_upu_root_1*upu_end_p1_r0_y*upu_px_1 -
+            inv_upu_root_1*upu_end_p1_r0_x*upu_py_1;
+        o[0*count + k] = -upu_end_p1_r1_x;
+        o[2*count + k] = upu_end_p1_r1_x;
+        o[1*count + k] = UNLESS(magnitude(upu_rho2_1) >
+            TOLERANCE*TOLERANCE*R(0.6400000000000001));
     }
 }
 
-INLINE void constraints_place_upu(size_t w, const constraints_results_upu *o, size_t leg, size_t
-    first, real *constraints, verdict *t)
+INLINE void constraints_place_upu(size_t w, size_t count, const real *o, size_t leg, size_t first,
+    real *constraints, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        constraints[(leg)*w + k] = o->entry[0][first + k];
-        t->singular[k] += o->singular[first + k];
+        constraints[(leg)*w + k] = o[0*count + first + k];
+        t->singular[k] += o[1*count + first + k];
+        t->total[k] += o[2*count + first + k];
     }
 }
 
-INLINE void constraints_run(const prepared *m, size_t w, const real *X, real *constraints, verdict
-    *t)
+INLINE void constraints_run(const prepared *m, const real *X, real *constraints, verdict *t)
 {
-    constraints_values values, *const s = &values;
-    constraints_results_upu results_upu;
-    constraints_before(w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        constraints_legs_upu(m, 0, 1, s, 0, 3, &results_upu);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            constraints_place_upu(w, &results_upu, leg, leg, constraints, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            constraints_legs_upu(m, leg, 0, s, 1, w, &results_upu);
-            constraints_place_upu(w, &results_upu, leg, 0, constraints, t);
-        }
+    real s[12] = {0}, o_upu[3*LEGS(3)] = {0};
+    constraints_before(1, X, s, t);
+    constraints_legs_upu(m, 1, 0, 1, s, 0, LEGS(3), o_upu);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        constraints_place_upu(1, LEGS(3), o_upu, leg, leg, constraints, t);
+    }
+}
+
+INLINE void constraints_run_lanes(const prepared *m, const real *X, real *constraints, verdict *t)
+{
+    real s[12*LANES], o_upu[3*LANES];
+    constraints_before(LANES, X, s, t);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        constraints_legs_upu(m, LANES, leg, 0, s, 1, LANES, o_upu);
+        constraints_place_upu(LANES, LANES, o_upu, leg, 0, constraints, t);
     }
 }
 
 /* ---- legs: 810 mul, 570 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
-        t_ddot_x[LANES], t_ddot_y[LANES], t_ddot_z[LANES], alpha_x[LANES], alpha_y[LANES],
-        alpha_z[LANES];
-} legs_values;
-typedef struct {
-    real entry[15][8], singular[8];
-} legs_results_upu;
-
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, legs_values *s,
-    verdict *t)
+INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real V_0 = V[0*w + k];
-        const real V_1 = V[1*w + k];
-        const real V_2 = V[2*w + k];
-        const real V_3 = V[3*w + k];
-        const real V_4 = V[4*w + k];
-        const real V_5 = V[5*w + k];
-        const real A_0 = A[0*w + k];
-        const real A_1 = A[1*w + k];
-        const real A_2 = A[2*w + k];
-        const real A_3 = A[3*w + k];
-        const real A_4 = A[4*w + k];
-        const real A_5 = A[5*w + k];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -5475,430 +5627,467 @@ INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, l
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* V: named entries */
+        const real V_0 = V[0*w + k];
         const real t_dot_x = V_0;
+        const real V_1 = V[1*w + k];
         const real t_dot_y = V_1;
+        const real V_2 = V[2*w + k];
         const real t_dot_z = V_2;
+        const real V_3 = V[3*w + k];
         const real omega_x = V_3;
+        const real V_4 = V[4*w + k];
         const real omega_y = V_4;
+        const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* A: named entries */
+        const real A_0 = A[0*w + k];
         const real t_ddot_x = A_0;
+        const real A_1 = A[1*w + k];
         const real t_ddot_y = A_1;
+        const real A_2 = A[2*w + k];
         const real t_ddot_z = A_2;
+        const real A_3 = A[3*w + k];
         const real alpha_x = A_3;
+        const real A_4 = A[4*w + k];
         const real alpha_y = A_4;
+        const real A_5 = A[5*w + k];
         const real alpha_z = A_5;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->t_ddot_z[k] = t_ddot_z;
-        s->alpha_x[k] = alpha_x;
-        s->alpha_y[k] = alpha_y;
-        s->alpha_z[k] = alpha_z;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = t_dot_x;
+        s[13*w + k] = t_dot_y;
+        s[14*w + k] = t_dot_z;
+        s[15*w + k] = omega_x;
+        s[16*w + k] = omega_y;
+        s[17*w + k] = omega_z;
+        s[18*w + k] = t_ddot_x;
+        s[19*w + k] = t_ddot_y;
+        s[20*w + k] = t_ddot_z;
+        s[21*w + k] = alpha_x;
+        s[22*w + k] = alpha_y;
+        s[23*w + k] = alpha_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void legs_legs_upu(const prepared *m, size_t leg, size_t legs, const legs_values *s, size_t
-    states, size_t count, legs_results_upu *o)
+INLINE void legs_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
+    size_t states, size_t count, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real t_ddot_z = s->t_ddot_z[j];
-        const real alpha_x = s->alpha_x[j];
-        const real alpha_y = s->alpha_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real J_group_2_xy = m->J_group_2_xy[i];
-        const real J_group_2_xz = m->J_group_2_xz[i];
-        const real J_group_2_yz = m->J_group_2_yz[i];
-        const real Sigma_2_xx = m->Sigma_2_xx[i];
-        const real Sigma_2_yy = m->Sigma_2_yy[i];
-        const real Sigma_2_zz = m->Sigma_2_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real g_r0_z = m->g_r0_z[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real h_2_z = m->h_2_z[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_link3_mass = m->upu_link3_mass[i];
-        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
-        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
-        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        /* (upu-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        /* (upu-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+        const real upu_q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
-        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real upu_q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
             R_yz*upu_platform_point_z;
-        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real upu_q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
             R_zz*upu_platform_point_z;
-        const real S_x = q_in_base_x + t_x - upu_base_point_x;
-        const real S_y = q_in_base_y + t_y - upu_base_point_y;
-        const real S_z = q_in_base_z + t_z - upu_base_point_z;
-        /* (upu-K2) component along the reference direction */
-        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
-        /* (upu-K3) component across the reference direction */
-        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
-        /* (upu-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upu-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
-        /* (upu-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upu-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+        const real t_x = s[0*w + j];
+        const real upu_base_point_x = m->upu_base_point_x[i];
+        const real upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x;
+        const real t_y = s[1*w + j];
+        const real upu_base_point_y = m->upu_base_point_y[i];
+        const real upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y;
+        const real t_z = s[2*w + j];
+        const real upu_base_point_z = m->upu_base_point_z[i];
+        const real upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z;
+        /* (upu-px_1) component along the reference direction */
+        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
+        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
+        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
+        const real upu_px_1 = upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx +
+            upu_S_z*upu_base_frame_zx;
+        /* (upu-py_1) component across the reference direction */
+        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
+        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
+        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
+        const real upu_py_1 = upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy +
+            upu_S_z*upu_base_frame_zy;
+        /* (upu-rho2_1) squared amplitude */
+        const real upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1;
+        /* (upu-root_1) amplitude, with the sign of the branch */
+        const real upu_branch_1 = m->upu_branch_1[i];
+        const real upu_root_1 = upu_branch_1*root(upu_rho2_1);
+        /* (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
+        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
+        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
+        const real upu_xi_1_t = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
+            upu_S_z*upu_base_frame_zz;
+        /* (upu-rho2_2) squared amplitude */
+        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t;
+        /* (upu-root_2) amplitude, with the sign of the branch */
+        const real upu_branch_2 = m->upu_branch_2[i];
+        const real upu_root_2 = upu_branch_2*root(upu_rho2_2);
+        /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_upu_root_2 = 1/upu_root_2;
+        const real upu_c_2 = inv_upu_root_2*upu_root_1;
+        /* (upu-s_2) sine of the angle of joint 2 from its reference direction */
+        const real upu_s_2 = inv_upu_root_2*upu_xi_1_t;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
+        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
+        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        const real upu_end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
             R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
             R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
             R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+        const real upu_end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
             R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
             R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
             R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        const real end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
+        const real upu_end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
             R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
             R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
             R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
-        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x;
-        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
-        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
-        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
-        /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t = root_1*root_2;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
-        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-           */
-        const real n_c_z = n_m1_r0_y*root_2/volume_c_t;
-        /* (upu-V9) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
-        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
-        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
-        const real w_1_t = s_1*s_2;
-        const real w_1_t_2 = c_1*s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
-            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
-            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
-            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
+        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_upu_root_1 = 1/upu_root_1;
+        const real upu_c_1 = inv_upu_root_1*upu_py_1;
+        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real upu_s_1 = inv_upu_root_1*upu_px_1;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_end_p1_r1_x = upu_end_p1_r0_y*upu_s_1 - upu_c_1*upu_end_p1_r0_x;
+        const real upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1;
+        const real upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y;
+        const real upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2;
+        /* (upu-volume_c) triple product of the velocity vectors */
+        const real upu_volume_c_t = upu_root_1*upu_root_2;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2;
+        /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
+           out */
+        const real upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t;
+        /* (upu-w_1) force part of reciprocal wrench 1 */
+        const real axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 -
+            upu_base_frame_xx*upu_c_1;
+        const real axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 -
+            upu_base_frame_yx*upu_c_1;
+        const real axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 -
+            upu_base_frame_zx*upu_c_1;
+        const real upu_w_1_t = upu_s_1*upu_s_2;
+        const real upu_w_1_t_2 = upu_c_1*upu_s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*upu_w_1_t +
+            upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*upu_w_1_t +
+            upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*upu_w_1_t +
+            upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2;
         const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
             axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
         const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
             axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
         const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
             axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
-        const real inv_w_1_t_25 = 1/w_1_t_3;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_in_base_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x -
-            axis_x_upu_axes2_x*end_p1_r3_y;
-        const real n_m1_in_base_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x -
-            axis_x_upu_axes2_y*end_p1_r3_y;
-        const real n_m1_in_base_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x -
-            axis_x_upu_axes2_z*end_p1_r3_y;
-        /* (upu-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
-            S_dot_z*axis_x_upu_axes2_z;
-        /* (upu-V19) rate of joint 1 */
-        const real qd_1_t = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
-            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
-        /* (upu-A8) rate of moment direction 1 */
-        const real omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
+        const real upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y;
+        const real inv_upu_w_1_t_25 = 1/upu_w_1_t_3;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_n_m1_in_base_x = axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x -
+            axis_x_upu_axes2_x*upu_end_p1_r3_y;
+        const real upu_n_m1_in_base_y = axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x -
+            axis_x_upu_axes2_y*upu_end_p1_r3_y;
+        const real upu_n_m1_in_base_z = axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x -
+            axis_x_upu_axes2_z*upu_end_p1_r3_y;
+        /* (upu-S_dot) velocity of the connection point */
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real upu_S_dot_t = omega_y*upu_q_in_base_z - omega_z*upu_q_in_base_y;
+        const real omega_x = s[15*w + j];
+        const real upu_S_dot_t_2 = omega_z*upu_q_in_base_x - omega_x*upu_q_in_base_z;
+        const real upu_S_dot_t_3 = omega_x*upu_q_in_base_y - omega_y*upu_q_in_base_x;
+        const real t_dot_x = s[12*w + j];
+        const real upu_S_dot_x = t_dot_x + upu_S_dot_t;
+        const real t_dot_y = s[13*w + j];
+        const real upu_S_dot_y = t_dot_y + upu_S_dot_t_2;
+        const real t_dot_z = s[14*w + j];
+        const real upu_S_dot_z = t_dot_z + upu_S_dot_t_3;
+        const real upu_S_dot_tip_x = axis_x_upu_axes2_x*upu_S_dot_x +
+            axis_x_upu_axes2_y*upu_S_dot_y + axis_x_upu_axes2_z*upu_S_dot_z;
+        /* (upu-qd_3) rate of joint 3 */
+        const real upu_qd_3_t = inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_dot_x +
+            axis_y_upu_axes2_in_base_y*upu_S_dot_y + axis_y_upu_axes2_in_base_z*upu_S_dot_z);
+        /* (upu-W_2) centripetal tensor of link 2 */
+        const real upu_W_2_t = upu_qd_3_t*upu_qd_3_t;
+        /* (upu-bias) acceleration of the connection point at zero joint accelerations */
+        const real upu_bias_t = 2*upu_S_dot_tip_x;
+        const real upu_bias_t_2 = upu_bias_t*upu_qd_3_t;
+        /* (upu-nd_m1) rate of moment direction 1 */
+        const real upu_omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
             axis_x_upu_axes2_z*omega_z;
-        const real omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
+        const real upu_omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
             axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
-        const real omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
+        const real upu_omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
             axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
-        /* (upu-V24) centripetal tensor of link 2 */
-        const real W_2_t = qd_1_t*qd_1_t;
-        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_tip_x;
-        const real bias_t_2 = bias_t*qd_1_t;
-        /* (upu-N6) remainder without the acceleration in: acceleration of the reference point of link 3,
-           less gravity */
-        const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
-        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
-        const real g_r3_x = g_r0_z*s_2 - c_2*g_r1_y;
-        const real g_r3_y = -c_2*g_r0_z - g_r1_y*s_2;
-        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-           */
-        const real n_c_t = axis_z_upu_axes2_in_base_x*n_c_z;
-        const real n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z;
-        const real n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z;
-        /* (upu-V19) rate of joint 1 */
-        const real qd_1_t_2 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
-            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z -
-            n_c_z*(end_p1_r3_y*omega_tip_x - end_p1_r3_x*omega_tip_y));
-        /* (upu-V22) angular velocity of link 1 */
-        const real omega_1_t = qd_1_t_2*s_2;
-        const real omega_1_t_2 = c_2*qd_1_t_2;
-        /* (upu-A8) rate of moment direction 1 */
-        const real nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t -
-            end_p1_r3_x*omega_tip_z;
-        const real nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y -
-            end_p1_r3_y*omega_tip_z;
-        /* (upu-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_x = omega_1_t_2*qd_1_t;
-        const real zeta_2_y = omega_1_t*qd_1_t;
-        /* (upu-A9) bias of the angular acceleration along moment direction 1 */
-        const real nu_1_t = end_p1_r3_y*zeta_2_x - end_p1_r3_x*zeta_2_y;
-        const real nu_1_t_2 = nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z -
-            qd_1_t)*(end_p1_r3_y*omega_1_t_2 - end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 +
-            omega_tip_y);
-        const real nu_1 = -nu_1_t - nu_1_t_2;
-        /* (upu-A10) acceleration with which the joints turn along moment direction 1 */
-        const real etad_1_t = end_p1_r3_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y
-            + alpha_z*axis_x_upu_axes2_z) - end_p1_r3_x*(alpha_x*axis_y_upu_axes2_in_base_x +
+        /* (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+           link 3, less gravity */
+        const real upu_g_r0_x = m->upu_g_r0_x[i];
+        const real upu_g_r0_y = m->upu_g_r0_y[i];
+        const real upu_g_r1_x = upu_g_r0_y*upu_s_1 - upu_c_1*upu_g_r0_x;
+        const real upu_g_r1_y = -upu_c_1*upu_g_r0_y - upu_g_r0_x*upu_s_1;
+        const real upu_g_r0_z = m->upu_g_r0_z[i];
+        const real upu_g_r3_x = upu_g_r0_z*upu_s_2 - upu_c_2*upu_g_r1_y;
+        const real upu_g_r3_y = -upu_c_2*upu_g_r0_z - upu_g_r1_y*upu_s_2;
+        /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
+           out */
+        const real upu_n_c_t = axis_z_upu_axes2_in_base_x*upu_n_c_z;
+        const real upu_n_c_t_2 = axis_z_upu_axes2_in_base_y*upu_n_c_z;
+        const real upu_n_c_t_3 = axis_z_upu_axes2_in_base_z*upu_n_c_z;
+        /* (upu-qd_1) rate of joint 1 */
+        const real upu_qd_1_t = inv_upu_w_1_t_25*(axis_z_upu_axes2_in_base_x*upu_S_dot_x +
+            axis_z_upu_axes2_in_base_y*upu_S_dot_y + axis_z_upu_axes2_in_base_z*upu_S_dot_z -
+            upu_n_c_z*(upu_end_p1_r3_y*upu_omega_tip_x - upu_end_p1_r3_x*upu_omega_tip_y));
+        /* (upu-a_p) acceleration of the connection point without its centripetal part */
+        const real alpha_y = s[22*w + j];
+        const real alpha_z = s[23*w + j];
+        const real t_ddot_x = s[18*w + j];
+        const real upu_a_p_x = t_ddot_x + alpha_y*upu_q_in_base_z - alpha_z*upu_q_in_base_y;
+        const real alpha_x = s[21*w + j];
+        const real t_ddot_y = s[19*w + j];
+        const real upu_a_p_y = t_ddot_y + alpha_z*upu_q_in_base_x - alpha_x*upu_q_in_base_z;
+        const real t_ddot_z = s[20*w + j];
+        const real upu_a_p_z = t_ddot_z + alpha_x*upu_q_in_base_y - alpha_y*upu_q_in_base_x;
+        /* (upu-S_ddot) acceleration of the connection point */
+        const real upu_S_ddot_x = upu_a_p_x + omega_y*upu_S_dot_t_3 - omega_z*upu_S_dot_t_2;
+        const real upu_S_ddot_y = upu_a_p_y + omega_z*upu_S_dot_t - omega_x*upu_S_dot_t_3;
+        const real upu_S_ddot_z = upu_a_p_z + omega_x*upu_S_dot_t_2 - omega_y*upu_S_dot_t;
+        /* (upu-omega_1) angular velocity of link 1 */
+        const real upu_omega_1_t = upu_qd_1_t*upu_s_2;
+        const real upu_omega_1_t_2 = upu_c_2*upu_qd_1_t;
+        /* (upu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real upu_zeta_2_x = upu_omega_1_t_2*upu_qd_3_t;
+        const real upu_zeta_2_y = upu_omega_1_t*upu_qd_3_t;
+        /* (upu-W_2) centripetal tensor of link 2 */
+        const real upu_W_2_t_2 = upu_omega_1_t*upu_omega_1_t;
+        const real upu_W_2_t_3 = upu_omega_1_t_2*upu_omega_1_t_2;
+        const real upu_W_2_xy = upu_omega_1_t*upu_omega_1_t_2;
+        /* (upu-bias) acceleration of the connection point at zero joint accelerations */
+        const real upu_bias_t_3 = upu_bias_t*upu_omega_1_t_2;
+        const real upu_bias_z = upu_bias_t_3 + 2*upu_root_2*upu_zeta_2_y;
+        /* (upu-rel) acceleration of the connection point left to the joint accelerations */
+        const real upu_rel_z = axis_z_upu_axes2_in_base_x*upu_S_ddot_x +
+            axis_z_upu_axes2_in_base_y*upu_S_ddot_y + axis_z_upu_axes2_in_base_z*upu_S_ddot_z -
+            upu_bias_z;
+        /* (upu-nd_m1) rate of moment direction 1 */
+        const real upu_nd_m1_x = upu_end_p1_r1_x*upu_omega_tip_x - upu_end_p1_r1_x*upu_omega_1_t -
+            upu_end_p1_r3_x*upu_omega_tip_z;
+        const real upu_nd_m1_y = upu_end_p1_r1_x*upu_omega_1_t_2 + upu_end_p1_r1_x*upu_omega_tip_y
+            - upu_end_p1_r3_y*upu_omega_tip_z;
+        /* (upu-nu_1) bias of the angular acceleration along moment direction 1 */
+        const real upu_nu_1_t = upu_end_p1_r3_y*upu_zeta_2_x - upu_end_p1_r3_x*upu_zeta_2_y;
+        const real upu_nu_1_t_2 = upu_nd_m1_x*(upu_omega_1_t - upu_omega_tip_x) + (upu_omega_tip_z
+            - upu_qd_3_t)*(upu_end_p1_r3_y*upu_omega_1_t_2 - upu_end_p1_r3_x*upu_omega_1_t) -
+            upu_nd_m1_y*(upu_omega_1_t_2 + upu_omega_tip_y);
+        const real upu_nu_1 = -upu_nu_1_t - upu_nu_1_t_2;
+        /* (upu-etad_1) acceleration with which the joints turn along moment direction 1 */
+        const real upu_etad_1_t = upu_end_p1_r3_y*(alpha_x*axis_x_upu_axes2_x +
+            alpha_y*axis_x_upu_axes2_y + alpha_z*axis_x_upu_axes2_z) -
+            upu_end_p1_r3_x*(alpha_x*axis_y_upu_axes2_in_base_x +
             alpha_y*axis_y_upu_axes2_in_base_y + alpha_z*axis_y_upu_axes2_in_base_z);
-        const real etad_1 = nu_1 - etad_1_t;
-        /* (upu-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
-        const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
-        const real a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x;
-        /* (upu-A3) acceleration of the connection point */
-        const real S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z;
-        const real S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x;
-        const real S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y;
-        /* (upu-V24) centripetal tensor of link 2 */
-        const real W_2_t_2 = omega_1_t*omega_1_t;
-        const real W_2_t_3 = omega_1_t_2*omega_1_t_2;
-        const real W_2_xy = omega_1_t*omega_1_t_2;
-        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_t_3 = bias_t*omega_1_t_2;
-        const real bias_z = bias_t_3 + 2*root_2*zeta_2_y;
-        /* (upu-A6) acceleration of the connection point left to the joint accelerations */
-        const real rel_z = S_ddot_x*axis_z_upu_axes2_in_base_x +
-            S_ddot_y*axis_z_upu_axes2_in_base_y + S_ddot_z*axis_z_upu_axes2_in_base_z - bias_z;
-        /* (upu-A11) acceleration of joint 1 */
-        const real qdd_1_t = S_ddot_x*axis_y_upu_axes2_in_base_x +
-            S_ddot_y*axis_y_upu_axes2_in_base_y + S_ddot_z*axis_y_upu_axes2_in_base_z - bias_t_2;
-        const real qdd_1_t_2 = inv_root_2*qdd_1_t;
-        const real qdd_1_t_3 = inv_w_1_t_25*(rel_z + etad_1*n_c_z);
-        /* (upu-A17) angular acceleration of link 1 */
-        const real alpha_1_t = qdd_1_t_3*s_2;
-        const real alpha_1_t_2 = c_2*qdd_1_t_3;
-        /* (upu-A21) angular acceleration of link 2 */
-        const real alpha_2_x = alpha_1_t - zeta_2_x;
-        const real alpha_2_y = -alpha_1_t_2 - zeta_2_y;
-        /* (upu-A25) acceleration tensor of link 2 */
-        const real B_2_xy = -2*W_2_xy - qdd_1_t_2;
-        const real B_2_zx = zeta_2_y - alpha_2_y;
-        const real B_2_zy = alpha_2_x - zeta_2_x;
-        /* (upu-N3) acceleration of the reference point of link 3, less gravity */
-        const real acc_3_x = S_ddot_x*axis_x_upu_axes2_x + S_ddot_y*axis_x_upu_axes2_y +
-            S_ddot_z*axis_x_upu_axes2_z - g_r3_x;
-        const real acc_3_y = bias_t_2 + qdd_1_t - g_r3_y;
-        const real acc_3_z = bias_t_3 + B_2_zx*root_2 - g_r1_x;
-        /* (upu-N11) inertia force of link 3 less its weight */
-        const real f_3_x = acc_3_x*upu_link3_mass - B_2_xy*h_3_z - alpha_1_t_2*h_3_y -
-            h_3_x*(W_2_t + W_2_t_3);
-        const real f_3_y = acc_3_y*upu_link3_mass + h_3_x*qdd_1_t_2 + h_3_z*(W_2_t + W_2_t_2) -
-            alpha_1_t*h_3_y;
-        const real f_3_z = B_2_zx*h_3_x + acc_3_z*upu_link3_mass - B_2_zy*h_3_z - h_3_y*(W_2_t_2 +
-            W_2_t_3);
-        /* (upu-N18) inertia moment of the links that turn with link 2, about their reference points */
-        const real mu_2_x = B_2_zy*Sigma_2_yy + J_group_2_xz*qdd_1_t_2 + Sigma_2_zz*alpha_1_t +
-            g_r1_x*h_2_z + g_r3_y*h_2_y - B_2_zx*J_group_2_xy - J_group_2_yz*(W_2_t - W_2_t_3) -
-            acc_3_y*h_3_y - acc_3_z*h_3_z;
-        const real mu_2_y = B_2_zy*J_group_2_xy + J_group_2_xz*(W_2_t - W_2_t_2) + acc_3_x*h_3_y +
-            g_r1_x*h_2_x - B_2_xy*J_group_2_yz - B_2_zx*Sigma_2_xx - Sigma_2_zz*alpha_1_t_2 -
-            acc_3_z*h_3_x - g_r3_x*h_2_y;
-        const real mu_2_z = J_group_2_xy*(W_2_t_2 - W_2_t_3) + J_group_2_xz*alpha_1_t +
-            Sigma_2_xx*qdd_1_t_2 + acc_3_x*h_3_z + acc_3_y*h_3_x - B_2_xy*Sigma_2_yy -
-            J_group_2_yz*alpha_1_t_2 - g_r3_x*h_2_z - g_r3_y*h_2_x;
-        /* (upu-N22) moment about joint 2 of the links from 2 outwards, the force at the connection point
+        const real upu_etad_1 = upu_nu_1 - upu_etad_1_t;
+        /* (upu-qdd_1) acceleration of joint 1 */
+        const real upu_qdd_1_t = axis_y_upu_axes2_in_base_x*upu_S_ddot_x +
+            axis_y_upu_axes2_in_base_y*upu_S_ddot_y + axis_y_upu_axes2_in_base_z*upu_S_ddot_z -
+            upu_bias_t_2;
+        const real upu_qdd_1_t_2 = inv_upu_root_2*upu_qdd_1_t;
+        const real upu_qdd_1_t_3 = inv_upu_w_1_t_25*(upu_rel_z + upu_etad_1*upu_n_c_z);
+        /* (upu-alpha_1) angular acceleration of link 1 */
+        const real upu_alpha_1_t = upu_qdd_1_t_3*upu_s_2;
+        const real upu_alpha_1_t_2 = upu_c_2*upu_qdd_1_t_3;
+        /* (upu-alpha_2) angular acceleration of link 2 */
+        const real upu_alpha_2_x = upu_alpha_1_t - upu_zeta_2_x;
+        const real upu_alpha_2_y = -upu_alpha_1_t_2 - upu_zeta_2_y;
+        /* (upu-B_2) acceleration tensor of link 2 */
+        const real upu_B_2_xy = -2*upu_W_2_xy - upu_qdd_1_t_2;
+        const real upu_B_2_zx = upu_zeta_2_y - upu_alpha_2_y;
+        const real upu_B_2_zy = upu_alpha_2_x - upu_zeta_2_x;
+        /* (upu-acc_3) acceleration of the reference point of link 3, less gravity */
+        const real upu_acc_3_x = axis_x_upu_axes2_x*upu_S_ddot_x + axis_x_upu_axes2_y*upu_S_ddot_y
+            + axis_x_upu_axes2_z*upu_S_ddot_z - upu_g_r3_x;
+        const real upu_acc_3_y = upu_bias_t_2 + upu_qdd_1_t - upu_g_r3_y;
+        const real upu_acc_3_z = upu_bias_t_3 + upu_B_2_zx*upu_root_2 - upu_g_r1_x;
+        /* (upu-f_3) inertia force of link 3 less its weight */
+        const real upu_h_3_x = m->upu_h_3_x[i];
+        const real upu_h_3_y = m->upu_h_3_y[i];
+        const real upu_h_3_z = m->upu_h_3_z[i];
+        const real upu_link3_mass = m->upu_link3_mass[i];
+        const real upu_f_3_x = upu_acc_3_x*upu_link3_mass - upu_B_2_xy*upu_h_3_z -
+            upu_alpha_1_t_2*upu_h_3_y - upu_h_3_x*(upu_W_2_t + upu_W_2_t_3);
+        const real upu_f_3_y = upu_acc_3_y*upu_link3_mass + upu_h_3_x*upu_qdd_1_t_2 +
+            upu_h_3_z*(upu_W_2_t + upu_W_2_t_2) - upu_alpha_1_t*upu_h_3_y;
+        const real upu_f_3_z = upu_B_2_zx*upu_h_3_x + upu_acc_3_z*upu_link3_mass -
+            upu_B_2_zy*upu_h_3_z - upu_h_3_y*(upu_W_2_t_2 + upu_W_2_t_3);
+        /* (upu-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+        const real upu_J_group_2_xy = m->upu_J_group_2_xy[i];
+        const real upu_J_group_2_xz = m->upu_J_group_2_xz[i];
+        const real upu_J_group_2_yz = m->upu_J_group_2_yz[i];
+        const real upu_Sigma_2_yy = m->upu_Sigma_2_yy[i];
+        const real upu_Sigma_2_zz = m->upu_Sigma_2_zz[i];
+        const real upu_h_2_y = m->upu_h_2_y[i];
+        const real upu_h_2_z = m->upu_h_2_z[i];
+        const real upu_mu_2_x = upu_B_2_zy*upu_Sigma_2_yy + upu_J_group_2_xz*upu_qdd_1_t_2 +
+            upu_Sigma_2_zz*upu_alpha_1_t + upu_g_r1_x*upu_h_2_z + upu_g_r3_y*upu_h_2_y -
+            upu_B_2_zx*upu_J_group_2_xy - upu_J_group_2_yz*(upu_W_2_t - upu_W_2_t_3) -
+            upu_acc_3_y*upu_h_3_y - upu_acc_3_z*upu_h_3_z;
+        const real upu_Sigma_2_xx = m->upu_Sigma_2_xx[i];
+        const real upu_h_2_x = m->upu_h_2_x[i];
+        const real upu_mu_2_y = upu_B_2_zy*upu_J_group_2_xy + upu_J_group_2_xz*(upu_W_2_t -
+            upu_W_2_t_2) + upu_acc_3_x*upu_h_3_y + upu_g_r1_x*upu_h_2_x -
+            upu_B_2_xy*upu_J_group_2_yz - upu_B_2_zx*upu_Sigma_2_xx -
+            upu_Sigma_2_zz*upu_alpha_1_t_2 - upu_acc_3_z*upu_h_3_x - upu_g_r3_x*upu_h_2_y;
+        const real upu_mu_2_z = upu_J_group_2_xy*(upu_W_2_t_2 - upu_W_2_t_3) +
+            upu_J_group_2_xz*upu_alpha_1_t + upu_Sigma_2_xx*upu_qdd_1_t_2 + upu_acc_3_x*upu_h_3_z
+            + upu_acc_3_y*upu_h_3_x - upu_B_2_xy*upu_Sigma_2_yy - upu_J_group_2_yz*upu_alpha_1_t_2
+            - upu_g_r3_x*upu_h_2_z - upu_g_r3_y*upu_h_2_x;
+        /* (upu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
            left out */
-        const real N_2_y = mu_2_y - f_3_z*root_2;
-        const real N_2_r0_y = mu_2_x*s_2 - N_2_y*c_2;
-        /* (upu-N38) force at the connection point that balances the leg's inertia and weight along all
+        const real upu_N_2_y = upu_mu_2_y - upu_f_3_z*upu_root_2;
+        const real upu_N_2_r0_y = upu_mu_2_x*upu_s_2 - upu_N_2_y*upu_c_2;
+        /* (upu-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real G_t = f_3_y + inv_root_2*mu_2_z;
-        const real G_t_2 = N_2_r0_y*inv_w_1_t_25;
-        const real G_t_3 = N_2_r0_y*inv_w_1_t_25*n_c_z;
-        /* (upu-N50) leg force on the platform without actuation and without the mass at the connection
+        const real upu_G_t = upu_f_3_y + inv_upu_root_2*upu_mu_2_z;
+        const real upu_G_t_2 = inv_upu_w_1_t_25*upu_N_2_r0_y;
+        const real upu_G_t_3 = inv_upu_w_1_t_25*upu_N_2_r0_y*upu_n_c_z;
+        /* (upu-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_in_base_x = -G_t*axis_y_upu_axes2_in_base_x -
-            G_t_2*axis_z_upu_axes2_in_base_x - axis_x_upu_axes2_x*f_3_x;
-        const real c_in_base_y = -G_t*axis_y_upu_axes2_in_base_y -
-            G_t_2*axis_z_upu_axes2_in_base_y - axis_x_upu_axes2_y*f_3_x;
-        const real c_in_base_z = -G_t*axis_y_upu_axes2_in_base_z -
-            G_t_2*axis_z_upu_axes2_in_base_z - axis_x_upu_axes2_z*f_3_x;
-        /* (upu-N46) moment at the connection point that balances the leg's inertia and weight along all
+        const real upu_c_in_base_x = -axis_x_upu_axes2_x*upu_f_3_x -
+            axis_y_upu_axes2_in_base_x*upu_G_t - axis_z_upu_axes2_in_base_x*upu_G_t_2;
+        const real upu_c_in_base_y = -axis_x_upu_axes2_y*upu_f_3_x -
+            axis_y_upu_axes2_in_base_y*upu_G_t - axis_z_upu_axes2_in_base_y*upu_G_t_2;
+        const real upu_c_in_base_z = -axis_x_upu_axes2_z*upu_f_3_x -
+            axis_y_upu_axes2_in_base_z*upu_G_t - axis_z_upu_axes2_in_base_z*upu_G_t_2;
+        /* (upu-G_m) moment at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real G_m_x = G_t_3*end_p1_r3_y;
-        const real G_m_y = G_t_3*end_p1_r3_x;
-        /* (upu-N55) moment of the leg on the platform without actuation */
-        const real c_m_in_base_x = G_m_x*axis_x_upu_axes2_x - G_m_y*axis_y_upu_axes2_in_base_x;
-        const real c_m_in_base_y = G_m_x*axis_x_upu_axes2_y - G_m_y*axis_y_upu_axes2_in_base_y;
-        const real c_m_in_base_z = G_m_x*axis_x_upu_axes2_z - G_m_y*axis_y_upu_axes2_in_base_z;
-        o->entry[0][k] = c_in_base_x;
-        o->entry[1][k] = c_in_base_y;
-        o->entry[2][k] = c_in_base_z;
-        o->entry[3][k] = c_m_in_base_x;
-        o->entry[4][k] = c_m_in_base_y;
-        o->entry[5][k] = c_m_in_base_z;
-        o->entry[6][k] = axis_x_upu_axes2_x;
-        o->entry[7][k] = axis_x_upu_axes2_y;
-        o->entry[8][k] = axis_x_upu_axes2_z;
-        o->entry[9][k] = -n_c_t;
-        o->entry[10][k] = -n_c_t_2;
-        o->entry[11][k] = -n_c_t_3;
-        o->entry[12][k] = n_m1_in_base_x;
-        o->entry[13][k] = n_m1_in_base_y;
-        o->entry[14][k] = n_m1_in_base_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(-volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(w_1_t_3) >
-            TOLERANCE*R(0.8));
+        const real upu_G_m_x = upu_G_t_3*upu_end_p1_r3_y;
+        const real upu_G_m_y = upu_G_t_3*upu_end_p1_r3_x;
+        /* (upu-c_m) moment of the leg on the platform without actuation */
+        const real upu_c_m_in_base_x = axis_x_upu_axes2_x*upu_G_m_x -
+            axis_y_upu_axes2_in_base_x*upu_G_m_y;
+        const real upu_c_m_in_base_y = axis_x_upu_axes2_y*upu_G_m_x -
+            axis_y_upu_axes2_in_base_y*upu_G_m_y;
+        const real upu_c_m_in_base_z = axis_x_upu_axes2_z*upu_G_m_x -
+            axis_y_upu_axes2_in_base_z*upu_G_m_y;
+        o[0*count + k] = upu_c_in_base_x;
+        o[1*count + k] = upu_c_in_base_y;
+        o[2*count + k] = upu_c_in_base_z;
+        o[3*count + k] = upu_c_m_in_base_x;
+        o[4*count + k] = upu_c_m_in_base_y;
+        o[5*count + k] = upu_c_m_in_base_z;
+        o[6*count + k] = axis_x_upu_axes2_x;
+        o[7*count + k] = axis_x_upu_axes2_y;
+        o[8*count + k] = axis_x_upu_axes2_z;
+        o[9*count + k] = -upu_n_c_t;
+        o[10*count + k] = -upu_n_c_t_2;
+        o[11*count + k] = -upu_n_c_t_3;
+        o[12*count + k] = upu_n_m1_in_base_x;
+        o[13*count + k] = upu_n_m1_in_base_y;
+        o[14*count + k] = upu_n_m1_in_base_z;
+        o[15*count + k] = UNLESS(magnitude(upu_rho2_1) >
+            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(upu_rho2_2) >
+            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(-upu_volume_c_t) >
+            TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(upu_root_2) > TOLERANCE*R(0.8)) +
+            UNLESS(magnitude(upu_w_1_t_3) > TOLERANCE*R(0.8));
     }
 }
 
-INLINE void legs_place_upu(size_t w, const legs_results_upu *o, size_t leg, size_t first, real
+INLINE void legs_place_upu(size_t w, size_t count, const real *o, size_t leg, size_t first, real
     *leg_force, real *drive, real *constraint_direction, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        leg_force[(6*leg)*w + k] = o->entry[0][first + k];
-        leg_force[(1 + 6*leg)*w + k] = o->entry[1][first + k];
-        leg_force[(2 + 6*leg)*w + k] = o->entry[2][first + k];
-        leg_force[(3 + 6*leg)*w + k] = o->entry[3][first + k];
-        leg_force[(4 + 6*leg)*w + k] = o->entry[4][first + k];
-        leg_force[(5 + 6*leg)*w + k] = o->entry[5][first + k];
-        drive[(6*leg)*w + k] = o->entry[6][first + k];
-        drive[(1 + 6*leg)*w + k] = o->entry[7][first + k];
-        drive[(2 + 6*leg)*w + k] = o->entry[8][first + k];
-        constraint_direction[(6*leg)*w + k] = o->entry[9][first + k];
-        constraint_direction[(1 + 6*leg)*w + k] = o->entry[10][first + k];
-        constraint_direction[(2 + 6*leg)*w + k] = o->entry[11][first + k];
-        constraint_direction[(3 + 6*leg)*w + k] = o->entry[12][first + k];
-        constraint_direction[(4 + 6*leg)*w + k] = o->entry[13][first + k];
-        constraint_direction[(5 + 6*leg)*w + k] = o->entry[14][first + k];
-        t->singular[k] += o->singular[first + k];
+        leg_force[(6*leg)*w + k] = o[0*count + first + k];
+        leg_force[(1 + 6*leg)*w + k] = o[1*count + first + k];
+        leg_force[(2 + 6*leg)*w + k] = o[2*count + first + k];
+        leg_force[(3 + 6*leg)*w + k] = o[3*count + first + k];
+        leg_force[(4 + 6*leg)*w + k] = o[4*count + first + k];
+        leg_force[(5 + 6*leg)*w + k] = o[5*count + first + k];
+        drive[(6*leg)*w + k] = o[6*count + first + k];
+        drive[(1 + 6*leg)*w + k] = o[7*count + first + k];
+        drive[(2 + 6*leg)*w + k] = o[8*count + first + k];
+        constraint_direction[(6*leg)*w + k] = o[9*count + first + k];
+        constraint_direction[(1 + 6*leg)*w + k] = o[10*count + first + k];
+        constraint_direction[(2 + 6*leg)*w + k] = o[11*count + first + k];
+        constraint_direction[(3 + 6*leg)*w + k] = o[12*count + first + k];
+        constraint_direction[(4 + 6*leg)*w + k] = o[13*count + first + k];
+        constraint_direction[(5 + 6*leg)*w + k] = o[14*count + first + k];
+        t->singular[k] += o[15*count + first + k];
     }
 }
 
-INLINE void legs_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
-    real *leg_force, real *drive, real *constraint_direction, verdict *t)
+INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
+    *leg_force, real *drive, real *constraint_direction, verdict *t)
 {
-    legs_values values, *const s = &values;
-    legs_results_upu results_upu;
-    clear(drive, 18*w);
-    legs_before(w, X, V, A, s, t);
-    if (w == 1) {  /* the legs side by side */
-        legs_legs_upu(m, 0, 1, s, 0, 3, &results_upu);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            legs_place_upu(w, &results_upu, leg, leg, leg_force, drive, constraint_direction, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            legs_legs_upu(m, leg, 0, s, 1, w, &results_upu);
-            legs_place_upu(w, &results_upu, leg, 0, leg_force, drive, constraint_direction, t);
-        }
+    real s[24] = {0}, o_upu[16*LEGS(3)] = {0};
+    clear(drive, 18);
+    legs_before(1, X, V, A, s, t);
+    legs_legs_upu(m, 1, 0, 1, s, 0, LEGS(3), o_upu);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        legs_place_upu(1, LEGS(3), o_upu, leg, leg, leg_force, drive, constraint_direction, t);
     }
 }
 
 /* ---- potential: 171 mul, 135 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], potential_t[LANES],
-        sum[1][LANES];
-} potential_values;
-typedef struct {
-    real sum[1][8], singular[8];
-} potential_results_upu;
-
-INLINE void potential_before(const prepared *m, size_t w, const real *X, potential_values *s,
-    verdict *t)
+INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
+        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+        const real quaternion_scale = 2/quaternion_norm2;
+        const real quaternion_sx = X_3*quaternion_scale;
+        const real quaternion_sy = X_4*quaternion_scale;
+        const real quaternion_sz = X_5*quaternion_scale;
+        const real quaternion_wx = X_6*quaternion_sx;
+        const real quaternion_wy = X_6*quaternion_sy;
+        const real quaternion_wz = X_6*quaternion_sz;
+        const real quaternion_xx = X_3*quaternion_sx;
+        const real quaternion_xy = X_3*quaternion_sy;
+        const real quaternion_xz = X_3*quaternion_sz;
+        const real quaternion_yy = X_4*quaternion_sy;
+        const real quaternion_yz = X_4*quaternion_sz;
+        const real quaternion_zz = X_5*quaternion_sz;
+        const real R_xx = 1 - quaternion_yy - quaternion_zz;
+        const real R_xy = quaternion_xy - quaternion_wz;
+        const real R_xz = quaternion_wy + quaternion_xz;
+        const real R_yx = quaternion_wz + quaternion_xy;
+        const real R_yy = 1 - quaternion_xx - quaternion_zz;
+        const real R_yz = quaternion_yz - quaternion_wx;
+        const real R_zx = quaternion_xz - quaternion_wy;
+        const real R_zy = quaternion_wx + quaternion_yz;
+        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
@@ -5906,228 +6095,178 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, potenti
         const real h_star_y = m->h_star_y;
         const real h_star_z = m->h_star_z;
         const real platform_mass = m->platform_mass;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* (V1) potential energy */
         const real potential_t = gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z +
             platform_mass*t_x) + gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z +
             platform_mass*t_y) + gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z +
             platform_mass*t_z);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->potential_t[k] = potential_t;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        s[12*w + k] = potential_t;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void potential_legs_upu(const prepared *m, size_t leg, size_t legs, const potential_values
-    *s, size_t states, size_t count, int add, potential_results_upu *o)
+INLINE void potential_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real b_r0_x = m->b_r0_x[i];
-        const real b_r0_y = m->b_r0_y[i];
-        const real b_r0_z = m->b_r0_z[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real g_r0_z = m->g_r0_z[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real h_2_z = m->h_2_z[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
+        /* (upu-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
+        const real t_x = s[0*w + j];
         const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_link2_mass = m->upu_link2_mass[i];
-        const real upu_link3_mass = m->upu_link3_mass[i];
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        /* (upu-K1) from the base point to the connection point */
-        const real S_x = t_x + R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+        const real upu_S_x = t_x + R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z - upu_base_point_x;
-        const real S_y = t_y + R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real t_y = s[1*w + j];
+        const real upu_base_point_y = m->upu_base_point_y[i];
+        const real upu_S_y = t_y + R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
             R_yz*upu_platform_point_z - upu_base_point_y;
-        const real S_z = t_z + R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real t_z = s[2*w + j];
+        const real upu_base_point_z = m->upu_base_point_z[i];
+        const real upu_S_z = t_z + R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
             R_zz*upu_platform_point_z - upu_base_point_z;
-        /* (upu-K2) component along the reference direction */
-        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
-        /* (upu-K3) component across the reference direction */
-        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
-        /* (upu-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upu-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
-        /* (upu-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upu-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upu-N6) remainder without the acceleration in: acceleration of the reference point of link 3,
-           less gravity */
-        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
-        /* (V1) potential energy */
-        const real b_r1_x = b_r0_y*s_1 - b_r0_x*c_1;
-        const real b_r1_y = -b_r0_x*s_1 - b_r0_y*c_1;
-        const real b_r3_x = b_r0_z*s_2 - b_r1_y*c_2;
-        const real b_r3_y = -b_r0_z*c_2 - b_r1_y*s_2;
-        const real potential_t_2 = (g_r0_y*s_1 - c_1*g_r0_x)*(h_2_y + h_3_y +
-            b_r1_x*upu_link2_mass + b_r1_x*upu_link3_mass) + (g_r0_z*s_2 - c_2*g_r1_y)*(h_2_x +
-            h_3_x + b_r3_x*upu_link2_mass + upu_link3_mass*(b_r3_x + root_2)) - (-c_2*g_r0_z -
-            g_r1_y*s_2)*(h_2_z + h_3_z - b_r3_y*upu_link2_mass - b_r3_y*upu_link3_mass);
-        o->sum[0][k] = add ? o->sum[0][k] + potential_t_2 : potential_t_2;  /* total_upu */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
+        /* (upu-px_1) component along the reference direction */
+        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
+        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
+        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
+        const real upu_px_1 = upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx +
+            upu_S_z*upu_base_frame_zx;
+        /* (upu-py_1) component across the reference direction */
+        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
+        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
+        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
+        const real upu_py_1 = upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy +
+            upu_S_z*upu_base_frame_zy;
+        /* (upu-rho2_1) squared amplitude */
+        const real upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1;
+        /* (upu-root_1) amplitude, with the sign of the branch */
+        const real upu_branch_1 = m->upu_branch_1[i];
+        const real upu_root_1 = upu_branch_1*root(upu_rho2_1);
+        /* (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
+        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
+        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
+        const real upu_xi_1_t = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
+            upu_S_z*upu_base_frame_zz;
+        /* (upu-rho2_2) squared amplitude */
+        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t;
+        /* (upu-root_2) amplitude, with the sign of the branch */
+        const real upu_branch_2 = m->upu_branch_2[i];
+        const real upu_root_2 = upu_branch_2*root(upu_rho2_2);
+        /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_upu_root_2 = 1/upu_root_2;
+        const real upu_c_2 = inv_upu_root_2*upu_root_1;
+        /* (upu-s_2) sine of the angle of joint 2 from its reference direction */
+        const real upu_s_2 = inv_upu_root_2*upu_xi_1_t;
+        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_upu_root_1 = 1/upu_root_1;
+        const real upu_c_1 = inv_upu_root_1*upu_py_1;
+        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real upu_s_1 = inv_upu_root_1*upu_px_1;
+        /* (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+           link 3, less gravity */
+        const real upu_g_r0_x = m->upu_g_r0_x[i];
+        const real upu_g_r0_y = m->upu_g_r0_y[i];
+        const real upu_g_r1_y = -upu_c_1*upu_g_r0_y - upu_g_r0_x*upu_s_1;
+        /* (potential) potential energy */
+        const real upu_b_r0_x = m->upu_b_r0_x[i];
+        const real upu_b_r0_y = m->upu_b_r0_y[i];
+        const real upu_b_r1_x = upu_b_r0_y*upu_s_1 - upu_b_r0_x*upu_c_1;
+        const real upu_b_r1_y = -upu_b_r0_x*upu_s_1 - upu_b_r0_y*upu_c_1;
+        const real upu_b_r0_z = m->upu_b_r0_z[i];
+        const real upu_b_r3_x = upu_b_r0_z*upu_s_2 - upu_b_r1_y*upu_c_2;
+        const real upu_b_r3_y = -upu_b_r0_z*upu_c_2 - upu_b_r1_y*upu_s_2;
+        const real upu_g_r0_z = m->upu_g_r0_z[i];
+        const real upu_h_2_x = m->upu_h_2_x[i];
+        const real upu_h_2_y = m->upu_h_2_y[i];
+        const real upu_h_2_z = m->upu_h_2_z[i];
+        const real upu_h_3_x = m->upu_h_3_x[i];
+        const real upu_h_3_y = m->upu_h_3_y[i];
+        const real upu_h_3_z = m->upu_h_3_z[i];
+        const real upu_link2_mass = m->upu_link2_mass[i];
+        const real upu_link3_mass = m->upu_link3_mass[i];
+        const real upu_potential_t = (upu_g_r0_y*upu_s_1 - upu_c_1*upu_g_r0_x)*(upu_h_2_y +
+            upu_h_3_y + upu_b_r1_x*upu_link2_mass + upu_b_r1_x*upu_link3_mass) +
+            (upu_g_r0_z*upu_s_2 - upu_c_2*upu_g_r1_y)*(upu_h_2_x + upu_h_3_x +
+            upu_b_r3_x*upu_link2_mass + upu_link3_mass*(upu_b_r3_x + upu_root_2)) -
+            (-upu_c_2*upu_g_r0_z - upu_g_r1_y*upu_s_2)*(upu_h_2_z + upu_h_3_z -
+            upu_b_r3_y*upu_link2_mass - upu_b_r3_y*upu_link3_mass);
+        terms[0*count + k] = add ? terms[0*count + k] + upu_potential_t : upu_potential_t;  /* total_upu */
+        o[0*count + k] = UNLESS(magnitude(upu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
+            + UNLESS(magnitude(upu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
     }
 }
 
-INLINE void potential_place_upu(size_t w, const potential_results_upu *o, size_t first, verdict
-    *t)
+INLINE void potential_place_upu(size_t w, size_t count, const real *o, size_t first, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
+        t->singular[k] += o[0*count + first + k];
     }
 }
 
-INLINE void potential_after(size_t w, const potential_values *s, real *potential)
+INLINE void potential_after(size_t w, const real *s, const real *sums, real *potential)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real potential_t = s->potential_t[k];
-        const real total_upu = s->sum[0][k];
-        /* (V1) potential energy */
+        /* (potential) potential energy */
+        const real potential_t = s[12*w + k];
+        const real total_upu = sums[0*w + k];
         const real potential_ = -potential_t - total_upu;
         potential[0*w + k] = potential_;
     }
 }
 
-INLINE void potential_run(const prepared *m, size_t w, const real *X, real *potential, verdict *t)
+INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    potential_values values, *const s = &values;
-    potential_results_upu results_upu;
-    potential_before(m, w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        memset(results_upu.sum, 0, sizeof results_upu.sum);
-        potential_legs_upu(m, 0, 1, s, 0, 3, 0, &results_upu);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            potential_place_upu(w, &results_upu, leg, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_upu.sum[n], 3);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_upu.sum, 0, sizeof results_upu.sum);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            potential_legs_upu(m, leg, 0, s, 1, w, 1, &results_upu);
-            potential_place_upu(w, &results_upu, 0, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_upu.sum[n][k];
-            }
-        }
+    real s[13] = {0}, sums[1] = {0}, terms_upu[1*LEGS(3)] = {0}, o_upu[1*LEGS(3)] = {0};
+    potential_before(m, 1, X, s, t);
+    potential_legs_upu(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_upu, o_upu);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        potential_place_upu(1, LEGS(3), o_upu, leg, t);
     }
-    potential_after(w, s, potential);
+    for (size_t n = 0; n < 1; ++n) {
+        sums[n] = total(terms_upu + n*LEGS(3), 3);
+    }
+    potential_after(1, s, sums, potential);
 }
 
 /* ---- condition: 379 mul, 249 add, 9 div, 13 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], sum[1][LANES];
-} condition_values;
-typedef struct {
-    real sum[1][8], entry[13][8], singular[8];
-} condition_results_upu;
-
-INLINE void condition_before(const prepared *m, size_t w, const real *X, condition_values *s, real
-    *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
+        /* X: named entries */
         const real X_0 = X[0*w + k];
+        const real t_x = X_0;
         const real X_1 = X[1*w + k];
+        const real t_y = X_1;
         const real X_2 = X[2*w + k];
+        const real t_z = X_2;
         const real X_3 = X[3*w + k];
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real legs_size = m->legs_size;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
         const real quaternion_sx = X_3*quaternion_scale;
@@ -6151,509 +6290,932 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, conditi
         const real R_zx = quaternion_xz - quaternion_wy;
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
+        s[0*w + k] = t_x;
+        s[1*w + k] = t_y;
+        s[2*w + k] = t_z;
+        s[3*w + k] = R_xx;
+        s[4*w + k] = R_xy;
+        s[5*w + k] = R_xz;
+        s[6*w + k] = R_yx;
+        s[7*w + k] = R_yy;
+        s[8*w + k] = R_yz;
+        s[9*w + k] = R_zx;
+        s[10*w + k] = R_zy;
+        s[11*w + k] = R_zz;
+        const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
+        t->total[k] += legs_size;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
-INLINE void condition_legs_upu(const prepared *m, size_t leg, size_t legs, const condition_values
-    *s, size_t states, size_t count, int add, condition_results_upu *o)
+INLINE void condition_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, const real
+    *s, size_t states, size_t count, int add, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real b_c_x = m->b_c_x;
-        const real b_c_y = m->b_c_y;
-        const real b_c_z = m->b_c_z;
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
-        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
-        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        /* (upu-S) from the base point to the connection point */
+        const real R_xx = s[3*w + j];
+        const real R_xy = s[4*w + j];
+        const real R_xz = s[5*w + j];
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        /* (upu-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+        const real upu_q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
-        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+        const real R_yx = s[6*w + j];
+        const real R_yy = s[7*w + j];
+        const real R_yz = s[8*w + j];
+        const real upu_q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
             R_yz*upu_platform_point_z;
-        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+        const real R_zx = s[9*w + j];
+        const real R_zy = s[10*w + j];
+        const real R_zz = s[11*w + j];
+        const real upu_q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
             R_zz*upu_platform_point_z;
-        const real S_x = q_in_base_x + t_x - upu_base_point_x;
-        const real S_y = q_in_base_y + t_y - upu_base_point_y;
-        const real S_z = q_in_base_z + t_z - upu_base_point_z;
-        /* (upu-K2) component along the reference direction */
-        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
-        /* (upu-K3) component across the reference direction */
-        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
-        /* (upu-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upu-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
-        /* (upu-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upu-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+        const real t_x = s[0*w + j];
+        const real upu_base_point_x = m->upu_base_point_x[i];
+        const real upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x;
+        const real t_y = s[1*w + j];
+        const real upu_base_point_y = m->upu_base_point_y[i];
+        const real upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y;
+        const real t_z = s[2*w + j];
+        const real upu_base_point_z = m->upu_base_point_z[i];
+        const real upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z;
+        /* (upu-px_1) component along the reference direction */
+        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
+        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
+        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
+        const real upu_px_1 = upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx +
+            upu_S_z*upu_base_frame_zx;
+        /* (upu-py_1) component across the reference direction */
+        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
+        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
+        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
+        const real upu_py_1 = upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy +
+            upu_S_z*upu_base_frame_zy;
+        /* (upu-rho2_1) squared amplitude */
+        const real upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1;
+        /* (upu-root_1) amplitude, with the sign of the branch */
+        const real upu_branch_1 = m->upu_branch_1[i];
+        const real upu_root_1 = upu_branch_1*root(upu_rho2_1);
+        /* (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
+        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
+        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
+        const real upu_xi_1_t = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
+            upu_S_z*upu_base_frame_zz;
+        /* (upu-rho2_2) squared amplitude */
+        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t;
+        /* (upu-root_2) amplitude, with the sign of the branch */
+        const real upu_branch_2 = m->upu_branch_2[i];
+        const real upu_root_2 = upu_branch_2*root(upu_rho2_2);
+        /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_upu_root_2 = 1/upu_root_2;
+        const real upu_c_2 = inv_upu_root_2*upu_root_1;
+        /* (upu-s_2) sine of the angle of joint 2 from its reference direction */
+        const real upu_s_2 = inv_upu_root_2*upu_xi_1_t;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
+        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
+        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        const real upu_end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
             R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
             R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
             R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+        const real upu_end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
             R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
             R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
             R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        const real end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
+        const real upu_end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
             R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
             R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
             R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
-        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
-        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
-        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
-        /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t = root_1*root_2;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
-        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-           */
-        const real n_c_z = n_m1_r0_y*root_2/volume_c_t;
-        /* (upu-V9) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
-        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
-        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
-        const real w_1_t = s_1*s_2;
-        const real w_1_t_2 = c_1*s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
-            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
-            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
-            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
+        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_upu_root_1 = 1/upu_root_1;
+        const real upu_c_1 = inv_upu_root_1*upu_py_1;
+        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real upu_s_1 = inv_upu_root_1*upu_px_1;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1;
+        const real upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y;
+        const real upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2;
+        /* (upu-volume_c) triple product of the velocity vectors */
+        const real upu_volume_c_t = upu_root_1*upu_root_2;
+        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2;
+        /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
+           out */
+        const real upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t;
+        /* (upu-w_1) force part of reciprocal wrench 1 */
+        const real axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 -
+            upu_base_frame_xx*upu_c_1;
+        const real axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 -
+            upu_base_frame_yx*upu_c_1;
+        const real axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 -
+            upu_base_frame_zx*upu_c_1;
+        const real upu_w_1_t = upu_s_1*upu_s_2;
+        const real upu_w_1_t_2 = upu_c_1*upu_s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*upu_w_1_t +
+            upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*upu_w_1_t +
+            upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*upu_w_1_t +
+            upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2;
         const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
             axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
         const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
             axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
         const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
             axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_3_t = axis_x_upu_axes2_z*q_in_base_y - axis_x_upu_axes2_y*q_in_base_z;
-        const real H_a_3_t_2 = axis_x_upu_axes2_x*q_in_base_z - axis_x_upu_axes2_z*q_in_base_x;
-        const real H_a_3_t_3 = axis_x_upu_axes2_y*q_in_base_x - axis_x_upu_axes2_x*q_in_base_y;
-        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-           */
-        const real n_c_t = axis_z_upu_axes2_in_base_x*n_c_z;
-        const real n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z;
-        const real n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z;
-        /* (M9) moment of the column's unit force about the platform origin */
-        const real Hk_a_1_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x + n_c_t_2*q_in_base_z -
-            axis_x_upu_axes2_x*end_p1_r3_y - n_c_t_3*q_in_base_y;
-        const real Hk_a_1_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x + n_c_t_3*q_in_base_x -
-            axis_x_upu_axes2_y*end_p1_r3_y - n_c_t*q_in_base_z;
-        const real Hk_a_1_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x + n_c_t*q_in_base_y -
-            axis_x_upu_axes2_z*end_p1_r3_y - n_c_t_2*q_in_base_x;
-        /* (C2) rms distance of the platform points from their centroid */
-        const real spread_t_2 = b_c_x - upu_platform_point_x;
-        const real spread_t_3 = b_c_y - upu_platform_point_y;
-        const real spread_t_4 = b_c_z - upu_platform_point_z;
-        const real spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 +
-            spread_t_4*spread_t_4;
-        /* (upu-K4) squared amplitude */
-        const real pivot_size = magnitude(rho2_1);
-        /* (upu-K13) squared amplitude */
-        const real pivot_size_2 = magnitude(rho2_2);
-        /* (upu-V6) triple product of the velocity vectors */
-        const real pivot_size_3 = magnitude(volume_c_t);
-        /* (upu-V9) force part of reciprocal wrench 1 */
-        const real pivot_size_4 = magnitude(root_2);
-        const real pivot_size_5 = magnitude(w_1_t_3);
-        /* (upu-N38) force at the connection point that balances the leg's inertia and weight along all
+        const real upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y;
+        /* (upu-H_a_3) moment of the column's unit force about the platform origin */
+        const real upu_H_a_3_t = axis_x_upu_axes2_z*upu_q_in_base_y -
+            axis_x_upu_axes2_y*upu_q_in_base_z;
+        const real upu_H_a_3_t_2 = axis_x_upu_axes2_x*upu_q_in_base_z -
+            axis_x_upu_axes2_z*upu_q_in_base_x;
+        const real upu_H_a_3_t_3 = axis_x_upu_axes2_y*upu_q_in_base_x -
+            axis_x_upu_axes2_x*upu_q_in_base_y;
+        /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
+           out */
+        const real upu_n_c_t = axis_z_upu_axes2_in_base_x*upu_n_c_z;
+        const real upu_n_c_t_2 = axis_z_upu_axes2_in_base_y*upu_n_c_z;
+        const real upu_n_c_t_3 = axis_z_upu_axes2_in_base_z*upu_n_c_z;
+        /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
+        const real upu_Hk_a_1_x = axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x +
+            upu_n_c_t_2*upu_q_in_base_z - axis_x_upu_axes2_x*upu_end_p1_r3_y -
+            upu_n_c_t_3*upu_q_in_base_y;
+        const real upu_Hk_a_1_y = axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x +
+            upu_n_c_t_3*upu_q_in_base_x - axis_x_upu_axes2_y*upu_end_p1_r3_y -
+            upu_n_c_t*upu_q_in_base_z;
+        const real upu_Hk_a_1_z = axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x +
+            upu_n_c_t*upu_q_in_base_y - axis_x_upu_axes2_z*upu_end_p1_r3_y -
+            upu_n_c_t_2*upu_q_in_base_x;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_x = m->b_c_x;
+        const real upu_spread_t = b_c_x - upu_platform_point_x;
+        const real b_c_y = m->b_c_y;
+        const real upu_spread_t_2 = b_c_y - upu_platform_point_y;
+        const real b_c_z = m->b_c_z;
+        const real upu_spread_t_3 = b_c_z - upu_platform_point_z;
+        const real upu_spread_t_4 = upu_spread_t*upu_spread_t + upu_spread_t_2*upu_spread_t_2 +
+            upu_spread_t_3*upu_spread_t_3;
+        /* (upu-rho2_1) squared amplitude */
+        const real upu_pivot_size = magnitude(upu_rho2_1);
+        /* (upu-rho2_2) squared amplitude */
+        const real upu_pivot_size_2 = magnitude(upu_rho2_2);
+        /* (upu-volume_c) triple product of the velocity vectors */
+        const real upu_pivot_size_3 = magnitude(upu_volume_c_t);
+        /* (upu-w_1) force part of reciprocal wrench 1 */
+        const real upu_pivot_size_4 = magnitude(upu_root_2);
+        const real upu_pivot_size_5 = magnitude(upu_w_1_t_3);
+        /* (upu-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real least_pivots = lesser(lesser(lesser(lesser(R(1.25)*root(pivot_size),
-            R(1.25)*root(pivot_size_2)), R(1.5624999999999998)*pivot_size_3),
-            R(1.25)*pivot_size_4), R(1.25)*pivot_size_5);
-        o->sum[0][k] = add ? o->sum[0][k] + spread_t_5 : spread_t_5;  /* total_upu */
-        o->entry[0][k] = axis_x_upu_axes2_x;
-        o->entry[1][k] = axis_x_upu_axes2_y;
-        o->entry[2][k] = axis_x_upu_axes2_z;
-        o->entry[3][k] = H_a_3_t;
-        o->entry[4][k] = H_a_3_t_2;
-        o->entry[5][k] = H_a_3_t_3;
-        o->entry[6][k] = -n_c_t;
-        o->entry[7][k] = -n_c_t_2;
-        o->entry[8][k] = -n_c_t_3;
-        o->entry[9][k] = Hk_a_1_x;
-        o->entry[10][k] = Hk_a_1_y;
-        o->entry[11][k] = Hk_a_1_z;
-        o->entry[12][k] = least_pivots;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(-volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(w_1_t_3) >
-            TOLERANCE*R(0.8));
+        const real upu_least_pivots = lesser(lesser(lesser(lesser(R(1.25)*root(upu_pivot_size),
+            R(1.25)*root(upu_pivot_size_2)), R(1.5624999999999998)*upu_pivot_size_3),
+            R(1.25)*upu_pivot_size_4), R(1.25)*upu_pivot_size_5);
+        terms[0*count + k] = add ? terms[0*count + k] + upu_spread_t_4 : upu_spread_t_4;  /* total_upu */
+        o[0*count + k] = axis_x_upu_axes2_x;
+        o[1*count + k] = axis_x_upu_axes2_y;
+        o[2*count + k] = axis_x_upu_axes2_z;
+        o[3*count + k] = upu_H_a_3_t;
+        o[4*count + k] = upu_H_a_3_t_2;
+        o[5*count + k] = upu_H_a_3_t_3;
+        o[6*count + k] = -upu_n_c_t;
+        o[7*count + k] = -upu_n_c_t_2;
+        o[8*count + k] = -upu_n_c_t_3;
+        o[9*count + k] = upu_Hk_a_1_x;
+        o[10*count + k] = upu_Hk_a_1_y;
+        o[11*count + k] = upu_Hk_a_1_z;
+        o[12*count + k] = upu_least_pivots;
+        o[14*count + k] = ((axis_x_upu_axes2_x + (axis_x_upu_axes2_y + axis_x_upu_axes2_z)) +
+            (upu_H_a_3_t + (upu_H_a_3_t_2 + upu_H_a_3_t_3))) + ((upu_n_c_t + (upu_n_c_t_2 +
+            upu_n_c_t_3)) + ((upu_Hk_a_1_x + upu_Hk_a_1_y) + (upu_Hk_a_1_z + upu_least_pivots)));
+        o[13*count + k] = UNLESS(magnitude(upu_rho2_1) >
+            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(upu_rho2_2) >
+            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(-upu_volume_c_t) >
+            TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(upu_root_2) > TOLERANCE*R(0.8)) +
+            UNLESS(magnitude(upu_w_1_t_3) > TOLERANCE*R(0.8));
     }
 }
 
-INLINE void condition_place_upu(size_t w, const condition_results_upu *o, size_t leg, size_t
-    first, real *H, real *Hk, real *pivots, verdict *t)
+INLINE void condition_place_upu(size_t w, size_t count, const real *o, size_t leg, size_t first,
+    real *H, real *Hk, real *pivots, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(3 + leg)*w + k] = o->entry[1][first + k];
-        H[(6 + leg)*w + k] = o->entry[2][first + k];
-        H[(9 + leg)*w + k] = o->entry[3][first + k];
-        H[(12 + leg)*w + k] = o->entry[4][first + k];
-        H[(15 + leg)*w + k] = o->entry[5][first + k];
-        Hk[(leg)*w + k] = o->entry[6][first + k];
-        Hk[(3 + leg)*w + k] = o->entry[7][first + k];
-        Hk[(6 + leg)*w + k] = o->entry[8][first + k];
-        Hk[(9 + leg)*w + k] = o->entry[9][first + k];
-        Hk[(12 + leg)*w + k] = o->entry[10][first + k];
-        Hk[(15 + leg)*w + k] = o->entry[11][first + k];
-        pivots[(leg)*w + k] = o->entry[12][first + k];
-        t->singular[k] += o->singular[first + k];
+        H[(leg)*w + k] = o[0*count + first + k];
+        H[(3 + leg)*w + k] = o[1*count + first + k];
+        H[(6 + leg)*w + k] = o[2*count + first + k];
+        H[(9 + leg)*w + k] = o[3*count + first + k];
+        H[(12 + leg)*w + k] = o[4*count + first + k];
+        H[(15 + leg)*w + k] = o[5*count + first + k];
+        Hk[(leg)*w + k] = o[6*count + first + k];
+        Hk[(3 + leg)*w + k] = o[7*count + first + k];
+        Hk[(6 + leg)*w + k] = o[8*count + first + k];
+        Hk[(9 + leg)*w + k] = o[9*count + first + k];
+        Hk[(12 + leg)*w + k] = o[10*count + first + k];
+        Hk[(15 + leg)*w + k] = o[11*count + first + k];
+        pivots[(leg)*w + k] = o[12*count + first + k];
+        t->singular[k] += o[13*count + first + k];
+        t->total[k] += o[14*count + first + k];
     }
 }
 
-INLINE void condition_after(const prepared *m, size_t w, const condition_values *s, real *lengths)
+INLINE void condition_after(const prepared *m, size_t w, const real *sums, real *lengths, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real total_upu = s->sum[0][k];
+        /* (spread) rms distance of the platform points from their centroid */
         const real spread_t = m->spread_t;
-        /* (C2) rms distance of the platform points from their centroid */
+        const real total_upu = sums[0*w + k];
         const real spread_ = spread_t*root(total_upu);
         lengths[0*w + k] = spread_;
+        t->total[k] += spread_;
     }
 }
 
-INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, real *Hk, real
-    *lengths, real *pivots, real *reach, verdict *t)
+INLINE void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
+    *pivots, real *reach, verdict *t)
 {
-    condition_values values, *const s = &values;
-    condition_results_upu results_upu;
-    clear(reach, 3*w);
-    condition_before(m, w, X, s, lengths, t);
-    if (w == 1) {  /* the legs side by side */
-        memset(results_upu.sum, 0, sizeof results_upu.sum);
-        condition_legs_upu(m, 0, 1, s, 0, 3, 0, &results_upu);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            condition_place_upu(w, &results_upu, leg, leg, H, Hk, pivots, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < 1; ++k) {
-                s->sum[n][k] = total(results_upu.sum[n], 3);
-            }
-        }
-    } else {  /* the states side by side */
-        memset(results_upu.sum, 0, sizeof results_upu.sum);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            condition_legs_upu(m, leg, 0, s, 1, w, 1, &results_upu);
-            condition_place_upu(w, &results_upu, leg, 0, H, Hk, pivots, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            for (size_t k = 0; k < w; ++k) {
-                s->sum[n][k] = results_upu.sum[n][k];
-            }
-        }
+    real s[12] = {0}, sums[1] = {0}, terms_upu[1*LEGS(3)] = {0}, o_upu[15*LEGS(3)] = {0};
+    clear(reach, 3);
+    condition_before(m, 1, X, s, lengths, t);
+    condition_legs_upu(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_upu, o_upu);
+    for (size_t leg = 0; leg < 3; ++leg) {
+        condition_place_upu(1, LEGS(3), o_upu, leg, leg, H, Hk, pivots, t);
     }
-    condition_after(m, w, s, lengths);
+    for (size_t n = 0; n < 1; ++n) {
+        sums[n] = total(terms_upu + n*LEGS(3), 3);
+    }
+    condition_after(m, 1, sums, lengths, t);
 }
 
 /* ---- what users call, as steps over these ---- */
 
-INLINE void M_any(const prepared *m, size_t w, const real *X, real *M_out, int *code)
+INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    M_run(m, X, M_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(36, 1, M_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(36, M_out);
+    }
+}
+
+INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
     real X_in[7*LANES], M[36*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    M_run(m, w, X, M, &why);
-    check(36, w, M, why.overflow);
-    judge(&why, w, code);
-    deliver(M, 36, w, code, M_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    M_run_lanes(m, X, M, &why);
+    suspect(&why, code);
+    deliver(36, M, M_out);
 }
 
-INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, real *Z_out, int
-    *code)
+INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    Z_run(m, X, V, Z_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(6, 1, Z_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(6, Z_out);
+    }
+}
+
+INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     real X_in[7*LANES], V_in[6*LANES], Z[6*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    Z_run(m, w, X, V, Z, &why);
-    check(6, w, Z, why.overflow);
-    judge(&why, w, code);
-    deliver(Z, 6, w, code, Z_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    Z_run_lanes(m, X, V, Z, &why);
+    suspect(&why, code);
+    deliver(6, Z, Z_out);
 }
 
-INLINE void H_any(const prepared *m, size_t w, const real *X, real *H_out, int *code)
+INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    H_run(m, X, H_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(18, 1, H_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(18, H_out);
+    }
+}
+
+INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
     real X_in[7*LANES], H[18*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    H_run(m, w, X, H, &why);
-    check(18, w, H, why.overflow);
-    judge(&why, w, code);
-    deliver(H, 18, w, code, H_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    H_run_lanes(m, X, H, &why);
+    suspect(&why, code);
+    deliver(18, H, H_out);
 }
 
-INLINE void Hk_any(const prepared *m, size_t w, const real *X, real *Hk_out, int *code)
+INLINE void Hk_one(const prepared *m, const real *X, real *Hk_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    Hk_run(m, X, Hk_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(18, 1, Hk_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(18, Hk_out);
+    }
+}
+
+INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
 {
     real X_in[7*LANES], Hk[18*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    Hk_run(m, w, X, Hk, &why);
-    check(18, w, Hk, why.overflow);
-    judge(&why, w, code);
-    deliver(Hk, 18, w, code, Hk_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    Hk_run_lanes(m, X, Hk, &why);
+    suspect(&why, code);
+    deliver(18, Hk, Hk_out);
 }
 
-INLINE void constraints_any(const prepared *m, size_t w, const real *X, real *constraints_out, int
-    *code)
+INLINE void constraints_one(const prepared *m, const real *X, real *constraints_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    constraints_run(m, X, constraints_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(3, 1, constraints_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(3, constraints_out);
+    }
+}
+
+INLINE void constraints_lanes(const prepared *m, const real *X, real *constraints_out, int *code)
 {
     real X_in[7*LANES], constraints[3*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    constraints_run(m, w, X, constraints, &why);
-    check(3, w, constraints, why.overflow);
-    judge(&why, w, code);
-    deliver(constraints, 3, w, code, constraints_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    constraints_run_lanes(m, X, constraints, &why);
+    suspect(&why, code);
+    deliver(3, constraints, constraints_out);
 }
 
-INLINE void constraint_bias_any(const prepared *m, size_t w, const real *X, const real *V, real
+INLINE void constraint_bias_one(const prepared *m, const real *X, const real *V, real
+    *constraint_bias_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    constraint_bias_run(m, X, V, constraint_bias_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(3, 1, constraint_bias_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(3, constraint_bias_out);
+    }
+}
+
+INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *V, real
     *constraint_bias_out, int *code)
 {
     real X_in[7*LANES], V_in[6*LANES], constraint_bias[3*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    constraint_bias_run(m, w, X, V, constraint_bias, &why);
-    check(3, w, constraint_bias, why.overflow);
-    judge(&why, w, code);
-    deliver(constraint_bias, 3, w, code, constraint_bias_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    constraint_bias_run_lanes(m, X, V, constraint_bias, &why);
+    suspect(&why, code);
+    deliver(3, constraint_bias, constraint_bias_out);
 }
 
-INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, real *q_out, int
-    *code)
+INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(9, 1, q_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(9, q_out);
+    }
+}
+
+INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     real X_in[7*LANES], q[9*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    inverse_kinematics_run(m, w, X, q, &why);
-    check(9, w, q, why.overflow);
-    judge(&why, w, code);
-    deliver(q, 9, w, code, q_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    suspect(&why, code);
+    deliver(9, q, q_out);
 }
 
-INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *qd_out, int *code)
+INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    joint_rates_run(m, X, V, qd_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(9, 1, qd_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(9, qd_out);
+    }
+}
+
+INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
 {
     real X_in[7*LANES], V_in[6*LANES], qd[9*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    joint_rates_run(m, w, X, V, qd, &why);
-    check(9, w, qd, why.overflow);
-    judge(&why, w, code);
-    deliver(qd, 9, w, code, qd_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    joint_rates_run_lanes(m, X, V, qd, &why);
+    suspect(&why, code);
+    deliver(9, qd, qd_out);
 }
 
-INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd_out, int *code)
+INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+        check(6, 1, A, why.invalid);
+    }
+    joint_accelerations_run(m, X, V, A, qdd_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(9, 1, qdd_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(9, qdd_out);
+    }
+}
+
+INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
 {
     real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], qdd[9*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    A = side_by_side(6, w, A, A_in, why.invalid);
-    joint_accelerations_run(m, w, X, V, A, qdd, &why);
-    check(9, w, qdd, why.overflow);
-    judge(&why, w, code);
-    deliver(qdd, 9, w, code, qdd_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    A = side_by_side(6, A, A_in, why.total);
+    joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
+    suspect(&why, code);
+    deliver(9, qdd, qdd_out);
 }
 
-INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *V, real *M_out,
-    real *Z_out, real *H_out, int *code)
+INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out, int *code)
+{
+    real Hk[18] = {0}, constraint_bias[3] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    dynamics_run(m, X, V, M_out, Z_out, H_out, Hk, constraint_bias, &why);
+    if (!is_finite(why.total[0])) {
+        check(36, 1, M_out, why.overflow);
+        check(6, 1, Z_out, why.overflow);
+        check(18, 1, H_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(36, M_out);
+        refuse(6, Z_out);
+        refuse(18, H_out);
+    }
+}
+
+INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out, int *code)
 {
     real X_in[7*LANES], V_in[6*LANES], M[36*LANES], Z[6*LANES], H[18*LANES], Hk[18*LANES],
         constraint_bias[3*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    dynamics_run(m, w, X, V, M, Z, H, Hk, constraint_bias, &why);
-    check(36, w, M, why.overflow);
-    check(6, w, Z, why.overflow);
-    check(18, w, H, why.overflow);
-    judge(&why, w, code);
-    deliver(M, 36, w, code, M_out);
-    deliver(Z, 6, w, code, Z_out);
-    deliver(H, 18, w, code, H_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    dynamics_run_lanes(m, X, V, M, Z, H, Hk, constraint_bias, &why);
+    suspect(&why, code);
+    deliver(36, M, M_out);
+    deliver(6, Z, Z_out);
+    deliver(18, H, H_out);
 }
 
-INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, const real *V, const
-    real *A, const real *wrench, real *tau_out, real *lambda_out, int *code)
+INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, real *x, real
+    *unsure, real *total)
 {
-    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], wrench_in[6*LANES], required[6*LANES],
-        H[18*LANES], Hk[18*LANES], subtract_2[6*LANES], beside_3[36*LANES] = {0}, solve_4[6*LANES],
-        work[48*LANES];
+    for (size_t k = 0; k < w; ++k) {
+        real a00 = a[(0)*w + k];
+        real a01 = a[(1)*w + k];
+        real a02 = a[(2)*w + k];
+        real a03 = a[(3)*w + k];
+        real a04 = a[(4)*w + k];
+        real a05 = a[(5)*w + k];
+        real b0 = b[0*w + k];
+        real a10 = a[(1*stride + 0)*w + k];
+        real a11 = a[(1*stride + 1)*w + k];
+        real a12 = a[(1*stride + 2)*w + k];
+        real a13 = a[(1*stride + 3)*w + k];
+        real a14 = a[(1*stride + 4)*w + k];
+        real a15 = a[(1*stride + 5)*w + k];
+        real b1 = b[1*w + k];
+        real a20 = a[(2*stride + 0)*w + k];
+        real a21 = a[(2*stride + 1)*w + k];
+        real a22 = a[(2*stride + 2)*w + k];
+        real a23 = a[(2*stride + 3)*w + k];
+        real a24 = a[(2*stride + 4)*w + k];
+        real a25 = a[(2*stride + 5)*w + k];
+        real b2 = b[2*w + k];
+        real a30 = a[(3*stride + 0)*w + k];
+        real a31 = a[(3*stride + 1)*w + k];
+        real a32 = a[(3*stride + 2)*w + k];
+        real a33 = a[(3*stride + 3)*w + k];
+        real a34 = a[(3*stride + 4)*w + k];
+        real a35 = a[(3*stride + 5)*w + k];
+        real b3 = b[3*w + k];
+        real a40 = a[(4*stride + 0)*w + k];
+        real a41 = a[(4*stride + 1)*w + k];
+        real a42 = a[(4*stride + 2)*w + k];
+        real a43 = a[(4*stride + 3)*w + k];
+        real a44 = a[(4*stride + 4)*w + k];
+        real a45 = a[(4*stride + 5)*w + k];
+        real b4 = b[4*w + k];
+        real a50 = a[(5*stride + 0)*w + k];
+        real a51 = a[(5*stride + 1)*w + k];
+        real a52 = a[(5*stride + 2)*w + k];
+        real a53 = a[(5*stride + 3)*w + k];
+        real a54 = a[(5*stride + 4)*w + k];
+        real a55 = a[(5*stride + 5)*w + k];
+        real b5 = b[5*w + k];
+        const real f0 = 1/a00;
+        const real d1 = a00*a11 - a10*a01;
+        const real f1 = a00/d1;
+        const real g10 = a10*f0;
+        a12 -= g10*a02;
+        a13 -= g10*a03;
+        a14 -= g10*a04;
+        a15 -= g10*a05;
+        b1 -= g10*b0;
+        const real g20 = a20*f0;
+        a21 -= g20*a01;
+        a22 -= g20*a02;
+        a23 -= g20*a03;
+        a24 -= g20*a04;
+        a25 -= g20*a05;
+        b2 -= g20*b0;
+        const real g30 = a30*f0;
+        a31 -= g30*a01;
+        a32 -= g30*a02;
+        a33 -= g30*a03;
+        a34 -= g30*a04;
+        a35 -= g30*a05;
+        b3 -= g30*b0;
+        const real g40 = a40*f0;
+        a41 -= g40*a01;
+        a42 -= g40*a02;
+        a43 -= g40*a03;
+        a44 -= g40*a04;
+        a45 -= g40*a05;
+        b4 -= g40*b0;
+        const real g50 = a50*f0;
+        a51 -= g50*a01;
+        a52 -= g50*a02;
+        a53 -= g50*a03;
+        a54 -= g50*a04;
+        a55 -= g50*a05;
+        b5 -= g50*b0;
+        const real g21 = a21*f1;
+        a22 -= g21*a12;
+        a23 -= g21*a13;
+        a24 -= g21*a14;
+        a25 -= g21*a15;
+        b2 -= g21*b1;
+        const real g31 = a31*f1;
+        a32 -= g31*a12;
+        a33 -= g31*a13;
+        a34 -= g31*a14;
+        a35 -= g31*a15;
+        b3 -= g31*b1;
+        const real g41 = a41*f1;
+        a42 -= g41*a12;
+        a43 -= g41*a13;
+        a44 -= g41*a14;
+        a45 -= g41*a15;
+        b4 -= g41*b1;
+        const real g51 = a51*f1;
+        a52 -= g51*a12;
+        a53 -= g51*a13;
+        a54 -= g51*a14;
+        a55 -= g51*a15;
+        b5 -= g51*b1;
+        const real f2 = 1/a22;
+        const real d3 = a22*a33 - a32*a23;
+        const real f3 = a22/d3;
+        const real g32 = a32*f2;
+        a34 -= g32*a24;
+        a35 -= g32*a25;
+        b3 -= g32*b2;
+        const real g42 = a42*f2;
+        a43 -= g42*a23;
+        a44 -= g42*a24;
+        a45 -= g42*a25;
+        b4 -= g42*b2;
+        const real g52 = a52*f2;
+        a53 -= g52*a23;
+        a54 -= g52*a24;
+        a55 -= g52*a25;
+        b5 -= g52*b2;
+        const real g43 = a43*f3;
+        a44 -= g43*a34;
+        a45 -= g43*a35;
+        b4 -= g43*b3;
+        const real g53 = a53*f3;
+        a54 -= g53*a34;
+        a55 -= g53*a35;
+        b5 -= g53*b3;
+        const real f4 = 1/a44;
+        const real d5 = a44*a55 - a54*a45;
+        const real f5 = a44/d5;
+        const real g54 = a54*f4;
+        b5 -= g54*b4;
+        const real x5 = (b5)*f5;
+        const real x4 = (b4)*f4 - a45*f4*x5;
+        const real x3 = (b3 - a35*x5)*f3 - a34*f3*x4;
+        const real x2 = (b2 - a25*x5 - a24*x4)*f2 - a23*f2*x3;
+        const real x1 = (b1 - a15*x5 - a14*x4 - a13*x3)*f1 - a12*f1*x2;
+        const real x0 = (b0 - a05*x5 - a04*x4 - a03*x3 - a02*x2)*f0 - a01*f0*x1;
+        x[0*w + k] = x0;
+        x[1*w + k] = x1;
+        x[2*w + k] = x2;
+        x[3*w + k] = x3;
+        x[4*w + k] = x4;
+        x[5*w + k] = x5;
+        total[k] += (x0 + (x1 + x2)) + (x3 + (x4 + x5));
+        const real most0 = larger(magnitude(g32), magnitude(g42));
+        const real most1 = larger(larger(magnitude(g10), larger(magnitude(g30), magnitude(g40))),
+            larger(larger(magnitude(g31), magnitude(g41)), larger(magnitude(g52),
+            magnitude(g43))));
+        const real most2 = larger(larger(magnitude(g20), larger(magnitude(g50), magnitude(g21))),
+            larger(magnitude(g51), larger(magnitude(g53), magnitude(g54))));
+        const real most3 = larger(magnitude(f2), magnitude(f5));
+        const real most4 = larger(larger(magnitude(f0), magnitude(f1)), larger(magnitude(f3),
+            magnitude(f4)));
+        unsure[k] += UNLESS(most0 <= R(2.5)) + UNLESS(most1 <= R(10)) + UNLESS(most2 <= R(40)) +
+            UNLESS(most3 <= R(1000)) + UNLESS(most4 <= R(4000)) + UNLESS(is_finite(a00 + d1 + a22
+            + d3 + a44 + d5));
+    }
+}
+
+INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau_out, real *lambda_out, int *code)
+{
+    real wrench_in[6], required[6] = {0}, H[18] = {0}, Hk[18] = {0}, subtract_2[6] = {0}, beside_3[36]
+        = {0}, solve_4[6] = {0}, unsure_7[1] = {0}, work[48];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    A = side_by_side(6, w, A, A_in, why.invalid);
-    wrench = optional(6, w, wrench, 0, wrench_in, why.invalid);
-    required_run(m, w, X, V, A, required, H, Hk, &why);
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+        check(6, 1, A, why.invalid);
+    }
+    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    required_run(m, X, V, A, required, H, Hk, &why);
     const real *const extend_1 = wrench;
-    for (size_t i = 0; i < 6*w; ++i) {
+    for (size_t i = 0; i < 6; ++i) {
         subtract_2[i] = required[i] - extend_1[i];
     }
-    beside(6, 3*w, 3*w, H, Hk, beside_3);
-    set_matrix(6, w, beside_3, work);
-    solve(6, w, subtract_2, work, solve_4, why.singular);
+    beside(6, 3, 3, H, Hk, beside_3);
+    eliminate_0(1, 6, beside_3, subtract_2, solve_4, unsure_7, why.total);
+    if (unsure_7[0] > 0) {
+        set_matrix(6, 1, beside_3, work);
+        solve_apart(6, subtract_2, work, solve_4, why.singular);
+        check(6, 1, solve_4, why.overflow);
+    }
     const real *const tau = solve_4;
-    const real *const lambda_ = solve_4 + 3*w;
-    check(3, w, tau, why.overflow);
-    check(3, w, lambda_, why.overflow);
-    judge(&why, w, code);
-    deliver(tau, 3, w, code, tau_out);
-    deliver(lambda_, 3, w, code, lambda_out);
+    const real *const lambda_ = solve_4 + 3;
+    check(3, 1, tau, why.overflow);
+    check(3, 1, lambda_, why.overflow);
+    judge(&why, code);
+    copy(3, tau, tau_out);
+    copy(3, lambda_, lambda_out);
+    if (*code != OK) {
+        refuse(3, tau_out);
+        refuse(3, lambda_out);
+    }
 }
 
-INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, const real *V, const
-    real *tau, const real *wrench, real *A_out, real *lambda_out, int *code)
+INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau_out, real *lambda_out, int *code)
+{
+    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], wrench_in[6*LANES], required[6*LANES],
+        H[18*LANES], Hk[18*LANES], subtract_2[6*LANES], beside_3[36*LANES] = {0}, solve_4[6*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    A = side_by_side(6, A, A_in, why.total);
+    wrench = optional_side_by_side(6, wrench, 0, wrench_in, why.total);
+    required_run_lanes(m, X, V, A, required, H, Hk, &why);
+    const real *const extend_1 = wrench;
+    for (size_t i = 0; i < 6*LANES; ++i) {
+        subtract_2[i] = required[i] - extend_1[i];
+    }
+    beside(6, 3*LANES, 3*LANES, H, Hk, beside_3);
+    eliminate_0(LANES, 6, beside_3, subtract_2, solve_4, why.singular, why.total);
+    const real *const tau = solve_4;
+    const real *const lambda_ = solve_4 + 3*LANES;
+    add_up(3, tau, why.total);
+    add_up(3, lambda_, why.total);
+    suspect(&why, code);
+    deliver(3, tau, tau_out);
+    deliver(3, lambda_, lambda_out);
+}
+
+INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
+    const real *wrench, real *A_out, real *lambda_out, int *code)
+{
+    real wrench_in[6], M[36] = {0}, Z[6] = {0}, H[18] = {0}, Hk[18] = {0}, constraint_bias[3] = {0},
+        times_1[6] = {0}, add_3[6] = {0}, subtract_4[6] = {0}, negative_5[3] = {0}, join_6[9] = {0},
+        solve_8[9] = {0}, work[108];
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6) + total(tau, 3);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+        check(3, 1, tau, why.invalid);
+    }
+    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    dynamics_run(m, X, V, M, Z, H, Hk, constraint_bias, &why);
+    product(6, 3, 1, 1, H, tau, times_1);
+    const real *const extend_2 = wrench;
+    for (size_t i = 0; i < 6; ++i) {
+        add_3[i] = times_1[i] + extend_2[i];
+    }
+    for (size_t i = 0; i < 6; ++i) {
+        subtract_4[i] = add_3[i] - Z[i];
+    }
+    for (size_t i = 0; i < 3; ++i) {
+        negative_5[i] = -constraint_bias[i];
+    }
+    beside(1, 6, 3, subtract_4, negative_5, join_6);
+    saddle(6, 3, stride_of(9, 1), 1, M, Hk, work);
+    solve_state(9, join_6, work, solve_8, why.singular);
+    const real *const A = solve_8;
+    const real *const lambda_ = solve_8 + 6;
+    check(6, 1, A, why.overflow);
+    check(3, 1, lambda_, why.overflow);
+    judge(&why, code);
+    copy(6, A, A_out);
+    copy(3, lambda_, lambda_out);
+    if (*code != OK) {
+        refuse(6, A_out);
+        refuse(3, lambda_out);
+    }
+}
+
+INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
+    *tau, const real *wrench, real *A_out, real *lambda_out, int *code)
 {
     real X_in[7*LANES], V_in[6*LANES], tau_in[3*LANES], wrench_in[6*LANES], M[36*LANES], Z[6*LANES],
         H[18*LANES], Hk[18*LANES], constraint_bias[3*LANES], times_1[6*LANES] = {0}, add_3[6*LANES],
         subtract_4[6*LANES], negative_5[3*LANES], join_6[9*LANES] = {0}, solve_8[9*LANES],
         work[108*LANES];
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    tau = side_by_side(3, w, tau, tau_in, why.invalid);
-    wrench = optional(6, w, wrench, 0, wrench_in, why.invalid);
-    dynamics_run(m, w, X, V, M, Z, H, Hk, constraint_bias, &why);
-    product(6, 3, 1, w, H, tau, times_1);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    tau = side_by_side(3, tau, tau_in, why.total);
+    wrench = optional_side_by_side(6, wrench, 0, wrench_in, why.total);
+    dynamics_run_lanes(m, X, V, M, Z, H, Hk, constraint_bias, &why);
+    product(6, 3, 1, LANES, H, tau, times_1);
     const real *const extend_2 = wrench;
-    for (size_t i = 0; i < 6*w; ++i) {
+    for (size_t i = 0; i < 6*LANES; ++i) {
         add_3[i] = times_1[i] + extend_2[i];
     }
-    for (size_t i = 0; i < 6*w; ++i) {
+    for (size_t i = 0; i < 6*LANES; ++i) {
         subtract_4[i] = add_3[i] - Z[i];
     }
-    for (size_t i = 0; i < 3*w; ++i) {
+    for (size_t i = 0; i < 3*LANES; ++i) {
         negative_5[i] = -constraint_bias[i];
     }
-    beside(1, 6*w, 3*w, subtract_4, negative_5, join_6);
-    saddle(6, 3, stride_of(9, w), w, M, Hk, work);
-    solve(9, w, join_6, work, solve_8, why.singular);
+    beside(1, 6*LANES, 3*LANES, subtract_4, negative_5, join_6);
+    saddle(6, 3, stride_of(9, LANES), LANES, M, Hk, work);
+    solve(9, LANES, join_6, work, solve_8, why.singular);
     const real *const A = solve_8;
-    const real *const lambda_ = solve_8 + 6*w;
-    check(6, w, A, why.overflow);
-    check(3, w, lambda_, why.overflow);
-    judge(&why, w, code);
-    deliver(A, 6, w, code, A_out);
-    deliver(lambda_, 3, w, code, lambda_out);
+    const real *const lambda_ = solve_8 + 6*LANES;
+    add_up(6, A, why.total);
+    add_up(3, lambda_, why.total);
+    suspect(&why, code);
+    deliver(6, A, A_out);
+    deliver(3, lambda_, lambda_out);
 }
 
-INLINE void complete_acceleration_any(const real *A, real *completed_out, int *code)
+INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
 {
     verdict why;
     start(1, &why);
     check(6, 1, A, why.invalid);
     const real *const completed = A;
     check(6, 1, completed, why.overflow);
-    judge(&why, 1, code);
-    deliver(completed, 6, 1, code, completed_out);
+    judge(&why, code);
+    copy(6, completed, completed_out);
+    if (*code != OK) {
+        refuse(6, completed_out);
+    }
 }
 
-INLINE void leg_reactions_any(const prepared *m, const real *X, const real *V, const real *A,
+INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out, int *code)
 {
     static const size_t places_0[] = {0, 1, 2};
     static const size_t places_1[] = {0, 1, 2};
     real wrench_in[6], required[6] = {0}, H[18] = {0}, Hk[18] = {0}, subtract_2[6] = {0}, beside_3[36]
-        = {0}, solve_4[6] = {0}, leg_force[18] = {0}, drive[18] = {0}, constraint_direction[18] = {0},
-        add_forces_7[18] = {0}, forces[18] = {0}, work[48];
+        = {0}, solve_4[6] = {0}, unsure_7[1] = {0}, leg_force[18] = {0}, drive[18] = {0},
+        constraint_direction[18] = {0}, add_forces_7[18] = {0}, forces[18] = {0}, work[48];
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
-    check(6, 1, V, why.invalid);
-    check(6, 1, A, why.invalid);
-    wrench = optional(6, 1, wrench, 0, wrench_in, why.invalid);
-    required_run(m, 1, X, V, A, required, H, Hk, &why);
+    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+        check(6, 1, A, why.invalid);
+    }
+    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    required_run(m, X, V, A, required, H, Hk, &why);
     const real *const extend_1 = wrench;
     for (size_t i = 0; i < 6; ++i) {
         subtract_2[i] = required[i] - extend_1[i];
     }
     beside(6, 3, 3, H, Hk, beside_3);
-    set_matrix(6, 1, beside_3, work);
-    solve_state(6, subtract_2, work, solve_4, why.singular);
+    eliminate_0(1, 6, beside_3, subtract_2, solve_4, unsure_7, why.total);
+    if (unsure_7[0] > 0) {
+        set_matrix(6, 1, beside_3, work);
+        solve_apart(6, subtract_2, work, solve_4, why.singular);
+        check(6, 1, solve_4, why.overflow);
+    }
     const real *const split_5 = solve_4;
     const real *const split_6 = solve_4 + 3;
-    legs_run(m, 1, X, V, A, leg_force, drive, constraint_direction, &why);
+    legs_run(m, X, V, A, leg_force, drive, constraint_direction, &why);
     for (size_t i = 0; i < 18; ++i) {
         add_forces_7[i] = leg_force[i];
     }
@@ -6663,30 +7225,40 @@ INLINE void leg_reactions_any(const prepared *m, const real *X, const real *V, c
     }
     add_forces(3, 6, 1, places_1, split_6, constraint_direction, forces);
     check(18, 1, forces, why.overflow);
-    judge(&why, 1, code);
-    deliver(forces, 18, 1, code, forces_out);
+    judge(&why, code);
+    copy(18, forces, forces_out);
+    if (*code != OK) {
+        refuse(18, forces_out);
+    }
 }
 
-INLINE void energy_any(const prepared *m, const real *X, const real *V, real *kinetic_out, real
+INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out, int *code)
 {
     real M[36] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
-    check(6, 1, V, why.invalid);
-    M_run(m, 1, X, M, &why);
-    potential_run(m, 1, X, potential_of_potential, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    M_run(m, X, M, &why);
+    potential_run(m, X, potential_of_potential, &why);
     half_form(6, 1, V, M, kinetic);
     const real *const potential = potential_of_potential;
     check(1, 1, kinetic, why.overflow);
     check(1, 1, potential, why.overflow);
-    judge(&why, 1, code);
-    deliver(kinetic, 1, 1, code, kinetic_out);
-    deliver(potential, 1, 1, code, potential_out);
+    judge(&why, code);
+    copy(1, kinetic, kinetic_out);
+    copy(1, potential, potential_out);
+    if (*code != OK) {
+        refuse(1, kinetic_out);
+        refuse(1, potential_out);
+    }
 }
 
-INLINE void condition_any(const prepared *m, const real *X, const real *length, real *sigma_out,
+INLINE void condition_one(const prepared *m, const real *X, const real *length, real *sigma_out,
     real *legs_out, int *code)
 {
     static const size_t places_0[] = {3, 4, 5};
@@ -6696,8 +7268,8 @@ INLINE void condition_any(const prepared *m, const real *X, const real *length, 
     start(1, &why);
     check(7, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, 1, length, 0, length_in, why.invalid);
-    condition_run(m, 1, X, H, Hk, lengths, legs, reach, &why);
+    length = optional(1, length, 0, length_in, why.invalid);
+    condition_run(m, X, H, Hk, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
             lengths[i] : lengths[1 + i];
@@ -6707,14 +7279,20 @@ INLINE void condition_any(const prepared *m, const real *X, const real *length, 
     }
     divide_rows(3, 3, 1, places_0, choose_length_1, divide_rows_2);
     singular_values(6, 3, divide_rows_2, sigma);
+    if (!is_finite(why.total[0])) {
+        check(3, 1, legs, why.overflow);
+    }
     check(3, 1, sigma, why.overflow);
-    check(3, 1, legs, why.overflow);
-    judge(&why, 1, code);
-    deliver(sigma, 3, 1, code, sigma_out);
-    deliver(legs, 3, 1, code, legs_out);
+    judge(&why, code);
+    copy(3, sigma, sigma_out);
+    copy(3, legs, legs_out);
+    if (*code != OK) {
+        refuse(3, sigma_out);
+        refuse(3, legs_out);
+    }
 }
 
-INLINE void condition_constrained_any(const prepared *m, const real *X, const real *length, real
+INLINE void condition_constrained_one(const prepared *m, const real *X, const real *length, real
     *sigma_out, real *legs_out, int *code)
 {
     static const size_t places_0[] = {3, 4, 5};
@@ -6724,8 +7302,8 @@ INLINE void condition_constrained_any(const prepared *m, const real *X, const re
     start(1, &why);
     check(7, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, 1, length, 0, length_in, why.invalid);
-    condition_run(m, 1, X, H, Hk, lengths, legs, reach, &why);
+    length = optional(1, length, 0, length_in, why.invalid);
+    condition_run(m, X, H, Hk, lengths, legs, reach, &why);
     beside(6, 3, 3, H, Hk, beside_1);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_2[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
@@ -6736,14 +7314,20 @@ INLINE void condition_constrained_any(const prepared *m, const real *X, const re
     }
     divide_rows(3, 6, 1, places_0, choose_length_2, divide_rows_3);
     singular_values(6, 6, divide_rows_3, sigma);
+    if (!is_finite(why.total[0])) {
+        check(3, 1, legs, why.overflow);
+    }
     check(6, 1, sigma, why.overflow);
-    check(3, 1, legs, why.overflow);
-    judge(&why, 1, code);
-    deliver(sigma, 6, 1, code, sigma_out);
-    deliver(legs, 3, 1, code, legs_out);
+    judge(&why, code);
+    copy(6, sigma, sigma_out);
+    copy(3, legs, legs_out);
+    if (*code != OK) {
+        refuse(6, sigma_out);
+        refuse(3, legs_out);
+    }
 }
 
-static void mismatch_any(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
+static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
     static const size_t places_0[] = {2, 5, 8};
@@ -6751,35 +7335,44 @@ static void mismatch_any(const prepared *m, const real *X, const real *q_actuate
         gap[6] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
-    check(3, 1, q_actuated, why.invalid);
-    inverse_kinematics_run(m, 1, X, q, &why);
+    const real total_in = total(X, 7) + total(q_actuated, 3);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(3, 1, q_actuated, why.invalid);
+    }
+    inverse_kinematics_run(m, X, q, &why);
     take(3, 1, places_0, q, take_1);
     for (size_t i = 0; i < 3; ++i) {
         subtract_2[i] = q_actuated[i] - take_1[i];
     }
-    constraints_run(m, 1, X, constraints, &why);
+    constraints_run(m, X, constraints, &why);
     for (size_t i = 0; i < 3; ++i) {
         negative_3[i] = -constraints[i];
     }
     beside(1, 3, 3, subtract_2, negative_3, gap);
     check(6, 1, gap, why.overflow);
-    judge(&why, 1, code);
-    deliver(gap, 6, 1, code, gap_out);
+    judge(&why, code);
+    copy(6, gap, gap_out);
+    if (*code != OK) {
+        refuse(6, gap_out);
+    }
 }
 
-static void slope_any(const prepared *m, const real *X, real *slope_out, int *code)
+static void slope_one(const prepared *m, const real *X, real *slope_out, int *code)
 {
     real H[18] = {0}, Hk[18] = {0}, slope[36] = {0};
     verdict why;
     start(1, &why);
     check(7, 1, X, why.invalid);
-    H_run(m, 1, X, H, &why);
-    Hk_run(m, 1, X, Hk, &why);
+    H_run(m, X, H, &why);
+    Hk_run(m, X, Hk, &why);
     beside(6, 3, 3, H, Hk, slope);
     check(36, 1, slope, why.overflow);
-    judge(&why, 1, code);
-    deliver(slope, 36, 1, code, slope_out);
+    judge(&why, code);
+    copy(36, slope, slope_out);
+    if (*code != OK) {
+        refuse(36, slope_out);
+    }
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -6790,12 +7383,12 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
     real trial[7] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    mismatch_any(m, found, q_actuated, gap, &code);
+    mismatch_one(m, found, q_actuated, gap, &code);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        slope_any(m, found, slope, &code);
+        slope_one(m, found, slope, &code);
         if (code != OK) {
             break;
         }
@@ -6809,7 +7402,7 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            mismatch_any(m, trial, q_actuated, next, &tried);
+            mismatch_one(m, trial, q_actuated, next, &tried);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -6827,45 +7420,57 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 }
 
 
-INLINE void forward_kinematics_any(const prepared *m, const real *q_actuated, const real *X0, real
+INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
     *X_out, int *code)
 {
     real X[7] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, q_actuated, why.invalid);
-    check(7, 1, X0, why.invalid);
+    const real total_in = total(q_actuated, 3) + total(X0, 7);
+    if (!is_finite(total_in)) {
+        check(3, 1, q_actuated, why.invalid);
+        check(7, 1, X0, why.invalid);
+    }
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(7, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 7, 1, code, X_out);
+    judge(&why, code);
+    copy(7, X, X_out);
+    if (*code != OK) {
+        refuse(7, X_out);
+    }
 }
 
-static void constraint_gap_any(const prepared *m, const real *X, real *gap_out, int *code)
+static void constraint_gap_one(const prepared *m, const real *X, real *gap_out, int *code)
 {
     real constraints[3] = {0}, gap[3] = {0};
     verdict why;
     start(1, &why);
     check(7, 1, X, why.invalid);
-    constraints_run(m, 1, X, constraints, &why);
+    constraints_run(m, X, constraints, &why);
     for (size_t i = 0; i < 3; ++i) {
         gap[i] = -constraints[i];
     }
     check(3, 1, gap, why.overflow);
-    judge(&why, 1, code);
-    deliver(gap, 3, 1, code, gap_out);
+    judge(&why, code);
+    copy(3, gap, gap_out);
+    if (*code != OK) {
+        refuse(3, gap_out);
+    }
 }
 
-static void constraint_slope_any(const prepared *m, const real *X, real *slope_out, int *code)
+static void constraint_slope_one(const prepared *m, const real *X, real *slope_out, int *code)
 {
-    real slope[18] = {0};
     verdict why;
     start(1, &why);
     check(7, 1, X, why.invalid);
-    Hk_run(m, 1, X, slope, &why);
-    check(18, 1, slope, why.overflow);
-    judge(&why, 1, code);
-    deliver(slope, 18, 1, code, slope_out);
+    Hk_run(m, X, slope_out, &why);
+    if (!is_finite(why.total[0])) {
+        check(18, 1, slope_out, why.overflow);
+    }
+    judge(&why, code);
+    if (*code != OK) {
+        refuse(18, slope_out);
+    }
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -6876,12 +7481,12 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
     real trial[7] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    constraint_gap_any(m, found, gap, &code);
+    constraint_gap_one(m, found, gap, &code);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > MET; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        constraint_slope_any(m, found, slope, &code);
+        constraint_slope_one(m, found, slope, &code);
         if (code != OK) {
             break;
         }
@@ -6895,7 +7500,7 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            constraint_gap_any(m, trial, next, &tried);
+            constraint_gap_one(m, trial, next, &tried);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -6913,7 +7518,7 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
 }
 
 
-INLINE void project_any(const prepared *m, const real *X, real *projected_out, int *code)
+INLINE void project_one(const prepared *m, const real *X, real *projected_out, int *code)
 {
     real projected[7] = {0};
     verdict why;
@@ -6921,11 +7526,14 @@ INLINE void project_any(const prepared *m, const real *X, real *projected_out, i
     check(7, 1, X, why.invalid);
     blame(search_constraint_gap(m, X, projected), &why);
     check(7, 1, projected, why.overflow);
-    judge(&why, 1, code);
-    deliver(projected, 7, 1, code, projected_out);
+    judge(&why, code);
+    copy(7, projected, projected_out);
+    if (*code != OK) {
+        refuse(7, projected_out);
+    }
 }
 
-INLINE void dissipation_any(const real *V, real *dissipation_out, int *code)
+INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 {
     real subtract_1[6] = {0};
     verdict why;
@@ -6936,93 +7544,271 @@ INLINE void dissipation_any(const real *V, real *dissipation_out, int *code)
     }
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
-    judge(&why, 1, code);
-    deliver(dissipation, 1, 1, code, dissipation_out);
+    judge(&why, code);
+    copy(1, dissipation, dissipation_out);
+    if (*code != OK) {
+        refuse(1, dissipation_out);
+    }
 }
 
-INLINE void momentum_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *momentum_out, int *code)
+INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
+    *code)
+{
+    real M[36] = {0}, momentum[6] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    M_run(m, X, M, &why);
+    product(6, 6, 1, 1, M, V, momentum);
+    check(6, 1, momentum, why.overflow);
+    judge(&why, code);
+    copy(6, momentum, momentum_out);
+    if (*code != OK) {
+        refuse(6, momentum_out);
+    }
+}
+
+INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
+    int *code)
 {
     real X_in[7*LANES], V_in[6*LANES], M[36*LANES], momentum[6*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    M_run(m, w, X, M, &why);
-    product(6, 6, 1, w, M, V, momentum);
-    check(6, w, momentum, why.overflow);
-    judge(&why, w, code);
-    deliver(momentum, 6, w, code, momentum_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    M_run_lanes(m, X, M, &why);
+    product(6, 6, 1, LANES, M, V, momentum);
+    add_up(6, momentum, why.total);
+    suspect(&why, code);
+    deliver(6, momentum, momentum_out);
 }
 
-INLINE void actuator_positions_any(const prepared *m, size_t w, const real *X, real *q_out, int
-    *code)
+INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
+{
+    static const size_t places_0[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+    real q[9] = {0}, margins[9] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q, &why);
+    for (size_t i = 0; i < 9; ++i) {
+        margins[i] = q[i];
+    }
+    unlimited(9, 9, 1, places_0, margins, why.overflow);
+    judge(&why, code);
+    copy(9, margins, margins_out);
+    if (*code != OK) {
+        refuse(9, margins_out);
+    }
+}
+
+INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
+{
+    static const size_t places_0[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+    real X_in[7*LANES], q[9*LANES], margins[9*LANES];
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    for (size_t i = 0; i < 9*LANES; ++i) {
+        margins[i] = q[i];
+    }
+    unlimited(9, 9, LANES, places_0, margins, why.invalid);
+    suspect(&why, code);
+    deliver(9, margins, margins_out);
+}
+
+INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
+{
+    real q[9] = {0}, subtract_1[9] = {0}, within[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q, &why);
+    for (size_t i = 0; i < 9; ++i) {
+        subtract_1[i] = q[i] - q[i];
+    }
+    not_negative(9, 1, subtract_1, within, why.overflow);
+    check(1, 1, within, why.overflow);
+    judge(&why, code);
+    copy(1, within, within_out);
+    if (*code != OK) {
+        refuse(1, within_out);
+    }
+}
+
+INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
+{
+    real X_in[7*LANES], q[9*LANES], subtract_1[9*LANES], within[1*LANES] = {0};
+    verdict why;
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q, &why);
+    for (size_t i = 0; i < 9*LANES; ++i) {
+        subtract_1[i] = q[i] - q[i];
+    }
+    not_negative(9, LANES, subtract_1, within, why.invalid);
+    add_up(1, within, why.total);
+    suspect(&why, code);
+    deliver(1, within, within_out);
+}
+
+INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
+{
+    static const size_t places_0[] = {2, 5, 8};
+    real q_of_inverse_kinematics[9] = {0}, q[3] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
+    take(3, 1, places_0, q_of_inverse_kinematics, q);
+    check(3, 1, q, why.overflow);
+    judge(&why, code);
+    copy(3, q, q_out);
+    if (*code != OK) {
+        refuse(3, q_out);
+    }
+}
+
+INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     static const size_t places_0[] = {2, 5, 8};
     real X_in[7*LANES], q_of_inverse_kinematics[9*LANES], q[3*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    inverse_kinematics_run(m, w, X, q_of_inverse_kinematics, &why);
-    take(3, 1*w, places_0, q_of_inverse_kinematics, q);
-    check(3, w, q, why.overflow);
-    judge(&why, w, code);
-    deliver(q, 3, w, code, q_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
+    take(3, 1*LANES, places_0, q_of_inverse_kinematics, q);
+    add_up(3, q, why.total);
+    suspect(&why, code);
+    deliver(3, q, q_out);
 }
 
-INLINE void actuator_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *qd_out, int *code)
+INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
+    *code)
+{
+    static const size_t places_0[] = {2, 5, 8};
+    real qd_of_joint_rates[9] = {0}, qd[3] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
+    joint_rates_run(m, X, V, qd_of_joint_rates, &why);
+    take(3, 1, places_0, qd_of_joint_rates, qd);
+    check(3, 1, qd, why.overflow);
+    judge(&why, code);
+    copy(3, qd, qd_out);
+    if (*code != OK) {
+        refuse(3, qd_out);
+    }
+}
+
+INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
+    int *code)
 {
     static const size_t places_0[] = {2, 5, 8};
     real X_in[7*LANES], V_in[6*LANES], qd_of_joint_rates[9*LANES], qd[3*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    joint_rates_run(m, w, X, V, qd_of_joint_rates, &why);
-    take(3, 1*w, places_0, qd_of_joint_rates, qd);
-    check(3, w, qd, why.overflow);
-    judge(&why, w, code);
-    deliver(qd, 3, w, code, qd_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
+    take(3, 1*LANES, places_0, qd_of_joint_rates, qd);
+    add_up(3, qd, why.total);
+    suspect(&why, code);
+    deliver(3, qd, qd_out);
 }
 
-INLINE void actuator_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd_out, int *code)
+INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out, int *code)
+{
+    static const size_t places_0[] = {2, 5, 8};
+    real qdd_of_joint_accelerations[9] = {0}, qdd[3] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+        check(6, 1, A, why.invalid);
+    }
+    joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
+    take(3, 1, places_0, qdd_of_joint_accelerations, qdd);
+    check(3, 1, qdd, why.overflow);
+    judge(&why, code);
+    copy(3, qdd, qdd_out);
+    if (*code != OK) {
+        refuse(3, qdd_out);
+    }
+}
+
+INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out, int *code)
 {
     static const size_t places_0[] = {2, 5, 8};
     real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], qdd_of_joint_accelerations[9*LANES],
         qdd[3*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    A = side_by_side(6, w, A, A_in, why.invalid);
-    joint_accelerations_run(m, w, X, V, A, qdd_of_joint_accelerations, &why);
-    take(3, 1*w, places_0, qdd_of_joint_accelerations, qdd);
-    check(3, w, qdd, why.overflow);
-    judge(&why, w, code);
-    deliver(qdd, 3, w, code, qdd_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    A = side_by_side(6, A, A_in, why.total);
+    joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
+    take(3, 1*LANES, places_0, qdd_of_joint_accelerations, qdd);
+    add_up(3, qdd, why.total);
+    suspect(&why, code);
+    deliver(3, qdd, qdd_out);
 }
 
-INLINE void power_any(const prepared *m, size_t w, const real *X, const real *V, const real *tau,
-    real *power_out, int *code)
+INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out, int *code)
+{
+    real H[18] = {0}, times_1[6] = {0}, power[1] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, 7) + total(V, 6) + total(tau, 3);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+        check(3, 1, tau, why.invalid);
+    }
+    H_run(m, X, H, &why);
+    product(6, 3, 1, 1, H, tau, times_1);
+    inner(6, 1, times_1, V, power);
+    check(1, 1, power, why.overflow);
+    judge(&why, code);
+    copy(1, power, power_out);
+    if (*code != OK) {
+        refuse(1, power_out);
+    }
+}
+
+INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out, int *code)
 {
     real X_in[7*LANES], V_in[6*LANES], tau_in[3*LANES], H[18*LANES], times_1[6*LANES] = {0},
         power[1*LANES] = {0};
     verdict why;
-    start(w, &why);
-    X = side_by_side(7, w, X, X_in, why.invalid);
-    V = side_by_side(6, w, V, V_in, why.invalid);
-    tau = side_by_side(3, w, tau, tau_in, why.invalid);
-    H_run(m, w, X, H, &why);
-    product(6, 3, 1, w, H, tau, times_1);
-    inner(6, w, times_1, V, power);
-    check(1, w, power, why.overflow);
-    judge(&why, w, code);
-    deliver(power, 1, w, code, power_out);
+    start(LANES, &why);
+    X = side_by_side(7, X, X_in, why.total);
+    V = side_by_side(6, V, V_in, why.total);
+    tau = side_by_side(3, tau, tau_in, why.total);
+    H_run_lanes(m, X, H, &why);
+    product(6, 3, 1, LANES, H, tau, times_1);
+    inner(6, LANES, times_1, V, power);
+    add_up(1, power, why.total);
+    suspect(&why, code);
+    deliver(1, power, power_out);
 }
 
-INLINE void rotation_any(const real *X, real *R_out, int *code)
+INLINE void rotation_one(const real *X, real *R_out, int *code)
 {
     real R[9] = {0};
     verdict why;
@@ -7031,64 +7817,88 @@ INLINE void rotation_any(const real *X, real *R_out, int *code)
     const real *const take_1 = X + 3;
     rotation_of_quaternion(take_1, R);
     check(9, 1, R, why.overflow);
-    judge(&why, 1, code);
-    deliver(R, 9, 1, code, R_out);
+    judge(&why, code);
+    copy(9, R, R_out);
+    if (*code != OK) {
+        refuse(9, R_out);
+    }
 }
 
-INLINE void pose_any(const real *t, const real *R, real *X_out, int *code)
+INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
 {
     real quaternion_of_rotation_1[4] = {0}, join_2[7] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, t, why.invalid);
-    check(9, 1, R, why.invalid);
+    const real total_in = total(t, 3) + total(R, 9);
+    if (!is_finite(total_in)) {
+        check(3, 1, t, why.invalid);
+        check(9, 1, R, why.invalid);
+    }
     quaternion_of_rotation(R, quaternion_of_rotation_1);
     beside(1, 3, 4, t, quaternion_of_rotation_1, join_2);
     const real *const X = join_2;
     check(7, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 7, 1, code, X_out);
+    judge(&why, code);
+    copy(7, X, X_out);
+    if (*code != OK) {
+        refuse(7, X_out);
+    }
 }
 
-INLINE void X_dot_any(const real *X, const real *V, real *X_dot_out, int *code)
+INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
 {
     real quaternion_rate_3[4] = {0}, X_dot[7] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
-    check(6, 1, V, why.invalid);
+    const real total_in = total(X, 7) + total(V, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, V, why.invalid);
+    }
     const real *const take_1 = V + 3;
     const real *const take_2 = X + 3;
     quaternion_rate(take_2, take_1, quaternion_rate_3);
     const real *const take_4 = V;
     beside(1, 3, 4, take_4, quaternion_rate_3, X_dot);
     check(7, 1, X_dot, why.overflow);
-    judge(&why, 1, code);
-    deliver(X_dot, 7, 1, code, X_dot_out);
+    judge(&why, code);
+    copy(7, X_dot, X_dot_out);
+    if (*code != OK) {
+        refuse(7, X_dot_out);
+    }
 }
 
-INLINE void pose_from_rpy_any(const real *t, const real *rpy, real *X_out, int *code)
+INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *code)
 {
     real quaternion_of_rpy_1[4] = {0}, join_2[7] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, t, why.invalid);
-    check(3, 1, rpy, why.invalid);
+    const real total_in = total(t, 3) + total(rpy, 3);
+    if (!is_finite(total_in)) {
+        check(3, 1, t, why.invalid);
+        check(3, 1, rpy, why.invalid);
+    }
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
     beside(1, 3, 4, t, quaternion_of_rpy_1, join_2);
     const real *const X = join_2;
     check(7, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 7, 1, code, X_out);
+    judge(&why, code);
+    copy(7, X, X_out);
+    if (*code != OK) {
+        refuse(7, X_out);
+    }
 }
 
-INLINE void retract_any(const real *X, const real *step, real *X_moved_out, int *code)
+INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
 {
     real turn_quaternion_5[4] = {0}, add_6[3] = {0}, X_moved[7] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
-    check(6, 1, step, why.invalid);
+    const real total_in = total(X, 7) + total(step, 6);
+    if (!is_finite(total_in)) {
+        check(7, 1, X, why.invalid);
+        check(6, 1, step, why.invalid);
+    }
     const real *const take_1 = X;
     const real *const take_2 = X + 3;
     const real *const take_3 = step;
@@ -7099,17 +7909,23 @@ INLINE void retract_any(const real *X, const real *step, real *X_moved_out, int 
     }
     beside(1, 3, 4, add_6, turn_quaternion_5, X_moved);
     check(7, 1, X_moved, why.overflow);
-    judge(&why, 1, code);
-    deliver(X_moved, 7, 1, code, X_moved_out);
+    judge(&why, code);
+    copy(7, X_moved, X_moved_out);
+    if (*code != OK) {
+        refuse(7, X_moved_out);
+    }
 }
 
-INLINE void difference_any(const real *X0, const real *X1, real *step_out, int *code)
+INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
 {
     real turn_between_5[3] = {0}, subtract_6[3] = {0}, step[6] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X0, why.invalid);
-    check(7, 1, X1, why.invalid);
+    const real total_in = total(X0, 7) + total(X1, 7);
+    if (!is_finite(total_in)) {
+        check(7, 1, X0, why.invalid);
+        check(7, 1, X1, why.invalid);
+    }
     const real *const take_1 = X0;
     const real *const take_2 = X0 + 3;
     const real *const take_3 = X1;
@@ -7120,19 +7936,25 @@ INLINE void difference_any(const real *X0, const real *X1, real *step_out, int *
     }
     beside(1, 3, 3, subtract_6, turn_between_5, step);
     check(6, 1, step, why.overflow);
-    judge(&why, 1, code);
-    deliver(step, 6, 1, code, step_out);
+    judge(&why, code);
+    copy(6, step, step_out);
+    if (*code != OK) {
+        refuse(6, step_out);
+    }
 }
 
-INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real *X_out, int *code)
+INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
 {
     real turn_between_5[3] = {0}, subtract_6[3] = {0}, join_7[6] = {0}, scale_8[6] = {0},
         turn_quaternion_13[4] = {0}, add_14[3] = {0}, X[7] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X0, why.invalid);
-    check(7, 1, X1, why.invalid);
-    check(1, 1, s, why.invalid);
+    const real total_in = total(X0, 7) + total(X1, 7) + total(s, 1);
+    if (!is_finite(total_in)) {
+        check(7, 1, X0, why.invalid);
+        check(7, 1, X1, why.invalid);
+        check(1, 1, s, why.invalid);
+    }
     const real *const take_1 = X0;
     const real *const take_2 = X0 + 3;
     const real *const take_3 = X1;
@@ -7155,8 +7977,11 @@ INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real 
     }
     beside(1, 3, 4, add_14, turn_quaternion_13, X);
     check(7, 1, X, why.overflow);
-    judge(&why, 1, code);
-    deliver(X, 7, 1, code, X_out);
+    judge(&why, code);
+    copy(7, X, X_out);
+    if (*code != OK) {
+        refuse(7, X_out);
+    }
 }
 
 /* ---- one state, and batches ---- */
@@ -7164,7 +7989,7 @@ INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real 
 int tripod_3upu_M(const tripod_3upu_model *model, const tripod_3upu_real *X, tripod_3upu_real *M)
 {
     int code;
-    M_any(model, 1, X, M, &code);
+    M_one(model, X, M, &code);
     return code;
 }
 
@@ -7172,9 +7997,9 @@ size_t tripod_3upu_M_batch(const tripod_3upu_model *model, size_t n, const tripo
     tripod_3upu_real *M, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        M_any(model, LANES, X + 7*i, M + 36*i, codes);
+        M_lanes(model, X + 7*i, M + 36*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3upu_M(model, X + 7*(i + k), M + 36*(i + k));
@@ -7193,7 +8018,7 @@ int tripod_3upu_Z(const tripod_3upu_model *model, const tripod_3upu_real *X, con
     tripod_3upu_real *V, tripod_3upu_real *Z)
 {
     int code;
-    Z_any(model, 1, X, V, Z, &code);
+    Z_one(model, X, V, Z, &code);
     return code;
 }
 
@@ -7201,9 +8026,9 @@ size_t tripod_3upu_Z_batch(const tripod_3upu_model *model, size_t n, const tripo
     const tripod_3upu_real *V, tripod_3upu_real *Z, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        Z_any(model, LANES, X + 7*i, V + 6*i, Z + 6*i, codes);
+        Z_lanes(model, X + 7*i, V + 6*i, Z + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3upu_Z(model, X + 7*(i + k), V + 6*(i + k), Z + 6*(i + k));
@@ -7221,7 +8046,7 @@ size_t tripod_3upu_Z_batch(const tripod_3upu_model *model, size_t n, const tripo
 int tripod_3upu_H(const tripod_3upu_model *model, const tripod_3upu_real *X, tripod_3upu_real *H)
 {
     int code;
-    H_any(model, 1, X, H, &code);
+    H_one(model, X, H, &code);
     return code;
 }
 
@@ -7229,9 +8054,9 @@ size_t tripod_3upu_H_batch(const tripod_3upu_model *model, size_t n, const tripo
     tripod_3upu_real *H, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        H_any(model, LANES, X + 7*i, H + 18*i, codes);
+        H_lanes(model, X + 7*i, H + 18*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3upu_H(model, X + 7*(i + k), H + 18*(i + k));
@@ -7250,7 +8075,7 @@ int tripod_3upu_Hk(const tripod_3upu_model *model, const tripod_3upu_real *X, tr
     *Hk)
 {
     int code;
-    Hk_any(model, 1, X, Hk, &code);
+    Hk_one(model, X, Hk, &code);
     return code;
 }
 
@@ -7258,9 +8083,9 @@ size_t tripod_3upu_Hk_batch(const tripod_3upu_model *model, size_t n, const trip
     tripod_3upu_real *Hk, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        Hk_any(model, LANES, X + 7*i, Hk + 18*i, codes);
+        Hk_lanes(model, X + 7*i, Hk + 18*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3upu_Hk(model, X + 7*(i + k), Hk + 18*(i + k));
@@ -7279,7 +8104,7 @@ int tripod_3upu_constraints(const tripod_3upu_model *model, const tripod_3upu_re
     tripod_3upu_real *residual)
 {
     int code;
-    constraints_any(model, 1, X, residual, &code);
+    constraints_one(model, X, residual, &code);
     return code;
 }
 
@@ -7287,9 +8112,9 @@ size_t tripod_3upu_constraints_batch(const tripod_3upu_model *model, size_t n, c
     tripod_3upu_real *X, tripod_3upu_real *residual, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        constraints_any(model, LANES, X + 7*i, residual + 3*i, codes);
+        constraints_lanes(model, X + 7*i, residual + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3upu_constraints(model, X + 7*(i + k), residual + 3*(i + k));
@@ -7308,7 +8133,7 @@ int tripod_3upu_constraint_bias(const tripod_3upu_model *model, const tripod_3up
     tripod_3upu_real *V, tripod_3upu_real *bias)
 {
     int code;
-    constraint_bias_any(model, 1, X, V, bias, &code);
+    constraint_bias_one(model, X, V, bias, &code);
     return code;
 }
 
@@ -7316,9 +8141,9 @@ size_t tripod_3upu_constraint_bias_batch(const tripod_3upu_model *model, size_t 
     tripod_3upu_real *X, const tripod_3upu_real *V, tripod_3upu_real *bias, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        constraint_bias_any(model, LANES, X + 7*i, V + 6*i, bias + 3*i, codes);
+        constraint_bias_lanes(model, X + 7*i, V + 6*i, bias + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3upu_constraint_bias(model, X + 7*(i + k), V + 6*(i + k), bias + 3*(i + k));
@@ -7337,7 +8162,7 @@ int tripod_3upu_inverse_kinematics(const tripod_3upu_model *model, const tripod_
     tripod_3upu_real *q)
 {
     int code;
-    inverse_kinematics_any(model, 1, X, q, &code);
+    inverse_kinematics_one(model, X, q, &code);
     return code;
 }
 
@@ -7345,9 +8170,9 @@ size_t tripod_3upu_inverse_kinematics_batch(const tripod_3upu_model *model, size
     tripod_3upu_real *X, tripod_3upu_real *q, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_kinematics_any(model, LANES, X + 7*i, q + 9*i, codes);
+        inverse_kinematics_lanes(model, X + 7*i, q + 9*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3upu_inverse_kinematics(model, X + 7*(i + k), q + 9*(i + k));
@@ -7366,7 +8191,7 @@ int tripod_3upu_joint_rates(const tripod_3upu_model *model, const tripod_3upu_re
     tripod_3upu_real *V, tripod_3upu_real *rates)
 {
     int code;
-    joint_rates_any(model, 1, X, V, rates, &code);
+    joint_rates_one(model, X, V, rates, &code);
     return code;
 }
 
@@ -7374,9 +8199,9 @@ size_t tripod_3upu_joint_rates_batch(const tripod_3upu_model *model, size_t n, c
     tripod_3upu_real *X, const tripod_3upu_real *V, tripod_3upu_real *rates, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_rates_any(model, LANES, X + 7*i, V + 6*i, rates + 9*i, codes);
+        joint_rates_lanes(model, X + 7*i, V + 6*i, rates + 9*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3upu_joint_rates(model, X + 7*(i + k), V + 6*(i + k), rates + 9*(i + k));
@@ -7395,7 +8220,7 @@ int tripod_3upu_joint_accelerations(const tripod_3upu_model *model, const tripod
     const tripod_3upu_real *V, const tripod_3upu_real *A, tripod_3upu_real *accelerations)
 {
     int code;
-    joint_accelerations_any(model, 1, X, V, A, accelerations, &code);
+    joint_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
@@ -7404,9 +8229,9 @@ size_t tripod_3upu_joint_accelerations_batch(const tripod_3upu_model *model, siz
     *accelerations, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_accelerations_any(model, LANES, X + 7*i, V + 6*i, A + 6*i, accelerations + 9*i, codes);
+        joint_accelerations_lanes(model, X + 7*i, V + 6*i, A + 6*i, accelerations + 9*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3upu_joint_accelerations(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k),
@@ -7427,7 +8252,7 @@ int tripod_3upu_dynamics(const tripod_3upu_model *model, const tripod_3upu_real 
     tripod_3upu_real *V, tripod_3upu_real *M, tripod_3upu_real *Z, tripod_3upu_real *H)
 {
     int code;
-    dynamics_any(model, 1, X, V, M, Z, H, &code);
+    dynamics_one(model, X, V, M, Z, H, &code);
     return code;
 }
 
@@ -7436,9 +8261,9 @@ size_t tripod_3upu_dynamics_batch(const tripod_3upu_model *model, size_t n, cons
     int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        dynamics_any(model, LANES, X + 7*i, V + 6*i, M + 36*i, Z + 6*i, H + 18*i, codes);
+        dynamics_lanes(model, X + 7*i, V + 6*i, M + 36*i, Z + 6*i, H + 18*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3upu_dynamics(model, X + 7*(i + k), V + 6*(i + k), M + 36*(i + k), Z + 6*(i +
@@ -7459,7 +8284,7 @@ int tripod_3upu_inverse_dynamics(const tripod_3upu_model *model, const tripod_3u
     tripod_3upu_real *tau, tripod_3upu_real *lambda)
 {
     int code;
-    inverse_dynamics_any(model, 1, X, V, A, wrench, tau, lambda, &code);
+    inverse_dynamics_one(model, X, V, A, wrench, tau, lambda, &code);
     return code;
 }
 
@@ -7468,10 +8293,10 @@ size_t tripod_3upu_inverse_dynamics_batch(const tripod_3upu_model *model, size_t
     tripod_3upu_real *wrench, tripod_3upu_real *tau, tripod_3upu_real *lambda, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_dynamics_any(model, LANES, X + 7*i, V + 6*i, A + 6*i, wrench ? wrench + 6*i : NULL, tau +
-            3*i, lambda + 3*i, codes);
+        inverse_dynamics_lanes(model, X + 7*i, V + 6*i, A + 6*i, wrench ? wrench + 6*i : NULL, tau + 3*i,
+            lambda + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3upu_inverse_dynamics(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k), wrench
@@ -7493,7 +8318,7 @@ int tripod_3upu_forward_dynamics(const tripod_3upu_model *model, const tripod_3u
     tripod_3upu_real *A, tripod_3upu_real *lambda)
 {
     int code;
-    forward_dynamics_any(model, 1, X, V, tau, wrench, A, lambda, &code);
+    forward_dynamics_one(model, X, V, tau, wrench, A, lambda, &code);
     return code;
 }
 
@@ -7502,10 +8327,10 @@ size_t tripod_3upu_forward_dynamics_batch(const tripod_3upu_model *model, size_t
     tripod_3upu_real *wrench, tripod_3upu_real *A, tripod_3upu_real *lambda, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        forward_dynamics_any(model, LANES, X + 7*i, V + 6*i, tau + 3*i, wrench ? wrench + 6*i : NULL, A +
-            6*i, lambda + 3*i, codes);
+        forward_dynamics_lanes(model, X + 7*i, V + 6*i, tau + 3*i, wrench ? wrench + 6*i : NULL, A + 6*i,
+            lambda + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3upu_forward_dynamics(model, X + 7*(i + k), V + 6*(i + k), tau + 3*(i + k),
@@ -7531,7 +8356,7 @@ int tripod_3upu_complete_acceleration(const tripod_3upu_model *model, const trip
     (void)X;
     (void)V;
     (void)wrench;
-    complete_acceleration_any(A, completed, &code);
+    complete_acceleration_one(A, completed, &code);
     return code;
 }
 
@@ -7553,7 +8378,7 @@ int tripod_3upu_leg_reactions(const tripod_3upu_model *model, const tripod_3upu_
     tripod_3upu_real *forces)
 {
     int code;
-    leg_reactions_any(model, X, V, A, wrench, forces, &code);
+    leg_reactions_one(model, X, V, A, wrench, forces, &code);
     return code;
 }
 
@@ -7574,7 +8399,7 @@ int tripod_3upu_energy(const tripod_3upu_model *model, const tripod_3upu_real *X
     tripod_3upu_real *V, tripod_3upu_real *kinetic, tripod_3upu_real *potential)
 {
     int code;
-    energy_any(model, X, V, kinetic, potential, &code);
+    energy_one(model, X, V, kinetic, potential, &code);
     return code;
 }
 
@@ -7594,7 +8419,7 @@ int tripod_3upu_condition(const tripod_3upu_model *model, const tripod_3upu_real
     tripod_3upu_real *sigma, tripod_3upu_real *legs)
 {
     int code;
-    condition_any(model, X, NULL, sigma, legs, &code);
+    condition_one(model, X, NULL, sigma, legs, &code);
     return code;
 }
 
@@ -7613,7 +8438,7 @@ int tripod_3upu_condition_constrained(const tripod_3upu_model *model, const trip
     tripod_3upu_real *sigma, tripod_3upu_real *legs)
 {
     int code;
-    condition_constrained_any(model, X, NULL, sigma, legs, &code);
+    condition_constrained_one(model, X, NULL, sigma, legs, &code);
     return code;
 }
 
@@ -7632,7 +8457,7 @@ int tripod_3upu_forward_kinematics(const tripod_3upu_model *model, const tripod_
     *q_actuated, const tripod_3upu_real *X0, tripod_3upu_real *X)
 {
     int code;
-    forward_kinematics_any(model, q_actuated, X0, X, &code);
+    forward_kinematics_one(model, q_actuated, X0, X, &code);
     return code;
 }
 
@@ -7651,7 +8476,7 @@ int tripod_3upu_project(const tripod_3upu_model *model, const tripod_3upu_real *
     tripod_3upu_real *projected)
 {
     int code;
-    project_any(model, X, projected, &code);
+    project_one(model, X, projected, &code);
     return code;
 }
 
@@ -7672,7 +8497,7 @@ int tripod_3upu_dissipation(const tripod_3upu_model *model, const tripod_3upu_re
     int code;
     (void)model;
     (void)X;
-    dissipation_any(V, dissipation, &code);
+    dissipation_one(V, dissipation, &code);
     return code;
 }
 
@@ -7691,7 +8516,7 @@ int tripod_3upu_momentum(const tripod_3upu_model *model, const tripod_3upu_real 
     tripod_3upu_real *V, tripod_3upu_real *momentum)
 {
     int code;
-    momentum_any(model, 1, X, V, momentum, &code);
+    momentum_one(model, X, V, momentum, &code);
     return code;
 }
 
@@ -7699,9 +8524,9 @@ size_t tripod_3upu_momentum_batch(const tripod_3upu_model *model, size_t n, cons
     *X, const tripod_3upu_real *V, tripod_3upu_real *momentum, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        momentum_any(model, LANES, X + 7*i, V + 6*i, momentum + 6*i, codes);
+        momentum_lanes(model, X + 7*i, V + 6*i, momentum + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3upu_momentum(model, X + 7*(i + k), V + 6*(i + k), momentum + 6*(i + k));
@@ -7716,11 +8541,69 @@ size_t tripod_3upu_momentum_batch(const tripod_3upu_model *model, size_t n, cons
     return failed;
 }
 
+int tripod_3upu_joint_margins(const tripod_3upu_model *model, const tripod_3upu_real *X,
+    tripod_3upu_real *margins)
+{
+    int code;
+    joint_margins_one(model, X, margins, &code);
+    return code;
+}
+
+size_t tripod_3upu_joint_margins_batch(const tripod_3upu_model *model, size_t n, const
+    tripod_3upu_real *X, tripod_3upu_real *margins, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        joint_margins_lanes(model, X + 7*i, margins + 9*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = tripod_3upu_joint_margins(model, X + 7*(i + k), margins + 9*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = tripod_3upu_joint_margins(model, X + 7*i, margins + 9*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int tripod_3upu_within_limits(const tripod_3upu_model *model, const tripod_3upu_real *X,
+    tripod_3upu_real *within)
+{
+    int code;
+    within_limits_one(model, X, within, &code);
+    return code;
+}
+
+size_t tripod_3upu_within_limits_batch(const tripod_3upu_model *model, size_t n, const
+    tripod_3upu_real *X, tripod_3upu_real *within, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        within_limits_lanes(model, X + 7*i, within + 1*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = tripod_3upu_within_limits(model, X + 7*(i + k), within + 1*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = tripod_3upu_within_limits(model, X + 7*i, within + 1*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
 int tripod_3upu_actuator_positions(const tripod_3upu_model *model, const tripod_3upu_real *X,
     tripod_3upu_real *q)
 {
     int code;
-    actuator_positions_any(model, 1, X, q, &code);
+    actuator_positions_one(model, X, q, &code);
     return code;
 }
 
@@ -7728,9 +8611,9 @@ size_t tripod_3upu_actuator_positions_batch(const tripod_3upu_model *model, size
     tripod_3upu_real *X, tripod_3upu_real *q, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_positions_any(model, LANES, X + 7*i, q + 3*i, codes);
+        actuator_positions_lanes(model, X + 7*i, q + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3upu_actuator_positions(model, X + 7*(i + k), q + 3*(i + k));
@@ -7749,7 +8632,7 @@ int tripod_3upu_actuator_rates(const tripod_3upu_model *model, const tripod_3upu
     tripod_3upu_real *V, tripod_3upu_real *rates)
 {
     int code;
-    actuator_rates_any(model, 1, X, V, rates, &code);
+    actuator_rates_one(model, X, V, rates, &code);
     return code;
 }
 
@@ -7757,9 +8640,9 @@ size_t tripod_3upu_actuator_rates_batch(const tripod_3upu_model *model, size_t n
     tripod_3upu_real *X, const tripod_3upu_real *V, tripod_3upu_real *rates, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_rates_any(model, LANES, X + 7*i, V + 6*i, rates + 3*i, codes);
+        actuator_rates_lanes(model, X + 7*i, V + 6*i, rates + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3upu_actuator_rates(model, X + 7*(i + k), V + 6*(i + k), rates + 3*(i + k));
@@ -7778,7 +8661,7 @@ int tripod_3upu_actuator_accelerations(const tripod_3upu_model *model, const tri
     const tripod_3upu_real *V, const tripod_3upu_real *A, tripod_3upu_real *accelerations)
 {
     int code;
-    actuator_accelerations_any(model, 1, X, V, A, accelerations, &code);
+    actuator_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
@@ -7787,9 +8670,9 @@ size_t tripod_3upu_actuator_accelerations_batch(const tripod_3upu_model *model, 
     *accelerations, int *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_accelerations_any(model, LANES, X + 7*i, V + 6*i, A + 6*i, accelerations + 3*i, codes);
+        actuator_accelerations_lanes(model, X + 7*i, V + 6*i, A + 6*i, accelerations + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3upu_actuator_accelerations(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k),
@@ -7810,7 +8693,7 @@ int tripod_3upu_power(const tripod_3upu_model *model, const tripod_3upu_real *X,
     tripod_3upu_real *V, const tripod_3upu_real *tau, tripod_3upu_real *power)
 {
     int code;
-    power_any(model, 1, X, V, tau, power, &code);
+    power_one(model, X, V, tau, power, &code);
     return code;
 }
 
@@ -7819,9 +8702,9 @@ size_t tripod_3upu_power_batch(const tripod_3upu_model *model, size_t n, const t
     *status)
 {
     size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
+    for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        power_any(model, LANES, X + 7*i, V + 6*i, tau + 3*i, power + 1*i, codes);
+        power_lanes(model, X + 7*i, V + 6*i, tau + 3*i, power + 1*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3upu_power(model, X + 7*(i + k), V + 6*(i + k), tau + 3*(i + k), power + 1*(i +
@@ -7840,7 +8723,7 @@ size_t tripod_3upu_power_batch(const tripod_3upu_model *model, size_t n, const t
 int tripod_3upu_rotation(const tripod_3upu_real *X, tripod_3upu_real *R)
 {
     int code;
-    rotation_any(X, R, &code);
+    rotation_one(X, R, &code);
     return code;
 }
 
@@ -7858,7 +8741,7 @@ size_t tripod_3upu_rotation_batch(size_t n, const tripod_3upu_real *X, tripod_3u
 int tripod_3upu_pose(const tripod_3upu_real *t, const tripod_3upu_real *R, tripod_3upu_real *X)
 {
     int code;
-    pose_any(t, R, X, &code);
+    pose_one(t, R, X, &code);
     return code;
 }
 
@@ -7877,7 +8760,7 @@ int tripod_3upu_X_dot(const tripod_3upu_real *X, const tripod_3upu_real *V, trip
     *X_dot)
 {
     int code;
-    X_dot_any(X, V, X_dot, &code);
+    X_dot_one(X, V, X_dot, &code);
     return code;
 }
 
@@ -7896,7 +8779,7 @@ int tripod_3upu_pose_from_rpy(const tripod_3upu_real *t, const tripod_3upu_real 
     tripod_3upu_real *X)
 {
     int code;
-    pose_from_rpy_any(t, rpy, X, &code);
+    pose_from_rpy_one(t, rpy, X, &code);
     return code;
 }
 
@@ -7915,7 +8798,7 @@ int tripod_3upu_retract(const tripod_3upu_real *X, const tripod_3upu_real *step,
     *X_moved)
 {
     int code;
-    retract_any(X, step, X_moved, &code);
+    retract_one(X, step, X_moved, &code);
     return code;
 }
 
@@ -7934,7 +8817,7 @@ int tripod_3upu_difference(const tripod_3upu_real *X0, const tripod_3upu_real *X
     tripod_3upu_real *step)
 {
     int code;
-    difference_any(X0, X1, step, &code);
+    difference_one(X0, X1, step, &code);
     return code;
 }
 
@@ -7953,7 +8836,7 @@ int tripod_3upu_interpolate(const tripod_3upu_real *X0, const tripod_3upu_real *
     tripod_3upu_real *s, tripod_3upu_real *X)
 {
     int code;
-    interpolate_any(X0, X1, s, X, &code);
+    interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 

@@ -51,6 +51,7 @@ typedef TRIPOD_3UPU_REAL tripod_3upu_real;
 #define TRIPOD_3UPU_NC 3
 #define TRIPOD_3UPU_NW 6
 #define TRIPOD_3UPU_NJ 9
+#define TRIPOD_3UPU_OVERCONSTRAINED 0
 
 enum {
     TRIPOD_3UPU_OK = 0,
@@ -95,20 +96,21 @@ typedef struct {
 /* What depends on the parameters alone; set by tripod_3upu_prepare, then only read.  Its size is
    public; its members are private, their names and order may change. */
 typedef struct {
+    /* 3 legs of type upu; copies of the first fill up */
+    tripod_3upu_real upu_J_group_2_xx[4], upu_J_group_2_xy[4], upu_J_group_2_xz[4],
+            upu_J_group_2_yy[4], upu_J_group_2_yz[4], upu_J_group_2_zz[4], upu_Sigma_2_xx[4],
+            upu_Sigma_2_yy[4], upu_Sigma_2_zz[4], upu_b_r0_x[4], upu_b_r0_y[4], upu_b_r0_z[4],
+            upu_base_frame_xx[4], upu_base_frame_xy[4], upu_base_frame_xz[4], upu_base_frame_yx[4],
+            upu_base_frame_yy[4], upu_base_frame_yz[4], upu_base_frame_zx[4], upu_base_frame_zy[4],
+            upu_base_frame_zz[4], upu_base_point_x[4], upu_base_point_y[4], upu_base_point_z[4],
+            upu_branch_1[4], upu_branch_2[4], upu_g_r0_x[4], upu_g_r0_y[4], upu_g_r0_z[4],
+            upu_h_2_x[4], upu_h_2_y[4], upu_h_2_z[4], upu_h_3_x[4], upu_h_3_y[4], upu_h_3_z[4],
+            upu_link2_mass[4], upu_link3_mass[4], upu_platform_joint_axis_platform_x[4],
+            upu_platform_joint_axis_platform_y[4], upu_platform_joint_axis_platform_z[4],
+            upu_platform_point_x[4], upu_platform_point_y[4], upu_platform_point_z[4];
     tripod_3upu_real J_star_t_6, J_star_t_8, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
             J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
             h_star_x, h_star_y, h_star_z, legs_size, platform_mass, spread_t;
-    /* legs of type upu */
-    tripod_3upu_real J_group_2_xx[3], J_group_2_xy[3], J_group_2_xz[3], J_group_2_yy[3],
-            J_group_2_yz[3], J_group_2_zz[3], Sigma_2_xx[3], Sigma_2_yy[3], Sigma_2_zz[3], b_r0_x[3],
-            b_r0_y[3], b_r0_z[3], branch_1[3], branch_2[3], g_r0_x[3], g_r0_y[3], g_r0_z[3], h_2_x[3],
-            h_2_y[3], h_2_z[3], h_3_x[3], h_3_y[3], h_3_z[3], upu_base_frame_xx[3],
-            upu_base_frame_xy[3], upu_base_frame_xz[3], upu_base_frame_yx[3], upu_base_frame_yy[3],
-            upu_base_frame_yz[3], upu_base_frame_zx[3], upu_base_frame_zy[3], upu_base_frame_zz[3],
-            upu_base_point_x[3], upu_base_point_y[3], upu_base_point_z[3], upu_link2_mass[3],
-            upu_link3_mass[3], upu_platform_joint_axis_platform_x[3],
-            upu_platform_joint_axis_platform_y[3], upu_platform_joint_axis_platform_z[3],
-            upu_platform_point_x[3], upu_platform_point_y[3], upu_platform_point_z[3];
 } tripod_3upu_model;
 
 extern const tripod_3upu_params tripod_3upu_default_params;
@@ -125,7 +127,7 @@ extern const char *const tripod_3upu_ACTUATOR_NAMES[TRIPOD_3UPU_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *model);
 
-/* Inertia matrix M. 1068 mul, 735 add, 12 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 1032 mul, 699 add, 12 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int tripod_3upu_M(const tripod_3upu_model *model, const tripod_3upu_real *X, tripod_3upu_real *M);
 size_t tripod_3upu_M_batch(const tripod_3upu_model *model, size_t n, const tripod_3upu_real *X,
     tripod_3upu_real *M, int *status);
@@ -186,7 +188,7 @@ size_t tripod_3upu_joint_accelerations_batch(const tripod_3upu_model *model, siz
     tripod_3upu_real *X, const tripod_3upu_real *V, const tripod_3upu_real *A, tripod_3upu_real
     *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1647 mul, 1185 add, 12 div, 6 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1611 mul, 1149 add, 12 div, 6 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int tripod_3upu_dynamics(const tripod_3upu_model *model, const tripod_3upu_real *X, const
     tripod_3upu_real *V, tripod_3upu_real *M, tripod_3upu_real *Z, tripod_3upu_real *H);
@@ -204,7 +206,7 @@ size_t tripod_3upu_inverse_dynamics_batch(const tripod_3upu_model *model, size_t
     tripod_3upu_real *X, const tripod_3upu_real *V, const tripod_3upu_real *A, const
     tripod_3upu_real *wrench, tripod_3upu_real *tau, tripod_3upu_real *lambda, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1647 mul, 1185 add, 12 div, 6
+/* Acceleration A under the actuator forces tau and the wrench. 1611 mul, 1149 add, 12 div, 6
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV), lambda (NC). */
 int tripod_3upu_forward_dynamics(const tripod_3upu_model *model, const tripod_3upu_real *X, const
@@ -283,12 +285,26 @@ int tripod_3upu_dissipation(const tripod_3upu_model *model, const tripod_3upu_re
 size_t tripod_3upu_dissipation_batch(const tripod_3upu_model *model, size_t n, const
     tripod_3upu_real *X, const tripod_3upu_real *V, tripod_3upu_real *dissipation, int *status);
 
-/* Generalised momentum M V. 1068 mul, 735 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 1032 mul, 699 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int tripod_3upu_momentum(const tripod_3upu_model *model, const tripod_3upu_real *X, const
     tripod_3upu_real *V, tripod_3upu_real *momentum);
 size_t tripod_3upu_momentum_batch(const tripod_3upu_model *model, size_t n, const tripod_3upu_real
     *X, const tripod_3upu_real *V, tripod_3upu_real *momentum, int *status);
+
+/* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+   where there is none. 81 mul, 60 add, 6 div, 6 sqrt, 6 trig. In: X (NQ). Out: margins (NJ). */
+int tripod_3upu_joint_margins(const tripod_3upu_model *model, const tripod_3upu_real *X,
+    tripod_3upu_real *margins);
+size_t tripod_3upu_joint_margins_batch(const tripod_3upu_model *model, size_t n, const
+    tripod_3upu_real *X, tripod_3upu_real *margins, int *status);
+
+/* Whether all joints are within their limits of displacement. 81 mul, 60 add, 6 div, 6 sqrt, 6
+   trig. In: X (NQ). Out: within (1). */
+int tripod_3upu_within_limits(const tripod_3upu_model *model, const tripod_3upu_real *X,
+    tripod_3upu_real *within);
+size_t tripod_3upu_within_limits_batch(const tripod_3upu_model *model, size_t n, const
+    tripod_3upu_real *X, tripod_3upu_real *within, int *status);
 
 /* Displacements of the actuated joints, in the order of tau. 81 mul, 60 add, 6 div, 6 sqrt, 6
    trig. In: X (NQ). Out: q (NU). */

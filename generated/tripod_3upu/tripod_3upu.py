@@ -33,6 +33,7 @@ __all__ = [
     "NC",
     "NW",
     "NJ",
+    "OVERCONSTRAINED",
     "ACTUATED",
     "ACTUATOR_NAMES",
     "H",
@@ -61,6 +62,7 @@ __all__ = [
     "inverse_dynamics",
     "inverse_kinematics",
     "joint_accelerations",
+    "joint_margins",
     "joint_rates",
     "leg_reactions",
     "momentum",
@@ -71,6 +73,7 @@ __all__ = [
     "project",
     "retract",
     "rotation",
+    "within_limits",
 ]
 
 NQ = 7
@@ -79,6 +82,7 @@ NU = 3
 NC = 3
 NW = 6
 NJ = 9
+OVERCONSTRAINED = 0
 
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
@@ -363,7 +367,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return np.full(shape, default)
+        return _filled(shape, default) if isinstance(default, float) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -376,6 +380,16 @@ def _argument(function, name, value, shape, default=None, rule=""):
     elif rule == "positive" and not np.all((array > 0.0) & (array < np.inf)):
         raise ValueError(f"{function}: {name} must be positive and finite")
     return array
+
+
+_FILLED = {}
+
+
+def _filled(shape, value):
+    """An array of one value, made once."""
+    if (shape, value) not in _FILLED:
+        _FILLED[shape, value] = _frozen(np.full(shape, value))
+    return _FILLED[shape, value]
 
 
 def _lead(leads):
@@ -469,8 +483,8 @@ HOME_X = _frozen(np.array([-3.691591319482669e-18, -2.3397411650985803e-18, 0.75
 HOME_Q = _frozen(np.array([0.5, 0.19999999999999998, 0.8, 0.5, 0.2, 0.8, 0.5, 0.19999999999999998, 0.8]))
 
 _BRANCHES = {  # assembly branch of home, a sign per leg
-    "branch_1": np.array([1.0, 1.0, 1.0]),
-    "branch_2": np.array([1.0, 1.0, 1.0]),
+    "upu_branch_1": np.array([1.0, 1.0, 1.0]),
+    "upu_branch_2": np.array([1.0, 1.0, 1.0]),
 }
 
 
@@ -529,13 +543,13 @@ def _prepare(p):
     upu_link3_inertia_yy = p.upu_link3_inertia[:, 1, 1]
     upu_link3_inertia_yz = p.upu_link3_inertia[:, 1, 2]
     upu_link3_inertia_zz = p.upu_link3_inertia[:, 2, 2]
-    branch_1 = _BRANCHES["branch_1"]
-    branch_2 = _BRANCHES["branch_2"]
-    # (L2) first moment about the platform origin
+    upu_branch_1 = _BRANCHES["upu_branch_1"]
+    upu_branch_2 = _BRANCHES["upu_branch_2"]
+    # (h_star) first moment about the platform origin
     h_star_x = platform_centre_of_mass_x*platform_mass
     h_star_y = platform_centre_of_mass_y*platform_mass
     h_star_z = platform_centre_of_mass_z*platform_mass
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_t = platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_2 = platform_centre_of_mass_y*platform_centre_of_mass_y
     J_star_t_3 = platform_centre_of_mass_z*platform_centre_of_mass_z
@@ -556,93 +570,93 @@ def _prepare(p):
     J_star_t_6 = 0.5*J_star_t_5
     J_star_t_7 = J_star_xx - J_star_zz
     J_star_t_8 = 0.5*J_star_t_7
-    # (M4) centripetal force and weight of the platform
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*platform_mass
     Z_p_t_2 = gravity_y*platform_mass
     Z_p_t_3 = gravity_z*platform_mass
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread_t = 0.3333333333333333*sqrt(3.0)
-    # (C3) rms size of the legs, taken where the platform points coincide
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     legs_size = 1.385640646055102*spread_t
-    # (upu-G4) first moment of link 3 about the origin of link 3
-    h_3_x = upu_link3_centre_of_mass_x*upu_link3_mass
-    h_3_y = upu_link3_centre_of_mass_y*upu_link3_mass
-    h_3_z = upu_link3_centre_of_mass_z*upu_link3_mass
-    # (upu-G3) inertia tensor of link 2 about the origin of link 2
-    J_2_t = upu_link2_centre_of_mass_x*upu_link2_centre_of_mass_x
-    J_2_t_2 = upu_link2_centre_of_mass_y*upu_link2_centre_of_mass_y
-    J_2_t_3 = upu_link2_centre_of_mass_z*upu_link2_centre_of_mass_z
-    J_2_t_4 = J_2_t + J_2_t_2 + J_2_t_3
-    # (upu-G5) inertia tensor of link 3 about the origin of link 3
-    J_3_t = upu_link3_centre_of_mass_x*upu_link3_centre_of_mass_x
-    J_3_t_2 = upu_link3_centre_of_mass_y*upu_link3_centre_of_mass_y
-    J_3_t_3 = upu_link3_centre_of_mass_z*upu_link3_centre_of_mass_z
-    J_3_t_4 = J_3_t + J_3_t_2 + J_3_t_3
-    # (upu-N15) inertia of the links that turn with link 2, each about its reference point
-    J_group_2_xx = (
-    upu_link2_inertia_xx + upu_link3_inertia_xx - upu_link2_mass*(J_2_t - J_2_t_4) -
-        upu_link3_mass*(J_3_t - J_3_t_4)
+    # (upu-h_3) first moment of link 3 about the origin of link 3
+    upu_h_3_x = upu_link3_centre_of_mass_x*upu_link3_mass
+    upu_h_3_y = upu_link3_centre_of_mass_y*upu_link3_mass
+    upu_h_3_z = upu_link3_centre_of_mass_z*upu_link3_mass
+    # (upu-J_2) inertia tensor of link 2 about the origin of link 2
+    upu_J_2_t = upu_link2_centre_of_mass_x*upu_link2_centre_of_mass_x
+    upu_J_2_t_2 = upu_link2_centre_of_mass_y*upu_link2_centre_of_mass_y
+    upu_J_2_t_3 = upu_link2_centre_of_mass_z*upu_link2_centre_of_mass_z
+    upu_J_2_t_4 = upu_J_2_t + upu_J_2_t_2 + upu_J_2_t_3
+    # (upu-J_3) inertia tensor of link 3 about the origin of link 3
+    upu_J_3_t = upu_link3_centre_of_mass_x*upu_link3_centre_of_mass_x
+    upu_J_3_t_2 = upu_link3_centre_of_mass_y*upu_link3_centre_of_mass_y
+    upu_J_3_t_3 = upu_link3_centre_of_mass_z*upu_link3_centre_of_mass_z
+    upu_J_3_t_4 = upu_J_3_t + upu_J_3_t_2 + upu_J_3_t_3
+    # (upu-J_group_2) inertia of the links that turn with link 2, each about its reference point
+    upu_J_group_2_xx = (
+    upu_link2_inertia_xx + upu_link3_inertia_xx - upu_link2_mass*(upu_J_2_t - upu_J_2_t_4) -
+        upu_link3_mass*(upu_J_3_t - upu_J_3_t_4)
     )
-    J_group_2_xy = (
+    upu_J_group_2_xy = (
     upu_link2_centre_of_mass_x*upu_link2_centre_of_mass_z*upu_link2_mass +
         upu_link3_centre_of_mass_x*upu_link3_centre_of_mass_z*upu_link3_mass -
         upu_link2_inertia_xz - upu_link3_inertia_xz
     )
-    J_group_2_xz = (
+    upu_J_group_2_xz = (
     upu_link2_inertia_xy + upu_link3_inertia_xy -
         upu_link2_centre_of_mass_x*upu_link2_centre_of_mass_y*upu_link2_mass -
         upu_link3_centre_of_mass_x*upu_link3_centre_of_mass_y*upu_link3_mass
     )
-    J_group_2_yy = (
-    upu_link2_inertia_zz + upu_link3_inertia_zz - upu_link2_mass*(J_2_t_3 - J_2_t_4) -
-        upu_link3_mass*(J_3_t_3 - J_3_t_4)
+    upu_J_group_2_yy = (
+    upu_link2_inertia_zz + upu_link3_inertia_zz - upu_link2_mass*(upu_J_2_t_3 - upu_J_2_t_4) -
+        upu_link3_mass*(upu_J_3_t_3 - upu_J_3_t_4)
     )
-    J_group_2_yz = (
+    upu_J_group_2_yz = (
     upu_link2_centre_of_mass_y*upu_link2_centre_of_mass_z*upu_link2_mass +
         upu_link3_centre_of_mass_y*upu_link3_centre_of_mass_z*upu_link3_mass -
         upu_link2_inertia_yz - upu_link3_inertia_yz
     )
-    J_group_2_zz = (
-    upu_link2_inertia_yy + upu_link3_inertia_yy - upu_link2_mass*(J_2_t_2 - J_2_t_4) -
-        upu_link3_mass*(J_3_t_2 - J_3_t_4)
+    upu_J_group_2_zz = (
+    upu_link2_inertia_yy + upu_link3_inertia_yy - upu_link2_mass*(upu_J_2_t_2 - upu_J_2_t_4) -
+        upu_link3_mass*(upu_J_3_t_2 - upu_J_3_t_4)
     )
-    # (upu-N6) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-    g_r0_x = (
+    # (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+    upu_g_r0_x = (
     gravity_x*upu_base_frame_xx + gravity_y*upu_base_frame_yx + gravity_z*upu_base_frame_zx
     )
-    g_r0_y = (
+    upu_g_r0_y = (
     gravity_x*upu_base_frame_xy + gravity_y*upu_base_frame_yy + gravity_z*upu_base_frame_zy
     )
-    g_r0_z = (
+    upu_g_r0_z = (
     gravity_x*upu_base_frame_xz + gravity_y*upu_base_frame_yz + gravity_z*upu_base_frame_zz
     )
-    # (upu-G2) first moment of link 2 about the origin of link 2
-    h_2_x = upu_link2_centre_of_mass_x*upu_link2_mass
-    h_2_y = upu_link2_centre_of_mass_y*upu_link2_mass
-    h_2_z = upu_link2_centre_of_mass_z*upu_link2_mass
-    # (upu-N16) half the trace of that inertia tensor
-    trace_J_group_2 = 0.5*J_group_2_xx + 0.5*J_group_2_yy + 0.5*J_group_2_zz
-    # (upu-N17) second moment of mass of the links that turn with link 2
-    Sigma_2_xx = trace_J_group_2 - J_group_2_xx
-    Sigma_2_yy = trace_J_group_2 - J_group_2_yy
-    Sigma_2_zz = trace_J_group_2 - J_group_2_zz
-    # (V1) potential energy
-    b_r0_x = (
+    # (upu-h_2) first moment of link 2 about the origin of link 2
+    upu_h_2_x = upu_link2_centre_of_mass_x*upu_link2_mass
+    upu_h_2_y = upu_link2_centre_of_mass_y*upu_link2_mass
+    upu_h_2_z = upu_link2_centre_of_mass_z*upu_link2_mass
+    # (upu-trace_J_2) half the trace of that inertia tensor
+    upu_trace_J_2 = 0.5*upu_J_group_2_xx + 0.5*upu_J_group_2_yy + 0.5*upu_J_group_2_zz
+    # (upu-Sigma_2) second moment of mass of the links that turn with link 2
+    upu_Sigma_2_xx = upu_trace_J_2 - upu_J_group_2_xx
+    upu_Sigma_2_yy = upu_trace_J_2 - upu_J_group_2_yy
+    upu_Sigma_2_zz = upu_trace_J_2 - upu_J_group_2_zz
+    # (potential) potential energy
+    upu_b_r0_x = (
     upu_base_frame_xx*upu_base_point_x + upu_base_frame_yx*upu_base_point_y +
         upu_base_frame_zx*upu_base_point_z
     )
-    b_r0_y = (
+    upu_b_r0_y = (
     upu_base_frame_xy*upu_base_point_x + upu_base_frame_yy*upu_base_point_y +
         upu_base_frame_zy*upu_base_point_z
     )
-    b_r0_z = (
+    upu_b_r0_z = (
     upu_base_frame_xz*upu_base_point_x + upu_base_frame_yz*upu_base_point_y +
         upu_base_frame_zz*upu_base_point_z
     )
     total_upu_x = np.sum(np.broadcast_to(upu_platform_point_x, _upu))
     total_upu_y = np.sum(np.broadcast_to(upu_platform_point_y, _upu))
     total_upu_z = np.sum(np.broadcast_to(upu_platform_point_z, _upu))
-    # (C1) centroid of the platform points
+    # (b_c) centroid of the platform points
     b_c_x = 0.3333333333333333*total_upu_x
     b_c_y = 0.3333333333333333*total_upu_y
     b_c_z = 0.3333333333333333*total_upu_z
@@ -653,12 +667,13 @@ def _prepare(p):
                 h_star_z, platform_mass,),
             (
                 (_upu,
-        (J_group_2_xx, J_group_2_xy, J_group_2_xz, J_group_2_yy, J_group_2_yz, J_group_2_zz,
-                    Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1, branch_2, g_r0_x, g_r0_y,
-                    g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, upu_base_frame_xx,
-                    upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy,
-                    upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz,
-                    upu_base_point_x, upu_base_point_y, upu_base_point_z, upu_link3_mass,
+        (upu_J_group_2_xx, upu_J_group_2_xy, upu_J_group_2_xz, upu_J_group_2_yy, upu_J_group_2_yz,
+                    upu_J_group_2_zz, upu_Sigma_2_xx, upu_Sigma_2_yy, upu_Sigma_2_zz,
+                    upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
+                    upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
+                    upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z,
+                    upu_branch_1, upu_branch_2, upu_g_r0_x, upu_g_r0_y, upu_g_r0_z, upu_h_2_x,
+                    upu_h_2_y, upu_h_2_z, upu_h_3_x, upu_h_3_y, upu_h_3_z, upu_link3_mass,
                     upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
                     upu_platform_joint_axis_platform_z, upu_platform_point_x,
                     upu_platform_point_y, upu_platform_point_z,),
@@ -670,14 +685,14 @@ def _prepare(p):
                 h_star_z, platform_mass,),
             (
                 (_upu,
-        (J_group_2_xx, J_group_2_xy, J_group_2_xz, J_group_2_yy, J_group_2_yz, J_group_2_zz,
-                    branch_1, branch_2, h_3_x, h_3_y, h_3_z, upu_base_frame_xx, upu_base_frame_xy,
-                    upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz,
-                    upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x,
-                    upu_base_point_y, upu_base_point_z, upu_link3_mass,
-                    upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
-                    upu_platform_joint_axis_platform_z, upu_platform_point_x,
-                    upu_platform_point_y, upu_platform_point_z,),
+        (upu_J_group_2_xx, upu_J_group_2_xy, upu_J_group_2_xz, upu_J_group_2_yy, upu_J_group_2_yz,
+                    upu_J_group_2_zz, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
+                    upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
+                    upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
+                    upu_base_point_z, upu_branch_1, upu_branch_2, upu_h_3_x, upu_h_3_y, upu_h_3_z,
+                    upu_link3_mass, upu_platform_joint_axis_platform_x,
+                    upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
+                    upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,),
                 ),
             ),
         ),
@@ -686,11 +701,12 @@ def _prepare(p):
                 Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
             (
                 (_upu,
-        (J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
-                    branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
-                    upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
-                    upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
-                    upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z,
+        (upu_J_group_2_xy, upu_J_group_2_xz, upu_J_group_2_yz, upu_Sigma_2_xx, upu_Sigma_2_yy,
+                    upu_Sigma_2_zz, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
+                    upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
+                    upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
+                    upu_base_point_z, upu_branch_1, upu_branch_2, upu_g_r0_x, upu_g_r0_y,
+                    upu_g_r0_z, upu_h_2_x, upu_h_2_y, upu_h_2_z, upu_h_3_x, upu_h_3_y, upu_h_3_z,
                     upu_link3_mass, upu_platform_joint_axis_platform_x,
                     upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
                     upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,),
@@ -701,10 +717,10 @@ def _prepare(p):
         (),
             (
                 (_upu,
-        (branch_1, branch_2, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
-                    upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
-                    upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
-                    upu_base_point_z, upu_platform_point_x, upu_platform_point_y,
+        (upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
+                    upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
+                    upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z,
+                    upu_branch_1, upu_branch_2, upu_platform_point_x, upu_platform_point_y,
                     upu_platform_point_z,),
                 ),
             ),
@@ -713,10 +729,10 @@ def _prepare(p):
         (),
             (
                 (_upu,
-        (branch_1, branch_2, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
-                    upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
-                    upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
-                    upu_base_point_z, upu_platform_joint_axis_platform_x,
+        (upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
+                    upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
+                    upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z,
+                    upu_branch_1, upu_branch_2, upu_platform_joint_axis_platform_x,
                     upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
                     upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,),
                 ),
@@ -726,10 +742,10 @@ def _prepare(p):
         (),
             (
                 (_upu,
-        (branch_1, branch_2, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
-                    upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
-                    upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
-                    upu_base_point_z, upu_platform_joint_axis_platform_x,
+        (upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
+                    upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
+                    upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z,
+                    upu_branch_1, upu_branch_2, upu_platform_joint_axis_platform_x,
                     upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
                     upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,),
                 ),
@@ -740,11 +756,12 @@ def _prepare(p):
                 gravity_z, h_star_x, h_star_y, h_star_z, platform_mass,),
             (
                 (_upu,
-        (J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
-                    branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
-                    upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
-                    upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
-                    upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z,
+        (upu_J_group_2_xy, upu_J_group_2_xz, upu_J_group_2_yz, upu_Sigma_2_xx, upu_Sigma_2_yy,
+                    upu_Sigma_2_zz, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
+                    upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
+                    upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
+                    upu_base_point_z, upu_branch_1, upu_branch_2, upu_g_r0_x, upu_g_r0_y,
+                    upu_g_r0_z, upu_h_2_x, upu_h_2_y, upu_h_2_z, upu_h_3_x, upu_h_3_y, upu_h_3_z,
                     upu_link3_mass, upu_platform_joint_axis_platform_x,
                     upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
                     upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,),
@@ -755,10 +772,10 @@ def _prepare(p):
         (),
             (
                 (_upu,
-        (branch_1, branch_2, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
-                    upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
-                    upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
-                    upu_base_point_z, upu_platform_point_x, upu_platform_point_y,
+        (upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
+                    upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
+                    upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z,
+                    upu_branch_1, upu_branch_2, upu_platform_point_x, upu_platform_point_y,
                     upu_platform_point_z,),
                 ),
             ),
@@ -767,10 +784,10 @@ def _prepare(p):
         (),
             (
                 (_upu,
-        (branch_1, branch_2, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
-                    upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
-                    upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
-                    upu_base_point_z, upu_platform_joint_axis_platform_x,
+        (upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
+                    upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
+                    upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z,
+                    upu_branch_1, upu_branch_2, upu_platform_joint_axis_platform_x,
                     upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
                     upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,),
                 ),
@@ -780,10 +797,10 @@ def _prepare(p):
         (),
             (
                 (_upu,
-        (branch_1, branch_2, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
-                    upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
-                    upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
-                    upu_base_point_z, upu_platform_joint_axis_platform_x,
+        (upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
+                    upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
+                    upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z,
+                    upu_branch_1, upu_branch_2, upu_platform_joint_axis_platform_x,
                     upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
                     upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,),
                 ),
@@ -793,9 +810,9 @@ def _prepare(p):
         (),
             (
                 (_upu,
-        (branch_1, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_yx, upu_base_frame_yy,
+        (upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_yx, upu_base_frame_yy,
                     upu_base_frame_zx, upu_base_frame_zy, upu_base_point_x, upu_base_point_y,
-                    upu_base_point_z, upu_platform_joint_axis_platform_x,
+                    upu_base_point_z, upu_branch_1, upu_platform_joint_axis_platform_x,
                     upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
                     upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,),
                 ),
@@ -805,11 +822,12 @@ def _prepare(p):
         (),
             (
                 (_upu,
-        (J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
-                    branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
-                    upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
-                    upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
-                    upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z,
+        (upu_J_group_2_xy, upu_J_group_2_xz, upu_J_group_2_yz, upu_Sigma_2_xx, upu_Sigma_2_yy,
+                    upu_Sigma_2_zz, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
+                    upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
+                    upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
+                    upu_base_point_z, upu_branch_1, upu_branch_2, upu_g_r0_x, upu_g_r0_y,
+                    upu_g_r0_z, upu_h_2_x, upu_h_2_y, upu_h_2_z, upu_h_3_x, upu_h_3_y, upu_h_3_z,
                     upu_link3_mass, upu_platform_joint_axis_platform_x,
                     upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
                     upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,),
@@ -820,11 +838,12 @@ def _prepare(p):
         (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, platform_mass,),
             (
                 (_upu,
-        (b_r0_x, b_r0_y, b_r0_z, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z,
-                    h_3_x, h_3_y, h_3_z, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
-                    upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
-                    upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
-                    upu_base_point_z, upu_link2_mass, upu_link3_mass, upu_platform_point_x,
+        (upu_b_r0_x, upu_b_r0_y, upu_b_r0_z, upu_base_frame_xx, upu_base_frame_xy,
+                    upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz,
+                    upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x,
+                    upu_base_point_y, upu_base_point_z, upu_branch_1, upu_branch_2, upu_g_r0_x,
+                    upu_g_r0_y, upu_g_r0_z, upu_h_2_x, upu_h_2_y, upu_h_2_z, upu_h_3_x, upu_h_3_y,
+                    upu_h_3_z, upu_link2_mass, upu_link3_mass, upu_platform_point_x,
                     upu_platform_point_y, upu_platform_point_z,),
                 ),
             ),
@@ -833,10 +852,10 @@ def _prepare(p):
         (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
             (
                 (_upu,
-        (branch_1, branch_2, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
-                    upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
-                    upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
-                    upu_base_point_z, upu_platform_joint_axis_platform_x,
+        (upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
+                    upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
+                    upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z,
+                    upu_branch_1, upu_branch_2, upu_platform_joint_axis_platform_x,
                     upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
                     upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,),
                 ),
@@ -845,7 +864,8 @@ def _prepare(p):
     }
 
 
-_FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
+_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
@@ -891,17 +911,19 @@ class _Floats:
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
-        for k in range(self.states):
-            try:
-                ok, arrays = function(self, *(row[k] for row in rows))
-            except (ZeroDivisionError, OverflowError):
-                continue
-            if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
-                for a, array in zip(found, arrays):
-                    a[k] = array
-        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
+        found = [self.state(function, names, [row[k] for row in rows]) for k in range(self.states)]
+        return [np.array(a).T.reshape(*_SHAPES[n], self.states) for a, n in zip(zip(*found), names)]
+
+    def state(self, function, names, given):
+        """Lists that a function gives at a state."""
+        try:
+            ok, arrays = function(self, *given)
+        except (ZeroDivisionError, OverflowError):
+            ok = False
+        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+            return arrays
+        return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
 
 
 class _Arrays:
@@ -969,35 +991,44 @@ def _mode(p, states):
     return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
 
 
-def _call(function, steps, p, *arguments, mode=_mode):
-    """What the steps give at arguments (name, value, shape of a state, default, rule)."""
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+    """What the steps give at arguments (name, value, shape of a state, default, rule).
+
+    Where that may be infinite only NaN makes a state impossible.
+    """
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
     lead, p = _lead(leads), _given(p)
     read = [a[4:] != ("unused",) for a in arguments]
     if lead or mode is _Judged:
-        results = _many(steps, p, lead, given, shapes, read, mode)
+        results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
-        results = _one(steps, p, given, shapes, read)
+        results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
 
 
-def _one(steps, p, given, shapes, read):
+def _one(steps, p, given, shapes, read, unbounded):
     """Results at a single state."""
     states = [v.reshape(*shape, 1) for v, shape in zip(given, shapes)]
     with np.errstate(all="ignore"):
-        results = [a[..., 0] for a in steps(_Floats(p, 1), *states)]
-    if all(all(map(math.isfinite, v.ravel().tolist())) for v in (*compress(given, read), *results)):
-        return [np.array(a)[()] for a in results]
+        results = [a[..., 0].copy() for a in steps(_Floats(p, 1), *states)]
+    looked_at = [np.minimum(a, 0.0) for a in results] if unbounded else results
+    entries = (v.ravel().tolist() for v in (*compress(given, read), *looked_at))
+    if all(all(map(math.isfinite, row)) for row in entries):
+        return [a[()] for a in results]
     return [np.full(a.shape, np.nan)[()] for a in results]
 
 
-def _many(steps, p, lead, given, shapes, read, mode):
+def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block."""
     count = math.prod(lead)
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
+    if count > _BLOCK:
+        # Never touched, freed at once: the C library, which learns from it, then keeps the memory
+        # of intermediate arrays from block to block instead of giving its pages back.
+        np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
         for first in range(0, max(count, 1), _BLOCK):
             block = slice(first, min(first + _BLOCK, count))
@@ -1009,7 +1040,7 @@ def _many(steps, p, lead, given, shapes, read, mode):
             _all_finite(compress(states, read), good)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite(found, good)
+            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -1038,6 +1069,18 @@ def _with_forces(a, amounts, directions, legs):
     for k, leg in enumerate(legs):
         result[leg] += amounts[k] * directions[k]
     return result
+
+
+def _unlimited(a, places):
+    """a, some entries infinite; what is not known stays so."""
+    result = np.array(a)
+    result[places] += np.inf
+    return result
+
+
+def _not_negative(a):
+    """1 where no entry is negative, else 0; NaN where one is not finite."""
+    return np.where(np.isfinite(a).all(axis=0), np.all(a >= 0.0, axis=0), np.nan)
 
 
 def _rows_divided(a, b, places):
@@ -1140,8 +1183,8 @@ def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
     n, states = b.shape
     if 0 < states <= _FEW:
-        matrices, rights = np.moveaxis(a, -1, 0).tolist(), b.T.tolist()
-        return np.array([_solve_one(*each) for each in zip(matrices, rights)]).T.reshape(n, states)
+        systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
+        return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
     good = np.all((size > 0.0) & np.isfinite(size), axis=0)
     rows = np.concatenate((a, b[:, None]), axis=1)
@@ -1168,28 +1211,32 @@ def _solve(a, b):
 
 
 def _solve_one(a, b):
-    """The same for one system of nested lists."""
-    n = len(b)
-    failure = [np.nan] * n
-    for i, row in enumerate(a):
-        size = max(map(abs, row), default=0.0)
-        if not 0.0 < size < np.inf:
-            return failure
-        a[i] = [v / size for v in row] + [b[i] / size]
-    for k in range(n):
-        best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
-            a[k], a[best] = a[best], a[k]
-        if not abs(a[k][k]) > _PIVOT:
-            return failure
-        head = a[k]
-        for i in range(k + 1, n):
-            factor = a[i][k] / head[k]
-            a[i] = [v - factor * h for v, h in zip(a[i], head)]
-    x = [0.0] * n
-    for k in reversed(range(n)):
-        x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
-    return x if all(map(math.isfinite, x)) else failure
+    """The same for one system of nested lists: the rows left lose an entry at every step."""
+    rows, heads = [], []
+    for row, right in zip(a, b):
+        size = max(map(abs, row))
+        if not 0.0 < size < math.inf:
+            return [math.nan] * len(b)
+        rows.append([v / size for v in (*row, right)])
+    while rows:
+        column = [abs(row[0]) for row in rows]
+        largest = max(column)
+        if largest > _CLEARLY * column[0]:
+            best = column.index(largest)
+            rows[0], rows[best] = rows[best], rows[0]
+        pivot, *head = rows[0]
+        if not abs(pivot) > _PIVOT:
+            return [math.nan] * len(b)
+        heads.append((pivot, head))
+        for i in range(1, len(rows)):
+            first, *row = rows[i]
+            factor = first / pivot
+            rows[i] = [v - factor * h for v, h in zip(row, head)]
+        del rows[0]
+    x = []
+    for pivot, (*head, right) in reversed(heads):
+        x.insert(0, (right - sum([h * v for h, v in zip(head, x)])) / pivot)
+    return x if all(map(math.isfinite, x)) else [math.nan] * len(b)
 
 
 def _saddle(a, b):
@@ -1308,7 +1355,7 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 1647 mul, 1185 add, 12 div, 6 sqrt, 0 trig
+# dynamics: 1611 mul, 1149 add, 12 div, 6 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
@@ -1371,11 +1418,11 @@ def _run_dynamics(m, X, V):
     out_H = m.zeros("H")
     out_Hk = m.zeros("Hk")
     out_constraint_bias = m.zeros("constraint_bias")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_6*R_xy
     J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_6*R_yy
     J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_6*R_zy
@@ -1391,126 +1438,132 @@ def _run_dynamics(m, X, V):
     J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_7*R_yz
     J_star_t_16 = J_star_t_3*R_zy - J_star_t_7*R_zz
     J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
-    # (M4) centripetal force and weight of the platform
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
     Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
     Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z_2*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x_2*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y - g_r0_y_2*h_star_x
+    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
+    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
     sums = [0.0] * 27
     for leg, k in legs[0]:
         (
-        J_group_2_xx, J_group_2_xy, J_group_2_xz, J_group_2_yy, J_group_2_yz, J_group_2_zz,
-            Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x,
-            h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, upu_base_frame_xx, upu_base_frame_xy,
-            upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz,
-            upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x,
-            upu_base_point_y, upu_base_point_z, upu_link3_mass,
-            upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
-            upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
-            upu_platform_point_z,
+        upu_J_group_2_xx, upu_J_group_2_xy, upu_J_group_2_xz, upu_J_group_2_yy, upu_J_group_2_yz,
+            upu_J_group_2_zz, upu_Sigma_2_xx, upu_Sigma_2_yy, upu_Sigma_2_zz, upu_base_frame_xx,
+            upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy,
+            upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz,
+            upu_base_point_x, upu_base_point_y, upu_base_point_z, upu_branch_1, upu_branch_2,
+            upu_g_r0_x, upu_g_r0_y, upu_g_r0_z, upu_h_2_x, upu_h_2_y, upu_h_2_z, upu_h_3_x,
+            upu_h_3_y, upu_h_3_z, upu_link3_mass, upu_platform_joint_axis_platform_x,
+            upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
+            upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
         ) = k
-        # (upu-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (upu-S) from the base point to the connection point
+        upu_q_in_base_x = (
         R_xx*upu_platform_point_x + R_xy*upu_platform_point_y + R_xz*upu_platform_point_z
         )
-        q_in_base_y = (
+        upu_q_in_base_y = (
         R_yx*upu_platform_point_x + R_yy*upu_platform_point_y + R_yz*upu_platform_point_z
         )
-        q_in_base_z = (
+        upu_q_in_base_z = (
         R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z
         )
-        S_x = q_in_base_x + t_x - upu_base_point_x
-        S_y = q_in_base_y + t_y - upu_base_point_y
-        S_z = q_in_base_z + t_z - upu_base_point_z
-        # (upu-K2) component along the reference direction
-        px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx
-        # (upu-K3) component across the reference direction
-        py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy
-        # (upu-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (upu-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (upu-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz
-        # (upu-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (upu-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (upu-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (upu-K16) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        end_p1_r0_x = (
+        upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x
+        upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y
+        upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z
+        # (upu-px_1) component along the reference direction
+        upu_px_1 = (
+        upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
+        )
+        # (upu-py_1) component across the reference direction
+        upu_py_1 = (
+        upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy + upu_S_z*upu_base_frame_zy
+        )
+        # (upu-rho2_1) squared amplitude
+        upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
+        # (upu-root_1) amplitude, with the sign of the branch
+        upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
+        # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        upu_xi_1_t = (
+        upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
+        )
+        # (upu-rho2_2) squared amplitude
+        upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t
+        # (upu-root_2) amplitude, with the sign of the branch
+        upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
+        # (upu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_upu_root_2 = 1.0/upu_root_2
+        upu_c_2 = inv_upu_root_2*upu_root_1
+        # (upu-s_2) sine of the angle of joint 2 from its reference direction
+        upu_s_2 = inv_upu_root_2*upu_xi_1_t
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_end_p1_r0_x = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
             R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
             R_yy*upu_base_frame_yx + R_zy*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx + R_yz*upu_base_frame_yx +
             R_zz*upu_base_frame_zx)
         )
-        end_p1_r0_y = (
+        upu_end_p1_r0_y = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy + R_yx*upu_base_frame_yy +
             R_zx*upu_base_frame_zy) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy +
             R_yy*upu_base_frame_yy + R_zy*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy + R_yz*upu_base_frame_yy +
             R_zz*upu_base_frame_zy)
         )
-        end_p1_r0_z = (
+        upu_end_p1_r0_z = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz + R_yx*upu_base_frame_yz +
             R_zx*upu_base_frame_zz) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz +
             R_yy*upu_base_frame_yz + R_zy*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
             R_zz*upu_base_frame_zz)
         )
-        # (upu-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (upu-K7) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x
-        end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1
-        end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
-        end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
-        # (upu-V6) triple product of the velocity vectors
-        volume_c_t = root_1*root_2
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2
-        # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-        n_c_z = n_m1_r0_y*root_2/volume_c_t
-        # (upu-V9) force part of reciprocal wrench 1
-        axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
-        axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
-        axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
-        w_1_t = s_1*s_2
-        w_1_t_2 = c_1*s_2
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1 = inv_upu_root_1*upu_py_1
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_px_1
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_end_p1_r1_x = upu_end_p1_r0_y*upu_s_1 - upu_c_1*upu_end_p1_r0_x
+        upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1
+        upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y
+        upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2
+        # (upu-volume_c) triple product of the velocity vectors
+        upu_volume_c_t = upu_root_1*upu_root_2
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2
+        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t
+        # (upu-w_1) force part of reciprocal wrench 1
+        axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1
+        axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1
+        axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1
+        upu_w_1_t = upu_s_1*upu_s_2
+        upu_w_1_t_2 = upu_c_1*upu_s_2
         axis_y_upu_axes2_in_base_x = (
-        upu_base_frame_xx*w_1_t + upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz
+        upu_base_frame_xx*upu_w_1_t + upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2
         )
         axis_y_upu_axes2_in_base_y = (
-        upu_base_frame_yx*w_1_t + upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz
+        upu_base_frame_yx*upu_w_1_t + upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2
         )
         axis_y_upu_axes2_in_base_z = (
-        upu_base_frame_zx*w_1_t + upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz
+        upu_base_frame_zx*upu_w_1_t + upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2
         )
         axis_x_upu_axes2_x = (
         axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
@@ -1524,439 +1577,478 @@ def _run_dynamics(m, X, V):
         axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
             axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
         )
-        w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
-        inv_w_1_t_25 = 1.0/w_1_t_3
-        w_1_t_4 = inv_w_1_t_25*n_c_z
-        # (upu-A19) coefficient of the acceleration in: angular acceleration of link 1
-        d_alpha_1_t = inv_w_1_t_25*s_2
-        d_alpha_1_t_2 = c_2*inv_w_1_t_25
-        # (upu-N5) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-        d_acc_3_t = d_alpha_1_t_2*root_2
-        # (upu-N9) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        d_phi_3_t = h_3_z*inv_root_2
-        d_phi_3_t_2 = d_alpha_1_t_2*h_3_y
-        # (upu-N36) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_z = (
-        s_2*(J_group_2_xx*d_alpha_1_t - J_group_2_xy*d_alpha_1_t_2 - d_acc_3_t*h_3_z) -
-            c_2*(J_group_2_xy*d_alpha_1_t - J_group_2_yy*d_alpha_1_t_2 - d_acc_3_t*h_3_x -
-            root_2*(d_acc_3_t*upu_link3_mass + d_alpha_1_t_2*h_3_x - d_alpha_1_t*h_3_z))
+        upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y
+        inv_upu_w_1_t_25 = 1.0/upu_w_1_t_3
+        upu_w_1_t_4 = inv_upu_w_1_t_25*upu_n_c_z
+        # (upu-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
+        upu_d_alpha_1_t = inv_upu_w_1_t_25*upu_s_2
+        upu_d_alpha_1_t_2 = inv_upu_w_1_t_25*upu_c_2
+        # (upu-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
+        upu_d_acc_3_t = upu_d_alpha_1_t_2*upu_root_2
+        # (upu-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+        upu_d_phi_3_t = inv_upu_root_2*upu_h_3_z
+        upu_d_phi_3_t_2 = upu_d_alpha_1_t_2*upu_h_3_y
+        # (upu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        upu_d_Gamma_1_z = (
+        upu_s_2*(upu_J_group_2_xx*upu_d_alpha_1_t - upu_J_group_2_xy*upu_d_alpha_1_t_2 -
+            upu_d_acc_3_t*upu_h_3_z) - upu_c_2*(upu_J_group_2_xy*upu_d_alpha_1_t -
+            upu_J_group_2_yy*upu_d_alpha_1_t_2 - upu_d_acc_3_t*upu_h_3_x -
+            upu_root_2*(upu_d_acc_3_t*upu_link3_mass + upu_d_alpha_1_t_2*upu_h_3_x -
+            upu_d_alpha_1_t*upu_h_3_z))
         )
-        # (upu-N40) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_t = (
-        inv_root_2*(J_group_2_xz*d_alpha_1_t - J_group_2_yz*d_alpha_1_t_2 -
-            d_alpha_1_t*h_3_y*root_2)
+        # (upu-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        upu_d_G_t = (
+        inv_upu_root_2*(upu_J_group_2_xz*upu_d_alpha_1_t - upu_J_group_2_yz*upu_d_alpha_1_t_2 -
+            upu_d_alpha_1_t*upu_h_3_y*upu_root_2)
         )
-        # (upu-N54) inertia of the leg at the connection point, without the mass gathered there
-        Q_t = (
-        inv_root_2*(h_3_x + J_group_2_zz*inv_root_2 + root_2*(upu_link3_mass + h_3_x*inv_root_2))
-            - upu_link3_mass
+        # (upu-Q) inertia of the leg at the connection point, without the mass gathered there
+        upu_Q_t = (
+        inv_upu_root_2*(upu_h_3_x + inv_upu_root_2*upu_J_group_2_zz + upu_root_2*(upu_link3_mass +
+            inv_upu_root_2*upu_h_3_x)) - upu_link3_mass
         )
-        Q_t_2 = 0.5*Q_t
-        Q_t_3 = d_Gamma_1_z*inv_w_1_t_25 - upu_link3_mass
-        Q_t_4 = 0.5*Q_t_3
-        Q_t_5 = (
-        Q_t_2*axis_y_upu_axes2_in_base_x + axis_x_upu_axes2_x*d_phi_3_t +
-            axis_z_upu_axes2_in_base_x*d_G_t
+        upu_Q_t_2 = 0.5*upu_Q_t
+        upu_Q_t_3 = inv_upu_w_1_t_25*upu_d_Gamma_1_z - upu_link3_mass
+        upu_Q_t_4 = 0.5*upu_Q_t_3
+        upu_Q_t_5 = (
+        axis_x_upu_axes2_x*upu_d_phi_3_t + axis_y_upu_axes2_in_base_x*upu_Q_t_2 +
+            axis_z_upu_axes2_in_base_x*upu_d_G_t
         )
-        Q_t_6 = (
-        Q_t_2*axis_y_upu_axes2_in_base_y + axis_x_upu_axes2_y*d_phi_3_t +
-            axis_z_upu_axes2_in_base_y*d_G_t
+        upu_Q_t_6 = (
+        axis_x_upu_axes2_y*upu_d_phi_3_t + axis_y_upu_axes2_in_base_y*upu_Q_t_2 +
+            axis_z_upu_axes2_in_base_y*upu_d_G_t
         )
-        Q_t_7 = (
-        Q_t_2*axis_y_upu_axes2_in_base_z + axis_x_upu_axes2_z*d_phi_3_t +
-            axis_z_upu_axes2_in_base_z*d_G_t
+        upu_Q_t_7 = (
+        axis_x_upu_axes2_z*upu_d_phi_3_t + axis_y_upu_axes2_in_base_z*upu_Q_t_2 +
+            axis_z_upu_axes2_in_base_z*upu_d_G_t
         )
-        Q_t_8 = Q_t_4*axis_z_upu_axes2_in_base_x - axis_x_upu_axes2_x*d_phi_3_t_2
-        Q_t_9 = Q_t_4*axis_z_upu_axes2_in_base_y - axis_x_upu_axes2_y*d_phi_3_t_2
-        Q_t_10 = Q_t_4*axis_z_upu_axes2_in_base_z - axis_x_upu_axes2_z*d_phi_3_t_2
-        Q_t_11 = Q_t_5*axis_y_upu_axes2_in_base_x + Q_t_8*axis_z_upu_axes2_in_base_x
-        Q_t_12 = 2.0*Q_t_11 + upu_link3_mass
-        Q_t_13 = (
-        Q_t_5*axis_y_upu_axes2_in_base_y + Q_t_6*axis_y_upu_axes2_in_base_x +
-            Q_t_8*axis_z_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_x
+        upu_Q_t_8 = axis_z_upu_axes2_in_base_x*upu_Q_t_4 - axis_x_upu_axes2_x*upu_d_phi_3_t_2
+        upu_Q_t_9 = axis_z_upu_axes2_in_base_y*upu_Q_t_4 - axis_x_upu_axes2_y*upu_d_phi_3_t_2
+        upu_Q_t_10 = axis_z_upu_axes2_in_base_z*upu_Q_t_4 - axis_x_upu_axes2_z*upu_d_phi_3_t_2
+        upu_Q_t_11 = axis_y_upu_axes2_in_base_x*upu_Q_t_5 + axis_z_upu_axes2_in_base_x*upu_Q_t_8
+        upu_Q_t_12 = 2.0*upu_Q_t_11 + upu_link3_mass
+        upu_Q_t_13 = (
+        axis_y_upu_axes2_in_base_x*upu_Q_t_6 + axis_y_upu_axes2_in_base_y*upu_Q_t_5 +
+            axis_z_upu_axes2_in_base_x*upu_Q_t_9 + axis_z_upu_axes2_in_base_y*upu_Q_t_8
         )
-        Q_t_14 = (
-        Q_t_10*axis_z_upu_axes2_in_base_x + Q_t_5*axis_y_upu_axes2_in_base_z +
-            Q_t_7*axis_y_upu_axes2_in_base_x + Q_t_8*axis_z_upu_axes2_in_base_z
+        upu_Q_t_14 = (
+        axis_y_upu_axes2_in_base_x*upu_Q_t_7 + axis_y_upu_axes2_in_base_z*upu_Q_t_5 +
+            axis_z_upu_axes2_in_base_x*upu_Q_t_10 + axis_z_upu_axes2_in_base_z*upu_Q_t_8
         )
-        Q_t_15 = Q_t_6*axis_y_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_y
-        Q_t_16 = 2.0*Q_t_15 + upu_link3_mass
-        Q_t_17 = (
-        Q_t_10*axis_z_upu_axes2_in_base_y + Q_t_6*axis_y_upu_axes2_in_base_z +
-            Q_t_7*axis_y_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_z
+        upu_Q_t_15 = axis_y_upu_axes2_in_base_y*upu_Q_t_6 + axis_z_upu_axes2_in_base_y*upu_Q_t_9
+        upu_Q_t_16 = 2.0*upu_Q_t_15 + upu_link3_mass
+        upu_Q_t_17 = (
+        axis_y_upu_axes2_in_base_y*upu_Q_t_7 + axis_y_upu_axes2_in_base_z*upu_Q_t_6 +
+            axis_z_upu_axes2_in_base_y*upu_Q_t_10 + axis_z_upu_axes2_in_base_z*upu_Q_t_9
         )
-        Q_t_18 = Q_t_10*axis_z_upu_axes2_in_base_z + Q_t_7*axis_y_upu_axes2_in_base_z
-        Q_t_19 = 2.0*Q_t_18 + upu_link3_mass
-        # (upu-V15) moment part of reciprocal wrench 1
-        o_1_x = end_p1_r3_y*w_1_t_4
-        o_1_y = end_p1_r3_x*w_1_t_4
-        # (upu-A18) coefficient of the acceleration in: angular acceleration of link 1
-        d0_alpha_1_xx = o_1_x*s_2
-        d0_alpha_1_xy = o_1_y*s_2
-        d0_alpha_1_yx = c_2*o_1_x
-        d0_alpha_1_yy = c_2*o_1_y
-        # (upu-N4) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-        d0_acc_3_t = d0_alpha_1_yx*root_2
-        d0_acc_3_t_2 = d0_alpha_1_yy*root_2
-        # (upu-N8) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        d0_phi_3_t = d0_alpha_1_yx*h_3_y
-        d0_phi_3_t_2 = d0_alpha_1_yy*h_3_y
-        # (upu-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d0_Gamma_1_x = (
-        s_2*(J_group_2_xy*d0_alpha_1_yx + d0_acc_3_t*h_3_z - J_group_2_xx*d0_alpha_1_xx) -
-            c_2*(J_group_2_yy*d0_alpha_1_yx + d0_acc_3_t*h_3_x - J_group_2_xy*d0_alpha_1_xx -
-            root_2*(d0_alpha_1_xx*h_3_z - d0_acc_3_t*upu_link3_mass - d0_alpha_1_yx*h_3_x))
+        upu_Q_t_18 = axis_y_upu_axes2_in_base_z*upu_Q_t_7 + axis_z_upu_axes2_in_base_z*upu_Q_t_10
+        upu_Q_t_19 = 2.0*upu_Q_t_18 + upu_link3_mass
+        # (upu-o_1) moment part of reciprocal wrench 1
+        upu_o_1_x = upu_end_p1_r3_y*upu_w_1_t_4
+        upu_o_1_y = upu_end_p1_r3_x*upu_w_1_t_4
+        # (upu-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
+        upu_dalpha_alpha_1_xx = upu_o_1_x*upu_s_2
+        upu_dalpha_alpha_1_xy = upu_o_1_y*upu_s_2
+        upu_dalpha_alpha_1_yx = upu_c_2*upu_o_1_x
+        upu_dalpha_alpha_1_yy = upu_c_2*upu_o_1_y
+        # (upu-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
+        upu_dalpha_acc_3_t = upu_dalpha_alpha_1_yx*upu_root_2
+        upu_dalpha_acc_3_t_2 = upu_dalpha_alpha_1_yy*upu_root_2
+        # (upu-dalpha_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+        upu_dalpha_phi_3_t = upu_dalpha_alpha_1_yx*upu_h_3_y
+        upu_dalpha_phi_3_t_2 = upu_dalpha_alpha_1_yy*upu_h_3_y
+        # (upu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        upu_dalpha_Gamma_1_x = (
+        upu_s_2*(upu_J_group_2_xy*upu_dalpha_alpha_1_yx + upu_dalpha_acc_3_t*upu_h_3_z -
+            upu_J_group_2_xx*upu_dalpha_alpha_1_xx) -
+            upu_c_2*(upu_J_group_2_yy*upu_dalpha_alpha_1_yx + upu_dalpha_acc_3_t*upu_h_3_x -
+            upu_J_group_2_xy*upu_dalpha_alpha_1_xx - upu_root_2*(upu_dalpha_alpha_1_xx*upu_h_3_z -
+            upu_dalpha_acc_3_t*upu_link3_mass - upu_dalpha_alpha_1_yx*upu_h_3_x))
         )
-        d0_Gamma_1_y = (
-        s_2*(J_group_2_xx*d0_alpha_1_xy - J_group_2_xy*d0_alpha_1_yy - d0_acc_3_t_2*h_3_z) -
-            c_2*(J_group_2_xy*d0_alpha_1_xy - J_group_2_yy*d0_alpha_1_yy - d0_acc_3_t_2*h_3_x -
-            root_2*(d0_acc_3_t_2*upu_link3_mass + d0_alpha_1_yy*h_3_x - d0_alpha_1_xy*h_3_z))
+        upu_dalpha_Gamma_1_y = (
+        upu_s_2*(upu_J_group_2_xx*upu_dalpha_alpha_1_xy - upu_J_group_2_xy*upu_dalpha_alpha_1_yy -
+            upu_dalpha_acc_3_t_2*upu_h_3_z) - upu_c_2*(upu_J_group_2_xy*upu_dalpha_alpha_1_xy -
+            upu_J_group_2_yy*upu_dalpha_alpha_1_yy - upu_dalpha_acc_3_t_2*upu_h_3_x -
+            upu_root_2*(upu_dalpha_acc_3_t_2*upu_link3_mass + upu_dalpha_alpha_1_yy*upu_h_3_x -
+            upu_dalpha_alpha_1_xy*upu_h_3_z))
         )
-        # (upu-N39) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d0_G_t = d0_Gamma_1_x*inv_w_1_t_25
-        d0_G_t_2 = d0_Gamma_1_y*inv_w_1_t_25
-        d0_G_t_3 = (
-        inv_root_2*(J_group_2_yz*d0_alpha_1_yx + d0_alpha_1_xx*h_3_y*root_2 -
-            J_group_2_xz*d0_alpha_1_xx)
+        # (upu-dalpha_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        upu_dalpha_G_t = inv_upu_w_1_t_25*upu_dalpha_Gamma_1_x
+        upu_dalpha_G_t_2 = inv_upu_w_1_t_25*upu_dalpha_Gamma_1_y
+        upu_dalpha_G_t_3 = (
+        inv_upu_root_2*(upu_J_group_2_yz*upu_dalpha_alpha_1_yx +
+            upu_dalpha_alpha_1_xx*upu_h_3_y*upu_root_2 - upu_J_group_2_xz*upu_dalpha_alpha_1_xx)
         )
-        d0_G_t_4 = (
-        inv_root_2*(J_group_2_xz*d0_alpha_1_xy - J_group_2_yz*d0_alpha_1_yy -
-            d0_alpha_1_xy*h_3_y*root_2)
+        upu_dalpha_G_t_4 = (
+        inv_upu_root_2*(upu_J_group_2_xz*upu_dalpha_alpha_1_xy -
+            upu_J_group_2_yz*upu_dalpha_alpha_1_yy - upu_dalpha_alpha_1_xy*upu_h_3_y*upu_root_2)
         )
-        # (M2) coupling block of M
-        M_ta_t = Q_t_13*q_in_base_z
-        M_ta_t_2 = Q_t_14*q_in_base_y
-        M_ta_t_3 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x
-        M_ta_t_4 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x
-        M_ta_t_5 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y
-        M_ta_t_6 = Q_t_17*q_in_base_x
-        M_ta_t_7 = M_ta_t - M_ta_t_6
-        M_ta_t_8 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x
-        M_ta_t_9 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y
-        M_ta_t_10 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x
-        M_ta_t_11 = M_ta_t_6 - M_ta_t_2
-        # (upu-N51) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d0_c_in_base_x = (
-        -axis_x_upu_axes2_x*d0_phi_3_t - axis_y_upu_axes2_in_base_x*d0_G_t_3 -
-            axis_z_upu_axes2_in_base_x*d0_G_t
+        # (upu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        upu_dalpha_c_in_base_x = (
+        -axis_x_upu_axes2_x*upu_dalpha_phi_3_t - axis_y_upu_axes2_in_base_x*upu_dalpha_G_t_3 -
+            axis_z_upu_axes2_in_base_x*upu_dalpha_G_t
         )
-        d0_c_in_base_y = (
-        -axis_x_upu_axes2_y*d0_phi_3_t - axis_y_upu_axes2_in_base_y*d0_G_t_3 -
-            axis_z_upu_axes2_in_base_y*d0_G_t
+        upu_dalpha_c_in_base_y = (
+        -axis_x_upu_axes2_y*upu_dalpha_phi_3_t - axis_y_upu_axes2_in_base_y*upu_dalpha_G_t_3 -
+            axis_z_upu_axes2_in_base_y*upu_dalpha_G_t
         )
-        d0_c_in_base_z = (
-        -axis_x_upu_axes2_z*d0_phi_3_t - axis_y_upu_axes2_in_base_z*d0_G_t_3 -
-            axis_z_upu_axes2_in_base_z*d0_G_t
+        upu_dalpha_c_in_base_z = (
+        -axis_x_upu_axes2_z*upu_dalpha_phi_3_t - axis_y_upu_axes2_in_base_z*upu_dalpha_G_t_3 -
+            axis_z_upu_axes2_in_base_z*upu_dalpha_G_t
         )
-        d0_c_in_base_x_2 = (
-        axis_x_upu_axes2_x*d0_phi_3_t_2 - axis_y_upu_axes2_in_base_x*d0_G_t_4 -
-            axis_z_upu_axes2_in_base_x*d0_G_t_2
+        upu_dalpha_c_in_base_x_2 = (
+        axis_x_upu_axes2_x*upu_dalpha_phi_3_t_2 - axis_y_upu_axes2_in_base_x*upu_dalpha_G_t_4 -
+            axis_z_upu_axes2_in_base_x*upu_dalpha_G_t_2
         )
-        d0_c_in_base_y_2 = (
-        axis_x_upu_axes2_y*d0_phi_3_t_2 - axis_y_upu_axes2_in_base_y*d0_G_t_4 -
-            axis_z_upu_axes2_in_base_y*d0_G_t_2
+        upu_dalpha_c_in_base_y_2 = (
+        axis_x_upu_axes2_y*upu_dalpha_phi_3_t_2 - axis_y_upu_axes2_in_base_y*upu_dalpha_G_t_4 -
+            axis_z_upu_axes2_in_base_y*upu_dalpha_G_t_2
         )
-        d0_c_in_base_z_2 = (
-        axis_x_upu_axes2_z*d0_phi_3_t_2 - axis_y_upu_axes2_in_base_z*d0_G_t_4 -
-            axis_z_upu_axes2_in_base_z*d0_G_t_2
+        upu_dalpha_c_in_base_z_2 = (
+        axis_x_upu_axes2_z*upu_dalpha_phi_3_t_2 - axis_y_upu_axes2_in_base_z*upu_dalpha_G_t_4 -
+            axis_z_upu_axes2_in_base_z*upu_dalpha_G_t_2
         )
-        d0_c_in_base_y_3 = (
-        axis_x_upu_axes2_y*d0_c_in_base_x + axis_y_upu_axes2_in_base_y*d0_c_in_base_x_2
+        # (M_ta) coupling block of M
+        upu_M_ta_t = upu_Q_t_13*upu_q_in_base_z
+        upu_M_ta_t_2 = upu_Q_t_14*upu_q_in_base_y
+        upu_M_ta_t_3 = upu_Q_t_17*upu_q_in_base_x
+        upu_M_ta_t_4 = (
+        upu_M_ta_t + axis_x_upu_axes2_x*upu_dalpha_c_in_base_x +
+            axis_y_upu_axes2_in_base_x*upu_dalpha_c_in_base_x_2 - upu_M_ta_t_2
         )
-        d0_c_in_base_z_3 = (
-        axis_x_upu_axes2_z*d0_c_in_base_x + axis_y_upu_axes2_in_base_z*d0_c_in_base_x_2
+        upu_M_ta_t_5 = (
+        upu_Q_t_12*upu_q_in_base_z - axis_x_upu_axes2_y*upu_dalpha_c_in_base_x -
+            axis_y_upu_axes2_in_base_y*upu_dalpha_c_in_base_x_2 - upu_Q_t_14*upu_q_in_base_x
         )
-        d0_c_in_base_x_3 = (
-        axis_x_upu_axes2_x*d0_c_in_base_y + axis_y_upu_axes2_in_base_x*d0_c_in_base_y_2
+        upu_M_ta_t_6 = (
+        axis_x_upu_axes2_z*upu_dalpha_c_in_base_x +
+            axis_y_upu_axes2_in_base_z*upu_dalpha_c_in_base_x_2 + upu_Q_t_12*upu_q_in_base_y -
+            upu_Q_t_13*upu_q_in_base_x
         )
-        d0_c_in_base_y_4 = (
-        axis_x_upu_axes2_y*d0_c_in_base_y + axis_y_upu_axes2_in_base_y*d0_c_in_base_y_2
+        upu_M_ta_t_7 = (
+        axis_x_upu_axes2_x*upu_dalpha_c_in_base_y +
+            axis_y_upu_axes2_in_base_x*upu_dalpha_c_in_base_y_2 + upu_Q_t_16*upu_q_in_base_z -
+            upu_Q_t_17*upu_q_in_base_y
         )
-        d0_c_in_base_z_4 = (
-        axis_x_upu_axes2_z*d0_c_in_base_y + axis_y_upu_axes2_in_base_z*d0_c_in_base_y_2
+        upu_M_ta_t_8 = (
+        upu_M_ta_t - upu_M_ta_t_3 - axis_x_upu_axes2_y*upu_dalpha_c_in_base_y -
+            axis_y_upu_axes2_in_base_y*upu_dalpha_c_in_base_y_2
         )
-        d0_c_in_base_x_4 = (
-        axis_x_upu_axes2_x*d0_c_in_base_z + axis_y_upu_axes2_in_base_x*d0_c_in_base_z_2
+        upu_M_ta_t_9 = (
+        axis_x_upu_axes2_z*upu_dalpha_c_in_base_y +
+            axis_y_upu_axes2_in_base_z*upu_dalpha_c_in_base_y_2 + upu_Q_t_13*upu_q_in_base_y -
+            upu_Q_t_16*upu_q_in_base_x
         )
-        d0_c_in_base_y_5 = (
-        axis_x_upu_axes2_y*d0_c_in_base_z + axis_y_upu_axes2_in_base_y*d0_c_in_base_z_2
+        upu_M_ta_t_10 = (
+        axis_x_upu_axes2_x*upu_dalpha_c_in_base_z +
+            axis_y_upu_axes2_in_base_x*upu_dalpha_c_in_base_z_2 + upu_Q_t_17*upu_q_in_base_z -
+            upu_Q_t_19*upu_q_in_base_y
         )
-        d0_c_in_base_z_5 = (
-        axis_x_upu_axes2_z*d0_c_in_base_z + axis_y_upu_axes2_in_base_z*d0_c_in_base_z_2
+        upu_M_ta_t_11 = (
+        upu_Q_t_14*upu_q_in_base_z - axis_x_upu_axes2_y*upu_dalpha_c_in_base_z -
+            axis_y_upu_axes2_in_base_y*upu_dalpha_c_in_base_z_2 - upu_Q_t_19*upu_q_in_base_x
         )
-        # (M2) coupling block of M
-        M_ta_t_12 = (
-        M_ta_t + axis_x_upu_axes2_x*d0_c_in_base_x + axis_y_upu_axes2_in_base_x*d0_c_in_base_x_2 -
-            M_ta_t_2
+        upu_M_ta_t_12 = (
+        upu_M_ta_t_3 - upu_M_ta_t_2 - axis_x_upu_axes2_z*upu_dalpha_c_in_base_z -
+            axis_y_upu_axes2_in_base_z*upu_dalpha_c_in_base_z_2
         )
-        M_ta_t_13 = M_ta_t_3 - d0_c_in_base_y_3
-        M_ta_t_14 = M_ta_t_4 + d0_c_in_base_z_3
-        M_ta_t_15 = M_ta_t_5 + d0_c_in_base_x_3
-        M_ta_t_16 = M_ta_t_7 - d0_c_in_base_y_4
-        M_ta_t_17 = M_ta_t_8 + d0_c_in_base_z_4
-        M_ta_t_18 = M_ta_t_9 + d0_c_in_base_x_4
-        M_ta_t_19 = M_ta_t_10 - d0_c_in_base_y_5
-        M_ta_t_20 = M_ta_t_11 - d0_c_in_base_z_5
-        # (upu-N43) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        d0_G_m1_t = d0_Gamma_1_x*w_1_t_4
-        d0_G_m1_t_2 = d0_Gamma_1_y*w_1_t_4
-        # (upu-N44) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        d_G_m1_t = c_2*h_3_y*w_1_t_4
-        d_G_m1_t_2 = w_1_t_4*(s_2*(J_group_2_xz*inv_root_2 - h_3_y) - J_group_2_yz*c_2*inv_root_2)
-        d_G_m1_t_3 = d_Gamma_1_z*w_1_t_4
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_in_base_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x - axis_x_upu_axes2_x*end_p1_r3_y
-        n_m1_in_base_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x - axis_x_upu_axes2_y*end_p1_r3_y
-        n_m1_in_base_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x - axis_x_upu_axes2_z*end_p1_r3_y
-        # (upu-N44) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        d_G_m1_in_base_x = (
-        axis_y_upu_axes2_in_base_x*d_G_m1_t_2 + axis_z_upu_axes2_in_base_x*d_G_m1_t_3 -
-            axis_x_upu_axes2_x*d_G_m1_t
+        # (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        upu_dalpha_G_m1_t = upu_dalpha_Gamma_1_x*upu_w_1_t_4
+        upu_dalpha_G_m1_t_2 = upu_dalpha_Gamma_1_y*upu_w_1_t_4
+        # (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        upu_d_G_m1_t = upu_c_2*upu_h_3_y*upu_w_1_t_4
+        upu_d_G_m1_t_2 = (
+        upu_w_1_t_4*(upu_s_2*(inv_upu_root_2*upu_J_group_2_xz - upu_h_3_y) -
+            inv_upu_root_2*upu_J_group_2_yz*upu_c_2)
         )
-        d_G_m1_in_base_y = (
-        axis_y_upu_axes2_in_base_y*d_G_m1_t_2 + axis_z_upu_axes2_in_base_y*d_G_m1_t_3 -
-            axis_x_upu_axes2_y*d_G_m1_t
+        upu_d_G_m1_t_3 = upu_d_Gamma_1_z*upu_w_1_t_4
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_n_m1_in_base_x = (
+        axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x - axis_x_upu_axes2_x*upu_end_p1_r3_y
         )
-        d_G_m1_in_base_z = (
-        axis_y_upu_axes2_in_base_z*d_G_m1_t_2 + axis_z_upu_axes2_in_base_z*d_G_m1_t_3 -
-            axis_x_upu_axes2_z*d_G_m1_t
+        upu_n_m1_in_base_y = (
+        axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x - axis_x_upu_axes2_y*upu_end_p1_r3_y
         )
-        # (upu-N48) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_m_xx = d_G_m1_in_base_x*n_m1_in_base_x
-        d_G_m_xy = d_G_m1_in_base_y*n_m1_in_base_x
-        d_G_m_xz = d_G_m1_in_base_z*n_m1_in_base_x
-        d_G_m_yx = d_G_m1_in_base_x*n_m1_in_base_y
-        # (upu-N43) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        d0_G_m1_in_base_y = axis_x_upu_axes2_y*d0_G_m1_t + axis_y_upu_axes2_in_base_y*d0_G_m1_t_2
-        d0_G_m1_in_base_z = axis_x_upu_axes2_z*d0_G_m1_t + axis_y_upu_axes2_in_base_z*d0_G_m1_t_2
-        # (M3) rotational block of M
-        M_aa_t = (
-        M_ta_t_5*q_in_base_z + d0_c_in_base_x_3*q_in_base_z + d_G_m_xz*q_in_base_y +
-            n_m1_in_base_x*(axis_x_upu_axes2_x*d0_G_m1_t + axis_y_upu_axes2_in_base_x*d0_G_m1_t_2)
-            - M_ta_t_9*q_in_base_y - d0_c_in_base_x_4*q_in_base_y - d_G_m_xy*q_in_base_z
+        upu_n_m1_in_base_z = (
+        axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x - axis_x_upu_axes2_z*upu_end_p1_r3_y
         )
-        M_aa_t_2 = (
-        M_ta_t_10*q_in_base_y + d0_G_m1_in_base_y*n_m1_in_base_x + d0_c_in_base_y_4*q_in_base_z +
-            d_G_m_xx*q_in_base_z - M_ta_t_7*q_in_base_z - d0_c_in_base_y_5*q_in_base_y -
-            d_G_m_xz*q_in_base_x
+        # (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        upu_dalpha_G_m1_in_base_y = (
+        axis_x_upu_axes2_y*upu_dalpha_G_m1_t + axis_y_upu_axes2_in_base_y*upu_dalpha_G_m1_t_2
         )
-        M_aa_t_3 = (
-        M_ta_t_11*q_in_base_y + M_ta_t_8*q_in_base_z + d0_G_m1_in_base_z*n_m1_in_base_x +
-            d0_c_in_base_z_4*q_in_base_z + d_G_m_xy*q_in_base_x - d0_c_in_base_z_5*q_in_base_y -
-            d_G_m_xx*q_in_base_y
+        upu_dalpha_G_m1_in_base_z = (
+        axis_x_upu_axes2_z*upu_dalpha_G_m1_t + axis_y_upu_axes2_in_base_z*upu_dalpha_G_m1_t_2
         )
-        M_aa_t_4 = (
-        M_ta_t_3*q_in_base_z + d0_G_m1_in_base_y*n_m1_in_base_y + d0_c_in_base_y_5*q_in_base_x +
-            d_G_m_yx*q_in_base_z - M_ta_t_10*q_in_base_x - d0_c_in_base_y_3*q_in_base_z -
-            d_G_m1_in_base_z*n_m1_in_base_y*q_in_base_x
+        # (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        upu_d_G_m1_in_base_x = (
+        axis_y_upu_axes2_in_base_x*upu_d_G_m1_t_2 + axis_z_upu_axes2_in_base_x*upu_d_G_m1_t_3 -
+            axis_x_upu_axes2_x*upu_d_G_m1_t
         )
-        M_aa_t_5 = (
-        M_ta_t_11*q_in_base_x + M_ta_t_4*q_in_base_z + d0_c_in_base_z_3*q_in_base_z +
-            d_G_m_yx*q_in_base_y - d0_G_m1_in_base_z*n_m1_in_base_y - d0_c_in_base_z_5*q_in_base_x
-            - d_G_m1_in_base_y*n_m1_in_base_y*q_in_base_x
+        upu_d_G_m1_in_base_y = (
+        axis_y_upu_axes2_in_base_y*upu_d_G_m1_t_2 + axis_z_upu_axes2_in_base_y*upu_d_G_m1_t_3 -
+            axis_x_upu_axes2_y*upu_d_G_m1_t
         )
-        M_aa_t_6 = (
-        M_ta_t_4*q_in_base_y + d0_G_m1_in_base_z*n_m1_in_base_z + d0_c_in_base_z_3*q_in_base_y +
-            d_G_m1_in_base_y*n_m1_in_base_z*q_in_base_x - M_ta_t_8*q_in_base_x -
-            d0_c_in_base_z_4*q_in_base_x - d_G_m1_in_base_x*n_m1_in_base_z*q_in_base_y
+        upu_d_G_m1_in_base_z = (
+        axis_y_upu_axes2_in_base_z*upu_d_G_m1_t_2 + axis_z_upu_axes2_in_base_z*upu_d_G_m1_t_3 -
+            axis_x_upu_axes2_z*upu_d_G_m1_t
         )
-        # (upu-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        # (upu-V18) rate at which the joints turn along moment direction 1
-        eta_1 = n_m1_in_base_x*omega_x + n_m1_in_base_y*omega_y + n_m1_in_base_z*omega_z
-        # (upu-V1) velocity of the connection point
-        S_dot_tip_x = (
-        S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
+        # (upu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        upu_d_G_m_xx = upu_d_G_m1_in_base_x*upu_n_m1_in_base_x
+        upu_d_G_m_xy = upu_d_G_m1_in_base_y*upu_n_m1_in_base_x
+        upu_d_G_m_xz = upu_d_G_m1_in_base_z*upu_n_m1_in_base_x
+        upu_d_G_m_yx = upu_d_G_m1_in_base_x*upu_n_m1_in_base_y
+        # (M_aa) rotational block of M
+        upu_M_aa_t = (
+        upu_M_ta_t_7*upu_q_in_base_z + upu_d_G_m_xz*upu_q_in_base_y +
+            upu_n_m1_in_base_x*(axis_x_upu_axes2_x*upu_dalpha_G_m1_t +
+            axis_y_upu_axes2_in_base_x*upu_dalpha_G_m1_t_2) - upu_M_ta_t_10*upu_q_in_base_y -
+            upu_d_G_m_xy*upu_q_in_base_z
         )
-        # (upu-V19) rate of joint 1
-        qd_1_t = (
-        inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
-            S_dot_z*axis_y_upu_axes2_in_base_z)
+        upu_M_aa_t_2 = (
+        upu_M_ta_t_11*upu_q_in_base_y + upu_d_G_m_xx*upu_q_in_base_z +
+            upu_dalpha_G_m1_in_base_y*upu_n_m1_in_base_x - upu_M_ta_t_8*upu_q_in_base_z -
+            upu_d_G_m_xz*upu_q_in_base_x
         )
-        qd_1_t_2 = (
-        inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
-            S_dot_z*axis_z_upu_axes2_in_base_z + eta_1*n_c_z)
+        upu_M_aa_t_3 = (
+        upu_M_ta_t_12*upu_q_in_base_y + upu_M_ta_t_9*upu_q_in_base_z +
+            upu_d_G_m_xy*upu_q_in_base_x + upu_dalpha_G_m1_in_base_z*upu_n_m1_in_base_x -
+            upu_d_G_m_xx*upu_q_in_base_y
         )
-        # (upu-V22) angular velocity of link 1
-        omega_1_t = qd_1_t_2*s_2
-        omega_1_t_2 = c_2*qd_1_t_2
-        # (upu-A8) rate of moment direction 1
-        omega_tip_x = (
+        upu_M_aa_t_4 = (
+        upu_M_ta_t_5*upu_q_in_base_z + upu_d_G_m_yx*upu_q_in_base_z +
+            upu_dalpha_G_m1_in_base_y*upu_n_m1_in_base_y - upu_M_ta_t_11*upu_q_in_base_x -
+            upu_d_G_m1_in_base_z*upu_n_m1_in_base_y*upu_q_in_base_x
+        )
+        upu_M_aa_t_5 = (
+        upu_M_ta_t_12*upu_q_in_base_x + upu_M_ta_t_6*upu_q_in_base_z +
+            upu_d_G_m_yx*upu_q_in_base_y - upu_dalpha_G_m1_in_base_z*upu_n_m1_in_base_y -
+            upu_d_G_m1_in_base_y*upu_n_m1_in_base_y*upu_q_in_base_x
+        )
+        upu_M_aa_t_6 = (
+        upu_M_ta_t_6*upu_q_in_base_y + upu_dalpha_G_m1_in_base_z*upu_n_m1_in_base_z +
+            upu_d_G_m1_in_base_y*upu_n_m1_in_base_z*upu_q_in_base_x - upu_M_ta_t_9*upu_q_in_base_x
+            - upu_d_G_m1_in_base_x*upu_n_m1_in_base_z*upu_q_in_base_y
+        )
+        # (upu-S_dot) velocity of the connection point
+        upu_S_dot_t = omega_y*upu_q_in_base_z - omega_z*upu_q_in_base_y
+        upu_S_dot_t_2 = omega_z*upu_q_in_base_x - omega_x*upu_q_in_base_z
+        upu_S_dot_t_3 = omega_x*upu_q_in_base_y - omega_y*upu_q_in_base_x
+        upu_S_dot_x = t_dot_x + upu_S_dot_t
+        upu_S_dot_y = t_dot_y + upu_S_dot_t_2
+        upu_S_dot_z = t_dot_z + upu_S_dot_t_3
+        # (upu-eta_1) rate at which the joints turn along moment direction 1
+        upu_eta_1 = (
+        omega_x*upu_n_m1_in_base_x + omega_y*upu_n_m1_in_base_y + omega_z*upu_n_m1_in_base_z
+        )
+        # (upu-S_dot) velocity of the connection point
+        upu_S_dot_tip_x = (
+        axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
+            axis_x_upu_axes2_z*upu_S_dot_z
+        )
+        # (upu-qd_3) rate of joint 3
+        upu_qd_3_t = (
+        inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_dot_x +
+            axis_y_upu_axes2_in_base_y*upu_S_dot_y + axis_y_upu_axes2_in_base_z*upu_S_dot_z)
+        )
+        upu_qd_3_t_2 = (
+        inv_upu_w_1_t_25*(axis_z_upu_axes2_in_base_x*upu_S_dot_x +
+            axis_z_upu_axes2_in_base_y*upu_S_dot_y + axis_z_upu_axes2_in_base_z*upu_S_dot_z +
+            upu_eta_1*upu_n_c_z)
+        )
+        # (upu-omega_1) angular velocity of link 1
+        upu_omega_1_t = upu_qd_3_t_2*upu_s_2
+        upu_omega_1_t_2 = upu_c_2*upu_qd_3_t_2
+        # (upu-u_1) centripetal acceleration of the connection point
+        upu_u_1_x = omega_y*upu_S_dot_t_3 - omega_z*upu_S_dot_t_2
+        upu_u_1_y = omega_z*upu_S_dot_t - omega_x*upu_S_dot_t_3
+        upu_u_1_z = omega_x*upu_S_dot_t_2 - omega_y*upu_S_dot_t
+        # (upu-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        upu_zeta_2_x = upu_omega_1_t_2*upu_qd_3_t
+        upu_zeta_2_y = upu_omega_1_t*upu_qd_3_t
+        # (upu-W_2) centripetal tensor of link 2
+        upu_W_2_t = upu_omega_1_t*upu_omega_1_t
+        upu_W_2_t_2 = upu_omega_1_t_2*upu_omega_1_t_2
+        upu_W_2_t_3 = upu_qd_3_t*upu_qd_3_t
+        upu_W_2_xy = upu_omega_1_t*upu_omega_1_t_2
+        # (upu-bias) acceleration of the connection point at zero joint accelerations
+        upu_bias_t = 2.0*upu_S_dot_tip_x
+        upu_bias_t_2 = upu_bias_t*upu_qd_3_t
+        upu_bias_t_3 = upu_bias_t*upu_omega_1_t_2
+        upu_bias_z = upu_bias_t_3 + 2.0*upu_root_2*upu_zeta_2_y
+        # (upu-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        upu_rel_o_z = (
+        axis_z_upu_axes2_in_base_x*upu_u_1_x + axis_z_upu_axes2_in_base_y*upu_u_1_y +
+            axis_z_upu_axes2_in_base_z*upu_u_1_z - upu_bias_z
+        )
+        # (upu-nd_m1) rate of moment direction 1
+        upu_omega_tip_x = (
         axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
         )
-        omega_tip_y = (
+        upu_omega_tip_y = (
         axis_y_upu_axes2_in_base_x*omega_x + axis_y_upu_axes2_in_base_y*omega_y +
             axis_y_upu_axes2_in_base_z*omega_z
         )
-        omega_tip_z = (
+        upu_omega_tip_z = (
         axis_z_upu_axes2_in_base_x*omega_x + axis_z_upu_axes2_in_base_y*omega_y +
             axis_z_upu_axes2_in_base_z*omega_z
         )
-        nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t - end_p1_r3_x*omega_tip_z
-        nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y - end_p1_r3_y*omega_tip_z
-        # (upu-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_x = omega_1_t_2*qd_1_t
-        zeta_2_y = omega_1_t*qd_1_t
-        # (upu-A9) bias of the angular acceleration along moment direction 1
-        nu_1_t = end_p1_r3_y*zeta_2_x - end_p1_r3_x*zeta_2_y
-        nu_1_t_2 = (
-        nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z - qd_1_t)*(end_p1_r3_y*omega_1_t_2 -
-            end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 + omega_tip_y)
+        upu_nd_m1_x = (
+        upu_end_p1_r1_x*upu_omega_tip_x - upu_end_p1_r1_x*upu_omega_1_t -
+            upu_end_p1_r3_x*upu_omega_tip_z
         )
-        nu_1 = -nu_1_t - nu_1_t_2
-        # (upu-V24) centripetal tensor of link 2
-        W_2_t = omega_1_t*omega_1_t
-        W_2_t_2 = omega_1_t_2*omega_1_t_2
-        W_2_t_3 = qd_1_t*qd_1_t
-        W_2_xy = omega_1_t*omega_1_t_2
-        # (upu-A5) acceleration of the connection point at zero joint accelerations
-        bias_t = 2.0*S_dot_tip_x
-        bias_t_2 = bias_t*qd_1_t
-        bias_t_3 = bias_t*omega_1_t_2
-        bias_z = bias_t_3 + 2.0*root_2*zeta_2_y
-        # (upu-A1) centripetal acceleration of the connection point
-        u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
-        u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y
-        # (upu-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_z = (
-        axis_z_upu_axes2_in_base_x*u_1_x + axis_z_upu_axes2_in_base_y*u_1_y +
-            axis_z_upu_axes2_in_base_z*u_1_z - bias_z
+        upu_nd_m1_y = (
+        upu_end_p1_r1_x*upu_omega_1_t_2 + upu_end_p1_r1_x*upu_omega_tip_y -
+            upu_end_p1_r3_y*upu_omega_tip_z
         )
-        # (upu-A12) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_o_t = (
-        axis_y_upu_axes2_in_base_x*u_1_x + axis_y_upu_axes2_in_base_y*u_1_y +
-            axis_y_upu_axes2_in_base_z*u_1_z - bias_t_2
+        # (upu-nu_1) bias of the angular acceleration along moment direction 1
+        upu_nu_1_t = upu_end_p1_r3_y*upu_zeta_2_x - upu_end_p1_r3_x*upu_zeta_2_y
+        upu_nu_1_t_2 = (
+        upu_nd_m1_x*(upu_omega_1_t - upu_omega_tip_x) + (upu_omega_tip_z -
+            upu_qd_3_t)*(upu_end_p1_r3_y*upu_omega_1_t_2 - upu_end_p1_r3_x*upu_omega_1_t) -
+            upu_nd_m1_y*(upu_omega_1_t_2 + upu_omega_tip_y)
         )
-        qdd_1_o_t_2 = inv_root_2*qdd_1_o_t
-        qdd_1_o_t_3 = inv_w_1_t_25*(rel_o_z + n_c_z*nu_1)
-        # (upu-A20) remainder without the acceleration in: angular acceleration of link 1
-        alpha_1_o_t = qdd_1_o_t_3*s_2
-        alpha_1_o_t_2 = c_2*qdd_1_o_t_3
-        # (upu-A24) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_o_x = alpha_1_o_t - zeta_2_x
-        alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-        # (upu-A26) remainder of the acceleration tensor of link 2
-        B_2_o_xy = -2.0*W_2_xy - qdd_1_o_t_2
-        B_2_o_zx = zeta_2_y - alpha_2_o_y
-        B_2_o_zy = alpha_2_o_x - zeta_2_x
-        # (upu-N6) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-        g_r3_x = g_r0_z*s_2 - c_2*g_r1_y
-        g_r3_y = -c_2*g_r0_z - g_r1_y*s_2
-        acc_3_o_x = (
-        axis_x_upu_axes2_x*u_1_x + axis_x_upu_axes2_y*u_1_y + axis_x_upu_axes2_z*u_1_z - g_r3_x
+        upu_nu_1 = -upu_nu_1_t - upu_nu_1_t_2
+        # (upu-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
+        upu_qdd_3_o_t = (
+        axis_y_upu_axes2_in_base_x*upu_u_1_x + axis_y_upu_axes2_in_base_y*upu_u_1_y +
+            axis_y_upu_axes2_in_base_z*upu_u_1_z - upu_bias_t_2
         )
-        acc_3_o_y = bias_t_2 + qdd_1_o_t - g_r3_y
-        acc_3_o_z = bias_t_3 + B_2_o_zx*root_2 - g_r1_x
-        # (upu-N14) remainder without the acceleration in: inertia force of link 3 less its weight
-        f_3_o_x = (
-        acc_3_o_x*upu_link3_mass - B_2_o_xy*h_3_z - alpha_1_o_t_2*h_3_y - h_3_x*(W_2_t_2 +
-            W_2_t_3)
+        upu_qdd_3_o_t_2 = inv_upu_root_2*upu_qdd_3_o_t
+        upu_qdd_3_o_t_3 = inv_upu_w_1_t_25*(upu_rel_o_z + upu_n_c_z*upu_nu_1)
+        # (upu-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        upu_alpha_1_o_t = upu_qdd_3_o_t_3*upu_s_2
+        upu_alpha_1_o_t_2 = upu_c_2*upu_qdd_3_o_t_3
+        # (upu-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        upu_alpha_2_o_x = upu_alpha_1_o_t - upu_zeta_2_x
+        upu_alpha_2_o_y = -upu_alpha_1_o_t_2 - upu_zeta_2_y
+        # (upu-B_2_o) remainder of the acceleration tensor of link 2
+        upu_B_2_o_xy = -2.0*upu_W_2_xy - upu_qdd_3_o_t_2
+        upu_B_2_o_zx = upu_zeta_2_y - upu_alpha_2_o_y
+        upu_B_2_o_zy = upu_alpha_2_o_x - upu_zeta_2_x
+        # (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        upu_g_r1_x = upu_g_r0_y*upu_s_1 - upu_c_1*upu_g_r0_x
+        upu_g_r1_y = -upu_c_1*upu_g_r0_y - upu_g_r0_x*upu_s_1
+        upu_g_r3_x = upu_g_r0_z*upu_s_2 - upu_c_2*upu_g_r1_y
+        upu_g_r3_y = -upu_c_2*upu_g_r0_z - upu_g_r1_y*upu_s_2
+        upu_acc_3_o_x = (
+        axis_x_upu_axes2_x*upu_u_1_x + axis_x_upu_axes2_y*upu_u_1_y + axis_x_upu_axes2_z*upu_u_1_z
+            - upu_g_r3_x
         )
-        f_3_o_y = (
-        acc_3_o_y*upu_link3_mass + h_3_x*qdd_1_o_t_2 + h_3_z*(W_2_t + W_2_t_3) - alpha_1_o_t*h_3_y
+        upu_acc_3_o_y = upu_bias_t_2 + upu_qdd_3_o_t - upu_g_r3_y
+        upu_acc_3_o_z = upu_bias_t_3 + upu_B_2_o_zx*upu_root_2 - upu_g_r1_x
+        # (upu-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight
+        upu_f_3_o_x = (
+        upu_acc_3_o_x*upu_link3_mass - upu_B_2_o_xy*upu_h_3_z - upu_alpha_1_o_t_2*upu_h_3_y -
+            upu_h_3_x*(upu_W_2_t_2 + upu_W_2_t_3)
         )
-        f_3_o_z = (
-        B_2_o_zx*h_3_x + acc_3_o_z*upu_link3_mass - B_2_o_zy*h_3_z - h_3_y*(W_2_t + W_2_t_2)
+        upu_f_3_o_y = (
+        upu_acc_3_o_y*upu_link3_mass + upu_h_3_x*upu_qdd_3_o_t_2 + upu_h_3_z*(upu_W_2_t +
+            upu_W_2_t_3) - upu_alpha_1_o_t*upu_h_3_y
         )
-        # (upu-N21) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_o_x = (
-        B_2_o_zy*Sigma_2_yy + J_group_2_xz*qdd_1_o_t_2 + J_group_2_yz*(W_2_t_2 - W_2_t_3) +
-            Sigma_2_zz*alpha_1_o_t + g_r1_x*h_2_z + g_r3_y*h_2_y - B_2_o_zx*J_group_2_xy -
-            acc_3_o_y*h_3_y - acc_3_o_z*h_3_z
+        upu_f_3_o_z = (
+        upu_B_2_o_zx*upu_h_3_x + upu_acc_3_o_z*upu_link3_mass - upu_B_2_o_zy*upu_h_3_z -
+            upu_h_3_y*(upu_W_2_t + upu_W_2_t_2)
         )
-        mu_2_o_y = (
-        B_2_o_zy*J_group_2_xy + acc_3_o_x*h_3_y + g_r1_x*h_2_x - B_2_o_xy*J_group_2_yz -
-            B_2_o_zx*Sigma_2_xx - J_group_2_xz*(W_2_t - W_2_t_3) - Sigma_2_zz*alpha_1_o_t_2 -
-            acc_3_o_z*h_3_x - g_r3_x*h_2_y
+        # (upu-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        upu_mu_2_o_x = (
+        upu_B_2_o_zy*upu_Sigma_2_yy + upu_J_group_2_xz*upu_qdd_3_o_t_2 +
+            upu_J_group_2_yz*(upu_W_2_t_2 - upu_W_2_t_3) + upu_Sigma_2_zz*upu_alpha_1_o_t +
+            upu_g_r1_x*upu_h_2_z + upu_g_r3_y*upu_h_2_y - upu_B_2_o_zx*upu_J_group_2_xy -
+            upu_acc_3_o_y*upu_h_3_y - upu_acc_3_o_z*upu_h_3_z
         )
-        mu_2_o_z = (
-        J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_xz*alpha_1_o_t + Sigma_2_xx*qdd_1_o_t_2 +
-            acc_3_o_x*h_3_z + acc_3_o_y*h_3_x - B_2_o_xy*Sigma_2_yy - J_group_2_yz*alpha_1_o_t_2 -
-            g_r3_x*h_2_z - g_r3_y*h_2_x
+        upu_mu_2_o_y = (
+        upu_B_2_o_zy*upu_J_group_2_xy + upu_acc_3_o_x*upu_h_3_y + upu_g_r1_x*upu_h_2_x -
+            upu_B_2_o_xy*upu_J_group_2_yz - upu_B_2_o_zx*upu_Sigma_2_xx -
+            upu_J_group_2_xz*(upu_W_2_t - upu_W_2_t_3) - upu_Sigma_2_zz*upu_alpha_1_o_t_2 -
+            upu_acc_3_o_z*upu_h_3_x - upu_g_r3_x*upu_h_2_y
         )
-        # (upu-N25) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_o_y = mu_2_o_y - f_3_o_z*root_2
-        N_2_o_r0_y = mu_2_o_x*s_2 - N_2_o_y*c_2
-        # (upu-N41) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_o_t = f_3_o_y + inv_root_2*mu_2_o_z
-        G_o_t_2 = N_2_o_r0_y*inv_w_1_t_25
-        G_o_t_3 = N_2_o_r0_y*inv_w_1_t_25*n_c_z
-        # (upu-N59) velocity and gravity terms of the leg force
-        U_in_base_x = (
-        G_o_t*axis_y_upu_axes2_in_base_x + G_o_t_2*axis_z_upu_axes2_in_base_x +
-            axis_x_upu_axes2_x*f_3_o_x
+        upu_mu_2_o_z = (
+        upu_J_group_2_xy*(upu_W_2_t - upu_W_2_t_2) + upu_J_group_2_xz*upu_alpha_1_o_t +
+            upu_Sigma_2_xx*upu_qdd_3_o_t_2 + upu_acc_3_o_x*upu_h_3_z + upu_acc_3_o_y*upu_h_3_x -
+            upu_B_2_o_xy*upu_Sigma_2_yy - upu_J_group_2_yz*upu_alpha_1_o_t_2 -
+            upu_g_r3_x*upu_h_2_z - upu_g_r3_y*upu_h_2_x
         )
-        U_in_base_y = (
-        G_o_t*axis_y_upu_axes2_in_base_y + G_o_t_2*axis_z_upu_axes2_in_base_y +
-            axis_x_upu_axes2_y*f_3_o_x
+        # (upu-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        upu_N_2_o_y = upu_mu_2_o_y - upu_f_3_o_z*upu_root_2
+        upu_N_2_o_r0_y = upu_mu_2_o_x*upu_s_2 - upu_N_2_o_y*upu_c_2
+        # (upu-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        upu_G_o_t = upu_f_3_o_y + inv_upu_root_2*upu_mu_2_o_z
+        upu_G_o_t_2 = inv_upu_w_1_t_25*upu_N_2_o_r0_y
+        upu_G_o_t_3 = inv_upu_w_1_t_25*upu_N_2_o_r0_y*upu_n_c_z
+        # (upu-U) velocity and gravity terms of the leg force
+        upu_U_in_base_x = (
+        axis_x_upu_axes2_x*upu_f_3_o_x + axis_y_upu_axes2_in_base_x*upu_G_o_t +
+            axis_z_upu_axes2_in_base_x*upu_G_o_t_2
         )
-        U_in_base_z = (
-        G_o_t*axis_y_upu_axes2_in_base_z + G_o_t_2*axis_z_upu_axes2_in_base_z +
-            axis_x_upu_axes2_z*f_3_o_x
+        upu_U_in_base_y = (
+        axis_x_upu_axes2_y*upu_f_3_o_x + axis_y_upu_axes2_in_base_y*upu_G_o_t +
+            axis_z_upu_axes2_in_base_y*upu_G_o_t_2
         )
-        # (upu-N49) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        G_m_o_x = G_o_t_3*end_p1_r3_y
-        G_m_o_y = G_o_t_3*end_p1_r3_x
-        # (M7) rotational part of Z
-        Z_a_t = (
-        G_m_o_y*axis_y_upu_axes2_in_base_x + U_in_base_z*q_in_base_y - G_m_o_x*axis_x_upu_axes2_x
-            - U_in_base_y*q_in_base_z
+        upu_U_in_base_z = (
+        axis_x_upu_axes2_z*upu_f_3_o_x + axis_y_upu_axes2_in_base_z*upu_G_o_t +
+            axis_z_upu_axes2_in_base_z*upu_G_o_t_2
         )
-        Z_a_t_2 = (
-        G_m_o_y*axis_y_upu_axes2_in_base_y + U_in_base_x*q_in_base_z - G_m_o_x*axis_x_upu_axes2_y
-            - U_in_base_z*q_in_base_x
+        # (upu-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        upu_G_m_o_x = upu_G_o_t_3*upu_end_p1_r3_y
+        upu_G_m_o_y = upu_G_o_t_3*upu_end_p1_r3_x
+        # (Z_a) rotational part of Z
+        upu_Z_a_t = (
+        axis_y_upu_axes2_in_base_x*upu_G_m_o_y + upu_U_in_base_z*upu_q_in_base_y -
+            axis_x_upu_axes2_x*upu_G_m_o_x - upu_U_in_base_y*upu_q_in_base_z
         )
-        Z_a_t_3 = (
-        G_m_o_y*axis_y_upu_axes2_in_base_z + U_in_base_y*q_in_base_x - G_m_o_x*axis_x_upu_axes2_z
-            - U_in_base_x*q_in_base_y
+        upu_Z_a_t_2 = (
+        axis_y_upu_axes2_in_base_y*upu_G_m_o_y + upu_U_in_base_x*upu_q_in_base_z -
+            axis_x_upu_axes2_y*upu_G_m_o_x - upu_U_in_base_z*upu_q_in_base_x
         )
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_3_t = axis_x_upu_axes2_z*q_in_base_y - axis_x_upu_axes2_y*q_in_base_z
-        H_a_3_t_2 = axis_x_upu_axes2_x*q_in_base_z - axis_x_upu_axes2_z*q_in_base_x
-        H_a_3_t_3 = axis_x_upu_axes2_y*q_in_base_x - axis_x_upu_axes2_x*q_in_base_y
-        # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-        n_c_t = axis_z_upu_axes2_in_base_x*n_c_z
-        n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z
-        n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z
-        # (M9) moment of the column's unit force about the platform origin
-        Hk_a_1_x = n_m1_in_base_x + n_c_t_2*q_in_base_z - n_c_t_3*q_in_base_y
-        Hk_a_1_y = n_m1_in_base_y + n_c_t_3*q_in_base_x - n_c_t*q_in_base_z
-        Hk_a_1_z = n_m1_in_base_z + n_c_t*q_in_base_y - n_c_t_2*q_in_base_x
-        # (M11) part of the constraint's second derivative that does not hold the acceleration
-        gamma_c1 = nu_1 - n_c_z*rel_o_z
+        upu_Z_a_t_3 = (
+        axis_y_upu_axes2_in_base_z*upu_G_m_o_y + upu_U_in_base_y*upu_q_in_base_x -
+            axis_x_upu_axes2_z*upu_G_m_o_x - upu_U_in_base_x*upu_q_in_base_y
+        )
+        # (upu-H_a_3) moment of the column's unit force about the platform origin
+        upu_H_a_3_t = axis_x_upu_axes2_z*upu_q_in_base_y - axis_x_upu_axes2_y*upu_q_in_base_z
+        upu_H_a_3_t_2 = axis_x_upu_axes2_x*upu_q_in_base_z - axis_x_upu_axes2_z*upu_q_in_base_x
+        upu_H_a_3_t_3 = axis_x_upu_axes2_y*upu_q_in_base_x - axis_x_upu_axes2_x*upu_q_in_base_y
+        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        upu_n_c_t = axis_z_upu_axes2_in_base_x*upu_n_c_z
+        upu_n_c_t_2 = axis_z_upu_axes2_in_base_y*upu_n_c_z
+        upu_n_c_t_3 = axis_z_upu_axes2_in_base_z*upu_n_c_z
+        # (upu-Hk_a_1) moment of the column's unit force about the platform origin
+        upu_Hk_a_1_x = (
+        upu_n_m1_in_base_x + upu_n_c_t_2*upu_q_in_base_z - upu_n_c_t_3*upu_q_in_base_y
+        )
+        upu_Hk_a_1_y = (
+        upu_n_m1_in_base_y + upu_n_c_t_3*upu_q_in_base_x - upu_n_c_t*upu_q_in_base_z
+        )
+        upu_Hk_a_1_z = (
+        upu_n_m1_in_base_z + upu_n_c_t*upu_q_in_base_y - upu_n_c_t_2*upu_q_in_base_x
+        )
+        # (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+        upu_gamma_c1 = upu_nu_1 - upu_n_c_z*upu_rel_o_z
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-volume_c_t) >
-            _TOLERANCE * 0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8) & (abs(w_1_t_3) >
-            _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(-upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
+            _TOLERANCE * 0.8) & (abs(upu_w_1_t_3) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
-        Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_12, M_ta_t_13, M_ta_t_14,
-            M_ta_t_15, M_ta_t_16, M_ta_t_17, M_ta_t_18, M_ta_t_19, M_ta_t_20, M_aa_t,
-            M_aa_t_2, M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y,
-            U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
+        upu_Q_t_12, upu_Q_t_13, upu_Q_t_14, upu_Q_t_16, upu_Q_t_17, upu_Q_t_19, upu_M_ta_t_4,
+            upu_M_ta_t_5, upu_M_ta_t_6, upu_M_ta_t_7, upu_M_ta_t_8, upu_M_ta_t_9,
+            upu_M_ta_t_10, upu_M_ta_t_11, upu_M_ta_t_12, upu_M_aa_t, upu_M_aa_t_2,
+            upu_M_aa_t_3, upu_M_aa_t_4, upu_M_aa_t_5, upu_M_aa_t_6, upu_U_in_base_x,
+            upu_U_in_base_y, upu_U_in_base_z, upu_Z_a_t, upu_Z_a_t_2, upu_Z_a_t_3,
         ))
         out_H[_H_upu[0][leg]] = axis_x_upu_axes2_x
         out_H[_H_upu[1][leg]] = axis_x_upu_axes2_y
         out_H[_H_upu[2][leg]] = axis_x_upu_axes2_z
-        out_H[_H_upu[3][leg]] = H_a_3_t
-        out_H[_H_upu[4][leg]] = H_a_3_t_2
-        out_H[_H_upu[5][leg]] = H_a_3_t_3
-        out_Hk[_Hk_upu[0][leg]] = -n_c_t
-        out_Hk[_Hk_upu[1][leg]] = -n_c_t_2
-        out_Hk[_Hk_upu[2][leg]] = -n_c_t_3
-        out_Hk[_Hk_upu[3][leg]] = Hk_a_1_x
-        out_Hk[_Hk_upu[4][leg]] = Hk_a_1_y
-        out_Hk[_Hk_upu[5][leg]] = Hk_a_1_z
-        out_constraint_bias[_constraint_bias_upu[0][leg]] = gamma_c1
+        out_H[_H_upu[3][leg]] = upu_H_a_3_t
+        out_H[_H_upu[4][leg]] = upu_H_a_3_t_2
+        out_H[_H_upu[5][leg]] = upu_H_a_3_t_3
+        out_Hk[_Hk_upu[0][leg]] = -upu_n_c_t
+        out_Hk[_Hk_upu[1][leg]] = -upu_n_c_t_2
+        out_Hk[_Hk_upu[2][leg]] = -upu_n_c_t_3
+        out_Hk[_Hk_upu[3][leg]] = upu_Hk_a_1_x
+        out_Hk[_Hk_upu[4][leg]] = upu_Hk_a_1_y
+        out_Hk[_Hk_upu[5][leg]] = upu_Hk_a_1_z
+        out_constraint_bias[_constraint_bias_upu[0][leg]] = upu_gamma_c1
     (
     total_upu_xx, total_upu_xy, total_upu_xz, total_upu_yy, total_upu_yz, total_upu_zz,
         total_upu_xx_2, total_upu_xy_2, total_upu_xz_2, total_upu_yx, total_upu_yy_2,
@@ -1964,29 +2056,29 @@ def _run_dynamics(m, X, V):
         total_upu_xy_3, total_upu_xz_3, total_upu_yy_3, total_upu_yz_3, total_upu_zz_3,
         total_upu_x, total_upu_y, total_upu_z, total_upu_x_2, total_upu_y_2, total_upu_z_2,
     ) = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = platform_mass + total_upu_xx
     M_tt_yy = platform_mass + total_upu_yy
     M_tt_zz = platform_mass + total_upu_zz
-    # (M2) coupling block of M
+    # (M_ta) coupling block of M
     M_ta_xy = h_star_in_base_z + total_upu_xy_2
     M_ta_xz = -h_star_in_base_y - total_upu_xz_2
     M_ta_yx = -h_star_in_base_z - total_upu_yx
     M_ta_yz = h_star_in_base_x - total_upu_yz_2
     M_ta_zx = h_star_in_base_y - total_upu_zx
     M_ta_zy = total_upu_zy - h_star_in_base_x
-    # (M3) rotational block of M
+    # (M_aa) rotational block of M
     M_aa_xx = J_star_t_10 + total_upu_xx_3
     M_aa_xy = J_star_t_11 + total_upu_xy_3
     M_aa_xz = J_star_t_12 + total_upu_xz_3
     M_aa_yy = J_star_t_14 + total_upu_yy_3
     M_aa_yz = J_star_t_15 - total_upu_yz_3
     M_aa_zz = J_star_t_17 + total_upu_zz_3
-    # (M5) translational part of Z
+    # (Z_t) translational part of Z
     Z_t_x = Z_p_x + total_upu_x
     Z_t_y = Z_p_y + total_upu_y
     Z_t_z = Z_p_z + total_upu_z
-    # (M7) rotational part of Z
+    # (Z_a) rotational part of Z
     Z_a_x = Z_q_in_base_x + total_upu_x_2
     Z_a_y = Z_q_in_base_y + total_upu_y_2
     Z_a_z = Z_q_in_base_z + total_upu_z_2
@@ -2035,7 +2127,7 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H, out_Hk, out_constraint_bias,)
 
 
-# M: 1068 mul, 735 add, 12 div, 6 sqrt, 0 trig
+# M: 1032 mul, 699 add, 12 div, 6 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
@@ -2080,11 +2172,11 @@ def _run_M(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_M = m.zeros("M")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (L3) inertia tensor about the platform origin
+    # (J_star) inertia tensor about the platform origin
     J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_6*R_xy
     J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_6*R_yy
     J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_6*R_zy
@@ -2103,98 +2195,104 @@ def _run_M(m, X):
     sums = [0.0] * 21
     for leg, k in legs[0]:
         (
-        J_group_2_xx, J_group_2_xy, J_group_2_xz, J_group_2_yy, J_group_2_yz, J_group_2_zz,
-            branch_1, branch_2, h_3_x, h_3_y, h_3_z, upu_base_frame_xx, upu_base_frame_xy,
-            upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz,
-            upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x,
-            upu_base_point_y, upu_base_point_z, upu_link3_mass,
-            upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
-            upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
-            upu_platform_point_z,
+        upu_J_group_2_xx, upu_J_group_2_xy, upu_J_group_2_xz, upu_J_group_2_yy, upu_J_group_2_yz,
+            upu_J_group_2_zz, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
+            upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
+            upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
+            upu_base_point_z, upu_branch_1, upu_branch_2, upu_h_3_x, upu_h_3_y, upu_h_3_z,
+            upu_link3_mass, upu_platform_joint_axis_platform_x,
+            upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
+            upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
         ) = k
-        # (upu-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (upu-S) from the base point to the connection point
+        upu_q_in_base_x = (
         R_xx*upu_platform_point_x + R_xy*upu_platform_point_y + R_xz*upu_platform_point_z
         )
-        q_in_base_y = (
+        upu_q_in_base_y = (
         R_yx*upu_platform_point_x + R_yy*upu_platform_point_y + R_yz*upu_platform_point_z
         )
-        q_in_base_z = (
+        upu_q_in_base_z = (
         R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z
         )
-        S_x = q_in_base_x + t_x - upu_base_point_x
-        S_y = q_in_base_y + t_y - upu_base_point_y
-        S_z = q_in_base_z + t_z - upu_base_point_z
-        # (upu-K2) component along the reference direction
-        px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx
-        # (upu-K3) component across the reference direction
-        py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy
-        # (upu-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (upu-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (upu-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz
-        # (upu-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (upu-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (upu-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (upu-K16) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        end_p1_r0_x = (
+        upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x
+        upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y
+        upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z
+        # (upu-px_1) component along the reference direction
+        upu_px_1 = (
+        upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
+        )
+        # (upu-py_1) component across the reference direction
+        upu_py_1 = (
+        upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy + upu_S_z*upu_base_frame_zy
+        )
+        # (upu-rho2_1) squared amplitude
+        upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
+        # (upu-root_1) amplitude, with the sign of the branch
+        upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
+        # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        upu_xi_1_t = (
+        upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
+        )
+        # (upu-rho2_2) squared amplitude
+        upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t
+        # (upu-root_2) amplitude, with the sign of the branch
+        upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
+        # (upu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_upu_root_2 = 1.0/upu_root_2
+        upu_c_2 = inv_upu_root_2*upu_root_1
+        # (upu-s_2) sine of the angle of joint 2 from its reference direction
+        upu_s_2 = inv_upu_root_2*upu_xi_1_t
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_end_p1_r0_x = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
             R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
             R_yy*upu_base_frame_yx + R_zy*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx + R_yz*upu_base_frame_yx +
             R_zz*upu_base_frame_zx)
         )
-        end_p1_r0_y = (
+        upu_end_p1_r0_y = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy + R_yx*upu_base_frame_yy +
             R_zx*upu_base_frame_zy) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy +
             R_yy*upu_base_frame_yy + R_zy*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy + R_yz*upu_base_frame_yy +
             R_zz*upu_base_frame_zy)
         )
-        end_p1_r0_z = (
+        upu_end_p1_r0_z = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz + R_yx*upu_base_frame_yz +
             R_zx*upu_base_frame_zz) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz +
             R_yy*upu_base_frame_yz + R_zy*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
             R_zz*upu_base_frame_zz)
         )
-        # (upu-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (upu-K7) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1
-        end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
-        end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
-        # (upu-V6) triple product of the velocity vectors
-        volume_c_t = root_1*root_2
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2
-        # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-        n_c_z = n_m1_r0_y*root_2/volume_c_t
-        # (upu-V9) force part of reciprocal wrench 1
-        axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
-        axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
-        axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
-        w_1_t = s_1*s_2
-        w_1_t_2 = c_1*s_2
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1 = inv_upu_root_1*upu_py_1
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_px_1
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1
+        upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y
+        upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2
+        # (upu-volume_c) triple product of the velocity vectors
+        upu_volume_c_t = upu_root_1*upu_root_2
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2
+        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t
+        # (upu-w_1) force part of reciprocal wrench 1
+        axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1
+        axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1
+        axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1
+        upu_w_1_t = upu_s_1*upu_s_2
+        upu_w_1_t_2 = upu_c_1*upu_s_2
         axis_y_upu_axes2_in_base_x = (
-        upu_base_frame_xx*w_1_t + upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz
+        upu_base_frame_xx*upu_w_1_t + upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2
         )
         axis_y_upu_axes2_in_base_y = (
-        upu_base_frame_yx*w_1_t + upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz
+        upu_base_frame_yx*upu_w_1_t + upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2
         )
         axis_y_upu_axes2_in_base_z = (
-        upu_base_frame_zx*w_1_t + upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz
+        upu_base_frame_zx*upu_w_1_t + upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2
         )
         axis_x_upu_axes2_x = (
         axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
@@ -2208,252 +2306,268 @@ def _run_M(m, X):
         axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
             axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
         )
-        w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
-        inv_w_1_t_25 = 1.0/w_1_t_3
-        w_1_t_4 = inv_w_1_t_25*n_c_z
-        # (upu-A19) coefficient of the acceleration in: angular acceleration of link 1
-        d_alpha_1_t = inv_w_1_t_25*s_2
-        d_alpha_1_t_2 = c_2*inv_w_1_t_25
-        # (upu-N5) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-        d_acc_3_t = d_alpha_1_t_2*root_2
-        # (upu-N9) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        d_phi_3_t = h_3_z*inv_root_2
-        d_phi_3_t_2 = d_alpha_1_t_2*h_3_y
-        # (upu-N36) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d_Gamma_1_z = (
-        s_2*(J_group_2_xx*d_alpha_1_t - J_group_2_xy*d_alpha_1_t_2 - d_acc_3_t*h_3_z) -
-            c_2*(J_group_2_xy*d_alpha_1_t - J_group_2_yy*d_alpha_1_t_2 - d_acc_3_t*h_3_x -
-            root_2*(d_acc_3_t*upu_link3_mass + d_alpha_1_t_2*h_3_x - d_alpha_1_t*h_3_z))
+        upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y
+        inv_upu_w_1_t_25 = 1.0/upu_w_1_t_3
+        upu_w_1_t_4 = inv_upu_w_1_t_25*upu_n_c_z
+        # (upu-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
+        upu_d_alpha_1_t = inv_upu_w_1_t_25*upu_s_2
+        upu_d_alpha_1_t_2 = inv_upu_w_1_t_25*upu_c_2
+        # (upu-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
+        upu_d_acc_3_t = upu_d_alpha_1_t_2*upu_root_2
+        # (upu-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+        upu_d_phi_3_t = inv_upu_root_2*upu_h_3_z
+        upu_d_phi_3_t_2 = upu_d_alpha_1_t_2*upu_h_3_y
+        # (upu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        upu_d_Gamma_1_z = (
+        upu_s_2*(upu_J_group_2_xx*upu_d_alpha_1_t - upu_J_group_2_xy*upu_d_alpha_1_t_2 -
+            upu_d_acc_3_t*upu_h_3_z) - upu_c_2*(upu_J_group_2_xy*upu_d_alpha_1_t -
+            upu_J_group_2_yy*upu_d_alpha_1_t_2 - upu_d_acc_3_t*upu_h_3_x -
+            upu_root_2*(upu_d_acc_3_t*upu_link3_mass + upu_d_alpha_1_t_2*upu_h_3_x -
+            upu_d_alpha_1_t*upu_h_3_z))
         )
-        # (upu-N40) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_t = (
-        inv_root_2*(J_group_2_xz*d_alpha_1_t - J_group_2_yz*d_alpha_1_t_2 -
-            d_alpha_1_t*h_3_y*root_2)
+        # (upu-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        upu_d_G_t = (
+        inv_upu_root_2*(upu_J_group_2_xz*upu_d_alpha_1_t - upu_J_group_2_yz*upu_d_alpha_1_t_2 -
+            upu_d_alpha_1_t*upu_h_3_y*upu_root_2)
         )
-        # (upu-N54) inertia of the leg at the connection point, without the mass gathered there
-        Q_t = (
-        inv_root_2*(h_3_x + J_group_2_zz*inv_root_2 + root_2*(upu_link3_mass + h_3_x*inv_root_2))
-            - upu_link3_mass
+        # (upu-Q) inertia of the leg at the connection point, without the mass gathered there
+        upu_Q_t = (
+        inv_upu_root_2*(upu_h_3_x + inv_upu_root_2*upu_J_group_2_zz + upu_root_2*(upu_link3_mass +
+            inv_upu_root_2*upu_h_3_x)) - upu_link3_mass
         )
-        Q_t_2 = 0.5*Q_t
-        Q_t_3 = d_Gamma_1_z*inv_w_1_t_25 - upu_link3_mass
-        Q_t_4 = 0.5*Q_t_3
-        Q_t_5 = (
-        Q_t_2*axis_y_upu_axes2_in_base_x + axis_x_upu_axes2_x*d_phi_3_t +
-            axis_z_upu_axes2_in_base_x*d_G_t
+        upu_Q_t_2 = 0.5*upu_Q_t
+        upu_Q_t_3 = inv_upu_w_1_t_25*upu_d_Gamma_1_z - upu_link3_mass
+        upu_Q_t_4 = 0.5*upu_Q_t_3
+        upu_Q_t_5 = (
+        axis_x_upu_axes2_x*upu_d_phi_3_t + axis_y_upu_axes2_in_base_x*upu_Q_t_2 +
+            axis_z_upu_axes2_in_base_x*upu_d_G_t
         )
-        Q_t_6 = (
-        Q_t_2*axis_y_upu_axes2_in_base_y + axis_x_upu_axes2_y*d_phi_3_t +
-            axis_z_upu_axes2_in_base_y*d_G_t
+        upu_Q_t_6 = (
+        axis_x_upu_axes2_y*upu_d_phi_3_t + axis_y_upu_axes2_in_base_y*upu_Q_t_2 +
+            axis_z_upu_axes2_in_base_y*upu_d_G_t
         )
-        Q_t_7 = (
-        Q_t_2*axis_y_upu_axes2_in_base_z + axis_x_upu_axes2_z*d_phi_3_t +
-            axis_z_upu_axes2_in_base_z*d_G_t
+        upu_Q_t_7 = (
+        axis_x_upu_axes2_z*upu_d_phi_3_t + axis_y_upu_axes2_in_base_z*upu_Q_t_2 +
+            axis_z_upu_axes2_in_base_z*upu_d_G_t
         )
-        Q_t_8 = Q_t_4*axis_z_upu_axes2_in_base_x - axis_x_upu_axes2_x*d_phi_3_t_2
-        Q_t_9 = Q_t_4*axis_z_upu_axes2_in_base_y - axis_x_upu_axes2_y*d_phi_3_t_2
-        Q_t_10 = Q_t_4*axis_z_upu_axes2_in_base_z - axis_x_upu_axes2_z*d_phi_3_t_2
-        Q_t_11 = Q_t_5*axis_y_upu_axes2_in_base_x + Q_t_8*axis_z_upu_axes2_in_base_x
-        Q_t_12 = 2.0*Q_t_11 + upu_link3_mass
-        Q_t_13 = (
-        Q_t_5*axis_y_upu_axes2_in_base_y + Q_t_6*axis_y_upu_axes2_in_base_x +
-            Q_t_8*axis_z_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_x
+        upu_Q_t_8 = axis_z_upu_axes2_in_base_x*upu_Q_t_4 - axis_x_upu_axes2_x*upu_d_phi_3_t_2
+        upu_Q_t_9 = axis_z_upu_axes2_in_base_y*upu_Q_t_4 - axis_x_upu_axes2_y*upu_d_phi_3_t_2
+        upu_Q_t_10 = axis_z_upu_axes2_in_base_z*upu_Q_t_4 - axis_x_upu_axes2_z*upu_d_phi_3_t_2
+        upu_Q_t_11 = axis_y_upu_axes2_in_base_x*upu_Q_t_5 + axis_z_upu_axes2_in_base_x*upu_Q_t_8
+        upu_Q_t_12 = 2.0*upu_Q_t_11 + upu_link3_mass
+        upu_Q_t_13 = (
+        axis_y_upu_axes2_in_base_x*upu_Q_t_6 + axis_y_upu_axes2_in_base_y*upu_Q_t_5 +
+            axis_z_upu_axes2_in_base_x*upu_Q_t_9 + axis_z_upu_axes2_in_base_y*upu_Q_t_8
         )
-        Q_t_14 = (
-        Q_t_10*axis_z_upu_axes2_in_base_x + Q_t_5*axis_y_upu_axes2_in_base_z +
-            Q_t_7*axis_y_upu_axes2_in_base_x + Q_t_8*axis_z_upu_axes2_in_base_z
+        upu_Q_t_14 = (
+        axis_y_upu_axes2_in_base_x*upu_Q_t_7 + axis_y_upu_axes2_in_base_z*upu_Q_t_5 +
+            axis_z_upu_axes2_in_base_x*upu_Q_t_10 + axis_z_upu_axes2_in_base_z*upu_Q_t_8
         )
-        Q_t_15 = Q_t_6*axis_y_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_y
-        Q_t_16 = 2.0*Q_t_15 + upu_link3_mass
-        Q_t_17 = (
-        Q_t_10*axis_z_upu_axes2_in_base_y + Q_t_6*axis_y_upu_axes2_in_base_z +
-            Q_t_7*axis_y_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_z
+        upu_Q_t_15 = axis_y_upu_axes2_in_base_y*upu_Q_t_6 + axis_z_upu_axes2_in_base_y*upu_Q_t_9
+        upu_Q_t_16 = 2.0*upu_Q_t_15 + upu_link3_mass
+        upu_Q_t_17 = (
+        axis_y_upu_axes2_in_base_y*upu_Q_t_7 + axis_y_upu_axes2_in_base_z*upu_Q_t_6 +
+            axis_z_upu_axes2_in_base_y*upu_Q_t_10 + axis_z_upu_axes2_in_base_z*upu_Q_t_9
         )
-        Q_t_18 = Q_t_10*axis_z_upu_axes2_in_base_z + Q_t_7*axis_y_upu_axes2_in_base_z
-        Q_t_19 = 2.0*Q_t_18 + upu_link3_mass
-        # (upu-V15) moment part of reciprocal wrench 1
-        o_1_x = end_p1_r3_y*w_1_t_4
-        o_1_y = end_p1_r3_x*w_1_t_4
-        # (upu-A18) coefficient of the acceleration in: angular acceleration of link 1
-        d0_alpha_1_xx = o_1_x*s_2
-        d0_alpha_1_xy = o_1_y*s_2
-        d0_alpha_1_yx = c_2*o_1_x
-        d0_alpha_1_yy = c_2*o_1_y
-        # (upu-N4) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-        d0_acc_3_t = d0_alpha_1_yx*root_2
-        d0_acc_3_t_2 = d0_alpha_1_yy*root_2
-        # (upu-N8) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        d0_phi_3_t = d0_alpha_1_yx*h_3_y
-        d0_phi_3_t_2 = d0_alpha_1_yy*h_3_y
-        # (upu-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        d0_Gamma_1_x = (
-        s_2*(J_group_2_xy*d0_alpha_1_yx + d0_acc_3_t*h_3_z - J_group_2_xx*d0_alpha_1_xx) -
-            c_2*(J_group_2_yy*d0_alpha_1_yx + d0_acc_3_t*h_3_x - J_group_2_xy*d0_alpha_1_xx -
-            root_2*(d0_alpha_1_xx*h_3_z - d0_acc_3_t*upu_link3_mass - d0_alpha_1_yx*h_3_x))
+        upu_Q_t_18 = axis_y_upu_axes2_in_base_z*upu_Q_t_7 + axis_z_upu_axes2_in_base_z*upu_Q_t_10
+        upu_Q_t_19 = 2.0*upu_Q_t_18 + upu_link3_mass
+        # (upu-o_1) moment part of reciprocal wrench 1
+        upu_o_1_x = upu_end_p1_r3_y*upu_w_1_t_4
+        upu_o_1_y = upu_end_p1_r3_x*upu_w_1_t_4
+        # (upu-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
+        upu_dalpha_alpha_1_xx = upu_o_1_x*upu_s_2
+        upu_dalpha_alpha_1_xy = upu_o_1_y*upu_s_2
+        upu_dalpha_alpha_1_yx = upu_c_2*upu_o_1_x
+        upu_dalpha_alpha_1_yy = upu_c_2*upu_o_1_y
+        # (upu-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
+        upu_dalpha_acc_3_t = upu_dalpha_alpha_1_yx*upu_root_2
+        upu_dalpha_acc_3_t_2 = upu_dalpha_alpha_1_yy*upu_root_2
+        # (upu-dalpha_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+        upu_dalpha_phi_3_t = upu_dalpha_alpha_1_yx*upu_h_3_y
+        upu_dalpha_phi_3_t_2 = upu_dalpha_alpha_1_yy*upu_h_3_y
+        # (upu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        upu_dalpha_Gamma_1_x = (
+        upu_s_2*(upu_J_group_2_xy*upu_dalpha_alpha_1_yx + upu_dalpha_acc_3_t*upu_h_3_z -
+            upu_J_group_2_xx*upu_dalpha_alpha_1_xx) -
+            upu_c_2*(upu_J_group_2_yy*upu_dalpha_alpha_1_yx + upu_dalpha_acc_3_t*upu_h_3_x -
+            upu_J_group_2_xy*upu_dalpha_alpha_1_xx - upu_root_2*(upu_dalpha_alpha_1_xx*upu_h_3_z -
+            upu_dalpha_acc_3_t*upu_link3_mass - upu_dalpha_alpha_1_yx*upu_h_3_x))
         )
-        d0_Gamma_1_y = (
-        s_2*(J_group_2_xx*d0_alpha_1_xy - J_group_2_xy*d0_alpha_1_yy - d0_acc_3_t_2*h_3_z) -
-            c_2*(J_group_2_xy*d0_alpha_1_xy - J_group_2_yy*d0_alpha_1_yy - d0_acc_3_t_2*h_3_x -
-            root_2*(d0_acc_3_t_2*upu_link3_mass + d0_alpha_1_yy*h_3_x - d0_alpha_1_xy*h_3_z))
+        upu_dalpha_Gamma_1_y = (
+        upu_s_2*(upu_J_group_2_xx*upu_dalpha_alpha_1_xy - upu_J_group_2_xy*upu_dalpha_alpha_1_yy -
+            upu_dalpha_acc_3_t_2*upu_h_3_z) - upu_c_2*(upu_J_group_2_xy*upu_dalpha_alpha_1_xy -
+            upu_J_group_2_yy*upu_dalpha_alpha_1_yy - upu_dalpha_acc_3_t_2*upu_h_3_x -
+            upu_root_2*(upu_dalpha_acc_3_t_2*upu_link3_mass + upu_dalpha_alpha_1_yy*upu_h_3_x -
+            upu_dalpha_alpha_1_xy*upu_h_3_z))
         )
-        # (upu-N39) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        d0_G_t = d0_Gamma_1_x*inv_w_1_t_25
-        d0_G_t_2 = d0_Gamma_1_y*inv_w_1_t_25
-        d0_G_t_3 = (
-        inv_root_2*(J_group_2_yz*d0_alpha_1_yx + d0_alpha_1_xx*h_3_y*root_2 -
-            J_group_2_xz*d0_alpha_1_xx)
+        # (upu-dalpha_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        upu_dalpha_G_t = inv_upu_w_1_t_25*upu_dalpha_Gamma_1_x
+        upu_dalpha_G_t_2 = inv_upu_w_1_t_25*upu_dalpha_Gamma_1_y
+        upu_dalpha_G_t_3 = (
+        inv_upu_root_2*(upu_J_group_2_yz*upu_dalpha_alpha_1_yx +
+            upu_dalpha_alpha_1_xx*upu_h_3_y*upu_root_2 - upu_J_group_2_xz*upu_dalpha_alpha_1_xx)
         )
-        d0_G_t_4 = (
-        inv_root_2*(J_group_2_xz*d0_alpha_1_xy - J_group_2_yz*d0_alpha_1_yy -
-            d0_alpha_1_xy*h_3_y*root_2)
+        upu_dalpha_G_t_4 = (
+        inv_upu_root_2*(upu_J_group_2_xz*upu_dalpha_alpha_1_xy -
+            upu_J_group_2_yz*upu_dalpha_alpha_1_yy - upu_dalpha_alpha_1_xy*upu_h_3_y*upu_root_2)
         )
-        # (M2) coupling block of M
-        M_ta_t = Q_t_13*q_in_base_z
-        M_ta_t_2 = Q_t_14*q_in_base_y
-        M_ta_t_3 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x
-        M_ta_t_4 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x
-        M_ta_t_5 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y
-        M_ta_t_6 = Q_t_17*q_in_base_x
-        M_ta_t_7 = M_ta_t - M_ta_t_6
-        M_ta_t_8 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x
-        M_ta_t_9 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y
-        M_ta_t_10 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x
-        M_ta_t_11 = M_ta_t_6 - M_ta_t_2
-        # (upu-N51) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        d0_c_in_base_x = (
-        -axis_x_upu_axes2_x*d0_phi_3_t - axis_y_upu_axes2_in_base_x*d0_G_t_3 -
-            axis_z_upu_axes2_in_base_x*d0_G_t
+        # (upu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        upu_dalpha_c_in_base_x = (
+        -axis_x_upu_axes2_x*upu_dalpha_phi_3_t - axis_y_upu_axes2_in_base_x*upu_dalpha_G_t_3 -
+            axis_z_upu_axes2_in_base_x*upu_dalpha_G_t
         )
-        d0_c_in_base_y = (
-        -axis_x_upu_axes2_y*d0_phi_3_t - axis_y_upu_axes2_in_base_y*d0_G_t_3 -
-            axis_z_upu_axes2_in_base_y*d0_G_t
+        upu_dalpha_c_in_base_y = (
+        -axis_x_upu_axes2_y*upu_dalpha_phi_3_t - axis_y_upu_axes2_in_base_y*upu_dalpha_G_t_3 -
+            axis_z_upu_axes2_in_base_y*upu_dalpha_G_t
         )
-        d0_c_in_base_z = (
-        -axis_x_upu_axes2_z*d0_phi_3_t - axis_y_upu_axes2_in_base_z*d0_G_t_3 -
-            axis_z_upu_axes2_in_base_z*d0_G_t
+        upu_dalpha_c_in_base_z = (
+        -axis_x_upu_axes2_z*upu_dalpha_phi_3_t - axis_y_upu_axes2_in_base_z*upu_dalpha_G_t_3 -
+            axis_z_upu_axes2_in_base_z*upu_dalpha_G_t
         )
-        d0_c_in_base_x_2 = (
-        axis_x_upu_axes2_x*d0_phi_3_t_2 - axis_y_upu_axes2_in_base_x*d0_G_t_4 -
-            axis_z_upu_axes2_in_base_x*d0_G_t_2
+        upu_dalpha_c_in_base_x_2 = (
+        axis_x_upu_axes2_x*upu_dalpha_phi_3_t_2 - axis_y_upu_axes2_in_base_x*upu_dalpha_G_t_4 -
+            axis_z_upu_axes2_in_base_x*upu_dalpha_G_t_2
         )
-        d0_c_in_base_y_2 = (
-        axis_x_upu_axes2_y*d0_phi_3_t_2 - axis_y_upu_axes2_in_base_y*d0_G_t_4 -
-            axis_z_upu_axes2_in_base_y*d0_G_t_2
+        upu_dalpha_c_in_base_y_2 = (
+        axis_x_upu_axes2_y*upu_dalpha_phi_3_t_2 - axis_y_upu_axes2_in_base_y*upu_dalpha_G_t_4 -
+            axis_z_upu_axes2_in_base_y*upu_dalpha_G_t_2
         )
-        d0_c_in_base_z_2 = (
-        axis_x_upu_axes2_z*d0_phi_3_t_2 - axis_y_upu_axes2_in_base_z*d0_G_t_4 -
-            axis_z_upu_axes2_in_base_z*d0_G_t_2
+        upu_dalpha_c_in_base_z_2 = (
+        axis_x_upu_axes2_z*upu_dalpha_phi_3_t_2 - axis_y_upu_axes2_in_base_z*upu_dalpha_G_t_4 -
+            axis_z_upu_axes2_in_base_z*upu_dalpha_G_t_2
         )
-        d0_c_in_base_y_3 = (
-        axis_x_upu_axes2_y*d0_c_in_base_x + axis_y_upu_axes2_in_base_y*d0_c_in_base_x_2
+        # (M_ta) coupling block of M
+        upu_M_ta_t = upu_Q_t_13*upu_q_in_base_z
+        upu_M_ta_t_2 = upu_Q_t_14*upu_q_in_base_y
+        upu_M_ta_t_3 = upu_Q_t_17*upu_q_in_base_x
+        upu_M_ta_t_4 = (
+        upu_M_ta_t + axis_x_upu_axes2_x*upu_dalpha_c_in_base_x +
+            axis_y_upu_axes2_in_base_x*upu_dalpha_c_in_base_x_2 - upu_M_ta_t_2
         )
-        d0_c_in_base_z_3 = (
-        axis_x_upu_axes2_z*d0_c_in_base_x + axis_y_upu_axes2_in_base_z*d0_c_in_base_x_2
+        upu_M_ta_t_5 = (
+        upu_Q_t_12*upu_q_in_base_z - axis_x_upu_axes2_y*upu_dalpha_c_in_base_x -
+            axis_y_upu_axes2_in_base_y*upu_dalpha_c_in_base_x_2 - upu_Q_t_14*upu_q_in_base_x
         )
-        d0_c_in_base_x_3 = (
-        axis_x_upu_axes2_x*d0_c_in_base_y + axis_y_upu_axes2_in_base_x*d0_c_in_base_y_2
+        upu_M_ta_t_6 = (
+        axis_x_upu_axes2_z*upu_dalpha_c_in_base_x +
+            axis_y_upu_axes2_in_base_z*upu_dalpha_c_in_base_x_2 + upu_Q_t_12*upu_q_in_base_y -
+            upu_Q_t_13*upu_q_in_base_x
         )
-        d0_c_in_base_y_4 = (
-        axis_x_upu_axes2_y*d0_c_in_base_y + axis_y_upu_axes2_in_base_y*d0_c_in_base_y_2
+        upu_M_ta_t_7 = (
+        axis_x_upu_axes2_x*upu_dalpha_c_in_base_y +
+            axis_y_upu_axes2_in_base_x*upu_dalpha_c_in_base_y_2 + upu_Q_t_16*upu_q_in_base_z -
+            upu_Q_t_17*upu_q_in_base_y
         )
-        d0_c_in_base_z_4 = (
-        axis_x_upu_axes2_z*d0_c_in_base_y + axis_y_upu_axes2_in_base_z*d0_c_in_base_y_2
+        upu_M_ta_t_8 = (
+        upu_M_ta_t - upu_M_ta_t_3 - axis_x_upu_axes2_y*upu_dalpha_c_in_base_y -
+            axis_y_upu_axes2_in_base_y*upu_dalpha_c_in_base_y_2
         )
-        d0_c_in_base_x_4 = (
-        axis_x_upu_axes2_x*d0_c_in_base_z + axis_y_upu_axes2_in_base_x*d0_c_in_base_z_2
+        upu_M_ta_t_9 = (
+        axis_x_upu_axes2_z*upu_dalpha_c_in_base_y +
+            axis_y_upu_axes2_in_base_z*upu_dalpha_c_in_base_y_2 + upu_Q_t_13*upu_q_in_base_y -
+            upu_Q_t_16*upu_q_in_base_x
         )
-        d0_c_in_base_y_5 = (
-        axis_x_upu_axes2_y*d0_c_in_base_z + axis_y_upu_axes2_in_base_y*d0_c_in_base_z_2
+        upu_M_ta_t_10 = (
+        axis_x_upu_axes2_x*upu_dalpha_c_in_base_z +
+            axis_y_upu_axes2_in_base_x*upu_dalpha_c_in_base_z_2 + upu_Q_t_17*upu_q_in_base_z -
+            upu_Q_t_19*upu_q_in_base_y
         )
-        d0_c_in_base_z_5 = (
-        axis_x_upu_axes2_z*d0_c_in_base_z + axis_y_upu_axes2_in_base_z*d0_c_in_base_z_2
+        upu_M_ta_t_11 = (
+        upu_Q_t_14*upu_q_in_base_z - axis_x_upu_axes2_y*upu_dalpha_c_in_base_z -
+            axis_y_upu_axes2_in_base_y*upu_dalpha_c_in_base_z_2 - upu_Q_t_19*upu_q_in_base_x
         )
-        # (M2) coupling block of M
-        M_ta_t_12 = (
-        M_ta_t + axis_x_upu_axes2_x*d0_c_in_base_x + axis_y_upu_axes2_in_base_x*d0_c_in_base_x_2 -
-            M_ta_t_2
+        upu_M_ta_t_12 = (
+        upu_M_ta_t_3 - upu_M_ta_t_2 - axis_x_upu_axes2_z*upu_dalpha_c_in_base_z -
+            axis_y_upu_axes2_in_base_z*upu_dalpha_c_in_base_z_2
         )
-        M_ta_t_13 = M_ta_t_3 - d0_c_in_base_y_3
-        M_ta_t_14 = M_ta_t_4 + d0_c_in_base_z_3
-        M_ta_t_15 = M_ta_t_5 + d0_c_in_base_x_3
-        M_ta_t_16 = M_ta_t_7 - d0_c_in_base_y_4
-        M_ta_t_17 = M_ta_t_8 + d0_c_in_base_z_4
-        M_ta_t_18 = M_ta_t_9 + d0_c_in_base_x_4
-        M_ta_t_19 = M_ta_t_10 - d0_c_in_base_y_5
-        M_ta_t_20 = M_ta_t_11 - d0_c_in_base_z_5
-        # (upu-N43) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        d0_G_m1_t = d0_Gamma_1_x*w_1_t_4
-        d0_G_m1_t_2 = d0_Gamma_1_y*w_1_t_4
-        # (upu-N44) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        d_G_m1_t = c_2*h_3_y*w_1_t_4
-        d_G_m1_t_2 = w_1_t_4*(s_2*(J_group_2_xz*inv_root_2 - h_3_y) - J_group_2_yz*c_2*inv_root_2)
-        d_G_m1_t_3 = d_Gamma_1_z*w_1_t_4
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_in_base_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x - axis_x_upu_axes2_x*end_p1_r3_y
-        n_m1_in_base_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x - axis_x_upu_axes2_y*end_p1_r3_y
-        n_m1_in_base_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x - axis_x_upu_axes2_z*end_p1_r3_y
-        # (upu-N44) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        d_G_m1_in_base_x = (
-        axis_y_upu_axes2_in_base_x*d_G_m1_t_2 + axis_z_upu_axes2_in_base_x*d_G_m1_t_3 -
-            axis_x_upu_axes2_x*d_G_m1_t
+        # (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        upu_dalpha_G_m1_t = upu_dalpha_Gamma_1_x*upu_w_1_t_4
+        upu_dalpha_G_m1_t_2 = upu_dalpha_Gamma_1_y*upu_w_1_t_4
+        # (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        upu_d_G_m1_t = upu_c_2*upu_h_3_y*upu_w_1_t_4
+        upu_d_G_m1_t_2 = (
+        upu_w_1_t_4*(upu_s_2*(inv_upu_root_2*upu_J_group_2_xz - upu_h_3_y) -
+            inv_upu_root_2*upu_J_group_2_yz*upu_c_2)
         )
-        d_G_m1_in_base_y = (
-        axis_y_upu_axes2_in_base_y*d_G_m1_t_2 + axis_z_upu_axes2_in_base_y*d_G_m1_t_3 -
-            axis_x_upu_axes2_y*d_G_m1_t
+        upu_d_G_m1_t_3 = upu_d_Gamma_1_z*upu_w_1_t_4
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_n_m1_in_base_x = (
+        axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x - axis_x_upu_axes2_x*upu_end_p1_r3_y
         )
-        d_G_m1_in_base_z = (
-        axis_y_upu_axes2_in_base_z*d_G_m1_t_2 + axis_z_upu_axes2_in_base_z*d_G_m1_t_3 -
-            axis_x_upu_axes2_z*d_G_m1_t
+        upu_n_m1_in_base_y = (
+        axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x - axis_x_upu_axes2_y*upu_end_p1_r3_y
         )
-        # (upu-N48) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        d_G_m_xx = d_G_m1_in_base_x*n_m1_in_base_x
-        d_G_m_xy = d_G_m1_in_base_y*n_m1_in_base_x
-        d_G_m_xz = d_G_m1_in_base_z*n_m1_in_base_x
-        d_G_m_yx = d_G_m1_in_base_x*n_m1_in_base_y
-        # (upu-N43) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        d0_G_m1_in_base_y = axis_x_upu_axes2_y*d0_G_m1_t + axis_y_upu_axes2_in_base_y*d0_G_m1_t_2
-        d0_G_m1_in_base_z = axis_x_upu_axes2_z*d0_G_m1_t + axis_y_upu_axes2_in_base_z*d0_G_m1_t_2
-        # (M3) rotational block of M
-        M_aa_t = (
-        M_ta_t_5*q_in_base_z + d0_c_in_base_x_3*q_in_base_z + d_G_m_xz*q_in_base_y +
-            n_m1_in_base_x*(axis_x_upu_axes2_x*d0_G_m1_t + axis_y_upu_axes2_in_base_x*d0_G_m1_t_2)
-            - M_ta_t_9*q_in_base_y - d0_c_in_base_x_4*q_in_base_y - d_G_m_xy*q_in_base_z
+        upu_n_m1_in_base_z = (
+        axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x - axis_x_upu_axes2_z*upu_end_p1_r3_y
         )
-        M_aa_t_2 = (
-        M_ta_t_10*q_in_base_y + d0_G_m1_in_base_y*n_m1_in_base_x + d0_c_in_base_y_4*q_in_base_z +
-            d_G_m_xx*q_in_base_z - M_ta_t_7*q_in_base_z - d0_c_in_base_y_5*q_in_base_y -
-            d_G_m_xz*q_in_base_x
+        # (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        upu_dalpha_G_m1_in_base_y = (
+        axis_x_upu_axes2_y*upu_dalpha_G_m1_t + axis_y_upu_axes2_in_base_y*upu_dalpha_G_m1_t_2
         )
-        M_aa_t_3 = (
-        M_ta_t_11*q_in_base_y + M_ta_t_8*q_in_base_z + d0_G_m1_in_base_z*n_m1_in_base_x +
-            d0_c_in_base_z_4*q_in_base_z + d_G_m_xy*q_in_base_x - d0_c_in_base_z_5*q_in_base_y -
-            d_G_m_xx*q_in_base_y
+        upu_dalpha_G_m1_in_base_z = (
+        axis_x_upu_axes2_z*upu_dalpha_G_m1_t + axis_y_upu_axes2_in_base_z*upu_dalpha_G_m1_t_2
         )
-        M_aa_t_4 = (
-        M_ta_t_3*q_in_base_z + d0_G_m1_in_base_y*n_m1_in_base_y + d0_c_in_base_y_5*q_in_base_x +
-            d_G_m_yx*q_in_base_z - M_ta_t_10*q_in_base_x - d0_c_in_base_y_3*q_in_base_z -
-            d_G_m1_in_base_z*n_m1_in_base_y*q_in_base_x
+        # (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        upu_d_G_m1_in_base_x = (
+        axis_y_upu_axes2_in_base_x*upu_d_G_m1_t_2 + axis_z_upu_axes2_in_base_x*upu_d_G_m1_t_3 -
+            axis_x_upu_axes2_x*upu_d_G_m1_t
         )
-        M_aa_t_5 = (
-        M_ta_t_11*q_in_base_x + M_ta_t_4*q_in_base_z + d0_c_in_base_z_3*q_in_base_z +
-            d_G_m_yx*q_in_base_y - d0_G_m1_in_base_z*n_m1_in_base_y - d0_c_in_base_z_5*q_in_base_x
-            - d_G_m1_in_base_y*n_m1_in_base_y*q_in_base_x
+        upu_d_G_m1_in_base_y = (
+        axis_y_upu_axes2_in_base_y*upu_d_G_m1_t_2 + axis_z_upu_axes2_in_base_y*upu_d_G_m1_t_3 -
+            axis_x_upu_axes2_y*upu_d_G_m1_t
         )
-        M_aa_t_6 = (
-        M_ta_t_4*q_in_base_y + d0_G_m1_in_base_z*n_m1_in_base_z + d0_c_in_base_z_3*q_in_base_y +
-            d_G_m1_in_base_y*n_m1_in_base_z*q_in_base_x - M_ta_t_8*q_in_base_x -
-            d0_c_in_base_z_4*q_in_base_x - d_G_m1_in_base_x*n_m1_in_base_z*q_in_base_y
+        upu_d_G_m1_in_base_z = (
+        axis_y_upu_axes2_in_base_z*upu_d_G_m1_t_2 + axis_z_upu_axes2_in_base_z*upu_d_G_m1_t_3 -
+            axis_x_upu_axes2_z*upu_d_G_m1_t
+        )
+        # (upu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        upu_d_G_m_xx = upu_d_G_m1_in_base_x*upu_n_m1_in_base_x
+        upu_d_G_m_xy = upu_d_G_m1_in_base_y*upu_n_m1_in_base_x
+        upu_d_G_m_xz = upu_d_G_m1_in_base_z*upu_n_m1_in_base_x
+        upu_d_G_m_yx = upu_d_G_m1_in_base_x*upu_n_m1_in_base_y
+        # (M_aa) rotational block of M
+        upu_M_aa_t = (
+        upu_M_ta_t_7*upu_q_in_base_z + upu_d_G_m_xz*upu_q_in_base_y +
+            upu_n_m1_in_base_x*(axis_x_upu_axes2_x*upu_dalpha_G_m1_t +
+            axis_y_upu_axes2_in_base_x*upu_dalpha_G_m1_t_2) - upu_M_ta_t_10*upu_q_in_base_y -
+            upu_d_G_m_xy*upu_q_in_base_z
+        )
+        upu_M_aa_t_2 = (
+        upu_M_ta_t_11*upu_q_in_base_y + upu_d_G_m_xx*upu_q_in_base_z +
+            upu_dalpha_G_m1_in_base_y*upu_n_m1_in_base_x - upu_M_ta_t_8*upu_q_in_base_z -
+            upu_d_G_m_xz*upu_q_in_base_x
+        )
+        upu_M_aa_t_3 = (
+        upu_M_ta_t_12*upu_q_in_base_y + upu_M_ta_t_9*upu_q_in_base_z +
+            upu_d_G_m_xy*upu_q_in_base_x + upu_dalpha_G_m1_in_base_z*upu_n_m1_in_base_x -
+            upu_d_G_m_xx*upu_q_in_base_y
+        )
+        upu_M_aa_t_4 = (
+        upu_M_ta_t_5*upu_q_in_base_z + upu_d_G_m_yx*upu_q_in_base_z +
+            upu_dalpha_G_m1_in_base_y*upu_n_m1_in_base_y - upu_M_ta_t_11*upu_q_in_base_x -
+            upu_d_G_m1_in_base_z*upu_n_m1_in_base_y*upu_q_in_base_x
+        )
+        upu_M_aa_t_5 = (
+        upu_M_ta_t_12*upu_q_in_base_x + upu_M_ta_t_6*upu_q_in_base_z +
+            upu_d_G_m_yx*upu_q_in_base_y - upu_dalpha_G_m1_in_base_z*upu_n_m1_in_base_y -
+            upu_d_G_m1_in_base_y*upu_n_m1_in_base_y*upu_q_in_base_x
+        )
+        upu_M_aa_t_6 = (
+        upu_M_ta_t_6*upu_q_in_base_y + upu_dalpha_G_m1_in_base_z*upu_n_m1_in_base_z +
+            upu_d_G_m1_in_base_y*upu_n_m1_in_base_z*upu_q_in_base_x - upu_M_ta_t_9*upu_q_in_base_x
+            - upu_d_G_m1_in_base_x*upu_n_m1_in_base_z*upu_q_in_base_y
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-volume_c_t) >
-            _TOLERANCE * 0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8) & (abs(w_1_t_3) >
-            _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(-upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
+            _TOLERANCE * 0.8) & (abs(upu_w_1_t_3) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
-        Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_12, M_ta_t_13, M_ta_t_14,
-            M_ta_t_15, M_ta_t_16, M_ta_t_17, M_ta_t_18, M_ta_t_19, M_ta_t_20, M_aa_t,
-            M_aa_t_2, M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6,
+        upu_Q_t_12, upu_Q_t_13, upu_Q_t_14, upu_Q_t_16, upu_Q_t_17, upu_Q_t_19, upu_M_ta_t_4,
+            upu_M_ta_t_5, upu_M_ta_t_6, upu_M_ta_t_7, upu_M_ta_t_8, upu_M_ta_t_9,
+            upu_M_ta_t_10, upu_M_ta_t_11, upu_M_ta_t_12, upu_M_aa_t, upu_M_aa_t_2,
+            upu_M_aa_t_3, upu_M_aa_t_4, upu_M_aa_t_5, upu_M_aa_t_6,
         ))
     (
     total_upu_xx, total_upu_xy, total_upu_xz, total_upu_yy, total_upu_yz, total_upu_zz,
@@ -2461,18 +2575,18 @@ def _run_M(m, X):
         total_upu_yz_2, total_upu_zx, total_upu_zy, total_upu_zz_2, total_upu_xx_3,
         total_upu_xy_3, total_upu_xz_3, total_upu_yy_3, total_upu_yz_3, total_upu_zz_3,
     ) = sums
-    # (M1) translational block of M
+    # (M_tt) translational block of M
     M_tt_xx = platform_mass + total_upu_xx
     M_tt_yy = platform_mass + total_upu_yy
     M_tt_zz = platform_mass + total_upu_zz
-    # (M2) coupling block of M
+    # (M_ta) coupling block of M
     M_ta_xy = h_star_in_base_z + total_upu_xy_2
     M_ta_xz = -h_star_in_base_y - total_upu_xz_2
     M_ta_yx = -h_star_in_base_z - total_upu_yx
     M_ta_yz = h_star_in_base_x - total_upu_yz_2
     M_ta_zx = h_star_in_base_y - total_upu_zx
     M_ta_zy = total_upu_zy - h_star_in_base_x
-    # (M3) rotational block of M
+    # (M_aa) rotational block of M
     M_aa_xx = J_star_t_10 + total_upu_xx_3
     M_aa_xy = J_star_t_11 + total_upu_xy_3
     M_aa_xz = J_star_t_12 + total_upu_xz_3
@@ -2576,129 +2690,136 @@ def _run_Z(m, X, V):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_Z = m.zeros("Z")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (M4) centripetal force and weight of the platform
+    # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
     Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
     Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
+    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z_2*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x_2*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y - g_r0_y_2*h_star_x
+    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
+    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
-            branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
-            upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
-            upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
-            upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z,
-            upu_link3_mass, upu_platform_joint_axis_platform_x,
-            upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
-            upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
+        upu_J_group_2_xy, upu_J_group_2_xz, upu_J_group_2_yz, upu_Sigma_2_xx, upu_Sigma_2_yy,
+            upu_Sigma_2_zz, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
+            upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
+            upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
+            upu_base_point_z, upu_branch_1, upu_branch_2, upu_g_r0_x, upu_g_r0_y, upu_g_r0_z,
+            upu_h_2_x, upu_h_2_y, upu_h_2_z, upu_h_3_x, upu_h_3_y, upu_h_3_z, upu_link3_mass,
+            upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
+            upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
+            upu_platform_point_z,
         ) = k
-        # (upu-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (upu-S) from the base point to the connection point
+        upu_q_in_base_x = (
         R_xx*upu_platform_point_x + R_xy*upu_platform_point_y + R_xz*upu_platform_point_z
         )
-        q_in_base_y = (
+        upu_q_in_base_y = (
         R_yx*upu_platform_point_x + R_yy*upu_platform_point_y + R_yz*upu_platform_point_z
         )
-        q_in_base_z = (
+        upu_q_in_base_z = (
         R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z
         )
-        S_x = q_in_base_x + t_x - upu_base_point_x
-        S_y = q_in_base_y + t_y - upu_base_point_y
-        S_z = q_in_base_z + t_z - upu_base_point_z
-        # (upu-K2) component along the reference direction
-        px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx
-        # (upu-K3) component across the reference direction
-        py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy
-        # (upu-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (upu-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (upu-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz
-        # (upu-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (upu-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (upu-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (upu-K16) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        end_p1_r0_x = (
+        upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x
+        upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y
+        upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z
+        # (upu-px_1) component along the reference direction
+        upu_px_1 = (
+        upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
+        )
+        # (upu-py_1) component across the reference direction
+        upu_py_1 = (
+        upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy + upu_S_z*upu_base_frame_zy
+        )
+        # (upu-rho2_1) squared amplitude
+        upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
+        # (upu-root_1) amplitude, with the sign of the branch
+        upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
+        # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        upu_xi_1_t = (
+        upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
+        )
+        # (upu-rho2_2) squared amplitude
+        upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t
+        # (upu-root_2) amplitude, with the sign of the branch
+        upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
+        # (upu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_upu_root_2 = 1.0/upu_root_2
+        upu_c_2 = inv_upu_root_2*upu_root_1
+        # (upu-s_2) sine of the angle of joint 2 from its reference direction
+        upu_s_2 = inv_upu_root_2*upu_xi_1_t
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_end_p1_r0_x = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
             R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
             R_yy*upu_base_frame_yx + R_zy*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx + R_yz*upu_base_frame_yx +
             R_zz*upu_base_frame_zx)
         )
-        end_p1_r0_y = (
+        upu_end_p1_r0_y = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy + R_yx*upu_base_frame_yy +
             R_zx*upu_base_frame_zy) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy +
             R_yy*upu_base_frame_yy + R_zy*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy + R_yz*upu_base_frame_yy +
             R_zz*upu_base_frame_zy)
         )
-        end_p1_r0_z = (
+        upu_end_p1_r0_z = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz + R_yx*upu_base_frame_yz +
             R_zx*upu_base_frame_zz) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz +
             R_yy*upu_base_frame_yz + R_zy*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
             R_zz*upu_base_frame_zz)
         )
-        # (upu-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (upu-K7) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x
-        end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1
-        end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
-        end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
-        # (upu-V6) triple product of the velocity vectors
-        volume_c_t = root_1*root_2
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2
-        # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-        n_c_z = n_m1_r0_y*root_2/volume_c_t
-        # (upu-V9) force part of reciprocal wrench 1
-        axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
-        axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
-        axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
-        w_1_t = s_1*s_2
-        w_1_t_2 = c_1*s_2
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1 = inv_upu_root_1*upu_py_1
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_px_1
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_end_p1_r1_x = upu_end_p1_r0_y*upu_s_1 - upu_c_1*upu_end_p1_r0_x
+        upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1
+        upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y
+        upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2
+        # (upu-volume_c) triple product of the velocity vectors
+        upu_volume_c_t = upu_root_1*upu_root_2
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2
+        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t
+        # (upu-w_1) force part of reciprocal wrench 1
+        axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1
+        axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1
+        axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1
+        upu_w_1_t = upu_s_1*upu_s_2
+        upu_w_1_t_2 = upu_c_1*upu_s_2
         axis_y_upu_axes2_in_base_x = (
-        upu_base_frame_xx*w_1_t + upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz
+        upu_base_frame_xx*upu_w_1_t + upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2
         )
         axis_y_upu_axes2_in_base_y = (
-        upu_base_frame_yx*w_1_t + upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz
+        upu_base_frame_yx*upu_w_1_t + upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2
         )
         axis_y_upu_axes2_in_base_z = (
-        upu_base_frame_zx*w_1_t + upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz
+        upu_base_frame_zx*upu_w_1_t + upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2
         )
         axis_x_upu_axes2_x = (
         axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
@@ -2712,185 +2833,203 @@ def _run_Z(m, X, V):
         axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
             axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
         )
-        w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
-        inv_w_1_t_25 = 1.0/w_1_t_3
-        # (upu-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        # (upu-V18) rate at which the joints turn along moment direction 1
-        eta_1 = (
-        omega_x*(axis_y_upu_axes2_in_base_x*end_p1_r3_x - axis_x_upu_axes2_x*end_p1_r3_y) +
-            omega_y*(axis_y_upu_axes2_in_base_y*end_p1_r3_x - axis_x_upu_axes2_y*end_p1_r3_y) +
-            omega_z*(axis_y_upu_axes2_in_base_z*end_p1_r3_x - axis_x_upu_axes2_z*end_p1_r3_y)
+        upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y
+        inv_upu_w_1_t_25 = 1.0/upu_w_1_t_3
+        # (upu-S_dot) velocity of the connection point
+        upu_S_dot_t = omega_y*upu_q_in_base_z - omega_z*upu_q_in_base_y
+        upu_S_dot_t_2 = omega_z*upu_q_in_base_x - omega_x*upu_q_in_base_z
+        upu_S_dot_t_3 = omega_x*upu_q_in_base_y - omega_y*upu_q_in_base_x
+        upu_S_dot_x = t_dot_x + upu_S_dot_t
+        upu_S_dot_y = t_dot_y + upu_S_dot_t_2
+        upu_S_dot_z = t_dot_z + upu_S_dot_t_3
+        # (upu-eta_1) rate at which the joints turn along moment direction 1
+        upu_eta_1 = (
+        omega_x*(axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x - axis_x_upu_axes2_x*upu_end_p1_r3_y)
+            + omega_y*(axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x -
+            axis_x_upu_axes2_y*upu_end_p1_r3_y) +
+            omega_z*(axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x -
+            axis_x_upu_axes2_z*upu_end_p1_r3_y)
         )
-        # (upu-V1) velocity of the connection point
-        S_dot_tip_x = (
-        S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
+        # (upu-S_dot) velocity of the connection point
+        upu_S_dot_tip_x = (
+        axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
+            axis_x_upu_axes2_z*upu_S_dot_z
         )
-        # (upu-V19) rate of joint 1
-        qd_1_t = (
-        inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
-            S_dot_z*axis_y_upu_axes2_in_base_z)
+        # (upu-qd_3) rate of joint 3
+        upu_qd_3_t = (
+        inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_dot_x +
+            axis_y_upu_axes2_in_base_y*upu_S_dot_y + axis_y_upu_axes2_in_base_z*upu_S_dot_z)
         )
-        qd_1_t_2 = (
-        inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
-            S_dot_z*axis_z_upu_axes2_in_base_z + eta_1*n_c_z)
+        upu_qd_3_t_2 = (
+        inv_upu_w_1_t_25*(axis_z_upu_axes2_in_base_x*upu_S_dot_x +
+            axis_z_upu_axes2_in_base_y*upu_S_dot_y + axis_z_upu_axes2_in_base_z*upu_S_dot_z +
+            upu_eta_1*upu_n_c_z)
         )
-        # (upu-V22) angular velocity of link 1
-        omega_1_t = qd_1_t_2*s_2
-        omega_1_t_2 = c_2*qd_1_t_2
-        # (upu-A8) rate of moment direction 1
-        omega_tip_x = (
+        # (upu-omega_1) angular velocity of link 1
+        upu_omega_1_t = upu_qd_3_t_2*upu_s_2
+        upu_omega_1_t_2 = upu_c_2*upu_qd_3_t_2
+        # (upu-u_1) centripetal acceleration of the connection point
+        upu_u_1_x = omega_y*upu_S_dot_t_3 - omega_z*upu_S_dot_t_2
+        upu_u_1_y = omega_z*upu_S_dot_t - omega_x*upu_S_dot_t_3
+        upu_u_1_z = omega_x*upu_S_dot_t_2 - omega_y*upu_S_dot_t
+        # (upu-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        upu_zeta_2_x = upu_omega_1_t_2*upu_qd_3_t
+        upu_zeta_2_y = upu_omega_1_t*upu_qd_3_t
+        # (upu-W_2) centripetal tensor of link 2
+        upu_W_2_t = upu_omega_1_t*upu_omega_1_t
+        upu_W_2_t_2 = upu_omega_1_t_2*upu_omega_1_t_2
+        upu_W_2_t_3 = upu_qd_3_t*upu_qd_3_t
+        upu_W_2_xy = upu_omega_1_t*upu_omega_1_t_2
+        # (upu-bias) acceleration of the connection point at zero joint accelerations
+        upu_bias_t = 2.0*upu_S_dot_tip_x
+        upu_bias_t_2 = upu_bias_t*upu_qd_3_t
+        upu_bias_t_3 = upu_bias_t*upu_omega_1_t_2
+        upu_bias_z = upu_bias_t_3 + 2.0*upu_root_2*upu_zeta_2_y
+        # (upu-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        upu_rel_o_z = (
+        axis_z_upu_axes2_in_base_x*upu_u_1_x + axis_z_upu_axes2_in_base_y*upu_u_1_y +
+            axis_z_upu_axes2_in_base_z*upu_u_1_z - upu_bias_z
+        )
+        # (upu-nd_m1) rate of moment direction 1
+        upu_omega_tip_x = (
         axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
         )
-        omega_tip_y = (
+        upu_omega_tip_y = (
         axis_y_upu_axes2_in_base_x*omega_x + axis_y_upu_axes2_in_base_y*omega_y +
             axis_y_upu_axes2_in_base_z*omega_z
         )
-        omega_tip_z = (
+        upu_omega_tip_z = (
         axis_z_upu_axes2_in_base_x*omega_x + axis_z_upu_axes2_in_base_y*omega_y +
             axis_z_upu_axes2_in_base_z*omega_z
         )
-        nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t - end_p1_r3_x*omega_tip_z
-        nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y - end_p1_r3_y*omega_tip_z
-        # (upu-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_x = omega_1_t_2*qd_1_t
-        zeta_2_y = omega_1_t*qd_1_t
-        # (upu-A9) bias of the angular acceleration along moment direction 1
-        nu_1_t = end_p1_r3_y*zeta_2_x - end_p1_r3_x*zeta_2_y
-        nu_1_t_2 = (
-        nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z - qd_1_t)*(end_p1_r3_y*omega_1_t_2 -
-            end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 + omega_tip_y)
+        upu_nd_m1_x = (
+        upu_end_p1_r1_x*upu_omega_tip_x - upu_end_p1_r1_x*upu_omega_1_t -
+            upu_end_p1_r3_x*upu_omega_tip_z
         )
-        nu_1 = -nu_1_t - nu_1_t_2
-        # (upu-V24) centripetal tensor of link 2
-        W_2_t = omega_1_t*omega_1_t
-        W_2_t_2 = omega_1_t_2*omega_1_t_2
-        W_2_t_3 = qd_1_t*qd_1_t
-        W_2_xy = omega_1_t*omega_1_t_2
-        # (upu-A5) acceleration of the connection point at zero joint accelerations
-        bias_t = 2.0*S_dot_tip_x
-        bias_t_2 = bias_t*qd_1_t
-        bias_t_3 = bias_t*omega_1_t_2
-        bias_z = bias_t_3 + 2.0*root_2*zeta_2_y
-        # (upu-A1) centripetal acceleration of the connection point
-        u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
-        u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y
-        # (upu-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_z = (
-        axis_z_upu_axes2_in_base_x*u_1_x + axis_z_upu_axes2_in_base_y*u_1_y +
-            axis_z_upu_axes2_in_base_z*u_1_z - bias_z
+        upu_nd_m1_y = (
+        upu_end_p1_r1_x*upu_omega_1_t_2 + upu_end_p1_r1_x*upu_omega_tip_y -
+            upu_end_p1_r3_y*upu_omega_tip_z
         )
-        # (upu-A12) remainder without the acceleration in: acceleration of joint 1
-        qdd_1_o_t = (
-        axis_y_upu_axes2_in_base_x*u_1_x + axis_y_upu_axes2_in_base_y*u_1_y +
-            axis_y_upu_axes2_in_base_z*u_1_z - bias_t_2
+        # (upu-nu_1) bias of the angular acceleration along moment direction 1
+        upu_nu_1_t = upu_end_p1_r3_y*upu_zeta_2_x - upu_end_p1_r3_x*upu_zeta_2_y
+        upu_nu_1_t_2 = (
+        upu_nd_m1_x*(upu_omega_1_t - upu_omega_tip_x) + (upu_omega_tip_z -
+            upu_qd_3_t)*(upu_end_p1_r3_y*upu_omega_1_t_2 - upu_end_p1_r3_x*upu_omega_1_t) -
+            upu_nd_m1_y*(upu_omega_1_t_2 + upu_omega_tip_y)
         )
-        qdd_1_o_t_2 = inv_root_2*qdd_1_o_t
-        qdd_1_o_t_3 = inv_w_1_t_25*(rel_o_z + n_c_z*nu_1)
-        # (upu-A20) remainder without the acceleration in: angular acceleration of link 1
-        alpha_1_o_t = qdd_1_o_t_3*s_2
-        alpha_1_o_t_2 = c_2*qdd_1_o_t_3
-        # (upu-A24) remainder without the acceleration in: angular acceleration of link 2
-        alpha_2_o_x = alpha_1_o_t - zeta_2_x
-        alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-        # (upu-A26) remainder of the acceleration tensor of link 2
-        B_2_o_xy = -2.0*W_2_xy - qdd_1_o_t_2
-        B_2_o_zx = zeta_2_y - alpha_2_o_y
-        B_2_o_zy = alpha_2_o_x - zeta_2_x
-        # (upu-N6) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-        g_r3_x = g_r0_z*s_2 - c_2*g_r1_y
-        g_r3_y = -c_2*g_r0_z - g_r1_y*s_2
-        acc_3_o_x = (
-        axis_x_upu_axes2_x*u_1_x + axis_x_upu_axes2_y*u_1_y + axis_x_upu_axes2_z*u_1_z - g_r3_x
+        upu_nu_1 = -upu_nu_1_t - upu_nu_1_t_2
+        # (upu-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
+        upu_qdd_3_o_t = (
+        axis_y_upu_axes2_in_base_x*upu_u_1_x + axis_y_upu_axes2_in_base_y*upu_u_1_y +
+            axis_y_upu_axes2_in_base_z*upu_u_1_z - upu_bias_t_2
         )
-        acc_3_o_y = bias_t_2 + qdd_1_o_t - g_r3_y
-        acc_3_o_z = bias_t_3 + B_2_o_zx*root_2 - g_r1_x
-        # (upu-N14) remainder without the acceleration in: inertia force of link 3 less its weight
-        f_3_o_x = (
-        acc_3_o_x*upu_link3_mass - B_2_o_xy*h_3_z - alpha_1_o_t_2*h_3_y - h_3_x*(W_2_t_2 +
-            W_2_t_3)
+        upu_qdd_3_o_t_2 = inv_upu_root_2*upu_qdd_3_o_t
+        upu_qdd_3_o_t_3 = inv_upu_w_1_t_25*(upu_rel_o_z + upu_n_c_z*upu_nu_1)
+        # (upu-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        upu_alpha_1_o_t = upu_qdd_3_o_t_3*upu_s_2
+        upu_alpha_1_o_t_2 = upu_c_2*upu_qdd_3_o_t_3
+        # (upu-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        upu_alpha_2_o_x = upu_alpha_1_o_t - upu_zeta_2_x
+        upu_alpha_2_o_y = -upu_alpha_1_o_t_2 - upu_zeta_2_y
+        # (upu-B_2_o) remainder of the acceleration tensor of link 2
+        upu_B_2_o_xy = -2.0*upu_W_2_xy - upu_qdd_3_o_t_2
+        upu_B_2_o_zx = upu_zeta_2_y - upu_alpha_2_o_y
+        upu_B_2_o_zy = upu_alpha_2_o_x - upu_zeta_2_x
+        # (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        upu_g_r1_x = upu_g_r0_y*upu_s_1 - upu_c_1*upu_g_r0_x
+        upu_g_r1_y = -upu_c_1*upu_g_r0_y - upu_g_r0_x*upu_s_1
+        upu_g_r3_x = upu_g_r0_z*upu_s_2 - upu_c_2*upu_g_r1_y
+        upu_g_r3_y = -upu_c_2*upu_g_r0_z - upu_g_r1_y*upu_s_2
+        upu_acc_3_o_x = (
+        axis_x_upu_axes2_x*upu_u_1_x + axis_x_upu_axes2_y*upu_u_1_y + axis_x_upu_axes2_z*upu_u_1_z
+            - upu_g_r3_x
         )
-        f_3_o_y = (
-        acc_3_o_y*upu_link3_mass + h_3_x*qdd_1_o_t_2 + h_3_z*(W_2_t + W_2_t_3) - alpha_1_o_t*h_3_y
+        upu_acc_3_o_y = upu_bias_t_2 + upu_qdd_3_o_t - upu_g_r3_y
+        upu_acc_3_o_z = upu_bias_t_3 + upu_B_2_o_zx*upu_root_2 - upu_g_r1_x
+        # (upu-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight
+        upu_f_3_o_x = (
+        upu_acc_3_o_x*upu_link3_mass - upu_B_2_o_xy*upu_h_3_z - upu_alpha_1_o_t_2*upu_h_3_y -
+            upu_h_3_x*(upu_W_2_t_2 + upu_W_2_t_3)
         )
-        f_3_o_z = (
-        B_2_o_zx*h_3_x + acc_3_o_z*upu_link3_mass - B_2_o_zy*h_3_z - h_3_y*(W_2_t + W_2_t_2)
+        upu_f_3_o_y = (
+        upu_acc_3_o_y*upu_link3_mass + upu_h_3_x*upu_qdd_3_o_t_2 + upu_h_3_z*(upu_W_2_t +
+            upu_W_2_t_3) - upu_alpha_1_o_t*upu_h_3_y
         )
-        # (upu-N21) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        mu_2_o_x = (
-        B_2_o_zy*Sigma_2_yy + J_group_2_xz*qdd_1_o_t_2 + J_group_2_yz*(W_2_t_2 - W_2_t_3) +
-            Sigma_2_zz*alpha_1_o_t + g_r1_x*h_2_z + g_r3_y*h_2_y - B_2_o_zx*J_group_2_xy -
-            acc_3_o_y*h_3_y - acc_3_o_z*h_3_z
+        upu_f_3_o_z = (
+        upu_B_2_o_zx*upu_h_3_x + upu_acc_3_o_z*upu_link3_mass - upu_B_2_o_zy*upu_h_3_z -
+            upu_h_3_y*(upu_W_2_t + upu_W_2_t_2)
         )
-        mu_2_o_y = (
-        B_2_o_zy*J_group_2_xy + acc_3_o_x*h_3_y + g_r1_x*h_2_x - B_2_o_xy*J_group_2_yz -
-            B_2_o_zx*Sigma_2_xx - J_group_2_xz*(W_2_t - W_2_t_3) - Sigma_2_zz*alpha_1_o_t_2 -
-            acc_3_o_z*h_3_x - g_r3_x*h_2_y
+        # (upu-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        upu_mu_2_o_x = (
+        upu_B_2_o_zy*upu_Sigma_2_yy + upu_J_group_2_xz*upu_qdd_3_o_t_2 +
+            upu_J_group_2_yz*(upu_W_2_t_2 - upu_W_2_t_3) + upu_Sigma_2_zz*upu_alpha_1_o_t +
+            upu_g_r1_x*upu_h_2_z + upu_g_r3_y*upu_h_2_y - upu_B_2_o_zx*upu_J_group_2_xy -
+            upu_acc_3_o_y*upu_h_3_y - upu_acc_3_o_z*upu_h_3_z
         )
-        mu_2_o_z = (
-        J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_xz*alpha_1_o_t + Sigma_2_xx*qdd_1_o_t_2 +
-            acc_3_o_x*h_3_z + acc_3_o_y*h_3_x - B_2_o_xy*Sigma_2_yy - J_group_2_yz*alpha_1_o_t_2 -
-            g_r3_x*h_2_z - g_r3_y*h_2_x
+        upu_mu_2_o_y = (
+        upu_B_2_o_zy*upu_J_group_2_xy + upu_acc_3_o_x*upu_h_3_y + upu_g_r1_x*upu_h_2_x -
+            upu_B_2_o_xy*upu_J_group_2_yz - upu_B_2_o_zx*upu_Sigma_2_xx -
+            upu_J_group_2_xz*(upu_W_2_t - upu_W_2_t_3) - upu_Sigma_2_zz*upu_alpha_1_o_t_2 -
+            upu_acc_3_o_z*upu_h_3_x - upu_g_r3_x*upu_h_2_y
         )
-        # (upu-N25) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_o_y = mu_2_o_y - f_3_o_z*root_2
-        N_2_o_r0_y = mu_2_o_x*s_2 - N_2_o_y*c_2
-        # (upu-N41) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_o_t = f_3_o_y + inv_root_2*mu_2_o_z
-        G_o_t_2 = N_2_o_r0_y*inv_w_1_t_25
-        G_o_t_3 = N_2_o_r0_y*inv_w_1_t_25*n_c_z
-        # (upu-N59) velocity and gravity terms of the leg force
-        U_in_base_x = (
-        G_o_t*axis_y_upu_axes2_in_base_x + G_o_t_2*axis_z_upu_axes2_in_base_x +
-            axis_x_upu_axes2_x*f_3_o_x
+        upu_mu_2_o_z = (
+        upu_J_group_2_xy*(upu_W_2_t - upu_W_2_t_2) + upu_J_group_2_xz*upu_alpha_1_o_t +
+            upu_Sigma_2_xx*upu_qdd_3_o_t_2 + upu_acc_3_o_x*upu_h_3_z + upu_acc_3_o_y*upu_h_3_x -
+            upu_B_2_o_xy*upu_Sigma_2_yy - upu_J_group_2_yz*upu_alpha_1_o_t_2 -
+            upu_g_r3_x*upu_h_2_z - upu_g_r3_y*upu_h_2_x
         )
-        U_in_base_y = (
-        G_o_t*axis_y_upu_axes2_in_base_y + G_o_t_2*axis_z_upu_axes2_in_base_y +
-            axis_x_upu_axes2_y*f_3_o_x
+        # (upu-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        upu_N_2_o_y = upu_mu_2_o_y - upu_f_3_o_z*upu_root_2
+        upu_N_2_o_r0_y = upu_mu_2_o_x*upu_s_2 - upu_N_2_o_y*upu_c_2
+        # (upu-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        upu_G_o_t = upu_f_3_o_y + inv_upu_root_2*upu_mu_2_o_z
+        upu_G_o_t_2 = inv_upu_w_1_t_25*upu_N_2_o_r0_y
+        upu_G_o_t_3 = inv_upu_w_1_t_25*upu_N_2_o_r0_y*upu_n_c_z
+        # (upu-U) velocity and gravity terms of the leg force
+        upu_U_in_base_x = (
+        axis_x_upu_axes2_x*upu_f_3_o_x + axis_y_upu_axes2_in_base_x*upu_G_o_t +
+            axis_z_upu_axes2_in_base_x*upu_G_o_t_2
         )
-        U_in_base_z = (
-        G_o_t*axis_y_upu_axes2_in_base_z + G_o_t_2*axis_z_upu_axes2_in_base_z +
-            axis_x_upu_axes2_z*f_3_o_x
+        upu_U_in_base_y = (
+        axis_x_upu_axes2_y*upu_f_3_o_x + axis_y_upu_axes2_in_base_y*upu_G_o_t +
+            axis_z_upu_axes2_in_base_y*upu_G_o_t_2
         )
-        # (upu-N49) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        G_m_o_x = G_o_t_3*end_p1_r3_y
-        G_m_o_y = G_o_t_3*end_p1_r3_x
-        # (M7) rotational part of Z
-        Z_a_t = (
-        G_m_o_y*axis_y_upu_axes2_in_base_x + U_in_base_z*q_in_base_y - G_m_o_x*axis_x_upu_axes2_x
-            - U_in_base_y*q_in_base_z
+        upu_U_in_base_z = (
+        axis_x_upu_axes2_z*upu_f_3_o_x + axis_y_upu_axes2_in_base_z*upu_G_o_t +
+            axis_z_upu_axes2_in_base_z*upu_G_o_t_2
         )
-        Z_a_t_2 = (
-        G_m_o_y*axis_y_upu_axes2_in_base_y + U_in_base_x*q_in_base_z - G_m_o_x*axis_x_upu_axes2_y
-            - U_in_base_z*q_in_base_x
+        # (upu-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        upu_G_m_o_x = upu_G_o_t_3*upu_end_p1_r3_y
+        upu_G_m_o_y = upu_G_o_t_3*upu_end_p1_r3_x
+        # (Z_a) rotational part of Z
+        upu_Z_a_t = (
+        axis_y_upu_axes2_in_base_x*upu_G_m_o_y + upu_U_in_base_z*upu_q_in_base_y -
+            axis_x_upu_axes2_x*upu_G_m_o_x - upu_U_in_base_y*upu_q_in_base_z
         )
-        Z_a_t_3 = (
-        G_m_o_y*axis_y_upu_axes2_in_base_z + U_in_base_y*q_in_base_x - G_m_o_x*axis_x_upu_axes2_z
-            - U_in_base_x*q_in_base_y
+        upu_Z_a_t_2 = (
+        axis_y_upu_axes2_in_base_y*upu_G_m_o_y + upu_U_in_base_x*upu_q_in_base_z -
+            axis_x_upu_axes2_y*upu_G_m_o_x - upu_U_in_base_z*upu_q_in_base_x
+        )
+        upu_Z_a_t_3 = (
+        axis_y_upu_axes2_in_base_z*upu_G_m_o_y + upu_U_in_base_y*upu_q_in_base_x -
+            axis_x_upu_axes2_z*upu_G_m_o_x - upu_U_in_base_x*upu_q_in_base_y
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-volume_c_t) >
-            _TOLERANCE * 0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8) & (abs(w_1_t_3) >
-            _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(-upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
+            _TOLERANCE * 0.8) & (abs(upu_w_1_t_3) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
-        U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
+        upu_U_in_base_x, upu_U_in_base_y, upu_U_in_base_z, upu_Z_a_t, upu_Z_a_t_2,
+            upu_Z_a_t_3,
         ))
     total_upu_x, total_upu_y, total_upu_z, total_upu_x_2, total_upu_y_2, total_upu_z_2 = sums
-    # (M5) translational part of Z
+    # (Z_t) translational part of Z
     Z_t_x = Z_p_x + total_upu_x
     Z_t_y = Z_p_y + total_upu_y
     Z_t_z = Z_p_z + total_upu_z
-    # (M7) rotational part of Z
+    # (Z_a) rotational part of Z
     Z_a_x = Z_q_in_base_x + total_upu_x_2
     Z_a_y = Z_q_in_base_y + total_upu_y_2
     Z_a_z = Z_q_in_base_z + total_upu_z_2
@@ -2946,62 +3085,68 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
-            upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
-            upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
-            upu_base_point_z, upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
+        upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
+            upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
+            upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z, upu_branch_1,
+            upu_branch_2, upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
         ) = k
-        # (upu-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (upu-S) from the base point to the connection point
+        upu_q_in_base_x = (
         R_xx*upu_platform_point_x + R_xy*upu_platform_point_y + R_xz*upu_platform_point_z
         )
-        q_in_base_y = (
+        upu_q_in_base_y = (
         R_yx*upu_platform_point_x + R_yy*upu_platform_point_y + R_yz*upu_platform_point_z
         )
-        q_in_base_z = (
+        upu_q_in_base_z = (
         R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z
         )
-        S_x = q_in_base_x + t_x - upu_base_point_x
-        S_y = q_in_base_y + t_y - upu_base_point_y
-        S_z = q_in_base_z + t_z - upu_base_point_z
-        # (upu-K2) component along the reference direction
-        px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx
-        # (upu-K3) component across the reference direction
-        py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy
-        # (upu-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (upu-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (upu-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz
-        # (upu-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (upu-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (upu-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (upu-K16) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (upu-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (upu-K7) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (upu-V9) force part of reciprocal wrench 1
-        axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
-        axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
-        axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
-        w_1_t = s_1*s_2
-        w_1_t_2 = c_1*s_2
+        upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x
+        upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y
+        upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z
+        # (upu-px_1) component along the reference direction
+        upu_px_1 = (
+        upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
+        )
+        # (upu-py_1) component across the reference direction
+        upu_py_1 = (
+        upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy + upu_S_z*upu_base_frame_zy
+        )
+        # (upu-rho2_1) squared amplitude
+        upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
+        # (upu-root_1) amplitude, with the sign of the branch
+        upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
+        # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        upu_xi_1_t = (
+        upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
+        )
+        # (upu-rho2_2) squared amplitude
+        upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t
+        # (upu-root_2) amplitude, with the sign of the branch
+        upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
+        # (upu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_upu_root_2 = 1.0/upu_root_2
+        upu_c_2 = inv_upu_root_2*upu_root_1
+        # (upu-s_2) sine of the angle of joint 2 from its reference direction
+        upu_s_2 = inv_upu_root_2*upu_xi_1_t
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1 = inv_upu_root_1*upu_py_1
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_px_1
+        # (upu-w_1) force part of reciprocal wrench 1
+        axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1
+        axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1
+        axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1
+        upu_w_1_t = upu_s_1*upu_s_2
+        upu_w_1_t_2 = upu_c_1*upu_s_2
         axis_y_upu_axes2_in_base_x = (
-        upu_base_frame_xx*w_1_t + upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz
+        upu_base_frame_xx*upu_w_1_t + upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2
         )
         axis_y_upu_axes2_in_base_y = (
-        upu_base_frame_yx*w_1_t + upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz
+        upu_base_frame_yx*upu_w_1_t + upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2
         )
         axis_y_upu_axes2_in_base_z = (
-        upu_base_frame_zx*w_1_t + upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz
+        upu_base_frame_zx*upu_w_1_t + upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2
         )
         axis_x_upu_axes2_x = (
         axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
@@ -3015,21 +3160,21 @@ def _run_H(m, X):
         axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
             axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
         )
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_3_t = axis_x_upu_axes2_z*q_in_base_y - axis_x_upu_axes2_y*q_in_base_z
-        H_a_3_t_2 = axis_x_upu_axes2_x*q_in_base_z - axis_x_upu_axes2_z*q_in_base_x
-        H_a_3_t_3 = axis_x_upu_axes2_y*q_in_base_x - axis_x_upu_axes2_x*q_in_base_y
+        # (upu-H_a_3) moment of the column's unit force about the platform origin
+        upu_H_a_3_t = axis_x_upu_axes2_z*upu_q_in_base_y - axis_x_upu_axes2_y*upu_q_in_base_z
+        upu_H_a_3_t_2 = axis_x_upu_axes2_x*upu_q_in_base_z - axis_x_upu_axes2_z*upu_q_in_base_x
+        upu_H_a_3_t_3 = axis_x_upu_axes2_y*upu_q_in_base_x - axis_x_upu_axes2_x*upu_q_in_base_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_2) >
+        ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
             _TOLERANCE * 0.8))
         )
         out_H[_H_upu[0][leg]] = axis_x_upu_axes2_x
         out_H[_H_upu[1][leg]] = axis_x_upu_axes2_y
         out_H[_H_upu[2][leg]] = axis_x_upu_axes2_z
-        out_H[_H_upu[3][leg]] = H_a_3_t
-        out_H[_H_upu[4][leg]] = H_a_3_t_2
-        out_H[_H_upu[5][leg]] = H_a_3_t_3
+        out_H[_H_upu[3][leg]] = upu_H_a_3_t
+        out_H[_H_upu[4][leg]] = upu_H_a_3_t_2
+        out_H[_H_upu[5][leg]] = upu_H_a_3_t_3
     return ok, (out_H,)
 
 
@@ -3076,126 +3221,133 @@ def _run_Hk(m, X):
     out_Hk = m.zeros("Hk")
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
-            upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
-            upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
-            upu_base_point_z, upu_platform_joint_axis_platform_x,
-            upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
-            upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
+        upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
+            upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
+            upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z, upu_branch_1,
+            upu_branch_2, upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
+            upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
+            upu_platform_point_z,
         ) = k
-        # (upu-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (upu-S) from the base point to the connection point
+        upu_q_in_base_x = (
         R_xx*upu_platform_point_x + R_xy*upu_platform_point_y + R_xz*upu_platform_point_z
         )
-        q_in_base_y = (
+        upu_q_in_base_y = (
         R_yx*upu_platform_point_x + R_yy*upu_platform_point_y + R_yz*upu_platform_point_z
         )
-        q_in_base_z = (
+        upu_q_in_base_z = (
         R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z
         )
-        S_x = q_in_base_x + t_x - upu_base_point_x
-        S_y = q_in_base_y + t_y - upu_base_point_y
-        S_z = q_in_base_z + t_z - upu_base_point_z
-        # (upu-K2) component along the reference direction
-        px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx
-        # (upu-K3) component across the reference direction
-        py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy
-        # (upu-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (upu-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (upu-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz
-        # (upu-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (upu-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (upu-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (upu-K16) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        end_p1_r0_x = (
+        upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x
+        upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y
+        upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z
+        # (upu-px_1) component along the reference direction
+        upu_px_1 = (
+        upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
+        )
+        # (upu-py_1) component across the reference direction
+        upu_py_1 = (
+        upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy + upu_S_z*upu_base_frame_zy
+        )
+        # (upu-rho2_1) squared amplitude
+        upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
+        # (upu-root_1) amplitude, with the sign of the branch
+        upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
+        # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        upu_xi_1_t = (
+        upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
+        )
+        # (upu-rho2_2) squared amplitude
+        upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t
+        # (upu-root_2) amplitude, with the sign of the branch
+        upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
+        # (upu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_upu_root_2 = 1.0/upu_root_2
+        upu_c_2 = inv_upu_root_2*upu_root_1
+        # (upu-s_2) sine of the angle of joint 2 from its reference direction
+        upu_s_2 = inv_upu_root_2*upu_xi_1_t
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_end_p1_r0_x = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
             R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
             R_yy*upu_base_frame_yx + R_zy*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx + R_yz*upu_base_frame_yx +
             R_zz*upu_base_frame_zx)
         )
-        end_p1_r0_y = (
+        upu_end_p1_r0_y = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy + R_yx*upu_base_frame_yy +
             R_zx*upu_base_frame_zy) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy +
             R_yy*upu_base_frame_yy + R_zy*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy + R_yz*upu_base_frame_yy +
             R_zz*upu_base_frame_zy)
         )
-        end_p1_r0_z = (
+        upu_end_p1_r0_z = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz + R_yx*upu_base_frame_yz +
             R_zx*upu_base_frame_zz) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz +
             R_yy*upu_base_frame_yz + R_zy*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
             R_zz*upu_base_frame_zz)
         )
-        # (upu-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (upu-K7) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1
-        end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
-        end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
-        # (upu-V6) triple product of the velocity vectors
-        volume_c_t = root_1*root_2
-        # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-        n_c_z = root_2*(-c_2*end_p1_r3_x - end_p1_r3_y*s_2)/volume_c_t
-        # (upu-V9) force part of reciprocal wrench 1
-        axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
-        axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
-        axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
-        w_1_t = s_1*s_2
-        w_1_t_2 = c_1*s_2
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1 = inv_upu_root_1*upu_py_1
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_px_1
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1
+        upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y
+        upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2
+        # (upu-volume_c) triple product of the velocity vectors
+        upu_volume_c_t = upu_root_1*upu_root_2
+        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        upu_n_c_z = upu_root_2*(-upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2)/upu_volume_c_t
+        # (upu-w_1) force part of reciprocal wrench 1
+        axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1
+        axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1
+        axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1
+        upu_w_1_t = upu_s_1*upu_s_2
+        upu_w_1_t_2 = upu_c_1*upu_s_2
         axis_y_upu_axes2_in_base_x = (
-        upu_base_frame_xx*w_1_t + upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz
+        upu_base_frame_xx*upu_w_1_t + upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2
         )
         axis_y_upu_axes2_in_base_y = (
-        upu_base_frame_yx*w_1_t + upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz
+        upu_base_frame_yx*upu_w_1_t + upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2
         )
         axis_y_upu_axes2_in_base_z = (
-        upu_base_frame_zx*w_1_t + upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz
+        upu_base_frame_zx*upu_w_1_t + upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2
         )
-        # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-        n_c_t = axis_z_upu_axes2_in_base_x*n_c_z
-        n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z
-        n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z
-        # (M9) moment of the column's unit force about the platform origin
-        Hk_a_1_x = (
-        axis_y_upu_axes2_in_base_x*end_p1_r3_x + n_c_t_2*q_in_base_z -
-            end_p1_r3_y*(axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y) - n_c_t_3*q_in_base_y
+        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        upu_n_c_t = axis_z_upu_axes2_in_base_x*upu_n_c_z
+        upu_n_c_t_2 = axis_z_upu_axes2_in_base_y*upu_n_c_z
+        upu_n_c_t_3 = axis_z_upu_axes2_in_base_z*upu_n_c_z
+        # (upu-Hk_a_1) moment of the column's unit force about the platform origin
+        upu_Hk_a_1_x = (
+        axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x + upu_n_c_t_2*upu_q_in_base_z -
+            upu_end_p1_r3_y*(axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y) - upu_n_c_t_3*upu_q_in_base_y
         )
-        Hk_a_1_y = (
-        axis_y_upu_axes2_in_base_y*end_p1_r3_x + n_c_t_3*q_in_base_x -
-            end_p1_r3_y*(axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z) - n_c_t*q_in_base_z
+        upu_Hk_a_1_y = (
+        axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x + upu_n_c_t_3*upu_q_in_base_x -
+            upu_end_p1_r3_y*(axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z) - upu_n_c_t*upu_q_in_base_z
         )
-        Hk_a_1_z = (
-        axis_y_upu_axes2_in_base_z*end_p1_r3_x + n_c_t*q_in_base_y -
-            end_p1_r3_y*(axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x) - n_c_t_2*q_in_base_x
+        upu_Hk_a_1_z = (
+        axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x + upu_n_c_t*upu_q_in_base_y -
+            upu_end_p1_r3_y*(axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x) - upu_n_c_t_2*upu_q_in_base_x
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-volume_c_t) >
-            _TOLERANCE * 0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(-upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
+            _TOLERANCE * 0.8))
         )
-        out_Hk[_Hk_upu[0][leg]] = -n_c_t
-        out_Hk[_Hk_upu[1][leg]] = -n_c_t_2
-        out_Hk[_Hk_upu[2][leg]] = -n_c_t_3
-        out_Hk[_Hk_upu[3][leg]] = Hk_a_1_x
-        out_Hk[_Hk_upu[4][leg]] = Hk_a_1_y
-        out_Hk[_Hk_upu[5][leg]] = Hk_a_1_z
+        out_Hk[_Hk_upu[0][leg]] = -upu_n_c_t
+        out_Hk[_Hk_upu[1][leg]] = -upu_n_c_t_2
+        out_Hk[_Hk_upu[2][leg]] = -upu_n_c_t_3
+        out_Hk[_Hk_upu[3][leg]] = upu_Hk_a_1_x
+        out_Hk[_Hk_upu[4][leg]] = upu_Hk_a_1_y
+        out_Hk[_Hk_upu[5][leg]] = upu_Hk_a_1_z
     return ok, (out_Hk,)
 
 
@@ -3255,97 +3407,103 @@ def _run_constraint_bias(m, X, V):
     out_constraint_bias = m.zeros("constraint_bias")
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
-            upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
-            upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
-            upu_base_point_z, upu_platform_joint_axis_platform_x,
-            upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
-            upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
+        upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
+            upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
+            upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z, upu_branch_1,
+            upu_branch_2, upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
+            upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
+            upu_platform_point_z,
         ) = k
-        # (upu-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (upu-S) from the base point to the connection point
+        upu_q_in_base_x = (
         R_xx*upu_platform_point_x + R_xy*upu_platform_point_y + R_xz*upu_platform_point_z
         )
-        q_in_base_y = (
+        upu_q_in_base_y = (
         R_yx*upu_platform_point_x + R_yy*upu_platform_point_y + R_yz*upu_platform_point_z
         )
-        q_in_base_z = (
+        upu_q_in_base_z = (
         R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z
         )
-        S_x = q_in_base_x + t_x - upu_base_point_x
-        S_y = q_in_base_y + t_y - upu_base_point_y
-        S_z = q_in_base_z + t_z - upu_base_point_z
-        # (upu-K2) component along the reference direction
-        px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx
-        # (upu-K3) component across the reference direction
-        py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy
-        # (upu-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (upu-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (upu-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz
-        # (upu-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (upu-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (upu-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (upu-K16) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        end_p1_r0_x = (
+        upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x
+        upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y
+        upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z
+        # (upu-px_1) component along the reference direction
+        upu_px_1 = (
+        upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
+        )
+        # (upu-py_1) component across the reference direction
+        upu_py_1 = (
+        upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy + upu_S_z*upu_base_frame_zy
+        )
+        # (upu-rho2_1) squared amplitude
+        upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
+        # (upu-root_1) amplitude, with the sign of the branch
+        upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
+        # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        upu_xi_1_t = (
+        upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
+        )
+        # (upu-rho2_2) squared amplitude
+        upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t
+        # (upu-root_2) amplitude, with the sign of the branch
+        upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
+        # (upu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_upu_root_2 = 1.0/upu_root_2
+        upu_c_2 = inv_upu_root_2*upu_root_1
+        # (upu-s_2) sine of the angle of joint 2 from its reference direction
+        upu_s_2 = inv_upu_root_2*upu_xi_1_t
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_end_p1_r0_x = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
             R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
             R_yy*upu_base_frame_yx + R_zy*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx + R_yz*upu_base_frame_yx +
             R_zz*upu_base_frame_zx)
         )
-        end_p1_r0_y = (
+        upu_end_p1_r0_y = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy + R_yx*upu_base_frame_yy +
             R_zx*upu_base_frame_zy) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy +
             R_yy*upu_base_frame_yy + R_zy*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy + R_yz*upu_base_frame_yy +
             R_zz*upu_base_frame_zy)
         )
-        end_p1_r0_z = (
+        upu_end_p1_r0_z = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz + R_yx*upu_base_frame_yz +
             R_zx*upu_base_frame_zz) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz +
             R_yy*upu_base_frame_yz + R_zy*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
             R_zz*upu_base_frame_zz)
         )
-        # (upu-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (upu-K7) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x
-        end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1
-        end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
-        end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
-        # (upu-V6) triple product of the velocity vectors
-        volume_c_t = root_1*root_2
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2
-        # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-        n_c_z = n_m1_r0_y*root_2/volume_c_t
-        # (upu-V9) force part of reciprocal wrench 1
-        axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
-        axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
-        axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
-        w_1_t = s_1*s_2
-        w_1_t_2 = c_1*s_2
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1 = inv_upu_root_1*upu_py_1
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_px_1
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_end_p1_r1_x = upu_end_p1_r0_y*upu_s_1 - upu_c_1*upu_end_p1_r0_x
+        upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1
+        upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y
+        upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2
+        # (upu-volume_c) triple product of the velocity vectors
+        upu_volume_c_t = upu_root_1*upu_root_2
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2
+        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t
+        # (upu-w_1) force part of reciprocal wrench 1
+        axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1
+        axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1
+        axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1
+        upu_w_1_t = upu_s_1*upu_s_2
+        upu_w_1_t_2 = upu_c_1*upu_s_2
         axis_y_upu_axes2_in_base_x = (
-        upu_base_frame_xx*w_1_t + upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz
+        upu_base_frame_xx*upu_w_1_t + upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2
         )
         axis_y_upu_axes2_in_base_y = (
-        upu_base_frame_yx*w_1_t + upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz
+        upu_base_frame_yx*upu_w_1_t + upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2
         )
         axis_y_upu_axes2_in_base_z = (
-        upu_base_frame_zx*w_1_t + upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz
+        upu_base_frame_zx*upu_w_1_t + upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2
         )
         axis_x_upu_axes2_x = (
         axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
@@ -3359,76 +3517,86 @@ def _run_constraint_bias(m, X, V):
         axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
             axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
         )
-        w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
-        # (upu-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        # (upu-V18) rate at which the joints turn along moment direction 1
-        eta_1 = (
-        omega_x*(axis_y_upu_axes2_in_base_x*end_p1_r3_x - axis_x_upu_axes2_x*end_p1_r3_y) +
-            omega_y*(axis_y_upu_axes2_in_base_y*end_p1_r3_x - axis_x_upu_axes2_y*end_p1_r3_y) +
-            omega_z*(axis_y_upu_axes2_in_base_z*end_p1_r3_x - axis_x_upu_axes2_z*end_p1_r3_y)
+        upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y
+        # (upu-S_dot) velocity of the connection point
+        upu_S_dot_t = omega_y*upu_q_in_base_z - omega_z*upu_q_in_base_y
+        upu_S_dot_t_2 = omega_z*upu_q_in_base_x - omega_x*upu_q_in_base_z
+        upu_S_dot_t_3 = omega_x*upu_q_in_base_y - omega_y*upu_q_in_base_x
+        upu_S_dot_x = t_dot_x + upu_S_dot_t
+        upu_S_dot_y = t_dot_y + upu_S_dot_t_2
+        upu_S_dot_z = t_dot_z + upu_S_dot_t_3
+        # (upu-eta_1) rate at which the joints turn along moment direction 1
+        upu_eta_1 = (
+        omega_x*(axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x - axis_x_upu_axes2_x*upu_end_p1_r3_y)
+            + omega_y*(axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x -
+            axis_x_upu_axes2_y*upu_end_p1_r3_y) +
+            omega_z*(axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x -
+            axis_x_upu_axes2_z*upu_end_p1_r3_y)
         )
-        # (upu-V1) velocity of the connection point
-        S_dot_tip_x = (
-        S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
+        # (upu-S_dot) velocity of the connection point
+        upu_S_dot_tip_x = (
+        axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
+            axis_x_upu_axes2_z*upu_S_dot_z
         )
-        # (upu-V19) rate of joint 1
-        qd_1_t = (
-        inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
-            S_dot_z*axis_y_upu_axes2_in_base_z)
+        # (upu-qd_3) rate of joint 3
+        upu_qd_3_t = (
+        inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_dot_x +
+            axis_y_upu_axes2_in_base_y*upu_S_dot_y + axis_y_upu_axes2_in_base_z*upu_S_dot_z)
         )
-        qd_1_t_2 = (
-        (S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
-            S_dot_z*axis_z_upu_axes2_in_base_z + eta_1*n_c_z)/w_1_t_3
+        upu_qd_3_t_2 = (
+        (axis_z_upu_axes2_in_base_x*upu_S_dot_x + axis_z_upu_axes2_in_base_y*upu_S_dot_y +
+            axis_z_upu_axes2_in_base_z*upu_S_dot_z + upu_eta_1*upu_n_c_z)/upu_w_1_t_3
         )
-        # (upu-V22) angular velocity of link 1
-        omega_1_t = qd_1_t_2*s_2
-        omega_1_t_2 = c_2*qd_1_t_2
-        # (upu-A8) rate of moment direction 1
-        omega_tip_x = (
+        # (upu-omega_1) angular velocity of link 1
+        upu_omega_1_t = upu_qd_3_t_2*upu_s_2
+        upu_omega_1_t_2 = upu_c_2*upu_qd_3_t_2
+        # (upu-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        upu_zeta_2_y = upu_omega_1_t*upu_qd_3_t
+        # (upu-bias) acceleration of the connection point at zero joint accelerations
+        upu_bias_z = 2.0*upu_S_dot_tip_x*upu_omega_1_t_2 + 2.0*upu_root_2*upu_zeta_2_y
+        # (upu-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        upu_rel_o_z = (
+        axis_z_upu_axes2_in_base_x*(omega_y*upu_S_dot_t_3 - omega_z*upu_S_dot_t_2) +
+            axis_z_upu_axes2_in_base_y*(omega_z*upu_S_dot_t - omega_x*upu_S_dot_t_3) +
+            axis_z_upu_axes2_in_base_z*(omega_x*upu_S_dot_t_2 - omega_y*upu_S_dot_t) - upu_bias_z
+        )
+        # (upu-nd_m1) rate of moment direction 1
+        upu_omega_tip_x = (
         axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
         )
-        omega_tip_y = (
+        upu_omega_tip_y = (
         axis_y_upu_axes2_in_base_x*omega_x + axis_y_upu_axes2_in_base_y*omega_y +
             axis_y_upu_axes2_in_base_z*omega_z
         )
-        omega_tip_z = (
+        upu_omega_tip_z = (
         axis_z_upu_axes2_in_base_x*omega_x + axis_z_upu_axes2_in_base_y*omega_y +
             axis_z_upu_axes2_in_base_z*omega_z
         )
-        nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t - end_p1_r3_x*omega_tip_z
-        nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y - end_p1_r3_y*omega_tip_z
-        # (upu-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_y = omega_1_t*qd_1_t
-        # (upu-A9) bias of the angular acceleration along moment direction 1
-        nu_1_t = end_p1_r3_y*omega_1_t_2*qd_1_t - end_p1_r3_x*zeta_2_y
-        nu_1_t_2 = (
-        nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z - qd_1_t)*(end_p1_r3_y*omega_1_t_2 -
-            end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 + omega_tip_y)
+        upu_nd_m1_x = (
+        upu_end_p1_r1_x*upu_omega_tip_x - upu_end_p1_r1_x*upu_omega_1_t -
+            upu_end_p1_r3_x*upu_omega_tip_z
         )
-        nu_1 = -nu_1_t - nu_1_t_2
-        # (upu-A5) acceleration of the connection point at zero joint accelerations
-        bias_z = 2.0*S_dot_tip_x*omega_1_t_2 + 2.0*root_2*zeta_2_y
-        # (upu-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rel_o_z = (
-        axis_z_upu_axes2_in_base_x*(S_dot_t_3*omega_y - S_dot_t_2*omega_z) +
-            axis_z_upu_axes2_in_base_y*(S_dot_t*omega_z - S_dot_t_3*omega_x) +
-            axis_z_upu_axes2_in_base_z*(S_dot_t_2*omega_x - S_dot_t*omega_y) - bias_z
+        upu_nd_m1_y = (
+        upu_end_p1_r1_x*upu_omega_1_t_2 + upu_end_p1_r1_x*upu_omega_tip_y -
+            upu_end_p1_r3_y*upu_omega_tip_z
         )
-        # (M11) part of the constraint's second derivative that does not hold the acceleration
-        gamma_c1 = nu_1 - n_c_z*rel_o_z
+        # (upu-nu_1) bias of the angular acceleration along moment direction 1
+        upu_nu_1_t = upu_end_p1_r3_y*upu_omega_1_t_2*upu_qd_3_t - upu_end_p1_r3_x*upu_zeta_2_y
+        upu_nu_1_t_2 = (
+        upu_nd_m1_x*(upu_omega_1_t - upu_omega_tip_x) + (upu_omega_tip_z -
+            upu_qd_3_t)*(upu_end_p1_r3_y*upu_omega_1_t_2 - upu_end_p1_r3_x*upu_omega_1_t) -
+            upu_nd_m1_y*(upu_omega_1_t_2 + upu_omega_tip_y)
+        )
+        upu_nu_1 = -upu_nu_1_t - upu_nu_1_t_2
+        # (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+        upu_gamma_c1 = upu_nu_1 - upu_n_c_z*upu_rel_o_z
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-volume_c_t) >
-            _TOLERANCE * 0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8) & (abs(w_1_t_3) >
-            _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(-upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
+            _TOLERANCE * 0.8) & (abs(upu_w_1_t_3) > _TOLERANCE * 0.8))
         )
-        out_constraint_bias[_constraint_bias_upu[0][leg]] = gamma_c1
+        out_constraint_bias[_constraint_bias_upu[0][leg]] = upu_gamma_c1
     return ok, (out_constraint_bias,)
 
 
@@ -3505,29 +3673,29 @@ def _run_required(m, X, V, A):
     out_required = m.zeros("required")
     out_H = m.zeros("H")
     out_Hk = m.zeros("Hk")
-    # (L2) first moment about the platform origin
+    # (h_star) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
-    # (P1) centripetal tensor of the platform
+    # (W_p) centripetal tensor of the platform
     W_p_t = omega_x*omega_x
     W_p_t_2 = omega_y*omega_y
     W_p_t_3 = omega_z*omega_z
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
     W_p_yz = omega_y*omega_z
-    # (M6) gyroscopic moment and moment of the weight of the platform
+    # (Z_q) gyroscopic moment and moment of the weight of the platform
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
     omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
     Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
     Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
     Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
-    # (E2) inertia force of the platform less its weight
+    # (f_p) inertia force of the platform less its weight
     f_p_x = (
     a_t_x*platform_mass + h_star_in_base_y*(W_p_xy - alpha_z) + h_star_in_base_z*(W_p_xz +
         alpha_y) - h_star_in_base_x*(W_p_t_2 + W_p_t_3)
@@ -3540,11 +3708,11 @@ def _run_required(m, X, V, A):
     a_t_z*platform_mass + h_star_in_base_x*(W_p_xz - alpha_y) + h_star_in_base_y*(W_p_yz +
         alpha_x) - h_star_in_base_z*(W_p_t + W_p_t_2)
     )
-    # (E1) acceleration of the platform origin, less gravity
+    # (a_t) acceleration of the platform origin, less gravity
     a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
     a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
     a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
-    # (E3) inertia moment of the platform less that of its weight
+    # (mu_p) inertia moment of the platform less that of its weight
     alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
     alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
     alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
@@ -3566,99 +3734,106 @@ def _run_required(m, X, V, A):
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
-            branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
-            upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
-            upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
-            upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z,
-            upu_link3_mass, upu_platform_joint_axis_platform_x,
-            upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
-            upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
+        upu_J_group_2_xy, upu_J_group_2_xz, upu_J_group_2_yz, upu_Sigma_2_xx, upu_Sigma_2_yy,
+            upu_Sigma_2_zz, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
+            upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
+            upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
+            upu_base_point_z, upu_branch_1, upu_branch_2, upu_g_r0_x, upu_g_r0_y, upu_g_r0_z,
+            upu_h_2_x, upu_h_2_y, upu_h_2_z, upu_h_3_x, upu_h_3_y, upu_h_3_z, upu_link3_mass,
+            upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
+            upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
+            upu_platform_point_z,
         ) = k
-        # (upu-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (upu-S) from the base point to the connection point
+        upu_q_in_base_x = (
         R_xx*upu_platform_point_x + R_xy*upu_platform_point_y + R_xz*upu_platform_point_z
         )
-        q_in_base_y = (
+        upu_q_in_base_y = (
         R_yx*upu_platform_point_x + R_yy*upu_platform_point_y + R_yz*upu_platform_point_z
         )
-        q_in_base_z = (
+        upu_q_in_base_z = (
         R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z
         )
-        S_x = q_in_base_x + t_x - upu_base_point_x
-        S_y = q_in_base_y + t_y - upu_base_point_y
-        S_z = q_in_base_z + t_z - upu_base_point_z
-        # (upu-K2) component along the reference direction
-        px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx
-        # (upu-K3) component across the reference direction
-        py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy
-        # (upu-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (upu-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (upu-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz
-        # (upu-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (upu-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (upu-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (upu-K16) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        end_p1_r0_x = (
+        upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x
+        upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y
+        upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z
+        # (upu-px_1) component along the reference direction
+        upu_px_1 = (
+        upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
+        )
+        # (upu-py_1) component across the reference direction
+        upu_py_1 = (
+        upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy + upu_S_z*upu_base_frame_zy
+        )
+        # (upu-rho2_1) squared amplitude
+        upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
+        # (upu-root_1) amplitude, with the sign of the branch
+        upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
+        # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        upu_xi_1_t = (
+        upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
+        )
+        # (upu-rho2_2) squared amplitude
+        upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t
+        # (upu-root_2) amplitude, with the sign of the branch
+        upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
+        # (upu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_upu_root_2 = 1.0/upu_root_2
+        upu_c_2 = inv_upu_root_2*upu_root_1
+        # (upu-s_2) sine of the angle of joint 2 from its reference direction
+        upu_s_2 = inv_upu_root_2*upu_xi_1_t
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_end_p1_r0_x = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
             R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
             R_yy*upu_base_frame_yx + R_zy*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx + R_yz*upu_base_frame_yx +
             R_zz*upu_base_frame_zx)
         )
-        end_p1_r0_y = (
+        upu_end_p1_r0_y = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy + R_yx*upu_base_frame_yy +
             R_zx*upu_base_frame_zy) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy +
             R_yy*upu_base_frame_yy + R_zy*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy + R_yz*upu_base_frame_yy +
             R_zz*upu_base_frame_zy)
         )
-        end_p1_r0_z = (
+        upu_end_p1_r0_z = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz + R_yx*upu_base_frame_yz +
             R_zx*upu_base_frame_zz) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz +
             R_yy*upu_base_frame_yz + R_zy*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
             R_zz*upu_base_frame_zz)
         )
-        # (upu-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (upu-K7) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x
-        end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1
-        end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
-        end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
-        # (upu-V6) triple product of the velocity vectors
-        volume_c_t = root_1*root_2
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2
-        # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-        n_c_z = n_m1_r0_y*root_2/volume_c_t
-        # (upu-V9) force part of reciprocal wrench 1
-        axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
-        axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
-        axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
-        w_1_t = s_1*s_2
-        w_1_t_2 = c_1*s_2
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1 = inv_upu_root_1*upu_py_1
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_px_1
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_end_p1_r1_x = upu_end_p1_r0_y*upu_s_1 - upu_c_1*upu_end_p1_r0_x
+        upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1
+        upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y
+        upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2
+        # (upu-volume_c) triple product of the velocity vectors
+        upu_volume_c_t = upu_root_1*upu_root_2
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2
+        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t
+        # (upu-w_1) force part of reciprocal wrench 1
+        axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1
+        axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1
+        axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1
+        upu_w_1_t = upu_s_1*upu_s_2
+        upu_w_1_t_2 = upu_c_1*upu_s_2
         axis_y_upu_axes2_in_base_x = (
-        upu_base_frame_xx*w_1_t + upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz
+        upu_base_frame_xx*upu_w_1_t + upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2
         )
         axis_y_upu_axes2_in_base_y = (
-        upu_base_frame_yx*w_1_t + upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz
+        upu_base_frame_yx*upu_w_1_t + upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2
         )
         axis_y_upu_axes2_in_base_z = (
-        upu_base_frame_zx*w_1_t + upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz
+        upu_base_frame_zx*upu_w_1_t + upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2
         )
         axis_x_upu_axes2_x = (
         axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
@@ -3672,226 +3847,243 @@ def _run_required(m, X, V, A):
         axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
             axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
         )
-        w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
-        inv_w_1_t_25 = 1.0/w_1_t_3
-        # (upu-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_tip_x = (
-        S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
+        upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y
+        inv_upu_w_1_t_25 = 1.0/upu_w_1_t_3
+        # (upu-S_dot) velocity of the connection point
+        upu_S_dot_t = omega_y*upu_q_in_base_z - omega_z*upu_q_in_base_y
+        upu_S_dot_t_2 = omega_z*upu_q_in_base_x - omega_x*upu_q_in_base_z
+        upu_S_dot_t_3 = omega_x*upu_q_in_base_y - omega_y*upu_q_in_base_x
+        upu_S_dot_x = t_dot_x + upu_S_dot_t
+        upu_S_dot_y = t_dot_y + upu_S_dot_t_2
+        upu_S_dot_z = t_dot_z + upu_S_dot_t_3
+        upu_S_dot_tip_x = (
+        axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
+            axis_x_upu_axes2_z*upu_S_dot_z
         )
-        # (upu-V19) rate of joint 1
-        qd_1_t = (
-        inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
-            S_dot_z*axis_y_upu_axes2_in_base_z)
+        # (upu-qd_3) rate of joint 3
+        upu_qd_3_t = (
+        inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_dot_x +
+            axis_y_upu_axes2_in_base_y*upu_S_dot_y + axis_y_upu_axes2_in_base_z*upu_S_dot_z)
         )
-        # (upu-A8) rate of moment direction 1
-        omega_tip_x = (
+        # (upu-W_2) centripetal tensor of link 2
+        upu_W_2_t = upu_qd_3_t*upu_qd_3_t
+        # (upu-bias) acceleration of the connection point at zero joint accelerations
+        upu_bias_t = 2.0*upu_S_dot_tip_x
+        upu_bias_t_2 = upu_bias_t*upu_qd_3_t
+        # (upu-nd_m1) rate of moment direction 1
+        upu_omega_tip_x = (
         axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
         )
-        omega_tip_y = (
+        upu_omega_tip_y = (
         axis_y_upu_axes2_in_base_x*omega_x + axis_y_upu_axes2_in_base_y*omega_y +
             axis_y_upu_axes2_in_base_z*omega_z
         )
-        omega_tip_z = (
+        upu_omega_tip_z = (
         axis_z_upu_axes2_in_base_x*omega_x + axis_z_upu_axes2_in_base_y*omega_y +
             axis_z_upu_axes2_in_base_z*omega_z
         )
-        # (upu-V24) centripetal tensor of link 2
-        W_2_t = qd_1_t*qd_1_t
-        # (upu-A5) acceleration of the connection point at zero joint accelerations
-        bias_t = 2.0*S_dot_tip_x
-        bias_t_2 = bias_t*qd_1_t
-        # (upu-N6) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-        g_r3_x = g_r0_z*s_2 - c_2*g_r1_y
-        g_r3_y = -c_2*g_r0_z - g_r1_y*s_2
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_3_t = axis_x_upu_axes2_z*q_in_base_y - axis_x_upu_axes2_y*q_in_base_z
-        H_a_3_t_2 = axis_x_upu_axes2_x*q_in_base_z - axis_x_upu_axes2_z*q_in_base_x
-        H_a_3_t_3 = axis_x_upu_axes2_y*q_in_base_x - axis_x_upu_axes2_x*q_in_base_y
-        # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-        n_c_t = axis_z_upu_axes2_in_base_x*n_c_z
-        n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z
-        n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z
-        # (M9) moment of the column's unit force about the platform origin
-        Hk_a_1_x = (
-        axis_y_upu_axes2_in_base_x*end_p1_r3_x + n_c_t_2*q_in_base_z -
-            axis_x_upu_axes2_x*end_p1_r3_y - n_c_t_3*q_in_base_y
+        # (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        upu_g_r1_x = upu_g_r0_y*upu_s_1 - upu_c_1*upu_g_r0_x
+        upu_g_r1_y = -upu_c_1*upu_g_r0_y - upu_g_r0_x*upu_s_1
+        upu_g_r3_x = upu_g_r0_z*upu_s_2 - upu_c_2*upu_g_r1_y
+        upu_g_r3_y = -upu_c_2*upu_g_r0_z - upu_g_r1_y*upu_s_2
+        # (upu-H_a_3) moment of the column's unit force about the platform origin
+        upu_H_a_3_t = axis_x_upu_axes2_z*upu_q_in_base_y - axis_x_upu_axes2_y*upu_q_in_base_z
+        upu_H_a_3_t_2 = axis_x_upu_axes2_x*upu_q_in_base_z - axis_x_upu_axes2_z*upu_q_in_base_x
+        upu_H_a_3_t_3 = axis_x_upu_axes2_y*upu_q_in_base_x - axis_x_upu_axes2_x*upu_q_in_base_y
+        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        upu_n_c_t = axis_z_upu_axes2_in_base_x*upu_n_c_z
+        upu_n_c_t_2 = axis_z_upu_axes2_in_base_y*upu_n_c_z
+        upu_n_c_t_3 = axis_z_upu_axes2_in_base_z*upu_n_c_z
+        # (upu-Hk_a_1) moment of the column's unit force about the platform origin
+        upu_Hk_a_1_x = (
+        axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x + upu_n_c_t_2*upu_q_in_base_z -
+            axis_x_upu_axes2_x*upu_end_p1_r3_y - upu_n_c_t_3*upu_q_in_base_y
         )
-        Hk_a_1_y = (
-        axis_y_upu_axes2_in_base_y*end_p1_r3_x + n_c_t_3*q_in_base_x -
-            axis_x_upu_axes2_y*end_p1_r3_y - n_c_t*q_in_base_z
+        upu_Hk_a_1_y = (
+        axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x + upu_n_c_t_3*upu_q_in_base_x -
+            axis_x_upu_axes2_y*upu_end_p1_r3_y - upu_n_c_t*upu_q_in_base_z
         )
-        Hk_a_1_z = (
-        axis_y_upu_axes2_in_base_z*end_p1_r3_x + n_c_t*q_in_base_y -
-            axis_x_upu_axes2_z*end_p1_r3_y - n_c_t_2*q_in_base_x
+        upu_Hk_a_1_z = (
+        axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x + upu_n_c_t*upu_q_in_base_y -
+            axis_x_upu_axes2_z*upu_end_p1_r3_y - upu_n_c_t_2*upu_q_in_base_x
         )
-        # (upu-V19) rate of joint 1
-        qd_1_t_2 = (
-        inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
-            S_dot_z*axis_z_upu_axes2_in_base_z - n_c_z*(end_p1_r3_y*omega_tip_x -
-            end_p1_r3_x*omega_tip_y))
+        # (upu-qd_1) rate of joint 1
+        upu_qd_1_t = (
+        inv_upu_w_1_t_25*(axis_z_upu_axes2_in_base_x*upu_S_dot_x +
+            axis_z_upu_axes2_in_base_y*upu_S_dot_y + axis_z_upu_axes2_in_base_z*upu_S_dot_z -
+            upu_n_c_z*(upu_end_p1_r3_y*upu_omega_tip_x - upu_end_p1_r3_x*upu_omega_tip_y))
         )
-        # (upu-V22) angular velocity of link 1
-        omega_1_t = qd_1_t_2*s_2
-        omega_1_t_2 = c_2*qd_1_t_2
-        # (upu-A8) rate of moment direction 1
-        nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t - end_p1_r3_x*omega_tip_z
-        nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y - end_p1_r3_y*omega_tip_z
-        # (upu-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_x = omega_1_t_2*qd_1_t
-        zeta_2_y = omega_1_t*qd_1_t
-        # (upu-A9) bias of the angular acceleration along moment direction 1
-        nu_1_t = end_p1_r3_y*zeta_2_x - end_p1_r3_x*zeta_2_y
-        nu_1_t_2 = (
-        nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z - qd_1_t)*(end_p1_r3_y*omega_1_t_2 -
-            end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 + omega_tip_y)
+        # (upu-a_p) acceleration of the connection point without its centripetal part
+        upu_a_p_x = t_ddot_x + alpha_y*upu_q_in_base_z - alpha_z*upu_q_in_base_y
+        upu_a_p_y = t_ddot_y + alpha_z*upu_q_in_base_x - alpha_x*upu_q_in_base_z
+        upu_a_p_z = t_ddot_z + alpha_x*upu_q_in_base_y - alpha_y*upu_q_in_base_x
+        # (upu-S_ddot) acceleration of the connection point
+        upu_S_ddot_x = upu_a_p_x + omega_y*upu_S_dot_t_3 - omega_z*upu_S_dot_t_2
+        upu_S_ddot_y = upu_a_p_y + omega_z*upu_S_dot_t - omega_x*upu_S_dot_t_3
+        upu_S_ddot_z = upu_a_p_z + omega_x*upu_S_dot_t_2 - omega_y*upu_S_dot_t
+        # (upu-omega_1) angular velocity of link 1
+        upu_omega_1_t = upu_qd_1_t*upu_s_2
+        upu_omega_1_t_2 = upu_c_2*upu_qd_1_t
+        # (upu-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        upu_zeta_2_x = upu_omega_1_t_2*upu_qd_3_t
+        upu_zeta_2_y = upu_omega_1_t*upu_qd_3_t
+        # (upu-W_2) centripetal tensor of link 2
+        upu_W_2_t_2 = upu_omega_1_t*upu_omega_1_t
+        upu_W_2_t_3 = upu_omega_1_t_2*upu_omega_1_t_2
+        upu_W_2_xy = upu_omega_1_t*upu_omega_1_t_2
+        # (upu-bias) acceleration of the connection point at zero joint accelerations
+        upu_bias_t_3 = upu_bias_t*upu_omega_1_t_2
+        upu_bias_z = upu_bias_t_3 + 2.0*upu_root_2*upu_zeta_2_y
+        # (upu-rel) acceleration of the connection point left to the joint accelerations
+        upu_rel_z = (
+        axis_z_upu_axes2_in_base_x*upu_S_ddot_x + axis_z_upu_axes2_in_base_y*upu_S_ddot_y +
+            axis_z_upu_axes2_in_base_z*upu_S_ddot_z - upu_bias_z
         )
-        nu_1 = -nu_1_t - nu_1_t_2
-        # (upu-A10) acceleration with which the joints turn along moment direction 1
-        etad_1_t = (
-        end_p1_r3_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y +
-            alpha_z*axis_x_upu_axes2_z) - end_p1_r3_x*(alpha_x*axis_y_upu_axes2_in_base_x +
+        # (upu-nd_m1) rate of moment direction 1
+        upu_nd_m1_x = (
+        upu_end_p1_r1_x*upu_omega_tip_x - upu_end_p1_r1_x*upu_omega_1_t -
+            upu_end_p1_r3_x*upu_omega_tip_z
+        )
+        upu_nd_m1_y = (
+        upu_end_p1_r1_x*upu_omega_1_t_2 + upu_end_p1_r1_x*upu_omega_tip_y -
+            upu_end_p1_r3_y*upu_omega_tip_z
+        )
+        # (upu-nu_1) bias of the angular acceleration along moment direction 1
+        upu_nu_1_t = upu_end_p1_r3_y*upu_zeta_2_x - upu_end_p1_r3_x*upu_zeta_2_y
+        upu_nu_1_t_2 = (
+        upu_nd_m1_x*(upu_omega_1_t - upu_omega_tip_x) + (upu_omega_tip_z -
+            upu_qd_3_t)*(upu_end_p1_r3_y*upu_omega_1_t_2 - upu_end_p1_r3_x*upu_omega_1_t) -
+            upu_nd_m1_y*(upu_omega_1_t_2 + upu_omega_tip_y)
+        )
+        upu_nu_1 = -upu_nu_1_t - upu_nu_1_t_2
+        # (upu-etad_1) acceleration with which the joints turn along moment direction 1
+        upu_etad_1_t = (
+        upu_end_p1_r3_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y +
+            alpha_z*axis_x_upu_axes2_z) - upu_end_p1_r3_x*(alpha_x*axis_y_upu_axes2_in_base_x +
             alpha_y*axis_y_upu_axes2_in_base_y + alpha_z*axis_y_upu_axes2_in_base_z)
         )
-        etad_1 = nu_1 - etad_1_t
-        # (upu-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (upu-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        # (upu-V24) centripetal tensor of link 2
-        W_2_t_2 = omega_1_t*omega_1_t
-        W_2_t_3 = omega_1_t_2*omega_1_t_2
-        W_2_xy = omega_1_t*omega_1_t_2
-        # (upu-A5) acceleration of the connection point at zero joint accelerations
-        bias_t_3 = bias_t*omega_1_t_2
-        bias_z = bias_t_3 + 2.0*root_2*zeta_2_y
-        # (upu-A6) acceleration of the connection point left to the joint accelerations
-        rel_z = (
-        S_ddot_x*axis_z_upu_axes2_in_base_x + S_ddot_y*axis_z_upu_axes2_in_base_y +
-            S_ddot_z*axis_z_upu_axes2_in_base_z - bias_z
+        upu_etad_1 = upu_nu_1 - upu_etad_1_t
+        # (upu-qdd_1) acceleration of joint 1
+        upu_qdd_1_t = (
+        axis_y_upu_axes2_in_base_x*upu_S_ddot_x + axis_y_upu_axes2_in_base_y*upu_S_ddot_y +
+            axis_y_upu_axes2_in_base_z*upu_S_ddot_z - upu_bias_t_2
         )
-        # (upu-A11) acceleration of joint 1
-        qdd_1_t = (
-        S_ddot_x*axis_y_upu_axes2_in_base_x + S_ddot_y*axis_y_upu_axes2_in_base_y +
-            S_ddot_z*axis_y_upu_axes2_in_base_z - bias_t_2
+        upu_qdd_1_t_2 = inv_upu_root_2*upu_qdd_1_t
+        upu_qdd_1_t_3 = inv_upu_w_1_t_25*(upu_rel_z + upu_etad_1*upu_n_c_z)
+        # (upu-alpha_1) angular acceleration of link 1
+        upu_alpha_1_t = upu_qdd_1_t_3*upu_s_2
+        upu_alpha_1_t_2 = upu_c_2*upu_qdd_1_t_3
+        # (upu-alpha_2) angular acceleration of link 2
+        upu_alpha_2_x = upu_alpha_1_t - upu_zeta_2_x
+        upu_alpha_2_y = -upu_alpha_1_t_2 - upu_zeta_2_y
+        # (upu-B_2) acceleration tensor of link 2
+        upu_B_2_xy = -2.0*upu_W_2_xy - upu_qdd_1_t_2
+        upu_B_2_zx = upu_zeta_2_y - upu_alpha_2_y
+        upu_B_2_zy = upu_alpha_2_x - upu_zeta_2_x
+        # (upu-acc_3) acceleration of the reference point of link 3, less gravity
+        upu_acc_3_x = (
+        axis_x_upu_axes2_x*upu_S_ddot_x + axis_x_upu_axes2_y*upu_S_ddot_y +
+            axis_x_upu_axes2_z*upu_S_ddot_z - upu_g_r3_x
         )
-        qdd_1_t_2 = inv_root_2*qdd_1_t
-        qdd_1_t_3 = inv_w_1_t_25*(rel_z + etad_1*n_c_z)
-        # (upu-A17) angular acceleration of link 1
-        alpha_1_t = qdd_1_t_3*s_2
-        alpha_1_t_2 = c_2*qdd_1_t_3
-        # (upu-A21) angular acceleration of link 2
-        alpha_2_x = alpha_1_t - zeta_2_x
-        alpha_2_y = -alpha_1_t_2 - zeta_2_y
-        # (upu-A25) acceleration tensor of link 2
-        B_2_xy = -2.0*W_2_xy - qdd_1_t_2
-        B_2_zx = zeta_2_y - alpha_2_y
-        B_2_zy = alpha_2_x - zeta_2_x
-        # (upu-N3) acceleration of the reference point of link 3, less gravity
-        acc_3_x = (
-        S_ddot_x*axis_x_upu_axes2_x + S_ddot_y*axis_x_upu_axes2_y + S_ddot_z*axis_x_upu_axes2_z -
-            g_r3_x
+        upu_acc_3_y = upu_bias_t_2 + upu_qdd_1_t - upu_g_r3_y
+        upu_acc_3_z = upu_bias_t_3 + upu_B_2_zx*upu_root_2 - upu_g_r1_x
+        # (upu-f_3) inertia force of link 3 less its weight
+        upu_f_3_x = (
+        upu_acc_3_x*upu_link3_mass - upu_B_2_xy*upu_h_3_z - upu_alpha_1_t_2*upu_h_3_y -
+            upu_h_3_x*(upu_W_2_t + upu_W_2_t_3)
         )
-        acc_3_y = bias_t_2 + qdd_1_t - g_r3_y
-        acc_3_z = bias_t_3 + B_2_zx*root_2 - g_r1_x
-        # (upu-N11) inertia force of link 3 less its weight
-        f_3_x = (
-        acc_3_x*upu_link3_mass - B_2_xy*h_3_z - alpha_1_t_2*h_3_y - h_3_x*(W_2_t + W_2_t_3)
+        upu_f_3_y = (
+        upu_acc_3_y*upu_link3_mass + upu_h_3_x*upu_qdd_1_t_2 + upu_h_3_z*(upu_W_2_t + upu_W_2_t_2)
+            - upu_alpha_1_t*upu_h_3_y
         )
-        f_3_y = (
-        acc_3_y*upu_link3_mass + h_3_x*qdd_1_t_2 + h_3_z*(W_2_t + W_2_t_2) - alpha_1_t*h_3_y
+        upu_f_3_z = (
+        upu_B_2_zx*upu_h_3_x + upu_acc_3_z*upu_link3_mass - upu_B_2_zy*upu_h_3_z -
+            upu_h_3_y*(upu_W_2_t_2 + upu_W_2_t_3)
         )
-        f_3_z = B_2_zx*h_3_x + acc_3_z*upu_link3_mass - B_2_zy*h_3_z - h_3_y*(W_2_t_2 + W_2_t_3)
-        # (upu-N18) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_x = (
-        B_2_zy*Sigma_2_yy + J_group_2_xz*qdd_1_t_2 + Sigma_2_zz*alpha_1_t + g_r1_x*h_2_z +
-            g_r3_y*h_2_y - B_2_zx*J_group_2_xy - J_group_2_yz*(W_2_t - W_2_t_3) - acc_3_y*h_3_y -
-            acc_3_z*h_3_z
+        # (upu-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        upu_mu_2_x = (
+        upu_B_2_zy*upu_Sigma_2_yy + upu_J_group_2_xz*upu_qdd_1_t_2 + upu_Sigma_2_zz*upu_alpha_1_t
+            + upu_g_r1_x*upu_h_2_z + upu_g_r3_y*upu_h_2_y - upu_B_2_zx*upu_J_group_2_xy -
+            upu_J_group_2_yz*(upu_W_2_t - upu_W_2_t_3) - upu_acc_3_y*upu_h_3_y -
+            upu_acc_3_z*upu_h_3_z
         )
-        mu_2_y = (
-        B_2_zy*J_group_2_xy + J_group_2_xz*(W_2_t - W_2_t_2) + acc_3_x*h_3_y + g_r1_x*h_2_x -
-            B_2_xy*J_group_2_yz - B_2_zx*Sigma_2_xx - Sigma_2_zz*alpha_1_t_2 - acc_3_z*h_3_x -
-            g_r3_x*h_2_y
+        upu_mu_2_y = (
+        upu_B_2_zy*upu_J_group_2_xy + upu_J_group_2_xz*(upu_W_2_t - upu_W_2_t_2) +
+            upu_acc_3_x*upu_h_3_y + upu_g_r1_x*upu_h_2_x - upu_B_2_xy*upu_J_group_2_yz -
+            upu_B_2_zx*upu_Sigma_2_xx - upu_Sigma_2_zz*upu_alpha_1_t_2 - upu_acc_3_z*upu_h_3_x -
+            upu_g_r3_x*upu_h_2_y
         )
-        mu_2_z = (
-        J_group_2_xy*(W_2_t_2 - W_2_t_3) + J_group_2_xz*alpha_1_t + Sigma_2_xx*qdd_1_t_2 +
-            acc_3_x*h_3_z + acc_3_y*h_3_x - B_2_xy*Sigma_2_yy - J_group_2_yz*alpha_1_t_2 -
-            g_r3_x*h_2_z - g_r3_y*h_2_x
+        upu_mu_2_z = (
+        upu_J_group_2_xy*(upu_W_2_t_2 - upu_W_2_t_3) + upu_J_group_2_xz*upu_alpha_1_t +
+            upu_Sigma_2_xx*upu_qdd_1_t_2 + upu_acc_3_x*upu_h_3_z + upu_acc_3_y*upu_h_3_x -
+            upu_B_2_xy*upu_Sigma_2_yy - upu_J_group_2_yz*upu_alpha_1_t_2 - upu_g_r3_x*upu_h_2_z -
+            upu_g_r3_y*upu_h_2_x
         )
-        # (upu-N22) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_y = mu_2_y - f_3_z*root_2
-        N_2_r0_y = mu_2_x*s_2 - N_2_y*c_2
-        # (upu-N38) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_t = f_3_y + inv_root_2*mu_2_z
-        G_t_2 = N_2_r0_y*inv_w_1_t_25
-        G_t_3 = N_2_r0_y*inv_w_1_t_25*n_c_z
-        # (upu-N50) leg force on the platform without actuation and without the mass at the connection point
-        c_in_base_x = (
-        -G_t*axis_y_upu_axes2_in_base_x - G_t_2*axis_z_upu_axes2_in_base_x -
-            axis_x_upu_axes2_x*f_3_x
+        # (upu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        upu_N_2_y = upu_mu_2_y - upu_f_3_z*upu_root_2
+        upu_N_2_r0_y = upu_mu_2_x*upu_s_2 - upu_N_2_y*upu_c_2
+        # (upu-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        upu_G_t = upu_f_3_y + inv_upu_root_2*upu_mu_2_z
+        upu_G_t_2 = inv_upu_w_1_t_25*upu_N_2_r0_y
+        upu_G_t_3 = inv_upu_w_1_t_25*upu_N_2_r0_y*upu_n_c_z
+        # (upu-c) leg force on the platform without actuation and without the mass at the connection point
+        upu_c_in_base_x = (
+        -axis_x_upu_axes2_x*upu_f_3_x - axis_y_upu_axes2_in_base_x*upu_G_t -
+            axis_z_upu_axes2_in_base_x*upu_G_t_2
         )
-        c_in_base_y = (
-        -G_t*axis_y_upu_axes2_in_base_y - G_t_2*axis_z_upu_axes2_in_base_y -
-            axis_x_upu_axes2_y*f_3_x
+        upu_c_in_base_y = (
+        -axis_x_upu_axes2_y*upu_f_3_x - axis_y_upu_axes2_in_base_y*upu_G_t -
+            axis_z_upu_axes2_in_base_y*upu_G_t_2
         )
-        c_in_base_z = (
-        -G_t*axis_y_upu_axes2_in_base_z - G_t_2*axis_z_upu_axes2_in_base_z -
-            axis_x_upu_axes2_z*f_3_x
+        upu_c_in_base_z = (
+        -axis_x_upu_axes2_z*upu_f_3_x - axis_y_upu_axes2_in_base_z*upu_G_t -
+            axis_z_upu_axes2_in_base_z*upu_G_t_2
         )
-        # (upu-N46) moment at the connection point that balances the leg's inertia and weight along all freedoms
-        G_m_x = G_t_3*end_p1_r3_y
-        G_m_y = G_t_3*end_p1_r3_x
-        # (E5) moment that actuators and external wrench must give
-        R_a_t = (
-        G_m_x*axis_x_upu_axes2_x + c_in_base_z*q_in_base_y - G_m_y*axis_y_upu_axes2_in_base_x -
-            c_in_base_y*q_in_base_z
+        # (upu-G_m) moment at the connection point that balances the leg's inertia and weight along all freedoms
+        upu_G_m_x = upu_G_t_3*upu_end_p1_r3_y
+        upu_G_m_y = upu_G_t_3*upu_end_p1_r3_x
+        # (R_a) moment that actuators and external wrench must give
+        upu_R_a_t = (
+        axis_x_upu_axes2_x*upu_G_m_x + upu_c_in_base_z*upu_q_in_base_y -
+            axis_y_upu_axes2_in_base_x*upu_G_m_y - upu_c_in_base_y*upu_q_in_base_z
         )
-        R_a_t_2 = (
-        G_m_x*axis_x_upu_axes2_y + c_in_base_x*q_in_base_z - G_m_y*axis_y_upu_axes2_in_base_y -
-            c_in_base_z*q_in_base_x
+        upu_R_a_t_2 = (
+        axis_x_upu_axes2_y*upu_G_m_x + upu_c_in_base_x*upu_q_in_base_z -
+            axis_y_upu_axes2_in_base_y*upu_G_m_y - upu_c_in_base_z*upu_q_in_base_x
         )
-        R_a_t_3 = (
-        G_m_x*axis_x_upu_axes2_z + c_in_base_y*q_in_base_x - G_m_y*axis_y_upu_axes2_in_base_z -
-            c_in_base_x*q_in_base_y
+        upu_R_a_t_3 = (
+        axis_x_upu_axes2_z*upu_G_m_x + upu_c_in_base_y*upu_q_in_base_x -
+            axis_y_upu_axes2_in_base_z*upu_G_m_y - upu_c_in_base_x*upu_q_in_base_y
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-volume_c_t) >
-            _TOLERANCE * 0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8) & (abs(w_1_t_3) >
-            _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(-upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
+            _TOLERANCE * 0.8) & (abs(upu_w_1_t_3) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
-        c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
+        upu_c_in_base_x, upu_c_in_base_y, upu_c_in_base_z, upu_R_a_t, upu_R_a_t_2,
+            upu_R_a_t_3,
         ))
         out_H[_H_upu[0][leg]] = axis_x_upu_axes2_x
         out_H[_H_upu[1][leg]] = axis_x_upu_axes2_y
         out_H[_H_upu[2][leg]] = axis_x_upu_axes2_z
-        out_H[_H_upu[3][leg]] = H_a_3_t
-        out_H[_H_upu[4][leg]] = H_a_3_t_2
-        out_H[_H_upu[5][leg]] = H_a_3_t_3
-        out_Hk[_Hk_upu[0][leg]] = -n_c_t
-        out_Hk[_Hk_upu[1][leg]] = -n_c_t_2
-        out_Hk[_Hk_upu[2][leg]] = -n_c_t_3
-        out_Hk[_Hk_upu[3][leg]] = Hk_a_1_x
-        out_Hk[_Hk_upu[4][leg]] = Hk_a_1_y
-        out_Hk[_Hk_upu[5][leg]] = Hk_a_1_z
+        out_H[_H_upu[3][leg]] = upu_H_a_3_t
+        out_H[_H_upu[4][leg]] = upu_H_a_3_t_2
+        out_H[_H_upu[5][leg]] = upu_H_a_3_t_3
+        out_Hk[_Hk_upu[0][leg]] = -upu_n_c_t
+        out_Hk[_Hk_upu[1][leg]] = -upu_n_c_t_2
+        out_Hk[_Hk_upu[2][leg]] = -upu_n_c_t_3
+        out_Hk[_Hk_upu[3][leg]] = upu_Hk_a_1_x
+        out_Hk[_Hk_upu[4][leg]] = upu_Hk_a_1_y
+        out_Hk[_Hk_upu[5][leg]] = upu_Hk_a_1_z
     total_upu_x, total_upu_y, total_upu_z, total_upu_x_2, total_upu_y_2, total_upu_z_2 = sums
-    # (E4) force that actuators and external wrench must give
+    # (R_t) force that actuators and external wrench must give
     R_t_x = f_p_x - total_upu_x
     R_t_y = f_p_y - total_upu_y
     R_t_z = f_p_z - total_upu_z
-    # (E5) moment that actuators and external wrench must give
+    # (R_a) moment that actuators and external wrench must give
     R_a_x = mu_p_in_base_x - total_upu_x_2
     R_a_y = mu_p_in_base_y - total_upu_y_2
     R_a_z = mu_p_in_base_z - total_upu_z_2
@@ -3948,53 +4140,59 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
-            upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
-            upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
-            upu_base_point_z, upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
+        upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
+            upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
+            upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z, upu_branch_1,
+            upu_branch_2, upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
         ) = k
-        # (upu-K1) from the base point to the connection point
-        S_x = (
+        # (upu-S) from the base point to the connection point
+        upu_S_x = (
         t_x + R_xx*upu_platform_point_x + R_xy*upu_platform_point_y + R_xz*upu_platform_point_z -
             upu_base_point_x
         )
-        S_y = (
+        upu_S_y = (
         t_y + R_yx*upu_platform_point_x + R_yy*upu_platform_point_y + R_yz*upu_platform_point_z -
             upu_base_point_y
         )
-        S_z = (
+        upu_S_z = (
         t_z + R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z -
             upu_base_point_z
         )
-        # (upu-K2) component along the reference direction
-        px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx
-        # (upu-K3) component across the reference direction
-        py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy
-        # (upu-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (upu-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (upu-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz
-        # (upu-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (upu-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (upu-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        # (upu-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        # (upu-K8) displacement of joint 1
-        q_1 = atan2(inv_root_1*py_1, inv_root_1*px_1)
-        # (upu-K17) displacement of joint 2
-        q_2 = atan2(-inv_root_2*xi_1_t, inv_root_2*root_1)
-        ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
+        # (upu-px_1) component along the reference direction
+        upu_px_1 = (
+        upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
         )
-        out_q[_q_upu[0][leg]] = q_1
-        out_q[_q_upu[1][leg]] = q_2
-        out_q[_q_upu[2][leg]] = root_2
+        # (upu-py_1) component across the reference direction
+        upu_py_1 = (
+        upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy + upu_S_z*upu_base_frame_zy
+        )
+        # (upu-rho2_1) squared amplitude
+        upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
+        # (upu-root_1) amplitude, with the sign of the branch
+        upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
+        # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        upu_xi_1_t = (
+        upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
+        )
+        # (upu-rho2_2) squared amplitude
+        upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t
+        # (upu-root_2) amplitude, with the sign of the branch
+        upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
+        # (upu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_upu_root_2 = 1.0/upu_root_2
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        # (upu-q_1) displacement of joint 1
+        upu_q_1 = atan2(inv_upu_root_1*upu_py_1, inv_upu_root_1*upu_px_1)
+        # (upu-q_2) displacement of joint 2
+        upu_q_2 = atan2(-inv_upu_root_2*upu_xi_1_t, inv_upu_root_2*upu_root_1)
+        ok = (
+        ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
+        )
+        out_q[_q_upu[0][leg]] = upu_q_1
+        out_q[_q_upu[1][leg]] = upu_q_2
+        out_q[_q_upu[2][leg]] = upu_root_2
     return ok, (out_q,)
 
 
@@ -4054,96 +4252,102 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
-            upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
-            upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
-            upu_base_point_z, upu_platform_joint_axis_platform_x,
-            upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
-            upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
+        upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
+            upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
+            upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z, upu_branch_1,
+            upu_branch_2, upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
+            upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
+            upu_platform_point_z,
         ) = k
-        # (upu-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (upu-S) from the base point to the connection point
+        upu_q_in_base_x = (
         R_xx*upu_platform_point_x + R_xy*upu_platform_point_y + R_xz*upu_platform_point_z
         )
-        q_in_base_y = (
+        upu_q_in_base_y = (
         R_yx*upu_platform_point_x + R_yy*upu_platform_point_y + R_yz*upu_platform_point_z
         )
-        q_in_base_z = (
+        upu_q_in_base_z = (
         R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z
         )
-        S_x = q_in_base_x + t_x - upu_base_point_x
-        S_y = q_in_base_y + t_y - upu_base_point_y
-        S_z = q_in_base_z + t_z - upu_base_point_z
-        # (upu-K2) component along the reference direction
-        px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx
-        # (upu-K3) component across the reference direction
-        py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy
-        # (upu-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (upu-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (upu-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz
-        # (upu-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (upu-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (upu-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (upu-K16) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        end_p1_r0_x = (
+        upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x
+        upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y
+        upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z
+        # (upu-px_1) component along the reference direction
+        upu_px_1 = (
+        upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
+        )
+        # (upu-py_1) component across the reference direction
+        upu_py_1 = (
+        upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy + upu_S_z*upu_base_frame_zy
+        )
+        # (upu-rho2_1) squared amplitude
+        upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
+        # (upu-root_1) amplitude, with the sign of the branch
+        upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
+        # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        upu_xi_1_t = (
+        upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
+        )
+        # (upu-rho2_2) squared amplitude
+        upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t
+        # (upu-root_2) amplitude, with the sign of the branch
+        upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
+        # (upu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_upu_root_2 = 1.0/upu_root_2
+        upu_c_2 = inv_upu_root_2*upu_root_1
+        # (upu-s_2) sine of the angle of joint 2 from its reference direction
+        upu_s_2 = inv_upu_root_2*upu_xi_1_t
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_end_p1_r0_x = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
             R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
             R_yy*upu_base_frame_yx + R_zy*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx + R_yz*upu_base_frame_yx +
             R_zz*upu_base_frame_zx)
         )
-        end_p1_r0_y = (
+        upu_end_p1_r0_y = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy + R_yx*upu_base_frame_yy +
             R_zx*upu_base_frame_zy) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy +
             R_yy*upu_base_frame_yy + R_zy*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy + R_yz*upu_base_frame_yy +
             R_zz*upu_base_frame_zy)
         )
-        end_p1_r0_z = (
+        upu_end_p1_r0_z = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz + R_yx*upu_base_frame_yz +
             R_zx*upu_base_frame_zz) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz +
             R_yy*upu_base_frame_yz + R_zy*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
             R_zz*upu_base_frame_zz)
         )
-        # (upu-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (upu-K7) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1
-        end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
-        end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
-        # (upu-V6) triple product of the velocity vectors
-        volume_c_t = root_1*root_2
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2
-        # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-        n_c_z = n_m1_r0_y*root_2/volume_c_t
-        # (upu-V9) force part of reciprocal wrench 1
-        axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
-        axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
-        axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
-        w_1_t = s_1*s_2
-        w_1_t_2 = c_1*s_2
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1 = inv_upu_root_1*upu_py_1
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_px_1
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1
+        upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y
+        upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2
+        # (upu-volume_c) triple product of the velocity vectors
+        upu_volume_c_t = upu_root_1*upu_root_2
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2
+        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t
+        # (upu-w_1) force part of reciprocal wrench 1
+        axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1
+        axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1
+        axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1
+        upu_w_1_t = upu_s_1*upu_s_2
+        upu_w_1_t_2 = upu_c_1*upu_s_2
         axis_y_upu_axes2_in_base_x = (
-        upu_base_frame_xx*w_1_t + upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz
+        upu_base_frame_xx*upu_w_1_t + upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2
         )
         axis_y_upu_axes2_in_base_y = (
-        upu_base_frame_yx*w_1_t + upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz
+        upu_base_frame_yx*upu_w_1_t + upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2
         )
         axis_y_upu_axes2_in_base_z = (
-        upu_base_frame_zx*w_1_t + upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz
+        upu_base_frame_zx*upu_w_1_t + upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2
         )
         axis_x_upu_axes2_x = (
         axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
@@ -4157,36 +4361,38 @@ def _run_joint_rates(m, X, V):
         axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
             axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
         )
-        w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
-        # (upu-V1) velocity of the connection point
-        S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_tip_x = (
-        S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
+        upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y
+        # (upu-S_dot) velocity of the connection point
+        upu_S_dot_x = t_dot_x + omega_y*upu_q_in_base_z - omega_z*upu_q_in_base_y
+        upu_S_dot_y = t_dot_y + omega_z*upu_q_in_base_x - omega_x*upu_q_in_base_z
+        upu_S_dot_z = t_dot_z + omega_x*upu_q_in_base_y - omega_y*upu_q_in_base_x
+        upu_S_dot_tip_x = (
+        axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
+            axis_x_upu_axes2_z*upu_S_dot_z
         )
-        # (upu-V19) rate of joint 1
-        qd_1_t = (
-        inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
-            S_dot_z*axis_y_upu_axes2_in_base_z)
+        # (upu-qd_3) rate of joint 3
+        upu_qd_3_t = (
+        inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_dot_x +
+            axis_y_upu_axes2_in_base_y*upu_S_dot_y + axis_y_upu_axes2_in_base_z*upu_S_dot_z)
         )
-        qd_1_t_2 = (
-        S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
-            S_dot_z*axis_z_upu_axes2_in_base_z - n_c_z*(end_p1_r3_y*(axis_x_upu_axes2_x*omega_x +
-            axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z) -
-            end_p1_r3_x*(axis_y_upu_axes2_in_base_x*omega_x + axis_y_upu_axes2_in_base_y*omega_y +
-            axis_y_upu_axes2_in_base_z*omega_z))
+        # (upu-qd_1) rate of joint 1
+        upu_qd_1_t = (
+        axis_z_upu_axes2_in_base_x*upu_S_dot_x + axis_z_upu_axes2_in_base_y*upu_S_dot_y +
+            axis_z_upu_axes2_in_base_z*upu_S_dot_z -
+            upu_n_c_z*(upu_end_p1_r3_y*(axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
+            axis_x_upu_axes2_z*omega_z) - upu_end_p1_r3_x*(axis_y_upu_axes2_in_base_x*omega_x +
+            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z))
         )
-        qd_1_t_3 = qd_1_t_2/w_1_t_3
+        upu_qd_1_t_2 = upu_qd_1_t/upu_w_1_t_3
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-volume_c_t) >
-            _TOLERANCE * 0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8) & (abs(w_1_t_3) >
-            _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(-upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
+            _TOLERANCE * 0.8) & (abs(upu_w_1_t_3) > _TOLERANCE * 0.8))
         )
-        out_qd[_qd_upu[0][leg]] = qd_1_t_3
-        out_qd[_qd_upu[1][leg]] = qd_1_t
-        out_qd[_qd_upu[2][leg]] = S_dot_tip_x
+        out_qd[_qd_upu[0][leg]] = upu_qd_1_t_2
+        out_qd[_qd_upu[1][leg]] = upu_qd_3_t
+        out_qd[_qd_upu[2][leg]] = upu_S_dot_tip_x
     return ok, (out_qd,)
 
 
@@ -4259,97 +4465,103 @@ def _run_joint_accelerations(m, X, V, A):
     out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
-            upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
-            upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
-            upu_base_point_z, upu_platform_joint_axis_platform_x,
-            upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
-            upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
+        upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
+            upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
+            upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z, upu_branch_1,
+            upu_branch_2, upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
+            upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
+            upu_platform_point_z,
         ) = k
-        # (upu-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (upu-S) from the base point to the connection point
+        upu_q_in_base_x = (
         R_xx*upu_platform_point_x + R_xy*upu_platform_point_y + R_xz*upu_platform_point_z
         )
-        q_in_base_y = (
+        upu_q_in_base_y = (
         R_yx*upu_platform_point_x + R_yy*upu_platform_point_y + R_yz*upu_platform_point_z
         )
-        q_in_base_z = (
+        upu_q_in_base_z = (
         R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z
         )
-        S_x = q_in_base_x + t_x - upu_base_point_x
-        S_y = q_in_base_y + t_y - upu_base_point_y
-        S_z = q_in_base_z + t_z - upu_base_point_z
-        # (upu-K2) component along the reference direction
-        px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx
-        # (upu-K3) component across the reference direction
-        py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy
-        # (upu-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (upu-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (upu-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz
-        # (upu-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (upu-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (upu-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (upu-K16) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        end_p1_r0_x = (
+        upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x
+        upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y
+        upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z
+        # (upu-px_1) component along the reference direction
+        upu_px_1 = (
+        upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
+        )
+        # (upu-py_1) component across the reference direction
+        upu_py_1 = (
+        upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy + upu_S_z*upu_base_frame_zy
+        )
+        # (upu-rho2_1) squared amplitude
+        upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
+        # (upu-root_1) amplitude, with the sign of the branch
+        upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
+        # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        upu_xi_1_t = (
+        upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
+        )
+        # (upu-rho2_2) squared amplitude
+        upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t
+        # (upu-root_2) amplitude, with the sign of the branch
+        upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
+        # (upu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_upu_root_2 = 1.0/upu_root_2
+        upu_c_2 = inv_upu_root_2*upu_root_1
+        # (upu-s_2) sine of the angle of joint 2 from its reference direction
+        upu_s_2 = inv_upu_root_2*upu_xi_1_t
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_end_p1_r0_x = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
             R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
             R_yy*upu_base_frame_yx + R_zy*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx + R_yz*upu_base_frame_yx +
             R_zz*upu_base_frame_zx)
         )
-        end_p1_r0_y = (
+        upu_end_p1_r0_y = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy + R_yx*upu_base_frame_yy +
             R_zx*upu_base_frame_zy) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy +
             R_yy*upu_base_frame_yy + R_zy*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy + R_yz*upu_base_frame_yy +
             R_zz*upu_base_frame_zy)
         )
-        end_p1_r0_z = (
+        upu_end_p1_r0_z = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz + R_yx*upu_base_frame_yz +
             R_zx*upu_base_frame_zz) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz +
             R_yy*upu_base_frame_yz + R_zy*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
             R_zz*upu_base_frame_zz)
         )
-        # (upu-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (upu-K7) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x
-        end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1
-        end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
-        end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
-        # (upu-V6) triple product of the velocity vectors
-        volume_c_t = root_1*root_2
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2
-        # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-        n_c_z = n_m1_r0_y*root_2/volume_c_t
-        # (upu-V9) force part of reciprocal wrench 1
-        axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
-        axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
-        axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
-        w_1_t = s_1*s_2
-        w_1_t_2 = c_1*s_2
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1 = inv_upu_root_1*upu_py_1
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_px_1
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_end_p1_r1_x = upu_end_p1_r0_y*upu_s_1 - upu_c_1*upu_end_p1_r0_x
+        upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1
+        upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y
+        upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2
+        # (upu-volume_c) triple product of the velocity vectors
+        upu_volume_c_t = upu_root_1*upu_root_2
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2
+        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t
+        # (upu-w_1) force part of reciprocal wrench 1
+        axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1
+        axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1
+        axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1
+        upu_w_1_t = upu_s_1*upu_s_2
+        upu_w_1_t_2 = upu_c_1*upu_s_2
         axis_y_upu_axes2_in_base_x = (
-        upu_base_frame_xx*w_1_t + upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz
+        upu_base_frame_xx*upu_w_1_t + upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2
         )
         axis_y_upu_axes2_in_base_y = (
-        upu_base_frame_yx*w_1_t + upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz
+        upu_base_frame_yx*upu_w_1_t + upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2
         )
         axis_y_upu_axes2_in_base_z = (
-        upu_base_frame_zx*w_1_t + upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz
+        upu_base_frame_zx*upu_w_1_t + upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2
         )
         axis_x_upu_axes2_x = (
         axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
@@ -4363,99 +4575,109 @@ def _run_joint_accelerations(m, X, V, A):
         axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
             axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
         )
-        w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
-        inv_w_1_t_25 = 1.0/w_1_t_3
-        # (upu-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_tip_x = (
-        S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
+        upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y
+        inv_upu_w_1_t_25 = 1.0/upu_w_1_t_3
+        # (upu-S_dot) velocity of the connection point
+        upu_S_dot_t = omega_y*upu_q_in_base_z - omega_z*upu_q_in_base_y
+        upu_S_dot_t_2 = omega_z*upu_q_in_base_x - omega_x*upu_q_in_base_z
+        upu_S_dot_t_3 = omega_x*upu_q_in_base_y - omega_y*upu_q_in_base_x
+        upu_S_dot_x = t_dot_x + upu_S_dot_t
+        upu_S_dot_y = t_dot_y + upu_S_dot_t_2
+        upu_S_dot_z = t_dot_z + upu_S_dot_t_3
+        upu_S_dot_tip_x = (
+        axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
+            axis_x_upu_axes2_z*upu_S_dot_z
         )
-        # (upu-V19) rate of joint 1
-        qd_1_t = (
-        inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
-            S_dot_z*axis_y_upu_axes2_in_base_z)
+        # (upu-qd_3) rate of joint 3
+        upu_qd_3_t = (
+        inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_dot_x +
+            axis_y_upu_axes2_in_base_y*upu_S_dot_y + axis_y_upu_axes2_in_base_z*upu_S_dot_z)
         )
-        # (upu-A8) rate of moment direction 1
-        omega_tip_x = (
+        # (upu-bias) acceleration of the connection point at zero joint accelerations
+        upu_bias_t = 2.0*upu_S_dot_tip_x
+        # (upu-nd_m1) rate of moment direction 1
+        upu_omega_tip_x = (
         axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
         )
-        omega_tip_y = (
+        upu_omega_tip_y = (
         axis_y_upu_axes2_in_base_x*omega_x + axis_y_upu_axes2_in_base_y*omega_y +
             axis_y_upu_axes2_in_base_z*omega_z
         )
-        omega_tip_z = (
+        upu_omega_tip_z = (
         axis_z_upu_axes2_in_base_x*omega_x + axis_z_upu_axes2_in_base_y*omega_y +
             axis_z_upu_axes2_in_base_z*omega_z
         )
-        # (upu-A5) acceleration of the connection point at zero joint accelerations
-        bias_t = 2.0*S_dot_tip_x
-        # (upu-V19) rate of joint 1
-        qd_1_t_2 = (
-        inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
-            S_dot_z*axis_z_upu_axes2_in_base_z - n_c_z*(end_p1_r3_y*omega_tip_x -
-            end_p1_r3_x*omega_tip_y))
+        # (upu-qd_1) rate of joint 1
+        upu_qd_1_t = (
+        inv_upu_w_1_t_25*(axis_z_upu_axes2_in_base_x*upu_S_dot_x +
+            axis_z_upu_axes2_in_base_y*upu_S_dot_y + axis_z_upu_axes2_in_base_z*upu_S_dot_z -
+            upu_n_c_z*(upu_end_p1_r3_y*upu_omega_tip_x - upu_end_p1_r3_x*upu_omega_tip_y))
         )
-        # (upu-V22) angular velocity of link 1
-        omega_1_t = qd_1_t_2*s_2
-        omega_1_t_2 = c_2*qd_1_t_2
-        # (upu-A8) rate of moment direction 1
-        nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t - end_p1_r3_x*omega_tip_z
-        nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y - end_p1_r3_y*omega_tip_z
-        # (upu-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_y = omega_1_t*qd_1_t
-        # (upu-A9) bias of the angular acceleration along moment direction 1
-        nu_1_t = end_p1_r3_y*omega_1_t_2*qd_1_t - end_p1_r3_x*zeta_2_y
-        nu_1_t_2 = (
-        nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z - qd_1_t)*(end_p1_r3_y*omega_1_t_2 -
-            end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 + omega_tip_y)
+        # (upu-a_p) acceleration of the connection point without its centripetal part
+        upu_a_p_x = t_ddot_x + alpha_y*upu_q_in_base_z - alpha_z*upu_q_in_base_y
+        upu_a_p_y = t_ddot_y + alpha_z*upu_q_in_base_x - alpha_x*upu_q_in_base_z
+        upu_a_p_z = t_ddot_z + alpha_x*upu_q_in_base_y - alpha_y*upu_q_in_base_x
+        # (upu-S_ddot) acceleration of the connection point
+        upu_S_ddot_x = upu_a_p_x + omega_y*upu_S_dot_t_3 - omega_z*upu_S_dot_t_2
+        upu_S_ddot_y = upu_a_p_y + omega_z*upu_S_dot_t - omega_x*upu_S_dot_t_3
+        upu_S_ddot_z = upu_a_p_z + omega_x*upu_S_dot_t_2 - omega_y*upu_S_dot_t
+        # (upu-omega_1) angular velocity of link 1
+        upu_omega_1_t = upu_qd_1_t*upu_s_2
+        upu_omega_1_t_2 = upu_c_2*upu_qd_1_t
+        # (upu-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        upu_zeta_2_y = upu_omega_1_t*upu_qd_3_t
+        # (upu-bias) acceleration of the connection point at zero joint accelerations
+        upu_bias_z = upu_bias_t*upu_omega_1_t_2 + 2.0*upu_root_2*upu_zeta_2_y
+        # (upu-rel) acceleration of the connection point left to the joint accelerations
+        upu_rel_x = (
+        axis_x_upu_axes2_x*upu_S_ddot_x + axis_x_upu_axes2_y*upu_S_ddot_y +
+            axis_x_upu_axes2_z*upu_S_ddot_z + upu_root_2*(upu_omega_1_t_2*upu_omega_1_t_2 +
+            upu_qd_3_t*upu_qd_3_t)
         )
-        nu_1 = -nu_1_t - nu_1_t_2
-        # (upu-A10) acceleration with which the joints turn along moment direction 1
-        etad_1_t = (
-        end_p1_r3_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y +
-            alpha_z*axis_x_upu_axes2_z) - end_p1_r3_x*(alpha_x*axis_y_upu_axes2_in_base_x +
+        upu_rel_z = (
+        axis_z_upu_axes2_in_base_x*upu_S_ddot_x + axis_z_upu_axes2_in_base_y*upu_S_ddot_y +
+            axis_z_upu_axes2_in_base_z*upu_S_ddot_z - upu_bias_z
+        )
+        # (upu-nd_m1) rate of moment direction 1
+        upu_nd_m1_x = (
+        upu_end_p1_r1_x*upu_omega_tip_x - upu_end_p1_r1_x*upu_omega_1_t -
+            upu_end_p1_r3_x*upu_omega_tip_z
+        )
+        upu_nd_m1_y = (
+        upu_end_p1_r1_x*upu_omega_1_t_2 + upu_end_p1_r1_x*upu_omega_tip_y -
+            upu_end_p1_r3_y*upu_omega_tip_z
+        )
+        # (upu-nu_1) bias of the angular acceleration along moment direction 1
+        upu_nu_1_t = upu_end_p1_r3_y*upu_omega_1_t_2*upu_qd_3_t - upu_end_p1_r3_x*upu_zeta_2_y
+        upu_nu_1_t_2 = (
+        upu_nd_m1_x*(upu_omega_1_t - upu_omega_tip_x) + (upu_omega_tip_z -
+            upu_qd_3_t)*(upu_end_p1_r3_y*upu_omega_1_t_2 - upu_end_p1_r3_x*upu_omega_1_t) -
+            upu_nd_m1_y*(upu_omega_1_t_2 + upu_omega_tip_y)
+        )
+        upu_nu_1 = -upu_nu_1_t - upu_nu_1_t_2
+        # (upu-etad_1) acceleration with which the joints turn along moment direction 1
+        upu_etad_1_t = (
+        upu_end_p1_r3_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y +
+            alpha_z*axis_x_upu_axes2_z) - upu_end_p1_r3_x*(alpha_x*axis_y_upu_axes2_in_base_x +
             alpha_y*axis_y_upu_axes2_in_base_y + alpha_z*axis_y_upu_axes2_in_base_z)
         )
-        etad_1 = nu_1 - etad_1_t
-        # (upu-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (upu-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        # (upu-A5) acceleration of the connection point at zero joint accelerations
-        bias_z = bias_t*omega_1_t_2 + 2.0*root_2*zeta_2_y
-        # (upu-A6) acceleration of the connection point left to the joint accelerations
-        rel_x = (
-        S_ddot_x*axis_x_upu_axes2_x + S_ddot_y*axis_x_upu_axes2_y + S_ddot_z*axis_x_upu_axes2_z +
-            root_2*(omega_1_t_2*omega_1_t_2 + qd_1_t*qd_1_t)
+        upu_etad_1 = upu_nu_1 - upu_etad_1_t
+        # (upu-qdd_1) acceleration of joint 1
+        upu_qdd_1_t = (
+        inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_ddot_x +
+            axis_y_upu_axes2_in_base_y*upu_S_ddot_y + axis_y_upu_axes2_in_base_z*upu_S_ddot_z -
+            upu_bias_t*upu_qd_3_t) + upu_omega_1_t*upu_omega_1_t_2
         )
-        rel_z = (
-        S_ddot_x*axis_z_upu_axes2_in_base_x + S_ddot_y*axis_z_upu_axes2_in_base_y +
-            S_ddot_z*axis_z_upu_axes2_in_base_z - bias_z
-        )
-        # (upu-A11) acceleration of joint 1
-        qdd_1_t = (
-        inv_root_2*(S_ddot_x*axis_y_upu_axes2_in_base_x + S_ddot_y*axis_y_upu_axes2_in_base_y +
-            S_ddot_z*axis_y_upu_axes2_in_base_z - bias_t*qd_1_t) + omega_1_t*omega_1_t_2
-        )
-        qdd_1_t_2 = inv_w_1_t_25*(rel_z + etad_1*n_c_z)
+        upu_qdd_1_t_2 = inv_upu_w_1_t_25*(upu_rel_z + upu_etad_1*upu_n_c_z)
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-volume_c_t) >
-            _TOLERANCE * 0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8) & (abs(w_1_t_3) >
-            _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(-upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
+            _TOLERANCE * 0.8) & (abs(upu_w_1_t_3) > _TOLERANCE * 0.8))
         )
-        out_qdd[_qdd_upu[0][leg]] = qdd_1_t_2
-        out_qdd[_qdd_upu[1][leg]] = qdd_1_t
-        out_qdd[_qdd_upu[2][leg]] = rel_x
+        out_qdd[_qdd_upu[0][leg]] = upu_qdd_1_t_2
+        out_qdd[_qdd_upu[1][leg]] = upu_qdd_1_t
+        out_qdd[_qdd_upu[2][leg]] = upu_rel_x
     return ok, (out_qdd,)
 
 
@@ -4502,54 +4724,60 @@ def _run_constraints(m, X):
     out_constraints = m.zeros("constraints")
     for leg, k in legs[0]:
         (
-        branch_1, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_yx, upu_base_frame_yy,
+        upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_yx, upu_base_frame_yy,
             upu_base_frame_zx, upu_base_frame_zy, upu_base_point_x, upu_base_point_y,
-            upu_base_point_z, upu_platform_joint_axis_platform_x,
+            upu_base_point_z, upu_branch_1, upu_platform_joint_axis_platform_x,
             upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
             upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
         ) = k
-        # (upu-K1) from the base point to the connection point
-        S_x = (
+        # (upu-S) from the base point to the connection point
+        upu_S_x = (
         t_x + R_xx*upu_platform_point_x + R_xy*upu_platform_point_y + R_xz*upu_platform_point_z -
             upu_base_point_x
         )
-        S_y = (
+        upu_S_y = (
         t_y + R_yx*upu_platform_point_x + R_yy*upu_platform_point_y + R_yz*upu_platform_point_z -
             upu_base_point_y
         )
-        S_z = (
+        upu_S_z = (
         t_z + R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z -
             upu_base_point_z
         )
-        # (upu-K2) component along the reference direction
-        px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx
-        # (upu-K3) component across the reference direction
-        py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy
-        # (upu-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (upu-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        end_p1_r0_x = (
+        # (upu-px_1) component along the reference direction
+        upu_px_1 = (
+        upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
+        )
+        # (upu-py_1) component across the reference direction
+        upu_py_1 = (
+        upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy + upu_S_z*upu_base_frame_zy
+        )
+        # (upu-rho2_1) squared amplitude
+        upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
+        # (upu-root_1) amplitude, with the sign of the branch
+        upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_end_p1_r0_x = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
             R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
             R_yy*upu_base_frame_yx + R_zy*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx + R_yz*upu_base_frame_yx +
             R_zz*upu_base_frame_zx)
         )
-        end_p1_r0_y = (
+        upu_end_p1_r0_y = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy + R_yx*upu_base_frame_yy +
             R_zx*upu_base_frame_zy) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy +
             R_yy*upu_base_frame_yy + R_zy*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy + R_yz*upu_base_frame_yy +
             R_zz*upu_base_frame_zy)
         )
-        # (upu-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        end_p1_r1_x = end_p1_r0_y*inv_root_1*px_1 - end_p1_r0_x*inv_root_1*py_1
-        ok = ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
-        out_constraints[_constraints_upu[0][leg]] = -end_p1_r1_x
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_end_p1_r1_x = (
+        inv_upu_root_1*upu_end_p1_r0_y*upu_px_1 - inv_upu_root_1*upu_end_p1_r0_x*upu_py_1
+        )
+        ok = ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
+        out_constraints[_constraints_upu[0][leg]] = -upu_end_p1_r1_x
     return ok, (out_constraints,)
 
 
@@ -4624,99 +4852,106 @@ def _run_legs(m, X, V, A):
     out_constraint_direction = m.zeros("constraint_direction")
     for leg, k in legs[0]:
         (
-        J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
-            branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
-            upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
-            upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
-            upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z,
-            upu_link3_mass, upu_platform_joint_axis_platform_x,
-            upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
-            upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
+        upu_J_group_2_xy, upu_J_group_2_xz, upu_J_group_2_yz, upu_Sigma_2_xx, upu_Sigma_2_yy,
+            upu_Sigma_2_zz, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
+            upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
+            upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
+            upu_base_point_z, upu_branch_1, upu_branch_2, upu_g_r0_x, upu_g_r0_y, upu_g_r0_z,
+            upu_h_2_x, upu_h_2_y, upu_h_2_z, upu_h_3_x, upu_h_3_y, upu_h_3_z, upu_link3_mass,
+            upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
+            upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
+            upu_platform_point_z,
         ) = k
-        # (upu-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (upu-S) from the base point to the connection point
+        upu_q_in_base_x = (
         R_xx*upu_platform_point_x + R_xy*upu_platform_point_y + R_xz*upu_platform_point_z
         )
-        q_in_base_y = (
+        upu_q_in_base_y = (
         R_yx*upu_platform_point_x + R_yy*upu_platform_point_y + R_yz*upu_platform_point_z
         )
-        q_in_base_z = (
+        upu_q_in_base_z = (
         R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z
         )
-        S_x = q_in_base_x + t_x - upu_base_point_x
-        S_y = q_in_base_y + t_y - upu_base_point_y
-        S_z = q_in_base_z + t_z - upu_base_point_z
-        # (upu-K2) component along the reference direction
-        px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx
-        # (upu-K3) component across the reference direction
-        py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy
-        # (upu-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (upu-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (upu-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz
-        # (upu-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (upu-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (upu-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (upu-K16) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        end_p1_r0_x = (
+        upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x
+        upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y
+        upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z
+        # (upu-px_1) component along the reference direction
+        upu_px_1 = (
+        upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
+        )
+        # (upu-py_1) component across the reference direction
+        upu_py_1 = (
+        upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy + upu_S_z*upu_base_frame_zy
+        )
+        # (upu-rho2_1) squared amplitude
+        upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
+        # (upu-root_1) amplitude, with the sign of the branch
+        upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
+        # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        upu_xi_1_t = (
+        upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
+        )
+        # (upu-rho2_2) squared amplitude
+        upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t
+        # (upu-root_2) amplitude, with the sign of the branch
+        upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
+        # (upu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_upu_root_2 = 1.0/upu_root_2
+        upu_c_2 = inv_upu_root_2*upu_root_1
+        # (upu-s_2) sine of the angle of joint 2 from its reference direction
+        upu_s_2 = inv_upu_root_2*upu_xi_1_t
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_end_p1_r0_x = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
             R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
             R_yy*upu_base_frame_yx + R_zy*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx + R_yz*upu_base_frame_yx +
             R_zz*upu_base_frame_zx)
         )
-        end_p1_r0_y = (
+        upu_end_p1_r0_y = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy + R_yx*upu_base_frame_yy +
             R_zx*upu_base_frame_zy) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy +
             R_yy*upu_base_frame_yy + R_zy*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy + R_yz*upu_base_frame_yy +
             R_zz*upu_base_frame_zy)
         )
-        end_p1_r0_z = (
+        upu_end_p1_r0_z = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz + R_yx*upu_base_frame_yz +
             R_zx*upu_base_frame_zz) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz +
             R_yy*upu_base_frame_yz + R_zy*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
             R_zz*upu_base_frame_zz)
         )
-        # (upu-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (upu-K7) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x
-        end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1
-        end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
-        end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
-        # (upu-V6) triple product of the velocity vectors
-        volume_c_t = root_1*root_2
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2
-        # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-        n_c_z = n_m1_r0_y*root_2/volume_c_t
-        # (upu-V9) force part of reciprocal wrench 1
-        axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
-        axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
-        axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
-        w_1_t = s_1*s_2
-        w_1_t_2 = c_1*s_2
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1 = inv_upu_root_1*upu_py_1
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_px_1
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_end_p1_r1_x = upu_end_p1_r0_y*upu_s_1 - upu_c_1*upu_end_p1_r0_x
+        upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1
+        upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y
+        upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2
+        # (upu-volume_c) triple product of the velocity vectors
+        upu_volume_c_t = upu_root_1*upu_root_2
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2
+        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t
+        # (upu-w_1) force part of reciprocal wrench 1
+        axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1
+        axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1
+        axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1
+        upu_w_1_t = upu_s_1*upu_s_2
+        upu_w_1_t_2 = upu_c_1*upu_s_2
         axis_y_upu_axes2_in_base_x = (
-        upu_base_frame_xx*w_1_t + upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz
+        upu_base_frame_xx*upu_w_1_t + upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2
         )
         axis_y_upu_axes2_in_base_y = (
-        upu_base_frame_yx*w_1_t + upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz
+        upu_base_frame_yx*upu_w_1_t + upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2
         )
         axis_y_upu_axes2_in_base_z = (
-        upu_base_frame_zx*w_1_t + upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz
+        upu_base_frame_zx*upu_w_1_t + upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2
         )
         axis_x_upu_axes2_x = (
         axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
@@ -4730,198 +4965,220 @@ def _run_legs(m, X, V, A):
         axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
             axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
         )
-        w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
-        inv_w_1_t_25 = 1.0/w_1_t_3
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_in_base_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x - axis_x_upu_axes2_x*end_p1_r3_y
-        n_m1_in_base_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x - axis_x_upu_axes2_y*end_p1_r3_y
-        n_m1_in_base_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x - axis_x_upu_axes2_z*end_p1_r3_y
-        # (upu-V1) velocity of the connection point
-        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-        S_dot_x = S_dot_t + t_dot_x
-        S_dot_y = S_dot_t_2 + t_dot_y
-        S_dot_z = S_dot_t_3 + t_dot_z
-        S_dot_tip_x = (
-        S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
+        upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y
+        inv_upu_w_1_t_25 = 1.0/upu_w_1_t_3
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_n_m1_in_base_x = (
+        axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x - axis_x_upu_axes2_x*upu_end_p1_r3_y
         )
-        # (upu-V19) rate of joint 1
-        qd_1_t = (
-        inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
-            S_dot_z*axis_y_upu_axes2_in_base_z)
+        upu_n_m1_in_base_y = (
+        axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x - axis_x_upu_axes2_y*upu_end_p1_r3_y
         )
-        # (upu-A8) rate of moment direction 1
-        omega_tip_x = (
+        upu_n_m1_in_base_z = (
+        axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x - axis_x_upu_axes2_z*upu_end_p1_r3_y
+        )
+        # (upu-S_dot) velocity of the connection point
+        upu_S_dot_t = omega_y*upu_q_in_base_z - omega_z*upu_q_in_base_y
+        upu_S_dot_t_2 = omega_z*upu_q_in_base_x - omega_x*upu_q_in_base_z
+        upu_S_dot_t_3 = omega_x*upu_q_in_base_y - omega_y*upu_q_in_base_x
+        upu_S_dot_x = t_dot_x + upu_S_dot_t
+        upu_S_dot_y = t_dot_y + upu_S_dot_t_2
+        upu_S_dot_z = t_dot_z + upu_S_dot_t_3
+        upu_S_dot_tip_x = (
+        axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
+            axis_x_upu_axes2_z*upu_S_dot_z
+        )
+        # (upu-qd_3) rate of joint 3
+        upu_qd_3_t = (
+        inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_dot_x +
+            axis_y_upu_axes2_in_base_y*upu_S_dot_y + axis_y_upu_axes2_in_base_z*upu_S_dot_z)
+        )
+        # (upu-W_2) centripetal tensor of link 2
+        upu_W_2_t = upu_qd_3_t*upu_qd_3_t
+        # (upu-bias) acceleration of the connection point at zero joint accelerations
+        upu_bias_t = 2.0*upu_S_dot_tip_x
+        upu_bias_t_2 = upu_bias_t*upu_qd_3_t
+        # (upu-nd_m1) rate of moment direction 1
+        upu_omega_tip_x = (
         axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
         )
-        omega_tip_y = (
+        upu_omega_tip_y = (
         axis_y_upu_axes2_in_base_x*omega_x + axis_y_upu_axes2_in_base_y*omega_y +
             axis_y_upu_axes2_in_base_z*omega_z
         )
-        omega_tip_z = (
+        upu_omega_tip_z = (
         axis_z_upu_axes2_in_base_x*omega_x + axis_z_upu_axes2_in_base_y*omega_y +
             axis_z_upu_axes2_in_base_z*omega_z
         )
-        # (upu-V24) centripetal tensor of link 2
-        W_2_t = qd_1_t*qd_1_t
-        # (upu-A5) acceleration of the connection point at zero joint accelerations
-        bias_t = 2.0*S_dot_tip_x
-        bias_t_2 = bias_t*qd_1_t
-        # (upu-N6) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-        g_r3_x = g_r0_z*s_2 - c_2*g_r1_y
-        g_r3_y = -c_2*g_r0_z - g_r1_y*s_2
-        # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-        n_c_t = axis_z_upu_axes2_in_base_x*n_c_z
-        n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z
-        n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z
-        # (upu-V19) rate of joint 1
-        qd_1_t_2 = (
-        inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
-            S_dot_z*axis_z_upu_axes2_in_base_z - n_c_z*(end_p1_r3_y*omega_tip_x -
-            end_p1_r3_x*omega_tip_y))
+        # (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        upu_g_r1_x = upu_g_r0_y*upu_s_1 - upu_c_1*upu_g_r0_x
+        upu_g_r1_y = -upu_c_1*upu_g_r0_y - upu_g_r0_x*upu_s_1
+        upu_g_r3_x = upu_g_r0_z*upu_s_2 - upu_c_2*upu_g_r1_y
+        upu_g_r3_y = -upu_c_2*upu_g_r0_z - upu_g_r1_y*upu_s_2
+        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        upu_n_c_t = axis_z_upu_axes2_in_base_x*upu_n_c_z
+        upu_n_c_t_2 = axis_z_upu_axes2_in_base_y*upu_n_c_z
+        upu_n_c_t_3 = axis_z_upu_axes2_in_base_z*upu_n_c_z
+        # (upu-qd_1) rate of joint 1
+        upu_qd_1_t = (
+        inv_upu_w_1_t_25*(axis_z_upu_axes2_in_base_x*upu_S_dot_x +
+            axis_z_upu_axes2_in_base_y*upu_S_dot_y + axis_z_upu_axes2_in_base_z*upu_S_dot_z -
+            upu_n_c_z*(upu_end_p1_r3_y*upu_omega_tip_x - upu_end_p1_r3_x*upu_omega_tip_y))
         )
-        # (upu-V22) angular velocity of link 1
-        omega_1_t = qd_1_t_2*s_2
-        omega_1_t_2 = c_2*qd_1_t_2
-        # (upu-A8) rate of moment direction 1
-        nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t - end_p1_r3_x*omega_tip_z
-        nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y - end_p1_r3_y*omega_tip_z
-        # (upu-A4) angular acceleration of link 2 from the turning of axis 2
-        zeta_2_x = omega_1_t_2*qd_1_t
-        zeta_2_y = omega_1_t*qd_1_t
-        # (upu-A9) bias of the angular acceleration along moment direction 1
-        nu_1_t = end_p1_r3_y*zeta_2_x - end_p1_r3_x*zeta_2_y
-        nu_1_t_2 = (
-        nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z - qd_1_t)*(end_p1_r3_y*omega_1_t_2 -
-            end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 + omega_tip_y)
+        # (upu-a_p) acceleration of the connection point without its centripetal part
+        upu_a_p_x = t_ddot_x + alpha_y*upu_q_in_base_z - alpha_z*upu_q_in_base_y
+        upu_a_p_y = t_ddot_y + alpha_z*upu_q_in_base_x - alpha_x*upu_q_in_base_z
+        upu_a_p_z = t_ddot_z + alpha_x*upu_q_in_base_y - alpha_y*upu_q_in_base_x
+        # (upu-S_ddot) acceleration of the connection point
+        upu_S_ddot_x = upu_a_p_x + omega_y*upu_S_dot_t_3 - omega_z*upu_S_dot_t_2
+        upu_S_ddot_y = upu_a_p_y + omega_z*upu_S_dot_t - omega_x*upu_S_dot_t_3
+        upu_S_ddot_z = upu_a_p_z + omega_x*upu_S_dot_t_2 - omega_y*upu_S_dot_t
+        # (upu-omega_1) angular velocity of link 1
+        upu_omega_1_t = upu_qd_1_t*upu_s_2
+        upu_omega_1_t_2 = upu_c_2*upu_qd_1_t
+        # (upu-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        upu_zeta_2_x = upu_omega_1_t_2*upu_qd_3_t
+        upu_zeta_2_y = upu_omega_1_t*upu_qd_3_t
+        # (upu-W_2) centripetal tensor of link 2
+        upu_W_2_t_2 = upu_omega_1_t*upu_omega_1_t
+        upu_W_2_t_3 = upu_omega_1_t_2*upu_omega_1_t_2
+        upu_W_2_xy = upu_omega_1_t*upu_omega_1_t_2
+        # (upu-bias) acceleration of the connection point at zero joint accelerations
+        upu_bias_t_3 = upu_bias_t*upu_omega_1_t_2
+        upu_bias_z = upu_bias_t_3 + 2.0*upu_root_2*upu_zeta_2_y
+        # (upu-rel) acceleration of the connection point left to the joint accelerations
+        upu_rel_z = (
+        axis_z_upu_axes2_in_base_x*upu_S_ddot_x + axis_z_upu_axes2_in_base_y*upu_S_ddot_y +
+            axis_z_upu_axes2_in_base_z*upu_S_ddot_z - upu_bias_z
         )
-        nu_1 = -nu_1_t - nu_1_t_2
-        # (upu-A10) acceleration with which the joints turn along moment direction 1
-        etad_1_t = (
-        end_p1_r3_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y +
-            alpha_z*axis_x_upu_axes2_z) - end_p1_r3_x*(alpha_x*axis_y_upu_axes2_in_base_x +
+        # (upu-nd_m1) rate of moment direction 1
+        upu_nd_m1_x = (
+        upu_end_p1_r1_x*upu_omega_tip_x - upu_end_p1_r1_x*upu_omega_1_t -
+            upu_end_p1_r3_x*upu_omega_tip_z
+        )
+        upu_nd_m1_y = (
+        upu_end_p1_r1_x*upu_omega_1_t_2 + upu_end_p1_r1_x*upu_omega_tip_y -
+            upu_end_p1_r3_y*upu_omega_tip_z
+        )
+        # (upu-nu_1) bias of the angular acceleration along moment direction 1
+        upu_nu_1_t = upu_end_p1_r3_y*upu_zeta_2_x - upu_end_p1_r3_x*upu_zeta_2_y
+        upu_nu_1_t_2 = (
+        upu_nd_m1_x*(upu_omega_1_t - upu_omega_tip_x) + (upu_omega_tip_z -
+            upu_qd_3_t)*(upu_end_p1_r3_y*upu_omega_1_t_2 - upu_end_p1_r3_x*upu_omega_1_t) -
+            upu_nd_m1_y*(upu_omega_1_t_2 + upu_omega_tip_y)
+        )
+        upu_nu_1 = -upu_nu_1_t - upu_nu_1_t_2
+        # (upu-etad_1) acceleration with which the joints turn along moment direction 1
+        upu_etad_1_t = (
+        upu_end_p1_r3_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y +
+            alpha_z*axis_x_upu_axes2_z) - upu_end_p1_r3_x*(alpha_x*axis_y_upu_axes2_in_base_x +
             alpha_y*axis_y_upu_axes2_in_base_y + alpha_z*axis_y_upu_axes2_in_base_z)
         )
-        etad_1 = nu_1 - etad_1_t
-        # (upu-A2) acceleration of the connection point without its centripetal part
-        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-        # (upu-A3) acceleration of the connection point
-        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-        # (upu-V24) centripetal tensor of link 2
-        W_2_t_2 = omega_1_t*omega_1_t
-        W_2_t_3 = omega_1_t_2*omega_1_t_2
-        W_2_xy = omega_1_t*omega_1_t_2
-        # (upu-A5) acceleration of the connection point at zero joint accelerations
-        bias_t_3 = bias_t*omega_1_t_2
-        bias_z = bias_t_3 + 2.0*root_2*zeta_2_y
-        # (upu-A6) acceleration of the connection point left to the joint accelerations
-        rel_z = (
-        S_ddot_x*axis_z_upu_axes2_in_base_x + S_ddot_y*axis_z_upu_axes2_in_base_y +
-            S_ddot_z*axis_z_upu_axes2_in_base_z - bias_z
+        upu_etad_1 = upu_nu_1 - upu_etad_1_t
+        # (upu-qdd_1) acceleration of joint 1
+        upu_qdd_1_t = (
+        axis_y_upu_axes2_in_base_x*upu_S_ddot_x + axis_y_upu_axes2_in_base_y*upu_S_ddot_y +
+            axis_y_upu_axes2_in_base_z*upu_S_ddot_z - upu_bias_t_2
         )
-        # (upu-A11) acceleration of joint 1
-        qdd_1_t = (
-        S_ddot_x*axis_y_upu_axes2_in_base_x + S_ddot_y*axis_y_upu_axes2_in_base_y +
-            S_ddot_z*axis_y_upu_axes2_in_base_z - bias_t_2
+        upu_qdd_1_t_2 = inv_upu_root_2*upu_qdd_1_t
+        upu_qdd_1_t_3 = inv_upu_w_1_t_25*(upu_rel_z + upu_etad_1*upu_n_c_z)
+        # (upu-alpha_1) angular acceleration of link 1
+        upu_alpha_1_t = upu_qdd_1_t_3*upu_s_2
+        upu_alpha_1_t_2 = upu_c_2*upu_qdd_1_t_3
+        # (upu-alpha_2) angular acceleration of link 2
+        upu_alpha_2_x = upu_alpha_1_t - upu_zeta_2_x
+        upu_alpha_2_y = -upu_alpha_1_t_2 - upu_zeta_2_y
+        # (upu-B_2) acceleration tensor of link 2
+        upu_B_2_xy = -2.0*upu_W_2_xy - upu_qdd_1_t_2
+        upu_B_2_zx = upu_zeta_2_y - upu_alpha_2_y
+        upu_B_2_zy = upu_alpha_2_x - upu_zeta_2_x
+        # (upu-acc_3) acceleration of the reference point of link 3, less gravity
+        upu_acc_3_x = (
+        axis_x_upu_axes2_x*upu_S_ddot_x + axis_x_upu_axes2_y*upu_S_ddot_y +
+            axis_x_upu_axes2_z*upu_S_ddot_z - upu_g_r3_x
         )
-        qdd_1_t_2 = inv_root_2*qdd_1_t
-        qdd_1_t_3 = inv_w_1_t_25*(rel_z + etad_1*n_c_z)
-        # (upu-A17) angular acceleration of link 1
-        alpha_1_t = qdd_1_t_3*s_2
-        alpha_1_t_2 = c_2*qdd_1_t_3
-        # (upu-A21) angular acceleration of link 2
-        alpha_2_x = alpha_1_t - zeta_2_x
-        alpha_2_y = -alpha_1_t_2 - zeta_2_y
-        # (upu-A25) acceleration tensor of link 2
-        B_2_xy = -2.0*W_2_xy - qdd_1_t_2
-        B_2_zx = zeta_2_y - alpha_2_y
-        B_2_zy = alpha_2_x - zeta_2_x
-        # (upu-N3) acceleration of the reference point of link 3, less gravity
-        acc_3_x = (
-        S_ddot_x*axis_x_upu_axes2_x + S_ddot_y*axis_x_upu_axes2_y + S_ddot_z*axis_x_upu_axes2_z -
-            g_r3_x
+        upu_acc_3_y = upu_bias_t_2 + upu_qdd_1_t - upu_g_r3_y
+        upu_acc_3_z = upu_bias_t_3 + upu_B_2_zx*upu_root_2 - upu_g_r1_x
+        # (upu-f_3) inertia force of link 3 less its weight
+        upu_f_3_x = (
+        upu_acc_3_x*upu_link3_mass - upu_B_2_xy*upu_h_3_z - upu_alpha_1_t_2*upu_h_3_y -
+            upu_h_3_x*(upu_W_2_t + upu_W_2_t_3)
         )
-        acc_3_y = bias_t_2 + qdd_1_t - g_r3_y
-        acc_3_z = bias_t_3 + B_2_zx*root_2 - g_r1_x
-        # (upu-N11) inertia force of link 3 less its weight
-        f_3_x = (
-        acc_3_x*upu_link3_mass - B_2_xy*h_3_z - alpha_1_t_2*h_3_y - h_3_x*(W_2_t + W_2_t_3)
+        upu_f_3_y = (
+        upu_acc_3_y*upu_link3_mass + upu_h_3_x*upu_qdd_1_t_2 + upu_h_3_z*(upu_W_2_t + upu_W_2_t_2)
+            - upu_alpha_1_t*upu_h_3_y
         )
-        f_3_y = (
-        acc_3_y*upu_link3_mass + h_3_x*qdd_1_t_2 + h_3_z*(W_2_t + W_2_t_2) - alpha_1_t*h_3_y
+        upu_f_3_z = (
+        upu_B_2_zx*upu_h_3_x + upu_acc_3_z*upu_link3_mass - upu_B_2_zy*upu_h_3_z -
+            upu_h_3_y*(upu_W_2_t_2 + upu_W_2_t_3)
         )
-        f_3_z = B_2_zx*h_3_x + acc_3_z*upu_link3_mass - B_2_zy*h_3_z - h_3_y*(W_2_t_2 + W_2_t_3)
-        # (upu-N18) inertia moment of the links that turn with link 2, about their reference points
-        mu_2_x = (
-        B_2_zy*Sigma_2_yy + J_group_2_xz*qdd_1_t_2 + Sigma_2_zz*alpha_1_t + g_r1_x*h_2_z +
-            g_r3_y*h_2_y - B_2_zx*J_group_2_xy - J_group_2_yz*(W_2_t - W_2_t_3) - acc_3_y*h_3_y -
-            acc_3_z*h_3_z
+        # (upu-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        upu_mu_2_x = (
+        upu_B_2_zy*upu_Sigma_2_yy + upu_J_group_2_xz*upu_qdd_1_t_2 + upu_Sigma_2_zz*upu_alpha_1_t
+            + upu_g_r1_x*upu_h_2_z + upu_g_r3_y*upu_h_2_y - upu_B_2_zx*upu_J_group_2_xy -
+            upu_J_group_2_yz*(upu_W_2_t - upu_W_2_t_3) - upu_acc_3_y*upu_h_3_y -
+            upu_acc_3_z*upu_h_3_z
         )
-        mu_2_y = (
-        B_2_zy*J_group_2_xy + J_group_2_xz*(W_2_t - W_2_t_2) + acc_3_x*h_3_y + g_r1_x*h_2_x -
-            B_2_xy*J_group_2_yz - B_2_zx*Sigma_2_xx - Sigma_2_zz*alpha_1_t_2 - acc_3_z*h_3_x -
-            g_r3_x*h_2_y
+        upu_mu_2_y = (
+        upu_B_2_zy*upu_J_group_2_xy + upu_J_group_2_xz*(upu_W_2_t - upu_W_2_t_2) +
+            upu_acc_3_x*upu_h_3_y + upu_g_r1_x*upu_h_2_x - upu_B_2_xy*upu_J_group_2_yz -
+            upu_B_2_zx*upu_Sigma_2_xx - upu_Sigma_2_zz*upu_alpha_1_t_2 - upu_acc_3_z*upu_h_3_x -
+            upu_g_r3_x*upu_h_2_y
         )
-        mu_2_z = (
-        J_group_2_xy*(W_2_t_2 - W_2_t_3) + J_group_2_xz*alpha_1_t + Sigma_2_xx*qdd_1_t_2 +
-            acc_3_x*h_3_z + acc_3_y*h_3_x - B_2_xy*Sigma_2_yy - J_group_2_yz*alpha_1_t_2 -
-            g_r3_x*h_2_z - g_r3_y*h_2_x
+        upu_mu_2_z = (
+        upu_J_group_2_xy*(upu_W_2_t_2 - upu_W_2_t_3) + upu_J_group_2_xz*upu_alpha_1_t +
+            upu_Sigma_2_xx*upu_qdd_1_t_2 + upu_acc_3_x*upu_h_3_z + upu_acc_3_y*upu_h_3_x -
+            upu_B_2_xy*upu_Sigma_2_yy - upu_J_group_2_yz*upu_alpha_1_t_2 - upu_g_r3_x*upu_h_2_z -
+            upu_g_r3_y*upu_h_2_x
         )
-        # (upu-N22) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        N_2_y = mu_2_y - f_3_z*root_2
-        N_2_r0_y = mu_2_x*s_2 - N_2_y*c_2
-        # (upu-N38) force at the connection point that balances the leg's inertia and weight along all freedoms
-        G_t = f_3_y + inv_root_2*mu_2_z
-        G_t_2 = N_2_r0_y*inv_w_1_t_25
-        G_t_3 = N_2_r0_y*inv_w_1_t_25*n_c_z
-        # (upu-N50) leg force on the platform without actuation and without the mass at the connection point
-        c_in_base_x = (
-        -G_t*axis_y_upu_axes2_in_base_x - G_t_2*axis_z_upu_axes2_in_base_x -
-            axis_x_upu_axes2_x*f_3_x
+        # (upu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        upu_N_2_y = upu_mu_2_y - upu_f_3_z*upu_root_2
+        upu_N_2_r0_y = upu_mu_2_x*upu_s_2 - upu_N_2_y*upu_c_2
+        # (upu-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        upu_G_t = upu_f_3_y + inv_upu_root_2*upu_mu_2_z
+        upu_G_t_2 = inv_upu_w_1_t_25*upu_N_2_r0_y
+        upu_G_t_3 = inv_upu_w_1_t_25*upu_N_2_r0_y*upu_n_c_z
+        # (upu-c) leg force on the platform without actuation and without the mass at the connection point
+        upu_c_in_base_x = (
+        -axis_x_upu_axes2_x*upu_f_3_x - axis_y_upu_axes2_in_base_x*upu_G_t -
+            axis_z_upu_axes2_in_base_x*upu_G_t_2
         )
-        c_in_base_y = (
-        -G_t*axis_y_upu_axes2_in_base_y - G_t_2*axis_z_upu_axes2_in_base_y -
-            axis_x_upu_axes2_y*f_3_x
+        upu_c_in_base_y = (
+        -axis_x_upu_axes2_y*upu_f_3_x - axis_y_upu_axes2_in_base_y*upu_G_t -
+            axis_z_upu_axes2_in_base_y*upu_G_t_2
         )
-        c_in_base_z = (
-        -G_t*axis_y_upu_axes2_in_base_z - G_t_2*axis_z_upu_axes2_in_base_z -
-            axis_x_upu_axes2_z*f_3_x
+        upu_c_in_base_z = (
+        -axis_x_upu_axes2_z*upu_f_3_x - axis_y_upu_axes2_in_base_z*upu_G_t -
+            axis_z_upu_axes2_in_base_z*upu_G_t_2
         )
-        # (upu-N46) moment at the connection point that balances the leg's inertia and weight along all freedoms
-        G_m_x = G_t_3*end_p1_r3_y
-        G_m_y = G_t_3*end_p1_r3_x
-        # (upu-N55) moment of the leg on the platform without actuation
-        c_m_in_base_x = G_m_x*axis_x_upu_axes2_x - G_m_y*axis_y_upu_axes2_in_base_x
-        c_m_in_base_y = G_m_x*axis_x_upu_axes2_y - G_m_y*axis_y_upu_axes2_in_base_y
-        c_m_in_base_z = G_m_x*axis_x_upu_axes2_z - G_m_y*axis_y_upu_axes2_in_base_z
+        # (upu-G_m) moment at the connection point that balances the leg's inertia and weight along all freedoms
+        upu_G_m_x = upu_G_t_3*upu_end_p1_r3_y
+        upu_G_m_y = upu_G_t_3*upu_end_p1_r3_x
+        # (upu-c_m) moment of the leg on the platform without actuation
+        upu_c_m_in_base_x = axis_x_upu_axes2_x*upu_G_m_x - axis_y_upu_axes2_in_base_x*upu_G_m_y
+        upu_c_m_in_base_y = axis_x_upu_axes2_y*upu_G_m_x - axis_y_upu_axes2_in_base_y*upu_G_m_y
+        upu_c_m_in_base_z = axis_x_upu_axes2_z*upu_G_m_x - axis_y_upu_axes2_in_base_z*upu_G_m_y
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-volume_c_t) >
-            _TOLERANCE * 0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8) & (abs(w_1_t_3) >
-            _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(-upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
+            _TOLERANCE * 0.8) & (abs(upu_w_1_t_3) > _TOLERANCE * 0.8))
         )
-        out_leg_force[_leg_force_upu[0][leg]] = c_in_base_x
-        out_leg_force[_leg_force_upu[1][leg]] = c_in_base_y
-        out_leg_force[_leg_force_upu[2][leg]] = c_in_base_z
-        out_leg_force[_leg_force_upu[3][leg]] = c_m_in_base_x
-        out_leg_force[_leg_force_upu[4][leg]] = c_m_in_base_y
-        out_leg_force[_leg_force_upu[5][leg]] = c_m_in_base_z
+        out_leg_force[_leg_force_upu[0][leg]] = upu_c_in_base_x
+        out_leg_force[_leg_force_upu[1][leg]] = upu_c_in_base_y
+        out_leg_force[_leg_force_upu[2][leg]] = upu_c_in_base_z
+        out_leg_force[_leg_force_upu[3][leg]] = upu_c_m_in_base_x
+        out_leg_force[_leg_force_upu[4][leg]] = upu_c_m_in_base_y
+        out_leg_force[_leg_force_upu[5][leg]] = upu_c_m_in_base_z
         out_drive[_drive_upu[0][leg]] = axis_x_upu_axes2_x
         out_drive[_drive_upu[1][leg]] = axis_x_upu_axes2_y
         out_drive[_drive_upu[2][leg]] = axis_x_upu_axes2_z
-        out_constraint_direction[_constraint_direction_upu[0][leg]] = -n_c_t
-        out_constraint_direction[_constraint_direction_upu[1][leg]] = -n_c_t_2
-        out_constraint_direction[_constraint_direction_upu[2][leg]] = -n_c_t_3
-        out_constraint_direction[_constraint_direction_upu[3][leg]] = n_m1_in_base_x
-        out_constraint_direction[_constraint_direction_upu[4][leg]] = n_m1_in_base_y
-        out_constraint_direction[_constraint_direction_upu[5][leg]] = n_m1_in_base_z
+        out_constraint_direction[_constraint_direction_upu[0][leg]] = -upu_n_c_t
+        out_constraint_direction[_constraint_direction_upu[1][leg]] = -upu_n_c_t_2
+        out_constraint_direction[_constraint_direction_upu[2][leg]] = -upu_n_c_t_3
+        out_constraint_direction[_constraint_direction_upu[3][leg]] = upu_n_m1_in_base_x
+        out_constraint_direction[_constraint_direction_upu[4][leg]] = upu_n_m1_in_base_y
+        out_constraint_direction[_constraint_direction_upu[5][leg]] = upu_n_m1_in_base_z
     return ok, (out_leg_force, out_drive, out_constraint_direction,)
 
 
@@ -4967,7 +5224,7 @@ def _run_potential(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_potential = m.zeros("potential")
-    # (V1) potential energy
+    # (potential) potential energy
     potential_t = (
     gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + platform_mass*t_x) +
         gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + platform_mass*t_y) +
@@ -4976,72 +5233,81 @@ def _run_potential(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        b_r0_x, b_r0_y, b_r0_z, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z,
-            h_3_x, h_3_y, h_3_z, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
-            upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
-            upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
-            upu_base_point_z, upu_link2_mass, upu_link3_mass, upu_platform_point_x,
-            upu_platform_point_y, upu_platform_point_z,
+        upu_b_r0_x, upu_b_r0_y, upu_b_r0_z, upu_base_frame_xx, upu_base_frame_xy,
+            upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz,
+            upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x,
+            upu_base_point_y, upu_base_point_z, upu_branch_1, upu_branch_2, upu_g_r0_x,
+            upu_g_r0_y, upu_g_r0_z, upu_h_2_x, upu_h_2_y, upu_h_2_z, upu_h_3_x, upu_h_3_y,
+            upu_h_3_z, upu_link2_mass, upu_link3_mass, upu_platform_point_x, upu_platform_point_y,
+            upu_platform_point_z,
         ) = k
-        # (upu-K1) from the base point to the connection point
-        S_x = (
+        # (upu-S) from the base point to the connection point
+        upu_S_x = (
         t_x + R_xx*upu_platform_point_x + R_xy*upu_platform_point_y + R_xz*upu_platform_point_z -
             upu_base_point_x
         )
-        S_y = (
+        upu_S_y = (
         t_y + R_yx*upu_platform_point_x + R_yy*upu_platform_point_y + R_yz*upu_platform_point_z -
             upu_base_point_y
         )
-        S_z = (
+        upu_S_z = (
         t_z + R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z -
             upu_base_point_z
         )
-        # (upu-K2) component along the reference direction
-        px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx
-        # (upu-K3) component across the reference direction
-        py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy
-        # (upu-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (upu-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (upu-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz
-        # (upu-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (upu-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (upu-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (upu-K16) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (upu-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (upu-K7) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (upu-N6) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-        # (V1) potential energy
-        b_r1_x = b_r0_y*s_1 - b_r0_x*c_1
-        b_r1_y = -b_r0_x*s_1 - b_r0_y*c_1
-        b_r3_x = b_r0_z*s_2 - b_r1_y*c_2
-        b_r3_y = -b_r0_z*c_2 - b_r1_y*s_2
-        potential_t_2 = (
-        (g_r0_y*s_1 - c_1*g_r0_x)*(h_2_y + h_3_y + b_r1_x*upu_link2_mass + b_r1_x*upu_link3_mass)
-            + (g_r0_z*s_2 - c_2*g_r1_y)*(h_2_x + h_3_x + b_r3_x*upu_link2_mass +
-            upu_link3_mass*(b_r3_x + root_2)) - (-c_2*g_r0_z - g_r1_y*s_2)*(h_2_z + h_3_z -
-            b_r3_y*upu_link2_mass - b_r3_y*upu_link3_mass)
+        # (upu-px_1) component along the reference direction
+        upu_px_1 = (
+        upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
+        )
+        # (upu-py_1) component across the reference direction
+        upu_py_1 = (
+        upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy + upu_S_z*upu_base_frame_zy
+        )
+        # (upu-rho2_1) squared amplitude
+        upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
+        # (upu-root_1) amplitude, with the sign of the branch
+        upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
+        # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        upu_xi_1_t = (
+        upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
+        )
+        # (upu-rho2_2) squared amplitude
+        upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t
+        # (upu-root_2) amplitude, with the sign of the branch
+        upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
+        # (upu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_upu_root_2 = 1.0/upu_root_2
+        upu_c_2 = inv_upu_root_2*upu_root_1
+        # (upu-s_2) sine of the angle of joint 2 from its reference direction
+        upu_s_2 = inv_upu_root_2*upu_xi_1_t
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1 = inv_upu_root_1*upu_py_1
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_px_1
+        # (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        upu_g_r1_y = -upu_c_1*upu_g_r0_y - upu_g_r0_x*upu_s_1
+        # (potential) potential energy
+        upu_b_r1_x = upu_b_r0_y*upu_s_1 - upu_b_r0_x*upu_c_1
+        upu_b_r1_y = -upu_b_r0_x*upu_s_1 - upu_b_r0_y*upu_c_1
+        upu_b_r3_x = upu_b_r0_z*upu_s_2 - upu_b_r1_y*upu_c_2
+        upu_b_r3_y = -upu_b_r0_z*upu_c_2 - upu_b_r1_y*upu_s_2
+        upu_potential_t = (
+        (upu_g_r0_y*upu_s_1 - upu_c_1*upu_g_r0_x)*(upu_h_2_y + upu_h_3_y +
+            upu_b_r1_x*upu_link2_mass + upu_b_r1_x*upu_link3_mass) + (upu_g_r0_z*upu_s_2 -
+            upu_c_2*upu_g_r1_y)*(upu_h_2_x + upu_h_3_x + upu_b_r3_x*upu_link2_mass +
+            upu_link3_mass*(upu_b_r3_x + upu_root_2)) - (-upu_c_2*upu_g_r0_z -
+            upu_g_r1_y*upu_s_2)*(upu_h_2_z + upu_h_3_z - upu_b_r3_y*upu_link2_mass -
+            upu_b_r3_y*upu_link3_mass)
         )
         ok = (
-        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
+        ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
         )
         sums = m.added(sums, leg, (
-        potential_t_2,
+        upu_potential_t,
         ))
     total_upu, = sums
-    # (V1) potential energy
+    # (potential) potential energy
     potential = -potential_t - total_upu
     out_potential[0] = potential
     return ok, (out_potential,)
@@ -5100,96 +5366,102 @@ def _run_condition(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        branch_1, branch_2, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
-            upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
-            upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
-            upu_base_point_z, upu_platform_joint_axis_platform_x,
-            upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
-            upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
+        upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
+            upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
+            upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z, upu_branch_1,
+            upu_branch_2, upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
+            upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
+            upu_platform_point_z,
         ) = k
-        # (upu-K1) from the base point to the connection point
-        q_in_base_x = (
+        # (upu-S) from the base point to the connection point
+        upu_q_in_base_x = (
         R_xx*upu_platform_point_x + R_xy*upu_platform_point_y + R_xz*upu_platform_point_z
         )
-        q_in_base_y = (
+        upu_q_in_base_y = (
         R_yx*upu_platform_point_x + R_yy*upu_platform_point_y + R_yz*upu_platform_point_z
         )
-        q_in_base_z = (
+        upu_q_in_base_z = (
         R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z
         )
-        S_x = q_in_base_x + t_x - upu_base_point_x
-        S_y = q_in_base_y + t_y - upu_base_point_y
-        S_z = q_in_base_z + t_z - upu_base_point_z
-        # (upu-K2) component along the reference direction
-        px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx
-        # (upu-K3) component across the reference direction
-        py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy
-        # (upu-K4) squared amplitude
-        rho2_1 = px_1*px_1 + py_1*py_1
-        # (upu-K5) amplitude, with the sign of the branch
-        root_1 = branch_1*sqrt(rho2_1)
-        # (upu-K9) the vector from joint 1 to the connection point, resolved along link 1
-        xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz
-        # (upu-K13) squared amplitude
-        rho2_2 = rho2_1 + xi_1_t*xi_1_t
-        # (upu-K14) amplitude, with the sign of the branch
-        root_2 = branch_2*sqrt(rho2_2)
-        # (upu-K15) cosine of the angle of joint 2 from its reference direction
-        inv_root_2 = 1.0/root_2
-        c_2 = inv_root_2*root_1
-        # (upu-K16) sine of the angle of joint 2 from its reference direction
-        s_2 = inv_root_2*xi_1_t
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        end_p1_r0_x = (
+        upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x
+        upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y
+        upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z
+        # (upu-px_1) component along the reference direction
+        upu_px_1 = (
+        upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
+        )
+        # (upu-py_1) component across the reference direction
+        upu_py_1 = (
+        upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy + upu_S_z*upu_base_frame_zy
+        )
+        # (upu-rho2_1) squared amplitude
+        upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
+        # (upu-root_1) amplitude, with the sign of the branch
+        upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
+        # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        upu_xi_1_t = (
+        upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
+        )
+        # (upu-rho2_2) squared amplitude
+        upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t
+        # (upu-root_2) amplitude, with the sign of the branch
+        upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
+        # (upu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_upu_root_2 = 1.0/upu_root_2
+        upu_c_2 = inv_upu_root_2*upu_root_1
+        # (upu-s_2) sine of the angle of joint 2 from its reference direction
+        upu_s_2 = inv_upu_root_2*upu_xi_1_t
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_end_p1_r0_x = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
             R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
             R_yy*upu_base_frame_yx + R_zy*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx + R_yz*upu_base_frame_yx +
             R_zz*upu_base_frame_zx)
         )
-        end_p1_r0_y = (
+        upu_end_p1_r0_y = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy + R_yx*upu_base_frame_yy +
             R_zx*upu_base_frame_zy) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy +
             R_yy*upu_base_frame_yy + R_zy*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy + R_yz*upu_base_frame_yy +
             R_zz*upu_base_frame_zy)
         )
-        end_p1_r0_z = (
+        upu_end_p1_r0_z = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz + R_yx*upu_base_frame_yz +
             R_zx*upu_base_frame_zz) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz +
             R_yy*upu_base_frame_yz + R_zy*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
             R_zz*upu_base_frame_zz)
         )
-        # (upu-K6) cosine of the angle of joint 1 from its reference direction
-        inv_root_1 = 1.0/root_1
-        c_1 = inv_root_1*py_1
-        # (upu-K7) sine of the angle of joint 1 from its reference direction
-        s_1 = inv_root_1*px_1
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1
-        end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
-        end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
-        # (upu-V6) triple product of the velocity vectors
-        volume_c_t = root_1*root_2
-        # (upu-V5) direction 1 of the moment that the platform joint transmits
-        n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2
-        # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-        n_c_z = n_m1_r0_y*root_2/volume_c_t
-        # (upu-V9) force part of reciprocal wrench 1
-        axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
-        axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
-        axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
-        w_1_t = s_1*s_2
-        w_1_t_2 = c_1*s_2
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1 = inv_upu_root_1*upu_py_1
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_px_1
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1
+        upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y
+        upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2
+        # (upu-volume_c) triple product of the velocity vectors
+        upu_volume_c_t = upu_root_1*upu_root_2
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2
+        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t
+        # (upu-w_1) force part of reciprocal wrench 1
+        axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1
+        axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1
+        axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1
+        upu_w_1_t = upu_s_1*upu_s_2
+        upu_w_1_t_2 = upu_c_1*upu_s_2
         axis_y_upu_axes2_in_base_x = (
-        upu_base_frame_xx*w_1_t + upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz
+        upu_base_frame_xx*upu_w_1_t + upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2
         )
         axis_y_upu_axes2_in_base_y = (
-        upu_base_frame_yx*w_1_t + upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz
+        upu_base_frame_yx*upu_w_1_t + upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2
         )
         axis_y_upu_axes2_in_base_z = (
-        upu_base_frame_zx*w_1_t + upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz
+        upu_base_frame_zx*upu_w_1_t + upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2
         )
         axis_x_upu_axes2_x = (
         axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
@@ -5203,71 +5475,73 @@ def _run_condition(m, X):
         axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
             axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
         )
-        w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
-        # (M8) moment of the column's unit force about the platform origin
-        H_a_3_t = axis_x_upu_axes2_z*q_in_base_y - axis_x_upu_axes2_y*q_in_base_z
-        H_a_3_t_2 = axis_x_upu_axes2_x*q_in_base_z - axis_x_upu_axes2_z*q_in_base_x
-        H_a_3_t_3 = axis_x_upu_axes2_y*q_in_base_x - axis_x_upu_axes2_x*q_in_base_y
-        # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-        n_c_t = axis_z_upu_axes2_in_base_x*n_c_z
-        n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z
-        n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z
-        # (M9) moment of the column's unit force about the platform origin
-        Hk_a_1_x = (
-        axis_y_upu_axes2_in_base_x*end_p1_r3_x + n_c_t_2*q_in_base_z -
-            axis_x_upu_axes2_x*end_p1_r3_y - n_c_t_3*q_in_base_y
+        upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y
+        # (upu-H_a_3) moment of the column's unit force about the platform origin
+        upu_H_a_3_t = axis_x_upu_axes2_z*upu_q_in_base_y - axis_x_upu_axes2_y*upu_q_in_base_z
+        upu_H_a_3_t_2 = axis_x_upu_axes2_x*upu_q_in_base_z - axis_x_upu_axes2_z*upu_q_in_base_x
+        upu_H_a_3_t_3 = axis_x_upu_axes2_y*upu_q_in_base_x - axis_x_upu_axes2_x*upu_q_in_base_y
+        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        upu_n_c_t = axis_z_upu_axes2_in_base_x*upu_n_c_z
+        upu_n_c_t_2 = axis_z_upu_axes2_in_base_y*upu_n_c_z
+        upu_n_c_t_3 = axis_z_upu_axes2_in_base_z*upu_n_c_z
+        # (upu-Hk_a_1) moment of the column's unit force about the platform origin
+        upu_Hk_a_1_x = (
+        axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x + upu_n_c_t_2*upu_q_in_base_z -
+            axis_x_upu_axes2_x*upu_end_p1_r3_y - upu_n_c_t_3*upu_q_in_base_y
         )
-        Hk_a_1_y = (
-        axis_y_upu_axes2_in_base_y*end_p1_r3_x + n_c_t_3*q_in_base_x -
-            axis_x_upu_axes2_y*end_p1_r3_y - n_c_t*q_in_base_z
+        upu_Hk_a_1_y = (
+        axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x + upu_n_c_t_3*upu_q_in_base_x -
+            axis_x_upu_axes2_y*upu_end_p1_r3_y - upu_n_c_t*upu_q_in_base_z
         )
-        Hk_a_1_z = (
-        axis_y_upu_axes2_in_base_z*end_p1_r3_x + n_c_t*q_in_base_y -
-            axis_x_upu_axes2_z*end_p1_r3_y - n_c_t_2*q_in_base_x
+        upu_Hk_a_1_z = (
+        axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x + upu_n_c_t*upu_q_in_base_y -
+            axis_x_upu_axes2_z*upu_end_p1_r3_y - upu_n_c_t_2*upu_q_in_base_x
         )
-        # (C2) rms distance of the platform points from their centroid
-        spread_t_2 = b_c_x - upu_platform_point_x
-        spread_t_3 = b_c_y - upu_platform_point_y
-        spread_t_4 = b_c_z - upu_platform_point_z
-        spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 + spread_t_4*spread_t_4
-        # (upu-K4) squared amplitude
-        pivot_size = abs(rho2_1)
-        # (upu-K13) squared amplitude
-        pivot_size_2 = abs(rho2_2)
-        # (upu-V6) triple product of the velocity vectors
-        pivot_size_3 = abs(volume_c_t)
-        # (upu-V9) force part of reciprocal wrench 1
-        pivot_size_4 = abs(root_2)
-        pivot_size_5 = abs(w_1_t_3)
-        # (upu-N38) force at the connection point that balances the leg's inertia and weight along all freedoms
-        least_pivots = (
-        least(least(least(least(1.25*sqrt(pivot_size), 1.25*sqrt(pivot_size_2)),
-            1.5624999999999998*pivot_size_3), 1.25*pivot_size_4), 1.25*pivot_size_5)
+        # (spread) rms distance of the platform points from their centroid
+        upu_spread_t = b_c_x - upu_platform_point_x
+        upu_spread_t_2 = b_c_y - upu_platform_point_y
+        upu_spread_t_3 = b_c_z - upu_platform_point_z
+        upu_spread_t_4 = (
+        upu_spread_t*upu_spread_t + upu_spread_t_2*upu_spread_t_2 + upu_spread_t_3*upu_spread_t_3
+        )
+        # (upu-rho2_1) squared amplitude
+        upu_pivot_size = abs(upu_rho2_1)
+        # (upu-rho2_2) squared amplitude
+        upu_pivot_size_2 = abs(upu_rho2_2)
+        # (upu-volume_c) triple product of the velocity vectors
+        upu_pivot_size_3 = abs(upu_volume_c_t)
+        # (upu-w_1) force part of reciprocal wrench 1
+        upu_pivot_size_4 = abs(upu_root_2)
+        upu_pivot_size_5 = abs(upu_w_1_t_3)
+        # (upu-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        upu_least_pivots = (
+        least(least(least(least(1.25*sqrt(upu_pivot_size), 1.25*sqrt(upu_pivot_size_2)),
+            1.5624999999999998*upu_pivot_size_3), 1.25*upu_pivot_size_4), 1.25*upu_pivot_size_5)
         )
         clear = (
-        clear & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-volume_c_t) >
-            _TOLERANCE * 0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8) & (abs(w_1_t_3) >
-            _TOLERANCE * 0.8))
+        clear & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(-upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
+            _TOLERANCE * 0.8) & (abs(upu_w_1_t_3) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
-        spread_t_5,
+        upu_spread_t_4,
         ))
         out_H[_H_upu[0][leg]] = axis_x_upu_axes2_x
         out_H[_H_upu[1][leg]] = axis_x_upu_axes2_y
         out_H[_H_upu[2][leg]] = axis_x_upu_axes2_z
-        out_H[_H_upu[3][leg]] = H_a_3_t
-        out_H[_H_upu[4][leg]] = H_a_3_t_2
-        out_H[_H_upu[5][leg]] = H_a_3_t_3
-        out_Hk[_Hk_upu[0][leg]] = -n_c_t
-        out_Hk[_Hk_upu[1][leg]] = -n_c_t_2
-        out_Hk[_Hk_upu[2][leg]] = -n_c_t_3
-        out_Hk[_Hk_upu[3][leg]] = Hk_a_1_x
-        out_Hk[_Hk_upu[4][leg]] = Hk_a_1_y
-        out_Hk[_Hk_upu[5][leg]] = Hk_a_1_z
-        out_pivots[_pivots_upu[0][leg]] = least_pivots
+        out_H[_H_upu[3][leg]] = upu_H_a_3_t
+        out_H[_H_upu[4][leg]] = upu_H_a_3_t_2
+        out_H[_H_upu[5][leg]] = upu_H_a_3_t_3
+        out_Hk[_Hk_upu[0][leg]] = -upu_n_c_t
+        out_Hk[_Hk_upu[1][leg]] = -upu_n_c_t_2
+        out_Hk[_Hk_upu[2][leg]] = -upu_n_c_t_3
+        out_Hk[_Hk_upu[3][leg]] = upu_Hk_a_1_x
+        out_Hk[_Hk_upu[4][leg]] = upu_Hk_a_1_y
+        out_Hk[_Hk_upu[5][leg]] = upu_Hk_a_1_z
+        out_pivots[_pivots_upu[0][leg]] = upu_least_pivots
     total_upu, = sums
-    # (C2) rms distance of the platform points from their centroid
+    # (spread) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(total_upu)
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_Hk, out_lengths, out_pivots, out_reach,)
@@ -5458,6 +5732,19 @@ def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
     momentum = np.einsum("ijs,js->is", M, V)
     return (momentum,)
+
+
+def _steps_joint_margins(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    margins = _unlimited(q, [0, 1, 2, 3, 4, 5, 6, 7, 8])
+    return (margins,)
+
+
+def _steps_within_limits(m, X):
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    subtract_1 = q - q
+    within = _not_negative(subtract_1)
+    return (within,)
 
 
 def _steps_actuator_positions(m, X):
@@ -5988,6 +6275,40 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+    )
+
+
+def joint_margins(X, p=None):
+    """How far the joints are from the nearer limit of displacement, negative beyond it; infinite
+    where there is none.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        margins: distances, in the order of q [m or rad] (..., NJ).
+    """
+    return _call(
+        "joint_margins", _steps_joint_margins, p,
+        ("X", X, (NQ,)),
+        unbounded=True,
+    )
+
+
+def within_limits(X, p=None):
+    """Whether all joints are within their limits of displacement.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        within: 1 where no margin is negative, else 0; NaN is neither (...,).
+    """
+    return _call(
+        "within_limits", _steps_within_limits, p,
+        ("X", X, (NQ,)),
     )
 
 
